@@ -1,0 +1,14 @@
+# What every target of ours is compiled with.
+add_library(osteomill_compile_options INTERFACE)
+# No fused multiply-add by accident: the same input must give the same bits at any optimisation level.
+target_compile_options(osteomill_compile_options INTERFACE
+  -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wnon-virtual-dtor -Werror -ffp-contract=off)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # GCC 12 reports `"literal" + std::string` as an overlapping copy (its bug 105651).
+  target_compile_options(osteomill_compile_options INTERFACE -Wno-restrict)
+endif()
+if(OSTEOMILL_SANITIZE)
+  target_compile_options(osteomill_compile_options INTERFACE
+    -fsanitize=${OSTEOMILL_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(osteomill_compile_options INTERFACE -fsanitize=${OSTEOMILL_SANITIZE})
+endif()

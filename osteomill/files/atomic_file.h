@@ -1,0 +1,22 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <ostream>
+#include <string_view>
+
+namespace osteomill {
+
+/// Calls `write` with the name of a file beside `path`, then renames that file to `path`, so that nobody ever
+/// sees it half-written. Whatever `write` throws is passed on and the file beside is removed.
+/// Throws InputError naming `path` where the file cannot be created or renamed.
+void write_file_atomically(const std::filesystem::path& path,
+                           const std::function<void(const std::filesystem::path& beside)>& write);
+
+/// The same for text: `write` fills the stream; a stream that failed (a full disk) is an InputError.
+void write_text_atomically(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write);
+
+/// Creates `folder` and its parents. Throws InputError naming it where that is impossible.
+void create_folder(const std::filesystem::path& folder);
+
+}  // namespace osteomill

@@ -1,0 +1,63 @@
+#include "osteomill/files/atomic_file.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
+
+#include "osteomill/files/input_error.h"
+
+namespace osteomill {
+namespace {
+
+namespace fs = std::filesystem;
+
+class AtomicFileTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::path(::testing::TempDir()) /
+              ::testing::UnitTest::GetInstance()->current_test_info()->name();
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  std::string content(const fs::path& path) const {
+    std::ostringstream text;
+    text << std::ifstream(path).rdbuf();
+    return text.str();
+  }
+  long file_count() const { return std::distance(fs::directory_iterator(folder_), fs::directory_iterator()); }
+
+  fs::path folder_;
+};
+
+TEST_F(AtomicFileTest, WritesTheText) {
+  write_text_atomically(folder_ / "a.csv", [](std::ostream& out) { out << "1,2\n"; });
+  EXPECT_EQ(content(folder_ / "a.csv"), "1,2\n");
+  EXPECT_EQ(file_count(), 1);
+}
+
+TEST_F(AtomicFileTest, AFailedWriteLeavesTheOldFileAndNoOther) {
+  write_text_atomically(folder_ / "a.csv", [](std::ostream& out) { out << "old"; });
+  EXPECT_THROW(write_text_atomically(folder_ / "a.csv",
+                                     [](std::ostream& out) {
+                                       out << "half";
+                                       throw std::runtime_error("stopped");
+                                     }),
+               std::runtime_error);
+  EXPECT_EQ(content(folder_ / "a.csv"), "old");
+  EXPECT_EQ(file_count(), 1);
+}
+
+TEST_F(AtomicFileTest, AFolderThatIsMissingIsNamed) {
+  try {
+    write_text_atomically(folder_ / "none" / "a.csv", [](std::ostream&) {});
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("none/a.csv"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace osteomill

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace osteomill {
+
+/// What the user handed us is at fault: a file, a folder, a row of it, or an option's value.
+/// The command line prints `what()` as its one line and exits with code 1.
+/// Never thrown inside a haptic tick.
+class InputError : public std::runtime_error {
+ public:
+  /// `subject` names the file (or option), `reason` says what is wrong with it, without a full stop.
+  InputError(std::string_view subject, std::string_view reason)
+      : std::runtime_error(std::string(subject) + ": " + std::string(reason)) {}
+};
+
+}  // namespace osteomill

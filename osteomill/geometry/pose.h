@@ -1,0 +1,43 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+namespace osteomill {
+
+using Vec3 = Eigen::Vector3d;
+using Mat3 = Eigen::Matrix3d;
+using Quat = Eigen::Quaterniond;
+
+/// A rigid placement `X_AB` of frame B in frame A: a point `p_B` of B lies at `X_AB * p_B` in A.
+/// Position in mm; `orientation` is a unit quaternion. Safe in the haptic tick.
+struct Pose {
+  Vec3 position_mm = Vec3::Zero();
+  Quat orientation = Quat::Identity();
+
+  Vec3 operator*(const Vec3& point_mm) const { return orientation * point_mm + position_mm; }
+  Pose operator*(const Pose& inner) const {
+    return {*this * inner.position_mm, (orientation * inner.orientation).normalized()};
+  }
+  Pose inverse() const {
+    const Quat back = orientation.conjugate();
+    return {-(back * position_mm), back};
+  }
+};
+
+/// The rotation vector (axis times angle, rad, angle at most pi) of a unit quaternion.
+Vec3 rotation_vector(const Quat& rotation);
+
+/// The unit quaternion that turns by `rotation_vector` (axis times angle, rad); the inverse of the above.
+Quat quaternion_from_rotation_vector(const Vec3& rotation_vector);
+
+/// The smallest rotation that turns the direction of `from` into that of `to` (neither of them zero).
+Quat smallest_rotation(const Vec3& from, const Vec3& to);
+
+/// The tool's or device's shaft direction in the outer frame: where the pose's +z axis points.
+inline Vec3 shaft_direction(const Pose& X_WT) { return X_WT.orientation * Vec3::UnitZ(); }
+
+/// True where every number of the pose is finite.
+bool is_finite(const Pose& pose);
+
+}  // namespace osteomill

@@ -1,0 +1,38 @@
+#pragma once
+
+#include "osteomill/geometry/pose.h"
+
+namespace osteomill {
+
+/// Force and torque as they act on the hand, in the axes of the world frame W; the torque is about the burr's
+/// centre.
+struct Wrench {
+  Vec3 force_N = Vec3::Zero();
+  Vec3 torque_Nmm = Vec3::Zero();
+};
+
+/// The most that a device may be asked for.
+struct WrenchLimits {
+  double force_N = 20.0;
+  double torque_Nmm = 500.0;
+};
+
+/// Why a wrench was changed on its way to the device.
+enum class WrenchFault : unsigned char {
+  none = 0,
+  force_clamped = 1,
+  torque_clamped = 2,
+  force_and_torque_clamped = 3,
+  not_finite = 4,
+};
+
+struct SafeWrench {
+  Wrench wrench;
+  WrenchFault fault = WrenchFault::none;
+};
+
+/// The wrench that may be sent: force and torque shortened to the limits without turning them, or zero where any
+/// component is not finite. Safe in the haptic tick.
+SafeWrench make_safe(const Wrench& wrench, const WrenchLimits& limits);
+
+}  // namespace osteomill

@@ -1,0 +1,45 @@
+#pragma once
+
+#include "osteomill/geometry/pose.h"
+#include "osteomill/geometry/wrench.h"
+#include "osteomill/tool/milling_tool.h"
+#include "osteomill/volume/volume.h"
+
+namespace osteomill {
+
+/// What the tool meets: the bone and the tool that mills it. The volume outlives the algorithm that was prepared
+/// with it.
+struct Scene {
+  const Volume* volume = nullptr;
+  MillingTool tool;
+};
+
+/// What one step of an algorithm says.
+struct HapticStep {
+  /// As it acts on the hand, in W, about the burr's centre; before the device's limits are applied.
+  Wrench wrench;
+  /// The simulated tool: where the tool is drawn and where it cuts.
+  Pose X_WT;
+  /// The magnitude of the force with which the burr (not the shaft) presses on the bone.
+  double burr_force_N = 0;
+  /// How many sample points (vertices, or points of the shell) touch.
+  int contacts = 0;
+};
+
+/// One way to turn the device's pose into a wrench. `prepare` comes first and may allocate; `step`,
+/// `volume_changed` and `reset` are called from the haptic thread alone and never allocate, lock, log or throw.
+class HapticAlgorithm {
+ public:
+  virtual ~HapticAlgorithm() = default;
+
+  /// Throws std::invalid_argument where a setting or the tool is out of range.
+  virtual void prepare(const Scene& scene) = 0;
+  /// `X_WD` is the device's pose as a tool pose in W (finite); `dt_s` the time since the last step.
+  virtual HapticStep step(const Pose& X_WD, double dt_s) = 0;
+  /// The volume's densities fell in `change`.
+  virtual void volume_changed(const VolumeChange& change) = 0;
+  /// Forgets all contacts, as before the first step; the volume stays as it is.
+  virtual void reset() = 0;
+};
+
+}  // namespace osteomill

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "osteomill/geometry/pose.h"
+#include "osteomill/geometry/wrench.h"
+
+namespace osteomill {
+
+/// All that is known of one tick: what recordings hold and reports are made from.
+struct TickRecord {
+  double time_s = 0;
+  /// The device's pose as read, and the simulated tool's.
+  Pose X_WD;
+  Pose X_WT;
+  /// What was sent to the device (safe), in W about the burr's centre.
+  Wrench wrench;
+  WrenchFault fault = WrenchFault::none;
+  int contacts = 0;
+  double burr_force_N = 0;
+  /// Since the start, in mm^3 of reference density.
+  double removed_mm3 = 0;
+  /// Time taken by the algorithm's step, and by milling with all that follows the volume.
+  double compute_us = 0;
+  double milling_us = 0;
+};
+
+}  // namespace osteomill

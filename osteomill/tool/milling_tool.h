@@ -1,0 +1,25 @@
+#pragma once
+
+#include "osteomill/geometry/pose.h"
+
+namespace osteomill {
+
+/// A spherical burr on a cylindrical shaft. In the tool frame T the burr's centre is the origin and the shaft runs
+/// along +z, from the burr's centre to z = `shaft_length_mm`, with a flat end.
+struct MillingTool {
+  double burr_radius_mm = 1.5;
+  double shaft_radius_mm = 1.0;
+  double shaft_length_mm = 25.0;
+};
+
+/// Throws std::invalid_argument, saying which, where a size is not positive and finite.
+void require_valid(const MillingTool& tool);
+
+/// An axis-aligned box in T.
+struct ToolBox {
+  Vec3 least_mm;
+  Vec3 greatest_mm;
+};
+ToolBox bounding_box(const MillingTool& tool);
+
+}  // namespace osteomill

@@ -1,0 +1,72 @@
+#include "osteomill/volume/brick_ranges.h"
+
+#include <algorithm>
+
+namespace osteomill {
+
+namespace {
+
+// The bricks whose range counts voxel coordinate `v`: its own, and the one below where `v` is the layer between.
+struct BrickSpan {
+  int first;
+  int last;
+};
+
+BrickSpan bricks_counting(int v) {
+  const int own = v / BrickRanges::kBrickVoxels;
+  return {v % BrickRanges::kBrickVoxels == 0 && own > 0 ? own - 1 : own, own};
+}
+
+}  // namespace
+
+BrickRanges::BrickRanges(const DensityGrid& grid) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    dims_[axis] = (grid.geometry().dims[axis] + kBrickVoxels - 1) / kBrickVoxels;
+  }
+  ranges_.resize(static_cast<std::size_t>(dims_[0]) * static_cast<std::size_t>(dims_[1]) *
+                 static_cast<std::size_t>(dims_[2]));
+  refresh(grid, grid.geometry().all_voxels());
+}
+
+BrickRanges::Range BrickRanges::range_of(const DensityGrid& grid, int bi, int bj, int bk) {
+  const VoxelIndex first{bi * kBrickVoxels, bj * kBrickVoxels, bk * kBrickVoxels};
+  const VoxelBox box = VoxelBox{first,
+                                {first.i + kBrickVoxels, first.j + kBrickVoxels, first.k + kBrickVoxels}}
+                           .intersected(grid.geometry().all_voxels());
+  Range range{grid[first], grid[first]};
+  for (int k = box.first.k; k <= box.last.k; ++k) {
+    for (int j = box.first.j; j <= box.last.j; ++j) {
+      const float* row = grid.densities().data() + grid.linear_index({box.first.i, j, k});
+      const auto [least, greatest] = std::minmax_element(row, row + (box.last.i - box.first.i + 1));
+      range.least = std::min(range.least, *least);
+      range.greatest = std::max(range.greatest, *greatest);
+    }
+  }
+  return range;
+}
+
+void BrickRanges::lower(const VoxelIndex& v, float density) {
+  const BrickSpan spans[3] = {bricks_counting(v.i), bricks_counting(v.j), bricks_counting(v.k)};
+  for (int bk = spans[2].first; bk <= spans[2].last; ++bk) {
+    for (int bj = spans[1].first; bj <= spans[1].last; ++bj) {
+      for (int bi = spans[0].first; bi <= spans[0].last; ++bi) {
+        Range& range = ranges_[index(bi, bj, bk)];
+        range.least = std::min(range.least, density);
+      }
+    }
+  }
+}
+
+void BrickRanges::refresh(const DensityGrid& grid, const VoxelBox& box) {
+  const VoxelBox inside = box.intersected(grid.geometry().all_voxels());
+  if (inside.empty()) return;
+  for (int bk = bricks_counting(inside.first.k).first; bk <= inside.last.k / kBrickVoxels; ++bk) {
+    for (int bj = bricks_counting(inside.first.j).first; bj <= inside.last.j / kBrickVoxels; ++bj) {
+      for (int bi = bricks_counting(inside.first.i).first; bi <= inside.last.i / kBrickVoxels; ++bi) {
+        ranges_[index(bi, bj, bk)] = range_of(grid, bi, bj, bk);
+      }
+    }
+  }
+}
+
+}  // namespace osteomill

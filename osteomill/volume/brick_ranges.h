@@ -1,0 +1,50 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "osteomill/volume/density_grid.h"
+
+namespace osteomill {
+
+/// The least and greatest density in bricks of 8 x 8 x 8 voxels, each brick counted with one more layer of voxels
+/// at its upper sides, so that it speaks of every trilinear cell that begins in it.
+/// Ranges hold every density; after `lower` the upper end may be too wide until `refresh`.
+class BrickRanges {
+ public:
+  static constexpr int kBrickVoxels = 8;
+  struct Range {
+    float least;
+    float greatest;
+  };
+
+  BrickRanges() = default;
+  explicit BrickRanges(const DensityGrid& grid);
+
+  const std::array<int, 3>& dims() const { return dims_; }
+  /// Brick coordinates from 0.
+  const Range& at(int bi, int bj, int bk) const { return ranges_[index(bi, bj, bk)]; }
+  /// The brick whose cells begin at or below this voxel's coordinates, which must be in the grid.
+  const Range& around(const VoxelIndex& v) const {
+    return at(v.i / kBrickVoxels, v.j / kBrickVoxels, v.k / kBrickVoxels);
+  }
+
+  /// Takes a new, lower density of one voxel in. Safe in the haptic tick.
+  void lower(const VoxelIndex& v, float density);
+  /// Makes the ranges of all bricks that touch `box` exact again.
+  void refresh(const DensityGrid& grid, const VoxelBox& box);
+
+ private:
+  std::size_t index(int bi, int bj, int bk) const {
+    return static_cast<std::size_t>(bi) +
+           static_cast<std::size_t>(dims_[0]) *
+               (static_cast<std::size_t>(bj) +
+                static_cast<std::size_t>(dims_[1]) * static_cast<std::size_t>(bk));
+  }
+  static Range range_of(const DensityGrid& grid, int bi, int bj, int bk);
+
+  std::array<int, 3> dims_{0, 0, 0};
+  std::vector<Range> ranges_;
+};
+
+}  // namespace osteomill

@@ -1,0 +1,63 @@
+#include "osteomill/volume/brick_ranges.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "osteomill/volume/volume.h"
+
+namespace osteomill {
+namespace {
+
+DensityGrid random_grid() {
+  GridGeometry geometry;
+  geometry.dims = {19, 8, 25};
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<float> density(-1000, 3000);
+  std::vector<float> densities(geometry.voxel_count());
+  for (float& value : densities) value = density(random);
+  return DensityGrid(geometry, densities);
+}
+
+void expect_ranges_hold(const BrickRanges& bricks, const DensityGrid& grid, bool exact) {
+  for (int bk = 0; bk < bricks.dims()[2]; ++bk) {
+    for (int bj = 0; bj < bricks.dims()[1]; ++bj) {
+      for (int bi = 0; bi < bricks.dims()[0]; ++bi) {
+        float least = 1e9f, greatest = -1e9f;
+        for (int k = 8 * bk; k <= 8 * bk + 8; ++k)
+          for (int j = 8 * bj; j <= 8 * bj + 8; ++j)
+            for (int i = 8 * bi; i <= 8 * bi + 8; ++i) {
+              if (!grid.contains({i, j, k})) continue;
+              least = std::min(least, grid[{i, j, k}]);
+              greatest = std::max(greatest, grid[{i, j, k}]);
+            }
+        EXPECT_EQ(bricks.at(bi, bj, bk).least, least);
+        if (exact) {
+          EXPECT_EQ(bricks.at(bi, bj, bk).greatest, greatest);
+        }
+        EXPECT_GE(bricks.at(bi, bj, bk).greatest, greatest);
+      }
+    }
+  }
+}
+
+TEST(BrickRanges, AreTheExtremesOfEachBrickAndItsUpperNeighbours) {
+  const DensityGrid grid = random_grid();
+  const BrickRanges bricks(grid);
+  EXPECT_EQ(bricks.dims(), (std::array<int, 3>{3, 1, 4}));
+  expect_ranges_hold(bricks, grid, true);
+}
+
+TEST(BrickRanges, HoldWhileDensitiesFallAndAreExactAfterARefresh) {
+  Volume volume(random_grid(), 500);
+  const VoxelBox box{{6, 2, 7}, {17, 7, 16}};
+  for (int k = box.first.k; k <= box.last.k; ++k)
+    for (int j = box.first.j; j <= box.last.j; ++j)
+      for (int i = box.first.i; i <= box.last.i; ++i) volume.lower_density({i, j, k}, -2000.0f - float(i));
+  expect_ranges_hold(volume.bricks(), volume.grid(), false);
+  volume.refresh_bricks(box);
+  expect_ranges_hold(volume.bricks(), volume.grid(), true);
+}
+
+}  // namespace
+}  // namespace osteomill

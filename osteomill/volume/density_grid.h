@@ -1,0 +1,47 @@
+#pragma once
+
+#include <vector>
+
+#include "osteomill/volume/grid_geometry.h"
+
+namespace osteomill {
+
+/// The densities of a scan, one float a voxel (Hounsfield units where the scan has them), i running fastest.
+/// Outside the grid there is nothing: every voxel there counts as `outside_density()`.
+/// Reading is safe in the haptic tick; one thread writes.
+class DensityGrid {
+ public:
+  DensityGrid() = default;
+  /// `densities` has `geometry.voxel_count()` values, all finite (the readers see to that).
+  DensityGrid(const GridGeometry& geometry, std::vector<float> densities);
+
+  const GridGeometry& geometry() const { return geometry_; }
+  const std::vector<float>& densities() const { return densities_; }
+  /// The least density of the grid as it was made.
+  float outside_density() const { return outside_density_; }
+
+  std::size_t linear_index(const VoxelIndex& v) const {
+    return static_cast<std::size_t>(v.i) +
+           static_cast<std::size_t>(geometry_.dims[0]) *
+               (static_cast<std::size_t>(v.j) +
+                static_cast<std::size_t>(geometry_.dims[1]) * static_cast<std::size_t>(v.k));
+  }
+  bool contains(const VoxelIndex& v) const {
+    return v.i >= 0 && v.j >= 0 && v.k >= 0 && v.i < geometry_.dims[0] && v.j < geometry_.dims[1] &&
+           v.k < geometry_.dims[2];
+  }
+  /// `v` must lie in the grid.
+  float operator[](const VoxelIndex& v) const { return densities_[linear_index(v)]; }
+  /// Any `v`; the outside density beyond the border.
+  float at_or_outside(const VoxelIndex& v) const {
+    return contains(v) ? densities_[linear_index(v)] : outside_density_;
+  }
+  void set(const VoxelIndex& v, float density) { densities_[linear_index(v)] = density; }
+
+ private:
+  GridGeometry geometry_;
+  std::vector<float> densities_;
+  float outside_density_ = 0;
+};
+
+}  // namespace osteomill

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
+#include "osteomill/geometry/pose.h"
+
+namespace osteomill {
+
+/// A voxel of a grid: column i, row j, slice k, each from 0.
+struct VoxelIndex {
+  int i = 0;
+  int j = 0;
+  int k = 0;
+  friend bool operator==(const VoxelIndex&, const VoxelIndex&) = default;
+};
+
+/// A box of voxels, both corners inside it. Empty where `last` lies below `first` along any axis.
+struct VoxelBox {
+  VoxelIndex first{0, 0, 0};
+  VoxelIndex last{-1, -1, -1};
+
+  bool empty() const { return last.i < first.i || last.j < first.j || last.k < first.k; }
+  bool contains(const VoxelIndex& v) const {
+    return v.i >= first.i && v.i <= last.i && v.j >= first.j && v.j <= last.j && v.k >= first.k &&
+           v.k <= last.k;
+  }
+  /// Grown so that it contains `v`.
+  void include(const VoxelIndex& v) {
+    if (empty()) {
+      first = last = v;
+      return;
+    }
+    first = {std::min(first.i, v.i), std::min(first.j, v.j), std::min(first.k, v.k)};
+    last = {std::max(last.i, v.i), std::max(last.j, v.j), std::max(last.k, v.k)};
+  }
+  /// Wider by `voxels` on every side (an empty box stays empty).
+  VoxelBox grown(int voxels) const {
+    if (empty()) return *this;
+    return {{first.i - voxels, first.j - voxels, first.k - voxels},
+            {last.i + voxels, last.j + voxels, last.k + voxels}};
+  }
+  /// The part that is in `other` too.
+  VoxelBox intersected(const VoxelBox& other) const {
+    return {{std::max(first.i, other.first.i), std::max(first.j, other.first.j),
+             std::max(first.k, other.first.k)},
+            {std::min(last.i, other.last.i), std::min(last.j, other.last.j),
+             std::min(last.k, other.last.k)}};
+  }
+};
+
+/// Where a grid of voxels lies in the world frame W (the scan's patient axes, mm).
+/// Voxel coordinates are continuous: the centre of voxel (i, j, k) has the coordinates (i, j, k).
+struct GridGeometry {
+  std::array<int, 3> dims{0, 0, 0};
+  /// Distance of neighbouring voxel centres along i, j, k.
+  Vec3 spacing_mm = Vec3::Ones();
+  /// Centre of voxel (0, 0, 0) in W.
+  Vec3 origin_mm = Vec3::Zero();
+  /// Columns: the unit directions of i, j, k in W; orthogonal, right- or left-handed.
+  Mat3 direction = Mat3::Identity();
+
+  std::size_t voxel_count() const {
+    return static_cast<std::size_t>(dims[0]) * static_cast<std::size_t>(dims[1]) *
+           static_cast<std::size_t>(dims[2]);
+  }
+  VoxelBox all_voxels() const { return {{0, 0, 0}, {dims[0] - 1, dims[1] - 1, dims[2] - 1}}; }
+  double voxel_volume_mm3() const { return spacing_mm.prod(); }
+
+  Vec3 world_from_voxel(const Vec3& voxel) const {
+    return origin_mm + direction * spacing_mm.cwiseProduct(voxel);
+  }
+  Vec3 world_from_voxel(const VoxelIndex& v) const { return world_from_voxel(Vec3(v.i, v.j, v.k)); }
+  Vec3 voxel_from_world(const Vec3& point_W) const {
+    return (direction.transpose() * (point_W - origin_mm)).cwiseQuotient(spacing_mm);
+  }
+};
+
+}  // namespace osteomill

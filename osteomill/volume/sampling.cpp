@@ -1,0 +1,137 @@
+#include "osteomill/volume/sampling.h"
+
+#include <array>
+#include <cmath>
+
+namespace osteomill {
+
+namespace {
+
+struct Cell {
+  VoxelIndex first;
+  Vec3 fraction;
+  bool far_outside = false;
+};
+
+// The cell of eight voxel centres around a point. Coordinates beyond int's range are all far outside.
+Cell cell_around(const DensityGrid& grid, const Vec3& voxel) {
+  const auto& dims = grid.geometry().dims;
+  Cell cell;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double coordinate = voxel[axis];
+    if (!(coordinate > -1.0 && coordinate < dims[static_cast<std::size_t>(axis)])) cell.far_outside = true;
+  }
+  if (cell.far_outside) return cell;
+  const Vec3 floor = voxel.array().floor();
+  cell.first = {static_cast<int>(floor.x()), static_cast<int>(floor.y()), static_cast<int>(floor.z())};
+  cell.fraction = voxel - floor;
+  return cell;
+}
+
+double interpolate(double a, double b, double fraction) { return a + fraction * (b - a); }
+
+double interpolate_cell(const std::array<float, 8>& corner, const Vec3& f) {
+  const double y0 = interpolate(interpolate(corner[0], corner[1], f.x()),
+                                interpolate(corner[2], corner[3], f.x()), f.y());
+  const double y1 = interpolate(interpolate(corner[4], corner[5], f.x()),
+                                interpolate(corner[6], corner[7], f.x()), f.y());
+  return interpolate(y0, y1, f.z());
+}
+
+bool is_interior(const DensityGrid& grid, const VoxelIndex& first, const VoxelIndex& last) {
+  return grid.contains(first) && grid.contains(last);
+}
+
+std::array<float, 8> cell_corners(const DensityGrid& grid, const VoxelIndex& c) {
+  const auto& dims = grid.geometry().dims;
+  std::array<float, 8> corner;
+  if (is_interior(grid, c, {c.i + 1, c.j + 1, c.k + 1})) {
+    const float* row = grid.densities().data() + grid.linear_index(c);
+    const std::size_t nx = static_cast<std::size_t>(dims[0]);
+    const std::size_t nxy = nx * static_cast<std::size_t>(dims[1]);
+    return {row[0], row[1], row[nx], row[nx + 1], row[nxy], row[nxy + 1], row[nxy + nx], row[nxy + nx + 1]};
+  }
+  for (int n = 0; n < 8; ++n) {
+    corner[static_cast<std::size_t>(n)] =
+        grid.at_or_outside({c.i + (n & 1), c.j + ((n >> 1) & 1), c.k + (n >> 2)});
+  }
+  return corner;
+}
+
+// Weights of four voxels in a row for a point at `f` between the two in the middle.
+using Weights = std::array<double, 4>;
+
+Weights difference_weights(double f) { return {-0.5 * (1 - f), -0.5 * f, 0.5 * (1 - f), 0.5 * f}; }
+Weights value_weights(double f) { return {0, 1 - f, f, 0}; }
+Weights smoothing_weights(double f) {
+  return {(1 - f) * 3 / 16, ((1 - f) * 10 + f * 3) / 16, ((1 - f) * 3 + f * 10) / 16, f * 3 / 16};
+}
+
+// The 4 x 4 x 4 voxels around a cell, i running fastest.
+using Block = std::array<float, 64>;
+
+Block voxels_around(const DensityGrid& grid, const VoxelIndex& cell) {
+  Block block;
+  const VoxelIndex first{cell.i - 1, cell.j - 1, cell.k - 1};
+  const bool interior = is_interior(grid, first, {cell.i + 2, cell.j + 2, cell.k + 2});
+  std::size_t n = 0;
+  for (int k = 0; k < 4; ++k) {
+    for (int j = 0; j < 4; ++j) {
+      const VoxelIndex row{first.i, first.j + j, first.k + k};
+      if (interior) {
+        const float* density = grid.densities().data() + grid.linear_index(row);
+        for (int i = 0; i < 4; ++i) block[n++] = density[i];
+      } else {
+        for (int i = 0; i < 4; ++i) block[n++] = grid.at_or_outside({row.i + i, row.j, row.k});
+      }
+    }
+  }
+  return block;
+}
+
+}  // namespace
+
+double density_at_voxel(const DensityGrid& grid, const Vec3& voxel) {
+  const Cell cell = cell_around(grid, voxel);
+  if (cell.far_outside) return grid.outside_density();
+  return interpolate_cell(cell_corners(grid, cell.first), cell.fraction);
+}
+
+double density_at(const DensityGrid& grid, const Vec3& point_W) {
+  return density_at_voxel(grid, grid.geometry().voxel_from_world(point_W));
+}
+
+Vec3 density_gradient(const DensityGrid& grid, const Vec3& point_W, GradientKernel kernel) {
+  const GridGeometry& geometry = grid.geometry();
+  const Cell cell = cell_around(grid, geometry.voxel_from_world(point_W));
+  if (cell.far_outside) return Vec3::Zero();
+  const Block block = voxels_around(grid, cell.first);
+
+  std::array<Weights, 3> difference;
+  std::array<Weights, 3> across;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double f = cell.fraction[static_cast<Eigen::Index>(axis)];
+    difference[axis] = difference_weights(f);
+    across[axis] = kernel == GradientKernel::smoothed ? smoothing_weights(f) : value_weights(f);
+  }
+  Vec3 gradient_voxel = Vec3::Zero();
+  std::size_t n = 0;
+  for (std::size_t k = 0; k < 4; ++k) {
+    double slice_di = 0, slice_dj = 0, slice_dk = 0;
+    for (std::size_t j = 0; j < 4; ++j) {
+      double row_difference = 0, row_value = 0;
+      for (std::size_t i = 0; i < 4; ++i, ++n) {
+        const double density = static_cast<double>(block[n]);
+        row_difference += difference[0][i] * density;
+        row_value += across[0][i] * density;
+      }
+      slice_di += across[1][j] * row_difference;
+      slice_dj += difference[1][j] * row_value;
+      slice_dk += across[1][j] * row_value;
+    }
+    gradient_voxel += Vec3(across[2][k] * slice_di, across[2][k] * slice_dj, difference[2][k] * slice_dk);
+  }
+  return geometry.direction * gradient_voxel.cwiseQuotient(geometry.spacing_mm);
+}
+
+}  // namespace osteomill

@@ -1,0 +1,44 @@
+#pragma once
+
+#include "osteomill/volume/brick_ranges.h"
+#include "osteomill/volume/density_grid.h"
+
+namespace osteomill {
+
+/// The bone as every stage sees it: densities, the isovalue that bounds the bone (bone where density > isovalue),
+/// and the range of densities brick by brick. The haptic thread alone lowers densities; everyone else reads copies.
+class Volume {
+ public:
+  /// Throws std::invalid_argument where the isovalue is not finite.
+  Volume(DensityGrid grid, double isovalue);
+
+  const DensityGrid& grid() const { return grid_; }
+  const GridGeometry& geometry() const { return grid_.geometry(); }
+  const BrickRanges& bricks() const { return bricks_; }
+  double isovalue() const { return isovalue_; }
+
+  /// `v` must lie in the grid.
+  bool is_bone(const VoxelIndex& v) const { return static_cast<double>(grid_[v]) > isovalue_; }
+  /// Any `v`; there is no bone beyond the border.
+  bool is_bone_or_outside(const VoxelIndex& v) const { return grid_.contains(v) && is_bone(v); }
+
+  /// Lowers one voxel's density (milling never raises it). Safe in the haptic tick.
+  void lower_density(const VoxelIndex& v, float density) {
+    grid_.set(v, density);
+    bricks_.lower(v, density);
+  }
+  /// Makes the brick ranges around a changed box exact again; not for the tick.
+  void refresh_bricks(const VoxelBox& box) { bricks_.refresh(grid_, box); }
+
+ private:
+  DensityGrid grid_;
+  BrickRanges bricks_;
+  double isovalue_;
+};
+
+/// What milling changed in one step: every voxel whose density fell lies in `voxels` (empty where none did).
+struct VolumeChange {
+  VoxelBox voxels;
+};
+
+}  // namespace osteomill
