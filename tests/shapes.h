@@ -7,8 +7,9 @@
 
 namespace osteomill::testing_support {
 
-/// Bone of a known shape: `signed_distance_mm` (negative inside) made into densities 0 (outside) to 1000 (inside)
-/// with a linear edge `edge_voxels` wide about the surface, at which the density is 500, the isovalue.
+/// Bone of a known shape: `signed_distance_mm` (negative inside) made into densities 0 (outside) to 1000
+/// (inside) with a linear edge `edge_voxels` wide about the surface, at which the density is 500, the
+/// isovalue.
 inline Volume shape_volume(const GridGeometry& geometry,
                            const std::function<double(const Vec3& point_W)>& signed_distance_mm,
                            double edge_voxels = 2.0) {

@@ -1,10 +1,10 @@
 #include "osteomill/files/atomic_file.h"
 
-#include <unistd.h>
-
 #include <fstream>
 #include <string>
 #include <system_error>
+
+#include <unistd.h>
 
 #include "osteomill/files/input_error.h"
 

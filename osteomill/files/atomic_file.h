@@ -14,7 +14,8 @@ void write_file_atomically(const std::filesystem::path& path,
                            const std::function<void(const std::filesystem::path& beside)>& write);
 
 /// The same for text: `write` fills the stream; a stream that failed (a full disk) is an InputError.
-void write_text_atomically(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write);
+void write_text_atomically(const std::filesystem::path& path,
+                           const std::function<void(std::ostream&)>& write);
 
 /// Creates `folder` and its parents. Throws InputError naming it where that is impossible.
 void create_folder(const std::filesystem::path& folder);

@@ -23,7 +23,9 @@ Quat quaternion_from_rotation_vector(const Vec3& rotation_vector) {
   return rotation.normalized();
 }
 
-Quat smallest_rotation(const Vec3& from, const Vec3& to) { return Quat::FromTwoVectors(from, to); }
+Quat smallest_rotation(const Vec3& from, const Vec3& to) {
+  return Quat::FromTwoVectors(from, to);
+}
 
 bool is_finite(const Pose& pose) {
   return pose.position_mm.allFinite() && pose.orientation.coeffs().allFinite();

@@ -35,7 +35,9 @@ Quat quaternion_from_rotation_vector(const Vec3& rotation_vector);
 Quat smallest_rotation(const Vec3& from, const Vec3& to);
 
 /// The tool's or device's shaft direction in the outer frame: where the pose's +z axis points.
-inline Vec3 shaft_direction(const Pose& X_WT) { return X_WT.orientation * Vec3::UnitZ(); }
+inline Vec3 shaft_direction(const Pose& X_WT) {
+  return X_WT.orientation * Vec3::UnitZ();
+}
 
 /// True where every number of the pose is finite.
 bool is_finite(const Pose& pose);

@@ -1,8 +1,8 @@
 #include "osteomill/geometry/pose.h"
 
-#include <gtest/gtest.h>
-
 #include <numbers>
+
+#include <gtest/gtest.h>
 
 namespace osteomill {
 namespace {

@@ -23,7 +23,10 @@ enum class WrenchFault : unsigned char {
   force_clamped = 1,
   torque_clamped = 2,
   force_and_torque_clamped = 3,
+  /// The algorithm's wrench was not finite; zero was sent.
   not_finite = 4,
+  /// The device gave no finite pose; zero was sent.
+  pose_not_finite = 5,
 };
 
 struct SafeWrench {
@@ -31,8 +34,8 @@ struct SafeWrench {
   WrenchFault fault = WrenchFault::none;
 };
 
-/// The wrench that may be sent: force and torque shortened to the limits without turning them, or zero where any
-/// component is not finite. Safe in the haptic tick.
+/// The wrench that may be sent: force and torque shortened to the limits without turning them, or zero where
+/// any component is not finite. Safe in the haptic tick.
 SafeWrench make_safe(const Wrench& wrench, const WrenchLimits& limits);
 
 }  // namespace osteomill

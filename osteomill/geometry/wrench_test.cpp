@@ -1,8 +1,8 @@
 #include "osteomill/geometry/wrench.h"
 
-#include <gtest/gtest.h>
-
 #include <limits>
+
+#include <gtest/gtest.h>
 
 namespace osteomill {
 namespace {

@@ -21,7 +21,9 @@ std::optional<AlgorithmId> algorithm_named(std::string_view name) {
   return std::nullopt;
 }
 
-std::string_view name_of(Mode mode) { return mode == Mode::paper ? "paper" : "steady"; }
+std::string_view name_of(Mode mode) {
+  return mode == Mode::paper ? "paper" : "steady";
+}
 
 std::optional<Mode> mode_named(std::string_view name) {
   for (const Mode mode : {Mode::paper, Mode::steady}) {

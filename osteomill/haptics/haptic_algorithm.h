@@ -7,8 +7,8 @@
 
 namespace osteomill {
 
-/// What the tool meets: the bone and the tool that mills it. The volume outlives the algorithm that was prepared
-/// with it.
+/// What the tool meets: the bone and the tool that mills it. The volume outlives the algorithm that was
+/// prepared with it.
 struct Scene {
   const Volume* volume = nullptr;
   MillingTool tool;
@@ -27,7 +27,8 @@ struct HapticStep {
 };
 
 /// One way to turn the device's pose into a wrench. `prepare` comes first and may allocate; `step`,
-/// `volume_changed` and `reset` are called from the haptic thread alone and never allocate, lock, log or throw.
+/// `volume_changed` and `reset` are called from the haptic thread alone and never allocate, lock, log or
+/// throw.
 class HapticAlgorithm {
  public:
   virtual ~HapticAlgorithm() = default;

@@ -22,9 +22,9 @@ struct MillingStep {
   double removed_mm3 = 0;
 };
 
-/// Removes bone where the burr presses on it, by energy: each step may take kappa * force * dt, spread over the
-/// voxels that the burr overlaps, hardest to the deepest. What could not be spent is carried over, so that neither
-/// haptic rate nor voxel size changes the hole.
+/// Removes bone where the burr presses on it, by energy: each step may take kappa * force * dt, spread over
+/// the voxels that the burr overlaps, hardest to the deepest. What could not be spent is carried over, so
+/// that neither haptic rate nor voxel size changes the hole.
 class BurrMill {
  public:
   /// Allocates all that `step` needs for this grid and burr.

@@ -4,8 +4,8 @@
 
 namespace osteomill {
 
-/// A spherical burr on a cylindrical shaft. In the tool frame T the burr's centre is the origin and the shaft runs
-/// along +z, from the burr's centre to z = `shaft_length_mm`, with a flat end.
+/// A spherical burr on a cylindrical shaft. In the tool frame T the burr's centre is the origin and the shaft
+/// runs along +z, from the burr's centre to z = `shaft_length_mm`, with a flat end.
 struct MillingTool {
   double burr_radius_mm = 1.5;
   double shaft_radius_mm = 1.0;

@@ -1,8 +1,8 @@
 #include "osteomill/tool/tool_distance.h"
 
-#include <gtest/gtest.h>
-
 #include <stdexcept>
+
+#include <gtest/gtest.h>
 
 namespace osteomill {
 namespace {

@@ -6,7 +6,8 @@ namespace osteomill {
 
 namespace {
 
-// The bricks whose range counts voxel coordinate `v`: its own, and the one below where `v` is the layer between.
+// The bricks whose range counts voxel coordinate `v`: its own, and the one below where `v` is the layer
+// between.
 struct BrickSpan {
   int first;
   int last;
@@ -30,9 +31,9 @@ BrickRanges::BrickRanges(const DensityGrid& grid) {
 
 BrickRanges::Range BrickRanges::range_of(const DensityGrid& grid, int bi, int bj, int bk) {
   const VoxelIndex first{bi * kBrickVoxels, bj * kBrickVoxels, bk * kBrickVoxels};
-  const VoxelBox box = VoxelBox{first,
-                                {first.i + kBrickVoxels, first.j + kBrickVoxels, first.k + kBrickVoxels}}
-                           .intersected(grid.geometry().all_voxels());
+  const VoxelBox box =
+      VoxelBox{first, {first.i + kBrickVoxels, first.j + kBrickVoxels, first.k + kBrickVoxels}}.intersected(
+          grid.geometry().all_voxels());
   Range range{grid[first], grid[first]};
   for (int k = box.first.k; k <= box.last.k; ++k) {
     for (int j = box.first.j; j <= box.last.j; ++j) {

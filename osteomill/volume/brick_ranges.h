@@ -7,9 +7,9 @@
 
 namespace osteomill {
 
-/// The least and greatest density in bricks of 8 x 8 x 8 voxels, each brick counted with one more layer of voxels
-/// at its upper sides, so that it speaks of every trilinear cell that begins in it.
-/// Ranges hold every density; after `lower` the upper end may be too wide until `refresh`.
+/// The least and greatest density in bricks of 8 x 8 x 8 voxels, each brick counted with one more layer of
+/// voxels at its upper sides, so that it speaks of every trilinear cell that begins in it. Ranges hold every
+/// density; after `lower` the upper end may be too wide until `refresh`.
 class BrickRanges {
  public:
   static constexpr int kBrickVoxels = 8;

@@ -1,8 +1,8 @@
 #include "osteomill/volume/brick_ranges.h"
 
-#include <gtest/gtest.h>
-
 #include <random>
+
+#include <gtest/gtest.h>
 
 #include "osteomill/volume/volume.h"
 

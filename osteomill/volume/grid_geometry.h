@@ -45,8 +45,7 @@ struct VoxelBox {
   VoxelBox intersected(const VoxelBox& other) const {
     return {{std::max(first.i, other.first.i), std::max(first.j, other.first.j),
              std::max(first.k, other.first.k)},
-            {std::min(last.i, other.last.i), std::min(last.j, other.last.j),
-             std::min(last.k, other.last.k)}};
+            {std::min(last.i, other.last.i), std::min(last.j, other.last.j), std::min(last.k, other.last.k)}};
   }
 };
 

@@ -11,13 +11,14 @@ namespace osteomill {
 /// Safe in the haptic tick.
 std::optional<Vec3> outward_normal(const Volume& volume, const Vec3& point_W, GradientKernel kernel);
 
-/// Halves the segment from a point outside the bone to one inside it down to `tolerance_mm`; the answer is the end
-/// that is not in bone. Which crossing, where there are several, is not said. Safe in the haptic tick.
+/// Halves the segment from a point outside the bone to one inside it down to `tolerance_mm`; the answer is
+/// the end that is not in bone. Which crossing, where there are several, is not said. Safe in the haptic
+/// tick.
 Vec3 bisect_crossing(const Volume& volume, Vec3 outside_W, Vec3 inside_W, double tolerance_mm = 1e-6);
 
-/// The first point, walking from `from_W` to `to_W` in steps of at most half a voxel, at which the density rises
-/// past the isovalue; nothing where it never does. A start inside the bone is its own answer.
-/// Safe in the haptic tick; time grows with the length.
+/// The first point, walking from `from_W` to `to_W` in steps of at most half a voxel, at which the density
+/// rises past the isovalue; nothing where it never does. A start inside the bone is its own answer. Safe in
+/// the haptic tick; time grows with the length.
 std::optional<Vec3> first_crossing(const Volume& volume, const Vec3& from_W, const Vec3& to_W);
 
 }  // namespace osteomill

@@ -1,8 +1,7 @@
 #include "osteomill/volume/isosurface.h"
 
-#include <gtest/gtest.h>
-
 #include "tests/shapes.h"
+#include <gtest/gtest.h>
 
 namespace osteomill {
 namespace {

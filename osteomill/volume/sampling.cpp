@@ -28,13 +28,15 @@ Cell cell_around(const DensityGrid& grid, const Vec3& voxel) {
   return cell;
 }
 
-double interpolate(double a, double b, double fraction) { return a + fraction * (b - a); }
+double interpolate(double a, double b, double fraction) {
+  return a + fraction * (b - a);
+}
 
 double interpolate_cell(const std::array<float, 8>& corner, const Vec3& f) {
-  const double y0 = interpolate(interpolate(corner[0], corner[1], f.x()),
-                                interpolate(corner[2], corner[3], f.x()), f.y());
-  const double y1 = interpolate(interpolate(corner[4], corner[5], f.x()),
-                                interpolate(corner[6], corner[7], f.x()), f.y());
+  const double y0 =
+      interpolate(interpolate(corner[0], corner[1], f.x()), interpolate(corner[2], corner[3], f.x()), f.y());
+  const double y1 =
+      interpolate(interpolate(corner[4], corner[5], f.x()), interpolate(corner[6], corner[7], f.x()), f.y());
   return interpolate(y0, y1, f.z());
 }
 
@@ -61,8 +63,12 @@ std::array<float, 8> cell_corners(const DensityGrid& grid, const VoxelIndex& c) 
 // Weights of four voxels in a row for a point at `f` between the two in the middle.
 using Weights = std::array<double, 4>;
 
-Weights difference_weights(double f) { return {-0.5 * (1 - f), -0.5 * f, 0.5 * (1 - f), 0.5 * f}; }
-Weights value_weights(double f) { return {0, 1 - f, f, 0}; }
+Weights difference_weights(double f) {
+  return {-0.5 * (1 - f), -0.5 * f, 0.5 * (1 - f), 0.5 * f};
+}
+Weights value_weights(double f) {
+  return {0, 1 - f, f, 0};
+}
 Weights smoothing_weights(double f) {
   return {(1 - f) * 3 / 16, ((1 - f) * 10 + f * 3) / 16, ((1 - f) * 3 + f * 10) / 16, f * 3 / 16};
 }

@@ -4,8 +4,8 @@
 
 namespace osteomill {
 
-/// Trilinear density at a point of W. Beyond the border voxels it falls to the outside density within one voxel.
-/// Safe in the haptic tick.
+/// Trilinear density at a point of W. Beyond the border voxels it falls to the outside density within one
+/// voxel. Safe in the haptic tick.
 double density_at(const DensityGrid& grid, const Vec3& point_W);
 
 /// Trilinear density at continuous voxel coordinates.
@@ -15,7 +15,8 @@ double density_at_voxel(const DensityGrid& grid, const Vec3& voxel);
 enum class GradientKernel : unsigned char {
   /// Central differences of neighbouring voxels, interpolated trilinearly.
   central,
-  /// Each difference averaged over its 3 x 3 neighbours with weights 3, 10, 3 (Scharr), which turns less with the
+  /// Each difference averaged over its 3 x 3 neighbours with weights 3, 10, 3 (Scharr), which turns less with
+  /// the
   /// grid: about a tenth of the error in direction on an edge two voxels wide.
   smoothed,
 };

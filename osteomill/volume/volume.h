@@ -5,8 +5,9 @@
 
 namespace osteomill {
 
-/// The bone as every stage sees it: densities, the isovalue that bounds the bone (bone where density > isovalue),
-/// and the range of densities brick by brick. The haptic thread alone lowers densities; everyone else reads copies.
+/// The bone as every stage sees it: densities, the isovalue that bounds the bone (bone where density >
+/// isovalue), and the range of densities brick by brick. The haptic thread alone lowers densities; everyone
+/// else reads copies.
 class Volume {
  public:
   /// Throws std::invalid_argument where the isovalue is not finite.

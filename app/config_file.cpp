@@ -1,0 +1,83 @@
+#include "app/config_file.h"
+
+#include <fmt/core.h>
+
+#include <CLI/Error.hpp>
+#include <toml++/toml.h>
+
+#include <filesystem>
+#include <vector>
+
+#include "osteomill/files/input_error.h"
+
+namespace osteomill::app {
+
+namespace {
+
+constexpr const char* kConfigOption = "--config";
+
+// What the command line would have said: one string a value.
+std::vector<std::string> option_values(const toml::node& value, const std::string& file, const std::string& key) {
+  std::vector<std::string> values;
+  const auto take = [&](const toml::node& node) {
+    if (const auto text = node.value_exact<std::string>()) {
+      values.push_back(*text);
+    } else if (const auto whole = node.value_exact<int64_t>()) {
+      values.push_back(fmt::format("{}", *whole));
+    } else if (const auto number = node.value_exact<double>()) {
+      values.push_back(fmt::format("{}", *number));
+    } else if (const auto flag = node.value_exact<bool>()) {
+      values.push_back(*flag ? "true" : "false");
+    } else {
+      throw InputError(file, fmt::format("line {}: {} takes a text, a number, true or false, or a list of them",
+                                         node.source().begin.line, key));
+    }
+  };
+  if (const toml::array* list = value.as_array()) {
+    for (const toml::node& node : *list) take(node);
+  } else {
+    take(value);
+  }
+  return values;
+}
+
+toml::table parse(const std::string& file) {
+  if (!std::filesystem::is_regular_file(file)) throw InputError(file, "no such file");
+  try {
+    return toml::parse_file(file);
+  } catch (const toml::parse_error& error) {
+    throw InputError(file, fmt::format("line {}: {}", error.source().begin.line, error.description()));
+  }
+}
+
+void give(CLI::Option& option, const toml::node& value, const std::string& file, const std::string& key) {
+  try {
+    for (const std::string& text : option_values(value, file, key)) option.add_result(text);
+    option.run_callback();
+  } catch (const CLI::Error& error) {
+    throw InputError(file, fmt::format("line {}: {}", value.source().begin.line, error.what()));
+  }
+}
+
+}  // namespace
+
+void add_config_option(CLI::App& command) {
+  command.add_option(kConfigOption, "TOML file with any of these options as keys")->type_name("FILE");
+}
+
+void apply_config_file(CLI::App& command) {
+  const CLI::Option* config = command.get_option(kConfigOption);
+  if (config->count() == 0) return;
+  const auto file = config->as<std::string>();
+  for (auto&& [key, value] : parse(file)) {
+    const std::string name(key.str());
+    CLI::Option* option = command.get_option_no_throw("--" + name);
+    if (option == nullptr || name == "config" || name == "help") {
+      throw InputError(file, fmt::format("line {}: {} has no option {}", value.source().begin.line,
+                                         command.get_name(), name));
+    }
+    if (option->count() == 0) give(*option, value, file, name);
+  }
+}
+
+}  // namespace osteomill::app

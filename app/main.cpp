@@ -1,0 +1,48 @@
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <stdexcept>
+
+#include "app/commands.h"
+#include "app/config_file.h"
+#include "osteomill/files/input_error.h"
+
+namespace {
+
+constexpr int kDone = 0;
+constexpr int kInputAtFault = 1;
+constexpr int kWrongUsage = 2;
+
+int complain(const char* reason, int code) {
+  fmt::print(stderr, "osteomill: {}\n", reason);
+  return code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App program("6-DOF haptic bone milling: three algorithms on a CT scan, measured", "osteomill");
+  program.set_version_flag("--version", OSTEOMILL_VERSION);
+  program.require_subcommand(1);
+  osteomill::app::add_commands(program);
+  try {
+    program.parse(argc, argv);
+    return kDone;
+  } catch (const CLI::CallForHelp& help) {
+    return program.exit(help);
+  } catch (const CLI::CallForVersion& version) {
+    return program.exit(version);
+  } catch (const CLI::ParseError& error) {
+    return complain(error.what(), kWrongUsage);
+  } catch (const osteomill::InputError& error) {
+    return complain(error.what(), kInputAtFault);
+  } catch (const std::invalid_argument& error) {
+    return complain(error.what(), kWrongUsage);
+  } catch (const std::bad_alloc&) {
+    return complain("not enough memory", kInputAtFault);
+  } catch (const std::exception& error) {
+    return complain(error.what(), kInputAtFault);
+  }
+}

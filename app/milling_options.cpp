@@ -1,0 +1,72 @@
+#include "app/milling_options.h"
+
+#include <CLI/Option.hpp>
+#include <CLI/Validators.hpp>
+#include <cmath>
+#include <functional>
+
+#include "app/config_file.h"
+
+namespace osteomill::app {
+
+namespace {
+
+const CLI::Validator kPositive(
+    [](std::string& text) {
+      double value = 0;
+      const bool good = CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value > 0;
+      return good ? std::string() : text + " is not a positive number";
+    },
+    "POSITIVE");
+
+template <typename T>
+void add_positive(CLI::App& command, const std::string& name, T& value, const std::string& what) {
+  command.add_option(name, value, what)->check(kPositive)->capture_default_str();
+}
+
+void add_mode(CLI::App& command, Mode& mode) {
+  command
+      .add_option_function<std::string>(
+          "--mode", [&mode](const std::string& name) { mode = *mode_named(name); },
+          "'paper' as published, 'steady' with every improvement")
+      ->check(CLI::IsMember({"paper", "steady"}))
+      ->default_str(std::string(name_of(mode)));
+}
+
+}  // namespace
+
+void add_milling_options(CLI::App& command, MillingOptions& options) {
+  add_mode(command, options.haptics.mode);
+  add_positive(command, "--burr-radius", options.tool.burr_radius_mm, "mm");
+  add_positive(command, "--shaft-radius", options.tool.shaft_radius_mm, "mm");
+  add_positive(command, "--shaft-length", options.tool.shaft_length_mm, "mm");
+  add_positive(command, "--stiffness", options.haptics.stiffness_N_per_mm,
+               "N/mm: the spring of 1 and 2, the virtual coupling of 3");
+  add_positive(command, "--torsional-stiffness", options.haptics.torsional_stiffness_Nmm_per_rad,
+               "N mm/rad: the rotational virtual coupling of 3");
+  add_positive(command, "--vertices", options.haptics.vertices, "Vertices of algorithm 1");
+  add_positive(command, "--slices", options.haptics.slices, "Slices of algorithm 2");
+  add_positive(command, "--shell-scale", options.haptics.shell_scale,
+               "Coarseness of algorithm 3's shell; 1 is every surface voxel");
+  add_positive(command, "--removal-rate", options.milling.removal_rate_mm3_per_Ns, "kappa, mm^3/(N s)");
+  add_positive(command, "--force-limit", options.limits.force_N, "N, the most the device is asked for");
+  add_positive(command, "--torque-limit", options.limits.torque_Nmm, "N mm");
+  command.add_option("--seed", options.seed, "Of the hand's tremor")->capture_default_str();
+  add_config_option(command);
+}
+
+void add_algorithm_option(CLI::App& command, std::vector<AlgorithmId>& algorithms) {
+  std::vector<std::string> names;
+  for (const AlgorithmId id : kAllAlgorithms) names.emplace_back(name_of(id));
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--algorithm",
+          [&algorithms](const std::vector<std::string>& chosen) {
+            algorithms.clear();
+            for (const std::string& name : chosen) algorithms.push_back(*algorithm_named(name));
+          },
+          "Only this one; may repeat")
+      ->check(CLI::IsMember(names));
+}
+
+}  // namespace osteomill::app

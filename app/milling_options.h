@@ -1,0 +1,30 @@
+#pragma once
+
+#include <CLI/App.hpp>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "osteomill/geometry/wrench.h"
+#include "osteomill/haptics/haptic_settings.h"
+#include "osteomill/milling/burr_mill.h"
+#include "osteomill/tool/milling_tool.h"
+
+namespace osteomill::app {
+
+/// What every command that mills has in common.
+struct MillingOptions {
+  MillingTool tool;
+  HapticSettings haptics;
+  MillingSettings milling;
+  WrenchLimits limits;
+  std::uint64_t seed = 1;
+};
+
+/// Adds the tool, the algorithms' settings, milling, limits, --seed and --config to a command.
+void add_milling_options(CLI::App& command, MillingOptions& options);
+
+/// Adds --algorithm, which may repeat; none given means all.
+void add_algorithm_option(CLI::App& command, std::vector<AlgorithmId>& algorithms);
+
+}  // namespace osteomill::app

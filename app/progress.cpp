@@ -1,0 +1,31 @@
+#include "app/progress.h"
+
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <cstdio>
+
+namespace osteomill::app {
+
+namespace {
+
+bool on_terminal() {
+  static const bool terminal = ::isatty(STDERR_FILENO) == 1;
+  return terminal;
+}
+
+}  // namespace
+
+void show_progress(std::string_view what, double fraction_done) {
+  if (!on_terminal()) return;
+  fmt::print(stderr, "\r\033[K{} {:3.0f} %", what, 100 * fraction_done);
+  std::fflush(stderr);
+}
+
+void end_progress() {
+  if (!on_terminal()) return;
+  fmt::print(stderr, "\r\033[K");
+  std::fflush(stderr);
+}
+
+}  // namespace osteomill::app

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <CLI/App.hpp>
+#include <optional>
+#include <string>
+
+#include "osteomill/volume/volume.h"
+
+namespace osteomill::app {
+
+/// Which bone to work on.
+struct ScanOptions {
+  /// Empty: the built-in tooth.
+  std::string scan;
+  /// Not given: the built-in tooth's own, or one suggested from the scan's values.
+  std::optional<double> isovalue;
+};
+
+/// Adds SCAN and --iso to a command.
+void add_scan_options(CLI::App& command, ScanOptions& options);
+
+/// A bone ready to be milled.
+struct LoadedBone {
+  Volume volume;
+  /// The scan as the user named it, or "built-in tooth".
+  std::string name;
+};
+
+/// Reads the scan; its warnings, and an isovalue that had to be suggested, go to standard error as one line each.
+/// Throws InputError where the scan is at fault, or no voxel lies above the isovalue or none below it.
+LoadedBone load_bone(const ScanOptions& options);
+
+}  // namespace osteomill::app

@@ -1,0 +1,78 @@
+#include "osteomill/session/milling_session.h"
+
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+namespace osteomill {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double microseconds_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+}
+
+}  // namespace
+
+MillingSession::MillingSession(Volume volume, const MillingTool& tool,
+                               std::unique_ptr<HapticAlgorithm> algorithm, const BoneDensities& densities,
+                               const MillingSettings& milling, const WrenchLimits& limits)
+    : volume_(std::make_unique<Volume>(std::move(volume))),
+      algorithm_(std::move(algorithm)),
+      mill_(volume_->geometry(), tool.burr_radius_mm, densities, milling),
+      limits_(limits) {
+  algorithm_->prepare({volume_.get(), tool});
+}
+
+TickRecord MillingSession::tick(Device& device, double time_s, double dt_s, bool spindle_on) {
+  TickRecord record;
+  record.time_s = time_s;
+  record.X_WD = device.read_pose();
+
+  const Clock::time_point start = Clock::now();
+  SafeWrench safe;
+  const HapticStep step = step_safely(record.X_WD, dt_s, safe);
+  record.compute_us = microseconds_since(start);
+  device.write_wrench(safe.wrench);
+
+  const Clock::time_point milling_start = Clock::now();
+  if (spindle_on) mill(step, dt_s);
+  record.milling_us = microseconds_since(milling_start);
+
+  record.X_WT = step.X_WT;
+  record.wrench = safe.wrench;
+  record.fault = safe.fault;
+  record.contacts = step.contacts;
+  record.burr_force_N = step.burr_force_N;
+  record.removed_mm3 = removed_mm3_;
+  return record;
+}
+
+HapticStep MillingSession::step_safely(const Pose& X_WD, double dt_s, SafeWrench& safe) {
+  HapticStep nothing;
+  nothing.X_WT = last_X_WT_;
+  if (!is_finite(X_WD)) {
+    safe = {Wrench{}, WrenchFault::pose_not_finite};
+    return nothing;
+  }
+  const HapticStep step = algorithm_->step(X_WD, dt_s);
+  safe = make_safe(step.wrench, limits_);
+  if (safe.fault == WrenchFault::not_finite || !is_finite(step.X_WT) || !std::isfinite(step.burr_force_N)) {
+    // Whatever led there is still in the algorithm's memory of contacts.
+    algorithm_->reset();
+    safe = {Wrench{}, WrenchFault::not_finite};
+    return nothing;
+  }
+  last_X_WT_ = step.X_WT;
+  return step;
+}
+
+void MillingSession::mill(const HapticStep& step, double dt_s) {
+  const MillingStep cut = mill_.step(*volume_, step.X_WT.position_mm, step.burr_force_N, dt_s);
+  removed_mm3_ += cut.removed_mm3;
+  if (!cut.change.voxels.empty()) algorithm_->volume_changed(cut.change);
+}
+
+}  // namespace osteomill

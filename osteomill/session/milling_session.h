@@ -1,0 +1,40 @@
+#pragma once
+
+#include <memory>
+
+#include "osteomill/device/device.h"
+#include "osteomill/haptics/haptic_algorithm.h"
+#include "osteomill/milling/burr_mill.h"
+#include "osteomill/session/tick_record.h"
+
+namespace osteomill {
+
+/// One tool, one bone and one algorithm, tick by tick: read the pose, compute, send the wrench, remove bone.
+/// The wrench goes out before bone is removed, so that milling cannot delay the hand.
+class MillingSession {
+ public:
+  /// Takes the bone over and prepares the algorithm; may allocate. Throws std::invalid_argument as `prepare` does.
+  MillingSession(Volume volume, const MillingTool& tool, std::unique_ptr<HapticAlgorithm> algorithm,
+                 const BoneDensities& densities, const MillingSettings& milling, const WrenchLimits& limits);
+
+  /// One haptic tick of `dt_s`, begun at `time_s`; bone is removed where `spindle_on`. A wrench that is not finite,
+  /// or a device pose that is not, sends zero and is recorded as the record's fault.
+  /// Real-time safe: no allocation, lock, log, exception or system call.
+  TickRecord tick(Device& device, double time_s, double dt_s, bool spindle_on);
+
+  const Volume& volume() const { return *volume_; }
+
+ private:
+  HapticStep step_safely(const Pose& X_WD, double dt_s, SafeWrench& safe);
+  void mill(const HapticStep& step, double dt_s);
+
+  // Behind a pointer since the algorithm keeps its address.
+  std::unique_ptr<Volume> volume_;
+  std::unique_ptr<HapticAlgorithm> algorithm_;
+  BurrMill mill_;
+  WrenchLimits limits_;
+  double removed_mm3_ = 0;
+  Pose last_X_WT_;
+};
+
+}  // namespace osteomill
