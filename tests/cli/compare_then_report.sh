@@ -1,0 +1,33 @@
+#!/usr/bin/env bash
+# A short comparison leaves all that it promises; the report made again from its recordings says the same; and the same
+# seed gives the same numbers in everything but the time it took.
+set -euo pipefail
+osteomill=$1
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cd "$folder"
+
+fault() { echo "FAILED: $1"; exit 1; }
+# The columns of summary.csv that do not speak of time taken.
+untimed() { cut -d, -f1-4,9- "$1"; }
+
+"$osteomill" compare --seconds 2 --out a >a.out
+grep -q "a/report.html" a.out || fault "the report's path is not the output"
+for file in report.html summary.csv figures/force.svg figures/force.png; do
+  [ -s "a/$file" ] || fault "no $file"
+done
+[ "$(wc -l <a/summary.csv)" -eq 7 ] || fault "summary.csv should have a head and six rows"
+[ "$(ls a/*.h5 | wc -l)" -eq 6 ] || fault "there should be six recordings"
+grep -q "http://\|https://" <(sed 's|http://www.w3.org/[^"]*||g' a/report.html) && fault "report.html reaches for the network"
+
+"$osteomill" report a/*.h5 --out b >b.out
+cmp a/summary.csv b/summary.csv || fault "the report made again says something else"
+
+"$osteomill" compare --seconds 2 --out c >c.out
+diff <(untimed a/summary.csv) <(untimed c/summary.csv) || fault "the same seed gave other numbers"
+"$osteomill" compare --seconds 2 --seed 2 --algorithm point-shell --out d >d.out
+[ "$(wc -l <d/summary.csv)" -eq 3 ] || fault "one algorithm, two phases"
+diff <(untimed a/summary.csv | grep point-shell) <(untimed d/summary.csv | grep point-shell) >/dev/null &&
+  fault "another seed gave the same numbers"
+find . -name '*.writing-*' -o -name '*.part' | grep -q . && fault "left a half-written file"
+exit 0

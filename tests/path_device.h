@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cmath>
+
+#include "osteomill/device/device.h"
+
+namespace osteomill::testing_support {
+
+/// A device that goes where it is told and remembers what it was sent.
+class PathDevice : public Device {
+ public:
+  Pose pose;
+  Wrench sent;
+
+  Pose read_pose() override { return pose; }
+  void write_wrench(const Wrench& wrench) override { sent = wrench; }
+};
+
+/// A tool that comes down on the top of a ball about the origin of W, mills into it to `depth_mm`, and leans over:
+/// touches with the burr, then with the shaft.
+inline Pose down_and_lean(double ball_radius_mm, double burr_radius_mm, double depth_mm, double progress) {
+  const double down = std::min(1.0, 1.5 * progress);
+  const double lean = std::max(0.0, progress - 0.6);
+  const double height_mm = ball_radius_mm + burr_radius_mm + 0.5 - down * (depth_mm + burr_radius_mm + 0.5);
+  return {{0.3 * std::sin(9 * progress), 0, height_mm}, quaternion_from_rotation_vector({0, 2.5 * lean, 0})};
+}
+
+}  // namespace osteomill::testing_support

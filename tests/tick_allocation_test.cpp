@@ -1,0 +1,79 @@
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <vector>
+
+#include "osteomill/haptics/make_algorithm.h"
+#include "osteomill/session/milling_session.h"
+#include "osteomill/volume/densities.h"
+#include "tests/count_allocations.h"
+#include "tests/path_device.h"
+#include "tests/shapes.h"
+
+namespace osteomill {
+namespace {
+
+using testing_support::allocations_of_this_thread;
+
+TEST(TickAllocation, TheCounterCounts) {
+  const long before = allocations_of_this_thread();
+  auto something = std::make_unique<std::vector<int>>(100);
+  EXPECT_GE(allocations_of_this_thread() - before, 2) << something->size();
+}
+
+struct Case {
+  AlgorithmId algorithm;
+  Mode mode;
+};
+
+class TickAllocation : public ::testing::TestWithParam<Case> {};
+
+// Comes down, mills, leans the shaft on the edge; also a jump across the bone, a pose that is not finite, and a reset.
+TEST_P(TickAllocation, NoTickAllocates) {
+  constexpr double kBallRadius_mm = 6;
+  Volume volume = testing_support::shape_volume(testing_support::centred_cube(64, 0.25),
+                                                testing_support::ball(Vec3::Zero(), kBallRadius_mm));
+  const MillingTool tool;
+  const BoneDensities densities = estimate_densities(volume);
+  MillingSession session(std::move(volume), tool,
+                         make_algorithm(GetParam().algorithm, {.mode = GetParam().mode}), densities,
+                         MillingSettings{}, WrenchLimits{});
+  testing_support::PathDevice device;
+  constexpr int kTicks = 3000;
+  int touching = 0;
+  double removed_mm3 = 0;
+  const long before = allocations_of_this_thread();
+  for (int n = 0; n < kTicks; ++n) {
+    device.pose =
+        testing_support::down_and_lean(kBallRadius_mm, tool.burr_radius_mm, 2.0, static_cast<double>(n) / kTicks);
+    if (n == 2500) device.pose.position_mm.x() = std::numeric_limits<double>::quiet_NaN();
+    if (n == 2600) device.pose.position_mm = {0, 0, -20};
+    const TickRecord record = session.tick(device, n * 1e-3, 1e-3, true);
+    touching += record.contacts > 0 ? 1 : 0;
+    removed_mm3 = record.removed_mm3;
+    if (n == 2500) {
+      EXPECT_EQ(record.fault, WrenchFault::pose_not_finite);
+      EXPECT_EQ(device.sent.force_N, Vec3::Zero());
+    }
+  }
+  const long allocated = allocations_of_this_thread() - before;
+  EXPECT_EQ(allocated, 0);
+  EXPECT_GT(touching, kTicks / 3);
+  EXPECT_GT(removed_mm3, 0.1);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    AllAlgorithms, TickAllocation,
+    ::testing::Values(Case{AlgorithmId::line_proxy, Mode::paper}, Case{AlgorithmId::line_proxy, Mode::steady},
+                      Case{AlgorithmId::surface_points, Mode::paper},
+                      Case{AlgorithmId::surface_points, Mode::steady},
+                      Case{AlgorithmId::point_shell, Mode::paper},
+                      Case{AlgorithmId::point_shell, Mode::steady}),
+    [](const auto& info) {
+      std::string name(name_of(info.param.algorithm));
+      name[name.find('-')] = '_';
+      return name + "_" + std::string(name_of(info.param.mode));
+    });
+
+}  // namespace
+}  // namespace osteomill
