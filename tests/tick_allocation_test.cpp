@@ -1,13 +1,16 @@
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <memory>
+#include <string>
 #include <vector>
 
+#include "osteomill/device/posed_device.h"
 #include "osteomill/haptics/make_algorithm.h"
 #include "osteomill/session/milling_session.h"
 #include "osteomill/volume/densities.h"
 #include "tests/count_allocations.h"
-#include "tests/path_device.h"
+#include "tests/poses.h"
 #include "tests/shapes.h"
 
 namespace osteomill {
@@ -38,22 +41,23 @@ TEST_P(TickAllocation, NoTickAllocates) {
   MillingSession session(std::move(volume), tool,
                          make_algorithm(GetParam().algorithm, {.mode = GetParam().mode}), densities,
                          MillingSettings{}, WrenchLimits{});
-  testing_support::PathDevice device;
+  PosedDevice device;
   constexpr int kTicks = 3000;
   int touching = 0;
   double removed_mm3 = 0;
   const long before = allocations_of_this_thread();
   for (int n = 0; n < kTicks; ++n) {
-    device.pose =
+    Pose pose =
         testing_support::down_and_lean(kBallRadius_mm, tool.burr_radius_mm, 2.0, static_cast<double>(n) / kTicks);
-    if (n == 2500) device.pose.position_mm.x() = std::numeric_limits<double>::quiet_NaN();
-    if (n == 2600) device.pose.position_mm = {0, 0, -20};
+    if (n == 2500) pose.position_mm.x() = std::numeric_limits<double>::quiet_NaN();
+    if (n == 2600) pose.position_mm = {0, 0, -20};
+    device.put(pose);
     const TickRecord record = session.tick(device, n * 1e-3, 1e-3, true);
     touching += record.contacts > 0 ? 1 : 0;
     removed_mm3 = record.removed_mm3;
     if (n == 2500) {
       EXPECT_EQ(record.fault, WrenchFault::pose_not_finite);
-      EXPECT_EQ(device.sent.force_N, Vec3::Zero());
+      EXPECT_EQ(device.sent().force_N, Vec3::Zero());
     }
   }
   const long allocated = allocations_of_this_thread() - before;

@@ -1,23 +1,14 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
-#include "osteomill/device/device.h"
+#include "osteomill/geometry/pose.h"
 
 namespace osteomill::testing_support {
 
-/// A device that goes where it is told and remembers what it was sent.
-class PathDevice : public Device {
- public:
-  Pose pose;
-  Wrench sent;
-
-  Pose read_pose() override { return pose; }
-  void write_wrench(const Wrench& wrench) override { sent = wrench; }
-};
-
 /// A tool that comes down on the top of a ball about the origin of W, mills into it to `depth_mm`, and leans over:
-/// touches with the burr, then with the shaft.
+/// touches with the burr, then with the shaft. `progress` runs from 0 to 1.
 inline Pose down_and_lean(double ball_radius_mm, double burr_radius_mm, double depth_mm, double progress) {
   const double down = std::min(1.0, 1.5 * progress);
   const double lean = std::max(0.0, progress - 0.6);

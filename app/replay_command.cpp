@@ -1,0 +1,69 @@
+#include <fmt/core.h>
+
+#include <CLI/Validators.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/commands.h"
+#include "app/config_file.h"
+#include "app/milling_options.h"
+#include "app/progress.h"
+#include "app/scan_options.h"
+#include "osteomill/device/trajectory.h"
+#include "osteomill/haptics/make_algorithm.h"
+#include "osteomill/recording/log_csv.h"
+#include "osteomill/session/replay.h"
+#include "osteomill/volume/densities.h"
+
+namespace osteomill::app {
+
+namespace {
+
+struct ReplayOptions {
+  std::string trajectory;
+  ScanOptions scan;
+  MillingOptions milling;
+  std::vector<AlgorithmId> algorithm;
+  std::string out;
+};
+
+void run_replay(const ReplayOptions& options) {
+  const std::vector<TrajectoryPoint> trajectory = read_trajectory(options.trajectory);
+  LoadedBone bone = load_bone(options.scan);
+  const BoneDensities densities = estimate_densities(bone.volume);
+  MillingSession session(std::move(bone.volume), options.milling.tool,
+                         make_algorithm(options.algorithm.front(), options.milling.haptics), densities,
+                         options.milling.milling, options.milling.limits);
+  std::vector<TickRecord> log;
+  log.reserve(trajectory.size());
+  replay(session, trajectory, [&](const TickRecord& record) {
+    log.push_back(record);
+    if (log.size() % 1000 == 0) {
+      show_progress("replay", static_cast<double>(log.size()) / static_cast<double>(trajectory.size()));
+    }
+  });
+  end_progress();
+  write_log_csv(options.out, log);
+  fmt::print("{}\n", options.out);
+}
+
+}  // namespace
+
+void add_replay_command(CLI::App& program) {
+  auto options = std::make_shared<ReplayOptions>();
+  CLI::App* command = program.add_subcommand("replay", "Drive one algorithm along a trajectory and log every tick");
+  command->add_option("trajectory", options->trajectory, "CSV: time_s,x_mm,y_mm,z_mm,qw,qx,qy,qz,milling")
+      ->required();
+  add_scan_options(*command, options->scan);
+  add_algorithm_option(*command, options->algorithm);
+  command->get_option("--algorithm")->required()->expected(1);
+  command->add_option("--out", options->out, "The log, CSV, a row a tick")->required();
+  add_milling_options(*command, options->milling);
+  command->callback([=] {
+    apply_config_file(*command);
+    run_replay(*options);
+  });
+}
+
+}  // namespace osteomill::app

@@ -1,0 +1,135 @@
+#include "osteomill/device/trajectory.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "osteomill/files/input_error.h"
+
+namespace osteomill {
+
+namespace {
+
+constexpr std::array<std::string_view, 9> kColumns{"time_s", "x_mm", "y_mm", "z_mm", "qw",
+                                                   "qx",     "qy",   "qz",   "milling"};
+constexpr double kUnitTolerance = 1e-3;
+// A longer line is no row of numbers: a binary file, most likely.
+constexpr std::size_t kLongestLine = 4096;
+
+using Row = std::array<double, kColumns.size()>;
+
+std::vector<std::string_view> split(std::string_view line) {
+  if (line.ends_with('\r')) line.remove_suffix(1);
+  std::vector<std::string_view> fields;
+  while (true) {
+    const std::size_t comma = line.find(',');
+    std::string_view field = line.substr(0, comma);
+    while (field.starts_with(' ')) field.remove_prefix(1);
+    while (field.ends_with(' ')) field.remove_suffix(1);
+    fields.push_back(field);
+    if (comma == std::string_view::npos) return fields;
+    line.remove_prefix(comma + 1);
+  }
+}
+
+std::optional<double> finite_number(std::string_view text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+class TrajectoryReader {
+ public:
+  explicit TrajectoryReader(const std::filesystem::path& path) : name_(path.string()), file_(path) {
+    if (!std::filesystem::exists(path)) throw InputError(name_, "no such file");
+    if (!file_ || std::filesystem::is_directory(path)) throw InputError(name_, "cannot be read");
+  }
+
+  std::vector<TrajectoryPoint> read() {
+    read_head();
+    std::vector<TrajectoryPoint> points;
+    while (next_line()) {
+      if (line_.empty() || line_ == "\r") continue;
+      const TrajectoryPoint point = point_of(row());
+      if (!points.empty() && point.time_s <= points.back().time_s) {
+        fail(fmt::format("time_s {} does not go forward from {}", point.time_s, points.back().time_s));
+      }
+      points.push_back(point);
+    }
+    if (points.empty()) throw InputError(name_, "has no rows");
+    return points;
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& reason) const {
+    throw InputError(name_, fmt::format("row {}: {}", row_number_, reason));
+  }
+
+  bool next_line() {
+    if (!std::getline(file_, line_)) return false;
+    ++row_number_;
+    if (line_.size() > kLongestLine) fail("too long for a row of a trajectory");
+    return true;
+  }
+
+  void read_head() {
+    if (!next_line()) throw InputError(name_, "is empty");
+    const auto names = split(line_);
+    for (std::size_t n = 0; n < kColumns.size(); ++n) {
+      const auto found = std::find(names.begin(), names.end(), kColumns[n]);
+      if (found == names.end()) fail(fmt::format("the column {} is missing", kColumns[n]));
+      field_of_column_[n] = static_cast<std::size_t>(found - names.begin());
+    }
+    fields_ = names.size();
+  }
+
+  Row row() const {
+    const auto fields = split(line_);
+    if (fields.size() != fields_) fail(fmt::format("{} values for {} columns", fields.size(), fields_));
+    Row row;
+    for (std::size_t n = 0; n < kColumns.size(); ++n) {
+      const std::string_view text = fields[field_of_column_[n]];
+      const auto value = finite_number(text);
+      if (!value) fail(fmt::format("{} is not a number: '{}'", kColumns[n], text));
+      row[n] = *value;
+    }
+    return row;
+  }
+
+  TrajectoryPoint point_of(const Row& row) const {
+    TrajectoryPoint point;
+    point.time_s = row[0];
+    point.X_WD.position_mm = {row[1], row[2], row[3]};
+    const Quat orientation(row[4], row[5], row[6], row[7]);
+    if (!(std::abs(orientation.norm() - 1.0) <= kUnitTolerance)) {
+      fail(fmt::format("qw,qx,qy,qz is not a unit quaternion (its length is {:.6g})", orientation.norm()));
+    }
+    point.X_WD.orientation = orientation.normalized();
+    if (row[8] != 0.0 && row[8] != 1.0) fail("milling is neither 0 nor 1");
+    point.milling = row[8] == 1.0;
+    return point;
+  }
+
+  std::string name_;
+  std::ifstream file_;
+  std::string line_;
+  int row_number_ = 0;
+  std::size_t fields_ = 0;
+  std::array<std::size_t, kColumns.size()> field_of_column_{};
+};
+
+}  // namespace
+
+std::vector<TrajectoryPoint> read_trajectory(const std::filesystem::path& path) {
+  return TrajectoryReader(path).read();
+}
+
+}  // namespace osteomill
