@@ -1,0 +1,326 @@
+#include "osteomill/milling/burr_mill.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <new>
+#include <stdexcept>
+
+#include "tests/shapes.h"
+#include <gtest/gtest.h>
+
+#include "osteomill/volume/isosurface.h"
+
+namespace {
+// Every allocation of the program, so that a test can tell that a step makes none.
+std::size_t allocations = 0;
+}  // namespace
+
+void* operator new(std::size_t size) {
+  ++allocations;
+  if (void* memory = std::malloc(size)) return memory;
+  throw std::bad_alloc();
+}
+void operator delete(void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
+
+namespace osteomill {
+namespace {
+
+using testing_support::centred_cube;
+using testing_support::plane;
+using testing_support::shape_volume;
+
+constexpr BoneDensities kBone{0, 1000};
+constexpr double kRadius_mm = 1.5;
+
+GridGeometry cube_of(double side_mm, double spacing_mm) {
+  return centred_cube(static_cast<int>(std::lround(side_mm / spacing_mm)), spacing_mm);
+}
+
+// Bone below z = 0, its edge 0.25 mm wide whatever the voxels.
+Volume half_space(const GridGeometry& geometry, const Vec3& normal = Vec3::UnitZ()) {
+  return shape_volume(geometry, plane(Vec3::Zero(), normal), 0.25 / geometry.spacing_mm.minCoeff());
+}
+
+double charge_mm3(const DensityGrid& grid, const BoneDensities& bone) {
+  double sum = 0;
+  for (const float density : grid.densities()) {
+    sum += std::max(0.0, static_cast<double>(density) - bone.surroundings);
+  }
+  return sum * grid.geometry().voxel_volume_mm3() / (bone.reference - bone.surroundings);
+}
+
+// How far below z = 0 the surface lies on the axis along `down` through the origin.
+double hole_depth_mm(const Volume& volume, const Vec3& down) {
+  const std::optional<Vec3> surface = first_crossing(volume, -down, 3.5 * down);
+  return surface ? surface->dot(down) : 3.5;
+}
+
+struct Hole {
+  double pressed_mm3 = 0;
+  double removed_mm3 = 0;
+  double depth_mm = 0;
+};
+
+// A burr pressed straight down with a force, kept at the depth at which a spring of 20 N/mm bears that force.
+Hole mill_hole(Volume& volume, BurrMill& mill, double force_N, double seconds, double rate_hz,
+               const Vec3& down = -Vec3::UnitZ()) {
+  Hole hole;
+  const double dt_s = 1 / rate_hz;
+  for (int n = 0; n < static_cast<int>(std::lround(seconds * rate_hz)); ++n) {
+    const double centre_depth_mm = hole_depth_mm(volume, down) - kRadius_mm + force_N / 20;
+    hole.removed_mm3 += mill.step(volume, centre_depth_mm * down, force_N, dt_s).removed_mm3;
+    hole.pressed_mm3 += MillingSettings{}.removal_rate_mm3_per_Ns * force_N * dt_s;
+  }
+  hole.depth_mm = hole_depth_mm(volume, down);
+  return hole;
+}
+
+Hole mill_hole_in(const GridGeometry& geometry, double rate_hz, const Vec3& normal = Vec3::UnitZ()) {
+  Volume volume = half_space(geometry, normal);
+  BurrMill mill(geometry, kRadius_mm, kBone, {});
+  return mill_hole(volume, mill, 1.5, 2.5, rate_hz, -normal);
+}
+
+TEST(BurrMill, RemovesWhatTheForcePaysFor) {
+  for (const double force_N : {0.1, 1.5, 6.0}) {
+    const GridGeometry geometry = cube_of(7, 0.125);
+    Volume volume = half_space(geometry);
+    BurrMill mill(geometry, kRadius_mm, kBone, {});
+    const double before_mm3 = charge_mm3(volume.grid(), kBone);
+    const Hole hole = mill_hole(volume, mill, force_N, 3 / force_N, 1000);
+    EXPECT_NEAR(hole.removed_mm3 / hole.pressed_mm3, 1, 0.02) << force_N;
+    EXPECT_NEAR(before_mm3 - charge_mm3(volume.grid(), kBone), hole.removed_mm3, 1e-9) << force_N;
+    EXPECT_GT(hole.depth_mm, 0.8) << force_N;
+  }
+}
+
+TEST(BurrMill, CutsEnamelSlowerInProportionToItsDensity) {
+  const GridGeometry geometry = cube_of(7, 0.125);
+  Volume dentine = half_space(geometry);
+  std::vector<float> denser = dentine.grid().densities();
+  for (float& density : denser) density *= 1.9f;
+  Volume enamel(DensityGrid(geometry, denser), 1.9 * 500);
+  BurrMill dentine_mill(geometry, kRadius_mm, kBone, {});
+  BurrMill enamel_mill(geometry, kRadius_mm, kBone, {});
+  const Hole in_dentine = mill_hole(dentine, dentine_mill, 1.5, 1.0, 1000);
+  const Hole in_enamel = mill_hole(enamel, enamel_mill, 1.5, 1.9, 1000);
+  EXPECT_NEAR(in_enamel.removed_mm3, 1.9 * in_dentine.removed_mm3, 0.02 * in_enamel.removed_mm3);
+  EXPECT_NEAR(in_enamel.depth_mm, in_dentine.depth_mm, 0.01);
+}
+
+TEST(BurrMill, TakesNothingWithoutForceOrWithoutASensibleInput) {
+  const GridGeometry geometry = cube_of(5, 0.25);
+  Volume volume = half_space(geometry);
+  const std::vector<float> before = volume.grid().densities();
+  BurrMill mill(geometry, kRadius_mm, kBone, {});
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double infinity = std::numeric_limits<double>::infinity();
+  const Vec3 inside(0, 0, -0.5);
+  for (const double force_N : {0.0, -1.0, nan, infinity}) {
+    const MillingStep step = mill.step(volume, inside, force_N, 0.001);
+    EXPECT_EQ(step.removed_mm3, 0);
+    EXPECT_TRUE(step.change.voxels.empty());
+  }
+  EXPECT_EQ(mill.step(volume, Vec3(nan, 0, 0), 1, 0.001).removed_mm3, 0);
+  EXPECT_EQ(mill.step(volume, Vec3(0, infinity, 0), 1, 0.001).removed_mm3, 0);
+  EXPECT_EQ(mill.step(volume, inside, 1, 0).removed_mm3, 0);
+  EXPECT_EQ(mill.step(volume, Vec3(0, 0, 3), 1, 0.001).removed_mm3, 0) << "in the air";
+  EXPECT_EQ(mill.step(volume, Vec3(1e300, 0, 0), 1, 0.001).removed_mm3, 0) << "far away";
+  EXPECT_EQ(volume.grid().densities(), before);
+}
+
+TEST(BurrMill, StopsAtTheSurroundingsAndCarriesTheRestWithinBounds) {
+  const GridGeometry geometry = cube_of(5, 0.25);
+  Volume volume = half_space(geometry);
+  const BoneDensities bone{391.7, 900};
+  BurrMill mill(geometry, kRadius_mm, bone, {});
+  const double held_mm3 = charge_mm3(volume.grid(), bone);
+  double removed_mm3 = 0;
+  for (int n = 0; n < 2000; ++n) removed_mm3 += mill.step(volume, Vec3(0, 0, -0.6), 5, 0.001).removed_mm3;
+  EXPECT_NEAR(held_mm3 - charge_mm3(volume.grid(), bone), removed_mm3, 1e-6);
+  const Volume original = half_space(geometry);
+  for (int k = 0; k < geometry.dims[2]; ++k)
+    for (int j = 0; j < geometry.dims[1]; ++j)
+      for (int i = 0; i < geometry.dims[0]; ++i) {
+        const double now = static_cast<double>(volume.grid()[{i, j, k}]);
+        const double was = static_cast<double>(original.grid()[{i, j, k}]);
+        const double distance_mm = (geometry.world_from_voxel(VoxelIndex{i, j, k}) - Vec3(0, 0, -0.6)).norm();
+        if (distance_mm < kRadius_mm + 0.5 * 0.25 - 1e-6) {
+          EXPECT_NEAR(now, std::min(was, 391.7), 1e-3);
+          if (was > 391.7) {
+            EXPECT_GE(now, 391.7);
+          }
+        } else {
+          EXPECT_EQ(now, was);
+        }
+      }
+  EXPECT_LE(mill.carry_mm3(), 2 * M_PI * kRadius_mm * kRadius_mm * 0.125 + 1e-12);
+  EXPECT_GT(mill.carry_mm3(), 0);
+}
+
+TEST(BurrMill, ForgetsTheCarryOnlyAfterALift) {
+  const GridGeometry geometry = cube_of(5, 0.25);
+  Volume volume = half_space(geometry);
+  BurrMill mill(geometry, kRadius_mm, kBone, {});
+  const Vec3 air(0, 0, 3);
+  mill.step(volume, air, 10, 0.001);
+  for (int n = 0; n < 40; ++n) mill.step(volume, air, 0, 0.001);
+  EXPECT_NEAR(mill.carry_mm3(), 0.02, 1e-12) << "40 ms without force are no lift";
+  mill.step(volume, air, 1e-9, 0.001);
+  for (int n = 0; n < 51; ++n) mill.step(volume, air, 0, 0.001);
+  EXPECT_EQ(mill.carry_mm3(), 0);
+}
+
+TEST(BurrMill, CutsHardestWhereItIsDeepest) {
+  const GridGeometry geometry = cube_of(6, 0.2);
+  Volume volume = half_space(geometry);
+  BurrMill mill(geometry, kRadius_mm, kBone, {});
+  const Vec3 centre(0, 0, 1.0);
+  mill.step(volume, centre, 1.5, 0.001);
+  const Volume original = half_space(geometry);
+  double deepest_drop = 0, ratio = 0;
+  const double reach_mm = kRadius_mm + 0.5 * 0.2;
+  for (int k = 0; k < 30; ++k)
+    for (int j = 0; j < 30; ++j)
+      for (int i = 0; i < 30; ++i) {
+        const VoxelIndex v{i, j, k};
+        const double drop = static_cast<double>(original.grid()[v]) - static_cast<double>(volume.grid()[v]);
+        const double depth_mm = reach_mm - (geometry.world_from_voxel(v) - centre).norm();
+        if (drop <= 0 || volume.grid()[v] <= 0) continue;
+        if (ratio == 0) ratio = drop / depth_mm;
+        EXPECT_NEAR(drop / depth_mm, ratio, 0.01 * ratio);
+        deepest_drop = std::max(deepest_drop, drop);
+      }
+  EXPECT_GT(deepest_drop, 1);
+}
+
+TEST(BurrMill, MakesTheSameHoleAtAnyHapticRate) {
+  const Hole at_1000 = mill_hole_in(cube_of(7, 0.125), 1000);
+  for (const double rate_hz : {500.0, 2000.0}) {
+    const Hole hole = mill_hole_in(cube_of(7, 0.125), rate_hz);
+    EXPECT_NEAR(hole.removed_mm3, at_1000.removed_mm3, 0.02 * at_1000.removed_mm3) << rate_hz;
+    EXPECT_NEAR(hole.depth_mm, at_1000.depth_mm, 0.02 * at_1000.depth_mm) << rate_hz;
+  }
+}
+
+TEST(BurrMill, MakesTheSameHoleWithAnyVoxels) {
+  const Hole finest = mill_hole_in(cube_of(7, 0.10), 1000);
+  EXPECT_NEAR(finest.removed_mm3 / finest.pressed_mm3, 1, 0.02);
+  for (const double spacing_mm : {0.25, 0.20}) {
+    const Hole hole = mill_hole_in(cube_of(7, spacing_mm), 1000);
+    EXPECT_NEAR(hole.removed_mm3, finest.removed_mm3, 0.02 * finest.removed_mm3) << spacing_mm;
+    EXPECT_NEAR(hole.depth_mm, finest.depth_mm, spacing_mm) << spacing_mm;
+  }
+}
+
+TEST(BurrMill, MakesTheSameHoleInAnisotropicVoxels) {
+  GridGeometry geometry;
+  geometry.dims = {56, 35, 28};
+  geometry.spacing_mm = Vec3(0.125, 0.2, 0.25);
+  geometry.origin_mm = Vec3(-0.5 * 55 * 0.125, -0.5 * 34 * 0.2, -0.5 * 27 * 0.25);
+  const Hole isotropic = mill_hole_in(cube_of(7, 0.125), 1000);
+  const Hole hole = mill_hole_in(geometry, 1000);
+  EXPECT_NEAR(hole.removed_mm3, isotropic.removed_mm3, 0.02 * isotropic.removed_mm3);
+  EXPECT_NEAR(hole.depth_mm, isotropic.depth_mm, 0.125);
+}
+
+TEST(BurrMill, CutsATurnedGridAsItCutsAStraightOne) {
+  const GridGeometry straight = cube_of(7, 0.125);
+  GridGeometry turned = straight;
+  turned.direction = Quat(0.8, 0.3, -0.4, 0.33).normalized().toRotationMatrix();
+  turned.direction.col(1) *= -1;
+  turned.origin_mm = turned.direction * straight.origin_mm;
+  Volume straight_volume = half_space(straight);
+  Volume turned_volume(straight_volume.grid(), 500);
+  turned_volume = Volume(DensityGrid(turned, straight_volume.grid().densities()), 500);
+  BurrMill straight_mill(straight, kRadius_mm, kBone, {});
+  BurrMill turned_mill(turned, kRadius_mm, kBone, {});
+  for (int n = 0; n < 300; ++n) {
+    const Vec3 centre(0.002 * n, 0.1, 1.4 - 0.002 * n);
+    const MillingStep a = straight_mill.step(straight_volume, centre, 2, 0.001);
+    const MillingStep b = turned_mill.step(turned_volume, turned.direction * centre, 2, 0.001);
+    EXPECT_NEAR(a.removed_mm3, b.removed_mm3, 1e-6);
+  }
+  for (std::size_t n = 0; n < straight.voxel_count(); ++n) {
+    ASSERT_NEAR(straight_volume.grid().densities()[n], turned_volume.grid().densities()[n], 0.05);
+  }
+}
+
+TEST(BurrMill, NamesExactlyTheBoxThatChanged) {
+  const GridGeometry geometry = cube_of(6, 0.2);
+  Volume volume = half_space(geometry);
+  BurrMill mill(geometry, kRadius_mm, kBone, {});
+  for (int n = 0; n < 200; ++n) {
+    const std::vector<float> before = volume.grid().densities();
+    const VoxelBox said = mill.step(volume, Vec3(0.01 * n, 0.3, 1.4 - 0.005 * n), 1, 0.001).change.voxels;
+    VoxelBox changed;
+    std::size_t index = 0;
+    for (int k = 0; k < 30; ++k)
+      for (int j = 0; j < 30; ++j)
+        for (int i = 0; i < 30; ++i, ++index)
+          if (before[index] != volume.grid().densities()[index]) changed.include({i, j, k});
+    ASSERT_EQ(said.empty(), changed.empty());
+    if (changed.empty()) continue;
+    ASSERT_EQ(said.first, changed.first);
+    ASSERT_EQ(said.last, changed.last);
+  }
+}
+
+TEST(BurrMill, CutsAtTheEdgeOfTheGridWhatIsInside) {
+  const GridGeometry geometry = cube_of(4, 0.2);
+  Volume volume = half_space(geometry);
+  BurrMill mill(geometry, kRadius_mm, kBone, {});
+  const double before_mm3 = charge_mm3(volume.grid(), kBone);
+  double removed_mm3 = 0;
+  for (int n = 0; n < 500; ++n) {
+    removed_mm3 += mill.step(volume, Vec3(2.2, -2.4, -2.0), 1, 0.001).removed_mm3;
+  }
+  EXPECT_NEAR(removed_mm3, 1.0, 0.02);
+  EXPECT_NEAR(before_mm3 - charge_mm3(volume.grid(), kBone), removed_mm3, 1e-9);
+}
+
+TEST(BurrMill, PaysInFullForDropsBelowTheResolutionOfAFloat) {
+  // Each voxel's share of a step is about 1e-7, far below what a float of 1000 can tell.
+  const GridGeometry geometry = cube_of(5, 0.25);
+  Volume volume = half_space(geometry);
+  BurrMill mill(geometry, kRadius_mm, kBone, {1e-3, 0.5});
+  const double before_mm3 = charge_mm3(volume.grid(), kBone);
+  double removed_mm3 = 0;
+  for (int n = 0; n < 20000; ++n) {
+    removed_mm3 += mill.step(volume, Vec3(0, 0, 0.8), 2e-4, 0.001).removed_mm3;
+  }
+  EXPECT_NEAR(removed_mm3 + mill.carry_mm3(), 20000 * 1e-3 * 2e-4 * 0.001, 1e-12);
+  EXPECT_NEAR(before_mm3 - charge_mm3(volume.grid(), kBone), removed_mm3, 1e-11);
+  EXPECT_GT(removed_mm3, 0);
+}
+
+TEST(BurrMill, NeverAllocatesInAStep) {
+  GridGeometry geometry = cube_of(5, 0.25);
+  geometry.spacing_mm.y() = 0.2;
+  Volume volume(DensityGrid(geometry, std::vector<float>(geometry.voxel_count(), 1000.0f)), 500);
+  BurrMill mill(geometry, kRadius_mm, kBone, {});
+  const std::size_t before = allocations;
+  for (int n = 0; n < 100; ++n) {
+    // Buried in bone at every shift against the grid: as many overlaps as there can be.
+    mill.step(volume, Vec3(0.017 * n - 1, 0.013 * n - 1, 0.011 * n - 1), 1e-6, 0.001);
+  }
+  EXPECT_EQ(allocations, before);
+}
+
+TEST(BurrMill, RefusesSettingsOutOfRange) {
+  const GridGeometry geometry = cube_of(2, 0.25);
+  EXPECT_THROW(BurrMill(geometry, 0, kBone, {}), std::invalid_argument);
+  EXPECT_THROW(BurrMill(geometry, 1, {5, 5}, {}), std::invalid_argument);
+  EXPECT_THROW(BurrMill(geometry, 1, kBone, {-1, 0.5}), std::invalid_argument);
+  EXPECT_THROW(BurrMill(geometry, 1, kBone, {2, -0.5}), std::invalid_argument);
+  EXPECT_THROW(BurrMill(GridGeometry{}, 1, kBone, {}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace osteomill
