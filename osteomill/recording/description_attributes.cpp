@@ -1,0 +1,118 @@
+#include "osteomill/recording/description_attributes.h"
+
+#include <cmath>
+#include <set>
+#include <stdexcept>
+
+#include "osteomill/files/input_error.h"
+#include "osteomill/recording/hdf5_attributes.h"
+
+namespace osteomill {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* kSettingsGroup = "settings";
+constexpr std::string_view kUnitSuffix = ".unit";
+
+void require_usable_keys(const std::vector<RunSetting>& settings) {
+  std::set<std::string> seen;
+  for (const RunSetting& setting : settings) {
+    if (setting.key.empty() || setting.key.ends_with(kUnitSuffix) || !seen.insert(setting.key).second) {
+      throw std::invalid_argument("'" + setting.key + "' cannot be the key of a setting, or is one already");
+    }
+  }
+}
+
+void write_settings(const fs::path& path, hid_t file, const std::vector<RunSetting>& settings) {
+  const Hdf5Handle order(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
+  H5Pset_attr_creation_order(order.get(), H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
+  const Hdf5Handle group(H5Gcreate2(file, kSettingsGroup, H5P_DEFAULT, order.get(), H5P_DEFAULT), H5Gclose);
+  if (!group.valid()) throw InputError(path.string(), "the group of settings cannot be written");
+  const AttributeWriter write(path, group.get());
+  for (const RunSetting& setting : settings) {
+    if (const double* number = std::get_if<double>(&setting.value)) {
+      write.real(setting.key, *number);
+    } else {
+      write.text(setting.key, std::get<std::string>(setting.value));
+    }
+    if (!setting.unit.empty()) write.text(setting.key + std::string(kUnitSuffix), setting.unit);
+  }
+}
+
+std::vector<RunSetting> read_settings(const fs::path& path, hid_t file) {
+  const Hdf5Handle group(H5Gopen2(file, kSettingsGroup, H5P_DEFAULT), H5Gclose);
+  if (!group.valid()) throw InputError(path.string(), "has no group of settings");
+  const AttributeReader read(path, group.get());
+  std::vector<RunSetting> settings;
+  for (const std::string& name : read.names()) {
+    if (name.ends_with(kUnitSuffix)) continue;
+    RunSetting setting{name, 0.0, ""};
+    if (read.is_text(name)) {
+      setting.value = read.text(name);
+    } else {
+      setting.value = read.real(name);
+    }
+    const std::string unit = name + std::string(kUnitSuffix);
+    if (read.has(unit)) setting.unit = read.text(unit);
+    settings.push_back(std::move(setting));
+  }
+  return settings;
+}
+
+template <typename Value>
+Value require_known(const fs::path& path, std::optional<Value> value, const std::string& name) {
+  if (!value) throw InputError(path.string(), "'" + name + "' is not known here");
+  return *value;
+}
+
+}  // namespace
+
+void write_description(const fs::path& path, hid_t file, const RunDescription& description) {
+  require_usable_keys(description.settings);
+  const AttributeWriter write(path, file);
+  const Vec3& spacing = description.spacing_mm;
+  write.text("program_version", description.program_version);
+  write.text("scan_name", description.scan_name);
+  write.integers("dims", description.dims);
+  write.reals("spacing_mm", {spacing.x(), spacing.y(), spacing.z()});
+  write.real("isovalue", description.isovalue);
+  write.real("burr_radius_mm", description.tool.burr_radius_mm);
+  write.real("shaft_radius_mm", description.tool.shaft_radius_mm);
+  write.real("shaft_length_mm", description.tool.shaft_length_mm);
+  write.text("algorithm", std::string(name_of(description.algorithm)));
+  write.text("mode", std::string(name_of(description.mode)));
+  write.text("phase", std::string(name_of(description.phase)));
+  write.unsigned_integer("seed", description.seed);
+  write.real("tick_period_s", description.tick_period_s);
+  write_settings(path, file, description.settings);
+}
+
+RunDescription read_description(const fs::path& path, hid_t file) {
+  const AttributeReader read(path, file);
+  RunDescription description;
+  description.program_version = read.text("program_version");
+  description.scan_name = read.text("scan_name");
+  description.dims = read.integers("dims");
+  const auto spacing = read.reals("spacing_mm");
+  description.spacing_mm = {spacing[0], spacing[1], spacing[2]};
+  description.isovalue = read.real("isovalue");
+  description.tool = {read.real("burr_radius_mm"), read.real("shaft_radius_mm"),
+                      read.real("shaft_length_mm")};
+  const std::string algorithm = read.text("algorithm");
+  const std::string mode = read.text("mode");
+  const std::string phase = read.text("phase");
+  description.algorithm = require_known(path, algorithm_named(algorithm), "algorithm " + algorithm);
+  description.mode = require_known(path, mode_named(mode), "mode " + mode);
+  description.phase = require_known(path, phase_named(phase), "phase " + phase);
+  description.seed = read.unsigned_integer("seed");
+  description.tick_period_s = read.real("tick_period_s");
+  if (!(std::isfinite(description.tick_period_s) && description.tick_period_s > 0)) {
+    throw InputError(path.string(), "the attribute 'tick_period_s' is not a positive number");
+  }
+  description.settings = read_settings(path, file);
+  return description;
+}
+
+}  // namespace osteomill

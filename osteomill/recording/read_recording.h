@@ -1,0 +1,16 @@
+#pragma once
+
+#include <filesystem>
+
+#include "osteomill/recording/recording.h"
+
+namespace osteomill {
+
+/// Reads a recording that a Recorder wrote, or the unfinished one that a killed program left (`complete` is
+/// then false). Throws InputError, naming the file, where it is not HDF5, is no recording of this version, is
+/// cut short or damaged, or its columns are missing, of another type or of unequal lengths; only in an
+/// unfinished recording are columns of unequal lengths cut to the shortest. Sizes are held against the file's
+/// before memory is taken.
+Recording read_recording(const std::filesystem::path& path);
+
+}  // namespace osteomill

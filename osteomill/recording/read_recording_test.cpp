@@ -1,0 +1,176 @@
+#include "osteomill/recording/read_recording.h"
+
+#include <fstream>
+#include <functional>
+#include <iterator>
+
+#include <gtest/gtest.h>
+#include <hdf5.h>
+
+#include "osteomill/files/input_error.h"
+#include "osteomill/recording/hdf5_attributes.h"
+#include "osteomill/recording/recorder.h"
+#include "osteomill/recording/recording_samples.h"
+
+namespace osteomill {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace testing_support;
+
+void write_sample(const fs::path& path, int ticks) {
+  Recorder recorder(path, sample_description());
+  for (int tick = 0; tick < ticks; ++tick) recorder.push_waiting(sample_record(tick));
+  recorder.add_picture("before", {1, 2, 3});
+  recorder.close();
+}
+
+std::string bytes_of(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+void write_bytes(const fs::path& path, const std::string& bytes) {
+  std::ofstream(path, std::ios::binary) << bytes;
+}
+
+void expect_refused(const fs::path& path, const std::string& reason) {
+  try {
+    read_recording(path);
+    ADD_FAILURE() << path << " was read";
+  } catch (const InputError& error) {
+    const std::string what = error.what();
+    EXPECT_TRUE(what.starts_with(path.string() + ": ")) << what;
+    EXPECT_NE(what.find(reason), std::string::npos) << what;
+    EXPECT_EQ(what.find('\n'), std::string::npos) << what;
+  }
+}
+
+class ChangedRecording : public ::testing::Test {
+ protected:
+  void SetUp() override { write_sample(path_, 1500); }
+
+  void change(const std::function<void(hid_t file)>& how) {
+    const hid_t file = H5Fopen(path_.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+    ASSERT_GE(file, 0);
+    how(file);
+    ASSERT_GE(H5Fclose(file), 0);
+  }
+  static void set_number(hid_t file, const char* attribute, std::uint64_t value) {
+    const hid_t a = H5Aopen(file, attribute, H5P_DEFAULT);
+    ASSERT_GE(H5Awrite(a, H5T_NATIVE_UINT64, &value), 0);
+    H5Aclose(a);
+  }
+  static void set_rows(hid_t file, const char* column, hsize_t rows) {
+    const hid_t dataset = H5Dopen2(file, column, H5P_DEFAULT);
+    ASSERT_GE(H5Dset_extent(dataset, &rows), 0);
+    H5Dclose(dataset);
+  }
+
+  TestFolder folder_;
+  fs::path path_ = folder_ / "run.h5";
+};
+
+TEST_F(ChangedRecording, AnotherVersionIsRefused) {
+  change([](hid_t file) { set_number(file, "osteomill_recording_version", 2); });
+  expect_refused(path_, "version 2");
+}
+
+TEST_F(ChangedRecording, AMissingColumnIsNamed) {
+  change([](hid_t file) { H5Ldelete(file, "columns/torque_y_Nmm", H5P_DEFAULT); });
+  expect_refused(path_, "no column 'torque_y_Nmm'");
+}
+
+TEST_F(ChangedRecording, UnequalLengthsAreRefused) {
+  change([](hid_t file) { set_rows(file, "columns/force_x_N", 1499); });
+  expect_refused(path_, "'force_x_N' has 1499 rows");
+}
+
+TEST_F(ChangedRecording, AnUnfinishedOneIsCutToTheShortestColumn) {
+  change([](hid_t file) {
+    set_number(file, "complete", 0);
+    set_rows(file, "columns/force_x_N", 1499);
+  });
+  const Recording read = read_recording(path_);
+  EXPECT_FALSE(read.complete);
+  ASSERT_EQ(read.records.size(), 1499u);
+  EXPECT_TRUE(same_bits(read.records.back(), sample_record(1498)));
+}
+
+TEST_F(ChangedRecording, MoreRowsThanTheFileCanHoldAreRefusedBeforeMemoryIsTaken) {
+  change([](hid_t file) { set_rows(file, "columns/time_s", hsize_t{1} << 50); });
+  expect_refused(path_, "more than the file can hold");
+}
+
+TEST_F(ChangedRecording, AMissingOrMistypedAttributeIsNamed) {
+  change([](hid_t file) { H5Adelete(file, "isovalue"); });
+  expect_refused(path_, "no attribute 'isovalue'");
+  change([](hid_t file) { H5Arename(file, "seed", "isovalue"); });
+  expect_refused(path_, "'isovalue' is of another type");
+}
+
+TEST_F(ChangedRecording, AnUnknownAlgorithmIsNamed) {
+  change([this](hid_t file) {
+    H5Adelete(file, "algorithm");
+    AttributeWriter(path_, file).text("algorithm", "god-object");
+  });
+  expect_refused(path_, "'algorithm god-object' is not known");
+}
+
+TEST_F(ChangedRecording, AFaultThatDoesNotExistIsRefused) {
+  change([](hid_t file) {
+    const hid_t dataset = H5Dopen2(file, "columns/fault", H5P_DEFAULT);
+    const std::vector<int> values(1500, 9);
+    H5Dwrite(dataset, H5T_NATIVE_INT, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
+    H5Dclose(dataset);
+  });
+  expect_refused(path_, "'fault' holds 9");
+}
+
+TEST_F(ChangedRecording, AnotherHdf5FileIsNoRecording) {
+  change([](hid_t file) { H5Adelete(file, "osteomill_recording_version"); });
+  expect_refused(path_, "no recording of osteomill");
+}
+
+TEST_F(ChangedRecording, CutShortAnywhereItIsRefused) {
+  const std::string whole = bytes_of(path_);
+  for (const double part : {0.0, 0.001, 0.01, 0.1, 0.3, 0.5, 0.7, 0.9, 0.99, 0.9999}) {
+    write_bytes(path_, whole.substr(0, static_cast<std::size_t>(part * static_cast<double>(whole.size()))));
+    expect_refused(path_, part < 0.001 ? "not an HDF5 file" : "cannot be opened");
+  }
+}
+
+// Whatever damaged bytes lead to, it is a recording or one clear line, never another exception or a crash.
+TEST_F(ChangedRecording, DamagedBytesGiveARecordingOrOneClearLine) {
+  const std::string whole = bytes_of(path_);
+  int refused = 0;
+  std::uint64_t state = 12345;
+  for (int round = 0; round < 300; ++round) {
+    std::string damaged = whole;
+    // The first part of the file is where the library's own structures lie.
+    const std::size_t span = round % 2 == 0 ? std::min<std::size_t>(whole.size(), 30000) : whole.size();
+    for (int n = 0; n < 4; ++n) {
+      state = state * 6364136223846793005u + 1442695040888963407u;
+      damaged[(state >> 20) % span] = static_cast<char>(state >> 56);
+    }
+    write_bytes(path_, damaged);
+    try {
+      read_recording(path_);
+    } catch (const InputError& error) {
+      ++refused;
+      EXPECT_TRUE(std::string(error.what()).starts_with(path_.string() + ": ")) << error.what();
+    }
+  }
+  EXPECT_GT(refused, 20);
+}
+
+TEST(ReadRecording, WhatIsNotAFileIsNamed) {
+  const TestFolder folder;
+  expect_refused(folder / "none.h5", "does not exist");
+  expect_refused(folder.path(), "is not a file");
+  write_bytes(folder / "text.h5", "time_s,x_mm\n0,0\n");
+  expect_refused(folder / "text.h5", "not an HDF5 file");
+}
+
+}  // namespace
+}  // namespace osteomill

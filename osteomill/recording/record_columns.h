@@ -1,0 +1,26 @@
+#pragma once
+
+#include <span>
+
+#include "osteomill/session/tick_record.h"
+
+namespace osteomill {
+
+enum class ColumnType : unsigned char { real, integer, small_integer };
+
+/// One column of recordings and logs: how it is called and where in a record its number stands.
+struct RecordColumn {
+  const char* name;
+  /// Empty for a pure number.
+  const char* unit;
+  ColumnType type;
+  /// Whether the CSV log has it (recordings have all).
+  bool in_log;
+  double (*get)(const TickRecord&);
+  void (*set)(TickRecord&, double);
+};
+
+/// All columns, those of the CSV log in its order.
+std::span<const RecordColumn> record_columns();
+
+}  // namespace osteomill

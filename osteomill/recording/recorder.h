@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "osteomill/recording/run_description.h"
+#include "osteomill/session/tick_record.h"
+
+namespace osteomill {
+
+/// Writes one record a tick to an HDF5 file (the layout: recording_file.h) from a thread of its own.
+///
+/// While it runs the file is called NAME.part.h5 where NAME.h5 was asked for; `close` gives it its name, so a
+/// file of the final name is always whole. About every 100 ms what was recorded so far is made safe: a
+/// program that is killed leaves a NAME.part.h5 that read_recording opens, less the last tenth of a second,
+/// and that other HDF5 programs open too (hence the extension stays last). A recorder destroyed without
+/// `close`, as when an exception passes, leaves the same. NAME.part.h5 is written over by the next recording
+/// of that name.
+///
+/// One thread pushes; another (or the same) makes, closes and destroys the recorder, after the last push.
+class Recorder {
+ public:
+  /// The queue holds `capacity` records (16 s at 1000 Hz) or a few more. Throws InputError, naming the file,
+  /// where it cannot be created, and std::invalid_argument where the description cannot be stored
+  /// (description_attributes.h).
+  Recorder(const std::filesystem::path& path, const RunDescription& description,
+           std::size_t capacity = 16384);
+  ~Recorder();
+  Recorder(const Recorder&) = delete;
+  Recorder& operator=(const Recorder&) = delete;
+
+  /// Hands a record to the writing thread. Safe in the haptic tick: never waits, allocates or throws. Where
+  /// the queue is full the record is lost: false, and counted.
+  bool push(const TickRecord& record) noexcept;
+  /// The same for runs in simulated time, outside the tick: waits while the queue is full. Throws the
+  /// InputError with which writing failed, if it did.
+  void push_waiting(const TickRecord& record);
+
+  /// How many records were lost. From any thread.
+  std::uint64_t dropped() const noexcept;
+  /// Whether writing has failed (a full disk); the reason comes from `close`. From any thread.
+  bool failed() const noexcept;
+
+  /// A picture to be stored at closing. `png` are the bytes of a PNG file; the name must be new and hold only
+  /// letters, digits, '-' and '_' (else std::invalid_argument).
+  void add_picture(const std::string& name, std::vector<unsigned char> png);
+
+  /// Writes what is left, the pictures, and gives the file its name. Throws InputError where any of it fails,
+  /// or writing failed before. To be called once.
+  void close();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// The name under which a recording that is to become `path` is written.
+std::filesystem::path unfinished_recording_path(const std::filesystem::path& path);
+
+}  // namespace osteomill

@@ -1,0 +1,257 @@
+#include "osteomill/recording/recorder.h"
+
+#include <atomic>
+#include <csignal>
+#include <cstdlib>
+#include <limits>
+#include <thread>
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "osteomill/files/input_error.h"
+#include "osteomill/recording/read_recording.h"
+#include "osteomill/recording/recording_samples.h"
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define OSTEOMILL_COUNTS_ALLOCATIONS 0
+#else
+#define OSTEOMILL_COUNTS_ALLOCATIONS 1
+namespace {
+thread_local long allocations_here = 0;
+}
+// Every allocation of this program comes by here (the sanitizers have their own).
+extern "C" {
+void* __libc_malloc(std::size_t size);
+void* __libc_calloc(std::size_t count, std::size_t size);
+void* __libc_realloc(void* old, std::size_t size);
+void* malloc(std::size_t size) {
+  ++allocations_here;
+  return __libc_malloc(size);
+}
+void* calloc(std::size_t count, std::size_t size) {
+  ++allocations_here;
+  return __libc_calloc(count, size);
+}
+void* realloc(void* old, std::size_t size) {
+  ++allocations_here;
+  return __libc_realloc(old, size);
+}
+}
+#endif
+
+namespace osteomill {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace testing_support;
+
+void expect_same(const RunDescription& a, const RunDescription& b) {
+  EXPECT_EQ(a.program_version, b.program_version);
+  EXPECT_EQ(a.scan_name, b.scan_name);
+  EXPECT_EQ(a.dims, b.dims);
+  EXPECT_EQ(a.spacing_mm, b.spacing_mm);
+  EXPECT_EQ(a.isovalue, b.isovalue);
+  EXPECT_EQ(a.tool.burr_radius_mm, b.tool.burr_radius_mm);
+  EXPECT_EQ(a.tool.shaft_radius_mm, b.tool.shaft_radius_mm);
+  EXPECT_EQ(a.tool.shaft_length_mm, b.tool.shaft_length_mm);
+  EXPECT_EQ(a.algorithm, b.algorithm);
+  EXPECT_EQ(a.mode, b.mode);
+  EXPECT_EQ(a.phase, b.phase);
+  EXPECT_EQ(a.seed, b.seed);
+  EXPECT_EQ(a.tick_period_s, b.tick_period_s);
+  EXPECT_EQ(a.settings, b.settings);
+}
+
+TEST(Recorder, WhatIsRecordedReadsBackBitForBit) {
+  const TestFolder folder;
+  constexpr int kTicks = 5000;  // several chunks and a part of one
+  TickRecord odd = sample_record(kTicks);
+  odd.wrench.force_N = {-0.0, std::numeric_limits<double>::denorm_min(),
+                        std::numeric_limits<double>::infinity()};
+  odd.compute_us = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<unsigned char> png{0x89, 'P', 'N', 'G', 0, 255, 1};
+  {
+    Recorder recorder(folder / "run.h5", sample_description());
+    for (int tick = 0; tick < kTicks; ++tick) recorder.push_waiting(sample_record(tick));
+    recorder.push_waiting(odd);
+    recorder.add_picture("before", png);
+    recorder.add_picture("after", {1});
+    EXPECT_FALSE(fs::exists(folder / "run.h5")) << "the final name is for what is whole";
+    recorder.close();
+  }
+  EXPECT_FALSE(fs::exists(unfinished_recording_path(folder / "run.h5")));
+  const Recording read = read_recording(folder / "run.h5");
+  EXPECT_TRUE(read.complete);
+  EXPECT_EQ(read.dropped, 0u);
+  expect_same(read.description, sample_description());
+  ASSERT_EQ(read.records.size(), kTicks + 1u);
+  for (int tick = 0; tick < kTicks; ++tick) {
+    ASSERT_TRUE(same_bits(read.records[static_cast<std::size_t>(tick)], sample_record(tick))) << tick;
+  }
+  EXPECT_TRUE(same_bits(read.records.back(), odd));
+  ASSERT_EQ(read.pictures.size(), 2u);
+  EXPECT_EQ(read.pictures[0].name, "after");
+  EXPECT_EQ(read.pictures[1].name, "before");
+  EXPECT_EQ(read.pictures[1].png, png);
+}
+
+TEST(Recorder, ARunOfNoTicksReadsBackAsOne) {
+  const TestFolder folder;
+  Recorder(folder / "run.h5", sample_description()).close();
+  EXPECT_TRUE(read_recording(folder / "run.h5").records.empty());
+}
+
+// The queue is much smaller than what is pushed between two looks of the writing thread.
+TEST(Recorder, AFullQueueIsCountedAndTheRestIsKept) {
+  const TestFolder folder;
+  std::vector<int> accepted;
+  std::uint64_t refused = 0;
+  Recorder recorder(folder / "run.h5", sample_description(), 16);
+  for (int tick = 0; tick < 20000; ++tick) {
+    if (recorder.push(sample_record(tick))) {
+      accepted.push_back(tick);
+    } else {
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 0u);
+  EXPECT_GE(accepted.size(), 16u);
+  EXPECT_EQ(recorder.dropped(), refused);
+  recorder.close();
+  const Recording read = read_recording(folder / "run.h5");
+  EXPECT_EQ(read.dropped, refused);
+  ASSERT_EQ(read.records.size(), accepted.size());
+  for (std::size_t n = 0; n < accepted.size(); ++n) {
+    ASSERT_TRUE(same_bits(read.records[n], sample_record(accepted[n])));
+  }
+}
+
+TEST(Recorder, WaitingLosesNothingHoweverSmallTheQueue) {
+  const TestFolder folder;
+  Recorder recorder(folder / "run.h5", sample_description(), 16);
+  for (int tick = 0; tick < 3000; ++tick) recorder.push_waiting(sample_record(tick));
+  recorder.close();
+  const Recording read = read_recording(folder / "run.h5");
+  EXPECT_EQ(read.dropped, 0u);
+  ASSERT_EQ(read.records.size(), 3000u);
+  EXPECT_TRUE(same_bits(read.records.back(), sample_record(2999)));
+}
+
+TEST(Recorder, PushingAllocatesNothingEvenWhenFull) {
+#if OSTEOMILL_COUNTS_ALLOCATIONS
+  const TestFolder folder;
+  Recorder recorder(folder / "run.h5", sample_description(), 512);
+  const TickRecord record = sample_record(1);
+  const long before = allocations_here;
+  for (int tick = 0; tick < 20000; ++tick) recorder.push(record);
+  EXPECT_EQ(allocations_here, before);
+  EXPECT_GT(recorder.dropped(), 0u);
+  recorder.close();
+  EXPECT_GT(allocations_here, before) << "the counter counts nothing";
+#else
+  GTEST_SKIP() << "the sanitizer has its own malloc";
+#endif
+}
+
+// For -fsanitize=thread: one thread pushes, one watches, the recorder's own writes, another recorder runs
+// beside.
+TEST(Recorder, PushingWatchingAndWritingThreadsDoNotDisturbEachOther) {
+  const TestFolder folder;
+  Recorder recorder(folder / "a.h5", sample_description(), 256);
+  Recorder other(folder / "b.h5", sample_description(), 256);
+  std::atomic<std::uint64_t> refused{0};
+  std::thread haptic([&] {
+    for (int tick = 0; tick < 20000; ++tick) {
+      if (!recorder.push(sample_record(tick))) refused.fetch_add(1);
+      if (tick % 50 == 0) std::this_thread::sleep_for(std::chrono::microseconds(300));
+    }
+  });
+  std::uint64_t seen = 0;
+  for (int tick = 0; tick < 5000; ++tick) {
+    other.push_waiting(sample_record(tick));
+    EXPECT_GE(recorder.dropped(), seen);
+    seen = recorder.dropped();
+    EXPECT_FALSE(recorder.failed());
+  }
+  haptic.join();
+  recorder.close();
+  other.close();
+  const Recording read = read_recording(folder / "a.h5");
+  EXPECT_EQ(read.records.size() + read.dropped, 20000u);
+  EXPECT_EQ(read.dropped, refused.load());
+  for (std::size_t n = 1; n < read.records.size(); ++n) {
+    ASSERT_LT(read.records[n - 1].time_s, read.records[n].time_s);
+  }
+  EXPECT_EQ(read_recording(folder / "b.h5").records.size(), 5000u);
+}
+
+TEST(Recorder, WithoutCloseAnUnfinishedRecordingIsLeft) {
+  const TestFolder folder;
+  {
+    Recorder recorder(folder / "run.h5", sample_description());
+    for (int tick = 0; tick < 100; ++tick) recorder.push_waiting(sample_record(tick));
+  }
+  EXPECT_FALSE(fs::exists(folder / "run.h5"));
+  const Recording read = read_recording(unfinished_recording_path(folder / "run.h5"));
+  EXPECT_FALSE(read.complete);
+  EXPECT_EQ(read.records.size(), 100u);
+}
+
+TEST(Recorder, AFolderThatIsMissingIsNamed) {
+  const TestFolder folder;
+  try {
+    Recorder recorder(folder / "none/run.h5", sample_description());
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("none/run.part.h5"), std::string::npos) << error.what();
+  }
+}
+
+TEST(Recorder, KeysAndNamesThatCannotBeStoredAreRefused) {
+  const TestFolder folder;
+  for (const char* key : {"", "x.unit", "twice"}) {
+    RunDescription description = sample_description();
+    description.settings = {{"twice", 1.0, ""}, {key, 2.0, ""}};
+    EXPECT_THROW(Recorder(folder / "run.h5", description), std::invalid_argument) << key;
+  }
+  EXPECT_TRUE(fs::is_empty(folder.path()));
+  Recorder recorder(folder / "run.h5", sample_description());
+  recorder.add_picture("before", {1});
+  EXPECT_THROW(recorder.add_picture("before", {1}), std::invalid_argument);
+  EXPECT_THROW(recorder.add_picture("../x", {1}), std::invalid_argument);
+}
+
+// A limit to the size of files stands in for a full disk; in a child, since it cannot be lifted again.
+TEST(Recorder, AFullDiskIsReportedAndLeavesNoFinishedName) {
+  const TestFolder folder;
+  const pid_t child = ::fork();
+  if (child == 0) {
+    std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit limit{300000, 300000};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    auto* recorder = new Recorder(folder / "run.h5", sample_description(), 256);
+    bool told = false;
+    try {
+      for (int tick = 0; tick < 20000; ++tick) recorder->push_waiting(sample_record(tick));
+    } catch (const InputError& error) {
+      told = std::string(error.what()).find("is the disk full?") != std::string::npos;
+    }
+    bool told_at_close = false;
+    try {
+      recorder->close();
+    } catch (const InputError&) {
+      told_at_close = true;
+    }
+    ::_exit(told && told_at_close && recorder->failed() ? 0 : 1);
+  }
+  int status = -1;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
+  EXPECT_FALSE(fs::exists(folder / "run.h5"));
+}
+
+}  // namespace
+}  // namespace osteomill

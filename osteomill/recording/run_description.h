@@ -1,0 +1,56 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "osteomill/geometry/pose.h"
+#include "osteomill/haptics/algorithm_id.h"
+#include "osteomill/tool/milling_tool.h"
+
+namespace osteomill {
+
+/// The two parts of the test of section 8.2. What was recorded outside that test is `milling`.
+enum class RunPhase : unsigned char { milling, holding };
+
+inline constexpr std::array<RunPhase, 2> kAllPhases{RunPhase::milling, RunPhase::holding};
+
+/// As written in files: "milling", "holding".
+std::string_view name_of(RunPhase phase);
+std::optional<RunPhase> phase_named(std::string_view name);
+
+/// One further setting of a run. `unit` is empty for a pure number, a choice or a name.
+struct RunSetting {
+  std::string key;
+  std::variant<double, std::string> value;
+  std::string unit;
+  friend bool operator==(const RunSetting&, const RunSetting&) = default;
+};
+
+/// The key of the further setting that holds the command by which the run can be repeated (reports show it).
+inline constexpr std::string_view kCommandLineKey = "command_line";
+
+/// What a recording says of itself: enough to know what was run and to run it again.
+struct RunDescription {
+  std::string program_version;
+  /// The scan as the user named it, or what the built-in tooth is called.
+  std::string scan_name;
+  std::array<int, 3> dims{0, 0, 0};
+  Vec3 spacing_mm = Vec3::Ones();
+  /// In the scan's own unit of density.
+  double isovalue = 0;
+  MillingTool tool;
+  AlgorithmId algorithm = AlgorithmId::line_proxy;
+  Mode mode = Mode::steady;
+  RunPhase phase = RunPhase::milling;
+  std::uint64_t seed = 0;
+  double tick_period_s = 0.001;
+  /// Everything else that was set, in the order in which people should read it; every key once.
+  std::vector<RunSetting> settings;
+};
+
+}  // namespace osteomill
