@@ -1,12 +1,11 @@
 #include "app/config_file.h"
 
-#include <fmt/core.h>
-
-#include <CLI/Error.hpp>
-#include <toml++/toml.h>
-
 #include <filesystem>
 #include <vector>
+
+#include <CLI/Error.hpp>
+#include <fmt/core.h>
+#include <toml++/toml.h>
 
 #include "osteomill/files/input_error.h"
 
@@ -17,7 +16,8 @@ namespace {
 constexpr const char* kConfigOption = "--config";
 
 // What the command line would have said: one string a value.
-std::vector<std::string> option_values(const toml::node& value, const std::string& file, const std::string& key) {
+std::vector<std::string> option_values(const toml::node& value, const std::string& file,
+                                       const std::string& key) {
   std::vector<std::string> values;
   const auto take = [&](const toml::node& node) {
     if (const auto text = node.value_exact<std::string>()) {
@@ -29,8 +29,9 @@ std::vector<std::string> option_values(const toml::node& value, const std::strin
     } else if (const auto flag = node.value_exact<bool>()) {
       values.push_back(*flag ? "true" : "false");
     } else {
-      throw InputError(file, fmt::format("line {}: {} takes a text, a number, true or false, or a list of them",
-                                         node.source().begin.line, key));
+      throw InputError(file,
+                       fmt::format("line {}: {} takes a text, a number, true or false, or a list of them",
+                                   node.source().begin.line, key));
     }
   };
   if (const toml::array* list = value.as_array()) {

@@ -1,17 +1,18 @@
 #pragma once
 
-#include <CLI/App.hpp>
 #include <string>
+
+#include <CLI/App.hpp>
 
 namespace osteomill::app {
 
-/// Adds `--config FILE.toml` to a command: each of its long options is also a key of the file, without the dashes.
-/// The command line wins over the file.
+/// Adds `--config FILE.toml` to a command: each of its long options is also a key of the file, without the
+/// dashes. The command line wins over the file.
 void add_config_option(CLI::App& command);
 
-/// Gives the options that the command line left out what the file says. Call it after parsing, before the command.
-/// Throws InputError naming the file, and the line where there is one, for a file that is not there, is not TOML, or
-/// has a key or value that the command does not know.
+/// Gives the options that the command line left out what the file says. Call it after parsing, before the
+/// command. Throws InputError naming the file, and the line where there is one, for a file that is not there,
+/// is not TOML, or has a key or value that the command does not know.
 void apply_config_file(CLI::App& command);
 
 }  // namespace osteomill::app

@@ -1,12 +1,12 @@
-#include <fmt/core.h>
-
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
 #include <stdexcept>
 
 #include "app/commands.h"
 #include "app/config_file.h"
+#include <CLI/CLI.hpp>
+#include <fmt/core.h>
+
 #include "osteomill/files/input_error.h"
 
 namespace {

@@ -1,11 +1,11 @@
 #include "app/milling_options.h"
 
-#include <CLI/Option.hpp>
-#include <CLI/Validators.hpp>
 #include <cmath>
 #include <functional>
 
 #include "app/config_file.h"
+#include <CLI/Option.hpp>
+#include <CLI/Validators.hpp>
 
 namespace osteomill::app {
 

@@ -1,9 +1,10 @@
 #pragma once
 
-#include <CLI/App.hpp>
 #include <cstdint>
 #include <string>
 #include <vector>
+
+#include <CLI/App.hpp>
 
 #include "osteomill/geometry/wrench.h"
 #include "osteomill/haptics/haptic_settings.h"

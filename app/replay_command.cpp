@@ -1,6 +1,3 @@
-#include <fmt/core.h>
-
-#include <CLI/Validators.hpp>
 #include <memory>
 #include <string>
 #include <vector>
@@ -10,9 +7,12 @@
 #include "app/milling_options.h"
 #include "app/progress.h"
 #include "app/scan_options.h"
+#include <CLI/Validators.hpp>
+#include <fmt/core.h>
+
 #include "osteomill/device/trajectory.h"
 #include "osteomill/haptics/make_algorithm.h"
-#include "osteomill/recording/log_csv.h"
+#include "osteomill/recording/write_csv.h"
 #include "osteomill/session/replay.h"
 #include "osteomill/volume/densities.h"
 
@@ -44,7 +44,7 @@ void run_replay(const ReplayOptions& options) {
     }
   });
   end_progress();
-  write_log_csv(options.out, log);
+  write_csv(options.out, log);
   fmt::print("{}\n", options.out);
 }
 
@@ -52,7 +52,8 @@ void run_replay(const ReplayOptions& options) {
 
 void add_replay_command(CLI::App& program) {
   auto options = std::make_shared<ReplayOptions>();
-  CLI::App* command = program.add_subcommand("replay", "Drive one algorithm along a trajectory and log every tick");
+  CLI::App* command =
+      program.add_subcommand("replay", "Drive one algorithm along a trajectory and log every tick");
   command->add_option("trajectory", options->trajectory, "CSV: time_s,x_mm,y_mm,z_mm,qw,qx,qy,qz,milling")
       ->required();
   add_scan_options(*command, options->scan);

@@ -1,11 +1,11 @@
 #include "app/scan_options.h"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <utility>
+
+#include <fmt/core.h>
 
 #include "osteomill/ct/read_scan.h"
 #include "osteomill/files/input_error.h"

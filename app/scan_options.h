@@ -1,8 +1,9 @@
 #pragma once
 
-#include <CLI/App.hpp>
 #include <optional>
 #include <string>
+
+#include <CLI/App.hpp>
 
 #include "osteomill/volume/volume.h"
 
@@ -26,8 +27,8 @@ struct LoadedBone {
   std::string name;
 };
 
-/// Reads the scan; its warnings, and an isovalue that had to be suggested, go to standard error as one line each.
-/// Throws InputError where the scan is at fault, or no voxel lies above the isovalue or none below it.
+/// Reads the scan; its warnings, and an isovalue that had to be suggested, go to standard error as one line
+/// each. Throws InputError where the scan is at fault, or no voxel lies above the isovalue or none below it.
 LoadedBone load_bone(const ScanOptions& options);
 
 }  // namespace osteomill::app

@@ -1,11 +1,12 @@
-// The library without the program: a ball of bone, a tool pushed into it, and the wrench of all three algorithms.
-
-#include <osteomill/haptics/make_algorithm.h>
+// The library without the program: a ball of bone, a tool pushed into it, and the wrench of all three
+// algorithms.
 
 #include <algorithm>
 #include <cstdio>
 #include <utility>
 #include <vector>
+
+#include <osteomill/haptics/make_algorithm.h>
 
 namespace {
 

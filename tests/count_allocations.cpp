@@ -3,15 +3,17 @@
 #include <cerrno>
 #include <cstddef>
 
-// Stands in for the allocator and hands on to glibc's own. Sanitizers bring their own allocator, so there operator new
-// is counted alone.
+// Stands in for the allocator and hands on to glibc's own. Sanitizers bring their own allocator, so there
+// operator new is counted alone.
 
 namespace {
 thread_local long allocations = 0;
 }
 
 namespace osteomill::testing_support {
-long allocations_of_this_thread() { return allocations; }
+long allocations_of_this_thread() {
+  return allocations;
+}
 }  // namespace osteomill::testing_support
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -24,8 +26,12 @@ void* operator new(std::size_t size) {
   if (void* memory = std::malloc(size)) return memory;
   throw std::bad_alloc();
 }
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+void operator delete(void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
 
 #else
 

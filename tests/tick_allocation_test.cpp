@@ -1,17 +1,17 @@
-#include <gtest/gtest.h>
-
 #include <limits>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "tests/count_allocations.h"
+#include "tests/poses.h"
+#include "tests/shapes.h"
+#include <gtest/gtest.h>
+
 #include "osteomill/device/posed_device.h"
 #include "osteomill/haptics/make_algorithm.h"
 #include "osteomill/session/milling_session.h"
 #include "osteomill/volume/densities.h"
-#include "tests/count_allocations.h"
-#include "tests/poses.h"
-#include "tests/shapes.h"
 
 namespace osteomill {
 namespace {
@@ -31,7 +31,8 @@ struct Case {
 
 class TickAllocation : public ::testing::TestWithParam<Case> {};
 
-// Comes down, mills, leans the shaft on the edge; also a jump across the bone, a pose that is not finite, and a reset.
+// Comes down, mills, leans the shaft on the edge; also a jump across the bone, a pose that is not finite, and
+// a reset.
 TEST_P(TickAllocation, NoTickAllocates) {
   constexpr double kBallRadius_mm = 6;
   Volume volume = testing_support::shape_volume(testing_support::centred_cube(64, 0.25),
@@ -47,8 +48,8 @@ TEST_P(TickAllocation, NoTickAllocates) {
   double removed_mm3 = 0;
   const long before = allocations_of_this_thread();
   for (int n = 0; n < kTicks; ++n) {
-    Pose pose =
-        testing_support::down_and_lean(kBallRadius_mm, tool.burr_radius_mm, 2.0, static_cast<double>(n) / kTicks);
+    Pose pose = testing_support::down_and_lean(kBallRadius_mm, tool.burr_radius_mm, 2.0,
+                                               static_cast<double>(n) / kTicks);
     if (n == 2500) pose.position_mm.x() = std::numeric_limits<double>::quiet_NaN();
     if (n == 2600) pose.position_mm = {0, 0, -20};
     device.put(pose);
@@ -66,18 +67,18 @@ TEST_P(TickAllocation, NoTickAllocates) {
   EXPECT_GT(removed_mm3, 0.1);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    AllAlgorithms, TickAllocation,
-    ::testing::Values(Case{AlgorithmId::line_proxy, Mode::paper}, Case{AlgorithmId::line_proxy, Mode::steady},
-                      Case{AlgorithmId::surface_points, Mode::paper},
-                      Case{AlgorithmId::surface_points, Mode::steady},
-                      Case{AlgorithmId::point_shell, Mode::paper},
-                      Case{AlgorithmId::point_shell, Mode::steady}),
-    [](const auto& info) {
-      std::string name(name_of(info.param.algorithm));
-      name[name.find('-')] = '_';
-      return name + "_" + std::string(name_of(info.param.mode));
-    });
+INSTANTIATE_TEST_SUITE_P(AllAlgorithms, TickAllocation,
+                         ::testing::Values(Case{AlgorithmId::line_proxy, Mode::paper},
+                                           Case{AlgorithmId::line_proxy, Mode::steady},
+                                           Case{AlgorithmId::surface_points, Mode::paper},
+                                           Case{AlgorithmId::surface_points, Mode::steady},
+                                           Case{AlgorithmId::point_shell, Mode::paper},
+                                           Case{AlgorithmId::point_shell, Mode::steady}),
+                         [](const auto& info) {
+                           std::string name(name_of(info.param.algorithm));
+                           name[name.find('-')] = '_';
+                           return name + "_" + std::string(name_of(info.param.mode));
+                         });
 
 }  // namespace
 }  // namespace osteomill

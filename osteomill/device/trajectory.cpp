@@ -1,7 +1,5 @@
 #include "osteomill/device/trajectory.h"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -11,13 +9,15 @@
 #include <string>
 #include <string_view>
 
+#include <fmt/core.h>
+
 #include "osteomill/files/input_error.h"
 
 namespace osteomill {
 
 namespace {
 
-constexpr std::array<std::string_view, 9> kColumns{"time_s", "x_mm", "y_mm", "z_mm", "qw",
+constexpr std::array<std::string_view, 9> kColumns{"time_s", "x_mm", "y_mm", "z_mm",   "qw",
                                                    "qx",     "qy",   "qz",   "milling"};
 constexpr double kUnitTolerance = 1e-3;
 // A longer line is no row of numbers: a binary file, most likely.

@@ -14,10 +14,10 @@ struct TrajectoryPoint {
   bool milling = false;
 };
 
-/// Reads CSV with the columns time_s,x_mm,y_mm,z_mm,qw,qx,qy,qz,milling (in any order; others are passed over), one
-/// row a tick. Throws InputError naming the file and the row for a missing column, a value that is not a finite number,
-/// a quaternion that is not of unit length within 1e-3, milling other than 0 or 1, a time that does not go forward, a
-/// row with too few values, or no row at all.
+/// Reads CSV with the columns time_s,x_mm,y_mm,z_mm,qw,qx,qy,qz,milling (in any order; others are passed
+/// over), one row a tick. Throws InputError naming the file and the row for a missing column, a value that is
+/// not a finite number, a quaternion that is not of unit length within 1e-3, milling other than 0 or 1, a
+/// time that does not go forward, a row with too few values, or no row at all.
 std::vector<TrajectoryPoint> read_trajectory(const std::filesystem::path& path);
 
 }  // namespace osteomill

@@ -1,8 +1,8 @@
 #include "osteomill/device/trajectory.h"
 
-#include <gtest/gtest.h>
-
 #include <fstream>
+
+#include <gtest/gtest.h>
 
 #include "osteomill/files/input_error.h"
 

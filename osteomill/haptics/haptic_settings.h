@@ -1,6 +1,8 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "osteomill/haptics/algorithm_id.h"
 
@@ -20,6 +22,14 @@ struct HapticSettings {
   std::optional<int> slices;
   /// Coarseness of the shell of 3: 1 takes every surface voxel.
   std::optional<int> shell_scale;
+  /// Settings of one algorithm by its own names, after all others: the switches that tell `steady` from
+  /// `paper`.
+  struct Named {
+    AlgorithmId algorithm;
+    std::string name;
+    double value;
+  };
+  std::vector<Named> named;
 };
 
 }  // namespace osteomill

@@ -13,13 +13,14 @@ namespace osteomill {
 /// The wrench goes out before bone is removed, so that milling cannot delay the hand.
 class MillingSession {
  public:
-  /// Takes the bone over and prepares the algorithm; may allocate. Throws std::invalid_argument as `prepare` does.
+  /// Takes the bone over and prepares the algorithm; may allocate. Throws std::invalid_argument as `prepare`
+  /// does.
   MillingSession(Volume volume, const MillingTool& tool, std::unique_ptr<HapticAlgorithm> algorithm,
                  const BoneDensities& densities, const MillingSettings& milling, const WrenchLimits& limits);
 
-  /// One haptic tick of `dt_s`, begun at `time_s`; bone is removed where `spindle_on`. A wrench that is not finite,
-  /// or a device pose that is not, sends zero and is recorded as the record's fault.
-  /// Real-time safe: no allocation, lock, log, exception or system call.
+  /// One haptic tick of `dt_s`, begun at `time_s`; bone is removed where `spindle_on`. A wrench that is not
+  /// finite, or a device pose that is not, sends zero and is recorded as the record's fault. Real-time safe:
+  /// no allocation, lock, log, exception or system call.
   TickRecord tick(Device& device, double time_s, double dt_s, bool spindle_on);
 
   const Volume& volume() const { return *volume_; }

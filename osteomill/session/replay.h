@@ -8,8 +8,8 @@
 
 namespace osteomill {
 
-/// Runs the session along the trajectory, a tick a row, each as long as the time since the row before (the first as
-/// long as the second, or 1 ms where it is alone); calls `record` after each tick.
+/// Runs the session along the trajectory, a tick a row, each as long as the time since the row before (the
+/// first as long as the second, or 1 ms where it is alone); calls `record` after each tick.
 void replay(MillingSession& session, const std::vector<TrajectoryPoint>& trajectory,
             const std::function<void(const TickRecord&)>& record);
 

@@ -29,5 +29,5 @@ diff <(untimed a/summary.csv) <(untimed c/summary.csv) || fault "the same seed g
 [ "$(wc -l <d/summary.csv)" -eq 3 ] || fault "one algorithm, two phases"
 diff <(untimed a/summary.csv | grep point-shell) <(untimed d/summary.csv | grep point-shell) >/dev/null &&
   fault "another seed gave the same numbers"
-find . -name '*.writing-*' -o -name '*.part' | grep -q . && fault "left a half-written file"
+find . -name '*.writing-*' -o -name '*.part.*' | grep -q . && fault "left a half-written file"
 exit 0

@@ -34,6 +34,6 @@ if [ "$exit_expected" -eq 1 ] && [ "$(wc -l <.stderr)" -ne 1 ]; then
   fault "a fault of the input is one line"
 fi
 # A command that failed leaves nothing half-written.
-if [ "$exit_expected" -ne 0 ] && find . -name '*.writing-*' -o -name '*.part' | grep -q .; then
+if [ "$exit_expected" -ne 0 ] && find . -name '*.writing-*' -o -name '*.part.*' | grep -q .; then
   fault "left a half-written file"
 fi
