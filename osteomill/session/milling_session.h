@@ -24,6 +24,7 @@ class MillingSession {
   TickRecord tick(Device& device, double time_s, double dt_s, bool spindle_on);
 
   const Volume& volume() const { return *volume_; }
+  const HapticAlgorithm& algorithm() const { return *algorithm_; }
 
  private:
   HapticStep step_safely(const Pose& X_WD, double dt_s, SafeWrench& safe);

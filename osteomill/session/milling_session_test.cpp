@@ -1,0 +1,106 @@
+#include "osteomill/session/milling_session.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <utility>
+
+#include "osteomill/device/posed_device.h"
+#include "tests/shapes.h"
+
+namespace osteomill {
+namespace {
+
+// An algorithm that says what it is told to, and what it was told.
+class ScriptedAlgorithm : public HapticAlgorithm {
+ public:
+  HapticStep next;
+  int resets = 0;
+  std::vector<VolumeChange> changes;
+
+  void prepare(const Scene&) override {}
+  HapticStep step(const Pose& X_WD, double) override {
+    next.X_WT = X_WD;
+    return next;
+  }
+  void volume_changed(const VolumeChange& change) override { changes.push_back(change); }
+  void reset() override { ++resets; }
+  int sample_point_count() const override { return 1; }
+  std::vector<SettingValue> settings() const override { return {}; }
+};
+
+class MillingSessionTest : public ::testing::Test {
+ protected:
+  MillingSessionTest() {
+    Volume bone = testing_support::shape_volume(testing_support::centred_cube(40, 0.25),
+                                                testing_support::plane(Vec3::Zero(), Vec3::UnitZ()));
+    auto algorithm = std::make_unique<ScriptedAlgorithm>();
+    algorithm_ = algorithm.get();
+    session_ = std::make_unique<MillingSession>(std::move(bone), MillingTool{}, std::move(algorithm),
+                                                BoneDensities{0, 1000}, MillingSettings{}, WrenchLimits{20, 500});
+    device_.put({{0, 0, 1.0}, Quat::Identity()});
+  }
+  TickRecord tick(bool spindle_on = true) { return session_->tick(device_, time_s_ += 1e-3, 1e-3, spindle_on); }
+
+  ScriptedAlgorithm* algorithm_ = nullptr;
+  std::unique_ptr<MillingSession> session_;
+  PosedDevice device_;
+  double time_s_ = 0;
+};
+
+TEST_F(MillingSessionTest, TheDeviceGetsWhatIsRecorded) {
+  algorithm_->next.wrench = {{0, 0, 3}, {0, 40, 0}};
+  const TickRecord record = tick();
+  EXPECT_EQ(device_.sent().force_N, Vec3(0, 0, 3));
+  EXPECT_EQ(record.wrench.force_N, Vec3(0, 0, 3));
+  EXPECT_EQ(record.wrench.torque_Nmm, Vec3(0, 40, 0));
+  EXPECT_EQ(record.fault, WrenchFault::none);
+}
+
+TEST_F(MillingSessionTest, TooMuchIsClampedAndSaid) {
+  algorithm_->next.wrench = {{0, 0, 300}, {0, 40, 0}};
+  EXPECT_EQ(tick().fault, WrenchFault::force_clamped);
+  EXPECT_TRUE(device_.sent().force_N.isApprox(Vec3(0, 0, 20)));
+}
+
+TEST_F(MillingSessionTest, AWrenchThatIsNotFiniteIsZeroAndTheContactsAreForgotten) {
+  algorithm_->next.wrench.torque_Nmm.y() = std::numeric_limits<double>::quiet_NaN();
+  algorithm_->next.burr_force_N = 5;
+  const TickRecord record = tick();
+  EXPECT_EQ(record.fault, WrenchFault::not_finite);
+  EXPECT_EQ(device_.sent().force_N, Vec3::Zero());
+  EXPECT_EQ(device_.sent().torque_Nmm, Vec3::Zero());
+  EXPECT_EQ(algorithm_->resets, 1);
+  EXPECT_EQ(record.removed_mm3, 0);
+  algorithm_->next.wrench.torque_Nmm.setZero();
+  EXPECT_EQ(tick().fault, WrenchFault::none);
+}
+
+TEST_F(MillingSessionTest, ABurrForceThatIsNotFiniteIsAFaultToo) {
+  algorithm_->next.burr_force_N = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(tick().fault, WrenchFault::not_finite);
+}
+
+TEST_F(MillingSessionTest, ADeviceWithoutAPoseGetsNothing) {
+  algorithm_->next.wrench.force_N = {0, 0, 3};
+  tick();
+  device_.put({{0, std::numeric_limits<double>::quiet_NaN(), 0}, Quat::Identity()});
+  const TickRecord record = tick();
+  EXPECT_EQ(record.fault, WrenchFault::pose_not_finite);
+  EXPECT_EQ(device_.sent().force_N, Vec3::Zero());
+  EXPECT_EQ(record.X_WT.position_mm, Vec3(0, 0, 1.0)) << "the tool stays where it was last shown";
+}
+
+TEST_F(MillingSessionTest, BoneGoesWhileTheSpindleTurnsAndTheAlgorithmHearsOfIt) {
+  algorithm_->next.burr_force_N = 2;
+  EXPECT_EQ(tick(false).removed_mm3, 0);
+  EXPECT_TRUE(algorithm_->changes.empty());
+  double removed_mm3 = 0;
+  for (int n = 0; n < 100; ++n) removed_mm3 = tick().removed_mm3;
+  // kappa * F * t = 2 * 2 * 0.1
+  EXPECT_NEAR(removed_mm3, 0.4, 0.01);
+  EXPECT_FALSE(algorithm_->changes.empty());
+}
+
+}  // namespace
+}  // namespace osteomill
