@@ -1,0 +1,24 @@
+#include "osteomill/haptics/surface_points/vertex_spring.h"
+
+#include "osteomill/volume/isosurface.h"
+#include "osteomill/volume/sampling.h"
+
+namespace osteomill {
+
+double interpolated_share(double vertex_density, double free_density, double isovalue) {
+  return (vertex_density - isovalue) / (vertex_density - free_density);
+}
+
+Vec3 interpolated_spring(const Volume& volume, const Vec3& vertex_W, const Vec3& free_W) {
+  const double vertex_density = density_at(volume.grid(), vertex_W);
+  if (!(vertex_density > volume.isovalue())) return Vec3::Zero();
+  const double free_density = density_at(volume.grid(), free_W);
+  return interpolated_share(vertex_density, free_density, volume.isovalue()) * (free_W - vertex_W);
+}
+
+Vec3 marched_spring(const Volume& volume, const Vec3& vertex_W, const Vec3& free_W) {
+  const std::optional<Vec3> crossing = first_crossing(volume, free_W, vertex_W);
+  return crossing ? Vec3(*crossing - vertex_W) : Vec3(Vec3::Zero());
+}
+
+}  // namespace osteomill
