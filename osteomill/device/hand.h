@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+
+#include "osteomill/geometry/pose.h"
+#include "osteomill/geometry/twist.h"
+#include "osteomill/geometry/wrench.h"
+
+namespace osteomill {
+
+/// A hand that holds the handle: a spring and a damper towards a target pose, with a limit to how hard it
+/// pushes. About rotation everything is the translational value times the square of one lever (31.6 mm, 1e-3
+/// m^2), which is also the handle's inertia over its mass: both motions then have the same frequency and
+/// damping ratio.
+struct HandSettings {
+  /// 500 N/m.
+  double stiffness_N_per_mm = 0.5;
+  /// 5 N s/m.
+  double damping_Ns_per_mm = 0.005;
+  /// 0.5 N m/rad.
+  double torsional_stiffness_Nmm_per_rad = 500.0;
+  /// 0.005 N m s/rad: the same damping ratio as along a line (0.2 with the default handle).
+  double torsional_damping_Nmms_per_rad = 5.0;
+  /// The most that the spring gives, whatever its stretch. The damper is not limited.
+  double push_N = 1.5;
+  /// The torsional spring gives at most push_N at this lever.
+  double push_lever_mm = 10.0;
+  /// Root mean square of the tremor along each axis.
+  double tremor_mm = 0.02;
+};
+
+/// Throws std::invalid_argument, naming it, where a setting is negative or not finite.
+void require_valid(const HandSettings& settings);
+
+/// The most that the torsional spring gives.
+inline double torque_limit_Nmm(const HandSettings& settings) {
+  return settings.push_N * settings.push_lever_mm;
+}
+
+/// What the hand does to the handle, in W about the burr's centre: springs towards the target, each no
+/// stronger than its limit, and dampers against the motion relative to the target. Safe in the haptic tick.
+Wrench hand_wrench(const HandSettings& hand, const Pose& X_W_target, const Twist& target_velocity,
+                   const Pose& X_WD, const Twist& velocity);
+
+/// A hand drawn from the range of real ones, for studies over many: stiffness uniform from 135 to 1000 N/m,
+/// damping from 5 to 10 N s/m, rotation by the same lever as above. One arm was published in 2015 with 135
+/// N/m, 6.5 N s/m and 0.55 kg; firm grips reach about 1000 N/m. Push and tremor stay at their defaults. The
+/// same seed gives the same hand.
+HandSettings random_hand(std::uint64_t seed);
+
+}  // namespace osteomill

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <optional>
+
+#include "osteomill/tool/milling_tool.h"
+#include "osteomill/volume/volume.h"
+
+namespace osteomill {
+
+/// How far above the bone the burr's surface is when a script begins.
+inline constexpr double kStartAbove_mm = 3.0;
+
+/// Where and which way the tool enters the bone.
+struct MillingEntry {
+  /// On the surface of the bone.
+  Vec3 point_W = Vec3::Zero();
+  /// Unit, into the bone; the shaft points against it.
+  Vec3 direction_W = -Vec3::UnitZ();
+  /// Unit, across the direction: towards the highest rim, against which the shaft is leant.
+  Vec3 lateral_W = Vec3::UnitX();
+};
+
+/// Where to enter the bone. `direction` (any length) is -z of W where it is not given.
+///
+/// `entry` given: the first bone met from there along the direction, or, where `entry` lies in bone, the
+/// point at which the way back leaves it. Not given: the top of the bone, that is where the direction meets
+/// it first: the middle of all bone within 4 mm of its highest voxel, and from above it the first bone along
+/// the direction. Where there is none (the middle of a ring), or the tool does not fit above it, the highest
+/// voxel itself.
+///
+/// Throws InputError: no bone in the scan; an entry or direction that is not finite, a direction without
+/// length; a line from a given entry that misses the bone; bone in the way of the tool above a given entry.
+/// Not for the tick: it goes through every voxel.
+MillingEntry place_entry(const Volume& volume, const MillingTool& tool,
+                         const std::optional<Vec3>& entry = std::nullopt,
+                         const std::optional<Vec3>& direction = std::nullopt);
+
+/// The tool with its shaft against the entry's direction, its burr's surface `above_mm` above the entry.
+Pose pose_above(const MillingEntry& entry, const MillingTool& tool, double above_mm);
+
+}  // namespace osteomill
