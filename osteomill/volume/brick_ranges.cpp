@@ -6,7 +6,8 @@ namespace osteomill {
 
 namespace {
 
-// The bricks whose range counts voxel coordinate `v`: its own, and the one below where `v` is the layer between.
+// The bricks whose range counts voxel coordinate `v`: its own, and the one below where `v` is the layer
+// between.
 struct BrickSpan {
   int first;
   int last;
@@ -30,9 +31,9 @@ BrickRanges::BrickRanges(const DensityGrid& grid) {
 
 BrickRanges::Range BrickRanges::range_of(const DensityGrid& grid, int bi, int bj, int bk) {
   const VoxelIndex first{bi * kBrickVoxels, bj * kBrickVoxels, bk * kBrickVoxels};
-  const VoxelBox box = VoxelBox{first,
-                                {first.i + kBrickVoxels, first.j + kBrickVoxels, first.k + kBrickVoxels}}
-                           .intersected(grid.geometry().all_voxels());
+  const VoxelBox box =
+      VoxelBox{first, {first.i + kBrickVoxels, first.j + kBrickVoxels, first.k + kBrickVoxels}}.intersected(
+          grid.geometry().all_voxels());
   Range range{grid[first], grid[first]};
   for (int k = box.first.k; k <= box.last.k; ++k) {
     for (int j = box.first.j; j <= box.last.j; ++j) {
@@ -54,6 +55,26 @@ void BrickRanges::lower(const VoxelIndex& v, float density) {
         range.least = std::min(range.least, density);
       }
     }
+  }
+}
+
+void BrickRanges::lower_row(int j, int k, const int* columns, const float* densities, std::size_t count) {
+  const BrickSpan js = bricks_counting(j);
+  const BrickSpan ks = bricks_counting(k);
+  const auto lower_column = [&](int bi, float density) {
+    for (int bk = ks.first; bk <= ks.last; ++bk) {
+      for (int bj = js.first; bj <= js.last; ++bj) {
+        Range& range = ranges_[index(bi, bj, bk)];
+        range.least = std::min(range.least, density);
+      }
+    }
+  };
+  for (std::size_t n = 0; n < count;) {
+    const int bi = columns[n] / kBrickVoxels;
+    if (columns[n] % kBrickVoxels == 0 && bi > 0) lower_column(bi - 1, densities[n]);
+    float least = densities[n];
+    for (++n; n < count && columns[n] < (bi + 1) * kBrickVoxels; ++n) least = std::min(least, densities[n]);
+    lower_column(bi, least);
   }
 }
 

@@ -7,9 +7,9 @@
 
 namespace osteomill {
 
-/// The least and greatest density in bricks of 8 x 8 x 8 voxels, each brick counted with one more layer of voxels
-/// at its upper sides, so that it speaks of every trilinear cell that begins in it.
-/// Ranges hold every density; after `lower` the upper end may be too wide until `refresh`.
+/// The least and greatest density in bricks of 8 x 8 x 8 voxels, each brick counted with one more layer of
+/// voxels at its upper sides, so that it speaks of every trilinear cell that begins in it. Ranges hold every
+/// density; after `lower` the upper end may be too wide until `refresh`.
 class BrickRanges {
  public:
   static constexpr int kBrickVoxels = 8;
@@ -31,6 +31,8 @@ class BrickRanges {
 
   /// Takes a new, lower density of one voxel in. Safe in the haptic tick.
   void lower(const VoxelIndex& v, float density);
+  /// The same for `count` voxels of one row, whose columns ascend. Safe in the haptic tick.
+  void lower_row(int j, int k, const int* columns, const float* densities, std::size_t count);
   /// Makes the ranges of all bricks that touch `box` exact again.
   void refresh(const DensityGrid& grid, const VoxelBox& box);
 

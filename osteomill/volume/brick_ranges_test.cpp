@@ -1,8 +1,8 @@
 #include "osteomill/volume/brick_ranges.h"
 
-#include <gtest/gtest.h>
-
 #include <random>
+
+#include <gtest/gtest.h>
 
 #include "osteomill/volume/volume.h"
 
@@ -46,6 +46,22 @@ TEST(BrickRanges, AreTheExtremesOfEachBrickAndItsUpperNeighbours) {
   const BrickRanges bricks(grid);
   EXPECT_EQ(bricks.dims(), (std::array<int, 3>{3, 1, 4}));
   expect_ranges_hold(bricks, grid, true);
+}
+
+TEST(BrickRanges, TakeAWholeRowInAsOneByOne) {
+  Volume volume(random_grid(), 500);
+  const std::vector<int> columns{0, 1, 7, 8, 11, 15, 16, 18};
+  for (const int j : {0, 5}) {
+    for (const int k : {0, 7, 8, 24}) {
+      std::vector<float> densities;
+      for (const int i : columns) densities.push_back(-2000.0f - static_cast<float>(i * j + k));
+      volume.lower_row(j, k, columns.data(), densities.data(), columns.size());
+      for (std::size_t n = 0; n < columns.size(); ++n) {
+        EXPECT_EQ((volume.grid()[{columns[n], j, k}]), densities[n]);
+      }
+      expect_ranges_hold(volume.bricks(), volume.grid(), false);
+    }
+  }
 }
 
 TEST(BrickRanges, HoldWhileDensitiesFallAndAreExactAfterARefresh) {
