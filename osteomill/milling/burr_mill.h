@@ -1,9 +1,9 @@
 #pragma once
 
-#include <cstddef>
 #include <vector>
 
 #include "osteomill/geometry/pose.h"
+#include "osteomill/milling/burr_reach.h"
 #include "osteomill/volume/densities.h"
 #include "osteomill/volume/volume.h"
 
@@ -44,44 +44,28 @@ class BurrMill {
 
   /// `burr_centre_W` is the simulated burr's centre, `burr_force_N` >= 0. Lowers densities of `volume`, whose
   /// geometry is the one given at construction, never below the surroundings. Takes nothing where the force
-  /// or the centre is not finite. Safe in the haptic tick; time grows with the voxels overlapped.
+  /// or the centre is not finite. Safe in the haptic tick; time grows with the voxels overlapped. From step
+  /// to step only voxels new in reach are searched for bone, so between two calls of `reset` nobody may raise
+  /// densities of the same volume.
   MillingStep step(Volume& volume, const Vec3& burr_centre_W, double burr_force_N, double dt_s);
-  /// Forgets the carry.
+  /// Forgets the carry and what was in reach.
   void reset();
   /// What was pressed for and not yet cut, mm^3 of reference density.
   double carry_mm3() const { return carry_mm3_; }
 
  private:
-  /// A voxel that the burr overlaps and that still holds something.
-  struct Overlap {
-    int i;
-    float depth_mm;
-    float density_left;
-  };
-  /// The overlaps in one row of voxels: [begin, end) of `overlaps_`.
-  struct Row {
-    int j;
-    int k;
-    std::size_t begin;
-    std::size_t end;
-  };
-
-  void find_overlaps(const Volume& volume, const Vec3& burr_centre_W);
-  void add_row(const float* row_densities, int first_i, int last_i, int j, int k, const Vec3& centre_mm);
   double drop_per_depth(double density_budget) const;
-  MillingStep lower_overlaps(Volume& volume, double drop_per_depth) const;
+  MillingStep lower_overlaps(Volume& volume, double drop_per_depth);
 
-  GridGeometry geometry_;
-  double cutting_radius_mm_;
   double mm3_per_density_;
   double removal_rate_mm3_per_Ns_;
   double greatest_carry_mm3_;
   float floor_density_;
+  BurrReach reach_;
+  std::vector<float> lowered_;  // the new densities of what is in reach
 
   double carry_mm3_ = 0;
   double force_free_s_ = 0;
-  std::vector<Overlap> overlaps_;
-  std::vector<Row> rows_;
 };
 
 }  // namespace osteomill

@@ -58,6 +58,26 @@ void BrickRanges::lower(const VoxelIndex& v, float density) {
   }
 }
 
+void BrickRanges::lower_row(int j, int k, const int* columns, const float* densities, std::size_t count) {
+  const BrickSpan js = bricks_counting(j);
+  const BrickSpan ks = bricks_counting(k);
+  const auto lower_column = [&](int bi, float density) {
+    for (int bk = ks.first; bk <= ks.last; ++bk) {
+      for (int bj = js.first; bj <= js.last; ++bj) {
+        Range& range = ranges_[index(bi, bj, bk)];
+        range.least = std::min(range.least, density);
+      }
+    }
+  };
+  for (std::size_t n = 0; n < count;) {
+    const int bi = columns[n] / kBrickVoxels;
+    if (columns[n] % kBrickVoxels == 0 && bi > 0) lower_column(bi - 1, densities[n]);
+    float least = densities[n];
+    for (++n; n < count && columns[n] < (bi + 1) * kBrickVoxels; ++n) least = std::min(least, densities[n]);
+    lower_column(bi, least);
+  }
+}
+
 void BrickRanges::refresh(const DensityGrid& grid, const VoxelBox& box) {
   const VoxelBox inside = box.intersected(grid.geometry().all_voxels());
   if (inside.empty()) return;

@@ -31,6 +31,8 @@ class BrickRanges {
 
   /// Takes a new, lower density of one voxel in. Safe in the haptic tick.
   void lower(const VoxelIndex& v, float density);
+  /// The same for `count` voxels of one row, whose columns ascend. Safe in the haptic tick.
+  void lower_row(int j, int k, const int* columns, const float* densities, std::size_t count);
   /// Makes the ranges of all bricks that touch `box` exact again.
   void refresh(const DensityGrid& grid, const VoxelBox& box);
 

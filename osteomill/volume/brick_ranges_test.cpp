@@ -48,6 +48,22 @@ TEST(BrickRanges, AreTheExtremesOfEachBrickAndItsUpperNeighbours) {
   expect_ranges_hold(bricks, grid, true);
 }
 
+TEST(BrickRanges, TakeAWholeRowInAsOneByOne) {
+  Volume volume(random_grid(), 500);
+  const std::vector<int> columns{0, 1, 7, 8, 11, 15, 16, 18};
+  for (const int j : {0, 5}) {
+    for (const int k : {0, 7, 8, 24}) {
+      std::vector<float> densities;
+      for (const int i : columns) densities.push_back(-2000.0f - static_cast<float>(i * j + k));
+      volume.lower_row(j, k, columns.data(), densities.data(), columns.size());
+      for (std::size_t n = 0; n < columns.size(); ++n) {
+        EXPECT_EQ((volume.grid()[{columns[n], j, k}]), densities[n]);
+      }
+      expect_ranges_hold(volume.bricks(), volume.grid(), false);
+    }
+  }
+}
+
 TEST(BrickRanges, HoldWhileDensitiesFallAndAreExactAfterARefresh) {
   Volume volume(random_grid(), 500);
   const VoxelBox box{{6, 2, 7}, {17, 7, 16}};
