@@ -1,15 +1,19 @@
 #pragma once
 
+#include <string>
+
 #include <CLI/App.hpp>
 
 namespace osteomill::app {
 
-/// Adds every command to the program; each runs when the command line has been parsed.
-void add_commands(CLI::App& program);
+/// Adds every command to the program; each runs when the command line has been parsed. `command_line` is how
+/// the program was called, for recordings to say.
+void add_commands(CLI::App& program, const std::string& command_line);
 
-void add_compare_command(CLI::App& program);
+void add_compare_command(CLI::App& program, const std::string& command_line);
 void add_info_command(CLI::App& program);
 void add_rates_command(CLI::App& program);
+void add_replay_command(CLI::App& program);
 void add_report_command(CLI::App& program);
 
 }  // namespace osteomill::app

@@ -2,8 +2,8 @@
 #include <exception>
 #include <stdexcept>
 
+#include "app/command_line.h"
 #include "app/commands.h"
-#include "app/config_file.h"
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
@@ -26,7 +26,7 @@ int main(int argc, char** argv) {
   CLI::App program("6-DOF haptic bone milling: three algorithms on a CT scan, measured", "osteomill");
   program.set_version_flag("--version", OSTEOMILL_VERSION);
   program.require_subcommand(1);
-  osteomill::app::add_commands(program);
+  osteomill::app::add_commands(program, osteomill::app::command_line_of(argc, argv));
   try {
     program.parse(argc, argv);
     return kDone;

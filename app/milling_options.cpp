@@ -1,28 +1,15 @@
 #include "app/milling_options.h"
 
-#include <cmath>
 #include <functional>
 
 #include "app/config_file.h"
+#include "app/positive_number.h"
 #include <CLI/Option.hpp>
 #include <CLI/Validators.hpp>
 
 namespace osteomill::app {
 
 namespace {
-
-const CLI::Validator kPositive(
-    [](std::string& text) {
-      double value = 0;
-      const bool good = CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value > 0;
-      return good ? std::string() : text + " is not a positive number";
-    },
-    "POSITIVE");
-
-template <typename T>
-void add_positive(CLI::App& command, const std::string& name, T& value, const std::string& what) {
-  command.add_option(name, value, what)->check(kPositive)->capture_default_str();
-}
 
 void add_mode(CLI::App& command, Mode& mode) {
   command

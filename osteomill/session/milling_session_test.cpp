@@ -1,12 +1,12 @@
 #include "osteomill/session/milling_session.h"
 
-#include <gtest/gtest.h>
-
 #include <limits>
 #include <utility>
 
-#include "osteomill/device/posed_device.h"
 #include "tests/shapes.h"
+#include <gtest/gtest.h>
+
+#include "osteomill/device/posed_device.h"
 
 namespace osteomill {
 namespace {
@@ -36,11 +36,14 @@ class MillingSessionTest : public ::testing::Test {
                                                 testing_support::plane(Vec3::Zero(), Vec3::UnitZ()));
     auto algorithm = std::make_unique<ScriptedAlgorithm>();
     algorithm_ = algorithm.get();
-    session_ = std::make_unique<MillingSession>(std::move(bone), MillingTool{}, std::move(algorithm),
-                                                BoneDensities{0, 1000}, MillingSettings{}, WrenchLimits{20, 500});
+    session_ =
+        std::make_unique<MillingSession>(std::move(bone), MillingTool{}, std::move(algorithm),
+                                         BoneDensities{0, 1000}, MillingSettings{}, WrenchLimits{20, 500});
     device_.put({{0, 0, 1.0}, Quat::Identity()});
   }
-  TickRecord tick(bool spindle_on = true) { return session_->tick(device_, time_s_ += 1e-3, 1e-3, spindle_on); }
+  TickRecord tick(bool spindle_on = true) {
+    return session_->tick(device_, time_s_ += 1e-3, 1e-3, spindle_on);
+  }
 
   ScriptedAlgorithm* algorithm_ = nullptr;
   std::unique_ptr<MillingSession> session_;

@@ -20,9 +20,9 @@ struct TrialSettings {
   bool spindle = true;
 };
 
-/// One algorithm in the test of section 8.2, in simulated time: a simulated hand mills a hole, leans the shaft on its
-/// edge, and then stands in it with the spindle off. The same settings give the same records on any machine, but for
-/// the compute times.
+/// One algorithm in the test of section 8.2, in simulated time: a simulated hand mills a hole, leans the
+/// shaft on its edge, and then stands in it with the spindle off. The same settings give the same records on
+/// any machine, but for the compute times.
 class MillingTrial {
  public:
   struct Tick {

@@ -1,9 +1,9 @@
 #include "osteomill/session/replay.h"
 
+#include "tests/shapes.h"
 #include <gtest/gtest.h>
 
 #include "osteomill/haptics/make_algorithm.h"
-#include "tests/shapes.h"
 
 namespace osteomill {
 namespace {
@@ -20,8 +20,8 @@ std::vector<TickRecord> replayed(bool milling) {
   Volume bone = testing_support::shape_volume(testing_support::centred_cube(40, 0.25),
                                               testing_support::plane(Vec3::Zero(), Vec3::UnitZ()));
   MillingSession session(std::move(bone), MillingTool{},
-                         make_algorithm(AlgorithmId::point_shell, {.mode = Mode::paper}), BoneDensities{0, 1000},
-                         MillingSettings{}, WrenchLimits{});
+                         make_algorithm(AlgorithmId::point_shell, {.mode = Mode::paper}),
+                         BoneDensities{0, 1000}, MillingSettings{}, WrenchLimits{});
   std::vector<TickRecord> log;
   replay(session, down_onto_the_plane(milling), [&](const TickRecord& record) { log.push_back(record); });
   return log;

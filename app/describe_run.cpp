@@ -1,0 +1,84 @@
+#include "app/describe_run.h"
+
+#include <fmt/core.h>
+
+namespace osteomill::app {
+
+namespace {
+
+using Settings = std::vector<RunSetting>;
+
+std::string point_text(const Vec3& v) {
+  return fmt::format("{},{},{}", v.x(), v.y(), v.z());
+}
+
+void add_algorithm(Settings& settings, const HapticAlgorithm& algorithm) {
+  settings.push_back({"sample_points", static_cast<double>(algorithm.sample_point_count()), ""});
+  for (const SettingValue& value : algorithm.settings()) {
+    settings.push_back({"algorithm." + value.name, value.value, value.unit});
+  }
+}
+
+void add_milling(Settings& settings, const TrialPlan& plan) {
+  const MillingSettings& milling = plan.settings.milling;
+  settings.push_back({"milling.removal_rate", milling.removal_rate_mm3_per_Ns, "mm^3/(N s)"});
+  settings.push_back({"milling.reach", milling.reach_voxels, "voxels"});
+  settings.push_back({"milling.surroundings_density", plan.densities.surroundings, ""});
+  settings.push_back({"milling.reference_density", plan.densities.reference, ""});
+}
+
+void add_hand(Settings& settings, const HandSettings& hand) {
+  settings.push_back({"hand.push", hand.push_N, "N"});
+  settings.push_back({"hand.push_lever", hand.push_lever_mm, "mm"});
+  settings.push_back({"hand.stiffness", hand.stiffness_N_per_mm, "N/mm"});
+  settings.push_back({"hand.damping", hand.damping_Ns_per_mm, "N s/mm"});
+  settings.push_back({"hand.torsional_stiffness", hand.torsional_stiffness_Nmm_per_rad, "N mm/rad"});
+  settings.push_back({"hand.torsional_damping", hand.torsional_damping_Nmms_per_rad, "N mm s/rad"});
+  settings.push_back({"hand.tremor", hand.tremor_mm, "mm"});
+}
+
+void add_device(Settings& settings, const HandleSettings& device, const WrenchLimits& limits) {
+  settings.push_back({"device.mass", device.mass_kg, "kg"});
+  settings.push_back({"device.inertia", device.inertia_kg_m2, "kg m^2"});
+  settings.push_back({"device.position_step", device.position_step_mm, "mm"});
+  settings.push_back({"device.rotation_step", device.rotation_step_rad, "rad"});
+  settings.push_back({"device.force_delay", device.force_delay_s, "s"});
+  settings.push_back({"device.substep", device.substep_s, "s"});
+  settings.push_back({"limit.force", limits.force_N, "N"});
+  settings.push_back({"limit.torque", limits.torque_Nmm, "N mm"});
+}
+
+void add_script(Settings& settings, const ScriptSettings& script, const MillingEntry& entry) {
+  settings.push_back({"script.entry", point_text(entry.point_W), "mm"});
+  settings.push_back({"script.direction", point_text(entry.direction_W), ""});
+  settings.push_back({"script.milling", script.milling_s, "s"});
+  settings.push_back({"script.holding", script.holding_s, "s"});
+  settings.push_back({"script.depth", script.depth_mm, "mm"});
+}
+
+}  // namespace
+
+RunDescription describe_run(const TrialPlan& plan, AlgorithmId algorithm, const HapticAlgorithm& prepared,
+                            RunPhase phase) {
+  RunDescription run;
+  run.program_version = OSTEOMILL_VERSION;
+  run.scan_name = plan.bone.name;
+  run.dims = plan.bone.volume.geometry().dims;
+  run.spacing_mm = plan.bone.volume.geometry().spacing_mm;
+  run.isovalue = plan.bone.volume.isovalue();
+  run.tool = plan.settings.tool;
+  run.algorithm = algorithm;
+  run.mode = plan.settings.haptics.mode;
+  run.phase = phase;
+  run.seed = plan.settings.hand_and_device.seed;
+  run.tick_period_s = plan.settings.tick_s;
+  run.settings.push_back({std::string(kCommandLineKey), plan.command_line, ""});
+  add_algorithm(run.settings, prepared);
+  add_milling(run.settings, plan);
+  add_hand(run.settings, plan.settings.hand_and_device.hand);
+  add_device(run.settings, plan.settings.hand_and_device.handle, plan.settings.limits);
+  add_script(run.settings, plan.settings.hand_and_device.script, plan.entry);
+  return run;
+}
+
+}  // namespace osteomill::app

@@ -1,0 +1,11 @@
+#pragma once
+
+#include "app/record_trial.h"
+
+namespace osteomill::app {
+
+/// All that a recording says of the run it holds: program, scan, tool, every setting with its unit.
+RunDescription describe_run(const TrialPlan& plan, AlgorithmId algorithm, const HapticAlgorithm& prepared,
+                            RunPhase phase);
+
+}  // namespace osteomill::app

@@ -1,0 +1,17 @@
+#include "app/positive_number.h"
+
+#include <cmath>
+
+namespace osteomill::app {
+
+CLI::Validator positive_number() {
+  return CLI::Validator(
+      [](std::string& text) {
+        double value = 0;
+        const bool good = CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value > 0;
+        return good ? std::string() : text + " is not a positive number";
+      },
+      "POSITIVE");
+}
+
+}  // namespace osteomill::app

@@ -1,0 +1,56 @@
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/commands.h"
+#include "app/config_file.h"
+#include "app/milling_options.h"
+#include "app/progress.h"
+#include "app/scan_options.h"
+#include "app/trial_options.h"
+#include <fmt/core.h>
+
+#include "osteomill/files/atomic_file.h"
+#include "osteomill/report/write_rates_report.h"
+#include "osteomill/session/measure_rates.h"
+
+namespace osteomill::app {
+
+namespace {
+
+struct RatesOptions {
+  ScanOptions scan;
+  TrialOptions trial;
+  std::vector<AlgorithmId> algorithms{kAllAlgorithms.begin(), kAllAlgorithms.end()};
+  std::string out = "osteomill-rates";
+};
+
+void run_rates(const RatesOptions& options) {
+  const LoadedBone bone = load_bone(options.scan);
+  const TrialSettings settings = trial_settings(options.trial);
+  const MillingEntry entry = place_entry(bone.volume, options.trial);
+  create_folder(options.out);
+  const std::vector<RateRow> rows = measure_rates(bone.volume, estimate_densities(bone.volume), entry,
+                                                  options.algorithms, settings, show_progress);
+  end_progress();
+  fmt::print("{}\n", write_rates_report(rows, options.out).string());
+}
+
+}  // namespace
+
+void add_rates_command(CLI::App& program) {
+  auto options = std::make_shared<RatesOptions>();
+  options->trial.hand.script.milling_s = options->trial.hand.script.holding_s = 2.0;
+  CLI::App* command =
+      program.add_subcommand("rates", "Time each algorithm against resolution (section 8.1 of the paper)");
+  add_scan_options(*command, options->scan);
+  command->add_option("--out", options->out, "Folder for the tables and the figure")->capture_default_str();
+  add_algorithm_option(*command, options->algorithms);
+  add_trial_options(*command, options->trial);
+  command->callback([=] {
+    apply_config_file(*command);
+    run_rates(*options);
+  });
+}
+
+}  // namespace osteomill::app

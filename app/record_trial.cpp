@@ -1,0 +1,54 @@
+#include "app/record_trial.h"
+
+#include <memory>
+
+#include "app/describe_run.h"
+#include "app/progress.h"
+#include <fmt/core.h>
+
+#include "osteomill/recording/recorder.h"
+#include "osteomill/recording/recording.h"
+#include "osteomill/surface/isosurface_picture.h"
+
+namespace osteomill::app {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr int kTicksBetweenProgress = 500;
+
+void add_pictures(Recorder& recorder, const TrialPlan& plan, const Volume& after) {
+  recorder.add_picture(std::string(kPictureBefore), picture_of_entry(plan.bone.volume, plan.entry));
+  recorder.add_picture(std::string(kPictureAfter), picture_of_entry(after, plan.entry));
+}
+
+}  // namespace
+
+std::vector<fs::path> record_trial(const TrialPlan& plan, AlgorithmId algorithm, const fs::path& folder) {
+  MillingTrial trial(plan.bone.volume, plan.densities, plan.entry, algorithm, plan.settings);
+  std::vector<fs::path> paths;
+  std::vector<std::unique_ptr<Recorder>> recorders;
+  for (const RunPhase phase : kAllPhases) {
+    paths.push_back(folder / fmt::format("{}-{}.h5", name_of(algorithm), name_of(phase)));
+    recorders.push_back(
+        std::make_unique<Recorder>(paths.back(), describe_run(plan, algorithm, trial.algorithm(), phase)));
+  }
+  Recorder& milling = *recorders[0];
+  Recorder& holding = *recorders[1];
+  const ScriptSettings& script = plan.settings.hand_and_device.script;
+  for (int n = 0; !trial.finished(); ++n) {
+    const MillingTrial::Tick tick = trial.tick();
+    (tick.milling_phase ? milling : holding).push_waiting(tick.record);
+    if (n % kTicksBetweenProgress == 0) {
+      show_progress(name_of(algorithm), tick.record.time_s / (script.milling_s + script.holding_s));
+    }
+  }
+  add_pictures(milling, plan, trial.volume());
+  milling.close();
+  holding.close();
+  end_progress();
+  return paths;
+}
+
+}  // namespace osteomill::app

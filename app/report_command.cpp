@@ -1,0 +1,42 @@
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/commands.h"
+#include "app/progress.h"
+#include <fmt/core.h>
+
+#include "osteomill/recording/read_recording.h"
+#include "osteomill/report/write_report.h"
+
+namespace osteomill::app {
+
+namespace {
+
+struct ReportOptions {
+  std::vector<std::string> recordings;
+  std::string out = "osteomill-report";
+};
+
+void run_report(const ReportOptions& options) {
+  std::vector<Recording> recordings;
+  for (const std::string& path : options.recordings) {
+    show_progress("reading",
+                  static_cast<double>(recordings.size()) / static_cast<double>(options.recordings.size()));
+    recordings.push_back(read_recording(path));
+  }
+  end_progress();
+  fmt::print("{}\n", write_report(recordings, options.out).string());
+}
+
+}  // namespace
+
+void add_report_command(CLI::App& program) {
+  auto options = std::make_shared<ReportOptions>();
+  CLI::App* command = program.add_subcommand("report", "Make the report of recordings again");
+  command->add_option("recordings", options->recordings, "Recordings of compare (.h5)")->required();
+  command->add_option("--out", options->out, "Folder for the report")->capture_default_str();
+  command->callback([=] { run_report(*options); });
+}
+
+}  // namespace osteomill::app

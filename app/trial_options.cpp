@@ -1,0 +1,69 @@
+#include "app/trial_options.h"
+
+#include <optional>
+#include <string>
+
+#include "app/positive_number.h"
+#include <CLI/Option.hpp>
+
+namespace osteomill::app {
+
+namespace {
+
+void add_vector(CLI::App& command, const std::string& name, std::vector<double>& value,
+                const std::string& what) {
+  command.add_option(name, value, what)->delimiter(',')->expected(3)->type_name("X,Y,Z");
+}
+
+std::optional<Vec3> as_vector(const std::vector<double>& numbers) {
+  if (numbers.empty()) return std::nullopt;
+  return Vec3(numbers[0], numbers[1], numbers[2]);
+}
+
+void add_hand_options(CLI::App& command, OperatorSettings& settings) {
+  HandSettings& hand = settings.hand;
+  HandleSettings& handle = settings.handle;
+  add_positive(command, "--push", hand.push_N, "N, the most that the hand pushes");
+  add_positive(command, "--hand-stiffness", hand.stiffness_N_per_mm, "N/mm");
+  add_positive(command, "--hand-damping", hand.damping_Ns_per_mm, "N s/mm");
+  add_positive(command, "--hand-torsional-stiffness", hand.torsional_stiffness_Nmm_per_rad, "N mm/rad");
+  add_positive(command, "--hand-torsional-damping", hand.torsional_damping_Nmms_per_rad, "N mm s/rad");
+  add_positive(command, "--device-mass", handle.mass_kg, "kg");
+  add_positive(command, "--device-inertia", handle.inertia_kg_m2, "kg m^2");
+  add_positive(command, "--device-delay", handle.force_delay_s, "s, from a wrench sent to its effect");
+}
+
+}  // namespace
+
+void add_trial_options(CLI::App& command, TrialOptions& options) {
+  ScriptSettings& script = options.hand.script;
+  command
+      .add_option_function<double>(
+          "--seconds", [&script](double seconds) { script.milling_s = script.holding_s = seconds; },
+          "s, how long each phase lasts")
+      ->check(positive_number())
+      ->default_str(std::to_string(static_cast<int>(script.milling_s)));
+  add_vector(command, "--entry", options.entry_mm, "mm, from where the tool enters (the top of the bone)");
+  add_vector(command, "--direction", options.direction, "Which way it enters (0,0,-1)");
+  add_hand_options(command, options.hand);
+  add_milling_options(command, options.milling);
+}
+
+TrialSettings trial_settings(const TrialOptions& options) {
+  TrialSettings trial;
+  trial.tool = options.milling.tool;
+  trial.haptics = options.milling.haptics;
+  trial.milling = options.milling.milling;
+  trial.limits = options.milling.limits;
+  trial.hand_and_device = options.hand;
+  trial.hand_and_device.handle.limits = options.milling.limits;
+  trial.hand_and_device.seed = options.milling.seed;
+  return trial;
+}
+
+MillingEntry place_entry(const Volume& bone, const TrialOptions& options) {
+  return osteomill::place_entry(bone, options.milling.tool, as_vector(options.entry_mm),
+                                as_vector(options.direction));
+}
+
+}  // namespace osteomill::app

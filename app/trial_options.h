@@ -1,0 +1,30 @@
+#pragma once
+
+#include <vector>
+
+#include "app/milling_options.h"
+#include <CLI/App.hpp>
+
+#include "osteomill/device/simulated_operator.h"
+#include "osteomill/session/milling_trial.h"
+
+namespace osteomill::app {
+
+/// What the commands that run section 8.2 have in common: milling, and the simulated hand with its task.
+struct TrialOptions {
+  MillingOptions milling;
+  OperatorSettings hand;
+  /// Three numbers each, or none.
+  std::vector<double> entry_mm;
+  std::vector<double> direction;
+};
+
+/// Adds --seconds, --push, --entry, --direction, the settings of hand and device, and all milling options.
+void add_trial_options(CLI::App& command, TrialOptions& options);
+
+TrialSettings trial_settings(const TrialOptions& options);
+
+/// Where the tool enters this bone. Throws InputError where it cannot.
+MillingEntry place_entry(const Volume& bone, const TrialOptions& options);
+
+}  // namespace osteomill::app
