@@ -1,0 +1,110 @@
+#include "osteomill/haptics/point_shell/brick_points.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace osteomill {
+
+namespace {
+
+constexpr ShellPoint kNoPoint{PointChunk::kFarAway_mm, PointChunk::kFarAway_mm, PointChunk::kFarAway_mm, 0};
+
+float distance_to(const ShellPoint& point, const std::array<float, 3>& centre) {
+  const float dx = point.x_mm - centre[0], dy = point.y_mm - centre[1], dz = point.z_mm - centre[2];
+  return std::sqrt(dx * dx + dy * dy + dz * dz);
+}
+
+// About the middle of the points' box; a hair wider than the farthest point, for the rounding of all who use
+// it.
+constexpr float kBoundSlack = 1.0001f;
+
+BrickPoints::Bound bound_of(std::span<const ShellPoint> points) {
+  BrickPoints::Bound bound;
+  if (points.empty()) return bound;
+  ShellPoint least = points.front(), greatest = points.front();
+  for (const ShellPoint& point : points) {
+    least = {std::min(least.x_mm, point.x_mm), std::min(least.y_mm, point.y_mm),
+             std::min(least.z_mm, point.z_mm), 0};
+    greatest = {std::max(greatest.x_mm, point.x_mm), std::max(greatest.y_mm, point.y_mm),
+                std::max(greatest.z_mm, point.z_mm), 0};
+  }
+  bound.centre_mm = {0.5f * (least.x_mm + greatest.x_mm), 0.5f * (least.y_mm + greatest.y_mm),
+                     0.5f * (least.z_mm + greatest.z_mm)};
+  for (const ShellPoint& point : points) {
+    bound.radius_mm = std::max(bound.radius_mm, kBoundSlack * distance_to(point, bound.centre_mm));
+  }
+  return bound;
+}
+
+}  // namespace
+
+BrickPoints::BrickPoints(std::size_t brick_count, std::size_t chunk_capacity)
+    : chunks_(chunk_capacity), next_(chunk_capacity), bricks_(brick_count) {
+  for (std::size_t n = chunk_capacity; n-- > 0;) {
+    next_[n] = first_free_;
+    first_free_ = static_cast<std::uint32_t>(n);
+  }
+}
+
+std::uint32_t BrickPoints::take_chunk() {
+  const std::uint32_t taken = first_free_;
+  if (taken == kNoChunk) return kNoChunk;
+  first_free_ = next_[taken];
+  next_[taken] = kNoChunk;
+  for (std::size_t slot = 0; slot < PointChunk::kSlots; ++slot) chunks_[taken].set(slot, kNoPoint);
+  return taken;
+}
+
+// Lengthens or shortens the brick's list of chunks; shorter than wanted where the pool has run out.
+void BrickPoints::set_chunk_count(Brick& brick, std::size_t wanted) {
+  std::uint32_t* link = &brick.first_chunk;
+  for (std::size_t n = 0; n < wanted; ++n) {
+    if (*link == kNoChunk) *link = take_chunk();
+    if (*link == kNoChunk) return;
+    link = &next_[*link];
+  }
+  std::uint32_t spare = *link;
+  *link = kNoChunk;
+  while (spare != kNoChunk) {
+    const std::uint32_t after = next_[spare];
+    next_[spare] = first_free_;
+    first_free_ = spare;
+    spare = after;
+  }
+}
+
+std::uint32_t BrickPoints::replace(std::size_t brick_index, std::span<const ShellPoint> points) {
+  Brick& brick = bricks_[brick_index];
+  set_chunk_count(brick, (points.size() + PointChunk::kSlots - 1) / PointChunk::kSlots);
+  std::size_t stored = 0;
+  for (std::uint32_t c = brick.first_chunk; c != kNoChunk; c = next_[c]) {
+    for (std::size_t slot = 0; slot < PointChunk::kSlots; ++slot) {
+      chunks_[c].set(slot, stored < points.size() ? points[stored++] : kNoPoint);
+    }
+  }
+  dropped_ += points.size() - stored;
+  brick.count = static_cast<std::uint32_t>(stored);
+  brick.bound = bound_of(points.first(stored));
+  return brick.count;
+}
+
+void BrickPoints::copy(std::size_t brick_index, std::span<ShellPoint> points) const {
+  const Brick& brick = bricks_[brick_index];
+  std::size_t n = 0;
+  for (std::uint32_t c = brick.first_chunk; c != kNoChunk; c = next_[c]) {
+    for (std::size_t slot = 0; slot < PointChunk::kSlots && n < brick.count; ++slot) {
+      points[n++] = chunks_[c].point(slot);
+    }
+  }
+}
+
+void BrickPoints::move(std::size_t brick_index, std::uint32_t slot, const ShellPoint& point) {
+  Brick& brick = bricks_[brick_index];
+  std::uint32_t c = brick.first_chunk;
+  for (std::uint32_t n = slot / PointChunk::kSlots; n > 0; --n) c = next_[c];
+  chunks_[c].set(slot % PointChunk::kSlots, point);
+  brick.bound.radius_mm =
+      std::max(brick.bound.radius_mm, kBoundSlack * distance_to(point, brick.bound.centre_mm));
+}
+
+}  // namespace osteomill

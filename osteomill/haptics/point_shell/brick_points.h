@@ -1,0 +1,86 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+namespace osteomill {
+
+/// A point of the shell: where it lies in its brick's frame (mm) and the area of surface that it stands for
+/// (mm^2).
+struct ShellPoint {
+  float x_mm;
+  float y_mm;
+  float z_mm;
+  float area_mm2;
+  friend bool operator==(const ShellPoint&, const ShellPoint&) = default;
+};
+
+/// Points of one brick, up to 32 at a time, each coordinate in a row of its own. Slots without a point lie
+/// far away and have no area, so that all 32 may be computed alike.
+struct PointChunk {
+  static constexpr std::size_t kSlots = 32;
+  static constexpr float kFarAway_mm = 1e6f;
+  alignas(64) std::array<float, kSlots> x_mm;
+  alignas(64) std::array<float, kSlots> y_mm;
+  alignas(64) std::array<float, kSlots> z_mm;
+  alignas(64) std::array<float, kSlots> area_mm2;
+
+  ShellPoint point(std::size_t slot) const { return {x_mm[slot], y_mm[slot], z_mm[slot], area_mm2[slot]}; }
+  void set(std::size_t slot, const ShellPoint& point) {
+    x_mm[slot] = point.x_mm;
+    y_mm[slot] = point.y_mm;
+    z_mm[slot] = point.z_mm;
+    area_mm2[slot] = point.area_mm2;
+  }
+};
+
+/// The points of every brick, in chunks out of one pool that is allocated once. Reading and changing are safe
+/// in the haptic tick; one thread writes. A pool that has run out drops points and counts them.
+class BrickPoints {
+ public:
+  static constexpr std::uint32_t kNoChunk = std::numeric_limits<std::uint32_t>::max();
+
+  /// A sphere about the points of a brick, in the brick's frame.
+  struct Bound {
+    std::array<float, 3> centre_mm{0, 0, 0};
+    float radius_mm = 0;
+  };
+  struct Brick {
+    std::uint32_t first_chunk = kNoChunk;
+    std::uint32_t count = 0;
+    Bound bound;
+  };
+
+  BrickPoints() = default;
+  BrickPoints(std::size_t brick_count, std::size_t chunk_capacity);
+
+  const Brick& brick(std::size_t index) const { return bricks_[index]; }
+  const PointChunk& chunk(std::uint32_t index) const { return chunks_[index]; }
+  std::uint32_t next_chunk(std::uint32_t index) const { return next_[index]; }
+  std::size_t chunk_capacity() const { return chunks_.size(); }
+  /// Points that found no room since the start.
+  std::uint64_t dropped() const { return dropped_; }
+
+  /// Puts `points` in the place of the brick's points; how many there was room for.
+  std::uint32_t replace(std::size_t brick, std::span<const ShellPoint> points);
+  /// Copies the brick's points to `points`, which has room for them.
+  void copy(std::size_t brick, std::span<ShellPoint> points) const;
+  /// Moves one point, `slot` < the brick's count. The bound grows where it must.
+  void move(std::size_t brick, std::uint32_t slot, const ShellPoint& point);
+
+ private:
+  std::uint32_t take_chunk();
+  void set_chunk_count(Brick& brick, std::size_t wanted);
+
+  std::vector<PointChunk> chunks_;
+  std::vector<std::uint32_t> next_;
+  std::vector<Brick> bricks_;
+  std::uint32_t first_free_ = kNoChunk;
+  std::uint64_t dropped_ = 0;
+};
+
+}  // namespace osteomill

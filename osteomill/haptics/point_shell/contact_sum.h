@@ -1,0 +1,68 @@
+#pragma once
+
+#include "osteomill/geometry/wrench.h"
+
+namespace osteomill {
+
+/// The penalty forces of many points on the tool, summed, and how they change as the tool moves: with the
+/// tool moved by dx (mm) and turned by dw (rad, about the burr's centre) the force is force_N - K_ff dx -
+/// K_ft dw and the torque torque_Nmm - K_ft^T dx - K_tt dw. All in one frame's axes, torque about the burr's
+/// centre.
+struct ContactSum {
+  Vec3 force_N = Vec3::Zero();
+  Vec3 torque_Nmm = Vec3::Zero();
+  Mat3 K_ff = Mat3::Zero();
+  Mat3 K_ft = Mat3::Zero();
+  Mat3 K_tt = Mat3::Zero();
+
+  /// A point at `r_mm` from the burr's centre, `depth_mm` deep in the tool, where the tool's field points out
+  /// along the unit vector `n`: the point is pushed out along n, the tool the other way. The depth grows by n
+  /// . dx + (r x n) . dw (the field's gradient, exactly), so each point adds k [n; r x n][n; r x n]^T (Barbic
+  /// and James 2008). Left out is how n turns as the tool moves, of the size of k depth / (radius of the
+  /// tool): it would make the sum indefinite, and vanishes with the depth.
+  void add(double stiffness_N_per_mm, double depth_mm, const Vec3& n, const Vec3& r_mm) {
+    const Vec3 m = r_mm.cross(n);
+    const double push = stiffness_N_per_mm * depth_mm;
+    force_N -= push * n;
+    torque_Nmm -= push * m;
+    const Vec3 kn = stiffness_N_per_mm * n;
+    const Vec3 km = stiffness_N_per_mm * m;
+    K_ff += kn * n.transpose();
+    K_ft += kn * m.transpose();
+    K_tt += km * m.transpose();
+  }
+  /// The same for a point whose n passes through the burr's centre, as on the burr's sphere: no torque.
+  void add_central(double stiffness_N_per_mm, double depth_mm, const Vec3& n) {
+    force_N -= stiffness_N_per_mm * depth_mm * n;
+    K_ff += (stiffness_N_per_mm * n) * n.transpose();
+  }
+  ContactSum& operator+=(const ContactSum& other) {
+    force_N += other.force_N;
+    torque_Nmm += other.torque_Nmm;
+    K_ff += other.K_ff;
+    K_ft += other.K_ft;
+    K_tt += other.K_tt;
+    return *this;
+  }
+  /// The same sum in the axes of an outer frame, `R` being those of this one in it.
+  ContactSum in_outer(const Mat3& R) const {
+    return {R * force_N, R * torque_Nmm, R * K_ff * R.transpose(), R * K_ft * R.transpose(),
+            R * K_tt * R.transpose()};
+  }
+};
+
+/// What touches the tool: burr (below the height on the axis at which the shaft takes over from the sphere)
+/// and shaft apart.
+struct ToolContacts {
+  ContactSum burr;
+  ContactSum shaft;
+  int touching = 0;
+
+  ContactSum total() const {
+    ContactSum sum = burr;
+    sum += shaft;
+    return sum;
+  }
+};
+
+}  // namespace osteomill

@@ -1,0 +1,205 @@
+#include "osteomill/haptics/point_shell/point_shell.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace osteomill {
+
+namespace {
+
+// Room for the surface that milling lays bare: as much again as there is, and a fixed spare (32 points a
+// chunk).
+constexpr std::size_t kSpareChunks = 8192;
+
+std::uint32_t count_of(const std::array<std::uint8_t, 64>& mask) {
+  std::uint32_t count = 0;
+  for (const std::uint8_t byte : mask) count += static_cast<std::uint32_t>(std::popcount(byte));
+  return count;
+}
+
+// Calls f(i, j, k) with 0 <= i, j, k < 8 for every bit that is set, i running fastest.
+template <typename F>
+void for_each_cell(const std::array<std::uint8_t, 64>& mask, F&& f) {
+  for (int row = 0; row < 64; ++row) {
+    for (unsigned bits = mask[static_cast<std::size_t>(row)]; bits != 0; bits &= bits - 1) {
+      f(std::countr_zero(bits), row % 8, row / 8);
+    }
+  }
+}
+
+bool has_cell(const std::array<std::uint8_t, 64>& mask, int i, int j, int k) {
+  return (mask[static_cast<std::size_t>(j + 8 * k)] >> i & 1) != 0;
+}
+
+VoxelBox brick_cells(int bi, int bj, int bk) {
+  constexpr int n = PointShell::kBrickCells;
+  return {{n * bi, n * bj, n * bk}, {n * bi + n - 1, n * bj + n - 1, n * bk + n - 1}};
+}
+
+}  // namespace
+
+PointShell::PointShell(const Volume& volume, const ShellRules& rules)
+    : lattice_(volume, rules), bone_(lattice_.node_dims()) {
+  const auto cells = lattice_.cell_dims();
+  std::array<int, 3> bricks;
+  for (std::size_t axis = 0; axis < 3; ++axis) bricks[axis] = (cells[axis] + kBrickCells - 1) / kBrickCells;
+  octree_ = CountPyramid(bricks);
+  masks_.resize(brick_index(0, 0, bricks[2]));
+  brick_side_mm_ = kBrickCells * lattice_.group() * lattice_.geometry().spacing_mm;
+  // A point on the isosurface may lie beyond its own cell, on the way to the next node.
+  box_margin_mm_ = (rules.points_on_isosurface ? 1.0 : 0.0) * lattice_.geometry().spacing_mm;
+
+  const VoxelBox all_nodes = lattice_.geometry().all_voxels();
+  refresh_bone(all_nodes);
+  const VoxelBox all_cells = cells_of_nodes(all_nodes);
+  std::size_t chunks = 0;
+  const auto for_each_brick = [&](auto&& f) {
+    for (int bk = 0; bk < bricks[2]; ++bk) {
+      for (int bj = 0; bj < bricks[1]; ++bj) {
+        for (int bi = 0; bi < bricks[0]; ++bi) f(bi, bj, bk);
+      }
+    }
+  };
+  for_each_brick([&](int bi, int bj, int bk) {
+    chunks += (count_of(mask_of(bi, bj, bk, all_cells, {})) + PointChunk::kSlots - 1) / PointChunk::kSlots;
+  });
+  points_ = BrickPoints(masks_.size(), 2 * chunks + kSpareChunks);
+  for_each_brick([&](int bi, int bj, int bk) { refresh_brick(bi, bj, bk, all_cells); });
+}
+
+void PointShell::refresh(const VoxelBox& voxels) {
+  const VoxelBox nodes = lattice_.nodes_touched_by(voxels);
+  if (nodes.empty()) return;
+  refresh_bone(nodes);
+  const VoxelBox cells =
+      cells_of_nodes(nodes.grown(lattice_.reach_nodes()).intersected(lattice_.geometry().all_voxels()));
+  for (int bk = cells.first.k / kBrickCells; bk <= cells.last.k / kBrickCells; ++bk) {
+    for (int bj = cells.first.j / kBrickCells; bj <= cells.last.j / kBrickCells; ++bj) {
+      for (int bi = cells.first.i / kBrickCells; bi <= cells.last.i / kBrickCells; ++bi) {
+        refresh_brick(bi, bj, bk, cells);
+      }
+    }
+  }
+}
+
+void PointShell::refresh_bone(const VoxelBox& nodes) {
+  const int dim = lattice_.node_dims()[0];
+  for (int k = nodes.first.k; k <= nodes.last.k; ++k) {
+    for (int j = nodes.first.j; j <= nodes.last.j; ++j) {
+      for (int byte = nodes.first.i / 8; byte <= nodes.last.i / 8; ++byte) {
+        unsigned bits = 0;
+        for (int i = 8 * byte; i < std::min(8 * byte + 8, dim); ++i) {
+          if (lattice_.is_bone({i, j, k})) bits |= 1u << (i - 8 * byte);
+        }
+        bone_.set_byte(byte, j, k, static_cast<std::uint8_t>(bits));
+      }
+    }
+  }
+}
+
+VoxelBox PointShell::cells_of_nodes(const VoxelBox& nodes) const {
+  const int g = lattice_.group();
+  return {{nodes.first.i / g, nodes.first.j / g, nodes.first.k / g},
+          {nodes.last.i / g, nodes.last.j / g, nodes.last.k / g}};
+}
+
+bool PointShell::holds_surface(const VoxelIndex& cell) const {
+  const int g = lattice_.group();
+  const auto& dims = lattice_.node_dims();
+  const int end_i = std::min(g * cell.i + g, dims[0]);
+  const int end_j = std::min(g * cell.j + g, dims[1]);
+  const int end_k = std::min(g * cell.k + g, dims[2]);
+  for (int k = g * cell.k; k < end_k; ++k) {
+    for (int j = g * cell.j; j < end_j; ++j) {
+      for (int byte = g * cell.i / 8; byte <= (end_i - 1) / 8; ++byte) {
+        const unsigned from = 0xffu << std::max(0, g * cell.i - 8 * byte);
+        const unsigned to = (1u << std::min(8, end_i - 8 * byte)) - 1;
+        if ((bone_.surface_byte(byte, j, k) & from & to) != 0) return true;
+      }
+    }
+  }
+  return false;
+}
+
+// The cells 8 bi to 8 bi + 7 of row j of slice k that have a point.
+std::uint8_t PointShell::mask_byte(int bi, int j, int k) const {
+  if (lattice_.group() == 1) return bone_.surface_byte(bi, j, k);
+  unsigned bits = 0;
+  const int end = std::min(8 * bi + 8, lattice_.cell_dims()[0]);
+  for (int i = 8 * bi; i < end; ++i) {
+    if (holds_surface({i, j, k})) bits |= 1u << (i - 8 * bi);
+  }
+  return static_cast<std::uint8_t>(bits);
+}
+
+// `mask` with the rows of `cells` made new.
+PointShell::CellMask PointShell::mask_of(int bi, int bj, int bk, const VoxelBox& cells, CellMask mask) const {
+  const VoxelBox own = brick_cells(bi, bj, bk);
+  const VoxelBox rows = own.intersected(cells);
+  for (int k = rows.first.k; k <= rows.last.k; ++k) {
+    for (int j = rows.first.j; j <= rows.last.j; ++j) {
+      mask[static_cast<std::size_t>(j - own.first.j + 8 * (k - own.first.k))] = mask_byte(bi, j, k);
+    }
+  }
+  return mask;
+}
+
+void PointShell::refresh_brick(int bi, int bj, int bk, const VoxelBox& cells) {
+  const CellMask& before = masks_[brick_index(bi, bj, bk)];
+  const CellMask mask = mask_of(bi, bj, bk, cells, before);
+  if (mask != before) {
+    rebuild_brick(bi, bj, bk, cells, mask);
+  } else if (lattice_.rules().follow_partial_changes) {
+    move_points(bi, bj, bk, cells);
+  }
+}
+
+// The same cells as before: only points near changed densities move.
+void PointShell::move_points(int bi, int bj, int bk, const VoxelBox& cells) {
+  const std::size_t brick = brick_index(bi, bj, bk);
+  const std::uint32_t stored = points_.brick(brick).count;
+  const VoxelIndex first = brick_cells(bi, bj, bk).first;
+  std::uint32_t slot = 0;
+  for_each_cell(masks_[brick], [&](int i, int j, int k) {
+    const VoxelIndex cell{first.i + i, first.j + j, first.k + k};
+    if (cells.contains(cell) && slot < stored) points_.move(brick, slot, point_of(cell, bi, bj, bk));
+    ++slot;
+  });
+}
+
+// Other cells than before: the points are listed anew, those far from the change as they were.
+void PointShell::rebuild_brick(int bi, int bj, int bk, const VoxelBox& cells, const CellMask& mask) {
+  const std::size_t brick = brick_index(bi, bj, bk);
+  std::array<ShellPoint, kMostPointsOfBrick> old_points;
+  points_.copy(brick, old_points);
+  const std::uint32_t old_count = points_.brick(brick).count;
+  std::array<ShellPoint, kMostPointsOfBrick> by_cell;
+  std::uint32_t slot = 0;
+  CellMask kept{};
+  for_each_cell(masks_[brick], [&](int i, int j, int k) {
+    if (slot >= old_count) return;
+    by_cell[static_cast<std::size_t>(i + 8 * j + 64 * k)] = old_points[slot++];
+    kept[static_cast<std::size_t>(j + 8 * k)] |= static_cast<std::uint8_t>(1u << i);
+  });
+
+  std::array<ShellPoint, kMostPointsOfBrick> new_points;
+  std::size_t new_count = 0;
+  const VoxelIndex first = brick_cells(bi, bj, bk).first;
+  const bool follow = lattice_.rules().follow_partial_changes;
+  for_each_cell(mask, [&](int i, int j, int k) {
+    const VoxelIndex cell{first.i + i, first.j + j, first.k + k};
+    const bool keep = has_cell(kept, i, j, k) && !(follow && cells.contains(cell));
+    new_points[new_count++] =
+        keep ? by_cell[static_cast<std::size_t>(i + 8 * j + 64 * k)] : point_of(cell, bi, bj, bk);
+  });
+  const std::uint32_t stored = points_.replace(brick, {new_points.data(), new_count});
+  octree_.add(bi, bj, bk, static_cast<std::int32_t>(stored) - static_cast<std::int32_t>(old_count));
+  masks_[brick] = mask;
+}
+
+ShellPoint PointShell::point_of(const VoxelIndex& cell, int bi, int bj, int bk) const {
+  const int nodes = kBrickCells * lattice_.group();
+  return lattice_.point_of_cell(bone_, cell, {nodes * bi, nodes * bj, nodes * bk});
+}
+
+}  // namespace osteomill

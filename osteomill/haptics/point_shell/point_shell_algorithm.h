@@ -1,0 +1,50 @@
+#pragma once
+
+#include "osteomill/haptics/haptic_algorithm.h"
+#include "osteomill/haptics/point_shell/contact_tool.h"
+#include "osteomill/haptics/point_shell/point_shell.h"
+#include "osteomill/haptics/point_shell/point_shell_settings.h"
+#include "osteomill/haptics/point_shell/virtual_coupling.h"
+
+namespace osteomill {
+
+/// Algorithm 3 of Eriksson 2012, modified Barbic and James 2008: the bone is a shell of points, the tool a
+/// signed distance field. Points inside the tool push it out; a virtual coupling pulls it to the device; each
+/// step solves for the pose at which the two balance, and the coupling's wrench is what the hand feels.
+/// Without contact the tool is at the device (steady: on its way there) and the wrench exactly zero.
+///
+/// `X_WT` of a step is the simulated tool; `burr_force_N` the contact force of the points that touch the tool
+/// below the height at which its shaft comes out of the burr's sphere; `contacts` counts the points that
+/// touch.
+class PointShellAlgorithm final : public HapticAlgorithm {
+ public:
+  /// Throws std::invalid_argument where a setting is out of range.
+  explicit PointShellAlgorithm(const PointShellSettings& settings);
+
+  void prepare(const Scene& scene) override;
+  HapticStep step(const Pose& X_WD, double dt_s) override;
+  void volume_changed(const VolumeChange& change) override;
+  void reset() override;
+
+  const PointShellSettings& settings() const { return settings_; }
+  const PointShell& shell() const { return shell_; }
+  double contact_stiffness_N_per_mm3() const { return stiffness_N_per_mm3_; }
+
+ private:
+  ToolContacts contacts_at(const Pose& X_WT) const;
+  Pose towards(const Pose& X_WT_start, const Pose& target) const;
+  Wrench damping(const Pose& X_WD, double dt_s) const;
+
+  PointShellSettings settings_;
+  VirtualCoupling coupling_;
+  ContactTool tool_;
+  PointShell shell_;
+  double stiffness_N_per_mm3_ = 0;
+
+  bool has_pose_ = false;
+  bool in_contact_ = false;
+  Pose X_WT_;
+  ToolMove stretch_;
+};
+
+}  // namespace osteomill

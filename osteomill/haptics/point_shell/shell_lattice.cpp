@@ -1,0 +1,126 @@
+#include "osteomill/haptics/point_shell/shell_lattice.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace osteomill {
+
+namespace {
+
+int& component(VoxelIndex& v, int axis) {
+  return axis == 0 ? v.i : axis == 1 ? v.j : v.k;
+}
+
+int divide_down(int value, int divisor) {
+  const int quotient = value / divisor;
+  return value % divisor < 0 ? quotient - 1 : quotient;
+}
+
+GridGeometry lattice_geometry(const GridGeometry& voxels, int stride) {
+  GridGeometry lattice = voxels;
+  lattice.origin_mm = voxels.world_from_voxel(Vec3::Constant(0.5 * (stride - 1)).eval());
+  lattice.spacing_mm = stride * voxels.spacing_mm;
+  for (int& dim : lattice.dims) dim = (dim + stride - 1) / stride;
+  return lattice;
+}
+
+}  // namespace
+
+ShellLattice::ShellLattice(const Volume& volume, const ShellRules& rules)
+    : volume_(&volume),
+      rules_(rules),
+      stride_(rules.cells_from_surface_voxels ? 1 : rules.scale),
+      group_(rules.cells_from_surface_voxels ? rules.scale : 1),
+      geometry_(lattice_geometry(volume.geometry(), stride_)),
+      cell_area_mm2_(std::pow(volume.geometry().voxel_volume_mm3(), 2.0 / 3.0) * rules.scale * rules.scale) {}
+
+std::array<int, 3> ShellLattice::cell_dims() const {
+  std::array<int, 3> dims = geometry_.dims;
+  for (int& dim : dims) dim = (dim + group_ - 1) / group_;
+  return dims;
+}
+
+double ShellLattice::density(const VoxelIndex& node) const {
+  if (stride_ == 1) return static_cast<double>(volume_->grid().at_or_outside(node));
+  const Vec3 voxel = stride_ * Vec3(node.i, node.j, node.k) + Vec3::Constant(0.5 * (stride_ - 1));
+  return density_at_voxel(volume_->grid(), voxel);
+}
+
+VoxelBox ShellLattice::nodes_touched_by(const VoxelBox& voxels) const {
+  if (voxels.empty()) return voxels;
+  const int s = stride_;
+  // A node lies (s - 1) / 2 voxels into its stride and reads the voxels on both sides of it.
+  VoxelBox nodes = voxels;
+  if (s > 1) {
+    const int before = s / 2, after = (s - 1) / 2;
+    for (int axis = 0; axis < 3; ++axis) {
+      int& first = component(nodes.first, axis);
+      int& last = component(nodes.last, axis);
+      first = divide_down(first - before, s);
+      last = divide_down(last - after, s) + 1;
+    }
+  }
+  return nodes.intersected(geometry_.all_voxels());
+}
+
+ShellPoint ShellLattice::point_of_cell(const BoneBits& bone, const VoxelIndex& cell,
+                                       const VoxelIndex& frame_origin) const {
+  WeightedSum sum;
+  const VoxelIndex first{cell.i * group_, cell.j * group_, cell.k * group_};
+  const VoxelIndex last{std::min(first.i + group_, geometry_.dims[0]) - 1,
+                        std::min(first.j + group_, geometry_.dims[1]) - 1,
+                        std::min(first.k + group_, geometry_.dims[2]) - 1};
+  for (int k = first.k; k <= last.k; ++k) {
+    for (int j = first.j; j <= last.j; ++j) {
+      for (int i = first.i; i <= last.i; ++i) {
+        if (bone.is_bone(i, j, k)) add_node(bone, {i, j, k}, frame_origin, sum);
+      }
+    }
+  }
+  const Vec3 mean_mm = sum.position_mm / sum.weight;
+  return {static_cast<float>(mean_mm.x()), static_cast<float>(mean_mm.y()), static_cast<float>(mean_mm.z()),
+          static_cast<float>(rules_.area_weights ? sum.weight : cell_area_mm2_)};
+}
+
+// Adds the faces between a bone node and its neighbours that are not bone. With area weights a face counts
+// for the area of it seen along the surface's normal n, A_a |n_a|: over a plane that adds up to A (n_x^2 +
+// n_y^2 + n_z^2), its true area whatever its slope, and an error of the normal enters only with its square.
+void ShellLattice::add_node(const BoneBits& bone, const VoxelIndex& node, const VoxelIndex& frame_origin,
+                            WeightedSum& sum) const {
+  const Vec3 here(node.i - frame_origin.i, node.j - frame_origin.j, node.k - frame_origin.k);
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const int side : {-1, 1}) {
+      VoxelIndex outer = node;
+      component(outer, axis) += side;
+      if (bone.is_bone(outer.i, outer.j, outer.k)) continue;
+      const bool needs_crossing = rules_.points_on_isosurface || rules_.area_weights;
+      const double fraction = needs_crossing ? crossing_fraction(density(node), outer) : 0;
+      const double weight = rules_.area_weights ? face_weight_mm2(node, axis, side * fraction) : 1;
+      const double shift = rules_.points_on_isosurface ? side * fraction : 0;
+      sum.position_mm += weight * geometry_.spacing_mm.cwiseProduct(here + shift * Vec3::Unit(axis));
+      sum.weight += weight;
+    }
+  }
+}
+
+// Density runs linearly along an edge of the grid, so this is where the isosurface crosses it.
+double ShellLattice::crossing_fraction(double inside, const VoxelIndex& outer_node) const {
+  const double outside = density(outer_node);
+  const double iso = volume_->isovalue();
+  // Beyond the border the outside density may be bone's: the surface is then the border voxel's face.
+  return outside <= iso ? (inside - iso) / (inside - outside) : 0.5;
+}
+
+double ShellLattice::face_weight_mm2(const VoxelIndex& node, int axis, double offset) const {
+  const Vec3 crossing_W =
+      geometry_.world_from_voxel(Vec3(Vec3(node.i, node.j, node.k) + offset * Vec3::Unit(axis)));
+  const Vec3 gradient =
+      geometry_.direction.transpose() * density_gradient(volume_->grid(), crossing_W, rules_.gradient);
+  const double face_mm2 = geometry_.voxel_volume_mm3() / geometry_.spacing_mm[axis];
+  const double steepness = gradient.norm();
+  if (!(steepness > 0)) return face_mm2;
+  // Never quite nothing, so that a point's mean has a weight to divide by.
+  return face_mm2 * std::max(1e-6, std::abs(gradient[axis]) / steepness);
+}
+
+}  // namespace osteomill

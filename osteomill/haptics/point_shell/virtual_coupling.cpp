@@ -1,0 +1,56 @@
+#include "osteomill/haptics/point_shell/virtual_coupling.h"
+
+#include <Eigen/Cholesky>
+
+namespace osteomill {
+
+namespace {
+
+Vec3 shortened(const Vec3& vector, double greatest) {
+  const double length = vector.norm();
+  return greatest > 0 && length > greatest ? Vec3(greatest / length * vector) : vector;
+}
+
+}  // namespace
+
+ToolMove move_between(const Pose& from, const Pose& to) {
+  return {to.position_mm - from.position_mm,
+          rotation_vector((to.orientation * from.orientation.conjugate()).normalized())};
+}
+
+Pose moved(const Pose& X_WT, const ToolMove& move) {
+  const Quat turn = quaternion_from_rotation_vector(move.rotation_rad);
+  return {X_WT.position_mm + move.translation_mm, (turn * X_WT.orientation).normalized()};
+}
+
+ToolMove limited(const ToolMove& move, double greatest_mm, double greatest_rad) {
+  return {shortened(move.translation_mm, greatest_mm), shortened(move.rotation_rad, greatest_rad)};
+}
+
+Wrench wrench_on_hand(const VirtualCoupling& coupling, const Pose& X_WT, const Pose& X_WD) {
+  const ToolMove stretch = move_between(X_WD, X_WT);
+  return {coupling.translational_N_per_mm * stretch.translation_mm,
+          coupling.torsional_Nmm_per_rad * stretch.rotation_rad};
+}
+
+ToolMove balancing_move(const VirtualCoupling& coupling, const Pose& X_WT, const Pose& X_WD,
+                        const ContactSum& contacts) {
+  using Vector6 = Eigen::Matrix<double, 6, 1>;
+  using Matrix6 = Eigen::Matrix<double, 6, 6>;
+  // F_net and T_net at X_WT.
+  const Wrench pull = wrench_on_hand(coupling, X_WT, X_WD);
+  Vector6 net;
+  net << contacts.force_N - pull.force_N, contacts.torque_Nmm - pull.torque_Nmm;
+  // Minus their derivatives. The coupling's torque is linear in the rotation vector between tool and device;
+  // that the vectors of two turns do not simply add is left out (its part is half the angle between tool and
+  // device).
+  Matrix6 stiffness;
+  stiffness << contacts.K_ff, contacts.K_ft, contacts.K_ft.transpose(), contacts.K_tt;
+  stiffness.topLeftCorner<3, 3>().diagonal().array() += coupling.translational_N_per_mm;
+  stiffness.bottomRightCorner<3, 3>().diagonal().array() += coupling.torsional_Nmm_per_rad;
+  // Symmetric and positive definite: the contacts add squares only.
+  const Vector6 move = stiffness.ldlt().solve(net);
+  return {move.head<3>(), move.tail<3>()};
+}
+
+}  // namespace osteomill

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "osteomill/geometry/wrench.h"
+#include "osteomill/haptics/point_shell/contact_sum.h"
+
+namespace osteomill {
+
+/// A spring between the simulated tool and the device.
+struct VirtualCoupling {
+  double translational_N_per_mm;
+  double torsional_Nmm_per_rad;
+};
+
+/// How the simulated tool moves: the burr's centre by `translation_mm`, and about it by the rotation vector
+/// `rotation_rad`, both in W's axes.
+struct ToolMove {
+  Vec3 translation_mm = Vec3::Zero();
+  Vec3 rotation_rad = Vec3::Zero();
+};
+
+/// The move that takes the tool from `from` to `to`.
+ToolMove move_between(const Pose& from, const Pose& to);
+/// The pose after the move.
+Pose moved(const Pose& X_WT, const ToolMove& move);
+/// Each part shortened to its limit without a turn; a limit of 0 is none.
+ToolMove limited(const ToolMove& move, double greatest_mm, double greatest_rad);
+
+/// The coupling's wrench as it acts on the hand that holds the device at `X_WD` (on the tool it is the
+/// opposite).
+Wrench wrench_on_hand(const VirtualCoupling& coupling, const Pose& X_WT, const Pose& X_WD);
+
+/// The move after which coupling and contacts balance, both linearised about `X_WT` (Eriksson 2012, eq. 22
+/// and 23). `contacts` in W's axes at that pose. Safe in the haptic tick.
+ToolMove balancing_move(const VirtualCoupling& coupling, const Pose& X_WT, const Pose& X_WD,
+                        const ContactSum& contacts);
+
+}  // namespace osteomill

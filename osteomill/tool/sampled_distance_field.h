@@ -1,0 +1,52 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "osteomill/tool/tool_distance.h"
+
+namespace osteomill {
+
+/// The tool's signed distance and its gradient, precomputed on a regular grid over the tool's bounding box
+/// and a margin, and read by trilinear interpolation (Barbic and James 2008; "SPO" in Eriksson 2012, 6.1).
+class SampledDistanceField {
+ public:
+  /// Fills the grid from `tool_distance`; allocates 16 bytes a node. The margin is two nodes wide.
+  /// Throws std::invalid_argument where the tool or the spacing is out of range, or the grid would have more
+  /// than 16 million nodes.
+  SampledDistanceField(const MillingTool& tool, double spacing_mm);
+
+  /// A spacing that suits the (valid) tool: a 25th of its smaller radius, or more where that took over 2 million
+  /// nodes.
+  static double suitable_spacing_mm(const MillingTool& tool);
+
+  double spacing_mm() const { return spacing_mm_; }
+  /// The box in T on which the field is known.
+  const ToolBox& box() const { return box_; }
+
+  /// Distance and unit outward direction at a point of T; nothing outside `box()`, which lies outside the
+  /// tool. The error of the distance is at most spacing^2 / (4 * radius) away from the tool's creases. Safe
+  /// in the haptic tick.
+  std::optional<ToolDistance> at(const Vec3& point_T) const;
+
+ private:
+  // Distance, then gradient.
+  using Node = std::array<float, 4>;
+
+  std::size_t node_index(int i, int j, int k) const {
+    return static_cast<std::size_t>(i) +
+           static_cast<std::size_t>(dims_[0]) *
+               (static_cast<std::size_t>(j) +
+                static_cast<std::size_t>(dims_[1]) * static_cast<std::size_t>(k));
+  }
+  void fill(const MillingTool& tool);
+
+  double spacing_mm_;
+  std::array<int, 3> dims_{};
+  ToolBox box_;
+  std::vector<Node> nodes_;
+};
+
+}  // namespace osteomill
