@@ -19,11 +19,11 @@ struct Scan {
   std::vector<std::string> warnings;
 };
 
-/// Reads a DICOM series (a folder, its files in any order, or one multi-slice file), NRRD, MetaImage or NIfTI.
-/// W is the patient's LPS frame in mm (NIfTI's RAS is turned into it); stored values are rescaled to what they mean
-/// (RescaleSlope, RescaleIntercept).
-/// Throws InputError, naming the path and the reason, where it is not a scan that can be placed in space without
-/// guessing. Bounded memory: sizes are checked against the file before anything is allocated.
+/// Reads a DICOM series (a folder, its files in any order, or one multi-slice file), NRRD, MetaImage or
+/// NIfTI. W is the patient's LPS frame in mm (NIfTI's RAS is turned into it); stored values are rescaled to
+/// what they mean (RescaleSlope, RescaleIntercept). Throws InputError, naming the path and the reason, where
+/// it is not a scan that can be placed in space without guessing. Bounded memory: sizes are checked against
+/// the file before anything is allocated.
 Scan read_scan(const std::filesystem::path& path);
 
 }  // namespace osteomill
