@@ -1,0 +1,206 @@
+#include "osteomill/ct/dicom_series.h"
+
+#include <algorithm>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "osteomill/ct/dicom_file.h"
+#include "osteomill/ct/finite_densities.h"
+#include "osteomill/ct/slice_stack.h"
+#include "osteomill/files/input_error.h"
+
+namespace osteomill {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using Headers = std::vector<DicomHeader>;
+
+struct Folder {
+  /// Pictures, in the order of their names.
+  Headers images;
+  std::size_t other_files = 0;
+  bool has_folders = false;
+};
+
+std::string counted(std::size_t count, const std::string& noun, const std::string& plural_ending = "s") {
+  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : plural_ending);
+}
+
+Folder read_headers(const fs::path& folder) {
+  std::error_code error;
+  std::vector<fs::path> files;
+  Folder result;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    std::error_code ignored;
+    if (entry->is_directory(ignored)) result.has_folders = true;
+    if (entry->is_regular_file(ignored)) files.push_back(entry->path());
+  }
+  if (error) throw InputError(folder.string(), "cannot be read: " + error.message());
+  std::sort(files.begin(), files.end());
+  for (const fs::path& file : files) {
+    std::optional<DicomHeader> header = read_dicom_header(file);
+    if (header && (header->is_image() || !header->readable)) {
+      result.images.push_back(std::move(*header));
+    } else {
+      ++result.other_files;
+    }
+  }
+  return result;
+}
+
+std::size_t slice_count(const Headers& series) {
+  std::size_t count = 0;
+  for (const DicomHeader& header : series) count += header.slices.size();
+  return count;
+}
+
+std::string series_name(const Headers& series) {
+  const DicomHeader& first = series.front();
+  const std::string title = first.series_description.empty() ? first.series_uid : first.series_description;
+  return fmt::format("\"{}\" ({}, from {})", title, counted(slice_count(series), "slice"),
+                     first.file.filename().string());
+}
+
+// Scout views are no part of a series, even where they carry its number.
+void drop_localizers(Headers& images, std::vector<std::string>& warnings) {
+  const auto first = std::stable_partition(images.begin(), images.end(),
+                                           [](const DicomHeader& header) { return !header.is_localizer; });
+  const auto count = static_cast<std::size_t>(images.end() - first);
+  if (count == 0) return;
+  warnings.push_back(
+      fmt::format("{} left out: {}", counted(count, "localizer"), first->file.filename().string()));
+  images.erase(first, images.end());
+}
+
+// The series with the most slices that can be read; of equal ones that of the first file.
+Headers pick_series(Headers images, std::vector<std::string>& warnings) {
+  std::vector<Headers> all;
+  for (DicomHeader& header : images) {
+    const auto same = std::find_if(all.begin(), all.end(), [&](const Headers& series) {
+      return series.front().series_uid == header.series_uid;
+    });
+    if (same == all.end()) {
+      all.emplace_back();
+      all.back().push_back(std::move(header));
+    } else {
+      same->push_back(std::move(header));
+    }
+  }
+  const auto largest = std::max_element(all.begin(), all.end(), [](const Headers& a, const Headers& b) {
+    return slice_count(a) < slice_count(b);
+  });
+  if (all.size() > 1) {
+    std::string others;
+    for (const Headers& series : all) {
+      if (&series != &*largest) others += (others.empty() ? "" : ", ") + series_name(series);
+    }
+    warnings.push_back(fmt::format("{} in this folder: series {} was read, left out: {}",
+                                   counted(all.size(), "series", ""), series_name(*largest), others));
+  }
+  return std::move(*largest);
+}
+
+void check_series(const std::string& subject, const Headers& series) {
+  for (const DicomHeader& header : series) {
+    if (!header.fault.empty())
+      throw InputError(subject, header.file.filename().string() + " " + header.fault);
+  }
+}
+
+void add_notes(const Headers& series, std::vector<std::string>& warnings) {
+  const DicomHeader& first = series.front();
+  if (first.photometric == "MONOCHROME1") {
+    warnings.push_back("MONOCHROME1: meant to be shown inverted; the densities are taken as they are");
+  }
+  if (!first.modality.empty() && first.modality != "CT") {
+    warnings.push_back(
+        fmt::format("the modality is {}, not CT: densities are not Hounsfield units", first.modality));
+  }
+}
+
+std::vector<float> read_densities(const std::string& subject, const Headers& series, const SliceStack& stack,
+                                  const std::vector<DicomSlice>& slices) {
+  std::map<std::pair<fs::path, std::size_t>, std::size_t> place_of_frame;
+  for (std::size_t k = 0; k < stack.order.size(); ++k) {
+    const DicomSlice& slice = slices[stack.order[k]];
+    place_of_frame[{slice.file, slice.frame}] = k;
+  }
+  const std::size_t slice_size = stack.geometry.voxel_count() / stack.order.size();
+  std::vector<float> densities(stack.geometry.voxel_count());
+  for (const DicomHeader& header : series) {
+    read_dicom_densities(subject, header, [&](std::size_t frame) -> float* {
+      const auto place = place_of_frame.find({header.file, frame});
+      return place == place_of_frame.end() ? nullptr : densities.data() + place->second * slice_size;
+    });
+  }
+  return densities;
+}
+
+Scan build_scan(const std::string& subject, const Headers& series, std::vector<std::string> warnings) {
+  check_series(subject, series);
+  std::vector<DicomSlice> slices;
+  std::vector<SlicePlane> planes;
+  for (const DicomHeader& header : series) {
+    for (const DicomSlice& slice : header.slices) {
+      slices.push_back(slice);
+      planes.push_back(slice.plane);
+    }
+  }
+  const SliceStack stack = stack_slices(subject, planes);
+  warnings.insert(warnings.end(), stack.warnings.begin(), stack.warnings.end());
+  add_notes(series, warnings);
+  if (stack.drift_i_mm != 0 || stack.drift_j_mm != 0) {
+    throw InputError(subject, "the gantry was tilted: each slice lies to the side of the one below");
+  }
+  std::vector<float> densities = read_densities(subject, series, stack, slices);
+  check_finite(subject, densities);
+  return {DensityGrid(stack.geometry, std::move(densities)), subject, "DICOM", std::move(warnings)};
+}
+
+void warn_of_other_files(std::size_t count, std::vector<std::string>& warnings) {
+  if (count > 0) {
+    warnings.push_back(fmt::format("{} in this folder left out: not DICOM images", counted(count, "file")));
+  }
+}
+
+}  // namespace
+
+Scan read_dicom_folder(const fs::path& folder) {
+  const std::string subject = folder.string();
+  Folder found = read_headers(folder);
+  for (const DicomHeader& header : found.images) {
+    if (!header.readable) throw InputError(subject, header.file.filename().string() + " " + header.fault);
+  }
+  std::vector<std::string> warnings;
+  warn_of_other_files(found.other_files, warnings);
+  drop_localizers(found.images, warnings);
+  if (found.images.empty()) {
+    throw InputError(subject, found.has_folders
+                                  ? "holds no DICOM slices itself; name the folder within it that does"
+                                  : "holds no DICOM slices");
+  }
+  return build_scan(subject, pick_series(std::move(found.images), warnings), std::move(warnings));
+}
+
+std::optional<Scan> read_dicom_file(const fs::path& file) {
+  const std::string subject = file.string();
+  std::optional<DicomHeader> header = read_dicom_header(file);
+  if (!header) return std::nullopt;
+  if (!header->fault.empty()) throw InputError(subject, header->fault);
+  if (!header->is_image()) throw InputError(subject, "is DICOM, but not an image");
+  if (header->is_localizer) throw InputError(subject, "is a localizer, not a slice of a scan");
+  if (header->frames > 1) return build_scan(subject, {std::move(*header)}, {});
+
+  const fs::path folder = file.parent_path().empty() ? fs::path(".") : file.parent_path();
+  Headers series;
+  for (DicomHeader& other : read_headers(folder).images) {
+    const bool same = other.readable && other.series_uid == header->series_uid;
+    if (same && !other.is_localizer) series.push_back(std::move(other));
+  }
+  return build_scan(subject, series, {});
+}
+
+}  // namespace osteomill

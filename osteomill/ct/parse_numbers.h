@@ -1,0 +1,30 @@
+#pragma once
+
+#include <charconv>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+namespace osteomill {
+
+/// The numbers of a header's field, parted by any of `separators`; nothing where a piece is not a number.
+/// "nan" and "inf" are numbers here: whoever needs finite ones has to look.
+inline std::optional<std::vector<double>> parse_numbers(std::string_view text,
+                                                        std::string_view separators = " \t\r\n") {
+  std::vector<double> numbers;
+  while (true) {
+    const std::size_t start = text.find_first_not_of(separators);
+    if (start == std::string_view::npos) return numbers;
+    text.remove_prefix(start);
+    const std::size_t length = std::min(text.find_first_of(separators), text.size());
+    std::string_view piece = text.substr(0, length);
+    if (piece.front() == '+') piece.remove_prefix(1);
+    double number = 0;
+    const auto [end, error] = std::from_chars(piece.data(), piece.data() + piece.size(), number);
+    if (error != std::errc() || end != piece.data() + piece.size()) return std::nullopt;
+    numbers.push_back(number);
+    text.remove_prefix(length);
+  }
+}
+
+}  // namespace osteomill

@@ -1,0 +1,138 @@
+#include <algorithm>
+#include <fstream>
+#include <numeric>
+
+#include "tests/shared_data.h"
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "osteomill/ct/read_scan.h"
+#include "osteomill/files/input_error.h"
+
+namespace osteomill {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using testing_support::shared_data;
+
+json read_json(const fs::path& path) {
+  return json::parse(std::ifstream(path));
+}
+
+// Some files of expectations say "hu_min", others "min" or "value_min".
+const json* find(const json& expected, std::initializer_list<const char*> names) {
+  for (const char* name : names) {
+    if (expected.contains(name)) return &expected[name];
+  }
+  return nullptr;
+}
+
+void expect_vector(const json* expected, const Vec3& found, double tolerance, const char* what) {
+  if (expected == nullptr) return;
+  for (int axis = 0; axis < 3; ++axis) {
+    EXPECT_NEAR((*expected)[static_cast<std::size_t>(axis)].get<double>(), found[axis], tolerance)
+        << what << " along " << axis;
+  }
+}
+
+void expect_samples(const json& samples, const DensityGrid& grid) {
+  for (const json& sample : samples) {
+    const json& ijk = sample["ijk"];
+    const VoxelIndex v{ijk[0].get<int>(), ijk[1].get<int>(), ijk[2].get<int>()};
+    ASSERT_TRUE(grid.contains(v)) << ijk;
+    const double value = find(sample, {"hu", "value"})->get<double>();
+    EXPECT_NEAR(grid[v], value, 1e-3 + 1e-6 * std::abs(value)) << "at " << ijk;
+  }
+}
+
+void expect_numbers(const json& expected, const Scan& scan) {
+  const GridGeometry& geometry = scan.grid.geometry();
+  if (const json* dims = find(expected, {"dims_xyz"})) {
+    EXPECT_EQ((dims->get<std::array<int, 3>>()), geometry.dims);
+  }
+  expect_vector(find(expected, {"spacing_xyz_mm"}), geometry.spacing_mm, 1e-4, "spacing");
+  expect_vector(find(expected, {"origin_mm", "origin_lps_mm"}), geometry.origin_mm, 1e-3, "origin");
+  if (const json* iop = find(expected, {"iop"})) {
+    for (int n = 0; n < 6; ++n) {
+      EXPECT_NEAR((*iop)[static_cast<std::size_t>(n)].get<double>(), geometry.direction(n % 3, n / 3), 1e-5);
+    }
+  }
+  const std::vector<float>& densities = scan.grid.densities();
+  const auto [least, greatest] = std::minmax_element(densities.begin(), densities.end());
+  const double mean =
+      std::accumulate(densities.begin(), densities.end(), 0.0) / static_cast<double>(densities.size());
+  const auto near = [](const json* number, double found, double tolerance) {
+    if (number != nullptr) {
+      EXPECT_NEAR(number->get<double>(), found, tolerance);
+    }
+  };
+  near(find(expected, {"hu_min", "min", "value_min"}), *least, 1e-3);
+  near(find(expected, {"hu_max", "max", "value_max"}), *greatest, 1e-3);
+  near(find(expected, {"hu_mean", "mean", "value_mean"}), mean, 1e-4);
+  if (const json* above = find(expected, {"voxels_above_iso"})) {
+    const double iso = expected["suggested_iso"].get<double>();
+    EXPECT_EQ(above->get<long>(),
+              std::count_if(densities.begin(), densities.end(), [&](float v) { return v > iso; }));
+  }
+  if (const json* samples = find(expected, {"samples"})) expect_samples(*samples, scan.grid);
+}
+
+// What expect.json says should happen: "load", "load_or_warn", "load_or_clean_error", "warn_or_error",
+// "error".
+void expect_outcome(const fs::path& path, const json& expected) {
+  SCOPED_TRACE(path.string() + ": " + expected["note"].get<std::string>());
+  const std::string outcome = expected["expect"].get<std::string>();
+  try {
+    const Scan scan = read_scan(path);
+    EXPECT_NE(outcome, "error") << "was read, and should have been refused";
+    const std::string warning = scan.warnings.empty() ? "" : scan.warnings.front();
+    EXPECT_TRUE(outcome != "load" || warning.empty()) << warning;
+    EXPECT_TRUE(outcome != "warn_or_error" || !warning.empty()) << "was read without a word";
+    if (outcome.starts_with("load")) expect_numbers(expected, scan);
+  } catch (const InputError& error) {
+    EXPECT_TRUE(outcome == "error" || outcome == "warn_or_error" || outcome == "load_or_clean_error")
+        << error.what();
+    EXPECT_NE(std::string(error.what()).find(path.filename().string()), std::string::npos) << error.what();
+    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
+  }
+}
+
+void expect_outcomes(const fs::path& folder) {
+  const json outcomes = read_json(folder / "expect.json");
+  for (const auto& [name, expected] : outcomes.items()) {
+    expect_outcome(folder / name, expected);
+  }
+}
+
+void expect_facts(const fs::path& folder) {
+  const json facts = read_json(folder / "facts.json");
+  for (const auto& [name, expected] : facts.items()) {
+    SCOPED_TRACE(name);
+    expect_numbers(expected, read_scan(folder / name));
+  }
+}
+
+TEST(ReadRealScan, DicomFoldersGoodOddAndBroken) {
+  OSTEOMILL_NEEDS_SHARED("tooth_dicom_cases/expect.json");
+  expect_outcomes(shared_data() / "tooth_dicom_cases");
+}
+
+TEST(ReadRealScan, VolumeFilesGoodOddAndBroken) {
+  OSTEOMILL_NEEDS_SHARED("volumes_odd/expect.json");
+  expect_outcomes(shared_data() / "volumes_odd");
+}
+
+class RealScanFacts : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(RealScanFacts, AreMet) {
+  OSTEOMILL_NEEDS_SHARED(GetParam());
+  expect_facts(shared_data() / GetParam());
+}
+
+INSTANTIATE_TEST_SUITE_P(ReadRealScan, RealScanFacts,
+                         ::testing::Values("tooth", "tooth_dicom", "cranium", "head_quarter", "jaw_labels",
+                                           "trabecular"));
+
+}  // namespace
+}  // namespace osteomill

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "osteomill/volume/grid_geometry.h"
+
+namespace osteomill {
+
+/// Where one slice of a series lies, as its header says. All in mm, in the patient's LPS frame W.
+struct SlicePlane {
+  /// What to call the slice in a message.
+  std::string name;
+  /// Two slices with the same one are copies of each other (SOPInstanceUID and frame).
+  std::string instance;
+  int columns = 0;
+  int rows = 0;
+  /// Distance of neighbouring columns (along i) and of neighbouring rows (along j).
+  double column_distance_mm = 0;
+  double row_distance_mm = 0;
+  /// Direction in which i, and j, grow.
+  Vec3 i_direction = Vec3::UnitX();
+  Vec3 j_direction = Vec3::UnitY();
+  /// Centre of the first pixel.
+  Vec3 position_mm = Vec3::Zero();
+};
+
+/// Slices put in order along their common normal.
+struct SliceStack {
+  /// The straight grid on which the slices lie, or nearly: see `drift_mm`.
+  GridGeometry geometry;
+  /// For every k the number of the slice that lies there; copies are left out.
+  std::vector<std::size_t> order;
+  /// By how much each slice lies further along i and j than the one below: a gantry tilt. Zero where the
+  /// stack is straight; else the grid's slices have to be shifted before they are in their place.
+  double drift_i_mm = 0;
+  double drift_j_mm = 0;
+  std::vector<std::string> warnings;
+};
+
+/// Puts the slices in order of their position along the normal, lowest first, whatever order they come in.
+/// Throws InputError naming `subject` where they make no regular grid: fewer than two, not all of one size,
+/// spacing and orientation, two at one position, a gap, uneven distances.
+SliceStack stack_slices(const std::string& subject, std::span<const SlicePlane> slices);
+
+}  // namespace osteomill

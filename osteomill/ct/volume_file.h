@@ -1,0 +1,14 @@
+#pragma once
+
+#include <filesystem>
+
+#include "osteomill/ct/itk_image.h"
+#include "osteomill/ct/read_scan.h"
+
+namespace osteomill {
+
+/// Reads a volume that lies in one file (or in a header and a file of voxels).
+/// Throws InputError naming the file.
+Scan read_volume_file(const std::filesystem::path& path, VolumeFormat format);
+
+}  // namespace osteomill
