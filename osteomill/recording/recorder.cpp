@@ -8,6 +8,11 @@
 #include <thread>
 
 #include <readerwriterqueue/readerwriterqueue.h>
+#ifdef __SANITIZE_THREAD__
+#include <sanitizer/tsan_interface.h>
+extern "C" void __tsan_ignore_thread_begin();
+extern "C" void __tsan_ignore_thread_end();
+#endif
 
 #include "osteomill/files/input_error.h"
 #include "osteomill/recording/recording.h"
@@ -32,6 +37,49 @@ bool is_plain_name(const std::string& name) {
   return !name.empty() && std::all_of(name.begin(), name.end(), plain);
 }
 
+// The thread sanitizer does not know the fences by which the queue orders its slots. It is told to leave the
+// slots alone, and that what was written before a record went in is seen by who took it out.
+class QueueAccess {
+ public:
+  explicit QueueAccess([[maybe_unused]] void* queue) {
+#ifdef __SANITIZE_THREAD__
+    queue_ = queue;
+    __tsan_release(queue_);
+    __tsan_ignore_thread_begin();
+#endif
+  }
+  ~QueueAccess() {
+#ifdef __SANITIZE_THREAD__
+    __tsan_ignore_thread_end();
+    __tsan_acquire(queue_);
+#endif
+  }
+  QueueAccess(const QueueAccess&) = delete;
+  QueueAccess& operator=(const QueueAccess&) = delete;
+
+ private:
+#ifdef __SANITIZE_THREAD__
+  void* queue_;
+#endif
+};
+
+class TickQueue {
+ public:
+  explicit TickQueue(std::size_t capacity) : queue_(capacity) {}
+
+  bool try_push(const TickRecord& record) noexcept {
+    const QueueAccess access(&queue_);
+    return queue_.try_enqueue(record);
+  }
+  bool try_pop(TickRecord& record) {
+    const QueueAccess access(&queue_);
+    return queue_.try_dequeue(record);
+  }
+
+ private:
+  moodycamel::ReaderWriterQueue<TickRecord> queue_;
+};
+
 }  // namespace
 
 struct Recorder::Impl {
@@ -50,15 +98,16 @@ struct Recorder::Impl {
   void write_until_stopped() noexcept {
     try {
       auto flushed = std::chrono::steady_clock::now();
-      for (bool last = false; !last;) {
-        // Read before the queue is drained: what was pushed before the stop is then still written.
-        last = stopping.load(std::memory_order_acquire);
-        drain();
-        if (const auto now = std::chrono::steady_clock::now(); last || now - flushed >= kFlushEvery) {
+      for (bool all_written = false; !all_written;) {
+        // Read before the queue: what was pushed before the stop is then still written.
+        const bool last = stopping.load(std::memory_order_acquire);
+        const bool emptied = write_some();
+        all_written = last && emptied;
+        if (const auto now = std::chrono::steady_clock::now(); all_written || now - flushed >= kFlushEvery) {
           file.flush(dropped.load(std::memory_order_relaxed));
           flushed = now;
         }
-        if (!last) std::this_thread::sleep_for(kLookEvery);
+        if (emptied && !last) std::this_thread::sleep_for(kLookEvery);
       }
     } catch (...) {
       failure = std::current_exception();
@@ -66,21 +115,19 @@ struct Recorder::Impl {
     }
   }
 
-  void drain() {
-    // One capacity at most, so that a fast producer cannot put off the flush.
-    for (std::size_t left = queue.max_capacity(); left > 0;) {
-      rows.clear();
-      TickRecord record;
-      while (rows.size() < std::min(left, kRowsAtOnce) && queue.try_dequeue(record)) rows.push_back(record);
-      if (rows.empty()) return;
-      file.append(rows);
-      left -= rows.size();
-    }
+  // A bounded part of the queue, so that records which come as fast as they are written cannot put off the
+  // flush.
+  bool write_some() {
+    rows.clear();
+    TickRecord record;
+    while (rows.size() < kRowsAtOnce && queue.try_pop(record)) rows.push_back(record);
+    file.append(rows);
+    return rows.size() < kRowsAtOnce;
   }
 
   fs::path path;
   RecordingFile file;
-  moodycamel::ReaderWriterQueue<TickRecord> queue;
+  TickQueue queue;
   std::vector<TickRecord> rows;
   std::vector<RunPicture> pictures;
   std::atomic<std::uint64_t> dropped{0};
@@ -98,13 +145,13 @@ Recorder::Recorder(const fs::path& path, const RunDescription& description, std:
 Recorder::~Recorder() = default;
 
 bool Recorder::push(const TickRecord& record) noexcept {
-  if (impl_->queue.try_enqueue(record)) return true;
+  if (impl_->queue.try_push(record)) return true;
   impl_->dropped.fetch_add(1, std::memory_order_relaxed);
   return false;
 }
 
 void Recorder::push_waiting(const TickRecord& record) {
-  while (!impl_->queue.try_enqueue(record)) {
+  while (!impl_->queue.try_push(record)) {
     if (failed()) std::rethrow_exception(impl_->failure);
     std::this_thread::sleep_for(200us);
   }
