@@ -2,7 +2,6 @@
 
 #include "osteomill/geometry/pose.h"
 #include "osteomill/geometry/wrench.h"
-#include "osteomill/haptics/setting_fields.h"
 #include "osteomill/tool/milling_tool.h"
 #include "osteomill/volume/volume.h"
 
@@ -45,8 +44,6 @@ class HapticAlgorithm {
 
   /// How many sample points it works with: vertices, or points of the shell as it stands. Not for the tick.
   virtual int sample_point_count() const = 0;
-  /// Every setting in effect, switches among them. Not for the tick.
-  virtual std::vector<SettingValue> settings() const = 0;
 };
 
 }  // namespace osteomill

@@ -1,0 +1,73 @@
+#include "osteomill/haptics/line_proxy/bone_march.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "osteomill/volume/isosurface.h"
+
+namespace osteomill::line_proxy {
+
+namespace {
+
+struct Span {
+  double first = 0.0;
+  double last = 1.0;
+};
+
+// The part of the segment, as fractions of it, in the grid and the one voxel around it where densities still
+// fall.
+std::optional<Span> span_in_grid(const GridGeometry& geometry, const Vec3& from_W, const Vec3& to_W) {
+  const Vec3 from = geometry.voxel_from_world(from_W);
+  const Vec3 way = geometry.voxel_from_world(to_W) - from;
+  Span span;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double least = -1.0;
+    const double greatest = geometry.dims[static_cast<std::size_t>(axis)];
+    if (way[axis] == 0.0) {
+      if (from[axis] < least || from[axis] > greatest) return std::nullopt;
+      continue;
+    }
+    const double a = (least - from[axis]) / way[axis];
+    const double b = (greatest - from[axis]) / way[axis];
+    span.first = std::max(span.first, std::min(a, b));
+    span.last = std::min(span.last, std::max(a, b));
+  }
+  if (!(span.first <= span.last)) return std::nullopt;
+  return span;
+}
+
+}  // namespace
+
+std::optional<Vec3> crossing_in_grid(const Volume& volume, const Vec3& from_W, const Vec3& to_W) {
+  const auto span = span_in_grid(volume.geometry(), from_W, to_W);
+  if (!span) return std::nullopt;
+  const Vec3 way = to_W - from_W;
+  // Unclipped ends are passed on as they are: a start on the surface must not move by a rounding error.
+  const Vec3 first = span->first > 0.0 ? Vec3(from_W + span->first * way) : from_W;
+  const Vec3 last = span->last < 1.0 ? Vec3(from_W + span->last * way) : to_W;
+  return first_crossing(volume, first, last);
+}
+
+std::optional<Vec3> nearest_exit(const Volume& volume, const Vec3& point_W, double reach_mm) {
+  if (!in_bone(volume, point_W)) return point_W;
+  const double step_mm = 0.5 * volume.geometry().spacing_mm.minCoeff();
+  std::optional<Vec3> exit;
+  for (int n = 0; n < 27; ++n) {
+    if (n == 13) continue;  // no direction at all
+    const Vec3 direction = Vec3(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1).normalized();
+    Vec3 inside = point_W;
+    // Each found exit shortens the reach of the rest.
+    for (double distance = step_mm; distance <= reach_mm; distance += step_mm) {
+      const Vec3 here = point_W + distance * direction;
+      if (!in_bone(volume, here)) {
+        exit = bisect_crossing(volume, here, inside);
+        reach_mm = (*exit - point_W).norm();
+        break;
+      }
+      inside = here;
+    }
+  }
+  return exit;
+}
+
+}  // namespace osteomill::line_proxy

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "osteomill/haptics/haptic_algorithm.h"
+#include "osteomill/haptics/line_proxy/line_proxy_settings.h"
+
+namespace osteomill {
+
+/// Algorithm 1 of Eriksson 2012: the tool is its centreline, a row of vertices. Where the tip's vertex is in
+/// bone a point proxy stays on the surface and a spring pulls the hand to it; where the shaft, laid at that
+/// proxy, is in bone an intersection point (IP) stays on the surface and turns the hand about the tip. Tip
+/// and shaft remember their contacts separately. Threads and real time: as HapticAlgorithm.
+class LineProxy final : public HapticAlgorithm {
+ public:
+  /// Throws std::invalid_argument where a setting is out of range.
+  explicit LineProxy(const LineProxySettings& settings);
+
+  void prepare(const Scene& scene) override;
+  HapticStep step(const Pose& X_WD, double dt_s) override;
+  /// Nothing to do: every step reads the volume itself.
+  void volume_changed(const VolumeChange&) override {}
+  void reset() override;
+
+  /// For drawing and tests: the tip's proxy and the intersection point in W, where there are any.
+  const std::optional<Vec3>& tip_proxy_W() const { return memory_.tip_proxy_W; }
+  const std::optional<Vec3>& intersection_W() const { return memory_.intersection_W; }
+
+ private:
+  // What one tick leaves to the next.
+  struct Memory {
+    std::optional<Vec3> device_tip_W;
+    std::optional<Vec3> tip_proxy_W;
+    // The centreline, laid at the tip's proxy where there is one.
+    std::optional<Pose> X_WL;
+    std::optional<Vec3> intersection_W;
+    Vec3 arm_W = Vec3::Zero();
+    Vec3 reaction_N = Vec3::Zero();
+    // The simulated tool against the device: moved by, turned by (a rotation vector in W).
+    Vec3 tool_shift_W = Vec3::Zero();
+    Vec3 tool_turn_W = Vec3::Zero();
+  };
+
+  std::span<const Vec3> shaft_vertices() const { return std::span(vertices_T_).subspan(1); }
+  void follow_with_tip_proxy(const Vec3& device_tip_W);
+  std::optional<Vec3> first_tip_proxy(const Vec3& device_tip_W) const;
+  void follow_with_intersection(const Pose& X_WL);
+  std::optional<Vec3> first_intersection(const Pose& X_WL) const;
+  void slide_intersection(const Pose& X_WL);
+  bool is_refused(const Vec3& intersection_W, const Vec3& expected_W, const Pose& X_WL) const;
+  void turn_reaction(const Pose& X_WL);
+  double shaft_share(double arm_mm) const;
+  Pose touching_tool(const Pose& X_WD) const;
+  Pose simulated_tool(const Pose& X_WD);
+  void forget_what_is_not_finite();
+
+  LineProxySettings settings_;
+  Scene scene_;
+  std::vector<Vec3> vertices_T_;
+  Memory memory_;
+};
+
+}  // namespace osteomill

@@ -1,0 +1,94 @@
+#include "osteomill/haptics/line_proxy/point_proxy.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "osteomill/haptics/line_proxy/bone_march.h"
+#include "osteomill/volume/isosurface.h"
+
+namespace osteomill::line_proxy {
+
+namespace {
+
+constexpr int kSlides = 8;
+// Points on the isosurface are known to within the tolerance of bisect_crossing (1e-6 mm).
+constexpr double kTouching_mm = 4e-6;
+constexpr double kAtRest_mm = 1e-5;
+
+double voxel_mm(const Volume& volume) {
+  return volume.geometry().spacing_mm.minCoeff();
+}
+
+// A point that is in bone moved out along the surface's normal, two voxels at most.
+std::optional<Vec3> raised_out(const Volume& volume, const Vec3& point_W, const NormalRule& rule) {
+  const auto normal = surface_normal(volume, point_W, rule);
+  if (!normal) return std::nullopt;
+  Vec3 inside = point_W;
+  for (int n = 1; n <= 8; ++n) {
+    const Vec3 here = point_W + 0.25 * n * voxel_mm(volume) * *normal;
+    if (!in_bone(volume, here)) return bisect_crossing(volume, here, inside);
+    inside = here;
+  }
+  return std::nullopt;
+}
+
+// Along the tangent and back to the isosurface. Where the surface falls away by more than 45 degrees the
+// point is left in the air, for the next march; where it rises by more than that the slide ends at the wall.
+Vec3 slid(const Volume& volume, const Vec3& proxy_W, const Vec3& tangent, const Vec3& normal) {
+  const Vec3 aside = proxy_W + tangent;
+  const double reach_mm = tangent.norm() + kTouching_mm;
+  if (!in_bone(volume, aside)) {
+    const Vec3 below = aside - reach_mm * normal;
+    return in_bone(volume, below) ? bisect_crossing(volume, aside, below) : aside;
+  }
+  const Vec3 above = aside + reach_mm * normal;
+  return bisect_crossing(volume, in_bone(volume, above) ? proxy_W : above, aside);
+}
+
+Vec3 shortened(const Vec3& vector, double limit) {
+  const double length = vector.norm();
+  return length <= limit ? vector : Vec3(vector * (limit / length));
+}
+
+// Straight toward the probe until bone is in the way or the travel is used up.
+Vec3 marched(const Volume& volume, const Vec3& proxy_W, const Vec3& probe_W, double travel_mm) {
+  const Vec3 way = probe_W - proxy_W;
+  const double distance = way.norm();
+  if (distance == 0.0) return probe_W;
+  if (distance > kTouching_mm && in_bone(volume, proxy_W + (kTouching_mm / distance) * way)) return proxy_W;
+  const Vec3 target = distance <= travel_mm ? probe_W : Vec3(proxy_W + (travel_mm / distance) * way);
+  return crossing_in_grid(volume, proxy_W, target).value_or(target);
+}
+
+}  // namespace
+
+Vec3 move_point_proxy(const Volume& volume, const Vec3& proxy_W, const Vec3& probe_W,
+                      const PointProxyRule& rule) {
+  Vec3 proxy = proxy_W;
+  if (in_bone(volume, proxy)) {
+    const auto out = raised_out(volume, proxy, rule.normal);
+    if (!out) return proxy_W;
+    proxy = *out;
+  }
+  double travel_mm = rule.travel_limit_mm;
+  // A slide of more than a voxel could step over a wall or a crack.
+  const double slide_limit_mm = voxel_mm(volume);
+  for (int n = 0; n < kSlides && travel_mm > 0.0; ++n) {
+    const Vec3 start = proxy;
+    proxy = marched(volume, proxy, probe_W, travel_mm);
+    travel_mm -= (proxy - start).norm();
+    if (proxy == probe_W || !(travel_mm > 0.0)) return proxy;
+    const auto normal = surface_normal(volume, proxy, rule.normal);
+    if (!normal) return proxy;
+    const Vec3 to_probe = probe_W - proxy;
+    const Vec3 tangent =
+        shortened(to_probe - to_probe.dot(*normal) * *normal, std::min(slide_limit_mm, travel_mm));
+    if (tangent.norm() < kAtRest_mm) return proxy;
+    const Vec3 next = slid(volume, proxy, tangent, *normal);
+    travel_mm -= (next - proxy).norm();
+    proxy = next;
+  }
+  return proxy;
+}
+
+}  // namespace osteomill::line_proxy

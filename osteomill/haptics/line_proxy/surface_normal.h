@@ -1,0 +1,21 @@
+#pragma once
+
+#include <optional>
+
+#include "osteomill/volume/sampling.h"
+#include "osteomill/volume/volume.h"
+
+namespace osteomill::line_proxy {
+
+/// How the normal of the isosurface is found.
+struct NormalRule {
+  GradientKernel kernel = GradientKernel::smoothed;
+  /// 0 takes the gradient at the point alone; otherwise the sum of four, at the corners of a regular
+  /// tetrahedron this far (in voxels) from it, which halves the turning of the normal with the grid.
+  double spread_voxels = 1.0;
+};
+
+/// The unit vector out of the bone at a point, or nothing where the density is flat. Safe in the haptic tick.
+std::optional<Vec3> surface_normal(const Volume& volume, const Vec3& point_W, const NormalRule& rule);
+
+}  // namespace osteomill::line_proxy

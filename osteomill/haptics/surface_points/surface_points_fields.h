@@ -1,0 +1,13 @@
+#pragma once
+
+#include <span>
+
+#include "osteomill/haptics/surface_points/surface_points_settings.h"
+#include "osteomill/haptics/setting_fields.h"
+
+namespace osteomill {
+
+/// The names under which recordings list and configurations set each member of SurfacePointsSettings.
+std::span<const SettingField<SurfacePointsSettings>> surface_points_fields();
+
+}  // namespace osteomill
