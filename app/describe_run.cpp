@@ -12,9 +12,10 @@ std::string point_text(const Vec3& v) {
   return fmt::format("{},{},{}", v.x(), v.y(), v.z());
 }
 
-void add_algorithm(Settings& settings, const HapticAlgorithm& algorithm) {
-  settings.push_back({"sample_points", static_cast<double>(algorithm.sample_point_count()), ""});
-  for (const SettingValue& value : algorithm.settings()) {
+void add_algorithm(Settings& settings, AlgorithmId algorithm, const HapticSettings& haptics,
+                   int sample_points) {
+  settings.push_back({"sample_points", static_cast<double>(sample_points), ""});
+  for (const SettingValue& value : describe_algorithm(algorithm, haptics)) {
     settings.push_back({"algorithm." + value.name, value.value, value.unit});
   }
 }
@@ -58,8 +59,7 @@ void add_script(Settings& settings, const ScriptSettings& script, const MillingE
 
 }  // namespace
 
-RunDescription describe_run(const TrialPlan& plan, AlgorithmId algorithm, const HapticAlgorithm& prepared,
-                            RunPhase phase) {
+RunDescription describe_run(const TrialPlan& plan, AlgorithmId algorithm, int sample_points, RunPhase phase) {
   RunDescription run;
   run.program_version = OSTEOMILL_VERSION;
   run.scan_name = plan.bone.name;
@@ -73,7 +73,7 @@ RunDescription describe_run(const TrialPlan& plan, AlgorithmId algorithm, const 
   run.seed = plan.settings.hand_and_device.seed;
   run.tick_period_s = plan.settings.tick_s;
   run.settings.push_back({std::string(kCommandLineKey), plan.command_line, ""});
-  add_algorithm(run.settings, prepared);
+  add_algorithm(run.settings, algorithm, plan.settings.haptics, sample_points);
   add_milling(run.settings, plan);
   add_hand(run.settings, plan.settings.hand_and_device.hand);
   add_device(run.settings, plan.settings.hand_and_device.handle, plan.settings.limits);

@@ -5,7 +5,6 @@
 namespace osteomill::app {
 
 /// All that a recording says of the run it holds: program, scan, tool, every setting with its unit.
-RunDescription describe_run(const TrialPlan& plan, AlgorithmId algorithm, const HapticAlgorithm& prepared,
-                            RunPhase phase);
+RunDescription describe_run(const TrialPlan& plan, AlgorithmId algorithm, int sample_points, RunPhase phase);
 
 }  // namespace osteomill::app

@@ -31,8 +31,8 @@ std::vector<fs::path> record_trial(const TrialPlan& plan, AlgorithmId algorithm,
   std::vector<std::unique_ptr<Recorder>> recorders;
   for (const RunPhase phase : kAllPhases) {
     paths.push_back(folder / fmt::format("{}-{}.h5", name_of(algorithm), name_of(phase)));
-    recorders.push_back(
-        std::make_unique<Recorder>(paths.back(), describe_run(plan, algorithm, trial.algorithm(), phase)));
+    recorders.push_back(std::make_unique<Recorder>(
+        paths.back(), describe_run(plan, algorithm, trial.algorithm().sample_point_count(), phase)));
   }
   Recorder& milling = *recorders[0];
   Recorder& holding = *recorders[1];

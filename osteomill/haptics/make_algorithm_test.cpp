@@ -1,10 +1,9 @@
 #include "osteomill/haptics/make_algorithm.h"
 
-#include <gtest/gtest.h>
-
 #include <stdexcept>
 
 #include "tests/shapes.h"
+#include <gtest/gtest.h>
 
 namespace osteomill {
 namespace {

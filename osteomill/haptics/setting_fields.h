@@ -51,8 +51,8 @@ void set_setting(Settings& settings, std::span<const SettingField<Settings>> fie
       place(settings) = static_cast<T>(value);
       if (static_cast<double>(place(settings)) == value) return;
       const bool is_switch = std::is_same_v<T, bool>;
-      throw std::invalid_argument(std::string(name) + (is_switch ? " is a switch: true or false"
-                                                                 : " takes a whole number"));
+      throw std::invalid_argument(std::string(name) +
+                                  (is_switch ? " is a switch: true or false" : " takes a whole number"));
     };
     std::visit(assign, field.place);
     return;

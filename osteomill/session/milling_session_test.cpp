@@ -26,7 +26,6 @@ class ScriptedAlgorithm : public HapticAlgorithm {
   void volume_changed(const VolumeChange& change) override { changes.push_back(change); }
   void reset() override { ++resets; }
   int sample_point_count() const override { return 1; }
-  std::vector<SettingValue> settings() const override { return {}; }
 };
 
 class MillingSessionTest : public ::testing::Test {

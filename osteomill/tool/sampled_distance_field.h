@@ -18,8 +18,8 @@ class SampledDistanceField {
   /// than 16 million nodes.
   SampledDistanceField(const MillingTool& tool, double spacing_mm);
 
-  /// A spacing that suits the (valid) tool: a 25th of its smaller radius, or more where that took over 2 million
-  /// nodes.
+  /// A spacing that suits the (valid) tool: a 25th of its smaller radius, or more where that took over 2
+  /// million nodes.
   static double suitable_spacing_mm(const MillingTool& tool);
 
   double spacing_mm() const { return spacing_mm_; }

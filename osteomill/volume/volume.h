@@ -28,7 +28,8 @@ class Volume {
     grid_.set(v, density);
     bricks_.lower(v, density);
   }
-  /// Lowers `count` voxels of one row, whose columns ascend. Safe in the haptic tick, and faster than one by one.
+  /// Lowers `count` voxels of one row, whose columns ascend. Safe in the haptic tick, and faster than one by
+  /// one.
   void lower_row(int j, int k, const int* columns, const float* densities, std::size_t count) {
     for (std::size_t n = 0; n < count; ++n) grid_.set({columns[n], j, k}, densities[n]);
     bricks_.lower_row(j, k, columns, densities, count);

@@ -23,6 +23,7 @@ class LineProxy final : public HapticAlgorithm {
   /// Nothing to do: every step reads the volume itself.
   void volume_changed(const VolumeChange&) override {}
   void reset() override;
+  int sample_point_count() const override { return static_cast<int>(vertices_T_.size()); }
 
   /// For drawing and tests: the tip's proxy and the intersection point in W, where there are any.
   const std::optional<Vec3>& tip_proxy_W() const { return memory_.tip_proxy_W; }

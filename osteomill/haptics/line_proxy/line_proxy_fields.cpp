@@ -27,6 +27,8 @@ constexpr SettingField<S> kFields[] = {
 
 }  // namespace
 
-std::span<const SettingField<LineProxySettings>> line_proxy_fields() { return kFields; }
+std::span<const SettingField<LineProxySettings>> line_proxy_fields() {
+  return kFields;
+}
 
 }  // namespace osteomill

@@ -25,6 +25,7 @@ class PointShellAlgorithm final : public HapticAlgorithm {
   HapticStep step(const Pose& X_WD, double dt_s) override;
   void volume_changed(const VolumeChange& change) override;
   void reset() override;
+  int sample_point_count() const override { return static_cast<int>(shell_.point_count()); }
 
   const PointShellSettings& settings() const { return settings_; }
   const PointShell& shell() const { return shell_; }

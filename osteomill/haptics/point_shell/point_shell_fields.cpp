@@ -30,6 +30,8 @@ constexpr SettingField<S> kFields[] = {
 
 }  // namespace
 
-std::span<const SettingField<PointShellSettings>> point_shell_fields() { return kFields; }
+std::span<const SettingField<PointShellSettings>> point_shell_fields() {
+  return kFields;
+}
 
 }  // namespace osteomill

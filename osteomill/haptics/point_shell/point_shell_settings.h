@@ -12,7 +12,7 @@ namespace osteomill {
 /// What the points of the shell are and how they are kept up.
 struct ShellRules {
   /// Coarseness: a cell of the shell is this many voxels wide along each axis. 1 takes every surface voxel.
-  int scale = 3;
+  int scale = 1;
   /// Where `scale` > 1. Off (paper): the density is sampled again on the coarse grid, and the shell is that
   /// grid's surface voxels. On: a coarse cell stands for the surface voxels of the scan within it, at their
   /// weighted mean.

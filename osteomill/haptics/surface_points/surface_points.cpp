@@ -30,6 +30,12 @@ void SurfacePoints::reset() {
   for (Fan& slice : slices_) slice.held_force_W_N.setZero();
 }
 
+int SurfacePoints::sample_point_count() const {
+  std::size_t count = sphere_.vertices_T.size();
+  for (const Fan& slice : slices_) count += slice.vertices_T.size();
+  return static_cast<int>(count);
+}
+
 // Brings a fan's force up to date and says how many of its vertices collide.
 int SurfacePoints::update_force(Fan& fan, const Pose& X_WD) const {
   const Vec3 centre_W = X_WD * fan.centre_T;

@@ -24,6 +24,7 @@ class SurfacePoints final : public HapticAlgorithm {
   HapticStep step(const Pose& X_WD, double dt_s) override;
   void volume_changed(const VolumeChange&) override {}
   void reset() override;
+  int sample_point_count() const override;
 
  private:
   // The vertices that share a centre: the sphere, or a slice.

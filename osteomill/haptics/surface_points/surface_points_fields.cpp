@@ -15,6 +15,8 @@ constexpr SettingField<S> kFields[] = {
 
 }  // namespace
 
-std::span<const SettingField<SurfacePointsSettings>> surface_points_fields() { return kFields; }
+std::span<const SettingField<SurfacePointsSettings>> surface_points_fields() {
+  return kFields;
+}
 
 }  // namespace osteomill

@@ -2,8 +2,8 @@
 
 #include <span>
 
-#include "osteomill/haptics/surface_points/surface_points_settings.h"
 #include "osteomill/haptics/setting_fields.h"
+#include "osteomill/haptics/surface_points/surface_points_settings.h"
 
 namespace osteomill {
 
