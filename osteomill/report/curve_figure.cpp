@@ -1,0 +1,202 @@
+#include "osteomill/report/curve_figure.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include "osteomill/report/thin_out.h"
+
+namespace osteomill {
+
+namespace {
+
+constexpr double kFigureWidth_px = 1150;
+
+struct Curve {
+  AlgorithmId algorithm;
+  std::string file;
+  // The sum of all changes from sample to sample: how much of the panel the curve covers.
+  double restlessness = 0;
+};
+
+std::string data_file(const CurveColumn& column, const MeasuredRun& run) {
+  const RunDescription& d = run.recording->description;
+  return fmt::format("{}-{}-{}.dat", column.name, name_of(d.phase), name_of(d.algorithm));
+}
+
+Curve write_curve(const CurveColumn& column, const MeasuredRun& run, std::size_t bins,
+                  const TemporaryFolder& work) {
+  const std::vector<TickRecord>& records = run.recording->records;
+  std::vector<double> values;
+  values.reserve(records.size());
+  for (const TickRecord& record : records) values.push_back(column.value(record));
+  Curve curve{run.recording->description.algorithm, data_file(column, run)};
+  for (std::size_t n = 1; n < values.size(); ++n) curve.restlessness += std::abs(values[n] - values[n - 1]);
+  std::ofstream out(work / curve.file);
+  for (const std::size_t n : thin_out_curve(values, bins)) {
+    out << fmt::format("{:.4f} {:.5g}\n", records[n].time_s - records.front().time_s, values[n]);
+  }
+  return curve;
+}
+
+double last_time_s(const RunGroup& group) {
+  double last = 0;
+  for (const MeasuredRun& run : group.runs) {
+    const auto& records = run.recording->records;
+    last = std::max(
+        last, records.back().time_s - records.front().time_s + run.recording->description.tick_period_s);
+  }
+  return last;
+}
+
+std::string panel_title(RunPhase phase) {
+  return phase == RunPhase::milling ? "Milling" : "Holding still, not milling";
+}
+
+// Drawn by hand at the figure's top: gnuplot's own is fitted to one panel, and is broken into rows where that
+// is narrow.
+std::string legend(const RunGroup& group, double height_px) {
+  constexpr double kEntry_px = 220, kLine_px = 40, kTop_px = 26;
+  const auto algorithms = group.algorithms();
+  double x = 0.5 * (kFigureWidth_px - kEntry_px * static_cast<double>(algorithms.size()));
+  const double y = 1 - kTop_px / height_px;
+  std::string script;
+  int tag = 101;
+  for (const AlgorithmId algorithm : algorithms) {
+    script += fmt::format(
+        "set arrow {0} from screen {1:.4f},screen {2:.4f} to screen {3:.4f},screen {2:.4f} nohead lw 4 lc "
+        "rgb '{4}'\n"
+        "set label {0} '{5}' at screen {6:.4f},screen {2:.4f} left noenhanced\n",
+        tag++, x / kFigureWidth_px, y, (x + kLine_px) / kFigureWidth_px, colour_of(algorithm),
+        numbered_name(algorithm), (x + kLine_px + 10) / kFigureWidth_px);
+    x += kEntry_px;
+  }
+  return script;
+}
+
+// A dashed line across the panel that says what it stands for.
+std::string marked_line(double y, const char* text) {
+  return fmt::format(
+      "set arrow 1 from graph 0,first {0} to graph 1,first {0} nohead dt 2 lw 1.5 lc rgb '#555555' front\n"
+      "set label 1 '{1}' at graph 0.99,first {0} right offset 0,-0.7 front tc rgb '#444444'",
+      y, text);
+}
+
+struct Place {
+  double left, right, bottom, top;
+};
+
+Place panel_place(std::size_t column, std::size_t columns, std::size_t row, std::size_t rows,
+                  double height_px) {
+  const double left_px = 96, right_px = 24, top_px = 84, bottom_px = 62, between_px = 70;
+  const double wide = kFigureWidth_px / static_cast<double>(columns);
+  const double high = (height_px - top_px - bottom_px + between_px) / static_cast<double>(rows);
+  const double top = height_px - top_px - static_cast<double>(row) * high;
+  const double left = static_cast<double>(column) * wide;
+  return {(left + left_px) / kFigureWidth_px, (left + wide - right_px) / kFigureWidth_px,
+          (top - high + between_px) / height_px, top / height_px};
+}
+
+std::string panel(const RunGroup& group, const CurveColumn& column, RunPhase phase, const Place& place,
+                  bool lowest, std::size_t bins, const TemporaryFolder& work) {
+  std::vector<Curve> curves;
+  for (const AlgorithmId algorithm : group.algorithms()) {
+    if (const MeasuredRun* run = group.find(algorithm, phase)) {
+      curves.push_back(write_curve(column, *run, bins, work));
+    }
+  }
+  std::stable_sort(curves.begin(), curves.end(),
+                   [](const Curve& a, const Curve& b) { return a.restlessness > b.restlessness; });
+  std::string script = fmt::format(
+      "set lmargin at screen {:.4f}\nset rmargin at screen {:.4f}\nset bmargin at screen {:.4f}\n"
+      "set tmargin at screen {:.4f}\nset title '{}' offset 0,-0.4\nset ylabel '{}'\n{}\n{}\n",
+      place.left, place.right, place.bottom, place.top, panel_title(phase), column.label,
+      lowest ? "set xlabel 'Time (s)'" : "unset xlabel", column.setup);
+  std::string plot;
+  for (const Curve& curve : curves) {
+    plot += fmt::format("{}'{}' with lines lw 1.2 lc rgb '{}' notitle", plot.empty() ? "plot " : ", ",
+                        curve.file, colour_of(curve.algorithm));
+  }
+  return script + plot;
+}
+
+double rate_of(const TickRecord& record) {
+  return 1e6 / std::max(1000.0, record.compute_us + record.milling_us);
+}
+
+double lowest_rate_hz(const RunGroup& group) {
+  double lowest = 1000;
+  for (const MeasuredRun& run : group.runs) {
+    for (const TickRecord& record : run.recording->records) lowest = std::min(lowest, rate_of(record));
+  }
+  return lowest;
+}
+
+// Shared by the panels of a column, so that the phases can be compared.
+std::string common_range(const RunGroup& group, const std::function<double(const TickRecord&)>& value) {
+  double greatest = 0;
+  for (const MeasuredRun& run : group.runs) {
+    for (const TickRecord& record : run.recording->records) greatest = std::max(greatest, value(record));
+  }
+  return fmt::format("set yrange [0:{:.6g}]", greatest > 0 ? 1.06 * greatest : 1.0);
+}
+
+std::string figure_name(const char* stem, const RunGroup& group) {
+  return fmt::format("{}_{}", stem, name_of(group.mode));
+}
+
+}  // namespace
+
+Figure draw_curves(const RunGroup& group, const std::string& name, const std::vector<CurveColumn>& columns,
+                   const std::filesystem::path& folder) {
+  const TemporaryFolder work;
+  const std::vector<RunPhase> phases = group.phases();
+  FigureScript script{name, static_cast<int>(kFigureWidth_px), phases.size() > 1 ? 760 : 460, ""};
+  script.body = fmt::format(
+      "set multiplot\nset border 3 lc rgb '#444444'\nset tics nomirror out scale 0.6\n"
+      "set grid lc rgb '#dddddd' lt 1 lw 0.7\nset xrange [0:{:.6g}]\n"
+      "unset key\n",
+      last_time_s(group));
+  const std::size_t bins = 1000 / columns.size();
+  script.body += legend(group, script.height_px);
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    for (std::size_t row = 0; row < phases.size(); ++row) {
+      const Place place = panel_place(c, columns.size(), row, phases.size(), script.height_px);
+      script.body += panel(group, columns[c], phases[row], place, row + 1 == phases.size(), bins, work);
+      // Panels drawn later would print the legend again, on top of itself.
+      script.body += "\nunset label\nunset arrow\n";
+    }
+    script.body += "unset logscale\nset format y\n";
+  }
+  script.body += "unset multiplot\n";
+  return draw_figure(script, work, folder);
+}
+
+Figure draw_rate_figure(const RunGroup& group, const std::filesystem::path& folder) {
+  const double floor_hz = std::min(900.0, 100.0 * std::floor(lowest_rate_hz(group) / 100.0));
+  const CurveColumn rate{"rate", "Haptic rate (Hz)", rate_of,
+                         fmt::format("set yrange [{:.6g}:1020]\n{}", floor_hz,
+                                     marked_line(kLeastRate_hz, "950 Hz, the least acceptable"))};
+  const CurveColumn compute{"compute", "Compute time of a tick (µs)",
+                            [](const TickRecord& r) { return std::max(0.1, r.compute_us + r.milling_us); },
+                            "set logscale y\nset yrange [*:3000]\nset format y '%g'\n" +
+                                marked_line(1000, "1 ms, a tick at 1000 Hz")};
+  return draw_curves(group, figure_name("fig6_rate", group), {rate, compute}, folder);
+}
+
+Figure draw_force_figure(const RunGroup& group, const std::filesystem::path& folder) {
+  const auto magnitude = [](const TickRecord& r) { return r.wrench.force_N.norm(); };
+  return draw_curves(group, figure_name("fig7_force", group),
+                     {{"force", "Force (N)", magnitude, common_range(group, magnitude)}}, folder);
+}
+
+Figure draw_torque_figure(const RunGroup& group, const std::filesystem::path& folder) {
+  const auto magnitude = [](const TickRecord& r) { return r.wrench.torque_Nmm.norm(); };
+  return draw_curves(group, figure_name("fig8_torque", group),
+                     {{"torque", "Torque (N mm)", magnitude, common_range(group, magnitude)}}, folder);
+}
+
+}  // namespace osteomill

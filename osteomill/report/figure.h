@@ -1,0 +1,37 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "osteomill/haptics/algorithm_id.h"
+#include "osteomill/report/gnuplot.h"
+
+namespace osteomill {
+
+/// A figure to be drawn as SVG and as PNG from one description.
+struct FigureScript {
+  /// Of its files, without extension.
+  std::string name;
+  int width_px = 1150;
+  int height_px = 760;
+  /// gnuplot commands; the files that they name lie in the folder where it is run.
+  std::string body;
+};
+
+/// A figure that was drawn.
+struct Figure {
+  std::filesystem::path svg;
+  std::filesystem::path png;
+};
+
+/// Runs gnuplot in `work`, where the figure's data lie, and puts NAME.svg and NAME.png into `folder`, each
+/// whole or not at all. Throws InputError where gnuplot or writing fails.
+Figure draw_figure(const FigureScript& script, const TemporaryFolder& work,
+                   const std::filesystem::path& folder);
+
+/// The paper's colours, as gnuplot and HTML write them: 1 red, 2 green, 3 black. The green is light and the
+/// red dark, so that they differ in brightness too.
+std::string_view colour_of(AlgorithmId algorithm);
+
+}  // namespace osteomill

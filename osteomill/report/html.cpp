@@ -1,0 +1,114 @@
+#include "osteomill/report/html.h"
+
+#include <fstream>
+#include <iterator>
+
+#include <fmt/format.h>
+
+#include "osteomill/files/input_error.h"
+
+namespace osteomill {
+
+namespace {
+
+constexpr const char* kStyle = R"(
+body { font: 16px/1.5 system-ui, "DejaVu Sans", sans-serif; color: #1b1b1b; background: #fff;
+       max-width: 1200px; margin: 2em auto; padding: 0 1.2em; }
+h1 { font-size: 1.7em; line-height: 1.2; } h2 { font-size: 1.3em; margin-top: 2em; border-bottom: 1px solid #ccc; }
+h3 { font-size: 1.08em; margin-top: 1.6em; }
+.wide { overflow-x: auto; }
+table { border-collapse: collapse; margin: 0.8em 0; font-size: 14px; }
+th, td { padding: 0.3em 0.7em; border-bottom: 1px solid #ddd; text-align: left; vertical-align: top; }
+thead th { border-bottom: 2px solid #888; } tbody th { font-weight: normal; }
+.numbers td, .numbers thead th + th { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
+.agrees { color: #146c2e; font-weight: 600; white-space: nowrap; }
+.differs { color: #a4101f; font-weight: 600; white-space: nowrap; }
+.none { color: #666; white-space: nowrap; }
+.notice { background: #fff4d6; border-left: 4px solid #d9a400; padding: 0.5em 1em; }
+figure { margin: 1.2em 0 2em; } figure img { max-width: 100%; height: auto; border: 1px solid #e3e3e3; }
+figcaption { font-size: 14px; color: #444; margin-top: 0.3em; max-width: 60em; }
+pre { background: #f4f4f4; padding: 0.8em 1em; overflow-x: auto; }
+)";
+
+std::string bytes_of(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw InputError(file.string(), "cannot be read");
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+std::string table_row(const std::vector<std::string>& cells, bool header) {
+  std::string row = "<tr>";
+  for (std::size_t n = 0; n < cells.size(); ++n) {
+    const char* tag = header || n == 0 ? "th" : "td";
+    row += fmt::format("<{0}>{1}</{0}>", tag, cells[n]);
+  }
+  return row + "</tr>\n";
+}
+
+}  // namespace
+
+std::string html_escaped(std::string_view text) {
+  std::string escaped;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        escaped += "&amp;";
+        break;
+      case '<':
+        escaped += "&lt;";
+        break;
+      case '>':
+        escaped += "&gt;";
+        break;
+      case '"':
+        escaped += "&quot;";
+        break;
+      default:
+        escaped += c;
+    }
+  }
+  return escaped;
+}
+
+std::string base64(std::string_view bytes) {
+  constexpr const char* kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t n = 0; n < bytes.size(); n += 3) {
+    const auto byte = [&](std::size_t at) -> unsigned {
+      return at < bytes.size() ? static_cast<unsigned char>(bytes[at]) : 0u;
+    };
+    const unsigned bits = (byte(n) << 16) | (byte(n + 1) << 8) | byte(n + 2);
+    text += kDigits[bits >> 18];
+    text += kDigits[(bits >> 12) & 63];
+    text += n + 1 < bytes.size() ? kDigits[(bits >> 6) & 63] : '=';
+    text += n + 2 < bytes.size() ? kDigits[bits & 63] : '=';
+  }
+  return text;
+}
+
+// As an image and not as elements of the page: the figures' SVGs use the same identifiers.
+std::string html_figure(const std::filesystem::path& file, const std::string& caption) {
+  const char* type = file.extension() == ".svg" ? "svg+xml" : "png";
+  const std::string text = html_escaped(caption);
+  return fmt::format(
+      "<figure><img alt=\"{0}\" src=\"data:image/{1};base64,{2}\"><figcaption>{0}</figcaption></figure>\n",
+      text, type, base64(bytes_of(file)));
+}
+
+std::string html_table(const HtmlTable& table) {
+  std::string html = table.numbers ? "<div class=\"wide numbers\">" : "<div class=\"wide\">";
+  html += "<table>\n<thead>" + table_row(table.header, true) + "</thead>\n<tbody>\n";
+  for (const auto& row : table.rows) html += table_row(row, false);
+  return html + "</tbody></table></div>\n";
+}
+
+std::string html_page(const std::string& title, const std::string& body) {
+  return fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{0}</title>\n"
+      "<style>{1}</style></head>\n<body>\n<h1>{0}</h1>\n{2}</body></html>\n",
+      html_escaped(title), kStyle, body);
+}
+
+}  // namespace osteomill

@@ -1,0 +1,142 @@
+#include "osteomill/report/metrics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <ostream>
+
+#include <fmt/format.h>
+
+#include "osteomill/files/atomic_file.h"
+#include "osteomill/files/input_error.h"
+#include "osteomill/report/high_pass.h"
+
+namespace osteomill {
+
+namespace {
+
+double root_mean_square(std::span<const Vec3> samples) {
+  double sum = 0;
+  for (const Vec3& sample : samples) sum += sample.squaredNorm();
+  return samples.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(samples.size()));
+}
+
+// The angle of two unit vectors; an arc cosine would lose the small ones.
+double angle_rad(const Vec3& a, const Vec3& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+bool all_finite(const TickRecord& r) {
+  return std::isfinite(r.time_s) && is_finite(r.X_WD) && is_finite(r.X_WT) && r.wrench.force_N.allFinite() &&
+         r.wrench.torque_Nmm.allFinite() && std::isfinite(r.removed_mm3) && std::isfinite(r.compute_us) &&
+         std::isfinite(r.milling_us);
+}
+
+void require_usable(const Recording& recording) {
+  const std::string name = recording.path.string();
+  const std::vector<TickRecord>& records = recording.records;
+  if (records.size() < 2) throw InputError(name, "has fewer than two ticks, too few for a report");
+  if (!(recording.description.tick_period_s * kBuzzAbove_hz < 0.4)) {
+    throw InputError(name, fmt::format("has a tick every {} s, too few to tell what lies above 20 Hz",
+                                       recording.description.tick_period_s));
+  }
+  for (std::size_t row = 0; row < records.size(); ++row) {
+    if (!all_finite(records[row]))
+      throw InputError(name, fmt::format("a number of tick {} is not finite", row));
+    if (row > 0 && !(records[row].time_s > records[row - 1].time_s)) {
+      throw InputError(name,
+                       fmt::format("the time of tick {} is not later than that of the tick before", row));
+    }
+  }
+}
+
+}  // namespace
+
+Distribution distribution_of(std::vector<double> values) {
+  if (values.empty()) return {};
+  std::sort(values.begin(), values.end());
+  const std::size_t n = values.size();
+  const double median = 0.5 * (values[(n - 1) / 2] + values[n / 2]);
+  const std::size_t rank = (99 * n + 99) / 100;
+  return {median, values[rank - 1], values.back()};
+}
+
+VectorMetrics vector_metrics(std::span<const Vec3> samples, double rate_hz) {
+  VectorMetrics metrics;
+  if (samples.empty()) return metrics;
+  for (std::size_t n = 0; n < samples.size(); ++n) {
+    const double size = samples[n].norm();
+    metrics.mean += size;
+    metrics.max = std::max(metrics.max, size);
+    if (n > 0) metrics.step_max = std::max(metrics.step_max, (samples[n] - samples[n - 1]).norm());
+  }
+  metrics.mean /= static_cast<double>(samples.size());
+  metrics.hp_rms = root_mean_square(high_pass(samples, rate_hz, kBuzzAbove_hz));
+  return metrics;
+}
+
+DirectionMetrics direction_metrics(std::span<const Vec3> directions) {
+  Vec3 sum = Vec3::Zero();
+  for (const Vec3& direction : directions) sum += direction;
+  const Vec3 mean = sum.normalized();
+  double square = 0;
+  double greatest = 0;
+  for (const Vec3& direction : directions) {
+    const double angle = angle_rad(mean, direction);
+    square += angle * angle;
+    greatest = std::max(greatest, angle);
+  }
+  const double degrees = 180.0 / std::numbers::pi;
+  if (directions.empty()) return {};
+  return {degrees * std::sqrt(square / static_cast<double>(directions.size())), degrees * greatest};
+}
+
+double held_rate_hz(std::span<const double> busy_us) {
+  double sum_us = 0;
+  for (const double busy : busy_us) sum_us += std::max(1000.0, busy);
+  return busy_us.empty() ? 0.0 : 1e6 * static_cast<double>(busy_us.size()) / sum_us;
+}
+
+RunMetrics run_metrics(const Recording& recording) {
+  require_usable(recording);
+  std::vector<Vec3> force_N, torque_Nmm, shaft_W;
+  std::vector<double> step_us, busy_us;
+  for (const TickRecord& record : recording.records) {
+    force_N.push_back(record.wrench.force_N);
+    torque_Nmm.push_back(record.wrench.torque_Nmm);
+    shaft_W.push_back(shaft_direction(record.X_WT));
+    step_us.push_back(record.compute_us);
+    busy_us.push_back(record.compute_us + record.milling_us);
+  }
+  const double rate_hz = 1.0 / recording.description.tick_period_s;
+  RunMetrics metrics;
+  metrics.steps = recording.records.size();
+  metrics.step_us = distribution_of(step_us);
+  metrics.rate_hz = held_rate_hz(busy_us);
+  metrics.force_N = vector_metrics(force_N, rate_hz);
+  metrics.torque_Nmm = vector_metrics(torque_Nmm, rate_hz);
+  metrics.shaft = direction_metrics(shaft_W);
+  metrics.removed_mm3 = recording.records.back().removed_mm3 - recording.records.front().removed_mm3;
+  return metrics;
+}
+
+void write_summary_csv(const std::filesystem::path& path, std::span<const SummaryRow> rows) {
+  write_text_atomically(path, [&](std::ostream& out) {
+    out << "algorithm,mode,phase,steps,step_us_median,step_us_p99,step_us_max,rate_hz,"
+           "force_mean_N,force_max_N,force_hp_rms_N,force_step_max_N,"
+           "torque_mean_Nmm,torque_max_Nmm,torque_hp_rms_Nmm,torque_step_max_Nmm,"
+           "shaft_spread_deg,shaft_excursion_deg,removed_mm3\n";
+    for (const SummaryRow& row : rows) {
+      const RunMetrics& m = row.metrics;
+      out << fmt::format("{},{},{},{},{},{},{},{},", name_of(row.algorithm), name_of(row.mode),
+                         name_of(row.phase), m.steps, m.step_us.median, m.step_us.p99, m.step_us.max,
+                         m.rate_hz);
+      for (const VectorMetrics& v : {m.force_N, m.torque_Nmm}) {
+        out << fmt::format("{},{},{},{},", v.mean, v.max, v.hp_rms, v.step_max);
+      }
+      out << fmt::format("{},{},{}\n", m.shaft.spread_deg, m.shaft.excursion_deg, m.removed_mm3);
+    }
+  });
+}
+
+}  // namespace osteomill

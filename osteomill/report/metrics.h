@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <vector>
+
+#include "osteomill/recording/recording.h"
+
+namespace osteomill {
+
+/// The most that a milling loop should lose of 1000 Hz (paper, section 8.1).
+inline constexpr double kLeastRate_hz = 950.0;
+/// Where a hand stops following and starts to feel a buzz: "above 20 Hz" in all that is reported.
+inline constexpr double kBuzzAbove_hz = 20.0;
+
+/// Median (mean of the two middle values of an even number) and 99th percentile (nearest rank: the smallest
+/// value that at least 99 % do not exceed) of values, and the greatest of them. Zeros for no values.
+struct Distribution {
+  double median = 0;
+  double p99 = 0;
+  double max = 0;
+};
+Distribution distribution_of(std::vector<double> values);
+
+/// How a vector over time behaves: force (N) or torque (N mm).
+struct VectorMetrics {
+  /// Mean and greatest magnitude over all ticks.
+  double mean = 0;
+  double max = 0;
+  /// Root of the mean square magnitude of what lies above 20 Hz (high_pass.h).
+  double hp_rms = 0;
+  /// The greatest magnitude of the difference between two ticks that follow each other.
+  double step_max = 0;
+};
+VectorMetrics vector_metrics(std::span<const Vec3> samples, double rate_hz);
+
+/// How far unit directions stray from their mean (the direction of their sum), in degrees: the root of the
+/// mean square angle, and the greatest angle. Zeros for no directions.
+struct DirectionMetrics {
+  double spread_deg = 0;
+  double excursion_deg = 0;
+};
+DirectionMetrics direction_metrics(std::span<const Vec3> directions);
+
+/// The rate a 1 kHz loop would hold whose ticks take this long: 1 / mean(max(1 ms, busy time)).
+double held_rate_hz(std::span<const double> busy_us);
+
+/// All figures of one recording: the columns of summary.csv.
+struct RunMetrics {
+  std::size_t steps = 0;
+  /// Of the algorithm's step alone (`compute_us`).
+  Distribution step_us;
+  /// Of the tick's whole work: the algorithm's step and milling.
+  double rate_hz = 0;
+  VectorMetrics force_N;
+  VectorMetrics torque_Nmm;
+  /// Of the simulated tool's shaft.
+  DirectionMetrics shaft;
+  /// Between the first tick and the last.
+  double removed_mm3 = 0;
+};
+
+/// Throws InputError, naming the recording, where it has fewer than two ticks, its time does not increase, a
+/// number is not finite, or its ticks are too far apart to say anything about 20 Hz.
+RunMetrics run_metrics(const Recording& recording);
+
+struct SummaryRow {
+  AlgorithmId algorithm;
+  Mode mode;
+  RunPhase phase;
+  RunMetrics metrics;
+};
+
+/// Writes summary.csv, whole or not at all. Throws InputError where it cannot be written.
+void write_summary_csv(const std::filesystem::path& path, std::span<const SummaryRow> rows);
+
+}  // namespace osteomill

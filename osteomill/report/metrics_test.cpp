@@ -1,0 +1,162 @@
+#include "osteomill/report/metrics.h"
+
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <numbers>
+#include <numeric>
+
+#include <gtest/gtest.h>
+
+#include "osteomill/files/input_error.h"
+
+namespace osteomill {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+TEST(Distribution, KnownValues) {
+  std::vector<double> values(1000);
+  std::iota(values.begin(), values.end(), 1.0);
+  std::reverse(values.begin(), values.end());
+  const Distribution d = distribution_of(values);
+  EXPECT_DOUBLE_EQ(d.median, 500.5);
+  EXPECT_DOUBLE_EQ(d.p99, 990);
+  EXPECT_DOUBLE_EQ(d.max, 1000);
+  EXPECT_DOUBLE_EQ(distribution_of({3, 1, 2}).median, 2);
+  EXPECT_DOUBLE_EQ(distribution_of({7}).p99, 7);
+  EXPECT_DOUBLE_EQ(distribution_of({}).max, 0);
+}
+
+// 3 N that turn slowly, with 0.2 N at 100 Hz on top.
+TEST(VectorMetrics, ASteadyForceWithABuzzOnIt) {
+  std::vector<Vec3> force;
+  for (int n = 0; n < 10000; ++n) {
+    const double t = 0.001 * n;
+    force.push_back(Vec3(3 * std::cos(t), 3 * std::sin(t), 0.2 * std::sin(2 * kPi * 100 * t)));
+  }
+  const VectorMetrics m = vector_metrics(force, 1000);
+  EXPECT_NEAR(m.hp_rms, 0.2 / std::sqrt(2.0), 0.001);
+  EXPECT_NEAR(m.mean, 3 + 0.02 / (2 * 3), 1e-3);
+  EXPECT_NEAR(m.max, std::hypot(3, 0.2 * std::sin(0.4 * kPi)), 1e-4);
+  EXPECT_NEAR(m.step_max, 0.2 * 2 * std::sin(0.1 * kPi), 0.01);
+}
+
+// The magnitude stays the same; only the vector's difference shows the kick.
+TEST(VectorMetrics, AFlipOfDirectionIsAStep) {
+  std::vector<Vec3> force(1000, Vec3(0, 0, 2));
+  for (std::size_t n = 500; n < force.size(); ++n) force[n] = {0, 0, -2};
+  EXPECT_DOUBLE_EQ(vector_metrics(force, 1000).step_max, 4);
+  EXPECT_DOUBLE_EQ(vector_metrics(force, 1000).mean, 2);
+}
+
+// Directions on a cone of 2 degrees about any axis: each strays by 2 degrees.
+TEST(DirectionMetrics, ACone) {
+  for (const Vec3& axis : {Vec3(0, 0, 1), Vec3(0, 0, -1), Vec3(1, 2, -0.5)}) {
+    const Quat turn = smallest_rotation(Vec3::UnitZ(), axis);
+    std::vector<Vec3> directions;
+    const double angle = 2 * kPi / 180;
+    for (int n = 0; n < 360; ++n) {
+      const double a = n * kPi / 180;
+      directions.push_back(
+          turn * Vec3(std::sin(angle) * std::cos(a), std::sin(angle) * std::sin(a), std::cos(angle)));
+    }
+    const DirectionMetrics m = direction_metrics(directions);
+    EXPECT_NEAR(m.spread_deg, 2, 1e-9);
+    EXPECT_NEAR(m.excursion_deg, 2, 1e-9);
+  }
+}
+
+TEST(DirectionMetrics, ASineInOnePlane) {
+  std::vector<Vec3> directions;
+  for (int n = 0; n < 1000; ++n) {
+    const double angle = 1e-3 * std::sin(2 * kPi * n / 1000);
+    directions.emplace_back(std::sin(angle), 0, std::cos(angle));
+  }
+  const double degrees = 180 / kPi;
+  EXPECT_NEAR(direction_metrics(directions).spread_deg, 1e-3 / std::sqrt(2.0) * degrees, 1e-8);
+  EXPECT_NEAR(direction_metrics(directions).excursion_deg, 1e-3 * degrees, 1e-8);
+}
+
+TEST(HeldRate, OnlyWhatIsLongerThanATickCosts) {
+  EXPECT_DOUBLE_EQ(held_rate_hz(std::vector<double>{10, 999, 0}), 1000);
+  EXPECT_DOUBLE_EQ(held_rate_hz(std::vector<double>{10, 3000}), 500);
+}
+
+Recording simple_recording(int ticks) {
+  Recording recording;
+  recording.path = "some/run.h5";
+  for (int n = 0; n < ticks; ++n) {
+    TickRecord r;
+    r.time_s = 0.001 * n;
+    r.wrench = {{1, 2, 2}, {0, 6, 8}};
+    r.compute_us = n < ticks / 2 ? 800 : 10;
+    r.milling_us = 1200;
+    r.removed_mm3 = 5 + 0.25 * n;
+    recording.records.push_back(r);
+  }
+  return recording;
+}
+
+TEST(RunMetrics, PutsTheFiguresOfARecordingTogether) {
+  const RunMetrics m = run_metrics(simple_recording(1000));
+  EXPECT_EQ(m.steps, 1000u);
+  EXPECT_DOUBLE_EQ(m.step_us.max, 800);
+  EXPECT_DOUBLE_EQ(m.step_us.median, 405);
+  EXPECT_NEAR(m.rate_hz, 1e6 / (0.5 * (2000 + 1210)), 1e-9);
+  EXPECT_DOUBLE_EQ(m.force_N.mean, 3);
+  EXPECT_DOUBLE_EQ(m.torque_Nmm.max, 10);
+  EXPECT_NEAR(m.force_N.hp_rms, 0, 1e-12);
+  EXPECT_DOUBLE_EQ(m.removed_mm3, 0.25 * 999);
+}
+
+void expect_refused(const Recording& recording, const std::string& reason) {
+  try {
+    run_metrics(recording);
+    ADD_FAILURE() << reason;
+  } catch (const InputError& error) {
+    EXPECT_TRUE(std::string(error.what()).starts_with("some/run.h5: ")) << error.what();
+    EXPECT_NE(std::string(error.what()).find(reason), std::string::npos) << error.what();
+  }
+}
+
+TEST(RunMetrics, WhatCannotBeMeasuredIsNamed) {
+  expect_refused(simple_recording(1), "fewer than two ticks");
+  Recording still = simple_recording(10);
+  still.records[4].time_s = still.records[3].time_s;
+  expect_refused(still, "the time of tick 4");
+  Recording broken = simple_recording(10);
+  broken.records[7].wrench.torque_Nmm.y() = std::numeric_limits<double>::quiet_NaN();
+  expect_refused(broken, "tick 7 is not finite");
+  Recording slow = simple_recording(10);
+  slow.description.tick_period_s = 0.02;
+  expect_refused(slow, "above 20 Hz");
+}
+
+TEST(SummaryCsv, HasItsColumnsInOrder) {
+  const auto path = std::filesystem::path(::testing::TempDir()) / "osteomill_summary.csv";
+  RunMetrics m;
+  m.steps = 1;
+  m.step_us = {2, 3, 4};
+  m.rate_hz = 5;
+  m.force_N = {6, 7, 8, 9};
+  m.torque_Nmm = {10, 11, 12, 13};
+  m.shaft = {14, 15.5};
+  m.removed_mm3 = 16;
+  write_summary_csv(path,
+                    std::vector<SummaryRow>{{AlgorithmId::point_shell, Mode::paper, RunPhase::holding, m}});
+  std::ifstream in(path);
+  std::string header, row;
+  std::getline(in, header);
+  std::getline(in, row);
+  EXPECT_EQ(
+      header,
+      "algorithm,mode,phase,steps,step_us_median,step_us_p99,step_us_max,rate_hz,force_mean_N,force_max_N,"
+      "force_hp_rms_N,force_step_max_N,torque_mean_Nmm,torque_max_Nmm,torque_hp_rms_Nmm,torque_step_max_Nmm,"
+      "shaft_spread_deg,shaft_excursion_deg,removed_mm3");
+  EXPECT_EQ(row, "point-shell,paper,holding,1,2,3,4,5,6,7,8,9,10,11,12,13,14,15.5,16");
+  std::filesystem::remove(path);
+}
+
+}  // namespace
+}  // namespace osteomill

@@ -1,0 +1,62 @@
+#include "osteomill/report/write_report.h"
+
+#include <ostream>
+
+#include "osteomill/files/atomic_file.h"
+#include "osteomill/report/curve_figure.h"
+#include "osteomill/report/metrics.h"
+#include "osteomill/report/picture_figure.h"
+#include "osteomill/report/report_page.h"
+#include "osteomill/report/run_groups.h"
+#include "osteomill/report/shaft_figure.h"
+
+namespace osteomill {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+DrawnGroup draw(RunGroup group, const fs::path& folder) {
+  std::vector<CaptionedFigure> figures;
+  if (const auto bone = draw_picture_figure(group, folder)) {
+    figures.push_back({*bone, "The bone before, and after each algorithm's run."});
+  }
+  figures.push_back(
+      {draw_rate_figure(group, folder),
+       "Haptic rate that the loop would hold, tick by tick (left), and the time that a tick's algorithm and "
+       "milling took (right). The paper's figure 6."});
+  figures.push_back(
+      {draw_force_figure(group, folder),
+       "Magnitude of the force sent to the hand. Each pixel's least and greatest are drawn, so no spike is "
+       "lost. The paper's figure 7."});
+  figures.push_back(
+      {draw_torque_figure(group, folder),
+       "Magnitude of the torque sent to the hand, about the burr's centre. The paper's figure 8."});
+  figures.push_back(
+      {draw_shaft_figure(group, folder),
+       "Where the simulated tool's shaft points: a point on the unit sphere a tick, coloured by time. The "
+       "panels of a phase have the same ranges; a compact cloud is a steady shaft. The paper's figure 9."});
+  return {std::move(group), std::move(figures)};
+}
+
+}  // namespace
+
+fs::path write_report(const std::vector<Recording>& recordings, const fs::path& out_dir) {
+  std::vector<RunGroup> groups = group_runs(recordings);
+  create_folder(out_dir / "figures");
+  std::vector<SummaryRow> rows;
+  std::vector<DrawnGroup> drawn;
+  for (RunGroup& group : groups) {
+    for (const MeasuredRun& run : group.runs) {
+      const RunDescription& d = run.recording->description;
+      rows.push_back({d.algorithm, d.mode, d.phase, run.metrics});
+    }
+    drawn.push_back(draw(std::move(group), out_dir / "figures"));
+  }
+  write_summary_csv(out_dir / "summary.csv", rows);
+  const fs::path page = out_dir / "report.html";
+  write_text_atomically(page, [&](std::ostream& out) { out << report_page(drawn); });
+  return page;
+}
+
+}  // namespace osteomill
