@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "osteomill/ct/dicom_file.h"
+#include "osteomill/ct/dicom_pixels.h"
 #include "osteomill/ct/finite_densities.h"
 #include "osteomill/ct/slice_stack.h"
 #include "osteomill/files/input_error.h"
@@ -42,7 +43,7 @@ Folder read_headers(const fs::path& folder) {
   std::sort(files.begin(), files.end());
   for (const fs::path& file : files) {
     std::optional<DicomHeader> header = read_dicom_header(file);
-    if (header && (header->is_image() || !header->readable)) {
+    if (header && (header->is_image() || header->lost)) {
       result.images.push_back(std::move(*header));
     } else {
       ++result.other_files;
@@ -172,7 +173,7 @@ Scan read_dicom_folder(const fs::path& folder) {
   const std::string subject = folder.string();
   Folder found = read_headers(folder);
   for (const DicomHeader& header : found.images) {
-    if (!header.readable) throw InputError(subject, header.file.filename().string() + " " + header.fault);
+    if (header.lost) throw InputError(subject, header.file.filename().string() + " " + header.fault);
   }
   std::vector<std::string> warnings;
   warn_of_other_files(found.other_files, warnings);
@@ -197,8 +198,9 @@ std::optional<Scan> read_dicom_file(const fs::path& file) {
   const fs::path folder = file.parent_path().empty() ? fs::path(".") : file.parent_path();
   Headers series;
   for (DicomHeader& other : read_headers(folder).images) {
-    const bool same = other.readable && other.series_uid == header->series_uid;
-    if (same && !other.is_localizer) series.push_back(std::move(other));
+    const bool same = !other.lost && other.series_uid == header->series_uid && !header->series_uid.empty();
+    const bool itself = other.file.filename() == file.filename();
+    if (itself || (same && !other.is_localizer)) series.push_back(std::move(other));
   }
   return build_scan(subject, series, {});
 }

@@ -42,8 +42,8 @@ struct DicomHeader {
   /// A scout view to plan a scan by, not a part of it.
   bool is_localizer = false;
   bool has_pixels = false;
-  /// False where the file is so damaged that even its series is not known.
-  bool readable = false;
+  /// So damaged that even its series is not known.
+  bool lost = false;
   /// Why no slice can be made of it; empty where there is nothing to complain of.
   std::string fault;
   /// A slice for each frame; empty where there is a fault.

@@ -192,8 +192,10 @@ void check_scaling(const std::string& subject, const Bytes& header, VolumeHeader
   if (!std::isfinite(intercept) || std::isinf(slope)) {
     throw InputError(subject, "has a scl_slope or scl_inter that is not a number");
   }
-  if (std::isnan(slope)) throw InputError(subject, "has a scl_slope that is not a number");
-  if (slope == 0) result.added_by_itk = intercept;
+  if (std::isnan(slope)) {
+    result.warnings.push_back("has a scl_slope that is not a number; its values were taken as stored");
+  }
+  if (std::isnan(slope) || slope == 0) result.added_by_itk = intercept;
 }
 
 }  // namespace
