@@ -83,15 +83,10 @@ void PointShell::refresh(const VoxelBox& voxels) {
 }
 
 void PointShell::refresh_bone(const VoxelBox& nodes) {
-  const int dim = lattice_.node_dims()[0];
   for (int k = nodes.first.k; k <= nodes.last.k; ++k) {
     for (int j = nodes.first.j; j <= nodes.last.j; ++j) {
       for (int byte = nodes.first.i / 8; byte <= nodes.last.i / 8; ++byte) {
-        unsigned bits = 0;
-        for (int i = 8 * byte; i < std::min(8 * byte + 8, dim); ++i) {
-          if (lattice_.is_bone({i, j, k})) bits |= 1u << (i - 8 * byte);
-        }
-        bone_.set_byte(byte, j, k, static_cast<std::uint8_t>(bits));
+        bone_.set_byte(byte, j, k, lattice_.bone_byte(byte, j, k));
       }
     }
   }

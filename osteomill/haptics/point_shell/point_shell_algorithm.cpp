@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 
+#include "osteomill/haptics/point_shell/brick_contacts.h"
 #include "osteomill/haptics/point_shell/octree_contacts.h"
 
 namespace osteomill {
@@ -49,6 +50,7 @@ void PointShellAlgorithm::volume_changed(const VolumeChange& change) {
 }
 
 ToolContacts PointShellAlgorithm::contacts_at(const Pose& X_WT) const {
+  if (settings_.brick_kernel) return contacts_by_bricks(shell_, tool_.tool(), X_WT, stiffness_N_per_mm3_);
   return contacts_by_octree(shell_, tool_, X_WT, stiffness_N_per_mm3_);
 }
 
