@@ -65,6 +65,8 @@ Pose PointShellAlgorithm::towards(const Pose& X_WT_start, const Pose& target) co
 }
 
 HapticStep PointShellAlgorithm::step(const Pose& X_WD, double dt_s) {
+  if (!refreshed_this_tick_ && !shell_.is_up_to_date()) shell_.refresh({});
+  refreshed_this_tick_ = false;
   if (!has_pose_) X_WT_ = X_WD;
   has_pose_ = true;
   const Pose start = X_WT_;

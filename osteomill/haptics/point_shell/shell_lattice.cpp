@@ -42,6 +42,7 @@ ShellLattice::ShellLattice(const Volume& volume, const ShellRules& rules)
       geometry_(lattice_geometry(volume.geometry(), stride_)),
       cell_area_mm2_(std::pow(volume.geometry().voxel_volume_mm3(), 2.0 / 3.0) * rules.scale * rules.scale),
       face_mm2_(geometry_.voxel_volume_mm3() * geometry_.spacing_mm.cwiseInverse()),
+      half_per_mm_(0.5 * geometry_.spacing_mm.cwiseInverse()),
       bone_above_(largest_float_up_to(volume.isovalue())) {}
 
 std::array<int, 3> ShellLattice::cell_dims() const {
@@ -62,7 +63,11 @@ std::uint8_t ShellLattice::bone_byte(int byte, int j, int k) const {
   unsigned bits = 0;
   if (stride_ == 1) {
     const float* row = volume_->grid().densities().data() + volume_->grid().linear_index({first, j, k});
-    for (int n = 0; n < count; ++n) bits |= static_cast<unsigned>(row[n] > bone_above_) << n;
+    if (count == 8) {  // a loop of fixed length becomes vector instructions
+      for (int n = 0; n < 8; ++n) bits |= static_cast<unsigned>(row[n] > bone_above_) << n;
+    } else {
+      for (int n = 0; n < count; ++n) bits |= static_cast<unsigned>(row[n] > bone_above_) << n;
+    }
   } else {
     for (int n = 0; n < count; ++n) {
       bits |= static_cast<unsigned>(density({first + n, j, k}) > volume_->isovalue()) << n;
@@ -151,7 +156,7 @@ void ShellLattice::add_inner_voxel(const VoxelIndex& voxel, const VoxelIndex& fr
   const std::ptrdiff_t row = geometry_.dims[0];
   const std::ptrdiff_t next[3] = {1, row, row * geometry_.dims[1]};
   const auto central_difference = [&](const float* at, int axis) {
-    return 0.5 * static_cast<double>(at[next[axis]] - at[-next[axis]]) / geometry_.spacing_mm[axis];
+    return static_cast<double>(at[next[axis]] - at[-next[axis]]) * half_per_mm_[axis];
   };
   const double inside = static_cast<double>(*here);
   for (int axis = 0; axis < 3; ++axis) {

@@ -66,6 +66,8 @@ class ShellLattice {
   GridGeometry geometry_;
   double cell_area_mm2_ = 0;
   Vec3 face_mm2_ = Vec3::Zero();
+  // One half over the spacing, for central differences.
+  Vec3 half_per_mm_ = Vec3::Zero();
   // The largest float that is not bone.
   float bone_above_ = 0;
 };
