@@ -11,6 +11,9 @@ namespace {
 // chunk).
 constexpr std::size_t kSpareChunks = 8192;
 
+// What looking at a brick costs, in points computed.
+constexpr int kBrickCost = 8;
+
 std::uint32_t count_of(const std::array<std::uint8_t, 64>& mask) {
   std::uint32_t count = 0;
   for (const std::uint8_t byte : mask) count += static_cast<std::uint32_t>(std::popcount(byte));
@@ -68,30 +71,55 @@ PointShell::PointShell(const Volume& volume, const ShellRules& rules)
 }
 
 void PointShell::refresh(const VoxelBox& voxels) {
-  const VoxelBox nodes = lattice_.nodes_touched_by(voxels);
-  if (nodes.empty()) return;
-  refresh_bone(nodes);
-  const VoxelBox cells =
-      cells_of_nodes(nodes.grown(lattice_.reach_nodes()).intersected(lattice_.geometry().all_voxels()));
-  for (int bk = cells.first.k / kBrickCells; bk <= cells.last.k / kBrickCells; ++bk) {
-    for (int bj = cells.first.j / kBrickCells; bj <= cells.last.j / kBrickCells; ++bj) {
-      for (int bi = cells.first.i / kBrickCells; bi <= cells.last.i / kBrickCells; ++bi) {
-        refresh_brick(bi, bj, bk, cells);
-      }
-    }
+  if (!voxels.empty()) {
+    waiting_.include(voxels.first);
+    waiting_.include(voxels.last);
+  }
+  const int budget = lattice_.rules().refreshed_points_per_tick;
+  int spent = 0;
+  while ((budget == 0 || spent < budget) && (!sweep_.cells.empty() || start_sweep())) {
+    spent += kBrickCost + refresh_next_brick();
   }
 }
 
+// Begins with what has waited; changes from now on wait for the sweep after.
+bool PointShell::start_sweep() {
+  const VoxelBox nodes = lattice_.nodes_touched_by(waiting_);
+  waiting_ = {};
+  if (nodes.empty()) return false;
+  sweep_.nodes = nodes;
+  sweep_.cells =
+      cells_of_nodes(nodes.grown(lattice_.reach_nodes()).intersected(lattice_.geometry().all_voxels()));
+  const VoxelIndex& first = sweep_.cells.first;
+  sweep_.brick = {first.i / kBrickCells, first.j / kBrickCells, first.k / kBrickCells};
+  return true;
+}
+
+// How many points were computed.
+int PointShell::refresh_next_brick() {
+  VoxelIndex& b = sweep_.brick;
+  const VoxelBox& cells = sweep_.cells;
+  const int g = lattice_.group();
+  const VoxelBox own = brick_cells(b.i, b.j, b.k);
+  const VoxelBox own_nodes{{g * own.first.i, g * own.first.j, g * own.first.k},
+                           {g * own.last.i + g - 1, g * own.last.j + g - 1, g * own.last.k + g - 1}};
+  refresh_bone(own_nodes.grown(1).intersected(sweep_.nodes));
+  const int computed = refresh_brick(b.i, b.j, b.k, cells);
+  if (++b.i > cells.last.i / kBrickCells) {
+    b.i = cells.first.i / kBrickCells;
+    if (++b.j > cells.last.j / kBrickCells) {
+      b.j = cells.first.j / kBrickCells;
+      if (++b.k > cells.last.k / kBrickCells) sweep_.cells = {};
+    }
+  }
+  return computed;
+}
+
 void PointShell::refresh_bone(const VoxelBox& nodes) {
-  const int dim = lattice_.node_dims()[0];
   for (int k = nodes.first.k; k <= nodes.last.k; ++k) {
     for (int j = nodes.first.j; j <= nodes.last.j; ++j) {
       for (int byte = nodes.first.i / 8; byte <= nodes.last.i / 8; ++byte) {
-        unsigned bits = 0;
-        for (int i = 8 * byte; i < std::min(8 * byte + 8, dim); ++i) {
-          if (lattice_.is_bone({i, j, k})) bits |= 1u << (i - 8 * byte);
-        }
-        bone_.set_byte(byte, j, k, static_cast<std::uint8_t>(bits));
+        bone_.set_byte(byte, j, k, lattice_.bone_byte(byte, j, k));
       }
     }
   }
@@ -144,31 +172,34 @@ PointShell::CellMask PointShell::mask_of(int bi, int bj, int bk, const VoxelBox&
   return mask;
 }
 
-void PointShell::refresh_brick(int bi, int bj, int bk, const VoxelBox& cells) {
+int PointShell::refresh_brick(int bi, int bj, int bk, const VoxelBox& cells) {
   const CellMask& before = masks_[brick_index(bi, bj, bk)];
   const CellMask mask = mask_of(bi, bj, bk, cells, before);
-  if (mask != before) {
-    rebuild_brick(bi, bj, bk, cells, mask);
-  } else if (lattice_.rules().follow_partial_changes) {
-    move_points(bi, bj, bk, cells);
-  }
+  if (mask != before) return rebuild_brick(bi, bj, bk, cells, mask);
+  if (lattice_.rules().follow_partial_changes) return move_points(bi, bj, bk, cells);
+  return 0;
 }
 
 // The same cells as before: only points near changed densities move.
-void PointShell::move_points(int bi, int bj, int bk, const VoxelBox& cells) {
+int PointShell::move_points(int bi, int bj, int bk, const VoxelBox& cells) {
   const std::size_t brick = brick_index(bi, bj, bk);
   const std::uint32_t stored = points_.brick(brick).count;
   const VoxelIndex first = brick_cells(bi, bj, bk).first;
   std::uint32_t slot = 0;
+  int computed = 0;
   for_each_cell(masks_[brick], [&](int i, int j, int k) {
     const VoxelIndex cell{first.i + i, first.j + j, first.k + k};
-    if (cells.contains(cell) && slot < stored) points_.move(brick, slot, point_of(cell, bi, bj, bk));
+    if (cells.contains(cell) && slot < stored) {
+      points_.move(brick, slot, point_of(cell, bi, bj, bk));
+      ++computed;
+    }
     ++slot;
   });
+  return computed;
 }
 
 // Other cells than before: the points are listed anew, those far from the change as they were.
-void PointShell::rebuild_brick(int bi, int bj, int bk, const VoxelBox& cells, const CellMask& mask) {
+int PointShell::rebuild_brick(int bi, int bj, int bk, const VoxelBox& cells, const CellMask& mask) {
   const std::size_t brick = brick_index(bi, bj, bk);
   std::array<ShellPoint, kMostPointsOfBrick> old_points;
   points_.copy(brick, old_points);
@@ -184,17 +215,20 @@ void PointShell::rebuild_brick(int bi, int bj, int bk, const VoxelBox& cells, co
 
   std::array<ShellPoint, kMostPointsOfBrick> new_points;
   std::size_t new_count = 0;
+  int computed = 0;
   const VoxelIndex first = brick_cells(bi, bj, bk).first;
   const bool follow = lattice_.rules().follow_partial_changes;
   for_each_cell(mask, [&](int i, int j, int k) {
     const VoxelIndex cell{first.i + i, first.j + j, first.k + k};
     const bool keep = has_cell(kept, i, j, k) && !(follow && cells.contains(cell));
+    if (!keep) ++computed;
     new_points[new_count++] =
         keep ? by_cell[static_cast<std::size_t>(i + 8 * j + 64 * k)] : point_of(cell, bi, bj, bk);
   });
   const std::uint32_t stored = points_.replace(brick, {new_points.data(), new_count});
   octree_.add(bi, bj, bk, static_cast<std::int32_t>(stored) - static_cast<std::int32_t>(old_count));
   masks_[brick] = mask;
+  return computed;
 }
 
 ShellPoint PointShell::point_of(const VoxelIndex& cell, int bi, int bj, int bk) const {

@@ -24,8 +24,11 @@ class PointShell {
   /// `volume` outlives the shell.
   PointShell(const Volume& volume, const ShellRules& rules);
 
-  /// Brings the points up to date after densities fell in `voxels`.
+  /// Says that densities fell in `voxels`, and brings points up to date as
+  /// `ShellRules::refreshed_points_per_tick` has it: once a tick, with an empty box where nothing fell.
   void refresh(const VoxelBox& voxels);
+  /// Whether no change waits for a later `refresh`.
+  bool is_up_to_date() const { return sweep_.cells.empty() && waiting_.empty(); }
 
   const ShellLattice& lattice() const { return lattice_; }
   const CountPyramid& octree() const { return octree_; }
@@ -68,9 +71,17 @@ class PointShell {
   CellMask mask_of(int bi, int bj, int bk, const VoxelBox& cells, CellMask mask) const;
   std::uint8_t mask_byte(int bi, int j, int k) const;
   bool holds_surface(const VoxelIndex& cell) const;
-  void refresh_brick(int bi, int bj, int bk, const VoxelBox& cells);
-  void move_points(int bi, int bj, int bk, const VoxelBox& cells);
-  void rebuild_brick(int bi, int bj, int bk, const VoxelBox& cells, const CellMask& mask);
+  // The way through all bricks near changed voxels, one brick after the other.
+  struct Sweep {
+    VoxelBox nodes;
+    VoxelBox cells;
+    VoxelIndex brick;
+  };
+  bool start_sweep();
+  int refresh_next_brick();
+  int refresh_brick(int bi, int bj, int bk, const VoxelBox& cells);
+  int move_points(int bi, int bj, int bk, const VoxelBox& cells);
+  int rebuild_brick(int bi, int bj, int bk, const VoxelBox& cells, const CellMask& mask);
   ShellPoint point_of(const VoxelIndex& cell, int bi, int bj, int bk) const;
 
   ShellLattice lattice_;
@@ -80,6 +91,8 @@ class PointShell {
   std::vector<CellMask> masks_;
   Vec3 brick_side_mm_ = Vec3::Zero();
   Vec3 box_margin_mm_ = Vec3::Zero();
+  Sweep sweep_;
+  VoxelBox waiting_;
 };
 
 template <typename F>

@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 
+#include "osteomill/haptics/point_shell/brick_contacts.h"
 #include "osteomill/haptics/point_shell/octree_contacts.h"
 
 namespace osteomill {
@@ -49,6 +50,7 @@ void PointShellAlgorithm::volume_changed(const VolumeChange& change) {
 }
 
 ToolContacts PointShellAlgorithm::contacts_at(const Pose& X_WT) const {
+  if (settings_.brick_kernel) return contacts_by_bricks(shell_, tool_.tool(), X_WT, stiffness_N_per_mm3_);
   return contacts_by_octree(shell_, tool_, X_WT, stiffness_N_per_mm3_);
 }
 
@@ -63,6 +65,8 @@ Pose PointShellAlgorithm::towards(const Pose& X_WT_start, const Pose& target) co
 }
 
 HapticStep PointShellAlgorithm::step(const Pose& X_WD, double dt_s) {
+  if (!refreshed_this_tick_ && !shell_.is_up_to_date()) shell_.refresh({});
+  refreshed_this_tick_ = false;
   if (!has_pose_) X_WT_ = X_WD;
   has_pose_ = true;
   const Pose start = X_WT_;

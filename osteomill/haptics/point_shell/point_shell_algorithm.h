@@ -42,6 +42,7 @@ class PointShellAlgorithm final : public HapticAlgorithm {
   PointShell shell_;
   double stiffness_N_per_mm3_ = 0;
 
+  bool refreshed_this_tick_ = false;
   bool has_pose_ = false;
   bool in_contact_ = false;
   Pose X_WT_;

@@ -34,6 +34,7 @@ PointShellSettings PointShellSettings::defaults(Mode mode) {
                     .points_on_isosurface = true,
                     .area_weights = true,
                     .follow_partial_changes = true,
+                    .refreshed_points_per_tick = 384,
                     .gradient = GradientKernel::central};
   settings.greatest_depth_mm = 0.3;
   settings.closed_form_distance = true;
@@ -48,6 +49,9 @@ PointShellSettings PointShellSettings::defaults(Mode mode) {
 void require_valid(const PointShellSettings& settings) {
   if (settings.shell.scale < 1 || settings.shell.scale > kCoarsestScale) {
     throw std::invalid_argument("point-shell: the shell's scale must lie between 1 and 32");
+  }
+  if (settings.shell.refreshed_points_per_tick < 0) {
+    throw std::invalid_argument("point-shell: the points refreshed a tick must not be negative");
   }
   require_positive(settings.translational_stiffness_N_per_mm, "the translational stiffness");
   require_positive(settings.torsional_stiffness_Nmm_per_rad, "the torsional stiffness");

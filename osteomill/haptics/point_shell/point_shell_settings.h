@@ -27,6 +27,10 @@ struct ShellRules {
   /// Off (paper): a point changes only where its voxel stops or starts to be a surface voxel. On: also while
   /// the densities about it fall.
   bool follow_partial_changes = false;
+  /// 0 (paper): all points near a change are brought up to date at once. Otherwise only about so many a tick,
+  /// brick by brick in turn, so that a tick's time stays bounded; the rest wait a few ticks, in which
+  /// densities fall little.
+  int refreshed_points_per_tick = 0;
   /// The gradient that gives `area_weights` its normal.
   GradientKernel gradient = GradientKernel::central;
 };

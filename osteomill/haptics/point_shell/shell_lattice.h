@@ -26,7 +26,8 @@ class ShellLattice {
 
   /// Trilinear density at a node, the outside density beyond the border.
   double density(const VoxelIndex& node) const;
-  bool is_bone(const VoxelIndex& node) const { return density(node) > volume_->isovalue(); }
+  /// Bit n: whether node 8 * `byte` + n of row j of slice k is bone; the row must be in the lattice.
+  std::uint8_t bone_byte(int byte, int j, int k) const;
   /// The nodes whose density depends on voxels in `voxels`, within the lattice.
   VoxelBox nodes_touched_by(const VoxelBox& voxels) const;
   /// How far, in nodes, a change of density reaches into points.
@@ -42,9 +43,20 @@ class ShellLattice {
     Vec3 position_mm = Vec3::Zero();
     double weight = 0;
   };
+  struct Face {
+    int axis;
+    int side;
+    double fraction;
+    double weight;
+  };
   void add_node(const BoneBits& bone, const VoxelIndex& node, const VoxelIndex& frame_origin,
                 WeightedSum& sum) const;
+  void add_inner_voxel(const VoxelIndex& voxel, const VoxelIndex& frame_origin, WeightedSum& sum) const;
+  void add_face(const Face& face, const VoxelIndex& node, const VoxelIndex& frame_origin,
+                WeightedSum& sum) const;
+  bool is_inner_voxel(const VoxelIndex& node) const;
   double crossing_fraction(double inside, const VoxelIndex& outer_node) const;
+  double seen_area_mm2(int axis, const Vec3& gradient_G) const;
   double face_weight_mm2(const VoxelIndex& node, int axis, double offset) const;
 
   const Volume* volume_ = nullptr;
@@ -53,6 +65,11 @@ class ShellLattice {
   int group_ = 1;
   GridGeometry geometry_;
   double cell_area_mm2_ = 0;
+  Vec3 face_mm2_ = Vec3::Zero();
+  // One half over the spacing, for central differences.
+  Vec3 half_per_mm_ = Vec3::Zero();
+  // The largest float that is not bone.
+  float bone_above_ = 0;
 };
 
 }  // namespace osteomill

@@ -1,0 +1,344 @@
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "tests/shapes.h"
+#include <gtest/gtest.h>
+
+#include "osteomill/haptics/point_shell/brick_contacts.h"
+#include "osteomill/haptics/point_shell/octree_contacts.h"
+#include "osteomill/haptics/point_shell/virtual_coupling.h"
+
+namespace osteomill {
+namespace {
+
+using testing_support::ball;
+using testing_support::centred_cube;
+using testing_support::plane;
+using testing_support::shape_volume;
+
+const MillingTool kTool{1.5, 1.0, 25.0};
+
+double uniform(std::mt19937& bits, double from, double to) {
+  return from + (to - from) * (static_cast<double>(bits()) / 4294967295.0);
+}
+
+Vec3 random_vector(std::mt19937& bits) {
+  const double x = uniform(bits, -1, 1), y = uniform(bits, -1, 1), z = uniform(bits, -1, 1);
+  return {x, y, z};
+}
+
+ShellRules rules_of(Mode mode, int scale) {
+  ShellRules rules = PointShellSettings::defaults(mode).shell;
+  rules.scale = scale;
+  return rules;
+}
+
+SampledDistanceField fine_field() {
+  return SampledDistanceField(kTool, SampledDistanceField::suitable_spacing_mm(kTool));
+}
+
+// The slow plain answer: every point of the shell.
+ToolContacts contacts_by_brute_force(const PointShell& shell, const ContactTool& tool, const Pose& X_WT,
+                                     double stiffness) {
+  ToolContacts contacts;
+  const Mat3 R_WT = X_WT.orientation.toRotationMatrix();
+  shell.for_each_point([&](const Vec3& point_W, double area) {
+    const Vec3 point_T = X_WT.inverse() * point_W;
+    const auto distance = tool.distance(point_T);
+    if (!distance || !(distance->distance_mm < 0)) return;
+    ++contacts.touching;
+    (tool.is_burr(point_T) ? contacts.burr : contacts.shaft)
+        .add(stiffness * area, -distance->distance_mm, R_WT * distance->outward_T,
+             point_W - X_WT.position_mm);
+  });
+  return contacts;
+}
+
+void expect_near(const ContactSum& a, const ContactSum& b, double relative) {
+  const double tiny = 1e-9;
+  EXPECT_LE((a.force_N - b.force_N).norm(), relative * b.force_N.norm() + tiny);
+  EXPECT_LE((a.torque_Nmm - b.torque_Nmm).norm(), relative * b.torque_Nmm.norm() + tiny);
+  EXPECT_LE((a.K_ff - b.K_ff).norm(), relative * b.K_ff.norm() + tiny);
+  EXPECT_LE((a.K_ft - b.K_ft).norm(), relative * b.K_tt.norm() + tiny);
+  EXPECT_LE((a.K_tt - b.K_tt).norm(), relative * b.K_tt.norm() + tiny);
+}
+
+Pose random_pose(std::mt19937& bits, double reach_mm) {
+  const Vec3 position = reach_mm * random_vector(bits);
+  return {position, quaternion_from_rotation_vector(3 * random_vector(bits))};
+}
+
+GridGeometry turned_cube(int voxels, double spacing_mm) {
+  GridGeometry geometry = centred_cube(voxels, spacing_mm);
+  geometry.direction = quaternion_from_rotation_vector({0.3, 0.5, -0.7}).toRotationMatrix();
+  geometry.origin_mm = geometry.direction * geometry.origin_mm;
+  return geometry;
+}
+
+TEST(OctreeContacts, FindsWhatLookingAtEveryPointFinds) {
+  std::mt19937 bits(5);
+  const Volume volume = shape_volume(turned_cube(60, 0.2), ball({0.3, 0.1, 0}, 5));
+  const ContactTool sampled(kTool, fine_field());
+  const ContactTool closed(kTool);
+  for (const ShellRules& rules :
+       {rules_of(Mode::paper, 1), rules_of(Mode::paper, 3), rules_of(Mode::steady, 2)}) {
+    const PointShell shell(volume, rules);
+    int touched = 0;
+    for (int n = 0; n < 150; ++n) {
+      const Pose X_WT = random_pose(bits, 7);
+      for (const ContactTool* tool : {&sampled, &closed}) {
+        const ToolContacts by_octree = contacts_by_octree(shell, *tool, X_WT, 20);
+        const ToolContacts by_all = contacts_by_brute_force(shell, *tool, X_WT, 20);
+        EXPECT_EQ(by_octree.touching, by_all.touching);
+        expect_near(by_octree.burr, by_all.burr, 1e-9);
+        expect_near(by_octree.shaft, by_all.shaft, 1e-9);
+        touched += by_all.touching > 0 ? 1 : 0;
+      }
+    }
+    EXPECT_GT(touched, 100);
+  }
+}
+
+TEST(BrickContacts, AreTheOctreesToTheRounding) {
+  std::mt19937 bits(6);
+  // A ball with a hole in which the shaft is sleeved, and one that has been milled at random.
+  const auto sleeve = [](const Vec3& p) {
+    return std::max(p.norm() - 5, -std::max(std::hypot(p.x(), p.y()) - 0.97, -3 - p.z()));
+  };
+  for (const MillingTool& tool : {kTool, MillingTool{0.8, 1.2, 6}, MillingTool{2, 0.5, 12}}) {
+    Volume volume = shape_volume(turned_cube(60, 0.2), sleeve);
+    for (const int scale : {1, 3}) {
+      PointShell shell(volume, rules_of(Mode::steady, scale));
+      for (int n = 0; n < 400; ++n) {
+        VoxelBox changed;
+        for (int m = 0; m < 5; ++m) {
+          const VoxelIndex v{static_cast<int>(bits() % 60), static_cast<int>(bits() % 60),
+                             static_cast<int>(bits() % 60)};
+          volume.lower_density(v, 0.3f * volume.grid()[v]);
+          changed.include(v);
+        }
+        shell.refresh(changed);
+        const Pose X_WT = n % 4 == 0
+                              ? Pose{{0.02, 0.03, -2}, quaternion_from_rotation_vector({0.01, 0.02, 0})}
+                              : random_pose(bits, 6);
+        const ToolContacts plain = contacts_by_octree(shell, ContactTool(tool), X_WT, 20);
+        const ToolContacts fast = contacts_by_bricks(shell, tool, X_WT, 20);
+        EXPECT_EQ(plain.touching, fast.touching);
+        expect_near(fast.burr, plain.burr, 1e-9);
+        expect_near(fast.shaft, plain.shaft, 1e-9);
+      }
+    }
+  }
+}
+
+// Force along the normal over kA pi (r - d) d^2, least and greatest of a slide over a plane.
+struct PlaneRatios {
+  double least = 1e9;
+  double greatest = 0;
+  double sideways = 0;
+};
+
+PlaneRatios slide_over_plane(const ShellRules& rules, const ContactTool& tool, const Vec3& normal,
+                             double depth_mm, double edge_voxels) {
+  const Vec3 n = normal.normalized(), through(0.01, 0.02, -0.03);
+  const Volume volume = shape_volume(centred_cube(48, 0.125), plane(through, n), edge_voxels);
+  const PointShell shell(volume, rules);
+  PlaneRatios ratios;
+  for (int step = 0; step < 60; ++step) {
+    const Vec3 along = (0.016 * step - 0.5) * n.unitOrthogonal() + 0.003 * step * n.cross(n.unitOrthogonal());
+    const Pose X_WT{through + along + (1.5 - depth_mm) * n, smallest_rotation(Vec3::UnitZ(), n)};
+    const Vec3 force = contacts_by_octree(shell, tool, X_WT, 1).total().force_N;
+    const double ratio = force.dot(n) / (std::numbers::pi * (1.5 - depth_mm) * depth_mm * depth_mm);
+    ratios.least = std::min(ratios.least, ratio);
+    ratios.greatest = std::max(ratios.greatest, ratio);
+    ratios.sideways = std::max(ratios.sideways, force.cross(n).norm() / force.norm());
+  }
+  return ratios;
+}
+
+const std::vector<Vec3> kNormals{{0, 0, 1},     {1, 0, 0},  {1, 1, 0},      {1, 1, 1},         {1, 2, 3},
+                                 {0.05, 0, -1}, {3, -2, 1}, {-0.4, 0.9, 2}, {0.37, 0.61, -0.2}};
+
+TEST(PlaneContact, SteadyIsTheAnalyticForceInEveryDirection) {
+  const ContactTool tool(kTool);
+  for (const Vec3& normal : kNormals) {
+    for (const double depth_mm : {0.125, 0.2, 0.4}) {
+      const PlaneRatios r = slide_over_plane(rules_of(Mode::steady, 1), tool, normal, depth_mm, 2);
+      EXPECT_GT(r.least, 0.97) << normal.transpose() << " at " << depth_mm;
+      EXPECT_LT(r.greatest, 1.02) << normal.transpose() << " at " << depth_mm;
+      EXPECT_LT((r.greatest - r.least) / 2, 0.015);
+      EXPECT_LT(r.sideways, 0.01);
+    }
+  }
+}
+
+TEST(PlaneContact, SteadyHoldsAtScaleThreeAndOnOtherEdges) {
+  const ContactTool tool(kTool);
+  for (const Vec3& normal : kNormals) {
+    const PlaneRatios coarse = slide_over_plane(rules_of(Mode::steady, 3), tool, normal, 0.375, 2);
+    EXPECT_GT(coarse.least, 0.95) << normal.transpose();
+    EXPECT_LT(coarse.greatest, 1.05) << normal.transpose();
+    const PlaneRatios wide = slide_over_plane(rules_of(Mode::steady, 1), tool, normal, 0.25, 4);
+    EXPECT_GT(wide.least, 0.98) << normal.transpose();
+    EXPECT_LT(wide.greatest, 1.02) << normal.transpose();
+  }
+  // An edge one voxel wide puts the isosurface itself up to 0.09 voxel off the plane where it follows an
+  // axis.
+  for (const Vec3& normal : {Vec3(1, 1, 0), Vec3(1, 1, 1), Vec3(1, 2, 3), Vec3(3, -2, 1)}) {
+    const PlaneRatios sharp = slide_over_plane(rules_of(Mode::steady, 1), tool, normal, 0.25, 1);
+    EXPECT_GT(sharp.least, 0.96) << normal.transpose();
+    EXPECT_LT(sharp.greatest, 1.04) << normal.transpose();
+  }
+}
+
+// What the paper's way gives: centres lie inside the bone, half a voxel and more, and are fewer where it
+// slopes.
+TEST(PlaneContact, PaperIsTooSoftByASlopeDependentPart) {
+  const ContactTool tool(kTool, fine_field());
+  const PlaneRatios straight = slide_over_plane(rules_of(Mode::paper, 1), tool, {0, 0, 1}, 0.25, 2);
+  EXPECT_NEAR(straight.least, 0.78, 0.04);
+  EXPECT_NEAR(straight.greatest, 0.78, 0.04);
+  const PlaneRatios diagonal = slide_over_plane(rules_of(Mode::paper, 1), tool, {1, 1, 1}, 0.25, 2);
+  EXPECT_NEAR(diagonal.least, 0.43, 0.04);
+  EXPECT_NEAR(diagonal.greatest, 0.43, 0.04);
+  const PlaneRatios coarse = slide_over_plane(rules_of(Mode::paper, 3), tool, {1, 1, 1}, 0.125, 2);
+  EXPECT_LT(coarse.least, 0.02);
+}
+
+// Two spheres: the depth at an angle t off the line of centres integrates to
+// kA * integral over the cap of the bone ball of (r - |p - c|) cos(turn), done here numerically on a fine
+// grid.
+double ball_force(double bone_radius, double burr_radius, double between) {
+  double sum = 0;
+  const int steps = 4000;
+  for (int n = 0; n < steps; ++n) {
+    const double t = 0.5 * (n + 0.5) / steps;
+    const double along = between - bone_radius * std::cos(t), across = bone_radius * std::sin(t);
+    const double distance = std::hypot(along, across);
+    if (distance >= burr_radius) break;
+    sum += (burr_radius - distance) * along / distance * 2 * std::numbers::pi * bone_radius * bone_radius *
+           std::sin(t) * 0.5 / steps;
+  }
+  return sum;
+}
+
+TEST(BallContact, SteadyIsTheIntegralOverTheBall) {
+  std::mt19937 bits(9);
+  const Volume volume = shape_volume(centred_cube(72, 0.125), ball({0, 0, 0}, 4));
+  const PointShell shell(volume, rules_of(Mode::steady, 1));
+  for (int n = 0; n < 100; ++n) {
+    const Vec3 direction = random_vector(bits).normalized();
+    const double depth_mm = uniform(bits, 0.15, 0.5);
+    const Pose X_WT{(5.5 - depth_mm) * direction, smallest_rotation(Vec3::UnitZ(), direction)};
+    const ContactSum sum = contacts_by_bricks(shell, kTool, X_WT, 20).total();
+    const double expected = 20 * ball_force(4, 1.5, 5.5 - depth_mm);
+    EXPECT_NEAR(sum.force_N.dot(direction) / expected, 1, 0.035);
+    EXPECT_LT(sum.force_N.cross(direction).norm() / sum.force_N.norm(), 0.015);
+    EXPECT_LT(sum.torque_Nmm.norm(), 1e-9 * sum.force_N.norm());
+  }
+}
+
+TEST(BallContact, PaperIsSofterButPushesOutwards) {
+  std::mt19937 bits(10);
+  const Volume volume = shape_volume(centred_cube(72, 0.125), ball({0, 0, 0}, 4));
+  const PointShell shell(volume, rules_of(Mode::paper, 1));
+  const ContactTool tool(kTool, fine_field());
+  for (int n = 0; n < 100; ++n) {
+    const Vec3 direction = random_vector(bits).normalized();
+    const Pose X_WT{5.1 * direction, smallest_rotation(Vec3::UnitZ(), direction)};
+    const ContactSum sum = contacts_by_octree(shell, tool, X_WT, 20).total();
+    const double ratio = sum.force_N.dot(direction) / (20 * ball_force(4, 1.5, 5.1));
+    EXPECT_GT(ratio, 0.4);
+    EXPECT_LT(ratio, 0.95);
+    EXPECT_LT(sum.force_N.cross(direction).norm() / sum.force_N.norm(), 0.1);
+  }
+}
+
+// One point, by itself: the derivative of its depth in the tool is n . dx + (r x n) . dw.
+TEST(ContactSum, ADerivativeRowIsTheDepthsOwn) {
+  std::mt19937 bits(21);
+  const ContactTool sampled(kTool, fine_field());
+  int tested = 0;
+  for (int n = 0; n < 300; ++n) {
+    const Pose X_WT = random_pose(bits, 3);
+    const Vec3 p_T(uniform(bits, -1.4, 1.4), uniform(bits, -1.4, 1.4), uniform(bits, -1.4, 20));
+    const ToolDistance here = tool_distance(kTool, p_T);
+    if (here.distance_mm > -0.02 || here.distance_mm < -0.4) continue;
+    const Vec3 point_W = X_WT * p_T;
+    const auto depth = [&](const ToolMove& move) {
+      return -tool_distance(kTool, moved(X_WT, move).inverse() * point_W).distance_mm;
+    };
+    const Vec3 normal_W = X_WT.orientation * here.outward_T;
+    const Vec3 r = point_W - X_WT.position_mm;
+    constexpr double kStep = 1e-5;
+    for (int axis = 0; axis < 3; ++axis) {
+      const Vec3 e = kStep * Vec3::Unit(axis);
+      EXPECT_NEAR((depth({e, Vec3::Zero()}) - depth({-e, Vec3::Zero()})) / (2 * kStep), normal_W[axis], 1e-6);
+      EXPECT_NEAR((depth({Vec3::Zero(), e}) - depth({Vec3::Zero(), -e})) / (2 * kStep),
+                  r.cross(normal_W)[axis], 1e-4);
+    }
+    ++tested;
+  }
+  EXPECT_GT(tested, 30);
+}
+
+// The whole sum against differences of the force. On the burr the term left out has a closed form: for a
+// point at the distance s from the centre, k depth / s (1 - n n^T) adds to the derivative of the force.
+TEST(ContactSum, TheDerivativeOfTheForceLacksOnlyTheTurningOfTheNormals) {
+  const Volume volume = shape_volume(centred_cube(64, 0.125), ball({0, 0, -2.5}, 3));
+  const PointShell shell(volume, rules_of(Mode::steady, 1));
+  const ContactTool tool(kTool);
+  constexpr double kStiffness = 20;
+  const Pose X_WT{{0.2, 0.1, 1.7}, quaternion_from_rotation_vector({0.3, 0.2, 0})};
+  const ContactSum here = contacts_by_octree(shell, tool, X_WT, kStiffness).total();
+  Mat3 left_out = Mat3::Zero();
+  shell.for_each_point([&](const Vec3& point_W, double area) {
+    const Vec3 r = point_W - X_WT.position_mm;
+    const double s = r.norm(), depth = 1.5 - s;
+    if (!(depth > 0)) return;
+    const Vec3 n = r / s;
+    left_out += kStiffness * area * depth / s * (Mat3::Identity() - n * n.transpose());
+  });
+  Mat3 differences;
+  constexpr double kStep = 1e-6;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto force_at = [&](double step) {
+      const Pose shifted{X_WT.position_mm + step * Vec3::Unit(axis), X_WT.orientation};
+      return contacts_by_octree(shell, tool, shifted, kStiffness).total().force_N;
+    };
+    differences.col(axis) = (force_at(kStep) - force_at(-kStep)) / (2 * kStep);
+  }
+  EXPECT_GT(left_out.norm(), 0.5);
+  EXPECT_GT(here.K_ff.norm(), 4 * left_out.norm());
+  EXPECT_LT((differences - (left_out - here.K_ff)).norm(), 1e-3 * here.K_ff.norm());
+}
+
+// The same for the shaft's side, where turning the tool matters: differences of force and torque over small
+// turns approach -K as the depth goes to zero, the term left out being proportional to it.
+TEST(ContactSum, OnTheShaftTheLeftOutTermVanishesWithTheDepth) {
+  const Volume volume = shape_volume(centred_cube(80, 0.1), plane({0, 0, 0.02}, {0, 0, 1}));
+  const PointShell shell(volume, rules_of(Mode::steady, 1));
+  const ContactTool tool(kTool);
+  const auto relative_error = [&](double depth_mm) {
+    // The burr hangs free beyond the plane's border; the shaft lies along x.
+    const Pose X_WT{{-6, 0, 1.02 - depth_mm}, smallest_rotation(Vec3::UnitZ(), Vec3::UnitX())};
+    const ContactSum here = contacts_by_octree(shell, tool, X_WT, 20).total();
+    Mat3 differences;
+    constexpr double kStep = 1e-7;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto torque_at = [&](double step) {
+        const Pose turned = moved(X_WT, {Vec3::Zero(), step * Vec3::Unit(axis)});
+        return contacts_by_octree(shell, tool, turned, 20).total().torque_Nmm;
+      };
+      differences.col(axis) = (torque_at(kStep) - torque_at(-kStep)) / (2 * kStep);
+    }
+    return (differences + here.K_tt).norm() / here.K_tt.norm();
+  };
+  const double deep = relative_error(0.2), shallow = relative_error(0.05);
+  EXPECT_LT(deep, 0.25);
+  EXPECT_LT(shallow, 0.4 * deep);
+}
+
+}  // namespace
+}  // namespace osteomill
