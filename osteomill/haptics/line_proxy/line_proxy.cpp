@@ -57,7 +57,10 @@ HapticStep LineProxy::step(const Pose& X_WD, double /*dt_s*/) {
   HapticStep result;
   result.wrench.force_N = tip_force(settings_.stiffness_N_per_mm, proxy_W, X_WD.position_mm);  // eq. 6
   result.burr_force_N = result.wrench.force_N.norm();
-  if (settings_.shaft_pushes) result.wrench.force_N += memory_.reaction_N;
+  if (settings_.shaft_pushes) {
+    push_with_shaft(proxy_W - X_WD.position_mm);
+    result.wrench.force_N += memory_.shaft_push_N;
+  }
   result.wrench.torque_Nmm = torque(memory_.arm_W, memory_.reaction_N);  // eq. 11
   result.contacts = (memory_.tip_proxy_W ? 1 : 0) +
                     (memory_.intersection_W ? vertices_in_bone(*scene_.volume, shaft_vertices(), X_WL) : 0);
@@ -116,7 +119,8 @@ std::optional<Vec3> LineProxy::first_intersection(const Pose& X_WL) const {
 
 // Collision at t-1 already: the point-proxy rule, with the densest point as the probe.
 void LineProxy::slide_intersection(const Pose& X_WL) {
-  const ShaftProbe probe = densest_point(*scene_.volume, shaft_vertices(), X_WL, *memory_.intersection_W);
+  const auto probe_point = settings_.probe_in_the_middle ? middle_of_penetration : densest_point;
+  const ShaftProbe probe = probe_point(*scene_.volume, shaft_vertices(), X_WL, *memory_.intersection_W);
   if (!(probe.density > scene_.volume->isovalue())) {
     memory_.intersection_W.reset();
     return;
@@ -142,6 +146,16 @@ void LineProxy::turn_reaction(const Pose& X_WL) {
         shaft_share(memory_.arm_W.norm()) * reaction_force(settings_.stiffness_N_per_mm, g);  // eq. 10
   }
   memory_.reaction_N = moved_toward(memory_.reaction_N, reaction_N, settings_.shaft_force_slew_N);
+}
+
+// What of the reaction the hand feels as a force. The centreline is laid at the tip's proxy, which goes along
+// with the hand in the tangent plane only: a push along the tip's own spring would answer to no movement of
+// the hand, and such a spring, stiff one way and not the other, feeds energy into the hand.
+void LineProxy::push_with_shaft(const Vec3& tip_spring_W) {
+  Vec3 push_N = memory_.reaction_N;
+  const double spring_mm = tip_spring_W.norm();
+  if (spring_mm > 0.0) push_N -= push_N.dot(tip_spring_W / spring_mm) * (tip_spring_W / spring_mm);
+  memory_.shaft_push_N = moved_toward(memory_.shaft_push_N, push_N, settings_.shaft_force_slew_N);
 }
 
 double LineProxy::shaft_share(double arm_mm) const {

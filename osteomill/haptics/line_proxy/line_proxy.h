@@ -39,6 +39,7 @@ class LineProxy final : public HapticAlgorithm {
     std::optional<Vec3> intersection_W;
     Vec3 arm_W = Vec3::Zero();
     Vec3 reaction_N = Vec3::Zero();
+    Vec3 shaft_push_N = Vec3::Zero();
     // The simulated tool against the device: moved by, turned by (a rotation vector in W).
     Vec3 tool_shift_W = Vec3::Zero();
     Vec3 tool_turn_W = Vec3::Zero();
@@ -52,6 +53,7 @@ class LineProxy final : public HapticAlgorithm {
   void slide_intersection(const Pose& X_WL);
   bool is_refused(const Vec3& intersection_W, const Vec3& expected_W, const Pose& X_WL) const;
   void turn_reaction(const Pose& X_WL);
+  void push_with_shaft(const Vec3& tip_spring_W);
   double shaft_share(double arm_mm) const;
   Pose touching_tool(const Pose& X_WD) const;
   Pose simulated_tool(const Pose& X_WD);

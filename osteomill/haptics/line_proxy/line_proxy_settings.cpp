@@ -28,6 +28,7 @@ LineProxySettings LineProxySettings::defaults(Mode mode) {
   settings.intersection_slide_limit_mm = 0.2;
   settings.tip_proxy_limit_mm = 0.1;
   settings.contact_until_proxy_is_free = true;
+  settings.probe_in_the_middle = true;
   settings.shaft_pushes = true;
   settings.shaft_fade_radii = 1.5;
   settings.shaft_force_slew_N = 0.1;

@@ -60,6 +60,16 @@ Vec3 marched(const Volume& volume, const Vec3& proxy_W, const Vec3& probe_W, dou
   return crossing_in_grid(volume, proxy_W, target).value_or(target);
 }
 
+// The whole way to the probe's foot overshoots on concave bone, by more than it gained where the probe lies
+// deeper than the radius of curvature. Aitken's rule finds the share of the way that does not (Kuettler and
+// Wall 2008).
+double relaxed(double relaxation, const Vec3& aside_before, const Vec3& aside) {
+  const Vec3 change = aside - aside_before;
+  const double squared = change.squaredNorm();
+  if (aside_before.isZero() || !(squared > 0.0)) return relaxation;
+  return std::clamp(-relaxation * aside_before.dot(change) / squared, 0.1, 1.0);
+}
+
 }  // namespace
 
 Vec3 move_point_proxy(const Volume& volume, const Vec3& proxy_W, const Vec3& probe_W,
@@ -71,8 +81,8 @@ Vec3 move_point_proxy(const Volume& volume, const Vec3& proxy_W, const Vec3& pro
     proxy = *out;
   }
   double travel_mm = rule.travel_limit_mm;
-  // A slide of more than a voxel could step over a wall or a crack.
-  const double slide_limit_mm = voxel_mm(volume);
+  Vec3 aside_before = Vec3::Zero();
+  double relaxation = 1.0;
   for (int n = 0; n < kSlides && travel_mm > 0.0; ++n) {
     const Vec3 start = proxy;
     proxy = marched(volume, proxy, probe_W, travel_mm);
@@ -81,10 +91,13 @@ Vec3 move_point_proxy(const Volume& volume, const Vec3& proxy_W, const Vec3& pro
     const auto normal = surface_normal(volume, proxy, rule.normal);
     if (!normal) return proxy;
     const Vec3 to_probe = probe_W - proxy;
-    const Vec3 tangent =
-        shortened(to_probe - to_probe.dot(*normal) * *normal, std::min(slide_limit_mm, travel_mm));
-    if (tangent.norm() < kAtRest_mm) return proxy;
-    const Vec3 next = slid(volume, proxy, tangent, *normal);
+    const Vec3 aside = to_probe - to_probe.dot(*normal) * *normal;
+    if (aside.norm() < kAtRest_mm) return proxy;
+    relaxation = relaxed(relaxation, aside_before, aside);
+    aside_before = aside;
+    // A slide of more than a voxel could step over a wall or a crack.
+    const Vec3 next =
+        slid(volume, proxy, shortened(relaxation * aside, std::min(voxel_mm(volume), travel_mm)), *normal);
     travel_mm -= (next - proxy).norm();
     proxy = next;
   }

@@ -1,5 +1,6 @@
 #include "osteomill/haptics/line_proxy/shaft_probe.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -45,6 +46,65 @@ ShaftProbe densest_point(const Volume& volume, std::span<const Vec3> vertices_T,
     }
   }
   return {0.5 * (first + last), densest};
+}
+
+namespace {
+
+// A run of bone along the shaft while it is being walked.
+struct Run {
+  double weight = 0.0;
+  double moment = 0.0;
+  double densest = 0.0;
+  double first_mm = 0.0;
+  double last_mm = 0.0;
+
+  void add(double along_mm, double density, double isovalue) {
+    if (weight == 0.0) first_mm = along_mm;
+    last_mm = along_mm;
+    weight += density - isovalue;
+    moment += (density - isovalue) * along_mm;
+    densest = std::max(densest, density);
+  }
+  double distance_to(double along_mm) const {
+    return std::max({0.0, first_mm - along_mm, along_mm - last_mm});
+  }
+};
+
+}  // namespace
+
+ShaftProbe middle_of_penetration(const Volume& volume, std::span<const Vec3> vertices_T, const Pose& X_WT,
+                                 const Vec3& intersection_before_W) {
+  const Vec3 axis_W = shaft_direction(X_WT);
+  const double intersection_mm = axis_W.dot(intersection_before_W - X_WT.position_mm);
+  Run nearest;
+  Run current;
+  const auto close_run = [&] {
+    if (current.weight > 0.0 && (nearest.weight == 0.0 || current.distance_to(intersection_mm) <
+                                                              nearest.distance_to(intersection_mm))) {
+      nearest = current;
+    }
+    current = Run{};
+  };
+  for (std::size_t n = 0; n < vertices_T.size(); ++n) {
+    const bool last = n + 1 == vertices_T.size();
+    for (int sub = 0; sub < (last ? 1 : kSubsteps); ++sub) {
+      const double share = static_cast<double>(sub) / kSubsteps;
+      const double along_mm =
+          last ? vertices_T[n].z() : vertices_T[n].z() + share * (vertices_T[n + 1].z() - vertices_T[n].z());
+      const double density = density_at(volume.grid(), X_WT.position_mm + along_mm * axis_W);
+      if (density > volume.isovalue()) {
+        current.add(along_mm, density, volume.isovalue());
+      } else {
+        close_run();
+      }
+    }
+  }
+  close_run();
+  if (nearest.weight == 0.0) {
+    const Vec3 first_W = X_WT * vertices_T.front();
+    return {first_W, density_at(volume.grid(), first_W)};
+  }
+  return {X_WT.position_mm + nearest.moment / nearest.weight * axis_W, nearest.densest};
 }
 
 int vertices_in_bone(const Volume& volume, std::span<const Vec3> vertices_T, const Pose& X_WT) {
