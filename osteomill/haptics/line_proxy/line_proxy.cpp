@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "osteomill/haptics/line_proxy/bone_march.h"
-#include "osteomill/haptics/line_proxy/centreline.h"
+#include "osteomill/tool/sample_points.h"
 #include "osteomill/haptics/line_proxy/equations.h"
 #include "osteomill/haptics/line_proxy/point_proxy.h"
 #include "osteomill/haptics/line_proxy/shaft_probe.h"
