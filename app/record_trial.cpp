@@ -2,13 +2,13 @@
 
 #include <memory>
 
+#include "app/bone_picture.h"
 #include "app/describe_run.h"
 #include "app/progress.h"
 #include <fmt/core.h>
 
 #include "osteomill/recording/recorder.h"
 #include "osteomill/recording/recording.h"
-#include "osteomill/surface/isosurface_picture.h"
 
 namespace osteomill::app {
 

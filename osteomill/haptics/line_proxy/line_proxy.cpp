@@ -5,11 +5,11 @@
 #include <stdexcept>
 
 #include "osteomill/haptics/line_proxy/bone_march.h"
-#include "osteomill/tool/sample_points.h"
 #include "osteomill/haptics/line_proxy/equations.h"
 #include "osteomill/haptics/line_proxy/point_proxy.h"
 #include "osteomill/haptics/line_proxy/shaft_probe.h"
 #include "osteomill/haptics/line_proxy/translation_rotation_walk.h"
+#include "osteomill/tool/sample_points.h"
 
 namespace osteomill {
 
