@@ -40,6 +40,7 @@ void require_valid(const ScriptSettings& settings) {
           "depth (mm) and the limit of the lean (rad) must not be negative");
   require(share(settings.feed_push_share) && share(settings.latest_lean_share) &&
               share(settings.lean_torque_share) && share(settings.lean_push_share) &&
+              share(settings.lean_side_share) && share(settings.hold_side_share) &&
               share(settings.hold_push_share) && share(settings.hold_torque_share),
           "a share must lie in [0, 1]");
   require(not_negative(settings.settle_s), "settling must not take less than 0 s");
@@ -91,6 +92,8 @@ void MillingScript::push_sideways(double share, double dt_s, const Pose& X_WD) {
   const double felt_mm = sideways_mm_ - entry_.lateral_W.dot(X_WD.position_mm - entry_.point_W);
   const double rate_mm_s = settings_.push_correction_per_s * (wanted_mm - felt_mm);
   sideways_mm_ += dt_s * std::clamp(rate_mm_s, -settings_.feed_mm_s, settings_.feed_mm_s);
+  // Where nothing resists (a burr that slides over bone too hard for it) the target must not wander off.
+  sideways_mm_ = std::clamp(sideways_mm_, 0.0, wanted_mm);
 }
 
 void MillingScript::lean(double share, double dt_s, const Pose& X_WD) {
@@ -125,7 +128,7 @@ const ScriptIntent& MillingScript::step(double time_s, double dt_s, const Pose& 
       break;
     case ScriptStage::settle:
       push(settings_.hold_push_share, -feed_mm_s, feed_mm_s, dt_s, X_WD);
-      push_sideways(settings_.lean_side_share, dt_s, X_WD);
+      push_sideways(settings_.hold_side_share, dt_s, X_WD);
       lean(settings_.hold_torque_share, dt_s, X_WD);
       break;
     case ScriptStage::hold:

@@ -22,11 +22,14 @@ struct ScriptSettings {
   double lean_rad_s = 0.14;  // 8 degrees a second
   double lean_torque_share = 0.8;
   double lean_push_share = 0.6;
-  /// Sideways, towards the rim that is leant against.
+  /// Sideways, towards the rim that is leant against. Leaning by torque alone would press the burr into the
+  /// wall on the other side as hard as the shaft into the rim, and so mill that wall away instead of loading
+  /// the edge.
   double lean_side_share = 0.6;
   /// The shaft is never meant to stand further from the direction than this (35 degrees).
   double lean_limit_rad = 0.61;
   double hold_push_share = 0.5;
+  double hold_side_share = 0.6;
   double hold_torque_share = 0.8;
   /// How long the hand takes, at the start of the holding, to come to what it then holds.
   double settle_s = 1.0;
