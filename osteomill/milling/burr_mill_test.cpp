@@ -174,7 +174,7 @@ TEST(BurrMill, StopsAtTheSurroundingsAndCarriesTheRestWithinBounds) {
   BurrMill mill(geometry, kRadius_mm, bone, {});
   const double held_mm3 = charge_mm3(volume.grid(), bone);
   double removed_mm3 = 0;
-  for (int n = 0; n < 2000; ++n) removed_mm3 += mill.step(volume, Vec3(0, 0, -0.6), 5, 0.001).removed_mm3;
+  for (int n = 0; n < 3000; ++n) removed_mm3 += mill.step(volume, Vec3(0, 0, -0.6), 5, 0.001).removed_mm3;
   EXPECT_NEAR(held_mm3 - charge_mm3(volume.grid(), bone), removed_mm3, 1e-6);
   const Volume original = half_space(geometry);
   for (int k = 0; k < geometry.dims[2]; ++k)
