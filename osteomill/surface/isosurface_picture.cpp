@@ -98,7 +98,11 @@ class Painter {
  private:
   // Whiter where it is denser, a little below the surface.
   Colour tint(const RayHit& hit) const {
-    const double density = density_at(volume_.grid(), hit.point_W - 2.5 * spacing_mm_ * hit.normal_W);
+    double density = volume_.isovalue();
+    for (const double voxels : {1.25, 2.5}) {
+      const Vec3 below_W = hit.point_W - voxels * spacing_mm_ * hit.normal_W;
+      density = std::max(density, density_at(volume_.grid(), below_W));
+    }
     const double range = std::max(greatest_density_ - volume_.isovalue(), 1e-9);
     const double t = std::clamp(((density - volume_.isovalue()) / range - 0.42) / 0.35, 0.0, 1.0);
     return kDentine + (t * t * (3 - 2 * t)) * (kEnamel - kDentine);
@@ -128,7 +132,7 @@ class Painter {
     const Vec3 half_way = (key_light_ - camera_.forward).normalized();
     const double shine = std::pow(std::max(0.0, hit.normal_W.dot(half_way)), 40.0);
     const Colour base = tint(hit);
-    return base * (sky * (0.30 + 0.30 * facing) + 0.62 * key * lit) + 0.10 * shine * lit;
+    return base * (sky * (0.28 + 0.28 * facing) + 0.54 * key * lit) + 0.07 * shine * lit;
   }
 
   const Volume& volume_;
@@ -176,7 +180,7 @@ bool differs(const Looks& looks, int x, int y, double mm_per_pixel) {
     if (x + dx < 0 || y + dy < 0 || x + dx >= looks.width || y + dy >= looks.height) continue;
     const Look& there = looks.at(x + dx, y + dy);
     if (here.hit != there.hit || std::abs(here.away_mm - there.away_mm) > 4 * mm_per_pixel) return true;
-    if ((here.colour - there.colour).abs().maxCoeff() > 0.06) return true;
+    if ((here.colour - there.colour).abs().maxCoeff() > 0.1) return true;
   }
   return false;
 }

@@ -69,6 +69,21 @@ double brick_exit_mm(const VoxelLine& line, const VoxelIndex& cell) {
   return exit_mm;
 }
 
+// The gradient averaged over a voxel to all sides: smoother than the one that forces are made from, which
+// lets voxels show as terraces in glancing light.
+std::optional<Vec3> picture_normal(const Volume& volume, const Vec3& point_W) {
+  const GridGeometry& geometry = volume.geometry();
+  Vec3 gradient = density_gradient(volume.grid(), point_W, GradientKernel::smoothed);
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vec3 voxel = geometry.spacing_mm[axis] * geometry.direction.col(axis);
+    gradient += density_gradient(volume.grid(), point_W + voxel, GradientKernel::smoothed) +
+                density_gradient(volume.grid(), point_W - voxel, GradientKernel::smoothed);
+  }
+  const double steepness = gradient.norm();
+  if (!(steepness > 1e-9)) return std::nullopt;
+  return -gradient / steepness;
+}
+
 }  // namespace
 
 BoneRays::BoneRays(const Volume& volume) : volume_(volume) {
@@ -94,7 +109,7 @@ BoneRays::BoneRays(const Volume& volume) : volume_(volume) {
 
 RayHit BoneRays::hit_between(const Vec3& outside_W, const Vec3& inside_W, const Vec3& direction_W) const {
   const Vec3 point_W = bisect_crossing(volume_, outside_W, inside_W, kTolerance_mm);
-  return {point_W, outward_normal(volume_, point_W, GradientKernel::smoothed).value_or(-direction_W)};
+  return {point_W, picture_normal(volume_, point_W).value_or(-direction_W)};
 }
 
 std::optional<RayHit> BoneRays::first_on_line(const Vec3& origin_W, const Vec3& direction_W) const {

@@ -9,8 +9,8 @@ namespace osteomill {
 /// Where a ray meets the bone.
 struct RayHit {
   Vec3 point_W;
-  /// Out of the bone, a unit vector: against the smoothed gradient, or out of the grid where the ray met the
-  /// bone in the grid's border.
+  /// Out of the bone, a unit vector: against the gradient smoothed over a voxel to all sides, or out of the
+  /// grid where the ray met the bone in the grid's border.
   Vec3 normal_W;
 };
 
