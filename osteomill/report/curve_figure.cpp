@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <numeric>
 
 #include <fmt/format.h>
 
@@ -35,10 +33,11 @@ Curve write_curve(const CurveColumn& column, const MeasuredRun& run, std::size_t
   for (const TickRecord& record : records) values.push_back(column.value(record));
   Curve curve{run.recording->description.algorithm, data_file(column, run)};
   for (std::size_t n = 1; n < values.size(); ++n) curve.restlessness += std::abs(values[n] - values[n - 1]);
-  std::ofstream out(work / curve.file);
+  std::string data;
   for (const std::size_t n : thin_out_curve(values, bins)) {
-    out << fmt::format("{:.4f} {:.5g}\n", records[n].time_s - records.front().time_s, values[n]);
+    data += fmt::format("{:.4f} {:.5g}\n", records[n].time_s - records.front().time_s, values[n]);
   }
+  write_figure_data(work / curve.file, data);
   return curve;
 }
 
@@ -91,7 +90,7 @@ struct Place {
 
 Place panel_place(std::size_t column, std::size_t columns, std::size_t row, std::size_t rows,
                   double height_px) {
-  const double left_px = 96, right_px = 24, top_px = 84, bottom_px = 62, between_px = 70;
+  const double left_px = 112, right_px = 26, top_px = 86, bottom_px = 80, between_px = 88;
   const double wide = kFigureWidth_px / static_cast<double>(columns);
   const double high = (height_px - top_px - bottom_px + between_px) / static_cast<double>(rows);
   const double top = height_px - top_px - static_cast<double>(row) * high;
@@ -154,7 +153,7 @@ Figure draw_curves(const RunGroup& group, const std::string& name, const std::ve
                    const std::filesystem::path& folder) {
   const TemporaryFolder work;
   const std::vector<RunPhase> phases = group.phases();
-  FigureScript script{name, static_cast<int>(kFigureWidth_px), phases.size() > 1 ? 760 : 460, ""};
+  FigureScript script{name, static_cast<int>(kFigureWidth_px), phases.size() > 1 ? 800 : 480, ""};
   script.body = fmt::format(
       "set multiplot\nset border 3 lc rgb '#444444'\nset tics nomirror out scale 0.6\n"
       "set grid lc rgb '#dddddd' lt 1 lw 0.7\nset xrange [0:{:.6g}]\n"

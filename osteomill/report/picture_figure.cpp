@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
 #include <vector>
 
 #include <fmt/format.h>
@@ -72,11 +71,6 @@ std::vector<Panel> panels_of(const RunGroup& group) {
   return panels;
 }
 
-void write_bytes(const std::filesystem::path& path, const std::vector<unsigned char>& bytes) {
-  std::ofstream out(path, std::ios::binary);
-  out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-}
-
 }  // namespace
 
 std::optional<Figure> draw_picture_figure(const RunGroup& group, const std::filesystem::path& folder) {
@@ -95,7 +89,8 @@ std::optional<Figure> draw_picture_figure(const RunGroup& group, const std::file
   for (std::size_t n = 0; n < panels.size(); ++n) {
     const PictureSize size = png_size(*panels[n].recording, *panels[n].picture);
     const std::string file = fmt::format("picture{}.png", n);
-    write_bytes(work / file, panels[n].picture->png);
+    const std::vector<unsigned char>& png = panels[n].picture->png;
+    write_figure_data(work / file, {reinterpret_cast<const char*>(png.data()), png.size()});
     // Large pictures would make the SVG, which holds them whole, too large.
     const int every = std::max(1, size.width / 640);
     const int column = static_cast<int>(n) % columns;
