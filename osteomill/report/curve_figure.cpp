@@ -122,16 +122,20 @@ std::string panel(const RunGroup& group, const CurveColumn& column, RunPhase pha
   return script + plot;
 }
 
-double rate_of(const TickRecord& record) {
-  return 1e6 / std::max(1000.0, record.compute_us + record.milling_us);
+double busy_us(const TickRecord& record) {
+  return record.compute_us + record.milling_us;
 }
 
-double lowest_rate_hz(const RunGroup& group) {
-  double lowest = 1000;
+double rate_of(const TickRecord& record) {
+  return 1e6 / std::max(1000.0, busy_us(record));
+}
+
+double longest_tick_us(const RunGroup& group) {
+  double longest = 0;
   for (const MeasuredRun& run : group.runs) {
-    for (const TickRecord& record : run.recording->records) lowest = std::min(lowest, rate_of(record));
+    for (const TickRecord& record : run.recording->records) longest = std::max(longest, busy_us(record));
   }
-  return lowest;
+  return longest;
 }
 
 // Shared by the panels of a column, so that the phases can be compared.
@@ -175,14 +179,16 @@ Figure draw_curves(const RunGroup& group, const std::string& name, const std::ve
 }
 
 Figure draw_rate_figure(const RunGroup& group, const std::filesystem::path& folder) {
-  const double floor_hz = std::min(900.0, 100.0 * std::floor(lowest_rate_hz(group) / 100.0));
-  const CurveColumn rate{"rate", "Haptic rate (Hz)", rate_of,
-                         fmt::format("set yrange [{:.6g}:1020]\n{}", floor_hz,
-                                     marked_line(kLeastRate_hz, "950 Hz, the least acceptable"))};
-  const CurveColumn compute{"compute", "Compute time of a tick (µs)",
-                            [](const TickRecord& r) { return std::max(0.1, r.compute_us + r.milling_us); },
-                            "set logscale y\nset yrange [*:3000]\nset format y '%g'\n" +
-                                marked_line(1000, "1 ms, a tick at 1000 Hz")};
+  const double longest = longest_tick_us(group);
+  const double lowest_rate_hz = 1e6 / std::max(1000.0, longest);
+  const CurveColumn rate{
+      "rate", "Haptic rate (Hz)", rate_of,
+      fmt::format("set yrange [{:.6g}:1020]\n{}", std::min(900.0, 100.0 * std::floor(lowest_rate_hz / 100.0)),
+                  marked_line(kLeastRate_hz, "950 Hz, the least acceptable"))};
+  const CurveColumn compute{
+      "compute", "Compute time of a tick (µs)", [](const TickRecord& r) { return std::max(0.1, busy_us(r)); },
+      fmt::format("set logscale y\nset yrange [*:{:.6g}]\nset format y '%g'\n{}",
+                  std::max(3000.0, 1.5 * longest), marked_line(1000, "1 ms, a tick at 1000 Hz"))};
   return draw_curves(group, figure_name("fig6_rate", group), {rate, compute}, folder);
 }
 

@@ -57,7 +57,7 @@ std::string panel(const std::vector<RateRow>& rows, std::size_t column, std::siz
                         known ? fmt::format("{:.6g}", rows[n].paper_rate_hz) : "?");
   }
   write_figure_data(work / file, data);
-  const double left_px = 100, right_px = 30, top_px = 84, bottom_px = 110;
+  const double left_px = 116, right_px = 30, top_px = 84, bottom_px = 110;
   const double wide = (kWidth_px - left_px) / static_cast<double>(columns);
   const double left = left_px + static_cast<double>(column) * wide;
   std::string script = fmt::format(
@@ -87,7 +87,7 @@ Figure draw_rates_figure(std::span<const RateRow> rows, const std::filesystem::p
   script.body =
       "set multiplot\nset border 3 lc rgb '#444444'\nset tics nomirror out scale 0.6\nset datafile missing "
       "'?'\n"
-      "set grid y lc rgb '#dddddd' lt 1 lw 0.7\nset logscale y\nset format y '%.0f'\nunset key\n" +
+      "set grid y lc rgb '#dddddd' lt 1 lw 0.7\nset logscale y\nset format y '%.0s %c'\nunset key\n" +
       rate_range(rows) +
       fmt::format(
           "set label 1 '● measured here    {{/:Normal ○}} the paper, on a Pentium 4    - - -  1000 Hz, "

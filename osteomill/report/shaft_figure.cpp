@@ -97,7 +97,7 @@ std::string panel(const MeasuredRun& run, const Cube& cube, double column, doubl
   const RunDescription& d = run.recording->description;
   const std::string file = fmt::format("shaft-{}-{}.dat", name_of(d.phase), name_of(d.algorithm));
   write_cloud(run, cube.centre, work / file);
-  const double bar = 100 / layout.width_px;
+  const double bar = 105 / layout.width_px;
   const double wide = (1 - bar) / layout.columns;
   const double high = 1 / layout.rows;
   return fmt::format(
@@ -106,7 +106,7 @@ std::string panel(const MeasuredRun& run, const Cube& cube, double column, doubl
       "center\n"
       "splot '{}' using 1:2:3:4 with points pt 7 ps 0.38 lc palette notitle\n"
       "unset colorbox\n",
-      column * wide + 12 / layout.width_px, 1 - (row + 1) * high, wide, high - 34 / layout.height_px,
+      column * wide + 26 / layout.width_px, 1 - (row + 1) * high, wide, high - 46 / layout.height_px,
       numbered_name(d.algorithm), name_of(d.phase), degrees_text(run.metrics.shaft.spread_deg),
       degrees_text(run.metrics.shaft.excursion_deg), (column + 0.5) * wide,
       1 - row * high - 24 / layout.height_px, file);
@@ -124,14 +124,14 @@ Figure draw_shaft_figure(const RunGroup& group, const std::filesystem::path& fol
     last_s = std::max(last_s, run.recording->records.back().time_s - run.recording->records.front().time_s);
   }
   FigureScript script{fmt::format("fig9_shaft_{}", name_of(group.mode)),
-                      static_cast<int>(370 * columns + 100), static_cast<int>(410 * phases.size()), ""};
+                      static_cast<int>(385 * columns + 105), static_cast<int>(425 * phases.size()), ""};
   const Layout layout{static_cast<double>(columns), static_cast<double>(phases.size()),
                       static_cast<double>(script.width_px), static_cast<double>(script.height_px)};
   script.body = fmt::format(
       "set multiplot\nset palette defined (0 '#440154', 0.27 '#3b528b', 0.54 '#21918c', 0.8 '#5ec962', 1 "
       "'#c2df23')\nset cbrange [0:{:.6g}]\nset cblabel 'Time (s)'\nset cbtics tc rgb '#444444'\n"
       "set colorbox vertical user origin screen {:.4f},screen 0.2 size screen {:.4f},screen 0.6\n"
-      "set view 58,38,1.17,1.0\nset view equal xyz\nset xyplane relative 0\nset border 4095 lc rgb '#999999' "
+      "set view 58,38,1.14,1.0\nset view equal xyz\nset xyplane relative 0\nset border 4095 lc rgb '#999999' "
       "lw 0.6\n"
       "set grid x y z lc rgb '#dddddd' lt 1 lw 0.6\nset label 11 'x' at graph 0.5,-0.42,0 center\nset label "
       "12 'y' at graph 1.46,0.5,0 center\n"
