@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <numeric>
 
 #include <fmt/format.h>
 
@@ -35,10 +33,11 @@ Curve write_curve(const CurveColumn& column, const MeasuredRun& run, std::size_t
   for (const TickRecord& record : records) values.push_back(column.value(record));
   Curve curve{run.recording->description.algorithm, data_file(column, run)};
   for (std::size_t n = 1; n < values.size(); ++n) curve.restlessness += std::abs(values[n] - values[n - 1]);
-  std::ofstream out(work / curve.file);
+  std::string data;
   for (const std::size_t n : thin_out_curve(values, bins)) {
-    out << fmt::format("{:.4f} {:.5g}\n", records[n].time_s - records.front().time_s, values[n]);
+    data += fmt::format("{:.4f} {:.5g}\n", records[n].time_s - records.front().time_s, values[n]);
   }
+  write_figure_data(work / curve.file, data);
   return curve;
 }
 
@@ -91,7 +90,7 @@ struct Place {
 
 Place panel_place(std::size_t column, std::size_t columns, std::size_t row, std::size_t rows,
                   double height_px) {
-  const double left_px = 96, right_px = 24, top_px = 84, bottom_px = 62, between_px = 70;
+  const double left_px = 112, right_px = 26, top_px = 86, bottom_px = 80, between_px = 88;
   const double wide = kFigureWidth_px / static_cast<double>(columns);
   const double high = (height_px - top_px - bottom_px + between_px) / static_cast<double>(rows);
   const double top = height_px - top_px - static_cast<double>(row) * high;
@@ -123,16 +122,20 @@ std::string panel(const RunGroup& group, const CurveColumn& column, RunPhase pha
   return script + plot;
 }
 
-double rate_of(const TickRecord& record) {
-  return 1e6 / std::max(1000.0, record.compute_us + record.milling_us);
+double busy_us(const TickRecord& record) {
+  return record.compute_us + record.milling_us;
 }
 
-double lowest_rate_hz(const RunGroup& group) {
-  double lowest = 1000;
+double rate_of(const TickRecord& record) {
+  return 1e6 / std::max(1000.0, busy_us(record));
+}
+
+double longest_tick_us(const RunGroup& group) {
+  double longest = 0;
   for (const MeasuredRun& run : group.runs) {
-    for (const TickRecord& record : run.recording->records) lowest = std::min(lowest, rate_of(record));
+    for (const TickRecord& record : run.recording->records) longest = std::max(longest, busy_us(record));
   }
-  return lowest;
+  return longest;
 }
 
 // Shared by the panels of a column, so that the phases can be compared.
@@ -154,7 +157,7 @@ Figure draw_curves(const RunGroup& group, const std::string& name, const std::ve
                    const std::filesystem::path& folder) {
   const TemporaryFolder work;
   const std::vector<RunPhase> phases = group.phases();
-  FigureScript script{name, static_cast<int>(kFigureWidth_px), phases.size() > 1 ? 760 : 460, ""};
+  FigureScript script{name, static_cast<int>(kFigureWidth_px), phases.size() > 1 ? 800 : 480, ""};
   script.body = fmt::format(
       "set multiplot\nset border 3 lc rgb '#444444'\nset tics nomirror out scale 0.6\n"
       "set grid lc rgb '#dddddd' lt 1 lw 0.7\nset xrange [0:{:.6g}]\n"
@@ -176,14 +179,16 @@ Figure draw_curves(const RunGroup& group, const std::string& name, const std::ve
 }
 
 Figure draw_rate_figure(const RunGroup& group, const std::filesystem::path& folder) {
-  const double floor_hz = std::min(900.0, 100.0 * std::floor(lowest_rate_hz(group) / 100.0));
-  const CurveColumn rate{"rate", "Haptic rate (Hz)", rate_of,
-                         fmt::format("set yrange [{:.6g}:1020]\n{}", floor_hz,
-                                     marked_line(kLeastRate_hz, "950 Hz, the least acceptable"))};
-  const CurveColumn compute{"compute", "Compute time of a tick (µs)",
-                            [](const TickRecord& r) { return std::max(0.1, r.compute_us + r.milling_us); },
-                            "set logscale y\nset yrange [*:3000]\nset format y '%g'\n" +
-                                marked_line(1000, "1 ms, a tick at 1000 Hz")};
+  const double longest = longest_tick_us(group);
+  const double lowest_rate_hz = 1e6 / std::max(1000.0, longest);
+  const CurveColumn rate{
+      "rate", "Haptic rate (Hz)", rate_of,
+      fmt::format("set yrange [{:.6g}:1020]\n{}", std::min(900.0, 100.0 * std::floor(lowest_rate_hz / 100.0)),
+                  marked_line(kLeastRate_hz, "950 Hz, the least acceptable"))};
+  const CurveColumn compute{
+      "compute", "Compute time of a tick (µs)", [](const TickRecord& r) { return std::max(0.1, busy_us(r)); },
+      fmt::format("set logscale y\nset yrange [*:{:.6g}]\nset format y '%g'\n{}",
+                  std::max(3000.0, 1.5 * longest), marked_line(1000, "1 ms, a tick at 1000 Hz"))};
   return draw_curves(group, figure_name("fig6_rate", group), {rate, compute}, folder);
 }
 

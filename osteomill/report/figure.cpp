@@ -1,5 +1,7 @@
 #include "osteomill/report/figure.h"
 
+#include <fstream>
+
 #include <fmt/format.h>
 
 #include "osteomill/files/atomic_file.h"
@@ -25,7 +27,7 @@ Figure draw_figure(const FigureScript& script, const TemporaryFolder& work, cons
   const std::string size = fmt::format("{},{}", script.width_px, script.height_px);
   run_gnuplot(work.path(),
               fmt::format("set encoding utf8\n"
-                          "set terminal svg size {0} font 'DejaVu Sans,15' background 'white'\n"
+                          "set terminal svg size {0} font 'DejaVu Sans,14.5' background 'white'\n"
                           "set output '{1}.svg'\n{2}\nunset output\nreset\n"
                           "set terminal pngcairo size {0} font 'DejaVu Sans,11.5' background 'white'\n"
                           "set output '{1}.png'\n{2}\nunset output\n",
@@ -34,6 +36,13 @@ Figure draw_figure(const FigureScript& script, const TemporaryFolder& work, cons
   move_whole(work / (script.name + ".svg"), figure.svg);
   move_whole(work / (script.name + ".png"), figure.png);
   return figure;
+}
+
+void write_figure_data(const fs::path& path, std::string_view bytes) {
+  std::ofstream out(path, std::ios::binary);
+  out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  out.close();
+  if (!out) throw InputError(path.string(), "cannot be written to its end (is the disk full?)");
 }
 
 std::string_view colour_of(AlgorithmId algorithm) {

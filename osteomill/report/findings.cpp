@@ -140,32 +140,38 @@ std::vector<Ranked> ranked(const RunGroup& group, RunPhase phase, const Measure&
 }
 
 std::string times(double ratio) {
-  if (ratio < 1.05) return "as much";
-  return ratio < 10 ? fmt::format("{:.1f} times as much", ratio) : fmt::format("{:.0f} times as much", ratio);
+  if (ratio < 1.05) return "about the same";
+  return ratio < 9.95 ? fmt::format("{:.1f} times as much", ratio)
+                      : fmt::format("{:.0f} times as much", ratio);
 }
 
-// "While milling, point-shell had the steadiest force: 0.012 N (rms) above 20 Hz, against 0.02 N of ... (1.7
-// times as much)".
+// "the force buzzed least with point-shell: 0.012 N rms above 20 Hz, against 0.02 N with line-proxy (1.7
+// times as much)."
 std::string ranking_sentence(const RunGroup& group, RunPhase phase, const Measure& measure, const char* what,
-                             const char* unit) {
+                             const char* unit, const char* explained) {
   const std::vector<Ranked> order = ranked(group, phase, measure);
-  std::string start = during(phase);
-  start[0] = 'W';
   const Ranked& best = order.front();
-  if (order.size() == 1) {
-    return fmt::format("{}, {} had {} of {:.3g} {}.", start, name_of(best.algorithm), what, best.value, unit);
-  }
+  const std::string best_value = fmt::format("{:.3g} {}{}", best.value, unit, explained);
+  if (order.size() == 1)
+    return fmt::format("{} came to {} with {}.", what, best_value, name_of(best.algorithm));
   std::string others;
   for (std::size_t n = 1; n < order.size(); ++n) {
     const std::string ratio = best.value > 0 ? fmt::format(" ({})", times(order[n].value / best.value)) : "";
-    others += fmt::format("{}{:.3g} {} with {}{}",
-                          n == 1                  ? ""
-                          : n + 1 == order.size() ? " and "
-                                                  : ", ",
-                          order[n].value, unit, name_of(order[n].algorithm), ratio);
+    others += fmt::format("{}{:.3g} {} with {}{}", n == 1 ? "" : " and ", order[n].value, unit,
+                          name_of(order[n].algorithm), ratio);
   }
-  return fmt::format("{}, {} had the least {}, {:.3g} {}, against {}.", start, name_of(best.algorithm), what,
-                     best.value, unit, others);
+  return fmt::format("{} was least with {}: {}, against {}.", what, name_of(best.algorithm), best_value,
+                     others);
+}
+
+std::string phase_paragraph(const RunGroup& group, RunPhase phase) {
+  std::string start = during(phase);
+  start[0] = 'W';
+  return fmt::format(
+      "{}, {} {} {}", start,
+      ranking_sentence(group, phase, kForceBuzz, "the buzz in the force", "N", " rms above 20 Hz"),
+      ranking_sentence(group, phase, kTorqueBuzz, "The buzz in the torque", "N mm", " rms above 20 Hz"),
+      ranking_sentence(group, phase, kShaftSpread, "The spread of the shaft's direction", "degrees", " rms"));
 }
 
 std::string count_sentence(const std::vector<Finding>& findings) {
@@ -205,20 +211,15 @@ std::vector<Finding> check_findings(const RunGroup& group) {
   return findings;
 }
 
-std::vector<std::string> plain_sentences(const RunGroup& group, const std::vector<Finding>& findings) {
-  std::vector<std::string> sentences;
-  for (const RunPhase phase : group.phases()) {
-    sentences.push_back(ranking_sentence(group, phase, kForceBuzz, "buzz in force (rms above 20 Hz)", "N"));
-    sentences.push_back(
-        ranking_sentence(group, phase, kTorqueBuzz, "buzz in torque (rms above 20 Hz)", "N mm"));
-    sentences.push_back(
-        ranking_sentence(group, phase, kShaftSpread, "spread of the shaft's direction", "degrees"));
-  }
+std::vector<std::string> plain_paragraphs(const RunGroup& group, const std::vector<Finding>& findings) {
+  std::vector<std::string> paragraphs;
+  for (const RunPhase phase : group.phases()) paragraphs.push_back(phase_paragraph(group, phase));
   const Finding rate = rate_finding(group);
-  sentences.push_back(fmt::format("The rate of 1000 Hz is {} within 5 % everywhere: {}.",
-                                  rate.verdict == Verdict::agrees ? "held" : "not held", rate.measured));
-  sentences.push_back(count_sentence(findings));
-  return sentences;
+  paragraphs.push_back(fmt::format("The rate of 1000 Hz is {} within 5 % {}: {}. {}",
+                                   rate.verdict == Verdict::agrees ? "held" : "not held",
+                                   rate.verdict == Verdict::agrees ? "in every recording" : "throughout",
+                                   rate.measured, count_sentence(findings)));
+  return paragraphs;
 }
 
 }  // namespace osteomill

@@ -25,8 +25,8 @@ struct Finding {
 /// are not there is `not_recorded`.
 std::vector<Finding> check_findings(const RunGroup& group);
 
-/// In plain sentences: who was the steadiest in force, in torque and in shaft direction and by how much,
+/// In plain words: who was the steadiest in force, in torque and in shaft direction and by how much,
 /// whether the rate holds, and how many of the findings agree.
-std::vector<std::string> plain_sentences(const RunGroup& group, const std::vector<Finding>& findings);
+std::vector<std::string> plain_paragraphs(const RunGroup& group, const std::vector<Finding>& findings);
 
 }  // namespace osteomill

@@ -1,39 +1,27 @@
 #include "osteomill/report/picture_figure.h"
 
 #include <algorithm>
-#include <array>
-#include <fstream>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "osteomill/files/input_error.h"
+#include "osteomill/report/shrink_png.h"
 
 namespace osteomill {
 
 namespace {
 
-struct PictureSize {
-  int width;
-  int height;
-};
+// As wide as a panel of two columns, so that the SVG, which holds the pictures, stays small.
+constexpr int kPanelWidth_px = 560;
 
-// From the header chunk, which stands at the same place in every PNG; the rest is for gnuplot to judge.
-PictureSize png_size(const Recording& recording, const RunPicture& picture) {
-  constexpr std::array<unsigned char, 8> kSignature{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
-  const std::vector<unsigned char>& png = picture.png;
-  const auto number = [&](std::size_t at) {
-    return (png[at] << 24) | (png[at + 1] << 16) | (png[at + 2] << 8) | png[at + 3];
-  };
-  if (png.size() < 24 || !std::equal(kSignature.begin(), kSignature.end(), png.begin())) {
-    throw InputError(recording.path.string(), fmt::format("the picture '{}' is not a PNG", picture.name));
-  }
-  const PictureSize size{number(16), number(20)};
-  if (size.width < 1 || size.height < 1 || size.width > 8192 || size.height > 8192) {
+ShrunkPng shrunk(const Recording& recording, const RunPicture& picture) {
+  auto png = shrink_png(picture.png, kPanelWidth_px);
+  if (!png) {
     throw InputError(recording.path.string(),
-                     fmt::format("the picture '{}' has an impossible size", picture.name));
+                     fmt::format("the picture '{}' is not a whole PNG of sensible size", picture.name));
   }
-  return size;
+  return *std::move(png);
 }
 
 struct Panel {
@@ -72,11 +60,6 @@ std::vector<Panel> panels_of(const RunGroup& group) {
   return panels;
 }
 
-void write_bytes(const std::filesystem::path& path, const std::vector<unsigned char>& bytes) {
-  std::ofstream out(path, std::ios::binary);
-  out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-}
-
 }  // namespace
 
 std::optional<Figure> draw_picture_figure(const RunGroup& group, const std::filesystem::path& folder) {
@@ -85,26 +68,25 @@ std::optional<Figure> draw_picture_figure(const RunGroup& group, const std::file
   if (panels.empty()) return std::nullopt;
   const int columns = panels.size() == 1 ? 1 : 2;
   const int rows = (static_cast<int>(panels.size()) + columns - 1) / columns;
-  const PictureSize first = png_size(*panels[0].recording, *panels[0].picture);
-  const int wide = columns == 1 ? 800 : 560;
-  const int high = std::clamp(wide * first.height / first.width, 200, 1000) + 40;
+  std::vector<ShrunkPng> pictures;
+  for (const Panel& panel : panels) pictures.push_back(shrunk(*panel.recording, *panel.picture));
+  const int wide = columns == 1 ? 800 : kPanelWidth_px;
+  const int high = std::clamp(wide * pictures[0].height / pictures[0].width, 200, 1000) + 40;
   FigureScript script{fmt::format("bone_{}", name_of(group.mode)), columns * wide, rows * high, ""};
   script.body =
       "set multiplot\nunset tics\nunset border\nset size ratio -1\nset lmargin 0.5\nset rmargin 0.5\n"
       "set tmargin 2\nset bmargin 0.3\nset autoscale xfix\nset autoscale yfix\n";
   for (std::size_t n = 0; n < panels.size(); ++n) {
-    const PictureSize size = png_size(*panels[n].recording, *panels[n].picture);
     const std::string file = fmt::format("picture{}.png", n);
-    write_bytes(work / file, panels[n].picture->png);
-    // Large pictures would make the SVG, which holds them whole, too large.
-    const int every = std::max(1, size.width / 640);
+    const std::vector<unsigned char>& png = pictures[n].png;
+    write_figure_data(work / file, {reinterpret_cast<const char*>(png.data()), png.size()});
     const int column = static_cast<int>(n) % columns;
     const int row = static_cast<int>(n) / columns;
     script.body += fmt::format(
         "set origin {:.4f},{:.4f}\nset size {:.4f},{:.4f}\nset title {} offset 0,-0.5 noenhanced\n"
-        "plot '{}' binary filetype=png every {}:{} with rgbimage notitle\n",
+        "plot '{}' binary filetype=png with rgbimage notitle\n",
         static_cast<double>(column) / columns, 1.0 - (row + 1.0) / rows, 1.0 / columns, 1.0 / rows,
-        gnuplot_quoted(panels[n].label), file, every, every);
+        gnuplot_quoted(panels[n].label), file);
   }
   script.body += "unset multiplot\n";
   return draw_figure(script, work, folder);

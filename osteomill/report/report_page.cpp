@@ -145,11 +145,8 @@ std::string group_section(const DrawnGroup& drawn) {
           ? "The algorithms as the paper has them."
           : "The paper's algorithms with this project's named improvements, so what the paper found "
             "wrong with one of them need not be wrong here.");
-  html += "<ul>\n";
-  for (const std::string& sentence : plain_sentences(group, findings)) {
-    html += "<li>" + html_escaped(sentence) + "</li>\n";
-  }
-  html += "</ul>\n<h3>The paper's findings</h3>\n" + findings_table(findings);
+  for (const std::string& text : plain_paragraphs(group, findings)) html += paragraph(text);
+  html += "<h3>The paper's findings</h3>\n" + findings_table(findings);
   html += "<h3>Figures of merit</h3>\n" + metrics_table(group);
   html += "<h3>Figures</h3>\n";
   for (const CaptionedFigure& figure : drawn.figures) {

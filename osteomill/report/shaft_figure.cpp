@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 
 #include <fmt/format.h>
 
@@ -73,12 +72,13 @@ std::string axes(const Cube& cube) {
 void write_cloud(const MeasuredRun& run, const Vec3& centre, const std::filesystem::path& path) {
   const std::vector<TickRecord>& records = run.recording->records;
   const std::vector<Vec3> directions = directions_of(run);
-  std::ofstream out(path);
+  std::string data;
   for (const std::size_t n : thin_out_cloud(directions, centre, kBins)) {
     const Vec3& d = directions[n];
-    out << fmt::format("{:.6f} {:.6f} {:.6f} {:.3f}\n", d.x(), d.y(), d.z(),
-                       records[n].time_s - records.front().time_s);
+    data += fmt::format("{:.6f} {:.6f} {:.6f} {:.3f}\n", d.x(), d.y(), d.z(),
+                        records[n].time_s - records.front().time_s);
   }
+  write_figure_data(path, data);
 }
 
 struct Layout {
@@ -88,22 +88,27 @@ struct Layout {
   double height_px;
 };
 
+std::string degrees_text(double degrees) {
+  return fmt::format("{:.{}f}", degrees, degrees < 1 ? 2 : 1);
+}
+
 std::string panel(const MeasuredRun& run, const Cube& cube, double column, double row, const Layout& layout,
                   const TemporaryFolder& work) {
   const RunDescription& d = run.recording->description;
   const std::string file = fmt::format("shaft-{}-{}.dat", name_of(d.phase), name_of(d.algorithm));
   write_cloud(run, cube.centre, work / file);
-  const double bar = 100 / layout.width_px;
+  const double bar = 105 / layout.width_px;
   const double wide = (1 - bar) / layout.columns;
   const double high = 1 / layout.rows;
   return fmt::format(
       "set origin {:.4f},{:.4f}\nset size {:.4f},{:.4f}\n"
-      "set label 1 \"{{/:Bold {}}}, {}\\nspread {:.2g}°, excursion {:.2g}°\" at screen {:.4f},screen {:.4f} "
+      "set label 1 \"{{/:Bold {}}}, {}\\nspread {}°, excursion {}°\" at screen {:.4f},screen {:.4f} "
       "center\n"
-      "splot '{}' using 1:2:3:4 with points pt 7 ps 0.45 lc palette notitle\n"
+      "splot '{}' using 1:2:3:4 with points pt 7 ps 0.38 lc palette notitle\n"
       "unset colorbox\n",
-      column * wide, 1 - (row + 1) * high, wide, high - 34 / layout.height_px, numbered_name(d.algorithm),
-      name_of(d.phase), run.metrics.shaft.spread_deg, run.metrics.shaft.excursion_deg, (column + 0.5) * wide,
+      column * wide + 26 / layout.width_px, 1 - (row + 1) * high, wide, high - 46 / layout.height_px,
+      numbered_name(d.algorithm), name_of(d.phase), degrees_text(run.metrics.shaft.spread_deg),
+      degrees_text(run.metrics.shaft.excursion_deg), (column + 0.5) * wide,
       1 - row * high - 24 / layout.height_px, file);
 }
 
@@ -119,18 +124,18 @@ Figure draw_shaft_figure(const RunGroup& group, const std::filesystem::path& fol
     last_s = std::max(last_s, run.recording->records.back().time_s - run.recording->records.front().time_s);
   }
   FigureScript script{fmt::format("fig9_shaft_{}", name_of(group.mode)),
-                      static_cast<int>(370 * columns + 100), static_cast<int>(410 * phases.size()), ""};
+                      static_cast<int>(385 * columns + 105), static_cast<int>(425 * phases.size()), ""};
   const Layout layout{static_cast<double>(columns), static_cast<double>(phases.size()),
                       static_cast<double>(script.width_px), static_cast<double>(script.height_px)};
   script.body = fmt::format(
       "set multiplot\nset palette defined (0 '#440154', 0.27 '#3b528b', 0.54 '#21918c', 0.8 '#5ec962', 1 "
-      "'#c2df23')\nset cbrange [0:{:.6g}]\nset cblabel 'Time (s)'\n"
+      "'#c2df23')\nset cbrange [0:{:.6g}]\nset cblabel 'Time (s)'\nset cbtics tc rgb '#444444'\n"
       "set colorbox vertical user origin screen {:.4f},screen 0.2 size screen {:.4f},screen 0.6\n"
-      "set view 58,38,1.17,1.0\nset view equal xyz\nset xyplane relative 0\nset border 4095 lc rgb '#999999' "
+      "set view 58,38,1.14,1.0\nset view equal xyz\nset xyplane relative 0\nset border 4095 lc rgb '#999999' "
       "lw 0.6\n"
-      "set grid x y z lc rgb '#dddddd' lt 1 lw 0.6\nset xlabel 'x' offset 0,-0.5\nset ylabel 'y' offset "
-      "0,-0.5\n"
-      "set zlabel 'z' offset 3,0\n",
+      "set grid x y z lc rgb '#dddddd' lt 1 lw 0.6\nset label 11 'x' at graph 0.5,-0.42,0 center\nset label "
+      "12 'y' at graph 1.46,0.5,0 center\n"
+      "set label 13 'z' at graph 0,0,1.09 center\n",
       last_s, 1 - 92 / layout.width_px, 16 / layout.width_px);
   for (std::size_t row = 0; row < phases.size(); ++row) {
     const auto runs = runs_of(group, phases[row]);

@@ -39,21 +39,26 @@ DrawnGroup draw(RunGroup group, const fs::path& folder) {
   return {std::move(group), std::move(figures)};
 }
 
+std::vector<SummaryRow> summary_rows(const std::vector<RunGroup>& groups) {
+  std::vector<SummaryRow> rows;
+  for (const RunGroup& group : groups) {
+    for (const MeasuredRun& run : group.runs) {
+      const RunDescription& d = run.recording->description;
+      rows.push_back({d.algorithm, d.mode, d.phase, run.metrics});
+    }
+  }
+  return rows;
+}
+
 }  // namespace
 
 fs::path write_report(const std::vector<Recording>& recordings, const fs::path& out_dir) {
   std::vector<RunGroup> groups = group_runs(recordings);
   create_folder(out_dir / "figures");
-  std::vector<SummaryRow> rows;
+  // First, so that the numbers are there even where no figure can be drawn.
+  write_summary_csv(out_dir / "summary.csv", summary_rows(groups));
   std::vector<DrawnGroup> drawn;
-  for (RunGroup& group : groups) {
-    for (const MeasuredRun& run : group.runs) {
-      const RunDescription& d = run.recording->description;
-      rows.push_back({d.algorithm, d.mode, d.phase, run.metrics});
-    }
-    drawn.push_back(draw(std::move(group), out_dir / "figures"));
-  }
-  write_summary_csv(out_dir / "summary.csv", rows);
+  for (RunGroup& group : groups) drawn.push_back(draw(std::move(group), out_dir / "figures"));
   const fs::path page = out_dir / "report.html";
   write_text_atomically(page, [&](std::ostream& out) { out << report_page(drawn); });
   return page;
