@@ -10,6 +10,8 @@ namespace {
 constexpr int kStart = 0xD8;
 constexpr int kEnd = 0xD9;
 constexpr int kStartOfScan = 0xDA;
+constexpr int kJfif = 0xE0;
+constexpr std::uint32_t kJfifName = 0x4A464946;
 // A JPEG 2000 code stream begins with SOC and SIZ (ISO 15444-1, A.4.1 and A.5.1).
 constexpr std::uint32_t kStartAndSize = 0xFF4FFF51;
 constexpr std::size_t kLongestBoxes = 1024;
@@ -36,26 +38,32 @@ bool is_frame(int marker) {
          marker == 0xF7;
 }
 
-std::optional<JpegFrame> jpeg_frame(const Bytes& bytes) {
+// GDCM asserts that libjpeg has nothing to say about the header: no bytes between segments, a JFIF version 1.
+JpegFrame jpeg_frame(const Bytes& bytes) {
+  JpegFrame frame{.plain = false};
   std::size_t here = 2;
-  while (here + 4 <= bytes.size()) {
-    if (bytes.at(here, 1) != 0xFF) return std::nullopt;
+  while (here + 4 <= bytes.size() && bytes.at(here, 1) == 0xFF) {
     const int marker = static_cast<int>(bytes.at(here + 1, 1));
+    const std::size_t body = here + 4;
     if (marker == 0xFF) {
       ++here;
       continue;
     }
-    if (marker == kStartOfScan || marker == kEnd) return std::nullopt;
+    if (marker == kEnd) break;
+    if (marker == kStartOfScan) {
+      frame.plain = frame.columns > 0;
+      break;
+    }
+    if (marker == kJfif && bytes.at(body, 4) == kJfifName && bytes.at(body + 5, 1) != 1) break;
     if (is_frame(marker)) {
-      const std::size_t body = here + 4;
-      return JpegFrame{.columns = static_cast<int>(bytes.at(body + 3, 2)),
-                       .rows = static_cast<int>(bytes.at(body + 1, 2)),
-                       .components = static_cast<int>(bytes.at(body + 5, 1)),
-                       .bits = static_cast<int>(bytes.at(body, 1))};
+      frame.bits = static_cast<int>(bytes.at(body, 1));
+      frame.rows = static_cast<int>(bytes.at(body + 1, 2));
+      frame.columns = static_cast<int>(bytes.at(body + 3, 2));
+      frame.components = static_cast<int>(bytes.at(body + 5, 1));
     }
     here += 2 + bytes.at(here + 2, 2);
   }
-  return std::nullopt;
+  return frame;
 }
 
 JpegFrame jpeg2000_frame(const Bytes& bytes, std::size_t start) {

@@ -11,12 +11,13 @@ struct JpegFrame {
   int rows = 0;
   int components = 0;
   int bits = 0;
-  /// Every component has a sample for every pixel, and the image begins where the stream's grid does.
+  /// The header is sound, every component has a sample for every pixel, the image begins where the stream's
+  /// grid does.
   bool plain = true;
 };
 
-/// Finds the frame header; nothing where there is none. The decoders trust it, so it has to agree with what
-/// the file around it says before they get it.
+/// Finds the frame header; nothing where the stream does not begin like JPEG. The decoders trust it, so it
+/// has to agree with what the file around it says before they get it.
 std::optional<JpegFrame> find_jpeg_frame(std::span<const char> stream);
 
 }  // namespace osteomill
