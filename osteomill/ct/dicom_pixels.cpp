@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <span>
 #include <type_traits>
 
 #include <fmt/format.h>
@@ -12,7 +13,9 @@
 #include <gdcmTrace.h>
 #include <gdcmUIDs.h>
 
+#include "osteomill/ct/captured_stderr.h"
 #include "osteomill/ct/dicom_elements.h"
+#include "osteomill/ct/jpeg_frame.h"
 #include "osteomill/files/input_error.h"
 
 namespace osteomill {
@@ -80,11 +83,25 @@ std::vector<char> read_plain(std::istream& in, const DicomFile& file, int bytes_
   return bytes;
 }
 
-gdcm::DataElement fragments_of(std::istream& in, const DicomFile& file) {
+// The decoders take the stream's word for its size, and write as much.
+void check_frame(std::span<const char> fragment, const DicomHeader& header) {
+  const std::optional<JpegFrame> frame = find_jpeg_frame(fragment);
+  if (!frame) return;
+  const int most_bits = header.slices.front().pixels.bits_allocated;
+  if (frame->columns != header.columns || frame->rows != header.rows || frame->components != 1 ||
+      !frame->plain || frame->bits > most_bits) {
+    throw Fault{
+        fmt::format("is damaged: its compressed pixels ({} x {}, {} bits) are not what its header says",
+                    frame->columns, frame->rows, frame->bits)};
+  }
+}
+
+gdcm::DataElement fragments_of(std::istream& in, const DicomFile& file, const DicomHeader& header) {
   const auto sequence = gdcm::SequenceOfFragments::New();
   // The first is the table of offsets, which nobody needs.
   for (std::size_t n = 1; n < file.pixels.parts.size(); ++n) {
     const std::vector<char> bytes = read_part(in, file.pixels.parts[n]);
+    check_frame(bytes, header);
     gdcm::Fragment fragment;
     fragment.SetByteValue(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
     sequence->AddFragment(fragment);
@@ -113,13 +130,15 @@ std::vector<char> decompress(std::istream& in, const DicomFile& file, const Dico
     throw Fault{fmt::format("is compressed in a way that is not known ({})", header.transfer_syntax)};
   }
   image.SetTransferSyntax(syntax);
-  image.SetDataElement(fragments_of(in, file));
+  image.SetDataElement(fragments_of(in, file, header));
   std::vector<char> buffer(needed);
-  if (image.GetBufferLength() != needed || !image.GetBuffer(buffer.data()) ||
-      image.GetBufferLength() != needed) {
-    throw Fault{
-        fmt::format("cannot be decompressed ({}): its pixels are damaged, or not what its header says",
-                    codec_name(header.transfer_syntax))};
+  const CapturedStderr captured;
+  const bool done = image.GetBufferLength() == needed && image.GetBuffer(buffer.data()) &&
+                    image.GetBufferLength() == needed;
+  // libjpeg goes on with what it has.
+  if (!done || captured.text().find("Corrupt JPEG data") != std::string::npos) {
+    throw Fault{fmt::format("cannot be decompressed ({}): its pixels are cut short or damaged",
+                            codec_name(header.transfer_syntax))};
   }
   return buffer;
 }
