@@ -13,9 +13,9 @@ constexpr double kMostNodes = 16e6;
 constexpr double kSuitableNodes = 2e6;
 
 // How many cells the box with its margin has along each axis, as a double: it may be beyond int's range.
-Vec3 cells_of(const ToolBox& tool_box, double spacing_mm) {
+Vec3 cells_of(const ToolBox& tool_box, double spacing_mm, double margin_mm) {
   const Vec3 size_mm = tool_box.greatest_mm - tool_box.least_mm;
-  return (size_mm / spacing_mm).array().ceil() + 2 * kMarginNodes;
+  return (size_mm / spacing_mm).array().ceil() + 2 * (kMarginNodes + std::ceil(margin_mm / spacing_mm));
 }
 
 }  // namespace
@@ -23,18 +23,21 @@ Vec3 cells_of(const ToolBox& tool_box, double spacing_mm) {
 double SampledDistanceField::suitable_spacing_mm(const MillingTool& tool) {
   require_valid(tool);
   double spacing_mm = std::min(tool.burr_radius_mm, tool.shaft_radius_mm) / 25;
-  while (cells_of(bounding_box(tool), spacing_mm).prod() > kSuitableNodes) spacing_mm *= 1.05;
+  while (cells_of(bounding_box(tool), spacing_mm, 0).prod() > kSuitableNodes) spacing_mm *= 1.05;
   return spacing_mm;
 }
 
-SampledDistanceField::SampledDistanceField(const MillingTool& tool, double spacing_mm)
+SampledDistanceField::SampledDistanceField(const MillingTool& tool, double spacing_mm, double margin_mm)
     : spacing_mm_(spacing_mm) {
   require_valid(tool);
   if (!(std::isfinite(spacing_mm) && spacing_mm > 0)) {
     throw std::invalid_argument("the distance field's spacing must be a positive number of mm");
   }
+  if (!(std::isfinite(margin_mm) && margin_mm >= 0)) {
+    throw std::invalid_argument("the distance field's margin must not be negative");
+  }
   const ToolBox tool_box = bounding_box(tool);
-  const Vec3 cells = cells_of(tool_box, spacing_mm);
+  const Vec3 cells = cells_of(tool_box, spacing_mm, margin_mm);
   if (!((cells + Vec3::Ones()).prod() <= kMostNodes)) {
     throw std::invalid_argument("the distance field's spacing is too fine for this tool");
   }

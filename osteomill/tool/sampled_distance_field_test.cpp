@@ -75,6 +75,8 @@ TEST(SampledDistanceField, NodesAreExactAndTheToolLiesInside) {
   const ToolBox tool = bounding_box(kTool);
   EXPECT_TRUE((field.box().least_mm.array() < tool.least_mm.array() - 0.4).all());
   EXPECT_TRUE((field.box().greatest_mm.array() > tool.greatest_mm.array() + 0.4).all());
+  EXPECT_TRUE(
+      (SampledDistanceField(kTool, 0.25, 1.1).box().least_mm.array() < tool.least_mm.array() - 1.5).all());
   EXPECT_FALSE(field.at({0, 0, 40}));
   EXPECT_FALSE(field.at({std::nan(""), 0, 0}));
 }
@@ -83,6 +85,7 @@ TEST(SampledDistanceField, ASpacingOutOfRangeIsRefused) {
   EXPECT_THROW(SampledDistanceField(kTool, 0), std::invalid_argument);
   EXPECT_THROW(SampledDistanceField(kTool, std::nan("")), std::invalid_argument);
   EXPECT_THROW(SampledDistanceField(kTool, 1e-4), std::invalid_argument);
+  EXPECT_THROW(SampledDistanceField(kTool, 0.1, -1), std::invalid_argument);
   EXPECT_THROW(SampledDistanceField({0, 1, 25}, 0.1), std::invalid_argument);
 }
 

@@ -33,15 +33,16 @@ struct Reach {
   float shaft_from_mm;
   float shaft_to_mm;
 
-  explicit Reach(const MillingTool& tool) {
+  Reach(const MillingTool& tool, double beyond_mm) {
     constexpr double kRounding_mm = 1e-4;
-    const auto squared = [](double radius) {
-      return static_cast<float>((radius + kRounding_mm) * (radius + kRounding_mm));
+    const double wider_mm = beyond_mm + kRounding_mm;
+    const auto squared = [&](double radius) {
+      return static_cast<float>((radius + wider_mm) * (radius + wider_mm));
     };
     burr_squared_mm2 = squared(tool.burr_radius_mm);
     shaft_squared_mm2 = squared(tool.shaft_radius_mm);
-    shaft_from_mm = static_cast<float>(-kRounding_mm);
-    shaft_to_mm = static_cast<float>(tool.shaft_length_mm + kRounding_mm);
+    shaft_from_mm = static_cast<float>(-wider_mm);
+    shaft_to_mm = static_cast<float>(tool.shaft_length_mm + wider_mm);
   }
 };
 
@@ -67,32 +68,38 @@ bool find_candidates(const PointChunk& chunk, const FloatFrame& frame, const Rea
   return any != 0;
 }
 
+// A point of the shell as seen from the tool.
+struct Patch {
+  Vec3 position_T;
+  Vec3 normal_T;
+  double area_mm2;
+};
+
 // The sums of `ToolContacts` for the tool in closed form, without the terms that are zero by its shape: on
 // the burr r x n = 0; on the shaft's side n = (x, y, 0) / radial and r x n = z (-n_y, n_x, 0).
 class ShapedSums {
  public:
-  explicit ShapedSums(const MillingTool& tool) : tool_(tool), burr_top_mm_(ContactTool::burr_top_mm(tool)) {}
+  ShapedSums(const MillingTool& tool, const Penalty& penalty)
+      : tool_(tool),
+        penalty_(penalty),
+        burr_top_mm_(ContactTool::burr_top_mm(tool)),
+        burr_curvature_per_mm_(2 / tool.burr_radius_mm),
+        shaft_curvature_per_mm_(1 / tool.shaft_radius_mm) {}
 
-  void touch(double stiffness_N_per_mm, const Vec3& point_T) {
-    const double x = point_T.x(), y = point_T.y(), z = point_T.z();
-    const double radial_squared = x * x + y * y;
-    const double distance = std::sqrt(radial_squared + z * z);
+  void touch(const Patch& patch) {
+    const Vec3& p = patch.position_T;
+    const double radial_squared = p.x() * p.x() + p.y() * p.y();
+    const double from_centre = std::sqrt(radial_squared + p.z() * p.z());
     const double radial = std::sqrt(radial_squared);
-    const double in_burr = tool_.burr_radius_mm - distance;
-    const double in_side = tool_.shaft_radius_mm - radial;
-    const bool upper = z > 0.5 * tool_.shaft_length_mm;
-    const double in_end = upper ? tool_.shaft_length_mm - z : z;
-    const double in_shaft = std::min(in_side, in_end);
-    if (!(in_burr > 0 || in_shaft > 0)) return;
-    ++touching_;
-    const bool is_burr = z < burr_top_mm_;
-    if (in_burr > in_shaft) {
-      add_sphere(is_burr ? burr_ : shaft_, stiffness_N_per_mm, in_burr, point_T, distance);
-    } else if (in_side < in_end && radial > 0) {
-      add_side(is_burr ? burr_side_ : shaft_side_, stiffness_N_per_mm, in_side, x / radial, y / radial, z);
+    const double beyond_burr = from_centre - tool_.burr_radius_mm;
+    const double beyond_side = radial - tool_.shaft_radius_mm;
+    const double beyond_end = p.z() > 0.5 * tool_.shaft_length_mm ? p.z() - tool_.shaft_length_mm : -p.z();
+    if (beyond_burr < std::max(beyond_side, beyond_end)) {
+      touch_sphere(patch, beyond_burr, from_centre);
+    } else if (beyond_side > beyond_end && beyond_end <= 0 && radial > 0) {
+      touch_side(patch, beyond_side, radial);
     } else {
-      const Vec3 n = in_side < in_end ? Vec3(1, 0, 0) : Vec3(0, 0, upper ? 1 : -1);
-      (is_burr ? burr_ : shaft_).add(stiffness_N_per_mm, in_shaft, n, point_T);
+      touch_end(patch);
     }
   }
 
@@ -110,17 +117,33 @@ class ShapedSums {
     double xx[3] = {0, 0, 0}, xy[3] = {0, 0, 0}, yy[3] = {0, 0, 0};
   };
 
-  static void add_sphere(ContactSum& sum, double k, double depth, const Vec3& point_T, double distance) {
-    const Vec3 n = distance > 0 ? Vec3(point_T / distance) : Vec3(0, 0, -1);
-    sum.add_central(k, depth, n);
+  bool is_burr(const Patch& patch) const { return patch.position_T.z() < burr_top_mm_; }
+
+  // Counts it where there is one.
+  Penalty::Push push(const Patch& patch, double distance_mm, const Vec3& n) {
+    const double curvature = is_burr(patch) ? burr_curvature_per_mm_ : shaft_curvature_per_mm_;
+    const Penalty::Push push = penalty_.push(-distance_mm, patch.area_mm2, n.dot(patch.normal_T), curvature);
+    if (push.force_N > 0) ++touching_;
+    return push;
   }
 
-  static void add_side(SideSums& sums, double k, double depth, double nx, double ny, double z) {
-    const double push = k * depth;
-    sums.push_x += push * nx;
-    sums.push_y += push * ny;
-    sums.push_zx += push * z * nx;
-    sums.push_zy += push * z * ny;
+  void touch_sphere(const Patch& patch, double distance_mm, double from_centre) {
+    const Vec3 n = from_centre > 0 ? Vec3(patch.position_T / from_centre) : Vec3(0, 0, -1);
+    const Penalty::Push p = push(patch, distance_mm, n);
+    if (p.force_N > 0) (is_burr(patch) ? burr_ : shaft_).add_central(p.force_N, p.stiffness_N_per_mm, n);
+  }
+
+  void touch_side(const Patch& patch, double distance_mm, double radial) {
+    const double nx = patch.position_T.x() / radial, ny = patch.position_T.y() / radial;
+    const double z = patch.position_T.z();
+    const Penalty::Push p = push(patch, distance_mm, {nx, ny, 0});
+    if (!(p.force_N > 0)) return;
+    SideSums& sums = is_burr(patch) ? burr_side_ : shaft_side_;
+    sums.push_x += p.force_N * nx;
+    sums.push_y += p.force_N * ny;
+    sums.push_zx += p.force_N * z * nx;
+    sums.push_zy += p.force_N * z * ny;
+    const double k = p.stiffness_N_per_mm;
     const double kxx = k * nx * nx, kxy = k * nx * ny, kyy = k * ny * ny;
     double power = 1;
     for (int n = 0; n < 3; ++n, power *= z) {
@@ -128,6 +151,15 @@ class ShapedSums {
       sums.xy[n] += power * kxy;
       sums.yy[n] += power * kyy;
     }
+  }
+
+  // The shaft's ends and their rims, and its axis: few points, so the general way.
+  void touch_end(const Patch& patch) {
+    const ToolDistance distance = tool_distance(tool_, patch.position_T);
+    const Penalty::Push p = push(patch, distance.distance_mm, distance.outward_T);
+    if (!(p.force_N > 0)) return;
+    (is_burr(patch) ? burr_ : shaft_)
+        .add(p.force_N, p.stiffness_N_per_mm, distance.outward_T, patch.position_T);
   }
 
   static ContactSum sum_of(const SideSums& s) {
@@ -141,7 +173,10 @@ class ShapedSums {
   }
 
   const MillingTool& tool_;
+  const Penalty& penalty_;
   double burr_top_mm_;
+  double burr_curvature_per_mm_;
+  double shaft_curvature_per_mm_;
   ContactSum burr_;
   ContactSum shaft_;
   SideSums burr_side_;
@@ -165,27 +200,24 @@ Vec3 centre_of(const BrickPoints::Bound& bound) {
           static_cast<double>(bound.centre_mm[2])};
 }
 
-Vec3 position_of(const ShellPoint& point) {
-  return {static_cast<double>(point.x_mm), static_cast<double>(point.y_mm), static_cast<double>(point.z_mm)};
-}
-
 }  // namespace
 
 ToolContacts contacts_by_bricks(const PointShell& shell, const MillingTool& tool, const Pose& X_WT,
-                                double stiffness_N_per_mm3) {
+                                const Penalty& penalty) {
   const ToolFromGrid X_TG(shell, X_WT);
   const BrickPoints& points = shell.points();
-  const Reach reach(tool);
-  ShapedSums sums(tool);
+  const double beyond_mm = penalty.reach_mm();
+  const Reach reach(tool, beyond_mm);
+  ShapedSums sums(tool, penalty);
   Flags candidate;
   const auto is_node_clear = [&](int level, int i, int j, int k) {
     if (level == 0) {
       const BrickPoints::Bound& bound = points.brick(shell.brick_index(i, j, k)).bound;
       return is_clear(tool, X_TG * (shell.brick_origin_G(i, j, k) + centre_of(bound)),
-                      static_cast<double>(bound.radius_mm));
+                      static_cast<double>(bound.radius_mm) + beyond_mm);
     }
     const PointShell::NodeBox box = shell.node_box(level, i, j, k);
-    return is_clear(tool, X_TG * box.middle_G, box.half_mm.norm());
+    return is_clear(tool, X_TG * box.middle_G, box.half_mm.norm() + beyond_mm);
   };
   shell.octree().visit(is_node_clear, [&](int bi, int bj, int bk) {
     const Vec3 origin_T = X_TG * shell.brick_origin_G(bi, bj, bk);
@@ -196,8 +228,9 @@ ToolContacts contacts_by_bricks(const PointShell& shell, const MillingTool& tool
       if (!find_candidates(chunk, frame, reach, candidate)) continue;
       for (std::size_t n = 0; n < kSlots; ++n) {
         if (candidate[n] == 0) continue;
-        const double stiffness_N_per_mm = stiffness_N_per_mm3 * static_cast<double>(chunk.area_mm2[n]);
-        sums.touch(stiffness_N_per_mm, origin_T + X_TG.turn * position_of(chunk.point(n)));
+        const ShellPoint point = chunk.point(n);
+        sums.touch({origin_T + X_TG.turn * position_of(point), X_TG.turn * normal_of(point),
+                    static_cast<double>(point.area_mm2)});
       }
     }
   });

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "osteomill/haptics/point_shell/contact_sum.h"
+#include "osteomill/haptics/point_shell/penalty.h"
 #include "osteomill/haptics/point_shell/point_shell.h"
 
 namespace osteomill {
@@ -10,6 +11,6 @@ namespace osteomill {
 /// single precision, and those that may touch are summed in double precision, in a fixed order. Safe in the
 /// haptic tick.
 ToolContacts contacts_by_bricks(const PointShell& shell, const MillingTool& tool, const Pose& X_WT,
-                                double stiffness_N_per_mm3);
+                                const Penalty& penalty);
 
 }  // namespace osteomill

@@ -10,12 +10,15 @@
 namespace osteomill {
 
 /// A point of the shell: where it lies in its brick's frame (mm) and the area of surface that it stands for
-/// (mm^2).
+/// (mm^2), and the unit normal out of that surface in the grid's axes (zero where it is not known).
 struct ShellPoint {
   float x_mm;
   float y_mm;
   float z_mm;
   float area_mm2;
+  float normal_x = 0;
+  float normal_y = 0;
+  float normal_z = 0;
   friend bool operator==(const ShellPoint&, const ShellPoint&) = default;
 };
 
@@ -28,13 +31,22 @@ struct PointChunk {
   alignas(64) std::array<float, kSlots> y_mm;
   alignas(64) std::array<float, kSlots> z_mm;
   alignas(64) std::array<float, kSlots> area_mm2;
+  alignas(64) std::array<float, kSlots> normal_x;
+  alignas(64) std::array<float, kSlots> normal_y;
+  alignas(64) std::array<float, kSlots> normal_z;
 
-  ShellPoint point(std::size_t slot) const { return {x_mm[slot], y_mm[slot], z_mm[slot], area_mm2[slot]}; }
+  ShellPoint point(std::size_t slot) const {
+    return {x_mm[slot],     y_mm[slot],     z_mm[slot],    area_mm2[slot],
+            normal_x[slot], normal_y[slot], normal_z[slot]};
+  }
   void set(std::size_t slot, const ShellPoint& point) {
     x_mm[slot] = point.x_mm;
     y_mm[slot] = point.y_mm;
     z_mm[slot] = point.z_mm;
     area_mm2[slot] = point.area_mm2;
+    normal_x[slot] = point.normal_x;
+    normal_y[slot] = point.normal_y;
+    normal_z[slot] = point.normal_z;
   }
 };
 

@@ -15,16 +15,16 @@ struct ContactSum {
   Mat3 K_ft = Mat3::Zero();
   Mat3 K_tt = Mat3::Zero();
 
-  /// A point at `r_mm` from the burr's centre, `depth_mm` deep in the tool, where the tool's field points out
-  /// along the unit vector `n`: the point is pushed out along n, the tool the other way. The depth grows by n
-  /// . dx + (r x n) . dw (the field's gradient, exactly), so each point adds k [n; r x n][n; r x n]^T (Barbic
-  /// and James 2008). Left out is how n turns as the tool moves, of the size of k depth / (radius of the
-  /// tool): it would make the sum indefinite, and vanishes with the depth.
-  void add(double stiffness_N_per_mm, double depth_mm, const Vec3& n, const Vec3& r_mm) {
+  /// A point at `r_mm` from the burr's centre that is pushed with `push_N` along the unit vector `n` out of
+  /// the tool, and pushes the tool the other way; `stiffness_N_per_mm` is how the push grows with the depth.
+  /// The depth grows by n . dx + (r x n) . dw (the field's gradient, exactly), so each point adds k [n; r x
+  /// n][n; r x n]^T to the derivatives of eq. 22 and 23 (Barbic and James 2008). Left out is how n turns as
+  /// the tool moves, of the size of push / (radius of the tool): it would make the sum indefinite, and
+  /// vanishes with the depth.
+  void add(double push_N, double stiffness_N_per_mm, const Vec3& n, const Vec3& r_mm) {
     const Vec3 m = r_mm.cross(n);
-    const double push = stiffness_N_per_mm * depth_mm;
-    force_N -= push * n;
-    torque_Nmm -= push * m;
+    force_N -= push_N * n;
+    torque_Nmm -= push_N * m;
     const Vec3 kn = stiffness_N_per_mm * n;
     const Vec3 km = stiffness_N_per_mm * m;
     K_ff += kn * n.transpose();
@@ -32,8 +32,8 @@ struct ContactSum {
     K_tt += km * m.transpose();
   }
   /// The same for a point whose n passes through the burr's centre, as on the burr's sphere: no torque.
-  void add_central(double stiffness_N_per_mm, double depth_mm, const Vec3& n) {
-    force_N -= stiffness_N_per_mm * depth_mm * n;
+  void add_central(double push_N, double stiffness_N_per_mm, const Vec3& n) {
+    force_N -= push_N * n;
     K_ff += (stiffness_N_per_mm * n) * n.transpose();
   }
   ContactSum& operator+=(const ContactSum& other) {

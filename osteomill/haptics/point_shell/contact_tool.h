@@ -30,6 +30,11 @@ class ContactTool {
   /// Whether a contact there is the burr's: below the height at which the shaft comes out of the sphere.
   bool is_burr(const Vec3& point_T) const { return point_T.z() < burr_top_mm_; }
 
+  /// The sum of the tool's principal curvatures on the surface near that point (1/mm).
+  double curvature_per_mm(const Vec3& point_T) const {
+    return is_burr(point_T) ? 2 / tool_.burr_radius_mm : 1 / tool_.shaft_radius_mm;
+  }
+
   /// That height above the burr's centre. A burr no wider than the shaft ends at its equator, where the shaft
   /// begins.
   static double burr_top_mm(const MillingTool& tool) {

@@ -34,13 +34,19 @@ ShellRules rules_of(Mode mode, int scale) {
   return rules;
 }
 
+constexpr Penalty kOfPoints{20, 0};
+// Patches of two cells' areas at most, as the algorithm has it.
+Penalty of_patches(const PointShell& shell) {
+  return {20, 2 * shell.lattice().cell_area_mm2()};
+}
+
 SampledDistanceField fine_field() {
   return SampledDistanceField(kTool, SampledDistanceField::suitable_spacing_mm(kTool));
 }
 
 // The slow plain answer: every point of the shell.
 ToolContacts contacts_by_brute_force(const PointShell& shell, const ContactTool& tool, const Pose& X_WT,
-                                     double stiffness) {
+                                     const Penalty& penalty) {
   ToolContacts contacts;
   const Mat3 R_WT = X_WT.orientation.toRotationMatrix();
   shell.for_each_point([&](const Vec3& point_W, double area) {
@@ -48,9 +54,9 @@ ToolContacts contacts_by_brute_force(const PointShell& shell, const ContactTool&
     const auto distance = tool.distance(point_T);
     if (!distance || !(distance->distance_mm < 0)) return;
     ++contacts.touching;
+    const double k = penalty.stiffness_N_per_mm3 * area;
     (tool.is_burr(point_T) ? contacts.burr : contacts.shaft)
-        .add(stiffness * area, -distance->distance_mm, R_WT * distance->outward_T,
-             point_W - X_WT.position_mm);
+        .add(-k * distance->distance_mm, k, R_WT * distance->outward_T, point_W - X_WT.position_mm);
   });
   return contacts;
 }
@@ -88,8 +94,8 @@ TEST(OctreeContacts, FindsWhatLookingAtEveryPointFinds) {
     for (int n = 0; n < 150; ++n) {
       const Pose X_WT = random_pose(bits, 7);
       for (const ContactTool* tool : {&sampled, &closed}) {
-        const ToolContacts by_octree = contacts_by_octree(shell, *tool, X_WT, 20);
-        const ToolContacts by_all = contacts_by_brute_force(shell, *tool, X_WT, 20);
+        const ToolContacts by_octree = contacts_by_octree(shell, *tool, X_WT, kOfPoints);
+        const ToolContacts by_all = contacts_by_brute_force(shell, *tool, X_WT, kOfPoints);
         EXPECT_EQ(by_octree.touching, by_all.touching);
         expect_near(by_octree.burr, by_all.burr, 1e-9);
         expect_near(by_octree.shaft, by_all.shaft, 1e-9);
@@ -122,11 +128,13 @@ TEST(BrickContacts, AreTheOctreesToTheRounding) {
         const Pose X_WT = n % 4 == 0
                               ? Pose{{0.02, 0.03, -2}, quaternion_from_rotation_vector({0.01, 0.02, 0})}
                               : random_pose(bits, 6);
-        const ToolContacts plain = contacts_by_octree(shell, ContactTool(tool), X_WT, 20);
-        const ToolContacts fast = contacts_by_bricks(shell, tool, X_WT, 20);
-        EXPECT_EQ(plain.touching, fast.touching);
-        expect_near(fast.burr, plain.burr, 1e-9);
-        expect_near(fast.shaft, plain.shaft, 1e-9);
+        for (const Penalty& penalty : {kOfPoints, of_patches(shell)}) {
+          const ToolContacts plain = contacts_by_octree(shell, ContactTool(tool), X_WT, penalty);
+          const ToolContacts fast = contacts_by_bricks(shell, tool, X_WT, penalty);
+          EXPECT_EQ(plain.touching, fast.touching);
+          expect_near(fast.burr, plain.burr, 1e-9);
+          expect_near(fast.shaft, plain.shaft, 1e-9);
+        }
       }
     }
   }
@@ -144,12 +152,13 @@ PlaneRatios slide_over_plane(const ShellRules& rules, const ContactTool& tool, c
   const Vec3 n = normal.normalized(), through(0.01, 0.02, -0.03);
   const Volume volume = shape_volume(centred_cube(48, 0.125), plane(through, n), edge_voxels);
   const PointShell shell(volume, rules);
+  const Penalty penalty = rules.area_weights ? of_patches(shell) : kOfPoints;
   PlaneRatios ratios;
   for (int step = 0; step < 60; ++step) {
     const Vec3 along = (0.016 * step - 0.5) * n.unitOrthogonal() + 0.003 * step * n.cross(n.unitOrthogonal());
     const Pose X_WT{through + along + (1.5 - depth_mm) * n, smallest_rotation(Vec3::UnitZ(), n)};
-    const Vec3 force = contacts_by_octree(shell, tool, X_WT, 1).total().force_N;
-    const double ratio = force.dot(n) / (std::numbers::pi * (1.5 - depth_mm) * depth_mm * depth_mm);
+    const Vec3 force = contacts_by_octree(shell, tool, X_WT, penalty).total().force_N;
+    const double ratio = force.dot(n) / (20 * std::numbers::pi * (1.5 - depth_mm) * depth_mm * depth_mm);
     ratios.least = std::min(ratios.least, ratio);
     ratios.greatest = std::max(ratios.greatest, ratio);
     ratios.sideways = std::max(ratios.sideways, force.cross(n).norm() / force.norm());
@@ -231,7 +240,7 @@ TEST(BallContact, SteadyIsTheIntegralOverTheBall) {
     const Vec3 direction = random_vector(bits).normalized();
     const double depth_mm = uniform(bits, 0.15, 0.5);
     const Pose X_WT{(5.5 - depth_mm) * direction, smallest_rotation(Vec3::UnitZ(), direction)};
-    const ContactSum sum = contacts_by_bricks(shell, kTool, X_WT, 20).total();
+    const ContactSum sum = contacts_by_bricks(shell, kTool, X_WT, of_patches(shell)).total();
     const double expected = 20 * ball_force(4, 1.5, 5.5 - depth_mm);
     EXPECT_NEAR(sum.force_N.dot(direction) / expected, 1, 0.035);
     EXPECT_LT(sum.force_N.cross(direction).norm() / sum.force_N.norm(), 0.015);
@@ -247,7 +256,7 @@ TEST(BallContact, PaperIsSofterButPushesOutwards) {
   for (int n = 0; n < 100; ++n) {
     const Vec3 direction = random_vector(bits).normalized();
     const Pose X_WT{5.1 * direction, smallest_rotation(Vec3::UnitZ(), direction)};
-    const ContactSum sum = contacts_by_octree(shell, tool, X_WT, 20).total();
+    const ContactSum sum = contacts_by_octree(shell, tool, X_WT, kOfPoints).total();
     const double ratio = sum.force_N.dot(direction) / (20 * ball_force(4, 1.5, 5.1));
     EXPECT_GT(ratio, 0.4);
     EXPECT_LT(ratio, 0.95);
@@ -289,23 +298,22 @@ TEST(ContactSum, TheDerivativeOfTheForceLacksOnlyTheTurningOfTheNormals) {
   const Volume volume = shape_volume(centred_cube(64, 0.125), ball({0, 0, -2.5}, 3));
   const PointShell shell(volume, rules_of(Mode::steady, 1));
   const ContactTool tool(kTool);
-  constexpr double kStiffness = 20;
   const Pose X_WT{{0.2, 0.1, 1.7}, quaternion_from_rotation_vector({0.3, 0.2, 0})};
-  const ContactSum here = contacts_by_octree(shell, tool, X_WT, kStiffness).total();
+  const ContactSum here = contacts_by_octree(shell, tool, X_WT, kOfPoints).total();
   Mat3 left_out = Mat3::Zero();
   shell.for_each_point([&](const Vec3& point_W, double area) {
     const Vec3 r = point_W - X_WT.position_mm;
     const double s = r.norm(), depth = 1.5 - s;
     if (!(depth > 0)) return;
     const Vec3 n = r / s;
-    left_out += kStiffness * area * depth / s * (Mat3::Identity() - n * n.transpose());
+    left_out += kOfPoints.stiffness_N_per_mm3 * area * depth / s * (Mat3::Identity() - n * n.transpose());
   });
   Mat3 differences;
   constexpr double kStep = 1e-6;
   for (int axis = 0; axis < 3; ++axis) {
     const auto force_at = [&](double step) {
       const Pose shifted{X_WT.position_mm + step * Vec3::Unit(axis), X_WT.orientation};
-      return contacts_by_octree(shell, tool, shifted, kStiffness).total().force_N;
+      return contacts_by_octree(shell, tool, shifted, kOfPoints).total().force_N;
     };
     differences.col(axis) = (force_at(kStep) - force_at(-kStep)) / (2 * kStep);
   }
@@ -323,13 +331,13 @@ TEST(ContactSum, OnTheShaftTheLeftOutTermVanishesWithTheDepth) {
   const auto relative_error = [&](double depth_mm) {
     // The burr hangs free beyond the plane's border; the shaft lies along x.
     const Pose X_WT{{-6, 0, 1.02 - depth_mm}, smallest_rotation(Vec3::UnitZ(), Vec3::UnitX())};
-    const ContactSum here = contacts_by_octree(shell, tool, X_WT, 20).total();
+    const ContactSum here = contacts_by_octree(shell, tool, X_WT, kOfPoints).total();
     Mat3 differences;
     constexpr double kStep = 1e-7;
     for (int axis = 0; axis < 3; ++axis) {
       const auto torque_at = [&](double step) {
         const Pose turned = moved(X_WT, {Vec3::Zero(), step * Vec3::Unit(axis)});
-        return contacts_by_octree(shell, tool, turned, 20).total().torque_Nmm;
+        return contacts_by_octree(shell, tool, turned, kOfPoints).total().torque_Nmm;
       };
       differences.col(axis) = (torque_at(kStep) - torque_at(-kStep)) / (2 * kStep);
     }

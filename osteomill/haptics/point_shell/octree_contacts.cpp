@@ -18,41 +18,41 @@ bool is_apart(const ToolBox& tool_box, const PointShell::NodeBox& node, const To
   return ((X_TG.turn.transpose() * between).cwiseAbs().array() > along_node.array()).any();
 }
 
-Vec3 position_of(const ShellPoint& point) {
-  return {static_cast<double>(point.x_mm), static_cast<double>(point.y_mm), static_cast<double>(point.z_mm)};
-}
-
-void touch_point(const Vec3& point_T, double stiffness_N_per_mm, const ContactTool& tool,
-                 ToolContacts& contacts) {
+void touch_point(const ShellPoint& point, const Vec3& point_T, const ToolFromGrid& X_TG,
+                 const ContactTool& tool, const Penalty& penalty, ToolContacts& contacts) {
   const std::optional<ToolDistance> distance = tool.distance(point_T);
-  if (!distance || !(distance->distance_mm < 0)) return;
+  if (!distance) return;
+  const double cosine = distance->outward_T.dot(X_TG.turn * normal_of(point));
+  const Penalty::Push push = penalty.push(-distance->distance_mm, static_cast<double>(point.area_mm2), cosine,
+                                          tool.curvature_per_mm(point_T));
+  if (!(push.force_N > 0)) return;
   ContactSum& part = tool.is_burr(point_T) ? contacts.burr : contacts.shaft;
-  part.add(stiffness_N_per_mm, -distance->distance_mm, distance->outward_T, point_T);
+  part.add(push.force_N, push.stiffness_N_per_mm, distance->outward_T, point_T);
   ++contacts.touching;
 }
 
 }  // namespace
 
 ToolContacts contacts_by_octree(const PointShell& shell, const ContactTool& tool, const Pose& X_WT,
-                                double stiffness_N_per_mm3) {
+                                const Penalty& penalty) {
   const ToolFromGrid X_TG(shell, X_WT);
   const BrickPoints& points = shell.points();
   ToolContacts contacts;
-  shell.octree().visit([&](int level, int i, int j,
-                           int k) { return is_apart(tool.box(), shell.node_box(level, i, j, k), X_TG); },
-                       [&](int bi, int bj, int bk) {
-                         const BrickPoints::Brick& brick = points.brick(shell.brick_index(bi, bj, bk));
-                         const Vec3 origin_T = X_TG * shell.brick_origin_G(bi, bj, bk);
-                         std::uint32_t left = brick.count;
-                         for (std::uint32_t c = brick.first_chunk; left > 0; c = points.next_chunk(c)) {
-                           for (std::size_t slot = 0; slot < PointChunk::kSlots && left > 0; ++slot, --left) {
-                             const ShellPoint point = points.chunk(c).point(slot);
-                             touch_point(origin_T + X_TG.turn * position_of(point),
-                                         stiffness_N_per_mm3 * static_cast<double>(point.area_mm2), tool,
-                                         contacts);
-                           }
-                         }
-                       });
+  const Vec3 reach_mm = Vec3::Constant(penalty.reach_mm());
+  const ToolBox box{tool.box().least_mm - reach_mm, tool.box().greatest_mm + reach_mm};
+  shell.octree().visit(
+      [&](int level, int i, int j, int k) { return is_apart(box, shell.node_box(level, i, j, k), X_TG); },
+      [&](int bi, int bj, int bk) {
+        const BrickPoints::Brick& brick = points.brick(shell.brick_index(bi, bj, bk));
+        const Vec3 origin_T = X_TG * shell.brick_origin_G(bi, bj, bk);
+        std::uint32_t left = brick.count;
+        for (std::uint32_t c = brick.first_chunk; left > 0; c = points.next_chunk(c)) {
+          for (std::size_t slot = 0; slot < PointChunk::kSlots && left > 0; ++slot, --left) {
+            const ShellPoint point = points.chunk(c).point(slot);
+            touch_point(point, origin_T + X_TG.turn * position_of(point), X_TG, tool, penalty, contacts);
+          }
+        }
+      });
   const Mat3 R_WT = X_WT.orientation.toRotationMatrix();
   return {contacts.burr.in_outer(R_WT), contacts.shaft.in_outer(R_WT), contacts.touching};
 }

@@ -27,15 +27,17 @@ PointShellAlgorithm::PointShellAlgorithm(const PointShellSettings& settings)
 void PointShellAlgorithm::prepare(const Scene& scene) {
   if (scene.volume == nullptr) throw std::invalid_argument("point-shell: the scene has no volume");
   require_valid(scene.tool);
-  stiffness_N_per_mm3_ = osteomill::contact_stiffness_N_per_mm3(settings_, scene.tool);
+  penalty_.stiffness_N_per_mm3 = contact_stiffness_N_per_mm3(settings_, scene.tool);
+  shell_ = PointShell(*scene.volume, settings_.shell);
+  // Seen from a corner the surface in a cell is at most about twice a cell's side.
+  penalty_.greatest_patch_mm2 = settings_.patch_penalty ? 2 * shell_.lattice().cell_area_mm2() : 0;
   if (settings_.closed_form_distance) {
     tool_ = ContactTool(scene.tool);
   } else {
     const double spacing_mm =
         settings_.field_spacing_mm.value_or(SampledDistanceField::suitable_spacing_mm(scene.tool));
-    tool_ = ContactTool(scene.tool, SampledDistanceField(scene.tool, spacing_mm));
+    tool_ = ContactTool(scene.tool, SampledDistanceField(scene.tool, spacing_mm, penalty_.reach_mm()));
   }
-  shell_ = PointShell(*scene.volume, settings_.shell);
   reset();
 }
 
@@ -50,8 +52,8 @@ void PointShellAlgorithm::volume_changed(const VolumeChange& change) {
 }
 
 ToolContacts PointShellAlgorithm::contacts_at(const Pose& X_WT) const {
-  if (settings_.brick_kernel) return contacts_by_bricks(shell_, tool_.tool(), X_WT, stiffness_N_per_mm3_);
-  return contacts_by_octree(shell_, tool_, X_WT, stiffness_N_per_mm3_);
+  if (settings_.brick_kernel) return contacts_by_bricks(shell_, tool_.tool(), X_WT, penalty_);
+  return contacts_by_octree(shell_, tool_, X_WT, penalty_);
 }
 
 // The target itself, to the last bit, where the tick's limits let the tool reach it.

@@ -2,6 +2,7 @@
 
 #include "osteomill/haptics/haptic_algorithm.h"
 #include "osteomill/haptics/point_shell/contact_tool.h"
+#include "osteomill/haptics/point_shell/penalty.h"
 #include "osteomill/haptics/point_shell/point_shell.h"
 #include "osteomill/haptics/point_shell/point_shell_settings.h"
 #include "osteomill/haptics/point_shell/virtual_coupling.h"
@@ -29,7 +30,7 @@ class PointShellAlgorithm final : public HapticAlgorithm {
 
   const PointShellSettings& settings() const { return settings_; }
   const PointShell& shell() const { return shell_; }
-  double contact_stiffness_N_per_mm3() const { return stiffness_N_per_mm3_; }
+  const Penalty& penalty() const { return penalty_; }
 
  private:
   ToolContacts contacts_at(const Pose& X_WT) const;
@@ -40,7 +41,7 @@ class PointShellAlgorithm final : public HapticAlgorithm {
   VirtualCoupling coupling_;
   ContactTool tool_;
   PointShell shell_;
-  double stiffness_N_per_mm3_ = 0;
+  Penalty penalty_;
 
   bool refreshed_this_tick_ = false;
   bool has_pose_ = false;

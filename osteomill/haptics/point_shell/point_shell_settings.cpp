@@ -37,6 +37,7 @@ PointShellSettings PointShellSettings::defaults(Mode mode) {
                     .refreshed_points_per_tick = 384,
                     .gradient = GradientKernel::central};
   settings.greatest_depth_mm = 0.3;
+  settings.patch_penalty = true;
   settings.closed_form_distance = true;
   settings.brick_kernel = true;
   settings.greatest_move_mm = 0.5;
@@ -67,6 +68,9 @@ void require_valid(const PointShellSettings& settings) {
   require_not_negative(settings.solver_tolerance_rad, "the solver's tolerance in rad");
   if (settings.solver_iterations < 1) {
     throw std::invalid_argument("point-shell: the solver needs at least one iteration");
+  }
+  if (settings.patch_penalty && !settings.shell.area_weights) {
+    throw std::invalid_argument("point-shell: the penalty of patches needs the area weights");
   }
   if (settings.brick_kernel && !settings.closed_form_distance) {
     throw std::invalid_argument("point-shell: the brick kernel needs the closed-form distance");

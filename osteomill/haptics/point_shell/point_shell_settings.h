@@ -53,6 +53,11 @@ struct PointShellSettings {
   /// Under that force the burr sinks no deeper into a plane than this (0: no such rule).
   double greatest_depth_mm = 0.0;
 
+  /// Off (paper): a point pushes with its own depth. On: with the mean depth of the patch of surface it
+  /// stands for, which smooths the start of each point's push; needs `ShellRules::area_weights`, which find
+  /// the patch's normal.
+  bool patch_penalty = false;
+
   /// Off (paper): the tool is a sampled signed distance field. On: its distance is computed in closed form.
   bool closed_form_distance = false;
   /// Spacing of the sampled field; left open, `SampledDistanceField::suitable_spacing_mm`.

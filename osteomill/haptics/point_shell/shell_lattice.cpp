@@ -108,8 +108,13 @@ ShellPoint ShellLattice::point_of_cell(const BoneBits& bone, const VoxelIndex& c
     }
   }
   const Vec3 mean_mm = sum.position_mm / sum.weight;
-  return {static_cast<float>(mean_mm.x()), static_cast<float>(mean_mm.y()), static_cast<float>(mean_mm.z()),
-          static_cast<float>(rules_.area_weights ? sum.weight : cell_area_mm2_)};
+  const double length = sum.normal.norm();
+  const Vec3 normal = length > 1e-9 ? Vec3(sum.normal / length) : Vec3(Vec3::Zero());
+  return {
+      static_cast<float>(mean_mm.x()), static_cast<float>(mean_mm.y()),
+      static_cast<float>(mean_mm.z()), static_cast<float>(rules_.area_weights ? sum.weight : cell_area_mm2_),
+      static_cast<float>(normal.x()),  static_cast<float>(normal.y()),
+      static_cast<float>(normal.z())};
 }
 
 // Adds the faces between a bone node and its neighbours that are not bone.
@@ -125,9 +130,9 @@ void ShellLattice::add_node(const BoneBits& bone, const VoxelIndex& node, const 
       VoxelIndex outer = node;
       component(outer, axis) += side;
       if (bone.is_bone(outer.i, outer.j, outer.k)) continue;
-      Face face{axis, side, 0, 1};
+      Face face{axis, side};
       if (needs_crossing) face.fraction = crossing_fraction(density(node), outer);
-      if (rules_.area_weights) face.weight = face_weight_mm2(node, axis, side * face.fraction);
+      if (rules_.area_weights) weigh_by_area(face, gradient_on_edge(node, axis, side * face.fraction));
       add_face(face, node, frame_origin, sum);
     }
   }
@@ -138,6 +143,7 @@ void ShellLattice::add_face(const Face& face, const VoxelIndex& node, const Voxe
   Vec3 at(node.i - frame_origin.i, node.j - frame_origin.j, node.k - frame_origin.k);
   if (rules_.points_on_isosurface) at[face.axis] += face.side * face.fraction;
   sum.position_mm += face.weight * geometry_.spacing_mm.cwiseProduct(at);
+  sum.normal += face.weight * face.normal_G;
   sum.weight += face.weight;
 }
 
@@ -163,14 +169,14 @@ void ShellLattice::add_inner_voxel(const VoxelIndex& voxel, const VoxelIndex& fr
     for (const int side : {-1, 1}) {
       const float* outer = here + side * next[axis];
       if (*outer > bone_above_) continue;
-      Face face{axis, side, (inside - volume_->isovalue()) / (inside - static_cast<double>(*outer)), 1};
+      Face face{axis, side, (inside - volume_->isovalue()) / (inside - static_cast<double>(*outer))};
       if (rules_.area_weights) {
         Vec3 gradient;
         for (int a = 0; a < 3; ++a) {
           gradient[a] = (1 - face.fraction) * central_difference(here, a) +
                         face.fraction * central_difference(outer, a);
         }
-        face.weight = seen_area_mm2(axis, gradient);
+        weigh_by_area(face, gradient);
       }
       add_face(face, voxel, frame_origin, sum);
     }
@@ -185,22 +191,22 @@ double ShellLattice::crossing_fraction(double inside, const VoxelIndex& outer_no
   return outside <= iso ? (inside - iso) / (inside - outside) : 0.5;
 }
 
-double ShellLattice::face_weight_mm2(const VoxelIndex& node, int axis, double offset) const {
-  const Vec3 crossing_W =
-      geometry_.world_from_voxel(Vec3(Vec3(node.i, node.j, node.k) + offset * Vec3::Unit(axis)));
-  const Vec3 gradient =
-      geometry_.direction.transpose() * density_gradient(volume_->grid(), crossing_W, rules_.gradient);
-  return seen_area_mm2(axis, gradient);
+Vec3 ShellLattice::gradient_on_edge(const VoxelIndex& node, int axis, double offset) const {
+  Vec3 at(node.i, node.j, node.k);
+  at[axis] += offset;
+  return geometry_.direction.transpose() *
+         density_gradient(volume_->grid(), geometry_.world_from_voxel(at), rules_.gradient);
 }
 
-// The area of a face across `axis` seen along the surface's normal n, A_a |n_a|: over a plane that adds up to
+// A face counts for its area seen along the surface's normal n, A_a |n_a|: over a plane that adds up to
 // A (n_x^2 + n_y^2 + n_z^2), its true area whatever its slope, and an error of the normal enters only with
 // its square.
-double ShellLattice::seen_area_mm2(int axis, const Vec3& gradient_G) const {
+void ShellLattice::weigh_by_area(Face& face, const Vec3& gradient_G) const {
   const double steepness = gradient_G.norm();
-  if (!(steepness > 0)) return face_mm2_[axis];
+  if (steepness > 0) face.normal_G = -gradient_G / steepness;
   // Never quite nothing, so that a point's mean has a weight to divide by.
-  return face_mm2_[axis] * std::max(1e-6, std::abs(gradient_G[axis]) / steepness);
+  const double seen = steepness > 0 ? std::max(1e-6, std::abs(face.normal_G[face.axis])) : 1.0;
+  face.weight = face_mm2_[face.axis] * seen;
 }
 
 }  // namespace osteomill

@@ -41,13 +41,15 @@ class ShellLattice {
  private:
   struct WeightedSum {
     Vec3 position_mm = Vec3::Zero();
+    Vec3 normal = Vec3::Zero();
     double weight = 0;
   };
   struct Face {
     int axis;
     int side;
-    double fraction;
-    double weight;
+    double fraction = 0;
+    double weight = 1;
+    Vec3 normal_G = Vec3::Zero();
   };
   void add_node(const BoneBits& bone, const VoxelIndex& node, const VoxelIndex& frame_origin,
                 WeightedSum& sum) const;
@@ -56,8 +58,8 @@ class ShellLattice {
                 WeightedSum& sum) const;
   bool is_inner_voxel(const VoxelIndex& node) const;
   double crossing_fraction(double inside, const VoxelIndex& outer_node) const;
-  double seen_area_mm2(int axis, const Vec3& gradient_G) const;
-  double face_weight_mm2(const VoxelIndex& node, int axis, double offset) const;
+  void weigh_by_area(Face& face, const Vec3& gradient_G) const;
+  Vec3 gradient_on_edge(const VoxelIndex& node, int axis, double offset) const;
 
   const Volume* volume_ = nullptr;
   ShellRules rules_;

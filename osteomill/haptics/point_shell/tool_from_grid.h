@@ -18,4 +18,12 @@ struct ToolFromGrid {
   Vec3 operator*(const Vec3& point_G) const { return offset_mm + turn * point_G; }
 };
 
+inline Vec3 position_of(const ShellPoint& point) {
+  return {static_cast<double>(point.x_mm), static_cast<double>(point.y_mm), static_cast<double>(point.z_mm)};
+}
+inline Vec3 normal_of(const ShellPoint& point) {
+  return {static_cast<double>(point.normal_x), static_cast<double>(point.normal_y),
+          static_cast<double>(point.normal_z)};
+}
+
 }  // namespace osteomill

@@ -21,7 +21,7 @@ TEST(VirtualCoupling, OnePointOnTheAxisIsTwoSpringsInSeries) {
   const Pose X_WD{{0, 0, -0.7}, Quat::Identity()};
   constexpr double kPoint = 8.0, kDepth = 0.1;
   ContactSum contacts;
-  contacts.add(kPoint, kDepth, {0, 0, -1}, {0, 0, -1.4});
+  contacts.add(kPoint * kDepth, kPoint, {0, 0, -1}, {0, 0, -1.4});
   const ToolMove move = balancing_move(kCoupling, X_WT, X_WD, contacts);
   // The point is free of load 0.1 above: the device is 0.8 below that, and pushes with 2 * 8 / (2 + 8) * 0.8
   // N.
@@ -37,7 +37,7 @@ TEST(VirtualCoupling, OnePointOnTheAxisIsTwoSpringsInSeries) {
 TEST(VirtualCoupling, OnePointAtALeverSharesBetweenForceAndTorque) {
   constexpr double kPoint = 50.0, kDepth = 0.02, kLever = 12.0;
   ContactSum contacts;
-  contacts.add(kPoint, kDepth, {-1, 0, 0}, {-1, 0, kLever});
+  contacts.add(kPoint * kDepth, kPoint, {-1, 0, 0}, {-1, 0, kLever});
   const ToolMove move = balancing_move(kCoupling, {}, {}, contacts);
   const double compliance = 1 / 2.0 + kLever * kLever / 1000.0 + 1 / kPoint;
   const double force = kDepth / compliance;

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+namespace osteomill {
+
+/// How a point of the shell pushes.
+struct Penalty {
+  /// kA: newton a mm of depth and a mm^2 of surface.
+  double stiffness_N_per_mm3 = 1;
+  /// 0 (paper): a point pushes with its own depth. Otherwise with the mean depth of the patch of surface that
+  /// it stands for, a square of its area, but no larger than this.
+  double greatest_patch_mm2 = 0;
+
+  struct Push {
+    double force_N;
+    /// How the force grows with the depth.
+    double stiffness_N_per_mm;
+  };
+
+  /// How far outside the tool a point may lie and still push.
+  double reach_mm() const { return 0.5 * std::sqrt(greatest_patch_mm2); }
+
+  /// The push of a point `depth_mm` deep in the tool (negative: outside it) that stands for `area_mm2` of
+  /// surface; `cosine` is that between the surface's normal and the tool's, `curvature_per_mm` the sum of the
+  /// tool's two principal curvatures. By itself a point pushes with k_c d, k_c = kA area (Eriksson
+  /// 2012, 6.3). A patch of side a that meets the tool at an angle holds depths spread evenly over d -+ a
+  /// sine / 2, less a^2 curvature / 24 in the mean as the tool bends away. The mean of those that are
+  /// positive passes from 0 to d without a kink, so that points do not start to push all at once as the tool
+  /// slides on.
+  Push push(double depth_mm, double area_mm2, double cosine, double curvature_per_mm) const {
+    const double k = stiffness_N_per_mm3 * area_mm2;
+    const double patch_mm2 = std::min(area_mm2, greatest_patch_mm2);
+    const double spread_mm = 0.5 * std::sqrt(patch_mm2 * std::max(0.0, 1 - cosine * cosine));
+    const double mean_mm = depth_mm - patch_mm2 * curvature_per_mm / 24;
+    if (mean_mm <= -spread_mm) return {0, 0};
+    if (mean_mm >= spread_mm) return {k * mean_mm, k};
+    const double part = (mean_mm + spread_mm) / (2 * spread_mm);
+    return {k * part * part * spread_mm, k * part};
+  }
+};
+
+}  // namespace osteomill
