@@ -117,17 +117,42 @@ std::optional<Vec3> LineProxy::first_intersection(const Pose& X_WL) const {
   return intersection_W;
 }
 
-// Collision at t-1 already: the point-proxy rule, with the densest point as the probe.
+// Collision at t-1 already: the point-proxy rule takes IP from where it was toward the probe.
 void LineProxy::slide_intersection(const Pose& X_WL) {
-  const auto probe_point = settings_.probe_in_the_middle ? middle_of_penetration : densest_point;
-  const ShaftProbe probe = probe_point(*scene_.volume, shaft_vertices(), X_WL, *memory_.intersection_W);
-  if (!(probe.density > scene_.volume->isovalue())) {
+  const auto probe_W = intersection_probe(X_WL);
+  if (!probe_W) {
     memory_.intersection_W.reset();
     return;
   }
-  const Vec3 next_W = move_point_proxy(*scene_.volume, *memory_.intersection_W, probe.point_W,
+  const Vec3 next_W = move_point_proxy(*scene_.volume, *memory_.intersection_W, *probe_W,
                                        {settings_.normal, settings_.intersection_slide_limit_mm});
   if (!is_refused(next_W, *memory_.intersection_W, X_WL)) memory_.intersection_W = next_W;
+}
+
+// Nothing where the shaft is out of the bone.
+std::optional<Vec3> LineProxy::intersection_probe(const Pose& X_WL) const {
+  const Volume& volume = *scene_.volume;
+  if (settings_.probe_across_the_shaft) {
+    const auto out_W = across_the_shaft(X_WL);
+    if (out_W) {
+      const auto depth = deepest_across(volume, shaft_vertices(), X_WL, *memory_.intersection_W, *out_W);
+      if (depth) return depth->surface_W;
+    }
+  }
+  const ShaftProbe probe = densest_point(volume, shaft_vertices(), X_WL, *memory_.intersection_W);
+  if (!(probe.density > volume.isovalue())) return std::nullopt;
+  return probe.point_W;
+}
+
+// The part of the surface's normal at IP that is across the shaft; nothing where there is hardly any.
+std::optional<Vec3> LineProxy::across_the_shaft(const Pose& X_WL) const {
+  const auto normal = surface_normal(*scene_.volume, *memory_.intersection_W, settings_.normal);
+  if (!normal) return std::nullopt;
+  const Vec3 axis = shaft_direction(X_WL);
+  const Vec3 across = *normal - normal->dot(axis) * axis;
+  const double share = across.norm();
+  if (share < 0.1) return std::nullopt;
+  return across / share;
 }
 
 bool LineProxy::is_refused(const Vec3& intersection_W, const Vec3& expected_W, const Pose& X_WL) const {

@@ -50,6 +50,8 @@ class LineProxy final : public HapticAlgorithm {
   void follow_with_intersection(const Pose& X_WL);
   std::optional<Vec3> first_intersection(const Pose& X_WL) const;
   void slide_intersection(const Pose& X_WL);
+  std::optional<Vec3> intersection_probe(const Pose& X_WL) const;
+  std::optional<Vec3> across_the_shaft(const Pose& X_WL) const;
   bool is_refused(const Vec3& intersection_W, const Vec3& expected_W, const Pose& X_WL) const;
   void turn_reaction(const Pose& X_WL);
   void push_with_shaft(const Vec3& tip_spring_W);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "osteomill/geometry/pose.h"
@@ -21,13 +22,23 @@ struct ShaftProbe {
 ShaftProbe densest_point(const Volume& volume, std::span<const Vec3> vertices_T, const Pose& X_WT,
                          const Vec3& intersection_before_W);
 
-/// Instead of the densest point the middle of what is in bone: of the unbroken run of bone along the shaft
-/// that lies nearest to `intersection_before_W`, the mean place, weighted by the density above the isovalue.
-/// It moves smoothly with the pose, where the densest point leaps from vertex to vertex and from one grain of
-/// the scan to the next. Sampled at the vertices and three places between each two. The density is the
-/// greatest of the run; where nothing is in bone, that of the first vertex. Safe in the haptic tick.
-ShaftProbe middle_of_penetration(const Volume& volume, std::span<const Vec3> vertices_T, const Pose& X_WT,
-                                 const Vec3& intersection_before_W);
+/// The deepest place of the shaft, measured across it.
+struct ShaftDepth {
+  /// On the centreline.
+  Vec3 point_W;
+  /// Where the bone above it ends.
+  Vec3 surface_W;
+};
+
+/// Instead of the densest point (dense is not deep: bone is saturated inside, and every grain of a scan has
+/// its own density) the place where the shaft must be moved furthest along `out_W` (unit, across the shaft)
+/// to be out of the bone, in the unbroken run of bone along the shaft that lies nearest to
+/// `intersection_before_W`. Near-equal depths are averaged, so that the place moves smoothly with the pose.
+/// Nothing where no sample (the vertices and three places between each two) is in bone, or where the bone
+/// goes on for more than 5 mm. Safe in the haptic tick.
+std::optional<ShaftDepth> deepest_across(const Volume& volume, std::span<const Vec3> vertices_T,
+                                         const Pose& X_WT, const Vec3& intersection_before_W,
+                                         const Vec3& out_W);
 
 /// How many of the vertices lie in bone.
 int vertices_in_bone(const Volume& volume, std::span<const Vec3> vertices_T, const Pose& X_WT);
