@@ -51,110 +51,104 @@ ShaftProbe densest_point(const Volume& volume, std::span<const Vec3> vertices_T,
 
 namespace {
 
-// The samples along the shaft: the vertices and places between them, numbered from 0.
-class ShaftSamples {
- public:
-  ShaftSamples(const Volume& volume, std::span<const Vec3> vertices_T, const Pose& X_WT)
-      : volume_(volume), vertices_T_(vertices_T), X_WT_(X_WT) {}
+int sample_count(std::span<const Vec3> vertices_T) {
+  return static_cast<int>(vertices_T.size() - 1) * kSubsteps + 1;
+}
 
-  int count() const { return static_cast<int>(vertices_T_.size() - 1) * kSubsteps + 1; }
-  Vec3 point_W(double sample) const {
-    const double place = sample / kSubsteps;
-    const auto below = std::min(static_cast<std::size_t>(place), vertices_T_.size() - 1);
-    const Vec3& from = vertices_T_[below];
-    const Vec3& to = vertices_T_[std::min(below + 1, vertices_T_.size() - 1)];
-    return X_WT_ * Vec3(from + (place - static_cast<double>(below)) * (to - from));
-  }
-  bool is_in_bone(int sample) const {
-    return density_at(volume_.grid(), point_W(sample)) > volume_.isovalue();
-  }
-  double nearest(const Vec3& point_W) const {
-    const double along_mm = shaft_direction(X_WT_).dot(point_W - X_WT_.position_mm) - vertices_T_.front().z();
-    const double spacing_mm = vertices_T_.size() < 2 ? 1.0 : (vertices_T_[1] - vertices_T_[0]).norm();
-    return kSubsteps * along_mm / spacing_mm;
-  }
+// Places between samples too.
+Vec3 sample_W(std::span<const Vec3> vertices_T, const Pose& X_WT, double sample) {
+  const double place = sample / kSubsteps;
+  const auto below = std::min(static_cast<std::size_t>(place), vertices_T.size() - 1);
+  const Vec3& from = vertices_T[below];
+  const Vec3& to = vertices_T[std::min(below + 1, vertices_T.size() - 1)];
+  return X_WT * Vec3(from + (place - static_cast<double>(below)) * (to - from));
+}
 
- private:
-  const Volume& volume_;
-  std::span<const Vec3> vertices_T_;
-  const Pose& X_WT_;
-};
+double above_isovalue(const Volume& volume, const Vec3& point_W) {
+  return density_at(volume.grid(), point_W) - volume.isovalue();
+}
 
-struct Run {
-  int first;
-  int last;
-  double distance_to(double sample) const { return std::max({0.0, first - sample, sample - last}); }
-};
+double distance_to(const ShaftRun& run, double sample) {
+  return std::max({0.0, run.first - sample, sample - run.last});
+}
 
-std::optional<Run> nearest_run(const ShaftSamples& samples, double to_sample) {
-  std::optional<Run> nearest;
-  std::optional<Run> current;
-  for (int n = 0; n <= samples.count(); ++n) {
-    if (n < samples.count() && samples.is_in_bone(n)) {
-      current = Run{current ? current->first : n, n};
+}  // namespace
+
+std::optional<ShaftRun> nearest_run(const Volume& volume, std::span<const Vec3> vertices_T, const Pose& X_WT,
+                                    const Vec3& near_W) {
+  const double spacing_mm = vertices_T.size() < 2 ? 1.0 : (vertices_T[1] - vertices_T[0]).norm();
+  const double near_sample =
+      kSubsteps * shaft_direction(X_WT).dot(near_W - X_WT * vertices_T.front()) / spacing_mm;
+  std::optional<ShaftRun> nearest;
+  std::optional<ShaftRun> current;
+  const int count = sample_count(vertices_T);
+  for (int n = 0; n <= count; ++n) {
+    if (n < count && above_isovalue(volume, sample_W(vertices_T, X_WT, n)) > 0.0) {
+      current = ShaftRun{current ? current->first : n, n};
     } else if (current) {
-      if (!nearest || current->distance_to(to_sample) < nearest->distance_to(to_sample)) nearest = current;
+      if (!nearest || distance_to(*current, near_sample) < distance_to(*nearest, near_sample))
+        nearest = current;
       current.reset();
     }
   }
   return nearest;
 }
 
-constexpr double kDeepest_mm = 5.0;
+Vec3 middle_of(const Volume& volume, std::span<const Vec3> vertices_T, const Pose& X_WT,
+               const ShaftRun& run) {
+  double weights = 0.0;
+  double moment = 0.0;
+  for (int n = run.first; n <= run.last; ++n) {
+    const double weight = above_isovalue(volume, sample_W(vertices_T, X_WT, n));
+    weights += weight;
+    moment += weight * n;
+  }
+  return sample_W(vertices_T, X_WT, weights > 0.0 ? moment / weights : run.first);
+}
 
-// How far from a point in bone along `out_W` the bone ends; nothing beyond kDeepest_mm.
-std::optional<double> depth_along(const Volume& volume, const Vec3& point_W, const Vec3& out_W) {
+namespace {
+
+// How far from a point in bone along `out_W` the bone ends; nothing beyond the limit.
+std::optional<double> depth_along(const Volume& volume, const Vec3& point_W, const Vec3& out_W,
+                                  double limit_mm) {
   const double step_mm = 0.5 * volume.geometry().spacing_mm.minCoeff();
-  double above_iso = density_at(volume.grid(), point_W) - volume.isovalue();
+  double above_iso = above_isovalue(volume, point_W);
   if (!(above_iso > 0.0)) return 0.0;
-  for (double depth_mm = step_mm; depth_mm <= kDeepest_mm; depth_mm += step_mm) {
-    const double here = density_at(volume.grid(), point_W + depth_mm * out_W) - volume.isovalue();
+  for (double depth_mm = step_mm; depth_mm < limit_mm + step_mm; depth_mm += step_mm) {
+    const double here = above_isovalue(volume, point_W + depth_mm * out_W);
     if (!(here > 0.0)) return depth_mm - step_mm * here / (here - above_iso);
     above_iso = here;
   }
   return std::nullopt;
 }
 
-// The mean sample of a run, weighted by a high power of the depth: the deepest one where it stands out.
-std::optional<double> deepest_sample(const Volume& volume, const ShaftSamples& samples, const Run& run,
-                                     const Vec3& out_W) {
+}  // namespace
+
+std::optional<Vec3> deepest_across(const Volume& volume, std::span<const Vec3> vertices_T, const Pose& X_WT,
+                                   const ShaftRun& run, const Vec3& out_W, double limit_mm) {
   constexpr int kMostSamples = 32;
   std::array<double, kMostSamples> depths_mm;
   const int stride = (run.last - run.first) / kMostSamples + 1;
   std::size_t count = 0;
   double deepest_mm = 0.0;
   for (int n = run.first; n <= run.last; n += stride, ++count) {
-    const auto depth_mm = depth_along(volume, samples.point_W(n), out_W);
-    if (!depth_mm) return std::nullopt;
-    depths_mm[count] = *depth_mm;
-    deepest_mm = std::max(deepest_mm, *depth_mm);
+    depths_mm[count] = depth_along(volume, sample_W(vertices_T, X_WT, n), out_W, limit_mm).value_or(0.0);
+    deepest_mm = std::max(deepest_mm, depths_mm[count]);
   }
-  if (!(deepest_mm > 0.0)) return run.first;
+  if (!(deepest_mm > 0.0)) return std::nullopt;
+  // The mean place, weighted by the 16th power of the depth: the deepest one where it stands out.
   double weights = 0.0;
   double moment = 0.0;
   for (std::size_t n = 0; n < count; ++n) {
     double weight = depths_mm[n] / deepest_mm;
-    for (int square = 0; square < 4; ++square) weight *= weight;  // the 16th power
+    for (int square = 0; square < 4; ++square) weight *= weight;
     weights += weight;
     moment += weight * (run.first + static_cast<int>(n) * stride);
   }
-  return moment / weights;
-}
-
-}  // namespace
-
-std::optional<ShaftDepth> deepest_across(const Volume& volume, std::span<const Vec3> vertices_T,
-                                         const Pose& X_WT, const Vec3& intersection_before_W,
-                                         const Vec3& out_W) {
-  const ShaftSamples samples(volume, vertices_T, X_WT);
-  const auto run = nearest_run(samples, samples.nearest(intersection_before_W));
-  if (!run) return std::nullopt;
-  const auto deepest = deepest_sample(volume, samples, *run, out_W);
-  if (!deepest) return std::nullopt;
-  const Vec3 point_W = samples.point_W(*deepest);
-  const auto depth_mm = depth_along(volume, point_W, out_W);
+  const Vec3 point_W = sample_W(vertices_T, X_WT, moment / weights);
+  const auto depth_mm = depth_along(volume, point_W, out_W, limit_mm);
   if (!depth_mm) return std::nullopt;
-  return ShaftDepth{point_W, point_W + *depth_mm * out_W};
+  return point_W + *depth_mm * out_W;
 }
 
 int vertices_in_bone(const Volume& volume, std::span<const Vec3> vertices_T, const Pose& X_WT) {

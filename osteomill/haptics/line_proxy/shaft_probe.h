@@ -22,23 +22,28 @@ struct ShaftProbe {
 ShaftProbe densest_point(const Volume& volume, std::span<const Vec3> vertices_T, const Pose& X_WT,
                          const Vec3& intersection_before_W);
 
-/// The deepest place of the shaft, measured across it.
-struct ShaftDepth {
-  /// On the centreline.
-  Vec3 point_W;
-  /// Where the bone above it ends.
-  Vec3 surface_W;
+/// An unbroken stretch of the shaft in bone: its first and last sample. The samples are the vertices and
+/// three places between each two, numbered from 0.
+struct ShaftRun {
+  int first;
+  int last;
 };
 
-/// Instead of the densest point (dense is not deep: bone is saturated inside, and every grain of a scan has
-/// its own density) the place where the shaft must be moved furthest along `out_W` (unit, across the shaft)
-/// to be out of the bone, in the unbroken run of bone along the shaft that lies nearest to
-/// `intersection_before_W`. Near-equal depths are averaged, so that the place moves smoothly with the pose.
-/// Nothing where no sample (the vertices and three places between each two) is in bone, or where the bone
-/// goes on for more than 5 mm. Safe in the haptic tick.
-std::optional<ShaftDepth> deepest_across(const Volume& volume, std::span<const Vec3> vertices_T,
-                                         const Pose& X_WT, const Vec3& intersection_before_W,
-                                         const Vec3& out_W);
+/// The run nearest along the shaft to `near_W`; nothing where no sample is in bone. Safe in the haptic tick.
+std::optional<ShaftRun> nearest_run(const Volume& volume, std::span<const Vec3> vertices_T, const Pose& X_WT,
+                                    const Vec3& near_W);
+
+/// The middle of a run, each sample weighted by its density above the isovalue: a probe that moves smoothly
+/// with the pose, where the densest point leaps from sample to sample. Safe in the haptic tick.
+Vec3 middle_of(const Volume& volume, std::span<const Vec3> vertices_T, const Pose& X_WT, const ShaftRun& run);
+
+/// The end of the bone over the place of a run at which the shaft must be moved furthest along `out_W` (unit,
+/// across the shaft) to come free: at an edge, the edge. Near-equal depths are averaged, so that the place
+/// moves smoothly with the pose. Samples over which the bone goes on for more than `limit_mm` are left out
+/// (the way out from there is another one); nothing where that leaves none. Safe in the haptic tick: the time
+/// grows with `limit_mm`.
+std::optional<Vec3> deepest_across(const Volume& volume, std::span<const Vec3> vertices_T, const Pose& X_WT,
+                                   const ShaftRun& run, const Vec3& out_W, double limit_mm);
 
 /// How many of the vertices lie in bone.
 int vertices_in_bone(const Volume& volume, std::span<const Vec3> vertices_T, const Pose& X_WT);
