@@ -101,6 +101,7 @@ void LineProxy::follow_with_intersection(const Pose& X_WL) {
     slide_intersection(X_WL);
   } else if (vertices_in_bone(*scene_.volume, shaft_vertices(), X_WL) > 0) {
     memory_.intersection_W = first_intersection(X_WL);
+    memory_.middle_proxy_W = memory_.intersection_W.value_or(Vec3::Zero());
   }
 }
 
@@ -117,17 +118,47 @@ std::optional<Vec3> LineProxy::first_intersection(const Pose& X_WL) const {
   return intersection_W;
 }
 
-// Collision at t-1 already: the point-proxy rule, with the densest point as the probe.
+// Collision at t-1 already.
 void LineProxy::slide_intersection(const Pose& X_WL) {
-  const auto probe_point = settings_.probe_in_the_middle ? middle_of_penetration : densest_point;
-  const ShaftProbe probe = probe_point(*scene_.volume, shaft_vertices(), X_WL, *memory_.intersection_W);
-  if (!(probe.density > scene_.volume->isovalue())) {
+  const auto next_W =
+      settings_.probe_across_the_shaft ? next_intersection_across(X_WL) : next_intersection(X_WL);
+  if (!next_W) {
     memory_.intersection_W.reset();
-    return;
+  } else if (!is_refused(*next_W, *memory_.intersection_W, X_WL)) {
+    memory_.intersection_W = next_W;
   }
-  const Vec3 next_W = move_point_proxy(*scene_.volume, *memory_.intersection_W, probe.point_W,
-                                       {settings_.normal, settings_.intersection_slide_limit_mm});
-  if (!is_refused(next_W, *memory_.intersection_W, X_WL)) memory_.intersection_W = next_W;
+}
+
+// The point-proxy rule takes IP from where it was toward the densest point; nothing where the shaft is free.
+std::optional<Vec3> LineProxy::next_intersection(const Pose& X_WL) {
+  const Volume& volume = *scene_.volume;
+  const ShaftProbe probe = densest_point(volume, shaft_vertices(), X_WL, *memory_.intersection_W);
+  if (!(probe.density > volume.isovalue())) return std::nullopt;
+  return move_point_proxy(volume, *memory_.intersection_W, probe.point_W,
+                          {settings_.normal, settings_.intersection_slide_limit_mm});
+}
+
+// The point-proxy rule on the middle of the shaft's way through the bone says which way is out; IP is the
+// surface where that way is the longest.
+std::optional<Vec3> LineProxy::next_intersection_across(const Pose& X_WL) {
+  const Volume& volume = *scene_.volume;
+  const auto run = nearest_run(volume, shaft_vertices(), X_WL, *memory_.intersection_W);
+  if (!run) return std::nullopt;
+  const Vec3 middle_W = middle_of(volume, shaft_vertices(), X_WL, *run);
+  memory_.middle_proxy_W = move_point_proxy(volume, memory_.middle_proxy_W, middle_W,
+                                            {settings_.normal, settings_.intersection_slide_limit_mm});
+  const Vec3 axis = shaft_direction(X_WL);
+  const Vec3 out = memory_.middle_proxy_W - middle_W;
+  const Vec3 across = out - out.dot(axis) * axis;
+  // Where out is along the shaft, the proxy of the middle is all there is.
+  Vec3 goal_W = memory_.middle_proxy_W;
+  if (across.norm() > 0.1 * out.norm()) {
+    // The edge of a wedge of bone is at most twice as deep as the middle; more is bone on another side.
+    const double limit_mm = 2.5 * across.norm() + 0.5 * volume.geometry().spacing_mm.minCoeff();
+    goal_W =
+        deepest_across(volume, shaft_vertices(), X_WL, *run, across.normalized(), limit_mm).value_or(goal_W);
+  }
+  return moved_toward(*memory_.intersection_W, goal_W, settings_.intersection_slide_limit_mm);
 }
 
 bool LineProxy::is_refused(const Vec3& intersection_W, const Vec3& expected_W, const Pose& X_WL) const {

@@ -37,8 +37,8 @@ struct LineProxySettings {
   double tip_proxy_limit_mm = kNoLimit;
   /// The tip stays in contact until its proxy has a free way to it: no falling through thin walls.
   bool contact_until_proxy_is_free = false;
-  /// The probe of the intersection point is the middle of what is in bone instead of the densest point.
-  bool probe_in_the_middle = false;
+  /// The intersection point goes to the deepest place across the shaft instead of to the densest point.
+  bool probe_across_the_shaft = false;
   /// Sends the shaft's reaction force as well as its torque.
   bool shaft_pushes = false;
   /// The reaction of the shaft grows from nothing at the tip to full at this many shaft radii from it; 0 for

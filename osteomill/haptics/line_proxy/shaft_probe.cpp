@@ -1,6 +1,7 @@
 #include "osteomill/haptics/line_proxy/shaft_probe.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -50,61 +51,104 @@ ShaftProbe densest_point(const Volume& volume, std::span<const Vec3> vertices_T,
 
 namespace {
 
-// A run of bone along the shaft while it is being walked.
-struct Run {
-  double weight = 0.0;
-  double moment = 0.0;
-  double densest = 0.0;
-  double first_mm = 0.0;
-  double last_mm = 0.0;
+int sample_count(std::span<const Vec3> vertices_T) {
+  return static_cast<int>(vertices_T.size() - 1) * kSubsteps + 1;
+}
 
-  void add(double along_mm, double density, double isovalue) {
-    if (weight == 0.0) first_mm = along_mm;
-    last_mm = along_mm;
-    weight += density - isovalue;
-    moment += (density - isovalue) * along_mm;
-    densest = std::max(densest, density);
-  }
-  double distance_to(double along_mm) const {
-    return std::max({0.0, first_mm - along_mm, along_mm - last_mm});
-  }
-};
+// Places between samples too.
+Vec3 sample_W(std::span<const Vec3> vertices_T, const Pose& X_WT, double sample) {
+  const double place = sample / kSubsteps;
+  const auto below = std::min(static_cast<std::size_t>(place), vertices_T.size() - 1);
+  const Vec3& from = vertices_T[below];
+  const Vec3& to = vertices_T[std::min(below + 1, vertices_T.size() - 1)];
+  return X_WT * Vec3(from + (place - static_cast<double>(below)) * (to - from));
+}
+
+double above_isovalue(const Volume& volume, const Vec3& point_W) {
+  return density_at(volume.grid(), point_W) - volume.isovalue();
+}
+
+double distance_to(const ShaftRun& run, double sample) {
+  return std::max({0.0, run.first - sample, sample - run.last});
+}
 
 }  // namespace
 
-ShaftProbe middle_of_penetration(const Volume& volume, std::span<const Vec3> vertices_T, const Pose& X_WT,
-                                 const Vec3& intersection_before_W) {
-  const Vec3 axis_W = shaft_direction(X_WT);
-  const double intersection_mm = axis_W.dot(intersection_before_W - X_WT.position_mm);
-  Run nearest;
-  Run current;
-  const auto close_run = [&] {
-    if (current.weight > 0.0 && (nearest.weight == 0.0 || current.distance_to(intersection_mm) <
-                                                              nearest.distance_to(intersection_mm))) {
-      nearest = current;
-    }
-    current = Run{};
-  };
-  for (std::size_t n = 0; n < vertices_T.size(); ++n) {
-    const bool last = n + 1 == vertices_T.size();
-    for (int sub = 0; sub < (last ? 1 : kSubsteps); ++sub) {
-      const double share = static_cast<double>(sub) / kSubsteps;
-      const double along_mm =
-          last ? vertices_T[n].z() : vertices_T[n].z() + share * (vertices_T[n + 1].z() - vertices_T[n].z());
-      const double density = density_at(volume.grid(), X_WT.position_mm + along_mm * axis_W);
-      if (density > volume.isovalue()) {
-        current.add(along_mm, density, volume.isovalue());
-      } else {
-        close_run();
-      }
+std::optional<ShaftRun> nearest_run(const Volume& volume, std::span<const Vec3> vertices_T, const Pose& X_WT,
+                                    const Vec3& near_W) {
+  const double spacing_mm = vertices_T.size() < 2 ? 1.0 : (vertices_T[1] - vertices_T[0]).norm();
+  const double near_sample =
+      kSubsteps * shaft_direction(X_WT).dot(near_W - X_WT * vertices_T.front()) / spacing_mm;
+  std::optional<ShaftRun> nearest;
+  std::optional<ShaftRun> current;
+  const int count = sample_count(vertices_T);
+  for (int n = 0; n <= count; ++n) {
+    if (n < count && above_isovalue(volume, sample_W(vertices_T, X_WT, n)) > 0.0) {
+      current = ShaftRun{current ? current->first : n, n};
+    } else if (current) {
+      if (!nearest || distance_to(*current, near_sample) < distance_to(*nearest, near_sample))
+        nearest = current;
+      current.reset();
     }
   }
-  close_run();
-  if (nearest.weight == 0.0) {
-    const Vec3 first_W = X_WT * vertices_T.front();
-    return {first_W, density_at(volume.grid(), first_W)};
+  return nearest;
+}
+
+Vec3 middle_of(const Volume& volume, std::span<const Vec3> vertices_T, const Pose& X_WT,
+               const ShaftRun& run) {
+  double weights = 0.0;
+  double moment = 0.0;
+  for (int n = run.first; n <= run.last; ++n) {
+    const double weight = above_isovalue(volume, sample_W(vertices_T, X_WT, n));
+    weights += weight;
+    moment += weight * n;
   }
-  return {X_WT.position_mm + nearest.moment / nearest.weight * axis_W, nearest.densest};
+  return sample_W(vertices_T, X_WT, weights > 0.0 ? moment / weights : run.first);
+}
+
+namespace {
+
+// How far from a point in bone along `out_W` the bone ends; nothing beyond the limit.
+std::optional<double> depth_along(const Volume& volume, const Vec3& point_W, const Vec3& out_W,
+                                  double limit_mm) {
+  const double step_mm = 0.5 * volume.geometry().spacing_mm.minCoeff();
+  double above_iso = above_isovalue(volume, point_W);
+  if (!(above_iso > 0.0)) return 0.0;
+  for (double depth_mm = step_mm; depth_mm < limit_mm + step_mm; depth_mm += step_mm) {
+    const double here = above_isovalue(volume, point_W + depth_mm * out_W);
+    if (!(here > 0.0)) return depth_mm - step_mm * here / (here - above_iso);
+    above_iso = here;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<Vec3> deepest_across(const Volume& volume, std::span<const Vec3> vertices_T, const Pose& X_WT,
+                                   const ShaftRun& run, const Vec3& out_W, double limit_mm) {
+  constexpr int kMostSamples = 32;
+  std::array<double, kMostSamples> depths_mm;
+  const int stride = (run.last - run.first) / kMostSamples + 1;
+  std::size_t count = 0;
+  double deepest_mm = 0.0;
+  for (int n = run.first; n <= run.last; n += stride, ++count) {
+    depths_mm[count] = depth_along(volume, sample_W(vertices_T, X_WT, n), out_W, limit_mm).value_or(0.0);
+    deepest_mm = std::max(deepest_mm, depths_mm[count]);
+  }
+  if (!(deepest_mm > 0.0)) return std::nullopt;
+  // The mean place, weighted by the 16th power of the depth: the deepest one where it stands out.
+  double weights = 0.0;
+  double moment = 0.0;
+  for (std::size_t n = 0; n < count; ++n) {
+    double weight = depths_mm[n] / deepest_mm;
+    for (int square = 0; square < 4; ++square) weight *= weight;
+    weights += weight;
+    moment += weight * (run.first + static_cast<int>(n) * stride);
+  }
+  const Vec3 point_W = sample_W(vertices_T, X_WT, moment / weights);
+  const auto depth_mm = depth_along(volume, point_W, out_W, limit_mm);
+  if (!depth_mm) return std::nullopt;
+  return point_W + *depth_mm * out_W;
 }
 
 int vertices_in_bone(const Volume& volume, std::span<const Vec3> vertices_T, const Pose& X_WT) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "osteomill/geometry/pose.h"
@@ -21,13 +22,28 @@ struct ShaftProbe {
 ShaftProbe densest_point(const Volume& volume, std::span<const Vec3> vertices_T, const Pose& X_WT,
                          const Vec3& intersection_before_W);
 
-/// Instead of the densest point the middle of what is in bone: of the unbroken run of bone along the shaft
-/// that lies nearest to `intersection_before_W`, the mean place, weighted by the density above the isovalue.
-/// It moves smoothly with the pose, where the densest point leaps from vertex to vertex and from one grain of
-/// the scan to the next. Sampled at the vertices and three places between each two. The density is the
-/// greatest of the run; where nothing is in bone, that of the first vertex. Safe in the haptic tick.
-ShaftProbe middle_of_penetration(const Volume& volume, std::span<const Vec3> vertices_T, const Pose& X_WT,
-                                 const Vec3& intersection_before_W);
+/// An unbroken stretch of the shaft in bone: its first and last sample. The samples are the vertices and
+/// three places between each two, numbered from 0.
+struct ShaftRun {
+  int first;
+  int last;
+};
+
+/// The run nearest along the shaft to `near_W`; nothing where no sample is in bone. Safe in the haptic tick.
+std::optional<ShaftRun> nearest_run(const Volume& volume, std::span<const Vec3> vertices_T, const Pose& X_WT,
+                                    const Vec3& near_W);
+
+/// The middle of a run, each sample weighted by its density above the isovalue: a probe that moves smoothly
+/// with the pose, where the densest point leaps from sample to sample. Safe in the haptic tick.
+Vec3 middle_of(const Volume& volume, std::span<const Vec3> vertices_T, const Pose& X_WT, const ShaftRun& run);
+
+/// The end of the bone over the place of a run at which the shaft must be moved furthest along `out_W` (unit,
+/// across the shaft) to come free: at an edge, the edge. Near-equal depths are averaged, so that the place
+/// moves smoothly with the pose. Samples over which the bone goes on for more than `limit_mm` are left out
+/// (the way out from there is another one); nothing where that leaves none. Safe in the haptic tick: the time
+/// grows with `limit_mm`.
+std::optional<Vec3> deepest_across(const Volume& volume, std::span<const Vec3> vertices_T, const Pose& X_WT,
+                                   const ShaftRun& run, const Vec3& out_W, double limit_mm);
 
 /// How many of the vertices lie in bone.
 int vertices_in_bone(const Volume& volume, std::span<const Vec3> vertices_T, const Pose& X_WT);
