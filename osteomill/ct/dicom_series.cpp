@@ -9,6 +9,7 @@
 #include "osteomill/ct/dicom_pixels.h"
 #include "osteomill/ct/finite_densities.h"
 #include "osteomill/ct/slice_stack.h"
+#include "osteomill/ct/straighten.h"
 #include "osteomill/files/input_error.h"
 
 namespace osteomill {
@@ -150,14 +151,12 @@ Scan build_scan(const std::string& subject, const Headers& series, std::vector<s
       planes.push_back(slice.plane);
     }
   }
-  const SliceStack stack = stack_slices(subject, planes);
-  warnings.insert(warnings.end(), stack.warnings.begin(), stack.warnings.end());
+  SliceStack stack = stack_slices(subject, planes);
   add_notes(series, warnings);
-  if (stack.drift_i_mm != 0 || stack.drift_j_mm != 0) {
-    throw InputError(subject, "the gantry was tilted: each slice lies to the side of the one below");
-  }
   std::vector<float> densities = read_densities(subject, series, stack, slices);
   check_finite(subject, densities);
+  straighten(subject, stack, densities);
+  warnings.insert(warnings.end(), stack.warnings.begin(), stack.warnings.end());
   return {DensityGrid(stack.geometry, std::move(densities)), subject, "DICOM", std::move(warnings)};
 }
 
@@ -183,7 +182,8 @@ Scan read_dicom_folder(const fs::path& folder) {
                                   ? "holds no DICOM slices itself; name the folder within it that does"
                                   : "holds no DICOM slices");
   }
-  return build_scan(subject, pick_series(std::move(found.images), warnings), std::move(warnings));
+  const Headers series = pick_series(std::move(found.images), warnings);
+  return build_scan(subject, series, std::move(warnings));
 }
 
 std::optional<Scan> read_dicom_file(const fs::path& file) {

@@ -7,6 +7,7 @@
 #include <itkNrrdImageIO.h>
 #include <itkObject.h>
 
+#include "osteomill/ct/captured_stderr.h"
 #include "osteomill/files/input_error.h"
 
 namespace osteomill {
@@ -24,12 +25,13 @@ itk::ImageIOBase::Pointer reader_for(VolumeFormat format) {
   }
 }
 
-// The library's own words, without the place in its source and on one line.
+// The library's own words: of several lines the last one says what was wrong.
 std::string reason_of(const itk::ExceptionObject& error) {
   std::string text = error.GetDescription();
+  text.erase(text.find_last_not_of("\n ") + 1);
+  text.erase(0, text.rfind('\n') + 1);
   const std::size_t place = text.find("): ");
   if (place != std::string::npos) text.erase(0, place + 3);
-  text.erase(std::min(text.find('\n'), text.size()));
   return "cannot be read: " + text;
 }
 
@@ -102,7 +104,11 @@ ItkImage read_with(itk::ImageIOBase& io, const std::string& path, const std::arr
   }
   io.SetIORegion(region);
   std::vector<char> buffer(static_cast<std::size_t>(io.GetImageSizeInBytes()));
+  const CapturedStderr captured;
   io.Read(buffer.data());
+  // MetaIO says so there, and nowhere else, when it could not decompress, and leaves the voxels as they are.
+  if (captured.text().find("failed") != std::string::npos)
+    throw InputError(path, "its data cannot be decompressed");
   image.values = to_values(path, buffer, io.GetComponentType());
   return image;
 }
@@ -111,6 +117,7 @@ ItkImage read_with(itk::ImageIOBase& io, const std::string& path, const std::arr
 
 ItkImage read_itk_image(const std::string& path, VolumeFormat format, const std::array<int, 3>& dims) {
   itk::Object::GlobalWarningDisplayOff();
+  const CapturedStderr captured;
   try {
     return read_with(*reader_for(format), path, dims);
   } catch (const itk::ExceptionObject& error) {

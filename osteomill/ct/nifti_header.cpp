@@ -180,8 +180,9 @@ GridGeometry geometry_of(const std::string& subject, const Bytes& header, Volume
   GridGeometry geometry;
   geometry.dims = result.dims;
   geometry.spacing_mm = spacing * result.unit_mm;
-  geometry.origin_mm = lps_from_ras.cwiseProduct(placement.origin) * result.unit_mm;
-  geometry.direction = lps_from_ras.asDiagonal() * placement.steps.colwise().normalized();
+  // Adding 0 makes -0, which only puzzles, 0.
+  geometry.origin_mm = (lps_from_ras.cwiseProduct(placement.origin) * result.unit_mm).array() + 0.0;
+  geometry.direction = (lps_from_ras.asDiagonal() * placement.steps.colwise().normalized()).array() + 0.0;
   return geometry;
 }
 

@@ -91,8 +91,9 @@ void drop_copies(const std::string& subject, std::span<const SlicePlane> slices,
   stack.order = std::move(kept);
 }
 
+// The lower of the two in the middle: a hole is wider than what is usual.
 double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
 }

@@ -1,0 +1,88 @@
+#include "osteomill/ct/scan_summary.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace osteomill {
+
+namespace {
+
+std::array<double, 3> to_array(const Vec3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+void summarise_values(const std::vector<float>& densities, double isovalue, ScanSummary& summary) {
+  double sum = 0;
+  float least = densities.front();
+  float greatest = densities.front();
+  for (const float density : densities) {
+    sum += static_cast<double>(density);
+    least = std::min(least, density);
+    greatest = std::max(greatest, density);
+    summary.voxels_above_iso += static_cast<double>(density) > isovalue;
+  }
+  summary.value_min = static_cast<double>(least);
+  summary.value_max = static_cast<double>(greatest);
+  summary.value_mean = sum / static_cast<double>(densities.size());
+}
+
+}  // namespace
+
+ScanSummary summarise(const Scan& scan, double isovalue) {
+  const GridGeometry& geometry = scan.grid.geometry();
+  ScanSummary summary;
+  summary.name = scan.name;
+  summary.format = scan.format;
+  summary.dims = geometry.dims;
+  summary.spacing_mm = to_array(geometry.spacing_mm);
+  summary.origin_mm = to_array(geometry.origin_mm);
+  for (int row = 0; row < 3; ++row) {
+    summary.direction[static_cast<std::size_t>(row)] = to_array(geometry.direction.row(row).transpose());
+  }
+  summary.suggested_iso = isovalue;
+  summary.warnings = scan.warnings;
+  summarise_values(scan.grid.densities(), isovalue, summary);
+  return summary;
+}
+
+std::string to_json(const ScanSummary& summary) {
+  const nlohmann::ordered_json json{{"dims", summary.dims},
+                                    {"spacing_mm", summary.spacing_mm},
+                                    {"origin_mm", summary.origin_mm},
+                                    {"direction", summary.direction},
+                                    {"value_min", summary.value_min},
+                                    {"value_max", summary.value_max},
+                                    {"value_mean", summary.value_mean},
+                                    {"suggested_iso", summary.suggested_iso},
+                                    {"voxels_above_iso", summary.voxels_above_iso},
+                                    {"warnings", summary.warnings}};
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
+}
+
+std::string to_text(const ScanSummary& summary) {
+  const auto& [columns, rows, slices] = summary.dims;
+  const auto& spacing = summary.spacing_mm;
+  const auto& origin = summary.origin_mm;
+  std::string text = fmt::format("{} ({})\n", summary.name, summary.format);
+  text += fmt::format("voxels      {} x {} x {}\n", columns, rows, slices);
+  text += fmt::format("spacing     {:.6g} x {:.6g} x {:.6g} mm\n", spacing[0], spacing[1], spacing[2]);
+  text += fmt::format("size        {:.6g} x {:.6g} x {:.6g} mm\n", spacing[0] * columns, spacing[1] * rows,
+                      spacing[2] * slices);
+  text += fmt::format("origin      {:.6g}, {:.6g}, {:.6g} mm\n", origin[0], origin[1], origin[2]);
+  constexpr std::array kAxes{'i', 'j', 'k'};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto& rows_of = summary.direction;
+    text += fmt::format("{} runs along {:.6g}, {:.6g}, {:.6g}\n", kAxes[axis], rows_of[0][axis],
+                        rows_of[1][axis], rows_of[2][axis]);
+  }
+  text += fmt::format("values      {:.6g} to {:.6g}, mean {:.6g}\n", summary.value_min, summary.value_max,
+                      summary.value_mean);
+  text += fmt::format("isovalue    {:.6g} suggested, {} voxels above it\n", summary.suggested_iso,
+                      summary.voxels_above_iso);
+  for (const std::string& warning : summary.warnings) text += fmt::format("warning: {}\n", warning);
+  return text;
+}
+
+}  // namespace osteomill

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "osteomill/ct/read_scan.h"
+
+namespace osteomill {
+
+/// What `osteomill info` tells of a scan. Lengths in mm, in the patient's LPS frame.
+struct ScanSummary {
+  std::string name;
+  std::string format;
+  std::array<int, 3> dims{};
+  std::array<double, 3> spacing_mm{};
+  /// Centre of the first voxel.
+  std::array<double, 3> origin_mm{};
+  /// Rows of the matrix whose columns are the directions of i, j and k.
+  std::array<std::array<double, 3>, 3> direction{};
+  double value_min = 0;
+  double value_max = 0;
+  double value_mean = 0;
+  double suggested_iso = 0;
+  /// Voxels whose density is greater than `suggested_iso`.
+  std::size_t voxels_above_iso = 0;
+  std::vector<std::string> warnings;
+};
+
+/// One pass over the voxels. `isovalue` is what is reported as suggested (`suggest_isovalue`).
+ScanSummary summarise(const Scan& scan, double isovalue);
+
+/// A JSON object with the keys dims, spacing_mm, origin_mm, direction, value_min, value_max, value_mean,
+/// suggested_iso, voxels_above_iso and warnings, and a line feed at its end. Bytes of a warning that are not
+/// UTF-8 are replaced.
+std::string to_json(const ScanSummary& summary);
+
+/// The same for people, a line each.
+std::string to_text(const ScanSummary& summary);
+
+}  // namespace osteomill

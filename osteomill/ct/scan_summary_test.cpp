@@ -1,0 +1,42 @@
+#include "osteomill/ct/scan_summary.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace osteomill {
+namespace {
+
+Scan some_scan() {
+  GridGeometry geometry;
+  geometry.dims = {3, 1, 2};
+  geometry.spacing_mm = Vec3(0.5, 0.25, 2);
+  geometry.origin_mm = Vec3(-1, 2, 3);
+  geometry.direction << 0, 0, 1, 1, 0, 0, 0, 1, 0;
+  return {DensityGrid(geometry, {-5, 0, 10, 20, 30, 35}), "some.nrrd", "NRRD", {"one \xFF thing"}};
+}
+
+TEST(ScanSummary, JsonHasTheContractsKeys) {
+  const nlohmann::json json = nlohmann::json::parse(to_json(summarise(some_scan(), 10.0)));
+  EXPECT_EQ(json["dims"], nlohmann::json({3, 1, 2}));
+  EXPECT_EQ(json["spacing_mm"], nlohmann::json({0.5, 0.25, 2.0}));
+  EXPECT_EQ(json["origin_mm"], nlohmann::json({-1.0, 2.0, 3.0}));
+  EXPECT_EQ(json["direction"], nlohmann::json({{0.0, 0.0, 1.0}, {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}}));
+  EXPECT_EQ(json["value_min"], -5);
+  EXPECT_EQ(json["value_max"], 35);
+  EXPECT_EQ(json["value_mean"], 15);
+  EXPECT_EQ(json["suggested_iso"], 10);
+  EXPECT_EQ(json["voxels_above_iso"], 3);
+  EXPECT_EQ(json["warnings"].size(), 1U);
+  EXPECT_EQ(json.size(), 10U);
+}
+
+TEST(ScanSummary, TextSaysTheSame) {
+  const std::string text = to_text(summarise(some_scan(), 10.0));
+  for (const char* part : {"some.nrrd (NRRD)", "3 x 1 x 2", "0.5 x 0.25 x 2 mm", "-5 to 35, mean 15",
+                           "10 suggested, 3 voxels above", "warning: one", "j runs along 0, 0, 1"}) {
+    EXPECT_NE(text.find(part), std::string::npos) << part << " in\n" << text;
+  }
+}
+
+}  // namespace
+}  // namespace osteomill

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "osteomill/ct/slice_stack.h"
+
+namespace osteomill {
+
+/// Moves every slice of a stack that was taken with a tilted gantry to its place in a straight grid, by
+/// linear interpolation within the slice. The grid grows so that nothing is lost; `densities` and `stack` are
+/// replaced, where there were no pixels the least density stands, and a warning says so. A straight stack is
+/// left alone. Throws InputError naming `subject` where the tilt is more than a gantry can do.
+void straighten(const std::string& subject, SliceStack& stack, std::vector<float>& densities);
+
+}  // namespace osteomill

@@ -1,0 +1,247 @@
+#include <cstring>
+#include <limits>
+
+#include <zlib.h>
+
+#include "osteomill/ct/temporary_folder.h"
+
+namespace osteomill {
+namespace {
+
+using testing_support::contains;
+using VolumeFile = testing_support::FolderTest;
+
+constexpr std::array<int, 3> kDims{4, 3, 2};
+
+// The voxel (i, j, k) holds i + 10 j + 100 k - 50.
+template <typename Stored>
+std::string voxels() {
+  std::string bytes;
+  for (int k = 0; k < kDims[2]; ++k) {
+    for (int j = 0; j < kDims[1]; ++j) {
+      for (int i = 0; i < kDims[0]; ++i) {
+        const auto value = static_cast<Stored>(i + 10 * j + 100 * k - 50);
+        bytes.append(reinterpret_cast<const char*>(&value), sizeof(value));
+      }
+    }
+  }
+  return bytes;
+}
+
+void expect_voxels(const DensityGrid& grid) {
+  ASSERT_EQ(grid.geometry().dims, kDims);
+  for (int k = 0; k < kDims[2]; ++k) {
+    for (int j = 0; j < kDims[1]; ++j) {
+      for (int i = 0; i < kDims[0]; ++i) {
+        const VoxelIndex v{i, j, k};
+        EXPECT_EQ(grid[v], static_cast<float>(i + 10 * j + 100 * k - 50));
+      }
+    }
+  }
+}
+
+std::string nrrd(const std::string& fields, const std::string& data) {
+  return "NRRD0004\ntype: short\ndimension: 3\nsizes: 4 3 2\nendian: little\n" + fields + "\n" + data;
+}
+
+const std::string kPlaced =
+    "space: LPS\nspace directions: (0,0.5,0) (0,0,0.25) (2,0,0)\nspace origin: (1,-2,3)\n";
+
+std::string mha(const std::string& fields, const std::string& data) {
+  return "ObjectType = Image\nNDims = 3\nDimSize = 4 3 2\n" + fields +
+         "ElementType = MET_SHORT\nElementDataFile = LOCAL\n" + data;
+}
+
+std::string zipped(const std::string& bytes) {
+  uLongf size = compressBound(static_cast<uLong>(bytes.size()));
+  std::string packed(size, '\0');
+  compress(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(bytes.data()),
+           static_cast<uLong>(bytes.size()));
+  packed.resize(size);
+  return packed;
+}
+
+// A NIfTI-1 header, field by field as nifti1.h lays it out.
+class Nifti {
+ public:
+  Nifti() : bytes_(352, '\0') {
+    set<std::int32_t>(0, 348);
+    for (const auto& [offset, value] : {std::pair{40, 3}, {42, 4}, {44, 3}, {46, 2}, {70, 4}, {72, 16}}) {
+      set<std::int16_t>(offset, static_cast<std::int16_t>(value));
+    }
+    for (const auto& [offset, value] :
+         {std::pair{76, 1.0F}, {80, 0.5F}, {84, 0.25F}, {88, 2.0F}, {108, 352.0F}}) {
+      set<float>(offset, value);
+    }
+    bytes_[123] = 2;
+    std::memcpy(bytes_.data() + 344, "n+1", 3);
+    set<std::int16_t>(254, 1);
+    const std::array<float, 12> rows{0, 0, 2, 1, 0.5F, 0, 0, -2, 0, 0.25F, 0, 3};
+    for (int n = 0; n < 12; ++n) set<float>(280 + 4 * n, rows[static_cast<std::size_t>(n)]);
+  }
+  template <typename Number>
+  Nifti& set(int offset, Number value) {
+    std::memcpy(bytes_.data() + offset, &value, sizeof(value));
+    return *this;
+  }
+  std::string with(const std::string& data) const { return bytes_ + data; }
+
+ private:
+  std::string bytes_;
+};
+
+TEST_F(VolumeFile, NrrdIsPlacedByItsSpaceDirections) {
+  const Scan scan = read_scan(write("a.nrrd", nrrd("encoding: raw\n" + kPlaced, voxels<std::int16_t>())));
+  expect_voxels(scan.grid);
+  EXPECT_EQ(scan.format, "NRRD");
+  EXPECT_TRUE(scan.warnings.empty());
+  EXPECT_TRUE(scan.grid.geometry().world_from_voxel(Vec3(1, 2, 3)).isApprox(Vec3(1 + 6, -2 + 0.5, 3 + 0.5)));
+}
+
+TEST_F(VolumeFile, RasIsTurnedToLps) {
+  std::string fields = "encoding: raw\n" + kPlaced;
+  fields.replace(fields.find("LPS"), 3, "RAS");
+  const Scan scan = read_scan(write("a.nrrd", nrrd(fields, voxels<std::int16_t>())));
+  EXPECT_TRUE(scan.grid.geometry().world_from_voxel(Vec3(1, 2, 3)).isApprox(Vec3(-7, 1.5, 3.5)));
+}
+
+TEST_F(VolumeFile, DetachedAndCompressedNrrdGiveTheSame) {
+  write("a.raw", "skip" + voxels<std::int16_t>());
+  expect_voxels(
+      read_scan(write("a.nhdr", nrrd("encoding: raw\nbyte skip: 4\ndata file: a.raw\n" + kPlaced, ""))).grid);
+  expect_voxels(
+      read_scan(write("b.nhdr", nrrd("encoding: raw\nbyte skip: -1\ndata file: a.raw\n" + kPlaced, "")))
+          .grid);
+  gzFile packed = gzopen((folder_ / "a.gz").c_str(), "wb");
+  const std::string bytes = voxels<std::int16_t>();
+  gzwrite(packed, bytes.data(), static_cast<unsigned>(bytes.size()));
+  gzclose(packed);
+  expect_voxels(read_scan(write("c.nhdr", nrrd("encoding: gzip\ndata file: a.gz\n" + kPlaced, ""))).grid);
+}
+
+TEST_F(VolumeFile, UnitsOfLengthAreTurnedToMillimetres) {
+  const std::string fields = "encoding: raw\nspacings: 20 20 40\nunits: \"um\" \"um\" \"um\"\n";
+  const Scan scan = read_scan(write("a.nrrd", nrrd(fields, voxels<std::int16_t>())));
+  EXPECT_TRUE(scan.grid.geometry().spacing_mm.isApprox(Vec3(0.02, 0.02, 0.04)));
+}
+
+TEST_F(VolumeFile, MetaImageIsPlacedByItsMatrix) {
+  const std::string fields =
+      "TransformMatrix = 0 1 0 0 0 1 1 0 0\nOffset = 1 -2 3\nElementSpacing = 0.5 0.25 2\n";
+  const Scan scan = read_scan(write("a.mha", mha(fields, voxels<std::int16_t>())));
+  expect_voxels(scan.grid);
+  EXPECT_EQ(scan.format, "MetaImage");
+  EXPECT_TRUE(scan.grid.geometry().world_from_voxel(Vec3(1, 2, 3)).isApprox(Vec3(7, -1.5, 3.5)));
+  const std::string packed = zipped(voxels<std::int16_t>());
+  const std::string size = "CompressedDataSize = " + std::to_string(packed.size()) + "\n";
+  expect_voxels(read_scan(write("b.mha", mha(fields + "CompressedData = True\n" + size, packed))).grid);
+}
+
+// The library would give zeros for voxels then.
+TEST_F(VolumeFile, MetaImageThatCannotBeDecompressedIsRefused) {
+  const std::string packed = zipped(voxels<std::int16_t>());
+  for (const char* size : {"", "CompressedDataSize = 9\n"}) {
+    const std::string bytes = mha(std::string("CompressedData = True\n") + size, packed);
+    EXPECT_TRUE(contains(refusal(write("a.mha", bytes)), "cannot be decompressed")) << size;
+  }
+}
+
+TEST_F(VolumeFile, NiftiIsTurnedFromRasToLps) {
+  const Scan scan = read_scan(write("a.nii", Nifti().with(voxels<std::int16_t>())));
+  expect_voxels(scan.grid);
+  EXPECT_EQ(scan.format, "NIfTI");
+  EXPECT_TRUE(scan.warnings.empty());
+  EXPECT_TRUE(scan.grid.geometry().world_from_voxel(Vec3(1, 2, 3)).isApprox(Vec3(-7, 1.5, 3.5)));
+}
+
+TEST_F(VolumeFile, NiftiSlopeZeroMeansValuesAsStored) {
+  expect_voxels(read_scan(write("a.nii", Nifti().set<float>(116, 5.0F).with(voxels<std::int16_t>()))).grid);
+  const Scan scan = read_scan(
+      write("b.nii", Nifti().set<float>(112, 2.0F).set<float>(116, 5.0F).with(voxels<std::int16_t>())));
+  const VoxelIndex second{1, 0, 0};
+  EXPECT_EQ(scan.grid[second], 2 * -49 + 5);
+}
+
+TEST_F(VolumeFile, CutShortByOneByteIsRefused) {
+  const std::string data = voxels<std::int16_t>();
+  const std::string shorter = data.substr(0, data.size() - 1);
+  const std::string packed = zipped(data);
+  EXPECT_TRUE(contains(refusal(write("a.nrrd", nrrd("encoding: raw\n" + kPlaced, shorter))),
+                       "48 bytes, there are 47"));
+  EXPECT_TRUE(contains(refusal(write("a.mha", mha("", shorter))), "48 bytes, there are 47"));
+  EXPECT_TRUE(
+      contains(refusal(write("b.mha", mha("CompressedData = True\n", packed.substr(0, packed.size() - 1)))),
+               "cut short"));
+  EXPECT_TRUE(contains(refusal(write("a.nii", Nifti().with(shorter))), "48 bytes, there are 47"));
+}
+
+TEST_F(VolumeFile, HugeSizesAreRefusedBeforeAnythingIsAllocated) {
+  std::string bytes = nrrd("encoding: raw\n" + kPlaced, voxels<std::int16_t>());
+  bytes.replace(bytes.find("4 3 2"), 5, "9000 9000 9000");
+  EXPECT_TRUE(contains(refusal(write("a.nrrd", bytes)), "cut short"));
+  bytes = mha("", voxels<std::int16_t>());
+  bytes.replace(bytes.find("4 3 2"), 5, "4294967296 4294967296 1");
+  EXPECT_TRUE(contains(refusal(write("a.mha", bytes)), "impossible size"));
+}
+
+TEST_F(VolumeFile, AxesThatAreNotOrthogonalAreRefused) {
+  const std::string sheared = "encoding: raw\nspace: LPS\nspace directions: (1,0,0) (0.2,1,0) (0,0,1)\n";
+  EXPECT_TRUE(contains(refusal(write("a.nrrd", nrrd(sheared, voxels<std::int16_t>()))), "right angles"));
+  EXPECT_TRUE(contains(
+      refusal(write("a.mha", mha("TransformMatrix = 1 0 0 0.2 1 0 0 0 1\n", voxels<std::int16_t>()))),
+      "right angles"));
+  EXPECT_TRUE(contains(refusal(write("a.nii", Nifti().set<float>(280, 1.0F).with(voxels<std::int16_t>()))),
+                       "right angles"));
+}
+
+TEST_F(VolumeFile, SpacingsThatAreNoDistanceAreRefused) {
+  for (const char* spacing : {"0 1 1", "-1 1 1", "nan 1 1", "inf 1 1"}) {
+    const std::string fields = std::string("spacings: ") + spacing + "\nencoding: raw\n";
+    EXPECT_TRUE(contains(refusal(write("a.nrrd", nrrd(fields, voxels<std::int16_t>()))), "no distance"))
+        << spacing;
+    const std::string field = std::string("ElementSpacing = ") + spacing + "\n";
+    EXPECT_TRUE(contains(refusal(write("a.mha", mha(field, voxels<std::int16_t>()))), "no distance"))
+        << spacing;
+  }
+  EXPECT_TRUE(contains(refusal(write("a.nii", Nifti().set<float>(84, 0.0F).with(voxels<std::int16_t>()))),
+                       "no distance"));
+  EXPECT_TRUE(contains(refusal(write("b.nii", Nifti().set<float>(84, 0.3F).with(voxels<std::int16_t>()))),
+                       "different voxel sizes"));
+}
+
+TEST_F(VolumeFile, VoxelsThatAreNotFiniteAreRefused) {
+  for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+    std::string data = voxels<float>();
+    std::memcpy(data.data() + 4 * 7, &bad, 4);
+    std::string bytes = nrrd("encoding: raw\n" + kPlaced, data);
+    bytes.replace(bytes.find("short"), 5, "float");
+    EXPECT_TRUE(contains(refusal(write("a.nrrd", bytes)), "1 voxels hold no finite number"));
+  }
+}
+
+TEST_F(VolumeFile, WhatIsNoGreyVolumeIsRefused) {
+  std::string bytes = nrrd("encoding: raw\n" + kPlaced, voxels<std::int16_t>());
+  bytes.replace(bytes.find("dimension: 3\nsizes: 4 3 2"), 25, "dimension: 2\nsizes: 4 6");
+  EXPECT_TRUE(contains(refusal(write("a.nrrd", bytes)), "2 dimensions"));
+  EXPECT_TRUE(contains(refusal(write("a.mha", mha("ElementNumberOfChannels = 3\n", std::string(144, ' ')))),
+                       "several values"));
+  EXPECT_TRUE(contains(refusal(write("a.nii", Nifti().set<std::int16_t>(40, 4).set<std::int16_t>(48, 2).with(
+                                                  std::string(96, ' ')))),
+                       "2 volumes"));
+  EXPECT_TRUE(contains(refusal(write("b.nii", Nifti().set<std::int16_t>(70, 128).with(std::string(72, ' ')))),
+                       "type 128"));
+}
+
+TEST_F(VolumeFile, WhatIsNoScanIsRefusedByName) {
+  EXPECT_TRUE(contains(refusal(folder_ / "none.nrrd"), "none.nrrd: no such file"));
+  EXPECT_TRUE(contains(refusal(write("empty.nrrd", "")), "empty.nrrd: is empty"));
+  EXPECT_TRUE(contains(refusal(write("text.nrrd", "hello\n")), "is not NRRD"));
+  EXPECT_TRUE(contains(refusal(write("text.mha", "hello\n")), "is not MetaImage"));
+  EXPECT_TRUE(contains(refusal(write("text.nii", "hello\n")), "header"));
+  EXPECT_TRUE(contains(refusal(write("text.txt", "hello\n")), "is not a scan"));
+  EXPECT_TRUE(contains(refusal(write("c.nhdr", nrrd("encoding: raw\ndata file: gone.raw\n" + kPlaced, ""))),
+                       "gone.raw is not there"));
+}
+
+}  // namespace
+}  // namespace osteomill
