@@ -1,9 +1,7 @@
 #include "osteomill/milling/burr_mill.h"
 
 #include <cmath>
-#include <cstdlib>
 #include <limits>
-#include <new>
 #include <stdexcept>
 
 #include "tests/shapes.h"
@@ -11,23 +9,6 @@
 
 #include "osteomill/volume/isosurface.h"
 #include "osteomill/volume/sampling.h"
-
-namespace {
-// Every allocation of the program, so that a test can tell that a step makes none.
-std::size_t allocations = 0;
-}  // namespace
-
-void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size)) return memory;
-  throw std::bad_alloc();
-}
-void operator delete(void* memory) noexcept {
-  std::free(memory);
-}
-void operator delete(void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
 
 namespace osteomill {
 namespace {
@@ -330,19 +311,6 @@ TEST(BurrMill, PaysInFullForDropsBelowTheResolutionOfAFloat) {
   EXPECT_NEAR(removed_mm3 + mill.carry_mm3(), 20000 * 1e-3 * 2e-4 * 0.001, 1e-12);
   EXPECT_NEAR(before_mm3 - charge_mm3(volume.grid(), kBone), removed_mm3, 1e-11);
   EXPECT_GT(removed_mm3, 0);
-}
-
-TEST(BurrMill, NeverAllocatesInAStep) {
-  GridGeometry geometry = cube_of(5, 0.25);
-  geometry.spacing_mm.y() = 0.2;
-  Volume volume(DensityGrid(geometry, std::vector<float>(geometry.voxel_count(), 1000.0f)), 500);
-  BurrMill mill(geometry, kRadius_mm, kBone, {});
-  const std::size_t before = allocations;
-  for (int n = 0; n < 100; ++n) {
-    // Buried in bone at every shift against the grid: as many overlaps as there can be.
-    mill.step(volume, Vec3(0.017 * n - 1, 0.013 * n - 1, 0.011 * n - 1), 1e-6, 0.001);
-  }
-  EXPECT_EQ(allocations, before);
 }
 
 TEST(BurrMill, RefusesSettingsOutOfRange) {
