@@ -5,6 +5,7 @@
 
 #include <CLI/App.hpp>
 
+#include "osteomill/ct/read_scan.h"
 #include "osteomill/volume/volume.h"
 
 namespace osteomill::app {
@@ -19,6 +20,16 @@ struct ScanOptions {
 
 /// Adds SCAN and --iso to a command.
 void add_scan_options(CLI::App& command, ScanOptions& options);
+
+/// The scan, or the built-in tooth; the scan's warnings are its own. Throws InputError as `read_scan` does.
+Scan open_scan(const ScanOptions& options);
+
+/// The isovalue that the user leaves us to choose for this scan.
+double suggested_isovalue(const ScanOptions& options, const DensityGrid& grid);
+
+/// Throws InputError where the isovalue lies outside the scan's values, so that there is no bone, or nothing
+/// but bone.
+void require_isovalue_within(const Scan& scan, double isovalue);
 
 /// A bone ready to be milled.
 struct LoadedBone {

@@ -30,7 +30,7 @@ void summarise_values(const std::vector<float>& densities, double isovalue, Scan
 
 }  // namespace
 
-ScanSummary summarise(const Scan& scan, double isovalue) {
+ScanSummary summarise(const Scan& scan, double suggested_iso, double isovalue) {
   const GridGeometry& geometry = scan.grid.geometry();
   ScanSummary summary;
   summary.name = scan.name;
@@ -41,7 +41,8 @@ ScanSummary summarise(const Scan& scan, double isovalue) {
   for (int row = 0; row < 3; ++row) {
     summary.direction[static_cast<std::size_t>(row)] = to_array(geometry.direction.row(row).transpose());
   }
-  summary.suggested_iso = isovalue;
+  summary.suggested_iso = suggested_iso;
+  summary.isovalue = isovalue;
   summary.warnings = scan.warnings;
   summarise_values(scan.grid.densities(), isovalue, summary);
   return summary;
@@ -79,8 +80,8 @@ std::string to_text(const ScanSummary& summary) {
   }
   text += fmt::format("values      {:.6g} to {:.6g}, mean {:.6g}\n", summary.value_min, summary.value_max,
                       summary.value_mean);
-  text += fmt::format("isovalue    {:.6g} suggested, {} voxels above it\n", summary.suggested_iso,
-                      summary.voxels_above_iso);
+  text += fmt::format("isovalue    {:.6g} suggested\n", summary.suggested_iso);
+  text += fmt::format("bone        {} voxels above {:.6g}\n", summary.voxels_above_iso, summary.isovalue);
   for (const std::string& warning : summary.warnings) text += fmt::format("warning: {}\n", warning);
   return text;
 }

@@ -23,13 +23,15 @@ struct ScanSummary {
   double value_max = 0;
   double value_mean = 0;
   double suggested_iso = 0;
-  /// Voxels whose density is greater than `suggested_iso`.
+  /// The isovalue in use: the user's, or the suggested one.
+  double isovalue = 0;
+  /// Voxels whose density is greater than `isovalue`.
   std::size_t voxels_above_iso = 0;
   std::vector<std::string> warnings;
 };
 
-/// One pass over the voxels. `isovalue` is what is reported as suggested (`suggest_isovalue`).
-ScanSummary summarise(const Scan& scan, double isovalue);
+/// One pass over the voxels. `suggested_iso` is what is reported as suggested (`suggest_isovalue`).
+ScanSummary summarise(const Scan& scan, double suggested_iso, double isovalue);
 
 /// A JSON object with the keys dims, spacing_mm, origin_mm, direction, value_min, value_max, value_mean,
 /// suggested_iso, voxels_above_iso and warnings, and a line feed at its end. Bytes of a warning that are not

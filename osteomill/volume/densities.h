@@ -12,14 +12,14 @@ struct BoneDensities {
   double reference = 1;
 };
 
-/// Estimates both from the volume: `surroundings` is the median density of the voxels eight steps out of the bone
-/// along an axis with no bone between (a scanner's blur and scatter reach about as far), `reference` the median
-/// density of the bone. Without such voxels, the median of all that is not bone. Always reference > isovalue >
-/// surroundings. Not for the tick.
+/// Estimates both from the volume: `surroundings` is the median density of the voxels eight steps out of the
+/// bone along an axis with no bone between (a scanner's blur and scatter reach about as far), `reference` the
+/// median density of the bone. Without such voxels, the median of all that is not bone. Always reference >
+/// isovalue > surroundings. Not for the tick.
 BoneDensities estimate_densities(const Volume& volume);
 
-/// The isovalue that best separates the grid's densities into two classes (Otsu 1979), strictly between its least
-/// and greatest density; where all densities are equal, that density. Not for the tick.
+/// The isovalue that best separates the grid's densities into two classes (Otsu 1979), strictly between its
+/// least and greatest density; where all densities are equal, that density. Not for the tick.
 double suggest_isovalue(const DensityGrid& grid);
 
 }  // namespace osteomill
