@@ -70,6 +70,7 @@ InflatedStream measure_compressed(const std::filesystem::path& path, std::uint64
       in.read(input.data(), static_cast<std::streamsize>(input.size()));
       stream.next_in = reinterpret_cast<Bytef*>(input.data());
       stream.avail_in = static_cast<uInt>(in.gcount());
+      result.compressed_bytes += stream.avail_in;
       if (stream.avail_in == 0) return result;
     }
     stream.next_out = reinterpret_cast<Bytef*>(output.data());
@@ -82,6 +83,7 @@ InflatedStream measure_compressed(const std::filesystem::path& path, std::uint64
       state = inflateReset(&stream);
     }
   }
+  result.compressed_bytes -= stream.avail_in;
   result.sound = state == Z_STREAM_END;
   return result;
 }

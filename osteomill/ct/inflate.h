@@ -15,6 +15,8 @@ std::optional<std::string> inflate_raw(std::string_view deflated, std::uint64_t 
 /// What the gzip members or the zlib stream within a file hold, found by inflating it without keeping it.
 struct InflatedStream {
   std::uint64_t bytes = 0;
+  /// How many compressed bytes that took.
+  std::uint64_t compressed_bytes = 0;
   /// The streams came to their proper end and their checksums are right.
   bool sound = false;
 };

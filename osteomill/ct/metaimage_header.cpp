@@ -123,6 +123,12 @@ StoredVoxels where_stored(const std::string& subject, const fs::path& path, cons
   stored.offset = local ? fields.end_of_header : 0;
   stored.bytes = bytes;
   stored.compressed = fields.is_true("CompressedData");
+  if (stored.compressed && fields.has("CompressedDataSize")) {
+    // MetaIO decompresses that much and no more, and leaves the other voxels zero.
+    const double size = numbers(subject, fields, "CompressedDataSize").front();
+    if (!(size >= 1 && size < 1e12)) throw InputError(subject, "has no sensible CompressedDataSize");
+    stored.compressed_bytes = static_cast<std::uint64_t>(size);
+  }
   if (fields.has("HeaderSize")) {
     const std::vector<double> skip = numbers(subject, fields, "HeaderSize");
     if (skip.size() != 1 || !(skip[0] >= -1 && skip[0] < 1e12))

@@ -140,10 +140,12 @@ TEST_F(VolumeFile, MetaImageIsPlacedByItsMatrix) {
 // The library would give zeros for voxels then.
 TEST_F(VolumeFile, MetaImageThatCannotBeDecompressedIsRefused) {
   const std::string packed = zipped(voxels<std::int16_t>());
-  for (const char* size : {"", "CompressedDataSize = 9\n"}) {
-    const std::string bytes = mha(std::string("CompressedData = True\n") + size, packed);
-    EXPECT_TRUE(contains(refusal(write("a.mha", bytes)), "cannot be decompressed")) << size;
-  }
+  const std::string fields = "CompressedData = True\n";
+  EXPECT_TRUE(contains(refusal(write("a.mha", mha(fields, packed))), "cannot be decompressed"));
+  EXPECT_TRUE(
+      contains(refusal(write("b.mha", mha(fields + "CompressedDataSize = 9\n", packed))), "take 9 bytes"));
+  EXPECT_TRUE(contains(refusal(write("c.mha", mha(fields + "CompressedDataSize = 999\n", packed))),
+                       "take 999 bytes"));
 }
 
 TEST_F(VolumeFile, NiftiIsTurnedFromRasToLps) {

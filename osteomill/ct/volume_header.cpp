@@ -35,6 +35,11 @@ std::vector<std::string> check_stored(const std::string& subject, const StoredVo
     if (!stream.sound) {
       throw InputError(subject, "its compressed data are cut short or damaged");
     }
+    if (stored.compressed_bytes != 0 &&
+        (stored.compressed_bytes < stream.compressed_bytes || stored.compressed_bytes > there)) {
+      throw InputError(subject, fmt::format("says that its compressed data take {} bytes, they take {}",
+                                            stored.compressed_bytes, stream.compressed_bytes));
+    }
     found = stream.bytes - stored.compressed_skip;
   }
   if (found < stored.bytes) throw cut_short(found);

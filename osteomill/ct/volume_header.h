@@ -37,6 +37,8 @@ struct StoredVoxels {
   std::uint64_t offset = 0;
   std::uint64_t bytes = 0;
   bool compressed = false;
+  /// How long the header says that the compressed data are; 0 where it does not say.
+  std::uint64_t compressed_bytes = 0;
   /// Bytes before the voxels that are compressed with them.
   std::uint64_t compressed_skip = 0;
 };
