@@ -11,6 +11,7 @@
 #include "osteomill/recording/hdf5_attributes.h"
 #include "osteomill/recording/record_columns.h"
 #include "osteomill/recording/recording_file.h"
+#include "osteomill/recording/recording_seal.h"
 
 namespace osteomill {
 
@@ -34,6 +35,9 @@ OpenRecording open_recording(const fs::path& path) {
   if (!fs::is_regular_file(path, error)) throw InputError(path.string(), "is not a file");
   const std::uintmax_t bytes = fs::file_size(path, error);
   if (error) throw InputError(path.string(), "cannot be read: " + error.message());
+  if (check_seal(path) == Seal::broken) {
+    throw InputError(path.string(), "is damaged or cut short: its checksum is not that of its content");
+  }
   if (H5Fis_hdf5(path.c_str()) <= 0) throw InputError(path.string(), "is not an HDF5 file, so no recording");
   OpenRecording recording{path, bytes,
                           Hdf5Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose)};

@@ -4,6 +4,7 @@
 #include "osteomill/recording/description_attributes.h"
 #include "osteomill/recording/hdf5_attributes.h"
 #include "osteomill/recording/record_columns.h"
+#include "osteomill/recording/recording_seal.h"
 
 namespace osteomill {
 
@@ -42,7 +43,9 @@ bool keep_metadata_until_flush(hid_t file) {
 
 RecordingFile::RecordingFile(const fs::path& path, const RunDescription& description) : path_(path) {
   const Hdf5Lock lock;
-  file_ = Hdf5Handle(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
+  const Hdf5Handle layout(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
+  H5Pset_userblock(layout.get(), kUserBlockBytes);
+  file_ = Hdf5Handle(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, layout.get(), H5P_DEFAULT), H5Fclose);
   require(file_.valid(), "cannot be created");
   try {
     lay_out(description);
@@ -147,6 +150,7 @@ void RecordingFile::finish(std::uint64_t dropped) {
   for (Hdf5Handle& column : columns_) closed = column.close() && closed;
   closed = file_.close() && closed;
   require(closed, "cannot be written to its end (is the disk full?)");
+  seal_recording(path_);
 }
 
 }  // namespace osteomill

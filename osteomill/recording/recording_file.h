@@ -17,8 +17,8 @@ inline constexpr std::uint64_t kRecordingVersion = 1;
 
 /// A recording being written, from one thread at a time. Root: the description's attributes, `complete` (0
 /// until `finish`) and `dropped_records`; /columns: a dataset a column (record_columns.h), each with its
-/// `unit`; /settings: see description_attributes.h; /pictures: the bytes of PNG files. Every failure is an
-/// InputError that names `path`.
+/// `unit`; /settings: see description_attributes.h; /pictures: the bytes of PNG files. A finished file begins
+/// with its checksum (recording_seal.h). Every failure is an InputError that names `path`.
 class RecordingFile {
  public:
   /// Creates the file, over one that is there.
@@ -32,7 +32,7 @@ class RecordingFile {
   /// What was appended so far survives the end of this program, however it ends.
   void flush(std::uint64_t dropped);
   void add_picture(const std::string& name, std::span<const unsigned char> png);
-  /// Marks the recording complete and closes the file.
+  /// Marks the recording complete, closes the file and writes its checksum.
   void finish(std::uint64_t dropped);
 
  private:
