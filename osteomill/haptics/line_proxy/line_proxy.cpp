@@ -120,8 +120,8 @@ std::optional<Vec3> LineProxy::first_intersection(const Pose& X_WL) const {
 
 // Collision at t-1 already.
 void LineProxy::slide_intersection(const Pose& X_WL) {
-  const auto next_W =
-      settings_.probe_across_the_shaft ? next_intersection_across(X_WL) : next_intersection(X_WL);
+  const auto next_W = settings_.shaft_probe == ShaftProbeRule::densest ? next_intersection(X_WL)
+                                                                       : next_intersection_across(X_WL);
   if (!next_W) {
     memory_.intersection_W.reset();
   } else if (!is_refused(*next_W, *memory_.intersection_W, X_WL)) {
@@ -138,13 +138,14 @@ std::optional<Vec3> LineProxy::next_intersection(const Pose& X_WL) {
                           {settings_.normal, settings_.intersection_slide_limit_mm});
 }
 
-// The point-proxy rule on the middle of the shaft's way through the bone says which way is out; IP is the
-// surface where that way is the longest.
+// The point-proxy rule on the middle of the shaft's way through the bone says which way is out; IP is that
+// proxy, or the surface where that way is the longest.
 std::optional<Vec3> LineProxy::next_intersection_across(const Pose& X_WL) {
   const Volume& volume = *scene_.volume;
   const auto run = nearest_run(volume, shaft_vertices(), X_WL, *memory_.intersection_W);
   if (!run) return std::nullopt;
-  const Vec3 middle_W = middle_of(volume, shaft_vertices(), X_WL, *run);
+  const double middle = middle_of(volume, shaft_vertices(), X_WL, *run);
+  const Vec3 middle_W = sample_W(shaft_vertices(), X_WL, middle);
   memory_.middle_proxy_W = move_point_proxy(volume, memory_.middle_proxy_W, middle_W,
                                             {settings_.normal, settings_.intersection_slide_limit_mm});
   const Vec3 axis = shaft_direction(X_WL);
@@ -152,13 +153,19 @@ std::optional<Vec3> LineProxy::next_intersection_across(const Pose& X_WL) {
   const Vec3 across = out - out.dot(axis) * axis;
   // Where out is along the shaft, the proxy of the middle is all there is.
   Vec3 goal_W = memory_.middle_proxy_W;
-  if (across.norm() > 0.1 * out.norm()) {
+  if (settings_.shaft_probe == ShaftProbeRule::deepest_across && across.norm() > 0.1 * out.norm()) {
     // The edge of a wedge of bone is at most twice as deep as the middle; more is bone on another side.
     const double limit_mm = 2.5 * across.norm() + 0.5 * volume.geometry().spacing_mm.minCoeff();
-    goal_W =
-        deepest_across(volume, shaft_vertices(), X_WL, *run, across.normalized(), limit_mm).value_or(goal_W);
+    goal_W = deepest_across(volume, shaft_vertices(), X_WL, *run, middle, across.normalized(), limit_mm)
+                 .value_or(goal_W);
   }
-  return moved_toward(*memory_.intersection_W, goal_W, settings_.intersection_slide_limit_mm);
+  return moved_toward(*memory_.intersection_W, goal_W,
+                      settings_.intersection_slide_limit_mm + line_move_mm(X_WL));
+}
+
+// How far the centreline's tip has come since the last tick.
+double LineProxy::line_move_mm(const Pose& X_WL) const {
+  return memory_.X_WL ? (X_WL.position_mm - memory_.X_WL->position_mm).norm() : 0.0;
 }
 
 bool LineProxy::is_refused(const Vec3& intersection_W, const Vec3& expected_W, const Pose& X_WL) const {

@@ -37,7 +37,8 @@ class LineProxy final : public HapticAlgorithm {
     // The centreline, laid at the tip's proxy where there is one.
     std::optional<Pose> X_WL;
     std::optional<Vec3> intersection_W;
-    // With `probe_across_the_shaft`: the point proxy of the middle of the shaft's way through the bone.
+    // Unless the probe is the densest point: the point proxy of the middle of the shaft's way through the
+    // bone.
     Vec3 middle_proxy_W = Vec3::Zero();
     Vec3 arm_W = Vec3::Zero();
     Vec3 reaction_N = Vec3::Zero();
@@ -55,6 +56,7 @@ class LineProxy final : public HapticAlgorithm {
   void slide_intersection(const Pose& X_WL);
   std::optional<Vec3> next_intersection(const Pose& X_WL);
   std::optional<Vec3> next_intersection_across(const Pose& X_WL);
+  double line_move_mm(const Pose& X_WL) const;
   bool is_refused(const Vec3& intersection_W, const Vec3& expected_W, const Pose& X_WL) const;
   void turn_reaction(const Pose& X_WL);
   void push_with_shaft(const Vec3& tip_spring_W);

@@ -25,10 +25,10 @@ LineProxySettings LineProxySettings::defaults(Mode mode) {
   settings.clamp_fraction = true;
   settings.intersection_jump_limit_mm = 1.0;
   settings.refuse_behind_tip = true;
-  settings.intersection_slide_limit_mm = 0.2;
+  settings.intersection_slide_limit_mm = 0.1;
   settings.tip_proxy_limit_mm = 0.05;
   settings.contact_until_proxy_is_free = true;
-  settings.probe_across_the_shaft = true;
+  settings.shaft_probe = ShaftProbeRule::deepest_across;
   settings.shaft_pushes = true;
   settings.shaft_fade_radii = 1.5;
   settings.shaft_force_slew_N = 0.5;

@@ -7,6 +7,19 @@
 
 namespace osteomill {
 
+/// Which point of the shaft draws the intersection point to itself.
+enum class ShaftProbeRule : unsigned char {
+  /// The paper's v_max. It leaps from vertex to vertex and from one grain of the scan to the next.
+  densest,
+  /// The middle of the shaft's way through the bone. The calmest; on an edge the lever is off by up to half
+  /// that way
+  /// and the force about half.
+  middle,
+  /// The place that must be moved furthest across the shaft to come free, found from the middle. The right
+  /// lever.
+  deepest_across,
+};
+
 /// What algorithm 1 is made of. The first block is the paper's; every field of the second is an improvement
 /// that can be switched by itself, and whose initial value is the paper's behaviour. Limits are per tick,
 /// meant for 1 kHz.
@@ -37,8 +50,8 @@ struct LineProxySettings {
   double tip_proxy_limit_mm = kNoLimit;
   /// The tip stays in contact until its proxy has a free way to it: no falling through thin walls.
   bool contact_until_proxy_is_free = false;
-  /// The intersection point goes to the deepest place across the shaft instead of to the densest point.
-  bool probe_across_the_shaft = false;
+  /// Which point of the shaft draws the intersection point to itself.
+  ShaftProbeRule shaft_probe = ShaftProbeRule::densest;
   /// Sends the shaft's reaction force as well as its torque.
   bool shaft_pushes = false;
   /// The reaction of the shaft grows from nothing at the tip to full at this many shaft radii from it; 0 for

@@ -198,6 +198,30 @@ TEST_P(LineProxyTest, TheShaftOnAnEdgeTurnsTheHandAway) {
   }
 }
 
+// Steady alone: the paper sends no force for the shaft.
+TEST(LineProxy, TheTorqueOfTheShaftOnAnEdgeIsLeverTimesForce) {
+  const Volume bone = block_with_edge();
+  const Vec3 edge(0, 0.1, 4);
+  for (const double lean : {-0.4, -0.8, -1.2}) {
+    const Vec3 shaft = Vec3(lean, 0, 1).normalized();
+    const Vec3 into_block = Vec3(1, 0, -lean).normalized();
+    for (const double lever_mm : {8.0, 15.0}) {
+      for (const double depth_mm : {0.3, 0.6}) {
+        LineProxy algorithm = prepared(Mode::steady, bone);
+        const Vec3 touching = edge - lever_mm * shaft;
+        const HapticStep step = push(algorithm, standing(touching - 0.5 * into_block, shaft),
+                                     touching + depth_mm * into_block, 300);
+        const Vec3 force = step.wrench.force_N;
+        EXPECT_GT(force.dot(-into_block) / force.norm(), 0.97);
+        EXPECT_NEAR(force.norm(), 2.0 * depth_mm, 0.5 * depth_mm);
+        EXPECT_NEAR(step.wrench.torque_Nmm.norm() / force.norm(), lever_mm, 0.02 * lever_mm) << lean;
+        const Vec3 expected = (edge - touching).cross(force);
+        EXPECT_GT(expected.normalized().dot(step.wrench.torque_Nmm.normalized()), 0.999);
+      }
+    }
+  }
+}
+
 TEST_P(LineProxyTest, TurningScanAndPosesTogetherTurnsTheWrench) {
   const Quat turn = quaternion_from_rotation_vector({0.4, -0.9, 0.6});
   const auto shape = [](const Vec3& p) { return std::max(-p.x(), 4.0 - p.z()); };

@@ -1,7 +1,6 @@
 #include "osteomill/haptics/line_proxy/shaft_probe.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -55,15 +54,6 @@ int sample_count(std::span<const Vec3> vertices_T) {
   return static_cast<int>(vertices_T.size() - 1) * kSubsteps + 1;
 }
 
-// Places between samples too.
-Vec3 sample_W(std::span<const Vec3> vertices_T, const Pose& X_WT, double sample) {
-  const double place = sample / kSubsteps;
-  const auto below = std::min(static_cast<std::size_t>(place), vertices_T.size() - 1);
-  const Vec3& from = vertices_T[below];
-  const Vec3& to = vertices_T[std::min(below + 1, vertices_T.size() - 1)];
-  return X_WT * Vec3(from + (place - static_cast<double>(below)) * (to - from));
-}
-
 double above_isovalue(const Volume& volume, const Vec3& point_W) {
   return density_at(volume.grid(), point_W) - volume.isovalue();
 }
@@ -73,6 +63,14 @@ double distance_to(const ShaftRun& run, double sample) {
 }
 
 }  // namespace
+
+Vec3 sample_W(std::span<const Vec3> vertices_T, const Pose& X_WT, double sample) {
+  const double place = sample / kSubsteps;
+  const auto below = std::min(static_cast<std::size_t>(place), vertices_T.size() - 1);
+  const Vec3& from = vertices_T[below];
+  const Vec3& to = vertices_T[std::min(below + 1, vertices_T.size() - 1)];
+  return X_WT * Vec3(from + (place - static_cast<double>(below)) * (to - from));
+}
 
 std::optional<ShaftRun> nearest_run(const Volume& volume, std::span<const Vec3> vertices_T, const Pose& X_WT,
                                     const Vec3& near_W) {
@@ -94,8 +92,8 @@ std::optional<ShaftRun> nearest_run(const Volume& volume, std::span<const Vec3> 
   return nearest;
 }
 
-Vec3 middle_of(const Volume& volume, std::span<const Vec3> vertices_T, const Pose& X_WT,
-               const ShaftRun& run) {
+double middle_of(const Volume& volume, std::span<const Vec3> vertices_T, const Pose& X_WT,
+                 const ShaftRun& run) {
   double weights = 0.0;
   double moment = 0.0;
   for (int n = run.first; n <= run.last; ++n) {
@@ -103,7 +101,7 @@ Vec3 middle_of(const Volume& volume, std::span<const Vec3> vertices_T, const Pos
     weights += weight;
     moment += weight * n;
   }
-  return sample_W(vertices_T, X_WT, weights > 0.0 ? moment / weights : run.first);
+  return weights > 0.0 ? moment / weights : run.first;
 }
 
 namespace {
@@ -122,33 +120,55 @@ std::optional<double> depth_along(const Volume& volume, const Vec3& point_W, con
   return std::nullopt;
 }
 
+// A mean of sample numbers, weighted by the 16th power of the depth: the deepest one where it stands out.
+class DeepestMean {
+ public:
+  explicit DeepestMean(double scale_mm) : scale_mm_(scale_mm) {}
+  void add(double sample, double depth_mm) {
+    double weight = depth_mm / scale_mm_;
+    for (int square = 0; square < 4; ++square) weight *= weight;
+    weights_ += weight;
+    moment_ += weight * sample;
+  }
+  double mean() const { return moment_ / weights_; }
+
+ private:
+  double scale_mm_;
+  double weights_ = 0.0;
+  double moment_ = 0.0;
+};
+
 }  // namespace
 
 std::optional<Vec3> deepest_across(const Volume& volume, std::span<const Vec3> vertices_T, const Pose& X_WT,
-                                   const ShaftRun& run, const Vec3& out_W, double limit_mm) {
-  constexpr int kMostSamples = 32;
-  std::array<double, kMostSamples> depths_mm;
-  const int stride = (run.last - run.first) / kMostSamples + 1;
-  std::size_t count = 0;
-  double deepest_mm = 0.0;
-  for (int n = run.first; n <= run.last; n += stride, ++count) {
-    depths_mm[count] = depth_along(volume, sample_W(vertices_T, X_WT, n), out_W, limit_mm).value_or(0.0);
-    deepest_mm = std::max(deepest_mm, depths_mm[count]);
+                                   const ShaftRun& run, double middle, const Vec3& out_W, double limit_mm) {
+  constexpr int kMostSamplesEachWay = 16;
+  const auto depth_at = [&](double sample) {
+    return depth_along(volume, sample_W(vertices_T, X_WT, sample), out_W, limit_mm);
+  };
+  const int start = std::clamp(static_cast<int>(std::lround(middle)), run.first, run.last);
+  const auto start_mm = depth_at(start);
+  if (!start_mm || !(*start_mm > 0.0)) return std::nullopt;
+  const int stride = (run.last - run.first) / (2 * kMostSamplesEachWay) + 1;
+  const double spacing_mm =
+      (sample_W(vertices_T, X_WT, start + 1) - sample_W(vertices_T, X_WT, start)).norm();
+  // A surface steeper than 2 to 1 against the shaft counts as a leap.
+  const double leap_mm = 2.0 * stride * spacing_mm;
+  DeepestMean deepest(*start_mm);
+  deepest.add(start, *start_mm);
+  for (const int way : {-stride, stride}) {
+    double before_mm = *start_mm;
+    for (int n = start + way; n >= run.first && n <= run.last; n += way) {
+      const auto depth_mm = depth_at(n);
+      if (!depth_mm || std::abs(*depth_mm - before_mm) > leap_mm) break;
+      deepest.add(n, *depth_mm);
+      before_mm = *depth_mm;
+    }
   }
-  if (!(deepest_mm > 0.0)) return std::nullopt;
-  // The mean place, weighted by the 16th power of the depth: the deepest one where it stands out.
-  double weights = 0.0;
-  double moment = 0.0;
-  for (std::size_t n = 0; n < count; ++n) {
-    double weight = depths_mm[n] / deepest_mm;
-    for (int square = 0; square < 4; ++square) weight *= weight;
-    weights += weight;
-    moment += weight * (run.first + static_cast<int>(n) * stride);
-  }
-  const Vec3 point_W = sample_W(vertices_T, X_WT, moment / weights);
-  const auto depth_mm = depth_along(volume, point_W, out_W, limit_mm);
+  const double place = deepest.mean();
+  const auto depth_mm = depth_at(place);
   if (!depth_mm) return std::nullopt;
-  return point_W + *depth_mm * out_W;
+  return sample_W(vertices_T, X_WT, place) + *depth_mm * out_W;
 }
 
 int vertices_in_bone(const Volume& volume, std::span<const Vec3> vertices_T, const Pose& X_WT) {
