@@ -4,10 +4,10 @@
 #include <stdexcept>
 #include <vector>
 
+#include "tests/analytic_hole.h"
 #include "tests/shapes.h"
 #include <gtest/gtest.h>
 
-#include "osteomill/device/analytic_hole.h"
 #include "osteomill/device/simulated_operator.h"
 
 namespace osteomill {

@@ -8,9 +8,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "tests/analytic_hole.h"
 #include <gtest/gtest.h>
-
-#include "osteomill/device/analytic_hole.h"
 
 namespace {
 
