@@ -31,6 +31,15 @@ double suggested_isovalue(const ScanOptions& options, const DensityGrid& grid);
 /// but bone.
 void require_isovalue_within(const Scan& scan, double isovalue);
 
+/// The scan, or the built-in tooth. Throws InputError as `read_scan` does.
+Scan open_scan(const ScanOptions& options);
+
+/// The isovalue for a user who names none.
+double suggested_isovalue(const ScanOptions& options, const DensityGrid& grid);
+
+/// Throws InputError where the isovalue lies outside the scan's values: no bone, or nothing but bone.
+void require_isovalue_within(const Scan& scan, double isovalue);
+
 /// A bone ready to be milled.
 struct LoadedBone {
   Volume volume;
@@ -39,7 +48,7 @@ struct LoadedBone {
 };
 
 /// Reads the scan; its warnings, and an isovalue that had to be suggested, go to standard error as one line
-/// each. Throws InputError where the scan is at fault, or no voxel lies above the isovalue or none below it.
+/// each. Throws InputError where the scan or the isovalue is at fault.
 LoadedBone load_bone(const ScanOptions& options);
 
 }  // namespace osteomill::app
