@@ -71,10 +71,12 @@ Vec3 random_unit(std::mt19937_64& random) {
   }
 }
 
-// The tool stands on the bone tip first, leaning up to 60 degrees, and is pushed in from any side of that.
+// The tool stands on the bone tip first, leaning up to 60 degrees, and is pushed in.
 TEST(LineProxyHand, NoPushFallsThrough) {
   const auto plane_mm = plane(Vec3::Zero(), Vec3(0.1, 0.2, 1));
-  const auto ball_mm = ball(Vec3::Zero(), 20.0);
+  // So large that no hand pulls the tip through its centre to the other side.
+  const Vec3 centre(0, 0, -32);
+  const auto ball_mm = ball(centre, 40.0);
   const Volume plane_bone = shape_volume(centred_cube(100, 0.5), plane_mm);
   const Volume ball_bone = shape_volume(centred_cube(100, 0.5), ball_mm);
   std::mt19937_64 random(11);
@@ -83,12 +85,13 @@ TEST(LineProxyHand, NoPushFallsThrough) {
   };
   for (int trial = 0; trial < 60; ++trial) {
     const bool on_ball = trial % 2 == 1;
-    const Vec3 normal = on_ball ? random_unit(random) : Vec3(0.1, 0.2, 1).normalized();
+    const Vec3 normal =
+        (on_ball ? Vec3(Vec3::UnitZ() + 0.2 * random_unit(random)) : Vec3(0.1, 0.2, 1)).normalized();
     Vec3 shaft = random_unit(random);
     if (shaft.dot(normal) < 0) shaft = -shaft;
     if (shaft.dot(normal) < 0.5) shaft = (shaft + normal).normalized();
-    const Vec3 direction = (-normal + 0.3 * random_unit(random)).normalized();
-    const Vec3 contact = on_ball ? Vec3(20.0 * normal) : Vec3::Zero();
+    const Vec3 direction = (-normal + 0.15 * random_unit(random)).normalized();
+    const Vec3 contact = on_ball ? Vec3(centre + 40.0 * normal) : Vec3::Zero();
     Hand hand;
     hand.X_WD = {contact - 3.0 * direction, smallest_rotation(Vec3::UnitZ(), shaft)};
     hand.target = hand.X_WD;
