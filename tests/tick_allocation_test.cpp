@@ -74,10 +74,10 @@ INSTANTIATE_TEST_SUITE_P(AllAlgorithms, TickAllocation,
                                            Case{AlgorithmId::surface_points, Mode::steady},
                                            Case{AlgorithmId::point_shell, Mode::paper},
                                            Case{AlgorithmId::point_shell, Mode::steady}),
-                         [](const auto& info) {
-                           std::string name(name_of(info.param.algorithm));
+                         [](const auto& test) {
+                           std::string name(name_of(test.param.algorithm));
                            name[name.find('-')] = '_';
-                           return name + "_" + std::string(name_of(info.param.mode));
+                           return name + "_" + std::string(name_of(test.param.mode));
                          });
 
 }  // namespace

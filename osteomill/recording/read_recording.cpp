@@ -31,7 +31,7 @@ struct OpenRecording {
 
 OpenRecording open_recording(const fs::path& path) {
   std::error_code error;
-  if (!fs::exists(path, error)) throw InputError(path.string(), "does not exist");
+  if (!fs::exists(path, error)) throw InputError(path.string(), "no such file");
   if (!fs::is_regular_file(path, error)) throw InputError(path.string(), "is not a file");
   const std::uintmax_t bytes = fs::file_size(path, error);
   if (error) throw InputError(path.string(), "cannot be read: " + error.message());

@@ -176,7 +176,7 @@ TEST_F(ChangedRecording, WithoutItsChecksumItIsStillRead) {
 
 TEST(ReadRecording, WhatIsNotAFileIsNamed) {
   const TestFolder folder;
-  expect_refused(folder / "none.h5", "does not exist");
+  expect_refused(folder / "none.h5", "no such file");
   expect_refused(folder.path(), "is not a file");
   write_bytes(folder / "text.h5", "time_s,x_mm\n0,0\n");
   expect_refused(folder / "text.h5", "not an HDF5 file");

@@ -13,7 +13,7 @@ untimed() { cut -d, -f1-4,9- "$1"; }
 
 "$osteomill" compare --seconds 2 --out a >a.out
 grep -q "a/report.html" a.out || fault "the report's path is not the output"
-for file in report.html summary.csv figures/force.svg figures/force.png; do
+for file in report.html summary.csv figures/fig7_force_steady.svg figures/fig7_force_steady.png; do
   [ -s "a/$file" ] || fault "no $file"
 done
 [ "$(wc -l <a/summary.csv)" -eq 7 ] || fault "summary.csv should have a head and six rows"
