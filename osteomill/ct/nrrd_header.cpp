@@ -222,6 +222,43 @@ StoredVoxels where_stored(const std::string& subject, const fs::path& path, cons
   return stored;
 }
 
+void check_data(const std::string& subject, StoredVoxels stored, const Fields& fields, VolumeHeader& header) {
+  const std::uint64_t value_bytes = bytes_of_type(subject, lower(fields["type"]));
+  GridGeometry grid;
+  grid.dims = header.dims;
+  stored.bytes = grid.voxel_count() * value_bytes;
+  const std::string encoding = lower(fields["encoding"]);
+  if (encoding == "ascii" || encoding == "txt" || encoding == "text") {
+    // One digit and one space each, at the least.
+    stored.bytes = 2 * grid.voxel_count() - 1;
+    check_stored(subject, stored);
+    return;
+  }
+  stored.compressed = encoding == "gzip" || encoding == "gz";
+  if (encoding != "raw" && !stored.compressed) {
+    throw InputError(subject, encoding.empty()
+                                  ? "does not say how its data are encoded"
+                                  : fmt::format("is encoded as \"{}\", which is not supported", encoding));
+  }
+  const std::string endian = lower(fields["endian"]);
+  if (value_bytes > 1 && endian != "little" && endian != "big") {
+    throw InputError(subject, "does not say whether its voxels are little or big endian");
+  }
+  const double byte_skip = skip_of(subject, fields, "byteskip", -1);
+  if (byte_skip < 0) {
+    // The voxels are what the data end with.
+    std::error_code error;
+    const std::uint64_t size = fs::file_size(stored.file, error);
+    if (!stored.compressed && !error && size >= stored.offset + stored.bytes)
+      stored.offset = size - stored.bytes;
+    check_stored(subject, stored);
+    return;
+  }
+  (stored.compressed ? stored.compressed_skip : stored.offset) += static_cast<std::uint64_t>(byte_skip);
+  const std::vector<std::string> more = check_stored(subject, stored);
+  header.warnings.insert(header.warnings.end(), more.begin(), more.end());
+}
+
 }  // namespace
 
 VolumeHeader check_nrrd(const fs::path& path) {
@@ -237,39 +274,8 @@ VolumeHeader check_nrrd(const fs::path& path) {
                      fmt::format("is not a grey volume: it has {} dimensions, not 3", dimension.front()));
   }
   header.dims = checked_dims(subject, numbers(subject, fields, "sizes"));
-  const std::uint64_t value_bytes = bytes_of_type(subject, lower(fields["type"]));
   check_placement(subject, fields, header);
-
-  StoredVoxels stored = where_stored(subject, path, fields);
-  GridGeometry grid;
-  grid.dims = header.dims;
-  stored.bytes = grid.voxel_count() * value_bytes;
-  const std::string encoding = lower(fields["encoding"]);
-  const double byte_skip = skip_of(subject, fields, "byteskip", -1);
-  const auto skipped = static_cast<std::uint64_t>(std::max(byte_skip, 0.0));
-  if (encoding == "raw") {
-    std::error_code error;
-    const std::uint64_t size = fs::file_size(stored.file, error);
-    if (byte_skip < 0 && !error && size >= stored.offset + stored.bytes) stored.offset = size - stored.bytes;
-    stored.offset += skipped;
-  } else if (encoding == "gzip" || encoding == "gz") {
-    stored.compressed = true;
-    stored.compressed_skip = skipped;
-  } else if (encoding == "ascii" || encoding == "txt" || encoding == "text") {
-    // One digit and one space each, at the least.
-    stored.bytes = 2 * grid.voxel_count() - 1;
-  } else {
-    throw InputError(subject, encoding.empty()
-                                  ? "does not say how its data are encoded"
-                                  : fmt::format("is encoded as \"{}\", which is not supported", encoding));
-  }
-  const bool binary = encoding == "raw" || stored.compressed;
-  const std::string endian = lower(fields["endian"]);
-  if (binary && value_bytes > 1 && endian != "little" && endian != "big") {
-    throw InputError(subject, "does not say whether its voxels are little or big endian");
-  }
-  const std::vector<std::string> more = check_stored(subject, stored);
-  if (binary && byte_skip >= 0) header.warnings.insert(header.warnings.end(), more.begin(), more.end());
+  check_data(subject, where_stored(subject, path, fields), fields, header);
   return header;
 }
 
