@@ -11,12 +11,11 @@ namespace osteomill {
 enum class ShaftProbeRule : unsigned char {
   /// The paper's v_max. It leaps from vertex to vertex and from one grain of the scan to the next.
   densest,
-  /// The middle of the shaft's way through the bone. The calmest; on an edge the lever is off by up to half
-  /// that way
-  /// and the force about half.
+  /// The middle of the shaft's way through the bone. On an edge the lever is off by up to half that way, and
+  /// the force is about half.
   middle,
-  /// The place that must be moved furthest across the shaft to come free, found from the middle. The right
-  /// lever.
+  /// The place that must be moved furthest across the shaft to come free, found from the middle: at an edge,
+  /// the edge.
   deepest_across,
 };
 
