@@ -7,22 +7,42 @@ namespace {
 using S = LineProxySettings;
 
 constexpr SettingField<S> kFields[] = {
-    {"vertices", [](S& s) -> int& { return s.vertices; }},
-    {"stiffness", [](S& s) -> double& { return s.stiffness_N_per_mm; }, "N/mm"},
-    {"translation-steps", [](S& s) -> int& { return s.translation_steps; }},
-    {"rotation-steps", [](S& s) -> int& { return s.rotation_steps; }},
-    {"normal-spread", [](S& s) -> double& { return s.normal.spread_voxels; }, "voxels"},
-    {"clamp-fraction", [](S& s) -> bool& { return s.clamp_fraction; }},
-    {"intersection-jump-limit", [](S& s) -> double& { return s.intersection_jump_limit_mm; }, "mm"},
-    {"refuse-behind-tip", [](S& s) -> bool& { return s.refuse_behind_tip; }},
-    {"intersection-slide-limit", [](S& s) -> double& { return s.intersection_slide_limit_mm; }, "mm"},
-    {"tip-proxy-limit", [](S& s) -> double& { return s.tip_proxy_limit_mm; }, "mm"},
-    {"contact-until-proxy-is-free", [](S& s) -> bool& { return s.contact_until_proxy_is_free; }},
-    {"shaft-pushes", [](S& s) -> bool& { return s.shaft_pushes; }},
-    {"shaft-fade", [](S& s) -> double& { return s.shaft_fade_radii; }, "shaft radii"},
-    {"shaft-force-slew", [](S& s) -> double& { return s.shaft_force_slew_N; }, "N"},
-    {"tool-glide", [](S& s) -> double& { return s.tool_glide_mm; }, "mm"},
-    {"tool-glide-turn", [](S& s) -> double& { return s.tool_glide_rad; }, "rad"},
+    setting_field<S>(
+        "vertices", [](S& s) -> auto& { return s.vertices; }),
+    setting_field<S>(
+        "stiffness", [](S& s) -> auto& { return s.stiffness_N_per_mm; }, "N/mm"),
+    setting_field<S>(
+        "translation-steps", [](S& s) -> auto& { return s.translation_steps; }),
+    setting_field<S>(
+        "rotation-steps", [](S& s) -> auto& { return s.rotation_steps; }),
+    setting_field<S>(
+        "normal-kernel", [](S& s) -> auto& { return s.normal.kernel; }),
+    setting_field<S>(
+        "normal-spread", [](S& s) -> auto& { return s.normal.spread_voxels; }, "voxels"),
+    setting_field<S>(
+        "clamp-fraction", [](S& s) -> auto& { return s.clamp_fraction; }),
+    setting_field<S>(
+        "intersection-jump-limit", [](S& s) -> auto& { return s.intersection_jump_limit_mm; }, "mm"),
+    setting_field<S>(
+        "refuse-behind-tip", [](S& s) -> auto& { return s.refuse_behind_tip; }),
+    setting_field<S>(
+        "intersection-slide-limit", [](S& s) -> auto& { return s.intersection_slide_limit_mm; }, "mm"),
+    setting_field<S>(
+        "tip-proxy-limit", [](S& s) -> auto& { return s.tip_proxy_limit_mm; }, "mm"),
+    setting_field<S>(
+        "contact-until-proxy-is-free", [](S& s) -> auto& { return s.contact_until_proxy_is_free; }),
+    setting_field<S>(
+        "shaft-probe", [](S& s) -> auto& { return s.shaft_probe; }),
+    setting_field<S>(
+        "shaft-pushes", [](S& s) -> auto& { return s.shaft_pushes; }),
+    setting_field<S>(
+        "shaft-fade", [](S& s) -> auto& { return s.shaft_fade_radii; }, "shaft radii"),
+    setting_field<S>(
+        "shaft-force-slew", [](S& s) -> auto& { return s.shaft_force_slew_N; }, "N"),
+    setting_field<S>(
+        "tool-glide", [](S& s) -> auto& { return s.tool_glide_mm; }, "mm"),
+    setting_field<S>(
+        "tool-glide-turn", [](S& s) -> auto& { return s.tool_glide_rad; }, "rad"),
 };
 
 }  // namespace

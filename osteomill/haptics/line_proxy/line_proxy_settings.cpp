@@ -44,6 +44,8 @@ void require_valid(const LineProxySettings& s) {
   require(s.translation_steps >= 1 && s.translation_steps <= 10000,
           "translation steps must be between 1 and 10000");
   require(s.rotation_steps >= 1 && s.rotation_steps <= 10000, "rotation steps must be between 1 and 10000");
+  require(s.shaft_probe <= ShaftProbeRule::deepest_across, "the shaft probe must be 0, 1 or 2");
+  require(s.normal.kernel <= GradientKernel::smoothed, "the normal's kernel must be 0 or 1");
   require(std::isfinite(s.normal.spread_voxels) && s.normal.spread_voxels >= 0.0,
           "the normal's spread must be a number of voxels, 0 or more");
   require_limit(s.intersection_jump_limit_mm, "the intersection point's jump limit must be above 0 mm");

@@ -54,6 +54,9 @@ void require_valid(const PointShellSettings& settings) {
   if (settings.shell.refreshed_points_per_tick < 0) {
     throw std::invalid_argument("point-shell: the points refreshed a tick must not be negative");
   }
+  if (settings.shell.gradient > GradientKernel::smoothed) {
+    throw std::invalid_argument("point-shell: the gradient's kernel must be 0 or 1");
+  }
   require_positive(settings.translational_stiffness_N_per_mm, "the translational stiffness");
   require_positive(settings.torsional_stiffness_Nmm_per_rad, "the torsional stiffness");
   require_not_negative(settings.translational_damping_Ns_per_mm, "the translational damping");

@@ -7,10 +7,14 @@ namespace {
 using S = SurfacePointsSettings;
 
 constexpr SettingField<S> kFields[] = {
-    {"stiffness", [](S& s) -> double& { return s.stiffness_N_per_mm; }, "N/mm"},
-    {"slices", [](S& s) -> int& { return s.slices; }},
-    {"march-to-surface", [](S& s) -> bool& { return s.march_to_surface; }},
-    {"shaft-force", [](S& s) -> bool& { return s.shaft_force; }},
+    setting_field<S>(
+        "stiffness", [](S& s) -> auto& { return s.stiffness_N_per_mm; }, "N/mm"),
+    setting_field<S>(
+        "slices", [](S& s) -> auto& { return s.slices; }),
+    setting_field<S>(
+        "march-to-surface", [](S& s) -> auto& { return s.march_to_surface; }),
+    setting_field<S>(
+        "shaft-force", [](S& s) -> auto& { return s.shaft_force; }),
 };
 
 }  // namespace
