@@ -8,6 +8,7 @@
 #include <toml++/toml.h>
 
 #include "osteomill/files/input_error.h"
+#include "osteomill/haptics/algorithm_id.h"
 
 namespace osteomill::app {
 
@@ -60,6 +61,33 @@ void give(CLI::Option& option, const toml::node& value, const std::string& file,
   }
 }
 
+void set_results(CLI::Option& option, const std::vector<std::string>& texts) {
+  option.clear();
+  for (const std::string& text : texts) option.add_result(text);
+  option.run_callback();
+}
+
+// A table named after an algorithm holds that algorithm's own settings; the command line's come last and so
+// win.
+void give_named_settings(CLI::Option& option, const std::string& algorithm, const toml::table& table,
+                         const std::string& file) {
+  const std::vector<std::string> said_before = option.results();
+  std::vector<std::string> texts;
+  for (auto&& [key, value] : table) {
+    const std::string name(key.str());
+    for (const std::string& text : option_values(value, file, name)) {
+      texts.push_back(fmt::format("{}.{}={}", algorithm, name, text));
+    }
+    try {
+      set_results(option, texts);
+    } catch (const CLI::Error& error) {
+      throw InputError(file, fmt::format("line {}: {}", value.source().begin.line, error.what()));
+    }
+  }
+  texts.insert(texts.end(), said_before.begin(), said_before.end());
+  set_results(option, texts);
+}
+
 }  // namespace
 
 void add_config_option(CLI::App& command) {
@@ -72,6 +100,11 @@ void apply_config_file(CLI::App& command) {
   const auto file = config->as<std::string>();
   for (auto&& [key, value] : parse(file)) {
     const std::string name(key.str());
+    CLI::Option* named_settings = command.get_option_no_throw("--set");
+    if (value.is_table() && named_settings != nullptr && algorithm_named(name)) {
+      give_named_settings(*named_settings, name, *value.as_table(), file);
+      continue;
+    }
     CLI::Option* option = command.get_option_no_throw("--" + name);
     if (option == nullptr || name == "config" || name == "help") {
       throw InputError(file, fmt::format("line {}: {} has no option {}", value.source().begin.line,

@@ -1,11 +1,16 @@
 #include "app/milling_options.h"
 
+#include <cmath>
 #include <functional>
+#include <stdexcept>
 
 #include "app/config_file.h"
 #include "app/positive_number.h"
+#include <CLI/Error.hpp>
 #include <CLI/Option.hpp>
 #include <CLI/Validators.hpp>
+
+#include "osteomill/haptics/make_algorithm.h"
 
 namespace osteomill::app {
 
@@ -18,6 +23,44 @@ void add_mode(CLI::App& command, Mode& mode) {
           "'paper' as published, 'steady' with every improvement")
       ->check(CLI::IsMember({"paper", "steady"}))
       ->default_str(std::string(name_of(mode)));
+}
+
+// "point-shell.look-ahead=false"
+HapticSettings::Named named_setting(const std::string& text) {
+  const std::size_t dot = text.find('.');
+  const std::size_t equals = text.find('=');
+  if (dot == std::string::npos || equals == std::string::npos || equals < dot) {
+    throw CLI::ValidationError("--set", text + " is not of the form ALGORITHM.SETTING=VALUE");
+  }
+  const auto algorithm = algorithm_named(text.substr(0, dot));
+  if (!algorithm) throw CLI::ValidationError("--set", text.substr(0, dot) + " is no algorithm");
+  HapticSettings::Named named{*algorithm, text.substr(dot + 1, equals - dot - 1), 0};
+  const std::string value = text.substr(equals + 1);
+  if (value == "true" || value == "false") {
+    named.value = value == "true" ? 1 : 0;
+  } else if (!CLI::detail::lexical_cast(value, named.value) || std::isnan(named.value)) {
+    throw CLI::ValidationError("--set", value + " is not a number, true or false");
+  }
+  HapticSettings alone;
+  alone.named = {named};
+  try {
+    make_algorithm(*algorithm, alone);
+  } catch (const std::invalid_argument& error) {
+    throw CLI::ValidationError("--set", error.what());
+  }
+  return named;
+}
+
+void add_named_settings(CLI::App& command, HapticSettings& haptics) {
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--set",
+          [&haptics](const std::vector<std::string>& texts) {
+            haptics.named.clear();
+            for (const std::string& text : texts) haptics.named.push_back(named_setting(text));
+          },
+          "ALGORITHM.SETTING=VALUE, any setting of docs/algorithms.md; may repeat")
+      ->type_name("SETTING");
 }
 
 }  // namespace
@@ -35,6 +78,7 @@ void add_milling_options(CLI::App& command, MillingOptions& options) {
   add_positive(command, "--slices", options.haptics.slices, "Slices of algorithm 2");
   add_positive(command, "--shell-scale", options.haptics.shell_scale,
                "Coarseness of algorithm 3's shell; 1 is every surface voxel");
+  add_named_settings(command, options.haptics);
   add_positive(command, "--removal-rate", options.milling.removal_rate_mm3_per_Ns, "kappa, mm^3/(N s)");
   add_positive(command, "--force-limit", options.limits.force_N, "N, the most the device is asked for");
   add_positive(command, "--torque-limit", options.limits.torque_Nmm, "N mm");
