@@ -79,11 +79,22 @@ void add_milling_options(CLI::App& command, MillingOptions& options) {
   add_positive(command, "--shell-scale", options.haptics.shell_scale,
                "Coarseness of algorithm 3's shell; 1 is every surface voxel");
   add_named_settings(command, options.haptics);
-  add_positive(command, "--removal-rate", options.milling.removal_rate_mm3_per_Ns, "kappa, mm^3/(N s)");
+  add_positive(command, "--spindle-speed", options.cutting.spindle_speed_rpm, "rpm");
+  add_positive(command, "--cutting-energy", options.cutting.specific_energy_Nmm_per_mm3,
+               "N mm/mm^3, the work that removes bone of the reference density");
+  add_positive(command, "--removal-rate", options.removal_rate_mm3_per_Ns,
+               "kappa, mm^3/(N s); else from burr, spindle speed and cutting energy");
   add_positive(command, "--force-limit", options.limits.force_N, "N, the most the device is asked for");
   add_positive(command, "--torque-limit", options.limits.torque_Nmm, "N mm");
   command.add_option("--seed", options.seed, "Of the hand's tremor")->capture_default_str();
   add_config_option(command);
+}
+
+MillingSettings milling_settings(const MillingOptions& options) {
+  MillingSettings milling;
+  milling.removal_rate_mm3_per_Ns = options.removal_rate_mm3_per_Ns.value_or(
+      removal_rate_mm3_per_Ns(options.cutting, options.tool.burr_radius_mm));
+  return milling;
 }
 
 void add_algorithm_option(CLI::App& command, std::vector<AlgorithmId>& algorithms) {

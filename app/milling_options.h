@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "osteomill/geometry/wrench.h"
 #include "osteomill/haptics/haptic_settings.h"
 #include "osteomill/milling/burr_mill.h"
+#include "osteomill/milling/cutting_power.h"
 #include "osteomill/tool/milling_tool.h"
 
 namespace osteomill::app {
@@ -17,13 +19,17 @@ namespace osteomill::app {
 struct MillingOptions {
   MillingTool tool;
   HapticSettings haptics;
-  MillingSettings milling;
+  CuttingSettings cutting;
+  /// Not given: follows from `cutting` and the burr.
+  std::optional<double> removal_rate_mm3_per_Ns;
   WrenchLimits limits;
   std::uint64_t seed = 1;
 };
 
 /// Adds the tool, the algorithms' settings, milling, limits, --seed and --config to a command.
 void add_milling_options(CLI::App& command, MillingOptions& options);
+
+MillingSettings milling_settings(const MillingOptions& options);
 
 /// Adds --algorithm, which may repeat; none given means all.
 void add_algorithm_option(CLI::App& command, std::vector<AlgorithmId>& algorithms);

@@ -34,7 +34,7 @@ void run_replay(const ReplayOptions& options) {
   const BoneDensities densities = estimate_densities(bone.volume);
   MillingSession session(std::move(bone.volume), options.milling.tool,
                          make_algorithm(options.algorithm.front(), options.milling.haptics), densities,
-                         options.milling.milling, options.milling.limits);
+                         milling_settings(options.milling), options.milling.limits);
   std::vector<TickRecord> log;
   log.reserve(trajectory.size());
   replay(session, trajectory, [&](const TickRecord& record) {

@@ -53,7 +53,7 @@ TrialSettings trial_settings(const TrialOptions& options) {
   TrialSettings trial;
   trial.tool = options.milling.tool;
   trial.haptics = options.milling.haptics;
-  trial.milling = options.milling.milling;
+  trial.milling = milling_settings(options.milling);
   trial.limits = options.milling.limits;
   trial.hand_and_device = options.hand;
   trial.hand_and_device.handle.limits = options.milling.limits;
