@@ -146,8 +146,7 @@ TEST(PointShellAlgorithm, TheShaftOnAnEdgePushesAndTurnsTheHand) {
     algorithm.prepare({&volume, kTool});
     constexpr double kLever = 12.0;
     HapticStep step;
-    // The shaft lies along +x, the burr beyond the bone's side at x = 12 with its shaft towards -x, across
-    // the edge.
+    // The burr hangs free at x = 12; from there the shaft runs back over the edge, and rises.
     const Quat along = smallest_rotation(Vec3::UnitZ(), -Vec3::UnitX());
     const Quat tilted = quaternion_from_rotation_vector({0, 0.25, 0}) * along;
     const Vec3 shaft = tilted * Vec3::UnitZ();
