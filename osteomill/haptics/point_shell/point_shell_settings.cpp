@@ -36,14 +36,14 @@ PointShellSettings PointShellSettings::defaults(Mode mode) {
                     .follow_partial_changes = true,
                     .refreshed_points_per_tick = 384,
                     .gradient = GradientKernel::central};
-  settings.greatest_depth_mm = 0.3;
+  settings.greatest_depth_mm = 0.22;
   settings.patch_penalty = true;
   settings.closed_form_distance = true;
   settings.brick_kernel = true;
   settings.greatest_move_mm = 0.5;
   settings.greatest_turn_rad = 0.05;
   settings.look_ahead = true;
-  settings.solver_iterations = 3;
+  settings.solver_iterations = 2;
   return settings;
 }
 

@@ -75,8 +75,8 @@ struct PointShellSettings {
   /// Newton steps a tick, at most: 1 is the paper's single solve. Further ones are taken only where the last
   /// one moved the tool by more than the tolerances.
   int solver_iterations = 1;
-  double solver_tolerance_mm = 0.02;
-  double solver_tolerance_rad = 0.002;
+  double solver_tolerance_mm = 0.005;
+  double solver_tolerance_rad = 0.0005;
 
   static PointShellSettings defaults(Mode mode);
 };

@@ -1,17 +1,10 @@
 #include "osteomill/haptics/point_shell/virtual_coupling.h"
 
+#include <algorithm>
+
 #include <Eigen/Cholesky>
 
 namespace osteomill {
-
-namespace {
-
-Vec3 shortened(const Vec3& vector, double greatest) {
-  const double length = vector.norm();
-  return greatest > 0 && length > greatest ? Vec3(greatest / length * vector) : vector;
-}
-
-}  // namespace
 
 ToolMove move_between(const Pose& from, const Pose& to) {
   return {to.position_mm - from.position_mm,
@@ -24,7 +17,11 @@ Pose moved(const Pose& X_WT, const ToolMove& move) {
 }
 
 ToolMove limited(const ToolMove& move, double greatest_mm, double greatest_rad) {
-  return {shortened(move.translation_mm, greatest_mm), shortened(move.rotation_rad, greatest_rad)};
+  const double length_mm = move.translation_mm.norm(), angle_rad = move.rotation_rad.norm();
+  double factor = 1;
+  if (greatest_mm > 0 && length_mm > greatest_mm) factor = greatest_mm / length_mm;
+  if (greatest_rad > 0 && angle_rad > greatest_rad) factor = std::min(factor, greatest_rad / angle_rad);
+  return {factor * move.translation_mm, factor * move.rotation_rad};
 }
 
 Wrench wrench_on_hand(const VirtualCoupling& coupling, const Pose& X_WT, const Pose& X_WD) {

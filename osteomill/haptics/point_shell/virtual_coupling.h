@@ -22,7 +22,8 @@ struct ToolMove {
 ToolMove move_between(const Pose& from, const Pose& to);
 /// The pose after the move.
 Pose moved(const Pose& X_WT, const ToolMove& move);
-/// Each part shortened to its limit without a turn; a limit of 0 is none.
+/// The move cut short so that neither part exceeds its limit; both by the same factor, so that a tool that
+/// slides along the bone while it turns stays on it. A limit of 0 is none.
 ToolMove limited(const ToolMove& move, double greatest_mm, double greatest_rad);
 
 /// The coupling's wrench as it acts on the hand that holds the device at `X_WD` (on the tool it is the
