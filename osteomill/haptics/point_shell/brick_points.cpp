@@ -101,7 +101,7 @@ void BrickPoints::copy(std::size_t brick_index, std::span<ShellPoint> points) co
 void BrickPoints::move(std::size_t brick_index, std::uint32_t slot, const ShellPoint& point) {
   Brick& brick = bricks_[brick_index];
   std::uint32_t c = brick.first_chunk;
-  for (std::uint32_t n = slot / PointChunk::kSlots; n > 0; --n) c = next_[c];
+  for (std::size_t n = slot / PointChunk::kSlots; n > 0; --n) c = next_[c];
   chunks_[c].set(slot % PointChunk::kSlots, point);
   brick.bound.radius_mm =
       std::max(brick.bound.radius_mm, kBoundSlack * distance_to(point, brick.bound.centre_mm));
