@@ -1,12 +1,25 @@
 #include "osteomill/haptics/surface_points/surface_points.h"
 
+#include <algorithm>
+#include <cmath>
+#include <optional>
 #include <stdexcept>
 
+#include "osteomill/haptics/surface_points/bone_nearby.h"
+#include "osteomill/haptics/surface_points/ray_crossing.h"
 #include "osteomill/haptics/surface_points/vertex_spring.h"
 #include "osteomill/tool/sample_points.h"
 #include "osteomill/volume/sampling.h"
 
 namespace osteomill {
+
+namespace {
+
+constexpr double kRateFilter_s = 2e-3;
+// A held centre stays this far outside bone, so that no spring's walk begins inside by rounding.
+constexpr double kClearOfSurface_mm = 0.01;
+
+}  // namespace
 
 SurfacePoints::SurfacePoints(const SurfacePointsSettings& settings) : settings_(settings) {
   require_valid(settings_);
@@ -16,63 +29,144 @@ void SurfacePoints::prepare(const Scene& scene) {
   if (scene.volume == nullptr) throw std::invalid_argument("surface-points: a scene without a volume");
   require_valid(scene.tool);
   volume_ = scene.volume;
-  const auto on_sphere = sphere_vertices(scene.tool);
+  tool_ = scene.tool;
+  const auto on_sphere = sphere_vertices(tool_);
   sphere_ = Fan{};
-  sphere_.vertices_T.assign(on_sphere.begin(), on_sphere.end());
-  slices_.clear();
-  for (const ShaftSlice& slice : slice_vertices(scene.tool, settings_.slices)) {
-    slices_.push_back({slice.centre_T, {slice.vertices_T.begin(), slice.vertices_T.end()}, Vec3::Zero()});
+  sphere_.arms_T.assign(on_sphere.begin(), on_sphere.end());
+  rings_.clear();
+  const int rings = settings_.slices * settings_.rings_per_slice;
+  for (const ShaftSlice& ring : slice_vertices(tool_, rings)) {
+    Fan fan;
+    fan.centre_T = ring.centre_T;
+    for (const Vec3& vertex : ring.vertices_T) fan.arms_T.emplace_back(vertex - ring.centre_T);
+    rings_.push_back(std::move(fan));
   }
+  const double bite_mm = std::min(settings_.bite_voxels * volume_->geometry().spacing_mm.minCoeff(),
+                                  SurfacePointsSettings::kGreatestBite_mm);
+  held_tool_.prepare(*volume_, tool_, rings, std::min(bite_mm, 0.5 * tool_.burr_radius_mm));
 }
 
 void SurfacePoints::reset() {
-  sphere_.held_force_W_N.setZero();
-  for (Fan& slice : slices_) slice.held_force_W_N.setZero();
+  sphere_.force_W_N.setZero();
+  for (Fan& ring : rings_) ring.force_W_N.setZero();
+  held_tool_.reset();
+  last_overlap_W_mm_.setZero();
+  overlap_rate_W_mm_s_.setZero();
 }
 
 int SurfacePoints::sample_point_count() const {
-  std::size_t count = sphere_.vertices_T.size();
-  for (const Fan& slice : slices_) count += slice.vertices_T.size();
+  std::size_t count = sphere_.arms_T.size();
+  for (const Fan& ring : rings_) count += ring.arms_T.size();
   return static_cast<int>(count);
 }
 
-// Brings a fan's force up to date and says how many of its vertices collide.
-int SurfacePoints::update_force(Fan& fan, const Pose& X_WD) const {
-  const Vec3 centre_W = X_WD * fan.centre_T;
-  const bool centre_in_bone = density_at(volume_->grid(), centre_W) > volume_->isovalue();
-  int contacts = 0;
-  Vec3 reach_mm = Vec3::Zero();
-  for (const Vec3& vertex_T : fan.vertices_T) {
-    const Vec3 vertex_W = X_WD * vertex_T;
-    if (!(density_at(volume_->grid(), vertex_W) > volume_->isovalue())) continue;
-    ++contacts;
-    if (centre_in_bone) continue;
-    reach_mm += settings_.march_to_surface ? marched_spring(*volume_, vertex_W, centre_W)
-                                           : interpolated_spring(*volume_, vertex_W, centre_W);
-  }
-  // (17), (19): a centre in bone keeps the force of the step before.
-  if (centre_in_bone) return contacts;
-  // (14), (16), (18)
-  fan.held_force_W_N = settings_.stiffness_N_per_mm / static_cast<double>(fan.vertices_T.size()) * reach_mm;
-  return contacts;
+bool SurfacePoints::in_bone(const Vec3& point_W) const {
+  return density_at(volume_->grid(), point_W) > volume_->isovalue();
 }
 
-HapticStep SurfacePoints::step(const Pose& X_WD, double /*dt_s*/) {
+// The sum of the springs of a fan whose centre lies at `centre_W`, free of bone, with the tool turned as it
+// is.
+Vec3 SurfacePoints::sum_of_reaches(Fan& fan, const Quat& orientation, const Vec3& centre_W) const {
+  const Vec3 axis_W = &fan == &sphere_ ? Vec3(Vec3::Zero()) : Vec3(orientation * Vec3::UnitZ());
+  if (!bone_near_disc(*volume_, centre_W, axis_W, fan.arms_T.front().norm())) return Vec3::Zero();
+  const bool through_walls = settings_.march_to_surface && settings_.thin_walls_hold && &fan == &sphere_;
+  Vec3 reach_mm = Vec3::Zero();
+  for (const Vec3& arm_T : fan.arms_T) {
+    const Vec3 vertex_W = centre_W + orientation * arm_T;
+    if (!through_walls && !in_bone(vertex_W)) continue;
+    const Vec3 reach = settings_.march_to_surface ? marched_spring(*volume_, vertex_W, centre_W)
+                                                  : interpolated_spring(*volume_, vertex_W, centre_W);
+    if (reach.isZero(0)) continue;
+    ++fan.contacts;
+    reach_mm += reach;
+  }
+  return reach_mm;
+}
+
+// As far as a centre gets on the straight way from the held tool's to the device's; nothing where not even
+// the held tool's is free.
+std::optional<Vec3> SurfacePoints::held_centre(const Fan& fan, const Pose& X_WD, const Pose& X_WH) const {
+  const Vec3 device_W = X_WD * fan.centre_T;
+  const Vec3 held_W = X_WH * fan.centre_T;
+  const Vec3 way = device_W - held_W;
+  // The held tool keeps a centre a radius away from bone: a shorter way needs no search.
+  if (way.norm() < 0.8 * fan.arms_T.front().norm() && !in_bone(device_W)) return device_W;
+  if (in_bone(held_W)) return std::nullopt;
+  const std::optional<double> share = share_to_bone(*volume_, held_W, device_W);
+  if (!share) return device_W;
+  return Vec3(held_W + std::max(0.0, *share - kClearOfSurface_mm / way.norm()) * way);
+}
+
+void SurfacePoints::update(Fan& fan, const Pose& X_WD, const Pose& X_WH) const {
+  fan.contacts = 0;
+  const Vec3 device_W = X_WD * fan.centre_T;
+  std::optional<Vec3> centre_W = device_W;
+  fan.held_back_W_mm.setZero();
+  if (settings_.hold_tool) {
+    centre_W = held_centre(fan, X_WD, X_WH);
+    if (centre_W) fan.held_back_W_mm = *centre_W - device_W;
+  } else if (in_bone(device_W)) {
+    centre_W.reset();
+  }
+  const Vec3 reach_mm = sum_of_reaches(fan, X_WD.orientation, centre_W.value_or(device_W));
+  // (14), (16), (18)
+  if (centre_W) {
+    fan.force_W_N = settings_.stiffness_N_per_mm / static_cast<double>(fan.arms_T.size()) * reach_mm;
+  } else if (settings_.hold_tool) {
+    fan.force_W_N.setZero();
+  }
+  // Else (17), (19): a centre in bone keeps the force of the step before.
+}
+
+// Summed over the whole sphere, (14) gives k d^2 / (4 r) on a plane at depth d: its slope k d / (2 r) is
+// sqrt(k F / r) at force F.
+Vec3 SurfacePoints::soften(const Vec3& force_N) const {
+  const double k = settings_.stiffness_N_per_mm;
+  const double r = tool_.burr_radius_mm;
+  const double slope = settings_.greatest_stiffness_N_per_mm;
+  const double force = force_N.norm();
+  if (force * k <= slope * slope * r) return force_N;
+  const double force_at_slope = slope * slope * r / k;
+  const double depth_beyond = 2 * std::sqrt(r / k) * (std::sqrt(force) - std::sqrt(force_at_slope));
+  return (force_at_slope + slope * depth_beyond) / force * force_N;
+}
+
+Vec3 SurfacePoints::damped(const Vec3& force_N, const Vec3& overlap_W_mm, double dt_s) {
+  const Vec3 rate = dt_s > 0 ? Vec3((overlap_W_mm - last_overlap_W_mm_) / dt_s) : Vec3(Vec3::Zero());
+  last_overlap_W_mm_ = overlap_W_mm;
+  overlap_rate_W_mm_s_ += dt_s / (dt_s + kRateFilter_s) * (rate - overlap_rate_W_mm_s_);
+  const double force = force_N.norm();
+  if (force == 0) return force_N;
+  const double sinking_mm_s = -overlap_rate_W_mm_s_.dot(force_N) / force;
+  return std::clamp(1 + settings_.contact_damping_s_per_mm * sinking_mm_s, 0.0, 2.0) * force_N;
+}
+
+HapticStep SurfacePoints::step(const Pose& X_WD, double dt_s) {
   HapticStep result;
-  result.X_WT = X_WD;
-  result.contacts = update_force(sphere_, X_WD);
-  result.burr_force_N = sphere_.held_force_W_N.norm();
+  const Pose X_WH = settings_.hold_tool ? held_tool_.follow(X_WD) : X_WD;
+  update(sphere_, X_WD, X_WH);
+  result.contacts += sphere_.contacts;
   Vec3 shaft_force_N = Vec3::Zero();
   Vec3 torque_Nmm = Vec3::Zero();
-  for (Fan& slice : slices_) {
-    result.contacts += update_force(slice, X_WD);
-    shaft_force_N += slice.held_force_W_N;
-    torque_Nmm += (X_WD.orientation * slice.centre_T).cross(slice.held_force_W_N);
+  for (std::size_t n = 0; n < rings_.size(); ++n) {
+    Fan& ring = rings_[n];
+    update(ring, X_WD, X_WH);
+    result.contacts += ring.contacts;
+    const Vec3 force_N = ring.force_W_N + 0.5 * settings_.stiffness_N_per_mm * ring.held_back_W_mm;
+    shaft_force_N += force_N;
+    torque_Nmm += (X_WD.orientation * ring.centre_T).cross(force_N);
   }
   // (20), (21)
-  const double share = slices_.empty() ? 0.0 : 1.0 / static_cast<double>(slices_.size());
+  const double share = rings_.empty() ? 0.0 : 1.0 / static_cast<double>(rings_.size());
   result.wrench.torque_Nmm = share * torque_Nmm;
-  result.wrench.force_N = sphere_.held_force_W_N;
+  const double beyond = std::min(settings_.greatest_stiffness_N_per_mm, 0.5 * settings_.stiffness_N_per_mm);
+  result.wrench.force_N = soften(sphere_.force_W_N) + beyond * sphere_.held_back_W_mm;
+  result.X_WT = X_WH;
+  if (settings_.hold_tool) {
+    const Vec3 overlap_W_mm = X_WD.position_mm - X_WH.position_mm;
+    result.wrench.force_N = damped(result.wrench.force_N, overlap_W_mm, dt_s);
+  }
+  result.burr_force_N = result.wrench.force_N.norm();
   if (settings_.shaft_force) result.wrench.force_N += share * shaft_force_N;
   return result;
 }

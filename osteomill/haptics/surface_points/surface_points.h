@@ -1,20 +1,21 @@
 #pragma once
 
-#include <span>
+#include <optional>
 #include <vector>
 
 #include "osteomill/haptics/haptic_algorithm.h"
+#include "osteomill/haptics/surface_points/held_tool.h"
 #include "osteomill/haptics/surface_points/surface_points_settings.h"
 
 namespace osteomill {
 
 /// Algorithm 2 of Eriksson 2012: vertices on the tool's surface, each that is in bone a spring back to the
-/// surface; the spheres' and slices' forces and torques go straight to the hand (direct rendering, equations
-/// 14 to 21).
+/// surface; the springs' forces and torques go straight to the hand (direct rendering, equations 14 to 21).
 ///
-/// As the paper has it: a sphere or slice whose centre is in bone sends the force of the step before, so the
+/// As the paper has it, a sphere or slice whose centre is in bone sends the force of the step before, so the
 /// force has an upper limit beyond which the tool falls through, and nothing is held where the first contact
-/// is already that deep; a contact of the shaft alone sends a torque and no force.
+/// is already that deep; a contact of the shaft alone sends a torque and no force. `SurfacePointsSettings`
+/// says what `steady` does instead.
 class SurfacePoints final : public HapticAlgorithm {
  public:
   /// Throws std::invalid_argument where a setting is out of range.
@@ -27,19 +28,33 @@ class SurfacePoints final : public HapticAlgorithm {
   int sample_point_count() const override;
 
  private:
-  // The vertices that share a centre: the sphere, or a slice.
+  // The vertices that share a centre: the sphere, or a circle of the shaft.
   struct Fan {
     Vec3 centre_T = Vec3::Zero();
-    std::vector<Vec3> vertices_T;
-    // The force of the step before, for when the centre is in bone: (17), (19).
-    Vec3 held_force_W_N = Vec3::Zero();
+    // From the centre to each vertex.
+    std::vector<Vec3> arms_T;
+    // Of this step or, where the centre is in bone, of the last step when it was not: (17), (19).
+    Vec3 force_W_N = Vec3::Zero();
+    // From the device's centre back to where bone stopped the held tool's way to it.
+    Vec3 held_back_W_mm = Vec3::Zero();
+    int contacts = 0;
   };
-  int update_force(Fan& fan, const Pose& X_WD) const;
+  void update(Fan& fan, const Pose& X_WD, const Pose& X_WH) const;
+  std::optional<Vec3> held_centre(const Fan& fan, const Pose& X_WD, const Pose& X_WH) const;
+  Vec3 sum_of_reaches(Fan& fan, const Quat& orientation, const Vec3& centre_W) const;
+  bool in_bone(const Vec3& point_W) const;
+  Vec3 soften(const Vec3& force_N) const;
+  Vec3 damped(const Vec3& force_N, const Vec3& overlap_W_mm, double dt_s);
 
   SurfacePointsSettings settings_;
   const Volume* volume_ = nullptr;
+  MillingTool tool_;
+  HeldTool held_tool_;
+  // From the held tool's burr to the device's, and its filtered rate.
+  Vec3 last_overlap_W_mm_ = Vec3::Zero();
+  Vec3 overlap_rate_W_mm_s_ = Vec3::Zero();
   Fan sphere_;
-  std::vector<Fan> slices_;
+  std::vector<Fan> rings_;
 };
 
 }  // namespace osteomill

@@ -1,6 +1,6 @@
 #include "osteomill/haptics/surface_points/vertex_spring.h"
 
-#include "osteomill/volume/isosurface.h"
+#include "osteomill/haptics/surface_points/ray_crossing.h"
 #include "osteomill/volume/sampling.h"
 
 namespace osteomill {
@@ -17,8 +17,9 @@ Vec3 interpolated_spring(const Volume& volume, const Vec3& vertex_W, const Vec3&
 }
 
 Vec3 marched_spring(const Volume& volume, const Vec3& vertex_W, const Vec3& free_W) {
-  const std::optional<Vec3> crossing = first_crossing(volume, free_W, vertex_W);
-  return crossing ? Vec3(*crossing - vertex_W) : Vec3(Vec3::Zero());
+  if (density_at(volume.grid(), free_W) > volume.isovalue()) return free_W - vertex_W;
+  const std::optional<double> share = share_to_bone(volume, free_W, vertex_W);
+  return share ? Vec3((1 - *share) * (free_W - vertex_W)) : Vec3(Vec3::Zero());
 }
 
 }  // namespace osteomill

@@ -1,0 +1,40 @@
+#include "osteomill/haptics/surface_points/ray_crossing.h"
+
+#include <random>
+
+#include "tests/shapes.h"
+#include <gtest/gtest.h>
+
+#include "osteomill/volume/isosurface.h"
+
+namespace osteomill {
+namespace {
+
+using testing_support::ball;
+using testing_support::centred_cube;
+using testing_support::shape_volume;
+
+TEST(RayCrossing, AgreesWithTheSlowSearch) {
+  const Volume volume = shape_volume(centred_cube(48, 0.25), ball({0.3, -0.2, 0.1}, 3.0));
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  int met = 0;
+  for (int n = 0; n < 500; ++n) {
+    const Vec3 from = 5.0 * Vec3(unit(random), unit(random), unit(random));
+    const Vec3 to = 5.0 * Vec3(unit(random), unit(random), unit(random));
+    if (density_at(volume.grid(), from) > volume.isovalue()) {
+      EXPECT_FALSE(share_to_bone(volume, from, to));
+      continue;
+    }
+    const auto slow = first_crossing(volume, from, to);
+    const auto share = share_to_bone(volume, from, to);
+    ASSERT_EQ(slow.has_value(), share.has_value());
+    if (!share) continue;
+    ++met;
+    EXPECT_LT((from + *share * (to - from) - *slow).norm(), 1e-3);
+  }
+  EXPECT_GT(met, 50);
+}
+
+}  // namespace
+}  // namespace osteomill
