@@ -57,7 +57,7 @@ HapticStep MillingSession::step_safely(const Pose& X_WD, double dt_s, SafeWrench
     safe = {Wrench{}, WrenchFault::pose_not_finite};
     return nothing;
   }
-  const HapticStep step = algorithm_->step(X_WD, dt_s);
+  HapticStep step = algorithm_->step(X_WD, dt_s);
   safe = make_safe(step.wrench, limits_);
   if (safe.fault == WrenchFault::not_finite || !is_finite(step.X_WT) || !std::isfinite(step.burr_force_N)) {
     // Whatever led there is still in the algorithm's memory of contacts.
