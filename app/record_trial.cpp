@@ -4,6 +4,7 @@
 
 #include "app/bone_picture.h"
 #include "app/describe_run.h"
+#include "app/fault_count.h"
 #include "app/progress.h"
 #include <fmt/core.h>
 
@@ -37,9 +38,11 @@ std::vector<fs::path> record_trial(const TrialPlan& plan, AlgorithmId algorithm,
   Recorder& milling = *recorders[0];
   Recorder& holding = *recorders[1];
   const ScriptSettings& script = plan.settings.hand_and_device.script;
+  FaultCount faults;
   for (int n = 0; !trial.finished(); ++n) {
     const MillingTrial::Tick tick = trial.tick();
     (tick.milling_phase ? milling : holding).push_waiting(tick.record);
+    faults.add(tick.record);
     if (n % kTicksBetweenProgress == 0) {
       show_progress(name_of(algorithm), tick.record.time_s / (script.milling_s + script.holding_s));
     }
@@ -48,6 +51,7 @@ std::vector<fs::path> record_trial(const TrialPlan& plan, AlgorithmId algorithm,
   milling.close();
   holding.close();
   end_progress();
+  faults.report(name_of(algorithm));
   return paths;
 }
 

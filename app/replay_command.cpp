@@ -4,6 +4,7 @@
 
 #include "app/commands.h"
 #include "app/config_file.h"
+#include "app/fault_count.h"
 #include "app/milling_options.h"
 #include "app/progress.h"
 #include "app/scan_options.h"
@@ -35,15 +36,18 @@ void run_replay(const ReplayOptions& options) {
   MillingSession session(std::move(bone.volume), options.milling.tool,
                          make_algorithm(options.algorithm.front(), options.milling.haptics), densities,
                          milling_settings(options.milling), options.milling.limits);
+  FaultCount faults;
   std::vector<TickRecord> log;
   log.reserve(trajectory.size());
   replay(session, trajectory, [&](const TickRecord& record) {
     log.push_back(record);
+    faults.add(record);
     if (log.size() % 1000 == 0) {
       show_progress("replay", static_cast<double>(log.size()) / static_cast<double>(trajectory.size()));
     }
   });
   end_progress();
+  faults.report(options.trajectory);
   write_csv(options.out, log);
   fmt::print("{}\n", options.out);
 }

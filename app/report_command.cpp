@@ -1,3 +1,4 @@
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -6,7 +7,9 @@
 #include "app/progress.h"
 #include <fmt/core.h>
 
+#include "osteomill/files/atomic_file.h"
 #include "osteomill/recording/read_recording.h"
+#include "osteomill/recording/write_csv.h"
 #include "osteomill/report/write_report.h"
 
 namespace osteomill::app {
@@ -16,6 +19,7 @@ namespace {
 struct ReportOptions {
   std::vector<std::string> recordings;
   std::string out = "osteomill-report";
+  bool csv = false;
 };
 
 void run_report(const ReportOptions& options) {
@@ -26,6 +30,13 @@ void run_report(const ReportOptions& options) {
     recordings.push_back(read_recording(path));
   }
   end_progress();
+  if (options.csv) {
+    create_folder(options.out);
+    for (const Recording& recording : recordings) {
+      const std::filesystem::path name = recording.path.filename().replace_extension(".csv");
+      write_csv(std::filesystem::path(options.out) / name, recording.records);
+    }
+  }
   fmt::print("{}\n", write_report(recordings, options.out).string());
 }
 
@@ -36,6 +47,7 @@ void add_report_command(CLI::App& program) {
   CLI::App* command = program.add_subcommand("report", "Make the report of recordings again");
   command->add_option("recordings", options->recordings, "Recordings of compare (.h5)")->required();
   command->add_option("--out", options->out, "Folder for the report")->capture_default_str();
+  command->add_flag("--csv", options->csv, "Write each recording's ticks as CSV too");
   command->callback([=] { run_report(*options); });
 }
 

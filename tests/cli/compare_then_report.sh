@@ -20,7 +20,8 @@ done
 [ "$(ls a/*.h5 | wc -l)" -eq 6 ] || fault "there should be six recordings"
 grep -q "http://\|https://" <(sed 's|http://www.w3.org/[^"]*||g' a/report.html) && fault "report.html reaches for the network"
 
-"$osteomill" report a/*.h5 --out b >b.out
+"$osteomill" report a/*.h5 --csv --out b >b.out
+[ "$(wc -l <b/point-shell-holding.csv)" -eq 2001 ] || fault "the CSV should have a head and a row a tick"
 cmp a/summary.csv b/summary.csv || fault "the report made again says something else"
 
 "$osteomill" compare --seconds 2 --out c >c.out
