@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kSpareChunks = 8192;
 
 // What looking at a brick costs, in points computed.
-constexpr int kBrickCost = 8;
+constexpr int kBrickCost = 16;
 
 std::uint32_t count_of(const std::array<std::uint8_t, 64>& mask) {
   std::uint32_t count = 0;
@@ -53,7 +53,7 @@ PointShell::PointShell(const Volume& volume, const ShellRules& rules)
   box_margin_mm_ = (rules.points_on_isosurface ? 1.0 : 0.0) * lattice_.geometry().spacing_mm;
 
   const VoxelBox all_nodes = lattice_.geometry().all_voxels();
-  refresh_bone(all_nodes);
+  find_bone();
   const VoxelBox all_cells = cells_of_nodes(all_nodes);
   std::size_t chunks = 0;
   const auto for_each_brick = [&](auto&& f) {
@@ -103,7 +103,7 @@ int PointShell::refresh_next_brick() {
   const VoxelBox own = brick_cells(b.i, b.j, b.k);
   const VoxelBox own_nodes{{g * own.first.i, g * own.first.j, g * own.first.k},
                            {g * own.last.i + g - 1, g * own.last.j + g - 1, g * own.last.k + g - 1}};
-  refresh_bone(own_nodes.grown(1).intersected(sweep_.nodes));
+  lower_bone(own_nodes.grown(1).intersected(sweep_.nodes));
   const int computed = refresh_brick(b.i, b.j, b.k, cells);
   if (++b.i > cells.last.i / kBrickCells) {
     b.i = cells.first.i / kBrickCells;
@@ -115,11 +115,30 @@ int PointShell::refresh_next_brick() {
   return computed;
 }
 
-void PointShell::refresh_bone(const VoxelBox& nodes) {
+void PointShell::find_bone() {
+  const auto& dims = lattice_.node_dims();
+  for (int k = 0; k < dims[2]; ++k) {
+    for (int j = 0; j < dims[1]; ++j) {
+      for (int byte = 0; 8 * byte < dims[0]; ++byte)
+        bone_.set_byte(byte, j, k, lattice_.bone_byte(byte, j, k));
+    }
+  }
+}
+
+// Densities only fall: what was not bone needs no second look.
+void PointShell::lower_bone(const VoxelBox& nodes) {
   for (int k = nodes.first.k; k <= nodes.last.k; ++k) {
     for (int j = nodes.first.j; j <= nodes.last.j; ++j) {
       for (int byte = nodes.first.i / 8; byte <= nodes.last.i / 8; ++byte) {
-        bone_.set_byte(byte, j, k, lattice_.bone_byte(byte, j, k));
+        const unsigned before = bone_.byte(byte, j, k);
+        const unsigned from = 0xffu << std::max(0, nodes.first.i - 8 * byte);
+        const unsigned to = (1u << std::min(8, nodes.last.i + 1 - 8 * byte)) - 1;
+        unsigned after = before;
+        for (unsigned bits = before & from & to; bits != 0; bits &= bits - 1) {
+          const int n = std::countr_zero(bits);
+          if (!lattice_.is_bone({8 * byte + n, j, k})) after &= ~(1u << n);
+        }
+        if (after != before) bone_.set_byte(byte, j, k, static_cast<std::uint8_t>(after));
       }
     }
   }

@@ -66,7 +66,8 @@ class PointShell {
  private:
   using CellMask = std::array<std::uint8_t, 64>;
 
-  void refresh_bone(const VoxelBox& nodes);
+  void find_bone();
+  void lower_bone(const VoxelBox& nodes);
   VoxelBox cells_of_nodes(const VoxelBox& nodes) const;
   CellMask mask_of(int bi, int bj, int bk, const VoxelBox& cells, CellMask mask) const;
   std::uint8_t mask_byte(int bi, int j, int k) const;

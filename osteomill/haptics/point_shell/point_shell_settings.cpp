@@ -34,7 +34,7 @@ PointShellSettings PointShellSettings::defaults(Mode mode) {
                     .points_on_isosurface = true,
                     .area_weights = true,
                     .follow_partial_changes = true,
-                    .refreshed_points_per_tick = 384,
+                    .refreshed_points_per_tick = 256,
                     .gradient = GradientKernel::central};
   settings.greatest_depth_mm = 0.22;
   settings.patch_penalty = true;

@@ -70,7 +70,7 @@ std::uint8_t ShellLattice::bone_byte(int byte, int j, int k) const {
     }
   } else {
     for (int n = 0; n < count; ++n) {
-      bits |= static_cast<unsigned>(density({first + n, j, k}) > volume_->isovalue()) << n;
+      bits |= static_cast<unsigned>(is_bone({first + n, j, k})) << n;
     }
   }
   return static_cast<std::uint8_t>(bits);

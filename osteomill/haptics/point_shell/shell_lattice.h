@@ -28,6 +28,7 @@ class ShellLattice {
   double density(const VoxelIndex& node) const;
   /// Bit n: whether node 8 * `byte` + n of row j of slice k is bone; the row must be in the lattice.
   std::uint8_t bone_byte(int byte, int j, int k) const;
+  bool is_bone(const VoxelIndex& node) const { return density(node) > volume_->isovalue(); }
   /// The nodes whose density depends on voxels in `voxels`, within the lattice.
   VoxelBox nodes_touched_by(const VoxelBox& voxels) const;
   /// How far, in nodes, a change of density reaches into points.
