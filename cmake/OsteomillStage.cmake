@@ -35,10 +35,6 @@ function(osteomill_test name)
   target_compile_definitions(${name} PRIVATE
     OSTEOMILL_SHARED_DATA="${PROJECT_SOURCE_DIR}/../shared/data")
   # What is tested is optimised as users run it; optimising the tests themselves only costs minutes of building.
-  if(OSTEOMILL_SANITIZE)
-    target_compile_options(${name} PRIVATE -O0)
-  else()
-    target_compile_options(${name} PRIVATE -O1)
-  endif()
+  target_compile_options(${name} PRIVATE -O1)
   gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 300)
 endfunction()
