@@ -1,0 +1,73 @@
+#include <bit>
+#include <cstdint>
+#include <string>
+
+#include "tests/poses.h"
+#include "tests/shapes.h"
+#include <gtest/gtest.h>
+
+#include "osteomill/device/posed_device.h"
+#include "osteomill/haptics/make_algorithm.h"
+#include "osteomill/session/milling_session.h"
+#include "osteomill/volume/densities.h"
+
+// The same input must give the same wrenches to the last bit, whatever the optimisation: every preset (-O0,
+// -O1, -O2, with sanitizers and without) runs this test against the same numbers. Where an algorithm was
+// changed on purpose, the number that the failure shows takes the place of the old one.
+namespace osteomill {
+namespace {
+
+struct Golden {
+  AlgorithmId algorithm;
+  Mode mode;
+  std::uint64_t hash;
+};
+
+// FNV-1a over the bits of six numbers.
+std::uint64_t hashed(std::uint64_t hash, const Wrench& wrench) {
+  for (const Vec3& vector : {wrench.force_N, wrench.torque_Nmm}) {
+    for (const double number : vector) {
+      const auto bits = std::bit_cast<std::uint64_t>(number);
+      for (int byte = 0; byte < 8; ++byte) hash = (hash ^ ((bits >> (8 * byte)) & 0xff)) * 0x100000001b3;
+    }
+  }
+  return hash;
+}
+
+class GoldenWrenches : public ::testing::TestWithParam<Golden> {};
+
+TEST_P(GoldenWrenches, AreTheSameBitsAtAnyOptimisation) {
+  constexpr double kBallRadius_mm = 6;
+  constexpr int kTicks = 1500;
+  Volume volume = testing_support::shape_volume(testing_support::centred_cube(64, 0.25),
+                                                testing_support::ball(Vec3::Zero(), kBallRadius_mm));
+  const MillingTool tool;
+  const BoneDensities densities = estimate_densities(volume);
+  MillingSession session(std::move(volume), tool,
+                         make_algorithm(GetParam().algorithm, {.mode = GetParam().mode}), densities,
+                         MillingSettings{}, WrenchLimits{});
+  PosedDevice device;
+  std::uint64_t hash = 0xcbf29ce484222325;
+  for (int n = 0; n < kTicks; ++n) {
+    device.put(testing_support::down_and_lean(kBallRadius_mm, tool.burr_radius_mm, 2.0,
+                                              static_cast<double>(n) / kTicks));
+    hash = hashed(hash, session.tick(device, n * 1e-3, 1e-3, true).wrench);
+  }
+  EXPECT_EQ(hash, GetParam().hash) << std::hex << "0x" << hash;
+}
+
+INSTANTIATE_TEST_SUITE_P(AllAlgorithms, GoldenWrenches,
+                         ::testing::Values(Golden{AlgorithmId::line_proxy, Mode::paper, 0},
+                                           Golden{AlgorithmId::line_proxy, Mode::steady, 0},
+                                           Golden{AlgorithmId::surface_points, Mode::paper, 0},
+                                           Golden{AlgorithmId::surface_points, Mode::steady, 0},
+                                           Golden{AlgorithmId::point_shell, Mode::paper, 0},
+                                           Golden{AlgorithmId::point_shell, Mode::steady, 0}),
+                         [](const auto& test) {
+                           std::string name(name_of(test.param.algorithm));
+                           name[name.find('-')] = '_';
+                           return name + "_" + std::string(name_of(test.param.mode));
+                         });
+
+}  // namespace
+}  // namespace osteomill
