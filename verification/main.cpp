@@ -1,0 +1,136 @@
+// Measures what osteomill promises of its forces and its milling, and writes the tables of
+// docs/verification.md. Exit code 0 where all that must hold does, 3 where something does not.
+#include <chrono>
+#include <ctime>
+#include <exception>
+#include <functional>
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include "verification/sections.h"
+#include <CLI/CLI.hpp>
+#include <fmt/core.h>
+
+#include "osteomill/ct/read_scan.h"
+#include "osteomill/files/atomic_file.h"
+#include "osteomill/files/input_error.h"
+#include "osteomill/volume/builtin_tooth.h"
+
+namespace osteomill::verification {
+namespace {
+
+struct Options {
+  std::string tooth;
+  double tooth_iso = 755;
+  std::string second;
+  double second_iso = 300;
+  std::string out;
+  std::vector<std::string> only;
+  Effort effort;
+};
+
+struct Named {
+  std::string name;
+  std::function<Section(const Bones&, const Effort&)> measure;
+};
+
+const std::vector<Named>& all_sections() {
+  static const std::vector<Named> sections{
+      {"planes", [](const Bones&, const Effort&) { return force_on_planes(); }},
+      {"levers", [](const Bones&, const Effort&) { return shaft_levers(); }},
+      {"ball", [](const Bones&, const Effort&) { return slide_round_a_ball(); }},
+      {"turned", [](const Bones&, const Effort&) { return turned_scans(); }},
+      {"drops", [](const Bones&, const Effort&) { return drops(); }},
+      {"pushes", random_pushes},
+      {"voxels", [](const Bones&, const Effort& effort) { return voxel_sizes(effort); }},
+      {"rates", haptic_rates},
+      {"tooth", milling_the_tooth},
+      {"second", milling_the_second_scan},
+      {"switches", switch_by_switch},
+  };
+  return sections;
+}
+
+void add_options(CLI::App& program, Options& options) {
+  std::vector<std::string> names;
+  for (const Named& section : all_sections()) names.push_back(section.name);
+  program.add_option("--tooth", options.tooth, "Scan of a tooth (the built-in one)");
+  program.add_option("--tooth-iso", options.tooth_iso, "Its isovalue")->capture_default_str();
+  program.add_option("--second", options.second, "A second scan, on which nothing was chosen");
+  program.add_option("--second-iso", options.second_iso, "Its isovalue")->capture_default_str();
+  program.add_option("--out", options.out, "Markdown file (standard output)");
+  program.add_option("--only", options.only, "Sections")->check(CLI::IsMember(names));
+  program.add_option("--pushes", options.effort.pushes, "Random pushes an algorithm")->capture_default_str();
+  program.add_option("--seeds", options.effort.seeds, "Seeds a row")->capture_default_str();
+  program.add_option("--seconds", options.effort.phase_s, "s, a milling phase")->capture_default_str();
+}
+
+Bones load_bones(const Options& options) {
+  Bones bones = options.tooth.empty()
+                    ? Bones{Volume(builtin_tooth(), kBuiltinToothIsovalue), "the built-in tooth", {}, {}}
+                    : Bones{Volume(read_scan(options.tooth).grid, options.tooth_iso), "a real tooth", {}, {}};
+  if (!options.second.empty()) {
+    bones.second.emplace(read_scan(options.second).grid, options.second_iso);
+    bones.second_name = "a cranium";
+  }
+  return bones;
+}
+
+bool wanted(const Options& options, const Named& section) {
+  return options.only.empty() ||
+         std::find(options.only.begin(), options.only.end(), section.name) != options.only.end();
+}
+
+// Measures what is wanted; false where something that must hold does not.
+bool measure(const Options& options, std::string& text) {
+  const Bones bones = load_bones(options);
+  bool all_hold = true;
+  for (const Named& named : all_sections()) {
+    if (!wanted(options, named) || (named.name == "second" && !bones.second)) continue;
+    const auto begin = std::chrono::steady_clock::now();
+    const Section section = named.measure(bones, options.effort);
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+    std::cerr << fmt::format("{}: {} of {} rows miss, {:.0f} s\n", named.name, section.misses.size(),
+                             section.rows.size(), took.count());
+    all_hold = all_hold && section.misses.empty();
+    text += to_markdown(section);
+  }
+  return all_hold;
+}
+
+int run(int argc, char** argv) {
+  CLI::App program("Measures what osteomill promises of its forces and its milling");
+  Options options;
+  add_options(program, options);
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return program.exit(error) == 0 ? 0 : 2;
+  }
+  std::string text =
+      "# Verification\nMade by `scripts/verify`. Every table is measured in `steady` mode "
+      "with the default settings; *misses* marks what is not as it must be.\n\n";
+  const bool all_hold = measure(options, text);
+  if (options.out.empty()) {
+    std::cout << text;
+  } else {
+    write_text_atomically(options.out, [&](std::ostream& out) { out << text; });
+  }
+  return all_hold ? 0 : 3;
+}
+
+}  // namespace
+}  // namespace osteomill::verification
+
+int main(int argc, char** argv) {
+  try {
+    return osteomill::verification::run(argc, argv);
+  } catch (const osteomill::InputError& error) {
+    std::cerr << "verification: " << error.what() << "\n";
+    return 1;
+  } catch (const std::exception& error) {
+    std::cerr << "verification: " << error.what() << "\n";
+    return 1;
+  }
+}

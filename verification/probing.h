@@ -1,0 +1,31 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <numbers>
+#include <vector>
+
+#include "tests/shapes.h"
+
+#include "osteomill/device/seeded_random.h"
+#include "osteomill/haptics/make_algorithm.h"
+
+namespace osteomill::verification {
+
+inline constexpr double kTick_s = 1e-3;
+inline constexpr double kDegrees = 180 / std::numbers::pi;
+
+/// A unit vector, evenly over the sphere.
+Vec3 random_direction(SeededRandom& random);
+Quat random_orientation(SeededRandom& random);
+
+/// The algorithm, steady but for `named`, ready to feel the volume, which must outlive it.
+std::unique_ptr<HapticAlgorithm> prepared(AlgorithmId algorithm, const Volume& volume,
+                                          const MillingTool& tool, double stiffness_N_per_mm,
+                                          std::vector<HapticSettings::Named> named = {});
+
+/// Moves the device from `from_W` to `to_W` in moves of 0.02 mm and waits there; the last step.
+HapticStep approach(HapticAlgorithm& algorithm, const Vec3& from_W, const Vec3& to_W,
+                    const Quat& orientation);
+
+}  // namespace osteomill::verification

@@ -1,0 +1,42 @@
+#include "verification/section.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+namespace osteomill::verification {
+
+void Section::add(std::vector<std::string> cells, bool holds) {
+  if (!holds) misses.push_back(cells.front());
+  cells.emplace_back(holds ? "holds" : "**misses**");
+  rows.push_back(std::move(cells));
+}
+
+std::string to_markdown(const Section& section) {
+  std::string text =
+      fmt::format("## {}\n{}\n\n| {} |\n|", section.title, section.about, fmt::join(section.header, " | "));
+  for (std::size_t n = 0; n < section.header.size(); ++n) text += "---|";
+  text += "\n";
+  for (const auto& row : section.rows) text += fmt::format("| {} |\n", fmt::join(row, " | "));
+  return text + "\n";
+}
+
+std::string figure(double value) {
+  return fmt::format("{:.3g}", value);
+}
+
+std::string median_and_worst(std::vector<double> values) {
+  const double median = quantile(values, 0.5);
+  return fmt::format("{} ({})", figure(median), figure(quantile(std::move(values), 1.0)));
+}
+
+double quantile(std::vector<double> values, double share) {
+  if (values.empty()) return 0;
+  std::sort(values.begin(), values.end());
+  const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size())));
+  return values[std::max<std::size_t>(rank, 1) - 1];
+}
+
+}  // namespace osteomill::verification

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace osteomill::verification {
+
+/// One table of docs/verification.md: what was measured, how, and whether it is what it must be.
+struct Section {
+  std::string title;
+  /// Markdown: what must hold, and how it was measured.
+  std::string about;
+  std::vector<std::string> header;
+  std::vector<std::vector<std::string>> rows;
+  /// The rows, by their first cell, that are not what they must be.
+  std::vector<std::string> misses;
+
+  /// Adds a row; a last cell says whether it holds.
+  void add(std::vector<std::string> cells, bool holds);
+};
+
+/// The section as Markdown, its misses named below the table.
+std::string to_markdown(const Section& section);
+
+/// A number with three significant digits.
+std::string figure(double value);
+
+/// "median (worst)" of figures that must be small.
+std::string median_and_worst(std::vector<double> values);
+
+/// The smallest value that at least this share of the values do not exceed; 0 for none.
+double quantile(std::vector<double> values, double share);
+
+}  // namespace osteomill::verification

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "verification/section.h"
+
+#include "osteomill/volume/volume.h"
+
+// What docs/verification.md is made of, a function a table. Each measures `steady`, the default, and is the
+// same on any machine but for compute times.
+namespace osteomill::verification {
+
+/// The bones that are milled and pushed against.
+struct Bones {
+  Volume tooth;
+  std::string tooth_name;
+  /// A second scan, on which no setting was chosen.
+  std::optional<Volume> second;
+  std::string second_name;
+};
+
+/// How much to do: the counts of the full run, or of a quick look.
+struct Effort {
+  int pushes = 10000;
+  int seeds = 5;
+  double phase_s = 20;
+};
+
+Section force_on_planes();
+Section shaft_levers();
+Section slide_round_a_ball();
+Section turned_scans();
+Section drops();
+Section voxel_sizes(const Effort& effort);
+Section haptic_rates(const Bones& bones, const Effort& effort);
+Section random_pushes(const Bones& bones, const Effort& effort);
+Section milling_the_tooth(const Bones& bones, const Effort& effort);
+Section milling_the_second_scan(const Bones& bones, const Effort& effort);
+Section switch_by_switch(const Bones& bones, const Effort& effort);
+
+}  // namespace osteomill::verification

@@ -1,0 +1,52 @@
+#include "verification/trial_figures.h"
+
+#include "verification/in_parallel.h"
+
+#include "osteomill/device/milling_entry.h"
+#include "osteomill/volume/densities.h"
+
+namespace osteomill::verification {
+
+namespace {
+
+TrialSettings settings_of(const TrialVariant& variant) {
+  TrialSettings settings;
+  settings.tick_s = variant.tick_s;
+  settings.haptics.named = variant.named;
+  OperatorSettings& operator_settings = settings.hand_and_device;
+  operator_settings.seed = variant.seed;
+  if (variant.random_hand) operator_settings.hand = random_hand(variant.seed);
+  operator_settings.hand.push_N = variant.push_N;
+  operator_settings.script.milling_s = variant.phase_s;
+  return settings;
+}
+
+}  // namespace
+
+TrialFigures milling_figures(const Volume& bone, const TrialVariant& variant) {
+  const TrialSettings settings = settings_of(variant);
+  MillingTrial trial(bone, estimate_densities(bone), place_entry(bone, settings.tool), variant.algorithm,
+                     settings);
+  Recording recording;
+  recording.description.tick_period_s = variant.tick_s;
+  std::vector<double> milling_us;
+  double paid_for_mm3 = 0;
+  for (MillingTrial::Tick tick = trial.tick(); tick.milling_phase; tick = trial.tick()) {
+    recording.records.push_back(tick.record);
+    milling_us.push_back(tick.record.milling_us);
+    paid_for_mm3 += settings.milling.removal_rate_mm3_per_Ns * tick.record.burr_force_N * variant.tick_s;
+  }
+  TrialFigures figures;
+  figures.metrics = run_metrics(recording);
+  figures.paid_share = figures.metrics.removed_mm3 / paid_for_mm3;
+  figures.milling_us = distribution_of(milling_us);
+  return figures;
+}
+
+std::vector<TrialFigures> milling_figures(const Volume& bone, const std::vector<TrialVariant>& variants) {
+  std::vector<TrialFigures> figures(variants.size());
+  in_parallel(variants.size(), [&](std::size_t n) { figures[n] = milling_figures(bone, variants[n]); });
+  return figures;
+}
+
+}  // namespace osteomill::verification

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "osteomill/report/metrics.h"
+#include "osteomill/session/milling_trial.h"
+
+namespace osteomill::verification {
+
+/// How a trial differs from the default one.
+struct TrialVariant {
+  AlgorithmId algorithm = AlgorithmId::line_proxy;
+  double push_N = 1.5;
+  std::uint64_t seed = 1;
+  double phase_s = 20;
+  double tick_s = 1e-3;
+  /// A hand drawn by the seed instead of the default one.
+  bool random_hand = false;
+  std::vector<HapticSettings::Named> named = {};
+};
+
+/// One algorithm's milling in the test of section 8.2.
+struct TrialFigures {
+  RunMetrics metrics;
+  /// What was removed / (kappa times the integral of the burr's force).
+  double paid_share = 0;
+  /// Of each tick's milling with all that follows the volume.
+  Distribution milling_us;
+
+  double hp_over_mean() const { return metrics.force_N.hp_rms / metrics.force_N.mean; }
+};
+
+/// Runs the milling phase on a copy of the bone, from its top downwards. Throws std::invalid_argument where
+/// settings do not go together, InputError where the bone has no place to enter.
+TrialFigures milling_figures(const Volume& bone, const TrialVariant& variant);
+
+/// The figures of all variants, in their order, as many at a time as there are cores.
+std::vector<TrialFigures> milling_figures(const Volume& bone, const std::vector<TrialVariant>& variants);
+
+}  // namespace osteomill::verification

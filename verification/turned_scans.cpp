@@ -1,0 +1,105 @@
+#include <algorithm>
+#include <cmath>
+
+#include "verification/probing.h"
+#include "verification/sections.h"
+#include <fmt/core.h>
+
+namespace osteomill::verification {
+
+namespace {
+
+constexpr int kTurns = 10;
+constexpr int kTicks = 400;
+constexpr double kBall_mm = 5;
+constexpr double kHole_mm = 2;
+
+// A ball with a hole from its top, in which the burr can stand and the shaft lean on the rim.
+double distance_to_holed_ball_mm(const Vec3& p) {
+  const double above_floor = std::max(0.0, -p.z());
+  const double into_hole = kHole_mm - std::hypot(p.x(), p.y(), above_floor);
+  return std::max(p.norm() - kBall_mm, into_hole);
+}
+
+Volume holed_ball(const Quat& turn, bool grid_turns_too) {
+  using namespace testing_support;
+  GridGeometry grid = centred_cube(96, 0.125);
+  if (grid_turns_too) {
+    grid.direction = turn.toRotationMatrix();
+    grid.origin_mm = turn * grid.origin_mm;
+  }
+  return shape_volume(grid, [&](const Vec3& p) { return distance_to_holed_ball_mm(turn.conjugate() * p); });
+}
+
+// Down onto the hole's floor, a little into it, then over until the shaft is against the rim.
+Pose stand_and_lean(double progress) {
+  const double down = std::min(1.0, 2 * progress);
+  const double lean = std::max(0.0, progress - 0.5);
+  return {{0, 0, 0.5 - 1.4 * down}, quaternion_from_rotation_vector({0.1 * lean, 0.9 * lean, 0})};
+}
+
+struct Difference {
+  double force_share;
+  double torque_share;
+};
+
+// The greatest difference of two runs whose bones and poses differ by `turn`, as shares of the greatest
+// wrench.
+Difference difference(AlgorithmId algorithm, const Volume& straight, const Volume& turned, const Quat& turn) {
+  const MillingTool tool;
+  const double stiffness = algorithm == AlgorithmId::surface_points ? 20 : 2;
+  const auto a = prepared(algorithm, straight, tool, stiffness);
+  const auto b = prepared(algorithm, turned, tool, stiffness);
+  double greatest_N = 0;
+  double greatest_Nmm = 0;
+  double off_N = 0;
+  double off_Nmm = 0;
+  for (int n = 0; n < kTicks; ++n) {
+    const Pose X = stand_and_lean(n / double{kTicks});
+    const Wrench one = a->step(X, kTick_s).wrench;
+    const Wrench two = b->step({turn * X.position_mm, turn * X.orientation}, kTick_s).wrench;
+    greatest_N = std::max(greatest_N, one.force_N.norm());
+    greatest_Nmm = std::max(greatest_Nmm, one.torque_Nmm.norm());
+    off_N = std::max(off_N, (turn * one.force_N - two.force_N).norm());
+    off_Nmm = std::max(off_Nmm, (turn * one.torque_Nmm - two.torque_Nmm).norm());
+  }
+  return {off_N / greatest_N, off_Nmm / greatest_Nmm};
+}
+
+}  // namespace
+
+Section turned_scans() {
+  Section section{
+      "Turning scan and poses together",
+      fmt::format("Must hold: the wrench turns with them, within 0.002 of the greatest where the grid "
+                  "is turned as well, and within the voxel error (a tenth; a fifth for 2, whose 24 "
+                  "vertices stay where they are) where the bone is turned in the grid. {} random turns; "
+                  "the burr stands in a hole of 4 mm in a ball, then the shaft leans on the rim; 0.125 "
+                  "mm voxels; greatest difference over {} ticks as a share of the greatest wrench, "
+                  "median (worst).",
+                  kTurns, kTicks),
+      {"algorithm, what is turned", "force", "torque", "at most", ""},
+      {},
+      {}};
+  const Volume straight = holed_ball(Quat::Identity(), false);
+  for (const AlgorithmId algorithm : kAllAlgorithms) {
+    for (const bool grid_turns_too : {true, false}) {
+      SeededRandom random(4);
+      std::vector<double> force;
+      std::vector<double> torque;
+      for (int n = 0; n < kTurns; ++n) {
+        const Quat turn = random_orientation(random);
+        const Difference off = difference(algorithm, straight, holed_ball(turn, grid_turns_too), turn);
+        force.push_back(off.force_share);
+        torque.push_back(off.torque_share);
+      }
+      const double most = grid_turns_too ? 0.002 : (algorithm == AlgorithmId::surface_points ? 0.2 : 0.1);
+      section.add({fmt::format("{}, {}", name_of(algorithm), grid_turns_too ? "grid" : "bone"),
+                   median_and_worst(force), median_and_worst(torque), figure(most)},
+                  quantile(force, 1) <= most && quantile(torque, 1) <= most);
+    }
+  }
+  return section;
+}
+
+}  // namespace osteomill::verification
