@@ -101,6 +101,18 @@ Block voxels_around(const DensityGrid& grid, const VoxelIndex& cell) {
 }  // namespace
 
 double density_at_voxel(const DensityGrid& grid, const Vec3& voxel) {
+  const auto& dims = grid.geometry().dims;
+  const double x = voxel.x(), y = voxel.y(), z = voxel.z();
+  if (x >= 0 && y >= 0 && z >= 0 && x < dims[0] - 1 && y < dims[1] - 1 && z < dims[2] - 1) {
+    // Nearly always: the whole cell lies in the grid.
+    const VoxelIndex c{static_cast<int>(x), static_cast<int>(y), static_cast<int>(z)};
+    const float* row = grid.densities().data() + grid.linear_index(c);
+    const std::size_t nx = static_cast<std::size_t>(dims[0]);
+    const std::size_t nxy = nx * static_cast<std::size_t>(dims[1]);
+    return interpolate_cell(
+        {row[0], row[1], row[nx], row[nx + 1], row[nxy], row[nxy + 1], row[nxy + nx], row[nxy + nx + 1]},
+        {x - c.i, y - c.j, z - c.k});
+  }
   const Cell cell = cell_around(grid, voxel);
   if (cell.far_outside) return grid.outside_density();
   return interpolate_cell(cell_corners(grid, cell.first), cell.fraction);

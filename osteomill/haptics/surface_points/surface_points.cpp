@@ -18,6 +18,8 @@ namespace {
 constexpr double kRateFilter_s = 2e-3;
 // A held centre stays this far outside bone, so that no spring's walk begins inside by rounding.
 constexpr double kClearOfSurface_mm = 0.01;
+// The held tool's bite and what it may lag behind by.
+constexpr double kHeldToolMayOverlap_mm = SurfacePointsSettings::kGreatestBite_mm + 0.15;
 
 }  // namespace
 
@@ -64,9 +66,10 @@ bool SurfacePoints::in_bone(const Vec3& point_W) const {
   return density_at(volume_->grid(), point_W) > volume_->isovalue();
 }
 
-// The sum of the springs of a fan whose centre lies at `centre_W`, free of bone, with the tool turned as it
-// is.
-Vec3 SurfacePoints::sum_of_reaches(Fan& fan, const Quat& orientation, const Vec3& centre_W) const {
+// The sum of the springs of a fan whose centre lies at `centre_W`, `free_mm` or more from bone, with the tool
+// turned as it is.
+Vec3 SurfacePoints::sum_of_reaches(Fan& fan, const Quat& orientation, const Vec3& centre_W,
+                                   double free_mm) const {
   const Vec3 axis_W = &fan == &sphere_ ? Vec3(Vec3::Zero()) : Vec3(orientation * Vec3::UnitZ());
   if (!bone_near_disc(*volume_, centre_W, axis_W, fan.arms_T.front().norm())) return Vec3::Zero();
   const bool through_walls = settings_.march_to_surface && settings_.thin_walls_hold && &fan == &sphere_;
@@ -74,13 +77,18 @@ Vec3 SurfacePoints::sum_of_reaches(Fan& fan, const Quat& orientation, const Vec3
   for (const Vec3& arm_T : fan.arms_T) {
     const Vec3 vertex_W = centre_W + orientation * arm_T;
     if (!through_walls && !in_bone(vertex_W)) continue;
-    const Vec3 reach = settings_.march_to_surface ? marched_spring(*volume_, vertex_W, centre_W)
+    const Vec3 reach = settings_.march_to_surface ? marched_spring(*volume_, vertex_W, centre_W, free_mm)
                                                   : interpolated_spring(*volume_, vertex_W, centre_W);
     if (reach.isZero(0)) continue;
     ++fan.contacts;
     reach_mm += reach;
   }
   return reach_mm;
+}
+
+// How far about its centre the held tool's burr or ring is known to be free of bone.
+double SurfacePoints::free_about_held_mm(const Fan& fan) const {
+  return fan.arms_T.front().norm() - kHeldToolMayOverlap_mm;
 }
 
 // As far as a centre gets on the straight way from the held tool's to the device's; nothing where not even
@@ -92,7 +100,7 @@ std::optional<Vec3> SurfacePoints::held_centre(const Fan& fan, const Pose& X_WD,
   // The held tool keeps a centre a radius away from bone: a shorter way needs no search.
   if (way.norm() < 0.8 * fan.arms_T.front().norm() && !in_bone(device_W)) return device_W;
   if (in_bone(held_W)) return std::nullopt;
-  const std::optional<double> share = share_to_bone(*volume_, held_W, device_W);
+  const std::optional<double> share = share_to_bone(*volume_, held_W, device_W, free_about_held_mm(fan));
   if (!share) return device_W;
   return Vec3(held_W + std::max(0.0, *share - kClearOfSurface_mm / way.norm()) * way);
 }
@@ -108,7 +116,11 @@ void SurfacePoints::update(Fan& fan, const Pose& X_WD, const Pose& X_WH) const {
   } else if (in_bone(device_W)) {
     centre_W.reset();
   }
-  const Vec3 reach_mm = sum_of_reaches(fan, X_WD.orientation, centre_W.value_or(device_W));
+  double free_mm = 0;
+  if (settings_.hold_tool && centre_W) {
+    free_mm = free_about_held_mm(fan) - (*centre_W - X_WH * fan.centre_T).norm();
+  }
+  const Vec3 reach_mm = sum_of_reaches(fan, X_WD.orientation, centre_W.value_or(device_W), free_mm);
   // (14), (16), (18)
   if (centre_W) {
     fan.force_W_N = settings_.stiffness_N_per_mm / static_cast<double>(fan.arms_T.size()) * reach_mm;

@@ -40,8 +40,9 @@ class SurfacePoints final : public HapticAlgorithm {
     int contacts = 0;
   };
   void update(Fan& fan, const Pose& X_WD, const Pose& X_WH) const;
+  double free_about_held_mm(const Fan& fan) const;
   std::optional<Vec3> held_centre(const Fan& fan, const Pose& X_WD, const Pose& X_WH) const;
-  Vec3 sum_of_reaches(Fan& fan, const Quat& orientation, const Vec3& centre_W) const;
+  Vec3 sum_of_reaches(Fan& fan, const Quat& orientation, const Vec3& centre_W, double free_mm) const;
   bool in_bone(const Vec3& point_W) const;
   Vec3 soften(const Vec3& force_N) const;
   Vec3 damped(const Vec3& force_N, const Vec3& overlap_W_mm, double dt_s);
