@@ -184,19 +184,18 @@ SurfacePoints::ShaftSum SurfacePoints::shaft_sum(const Pose& X_WD, const Pose& X
   for (Fan& ring : rings_) {
     update(ring, X_WD, X_WH);
     sum.contacts += ring.contacts;
+    const Vec3 lever_mm = X_WD.orientation * (ring.centre_T + ring.pushed_at_mm * Vec3::UnitZ());
     const Vec3 force_N = ring.force_W_N + 0.5 * settings_.stiffness_N_per_mm * ring.held_back_W_mm;
-    const Vec3 torque_Nmm =
-        (X_WD.orientation * (ring.centre_T + ring.pushed_at_mm * Vec3::UnitZ())).cross(force_N);
     sum.mean.force_N += force_N;
-    sum.mean.torque_Nmm += torque_Nmm;
-    by_force.force_N += force_N.norm() * force_N;
-    by_force.torque_Nmm += force_N.norm() * torque_Nmm;
-    forces_N += force_N.norm();
+    sum.mean.torque_Nmm += lever_mm.cross(force_N);
+    const double weight_N = ring.force_W_N.norm();
+    by_force.force_N += weight_N * ring.force_W_N;
+    by_force.torque_Nmm += weight_N * lever_mm.cross(ring.force_W_N);
+    forces_N += weight_N;
   }
-  if (!(forces_N > 0)) return sum;
   // (20), (21), and the share that an edge has beside them.
-  const double each = 1.0 / static_cast<double>(rings_.size());
-  const double beside = settings_.edge_share / forces_N;
+  const double each = rings_.empty() ? 0.0 : 1.0 / static_cast<double>(rings_.size());
+  const double beside = forces_N > 0 ? settings_.edge_share / forces_N : 0.0;
   sum.mean.force_N = each * sum.mean.force_N + beside * by_force.force_N;
   sum.mean.torque_Nmm = each * sum.mean.torque_Nmm + beside * by_force.torque_Nmm;
   return sum;
