@@ -13,18 +13,21 @@ struct Cell {
   bool far_outside = false;
 };
 
+// Floor of a number within int's range; std::floor is a library call on plain x86-64.
+int floor_of(double value) {
+  const int truncated = static_cast<int>(value);
+  return truncated - (static_cast<double>(truncated) > value ? 1 : 0);
+}
+
 // The cell of eight voxel centres around a point. Coordinates beyond int's range are all far outside.
 Cell cell_around(const DensityGrid& grid, const Vec3& voxel) {
   const auto& dims = grid.geometry().dims;
+  const double x = voxel.x(), y = voxel.y(), z = voxel.z();
   Cell cell;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double coordinate = voxel[axis];
-    if (!(coordinate > -1.0 && coordinate < dims[static_cast<std::size_t>(axis)])) cell.far_outside = true;
-  }
+  cell.far_outside = !(x > -1.0 && x < dims[0] && y > -1.0 && y < dims[1] && z > -1.0 && z < dims[2]);
   if (cell.far_outside) return cell;
-  const Vec3 floor = voxel.array().floor();
-  cell.first = {static_cast<int>(floor.x()), static_cast<int>(floor.y()), static_cast<int>(floor.z())};
-  cell.fraction = voxel - floor;
+  cell.first = {floor_of(x), floor_of(y), floor_of(z)};
+  cell.fraction = {x - cell.first.i, y - cell.first.j, z - cell.first.k};
   return cell;
 }
 
@@ -98,6 +101,18 @@ Block voxels_around(const DensityGrid& grid, const VoxelIndex& cell) {
 }  // namespace
 
 double density_at_voxel(const DensityGrid& grid, const Vec3& voxel) {
+  const auto& dims = grid.geometry().dims;
+  const double x = voxel.x(), y = voxel.y(), z = voxel.z();
+  if (x >= 0 && y >= 0 && z >= 0 && x < dims[0] - 1 && y < dims[1] - 1 && z < dims[2] - 1) {
+    // Nearly always: the whole cell lies in the grid.
+    const VoxelIndex c{static_cast<int>(x), static_cast<int>(y), static_cast<int>(z)};
+    const float* row = grid.densities().data() + grid.linear_index(c);
+    const std::size_t nx = static_cast<std::size_t>(dims[0]);
+    const std::size_t nxy = nx * static_cast<std::size_t>(dims[1]);
+    return interpolate_cell(
+        {row[0], row[1], row[nx], row[nx + 1], row[nxy], row[nxy + 1], row[nxy + nx], row[nxy + nx + 1]},
+        {x - c.i, y - c.j, z - c.k});
+  }
   const Cell cell = cell_around(grid, voxel);
   if (cell.far_outside) return grid.outside_density();
   return interpolate_cell(cell_corners(grid, cell.first), cell.fraction);

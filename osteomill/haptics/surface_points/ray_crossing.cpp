@@ -10,50 +10,59 @@ namespace osteomill {
 namespace {
 
 struct Sample {
-  double share;
+  double at;
   double above;  // density above the isovalue
 };
 
+double above_isovalue(const Volume& volume, const VoxelRay& ray, double at) {
+  return density_at_voxel(volume.grid(), ray.origin + at * ray.way) - volume.isovalue();
+}
+
 // Regula falsi with the Illinois halving, which keeps one end from standing still.
-double close_in(const Volume& volume, const Vec3& from, const Vec3& way, Sample outside, Sample inside,
-                double tolerance) {
-  for (int n = 0; n < 8 && inside.share - outside.share > tolerance; ++n) {
+double close_in(const Volume& volume, const VoxelRay& ray, Sample outside, Sample inside, double tolerance) {
+  for (int n = 0; n < 8 && inside.at - outside.at > tolerance; ++n) {
     const double fraction = outside.above / (outside.above - inside.above);
-    const double share = outside.share + fraction * (inside.share - outside.share);
-    const double above = density_at_voxel(volume.grid(), from + share * way) - volume.isovalue();
-    if (std::abs(share - inside.share) < tolerance || std::abs(share - outside.share) < tolerance) {
-      return share;
-    }
+    const double at = outside.at + fraction * (inside.at - outside.at);
+    const double above = above_isovalue(volume, ray, at);
+    if (std::abs(at - inside.at) < tolerance || std::abs(at - outside.at) < tolerance) return at;
     if (above > 0) {
-      inside = {share, above};
+      inside = {at, above};
       outside.above *= 0.5;
     } else {
-      outside = {share, above};
+      outside = {at, above};
       inside.above *= 0.5;
     }
   }
-  return outside.share;
+  return outside.at;
 }
 
 }  // namespace
 
-std::optional<double> share_to_bone(const Volume& volume, const Vec3& from_W, const Vec3& to_W) {
-  const Vec3 from = volume.geometry().voxel_from_world(from_W);
-  const Vec3 way = volume.geometry().voxel_from_world(to_W) - from;
-  const auto above = [&](double share) {
-    return density_at_voxel(volume.grid(), from + share * way) - volume.isovalue();
-  };
-  Sample before{0, above(0)};
+std::optional<double> first_bone(const Volume& volume, const VoxelRay& ray, double from, double to,
+                                 double tolerance) {
+  Sample before{from, above_isovalue(volume, ray, from)};
   if (before.above > 0) return std::nullopt;
-  const double voxels = way.norm();
+  const double voxels = (to - from) * ray.way.norm();
   const int steps = std::max(1, static_cast<int>(std::ceil(2 * std::min(voxels, 1e4))));
+  const double step = (to - from) / steps;
   for (int n = 1; n <= steps; ++n) {
-    const double share = static_cast<double>(n) / steps;
-    const Sample here{share, above(share)};
-    if (here.above > 0) return close_in(volume, from, way, before, here, 1e-3 / steps);
+    const double at = from + n * step;
+    const Sample here{at, above_isovalue(volume, ray, at)};
+    if (here.above > 0) return close_in(volume, ray, before, here, tolerance * step);
     before = here;
   }
   return std::nullopt;
+}
+
+std::optional<double> share_to_bone(const Volume& volume, const Vec3& from_W, const Vec3& to_W,
+                                    double known_free_mm) {
+  constexpr double kTolerance = 1e-3;
+  const Vec3 from = volume.geometry().voxel_from_world(from_W);
+  const VoxelRay ray{from, volume.geometry().voxel_from_world(to_W) - from};
+  if (!(known_free_mm > 0)) return first_bone(volume, ray, 0, 1, kTolerance);
+  const double free = std::min(1.0, known_free_mm / (to_W - from_W).norm());
+  if (above_isovalue(volume, ray, free) > 0) return first_bone(volume, ray, 0, free, kTolerance);
+  return free < 1 ? first_bone(volume, ray, free, 1, kTolerance) : std::nullopt;
 }
 
 }  // namespace osteomill

@@ -18,6 +18,8 @@ namespace {
 constexpr double kRateFilter_s = 2e-3;
 // A held centre stays this far outside bone, so that no spring's walk begins inside by rounding.
 constexpr double kClearOfSurface_mm = 0.01;
+// The held tool's bite and what it may lag behind by.
+constexpr double kHeldToolMayOverlap_mm = SurfacePointsSettings::kGreatestBite_mm + 0.15;
 
 }  // namespace
 
@@ -41,6 +43,7 @@ void SurfacePoints::prepare(const Scene& scene) {
     for (const Vec3& vertex : ring.vertices_T) fan.arms_T.emplace_back(vertex - ring.centre_T);
     rings_.push_back(std::move(fan));
   }
+  if (rings > 0) ring_spacing_mm_ = (tool_.shaft_length_mm - shaft_start_mm(tool_)) / rings;
   const double bite_mm = std::min(settings_.bite_voxels * volume_->geometry().spacing_mm.minCoeff(),
                                   SurfacePointsSettings::kGreatestBite_mm);
   held_tool_.prepare(*volume_, tool_, rings, std::min(bite_mm, 0.5 * tool_.burr_radius_mm));
@@ -64,23 +67,35 @@ bool SurfacePoints::in_bone(const Vec3& point_W) const {
   return density_at(volume_->grid(), point_W) > volume_->isovalue();
 }
 
-// The sum of the springs of a fan whose centre lies at `centre_W`, free of bone, with the tool turned as it
-// is.
-Vec3 SurfacePoints::sum_of_reaches(Fan& fan, const Quat& orientation, const Vec3& centre_W) const {
+// The sum of the springs of a fan whose centre lies at `centre_W`, `free_mm` or more from bone, with the tool
+// turned as it is.
+Vec3 SurfacePoints::sum_of_reaches(Fan& fan, const Quat& orientation, const Vec3& centre_W,
+                                   double free_mm) const {
   const Vec3 axis_W = &fan == &sphere_ ? Vec3(Vec3::Zero()) : Vec3(orientation * Vec3::UnitZ());
   if (!bone_near_disc(*volume_, centre_W, axis_W, fan.arms_T.front().norm())) return Vec3::Zero();
   const bool through_walls = settings_.march_to_surface && settings_.thin_walls_hold && &fan == &sphere_;
   Vec3 reach_mm = Vec3::Zero();
-  for (const Vec3& arm_T : fan.arms_T) {
+  double deepest2_mm2 = 0;
+  for (std::size_t n = 0; n < fan.arms_T.size(); ++n) {
+    const Vec3& arm_T = fan.arms_T[n];
     const Vec3 vertex_W = centre_W + orientation * arm_T;
     if (!through_walls && !in_bone(vertex_W)) continue;
-    const Vec3 reach = settings_.march_to_surface ? marched_spring(*volume_, vertex_W, centre_W)
+    const Vec3 reach = settings_.march_to_surface ? marched_spring(*volume_, vertex_W, centre_W, free_mm)
                                                   : interpolated_spring(*volume_, vertex_W, centre_W);
     if (reach.isZero(0)) continue;
     ++fan.contacts;
     reach_mm += reach;
+    if (reach.squaredNorm() > deepest2_mm2) {
+      deepest2_mm2 = reach.squaredNorm();
+      fan.deepest_arm = n;
+    }
   }
   return reach_mm;
+}
+
+// How far about its centre the held tool's burr or ring is known to be free of bone.
+double SurfacePoints::free_about_held_mm(const Fan& fan) const {
+  return fan.arms_T.front().norm() - kHeldToolMayOverlap_mm;
 }
 
 // As far as a centre gets on the straight way from the held tool's to the device's; nothing where not even
@@ -92,7 +107,7 @@ std::optional<Vec3> SurfacePoints::held_centre(const Fan& fan, const Pose& X_WD,
   // The held tool keeps a centre a radius away from bone: a shorter way needs no search.
   if (way.norm() < 0.8 * fan.arms_T.front().norm() && !in_bone(device_W)) return device_W;
   if (in_bone(held_W)) return std::nullopt;
-  const std::optional<double> share = share_to_bone(*volume_, held_W, device_W);
+  const std::optional<double> share = share_to_bone(*volume_, held_W, device_W, free_about_held_mm(fan));
   if (!share) return device_W;
   return Vec3(held_W + std::max(0.0, *share - kClearOfSurface_mm / way.norm()) * way);
 }
@@ -108,7 +123,11 @@ void SurfacePoints::update(Fan& fan, const Pose& X_WD, const Pose& X_WH) const {
   } else if (in_bone(device_W)) {
     centre_W.reset();
   }
-  const Vec3 reach_mm = sum_of_reaches(fan, X_WD.orientation, centre_W.value_or(device_W));
+  double free_mm = 0;
+  if (settings_.hold_tool && centre_W) {
+    free_mm = free_about_held_mm(fan) - (*centre_W - X_WH * fan.centre_T).norm();
+  }
+  const Vec3 reach_mm = sum_of_reaches(fan, X_WD.orientation, centre_W.value_or(device_W), free_mm);
   // (14), (16), (18)
   if (centre_W) {
     fan.force_W_N = settings_.stiffness_N_per_mm / static_cast<double>(fan.arms_T.size()) * reach_mm;
@@ -116,6 +135,23 @@ void SurfacePoints::update(Fan& fan, const Pose& X_WD, const Pose& X_WH) const {
     fan.force_W_N.setZero();
   }
   // Else (17), (19): a centre in bone keeps the force of the step before.
+  const bool is_pushed = settings_.slice_levers && centre_W && fan.contacts > 0 && &fan != &sphere_;
+  fan.pushed_at_mm = is_pushed ? pushed_at_mm(fan, X_WD.orientation, *centre_W, free_mm) : 0.0;
+}
+
+// The middle of what the deepest vertex and two beside it along the shaft are pushed back.
+double SurfacePoints::pushed_at_mm(const Fan& ring, const Quat& orientation, const Vec3& centre_W,
+                                   double free_mm) const {
+  const Vec3 arm_W = orientation * ring.arms_T[ring.deepest_arm];
+  const Vec3 aside_W = ring_spacing_mm_ / 3 * (orientation * Vec3::UnitZ());
+  const auto depth_mm = [&](const Vec3& from_W) {
+    return marched_spring(*volume_, from_W + arm_W, from_W, free_mm).norm();
+  };
+  const double below = depth_mm(centre_W - aside_W);
+  const double here = depth_mm(centre_W);
+  const double above = depth_mm(centre_W + aside_W);
+  const double sum = below + here + above;
+  return sum > 0 ? ring_spacing_mm_ / 3 * (above - below) / sum : 0.0;
 }
 
 // Summed over the whole sphere, (14) gives k d^2 / (4 r) on a plane at depth d: its slope k d / (2 r) is
@@ -141,24 +177,37 @@ Vec3 SurfacePoints::damped(const Vec3& force_N, const Vec3& overlap_W_mm, double
   return std::clamp(1 + settings_.contact_damping_s_per_mm * sinking_mm_s, 0.0, 2.0) * force_N;
 }
 
+SurfacePoints::ShaftSum SurfacePoints::shaft_sum(const Pose& X_WD, const Pose& X_WH) {
+  ShaftSum sum;
+  Wrench by_force;
+  double forces_N = 0;
+  for (Fan& ring : rings_) {
+    update(ring, X_WD, X_WH);
+    sum.contacts += ring.contacts;
+    const Vec3 lever_mm = X_WD.orientation * (ring.centre_T + ring.pushed_at_mm * Vec3::UnitZ());
+    const Vec3 force_N = ring.force_W_N + 0.5 * settings_.stiffness_N_per_mm * ring.held_back_W_mm;
+    sum.mean.force_N += force_N;
+    sum.mean.torque_Nmm += lever_mm.cross(force_N);
+    const double weight_N = ring.force_W_N.norm();
+    by_force.force_N += weight_N * ring.force_W_N;
+    by_force.torque_Nmm += weight_N * lever_mm.cross(ring.force_W_N);
+    forces_N += weight_N;
+  }
+  // (20), (21), and the share that an edge has beside them.
+  const double each = rings_.empty() ? 0.0 : 1.0 / static_cast<double>(rings_.size());
+  const double beside = forces_N > 0 ? settings_.edge_share / forces_N : 0.0;
+  sum.mean.force_N = each * sum.mean.force_N + beside * by_force.force_N;
+  sum.mean.torque_Nmm = each * sum.mean.torque_Nmm + beside * by_force.torque_Nmm;
+  return sum;
+}
+
 HapticStep SurfacePoints::step(const Pose& X_WD, double dt_s) {
   HapticStep result;
   const Pose X_WH = settings_.hold_tool ? held_tool_.follow(X_WD) : X_WD;
   update(sphere_, X_WD, X_WH);
-  result.contacts += sphere_.contacts;
-  Vec3 shaft_force_N = Vec3::Zero();
-  Vec3 torque_Nmm = Vec3::Zero();
-  for (std::size_t n = 0; n < rings_.size(); ++n) {
-    Fan& ring = rings_[n];
-    update(ring, X_WD, X_WH);
-    result.contacts += ring.contacts;
-    const Vec3 force_N = ring.force_W_N + 0.5 * settings_.stiffness_N_per_mm * ring.held_back_W_mm;
-    shaft_force_N += force_N;
-    torque_Nmm += (X_WD.orientation * ring.centre_T).cross(force_N);
-  }
-  // (20), (21)
-  const double share = rings_.empty() ? 0.0 : 1.0 / static_cast<double>(rings_.size());
-  result.wrench.torque_Nmm = share * torque_Nmm;
+  const ShaftSum shaft = shaft_sum(X_WD, X_WH);
+  result.contacts = sphere_.contacts + shaft.contacts;
+  result.wrench.torque_Nmm = shaft.mean.torque_Nmm;
   const double beyond = std::min(settings_.greatest_stiffness_N_per_mm, 0.5 * settings_.stiffness_N_per_mm);
   result.wrench.force_N = soften(sphere_.force_W_N) + beyond * sphere_.held_back_W_mm;
   result.X_WT = X_WH;
@@ -167,7 +216,7 @@ HapticStep SurfacePoints::step(const Pose& X_WD, double dt_s) {
     result.wrench.force_N = damped(result.wrench.force_N, overlap_W_mm, dt_s);
   }
   result.burr_force_N = result.wrench.force_N.norm();
-  if (settings_.shaft_force) result.wrench.force_N += share * shaft_force_N;
+  if (settings_.shaft_force) result.wrench.force_N += shaft.mean.force_N;
   return result;
 }
 

@@ -38,10 +38,20 @@ class SurfacePoints final : public HapticAlgorithm {
     // From the device's centre back to where bone stopped the held tool's way to it.
     Vec3 held_back_W_mm = Vec3::Zero();
     int contacts = 0;
+    std::size_t deepest_arm = 0;
+    // From the centre along the shaft to where it is pushed.
+    double pushed_at_mm = 0;
   };
+  struct ShaftSum {
+    Wrench mean;
+    int contacts = 0;
+  };
+  ShaftSum shaft_sum(const Pose& X_WD, const Pose& X_WH);
   void update(Fan& fan, const Pose& X_WD, const Pose& X_WH) const;
+  double free_about_held_mm(const Fan& fan) const;
   std::optional<Vec3> held_centre(const Fan& fan, const Pose& X_WD, const Pose& X_WH) const;
-  Vec3 sum_of_reaches(Fan& fan, const Quat& orientation, const Vec3& centre_W) const;
+  Vec3 sum_of_reaches(Fan& fan, const Quat& orientation, const Vec3& centre_W, double free_mm) const;
+  double pushed_at_mm(const Fan& ring, const Quat& orientation, const Vec3& centre_W, double free_mm) const;
   bool in_bone(const Vec3& point_W) const;
   Vec3 soften(const Vec3& force_N) const;
   Vec3 damped(const Vec3& force_N, const Vec3& overlap_W_mm, double dt_s);
@@ -55,6 +65,7 @@ class SurfacePoints final : public HapticAlgorithm {
   Vec3 overlap_rate_W_mm_s_ = Vec3::Zero();
   Fan sphere_;
   std::vector<Fan> rings_;
+  double ring_spacing_mm_ = 0;
 };
 
 }  // namespace osteomill

@@ -18,6 +18,10 @@ constexpr SettingField<S> kFields[] = {
     setting_field<S>(
         "shaft-force", [](S& s) -> auto& { return s.shaft_force; }),
     setting_field<S>(
+        "edge-share", [](S& s) -> auto& { return s.edge_share; }),
+    setting_field<S>(
+        "slice-levers", [](S& s) -> auto& { return s.slice_levers; }),
+    setting_field<S>(
         "hold-tool", [](S& s) -> auto& { return s.hold_tool; }),
     setting_field<S>(
         "rings-per-slice", [](S& s) -> auto& { return s.rings_per_slice; }),

@@ -11,6 +11,8 @@ SurfacePointsSettings SurfacePointsSettings::defaults(Mode mode) {
     settings.march_to_surface = true;
     settings.thin_walls_hold = true;
     settings.shaft_force = true;
+    settings.edge_share = 0.1;
+    settings.slice_levers = true;
     settings.hold_tool = true;
     settings.rings_per_slice = 3;
     settings.greatest_stiffness_N_per_mm = 3.0;
@@ -32,6 +34,9 @@ void require_valid(const SurfacePointsSettings& settings) {
   }
   if (!(settings.greatest_stiffness_N_per_mm > 0)) {
     throw std::invalid_argument("surface-points: the greatest stiffness must be a positive number of N/mm");
+  }
+  if (!(settings.edge_share >= 0 && settings.edge_share <= 1)) {
+    throw std::invalid_argument("surface-points: the edge's share must lie between 0 and 1");
   }
   if (!(std::isfinite(settings.bite_voxels) && settings.bite_voxels >= 0)) {
     throw std::invalid_argument("surface-points: the bite must be a number of voxels, 0 or more");

@@ -22,6 +22,13 @@ struct SurfacePointsSettings {
   bool thin_walls_hold = false;
   /// The slices' forces, weighted by 1/slices as (20) weights their torques, are felt as force too.
   bool shaft_force = false;
+  /// The mean of (20), each slice by 1/slices, makes a shaft that lies on an edge as many times softer than
+  /// one that lies flat as there are slices. This share of another mean, each slice by its own force, is
+  /// added.
+  double edge_share = 0.0;
+  /// Where on the shaft a slice is pushed, by its depth a third of the way to the next ones, in place of its
+  /// middle.
+  bool slice_levers = false;
   /// In place of (17) and (19), with nothing kept from an earlier step: a simulated tool follows the device
   /// as far as the bone lets it (held_tool.h). A sphere or slice whose centre cannot go straight from there
   /// to the device's is rendered where bone stops it, and a spring as stiff as the contact there (k/2, see

@@ -1,91 +1,65 @@
 #include "osteomill/haptics/surface_points/tool_contacts.h"
 
-#include <array>
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
 #include <optional>
 
 #include "osteomill/haptics/surface_points/bone_nearby.h"
 #include "osteomill/haptics/surface_points/ray_crossing.h"
 #include "osteomill/tool/sample_points.h"
-#include "osteomill/volume/isosurface.h"
+#include "osteomill/volume/sampling.h"
 
 namespace osteomill {
 
 namespace {
 
-// A surface that a ray meets at a smaller angle than this (its sine) says little about where the tool
-// touches.
-constexpr double kGrazing = 0.2;
-constexpr int kClosingRays = 2;
+constexpr double kNoBone = std::numeric_limits<double>::infinity();
+// Share of half a voxel to which a crossing is found.
+constexpr double kTolerance = 0.01;
 // Contacts of one part this alike are one: 11 degrees apart.
 constexpr double kSameNormal = 0.98;
-// A ray this near to the nearest point (4 degrees) is as good: its error is a quarter of a percent of the
-// distance.
-constexpr double kCloseEnough = 0.9975;
+// Rays of the sphere nearer than this are neighbours: its 54 directions lie 21 to 28 degrees apart.
+constexpr double kBesideOnSphere_rad = 0.65;
+// Bone that stands out from a contact's plane by less is the plane's.
+constexpr double kOnPlane_mm = 0.01;
+// Only bone this near can stop the tool within a stride.
+constexpr double kWithinStride_mm = 0.25;
 
-struct Hit {
-  double distance_mm;
-  Vec3 normal_W;
-};
-
-struct Ray {
-  Vec3 direction_W;
-  Hit hit;
-};
-
-// A way in W in voxels.
-Vec3 voxels_along(const GridGeometry& geometry, const Vec3& way_W) {
-  return (geometry.direction.transpose() * way_W).cwiseQuotient(geometry.spacing_mm);
+bool is_bone(const Volume& volume, const Vec3& voxel) {
+  return density_at_voxel(volume.grid(), voxel) > volume.isovalue();
 }
 
-bool in_bone(const Volume& volume, const Vec3& point_W) {
-  return density_at(volume.grid(), point_W) > volume.isovalue();
-}
-
-// Where bone is first met from the centre along `direction`, up to the reach beyond the radius.
-std::optional<Hit> cast(const Volume& volume, const Vec3& centre, const Vec3& direction, double radius) {
+// Where bone is first met along the ray, up to the reach beyond the radius.
+double distance_to_bone(const Volume& volume, const VoxelRay& ray, double radius) {
   const double reach = radius + SurfaceContacts::kReach_mm;
   // Near the tool's surface is where bone is met nearly always.
   const double near = std::max(0.0, radius - SurfaceContacts::kReach_mm);
-  const bool free_inside = !in_bone(volume, centre + near * direction);
-  const Vec3 from = free_inside ? Vec3(centre + near * direction) : centre;
-  const Vec3 to = centre + reach * direction;
-  const std::optional<double> share = share_to_bone(volume, from, to);
-  if (!share) return std::nullopt;
-  const Vec3 point = from + *share * (to - from);
-  const std::optional<Vec3> normal = outward_normal(volume, point, GradientKernel::smoothed);
-  if (!normal || -direction.dot(*normal) < kGrazing) return std::nullopt;
-  return Hit{(point - centre).norm(), *normal};
+  if (const auto met = first_bone(volume, ray, near, reach, kTolerance)) return *met;
+  if (near == 0 || !is_bone(volume, ray.origin + near * ray.way)) return kNoBone;
+  return first_bone(volume, ray, 0, near, kTolerance).value_or(kNoBone);
 }
 
-// The direction from the centre in which a part (the sphere, or a ring about `axis`) reaches deepest against
-// a plane.
-std::optional<Vec3> deepest_direction(const Vec3& normal, const Vec3* axis) {
-  if (axis == nullptr) return Vec3(-normal);
-  const Vec3 across = normal - normal.dot(*axis) * *axis;
-  const double length = across.norm();
-  if (length < kGrazing) return std::nullopt;
-  return Vec3(-across / length);
+bool is_least(const RayFan& fan, const RayDistances& distance_mm, std::size_t n) {
+  return std::all_of(fan.neighbours[n].begin(), fan.neighbours[n].end(), [&](std::size_t m) {
+    return distance_mm[n] < distance_mm[m] || (distance_mm[n] == distance_mm[m] && n < m);
+  });
 }
 
-// From a ray that met bone, a few more towards the nearest point of the surface.
-Ray close_in(const Volume& volume, const Vec3& centre, Ray ray, double radius, const Vec3* axis) {
-  for (int n = 0; n < kClosingRays; ++n) {
-    const std::optional<Vec3> deepest = deepest_direction(ray.hit.normal_W, axis);
-    if (!deepest) break;
-    const double cosine = deepest->dot(ray.direction_W);
-    if (cosine > kCloseEnough) return {*deepest, {cosine * ray.hit.distance_mm, ray.hit.normal_W}};
-    Vec3 towards = *deepest;
-    std::optional<Hit> closer = cast(volume, centre, towards, radius);
-    if (!closer || closer->distance_mm > ray.hit.distance_mm) {
-      // The plane's nearest point is not there (an edge): half the way may be.
-      towards = (ray.direction_W + *deepest).normalized();
-      closer = cast(volume, centre, towards, radius);
-      if (!closer || closer->distance_mm > ray.hit.distance_mm) break;
-    }
-    ray = {towards, *closer};
+std::vector<Vec3> sphere_directions(const MillingTool& tool) {
+  std::vector<Vec3> directions;
+  // A bump would slip between 24 rays unseen. The mirrored snub cube fills its triangles, the axes fill its
+  // squares.
+  for (const Vec3& vertex : sphere_vertices(tool)) {
+    directions.emplace_back(vertex.normalized());
+    directions.emplace_back(-vertex.normalized());
   }
-  return ray;
+  for (int axis = 0; axis < 3; ++axis) {
+    directions.emplace_back(Vec3::Unit(axis));
+    directions.emplace_back(-Vec3::Unit(axis));
+  }
+  return directions;
 }
 
 }  // namespace
@@ -94,44 +68,38 @@ void SurfaceContacts::prepare(const Volume& volume, const MillingTool& tool, int
   volume_ = &volume;
   tool_ = tool;
   bite_mm_ = bite_mm;
-  const auto on_sphere = sphere_vertices(tool);
-  sphere_T_.assign(on_sphere.begin(), on_sphere.end());
-  // A bump would slip between 24 rays unseen. The mirrored snub cube fills its triangles, the axes fill its
-  // squares.
-  for (const Vec3& vertex : on_sphere) sphere_T_.emplace_back(-vertex);
-  for (int axis = 0; axis < 3; ++axis) {
-    sphere_T_.emplace_back(tool.burr_radius_mm * Vec3::Unit(axis));
-    sphere_T_.emplace_back(-tool.burr_radius_mm * Vec3::Unit(axis));
-  }
+  const GridGeometry& geometry = volume.geometry();
+  voxels_per_mm_ = geometry.spacing_mm.cwiseInverse().asDiagonal() * geometry.direction.transpose();
+  sphere_ = make_ray_fan(sphere_directions(tool), kBesideOnSphere_rad);
   ring_centres_T_.clear();
+  std::vector<Vec3> around;
   for (const ShaftSlice& ring : slice_vertices(tool, rings)) {
     ring_centres_T_.push_back(ring.centre_T);
-    for (std::size_t n = 0; n < ring_arms_T_.size(); ++n) {
-      ring_arms_T_[n] = ring.vertices_T[n] - ring.centre_T;
-    }
+    if (!around.empty()) continue;
+    for (const Vec3& vertex : ring.vertices_T) around.emplace_back((vertex - ring.centre_T).normalized());
   }
+  ring_ = make_ray_fan(std::move(around), 2.2 * std::numbers::pi / kSliceVertices);
   contacts_.clear();
-  contacts_.reserve(sphere_T_.size() + ring_arms_T_.size() * ring_centres_T_.size());
+  contacts_.reserve(sphere_.directions.size() + ring_.directions.size() * ring_centres_T_.size());
 }
 
-bool SurfaceContacts::is_known(const Vec3& direction_W) const {
-  for (std::size_t n = first_of_part_; n < contacts_.size(); ++n) {
-    if (-contacts_[n].normal_W.dot(direction_W) > kSameNormal) return true;
+SurfaceContacts::Rays SurfaceContacts::rays_of(const RayFan& fan, const Pose& X_WT) const {
+  Rays rays;
+  const Mat3 turn = X_WT.orientation.toRotationMatrix();
+  const Mat3 voxels = voxels_per_mm_ * turn;
+  for (std::size_t n = 0; n < fan.directions.size(); ++n) {
+    rays.directions_W[n] = turn * fan.directions[n];
+    rays.ways[n] = voxels * fan.directions[n];
   }
-  return false;
+  return rays;
 }
 
 // The contact's normal is the tool's own at the place, not the bone's: on an edge of the bone the two differ,
 // and only the tool's lets a shaft slide along itself.
-void SurfaceContacts::look_along(const Vec3& centre_W, const Vec3& direction_W, double radius_mm,
-                                 double bite_mm, const Vec3* axis_W) {
-  const std::optional<Hit> hit = cast(*volume_, centre_W, direction_W, radius_mm);
-  if (!hit) return;
-  const std::optional<Vec3> deepest = deepest_direction(hit->normal_W, axis_W);
-  if (deepest && is_known(*deepest)) return;
-  const Ray ray = close_in(*volume_, centre_W, {direction_W, *hit}, radius_mm, axis_W);
-  const ToolContact contact{centre_W + radius_mm * ray.direction_W, -ray.direction_W,
-                            ray.hit.distance_mm - radius_mm + bite_mm};
+void SurfaceContacts::add_contact(const Part& part, const Vec3& centre_W, const Vec3& direction_W,
+                                  double distance_mm) {
+  const ToolContact contact{centre_W + part.radius_mm * direction_W, -direction_W,
+                            distance_mm - part.radius_mm + part.bite_mm};
   for (std::size_t n = first_of_part_; n < contacts_.size(); ++n) {
     if (contacts_[n].normal_W.dot(contact.normal_W) < kSameNormal) continue;
     if (contact.gap_mm < contacts_[n].gap_mm) contacts_[n] = contact;
@@ -140,44 +108,60 @@ void SurfaceContacts::look_along(const Vec3& centre_W, const Vec3& direction_W, 
   contacts_.push_back(contact);
 }
 
-void SurfaceContacts::find_at_sphere(const Pose& X_WT) {
-  const double radius = tool_.burr_radius_mm;
-  first_of_part_ = contacts_.size();
-  if (!bone_near_disc(*volume_, X_WT.position_mm, Vec3::Zero(), radius + kReach_mm)) return;
-  for (const Vec3& vertex_T : sphere_T_) {
-    const Vec3 direction = X_WT.orientation * vertex_T / radius;
-    if (!in_bone(*volume_, X_WT.position_mm + (radius + kReach_mm) * direction)) continue;
-    look_along(X_WT.position_mm, direction, radius, bite_mm_, nullptr);
+bool SurfaceContacts::is_explained(const Part& part, const Vec3& direction_W, double distance_mm) const {
+  for (std::size_t n = first_of_part_; n < contacts_.size(); ++n) {
+    const ToolContact& contact = contacts_[n];
+    const double plane_mm = contact.gap_mm + part.radius_mm - part.bite_mm;
+    if (-distance_mm * direction_W.dot(contact.normal_W) >= plane_mm - kOnPlane_mm) return true;
   }
+  return false;
 }
 
-void SurfaceContacts::find_at_rings(const Pose& X_WT) {
-  const double radius = tool_.shaft_radius_mm;
-  const Vec3 axis = shaft_direction(X_WT);
-  std::array<Vec3, kSliceVertices> direction;
-  std::array<Vec3, kSliceVertices> feeler_voxels;
-  for (std::size_t n = 0; n < direction.size(); ++n) {
-    direction[n] = X_WT.orientation * ring_arms_T_[n] / radius;
-    feeler_voxels[n] = voxels_along(volume_->geometry(), (radius + kReach_mm) * direction[n]);
+void SurfaceContacts::find_at(const Part& part, const Rays& rays, const Vec3& centre_W) {
+  const RayFan& fan = *part.fan;
+  const std::size_t count = fan.directions.size();
+  const Vec3 centre = volume_->geometry().voxel_from_world(centre_W);
+  first_of_part_ = contacts_.size();
+  RayDistances distance_mm;
+  bool any = false;
+  for (std::size_t n = 0; n < count; ++n) {
+    distance_mm[n] = kNoBone;
+    if (!is_bone(*volume_, centre + (part.radius_mm + kReach_mm) * rays.ways[n])) continue;
+    distance_mm[n] = distance_to_bone(*volume_, {centre, rays.ways[n]}, part.radius_mm);
+    any = true;
   }
-  for (const Vec3& centre_T : ring_centres_T_) {
-    const Vec3 centre = X_WT * centre_T;
-    if (!bone_near_disc(*volume_, centre, axis, radius + kReach_mm)) continue;
-    const Vec3 centre_voxel = volume_->geometry().voxel_from_world(centre);
-    first_of_part_ = contacts_.size();
-    for (std::size_t n = 0; n < direction.size(); ++n) {
-      if (!(density_at_voxel(volume_->grid(), centre_voxel + feeler_voxels[n]) > volume_->isovalue())) {
-        continue;
-      }
-      look_along(centre, direction[n], radius, 0.0, &axis);
-    }
+  if (!any) return;
+  const auto is_met = [&](std::size_t n) { return std::isfinite(distance_mm[n]); };
+  const std::span directions(rays.directions_W.data(), count);
+  for (std::size_t n = 0; n < count; ++n) {
+    if (!is_met(n) || !is_least(fan, distance_mm, n)) continue;
+    const Vec3 nearest = nearest_direction(directions, fan, distance_mm, n, part.axis_W);
+    const double there = distance_to_bone(*volume_, {centre, voxels_per_mm_ * nearest}, part.radius_mm);
+    const bool nearer = there < distance_mm[n];
+    add_contact(part, centre_W, nearer ? nearest : directions[n], nearer ? there : distance_mm[n]);
+  }
+  for (std::size_t n = 0; n < count; ++n) {
+    if (!is_met(n) || distance_mm[n] - part.radius_mm + part.bite_mm > kWithinStride_mm) continue;
+    if (is_explained(part, directions[n], distance_mm[n])) continue;
+    add_contact(part, centre_W, directions[n], distance_mm[n]);
   }
 }
 
 std::span<const ToolContact> SurfaceContacts::find(const Pose& X_WT) {
   contacts_.clear();
-  find_at_sphere(X_WT);
-  find_at_rings(X_WT);
+  if (bone_near_disc(*volume_, X_WT.position_mm, Vec3::Zero(), tool_.burr_radius_mm + kReach_mm)) {
+    find_at({&sphere_, tool_.burr_radius_mm, bite_mm_, Vec3::Zero()}, rays_of(sphere_, X_WT),
+            X_WT.position_mm);
+  }
+  const Vec3 axis_W = shaft_direction(X_WT);
+  const Part ring{&ring_, tool_.shaft_radius_mm, 0.0, axis_W};
+  const Rays rays = rays_of(ring_, X_WT);
+  for (const Vec3& centre_T : ring_centres_T_) {
+    const Vec3 centre_W = X_WT * centre_T;
+    if (bone_near_disc(*volume_, centre_W, axis_W, ring.radius_mm + kReach_mm)) {
+      find_at(ring, rays, centre_W);
+    }
+  }
   return contacts_;
 }
 

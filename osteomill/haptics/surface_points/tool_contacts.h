@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "osteomill/haptics/surface_points/ray_fan.h"
 #include "osteomill/tool/milling_tool.h"
-#include "osteomill/tool/sample_points.h"
 #include "osteomill/volume/volume.h"
 
 namespace osteomill {
@@ -19,9 +19,10 @@ struct ToolContact {
 };
 
 /// Finds where the burr's sphere and the free shaft are near bone, from outside it. Rays go out from the
-/// burr's centre through its vertices, and from the middle of each ring of the shaft through the ring's
-/// vertices; where one meets bone, a few more rays close in on the nearest point of the surface. A ray that
-/// starts in bone finds nothing.
+/// burr's centre, and from the middle of each ring of the shaft through the ring's vertices. A ray that meets
+/// bone sooner than those beside it stands for a contact: together they say where the surface, taken to be
+/// flat there, comes nearest, and one more ray looks there. Other rays count where their bone stands out from
+/// all planes so found. A ray that starts in bone finds nothing.
 class SurfaceContacts {
  public:
   /// `rings` circles along the free shaft. The burr may stand `bite_mm` deep in bone before a contact counts
@@ -36,20 +37,32 @@ class SurfaceContacts {
   static constexpr double kReach_mm = 0.3;
 
  private:
-  void find_at_sphere(const Pose& X_WT);
-  void find_at_rings(const Pose& X_WT);
-  bool is_known(const Vec3& direction_W) const;
-  void look_along(const Vec3& centre_W, const Vec3& direction_W, double radius_mm, double bite_mm,
-                  const Vec3* axis_W);
+  // The sphere, or a ring about `axis_W`.
+  struct Part {
+    const RayFan* fan;
+    double radius_mm;
+    double bite_mm;
+    Vec3 axis_W;
+  };
+  // A fan's directions as the tool stands, and as ways through the grid (voxels a mm).
+  struct Rays {
+    std::array<Vec3, RayFan::kMostRays> directions_W;
+    std::array<Vec3, RayFan::kMostRays> ways;
+  };
+  Rays rays_of(const RayFan& fan, const Pose& X_WT) const;
+  void find_at(const Part& part, const Rays& rays, const Vec3& centre_W);
+  void add_contact(const Part& part, const Vec3& centre_W, const Vec3& direction_W, double distance_mm);
+  bool is_explained(const Part& part, const Vec3& direction_W, double distance_mm) const;
 
   const Volume* volume_ = nullptr;
   MillingTool tool_;
+  Mat3 voxels_per_mm_ = Mat3::Identity();
   double bite_mm_ = 0;
-  std::vector<Vec3> sphere_T_;
+  RayFan sphere_;
+  RayFan ring_;
   std::vector<Vec3> ring_centres_T_;
-  // The same for all rings: from the centre to each vertex.
-  std::array<Vec3, kSliceVertices> ring_arms_T_;
   std::vector<ToolContact> contacts_;
+  // Of the part looked at.
   std::size_t first_of_part_ = 0;
 };
 

@@ -16,9 +16,10 @@ Vec3 interpolated_spring(const Volume& volume, const Vec3& vertex_W, const Vec3&
   return interpolated_share(vertex_density, free_density, volume.isovalue()) * (free_W - vertex_W);
 }
 
-Vec3 marched_spring(const Volume& volume, const Vec3& vertex_W, const Vec3& free_W) {
-  if (density_at(volume.grid(), free_W) > volume.isovalue()) return free_W - vertex_W;
-  const std::optional<double> share = share_to_bone(volume, free_W, vertex_W);
+Vec3 marched_spring(const Volume& volume, const Vec3& vertex_W, const Vec3& free_W, double known_free_mm) {
+  const bool starts_in_bone = known_free_mm <= 0 && density_at(volume.grid(), free_W) > volume.isovalue();
+  if (starts_in_bone) return free_W - vertex_W;
+  const std::optional<double> share = share_to_bone(volume, free_W, vertex_W, known_free_mm);
   return share ? Vec3((1 - *share) * (free_W - vertex_W)) : Vec3(Vec3::Zero());
 }
 

@@ -14,9 +14,9 @@ double interpolated_share(double vertex_density, double free_density, double iso
 /// haptic tick.
 Vec3 interpolated_spring(const Volume& volume, const Vec3& vertex_W, const Vec3& free_W);
 
-/// The same as far as the first bone that is met on the way from `free_W` to `vertex_W`; the whole way
-/// where `free_W` is itself in bone. Safe in the haptic
+/// The same as far as the first bone that is met on the way from `free_W` to `vertex_W`, of which the first
+/// `known_free_mm` are known to be free; the whole way where `free_W` is itself in bone. Safe in the haptic
 /// tick.
-Vec3 marched_spring(const Volume& volume, const Vec3& vertex_W, const Vec3& free_W);
+Vec3 marched_spring(const Volume& volume, const Vec3& vertex_W, const Vec3& free_W, double known_free_mm = 0);
 
 }  // namespace osteomill
