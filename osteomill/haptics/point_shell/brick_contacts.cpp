@@ -1,5 +1,6 @@
 #include "osteomill/haptics/point_shell/brick_contacts.h"
 
+#include <algorithm>
 #include <bit>
 
 #include "osteomill/haptics/point_shell/brick_kernel.h"
@@ -8,6 +9,9 @@
 namespace osteomill {
 
 namespace {
+
+// More than the rounding of a place near the tool.
+constexpr double kClear_mm = 1e-6;
 
 KernelTool kernel_tool(const ContactTool& tool, const Penalty& penalty) {
   const MillingTool& t = tool.tool();
@@ -38,7 +42,10 @@ double lane_sum(const double (&lanes)[KernelSums::kLanes]) {
 ContactSum side_sum(const KernelSums& sums) {
   double s[KernelSums::kSide];
   for (int n = 0; n < KernelSums::kSide; ++n) s[n] = lane_sum(sums.side[n]);
-  const double *k = s + 4, *kz = s + 7, *kzz = s + 10;  // uu, uw, ww
+  // uu, uw, ww of k times 1, z and z^2; u and w make a unit vector.
+  const double k[] = {s[5], s[6], s[4] - s[5]};
+  const double kz[] = {s[8], s[9], s[7] - s[8]};
+  const double kzz[] = {s[11], s[12], s[10] - s[11]};
   ContactSum sum;
   sum.force_N = {-s[0], -s[1], 0};
   sum.torque_Nmm = {s[3], -s[2], 0};
@@ -56,6 +63,19 @@ ContactSum sphere_sum(const KernelSums& sums) {
   sum.force_N = {-s[0], -s[1], -s[2]};
   sum.K_ff << s[3], s[4], s[5], s[4], s[6], s[7], s[5], s[7], s[8];
   return sum;
+}
+
+enum class Part : unsigned char { side, sphere, any };
+
+// Which part of the tool all points in a sphere meet, if they meet it at all.
+Part part_met(const KernelTool& tool, const Vec3& centre_T, double radius_mm) {
+  const double least_z = centre_T.z() - radius_mm, greatest_z = centre_T.z() + radius_mm;
+  const double beside_burr = std::max(tool.shaft_radius_mm, tool.burr_radius_mm + tool.reach_mm);
+  const bool off_axis = centre_T.head<2>().norm() > radius_mm + kClear_mm;
+  if (off_axis && least_z > beside_burr && greatest_z < tool.shaft_length_mm - tool.shaft_radius_mm) {
+    return Part::side;
+  }
+  return greatest_z < -tool.reach_mm - kClear_mm ? Part::sphere : Part::any;
 }
 
 // Whether a sphere lies clear of the tool. Beside a corner of the shaft's end it may say no where it is
@@ -98,7 +118,12 @@ ToolContacts contacts_by_bricks(const PointShell& shell, const MillingTool& mill
   shell.octree().visit(is_node_clear, [&](int bi, int bj, int bk) {
     const Vec3 origin_T = X_TG * shell.brick_origin_G(bi, bj, bk);
     for (int axis = 0; axis < 3; ++axis) frame.origin_mm[axis] = origin_T[axis];
-    const std::uint32_t first = points.brick(shell.brick_index(bi, bj, bk)).first_chunk;
+    const BrickPoints::Brick& brick = points.brick(shell.brick_index(bi, bj, bk));
+    const std::uint32_t first = brick.first_chunk;
+    const Vec3 centre_T = origin_T + X_TG.turn * centre_of(brick.bound);
+    const Part part = part_met(shape, centre_T, static_cast<double>(brick.bound.radius_mm));
+    if (part == Part::side) return add_side_points(points, first, frame, shape, sums);
+    if (part == Part::sphere) return add_sphere_points(points, first, frame, shape, sums);
     for (std::uint32_t c = first; c != BrickPoints::kNoChunk; c = points.next_chunk(c)) {
       const PointChunk& chunk = points.chunk(c);
       for (std::uint32_t rest = add_points(chunk, frame, shape, sums); rest != 0; rest &= rest - 1) {

@@ -55,27 +55,32 @@ struct Push {
   M touches;
 };
 
-// Penalty::push, for lanes in `wanted`; zero in all others.
+// Penalty::push, for lanes in `wanted`; zero in all others. Nearly all patches lie in the tool as a whole,
+// and then no root is needed.
 HWY_INLINE Push push(const KernelTool& tool, M wanted, V distance, V area, V cosine, double curvature) {
   const V k = hn::Mul(constant(tool.stiffness_N_per_mm3), area);
   const V patch = hn::Min(area, constant(tool.greatest_patch_mm2));
   const V sine2 = hn::Max(hn::Zero(d), hn::Sub(constant(1), hn::Mul(cosine, cosine)));
-  const V square = hn::Mul(patch, sine2);  // of twice the spread
-  const V inverse = inverse_root(hn::Max(square, constant(1e-30)));
-  const V spread = hn::Mul(hn::Mul(constant(0.5), square), inverse);
+  const V spread2 = hn::Mul(hn::Mul(constant(0.25), patch), sine2);
   const V mean = hn::Sub(hn::Neg(distance), hn::Mul(patch, constant(curvature / 24)));
-  const V part = hn::Mul(hn::Add(mean, spread), inverse);
-  const M whole = hn::Ge(mean, spread);
-  const V depth = hn::IfThenElse(whole, mean, hn::Mul(hn::Mul(part, part), spread));
-  const V share = hn::IfThenElse(whole, constant(1), part);
-  const M touches =
-      hn::And(hn::And(wanted, hn::Gt(mean, hn::Neg(spread))), hn::Gt(hn::Mul(k, depth), hn::Zero(d)));
-  return {hn::IfThenElseZero(touches, hn::Mul(k, depth)), hn::IfThenElseZero(touches, hn::Mul(k, share)),
-          touches};
+  M touches = hn::And(wanted, hn::Gt(hn::Mul(k, mean), hn::Zero(d)));
+  const M in_part = hn::And(wanted, hn::Lt(hn::Mul(mean, mean), spread2));
+  V force = hn::Mul(k, mean), stiffness = k;
+  if (!hn::AllFalse(d, in_part)) {
+    const V inverse = inverse_root(hn::Max(spread2, constant(1e-30)));
+    const V spread = hn::Mul(spread2, inverse);
+    const V part = hn::Mul(constant(0.5), hn::Mul(hn::Add(mean, spread), inverse));
+    const V part_stiffness = hn::Mul(k, part);
+    const V part_force = hn::Mul(part_stiffness, hn::Mul(part, spread));
+    force = hn::IfThenElse(in_part, part_force, force);
+    stiffness = hn::IfThenElse(in_part, part_stiffness, stiffness);
+    touches = hn::Or(touches, hn::And(in_part, hn::Gt(part_force, hn::Zero(d))));
+  }
+  return {hn::IfThenElseZero(touches, force), hn::IfThenElseZero(touches, stiffness), touches};
 }
 
 struct SideSums {
-  V fu, fw, fzu, fzw, uu0, uw0, ww0, uu1, uw1, ww1, uu2, uw2, ww2;
+  V fu, fw, fzu, fzw, k0, uu0, uw0, k1, uu1, uw1, k2, uu2, uw2;
 };
 struct SphereSums {
   V fx, fy, fz, xx, xy, xz, yy, yz, zz;
@@ -91,18 +96,18 @@ HWY_INLINE void add_side(SideSums& s, const Push& p, V u, V w, V z) {
   add(s.fw, fw);
   add(s.fzu, hn::Mul(fu, z));
   add(s.fzw, hn::Mul(fw, z));
-  const V ku = hn::Mul(p.stiffness, u), kw = hn::Mul(p.stiffness, w);
-  const V uu = hn::Mul(ku, u), uw = hn::Mul(ku, w), ww = hn::Mul(kw, w);
+  const V ku = hn::Mul(p.stiffness, u);
+  const V uu = hn::Mul(ku, u), uw = hn::Mul(ku, w);
+  add(s.k0, p.stiffness);
   add(s.uu0, uu);
   add(s.uw0, uw);
-  add(s.ww0, ww);
-  const V uu1 = hn::Mul(uu, z), uw1 = hn::Mul(uw, z), ww1 = hn::Mul(ww, z);
+  const V k1 = hn::Mul(p.stiffness, z), uu1 = hn::Mul(uu, z), uw1 = hn::Mul(uw, z);
+  add(s.k1, k1);
   add(s.uu1, uu1);
   add(s.uw1, uw1);
-  add(s.ww1, ww1);
+  add(s.k2, hn::Mul(k1, z));
   add(s.uu2, hn::Mul(uu1, z));
   add(s.uw2, hn::Mul(uw1, z));
-  add(s.ww2, hn::Mul(ww1, z));
 }
 
 HWY_INLINE void add_sphere(SphereSums& s, const Push& p, const Vector& n) {
@@ -123,7 +128,7 @@ HWY_INLINE SideSums load_side(const KernelSums& sums, std::size_t lane) {
   return {at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7), at(8), at(9), at(10), at(11), at(12)};
 }
 HWY_INLINE void store(const SideSums& s, KernelSums& sums, std::size_t lane) {
-  const V all[] = {s.fu, s.fw, s.fzu, s.fzw, s.uu0, s.uw0, s.ww0, s.uu1, s.uw1, s.ww1, s.uu2, s.uw2, s.ww2};
+  const V all[] = {s.fu, s.fw, s.fzu, s.fzw, s.k0, s.uu0, s.uw0, s.k1, s.uu1, s.uw1, s.k2, s.uu2, s.uw2};
   for (int n = 0; n < KernelSums::kSide; ++n) hn::Store(all[n], d, &sums.side[n][lane]);
 }
 HWY_INLINE SphereSums load_sphere(const KernelSums& sums, std::size_t lane) {
@@ -246,41 +251,50 @@ HWY_INLINE std::uint32_t sift(const PointChunk& chunk, const KernelFrame& frame,
   return found;
 }
 
+HWY_INLINE std::size_t touch_side(const Points& p, M wanted, V inverse, const KernelFrame& frame,
+                                  const KernelTool& tool, SideSums& sums) {
+  const V u = hn::Mul(p.at.x, inverse), w = hn::Mul(p.at.y, inverse);
+  const V distance = hn::Sub(hn::Mul(p.radial2, inverse), constant(tool.shaft_radius_mm));
+  const V cosine =
+      hn::Add(hn::Mul(u, row(frame.turn[0], p.normal_G)), hn::Mul(w, row(frame.turn[1], p.normal_G)));
+  const Push found = push(tool, wanted, distance, p.area, cosine, 1 / tool.shaft_radius_mm);
+  add_side(sums, found, u, w, p.at.z);
+  return hn::CountTrue(d, found.touches);
+}
+
+HWY_INLINE std::size_t touch_sphere(const Points& p, M wanted, V inverse, const KernelFrame& frame,
+                                    const KernelTool& tool, SphereSums& sums) {
+  const Vector n{hn::Mul(p.at.x, inverse), hn::Mul(p.at.y, inverse), hn::Mul(p.at.z, inverse)};
+  const V distance = hn::Sub(hn::Mul(p.from_centre2, inverse), constant(tool.burr_radius_mm));
+  const V cosine = hn::Add(
+      hn::Add(hn::Mul(n.x, row(frame.turn[0], p.normal_G)), hn::Mul(n.y, row(frame.turn[1], p.normal_G))),
+      hn::Mul(n.z, row(frame.turn[2], p.normal_G)));
+  const Push found = push(tool, wanted, distance, p.area, cosine, 2 / tool.burr_radius_mm);
+  add_sphere(sums, found, n);
+  return hn::CountTrue(d, found.touches);
+}
+
+constexpr std::uint32_t kWidthBits = (1u << kWidth) - 1u;
+
 std::uint32_t AddPoints(const PointChunk& chunk, const KernelFrame& frame, const KernelTool& tool,
                         KernelSums& sums) {
   const std::uint32_t near = sift(chunk, frame, tool);
   if (near == 0) return 0;
-  const double burr_curvature = 2 / tool.burr_radius_mm, shaft_curvature = 1 / tool.shaft_radius_mm;
   std::uint32_t rest = 0;
   std::size_t touching = 0;
   for (std::size_t lane = 0; lane < kGroup; lane += kWidth) {
     SideSums side = load_side(sums, lane);
     SphereSums sphere = load_sphere(sums, lane);
     for (std::size_t slot = lane; slot < PointChunk::kSlots; slot += kGroup) {
-      if ((near >> slot & ((1u << kWidth) - 1u)) == 0) continue;
+      if ((near >> slot & kWidthBits) == 0) continue;
       const Points p = points_at(chunk, slot, frame);
       const Parts parts = parts_of(p, tool);
       rest |= bits_of(parts.rest) << slot;
-      const V normal_x = row(frame.turn[0], p.normal_G), normal_y = row(frame.turn[1], p.normal_G);
       if (!hn::AllFalse(d, parts.side)) {
-        const V u = hn::Mul(p.at.x, parts.side_inverse), w = hn::Mul(p.at.y, parts.side_inverse);
-        const V distance = hn::Sub(hn::Mul(p.radial2, parts.side_inverse), constant(tool.shaft_radius_mm));
-        const V cosine = hn::Add(hn::Mul(u, normal_x), hn::Mul(w, normal_y));
-        const Push found = push(tool, parts.side, distance, p.area, cosine, shaft_curvature);
-        touching += hn::CountTrue(d, found.touches);
-        add_side(side, found, u, w, p.at.z);
+        touching += touch_side(p, parts.side, parts.side_inverse, frame, tool, side);
       }
       if (!hn::AllFalse(d, parts.sphere)) {
-        const V normal_z = row(frame.turn[2], p.normal_G);
-        const Vector n{hn::Mul(p.at.x, parts.sphere_inverse), hn::Mul(p.at.y, parts.sphere_inverse),
-                       hn::Mul(p.at.z, parts.sphere_inverse)};
-        const V distance =
-            hn::Sub(hn::Mul(p.from_centre2, parts.sphere_inverse), constant(tool.burr_radius_mm));
-        const V cosine =
-            hn::Add(hn::Add(hn::Mul(n.x, normal_x), hn::Mul(n.y, normal_y)), hn::Mul(n.z, normal_z));
-        const Push found = push(tool, parts.sphere, distance, p.area, cosine, burr_curvature);
-        touching += hn::CountTrue(d, found.touches);
-        add_sphere(sphere, found, n);
+        touching += touch_sphere(p, parts.sphere, parts.sphere_inverse, frame, tool, sphere);
       }
     }
     store(side, sums, lane);
@@ -288,6 +302,46 @@ std::uint32_t AddPoints(const PointChunk& chunk, const KernelFrame& frame, const
   }
   sums.touching += static_cast<int>(touching);
   return rest;
+}
+
+void AddSidePoints(const BrickPoints& points, std::uint32_t first_chunk, const KernelFrame& frame,
+                   const KernelTool& tool, KernelSums& sums) {
+  std::size_t touching = 0;
+  for (std::size_t lane = 0; lane < kGroup; lane += kWidth) {
+    SideSums side = load_side(sums, lane);
+    for (std::uint32_t c = first_chunk; c != BrickPoints::kNoChunk; c = points.next_chunk(c)) {
+      const PointChunk& chunk = points.chunk(c);
+      const std::uint32_t near = sift(chunk, frame, tool);
+      for (std::size_t slot = lane; slot < PointChunk::kSlots; slot += kGroup) {
+        if ((near >> slot & kWidthBits) == 0) continue;
+        const Points p = points_at(chunk, slot, frame);
+        const V inverse = inverse_root(hn::Max(p.radial2, constant(kOnAxis_mm2)));
+        touching += touch_side(p, hn::Gt(p.area, hn::Zero(d)), inverse, frame, tool, side);
+      }
+    }
+    store(side, sums, lane);
+  }
+  sums.touching += static_cast<int>(touching);
+}
+
+void AddSpherePoints(const BrickPoints& points, std::uint32_t first_chunk, const KernelFrame& frame,
+                     const KernelTool& tool, KernelSums& sums) {
+  std::size_t touching = 0;
+  for (std::size_t lane = 0; lane < kGroup; lane += kWidth) {
+    SphereSums sphere = load_sphere(sums, lane);
+    for (std::uint32_t c = first_chunk; c != BrickPoints::kNoChunk; c = points.next_chunk(c)) {
+      const PointChunk& chunk = points.chunk(c);
+      const std::uint32_t near = sift(chunk, frame, tool);
+      for (std::size_t slot = lane; slot < PointChunk::kSlots; slot += kGroup) {
+        if ((near >> slot & kWidthBits) == 0) continue;
+        const Points p = points_at(chunk, slot, frame);
+        const V inverse = inverse_root(hn::Max(p.from_centre2, constant(kOnAxis_mm2)));
+        touching += touch_sphere(p, hn::Gt(p.area, hn::Zero(d)), inverse, frame, tool, sphere);
+      }
+    }
+    store(sphere, sums, lane);
+  }
+  sums.touching += static_cast<int>(touching);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -298,10 +352,22 @@ HWY_AFTER_NAMESPACE();
 namespace osteomill {
 
 HWY_EXPORT(AddPoints);
+HWY_EXPORT(AddSidePoints);
+HWY_EXPORT(AddSpherePoints);
 
 std::uint32_t add_points(const PointChunk& chunk, const KernelFrame& frame, const KernelTool& tool,
                          KernelSums& sums) {
   return HWY_DYNAMIC_DISPATCH(AddPoints)(chunk, frame, tool, sums);
+}
+
+void add_side_points(const BrickPoints& points, std::uint32_t first_chunk, const KernelFrame& frame,
+                     const KernelTool& tool, KernelSums& sums) {
+  HWY_DYNAMIC_DISPATCH(AddSidePoints)(points, first_chunk, frame, tool, sums);
+}
+
+void add_sphere_points(const BrickPoints& points, std::uint32_t first_chunk, const KernelFrame& frame,
+                       const KernelTool& tool, KernelSums& sums) {
+  HWY_DYNAMIC_DISPATCH(AddSpherePoints)(points, first_chunk, frame, tool, sums);
 }
 
 std::int64_t kernel_targets() {

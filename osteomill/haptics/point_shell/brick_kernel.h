@@ -46,6 +46,15 @@ struct KernelSums {
 std::uint32_t add_points(const PointChunk& chunk, const KernelFrame& frame, const KernelTool& tool,
                          KernelSums& sums);
 
+/// The same for all chunks from `first_chunk` on, where it is known that every point is nearest to the
+/// shaft's side, off its axis and above `burr_top_mm`, or does not touch.
+void add_side_points(const BrickPoints& points, std::uint32_t first_chunk, const KernelFrame& frame,
+                     const KernelTool& tool, KernelSums& sums);
+/// Where every point is nearest to the burr's sphere, off its centre and below `burr_top_mm`, or does not
+/// touch.
+void add_sphere_points(const BrickPoints& points, std::uint32_t first_chunk, const KernelFrame& frame,
+                       const KernelTool& tool, KernelSums& sums);
+
 /// The sets of vector instructions that `add_points` was compiled for, as bits of hwy/targets.h.
 std::int64_t kernel_targets();
 
