@@ -80,6 +80,7 @@ class PointShell {
   };
   bool start_sweep();
   int refresh_next_brick();
+  int refresh_brick_of_sweep(const VoxelIndex& brick);
   int refresh_brick(int bi, int bj, int bk, const VoxelBox& cells);
   int move_points(int bi, int bj, int bk, const VoxelBox& cells);
   int rebuild_brick(int bi, int bj, int bk, const VoxelBox& cells, const CellMask& mask);
@@ -92,6 +93,9 @@ class PointShell {
   std::vector<CellMask> masks_;
   Vec3 brick_side_mm_ = Vec3::Zero();
   Vec3 box_margin_mm_ = Vec3::Zero();
+  // Room for one brick's points while it is rebuilt.
+  std::vector<ShellPoint> old_points_;
+  std::vector<ShellPoint> new_points_;
   Sweep sweep_;
   VoxelBox waiting_;
 };
