@@ -16,8 +16,8 @@ constexpr double kCarryLayer_voxels = 0.5;
 // nearly everything in reach, and what is left then is carried.
 constexpr int kSpreadingPasses = 8;
 // So many voxels a tick are lowered at most, but for the first ticks in which there are more.
-constexpr std::size_t kVoxelsOfTick = 1024;
-constexpr unsigned kMostShares = 16;
+constexpr std::size_t kVoxelsOfTick = 512;
+constexpr unsigned kMostShares = 64;
 
 // The least float that is not below `density`.
 float float_not_below(double density) {
@@ -84,15 +84,19 @@ MillingStep BurrMill::step(Volume& volume, const Vec3& burr_centre_W, double bur
 // Every second line then takes twice as much every second tick, and so on: lines, since they sample all of
 // the burr alike.
 void BurrMill::share_after(std::size_t found) {
-  const std::size_t all = found * share_.count;
-  unsigned count = 1;
-  while (count < kMostShares && all > kVoxelsOfTick * count) count *= 2;
-  share_.count = count;
+  found_of_round_ += found;
   ++share_.turn;
+  const bool too_many = found > 2 * kVoxelsOfTick && share_.count < kMostShares;
+  if (!too_many && share_.turn < share_.count) return;
+  const std::size_t all = too_many ? found * share_.count : found_of_round_;
+  share_ = {};
+  while (share_.count < kMostShares && all > kVoxelsOfTick * share_.count) share_.count *= 2;
+  found_of_round_ = 0;
 }
 
 void BurrMill::reset() {
   share_ = {};
+  found_of_round_ = 0;
   carry_mm3_ = 0;
   force_free_s_ = 0;
   reach_.forget();

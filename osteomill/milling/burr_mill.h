@@ -36,9 +36,9 @@ struct MillingStep {
 /// without force: a burr lifted off owes nothing to the place it touches next. Cutting without pause meets
 /// neither limit.
 ///
-/// Where the burr overlaps more than about a thousand voxels, a step looks at every second line of the grid,
-/// or at every fourth, ... sixteenth, in turn, and spends all of its budget there: so a step's time is
-/// bounded whatever the burr and the voxels.
+/// Where the burr overlaps more than about five hundred voxels, a step looks at every second line of the
+/// grid, or at every fourth, ... sixty-fourth, in turn, and spends all of its budget there: so a step's time
+/// is bounded whatever the burr and the voxels.
 ///
 /// Not in the paper, whose milling rule is in earlier work; docs/algorithms.md.
 class BurrMill {
@@ -71,7 +71,8 @@ class BurrMill {
   float floor_density_;
   BurrReach reach_;
   BurrReach::Share share_;
-  std::vector<float> lowered_;  // the new densities of what is in reach
+  std::size_t found_of_round_ = 0;  // since all lines had their turn
+  std::vector<float> lowered_;      // the new densities of what is in reach
 
   double carry_mm3_ = 0;
   double force_free_s_ = 0;

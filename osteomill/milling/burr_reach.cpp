@@ -23,6 +23,19 @@ std::size_t most_across(const GridGeometry& geometry, double radius_mm, int axis
   return static_cast<std::size_t>(std::min(across, static_cast<double>(dim)));
 }
 
+std::size_t row_in_brick(int j, int k) {
+  constexpr int kSide = BrickRanges::kBrickVoxels;
+  return static_cast<std::size_t>(j % kSide + kSide * (k % kSide));
+}
+
+void prefetch(const float* address) {
+#if defined(__GNUC__)
+  __builtin_prefetch(address);
+#else
+  (void)address;
+#endif
+}
+
 }  // namespace
 
 BurrReach::BurrReach(const GridGeometry& geometry, double radius_mm, float floor_density)
@@ -38,6 +51,7 @@ BurrReach::BurrReach(const GridGeometry& geometry, double radius_mm, float floor
   bits_.resize(bricks);
   const std::size_t lines = most_across(geometry, radius_mm, 1) * most_across(geometry, radius_mm, 2);
   rows_.reserve(lines * (most_across(geometry, radius_mm, 0) / kSide + 2));
+  candidates_.reserve(rows_.capacity());
   // One more than there can be, as a sign that there was room.
   const std::size_t voxels = most_voxels_in_ball(geometry, radius_mm) + 1;
   columns_.resize(voxels);
@@ -48,6 +62,7 @@ BurrReach::BurrReach(const GridGeometry& geometry, double radius_mm, float floor
 void BurrReach::find(const Volume& volume, const Vec3& centre_W, const Share& share) {
   if (known_volume_ != &volume) std::fill(states_.begin(), states_.end(), State::unknown);
   known_volume_ = &volume;
+  candidates_.clear();
   rows_.clear();
   size_ = 0;
   const Vec3 centre_mm = geometry_.direction.transpose() * (centre_W - geometry_.origin_mm);
@@ -67,10 +82,11 @@ void BurrReach::find(const Volume& volume, const Vec3& centre_W, const Share& sh
         const std::size_t brick = line + static_cast<std::size_t>(bi);
         if (states_[brick] == State::empty || x.of_brick_mm2[static_cast<std::size_t>(bi)] >= left2) continue;
         if (states_[brick] == State::unknown) look_at(volume, bi, bj, bk, brick);
-        if (states_[brick] == State::holds) find_in_brick(volume.grid(), bi, bj, bk, share);
+        if (states_[brick] == State::holds) find_candidates(volume.grid(), bi, bj, bk, brick, share);
       }
     }
   }
+  for (const Candidate& candidate : candidates_) take(volume.grid(), candidate);
 }
 
 void BurrReach::measure(Squares& squares, double centre_mm, std::size_t axis) const {
@@ -115,34 +131,29 @@ void BurrReach::look_at(const Volume& volume, int bi, int bj, int bk, std::size_
   }
 }
 
-void BurrReach::find_in_brick(const DensityGrid& grid, int bi, int bj, int bk, const Share& share) {
+void BurrReach::find_candidates(const DensityGrid& grid, int bi, int bj, int bk, std::size_t brick,
+                                const Share& share) {
   const auto& dims = geometry_.dims;
   const auto& [x, y, z] = squares_;
-  const std::size_t brick = static_cast<std::size_t>(bi) +
-                            static_cast<std::size_t>(brick_dims_[0]) *
-                                (static_cast<std::size_t>(bj) +
-                                 static_cast<std::size_t>(brick_dims_[1]) * static_cast<std::size_t>(bk));
-  Bits& bits = bits_[brick];
+  const Bits& bits = bits_[brick];
   const double radius2 = radius_mm_ * radius_mm_, nearest2 = x.of_brick_mm2[static_cast<std::size_t>(bi)];
   const int end_j = std::min(kSide * bj + kSide, dims[1]), end_k = std::min(kSide * bk + kSide, dims[2]);
-  bool emptied = false;
   for (int k = kSide * bk; k < end_k; ++k) {
     const double across_z = radius2 - z.of_voxel_mm2[static_cast<std::size_t>(k)];
     // Lines of the share are those with j + 3 k - turn a multiple of its count.
     const unsigned before = (share.turn - static_cast<unsigned>(kSide * bj + 3 * k)) & (share.count - 1);
     for (int j = kSide * bj + static_cast<int>(before); j < end_j; j += static_cast<int>(share.count)) {
-      std::uint8_t& byte = bits[static_cast<std::size_t>(j - kSide * bj + kSide * (k - kSide * bk))];
+      const unsigned byte = bits[row_in_brick(j, k)];
       const double half2 = across_z - y.of_voxel_mm2[static_cast<std::size_t>(j)];
       if (byte == 0 || nearest2 >= half2) continue;
       const unsigned inside = byte & in_ball(bi, half2);
       if (inside == 0) continue;
-      const unsigned gone =
-          take(grid.densities().data() + grid.linear_index({kSide * bi, j, k}), inside, bi, j, k);
-      byte = static_cast<std::uint8_t>(byte & ~gone);
-      emptied = emptied || gone != 0;
+      const VoxelIndex first{kSide * bi, j, k};
+      candidates_.push_back({grid.linear_index(first), brick, first, static_cast<std::uint8_t>(inside)});
+      // Each row lies in a cache line of its own; by the time that all are known, the first have come.
+      prefetch(grid.densities().data() + candidates_.back().first_voxel);
     }
   }
-  if (emptied && bits == Bits{}) states_[brick] = State::empty;
 }
 
 // The columns of a brick that lie in the ball, a bit each.
@@ -153,27 +164,33 @@ unsigned BurrReach::in_ball(int bi, double half2_mm2) const {
   return bits;
 }
 
-// Lists those of a row's voxels that are denser than the floor, and returns the others.
-unsigned BurrReach::take(const float* densities, unsigned bits, int bi, int j, int k) {
+// Lists those that are denser than the floor, and forgets the others.
+void BurrReach::take(const DensityGrid& grid, const Candidate& candidate) {
   const std::size_t begin = size_;
   const auto& [x, y, z] = squares_;
+  const auto& [i, j, k] = candidate.first;
+  const float* densities = grid.densities().data() + candidate.first_voxel;
   const double across2 =
       y.of_voxel_mm2[static_cast<std::size_t>(j)] + z.of_voxel_mm2[static_cast<std::size_t>(k)];
-  const double* along2 = &x.of_voxel_mm2[static_cast<std::size_t>(kSide * bi)];
+  const double* along2 = &x.of_voxel_mm2[static_cast<std::size_t>(i)];
   unsigned gone = 0;
-  for (; bits != 0; bits &= bits - 1) {
+  for (unsigned bits = candidate.bits; bits != 0; bits &= bits - 1) {
     const int n = std::countr_zero(bits);
     if (!(densities[n] > floor_density_)) {
       gone |= 1u << n;
       continue;
     }
-    columns_[size_] = kSide * bi + n;
+    columns_[size_] = i + n;
     densities_[size_] = densities[n];
     depths_mm_[size_] = static_cast<float>(std::max(0.0, radius_mm_ - std::sqrt(across2 + along2[n])));
     ++size_;
   }
   if (size_ > begin) rows_.push_back({j, k, begin, size_});
-  return gone;
+  if (gone == 0) return;
+  Bits& held = bits_[candidate.brick];
+  std::uint8_t& byte = held[row_in_brick(j, k)];
+  byte = static_cast<std::uint8_t>(byte & ~gone);
+  if (byte == 0 && held == Bits{}) states_[candidate.brick] = State::empty;
 }
 
 }  // namespace osteomill

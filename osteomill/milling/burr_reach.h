@@ -68,9 +68,17 @@ class BurrReach {
 
   void measure(Squares& squares, double centre_mm, std::size_t axis) const;
   void look_at(const Volume& volume, int bi, int bj, int bk, std::size_t brick);
-  void find_in_brick(const DensityGrid& grid, int bi, int bj, int bk, const Share& share);
+  /// Voxels of a row that lie in the ball and may be denser than the floor.
+  struct Candidate {
+    std::size_t first_voxel;
+    std::size_t brick;
+    VoxelIndex first;
+    std::uint8_t bits;
+  };
+  void find_candidates(const DensityGrid& grid, int bi, int bj, int bk, std::size_t brick,
+                       const Share& share);
   unsigned in_ball(int bi, double half2_mm2) const;
-  unsigned take(const float* densities, unsigned bits, int bi, int j, int k);
+  void take(const DensityGrid& grid, const Candidate& candidate);
 
   GridGeometry geometry_;
   double radius_mm_;
@@ -82,6 +90,7 @@ class BurrReach {
   std::vector<Bits> bits_;
   std::array<Squares, 3> squares_;
 
+  std::vector<Candidate> candidates_;
   std::vector<Row> rows_;
   std::size_t size_ = 0;
   std::vector<int> columns_;

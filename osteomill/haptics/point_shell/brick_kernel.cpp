@@ -258,6 +258,7 @@ HWY_INLINE std::size_t touch_side(const Points& p, M wanted, V inverse, const Ke
   const V cosine =
       hn::Add(hn::Mul(u, row(frame.turn[0], p.normal_G)), hn::Mul(w, row(frame.turn[1], p.normal_G)));
   const Push found = push(tool, wanted, distance, p.area, cosine, 1 / tool.shaft_radius_mm);
+  if (hn::AllFalse(d, found.touches)) return 0;
   add_side(sums, found, u, w, p.at.z);
   return hn::CountTrue(d, found.touches);
 }
@@ -270,6 +271,7 @@ HWY_INLINE std::size_t touch_sphere(const Points& p, M wanted, V inverse, const 
       hn::Add(hn::Mul(n.x, row(frame.turn[0], p.normal_G)), hn::Mul(n.y, row(frame.turn[1], p.normal_G))),
       hn::Mul(n.z, row(frame.turn[2], p.normal_G)));
   const Push found = push(tool, wanted, distance, p.area, cosine, 2 / tool.burr_radius_mm);
+  if (hn::AllFalse(d, found.touches)) return 0;
   add_sphere(sums, found, n);
   return hn::CountTrue(d, found.touches);
 }

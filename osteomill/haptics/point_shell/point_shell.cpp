@@ -12,8 +12,8 @@ namespace {
 constexpr std::size_t kSpareChunks = 8192;
 
 // What looking at a brick costs, in points computed.
-constexpr int kBrickCost = 12;
-constexpr int kBrickDeepInBoneCost = 1;
+constexpr int kBrickCost = 20;
+constexpr int kBrickPassedOverCost = 1;
 
 std::uint32_t count_of(const std::array<std::uint8_t, 64>& mask) {
   std::uint32_t count = 0;
@@ -114,13 +114,24 @@ int PointShell::refresh_next_brick() {
 }
 
 int PointShell::refresh_brick_of_sweep(const VoxelIndex& b) {
-  if (lattice_.is_deep_in_bone(b.i, b.j, b.k)) return kBrickDeepInBoneCost;
+  if (holds_no_bone(b) || lattice_.is_deep_in_bone(b.i, b.j, b.k)) return kBrickPassedOverCost;
   const int g = lattice_.group();
   const VoxelBox own = brick_cells(b.i, b.j, b.k);
   const VoxelBox own_nodes{{g * own.first.i, g * own.first.j, g * own.first.k},
                            {g * own.last.i + g - 1, g * own.last.j + g - 1, g * own.last.k + g - 1}};
   lower_bone(own_nodes.grown(1).intersected(sweep_.nodes));
   return kBrickCost + refresh_brick(b.i, b.j, b.k, sweep_.cells);
+}
+
+// Where there is none there will be none.
+bool PointShell::holds_no_bone(const VoxelIndex& b) const {
+  if (lattice_.group() != 1 || octree_.count(0, b.i, b.j, b.k) != 0) return false;
+  const VoxelBox own = brick_cells(b.i, b.j, b.k).intersected(lattice_.geometry().all_voxels());
+  unsigned bits = 0;
+  for (int k = own.first.k; k <= own.last.k; ++k) {
+    for (int j = own.first.j; j <= own.last.j; ++j) bits |= bone_.byte(b.i, j, k);
+  }
+  return bits == 0;
 }
 
 void PointShell::find_bone() {

@@ -81,6 +81,7 @@ class PointShell {
   bool start_sweep();
   int refresh_next_brick();
   int refresh_brick_of_sweep(const VoxelIndex& brick);
+  bool holds_no_bone(const VoxelIndex& brick) const;
   int refresh_brick(int bi, int bj, int bk, const VoxelBox& cells);
   int move_points(int bi, int bj, int bk, const VoxelBox& cells);
   int rebuild_brick(int bi, int bj, int bk, const VoxelBox& cells, const CellMask& mask);
