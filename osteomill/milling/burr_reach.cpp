@@ -23,6 +23,8 @@ std::size_t most_across(const GridGeometry& geometry, double radius_mm, int axis
   return static_cast<std::size_t>(std::min(across, static_cast<double>(dim)));
 }
 
+constexpr std::size_t kWordBits = 64;
+
 std::size_t row_in_brick(int j, int k) {
   constexpr int kSide = BrickRanges::kBrickVoxels;
   return static_cast<std::size_t>(j % kSide + kSide * (k % kSide));
@@ -47,8 +49,10 @@ BurrReach::BurrReach(const GridGeometry& geometry, double radius_mm, float floor
     squares_[axis].of_voxel_mm2.resize(static_cast<std::size_t>(kSide * brick_dims_[axis]));
     squares_[axis].of_brick_mm2.resize(static_cast<std::size_t>(brick_dims_[axis]));
   }
-  states_.resize(bricks);
+  known_.resize(bricks);
   bits_.resize(bricks);
+  words_of_line_ = (static_cast<std::size_t>(brick_dims_[0]) + kWordBits - 1) / kWordBits;
+  held_.resize(words_of_line_ * brick_line(0, brick_dims_[2]));
   const std::size_t lines = most_across(geometry, radius_mm, 1) * most_across(geometry, radius_mm, 2);
   rows_.reserve(lines * (most_across(geometry, radius_mm, 0) / kSide + 2));
   candidates_.reserve(rows_.capacity());
@@ -60,7 +64,10 @@ BurrReach::BurrReach(const GridGeometry& geometry, double radius_mm, float floor
 }
 
 void BurrReach::find(const Volume& volume, const Vec3& centre_W, const Share& share) {
-  if (known_volume_ != &volume) std::fill(states_.begin(), states_.end(), State::unknown);
+  if (known_volume_ != &volume) {
+    std::fill(known_.begin(), known_.end(), false);
+    std::fill(held_.begin(), held_.end(), ~std::uint64_t{0});
+  }
   known_volume_ = &volume;
   candidates_.clear();
   rows_.clear();
@@ -70,23 +77,45 @@ void BurrReach::find(const Volume& volume, const Vec3& centre_W, const Share& sh
     measure(squares_[axis], centre_mm[static_cast<Eigen::Index>(axis)], axis);
   }
   const auto& [x, y, z] = squares_;
-  const double radius2 = radius_mm_ * radius_mm_;
+  if (x.bricks.last < x.bricks.first) return;
+  const std::size_t first_word = static_cast<std::size_t>(x.bricks.first) / kWordBits;
+  const std::size_t last_word = static_cast<std::size_t>(x.bricks.last) / kWordBits;
   for (int bk = z.bricks.first; bk <= z.bricks.last; ++bk) {
     for (int bj = y.bricks.first; bj <= y.bricks.last; ++bj) {
-      const double left2 = radius2 - z.of_brick_mm2[static_cast<std::size_t>(bk)] -
+      const double left2 = radius_mm_ * radius_mm_ - z.of_brick_mm2[static_cast<std::size_t>(bk)] -
                            y.of_brick_mm2[static_cast<std::size_t>(bj)];
-      const std::size_t line = static_cast<std::size_t>(brick_dims_[0]) *
-                               (static_cast<std::size_t>(bj) +
-                                static_cast<std::size_t>(brick_dims_[1]) * static_cast<std::size_t>(bk));
-      for (int bi = x.bricks.first; bi <= x.bricks.last; ++bi) {
-        const std::size_t brick = line + static_cast<std::size_t>(bi);
-        if (states_[brick] == State::empty || x.of_brick_mm2[static_cast<std::size_t>(bi)] >= left2) continue;
-        if (states_[brick] == State::unknown) look_at(volume, bi, bj, bk, brick);
-        if (states_[brick] == State::holds) find_candidates(volume.grid(), bi, bj, bk, brick, share);
+      if (left2 <= 0) continue;
+      for (std::size_t word = first_word; word <= last_word; ++word) {
+        const std::uint64_t held = held_in_ball(volume, bj, bk, word, left2);
+        if (held != 0) find_candidates(volume.grid(), word, held, bj, bk, share);
       }
     }
   }
   for (const Candidate& candidate : candidates_) take(volume.grid(), candidate);
+}
+
+// The bricks of a word, a bit each, that lie less than the root of `left2_mm2` away along the line and may
+// hold something.
+std::uint64_t BurrReach::held_in_ball(const Volume& volume, int bj, int bk, std::size_t word,
+                                      double left2_mm2) {
+  const Squares& x = squares_[0];
+  std::uint64_t& held = held_[words_of_line_ * brick_line(bj, bk) + word];
+  const int base = static_cast<int>(kWordBits * word);
+  const int from = std::max(0, x.bricks.first - base), to = std::min(63, x.bricks.last - base);
+  std::uint64_t within = 0;
+  for (std::uint64_t left = held & (~std::uint64_t{0} << from) & (~std::uint64_t{0} >> (63 - to)); left != 0;
+       left &= left - 1) {
+    const int n = std::countr_zero(left), bi = base + n;
+    if (x.of_brick_mm2[static_cast<std::size_t>(bi)] >= left2_mm2) continue;
+    const std::uint64_t bit = std::uint64_t{1} << n;
+    const std::size_t brick = brick_index(bi, bj, bk);
+    if (!known_[brick]) {
+      known_[brick] = true;
+      if (!look_at(volume, bi, bj, bk)) held &= ~bit;
+    }
+    within |= held & bit;
+  }
+  return within;
 }
 
 void BurrReach::measure(Squares& squares, double centre_mm, std::size_t axis) const {
@@ -111,14 +140,15 @@ void BurrReach::measure(Squares& squares, double centre_mm, std::size_t axis) co
   }
 }
 
-void BurrReach::look_at(const Volume& volume, int bi, int bj, int bk, std::size_t brick) {
-  states_[brick] = State::empty;
-  if (!(volume.bricks().at(bi, bj, bk).greatest > floor_density_)) return;
-  Bits& bits = bits_[brick];
+// Whether the brick holds anything.
+bool BurrReach::look_at(const Volume& volume, int bi, int bj, int bk) {
+  if (!(volume.bricks().at(bi, bj, bk).greatest > floor_density_)) return false;
+  Bits& bits = bits_[brick_index(bi, bj, bk)];
   bits.fill(0);
   const auto& dims = geometry_.dims;
   const int i = kSide * bi, columns = std::min(kSide, dims[0] - i);
   const int end_j = std::min(kSide, dims[1] - kSide * bj), end_k = std::min(kSide, dims[2] - kSide * bk);
+  bool holds = false;
   for (int k = 0; k < end_k; ++k) {
     for (int j = 0; j < end_j; ++j) {
       const float* row =
@@ -126,32 +156,37 @@ void BurrReach::look_at(const Volume& volume, int bi, int bj, int bk, std::size_
       unsigned byte = 0;
       for (int n = 0; n < columns; ++n) byte |= static_cast<unsigned>(row[n] > floor_density_) << n;
       bits[static_cast<std::size_t>(j + kSide * k)] = static_cast<std::uint8_t>(byte);
-      if (byte != 0) states_[brick] = State::holds;
+      holds = holds || byte != 0;
     }
   }
+  return holds;
 }
 
-void BurrReach::find_candidates(const DensityGrid& grid, int bi, int bj, int bk, std::size_t brick,
+void BurrReach::find_candidates(const DensityGrid& grid, std::size_t word, std::uint64_t held, int bj, int bk,
                                 const Share& share) {
   const auto& dims = geometry_.dims;
   const auto& [x, y, z] = squares_;
-  const Bits& bits = bits_[brick];
-  const double radius2 = radius_mm_ * radius_mm_, nearest2 = x.of_brick_mm2[static_cast<std::size_t>(bi)];
   const int end_j = std::min(kSide * bj + kSide, dims[1]), end_k = std::min(kSide * bk + kSide, dims[2]);
+  const int base = static_cast<int>(kWordBits * word);
+  const Bits* bits = &bits_[brick_index(base, bj, bk)];
   for (int k = kSide * bk; k < end_k; ++k) {
-    const double across_z = radius2 - z.of_voxel_mm2[static_cast<std::size_t>(k)];
+    const double across_z = radius_mm_ * radius_mm_ - z.of_voxel_mm2[static_cast<std::size_t>(k)];
     // Lines of the share are those with j + 3 k - turn a multiple of its count.
     const unsigned before = (share.turn - static_cast<unsigned>(kSide * bj + 3 * k)) & (share.count - 1);
     for (int j = kSide * bj + static_cast<int>(before); j < end_j; j += static_cast<int>(share.count)) {
-      const unsigned byte = bits[row_in_brick(j, k)];
       const double half2 = across_z - y.of_voxel_mm2[static_cast<std::size_t>(j)];
-      if (byte == 0 || nearest2 >= half2) continue;
-      const unsigned inside = byte & in_ball(bi, half2);
-      if (inside == 0) continue;
-      const VoxelIndex first{kSide * bi, j, k};
-      candidates_.push_back({grid.linear_index(first), brick, first, static_cast<std::uint8_t>(inside)});
-      // Each row lies in a cache line of its own; by the time that all are known, the first have come.
-      prefetch(grid.densities().data() + candidates_.back().first_voxel);
+      const std::size_t row = row_in_brick(j, k);
+      for (std::uint64_t left = held; left != 0; left &= left - 1) {
+        const int n = std::countr_zero(left), bi = base + n;
+        const unsigned byte = bits[n][row];
+        if (byte == 0 || x.of_brick_mm2[static_cast<std::size_t>(bi)] >= half2) continue;
+        const unsigned inside = byte & in_ball(bi, half2);
+        if (inside == 0) continue;
+        const VoxelIndex first{kSide * bi, j, k};
+        candidates_.push_back({grid.linear_index(first), first, static_cast<std::uint8_t>(inside)});
+        // Each row lies in a cache line of its own; by the time that all are known, the first have come.
+        prefetch(grid.densities().data() + candidates_.back().first_voxel);
+      }
     }
   }
 }
@@ -186,11 +221,19 @@ void BurrReach::take(const DensityGrid& grid, const Candidate& candidate) {
     ++size_;
   }
   if (size_ > begin) rows_.push_back({j, k, begin, size_});
-  if (gone == 0) return;
-  Bits& held = bits_[candidate.brick];
-  std::uint8_t& byte = held[row_in_brick(j, k)];
+  if (gone != 0) forget_voxels(candidate.first, gone);
+}
+
+// They hold nothing any more.
+void BurrReach::forget_voxels(const VoxelIndex& first, unsigned gone) {
+  const int bi = first.i / kSide, bj = first.j / kSide, bk = first.k / kSide;
+  Bits& bits = bits_[brick_index(bi, bj, bk)];
+  std::uint8_t& byte = bits[row_in_brick(first.j, first.k)];
   byte = static_cast<std::uint8_t>(byte & ~gone);
-  if (byte == 0 && held == Bits{}) states_[candidate.brick] = State::empty;
+  if (byte != 0 || bits != Bits{}) return;
+  const std::size_t word = static_cast<std::size_t>(bi) / kWordBits;
+  held_[words_of_line_ * brick_line(bj, bk) + word] &=
+      ~(std::uint64_t{1} << (static_cast<std::size_t>(bi) % kWordBits));
 }
 
 }  // namespace osteomill

@@ -50,7 +50,6 @@ class BurrReach {
 
  private:
   static constexpr int kSide = BrickRanges::kBrickVoxels;
-  enum class State : std::uint8_t { unknown, holds, empty };
   /// A bit a voxel: whether it may be denser than the floor. Byte j + 8 k, bit i.
   using Bits = std::array<std::uint8_t, kSide * kSide>;
   /// Indices along one axis, both ends among them; none where last < first.
@@ -67,18 +66,26 @@ class BurrReach {
   };
 
   void measure(Squares& squares, double centre_mm, std::size_t axis) const;
-  void look_at(const Volume& volume, int bi, int bj, int bk, std::size_t brick);
+  std::uint64_t held_in_ball(const Volume& volume, int bj, int bk, std::size_t word, double left2_mm2);
+  bool look_at(const Volume& volume, int bi, int bj, int bk);
   /// Voxels of a row that lie in the ball and may be denser than the floor.
   struct Candidate {
     std::size_t first_voxel;
-    std::size_t brick;
     VoxelIndex first;
     std::uint8_t bits;
   };
-  void find_candidates(const DensityGrid& grid, int bi, int bj, int bk, std::size_t brick,
+  void find_candidates(const DensityGrid& grid, std::size_t word, std::uint64_t held, int bj, int bk,
                        const Share& share);
   unsigned in_ball(int bi, double half2_mm2) const;
   void take(const DensityGrid& grid, const Candidate& candidate);
+  void forget_voxels(const VoxelIndex& first, unsigned gone);
+  std::size_t brick_line(int bj, int bk) const {
+    return static_cast<std::size_t>(bj) +
+           static_cast<std::size_t>(brick_dims_[1]) * static_cast<std::size_t>(bk);
+  }
+  std::size_t brick_index(int bi, int bj, int bk) const {
+    return static_cast<std::size_t>(bi) + static_cast<std::size_t>(brick_dims_[0]) * brick_line(bj, bk);
+  }
 
   GridGeometry geometry_;
   double radius_mm_;
@@ -86,7 +93,10 @@ class BurrReach {
   std::array<int, 3> brick_dims_;
 
   const Volume* known_volume_ = nullptr;
-  std::vector<State> states_;
+  std::vector<bool> known_;
+  // A bit a brick, 64 along a line of bricks to a word: whether it may hold anything.
+  std::size_t words_of_line_;
+  std::vector<std::uint64_t> held_;
   std::vector<Bits> bits_;
   std::array<Squares, 3> squares_;
 

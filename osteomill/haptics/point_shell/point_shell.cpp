@@ -12,7 +12,8 @@ namespace {
 constexpr std::size_t kSpareChunks = 8192;
 
 // What looking at a brick costs, in points computed.
-constexpr int kBrickCost = 20;
+constexpr int kBrickCost = 8;
+constexpr int kLoweredBrickCost = 3;
 constexpr int kBrickPassedOverCost = 1;
 
 std::uint32_t count_of(const std::array<std::uint8_t, 64>& mask) {
@@ -38,6 +39,11 @@ bool has_cell(const std::array<std::uint8_t, 64>& mask, int i, int j, int k) {
 VoxelBox brick_cells(int bi, int bj, int bk) {
   constexpr int n = PointShell::kBrickCells;
   return {{n * bi, n * bj, n * bk}, {n * bi + n - 1, n * bj + n - 1, n * bk + n - 1}};
+}
+
+VoxelIndex first_brick(const VoxelBox& cells) {
+  constexpr int n = PointShell::kBrickCells;
+  return {cells.first.i / n, cells.first.j / n, cells.first.k / n};
 }
 
 }  // namespace
@@ -93,33 +99,39 @@ bool PointShell::start_sweep() {
   sweep_.nodes = nodes;
   sweep_.cells =
       cells_of_nodes(nodes.grown(lattice_.reach_nodes()).intersected(lattice_.geometry().all_voxels()));
-  const VoxelIndex& first = sweep_.cells.first;
-  sweep_.brick = {first.i / kBrickCells, first.j / kBrickCells, first.k / kBrickCells};
+  sweep_.brick = first_brick(sweep_.cells);
+  sweep_.lowering = true;
   return true;
 }
 
 // What it cost.
 int PointShell::refresh_next_brick() {
   VoxelIndex& b = sweep_.brick;
-  const VoxelBox cells = sweep_.cells;
-  const int cost = refresh_brick_of_sweep(b);
-  if (++b.i > cells.last.i / kBrickCells) {
-    b.i = cells.first.i / kBrickCells;
-    if (++b.j > cells.last.j / kBrickCells) {
-      b.j = cells.first.j / kBrickCells;
-      if (++b.k > cells.last.k / kBrickCells) sweep_.cells = {};
-    }
+  const VoxelBox& cells = sweep_.cells;
+  const int cost = visit(b);
+  if (++b.i <= cells.last.i / kBrickCells) return cost;
+  b.i = cells.first.i / kBrickCells;
+  if (++b.j <= cells.last.j / kBrickCells) return cost;
+  b.j = cells.first.j / kBrickCells;
+  if (++b.k <= cells.last.k / kBrickCells) return cost;
+  if (sweep_.lowering) {
+    sweep_.lowering = false;
+    b = first_brick(cells);
+  } else {
+    sweep_.cells = {};
   }
   return cost;
 }
 
-int PointShell::refresh_brick_of_sweep(const VoxelIndex& b) {
+int PointShell::visit(const VoxelIndex& b) {
   if (holds_no_bone(b) || lattice_.is_deep_in_bone(b.i, b.j, b.k)) return kBrickPassedOverCost;
   const int g = lattice_.group();
   const VoxelBox own = brick_cells(b.i, b.j, b.k);
   const VoxelBox own_nodes{{g * own.first.i, g * own.first.j, g * own.first.k},
                            {g * own.last.i + g - 1, g * own.last.j + g - 1, g * own.last.k + g - 1}};
-  lower_bone(own_nodes.grown(1).intersected(sweep_.nodes));
+  // The second time for what has fallen since the first: a point is never computed for a voxel without bone.
+  lower_bone(own_nodes.intersected(sweep_.nodes));
+  if (sweep_.lowering) return kLoweredBrickCost;
   return kBrickCost + refresh_brick(b.i, b.j, b.k, sweep_.cells);
 }
 
