@@ -15,6 +15,9 @@ constexpr double kCarryLayer_voxels = 0.5;
 // Each pass settles the voxels that are emptied; more than a few are needed only where a single step empties
 // nearly everything in reach, and what is left then is carried.
 constexpr int kSpreadingPasses = 8;
+// So many voxels a tick are lowered at most, but for the first ticks in which there are more.
+constexpr std::size_t kVoxelsOfTick = 512;
+constexpr unsigned kMostShares = 64;
 
 // The least float that is not below `density`.
 float float_not_below(double density) {
@@ -69,17 +72,57 @@ MillingStep BurrMill::step(Volume& volume, const Vec3& burr_centre_W, double bur
   }
   force_free_s_ = 0;
   const double budget_mm3 = carry_mm3_ + pressed_mm3;
-  reach_.find(volume, burr_centre_W);
+  reach_.find(volume, burr_centre_W, share_);
+  share_after(reach_.size());
   const MillingStep done = lower_overlaps(volume, drop_per_depth(budget_mm3 / mm3_per_density_));
   // Below zero by a rounding error where floats were rounded in the burr's favour; the next step pays for it.
   carry_mm3_ = std::min(budget_mm3 - done.removed_mm3, greatest_carry_mm3_);
   return done;
 }
 
+// A burr deep in its hole overlaps tens of thousands of voxels, and takes a thousandth of each in a tick.
+// Every second line then takes twice as much every second tick, and so on: lines, since they sample all of
+// the burr alike.
+void BurrMill::share_after(std::size_t found) {
+  found_of_round_ += found;
+  ++share_.turn;
+  const bool too_many = found > 2 * kVoxelsOfTick && share_.count < kMostShares;
+  if (!too_many && share_.turn < share_.count) return;
+  const std::size_t all = too_many ? found * share_.count : found_of_round_;
+  share_ = {};
+  while (share_.count < kMostShares && all > kVoxelsOfTick * share_.count) share_.count *= 2;
+  found_of_round_ = 0;
+}
+
 void BurrMill::reset() {
+  share_ = {};
+  found_of_round_ = 0;
   carry_mm3_ = 0;
   force_free_s_ = 0;
   reach_.forget();
+}
+
+// At `rate` of drop per mm of depth: what the voxels hold that it empties, and the depths of the others.
+// Summed in four lanes, for speed.
+void BurrMill::sum_overlaps(double rate, double& emptied, double& depths) const {
+  constexpr std::size_t kLanes = 4;
+  const float* depths_mm = reach_.depths_mm();
+  const float* densities = reach_.densities();
+  double emptied_lane[kLanes] = {}, depths_lane[kLanes] = {};
+  const auto add = [&](std::size_t n, std::size_t lane) {
+    const double depth = static_cast<double>(depths_mm[n]);
+    const double left = static_cast<double>(densities[n] - floor_density_);
+    const bool empties = rate * depth >= left;
+    emptied_lane[lane] += empties ? left : 0;
+    depths_lane[lane] += empties ? 0 : depth;
+  };
+  std::size_t n = 0;
+  for (; n + kLanes <= reach_.size(); n += kLanes) {
+    for (std::size_t lane = 0; lane < kLanes; ++lane) add(n + lane, lane);
+  }
+  for (; n < reach_.size(); ++n) add(n, 0);
+  emptied = (emptied_lane[0] + emptied_lane[1]) + (emptied_lane[2] + emptied_lane[3]);
+  depths = (depths_lane[0] + depths_lane[1]) + (depths_lane[2] + depths_lane[3]);
 }
 
 // The drop per mm of depth, with each voxel's drop limited to what it holds, that spends the budget (a sum of
@@ -89,13 +132,7 @@ double BurrMill::drop_per_depth(double density_budget) const {
   for (int pass = 0; pass < kSpreadingPasses; ++pass) {
     double emptied = 0;
     double depths = 0;
-    for (std::size_t n = 0; n < reach_.size(); ++n) {
-      const double depth = static_cast<double>(reach_.depths_mm()[n]);
-      const double left = static_cast<double>(reach_.densities()[n] - floor_density_);
-      const bool empties = rate * depth >= left;
-      emptied += empties ? left : 0;
-      depths += empties ? 0 : depth;
-    }
+    sum_overlaps(rate, emptied, depths);
     const double next = (density_budget - emptied) / depths;
     if (!(depths > 0) || !(next > rate)) break;
     rate = next;

@@ -36,6 +36,10 @@ struct MillingStep {
 /// without force: a burr lifted off owes nothing to the place it touches next. Cutting without pause meets
 /// neither limit.
 ///
+/// Where the burr overlaps more than about five hundred voxels, a step looks at every second line of the
+/// grid, or at every fourth, ... sixty-fourth, in turn, and spends all of its budget there: so a step's time
+/// is bounded whatever the burr and the voxels.
+///
 /// Not in the paper, whose milling rule is in earlier work; docs/algorithms.md.
 class BurrMill {
  public:
@@ -56,6 +60,8 @@ class BurrMill {
   double carry_mm3() const { return carry_mm3_; }
 
  private:
+  void share_after(std::size_t found);
+  void sum_overlaps(double rate, double& emptied, double& depths) const;
   double drop_per_depth(double density_budget) const;
   MillingStep lower_overlaps(Volume& volume, double drop_per_depth);
 
@@ -64,7 +70,9 @@ class BurrMill {
   double greatest_carry_mm3_;
   float floor_density_;
   BurrReach reach_;
-  std::vector<float> lowered_;  // the new densities of what is in reach
+  BurrReach::Share share_;
+  std::size_t found_of_round_ = 0;  // since all lines had their turn
+  std::vector<float> lowered_;      // the new densities of what is in reach
 
   double carry_mm3_ = 0;
   double force_free_s_ = 0;

@@ -1,9 +1,9 @@
 #include "osteomill/milling/burr_reach.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numbers>
-#include <utility>
 
 namespace osteomill {
 
@@ -23,131 +23,217 @@ std::size_t most_across(const GridGeometry& geometry, double radius_mm, int axis
   return static_cast<std::size_t>(std::min(across, static_cast<double>(dim)));
 }
 
-std::size_t length(int first, int last) {
-  return static_cast<std::size_t>(std::max(0, last - first + 1));
+constexpr std::size_t kWordBits = 64;
+
+std::size_t row_in_brick(int j, int k) {
+  constexpr int kSide = BrickRanges::kBrickVoxels;
+  return static_cast<std::size_t>(j % kSide + kSide * (k % kSide));
+}
+
+void prefetch(const float* address) {
+#if defined(__GNUC__)
+  __builtin_prefetch(address);
+#else
+  (void)address;
+#endif
 }
 
 }  // namespace
 
 BurrReach::BurrReach(const GridGeometry& geometry, double radius_mm, float floor_density)
-    : geometry_(geometry),
-      inverse_spacing_(geometry.spacing_mm.cwiseInverse()),
-      radius_mm_(radius_mm),
-      floor_density_(floor_density) {
-  const std::size_t voxels = most_voxels_in_ball(geometry, radius_mm);
-  const std::size_t rows = most_across(geometry, radius_mm, 1) * most_across(geometry, radius_mm, 2);
-  for (Found* found : {&before_, &found_}) {
-    found->rows.reserve(rows);
-    found->looked_at.resize(rows);
-    // One more than there can be: a voxel is written down before it is known to count.
-    found->columns.resize(voxels + 1);
+    : geometry_(geometry), radius_mm_(radius_mm), floor_density_(floor_density) {
+  std::size_t bricks = 1;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    brick_dims_[axis] = (geometry.dims[axis] + kSide - 1) / kSide;
+    bricks *= static_cast<std::size_t>(brick_dims_[axis]);
+    squares_[axis].of_voxel_mm2.resize(static_cast<std::size_t>(kSide * brick_dims_[axis]));
+    squares_[axis].of_brick_mm2.resize(static_cast<std::size_t>(brick_dims_[axis]));
   }
-  across2_mm2_.resize(voxels + 1);
-  depths_mm_.resize(voxels + 1);
-  densities_.resize(voxels + 1);
+  known_.resize(bricks);
+  bits_.resize(bricks);
+  words_of_line_ = (static_cast<std::size_t>(brick_dims_[0]) + kWordBits - 1) / kWordBits;
+  held_.resize(words_of_line_ * brick_line(0, brick_dims_[2]));
+  const std::size_t lines = most_across(geometry, radius_mm, 1) * most_across(geometry, radius_mm, 2);
+  rows_.reserve(lines * (most_across(geometry, radius_mm, 0) / kSide + 2));
+  candidates_.reserve(rows_.capacity());
+  // One more than there can be, as a sign that there was room.
+  const std::size_t voxels = most_voxels_in_ball(geometry, radius_mm) + 1;
+  columns_.resize(voxels);
+  depths_mm_.resize(voxels);
+  densities_.resize(voxels);
 }
 
-void BurrReach::find(const Volume& volume, const Vec3& centre_W) {
-  std::swap(before_, found_);
-  if (known_volume_ != &volume) before_.js = before_.ks = {};
+void BurrReach::find(const Volume& volume, const Vec3& centre_W, const Share& share) {
+  if (known_volume_ != &volume) {
+    std::fill(known_.begin(), known_.end(), false);
+    std::fill(held_.begin(), held_.end(), ~std::uint64_t{0});
+  }
   known_volume_ = &volume;
-  next_before_ = before_.ks.last < before_.ks.first ? before_.rows.size() : 0;
-  found_.rows.clear();
-  found_.size = 0;
-
+  candidates_.clear();
+  rows_.clear();
+  size_ = 0;
   const Vec3 centre_mm = geometry_.direction.transpose() * (centre_W - geometry_.origin_mm);
-  found_.ks = span_within(centre_mm.z(), radius_mm_, 2);
-  found_.js = span_within(centre_mm.y(), radius_mm_, 1);
-  Span* looked_at = found_.looked_at.data();
-  for (int k = found_.ks.first; k <= found_.ks.last; ++k) {
-    const double z = k * geometry_.spacing_mm.z() - centre_mm.z();
-    for (int j = found_.js.first; j <= found_.js.last; ++j, ++looked_at) {
-      const double y = j * geometry_.spacing_mm.y() - centre_mm.y();
-      const double across2 = y * y + z * z;
-      const double half2 = radius_mm_ * radius_mm_ - across2;
-      *looked_at = half2 > 0 ? span_within(centre_mm.x(), std::sqrt(half2), 0) : Span{};
-      if (looked_at->last < looked_at->first) continue;
-      find_row(volume.grid().densities().data() + volume.grid().linear_index({0, j, k}), *looked_at, j, k,
-               across2);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    measure(squares_[axis], centre_mm[static_cast<Eigen::Index>(axis)], axis);
+  }
+  const auto& [x, y, z] = squares_;
+  if (x.bricks.last < x.bricks.first) return;
+  const std::size_t first_word = static_cast<std::size_t>(x.bricks.first) / kWordBits;
+  const std::size_t last_word = static_cast<std::size_t>(x.bricks.last) / kWordBits;
+  for (int bk = z.bricks.first; bk <= z.bricks.last; ++bk) {
+    for (int bj = y.bricks.first; bj <= y.bricks.last; ++bj) {
+      const double left2 = radius_mm_ * radius_mm_ - z.of_brick_mm2[static_cast<std::size_t>(bk)] -
+                           y.of_brick_mm2[static_cast<std::size_t>(bj)];
+      if (left2 <= 0) continue;
+      for (std::size_t word = first_word; word <= last_word; ++word) {
+        const std::uint64_t held = held_in_ball(volume, bj, bk, word, left2);
+        if (held != 0) find_candidates(volume.grid(), word, held, bj, bk, share);
+      }
     }
   }
-  measure_depths(centre_mm.x());
+  for (const Candidate& candidate : candidates_) take(volume.grid(), candidate);
 }
 
-// Clamped to the grid before the conversion to int, which truncates: std::floor and std::ceil are library
-// calls on plain x86-64, and there are thousands of rows.
-BurrReach::Span BurrReach::span_within(double centre_mm, double half_width_mm, int axis) const {
-  const double count = geometry_.dims[static_cast<std::size_t>(axis)];
-  const double first = (centre_mm - half_width_mm) * inverse_spacing_[axis];
-  const double last = (centre_mm + half_width_mm) * inverse_spacing_[axis];
-  const double first_inside = std::min(std::max(first, 0.0), count);
-  const double last_inside = std::min(std::max(last, -1.0), count - 1);
-  Span span{static_cast<int>(first_inside), static_cast<int>(last_inside + 1) - 1};
-  if (static_cast<double>(span.first) < first_inside) ++span.first;
-  return span;
-}
-
-BurrReach::Span BurrReach::looked_at_before(int j, int k) const {
-  if (j < before_.js.first || j > before_.js.last || k < before_.ks.first || k > before_.ks.last) return {};
-  const std::size_t row = length(before_.ks.first, k - 1) * length(before_.js.first, before_.js.last) +
-                          length(before_.js.first, j - 1);
-  return before_.looked_at[row];
-}
-
-void BurrReach::find_row(const float* densities, Span row, int j, int k, double across2) {
-  const std::size_t begin = found_.size;
-  const Span known = looked_at_before(j, k);
-  if (known.last < known.first) {
-    look_at(densities, row);
-  } else {
-    look_at(densities, {row.first, std::min(row.last, known.first - 1)});
-    look_again(densities, row, j, k);
-    look_at(densities, {std::max(row.first, known.last + 1), row.last});
+// The bricks of a word, a bit each, that lie less than the root of `left2_mm2` away along the line and may
+// hold something.
+std::uint64_t BurrReach::held_in_ball(const Volume& volume, int bj, int bk, std::size_t word,
+                                      double left2_mm2) {
+  const Squares& x = squares_[0];
+  std::uint64_t& held = held_[words_of_line_ * brick_line(bj, bk) + word];
+  const int base = static_cast<int>(kWordBits * word);
+  const int from = std::max(0, x.bricks.first - base), to = std::min(63, x.bricks.last - base);
+  std::uint64_t within = 0;
+  for (std::uint64_t left = held & (~std::uint64_t{0} << from) & (~std::uint64_t{0} >> (63 - to)); left != 0;
+       left &= left - 1) {
+    const int n = std::countr_zero(left), bi = base + n;
+    if (x.of_brick_mm2[static_cast<std::size_t>(bi)] >= left2_mm2) continue;
+    const std::uint64_t bit = std::uint64_t{1} << n;
+    const std::size_t brick = brick_index(bi, bj, bk);
+    if (!known_[brick]) {
+      known_[brick] = true;
+      if (!look_at(volume, bi, bj, bk)) held &= ~bit;
+    }
+    within |= held & bit;
   }
-  if (found_.size == begin) return;
-  found_.rows.push_back({j, k, begin, found_.size});
-  std::fill(across2_mm2_.begin() + static_cast<std::ptrdiff_t>(begin),
-            across2_mm2_.begin() + static_cast<std::ptrdiff_t>(found_.size), static_cast<float>(across2));
+  return within;
 }
 
-void BurrReach::look_at(const float* densities, Span columns) {
-  std::size_t size = found_.size;
-  for (int i = columns.first; i <= columns.last; ++i) {
-    found_.columns[size] = i;
-    densities_[size] = densities[i];
-    size += densities[i] > floor_density_ ? 1 : 0;
+void BurrReach::measure(Squares& squares, double centre_mm, std::size_t axis) const {
+  const double spacing = geometry_.spacing_mm[static_cast<Eigen::Index>(axis)];
+  const double count = geometry_.dims[axis];
+  // Clamped to the grid before the conversion to int: the centre may be anywhere.
+  const double first = std::clamp((centre_mm - radius_mm_) / spacing, 0.0, count);
+  const double last = std::clamp((centre_mm + radius_mm_) / spacing, -1.0, count - 1);
+  squares.voxels = {static_cast<int>(std::ceil(first)), static_cast<int>(std::floor(last))};
+  squares.bricks = {};
+  if (squares.voxels.last < squares.voxels.first) return;
+  squares.bricks = {squares.voxels.first / kSide, squares.voxels.last / kSide};
+  for (int b = squares.bricks.first; b <= squares.bricks.last; ++b) {
+    const int begin = kSide * b, end = std::min(begin + kSide, geometry_.dims[axis]);
+    double least = radius_mm_ * radius_mm_;
+    for (int n = begin; n < begin + kSide; ++n) {
+      const double away = n * spacing - centre_mm;
+      squares.of_voxel_mm2[static_cast<std::size_t>(n)] = away * away;
+      if (n < end) least = std::min(least, away * away);
+    }
+    squares.of_brick_mm2[static_cast<std::size_t>(b)] = least;
   }
-  found_.size = size;
 }
 
-void BurrReach::look_again(const float* densities, Span columns, int j, int k) {
-  const std::vector<Row>& rows = before_.rows;
-  while (next_before_ < rows.size() &&
-         (rows[next_before_].k < k || (rows[next_before_].k == k && rows[next_before_].j < j))) {
-    ++next_before_;
+// Whether the brick holds anything.
+bool BurrReach::look_at(const Volume& volume, int bi, int bj, int bk) {
+  if (!(volume.bricks().at(bi, bj, bk).greatest > floor_density_)) return false;
+  Bits& bits = bits_[brick_index(bi, bj, bk)];
+  bits.fill(0);
+  const auto& dims = geometry_.dims;
+  const int i = kSide * bi, columns = std::min(kSide, dims[0] - i);
+  const int end_j = std::min(kSide, dims[1] - kSide * bj), end_k = std::min(kSide, dims[2] - kSide * bk);
+  bool holds = false;
+  for (int k = 0; k < end_k; ++k) {
+    for (int j = 0; j < end_j; ++j) {
+      const float* row =
+          volume.grid().densities().data() + volume.grid().linear_index({i, kSide * bj + j, kSide * bk + k});
+      unsigned byte = 0;
+      for (int n = 0; n < columns; ++n) byte |= static_cast<unsigned>(row[n] > floor_density_) << n;
+      bits[static_cast<std::size_t>(j + kSide * k)] = static_cast<std::uint8_t>(byte);
+      holds = holds || byte != 0;
+    }
   }
-  if (next_before_ == rows.size() || rows[next_before_].k != k || rows[next_before_].j != j) return;
-  std::size_t size = found_.size;
-  for (std::size_t n = rows[next_before_].begin; n < rows[next_before_].end; ++n) {
-    const int i = before_.columns[n];
-    found_.columns[size] = i;
-    densities_[size] = densities[i];
-    size += densities[i] > floor_density_ && i >= columns.first && i <= columns.last ? 1 : 0;
-  }
-  found_.size = size;
+  return holds;
 }
 
-void BurrReach::measure_depths(double centre_i_mm) {
-  // Columns from the middle of those found, so that single precision is spent within the ball.
-  const int middle = found_.size > 0 ? found_.columns[0] : 0;
-  const float centre_mm = static_cast<float>(centre_i_mm - middle * geometry_.spacing_mm.x());
-  const float spacing_mm = static_cast<float>(geometry_.spacing_mm.x());
-  const float radius_mm = static_cast<float>(radius_mm_);
-  const int* columns = found_.columns.data();
-  for (std::size_t n = 0; n < found_.size; ++n) {
-    const float x = static_cast<float>(columns[n] - middle) * spacing_mm - centre_mm;
-    depths_mm_[n] = std::max(0.0f, radius_mm - std::sqrt(across2_mm2_[n] + x * x));
+void BurrReach::find_candidates(const DensityGrid& grid, std::size_t word, std::uint64_t held, int bj, int bk,
+                                const Share& share) {
+  const auto& dims = geometry_.dims;
+  const auto& [x, y, z] = squares_;
+  const int end_j = std::min(kSide * bj + kSide, dims[1]), end_k = std::min(kSide * bk + kSide, dims[2]);
+  const int base = static_cast<int>(kWordBits * word);
+  const Bits* bits = &bits_[brick_index(base, bj, bk)];
+  for (int k = kSide * bk; k < end_k; ++k) {
+    const double across_z = radius_mm_ * radius_mm_ - z.of_voxel_mm2[static_cast<std::size_t>(k)];
+    // Lines of the share are those with j + 3 k - turn a multiple of its count.
+    const unsigned before = (share.turn - static_cast<unsigned>(kSide * bj + 3 * k)) & (share.count - 1);
+    for (int j = kSide * bj + static_cast<int>(before); j < end_j; j += static_cast<int>(share.count)) {
+      const double half2 = across_z - y.of_voxel_mm2[static_cast<std::size_t>(j)];
+      const std::size_t row = row_in_brick(j, k);
+      for (std::uint64_t left = held; left != 0; left &= left - 1) {
+        const int n = std::countr_zero(left), bi = base + n;
+        const unsigned byte = bits[n][row];
+        if (byte == 0 || x.of_brick_mm2[static_cast<std::size_t>(bi)] >= half2) continue;
+        const unsigned inside = byte & in_ball(bi, half2);
+        if (inside == 0) continue;
+        const VoxelIndex first{kSide * bi, j, k};
+        candidates_.push_back({grid.linear_index(first), first, static_cast<std::uint8_t>(inside)});
+        // Each row lies in a cache line of its own; by the time that all are known, the first have come.
+        prefetch(grid.densities().data() + candidates_.back().first_voxel);
+      }
+    }
   }
+}
+
+// The columns of a brick that lie in the ball, a bit each.
+unsigned BurrReach::in_ball(int bi, double half2_mm2) const {
+  const double* squares = &squares_[0].of_voxel_mm2[static_cast<std::size_t>(kSide * bi)];
+  unsigned bits = 0;
+  for (int n = 0; n < kSide; ++n) bits |= static_cast<unsigned>(squares[n] < half2_mm2) << n;
+  return bits;
+}
+
+// Lists those that are denser than the floor, and forgets the others.
+void BurrReach::take(const DensityGrid& grid, const Candidate& candidate) {
+  const std::size_t begin = size_;
+  const auto& [x, y, z] = squares_;
+  const auto& [i, j, k] = candidate.first;
+  const float* densities = grid.densities().data() + candidate.first_voxel;
+  const double across2 =
+      y.of_voxel_mm2[static_cast<std::size_t>(j)] + z.of_voxel_mm2[static_cast<std::size_t>(k)];
+  const double* along2 = &x.of_voxel_mm2[static_cast<std::size_t>(i)];
+  unsigned gone = 0;
+  for (unsigned bits = candidate.bits; bits != 0; bits &= bits - 1) {
+    const int n = std::countr_zero(bits);
+    if (!(densities[n] > floor_density_)) {
+      gone |= 1u << n;
+      continue;
+    }
+    columns_[size_] = i + n;
+    densities_[size_] = densities[n];
+    depths_mm_[size_] = static_cast<float>(std::max(0.0, radius_mm_ - std::sqrt(across2 + along2[n])));
+    ++size_;
+  }
+  if (size_ > begin) rows_.push_back({j, k, begin, size_});
+  if (gone != 0) forget_voxels(candidate.first, gone);
+}
+
+// They hold nothing any more.
+void BurrReach::forget_voxels(const VoxelIndex& first, unsigned gone) {
+  const int bi = first.i / kSide, bj = first.j / kSide, bk = first.k / kSide;
+  Bits& bits = bits_[brick_index(bi, bj, bk)];
+  std::uint8_t& byte = bits[row_in_brick(first.j, first.k)];
+  byte = static_cast<std::uint8_t>(byte & ~gone);
+  if (byte != 0 || bits != Bits{}) return;
+  const std::size_t word = static_cast<std::size_t>(bi) / kWordBits;
+  held_[words_of_line_ * brick_line(bj, bk) + word] &=
+      ~(std::uint64_t{1} << (static_cast<std::size_t>(bi) % kWordBits));
 }
 
 }  // namespace osteomill

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "osteomill/geometry/pose.h"
@@ -8,17 +10,23 @@
 
 namespace osteomill {
 
-/// The voxels that a ball overlaps and that are denser than a floor, found anew each step at little cost: a
-/// voxel that was in reach the step before and held nothing is not looked at again, so that a step costs the
-/// rows of the ball and the voxels it finds, not all voxels of the ball. Voxels are found row by row (i runs
-/// along a row), rows in order of k, then j.
+/// The voxels that a ball overlaps and that are denser than a floor. It remembers, in bricks of 8 x 8 x 8
+/// voxels and a bit a voxel, which ones held nothing when last looked at, so that a step costs little more
+/// than the voxels it finds: in its hole a burr is all about emptied bricks. Voxels are found brick by brick,
+/// row by row (i runs along a row, a row is at most 8 voxels).
 class BurrReach {
  public:
   /// Allocates all that `find` needs. `radius_mm` is above 0, the grid not empty.
   BurrReach(const GridGeometry& geometry, double radius_mm, float floor_density);
 
-  /// Finds what the ball about `centre_W` (finite) overlaps. Safe in the haptic tick.
-  void find(const Volume& volume, const Vec3& centre_W);
+  /// The rows that a step looks at, where a ball has more voxels than a step has time for: those of every
+  /// `count`-th line of the grid, shifted with `turn` so that `count` turns see all. `count` is a power of 2.
+  struct Share {
+    unsigned count = 1;
+    unsigned turn = 0;
+  };
+  /// Finds what the ball about `centre_W` (finite) overlaps, or a share of it. Safe in the haptic tick.
+  void find(const Volume& volume, const Vec3& centre_W, const Share& share = {1, 0});
   /// Has the next `find` look at every voxel.
   void forget() { known_volume_ = nullptr; }
 
@@ -29,50 +37,73 @@ class BurrReach {
     std::size_t begin;
     std::size_t end;
   };
-  const std::vector<Row>& rows() const { return found_.rows; }
-  std::size_t size() const { return found_.size; }
+  const std::vector<Row>& rows() const { return rows_; }
+  std::size_t size() const { return size_; }
   /// The most that can ever be found.
   std::size_t capacity() const { return densities_.size(); }
   /// Column of each voxel found.
-  const int* columns() const { return found_.columns.data(); }
+  const int* columns() const { return columns_.data(); }
   /// How deep each one's centre lies in the ball, mm, at least 0.
   const float* depths_mm() const { return depths_mm_.data(); }
   /// Each one's density as found, above the floor.
   const float* densities() const { return densities_.data(); }
 
  private:
+  static constexpr int kSide = BrickRanges::kBrickVoxels;
+  /// A bit a voxel: whether it may be denser than the floor. Byte j + 8 k, bit i.
+  using Bits = std::array<std::uint8_t, kSide * kSide>;
   /// Indices along one axis, both ends among them; none where last < first.
   struct Span {
     int first = 0;
     int last = -1;
   };
-  /// What the last `find` found, and which voxels it looked at.
-  struct Found {
-    std::vector<Row> rows;
-    std::vector<int> columns;
-    std::size_t size = 0;
-    std::vector<Span> looked_at;  // of each row of `box`, j running fastest
-    Span js;
-    Span ks;
+  /// Along one axis: the squared distance of each voxel's centre from the ball's, and the least of a brick's.
+  struct Squares {
+    Span voxels;
+    Span bricks;
+    std::vector<double> of_voxel_mm2;
+    std::vector<double> of_brick_mm2;
   };
 
-  Span span_within(double centre_mm, double half_width_mm, int axis) const;
-  Span looked_at_before(int j, int k) const;
-  void find_row(const float* densities, Span row, int j, int k, double across2);
-  void look_at(const float* densities, Span columns);
-  void look_again(const float* densities, Span columns, int j, int k);
-  void measure_depths(double centre_i_mm);
+  void measure(Squares& squares, double centre_mm, std::size_t axis) const;
+  std::uint64_t held_in_ball(const Volume& volume, int bj, int bk, std::size_t word, double left2_mm2);
+  bool look_at(const Volume& volume, int bi, int bj, int bk);
+  /// Voxels of a row that lie in the ball and may be denser than the floor.
+  struct Candidate {
+    std::size_t first_voxel;
+    VoxelIndex first;
+    std::uint8_t bits;
+  };
+  void find_candidates(const DensityGrid& grid, std::size_t word, std::uint64_t held, int bj, int bk,
+                       const Share& share);
+  unsigned in_ball(int bi, double half2_mm2) const;
+  void take(const DensityGrid& grid, const Candidate& candidate);
+  void forget_voxels(const VoxelIndex& first, unsigned gone);
+  std::size_t brick_line(int bj, int bk) const {
+    return static_cast<std::size_t>(bj) +
+           static_cast<std::size_t>(brick_dims_[1]) * static_cast<std::size_t>(bk);
+  }
+  std::size_t brick_index(int bi, int bj, int bk) const {
+    return static_cast<std::size_t>(bi) + static_cast<std::size_t>(brick_dims_[0]) * brick_line(bj, bk);
+  }
 
   GridGeometry geometry_;
-  Vec3 inverse_spacing_;
   double radius_mm_;
   float floor_density_;
+  std::array<int, 3> brick_dims_;
 
   const Volume* known_volume_ = nullptr;
-  std::size_t next_before_ = 0;  // the first of before_.rows that is not behind the row being found
-  Found before_;
-  Found found_;
-  std::vector<float> across2_mm2_;
+  std::vector<bool> known_;
+  // A bit a brick, 64 along a line of bricks to a word: whether it may hold anything.
+  std::size_t words_of_line_;
+  std::vector<std::uint64_t> held_;
+  std::vector<Bits> bits_;
+  std::array<Squares, 3> squares_;
+
+  std::vector<Candidate> candidates_;
+  std::vector<Row> rows_;
+  std::size_t size_ = 0;
+  std::vector<int> columns_;
   std::vector<float> depths_mm_;
   std::vector<float> densities_;
 };

@@ -1,6 +1,6 @@
 #include "osteomill/haptics/point_shell/octree_contacts.h"
 
-#include "osteomill/haptics/point_shell/tool_from_grid.h"
+#include "osteomill/haptics/point_shell/contact_point.h"
 
 namespace osteomill {
 
@@ -16,19 +16,6 @@ bool is_apart(const ToolBox& tool_box, const PointShell::NodeBox& node, const To
   if ((between.cwiseAbs().array() > along_tool.array()).any()) return true;
   const Vec3 along_node = node.half_mm + reach.transpose() * tool_half;
   return ((X_TG.turn.transpose() * between).cwiseAbs().array() > along_node.array()).any();
-}
-
-void touch_point(const ShellPoint& point, const Vec3& point_T, const ToolFromGrid& X_TG,
-                 const ContactTool& tool, const Penalty& penalty, ToolContacts& contacts) {
-  const std::optional<ToolDistance> distance = tool.distance(point_T);
-  if (!distance) return;
-  const double cosine = distance->outward_T.dot(X_TG.turn * normal_of(point));
-  const Penalty::Push push = penalty.push(-distance->distance_mm, static_cast<double>(point.area_mm2), cosine,
-                                          tool.curvature_per_mm(point_T));
-  if (!(push.force_N > 0)) return;
-  ContactSum& part = tool.is_burr(point_T) ? contacts.burr : contacts.shaft;
-  part.add(push.force_N, push.stiffness_N_per_mm, distance->outward_T, point_T);
-  ++contacts.touching;
 }
 
 }  // namespace

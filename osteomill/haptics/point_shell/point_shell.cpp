@@ -12,7 +12,9 @@ namespace {
 constexpr std::size_t kSpareChunks = 8192;
 
 // What looking at a brick costs, in points computed.
-constexpr int kBrickCost = 16;
+constexpr int kBrickCost = 8;
+constexpr int kLoweredBrickCost = 3;
+constexpr int kBrickPassedOverCost = 1;
 
 std::uint32_t count_of(const std::array<std::uint8_t, 64>& mask) {
   std::uint32_t count = 0;
@@ -37,6 +39,11 @@ bool has_cell(const std::array<std::uint8_t, 64>& mask, int i, int j, int k) {
 VoxelBox brick_cells(int bi, int bj, int bk) {
   constexpr int n = PointShell::kBrickCells;
   return {{n * bi, n * bj, n * bk}, {n * bi + n - 1, n * bj + n - 1, n * bk + n - 1}};
+}
+
+VoxelIndex first_brick(const VoxelBox& cells) {
+  constexpr int n = PointShell::kBrickCells;
+  return {cells.first.i / n, cells.first.j / n, cells.first.k / n};
 }
 
 }  // namespace
@@ -67,6 +74,8 @@ PointShell::PointShell(const Volume& volume, const ShellRules& rules)
     chunks += (count_of(mask_of(bi, bj, bk, all_cells, {})) + PointChunk::kSlots - 1) / PointChunk::kSlots;
   });
   points_ = BrickPoints(masks_.size(), 2 * chunks + kSpareChunks);
+  old_points_.resize(kMostPointsOfBrick);
+  new_points_.resize(kMostPointsOfBrick);
   for_each_brick([&](int bi, int bj, int bk) { refresh_brick(bi, bj, bk, all_cells); });
 }
 
@@ -78,7 +87,7 @@ void PointShell::refresh(const VoxelBox& voxels) {
   const int budget = lattice_.rules().refreshed_points_per_tick;
   int spent = 0;
   while ((budget == 0 || spent < budget) && (!sweep_.cells.empty() || start_sweep())) {
-    spent += kBrickCost + refresh_next_brick();
+    spent += refresh_next_brick();
   }
 }
 
@@ -90,29 +99,51 @@ bool PointShell::start_sweep() {
   sweep_.nodes = nodes;
   sweep_.cells =
       cells_of_nodes(nodes.grown(lattice_.reach_nodes()).intersected(lattice_.geometry().all_voxels()));
-  const VoxelIndex& first = sweep_.cells.first;
-  sweep_.brick = {first.i / kBrickCells, first.j / kBrickCells, first.k / kBrickCells};
+  sweep_.brick = first_brick(sweep_.cells);
+  sweep_.lowering = true;
   return true;
 }
 
-// How many points were computed.
+// What it cost.
 int PointShell::refresh_next_brick() {
   VoxelIndex& b = sweep_.brick;
   const VoxelBox& cells = sweep_.cells;
+  const int cost = visit(b);
+  if (++b.i <= cells.last.i / kBrickCells) return cost;
+  b.i = cells.first.i / kBrickCells;
+  if (++b.j <= cells.last.j / kBrickCells) return cost;
+  b.j = cells.first.j / kBrickCells;
+  if (++b.k <= cells.last.k / kBrickCells) return cost;
+  if (sweep_.lowering) {
+    sweep_.lowering = false;
+    b = first_brick(cells);
+  } else {
+    sweep_.cells = {};
+  }
+  return cost;
+}
+
+int PointShell::visit(const VoxelIndex& b) {
+  if (holds_no_bone(b) || lattice_.is_deep_in_bone(b.i, b.j, b.k)) return kBrickPassedOverCost;
   const int g = lattice_.group();
   const VoxelBox own = brick_cells(b.i, b.j, b.k);
   const VoxelBox own_nodes{{g * own.first.i, g * own.first.j, g * own.first.k},
                            {g * own.last.i + g - 1, g * own.last.j + g - 1, g * own.last.k + g - 1}};
-  lower_bone(own_nodes.grown(1).intersected(sweep_.nodes));
-  const int computed = refresh_brick(b.i, b.j, b.k, cells);
-  if (++b.i > cells.last.i / kBrickCells) {
-    b.i = cells.first.i / kBrickCells;
-    if (++b.j > cells.last.j / kBrickCells) {
-      b.j = cells.first.j / kBrickCells;
-      if (++b.k > cells.last.k / kBrickCells) sweep_.cells = {};
-    }
+  // The second time for what has fallen since the first: a point is never computed for a voxel without bone.
+  lower_bone(own_nodes.intersected(sweep_.nodes));
+  if (sweep_.lowering) return kLoweredBrickCost;
+  return kBrickCost + refresh_brick(b.i, b.j, b.k, sweep_.cells);
+}
+
+// Where there is none there will be none.
+bool PointShell::holds_no_bone(const VoxelIndex& b) const {
+  if (lattice_.group() != 1 || octree_.count(0, b.i, b.j, b.k) != 0) return false;
+  const VoxelBox own = brick_cells(b.i, b.j, b.k).intersected(lattice_.geometry().all_voxels());
+  unsigned bits = 0;
+  for (int k = own.first.k; k <= own.last.k; ++k) {
+    for (int j = own.first.j; j <= own.last.j; ++j) bits |= bone_.byte(b.i, j, k);
   }
-  return computed;
+  return bits == 0;
 }
 
 void PointShell::find_bone() {
@@ -133,11 +164,8 @@ void PointShell::lower_bone(const VoxelBox& nodes) {
         const unsigned before = bone_.byte(byte, j, k);
         const unsigned from = 0xffu << std::max(0, nodes.first.i - 8 * byte);
         const unsigned to = (1u << std::min(8, nodes.last.i + 1 - 8 * byte)) - 1;
-        unsigned after = before;
-        for (unsigned bits = before & from & to; bits != 0; bits &= bits - 1) {
-          const int n = std::countr_zero(bits);
-          if (!lattice_.is_bone({8 * byte + n, j, k})) after &= ~(1u << n);
-        }
+        if ((before & from & to) == 0) continue;
+        const unsigned after = before & (lattice_.bone_byte(byte, j, k) | ~(from & to));
         if (after != before) bone_.set_byte(byte, j, k, static_cast<std::uint8_t>(after));
       }
     }
@@ -217,34 +245,30 @@ int PointShell::move_points(int bi, int bj, int bk, const VoxelBox& cells) {
   return computed;
 }
 
-// Other cells than before: the points are listed anew, those far from the change as they were.
+// Other cells than before: the points are listed anew, those far from the change as they were. Both lists run
+// in the order of the cells.
 int PointShell::rebuild_brick(int bi, int bj, int bk, const VoxelBox& cells, const CellMask& mask) {
   const std::size_t brick = brick_index(bi, bj, bk);
-  std::array<ShellPoint, kMostPointsOfBrick> old_points;
-  points_.copy(brick, old_points);
+  const CellMask& before = masks_[brick];
   const std::uint32_t old_count = points_.brick(brick).count;
-  std::array<ShellPoint, kMostPointsOfBrick> by_cell;
-  std::uint32_t slot = 0;
-  CellMask kept{};
-  for_each_cell(masks_[brick], [&](int i, int j, int k) {
-    if (slot >= old_count) return;
-    by_cell[static_cast<std::size_t>(i + 8 * j + 64 * k)] = old_points[slot++];
-    kept[static_cast<std::size_t>(j + 8 * k)] |= static_cast<std::uint8_t>(1u << i);
-  });
-
-  std::array<ShellPoint, kMostPointsOfBrick> new_points;
-  std::size_t new_count = 0;
+  points_.copy(brick, old_points_);
+  std::size_t old_slot = 0, new_count = 0;
   int computed = 0;
   const VoxelIndex first = brick_cells(bi, bj, bk).first;
   const bool follow = lattice_.rules().follow_partial_changes;
-  for_each_cell(mask, [&](int i, int j, int k) {
+  CellMask either;
+  for (std::size_t row = 0; row < either.size(); ++row) {
+    either[row] = static_cast<std::uint8_t>(before[row] | mask[row]);
+  }
+  for_each_cell(either, [&](int i, int j, int k) {
     const VoxelIndex cell{first.i + i, first.j + j, first.k + k};
-    const bool keep = has_cell(kept, i, j, k) && !(follow && cells.contains(cell));
+    const std::size_t slot = has_cell(before, i, j, k) ? old_slot++ : old_count;
+    if (!has_cell(mask, i, j, k)) return;
+    const bool keep = slot < old_count && !(follow && cells.contains(cell));
     if (!keep) ++computed;
-    new_points[new_count++] =
-        keep ? by_cell[static_cast<std::size_t>(i + 8 * j + 64 * k)] : point_of(cell, bi, bj, bk);
+    new_points_[new_count++] = keep ? old_points_[slot] : point_of(cell, bi, bj, bk);
   });
-  const std::uint32_t stored = points_.replace(brick, {new_points.data(), new_count});
+  const std::uint32_t stored = points_.replace(brick, {new_points_.data(), new_count});
   octree_.add(bi, bj, bk, static_cast<std::int32_t>(stored) - static_cast<std::int32_t>(old_count));
   masks_[brick] = mask;
   return computed;

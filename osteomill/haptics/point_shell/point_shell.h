@@ -72,14 +72,18 @@ class PointShell {
   CellMask mask_of(int bi, int bj, int bk, const VoxelBox& cells, CellMask mask) const;
   std::uint8_t mask_byte(int bi, int j, int k) const;
   bool holds_surface(const VoxelIndex& cell) const;
-  // The way through all bricks near changed voxels, one brick after the other.
+  // The way through all bricks near changed voxels, one brick after the other: once to find where bone has
+  // gone, and once more, now that each brick's neighbours are known, to bring the points up to date.
   struct Sweep {
     VoxelBox nodes;
     VoxelBox cells;
     VoxelIndex brick;
+    bool lowering = false;
   };
   bool start_sweep();
   int refresh_next_brick();
+  int visit(const VoxelIndex& brick);
+  bool holds_no_bone(const VoxelIndex& brick) const;
   int refresh_brick(int bi, int bj, int bk, const VoxelBox& cells);
   int move_points(int bi, int bj, int bk, const VoxelBox& cells);
   int rebuild_brick(int bi, int bj, int bk, const VoxelBox& cells, const CellMask& mask);
@@ -92,6 +96,9 @@ class PointShell {
   std::vector<CellMask> masks_;
   Vec3 brick_side_mm_ = Vec3::Zero();
   Vec3 box_margin_mm_ = Vec3::Zero();
+  // Room for one brick's points while it is rebuilt.
+  std::vector<ShellPoint> old_points_;
+  std::vector<ShellPoint> new_points_;
   Sweep sweep_;
   VoxelBox waiting_;
 };

@@ -49,6 +49,7 @@ void PointShellAlgorithm::reset() {
 
 void PointShellAlgorithm::volume_changed(const VolumeChange& change) {
   shell_.refresh(change.voxels);
+  refreshed_this_tick_ = true;
 }
 
 ToolContacts PointShellAlgorithm::contacts_at(const Pose& X_WT) const {

@@ -4,6 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#ifdef __SSE2__  // every x86-64 has it
+#include <emmintrin.h>
+#endif
+
 namespace osteomill {
 
 namespace {
@@ -22,6 +26,20 @@ float largest_float_up_to(double value) {
   return static_cast<double>(nearest) > value
              ? std::nextafter(nearest, -std::numeric_limits<float>::infinity())
              : nearest;
+}
+
+// Bit n: whether row[n] > limit.
+std::uint8_t eight_above(const float* row, float limit) {
+#ifdef __SSE2__
+  const __m128 limits = _mm_set1_ps(limit);
+  const int low = _mm_movemask_ps(_mm_cmpgt_ps(_mm_loadu_ps(row), limits));
+  const int high = _mm_movemask_ps(_mm_cmpgt_ps(_mm_loadu_ps(row + 4), limits));
+  return static_cast<std::uint8_t>(low | high << 4);
+#else
+  unsigned bits = 0;
+  for (int n = 0; n < 8; ++n) bits |= static_cast<unsigned>(row[n] > limit) << n;
+  return static_cast<std::uint8_t>(bits);
+#endif
 }
 
 GridGeometry lattice_geometry(const GridGeometry& voxels, int stride) {
@@ -63,17 +81,24 @@ std::uint8_t ShellLattice::bone_byte(int byte, int j, int k) const {
   unsigned bits = 0;
   if (stride_ == 1) {
     const float* row = volume_->grid().densities().data() + volume_->grid().linear_index({first, j, k});
-    if (count == 8) {  // a loop of fixed length becomes vector instructions
-      for (int n = 0; n < 8; ++n) bits |= static_cast<unsigned>(row[n] > bone_above_) << n;
-    } else {
-      for (int n = 0; n < count; ++n) bits |= static_cast<unsigned>(row[n] > bone_above_) << n;
-    }
+    if (count == 8) return eight_above(row, bone_above_);
+    for (int n = 0; n < count; ++n) bits |= static_cast<unsigned>(row[n] > bone_above_) << n;
   } else {
     for (int n = 0; n < count; ++n) {
       bits |= static_cast<unsigned>(is_bone({first + n, j, k})) << n;
     }
   }
   return static_cast<std::uint8_t>(bits);
+}
+
+bool ShellLattice::is_deep_in_bone(int bi, int bj, int bk) const {
+  if (stride_ != 1 || group_ != 1) return false;
+  const BrickRanges& bricks = volume_->bricks();
+  const auto& dims = bricks.dims();
+  if (bi < 1 || bj < 1 || bk < 1 || bi + 1 >= dims[0] || bj + 1 >= dims[1] || bk + 1 >= dims[2]) return false;
+  // A brick's range takes the next layer of voxels above in, but not the one below.
+  return bricks.at(bi, bj, bk).least > bone_above_ && bricks.at(bi - 1, bj, bk).least > bone_above_ &&
+         bricks.at(bi, bj - 1, bk).least > bone_above_ && bricks.at(bi, bj, bk - 1).least > bone_above_;
 }
 
 VoxelBox ShellLattice::nodes_touched_by(const VoxelBox& voxels) const {
@@ -161,9 +186,12 @@ void ShellLattice::add_inner_voxel(const VoxelIndex& voxel, const VoxelIndex& fr
   const float* here = grid.densities().data() + grid.linear_index(voxel);
   const std::ptrdiff_t row = geometry_.dims[0];
   const std::ptrdiff_t next[3] = {1, row, row * geometry_.dims[1]};
-  const auto central_difference = [&](const float* at, int axis) {
-    return static_cast<double>(at[next[axis]] - at[-next[axis]]) * half_per_mm_[axis];
+  const auto gradient_at = [&](const float* at) {
+    return Vec3(static_cast<double>(at[next[0]] - at[-next[0]]) * half_per_mm_[0],
+                static_cast<double>(at[next[1]] - at[-next[1]]) * half_per_mm_[1],
+                static_cast<double>(at[next[2]] - at[-next[2]]) * half_per_mm_[2]);
   };
+  const Vec3 gradient_here = rules_.area_weights ? gradient_at(here) : Vec3(Vec3::Zero());
   const double inside = static_cast<double>(*here);
   for (int axis = 0; axis < 3; ++axis) {
     for (const int side : {-1, 1}) {
@@ -171,12 +199,7 @@ void ShellLattice::add_inner_voxel(const VoxelIndex& voxel, const VoxelIndex& fr
       if (*outer > bone_above_) continue;
       Face face{axis, side, (inside - volume_->isovalue()) / (inside - static_cast<double>(*outer))};
       if (rules_.area_weights) {
-        Vec3 gradient;
-        for (int a = 0; a < 3; ++a) {
-          gradient[a] = (1 - face.fraction) * central_difference(here, a) +
-                        face.fraction * central_difference(outer, a);
-        }
-        weigh_by_area(face, gradient);
+        weigh_by_area(face, (1 - face.fraction) * gradient_here + face.fraction * gradient_at(outer));
       }
       add_face(face, voxel, frame_origin, sum);
     }
@@ -203,7 +226,7 @@ Vec3 ShellLattice::gradient_on_edge(const VoxelIndex& node, int axis, double off
 // its square.
 void ShellLattice::weigh_by_area(Face& face, const Vec3& gradient_G) const {
   const double steepness = gradient_G.norm();
-  if (steepness > 0) face.normal_G = -gradient_G / steepness;
+  if (steepness > 0) face.normal_G = (-1 / steepness) * gradient_G;
   // Never quite nothing, so that a point's mean has a weight to divide by.
   const double seen = steepness > 0 ? std::max(1e-6, std::abs(face.normal_G[face.axis])) : 1.0;
   face.weight = face_mm2_[face.axis] * seen;

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "osteomill/geometry/pose.h"
+#include "osteomill/tool/milling_tool.h"
+#include "osteomill/volume/volume.h"
+
+namespace osteomill::benchmarks {
+
+/// Bones that the benchmarks share; each is made once.
+enum class Bone {
+  builtin,            ///< built-in tooth, 256 x 256 x 176 voxels of 0.125 mm
+  builtin_refined,    ///< the same, 512 x 512 x 352 of 0.0625 mm
+  real_tooth,         ///< ../shared/data/tooth_dicom at isovalue 755, 256 x 256 x 176
+  real_tooth_refined  ///< the same sampled twice as finely, 512 x 512 x 352
+};
+
+std::string name_of(Bone bone);
+/// False for a scan that is not on this machine.
+bool is_here(Bone bone);
+const Volume& bone_volume(Bone bone);
+
+/// A block of bone that fills a 512 x 512 x 352 grid but for `margin_mm`, with a hole along i in which the
+/// tool's shaft fits all around: radius `shaft_radius_mm` less `overlap_mm`, through all of the block.
+Volume sleeve_block(double spacing_mm, const MillingTool& tool, double overlap_mm);
+/// The tool in the middle of that hole.
+Pose pose_in_sleeve(const Volume& block, const MillingTool& tool);
+
+}  // namespace osteomill::benchmarks

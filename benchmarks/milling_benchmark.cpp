@@ -1,0 +1,83 @@
+// Removing bone and bringing the shell up to date: a burr pressed into flat bone, kept at the depth that
+// bears its force, until it stands in its hole to more than its equator.
+
+#include <string>
+
+#include "benchmarks/percentiles.h"
+#include "tests/shapes.h"
+#include <benchmark/benchmark.h>
+
+#include "osteomill/haptics/point_shell/point_shell_algorithm.h"
+#include "osteomill/milling/burr_mill.h"
+
+namespace osteomill::benchmarks {
+
+namespace {
+
+constexpr double kForce_N = 4;
+constexpr double kTick_s = 1e-3;
+
+Volume flat_bone(double spacing_mm, double burr_radius_mm) {
+  const int voxels = static_cast<int>(4 * burr_radius_mm / spacing_mm);
+  return testing_support::shape_volume(testing_support::centred_cube(voxels, spacing_mm),
+                                       testing_support::plane({0, 0, 0.5 * burr_radius_mm}, Vec3::UnitZ()));
+}
+
+void mill(benchmark::State& state, double burr_radius_mm, double spacing_mm) {
+  const MillingTool tool{burr_radius_mm, 1.0, 25.0};
+  const Volume bone = flat_bone(spacing_mm, burr_radius_mm);
+  for ([[maybe_unused]] auto _ : state) {
+    Volume volume = bone;
+    PointShellAlgorithm algorithm(PointShellSettings::defaults(Mode::steady));
+    algorithm.prepare({&volume, tool});
+    BurrMill burr(volume.geometry(), burr_radius_mm, {0, 1000}, {});
+    TickTimes both, cutting, refreshing, steps;
+    double removed_mm3 = 0, pressed_mm3 = 0;
+    // The hand's target sinks while its spring holds less than the force.
+    Pose X_WD{{0, 0, 1.5 * burr_radius_mm}, Quat::Identity()};
+    int ticks = 0;
+    for (; ticks < 12000; ++ticks) {
+      HapticStep step;
+      steps.time([&] { step = algorithm.step(X_WD, kTick_s); });
+      const double pushed_N = step.wrench.force_N.z();
+      X_WD.position_mm.z() -= std::clamp(0.0005 * (kForce_N - pushed_N), -0.002, 0.002);
+      X_WD.position_mm.x() = 0.02 * std::sin(0.05 * ticks);
+      if (step.contacts == 0) continue;
+      MillingStep done;
+      const double cut_us =
+          cutting.time([&] { done = burr.step(volume, step.X_WT.position_mm, step.burr_force_N, kTick_s); });
+      const double refresh_us = refreshing.time([&] {
+        if (!done.change.voxels.empty()) algorithm.volume_changed(done.change);
+      });
+      both.add(cut_us + refresh_us);
+      removed_mm3 += done.removed_mm3;
+      pressed_mm3 += 2.0 * step.burr_force_N * kTick_s;
+      if (step.X_WT.position_mm.z() < -0.5 * burr_radius_mm) break;
+    }
+    both.report(state);
+    cutting.report(state, "cut_");
+    refreshing.report(state, "refresh_");
+    steps.report(state, "step_");
+    state.counters["removed_share"] = removed_mm3 / pressed_mm3;
+    state.counters["removed_mm3"] = removed_mm3;
+    state.counters["ticks"] = ticks;
+    state.counters["shell_points"] = algorithm.sample_point_count();
+  }
+}
+
+const bool kAdded = [] {
+  for (const double radius_mm : {1.5, 3.0}) {
+    for (const double spacing_mm : {0.125, 0.0625}) {
+      const std::string name = "milling/burr_" + std::string(radius_mm > 2 ? "3.0mm" : "1.5mm") +
+                               (spacing_mm > 0.1 ? "/0.125mm" : "/0.0625mm");
+      benchmark::RegisterBenchmark(name.c_str(), mill, radius_mm, spacing_mm)
+          ->Iterations(1)
+          ->Unit(benchmark::kMillisecond);
+    }
+  }
+  return true;
+}();
+
+}  // namespace
+
+}  // namespace osteomill::benchmarks
