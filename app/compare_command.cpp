@@ -1,12 +1,12 @@
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "app/commands.h"
 #include "app/config_file.h"
 #include "app/parallel.h"
+#include "app/progress.h"
 #include "app/record_trial.h"
 #include "app/scan_options.h"
 #include "app/study_trials.h"
@@ -19,6 +19,7 @@
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/recording/read_recording.h"
 #include "osteomill/report/write_report.h"
+#include "osteomill/session/measure_stability.h"
 
 namespace osteomill::app {
 
@@ -37,6 +38,7 @@ struct CompareOptions {
   std::vector<Mode> modes{Mode::steady};
   int seeds = 1;
   int threads = static_cast<int>(core_count());
+  bool no_stability = false;
   std::string out = "osteomill-comparison";
 };
 
@@ -67,6 +69,21 @@ std::vector<StudyRow> try_other_seeds(const CompareOptions& options, const std::
   return run_study_trials(others, options.algorithms, static_cast<std::size_t>(options.threads));
 }
 
+std::vector<StabilityRow> press_on_walls(const CompareOptions& options, const TrialSettings& settings) {
+  const std::vector<StabilityCase> cases = stability_cases(options.algorithms, options.modes);
+  const Volume wall = flat_wall(settings.tool);
+  std::vector<StabilityRow> rows(cases.size());
+  const auto task = [&](std::size_t n) {
+    rows[n] = measure_stability(cases[n], wall, settings.tool, settings.haptics,
+                                settings.hand_and_device.handle, settings.tick_s);
+  };
+  run_in_parallel(cases.size(), static_cast<std::size_t>(options.threads), task, [&](std::size_t done) {
+    show_progress("stability", static_cast<double>(done) / static_cast<double>(cases.size()));
+  });
+  end_progress();
+  return rows;
+}
+
 void run_compare(const CompareOptions& options, const std::string& command_line) {
   const LoadedBone bone = load_bone(options.scan);
   const std::vector<TrialPlan> plans = plans_of(options, bone, command_line);
@@ -81,13 +98,14 @@ void run_compare(const CompareOptions& options, const std::string& command_line)
       }
     }
   }
-  std::optional<Study> study;
+  ReportExtras extras;
   if (options.seeds > 1) {
     const std::vector<StudyRow> others = try_other_seeds(options, plans);
     rows.insert(rows.end(), others.begin(), others.end());
-    study.emplace(std::move(rows));
+    extras.study.emplace(std::move(rows));
   }
-  fmt::print("{}\n", write_report(recordings, options.out, study).string());
+  if (!options.no_stability) extras.stability = press_on_walls(options, plans.front().settings);
+  fmt::print("{}\n", write_report(recordings, options.out, extras).string());
 }
 
 // A study draws its hands, so one hand cannot be asked for as well.
@@ -118,7 +136,11 @@ void add_compare_command(CLI::App& program, const std::string& command_line) {
           "which differences are significant")
       ->check(CLI::Range(1, kMostSeeds))
       ->capture_default_str();
-  command->add_option("--threads", options->threads, "How many trials of a study run side by side")
+  command->add_flag("--no-stability", options->no_stability,
+                    "Leave out how stiff each algorithm can be against a flat wall");
+  command
+      ->add_option("--threads", options->threads,
+                   "How many trials after the first, and walls, are run side by side")
       ->check(CLI::Range(1, kMostThreads))
       ->capture_default_str();
   add_trial_options(*command, options->trial);

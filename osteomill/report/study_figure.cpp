@@ -12,7 +12,7 @@ namespace osteomill {
 namespace {
 
 constexpr double kWidth_px = 1150;
-constexpr double kPanelHeight_px = 300;
+constexpr double kPanelHeight_px = 280;
 constexpr double kTop_px = 52;
 constexpr std::size_t kColumns = 4;
 constexpr std::size_t kMostPanels = 8;
@@ -70,11 +70,11 @@ std::string tics(const Study& study) {
   std::string list;
   int place = 0;
   for (const AlgorithmId algorithm : study.algorithms()) {
-    list += fmt::format("{}'{}' {}", place == 0 ? "" : ", ", numbered_name(algorithm).substr(2), place);
+    list += fmt::format("{}'{}' {}", place == 0 ? "" : ", ", numbered_name(algorithm).substr(0, 1), place);
     ++place;
   }
-  return fmt::format("set xrange [-0.5:{}]\nset xtics noenhanced scale 0 rotate by -22 left ({})\n",
-                     static_cast<double>(place) - 0.5, list);
+  return fmt::format("set xrange [-0.5:{}]\nset xtics scale 0 ({})\n", static_cast<double>(place) - 0.5,
+                     list);
 }
 
 std::string panel(const Study& study, RunPhase phase, const KeyMetric& metric, std::size_t number,
@@ -94,24 +94,27 @@ std::string panel(const Study& study, RunPhase phase, const KeyMetric& metric, s
           plot.empty() ? "plot " : ", ", file, colour_of(algorithm), mode == Mode::paper ? 6 : 7);
     }
   }
-  return range_for(all_values(study, phase, metric)) +
-         fmt::format("set title '{}' offset 0,-0.5\n{}\n", label_of(metric), plot);
+  return range_for(all_values(study, phase, metric)) + plot + "\n";
 }
 
-std::string margins(std::size_t number, double height_px) {
-  const double left_px = 64, right_px = 14, above_px = 34, below_px = 66;
+// The title stands over the whole panel: some are wider than its axes.
+std::string frame(const KeyMetric& metric, std::size_t number, double height_px) {
+  const double left_px = 76, right_px = 10, above_px = 34, below_px = 36, title_px = 16;
   const double wide = kWidth_px / kColumns;
   const double left = static_cast<double>(number % kColumns) * wide;
   const double top = height_px - kTop_px - static_cast<double>(number / kColumns) * kPanelHeight_px;
   return fmt::format(
       "set lmargin at screen {:.4f}\nset rmargin at screen {:.4f}\nset tmargin at screen {:.4f}\nset bmargin "
-      "at screen {:.4f}\n",
+      "at screen {:.4f}\nset label 2 '{}' at screen {:.4f},screen {:.4f} center\n",
       (left + left_px) / kWidth_px, (left + wide - right_px) / kWidth_px, (top - above_px) / height_px,
-      (top - kPanelHeight_px + below_px) / height_px);
+      (top - kPanelHeight_px + below_px) / height_px, label_of(metric), (left + 0.53 * wide) / kWidth_px,
+      (top - title_px) / height_px);
 }
 
 std::string legend(const Study& study, RunPhase phase, double height_px) {
   std::string marks;
+  for (const AlgorithmId algorithm : study.algorithms())
+    marks += fmt::format("{}      ", numbered_name(algorithm));
   for (const Mode mode : study.modes()) {
     marks += fmt::format("{} {}      ", mode == Mode::paper ? "○" : "●", name_of(mode));
   }
@@ -135,7 +138,8 @@ Figure draw_study_figure(const Study& study, RunPhase phase, const std::filesyst
       "'#dddddd' lt 1 lw 0.7\nset format y '%g'\nunset key\n" +
       tics(study) + legend(study, phase, height_px);
   for (std::size_t n = 0; n < metrics.size(); ++n) {
-    script.body += margins(n, height_px) + panel(study, phase, metrics[n], n, work) + "unset label 1\n";
+    script.body +=
+        frame(metrics[n], n, height_px) + panel(study, phase, metrics[n], n, work) + "unset label\n";
   }
   script.body += "unset multiplot\n";
   return draw_figure(script, work, folder);

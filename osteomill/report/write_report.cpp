@@ -9,6 +9,8 @@
 #include "osteomill/report/report_page.h"
 #include "osteomill/report/run_groups.h"
 #include "osteomill/report/shaft_figure.h"
+#include "osteomill/report/stability_figure.h"
+#include "osteomill/report/stability_section.h"
 #include "osteomill/report/study_figure.h"
 #include "osteomill/report/study_section.h"
 #include "osteomill/report/study_words.h"
@@ -67,14 +69,19 @@ void add_study(const Study& study, const fs::path& out_dir, PageAdditions& page)
 }  // namespace
 
 fs::path write_report(const std::vector<Recording>& recordings, const fs::path& out_dir,
-                      const std::optional<Study>& study) {
+                      const ReportExtras& extras) {
   std::vector<RunGroup> groups = group_runs(recordings);
   create_folder(out_dir / "figures");
   // First, so that the numbers are there even where no figure can be drawn.
   write_summary_csv(out_dir / "summary.csv", summary_rows(groups));
-  if (study) write_study_csv(out_dir / "study.csv", *study);
+  if (extras.study) write_study_csv(out_dir / "study.csv", *extras.study);
+  if (!extras.stability.empty()) write_stability_csv(out_dir / "stability.csv", extras.stability);
   PageAdditions additions;
-  if (study) add_study(*study, out_dir, additions);
+  if (extras.study) add_study(*extras.study, out_dir, additions);
+  if (!extras.stability.empty()) {
+    additions.sections +=
+        stability_section(extras.stability, draw_stability_figure(extras.stability, out_dir / "figures"));
+  }
   std::vector<DrawnGroup> drawn;
   for (RunGroup& group : groups) drawn.push_back(draw(std::move(group), out_dir / "figures"));
   const fs::path page = out_dir / "report.html";
