@@ -51,17 +51,19 @@ Axes axes_of(std::span<const StabilityRow> rows) {
   return axes;
 }
 
-// Damping, felt stiffness, rule; '?' where none was passive. Each algorithm a little aside, since several
-// follow the rule.
+// Damping, felt stiffness or '?' where none was passive, the same where even the stiffest was, damping, rule.
+// Each algorithm a little aside, since several follow the rule.
 std::string curve_data(std::span<const StabilityRow> rows, AlgorithmId algorithm, Mode mode, double delay_s) {
   const double aside = std::pow(1.05, static_cast<double>(algorithm) - 1);
   std::string data;
   for (const StabilityRow& row : rows) {
     const StabilityCase& setup = row.setup;
     if (setup.algorithm != algorithm || setup.mode != mode || setup.delay_s != delay_s) continue;
-    data += fmt::format("{:.6g} {} {:.6g} {:.6g}\n", aside * damping_Ns_per_m(row),
-                        row.limit.felt_N_per_mm > 0 ? fmt::format("{:.6g}", row.limit.felt_N_per_mm) : "?",
-                        damping_Ns_per_m(row), row.rule_N_per_mm);
+    const std::string felt = fmt::format("{:.6g}", row.limit.felt_N_per_mm);
+    data += fmt::format("{:.6g} {} {} {:.6g} {:.6g}\n", aside * damping_Ns_per_m(row),
+                        row.limit.kind == StiffnessLimit::Kind::below_all ? "?" : felt,
+                        row.limit.kind == StiffnessLimit::Kind::above_all ? felt : "?", damping_Ns_per_m(row),
+                        row.rule_N_per_mm);
   }
   return data;
 }
@@ -85,9 +87,12 @@ std::string panel(std::span<const StabilityRow> rows, std::size_t column, std::s
     const std::string file = fmt::format("stability-{}-{}-{}.dat", name_of(algorithm), row, column);
     write_figure_data(work / file, curve_data(rows, algorithm, axes.modes[row], axes.delays_s[column]));
     // The same for every algorithm.
-    rule = fmt::format("plot '{}' using 3:4 with lines dt 2 lw 1.5 lc rgb '#555555' notitle", file);
-    curves += fmt::format(", '{}' using 1:2 with linespoints pt 7 ps 0.9 lw 1.6 lc rgb '{}' notitle", file,
-                          colour_of(algorithm));
+    rule = fmt::format("plot '{}' using 4:5 with lines dt 2 lw 1.5 lc rgb '#555555' notitle", file);
+    curves += fmt::format(
+        ", '{0}' using 1:2 with linespoints pt 7 ps 0.9 lw 1.6 lc rgb '{1}' notitle, '{0}' using 1:3 with "
+        "points "
+        "pt 9 ps 1.9 lc rgb '{1}' notitle",
+        file, colour_of(algorithm));
   }
   return rule + curves + "\n";
 }

@@ -68,24 +68,23 @@ std::string mode_table(std::span<const StabilityRow> rows, Mode mode) {
 
 // "1 line-proxy 0.98 to 1.05"
 std::string range_against_rule(std::span<const StabilityRow> rows, AlgorithmId algorithm, Mode mode) {
-  double least = 0;
-  double greatest = 0;
-  int none = 0;
+  std::vector<double> ratios;
+  std::size_t none = 0;
   for (const StabilityRow& row : rows) {
     if (row.setup.algorithm != algorithm || row.setup.mode != mode) continue;
     if (row.limit.kind == Kind::below_all) {
       ++none;
-      continue;
+    } else {
+      ratios.push_back(row.limit.felt_N_per_mm / row.rule_N_per_mm);
     }
-    const double ratio = row.limit.felt_N_per_mm / row.rule_N_per_mm;
-    least = greatest == 0 ? ratio : std::min(least, ratio);
-    greatest = std::max(greatest, ratio);
   }
-  const std::string never =
-      none == 0 ? "" : fmt::format(" ({} {} none passive)", none, none == 1 ? "device has" : "devices have");
-  if (greatest == 0) return fmt::format("{} is never passive", numbered_name(algorithm));
-  return fmt::format("{} to {:.2f} to {:.2f} times the rule{}", numbered_name(algorithm), least, greatest,
-                     never);
+  const std::string name(numbered_name(algorithm));
+  if (ratios.empty()) return name + " passive on no device";
+  const auto [least, greatest] = std::minmax_element(ratios.begin(), ratios.end());
+  const std::string range = fmt::format("{} {:.2f} to {:.2f}", name, *least, *greatest);
+  if (none == 0) return range;
+  return fmt::format("{}, and passive at no stiffness on {} of {} devices", range, none,
+                     none + ratios.size());
 }
 
 std::string in_words(std::span<const StabilityRow> rows, Mode mode) {
@@ -93,27 +92,33 @@ std::string in_words(std::span<const StabilityRow> rows, Mode mode) {
   for (const AlgorithmId algorithm : algorithms_of(rows, mode)) {
     text += (text.empty() ? "" : "; ") + range_against_rule(rows, algorithm, mode);
   }
-  return fmt::format("The stiffness felt at the limit comes, in mode {}, of {}.", name_of(mode), text);
+  return "The stiffness felt at the limit, as a multiple of the rule: " + text + ".";
 }
+
+constexpr const char* kWhatWasDone =
+    "The device alone, without a hand, is pressed on a flat wall of bone by 0.5 N along a guide, and then "
+    "given "
+    "a small speed. The greatest --stiffness is sought at which its swings die out: at which the wall, the "
+    "device's delay and the tick together do not put more energy into a swing than the device's own damping "
+    "takes. An ideal wall of stiffness K, sampled every T = 1 ms and felt with a delay τ, should stay so up "
+    "to "
+    "K = 2 b / (T + 2 τ) on a device with damping b. What is felt of an algorithm's setting is the slope of "
+    "its "
+    "force over the depth at 0.5 N; that is what the rule speaks of. Bisection finds one limit; an algorithm "
+    "that buzzes by itself may have others.";
+
+constexpr const char* kCaption =
+    "The stiffness felt where the wall is only just passive, against the device's damping. A triangle: "
+    "passive "
+    "up to the stiffest setting tried, 200 N/mm, of which this is felt. A missing point: passive at no "
+    "setting. "
+    "Points stand a little aside of each other.";
 
 }  // namespace
 
 std::string stability_section(std::span<const StabilityRow> rows, const Figure& figure) {
-  std::string html =
-      "<h2>Stability against a flat wall</h2>\n<p>" +
-      html_escaped(
-          "The device alone, without a hand, is pressed on a flat wall of bone by 0.5 N along a guide, "
-          "and then given a small speed. The greatest --stiffness is sought at which its swings die "
-          "out: at which the wall, the device's delay and the tick together do not put more energy "
-          "into a swing than the device's own damping takes. An ideal wall of stiffness K, sampled "
-          "every T = 1 ms and felt with a delay τ, should stay so up to K = 2 b / (T + 2 τ) on a "
-          "device with damping b. What is felt of an algorithm's setting is the slope of its force "
-          "over the depth at 0.5 N; that is what the rule speaks of.") +
-      "</p>\n";
-  html += html_figure(
-      figure.svg,
-      "The stiffness felt where the wall is only just passive, against the device's damping. Points "
-      "that are missing: no stiffness was passive.");
+  std::string html = "<h2>Stability against a flat wall</h2>\n<p>" + html_escaped(kWhatWasDone) + "</p>\n" +
+                     html_figure(figure.svg, kCaption);
   for (const Mode mode : {Mode::paper, Mode::steady}) {
     if (algorithms_of(rows, mode).empty()) continue;
     html += fmt::format(

@@ -107,21 +107,31 @@ std::string frame(const KeyMetric& metric, std::size_t number, double height_px)
       "set lmargin at screen {:.4f}\nset rmargin at screen {:.4f}\nset tmargin at screen {:.4f}\nset bmargin "
       "at screen {:.4f}\nset label 2 '{}' at screen {:.4f},screen {:.4f} center\n",
       (left + left_px) / kWidth_px, (left + wide - right_px) / kWidth_px, (top - above_px) / height_px,
-      (top - kPanelHeight_px + below_px) / height_px, label_of(metric), (left + 0.53 * wide) / kWidth_px,
+      (top - kPanelHeight_px + below_px) / height_px, label_of(metric), (left + 0.55 * wide) / kWidth_px,
       (top - title_px) / height_px);
 }
 
 std::string legend(const Study& study, RunPhase phase, double height_px) {
-  std::string marks;
-  for (const AlgorithmId algorithm : study.algorithms())
-    marks += fmt::format("{}      ", numbered_name(algorithm));
-  for (const Mode mode : study.modes()) {
-    marks += fmt::format("{} {}      ", mode == Mode::paper ? "○" : "●", name_of(mode));
+  constexpr double kName_px = 160, kMode_px = 100, kTitle_px = 130, kDots_px = 300;
+  double x_px = 0.5 * (kWidth_px - kTitle_px - kName_px * static_cast<double>(study.algorithms().size()) -
+                       kMode_px * static_cast<double>(study.modes().size()) - kDots_px);
+  std::string script;
+  int tag = 11;
+  const auto add = [&](const std::string& text, std::string_view colour, double wide_px) {
+    script += fmt::format("set label {} '{}' at screen {:.4f},screen {:.4f} left tc rgb '{}'\n", tag++, text,
+                          x_px / kWidth_px, 1 - 24 / height_px, colour);
+    x_px += wide_px;
+  };
+  constexpr std::string_view kInk = "#111111";
+  add(phase == RunPhase::milling ? "Milling:" : "Holding still:", kInk, kTitle_px);
+  for (const AlgorithmId algorithm : study.algorithms()) {
+    add(std::string(numbered_name(algorithm)), colour_of(algorithm), kName_px);
   }
-  return fmt::format(
-      "set label 1 '{}:    {}a dot for each hand, a bar at the median' at screen 0.5,screen "
-      "{:.4f} center\n",
-      phase == RunPhase::milling ? "Milling" : "Holding still", marks, 1 - 24 / height_px);
+  for (const Mode mode : study.modes()) {
+    add(fmt::format("{} {}", mode == Mode::paper ? "○" : "●", name_of(mode)), kInk, kMode_px);
+  }
+  add("a dot for each hand, a bar at the median", kInk, kDots_px);
+  return script;
 }
 
 }  // namespace
