@@ -97,6 +97,17 @@ std::vector<RunPhase> Study::phases() const {
   return present(kAllPhases, rows_, [](const SummaryRow& r, RunPhase phase) { return r.phase == phase; });
 }
 
+std::vector<KeyMetric> Study::metrics_of(RunPhase phase) const {
+  std::vector<KeyMetric> metrics;
+  for (const KeyMetric& metric : kKeyMetrics) {
+    const auto has_some = [&](const StudyRow& row) {
+      return row.summary.phase == phase && metric.value(row.summary.metrics) != 0;
+    };
+    if (std::any_of(rows_.begin(), rows_.end(), has_some)) metrics.push_back(metric);
+  }
+  return metrics;
+}
+
 std::vector<double> Study::values(AlgorithmId algorithm, Mode mode, RunPhase phase,
                                   const KeyMetric& metric) const {
   std::vector<double> values;

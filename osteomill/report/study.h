@@ -51,6 +51,9 @@ class Study {
   std::vector<Mode> modes() const;
   std::vector<RunPhase> phases() const;
 
+  /// The key metrics but those that are zero throughout a phase (bone removed while holding).
+  std::vector<KeyMetric> metrics_of(RunPhase phase) const;
+
   /// The metric's values, one a seed in the order of `seeds`; none where that was not tried.
   std::vector<double> values(AlgorithmId algorithm, Mode mode, RunPhase phase, const KeyMetric& metric) const;
 

@@ -32,16 +32,6 @@ std::vector<double> all_values(const Study& study, RunPhase phase, const KeyMetr
   return all;
 }
 
-std::vector<KeyMetric> drawn_metrics(const Study& study, RunPhase phase) {
-  std::vector<KeyMetric> metrics;
-  for (const KeyMetric& metric : key_metrics()) {
-    const auto all = all_values(study, phase, metric);
-    const bool zero = std::all_of(all.begin(), all.end(), [](double value) { return value == 0; });
-    if (!zero && metrics.size() < kMostPanels) metrics.push_back(metric);
-  }
-  return metrics;
-}
-
 // Whole decades where the values spread, so that at least two tics have a number.
 std::string range_for(const std::vector<double>& values) {
   const auto [least, greatest] = std::minmax_element(values.begin(), values.end());
@@ -138,7 +128,8 @@ std::string legend(const Study& study, RunPhase phase, double height_px) {
 
 Figure draw_study_figure(const Study& study, RunPhase phase, const std::filesystem::path& folder) {
   const TemporaryFolder work;
-  const std::vector<KeyMetric> metrics = drawn_metrics(study, phase);
+  std::vector<KeyMetric> metrics = study.metrics_of(phase);
+  if (metrics.size() > kMostPanels) metrics.resize(kMostPanels);
   const std::size_t rows = (metrics.size() + kColumns - 1) / kColumns;
   const double height_px = kTop_px + static_cast<double>(std::max<std::size_t>(rows, 1)) * kPanelHeight_px;
   FigureScript script{fmt::format("study_{}", name_of(phase)), static_cast<int>(kWidth_px),

@@ -44,7 +44,7 @@ std::string algorithms_table(const Study& study, Mode mode, RunPhase phase) {
   HtmlTable table{{"Median over the hands [interval]"}, {}, true};
   for (const AlgorithmId algorithm : study.algorithms()) table.header.emplace_back(numbered_name(algorithm));
   if (study.algorithms().size() > 1) table.header.emplace_back("Differences");
-  for (const KeyMetric& metric : key_metrics()) {
+  for (const KeyMetric& metric : study.metrics_of(phase)) {
     table.rows.push_back({html_escaped(label_of(metric))});
     for (const AlgorithmId algorithm : study.algorithms()) {
       table.rows.back().push_back(
@@ -78,7 +78,7 @@ std::string findings_table(const Study& study, Mode mode) {
 std::string changes_table(const Study& study, RunPhase phase) {
   HtmlTable table{{"steady / paper, median over the hands [interval]"}, {}, true};
   for (const AlgorithmId algorithm : study.algorithms()) table.header.emplace_back(numbered_name(algorithm));
-  for (const KeyMetric& metric : key_metrics()) {
+  for (const KeyMetric& metric : study.metrics_of(phase)) {
     table.rows.push_back({html_escaped(label_of(metric))});
     for (const ModeChange& change : compare_modes(study, phase, metric)) {
       const std::string p = html_escaped(p_text(change.p));

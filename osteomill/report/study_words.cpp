@@ -34,6 +34,7 @@ std::string findings_sentence(const Study& study, Mode mode) {
   std::size_t agreeing = 0;
   std::vector<std::string> against;
   for (const StudyFinding& f : check_study_findings(study, mode)) {
+    if (f.of_medians.of_the_machine) continue;
     tested += f.of_medians.verdict != Verdict::not_recorded;
     agreeing += f.of_medians.verdict == Verdict::agrees;
     if (f.of_medians.verdict == Verdict::does_not_agree) {
@@ -41,8 +42,8 @@ std::string findings_sentence(const Study& study, Mode mode) {
     }
   }
   return fmt::format(
-      "Over {} hands, {} of the paper's {} findings that could be tested hold in the medians of "
-      "mode {}{}.",
+      "Over {} hands, {} of the paper's {} findings on force, torque and shaft hold in the medians of mode "
+      "{}{}.",
       study.seeds().size(), agreeing, tested, name_of(mode),
       against.empty() ? "" : "; not so " + joined(against));
 }
@@ -62,7 +63,7 @@ std::string changes_sentence(const Study& study, RunPhase phase) {
   std::vector<std::string> parts;
   if (!less.empty()) parts.push_back("lowers the " + joined(less));
   if (!more.empty()) parts.push_back("raises the " + joined(more));
-  if (!unclear.empty()) parts.push_back("changes the " + joined(unclear) + " not significantly");
+  if (!unclear.empty()) parts.push_back("does not significantly change the " + joined(unclear));
   return fmt::format("Of what lies above 20 Hz while {}, steady {}.",
                      phase == RunPhase::milling ? "milling" : "holding", joined(parts));
 }
