@@ -108,8 +108,8 @@ std::string how_to_read(const Study& study) {
   std::string html = paragraph(fmt::format(
       "The same trial in {} hands: each seed (the first is {}) has a tremor and a hand of its own, drawn "
       "evenly from the published ranges; here {:.0f} to {:.0f} N/m and {:.2g} to {:.2g} N s/m. study.csv has "
-      "every trial. Recordings, curves and pictures are kept of seed {} alone, of the others only these "
-      "figures of merit.",
+      "every trial. Recordings are kept of seed {} alone, which is the one that the sections on each mode "
+      "show; of the others only these figures of merit.",
       n, study.seeds().front(), *softest, *stiffest, *least, *most, study.seeds().front()));
   html += paragraph(
       interval.is_range

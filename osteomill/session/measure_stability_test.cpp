@@ -91,6 +91,18 @@ TEST(Stability, AWallThatGivesWayIsNotCalledPassive) {
   EXPECT_EQ(press_on_wall(none, kRadius_mm, device(0.005, 0)).motion, WallMotion::gives_way);
 }
 
+TEST(Stability, ADeviceTooWeakToHoldTheWallIsNotCalledPassive) {
+  WallPress press = device(0.005, 0.3e-3);
+  press.handle.limits.force_N = 0.3;
+  IdealWall wall(1);
+  EXPECT_EQ(press_on_wall(wall, kRadius_mm, press).motion, WallMotion::goes_on);
+}
+
+TEST(Stability, AnOverdampedDeviceThatCreepsToRestIsPassive) {
+  IdealWall wall(0.5);
+  EXPECT_EQ(press_on_wall(wall, kRadius_mm, device(0.1, 0)).motion, WallMotion::dies_out);
+}
+
 // A force that jumps at the surface keeps the handle swinging without growing: that is not passive either.
 class Relay final : public HapticAlgorithm {
  public:

@@ -17,6 +17,7 @@ constexpr int kSettleTicks = 50;
 constexpr double kLeastSwing_mm = 0.02;
 constexpr double kMostSwing_mm = 0.1;
 constexpr double kDeadSwing_mm = 0.015;
+constexpr double kAtRest_mm_s = 0.1;
 constexpr double kGrowth = 4;
 constexpr double kDecay = 0.99;
 constexpr std::size_t kSwings = 36;
@@ -142,8 +143,8 @@ bool swing_dies_out(Wall& wall, const Rest& rest, const WallPress& press) {
     if (const auto known = dies_out(swings)) return *known;
   }
   const std::size_t count = swings.sizes_mm().size();
-  // An overdamped handle creeps to rest without turning.
-  if (count < 6) return true;
+  // An overdamped handle creeps to rest without turning; one that breaks through does not come to rest.
+  if (count < 6) return handle.velocity().linear_mm_s.norm() < kAtRest_mm_s;
   return swings.greatest(count - count / 3, count) <
          kDecay * swings.greatest(count - 2 * (count / 3), count - count / 3);
 }
