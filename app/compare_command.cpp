@@ -5,14 +5,21 @@
 
 #include "app/commands.h"
 #include "app/config_file.h"
+#include "app/parallel.h"
+#include "app/progress.h"
 #include "app/record_trial.h"
 #include "app/scan_options.h"
+#include "app/study_trials.h"
 #include "app/trial_options.h"
+#include <CLI/Error.hpp>
+#include <CLI/Option.hpp>
+#include <CLI/Validators.hpp>
 #include <fmt/core.h>
 
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/recording/read_recording.h"
 #include "osteomill/report/write_report.h"
+#include "osteomill/session/measure_stability.h"
 
 namespace osteomill::app {
 
@@ -20,25 +27,95 @@ namespace fs = std::filesystem;
 
 namespace {
 
+// The exact test of 200 pairs takes a hundredth of a second; nobody waits for 200 trials.
+constexpr int kMostSeeds = 200;
+constexpr int kMostThreads = 256;
+
 struct CompareOptions {
   ScanOptions scan;
   TrialOptions trial;
   std::vector<AlgorithmId> algorithms{kAllAlgorithms.begin(), kAllAlgorithms.end()};
+  std::vector<Mode> modes{Mode::steady};
+  int seeds = 1;
+  int threads = static_cast<int>(core_count());
+  bool no_stability = false;
   std::string out = "osteomill-comparison";
 };
 
-void run_compare(const CompareOptions& options, const std::string& command_line) {
-  const LoadedBone bone = load_bone(options.scan);
-  const TrialPlan plan{bone, estimate_densities(bone.volume), place_entry(bone.volume, options.trial),
-                       trial_settings(options.trial), command_line};
-  create_folder(options.out);
-  std::vector<Recording> recordings;
-  for (const AlgorithmId algorithm : options.algorithms) {
-    for (const fs::path& path : record_trial(plan, algorithm, options.out)) {
-      recordings.push_back(read_recording(path));
+// One plan a mode, with the first seed.
+std::vector<TrialPlan> plans_of(const CompareOptions& options, const LoadedBone& bone,
+                                const std::string& command_line) {
+  const TrialPlan plan{bone,
+                       estimate_densities(bone.volume),
+                       place_entry(bone.volume, options.trial),
+                       trial_settings(options.trial),
+                       command_line,
+                       options.modes.size() > 1};
+  std::vector<TrialPlan> plans;
+  for (const Mode mode : options.modes) {
+    plans.push_back(options.seeds > 1 ? with_seed(plan, options.trial.milling.seed) : plan);
+    plans.back().settings.haptics.mode = mode;
+  }
+  return plans;
+}
+
+std::vector<StudyRow> try_other_seeds(const CompareOptions& options, const std::vector<TrialPlan>& plans) {
+  std::vector<TrialPlan> others;
+  for (int n = 1; n < options.seeds; ++n) {
+    for (const TrialPlan& plan : plans) {
+      others.push_back(with_seed(plan, options.trial.milling.seed + static_cast<std::uint64_t>(n)));
     }
   }
-  fmt::print("{}\n", write_report(recordings, options.out).string());
+  return run_study_trials(others, options.algorithms, static_cast<std::size_t>(options.threads));
+}
+
+std::vector<StabilityRow> press_on_walls(const CompareOptions& options, const TrialSettings& settings) {
+  const std::vector<StabilityCase> cases = stability_cases(options.algorithms, options.modes);
+  const Volume wall = flat_wall(settings.tool);
+  std::vector<StabilityRow> rows(cases.size());
+  const auto task = [&](std::size_t n) {
+    rows[n] = measure_stability(cases[n], wall, settings.tool, settings.haptics,
+                                settings.hand_and_device.handle, settings.tick_s);
+  };
+  run_in_parallel(cases.size(), static_cast<std::size_t>(options.threads), task, [&](std::size_t done) {
+    show_progress("stability", static_cast<double>(done) / static_cast<double>(cases.size()));
+  });
+  end_progress();
+  return rows;
+}
+
+void run_compare(const CompareOptions& options, const std::string& command_line) {
+  const LoadedBone bone = load_bone(options.scan);
+  const std::vector<TrialPlan> plans = plans_of(options, bone, command_line);
+  create_folder(options.out);
+  std::vector<Recording> recordings;
+  std::vector<StudyRow> rows;
+  for (const TrialPlan& plan : plans) {
+    for (const AlgorithmId algorithm : options.algorithms) {
+      for (const fs::path& path : record_trial(plan, algorithm, options.out)) {
+        recordings.push_back(read_recording(path));
+        rows.push_back(row_of(plan, recordings.back()));
+      }
+    }
+  }
+  ReportExtras extras;
+  if (options.seeds > 1) {
+    const std::vector<StudyRow> others = try_other_seeds(options, plans);
+    rows.insert(rows.end(), others.begin(), others.end());
+    extras.study.emplace(std::move(rows));
+  }
+  if (!options.no_stability) extras.stability = press_on_walls(options, plans.front().settings);
+  fmt::print("{}\n", write_report(recordings, options.out, extras).string());
+}
+
+// A study draws its hands, so one hand cannot be asked for as well.
+void refuse_a_hand(const CLI::App& command) {
+  for (const char* option :
+       {"--hand-stiffness", "--hand-damping", "--hand-torsional-stiffness", "--hand-torsional-damping"}) {
+    if (command.count(option) > 0) {
+      throw CLI::ValidationError(option, "cannot be given with --seeds above 1, which draws hands itself");
+    }
+  }
 }
 
 }  // namespace
@@ -51,9 +128,25 @@ void add_compare_command(CLI::App& program, const std::string& command_line) {
   command->add_option("--out", options->out, "Folder for the report and the recordings")
       ->capture_default_str();
   add_algorithm_option(*command, options->algorithms);
+  add_modes_option(*command, options->modes);
+  command
+      ->add_option(
+          "--seeds", options->seeds,
+          "How many hands try it, each with a seed of its own, --seed the first; the report then says "
+          "which differences are significant")
+      ->check(CLI::Range(1, kMostSeeds))
+      ->capture_default_str();
+  command->add_flag("--no-stability", options->no_stability,
+                    "Leave out how stiff each algorithm can be against a flat wall");
+  command
+      ->add_option("--threads", options->threads,
+                   "How many trials after the first, and walls, are run side by side")
+      ->check(CLI::Range(1, kMostThreads))
+      ->capture_default_str();
   add_trial_options(*command, options->trial);
   command->callback([=] {
     apply_config_file(*command);
+    if (options->seeds > 1) refuse_a_hand(*command);
     run_compare(*options, command_line);
   });
 }

@@ -14,9 +14,9 @@
 
 namespace osteomill::app {
 
-namespace {
+namespace {}  // namespace
 
-void add_mode(CLI::App& command, Mode& mode) {
+void add_mode_option(CLI::App& command, Mode& mode) {
   command
       .add_option_function<std::string>(
           "--mode", [&mode](const std::string& name) { mode = *mode_named(name); },
@@ -24,6 +24,21 @@ void add_mode(CLI::App& command, Mode& mode) {
       ->check(CLI::IsMember({"paper", "steady"}))
       ->default_str(std::string(name_of(mode)));
 }
+
+void add_modes_option(CLI::App& command, std::vector<Mode>& modes) {
+  command
+      .add_option_function<std::string>(
+          "--mode",
+          [&modes](const std::string& name) {
+            const auto one = mode_named(name);
+            modes = one ? std::vector{*one} : std::vector{Mode::paper, Mode::steady};
+          },
+          "'paper' as published, 'steady' with every improvement, or 'both'")
+      ->check(CLI::IsMember({"paper", "steady", "both"}))
+      ->default_str(std::string(name_of(modes.front())));
+}
+
+namespace {
 
 // "point-shell.look-ahead=false"
 HapticSettings::Named named_setting(const std::string& text) {
@@ -66,7 +81,6 @@ void add_named_settings(CLI::App& command, HapticSettings& haptics) {
 }  // namespace
 
 void add_milling_options(CLI::App& command, MillingOptions& options) {
-  add_mode(command, options.haptics.mode);
   add_positive(command, "--burr-radius", options.tool.burr_radius_mm, "mm");
   add_positive(command, "--shaft-radius", options.tool.shaft_radius_mm, "mm");
   add_positive(command, "--shaft-length", options.tool.shaft_length_mm, "mm");
@@ -86,7 +100,8 @@ void add_milling_options(CLI::App& command, MillingOptions& options) {
                "kappa, mm^3/(N s); else from burr, spindle speed and cutting energy");
   add_positive(command, "--force-limit", options.limits.force_N, "N, the most the device is asked for");
   add_positive(command, "--torque-limit", options.limits.torque_Nmm, "N mm");
-  command.add_option("--seed", options.seed, "Of the hand's tremor")->capture_default_str();
+  command.add_option("--seed", options.seed, "Of the hand's tremor, and of the hands that --seeds draws")
+      ->capture_default_str();
   add_config_option(command);
 }
 

@@ -26,6 +26,10 @@ struct MillingOptions {
   std::uint64_t seed = 1;
 };
 
+/// Adds --mode for a command that works in one mode, or in one or both.
+void add_mode_option(CLI::App& command, Mode& mode);
+void add_modes_option(CLI::App& command, std::vector<Mode>& modes);
+
 /// Adds the tool, the algorithms' settings, milling, limits, --seed and --config to a command.
 void add_milling_options(CLI::App& command, MillingOptions& options);
 

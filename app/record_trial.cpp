@@ -19,6 +19,12 @@ namespace {
 
 constexpr int kTicksBetweenProgress = 500;
 
+std::string recording_name(const TrialPlan& plan, AlgorithmId algorithm, RunPhase phase) {
+  const std::string mode =
+      plan.mode_in_names ? fmt::format("-{}", name_of(plan.settings.haptics.mode)) : std::string();
+  return fmt::format("{}{}-{}.h5", name_of(algorithm), mode, name_of(phase));
+}
+
 void add_pictures(Recorder& recorder, const TrialPlan& plan, const Volume& after) {
   recorder.add_picture(std::string(kPictureBefore), picture_of_entry(plan.bone.volume, plan.entry));
   recorder.add_picture(std::string(kPictureAfter), picture_of_entry(after, plan.entry));
@@ -31,7 +37,7 @@ std::vector<fs::path> record_trial(const TrialPlan& plan, AlgorithmId algorithm,
   std::vector<fs::path> paths;
   std::vector<std::unique_ptr<Recorder>> recorders;
   for (const RunPhase phase : kAllPhases) {
-    paths.push_back(folder / fmt::format("{}-{}.h5", name_of(algorithm), name_of(phase)));
+    paths.push_back(folder / recording_name(plan, algorithm, phase));
     recorders.push_back(std::make_unique<Recorder>(
         paths.back(), describe_run(plan, algorithm, trial.algorithm().sample_point_count(), phase)));
   }

@@ -19,6 +19,8 @@ struct TrialPlan {
   TrialSettings settings;
   /// How the comparison was called, for whoever wants to repeat it.
   std::string command_line;
+  /// Recordings carry the mode in their names, as a comparison of both modes needs.
+  bool mode_in_names = false;
 };
 
 /// Runs one algorithm through both phases of section 8.2, shows progress, and writes one recording a phase

@@ -64,6 +64,7 @@ void add_replay_command(CLI::App& program) {
   add_algorithm_option(*command, options->algorithm);
   command->get_option("--algorithm")->required()->expected(1);
   command->add_option("--out", options->out, "The log, CSV, a row a tick")->required();
+  add_mode_option(*command, options->milling.haptics.mode);
   add_milling_options(*command, options->milling);
   command->callback([=] {
     apply_config_file(*command);

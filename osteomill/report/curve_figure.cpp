@@ -76,12 +76,10 @@ std::string legend(const RunGroup& group, double height_px) {
   return script;
 }
 
-// A dashed line across the panel that says what it stands for.
-std::string marked_line(double y, const char* text) {
+// Across the panel; what it stands for is said above, where no curve runs.
+std::string dashed_line(double y) {
   return fmt::format(
-      "set arrow 1 from graph 0,first {0} to graph 1,first {0} nohead dt 2 lw 1.5 lc rgb '#555555' front\n"
-      "set label 1 '{1}' at graph 0.99,first {0} right offset 0,-0.7 front tc rgb '#444444'",
-      y, text);
+      "set arrow 1 from graph 0,first {0} to graph 1,first {0} nohead dt 2 lw 1.5 lc rgb '#555555' front", y);
 }
 
 struct Place {
@@ -90,7 +88,7 @@ struct Place {
 
 Place panel_place(std::size_t column, std::size_t columns, std::size_t row, std::size_t rows,
                   double height_px) {
-  const double left_px = 112, right_px = 26, top_px = 86, bottom_px = 80, between_px = 88;
+  const double left_px = 112, right_px = 26, top_px = 100, bottom_px = 80, between_px = 88;
   const double wide = kFigureWidth_px / static_cast<double>(columns);
   const double high = (height_px - top_px - bottom_px + between_px) / static_cast<double>(rows);
   const double top = height_px - top_px - static_cast<double>(row) * high;
@@ -120,6 +118,14 @@ std::string panel(const RunGroup& group, const CurveColumn& column, RunPhase pha
                         curve.file, colour_of(curve.algorithm));
   }
   return script + plot;
+}
+
+std::string dashed_legend(const CurveColumn& column, const Place& place, double height_px) {
+  constexpr double kTop_px = 54;
+  if (column.dashed.empty()) return "";
+  return fmt::format(
+      "set label 1 '- - -  {}' at screen {:.4f},screen {:.4f} center noenhanced tc rgb '#444444'\n",
+      column.dashed, 0.5 * (place.left + place.right), 1 - kTop_px / height_px);
 }
 
 double busy_us(const TickRecord& record) {
@@ -168,6 +174,7 @@ Figure draw_curves(const RunGroup& group, const std::string& name, const std::ve
   for (std::size_t c = 0; c < columns.size(); ++c) {
     for (std::size_t row = 0; row < phases.size(); ++row) {
       const Place place = panel_place(c, columns.size(), row, phases.size(), script.height_px);
+      if (row == 0) script.body += dashed_legend(columns[c], place, script.height_px);
       script.body += panel(group, columns[c], phases[row], place, row + 1 == phases.size(), bins, work);
       // Panels drawn later would print the legend again, on top of itself.
       script.body += "\nunset label\nunset arrow\n";
@@ -184,24 +191,26 @@ Figure draw_rate_figure(const RunGroup& group, const std::filesystem::path& fold
   const CurveColumn rate{
       "rate", "Haptic rate (Hz)", rate_of,
       fmt::format("set yrange [{:.6g}:1020]\n{}", std::min(900.0, 100.0 * std::floor(lowest_rate_hz / 100.0)),
-                  marked_line(kLeastRate_hz, "950 Hz, the least acceptable"))};
-  const CurveColumn compute{
-      "compute", "Compute time of a tick (µs)", [](const TickRecord& r) { return std::max(0.1, busy_us(r)); },
-      fmt::format("set logscale y\nset yrange [*:{:.6g}]\nset format y '%g'\n{}",
-                  std::max(3000.0, 1.5 * longest), marked_line(1000, "1 ms, a tick at 1000 Hz"))};
+                  dashed_line(kLeastRate_hz)),
+      "950 Hz, the least acceptable"};
+  const CurveColumn compute{"compute", "Compute time of a tick (µs)",
+                            [](const TickRecord& r) { return std::max(0.1, busy_us(r)); },
+                            fmt::format("set logscale y\nset yrange [*:{:.6g}]\nset format y '%g'\n{}",
+                                        std::max(3000.0, 1.5 * longest), dashed_line(1000)),
+                            "1 ms, a tick at 1000 Hz"};
   return draw_curves(group, figure_name("fig6_rate", group), {rate, compute}, folder);
 }
 
 Figure draw_force_figure(const RunGroup& group, const std::filesystem::path& folder) {
   const auto magnitude = [](const TickRecord& r) { return r.wrench.force_N.norm(); };
   return draw_curves(group, figure_name("fig7_force", group),
-                     {{"force", "Force (N)", magnitude, common_range(group, magnitude)}}, folder);
+                     {{"force", "Force (N)", magnitude, common_range(group, magnitude), ""}}, folder);
 }
 
 Figure draw_torque_figure(const RunGroup& group, const std::filesystem::path& folder) {
   const auto magnitude = [](const TickRecord& r) { return r.wrench.torque_Nmm.norm(); };
   return draw_curves(group, figure_name("fig8_torque", group),
-                     {{"torque", "Torque (N mm)", magnitude, common_range(group, magnitude)}}, folder);
+                     {{"torque", "Torque (N mm)", magnitude, common_range(group, magnitude), ""}}, folder);
 }
 
 }  // namespace osteomill

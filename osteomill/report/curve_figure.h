@@ -18,6 +18,8 @@ struct CurveColumn {
   std::function<double(const TickRecord&)> value;
   /// gnuplot commands for its panels alone (scale, range, lines).
   std::string setup;
+  /// What its dashed line stands for, said above its panels; empty for none.
+  std::string dashed;
 };
 
 /// Draws the columns side by side, the algorithms' names above them all. Curves are thinned out to the least

@@ -66,7 +66,7 @@ Finding rate_finding(const RunGroup& group) {
                       kLeastRate_hz),
           fmt::format("lowest {:.1f} Hz ({}, {})", slowest.metrics.rate_hz, name_of(d.algorithm),
                       during(d.phase)),
-          verdict_of(slowest.metrics.rate_hz >= kLeastRate_hz)};
+          verdict_of(slowest.metrics.rate_hz >= kLeastRate_hz), true};
 }
 
 Finding force_finding(const RunGroup& group, RunPhase phase) {

@@ -19,6 +19,8 @@ struct Finding {
   /// The numbers that the rule was applied to.
   std::string measured;
   Verdict verdict = Verdict::not_recorded;
+  /// It rests on compute times, which are the machine's and not the algorithms' alone.
+  bool of_the_machine = false;
 };
 
 /// The paper's findings (section 8.2) on rate, force, torque and shaft direction. One that needs runs which

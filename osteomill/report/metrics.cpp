@@ -120,22 +120,28 @@ RunMetrics run_metrics(const Recording& recording) {
   return metrics;
 }
 
+std::string summary_columns() {
+  return "algorithm,mode,phase,steps,step_us_median,step_us_p99,step_us_max,rate_hz,"
+         "force_mean_N,force_max_N,force_hp_rms_N,force_step_max_N,"
+         "torque_mean_Nmm,torque_max_Nmm,torque_hp_rms_Nmm,torque_step_max_Nmm,"
+         "shaft_spread_deg,shaft_excursion_deg,removed_mm3";
+}
+
+std::string summary_fields(const SummaryRow& row) {
+  const RunMetrics& m = row.metrics;
+  std::string fields =
+      fmt::format("{},{},{},{},{},{},{},{}", name_of(row.algorithm), name_of(row.mode), name_of(row.phase),
+                  m.steps, m.step_us.median, m.step_us.p99, m.step_us.max, m.rate_hz);
+  for (const VectorMetrics& v : {m.force_N, m.torque_Nmm}) {
+    fields += fmt::format(",{},{},{},{}", v.mean, v.max, v.hp_rms, v.step_max);
+  }
+  return fields + fmt::format(",{},{},{}", m.shaft.spread_deg, m.shaft.excursion_deg, m.removed_mm3);
+}
+
 void write_summary_csv(const std::filesystem::path& path, std::span<const SummaryRow> rows) {
   write_text_atomically(path, [&](std::ostream& out) {
-    out << "algorithm,mode,phase,steps,step_us_median,step_us_p99,step_us_max,rate_hz,"
-           "force_mean_N,force_max_N,force_hp_rms_N,force_step_max_N,"
-           "torque_mean_Nmm,torque_max_Nmm,torque_hp_rms_Nmm,torque_step_max_Nmm,"
-           "shaft_spread_deg,shaft_excursion_deg,removed_mm3\n";
-    for (const SummaryRow& row : rows) {
-      const RunMetrics& m = row.metrics;
-      out << fmt::format("{},{},{},{},{},{},{},{},", name_of(row.algorithm), name_of(row.mode),
-                         name_of(row.phase), m.steps, m.step_us.median, m.step_us.p99, m.step_us.max,
-                         m.rate_hz);
-      for (const VectorMetrics& v : {m.force_N, m.torque_Nmm}) {
-        out << fmt::format("{},{},{},{},", v.mean, v.max, v.hp_rms, v.step_max);
-      }
-      out << fmt::format("{},{},{}\n", m.shaft.spread_deg, m.shaft.excursion_deg, m.removed_mm3);
-    }
+    out << summary_columns() << '\n';
+    for (const SummaryRow& row : rows) out << summary_fields(row) << '\n';
   });
 }
 

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "osteomill/recording/recording.h"
@@ -71,6 +72,10 @@ struct SummaryRow {
   RunPhase phase;
   RunMetrics metrics;
 };
+
+/// The head of summary.csv, and a row of it, without line ends.
+std::string summary_columns();
+std::string summary_fields(const SummaryRow& row);
 
 /// Writes summary.csv, whole or not at all. Throws InputError where it cannot be written.
 void write_summary_csv(const std::filesystem::path& path, std::span<const SummaryRow> rows);

@@ -179,9 +179,10 @@ std::string how_to_repeat(const std::vector<const Recording*>& recordings) {
 
 }  // namespace
 
-std::string report_page(const std::vector<DrawnGroup>& groups) {
+std::string report_page(const std::vector<DrawnGroup>& groups, const PageAdditions& additions) {
   const std::vector<const Recording*> recordings = all_recordings(groups);
-  std::string body = "<h2>What was run</h2>\n" + notices(recordings) + what_was_run(recordings);
+  std::string body = additions.in_short.empty() ? "" : paragraph(additions.in_short);
+  body += "<h2>What was run</h2>\n" + notices(recordings) + what_was_run(recordings) + additions.sections;
   for (const DrawnGroup& drawn : groups) body += group_section(drawn);
   body += "<h2>Settings</h2>\n" + html_table(settings_table(recordings)) + how_to_repeat(recordings);
   return html_page("Three 6-DOF haptic algorithms compared while milling bone", body);

@@ -135,7 +135,7 @@ Figure draw_shaft_figure(const RunGroup& group, const std::filesystem::path& fol
       "lw 0.6\n"
       "set grid x y z lc rgb '#dddddd' lt 1 lw 0.6\nset label 11 'x' at graph 0.5,-0.42,0 center\nset label "
       "12 'y' at graph 1.46,0.5,0 center\n"
-      "set label 13 'z' at graph 0,0,1.09 center\n",
+      "set label 13 'z' at graph 0,0,1.09 center offset 0,0.7\n",
       last_s, 1 - 92 / layout.width_px, 16 / layout.width_px);
   for (std::size_t row = 0; row < phases.size(); ++row) {
     const auto runs = runs_of(group, phases[row]);

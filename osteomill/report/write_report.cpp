@@ -9,6 +9,11 @@
 #include "osteomill/report/report_page.h"
 #include "osteomill/report/run_groups.h"
 #include "osteomill/report/shaft_figure.h"
+#include "osteomill/report/stability_figure.h"
+#include "osteomill/report/stability_section.h"
+#include "osteomill/report/study_figure.h"
+#include "osteomill/report/study_section.h"
+#include "osteomill/report/study_words.h"
 
 namespace osteomill {
 
@@ -50,17 +55,37 @@ std::vector<SummaryRow> summary_rows(const std::vector<RunGroup>& groups) {
   return rows;
 }
 
+void add_study(const Study& study, const fs::path& out_dir, PageAdditions& page) {
+  std::vector<CaptionedFigure> figures;
+  for (const RunPhase phase : study.phases()) {
+    figures.push_back(
+        {draw_study_figure(study, phase, out_dir / "figures"),
+         "Every hand of the study, by algorithm and mode; logarithmic where values lie far apart."});
+  }
+  page.in_short = study_in_two_sentences(study);
+  page.sections += study_section(study, figures);
+}
+
 }  // namespace
 
-fs::path write_report(const std::vector<Recording>& recordings, const fs::path& out_dir) {
+fs::path write_report(const std::vector<Recording>& recordings, const fs::path& out_dir,
+                      const ReportExtras& extras) {
   std::vector<RunGroup> groups = group_runs(recordings);
   create_folder(out_dir / "figures");
   // First, so that the numbers are there even where no figure can be drawn.
   write_summary_csv(out_dir / "summary.csv", summary_rows(groups));
+  if (extras.study) write_study_csv(out_dir / "study.csv", *extras.study);
+  if (!extras.stability.empty()) write_stability_csv(out_dir / "stability.csv", extras.stability);
+  PageAdditions additions;
+  if (extras.study) add_study(*extras.study, out_dir, additions);
+  if (!extras.stability.empty()) {
+    additions.sections +=
+        stability_section(extras.stability, draw_stability_figure(extras.stability, out_dir / "figures"));
+  }
   std::vector<DrawnGroup> drawn;
   for (RunGroup& group : groups) drawn.push_back(draw(std::move(group), out_dir / "figures"));
   const fs::path page = out_dir / "report.html";
-  write_text_atomically(page, [&](std::ostream& out) { out << report_page(drawn); });
+  write_text_atomically(page, [&](std::ostream& out) { out << report_page(drawn, additions); });
   return page;
 }
 

@@ -1,0 +1,36 @@
+#!/usr/bin/env bash
+# A study over several hands and both modes: its table holds every trial, the first seed's recordings and summary are
+# those of the table, and neither the number of threads nor the seed that came first changes a number.
+set -euo pipefail
+osteomill=$1
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cd "$folder"
+
+fault() { echo "FAILED: $1"; exit 1; }
+# The columns of study.csv that do not speak of time taken, of one seed.
+untimed() { awk -F, -v OFS=, -v seed="$2" 'NR > 1 && (seed == "" || $1 == seed) {$8 = $9 = $10 = $11 = ""; print}' "$1"; }
+
+"$osteomill" compare --algorithm line-proxy --algorithm point-shell --seconds 2 --seeds 3 --seed 4 --mode both --no-stability --threads 2 --out a >a.out
+grep -q "a/report.html" a.out || fault "the report's path is not the output"
+[ "$(wc -l <a/study.csv)" -eq 25 ] || fault "study.csv should have a head and 3 x 8 rows"
+[ "$(wc -l <a/summary.csv)" -eq 9 ] || fault "summary.csv should have a head and the first seed's 8 rows"
+diff <(grep ^4, a/study.csv | cut -d, -f4-) <(tail -n +2 a/summary.csv) || fault "the summary is not the first seed's"
+[ "$(ls a/*.h5 | wc -l)" -eq 8 ] || fault "there should be 8 recordings, of the first seed"
+[ -s a/line-proxy-paper-milling.h5 ] || fault "recordings should be named after their mode"
+[ "$(untimed a/study.csv "" | cut -d, -f2 | sort -u | wc -l)" -eq 3 ] || fault "there should be three hands"
+for text in "Study over 3 hands" "What steady changes" "no difference can be significant"; do
+  grep -q "$text" a/report.html || fault "report.html does not say: $text"
+done
+[ "$(untimed a/study.csv "" | cut -d, -f13 | grep -vc "^0$")" -gt 20 ] || fault "hardly a trial touched the bone"
+[ ! -e a/stability.csv ] || fault "--no-stability measured stability"
+
+"$osteomill" report a/*.h5 --out again >again.out
+cmp a/summary.csv again/summary.csv || fault "the report made again says something else"
+
+"$osteomill" compare --algorithm point-shell --seconds 2 --seeds 2 --seed 5 --no-stability --threads 1 --out b >b.out
+for seed in 5 6; do
+  diff <(untimed a/study.csv $seed | grep point-shell,steady) <(untimed b/study.csv $seed) ||
+    fault "seed $seed differs with the number of threads, or with its place"
+done
+exit 0
