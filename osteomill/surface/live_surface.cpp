@@ -20,8 +20,6 @@ using namespace std::chrono_literals;
 // The haptic thread wakes nobody (that would be a system call), so the surface looks by itself: oftener than
 // 30 times a second, seldom enough that a brick milled at every tick is not meshed at every tick.
 constexpr auto kLookEvery = 20ms;
-// A tick copies at most 16 KiB; what a burr of 3 mm changes has gone within 20 ticks.
-constexpr std::size_t kBricksPerTick = 8;
 // 1 MiB: what comes while the whole surface is meshed at a new isovalue.
 constexpr std::size_t kBricksOnTheirWay = 512;
 
@@ -120,7 +118,7 @@ const SurfaceBricks& LiveSurface::layout() const {
 
 void LiveSurface::volume_changed(const Volume& volume, const VolumeChange& change) noexcept {
   impl_->handover.mark(change);
-  impl_->handover.send(volume, kBricksPerTick);
+  impl_->handover.send(volume, LiveSurface::kBricksPerTick);
 }
 
 std::vector<ChangedBrick> LiveSurface::take_changed_bricks() {

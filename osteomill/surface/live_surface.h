@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <vector>
 
@@ -14,6 +15,9 @@ namespace osteomill {
 /// hands over what changed, the surface's own thread meshes it anew, the drawing thread takes the result.
 class LiveSurface {
  public:
+  /// What a tick copies at most, 16 KiB; all that a burr of 3 mm changes has gone within 20 ticks.
+  static constexpr std::size_t kBricksPerTick = 8;
+
   /// Copies the volume's densities and starts meshing all of it.
   explicit LiveSurface(const Volume& volume);
   ~LiveSurface();
