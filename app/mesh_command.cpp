@@ -1,4 +1,6 @@
 #include <memory>
+#include <optional>
+#include <string>
 
 #include "app/commands.h"
 #include "app/milled_scan.h"
@@ -12,22 +14,29 @@ namespace osteomill::app {
 
 namespace {
 
-void run_mesh(const MilledScanOptions& options) {
-  mesh_format_of(options.out());  // before the scan is read
-  const LoadedBone bone = load_milled_bone(options);
+struct MeshOptions {
+  MilledScanOptions scan;
+  std::optional<double> isovalue;
+};
+
+void run_mesh(const MeshOptions& options) {
+  const std::string& out = options.scan.out();
+  mesh_format_of(out);  // before the scan is read
+  const LoadedBone bone = load_milled_bone(options.scan, options.isovalue);
   const BrickMesh mesh = mesh_in_one_piece(DensityView(bone.volume));
   if (mesh.empty()) throw InputError(bone.name, "no bone is left to be meshed");
-  write_mesh(options.out(), mesh);
-  fmt::print("{}\n", options.out());
+  write_mesh(out, mesh);
+  fmt::print("{}\n", out);
 }
 
 }  // namespace
 
 void add_mesh_command(CLI::App& program) {
-  auto options = std::make_shared<MilledScanOptions>();
+  auto options = std::make_shared<MeshOptions>();
   CLI::App* command =
       program.add_subcommand("mesh", "Write the bone's surface as one closed mesh of triangles, in mm");
-  add_milled_scan_options(*command, *options, ".stl, .ply or .obj");
+  add_milled_scan_options(*command, options->scan, ".stl, .ply or .obj");
+  command->add_option("--iso", options->isovalue, "Isovalue: bone where the density is greater");
   command->callback([=] { run_mesh(*options); });
 }
 

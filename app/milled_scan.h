@@ -13,18 +13,23 @@ namespace osteomill::app {
 struct MilledScanOptions {
   /// [SCAN] OUT as given.
   std::vector<std::string> scan_and_out;
-  std::optional<double> isovalue;
   /// Empty: as scanned.
   std::string recording;
 
+  /// Empty: the built-in tooth.
+  std::string scan() const { return scan_and_out.size() > 1 ? scan_and_out.front() : std::string(); }
   const std::string& out() const { return scan_and_out.back(); }
 };
 
-/// Adds [SCAN] OUT, --iso and --after to a command. `out_text` says what OUT may be.
+/// Adds [SCAN] OUT and --after to a command. `out_text` says what OUT may be.
 void add_milled_scan_options(CLI::App& command, MilledScanOptions& options, const std::string& out_text);
 
-/// The bone, milled as the recording did where there is one; the isovalue is then the recording's, unless
-/// another is given. Throws InputError where the scan, the isovalue or the recording is at fault.
-LoadedBone load_milled_bone(const MilledScanOptions& options);
+/// The bone, milled as the recording did where there is one. The isovalue is `isovalue`, else the
+/// recording's, else a suggested one. Throws InputError where the scan, the isovalue or the recording is at
+/// fault.
+LoadedBone load_milled_bone(const MilledScanOptions& options, const std::optional<double>& isovalue);
+
+/// The same where no isovalue matters.
+DensityGrid load_milled_densities(const MilledScanOptions& options);
 
 }  // namespace osteomill::app

@@ -16,7 +16,7 @@ void run_save(const MilledScanOptions& options) {
   if (std::filesystem::path(options.out()).extension() != ".nrrd") {
     throw InputError(options.out(), "a scan is saved as .nrrd");
   }
-  write_nrrd(options.out(), load_milled_bone(options).volume.grid());
+  write_nrrd(options.out(), load_milled_densities(options));
   fmt::print("{}\n", options.out());
 }
 
