@@ -12,8 +12,10 @@ void add_commands(CLI::App& program, const std::string& command_line);
 
 void add_compare_command(CLI::App& program, const std::string& command_line);
 void add_info_command(CLI::App& program);
+void add_mesh_command(CLI::App& program);
 void add_rates_command(CLI::App& program);
 void add_replay_command(CLI::App& program);
 void add_report_command(CLI::App& program);
+void add_save_command(CLI::App& program);
 
 }  // namespace osteomill::app
