@@ -19,7 +19,7 @@ constexpr double kLongestTick_s = 0.02;
 }  // namespace
 
 LiveSession::LiveSession(std::unique_ptr<MillingSession> session, Device& device, double tick_s)
-    : device_(device), tick_s_(tick_s), session_(std::move(session)) {}
+    : device_(device), tick_s_(tick_s), crash_stop_(device), session_(std::move(session)) {}
 
 LiveSession::~LiveSession() {
   stop();
@@ -106,6 +106,7 @@ void LiveSession::run() noexcept {
   }
   try {
     device_.write_wrench(Wrench{});
+    crash_stop_.stopped();
   } catch (...) {
   }
   running_.store(false, std::memory_order_release);
@@ -114,7 +115,7 @@ void LiveSession::run() noexcept {
 void LiveSession::tick_until_stopped() {
   const auto period_ns = static_cast<Nanoseconds>(std::llround(1e9 * tick_s_));
   NextDeadline next{monotonic_now_ns() + period_ns, 1};
-  while (!stopping_.load(std::memory_order_acquire)) {
+  while (!stopping_.load(std::memory_order_acquire) && !crash_stop_.asked()) {
     TickTimes times{next.deadline_ns, 0, 0, next.periods};
     times.woke_ns = wait_until(next.deadline_ns);
     take_commands();

@@ -9,6 +9,7 @@
 #include <thread>
 #include <variant>
 
+#include "osteomill/session/crash_stop.h"
 #include "osteomill/session/latest_value.h"
 #include "osteomill/session/live_timing.h"
 #include "osteomill/session/milling_session.h"
@@ -32,7 +33,7 @@ struct LiveState {
 ///
 /// One other thread commands and reads the state (the window's). Commands take effect at the next tick; each
 /// gives the number under which it can be waited for. On stopping, however it comes about, the device is sent
-/// a wrench of zero.
+/// a wrench of zero; so it is when the program crashes (crash_stop.h), hence one live session at a time.
 class LiveSession {
  public:
   using CommandNumber = std::uint64_t;
@@ -111,6 +112,7 @@ class LiveSession {
 
   Device& device_;
   double tick_s_;
+  CrashStop crash_stop_;
   std::thread thread_;
   std::atomic<bool> running_{false};
   std::atomic<bool> stopping_{false};
