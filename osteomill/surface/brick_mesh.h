@@ -1,0 +1,34 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <type_traits>
+#include <vector>
+
+namespace osteomill {
+
+/// One corner of the isosurface's triangles, laid out so that it can be handed to a graphics card as it is.
+struct MeshVertex {
+  /// In W.
+  std::array<float, 3> position_mm;
+  /// In W, of unit length, out of the bone.
+  std::array<float, 3> normal;
+  /// Of the bone just under the surface, to colour it by: the greater density of the two voxels that follow
+  /// the vertex into the bone along the grid line on which it lies.
+  float density;
+  friend bool operator==(const MeshVertex&, const MeshVertex&) = default;
+};
+static_assert(sizeof(MeshVertex) == 28 && std::is_trivially_copyable_v<MeshVertex>);
+
+/// A piece of the isosurface as indexed triangles: three indices each, anticlockwise seen from outside the
+/// bone. Vertices are shared within a piece; where pieces meet, both have the same vertices, bit for bit.
+struct BrickMesh {
+  std::vector<MeshVertex> vertices;
+  std::vector<std::uint32_t> indices;
+
+  bool empty() const { return indices.empty(); }
+  std::size_t triangle_count() const { return indices.size() / 3; }
+  friend bool operator==(const BrickMesh&, const BrickMesh&) = default;
+};
+
+}  // namespace osteomill

@@ -1,0 +1,271 @@
+#include "osteomill/surface/brick_mesher.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#ifdef __SSE2__
+#include <emmintrin.h>
+#endif
+
+#include "osteomill/surface/cube_cases.h"
+
+namespace osteomill {
+
+namespace {
+
+// Vertices keep this far from voxel centres, as a share of the edge: where densities equal the isovalue,
+// the vertices about a voxel would fall together and the triangles between them have no area.
+constexpr float kLeastShare = 1.0f / 512;
+
+float greatest_float_not_above(double value) {
+  const auto rounded = static_cast<float>(value);
+  if (static_cast<double>(rounded) <= value) return rounded;
+  return std::nextafter(rounded, -std::numeric_limits<float>::infinity());
+}
+
+// Bit n where value n of `count` (a multiple of 4) is above the threshold.
+std::uint32_t bits_above(const float* values, int count, float threshold) {
+  std::uint32_t bits = 0;
+#ifdef __SSE2__
+  const __m128 level = _mm_set1_ps(threshold);
+  for (int n = 0; n < count; n += 4) {
+    const int four = _mm_movemask_ps(_mm_cmpgt_ps(_mm_loadu_ps(values + n), level));
+    bits |= static_cast<std::uint32_t>(four) << n;
+  }
+#else
+  for (int n = 0; n < count; ++n) bits |= static_cast<std::uint32_t>(values[n] > threshold) << n;
+#endif
+  return bits;
+}
+
+// Bits `first` to `last`.
+constexpr std::uint32_t bit_span(int first, int last) {
+  return ((2u << last) - 1u) & ~((1u << first) - 1u);
+}
+
+}  // namespace
+
+BrickMesher::BrickMesher(const DensityView& view)
+    : view_(view),
+      layout_(view.grid.geometry().dims),
+      threshold_(greatest_float_not_above(view.isovalue)),
+      outside_(std::min(view.grid.outside_density(), threshold_)),
+      mirrored_(view.grid.geometry().direction.determinant() < 0) {
+  const GridGeometry& geometry = view.grid.geometry();
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int row = 0; row < 3; ++row) {
+      const double direction = geometry.direction(row, axis);
+      const auto a = static_cast<std::size_t>(axis);
+      const auto r = static_cast<std::size_t>(row);
+      step_mm_[a][r] = direction * geometry.spacing_mm[axis];
+      normal_of_[a][r] = static_cast<float>(-direction / geometry.spacing_mm[axis]);
+    }
+  }
+  for (int edge = 0; edge < 12; ++edge) {
+    const int axis = edge / 4;
+    const int u = axis == 0 ? 1 : 0;
+    const int v = axis == 2 ? 1 : 2;
+    edge_offset_[static_cast<std::size_t>(edge)] = axis * kBlockVoxels +
+                                                   (edge & 1) * kStride[static_cast<std::size_t>(u)] +
+                                                   (edge >> 1 & 1) * kStride[static_cast<std::size_t>(v)];
+  }
+  bone_.fill(0);
+}
+
+bool BrickMesher::may_hold_surface(std::size_t brick) const {
+  constexpr int kRange = BrickRanges::kBrickVoxels;
+  const VoxelBox cells = layout_.cells(brick);
+  const std::array<int, 3>& dims = view_.ranges.dims();
+  const auto at_border = [](int b, int count) { return b == 0 || b == count - 1; };
+  for (int bk = std::max(cells.first.k, 0) / kRange; bk <= cells.last.k / kRange; ++bk) {
+    for (int bj = std::max(cells.first.j, 0) / kRange; bj <= cells.last.j / kRange; ++bj) {
+      for (int bi = std::max(cells.first.i, 0) / kRange; bi <= cells.last.i / kRange; ++bi) {
+        const BrickRanges::Range& range = view_.ranges.at(bi, bj, bk);
+        if (range.greatest <= threshold_) continue;
+        if (range.least <= threshold_ || at_border(bi, dims[0]) || at_border(bj, dims[1]) ||
+            at_border(bk, dims[2])) {
+          return true;
+        }
+      }
+    }
+  }
+  return false;
+}
+
+void BrickMesher::mesh(std::size_t brick) {
+  vertices_.clear();
+  vertex_edge_.clear();
+  indices_.clear();
+  if (!may_hold_surface(brick)) return;
+  load(brick);
+  find_bone();
+  add_vertices();
+  add_triangles();
+}
+
+void BrickMesher::load(std::size_t brick) {
+  const auto [bi, bj, bk] = layout_.coordinates(brick);
+  constexpr int kCells = SurfaceBricks::kBrickCells;
+  corner_ = {bi * kCells - kLow, bj * kCells - kLow, bk * kCells - kLow};
+  const VoxelBox cells = layout_.cells(brick);
+  cells_ = {{cells.first.i - corner_.i, cells.first.j - corner_.j, cells.first.k - corner_.k},
+            {cells.last.i - corner_.i, cells.last.j - corner_.j, cells.last.k - corner_.k}};
+  // From one voxel before the cells to one after their upper corners.
+  for (int k = cells_.first.k - 1; k <= cells_.last.k + 2; ++k) {
+    for (int j = cells_.first.j - 1; j <= cells_.last.j + 2; ++j) {
+      load_row({corner_.i, corner_.j + j, corner_.k + k},
+               &block_[static_cast<std::size_t>(j * kStride[1] + k * kStride[2])]);
+    }
+  }
+}
+
+void BrickMesher::load_row(const VoxelIndex& first, float* row) const {
+  const std::array<int, 3>& dims = view_.grid.geometry().dims;
+  if (first.j < 0 || first.j >= dims[1] || first.k < 0 || first.k >= dims[2]) {
+    std::fill_n(row, kBlock, outside_);
+    return;
+  }
+  const float* stored = view_.grid.densities().data() + view_.grid.linear_index({0, first.j, first.k});
+  if (first.i >= 0 && first.i + kBlock <= dims[0]) {
+    std::copy_n(stored + first.i, kBlock, row);
+    return;
+  }
+  for (int n = 0; n < kBlock; ++n) {
+    const int i = first.i + n;
+    row[n] = i >= 0 && i < dims[0] ? stored[i] : outside_;
+  }
+}
+
+void BrickMesher::find_bone() {
+  for (int k = cells_.first.k; k <= cells_.last.k + 1; ++k) {
+    for (int j = cells_.first.j; j <= cells_.last.j + 1; ++j) {
+      const auto row = static_cast<std::size_t>(j + k * kBlock);
+      bone_[row] = bits_above(&block_[row * kBlock], kBlock, threshold_);
+    }
+  }
+}
+
+void BrickMesher::add_vertices() {
+  const std::uint32_t cells = bit_span(cells_.first.i, cells_.last.i);
+  const std::uint32_t voxels = bit_span(cells_.first.i, cells_.last.i + 1);
+  for (int k = cells_.first.k; k <= cells_.last.k + 1; ++k) {
+    for (int j = cells_.first.j; j <= cells_.last.j + 1; ++j) {
+      const auto row = static_cast<std::size_t>(j + k * kBlock);
+      const std::uint32_t bone = bone_[row];
+      add_row_vertices<0>(j, k, (bone ^ bone >> 1) & cells);
+      if (j <= cells_.last.j) add_row_vertices<1>(j, k, (bone ^ bone_[row + 1]) & voxels);
+      if (k <= cells_.last.k) add_row_vertices<2>(j, k, (bone ^ bone_[row + kBlock]) & voxels);
+    }
+  }
+}
+
+template <int axis>
+void BrickMesher::add_row_vertices(int j, int k, std::uint32_t crossed) {
+  for (; crossed != 0; crossed &= crossed - 1) add_vertex<axis>(std::countr_zero(crossed), j, k);
+}
+
+template <int axis>
+void BrickMesher::add_vertex(int i, int j, int k) {
+  constexpr int kAlong = kStride[axis];
+  const int place = i + j * kStride[1] + k * kStride[2];
+  const float* at = block_.data() + place;
+  const bool bone_first = at[0] > threshold_;
+  const float share = std::clamp((threshold_ - at[0]) / (at[kAlong] - at[0]), kLeastShare, 1 - kLeastShare);
+
+  MeshVertex vertex;
+  std::array<double, 3> voxel{static_cast<double>(corner_.i + i), static_cast<double>(corner_.j + j),
+                              static_cast<double>(corner_.k + k)};
+  voxel[axis] += static_cast<double>(share);
+  std::array<float, 3> slope;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const int s = kStride[a];
+    const float here = at[s] - at[-s];
+    const float there = at[kAlong + s] - at[kAlong - s];
+    slope[a] = here + share * (there - here);
+  }
+  std::array<float, 3> normal;
+  float length2 = 0;
+  const Vec3& origin = view_.grid.geometry().origin_mm;
+  for (std::size_t r = 0; r < 3; ++r) {
+    vertex.position_mm[r] = static_cast<float>(origin[static_cast<int>(r)] + step_mm_[0][r] * voxel[0] +
+                                               step_mm_[1][r] * voxel[1] + step_mm_[2][r] * voxel[2]);
+    normal[r] = normal_of_[0][r] * slope[0] + normal_of_[1][r] * slope[1] + normal_of_[2][r] * slope[2];
+    length2 += normal[r] * normal[r];
+  }
+  if (!(length2 > 0 && std::isfinite(length2))) {
+    // A flat density: out of the bone along the edge.
+    const float sign = bone_first ? -1.0f : 1.0f;
+    length2 = 0;
+    for (std::size_t r = 0; r < 3; ++r) {
+      normal[r] = sign * normal_of_[axis][r];
+      length2 += normal[r] * normal[r];
+    }
+  }
+  const float scale = 1 / std::sqrt(length2);
+  for (std::size_t r = 0; r < 3; ++r) vertex.normal[r] = scale * normal[r];
+  vertex.density = bone_first ? std::max(at[0], at[-kAlong]) : std::max(at[kAlong], at[2 * kAlong]);
+
+  const int edge = axis * kBlockVoxels + place;
+  edge_vertex_[static_cast<std::size_t>(edge)] = static_cast<std::uint16_t>(vertices_.size());
+  vertex_edge_.push_back(static_cast<std::uint32_t>(edge));
+  vertices_.push_back(vertex);
+}
+
+void BrickMesher::add_triangles() {
+  for (int k = cells_.first.k; k <= cells_.last.k; ++k) {
+    for (int j = cells_.first.j; j <= cells_.last.j; ++j) add_row_triangles(j, k);
+  }
+}
+
+void BrickMesher::add_row_triangles(int j, int k) {
+  const auto row = static_cast<std::size_t>(j + k * kBlock);
+  const std::uint32_t near_low = bone_[row];
+  const std::uint32_t near_high = bone_[row + 1];
+  const std::uint32_t far_low = bone_[row + kBlock];
+  const std::uint32_t far_high = bone_[row + kBlock + 1];
+  const std::uint32_t any = near_low | near_high | far_low | far_high;
+  const std::uint32_t all = near_low & near_high & far_low & far_high;
+  std::uint32_t mixed = (any | any >> 1) & ~(all & all >> 1) & bit_span(cells_.first.i, cells_.last.i);
+  for (; mixed != 0; mixed &= mixed - 1) {
+    const int i = std::countr_zero(mixed);
+    const std::uint32_t bone =
+        (near_low >> i & 3) | (near_high >> i & 3) << 2 | (far_low >> i & 3) << 4 | (far_high >> i & 3) << 6;
+    const CubeCase& cube = kCubeCases[bone];
+    const std::uint16_t* edge_vertex = edge_vertex_.data() + i + row * kBlock;
+    std::array<std::uint32_t, 15> corners;
+    for (std::size_t n = 0; n < cube.edge_count; ++n) {
+      corners[n] = edge_vertex[edge_offset_[cube.edges[n]]];
+    }
+    if (mirrored_) {
+      for (std::size_t n = 0; n < cube.edge_count; n += 3) std::swap(corners[n], corners[n + 1]);
+    }
+    indices_.insert(indices_.end(), corners.begin(), corners.begin() + cube.edge_count);
+  }
+}
+
+std::uint64_t BrickMesher::edge_of(std::size_t vertex) const {
+  const auto edge = static_cast<int>(vertex_edge_[vertex]);
+  const int place = edge % kBlockVoxels;
+  const std::array<int, 3>& dims = view_.grid.geometry().dims;
+  // One more than the voxels's coordinates: an edge may begin before voxel 0.
+  const auto i = static_cast<std::uint64_t>(corner_.i + place % kBlock + 1);
+  const auto j = static_cast<std::uint64_t>(corner_.j + place / kBlock % kBlock + 1);
+  const auto k = static_cast<std::uint64_t>(corner_.k + place / kStride[2] + 1);
+  const auto columns = static_cast<std::uint64_t>(dims[0] + 2);
+  const auto rows = static_cast<std::uint64_t>(dims[1] + 2);
+  return 3 * (i + columns * (j + rows * k)) + static_cast<std::uint64_t>(edge / kBlockVoxels);
+}
+
+bool BrickMesher::on_brick_border(std::size_t vertex) const {
+  const auto edge = static_cast<int>(vertex_edge_[vertex]);
+  const int place = edge % kBlockVoxels;
+  const std::array<int, 3> at{place % kBlock, place / kBlock % kBlock, place / kStride[2]};
+  for (int axis = 0; axis < 3; ++axis) {
+    const int within = at[static_cast<std::size_t>(axis)] - kLow;
+    if (axis != edge / kBlockVoxels && (within == 0 || within == SurfaceBricks::kBrickCells)) return true;
+  }
+  return false;
+}
+
+}  // namespace osteomill

@@ -1,0 +1,111 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "osteomill/geometry/pose.h"
+#include "osteomill/surface/surface_mesh.h"
+
+namespace osteomill::testing_support {
+
+inline Vec3 position_of(const MeshVertex& vertex) {
+  return {vertex.position_mm[0], vertex.position_mm[1], vertex.position_mm[2]};
+}
+
+inline Vec3 normal_of(const MeshVertex& vertex) {
+  return {vertex.normal[0], vertex.normal[1], vertex.normal[2]};
+}
+
+/// All bricks as one mesh whose vertices are shared where their positions agree bit for bit.
+inline BrickMesh welded_by_position(const SurfaceMesh& surface) {
+  BrickMesh whole;
+  std::map<std::array<float, 3>, std::uint32_t> known;
+  for (const BrickMesh& brick : surface.bricks) {
+    std::vector<std::uint32_t> place;
+    for (const MeshVertex& vertex : brick.vertices) {
+      const auto [at, is_new] =
+          known.try_emplace(vertex.position_mm, static_cast<std::uint32_t>(whole.vertices.size()));
+      if (is_new) whole.vertices.push_back(vertex);
+      place.push_back(at->second);
+    }
+    for (const std::uint32_t index : brick.indices) whole.indices.push_back(place[index]);
+  }
+  return whole;
+}
+
+using DirectedEdges = std::map<std::pair<std::uint32_t, std::uint32_t>, int>;
+
+inline DirectedEdges directed_edges(const BrickMesh& mesh) {
+  DirectedEdges edges;
+  for (std::size_t n = 0; n < mesh.indices.size(); n += 3) {
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      ++edges[{mesh.indices[n + corner], mesh.indices[n + (corner + 1) % 3]}];
+    }
+  }
+  return edges;
+}
+
+/// How many edges are not used exactly once in each direction: none in a closed, consistently wound mesh.
+inline int open_or_crowded_edges(const BrickMesh& mesh) {
+  const DirectedEdges edges = directed_edges(mesh);
+  int faults = 0;
+  for (const auto& [edge, uses] : edges) {
+    const auto back = edges.find({edge.second, edge.first});
+    faults += uses != 1 || back == edges.end() || back->second != 1;
+  }
+  return faults;
+}
+
+/// Vertices - edges + triangles, of the vertices that are used.
+inline int euler_characteristic(const BrickMesh& mesh) {
+  std::vector<std::uint32_t> used = mesh.indices;
+  std::sort(used.begin(), used.end());
+  used.erase(std::unique(used.begin(), used.end()), used.end());
+  const auto edges = static_cast<int>(directed_edges(mesh).size()) / 2;
+  return static_cast<int>(used.size()) - edges + static_cast<int>(mesh.triangle_count());
+}
+
+/// By the divergence theorem; positive where triangles are wound anticlockwise seen from outside.
+inline double enclosed_volume_mm3(const BrickMesh& mesh) {
+  double volume = 0;
+  if (mesh.vertices.empty()) return volume;
+  const Vec3 from = position_of(mesh.vertices.front());
+  for (std::size_t n = 0; n < mesh.indices.size(); n += 3) {
+    const Vec3 a = position_of(mesh.vertices[mesh.indices[n]]) - from;
+    const Vec3 b = position_of(mesh.vertices[mesh.indices[n + 1]]) - from;
+    const Vec3 c = position_of(mesh.vertices[mesh.indices[n + 2]]) - from;
+    volume += a.dot(b.cross(c)) / 6;
+  }
+  return volume;
+}
+
+/// Twice the least area of a triangle.
+inline double least_area_mm2(const BrickMesh& mesh) {
+  double least = 1e300;
+  for (std::size_t n = 0; n < mesh.indices.size(); n += 3) {
+    const Vec3 a = position_of(mesh.vertices[mesh.indices[n]]);
+    const Vec3 b = position_of(mesh.vertices[mesh.indices[n + 1]]);
+    const Vec3 c = position_of(mesh.vertices[mesh.indices[n + 2]]);
+    least = std::min(least, (b - a).cross(c - a).norm() / 2);
+  }
+  return least;
+}
+
+inline bool is_finite(const MeshVertex& vertex) {
+  return position_of(vertex).allFinite() && normal_of(vertex).allFinite() && std::isfinite(vertex.density);
+}
+
+/// Closed, wound consistently, without NaN, all normals of unit length.
+inline bool is_sound(const BrickMesh& mesh) {
+  return open_or_crowded_edges(mesh) == 0 &&
+         std::all_of(mesh.vertices.begin(), mesh.vertices.end(), [](const MeshVertex& vertex) {
+           return is_finite(vertex) && std::abs(normal_of(vertex).norm() - 1) < 1e-4;
+         });
+}
+
+}  // namespace osteomill::testing_support
