@@ -4,8 +4,8 @@
 #include <memory>
 #include <vector>
 
-#include "osteomill/surface/brick_mesh.h"
 #include "osteomill/surface/surface_bricks.h"
+#include "osteomill/surface/surface_copy.h"
 #include "osteomill/volume/volume.h"
 
 namespace osteomill {
@@ -15,11 +15,8 @@ namespace osteomill {
 /// hands over what changed, the surface's own thread meshes it anew, the drawing thread takes the result.
 class LiveSurface {
  public:
-  /// A brick of `layout()` whose triangles are no longer what they were; it may have none now.
-  struct ChangedBrick {
-    std::size_t brick;
-    BrickMesh mesh;
-  };
+  /// What a tick copies at most, 16 KiB; all that a burr of 3 mm changes has gone within 20 ticks.
+  static constexpr std::size_t kBricksPerTick = 8;
 
   /// Copies the volume's densities and starts meshing all of it.
   explicit LiveSurface(const Volume& volume);
@@ -36,10 +33,11 @@ class LiveSurface {
   void volume_changed(const Volume& volume, const VolumeChange& change) noexcept;
 
   /// What changed since the last call, each brick once, as it is now; in the order of the bricks. The first
-  /// calls bring the whole surface. For one drawing thread; never waits for meshing.
+  /// call that brings anything brings the whole surface. For one drawing thread; never waits for meshing.
   std::vector<ChangedBrick> take_changed_bricks();
 
-  /// Has the whole surface meshed anew at another isovalue. Any thread but the haptic one.
+  /// Has the whole surface meshed anew at another isovalue; of several in short order, at the last one. Any
+  /// thread but the haptic one.
   void set_isovalue(double isovalue);
 
  private:

@@ -1,0 +1,223 @@
+// Meshes one scan at 512 x 512 x 352 with osteomill and with VTK's vtkFlyingEdges3D, in turns, and prints
+// both.
+//   surface_against_vtk [SCAN ISOVALUE]        without a scan, the built-in tooth
+// A scan is refined twice by trilinear interpolation.
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <utility>
+#include <vector>
+
+#include <vtkFloatArray.h>
+#include <vtkFlyingEdges3D.h>
+#include <vtkImageData.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPolyData.h>
+
+#include "osteomill/ct/read_scan.h"
+#include "osteomill/milling/burr_mill.h"
+#include "osteomill/surface/live_surface.h"
+#include "osteomill/surface/surface_mesh.h"
+#include "osteomill/volume/builtin_tooth.h"
+#include "osteomill/volume/densities.h"
+#include "osteomill/volume/isosurface.h"
+#include "osteomill/volume/sampling.h"
+
+namespace {
+
+using namespace osteomill;
+
+DensityGrid refined(const DensityGrid& grid) {
+  GridGeometry geometry = grid.geometry();
+  for (int& count : geometry.dims) count *= 2;
+  geometry.spacing_mm /= 2;
+  std::vector<float> densities;
+  densities.reserve(geometry.voxel_count());
+  for (int k = 0; k < geometry.dims[2]; ++k) {
+    for (int j = 0; j < geometry.dims[1]; ++j) {
+      for (int i = 0; i < geometry.dims[0]; ++i) {
+        densities.push_back(static_cast<float>(density_at_voxel(grid, Vec3(i, j, k) / 2)));
+      }
+    }
+  }
+  return DensityGrid(geometry, std::move(densities));
+}
+
+Volume make_volume(int argc, char** argv) {
+  if (argc < 3) return Volume(builtin_tooth(2), kBuiltinToothIsovalue);
+  return Volume(refined(read_scan(argv[1]).grid), std::atof(argv[2]));
+}
+
+double seconds_on(clockid_t clock) {
+  timespec now{};
+  clock_gettime(clock, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+// Of this thread's own computing, so that whatever else the machine does counts little.
+template <typename Work>
+double milliseconds(const Work& work) {
+  const double start = seconds_on(CLOCK_THREAD_CPUTIME_ID);
+  work();
+  return 1e3 * (seconds_on(CLOCK_THREAD_CPUTIME_ID) - start);
+}
+
+// On the wall, for work that has several threads.
+template <typename Work>
+double wall_milliseconds(const Work& work) {
+  const double start = seconds_on(CLOCK_MONOTONIC);
+  work();
+  return 1e3 * (seconds_on(CLOCK_MONOTONIC) - start);
+}
+
+class Times {
+ public:
+  void add(double ms) { ms_.push_back(ms); }
+  double least() const { return *std::min_element(ms_.begin(), ms_.end()); }
+  double share(double part) const {
+    std::vector<double> sorted = ms_;
+    std::sort(sorted.begin(), sorted.end());
+    return sorted[static_cast<std::size_t>(part * static_cast<double>(sorted.size() - 1))];
+  }
+
+ private:
+  std::vector<double> ms_;
+};
+
+vtkNew<vtkImageData> share_with_vtk(const Volume& volume) {
+  const GridGeometry& geometry = volume.geometry();
+  vtkNew<vtkImageData> image;
+  image->SetDimensions(geometry.dims[0], geometry.dims[1], geometry.dims[2]);
+  image->SetSpacing(geometry.spacing_mm.x(), geometry.spacing_mm.y(), geometry.spacing_mm.z());
+  vtkNew<vtkFloatArray> densities;
+  const std::vector<float>& values = volume.grid().densities();
+  densities->SetArray(const_cast<float*>(values.data()), static_cast<vtkIdType>(values.size()), 1);
+  image->GetPointData()->SetScalars(densities);
+  return image;
+}
+
+std::size_t triangles_in(const SurfaceMesh& mesh) {
+  std::size_t count = 0;
+  for (const BrickMesh& brick : mesh.bricks) count += brick.triangle_count();
+  return count;
+}
+
+// A burr pressed with 4 N on the top of the bone over its middle, and let down by 1 mm/s.
+class Milling {
+ public:
+  Milling(Volume& volume, double radius_mm)
+      : volume_(volume), mill_(volume.geometry(), radius_mm, estimate_densities(volume), {}) {
+    const GridGeometry& geometry = volume.geometry();
+    const Vec3 foot = geometry.world_from_voxel(Vec3(geometry.dims[0] / 2.0, geometry.dims[1] / 2.0, 0));
+    const Vec3 top = foot + geometry.direction.col(2) * geometry.spacing_mm.z() * geometry.dims[2];
+    into_ = (foot - top).normalized();
+    const auto touched = first_crossing(volume, top, foot);
+    if (!touched) std::exit((std::fprintf(stderr, "no bone over the middle of the scan\n"), 1));
+    centre_ = *touched - into_ * radius_mm;
+  }
+  VolumeChange tick() {
+    centre_ += into_ * 0.001;
+    return mill_.step(volume_, centre_, 4.0, 1e-3).change;
+  }
+
+ private:
+  Volume& volume_;
+  BurrMill mill_;
+  Vec3 into_;
+  Vec3 centre_;
+};
+
+struct FrameTimes {
+  Times handing_over_us;  // a tick
+  Times meshing;          // a frame of 33 ticks
+  Times vtk;
+  Times bricks;
+};
+
+FrameTimes mill_and_mesh(const Volume& bone, double radius_mm, vtkFlyingEdges3D* flying) {
+  constexpr int kFrames = 120;
+  constexpr int kTicks = 33;
+  Volume volume = bone;
+  Milling milling(volume, radius_mm);
+  DensityHandover handover(volume.geometry(), 512);
+  SurfaceCopy copy(volume);
+  copy.remesh();
+  FrameTimes times;
+  for (int frame = 0; frame < kFrames; ++frame) {
+    for (int tick = 0; tick < kTicks; ++tick) {
+      const VolumeChange change = milling.tick();
+      times.handing_over_us.add(1e3 * milliseconds([&] {
+                                  handover.mark(change);
+                                  handover.send(volume, LiveSurface::kBricksPerTick);
+                                }));
+    }
+    times.meshing.add(milliseconds([&] {
+      while (const DensityHandover::Brick* brick = handover.front()) {
+        copy.put(*brick);
+        handover.pop();
+      }
+      times.bricks.add(static_cast<double>(copy.remesh().size()));
+    }));
+  }
+  if (flying != nullptr) {
+    const vtkNew<vtkImageData> image = share_with_vtk(volume);
+    flying->SetInputData(image);
+    for (int n = 0; n < 3; ++n) times.vtk.add(milliseconds([&] { flying->Modified(), flying->Update(); }));
+  }
+  return times;
+}
+
+void compare_whole(const Volume& volume, vtkFlyingEdges3D* flying) {
+  Times vtk, one, two;
+  std::size_t triangles = 0;
+  for (int n = 0; n < 7; ++n) {
+    vtk.add(milliseconds([&] { flying->Modified(), flying->Update(); }));
+    SurfaceMesh mesh;
+    one.add(milliseconds([&] { mesh = mesh_surface(DensityView(volume), 1); }));
+    triangles = triangles_in(mesh);
+    mesh = {};
+    two.add(wall_milliseconds([&] { mesh = mesh_surface(DensityView(volume), 2); }));
+  }
+  const auto& dims = volume.geometry().dims;
+  std::printf("%d x %d x %d voxels, %zu triangles (VTK: %lld)\n", dims[0], dims[1], dims[2], triangles,
+              static_cast<long long>(flying->GetOutput()->GetNumberOfPolys()));
+  std::printf("whole surface, one thread, CPU ms (least / median): VTK %.1f / %.1f, osteomill %.1f / %.1f\n",
+              vtk.least(), vtk.share(0.5), one.least(), one.share(0.5));
+  std::printf("              two threads, wall ms: osteomill %.1f / %.1f\n", two.least(), two.share(0.5));
+  std::printf("              osteomill is %.1f times as fast\n", vtk.share(0.5) / one.share(0.5));
+}
+
+void compare_milling(const Volume& volume, double radius_mm, vtkFlyingEdges3D* flying) {
+  const FrameTimes times = mill_and_mesh(volume, radius_mm, flying);
+  std::printf(
+      "burr of %g mm, 4 N, a frame of 33 ms, one thread, CPU ms (median / p99 / most): osteomill %.2f / "
+      "%.2f / %.2f for %.0f bricks, VTK %.1f\n",
+      2 * radius_mm, times.meshing.share(0.5), times.meshing.share(0.99), times.meshing.share(1),
+      times.bricks.share(0.5), times.vtk.share(0.5));
+  std::printf("              handed over in the tick, us (median / p99 / most): %.1f / %.1f / %.1f\n",
+              times.handing_over_us.share(0.5), times.handing_over_us.share(0.99),
+              times.handing_over_us.share(1));
+  std::printf("              osteomill is %.0f times as fast\n",
+              times.vtk.share(0.5) / times.meshing.share(0.5));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  // Before VTK looks: one thread.
+  setenv("VTK_SMP_BACKEND_IN_USE", "Sequential", 1);
+  setenv("VTK_SMP_MAX_THREADS", "1", 1);
+  const Volume volume = make_volume(argc, argv);
+  const vtkNew<vtkImageData> image = share_with_vtk(volume);
+  vtkNew<vtkFlyingEdges3D> flying;
+  flying->SetInputData(image);
+  flying->SetValue(0, volume.isovalue());
+  flying->ComputeNormalsOn();
+  flying->ComputeGradientsOff();
+  flying->ComputeScalarsOff();
+  compare_whole(volume, flying);
+  compare_milling(volume, 1.5, flying);
+  compare_milling(volume, 3.0, flying);
+}
