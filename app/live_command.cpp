@@ -16,6 +16,7 @@
 
 #include "osteomill/recording/recorder.h"
 #include "osteomill/session/live_session.h"
+#include "osteomill/surface/live_surface.h"
 
 namespace osteomill::app {
 
@@ -45,18 +46,21 @@ void print_timing(const TimingSummary& timing) {
   print_times("whole tick", timing.tick);
 }
 
-// Leaves by an exception too: the session is stopped before what its listener uses goes.
-void run_for(LiveSession& live, double seconds) {
+// Takes the surface as a window would; returns how many bricks were meshed while milling.
+std::size_t run_for(LiveSession& live, LiveSurface& surface, double seconds) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
   double passed_s = 0;
+  std::size_t bricks = 0;
   while (passed_s < seconds && live.running()) {
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
     passed_s = std::chrono::duration<double>(Clock::now() - start).count();
+    bricks += surface.take_changed_bricks().size();
     show_progress("live", passed_s / seconds);
   }
   live.stop();
   end_progress();
+  return bricks;
 }
 
 void run_live(LiveOptions options, const std::string& command_line) {
@@ -75,19 +79,22 @@ void run_live(LiveOptions options, const std::string& command_line) {
     recorder.emplace(options.record, describe_run(plan, algorithm, session->algorithm().sample_point_count(),
                                                   RunPhase::milling));
   }
+  LiveSurface surface(bone.volume);
   FaultCount faults;
   LiveSession live(std::move(session), hand, plan.settings.tick_s);
-  live.listen([&](const TickRecord& record, const Volume&, const VolumeChange&) {
+  live.listen([&](const TickRecord& record, const Volume& volume, const VolumeChange& change) {
     faults.add(record);
+    surface.volume_changed(volume, change);
     if (recorder) recorder->push(record);
   });
   live.start();
   if (!live.refused_real_time().empty()) fmt::print(stderr, "osteomill: {}\n", live.refused_real_time());
-  run_for(live, options.seconds);
+  const std::size_t bricks = run_for(live, surface, options.seconds);
   if (recorder) recorder->close();
   faults.report(name_of(algorithm));
   print_timing(live.timing());
-  fmt::print("removed      {:.2f} mm^3\n", live.state().record.removed_mm3);
+  fmt::print("removed      {:.2f} mm^3, {} bricks of the surface meshed\n", live.state().record.removed_mm3,
+             bricks);
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "osteomill/session/latest_value.h"
+#include "osteomill/device/latest_value.h"
 #include "osteomill/session/spsc_ring.h"
 
 namespace osteomill {

@@ -10,7 +10,7 @@
 #include <variant>
 
 #include "osteomill/session/crash_stop.h"
-#include "osteomill/session/latest_value.h"
+#include "osteomill/device/latest_value.h"
 #include "osteomill/session/live_timing.h"
 #include "osteomill/session/milling_session.h"
 #include "osteomill/session/spsc_ring.h"
