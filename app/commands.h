@@ -16,5 +16,6 @@ void add_live_command(CLI::App& program, const std::string& command_line);
 void add_rates_command(CLI::App& program);
 void add_replay_command(CLI::App& program);
 void add_report_command(CLI::App& program);
+void add_simulate_command(CLI::App& program, const std::string& command_line);
 
 }  // namespace osteomill::app

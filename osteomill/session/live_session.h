@@ -9,8 +9,8 @@
 #include <thread>
 #include <variant>
 
-#include "osteomill/session/crash_stop.h"
 #include "osteomill/device/latest_value.h"
+#include "osteomill/session/crash_stop.h"
 #include "osteomill/session/live_timing.h"
 #include "osteomill/session/milling_session.h"
 #include "osteomill/session/spsc_ring.h"

@@ -44,13 +44,13 @@ bool may_be_seen(const std::array<Eigen::Vector4d, 6>& planes, const Sphere& sph
   });
 }
 
-bool is_cut(const Scene& scene) {
+bool is_cut(const ViewScene& scene) {
   return std::any_of(scene.cuts.begin(), scene.cuts.end(), [](const auto& cut) { return cut.has_value(); });
 }
 
 }  // namespace
 
-Projection projection_of(const Scene& scene, const PixelSize& size) {
+Projection projection_of(const ViewScene& scene, const PixelSize& size) {
   Projection projection{size, 0, 0, view_matrix(scene.camera), {}};
   const double depth_mm = depth_of(scene.camera, scene.bounds.centre_W);
   const double reach_mm = scene.bounds.radius_mm + kRoomAround_mm;
@@ -60,7 +60,7 @@ Projection projection_of(const Scene& scene, const PixelSize& size) {
   return projection;
 }
 
-void begin_cuts(GLuint program, const Scene& scene) {
+void begin_cuts(GLuint program, const ViewScene& scene) {
   // Without a cut nothing is clipped: 0 . p >= -1.
   std::array<std::array<float, 4>, kGreatestCutPlanes> cuts;
   for (std::size_t n = 0; n < kGreatestCutPlanes; ++n) {
@@ -80,6 +80,10 @@ void end_cuts() {
 BoneLayer::BoneLayer(const SurfaceBricks& layout, const GridGeometry& geometry)
     : program_(gl::make_program(shaders::kBoneVertex, shaders::kBoneFragment)), bricks_(layout.count()) {
   for (std::size_t n = 0; n < bricks_.size(); ++n) bricks_[n].bounds = bounds_of(geometry, layout.cells(n));
+}
+
+void BoneLayer::clear() {
+  for (std::size_t n = 0; n < bricks_.size(); ++n) set_brick(n, {});
 }
 
 void BoneLayer::set_brick(std::size_t number, const BrickMesh& mesh) {
@@ -113,7 +117,7 @@ void BoneLayer::set_brick(std::size_t number, const BrickMesh& mesh) {
   attribute(2, 1, offsetof(MeshVertex, density));
 }
 
-void BoneLayer::set_uniforms(const Scene& scene, const Projection& projection) const {
+void BoneLayer::set_uniforms(const ViewScene& scene, const Projection& projection) const {
   const GLuint program = program_.get();
   const auto place = [&](const char* name) { return glGetUniformLocation(program, name); };
   glUniformMatrix4fv(place("camera_from_world"), 1, GL_FALSE, projection.camera_from_world.data());
@@ -126,7 +130,7 @@ void BoneLayer::set_uniforms(const Scene& scene, const Projection& projection) c
   glUniform1f(place("cavity_scale"), static_cast<float>(1 / (kDarkestAt * reach_mm)));
 }
 
-void BoneLayer::draw(const Scene& scene, const Projection& projection, GLuint blurred_depths) const {
+void BoneLayer::draw(const ViewScene& scene, const Projection& projection, GLuint blurred_depths) const {
   glUseProgram(program_.get());
   set_uniforms(scene, projection);
   begin_cuts(program_.get(), scene);

@@ -19,11 +19,11 @@ struct Projection {
   Eigen::Matrix4f camera_from_world;
   Eigen::Matrix4f clip_from_camera;
 };
-Projection projection_of(const Scene& scene, const PixelSize& size);
+Projection projection_of(const ViewScene& scene, const PixelSize& size);
 
 /// Hands the scene's cuts to the uniform `cuts` of the program in use and has OpenGL clip by them. Ends with
 /// `end_cuts`.
-void begin_cuts(GLuint program, const Scene& scene);
+void begin_cuts(GLuint program, const ViewScene& scene);
 void end_cuts();
 
 /// The bone's surface, a piece of graphics memory a brick, so that milling replaces only what changed.
@@ -31,9 +31,10 @@ class BoneLayer {
  public:
   BoneLayer(const SurfaceBricks& layout, const GridGeometry& geometry);
 
+  void clear();
   void set_brick(std::size_t brick, const BrickMesh& mesh);
   /// Only bricks that the camera may see; back faces only where the scene is cut open.
-  void draw(const Scene& scene, const Projection& projection, GLuint blurred_depths) const;
+  void draw(const ViewScene& scene, const Projection& projection, GLuint blurred_depths) const;
   std::size_t triangle_count() const;
 
  private:
@@ -44,7 +45,7 @@ class BoneLayer {
     GLsizei index_count = 0;
     Sphere bounds;
   };
-  void set_uniforms(const Scene& scene, const Projection& projection) const;
+  void set_uniforms(const ViewScene& scene, const Projection& projection) const;
 
   gl::Program program_;
   std::vector<Brick> bricks_;

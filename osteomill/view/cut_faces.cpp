@@ -36,7 +36,7 @@ void CutFaces::set(const SceneRenderer::CutFace& face) {
                         reinterpret_cast<const void*>(3 * sizeof(float)));
 }
 
-void CutFaces::draw(const Scene& scene, const Projection& projection) const {
+void CutFaces::draw(const ViewScene& scene, const Projection& projection) const {
   const GLuint program = program_.get();
   glUseProgram(program);
   glUniformMatrix4fv(glGetUniformLocation(program, "camera_from_world"), 1, GL_FALSE,
@@ -46,7 +46,7 @@ void CutFaces::draw(const Scene& scene, const Projection& projection) const {
   glActiveTexture(GL_TEXTURE0);
   for (std::size_t n = 0; n < kGreatestCutPlanes; ++n) {
     if (!scene.cuts[n] || faces_[n].greys.get() == 0) continue;
-    Scene others = scene;
+    ViewScene others = scene;
     others.cuts[n].reset();
     begin_cuts(program, others);
     glBindTexture(GL_TEXTURE_2D, faces_[n].greys.get());

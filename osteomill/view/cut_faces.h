@@ -14,7 +14,7 @@ class CutFaces {
   CutFaces();
   void set(const SceneRenderer::CutFace& face);
   /// Each face as far as the other cuts leave it.
-  void draw(const Scene& scene, const Projection& projection) const;
+  void draw(const ViewScene& scene, const Projection& projection) const;
 
  private:
   struct Face {

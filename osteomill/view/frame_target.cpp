@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "osteomill/view/scene_renderer.h"
+
 namespace osteomill {
 
 FrameTarget::FrameTarget(const PixelSize& size)
@@ -25,14 +27,18 @@ void FrameTarget::bind() const {
 }
 
 Image FrameTarget::read() const {
-  Image image{size_.width, size_.height, {}};
-  const std::size_t row = 3 * static_cast<std::size_t>(size_.width);
-  std::vector<unsigned char> upside_down(row * static_cast<std::size_t>(size_.height));
-  glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_.get());
+  return read_framebuffer(framebuffer_.get(), size_);
+}
+
+Image read_framebuffer(unsigned framebuffer, const PixelSize& size) {
+  Image image{size.width, size.height, {}};
+  const std::size_t row = 3 * static_cast<std::size_t>(size.width);
+  std::vector<unsigned char> upside_down(row * static_cast<std::size_t>(size.height));
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer);
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
-  glReadPixels(0, 0, size_.width, size_.height, GL_RGB, GL_UNSIGNED_BYTE, upside_down.data());
+  glReadPixels(0, 0, size.width, size.height, GL_RGB, GL_UNSIGNED_BYTE, upside_down.data());
   image.rgb.resize(upside_down.size());
-  for (std::size_t y = 0; y < static_cast<std::size_t>(size_.height); ++y) {
+  for (std::size_t y = 0; y < static_cast<std::size_t>(size.height); ++y) {
     std::copy_n(upside_down.end() - static_cast<std::ptrdiff_t>((y + 1) * row), row,
                 image.rgb.begin() + static_cast<std::ptrdiff_t>(y * row));
   }

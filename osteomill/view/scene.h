@@ -20,7 +20,7 @@ struct CutPlane {
 inline constexpr std::size_t kGreatestCutPlanes = 4;
 
 /// What a picture shows beside the bone, all in W.
-struct Scene {
+struct ViewScene {
   Camera camera;
   /// Holds the bone; what lies far outside it is not drawn.
   Sphere bounds;

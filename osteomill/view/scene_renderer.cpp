@@ -68,7 +68,7 @@ struct SceneRenderer::Impl {
   }
 
   // Over everything, since a contact lies where tool and bone hide it.
-  void draw_wrench(const Scene& scene) const {
+  void draw_wrench(const ViewScene& scene) const {
     glClear(GL_DEPTH_BUFFER_BIT);
     if (const auto contact = point_of_action(scene.tool, *scene.X_WT, scene.wrench)) {
       shapes.sphere(*contact, 0.22 * scene.tool.burr_radius_mm, kContact);
@@ -92,6 +92,10 @@ SceneRenderer::SceneRenderer(const SurfaceBricks& layout, const GridGeometry& ge
 
 SceneRenderer::~SceneRenderer() = default;
 
+void SceneRenderer::clear() {
+  impl_->bone.clear();
+}
+
 void SceneRenderer::set_brick(std::size_t brick, const BrickMesh& mesh) {
   impl_->bone.set_brick(brick, mesh);
 }
@@ -100,7 +104,7 @@ void SceneRenderer::set_cut_face(const CutFace& face) {
   impl_->cut_faces.set(face);
 }
 
-void SceneRenderer::draw(const Scene& scene, const PixelSize& size) {
+void SceneRenderer::draw(const ViewScene& scene, const PixelSize& size) {
   Impl& own = *impl_;
   own.fit(size);
   const Projection projection = projection_of(scene, size);

@@ -21,6 +21,8 @@ class SceneRenderer {
   SceneRenderer(const SceneRenderer&) = delete;
   SceneRenderer& operator=(const SceneRenderer&) = delete;
 
+  /// Forgets the bone.
+  void clear();
   /// A brick's triangles as they are now; none removes it.
   void set_brick(std::size_t brick, const BrickMesh& mesh);
   /// The grey values on a cut, a byte each, row by row; `corners_W` of the first pixel, the end of its row,
@@ -36,7 +38,7 @@ class SceneRenderer {
 
   /// Draws into a picture of its own. What lies deep is darkened after the picture drawn before, so that a
   /// still picture is drawn twice.
-  void draw(const Scene& scene, const PixelSize& size);
+  void draw(const ViewScene& scene, const PixelSize& size);
   /// The picture drawn last.
   Image picture() const;
   /// Copies it into the window's framebuffer, which has its size.
@@ -48,5 +50,8 @@ class SceneRenderer {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+/// What an OpenGL framebuffer holds; 0 is the window's.
+Image read_framebuffer(unsigned framebuffer, const PixelSize& size);
 
 }  // namespace osteomill

@@ -49,7 +49,7 @@ class SceneRendererTest : public ::testing::Test {
   OffscreenContext context_;
   Volume bone_ = drilled_ball();
   std::unique_ptr<SceneRenderer> renderer_;
-  Scene scene_;
+  ViewScene scene_;
 };
 
 TEST_F(SceneRendererTest, Bone) {
