@@ -9,6 +9,8 @@ void add_commands(CLI::App& program, const std::string& command_line) {
   add_rates_command(program);
   add_replay_command(program);
   add_info_command(program);
+  add_mesh_command(program);
+  add_save_command(program);
   add_report_command(program);
 }
 

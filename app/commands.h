@@ -17,5 +17,10 @@ void add_rates_command(CLI::App& program);
 void add_replay_command(CLI::App& program);
 void add_report_command(CLI::App& program);
 void add_simulate_command(CLI::App& program, const std::string& command_line);
+void add_mesh_command(CLI::App& program);
+void add_rates_command(CLI::App& program);
+void add_replay_command(CLI::App& program);
+void add_report_command(CLI::App& program);
+void add_save_command(CLI::App& program);
 
 }  // namespace osteomill::app

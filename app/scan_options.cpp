@@ -36,11 +36,15 @@ void require_isovalue_within(const Scan& scan, double isovalue) {
                                           *least, *greatest));
 }
 
-LoadedBone load_bone(const ScanOptions& options) {
-  Scan scan = open_scan(options);
+void print_warnings(const Scan& scan) {
   for (const std::string& warning : scan.warnings) {
     fmt::print(stderr, "osteomill: {}: warning: {}\n", scan.name, warning);
   }
+}
+
+LoadedBone load_bone(const ScanOptions& options) {
+  Scan scan = open_scan(options);
+  print_warnings(scan);
   const double isovalue = options.isovalue.value_or(suggested_isovalue(options, scan.grid));
   if (!options.isovalue && !options.scan.empty()) {
     fmt::print(stderr, "osteomill: {}: isovalue {:g} suggested from its values; --iso sets another\n",

@@ -27,6 +27,9 @@ Scan open_scan(const ScanOptions& options);
 /// The isovalue that the user leaves us to choose for this scan.
 double suggested_isovalue(const ScanOptions& options, const DensityGrid& grid);
 
+/// The scan's warnings, one line each on standard error.
+void print_warnings(const Scan& scan);
+
 /// Throws InputError where the isovalue lies outside the scan's values, so that there is no bone, or nothing
 /// but bone.
 void require_isovalue_within(const Scan& scan, double isovalue);

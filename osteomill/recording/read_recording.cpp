@@ -107,8 +107,9 @@ std::size_t row_count(const OpenRecording& recording, const std::vector<OpenColu
 }
 
 void require_in_range(const OpenRecording& recording, const RecordColumn& column, double value) {
-  const double most = column.type == ColumnType::small_integer ? static_cast<double>(WrenchFault::not_finite)
-                                                               : std::numeric_limits<int>::max();
+  const double most = column.type == ColumnType::small_integer
+                          ? static_cast<double>(WrenchFault::pose_not_finite)
+                          : std::numeric_limits<int>::max();
   if (column.type != ColumnType::real && !(value >= 0 && value <= most && value == std::floor(value))) {
     refuse(recording, std::string("the column '") + column.name + "' holds " + std::to_string(value));
   }

@@ -35,6 +35,8 @@ MillingSession::MillingSession(std::shared_ptr<Volume> volume, const MillingTool
 TickRecord MillingSession::tick(Device& device, double time_s, double dt_s, bool spindle_on) {
   TickRecord record;
   record.time_s = time_s;
+  record.dt_s = dt_s;
+  record.spindle_on = spindle_on;
   record.X_WD = device.read_pose();
 
   const Clock::time_point start = Clock::now();

@@ -8,6 +8,10 @@ namespace osteomill {
 /// All that is known of one tick: what recordings hold and reports are made from.
 struct TickRecord {
   double time_s = 0;
+  /// How long the tick was taken to be, and whether the spindle turned: with the tool's pose and the burr's
+  /// force all that milling depends on.
+  double dt_s = 0;
+  bool spindle_on = false;
   /// The device's pose as read, and the simulated tool's.
   Pose X_WD;
   Pose X_WT;

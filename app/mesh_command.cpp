@@ -1,0 +1,43 @@
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "app/commands.h"
+#include "app/milled_scan.h"
+#include <fmt/core.h>
+
+#include "osteomill/files/input_error.h"
+#include "osteomill/surface/mesh_file.h"
+#include "osteomill/surface/surface_mesh.h"
+
+namespace osteomill::app {
+
+namespace {
+
+struct MeshOptions {
+  MilledScanOptions scan;
+  std::optional<double> isovalue;
+};
+
+void run_mesh(const MeshOptions& options) {
+  const std::string& out = options.scan.out();
+  mesh_format_of(out);  // before the scan is read
+  const LoadedBone bone = load_milled_bone(options.scan, options.isovalue);
+  const BrickMesh mesh = mesh_in_one_piece(DensityView(bone.volume));
+  if (mesh.empty()) throw InputError(bone.name, "no bone is left to be meshed");
+  write_mesh(out, mesh);
+  fmt::print("{}\n", out);
+}
+
+}  // namespace
+
+void add_mesh_command(CLI::App& program) {
+  auto options = std::make_shared<MeshOptions>();
+  CLI::App* command =
+      program.add_subcommand("mesh", "Write the bone's surface as one closed mesh of triangles, in mm");
+  add_milled_scan_options(*command, options->scan, ".stl, .ply or .obj");
+  command->add_option("--iso", options->isovalue, "Isovalue: bone where the density is greater");
+  command->callback([=] { run_mesh(*options); });
+}
+
+}  // namespace osteomill::app

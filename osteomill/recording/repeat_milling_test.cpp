@@ -1,0 +1,111 @@
+#include "osteomill/recording/repeat_milling.h"
+
+#include <algorithm>
+
+#include "tests/shapes.h"
+#include <gtest/gtest.h>
+
+#include "osteomill/device/posed_device.h"
+#include "osteomill/files/input_error.h"
+#include "osteomill/haptics/make_algorithm.h"
+#include "osteomill/recording/read_recording.h"
+#include "osteomill/recording/recorder.h"
+#include "osteomill/recording/recording_samples.h"
+#include "osteomill/session/milling_session.h"
+
+namespace osteomill {
+namespace {
+
+using testing_support::TestFolder;
+
+constexpr BoneDensities kDensities{0, 1000};
+const MillingSettings kMilling{3.0, 0.8};
+
+Volume fresh_bone(double radius_mm = 5) {
+  return testing_support::shape_volume(testing_support::centred_cube(60, 0.25),
+                                       testing_support::ball(Vec3::Zero(), radius_mm));
+}
+
+RunDescription description_of(const Volume& bone) {
+  RunDescription run = testing_support::sample_description();
+  run.dims = bone.geometry().dims;
+  run.spacing_mm = bone.geometry().spacing_mm;
+  run.tool = {};
+  run.settings = {{"milling.removal_rate", kMilling.removal_rate_mm3_per_Ns, ""},
+                  {"milling.reach", kMilling.reach_voxels, ""},
+                  {"milling.surroundings_density", kDensities.surroundings, ""},
+                  {"milling.reference_density", kDensities.reference, ""}};
+  return run;
+}
+
+struct Milled {
+  Recording recording;
+  Volume bone;
+};
+
+// Presses down with the spindle on and off in turns, in ticks of two lengths, and records it to a file.
+Milled mill_and_record(const TestFolder& folder) {
+  MillingSession session(fresh_bone(), {}, make_algorithm(AlgorithmId::point_shell, {}), kDensities, kMilling,
+                         {});
+  Recorder recorder(folder / "run.h5", description_of(session.volume()));
+  PosedDevice device;
+  double time_s = 0;
+  for (int n = 0; n < 900; ++n) {
+    Pose pose;
+    pose.position_mm = {0.001 * n, 0, 7.0 - std::min(0.004 * n, 2.0)};
+    device.put(pose);
+    const double dt_s = n % 2 == 0 ? 1e-3 : 0.7e-3;
+    recorder.push_waiting(session.tick(device, time_s, dt_s, n % 300 < 250));
+    time_s += dt_s;
+  }
+  recorder.close();
+  return {read_recording(folder / "run.h5"), session.volume()};
+}
+
+std::string refusal(Volume bone, const Recording& recording) {
+  try {
+    repeat_milling(bone, recording);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(RepeatMilling, LeavesTheBoneAsTheRunDidDensityByDensity) {
+  const TestFolder folder;
+  const Milled milled = mill_and_record(folder);
+  ASSERT_GT(milled.recording.records.back().removed_mm3, 1);
+  Volume again = fresh_bone();
+  repeat_milling(again, milled.recording);
+  EXPECT_EQ(again.grid().densities(), milled.bone.grid().densities());
+  EXPECT_NE(again.grid().densities(), fresh_bone().grid().densities());
+}
+
+TEST(RepeatMilling, RefusesWhatItCannotRepeat) {
+  const TestFolder folder;
+  const Recording recording = mill_and_record(folder).recording;
+
+  Recording other = recording;
+  other.description.dims[1] = 61;
+  EXPECT_NE(refusal(fresh_bone(), other).find("another scan"), std::string::npos);
+  other = recording;
+  other.description.spacing_mm.z() = 0.3;
+  EXPECT_NE(refusal(fresh_bone(), other).find("another scan"), std::string::npos);
+  EXPECT_NE(refusal(fresh_bone(5.1), recording).find("another scan"), std::string::npos);
+  other = recording;
+  other.dropped = 3;
+  EXPECT_NE(refusal(fresh_bone(), other).find("lost 3 ticks"), std::string::npos);
+  other = recording;
+  other.records.erase(other.records.begin(), other.records.begin() + 800);
+  EXPECT_NE(refusal(fresh_bone(), other).find("goes on from other milling"), std::string::npos);
+  other = recording;
+  other.description.settings.erase(other.description.settings.begin());
+  EXPECT_NE(refusal(fresh_bone(), other).find("'milling.removal_rate'"), std::string::npos);
+  other = recording;
+  other.description.settings[0].value = -1.0;
+  EXPECT_NE(refusal(fresh_bone(), other).find("cannot be repeated"), std::string::npos);
+  EXPECT_EQ(refusal(fresh_bone(), recording), "");
+}
+
+}  // namespace
+}  // namespace osteomill

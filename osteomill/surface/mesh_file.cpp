@@ -1,0 +1,156 @@
+#include "osteomill/surface/mesh_file.h"
+
+#include <algorithm>
+#include <bit>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <ostream>
+#include <string>
+
+#include "osteomill/files/atomic_file.h"
+#include "osteomill/files/input_error.h"
+
+namespace osteomill {
+
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "numbers are written as they lie in memory");
+
+// Collects what is written into large pieces.
+class Output {
+ public:
+  explicit Output(std::ostream& out) : out_(out) { buffer_.reserve(2 * kPiece); }
+  ~Output() { out_.write(buffer_.data(), static_cast<std::streamsize>(buffer_.size())); }
+  Output(const Output&) = delete;
+  Output& operator=(const Output&) = delete;
+
+  template <typename Value>
+  void bytes(const Value& value) {
+    char raw[sizeof value];
+    std::memcpy(raw, &value, sizeof value);
+    text({raw, sizeof value});
+  }
+  void text(std::string_view text) {
+    buffer_ += text;
+    if (buffer_.size() < kPiece) return;
+    out_.write(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
+    buffer_.clear();
+  }
+  // The shortest that reads back to the same number.
+  template <typename Number>
+  void number(Number value) {
+    char digits[32];
+    const auto end = std::to_chars(digits, digits + sizeof digits, value).ptr;
+    text({digits, static_cast<std::size_t>(end - digits)});
+  }
+
+ private:
+  static constexpr std::size_t kPiece = 1 << 20;
+  std::ostream& out_;
+  std::string buffer_;
+};
+
+using Point = std::array<float, 3>;
+
+Point facet_normal(const Point& a, const Point& b, const Point& c) {
+  std::array<double, 3> u, v;
+  for (std::size_t n = 0; n < 3; ++n) {
+    u[n] = static_cast<double>(b[n]) - static_cast<double>(a[n]);
+    v[n] = static_cast<double>(c[n]) - static_cast<double>(a[n]);
+  }
+  const std::array<double, 3> cross{u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
+                                    u[0] * v[1] - u[1] * v[0]};
+  const double length = std::hypot(cross[0], cross[1], cross[2]);
+  if (length == 0) return {0, 0, 0};
+  return {static_cast<float>(cross[0] / length), static_cast<float>(cross[1] / length),
+          static_cast<float>(cross[2] / length)};
+}
+
+void write_stl(Output& out, const BrickMesh& mesh) {
+  std::string head = "osteomill isosurface, mm, SPACE=LPS";
+  head.resize(80, ' ');
+  out.text(head);
+  out.bytes(static_cast<std::uint32_t>(mesh.triangle_count()));
+  for (std::size_t n = 0; n < mesh.indices.size(); n += 3) {
+    std::array<Point, 3> corners;
+    for (std::size_t c = 0; c < 3; ++c) corners[c] = mesh.vertices[mesh.indices[n + c]].position_mm;
+    out.bytes(facet_normal(corners[0], corners[1], corners[2]));
+    out.bytes(corners);
+    out.bytes(std::uint16_t{0});
+  }
+}
+
+void write_ply(Output& out, const BrickMesh& mesh) {
+  out.text(
+      "ply\nformat binary_little_endian 1.0\ncomment osteomill isosurface, mm, SPACE=LPS\nelement vertex ");
+  out.number(mesh.vertices.size());
+  for (const char* property : {"x", "y", "z", "nx", "ny", "nz", "density"}) {
+    out.text("\nproperty float ");
+    out.text(property);
+  }
+  out.text("\nelement face ");
+  out.number(mesh.triangle_count());
+  out.text("\nproperty list uchar int vertex_indices\nend_header\n");
+  for (const MeshVertex& vertex : mesh.vertices) out.bytes(vertex);
+  for (std::size_t n = 0; n < mesh.indices.size(); n += 3) {
+    out.bytes(std::uint8_t{3});
+    for (std::size_t c = 0; c < 3; ++c) out.bytes(mesh.indices[n + c]);
+  }
+}
+
+void write_row(Output& out, std::string_view what, const Point& numbers) {
+  out.text(what);
+  for (const float number : numbers) {
+    out.text(" ");
+    out.number(number);
+  }
+  out.text("\n");
+}
+
+void write_obj(Output& out, const BrickMesh& mesh) {
+  out.text("# osteomill isosurface, mm, SPACE=LPS\n");
+  for (const MeshVertex& vertex : mesh.vertices) write_row(out, "v", vertex.position_mm);
+  for (const MeshVertex& vertex : mesh.vertices) write_row(out, "vn", vertex.normal);
+  for (std::size_t n = 0; n < mesh.indices.size(); n += 3) {
+    out.text("f");
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::uint32_t one_based = mesh.indices[n + c] + 1;
+      out.text(" ");
+      out.number(one_based);
+      out.text("//");
+      out.number(one_based);
+    }
+    out.text("\n");
+  }
+}
+
+}  // namespace
+
+MeshFormat mesh_format_of(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (extension == ".stl") return MeshFormat::stl;
+  if (extension == ".ply") return MeshFormat::ply;
+  if (extension == ".obj") return MeshFormat::obj;
+  throw InputError(path.string(), "a mesh is written as .stl, .ply or .obj");
+}
+
+void write_mesh(const std::filesystem::path& path, const BrickMesh& mesh) {
+  const MeshFormat format = mesh_format_of(path);
+  write_text_atomically(path, [&](std::ostream& stream) {
+    Output out(stream);
+    switch (format) {
+      case MeshFormat::stl:
+        return write_stl(out, mesh);
+      case MeshFormat::ply:
+        return write_ply(out, mesh);
+      case MeshFormat::obj:
+        return write_obj(out, mesh);
+    }
+  });
+}
+
+}  // namespace osteomill

@@ -1,0 +1,43 @@
+#!/usr/bin/env bash
+# A recording mills its scan again: the mesh made after it is that of the saved scan, and both differ from the scan's own;
+# what cannot be repeated is refused; the same twice gives the same bytes.
+set -euo pipefail
+osteomill=$1
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cd "$folder"
+
+fault() { echo "FAILED: $1"; exit 1; }
+refused() {  # REGEX COMMAND...
+  local code=0
+  "${@:2}" >/dev/null 2>refusal || code=$?
+  [ "$code" -eq 1 ] || fault "${*:2}: exit code $code, expected 1"
+  [ "$(wc -l <refusal)" -eq 1 ] || fault "${*:2}: a refusal is one line"
+  grep -qE -- "$1" refusal || fault "${*:2}: $(cat refusal)"
+}
+
+"$osteomill" compare --seconds 2 --algorithm point-shell --out runs >/dev/null
+milling=runs/point-shell-milling.h5
+"$osteomill" mesh --after "$milling" milled.stl
+"$osteomill" save --after "$milling" milled.nrrd
+"$osteomill" mesh milled.nrrd --iso 750 saved.stl
+cmp milled.stl saved.stl || fault "the saved scan has another surface"
+"$osteomill" mesh whole.stl
+cmp -s whole.stl milled.stl && fault "nothing was milled"
+"$osteomill" mesh again.stl --after "$milling"
+cmp milled.stl again.stl || fault "the same twice differs"
+
+"$osteomill" save copy.nrrd
+"$osteomill" mesh copy.nrrd whole.ply --iso 750
+"$osteomill" mesh whole2.ply
+cmp whole.ply whole2.ply || fault "the saved scan is another"
+
+refused "^osteomill: runs/point-shell-holding.h5: goes on from other milling" \
+  "$osteomill" mesh a.stl --after runs/point-shell-holding.h5
+refused "^osteomill: $milling: was made with another scan" "$osteomill" save milled.nrrd a.nrrd --after "$milling"
+printf 'NRRD0004\ntype: short\ndimension: 3\nsizes: 2 2 2\nspacings: 1 1 1\nencoding: ascii\n\n1 2 3 4 5 6 7 1000\n' >tiny.nrrd
+refused "^osteomill: $milling: was made with another scan \(built-in tooth\): 256 x 256 x 176" \
+  "$osteomill" mesh tiny.nrrd a.stl --after "$milling"
+[ ! -e a.stl ] && [ ! -e a.nrrd ] || fault "a refusal left a file"
+find . -name '*.writing-*' | grep -q . && fault "left a half-written file"
+exit 0
