@@ -3,7 +3,9 @@
 namespace osteomill::app {
 
 void add_commands(CLI::App& program, const std::string& command_line) {
+  add_simulate_command(program, command_line);
   add_compare_command(program, command_line);
+  add_live_command(program, command_line);
   add_rates_command(program);
   add_replay_command(program);
   add_info_command(program);

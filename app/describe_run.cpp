@@ -20,12 +20,11 @@ void add_algorithm(Settings& settings, AlgorithmId algorithm, const HapticSettin
   }
 }
 
-void add_milling(Settings& settings, const TrialPlan& plan) {
-  const MillingSettings& milling = plan.settings.milling;
+void add_milling(Settings& settings, const MillingSettings& milling, const BoneDensities& densities) {
   settings.push_back({"milling.removal_rate", milling.removal_rate_mm3_per_Ns, "mm^3/(N s)"});
   settings.push_back({"milling.reach", milling.reach_voxels, "voxels"});
-  settings.push_back({"milling.surroundings_density", plan.densities.surroundings, ""});
-  settings.push_back({"milling.reference_density", plan.densities.reference, ""});
+  settings.push_back({"milling.surroundings_density", densities.surroundings, ""});
+  settings.push_back({"milling.reference_density", densities.reference, ""});
 }
 
 void add_hand(Settings& settings, const HandSettings& hand) {
@@ -59,25 +58,37 @@ void add_script(Settings& settings, const ScriptSettings& script, const MillingE
 
 }  // namespace
 
-RunDescription describe_run(const TrialPlan& plan, AlgorithmId algorithm, int sample_points, RunPhase phase) {
+RunDescription describe_run(const RunFacts& facts, AlgorithmId algorithm, int sample_points) {
   RunDescription run;
   run.program_version = OSTEOMILL_VERSION;
-  run.scan_name = plan.bone.name;
-  run.dims = plan.bone.volume.geometry().dims;
-  run.spacing_mm = plan.bone.volume.geometry().spacing_mm;
-  run.isovalue = plan.bone.volume.isovalue();
-  run.tool = plan.settings.tool;
+  run.scan_name = facts.scan_name;
+  run.dims = facts.geometry.dims;
+  run.spacing_mm = facts.geometry.spacing_mm;
+  run.isovalue = facts.isovalue;
+  run.tool = facts.tool;
   run.algorithm = algorithm;
-  run.mode = plan.settings.haptics.mode;
+  run.mode = facts.haptics.mode;
+  run.seed = facts.seed;
+  run.tick_period_s = facts.tick_s;
+  run.settings.push_back({std::string(kCommandLineKey), facts.command_line, ""});
+  add_algorithm(run.settings, algorithm, facts.haptics, sample_points);
+  add_milling(run.settings, facts.milling, facts.densities);
+  add_hand(run.settings, facts.hand);
+  add_device(run.settings, facts.device, facts.limits);
+  return run;
+}
+
+RunDescription describe_run(const TrialPlan& plan, AlgorithmId algorithm, int sample_points, RunPhase phase) {
+  const TrialSettings& trial = plan.settings;
+  const OperatorSettings& hand_and_device = trial.hand_and_device;
+  const Volume& bone = plan.bone.volume;
+  RunDescription run =
+      describe_run({plan.bone.name, bone.geometry(), bone.isovalue(), plan.densities, trial.tool,
+                    trial.haptics, trial.milling, trial.limits, hand_and_device.hand, hand_and_device.handle,
+                    hand_and_device.seed, trial.tick_s, plan.command_line},
+                   algorithm, sample_points);
   run.phase = phase;
-  run.seed = plan.settings.hand_and_device.seed;
-  run.tick_period_s = plan.settings.tick_s;
-  run.settings.push_back({std::string(kCommandLineKey), plan.command_line, ""});
-  add_algorithm(run.settings, algorithm, plan.settings.haptics, sample_points);
-  add_milling(run.settings, plan);
-  add_hand(run.settings, plan.settings.hand_and_device.hand);
-  add_device(run.settings, plan.settings.hand_and_device.handle, plan.settings.limits);
-  add_script(run.settings, plan.settings.hand_and_device.script, plan.entry);
+  add_script(run.settings, hand_and_device.script, plan.entry);
   return run;
 }
 

@@ -6,7 +6,7 @@
 namespace osteomill {
 
 /// Where poses come from and wrenches go: a simulated operator, a mouse, a recorded trajectory, hardware.
-/// Both calls come from the haptic thread, once a tick, and neither allocates, locks, logs or throws.
+/// All calls come from the haptic thread, once a tick, and none allocates, locks, logs or throws.
 class Device {
  public:
   virtual ~Device() = default;
@@ -14,6 +14,12 @@ class Device {
   virtual Pose read_pose() = 0;
   /// Sends a wrench that is already safe (finite, within the limits).
   virtual void write_wrench(const Wrench& wrench) = 0;
+
+  /// Whether the operator asks for the spindle by a button or pedal of the device.
+  virtual bool spindle_asked() const { return false; }
+  /// The tick is over: where the simulated tool is shown, and how long it is until the next pose is read. A
+  /// simulated device moves on; hardware has nothing to do.
+  virtual void tick_done(const Pose& /*X_WT*/, double /*dt_s*/) {}
 };
 
 }  // namespace osteomill

@@ -31,6 +31,11 @@ class SimulatedOperator final : public Device {
   /// As the encoder says.
   Pose read_pose() override { return handle_.read(); }
   void write_wrench(const Wrench& wrench) override { handle_.command(wrench); }
+  bool spindle_asked() const override { return milling(); }
+  void tick_done(const Pose& X_WT, double dt_s) override {
+    see(X_WT);
+    advance(dt_s);
+  }
   /// Shows the operator the simulated tool, by which it judges how deep the hole is.
   void see(const Pose& X_WT_simulated) { X_WT_seen_ = X_WT_simulated; }
   /// Lets `dt_s` pass, in whole substeps of the handle; what is left over is kept for the next call. Nothing

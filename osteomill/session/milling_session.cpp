@@ -19,7 +19,13 @@ double microseconds_since(Clock::time_point start) {
 MillingSession::MillingSession(Volume volume, const MillingTool& tool,
                                std::unique_ptr<HapticAlgorithm> algorithm, const BoneDensities& densities,
                                const MillingSettings& milling, const WrenchLimits& limits)
-    : volume_(std::make_unique<Volume>(std::move(volume))),
+    : MillingSession(std::make_shared<Volume>(std::move(volume)), tool, std::move(algorithm), densities,
+                     milling, limits) {}
+
+MillingSession::MillingSession(std::shared_ptr<Volume> volume, const MillingTool& tool,
+                               std::unique_ptr<HapticAlgorithm> algorithm, const BoneDensities& densities,
+                               const MillingSettings& milling, const WrenchLimits& limits)
+    : volume_(std::move(volume)),
       algorithm_(std::move(algorithm)),
       mill_(volume_->geometry(), tool.burr_radius_mm, densities, milling),
       limits_(limits) {
@@ -40,6 +46,7 @@ TickRecord MillingSession::tick(Device& device, double time_s, double dt_s, bool
   device.write_wrench(safe.wrench);
 
   const Clock::time_point milling_start = Clock::now();
+  last_change_ = {};
   if (spindle_on) mill(step, dt_s);
   record.milling_us = microseconds_since(milling_start);
 
@@ -49,6 +56,24 @@ TickRecord MillingSession::tick(Device& device, double time_s, double dt_s, bool
   record.contacts = step.contacts;
   record.burr_force_N = step.burr_force_N;
   record.removed_mm3 = removed_mm3_;
+  return record;
+}
+
+void MillingSession::take_over_tool(const std::optional<Pose>& X_WT) {
+  if (!X_WT || !is_finite(*X_WT)) return;
+  constexpr double kUsualTick_s = 1e-3;
+  last_X_WT_ = *X_WT;
+  algorithm_->step(*X_WT, kUsualTick_s);
+}
+
+TickRecord MillingSession::idle_tick(Device& device, double time_s) {
+  TickRecord record;
+  record.time_s = time_s;
+  record.X_WD = device.read_pose();
+  record.X_WT = last_X_WT_;
+  record.removed_mm3 = removed_mm3_;
+  device.write_wrench(Wrench{});
+  last_change_ = {};
   return record;
 }
 
@@ -74,6 +99,7 @@ HapticStep MillingSession::step_safely(const Pose& X_WD, double dt_s, SafeWrench
 void MillingSession::mill(const HapticStep& step, double dt_s) {
   const MillingStep cut = mill_.step(*volume_, step.X_WT.position_mm, step.burr_force_N, dt_s);
   removed_mm3_ += cut.removed_mm3;
+  last_change_ = cut.change;
   if (!cut.change.voxels.empty()) algorithm_->volume_changed(cut.change);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "osteomill/device/device.h"
 #include "osteomill/haptics/haptic_algorithm.h"
@@ -17,13 +18,31 @@ class MillingSession {
   /// does.
   MillingSession(Volume volume, const MillingTool& tool, std::unique_ptr<HapticAlgorithm> algorithm,
                  const BoneDensities& densities, const MillingSettings& milling, const WrenchLimits& limits);
+  /// The same on a bone that another session has milled, which takes no further tick while this one lives.
+  MillingSession(std::shared_ptr<Volume> volume, const MillingTool& tool,
+                 std::unique_ptr<HapticAlgorithm> algorithm, const BoneDensities& densities,
+                 const MillingSettings& milling, const WrenchLimits& limits);
 
   /// One haptic tick of `dt_s`, begun at `time_s`; bone is removed where `spindle_on`. A wrench that is not
   /// finite, or a device pose that is not, sends zero and is recorded as the record's fault. Real-time safe:
   /// no allocation, lock, log, exception or system call.
   TickRecord tick(Device& device, double time_s, double dt_s, bool spindle_on);
 
+  /// A tick of a pause: zero is sent, nothing is computed, and contacts are kept. As safe as `tick`.
+  TickRecord idle_tick(Device& device, double time_s);
+
+  /// Has the algorithm begin at a simulated tool that another session left, outside the bone, and not at a
+  /// device that may have sunk into it; nothing for no pose. As safe as `tick`.
+  void take_over_tool(const std::optional<Pose>& X_WT);
+
+  /// What the last tick changed of the volume.
+  const VolumeChange& last_change() const { return last_change_; }
+  double removed_mm3() const { return removed_mm3_; }
+  /// Goes on counting from what was removed of this bone before.
+  void count_removed_from(double removed_mm3) { removed_mm3_ = removed_mm3; }
+
   const Volume& volume() const { return *volume_; }
+  const std::shared_ptr<Volume>& shared_volume() const { return volume_; }
   const HapticAlgorithm& algorithm() const { return *algorithm_; }
 
  private:
@@ -31,11 +50,12 @@ class MillingSession {
   void mill(const HapticStep& step, double dt_s);
 
   // Behind a pointer since the algorithm keeps its address.
-  std::unique_ptr<Volume> volume_;
+  std::shared_ptr<Volume> volume_;
   std::unique_ptr<HapticAlgorithm> algorithm_;
   BurrMill mill_;
   WrenchLimits limits_;
   double removed_mm3_ = 0;
+  VolumeChange last_change_;
   Pose last_X_WT_;
 };
 

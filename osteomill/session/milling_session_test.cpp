@@ -19,7 +19,9 @@ class ScriptedAlgorithm : public HapticAlgorithm {
   std::vector<VolumeChange> changes;
 
   void prepare(const Scene&) override {}
+  std::vector<Pose> steps;
   HapticStep step(const Pose& X_WD, double) override {
+    steps.push_back(X_WD);
     next.X_WT = X_WD;
     return next;
   }
@@ -63,6 +65,25 @@ TEST_F(MillingSessionTest, TooMuchIsClampedAndSaid) {
   algorithm_->next.wrench = {{0, 0, 300}, {0, 40, 0}};
   EXPECT_EQ(tick().fault, WrenchFault::force_clamped);
   EXPECT_TRUE(device_.sent().force_N.isApprox(Vec3(0, 0, 20)));
+}
+
+TEST_F(MillingSessionTest, TheToolOfAnotherSessionIsWhereTheAlgorithmBegins) {
+  session_->take_over_tool(Pose{{0, 0, 1.5}, Quat::Identity()});
+  tick();
+  ASSERT_EQ(algorithm_->steps.size(), 2u);
+  EXPECT_EQ(algorithm_->steps[0].position_mm, Vec3(0, 0, 1.5));
+  EXPECT_EQ(algorithm_->steps[1].position_mm, Vec3(0, 0, 1.0));
+}
+
+TEST_F(MillingSessionTest, AnIdleTickSendsZeroAndStepsNothing) {
+  algorithm_->next.wrench = {{0, 0, 3}, {0, 40, 0}};
+  tick(true);
+  const TickRecord idle = session_->idle_tick(device_, 1);
+  EXPECT_EQ(device_.sent().force_N, Vec3::Zero());
+  EXPECT_EQ(idle.wrench.torque_Nmm, Vec3::Zero());
+  EXPECT_EQ(idle.X_WT.position_mm, device_.read_pose().position_mm);
+  EXPECT_EQ(algorithm_->steps.size(), 1u);
+  EXPECT_TRUE(session_->last_change().voxels.empty());
 }
 
 TEST_F(MillingSessionTest, AWrenchThatIsNotFiniteIsZeroAndTheContactsAreForgotten) {

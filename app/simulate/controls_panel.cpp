@@ -1,0 +1,131 @@
+#include <algorithm>
+#include <string>
+
+#include "app/simulate/panels.h"
+#include "app/simulate/widgets.h"
+#include <imgui.h>
+
+namespace osteomill::app {
+
+namespace {
+
+constexpr float kWidth_px = 268;
+
+const char* title_of(AlgorithmId algorithm) {
+  switch (algorithm) {
+    case AlgorithmId::line_proxy:
+      return "1 line proxy";
+    case AlgorithmId::surface_points:
+      return "2 surface points";
+    case AlgorithmId::point_shell:
+      return "3 point shell";
+  }
+  return "";
+}
+
+float default_stiffness(AlgorithmId algorithm) {
+  return algorithm == AlgorithmId::surface_points ? 20.0f : 2.0f;
+}
+
+// A slider whose change takes preparation, so that it counts when let go of.
+bool settle(const char* label, double& value, float least, float greatest, const char* format) {
+  float shown = static_cast<float>(value);
+  if (ui::slider(label, &shown, least, greatest, format, ImGuiSliderFlags_AlwaysClamp)) {
+    value = static_cast<double>(shown);
+  }
+  return ui::released();
+}
+
+void draw_algorithm(SimulationSettings& wanted, bool& changed) {
+  if (!ui::header("Algorithm", true)) return;
+  for (const AlgorithmId algorithm : kAllAlgorithms) {
+    if (ui::radio(title_of(algorithm), wanted.algorithm == algorithm)) {
+      wanted.algorithm = algorithm;
+      wanted.haptics.stiffness_N_per_mm.reset();
+      changed = true;
+    }
+  }
+  if (ui::radio("steady", wanted.haptics.mode == Mode::steady)) {
+    wanted.haptics.mode = Mode::steady;
+    changed = true;
+  }
+  ImGui::SameLine();
+  if (ui::radio("as in the paper", wanted.haptics.mode == Mode::paper)) {
+    wanted.haptics.mode = Mode::paper;
+    changed = true;
+  }
+  double stiffness =
+      wanted.haptics.stiffness_N_per_mm.value_or(static_cast<double>(default_stiffness(wanted.algorithm)));
+  const bool settled = settle("stiffness", stiffness, 0.5f, 30.0f, "%.1f N/mm");
+  if (stiffness != wanted.haptics.stiffness_N_per_mm.value_or(stiffness) || settled) {
+    wanted.haptics.stiffness_N_per_mm = stiffness;
+  }
+  changed = changed || settled;
+}
+
+void draw_tool(SimulationSettings& wanted, bool& changed) {
+  if (!ui::header("Tool", true)) return;
+  changed = settle("burr radius", wanted.tool.burr_radius_mm, 0.5f, 4.0f, "%.1f mm") || changed;
+  changed = settle("shaft radius", wanted.tool.shaft_radius_mm, 0.3f, 3.0f, "%.1f mm") || changed;
+  changed = settle("spindle", wanted.cutting.spindle_speed_rpm, 5000, 120000, "%.0f rpm") || changed;
+}
+
+void draw_session(ViewState& view, Simulation& simulation) {
+  if (!ui::header("Milling", true)) return;
+  bool spindle = simulation.spindle_asked();
+  if (ui::checkbox("spindle on", &spindle)) simulation.set_spindle(spindle);
+  ImGui::SameLine();
+  bool paused = simulation.state().paused;
+  if (ui::checkbox("pause", &paused)) simulation.set_paused(paused);
+  if (ui::button(view.holding_tool ? "Let go (T)##hold" : "Take the tool (T)##hold")) {
+    view.holding_tool = !view.holding_tool;
+  }
+  const bool free = !simulation.preparing();
+  if (ui::button("Undo cut", free && simulation.cuts() > 0)) simulation.undo();
+  ui::hint("Takes the last cut back; cuts of up to 256 MB are kept");
+  ImGui::SameLine();
+  if (ui::button("Reset bone", free && simulation.touched())) simulation.reset();
+  ImGui::SameLine();
+  ImGui::TextDisabled("%d cuts", static_cast<int>(simulation.cuts()));
+}
+
+void draw_view(ViewState& view) {
+  if (!ui::header("View", true)) return;
+  for (const ViewFrom from : kAllViews) {
+    const std::string name(name_of(from));
+    if (ui::button(name.c_str())) view.camera = camera_from(from, view.bounds);
+    if (from != ViewFrom::posterior && from != ViewFrom::right && from != ViewFrom::inferior)
+      ImGui::SameLine();
+  }
+  ui::checkbox("ghost", &view.ghost);
+  ImGui::SameLine();
+  ui::checkbox("arrows", &view.arrows);
+  ImGui::SameLine();
+  if (ui::button("Help")) view.help = true;
+}
+
+}  // namespace
+
+void draw_controls(ViewState& view, Simulation& simulation, const PixelSize& size) {
+  ImGui::SetNextWindowPos({8, 8});
+  ImGui::SetNextWindowSizeConstraints({kWidth_px, 0}, {kWidth_px, static_cast<float>(size.height) - 70});
+  ImGui::Begin("osteomill", nullptr, ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize);
+  ImGui::PushItemWidth(130);
+  ImGui::TextUnformatted(simulation.scan_name().c_str());
+  bool changed = false;
+  draw_session(view, simulation);
+  draw_algorithm(view.wanted, changed);
+  draw_tool(view.wanted, changed);
+  draw_view(view);
+  view.wanted_is_new = view.wanted_is_new || changed;
+  if (view.wanted_is_new && !simulation.preparing()) {
+    view.wanted_is_new = false;
+    simulation.change(view.wanted);
+  }
+  if (simulation.preparing()) ImGui::TextColored({0.55f, 0.80f, 1.0f, 1}, "preparing ...");
+  if (!view.message.empty()) ImGui::TextWrapped("%s", view.message.c_str());
+  ImGui::PopItemWidth();
+  ImGui::End();
+}
+
+}  // namespace osteomill::app

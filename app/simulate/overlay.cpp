@@ -1,0 +1,99 @@
+#include "app/simulate/overlay.h"
+
+#include <cmath>
+
+#include "app/simulate/widgets.h"
+#include <imgui.h>
+
+#include "osteomill/view/annotations.h"
+
+namespace osteomill::app {
+
+namespace {
+
+constexpr const char* kControls[][2] = {
+    {"Turn, pan, zoom the view", "left drag, middle (or Shift+left) drag, right drag or wheel"},
+    {"Take the tool in hand, and let go", "T (or drag the tool itself)"},
+    {"Move it", "mouse, or arrow keys"},
+    {"Press it in, pull it back", "wheel, or Page Up and Page Down"},
+    {"Turn it", "Shift with mouse or arrow keys"},
+    {"Mill", "left button while the tool is in hand, or Space on and off"},
+    {"Pause, take back the last cut", "P, Ctrl+Z"},
+    {"Full screen, this page", "F11, F1"},
+};
+
+ImVec2 at(const Eigen::Vector2d& place) {
+  return {static_cast<float>(place.x()), static_cast<float>(place.y())};
+}
+
+void draw(ImDrawList& list, const Annotation& annotation, ImU32 colour) {
+  for (const Annotation::Line& line : annotation.lines) list.AddLine(at(line.from), at(line.to), colour, 2);
+  const ImVec2 size = ImGui::CalcTextSize(annotation.text.c_str());
+  const ImVec2 place = at(annotation.place);
+  list.AddText({place.x - 0.5f * size.x, place.y - 0.5f * size.y}, colour, annotation.text.c_str());
+}
+
+void begin_in_the_middle(const char* title, const PixelSize& size) {
+  const ImVec2 middle(0.5f * static_cast<float>(size.width), 0.5f * static_cast<float>(size.height));
+  ImGui::SetNextWindowPos(middle, ImGuiCond_Always, {0.5f, 0.5f});
+  ImGui::Begin(title, nullptr,
+               ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove);
+}
+
+}  // namespace
+
+void draw_annotations(const ViewState& view, const PixelSize& size, bool patient) {
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  const ImU32 colour = IM_COL32(230, 232, 236, 230);
+  draw(list, scale_bar_annotation(view.camera, size), colour);
+  if (!patient) return;
+  for (const Annotation& letter : orientation_letters(view.camera, size)) draw(list, letter, colour);
+}
+
+void draw_help(ViewState& view, const PixelSize& size) {
+  if (!view.help) return;
+  begin_in_the_middle("How to mill", size);
+  if (ImGui::BeginTable("controls", 2)) {
+    for (const auto& [what, how] : kControls) {
+      ImGui::TableNextRow();
+      ImGui::TableNextColumn();
+      ImGui::TextUnformatted(what);
+      ImGui::TableNextColumn();
+      ImGui::TextColored({0.55f, 0.80f, 1.0f, 1.0f}, "%s", how);
+    }
+    ImGui::EndTable();
+  }
+  ImGui::Spacing();
+  ImGui::TextUnformatted(
+      "Grey and gold: the tool as bone lets it be. Blue: where your hand is; the further it sinks in,\n"
+      "the harder you press. Green: the force on your hand, amber: the torque, red: where it acts.");
+  ImGui::Spacing();
+  if (ui::button("Start milling")) view.help = false;
+  ImGui::End();
+}
+
+void draw_complaint(ViewState& view) {
+  constexpr const char* kTitle = "That did not work";
+  if (!view.complaint.empty() && !ImGui::IsPopupOpen(kTitle)) ImGui::OpenPopup(kTitle);
+  if (!ImGui::BeginPopupModal(kTitle, nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
+  ImGui::PushTextWrapPos(520);
+  ImGui::TextUnformatted(view.complaint.c_str());
+  ImGui::PopTextWrapPos();
+  ImGui::Spacing();
+  if (ui::button("Close")) {
+    view.complaint.clear();
+    ImGui::CloseCurrentPopup();
+  }
+  ImGui::EndPopup();
+}
+
+void draw_loading(const std::string& what, double passed_s, const PixelSize& size) {
+  begin_in_the_middle("Opening", size);
+  ImGui::Text("%s", what.c_str());
+  // How long it takes is not known beforehand: the bar comes closer and closer to its end.
+  ImGui::ProgressBar(static_cast<float>(1 - std::exp(-passed_s / 2.5)), {360, 0}, "");
+  ImGui::Text("%.0f s", passed_s);
+  ImGui::End();
+}
+
+}  // namespace osteomill::app

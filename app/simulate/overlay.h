@@ -1,0 +1,20 @@
+#pragma once
+
+#include "app/simulate/simulation.h"
+#include "app/simulate/view_state.h"
+
+namespace osteomill::app {
+
+/// Scale bar and orientation letters over the picture.
+void draw_annotations(const ViewState& view, const PixelSize& size, bool patient);
+
+/// How everything is done, over everything, until it is sent away.
+void draw_help(ViewState& view, const PixelSize& size);
+
+/// A dialogue with what went wrong, until it is sent away.
+void draw_complaint(ViewState& view);
+
+/// In the middle of an empty window.
+void draw_loading(const std::string& what, double passed_s, const PixelSize& size);
+
+}  // namespace osteomill::app

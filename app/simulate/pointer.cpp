@@ -1,0 +1,114 @@
+#include "app/simulate/pointer.h"
+
+#include <cmath>
+
+#include "app/simulate/tool_control.h"
+#include <GLFW/glfw3.h>
+#include <imgui.h>
+
+#include "osteomill/tool/tool_distance.h"
+
+namespace osteomill::app {
+
+namespace {
+
+constexpr double kPointerReach_px = 12;
+constexpr double kTouching_N = 0.15;
+constexpr int kSteps = 100;
+
+bool held(int key) {
+  return ImGui::IsKeyDown(key);
+}
+
+double held_way(int forwards, int backwards) {
+  return (held(forwards) ? 1.0 : 0.0) - (held(backwards) ? 1.0 : 0.0);
+}
+
+// Whether the pointer is on the picture of the tool.
+bool on_tool(const ViewState& view, const Pose& X_WT, const MillingTool& tool, const PixelSize& size,
+             const ImVec2& pointer) {
+  const Vec3 ray =
+      ray_through(view.camera, size, static_cast<double>(pointer.x), static_cast<double>(pointer.y));
+  const Pose X_TW = X_WT.inverse();
+  const double middle_mm = depth_of(view.camera, X_WT.position_mm);
+  const double reach_mm = kPointerReach_px * mm_per_pixel(size, middle_mm);
+  for (int n = 0; n <= kSteps; ++n) {
+    const double way_mm = middle_mm + tool.shaft_length_mm * (2.0 * n / kSteps - 1.0);
+    const Vec3 point_W = view.camera.eye_W() + way_mm * ray;
+    if (tool_distance(tool, X_TW * point_W).distance_mm < reach_mm) return true;
+  }
+  return false;
+}
+
+void move_camera(ViewState& view, const PixelSize& size, bool left_is_tool) {
+  const ImGuiIO& io = ImGui::GetIO();
+  const double right_px = static_cast<double>(io.MouseDelta.x);
+  const double down_px = static_cast<double>(io.MouseDelta.y);
+  const bool left = io.MouseDown[0] && !left_is_tool;
+  if (io.MouseDown[2] || (left && io.KeyShift)) {
+    pan(view.camera, size, right_px, down_px);
+  } else if (left) {
+    turn(view.camera, size, right_px, down_px);
+  } else if (io.MouseDown[1]) {
+    zoom_by_drag(view.camera, size, down_px);
+  }
+  if (!view.holding_tool && io.MouseWheel != 0)
+    zoom_by_wheel(view.camera, static_cast<double>(io.MouseWheel));
+}
+
+ToolInput keys_for_tool() {
+  ToolInput input;
+  const ImGuiIO& io = ImGui::GetIO();
+  input.turning = io.KeyShift;
+  input.passed_s = static_cast<double>(io.DeltaTime);
+  if (io.WantTextInput) return input;
+  input.keys = {held_way(GLFW_KEY_RIGHT, GLFW_KEY_LEFT), held_way(GLFW_KEY_UP, GLFW_KEY_DOWN),
+                held_way(GLFW_KEY_PAGE_UP, GLFW_KEY_PAGE_DOWN)};
+  return input;
+}
+
+void take_keys(ViewState& view, Simulation& simulation) {
+  const ImGuiIO& io = ImGui::GetIO();
+  if (io.WantTextInput) return;
+  const auto pressed = [](int key) { return ImGui::IsKeyPressed(key, false); };
+  if (pressed(GLFW_KEY_T)) view.holding_tool = !view.holding_tool;
+  if (pressed(GLFW_KEY_ESCAPE)) view.holding_tool = false;
+  if (pressed(GLFW_KEY_SPACE)) simulation.set_spindle(!simulation.spindle_asked());
+  if (pressed(GLFW_KEY_P)) simulation.set_paused(!simulation.state().paused);
+  if (pressed(GLFW_KEY_F1)) view.help = !view.help;
+  if (pressed(GLFW_KEY_F11)) view.full_screen_asked = true;
+  if (io.KeyCtrl && pressed(GLFW_KEY_Z) && simulation.cuts() > 0) simulation.undo();
+}
+
+}  // namespace
+
+void take_input(ViewState& view, Simulation& simulation, const PixelSize& size) {
+  const ImGuiIO& io = ImGui::GetIO();
+  const LiveState& state = simulation.state();
+  const MillingTool& tool = simulation.settings().tool;
+  if (ImGui::IsMouseClicked(0)) {
+    const bool on_picture = !io.WantCaptureMouse;
+    view.dragging_tool = on_picture && !view.holding_tool && !io.KeyShift &&
+                         on_tool(view, state.record.X_WT, tool, size, io.MousePos);
+    view.dragging_view = on_picture && !view.dragging_tool && !view.holding_tool;
+    if (on_picture && view.holding_tool) simulation.set_spindle(true);
+  }
+  if (ImGui::IsMouseReleased(0)) {
+    if (view.holding_tool && simulation.spindle_asked()) simulation.set_spindle(false);
+    view.dragging_tool = view.dragging_view = false;
+  }
+  const bool on_picture = !io.WantCaptureMouse || view.dragging_view || view.dragging_tool;
+  if (on_picture) move_camera(view, size, !view.dragging_view);
+
+  ToolInput input = keys_for_tool();
+  input.touching = state.record.wrench.force_N.norm() > kTouching_N;
+  if (on_picture && (view.holding_tool || view.dragging_tool) && !io.MouseDown[1] && !io.MouseDown[2]) {
+    input.moved_px = {static_cast<double>(io.MouseDelta.x), static_cast<double>(io.MouseDelta.y)};
+  }
+  if (on_picture && view.holding_tool) input.wheel = static_cast<double>(io.MouseWheel);
+  view.X_W_target = moved_target(view.X_W_target, state.record.X_WD, view.camera, size, input);
+  simulation.hand().pull_to(view.X_W_target);
+  take_keys(view, simulation);
+}
+
+}  // namespace osteomill::app

@@ -1,0 +1,82 @@
+#include <algorithm>
+#include <vector>
+
+#include "app/simulate/panels.h"
+#include <imgui.h>
+
+namespace osteomill::app {
+
+namespace {
+
+constexpr float kWidth_px = 250;
+constexpr std::size_t kPlotPoints = 200;
+const ImVec4 kWarning{1.0f, 0.72f, 0.25f, 1};
+
+// The greatest of each stretch of ticks: peaks must not fall between two points.
+std::vector<float> thinned(const std::deque<TickRecord>& history, double (*magnitude)(const TickRecord&)) {
+  std::vector<float> points(kPlotPoints, 0.0f);
+  constexpr std::size_t kTicks = 5000;
+  for (std::size_t n = 0; n < history.size(); ++n) {
+    const std::size_t place = (kTicks - history.size() + n) * kPlotPoints / kTicks;
+    points[place] = std::max(points[place], static_cast<float>(magnitude(history[n])));
+  }
+  return points;
+}
+
+void plot(const char* name, const char* unit, const std::deque<TickRecord>& history,
+          double (*magnitude)(const TickRecord&), float least_scale, const ImVec4& colour) {
+  const std::vector<float> points = thinned(history, magnitude);
+  const float greatest = *std::max_element(points.begin(), points.end());
+  const double now = history.empty() ? 0 : magnitude(history.back());
+  ImGui::Text("%s  %.2f %s  (5 s, up to %.2f)", name, now, unit, static_cast<double>(greatest));
+  ImGui::PushStyleColor(ImGuiCol_PlotLines, colour);
+  ImGui::PlotLines((std::string("##") + name).c_str(), points.data(), static_cast<int>(points.size()), 0,
+                   nullptr, 0, std::max(1.1f * greatest, least_scale), {-1, 56});
+  ImGui::PopStyleColor();
+}
+
+void draw_faults(const std::deque<TickRecord>& history) {
+  const auto clamped = std::count_if(history.begin(), history.end(), [](const TickRecord& record) {
+    return record.fault == WrenchFault::force_clamped || record.fault == WrenchFault::torque_clamped ||
+           record.fault == WrenchFault::force_and_torque_clamped;
+  });
+  const auto not_finite = std::count_if(history.begin(), history.end(), [](const TickRecord& record) {
+    return record.fault == WrenchFault::not_finite || record.fault == WrenchFault::pose_not_finite;
+  });
+  if (clamped > 0)
+    ImGui::TextColored(kWarning, "clamped to the limit: %d of 5000 ticks", static_cast<int>(clamped));
+  if (not_finite > 0)
+    ImGui::TextColored(kWarning, "not finite, sent as zero: %d ticks", static_cast<int>(not_finite));
+}
+
+}  // namespace
+
+void draw_readings(Simulation& simulation, double pictures_per_s, const PixelSize& size) {
+  ImGui::SetNextWindowPos({static_cast<float>(size.width) - kWidth_px - 8, 8});
+  ImGui::SetNextWindowSize({kWidth_px, 0});
+  ImGui::Begin("Readings", nullptr, ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize);
+  const TimingSummary timing = simulation.timing();
+  const LiveState& state = simulation.state();
+  ImGui::Text("haptic rate   %.0f Hz", timing.recent_rate_hz);
+  ImGui::Text("step          %.0f us, p99 %.0f us", timing.step.p50_us, timing.step.p99_us);
+  ImGui::Text("late ticks    %llu of %llu",
+              static_cast<unsigned long long>(timing.late_ticks + timing.missed_ticks),
+              static_cast<unsigned long long>(timing.ticks));
+  ImGui::Text("pictures      %.0f / s", pictures_per_s);
+  ImGui::Text("removed       %.2f mm^3", state.record.removed_mm3);
+  ImGui::Separator();
+  const auto& history = simulation.history();
+  plot("force", "N", history, [](const TickRecord& r) { return r.wrench.force_N.norm(); }, 1.0f,
+       {0.30f, 0.85f, 0.40f, 1});
+  plot("torque", "N mm", history, [](const TickRecord& r) { return r.wrench.torque_Nmm.norm(); }, 5.0f,
+       {0.98f, 0.76f, 0.25f, 1});
+  draw_faults(history);
+  if (!simulation.refused_real_time().empty()) {
+    ImGui::PushTextWrapPos(0);
+    ImGui::TextColored(kWarning, "%s", simulation.refused_real_time().c_str());
+    ImGui::PopTextWrapPos();
+  }
+  ImGui::End();
+}
+
+}  // namespace osteomill::app

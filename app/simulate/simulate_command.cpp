@@ -1,0 +1,47 @@
+#include <memory>
+#include <string>
+
+#include "app/commands.h"
+#include "app/config_file.h"
+#include "app/milling_options.h"
+#include "app/simulate/simulator.h"
+
+namespace osteomill::app {
+
+namespace {
+
+struct SimulateOptions {
+  SimulatorOptions simulator;
+  MillingOptions milling;
+  std::vector<AlgorithmId> algorithm{AlgorithmId::point_shell};
+};
+
+void run_simulate(SimulateOptions options) {
+  const MillingOptions& milling = options.milling;
+  options.simulator.settings = {milling.tool,    options.algorithm.front(),       milling.haptics,
+                                milling.cutting, milling.removal_rate_mm3_per_Ns, milling.limits};
+  run_simulator(options.simulator);
+}
+
+}  // namespace
+
+void add_simulate_command(CLI::App& program, const std::string& command_line) {
+  auto options = std::make_shared<SimulateOptions>();
+  options->simulator.command_line = command_line;
+  CLI::App* command =
+      program.add_subcommand("simulate", "Open the window: see the bone, take the burr, mill");
+  add_scan_options(*command, options->simulator.scan);
+  add_algorithm_option(*command, options->algorithm);
+  command->get_option("--algorithm")->expected(1);
+  add_milling_options(*command, options->milling);
+  command->add_flag("--no-help", options->simulator.no_help,
+                    "Begin without the page that explains the controls");
+  command->add_option("--script", options->simulator.script,
+                      "Work the window from this file (app/simulate/ui_script.h)");
+  command->callback([=] {
+    apply_config_file(*command);
+    run_simulate(*options);
+  });
+}
+
+}  // namespace osteomill::app

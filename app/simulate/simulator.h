@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+
+#include "app/scan_options.h"
+#include "app/simulate/simulation_settings.h"
+
+#include "osteomill/view/camera.h"
+
+namespace osteomill::app {
+
+struct SimulatorOptions {
+  ScanOptions scan;
+  SimulationSettings settings;
+  PixelSize size{1280, 800};
+  /// Works the window in place of a person (ui_script.h); empty: nobody does.
+  std::string script;
+  bool no_help = false;
+  std::string command_line;
+};
+
+/// Opens the window and returns when it is closed. Throws InputError where no window can be opened, or the
+/// scan is at fault.
+void run_simulator(const SimulatorOptions& options);
+
+}  // namespace osteomill::app

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "osteomill/geometry/pose.h"
+#include "osteomill/view/camera.h"
+
+namespace osteomill::app {
+
+/// What mouse and keyboard say to the tool in one picture.
+struct ToolInput {
+  /// Pixels to the right and down: moves, or with `turning` turns.
+  Eigen::Vector2d moved_px = Eigen::Vector2d::Zero();
+  bool turning = false;
+  /// Steps away from the viewer.
+  double wheel = 0;
+  /// Held keys, -1, 0 or 1 each: to the right, up, away from the viewer; with `turning` about the first two.
+  Vec3 keys = Vec3::Zero();
+  double passed_s = 0;
+  /// Whether bone holds the tool back.
+  bool touching = false;
+};
+
+/// Where the hand pulls the tool: it moves in the view's plane, along the view, and turns about the burr's
+/// centre. Never far from where the device is, so that pulling back is felt at once.
+Pose moved_target(const Pose& X_W_target, const Pose& X_WD, const Camera& camera, const PixelSize& size,
+                  const ToolInput& input);
+
+}  // namespace osteomill::app

@@ -1,0 +1,162 @@
+#include "app/simulate/ui_script.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#include "app/simulate/widgets.h"
+#include <GLFW/glfw3.h>
+#include <fmt/core.h>
+#include <imgui.h>
+
+#include "osteomill/files/input_error.h"
+#include "osteomill/surface/png.h"
+
+namespace osteomill::app {
+
+namespace {
+
+constexpr double kClick_s = 0.25;
+
+const std::map<std::string, std::size_t> kWords{
+    {"wait", 1}, {"settle", 0}, {"glide", 3}, {"press", 1},      {"release", 1}, {"wheel", 2}, {"key", 1},
+    {"hold", 2}, {"click", 1},  {"drag", 2},  {"screenshot", 1}, {"say", 1},     {"close", 0}};
+
+const std::map<std::string, int> kKeys{
+    {"space", GLFW_KEY_SPACE}, {"escape", GLFW_KEY_ESCAPE},   {"shift", GLFW_KEY_LEFT_SHIFT},
+    {"up", GLFW_KEY_UP},       {"down", GLFW_KEY_DOWN},       {"left", GLFW_KEY_LEFT},
+    {"right", GLFW_KEY_RIGHT}, {"page-up", GLFW_KEY_PAGE_UP}, {"page-down", GLFW_KEY_PAGE_DOWN},
+    {"f1", GLFW_KEY_F1},       {"f11", GLFW_KEY_F11}};
+
+int key_named(const std::string& name) {
+  if (const auto found = kKeys.find(name); found != kKeys.end()) return found->second;
+  if (name.size() == 1 && std::isalnum(static_cast<unsigned char>(name[0])) != 0) {
+    return std::toupper(static_cast<unsigned char>(name[0]));
+  }
+  return -1;
+}
+
+std::size_t button_named(const std::string& name) {
+  return name == "right" ? 1 : name == "middle" ? 2 : 0;
+}
+
+}  // namespace
+
+UiScript::UiScript(const std::filesystem::path& path) : path_(path) {
+  std::ifstream file(path);
+  if (!file) throw InputError(path.string(), "cannot be read");
+  std::string line;
+  for (int number = 1; std::getline(file, line); ++number) {
+    std::istringstream text(line);
+    Action action;
+    action.line = number;
+    if (!(text >> action.name) || action.name[0] == '#') continue;
+    std::getline(text >> std::ws, action.text);
+    std::istringstream rest(action.text);
+    for (std::string word; rest >> word;) action.words.push_back(word);
+    const auto known = kWords.find(action.name);
+    if (known == kWords.end() || action.words.size() < known->second) {
+      throw InputError(path.string(), fmt::format("line {}: '{}' is not an action", number, line));
+    }
+    actions_.push_back(action);
+  }
+}
+
+double UiScript::number(const Action& action, std::size_t word) const {
+  try {
+    return std::stod(action.words.at(word));
+  } catch (const std::exception&) {
+    throw InputError(path_.string(), fmt::format("line {}: a number is missing", action.line));
+  }
+}
+
+void UiScript::begin(const Action& action, Window& window) {
+  begun_ = true;
+  time_left_s_ = 0;
+  from_x_ = to_x_ = x_;
+  from_y_ = to_y_ = y_;
+  const std::string& name = action.name;
+  if (name == "wait") {
+    time_left_s_ = number(action, 0);
+  } else if (name == "glide") {
+    to_x_ = static_cast<float>(number(action, 0));
+    to_y_ = static_cast<float>(number(action, 1));
+    time_left_s_ = number(action, 2);
+  } else if (name == "press" || name == "release") {
+    buttons_[button_named(action.words[0])] = name == "press";
+  } else if (name == "wheel") {
+    wheel_left_ = number(action, 0);
+    time_left_s_ = number(action, 1);
+  } else if (name == "key" || name == "hold") {
+    const int key = key_named(action.words[0]);
+    if (key < 0) throw InputError(path_.string(), fmt::format("line {}: no such key", action.line));
+    keys_.push_back(key);
+    time_left_s_ = name == "hold" ? number(action, 1) : 0.05;
+  } else if (name == "click" || name == "drag") {
+    std::string label = action.text;
+    if (name == "drag") label = label.substr(0, label.rfind(' '));
+    const auto found = ui::places().find(label);
+    if (found == ui::places().end() || found->second.frame < ImGui::GetFrameCount() - 1) {
+      throw InputError(path_.string(),
+                       fmt::format("line {}: nothing is called '{}' now", action.line, label));
+    }
+    x_ = from_x_ = to_x_ = found->second.middle.x;
+    y_ = from_y_ = to_y_ = found->second.middle.y;
+    if (name == "drag") to_x_ += static_cast<float>(number(action, action.words.size() - 1));
+    click_down_ = true;
+    time_left_s_ = kClick_s;
+  } else if (name == "close") {
+    window.ask_to_close();
+  }
+}
+
+void UiScript::next() {
+  ++now_;
+  begun_ = false;
+  click_down_ = false;
+  keys_.clear();
+}
+
+void UiScript::feed(double passed_s, bool settled, Window& window) {
+  ImGuiIO& io = ImGui::GetIO();
+  double wheel = 0;
+  bool pressed = false;
+  if (now_ < actions_.size()) {
+    const Action& action = actions_[now_];
+    if (!begun_) begin(action, window);
+    const double share = time_left_s_ > passed_s ? passed_s / time_left_s_ : 1.0;
+    x_ += static_cast<float>(share) * (to_x_ - x_);
+    y_ += static_cast<float>(share) * (to_y_ - y_);
+    wheel = action.name == "wheel" ? std::trunc(share * wheel_left_) : 0;
+    if (share >= 1) wheel = wheel_left_;
+    wheel_left_ -= wheel;
+    time_left_s_ -= passed_s;
+    // Down after a first picture on the place, up before the last.
+    pressed = click_down_ && time_left_s_ < 0.6 * kClick_s && time_left_s_ > 0.2 * kClick_s;
+    if (action.name == "drag") pressed = time_left_s_ > 0.2 * kClick_s;
+    std::fill(std::begin(io.KeysDown), std::end(io.KeysDown), false);
+    for (const int key : keys_) io.KeysDown[key] = true;
+    io.KeyShift = std::find(keys_.begin(), keys_.end(), GLFW_KEY_LEFT_SHIFT) != keys_.end();
+    const bool waits = action.name == "settle" && !settled;
+    const bool drawn_first = action.name == "screenshot" || action.name == "say";
+    if (time_left_s_ <= 0 && !waits && !drawn_first) next();
+  }
+  io.MousePos = {x_, y_};
+  for (std::size_t n = 0; n < 3; ++n) io.MouseDown[n] = buttons_[n];
+  io.MouseDown[0] = io.MouseDown[0] || pressed;
+  io.MouseWheel = static_cast<float>(wheel);
+}
+
+std::string UiScript::after_drawing(const Window& window) {
+  if (now_ >= actions_.size() || !begun_) return {};
+  const Action action = actions_[now_];
+  if (action.name != "screenshot" && action.name != "say") return {};
+  if (action.name == "screenshot") write_png(action.text, window.picture());
+  next();
+  return action.name == "say" ? action.text : std::string();
+}
+
+}  // namespace osteomill::app

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "app/simulate/window.h"
+
+namespace osteomill::app {
+
+/// Works the window as a person would, by pointer and keys, from a text file with a line for each action, so
+/// that the whole window can be tested:
+///     wait SECONDS
+///     settle                          until nothing is being prepared
+///     glide X Y SECONDS               moves the pointer there
+///     press BUTTON, release BUTTON    left, middle or right
+///     wheel STEPS SECONDS             turns it step by step
+///     key NAME, hold NAME SECONDS     a letter, or space, escape, shift, up, down, left, right, page-up,
+///     page-down,
+///                                     f1, f11
+///     click LABEL                     the button, box or heading of that label
+///     drag LABEL PIXELS               the slider of that label, to the right
+///     screenshot FILE                 a PNG of the window
+///     say TEXT                        on standard output, with the readings
+///     close
+/// Empty lines and lines that begin with # mean nothing.
+class UiScript {
+ public:
+  /// Throws InputError naming the file and the line for what is not an action.
+  explicit UiScript(const std::filesystem::path& path);
+
+  /// Before ImGui's frame begins: hands it the events of this picture. `passed_s` since the last one. Throws
+  /// InputError where a label is not in the window.
+  void feed(double passed_s, bool settled, Window& window);
+  /// After the window was drawn: screenshots. Returns what is to be said, or an empty text.
+  std::string after_drawing(const Window& window);
+
+ private:
+  struct Action {
+    int line = 0;
+    std::string name;
+    std::vector<std::string> words;
+    std::string text;
+  };
+  void begin(const Action& action, Window& window);
+  void next();
+  double number(const Action& action, std::size_t word) const;
+
+  std::filesystem::path path_;
+  std::vector<Action> actions_;
+  std::size_t now_ = 0;
+  double time_left_s_ = 0;
+  bool begun_ = false;
+  // The pointer and what is pressed, as ImGui is told at every picture.
+  float x_ = 400;
+  float y_ = 300;
+  float to_x_ = 400;
+  float to_y_ = 300;
+  float from_x_ = 400;
+  float from_y_ = 300;
+  bool buttons_[3] = {false, false, false};
+  bool click_down_ = false;
+  double wheel_left_ = 0;
+  std::vector<int> keys_;
+};
+
+}  // namespace osteomill::app

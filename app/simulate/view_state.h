@@ -1,0 +1,46 @@
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "app/simulate/simulation_settings.h"
+
+#include "osteomill/view/scene.h"
+
+namespace osteomill::app {
+
+/// What the window shows and how, beside the simulation itself.
+struct ViewState {
+  Camera camera;
+  Sphere bounds;
+  Pose X_W_target;
+  /// The pointer moves the tool without a button.
+  bool holding_tool = false;
+  /// What the left button drags, settled where it went down.
+  bool dragging_tool = false;
+  bool dragging_view = false;
+  /// What the sliders say, and whether it is still to become real.
+  SimulationSettings wanted;
+  bool wanted_is_new = false;
+  bool ghost = true;
+  bool arrows = true;
+  bool help = true;
+  bool full_screen_asked = false;
+  bool close_asked = false;
+  bool picture_asked = false;
+  /// A dialogue that waits to be read.
+  std::string complaint;
+  /// What was done last.
+  std::string message;
+
+  /// The three planes across the patient and a free one, with their places along their normals.
+  struct Cut {
+    bool on = false;
+    bool other_side = false;
+    Vec3 normal_W = Vec3::UnitZ();
+    float offset_mm = 0;
+  };
+  std::array<Cut, kGreatestCutPlanes> cuts;
+};
+
+}  // namespace osteomill::app

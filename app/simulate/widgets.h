@@ -1,0 +1,31 @@
+#pragma once
+
+#include <map>
+#include <string>
+
+#include <imgui.h>
+
+namespace osteomill::app::ui {
+
+/// ImGui's widgets, which remember where they were drawn, so that a script finds them by their label (what
+/// stands before "##").
+struct Place {
+  ImVec2 middle;
+  int frame = 0;
+};
+std::map<std::string, Place>& places();
+/// Remembers the widget drawn last.
+void remember(const char* label);
+
+bool button(const char* label, bool enabled = true);
+bool checkbox(const char* label, bool* value);
+bool radio(const char* label, bool chosen);
+bool slider(const char* label, float* value, float least, float greatest, const char* format,
+            ImGuiSliderFlags flags = 0);
+bool header(const char* label, bool open);
+/// True when a change of the slider drawn last is over.
+bool released();
+/// Explains the widget drawn last where the pointer rests on it.
+void hint(const char* text);
+
+}  // namespace osteomill::app::ui

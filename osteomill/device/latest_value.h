@@ -1,0 +1,36 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+
+namespace osteomill {
+
+/// The newest of the values that one thread writes, for one other thread to read whole: three buffers, of
+/// which each thread owns one and the third changes hands. Neither side ever waits; both are safe in the
+/// haptic tick where copying a T is.
+template <typename T>
+class LatestValue {
+ public:
+  void write(const T& value) {
+    buffers_[writing_] = value;
+    writing_ = shared_.exchange(writing_ | kNew, std::memory_order_acq_rel) & kPlace;
+  }
+  /// The newest value written, or a default one before the first. Valid until the next call.
+  const T& read() {
+    if ((shared_.load(std::memory_order_relaxed) & kNew) != 0) {
+      reading_ = shared_.exchange(reading_, std::memory_order_acq_rel) & kPlace;
+    }
+    return buffers_[reading_];
+  }
+
+ private:
+  static constexpr unsigned kPlace = 3;
+  static constexpr unsigned kNew = 4;
+
+  std::array<T, 3> buffers_{};
+  unsigned writing_ = 0;
+  std::atomic<unsigned> shared_{1};
+  unsigned reading_ = 2;
+};
+
+}  // namespace osteomill

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <string>
+
+namespace osteomill {
+
+/// Asks the system to run the calling thread before all ordinary ones (SCHED_FIFO) and to keep the program's
+/// memory as it is now in RAM (mlockall). Returns an empty text, or in one line what was refused and why.
+/// What is refused is done without. Makes system calls: before the first tick, not in it.
+std::string request_real_time();
+
+}  // namespace osteomill

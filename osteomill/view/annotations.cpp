@@ -1,0 +1,47 @@
+#include "osteomill/view/annotations.h"
+
+#include <cstdio>
+#include <utility>
+
+#include "osteomill/surface/scale_bar.h"
+
+namespace osteomill {
+
+namespace {
+
+constexpr double kMargin_px = 24;
+constexpr double kTick_px = 5;
+constexpr double kAxis_px = 30;
+constexpr double kLetter_px = 44;
+constexpr double kShortestAxis = 0.25;
+
+}  // namespace
+
+Annotation scale_bar_annotation(const Camera& camera, const PixelSize& size) {
+  const double pixel_mm = mm_per_pixel(size, camera.distance_mm);
+  const double length_mm = scale_bar_length_mm(0.25 * size.width * pixel_mm);
+  const Eigen::Vector2d left(kMargin_px, size.height - kMargin_px);
+  const Eigen::Vector2d right = left + Eigen::Vector2d(length_mm / pixel_mm, 0);
+  const Eigen::Vector2d tick(0, kTick_px);
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%g mm", length_mm);
+  return {{{left, right}, {left - tick, left + tick}, {right - tick, right + tick}},
+          0.5 * (left + right) - Eigen::Vector2d(0, 14),
+          text.data()};
+}
+
+std::vector<Annotation> orientation_letters(const Camera& camera, const PixelSize& size) {
+  const std::pair<const char*, Vec3> axes[] = {{"L", Vec3::UnitX()}, {"R", -Vec3::UnitX()},
+                                               {"P", Vec3::UnitY()}, {"A", -Vec3::UnitY()},
+                                               {"S", Vec3::UnitZ()}, {"I", -Vec3::UnitZ()}};
+  const Eigen::Vector2d middle(size.width - kMargin_px - kLetter_px, size.height - kMargin_px - kLetter_px);
+  std::vector<Annotation> letters;
+  for (const auto& [name, axis_W] : axes) {
+    const Eigen::Vector2d seen(axis_W.dot(camera.right_W()), -axis_W.dot(camera.up_W()));
+    if (seen.norm() < kShortestAxis) continue;
+    letters.push_back({{{middle, middle + kAxis_px * seen}}, middle + kLetter_px * seen, name});
+  }
+  return letters;
+}
+
+}  // namespace osteomill

@@ -1,0 +1,156 @@
+#include "osteomill/view/bone_layer.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "osteomill/view/cavity_pass.h"
+#include "osteomill/view/shaders.h"
+
+namespace osteomill {
+
+namespace {
+
+// Beyond the bone there is the tool.
+constexpr double kRoomAround_mm = 60;
+constexpr double kNearestDepth_mm = 1;
+// Sunk by this share of the blur's reach is as dark as it gets.
+constexpr double kDarkestAt = 0.55;
+
+Sphere bounds_of(const GridGeometry& geometry, const VoxelBox& cells) {
+  const Vec3 first(cells.first.i, cells.first.j, cells.first.k);
+  const Vec3 last(cells.last.i + 1, cells.last.j + 1, cells.last.k + 1);
+  return {geometry.world_from_voxel(Vec3(0.5 * (first + last))),
+          0.5 * geometry.spacing_mm.cwiseProduct(last - first).norm()};
+}
+
+// The planes of the view, each with the inside where n . p + d >= 0 for (n, d) of unit n.
+std::array<Eigen::Vector4d, 6> view_planes(const Projection& projection) {
+  const Eigen::Matrix4d clip = (projection.clip_from_camera * projection.camera_from_world).cast<double>();
+  std::array<Eigen::Vector4d, 6> planes;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int side = 0; side < 2; ++side) {
+      Eigen::Vector4d plane = clip.row(3) + (side == 0 ? 1 : -1) * clip.row(axis);
+      plane /= plane.head<3>().norm();
+      planes[static_cast<std::size_t>(2 * axis + side)] = plane;
+    }
+  }
+  return planes;
+}
+
+bool may_be_seen(const std::array<Eigen::Vector4d, 6>& planes, const Sphere& sphere) {
+  return std::all_of(planes.begin(), planes.end(), [&](const Eigen::Vector4d& plane) {
+    return plane.head<3>().dot(sphere.centre_W) + plane.w() >= -sphere.radius_mm;
+  });
+}
+
+bool is_cut(const ViewScene& scene) {
+  return std::any_of(scene.cuts.begin(), scene.cuts.end(), [](const auto& cut) { return cut.has_value(); });
+}
+
+}  // namespace
+
+Projection projection_of(const ViewScene& scene, const PixelSize& size) {
+  Projection projection{size, 0, 0, view_matrix(scene.camera), {}};
+  const double depth_mm = depth_of(scene.camera, scene.bounds.centre_W);
+  const double reach_mm = scene.bounds.radius_mm + kRoomAround_mm;
+  projection.near_mm = std::max(depth_mm - reach_mm, kNearestDepth_mm);
+  projection.far_mm = std::max(depth_mm + reach_mm, projection.near_mm + reach_mm);
+  projection.clip_from_camera = projection_matrix(size, projection.near_mm, projection.far_mm);
+  return projection;
+}
+
+void begin_cuts(GLuint program, const ViewScene& scene) {
+  // Without a cut nothing is clipped: 0 . p >= -1.
+  std::array<std::array<float, 4>, kGreatestCutPlanes> cuts;
+  for (std::size_t n = 0; n < kGreatestCutPlanes; ++n) {
+    cuts[n] = {0, 0, 0, -1};
+    if (!scene.cuts[n]) continue;
+    const Eigen::Vector3f normal = scene.cuts[n]->normal_W.cast<float>();
+    cuts[n] = {normal.x(), normal.y(), normal.z(), static_cast<float>(scene.cuts[n]->offset_mm)};
+    glEnable(static_cast<GLenum>(GL_CLIP_DISTANCE0 + n));
+  }
+  glUniform4fv(glGetUniformLocation(program, "cuts"), kGreatestCutPlanes, cuts.front().data());
+}
+
+void end_cuts() {
+  for (std::size_t n = 0; n < kGreatestCutPlanes; ++n) glDisable(static_cast<GLenum>(GL_CLIP_DISTANCE0 + n));
+}
+
+BoneLayer::BoneLayer(const SurfaceBricks& layout, const GridGeometry& geometry)
+    : program_(gl::make_program(shaders::kBoneVertex, shaders::kBoneFragment)), bricks_(layout.count()) {
+  for (std::size_t n = 0; n < bricks_.size(); ++n) bricks_[n].bounds = bounds_of(geometry, layout.cells(n));
+}
+
+void BoneLayer::clear() {
+  for (std::size_t n = 0; n < bricks_.size(); ++n) set_brick(n, {});
+}
+
+void BoneLayer::set_brick(std::size_t number, const BrickMesh& mesh) {
+  Brick& brick = bricks_[number];
+  brick.index_count = static_cast<GLsizei>(mesh.indices.size());
+  if (mesh.empty()) {
+    brick.vertex_array = {};
+    brick.vertices = {};
+    brick.indices = {};
+    return;
+  }
+  if (brick.vertex_array.get() == 0) {
+    brick.vertex_array = gl::make_vertex_array();
+    brick.vertices = gl::make_buffer();
+    brick.indices = gl::make_buffer();
+  }
+  glBindVertexArray(brick.vertex_array.get());
+  glBindBuffer(GL_ARRAY_BUFFER, brick.vertices.get());
+  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.vertices.size() * sizeof(MeshVertex)),
+               mesh.vertices.data(), GL_DYNAMIC_DRAW);
+  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, brick.indices.get());
+  glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.indices.size() * sizeof(std::uint32_t)),
+               mesh.indices.data(), GL_DYNAMIC_DRAW);
+  const auto attribute = [](GLuint place, GLint count, std::size_t offset) {
+    glEnableVertexAttribArray(place);
+    glVertexAttribPointer(place, count, GL_FLOAT, GL_FALSE, sizeof(MeshVertex),
+                          reinterpret_cast<const void*>(offset));
+  };
+  attribute(0, 3, offsetof(MeshVertex, position_mm));
+  attribute(1, 3, offsetof(MeshVertex, normal));
+  attribute(2, 1, offsetof(MeshVertex, density));
+}
+
+void BoneLayer::set_uniforms(const ViewScene& scene, const Projection& projection) const {
+  const GLuint program = program_.get();
+  const auto place = [&](const char* name) { return glGetUniformLocation(program, name); };
+  glUniformMatrix4fv(place("camera_from_world"), 1, GL_FALSE, projection.camera_from_world.data());
+  glUniformMatrix4fv(place("clip_from_camera"), 1, GL_FALSE, projection.clip_from_camera.data());
+  glUniform1f(place("isovalue"), static_cast<float>(scene.isovalue));
+  glUniform1f(place("reference_density"), static_cast<float>(scene.reference_density));
+  glUniform2f(place("picture_size"), static_cast<float>(projection.size.width),
+              static_cast<float>(projection.size.height));
+  const double reach_mm = CavityPass::kReach_px * mm_per_pixel(projection.size, 1.0);
+  glUniform1f(place("cavity_scale"), static_cast<float>(1 / (kDarkestAt * reach_mm)));
+}
+
+void BoneLayer::draw(const ViewScene& scene, const Projection& projection, GLuint blurred_depths) const {
+  glUseProgram(program_.get());
+  set_uniforms(scene, projection);
+  begin_cuts(program_.get(), scene);
+  glActiveTexture(GL_TEXTURE0);
+  glBindTexture(GL_TEXTURE_2D, blurred_depths);
+  if (!is_cut(scene)) glEnable(GL_CULL_FACE);
+  const auto planes = view_planes(projection);
+  for (const Brick& brick : bricks_) {
+    if (brick.index_count == 0 || !may_be_seen(planes, brick.bounds)) continue;
+    glBindVertexArray(brick.vertex_array.get());
+    glDrawElements(GL_TRIANGLES, brick.index_count, GL_UNSIGNED_INT, nullptr);
+  }
+  glDisable(GL_CULL_FACE);
+  end_cuts();
+}
+
+std::size_t BoneLayer::triangle_count() const {
+  std::size_t count = 0;
+  for (const Brick& brick : bricks_) count += static_cast<std::size_t>(brick.index_count) / 3;
+  return count;
+}
+
+}  // namespace osteomill

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "osteomill/surface/brick_mesh.h"
+#include "osteomill/surface/surface_bricks.h"
+#include "osteomill/view/gl_objects.h"
+#include "osteomill/view/scene.h"
+#include "osteomill/volume/grid_geometry.h"
+
+namespace osteomill {
+
+/// The camera's matrices and depths, as every layer is drawn with them.
+struct Projection {
+  PixelSize size;
+  double near_mm;
+  double far_mm;
+  Eigen::Matrix4f camera_from_world;
+  Eigen::Matrix4f clip_from_camera;
+};
+Projection projection_of(const ViewScene& scene, const PixelSize& size);
+
+/// Hands the scene's cuts to the uniform `cuts` of the program in use and has OpenGL clip by them. Ends with
+/// `end_cuts`.
+void begin_cuts(GLuint program, const ViewScene& scene);
+void end_cuts();
+
+/// The bone's surface, a piece of graphics memory a brick, so that milling replaces only what changed.
+class BoneLayer {
+ public:
+  BoneLayer(const SurfaceBricks& layout, const GridGeometry& geometry);
+
+  void clear();
+  void set_brick(std::size_t brick, const BrickMesh& mesh);
+  /// Only bricks that the camera may see; back faces only where the scene is cut open.
+  void draw(const ViewScene& scene, const Projection& projection, GLuint blurred_depths) const;
+  std::size_t triangle_count() const;
+
+ private:
+  struct Brick {
+    gl::VertexArray vertex_array;
+    gl::Buffer vertices;
+    gl::Buffer indices;
+    GLsizei index_count = 0;
+    Sphere bounds;
+  };
+  void set_uniforms(const ViewScene& scene, const Projection& projection) const;
+
+  gl::Program program_;
+  std::vector<Brick> bricks_;
+};
+
+}  // namespace osteomill

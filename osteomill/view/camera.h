@@ -1,0 +1,69 @@
+#pragma once
+
+#include <array>
+#include <string_view>
+
+#include "osteomill/geometry/pose.h"
+
+namespace osteomill {
+
+struct PixelSize {
+  int width = 0;
+  int height = 0;
+};
+
+struct Sphere {
+  Vec3 centre_W = Vec3::Zero();
+  double radius_mm = 1;
+};
+
+/// A perspective view: from `focus_W`, in the middle of the picture, back by `distance_mm`.
+struct Camera {
+  Vec3 focus_W = Vec3::Zero();
+  double distance_mm = 100;
+  /// Of the camera's axes in W: x to the right, y up, z towards the viewer.
+  Quat orientation = Quat::Identity();
+
+  static constexpr double kFieldOfView_rad = 0.52;  // from bottom to top
+
+  Vec3 right_W() const { return orientation * Vec3::UnitX(); }
+  Vec3 up_W() const { return orientation * Vec3::UnitY(); }
+  Vec3 towards_viewer_W() const { return orientation * Vec3::UnitZ(); }
+  Vec3 eye_W() const { return focus_W + distance_mm * towards_viewer_W(); }
+};
+
+/// Looks along `direction_W` at all of the sphere, with `up_W` up in the picture (not along the direction).
+Camera camera_on(const Sphere& sphere, const Vec3& direction_W, const Vec3& up_W);
+
+/// As 3D Slicer's views move under the mouse (pixels, y downwards). A drag across the window turns by 200
+/// degrees; what is dragged stays under the pointer at the focus when panning; zooming by a drag upwards
+/// comes closer.
+void turn(Camera& camera, const PixelSize& size, double right_px, double down_px);
+void pan(Camera& camera, const PixelSize& size, double right_px, double down_px);
+void zoom_by_drag(Camera& camera, const PixelSize& size, double down_px);
+void zoom_by_wheel(Camera& camera, double steps);
+
+/// What a pixel is wide at a distance from the eye along the view.
+double mm_per_pixel(const PixelSize& size, double depth_mm);
+
+/// Of the point, from the eye along the view.
+double depth_of(const Camera& camera, const Vec3& point_W);
+
+/// Where a point is seen, pixels from the top left; meaningless behind the eye.
+Eigen::Vector2d pixel_of(const Camera& camera, const PixelSize& size, const Vec3& point_W);
+
+/// The unit direction from the eye through a pixel.
+Vec3 ray_through(const Camera& camera, const PixelSize& size, double x_px, double y_px);
+
+/// World to camera, and camera to OpenGL's clip coordinates with the depths between `near_mm` and `far_mm`.
+Eigen::Matrix4f view_matrix(const Camera& camera);
+Eigen::Matrix4f projection_matrix(const PixelSize& size, double near_mm, double far_mm);
+
+/// The six views along the patient's axes (W is LPS: +x left, +y posterior, +z superior).
+enum class ViewFrom : unsigned char { anterior, posterior, left, right, superior, inferior };
+inline constexpr std::array kAllViews{ViewFrom::anterior, ViewFrom::posterior, ViewFrom::left,
+                                      ViewFrom::right,    ViewFrom::superior,  ViewFrom::inferior};
+std::string_view name_of(ViewFrom view);
+Camera camera_from(ViewFrom view, const Sphere& sphere);
+
+}  // namespace osteomill

@@ -1,0 +1,64 @@
+#include "osteomill/view/cavity_pass.h"
+
+#include <algorithm>
+
+#include "osteomill/view/shaders.h"
+
+namespace osteomill {
+
+namespace {
+
+constexpr int kShrink = 4;
+
+gl::Texture small_texture(const PixelSize& size) {
+  return gl::make_texture(GL_RG32F, GL_RG, GL_FLOAT, size.width, size.height, GL_LINEAR);
+}
+
+gl::Framebuffer framebuffer_on(const gl::Texture& texture) {
+  gl::Framebuffer framebuffer = gl::make_framebuffer();
+  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.get());
+  glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture.get(), 0);
+  glClearColor(0, 0, 0, 0);
+  glClear(GL_COLOR_BUFFER_BIT);
+  return framebuffer;
+}
+
+}  // namespace
+
+CavityPass::CavityPass(const PixelSize& size)
+    : size_{std::max(1, size.width / kShrink), std::max(1, size.height / kShrink)},
+      small_(small_texture(size_)),
+      half_blurred_(small_texture(size_)),
+      blurred_(small_texture(size_)),
+      to_small_(framebuffer_on(small_)),
+      to_half_blurred_(framebuffer_on(half_blurred_)),
+      to_blurred_(framebuffer_on(blurred_)),
+      linear_depth_(gl::make_program(shaders::kScreenVertex, shaders::kDepthFragment)),
+      blur_(gl::make_program(shaders::kScreenVertex, shaders::kBlurFragment)),
+      nothing_(gl::make_vertex_array()) {}
+
+void CavityPass::blur(GLuint depths, double near_mm, double far_mm) const {
+  glDisable(GL_DEPTH_TEST);
+  glUseProgram(linear_depth_.get());
+  glUniform2f(glGetUniformLocation(linear_depth_.get(), "near_far"), static_cast<float>(near_mm),
+              static_cast<float>(far_mm));
+  draw(to_small_, depths);
+  glUseProgram(blur_.get());
+  const GLint pace = glGetUniformLocation(blur_.get(), "pace");
+  glUniform2f(pace, 1.0f / static_cast<float>(size_.width), 0);
+  draw(to_half_blurred_, small_.get());
+  glUniform2f(pace, 0, 1.0f / static_cast<float>(size_.height));
+  draw(to_blurred_, half_blurred_.get());
+  glEnable(GL_DEPTH_TEST);
+}
+
+void CavityPass::draw(const gl::Framebuffer& target, GLuint source) const {
+  glBindFramebuffer(GL_FRAMEBUFFER, target.get());
+  glViewport(0, 0, size_.width, size_.height);
+  glBindVertexArray(nothing_.get());
+  glActiveTexture(GL_TEXTURE0);
+  glBindTexture(GL_TEXTURE_2D, source);
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+}  // namespace osteomill

@@ -1,0 +1,35 @@
+#pragma once
+
+#include "osteomill/view/camera.h"
+#include "osteomill/view/gl_objects.h"
+
+namespace osteomill {
+
+/// Blurs the depths of a picture at a quarter of its size, for the next picture to tell what is sunk below
+/// its surroundings (after Luft, Colditz and Deussen 2006, whose unsharp mask of the depth buffer this is).
+class CavityPass {
+ public:
+  explicit CavityPass(const PixelSize& size);
+
+  void blur(GLuint depths, double near_mm, double far_mm) const;
+  /// Depths in mm times a weight, and the weight.
+  GLuint blurred_depths() const { return blurred_.get(); }
+  /// How far the blur reaches, pixels of the picture.
+  static constexpr double kReach_px = 24;
+
+ private:
+  void draw(const gl::Framebuffer& target, GLuint source) const;
+
+  PixelSize size_;
+  gl::Texture small_;
+  gl::Texture half_blurred_;
+  gl::Texture blurred_;
+  gl::Framebuffer to_small_;
+  gl::Framebuffer to_half_blurred_;
+  gl::Framebuffer to_blurred_;
+  gl::Program linear_depth_;
+  gl::Program blur_;
+  gl::VertexArray nothing_;
+};
+
+}  // namespace osteomill

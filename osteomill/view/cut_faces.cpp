@@ -1,0 +1,59 @@
+#include "osteomill/view/cut_faces.h"
+
+#include "osteomill/view/shaders.h"
+
+namespace osteomill {
+
+CutFaces::CutFaces() : program_(gl::make_program(shaders::kCutVertex, shaders::kCutFragment)) {
+  for (Face& face : faces_) {
+    face.vertex_array = gl::make_vertex_array();
+    face.corners = gl::make_buffer();
+  }
+}
+
+void CutFaces::set(const SceneRenderer::CutFace& face) {
+  Face& kept = faces_.at(face.cut);
+  kept.greys = gl::make_texture(GL_R8, GL_RED, GL_UNSIGNED_BYTE, face.width, face.height, GL_LINEAR);
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, face.width, face.height, GL_RED, GL_UNSIGNED_BYTE,
+                  face.greys.data());
+  // As a fan; the outermost pixels' middles lie half a pixel within the texture.
+  const float u = 0.5f / static_cast<float>(face.width);
+  const float v = 0.5f / static_cast<float>(face.height);
+  const float places[4][2] = {{u, v}, {1 - u, v}, {1 - u, 1 - v}, {u, 1 - v}};
+  std::array<std::array<float, 5>, 4> corners;
+  for (std::size_t n = 0; n < 4; ++n) {
+    const Eigen::Vector3f corner = face.corners_W[n].cast<float>();
+    corners[n] = {corner.x(), corner.y(), corner.z(), places[n][0], places[n][1]};
+  }
+  glBindVertexArray(kept.vertex_array.get());
+  glBindBuffer(GL_ARRAY_BUFFER, kept.corners.get());
+  glBufferData(GL_ARRAY_BUFFER, sizeof(corners), corners.data(), GL_DYNAMIC_DRAW);
+  glEnableVertexAttribArray(0);
+  glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(corners[0]), nullptr);
+  glEnableVertexAttribArray(1);
+  glVertexAttribPointer(1, 2, GL_FLOAT, GL_FALSE, sizeof(corners[0]),
+                        reinterpret_cast<const void*>(3 * sizeof(float)));
+}
+
+void CutFaces::draw(const ViewScene& scene, const Projection& projection) const {
+  const GLuint program = program_.get();
+  glUseProgram(program);
+  glUniformMatrix4fv(glGetUniformLocation(program, "camera_from_world"), 1, GL_FALSE,
+                     projection.camera_from_world.data());
+  glUniformMatrix4fv(glGetUniformLocation(program, "clip_from_camera"), 1, GL_FALSE,
+                     projection.clip_from_camera.data());
+  glActiveTexture(GL_TEXTURE0);
+  for (std::size_t n = 0; n < kGreatestCutPlanes; ++n) {
+    if (!scene.cuts[n] || faces_[n].greys.get() == 0) continue;
+    ViewScene others = scene;
+    others.cuts[n].reset();
+    begin_cuts(program, others);
+    glBindTexture(GL_TEXTURE_2D, faces_[n].greys.get());
+    glBindVertexArray(faces_[n].vertex_array.get());
+    glDrawArrays(GL_TRIANGLE_FAN, 0, 4);
+    end_cuts();
+  }
+}
+
+}  // namespace osteomill

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <array>
+
+#include "osteomill/view/bone_layer.h"
+#include "osteomill/view/gl_objects.h"
+#include "osteomill/view/scene_renderer.h"
+
+namespace osteomill {
+
+/// The grey values that cuts lay open.
+class CutFaces {
+ public:
+  CutFaces();
+  void set(const SceneRenderer::CutFace& face);
+  /// Each face as far as the other cuts leave it.
+  void draw(const ViewScene& scene, const Projection& projection) const;
+
+ private:
+  struct Face {
+    gl::VertexArray vertex_array;
+    gl::Buffer corners;
+    gl::Texture greys;
+  };
+  gl::Program program_;
+  std::array<Face, kGreatestCutPlanes> faces_;
+};
+
+}  // namespace osteomill

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+
+#include "osteomill/geometry/pose.h"
+#include "osteomill/geometry/wrench.h"
+#include "osteomill/tool/milling_tool.h"
+#include "osteomill/view/camera.h"
+#include "osteomill/volume/densities.h"
+
+namespace osteomill {
+
+/// Everything on this side of a plane is cut away: points p of W with normal . p < offset.
+struct CutPlane {
+  Vec3 normal_W = Vec3::UnitZ();
+  double offset_mm = 0;
+};
+inline constexpr std::size_t kGreatestCutPlanes = 4;
+
+/// What a picture shows beside the bone, all in W.
+struct ViewScene {
+  Camera camera;
+  /// Holds the bone; what lies far outside it is not drawn.
+  Sphere bounds;
+  MillingTool tool;
+  /// The simulated tool, and the device as a ghost that shows through the bone. Neither is drawn where not
+  /// given.
+  std::optional<Pose> X_WT;
+  std::optional<Pose> X_WD;
+  /// As it acts on the hand, drawn as arrows from the simulated burr, with the contact's point of action.
+  Wrench wrench;
+  std::array<std::optional<CutPlane>, kGreatestCutPlanes> cuts;
+  /// What bone is coloured by: pale at the reference (dentine), white where much denser (enamel), reddish
+  /// where hardly bone.
+  double isovalue = 0;
+  double reference_density = 1;
+};
+
+/// A force arrow's length a newton, and a torque arrow's a newton millimetre.
+inline constexpr double kArrow_mm_per_N = 3.0;
+inline constexpr double kArrow_mm_per_Nmm = 0.4;
+
+/// Where one force at the tool's surface would act to give the wrench at the tool, as far as one can: on the
+/// line along the force that is nearest to the wrench's torque, where it enters the tool. Nothing for hardly
+/// any force, and the burr's surface against the force where the line misses the tool.
+std::optional<Vec3> point_of_action(const MillingTool& tool, const Pose& X_WT, const Wrench& wrench);
+
+}  // namespace osteomill

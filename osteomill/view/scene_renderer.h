@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+
+#include "osteomill/surface/brick_mesh.h"
+#include "osteomill/surface/image.h"
+#include "osteomill/surface/surface_bricks.h"
+#include "osteomill/view/scene.h"
+#include "osteomill/volume/grid_geometry.h"
+
+namespace osteomill {
+
+/// Draws scenes with OpenGL 3.3 core: bone, tool and ghost, contact, arrows, cuts. Used by one thread, in
+/// whose context (offscreen_context.h, or a window's) it was made; that context is current at every call and
+/// at the end. Throws std::runtime_error where OpenGL refuses something.
+class SceneRenderer {
+ public:
+  SceneRenderer(const SurfaceBricks& layout, const GridGeometry& geometry);
+  ~SceneRenderer();
+  SceneRenderer(const SceneRenderer&) = delete;
+  SceneRenderer& operator=(const SceneRenderer&) = delete;
+
+  /// Forgets the bone.
+  void clear();
+  /// A brick's triangles as they are now; none removes it.
+  void set_brick(std::size_t brick, const BrickMesh& mesh);
+  /// The grey values on a cut, a byte each, row by row; `corners_W` of the first pixel, the end of its row,
+  /// the last pixel, the start of the last row. Nothing of it is drawn where the other cuts take it away.
+  struct CutFace {
+    std::size_t cut = 0;
+    std::array<Vec3, 4> corners_W;
+    int width = 0;
+    int height = 0;
+    std::vector<unsigned char> greys;
+  };
+  void set_cut_face(const CutFace& face);
+
+  /// Draws into a picture of its own. What lies deep is darkened after the picture drawn before, so that a
+  /// still picture is drawn twice.
+  void draw(const ViewScene& scene, const PixelSize& size);
+  /// The picture drawn last.
+  Image picture() const;
+  /// Copies it into the window's framebuffer, which has its size.
+  void copy_to_window() const;
+
+  std::size_t triangle_count() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// What an OpenGL framebuffer holds; 0 is the window's.
+Image read_framebuffer(unsigned framebuffer, const PixelSize& size);
+
+}  // namespace osteomill
