@@ -19,9 +19,10 @@ namespace {
 constexpr float kLeastShare = 1.0f / 512;
 
 float greatest_float_not_above(double value) {
-  const auto rounded = static_cast<float>(value);
-  if (static_cast<double>(rounded) <= value) return rounded;
-  return std::nextafter(rounded, -std::numeric_limits<float>::infinity());
+  constexpr float kMost = std::numeric_limits<float>::max();
+  const auto rounded =
+      static_cast<float>(std::clamp(value, static_cast<double>(-kMost), static_cast<double>(kMost)));
+  return static_cast<double>(rounded) <= value ? rounded : std::nextafter(rounded, -kMost);
 }
 
 // Bit n where value n of `count` (a multiple of 4) is above the threshold.
@@ -172,7 +173,9 @@ void BrickMesher::add_vertex(int i, int j, int k) {
   const int place = i + j * kStride[1] + k * kStride[2];
   const float* at = block_.data() + place;
   const bool bone_first = at[0] > threshold_;
-  const float share = std::clamp((threshold_ - at[0]) / (at[kAlong] - at[0]), kLeastShare, 1 - kLeastShare);
+  // Where differences of densities overflow the quotient is a NaN, and max answers its first argument.
+  const float share =
+      std::min(std::max(kLeastShare, (threshold_ - at[0]) / (at[kAlong] - at[0])), 1 - kLeastShare);
 
   std::array<double, 3> voxel{static_cast<double>(corner_.i + i), static_cast<double>(corner_.j + j),
                               static_cast<double>(corner_.k + k)};
