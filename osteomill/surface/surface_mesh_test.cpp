@@ -186,7 +186,7 @@ TEST(SurfaceMesh, IsFiniteForEveryFiniteDensity) {
   std::mt19937 random(3);
   std::vector<float> densities(12 * 12 * 12);
   for (float& density : densities) density = random() % 2 ? most : -most;
-  checked_mesh(volume_of({12, 12, 12}, densities, 1));
+  for (const double isovalue : {1.0, 3e38, -3e38}) checked_mesh(volume_of({12, 12, 12}, densities, isovalue));
 }
 
 TEST(SurfaceMesh, IsWoundOutwardsInEveryFrame) {
