@@ -1,5 +1,6 @@
 #include "app/milling_options.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <stdexcept>
@@ -120,7 +121,11 @@ void add_algorithm_option(CLI::App& command, std::vector<AlgorithmId>& algorithm
           "--algorithm",
           [&algorithms](const std::vector<std::string>& chosen) {
             algorithms.clear();
-            for (const std::string& name : chosen) algorithms.push_back(*algorithm_named(name));
+            for (const std::string& name : chosen) {
+              const AlgorithmId id = *algorithm_named(name);
+              if (std::find(algorithms.begin(), algorithms.end(), id) == algorithms.end())
+                algorithms.push_back(id);
+            }
           },
           "Only this one; may repeat")
       ->check(CLI::IsMember(names));

@@ -87,14 +87,14 @@ std::string panel(std::span<const StabilityRow> rows, std::size_t column, std::s
     const std::string file = fmt::format("stability-{}-{}-{}.dat", name_of(algorithm), row, column);
     write_figure_data(work / file, curve_data(rows, algorithm, axes.modes[row], axes.delays_s[column]));
     // The same for every algorithm.
-    rule = fmt::format("plot '{}' using 4:5 with lines dt 2 lw 1.5 lc rgb '#555555' notitle", file);
+    rule = fmt::format(", '{}' using 4:5 with lines dt 2 lw 2 lc rgb '#8a8a8a' notitle", file);
     curves += fmt::format(
-        ", '{0}' using 1:2 with linespoints pt 7 ps 0.9 lw 1.6 lc rgb '{1}' notitle, '{0}' using 1:3 with "
+        "{2}'{0}' using 1:2 with linespoints pt 7 ps 0.9 lw 1.6 lc rgb '{1}' notitle, '{0}' using 1:3 with "
         "points "
         "pt 9 ps 1.9 lc rgb '{1}' notitle",
-        file, colour_of(algorithm));
+        file, colour_of(algorithm), curves.empty() ? "plot " : ", ");
   }
-  return rule + curves + "\n";
+  return curves + rule + "\n";
 }
 
 std::string common(const Axes& axes, double height_px) {

@@ -50,8 +50,9 @@ std::vector<ModeChange> compare_modes(const Study& study, RunPhase phase, const 
     for (std::size_t n = 0; n < paper.size(); ++n) {
       if (paper[n] != 0) ratios.push_back(steady[n] / paper[n]);
     }
+    const SignedRank test = paired_test(steady, paper);
     changes.push_back({algorithm, median_interval(paper), median_interval(steady), median_interval(ratios),
-                       ratios.size(), paired_test(steady, paper).p});
+                       ratios.size(), test.negative > test.positive, test.p});
   }
   correct(changes);
   return changes;

@@ -32,6 +32,8 @@ struct ModeChange {
   /// Of steady / paper, over the seeds whose value in `paper` is not zero; `ratios` counts them.
   MedianInterval ratio;
   std::size_t ratios = 0;
+  /// `steady` has less, by the sums of signed ranks.
+  bool falls = false;
   /// As above, after Holm's correction over the algorithms.
   double p = 1;
 };

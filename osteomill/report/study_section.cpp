@@ -123,7 +123,8 @@ std::string how_to_read(const Study& study) {
                 100 * interval.coverage));
   html += paragraph(fmt::format(
       "Differences are tested hand by hand with Wilcoxon's signed-rank test, exact and two-sided, corrected "
-      "after Holm over what is compared in one row; bold ones are significant (p at most {}). The least p "
+      "after Holm over what is compared in one row (not over the rows); bold ones are significant (p at most "
+      "{}). The least p "
       "that {} hands can give is {:.2g}, after the correction {:.2g}{}.",
       kSignificance, n, least_p(n), least_corrected,
       least_corrected > kSignificance ? ", so that no difference can be significant here" : ""));

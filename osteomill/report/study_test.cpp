@@ -106,6 +106,7 @@ TEST(Study, WhatSteadyChangesIsARatioOfPairs) {
   ASSERT_EQ(changes.size(), 3u);
   EXPECT_NEAR(changes[1].ratio.median, 0.1, 1e-12);
   EXPECT_EQ(changes[1].ratios, 8u);
+  EXPECT_TRUE(changes[1].falls);
   EXPECT_DOUBLE_EQ(changes[1].p, 3 * std::pow(0.5, 7));
   EXPECT_EQ(changes[0].p, 1);
   EXPECT_EQ(changes[0].ratio.median, 1);
@@ -154,10 +155,9 @@ TEST(Study, InShortBothSentencesNameTheirNumbers) {
   const std::string both = study_in_two_sentences(Study(sample_rows(8)));
   // All but the rate.
   EXPECT_NE(both.find("Over 8 hands, 5 of the paper's 9 findings"), std::string::npos) << both;
-  EXPECT_NE(
-      both.find(
-          "steady lowers the force of 2 (× 0.1) and does not significantly change the force of 1 (× 1), "),
-      std::string::npos)
+  EXPECT_NE(both.find("steady lowers the force of 2 surface-points (× 0.1) and does not significantly change "
+                      "the force of 1 line-proxy (× 1), "),
+            std::string::npos)
       << both;
   std::vector<StudyRow> rows = sample_rows(8);
   std::erase_if(rows, [](const StudyRow& r) { return r.summary.mode == Mode::steady; });

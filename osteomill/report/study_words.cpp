@@ -48,16 +48,15 @@ std::string findings_sentence(const Study& study, Mode mode) {
       against.empty() ? "" : "; not so " + joined(against));
 }
 
-// "the force of 2 (× 0.12) and the torque of 1 (× 0.3)"
+// "lowers the force of 2 surface-points (× 0.12) and torque of 1 line-proxy (× 0.3)"
 std::string changes_sentence(const Study& study, RunPhase phase) {
   std::vector<std::string> less, more, unclear;
   for (const KeyMetric* metric : {&force_buzz(), &torque_buzz()}) {
     for (const ModeChange& change : compare_modes(study, phase, *metric)) {
       const std::string what = fmt::format(
-          "{} of {}{}", metric == &force_buzz() ? "force" : "torque", static_cast<int>(change.algorithm) + 1,
-          change.ratios > 0 ? fmt::format(" (× {:.2g})", change.ratio.median) : "");
-      const bool falls = change.steady.median < change.paper.median;
-      (change.p > kSignificance ? unclear : falls ? less : more).push_back(what);
+          "{} of {}{}", metric == &force_buzz() ? "force" : "torque", numbered_name(change.algorithm),
+          change.ratios > 0 ? fmt::format(" (× {:.3g})", change.ratio.median) : "");
+      (change.p > kSignificance ? unclear : change.falls ? less : more).push_back(what);
     }
   }
   std::vector<std::string> parts;
