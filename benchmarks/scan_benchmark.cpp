@@ -22,7 +22,7 @@ void read(benchmark::State& state, const std::filesystem::path& path) {
 
 const bool kAdded = [] {
   const std::filesystem::path data = OSTEOMILL_SHARED_DATA;
-  for (const char* name : {"tooth_dicom/series", "tooth/tooth.nhdr"}) {
+  for (const char* name : {"tooth_dicom/series", "tooth/tooth_103x94x161_u16.nrrd"}) {
     if (!std::filesystem::exists(data / name)) {
       std::fprintf(stderr, "read_scan/%s: skipped, the scan is not on this machine\n", name);
       continue;

@@ -1,5 +1,6 @@
 #include "osteomill/milling/burr_reach.h"
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <vector>
@@ -78,6 +79,48 @@ TEST(BurrReach, FindsWhatAPlainSearchFindsWhileBoneGoesAndTheBallMoves) {
     for (const BurrReach::Row& row : reach.rows()) {
       for (std::size_t at = row.begin; at < row.end; ++at) {
         if (random() % 3 == 0) volume.lower_density({reach.columns()[at], row.j, row.k}, kFloor);
+      }
+    }
+  }
+}
+
+TEST(BurrReach, SharesOfLinesTogetherFindAllOnceWhileBoneGoes) {
+  // More than 64 bricks along a line, so that a line of bricks takes two words.
+  GridGeometry geometry = turned_geometry();
+  geometry.dims = {540, 11, 13};
+  std::mt19937_64 random(12);
+  constexpr double kRadius_mm = 1.7;
+  for (const unsigned count : {1u, 2u, 8u, 32u}) {
+    Volume volume = random_volume(geometry, random);
+    BurrReach whole(geometry, kRadius_mm, kFloor);
+    BurrReach shared(geometry, kRadius_mm, kFloor);
+    for (int round = 0; round < 3; ++round) {
+      // The ball lies across the border of two words.
+      const Vec3 centre_W = geometry.world_from_voxel(Vec3(510 + 0.7 * round, 5.2, 6.1));
+      whole.find(volume, centre_W);
+      ASSERT_GT(whole.size(), 100u);
+      std::vector<std::size_t> expected, found;
+      const auto list = [&](const BurrReach& reach, std::vector<std::size_t>& voxels) {
+        for (const BurrReach::Row& row : reach.rows()) {
+          for (std::size_t n = row.begin; n < row.end; ++n) {
+            voxels.push_back(volume.grid().linear_index({reach.columns()[n], row.j, row.k}));
+          }
+        }
+      };
+      list(whole, expected);
+      std::size_t most = 0;
+      for (unsigned turn = 0; turn < count; ++turn) {
+        shared.find(volume, centre_W, {count, turn});
+        list(shared, found);
+        most = std::max(most, shared.size());
+      }
+      std::sort(expected.begin(), expected.end());
+      std::sort(found.begin(), found.end());
+      ASSERT_EQ(found, expected) << count;
+      EXPECT_LE(most, 3 * expected.size() / count + 8) << "lines are shared out evenly";
+      for (const std::size_t voxel : expected) {
+        const int i = static_cast<int>(voxel % 540), j = static_cast<int>(voxel / 540 % 11);
+        if (random() % 3 == 0) volume.lower_density({i, j, static_cast<int>(voxel / (540 * 11))}, kFloor);
       }
     }
   }

@@ -86,7 +86,8 @@ void PointShell::refresh(const VoxelBox& voxels) {
   }
   const int budget = lattice_.rules().refreshed_points_per_tick;
   int spent = 0;
-  while ((budget == 0 || spent < budget) && (!sweep_.cells.empty() || start_sweep())) {
+  while (!sweep_.cells.empty() || start_sweep()) {
+    if (budget != 0 && spent != 0 && spent + cost_of_next_brick() > budget) return;
     spent += refresh_next_brick();
   }
 }
@@ -104,7 +105,13 @@ bool PointShell::start_sweep() {
   return true;
 }
 
-// What it cost.
+// As far as can be told without a look; `refresh_next_brick` says what it was.
+int PointShell::cost_of_next_brick() const {
+  if (sweep_.lowering) return kLoweredBrickCost;
+  const VoxelIndex& b = sweep_.brick;
+  return kBrickCost + static_cast<int>(octree_.count(0, b.i, b.j, b.k));
+}
+
 int PointShell::refresh_next_brick() {
   VoxelIndex& b = sweep_.brick;
   const VoxelBox& cells = sweep_.cells;

@@ -81,6 +81,7 @@ class PointShell {
     bool lowering = false;
   };
   bool start_sweep();
+  int cost_of_next_brick() const;
   int refresh_next_brick();
   int visit(const VoxelIndex& brick);
   bool holds_no_bone(const VoxelIndex& brick) const;

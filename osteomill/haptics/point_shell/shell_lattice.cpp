@@ -132,9 +132,9 @@ ShellPoint ShellLattice::point_of_cell(const BoneBits& bone, const VoxelIndex& c
       }
     }
   }
-  const Vec3 mean_mm = sum.position_mm / sum.weight;
+  const Vec3 mean_mm = (1 / sum.weight) * sum.position_mm;
   const double length = sum.normal.norm();
-  const Vec3 normal = length > 1e-9 ? Vec3(sum.normal / length) : Vec3(Vec3::Zero());
+  const Vec3 normal = length > 1e-9 ? Vec3((1 / length) * sum.normal) : Vec3(Vec3::Zero());
   return {
       static_cast<float>(mean_mm.x()), static_cast<float>(mean_mm.y()),
       static_cast<float>(mean_mm.z()), static_cast<float>(rules_.area_weights ? sum.weight : cell_area_mm2_),
