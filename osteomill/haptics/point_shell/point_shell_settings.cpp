@@ -36,7 +36,7 @@ PointShellSettings PointShellSettings::defaults(Mode mode) {
                     .follow_partial_changes = true,
                     .refreshed_points_per_tick = 256,
                     .gradient = GradientKernel::central};
-  settings.greatest_depth_mm = 0.22;
+  settings.greatest_depth_mm = 0.25;
   settings.patch_penalty = true;
   settings.closed_form_distance = true;
   settings.brick_kernel = true;
