@@ -71,8 +71,9 @@ struct PointShellSettings {
   double greatest_move_mm = 0.0;
   double greatest_turn_rad = 0.0;
   /// How fast the tool may come nearer to the device, beside the device's own motion, once it has been held
-  /// back: where bone gives way at once, the coupling's wrench fades at this speed and does not step. 0 is no
-  /// limit (paper).
+  /// back (and beside a share of the stretch, so that a long one takes no longer than 0.1 s to fall to a
+  /// third): where bone gives way at once, the coupling's wrench fades and does not step. 0 is no limit
+  /// (paper).
   double greatest_release_mm_s = 0.0;
   double greatest_release_rad_s = 0.0;
   /// Off (paper): a tool that begins inside bone meets the surface from within and is held there. On: while
