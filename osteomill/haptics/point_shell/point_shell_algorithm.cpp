@@ -1,19 +1,33 @@
 #include "osteomill/haptics/point_shell/point_shell_algorithm.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "osteomill/haptics/point_shell/brick_contacts.h"
 #include "osteomill/haptics/point_shell/octree_contacts.h"
+#include "osteomill/tool/sample_points.h"
+#include "osteomill/volume/sampling.h"
 
 namespace osteomill {
 
 namespace {
+
+// What a tick may release by its length; a longer one (a machine that stood still) counts as this long.
+constexpr double kLongestTick_s = 5e-3;
+// In which a stretch that nothing holds any more falls to a third, if not sooner.
+constexpr double kReleaseTime_s = 0.1;
+// Of the centreline, looked at for bone.
+constexpr int kCentrelinePoints = 51;
 
 // The burr's force after a move, by the derivatives from before it. A contact only pushes: where the move is
 // predicted to end in a pull, the burr has left.
 double burr_force_after(const ContactSum& burr, const ToolMove& move) {
   const Vec3 force = burr.force_N - burr.K_ff * move.translation_mm - burr.K_ft * move.rotation_rad;
   return force.dot(burr.force_N) > 0 ? force.norm() : 0.0;
+}
+
+bool is_at(const Pose& a, const Pose& b) {
+  return a.position_mm == b.position_mm && a.orientation.coeffs() == b.orientation.coeffs();
 }
 
 }  // namespace
@@ -27,6 +41,8 @@ PointShellAlgorithm::PointShellAlgorithm(const PointShellSettings& settings)
 void PointShellAlgorithm::prepare(const Scene& scene) {
   if (scene.volume == nullptr) throw std::invalid_argument("point-shell: the scene has no volume");
   require_valid(scene.tool);
+  volume_ = scene.volume;
+  centreline_T_ = centreline_vertices(scene.tool, kCentrelinePoints);
   penalty_.stiffness_N_per_mm3 = contact_stiffness_N_per_mm3(settings_, scene.tool);
   shell_ = PointShell(*scene.volume, settings_.shell);
   // Seen from a corner the surface in a cell is at most about twice a cell's side.
@@ -44,6 +60,8 @@ void PointShellAlgorithm::prepare(const Scene& scene) {
 void PointShellAlgorithm::reset() {
   has_pose_ = false;
   in_contact_ = false;
+  held_back_ = false;
+  inside_bone_ = false;
   stretch_ = {};
 }
 
@@ -67,13 +85,63 @@ Pose PointShellAlgorithm::towards(const Pose& X_WT_start, const Pose& target) co
   return moved(X_WT_start, allowed);
 }
 
+// Short of the target where the coupling would let go faster than it may.
+Pose PointShellAlgorithm::released(const Pose& X_WT_start, const Pose& target, const Pose& X_WD,
+                                   double dt_s) const {
+  if (!held_back_ || !(settings_.greatest_release_mm_s > 0) || !(settings_.greatest_release_rad_s > 0)) {
+    return target;
+  }
+  const double tick_s = std::clamp(dt_s, 0.0, kLongestTick_s);
+  const ToolMove device = move_between(X_WD_before_, X_WD);
+  const double moved_mm = device.translation_mm.norm(), turned_rad = device.rotation_rad.norm();
+  // What the device's motion moves at the tool's far end it may turn the tool by, and the other way round:
+  // held up in its turn alone, a tool that leaves the bone would be dragged behind.
+  const double length_mm = std::max(tool_.tool().shaft_length_mm, tool_.tool().burr_radius_mm);
+  const ToolMove stretch = move_between(X_WD, X_WT_start);
+  const double fading = tick_s / kReleaseTime_s;
+  const double share =
+      share_released(X_WT_start, target, X_WD,
+                     moved_mm + turned_rad * length_mm + fading * stretch.translation_mm.norm() +
+                         settings_.greatest_release_mm_s * tick_s,
+                     turned_rad + moved_mm / length_mm + fading * stretch.rotation_rad.norm() +
+                         settings_.greatest_release_rad_s * tick_s);
+  if (share >= 1) return target;
+  const ToolMove whole = move_between(X_WT_start, target);
+  return moved(X_WT_start, {share * whole.translation_mm, share * whole.rotation_rad});
+}
+
+bool PointShellAlgorithm::is_inside_bone(const Pose& X_WT) const {
+  return std::any_of(centreline_T_.begin(), centreline_T_.end(), [&](const Vec3& point_T) {
+    return density_at(volume_->grid(), X_WT * point_T) > volume_->isovalue();
+  });
+}
+
+// Inside bone: with the device, and nothing felt.
+HapticStep PointShellAlgorithm::carried(const Pose& X_WD) {
+  X_WT_ = towards(X_WT_, X_WD);
+  in_contact_ = false;
+  held_back_ = false;
+  stretch_ = {};
+  HapticStep result;
+  result.X_WT = X_WT_;
+  return result;
+}
+
 HapticStep PointShellAlgorithm::step(const Pose& X_WD, double dt_s) {
   if (!refreshed_this_tick_ && !shell_.is_up_to_date()) shell_.refresh({});
   refreshed_this_tick_ = false;
-  if (!has_pose_) X_WT_ = X_WD;
+  const bool may_be_inside = !has_pose_ || in_contact_ || inside_bone_;
+  if (!has_pose_) X_WT_ = X_WD_before_ = X_WD;
   has_pose_ = true;
+  inside_bone_ = settings_.carry_out_of_bone && may_be_inside && is_inside_bone(X_WT_);
+  const HapticStep result = inside_bone_ ? carried(X_WD) : balanced(X_WD, dt_s);
+  X_WD_before_ = X_WD;
+  return result;
+}
+
+HapticStep PointShellAlgorithm::balanced(const Pose& X_WD, double dt_s) {
   const Pose start = X_WT_;
-  if (settings_.look_ahead && !in_contact_) X_WT_ = towards(start, X_WD);
+  if (settings_.look_ahead && !in_contact_) X_WT_ = released(start, towards(start, X_WD), X_WD, dt_s);
 
   HapticStep result;
   ToolContacts contacts;
@@ -86,6 +154,7 @@ HapticStep PointShellAlgorithm::step(const Pose& X_WD, double dt_s) {
       const ToolMove move = balancing_move(coupling_, X_WT_, X_WD, contacts.total());
       X_WT_ = towards(start, moved(X_WT_, move));
     }
+    X_WT_ = released(start, X_WT_, X_WD, dt_s);
     const ToolMove step_move = move_between(before, X_WT_);
     result.burr_force_N = burr_force_after(contacts.burr, step_move);
     if (step_move.translation_mm.norm() <= settings_.solver_tolerance_mm &&
@@ -94,15 +163,16 @@ HapticStep PointShellAlgorithm::step(const Pose& X_WD, double dt_s) {
     }
   }
   in_contact_ = contacts.touching > 0;
+  held_back_ = in_contact_ || (held_back_ && !is_at(X_WT_, X_WD));
   result.X_WT = X_WT_;
   result.contacts = contacts.touching;
-  if (in_contact_) {
+  if (held_back_) {
     result.wrench = wrench_on_hand(coupling_, X_WT_, X_WD);
     const Wrench damped = damping(X_WD, dt_s);
     result.wrench.force_N += damped.force_N;
     result.wrench.torque_Nmm += damped.torque_Nmm;
   }
-  stretch_ = in_contact_ ? move_between(X_WD, X_WT_) : ToolMove{};
+  stretch_ = held_back_ ? move_between(X_WD, X_WT_) : ToolMove{};
   return result;
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "osteomill/haptics/haptic_algorithm.h"
 #include "osteomill/haptics/point_shell/contact_tool.h"
 #include "osteomill/haptics/point_shell/penalty.h"
@@ -12,7 +14,8 @@ namespace osteomill {
 /// Algorithm 3 of Eriksson 2012, modified Barbic and James 2008: the bone is a shell of points, the tool a
 /// signed distance field. Points inside the tool push it out; a virtual coupling pulls it to the device; each
 /// step solves for the pose at which the two balance, and the coupling's wrench is what the hand feels.
-/// Without contact the tool is at the device (steady: on its way there) and the wrench exactly zero.
+/// Without contact the tool is at the device (steady: on its way there) and the wrench exactly zero; steady
+/// lets what was felt fade first.
 ///
 /// `X_WT` of a step is the simulated tool; `burr_force_N` the contact force of the points that touch the tool
 /// below the height at which its shaft comes out of the burr's sphere; `contacts` counts the points that
@@ -35,6 +38,10 @@ class PointShellAlgorithm final : public HapticAlgorithm {
  private:
   ToolContacts contacts_at(const Pose& X_WT) const;
   Pose towards(const Pose& X_WT_start, const Pose& target) const;
+  Pose released(const Pose& X_WT_start, const Pose& target, const Pose& X_WD, double dt_s) const;
+  bool is_inside_bone(const Pose& X_WT) const;
+  HapticStep carried(const Pose& X_WD);
+  HapticStep balanced(const Pose& X_WD, double dt_s);
   Wrench damping(const Pose& X_WD, double dt_s) const;
 
   PointShellSettings settings_;
@@ -46,7 +53,13 @@ class PointShellAlgorithm final : public HapticAlgorithm {
   bool refreshed_this_tick_ = false;
   bool has_pose_ = false;
   bool in_contact_ = false;
+  // In contact, or on the way back to the device from it.
+  bool held_back_ = false;
+  bool inside_bone_ = false;
+  const Volume* volume_ = nullptr;
+  std::vector<Vec3> centreline_T_;
   Pose X_WT_;
+  Pose X_WD_before_;
   ToolMove stretch_;
 };
 

@@ -168,6 +168,94 @@ TEST(PointShellAlgorithm, TheShaftOnAnEdgePushesAndTurnsTheHand) {
   }
 }
 
+TEST(PointShellAlgorithm, SteadyTurnsTheHandByLeverTimesForceWhereverTheEdgeIs) {
+  std::mt19937 bits(6);
+  for (const double lever_mm : {4.0, 8.0, 12.0, 20.0}) {
+    for (int n = 0; n < 3; ++n) {
+      const Quat turn = quaternion_from_rotation_vector(3 * random_vector(bits));
+      const Vec3 left = turn * Vec3(1, 0, 1).normalized();
+      const Vec3 right = turn * Vec3(-1, 0, 1).normalized();
+      const Volume volume = shape_volume(centred_cube(56, 0.2),
+                                         [&](const Vec3& p) { return std::max(left.dot(p), right.dot(p)); });
+      PointShellAlgorithm algorithm(full_resolution(Mode::steady));
+      algorithm.prepare({&volume, kTool});
+      const Quat lying = turn * quaternion_from_rotation_vector({0, std::numbers::pi / 2, 0});
+      HapticStep step;
+      for (int m = 0; m <= 200; ++m) {
+        const double height_mm = std::max(0.7, 1.5 - 0.01 * m);
+        step = algorithm.step({turn * Vec3(-lever_mm, 0, height_mm), lying}, kTick_s);
+      }
+      EXPECT_GT(step.wrench.force_N.dot(turn * Vec3::UnitZ()), 0.1);
+      const Vec3 expected = (turn * Vec3(lever_mm, 0, 0)).cross(step.wrench.force_N);
+      EXPECT_LT((step.wrench.torque_Nmm - expected).norm(), 0.02 * expected.norm()) << lever_mm;
+    }
+  }
+}
+
+// Begun in the middle of a ball of bone, the tool must come out with the device, at any speed and however it
+// stands, and nothing may be felt beyond what holds a tool out of bone.
+TEST(PointShellAlgorithm, AToolThatBeginsInsideBoneComesOutWithTheDevice) {
+  const Volume volume = shape_volume(centred_cube(64, 0.25), ball({0, 0, 0}, 6));
+  std::mt19937 bits(8);
+  for (const double speed_mm_s : {10.0, 100.0, 1000.0}) {
+    for (int n = 0; n < 4; ++n) {
+      PointShellAlgorithm algorithm(full_resolution(Mode::steady));
+      algorithm.prepare({&volume, kTool});
+      const Vec3 out = random_vector(bits).normalized();
+      const Quat turn = quaternion_from_rotation_vector(3 * random_vector(bits));
+      HapticStep step;
+      for (int m = 0; m < 20; ++m) step = algorithm.step({Vec3(0.5, 0.2, 0), turn}, kTick_s);
+      EXPECT_EQ(step.wrench.force_N, Vec3::Zero());
+      const double far_mm = 40;
+      const int ticks = static_cast<int>(far_mm / (speed_mm_s * kTick_s));
+      for (int m = 0; m < ticks + 500; ++m) {
+        const double gone_mm = std::min(far_mm, m * speed_mm_s * kTick_s);
+        step = algorithm.step({Vec3(0.5, 0.2, 0) + gone_mm * out, turn}, kTick_s);
+        ASSERT_TRUE(step.wrench.force_N.allFinite() && step.wrench.torque_Nmm.allFinite());
+        if (speed_mm_s < 200) {
+          ASSERT_LT(step.wrench.force_N.norm(), 20);
+        }
+      }
+      EXPECT_EQ(step.X_WT.position_mm, Vec3(Vec3(0.5, 0.2, 0) + far_mm * out));
+      EXPECT_EQ(step.wrench.force_N, Vec3::Zero());
+    }
+  }
+}
+
+// A shelf of bone is gone from one tick to the next.
+TEST(PointShellAlgorithm, WhereBoneGivesWayTheWrenchFadesAtASpeed) {
+  for (const double tick_s : {0.5e-3, 1e-3, 2e-3}) {
+    Volume volume = shape_volume(centred_cube(40, 0.25), plane({0, 0, 0}, {0, 0, 1}));
+    const PointShellSettings settings = full_resolution(Mode::steady);
+    PointShellAlgorithm algorithm(settings);
+    algorithm.prepare({&volume, kTool});
+    Vec3 before;
+    const auto step_at = [&](double z) {
+      return algorithm.step({{0, 0, z}, Quat::Identity()}, tick_s).wrench.force_N;
+    };
+    for (int n = 0; n < 300; ++n) before = step_at(std::max(0.7, 1.6 - 0.005 * n));
+    EXPECT_GT(before.norm(), 1.2);
+    VolumeChange all;
+    for (int k = 0; k < 40; ++k) {
+      for (int j = 0; j < 40; ++j) {
+        for (int i = 0; i < 40; ++i) {
+          volume.lower_density({i, j, k}, volume.grid().outside_density());
+          all.voxels.include({i, j, k});
+        }
+      }
+    }
+    algorithm.volume_changed(all);
+    int ticks = 0;
+    for (; before.norm() > 0 && ticks < 10000; ++ticks) {
+      const Vec3 now = step_at(0.7);
+      const double at_a_speed = settings.translational_stiffness_N_per_mm * settings.greatest_release_mm_s;
+      EXPECT_LE((now - before).norm(), (at_a_speed + before.norm() / 0.1) * tick_s + 1e-9);
+      before = now;
+    }
+    EXPECT_LT(ticks * tick_s, 0.1);
+  }
+}
+
 TEST(PointShellAlgorithm, TurningScanAndPosesTogetherTurnsTheWrench) {
   const Pose turn{{3, -1, 2}, quaternion_from_rotation_vector({0.5, -0.8, 1.1})};
   GridGeometry geometry = centred_cube(48, 0.2);

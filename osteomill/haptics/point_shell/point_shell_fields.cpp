@@ -44,6 +44,12 @@ constexpr SettingField<S> kFields[] = {
     setting_field<S>(
         "greatest-turn", [](S& s) -> auto& { return s.greatest_turn_rad; }, "rad"),
     setting_field<S>(
+        "greatest-release", [](S& s) -> auto& { return s.greatest_release_mm_s; }, "mm/s"),
+    setting_field<S>(
+        "greatest-release-turn", [](S& s) -> auto& { return s.greatest_release_rad_s; }, "rad/s"),
+    setting_field<S>(
+        "carry-out-of-bone", [](S& s) -> auto& { return s.carry_out_of_bone; }),
+    setting_field<S>(
         "look-ahead", [](S& s) -> auto& { return s.look_ahead; }),
     setting_field<S>(
         "solver-iterations", [](S& s) -> auto& { return s.solver_iterations; }),

@@ -36,12 +36,15 @@ PointShellSettings PointShellSettings::defaults(Mode mode) {
                     .follow_partial_changes = true,
                     .refreshed_points_per_tick = 256,
                     .gradient = GradientKernel::central};
-  settings.greatest_depth_mm = 0.22;
+  settings.greatest_depth_mm = 0.25;
   settings.patch_penalty = true;
   settings.closed_form_distance = true;
   settings.brick_kernel = true;
   settings.greatest_move_mm = 0.5;
   settings.greatest_turn_rad = 0.05;
+  settings.greatest_release_mm_s = 15;
+  settings.greatest_release_rad_s = 0.15;
+  settings.carry_out_of_bone = true;
   settings.look_ahead = true;
   settings.solver_iterations = 2;
   return settings;
@@ -67,6 +70,8 @@ void require_valid(const PointShellSettings& settings) {
   require_positive(settings.field_spacing_mm.value_or(1), "the distance field's spacing");
   require_not_negative(settings.greatest_move_mm, "the greatest move a tick");
   require_not_negative(settings.greatest_turn_rad, "the greatest turn a tick");
+  require_not_negative(settings.greatest_release_mm_s, "the greatest release in mm/s");
+  require_not_negative(settings.greatest_release_rad_s, "the greatest release in rad/s");
   require_not_negative(settings.solver_tolerance_mm, "the solver's tolerance in mm");
   require_not_negative(settings.solver_tolerance_rad, "the solver's tolerance in rad");
   if (settings.solver_iterations < 1) {

@@ -66,9 +66,19 @@ struct PointShellSettings {
   /// points, many points at a time; needs `closed_form_distance`.
   bool brick_kernel = false;
 
-  /// The most that the simulated tool moves and turns in a tick; 0 is no limit (paper).
+  /// The most that the simulated tool moves and turns between two looks at the bone, whatever the time
+  /// between them, so that it passes over nothing; 0 is no limit (paper).
   double greatest_move_mm = 0.0;
   double greatest_turn_rad = 0.0;
+  /// How fast the tool may come nearer to the device, beside the device's own motion, once it has been held
+  /// back (and beside a share of the stretch, so that a long one takes no longer than 0.1 s to fall to a
+  /// third): where bone gives way at once, the coupling's wrench fades and does not step. 0 is no limit
+  /// (paper).
+  double greatest_release_mm_s = 0.0;
+  double greatest_release_rad_s = 0.0;
+  /// Off (paper): a tool that begins inside bone meets the surface from within and is held there. On: while
+  /// its centreline is in bone it follows the device, nothing is felt, and so it is carried out.
+  bool carry_out_of_bone = false;
   /// Off (paper): contacts are looked for at the pose of the tick before. On: in free space already at the
   /// pose that the device has reached, one tick earlier.
   bool look_ahead = false;

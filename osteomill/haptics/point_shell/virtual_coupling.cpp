@@ -24,6 +24,18 @@ ToolMove limited(const ToolMove& move, double greatest_mm, double greatest_rad) 
   return {factor * move.translation_mm, factor * move.rotation_rad};
 }
 
+double share_released(const Pose& X_WT_start, const Pose& X_WT_target, const Pose& X_WD, double allowed_mm,
+                      double allowed_rad) {
+  const ToolMove before = move_between(X_WD, X_WT_start);
+  const ToolMove after = move_between(X_WD, X_WT_target);
+  const double released_mm = before.translation_mm.norm() - after.translation_mm.norm();
+  const double released_rad = before.rotation_rad.norm() - after.rotation_rad.norm();
+  double share = 1;
+  if (released_mm > allowed_mm) share = allowed_mm / released_mm;
+  if (released_rad > allowed_rad) share = std::min(share, allowed_rad / released_rad);
+  return share;
+}
+
 Wrench wrench_on_hand(const VirtualCoupling& coupling, const Pose& X_WT, const Pose& X_WD) {
   const ToolMove stretch = move_between(X_WD, X_WT);
   return {coupling.translational_N_per_mm * stretch.translation_mm,

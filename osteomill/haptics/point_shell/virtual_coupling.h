@@ -26,6 +26,11 @@ Pose moved(const Pose& X_WT, const ToolMove& move);
 /// slides along the bone while it turns stays on it. A limit of 0 is none.
 ToolMove limited(const ToolMove& move, double greatest_mm, double greatest_rad);
 
+/// What share of the tool's move from `start` to `target` (0..1) brings it no more than `allowed_mm` and
+/// `allowed_rad` nearer to the device; 1 where the whole move does not.
+double share_released(const Pose& X_WT_start, const Pose& X_WT_target, const Pose& X_WD, double allowed_mm,
+                      double allowed_rad);
+
 /// The coupling's wrench as it acts on the hand that holds the device at `X_WD` (on the tool it is the
 /// opposite).
 Wrench wrench_on_hand(const VirtualCoupling& coupling, const Pose& X_WT, const Pose& X_WD);

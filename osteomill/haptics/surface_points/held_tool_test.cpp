@@ -80,5 +80,19 @@ TEST(HeldTool, TheShaftIsHeldToo) {
   for (const double z : {5.0, 10.0, 15.0}) EXPECT_GT((result * Vec3(0, 0, z)).z(), 1.0 - 0.03) << z;
 }
 
+// The shaft's flat end goes ahead, straight on and at a slant.
+TEST(HeldTool, TheShaftsEndIsHeldToo) {
+  const Volume volume = shape_volume(centred_cube(48, 0.25), plane(Vec3::Zero(), Vec3::UnitZ()));
+  for (const double tilt : {0.0, 0.5}) {
+    const Quat upside_down = quaternion_from_rotation_vector({std::numbers::pi - tilt, 0, 0});
+    const Vec3 end_T(0, 0, kTool.shaft_length_mm);
+    const Vec3 start = Vec3(0, 0, 1.5) - upside_down * end_T;
+    HeldTool held = held_at(volume, {start, upside_down});
+    Pose result;
+    for (int n = 0; n < 100; ++n) result = held.follow({start - Vec3(0, 0, 0.05 * n), upside_down});
+    EXPECT_GT((result * end_T).z(), -0.1) << tilt;
+  }
+}
+
 }  // namespace
 }  // namespace osteomill

@@ -16,7 +16,7 @@ SurfacePointsSettings SurfacePointsSettings::defaults(Mode mode) {
     settings.hold_tool = true;
     settings.rings_per_slice = 3;
     settings.greatest_stiffness_N_per_mm = 3.0;
-    settings.bite_voxels = 0.75;
+    settings.bite_voxels = 0.3;
     settings.contact_damping_s_per_mm = 0.003;
   }
   return settings;

@@ -127,6 +127,28 @@ TEST(SurfacePointsSteady, TheShaftAloneOnARidgePushesAndTurnsTogether) {
   }
 }
 
+// The shaft alone, 0.3 mm deep on the crest of a square edge that lies anyhow in the grid.
+TEST(SurfacePointsSteady, TheShaftOnAnEdgeIsFeltAtItsLever) {
+  std::mt19937_64 random(6);
+  std::uniform_real_distribution<double> unit(-2, 2);
+  for (const double lever : {4.0, 8.0, 12.0, 20.0}) {
+    for (int n = 0; n < 3; ++n) {
+      const Quat turn = quaternion_from_rotation_vector({unit(random), unit(random), unit(random)});
+      const Vec3 left = turn * Vec3(1, 0, 1).normalized();
+      const Vec3 right = turn * Vec3(-1, 0, 1).normalized();
+      const Volume volume = shape_volume(centred_cube(56, 0.2),
+                                         [&](const Vec3& p) { return std::max(left.dot(p), right.dot(p)); });
+      auto algorithm = prepared(volume, steady());
+      const Quat lying = turn * quaternion_from_rotation_vector({0, std::numbers::pi / 2, 0});
+      const Wrench wrench =
+          walk(algorithm, turn * Vec3(-lever, 0, 2), turn * Vec3(-lever, 0, 0.7), lying).wrench;
+      EXPECT_GT(wrench.force_N.dot(turn * Vec3::UnitZ()), 0.04) << lever;
+      const Vec3 expected = (turn * Vec3(lever, 0, 0)).cross(wrench.force_N);
+      EXPECT_LT((wrench.torque_Nmm - expected).norm(), 0.02 * expected.norm()) << lever;
+    }
+  }
+}
+
 TEST(SurfacePointsSteady, TurningScanAndPoseTurnsTheWrench) {
   const Quat turn = quaternion_from_rotation_vector({0.7, -1.1, 0.4});
   GridGeometry turned_grid = centred_cube(64, 0.25);

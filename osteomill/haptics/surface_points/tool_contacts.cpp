@@ -22,6 +22,8 @@ constexpr double kTolerance = 0.01;
 constexpr double kSameNormal = 0.98;
 // Rays of the sphere nearer than this are neighbours: its 54 directions lie 21 to 28 degrees apart.
 constexpr double kBesideOnSphere_rad = 0.65;
+// Where on the shaft's end its rim is looked for, as a share of its radius.
+constexpr double kNearRim = 0.85;
 // Bone that stands out from a contact's plane by less is the plane's.
 constexpr double kOnPlane_mm = 0.01;
 // Only bone this near can stop the tool within a stride.
@@ -78,9 +80,17 @@ void SurfaceContacts::prepare(const Volume& volume, const MillingTool& tool, int
     if (!around.empty()) continue;
     for (const Vec3& vertex : ring.vertices_T) around.emplace_back((vertex - ring.centre_T).normalized());
   }
+  end_points_T_.clear();
+  if (!ring_centres_T_.empty()) {
+    end_points_T_.emplace_back(0, 0, tool.shaft_length_mm);
+    for (const Vec3& direction : around) {
+      end_points_T_.emplace_back(end_points_T_.front() + kNearRim * tool.shaft_radius_mm * direction);
+    }
+  }
   ring_ = make_ray_fan(std::move(around), 2.2 * std::numbers::pi / kSliceVertices);
   contacts_.clear();
-  contacts_.reserve(sphere_.directions.size() + ring_.directions.size() * ring_centres_T_.size());
+  contacts_.reserve(sphere_.directions.size() + ring_.directions.size() * ring_centres_T_.size() +
+                    end_points_T_.size());
 }
 
 SurfaceContacts::Rays SurfaceContacts::rays_of(const RayFan& fan, const Pose& X_WT) const {
@@ -147,6 +157,19 @@ void SurfaceContacts::find_at(const Part& part, const Rays& rays, const Vec3& ce
   }
 }
 
+void SurfaceContacts::find_at_end(const Pose& X_WT) {
+  const Vec3 axis_W = shaft_direction(X_WT);
+  const Vec3 way = voxels_per_mm_ * axis_W;
+  for (const Vec3& end_T : end_points_T_) {
+    const Vec3 end_W = X_WT * end_T;
+    const VoxelRay ray{volume_->geometry().voxel_from_world(end_W), way};
+    if (!is_bone(*volume_, ray.origin + kReach_mm * way)) continue;
+    if (const auto met = first_bone(*volume_, ray, -kReach_mm, kReach_mm, kTolerance)) {
+      contacts_.push_back({end_W, -axis_W, *met});
+    }
+  }
+}
+
 std::span<const ToolContact> SurfaceContacts::find(const Pose& X_WT) {
   contacts_.clear();
   if (bone_near_disc(*volume_, X_WT.position_mm, Vec3::Zero(), tool_.burr_radius_mm + kReach_mm)) {
@@ -162,6 +185,7 @@ std::span<const ToolContact> SurfaceContacts::find(const Pose& X_WT) {
       find_at(ring, rays, centre_W);
     }
   }
+  find_at_end(X_WT);
   return contacts_;
 }
 

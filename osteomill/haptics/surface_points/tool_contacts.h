@@ -22,7 +22,8 @@ struct ToolContact {
 /// burr's centre, and from the middle of each ring of the shaft through the ring's vertices. A ray that meets
 /// bone sooner than those beside it stands for a contact: together they say where the surface, taken to be
 /// flat there, comes nearest, and one more ray looks there. Other rays count where their bone stands out from
-/// all planes so found. A ray that starts in bone finds nothing.
+/// all planes so found. Rays along the shaft find what its end meets. A ray that starts in bone finds
+/// nothing.
 class SurfaceContacts {
  public:
   /// `rings` circles along the free shaft. The burr may stand `bite_mm` deep in bone before a contact counts
@@ -51,6 +52,7 @@ class SurfaceContacts {
   };
   Rays rays_of(const RayFan& fan, const Pose& X_WT) const;
   void find_at(const Part& part, const Rays& rays, const Vec3& centre_W);
+  void find_at_end(const Pose& X_WT);
   void add_contact(const Part& part, const Vec3& centre_W, const Vec3& direction_W, double distance_mm);
   bool is_explained(const Part& part, const Vec3& direction_W, double distance_mm) const;
 
@@ -61,6 +63,8 @@ class SurfaceContacts {
   RayFan sphere_;
   RayFan ring_;
   std::vector<Vec3> ring_centres_T_;
+  // On the shaft's end: its middle and near its rim.
+  std::vector<Vec3> end_points_T_;
   std::vector<ToolContact> contacts_;
   // Of the part looked at.
   std::size_t first_of_part_ = 0;
