@@ -8,6 +8,8 @@
 #include "osteomill/haptics/line_proxy/equations.h"
 #include "osteomill/haptics/line_proxy/point_proxy.h"
 #include "osteomill/haptics/line_proxy/shaft_probe.h"
+#include "osteomill/haptics/line_proxy/shaft_touch.h"
+#include "osteomill/haptics/line_proxy/tool_clearance.h"
 #include "osteomill/haptics/line_proxy/translation_rotation_walk.h"
 #include "osteomill/tool/sample_points.h"
 
@@ -47,61 +49,76 @@ void LineProxy::reset() {
   memory_ = Memory{};
 }
 
-HapticStep LineProxy::step(const Pose& X_WD, double /*dt_s*/) {
-  follow_with_tip_proxy(X_WD.position_mm);
-  const Vec3 proxy_W = memory_.tip_proxy_W.value_or(X_WD.position_mm);
-  const Pose X_WL{proxy_W, X_WD.orientation};
-  follow_with_intersection(X_WL);
-  turn_reaction(X_WL);
+HapticStep LineProxy::step(const Pose& X_WD, double dt_s) {
+  const Vec3& device_tip_W = X_WD.position_mm;
+  const Vec3 probe_W = tip_probe_W(device_tip_W);
+  follow_with_tip_proxy(probe_W, dt_s);
+  const Pose X_WL{memory_.tip_proxy_W.value_or(probe_W), X_WD.orientation};
+  if (settings_.shaft_contact) {
+    touch_with_shaft(X_WL, device_tip_W, dt_s);
+  } else {
+    follow_with_intersection(X_WL);
+    turn_reaction(X_WL);
+  }
+  memory_.tip_probe_W = probe_W;
+  memory_.X_WL = X_WL;
+  memory_.device_before_W = memory_.device_tip_W;
+  memory_.device_tip_W = device_tip_W;
 
   HapticStep result;
-  result.wrench.force_N = tip_force(settings_.stiffness_N_per_mm, proxy_W, X_WD.position_mm);  // eq. 6
-  result.burr_force_N = result.wrench.force_N.norm();
-  if (settings_.shaft_pushes) {
-    push_with_shaft(proxy_W - X_WD.position_mm);
-    result.wrench.force_N += memory_.shaft_push_N;
+  // The tool's tip is at its proxy, or where the shaft has pushed it.
+  const Vec3 tool_tip_W = memory_.tip_proxy_W.value_or(tip_probe_W(device_tip_W));
+  result.wrench.force_N = tip_force(settings_.stiffness_N_per_mm, tool_tip_W, device_tip_W);  // eq. 6
+  result.wrench.torque_Nmm = torque(memory_.arm_W, memory_.reaction_N);                       // eq. 11
+  if (memory_.tip_proxy_W) {
+    result.burr_force_N = tip_force(settings_.stiffness_N_per_mm, tool_tip_W, tip_probe_W(device_tip_W)).norm();
   }
-  result.wrench.torque_Nmm = torque(memory_.arm_W, memory_.reaction_N);  // eq. 11
   result.contacts = (memory_.tip_proxy_W ? 1 : 0) +
-                    (memory_.intersection_W ? vertices_in_bone(*scene_.volume, shaft_vertices(), X_WL) : 0);
+                    (memory_.intersection_W ? std::max(1, vertices_in_bone(*scene_.volume, shaft_vertices(), X_WL)) : 0);
   forget_what_is_not_finite();
-  result.X_WT = simulated_tool(X_WD);
-  memory_.device_tip_W = X_WD.position_mm;
-  memory_.X_WL = X_WL;
+  Pose touching = touching_tool(X_WD, tool_tip_W);
+  if (settings_.show_outside && !memory_.tip_proxy_W)
+    touching.position_mm = cleared_position(*scene_.volume, scene_.tool, touching, settings_.normal);
+  result.X_WT = simulated_tool(X_WD, touching, dt_s);
   return result;
 }
 
-void LineProxy::follow_with_tip_proxy(const Vec3& device_tip_W) {
-  if (memory_.tip_proxy_W) {
-    if (!settings_.contact_until_proxy_is_free && !in_bone(*scene_.volume, device_tip_W))
-      memory_.tip_proxy_W.reset();
-  } else {
-    memory_.tip_proxy_W = first_tip_proxy(device_tip_W);
-  }
-  if (!memory_.tip_proxy_W) return;
-  const double device_move_mm = memory_.device_tip_W ? (device_tip_W - *memory_.device_tip_W).norm() : 0.0;
-  memory_.tip_proxy_W = move_point_proxy(*scene_.volume, *memory_.tip_proxy_W, device_tip_W,
-                                         {settings_.normal, settings_.tip_proxy_limit_mm + device_move_mm});
-  if (*memory_.tip_proxy_W == device_tip_W) memory_.tip_proxy_W.reset();
+// Where the tool's tip would be without contact of its own.
+Vec3 LineProxy::tip_probe_W(const Vec3& device_tip_W) const {
+  return device_tip_W + memory_.touch.shift_mm();
 }
 
-std::optional<Vec3> LineProxy::first_tip_proxy(const Vec3& device_tip_W) const {
+void LineProxy::follow_with_tip_proxy(const Vec3& tip_probe_W, double dt_s) {
+  if (memory_.tip_proxy_W) {
+    if (!settings_.contact_until_proxy_is_free && !in_bone(*scene_.volume, tip_probe_W))
+      memory_.tip_proxy_W.reset();
+  } else {
+    memory_.tip_proxy_W = first_tip_proxy(tip_probe_W);
+  }
+  if (!memory_.tip_proxy_W) return;
+  const double probe_move_mm = memory_.tip_probe_W ? (tip_probe_W - *memory_.tip_probe_W).norm() : 0.0;
+  memory_.tip_proxy_W =
+      move_point_proxy(*scene_.volume, *memory_.tip_proxy_W, tip_probe_W,
+                       {settings_.normal, settings_.tip_proxy_limit_mm_per_s * dt_s + probe_move_mm});
+  if (*memory_.tip_proxy_W == tip_probe_W) memory_.tip_proxy_W.reset();
+}
+
+std::optional<Vec3> LineProxy::first_tip_proxy(const Vec3& tip_probe_W) const {
   const Volume& volume = *scene_.volume;
-  const bool inside = in_bone(volume, device_tip_W);
+  const bool inside = in_bone(volume, tip_probe_W);
   if (!inside && !settings_.contact_until_proxy_is_free) return std::nullopt;
-  if (memory_.device_tip_W && !in_bone(volume, *memory_.device_tip_W)) {
-    return crossing_in_grid(volume, *memory_.device_tip_W, device_tip_W);
+  if (memory_.tip_probe_W && !in_bone(volume, *memory_.tip_probe_W)) {
+    return crossing_in_grid(volume, *memory_.tip_probe_W, tip_probe_W);
   }
   if (!inside) return std::nullopt;
-  return nearest_exit(volume, device_tip_W, kExitReach_mm);
+  return nearest_exit(volume, tip_probe_W, kExitReach_mm);
 }
 
 void LineProxy::follow_with_intersection(const Pose& X_WL) {
   if (memory_.intersection_W) {
-    slide_intersection(X_WL);
+    memory_.intersection_W = next_intersection(X_WL);
   } else if (vertices_in_bone(*scene_.volume, shaft_vertices(), X_WL) > 0) {
     memory_.intersection_W = first_intersection(X_WL);
-    memory_.middle_proxy_W = memory_.intersection_W.value_or(Vec3::Zero());
   }
 }
 
@@ -113,87 +130,67 @@ std::optional<Vec3> LineProxy::first_intersection(const Pose& X_WL) const {
                         {settings_.translation_steps, settings_.rotation_steps},
                         settings_.clamp_fraction ? FractionRule::kept_within_step : FractionRule::as_printed);
   if (!hit) return std::nullopt;
-  Vec3 intersection_W = intersection_point(hit->before_W, hit->at_W, hit->fraction);  // eq. 2
-  if (is_refused(intersection_W, hit->at_W, X_WL)) return std::nullopt;
-  return intersection_W;
+  return intersection_point(hit->before_W, hit->at_W, hit->fraction);  // eq. 2
 }
 
-// Collision at t-1 already.
-void LineProxy::slide_intersection(const Pose& X_WL) {
-  const auto next_W = settings_.shaft_probe == ShaftProbeRule::densest ? next_intersection(X_WL)
-                                                                       : next_intersection_across(X_WL);
-  if (!next_W) {
-    memory_.intersection_W.reset();
-  } else if (!is_refused(*next_W, *memory_.intersection_W, X_WL)) {
-    memory_.intersection_W = next_W;
-  }
-}
-
-// The point-proxy rule takes IP from where it was toward the densest point; nothing where the shaft is free.
-std::optional<Vec3> LineProxy::next_intersection(const Pose& X_WL) {
+// Collision at t-1 already. The point-proxy rule takes IP from where it was toward the densest point; nothing
+// where the shaft is free.
+std::optional<Vec3> LineProxy::next_intersection(const Pose& X_WL) const {
   const Volume& volume = *scene_.volume;
   const ShaftProbe probe = densest_point(volume, shaft_vertices(), X_WL, *memory_.intersection_W);
   if (!(probe.density > volume.isovalue())) return std::nullopt;
   return move_point_proxy(volume, *memory_.intersection_W, probe.point_W,
-                          {settings_.normal, settings_.intersection_slide_limit_mm});
+                          {settings_.normal, LineProxySettings::kNoLimit});
 }
 
-// The point-proxy rule on the middle of the shaft's way through the bone says which way is out; IP is that
-// proxy, or the surface where that way is the longest.
-std::optional<Vec3> LineProxy::next_intersection_across(const Pose& X_WL) {
-  const Volume& volume = *scene_.volume;
-  const auto run = nearest_run(volume, shaft_vertices(), X_WL, *memory_.intersection_W);
-  if (!run) return std::nullopt;
-  const double middle = middle_of(volume, shaft_vertices(), X_WL, *run);
-  const Vec3 middle_W = sample_W(shaft_vertices(), X_WL, middle);
-  memory_.middle_proxy_W = move_point_proxy(volume, memory_.middle_proxy_W, middle_W,
-                                            {settings_.normal, settings_.intersection_slide_limit_mm});
-  const Vec3 axis = shaft_direction(X_WL);
-  const Vec3 out = memory_.middle_proxy_W - middle_W;
-  const Vec3 across = out - out.dot(axis) * axis;
-  // Where out is along the shaft, the proxy of the middle is all there is.
-  Vec3 goal_W = memory_.middle_proxy_W;
-  if (settings_.shaft_probe == ShaftProbeRule::deepest_across && across.norm() > 0.1 * out.norm()) {
-    // The edge of a wedge of bone is at most twice as deep as the middle; more is bone on another side.
-    const double limit_mm = 2.5 * across.norm() + 0.5 * volume.geometry().spacing_mm.minCoeff();
-    goal_W = deepest_across(volume, shaft_vertices(), X_WL, *run, middle, across.normalized(), limit_mm)
-                 .value_or(goal_W);
-  }
-  return moved_toward(*memory_.intersection_W, goal_W,
-                      settings_.intersection_slide_limit_mm + line_move_mm(X_WL));
-}
-
-// How far the centreline's tip has come since the last tick.
-double LineProxy::line_move_mm(const Pose& X_WL) const {
-  return memory_.X_WL ? (X_WL.position_mm - memory_.X_WL->position_mm).norm() : 0.0;
-}
-
-bool LineProxy::is_refused(const Vec3& intersection_W, const Vec3& expected_W, const Pose& X_WL) const {
-  if ((intersection_W - expected_W).norm() > settings_.intersection_jump_limit_mm) return true;
-  return settings_.refuse_behind_tip && (intersection_W - X_WL.position_mm).dot(shaft_direction(X_WL)) < 0.0;
-}
-
-// The reaction of the shaft, which lags behind eq. 10 where its slew is limited.
 void LineProxy::turn_reaction(const Pose& X_WL) {
-  Vec3 reaction_N = Vec3::Zero();
-  if (memory_.intersection_W) {
-    memory_.arm_W = arm(*memory_.intersection_W, X_WL.position_mm);                                   // eq. 7
-    const Vec3 probe_W = probe_intersection(memory_.arm_W, shaft_direction(X_WL), X_WL.position_mm);  // eq. 8
-    const Vec3 g = orientation_error(*memory_.intersection_W, probe_W);                               // eq. 9
-    reaction_N =
-        shaft_share(memory_.arm_W.norm()) * reaction_force(settings_.stiffness_N_per_mm, g);  // eq. 10
-  }
-  memory_.reaction_N = moved_toward(memory_.reaction_N, reaction_N, settings_.shaft_force_slew_N);
+  memory_.reaction_N.setZero();
+  if (!memory_.intersection_W) return;
+  memory_.arm_W = arm(*memory_.intersection_W, X_WL.position_mm);                                   // eq. 7
+  const Vec3 probe_W = probe_intersection(memory_.arm_W, shaft_direction(X_WL), X_WL.position_mm);  // eq. 8
+  const Vec3 g = orientation_error(*memory_.intersection_W, probe_W);                               // eq. 9
+  memory_.reaction_N =
+      shaft_share(memory_.arm_W.norm()) * reaction_force(settings_.stiffness_N_per_mm, g);  // eq. 10
 }
 
-// What of the reaction the hand feels as a force. The centreline is laid at the tip's proxy, which goes along
-// with the hand in the tangent plane only: a push along the tip's own spring would answer to no movement of
-// the hand, and such a spring, stiff one way and not the other, feeds energy into the hand.
-void LineProxy::push_with_shaft(const Vec3& tip_spring_W) {
-  Vec3 push_N = memory_.reaction_N;
-  const double spring_mm = tip_spring_W.norm();
-  if (spring_mm > 0.0) push_N -= push_N.dot(tip_spring_W / spring_mm) * (tip_spring_W / spring_mm);
-  memory_.shaft_push_N = moved_toward(memory_.shaft_push_N, push_N, settings_.shaft_force_slew_N);
+// In the place of eq. 8 to 10.
+void LineProxy::touch_with_shaft(const Pose& X_WL, const Vec3& device_tip_W, double dt_s) {
+  const Volume& volume = *scene_.volume;
+  const double spacing_mm = (vertices_T_[1] - vertices_T_[0]).norm();
+  const ShaftSpan span{vertices_T_[1].z(), vertices_T_.back().z(), spacing_mm / 4};
+  LaidLine line{X_WL, device_tip_W, std::nullopt};
+  if (memory_.tip_proxy_W) {
+    const Vec3 raised = *memory_.tip_proxy_W - tip_probe_W(device_tip_W);
+    if (raised.norm() > 1e-9) line.rest = TipRest{*memory_.tip_proxy_W, raised.normalized()};
+  }
+  ShaftTouch& touch = memory_.touch;
+  touch.follow(volume, span, line, touch.touches() ? 0.0 : first_lever_mm(X_WL), touch_rule(), dt_s);
+  memory_.reaction_N = touch.reaction_N();
+  memory_.intersection_W.reset();
+  if (!touch.touches()) return;
+  memory_.intersection_W = touch.point_W();
+  memory_.arm_W = touch.lever_mm() * shaft_direction(X_WL);
+}
+
+// Where the walk finds the first contact.
+double LineProxy::first_lever_mm(const Pose& X_WL) const {
+  if (vertices_in_bone(*scene_.volume, shaft_vertices(), X_WL) == 0) return 0.0;
+  const auto first_W = first_intersection(X_WL);
+  return first_W ? shaft_direction(X_WL).dot(*first_W - X_WL.position_mm) : 0.0;
+}
+
+ShaftTouchRule LineProxy::touch_rule() const {
+  constexpr double kStiffest = 25.0;
+  const double k = settings_.stiffness_N_per_mm;
+  return {settings_.normal,
+          settings_.shaft_pushes ? k : LineProxySettings::kNoLimit,
+          settings_.shaft_turning_Nmm_per_rad,
+          kStiffest * k,
+          settings_.shaft_fade_radii * scene_.tool.shaft_radius_mm,
+          settings_.contact_turning_share,
+          settings_.contact_slide_limit_mm_per_s,
+          settings_.contact_turn_limit_rad_per_s,
+          settings_.shaft_force_slew_N_per_s};
 }
 
 double LineProxy::shaft_share(double arm_mm) const {
@@ -202,13 +199,12 @@ double LineProxy::shaft_share(double arm_mm) const {
 }
 
 // The tool moved out of the bone by its radii.
-Pose LineProxy::touching_tool(const Pose& X_WD) const {
+Pose LineProxy::touching_tool(const Pose& X_WD, const Vec3& tool_tip_W) const {
   const Volume& volume = *scene_.volume;
-  Pose X_WT = X_WD;
+  Pose X_WT{tool_tip_W, X_WD.orientation};
   if (memory_.tip_proxy_W) {
-    const auto u = surface_normal(volume, *memory_.tip_proxy_W, settings_.normal);
-    X_WT.position_mm =
-        u ? offset_point(*memory_.tip_proxy_W, *u, scene_.tool.burr_radius_mm) : *memory_.tip_proxy_W;
+    const auto u = surface_normal(volume, tool_tip_W, settings_.normal);
+    if (u) X_WT.position_mm = offset_point(tool_tip_W, *u, scene_.tool.burr_radius_mm);
   }
   if (!memory_.intersection_W) return X_WT;
   const auto u = surface_normal(volume, *memory_.intersection_W, settings_.normal);
@@ -223,15 +219,14 @@ Pose LineProxy::touching_tool(const Pose& X_WD) const {
   return X_WT;
 }
 
-Pose LineProxy::simulated_tool(const Pose& X_WD) {
-  const Pose touching = touching_tool(X_WD);
+Pose LineProxy::simulated_tool(const Pose& X_WD, const Pose& touching, double dt_s) {
   const double device_move_mm =
-      memory_.device_tip_W ? (X_WD.position_mm - *memory_.device_tip_W).norm() : 0.0;
+      memory_.device_before_W ? (X_WD.position_mm - *memory_.device_before_W).norm() : 0.0;
   memory_.tool_shift_W = moved_toward(memory_.tool_shift_W, touching.position_mm - X_WD.position_mm,
-                                      settings_.tool_glide_mm + device_move_mm);
+                                      settings_.tool_glide_mm_per_s * dt_s + device_move_mm);
   memory_.tool_turn_W =
       moved_toward(memory_.tool_turn_W, rotation_vector(touching.orientation * X_WD.orientation.conjugate()),
-                   settings_.tool_glide_rad);
+                   settings_.tool_glide_rad_per_s * dt_s);
   return {X_WD.position_mm + memory_.tool_shift_W,
           (quaternion_from_rotation_vector(memory_.tool_turn_W) * X_WD.orientation).normalized()};
 }

@@ -6,6 +6,7 @@
 
 #include "osteomill/haptics/haptic_algorithm.h"
 #include "osteomill/haptics/line_proxy/line_proxy_settings.h"
+#include "osteomill/haptics/line_proxy/shaft_touch.h"
 
 namespace osteomill {
 
@@ -32,37 +33,37 @@ class LineProxy final : public HapticAlgorithm {
  private:
   // What one tick leaves to the next.
   struct Memory {
+    std::optional<Vec3> device_before_W;
     std::optional<Vec3> device_tip_W;
+    // What the tip's proxy followed: the device's tip, moved on by the shaft's push.
+    std::optional<Vec3> tip_probe_W;
     std::optional<Vec3> tip_proxy_W;
     // The centreline, laid at the tip's proxy where there is one.
     std::optional<Pose> X_WL;
     std::optional<Vec3> intersection_W;
-    // Unless the probe is the densest point: the point proxy of the middle of the shaft's way through the
-    // bone.
-    Vec3 middle_proxy_W = Vec3::Zero();
+    // With `shaft-contact` it is this that makes the intersection point.
+    line_proxy::ShaftTouch touch;
     Vec3 arm_W = Vec3::Zero();
     Vec3 reaction_N = Vec3::Zero();
-    Vec3 shaft_push_N = Vec3::Zero();
     // The simulated tool against the device: moved by, turned by (a rotation vector in W).
     Vec3 tool_shift_W = Vec3::Zero();
     Vec3 tool_turn_W = Vec3::Zero();
   };
 
   std::span<const Vec3> shaft_vertices() const { return std::span(vertices_T_).subspan(1); }
-  void follow_with_tip_proxy(const Vec3& device_tip_W);
-  std::optional<Vec3> first_tip_proxy(const Vec3& device_tip_W) const;
+  Vec3 tip_probe_W(const Vec3& device_tip_W) const;
+  void follow_with_tip_proxy(const Vec3& tip_probe_W, double dt_s);
+  std::optional<Vec3> first_tip_proxy(const Vec3& tip_probe_W) const;
   void follow_with_intersection(const Pose& X_WL);
   std::optional<Vec3> first_intersection(const Pose& X_WL) const;
-  void slide_intersection(const Pose& X_WL);
-  std::optional<Vec3> next_intersection(const Pose& X_WL);
-  std::optional<Vec3> next_intersection_across(const Pose& X_WL);
-  double line_move_mm(const Pose& X_WL) const;
-  bool is_refused(const Vec3& intersection_W, const Vec3& expected_W, const Pose& X_WL) const;
+  std::optional<Vec3> next_intersection(const Pose& X_WL) const;
   void turn_reaction(const Pose& X_WL);
-  void push_with_shaft(const Vec3& tip_spring_W);
+  void touch_with_shaft(const Pose& X_WL, const Vec3& device_tip_W, double dt_s);
+  double first_lever_mm(const Pose& X_WL) const;
+  line_proxy::ShaftTouchRule touch_rule() const;
   double shaft_share(double arm_mm) const;
-  Pose touching_tool(const Pose& X_WD) const;
-  Pose simulated_tool(const Pose& X_WD);
+  Pose touching_tool(const Pose& X_WD, const Vec3& tool_tip_W) const;
+  Pose simulated_tool(const Pose& X_WD, const Pose& touching, double dt_s);
   void forget_what_is_not_finite();
 
   LineProxySettings settings_;

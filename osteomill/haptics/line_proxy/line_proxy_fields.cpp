@@ -22,27 +22,31 @@ constexpr SettingField<S> kFields[] = {
     setting_field<S>(
         "clamp-fraction", [](S& s) -> auto& { return s.clamp_fraction; }),
     setting_field<S>(
-        "intersection-jump-limit", [](S& s) -> auto& { return s.intersection_jump_limit_mm; }, "mm"),
-    setting_field<S>(
-        "refuse-behind-tip", [](S& s) -> auto& { return s.refuse_behind_tip; }),
-    setting_field<S>(
-        "intersection-slide-limit", [](S& s) -> auto& { return s.intersection_slide_limit_mm; }, "mm"),
-    setting_field<S>(
-        "tip-proxy-limit", [](S& s) -> auto& { return s.tip_proxy_limit_mm; }, "mm"),
+        "tip-proxy-limit", [](S& s) -> auto& { return s.tip_proxy_limit_mm_per_s; }, "mm/s"),
     setting_field<S>(
         "contact-until-proxy-is-free", [](S& s) -> auto& { return s.contact_until_proxy_is_free; }),
     setting_field<S>(
-        "shaft-probe", [](S& s) -> auto& { return s.shaft_probe; }),
+        "shaft-contact", [](S& s) -> auto& { return s.shaft_contact; }),
     setting_field<S>(
         "shaft-pushes", [](S& s) -> auto& { return s.shaft_pushes; }),
     setting_field<S>(
+        "shaft-turning-stiffness", [](S& s) -> auto& { return s.shaft_turning_Nmm_per_rad; }, "N mm/rad"),
+    setting_field<S>(
         "shaft-fade", [](S& s) -> auto& { return s.shaft_fade_radii; }, "shaft radii"),
     setting_field<S>(
-        "shaft-force-slew", [](S& s) -> auto& { return s.shaft_force_slew_N; }, "N"),
+        "contact-turning-share", [](S& s) -> auto& { return s.contact_turning_share; }),
     setting_field<S>(
-        "tool-glide", [](S& s) -> auto& { return s.tool_glide_mm; }, "mm"),
+        "contact-slide-limit", [](S& s) -> auto& { return s.contact_slide_limit_mm_per_s; }, "mm/s"),
     setting_field<S>(
-        "tool-glide-turn", [](S& s) -> auto& { return s.tool_glide_rad; }, "rad"),
+        "contact-turn-limit", [](S& s) -> auto& { return s.contact_turn_limit_rad_per_s; }, "rad/s"),
+    setting_field<S>(
+        "shaft-force-slew", [](S& s) -> auto& { return s.shaft_force_slew_N_per_s; }, "N/s"),
+    setting_field<S>(
+        "show-outside", [](S& s) -> auto& { return s.show_outside; }),
+    setting_field<S>(
+        "tool-glide", [](S& s) -> auto& { return s.tool_glide_mm_per_s; }, "mm/s"),
+    setting_field<S>(
+        "tool-glide-turn", [](S& s) -> auto& { return s.tool_glide_rad_per_s; }, "rad/s"),
 };
 
 }  // namespace

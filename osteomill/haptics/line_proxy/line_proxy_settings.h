@@ -7,21 +7,9 @@
 
 namespace osteomill {
 
-/// Which point of the shaft draws the intersection point to itself.
-enum class ShaftProbeRule : unsigned char {
-  /// The paper's v_max. It leaps from vertex to vertex and from one grain of the scan to the next.
-  densest,
-  /// The middle of the shaft's way through the bone. On an edge the lever is off by up to half that way, and
-  /// the force is about half.
-  middle,
-  /// The place that must be moved furthest across the shaft to come free, found from the middle: at an edge,
-  /// the edge.
-  deepest_across,
-};
-
 /// What algorithm 1 is made of. The first block is the paper's; every field of the second is an improvement
-/// that can be switched by itself, and whose initial value is the paper's behaviour. Limits are per tick,
-/// meant for 1 kHz.
+/// that can be switched by itself, and whose initial value is the paper's behaviour. Limits are per second,
+/// so that the haptic rate does not matter.
 struct LineProxySettings {
   static constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
@@ -37,31 +25,35 @@ struct LineProxySettings {
 
   /// Keeps the fraction of eq. 1 between 0 and 1, so that the intersection point lies on the vertex's path.
   bool clamp_fraction = false;
-  /// An intersection point further than this from the colliding vertex, or from the one before it, is
-  /// refused.
-  double intersection_jump_limit_mm = kNoLimit;
-  /// Refuses an intersection point on the other side of the tip than the shaft.
-  bool refuse_behind_tip = false;
-  /// How far the intersection point may slide over the bone in a tick.
-  double intersection_slide_limit_mm = kNoLimit;
-  /// How far the tip's proxy may move in a tick beyond the device's own movement, so that the force fades
-  /// instead of stepping where the proxy comes free.
-  double tip_proxy_limit_mm = kNoLimit;
+  /// How fast the tip's proxy may move beyond the device's own movement, so that the force fades instead of
+  /// stepping where the proxy comes free.
+  double tip_proxy_limit_mm_per_s = kNoLimit;
   /// The tip stays in contact until its proxy has a free way to it: no falling through thin walls.
   bool contact_until_proxy_is_free = false;
-  /// Which point of the shaft draws the intersection point to itself.
-  ShaftProbeRule shaft_probe = ShaftProbeRule::densest;
-  /// Sends the shaft's reaction force as well as its torque.
+  /// The shaft's reaction comes from where and which way the line must be moved to come free, instead of from
+  /// the densest point.
+  bool shaft_contact = false;
+  /// That reaction moves the tool's tip as well, and is felt as a force.
   bool shaft_pushes = false;
+  /// The spring that holds the tool's orientation to the device's where the shaft's contact turns it; 0 takes
+  /// the spring of eq. 10, which is `stiffness` times the square of the lever.
+  double shaft_turning_Nmm_per_rad = 0.0;
   /// The reaction of the shaft grows from nothing at the tip to full at this many shaft radii from it; 0 for
-  /// none.
+  /// none. (With `shaft_contact` by the square of the lever, and where the shaft alone holds the tool.)
   double shaft_fade_radii = 0.0;
-  /// How much the reaction of the shaft may change in a tick.
-  double shaft_force_slew_N = kNoLimit;
-  /// How fast the simulated tool goes over between touching and free, in a tick, beyond the device's own
-  /// movement.
-  double tool_glide_mm = kNoLimit;
-  double tool_glide_rad = kNoLimit;
+  /// How much of the way to where the shaft's contact points its push turns in a tick, in (0, 1].
+  double contact_turning_share = 1.0;
+  /// How fast the shaft's contact may slide along it, ...
+  double contact_slide_limit_mm_per_s = kNoLimit;
+  /// ... turn about it, ...
+  double contact_turn_limit_rad_per_s = kNoLimit;
+  /// ... and change its reaction.
+  double shaft_force_slew_N_per_s = kNoLimit;
+  /// Keeps the simulated tool, as wide as it is, out of bone that its centreline does not touch yet.
+  bool show_outside = false;
+  /// How fast the simulated tool goes over between touching and free, beyond the device's own movement.
+  double tool_glide_mm_per_s = kNoLimit;
+  double tool_glide_rad_per_s = kNoLimit;
 
   /// `paper` as printed, or `steady` with every improvement at the value that was found best.
   static LineProxySettings defaults(Mode mode);

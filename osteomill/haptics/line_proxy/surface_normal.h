@@ -10,9 +10,9 @@ namespace osteomill::line_proxy {
 /// How the normal of the isosurface is found.
 struct NormalRule {
   GradientKernel kernel = GradientKernel::smoothed;
-  /// 0 takes the gradient at the point alone; otherwise the sum of four, at the corners of a regular
-  /// tetrahedron this far (in voxels) from it, which halves the turning of the normal with the grid.
-  double spread_voxels = 1.0;
+  /// 0 takes the gradient at the point alone; otherwise the sum of eight, at the corners of a cube this far
+  /// (in voxels) from it, which quarters the turning of the normal with the grid.
+  double spread_voxels = 1.25;
 };
 
 /// The unit vector out of the bone at a point, or nothing where the density is flat. Safe in the haptic tick.

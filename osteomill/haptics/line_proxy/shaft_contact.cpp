@@ -1,0 +1,189 @@
+#include "osteomill/haptics/line_proxy/shaft_contact.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "osteomill/volume/isosurface.h"
+#include "osteomill/volume/sampling.h"
+
+namespace osteomill::line_proxy {
+
+namespace {
+
+struct Line {
+  const Volume& volume;
+  Vec3 origin_W;
+  Vec3 along_W;
+
+  Vec3 at(double lever_mm) const { return origin_W + lever_mm * along_W; }
+  double above_isovalue(const Vec3& point_W) const {
+    return density_at(volume.grid(), point_W) - volume.isovalue();
+  }
+  bool in_bone(double lever_mm) const { return above_isovalue(at(lever_mm)) > 0.0; }
+  // Between a lever outside the bone and one inside.
+  double crossing(double outside_mm, double inside_mm) const {
+    return along_W.dot(bisect_crossing(volume, at(outside_mm), at(inside_mm)) - origin_W);
+  }
+};
+
+// A stretch of the line in bone; whether it goes in above its lower end, and comes out below its upper end.
+struct Stretch {
+  double lower_mm;
+  double upper_mm;
+  bool enters;
+  bool leaves;
+};
+
+double distance_to(const Stretch& stretch, double lever_mm) {
+  return std::max({0.0, stretch.lower_mm - lever_mm, lever_mm - stretch.upper_mm});
+}
+
+std::optional<Stretch> nearest_stretch(const Line& line, const ShaftSpan& span, double near_mm) {
+  std::optional<Stretch> nearest;
+  std::optional<Stretch> current;
+  const int samples = static_cast<int>((span.end_mm - span.start_mm) / span.sample_mm + 0.5);
+  const double sample_mm = (span.end_mm - span.start_mm) / std::max(1, samples);
+  for (int n = 0; n <= samples + 1; ++n) {
+    const double lever_mm = span.start_mm + n * sample_mm;
+    if (n <= samples && line.in_bone(lever_mm)) {
+      if (!current) current = Stretch{lever_mm, lever_mm, n > 0, false};
+      current->upper_mm = lever_mm;
+      current->leaves = n < samples;
+    } else if (current) {
+      if (!nearest || distance_to(*current, near_mm) < distance_to(*nearest, near_mm)) nearest = current;
+      current.reset();
+    }
+  }
+  if (!nearest) return std::nullopt;
+  // The line may come out of the bone between the span and the tip.
+  if (!nearest->enters && !line.in_bone(0.0)) {
+    nearest->enters = true;
+    nearest->lower_mm = line.crossing(0.0, nearest->lower_mm);
+  } else if (nearest->enters) {
+    nearest->lower_mm = line.crossing(nearest->lower_mm - sample_mm, nearest->lower_mm);
+  }
+  if (nearest->leaves) nearest->upper_mm = line.crossing(nearest->upper_mm + sample_mm, nearest->upper_mm);
+  return nearest;
+}
+
+// Out of the bone at the stretch's ends, and how steeply each end's surface stands against the line.
+struct WayOut {
+  Vec3 out_W = Vec3::Zero();
+  // What a wedge of bone between the two surfaces would be deep at most.
+  double wedge_depth_mm = 0.0;
+};
+
+// A surface that a line grazes may seem to lean the wrong way by an error of its normal.
+constexpr double kLeastSlope = 0.02;
+
+std::optional<WayOut> way_out_between(const Line& line, const Stretch& stretch, const Vec3& lower,
+                                      const Vec3& upper) {
+  const double lower_slope = std::max(kLeastSlope, -lower.dot(line.along_W));
+  const double upper_slope = std::max(kLeastSlope, upper.dot(line.along_W));
+  const Vec3 sum = upper_slope * lower + lower_slope * upper;
+  const Vec3 across = sum - sum.dot(line.along_W) * line.along_W;
+  const double size = across.norm();
+  // Through a thin wall the two surfaces look away from each other.
+  if (!(size > 0.2 * (lower_slope + upper_slope))) return std::nullopt;
+  const Vec3 out_W = across / size;
+  // As deep as each surface where the other end is, shared out.
+  const double lower_rise = lower_slope / std::max(0.1, lower.dot(out_W));
+  const double upper_rise = upper_slope / std::max(0.1, upper.dot(out_W));
+  const double depth_mm =
+      (stretch.upper_mm - stretch.lower_mm) * lower_rise * upper_rise / (lower_rise + upper_rise);
+  return WayOut{out_W, depth_mm};
+}
+
+std::optional<WayOut> way_out(const Line& line, const Stretch& stretch, const NormalRule& rule) {
+  const auto lower =
+      stretch.enters ? surface_normal(line.volume, line.at(stretch.lower_mm), rule) : std::nullopt;
+  const auto upper =
+      stretch.leaves ? surface_normal(line.volume, line.at(stretch.upper_mm), rule) : std::nullopt;
+  const double length_mm = stretch.upper_mm - stretch.lower_mm;
+  if (lower && upper) return way_out_between(line, stretch, *lower, *upper);
+  if (lower) return WayOut{*lower, std::max(0.0, -lower->dot(line.along_W)) * length_mm};
+  if (upper) return WayOut{*upper, std::max(0.0, upper->dot(line.along_W)) * length_mm};
+  return std::nullopt;
+}
+
+// How far from a point in bone along `out_W` the bone ends; nothing beyond the limit.
+std::optional<double> depth_along(const Line& line, const Vec3& point_W, const Vec3& out_W, double limit_mm) {
+  const double step_mm = 0.5 * line.volume.geometry().spacing_mm.minCoeff();
+  double above_before = line.above_isovalue(point_W);
+  if (!(above_before > 0.0)) return 0.0;
+  for (double depth_mm = step_mm; depth_mm < limit_mm + step_mm; depth_mm += step_mm) {
+    const double above = line.above_isovalue(point_W + depth_mm * out_W);
+    if (above > 0.0) {
+      above_before = above;
+      continue;
+    }
+    // Along half a voxel the density is nearly a parabola: once more by the chord.
+    const double chord_mm = depth_mm - step_mm * above / (above - above_before);
+    const double at_chord = line.above_isovalue(point_W + chord_mm * out_W);
+    if (at_chord > 0.0) return at_chord == above ? chord_mm : chord_mm + (depth_mm - chord_mm) * at_chord / (at_chord - above);
+    const double inner_mm = depth_mm - step_mm;
+    return inner_mm + (chord_mm - inner_mm) * above_before / (above_before - at_chord);
+  }
+  return std::nullopt;
+}
+
+constexpr int kPlaces = 20;
+
+class WeightedMean {
+ public:
+  void add(double weight, double lever_mm, double depth_mm) {
+    weights_ += weight;
+    levers_ += weight * lever_mm;
+    depths_ += weight * depth_mm;
+  }
+  double lever_mm() const { return levers_ / weights_; }
+  double depth_mm() const { return depths_ / weights_; }
+
+ private:
+  double weights_ = 0.0;
+  double levers_ = 0.0;
+  double depths_ = 0.0;
+};
+
+}  // namespace
+
+std::optional<ShaftContact> shaft_contact(const Volume& volume, const ShaftSpan& span, const Pose& X_WL,
+                                          double near_mm, const Vec3& out_before_W, const NormalRule& normal,
+                                          double softness_mm) {
+  const Line line{volume, X_WL.position_mm, shaft_direction(X_WL)};
+  const auto stretch = nearest_stretch(line, span, near_mm);
+  if (!stretch) return std::nullopt;
+  const double voxel_mm = volume.geometry().spacing_mm.minCoeff();
+  const double length_mm = stretch->upper_mm - stretch->lower_mm;
+  auto way = way_out(line, *stretch, normal);
+  if (!way && !out_before_W.isZero()) way = WayOut{out_before_W, length_mm};
+  if (!way) return std::nullopt;
+  const double limit_mm = 2.0 * way->wedge_depth_mm + voxel_mm;
+
+  std::array<double, kPlaces> depths_mm{};
+  double deepest_mm = 0.0;
+  const auto lever_of = [&](int n) { return stretch->lower_mm + (n + 0.5) / kPlaces * length_mm; };
+  for (int n = 0; n < kPlaces; ++n) {
+    double& depth_mm = depths_mm[static_cast<std::size_t>(n)];
+    depth_mm = depth_along(line, line.at(lever_of(n)), way->out_W, limit_mm).value_or(0.0);
+    deepest_mm = std::max(deepest_mm, depth_mm);
+  }
+  const double window_mm = std::min(softness_mm, deepest_mm);
+  if (!(window_mm > 0.0)) return std::nullopt;
+  WeightedMean blunt;
+  WeightedMean sharp;
+  for (int n = 0; n < kPlaces; ++n) {
+    const double depth_mm = depths_mm[static_cast<std::size_t>(n)];
+    const double share = 1.0 - (deepest_mm - depth_mm) / window_mm;
+    if (!(share > 0.0)) continue;
+    blunt.add(share, lever_of(n), depth_mm);
+    sharp.add(share * share * share, lever_of(n), depth_mm);
+  }
+  // On a wedge the means with the first and the third power are off its apex as 5 to 3.
+  const double lever_mm = 2.5 * sharp.lever_mm() - 1.5 * blunt.lever_mm();
+  const double depth_mm = 2.5 * sharp.depth_mm() - 1.5 * blunt.depth_mm();
+  return ShaftContact{std::clamp(lever_mm, stretch->lower_mm, stretch->upper_mm), way->out_W, depth_mm};
+}
+
+}  // namespace osteomill::line_proxy

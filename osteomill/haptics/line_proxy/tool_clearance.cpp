@@ -1,0 +1,90 @@
+#include "osteomill/haptics/line_proxy/tool_clearance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "osteomill/haptics/line_proxy/bone_march.h"
+#include "osteomill/volume/isosurface.h"
+
+namespace osteomill::line_proxy {
+
+namespace {
+
+constexpr int kRounds = 2;
+constexpr double kTolerance_mm = 1e-3;
+// A deeper place is looked for only where it is this much deeper.
+constexpr double kWorthIt_mm = 0.02;
+constexpr double kSliceSpacing_mm = 1.0;
+constexpr int kSliceDirections = 8;
+
+// Where bone reaches deepest below the surface of the tool, as seen from its middle there.
+struct Overlap {
+  Vec3 middle_W;
+  Vec3 surface_W;
+  double radius_mm;
+  double depth_mm;
+};
+
+// Bone between a point of the tool's surface and the middle, where it reaches deeper than what is known.
+void look(const Volume& volume, const Vec3& middle_W, const Vec3& radius_W, std::optional<Overlap>& deepest) {
+  if (!in_bone(volume, middle_W + radius_W)) return;
+  const double radius_mm = radius_W.norm();
+  if (deepest) {
+    const double least_mm = deepest->depth_mm + kWorthIt_mm;
+    if (!(least_mm < radius_mm) || !in_bone(volume, middle_W + (1.0 - least_mm / radius_mm) * radius_W)) return;
+  }
+  const double step_mm = 0.5 * volume.geometry().spacing_mm.minCoeff();
+  Vec3 free_W = middle_W;
+  Vec3 inside_W = middle_W + radius_W;
+  for (double reach_mm = step_mm; reach_mm < radius_mm; reach_mm += step_mm) {
+    const Vec3 here_W = middle_W + reach_mm / radius_mm * radius_W;
+    if (in_bone(volume, here_W)) {
+      inside_W = here_W;
+      break;
+    }
+    free_W = here_W;
+  }
+  if (in_bone(volume, free_W)) return;  // the middle itself
+  const Vec3 surface_W = bisect_crossing(volume, free_W, inside_W, kTolerance_mm);
+  const double depth_mm = radius_mm - (surface_W - middle_W).norm();
+  deepest = Overlap{middle_W, surface_W, radius_mm, depth_mm};
+}
+
+std::optional<Overlap> deepest_overlap(const Volume& volume, const MillingTool& tool, const Pose& X_WT) {
+  std::optional<Overlap> deepest;
+  for (int n = 0; n < 27; ++n) {
+    if (n == 13) continue;  // no direction at all
+    const Vec3 direction = Vec3(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1).normalized();
+    look(volume, X_WT.position_mm, tool.burr_radius_mm * (X_WT.orientation * direction), deepest);
+  }
+  const int slices = std::max(1, static_cast<int>(tool.shaft_length_mm / kSliceSpacing_mm));
+  for (int slice = 1; slice <= slices; ++slice) {
+    const Vec3 middle_W = X_WT * Vec3(0, 0, tool.shaft_length_mm * slice / slices);
+    for (int n = 0; n < kSliceDirections; ++n) {
+      const double angle = 2.0 * std::numbers::pi * n / kSliceDirections;
+      const Vec3 direction(std::cos(angle), std::sin(angle), 0.0);
+      look(volume, middle_W, tool.shaft_radius_mm * (X_WT.orientation * direction), deepest);
+    }
+  }
+  return deepest;
+}
+
+}  // namespace
+
+Vec3 cleared_position(const Volume& volume, const MillingTool& tool, const Pose& X_WT,
+                      const NormalRule& normal) {
+  Pose cleared = X_WT;
+  for (int round = 0; round < kRounds; ++round) {
+    const auto overlap = deepest_overlap(volume, tool, cleared);
+    if (!overlap) break;
+    const Vec3 inward = (overlap->middle_W - overlap->surface_W).normalized();
+    const Vec3 out = surface_normal(volume, overlap->surface_W, normal).value_or(inward);
+    const double away_mm = out.dot(overlap->middle_W - overlap->surface_W);
+    cleared.position_mm += std::clamp(overlap->radius_mm - away_mm, 0.0, overlap->radius_mm) * out;
+  }
+  return cleared.position_mm;
+}
+
+}  // namespace osteomill::line_proxy
