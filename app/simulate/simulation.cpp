@@ -50,6 +50,8 @@ Simulation::Simulation(LoadedBone bone, const BoneDensities& densities, const Mi
       settings_(settings),
       isovalue_(bone.volume.isovalue()),
       copy_(bone.volume.grid()),
+      histogram_(histogram_of(bone.volume.grid())),
+      grey_window_(grey_window_of(bone.volume.grid(), densities.surroundings)),
       surface_(std::make_unique<LiveSurface>(bone.volume)),
       outlet_(bone.volume.geometry()),
       hand_(handle_settings(settings), pointing_hand(), pose_above(entry, settings.tool, kStartAbove_mm)),

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "app/scan_options.h"
+#include "app/simulate/histogram.h"
 #include "app/simulate/simulation_settings.h"
 
 #include "osteomill/device/milling_entry.h"
@@ -17,6 +18,7 @@
 #include "osteomill/session/live_session.h"
 #include "osteomill/session/milled_copy.h"
 #include "osteomill/surface/live_surface.h"
+#include "osteomill/view/cut_face.h"
 
 namespace osteomill::app {
 
@@ -66,6 +68,8 @@ class Simulation {
   const std::string& scan_name() const { return scan_name_; }
   const SimulationSettings& settings() const { return settings_; }
   const BoneDensities& densities() const { return densities_; }
+  const DensityHistogram& histogram() const { return histogram_; }
+  const GreyWindow& grey_window() const { return grey_window_; }
   double isovalue() const { return isovalue_; }
   /// The bone as last handed over: some ticks behind.
   const DensityGrid& bone() const { return copy_.grid(); }
@@ -106,6 +110,8 @@ class Simulation {
   SimulationSettings settings_;
   double isovalue_;
   MilledCopy copy_;
+  DensityHistogram histogram_;
+  GreyWindow grey_window_;
   std::uint64_t bone_version_ = 1;
   std::unique_ptr<LiveSurface> surface_;
   int surface_number_ = 1;

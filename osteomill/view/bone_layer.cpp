@@ -44,6 +44,28 @@ bool may_be_seen(const std::array<Eigen::Vector4d, 6>& planes, const Sphere& sph
   });
 }
 
+// Densities averaged over neighbouring vertices: which voxels a vertex looks at depends on where the grid's
+// lines meet the surface, and that would be seen as a pattern.
+std::vector<MeshVertex> with_smooth_densities(const BrickMesh& mesh) {
+  constexpr int kPasses = 3;
+  std::vector<MeshVertex> vertices = mesh.vertices;
+  std::vector<std::array<float, 2>> sums(vertices.size());
+  for (int pass = 0; pass < kPasses; ++pass) {
+    for (std::size_t n = 0; n < vertices.size(); ++n) sums[n] = {vertices[n].density, 1};
+    for (std::size_t n = 0; n < mesh.indices.size(); n += 3) {
+      const std::uint32_t* corners = &mesh.indices[n];
+      const float sum =
+          vertices[corners[0]].density + vertices[corners[1]].density + vertices[corners[2]].density;
+      for (int corner = 0; corner < 3; ++corner) {
+        sums[corners[corner]][0] += sum;
+        sums[corners[corner]][1] += 3;
+      }
+    }
+    for (std::size_t n = 0; n < vertices.size(); ++n) vertices[n].density = sums[n][0] / sums[n][1];
+  }
+  return vertices;
+}
+
 bool is_cut(const ViewScene& scene) {
   return std::any_of(scene.cuts.begin(), scene.cuts.end(), [](const auto& cut) { return cut.has_value(); });
 }
@@ -100,10 +122,11 @@ void BoneLayer::set_brick(std::size_t number, const BrickMesh& mesh) {
     brick.vertices = gl::make_buffer();
     brick.indices = gl::make_buffer();
   }
+  const std::vector<MeshVertex> vertices = with_smooth_densities(mesh);
   glBindVertexArray(brick.vertex_array.get());
   glBindBuffer(GL_ARRAY_BUFFER, brick.vertices.get());
-  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.vertices.size() * sizeof(MeshVertex)),
-               mesh.vertices.data(), GL_DYNAMIC_DRAW);
+  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(MeshVertex)),
+               vertices.data(), GL_DYNAMIC_DRAW);
   glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, brick.indices.get());
   glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.indices.size() * sizeof(std::uint32_t)),
                mesh.indices.data(), GL_DYNAMIC_DRAW);

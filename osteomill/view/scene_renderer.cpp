@@ -100,8 +100,8 @@ void SceneRenderer::set_brick(std::size_t brick, const BrickMesh& mesh) {
   impl_->bone.set_brick(brick, mesh);
 }
 
-void SceneRenderer::set_cut_face(const CutFace& face) {
-  impl_->cut_faces.set(face);
+void SceneRenderer::set_cut_face(std::size_t cut, const CutFace& face) {
+  impl_->cut_faces.set(cut, face);
 }
 
 void SceneRenderer::draw(const ViewScene& scene, const PixelSize& size) {

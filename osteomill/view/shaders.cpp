@@ -36,20 +36,22 @@ uniform vec2 picture_size;
 uniform float cavity_scale;  // 1 / mm, at a depth of 1 mm
 uniform sampler2D blurred_depth;
 out vec4 colour;
-const vec3 kSoft = vec3(0.70, 0.43, 0.33);
-const vec3 kBone = vec3(0.87, 0.74, 0.54);
-const vec3 kEnamel = vec3(0.93, 0.92, 0.88);
+const vec3 kSoft = vec3(0.76, 0.52, 0.40);
+const vec3 kBone = vec3(0.87, 0.76, 0.58);
+const vec3 kEnamel = vec3(0.93, 0.91, 0.86);
 void main() {
   vec3 n = normalize(normal_C);
   float share = (bone_density - isovalue) / max(reference_density - isovalue, 1e-6);
-  vec3 base = share < 1.0 ? mix(kSoft, kBone, smoothstep(0.0, 1.0, share))
-                          : mix(kBone, kEnamel, smoothstep(1.15, 1.75, share));
+  vec3 base = share < 1.0 ? mix(kSoft, kBone, smoothstep(0.05, 0.85, share))
+                          : mix(kBone, kEnamel, smoothstep(1.05, 2.1, share));
   if (!gl_FrontFacing) {
     colour = vec4(0.42 * base, 1.0);
     return;
   }
   vec2 around = texture(blurred_depth, gl_FragCoord.xy / picture_size).rg;
   float sunk = around.g > 0.05 ? (depth_mm - around.r / around.g) * cavity_scale / depth_mm : 0.0;
+  // Towards its outline everything lies deeper than the middle of the picture's bone: that is no cavity.
+  sunk *= smoothstep(0.15, 0.65, n.z);
   float open = 1.0 - 0.62 * smoothstep(0.0, 1.0, sunk) + 0.06 * smoothstep(0.0, 1.0, -sunk);
   float key = max(dot(n, normalize(vec3(-0.45, 0.60, 0.66))), 0.0);
   float fill = max(dot(n, normalize(vec3(0.75, -0.05, 0.55))), 0.0);
