@@ -83,6 +83,10 @@ void FilesPanel::take_result(ViewState& view) {
 
 void FilesPanel::draw(ViewState& view, Simulation& simulation) {
   take_result(view);
+  if (const auto ended = simulation.take_ended_recording()) {
+    last_recording_ = *ended;
+    view.message = "The change ended the recording " + ended->string();
+  }
   if (!ui::header("Record and save", true)) return;
   if (ui::button(simulation.recording() ? "Stop recording##r" : "Record##r")) record(view, simulation);
   ImGui::SameLine();

@@ -39,7 +39,8 @@ void plot(const char* name, const char* unit, const std::deque<TickRecord>& hist
   ImGui::Text("%s  %.2f %s  (5 s, up to %.2f)", name, now, unit, static_cast<double>(greatest));
   ImGui::PushStyleColor(ImGuiCol_PlotLines, colour);
   ImGui::PlotLines((std::string("##") + name).c_str(), points.data(), static_cast<int>(points.size()), 0,
-                   nullptr, 0, std::max(1.1f * greatest, least_scale), {ImGui::GetContentRegionAvail().x, 56});
+                   nullptr, 0, std::max(1.1f * greatest, least_scale),
+                   {ImGui::GetContentRegionAvail().x, 56});
   ImGui::PopStyleColor();
 }
 

@@ -166,6 +166,7 @@ void Simulation::rebuild(double removed_mm3) {
 }
 
 void Simulation::take_over(Prepared prepared) {
+  if (recording()) ended_recording_ = stop_recording();
   settings_ = prepared.settings;
   live_.wait_for(live_.replace({std::move(prepared.session), {}}));
   if (prepared.surface) {

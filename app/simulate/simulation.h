@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "app/scan_options.h"
 #include "app/simulate/histogram.h"
@@ -58,6 +59,11 @@ class Simulation {
   /// Returns the recording's name.
   std::filesystem::path stop_recording();
   bool recording() const { return recorder_ != nullptr; }
+  /// A recording tells of one bone, one tool and one algorithm: where any of them changes it ends. Its name
+  /// then, once.
+  std::optional<std::filesystem::path> take_ended_recording() {
+    return std::exchange(ended_recording_, std::nullopt);
+  }
 
   const LiveState& state() { return live_.state(); }
   TimingSummary timing() const { return live_.timing(); }
@@ -119,6 +125,7 @@ class Simulation {
   VirtualHand hand_;
   std::unique_ptr<Recorder> recorder_;
   std::filesystem::path recorder_path_;
+  std::optional<std::filesystem::path> ended_recording_;
   LiveSession live_;
   std::future<Prepared> preparation_;
   std::deque<TickRecord> history_;

@@ -1,6 +1,8 @@
 #include "app/simulate/simulator.h"
 
+#include <algorithm>
 #include <chrono>
+#include <ctime>
 #include <exception>
 #include <future>
 #include <memory>
@@ -162,6 +164,7 @@ class Simulator {
     }
     window_.show();
     rate_.count();
+    ++pictures_since_said_;
     if (std::exchange(view_.full_screen_asked, false)) window_.toggle_full_screen();
     // Faster than anyone sees only takes time from the others.
     constexpr auto kShortest = 12ms;
@@ -171,12 +174,16 @@ class Simulator {
   void say(const std::string& text) {
     const TimingSummary timing = simulation_->timing();
     const TickRecord& record = simulation_->state().record;
+    const double cpu_s = static_cast<double>(std::clock() - said_cpu_) / CLOCKS_PER_SEC;
     fmt::print(
-        "{}: {:.1f} pictures/s, {} triangles, {:.1f} Hz, {} late, step p99 {:.0f} us, force {:.2f} N, "
-        "removed {:.3f} mm^3\n",
-        text, rate_.per_s(), renderer_->triangle_count(), timing.rate_hz, timing.late_ticks,
-        timing.step.p99_us, record.wrench.force_N.norm(), record.removed_mm3);
+        "{}: {:.1f} pictures/s ({:.0f} ms of all processors each), {} triangles, {:.1f} Hz, {} late, step "
+        "p99 {:.0f} us, force {:.2f} N, removed {:.3f} mm^3, {} cuts\n",
+        text, rate_.per_s(), 1e3 * cpu_s / std::max(pictures_since_said_, 1), renderer_->triangle_count(),
+        timing.rate_hz, timing.late_ticks, timing.step.p99_us, record.wrench.force_N.norm(),
+        record.removed_mm3, simulation_->cuts());
     std::fflush(stdout);
+    said_cpu_ = std::clock();
+    pictures_since_said_ = 0;
   }
 
   SimulatorOptions options_;
@@ -189,6 +196,8 @@ class Simulator {
   FilesPanel files_;
   CutUpdates cuts_;
   PictureRate rate_;
+  int pictures_since_said_ = 0;
+  std::clock_t said_cpu_ = 0;
   Clock::time_point start_ = Clock::now();
   Clock::time_point last_picture_ = Clock::now();
   // Ends first: no tick outlives what it tells of.

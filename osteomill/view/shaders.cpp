@@ -51,7 +51,7 @@ void main() {
   vec2 around = texture(blurred_depth, gl_FragCoord.xy / picture_size).rg;
   float sunk = around.g > 0.05 ? (depth_mm - around.r / around.g) * cavity_scale / depth_mm : 0.0;
   // Towards its outline everything lies deeper than the middle of the picture's bone: that is no cavity.
-  sunk *= smoothstep(0.15, 0.65, n.z);
+  sunk *= smoothstep(0.3, 0.8, n.z);
   float open = 1.0 - 0.62 * smoothstep(0.0, 1.0, sunk) + 0.06 * smoothstep(0.0, 1.0, -sunk);
   float key = max(dot(n, normalize(vec3(-0.45, 0.60, 0.66))), 0.0);
   float fill = max(dot(n, normalize(vec3(0.75, -0.05, 0.55))), 0.0);
@@ -156,7 +156,7 @@ uniform sampler2D greys;
 out vec4 colour;
 void main() {
   float grey = texture(greys, place).r;
-  if (grey < 0.06) discard;
+  if (grey < 0.14) discard;
   colour = vec4(vec3(grey), 1.0);
 }
 )";
