@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
 
 #include "osteomill/view/cavity_pass.h"
 #include "osteomill/view/shaders.h"
@@ -66,6 +67,12 @@ std::vector<MeshVertex> with_smooth_densities(const BrickMesh& mesh) {
   return vertices;
 }
 
+gl::Program bone_program(const char* definitions) {
+  const std::string vertex =
+      std::string("#version 330 core\n") + definitions + std::string(shaders::kBoneVertex);
+  return gl::make_program(vertex, shaders::kBoneFragment);
+}
+
 bool is_cut(const ViewScene& scene) {
   return std::any_of(scene.cuts.begin(), scene.cuts.end(), [](const auto& cut) { return cut.has_value(); });
 }
@@ -100,7 +107,7 @@ void end_cuts() {
 }
 
 BoneLayer::BoneLayer(const SurfaceBricks& layout, const GridGeometry& geometry)
-    : program_(gl::make_program(shaders::kBoneVertex, shaders::kBoneFragment)), bricks_(layout.count()) {
+    : whole_(bone_program("")), cut_(bone_program("#define CUT\n")), bricks_(layout.count()) {
   for (std::size_t n = 0; n < bricks_.size(); ++n) bricks_[n].bounds = bounds_of(geometry, layout.cells(n));
 }
 
@@ -140,8 +147,7 @@ void BoneLayer::set_brick(std::size_t number, const BrickMesh& mesh) {
   attribute(2, 1, offsetof(MeshVertex, density));
 }
 
-void BoneLayer::set_uniforms(const ViewScene& scene, const Projection& projection) const {
-  const GLuint program = program_.get();
+void BoneLayer::set_uniforms(GLuint program, const ViewScene& scene, const Projection& projection) {
   const auto place = [&](const char* name) { return glGetUniformLocation(program, name); };
   glUniformMatrix4fv(place("camera_from_world"), 1, GL_FALSE, projection.camera_from_world.data());
   glUniformMatrix4fv(place("clip_from_camera"), 1, GL_FALSE, projection.clip_from_camera.data());
@@ -154,12 +160,14 @@ void BoneLayer::set_uniforms(const ViewScene& scene, const Projection& projectio
 }
 
 void BoneLayer::draw(const ViewScene& scene, const Projection& projection, GLuint blurred_depths) const {
-  glUseProgram(program_.get());
-  set_uniforms(scene, projection);
-  begin_cuts(program_.get(), scene);
+  const bool cut = is_cut(scene);
+  const GLuint program = (cut ? cut_ : whole_).get();
+  glUseProgram(program);
+  set_uniforms(program, scene, projection);
+  if (cut) begin_cuts(program, scene);
   glActiveTexture(GL_TEXTURE0);
   glBindTexture(GL_TEXTURE_2D, blurred_depths);
-  if (!is_cut(scene)) glEnable(GL_CULL_FACE);
+  if (!cut) glEnable(GL_CULL_FACE);
   const auto planes = view_planes(projection);
   for (const Brick& brick : bricks_) {
     if (brick.index_count == 0 || !may_be_seen(planes, brick.bounds)) continue;
