@@ -13,14 +13,11 @@ void add_commands(CLI::App& program, const std::string& command_line);
 void add_compare_command(CLI::App& program, const std::string& command_line);
 void add_info_command(CLI::App& program);
 void add_live_command(CLI::App& program, const std::string& command_line);
-void add_rates_command(CLI::App& program);
-void add_replay_command(CLI::App& program);
-void add_report_command(CLI::App& program);
-void add_simulate_command(CLI::App& program, const std::string& command_line);
 void add_mesh_command(CLI::App& program);
 void add_rates_command(CLI::App& program);
 void add_replay_command(CLI::App& program);
 void add_report_command(CLI::App& program);
 void add_save_command(CLI::App& program);
+void add_simulate_command(CLI::App& program, const std::string& command_line);
 
 }  // namespace osteomill::app

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cfloat>
 #include <string>
 
 #include "app/simulate/panels.h"
@@ -89,6 +90,45 @@ void draw_session(ViewState& view, Simulation& simulation) {
   ImGui::TextDisabled("%d cuts", static_cast<int>(simulation.cuts()));
 }
 
+void draw_isovalue(ViewState& view, Simulation& simulation) {
+  if (!ui::header("Bone", false)) return;
+  const DensityHistogram& histogram = simulation.histogram();
+  const ImVec2 place = ImGui::GetCursorScreenPos();
+  const ImVec2 size(ImGui::CalcItemWidth(), 44);
+  ImGui::PlotHistogram("##densities", histogram.log_counts.data(),
+                       static_cast<int>(histogram.log_counts.size()), 0, nullptr, 0, FLT_MAX, size);
+  const float share = (view.isovalue - histogram.least) / (histogram.greatest - histogram.least);
+  const float x = place.x + std::clamp(share, 0.0f, 1.0f) * size.x;
+  ImGui::GetWindowDrawList()->AddLine({x, place.y}, {x, place.y + size.y}, IM_COL32(255, 180, 60, 255), 2);
+  if (ui::slider("isovalue", &view.isovalue, histogram.least, histogram.greatest, "%.0f",
+                 ImGuiSliderFlags_AlwaysClamp)) {
+    simulation.surface().set_isovalue(static_cast<double>(view.isovalue));
+  }
+  if (ui::released()) simulation.change_isovalue(static_cast<double>(view.isovalue));
+  ui::hint("Bone is where the scan is denser");
+}
+
+void draw_cuts(ViewState& view, const Simulation& simulation) {
+  if (!ui::header("Cuts", false)) return;
+  const char* names[] = {"axial", "coronal", "sagittal", "free"};
+  for (std::size_t n = 0; n < view.cuts.size(); ++n) {
+    ViewState::Cut& cut = view.cuts[n];
+    ImGui::PushID(static_cast<int>(n));
+    if (ui::checkbox(names[n], &cut.on) && cut.on && n == 3) {
+      cut.normal_W = -view.camera.towards_viewer_W();
+      cut.offset_mm = static_cast<float>(cut.normal_W.dot(view.bounds.centre_W));
+    }
+    if (cut.on) {
+      ImGui::SameLine(100);
+      ui::checkbox("other side", &cut.other_side);
+      const auto extent = extent_along(simulation.bone().geometry(), cut.normal_W);
+      ui::slider((std::string(names[n]) + " place").c_str(), &cut.offset_mm, static_cast<float>(extent[0]),
+                 static_cast<float>(extent[1]), "%.1f mm");
+    }
+    ImGui::PopID();
+  }
+}
+
 void draw_view(ViewState& view) {
   if (!ui::header("View", true)) return;
   for (const ViewFrom from : kAllViews) {
@@ -106,7 +146,7 @@ void draw_view(ViewState& view) {
 
 }  // namespace
 
-void draw_controls(ViewState& view, Simulation& simulation, const PixelSize& size) {
+void draw_controls(ViewState& view, Simulation& simulation, FilesPanel& files, const PixelSize& size) {
   ImGui::SetNextWindowPos({8, 8});
   ImGui::SetNextWindowSizeConstraints({kWidth_px, 0}, {kWidth_px, static_cast<float>(size.height) - 70});
   ImGui::Begin("osteomill", nullptr, ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize);
@@ -117,6 +157,9 @@ void draw_controls(ViewState& view, Simulation& simulation, const PixelSize& siz
   draw_algorithm(view.wanted, changed);
   draw_tool(view.wanted, changed);
   draw_view(view);
+  draw_cuts(view, simulation);
+  draw_isovalue(view, simulation);
+  files.draw(view, simulation);
   view.wanted_is_new = view.wanted_is_new || changed;
   if (view.wanted_is_new && !simulation.preparing()) {
     view.wanted_is_new = false;

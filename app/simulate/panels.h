@@ -1,12 +1,13 @@
 #pragma once
 
+#include "app/simulate/files_panel.h"
 #include "app/simulate/simulation.h"
 #include "app/simulate/view_state.h"
 
 namespace osteomill::app {
 
 /// The column on the left: everything that can be set.
-void draw_controls(ViewState& view, Simulation& simulation, const PixelSize& size);
+void draw_controls(ViewState& view, Simulation& simulation, FilesPanel& files, const PixelSize& size);
 
 /// The column on the right: everything that is measured.
 void draw_readings(Simulation& simulation, double pictures_per_s, const PixelSize& size);

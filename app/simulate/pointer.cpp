@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "app/simulate/cuts.h"
 #include "app/simulate/tool_control.h"
 #include <GLFW/glfw3.h>
 #include <imgui.h>
@@ -83,6 +84,7 @@ void take_keys(ViewState& view, Simulation& simulation) {
 }  // namespace
 
 void take_input(ViewState& view, Simulation& simulation, const PixelSize& size) {
+  if (drag_cut(view, size)) return;
   const ImGuiIO& io = ImGui::GetIO();
   const LiveState& state = simulation.state();
   const MillingTool& tool = simulation.settings().tool;

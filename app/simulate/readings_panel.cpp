@@ -1,7 +1,9 @@
 #include <algorithm>
+#include <string>
 #include <vector>
 
 #include "app/simulate/panels.h"
+#include <fmt/core.h>
 #include <imgui.h>
 
 namespace osteomill::app {
@@ -23,6 +25,12 @@ std::vector<float> thinned(const std::deque<TickRecord>& history, double (*magni
   return points;
 }
 
+void row(const char* name, const std::string& value) {
+  ImGui::TextUnformatted(name);
+  ImGui::SameLine(96);
+  ImGui::TextUnformatted(value.c_str());
+}
+
 void plot(const char* name, const char* unit, const std::deque<TickRecord>& history,
           double (*magnitude)(const TickRecord&), float least_scale, const ImVec4& colour) {
   const std::vector<float> points = thinned(history, magnitude);
@@ -31,7 +39,8 @@ void plot(const char* name, const char* unit, const std::deque<TickRecord>& hist
   ImGui::Text("%s  %.2f %s  (5 s, up to %.2f)", name, now, unit, static_cast<double>(greatest));
   ImGui::PushStyleColor(ImGuiCol_PlotLines, colour);
   ImGui::PlotLines((std::string("##") + name).c_str(), points.data(), static_cast<int>(points.size()), 0,
-                   nullptr, 0, std::max(1.1f * greatest, least_scale), {-1, 56});
+                   nullptr, 0, std::max(1.1f * greatest, least_scale),
+                   {ImGui::GetContentRegionAvail().x, 56});
   ImGui::PopStyleColor();
 }
 
@@ -57,13 +66,11 @@ void draw_readings(Simulation& simulation, double pictures_per_s, const PixelSiz
   ImGui::Begin("Readings", nullptr, ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize);
   const TimingSummary timing = simulation.timing();
   const LiveState& state = simulation.state();
-  ImGui::Text("haptic rate   %.0f Hz", timing.recent_rate_hz);
-  ImGui::Text("step          %.0f us, p99 %.0f us", timing.step.p50_us, timing.step.p99_us);
-  ImGui::Text("late ticks    %llu of %llu",
-              static_cast<unsigned long long>(timing.late_ticks + timing.missed_ticks),
-              static_cast<unsigned long long>(timing.ticks));
-  ImGui::Text("pictures      %.0f / s", pictures_per_s);
-  ImGui::Text("removed       %.2f mm^3", state.record.removed_mm3);
+  row("haptic rate", fmt::format("{:.0f} Hz", timing.recent_rate_hz));
+  row("step", fmt::format("{:.0f} us, p99 {:.0f} us", timing.step.p50_us, timing.step.p99_us));
+  row("late ticks", fmt::format("{} of {}", timing.late_ticks + timing.missed_ticks, timing.ticks));
+  row("pictures", fmt::format("{:.0f} / s", pictures_per_s));
+  row("removed", fmt::format("{:.2f} mm^3", state.record.removed_mm3));
   ImGui::Separator();
   const auto& history = simulation.history();
   plot("force", "N", history, [](const TickRecord& r) { return r.wrench.force_N.norm(); }, 1.0f,

@@ -2,12 +2,16 @@
 
 #include <algorithm>
 
+#include "app/simulate/cuts.h"
+
 namespace osteomill::app {
 
 namespace {
 
 constexpr double kWidestWhole_mm = 25;
 constexpr double kAroundEntry_mm = 16;
+constexpr double kApart_mm = 0.03;
+constexpr double kApart_rad = 0.01;
 
 }  // namespace
 
@@ -44,14 +48,15 @@ ViewScene scene_of(const ViewState& view, Simulation& simulation) {
   scene.bounds = view.bounds;
   scene.tool = simulation.settings().tool;
   scene.X_WT = record.X_WT;
-  if (view.ghost) scene.X_WD = record.X_WD;
+  // Where both are the same the ghost would only tint the tool.
+  const double apart_mm = (record.X_WD.position_mm - record.X_WT.position_mm).norm();
+  const double apart_rad = record.X_WD.orientation.angularDistance(record.X_WT.orientation);
+  if (view.ghost && (apart_mm > kApart_mm || apart_rad > kApart_rad)) scene.X_WD = record.X_WD;
   if (view.arrows) scene.wrench = record.wrench;
   scene.isovalue = simulation.isovalue();
   scene.reference_density = simulation.densities().reference;
   for (std::size_t n = 0; n < view.cuts.size(); ++n) {
-    const ViewState::Cut& cut = view.cuts[n];
-    const double side = cut.other_side ? -1 : 1;
-    if (cut.on) scene.cuts[n] = CutPlane{side * cut.normal_W, side * static_cast<double>(cut.offset_mm)};
+    if (view.cuts[n].on) scene.cuts[n] = plane_of(view.cuts[n]);
   }
   return scene;
 }

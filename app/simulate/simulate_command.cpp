@@ -34,6 +34,8 @@ void add_simulate_command(CLI::App& program, const std::string& command_line) {
   add_algorithm_option(*command, options->algorithm);
   command->get_option("--algorithm")->expected(1);
   add_milling_options(*command, options->milling);
+  command->add_option("--out", options->simulator.folder, "Folder for recordings and what is saved")
+      ->capture_default_str();
   command->add_flag("--no-help", options->simulator.no_help,
                     "Begin without the page that explains the controls");
   command->add_option("--script", options->simulator.script,

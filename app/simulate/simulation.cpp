@@ -50,6 +50,8 @@ Simulation::Simulation(LoadedBone bone, const BoneDensities& densities, const Mi
       settings_(settings),
       isovalue_(bone.volume.isovalue()),
       copy_(bone.volume.grid()),
+      histogram_(histogram_of(bone.volume.grid())),
+      grey_window_(grey_window_of(bone.volume.grid(), densities.surroundings)),
       surface_(std::make_unique<LiveSurface>(bone.volume)),
       outlet_(bone.volume.geometry()),
       hand_(handle_settings(settings), pointing_hand(), pose_above(entry, settings.tool, kStartAbove_mm)),
@@ -164,6 +166,7 @@ void Simulation::rebuild(double removed_mm3) {
 }
 
 void Simulation::take_over(Prepared prepared) {
+  if (recording()) ended_recording_ = stop_recording();
   settings_ = prepared.settings;
   live_.wait_for(live_.replace({std::move(prepared.session), {}}));
   if (prepared.surface) {

@@ -7,8 +7,10 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "app/scan_options.h"
+#include "app/simulate/histogram.h"
 #include "app/simulate/simulation_settings.h"
 
 #include "osteomill/device/milling_entry.h"
@@ -17,6 +19,7 @@
 #include "osteomill/session/live_session.h"
 #include "osteomill/session/milled_copy.h"
 #include "osteomill/surface/live_surface.h"
+#include "osteomill/view/cut_face.h"
 
 namespace osteomill::app {
 
@@ -56,6 +59,11 @@ class Simulation {
   /// Returns the recording's name.
   std::filesystem::path stop_recording();
   bool recording() const { return recorder_ != nullptr; }
+  /// A recording tells of one bone, one tool and one algorithm: where any of them changes it ends. Its name
+  /// then, once.
+  std::optional<std::filesystem::path> take_ended_recording() {
+    return std::exchange(ended_recording_, std::nullopt);
+  }
 
   const LiveState& state() { return live_.state(); }
   TimingSummary timing() const { return live_.timing(); }
@@ -66,6 +74,8 @@ class Simulation {
   const std::string& scan_name() const { return scan_name_; }
   const SimulationSettings& settings() const { return settings_; }
   const BoneDensities& densities() const { return densities_; }
+  const DensityHistogram& histogram() const { return histogram_; }
+  const GreyWindow& grey_window() const { return grey_window_; }
   double isovalue() const { return isovalue_; }
   /// The bone as last handed over: some ticks behind.
   const DensityGrid& bone() const { return copy_.grid(); }
@@ -106,6 +116,8 @@ class Simulation {
   SimulationSettings settings_;
   double isovalue_;
   MilledCopy copy_;
+  DensityHistogram histogram_;
+  GreyWindow grey_window_;
   std::uint64_t bone_version_ = 1;
   std::unique_ptr<LiveSurface> surface_;
   int surface_number_ = 1;
@@ -113,6 +125,7 @@ class Simulation {
   VirtualHand hand_;
   std::unique_ptr<Recorder> recorder_;
   std::filesystem::path recorder_path_;
+  std::optional<std::filesystem::path> ended_recording_;
   LiveSession live_;
   std::future<Prepared> preparation_;
   std::deque<TickRecord> history_;

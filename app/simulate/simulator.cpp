@@ -1,6 +1,8 @@
 #include "app/simulate/simulator.h"
 
+#include <algorithm>
 #include <chrono>
+#include <ctime>
 #include <exception>
 #include <future>
 #include <memory>
@@ -8,6 +10,8 @@
 #include <thread>
 #include <utility>
 
+#include "app/simulate/cuts.h"
+#include "app/simulate/files_panel.h"
 #include "app/simulate/overlay.h"
 #include "app/simulate/panels.h"
 #include "app/simulate/pointer.h"
@@ -18,6 +22,9 @@
 #include <fmt/core.h>
 #include <imgui.h>
 
+#include "osteomill/files/atomic_file.h"
+#include "osteomill/surface/png.h"
+#include "osteomill/surface/scale_bar.h"
 #include "osteomill/view/scene_renderer.h"
 
 namespace osteomill::app {
@@ -54,7 +61,7 @@ class PictureRate {
 class Simulator {
  public:
   explicit Simulator(const SimulatorOptions& options)
-      : options_(options), window_("osteomill", options.size) {
+      : options_(options), window_("osteomill", options.size), files_(options.folder) {
     if (!options.script.empty()) script_.emplace(options.script);
     view_.help = !options.no_help;
   }
@@ -72,12 +79,17 @@ class Simulator {
       }
       finish();
     }
+    if (simulation_) files_.close(view_, *simulation_);
+    if (!view_.complaint.empty()) fmt::print(stderr, "osteomill: {}\n", view_.complaint);
+    if (!files_.last_recording().empty()) {
+      fmt::print("{0}\nIts report: osteomill report {0} --out report\n", files_.last_recording().string());
+    }
   }
 
  private:
   void begin() {
     window_.begin_frame();
-    const bool settled = simulation_ && !simulation_->preparing() && !view_.wanted_is_new;
+    const bool settled = simulation_ && !simulation_->preparing() && !view_.wanted_is_new && !files_.busy();
     if (script_ && simulation_) script_->feed(seconds_since(last_picture_), settled, window_);
     last_picture_ = Clock::now();
     ImGui::NewFrame();
@@ -90,6 +102,8 @@ class Simulator {
       view_.camera = camera_on_entry(simulation_->entry(), view_.bounds);
       view_.X_W_target = simulation_->state().record.X_WD;
       view_.wanted = simulation_->settings();
+      view_.isovalue = static_cast<float>(simulation_->isovalue());
+      reset_cuts(view_);
       renderer_ =
           std::make_unique<SceneRenderer>(simulation_->surface().layout(), simulation_->bone().geometry());
       surface_number_ = simulation_->surface_number();
@@ -109,10 +123,12 @@ class Simulator {
     }
     take_input(view_, *simulation_, size);
     take_surface();
+    cuts_.update(view_, *simulation_, *renderer_);
     renderer_->draw(scene_of(view_, *simulation_), size);
     renderer_->copy_to_window();
+    if (std::exchange(view_.picture_asked, false)) save_picture();
     draw_annotations(view_, size, !options_.scan.scan.empty());
-    draw_controls(view_, *simulation_, size);
+    draw_controls(view_, *simulation_, files_, size);
     draw_readings(*simulation_, rate_.per_s(), size);
     draw_help(view_, size);
     draw_complaint(view_);
@@ -128,6 +144,19 @@ class Simulator {
     }
   }
 
+  void save_picture() {
+    try {
+      Image picture = renderer_->picture();
+      draw_scale_bar(picture, mm_per_pixel(window_.size(), view_.camera.distance_mm));
+      create_folder(options_.folder);
+      const auto path = files_.name("picture.png");
+      write_png(path, picture);
+      view_.message = "Saved " + path.string();
+    } catch (const std::exception& error) {
+      view_.complaint = error.what();
+    }
+  }
+
   void finish() {
     window_.end_frame();
     if (script_ && simulation_) {
@@ -135,6 +164,7 @@ class Simulator {
     }
     window_.show();
     rate_.count();
+    ++pictures_since_said_;
     if (std::exchange(view_.full_screen_asked, false)) window_.toggle_full_screen();
     // Faster than anyone sees only takes time from the others.
     constexpr auto kShortest = 12ms;
@@ -144,12 +174,16 @@ class Simulator {
   void say(const std::string& text) {
     const TimingSummary timing = simulation_->timing();
     const TickRecord& record = simulation_->state().record;
+    const double cpu_s = static_cast<double>(std::clock() - said_cpu_) / CLOCKS_PER_SEC;
     fmt::print(
-        "{}: {:.1f} pictures/s, {} triangles, {:.1f} Hz, {} late, step p99 {:.0f} us, force {:.2f} N, "
-        "removed {:.3f} mm^3\n",
-        text, rate_.per_s(), renderer_->triangle_count(), timing.rate_hz, timing.late_ticks,
-        timing.step.p99_us, record.wrench.force_N.norm(), record.removed_mm3);
+        "{}: {:.1f} pictures/s ({:.0f} ms of all processors each), {} triangles, {:.1f} Hz, {} late, step "
+        "p99 {:.0f} us, force {:.2f} N, removed {:.3f} mm^3, {} cuts\n",
+        text, rate_.per_s(), 1e3 * cpu_s / std::max(pictures_since_said_, 1), renderer_->triangle_count(),
+        timing.rate_hz, timing.late_ticks, timing.step.p99_us, record.wrench.force_N.norm(),
+        record.removed_mm3, simulation_->cuts());
     std::fflush(stdout);
+    said_cpu_ = std::clock();
+    pictures_since_said_ = 0;
   }
 
   SimulatorOptions options_;
@@ -159,7 +193,11 @@ class Simulator {
   std::unique_ptr<SceneRenderer> renderer_;
   int surface_number_ = 0;
   ViewState view_;
+  FilesPanel files_;
+  CutUpdates cuts_;
   PictureRate rate_;
+  int pictures_since_said_ = 0;
+  std::clock_t said_cpu_ = 0;
   Clock::time_point start_ = Clock::now();
   Clock::time_point last_picture_ = Clock::now();
   // Ends first: no tick outlives what it tells of.

@@ -16,6 +16,8 @@ struct SimulatorOptions {
   /// Works the window in place of a person (ui_script.h); empty: nobody does.
   std::string script;
   bool no_help = false;
+  /// Where recordings and what is saved go.
+  std::string folder = ".";
   std::string command_line;
 };
 

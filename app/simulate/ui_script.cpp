@@ -19,7 +19,8 @@ namespace osteomill::app {
 
 namespace {
 
-constexpr double kClick_s = 0.25;
+// Pictures: on its place, down, moved, up.
+constexpr int kClickPictures = 12;
 
 const std::map<std::string, std::size_t> kWords{
     {"wait", 1}, {"settle", 0}, {"glide", 3}, {"press", 1},      {"release", 1}, {"wheel", 2}, {"key", 1},
@@ -106,8 +107,7 @@ void UiScript::begin(const Action& action, Window& window) {
     x_ = from_x_ = to_x_ = found->second.middle.x;
     y_ = from_y_ = to_y_ = found->second.middle.y;
     if (name == "drag") to_x_ += static_cast<float>(number(action, action.words.size() - 1));
-    click_down_ = true;
-    time_left_s_ = kClick_s;
+    click_picture_ = 1;
   } else if (name == "close") {
     window.ask_to_close();
   }
@@ -116,7 +116,7 @@ void UiScript::begin(const Action& action, Window& window) {
 void UiScript::next() {
   ++now_;
   begun_ = false;
-  click_down_ = false;
+  click_picture_ = 0;
   keys_.clear();
 }
 
@@ -127,16 +127,17 @@ void UiScript::feed(double passed_s, bool settled, Window& window) {
   if (now_ < actions_.size()) {
     const Action& action = actions_[now_];
     if (!begun_) begin(action, window);
-    const double share = time_left_s_ > passed_s ? passed_s / time_left_s_ : 1.0;
+    double share = time_left_s_ > passed_s ? passed_s / time_left_s_ : 1.0;
+    if (click_picture_ > 0) {
+      pressed = click_picture_ > 2 && click_picture_ < kClickPictures - 2;
+      share = pressed ? 0.5 : 0.0;
+      if (click_picture_++ < kClickPictures) time_left_s_ = 2 * passed_s;
+    }
     x_ += static_cast<float>(share) * (to_x_ - x_);
     y_ += static_cast<float>(share) * (to_y_ - y_);
-    wheel = action.name == "wheel" ? std::trunc(share * wheel_left_) : 0;
-    if (share >= 1) wheel = wheel_left_;
+    wheel = share < 1 ? std::trunc(share * wheel_left_) : wheel_left_;
     wheel_left_ -= wheel;
     time_left_s_ -= passed_s;
-    // Down after a first picture on the place, up before the last.
-    pressed = click_down_ && time_left_s_ < 0.6 * kClick_s && time_left_s_ > 0.2 * kClick_s;
-    if (action.name == "drag") pressed = time_left_s_ > 0.2 * kClick_s;
     std::fill(std::begin(io.KeysDown), std::end(io.KeysDown), false);
     for (const int key : keys_) io.KeysDown[key] = true;
     io.KeyShift = std::find(keys_.begin(), keys_.end(), GLFW_KEY_LEFT_SHIFT) != keys_.end();

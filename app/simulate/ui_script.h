@@ -60,7 +60,7 @@ class UiScript {
   float from_x_ = 400;
   float from_y_ = 300;
   bool buttons_[3] = {false, false, false};
-  bool click_down_ = false;
+  int click_picture_ = 0;
   double wheel_left_ = 0;
   std::vector<int> keys_;
 };

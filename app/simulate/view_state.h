@@ -41,6 +41,10 @@ struct ViewState {
     float offset_mm = 0;
   };
   std::array<Cut, kGreatestCutPlanes> cuts;
+  /// Which one the pointer drags, or -1.
+  int dragged_cut = -1;
+  /// While the slider is moved, before the bone is made anew.
+  float isovalue = 0;
 };
 
 }  // namespace osteomill::app

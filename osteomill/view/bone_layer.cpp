@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
 
 #include "osteomill/view/cavity_pass.h"
 #include "osteomill/view/shaders.h"
@@ -44,6 +45,34 @@ bool may_be_seen(const std::array<Eigen::Vector4d, 6>& planes, const Sphere& sph
   });
 }
 
+// Densities averaged over neighbouring vertices: which voxels a vertex looks at depends on where the grid's
+// lines meet the surface, and that would be seen as a pattern.
+std::vector<MeshVertex> with_smooth_densities(const BrickMesh& mesh) {
+  constexpr int kPasses = 3;
+  std::vector<MeshVertex> vertices = mesh.vertices;
+  std::vector<std::array<float, 2>> sums(vertices.size());
+  for (int pass = 0; pass < kPasses; ++pass) {
+    for (std::size_t n = 0; n < vertices.size(); ++n) sums[n] = {vertices[n].density, 1};
+    for (std::size_t n = 0; n < mesh.indices.size(); n += 3) {
+      const std::uint32_t* corners = &mesh.indices[n];
+      const float sum =
+          vertices[corners[0]].density + vertices[corners[1]].density + vertices[corners[2]].density;
+      for (int corner = 0; corner < 3; ++corner) {
+        sums[corners[corner]][0] += sum;
+        sums[corners[corner]][1] += 3;
+      }
+    }
+    for (std::size_t n = 0; n < vertices.size(); ++n) vertices[n].density = sums[n][0] / sums[n][1];
+  }
+  return vertices;
+}
+
+gl::Program bone_program(const char* definitions) {
+  const std::string vertex =
+      std::string("#version 330 core\n") + definitions + std::string(shaders::kBoneVertex);
+  return gl::make_program(vertex, shaders::kBoneFragment);
+}
+
 bool is_cut(const ViewScene& scene) {
   return std::any_of(scene.cuts.begin(), scene.cuts.end(), [](const auto& cut) { return cut.has_value(); });
 }
@@ -78,7 +107,7 @@ void end_cuts() {
 }
 
 BoneLayer::BoneLayer(const SurfaceBricks& layout, const GridGeometry& geometry)
-    : program_(gl::make_program(shaders::kBoneVertex, shaders::kBoneFragment)), bricks_(layout.count()) {
+    : whole_(bone_program("")), cut_(bone_program("#define CUT\n")), bricks_(layout.count()) {
   for (std::size_t n = 0; n < bricks_.size(); ++n) bricks_[n].bounds = bounds_of(geometry, layout.cells(n));
 }
 
@@ -100,10 +129,11 @@ void BoneLayer::set_brick(std::size_t number, const BrickMesh& mesh) {
     brick.vertices = gl::make_buffer();
     brick.indices = gl::make_buffer();
   }
+  const std::vector<MeshVertex> vertices = with_smooth_densities(mesh);
   glBindVertexArray(brick.vertex_array.get());
   glBindBuffer(GL_ARRAY_BUFFER, brick.vertices.get());
-  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.vertices.size() * sizeof(MeshVertex)),
-               mesh.vertices.data(), GL_DYNAMIC_DRAW);
+  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(MeshVertex)),
+               vertices.data(), GL_DYNAMIC_DRAW);
   glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, brick.indices.get());
   glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.indices.size() * sizeof(std::uint32_t)),
                mesh.indices.data(), GL_DYNAMIC_DRAW);
@@ -117,8 +147,7 @@ void BoneLayer::set_brick(std::size_t number, const BrickMesh& mesh) {
   attribute(2, 1, offsetof(MeshVertex, density));
 }
 
-void BoneLayer::set_uniforms(const ViewScene& scene, const Projection& projection) const {
-  const GLuint program = program_.get();
+void BoneLayer::set_uniforms(GLuint program, const ViewScene& scene, const Projection& projection) {
   const auto place = [&](const char* name) { return glGetUniformLocation(program, name); };
   glUniformMatrix4fv(place("camera_from_world"), 1, GL_FALSE, projection.camera_from_world.data());
   glUniformMatrix4fv(place("clip_from_camera"), 1, GL_FALSE, projection.clip_from_camera.data());
@@ -131,12 +160,14 @@ void BoneLayer::set_uniforms(const ViewScene& scene, const Projection& projectio
 }
 
 void BoneLayer::draw(const ViewScene& scene, const Projection& projection, GLuint blurred_depths) const {
-  glUseProgram(program_.get());
-  set_uniforms(scene, projection);
-  begin_cuts(program_.get(), scene);
+  const bool cut = is_cut(scene);
+  const GLuint program = (cut ? cut_ : whole_).get();
+  glUseProgram(program);
+  set_uniforms(program, scene, projection);
+  if (cut) begin_cuts(program, scene);
   glActiveTexture(GL_TEXTURE0);
   glBindTexture(GL_TEXTURE_2D, blurred_depths);
-  if (!is_cut(scene)) glEnable(GL_CULL_FACE);
+  if (!cut) glEnable(GL_CULL_FACE);
   const auto planes = view_planes(projection);
   for (const Brick& brick : bricks_) {
     if (brick.index_count == 0 || !may_be_seen(planes, brick.bounds)) continue;

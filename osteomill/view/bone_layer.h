@@ -45,9 +45,11 @@ class BoneLayer {
     GLsizei index_count = 0;
     Sphere bounds;
   };
-  void set_uniforms(const ViewScene& scene, const Projection& projection) const;
+  static void set_uniforms(GLuint program, const ViewScene& scene, const Projection& projection);
 
-  gl::Program program_;
+  // Clipping costs time at every vertex.
+  gl::Program whole_;
+  gl::Program cut_;
   std::vector<Brick> bricks_;
 };
 

@@ -8,10 +8,10 @@ namespace osteomill {
 
 namespace {
 
-constexpr int kShrink = 4;
+constexpr int kShrink = 8;
 
-gl::Texture small_texture(const PixelSize& size) {
-  return gl::make_texture(GL_RG32F, GL_RG, GL_FLOAT, size.width, size.height, GL_LINEAR);
+gl::Texture small_texture(const PixelSize& size, GLint filter) {
+  return gl::make_texture(GL_RG32F, GL_RG, GL_FLOAT, size.width, size.height, filter);
 }
 
 gl::Framebuffer framebuffer_on(const gl::Texture& texture) {
@@ -27,9 +27,9 @@ gl::Framebuffer framebuffer_on(const gl::Texture& texture) {
 
 CavityPass::CavityPass(const PixelSize& size)
     : size_{std::max(1, size.width / kShrink), std::max(1, size.height / kShrink)},
-      small_(small_texture(size_)),
-      half_blurred_(small_texture(size_)),
-      blurred_(small_texture(size_)),
+      small_(small_texture(size_, GL_NEAREST)),
+      half_blurred_(small_texture(size_, GL_NEAREST)),
+      blurred_(small_texture(size_, GL_LINEAR)),
       to_small_(framebuffer_on(small_)),
       to_half_blurred_(framebuffer_on(half_blurred_)),
       to_blurred_(framebuffer_on(blurred_)),

@@ -5,7 +5,7 @@
 
 namespace osteomill {
 
-/// Blurs the depths of a picture at a quarter of its size, for the next picture to tell what is sunk below
+/// Blurs the depths of a picture at an eighth of its size, for the next picture to tell what is sunk below
 /// its surroundings (after Luft, Colditz and Deussen 2006, whose unsharp mask of the depth buffer this is).
 class CavityPass {
  public:

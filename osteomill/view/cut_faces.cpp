@@ -11,8 +11,12 @@ CutFaces::CutFaces() : program_(gl::make_program(shaders::kCutVertex, shaders::k
   }
 }
 
-void CutFaces::set(const SceneRenderer::CutFace& face) {
-  Face& kept = faces_.at(face.cut);
+void CutFaces::set(std::size_t cut, const CutFace& face) {
+  Face& kept = faces_.at(cut);
+  if (face.greys.empty()) {
+    kept.greys = {};
+    return;
+  }
   kept.greys = gl::make_texture(GL_R8, GL_RED, GL_UNSIGNED_BYTE, face.width, face.height, GL_LINEAR);
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
   glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, face.width, face.height, GL_RED, GL_UNSIGNED_BYTE,

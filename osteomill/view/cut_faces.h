@@ -3,8 +3,8 @@
 #include <array>
 
 #include "osteomill/view/bone_layer.h"
+#include "osteomill/view/cut_face.h"
 #include "osteomill/view/gl_objects.h"
-#include "osteomill/view/scene_renderer.h"
 
 namespace osteomill {
 
@@ -12,7 +12,7 @@ namespace osteomill {
 class CutFaces {
  public:
   CutFaces();
-  void set(const SceneRenderer::CutFace& face);
+  void set(std::size_t cut, const CutFace& face);
   /// Each face as far as the other cuts leave it.
   void draw(const ViewScene& scene, const Projection& projection) const;
 

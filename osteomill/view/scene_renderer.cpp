@@ -60,11 +60,11 @@ struct SceneRenderer::Impl {
   }
 
   void draw_background() const {
-    glDisable(GL_DEPTH_TEST);
+    glDepthFunc(GL_LEQUAL);
     glUseProgram(background.get());
     glBindVertexArray(nothing.get());
     glDrawArrays(GL_TRIANGLES, 0, 3);
-    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_LESS);
   }
 
   // Over everything, since a contact lies where tool and bone hide it.
@@ -100,8 +100,8 @@ void SceneRenderer::set_brick(std::size_t brick, const BrickMesh& mesh) {
   impl_->bone.set_brick(brick, mesh);
 }
 
-void SceneRenderer::set_cut_face(const CutFace& face) {
-  impl_->cut_faces.set(face);
+void SceneRenderer::set_cut_face(std::size_t cut, const CutFace& face) {
+  impl_->cut_faces.set(cut, face);
 }
 
 void SceneRenderer::draw(const ViewScene& scene, const PixelSize& size) {
@@ -110,11 +110,12 @@ void SceneRenderer::draw(const ViewScene& scene, const PixelSize& size) {
   const Projection projection = projection_of(scene, size);
   own.target->bind();
   glDepthMask(GL_TRUE);
+  glEnable(GL_DEPTH_TEST);
   glClear(GL_DEPTH_BUFFER_BIT);
-  own.draw_background();
   own.bone.draw(scene, projection, own.cavities->blurred_depths());
   own.cavities->blur(own.target->depths(), projection.near_mm, projection.far_mm);
   own.target->bind();
+  own.draw_background();
   own.cut_faces.draw(scene, projection);
   own.shapes.begin(projection);
   if (scene.X_WT) draw_tool(own.shapes, scene.tool, *scene.X_WT, kBurr, kShaft);

@@ -6,6 +6,7 @@
 #include "osteomill/surface/brick_mesh.h"
 #include "osteomill/surface/image.h"
 #include "osteomill/surface/surface_bricks.h"
+#include "osteomill/view/cut_face.h"
 #include "osteomill/view/scene.h"
 #include "osteomill/volume/grid_geometry.h"
 
@@ -25,16 +26,8 @@ class SceneRenderer {
   void clear();
   /// A brick's triangles as they are now; none removes it.
   void set_brick(std::size_t brick, const BrickMesh& mesh);
-  /// The grey values on a cut, a byte each, row by row; `corners_W` of the first pixel, the end of its row,
-  /// the last pixel, the start of the last row. Nothing of it is drawn where the other cuts take it away.
-  struct CutFace {
-    std::size_t cut = 0;
-    std::array<Vec3, 4> corners_W;
-    int width = 0;
-    int height = 0;
-    std::vector<unsigned char> greys;
-  };
-  void set_cut_face(const CutFace& face);
+  /// What the scene's cut of this number lays open. Drawn as far as the other cuts leave it.
+  void set_cut_face(std::size_t cut, const CutFace& face);
 
   /// Draws into a picture of its own. What lies deep is darkened after the picture drawn before, so that a
   /// still picture is drawn twice.

@@ -2,14 +2,16 @@
 
 namespace osteomill::shaders {
 
-const std::string_view kBoneVertex = R"(#version 330 core
+const std::string_view kBoneVertex = R"(
 layout(location = 0) in vec3 position_W;
 layout(location = 1) in vec3 normal_W;
 layout(location = 2) in float density;
 uniform mat4 camera_from_world;
 uniform mat4 clip_from_camera;
+#ifdef CUT
 uniform vec4 cuts[4];
 out float gl_ClipDistance[4];
+#endif
 out vec3 normal_C;
 out float depth_mm;
 out float bone_density;
@@ -19,7 +21,9 @@ void main() {
   normal_C = mat3(camera_from_world) * normal_W;
   depth_mm = -position_C.z;
   bone_density = density;
+#ifdef CUT
   for (int n = 0; n < 4; ++n) gl_ClipDistance[n] = dot(cuts[n].xyz, position_W) - cuts[n].w;
+#endif
 }
 )";
 
@@ -36,26 +40,35 @@ uniform vec2 picture_size;
 uniform float cavity_scale;  // 1 / mm, at a depth of 1 mm
 uniform sampler2D blurred_depth;
 out vec4 colour;
-const vec3 kSoft = vec3(0.70, 0.43, 0.33);
-const vec3 kBone = vec3(0.87, 0.74, 0.54);
-const vec3 kEnamel = vec3(0.93, 0.92, 0.88);
+const vec3 kSoft = vec3(0.76, 0.52, 0.40);
+const vec3 kBone = vec3(0.87, 0.76, 0.58);
+const vec3 kEnamel = vec3(0.93, 0.91, 0.86);
+const vec3 kTowardsKey = vec3(-0.4504, 0.6005, 0.6606);
+const vec3 kTowardsFill = vec3(0.8053, -0.0537, 0.5905);
+const vec3 kHalfWay = vec3(-0.2471, 0.3295, 0.9113);
 void main() {
   vec3 n = normalize(normal_C);
   float share = (bone_density - isovalue) / max(reference_density - isovalue, 1e-6);
-  vec3 base = share < 1.0 ? mix(kSoft, kBone, smoothstep(0.0, 1.0, share))
-                          : mix(kBone, kEnamel, smoothstep(1.15, 1.75, share));
+  vec3 base = share < 1.0 ? mix(kSoft, kBone, smoothstep(0.05, 0.85, share))
+                          : mix(kBone, kEnamel, smoothstep(1.05, 2.1, share));
   if (!gl_FrontFacing) {
     colour = vec4(0.42 * base, 1.0);
     return;
   }
   vec2 around = texture(blurred_depth, gl_FragCoord.xy / picture_size).rg;
   float sunk = around.g > 0.05 ? (depth_mm - around.r / around.g) * cavity_scale / depth_mm : 0.0;
+  // Towards its outline everything lies deeper than the middle of the picture's bone: that is no cavity.
+  sunk *= smoothstep(0.3, 0.8, n.z);
   float open = 1.0 - 0.62 * smoothstep(0.0, 1.0, sunk) + 0.06 * smoothstep(0.0, 1.0, -sunk);
-  float key = max(dot(n, normalize(vec3(-0.45, 0.60, 0.66))), 0.0);
-  float fill = max(dot(n, normalize(vec3(0.75, -0.05, 0.55))), 0.0);
+  float key = max(dot(n, kTowardsKey), 0.0);
+  float fill = max(dot(n, kTowardsFill), 0.0);
   vec3 ambient = mix(vec3(0.20, 0.17, 0.16), vec3(0.33, 0.35, 0.39), 0.5 + 0.5 * n.y);
-  vec3 half_way = normalize(normalize(vec3(-0.45, 0.60, 0.66)) + vec3(0.0, 0.0, 1.0));
-  float gloss = 0.10 * pow(max(dot(n, half_way), 0.0), 28.0);
+  float gloss = max(dot(n, kHalfWay), 0.0);
+  gloss *= gloss;
+  gloss *= gloss;
+  gloss *= gloss;
+  gloss *= gloss;
+  gloss *= 0.10 * gloss;
   vec3 light = ambient + 0.62 * key * vec3(1.0, 0.98, 0.94) + 0.22 * fill * vec3(0.88, 0.93, 1.0);
   colour = vec4((base * light + gloss) * open, 1.0);
 }
@@ -88,12 +101,12 @@ void main() {
 }
 )";
 
-// One triangle over the whole picture, without any buffer.
+// One triangle over the whole picture and behind everything, without any buffer.
 const std::string_view kScreenVertex = R"(#version 330 core
 out vec2 place;
 void main() {
   place = vec2((gl_VertexID << 1) & 2, gl_VertexID & 2);
-  gl_Position = vec4(2.0 * place - 1.0, 0.0, 1.0);
+  gl_Position = vec4(2.0 * place - 1.0, 1.0, 1.0);
 }
 )";
 
@@ -117,10 +130,10 @@ uniform vec2 pace;
 out vec2 blurred;
 void main() {
   vec2 sum = vec2(0.0);
-  for (int n = -6; n <= 6; ++n) {
-    sum += exp(-float(n * n) / 18.0) * texture(source, place + float(n) * pace).rg;
-  }
-  blurred = sum / 7.35;
+  sum += 0.0702 * (texture(source, place - 3.0 * pace).rg + texture(source, place + 3.0 * pace).rg);
+  sum += 0.1311 * (texture(source, place - 2.0 * pace).rg + texture(source, place + 2.0 * pace).rg);
+  sum += 0.1907 * (texture(source, place - pace).rg + texture(source, place + pace).rg);
+  blurred = sum + 0.2160 * texture(source, place).rg;
 }
 )";
 
@@ -154,7 +167,7 @@ uniform sampler2D greys;
 out vec4 colour;
 void main() {
   float grey = texture(greys, place).r;
-  if (grey < 0.06) discard;
+  if (grey < 0.14) discard;
   colour = vec4(vec3(grey), 1.0);
 }
 )";

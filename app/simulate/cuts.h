@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+
+#include "app/simulate/simulation.h"
+#include "app/simulate/view_state.h"
+
+#include "osteomill/view/scene_renderer.h"
+
+namespace osteomill::app {
+
+/// The cut of this number as a plane; its `other_side` turned round.
+CutPlane plane_of(const ViewState::Cut& cut);
+
+/// Keeps the grey values on the cuts up with the planes, and a few times a second with the milling.
+class CutUpdates {
+ public:
+  void update(const ViewState& view, const Simulation& simulation, SceneRenderer& renderer);
+
+ private:
+  struct Shown {
+    bool on = false;
+    CutPlane plane;
+    std::uint64_t bone_version = 0;
+  };
+  std::array<Shown, kGreatestCutPlanes> shown_;
+  int pictures_ = 0;
+};
+
+/// Three planes across the patient and one that faces the camera, all through the bone's middle and off.
+void reset_cuts(ViewState& view);
+
+/// Ctrl with the left button drags the cut under the pointer along its normal; true while it does.
+bool drag_cut(ViewState& view, const PixelSize& size);
+
+}  // namespace osteomill::app

@@ -1,0 +1,120 @@
+#include "app/simulate/files_panel.h"
+
+#include <chrono>
+#include <ctime>
+#include <functional>
+
+#include "app/simulate/widgets.h"
+#include <fmt/chrono.h>
+#include <fmt/core.h>
+#include <imgui.h>
+
+#include "osteomill/ct/write_nrrd.h"
+#include "osteomill/files/atomic_file.h"
+#include "osteomill/recording/read_recording.h"
+#include "osteomill/report/write_report.h"
+#include "osteomill/surface/mesh_file.h"
+#include "osteomill/surface/surface_mesh.h"
+
+namespace osteomill::app {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// Throws nothing that a dialogue could not tell.
+void attempt(ViewState& view, const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const std::exception& error) {
+    view.complaint = error.what();
+  }
+}
+
+std::string save_scan(const fs::path& path, const DensityGrid& grid) {
+  write_nrrd(path, grid);
+  return "Saved " + path.string();
+}
+
+std::string save_surface(const fs::path& path, DensityGrid grid, double isovalue) {
+  write_mesh(path, mesh_in_one_piece(DensityView(Volume(std::move(grid), isovalue))));
+  return "Saved " + path.string();
+}
+
+std::string report_on(const fs::path& recording, const fs::path& folder) {
+  return "Report in " + write_report({read_recording(recording)}, folder).string();
+}
+
+}  // namespace
+
+fs::path FilesPanel::name(const std::string& what) const {
+  const std::string time = fmt::format("{:%Y%m%d-%H%M%S}", fmt::localtime(std::time(nullptr)));
+  const std::size_t dot = what.rfind('.');
+  fs::path path = folder_ / fmt::format("{}-{}", time, what);
+  for (int n = 2; fs::exists(path); ++n) {
+    path = folder_ / fmt::format("{}-{}-{}{}", time, what.substr(0, dot), n,
+                                 dot == std::string::npos ? "" : what.substr(dot));
+  }
+  return path;
+}
+
+void FilesPanel::record(ViewState& view, Simulation& simulation) {
+  attempt(view, [&] {
+    create_folder(folder_);
+    if (simulation.recording()) {
+      last_recording_ = simulation.stop_recording();
+      view.message = "Recorded " + last_recording_.string();
+    } else {
+      simulation.start_recording(name("recording.h5"));
+      view.message.clear();
+    }
+  });
+}
+
+void FilesPanel::close(ViewState& view, Simulation& simulation) {
+  if (simulation.recording()) record(view, simulation);
+  if (work_.valid()) work_.wait();
+}
+
+void FilesPanel::take_result(ViewState& view) {
+  if (!work_.valid() || work_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+  attempt(view, [&] { view.message = work_.get(); });
+}
+
+void FilesPanel::draw(ViewState& view, Simulation& simulation) {
+  take_result(view);
+  if (const auto ended = simulation.take_ended_recording()) {
+    last_recording_ = *ended;
+    view.message = "The change ended the recording " + ended->string();
+  }
+  if (!ui::header("Record and save", true)) return;
+  if (ui::button(simulation.recording() ? "Stop recording##r" : "Record##r")) record(view, simulation);
+  ImGui::SameLine();
+  const bool free = !busy();
+  if (ui::button("Report", free && !last_recording_.empty())) {
+    work_ = std::async(std::launch::async, report_on, last_recording_, name("report"));
+  }
+  ui::hint("Figures and tables of the last recording");
+  const auto save = [&](std::future<std::string> work) { work_ = std::move(work); };
+  if (ui::button("Save scan", free)) {
+    attempt(view, [&] {
+      create_folder(folder_);
+      save(std::async(std::launch::async, save_scan, name("milled.nrrd"), simulation.bone()));
+    });
+  }
+  ImGui::SameLine();
+  if (ui::button("Save surface", free)) {
+    attempt(view, [&] {
+      create_folder(folder_);
+      save(std::async(std::launch::async, save_surface, name("surface.ply"), simulation.bone(),
+                      simulation.isovalue()));
+    });
+  }
+  if (ui::button("Save picture")) view.picture_asked = true;
+  if (busy()) {
+    ImGui::SameLine();
+    ImGui::TextColored({0.55f, 0.80f, 1.0f, 1}, "writing ...");
+  }
+}
+
+}  // namespace osteomill::app

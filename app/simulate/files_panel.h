@@ -1,0 +1,36 @@
+#pragma once
+
+#include <filesystem>
+#include <future>
+#include <string>
+
+#include "app/simulate/simulation.h"
+#include "app/simulate/view_state.h"
+
+namespace osteomill::app {
+
+/// Recording, reports, and what can be saved. Files are named after the time and put into one folder. What
+/// takes long is done on a thread of its own.
+class FilesPanel {
+ public:
+  explicit FilesPanel(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+  void draw(ViewState& view, Simulation& simulation);
+  /// Ends a recording that still goes on.
+  void close(ViewState& view, Simulation& simulation);
+  bool busy() const { return work_.valid(); }
+  const std::filesystem::path& last_recording() const { return last_recording_; }
+  /// A new name in the folder.
+  std::filesystem::path name(const std::string& what) const;
+
+ private:
+  void record(ViewState& view, Simulation& simulation);
+  void take_result(ViewState& view);
+
+  std::filesystem::path folder_;
+  std::filesystem::path last_recording_;
+  // Returns what is to be said.
+  std::future<std::string> work_;
+};
+
+}  // namespace osteomill::app

@@ -1,0 +1,97 @@
+#include "osteomill/view/cut_face.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "osteomill/volume/sampling.h"
+
+namespace osteomill {
+
+namespace {
+
+std::array<Vec3, 8> corners_of(const GridGeometry& geometry) {
+  std::array<Vec3, 8> corners;
+  for (std::size_t n = 0; n < 8; ++n) {
+    const Vec3 voxel((n & 1) != 0 ? geometry.dims[0] - 1 : 0, (n & 2) != 0 ? geometry.dims[1] - 1 : 0,
+                     (n & 4) != 0 ? geometry.dims[2] - 1 : 0);
+    corners[n] = geometry.world_from_voxel(voxel);
+  }
+  return corners;
+}
+
+// Where the edges of the grid's box cross the plane.
+std::vector<Vec3> crossings(const GridGeometry& geometry, const CutPlane& plane) {
+  const std::array<Vec3, 8> corners = corners_of(geometry);
+  std::vector<Vec3> found;
+  for (std::size_t a = 0; a < 8; ++a) {
+    for (const std::size_t bit : {1u, 2u, 4u}) {
+      if ((a & bit) != 0) continue;
+      const Vec3& from = corners[a];
+      const Vec3& to = corners[a | bit];
+      const double below = plane.normal_W.dot(from) - plane.offset_mm;
+      const double above = plane.normal_W.dot(to) - plane.offset_mm;
+      if (below * above > 0 || below == above) continue;
+      found.push_back(from + below / (below - above) * (to - from));
+    }
+  }
+  return found;
+}
+
+}  // namespace
+
+GreyWindow grey_window_of(const DensityGrid& grid, double surroundings_density) {
+  std::vector<float> sample;
+  constexpr std::size_t kEvery = 37;
+  for (std::size_t n = 0; n < grid.densities().size(); n += kEvery) sample.push_back(grid.densities()[n]);
+  const auto high =
+      sample.begin() + static_cast<std::ptrdiff_t>(0.998 * static_cast<double>(sample.size() - 1));
+  std::nth_element(sample.begin(), high, sample.end());
+  const double white = std::max(static_cast<double>(*high), surroundings_density + 1);
+  return {surroundings_density - 0.02 * (white - surroundings_density), white};
+}
+
+std::array<double, 2> extent_along(const GridGeometry& geometry, const Vec3& normal_W) {
+  std::array<double, 2> extent{1e300, -1e300};
+  for (const Vec3& corner : corners_of(geometry)) {
+    extent[0] = std::min(extent[0], normal_W.dot(corner));
+    extent[1] = std::max(extent[1], normal_W.dot(corner));
+  }
+  return extent;
+}
+
+CutFace cut_face(const DensityGrid& grid, const CutPlane& plane, const GreyWindow& window, int most_pixels) {
+  const std::vector<Vec3> border = crossings(grid.geometry(), plane);
+  if (border.size() < 3) return {};
+  // Any two directions in the plane.
+  const Vec3 some = std::abs(plane.normal_W.z()) < 0.9 ? Vec3::UnitZ() : Vec3::UnitY();
+  const Vec3 across = some.cross(plane.normal_W).normalized();
+  const Vec3 along = plane.normal_W.cross(across);
+  Eigen::Vector2d least(1e300, 1e300);
+  Eigen::Vector2d greatest(-1e300, -1e300);
+  for (const Vec3& point : border) {
+    const Eigen::Vector2d place(across.dot(point), along.dot(point));
+    least = least.cwiseMin(place);
+    greatest = greatest.cwiseMax(place);
+  }
+  const Eigen::Vector2d size_mm = greatest - least;
+  const double pixel_mm =
+      std::max(grid.geometry().spacing_mm.minCoeff(), size_mm.maxCoeff() / (most_pixels - 1));
+  CutFace face;
+  face.width = std::max(2, static_cast<int>(size_mm.x() / pixel_mm) + 1);
+  face.height = std::max(2, static_cast<int>(size_mm.y() / pixel_mm) + 1);
+  const Vec3 first = plane.offset_mm * plane.normal_W + least.x() * across + least.y() * along;
+  const auto at = [&](int x, int y) -> Vec3 { return first + pixel_mm * (x * across + y * along); };
+  face.corners_W = {at(0, 0), at(face.width - 1, 0), at(face.width - 1, face.height - 1),
+                    at(0, face.height - 1)};
+  face.greys.reserve(static_cast<std::size_t>(face.width) * static_cast<std::size_t>(face.height));
+  const double scale = 255 / (window.white - window.black);
+  for (int y = 0; y < face.height; ++y) {
+    for (int x = 0; x < face.width; ++x) {
+      const double grey = scale * (density_at(grid, at(x, y)) - window.black);
+      face.greys.push_back(static_cast<unsigned char>(std::clamp(grey, 0.0, 255.0)));
+    }
+  }
+  return face;
+}
+
+}  // namespace osteomill

@@ -1,0 +1,45 @@
+#!/usr/bin/env bash
+# Works the real window on a display of its own and holds what it saved against what was done:
+#   window_test.sh OSTEOMILL NEEDS [SCAN ...]
+# Skipped (exit 77) without Xvfb or without NEEDS. Screenshots stay in OSTEOMILL_PICTURES where that is set.
+set -euo pipefail
+osteomill=$1 needs=$2
+shift 2
+scan=("$@")
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+command -v xvfb-run >/dev/null || { echo "SKIPPED: needs xvfb-run"; exit 77; }
+[ -z "$needs" ] || [ -e "$needs" ] || { echo "SKIPPED: needs $needs, which is not on this machine"; exit 77; }
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cd "$folder"
+fail() { echo "FAILED: $1"; cat said errors 2>/dev/null; exit 1; }
+
+xvfb-run -a -s "-screen 0 1280x800x24" timeout 200 "$osteomill" simulate "${scan[@]}" --out out \
+  --script "$here/mill_a_hole.txt" >said 2>errors || fail "exit code $?"
+[ -z "${OSTEOMILL_PICTURES:-}" ] || cp ./*.png "$OSTEOMILL_PICTURES"
+cat said errors
+reading() { sed -nE "s/^$1:.* $2 ([0-9.]+) .*/\1/p" said; }
+above() { awk -v a="$1" -v b="$2" 'BEGIN { exit !(a > b) }'; }
+
+# The tool met bone before the spindle turned, and nothing was milled then.
+above "$(reading touching force)" 0.2 || fail "the tool did not touch the bone"
+above 0.001 "$(reading touching removed)" || fail "bone went without the spindle"
+above "$(reading milling removed)" 1 || fail "no bone was milled"
+# With another algorithm the tool is still on the bone.
+above "$(reading other-algorithm force)" 0.02 || fail "the other algorithm feels nothing"
+above 0.001 "$(reading undone removed)" || fail "the cut was not taken back"
+
+# The saved scan has the hole: so many voxels less are bone as were milled away.
+iso=()
+for ((n = 0; n < ${#scan[@]}; n++)); do [ "${scan[$n]}" != --iso ] || iso=(--iso "${scan[$((n + 1))]}"); done
+[ ${#iso[@]} -gt 0 ] || iso=(--iso 750)
+voxels() { "$osteomill" info "$@" --json "${iso[@]}" | sed -nE 's/.*"voxels_above_iso": *([0-9]+).*/\1/p'; }
+if [ ${#scan[@]} -gt 0 ] && [ "${scan[0]}" != --iso ]; then before=$(voxels "${scan[0]}"); else before=$(voxels); fi
+after=$(voxels out/*-milled.nrrd)
+echo "bone voxels before $before, in the saved scan $after"
+[ "$after" -lt "$((before - 200))" ] || fail "the saved scan has no hole"
+[ -s "$(ls out/*-surface.ply)" ] && [ -s "$(ls out/*-picture.png)" ] || fail "surface or picture is missing"
+
+# The recording is whole, and holds the milling.
+"$osteomill" report out/*-recording.h5 --out report >/dev/null || fail "the recording cannot be read"
+grep -q "point-shell,steady,milling" report/summary.csv || fail "the report does not know the run"
