@@ -30,14 +30,6 @@ std::size_t row_in_brick(int j, int k) {
   return static_cast<std::size_t>(j % kSide + kSide * (k % kSide));
 }
 
-void prefetch(const float* address) {
-#if defined(__GNUC__)
-  __builtin_prefetch(address);
-#else
-  (void)address;
-#endif
-}
-
 }  // namespace
 
 BurrReach::BurrReach(const GridGeometry& geometry, double radius_mm, float floor_density)
@@ -185,7 +177,7 @@ void BurrReach::find_candidates(const DensityGrid& grid, std::size_t word, std::
         const VoxelIndex first{kSide * bi, j, k};
         candidates_.push_back({grid.linear_index(first), first, static_cast<std::uint8_t>(inside)});
         // Each row lies in a cache line of its own; by the time that all are known, the first have come.
-        prefetch(grid.densities().data() + candidates_.back().first_voxel);
+        grid.prefetch(first);
       }
     }
   }

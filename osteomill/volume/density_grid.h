@@ -36,7 +36,17 @@ class DensityGrid {
   float at_or_outside(const VoxelIndex& v) const {
     return contains(v) ? densities_[linear_index(v)] : outside_density_;
   }
-  void set(const VoxelIndex& v, float density) { densities_[linear_index(v)] = density; }
+  /// Asks for the voxel's cache line ahead of reading it. `v` must lie in the grid.
+  void prefetch(const VoxelIndex& v) const {
+#ifdef __GNUC__
+    __builtin_prefetch(densities_.data() + linear_index(v));
+#else
+    (void)v;
+#endif
+  }
+  void set(const VoxelIndex& v, float density) {
+    densities_[linear_index(v)] = density;
+  }
 
  private:
   GridGeometry geometry_;

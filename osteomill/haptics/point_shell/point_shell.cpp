@@ -165,6 +165,7 @@ void PointShell::find_bone() {
 
 // Densities only fall: what was not bone needs no second look.
 void PointShell::lower_bone(const VoxelBox& nodes) {
+  lattice_.prefetch_rows(nodes);
   for (int k = nodes.first.k; k <= nodes.last.k; ++k) {
     for (int j = nodes.first.j; j <= nodes.last.j; ++j) {
       for (int byte = nodes.first.i / 8; byte <= nodes.last.i / 8; ++byte) {

@@ -91,6 +91,13 @@ std::uint8_t ShellLattice::bone_byte(int byte, int j, int k) const {
   return static_cast<std::uint8_t>(bits);
 }
 
+void ShellLattice::prefetch_rows(const VoxelBox& nodes) const {
+  if (stride_ != 1) return;
+  for (int k = nodes.first.k; k <= nodes.last.k; ++k) {
+    for (int j = nodes.first.j; j <= nodes.last.j; ++j) volume_->grid().prefetch({nodes.first.i, j, k});
+  }
+}
+
 bool ShellLattice::is_deep_in_bone(int bi, int bj, int bk) const {
   if (stride_ != 1 || group_ != 1) return false;
   const BrickRanges& bricks = volume_->bricks();

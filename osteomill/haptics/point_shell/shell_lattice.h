@@ -29,6 +29,8 @@ class ShellLattice {
   /// Bit n: whether node 8 * `byte` + n of row j of slice k is bone; the row must be in the lattice.
   std::uint8_t bone_byte(int byte, int j, int k) const;
   bool is_bone(const VoxelIndex& node) const { return density(node) > volume_->isovalue(); }
+  /// Asks for rows of nodes ahead of reading them; the box must be in the lattice.
+  void prefetch_rows(const VoxelBox& nodes) const;
   /// Whether brick bi, bj, bk of 8 x 8 x 8 nodes and all that borders on it is bone, so that it can hold no
   /// surface: may say no where it is so.
   bool is_deep_in_bone(int bi, int bj, int bk) const;
