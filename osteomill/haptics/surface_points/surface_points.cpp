@@ -106,6 +106,7 @@ std::optional<Vec3> SurfacePoints::held_centre(const Fan& fan, const Pose& X_WD,
   const Vec3 way = device_W - held_W;
   // The held tool keeps a centre a radius away from bone: a shorter way needs no search.
   if (way.norm() < 0.8 * fan.arms_T.front().norm() && !in_bone(device_W)) return device_W;
+  if (!bone_near_disc(*volume_, 0.5 * (held_W + device_W), Vec3::Zero(), 0.5 * way.norm())) return device_W;
   if (in_bone(held_W)) return std::nullopt;
   const std::optional<double> share = share_to_bone(*volume_, held_W, device_W, free_about_held_mm(fan));
   if (!share) return device_W;
