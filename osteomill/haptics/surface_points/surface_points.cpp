@@ -75,7 +75,7 @@ Vec3 SurfacePoints::sum_of_reaches(Fan& fan, const Quat& orientation, const Vec3
   if (!bone_near_disc(*volume_, centre_W, axis_W, fan.arms_T.front().norm())) return Vec3::Zero();
   const bool through_walls = settings_.march_to_surface && settings_.thin_walls_hold && &fan == &sphere_;
   Vec3 reach_mm = Vec3::Zero();
-  double deepest2_mm2 = 0;
+  fan.deepest_mm = 0;
   for (std::size_t n = 0; n < fan.arms_T.size(); ++n) {
     const Vec3& arm_T = fan.arms_T[n];
     const Vec3 vertex_W = centre_W + orientation * arm_T;
@@ -85,8 +85,8 @@ Vec3 SurfacePoints::sum_of_reaches(Fan& fan, const Quat& orientation, const Vec3
     if (reach.isZero(0)) continue;
     ++fan.contacts;
     reach_mm += reach;
-    if (reach.squaredNorm() > deepest2_mm2) {
-      deepest2_mm2 = reach.squaredNorm();
+    if (const double depth_mm = reach.norm(); depth_mm > fan.deepest_mm) {
+      fan.deepest_mm = depth_mm;
       fan.deepest_arm = n;
     }
   }
@@ -106,6 +106,7 @@ std::optional<Vec3> SurfacePoints::held_centre(const Fan& fan, const Pose& X_WD,
   const Vec3 way = device_W - held_W;
   // The held tool keeps a centre a radius away from bone: a shorter way needs no search.
   if (way.norm() < 0.8 * fan.arms_T.front().norm() && !in_bone(device_W)) return device_W;
+  if (!bone_near_disc(*volume_, 0.5 * (held_W + device_W), Vec3::Zero(), 0.5 * way.norm())) return device_W;
   if (in_bone(held_W)) return std::nullopt;
   const std::optional<double> share = share_to_bone(*volume_, held_W, device_W, free_about_held_mm(fan));
   if (!share) return device_W;
@@ -148,9 +149,8 @@ double SurfacePoints::pushed_at_mm(const Fan& ring, const Quat& orientation, con
     return marched_spring(*volume_, from_W + arm_W, from_W, free_mm).norm();
   };
   const double below = depth_mm(centre_W - aside_W);
-  const double here = depth_mm(centre_W);
   const double above = depth_mm(centre_W + aside_W);
-  const double sum = below + here + above;
+  const double sum = below + ring.deepest_mm + above;
   return sum > 0 ? ring_spacing_mm_ / 3 * (above - below) / sum : 0.0;
 }
 

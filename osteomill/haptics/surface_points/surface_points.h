@@ -39,6 +39,7 @@ class SurfacePoints final : public HapticAlgorithm {
     Vec3 held_back_W_mm = Vec3::Zero();
     int contacts = 0;
     std::size_t deepest_arm = 0;
+    double deepest_mm = 0;
     // From the centre along the shaft to where it is pushed.
     double pushed_at_mm = 0;
   };
