@@ -71,10 +71,12 @@ HapticStep LineProxy::step(const Pose& X_WD, double dt_s) {
   result.wrench.force_N = tip_force(settings_.stiffness_N_per_mm, tool_tip_W, device_tip_W);  // eq. 6
   result.wrench.torque_Nmm = torque(memory_.arm_W, memory_.reaction_N);                       // eq. 11
   if (memory_.tip_proxy_W) {
-    result.burr_force_N = tip_force(settings_.stiffness_N_per_mm, tool_tip_W, tip_probe_W(device_tip_W)).norm();
+    result.burr_force_N =
+        tip_force(settings_.stiffness_N_per_mm, tool_tip_W, tip_probe_W(device_tip_W)).norm();
   }
-  result.contacts = (memory_.tip_proxy_W ? 1 : 0) +
-                    (memory_.intersection_W ? std::max(1, vertices_in_bone(*scene_.volume, shaft_vertices(), X_WL)) : 0);
+  result.contacts =
+      (memory_.tip_proxy_W ? 1 : 0) +
+      (memory_.intersection_W ? std::max(1, vertices_in_bone(*scene_.volume, shaft_vertices(), X_WL)) : 0);
   forget_what_is_not_finite();
   Pose touching = touching_tool(X_WD, tool_tip_W);
   if (settings_.show_outside && !memory_.tip_proxy_W)
@@ -164,7 +166,7 @@ void LineProxy::touch_with_shaft(const Pose& X_WL, const Vec3& device_tip_W, dou
     if (raised.norm() > 1e-9) line.rest = TipRest{*memory_.tip_proxy_W, raised.normalized()};
   }
   ShaftTouch& touch = memory_.touch;
-  touch.follow(volume, span, line, touch.touches() ? 0.0 : first_lever_mm(X_WL), touch_rule(), dt_s);
+  touch.follow(volume, span, line, touch.touches() ? 0.0 : first_lever_mm(X_WL), touch_rule(dt_s), dt_s);
   memory_.reaction_N = touch.reaction_N();
   memory_.intersection_W.reset();
   if (!touch.touches()) return;
@@ -179,17 +181,19 @@ double LineProxy::first_lever_mm(const Pose& X_WL) const {
   return first_W ? shaft_direction(X_WL).dot(*first_W - X_WL.position_mm) : 0.0;
 }
 
-ShaftTouchRule LineProxy::touch_rule() const {
+ShaftTouchRule LineProxy::touch_rule(double dt_s) const {
   constexpr double kStiffest = 25.0;
+  // The slower the loop, the softer a spring it can hold (Colgate and Schenkel 1997).
+  constexpr double kMeantFor_s = 1e-3;
+  const double turning = settings_.shaft_turning_Nmm_per_rad * std::min(1.0, kMeantFor_s / dt_s);
   const double k = settings_.stiffness_N_per_mm;
   return {settings_.normal,
-          settings_.shaft_pushes ? k : LineProxySettings::kNoLimit,
-          settings_.shaft_turning_Nmm_per_rad,
+          k,
+          turning,
           kStiffest * k,
           settings_.shaft_fade_radii * scene_.tool.shaft_radius_mm,
           settings_.contact_turning_share,
           settings_.contact_slide_limit_mm_per_s,
-          settings_.contact_turn_limit_rad_per_s,
           settings_.shaft_force_slew_N_per_s};
 }
 

@@ -60,7 +60,7 @@ class LineProxy final : public HapticAlgorithm {
   void turn_reaction(const Pose& X_WL);
   void touch_with_shaft(const Pose& X_WL, const Vec3& device_tip_W, double dt_s);
   double first_lever_mm(const Pose& X_WL) const;
-  line_proxy::ShaftTouchRule touch_rule() const;
+  line_proxy::ShaftTouchRule touch_rule(double dt_s) const;
   double shaft_share(double arm_mm) const;
   Pose touching_tool(const Pose& X_WD, const Vec3& tool_tip_W) const;
   Pose simulated_tool(const Pose& X_WD, const Pose& touching, double dt_s);
