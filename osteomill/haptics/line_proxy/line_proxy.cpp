@@ -79,8 +79,7 @@ HapticStep LineProxy::step(const Pose& X_WD, double dt_s) {
       (memory_.intersection_W ? std::max(1, vertices_in_bone(*scene_.volume, shaft_vertices(), X_WL)) : 0);
   forget_what_is_not_finite();
   Pose touching = touching_tool(X_WD, tool_tip_W);
-  if (settings_.show_outside && !memory_.tip_proxy_W)
-    touching.position_mm = cleared_position(*scene_.volume, scene_.tool, touching, settings_.normal);
+  if (settings_.show_outside) keep_outside(touching, dt_s);
   result.X_WT = simulated_tool(X_WD, touching, dt_s);
   return result;
 }
@@ -221,6 +220,20 @@ Pose LineProxy::touching_tool(const Pose& X_WD, const Vec3& tool_tip_W) const {
   if (!(drawn.norm() > 1e-6)) return X_WT;
   X_WT.orientation = (smallest_rotation(direction, drawn) * X_WD.orientation).normalized();
   return X_WT;
+}
+
+// One move a tick, kept from tick to tick and given back slowly.
+void LineProxy::keep_outside(Pose& X_WT, double dt_s) {
+  constexpr double kReturn_mm_per_s = 5.0;
+  Vec3& clearance_W = memory_.clearance_W;
+  X_WT.position_mm += clearance_W;
+  const auto move = clearing_move(*scene_.volume, scene_.tool, X_WT, settings_.normal);
+  if (move) {
+    clearance_W += *move;
+    X_WT.position_mm += *move;
+  } else {
+    clearance_W = moved_toward(clearance_W, Vec3::Zero(), kReturn_mm_per_s * dt_s);
+  }
 }
 
 Pose LineProxy::simulated_tool(const Pose& X_WD, const Pose& touching, double dt_s) {
