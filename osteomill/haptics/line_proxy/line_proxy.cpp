@@ -222,18 +222,16 @@ Pose LineProxy::touching_tool(const Pose& X_WD, const Vec3& tool_tip_W) const {
   return X_WT;
 }
 
-// One move a tick, kept from tick to tick and given back slowly.
+// One move a tick, kept from tick to tick and given back little by little.
 void LineProxy::keep_outside(Pose& X_WT, double dt_s) {
-  constexpr double kReturn_mm_per_s = 5.0;
+  constexpr double kReturnTime_s = 0.02;
   Vec3& clearance_W = memory_.clearance_W;
+  clearance_W *= std::max(0.0, 1.0 - dt_s / kReturnTime_s);
   X_WT.position_mm += clearance_W;
   const auto move = clearing_move(*scene_.volume, scene_.tool, X_WT, settings_.normal);
-  if (move) {
-    clearance_W += *move;
-    X_WT.position_mm += *move;
-  } else {
-    clearance_W = moved_toward(clearance_W, Vec3::Zero(), kReturn_mm_per_s * dt_s);
-  }
+  if (!move) return;
+  clearance_W += *move;
+  X_WT.position_mm += *move;
 }
 
 Pose LineProxy::simulated_tool(const Pose& X_WD, const Pose& touching, double dt_s) {
