@@ -71,14 +71,15 @@ HapticStep LineProxy::step(const Pose& X_WD, double dt_s) {
   result.wrench.force_N = tip_force(settings_.stiffness_N_per_mm, tool_tip_W, device_tip_W);  // eq. 6
   result.wrench.torque_Nmm = torque(memory_.arm_W, memory_.reaction_N);                       // eq. 11
   if (memory_.tip_proxy_W) {
-    result.burr_force_N = tip_force(settings_.stiffness_N_per_mm, tool_tip_W, tip_probe_W(device_tip_W)).norm();
+    result.burr_force_N =
+        tip_force(settings_.stiffness_N_per_mm, tool_tip_W, tip_probe_W(device_tip_W)).norm();
   }
-  result.contacts = (memory_.tip_proxy_W ? 1 : 0) +
-                    (memory_.intersection_W ? std::max(1, vertices_in_bone(*scene_.volume, shaft_vertices(), X_WL)) : 0);
+  result.contacts =
+      (memory_.tip_proxy_W ? 1 : 0) +
+      (memory_.intersection_W ? std::max(1, vertices_in_bone(*scene_.volume, shaft_vertices(), X_WL)) : 0);
   forget_what_is_not_finite();
   Pose touching = touching_tool(X_WD, tool_tip_W);
-  if (settings_.show_outside && !memory_.tip_proxy_W)
-    touching.position_mm = cleared_position(*scene_.volume, scene_.tool, touching, settings_.normal);
+  if (settings_.show_outside) keep_outside(touching, dt_s);
   result.X_WT = simulated_tool(X_WD, touching, dt_s);
   return result;
 }
@@ -164,7 +165,7 @@ void LineProxy::touch_with_shaft(const Pose& X_WL, const Vec3& device_tip_W, dou
     if (raised.norm() > 1e-9) line.rest = TipRest{*memory_.tip_proxy_W, raised.normalized()};
   }
   ShaftTouch& touch = memory_.touch;
-  touch.follow(volume, span, line, touch.touches() ? 0.0 : first_lever_mm(X_WL), touch_rule(), dt_s);
+  touch.follow(volume, span, line, touch.touches() ? 0.0 : first_lever_mm(X_WL), touch_rule(dt_s), dt_s);
   memory_.reaction_N = touch.reaction_N();
   memory_.intersection_W.reset();
   if (!touch.touches()) return;
@@ -179,17 +180,19 @@ double LineProxy::first_lever_mm(const Pose& X_WL) const {
   return first_W ? shaft_direction(X_WL).dot(*first_W - X_WL.position_mm) : 0.0;
 }
 
-ShaftTouchRule LineProxy::touch_rule() const {
+ShaftTouchRule LineProxy::touch_rule(double dt_s) const {
   constexpr double kStiffest = 25.0;
+  // The slower the loop, the softer a spring it can hold (Colgate and Schenkel 1997).
+  constexpr double kMeantFor_s = 1e-3;
+  const double turning = settings_.shaft_turning_Nmm_per_rad * std::min(1.0, kMeantFor_s / dt_s);
   const double k = settings_.stiffness_N_per_mm;
   return {settings_.normal,
-          settings_.shaft_pushes ? k : LineProxySettings::kNoLimit,
-          settings_.shaft_turning_Nmm_per_rad,
+          k,
+          turning,
           kStiffest * k,
           settings_.shaft_fade_radii * scene_.tool.shaft_radius_mm,
           settings_.contact_turning_share,
           settings_.contact_slide_limit_mm_per_s,
-          settings_.contact_turn_limit_rad_per_s,
           settings_.shaft_force_slew_N_per_s};
 }
 
@@ -217,6 +220,18 @@ Pose LineProxy::touching_tool(const Pose& X_WD, const Vec3& tool_tip_W) const {
   if (!(drawn.norm() > 1e-6)) return X_WT;
   X_WT.orientation = (smallest_rotation(direction, drawn) * X_WD.orientation).normalized();
   return X_WT;
+}
+
+// One move a tick, kept from tick to tick and given back little by little.
+void LineProxy::keep_outside(Pose& X_WT, double dt_s) {
+  constexpr double kReturnTime_s = 0.02;
+  Vec3& clearance_W = memory_.clearance_W;
+  clearance_W *= std::max(0.0, 1.0 - dt_s / kReturnTime_s);
+  X_WT.position_mm += clearance_W;
+  const auto move = clearing_move(*scene_.volume, scene_.tool, X_WT, settings_.normal);
+  if (!move) return;
+  clearance_W += *move;
+  X_WT.position_mm += *move;
 }
 
 Pose LineProxy::simulated_tool(const Pose& X_WD, const Pose& touching, double dt_s) {

@@ -45,6 +45,8 @@ class LineProxy final : public HapticAlgorithm {
     line_proxy::ShaftTouch touch;
     Vec3 arm_W = Vec3::Zero();
     Vec3 reaction_N = Vec3::Zero();
+    // How far the simulated tool is kept from where the centreline would have it.
+    Vec3 clearance_W = Vec3::Zero();
     // The simulated tool against the device: moved by, turned by (a rotation vector in W).
     Vec3 tool_shift_W = Vec3::Zero();
     Vec3 tool_turn_W = Vec3::Zero();
@@ -60,9 +62,10 @@ class LineProxy final : public HapticAlgorithm {
   void turn_reaction(const Pose& X_WL);
   void touch_with_shaft(const Pose& X_WL, const Vec3& device_tip_W, double dt_s);
   double first_lever_mm(const Pose& X_WL) const;
-  line_proxy::ShaftTouchRule touch_rule() const;
+  line_proxy::ShaftTouchRule touch_rule(double dt_s) const;
   double shaft_share(double arm_mm) const;
   Pose touching_tool(const Pose& X_WD, const Vec3& tool_tip_W) const;
+  void keep_outside(Pose& X_WT, double dt_s);
   Pose simulated_tool(const Pose& X_WD, const Pose& touching, double dt_s);
   void forget_what_is_not_finite();
 

@@ -28,8 +28,6 @@ constexpr SettingField<S> kFields[] = {
     setting_field<S>(
         "shaft-contact", [](S& s) -> auto& { return s.shaft_contact; }),
     setting_field<S>(
-        "shaft-pushes", [](S& s) -> auto& { return s.shaft_pushes; }),
-    setting_field<S>(
         "shaft-turning-stiffness", [](S& s) -> auto& { return s.shaft_turning_Nmm_per_rad; }, "N mm/rad"),
     setting_field<S>(
         "shaft-fade", [](S& s) -> auto& { return s.shaft_fade_radii; }, "shaft radii"),
@@ -37,8 +35,6 @@ constexpr SettingField<S> kFields[] = {
         "contact-turning-share", [](S& s) -> auto& { return s.contact_turning_share; }),
     setting_field<S>(
         "contact-slide-limit", [](S& s) -> auto& { return s.contact_slide_limit_mm_per_s; }, "mm/s"),
-    setting_field<S>(
-        "contact-turn-limit", [](S& s) -> auto& { return s.contact_turn_limit_rad_per_s; }, "rad/s"),
     setting_field<S>(
         "shaft-force-slew", [](S& s) -> auto& { return s.shaft_force_slew_N_per_s; }, "N/s"),
     setting_field<S>(

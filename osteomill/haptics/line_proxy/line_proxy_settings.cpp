@@ -26,13 +26,10 @@ LineProxySettings LineProxySettings::defaults(Mode mode) {
   settings.tip_proxy_limit_mm_per_s = 50.0;
   settings.contact_until_proxy_is_free = true;
   settings.shaft_contact = true;
-  settings.shaft_pushes = true;
-  settings.shaft_turning_Nmm_per_rad = 3500.0;
   settings.shaft_fade_radii = 4.0;
   settings.contact_turning_share = 0.5;
   settings.contact_slide_limit_mm_per_s = 100.0;
-  settings.contact_turn_limit_rad_per_s = 50.0;
-  settings.shaft_force_slew_N_per_s = 100.0;
+  settings.shaft_force_slew_N_per_s = 40.0;
   settings.show_outside = true;
   settings.tool_glide_mm_per_s = 100.0;
   settings.tool_glide_rad_per_s = 20.0;
@@ -51,12 +48,13 @@ void require_valid(const LineProxySettings& s) {
           "the normal's spread must be a number of voxels, 0 or more");
   require_limit(s.tip_proxy_limit_mm_per_s, "the tip proxy's limit must be above 0 mm/s");
   require_limit(s.contact_slide_limit_mm_per_s, "the contact's slide limit must be above 0 mm/s");
-  require_limit(s.contact_turn_limit_rad_per_s, "the contact's turn limit must be above 0 rad/s");
   require_limit(s.shaft_force_slew_N_per_s, "the shaft force's slew must be above 0 N/s");
   require_limit(s.tool_glide_mm_per_s, "the tool's glide must be above 0 mm/s");
   require_limit(s.tool_glide_rad_per_s, "the tool's glide must be above 0 rad/s");
-  require(std::isfinite(s.shaft_turning_Nmm_per_rad) && s.shaft_turning_Nmm_per_rad >= 0.0,
-          "the shaft's turning stiffness must be a number of N mm/rad, 0 or more");
+  require(std::isfinite(s.shaft_turning_Nmm_per_rad) && s.shaft_turning_Nmm_per_rad > 0.0,
+          "the shaft's turning stiffness must be a positive number of N mm/rad");
+  require(s.contact_turning_share > 0.0 && s.contact_turning_share <= 1.0,
+          "the contact's turning share must lie in (0, 1]");
   require(std::isfinite(s.shaft_fade_radii) && s.shaft_fade_radii >= 0.0,
           "the shaft's fade must be a number of radii, 0 or more");
 }

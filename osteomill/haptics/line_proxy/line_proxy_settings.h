@@ -31,13 +31,11 @@ struct LineProxySettings {
   /// The tip stays in contact until its proxy has a free way to it: no falling through thin walls.
   bool contact_until_proxy_is_free = false;
   /// The shaft's reaction comes from where and which way the line must be moved to come free, instead of from
-  /// the densest point.
+  /// the densest point, and pushes the tool's tip away, so that it is felt as a force as well as a torque.
   bool shaft_contact = false;
-  /// That reaction moves the tool's tip as well, and is felt as a force.
-  bool shaft_pushes = false;
-  /// The spring that holds the tool's orientation to the device's where the shaft's contact turns it; 0 takes
-  /// the spring of eq. 10, which is `stiffness` times the square of the lever.
-  double shaft_turning_Nmm_per_rad = 0.0;
+  /// The spring that holds the tool's orientation to the device's where such a contact turns it, in the place
+  /// of eq. 10; above 0. Below 1 kHz it is softer in proportion.
+  double shaft_turning_Nmm_per_rad = 3000.0;
   /// The reaction of the shaft grows from nothing at the tip to full at this many shaft radii from it; 0 for
   /// none. (With `shaft_contact` by the square of the lever, and where the shaft alone holds the tool.)
   double shaft_fade_radii = 0.0;
@@ -45,9 +43,7 @@ struct LineProxySettings {
   double contact_turning_share = 1.0;
   /// How fast the shaft's contact may slide along it, ...
   double contact_slide_limit_mm_per_s = kNoLimit;
-  /// ... turn about it, ...
-  double contact_turn_limit_rad_per_s = kNoLimit;
-  /// ... and change its reaction.
+  /// ... and change its reaction beyond what the device's own movement calls for.
   double shaft_force_slew_N_per_s = kNoLimit;
   /// Keeps the simulated tool, as wide as it is, out of bone that its centreline does not touch yet.
   bool show_outside = false;

@@ -61,14 +61,16 @@ TEST_P(LineProxyTest, FreeSpaceIsExactlyZero) {
     ASSERT_EQ(step.wrench.torque_Nmm, Vec3::Zero()) << n;
     ASSERT_EQ(step.burr_force_N, 0.0);
     ASSERT_EQ(step.contacts, 0);
-    ASSERT_LT((step.X_WT.position_mm - X_WD.position_mm).norm(), 1e-12);
+    if (GetParam() == Mode::paper) {
+      ASSERT_LT((step.X_WT.position_mm - X_WD.position_mm).norm(), 1e-12);
+    }
   }
 }
 
 TEST_P(LineProxyTest, OnAPlaneTheForceIsStiffnessTimesDepth) {
   const Vec3 axes[] = {{0, 0, 1},        {0, -1, 0},       {1, 1, 0},      {1, 1, 1},
-                       {0.3, -0.2, 0.9}, {-0.7, 0.5, 0.4}, {0.1, 0.9, 0.2}};
-  std::vector<double> sideways;
+                       {0.3, -0.2, 0.9}, {-0.7, 0.5, 0.4}, {0.1, 0.9, 0.2},
+                       {-0.23, 0.95, -0.22}, {-0.13, -0.11, -0.99}, {0.2, 0.32, -0.93}, {0.09, -0.98, -0.15}};
   for (const Vec3& axis : axes) {
     const Vec3 normal = axis.normalized();
     const Vec3 foot(0.04, -0.03, 0.06);
@@ -80,17 +82,13 @@ TEST_P(LineProxyTest, OnAPlaneTheForceIsStiffnessTimesDepth) {
       const Vec3 expected = 2.0 * depth_mm * normal;
       const double along = step.wrench.force_N.dot(normal);
       EXPECT_NEAR(along / expected.norm(), 1.0, 0.005) << normal.transpose() << " at " << depth_mm;
-      sideways.push_back((step.wrench.force_N - along * normal).norm() / along);
+      EXPECT_LT((step.wrench.force_N - along * normal).norm() / along, 0.01) << normal.transpose();
       EXPECT_DOUBLE_EQ(step.burr_force_N, step.wrench.force_N.norm());
       EXPECT_LT(step.wrench.torque_Nmm.norm(), 1e-9);
       EXPECT_EQ(step.contacts, 1);
       EXPECT_LT((step.X_WT.position_mm - (foot + 1.5 * normal)).norm(), 0.03);
     }
   }
-  // The normal turns a little with the grid: under 1 %, a single orientation a little over.
-  std::sort(sideways.begin(), sideways.end());
-  EXPECT_LT(sideways[sideways.size() * 9 / 10], 0.010);
-  EXPECT_LT(sideways.back(), 0.012);
 }
 
 TEST_P(LineProxyTest, SlidingRoundABallTheForcePointsOut) {
@@ -198,25 +196,37 @@ TEST_P(LineProxyTest, TheShaftOnAnEdgeTurnsTheHandAway) {
   }
 }
 
-// Steady alone: the paper sends no force for the shaft.
+// Steady alone: the paper sends no force for the shaft. Edges of a block, turned in the grid, against which
+// the shaft leans with some of its length along the edge.
 TEST(LineProxy, TheTorqueOfTheShaftOnAnEdgeIsLeverTimesForce) {
-  const Volume bone = block_with_edge();
-  const Vec3 edge(0, 0.1, 4);
-  for (const double lean : {-0.4, -0.8, -1.2}) {
-    const Vec3 shaft = Vec3(lean, 0, 1).normalized();
-    const Vec3 into_block = Vec3(1, 0, -lean).normalized();
-    for (const double lever_mm : {8.0, 15.0}) {
-      for (const double depth_mm : {0.3, 0.6}) {
-        LineProxy algorithm = prepared(Mode::steady, bone);
-        const Vec3 touching = edge - lever_mm * shaft;
-        const HapticStep step = push(algorithm, standing(touching - 0.5 * into_block, shaft),
-                                     touching + depth_mm * into_block, 300);
-        const Vec3 force = step.wrench.force_N;
-        EXPECT_GT(force.dot(-into_block) / force.norm(), 0.97);
-        EXPECT_NEAR(force.norm(), 2.0 * depth_mm, 0.5 * depth_mm);
-        EXPECT_NEAR(step.wrench.torque_Nmm.norm() / force.norm(), lever_mm, 0.02 * lever_mm) << lean;
-        const Vec3 expected = (edge - touching).cross(force);
-        EXPECT_GT(expected.normalized().dot(step.wrench.torque_Nmm.normalized()), 0.999);
+  const Vec3 turns[] = {{0, 0, 0}, {0.3, 0.7, -0.4}, {-0.9, 0.2, 0.5}};
+  for (const Vec3& turn : turns) {
+    const Quat X_WB = quaternion_from_rotation_vector(turn);
+    const Volume bone = shape_volume(centred_cube(64, 0.25), [&](const Vec3& p_W) {
+      const Vec3 p = X_WB.conjugate() * p_W;
+      return std::max(-p.x(), -p.z());
+    });
+    const Vec3 edge = X_WB * Vec3(0, 0.1, 0);
+    for (const Vec3& direction : {Vec3(-0.4, 0, 1), Vec3(-0.8, 0.5, 1), Vec3(-1.2, 0, 1)}) {
+      const Vec3 shaft = X_WB * direction.normalized();
+      const Vec3 into_block = (X_WB * Vec3::UnitY()).cross(shaft).normalized();
+      for (const double lever_mm : {4.0, 8.0, 12.0, 20.0}) {
+        for (const double depth_mm : {0.3, 0.6}) {
+          LineProxy algorithm = prepared(Mode::steady, bone);
+          const Vec3 touching = edge - lever_mm * shaft;
+          const HapticStep step = push(algorithm, standing(touching - 0.5 * into_block, shaft),
+                                       touching + depth_mm * into_block, 150);
+          const Vec3 force = step.wrench.force_N;
+          EXPECT_GT(force.dot(-into_block) / force.norm(), 0.999);
+          // The grid rounds the edge by up to 0.1 mm, and the shaft turns away from it.
+          const double softening = 1.0 + 2.0 * lever_mm * lever_mm / 3000.0;
+          EXPECT_LT(force.norm(), 2.0 * depth_mm / softening);
+          EXPECT_GT(force.norm(), 2.0 * (depth_mm - 0.11) / softening);
+          EXPECT_NEAR(step.wrench.torque_Nmm.norm() / force.norm(), lever_mm, 0.02 * lever_mm)
+              << direction.transpose();
+          const Vec3 expected = (edge - touching).cross(force);
+          EXPECT_GT(expected.normalized().dot(step.wrench.torque_Nmm.normalized()), 0.999);
+        }
       }
     }
   }
@@ -310,7 +320,7 @@ TEST(LineProxy, SettingsOutOfRangeAreRefused) {
   settings.stiffness_N_per_mm = -1;
   EXPECT_THROW(LineProxy{settings}, std::invalid_argument);
   settings = {};
-  settings.tip_proxy_limit_mm = std::nan("");
+  settings.tip_proxy_limit_mm_per_s = std::nan("");
   EXPECT_THROW(LineProxy{settings}, std::invalid_argument);
   settings = {};
   settings.rotation_steps = 0;

@@ -16,8 +16,8 @@ double balanced_reaction_N(const ShaftContact& contact, const Vec3& line_tip_W, 
   if (!((rest->proxy_W - tip_W).dot(rest->normal_W) > 0.0)) return free_N;
   const double shared = contact.out_W.dot(rest->normal_W);
   const double raised_mm = (rest->proxy_W - device_tip_W).dot(rest->normal_W);
-  const double resting_N =
-      stiffness * (depth_mm - shared * raised_mm) / (1.0 + stiffness * give_mm_per_N * (1.0 - shared * shared));
+  const double resting_N = stiffness * (depth_mm - shared * raised_mm) /
+                           (1.0 + stiffness * give_mm_per_N * (1.0 - shared * shared));
   return std::max(0.0, resting_N);
 }
 

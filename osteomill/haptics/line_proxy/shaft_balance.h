@@ -15,7 +15,7 @@ struct TipRest {
 
 /// The springs that balance where the shaft touches.
 struct ShaftSprings {
-  /// From the device's tip to the tool's: eq. 6. N/mm; infinite holds the tool's tip where it is.
+  /// From the device's tip to the tool's: eq. 6. N/mm.
   double tip_N_per_mm;
   /// What the reaction grows with where the tip cannot give way: eq. 10. N/mm.
   double shaft_N_per_mm;

@@ -121,7 +121,8 @@ std::optional<double> depth_along(const Line& line, const Vec3& point_W, const V
     // Along half a voxel the density is nearly a parabola: once more by the chord.
     const double chord_mm = depth_mm - step_mm * above / (above - above_before);
     const double at_chord = line.above_isovalue(point_W + chord_mm * out_W);
-    if (at_chord > 0.0) return at_chord == above ? chord_mm : chord_mm + (depth_mm - chord_mm) * at_chord / (at_chord - above);
+    if (at_chord > 0.0)
+      return at_chord == above ? chord_mm : chord_mm + (depth_mm - chord_mm) * at_chord / (at_chord - above);
     const double inner_mm = depth_mm - step_mm;
     return inner_mm + (chord_mm - inner_mm) * above_before / (above_before - at_chord);
   }

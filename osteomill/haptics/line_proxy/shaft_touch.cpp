@@ -26,14 +26,6 @@ double shaft_stiffness(const ShaftContact& contact, const Vec3& axis_W, const Sh
   return 1.0 / (give_mm_per_N + fading / rule.tip_N_per_mm);
 }
 
-// Turned towards another unit vector, by so much at most.
-Vec3 turned_toward(const Vec3& from, const Vec3& to, double limit_rad) {
-  const Vec3 axis = from.cross(to);
-  const double angle = std::atan2(axis.norm(), from.dot(to));
-  if (angle <= limit_rad) return to;
-  return quaternion_from_rotation_vector(limit_rad / std::max(axis.norm(), 1e-12) * axis) * from;
-}
-
 double moved_toward(double from, double to, double limit) {
   return from + std::clamp(to - from, -limit, limit);
 }
@@ -65,8 +57,7 @@ std::optional<ShaftTouch::Found> ShaftTouch::find(const Volume& volume, const Sh
   const double margin_mm = contact_ ? contact_->margin_mm : 0.0;
   const int tries = contact_ && !line.rest ? 3 : 1;
   for (int n = 0; n < tries; ++n) {
-    const Vec3 tip_W =
-        line.X_WL.position_mm - 0.5 * n * pushed_mm - (n < 2 ? margin_mm : 0.0) * out_W;
+    const Vec3 tip_W = line.X_WL.position_mm - 0.5 * n * pushed_mm - (n < 2 ? margin_mm : 0.0) * out_W;
     const auto contact = shaft_contact(volume, span, {tip_W, line.X_WL.orientation}, near_mm, out_W,
                                        rule.normal, full_margin_mm);
     if (contact) return Found{*contact, tip_W, full_margin_mm};
@@ -77,22 +68,27 @@ std::optional<ShaftTouch::Found> ShaftTouch::find(const Volume& volume, const Sh
 void ShaftTouch::go_to(const Found& found, const LaidLine& line, const ShaftTouchRule& rule, double dt_s) {
   const Vec3 axis_W = shaft_direction(line.X_WL);
   const ShaftContact& contact = found.contact;
-  if (!contact_) contact_ = Contact{contact.lever_mm, contact.out_W, 0.0, Vec3::Zero(), 0.0, line.device_tip_W, axis_W, Vec3::Zero()};
+  if (!contact_)
+    contact_ = Contact{contact.lever_mm,  contact.out_W, 0.0,         Vec3::Zero(), 0.0,
+                       line.device_tip_W, axis_W,        Vec3::Zero()};
   // The push follows the contact at once in size but not in direction: in a notch narrower than the push is
   // long the two would chase each other.
   const Vec3 stayed_mm = contact_->shift_mm - (line.device_tip_W - contact_->device_tip_W);
   const Vec3 aside_mm =
       (1.0 - rule.turning_share) * (stayed_mm - stayed_mm.dot(contact.out_W) * contact.out_W);
-  const double moved_mm = (line.device_tip_W - contact_->device_tip_W + contact.lever_mm * (axis_W - contact_->axis_W)).norm();
+  const double moved_mm =
+      (line.device_tip_W - contact_->device_tip_W + contact.lever_mm * (axis_W - contact_->axis_W)).norm();
   contact_->device_tip_W = line.device_tip_W;
   contact_->axis_W = axis_W;
   const ShaftSprings springs{rule.tip_N_per_mm, shaft_stiffness(contact, axis_W, rule)};
-  const double push_N = balanced_reaction_N(contact, found.line_tip_W, line.device_tip_W + aside_mm, line.rest, springs);
-  contact_->push_N = moved_toward(contact_->push_N, push_N,
-                                  rule.slew_limit_N_per_s * dt_s + kSlewStiffness * rule.tip_N_per_mm * moved_mm);
+  const double push_N =
+      balanced_reaction_N(contact, found.line_tip_W, line.device_tip_W + aside_mm, line.rest, springs);
+  contact_->push_N =
+      moved_toward(contact_->push_N, push_N,
+                   rule.slew_limit_N_per_s * dt_s + kSlewStiffness * rule.tip_N_per_mm * moved_mm);
   contact_->margin_mm = moved_toward(contact_->margin_mm, found.margin_mm, kMarginRate_mm_per_s * dt_s);
   contact_->lever_mm = moved_toward(contact_->lever_mm, contact.lever_mm, rule.slide_limit_mm_per_s * dt_s);
-  contact_->out_W = turned_toward(contact_->out_W, contact.out_W, rule.turn_limit_rad_per_s * dt_s);
+  contact_->out_W = contact.out_W;
   contact_->shift_mm = contact_->push_N / rule.tip_N_per_mm * contact_->out_W + aside_mm;
   contact_->point_W = found.line_tip_W + contact_->lever_mm * axis_W + contact.depth_mm * contact.out_W;
 }

@@ -10,7 +10,7 @@ namespace osteomill::line_proxy {
 /// How a touching shaft answers. Limits are per second, and may be infinite.
 struct ShaftTouchRule {
   NormalRule normal;
-  /// The spring of eq. 6 that the shaft pushes the tool's tip against; infinite where it turns the tool only.
+  /// The spring of eq. 6, against which the shaft pushes the tool's tip.
   double tip_N_per_mm;
   /// The spring that holds the tool's orientation to the device's, ...
   double turning_Nmm_per_rad;
@@ -22,7 +22,6 @@ struct ShaftTouchRule {
   /// How much of the way the push turns at once to where the contact points, in (0, 1].
   double turning_share;
   double slide_limit_mm_per_s;
-  double turn_limit_rad_per_s;
   double slew_limit_N_per_s;
 };
 

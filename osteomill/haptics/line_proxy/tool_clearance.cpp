@@ -12,7 +12,6 @@ namespace osteomill::line_proxy {
 
 namespace {
 
-constexpr int kRounds = 2;
 constexpr double kTolerance_mm = 1e-3;
 // A deeper place is looked for only where it is this much deeper.
 constexpr double kWorthIt_mm = 0.02;
@@ -33,7 +32,8 @@ void look(const Volume& volume, const Vec3& middle_W, const Vec3& radius_W, std:
   const double radius_mm = radius_W.norm();
   if (deepest) {
     const double least_mm = deepest->depth_mm + kWorthIt_mm;
-    if (!(least_mm < radius_mm) || !in_bone(volume, middle_W + (1.0 - least_mm / radius_mm) * radius_W)) return;
+    if (!(least_mm < radius_mm) || !in_bone(volume, middle_W + (1.0 - least_mm / radius_mm) * radius_W))
+      return;
   }
   const double step_mm = 0.5 * volume.geometry().spacing_mm.minCoeff();
   Vec3 free_W = middle_W;
@@ -73,18 +73,14 @@ std::optional<Overlap> deepest_overlap(const Volume& volume, const MillingTool& 
 
 }  // namespace
 
-Vec3 cleared_position(const Volume& volume, const MillingTool& tool, const Pose& X_WT,
-                      const NormalRule& normal) {
-  Pose cleared = X_WT;
-  for (int round = 0; round < kRounds; ++round) {
-    const auto overlap = deepest_overlap(volume, tool, cleared);
-    if (!overlap) break;
-    const Vec3 inward = (overlap->middle_W - overlap->surface_W).normalized();
-    const Vec3 out = surface_normal(volume, overlap->surface_W, normal).value_or(inward);
-    const double away_mm = out.dot(overlap->middle_W - overlap->surface_W);
-    cleared.position_mm += std::clamp(overlap->radius_mm - away_mm, 0.0, overlap->radius_mm) * out;
-  }
-  return cleared.position_mm;
+std::optional<Vec3> clearing_move(const Volume& volume, const MillingTool& tool, const Pose& X_WT,
+                                  const NormalRule& normal) {
+  const auto overlap = deepest_overlap(volume, tool, X_WT);
+  if (!overlap) return std::nullopt;
+  const Vec3 inward = (overlap->middle_W - overlap->surface_W).normalized();
+  const Vec3 out = surface_normal(volume, overlap->surface_W, normal).value_or(inward);
+  const double away_mm = out.dot(overlap->middle_W - overlap->surface_W);
+  return std::clamp(overlap->radius_mm - away_mm, 0.0, overlap->radius_mm) * out;
 }
 
 }  // namespace osteomill::line_proxy
