@@ -64,11 +64,15 @@ void draw_algorithm(SimulationSettings& wanted, bool& changed) {
   changed = changed || settled;
 }
 
-void draw_tool(SimulationSettings& wanted, bool& changed) {
+void draw_tool(SimulationSettings& wanted, bool& sound, bool& changed) {
   if (!ui::header("Tool", true)) return;
   changed = settle("burr radius", wanted.tool.burr_radius_mm, 0.5f, 4.0f, "%.1f mm") || changed;
   changed = settle("shaft radius", wanted.tool.shaft_radius_mm, 0.3f, 3.0f, "%.1f mm") || changed;
   changed = settle("spindle", wanted.cutting.spindle_speed_rpm, 5000, 120000, "%.0f rpm") || changed;
+  changed = ui::checkbox("vibration", &wanted.vibration) || changed;
+  ui::hint("The hand feels the burr cut");
+  ImGui::SameLine();
+  ui::checkbox("sound", &sound);
 }
 
 void draw_session(ViewState& view, Simulation& simulation) {
@@ -155,7 +159,7 @@ void draw_controls(ViewState& view, Simulation& simulation, FilesPanel& files, c
   bool changed = false;
   draw_session(view, simulation);
   draw_algorithm(view.wanted, changed);
-  draw_tool(view.wanted, changed);
+  draw_tool(view.wanted, view.sound, changed);
   draw_view(view);
   draw_cuts(view, simulation);
   draw_isovalue(view, simulation);
