@@ -18,6 +18,7 @@ constexpr const char* kControls[][2] = {
     {"Press it in, pull it back", "wheel, or Page Up and Page Down"},
     {"Turn it", "Shift with mouse or arrow keys"},
     {"Mill", "left button while the tool is in hand, or Space on and off"},
+    {"With a SpaceMouse", "push and twist it; a button turns the spindle on and off"},
     {"Move a cut", "Ctrl with left drag on it, or its slider"},
     {"Pause, take back the last cut", "P, Ctrl+Z"},
     {"Full screen, this page", "F11, F1"},

@@ -122,7 +122,7 @@ class Simulator {
       view_.complaint = error.what();
       view_.wanted = simulation_->settings();
     }
-    take_input(view_, *simulation_, size);
+    take_input(view_, *simulation_, space_mouse_, size);
     take_surface();
     cuts_.update(view_, *simulation_, *renderer_);
     renderer_->draw(scene_of(view_, *simulation_), size);
@@ -207,6 +207,7 @@ class Simulator {
   FilesPanel files_;
   CutUpdates cuts_;
   SoundPlayer sound_;
+  SpaceMouse space_mouse_;
   PictureRate rate_;
   int pictures_since_said_ = 0;
   std::clock_t said_cpu_ = 0;
