@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cctype>
 #include <cfloat>
 #include <string>
 
@@ -10,7 +11,7 @@ namespace osteomill::app {
 
 namespace {
 
-constexpr float kWidth_px = 268;
+constexpr float kWidth_px = 300;
 
 const char* title_of(AlgorithmId algorithm) {
   switch (algorithm) {
@@ -64,11 +65,15 @@ void draw_algorithm(SimulationSettings& wanted, bool& changed) {
   changed = changed || settled;
 }
 
-void draw_tool(SimulationSettings& wanted, bool& changed) {
+void draw_tool(SimulationSettings& wanted, bool& sound, bool& changed) {
   if (!ui::header("Tool", true)) return;
   changed = settle("burr radius", wanted.tool.burr_radius_mm, 0.5f, 4.0f, "%.1f mm") || changed;
   changed = settle("shaft radius", wanted.tool.shaft_radius_mm, 0.3f, 3.0f, "%.1f mm") || changed;
   changed = settle("spindle", wanted.cutting.spindle_speed_rpm, 5000, 120000, "%.0f rpm") || changed;
+  changed = ui::checkbox("vibration", &wanted.vibration) || changed;
+  ui::hint("The hand feels the burr cut");
+  ImGui::SameLine();
+  ui::checkbox("sound", &sound);
 }
 
 void draw_session(ViewState& view, Simulation& simulation) {
@@ -129,14 +134,23 @@ void draw_cuts(ViewState& view, const Simulation& simulation) {
   }
 }
 
-void draw_view(ViewState& view) {
+Camera with_whole(const ViewState& view) {
+  return camera_on(view.bounds, -view.camera.towards_viewer_W(), view.camera.up_W());
+}
+
+void draw_view(ViewState& view, const Vec3& tool_W) {
   if (!ui::header("View", true)) return;
   for (const ViewFrom from : kAllViews) {
-    const std::string name(name_of(from));
-    if (ui::button(name.c_str())) view.camera = camera_from(from, view.bounds);
-    if (from != ViewFrom::posterior && from != ViewFrom::right && from != ViewFrom::inferior)
-      ImGui::SameLine();
+    std::string letter(1, static_cast<char>(std::toupper(name_of(from).front())));
+    if (ui::button((letter + "##view").c_str())) view.camera = camera_from(from, view.bounds);
+    ui::hint(("From " + std::string(name_of(from))).c_str());
+    ImGui::SameLine();
   }
+  if (ui::button("Whole")) view.camera = with_whole(view);
+  ui::hint("All of the bone, as it is turned now");
+  ImGui::SameLine();
+  if (ui::button("Tool")) view.camera.focus_W = tool_W;
+  ui::hint("The burr into the middle");
   ui::checkbox("ghost", &view.ghost);
   ImGui::SameLine();
   ui::checkbox("arrows", &view.arrows);
@@ -155,8 +169,8 @@ void draw_controls(ViewState& view, Simulation& simulation, FilesPanel& files, c
   bool changed = false;
   draw_session(view, simulation);
   draw_algorithm(view.wanted, changed);
-  draw_tool(view.wanted, changed);
-  draw_view(view);
+  draw_tool(view.wanted, view.sound, changed);
+  draw_view(view, simulation.state().record.X_WT.position_mm);
   draw_cuts(view, simulation);
   draw_isovalue(view, simulation);
   files.draw(view, simulation);

@@ -110,9 +110,9 @@ void FilesPanel::draw(ViewState& view, Simulation& simulation) {
                       simulation.isovalue()));
     });
   }
+  ImGui::SameLine();
   if (ui::button("Save picture")) view.picture_asked = true;
   if (busy()) {
-    ImGui::SameLine();
     ImGui::TextColored({0.55f, 0.80f, 1.0f, 1}, "writing ...");
   }
 }

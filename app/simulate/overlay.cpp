@@ -18,6 +18,7 @@ constexpr const char* kControls[][2] = {
     {"Press it in, pull it back", "wheel, or Page Up and Page Down"},
     {"Turn it", "Shift with mouse or arrow keys"},
     {"Mill", "left button while the tool is in hand, or Space on and off"},
+    {"With a SpaceMouse", "push and twist it; a button turns the spindle on and off"},
     {"Move a cut", "Ctrl with left drag on it, or its slider"},
     {"Pause, take back the last cut", "P, Ctrl+Z"},
     {"Full screen, this page", "F11, F1"},
@@ -27,11 +28,20 @@ ImVec2 at(const Eigen::Vector2d& place) {
   return {static_cast<float>(place.x()), static_cast<float>(place.y())};
 }
 
-void draw(ImDrawList& list, const Annotation& annotation, ImU32 colour) {
-  for (const Annotation::Line& line : annotation.lines) list.AddLine(at(line.from), at(line.to), colour, 2);
-  const ImVec2 size = ImGui::CalcTextSize(annotation.text.c_str());
-  const ImVec2 place = at(annotation.place);
-  list.AddText({place.x - 0.5f * size.x, place.y - 0.5f * size.y}, colour, annotation.text.c_str());
+// On a dark edge, so that it is read before bone as well.
+void draw(ImDrawList& list, const Annotation& annotation) {
+  constexpr ImU32 kDark = IM_COL32(0, 0, 0, 190);
+  constexpr ImU32 kLight = IM_COL32(236, 238, 242, 255);
+  for (const Annotation::Line& line : annotation.lines) list.AddLine(at(line.from), at(line.to), kDark, 4);
+  for (const Annotation::Line& line : annotation.lines) list.AddLine(at(line.from), at(line.to), kLight, 2);
+  const char* text = annotation.text.c_str();
+  const ImVec2 size = ImGui::CalcTextSize(text);
+  const ImVec2 middle = at(annotation.place);
+  const ImVec2 place(middle.x - 0.5f * size.x, middle.y - 0.5f * size.y);
+  for (const ImVec2& aside : {ImVec2(1, 1), ImVec2(-1, 1), ImVec2(1, -1), ImVec2(-1, -1)}) {
+    list.AddText({place.x + aside.x, place.y + aside.y}, kDark, text);
+  }
+  list.AddText(place, kLight, text);
 }
 
 void begin_in_the_middle(const char* title, const PixelSize& size) {
@@ -45,10 +55,9 @@ void begin_in_the_middle(const char* title, const PixelSize& size) {
 
 void draw_annotations(const ViewState& view, const PixelSize& size, bool patient) {
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
-  const ImU32 colour = IM_COL32(230, 232, 236, 230);
-  draw(list, scale_bar_annotation(view.camera, size), colour);
+  draw(list, scale_bar_annotation(view.camera, size));
   if (!patient) return;
-  for (const Annotation& letter : orientation_letters(view.camera, size)) draw(list, letter, colour);
+  for (const Annotation& letter : orientation_letters(view.camera, size)) draw(list, letter);
 }
 
 void draw_help(ViewState& view, const PixelSize& size) {

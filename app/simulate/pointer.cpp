@@ -83,7 +83,7 @@ void take_keys(ViewState& view, Simulation& simulation) {
 
 }  // namespace
 
-void take_input(ViewState& view, Simulation& simulation, const PixelSize& size) {
+void take_input(ViewState& view, Simulation& simulation, SpaceMouse& space_mouse, const PixelSize& size) {
   if (drag_cut(view, size)) return;
   const ImGuiIO& io = ImGui::GetIO();
   const LiveState& state = simulation.state();
@@ -103,6 +103,8 @@ void take_input(ViewState& view, Simulation& simulation, const PixelSize& size) 
   if (on_picture) move_camera(view, size, !view.dragging_view);
 
   ToolInput input = keys_for_tool();
+  input.space_mouse = space_mouse.read();
+  if (input.space_mouse.presses % 2 == 1) simulation.set_spindle(!simulation.spindle_asked());
   input.touching = state.record.wrench.force_N.norm() > kTouching_N;
   if (on_picture && (view.holding_tool || view.dragging_tool) && !io.MouseDown[1] && !io.MouseDown[2]) {
     input.moved_px = {static_cast<double>(io.MouseDelta.x), static_cast<double>(io.MouseDelta.y)};

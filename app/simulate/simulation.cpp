@@ -19,9 +19,14 @@ constexpr std::size_t kBricksPerTick = 8;
 
 std::unique_ptr<MillingSession> make_session(std::shared_ptr<Volume> bone, const BoneDensities& densities,
                                              const SimulationSettings& settings) {
-  return std::make_unique<MillingSession>(std::move(bone), settings.tool,
-                                          make_algorithm(settings.algorithm, settings.haptics), densities,
-                                          milling_settings(settings), settings.limits);
+  auto session = std::make_unique<MillingSession>(std::move(bone), settings.tool,
+                                                  make_algorithm(settings.algorithm, settings.haptics),
+                                                  densities, milling_settings(settings), settings.limits);
+  VibrationSettings vibration;
+  vibration.on = settings.vibration;
+  vibration.spindle_speed_rpm = settings.cutting.spindle_speed_rpm;
+  session->set_vibration(vibration);
+  return session;
 }
 
 HandleSettings handle_settings(const SimulationSettings& settings) {
@@ -192,7 +197,9 @@ void Simulation::start_recording(const std::filesystem::path& path) {
                        1e-3,
                        command_line_};
   const int points = live_.session().algorithm().sample_point_count();
-  recorder_ = std::make_unique<Recorder>(path, describe_run(facts, settings_.algorithm, points));
+  RunDescription run = describe_run(facts, settings_.algorithm, points);
+  run.settings.push_back({"vibration", settings_.vibration ? 1.0 : 0.0, ""});
+  recorder_ = std::make_unique<Recorder>(path, run);
   recorder_path_ = path;
   listen();
 }

@@ -19,6 +19,8 @@ struct SimulationSettings {
   /// Not given: follows from `cutting` and the burr.
   std::optional<double> removal_rate_mm3_per_Ns;
   WrenchLimits limits;
+  /// The hand feels the burr cut.
+  bool vibration = true;
 };
 
 inline MillingSettings milling_settings(const SimulationSettings& settings) {

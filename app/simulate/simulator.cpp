@@ -23,6 +23,7 @@
 #include <imgui.h>
 
 #include "osteomill/files/atomic_file.h"
+#include "osteomill/sound/sound_stream.h"
 #include "osteomill/surface/png.h"
 #include "osteomill/surface/scale_bar.h"
 #include "osteomill/view/scene_renderer.h"
@@ -121,7 +122,7 @@ class Simulator {
       view_.complaint = error.what();
       view_.wanted = simulation_->settings();
     }
-    take_input(view_, *simulation_, size);
+    take_input(view_, *simulation_, space_mouse_, size);
     take_surface();
     cuts_.update(view_, *simulation_, *renderer_);
     renderer_->draw(scene_of(view_, *simulation_), size);
@@ -132,6 +133,16 @@ class Simulator {
     draw_readings(*simulation_, rate_.per_s(), size);
     draw_help(view_, size);
     draw_complaint(view_);
+    set_sound();
+  }
+
+  void set_sound() {
+    // What a firm hand presses with while cutting.
+    constexpr double kFullLoad_N = 2;
+    const LiveState& state = simulation_->state();
+    const bool heard = view_.sound && state.spindle_on;
+    sound_.set({heard ? simulation_->settings().cutting.spindle_speed_rpm : 0,
+                state.record.burr_force_N / kFullLoad_N});
   }
 
   void take_surface() {
@@ -195,6 +206,8 @@ class Simulator {
   ViewState view_;
   FilesPanel files_;
   CutUpdates cuts_;
+  SoundPlayer sound_;
+  SpaceMouse space_mouse_;
   PictureRate rate_;
   int pictures_since_said_ = 0;
   std::clock_t said_cpu_ = 0;

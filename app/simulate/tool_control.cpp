@@ -9,6 +9,8 @@ constexpr double kWheelStep_mm = 0.2;
 constexpr double kKeys_mm_s = 6;
 constexpr double kKeysAway_mm_s = 3;
 constexpr double kKeysTurn_rad_s = 0.6;
+constexpr double kSpaceMouse_mm_s = 20;
+constexpr double kSpaceMouse_rad_s = 1.2;
 // Against bone the hand's springs push no harder beyond these; free of it, the tool is on its way.
 constexpr double kFarthest_mm = 6;
 constexpr double kFarthestFree_mm = 25;
@@ -31,6 +33,9 @@ Pose moved_target(const Pose& X_W_target, const Pose& X_WD, const Camera& camera
         scale * (input.moved_px.x() * camera.right_W() - input.moved_px.y() * camera.up_W()) +
         input.passed_s * kKeys_mm_s * (input.keys.x() * camera.right_W() + input.keys.y() * camera.up_W());
   }
+  const Mat3 axes = camera.orientation.toRotationMatrix();
+  move += input.passed_s * kSpaceMouse_mm_s * (axes * input.space_mouse.push);
+  turn += input.passed_s * kSpaceMouse_rad_s * (axes * input.space_mouse.twist);
   Pose target{X_W_target.position_mm + move,
               (quaternion_from_rotation_vector(turn) * X_W_target.orientation).normalized()};
 

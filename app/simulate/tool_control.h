@@ -1,5 +1,6 @@
 #pragma once
 
+#include "osteomill/device/space_mouse.h"
 #include "osteomill/geometry/pose.h"
 #include "osteomill/view/camera.h"
 
@@ -14,6 +15,8 @@ struct ToolInput {
   double wheel = 0;
   /// Held keys, -1, 0 or 1 each: to the right, up, away from the viewer; with `turning` about the first two.
   Vec3 keys = Vec3::Zero();
+  /// A SpaceMouse, which always moves and turns.
+  SpaceMouseState space_mouse;
   double passed_s = 0;
   /// Whether bone holds the tool back.
   bool touching = false;

@@ -24,6 +24,7 @@ struct ViewState {
   bool wanted_is_new = false;
   bool ghost = true;
   bool arrows = true;
+  bool sound = true;
   bool help = true;
   bool full_screen_asked = false;
   bool close_asked = false;

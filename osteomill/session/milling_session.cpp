@@ -41,7 +41,7 @@ TickRecord MillingSession::tick(Device& device, double time_s, double dt_s, bool
 
   const Clock::time_point start = Clock::now();
   SafeWrench safe;
-  const HapticStep step = step_safely(record.X_WD, dt_s, safe);
+  const HapticStep step = step_safely(record.X_WD, dt_s, spindle_on, safe);
   record.compute_us = microseconds_since(start);
   device.write_wrench(safe.wrench);
 
@@ -77,7 +77,7 @@ TickRecord MillingSession::idle_tick(Device& device, double time_s) {
   return record;
 }
 
-HapticStep MillingSession::step_safely(const Pose& X_WD, double dt_s, SafeWrench& safe) {
+HapticStep MillingSession::step_safely(const Pose& X_WD, double dt_s, bool spindle_on, SafeWrench& safe) {
   HapticStep nothing;
   nothing.X_WT = last_X_WT_;
   if (!is_finite(X_WD)) {
@@ -85,6 +85,7 @@ HapticStep MillingSession::step_safely(const Pose& X_WD, double dt_s, SafeWrench
     return nothing;
   }
   HapticStep step = algorithm_->step(X_WD, dt_s);
+  if (spindle_on) step.wrench.force_N += vibration_.force_N(step.X_WT, step.burr_force_N, dt_s);
   safe = make_safe(step.wrench, limits_);
   if (safe.fault == WrenchFault::not_finite || !is_finite(step.X_WT) || !std::isfinite(step.burr_force_N)) {
     // Whatever led there is still in the algorithm's memory of contacts.

@@ -7,6 +7,7 @@
 #include "osteomill/haptics/haptic_algorithm.h"
 #include "osteomill/milling/burr_mill.h"
 #include "osteomill/session/tick_record.h"
+#include "osteomill/session/vibration.h"
 
 namespace osteomill {
 
@@ -28,6 +29,9 @@ class MillingSession {
   /// no allocation, lock, log, exception or system call.
   TickRecord tick(Device& device, double time_s, double dt_s, bool spindle_on);
 
+  /// Off until set; before the first tick.
+  void set_vibration(const VibrationSettings& settings) { vibration_ = Vibration(settings); }
+
   /// A tick of a pause: zero is sent, nothing is computed, and contacts are kept. As safe as `tick`.
   TickRecord idle_tick(Device& device, double time_s);
 
@@ -46,13 +50,14 @@ class MillingSession {
   const HapticAlgorithm& algorithm() const { return *algorithm_; }
 
  private:
-  HapticStep step_safely(const Pose& X_WD, double dt_s, SafeWrench& safe);
+  HapticStep step_safely(const Pose& X_WD, double dt_s, bool spindle_on, SafeWrench& safe);
   void mill(const HapticStep& step, double dt_s);
 
   // Behind a pointer since the algorithm keeps its address.
   std::shared_ptr<Volume> volume_;
   std::unique_ptr<HapticAlgorithm> algorithm_;
   BurrMill mill_;
+  Vibration vibration_;
   WrenchLimits limits_;
   double removed_mm3_ = 0;
   VolumeChange last_change_;

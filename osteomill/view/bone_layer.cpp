@@ -45,9 +45,24 @@ bool may_be_seen(const std::array<Eigen::Vector4d, 6>& planes, const Sphere& sph
   });
 }
 
+// Where bricks meet both have the same vertices, which must stay the same for no seam to be seen.
+std::vector<bool> on_border(const BrickMesh& mesh, const GridGeometry& geometry, const VoxelBox& cells) {
+  constexpr double kNear_voxels = 1e-3;
+  const Vec3 first(cells.first.i, cells.first.j, cells.first.k);
+  const Vec3 last(cells.last.i + 1, cells.last.j + 1, cells.last.k + 1);
+  std::vector<bool> border;
+  border.reserve(mesh.vertices.size());
+  for (const MeshVertex& vertex : mesh.vertices) {
+    const Vec3 point_W(vertex.position_mm[0], vertex.position_mm[1], vertex.position_mm[2]);
+    const Vec3 voxel = geometry.voxel_from_world(point_W);
+    border.push_back((voxel - first).minCoeff() < kNear_voxels || (last - voxel).minCoeff() < kNear_voxels);
+  }
+  return border;
+}
+
 // Densities averaged over neighbouring vertices: which voxels a vertex looks at depends on where the grid's
 // lines meet the surface, and that would be seen as a pattern.
-std::vector<MeshVertex> with_smooth_densities(const BrickMesh& mesh) {
+std::vector<MeshVertex> with_smooth_densities(const BrickMesh& mesh, const std::vector<bool>& fixed) {
   constexpr int kPasses = 3;
   std::vector<MeshVertex> vertices = mesh.vertices;
   std::vector<std::array<float, 2>> sums(vertices.size());
@@ -62,7 +77,9 @@ std::vector<MeshVertex> with_smooth_densities(const BrickMesh& mesh) {
         sums[corners[corner]][1] += 3;
       }
     }
-    for (std::size_t n = 0; n < vertices.size(); ++n) vertices[n].density = sums[n][0] / sums[n][1];
+    for (std::size_t n = 0; n < vertices.size(); ++n) {
+      if (!fixed[n]) vertices[n].density = sums[n][0] / sums[n][1];
+    }
   }
   return vertices;
 }
@@ -107,7 +124,11 @@ void end_cuts() {
 }
 
 BoneLayer::BoneLayer(const SurfaceBricks& layout, const GridGeometry& geometry)
-    : whole_(bone_program("")), cut_(bone_program("#define CUT\n")), bricks_(layout.count()) {
+    : whole_(bone_program("")),
+      cut_(bone_program("#define CUT\n")),
+      layout_(layout),
+      geometry_(geometry),
+      bricks_(layout.count()) {
   for (std::size_t n = 0; n < bricks_.size(); ++n) bricks_[n].bounds = bounds_of(geometry, layout.cells(n));
 }
 
@@ -129,7 +150,8 @@ void BoneLayer::set_brick(std::size_t number, const BrickMesh& mesh) {
     brick.vertices = gl::make_buffer();
     brick.indices = gl::make_buffer();
   }
-  const std::vector<MeshVertex> vertices = with_smooth_densities(mesh);
+  const std::vector<MeshVertex> vertices =
+      with_smooth_densities(mesh, on_border(mesh, geometry_, layout_.cells(number)));
   glBindVertexArray(brick.vertex_array.get());
   glBindBuffer(GL_ARRAY_BUFFER, brick.vertices.get());
   glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(MeshVertex)),

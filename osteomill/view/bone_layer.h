@@ -50,6 +50,8 @@ class BoneLayer {
   // Clipping costs time at every vertex.
   gl::Program whole_;
   gl::Program cut_;
+  SurfaceBricks layout_;
+  GridGeometry geometry_;
   std::vector<Brick> bricks_;
 };
 

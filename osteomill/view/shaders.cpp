@@ -95,7 +95,7 @@ out vec4 colour;
 void main() {
   vec3 n = normalize(normal_C);
   vec3 towards_light = normalize(vec3(-0.45, 0.60, 0.66));
-  float light = 0.38 + 0.10 * n.y + 0.55 * max(dot(n, towards_light), 0.0);
+  float light = 0.50 + 0.10 * n.y + 0.50 * max(dot(n, towards_light), 0.0);
   float shine = gloss * pow(max(dot(n, normalize(towards_light + vec3(0.0, 0.0, 1.0))), 0.0), 40.0);
   colour = vec4(base.rgb * light + shine, base.a);
 }

@@ -1,0 +1,42 @@
+#include "osteomill/device/space_mouse.h"
+
+#include <algorithm>
+
+#include <spnav.h>
+
+namespace osteomill {
+
+namespace {
+
+// What the daemon sends for a device pushed as far as it goes.
+constexpr double kFull = 350;
+
+double share(int value) {
+  return std::clamp(value / kFull, -1.0, 1.0);
+}
+
+}  // namespace
+
+SpaceMouse::SpaceMouse() : present_(spnav_open() != -1) {}
+
+SpaceMouse::~SpaceMouse() {
+  if (present_) spnav_close();
+}
+
+SpaceMouseState SpaceMouse::read() {
+  spnav_event event;
+  while (present_ && spnav_poll_event(&event) != 0) {
+    if (event.type == SPNAV_EVENT_MOTION) {
+      // Its z points away from the viewer, in a left-handed frame.
+      state_.push = {share(event.motion.x), share(event.motion.y), -share(event.motion.z)};
+      state_.twist = {share(event.motion.rx), share(event.motion.ry), -share(event.motion.rz)};
+    } else if (event.type == SPNAV_EVENT_BUTTON && event.button.press != 0) {
+      ++state_.presses;
+    }
+  }
+  SpaceMouseState now = state_;
+  state_.presses = 0;
+  return now;
+}
+
+}  // namespace osteomill

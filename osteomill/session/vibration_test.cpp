@@ -1,0 +1,43 @@
+#include "osteomill/session/vibration.h"
+
+#include <gtest/gtest.h>
+
+namespace osteomill {
+namespace {
+
+TEST(Vibration, IsOffUnlessAskedFor) {
+  Vibration none;
+  EXPECT_EQ(none.force_N({}, 5, 1e-3), Vec3::Zero());
+}
+
+TEST(Vibration, ItsFrequencyFollowsTheSpindleAndCanBeRendered) {
+  EXPECT_DOUBLE_EQ(vibration_hz({.spindle_speed_rpm = 6000}), 100);
+  EXPECT_NEAR(vibration_hz({.spindle_speed_rpm = 40000}), 40000.0 / 60 / 3, 1e-9);
+  for (double rpm = 1000; rpm < 200000; rpm += 777) EXPECT_LE(vibration_hz({.spindle_speed_rpm = rpm}), 250);
+}
+
+TEST(Vibration, GoesRoundTheShaftAsStrongAsTheBurrPressesUpToItsLimit) {
+  const Pose X_WT{{1, 2, 3}, quaternion_from_rotation_vector({0.5, -0.2, 0.1})};
+  const VibrationSettings settings{.on = true, .spindle_speed_rpm = 6000};
+  Vibration vibration(settings);
+  Vec3 sum = Vec3::Zero();
+  constexpr int kTicks = 1000;
+  int crossings = 0;
+  double before = 0;
+  for (int n = 0; n < kTicks; ++n) {
+    const Vec3 force_N = vibration.force_N(X_WT, 2, 1e-3);
+    EXPECT_NEAR(force_N.norm(), 0.16, 1e-12);
+    EXPECT_NEAR(force_N.dot(shaft_direction(X_WT)), 0, 1e-12);
+    const double across = force_N.dot(X_WT.orientation * Vec3(0.8, 0.6, 0));
+    crossings += before < 0 && across >= 0 ? 1 : 0;
+    before = across;
+    sum += force_N;
+  }
+  EXPECT_NEAR(crossings, 100, 1);
+  EXPECT_LT(sum.norm() / kTicks, 1e-3);
+  EXPECT_NEAR(vibration.force_N(X_WT, 100, 1e-3).norm(), settings.greatest_N, 1e-12);
+  EXPECT_EQ(vibration.force_N(X_WT, 0, 1e-3), Vec3::Zero());
+}
+
+}  // namespace
+}  // namespace osteomill

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+namespace osteomill {
+
+/// What a spindle is doing.
+struct SpindleState {
+  /// What it is asked for; 0 is off. A turn is 1/60 s at 1 rpm.
+  double speed_rpm = 0;
+  /// How hard the burr cuts, 0 to 1.
+  double load = 0;
+};
+
+/// The sound of a spindle, computed: the tone of its turning with its overtones, a little lower and a good
+/// deal louder under load, and the noise of cutting. The same states give the same samples. For one thread.
+class SpindleSound {
+ public:
+  explicit SpindleSound(double sample_rate_hz) : sample_rate_hz_(sample_rate_hz) {}
+
+  /// The next samples, -1 to 1, one channel. Speed and loudness follow the state within a quarter of a second
+  /// or so, as a motor does, without a click.
+  void render(const SpindleState& state, std::span<float> samples);
+
+  /// The tone's frequency for a speed and a load when it has settled.
+  static double pitch_hz(const SpindleState& state);
+
+ private:
+  float noise();
+
+  double sample_rate_hz_;
+  double pitch_hz_ = 0;
+  double loudness_ = 0;
+  double load_ = 0;
+  double turns_ = 0;
+  std::uint32_t noise_ = 1;
+  float smooth_noise_ = 0;
+};
+
+}  // namespace osteomill
