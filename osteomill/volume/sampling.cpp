@@ -13,7 +13,8 @@ struct Cell {
   bool far_outside = false;
 };
 
-// Of a value within int's range. std::floor is a call of the library on plain x86-64, and every sample takes three.
+// Of a value within int's range. std::floor is a call of the library on plain x86-64, and every sample takes
+// three.
 int floor_of(double value) {
   const int truncated = static_cast<int>(value);
   return static_cast<double>(truncated) > value ? truncated - 1 : truncated;
