@@ -12,8 +12,8 @@ namespace {
 constexpr std::size_t kSpareChunks = 8192;
 
 // What looking at a brick costs, in points computed.
-constexpr int kBrickCost = 8;
-constexpr int kLoweredBrickCost = 3;
+constexpr int kBrickCost = 10;
+constexpr int kLoweredBrickCost = 8;
 constexpr int kBrickPassedOverCost = 1;
 
 std::uint32_t count_of(const std::array<std::uint8_t, 64>& mask) {
