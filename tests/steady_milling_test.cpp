@@ -86,8 +86,8 @@ INSTANTIATE_TEST_SUITE_P(
                       Goal{AlgorithmId::point_shell, 1.5, 0.02, 0.3, 0.06},
                       Goal{AlgorithmId::point_shell, 3.0, 0.03, 0.5, 0.15},
                       // At other rates.
-                      Goal{AlgorithmId::point_shell, 3.0, 0.03, 0.5, 0.15, 2e-3},
-                      Goal{AlgorithmId::point_shell, 1.5, 0.02, 0.3, 0.06, 0.5e-3}));
+                      Goal{AlgorithmId::point_shell, 1.5, 0.02, 0.3, 0.06, 2e-3},
+                      Goal{AlgorithmId::point_shell, 3.0, 0.03, 0.5, 0.15, 0.5e-3}));
 
 }  // namespace
 }  // namespace osteomill

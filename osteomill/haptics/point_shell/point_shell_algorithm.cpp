@@ -16,6 +16,8 @@ namespace {
 constexpr double kLongestTick_s = 5e-3;
 // In which a stretch that nothing holds any more falls to a third, if not sooner.
 constexpr double kReleaseTime_s = 0.1;
+// Of the turn by which a move of the device would be made at the tool's far end.
+constexpr double kTurnByMove = 0.25;
 // Of the centreline, looked at for bone.
 constexpr int kCentrelinePoints = 51;
 
@@ -94,8 +96,8 @@ Pose PointShellAlgorithm::released(const Pose& X_WT_start, const Pose& target, c
   const double tick_s = std::clamp(dt_s, 0.0, kLongestTick_s);
   const ToolMove device = move_between(X_WD_before_, X_WD);
   const double moved_mm = device.translation_mm.norm(), turned_rad = device.rotation_rad.norm();
-  // What the device's motion moves at the tool's far end it may turn the tool by, and the other way round:
-  // held up in its turn alone, a tool that leaves the bone would be dragged behind.
+  // A turn of the device may move the tool by what it moves the tool's far end, and a move turn it by a part
+  // of that: held up in its turn alone, a tool that leaves the bone would be dragged behind.
   const double length_mm = std::max(tool_.tool().shaft_length_mm, tool_.tool().burr_radius_mm);
   const ToolMove stretch = move_between(X_WD, X_WT_start);
   const double fading = tick_s / kReleaseTime_s;
@@ -103,7 +105,7 @@ Pose PointShellAlgorithm::released(const Pose& X_WT_start, const Pose& target, c
       share_released(X_WT_start, target, X_WD,
                      moved_mm + turned_rad * length_mm + fading * stretch.translation_mm.norm() +
                          settings_.greatest_release_mm_s * tick_s,
-                     turned_rad + moved_mm / length_mm + fading * stretch.rotation_rad.norm() +
+                     turned_rad + kTurnByMove * moved_mm / length_mm + fading * stretch.rotation_rad.norm() +
                          settings_.greatest_release_rad_s * tick_s);
   if (share >= 1) return target;
   const ToolMove whole = move_between(X_WT_start, target);

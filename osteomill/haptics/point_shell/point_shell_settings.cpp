@@ -43,7 +43,7 @@ PointShellSettings PointShellSettings::defaults(Mode mode) {
   settings.greatest_move_mm = 0.5;
   settings.greatest_turn_rad = 0.05;
   settings.greatest_release_mm_s = 15;
-  settings.greatest_release_rad_s = 0.15;
+  settings.greatest_release_rad_s = 0.05;
   settings.carry_out_of_bone = true;
   settings.look_ahead = true;
   settings.solver_iterations = 2;
