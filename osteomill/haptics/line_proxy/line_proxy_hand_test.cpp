@@ -137,7 +137,13 @@ TEST(LineProxyHand, NoPushOfTheShaftFallsThrough) {
       hand.advance(make_safe(step.wrench, WrenchLimits{}).wrench,
                    n < 300 ? Vec3(speed_mm_s * direction) : Vec3::Zero());
     }
-    EXPECT_LT(past_surface_mm(step.X_WT, plane_mm), 0.3) << trial;
+    // A circle round the shaft reaches this far below its middle, less than its radius where it lies flat.
+    const Vec3 shown = shaft_direction(step.X_WT);
+    const double reach_mm = MillingTool{}.shaft_radius_mm * normal.cross(shown).norm();
+    const Vec3 end_W = step.X_WT * Vec3(0, 0, MillingTool{}.shaft_length_mm);
+    EXPECT_LT(reach_mm - plane_mm(end_W), 0.3) << trial;
+    EXPECT_LT(MillingTool{}.burr_radius_mm - plane_mm(step.X_WT.position_mm), 0.3) << trial;
+    EXPECT_GT(step.wrench.force_N.norm(), 0.5) << trial;
   }
 }
 

@@ -57,7 +57,8 @@ TEST(ShaftContact, MovesSmoothlyWithTheLine) {
   });
   std::optional<ShaftContact> before;
   for (int n = 0; n <= 100; ++n) {
-    const auto contact = contact_of(bone, line({0.004 * n - 0.1, 0.01 * n, -4}, {0.08, 0, 1}));
+    const double near_mm = before ? before->lever_mm : 0.0;
+    const auto contact = contact_of(bone, line({0.004 * n - 0.1, 0.01 * n, -4}, {0.08, 0, 1}), near_mm);
     ASSERT_TRUE(contact);
     EXPECT_GT(contact->out_W.dot(-Vec3::UnitX()), 0.97);
     if (before) {
