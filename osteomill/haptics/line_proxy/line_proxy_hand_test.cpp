@@ -110,6 +110,43 @@ TEST(LineProxyHand, NoPushFallsThrough) {
   }
 }
 
+// Any part of the tool first: its flank, or the end of its shaft with the burr hanging in the air.
+TEST(LineProxyHand, NoPushOfTheShaftFallsThrough) {
+  const auto plane_mm = plane(Vec3::Zero(), Vec3(0.1, 0.2, 1));
+  const Volume bone = shape_volume(centred_cube(120, 0.5), plane_mm);
+  const Vec3 normal = Vec3(0.1, 0.2, 1).normalized();
+  std::mt19937_64 random(5);
+  const auto between = [&](double a, double b) {
+    return a + (b - a) * static_cast<double>(random() >> 11) * 0x1p-53;
+  };
+  for (int trial = 0; trial < 30; ++trial) {
+    Vec3 shaft = random_unit(random);
+    if (shaft.dot(normal) > 0) shaft = -shaft;
+    const Vec3 direction = (-normal + 0.15 * random_unit(random)).normalized();
+    Hand hand;
+    hand.X_WD.orientation = smallest_rotation(Vec3::UnitZ(), shaft);
+    // Such that the tool's end is 2 mm above the bone.
+    hand.X_WD.position_mm = -MillingTool{}.shaft_length_mm * shaft + 3.0 * normal;
+    hand.target = hand.X_WD;
+    hand.push_limit_N = between(2.0, 10.0);
+    const double speed_mm_s = between(20.0, 300.0);
+    LineProxy algorithm = steady_on(bone);
+    HapticStep step;
+    for (int n = 0; n < 1200; ++n) {
+      step = algorithm.step(hand.X_WD, kTick_s);
+      hand.advance(make_safe(step.wrench, WrenchLimits{}).wrench,
+                   n < 300 ? Vec3(speed_mm_s * direction) : Vec3::Zero());
+    }
+    // A circle round the shaft reaches this far below its middle, less than its radius where it lies flat.
+    const Vec3 shown = shaft_direction(step.X_WT);
+    const double reach_mm = MillingTool{}.shaft_radius_mm * normal.cross(shown).norm();
+    const Vec3 end_W = step.X_WT * Vec3(0, 0, MillingTool{}.shaft_length_mm);
+    EXPECT_LT(reach_mm - plane_mm(end_W), 0.3) << trial;
+    EXPECT_LT(MillingTool{}.burr_radius_mm - plane_mm(step.X_WT.position_mm), 0.3) << trial;
+    EXPECT_GT(step.wrench.force_N.norm(), 0.5) << trial;
+  }
+}
+
 TEST(LineProxyHand, APressedHandComesToRest) {
   const Volume bone = shape_volume(centred_cube(60, 0.25), plane(Vec3::Zero(), Vec3(0.1, 0.2, 1)));
   LineProxy algorithm = steady_on(bone);

@@ -68,9 +68,10 @@ TEST_P(LineProxyTest, FreeSpaceIsExactlyZero) {
 }
 
 TEST_P(LineProxyTest, OnAPlaneTheForceIsStiffnessTimesDepth) {
-  const Vec3 axes[] = {{0, 0, 1},        {0, -1, 0},       {1, 1, 0},      {1, 1, 1},
-                       {0.3, -0.2, 0.9}, {-0.7, 0.5, 0.4}, {0.1, 0.9, 0.2},
-                       {-0.23, 0.95, -0.22}, {-0.13, -0.11, -0.99}, {0.2, 0.32, -0.93}, {0.09, -0.98, -0.15}};
+  const Vec3 axes[] = {{0, 0, 1},          {0, -1, 0},           {1, 1, 0},
+                       {1, 1, 1},          {0.3, -0.2, 0.9},     {-0.7, 0.5, 0.4},
+                       {0.1, 0.9, 0.2},    {-0.23, 0.95, -0.22}, {-0.13, -0.11, -0.99},
+                       {0.2, 0.32, -0.93}, {0.09, -0.98, -0.15}};
   for (const Vec3& axis : axes) {
     const Vec3 normal = axis.normalized();
     const Vec3 foot(0.04, -0.03, 0.06);

@@ -96,8 +96,8 @@ std::optional<WayOut> way_out_between(const Line& line, const Stretch& stretch, 
 }
 
 std::optional<WayOut> way_out(const Line& line, const Stretch& stretch, const NormalRule& rule) {
-  const auto lower =
-      stretch.enters ? surface_normal(line.volume, line.at(stretch.lower_mm), rule) : std::nullopt;
+  // Where the line is in bone from its tip on, the tip lies just under the surface it rests on.
+  const auto lower = surface_normal(line.volume, line.at(stretch.enters ? stretch.lower_mm : 0.0), rule);
   const auto upper =
       stretch.leaves ? surface_normal(line.volume, line.at(stretch.upper_mm), rule) : std::nullopt;
   const double length_mm = stretch.upper_mm - stretch.lower_mm;
@@ -160,7 +160,8 @@ std::optional<ShaftContact> shaft_contact(const Volume& volume, const ShaftSpan&
   auto way = way_out(line, *stretch, normal);
   if (!way && !out_before_W.isZero()) way = WayOut{out_before_W, length_mm};
   if (!way) return std::nullopt;
-  const double limit_mm = 2.0 * way->wedge_depth_mm + voxel_mm;
+  // Further than this lies another surface; a line along a face is as deep as it was laid.
+  const double limit_mm = 2.0 * (way->wedge_depth_mm + softness_mm) + voxel_mm;
 
   std::array<double, kPlaces> depths_mm{};
   double deepest_mm = 0.0;

@@ -14,6 +14,8 @@ constexpr double kMostMargin_mm = 0.5;
 constexpr double kMarginRate_mm_per_s = 10.0;
 // A device that moves changes the reaction as a spring so many times as stiff as the tip's at most.
 constexpr double kSlewStiffness = 2.0;
+// A reaction that lags behind while it falls drives the hand away; it falls faster than it grows.
+constexpr double kFasterFall = 4.0;
 
 double shaft_stiffness(const ShaftContact& contact, const Vec3& axis_W, const ShaftTouchRule& rule) {
   const double arm_mm = contact.lever_mm * axis_W.cross(contact.out_W).norm();
@@ -83,9 +85,10 @@ void ShaftTouch::go_to(const Found& found, const LaidLine& line, const ShaftTouc
   const ShaftSprings springs{rule.tip_N_per_mm, shaft_stiffness(contact, axis_W, rule)};
   const double push_N =
       balanced_reaction_N(contact, found.line_tip_W, line.device_tip_W + aside_mm, line.rest, springs);
+  const double times = push_N < contact_->push_N ? kFasterFall : 1.0;
   contact_->push_N =
       moved_toward(contact_->push_N, push_N,
-                   rule.slew_limit_N_per_s * dt_s + kSlewStiffness * rule.tip_N_per_mm * moved_mm);
+                   times * (rule.slew_limit_N_per_s * dt_s + kSlewStiffness * rule.tip_N_per_mm * moved_mm));
   contact_->margin_mm = moved_toward(contact_->margin_mm, found.margin_mm, kMarginRate_mm_per_s * dt_s);
   contact_->lever_mm = moved_toward(contact_->lever_mm, contact.lever_mm, rule.slide_limit_mm_per_s * dt_s);
   contact_->out_W = contact.out_W;
@@ -94,7 +97,7 @@ void ShaftTouch::go_to(const Found& found, const LaidLine& line, const ShaftTouc
 }
 
 void ShaftTouch::let_go(const ShaftTouchRule& rule, double dt_s) {
-  contact_->push_N = moved_toward(contact_->push_N, 0.0, rule.slew_limit_N_per_s * dt_s);
+  contact_->push_N = moved_toward(contact_->push_N, 0.0, kFasterFall * rule.slew_limit_N_per_s * dt_s);
   contact_->shift_mm = contact_->push_N / rule.tip_N_per_mm * contact_->out_W;
   if (contact_->push_N == 0.0) contact_.reset();
 }
