@@ -10,7 +10,7 @@ target_link_libraries(osteomill_all INTERFACE ${stage_targets})
 
 install(TARGETS ${stage_targets} osteomill_all EXPORT osteomillTargets)
 install(DIRECTORY osteomill/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/osteomill FILES_MATCHING PATTERN "*.h"
-  PATTERN "*_samples.h" EXCLUDE PATTERN "temporary_folder.h" EXCLUDE)
+  PATTERN "*_samples.h" EXCLUDE PATTERN "temporary_folder.h" EXCLUDE PATTERN "mesh_checks.h" EXCLUDE)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/osteomill)
 install(EXPORT osteomillTargets NAMESPACE osteomill:: DESTINATION ${package_dir})
 configure_package_config_file(cmake/osteomillConfig.cmake.in osteomillConfig.cmake

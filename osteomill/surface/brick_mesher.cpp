@@ -19,9 +19,10 @@ namespace {
 constexpr float kLeastShare = 1.0f / 512;
 
 float greatest_float_not_above(double value) {
-  const auto rounded = static_cast<float>(value);
-  if (static_cast<double>(rounded) <= value) return rounded;
-  return std::nextafter(rounded, -std::numeric_limits<float>::infinity());
+  constexpr float kMost = std::numeric_limits<float>::max();
+  const auto rounded =
+      static_cast<float>(std::clamp(value, static_cast<double>(-kMost), static_cast<double>(kMost)));
+  return static_cast<double>(rounded) <= value ? rounded : std::nextafter(rounded, -kMost);
 }
 
 // Bit n where value n of `count` (a multiple of 4) is above the threshold.
@@ -54,6 +55,7 @@ BrickMesher::BrickMesher(const DensityView& view)
       mirrored_(view.grid.geometry().direction.determinant() < 0) {
   const GridGeometry& geometry = view.grid.geometry();
   for (int axis = 0; axis < 3; ++axis) {
+    origin_mm_[static_cast<std::size_t>(axis)] = geometry.origin_mm[axis];
     for (int row = 0; row < 3; ++row) {
       const double direction = geometry.direction(row, axis);
       const auto a = static_cast<std::size_t>(axis);
@@ -171,45 +173,64 @@ void BrickMesher::add_vertex(int i, int j, int k) {
   const int place = i + j * kStride[1] + k * kStride[2];
   const float* at = block_.data() + place;
   const bool bone_first = at[0] > threshold_;
-  const float share = std::clamp((threshold_ - at[0]) / (at[kAlong] - at[0]), kLeastShare, 1 - kLeastShare);
+  // Where differences of densities overflow the quotient is a NaN, and max answers its first argument.
+  const float share =
+      std::min(std::max(kLeastShare, (threshold_ - at[0]) / (at[kAlong] - at[0])), 1 - kLeastShare);
 
-  MeshVertex vertex;
   std::array<double, 3> voxel{static_cast<double>(corner_.i + i), static_cast<double>(corner_.j + j),
                               static_cast<double>(corner_.k + k)};
   voxel[axis] += static_cast<double>(share);
-  std::array<float, 3> slope;
-  for (std::size_t a = 0; a < 3; ++a) {
-    const int s = kStride[a];
-    const float here = at[s] - at[-s];
-    const float there = at[kAlong + s] - at[kAlong - s];
-    slope[a] = here + share * (there - here);
-  }
-  std::array<float, 3> normal;
-  float length2 = 0;
-  const Vec3& origin = view_.grid.geometry().origin_mm;
-  for (std::size_t r = 0; r < 3; ++r) {
-    vertex.position_mm[r] = static_cast<float>(origin[static_cast<int>(r)] + step_mm_[0][r] * voxel[0] +
-                                               step_mm_[1][r] * voxel[1] + step_mm_[2][r] * voxel[2]);
-    normal[r] = normal_of_[0][r] * slope[0] + normal_of_[1][r] * slope[1] + normal_of_[2][r] * slope[2];
-    length2 += normal[r] * normal[r];
-  }
-  if (!(length2 > 0 && std::isfinite(length2))) {
-    // A flat density: out of the bone along the edge.
-    const float sign = bone_first ? -1.0f : 1.0f;
-    length2 = 0;
-    for (std::size_t r = 0; r < 3; ++r) {
-      normal[r] = sign * normal_of_[axis][r];
-      length2 += normal[r] * normal[r];
-    }
-  }
-  const float scale = 1 / std::sqrt(length2);
-  for (std::size_t r = 0; r < 3; ++r) vertex.normal[r] = scale * normal[r];
-  vertex.density = bone_first ? std::max(at[0], at[-kAlong]) : std::max(at[kAlong], at[2 * kAlong]);
+  const Triple slope = slope_between(at, at + kAlong, share);
+  const float under = bone_first ? std::max(at[0], at[-kAlong]) : std::max(at[kAlong], at[2 * kAlong]);
 
   const int edge = axis * kBlockVoxels + place;
   edge_vertex_[static_cast<std::size_t>(edge)] = static_cast<std::uint16_t>(vertices_.size());
   vertex_edge_.push_back(static_cast<std::uint32_t>(edge));
-  vertices_.push_back(vertex);
+  vertices_.push_back({position_at(voxel), normal_against(slope, axis, bone_first), under});
+}
+
+// Central differences at two voxels, in density per two voxels, interpolated.
+BrickMesher::Triple BrickMesher::slope_between(const float* from, const float* to, float share) {
+  Triple slope;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const int step = kStride[axis];
+    const float here = from[step] - from[-step];
+    const float there = to[step] - to[-step];
+    slope[axis] = here + share * (there - here);
+  }
+  return slope;
+}
+
+BrickMesher::Triple BrickMesher::position_at(const std::array<double, 3>& voxel) const {
+  Triple position_mm;
+  for (std::size_t r = 0; r < 3; ++r) {
+    position_mm[r] = static_cast<float>(origin_mm_[r] + step_mm_[0][r] * voxel[0] +
+                                        step_mm_[1][r] * voxel[1] + step_mm_[2][r] * voxel[2]);
+  }
+  return position_mm;
+}
+
+BrickMesher::Triple BrickMesher::normal_against(const Triple& slope, std::size_t axis,
+                                                bool bone_first) const {
+  const auto turned = [&](const Triple& s) {
+    Triple normal;
+    for (std::size_t r = 0; r < 3; ++r) {
+      normal[r] = normal_of_[0][r] * s[0] + normal_of_[1][r] * s[1] + normal_of_[2][r] * s[2];
+    }
+    return normal;
+  };
+  const auto squared = [](const Triple& v) { return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]; };
+  Triple normal = turned(slope);
+  float length2 = squared(normal);
+  if (!(length2 > 0 && std::isfinite(length2))) {
+    // A flat density: out of the bone along the edge.
+    Triple along{0, 0, 0};
+    along[axis] = bone_first ? -1.0f : 1.0f;
+    normal = turned(along);
+    length2 = squared(normal);
+  }
+  const float scale = 1 / std::sqrt(length2);
+  return {scale * normal[0], scale * normal[1], scale * normal[2]};
 }
 
 void BrickMesher::add_triangles() {

@@ -29,6 +29,8 @@ class BrickMesher {
   BrickMesh copy() const { return {vertices_, indices_}; }
 
  private:
+  using Triple = std::array<float, 3>;
+
   // Voxels along each edge of the block: those of the cells, and what is needed around for gradients.
   static constexpr int kLow = 2;  // the block's index of the brick's first voxel
   static constexpr int kBlock = SurfaceBricks::kBrickCells + 4;
@@ -45,6 +47,9 @@ class BrickMesher {
   void add_row_vertices(int j, int k, std::uint32_t crossed);
   template <int axis>
   void add_vertex(int i, int j, int k);
+  static Triple slope_between(const float* from, const float* to, float share);
+  Triple position_at(const std::array<double, 3>& voxel) const;
+  Triple normal_against(const Triple& slope, std::size_t axis, bool bone_first) const;
   void add_triangles();
   void add_row_triangles(int j, int k);
 
@@ -52,10 +57,11 @@ class BrickMesher {
   SurfaceBricks layout_;
   float threshold_;  // the greatest float that is not bone
   float outside_;
-  bool mirrored_;                                  // the grid's axes are left-handed
-  std::array<std::array<double, 3>, 3> step_mm_;   // to the next voxel along each axis
-  std::array<std::array<float, 3>, 3> normal_of_;  // outward, of a density falling along each axis
-  std::array<int, 12> edge_offset_;                // of a cube's edges in edge_vertex_
+  bool mirrored_;  // the grid's axes are left-handed
+  std::array<double, 3> origin_mm_;
+  std::array<std::array<double, 3>, 3> step_mm_;  // to the next voxel along each axis
+  std::array<Triple, 3> normal_of_;               // outward, of a density falling along each axis
+  std::array<int, 12> edge_offset_;               // of a cube's edges in edge_vertex_
 
   VoxelIndex corner_;  // the voxel at the block's first index
   VoxelBox cells_;     // in the block's indices

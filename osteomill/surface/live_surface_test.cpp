@@ -22,7 +22,7 @@ using testing_support::centred_cube;
 using testing_support::shape_volume;
 
 Volume ball_of_bone() {
-  return shape_volume(centred_cube(75, 0.25), ball(Vec3::Zero(), 8.0));
+  return shape_volume(centred_cube(51, 0.25), ball(Vec3::Zero(), 5.0));
 }
 
 // A burr going round on the ball, pressed in.
@@ -31,7 +31,7 @@ class Miller {
   explicit Miller(Volume& volume) : volume_(volume), mill_(volume.geometry(), 1.5, {0.0, 1000.0}, {}) {}
   VolumeChange tick() {
     angle_ += 0.002;
-    const Vec3 centre = (9.3 - 0.2 * angle_) * Vec3(std::cos(angle_), std::sin(angle_), 0.2).normalized();
+    const Vec3 centre = (6.3 - 0.2 * angle_) * Vec3(std::cos(angle_), std::sin(angle_), 0.2).normalized();
     return mill_.step(volume_, centre, 4.0, 1e-3).change;
   }
 
@@ -125,7 +125,7 @@ TEST(SurfaceCopy, KeptUpWhileMillingIsTheSurfaceMadeFromScratch) {
     }
   }
   EXPECT_GT(meshed_last, 0u);
-  EXPECT_LT(meshed_last, 20u);  // of 125
+  EXPECT_LT(meshed_last, 20u);  // of 64
   while (handover.waiting() > 0) {
     handover.send(volume, 4);
     while (const auto* brick = handover.front()) {
@@ -158,7 +158,7 @@ TEST(LiveSurface, KeepsUpWithMillingAtFullSpeed) {
   std::atomic<bool> done{false};
   std::thread haptic([&] {
     Miller miller(volume);
-    for (int tick = 0; tick < 3000; ++tick) live.volume_changed(volume, miller.tick());
+    for (int tick = 0; tick < 2000; ++tick) live.volume_changed(volume, miller.tick());
     done = true;
   });
   while (!done) {

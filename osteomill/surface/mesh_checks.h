@@ -38,36 +38,36 @@ inline BrickMesh welded_by_position(const SurfaceMesh& surface) {
   return whole;
 }
 
-using DirectedEdges = std::map<std::pair<std::uint32_t, std::uint32_t>, int>;
-
-inline DirectedEdges directed_edges(const BrickMesh& mesh) {
-  DirectedEdges edges;
+/// Each edge of each triangle, from its first vertex (upper half of the word) to its second; sorted.
+inline std::vector<std::uint64_t> directed_edges(const BrickMesh& mesh) {
+  std::vector<std::uint64_t> edges;
+  edges.reserve(mesh.indices.size());
   for (std::size_t n = 0; n < mesh.indices.size(); n += 3) {
     for (std::size_t corner = 0; corner < 3; ++corner) {
-      ++edges[{mesh.indices[n + corner], mesh.indices[n + (corner + 1) % 3]}];
+      edges.push_back(std::uint64_t{mesh.indices[n + corner]} << 32 | mesh.indices[n + (corner + 1) % 3]);
     }
   }
+  std::sort(edges.begin(), edges.end());
   return edges;
 }
 
-/// How many edges are not used exactly once in each direction: none in a closed, consistently wound mesh.
-inline int open_or_crowded_edges(const BrickMesh& mesh) {
-  const DirectedEdges edges = directed_edges(mesh);
-  int faults = 0;
-  for (const auto& [edge, uses] : edges) {
-    const auto back = edges.find({edge.second, edge.first});
-    faults += uses != 1 || back == edges.end() || back->second != 1;
-  }
-  return faults;
+/// Whether every edge is used exactly once in each direction, as in a closed, consistently wound mesh.
+inline bool is_closed(const BrickMesh& mesh) {
+  const std::vector<std::uint64_t> edges = directed_edges(mesh);
+  if (std::adjacent_find(edges.begin(), edges.end()) != edges.end()) return false;
+  std::vector<std::uint64_t> back;
+  for (const std::uint64_t edge : edges) back.push_back(edge << 32 | edge >> 32);
+  std::sort(back.begin(), back.end());
+  return edges == back;
 }
 
-/// Vertices - edges + triangles, of the vertices that are used.
+/// Vertices - edges + triangles of a closed mesh, of the vertices that are used.
 inline int euler_characteristic(const BrickMesh& mesh) {
   std::vector<std::uint32_t> used = mesh.indices;
   std::sort(used.begin(), used.end());
   used.erase(std::unique(used.begin(), used.end()), used.end());
-  const auto edges = static_cast<int>(directed_edges(mesh).size()) / 2;
-  return static_cast<int>(used.size()) - edges + static_cast<int>(mesh.triangle_count());
+  return static_cast<int>(used.size()) - static_cast<int>(mesh.indices.size() / 2) +
+         static_cast<int>(mesh.triangle_count());
 }
 
 /// By the divergence theorem; positive where triangles are wound anticlockwise seen from outside.
@@ -102,7 +102,7 @@ inline bool is_finite(const MeshVertex& vertex) {
 
 /// Closed, wound consistently, without NaN, all normals of unit length.
 inline bool is_sound(const BrickMesh& mesh) {
-  return open_or_crowded_edges(mesh) == 0 &&
+  return is_closed(mesh) &&
          std::all_of(mesh.vertices.begin(), mesh.vertices.end(), [](const MeshVertex& vertex) {
            return is_finite(vertex) && std::abs(normal_of(vertex).norm() - 1) < 1e-4;
          });

@@ -1,11 +1,14 @@
 #include "osteomill/surface/surface_copy.h"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 #include "osteomill/surface/brick_mesher.h"
 
 namespace osteomill {
+
+static_assert(DensityHandover::kBrickVoxels == BrickRanges::kBrickVoxels);
 
 SurfaceCopy::SurfaceCopy(const Volume& volume)
     : grid_(volume.grid()),
@@ -30,26 +33,37 @@ void SurfaceCopy::set_isovalue(double isovalue) {
 }
 
 void SurfaceCopy::put(const DensityHandover::Brick& brick) {
+  mark(layout_.touched_by(take_over(brick)));
+}
+
+// Answers which voxels changed.
+VoxelBox SurfaceCopy::take_over(const DensityHandover::Brick& brick) {
   constexpr int kSide = DensityHandover::kBrickVoxels;
   const std::array<int, 3>& dims = grid_.geometry().dims;
   const VoxelIndex& first = brick.first;
-  const int count = std::min(kSide, dims[0] - first.i);
-  std::array<int, kSide> columns;
-  std::iota(columns.begin(), columns.end(), first.i);
+  const int columns = std::min(kSide, dims[0] - first.i);
   VoxelBox changed;
+  float least = std::numeric_limits<float>::max();
   for (int k = first.k; k < std::min(first.k + kSide, dims[2]); ++k) {
     for (int j = first.j; j < std::min(first.j + kSide, dims[1]); ++j) {
       const float* row =
           &brick.densities[static_cast<std::size_t>(kSide * (j - first.j + kSide * (k - first.k)))];
-      if (std::equal(row, row + count, grid_.densities().data() + grid_.linear_index({first.i, j, k})))
-        continue;
-      for (int n = 0; n < count; ++n) grid_.set({first.i + n, j, k}, row[n]);
-      ranges_.lower_row(j, k, columns.data(), row, static_cast<std::size_t>(count));
-      changed.include({first.i, j, k});
-      changed.include({first.i + count - 1, j, k});
+      for (int n = 0; n < columns; ++n) {
+        const VoxelIndex voxel{first.i + n, j, k};
+        if (grid_[voxel] == row[n]) continue;
+        grid_.set(voxel, row[n]);
+        changed.include(voxel);
+        least = std::min(least, row[n]);
+      }
     }
   }
-  const VoxelBox bricks = layout_.touched_by(changed);
+  // By the brick's first voxel, which also stands for the bricks before it: their ranges come out wider than
+  // they are, never narrower.
+  if (!changed.empty()) ranges_.lower(first, least);
+  return changed;
+}
+
+void SurfaceCopy::mark(const VoxelBox& bricks) {
   for (int bk = bricks.first.k; bk <= bricks.last.k; ++bk) {
     for (int bj = bricks.first.j; bj <= bricks.last.j; ++bj) {
       for (int bi = bricks.first.i; bi <= bricks.last.i; ++bi) {

@@ -33,6 +33,8 @@ class SurfaceCopy {
   std::vector<ChangedBrick> remesh();
 
  private:
+  VoxelBox take_over(const DensityHandover::Brick& brick);
+  void mark(const VoxelBox& bricks);
   void mark_all();
 
   DensityGrid grid_;
