@@ -1,6 +1,9 @@
+#include <atomic>
+#include <chrono>
 #include <limits>
 #include <memory>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "tests/count_allocations.h"
@@ -10,7 +13,9 @@
 
 #include "osteomill/device/posed_device.h"
 #include "osteomill/haptics/make_algorithm.h"
+#include "osteomill/session/live_session.h"
 #include "osteomill/session/milling_session.h"
+#include "osteomill/surface/live_surface.h"
 #include "osteomill/volume/densities.h"
 
 namespace osteomill {
@@ -79,6 +84,40 @@ INSTANTIATE_TEST_SUITE_P(AllAlgorithms, TickAllocation,
                            name[name.find('-')] = '_';
                            return name + "_" + std::string(name_of(test.param.mode));
                          });
+
+// The whole loop of the haptic thread, with the surface's hand-over, the vibration, and commands coming in.
+TEST(TickAllocation, NoTickOfALiveSessionAllocates) {
+  constexpr double kBallRadius_mm = 6;
+  const Volume bone = testing_support::shape_volume(testing_support::centred_cube(64, 0.25),
+                                                    testing_support::ball(Vec3::Zero(), kBallRadius_mm));
+  const MillingTool tool;
+  auto session =
+      std::make_unique<MillingSession>(bone, tool, make_algorithm(AlgorithmId::point_shell, {}),
+                                       estimate_densities(bone), MillingSettings{}, WrenchLimits{});
+  session->set_vibration({.on = true});
+  PosedDevice device;
+  device.put({{0, 0, kBallRadius_mm + tool.burr_radius_mm - 0.3}, Quat::Identity()});
+  LiveSurface surface(bone);
+  LiveSession live(std::move(session), device);
+  std::atomic<int> ticks{0};
+  std::atomic<long> allocations{-1};
+  long before = 0;
+  live.set_spindle(true);
+  live.listen([&](const TickRecord&, const Volume& volume, const VolumeChange& change) {
+    surface.volume_changed(volume, change);
+    const int tick = ticks.fetch_add(1);
+    if (tick == 5) before = allocations_of_this_thread();
+    if (tick == 300) allocations = allocations_of_this_thread() - before;
+  });
+  live.start();
+  for (int n = 0; n < 2000 && ticks <= 300; ++n) {
+    live.set_spindle(n % 3 != 0);
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  live.stop();
+  EXPECT_EQ(allocations, 0);
+  EXPECT_GT(live.state().record.removed_mm3, 0);
+}
 
 }  // namespace
 }  // namespace osteomill

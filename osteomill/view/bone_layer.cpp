@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <string>
+#include <utility>
 
 #include "osteomill/view/cavity_pass.h"
 #include "osteomill/view/shaders.h"
@@ -84,6 +86,33 @@ std::vector<MeshVertex> with_smooth_densities(const BrickMesh& mesh, const std::
   return vertices;
 }
 
+struct Facing {
+  Vec3 axis_W;
+  double spread_rad;
+};
+
+Facing facing_of(const BrickMesh& mesh) {
+  std::vector<Vec3> normals;
+  normals.reserve(mesh.triangle_count());
+  Vec3 sum = Vec3::Zero();
+  const auto corner = [&](std::size_t n) {
+    const auto& p = mesh.vertices[mesh.indices[n]].position_mm;
+    return Vec3(p[0], p[1], p[2]);
+  };
+  for (std::size_t n = 0; n < mesh.indices.size(); n += 3) {
+    const Vec3 normal = (corner(n + 1) - corner(n)).cross(corner(n + 2) - corner(n));
+    if (!(normal.norm() > 0)) continue;
+    normals.push_back(normal.normalized());
+    sum += normals.back();
+  }
+  constexpr double kAnyWay_rad = 4;
+  if (!(sum.norm() > 0)) return {Vec3::UnitZ(), kAnyWay_rad};
+  const Vec3 axis = sum.normalized();
+  double least = 1;
+  for (const Vec3& normal : normals) least = std::min(least, axis.dot(normal));
+  return {axis, std::acos(std::clamp(least, -1.0, 1.0))};
+}
+
 gl::Program bone_program(const char* definitions) {
   const std::string vertex =
       std::string("#version 330 core\n") + definitions + std::string(shaders::kBoneVertex);
@@ -150,6 +179,9 @@ void BoneLayer::set_brick(std::size_t number, const BrickMesh& mesh) {
     brick.vertices = gl::make_buffer();
     brick.indices = gl::make_buffer();
   }
+  const Facing facing = facing_of(mesh);
+  brick.facing_W = facing.axis_W;
+  brick.facing_spread_rad = facing.spread_rad;
   const std::vector<MeshVertex> vertices =
       with_smooth_densities(mesh, on_border(mesh, geometry_, layout_.cells(number)));
   glBindVertexArray(brick.vertex_array.get());
@@ -181,6 +213,34 @@ void BoneLayer::set_uniforms(GLuint program, const ViewScene& scene, const Proje
   glUniform1f(place("cavity_scale"), static_cast<float>(1 / (kDarkestAt * reach_mm)));
 }
 
+// Whether all of its triangles show their backs.
+bool BoneLayer::Brick::turned_away(const Vec3& eye_W) const {
+  const Vec3 sight = bounds.centre_W - eye_W;
+  const double way_mm = sight.norm();
+  if (way_mm <= bounds.radius_mm) return false;
+  const double angle = std::acos(std::clamp(facing_W.dot(sight) / way_mm, -1.0, 1.0));
+  return angle + facing_spread_rad + std::asin(bounds.radius_mm / way_mm) < 0.5 * std::numbers::pi;
+}
+
+// The nearest first, so that what they hide need not be coloured.
+std::vector<const BoneLayer::Brick*> BoneLayer::seen_bricks(const ViewScene& scene,
+                                                            const Projection& projection) const {
+  const auto planes = view_planes(projection);
+  const Vec3 eye_W = scene.camera.eye_W();
+  const bool cut = is_cut(scene);
+  std::vector<std::pair<double, const Brick*>> found;
+  for (const Brick& brick : bricks_) {
+    if (brick.index_count == 0 || !may_be_seen(planes, brick.bounds)) continue;
+    if (!cut && brick.turned_away(eye_W)) continue;
+    found.emplace_back((brick.bounds.centre_W - eye_W).squaredNorm(), &brick);
+  }
+  std::sort(found.begin(), found.end());
+  std::vector<const Brick*> bricks;
+  bricks.reserve(found.size());
+  for (const auto& [way, brick] : found) bricks.push_back(brick);
+  return bricks;
+}
+
 void BoneLayer::draw(const ViewScene& scene, const Projection& projection, GLuint blurred_depths) const {
   const bool cut = is_cut(scene);
   const GLuint program = (cut ? cut_ : whole_).get();
@@ -190,11 +250,9 @@ void BoneLayer::draw(const ViewScene& scene, const Projection& projection, GLuin
   glActiveTexture(GL_TEXTURE0);
   glBindTexture(GL_TEXTURE_2D, blurred_depths);
   if (!cut) glEnable(GL_CULL_FACE);
-  const auto planes = view_planes(projection);
-  for (const Brick& brick : bricks_) {
-    if (brick.index_count == 0 || !may_be_seen(planes, brick.bounds)) continue;
-    glBindVertexArray(brick.vertex_array.get());
-    glDrawElements(GL_TRIANGLES, brick.index_count, GL_UNSIGNED_INT, nullptr);
+  for (const Brick* brick : seen_bricks(scene, projection)) {
+    glBindVertexArray(brick->vertex_array.get());
+    glDrawElements(GL_TRIANGLES, brick->index_count, GL_UNSIGNED_INT, nullptr);
   }
   glDisable(GL_CULL_FACE);
   end_cuts();

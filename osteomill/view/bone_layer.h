@@ -33,7 +33,7 @@ class BoneLayer {
 
   void clear();
   void set_brick(std::size_t brick, const BrickMesh& mesh);
-  /// Only bricks that the camera may see; back faces only where the scene is cut open.
+  /// Only bricks that the camera may see, the nearest first; back faces only where the scene is cut open.
   void draw(const ViewScene& scene, const Projection& projection, GLuint blurred_depths) const;
   std::size_t triangle_count() const;
 
@@ -44,7 +44,12 @@ class BoneLayer {
     gl::Buffer indices;
     GLsizei index_count = 0;
     Sphere bounds;
+    /// The triangles' normals all lie within this half angle about this axis.
+    Vec3 facing_W = Vec3::UnitZ();
+    double facing_spread_rad = 4;
+    bool turned_away(const Vec3& eye_W) const;
   };
+  std::vector<const Brick*> seen_bricks(const ViewScene& scene, const Projection& projection) const;
   static void set_uniforms(GLuint program, const ViewScene& scene, const Projection& projection);
 
   // Clipping costs time at every vertex.

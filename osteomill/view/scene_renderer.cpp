@@ -21,6 +21,8 @@ constexpr Colour kContact{0.92f, 0.10f, 0.08f, 1};
 constexpr Colour kForce{0.15f, 0.80f, 0.25f, 1};
 constexpr Colour kTorque{0.98f, 0.72f, 0.10f, 1};
 constexpr double kArrowRadius_mm = 0.22;
+// Reading the depths makes a processor that draws wait for itself, and what is blurred changes little.
+constexpr unsigned kPicturesPerBlur = 4;
 
 void draw_tool(const SolidShapes& shapes, const MillingTool& tool, const Pose& X_WT, const Colour& burr,
                const Colour& shaft) {
@@ -57,6 +59,7 @@ struct SceneRenderer::Impl {
     if (target && target->size().width == size.width && target->size().height == size.height) return;
     target.emplace(size);
     cavities.emplace(size);
+    drawn = 0;
   }
 
   void draw_background() const {
@@ -85,6 +88,7 @@ struct SceneRenderer::Impl {
   gl::VertexArray nothing;
   std::optional<FrameTarget> target;
   std::optional<CavityPass> cavities;
+  unsigned drawn = 0;
 };
 
 SceneRenderer::SceneRenderer(const SurfaceBricks& layout, const GridGeometry& geometry)
@@ -113,8 +117,10 @@ void SceneRenderer::draw(const ViewScene& scene, const PixelSize& size) {
   glEnable(GL_DEPTH_TEST);
   glClear(GL_DEPTH_BUFFER_BIT);
   own.bone.draw(scene, projection, own.cavities->blurred_depths());
-  own.cavities->blur(own.target->depths(), projection.near_mm, projection.far_mm);
-  own.target->bind();
+  if (own.drawn++ % kPicturesPerBlur == 0) {
+    own.cavities->blur(own.target->depths(), projection.near_mm, projection.far_mm);
+    own.target->bind();
+  }
   own.draw_background();
   own.cut_faces.draw(scene, projection);
   own.shapes.begin(projection);

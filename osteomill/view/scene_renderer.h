@@ -29,8 +29,8 @@ class SceneRenderer {
   /// What the scene's cut of this number lays open. Drawn as far as the other cuts leave it.
   void set_cut_face(std::size_t cut, const CutFace& face);
 
-  /// Draws into a picture of its own. What lies deep is darkened after the picture drawn before, so that a
-  /// still picture is drawn twice.
+  /// Draws into a picture of its own. What lies deep is darkened after a picture drawn before (the first, and
+  /// every fourth from there, is looked at), so that a still picture is drawn twice.
   void draw(const ViewScene& scene, const PixelSize& size);
   /// The picture drawn last.
   Image picture() const;
