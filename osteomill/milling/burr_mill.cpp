@@ -47,7 +47,7 @@ BurrReach make_reach(const GridGeometry& geometry, double burr_radius_mm, const 
   require(std::isfinite(densities.surroundings) && std::isfinite(densities.reference) &&
               densities.reference > densities.surroundings,
           "BurrMill: the reference density must be above that of the surroundings");
-  return BurrReach(geometry, burr_radius_mm + settings.reach_voxels * geometry.spacing_mm.minCoeff(),
+  return BurrReach(geometry, burr_radius_mm + settings.reach_voxels * geometry.spacing_mm.maxCoeff(),
                    float_not_below(densities.surroundings));
 }
 

@@ -15,7 +15,7 @@ struct MillingSettings {
   /// kappa: mm^3 of reference density removed a newton of burr force and second.
   double removal_rate_mm3_per_Ns =
       osteomill::removal_rate_mm3_per_Ns(CuttingSettings{}, MillingTool{}.burr_radius_mm);
-  /// How far beyond the burr's radius it still cuts, in voxels (of the smallest spacing). With less than 1, a
+  /// How far beyond the burr's radius it still cuts, in voxels (of the largest spacing). With less than 1, a
   /// burr that touches the isosurface without sinking in stalls on dense bone: the surface of enamel lies up
   /// to 1 - isovalue / density voxels before the voxels that make it.
   double reach_voxels = 1.0;

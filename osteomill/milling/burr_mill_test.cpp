@@ -18,6 +18,8 @@ using testing_support::plane;
 using testing_support::shape_volume;
 
 constexpr BoneDensities kBone{0, 1000};
+// A round rate, so that what must be removed can be read off.
+const MillingSettings kMilling{.removal_rate_mm3_per_Ns = 2.0};
 constexpr double kRadius_mm = 1.5;
 
 GridGeometry cube_of(double side_mm, double spacing_mm) {
@@ -57,7 +59,7 @@ Hole mill_hole(Volume& volume, BurrMill& mill, double force_N, double seconds, d
   for (int n = 0; n < static_cast<int>(std::lround(seconds * rate_hz)); ++n) {
     const double centre_depth_mm = hole_depth_mm(volume, down) - kRadius_mm + force_N / 20;
     hole.removed_mm3 += mill.step(volume, centre_depth_mm * down, force_N, dt_s).removed_mm3;
-    hole.pressed_mm3 += MillingSettings{}.removal_rate_mm3_per_Ns * force_N * dt_s;
+    hole.pressed_mm3 += kMilling.removal_rate_mm3_per_Ns * force_N * dt_s;
   }
   hole.depth_mm = hole_depth_mm(volume, down);
   return hole;
@@ -65,7 +67,7 @@ Hole mill_hole(Volume& volume, BurrMill& mill, double force_N, double seconds, d
 
 Hole mill_hole_in(const GridGeometry& geometry, double rate_hz, const Vec3& normal = Vec3::UnitZ()) {
   Volume volume = half_space(geometry, normal);
-  BurrMill mill(geometry, kRadius_mm, kBone, {});
+  BurrMill mill(geometry, kRadius_mm, kBone, kMilling);
   return mill_hole(volume, mill, 1.5, 2.5, rate_hz, -normal);
 }
 
@@ -73,7 +75,7 @@ TEST(BurrMill, RemovesWhatTheForcePaysFor) {
   for (const double force_N : {0.1, 1.5, 6.0}) {
     const GridGeometry geometry = cube_of(7, 0.125);
     Volume volume = half_space(geometry);
-    BurrMill mill(geometry, kRadius_mm, kBone, {});
+    BurrMill mill(geometry, kRadius_mm, kBone, kMilling);
     const double before_mm3 = charge_mm3(volume.grid(), kBone);
     const Hole hole = mill_hole(volume, mill, force_N, 3 / force_N, 1000);
     EXPECT_NEAR(hole.removed_mm3 / hole.pressed_mm3, 1, 0.02) << force_N;
@@ -88,8 +90,8 @@ TEST(BurrMill, CutsEnamelSlowerInProportionToItsDensity) {
   std::vector<float> denser = dentine.grid().densities();
   for (float& density : denser) density *= 1.9f;
   Volume enamel(DensityGrid(geometry, denser), 1.9 * 500);
-  BurrMill dentine_mill(geometry, kRadius_mm, kBone, {});
-  BurrMill enamel_mill(geometry, kRadius_mm, kBone, {});
+  BurrMill dentine_mill(geometry, kRadius_mm, kBone, kMilling);
+  BurrMill enamel_mill(geometry, kRadius_mm, kBone, kMilling);
   const Hole in_dentine = mill_hole(dentine, dentine_mill, 1.5, 1.0, 1000);
   const Hole in_enamel = mill_hole(enamel, enamel_mill, 1.5, 1.9, 1000);
   EXPECT_NEAR(in_enamel.removed_mm3, 1.9 * in_dentine.removed_mm3, 0.02 * in_enamel.removed_mm3);
@@ -115,7 +117,7 @@ TEST(BurrMill, NeverStallsOnDenseBoneThatItOnlyTouches) {
       std::vector<float> densities = half_space(cube_of(6, spacing_mm), normal).grid().densities();
       for (float& density : densities) density *= 3;
       Volume volume(DensityGrid(cube_of(6, spacing_mm), densities), 500);
-      BurrMill mill(volume.geometry(), kRadius_mm, kBone, {});
+      BurrMill mill(volume.geometry(), kRadius_mm, kBone, kMilling);
       double removed_mm3 = 0;
       double height_mm = 1.8;
       for (int n = 0; n < 1000; ++n) {
@@ -131,7 +133,7 @@ TEST(BurrMill, TakesNothingWithoutForceOrWithoutASensibleInput) {
   const GridGeometry geometry = cube_of(5, 0.25);
   Volume volume = half_space(geometry);
   const std::vector<float> before = volume.grid().densities();
-  BurrMill mill(geometry, kRadius_mm, kBone, {});
+  BurrMill mill(geometry, kRadius_mm, kBone, kMilling);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double infinity = std::numeric_limits<double>::infinity();
   const Vec3 inside(0, 0, -0.5);
@@ -180,7 +182,7 @@ TEST(BurrMill, StopsAtTheSurroundingsAndCarriesTheRestWithinBounds) {
 TEST(BurrMill, ForgetsTheCarryOnlyAfterALift) {
   const GridGeometry geometry = cube_of(5, 0.25);
   Volume volume = half_space(geometry);
-  BurrMill mill(geometry, kRadius_mm, kBone, {});
+  BurrMill mill(geometry, kRadius_mm, kBone, kMilling);
   const Vec3 air(0, 0, 3);
   mill.step(volume, air, 10, 0.001);
   for (int n = 0; n < 40; ++n) mill.step(volume, air, 0, 0.001);
@@ -193,7 +195,7 @@ TEST(BurrMill, ForgetsTheCarryOnlyAfterALift) {
 TEST(BurrMill, CutsHardestWhereItIsDeepest) {
   const GridGeometry geometry = cube_of(6, 0.2);
   Volume volume = half_space(geometry);
-  BurrMill mill(geometry, kRadius_mm, kBone, {});
+  BurrMill mill(geometry, kRadius_mm, kBone, kMilling);
   const Vec3 centre(0, 0, 1.0);
   mill.step(volume, centre, 1.5, 0.001);
   const Volume original = half_space(geometry);
@@ -237,7 +239,7 @@ TEST(BurrMill, MakesTheSameHoleWithAnyVoxels) {
 TEST(BurrMill, CuttingAShareOfItsLinesAStepMakesTheSameHole) {
   const auto hole_in = [](double spacing_mm) {
     Volume volume = half_space(cube_of(5, spacing_mm));
-    BurrMill mill(volume.geometry(), kRadius_mm, kBone, {});
+    BurrMill mill(volume.geometry(), kRadius_mm, kBone, kMilling);
     const Hole hole = mill_hole(volume, mill, 2, 0.8, 1000);
     // The surface left is that of a ball: no ridges from line to line. Its depth at places around the axis.
     double least = 1, greatest = 0;
@@ -280,8 +282,8 @@ TEST(BurrMill, CutsATurnedGridAsItCutsAStraightOne) {
   Volume straight_volume = half_space(straight);
   Volume turned_volume(straight_volume.grid(), 500);
   turned_volume = Volume(DensityGrid(turned, straight_volume.grid().densities()), 500);
-  BurrMill straight_mill(straight, kRadius_mm, kBone, {});
-  BurrMill turned_mill(turned, kRadius_mm, kBone, {});
+  BurrMill straight_mill(straight, kRadius_mm, kBone, kMilling);
+  BurrMill turned_mill(turned, kRadius_mm, kBone, kMilling);
   for (int n = 0; n < 300; ++n) {
     const Vec3 centre(0.002 * n, 0.1, 1.4 - 0.002 * n);
     const MillingStep a = straight_mill.step(straight_volume, centre, 2, 0.001);
@@ -296,7 +298,7 @@ TEST(BurrMill, CutsATurnedGridAsItCutsAStraightOne) {
 TEST(BurrMill, NamesExactlyTheBoxThatChanged) {
   const GridGeometry geometry = cube_of(6, 0.2);
   Volume volume = half_space(geometry);
-  BurrMill mill(geometry, kRadius_mm, kBone, {});
+  BurrMill mill(geometry, kRadius_mm, kBone, kMilling);
   for (int n = 0; n < 200; ++n) {
     const std::vector<float> before = volume.grid().densities();
     const VoxelBox said = mill.step(volume, Vec3(0.01 * n, 0.3, 1.4 - 0.005 * n), 1, 0.001).change.voxels;
@@ -316,7 +318,7 @@ TEST(BurrMill, NamesExactlyTheBoxThatChanged) {
 TEST(BurrMill, CutsAtTheEdgeOfTheGridWhatIsInside) {
   const GridGeometry geometry = cube_of(4, 0.2);
   Volume volume = half_space(geometry);
-  BurrMill mill(geometry, kRadius_mm, kBone, {});
+  BurrMill mill(geometry, kRadius_mm, kBone, kMilling);
   const double before_mm3 = charge_mm3(volume.grid(), kBone);
   double removed_mm3 = 0;
   for (int n = 0; n < 500; ++n) {
@@ -343,11 +345,11 @@ TEST(BurrMill, PaysInFullForDropsBelowTheResolutionOfAFloat) {
 
 TEST(BurrMill, RefusesSettingsOutOfRange) {
   const GridGeometry geometry = cube_of(2, 0.25);
-  EXPECT_THROW(BurrMill(geometry, 0, kBone, {}), std::invalid_argument);
+  EXPECT_THROW(BurrMill(geometry, 0, kBone, kMilling), std::invalid_argument);
   EXPECT_THROW(BurrMill(geometry, 1, {5, 5}, {}), std::invalid_argument);
   EXPECT_THROW(BurrMill(geometry, 1, kBone, {-1, 1.0}), std::invalid_argument);
   EXPECT_THROW(BurrMill(geometry, 1, kBone, {2, -0.5}), std::invalid_argument);
-  EXPECT_THROW(BurrMill(GridGeometry{}, 1, kBone, {}), std::invalid_argument);
+  EXPECT_THROW(BurrMill(GridGeometry{}, 1, kBone, kMilling), std::invalid_argument);
 }
 
 }  // namespace

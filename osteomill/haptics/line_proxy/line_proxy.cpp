@@ -81,6 +81,11 @@ HapticStep LineProxy::step(const Pose& X_WD, double dt_s) {
   Pose touching = touching_tool(X_WD, tool_tip_W);
   if (settings_.show_outside) keep_outside(touching, dt_s);
   result.X_WT = simulated_tool(X_WD, touching, dt_s);
+  // A burr that the shaft keeps off the bone does not press on it.
+  if (settings_.show_outside && memory_.tip_proxy_W &&
+      !burr_touches(*scene_.volume, scene_.tool, result.X_WT, *memory_.tip_proxy_W)) {
+    result.burr_force_N = 0;
+  }
   return result;
 }
 

@@ -23,7 +23,7 @@ LineProxySettings LineProxySettings::defaults(Mode mode) {
   LineProxySettings settings;
   if (mode == Mode::paper) return settings;
   settings.clamp_fraction = true;
-  settings.tip_proxy_limit_mm_per_s = 50.0;
+  settings.tip_proxy_limit_mm_per_s = 30.0;
   settings.contact_until_proxy_is_free = true;
   settings.shaft_contact = true;
   settings.shaft_fade_radii = 4.0;

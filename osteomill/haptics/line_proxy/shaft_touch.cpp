@@ -32,11 +32,13 @@ double moved_toward(double from, double to, double limit) {
   return from + std::clamp(to - from, -limit, limit);
 }
 
-}  // namespace
-
-Vec3 ShaftTouch::reaction_N() const {
-  return contact_ ? Vec3(contact_->push_N * contact_->out_W) : Vec3::Zero();
+Vec3 moved_toward(const Vec3& from, const Vec3& to, double limit) {
+  const Vec3 way = to - from;
+  const double distance = way.norm();
+  return distance <= limit ? to : Vec3(from + limit / distance * way);
 }
+
+}  // namespace
 
 void ShaftTouch::follow(const Volume& volume, const ShaftSpan& span, const LaidLine& line,
                         double first_lever_mm, const ShaftTouchRule& rule, double dt_s) {
@@ -67,11 +69,17 @@ std::optional<ShaftTouch::Found> ShaftTouch::find(const Volume& volume, const Sh
   return std::nullopt;
 }
 
+void ShaftTouch::react(Contact& contact, double growth_N) {
+  const double before_N = contact.reaction_N.norm();
+  if (before_N > contact.push_N) contact.reaction_N *= contact.push_N / before_N;
+  contact.reaction_N = moved_toward(contact.reaction_N, Vec3(contact.push_N * contact.out_W), growth_N);
+}
+
 void ShaftTouch::go_to(const Found& found, const LaidLine& line, const ShaftTouchRule& rule, double dt_s) {
   const Vec3 axis_W = shaft_direction(line.X_WL);
   const ShaftContact& contact = found.contact;
   if (!contact_)
-    contact_ = Contact{contact.lever_mm,  contact.out_W, 0.0,         Vec3::Zero(), 0.0,
+    contact_ = Contact{contact.lever_mm,  contact.out_W, 0.0,         Vec3::Zero(), Vec3::Zero(), 0.0,
                        line.device_tip_W, axis_W,        Vec3::Zero()};
   // The push follows the contact at once in size but not in direction: in a notch narrower than the push is
   // long the two would chase each other.
@@ -85,10 +93,10 @@ void ShaftTouch::go_to(const Found& found, const LaidLine& line, const ShaftTouc
   const ShaftSprings springs{rule.tip_N_per_mm, shaft_stiffness(contact, axis_W, rule)};
   const double push_N =
       balanced_reaction_N(contact, found.line_tip_W, line.device_tip_W + aside_mm, line.rest, springs);
-  const double times = push_N < contact_->push_N ? kFasterFall : 1.0;
+  const double growth_N = rule.slew_limit_N_per_s * dt_s + kSlewStiffness * rule.tip_N_per_mm * moved_mm;
   contact_->push_N =
-      moved_toward(contact_->push_N, push_N,
-                   times * (rule.slew_limit_N_per_s * dt_s + kSlewStiffness * rule.tip_N_per_mm * moved_mm));
+      moved_toward(contact_->push_N, push_N, push_N < contact_->push_N ? kFasterFall * growth_N : growth_N);
+  react(*contact_, growth_N);
   contact_->margin_mm = moved_toward(contact_->margin_mm, found.margin_mm, kMarginRate_mm_per_s * dt_s);
   contact_->lever_mm = moved_toward(contact_->lever_mm, contact.lever_mm, rule.slide_limit_mm_per_s * dt_s);
   contact_->out_W = contact.out_W;
@@ -97,7 +105,9 @@ void ShaftTouch::go_to(const Found& found, const LaidLine& line, const ShaftTouc
 }
 
 void ShaftTouch::let_go(const ShaftTouchRule& rule, double dt_s) {
-  contact_->push_N = moved_toward(contact_->push_N, 0.0, kFasterFall * rule.slew_limit_N_per_s * dt_s);
+  const double growth_N = rule.slew_limit_N_per_s * dt_s;
+  contact_->push_N = moved_toward(contact_->push_N, 0.0, kFasterFall * growth_N);
+  react(*contact_, growth_N);
   contact_->shift_mm = contact_->push_N / rule.tip_N_per_mm * contact_->out_W;
   if (contact_->push_N == 0.0) contact_.reset();
 }

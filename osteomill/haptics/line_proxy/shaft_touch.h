@@ -45,7 +45,7 @@ class ShaftTouch {
 
   bool touches() const { return contact_.has_value(); }
   /// On the tool, in W; zero where nothing touches.
-  Vec3 reaction_N() const;
+  Vec3 reaction_N() const { return contact_ ? contact_->reaction_N : Vec3::Zero(); }
   /// How far it pushes the tool's tip from the device's, in W; zero where nothing touches.
   Vec3 shift_mm() const { return contact_ ? contact_->shift_mm : Vec3::Zero(); }
   /// Where nothing touches these have no meaning.
@@ -59,6 +59,9 @@ class ShaftTouch {
     double lever_mm;
     Vec3 out_W;
     double push_N;
+    // Never more than push_N, and turns to out_W no faster than it may grow: where the bone's normal flickers
+    // from tick to tick, the torque must not.
+    Vec3 reaction_N;
     Vec3 shift_mm;
     double margin_mm;
     // The device, to tell how far it has moved since.
@@ -74,6 +77,7 @@ class ShaftTouch {
   std::optional<Found> find(const Volume& volume, const ShaftSpan& span, const LaidLine& line,
                             double first_lever_mm, const ShaftTouchRule& rule) const;
   void go_to(const Found& found, const LaidLine& line, const ShaftTouchRule& rule, double dt_s);
+  static void react(Contact& contact, double growth_N);
   void let_go(const ShaftTouchRule& rule, double dt_s);
 
   std::optional<Contact> contact_;
