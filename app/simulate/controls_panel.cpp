@@ -105,12 +105,14 @@ void draw_isovalue(ViewState& view, Simulation& simulation) {
   const float share = (view.isovalue - histogram.least) / (histogram.greatest - histogram.least);
   const float x = place.x + std::clamp(share, 0.0f, 1.0f) * size.x;
   ImGui::GetWindowDrawList()->AddLine({x, place.y}, {x, place.y + size.y}, IM_COL32(255, 180, 60, 255), 2);
+  ImGui::BeginDisabled(simulation.preparing());
   if (ui::slider("isovalue", &view.isovalue, histogram.least, histogram.greatest, "%.0f",
                  ImGuiSliderFlags_AlwaysClamp)) {
     simulation.surface().set_isovalue(static_cast<double>(view.isovalue));
   }
   if (ui::released()) simulation.change_isovalue(static_cast<double>(view.isovalue));
   ui::hint("Bone is where the scan is denser");
+  ImGui::EndDisabled();
 }
 
 void draw_cuts(ViewState& view, const Simulation& simulation) {

@@ -93,10 +93,12 @@ void take_input(ViewState& view, Simulation& simulation, SpaceMouse& space_mouse
     view.dragging_tool = on_picture && !view.holding_tool && !io.KeyShift &&
                          on_tool(view, state.record.X_WT, tool, size, io.MousePos);
     view.dragging_view = on_picture && !view.dragging_tool && !view.holding_tool;
-    if (on_picture && view.holding_tool) simulation.set_spindle(true);
+    view.pedal_down = on_picture && view.holding_tool;
+    if (view.pedal_down) simulation.set_spindle(true);
   }
   if (ImGui::IsMouseReleased(0)) {
-    if (view.holding_tool && simulation.spindle_asked()) simulation.set_spindle(false);
+    if (view.pedal_down) simulation.set_spindle(false);
+    view.pedal_down = false;
     view.dragging_tool = view.dragging_view = false;
   }
   const bool on_picture = !io.WantCaptureMouse || view.dragging_view || view.dragging_tool;

@@ -19,6 +19,8 @@ struct ViewState {
   /// What the left button drags, settled where it went down.
   bool dragging_tool = false;
   bool dragging_view = false;
+  /// The left button is the spindle's pedal as long as it is down.
+  bool pedal_down = false;
   /// What the sliders say, and whether it is still to become real.
   SimulationSettings wanted;
   bool wanted_is_new = false;

@@ -1,5 +1,6 @@
 #include "osteomill/view/scene_renderer.h"
 
+#include <algorithm>
 #include <optional>
 
 #include "osteomill/view/bone_layer.h"
@@ -49,17 +50,75 @@ void draw_ghost(const SolidShapes& shapes, const MillingTool& tool, const Pose& 
 
 }  // namespace
 
+namespace {
+
+bool same_cut(const std::optional<CutPlane>& a, const std::optional<CutPlane>& b) {
+  if (!a || !b) return a.has_value() == b.has_value();
+  return a->normal_W == b->normal_W && a->offset_mm == b->offset_mm;
+}
+
+// As far as the bone is drawn by it.
+bool same_view(const ViewScene& a, const ViewScene& b) {
+  return a.camera.focus_W == b.camera.focus_W && a.camera.distance_mm == b.camera.distance_mm &&
+         a.camera.orientation.coeffs() == b.camera.orientation.coeffs() &&
+         a.bounds.centre_W == b.bounds.centre_W && a.bounds.radius_mm == b.bounds.radius_mm &&
+         a.isovalue == b.isovalue && a.reference_density == b.reference_density &&
+         std::equal(a.cuts.begin(), a.cuts.end(), b.cuts.begin(), same_cut);
+}
+
+}  // namespace
+
 struct SceneRenderer::Impl {
   Impl(const SurfaceBricks& layout, const GridGeometry& geometry)
       : bone(layout, geometry),
         background(gl::make_program(shaders::kScreenVertex, shaders::kBackgroundFragment)),
         nothing(gl::make_vertex_array()) {}
 
+  // The bone with all that stands still beside it, in a picture of its own, to which the tool is added. It is
+  // drawn anew where the view changed, in every second picture while bone is milled, and until its shading
+  // has settled.
+  void keep_ground(const ViewScene& scene, const Projection& projection) {
+    if (!ground_scene || !same_view(*ground_scene, scene)) steady_pictures = 0;
+    const bool due = steady_pictures < 3 || (bone_changed && drawn % 2 == 0);
+    if (due) {
+      draw_ground(scene, projection, steady_pictures == 1 || drawn % kPicturesPerBlur == 0);
+      ground_scene = scene;
+      bone_changed = false;
+      ++steady_pictures;
+    }
+    ++drawn;
+  }
+
+  void draw_ground(const ViewScene& scene, const Projection& projection, bool look_for_cavities) {
+    ground->bind();
+    glDepthMask(GL_TRUE);
+    glEnable(GL_DEPTH_TEST);
+    glClear(GL_DEPTH_BUFFER_BIT);
+    bone.draw(scene, projection, cavities->blurred_depths());
+    if (look_for_cavities) {
+      cavities->blur(ground->depths(), projection.near_mm, projection.far_mm);
+      ground->bind();
+    }
+    draw_background();
+    cut_faces.draw(scene, projection);
+  }
+
+  void copy_ground() const {
+    const PixelSize& size = target->size();
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, ground->framebuffer());
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target->framebuffer());
+    glBlitFramebuffer(0, 0, size.width, size.height, 0, 0, size.width, size.height,
+                      GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT, GL_NEAREST);
+    target->bind();
+  }
+
   void fit(const PixelSize& size) {
     if (target && target->size().width == size.width && target->size().height == size.height) return;
     target.emplace(size);
+    ground.emplace(size);
     cavities.emplace(size);
     drawn = 0;
+    ground_scene.reset();
   }
 
   void draw_background() const {
@@ -87,7 +146,11 @@ struct SceneRenderer::Impl {
   gl::Program background;
   gl::VertexArray nothing;
   std::optional<FrameTarget> target;
+  std::optional<FrameTarget> ground;
   std::optional<CavityPass> cavities;
+  std::optional<ViewScene> ground_scene;
+  int steady_pictures = 0;
+  bool bone_changed = false;
   unsigned drawn = 0;
 };
 
@@ -98,31 +161,25 @@ SceneRenderer::~SceneRenderer() = default;
 
 void SceneRenderer::clear() {
   impl_->bone.clear();
+  impl_->ground_scene.reset();
 }
 
 void SceneRenderer::set_brick(std::size_t brick, const BrickMesh& mesh) {
   impl_->bone.set_brick(brick, mesh);
+  impl_->bone_changed = true;
 }
 
 void SceneRenderer::set_cut_face(std::size_t cut, const CutFace& face) {
   impl_->cut_faces.set(cut, face);
+  impl_->ground_scene.reset();
 }
 
 void SceneRenderer::draw(const ViewScene& scene, const PixelSize& size) {
   Impl& own = *impl_;
   own.fit(size);
   const Projection projection = projection_of(scene, size);
-  own.target->bind();
-  glDepthMask(GL_TRUE);
-  glEnable(GL_DEPTH_TEST);
-  glClear(GL_DEPTH_BUFFER_BIT);
-  own.bone.draw(scene, projection, own.cavities->blurred_depths());
-  if (own.drawn++ % kPicturesPerBlur == 0) {
-    own.cavities->blur(own.target->depths(), projection.near_mm, projection.far_mm);
-    own.target->bind();
-  }
-  own.draw_background();
-  own.cut_faces.draw(scene, projection);
+  own.keep_ground(scene, projection);
+  own.copy_ground();
   own.shapes.begin(projection);
   if (scene.X_WT) draw_tool(own.shapes, scene.tool, *scene.X_WT, kBurr, kShaft);
   if (scene.X_WD) draw_ghost(own.shapes, scene.tool, *scene.X_WD);

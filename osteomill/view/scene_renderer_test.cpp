@@ -123,6 +123,15 @@ TEST_F(SceneRendererTest, APointOfTheToolIsDrawnWhereTheCameraSeesIt) {
             std::vector<int>(without.pixel(beside, y), without.pixel(beside, y) + 3));
 }
 
+// The bone is not drawn anew in every picture, but what was milled is seen two pictures later at the latest.
+TEST_F(SceneRendererTest, MilledBricksAreSeenWhileTheViewStandsStill) {
+  for (int n = 0; n < 10; ++n) renderer_->draw(scene_, kSize);
+  const double all = covered(renderer_->picture());
+  const std::size_t bricks = SurfaceBricks(bone_.geometry().dims).count();
+  for (std::size_t n = 0; n < bricks; ++n) renderer_->set_brick(n, {});
+  EXPECT_LT(covered(picture()), 0.1 * all);
+}
+
 TEST_F(SceneRendererTest, ABrickTakenAwayIsGone) {
   const double all = covered(picture());
   EXPECT_GT(renderer_->triangle_count(), 1000u);
