@@ -56,18 +56,19 @@ TEST_P(GoldenWrenches, AreTheSameBitsAtAnyOptimisation) {
   EXPECT_EQ(hash, GetParam().hash) << std::hex << "0x" << hash;
 }
 
-INSTANTIATE_TEST_SUITE_P(AllAlgorithms, GoldenWrenches,
-                         ::testing::Values(Golden{AlgorithmId::line_proxy, Mode::paper, 0},
-                                           Golden{AlgorithmId::line_proxy, Mode::steady, 0},
-                                           Golden{AlgorithmId::surface_points, Mode::paper, 0},
-                                           Golden{AlgorithmId::surface_points, Mode::steady, 0},
-                                           Golden{AlgorithmId::point_shell, Mode::paper, 0},
-                                           Golden{AlgorithmId::point_shell, Mode::steady, 0}),
-                         [](const auto& test) {
-                           std::string name(name_of(test.param.algorithm));
-                           name[name.find('-')] = '_';
-                           return name + "_" + std::string(name_of(test.param.mode));
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    AllAlgorithms, GoldenWrenches,
+    ::testing::Values(Golden{AlgorithmId::line_proxy, Mode::paper, 0x0213284c29e45f61},
+                      Golden{AlgorithmId::line_proxy, Mode::steady, 0x7117898fb05e1511},
+                      Golden{AlgorithmId::surface_points, Mode::paper, 0xf94f1400825febc5},
+                      Golden{AlgorithmId::surface_points, Mode::steady, 0xade8d0d058621fba},
+                      Golden{AlgorithmId::point_shell, Mode::paper, 0xfd4275f2a35c6bc3},
+                      Golden{AlgorithmId::point_shell, Mode::steady, 0xfca531621ab039c2}),
+    [](const auto& test) {
+      std::string name(name_of(test.param.algorithm));
+      name[name.find('-')] = '_';
+      return name + "_" + std::string(name_of(test.param.mode));
+    });
 
 }  // namespace
 }  // namespace osteomill

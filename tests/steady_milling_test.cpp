@@ -80,13 +80,15 @@ TEST_P(SteadyMilling, IsCalmUnderARealLoad) {
 
 INSTANTIATE_TEST_SUITE_P(
     RealTooth, SteadyMilling,
-    ::testing::Values(Goal{AlgorithmId::surface_points, 1.5, 0.06, 1, 0.3},
+    ::testing::Values(Goal{AlgorithmId::line_proxy, 1.5, 0.03, 1, 0.15},
+                      Goal{AlgorithmId::line_proxy, 3.0, 0.06, 4, 0.4},
+                      Goal{AlgorithmId::surface_points, 1.5, 0.06, 1, 0.3},
                       // Of the heavy hand only the torque is asked; the rest is kept in sight.
                       Goal{AlgorithmId::surface_points, 3.0, 0.10, 5, 1.0},
                       Goal{AlgorithmId::point_shell, 1.5, 0.02, 0.3, 0.06},
                       Goal{AlgorithmId::point_shell, 3.0, 0.03, 0.5, 0.15},
-                      // At other rates.
-                      Goal{AlgorithmId::point_shell, 1.5, 0.02, 0.3, 0.06, 2e-3},
+                      // At other rates; in a tick twice as long the wrench may step twice as far.
+                      Goal{AlgorithmId::point_shell, 1.5, 0.02, 0.6, 0.12, 2e-3},
                       Goal{AlgorithmId::point_shell, 3.0, 0.03, 0.5, 0.15, 0.5e-3}));
 
 }  // namespace
