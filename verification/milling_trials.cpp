@@ -91,7 +91,7 @@ void add_rows(Section& section, const Volume& bone, const Effort& effort, bool r
                              random_hands ? ", drawn hands" : ""),
                  median_and_worst(all.hp), median_and_worst(all.torque_step),
                  median_and_worst(all.force_step), goal_text(goals), lowest_and_median(all.force),
-                 lowest_and_median(all.torque), lowest_and_median(all.removed), median_and_worst(all.paid),
+                 lowest_and_median(all.torque), lowest_and_median(all.removed), lowest_and_median(all.paid),
                  median_and_worst(all.step_us), median_and_worst(all.milling_us)},
                 holds(goals, all, loaded));
   }
@@ -105,7 +105,7 @@ const std::vector<std::string> kHeader{"algorithm, push",
                                        "force mean, N (least)",
                                        "torque mean, N mm (least)",
                                        "removed, mm3 (least)",
-                                       "removed / paid for",
+                                       "removed / paid for (least)",
                                        "step p99, us",
                                        "milling p99, us",
                                        ""};
@@ -117,7 +117,7 @@ Section milling_the_tooth(const Bones& bones, const Effort& effort) {
       "Milling the tooth",
       fmt::format("Must hold: the three figures of calmness are at most what stands beside them; the "
                   "mean force is at least {} N, at least {} mm3 go in 20 s, the mean torque of 3 is at "
-                  "least {} N mm; what is removed is what the burr's force paid for within 2 %. {}, the "
+                  "least {} N mm; what is removed is what the burr's force paid for within 2 %. On {}, the "
                   "simulated hand of `compare` for {:.0f} s, seeds {} to {} (settings were chosen on "
                   "others); median (worst) over the seeds. Times were taken with another trial beside.",
                   kLeastForce_N, kLeastRemoved_mm3, kLeastTorqueOf3_Nmm, bones.tooth_name, effort.phase_s,
