@@ -12,6 +12,7 @@
 
 #include "app/simulate/cuts.h"
 #include "app/simulate/files_panel.h"
+#include "app/simulate/first_time.h"
 #include "app/simulate/overlay.h"
 #include "app/simulate/panels.h"
 #include "app/simulate/pointer.h"
@@ -105,6 +106,7 @@ class Simulator {
       view_.wanted = simulation_->settings();
       view_.isovalue = static_cast<float>(simulation_->isovalue());
       reset_cuts(view_);
+      view_.help = view_.help && first_time_of_help();
       renderer_ =
           std::make_unique<SceneRenderer>(simulation_->surface().layout(), simulation_->bone().geometry());
       surface_number_ = simulation_->surface_number();
