@@ -76,6 +76,15 @@ void FilesPanel::close(ViewState& view, Simulation& simulation) {
   if (work_.valid()) work_.wait();
 }
 
+void FilesPanel::make_report() {
+  work_ = std::async(std::launch::async, report_on, last_recording_, name("report"));
+}
+
+void FilesPanel::end_with_report(ViewState& view, Simulation& simulation) {
+  if (simulation.recording()) record(view, simulation);
+  if (!last_recording_.empty()) make_report();
+}
+
 void FilesPanel::take_result(ViewState& view) {
   if (!work_.valid() || work_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
   attempt(view, [&] { view.message = work_.get(); });
@@ -91,9 +100,7 @@ void FilesPanel::draw(ViewState& view, Simulation& simulation) {
   if (ui::button(simulation.recording() ? "Stop recording##r" : "Record##r")) record(view, simulation);
   ImGui::SameLine();
   const bool free = !busy();
-  if (ui::button("Report", free && !last_recording_.empty())) {
-    work_ = std::async(std::launch::async, report_on, last_recording_, name("report"));
-  }
+  if (ui::button("Report", free && !last_recording_.empty())) make_report();
   ui::hint("Figures and tables of the last recording");
   const auto save = [&](std::future<std::string> work) { work_ = std::move(work); };
   if (ui::button("Save scan", free)) {

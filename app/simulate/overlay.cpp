@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "app/simulate/widgets.h"
+#include <GLFW/glfw3.h>
 #include <imgui.h>
 
 #include "osteomill/view/annotations.h"
@@ -93,6 +94,26 @@ void draw_complaint(ViewState& view) {
   if (ui::button("Close")) {
     view.complaint.clear();
     ImGui::CloseCurrentPopup();
+  }
+  ImGui::EndPopup();
+}
+
+void draw_closing(ViewState& view) {
+  constexpr const char* kTitle = "Close osteomill";
+  const bool shown = view.closing != Closing::no && view.complaint.empty();
+  if (shown && !ImGui::IsPopupOpen(kTitle)) ImGui::OpenPopup(kTitle);
+  if (!ImGui::BeginPopupModal(kTitle, nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
+  if (!shown) ImGui::CloseCurrentPopup();
+  if (view.closing == Closing::asking) {
+    ImGui::TextUnformatted("What you did was recorded. Shall its report be made?");
+    ImGui::Spacing();
+    if (ui::button("Make the report and close")) view.closing = Closing::report_asked;
+    ImGui::SameLine();
+    if (ui::button("Close without")) view.closing = Closing::now;
+    ImGui::SameLine();
+    if (ui::button("Stay") || ImGui::IsKeyPressed(GLFW_KEY_ESCAPE, false)) view.closing = Closing::no;
+  } else {
+    ImGui::TextUnformatted("Writing the report ...");
   }
   ImGui::EndPopup();
 }

@@ -72,7 +72,7 @@ class Simulator {
     opening_ = std::async(std::launch::async, [this] {
       return Simulation::open(options_.scan, options_.settings, options_.command_line);
     });
-    while (!window_.closing()) {
+    while (!over()) {
       begin();
       if (simulation_) {
         work();
@@ -83,12 +83,31 @@ class Simulator {
     }
     if (simulation_) files_.close(view_, *simulation_);
     if (!view_.complaint.empty()) fmt::print(stderr, "osteomill: {}\n", view_.complaint);
-    if (!files_.last_recording().empty()) {
+    if (reported_) {
+      fmt::print("{}\n{}\n", files_.last_recording().string(), view_.message);
+    } else if (!files_.last_recording().empty()) {
       fmt::print("{0}\nIts report: osteomill report {0} --out report\n", files_.last_recording().string());
     }
   }
 
  private:
+  bool over() {
+    if (window_.take_close_asked() && view_.closing == Closing::no) {
+      const bool recorded = simulation_ && files_.recorded(*simulation_);
+      view_.closing = recorded ? Closing::asking : Closing::now;
+    }
+    if (view_.closing == Closing::report_asked && !files_.busy()) {
+      files_.end_with_report(view_, *simulation_);
+      view_.closing = Closing::reporting;
+    } else if (view_.closing == Closing::reporting) {
+      files_.take_result(view_);
+      reported_ = !files_.busy() && view_.complaint.empty();
+      // Whoever is to read why there is no report stays.
+      if (!files_.busy()) view_.closing = reported_ ? Closing::now : Closing::no;
+    }
+    return view_.closing == Closing::now || (script_ && script_->closed());
+  }
+
   void begin() {
     window_.begin_frame();
     const bool settled = simulation_ && !simulation_->preparing() && !view_.wanted_is_new && !files_.busy();
@@ -135,6 +154,7 @@ class Simulator {
     draw_readings(*simulation_, rate_.per_s(), size);
     draw_help(view_, size);
     draw_complaint(view_);
+    draw_closing(view_);
     set_sound();
   }
 
@@ -205,6 +225,7 @@ class Simulator {
   std::future<std::unique_ptr<Simulation>> opening_;
   std::unique_ptr<SceneRenderer> renderer_;
   int surface_number_ = 0;
+  bool reported_ = false;
   ViewState view_;
   FilesPanel files_;
   CutUpdates cuts_;

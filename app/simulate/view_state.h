@@ -9,6 +9,9 @@
 
 namespace osteomill::app {
 
+/// How far it is with closing the window. A report that is asked for begins when nothing else is written.
+enum class Closing { no, asking, report_asked, reporting, now };
+
 /// What the window shows and how, beside the simulation itself.
 struct ViewState {
   Camera camera;
@@ -29,8 +32,8 @@ struct ViewState {
   bool sound = true;
   bool help = true;
   bool full_screen_asked = false;
-  bool close_asked = false;
   bool picture_asked = false;
+  Closing closing = Closing::no;
   /// A dialogue that waits to be read.
   std::string complaint;
   /// What was done last.

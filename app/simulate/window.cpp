@@ -70,12 +70,14 @@ Window::~Window() {
   glfwTerminate();
 }
 
-bool Window::closing() const {
-  return glfwWindowShouldClose(window_) == GLFW_TRUE;
-}
-
 void Window::ask_to_close() {
   glfwSetWindowShouldClose(window_, GLFW_TRUE);
+}
+
+bool Window::take_close_asked() {
+  const bool asked = glfwWindowShouldClose(window_) == GLFW_TRUE;
+  glfwSetWindowShouldClose(window_, GLFW_FALSE);
+  return asked;
 }
 
 PixelSize Window::size() const {

@@ -18,8 +18,10 @@ class Window {
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
 
-  bool closing() const;
+  /// As the window's own button does.
   void ask_to_close();
+  /// Whether closing was asked for since the last call.
+  bool take_close_asked();
   /// Of the framebuffer.
   PixelSize size() const;
   void toggle_full_screen();
