@@ -71,6 +71,13 @@ void FilesPanel::record(ViewState& view, Simulation& simulation) {
   });
 }
 
+void FilesPanel::end_recording(ViewState& view, Simulation& simulation) {
+  if (const auto ended = simulation.take_ended_recording()) last_recording_ = *ended;
+  if (!simulation.recording()) return;
+  record(view, simulation);
+  view.message = "The change ended the recording " + last_recording_.string();
+}
+
 void FilesPanel::close(ViewState& view, Simulation& simulation) {
   if (simulation.recording()) record(view, simulation);
   if (work_.valid()) work_.wait();

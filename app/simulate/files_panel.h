@@ -18,6 +18,8 @@ class FilesPanel {
   void draw(ViewState& view, Simulation& simulation);
   /// Ends a recording that still goes on.
   void close(ViewState& view, Simulation& simulation);
+  /// Ends a recording that goes on since what it tells of changes.
+  void end_recording(ViewState& view, Simulation& simulation);
   bool busy() const { return work_.valid(); }
   /// Whether anything was recorded since the window opened.
   bool recorded(const Simulation& simulation) const {

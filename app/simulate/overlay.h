@@ -17,7 +17,7 @@ void draw_complaint(ViewState& view);
 /// Asks whether to make the report before the window closes.
 void draw_closing(ViewState& view);
 
-/// In the middle of an empty window.
-void draw_loading(const std::string& what, double passed_s, const PixelSize& size);
+/// In the middle of an empty window, or above the bone that is milled meanwhile.
+void draw_loading(const std::string& what, double passed_s, const PixelSize& size, bool above);
 
 }  // namespace osteomill::app

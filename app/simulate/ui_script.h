@@ -21,6 +21,8 @@ namespace osteomill::app {
 ///                                     f1, f11
 ///     click LABEL                     the button, box or heading of that label
 ///     drag LABEL PIXELS               the slider of that label, to the right
+///     type TEXT                       into the field that was clicked
+///     open PATH                       drops that file or folder onto the window
 ///     screenshot FILE                 a PNG of the window
 ///     say TEXT                        on standard output, with the readings
 ///     quit                            asks to close, as the window's own button does

@@ -27,10 +27,15 @@ struct ViewState {
   /// What the sliders say, and whether it is still to become real.
   SimulationSettings wanted;
   bool wanted_is_new = false;
+  /// How often `wanted` was changed.
+  int changes = 0;
   bool ghost = true;
   bool arrows = true;
   bool sound = true;
   bool help = true;
+  /// What is typed as the scan to open, and the scan that is to be opened (the button was pressed).
+  std::array<char, 4096> scan_path{};
+  std::string scan_asked;
   bool full_screen_asked = false;
   bool picture_asked = false;
   Closing closing = Closing::no;

@@ -56,6 +56,11 @@ Window::Window(const std::string& title, const PixelSize& size) {
   }
   glfwMakeContextCurrent(window_);
   glfwSwapInterval(1);
+  glfwSetWindowUserPointer(window_, this);
+  glfwSetDropCallback(window_, [](GLFWwindow* window, int count, const char** paths) {
+    auto* const self = static_cast<Window*>(glfwGetWindowUserPointer(window));
+    for (int n = 0; n < count; ++n) self->drop(paths[n]);
+  });
   ImGui::CreateContext();
   set_style();
   ImGui_ImplGlfw_InitForOpenGL(window_, true);
