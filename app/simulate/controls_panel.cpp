@@ -38,6 +38,15 @@ bool settle(const char* label, double& value, float least, float greatest, const
   return ui::released();
 }
 
+void draw_scan(ViewState& view, const std::string& name) {
+  ImGui::TextUnformatted(name.c_str());
+  const bool entered = ui::text_field("scan", view.scan_path.data(), view.scan_path.size());
+  ui::hint("A DICOM folder, NRRD, MetaImage or NIfTI file; or drop it onto the window");
+  ImGui::SameLine();
+  const bool pressed = ui::button("Open");
+  if ((entered || pressed) && view.scan_path[0] != 0) view.scan_asked = view.scan_path.data();
+}
+
 void draw_algorithm(SimulationSettings& wanted, bool& changed) {
   if (!ui::header("Algorithm", true)) return;
   for (const AlgorithmId algorithm : kAllAlgorithms) {
@@ -167,7 +176,7 @@ void draw_controls(ViewState& view, Simulation& simulation, FilesPanel& files, c
   ImGui::SetNextWindowSizeConstraints({kWidth_px, 0}, {kWidth_px, static_cast<float>(size.height) - 70});
   ImGui::Begin("osteomill", nullptr, ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize);
   ImGui::PushItemWidth(130);
-  ImGui::TextUnformatted(simulation.scan_name().c_str());
+  draw_scan(view, simulation.scan_name());
   bool changed = false;
   draw_session(view, simulation);
   draw_algorithm(view.wanted, changed);
@@ -177,6 +186,7 @@ void draw_controls(ViewState& view, Simulation& simulation, FilesPanel& files, c
   draw_isovalue(view, simulation);
   files.draw(view, simulation);
   view.wanted_is_new = view.wanted_is_new || changed;
+  view.changes += changed ? 1 : 0;
   if (view.wanted_is_new && !simulation.preparing()) {
     view.wanted_is_new = false;
     simulation.change(view.wanted);

@@ -71,9 +71,25 @@ void FilesPanel::record(ViewState& view, Simulation& simulation) {
   });
 }
 
+void FilesPanel::end_recording(ViewState& view, Simulation& simulation) {
+  if (const auto ended = simulation.take_ended_recording()) last_recording_ = *ended;
+  if (!simulation.recording()) return;
+  record(view, simulation);
+  view.message = "The change ended the recording " + last_recording_.string();
+}
+
 void FilesPanel::close(ViewState& view, Simulation& simulation) {
   if (simulation.recording()) record(view, simulation);
   if (work_.valid()) work_.wait();
+}
+
+void FilesPanel::make_report() {
+  work_ = std::async(std::launch::async, report_on, last_recording_, name("report"));
+}
+
+void FilesPanel::end_with_report(ViewState& view, Simulation& simulation) {
+  if (simulation.recording()) record(view, simulation);
+  if (!last_recording_.empty()) make_report();
 }
 
 void FilesPanel::take_result(ViewState& view) {
@@ -91,9 +107,7 @@ void FilesPanel::draw(ViewState& view, Simulation& simulation) {
   if (ui::button(simulation.recording() ? "Stop recording##r" : "Record##r")) record(view, simulation);
   ImGui::SameLine();
   const bool free = !busy();
-  if (ui::button("Report", free && !last_recording_.empty())) {
-    work_ = std::async(std::launch::async, report_on, last_recording_, name("report"));
-  }
+  if (ui::button("Report", free && !last_recording_.empty())) make_report();
   ui::hint("Figures and tables of the last recording");
   const auto save = [&](std::future<std::string> work) { work_ = std::move(work); };
   if (ui::button("Save scan", free)) {

@@ -18,14 +18,24 @@ class FilesPanel {
   void draw(ViewState& view, Simulation& simulation);
   /// Ends a recording that still goes on.
   void close(ViewState& view, Simulation& simulation);
+  /// Ends a recording that goes on since what it tells of changes.
+  void end_recording(ViewState& view, Simulation& simulation);
   bool busy() const { return work_.valid(); }
+  /// Whether anything was recorded since the window opened.
+  bool recorded(const Simulation& simulation) const {
+    return simulation.recording() || !last_recording_.empty();
+  }
+  /// Ends a recording that goes on and begins the report of the last one. Not while busy.
+  void end_with_report(ViewState& view, Simulation& simulation);
+  /// Tells in the view how it went once what was being written is written.
+  void take_result(ViewState& view);
   const std::filesystem::path& last_recording() const { return last_recording_; }
   /// A new name in the folder.
   std::filesystem::path name(const std::string& what) const;
 
  private:
   void record(ViewState& view, Simulation& simulation);
-  void take_result(ViewState& view);
+  void make_report();
 
   std::filesystem::path folder_;
   std::filesystem::path last_recording_;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "app/simulate/widgets.h"
+#include <GLFW/glfw3.h>
 #include <imgui.h>
 
 #include "osteomill/view/annotations.h"
@@ -44,11 +45,16 @@ void draw(ImDrawList& list, const Annotation& annotation) {
   list.AddText(place, kLight, text);
 }
 
-void begin_in_the_middle(const char* title, const PixelSize& size) {
-  const ImVec2 middle(0.5f * static_cast<float>(size.width), 0.5f * static_cast<float>(size.height));
-  ImGui::SetNextWindowPos(middle, ImGuiCond_Always, {0.5f, 0.5f});
+void begin_at(const ImVec2& place, const char* title, const ImVec2& pivot) {
+  ImGui::SetNextWindowPos(place, ImGuiCond_Always, pivot);
   ImGui::Begin(title, nullptr,
-               ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove);
+               ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoFocusOnAppearing);
+}
+
+void begin_in_the_middle(const char* title, const PixelSize& size) {
+  begin_at({0.5f * static_cast<float>(size.width), 0.5f * static_cast<float>(size.height)}, title,
+           {0.5f, 0.5f});
 }
 
 }  // namespace
@@ -97,8 +103,32 @@ void draw_complaint(ViewState& view) {
   ImGui::EndPopup();
 }
 
-void draw_loading(const std::string& what, double passed_s, const PixelSize& size) {
-  begin_in_the_middle("Opening", size);
+void draw_closing(ViewState& view) {
+  constexpr const char* kTitle = "Close osteomill";
+  const bool shown = view.closing != Closing::no && view.complaint.empty();
+  if (shown && !ImGui::IsPopupOpen(kTitle)) ImGui::OpenPopup(kTitle);
+  if (!ImGui::BeginPopupModal(kTitle, nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
+  if (!shown) ImGui::CloseCurrentPopup();
+  if (view.closing == Closing::asking) {
+    ImGui::TextUnformatted("What you did was recorded. Shall its report be made?");
+    ImGui::Spacing();
+    if (ui::button("Make the report and close")) view.closing = Closing::report_asked;
+    ImGui::SameLine();
+    if (ui::button("Close without")) view.closing = Closing::now;
+    ImGui::SameLine();
+    if (ui::button("Stay") || ImGui::IsKeyPressed(GLFW_KEY_ESCAPE, false)) view.closing = Closing::no;
+  } else {
+    ImGui::TextUnformatted("Writing the report ...");
+  }
+  ImGui::EndPopup();
+}
+
+void draw_loading(const std::string& what, double passed_s, const PixelSize& size, bool above) {
+  if (above) {
+    begin_at({0.5f * static_cast<float>(size.width), 8}, "Opening", {0.5f, 0});
+  } else {
+    begin_in_the_middle("Opening", size);
+  }
   ImGui::Text("%s", what.c_str());
   // How long it takes is not known beforehand: the bar comes closer and closer to its end.
   ImGui::ProgressBar(static_cast<float>(1 - std::exp(-passed_s / 2.5)), {360, 0}, "");

@@ -14,7 +14,10 @@ void draw_help(ViewState& view, const PixelSize& size);
 /// A dialogue with what went wrong, until it is sent away.
 void draw_complaint(ViewState& view);
 
-/// In the middle of an empty window.
-void draw_loading(const std::string& what, double passed_s, const PixelSize& size);
+/// Asks whether to make the report before the window closes.
+void draw_closing(ViewState& view);
+
+/// In the middle of an empty window, or above the bone that is milled meanwhile.
+void draw_loading(const std::string& what, double passed_s, const PixelSize& size, bool above);
 
 }  // namespace osteomill::app

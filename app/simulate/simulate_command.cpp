@@ -37,7 +37,7 @@ void add_simulate_command(CLI::App& program, const std::string& command_line) {
   command->add_option("--out", options->simulator.folder, "Folder for recordings and what is saved")
       ->capture_default_str();
   command->add_flag("--no-help", options->simulator.no_help,
-                    "Begin without the page that explains the controls");
+                    "Begin without the page that explains the controls (else shown the first time)");
   command->add_option("--script", options->simulator.script,
                       "Work the window from this file (app/simulate/ui_script.h)");
   command->callback([=] {

@@ -37,30 +37,34 @@ HandleSettings handle_settings(const SimulationSettings& settings) {
 
 }  // namespace
 
-std::unique_ptr<Simulation> Simulation::open(const ScanOptions& scan, const SimulationSettings& settings,
-                                             const std::string& command_line) {
-  LoadedBone bone = load_bone(scan);
-  const BoneDensities densities = estimate_densities(bone.volume);
-  const MillingEntry entry = place_entry(bone.volume, settings.tool);
-  return std::unique_ptr<Simulation>(
-      new Simulation(std::move(bone), densities, entry, settings, command_line));
+Simulation::Opened Simulation::open(const ScanOptions& scan, const SimulationSettings& settings) {
+  LoadedBone loaded = load_bone(scan);
+  const auto bone = std::make_shared<Volume>(std::move(loaded.volume));
+  const BoneDensities densities = estimate_densities(*bone);
+  return {loaded.name,
+          densities,
+          place_entry(*bone, settings.tool),
+          settings,
+          histogram_of(bone->grid()),
+          grey_window_of(bone->grid(), densities.surroundings),
+          std::make_unique<LiveSurface>(*bone),
+          make_session(bone, densities, settings)};
 }
 
-Simulation::Simulation(LoadedBone bone, const BoneDensities& densities, const MillingEntry& entry,
-                       const SimulationSettings& settings, const std::string& command_line)
-    : scan_name_(std::move(bone.name)),
+Simulation::Simulation(Opened opened, const std::string& command_line)
+    : scan_name_(std::move(opened.scan_name)),
       command_line_(command_line),
-      densities_(densities),
-      entry_(entry),
-      settings_(settings),
-      isovalue_(bone.volume.isovalue()),
-      copy_(bone.volume.grid()),
-      histogram_(histogram_of(bone.volume.grid())),
-      grey_window_(grey_window_of(bone.volume.grid(), densities.surroundings)),
-      surface_(std::make_unique<LiveSurface>(bone.volume)),
-      outlet_(bone.volume.geometry()),
-      hand_(handle_settings(settings), pointing_hand(), pose_above(entry, settings.tool, kStartAbove_mm)),
-      live_(make_session(std::make_shared<Volume>(std::move(bone.volume)), densities, settings), hand_) {
+      densities_(opened.densities),
+      entry_(opened.entry),
+      settings_(opened.settings),
+      isovalue_(opened.session->volume().isovalue()),
+      copy_(opened.session->volume().grid()),
+      histogram_(opened.histogram),
+      grey_window_(opened.grey_window),
+      surface_(std::move(opened.surface)),
+      outlet_(opened.session->volume().geometry()),
+      hand_(handle_settings(settings_), pointing_hand(), pose_above(entry_, settings_.tool, kStartAbove_mm)),
+      live_(std::move(opened.session), hand_) {
   listen();
   live_.start();
 }

@@ -28,10 +28,22 @@ namespace osteomill::app {
 /// back) is prepared on a thread of its own: the tool goes on being felt meanwhile, but nothing is milled.
 class Simulation {
  public:
-  /// Reads the scan and prepares everything; takes seconds. Throws InputError as `load_bone` does, and
-  /// std::invalid_argument for settings out of range.
-  static std::unique_ptr<Simulation> open(const ScanOptions& scan, const SimulationSettings& settings,
-                                          const std::string& command_line);
+  /// A scan made ready for milling.
+  struct Opened {
+    std::string scan_name;
+    BoneDensities densities;
+    MillingEntry entry;
+    SimulationSettings settings;
+    DensityHistogram histogram;
+    GreyWindow grey_window;
+    std::unique_ptr<LiveSurface> surface;
+    std::unique_ptr<MillingSession> session;
+  };
+  /// Takes seconds; in any thread, also while another simulation goes on. Throws InputError as `load_bone`
+  /// does, and std::invalid_argument for settings out of range.
+  static Opened open(const ScanOptions& scan, const SimulationSettings& settings);
+  /// Begins to tick; one simulation at a time.
+  Simulation(Opened opened, const std::string& command_line);
   ~Simulation();
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
@@ -100,8 +112,6 @@ class Simulation {
     std::atomic<std::size_t> waiting{0};
   };
 
-  Simulation(LoadedBone bone, const BoneDensities& densities, const MillingEntry& entry,
-             const SimulationSettings& settings, const std::string& command_line);
   void listen();
   void take_changes();
   void hold_and_take_all();

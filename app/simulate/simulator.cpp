@@ -9,9 +9,11 @@
 #include <optional>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "app/simulate/cuts.h"
 #include "app/simulate/files_panel.h"
+#include "app/simulate/first_time.h"
 #include "app/simulate/overlay.h"
 #include "app/simulate/panels.h"
 #include "app/simulate/pointer.h"
@@ -68,10 +70,8 @@ class Simulator {
   }
 
   void run() {
-    opening_ = std::async(std::launch::async, [this] {
-      return Simulation::open(options_.scan, options_.settings, options_.command_line);
-    });
-    while (!window_.closing()) {
+    begin_opening(options_.scan);
+    while (!over()) {
       begin();
       if (simulation_) {
         work();
@@ -82,40 +82,112 @@ class Simulator {
     }
     if (simulation_) files_.close(view_, *simulation_);
     if (!view_.complaint.empty()) fmt::print(stderr, "osteomill: {}\n", view_.complaint);
-    if (!files_.last_recording().empty()) {
+    if (reported_) {
+      fmt::print("{}\n{}\n", files_.last_recording().string(), view_.message);
+    } else if (!files_.last_recording().empty()) {
       fmt::print("{0}\nIts report: osteomill report {0} --out report\n", files_.last_recording().string());
     }
   }
 
  private:
+  bool over() {
+    if (window_.take_close_asked() && view_.closing == Closing::no) {
+      const bool recorded = simulation_ && files_.recorded(*simulation_);
+      view_.closing = recorded ? Closing::asking : Closing::now;
+    }
+    if (view_.closing == Closing::report_asked && !files_.busy()) {
+      files_.end_with_report(view_, *simulation_);
+      view_.closing = Closing::reporting;
+    } else if (view_.closing == Closing::reporting) {
+      files_.take_result(view_);
+      reported_ = !files_.busy() && view_.complaint.empty();
+      // Whoever is to read why there is no report stays.
+      if (!files_.busy()) view_.closing = reported_ ? Closing::now : Closing::no;
+    }
+    return view_.closing == Closing::now || (script_ && script_->closed());
+  }
+
   void begin() {
     window_.begin_frame();
-    const bool settled = simulation_ && !simulation_->preparing() && !view_.wanted_is_new && !files_.busy();
+    const bool settled = simulation_ && !simulation_->preparing() && !view_.wanted_is_new && !files_.busy() &&
+                         !opening_.valid();
     if (script_ && simulation_) script_->feed(seconds_since(last_picture_), settled, window_);
     last_picture_ = Clock::now();
     ImGui::NewFrame();
   }
 
-  void wait_for_scan() {
-    if (opening_.wait_for(0s) == std::future_status::ready) {
-      simulation_ = opening_.get();
-      view_.bounds = bounds_of_bone(simulation_->bone(), simulation_->isovalue());
-      view_.camera = camera_on_entry(simulation_->entry(), view_.bounds);
-      view_.X_W_target = simulation_->state().record.X_WD;
-      view_.wanted = simulation_->settings();
-      view_.isovalue = static_cast<float>(simulation_->isovalue());
-      reset_cuts(view_);
-      renderer_ =
-          std::make_unique<SceneRenderer>(simulation_->surface().layout(), simulation_->bone().geometry());
-      surface_number_ = simulation_->surface_number();
+  void begin_opening(const ScanOptions& scan) {
+    opened_scan_ = scan;
+    opening_since_ = Clock::now();
+    changes_before_ = view_.changes;
+    const SimulationSettings settings = simulation_ ? view_.wanted : options_.settings;
+    opening_ = std::async(std::launch::async, [scan, settings] { return Simulation::open(scan, settings); });
+  }
+
+  void draw_opening() {
+    const std::string what = opened_scan_.scan.empty() ? "built-in tooth" : opened_scan_.scan;
+    draw_loading(what, seconds_since(opening_since_), window_.size(), simulation_ != nullptr);
+  }
+
+  // Another scan, once it was read; the one that is milled goes on until then.
+  void open_another() {
+    std::vector<std::string> asked = window_.take_dropped();
+    if (!view_.scan_asked.empty()) asked.push_back(std::exchange(view_.scan_asked, {}));
+    if (asked.size() > 1) {
+      view_.complaint = "One scan at a time: a file, or the folder of a series";
+    } else if (!asked.empty() && opening_.valid()) {
+      view_.complaint = asked.front() + ": " + opened_scan_.scan + " is still being opened";
+    } else if (!asked.empty()) {
+      begin_opening({asked.front(), {}});
     }
-    const std::string what = options_.scan.scan.empty() ? "built-in tooth" : options_.scan.scan;
-    draw_loading(what, seconds_since(start_), window_.size());
+    if (!opening_.valid() || opening_.wait_for(0s) != std::future_status::ready) return;
+    try {
+      take_scan();
+    } catch (const std::exception& error) {
+      if (!simulation_) throw;
+      view_.complaint = error.what();
+    }
+  }
+
+  void take_scan() {
+    Simulation::Opened opened = opening_.get();
+    if (simulation_) {
+      files_.end_recording(view_, *simulation_);
+      view_.wanted_is_new = view_.changes != changes_before_;
+      options_.command_line += " # then opened in the window: " + opened.scan_name;
+      simulation_.reset();
+    } else {
+      view_.wanted = opened.settings;
+      view_.help = view_.help && first_time_of_help();
+    }
+    options_.scan = opened_scan_;
+    simulation_ = std::make_unique<Simulation>(std::move(opened), options_.command_line);
+    show_from_the_beginning();
+  }
+
+  void show_from_the_beginning() {
+    view_.bounds = bounds_of_bone(simulation_->bone(), simulation_->isovalue());
+    view_.camera = camera_on_entry(simulation_->entry(), view_.bounds);
+    view_.X_W_target = simulation_->state().record.X_WD;
+    view_.isovalue = static_cast<float>(simulation_->isovalue());
+    view_.holding_tool = view_.dragging_tool = view_.dragging_view = view_.pedal_down = false;
+    view_.dragged_cut = -1;
+    reset_cuts(view_);
+    cuts_ = {};
+    renderer_ =
+        std::make_unique<SceneRenderer>(simulation_->surface().layout(), simulation_->bone().geometry());
+    surface_number_ = simulation_->surface_number();
+  }
+
+  void wait_for_scan() {
+    if (opening_.wait_for(0s) == std::future_status::ready) take_scan();
+    draw_opening();
   }
 
   void work() {
     const PixelSize size = window_.size();
     if (size.width < 1 || size.height < 1) return;
+    open_another();
     try {
       simulation_->update();
     } catch (const std::exception& error) {
@@ -131,8 +203,10 @@ class Simulator {
     draw_annotations(view_, size, !options_.scan.scan.empty());
     draw_controls(view_, *simulation_, files_, size);
     draw_readings(*simulation_, rate_.per_s(), size);
+    if (opening_.valid()) draw_opening();
     draw_help(view_, size);
     draw_complaint(view_);
+    draw_closing(view_);
     set_sound();
   }
 
@@ -188,10 +262,11 @@ class Simulator {
     const double cpu_s = static_cast<double>(std::clock() - said_cpu_) / CLOCKS_PER_SEC;
     fmt::print(
         "{}: {:.1f} pictures/s ({:.0f} ms of all processors each), {} triangles, {:.1f} Hz, {} late, step "
-        "p99 {:.0f} us, force {:.2f} N, removed {:.3f} mm^3, {} cuts\n",
+        "p99 {:.0f} us, force {:.2f} N, removed {:.3f} mm^3, {} cuts, scan {}\n",
         text, rate_.per_s(), 1e3 * cpu_s / std::max(pictures_since_said_, 1), renderer_->triangle_count(),
         timing.rate_hz, timing.late_ticks, timing.step.p99_us, record.wrench.force_N.norm(),
-        record.removed_mm3, simulation_->cuts());
+        record.removed_mm3, simulation_->cuts(), simulation_->scan_name());
+    if (!view_.complaint.empty()) fmt::print("dialogue: {}\n", view_.complaint);
     std::fflush(stdout);
     said_cpu_ = std::clock();
     pictures_since_said_ = 0;
@@ -200,9 +275,13 @@ class Simulator {
   SimulatorOptions options_;
   Window window_;
   std::optional<UiScript> script_;
-  std::future<std::unique_ptr<Simulation>> opening_;
+  std::future<Simulation::Opened> opening_;
+  ScanOptions opened_scan_;
+  Clock::time_point opening_since_;
+  int changes_before_ = 0;
   std::unique_ptr<SceneRenderer> renderer_;
   int surface_number_ = 0;
+  bool reported_ = false;
   ViewState view_;
   FilesPanel files_;
   CutUpdates cuts_;
@@ -211,7 +290,6 @@ class Simulator {
   PictureRate rate_;
   int pictures_since_said_ = 0;
   std::clock_t said_cpu_ = 0;
-  Clock::time_point start_ = Clock::now();
   Clock::time_point last_picture_ = Clock::now();
   // Ends first: no tick outlives what it tells of.
   std::unique_ptr<Simulation> simulation_;

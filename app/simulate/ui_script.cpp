@@ -23,8 +23,9 @@ namespace {
 constexpr int kClickPictures = 12;
 
 const std::map<std::string, std::size_t> kWords{
-    {"wait", 1}, {"settle", 0}, {"glide", 3}, {"press", 1},      {"release", 1}, {"wheel", 2}, {"key", 1},
-    {"hold", 2}, {"click", 1},  {"drag", 2},  {"screenshot", 1}, {"say", 1},     {"close", 0}};
+    {"wait", 1}, {"settle", 0}, {"glide", 3}, {"press", 1}, {"release", 1},    {"wheel", 2},
+    {"key", 1},  {"hold", 2},   {"click", 1}, {"drag", 2},  {"screenshot", 1}, {"say", 1},
+    {"type", 1}, {"open", 1},   {"quit", 0},  {"close", 0}};
 
 const std::map<std::string, int> kKeys{
     {"space", GLFW_KEY_SPACE}, {"escape", GLFW_KEY_ESCAPE},   {"shift", GLFW_KEY_LEFT_SHIFT},
@@ -108,8 +109,14 @@ void UiScript::begin(const Action& action, Window& window) {
     y_ = from_y_ = to_y_ = found->second.middle.y;
     if (name == "drag") to_x_ += static_cast<float>(number(action, action.words.size() - 1));
     click_picture_ = 1;
-  } else if (name == "close") {
+  } else if (name == "type") {
+    ImGui::GetIO().AddInputCharactersUTF8(action.text.c_str());
+  } else if (name == "open") {
+    window.drop(action.text);
+  } else if (name == "quit") {
     window.ask_to_close();
+  } else if (name == "close") {
+    closed_ = true;
   }
 }
 

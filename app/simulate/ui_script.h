@@ -21,9 +21,12 @@ namespace osteomill::app {
 ///                                     f1, f11
 ///     click LABEL                     the button, box or heading of that label
 ///     drag LABEL PIXELS               the slider of that label, to the right
+///     type TEXT                       into the field that was clicked
+///     open PATH                       drops that file or folder onto the window
 ///     screenshot FILE                 a PNG of the window
 ///     say TEXT                        on standard output, with the readings
-///     close
+///     quit                            asks to close, as the window's own button does
+///     close                           closes without a question
 /// Empty lines and lines that begin with # mean nothing.
 class UiScript {
  public:
@@ -35,6 +38,8 @@ class UiScript {
   void feed(double passed_s, bool settled, Window& window);
   /// After the window was drawn: screenshots. Returns what is to be said, or an empty text.
   std::string after_drawing(const Window& window);
+  /// Whether the window is to close without a question.
+  bool closed() const { return closed_; }
 
  private:
   struct Action {
@@ -52,6 +57,7 @@ class UiScript {
   std::size_t now_ = 0;
   double time_left_s_ = 0;
   bool begun_ = false;
+  bool closed_ = false;
   // The pointer and what is pressed, as ImGui is told at every picture.
   float x_ = 400;
   float y_ = 300;

@@ -9,6 +9,9 @@
 
 namespace osteomill::app {
 
+/// How far it is with closing the window. A report that is asked for begins when nothing else is written.
+enum class Closing { no, asking, report_asked, reporting, now };
+
 /// What the window shows and how, beside the simulation itself.
 struct ViewState {
   Camera camera;
@@ -24,13 +27,18 @@ struct ViewState {
   /// What the sliders say, and whether it is still to become real.
   SimulationSettings wanted;
   bool wanted_is_new = false;
+  /// How often `wanted` was changed.
+  int changes = 0;
   bool ghost = true;
   bool arrows = true;
   bool sound = true;
   bool help = true;
+  /// What is typed as the scan to open, and the scan that is to be opened (the button was pressed).
+  std::array<char, 4096> scan_path{};
+  std::string scan_asked;
   bool full_screen_asked = false;
-  bool close_asked = false;
   bool picture_asked = false;
+  Closing closing = Closing::no;
   /// A dialogue that waits to be read.
   std::string complaint;
   /// What was done last.

@@ -42,6 +42,12 @@ bool slider(const char* label, float* value, float least, float greatest, const 
   return changed;
 }
 
+bool text_field(const char* label, char* text, std::size_t size) {
+  const bool entered = ImGui::InputText(label, text, size, ImGuiInputTextFlags_EnterReturnsTrue);
+  remember(label);
+  return entered;
+}
+
 bool header(const char* label, bool open) {
   const bool shown = ImGui::CollapsingHeader(label, open ? ImGuiTreeNodeFlags_DefaultOpen : 0);
   remember(label);

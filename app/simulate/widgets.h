@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <string>
 
@@ -22,6 +23,8 @@ bool checkbox(const char* label, bool* value);
 bool radio(const char* label, bool chosen);
 bool slider(const char* label, float* value, float least, float greatest, const char* format,
             ImGuiSliderFlags flags = 0);
+/// True when Enter was pressed in it.
+bool text_field(const char* label, char* text, std::size_t size);
 bool header(const char* label, bool open);
 /// True when a change of the slider drawn last is over.
 bool released();

@@ -56,6 +56,11 @@ Window::Window(const std::string& title, const PixelSize& size) {
   }
   glfwMakeContextCurrent(window_);
   glfwSwapInterval(1);
+  glfwSetWindowUserPointer(window_, this);
+  glfwSetDropCallback(window_, [](GLFWwindow* window, int count, const char** paths) {
+    auto* const self = static_cast<Window*>(glfwGetWindowUserPointer(window));
+    for (int n = 0; n < count; ++n) self->drop(paths[n]);
+  });
   ImGui::CreateContext();
   set_style();
   ImGui_ImplGlfw_InitForOpenGL(window_, true);
@@ -70,12 +75,14 @@ Window::~Window() {
   glfwTerminate();
 }
 
-bool Window::closing() const {
-  return glfwWindowShouldClose(window_) == GLFW_TRUE;
-}
-
 void Window::ask_to_close() {
   glfwSetWindowShouldClose(window_, GLFW_TRUE);
+}
+
+bool Window::take_close_asked() {
+  const bool asked = glfwWindowShouldClose(window_) == GLFW_TRUE;
+  glfwSetWindowShouldClose(window_, GLFW_FALSE);
+  return asked;
 }
 
 PixelSize Window::size() const {

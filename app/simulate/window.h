@@ -1,6 +1,8 @@
 #pragma once
 
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "osteomill/surface/image.h"
 #include "osteomill/view/camera.h"
@@ -18,11 +20,18 @@ class Window {
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
 
-  bool closing() const;
+  /// As the window's own button does.
   void ask_to_close();
+  /// Whether closing was asked for since the last call.
+  bool take_close_asked();
   /// Of the framebuffer.
   PixelSize size() const;
   void toggle_full_screen();
+
+  /// The files and folders that were dropped onto the window since the last call.
+  std::vector<std::string> take_dropped() { return std::exchange(dropped_, {}); }
+  /// As if it had been dropped.
+  void drop(const std::string& path) { dropped_.push_back(path); }
 
   /// Takes the events in and begins ImGui's frame.
   void begin_frame();
@@ -34,6 +43,7 @@ class Window {
 
  private:
   GLFWwindow* window_ = nullptr;
+  std::vector<std::string> dropped_;
   int windowed_place_[4] = {0, 0, 0, 0};
 };
 

@@ -12,6 +12,8 @@ command -v xvfb-run >/dev/null || { echo "SKIPPED: needs xvfb-run"; exit 77; }
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
+# Not the user's own: each test is a first time.
+export XDG_STATE_HOME=$folder/state
 fail() { echo "FAILED: $1"; cat said errors 2>/dev/null; exit 1; }
 
 xvfb-run -a -s "-screen 0 1280x800x24" timeout 200 "$osteomill" simulate "${scan[@]}" --out out \

@@ -1,0 +1,74 @@
+#!/usr/bin/env bash
+# Another scan is opened in the window; one at fault is told of, and the session goes on:
+#   open_another_test.sh OSTEOMILL [SCAN]
+# SCAN, where it is on this machine, is opened too.
+set -euo pipefail
+osteomill=$1 real=${2:-}
+command -v xvfb-run >/dev/null || { echo "SKIPPED: needs xvfb-run"; exit 77; }
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cd "$folder"
+export XDG_STATE_HOME=$folder/state
+fail() { echo "FAILED: $1"; cat said errors; exit 1; }
+"$osteomill" save good.nrrd >/dev/null
+echo "not a scan" >bad.nrrd
+
+cat >actions <<END
+wait 0.3
+open bad.nrrd
+settle
+wait 0.3
+say at-fault
+click Close
+wait 0.3
+say goes-on
+click Record
+wait 0.5
+open good.nrrd
+settle
+wait 0.5
+say dropped
+glide 640 420 0.3
+key t
+wheel 20 1.5
+key space
+wait 2
+key space
+say milling
+key t
+click scan
+type no-such-scan
+click Open
+settle
+wait 0.3
+say not-there
+click Close
+wait 0.3
+click 2 surface points
+settle
+click Save picture
+wait 0.5
+END
+[ ! -e "$real" ] || printf '%s\n' "open $real" settle "wait 0.5" "say real" >>actions
+echo close >>actions
+xvfb-run -a -s "-screen 0 1280x800x24" timeout 200 "$osteomill" simulate --no-help --out out --script actions \
+  >said 2>errors || fail "exit code $?"
+[ -z "${OSTEOMILL_PICTURES:-}" ] || cp out/*-picture.png "$OSTEOMILL_PICTURES"
+cat said
+line() { grep "^$1: " said; }
+reading() { sed -nE "s/^$1:.* $2 ([0-9.]+) .*/\1/p" said; }
+above() { awk -v a="$1" -v b="$2" 'BEGIN { exit !(a > b) }'; }
+
+# The dialogue names the file, and the tooth is still there.
+grep -q "^dialogue: bad.nrrd: ." said || fail "the scan at fault is not named with a reason"
+grep -q "^dialogue: no-such-scan: ." said || fail "the missing scan is not named with a reason"
+line goes-on | grep -q "scan built-in tooth$" || fail "the session did not go on"
+above "$(line goes-on | sed -E 's/.* ([0-9.]+) Hz.*/\1/')" 500 || fail "no ticks after a scan at fault"
+# The next one is there, can be milled, and stays when a later one is at fault.
+line dropped | grep -q "scan good.nrrd$" || fail "the good scan was not opened"
+above "$(reading milling removed)" 0.1 || fail "the scan that was opened is not milled"
+line not-there | grep -q "scan good.nrrd$" || fail "the session ended with a scan that is not there"
+[ -s "$(ls out/*-picture.png)" ] || fail "no picture"
+# What was recorded of the bone before is whole.
+"$osteomill" report out/*-recording.h5 --out report >/dev/null || fail "the recording cannot be read"
+[ ! -e "$real" ] || line real | grep -q "scan $real$" || fail "the real scan was not opened"
