@@ -34,15 +34,6 @@ void print_warnings(const Scan& scan);
 /// but bone.
 void require_isovalue_within(const Scan& scan, double isovalue);
 
-/// The scan, or the built-in tooth. Throws InputError as `read_scan` does.
-Scan open_scan(const ScanOptions& options);
-
-/// The isovalue for a user who names none.
-double suggested_isovalue(const ScanOptions& options, const DensityGrid& grid);
-
-/// Throws InputError where the isovalue lies outside the scan's values: no bone, or nothing but bone.
-void require_isovalue_within(const Scan& scan, double isovalue);
-
 /// A bone ready to be milled.
 struct LoadedBone {
   Volume volume;
