@@ -18,7 +18,8 @@ namespace {
 std::vector<std::int64_t> targets_here() {
   std::vector<std::int64_t> targets;
   const std::int64_t both = hwy::SupportedTargets() & kernel_targets();
-  for (std::int64_t bit = 1; bit > 0; bit *= 2) {
+  for (int place = 0; place < 63; ++place) {
+    const std::int64_t bit = std::int64_t{1} << place;
     if ((both & bit) != 0) targets.push_back(bit);
   }
   return targets;
