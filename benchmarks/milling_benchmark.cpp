@@ -51,7 +51,7 @@ void mill(benchmark::State& state, double burr_radius_mm, double spacing_mm) {
       });
       both.add(cut_us + refresh_us);
       removed_mm3 += done.removed_mm3;
-      pressed_mm3 += 2.0 * step.burr_force_N * kTick_s;
+      pressed_mm3 += MillingSettings{}.removal_rate_mm3_per_Ns * step.burr_force_N * kTick_s;
       if (step.X_WT.position_mm.z() < -0.5 * burr_radius_mm) break;
     }
     both.report(state);
