@@ -6,16 +6,15 @@
 
 #include "app/commands.h"
 #include "app/config_file.h"
-#include "app/describe_run.h"
-#include "app/fault_count.h"
 #include "app/positive_number.h"
 #include "app/progress.h"
 #include "app/scan_options.h"
 #include "app/trial_options.h"
 #include <fmt/core.h>
 
+#include "osteomill/experiment/trial_plan.h"
+#include "osteomill/live/live_session.h"
 #include "osteomill/recording/recorder.h"
-#include "osteomill/session/live_session.h"
 #include "osteomill/surface/live_surface.h"
 
 namespace osteomill::app {
@@ -68,16 +67,21 @@ void run_live(LiveOptions options, const std::string& command_line) {
   script.milling_s = script.holding_s = 0.5 * options.seconds;
   const AlgorithmId algorithm = options.algorithm.front();
   const LoadedBone bone = load_bone(options.scan);
-  const TrialPlan plan{bone, estimate_densities(bone.volume), place_entry(bone.volume, options.trial),
-                       trial_settings(options.trial), command_line};
+  const TrialPlan plan{bone.volume,
+                       bone.name,
+                       estimate_densities(bone.volume),
+                       place_entry(bone.volume, options.trial),
+                       trial_settings(options.trial),
+                       command_line};
   SimulatedOperator hand(plan.settings.hand_and_device, plan.settings.tool, plan.entry);
   auto session = std::make_unique<MillingSession>(
       bone.volume, plan.settings.tool, make_algorithm(algorithm, plan.settings.haptics), plan.densities,
       plan.settings.milling, plan.settings.limits);
   std::optional<Recorder> recorder;
   if (!options.record.empty()) {
-    recorder.emplace(options.record, describe_run(plan, algorithm, session->algorithm().sample_point_count(),
-                                                  RunPhase::milling));
+    recorder.emplace(
+        options.record,
+        describe_trial(plan, algorithm, session->algorithm().sample_point_count(), RunPhase::milling));
   }
   LiveSurface surface(bone.volume);
   FaultCount faults;
@@ -91,7 +95,7 @@ void run_live(LiveOptions options, const std::string& command_line) {
   if (!live.refused_real_time().empty()) fmt::print(stderr, "osteomill: {}\n", live.refused_real_time());
   const std::size_t bricks = run_for(live, surface, options.seconds);
   if (recorder) recorder->close();
-  faults.report(name_of(algorithm));
+  print_faults(name_of(algorithm), faults);
   print_timing(live.timing());
   fmt::print("removed      {:.2f} mm^3, {} bricks of the surface meshed\n", live.state().record.removed_mm3,
              bricks);

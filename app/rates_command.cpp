@@ -10,9 +10,9 @@
 #include "app/trial_options.h"
 #include <fmt/core.h>
 
+#include "osteomill/experiment/measure_rates.h"
+#include "osteomill/experiment/write_rates_report.h"
 #include "osteomill/files/atomic_file.h"
-#include "osteomill/report/write_rates_report.h"
-#include "osteomill/session/measure_rates.h"
 
 namespace osteomill::app {
 

@@ -4,7 +4,6 @@
 
 #include "app/commands.h"
 #include "app/config_file.h"
-#include "app/fault_count.h"
 #include "app/milling_options.h"
 #include "app/progress.h"
 #include "app/scan_options.h"
@@ -47,7 +46,7 @@ void run_replay(const ReplayOptions& options) {
     }
   });
   end_progress();
-  faults.report(options.trajectory);
+  print_faults(options.trajectory, faults);
   write_csv(options.out, log);
   fmt::print("{}\n", options.out);
 }

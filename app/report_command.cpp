@@ -7,10 +7,10 @@
 #include "app/progress.h"
 #include <fmt/core.h>
 
+#include "osteomill/experiment/write_report.h"
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/recording/read_recording.h"
 #include "osteomill/recording/write_csv.h"
-#include "osteomill/report/write_report.h"
 
 namespace osteomill::app {
 

@@ -7,7 +7,7 @@
 #include "benchmarks/percentiles.h"
 #include <benchmark/benchmark.h>
 
-#include "osteomill/session/milling_trial.h"
+#include "osteomill/experiment/milling_trial.h"
 #include "osteomill/volume/densities.h"
 
 namespace osteomill::benchmarks {

@@ -6,9 +6,9 @@
 #include <gtest/gtest.h>
 
 #include "osteomill/ct/read_scan.h"
+#include "osteomill/experiment/milling_trial.h"
 #include "osteomill/milling/cutting_power.h"
 #include "osteomill/report/metrics.h"
-#include "osteomill/session/milling_trial.h"
 
 namespace osteomill {
 namespace {

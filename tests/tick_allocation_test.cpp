@@ -13,7 +13,7 @@
 
 #include "osteomill/device/posed_device.h"
 #include "osteomill/haptics/make_algorithm.h"
-#include "osteomill/session/live_session.h"
+#include "osteomill/live/live_session.h"
 #include "osteomill/session/milling_session.h"
 #include "osteomill/surface/live_surface.h"
 #include "osteomill/volume/densities.h"

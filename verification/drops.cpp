@@ -4,7 +4,7 @@
 #include "verification/sections.h"
 #include <fmt/core.h>
 
-#include "osteomill/device/simulated_handle.h"
+#include "osteomill/operator/simulated_handle.h"
 
 namespace osteomill::verification {
 

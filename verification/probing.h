@@ -7,8 +7,8 @@
 
 #include "tests/shapes.h"
 
-#include "osteomill/device/seeded_random.h"
 #include "osteomill/haptics/make_algorithm.h"
+#include "osteomill/operator/seeded_random.h"
 
 namespace osteomill::verification {
 

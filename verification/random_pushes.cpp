@@ -6,8 +6,8 @@
 #include "verification/sections.h"
 #include <fmt/core.h>
 
-#include "osteomill/device/hand.h"
-#include "osteomill/device/simulated_handle.h"
+#include "osteomill/operator/hand.h"
+#include "osteomill/operator/simulated_handle.h"
 
 namespace osteomill::verification {
 

@@ -2,7 +2,7 @@
 
 #include "verification/in_parallel.h"
 
-#include "osteomill/device/milling_entry.h"
+#include "osteomill/operator/milling_entry.h"
 #include "osteomill/volume/densities.h"
 
 namespace osteomill::verification {

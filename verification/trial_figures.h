@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "osteomill/experiment/milling_trial.h"
 #include "osteomill/report/metrics.h"
-#include "osteomill/session/milling_trial.h"
 
 namespace osteomill::verification {
 

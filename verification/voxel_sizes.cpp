@@ -7,7 +7,7 @@
 #include "verification/trial_figures.h"
 #include <fmt/core.h>
 
-#include "osteomill/device/milling_entry.h"
+#include "osteomill/operator/milling_entry.h"
 #include "osteomill/volume/densities.h"
 
 namespace osteomill::verification {

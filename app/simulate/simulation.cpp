@@ -4,9 +4,8 @@
 #include <thread>
 #include <utility>
 
-#include "app/describe_run.h"
-
 #include "osteomill/haptics/make_algorithm.h"
+#include "osteomill/recording/describe_run.h"
 
 namespace osteomill::app {
 
@@ -187,19 +186,10 @@ void Simulation::take_over(Prepared prepared) {
 }
 
 void Simulation::start_recording(const std::filesystem::path& path) {
-  const RunFacts facts{scan_name_,
-                       bone().geometry(),
-                       isovalue_,
-                       densities_,
-                       settings_.tool,
-                       settings_.haptics,
-                       milling_settings(settings_),
-                       settings_.limits,
-                       pointing_hand(),
-                       handle_settings(settings_),
-                       0,
-                       1e-3,
-                       command_line_};
+  const RunFacts facts{
+      scan_name_,        bone().geometry(),           isovalue_,        densities_, settings_.tool,
+      settings_.haptics, milling_settings(settings_), settings_.limits, 0,          1e-3,
+      command_line_};
   const int points = live_.session().algorithm().sample_point_count();
   RunDescription run = describe_run(facts, settings_.algorithm, points);
   run.settings.push_back({"vibration", settings_.vibration ? 1.0 : 0.0, ""});

@@ -13,11 +13,11 @@
 #include "app/simulate/histogram.h"
 #include "app/simulate/simulation_settings.h"
 
-#include "osteomill/device/milling_entry.h"
-#include "osteomill/device/virtual_hand.h"
+#include "osteomill/live/live_session.h"
+#include "osteomill/live/milled_copy.h"
+#include "osteomill/operator/milling_entry.h"
+#include "osteomill/operator/virtual_hand.h"
 #include "osteomill/recording/recorder.h"
-#include "osteomill/session/live_session.h"
-#include "osteomill/session/milled_copy.h"
 #include "osteomill/surface/live_surface.h"
 #include "osteomill/view/cut_face.h"
 

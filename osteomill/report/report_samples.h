@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "osteomill/recording/recording.h"
-#include "osteomill/session/rate_row.h"
 
 namespace osteomill::testing_support {
 
@@ -85,21 +84,6 @@ inline std::vector<Recording> sample_runs(Mode mode = Mode::steady, int ticks = 
     for (const RunPhase phase : kAllPhases) runs.push_back(sample_run(algorithm, phase, mode, ticks));
   }
   return runs;
-}
-
-/// Rates at the paper's resolutions, beside the paper's own; the measured ones are made up.
-inline std::vector<RateRow> sample_rates() {
-  const auto row = [](AlgorithmId algorithm, const char* resolution, int points, double us, double paper_hz) {
-    return RateRow{algorithm, resolution, points, us, 1.7 * us, 1e6 / us, paper_hz};
-  };
-  using enum AlgorithmId;
-  return {row(line_proxy, "50 vertices", 51, 2.1, 984),    row(line_proxy, "100 vertices", 101, 4, 964),
-          row(line_proxy, "250 vertices", 251, 9, 884),    row(line_proxy, "500 vertices", 501, 18, 795),
-          row(line_proxy, "1000 vertices", 1001, 36, 544), row(surface_points, "10 slices", 104, 3, 974),
-          row(surface_points, "20 slices", 184, 5, 951),   row(surface_points, "30 slices", 264, 8, 922),
-          row(surface_points, "50 slices", 424, 13, 837),  row(surface_points, "100 slices", 824, 25, 622),
-          row(point_shell, "scale 1", 73800, 24, 127),     row(point_shell, "scale 2", 18549, 9, 507),
-          row(point_shell, "scale 3", 8399, 5, 987),       row(point_shell, "scale 4", 4700, 3.2, 0)};
 }
 
 }  // namespace osteomill::testing_support

@@ -1,0 +1,62 @@
+#include "osteomill/experiment/record_trial.h"
+
+#include <memory>
+
+#include <fmt/core.h>
+
+#include "osteomill/experiment/bone_picture.h"
+#include "osteomill/recording/recorder.h"
+#include "osteomill/recording/recording.h"
+#include "osteomill/session/fault_count.h"
+
+namespace osteomill {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr int kTicksBetweenProgress = 500;
+
+std::string recording_name(const TrialPlan& plan, AlgorithmId algorithm, RunPhase phase) {
+  const std::string mode =
+      plan.mode_in_names ? fmt::format("-{}", name_of(plan.settings.haptics.mode)) : std::string();
+  return fmt::format("{}{}-{}.h5", name_of(algorithm), mode, name_of(phase));
+}
+
+void add_pictures(Recorder& recorder, const TrialPlan& plan, const Volume& after) {
+  recorder.add_picture(std::string(kPictureBefore), picture_of_entry(plan.bone, plan.entry));
+  recorder.add_picture(std::string(kPictureAfter), picture_of_entry(after, plan.entry));
+}
+
+}  // namespace
+
+std::vector<fs::path> record_trial(const TrialPlan& plan, AlgorithmId algorithm, const fs::path& folder,
+                                   const RunEvents& events) {
+  MillingTrial trial(plan.bone, plan.densities, plan.entry, algorithm, plan.settings);
+  std::vector<fs::path> paths;
+  std::vector<std::unique_ptr<Recorder>> recorders;
+  for (const RunPhase phase : kAllPhases) {
+    paths.push_back(folder / recording_name(plan, algorithm, phase));
+    recorders.push_back(std::make_unique<Recorder>(
+        paths.back(), describe_trial(plan, algorithm, trial.algorithm().sample_point_count(), phase)));
+  }
+  Recorder& milling = *recorders[0];
+  Recorder& holding = *recorders[1];
+  const ScriptSettings& script = plan.settings.hand_and_device.script;
+  FaultCount faults;
+  for (int n = 0; !trial.finished(); ++n) {
+    const MillingTrial::Tick tick = trial.tick();
+    (tick.milling_phase ? milling : holding).push_waiting(tick.record);
+    faults.add(tick.record);
+    if (n % kTicksBetweenProgress == 0) {
+      events.tell_progress(name_of(algorithm), tick.record.time_s / (script.milling_s + script.holding_s));
+    }
+  }
+  add_pictures(milling, plan, trial.volume());
+  milling.close();
+  holding.close();
+  if (const auto said = faults.sentence()) events.warn(fmt::format("{}: {}", name_of(algorithm), *said));
+  return paths;
+}
+
+}  // namespace osteomill
