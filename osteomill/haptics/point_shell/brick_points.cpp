@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace osteomill {
+namespace osteomill::point_shell {
 
 namespace {
 
@@ -107,4 +107,4 @@ void BrickPoints::move(std::size_t brick_index, std::uint32_t slot, const ShellP
       std::max(brick.bound.radius_mm, kBoundSlack * distance_to(point, brick.bound.centre_mm));
 }
 
-}  // namespace osteomill
+}  // namespace osteomill::point_shell

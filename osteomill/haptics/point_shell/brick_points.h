@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-namespace osteomill {
+namespace osteomill::point_shell {
 
 /// A point of the shell: where it lies in its brick's frame (mm) and the area of surface that it stands for
 /// (mm^2), and the unit normal out of that surface in the grid's axes (zero where it is not known).
@@ -95,4 +95,4 @@ class BrickPoints {
   std::uint64_t dropped_ = 0;
 };
 
-}  // namespace osteomill
+}  // namespace osteomill::point_shell

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace osteomill {
+namespace osteomill::point_shell {
 
 CountPyramid::CountPyramid(const std::array<int, 3>& dims) {
   std::array<int, 3> level_dims = dims;
@@ -25,4 +25,4 @@ void CountPyramid::add(int i, int j, int k, std::int32_t difference) {
   }
 }
 
-}  // namespace osteomill
+}  // namespace osteomill::point_shell

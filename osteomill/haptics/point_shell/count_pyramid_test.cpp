@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace osteomill {
+namespace osteomill::point_shell {
 namespace {
 
 using Node = std::array<int, 3>;
@@ -52,4 +52,4 @@ TEST(CountPyramid, OneBrickIsItsOwnRoot) {
 }
 
 }  // namespace
-}  // namespace osteomill
+}  // namespace osteomill::point_shell

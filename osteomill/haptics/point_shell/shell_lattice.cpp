@@ -8,7 +8,7 @@
 #include <emmintrin.h>
 #endif
 
-namespace osteomill {
+namespace osteomill::point_shell {
 
 namespace {
 
@@ -239,4 +239,4 @@ void ShellLattice::weigh_by_area(Face& face, const Vec3& gradient_G) const {
   face.weight = face_mm2_[face.axis] * seen;
 }
 
-}  // namespace osteomill
+}  // namespace osteomill::point_shell

@@ -4,7 +4,7 @@
 
 #include <Eigen/Cholesky>
 
-namespace osteomill {
+namespace osteomill::point_shell {
 
 ToolMove move_between(const Pose& from, const Pose& to) {
   return {to.position_mm - from.position_mm,
@@ -62,4 +62,4 @@ ToolMove balancing_move(const VirtualCoupling& coupling, const Pose& X_WT, const
   return {move.head<3>(), move.tail<3>()};
 }
 
-}  // namespace osteomill
+}  // namespace osteomill::point_shell

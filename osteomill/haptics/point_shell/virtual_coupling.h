@@ -3,7 +3,7 @@
 #include "osteomill/geometry/wrench.h"
 #include "osteomill/haptics/point_shell/contact_sum.h"
 
-namespace osteomill {
+namespace osteomill::point_shell {
 
 /// A spring between the simulated tool and the device.
 struct VirtualCoupling {
@@ -40,4 +40,4 @@ Wrench wrench_on_hand(const VirtualCoupling& coupling, const Pose& X_WT, const P
 ToolMove balancing_move(const VirtualCoupling& coupling, const Pose& X_WT, const Pose& X_WD,
                         const ContactSum& contacts);
 
-}  // namespace osteomill
+}  // namespace osteomill::point_shell

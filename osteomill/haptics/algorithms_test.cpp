@@ -1,9 +1,9 @@
-#include "osteomill/haptics/make_algorithm.h"
-
 #include <stdexcept>
 
 #include "tests/shapes.h"
 #include <gtest/gtest.h>
+
+#include "osteomill/haptics/make_algorithm.h"
 
 namespace osteomill {
 namespace {

@@ -1,0 +1,76 @@
+#include "osteomill/haptics/algorithm_description.h"
+
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+
+namespace osteomill {
+
+namespace {
+
+std::string number(double value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
+
+std::string range_text(const SettingRange& range) {
+  const std::string kind = range.whole ? "a whole number" : "a number";
+  constexpr double kSmallest = std::numeric_limits<double>::min();
+  constexpr double kLargest = std::numeric_limits<double>::max();
+  const std::string from = range.min == kSmallest
+                               ? "above 0"
+                               : "of " + number(range.min) + (range.max < kLargest ? "" : " or more");
+  return range.max < kLargest ? kind + " " + from + " and at most " + number(range.max) : kind + " " + from;
+}
+
+// NaN is in no range.
+bool lies_within(const SettingRange& range, double value) {
+  return value >= range.min && value <= range.max && (!range.whole || std::floor(value) == value);
+}
+
+}  // namespace
+
+void require_in_range(const AlgorithmId& algorithm, const SettingDescription& setting, double value) {
+  if (lies_within(setting.range, value)) return;
+  throw std::invalid_argument(algorithm.name + ": " + setting.name + " must be " + range_text(setting.range) +
+                              ", not " + number(value));
+}
+
+std::vector<SettingValue> setting_values(const AlgorithmDescription& algorithm,
+                                         const HapticSettings& settings) {
+  std::vector<SettingValue> values;
+  for (const SettingDescription& setting : algorithm.settings) {
+    values.push_back({setting.name, setting.value_in(settings.mode), setting.unit});
+  }
+  const auto set = [&](const HapticSettings::Named& named, std::string SettingDescription::*name) {
+    bool known = false;
+    for (std::size_t n = 0; n < values.size(); ++n) {
+      const SettingDescription& setting = algorithm.settings[n];
+      if (setting.*name != named.setting) continue;
+      require_in_range(algorithm.id, setting, named.value);
+      values[n].value = named.value;
+      known = true;
+    }
+    return known;
+  };
+  for (const HapticSettings::Named& named : settings.named) {
+    if (named.algorithm.empty()) set(named, &SettingDescription::option);
+  }
+  for (const HapticSettings::Named& named : settings.named) {
+    if (named.algorithm == algorithm.id.name && !set(named, &SettingDescription::name)) {
+      throw std::invalid_argument(algorithm.id.name + ": there is no setting " + named.setting);
+    }
+  }
+  return values;
+}
+
+std::unique_ptr<HapticAlgorithm> make_algorithm(const AlgorithmDescription& algorithm,
+                                                const HapticSettings& settings) {
+  std::vector<double> values;
+  for (const SettingValue& setting : setting_values(algorithm, settings)) values.push_back(setting.value);
+  return algorithm.make(values);
+}
+
+}  // namespace osteomill
