@@ -13,11 +13,11 @@
 #include <CLI/Validators.hpp>
 #include <fmt/core.h>
 
+#include "osteomill/experiment/comparison_report.h"
 #include "osteomill/experiment/measure_stability.h"
 #include "osteomill/experiment/parallel.h"
 #include "osteomill/experiment/record_trial.h"
 #include "osteomill/experiment/study_trials.h"
-#include "osteomill/experiment/write_report.h"
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/recording/read_recording.h"
 
@@ -34,7 +34,7 @@ constexpr int kMostThreads = 256;
 struct CompareOptions {
   ScanOptions scan;
   TrialOptions trial;
-  std::vector<AlgorithmId> algorithms{kAllAlgorithms.begin(), kAllAlgorithms.end()};
+  std::vector<AlgorithmDescription> algorithms = all_algorithms();
   std::vector<Mode> modes{Mode::steady};
   int seeds = 1;
   int threads = static_cast<int>(core_count());
@@ -93,7 +93,7 @@ void run_compare(const CompareOptions& options, const std::string& command_line)
   std::vector<Recording> recordings;
   std::vector<StudyRow> rows;
   for (const TrialPlan& plan : plans) {
-    for (const AlgorithmId algorithm : options.algorithms) {
+    for (const AlgorithmDescription& algorithm : options.algorithms) {
       for (const fs::path& path : record_trial(plan, algorithm, options.out, events_on_terminal())) {
         recordings.push_back(read_recording(path));
         rows.push_back(row_of(plan, recordings.back()));
@@ -107,7 +107,7 @@ void run_compare(const CompareOptions& options, const std::string& command_line)
     extras.study.emplace(std::move(rows));
   }
   if (!options.no_stability) extras.stability = press_on_walls(options, plans.front().settings);
-  fmt::print("{}\n", write_report(recordings, options.out, extras).string());
+  fmt::print("{}\n", write_comparison_report(recordings, options.out, extras).string());
 }
 
 // A study draws its hands, so one hand cannot be asked for as well.

@@ -12,6 +12,7 @@
 #include "app/trial_options.h"
 #include <fmt/core.h>
 
+#include "osteomill/experiment/paper.h"
 #include "osteomill/experiment/trial_plan.h"
 #include "osteomill/live/live_session.h"
 #include "osteomill/recording/recorder.h"
@@ -24,7 +25,7 @@ namespace {
 struct LiveOptions {
   ScanOptions scan;
   TrialOptions trial;
-  std::vector<AlgorithmId> algorithm{AlgorithmId::point_shell};
+  std::vector<AlgorithmDescription> algorithm{algorithm_named("point-shell")};
   double seconds = 60;
   std::string record;
 };
@@ -65,7 +66,7 @@ std::size_t run_for(LiveSession& live, LiveSurface& surface, double seconds) {
 void run_live(LiveOptions options, const std::string& command_line) {
   ScriptSettings& script = options.trial.hand.script;
   script.milling_s = script.holding_s = 0.5 * options.seconds;
-  const AlgorithmId algorithm = options.algorithm.front();
+  const AlgorithmDescription& algorithm = options.algorithm.front();
   const LoadedBone bone = load_bone(options.scan);
   const TrialPlan plan{bone.volume,
                        bone.name,
@@ -79,9 +80,8 @@ void run_live(LiveOptions options, const std::string& command_line) {
       plan.settings.milling, plan.settings.limits);
   std::optional<Recorder> recorder;
   if (!options.record.empty()) {
-    recorder.emplace(
-        options.record,
-        describe_trial(plan, algorithm, session->algorithm().sample_point_count(), RunPhase::milling));
+    recorder.emplace(options.record,
+                     describe_trial(plan, algorithm, session->algorithm().sample_point_count(), kMilling));
   }
   LiveSurface surface(bone.volume);
   FaultCount faults;
@@ -95,7 +95,7 @@ void run_live(LiveOptions options, const std::string& command_line) {
   if (!live.refused_real_time().empty()) fmt::print(stderr, "osteomill: {}\n", live.refused_real_time());
   const std::size_t bricks = run_for(live, surface, options.seconds);
   if (recorder) recorder->close();
-  print_faults(name_of(algorithm), faults);
+  print_faults(algorithm.id.name, faults);
   print_timing(live.timing());
   fmt::print("removed      {:.2f} mm^3, {} bricks of the surface meshed\n", live.state().record.removed_mm3,
              bricks);

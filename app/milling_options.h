@@ -8,7 +8,7 @@
 #include <CLI/App.hpp>
 
 #include "osteomill/geometry/wrench.h"
-#include "osteomill/haptics/haptic_settings.h"
+#include "osteomill/haptics/algorithms.h"
 #include "osteomill/milling/burr_mill.h"
 #include "osteomill/milling/cutting_power.h"
 #include "osteomill/tool/milling_tool.h"
@@ -36,6 +36,6 @@ void add_milling_options(CLI::App& command, MillingOptions& options);
 MillingSettings milling_settings(const MillingOptions& options);
 
 /// Adds --algorithm, which may repeat; none given means all.
-void add_algorithm_option(CLI::App& command, std::vector<AlgorithmId>& algorithms);
+void add_algorithm_option(CLI::App& command, std::vector<AlgorithmDescription>& algorithms);
 
 }  // namespace osteomill::app

@@ -21,7 +21,7 @@ namespace {
 struct RatesOptions {
   ScanOptions scan;
   TrialOptions trial;
-  std::vector<AlgorithmId> algorithms{kAllAlgorithms.begin(), kAllAlgorithms.end()};
+  std::vector<AlgorithmDescription> algorithms = all_algorithms();
   std::string out = "osteomill-rates";
 };
 

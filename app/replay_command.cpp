@@ -11,7 +11,7 @@
 #include <fmt/core.h>
 
 #include "osteomill/device/trajectory.h"
-#include "osteomill/haptics/make_algorithm.h"
+#include "osteomill/haptics/algorithms.h"
 #include "osteomill/recording/write_csv.h"
 #include "osteomill/session/replay.h"
 #include "osteomill/volume/densities.h"
@@ -24,7 +24,7 @@ struct ReplayOptions {
   std::string trajectory;
   ScanOptions scan;
   MillingOptions milling;
-  std::vector<AlgorithmId> algorithm;
+  std::vector<AlgorithmDescription> algorithm;
   std::string out;
 };
 

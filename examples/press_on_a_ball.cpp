@@ -32,7 +32,7 @@ osteomill::Volume ball_of_bone() {
 
 int main() {
   const osteomill::Volume bone = ball_of_bone();
-  for (const osteomill::AlgorithmId id : osteomill::kAllAlgorithms) {
+  for (const std::string& id : osteomill::algorithm_names()) {
     const auto algorithm = osteomill::make_algorithm(id, {.mode = osteomill::Mode::paper});
     algorithm->prepare({&bone, osteomill::MillingTool{}});
     osteomill::HapticStep step;

@@ -12,7 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "osteomill/device/posed_device.h"
-#include "osteomill/haptics/make_algorithm.h"
+#include "osteomill/haptics/algorithms.h"
 #include "osteomill/live/live_session.h"
 #include "osteomill/session/milling_session.h"
 #include "osteomill/surface/live_surface.h"
@@ -30,7 +30,7 @@ TEST(TickAllocation, TheCounterCounts) {
 }
 
 struct Case {
-  AlgorithmId algorithm;
+  std::string_view algorithm;
   Mode mode;
 };
 
@@ -73,12 +73,11 @@ TEST_P(TickAllocation, NoTickAllocates) {
 }
 
 INSTANTIATE_TEST_SUITE_P(AllAlgorithms, TickAllocation,
-                         ::testing::Values(Case{AlgorithmId::line_proxy, Mode::paper},
-                                           Case{AlgorithmId::line_proxy, Mode::steady},
-                                           Case{AlgorithmId::surface_points, Mode::paper},
-                                           Case{AlgorithmId::surface_points, Mode::steady},
-                                           Case{AlgorithmId::point_shell, Mode::paper},
-                                           Case{AlgorithmId::point_shell, Mode::steady}),
+                         ::testing::Values(Case{"line-proxy", Mode::paper}, Case{"line-proxy", Mode::steady},
+                                           Case{"surface-points", Mode::paper},
+                                           Case{"surface-points", Mode::steady},
+                                           Case{"point-shell", Mode::paper},
+                                           Case{"point-shell", Mode::steady}),
                          [](const auto& test) {
                            std::string name(name_of(test.param.algorithm));
                            name[name.find('-')] = '_';
@@ -92,7 +91,7 @@ TEST(TickAllocation, NoTickOfALiveSessionAllocates) {
                                                     testing_support::ball(Vec3::Zero(), kBallRadius_mm));
   const MillingTool tool;
   auto session =
-      std::make_unique<MillingSession>(bone, tool, make_algorithm(AlgorithmId::point_shell, {}),
+      std::make_unique<MillingSession>(bone, tool, make_algorithm("point-shell", {}),
                                        estimate_densities(bone), MillingSettings{}, WrenchLimits{});
   session->set_vibration({.on = true});
   PosedDevice device;

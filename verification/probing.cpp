@@ -17,7 +17,7 @@ Quat random_orientation(SeededRandom& random) {
   return tilted * quaternion_from_rotation_vector({0, 0, random.uniform(0, 2 * std::numbers::pi)});
 }
 
-std::unique_ptr<HapticAlgorithm> prepared(AlgorithmId algorithm, const Volume& volume,
+std::unique_ptr<HapticAlgorithm> prepared(std::string_view algorithm, const Volume& volume,
                                           const MillingTool& tool, double stiffness_N_per_mm,
                                           std::vector<HapticSettings::Named> named) {
   HapticSettings settings;

@@ -51,14 +51,13 @@ struct Outcome {
 };
 
 // What an algorithm keeps out of the bone: 1 the tool's centreline, 2 and 3 the tool.
-double past_surface_mm(AlgorithmId id, const BoneSurface& surface, const MillingTool& tool,
+double past_surface_mm(std::string_view id, const BoneSurface& surface, const MillingTool& tool,
                        const Pose& X_WT) {
-  return id == AlgorithmId::line_proxy ? surface.centreline_deep_mm(tool, X_WT)
-                                       : surface.deepest_mm(tool, X_WT);
+  return id == "line-proxy" ? surface.centreline_deep_mm(tool, X_WT) : surface.deepest_mm(tool, X_WT);
 }
 
-Outcome carry_out(const Push& push, AlgorithmId id, HapticAlgorithm& algorithm, const BoneSurface& surface,
-                  const MillingTool& tool) {
+Outcome carry_out(const Push& push, std::string_view id, HapticAlgorithm& algorithm,
+                  const BoneSurface& surface, const MillingTool& tool) {
   algorithm.reset();
   HandSettings hand;
   hand.push_N = push.force_N;
@@ -84,7 +83,8 @@ Outcome carry_out(const Push& push, AlgorithmId id, HapticAlgorithm& algorithm, 
   return outcome;
 }
 
-std::vector<Outcome> outcomes(AlgorithmId id, const Volume& bone, const BoneSurface& surface, int pushes) {
+std::vector<Outcome> outcomes(std::string_view id, const Volume& bone, const BoneSurface& surface,
+                              int pushes) {
   const MillingTool tool;
   std::vector<Outcome> all(static_cast<std::size_t>(pushes));
   in_parallel((all.size() + kBatch - 1) / kBatch, [&](std::size_t batch) {
@@ -113,7 +113,7 @@ Section random_pushes(const Bones& bones, const Effort& effort) {
       {},
       {}};
   const BoneSurface surface(bones.tooth);
-  for (const AlgorithmId id : kAllAlgorithms) {
+  for (const std::string& id : algorithm_names()) {
     std::vector<double> at_end;
     int ever = 0;
     for (const Outcome& outcome : outcomes(id, bones.tooth, surface, effort.pushes)) {

@@ -10,7 +10,7 @@ namespace osteomill::verification {
 namespace {
 
 // The settings in which `steady` differs from `paper`, as `paper` has them.
-std::vector<HapticSettings::Named> switches_off(AlgorithmId algorithm) {
+std::vector<HapticSettings::Named> switches_off(std::string_view algorithm) {
   HapticSettings paper;
   paper.mode = Mode::paper;
   const auto as_printed = describe_algorithm(algorithm, paper);
@@ -30,7 +30,7 @@ struct Line {
   std::vector<std::string> cells;
 };
 
-void measure(Line& line, AlgorithmId algorithm, const Volume& bone, double phase_s) {
+void measure(Line& line, std::string_view algorithm, const Volume& bone, double phase_s) {
   for (const double push_N : {1.5, 3.0}) {
     try {
       const TrialFigures f = milling_figures(
@@ -62,7 +62,7 @@ Section switch_by_switch(const Bones& bones, const Effort& effort) {
       {"algorithm, without", "push 1.5 N", "step, us", "push 3 N", "step, us"},
       {},
       {}};
-  for (const AlgorithmId algorithm : kAllAlgorithms) {
+  for (const std::string& algorithm : algorithm_names()) {
     std::vector<Line> lines{{"nothing (steady)", {}, {}}};
     const std::vector<HapticSettings::Named> off = switches_off(algorithm);
     for (const HapticSettings::Named& named : off) lines.push_back({"`" + named.name + "`", {named}, {}});

@@ -10,7 +10,7 @@ namespace osteomill::verification {
 
 /// How a trial differs from the default one.
 struct TrialVariant {
-  AlgorithmId algorithm = AlgorithmId::line_proxy;
+  std::string_view algorithm = "line-proxy";
   double push_N = 1.5;
   std::uint64_t seed = 1;
   double phase_s = 20;

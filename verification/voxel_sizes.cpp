@@ -28,7 +28,7 @@ Volume block(double spacing_mm) {
 }
 
 // The volume (mm^3 of full density) that the trial took out of the block, counted from what is left.
-double hole_mm3(AlgorithmId algorithm, double spacing_mm, double seconds) {
+double hole_mm3(std::string_view algorithm, double spacing_mm, double seconds) {
   const Volume bone = block(spacing_mm);
   TrialSettings settings;
   settings.hand_and_device.script.milling_s = seconds;
@@ -56,15 +56,15 @@ Section voxel_sizes(const Effort& effort) {
       {},
       {}};
   const std::vector<double> spacings{0.10, 0.20, 0.25};
-  std::vector<double> holes(spacings.size() * kAllAlgorithms.size());
+  std::vector<double> holes(spacings.size() * algorithm_names().size());
   in_parallel(holes.size(), [&](std::size_t n) {
     holes[n] =
-        hole_mm3(kAllAlgorithms[n / spacings.size()], spacings[n % spacings.size()], effort.phase_s / 2);
+        hole_mm3(algorithm_names()[n / spacings.size()], spacings[n % spacings.size()], effort.phase_s / 2);
   });
   for (std::size_t n = 0; n < holes.size(); ++n) {
     const double finest = holes[n - n % spacings.size()];
     const double off = holes[n] / finest - 1;
-    section.add({fmt::format("{}, {:.2f} mm", name_of(kAllAlgorithms[n / spacings.size()]),
+    section.add({fmt::format("{}, {:.2f} mm", name_of(algorithm_names()[n / spacings.size()]),
                              spacings[n % spacings.size()]),
                  figure(holes[n]), fmt::format("{:+.2f} %", 100 * off), "2 %"},
                 std::abs(off) < 0.02);

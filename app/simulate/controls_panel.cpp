@@ -12,22 +12,7 @@ namespace osteomill::app {
 namespace {
 
 constexpr float kWidth_px = 300;
-
-const char* title_of(AlgorithmId algorithm) {
-  switch (algorithm) {
-    case AlgorithmId::line_proxy:
-      return "1 line proxy";
-    case AlgorithmId::surface_points:
-      return "2 surface points";
-    case AlgorithmId::point_shell:
-      return "3 point shell";
-  }
-  return "";
-}
-
-float default_stiffness(AlgorithmId algorithm) {
-  return algorithm == AlgorithmId::surface_points ? 20.0f : 2.0f;
-}
+constexpr const char* kStiffnessOption = "stiffness";
 
 // A slider whose change takes preparation, so that it counts when let go of.
 bool settle(const char* label, double& value, float least, float greatest, const char* format) {
@@ -47,12 +32,19 @@ void draw_scan(ViewState& view, const std::string& name) {
   if ((entered || pressed) && view.scan_path[0] != 0) view.scan_asked = view.scan_path.data();
 }
 
+double stiffness_in_force(const SimulationSettings& wanted, const SettingDescription& setting) {
+  for (const SettingValue& value : setting_values(wanted.algorithm, wanted.haptics)) {
+    if (value.name == setting.name) return value.value;
+  }
+  return setting.value_in(wanted.haptics.mode);
+}
+
 void draw_algorithm(SimulationSettings& wanted, bool& changed) {
   if (!ui::header("Algorithm", true)) return;
-  for (const AlgorithmId algorithm : kAllAlgorithms) {
-    if (ui::radio(title_of(algorithm), wanted.algorithm == algorithm)) {
+  for (const AlgorithmDescription& algorithm : all_algorithms()) {
+    if (ui::radio(algorithm.id.label.c_str(), wanted.algorithm.id == algorithm.id)) {
       wanted.algorithm = algorithm;
-      wanted.haptics.stiffness_N_per_mm.reset();
+      wanted.haptics.clear_option(kStiffnessOption);
       changed = true;
     }
   }
@@ -65,12 +57,12 @@ void draw_algorithm(SimulationSettings& wanted, bool& changed) {
     wanted.haptics.mode = Mode::paper;
     changed = true;
   }
-  double stiffness =
-      wanted.haptics.stiffness_N_per_mm.value_or(static_cast<double>(default_stiffness(wanted.algorithm)));
+  const SettingDescription* setting = setting_of_option(wanted.algorithm, kStiffnessOption);
+  if (setting == nullptr) return;
+  double stiffness = stiffness_in_force(wanted, *setting);
+  const double before = stiffness;
   const bool settled = settle("stiffness", stiffness, 0.5f, 30.0f, "%.1f N/mm");
-  if (stiffness != wanted.haptics.stiffness_N_per_mm.value_or(stiffness) || settled) {
-    wanted.haptics.stiffness_N_per_mm = stiffness;
-  }
+  if (stiffness != before) wanted.haptics.set_option(kStiffnessOption, stiffness);
   changed = changed || settled;
 }
 

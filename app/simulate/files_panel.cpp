@@ -10,9 +10,9 @@
 #include <imgui.h>
 
 #include "osteomill/ct/write_nrrd.h"
-#include "osteomill/experiment/write_report.h"
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/recording/read_recording.h"
+#include "osteomill/report/write_report.h"
 #include "osteomill/surface/mesh_file.h"
 #include "osteomill/surface/surface_mesh.h"
 

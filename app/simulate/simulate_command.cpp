@@ -13,7 +13,7 @@ namespace {
 struct SimulateOptions {
   SimulatorOptions simulator;
   MillingOptions milling;
-  std::vector<AlgorithmId> algorithm{AlgorithmId::point_shell};
+  std::vector<AlgorithmDescription> algorithm{algorithm_named("point-shell")};
 };
 
 void run_simulate(SimulateOptions options) {

@@ -4,7 +4,7 @@
 #include <thread>
 #include <utility>
 
-#include "osteomill/haptics/make_algorithm.h"
+#include "osteomill/haptics/algorithms.h"
 #include "osteomill/recording/describe_run.h"
 
 namespace osteomill::app {

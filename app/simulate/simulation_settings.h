@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "osteomill/geometry/wrench.h"
-#include "osteomill/haptics/haptic_settings.h"
+#include "osteomill/haptics/algorithms.h"
 #include "osteomill/milling/burr_mill.h"
 #include "osteomill/milling/cutting_power.h"
 #include "osteomill/tool/milling_tool.h"
@@ -13,7 +13,7 @@ namespace osteomill::app {
 /// What can be changed while milling goes on.
 struct SimulationSettings {
   MillingTool tool;
-  AlgorithmId algorithm = AlgorithmId::point_shell;
+  AlgorithmDescription algorithm = algorithm_named("point-shell");
   HapticSettings haptics;
   CuttingSettings cutting;
   /// Not given: follows from `cutting` and the burr.

@@ -7,15 +7,19 @@
 
 #include <fmt/format.h>
 
+#include "osteomill/experiment/paper.h"
+
 namespace osteomill {
 
 namespace {
 
-constexpr AlgorithmId k3 = AlgorithmId::point_shell;
+constexpr std::string_view k3 = kPapersAlgorithms[2];
 
 constexpr double kBuzzRatio = 2.0;
 constexpr double kRestlessRatio = 1.5;
 
+// A value for each of the paper's algorithms, in its order.
+using PapersThree = std::array<double, kPapersAlgorithms.size()>;
 using Measure = std::function<double(const RunMetrics&)>;
 
 const Measure kForceBuzz = [](const RunMetrics& m) { return m.force_N.hp_rms; };
@@ -23,15 +27,15 @@ const Measure kTorqueBuzz = [](const RunMetrics& m) { return m.torque_Nmm.hp_rms
 const Measure kTorqueStep = [](const RunMetrics& m) { return m.torque_Nmm.step_max; };
 const Measure kShaftSpread = [](const RunMetrics& m) { return m.shaft.spread_deg; };
 
-std::string during(RunPhase phase) {
-  return phase == RunPhase::milling ? "while milling" : "while holding";
+std::string during(std::string_view phase) {
+  return phase == kMilling ? "while milling" : "while holding";
 }
 
 // The measure of all three algorithms in a phase, or nothing where one is missing.
-std::optional<std::array<double, 3>> of_all(const RunGroup& group, RunPhase phase, const Measure& measure) {
-  std::array<double, 3> values{};
-  for (std::size_t n = 0; n < kAllAlgorithms.size(); ++n) {
-    const MeasuredRun* run = group.find(kAllAlgorithms[n], phase);
+std::optional<PapersThree> of_all(const RunGroup& group, std::string_view phase, const Measure& measure) {
+  PapersThree values{};
+  for (std::size_t n = 0; n < kPapersAlgorithms.size(); ++n) {
+    const MeasuredRun* run = group.find(kPapersAlgorithms[n], phase);
     if (run == nullptr) return std::nullopt;
     values[n] = measure(run->metrics);
   }
@@ -43,9 +47,9 @@ Verdict verdict_of(bool agrees) {
 }
 
 // A finding about the three algorithms of one phase.
-Finding compare_three(const RunGroup& group, RunPhase phase, const Measure& measure, const char* unit,
+Finding compare_three(const RunGroup& group, std::string_view phase, const Measure& measure, const char* unit,
                       std::string paper_says, std::string rule,
-                      const std::function<bool(const std::array<double, 3>&)>& holds) {
+                      const std::function<bool(const PapersThree&)>& holds) {
   Finding finding{std::move(paper_says), std::move(rule), "needs all three algorithms",
                   Verdict::not_recorded};
   if (const auto v = of_all(group, phase, measure)) {
@@ -65,11 +69,11 @@ Finding rate_finding(const RunGroup& group) {
           fmt::format("the rate that a 1 kHz loop would hold is {:.0f} Hz or more in every recording",
                       kLeastRate_hz),
           fmt::format("lowest {:.1f} Hz ({}, {})", slowest.metrics.rate_hz, name_of(d.algorithm),
-                      during(d.phase)),
+                      during(d.segment)),
           verdict_of(slowest.metrics.rate_hz >= kLeastRate_hz), true};
 }
 
-Finding force_finding(const RunGroup& group, RunPhase phase) {
+Finding force_finding(const RunGroup& group, std::string_view phase) {
   return compare_three(
       group, phase, kForceBuzz, "N", fmt::format("Force {}: 1 and 3 are steady, 2 buzzes", during(phase)),
       fmt::format("the force above {:.0f} Hz (rms) of 2 is at least {} times that of 1 and of 3",
@@ -77,7 +81,7 @@ Finding force_finding(const RunGroup& group, RunPhase phase) {
       [](const auto& v) { return v[1] >= kBuzzRatio * v[0] && v[1] >= kBuzzRatio * v[2]; });
 }
 
-Finding worst_torque_finding(const RunGroup& group, RunPhase phase) {
+Finding worst_torque_finding(const RunGroup& group, std::string_view phase) {
   return compare_three(
       group, phase, kTorqueBuzz, "N mm", fmt::format("Torque {}: 1 is the worst, 2 is better", during(phase)),
       fmt::format("the torque above {:.0f} Hz (rms) of 1 is the greatest of the three", kBuzzAbove_hz),
@@ -85,7 +89,7 @@ Finding worst_torque_finding(const RunGroup& group, RunPhase phase) {
 }
 
 Finding kick_finding(const RunGroup& group) {
-  return compare_three(group, RunPhase::milling, kTorqueStep, "N mm",
+  return compare_three(group, kMilling, kTorqueStep, "N mm",
                        "Torque while milling: the shaft is kicked away in 1, with a peak",
                        "the greatest change of torque from one tick to the next is that of 1",
                        [](const auto& v) { return v[0] > v[1] && v[0] > v[2]; });
@@ -93,7 +97,7 @@ Finding kick_finding(const RunGroup& group) {
 
 Finding best_torque_finding(const RunGroup& group) {
   return compare_three(
-      group, RunPhase::holding, kTorqueBuzz, "N mm", "Torque while holding: 3 is the best",
+      group, kHolding, kTorqueBuzz, "N mm", "Torque while holding: 3 is the best",
       fmt::format("the torque above {:.0f} Hz (rms) of 3 is the least of the three", kBuzzAbove_hz),
       [](const auto& v) { return v[2] < v[0] && v[2] < v[1]; });
 }
@@ -105,8 +109,8 @@ Finding restless_finding(const RunGroup& group) {
                   "while holding",
                   kBuzzAbove_hz, kRestlessRatio),
       "needs both phases of 3", Verdict::not_recorded};
-  const MeasuredRun* milling = group.find(k3, RunPhase::milling);
-  const MeasuredRun* holding = group.find(k3, RunPhase::holding);
+  const MeasuredRun* milling = group.find(k3, kMilling);
+  const MeasuredRun* holding = group.find(k3, kHolding);
   if (milling != nullptr && holding != nullptr) {
     const double moving = kTorqueBuzz(milling->metrics);
     const double still = kTorqueBuzz(holding->metrics);
@@ -116,7 +120,7 @@ Finding restless_finding(const RunGroup& group) {
   return finding;
 }
 
-Finding shaft_finding(const RunGroup& group, RunPhase phase) {
+Finding shaft_finding(const RunGroup& group, std::string_view phase) {
   return compare_three(group, phase, kShaftSpread, "degrees",
                        fmt::format("Shaft direction {}: 3 is the most compact", during(phase)),
                        "the spread (rms angle about the mean direction) of 3 is the least of the three",
@@ -128,10 +132,10 @@ struct Ranked {
   double value;
 };
 
-std::vector<Ranked> ranked(const RunGroup& group, RunPhase phase, const Measure& measure) {
+std::vector<Ranked> ranked(const RunGroup& group, std::string_view phase, const Measure& measure) {
   std::vector<Ranked> order;
-  for (const AlgorithmId algorithm : group.algorithms()) {
-    if (const MeasuredRun* run = group.find(algorithm, phase))
+  for (const AlgorithmId& algorithm : group.algorithms()) {
+    if (const MeasuredRun* run = group.find(algorithm.name, phase))
       order.push_back({algorithm, measure(run->metrics)});
   }
   std::stable_sort(order.begin(), order.end(),
@@ -147,8 +151,8 @@ std::string times(double ratio) {
 
 // "the force buzzed least with point-shell: 0.012 N rms above 20 Hz, against 0.02 N with line-proxy (1.7
 // times as much)."
-std::string ranking_sentence(const RunGroup& group, RunPhase phase, const Measure& measure, const char* what,
-                             const char* unit, const char* explained) {
+std::string ranking_sentence(const RunGroup& group, std::string_view phase, const Measure& measure,
+                             const char* what, const char* unit, const char* explained) {
   const std::vector<Ranked> order = ranked(group, phase, measure);
   const Ranked& best = order.front();
   const std::string best_value = fmt::format("{:.3g} {}{}", best.value, unit, explained);
@@ -164,7 +168,7 @@ std::string ranking_sentence(const RunGroup& group, RunPhase phase, const Measur
                      others);
 }
 
-std::string phase_paragraph(const RunGroup& group, RunPhase phase) {
+std::string phase_paragraph(const RunGroup& group, std::string_view phase) {
   std::string start = during(phase);
   start[0] = 'W';
   return fmt::format(
@@ -202,18 +206,18 @@ std::string_view name_of(Verdict verdict) {
 
 std::vector<Finding> check_findings(const RunGroup& group) {
   std::vector<Finding> findings{rate_finding(group)};
-  for (const RunPhase phase : kAllPhases) findings.push_back(force_finding(group, phase));
-  for (const RunPhase phase : kAllPhases) findings.push_back(worst_torque_finding(group, phase));
+  for (const std::string_view phase : kPhases) findings.push_back(force_finding(group, phase));
+  for (const std::string_view phase : kPhases) findings.push_back(worst_torque_finding(group, phase));
   findings.push_back(kick_finding(group));
   findings.push_back(best_torque_finding(group));
   findings.push_back(restless_finding(group));
-  for (const RunPhase phase : kAllPhases) findings.push_back(shaft_finding(group, phase));
+  for (const std::string_view phase : kPhases) findings.push_back(shaft_finding(group, phase));
   return findings;
 }
 
 std::vector<std::string> plain_paragraphs(const RunGroup& group, const std::vector<Finding>& findings) {
   std::vector<std::string> paragraphs;
-  for (const RunPhase phase : group.phases()) paragraphs.push_back(phase_paragraph(group, phase));
+  for (const std::string& phase : group.segments()) paragraphs.push_back(phase_paragraph(group, phase));
   const Finding rate = rate_finding(group);
   paragraphs.push_back(fmt::format("The rate of 1000 Hz is {} within 5 % {}: {}. {}",
                                    rate.verdict == Verdict::agrees ? "held" : "not held",

@@ -4,16 +4,17 @@
 
 #include <gtest/gtest.h>
 
+#include "osteomill/experiment/paper.h"
 #include "osteomill/files/input_error.h"
 
 namespace osteomill {
 namespace {
 
-Recording short_run(AlgorithmId algorithm, RunPhase phase) {
+Recording short_run(const AlgorithmId& algorithm, std::string_view phase) {
   Recording recording;
   recording.path = std::string(name_of(algorithm)) + ".h5";
   recording.description.algorithm = algorithm;
-  recording.description.phase = phase;
+  recording.description.segment = phase;
   recording.records.resize(2);
   recording.records[1].time_s = 0.001;
   return recording;
@@ -23,21 +24,21 @@ Recording short_run(AlgorithmId algorithm, RunPhase phase) {
 class FindingsTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    for (const RunPhase phase : kAllPhases) {
-      for (const AlgorithmId algorithm : kAllAlgorithms) recordings_.push_back(short_run(algorithm, phase));
+    for (const std::string_view phase : kPhases) {
+      for (const AlgorithmId& algorithm : kAllAlgorithms) recordings_.push_back(short_run(algorithm, phase));
     }
     group_ = group_runs(recordings_).at(0);
     for (MeasuredRun& run : group_.runs) run.metrics.rate_hz = 980;
-    set(RunPhase::milling, {0.02, 0.13, 0.01}, {0.8, 0.5, 0.4}, {14, 2, 1}, {0.9, 0.6, 0.3});
-    set(RunPhase::holding, {0.02, 0.13, 0.01}, {0.8, 0.5, 0.1}, {1, 2, 0.5}, {0.9, 0.6, 0.3});
+    set(kMilling, {0.02, 0.13, 0.01}, {0.8, 0.5, 0.4}, {14, 2, 1}, {0.9, 0.6, 0.3});
+    set(kHolding, {0.02, 0.13, 0.01}, {0.8, 0.5, 0.1}, {1, 2, 0.5}, {0.9, 0.6, 0.3});
   }
 
-  RunMetrics& metrics(AlgorithmId algorithm, RunPhase phase) {
+  RunMetrics& metrics(const AlgorithmId& algorithm, std::string_view phase) {
     return const_cast<RunMetrics&>(group_.find(algorithm, phase)->metrics);
   }
-  void set(RunPhase phase, const Vec3& force_hp, const Vec3& torque_hp, const Vec3& torque_step,
+  void set(std::string_view phase, const Vec3& force_hp, const Vec3& torque_hp, const Vec3& torque_step,
            const Vec3& spread) {
-    for (const AlgorithmId algorithm : kAllAlgorithms) {
+    for (const AlgorithmId& algorithm : kAllAlgorithms) {
       RunMetrics& m = metrics(algorithm, phase);
       const int n = static_cast<int>(algorithm);
       m.force_N.hp_rms = force_hp[n];
@@ -65,34 +66,34 @@ TEST_F(FindingsTest, WhatThePaperFoundAgrees) {
 
 TEST_F(FindingsTest, EachRuleCanFail) {
   using S = std::vector<std::string>;
-  metrics(AlgorithmId::point_shell, RunPhase::holding).rate_hz = 949;
+  metrics("point-shell", kHolding).rate_hz = 949;
   EXPECT_EQ(disagreeing(), S{"Every algorithm holds the haptic rate"});
-  metrics(AlgorithmId::point_shell, RunPhase::holding).rate_hz = 950;
+  metrics("point-shell", kHolding).rate_hz = 950;
   EXPECT_EQ(disagreeing(), S{});
 
-  metrics(AlgorithmId::surface_points, RunPhase::milling).force_N.hp_rms = 0.039;
+  metrics("surface-points", kMilling).force_N.hp_rms = 0.039;
   EXPECT_EQ(disagreeing(), S{"Force while milling: 1 and 3 are steady, 2 buzzes"});
-  metrics(AlgorithmId::surface_points, RunPhase::milling).force_N.hp_rms = 0.041;
+  metrics("surface-points", kMilling).force_N.hp_rms = 0.041;
 
-  metrics(AlgorithmId::surface_points, RunPhase::holding).torque_Nmm.hp_rms = 0.9;
+  metrics("surface-points", kHolding).torque_Nmm.hp_rms = 0.9;
   EXPECT_EQ(disagreeing(), S{"Torque while holding: 1 is the worst, 2 is better"});
-  metrics(AlgorithmId::surface_points, RunPhase::holding).torque_Nmm.hp_rms = 0.5;
+  metrics("surface-points", kHolding).torque_Nmm.hp_rms = 0.5;
 
-  metrics(AlgorithmId::point_shell, RunPhase::milling).torque_Nmm.step_max = 15;
+  metrics("point-shell", kMilling).torque_Nmm.step_max = 15;
   EXPECT_EQ(disagreeing(), S{"Torque while milling: the shaft is kicked away in 1, with a peak"});
-  metrics(AlgorithmId::point_shell, RunPhase::milling).torque_Nmm.step_max = 1;
+  metrics("point-shell", kMilling).torque_Nmm.step_max = 1;
 
-  metrics(AlgorithmId::point_shell, RunPhase::milling).torque_Nmm.hp_rms = 0.14;
+  metrics("point-shell", kMilling).torque_Nmm.hp_rms = 0.14;
   EXPECT_EQ(disagreeing(), S{"Torque of 3: a little restless while milling"});
-  metrics(AlgorithmId::point_shell, RunPhase::milling).torque_Nmm.hp_rms = 0.4;
+  metrics("point-shell", kMilling).torque_Nmm.hp_rms = 0.4;
 
-  metrics(AlgorithmId::surface_points, RunPhase::holding).shaft.spread_deg = 0.2;
+  metrics("surface-points", kHolding).shaft.spread_deg = 0.2;
   EXPECT_EQ(disagreeing(), S{"Shaft direction while holding: 3 is the most compact"});
 }
 
 TEST_F(FindingsTest, WhatWasNotRecordedIsNotJudged) {
   const auto gone = [](const MeasuredRun& run) {
-    return run.recording->description.algorithm == AlgorithmId::surface_points;
+    return run.recording->description.algorithm == "surface-points";
   };
   group_.runs.erase(std::remove_if(group_.runs.begin(), group_.runs.end(), gone), group_.runs.end());
   const auto findings = check_findings(group_);
@@ -117,7 +118,7 @@ TEST_F(FindingsTest, TheWordsGiveTheRatios) {
 }
 
 TEST_F(FindingsTest, AForceThatNeverBuzzesDividesNothing) {
-  set(RunPhase::milling, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0});
+  set(kMilling, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0});
   for (const std::string& text : plain_paragraphs(group_, check_findings(group_))) {
     EXPECT_EQ(text.find("inf"), std::string::npos) << text;
     EXPECT_EQ(text.find("nan"), std::string::npos) << text;
@@ -125,8 +126,7 @@ TEST_F(FindingsTest, AForceThatNeverBuzzesDividesNothing) {
 }
 
 TEST(GroupRuns, TwoOfAKindAreRefusedAndNamed) {
-  std::vector<Recording> recordings{short_run(AlgorithmId::line_proxy, RunPhase::milling),
-                                    short_run(AlgorithmId::line_proxy, RunPhase::milling)};
+  std::vector<Recording> recordings{short_run("line-proxy", kMilling), short_run("line-proxy", kMilling)};
   recordings[1].path = "again.h5";
   try {
     group_runs(recordings);

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <iterator>
 #include <string>
+#include <string_view>
 
 namespace osteomill {
 
@@ -11,33 +12,24 @@ namespace {
 
 // One resolution of the paper's tables.
 struct Resolution {
-  AlgorithmId algorithm;
-  std::optional<int> HapticSettings::*setting;
+  std::string_view algorithm;
   int value;
-  std::string_view unit;
   double paper_rate_hz;
 };
 
 const Resolution kPaperResolutions[] = {
-    {AlgorithmId::line_proxy, &HapticSettings::vertices, 50, "vertices", 984},
-    {AlgorithmId::line_proxy, &HapticSettings::vertices, 100, "vertices", 964},
-    {AlgorithmId::line_proxy, &HapticSettings::vertices, 250, "vertices", 884},
-    {AlgorithmId::line_proxy, &HapticSettings::vertices, 500, "vertices", 795},
-    {AlgorithmId::line_proxy, &HapticSettings::vertices, 1000, "vertices", 544},
-    {AlgorithmId::surface_points, &HapticSettings::slices, 10, "slices", 974},
-    {AlgorithmId::surface_points, &HapticSettings::slices, 20, "slices", 951},
-    {AlgorithmId::surface_points, &HapticSettings::slices, 30, "slices", 922},
-    {AlgorithmId::surface_points, &HapticSettings::slices, 50, "slices", 837},
-    {AlgorithmId::surface_points, &HapticSettings::slices, 100, "slices", 622},
-    {AlgorithmId::point_shell, &HapticSettings::shell_scale, 1, "scale", 127},
-    {AlgorithmId::point_shell, &HapticSettings::shell_scale, 2, "scale", 507},
-    {AlgorithmId::point_shell, &HapticSettings::shell_scale, 3, "scale", 987},
+    {"line-proxy", 50, 984},      {"line-proxy", 100, 964},    {"line-proxy", 250, 884},
+    {"line-proxy", 500, 795},     {"line-proxy", 1000, 544},   {"surface-points", 10, 974},
+    {"surface-points", 20, 951},  {"surface-points", 30, 922}, {"surface-points", 50, 837},
+    {"surface-points", 100, 622}, {"point-shell", 1, 127},     {"point-shell", 2, 507},
+    {"point-shell", 3, 987},
 };
 
-std::string text_of(const Resolution& resolution) {
-  const std::string number = std::to_string(resolution.value);
-  const std::string unit(resolution.unit);
-  return resolution.algorithm == AlgorithmId::point_shell ? unit + " " + number : number + " " + unit;
+// "50 vertices", "scale 2"
+std::string text_of(const AlgorithmDescription& algorithm, int value) {
+  const std::string number = std::to_string(value);
+  const std::string& name = algorithm.resolution_name;
+  return name.ends_with('s') ? number + " " + name : name + " " + number;
 }
 
 double percentile(const std::vector<double>& sorted, double share) {
@@ -61,22 +53,27 @@ std::vector<double> sorted_step_times_us(MillingTrial& trial) {
 }  // namespace
 
 std::vector<RateRow> measure_rates(const Volume& bone, const BoneDensities& densities,
-                                   const MillingEntry& entry, const std::vector<AlgorithmId>& algorithms,
+                                   const MillingEntry& entry,
+                                   const std::vector<AlgorithmDescription>& algorithms,
                                    const TrialSettings& settings,
                                    const std::function<void(std::string_view, double)>& progress) {
   std::vector<RateRow> rows;
   int done = 0;
   for (const Resolution& resolution : kPaperResolutions) {
-    progress(name_of(resolution.algorithm), static_cast<double>(done++) / std::size(kPaperResolutions));
-    if (std::find(algorithms.begin(), algorithms.end(), resolution.algorithm) == algorithms.end()) continue;
+    progress(resolution.algorithm, static_cast<double>(done++) / std::size(kPaperResolutions));
+    const auto algorithm = std::find_if(algorithms.begin(), algorithms.end(),
+                                        [&](const auto& one) { return one.id == resolution.algorithm; });
+    if (algorithm == algorithms.end()) continue;
     TrialSettings trial_settings = settings;
     trial_settings.spindle = false;
-    trial_settings.haptics.*resolution.setting = resolution.value;
-    MillingTrial trial(bone, densities, entry, resolution.algorithm, trial_settings);
+    trial_settings.haptics.named.push_back(
+        {algorithm->id.name, algorithm->resolution_setting, static_cast<double>(resolution.value)});
+    MillingTrial trial(bone, densities, entry, *algorithm, trial_settings);
     const std::vector<double> times_us = sorted_step_times_us(trial);
     const double median_us = percentile(times_us, 0.5);
-    rows.push_back({resolution.algorithm, text_of(resolution), trial.algorithm().sample_point_count(),
-                    median_us, percentile(times_us, 0.99), 1e6 / median_us, resolution.paper_rate_hz});
+    rows.push_back({algorithm->id, text_of(*algorithm, resolution.value),
+                    trial.algorithm().sample_point_count(), median_us, percentile(times_us, 0.99),
+                    1e6 / median_us, resolution.paper_rate_hz});
   }
   return rows;
 }

@@ -15,7 +15,8 @@ namespace osteomill {
 /// (`settings` but for the spindle and the resolution), and the steps in contact are timed; all of them where
 /// none touches. `progress` hears what comes next and how much is done.
 std::vector<RateRow> measure_rates(const Volume& bone, const BoneDensities& densities,
-                                   const MillingEntry& entry, const std::vector<AlgorithmId>& algorithms,
+                                   const MillingEntry& entry,
+                                   const std::vector<AlgorithmDescription>& algorithms,
                                    const TrialSettings& settings,
                                    const std::function<void(std::string_view, double)>& progress);
 

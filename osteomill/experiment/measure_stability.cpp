@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string_view>
+#include <string>
 
 namespace osteomill {
 
@@ -11,18 +11,16 @@ namespace {
 constexpr double kDampings_Ns_per_mm[] = {0.001, 0.002, 0.005, 0.010};
 constexpr double kDelays_s[] = {0.3e-3, 1e-3, 2e-3};
 
-// The name under which an algorithm's own settings know what --stiffness sets.
-std::string_view stiffness_name(AlgorithmId algorithm) {
-  return algorithm == AlgorithmId::point_shell ? "translational-stiffness" : "stiffness";
-}
+constexpr const char* kStiffnessOption = "stiffness";
 
 }  // namespace
 
-std::vector<StabilityCase> stability_cases(const std::vector<AlgorithmId>& algorithms,
+std::vector<StabilityCase> stability_cases(const std::vector<AlgorithmDescription>& algorithms,
                                            const std::vector<Mode>& modes) {
   std::vector<StabilityCase> cases;
   for (const Mode mode : modes) {
-    for (const AlgorithmId algorithm : algorithms) {
+    for (const AlgorithmDescription& algorithm : algorithms) {
+      if (setting_of_option(algorithm, kStiffnessOption) == nullptr) continue;
       for (const double delay_s : kDelays_s) {
         for (const double damping : kDampings_Ns_per_mm) cases.push_back({algorithm, mode, damping, delay_s});
       }
@@ -68,11 +66,10 @@ StabilityRow measure_stability(const StabilityCase& setup, const Volume& wall, c
   press.tick_s = tick_s;
   HapticSettings settings = haptics;
   settings.mode = setup.mode;
-  std::erase_if(settings.named, [&](const HapticSettings::Named& named) {
-    return named.algorithm == setup.algorithm && named.name == stiffness_name(setup.algorithm);
-  });
+  const std::string stiffness = setting_of_option(setup.algorithm, kStiffnessOption)->name;
+  settings.named.push_back({setup.algorithm.id.name, stiffness, 0});
   const auto press_at = [&](double stiffness_N_per_mm) {
-    settings.stiffness_N_per_mm = stiffness_N_per_mm;
+    settings.named.back().value = stiffness_N_per_mm;
     const auto algorithm = make_algorithm(setup.algorithm, settings);
     algorithm->prepare({&wall, tool});
     return press_on_wall(*algorithm, tool.burr_radius_mm, press);

@@ -3,14 +3,14 @@
 #include <vector>
 
 #include "osteomill/experiment/stiffness_limit.h"
-#include "osteomill/haptics/make_algorithm.h"
+#include "osteomill/haptics/algorithms.h"
 #include "osteomill/volume/volume.h"
 
 namespace osteomill {
 
 /// One algorithm on one device.
 struct StabilityCase {
-  AlgorithmId algorithm = AlgorithmId::line_proxy;
+  AlgorithmDescription algorithm;
   Mode mode = Mode::steady;
   double damping_Ns_per_mm = 0;
   double delay_s = 0;
@@ -25,9 +25,9 @@ struct StabilityRow {
   double rule_N_per_mm = 0;
 };
 
-/// Every algorithm in every mode on devices with 1, 2, 5 and 10 N s/m of damping and 0.3, 1 and 2 ms of
-/// delay.
-std::vector<StabilityCase> stability_cases(const std::vector<AlgorithmId>& algorithms,
+/// Every algorithm that has a setting of the option "stiffness", in every mode on devices with 1, 2, 5 and 10
+/// N s/m of damping and 0.3, 1 and 2 ms of delay.
+std::vector<StabilityCase> stability_cases(const std::vector<AlgorithmDescription>& algorithms,
                                            const std::vector<Mode>& modes);
 
 /// Bone that fills z < 0, wide and deep enough to press this tool on, of voxels a twelfth of the burr's

@@ -3,7 +3,7 @@
 namespace osteomill {
 
 MillingTrial::MillingTrial(const Volume& bone, const BoneDensities& densities, const MillingEntry& entry,
-                           AlgorithmId algorithm, const TrialSettings& settings)
+                           const AlgorithmDescription& algorithm, const TrialSettings& settings)
     : session_(bone, settings.tool, make_algorithm(algorithm, settings.haptics), densities, settings.milling,
                settings.limits),
       operator_(settings.hand_and_device, settings.tool, entry),

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "osteomill/haptics/make_algorithm.h"
+#include "osteomill/haptics/algorithms.h"
 #include "osteomill/operator/simulated_operator.h"
 #include "osteomill/session/milling_session.h"
 
@@ -33,7 +33,7 @@ class MillingTrial {
 
   /// Copies the bone. Throws std::invalid_argument where a setting is out of range.
   MillingTrial(const Volume& bone, const BoneDensities& densities, const MillingEntry& entry,
-               AlgorithmId algorithm, const TrialSettings& settings);
+               const AlgorithmDescription& algorithm, const TrialSettings& settings);
 
   bool finished() const { return operator_.finished(); }
   /// The next tick; then the hand and the device move on. No allocation.

@@ -11,7 +11,7 @@ namespace osteomill {
 namespace {
 
 // The built-in tooth at twice its voxel size, and a hand that is through in a few seconds.
-class MillingTrialTest : public ::testing::TestWithParam<AlgorithmId> {
+class MillingTrialTest : public ::testing::TestWithParam<std::string_view> {
  protected:
   MillingTrialTest()
       : bone_(builtin_tooth(0.5), kBuiltinToothIsovalue),
@@ -95,7 +95,7 @@ TEST_P(MillingTrialTest, TakesWhatTheForceHasPaidFor) {
   EXPECT_NEAR(run.milling.back().removed_mm3 / pressed_mm3, 1.0, 0.02);
 }
 
-INSTANTIATE_TEST_SUITE_P(AllAlgorithms, MillingTrialTest, ::testing::ValuesIn(kAllAlgorithms),
+INSTANTIATE_TEST_SUITE_P(AllAlgorithms, MillingTrialTest, ::testing::ValuesIn(algorithm_names()),
                          [](const auto& test) {
                            std::string name(name_of(test.param));
                            name[name.find('-')] = '_';

@@ -2,13 +2,13 @@
 
 #include <string>
 
-#include "osteomill/haptics/algorithm_id.h"
+#include "osteomill/haptics/algorithm_description.h"
 
 namespace osteomill {
 
 /// One line of section 8.1: how fast an algorithm steps at one resolution.
 struct RateRow {
-  AlgorithmId algorithm = AlgorithmId::line_proxy;
+  AlgorithmId algorithm;
   /// As people say it: "50 vertices", "20 slices", "scale 2".
   std::string resolution;
   /// Sample points: vertices of the tool, or points of the shell.

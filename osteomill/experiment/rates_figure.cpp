@@ -15,7 +15,7 @@ namespace {
 constexpr double kWidth_px = 1150;
 constexpr double kHeight_px = 520;
 
-std::vector<RateRow> rows_of(std::span<const RateRow> rows, AlgorithmId algorithm) {
+std::vector<RateRow> rows_of(std::span<const RateRow> rows, const AlgorithmId& algorithm) {
   std::vector<RateRow> of;
   for (const RateRow& row : rows) {
     if (row.algorithm == algorithm) of.push_back(row);
@@ -46,7 +46,7 @@ std::string tics(const std::vector<RateRow>& rows) {
 
 std::string panel(const std::vector<RateRow>& rows, std::size_t column, std::size_t columns,
                   const TemporaryFolder& work) {
-  const AlgorithmId algorithm = rows.front().algorithm;
+  const AlgorithmId& algorithm = rows.front().algorithm;
   const std::string file = fmt::format("rates-{}.dat", name_of(algorithm));
   std::string data;
   bool in_paper = false;
@@ -64,7 +64,7 @@ std::string panel(const std::vector<RateRow>& rows, std::size_t column, std::siz
       "set lmargin at screen {:.4f}\nset rmargin at screen {:.4f}\nset bmargin at screen {:.4f}\n"
       "set tmargin at screen {:.4f}\nset title '{}' offset 0,-0.4\nset xrange [-0.5:{}]\n{}{}",
       left / kWidth_px, (left + wide - right_px) / kWidth_px, bottom_px / kHeight_px, 1 - top_px / kHeight_px,
-      numbered_name(algorithm), static_cast<double>(rows.size()) - 0.5, tics(rows),
+      algorithm.label, static_cast<double>(rows.size()) - 0.5, tics(rows),
       column == 0 ? "set ylabel 'Steps a second (Hz)'\n" : "unset ylabel\nset format y ''\n");
   script += fmt::format("plot 1000 with lines dt 2 lw 1.5 lc rgb '#555555' notitle, ");
   if (in_paper) {
@@ -72,7 +72,7 @@ std::string panel(const std::vector<RateRow>& rows, std::size_t column, std::siz
         fmt::format("'{}' using 1:3 with linespoints pt 6 ps 1.2 lw 1.5 lc rgb '#8a8a8a' notitle, ", file);
   }
   return script + fmt::format("'{}' using 1:2 with linespoints pt 7 ps 1.1 lw 2 lc rgb '{}' notitle\n", file,
-                              colour_of(algorithm));
+                              algorithm.colour);
 }
 
 }  // namespace
@@ -80,8 +80,10 @@ std::string panel(const std::vector<RateRow>& rows, std::size_t column, std::siz
 Figure draw_rates_figure(std::span<const RateRow> rows, const std::filesystem::path& folder) {
   const TemporaryFolder work;
   std::vector<std::vector<RateRow>> panels;
-  for (const AlgorithmId algorithm : kAllAlgorithms) {
-    if (auto of = rows_of(rows, algorithm); !of.empty()) panels.push_back(std::move(of));
+  std::vector<AlgorithmId> algorithms;
+  for (const RateRow& row : rows) algorithms.push_back(row.algorithm);
+  for (const AlgorithmId& algorithm : each_once(std::move(algorithms))) {
+    panels.push_back(rows_of(rows, algorithm));
   }
   FigureScript script{"rates", static_cast<int>(kWidth_px), static_cast<int>(kHeight_px), ""};
   script.body =

@@ -5,6 +5,7 @@
 #include <fmt/core.h>
 
 #include "osteomill/experiment/bone_picture.h"
+#include "osteomill/experiment/paper.h"
 #include "osteomill/recording/recorder.h"
 #include "osteomill/recording/recording.h"
 #include "osteomill/session/fault_count.h"
@@ -17,10 +18,11 @@ namespace {
 
 constexpr int kTicksBetweenProgress = 500;
 
-std::string recording_name(const TrialPlan& plan, AlgorithmId algorithm, RunPhase phase) {
+std::string recording_name(const TrialPlan& plan, const AlgorithmDescription& algorithm,
+                           std::string_view phase) {
   const std::string mode =
       plan.mode_in_names ? fmt::format("-{}", name_of(plan.settings.haptics.mode)) : std::string();
-  return fmt::format("{}{}-{}.h5", name_of(algorithm), mode, name_of(phase));
+  return fmt::format("{}{}-{}.h5", algorithm.id.name, mode, phase);
 }
 
 void add_pictures(Recorder& recorder, const TrialPlan& plan, const Volume& after) {
@@ -30,12 +32,12 @@ void add_pictures(Recorder& recorder, const TrialPlan& plan, const Volume& after
 
 }  // namespace
 
-std::vector<fs::path> record_trial(const TrialPlan& plan, AlgorithmId algorithm, const fs::path& folder,
-                                   const RunEvents& events) {
+std::vector<fs::path> record_trial(const TrialPlan& plan, const AlgorithmDescription& algorithm,
+                                   const fs::path& folder, const RunEvents& events) {
   MillingTrial trial(plan.bone, plan.densities, plan.entry, algorithm, plan.settings);
   std::vector<fs::path> paths;
   std::vector<std::unique_ptr<Recorder>> recorders;
-  for (const RunPhase phase : kAllPhases) {
+  for (const std::string_view phase : kPhases) {
     paths.push_back(folder / recording_name(plan, algorithm, phase));
     recorders.push_back(std::make_unique<Recorder>(
         paths.back(), describe_trial(plan, algorithm, trial.algorithm().sample_point_count(), phase)));
@@ -49,13 +51,13 @@ std::vector<fs::path> record_trial(const TrialPlan& plan, AlgorithmId algorithm,
     (tick.milling_phase ? milling : holding).push_waiting(tick.record);
     faults.add(tick.record);
     if (n % kTicksBetweenProgress == 0) {
-      events.tell_progress(name_of(algorithm), tick.record.time_s / (script.milling_s + script.holding_s));
+      events.tell_progress(algorithm.id.name, tick.record.time_s / (script.milling_s + script.holding_s));
     }
   }
   add_pictures(milling, plan, trial.volume());
   milling.close();
   holding.close();
-  if (const auto said = faults.sentence()) events.warn(fmt::format("{}: {}", name_of(algorithm), *said));
+  if (const auto said = faults.sentence()) events.warn(fmt::format("{}: {}", algorithm.id.name, *said));
   return paths;
 }
 

@@ -11,7 +11,7 @@ namespace osteomill {
 /// Runs one algorithm through both phases of section 8.2 and writes one recording a phase into `folder`, with
 /// pictures of the bone before and after in the first. Returns their paths. Throws InputError where a
 /// recording cannot be written, and std::invalid_argument where a setting is out of range.
-std::vector<std::filesystem::path> record_trial(const TrialPlan& plan, AlgorithmId algorithm,
+std::vector<std::filesystem::path> record_trial(const TrialPlan& plan, const AlgorithmDescription& algorithm,
                                                 const std::filesystem::path& folder, const RunEvents& events);
 
 }  // namespace osteomill

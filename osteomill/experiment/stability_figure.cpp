@@ -39,7 +39,7 @@ Axes axes_of(std::span<const StabilityRow> rows) {
   for (const StabilityRow& row : rows) {
     add_once(axes.modes, row.setup.mode);
     add_once(axes.delays_s, row.setup.delay_s);
-    add_once(axes.algorithms, row.setup.algorithm);
+    add_once(axes.algorithms, row.setup.algorithm.id);
     add_once(axes.dampings_Ns_per_m, damping_Ns_per_m(row));
     for (const double stiffness : {row.rule_N_per_mm, row.limit.felt_N_per_mm}) {
       if (!(stiffness > 0)) continue;
@@ -53,12 +53,12 @@ Axes axes_of(std::span<const StabilityRow> rows) {
 
 // Damping, felt stiffness or '?' where none was passive, the same where even the stiffest was, damping, rule.
 // Each algorithm a little aside, since several follow the rule.
-std::string curve_data(std::span<const StabilityRow> rows, AlgorithmId algorithm, Mode mode, double delay_s) {
-  const double aside = std::pow(1.05, static_cast<double>(algorithm) - 1);
+std::string curve_data(std::span<const StabilityRow> rows, const AlgorithmId& algorithm, double aside,
+                       Mode mode, double delay_s) {
   std::string data;
   for (const StabilityRow& row : rows) {
     const StabilityCase& setup = row.setup;
-    if (setup.algorithm != algorithm || setup.mode != mode || setup.delay_s != delay_s) continue;
+    if (setup.algorithm.id != algorithm || setup.mode != mode || setup.delay_s != delay_s) continue;
     const std::string felt = fmt::format("{:.6g}", row.limit.felt_N_per_mm);
     data += fmt::format("{:.6g} {} {} {:.6g} {:.6g}\n", aside * damping_Ns_per_m(row),
                         row.limit.kind == StiffnessLimit::Kind::below_all ? "?" : felt,
@@ -83,16 +83,19 @@ std::string frame(std::size_t column, std::size_t row, const Axes& axes, double 
 std::string panel(std::span<const StabilityRow> rows, std::size_t column, std::size_t row, const Axes& axes,
                   const TemporaryFolder& work) {
   std::string curves, rule;
-  for (const AlgorithmId algorithm : axes.algorithms) {
+  for (std::size_t n = 0; n < axes.algorithms.size(); ++n) {
+    const AlgorithmId& algorithm = axes.algorithms[n];
+    const double aside = std::pow(1.05, static_cast<double>(n) - 1);
     const std::string file = fmt::format("stability-{}-{}-{}.dat", name_of(algorithm), row, column);
-    write_figure_data(work / file, curve_data(rows, algorithm, axes.modes[row], axes.delays_s[column]));
+    write_figure_data(work / file,
+                      curve_data(rows, algorithm, aside, axes.modes[row], axes.delays_s[column]));
     // The same for every algorithm.
     rule = fmt::format(", '{}' using 4:5 with lines dt 2 lw 2 lc rgb '#8a8a8a' notitle", file);
     curves += fmt::format(
         "{2}'{0}' using 1:2 with linespoints pt 7 ps 0.9 lw 1.6 lc rgb '{1}' notitle, '{0}' using 1:3 with "
         "points "
         "pt 9 ps 1.9 lc rgb '{1}' notitle",
-        file, colour_of(algorithm), curves.empty() ? "plot " : ", ");
+        file, algorithm.colour, curves.empty() ? "plot " : ", ");
   }
   return curves + rule + "\n";
 }
@@ -105,9 +108,9 @@ std::string common(const Axes& axes, double height_px) {
   const double y = 1 - 24 / height_px;
   std::string legend;
   int tag = 101;
-  for (const AlgorithmId algorithm : axes.algorithms) {
+  for (const AlgorithmId& algorithm : axes.algorithms) {
     legend += fmt::format("set label {} '● {}' at screen {:.4f},screen {:.4f} left tc rgb '{}'\n", tag++,
-                          numbered_name(algorithm), x / kWidth_px, y, colour_of(algorithm));
+                          algorithm.label, x / kWidth_px, y, algorithm.colour);
     x += 200;
   }
   legend += fmt::format(

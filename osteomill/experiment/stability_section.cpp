@@ -38,22 +38,19 @@ std::string cell(const StabilityRow& row) {
 
 std::vector<AlgorithmId> algorithms_of(std::span<const StabilityRow> rows, Mode mode) {
   std::vector<AlgorithmId> present;
-  for (const AlgorithmId algorithm : kAllAlgorithms) {
-    const auto is_it = [&](const StabilityRow& row) {
-      return row.setup.algorithm == algorithm && row.setup.mode == mode;
-    };
-    if (std::any_of(rows.begin(), rows.end(), is_it)) present.push_back(algorithm);
+  for (const StabilityRow& row : rows) {
+    if (row.setup.mode == mode) present.push_back(row.setup.algorithm.id);
   }
-  return present;
+  return each_once(std::move(present));
 }
 
 // A line a device, in the order of the first algorithm's rows.
 std::string mode_table(std::span<const StabilityRow> rows, Mode mode) {
   const auto algorithms = algorithms_of(rows, mode);
   HtmlTable table{{"Device: damping, delay", "2 b / (T + 2 τ)"}, {}, true};
-  for (const AlgorithmId algorithm : algorithms) table.header.emplace_back(numbered_name(algorithm));
+  for (const AlgorithmId& algorithm : algorithms) table.header.emplace_back(algorithm.label);
   for (const StabilityRow& device : rows) {
-    if (device.setup.mode != mode || device.setup.algorithm != algorithms.front()) continue;
+    if (device.setup.mode != mode || device.setup.algorithm.id != algorithms.front()) continue;
     table.rows.push_back({fmt::format("{:.3g} N s/m, {:.3g} ms", 1e3 * device.setup.damping_Ns_per_mm,
                                       1e3 * device.setup.delay_s),
                           fmt::format("{:.3g}", device.rule_N_per_mm)});
@@ -67,18 +64,18 @@ std::string mode_table(std::span<const StabilityRow> rows, Mode mode) {
 }
 
 // "1 line-proxy 0.98 to 1.05"
-std::string range_against_rule(std::span<const StabilityRow> rows, AlgorithmId algorithm, Mode mode) {
+std::string range_against_rule(std::span<const StabilityRow> rows, const AlgorithmId& algorithm, Mode mode) {
   std::vector<double> ratios;
   std::size_t none = 0;
   for (const StabilityRow& row : rows) {
-    if (row.setup.algorithm != algorithm || row.setup.mode != mode) continue;
+    if (row.setup.algorithm.id != algorithm || row.setup.mode != mode) continue;
     if (row.limit.kind == Kind::below_all) {
       ++none;
     } else {
       ratios.push_back(row.limit.felt_N_per_mm / row.rule_N_per_mm);
     }
   }
-  const std::string name(numbered_name(algorithm));
+  const std::string& name = algorithm.label;
   if (ratios.empty()) return name + " passive on no device";
   const auto [least, greatest] = std::minmax_element(ratios.begin(), ratios.end());
   const std::string range = fmt::format("{} {:.2f} to {:.2f}", name, *least, *greatest);
@@ -89,7 +86,7 @@ std::string range_against_rule(std::span<const StabilityRow> rows, AlgorithmId a
 
 std::string in_words(std::span<const StabilityRow> rows, Mode mode) {
   std::string text;
-  for (const AlgorithmId algorithm : algorithms_of(rows, mode)) {
+  for (const AlgorithmId& algorithm : algorithms_of(rows, mode)) {
     text += (text.empty() ? "" : "; ") + range_against_rule(rows, algorithm, mode);
   }
   return "The stiffness felt at the limit, as a multiple of the rule: " + text + ".";
@@ -135,7 +132,7 @@ void write_stability_csv(const std::filesystem::path& path, std::span<const Stab
            "rule_N_per_mm\n";
     for (const StabilityRow& row : rows) {
       const StabilityCase& setup = row.setup;
-      out << fmt::format("{},{},{},{},{},{},{},{}\n", name_of(setup.algorithm), name_of(setup.mode),
+      out << fmt::format("{},{},{},{},{},{},{},{}\n", setup.algorithm.id.name, name_of(setup.mode),
                          1e3 * setup.damping_Ns_per_mm, setup.delay_s, name_of_kind(row.limit.kind),
                          row.limit.stiffness_N_per_mm, row.limit.felt_N_per_mm, row.rule_N_per_mm);
     }

@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "osteomill/experiment/comparison_report.h"
 #include "osteomill/experiment/stability_figure.h"
-#include "osteomill/experiment/write_report.h"
 #include "osteomill/report/report_samples.h"
 
 namespace osteomill {
@@ -24,13 +24,12 @@ std::string bytes_of(const fs::path& path) {
 // 1 follows the rule, 2 feels half of it and has none on the last device, 3 never ends. No measurement.
 std::vector<StabilityRow> sample_rows(const std::vector<Mode>& modes) {
   std::vector<StabilityRow> rows;
-  for (const StabilityCase& setup : stability_cases(
-           {AlgorithmId::line_proxy, AlgorithmId::surface_points, AlgorithmId::point_shell}, modes)) {
+  for (const StabilityCase& setup : stability_cases({"line-proxy", "surface-points", "point-shell"}, modes)) {
     const double rule = passive_stiffness_rule_N_per_mm(setup.damping_Ns_per_mm, 1e-3, setup.delay_s);
     StabilityRow row{setup, {Kind::found, rule, rule}, rule};
-    if (setup.algorithm == AlgorithmId::surface_points) row.limit = {Kind::found, 4 * rule, 0.5 * rule};
-    if (setup.algorithm == AlgorithmId::surface_points && setup.damping_Ns_per_mm == 0.01) row.limit = {};
-    if (setup.algorithm == AlgorithmId::point_shell) row.limit = {Kind::above_all, 200, 9};
+    if (setup.algorithm == "surface-points") row.limit = {Kind::found, 4 * rule, 0.5 * rule};
+    if (setup.algorithm == "surface-points" && setup.damping_Ns_per_mm == 0.01) row.limit = {};
+    if (setup.algorithm == "point-shell") row.limit = {Kind::above_all, 200, 9};
     rows.push_back(row);
   }
   return rows;
@@ -80,7 +79,7 @@ TEST_F(StabilitySectionTest, TheWordsGiveTheRangeAgainstTheRule) {
 
 TEST_F(StabilitySectionTest, OneAlgorithmThatIsNeverPassiveIsDrawnToo) {
   std::vector<StabilityRow> rows = sample_rows({Mode::paper});
-  std::erase_if(rows, [](const StabilityRow& row) { return row.setup.algorithm != AlgorithmId::line_proxy; });
+  std::erase_if(rows, [](const StabilityRow& row) { return row.setup.algorithm != "line-proxy"; });
   for (StabilityRow& row : rows) row.limit = {};
   const std::string html = stability_section(rows, draw_stability_figure(rows, out_));
   EXPECT_NE(html.find("1 line-proxy passive on no device"), std::string::npos);
@@ -93,7 +92,7 @@ TEST_F(StabilitySectionTest, TheReportOfAStudyHasItsFilesFiguresAndWords) {
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
     for (const Recording& run : runs) {
       const RunDescription& d = run.description;
-      SummaryRow row{d.algorithm, d.mode, d.phase, run_metrics(run)};
+      SummaryRow row{d.algorithm, d.mode, d.segment, run_metrics(run)};
       row.metrics.force_N.hp_rms *= 1 + 0.01 * static_cast<double>(seed);
       trials.push_back({seed, random_hand(seed), row});
     }

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "osteomill/experiment/paper.h"
 #include "osteomill/files/atomic_file.h"
 
 namespace osteomill {
@@ -36,7 +37,7 @@ constexpr std::array<KeyMetric, 10> kKeyMetrics{{
 
 // Phase before algorithm, as in summary.csv.
 auto place(const SummaryRow& row) {
-  return std::tuple(row.mode, row.phase, row.algorithm);
+  return std::tuple(row.mode, phase_number(row.segment), row.algorithm);
 }
 
 template <typename Values, typename Matches>
@@ -57,6 +58,10 @@ std::span<const KeyMetric> key_metrics() {
 
 std::string label_of(const KeyMetric& metric) {
   return *metric.unit == '\0' ? metric.name : fmt::format("{} ({})", metric.name, metric.unit);
+}
+
+std::string short_label(const AlgorithmId& algorithm) {
+  return algorithm.label.substr(0, algorithm.label.find(' '));
 }
 
 Study::Study(std::vector<StudyRow> rows) : rows_(std::move(rows)) {
@@ -85,7 +90,9 @@ std::span<const StudyRow> Study::rows_of_seed(std::size_t n) const {
 }
 
 std::vector<AlgorithmId> Study::algorithms() const {
-  return present(kAllAlgorithms, rows_, [](const SummaryRow& r, AlgorithmId a) { return r.algorithm == a; });
+  std::vector<AlgorithmId> tried;
+  for (const StudyRow& row : rows_) tried.push_back(row.summary.algorithm);
+  return each_once(std::move(tried));
 }
 
 std::vector<Mode> Study::modes() const {
@@ -93,26 +100,27 @@ std::vector<Mode> Study::modes() const {
                  [](const SummaryRow& r, Mode mode) { return r.mode == mode; });
 }
 
-std::vector<RunPhase> Study::phases() const {
-  return present(kAllPhases, rows_, [](const SummaryRow& r, RunPhase phase) { return r.phase == phase; });
+std::vector<std::string_view> Study::phases() const {
+  return present(kPhases, rows_,
+                 [](const SummaryRow& r, std::string_view phase) { return r.segment == phase; });
 }
 
-std::vector<KeyMetric> Study::metrics_of(RunPhase phase) const {
+std::vector<KeyMetric> Study::metrics_of(std::string_view phase) const {
   std::vector<KeyMetric> metrics;
   for (const KeyMetric& metric : kKeyMetrics) {
     const auto has_some = [&](const StudyRow& row) {
-      return row.summary.phase == phase && metric.value(row.summary.metrics) != 0;
+      return row.summary.segment == phase && metric.value(row.summary.metrics) != 0;
     };
     if (std::any_of(rows_.begin(), rows_.end(), has_some)) metrics.push_back(metric);
   }
   return metrics;
 }
 
-std::vector<double> Study::values(AlgorithmId algorithm, Mode mode, RunPhase phase,
+std::vector<double> Study::values(const AlgorithmId& algorithm, Mode mode, std::string_view phase,
                                   const KeyMetric& metric) const {
   std::vector<double> values;
   for (const StudyRow& row : rows_) {
-    if (place(row.summary) == std::tuple(mode, phase, algorithm))
+    if (place(row.summary) == std::tuple(mode, phase_number(phase), algorithm))
       values.push_back(metric.value(row.summary.metrics));
   }
   return values;

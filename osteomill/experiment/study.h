@@ -32,6 +32,9 @@ std::span<const KeyMetric> key_metrics();
 /// "force above 20 Hz, rms (N)".
 std::string label_of(const KeyMetric& metric);
 
+/// The first word of an algorithm's label, for narrow places: "1" of "1 line-proxy".
+std::string short_label(const AlgorithmId& algorithm);
+
 /// The same trials with many seeds, each in a hand of its own, so that algorithms and modes can be compared
 /// seed by seed.
 class Study {
@@ -49,13 +52,14 @@ class Study {
   /// What was tried, in the paper's order.
   std::vector<AlgorithmId> algorithms() const;
   std::vector<Mode> modes() const;
-  std::vector<RunPhase> phases() const;
+  std::vector<std::string_view> phases() const;
 
   /// The key metrics but those that are zero throughout a phase (bone removed while holding).
-  std::vector<KeyMetric> metrics_of(RunPhase phase) const;
+  std::vector<KeyMetric> metrics_of(std::string_view phase) const;
 
   /// The metric's values, one a seed in the order of `seeds`; none where that was not tried.
-  std::vector<double> values(AlgorithmId algorithm, Mode mode, RunPhase phase, const KeyMetric& metric) const;
+  std::vector<double> values(const AlgorithmId& algorithm, Mode mode, std::string_view phase,
+                             const KeyMetric& metric) const;
 
  private:
   std::vector<StudyRow> rows_;

@@ -22,7 +22,7 @@ void correct(std::vector<Comparison>& comparisons) {
 
 }  // namespace
 
-std::vector<AlgorithmPair> compare_algorithms(const Study& study, Mode mode, RunPhase phase,
+std::vector<AlgorithmPair> compare_algorithms(const Study& study, Mode mode, std::string_view phase,
                                               const KeyMetric& metric) {
   const std::vector<AlgorithmId> algorithms = study.algorithms();
   std::vector<AlgorithmPair> pairs;
@@ -40,9 +40,9 @@ std::vector<AlgorithmPair> compare_algorithms(const Study& study, Mode mode, Run
   return pairs;
 }
 
-std::vector<ModeChange> compare_modes(const Study& study, RunPhase phase, const KeyMetric& metric) {
+std::vector<ModeChange> compare_modes(const Study& study, std::string_view phase, const KeyMetric& metric) {
   std::vector<ModeChange> changes;
-  for (const AlgorithmId algorithm : study.algorithms()) {
+  for (const AlgorithmId& algorithm : study.algorithms()) {
     const auto paper = study.values(algorithm, Mode::paper, phase, metric);
     const auto steady = study.values(algorithm, Mode::steady, phase, metric);
     if (paper.empty() || steady.empty()) continue;

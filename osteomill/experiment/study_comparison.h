@@ -21,7 +21,7 @@ struct AlgorithmPair {
 };
 
 /// Every pair of the algorithms that were tried.
-std::vector<AlgorithmPair> compare_algorithms(const Study& study, Mode mode, RunPhase phase,
+std::vector<AlgorithmPair> compare_algorithms(const Study& study, Mode mode, std::string_view phase,
                                               const KeyMetric& metric);
 
 /// What `steady` makes of one algorithm's metric, paired with `paper` seed by seed.
@@ -39,6 +39,6 @@ struct ModeChange {
 };
 
 /// For each algorithm that was tried in both modes; empty where there are not both.
-std::vector<ModeChange> compare_modes(const Study& study, RunPhase phase, const KeyMetric& metric);
+std::vector<ModeChange> compare_modes(const Study& study, std::string_view phase, const KeyMetric& metric);
 
 }  // namespace osteomill

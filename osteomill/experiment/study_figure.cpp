@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "osteomill/experiment/paper.h"
 #include "osteomill/report/run_groups.h"
 
 namespace osteomill {
@@ -21,10 +22,10 @@ constexpr double kModeShift = 0.2;
 constexpr double kScatter = 0.2;
 constexpr double kBarHalf = 0.15;
 
-std::vector<double> all_values(const Study& study, RunPhase phase, const KeyMetric& metric) {
+std::vector<double> all_values(const Study& study, std::string_view phase, const KeyMetric& metric) {
   std::vector<double> all;
   for (const Mode mode : study.modes()) {
-    for (const AlgorithmId algorithm : study.algorithms()) {
+    for (const AlgorithmId& algorithm : study.algorithms()) {
       const auto values = study.values(algorithm, mode, phase, metric);
       all.insert(all.end(), values.begin(), values.end());
     }
@@ -59,21 +60,21 @@ std::string dots_and_bars(const std::vector<double>& values, double x) {
 std::string tics(const Study& study) {
   std::string list;
   int place = 0;
-  for (const AlgorithmId algorithm : study.algorithms()) {
-    list += fmt::format("{}'{}' {}", place == 0 ? "" : ", ", numbered_name(algorithm).substr(0, 1), place);
+  for (const AlgorithmId& algorithm : study.algorithms()) {
+    list += fmt::format("{}'{}' {}", place == 0 ? "" : ", ", short_label(algorithm), place);
     ++place;
   }
   return fmt::format("set xrange [-0.5:{}]\nset xtics scale 0 ({})\n", static_cast<double>(place) - 0.5,
                      list);
 }
 
-std::string panel(const Study& study, RunPhase phase, const KeyMetric& metric, std::size_t number,
+std::string panel(const Study& study, std::string_view phase, const KeyMetric& metric, std::size_t number,
                   const TemporaryFolder& work) {
   std::string plot;
   for (const Mode mode : study.modes()) {
     const double shift = study.modes().size() < 2 ? 0.0 : mode == Mode::paper ? -kModeShift : kModeShift;
     int place = 0;
-    for (const AlgorithmId algorithm : study.algorithms()) {
+    for (const AlgorithmId& algorithm : study.algorithms()) {
       const std::string file = fmt::format("study-{}-{}-{}.dat", number, name_of(mode), name_of(algorithm));
       const double x = static_cast<double>(place++) + shift;
       write_figure_data(work / file, dots_and_bars(study.values(algorithm, mode, phase, metric), x));
@@ -81,7 +82,7 @@ std::string panel(const Study& study, RunPhase phase, const KeyMetric& metric, s
           "{0}'{1}' index 1 with lines lw 2.5 lc rgb '{2}' notitle, '{1}' index 0 with points pt {3} ps 0.8 "
           "lw "
           "1.3 lc rgb '{2}' notitle",
-          plot.empty() ? "plot " : ", ", file, colour_of(algorithm), mode == Mode::paper ? 6 : 7);
+          plot.empty() ? "plot " : ", ", file, algorithm.colour, mode == Mode::paper ? 6 : 7);
     }
   }
   return range_for(all_values(study, phase, metric)) + plot + "\n";
@@ -101,7 +102,7 @@ std::string frame(const KeyMetric& metric, std::size_t number, double height_px)
       (top - title_px) / height_px);
 }
 
-std::string legend(const Study& study, RunPhase phase, double height_px) {
+std::string legend(const Study& study, std::string_view phase, double height_px) {
   constexpr double kName_px = 160, kMode_px = 100, kTitle_px = 130, kDots_px = 300;
   double x_px = 0.5 * (kWidth_px - kTitle_px - kName_px * static_cast<double>(study.algorithms().size()) -
                        kMode_px * static_cast<double>(study.modes().size()) - kDots_px);
@@ -113,9 +114,9 @@ std::string legend(const Study& study, RunPhase phase, double height_px) {
     x_px += wide_px;
   };
   constexpr std::string_view kInk = "#111111";
-  add(phase == RunPhase::milling ? "Milling:" : "Holding still:", kInk, kTitle_px);
-  for (const AlgorithmId algorithm : study.algorithms()) {
-    add(std::string(numbered_name(algorithm)), colour_of(algorithm), kName_px);
+  add(phase == kMilling ? "Milling:" : "Holding still:", kInk, kTitle_px);
+  for (const AlgorithmId& algorithm : study.algorithms()) {
+    add(algorithm.label, algorithm.colour, kName_px);
   }
   for (const Mode mode : study.modes()) {
     add(fmt::format("{} {}", mode == Mode::paper ? "○" : "●", name_of(mode)), kInk, kMode_px);
@@ -126,13 +127,13 @@ std::string legend(const Study& study, RunPhase phase, double height_px) {
 
 }  // namespace
 
-Figure draw_study_figure(const Study& study, RunPhase phase, const std::filesystem::path& folder) {
+Figure draw_study_figure(const Study& study, std::string_view phase, const std::filesystem::path& folder) {
   const TemporaryFolder work;
   std::vector<KeyMetric> metrics = study.metrics_of(phase);
   if (metrics.size() > kMostPanels) metrics.resize(kMostPanels);
   const std::size_t rows = (metrics.size() + kColumns - 1) / kColumns;
   const double height_px = kTop_px + static_cast<double>(std::max<std::size_t>(rows, 1)) * kPanelHeight_px;
-  FigureScript script{fmt::format("study_{}", name_of(phase)), static_cast<int>(kWidth_px),
+  FigureScript script{fmt::format("study_{}", phase), static_cast<int>(kWidth_px),
                       static_cast<int>(height_px), ""};
   script.body =
       "set multiplot\nset border 3 lc rgb '#444444'\nset tics nomirror out scale 0.6\nset grid y lc rgb "

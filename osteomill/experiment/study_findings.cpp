@@ -18,7 +18,7 @@ double chance_of_at_least(std::size_t k, std::size_t n) {
 }
 
 double median_of(const Study& study, const SummaryRow& row, double (*value)(const RunMetrics&)) {
-  return distribution_of(study.values(row.algorithm, row.mode, row.phase, {"", "", value})).median;
+  return distribution_of(study.values(row.algorithm, row.mode, row.segment, {"", "", value})).median;
 }
 
 // Every metric that a finding looks at.
@@ -40,7 +40,7 @@ std::vector<Finding> findings_of(const std::vector<SummaryRow>& rows, Mode mode)
     RunDescription& d = recordings[n].description;
     d.algorithm = rows[n].algorithm;
     d.mode = rows[n].mode;
-    d.phase = rows[n].phase;
+    d.segment = rows[n].segment;
     group.runs.push_back({&recordings[n], rows[n].metrics});
   }
   return check_findings(group);

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "osteomill/experiment/paper.h"
 #include "osteomill/experiment/signed_rank.h"
 #include "osteomill/experiment/study_comparison.h"
 #include "osteomill/experiment/study_findings.h"
@@ -17,10 +18,6 @@ std::string paragraph(const std::string& text) {
   return "<p>" + html_escaped(text) + "</p>\n";
 }
 
-int number_of(AlgorithmId algorithm) {
-  return static_cast<int>(algorithm) + 1;
-}
-
 std::string p_text(double p) {
   return p < 0.001 ? "p < 0.001" : fmt::format("p = {:.2g}", p);
 }
@@ -31,22 +28,22 @@ std::string interval_text(const MedianInterval& interval) {
 
 // "2 > 1, p = 0.012" in bold where significant, else "1, 2: p = 0.3" in grey.
 std::string pair_text(const AlgorithmPair& pair) {
-  const AlgorithmId lesser = pair.greater == pair.first ? pair.second : pair.first;
+  const AlgorithmId& lesser = pair.greater == pair.first ? pair.second : pair.first;
   if (pair.p <= kSignificance) {
-    return fmt::format("<b>{} &gt; {}</b>, {}", number_of(pair.greater), number_of(lesser),
+    return fmt::format("<b>{} &gt; {}</b>, {}", short_label(pair.greater), short_label(lesser),
                        html_escaped(p_text(pair.p)));
   }
-  return fmt::format("<span class=\"none\">{}, {}: {}</span>", number_of(pair.first), number_of(pair.second),
-                     p_text(pair.p));
+  return fmt::format("<span class=\"none\">{}, {}: {}</span>", short_label(pair.first),
+                     short_label(pair.second), p_text(pair.p));
 }
 
-std::string algorithms_table(const Study& study, Mode mode, RunPhase phase) {
+std::string algorithms_table(const Study& study, Mode mode, std::string_view phase) {
   HtmlTable table{{"Median over the hands [interval]"}, {}, true};
-  for (const AlgorithmId algorithm : study.algorithms()) table.header.emplace_back(numbered_name(algorithm));
+  for (const AlgorithmId& algorithm : study.algorithms()) table.header.emplace_back(algorithm.label);
   if (study.algorithms().size() > 1) table.header.emplace_back("Differences");
   for (const KeyMetric& metric : study.metrics_of(phase)) {
     table.rows.push_back({html_escaped(label_of(metric))});
-    for (const AlgorithmId algorithm : study.algorithms()) {
+    for (const AlgorithmId& algorithm : study.algorithms()) {
       table.rows.back().push_back(
           interval_text(median_interval(study.values(algorithm, mode, phase, metric))));
     }
@@ -75,9 +72,9 @@ std::string findings_table(const Study& study, Mode mode) {
   return html_table(table);
 }
 
-std::string changes_table(const Study& study, RunPhase phase) {
+std::string changes_table(const Study& study, std::string_view phase) {
   HtmlTable table{{"steady / paper, median over the hands [interval]"}, {}, true};
-  for (const AlgorithmId algorithm : study.algorithms()) table.header.emplace_back(numbered_name(algorithm));
+  for (const AlgorithmId& algorithm : study.algorithms()) table.header.emplace_back(algorithm.label);
   for (const KeyMetric& metric : study.metrics_of(phase)) {
     table.rows.push_back({html_escaped(label_of(metric))});
     for (const ModeChange& change : compare_modes(study, phase, metric)) {
@@ -134,8 +131,8 @@ std::string how_to_read(const Study& study) {
                     "them with care. Everything else comes out the same on any machine.");
 }
 
-std::string phase_title(RunPhase phase) {
-  return phase == RunPhase::milling ? "Milling" : "Holding still, not milling";
+std::string phase_title(std::string_view phase) {
+  return phase == kMilling ? "Milling" : "Holding still, not milling";
 }
 
 }  // namespace
@@ -148,13 +145,13 @@ std::string study_section(const Study& study, const std::vector<CaptionedFigure>
     html += findings_table(study, mode);
   }
   for (const Mode mode : study.modes()) {
-    for (const RunPhase phase : study.phases()) {
+    for (const std::string_view phase : study.phases()) {
       html += fmt::format("<h3>{}, mode {}</h3>\n", phase_title(phase), name_of(mode));
       html += algorithms_table(study, mode, phase);
     }
   }
   if (study.modes().size() < 2) return html;
-  for (const RunPhase phase : study.phases()) {
+  for (const std::string_view phase : study.phases()) {
     html += fmt::format("<h3>What steady changes: {}</h3>\n", phase_title(phase));
     html += changes_table(study, phase);
   }

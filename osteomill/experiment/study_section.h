@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "osteomill/experiment/report_page.h"
 #include "osteomill/experiment/study.h"
+#include "osteomill/report/report_page.h"
 
 namespace osteomill {
 

@@ -4,6 +4,7 @@
 
 #include <fmt/core.h>
 
+#include "osteomill/experiment/paper.h"
 #include "osteomill/experiment/parallel.h"
 #include "osteomill/session/fault_count.h"
 
@@ -12,18 +13,18 @@ namespace osteomill {
 namespace {
 
 struct Trial {
-  std::array<Recording, kAllPhases.size()> phases;
+  std::array<Recording, kPhases.size()> phases;
   FaultCount faults;
 };
 
-Trial run(const TrialPlan& plan, AlgorithmId algorithm) {
+Trial run(const TrialPlan& plan, const AlgorithmDescription& algorithm) {
   MillingTrial trial(plan.bone, plan.densities, plan.entry, algorithm, plan.settings);
   Trial result;
-  for (std::size_t n = 0; n < kAllPhases.size(); ++n) {
+  for (std::size_t n = 0; n < kPhases.size(); ++n) {
     Recording& recording = result.phases[n];
     recording.description =
-        describe_trial(plan, algorithm, trial.algorithm().sample_point_count(), kAllPhases[n]);
-    recording.path = fmt::format("{}, seed {}", name_of(algorithm), recording.description.seed);
+        describe_trial(plan, algorithm, trial.algorithm().sample_point_count(), kPhases[n]);
+    recording.path = fmt::format("{}, seed {}", algorithm.id.name, recording.description.seed);
   }
   while (!trial.finished()) {
     const MillingTrial::Tick tick = trial.tick();
@@ -37,7 +38,8 @@ Trial run(const TrialPlan& plan, AlgorithmId algorithm) {
 
 StudyRow row_of(const TrialPlan& plan, const Recording& recording) {
   const RunDescription& d = recording.description;
-  return {d.seed, plan.settings.hand_and_device.hand, {d.algorithm, d.mode, d.phase, run_metrics(recording)}};
+  return {
+      d.seed, plan.settings.hand_and_device.hand, {d.algorithm, d.mode, d.segment, run_metrics(recording)}};
 }
 
 TrialPlan with_seed(const TrialPlan& plan, std::uint64_t seed) {
@@ -53,13 +55,15 @@ TrialPlan with_seed(const TrialPlan& plan, std::uint64_t seed) {
 }
 
 std::vector<StudyRow> run_study_trials(const std::vector<TrialPlan>& plans,
-                                       const std::vector<AlgorithmId>& algorithms, std::size_t threads,
-                                       const RunEvents& events) {
+                                       const std::vector<AlgorithmDescription>& algorithms,
+                                       std::size_t threads, const RunEvents& events) {
   const std::size_t count = plans.size() * algorithms.size();
   std::vector<std::vector<StudyRow>> rows(count);
   std::vector<FaultCount> faults(count);
   const auto plan_of = [&](std::size_t n) -> const TrialPlan& { return plans[n / algorithms.size()]; };
-  const auto algorithm_of = [&](std::size_t n) { return algorithms[n % algorithms.size()]; };
+  const auto algorithm_of = [&](std::size_t n) -> const AlgorithmDescription& {
+    return algorithms[n % algorithms.size()];
+  };
   const auto task = [&](std::size_t n) {
     const Trial trial = run(plan_of(n), algorithm_of(n));
     for (const Recording& recording : trial.phases) rows[n].push_back(row_of(plan_of(n), recording));
@@ -73,7 +77,7 @@ std::vector<StudyRow> run_study_trials(const std::vector<TrialPlan>& plans,
     all.insert(all.end(), rows[n].begin(), rows[n].end());
     const TrialSettings& settings = plan_of(n).settings;
     if (const auto said = faults[n].sentence()) {
-      events.warn(fmt::format("{}, {}, seed {}: {}", name_of(algorithm_of(n)), name_of(settings.haptics.mode),
+      events.warn(fmt::format("{}, {}, seed {}: {}", algorithm_of(n).id.name, name_of(settings.haptics.mode),
                               settings.hand_and_device.seed, *said));
     }
   }

@@ -19,7 +19,7 @@ StudyRow row_of(const TrialPlan& plan, const Recording& recording);
 /// side on `threads` threads, each in simulated time: but for the step times, the rows are the same however
 /// many. Warns where wrenches were clamped.
 std::vector<StudyRow> run_study_trials(const std::vector<TrialPlan>& plans,
-                                       const std::vector<AlgorithmId>& algorithms, std::size_t threads,
-                                       const RunEvents& events);
+                                       const std::vector<AlgorithmDescription>& algorithms,
+                                       std::size_t threads, const RunEvents& events);
 
 }  // namespace osteomill

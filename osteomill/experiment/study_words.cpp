@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "osteomill/experiment/paper.h"
 #include "osteomill/experiment/study_comparison.h"
 #include "osteomill/experiment/study_findings.h"
 #include "osteomill/report/run_groups.h"
@@ -49,13 +50,13 @@ std::string findings_sentence(const Study& study, Mode mode) {
 }
 
 // "lowers the force of 2 surface-points (× 0.12) and torque of 1 line-proxy (× 0.3)"
-std::string changes_sentence(const Study& study, RunPhase phase) {
+std::string changes_sentence(const Study& study, std::string_view phase) {
   std::vector<std::string> less, more, unclear;
   for (const KeyMetric* metric : {&force_buzz(), &torque_buzz()}) {
     for (const ModeChange& change : compare_modes(study, phase, *metric)) {
-      const std::string what = fmt::format(
-          "{} of {}{}", metric == &force_buzz() ? "force" : "torque", numbered_name(change.algorithm),
-          change.ratios > 0 ? fmt::format(" (× {:.3g})", change.ratio.median) : "");
+      const std::string what =
+          fmt::format("{} of {}{}", metric == &force_buzz() ? "force" : "torque", change.algorithm.label,
+                      change.ratios > 0 ? fmt::format(" (× {:.3g})", change.ratio.median) : "");
       (change.p > kSignificance ? unclear : change.falls ? less : more).push_back(what);
     }
   }
@@ -64,15 +65,15 @@ std::string changes_sentence(const Study& study, RunPhase phase) {
   if (!more.empty()) parts.push_back("raises the " + joined(more));
   if (!unclear.empty()) parts.push_back("does not significantly change the " + joined(unclear));
   return fmt::format("Of what lies above 20 Hz while {}, steady {}.",
-                     phase == RunPhase::milling ? "milling" : "holding", joined(parts));
+                     phase == kMilling ? "milling" : "holding", joined(parts));
 }
 
 // The algorithm with the least median, and whether it is significantly less than each other one.
-std::string steadiest(const Study& study, RunPhase phase, const KeyMetric& metric) {
+std::string steadiest(const Study& study, std::string_view phase, const KeyMetric& metric) {
   const Mode mode = study.modes().front();
   std::optional<AlgorithmId> best;
   double least = 0;
-  for (const AlgorithmId algorithm : study.algorithms()) {
+  for (const AlgorithmId& algorithm : study.algorithms()) {
     const double median = median_interval(study.values(algorithm, mode, phase, metric)).median;
     if (!best || median < least) best = algorithm, least = median;
   }
@@ -81,21 +82,21 @@ std::string steadiest(const Study& study, RunPhase phase, const KeyMetric& metri
     const bool about_best = pair.first == *best || pair.second == *best;
     return !about_best || (pair.p <= kSignificance && pair.greater != *best);
   });
-  return fmt::format("{} ({}significant)", numbered_name(*best), clear ? "" : "not ");
+  return fmt::format("{} ({}significant)", best->label, clear ? "" : "not ");
 }
 
 }  // namespace
 
 std::string study_in_two_sentences(const Study& study) {
-  const RunPhase phase = study.phases().front();
+  const std::string_view phase = study.phases().front();
   std::string text = findings_sentence(study, study.modes().front()) + " ";
   if (study.modes().size() > 1) return text + changes_sentence(study, phase);
   if (study.algorithms().size() < 2)
     return text + "One algorithm was tried, so that there is none to compare.";
   return text +
          fmt::format("While {}, the least above 20 Hz came in the force from {} and in the torque from {}.",
-                     phase == RunPhase::milling ? "milling" : "holding",
-                     steadiest(study, phase, force_buzz()), steadiest(study, phase, torque_buzz()));
+                     phase == kMilling ? "milling" : "holding", steadiest(study, phase, force_buzz()),
+                     steadiest(study, phase, torque_buzz()));
 }
 
 }  // namespace osteomill

@@ -36,7 +36,7 @@ void add_device(Settings& settings, const HandleSettings& device) {
 }
 
 void add_script(Settings& settings, const ScriptSettings& script, const MillingEntry& entry) {
-  settings.push_back({"script.entry", point_text(entry.point_W), "mm"});
+  settings.push_back({std::string(kScriptEntryKey), point_text(entry.point_W), "mm"});
   settings.push_back({"script.direction", point_text(entry.direction_W), ""});
   settings.push_back({"script.milling", script.milling_s, "s"});
   settings.push_back({"script.holding", script.holding_s, "s"});
@@ -45,15 +45,15 @@ void add_script(Settings& settings, const ScriptSettings& script, const MillingE
 
 }  // namespace
 
-RunDescription describe_trial(const TrialPlan& plan, AlgorithmId algorithm, int sample_points,
-                              RunPhase phase) {
+RunDescription describe_trial(const TrialPlan& plan, const AlgorithmDescription& algorithm, int sample_points,
+                              std::string_view phase) {
   const TrialSettings& trial = plan.settings;
   const OperatorSettings& person = trial.hand_and_device;
   RunDescription run =
       describe_run({plan.scan_name, plan.bone.geometry(), plan.bone.isovalue(), plan.densities, trial.tool,
                     trial.haptics, trial.milling, trial.limits, person.seed, trial.tick_s, plan.command_line},
                    algorithm, sample_points);
-  run.phase = phase;
+  run.segment = phase;
   add_hand(run.settings, person.hand);
   add_device(run.settings, person.handle);
   add_script(run.settings, person.script, plan.entry);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "osteomill/experiment/milling_trial.h"
 #include "osteomill/recording/run_description.h"
@@ -21,8 +22,11 @@ struct TrialPlan {
   bool mode_in_names = false;
 };
 
+/// The key of the setting in which every recording of this test says where the tool enters.
+inline constexpr std::string_view kScriptEntryKey = "script.entry";
+
 /// All that a recording says of a phase of section 8.2: what any session's says, and hand, device and script.
-RunDescription describe_trial(const TrialPlan& plan, AlgorithmId algorithm, int sample_points,
-                              RunPhase phase);
+RunDescription describe_trial(const TrialPlan& plan, const AlgorithmDescription& algorithm, int sample_points,
+                              std::string_view phase);
 
 }  // namespace osteomill

@@ -1,5 +1,6 @@
 #include "osteomill/haptics/algorithm_description.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <sstream>
@@ -31,6 +32,19 @@ bool lies_within(const SettingRange& range, double value) {
 }
 
 }  // namespace
+
+std::vector<AlgorithmId> each_once(std::vector<AlgorithmId> algorithms) {
+  std::sort(algorithms.begin(), algorithms.end());
+  algorithms.erase(std::unique(algorithms.begin(), algorithms.end()), algorithms.end());
+  return algorithms;
+}
+
+const SettingDescription* setting_of_option(const AlgorithmDescription& algorithm, std::string_view option) {
+  for (const SettingDescription& setting : algorithm.settings) {
+    if (setting.option == option) return &setting;
+  }
+  return nullptr;
+}
 
 void require_in_range(const AlgorithmId& algorithm, const SettingDescription& setting, double value) {
   if (lies_within(setting.range, value)) return;

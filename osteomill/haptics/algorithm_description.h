@@ -25,11 +25,15 @@ struct AlgorithmId {
   std::string colour;
 
   friend bool operator==(const AlgorithmId& a, const AlgorithmId& b) { return a.name == b.name; }
+  friend bool operator==(const AlgorithmId& a, std::string_view name) { return a.name == name; }
   friend bool operator<(const AlgorithmId& a, const AlgorithmId& b) { return a.label < b.label; }
 };
 inline const std::string& name_of(const AlgorithmId& algorithm) {
   return algorithm.name;
 }
+
+/// Each once, in the order of their labels.
+std::vector<AlgorithmId> each_once(std::vector<AlgorithmId> algorithms);
 
 /// A number's range; both ends belong to it. An infinite end means that the value may be infinite.
 struct SettingRange {
@@ -92,6 +96,9 @@ struct AlgorithmDescription {
   /// where values do not go together.
   std::function<std::unique_ptr<HapticAlgorithm>(std::span<const double> values)> make;
 };
+
+/// The setting that an option of the command line sets; null where it has none.
+const SettingDescription* setting_of_option(const AlgorithmDescription& algorithm, std::string_view option);
 
 /// Throws std::invalid_argument, naming algorithm and setting, where the value does not lie in its range.
 void require_in_range(const AlgorithmId& algorithm, const SettingDescription& setting, double value);

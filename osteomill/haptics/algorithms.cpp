@@ -17,9 +17,12 @@ const std::vector<AlgorithmDescription>& all_algorithms() {
   return all;
 }
 
-std::vector<std::string> algorithm_names() {
-  std::vector<std::string> names;
-  for (const AlgorithmDescription& algorithm : all_algorithms()) names.push_back(algorithm.id.name);
+const std::vector<std::string>& algorithm_names() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all;
+    for (const AlgorithmDescription& algorithm : all_algorithms()) all.push_back(algorithm.id.name);
+    return all;
+  }();
   return names;
 }
 
@@ -33,6 +36,10 @@ const AlgorithmDescription* find_algorithm(std::string_view name) {
 const AlgorithmDescription& algorithm_named(std::string_view name) {
   if (const AlgorithmDescription* algorithm = find_algorithm(name)) return *algorithm;
   throw std::invalid_argument("there is no algorithm " + std::string(name));
+}
+
+std::unique_ptr<HapticAlgorithm> make_algorithm(std::string_view name, const HapticSettings& settings) {
+  return make_algorithm(algorithm_named(name), settings);
 }
 
 }  // namespace osteomill

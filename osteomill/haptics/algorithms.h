@@ -1,5 +1,7 @@
 #pragma once
 
+#include <memory>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -12,12 +14,15 @@ namespace osteomill {
 const std::vector<AlgorithmDescription>& all_algorithms();
 
 /// The names of all.
-std::vector<std::string> algorithm_names();
+const std::vector<std::string>& algorithm_names();
 
 /// Null where there is none of that name.
 const AlgorithmDescription* find_algorithm(std::string_view name);
 
 /// The one of that name. Throws std::invalid_argument where there is none.
 const AlgorithmDescription& algorithm_named(std::string_view name);
+
+/// The same as make_algorithm of its description.
+std::unique_ptr<HapticAlgorithm> make_algorithm(std::string_view name, const HapticSettings& settings);
 
 }  // namespace osteomill

@@ -22,8 +22,15 @@ struct HapticSettings {
   /// Options are applied first, then what is said of one algorithm, each in this order.
   std::vector<Named> named = {};
 
-  /// For every algorithm that has it: `set_option("stiffness", 2)`.
-  void set_option(std::string option, double value) { named.push_back({"", std::move(option), value}); }
+  /// For every algorithm that has it, in the place of what was said before: `set_option("stiffness", 2)`.
+  void set_option(const std::string& option, double value) {
+    clear_option(option);
+    named.push_back({"", option, value});
+  }
+  /// Leaves it open again.
+  void clear_option(const std::string& option) {
+    std::erase_if(named, [&](const Named& one) { return one.algorithm.empty() && one.setting == option; });
+  }
 };
 
 }  // namespace osteomill

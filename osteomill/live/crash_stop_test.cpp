@@ -9,7 +9,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "osteomill/haptics/make_algorithm.h"
+#include "osteomill/haptics/algorithms.h"
 #include "osteomill/live/live_session.h"
 
 namespace osteomill {
@@ -46,7 +46,7 @@ class SharedDevice : public Device {
                                                     testing_support::plane(Vec3::Zero(), Vec3::UnitZ()));
   SharedDevice device(sent, device_crashes);
   LiveSession live(
-      std::make_unique<MillingSession>(bone, MillingTool{}, make_algorithm(AlgorithmId::point_shell, {}),
+      std::make_unique<MillingSession>(bone, MillingTool{}, make_algorithm("point-shell", {}),
                                        BoneDensities{0, 1000}, MillingSettings{}, WrenchLimits{}),
       device);
   live.start();

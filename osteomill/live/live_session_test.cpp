@@ -7,7 +7,7 @@
 #include "tests/shapes.h"
 #include <gtest/gtest.h>
 
-#include "osteomill/haptics/make_algorithm.h"
+#include "osteomill/haptics/algorithms.h"
 
 namespace osteomill {
 namespace {
@@ -41,7 +41,7 @@ Volume half_space() {
                                        testing_support::plane(Vec3::Zero(), Vec3::UnitZ()));
 }
 
-std::unique_ptr<MillingSession> session_on(std::shared_ptr<Volume> bone, AlgorithmId algorithm) {
+std::unique_ptr<MillingSession> session_on(std::shared_ptr<Volume> bone, std::string_view algorithm) {
   return std::make_unique<MillingSession>(std::move(bone), MillingTool{}, make_algorithm(algorithm, {}),
                                           BoneDensities{0, 1000}, MillingSettings{}, WrenchLimits{});
 }
@@ -50,7 +50,7 @@ class LiveSessionTest : public ::testing::Test {
  protected:
   std::shared_ptr<Volume> bone_ = std::make_shared<Volume>(half_space());
   PressedDevice device_;
-  LiveSession live_{session_on(bone_, AlgorithmId::point_shell), device_};
+  LiveSession live_{session_on(bone_, "point-shell"), device_};
 };
 
 TEST_F(LiveSessionTest, TicksInRealTimeAndStopsAtAWrenchOfZero) {
@@ -120,7 +120,7 @@ TEST_F(LiveSessionTest, AnAlgorithmPreparedElsewhereTakesOver) {
   std::this_thread::sleep_for(50ms);
   live_.wait_for(live_.hold_bone(true));
   const double removed_mm3 = 7;
-  auto next = session_on(bone_, AlgorithmId::surface_points);
+  auto next = session_on(bone_, "surface-points");
   const int points = next->algorithm().sample_point_count();
   next->count_removed_from(removed_mm3);
   const double force_before_N = live_.state().record.wrench.force_N.z();

@@ -1,6 +1,6 @@
 #include "osteomill/recording/describe_run.h"
 
-#include "osteomill/haptics/make_algorithm.h"
+#include "osteomill/haptics/algorithms.h"
 
 namespace osteomill {
 
@@ -8,10 +8,10 @@ namespace {
 
 using Settings = std::vector<RunSetting>;
 
-void add_algorithm(Settings& settings, AlgorithmId algorithm, const HapticSettings& haptics,
+void add_algorithm(Settings& settings, const AlgorithmDescription& algorithm, const HapticSettings& haptics,
                    int sample_points) {
   settings.push_back({"sample_points", static_cast<double>(sample_points), ""});
-  for (const SettingValue& value : describe_algorithm(algorithm, haptics)) {
+  for (const SettingValue& value : setting_values(algorithm, haptics)) {
     settings.push_back({"algorithm." + value.name, value.value, value.unit});
   }
 }
@@ -30,7 +30,7 @@ void add_limits(Settings& settings, const WrenchLimits& limits) {
 
 }  // namespace
 
-RunDescription describe_run(const RunFacts& facts, AlgorithmId algorithm, int sample_points) {
+RunDescription describe_run(const RunFacts& facts, const AlgorithmDescription& algorithm, int sample_points) {
   RunDescription run;
   run.program_version = OSTEOMILL_VERSION;
   run.scan_name = facts.scan_name;
@@ -38,7 +38,7 @@ RunDescription describe_run(const RunFacts& facts, AlgorithmId algorithm, int sa
   run.spacing_mm = facts.geometry.spacing_mm;
   run.isovalue = facts.isovalue;
   run.tool = facts.tool;
-  run.algorithm = algorithm;
+  run.algorithm = algorithm.id;
   run.mode = facts.haptics.mode;
   run.seed = facts.seed;
   run.tick_period_s = facts.tick_s;

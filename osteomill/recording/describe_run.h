@@ -31,6 +31,6 @@ struct RunFacts {
 
 /// All that a recording says of such a session: program, scan, tool, every setting with its unit.
 /// `sample_points` is how many the algorithm works with as it stands.
-RunDescription describe_run(const RunFacts& facts, AlgorithmId algorithm, int sample_points);
+RunDescription describe_run(const RunFacts& facts, const AlgorithmDescription& algorithm, int sample_points);
 
 }  // namespace osteomill

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "osteomill/files/input_error.h"
+#include "osteomill/haptics/algorithms.h"
 #include "osteomill/recording/hdf5_attributes.h"
 
 namespace osteomill {
@@ -15,6 +16,7 @@ namespace {
 
 constexpr const char* kSettingsGroup = "settings";
 constexpr std::string_view kUnitSuffix = ".unit";
+constexpr std::string_view kUnknownColour = "#888888";
 
 void require_usable_keys(const std::vector<RunSetting>& settings) {
   std::set<std::string> seen;
@@ -61,6 +63,16 @@ std::vector<RunSetting> read_settings(const fs::path& path, hid_t file) {
   return settings;
 }
 
+// Recordings from before labels were kept hold the project's own algorithms only; of others the name serves.
+AlgorithmId read_algorithm(const AttributeReader& read) {
+  const std::string name = read.text("algorithm");
+  if (read.has("algorithm_label")) {
+    return {name, read.text("algorithm_label"), read.text("algorithm_colour")};
+  }
+  const AlgorithmDescription* known = find_algorithm(name);
+  return known != nullptr ? known->id : AlgorithmId{name, name, std::string(kUnknownColour)};
+}
+
 template <typename Value>
 Value require_known(const fs::path& path, std::optional<Value> value, const std::string& name) {
   if (!value) throw InputError(path.string(), "'" + name + "' is not known here");
@@ -81,9 +93,11 @@ void write_description(const fs::path& path, hid_t file, const RunDescription& d
   write.real("burr_radius_mm", description.tool.burr_radius_mm);
   write.real("shaft_radius_mm", description.tool.shaft_radius_mm);
   write.real("shaft_length_mm", description.tool.shaft_length_mm);
-  write.text("algorithm", std::string(name_of(description.algorithm)));
+  write.text("algorithm", description.algorithm.name);
+  write.text("algorithm_label", description.algorithm.label);
+  write.text("algorithm_colour", description.algorithm.colour);
   write.text("mode", std::string(name_of(description.mode)));
-  write.text("phase", std::string(name_of(description.phase)));
+  write.text("phase", description.segment);
   write.unsigned_integer("seed", description.seed);
   write.real("tick_period_s", description.tick_period_s);
   write_settings(path, file, description.settings);
@@ -100,12 +114,10 @@ RunDescription read_description(const fs::path& path, hid_t file) {
   description.isovalue = read.real("isovalue");
   description.tool = {read.real("burr_radius_mm"), read.real("shaft_radius_mm"),
                       read.real("shaft_length_mm")};
-  const std::string algorithm = read.text("algorithm");
+  description.algorithm = read_algorithm(read);
+  description.segment = read.text("phase");
   const std::string mode = read.text("mode");
-  const std::string phase = read.text("phase");
-  description.algorithm = require_known(path, algorithm_named(algorithm), "algorithm " + algorithm);
   description.mode = require_known(path, mode_named(mode), "mode " + mode);
-  description.phase = require_known(path, phase_named(phase), "phase " + phase);
   description.seed = read.unsigned_integer("seed");
   description.tick_period_s = read.real("tick_period_s");
   if (!(std::isfinite(description.tick_period_s) && description.tick_period_s > 0)) {

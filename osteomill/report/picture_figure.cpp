@@ -37,7 +37,7 @@ const RunPicture* picture_named(const Recording& recording, std::string_view nam
   return nullptr;
 }
 
-// The runs are ordered with milling first, so the first that has a picture is the one to take.
+// Of several segments the first that has a picture is the one to take.
 std::vector<Panel> panels_of(const RunGroup& group) {
   std::vector<Panel> panels;
   for (const MeasuredRun& run : group.runs) {
@@ -46,13 +46,13 @@ std::vector<Panel> panels_of(const RunGroup& group) {
       break;
     }
   }
-  for (const AlgorithmId algorithm : group.algorithms()) {
-    for (const RunPhase phase : group.phases()) {
-      const MeasuredRun* run = group.find(algorithm, phase);
+  for (const AlgorithmId& algorithm : group.algorithms()) {
+    for (const std::string& segment : group.segments()) {
+      const MeasuredRun* run = group.find(algorithm.name, segment);
       const RunPicture* after = run ? picture_named(*run->recording, kPictureAfter) : nullptr;
       if (after == nullptr) continue;
       panels.push_back(
-          {fmt::format("After {} ({:.1f} mm³ removed)", numbered_name(algorithm), run->metrics.removed_mm3),
+          {fmt::format("After {} ({:.1f} mm³ removed)", algorithm.label, run->metrics.removed_mm3),
            run->recording, after});
       break;
     }

@@ -4,6 +4,7 @@
 #include <numbers>
 #include <vector>
 
+#include "osteomill/haptics/algorithms.h"
 #include "osteomill/recording/recording.h"
 
 namespace osteomill::testing_support {
@@ -13,23 +14,23 @@ std::vector<unsigned char> sample_png(bool milled, int width = 320, int height =
 
 /// A recording as a run might leave it, with the paper's findings in it: 1 kicks in torque, 2 buzzes, 3 is
 /// calm. No measurement of anything.
-inline Recording sample_run(AlgorithmId algorithm, RunPhase phase, Mode mode = Mode::steady,
+inline Recording sample_run(std::string_view algorithm, std::string_view phase, Mode mode = Mode::steady,
                             int ticks = 20000) {
   using std::sin;
   constexpr double kTwoPi = 2 * std::numbers::pi;
-  const int a = static_cast<int>(algorithm);
-  const bool milling = phase == RunPhase::milling;
+  const int a = algorithm == "line-proxy" ? 0 : algorithm == "surface-points" ? 1 : 2;
+  const bool milling = phase == "milling";
   Recording recording;
-  recording.path = std::string(name_of(algorithm)) + "-" + std::string(name_of(phase)) + ".h5";
+  recording.path = std::string(algorithm) + "-" + std::string(phase) + ".h5";
   RunDescription& d = recording.description;
   d.program_version = "0.1.0";
   d.scan_name = "built-in tooth";
   d.dims = {256, 256, 176};
   d.spacing_mm = {0.1, 0.1, 0.1};
   d.isovalue = 1200;
-  d.algorithm = algorithm;
+  d.algorithm = algorithm_named(algorithm).id;
   d.mode = mode;
-  d.phase = phase;
+  d.segment = phase;
   d.seed = 1;
   d.settings = {{"stiffness", a == 1 ? 20.0 : 2.0, "N/mm"},
                 {"push", 1.5, "N"},
@@ -80,8 +81,9 @@ inline Recording sample_run(AlgorithmId algorithm, RunPhase phase, Mode mode = M
 /// Three algorithms, two phases.
 inline std::vector<Recording> sample_runs(Mode mode = Mode::steady, int ticks = 20000) {
   std::vector<Recording> runs;
-  for (const AlgorithmId algorithm : kAllAlgorithms) {
-    for (const RunPhase phase : kAllPhases) runs.push_back(sample_run(algorithm, phase, mode, ticks));
+  for (std::string_view algorithm : kAllAlgorithms) {
+    for (const char* phase : {"milling", "holding"})
+      runs.push_back(sample_run(algorithm, phase, mode, ticks));
   }
   return runs;
 }

@@ -1,10 +1,11 @@
-#include "osteomill/experiment/write_report.h"
+#include "osteomill/experiment/comparison_report.h"
 
 #include <fstream>
 #include <iterator>
 
 #include <gtest/gtest.h>
 
+#include "osteomill/experiment/paper.h"
 #include "osteomill/experiment/write_rates_report.h"
 #include "osteomill/files/input_error.h"
 #include "osteomill/report/report_samples.h"
@@ -17,7 +18,8 @@ using namespace testing_support;
 
 /// Rates at the paper's resolutions, beside the paper's own; the measured ones are made up.
 std::vector<RateRow> sample_rates() {
-  const auto row = [](AlgorithmId algorithm, const char* resolution, int points, double us, double paper_hz) {
+  const auto row = [](const AlgorithmId& algorithm, const char* resolution, int points, double us,
+                      double paper_hz) {
     return RateRow{algorithm, resolution, points, us, 1.7 * us, 1e6 / us, paper_hz};
   };
   using enum AlgorithmId;
@@ -92,7 +94,7 @@ TEST_F(ReportTest, AFullComparisonIsOnePageThatLoadsNothing) {
 }
 
 TEST_F(ReportTest, OneRecordingIsEnough) {
-  Recording run = sample_run(AlgorithmId::surface_points, RunPhase::holding, Mode::paper, 500);
+  Recording run = sample_run("surface-points", kHolding, Mode::paper, 500);
   const std::string html = bytes_of(write_report({run}, out_));
   EXPECT_NE(html.find("not recorded"), std::string::npos);
   EXPECT_TRUE(fs::exists(out_ / "figures/fig9_shaft_paper.svg"));
@@ -100,8 +102,8 @@ TEST_F(ReportTest, OneRecordingIsEnough) {
 }
 
 TEST_F(ReportTest, BothModesHaveTheirOwnFiguresAndFindings) {
-  const std::vector<Recording> runs{sample_run(AlgorithmId::line_proxy, RunPhase::holding, Mode::steady, 200),
-                                    sample_run(AlgorithmId::line_proxy, RunPhase::holding, Mode::paper, 200)};
+  const std::vector<Recording> runs{sample_run("line-proxy", kHolding, Mode::steady, 200),
+                                    sample_run("line-proxy", kHolding, Mode::paper, 200)};
   const std::string html = bytes_of(write_report(runs, out_));
   EXPECT_NE(html.find("Mode: paper"), std::string::npos);
   EXPECT_NE(html.find("Mode: steady"), std::string::npos);
@@ -121,8 +123,8 @@ TEST_F(ReportTest, AToolThatNeverMovesAndNeverTouchesIsDrawnToo) {
 
 TEST_F(ReportTest, WhatAReaderMustKnowIsSaid) {
   std::vector<Recording> runs;
-  for (const AlgorithmId algorithm : kAllAlgorithms) {
-    runs.push_back(sample_run(algorithm, RunPhase::holding, Mode::steady, 200));
+  for (const AlgorithmId& algorithm : kAllAlgorithms) {
+    runs.push_back(sample_run(algorithm, kHolding, Mode::steady, 200));
   }
   runs[0].complete = false;
   runs[1].dropped = 7;
@@ -136,7 +138,7 @@ TEST_F(ReportTest, WhatAReaderMustKnowIsSaid) {
 }
 
 TEST_F(ReportTest, DamagedPicturesAreNamed) {
-  std::vector<Recording> runs{sample_run(AlgorithmId::line_proxy, RunPhase::milling, Mode::steady, 100)};
+  std::vector<Recording> runs{sample_run("line-proxy", kMilling, Mode::steady, 100)};
   runs[0].pictures[0].png = {1, 2, 3};
   expect_refused(runs, "line-proxy-milling.h5: the picture 'after' is not a whole PNG");
   runs[0].pictures[0].png = sample_png(true);
@@ -166,7 +168,7 @@ TEST_F(ReportTest, RatesStandBesideThePapers) {
 }
 
 TEST_F(ReportTest, RatesOfAnyNameAndWithoutThePapersAreDrawn) {
-  std::vector<RateRow> rows{{AlgorithmId::point_shell, "it's \"coarse\", `x`", 10, 5, 6, 2e5, 0}};
+  std::vector<RateRow> rows{{"point-shell", "it's \"coarse\", `x`", 10, 5, 6, 2e5, 0}};
   write_rates_report(rows, out_);
   EXPECT_NE(bytes_of(out_ / "rates.csv").find("\"it's \"\"coarse\"\", `x`\",10"), std::string::npos);
   EXPECT_THROW(write_rates_report({}, out_), InputError);

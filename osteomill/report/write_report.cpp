@@ -1,0 +1,67 @@
+#include "osteomill/report/write_report.h"
+
+#include <ostream>
+
+#include "osteomill/files/atomic_file.h"
+#include "osteomill/report/curve_figure.h"
+#include "osteomill/report/metrics.h"
+#include "osteomill/report/picture_figure.h"
+#include "osteomill/report/shaft_figure.h"
+
+namespace osteomill {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+DrawnGroup draw(RunGroup group, const fs::path& folder, const PageText& text) {
+  std::vector<CaptionedFigure> figures;
+  const auto add = [&](const std::string& name, const Figure& figure, std::string caption) {
+    const auto note = text.caption_notes.find(name);
+    if (note != text.caption_notes.end()) caption += " " + note->second;
+    figures.push_back({figure, std::move(caption)});
+  };
+  if (const auto bone = draw_picture_figure(group, folder)) {
+    add("bone", *bone, "The bone before, and after each algorithm's run.");
+  }
+  add("rate", draw_rate_figure(group, folder),
+      "Haptic rate that the loop would hold, tick by tick (left), and the time that a tick's algorithm and "
+      "milling took (right).");
+  add("force", draw_force_figure(group, folder),
+      "Magnitude of the force sent to the hand. Each pixel's least and greatest are drawn, so no spike is "
+      "lost.");
+  add("torque", draw_torque_figure(group, folder),
+      "Magnitude of the torque sent to the hand, about the burr's centre.");
+  add("shaft", draw_shaft_figure(group, folder),
+      "Where the simulated tool's shaft points: a point on the unit sphere a tick, coloured by time. The "
+      "panels of a row have the same ranges; a compact cloud is a steady shaft.");
+  return {std::move(group), std::move(figures)};
+}
+
+std::vector<SummaryRow> summary_rows(const std::vector<RunGroup>& groups) {
+  std::vector<SummaryRow> rows;
+  for (const RunGroup& group : groups) {
+    for (const MeasuredRun& run : group.runs) {
+      const RunDescription& d = run.recording->description;
+      rows.push_back({d.algorithm, d.mode, d.segment, run.metrics});
+    }
+  }
+  return rows;
+}
+
+}  // namespace
+
+fs::path write_report(const std::vector<Recording>& recordings, const fs::path& out_dir,
+                      const PageText& text) {
+  std::vector<RunGroup> groups = group_runs(recordings);
+  create_folder(out_dir / "figures");
+  // First, so that the numbers are there even where no figure can be drawn.
+  write_summary_csv(out_dir / "summary.csv", summary_rows(groups));
+  std::vector<DrawnGroup> drawn;
+  for (RunGroup& group : groups) drawn.push_back(draw(std::move(group), out_dir / "figures", text));
+  const fs::path page = out_dir / "report.html";
+  write_text_atomically(page, [&](std::ostream& out) { out << report_page(drawn, text); });
+  return page;
+}
+
+}  // namespace osteomill

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "osteomill/recording/recording.h"
+#include "osteomill/report/report_page.h"
+
+namespace osteomill {
+
+/// Writes `out_dir`/report.html, summary.csv and figures/ (each figure as SVG and PNG) from any number of
+/// recordings, one for each algorithm, mode and segment that there is; returns the path of report.html. Files
+/// appear whole, the page last. Throws InputError where there are no recordings, two are of the same
+/// algorithm, mode and segment, one cannot be measured, gnuplot is missing or fails, or a file cannot be
+/// written.
+std::filesystem::path write_report(const std::vector<Recording>& recordings,
+                                   const std::filesystem::path& out_dir, const PageText& text = {});
+
+}  // namespace osteomill
