@@ -31,9 +31,9 @@ TrialSettings settings_of(const Trial& trial) {
   settings.hand_and_device.script.holding_s = 1;
   settings.hand_and_device.script.settle_s = 0.5;
   if (trial.resolution > 0) {
-    if (trial.algorithm == "line-proxy") settings.haptics.vertices = trial.resolution;
-    if (trial.algorithm == "surface-points") settings.haptics.slices = trial.resolution;
-    if (trial.algorithm == "point-shell") settings.haptics.shell_scale = trial.resolution;
+    const AlgorithmDescription& chosen = algorithm_named(trial.algorithm);
+    settings.haptics.named.push_back(
+        {chosen.id.name, chosen.resolution_setting, static_cast<double>(trial.resolution)});
   }
   return settings;
 }
@@ -44,7 +44,7 @@ void closed_loop(benchmark::State& state, const Trial& trial) {
   const MillingEntry entry = place_entry(bone, settings.tool);
   const BoneDensities densities = estimate_densities(bone);
   for ([[maybe_unused]] auto _ : state) {
-    MillingTrial run(bone, densities, entry, trial.algorithm, settings);
+    MillingTrial run(bone, densities, entry, algorithm_named(trial.algorithm), settings);
     TickTimes steps, milling;
     double removed_mm3 = 0, contacts = 0;
     while (!run.finished()) {
@@ -64,9 +64,8 @@ void closed_loop(benchmark::State& state, const Trial& trial) {
 }
 
 std::string name(const Trial& trial) {
-  std::string text = "closed_loop/" + std::string(name_of(trial.algorithm)) + "/" +
-                     std::string(name_of(trial.mode)) + "/" + name_of(trial.bone) +
-                     (trial.milling ? "/milling" : "/spindle_off");
+  std::string text = "closed_loop/" + std::string(trial.algorithm) + "/" + std::string(name_of(trial.mode)) +
+                     "/" + name_of(trial.bone) + (trial.milling ? "/milling" : "/spindle_off");
   if (trial.resolution > 0) text += "/resolution:" + std::to_string(trial.resolution);
   return text;
 }

@@ -70,8 +70,7 @@ const bool kAdded = [] {
   for (const double spacing_mm : {0.125, 0.0625}) {
     const std::string voxels = spacing_mm > 0.1 ? "/0.125mm" : "/0.0625mm";
     for (const std::string& algorithm : algorithm_names()) {
-      benchmark::RegisterBenchmark(("sleeved/" + std::string(name_of(algorithm)) + voxels).c_str(), sleeved,
-                                   algorithm, spacing_mm)
+      benchmark::RegisterBenchmark(("sleeved/" + algorithm + voxels).c_str(), sleeved, algorithm, spacing_mm)
           ->Iterations(1)
           ->Unit(benchmark::kMillisecond);
     }

@@ -40,8 +40,8 @@ int main() {
       step = algorithm->step({{0, 0, height_mm}, osteomill::Quat::Identity()}, 1e-3);
     }
     const osteomill::Vec3& force_N = step.wrench.force_N;
-    std::printf("%-14s force %6.3f %6.3f %6.3f N, %d contacts\n", osteomill::name_of(id).data(), force_N.x(),
-                force_N.y(), force_N.z(), step.contacts);
+    std::printf("%-14s force %6.3f %6.3f %6.3f N, %d contacts\n", id.c_str(), force_N.x(), force_N.y(),
+                force_N.z(), step.contacts);
     if (!(force_N.z() > 0)) return 1;
   }
   return 0;

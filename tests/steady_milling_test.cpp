@@ -38,7 +38,7 @@ Milling mill(std::string_view algorithm, double push_N, std::uint64_t seed, doub
   settings.hand_and_device.seed = seed;
   settings.hand_and_device.script.holding_s = 0;
   const RealTooth& tooth = real_tooth();
-  MillingTrial trial(tooth.volume, tooth.densities, tooth.entry, algorithm, settings);
+  MillingTrial trial(tooth.volume, tooth.densities, tooth.entry, algorithm_named(algorithm), settings);
   std::vector<Vec3> forces;
   std::vector<Vec3> torques;
   Milling milling;

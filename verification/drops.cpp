@@ -72,9 +72,8 @@ Section drops() {
           shares.push_back(rebound(algorithm, stiffness, height_mm, random));
         }
       }
-      section.add(
-          {fmt::format("{}, {:.0f} N/mm", name_of(algorithm), stiffness), median_and_worst(shares), "1"},
-          quantile(shares, 1) < 1);
+      section.add({fmt::format("{}, {:.0f} N/mm", algorithm, stiffness), median_and_worst(shares), "1"},
+                  quantile(shares, 1) < 1);
     }
   }
   return section;

@@ -28,9 +28,9 @@ Section haptic_rates(const Bones& bones, const Effort& effort) {
     for (std::size_t n = 0; n < rates_hz.size(); ++n) {
       const RunMetrics& metrics = figures[n].metrics;
       const double calm = algorithm == "surface-points" ? 0.1 : 0.06;
-      section.add({fmt::format("{}, {:.0f} Hz", name_of(algorithm), rates_hz[n]),
-                   figure(figures[n].hp_over_mean()), figure(metrics.torque_Nmm.step_max),
-                   figure(metrics.force_N.step_max), figure(metrics.removed_mm3)},
+      section.add({fmt::format("{}, {:.0f} Hz", algorithm, rates_hz[n]), figure(figures[n].hp_over_mean()),
+                   figure(metrics.torque_Nmm.step_max), figure(metrics.force_N.step_max),
+                   figure(metrics.removed_mm3)},
                   figures[n].hp_over_mean() <= calm && std::abs(metrics.removed_mm3 / usual_mm3 - 1) <= 0.05);
     }
   }

@@ -86,13 +86,13 @@ void add_rows(Section& section, const Volume& bone, const Effort& effort, bool r
                           .random_hand = random_hands});
     }
     const OverSeeds all = over_seeds(milling_figures(bone, variants));
-    section.add({fmt::format("{}, {} N{}", name_of(goals.algorithm), goals.push_N,
-                             random_hands ? ", drawn hands" : ""),
-                 median_and_worst(all.hp), median_and_worst(all.torque_step),
-                 median_and_worst(all.force_step), goal_text(goals), lowest_and_median(all.force),
-                 lowest_and_median(all.torque), lowest_and_median(all.removed), lowest_and_median(all.paid),
-                 median_and_worst(all.step_us), median_and_worst(all.milling_us)},
-                holds(goals, all, loaded));
+    section.add(
+        {fmt::format("{}, {} N{}", goals.algorithm, goals.push_N, random_hands ? ", drawn hands" : ""),
+         median_and_worst(all.hp), median_and_worst(all.torque_step), median_and_worst(all.force_step),
+         goal_text(goals), lowest_and_median(all.force), lowest_and_median(all.torque),
+         lowest_and_median(all.removed), lowest_and_median(all.paid), median_and_worst(all.step_us),
+         median_and_worst(all.milling_us)},
+        holds(goals, all, loaded));
   }
 }
 

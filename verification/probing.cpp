@@ -21,8 +21,8 @@ std::unique_ptr<HapticAlgorithm> prepared(std::string_view algorithm, const Volu
                                           const MillingTool& tool, double stiffness_N_per_mm,
                                           std::vector<HapticSettings::Named> named) {
   HapticSettings settings;
-  settings.stiffness_N_per_mm = stiffness_N_per_mm;
   settings.named = std::move(named);
+  settings.set_option("stiffness", stiffness_N_per_mm);
   auto made = make_algorithm(algorithm, settings);
   made->prepare({&volume, tool});
   return made;

@@ -65,7 +65,7 @@ Section shaft_levers() {
           least_N = std::min(least_N, felt.force_N);
           right_sign = right_sign && felt.turns_away;
         }
-        section.add({fmt::format("{}, {:.0f} mm, {:.0f} voxels", name_of(algorithm), lever_mm, edge_voxels),
+        section.add({fmt::format("{}, {:.0f} mm, {:.0f} voxels", algorithm, lever_mm, edge_voxels),
                      median_and_worst(errors), figure(least_N), "0.02"},
                     right_sign && least_N > 0.01 && quantile(errors, 1) <= 0.02);
       }

@@ -61,7 +61,7 @@ Section slide_round_a_ball() {
       const double median = quantile(felt.direction_deg, 0.5);
       const double p99 = quantile(felt.direction_deg, 0.99);
       const bool good = median <= 1 && p99 <= 2.5 && felt.largest_step_N <= 0.005;
-      section.add({fmt::format("{}, {:.2f} mm", name_of(algorithm), spacing), figure(median), figure(p99),
+      section.add({fmt::format("{}, {:.2f} mm", algorithm, spacing), figure(median), figure(p99),
                    figure(felt.largest_step_N)},
                   good || algorithm == "surface-points");
     }

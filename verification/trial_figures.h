@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "osteomill/experiment/milling_trial.h"
@@ -10,7 +11,7 @@ namespace osteomill::verification {
 
 /// How a trial differs from the default one.
 struct TrialVariant {
-  std::string_view algorithm = "line-proxy";
+  std::string algorithm = "line-proxy";
   double push_N = 1.5;
   std::uint64_t seed = 1;
   double phase_s = 20;

@@ -32,7 +32,8 @@ double hole_mm3(std::string_view algorithm, double spacing_mm, double seconds) {
   const Volume bone = block(spacing_mm);
   TrialSettings settings;
   settings.hand_and_device.script.milling_s = seconds;
-  MillingTrial trial(bone, estimate_densities(bone), place_entry(bone, settings.tool), algorithm, settings);
+  MillingTrial trial(bone, estimate_densities(bone), place_entry(bone, settings.tool),
+                     algorithm_named(algorithm), settings);
   while (trial.tick().milling_phase) {
   }
   const std::vector<float>& before = bone.grid().densities();
@@ -64,10 +65,10 @@ Section voxel_sizes(const Effort& effort) {
   for (std::size_t n = 0; n < holes.size(); ++n) {
     const double finest = holes[n - n % spacings.size()];
     const double off = holes[n] / finest - 1;
-    section.add({fmt::format("{}, {:.2f} mm", name_of(algorithm_names()[n / spacings.size()]),
-                             spacings[n % spacings.size()]),
-                 figure(holes[n]), fmt::format("{:+.2f} %", 100 * off), "2 %"},
-                std::abs(off) < 0.02);
+    section.add(
+        {fmt::format("{}, {:.2f} mm", algorithm_names()[n / spacings.size()], spacings[n % spacings.size()]),
+         figure(holes[n]), fmt::format("{:+.2f} %", 100 * off), "2 %"},
+        std::abs(off) < 0.02);
   }
   return section;
 }

@@ -8,6 +8,7 @@
 #include "osteomill/experiment/paper.h"
 #include "osteomill/experiment/write_rates_report.h"
 #include "osteomill/files/input_error.h"
+#include "osteomill/haptics/algorithms.h"
 #include "osteomill/report/report_samples.h"
 
 namespace osteomill {
@@ -18,18 +19,18 @@ using namespace testing_support;
 
 /// Rates at the paper's resolutions, beside the paper's own; the measured ones are made up.
 std::vector<RateRow> sample_rates() {
-  const auto row = [](const AlgorithmId& algorithm, const char* resolution, int points, double us,
+  const auto row = [](std::string_view algorithm, const char* resolution, int points, double us,
                       double paper_hz) {
-    return RateRow{algorithm, resolution, points, us, 1.7 * us, 1e6 / us, paper_hz};
+    return RateRow{algorithm_named(algorithm).id, resolution, points, us, 1.7 * us, 1e6 / us, paper_hz};
   };
-  using enum AlgorithmId;
-  return {row(line_proxy, "50 vertices", 51, 2.1, 984),    row(line_proxy, "100 vertices", 101, 4, 964),
-          row(line_proxy, "250 vertices", 251, 9, 884),    row(line_proxy, "500 vertices", 501, 18, 795),
-          row(line_proxy, "1000 vertices", 1001, 36, 544), row(surface_points, "10 slices", 104, 3, 974),
-          row(surface_points, "20 slices", 184, 5, 951),   row(surface_points, "30 slices", 264, 8, 922),
-          row(surface_points, "50 slices", 424, 13, 837),  row(surface_points, "100 slices", 824, 25, 622),
-          row(point_shell, "scale 1", 73800, 24, 127),     row(point_shell, "scale 2", 18549, 9, 507),
-          row(point_shell, "scale 3", 8399, 5, 987),       row(point_shell, "scale 4", 4700, 3.2, 0)};
+  return {
+      row("line-proxy", "50 vertices", 51, 2.1, 984),    row("line-proxy", "100 vertices", 101, 4, 964),
+      row("line-proxy", "250 vertices", 251, 9, 884),    row("line-proxy", "500 vertices", 501, 18, 795),
+      row("line-proxy", "1000 vertices", 1001, 36, 544), row("surface-points", "10 slices", 104, 3, 974),
+      row("surface-points", "20 slices", 184, 5, 951),   row("surface-points", "30 slices", 264, 8, 922),
+      row("surface-points", "50 slices", 424, 13, 837),  row("surface-points", "100 slices", 824, 25, 622),
+      row("point-shell", "scale 1", 73800, 24, 127),     row("point-shell", "scale 2", 18549, 9, 507),
+      row("point-shell", "scale 3", 8399, 5, 987),       row("point-shell", "scale 4", 4700, 3.2, 0)};
 }
 
 std::string bytes_of(const fs::path& path) {
@@ -58,7 +59,7 @@ class ReportTest : public ::testing::Test {
 
   void expect_refused(const std::vector<Recording>& runs, const std::string& reason) {
     try {
-      write_report(runs, out_);
+      write_comparison_report(runs, out_);
       ADD_FAILURE() << reason;
     } catch (const InputError& error) {
       EXPECT_NE(std::string(error.what()).find(reason), std::string::npos) << error.what();
@@ -70,7 +71,7 @@ class ReportTest : public ::testing::Test {
 };
 
 TEST_F(ReportTest, AFullComparisonIsOnePageThatLoadsNothing) {
-  const fs::path page = write_report(sample_runs(), out_);
+  const fs::path page = write_comparison_report(sample_runs(), out_);
   EXPECT_EQ(page, out_ / "report.html");
   EXPECT_EQ(names_in(out_), (std::vector<std::string>{"figures", "report.html", "summary.csv"}));
   std::vector<std::string> expected;
@@ -95,7 +96,7 @@ TEST_F(ReportTest, AFullComparisonIsOnePageThatLoadsNothing) {
 
 TEST_F(ReportTest, OneRecordingIsEnough) {
   Recording run = sample_run("surface-points", kHolding, Mode::paper, 500);
-  const std::string html = bytes_of(write_report({run}, out_));
+  const std::string html = bytes_of(write_comparison_report({run}, out_));
   EXPECT_NE(html.find("not recorded"), std::string::npos);
   EXPECT_TRUE(fs::exists(out_ / "figures/fig9_shaft_paper.svg"));
   EXPECT_FALSE(fs::exists(out_ / "figures/bone_paper.svg"));
@@ -104,7 +105,7 @@ TEST_F(ReportTest, OneRecordingIsEnough) {
 TEST_F(ReportTest, BothModesHaveTheirOwnFiguresAndFindings) {
   const std::vector<Recording> runs{sample_run("line-proxy", kHolding, Mode::steady, 200),
                                     sample_run("line-proxy", kHolding, Mode::paper, 200)};
-  const std::string html = bytes_of(write_report(runs, out_));
+  const std::string html = bytes_of(write_comparison_report(runs, out_));
   EXPECT_NE(html.find("Mode: paper"), std::string::npos);
   EXPECT_NE(html.find("Mode: steady"), std::string::npos);
   EXPECT_EQ(names_in(out_ / "figures").size(), 16u);
@@ -117,19 +118,19 @@ TEST_F(ReportTest, AToolThatNeverMovesAndNeverTouchesIsDrawnToo) {
     r.time_s = 0.001 * n;
     run.records.push_back(r);
   }
-  write_report({run}, out_);
+  write_comparison_report({run}, out_);
   EXPECT_TRUE(fs::exists(out_ / "report.html"));
 }
 
 TEST_F(ReportTest, WhatAReaderMustKnowIsSaid) {
   std::vector<Recording> runs;
-  for (const AlgorithmId& algorithm : kAllAlgorithms) {
+  for (const std::string& algorithm : algorithm_names()) {
     runs.push_back(sample_run(algorithm, kHolding, Mode::steady, 200));
   }
   runs[0].complete = false;
   runs[1].dropped = 7;
   runs[2].description.scan_name = "<script>another</script>";
-  const std::string html = bytes_of(write_report(runs, out_));
+  const std::string html = bytes_of(write_comparison_report(runs, out_));
   EXPECT_NE(html.find("line-proxy-holding.h5 is unfinished"), std::string::npos);
   EXPECT_NE(html.find("surface-points-holding.h5 lacks 7 ticks"), std::string::npos);
   EXPECT_NE(html.find("point-shell-holding.h5 is of another scan"), std::string::npos);
@@ -168,7 +169,7 @@ TEST_F(ReportTest, RatesStandBesideThePapers) {
 }
 
 TEST_F(ReportTest, RatesOfAnyNameAndWithoutThePapersAreDrawn) {
-  std::vector<RateRow> rows{{"point-shell", "it's \"coarse\", `x`", 10, 5, 6, 2e5, 0}};
+  std::vector<RateRow> rows{{algorithm_named("point-shell").id, "it's \"coarse\", `x`", 10, 5, 6, 2e5, 0}};
   write_rates_report(rows, out_);
   EXPECT_NE(bytes_of(out_ / "rates.csv").find("\"it's \"\"coarse\"\", `x`\",10"), std::string::npos);
   EXPECT_THROW(write_rates_report({}, out_), InputError);

@@ -6,14 +6,15 @@
 
 #include "osteomill/experiment/paper.h"
 #include "osteomill/files/input_error.h"
+#include "osteomill/haptics/algorithms.h"
 
 namespace osteomill {
 namespace {
 
-Recording short_run(const AlgorithmId& algorithm, std::string_view phase) {
+Recording short_run(std::string_view algorithm, std::string_view phase) {
   Recording recording;
-  recording.path = std::string(name_of(algorithm)) + ".h5";
-  recording.description.algorithm = algorithm;
+  recording.path = std::string(algorithm) + ".h5";
+  recording.description.algorithm = algorithm_named(algorithm).id;
   recording.description.segment = phase;
   recording.records.resize(2);
   recording.records[1].time_s = 0.001;
@@ -25,7 +26,8 @@ class FindingsTest : public ::testing::Test {
  protected:
   void SetUp() override {
     for (const std::string_view phase : kPhases) {
-      for (const AlgorithmId& algorithm : kAllAlgorithms) recordings_.push_back(short_run(algorithm, phase));
+      for (const std::string_view algorithm : kPapersAlgorithms)
+        recordings_.push_back(short_run(algorithm, phase));
     }
     group_ = group_runs(recordings_).at(0);
     for (MeasuredRun& run : group_.runs) run.metrics.rate_hz = 980;
@@ -33,14 +35,13 @@ class FindingsTest : public ::testing::Test {
     set(kHolding, {0.02, 0.13, 0.01}, {0.8, 0.5, 0.1}, {1, 2, 0.5}, {0.9, 0.6, 0.3});
   }
 
-  RunMetrics& metrics(const AlgorithmId& algorithm, std::string_view phase) {
+  RunMetrics& metrics(std::string_view algorithm, std::string_view phase) {
     return const_cast<RunMetrics&>(group_.find(algorithm, phase)->metrics);
   }
   void set(std::string_view phase, const Vec3& force_hp, const Vec3& torque_hp, const Vec3& torque_step,
            const Vec3& spread) {
-    for (const AlgorithmId& algorithm : kAllAlgorithms) {
-      RunMetrics& m = metrics(algorithm, phase);
-      const int n = static_cast<int>(algorithm);
+    for (int n = 0; n < 3; ++n) {
+      RunMetrics& m = metrics(kPapersAlgorithms[static_cast<std::size_t>(n)], phase);
       m.force_N.hp_rms = force_hp[n];
       m.torque_Nmm.hp_rms = torque_hp[n];
       m.torque_Nmm.step_max = torque_step[n];

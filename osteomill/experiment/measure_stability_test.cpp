@@ -66,7 +66,7 @@ double exact_limit_N_per_mm(const WallPress& press) {
 }
 
 TEST(Stability, AnIdealSpringKeepsToTheRule) {
-  for (const StabilityCase& setup : stability_cases({"line-proxy"}, {Mode::steady})) {
+  for (const StabilityCase& setup : stability_cases({algorithm_named("line-proxy")}, {Mode::steady})) {
     const WallPress press = device(setup.damping_Ns_per_mm, setup.delay_s);
     const StiffnessLimit limit = ideal_limit(press);
     const double rule = passive_stiffness_rule_N_per_mm(setup.damping_Ns_per_mm, 1e-3, setup.delay_s);
@@ -178,7 +178,7 @@ TEST(Stability, TheWallIsWhereTheHandleIsPressed) {
   for (const Mode mode : {Mode::paper, Mode::steady}) {
     HapticSettings settings;
     settings.mode = mode;
-    settings.stiffness_N_per_mm = 1;
+    settings.set_option("stiffness", 1);
     const auto algorithm = make_algorithm("line-proxy", settings);
     algorithm->prepare({&wall, tool});
     const WallPressResult result = press_on_wall(*algorithm, tool.burr_radius_mm, device(0.02, 0));

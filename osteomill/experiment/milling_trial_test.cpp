@@ -31,7 +31,7 @@ class MillingTrialTest : public ::testing::TestWithParam<std::string_view> {
   Run run(std::uint64_t seed) const {
     TrialSettings settings = settings_;
     settings.hand_and_device.seed = seed;
-    MillingTrial trial(bone_, densities_, entry_, GetParam(), settings);
+    MillingTrial trial(bone_, densities_, entry_, algorithm_named(GetParam()), settings);
     Run result;
     while (!trial.finished()) {
       const MillingTrial::Tick tick = trial.tick();

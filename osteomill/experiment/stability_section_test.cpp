@@ -8,6 +8,7 @@
 
 #include "osteomill/experiment/comparison_report.h"
 #include "osteomill/experiment/stability_figure.h"
+#include "osteomill/haptics/algorithms.h"
 #include "osteomill/report/report_samples.h"
 
 namespace osteomill {
@@ -24,12 +25,12 @@ std::string bytes_of(const fs::path& path) {
 // 1 follows the rule, 2 feels half of it and has none on the last device, 3 never ends. No measurement.
 std::vector<StabilityRow> sample_rows(const std::vector<Mode>& modes) {
   std::vector<StabilityRow> rows;
-  for (const StabilityCase& setup : stability_cases({"line-proxy", "surface-points", "point-shell"}, modes)) {
+  for (const StabilityCase& setup : stability_cases(all_algorithms(), modes)) {
     const double rule = passive_stiffness_rule_N_per_mm(setup.damping_Ns_per_mm, 1e-3, setup.delay_s);
     StabilityRow row{setup, {Kind::found, rule, rule}, rule};
-    if (setup.algorithm == "surface-points") row.limit = {Kind::found, 4 * rule, 0.5 * rule};
-    if (setup.algorithm == "surface-points" && setup.damping_Ns_per_mm == 0.01) row.limit = {};
-    if (setup.algorithm == "point-shell") row.limit = {Kind::above_all, 200, 9};
+    if (setup.algorithm.id == "surface-points") row.limit = {Kind::found, 4 * rule, 0.5 * rule};
+    if (setup.algorithm.id == "surface-points" && setup.damping_Ns_per_mm == 0.01) row.limit = {};
+    if (setup.algorithm.id == "point-shell") row.limit = {Kind::above_all, 200, 9};
     rows.push_back(row);
   }
   return rows;
@@ -79,7 +80,7 @@ TEST_F(StabilitySectionTest, TheWordsGiveTheRangeAgainstTheRule) {
 
 TEST_F(StabilitySectionTest, OneAlgorithmThatIsNeverPassiveIsDrawnToo) {
   std::vector<StabilityRow> rows = sample_rows({Mode::paper});
-  std::erase_if(rows, [](const StabilityRow& row) { return row.setup.algorithm != "line-proxy"; });
+  std::erase_if(rows, [](const StabilityRow& row) { return row.setup.algorithm.id != "line-proxy"; });
   for (StabilityRow& row : rows) row.limit = {};
   const std::string html = stability_section(rows, draw_stability_figure(rows, out_));
   EXPECT_NE(html.find("1 line-proxy passive on no device"), std::string::npos);

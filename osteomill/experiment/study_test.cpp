@@ -21,9 +21,9 @@ struct Values {
   double torque_hp = 0;
 };
 
-StudyRow row(std::uint64_t seed, const AlgorithmId& algorithm, Mode mode, std::string_view phase,
+StudyRow row(std::uint64_t seed, std::string_view algorithm, Mode mode, std::string_view phase,
              const Values& values) {
-  StudyRow row{seed, {}, {algorithm, mode, phase, {}}};
+  StudyRow row{seed, {}, {algorithm_named(algorithm).id, mode, std::string(phase), {}}};
   row.hand.stiffness_N_per_mm = 0.1 * static_cast<double>(seed);
   row.summary.metrics.rate_hz = 1000;
   row.summary.metrics.force_N.mean = 2;
@@ -65,7 +65,7 @@ TEST(Study, RowsAreOrderedBySeedAndThenAsInTheSummary) {
   EXPECT_EQ(study.rows()[0].summary.phase, kMilling);
   EXPECT_EQ(study.rows()[1].summary.algorithm, "surface-points");
   EXPECT_EQ(study.rows_of_seed(1).front().seed, 3u);
-  EXPECT_EQ(study.values("surface-points", Mode::paper, kHolding, force_hp()),
+  EXPECT_EQ(study.values(algorithm_named("surface-points").id, Mode::paper, kHolding, force_hp()),
             (std::vector<double>{1.01, 1.02}));
   EXPECT_EQ(study.algorithms().size(), 3u);
   EXPECT_EQ(study.modes(), (std::vector<Mode>{Mode::paper, Mode::steady}));

@@ -10,6 +10,8 @@ namespace osteomill {
 
 namespace {
 
+constexpr std::string_view kPlain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
+
 std::string number(double value) {
   std::ostringstream text;
   text << value;
@@ -32,6 +34,18 @@ bool lies_within(const SettingRange& range, double value) {
 }
 
 }  // namespace
+
+bool is_plain_name(std::string_view name) {
+  return name.find_first_not_of(kPlain) == std::string_view::npos;
+}
+
+bool is_usable(const AlgorithmId& algorithm) {
+  const std::string_view colour = algorithm.colour;
+  return !algorithm.name.empty() && is_plain_name(algorithm.name) && !algorithm.label.empty() &&
+         algorithm.label.find_first_not_of(std::string(kPlain) + " ().,:+") == std::string::npos &&
+         colour.size() == 7 && colour[0] == '#' &&
+         colour.find_first_not_of("0123456789abcdefABCDEF", 1) == std::string_view::npos;
+}
 
 std::vector<AlgorithmId> each_once(std::vector<AlgorithmId> algorithms) {
   std::sort(algorithms.begin(), algorithms.end());

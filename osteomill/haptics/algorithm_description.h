@@ -15,7 +15,9 @@
 
 namespace osteomill {
 
-/// By what people and files know an algorithm; what a recording keeps of it.
+/// By what people and files know an algorithm; what a recording keeps of it. Figures and file names are made
+/// from it, so the name holds letters, digits, '-' and '_' alone, the label also spaces and any of ().,:+
+/// (`is_usable`).
 struct AlgorithmId {
   /// On the command line and in files: "point-shell". Two algorithms of one name are the same.
   std::string name;
@@ -31,6 +33,10 @@ struct AlgorithmId {
 inline const std::string& name_of(const AlgorithmId& algorithm) {
   return algorithm.name;
 }
+
+bool is_usable(const AlgorithmId& algorithm);
+/// Whether it holds letters, digits, '-' and '_' alone.
+bool is_plain_name(std::string_view name);
 
 /// Each once, in the order of their labels.
 std::vector<AlgorithmId> each_once(std::vector<AlgorithmId> algorithms);

@@ -9,7 +9,7 @@ namespace osteomill {
 namespace {
 
 double setting(std::string_view algorithm, const HapticSettings& settings, const std::string& name) {
-  for (const SettingValue& value : describe_algorithm(algorithm, settings)) {
+  for (const SettingValue& value : setting_values(algorithm_named(algorithm), settings)) {
     if (value.name == name) return value.value;
   }
   ADD_FAILURE() << "no setting " << name;
@@ -30,9 +30,10 @@ TEST(MakeAlgorithm, DefaultsAreThePapers) {
 
 TEST(MakeAlgorithm, WhatTheUserSaysWins) {
   HapticSettings settings{.mode = Mode::steady};
-  settings.stiffness_N_per_mm = 3;
-  settings.shell_scale = 2;
-  settings.named = {{"point-shell", "points-on-isosurface", 0}, {"line-proxy", "clamp-fraction", 0}};
+  settings.set_option("stiffness", 3);
+  settings.set_option("shell-scale", 2);
+  settings.named.push_back({"point-shell", "points-on-isosurface", 0});
+  settings.named.push_back({"line-proxy", "clamp-fraction", 0});
   EXPECT_EQ(setting("point-shell", settings, "points-on-isosurface"), 0);
   EXPECT_EQ(setting("point-shell", settings, "area-weights"), 1);
   EXPECT_EQ(setting("point-shell", settings, "scale"), 2);
@@ -49,7 +50,7 @@ TEST(MakeAlgorithm, WhatCannotBeIsRefused) {
     EXPECT_THROW(make_algorithm(algorithm, settings), std::invalid_argument);
   };
   HapticSettings settings;
-  settings.vertices = 1;
+  settings.set_option("vertices", 1);
   refused("line-proxy", settings);
   settings = {};
   settings.named = {{"surface-points", "no-such-thing", 1}};

@@ -64,13 +64,21 @@ std::vector<RunSetting> read_settings(const fs::path& path, hid_t file) {
 }
 
 // Recordings from before labels were kept hold the project's own algorithms only; of others the name serves.
-AlgorithmId read_algorithm(const AttributeReader& read) {
-  const std::string name = read.text("algorithm");
+AlgorithmId read_algorithm(const fs::path& path, const AttributeReader& read) {
+  AlgorithmId algorithm{read.text("algorithm"), "", ""};
   if (read.has("algorithm_label")) {
-    return {name, read.text("algorithm_label"), read.text("algorithm_colour")};
+    algorithm.label = read.text("algorithm_label");
+    algorithm.colour = read.text("algorithm_colour");
+  } else if (const AlgorithmDescription* known = find_algorithm(algorithm.name)) {
+    algorithm = known->id;
+  } else {
+    algorithm.label = algorithm.name;
+    algorithm.colour = kUnknownColour;
   }
-  const AlgorithmDescription* known = find_algorithm(name);
-  return known != nullptr ? known->id : AlgorithmId{name, name, std::string(kUnknownColour)};
+  if (!is_usable(algorithm)) {
+    throw InputError(path.string(), "its algorithm has a name, label or colour that cannot be used");
+  }
+  return algorithm;
 }
 
 template <typename Value>
@@ -83,6 +91,10 @@ Value require_known(const fs::path& path, std::optional<Value> value, const std:
 
 void write_description(const fs::path& path, hid_t file, const RunDescription& description) {
   require_usable_keys(description.settings);
+  if (!is_usable(description.algorithm) || !is_plain_name(description.segment)) {
+    throw std::invalid_argument("'" + description.algorithm.name + "', '" + description.segment +
+                                "': an algorithm or a segment that cannot be recorded by that name");
+  }
   const AttributeWriter write(path, file);
   const Vec3& spacing = description.spacing_mm;
   write.text("program_version", description.program_version);
@@ -114,8 +126,11 @@ RunDescription read_description(const fs::path& path, hid_t file) {
   description.isovalue = read.real("isovalue");
   description.tool = {read.real("burr_radius_mm"), read.real("shaft_radius_mm"),
                       read.real("shaft_length_mm")};
-  description.algorithm = read_algorithm(read);
+  description.algorithm = read_algorithm(path, read);
   description.segment = read.text("phase");
+  if (!is_plain_name(description.segment)) {
+    throw InputError(path.string(), "the attribute 'phase' is not a plain name");
+  }
   const std::string mode = read.text("mode");
   description.mode = require_known(path, mode_named(mode), "mode " + mode);
   description.seed = read.unsigned_integer("seed");

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "osteomill/files/input_error.h"
+#include "osteomill/haptics/algorithms.h"
 
 namespace osteomill {
 namespace {
@@ -143,7 +144,8 @@ TEST(SummaryCsv, HasItsColumnsInOrder) {
   m.torque_Nmm = {10, 11, 12, 13};
   m.shaft = {14, 15.5};
   m.removed_mm3 = 16;
-  write_summary_csv(path, std::vector<SummaryRow>{{"point-shell", Mode::paper, "holding", m}});
+  write_summary_csv(path,
+                    std::vector<SummaryRow>{{algorithm_named("point-shell").id, Mode::paper, "holding", m}});
   std::ifstream in(path);
   std::string header, row;
   std::getline(in, header);
