@@ -61,7 +61,7 @@ void point_shell_rows(Section& section) {
   // The contact at the least stiffness that the no-pull-through rule allows, so that depths are voxels.
   const HapticSettings::Named soft{"point-shell", "greatest-depth", 0};
   point_shell::Settings settings = point_shell::Settings::defaults(Mode::steady);
-  settings.greatest_depth_mm = 0;
+  settings.max_depth_mm = 0;
   const MillingTool tool;
   const double kA = contact_stiffness_N_per_mm3(settings, tool);
   for (const int scale : {1, 3}) {

@@ -79,7 +79,7 @@ void add_rows(Section& section, const Volume& bone, const Effort& effort, bool r
   for (const Goals& goals : kGoals) {
     std::vector<TrialVariant> variants;
     for (int n = 0; n < effort.seeds; ++n) {
-      variants.push_back({.algorithm = goals.algorithm,
+      variants.push_back({.algorithm = std::string(goals.algorithm),
                           .push_N = goals.push_N,
                           .seed = kFirstSeed + static_cast<std::uint64_t>(n),
                           .phase_s = effort.phase_s,

@@ -34,9 +34,11 @@ struct Line {
 void measure(Line& line, std::string_view algorithm, const Volume& bone, double phase_s) {
   for (const double push_N : {1.5, 3.0}) {
     try {
-      const TrialFigures f = milling_figures(
-          bone,
-          {.algorithm = algorithm, .push_N = push_N, .seed = 11, .phase_s = phase_s, .named = line.named});
+      const TrialFigures f = milling_figures(bone, {.algorithm = std::string(algorithm),
+                                                    .push_N = push_N,
+                                                    .seed = 11,
+                                                    .phase_s = phase_s,
+                                                    .named = line.named});
       line.cells.push_back(fmt::format("{} / {} / {}", figure(f.hp_over_mean()),
                                        figure(f.metrics.torque_Nmm.step_max),
                                        figure(f.metrics.force_N.step_max)));

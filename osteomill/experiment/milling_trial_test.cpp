@@ -11,7 +11,7 @@ namespace osteomill {
 namespace {
 
 // The built-in tooth at twice its voxel size, and a hand that is through in a few seconds.
-class MillingTrialTest : public ::testing::TestWithParam<std::string_view> {
+class MillingTrialTest : public ::testing::TestWithParam<std::string> {
  protected:
   MillingTrialTest()
       : bone_(builtin_tooth(0.5), kBuiltinToothIsovalue),
@@ -97,7 +97,7 @@ TEST_P(MillingTrialTest, TakesWhatTheForceHasPaidFor) {
 
 INSTANTIATE_TEST_SUITE_P(AllAlgorithms, MillingTrialTest, ::testing::ValuesIn(algorithm_names()),
                          [](const auto& test) {
-                           std::string name(name_of(test.param));
+                           std::string name = test.param;
                            name[name.find('-')] = '_';
                            return name;
                          });

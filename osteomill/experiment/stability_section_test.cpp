@@ -100,7 +100,7 @@ TEST_F(StabilitySectionTest, TheReportOfAStudyHasItsFilesFiguresAndWords) {
   }
   extras.study.emplace(trials);
   extras.stability = sample_rows({Mode::steady});
-  const std::string html = bytes_of(write_report(runs, out_, extras));
+  const std::string html = bytes_of(write_comparison_report(runs, out_, extras));
   for (const char* file : {"study.csv", "stability.csv", "summary.csv", "figures/study_milling.svg",
                            "figures/study_holding.png", "figures/stability.svg"}) {
     EXPECT_TRUE(fs::exists(out_ / file)) << file;

@@ -11,6 +11,7 @@
 #include "osteomill/experiment/study_findings.h"
 #include "osteomill/experiment/study_section.h"
 #include "osteomill/experiment/study_words.h"
+#include "osteomill/haptics/algorithms.h"
 
 namespace osteomill {
 namespace {
@@ -62,7 +63,7 @@ TEST(Study, RowsAreOrderedBySeedAndThenAsInTheSummary) {
   EXPECT_EQ(study.rows().size(), 24u);
   EXPECT_EQ(study.rows()[0].seed, 7u);
   EXPECT_EQ(study.rows()[0].summary.mode, Mode::paper);
-  EXPECT_EQ(study.rows()[0].summary.phase, kMilling);
+  EXPECT_EQ(study.rows()[0].summary.segment, kMilling);
   EXPECT_EQ(study.rows()[1].summary.algorithm, "surface-points");
   EXPECT_EQ(study.rows_of_seed(1).front().seed, 3u);
   EXPECT_EQ(study.values(algorithm_named("surface-points").id, Mode::paper, kHolding, force_hp()),

@@ -10,6 +10,7 @@ namespace osteomill {
 
 namespace {
 
+constexpr const char* kInLabels = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_ ().,:+";
 constexpr std::string_view kPlain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
 
 std::string number(double value) {
@@ -19,13 +20,17 @@ std::string number(double value) {
 }
 
 std::string range_text(const SettingRange& range) {
-  const std::string kind = range.whole ? "a whole number" : "a number";
   constexpr double kSmallest = std::numeric_limits<double>::min();
   constexpr double kLargest = std::numeric_limits<double>::max();
-  const std::string from = range.min == kSmallest
-                               ? "above 0"
-                               : "of " + number(range.min) + (range.max < kLargest ? "" : " or more");
-  return range.max < kLargest ? kind + " " + from + " and at most " + number(range.max) : kind + " " + from;
+  std::ostringstream text;
+  text << (range.whole ? "a whole number" : "a number");
+  if (range.min == kSmallest) {
+    text << " above 0";
+  } else {
+    text << " of " << range.min << (range.max < kLargest ? "" : " or more");
+  }
+  if (range.max < kLargest) text << " and at most " << range.max;
+  return text.str();
 }
 
 // NaN is in no range.
@@ -42,9 +47,8 @@ bool is_plain_name(std::string_view name) {
 bool is_usable(const AlgorithmId& algorithm) {
   const std::string_view colour = algorithm.colour;
   return !algorithm.name.empty() && is_plain_name(algorithm.name) && !algorithm.label.empty() &&
-         algorithm.label.find_first_not_of(std::string(kPlain) + " ().,:+") == std::string::npos &&
-         colour.size() == 7 && colour[0] == '#' &&
-         colour.find_first_not_of("0123456789abcdefABCDEF", 1) == std::string_view::npos;
+         algorithm.label.find_first_not_of(kInLabels) == std::string::npos && colour.size() == 7 &&
+         colour[0] == '#' && colour.find_first_not_of("0123456789abcdefABCDEF", 1) == std::string_view::npos;
 }
 
 std::vector<AlgorithmId> each_once(std::vector<AlgorithmId> algorithms) {
