@@ -1,30 +1,37 @@
 #include "app/bone_picture.h"
 
-#include <algorithm>
+#include <cstdio>
+#include <stdexcept>
 
-#include "osteomill/surface/isosurface_picture.h"
-#include "osteomill/surface/png.h"
+#include <fmt/core.h>
+
+#include "osteomill/image/png.h"
+#include "osteomill/view/bone_picture.h"
 
 namespace osteomill::app {
 
 namespace {
 
-constexpr double kWidestWhole_mm = 45.0;
-constexpr double kAroundEntry_mm = 24.0;
+std::optional<std::vector<unsigned char>> picture(const Volume& bone, double reference_density,
+                                                  const Camera& camera) {
+  try {
+    return encode_png(bone_picture(bone, reference_density, camera));
+  } catch (const std::runtime_error& error) {
+    fmt::print(stderr, "osteomill: no pictures of the bone are recorded: {}\n", error.what());
+    return std::nullopt;
+  }
+}
 
 }  // namespace
 
-std::vector<unsigned char> picture_of_entry(const Volume& volume, const MillingEntry& entry) {
-  // Steep enough to look into a hole of its own width.
-  const Vec3 sideways = entry.direction_W.cross(entry.lateral_W);
-  const Vec3 direction = 0.8 * entry.direction_W + 0.5 * sideways + 0.25 * entry.lateral_W;
-  PictureView view = view_of_bone(volume, direction, -entry.direction_W);
-  if (view.width_mm > kWidestWhole_mm) {
-    view.centre_W = entry.point_W;
-    view.width_mm = kAroundEntry_mm;
-  }
-  view.scale_bar = true;
-  return encode_png(isosurface_picture(volume, view));
+EntryPictures::EntryPictures(const Volume& before, double reference_density, const MillingEntry& entry)
+    : reference_density_(reference_density),
+      camera_(camera_above(before, entry.point_W, entry.direction_W, entry.lateral_W)),
+      before_(picture(before, reference_density, camera_)) {}
+
+std::optional<std::vector<unsigned char>> EntryPictures::of(const Volume& milled) const {
+  if (!before_) return std::nullopt;
+  return picture(milled, reference_density_, camera_);
 }
 
 }  // namespace osteomill::app

@@ -88,11 +88,12 @@ void run_compare(const CompareOptions& options, const std::string& command_line)
   const LoadedBone bone = load_bone(options.scan);
   const std::vector<TrialPlan> plans = plans_of(options, bone, command_line);
   create_folder(options.out);
+  const EntryPictures pictures(bone.volume, plans.front().densities.reference, plans.front().entry);
   std::vector<Recording> recordings;
   std::vector<StudyRow> rows;
   for (const TrialPlan& plan : plans) {
     for (const AlgorithmId algorithm : options.algorithms) {
-      for (const fs::path& path : record_trial(plan, algorithm, options.out)) {
+      for (const fs::path& path : record_trial(plan, algorithm, pictures, options.out)) {
         recordings.push_back(read_recording(path));
         rows.push_back(row_of(plan, recordings.back()));
       }

@@ -1,8 +1,8 @@
 #include "app/record_trial.h"
 
 #include <memory>
+#include <utility>
 
-#include "app/bone_picture.h"
 #include "app/describe_run.h"
 #include "app/fault_count.h"
 #include "app/progress.h"
@@ -25,21 +25,25 @@ std::string recording_name(const TrialPlan& plan, AlgorithmId algorithm, RunPhas
   return fmt::format("{}{}-{}.h5", name_of(algorithm), mode, name_of(phase));
 }
 
-void add_pictures(Recorder& recorder, const TrialPlan& plan, const Volume& after) {
-  recorder.add_picture(std::string(kPictureBefore), picture_of_entry(plan.bone.volume, plan.entry));
-  recorder.add_picture(std::string(kPictureAfter), picture_of_entry(after, plan.entry));
+void add_pictures(Recorder& recorder, const EntryPictures& pictures, const Volume& milled) {
+  if (pictures.before()) recorder.add_picture(std::string(kPictureBefore), *pictures.before());
+  if (auto after = pictures.of(milled)) recorder.add_picture(std::string(kPictureAfter), *std::move(after));
 }
 
 }  // namespace
 
-std::vector<fs::path> record_trial(const TrialPlan& plan, AlgorithmId algorithm, const fs::path& folder) {
+std::vector<fs::path> record_trial(const TrialPlan& plan, AlgorithmId algorithm, const EntryPictures& pictures,
+                                   const fs::path& folder) {
   MillingTrial trial(plan.bone.volume, plan.densities, plan.entry, algorithm, plan.settings);
   std::vector<fs::path> paths;
   std::vector<std::unique_ptr<Recorder>> recorders;
   for (const RunPhase phase : kAllPhases) {
     paths.push_back(folder / recording_name(plan, algorithm, phase));
-    recorders.push_back(std::make_unique<Recorder>(
-        paths.back(), describe_run(plan, algorithm, trial.algorithm().sample_point_count(), phase)));
+    RunDescription run = describe_run(plan, algorithm, trial.algorithm().sample_point_count(), phase);
+    if (!pictures.before()) {
+      run.settings.push_back({std::string(kPicturesKey), "none, as OpenGL could not be had", ""});
+    }
+    recorders.push_back(std::make_unique<Recorder>(paths.back(), run));
   }
   Recorder& milling = *recorders[0];
   Recorder& holding = *recorders[1];
@@ -53,7 +57,7 @@ std::vector<fs::path> record_trial(const TrialPlan& plan, AlgorithmId algorithm,
       show_progress(name_of(algorithm), tick.record.time_s / (script.milling_s + script.holding_s));
     }
   }
-  add_pictures(milling, plan, trial.volume());
+  add_pictures(milling, pictures, trial.volume());
   milling.close();
   holding.close();
   end_progress();

@@ -7,7 +7,7 @@
 #include "tests/shapes.h"
 #include <gtest/gtest.h>
 
-#include "osteomill/surface/png.h"
+#include "osteomill/image/png.h"
 #include "osteomill/surface/surface_mesh.h"
 #include "osteomill/view/offscreen_context.h"
 
@@ -117,7 +117,7 @@ TEST_F(SceneRendererTest, APointOfTheToolIsDrawnWhereTheCameraSeesIt) {
   EXPECT_NE(std::vector<int>(with.pixel(x, y), with.pixel(x, y) + 3),
             std::vector<int>(without.pixel(x, y), without.pixel(x, y) + 3));
   const double radius_px =
-      scene_.tool.burr_radius_mm / mm_per_pixel(kSize, depth_of(scene_.camera, scene_.X_WT->position_mm));
+      scene_.tool.burr_radius_mm / mm_per_pixel(scene_.camera, kSize, depth_of(scene_.camera, scene_.X_WT->position_mm));
   const int beside = static_cast<int>(burr.x() + 1.3 * radius_px);
   EXPECT_EQ(std::vector<int>(with.pixel(beside, y), with.pixel(beside, y) + 3),
             std::vector<int>(without.pixel(beside, y), without.pixel(beside, y) + 3));
