@@ -32,8 +32,8 @@ void add_pictures(Recorder& recorder, const EntryPictures& pictures, const Volum
 
 }  // namespace
 
-std::vector<fs::path> record_trial(const TrialPlan& plan, AlgorithmId algorithm, const EntryPictures& pictures,
-                                   const fs::path& folder) {
+std::vector<fs::path> record_trial(const TrialPlan& plan, AlgorithmId algorithm,
+                                   const EntryPictures& pictures, const fs::path& folder) {
   MillingTrial trial(plan.bone.volume, plan.densities, plan.entry, algorithm, plan.settings);
   std::vector<fs::path> paths;
   std::vector<std::unique_ptr<Recorder>> recorders;

@@ -25,8 +25,8 @@ struct TrialPlan {
 };
 
 /// Runs one algorithm through both phases of section 8.2, shows progress, and writes one recording a phase
-/// into `folder`, with pictures of the bone before and after in the first, or a setting that says why there are
-/// none. Returns their paths.
+/// into `folder`, with pictures of the bone before and after in the first, or a setting that says why there
+/// are none. Returns their paths.
 std::vector<std::filesystem::path> record_trial(const TrialPlan& plan, AlgorithmId algorithm,
                                                 const EntryPictures& pictures,
                                                 const std::filesystem::path& folder);

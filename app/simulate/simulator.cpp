@@ -25,8 +25,8 @@
 #include <imgui.h>
 
 #include "osteomill/files/atomic_file.h"
-#include "osteomill/sound/sound_stream.h"
 #include "osteomill/image/png.h"
+#include "osteomill/sound/sound_stream.h"
 #include "osteomill/view/image_annotations.h"
 #include "osteomill/view/scene_renderer.h"
 

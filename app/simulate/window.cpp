@@ -15,7 +15,6 @@ namespace osteomill::app {
 
 namespace {
 
-
 std::string last_complaint() {
   const char* text = nullptr;
   glfwGetError(&text);

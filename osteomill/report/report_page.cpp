@@ -136,6 +136,17 @@ std::string metrics_table(const RunGroup& group) {
   return html_table(table);
 }
 
+// In the place of the pictures.
+std::string missing_pictures(const RunGroup& group) {
+  for (const MeasuredRun& run : group.runs) {
+    for (const RunSetting& setting : run.recording->description.settings) {
+      if (setting.key != kPicturesKey) continue;
+      return notice("No pictures of the bone: OpenGL could not be had when this was recorded.");
+    }
+  }
+  return "";
+}
+
 std::string group_section(const DrawnGroup& drawn) {
   const RunGroup& group = drawn.group;
   const std::vector<Finding> findings = check_findings(group);
@@ -148,7 +159,7 @@ std::string group_section(const DrawnGroup& drawn) {
   for (const std::string& text : plain_paragraphs(group, findings)) html += paragraph(text);
   html += "<h3>The paper's findings</h3>\n" + findings_table(findings);
   html += "<h3>Figures of merit</h3>\n" + metrics_table(group);
-  html += "<h3>Figures</h3>\n";
+  html += "<h3>Figures</h3>\n" + missing_pictures(group);
   for (const CaptionedFigure& figure : drawn.figures) {
     // Pictures of the bone are smaller as PNG, curves and clouds as SVG stay sharp.
     const bool photograph = figure.files.png.filename().string().starts_with("bone");

@@ -18,7 +18,7 @@ std::vector<unsigned char> sample_png(bool milled, int width, int height) {
       if (milled && depth > 0 && std::hypot(u - 0.1, v - 0.3) < 0.25) shade *= 0.4;
       const auto level = static_cast<unsigned char>(255 * std::clamp(shade, 0.0, 1.0));
       image.rgb.insert(image.rgb.end(), {level, static_cast<unsigned char>(level * 0.97),
-                                   static_cast<unsigned char>(level * 0.88)});
+                                         static_cast<unsigned char>(level * 0.88)});
     }
   }
   return encode_png(image);

@@ -117,6 +117,7 @@ void set_uniforms(GLuint program, const ViewScene& scene, const Projection& proj
   glUniformMatrix4fv(place("clip_from_camera"), 1, GL_FALSE, projection.clip_from_camera.data());
   glUniform1f(place("isovalue"), static_cast<float>(scene.isovalue));
   glUniform1f(place("reference_density"), static_cast<float>(scene.reference_density));
+  glUniform3fv(place("light_from_below"), 1, scene.light_from_below.data());
   glUniform2f(place("picture_size"), static_cast<float>(projection.size.width),
               static_cast<float>(projection.size.height));
   const double reach_mm = reach_px * mm_per_pixel(scene.camera, projection.size, 1.0);
@@ -185,7 +186,8 @@ BoneLayer::BoneLayer(const SurfaceBricks& layout, const GridGeometry& geometry)
       layout_(layout),
       geometry_(geometry),
       bricks_(layout.count()) {
-  for (std::size_t n = 0; n < bricks_.size(); ++n) bricks_[n].bounds = bounding_sphere(geometry, layout.cells(n));
+  for (std::size_t n = 0; n < bricks_.size(); ++n)
+    bricks_[n].bounds = bounding_sphere(geometry, layout.cells(n));
 }
 
 void BoneLayer::clear() {

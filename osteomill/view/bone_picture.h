@@ -6,8 +6,8 @@
 
 namespace osteomill {
 
-/// Looks obliquely down at where a tool enters the bone at `entry_W` along the unit vector `into_W`: at all of
-/// the bone where it is small (a tooth), else at what lies around the entry. `lateral_W` is a unit vector
+/// Looks obliquely down at where a tool enters the bone at `entry_W` along the unit vector `into_W`: at all
+/// of the bone where it is small (a tooth), else at what lies around the entry. `lateral_W` is a unit vector
 /// across, which turns the view about the entry. From far away, so that lengths can be read off: what lies 10
 /// mm nearer is drawn at most 2 % larger.
 Camera camera_above(const Volume& bone, const Vec3& entry_W, const Vec3& into_W, const Vec3& lateral_W);
@@ -18,6 +18,6 @@ Camera camera_above(const Volume& bone, const Vec3& entry_W, const Vec3& into_W,
 /// Throws std::runtime_error where OpenGL cannot be had or refuses something. Takes a second or so: not for
 /// the tick.
 Image bone_picture(const Volume& bone, double reference_density, const Camera& camera,
-                   const PixelSize& size = {800, 800});
+                   const PixelSize& size = {1120, 1120});
 
 }  // namespace osteomill

@@ -58,8 +58,7 @@ Vec3 ray_through(const Camera& camera, const PixelSize& size, double x_px, doubl
 
 /// World to camera, and camera to OpenGL's clip coordinates with the depths between `near_mm` and `far_mm`.
 Eigen::Matrix4f view_matrix(const Camera& camera);
-Eigen::Matrix4f projection_matrix(const Camera& camera, const PixelSize& size, double near_mm,
-                                  double far_mm);
+Eigen::Matrix4f projection_matrix(const Camera& camera, const PixelSize& size, double near_mm, double far_mm);
 
 /// The six views along the patient's axes (W is LPS: +x left, +y posterior, +z superior).
 enum class ViewFrom : unsigned char { anterior, posterior, left, right, superior, inferior };

@@ -32,8 +32,8 @@ bool DepthTiles::hide(const Sphere& sphere) const {
     return static_cast<int>(std::clamp(pixel / kTile_px, 0.0, count - 1.0));
   };
   for (int row = tile(middle.y() - reach_px, rows_); row <= tile(middle.y() + reach_px, rows_); ++row) {
-    for (int column = tile(middle.x() - reach_px, columns_);
-         column <= tile(middle.x() + reach_px, columns_); ++column) {
+    for (int column = tile(middle.x() - reach_px, columns_); column <= tile(middle.x() + reach_px, columns_);
+         ++column) {
       if (depths_[static_cast<std::size_t>(column + columns_ * row)] >= front) return false;
     }
   }

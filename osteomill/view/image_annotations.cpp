@@ -31,7 +31,8 @@ double distance_px(const Annotation::Line& line, const Vector2d& point) {
 void draw_line(Image& image, const Annotation::Line& line, double width_px, unsigned char level) {
   const double reach = 0.5 * width_px + 1;
   const Vector2d first = (line.from.cwiseMin(line.to).array() - reach).max(0.0);
-  const Vector2d last = (line.from.cwiseMax(line.to).array() + reach).matrix().cwiseMin(Vector2d(image.width, image.height));
+  const Vector2d last =
+      (line.from.cwiseMax(line.to).array() + reach).matrix().cwiseMin(Vector2d(image.width, image.height));
   for (int y = static_cast<int>(first.y()); y < last.y(); ++y) {
     for (int x = static_cast<int>(first.x()); x < last.x(); ++x) {
       const double outside = distance_px(line, {x + 0.5, y + 0.5}) - 0.5 * width_px;
@@ -51,7 +52,8 @@ class Letters {
     config.SizePixels = size_px;
     config.OversampleH = config.OversampleV = 1;
     config.PixelSnapH = true;
-    font_ = std::filesystem::exists(kFontFile) ? atlas_.AddFontFromFileTTF(kFontFile, size_px, &config) : nullptr;
+    font_ =
+        std::filesystem::exists(kFontFile) ? atlas_.AddFontFromFileTTF(kFontFile, size_px, &config) : nullptr;
     if (font_ == nullptr) font_ = atlas_.AddFontDefault(&config);
     atlas_.GetTexDataAsAlpha8(&coverages_, &width_, &height_);
   }

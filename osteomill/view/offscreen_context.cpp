@@ -21,25 +21,22 @@ bool can_be_loaded(const char* library) {
 }
 
 // EGL gives all threads the same display, and ending it ends the contexts of all: the last to go does it.
-class SharedDisplay {
- public:
-  static EGLDisplay begin() {
-    const std::scoped_lock lock(mutex_);
-    const EGLDisplay display = eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, nullptr, nullptr);
-    require(display != EGL_NO_DISPLAY && eglInitialize(display, nullptr, nullptr) == EGL_TRUE,
-            "EGL cannot be started");
-    ++users_;
-    return display;
-  }
-  static void end(EGLDisplay display) {
-    const std::scoped_lock lock(mutex_);
-    if (--users_ == 0) eglTerminate(display);
-  }
+std::mutex display_mutex;
+int display_users = 0;
 
- private:
-  static inline std::mutex mutex_;
-  static inline int users_ = 0;
-};
+EGLDisplay begin_display() {
+  const std::scoped_lock lock(display_mutex);
+  const EGLDisplay display = eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, nullptr, nullptr);
+  require(display != EGL_NO_DISPLAY && eglInitialize(display, nullptr, nullptr) == EGL_TRUE,
+          "EGL cannot be started");
+  ++display_users;
+  return display;
+}
+
+void end_display(EGLDisplay display) {
+  const std::scoped_lock lock(display_mutex);
+  if (--display_users == 0) eglTerminate(display);
+}
 
 }  // namespace
 
@@ -54,7 +51,7 @@ struct OffscreenContext::Impl {
       eglDestroyContext(display, context);
     }
     eglReleaseThread();
-    SharedDisplay::end(display);
+    end_display(display);
   }
 };
 
@@ -63,7 +60,7 @@ OffscreenContext::OffscreenContext() : impl_(std::make_unique<Impl>()) {
   require(can_be_loaded("libOpenGL.so.0") || can_be_loaded("libGL.so.1"), "libOpenGL.so.0 is missing");
   require(epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_MESA_platform_surfaceless"),
           "EGL knows no surfaceless platform");
-  impl_->display = SharedDisplay::begin();
+  impl_->display = begin_display();
   require(eglBindAPI(EGL_OPENGL_API) == EGL_TRUE, "EGL has no desktop OpenGL");
   const EGLint wanted[] = {EGL_CONTEXT_MAJOR_VERSION,
                            3,
