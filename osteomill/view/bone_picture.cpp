@@ -122,18 +122,20 @@ class BonePainter {
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     // Once for the depths, which tell what is hidden and what is sunk, and once more to be seen.
     const std::vector<std::size_t> seen =
-        draw(bricks_in_view(layout_, bone_.geometry(), scene_, projection_));
+        draw(bricks_in_view(layout_, bone_.geometry(), scene_, projection_), For::depths);
     cavities_.blur(target_.depths(), projection_.near_mm, projection_.far_mm);
     target_.bind();
-    draw(seen);
+    draw(seen, For::eyes);
     Image image = target_.read();
     if (glGetError() != GL_NO_ERROR) throw std::runtime_error("OpenGL cannot draw the bone");
     return image;
   }
 
  private:
+  enum class For : unsigned char { depths, eyes };
+
   // Draws these bricks, the nearest first, but for what is hidden by then, and returns those that were drawn.
-  std::vector<std::size_t> draw(const std::vector<std::size_t>& bricks) {
+  std::vector<std::size_t> draw(const std::vector<std::size_t>& bricks, For whom) {
     const DensityView view(bone_);
     std::vector<std::size_t> drawn;
     std::size_t done = 0;
@@ -148,7 +150,9 @@ class BonePainter {
       if (depths.hide(bounding_sphere(bone_.geometry(), layout_.cells(brick)))) continue;
       BrickMesh mesh = mesh_brick(view, brick);
       if (mesh.empty()) continue;
-      for (MeshVertex& vertex : mesh.vertices) look_closer(bone_, vertex);
+      if (whom == For::eyes) {
+        for (MeshVertex& vertex : mesh.vertices) look_closer(bone_, vertex);
+      }
       layer_.set_brick(brick, mesh);
       drawn.push_back(brick);
       triangles += mesh.triangle_count();
