@@ -90,11 +90,14 @@ void run_compare(const CompareOptions& options, const std::string& command_line)
   const LoadedBone bone = load_bone(options.scan);
   const std::vector<TrialPlan> plans = plans_of(options, bone, command_line);
   create_folder(options.out);
+  const EntryPictures pictures(bone.volume, plans.front().densities.reference, plans.front().entry,
+                               events_on_terminal());
   std::vector<Recording> recordings;
   std::vector<StudyRow> rows;
   for (const TrialPlan& plan : plans) {
     for (const AlgorithmDescription& algorithm : options.algorithms) {
-      for (const fs::path& path : record_trial(plan, algorithm, options.out, events_on_terminal())) {
+      for (const fs::path& path :
+           record_trial(plan, algorithm, pictures, options.out, events_on_terminal())) {
         recordings.push_back(read_recording(path));
         rows.push_back(row_of(plan, recordings.back()));
       }

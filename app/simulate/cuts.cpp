@@ -85,7 +85,7 @@ bool drag_cut(ViewState& view, const PixelSize& size) {
   const Vec3 anchor_W = view.bounds.centre_W;
   Eigen::Vector2d seen =
       pixel_of(view.camera, size, anchor_W + cut.normal_W) - pixel_of(view.camera, size, anchor_W);
-  const double full = 1 / mm_per_pixel(size, depth_of(view.camera, anchor_W));
+  const double full = 1 / mm_per_pixel(view.camera, size, depth_of(view.camera, anchor_W));
   if (seen.norm() < 0.2 * full) seen = Eigen::Vector2d(0, -full);
   const Eigen::Vector2d moved(static_cast<double>(io.MouseDelta.x), static_cast<double>(io.MouseDelta.y));
   cut.offset_mm += static_cast<float>(moved.dot(seen) / seen.squaredNorm());

@@ -32,7 +32,7 @@ bool on_tool(const ViewState& view, const Pose& X_WT, const MillingTool& tool, c
       ray_through(view.camera, size, static_cast<double>(pointer.x), static_cast<double>(pointer.y));
   const Pose X_TW = X_WT.inverse();
   const double middle_mm = depth_of(view.camera, X_WT.position_mm);
-  const double reach_mm = kPointerReach_px * mm_per_pixel(size, middle_mm);
+  const double reach_mm = kPointerReach_px * mm_per_pixel(view.camera, size, middle_mm);
   for (int n = 0; n <= kSteps; ++n) {
     const double way_mm = middle_mm + tool.shaft_length_mm * (2.0 * n / kSteps - 1.0);
     const Vec3 point_W = view.camera.eye_W() + way_mm * ray;

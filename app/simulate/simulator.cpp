@@ -25,9 +25,9 @@
 #include <imgui.h>
 
 #include "osteomill/files/atomic_file.h"
+#include "osteomill/image/png.h"
 #include "osteomill/sound/sound_stream.h"
-#include "osteomill/surface/png.h"
-#include "osteomill/surface/scale_bar.h"
+#include "osteomill/view/image_annotations.h"
 #include "osteomill/view/scene_renderer.h"
 
 namespace osteomill::app {
@@ -232,7 +232,7 @@ class Simulator {
   void save_picture() {
     try {
       Image picture = renderer_->picture();
-      draw_scale_bar(picture, mm_per_pixel(window_.size(), view_.camera.distance_mm));
+      draw_annotation(picture, scale_bar_annotation(view_.camera, window_.size()), kInkOnDark);
       create_folder(options_.folder);
       const auto path = files_.name("picture.png");
       write_png(path, picture);

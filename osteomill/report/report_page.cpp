@@ -105,6 +105,17 @@ std::string metrics_table(const RunGroup& group, const std::vector<MetricLine>& 
   return html_table(table);
 }
 
+// In the place of the pictures.
+std::string missing_pictures(const RunGroup& group) {
+  for (const MeasuredRun& run : group.runs) {
+    for (const RunSetting& setting : run.recording->description.settings) {
+      if (setting.key != kPicturesKey) continue;
+      return notice("No pictures of the bone: OpenGL could not be had when this was recorded.");
+    }
+  }
+  return "";
+}
+
 std::string group_section(const DrawnGroup& drawn, const PageText& text) {
   const RunGroup& group = drawn.group;
   std::string html = fmt::format("<h2>Mode: {}</h2>\n", name_of(group.mode));
@@ -115,7 +126,7 @@ std::string group_section(const DrawnGroup& drawn, const PageText& text) {
             "wrong with one of them need not be wrong here.");
   if (text.about_group) html += text.about_group(group);
   html += "<h3>Figures of merit</h3>\n" + metrics_table(group, text.further_metrics);
-  html += "<h3>Figures</h3>\n";
+  html += "<h3>Figures</h3>\n" + missing_pictures(group);
   for (const CaptionedFigure& figure : drawn.figures) {
     // Pictures of the bone are smaller as PNG, curves and clouds as SVG stay sharp.
     const bool photograph = figure.files.png.filename().string().starts_with("bone");

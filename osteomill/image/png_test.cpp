@@ -1,4 +1,4 @@
-#include "osteomill/surface/png.h"
+#include "osteomill/image/png.h"
 
 #include <filesystem>
 #include <fstream>
@@ -19,6 +19,7 @@ Image colourful_image() {
   return image;
 }
 
+// By libpng alone, so that what we wrote is held against something else.
 Image decoded(const std::vector<unsigned char>& bytes) {
   png_image header{};
   header.version = PNG_IMAGE_VERSION;
@@ -36,6 +37,25 @@ TEST(Png, ComesBackAsItWent) {
   EXPECT_EQ(back.width, image.width);
   EXPECT_EQ(back.height, image.height);
   EXPECT_EQ(back.rgb, image.rgb);
+}
+
+TEST(Png, IsReadAsItIs) {
+  const auto back = decode_png(encode_png(colourful_image()));
+  ASSERT_TRUE(back);
+  EXPECT_EQ(back->width, 37);
+  EXPECT_EQ(back->rgb, colourful_image().rgb);
+}
+
+TEST(Png, WhatIsNoWholePngOfSensibleSizeGivesNothing) {
+  const std::vector<unsigned char> png = encode_png(colourful_image());
+  EXPECT_FALSE(decode_png({}));
+  EXPECT_FALSE(decode_png(std::vector<unsigned char>{1, 2, 3}));
+  for (const std::size_t size : {10u, 30u, 60u, 200u}) {
+    EXPECT_FALSE(decode_png(std::span(png).first(size))) << size;
+  }
+  auto huge = png;
+  huge[16] = 0x7f;
+  EXPECT_FALSE(decode_png(huge));
 }
 
 TEST(Png, IsWrittenToAFileByteForByte) {

@@ -1,4 +1,4 @@
-#include "osteomill/surface/png.h"
+#include "osteomill/image/png.h"
 
 #include <stdexcept>
 #include <string>
@@ -27,6 +27,24 @@ std::vector<unsigned char> encode_png(const Image& image) {
   }
   bytes.resize(size);
   return bytes;
+}
+
+std::optional<Image> decode_png(std::span<const unsigned char> png) {
+  constexpr png_uint_32 kMaxSide = 4096;
+  png_image header{};
+  header.version = PNG_IMAGE_VERSION;
+  if (png_image_begin_read_from_memory(&header, png.data(), png.size()) == 0) return std::nullopt;
+  if (header.width > kMaxSide || header.height > kMaxSide) {
+    png_image_free(&header);
+    return std::nullopt;
+  }
+  header.format = PNG_FORMAT_RGB;
+  Image image{static_cast<int>(header.width), static_cast<int>(header.height),
+              std::vector<unsigned char>(PNG_IMAGE_SIZE(header))};
+  const png_color white{255, 255, 255};
+  // Frees the header whether it succeeds or not.
+  if (png_image_finish_read(&header, &white, image.rgb.data(), 0, nullptr) == 0) return std::nullopt;
+  return image;
 }
 
 void write_png(const std::filesystem::path& path, const Image& image) {

@@ -21,4 +21,8 @@ struct Image {
   }
 };
 
+/// The image smaller by a whole number (1 or more), each pixel the mean of `factor` x `factor`; what is left
+/// over at the right and at the bottom is dropped.
+Image averaged_down(const Image& image, int factor);
+
 }  // namespace osteomill
