@@ -8,21 +8,13 @@
 
 #include "osteomill/ct/read_scan.h"
 #include "osteomill/files/input_error.h"
+#include "osteomill/files/temporary_folder.h"
 
 namespace osteomill::testing_support {
 
 /// A test with a folder of its own, and with what reading a scan from it says.
 class FolderTest : public ::testing::Test {
  protected:
-  void SetUp() override {
-    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ =
-        std::filesystem::path(::testing::TempDir()) / (std::string(info->test_suite_name()) + info->name());
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
   std::filesystem::path write(const std::string& name, const std::string& bytes) const {
     std::ofstream(folder_ / name, std::ios::binary) << bytes;
     return folder_ / name;
@@ -38,7 +30,8 @@ class FolderTest : public ::testing::Test {
     return "";
   }
 
-  std::filesystem::path folder_;
+  const TemporaryFolder temporary_;
+  const std::filesystem::path folder_ = temporary_.path();
 };
 
 inline bool contains(const std::string& text, const std::string& part) {
