@@ -37,7 +37,7 @@ int main() {
   std::vector<std::size_t> by_brick(milling.surface_layout().count());
   milling.start();
   hand.pull_to(pose_above(entry, setup.tool, -2.0));
-  for (const auto algorithm : {osteomill::AlgorithmId::point_shell, osteomill::AlgorithmId::line_proxy}) {
+  for (const auto algorithm : {osteomill::AlgorithmId::point_shell, osteomill::AlgorithmId::surface_points}) {
     setup.algorithm = algorithm;
     milling.change(setup);
     milling.finish_preparing();

@@ -1,8 +1,13 @@
 #include "osteomill/live/live_milling.h"
 
 #include <chrono>
+#include <cmath>
 #include <filesystem>
+#include <limits>
+#include <memory>
+#include <stdexcept>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "tests/shapes.h"
@@ -114,12 +119,10 @@ TEST_F(LiveMillingTest, TheBoneThatIsFeltIsTheBoneThatIsSeen) {
     mill(0.2);
   }
   const std::uint64_t version = milling_.bone_version();
-  const auto wait_until_pressed = [&](double newtons) {
-    for (int n = 0; n < 400 && milling_.state().record.wrench.force_N.norm() < newtons; ++n) {
-      std::this_thread::sleep_for(5ms);
-    }
-  };
-  wait_until_pressed(0.5);
+  hand_.pull_to(pose_above(entry_, setup_.tool, -4.0));
+  for (int n = 0; n < 400 && milling_.state().record.wrench.force_N.norm() < 1.0; ++n) {
+    std::this_thread::sleep_for(5ms);
+  }
   // The burr rests on what is left: its lowest point is on the surface of the copy.
   const Pose X_WT = milling_.state().record.X_WT;
   const Vec3 lowest_W = X_WT.position_mm + setup_.tool.burr_radius_mm * entry_.direction_W;
@@ -141,14 +144,14 @@ TEST_F(LiveMillingTest, AnotherAlgorithmAndToolTakeOver) {
   const double removed_mm3 = milling_.state().record.removed_mm3;
   const std::vector<float> milled = bone();
   MillingSetup other = setup_;
-  other.algorithm = AlgorithmId::line_proxy;
-  other.tool.burr_radius_mm = 1.0;
+  other.algorithm = AlgorithmId::surface_points;
+  other.tool.burr_radius_mm = 1.2;
   milling_.change(other);
   EXPECT_TRUE(milling_.preparing());
   milling_.undo();  // nothing while that is prepared
   milling_.finish_preparing();
   EXPECT_FALSE(milling_.preparing());
-  EXPECT_EQ(milling_.setup().algorithm, AlgorithmId::line_proxy);
+  EXPECT_EQ(milling_.setup().algorithm, AlgorithmId::surface_points);
   settle();
   EXPECT_EQ(bone(), milled);
   EXPECT_EQ(milling_.state().record.removed_mm3, removed_mm3);
