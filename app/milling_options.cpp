@@ -121,28 +121,22 @@ void add_shared_settings(CLI::App& command, HapticSettings& haptics) {
 }  // namespace
 
 void add_milling_options(CLI::App& command, MillingOptions& options) {
-  add_positive(command, "--burr-radius", options.tool.burr_radius_mm, "mm");
-  add_positive(command, "--shaft-radius", options.tool.shaft_radius_mm, "mm");
-  add_positive(command, "--shaft-length", options.tool.shaft_length_mm, "mm");
-  add_shared_settings(command, options.haptics);
-  add_named_settings(command, options.haptics);
-  add_positive(command, "--spindle-speed", options.cutting.spindle_speed_rpm, "rpm");
-  add_positive(command, "--cutting-energy", options.cutting.specific_energy_Nmm_per_mm3,
+  MillingSetup& setup = options.setup;
+  add_positive(command, "--burr-radius", setup.tool.burr_radius_mm, "mm");
+  add_positive(command, "--shaft-radius", setup.tool.shaft_radius_mm, "mm");
+  add_positive(command, "--shaft-length", setup.tool.shaft_length_mm, "mm");
+  add_shared_settings(command, setup.haptics);
+  add_named_settings(command, setup.haptics);
+  add_positive(command, "--spindle-speed", setup.cutting.spindle_speed_rpm, "rpm");
+  add_positive(command, "--cutting-energy", setup.cutting.specific_energy_Nmm_per_mm3,
                "N mm/mm^3, the work that removes bone of the reference density");
-  add_positive(command, "--removal-rate", options.removal_rate_mm3_per_Ns,
+  add_positive(command, "--removal-rate", setup.removal_rate_mm3_per_Ns,
                "kappa, mm^3/(N s); else from burr, spindle speed and cutting energy");
-  add_positive(command, "--force-limit", options.limits.force_N, "N, the most the device is asked for");
-  add_positive(command, "--torque-limit", options.limits.torque_Nmm, "N mm");
+  add_positive(command, "--force-limit", setup.limits.force_N, "N, the most the device is asked for");
+  add_positive(command, "--torque-limit", setup.limits.torque_Nmm, "N mm");
   command.add_option("--seed", options.seed, "Of the hand's tremor, and of the hands that --seeds draws")
       ->capture_default_str();
   add_config_option(command);
-}
-
-MillingSettings milling_settings(const MillingOptions& options) {
-  MillingSettings milling;
-  milling.removal_rate_mm3_per_Ns = options.removal_rate_mm3_per_Ns.value_or(
-      removal_rate_mm3_per_Ns(options.cutting, options.tool.burr_radius_mm));
-  return milling;
 }
 
 void add_algorithm_option(CLI::App& command, std::vector<AlgorithmDescription>& algorithms) {

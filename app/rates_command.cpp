@@ -46,7 +46,7 @@ void add_rates_command(CLI::App& program) {
   add_scan_options(*command, options->scan);
   command->add_option("--out", options->out, "Folder for the tables and the figure")->capture_default_str();
   add_algorithm_option(*command, options->algorithms);
-  add_mode_option(*command, options->trial.milling.haptics.mode);
+  add_mode_option(*command, options->trial.milling.setup.haptics.mode);
   add_trial_options(*command, options->trial);
   command->callback([=] {
     apply_config_file(*command);

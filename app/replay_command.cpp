@@ -28,17 +28,17 @@ struct ReplayOptions {
   std::string out;
 };
 
-void run_replay(const ReplayOptions& options) {
+void run_replay(ReplayOptions options) {
   const std::vector<TrajectoryPoint> trajectory = read_trajectory(options.trajectory);
   LoadedBone bone = load_bone(options.scan);
   const BoneDensities densities = estimate_densities(bone.volume);
-  MillingSession session(std::move(bone.volume), options.milling.tool,
-                         make_algorithm(options.algorithm.front(), options.milling.haptics), densities,
-                         milling_settings(options.milling), options.milling.limits);
+  options.milling.setup.algorithm = options.algorithm.front();
+  const auto session =
+      make_session(std::make_shared<Volume>(std::move(bone.volume)), densities, options.milling.setup);
   FaultCount faults;
   std::vector<TickRecord> log;
   log.reserve(trajectory.size());
-  replay(session, trajectory, [&](const TickRecord& record) {
+  replay(*session, trajectory, [&](const TickRecord& record) {
     log.push_back(record);
     faults.add(record);
     if (log.size() % 1000 == 0) {
@@ -63,7 +63,7 @@ void add_replay_command(CLI::App& program) {
   add_algorithm_option(*command, options->algorithm);
   command->get_option("--algorithm")->required()->expected(1);
   command->add_option("--out", options->out, "The log, CSV, a row a tick")->required();
-  add_mode_option(*command, options->milling.haptics.mode);
+  add_mode_option(*command, options->milling.setup.haptics.mode);
   add_milling_options(*command, options->milling);
   command->callback([=] {
     apply_config_file(*command);

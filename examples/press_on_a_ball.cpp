@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include <osteomill/haptics/make_algorithm.h>
+#include <osteomill/haptics/algorithms.h>
 
 namespace {
 

@@ -13,9 +13,9 @@
 
 #include "osteomill/device/posed_device.h"
 #include "osteomill/haptics/algorithms.h"
+#include "osteomill/live/bone_follower.h"
 #include "osteomill/live/live_session.h"
 #include "osteomill/session/milling_session.h"
-#include "osteomill/surface/live_surface.h"
 #include "osteomill/volume/densities.h"
 
 namespace osteomill {
@@ -84,7 +84,8 @@ INSTANTIATE_TEST_SUITE_P(AllAlgorithms, TickAllocation,
                            return name + "_" + std::string(name_of(test.param.mode));
                          });
 
-// The whole loop of the haptic thread, with the surface's hand-over, the vibration, and commands coming in.
+// The whole loop of the haptic thread, with the hand-over to the follower, the vibration, and commands coming
+// in.
 TEST(TickAllocation, NoTickOfALiveSessionAllocates) {
   constexpr double kBallRadius_mm = 6;
   const Volume bone = testing_support::shape_volume(testing_support::centred_cube(64, 0.25),
@@ -96,14 +97,14 @@ TEST(TickAllocation, NoTickOfALiveSessionAllocates) {
   session->set_vibration({.on = true});
   PosedDevice device;
   device.put({{0, 0, kBallRadius_mm + tool.burr_radius_mm - 0.3}, Quat::Identity()});
-  LiveSurface surface(bone);
+  BoneFollower follower(bone);
   LiveSession live(std::move(session), device);
   std::atomic<int> ticks{0};
   std::atomic<long> allocations{-1};
   long before = 0;
   live.set_spindle(true);
   live.listen([&](const TickRecord&, const Volume& volume, const VolumeChange& change) {
-    surface.volume_changed(volume, change);
+    follower.bone_changed(volume, change);
     const int tick = ticks.fetch_add(1);
     if (tick == 5) before = allocations_of_this_thread();
     if (tick == 300) allocations = allocations_of_this_thread() - before;

@@ -53,10 +53,13 @@ void CutUpdates::update(const ViewState& view, const Simulation& simulation, Sce
       continue;
     }
     const CutPlane plane = plane_of(view.cuts[n]);
-    const bool milled = shown.bone_version != simulation.bone_version() && pictures_ % kPicturesBetween == 0;
+    const bool milled =
+        shown.bone_version != simulation.milling.bone_version() && pictures_ % kPicturesBetween == 0;
     if (shown.on && same(shown.plane, plane) && !milled) continue;
-    renderer.set_cut_face(n, cut_face(simulation.bone(), plane, simulation.grey_window()));
-    shown = {true, plane, simulation.bone_version()};
+    shown = {true, plane, simulation.milling.bone_version()};
+    simulation.milling.read_bone([&](const Volume& bone) {
+      renderer.set_cut_face(n, cut_face(bone.grid(), plane, simulation.grey_window));
+    });
   }
 }
 

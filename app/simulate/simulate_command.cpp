@@ -17,9 +17,9 @@ struct SimulateOptions {
 };
 
 void run_simulate(SimulateOptions options) {
-  const MillingOptions& milling = options.milling;
-  options.simulator.settings = {milling.tool,    options.algorithm.front(),       milling.haptics,
-                                milling.cutting, milling.removal_rate_mm3_per_Ns, milling.limits};
+  options.simulator.setup = options.milling.setup;
+  options.simulator.setup.algorithm = options.algorithm.front();
+  options.simulator.setup.vibration = true;
   run_simulator(options.simulator);
 }
 

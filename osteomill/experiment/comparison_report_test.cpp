@@ -139,7 +139,7 @@ TEST_F(ReportTest, WhatAReaderMustKnowIsSaid) {
 }
 
 TEST_F(ReportTest, WherePicturesCouldNotBeMadeItIsSaidInTheirPlace) {
-  std::vector<Recording> runs{sample_run(AlgorithmId::line_proxy, RunPhase::milling, Mode::steady, 100)};
+  std::vector<Recording> runs{sample_run("line-proxy", kMilling, Mode::steady, 100)};
   const std::string_view told = "No pictures of the bone: OpenGL could not be had";
   EXPECT_EQ(bytes_of(write_report(runs, out_)).find(told), std::string::npos);
   runs[0].pictures.clear();

@@ -4,32 +4,37 @@
 #include <gtest/gtest.h>
 
 #include "osteomill/device/latest_value.h"
-#include "osteomill/live/spsc_ring.h"
+#include "osteomill/device/spsc_queue.h"
 
 namespace osteomill {
 namespace {
 
-TEST(SpscRing, KeepsItsOrderAndItsCapacity) {
-  SpscRing<std::unique_ptr<int>> ring(2);
-  EXPECT_TRUE(ring.try_push(std::make_unique<int>(1)));
-  EXPECT_TRUE(ring.try_push(std::make_unique<int>(2)));
-  EXPECT_FALSE(ring.has_room());
-  auto third = std::make_unique<int>(3);
-  EXPECT_FALSE(ring.try_push(std::move(third)));
-  ASSERT_TRUE(third);
-  EXPECT_EQ(**ring.try_pop(), 1);
-  EXPECT_TRUE(ring.try_push(std::move(third)));
-  EXPECT_EQ(**ring.try_pop(), 2);
-  EXPECT_EQ(**ring.try_pop(), 3);
-  EXPECT_FALSE(ring.try_pop());
+TEST(SpscQueue, KeepsItsOrderAndItsCapacity) {
+  SpscQueue<std::unique_ptr<int>> queue(3);
+  EXPECT_EQ(queue.front(), nullptr);
+  for (int n = 0; n < 3; ++n) EXPECT_TRUE(queue.try_push(std::make_unique<int>(n)));
+  auto late = std::make_unique<int>(3);
+  EXPECT_FALSE(queue.try_push(std::move(late)));
+  ASSERT_TRUE(late);
+  std::unique_ptr<int> value;
+  ASSERT_TRUE(queue.try_pop(value));
+  EXPECT_EQ(*value, 0);
+  EXPECT_TRUE(queue.try_push(std::move(late)));
+  EXPECT_EQ(**queue.front(), 1);
+  queue.pop();
+  ASSERT_TRUE(queue.try_pop(value));
+  EXPECT_EQ(*value, 2);
+  ASSERT_TRUE(queue.try_pop(value));
+  EXPECT_EQ(*value, 3);
+  EXPECT_FALSE(queue.try_pop(value));
 }
 
-TEST(SpscRing, NothingIsLostBetweenTwoThreads) {
-  SpscRing<int> ring(7);
+TEST(SpscQueue, NothingIsLostBetweenTwoThreads) {
+  SpscQueue<int> queue(7);
   constexpr int kCount = 20000;
   std::thread sender([&] {
     for (int n = 0; n < kCount;) {
-      if (ring.try_push(int(n))) {
+      if (queue.try_push(n)) {
         ++n;
       } else {
         std::this_thread::yield();
@@ -37,8 +42,8 @@ TEST(SpscRing, NothingIsLostBetweenTwoThreads) {
     }
   });
   for (int expected = 0; expected < kCount;) {
-    if (const auto value = ring.try_pop()) {
-      ASSERT_EQ(*value, expected++);
+    if (int value = 0; queue.try_pop(value)) {
+      ASSERT_EQ(value, expected++);
     } else {
       std::this_thread::yield();
     }

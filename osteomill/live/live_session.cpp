@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "osteomill/device/spsc_queue.h"
 #include "osteomill/live/real_time.h"
 
 namespace osteomill {
@@ -16,10 +17,25 @@ using namespace std::chrono_literals;
 // A tick that comes later than this mills and moves as if it came at this time.
 constexpr double kLongestTick_s = 0.02;
 
+constexpr std::size_t kCommands = 255;
+
 }  // namespace
 
+struct LiveSession::Queues {
+  // From the commanding thread and back: what was replaced is destroyed where it was made. What is sent back
+  // always finds room: at most `kCommands` were under way when the last one was sent, and before that all
+  // that had come back was taken.
+  SpscQueue<Action> commands{kCommands};
+  SpscQueue<Action> retired{2 * kCommands + 1};
+  SpscQueue<TickRecord> records{4096};
+};
+
 LiveSession::LiveSession(std::unique_ptr<MillingSession> session, Device& device, double tick_s)
-    : device_(device), tick_s_(tick_s), crash_stop_(device), session_(std::move(session)) {}
+    : device_(device),
+      tick_s_(tick_s),
+      crash_stop_(device),
+      session_(std::move(session)),
+      queues_(std::make_unique<Queues>()) {}
 
 LiveSession::~LiveSession() {
   stop();
@@ -45,14 +61,12 @@ void LiveSession::stop() {
   if (thread_.joinable()) thread_.join();
   // What was sent and not yet taken takes effect all the same.
   take_commands();
-  while (retired_.try_pop()) {
-  }
+  destroy_retired();
 }
 
 LiveSession::CommandNumber LiveSession::send(Action action) {
-  while (retired_.try_pop()) {
-  }
-  while (!commands_.try_push(std::move(action))) {
+  destroy_retired();
+  while (!queues_->commands.try_push(std::move(action))) {
     if (!running()) take_commands();
     std::this_thread::sleep_for(200us);
   }
@@ -77,8 +91,8 @@ LiveSession::CommandNumber LiveSession::hold_bone(bool held) {
   return send(HoldBone{held});
 }
 
-LiveSession::CommandNumber LiveSession::replace(Replacement replacement) {
-  return send(std::move(replacement));
+LiveSession::CommandNumber LiveSession::replace(std::unique_ptr<MillingSession> session) {
+  return send(Replace{std::move(session)});
 }
 
 LiveSession::CommandNumber LiveSession::listen(TickListener listener) {
@@ -89,8 +103,7 @@ void LiveSession::wait_for(CommandNumber number) {
   while (!is_done(number)) {
     if (!running()) {
       if (thread_.joinable()) thread_.join();
-      while (retired_.try_pop()) {
-      }
+      destroy_retired();
       take_commands();
     }
     std::this_thread::sleep_for(200us);
@@ -130,14 +143,25 @@ void LiveSession::tick_until_stopped() {
 }
 
 void LiveSession::take_commands() {
-  while (retired_.has_room()) {
-    std::optional<Action> action = commands_.try_pop();
-    if (!action) return;
-    apply(*action);
+  Action action;
+  while (queues_->commands.try_pop(action)) {
+    apply(action);
     // What is left in the action is what it replaced.
-    retired_.try_push(std::move(*action));
+    queues_->retired.try_push(std::move(action));
     commands_done_.fetch_add(1, std::memory_order_release);
   }
+}
+
+void LiveSession::destroy_retired() {
+  Action action;
+  while (queues_->retired.try_pop(action)) {
+  }
+}
+
+std::optional<TickRecord> LiveSession::next_record() {
+  TickRecord record;
+  if (!queues_->records.try_pop(record)) return std::nullopt;
+  return record;
 }
 
 void LiveSession::apply(Action& action) {
@@ -147,10 +171,9 @@ void LiveSession::apply(Action& action) {
     paused_ = pause->paused;
   } else if (const auto* hold = std::get_if<HoldBone>(&action)) {
     bone_held_ = hold->held;
-  } else if (auto* replacement = std::get_if<Replacement>(&action)) {
-    std::swap(session_, replacement->session);
+  } else if (auto* replace = std::get_if<Replace>(&action)) {
+    std::swap(session_, replace->session);
     session_->take_over_tool(last_X_WT_);
-    replaced_ = replacement->difference;
   } else if (auto* listen = std::get_if<Listen>(&action)) {
     std::swap(listener_, listen->listener);
   }
@@ -159,15 +182,9 @@ void LiveSession::apply(Action& action) {
 TickRecord LiveSession::tick(double time_s, double dt_s) {
   const bool spindle_on = !paused_ && (spindle_ || device_.spindle_asked());
   const TickRecord record = step(time_s, dt_s, spindle_on && !bone_held_);
-  VolumeChange change = session_->last_change();
-  if (!replaced_.voxels.empty()) {
-    change.voxels.include(replaced_.voxels.first);
-    change.voxels.include(replaced_.voxels.last);
-    replaced_ = {};
-  }
-  if (listener_) (*listener_)(record, session_->volume(), change);
+  if (listener_) (*listener_)(record, session_->volume(), session_->last_change());
   state_.write({record, spindle_on, paused_});
-  records_.try_push(TickRecord(record));
+  queues_->records.try_push(record);
   last_X_WT_ = record.X_WT;
   return record;
 }

@@ -12,7 +12,6 @@
 #include "osteomill/device/latest_value.h"
 #include "osteomill/live/crash_stop.h"
 #include "osteomill/live/live_timing.h"
-#include "osteomill/live/spsc_ring.h"
 #include "osteomill/session/milling_session.h"
 
 namespace osteomill {
@@ -38,13 +37,6 @@ class LiveSession {
  public:
   using CommandNumber = std::uint64_t;
 
-  /// Another algorithm, tool, setting or bone, prepared beforehand.
-  struct Replacement {
-    std::unique_ptr<MillingSession> session;
-    /// Where its bone differs from the bone before.
-    VolumeChange difference;
-  };
-
   /// `device` outlives this object. Does not start yet.
   LiveSession(std::unique_ptr<MillingSession> session, Device& device, double tick_s = 1e-3);
   ~LiveSession();
@@ -62,7 +54,8 @@ class LiveSession {
   /// While held nothing is milled, though everything is felt: the volume may then be read from other threads,
   /// once the command is done.
   CommandNumber hold_bone(bool held);
-  CommandNumber replace(Replacement replacement);
+  /// Another algorithm, tool, setting or bone, prepared beforehand.
+  CommandNumber replace(std::unique_ptr<MillingSession> session);
   /// In place of the listener before, which is no longer called once the command is done. May be empty.
   CommandNumber listen(TickListener listener);
   bool is_done(CommandNumber number) const {
@@ -75,7 +68,7 @@ class LiveSession {
   const LiveState& state() { return state_.read(); }
   /// Every tick's record in turn, as long as they are taken often enough: the queue holds 4 s, and what finds
   /// it full is left out.
-  std::optional<TickRecord> next_record() { return records_.try_pop(); }
+  std::optional<TickRecord> next_record();
   /// From any thread.
   TimingSummary timing() const { return timing_.summary(); }
   /// In one line what real-time scheduling was refused, or nothing. Valid once started.
@@ -97,15 +90,20 @@ class LiveSession {
   struct HoldBone {
     bool held;
   };
+  struct Replace {
+    std::unique_ptr<MillingSession> session;
+  };
   struct Listen {
     std::unique_ptr<TickListener> listener;
   };
-  using Action = std::variant<std::monostate, SetSpindle, SetPaused, HoldBone, Replacement, Listen>;
+  using Action = std::variant<std::monostate, SetSpindle, SetPaused, HoldBone, Replace, Listen>;
+  struct Queues;
 
   CommandNumber send(Action action);
   void run() noexcept;
   void tick_until_stopped();
   void take_commands();
+  void destroy_retired();
   void apply(Action& action);
   TickRecord tick(double time_s, double dt_s);
   TickRecord step(double time_s, double dt_s, bool mills);
@@ -122,21 +120,17 @@ class LiveSession {
   // The haptic thread's while it runs.
   std::unique_ptr<MillingSession> session_;
   std::unique_ptr<TickListener> listener_;
-  VolumeChange replaced_;
   bool spindle_ = false;
   bool paused_ = false;
   bool bone_held_ = false;
   double time_s_ = 0;
   std::optional<Pose> last_X_WT_;
 
-  // From the commanding thread and back: what was replaced is destroyed where it was made.
-  SpscRing<Action> commands_{256};
-  SpscRing<Action> retired_{256};
+  std::unique_ptr<Queues> queues_;
   std::atomic<CommandNumber> commands_done_{0};
   CommandNumber commands_sent_ = 0;
 
   LatestValue<LiveState> state_;
-  SpscRing<TickRecord> records_{4096};
   LiveTiming timing_;
 };
 

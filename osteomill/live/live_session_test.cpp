@@ -124,7 +124,7 @@ TEST_F(LiveSessionTest, AnAlgorithmPreparedElsewhereTakesOver) {
   const int points = next->algorithm().sample_point_count();
   next->count_removed_from(removed_mm3);
   const double force_before_N = live_.state().record.wrench.force_N.z();
-  live_.wait_for(live_.replace({std::move(next), {}}));
+  live_.wait_for(live_.replace(std::move(next)));
   live_.wait_for(live_.hold_bone(false));
   std::this_thread::sleep_for(50ms);
   live_.stop();

@@ -1,10 +1,10 @@
-#include "app/simulate/histogram.h"
+#include "osteomill/volume/density_histogram.h"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-namespace osteomill::app {
+namespace osteomill {
 
 DensityHistogram histogram_of(const DensityGrid& grid) {
   constexpr std::size_t kEvery = 7;
@@ -26,4 +26,4 @@ DensityHistogram histogram_of(const DensityGrid& grid) {
   return histogram;
 }
 
-}  // namespace osteomill::app
+}  // namespace osteomill

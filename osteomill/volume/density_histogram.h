@@ -4,7 +4,7 @@
 
 #include "osteomill/volume/density_grid.h"
 
-namespace osteomill::app {
+namespace osteomill {
 
 /// How often densities occur, for the isovalue to be chosen by: logarithms of counts, over all densities but
 /// the rarest at both ends.
@@ -15,4 +15,4 @@ struct DensityHistogram {
 };
 DensityHistogram histogram_of(const DensityGrid& grid);
 
-}  // namespace osteomill::app
+}  // namespace osteomill
