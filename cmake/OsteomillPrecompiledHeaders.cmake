@@ -9,6 +9,7 @@ function(osteomill_precompile name flags_from)
   target_precompile_headers(${name} PRIVATE ${ARGN})
 endfunction()
 
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 set(often_read <algorithm> <array> <cmath> <filesystem> <functional> <memory> <optional> <string> <vector>
   <Eigen/Core> <Eigen/Geometry>)
 osteomill_precompile(osteomill_library_headers "" ${often_read})
