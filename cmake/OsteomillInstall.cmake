@@ -10,7 +10,7 @@ set(pkgconfig_fmt::fmt fmt)
 set(pkgconfig_hdf5::hdf5 hdf5)
 set(pkgconfig_hwy::hwy libhwy)
 set(pkgconfig_Threads::Threads -pthread)
-set(pkgconfig_ITKIONRRD -lITKIONRRD-5.2)
+set(pkgconfig_ITKIONRRD "-lITKIONRRD-5.2 -lITKIOImageBase-5.2 -lITKCommon-5.2")
 set(pkgconfig_ITKIOMeta -lITKIOMeta-5.2)
 set(pkgconfig_ITKIONIFTI -lITKIONIFTI-5.2)
 

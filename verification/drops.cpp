@@ -74,7 +74,7 @@ Section drops() {
       }
       section.add(
           {fmt::format("{}, {:.0f} N/mm", name_of(algorithm), stiffness), median_and_worst(shares), "1"},
-          quantile(shares, 1) < 1);
+          percentile(shares, 1) < 1);
     }
   }
   return section;

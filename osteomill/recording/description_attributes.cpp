@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "osteomill/files/input_error.h"
+#include "osteomill/numbers/setting_range.h"
 #include "osteomill/recording/hdf5_attributes.h"
 
 namespace osteomill {
@@ -108,7 +109,7 @@ RunDescription read_description(const fs::path& path, hid_t file) {
   description.phase = require_known(path, phase_named(phase), "phase " + phase);
   description.seed = read.unsigned_integer("seed");
   description.tick_period_s = read.real("tick_period_s");
-  if (!(std::isfinite(description.tick_period_s) && description.tick_period_s > 0)) {
+  if (!is_positive(description.tick_period_s)) {
     throw InputError(path.string(), "the attribute 'tick_period_s' is not a positive number");
   }
   description.settings = read_settings(path, file);

@@ -4,8 +4,8 @@
 #include <string>
 #include <string_view>
 
+#include "osteomill/files/temporary_folder.h"
 #include "osteomill/haptics/algorithm_id.h"
-#include "osteomill/report/gnuplot.h"
 
 namespace osteomill {
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "osteomill/numbers/row_major.h"
+
 namespace osteomill {
 
 DensityHandover::DensityHandover(const GridGeometry& geometry, std::size_t capacity)
@@ -21,7 +23,7 @@ void DensityHandover::mark(const VolumeChange& change) noexcept {
   for (int bk = box.first.k / kBrickVoxels; bk <= box.last.k / kBrickVoxels; ++bk) {
     for (int bj = box.first.j / kBrickVoxels; bj <= box.last.j / kBrickVoxels; ++bj) {
       for (int bi = box.first.i / kBrickVoxels; bi <= box.last.i / kBrickVoxels; ++bi) {
-        const auto number = static_cast<std::uint32_t>(bi + brick_dims_[0] * (bj + brick_dims_[1] * bk));
+        const auto number = static_cast<std::uint32_t>(row_major(brick_dims_, bi, bj, bk));
         if (marked_[number]) continue;
         marked_[number] = 1;
         order_[(next_ + waiting_) % order_.size()] = number;
@@ -46,10 +48,8 @@ void DensityHandover::send(const Volume& volume, std::size_t most) noexcept {
 }
 
 void DensityHandover::copy_brick(const DensityGrid& grid, std::uint32_t number, Brick& brick) const noexcept {
-  const int plain = static_cast<int>(number);
-  brick.first = {plain % brick_dims_[0] * kBrickVoxels,
-                 plain / brick_dims_[0] % brick_dims_[1] * kBrickVoxels,
-                 plain / brick_dims_[0] / brick_dims_[1] * kBrickVoxels};
+  const auto [bi, bj, bk] = cell_at(brick_dims_, number);
+  brick.first = {bi * kBrickVoxels, bj * kBrickVoxels, bk * kBrickVoxels};
   const VoxelIndex& first = brick.first;
   const int columns = std::min(kBrickVoxels, voxel_dims_[0] - first.i);
   const int rows = std::min(kBrickVoxels, voxel_dims_[1] - first.j);
