@@ -56,17 +56,18 @@ OverSeeds over_seeds(const std::vector<TrialFigures>& figures) {
 }
 
 bool holds(const Goals& goals, const OverSeeds& all, bool loaded) {
-  const bool calm = quantile(all.hp, 1) <= goals.hp_over_mean &&
-                    quantile(all.torque_step, 1) <= goals.torque_step_Nmm &&
-                    quantile(all.force_step, 1) <= goals.force_step_N;
-  const bool paid = quantile(all.paid, 0) >= 1 - kPaidWithin && quantile(all.paid, 1) <= 1 + kPaidWithin;
-  const bool works = quantile(all.force, 0) >= kLeastForce_N && quantile(all.removed, 0) >= kLeastRemoved_mm3;
-  const bool leans = goals.algorithm != "point-shell" || quantile(all.torque, 0) >= kLeastTorqueOf3_Nmm;
+  const bool calm = percentile(all.hp, 1) <= goals.hp_over_mean &&
+                    percentile(all.torque_step, 1) <= goals.torque_step_Nmm &&
+                    percentile(all.force_step, 1) <= goals.force_step_N;
+  const bool paid = percentile(all.paid, 0) >= 1 - kPaidWithin && percentile(all.paid, 1) <= 1 + kPaidWithin;
+  const bool works =
+      percentile(all.force, 0) >= kLeastForce_N && percentile(all.removed, 0) >= kLeastRemoved_mm3;
+  const bool leans = goals.algorithm != "point-shell" || percentile(all.torque, 0) >= kLeastTorqueOf3_Nmm;
   return calm && paid && (!loaded || (works && leans));
 }
 
 std::string lowest_and_median(const std::vector<double>& values) {
-  return fmt::format("{} ({})", figure(quantile(values, 0.5)), figure(quantile(values, 0)));
+  return fmt::format("{} ({})", figure(distribution_of(values).median), figure(percentile(values, 0)));
 }
 
 std::string goal_text(const Goals& goals) {

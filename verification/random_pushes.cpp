@@ -121,8 +121,8 @@ Section random_pushes(const Bones& bones, const Effort& effort) {
       if (outcome.deepest_mm > kDeepest_mm) ++ever;
     }
     const auto deeper = std::count_if(at_end.begin(), at_end.end(), [](double d) { return d > kDeepest_mm; });
-    section.add({id, std::to_string(deeper), std::to_string(ever), figure(quantile(at_end, 0.5)),
-                 figure(quantile(at_end, 0.999)), figure(quantile(at_end, 1))},
+    section.add({id, std::to_string(deeper), std::to_string(ever), figure(distribution_of(at_end).median),
+                 figure(percentile(at_end, 0.999)), figure(percentile(at_end, 1))},
                 deeper == 0);
   }
   return section;

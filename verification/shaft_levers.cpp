@@ -67,7 +67,7 @@ Section shaft_levers() {
         }
         section.add({fmt::format("{}, {:.0f} mm, {:.0f} voxels", algorithm, lever_mm, edge_voxels),
                      median_and_worst(errors), figure(least_N), "0.02"},
-                    right_sign && least_N > 0.01 && quantile(errors, 1) <= 0.02);
+                    right_sign && least_N > 0.01 && percentile(errors, 1) <= 0.02);
       }
     }
   }

@@ -58,8 +58,8 @@ Section slide_round_a_ball() {
     for (const std::string& algorithm : algorithm_names()) {
       Slide felt;
       for (const double azimuth : {0.0, 0.35, 0.8}) slide(algorithm, bone, azimuth, felt);
-      const double median = quantile(felt.direction_deg, 0.5);
-      const double p99 = quantile(felt.direction_deg, 0.99);
+      const double median = distribution_of(felt.direction_deg).median;
+      const double p99 = percentile(felt.direction_deg, 0.99);
       const bool good = median <= 1 && p99 <= 2.5 && felt.largest_step_N <= 0.005;
       section.add({fmt::format("{}, {:.2f} mm", algorithm, spacing), figure(median), figure(p99),
                    figure(felt.largest_step_N)},
