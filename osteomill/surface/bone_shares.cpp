@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "osteomill/numbers/row_major.h"
 #include "osteomill/volume/densities.h"
 
 namespace osteomill {
@@ -12,18 +13,8 @@ namespace {
 
 constexpr std::size_t kLevels = 6;
 
-std::size_t cell_index(const std::array<int, 3>& dims, int i, int j, int k) {
-  return static_cast<std::size_t>(i) +
-         static_cast<std::size_t>(dims[0]) *
-             (static_cast<std::size_t>(j) + static_cast<std::size_t>(dims[1]) * static_cast<std::size_t>(k));
-}
-
 std::array<int, 3> half_dims(const std::array<int, 3>& dims) {
   return {(dims[0] + 1) / 2, (dims[1] + 1) / 2, (dims[2] + 1) / 2};
-}
-
-std::size_t cell_count(const std::array<int, 3>& dims) {
-  return cell_index(dims, 0, 0, dims[2]);
 }
 
 }  // namespace
@@ -48,7 +39,7 @@ BoneShares::Level BoneShares::finest(const Volume& volume) {
   const float* density = volume.grid().densities().data();
   for (int k = 0; k < dims[2]; ++k) {
     for (int j = 0; j < dims[1]; ++j) {
-      float* row = level.shares.data() + cell_index(level.dims, 0, j / 2, k / 2);
+      float* row = level.shares.data() + row_major(level.dims, 0, j / 2, k / 2);
       for (int i = 0; i < dims[0]; ++i, ++density) {
         row[i / 2] += 0.125f * std::clamp((*density - foot) * per_density, 0.0f, 1.0f);
       }
@@ -64,7 +55,7 @@ BoneShares::Level BoneShares::halved(const Level& finer) {
   const float* share = finer.shares.data();
   for (int k = 0; k < finer.dims[2]; ++k) {
     for (int j = 0; j < finer.dims[1]; ++j) {
-      float* row = level.shares.data() + cell_index(level.dims, 0, j / 2, k / 2);
+      float* row = level.shares.data() + row_major(level.dims, 0, j / 2, k / 2);
       for (int i = 0; i < finer.dims[0]; ++i, ++share) row[i / 2] += 0.125f * *share;
     }
   }
@@ -73,7 +64,7 @@ BoneShares::Level BoneShares::halved(const Level& finer) {
 
 double BoneShares::Level::at(int i, int j, int k) const {
   if (i < 0 || j < 0 || k < 0 || i >= dims[0] || j >= dims[1] || k >= dims[2]) return 0;
-  return static_cast<double>(shares[cell_index(dims, i, j, k)]);
+  return static_cast<double>(shares[row_major(dims, i, j, k)]);
 }
 
 double BoneShares::Level::interpolated(const Vec3& cell) const {
@@ -88,7 +79,7 @@ double BoneShares::Level::interpolated(const Vec3& cell) const {
   const bool interior = i >= 0 && j >= 0 && k >= 0 && i + 1 < dims[0] && j + 1 < dims[1] && k + 1 < dims[2];
   const auto row = [&](int dj, int dk) {
     if (!interior) return at(i, j + dj, k + dk) * (1 - f.x()) + at(i + 1, j + dj, k + dk) * f.x();
-    const float* share = shares.data() + cell_index(dims, i, j + dj, k + dk);
+    const float* share = shares.data() + row_major(dims, i, j + dj, k + dk);
     return static_cast<double>(share[0]) * (1 - f.x()) + static_cast<double>(share[1]) * f.x();
   };
   return (row(0, 0) * (1 - f.y()) + row(1, 0) * f.y()) * (1 - f.z()) +
