@@ -8,7 +8,7 @@
 namespace osteomill {
 
 /// Whether there is bone at a point: density > isovalue. Safe in the haptic tick.
-inline bool is_bone(const Volume& volume, const Vec3& point_W) {
+inline bool is_bone_at(const Volume& volume, const Vec3& point_W) {
   return density_at(volume.grid(), point_W) > volume.isovalue();
 }
 
