@@ -141,10 +141,10 @@ TEST_F(ReportTest, WhatAReaderMustKnowIsSaid) {
 TEST_F(ReportTest, WherePicturesCouldNotBeMadeItIsSaidInTheirPlace) {
   std::vector<Recording> runs{sample_run("line-proxy", kMilling, Mode::steady, 100)};
   const std::string_view told = "No pictures of the bone: OpenGL could not be had";
-  EXPECT_EQ(bytes_of(write_report(runs, out_)).find(told), std::string::npos);
+  EXPECT_EQ(bytes_of(write_comparison_report(runs, out_)).find(told), std::string::npos);
   runs[0].pictures.clear();
   runs[0].description.settings.push_back({std::string(kPicturesKey), "none, as OpenGL could not be had", ""});
-  const std::string html = bytes_of(write_report(runs, out_));
+  const std::string html = bytes_of(write_comparison_report(runs, out_));
   EXPECT_GT(html.find(told), html.find("<h3>Figures</h3>"));
   EXPECT_LT(html.find(told), html.find("<figure>"));
 }

@@ -322,19 +322,20 @@ TEST(LineProxy, WhatIsNotFiniteIsForgottenAtOnce) {
 }
 
 TEST(LineProxy, SettingsOutOfRangeAreRefused) {
-  Settings settings;
+  const Settings paper = Settings::defaults(Mode::paper);
+  Settings settings = paper;
   settings.vertices = 1;
   EXPECT_THROW(LineProxy{settings}, std::invalid_argument);
-  settings = {};
+  settings = paper;
   settings.stiffness_N_per_mm = -1;
   EXPECT_THROW(LineProxy{settings}, std::invalid_argument);
-  settings = {};
+  settings = paper;
   settings.tip_proxy_limit_mm_per_s = std::nan("");
   EXPECT_THROW(LineProxy{settings}, std::invalid_argument);
-  settings = {};
+  settings = paper;
   settings.rotation_steps = 0;
   EXPECT_THROW(LineProxy{settings}, std::invalid_argument);
-  LineProxy algorithm{Settings{}};
+  LineProxy algorithm{paper};
   EXPECT_THROW(algorithm.prepare({nullptr, MillingTool{}}), std::invalid_argument);
 }
 
