@@ -97,7 +97,7 @@ void add_named_settings(CLI::App& command, HapticSettings& haptics) {
             std::erase_if(haptics.named, [](const auto& named) { return !named.algorithm.empty(); });
             for (const std::string& text : texts) haptics.named.push_back(named_setting(text));
           },
-          "ALGORITHM.SETTING=VALUE, any setting of docs/algorithms.md; may repeat")
+          "ALGORITHM.SETTING=VALUE, any setting of docs/settings.md; may repeat")
       ->type_name("SETTING");
 }
 
