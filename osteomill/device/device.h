@@ -5,8 +5,10 @@
 
 namespace osteomill {
 
-/// Where poses come from and wrenches go: a simulated operator, a mouse, a recorded trajectory, hardware.
-/// All calls come from the haptic thread, once a tick, and none allocates, locks, logs or throws.
+/// Where poses come from and wrenches go: a simulated operator, a virtual hand, a recorded trajectory; there
+/// is none for hardware yet (docs/add-a-device.md). All calls come from the haptic thread, once a tick, and
+/// none allocates, locks, logs or throws. But when the program crashes in real time and the haptic thread does
+/// not answer, zero is written from the signal's handler.
 class Device {
  public:
   virtual ~Device() = default;
