@@ -7,8 +7,8 @@ namespace osteomill {
 
 /// Where poses come from and wrenches go: a simulated operator, a virtual hand, a recorded trajectory; there
 /// is none for hardware yet (docs/add-a-device.md). All calls come from the haptic thread, once a tick, and
-/// none allocates, locks, logs or throws. But when the program crashes in real time and the haptic thread does
-/// not answer, zero is written from the signal's handler.
+/// none allocates, locks, logs or throws. But when the program crashes in real time and the haptic thread
+/// does not answer, zero is written from the signal's handler.
 class Device {
  public:
   virtual ~Device() = default;
