@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "osteomill/haptics/point_shell/bone_bits.h"
-#include "osteomill/haptics/point_shell/brick_points.h"
-#include "osteomill/haptics/point_shell/count_pyramid.h"
+#include "osteomill/haptics/bone_points/brick_points.h"
+#include "osteomill/haptics/bone_points/count_pyramid.h"
 #include "osteomill/haptics/point_shell/shell_lattice.h"
 
 namespace osteomill {

@@ -1,4 +1,4 @@
-#include "osteomill/haptics/point_shell/brick_points.h"
+#include "osteomill/haptics/bone_points/brick_points.h"
 
 #include <algorithm>
 #include <cmath>
