@@ -45,8 +45,10 @@ constexpr int kRefreshedPerTick = 4000;
 // Bricks nearer than this to the tool are not forgotten.
 constexpr double kKept_mm = 2;
 
-// A tool that began in touch with bone: the distance it is given, and how fast its cores grow.
+// A tool that began in touch with bone: the distance it is given, and how fast and up to which its cores
+// grow.
 constexpr double kStartShare = 0.2;
+constexpr double kGrownShare = 0.1;
 constexpr double kGrowth_mm_s = 5;
 // A device that moved so far in a tick was put there, not moved by a hand; the wrench then changes over so
 // long.
@@ -160,7 +162,9 @@ void BarrierShell::begin_outside(const Pose& X_WT) {
 
 void BarrierShell::grow_cores(double nearest_mm, double dt_s) {
   if (smaller_mm_ == 0) return;
-  const double growth = std::min(kGrowth_mm_s * dt_s, (1 - kDistanceKept) * std::max(0.0, nearest_mm));
+  // No more than there is room for: in a hole too narrow for the tool they stay as small as it.
+  const double room_mm = 0.5 * (nearest_mm - kGrownShare * barrier_.width_mm);
+  const double growth = std::clamp(room_mm, 0.0, kGrowth_mm_s * std::max(0.0, dt_s));
   smaller_mm_ = std::max(0.0, smaller_mm_ - growth);
   has_energy_ = false;
 }
