@@ -41,7 +41,7 @@ constexpr double kLongestTick_s = 5e-3;
 constexpr double kTurnByMove = 0.25;
 
 // Edges of the lattice brought up to date a tick.
-constexpr int kRefreshedPerTick = 4000;
+constexpr int kRefreshedPerTick = 1500;
 // Bricks nearer than this to the tool are not forgotten.
 constexpr double kKept_mm = 2;
 

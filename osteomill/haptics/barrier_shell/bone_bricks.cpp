@@ -17,6 +17,7 @@ constexpr std::size_t kSpareChunks = 4096;
 // What looking at a brick costs, in edges: without surface, and with all of its nodes read.
 constexpr int kPassedOverCost = 2;
 constexpr int kReadCost = 40;
+constexpr int kUnchangedCost = 20;
 
 }  // namespace
 
@@ -27,6 +28,7 @@ BoneBricks::BoneBricks(const Volume& volume, double spacing_mm, bool with_coarse
       fine_(kSlots, kFineChunks),
       coarse_(with_coarse ? kSlots : 0, with_coarse ? kCoarseChunks : 0),
       brick_of_slot_(kSlots),
+      fingerprints_(kSlots),
       found_(std::make_unique<SurfaceLattice::BrickSurface>()) {
   const auto& dims = lattice_.brick_dims();
   slots_.resize(index_of({0, 0, dims[2]}), kNoPoints);
@@ -60,7 +62,10 @@ std::uint32_t BoneBricks::slot_of(const VoxelIndex& brick) {
 // Makes a brick, or makes it anew; returns what it cost.
 int BoneBricks::make(const VoxelIndex& brick) {
   std::uint32_t& slot = slots_[index_of(brick)];
+  const bool has_points = slot != kUnmade && slot != kNoPoints;
+  found_->fingerprint = has_points ? fingerprints_[slot] : 0;
   const int crossed = lattice_.find_surface(brick, with_coarse_, *found_);
+  if (crossed == SurfaceLattice::kUnchanged) return kUnchangedCost;
   const std::int32_t before = slot == kUnmade     ? 1
                               : slot == kNoPoints ? 0
                                                   : static_cast<std::int32_t>(fine_.brick(slot).count);
@@ -73,6 +78,7 @@ int BoneBricks::make(const VoxelIndex& brick) {
   std::int32_t after = 0;
   if (slot != kNoPoints) {
     after = static_cast<std::int32_t>(fine_.replace(slot, {found_->fine.data(), found_->fine_count}));
+    fingerprints_[slot] = found_->fingerprint;
     if (with_coarse_) coarse_.replace(slot, {found_->coarse.data(), found_->coarse_count});
     if (after == 0) {
       free_slots_.push_back(slot);

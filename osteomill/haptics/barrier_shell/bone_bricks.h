@@ -72,6 +72,8 @@ class BoneBricks {
   std::vector<std::uint32_t> free_slots_;
   // Which brick a slot is of, and where forgetting goes on.
   std::vector<VoxelIndex> brick_of_slot_;
+  // Of the densities that its points are of.
+  std::vector<std::uint64_t> fingerprints_;
   std::size_t next_to_forget_ = 0;
   BrickSweep sweep_;
   std::unique_ptr<SurfaceLattice::BrickSurface> found_;

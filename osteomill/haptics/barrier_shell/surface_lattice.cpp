@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "osteomill/haptics/bone_points/bits_above.h"
@@ -14,6 +15,8 @@ namespace {
 // Of the area of a cell's face that a crossing stands for.
 constexpr float kLeastSeen = 0.02f;
 constexpr float kSeenWithoutNormal = 0.6f;
+// Of the mean normal of points that one may stand for.
+constexpr float kFlat = 0.98f;
 
 int divide_down(int value, int divisor) {
   const int quotient = value / divisor;
@@ -27,39 +30,47 @@ float largest_float_up_to(double value) {
              : nearest;
 }
 
-// The weighted mean of the crossings in each cell of a brick.
+// The weighted means of the points in each cell of a brick.
 class Cells {
  public:
   Cells(int brick_nodes, int cell_nodes)
-      : cells_(brick_nodes / cell_nodes), shift_(std::countr_zero(static_cast<unsigned>(cell_nodes))) {}
-
-  void add(int i, int j, int k, const ShellPoint& point) {
-    Sum& sum =
-        sums_[static_cast<std::size_t>((i >> shift_) + cells_ * ((j >> shift_) + cells_ * (k >> shift_)))];
-    sum.x += point.area_mm2 * point.x_mm;
-    sum.y += point.area_mm2 * point.y_mm;
-    sum.z += point.area_mm2 * point.z_mm;
-    sum.area += point.area_mm2;
+      : cells_(brick_nodes / cell_nodes), shift_(std::countr_zero(static_cast<unsigned>(cell_nodes))) {
+    std::fill_n(sums_.begin(), count(), ShellPoint{0, 0, 0, 0});
   }
-  std::size_t means(std::span<ShellPoint> points) const {
-    std::size_t count = 0;
-    const std::size_t cells = static_cast<std::size_t>(cells_ * cells_ * cells_);
-    for (std::size_t n = 0; n < cells; ++n) {
-      const Sum& sum = sums_[n];
-      if (!(sum.area > 0)) continue;
-      points[count++] = {sum.x / sum.area, sum.y / sum.area, sum.z / sum.area, sum.area};
-    }
-    return count;
+  std::size_t count() const { return static_cast<std::size_t>(cells_ * cells_ * cells_); }
+  /// Of the cell that holds a node.
+  std::size_t index(int i, int j, int k) const {
+    return static_cast<std::size_t>((i >> shift_) + cells_ * ((j >> shift_) + cells_ * (k >> shift_)));
+  }
+  void add(std::size_t cell, const ShellPoint& point) {
+    ShellPoint& sum = sums_[cell];
+    sum.x_mm += point.area_mm2 * point.x_mm;
+    sum.y_mm += point.area_mm2 * point.y_mm;
+    sum.z_mm += point.area_mm2 * point.z_mm;
+    sum.area_mm2 += point.area_mm2;
+    sum.normal_x += point.area_mm2 * point.normal_x;
+    sum.normal_y += point.area_mm2 * point.normal_y;
+    sum.normal_z += point.area_mm2 * point.normal_z;
+  }
+  bool is_empty(std::size_t cell) const { return !(sums_[cell].area_mm2 > 0); }
+  /// The mean normal is the shorter the more the surface bends; one where nothing is known of it.
+  ShellPoint mean(std::size_t cell) const {
+    const ShellPoint& sum = sums_[cell];
+    const float share = 1 / sum.area_mm2;
+    return {share * sum.x_mm,     share * sum.y_mm,     share * sum.z_mm,    sum.area_mm2,
+            share * sum.normal_x, share * sum.normal_y, share * sum.normal_z};
   }
 
  private:
-  struct Sum {
-    float x = 0, y = 0, z = 0, area = 0;
-  };
   int cells_;
   int shift_;
-  std::array<Sum, 512> sums_{};
+  std::array<ShellPoint, 512> sums_;
 };
+
+bool is_flat(const ShellPoint& mean) {
+  return mean.normal_x * mean.normal_x + mean.normal_y * mean.normal_y + mean.normal_z * mean.normal_z >
+         kFlat * kFlat;
+}
 
 }  // namespace
 
@@ -76,6 +87,8 @@ SurfaceLattice::SurfaceLattice(const Volume& volume, double spacing_mm) : volume
     const int nodes = (geometry.dims[axis] - 1) * steps_per_voxel_ + 1;
     brick_dims_[axis] = (nodes + brick_nodes_) / brick_nodes_;
   }
+  step_ = step_mm_.cast<float>();
+  per_step_ = step_mm_.cwiseInverse().cast<float>();
   face_mm2_ = (step_mm_.prod() * step_mm_.cwiseInverse()).cast<float>();
   isovalue_ = largest_float_up_to(volume.isovalue());
   outside_ = std::min(volume.grid().outside_density(), isovalue_ - 1);
@@ -156,7 +169,11 @@ void SurfaceLattice::read_voxels(const VoxelIndex& first, Block& block) const {
       float* row = &block[static_cast<std::size_t>(k) * kSlice + static_cast<std::size_t>(j) * kRow];
       if (inside) {
         const float* from = grid.densities().data() + grid.linear_index({first.i, first.j + j, first.k + k});
-        std::copy_n(from, count, row);
+        if (count == 11) {
+          std::memcpy(row, from, 12 * sizeof(float));
+        } else {
+          std::memcpy(row, from, 20 * sizeof(float));
+        }
       } else {
         for (int i = 0; i < count; ++i) row[i] = density({first.i + i, first.j + j, first.k + k});
       }
@@ -230,70 +247,137 @@ ShellPoint SurfaceLattice::crossing(const float* here, const VoxelIndex& node, i
   float gradient[3];
   for (int a = 0; a < 3; ++a) {
     const float from = here[kNext[a]] - here[-kNext[a]], to = there[kNext[a]] - there[-kNext[a]];
-    gradient[a] = (from + fraction * (to - from)) / static_cast<float>(step_mm_[a]);
+    gradient[a] = (from + fraction * (to - from)) * per_step_[a];
   }
   const float steepness =
       std::sqrt(gradient[0] * gradient[0] + gradient[1] * gradient[1] + gradient[2] * gradient[2]);
+  const float outward = steepness > 0 ? -1 / steepness : 0;
   const float seen =
-      steepness > 0 ? std::max(kLeastSeen, std::abs(gradient[axis]) / steepness) : kSeenWithoutNormal;
+      steepness > 0 ? std::max(kLeastSeen, std::abs(outward * gradient[axis])) : kSeenWithoutNormal;
   float at[3] = {static_cast<float>(node.i), static_cast<float>(node.j), static_cast<float>(node.k)};
   at[axis] += fraction;
-  return {at[0] * static_cast<float>(step_mm_.x()), at[1] * static_cast<float>(step_mm_.y()),
-          at[2] * static_cast<float>(step_mm_.z()), face_mm2_[axis] * seen};
+  return {at[0] * step_[0],      at[1] * step_[1],      at[2] * step_[2],     face_mm2_[axis] * seen,
+          outward * gradient[0], outward * gradient[1], outward * gradient[2]};
 }
 
 int SurfaceLattice::find_surface(const VoxelIndex& brick, bool with_coarse, BrickSurface& surface) const {
   surface.fine_count = surface.coarse_count = 0;
   Block block;
   read_block(brick, block);
-  const int nodes = brick_nodes_;
-  // Bit n of a row: whether its node n is bone; the block's first node is left out.
-  std::array<std::uint32_t, (kMaxBrickNodes + 1) * (kMaxBrickNodes + 1)> rows;
+  const std::uint64_t before = surface.fingerprint;
+  surface.fingerprint = fingerprint_of(block);
+  if (surface.fingerprint == before) return kUnchanged;
+  Rows rows;
+  if (!find_bone(block, rows)) return 0;
+  const int crossed =
+      group_ == 1 ? list_crossings(block, rows, surface) : mean_crossings(block, rows, surface);
+  if (with_coarse) merge_flat_cells(surface);
+  return crossed;
+}
+
+// Of the bits of all densities; never 0.
+std::uint64_t SurfaceLattice::fingerprint_of(const Block& block) const {
+  constexpr std::size_t kLanes = 8;
+  std::uint32_t lanes[kLanes] = {1, 2, 3, 4, 5, 6, 7, 8};
+  const int count = brick_nodes_ + 3;
+  for (int k = 0; k < count; ++k) {
+    for (int j = 0; j < count; ++j) {
+      const float* row = &block[block_index(-1, j - 1, k - 1)];
+      for (int i = 0; i < count; i += kLanes) {
+        std::uint32_t bits[kLanes];
+        // The last ones overlap: every density is taken in, some twice.
+        std::memcpy(bits, row + std::min(i, count - static_cast<int>(kLanes)), sizeof bits);
+        for (std::size_t n = 0; n < kLanes; ++n) lanes[n] = ((lanes[n] << 5) | (lanes[n] >> 27)) ^ bits[n];
+      }
+    }
+  }
+  std::uint64_t hash = 0xcbf29ce484222325;
+  for (const std::uint32_t lane : lanes) hash = (hash ^ lane) * 0x100000001b3;
+  return hash | 1;
+}
+
+// Whether bone and no bone meet in the brick.
+bool SurfaceLattice::find_bone(const Block& block, Rows& rows) const {
   std::uint32_t any = 0, all = ~0u;
-  const auto row_at = [&](int j, int k) -> std::uint32_t& {
-    return rows[static_cast<std::size_t>(j + k * (kMaxBrickNodes + 1))];
-  };
-  const auto node_at = [&](int i, int j, int k) {
-    return &block[static_cast<std::size_t>(i + 1) + static_cast<std::size_t>(j + 1) * kRow +
-                  static_cast<std::size_t>(k + 1) * kSlice];
-  };
-  const std::uint32_t whole = (1u << (nodes + 1)) - 1;
-  for (int k = 0; k <= nodes; ++k) {
-    for (int j = 0; j <= nodes; ++j) {
-      const float* row = node_at(0, j, k);
+  for (int k = 0; k <= brick_nodes_; ++k) {
+    for (int j = 0; j <= brick_nodes_; ++j) {
+      const float* row = &block[block_index(0, j, k)];
       std::uint32_t bits = eight_above(row, isovalue_);
-      if (nodes == 16) bits |= static_cast<std::uint32_t>(eight_above(row + 8, isovalue_)) << 8;
-      bits |= static_cast<std::uint32_t>(row[nodes] > isovalue_) << nodes;
-      row_at(j, k) = bits;
+      if (brick_nodes_ == 16) bits |= static_cast<std::uint32_t>(eight_above(row + 8, isovalue_)) << 8;
+      bits |= static_cast<std::uint32_t>(row[brick_nodes_] > isovalue_) << brick_nodes_;
+      rows[row_index(j, k)] = bits;
       any |= bits;
       all &= bits;
     }
   }
-  if (any == 0 || (all & whole) == whole) return 0;
+  const std::uint32_t whole = (2u << brick_nodes_) - 1;
+  return any != 0 && (all & whole) != whole;
+}
 
-  Cells fine(nodes, group_), coarse(nodes, 2 * group_);
+// Calls f(i, j, k, point) for every edge that is crossed, by its lower node.
+template <typename F>
+int SurfaceLattice::for_each_crossing(const Block& block, const Rows& rows, F&& f) const {
   int crossed = 0;
-  for (int k = 0; k < nodes; ++k) {
-    for (int j = 0; j < nodes; ++j) {
-      const std::uint32_t here = row_at(j, k), lower = (1u << nodes) - 1;
-      const std::uint32_t edges[3] = {(here ^ (here >> 1)) & lower, (here ^ row_at(j + 1, k)) & lower,
-                                      (here ^ row_at(j, k + 1)) & lower};
+  const std::uint32_t lower = (1u << brick_nodes_) - 1;
+  for (int k = 0; k < brick_nodes_; ++k) {
+    for (int j = 0; j < brick_nodes_; ++j) {
+      const std::uint32_t here = rows[row_index(j, k)];
+      const std::uint32_t edges[3] = {(here ^ (here >> 1)) & lower,
+                                      (here ^ rows[row_index(j + 1, k)]) & lower,
+                                      (here ^ rows[row_index(j, k + 1)]) & lower};
       for (int axis = 0; axis < 3; ++axis) {
         for (std::uint32_t left = edges[axis]; left != 0; left &= left - 1) {
           const int i = std::countr_zero(left);
           // The brick's frame begins one node above its first.
-          const ShellPoint point = crossing(node_at(i, j, k), {i - 1, j - 1, k - 1}, axis);
+          f(i, j, k, crossing(&block[block_index(i, j, k)], {i - 1, j - 1, k - 1}, axis));
           ++crossed;
-          if (group_ == 1) surface.fine[surface.fine_count++] = point;
-          if (group_ > 1) fine.add(i, j, k, point);
-          if (with_coarse) coarse.add(i, j, k, point);
         }
       }
     }
   }
-  if (group_ > 1) surface.fine_count = fine.means(surface.fine);
-  if (with_coarse) surface.coarse_count = coarse.means(surface.coarse);
   return crossed;
+}
+
+int SurfaceLattice::list_crossings(const Block& block, const Rows& rows, BrickSurface& surface) const {
+  return for_each_crossing(block, rows, [&](int i, int j, int k, const ShellPoint& point) {
+    surface.coarse_cell[surface.fine_count] = static_cast<std::uint8_t>(i / 2 + 4 * (j / 2) + 16 * (k / 2));
+    surface.fine[surface.fine_count++] = point;
+  });
+}
+
+int SurfaceLattice::mean_crossings(const Block& block, const Rows& rows, BrickSurface& surface) const {
+  Cells cells(brick_nodes_, group_);
+  const int crossed = for_each_crossing(block, rows, [&](int i, int j, int k, const ShellPoint& point) {
+    cells.add(cells.index(i, j, k), point);
+  });
+  const int side = brick_nodes_ / group_;
+  for (int k = 0, cell = 0; k < side; ++k) {
+    for (int j = 0; j < side; ++j) {
+      for (int i = 0; i < side; ++i, ++cell) {
+        if (cells.is_empty(static_cast<std::size_t>(cell))) continue;
+        surface.coarse_cell[surface.fine_count] =
+            static_cast<std::uint8_t>(i / 2 + 4 * (j / 2) + 16 * (k / 2));
+        surface.fine[surface.fine_count++] = cells.mean(static_cast<std::size_t>(cell));
+      }
+    }
+  }
+  return crossed;
+}
+
+// One point for all in a cell twice as wide where they lie in a plane; along edges all stay.
+void SurfaceLattice::merge_flat_cells(BrickSurface& surface) {
+  Cells cells(8, 2);
+  for (std::size_t n = 0; n < surface.fine_count; ++n) cells.add(surface.coarse_cell[n], surface.fine[n]);
+  std::array<bool, 64> flat{};
+  for (std::size_t cell = 0; cell < cells.count(); ++cell) {
+    if (cells.is_empty(cell)) continue;
+    const ShellPoint mean = cells.mean(cell);
+    flat[cell] = is_flat(mean);
+    if (flat[cell]) surface.coarse[surface.coarse_count++] = mean;
+  }
+  for (std::size_t n = 0; n < surface.fine_count; ++n) {
+    if (!flat[surface.coarse_cell[n]]) surface.coarse[surface.coarse_count++] = surface.fine[n];
+  }
 }
 
 }  // namespace osteomill::barrier_shell

@@ -1,8 +1,7 @@
 #pragma once
 
 #include <array>
-#include <span>
-#include <vector>
+#include <cstdint>
 
 #include "osteomill/haptics/bone_points/brick_points.h"
 #include "osteomill/volume/volume.h"
@@ -42,27 +41,48 @@ class SurfaceLattice {
   /// The bricks whose points may change with densities in `voxels`.
   VoxelBox bricks_touched_by(const VoxelBox& voxels) const;
 
-  /// Points in the brick's frame, at the lattice's spacing and, where asked for, at twice that.
+  /// Points in the brick's frame, at the lattice's spacing and, where asked for, at twice that in flat
+  /// places.
   struct BrickSurface {
     std::array<ShellPoint, kMaxPointsOfBrick> fine;
-    std::array<ShellPoint, 512> coarse;
+    std::array<ShellPoint, kMaxPointsOfBrick> coarse;
+    std::array<std::uint8_t, kMaxPointsOfBrick> coarse_cell;
     std::size_t fine_count = 0;
     std::size_t coarse_count = 0;
+    /// Of the densities that these are the points of.
+    std::uint64_t fingerprint = 0;
   };
-  /// How many edges were crossed.
+  static constexpr int kUnchanged = -1;
+  /// How many edges were crossed; `kUnchanged`, and no points, where `surface.fingerprint` is that of the
+  /// densities as they still are.
   int find_surface(const VoxelIndex& brick, bool with_coarse, BrickSurface& surface) const;
 
  private:
   static constexpr std::size_t kRow = kMaxBlockNodes;
   static constexpr std::size_t kSlice = kRow * kRow;
-  // Densities at the nodes of a brick and one more all round (two at the upper sides), the lowest at 0, 0, 0;
-  // and of the first voxels the edge crossings of each cell.
-  using Block = std::array<float, kSlice * kRow>;
+  // Densities at the nodes of a brick and one more all round (two at the upper sides).
+  using Block = std::array<float, kSlice * kRow + 1>;
+  static std::size_t block_index(int i, int j, int k) {
+    return static_cast<std::size_t>(i + 1) + static_cast<std::size_t>(j + 1) * kRow +
+           static_cast<std::size_t>(k + 1) * kSlice;
+  }
+  // Bit n of a row: whether its node n is bone.
+  using Rows = std::array<std::uint32_t, (kMaxBrickNodes + 1) * (kMaxBrickNodes + 1)>;
+  static std::size_t row_index(int j, int k) {
+    return static_cast<std::size_t>(j + k * (kMaxBrickNodes + 1));
+  }
   VoxelBox voxels_of(const VoxelIndex& brick) const;
   void read_block(const VoxelIndex& brick, Block& block) const;
   void read_voxels(const VoxelIndex& first, Block& block) const;
   void interpolate_voxels(const VoxelIndex& first, Block& block) const;
   float density(const VoxelIndex& voxel) const;
+  std::uint64_t fingerprint_of(const Block& block) const;
+  bool find_bone(const Block& block, Rows& rows) const;
+  template <typename F>
+  int for_each_crossing(const Block& block, const Rows& rows, F&& f) const;
+  int list_crossings(const Block& block, const Rows& rows, BrickSurface& surface) const;
+  int mean_crossings(const Block& block, const Rows& rows, BrickSurface& surface) const;
+  static void merge_flat_cells(BrickSurface& surface);
   ShellPoint crossing(const float* here, const VoxelIndex& node, int axis) const;
 
   const Volume* volume_ = nullptr;
@@ -71,6 +91,8 @@ class SurfaceLattice {
   int brick_nodes_ = 8;
   std::array<int, 3> brick_dims_{1, 1, 1};
   Vec3 step_mm_ = Vec3::Ones();
+  Eigen::Vector3f step_ = Eigen::Vector3f::Ones();
+  Eigen::Vector3f per_step_ = Eigen::Vector3f::Ones();
   Eigen::Vector3f face_mm2_ = Eigen::Vector3f::Zero();
   float isovalue_ = 0;
   // Nothing beyond the border, also where the least density is bone's.

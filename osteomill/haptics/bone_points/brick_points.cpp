@@ -52,7 +52,6 @@ std::uint32_t BrickPoints::take_chunk() {
   first_free_ = next_[taken];
   --free_chunks_;
   next_[taken] = kNoChunk;
-  for (std::size_t slot = 0; slot < PointChunk::kSlots; ++slot) chunks_[taken].set(slot, kNoPoint);
   return taken;
 }
 
