@@ -5,21 +5,21 @@
 
 #include "app/commands.h"
 #include "app/config_file.h"
-#include "app/parallel.h"
 #include "app/progress.h"
-#include "app/record_trial.h"
 #include "app/scan_options.h"
-#include "app/study_trials.h"
 #include "app/trial_options.h"
 #include <CLI/Error.hpp>
 #include <CLI/Option.hpp>
 #include <CLI/Validators.hpp>
 #include <fmt/core.h>
 
+#include "osteomill/experiment/comparison_report.h"
+#include "osteomill/experiment/measure_stability.h"
+#include "osteomill/experiment/parallel.h"
+#include "osteomill/experiment/record_trial.h"
+#include "osteomill/experiment/study_trials.h"
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/recording/read_recording.h"
-#include "osteomill/report/write_report.h"
-#include "osteomill/session/measure_stability.h"
 
 namespace osteomill::app {
 
@@ -34,7 +34,7 @@ constexpr int kMostThreads = 256;
 struct CompareOptions {
   ScanOptions scan;
   TrialOptions trial;
-  std::vector<AlgorithmId> algorithms{kAllAlgorithms.begin(), kAllAlgorithms.end()};
+  std::vector<AlgorithmDescription> algorithms = all_algorithms();
   std::vector<Mode> modes{Mode::steady};
   int seeds = 1;
   int threads = static_cast<int>(core_count());
@@ -45,7 +45,8 @@ struct CompareOptions {
 // One plan a mode, with the first seed.
 std::vector<TrialPlan> plans_of(const CompareOptions& options, const LoadedBone& bone,
                                 const std::string& command_line) {
-  const TrialPlan plan{bone,
+  const TrialPlan plan{bone.volume,
+                       bone.name,
                        estimate_densities(bone.volume),
                        place_entry(bone.volume, options.trial),
                        trial_settings(options.trial),
@@ -66,7 +67,8 @@ std::vector<StudyRow> try_other_seeds(const CompareOptions& options, const std::
       others.push_back(with_seed(plan, options.trial.milling.seed + static_cast<std::uint64_t>(n)));
     }
   }
-  return run_study_trials(others, options.algorithms, static_cast<std::size_t>(options.threads));
+  return run_study_trials(others, options.algorithms, static_cast<std::size_t>(options.threads),
+                          events_on_terminal());
 }
 
 std::vector<StabilityRow> press_on_walls(const CompareOptions& options, const TrialSettings& settings) {
@@ -88,11 +90,14 @@ void run_compare(const CompareOptions& options, const std::string& command_line)
   const LoadedBone bone = load_bone(options.scan);
   const std::vector<TrialPlan> plans = plans_of(options, bone, command_line);
   create_folder(options.out);
+  const EntryPictures pictures(bone.volume, plans.front().densities.reference, plans.front().entry,
+                               events_on_terminal());
   std::vector<Recording> recordings;
   std::vector<StudyRow> rows;
   for (const TrialPlan& plan : plans) {
-    for (const AlgorithmId algorithm : options.algorithms) {
-      for (const fs::path& path : record_trial(plan, algorithm, options.out)) {
+    for (const AlgorithmDescription& algorithm : options.algorithms) {
+      for (const fs::path& path :
+           record_trial(plan, algorithm, pictures, options.out, events_on_terminal())) {
         recordings.push_back(read_recording(path));
         rows.push_back(row_of(plan, recordings.back()));
       }
@@ -105,7 +110,7 @@ void run_compare(const CompareOptions& options, const std::string& command_line)
     extras.study.emplace(std::move(rows));
   }
   if (!options.no_stability) extras.stability = press_on_walls(options, plans.front().settings);
-  fmt::print("{}\n", write_report(recordings, options.out, extras).string());
+  fmt::print("{}\n", write_comparison_report(recordings, options.out, extras).string());
 }
 
 // A study draws its hands, so one hand cannot be asked for as well.

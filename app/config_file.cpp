@@ -8,7 +8,7 @@
 #include <toml++/toml.h>
 
 #include "osteomill/files/input_error.h"
-#include "osteomill/haptics/algorithm_id.h"
+#include "osteomill/haptics/algorithms.h"
 
 namespace osteomill::app {
 
@@ -101,7 +101,7 @@ void apply_config_file(CLI::App& command) {
   for (auto&& [key, value] : parse(file)) {
     const std::string name(key.str());
     CLI::Option* named_settings = command.get_option_no_throw("--set");
-    if (value.is_table() && named_settings != nullptr && algorithm_named(name)) {
+    if (value.is_table() && named_settings != nullptr && find_algorithm(name) != nullptr) {
       give_named_settings(*named_settings, name, *value.as_table(), file);
       continue;
     }

@@ -1,22 +1,19 @@
 #include <chrono>
 #include <memory>
-#include <optional>
 #include <string>
 #include <thread>
 
 #include "app/commands.h"
 #include "app/config_file.h"
-#include "app/describe_run.h"
-#include "app/fault_count.h"
 #include "app/positive_number.h"
 #include "app/progress.h"
 #include "app/scan_options.h"
 #include "app/trial_options.h"
 #include <fmt/core.h>
 
-#include "osteomill/recording/recorder.h"
-#include "osteomill/session/live_session.h"
-#include "osteomill/surface/live_surface.h"
+#include "osteomill/experiment/paper.h"
+#include "osteomill/experiment/trial_plan.h"
+#include "osteomill/live/live_milling.h"
 
 namespace osteomill::app {
 
@@ -25,7 +22,7 @@ namespace {
 struct LiveOptions {
   ScanOptions scan;
   TrialOptions trial;
-  std::vector<AlgorithmId> algorithm{AlgorithmId::point_shell};
+  std::vector<AlgorithmDescription> algorithm{algorithm_named("point-shell")};
   double seconds = 60;
   std::string record;
 };
@@ -46,55 +43,62 @@ void print_timing(const TimingSummary& timing) {
   print_times("whole tick", timing.tick);
 }
 
-// Takes the surface as a window would; returns how many bricks were meshed while milling.
-std::size_t run_for(LiveSession& live, LiveSurface& surface, double seconds) {
+// What a window would have taken meanwhile.
+struct Seen {
+  FaultCount faults;
+  std::size_t bricks = 0;
+};
+
+Seen run_for(LiveMilling& milling, double seconds) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
   double passed_s = 0;
-  std::size_t bricks = 0;
-  while (passed_s < seconds && live.running()) {
+  Seen seen;
+  const auto take = [&] {
+    while (const auto record = milling.next_record()) seen.faults.add(*record);
+    seen.bricks += milling.take_changed_bricks().size();
+  };
+  while (passed_s < seconds && milling.running()) {
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
     passed_s = std::chrono::duration<double>(Clock::now() - start).count();
-    bricks += surface.take_changed_bricks().size();
+    take();
     show_progress("live", passed_s / seconds);
   }
-  live.stop();
+  milling.stop();
+  take();
   end_progress();
-  return bricks;
+  return seen;
 }
 
 void run_live(LiveOptions options, const std::string& command_line) {
   ScriptSettings& script = options.trial.hand.script;
   script.milling_s = script.holding_s = 0.5 * options.seconds;
-  const AlgorithmId algorithm = options.algorithm.front();
-  const LoadedBone bone = load_bone(options.scan);
-  const TrialPlan plan{bone, estimate_densities(bone.volume), place_entry(bone.volume, options.trial),
-                       trial_settings(options.trial), command_line};
-  SimulatedOperator hand(plan.settings.hand_and_device, plan.settings.tool, plan.entry);
-  auto session = std::make_unique<MillingSession>(
-      bone.volume, plan.settings.tool, make_algorithm(algorithm, plan.settings.haptics), plan.densities,
-      plan.settings.milling, plan.settings.limits);
-  std::optional<Recorder> recorder;
+  MillingSetup setup = options.trial.milling.setup;
+  setup.algorithm = options.algorithm.front();
+  LoadedBone loaded = load_bone(options.scan);
+  const auto bone = std::make_shared<Volume>(std::move(loaded.volume));
+  PreparedMilling prepared = prepare_milling(bone, setup);
+  const TrialPlan plan{*bone,
+                       loaded.name,
+                       prepared.densities,
+                       place_entry(*bone, options.trial),
+                       trial_settings(options.trial),
+                       command_line};
+  const int points = prepared.session->algorithm().sample_point_count();
+  SimulatedOperator hand(plan.settings.hand_and_device, setup.tool, plan.entry);
+  LiveMilling milling(std::move(prepared), hand);
   if (!options.record.empty()) {
-    recorder.emplace(options.record, describe_run(plan, algorithm, session->algorithm().sample_point_count(),
-                                                  RunPhase::milling));
+    milling.start_recording(options.record, describe_trial(plan, setup.algorithm, points, kMilling));
   }
-  LiveSurface surface(bone.volume);
-  FaultCount faults;
-  LiveSession live(std::move(session), hand, plan.settings.tick_s);
-  live.listen([&](const TickRecord& record, const Volume& volume, const VolumeChange& change) {
-    faults.add(record);
-    surface.volume_changed(volume, change);
-    if (recorder) recorder->push(record);
-  });
-  live.start();
-  if (!live.refused_real_time().empty()) fmt::print(stderr, "osteomill: {}\n", live.refused_real_time());
-  const std::size_t bricks = run_for(live, surface, options.seconds);
-  if (recorder) recorder->close();
-  faults.report(name_of(algorithm));
-  print_timing(live.timing());
-  fmt::print("removed      {:.2f} mm^3, {} bricks of the surface meshed\n", live.state().record.removed_mm3,
-             bricks);
+  milling.start();
+  if (!milling.refused_real_time().empty())
+    fmt::print(stderr, "osteomill: {}\n", milling.refused_real_time());
+  const Seen seen = run_for(milling, options.seconds);
+  if (milling.recording()) milling.stop_recording();
+  print_faults(setup.algorithm.id.name, seen.faults);
+  print_timing(milling.timing());
+  fmt::print("removed      {:.2f} mm^3, {} bricks of the surface meshed\n",
+             milling.state().record.removed_mm3, seen.bricks);
 }
 
 }  // namespace

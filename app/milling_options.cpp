@@ -11,11 +11,9 @@
 #include <CLI/Option.hpp>
 #include <CLI/Validators.hpp>
 
-#include "osteomill/haptics/make_algorithm.h"
+#include "osteomill/haptics/algorithms.h"
 
 namespace osteomill::app {
-
-namespace {}  // namespace
 
 void add_mode_option(CLI::App& command, Mode& mode) {
   command
@@ -48,23 +46,47 @@ HapticSettings::Named named_setting(const std::string& text) {
   if (dot == std::string::npos || equals == std::string::npos || equals < dot) {
     throw CLI::ValidationError("--set", text + " is not of the form ALGORITHM.SETTING=VALUE");
   }
-  const auto algorithm = algorithm_named(text.substr(0, dot));
-  if (!algorithm) throw CLI::ValidationError("--set", text.substr(0, dot) + " is no algorithm");
-  HapticSettings::Named named{*algorithm, text.substr(dot + 1, equals - dot - 1), 0};
+  HapticSettings::Named named{text.substr(0, dot), text.substr(dot + 1, equals - dot - 1), 0};
+  const AlgorithmDescription* algorithm = find_algorithm(named.algorithm);
+  if (algorithm == nullptr) throw CLI::ValidationError("--set", named.algorithm + " is no algorithm");
   const std::string value = text.substr(equals + 1);
   if (value == "true" || value == "false") {
     named.value = value == "true" ? 1 : 0;
   } else if (!CLI::detail::lexical_cast(value, named.value) || std::isnan(named.value)) {
     throw CLI::ValidationError("--set", value + " is not a number, true or false");
   }
-  HapticSettings alone;
-  alone.named = {named};
   try {
-    make_algorithm(*algorithm, alone);
+    make_algorithm(*algorithm, {.named = {named}});
   } catch (const std::invalid_argument& error) {
     throw CLI::ValidationError("--set", error.what());
   }
   return named;
+}
+
+// Checked by every algorithm that has it, so that none is refused later.
+void set_shared(HapticSettings& haptics, const std::string& option, double value) {
+  haptics.set_option(option, value);
+  try {
+    for (const AlgorithmDescription& algorithm : all_algorithms()) {
+      if (const SettingDescription* setting = setting_of_option(algorithm, option)) {
+        require_in_range(algorithm.id, *setting, value);
+      }
+    }
+  } catch (const std::invalid_argument& error) {
+    throw CLI::ValidationError("--" + option, error.what());
+  }
+}
+
+// "1 line-proxy: k of (6) and (10) (N/mm); 3 point-shell: ..."
+std::string meaning_of_option(const std::string& option) {
+  std::string text;
+  for (const AlgorithmDescription& algorithm : all_algorithms()) {
+    const SettingDescription* setting = setting_of_option(algorithm, option);
+    if (setting == nullptr) continue;
+    text += (text.empty() ? "" : "; ") + algorithm.id.name + ": " + setting->meaning;
+    if (!setting->unit.empty()) text += " (" + setting->unit + ")";
+  }
+  return text;
 }
 
 void add_named_settings(CLI::App& command, HapticSettings& haptics) {
@@ -72,63 +94,66 @@ void add_named_settings(CLI::App& command, HapticSettings& haptics) {
       .add_option_function<std::vector<std::string>>(
           "--set",
           [&haptics](const std::vector<std::string>& texts) {
-            haptics.named.clear();
+            std::erase_if(haptics.named, [](const auto& named) { return !named.algorithm.empty(); });
             for (const std::string& text : texts) haptics.named.push_back(named_setting(text));
           },
           "ALGORITHM.SETTING=VALUE, any setting of docs/algorithms.md; may repeat")
       ->type_name("SETTING");
 }
 
+// One option for all settings that name it, so that it stands in the algorithms' descriptions alone.
+void add_shared_settings(CLI::App& command, HapticSettings& haptics) {
+  std::vector<std::string> added;
+  for (const AlgorithmDescription& algorithm : all_algorithms()) {
+    for (const SettingDescription& setting : algorithm.settings) {
+      const std::string& option = setting.option;
+      if (option.empty() || std::find(added.begin(), added.end(), option) != added.end()) continue;
+      added.push_back(option);
+      command
+          .add_option_function<double>(
+              "--" + option, [&haptics, option](double value) { set_shared(haptics, option, value); },
+              meaning_of_option(option))
+          ->type_name(setting.range.whole ? "COUNT" : "NUMBER");
+    }
+  }
+}
+
 }  // namespace
 
 void add_milling_options(CLI::App& command, MillingOptions& options) {
-  add_positive(command, "--burr-radius", options.tool.burr_radius_mm, "mm");
-  add_positive(command, "--shaft-radius", options.tool.shaft_radius_mm, "mm");
-  add_positive(command, "--shaft-length", options.tool.shaft_length_mm, "mm");
-  add_positive(command, "--stiffness", options.haptics.stiffness_N_per_mm,
-               "N/mm: the spring of 1 and 2, the virtual coupling of 3");
-  add_positive(command, "--torsional-stiffness", options.haptics.torsional_stiffness_Nmm_per_rad,
-               "N mm/rad: the rotational virtual coupling of 3");
-  add_positive(command, "--vertices", options.haptics.vertices, "Vertices of algorithm 1");
-  add_positive(command, "--slices", options.haptics.slices, "Slices of algorithm 2");
-  add_positive(command, "--shell-scale", options.haptics.shell_scale,
-               "Coarseness of algorithm 3's shell; 1 is every surface voxel");
-  add_named_settings(command, options.haptics);
-  add_positive(command, "--spindle-speed", options.cutting.spindle_speed_rpm, "rpm");
-  add_positive(command, "--cutting-energy", options.cutting.specific_energy_Nmm_per_mm3,
+  MillingSetup& setup = options.setup;
+  add_positive(command, "--burr-radius", setup.tool.burr_radius_mm, "mm");
+  add_positive(command, "--shaft-radius", setup.tool.shaft_radius_mm, "mm");
+  add_positive(command, "--shaft-length", setup.tool.shaft_length_mm, "mm");
+  add_shared_settings(command, setup.haptics);
+  add_named_settings(command, setup.haptics);
+  add_positive(command, "--spindle-speed", setup.cutting.spindle_speed_rpm, "rpm");
+  add_positive(command, "--cutting-energy", setup.cutting.specific_energy_Nmm_per_mm3,
                "N mm/mm^3, the work that removes bone of the reference density");
-  add_positive(command, "--removal-rate", options.removal_rate_mm3_per_Ns,
+  add_positive(command, "--removal-rate", setup.removal_rate_mm3_per_Ns,
                "kappa, mm^3/(N s); else from burr, spindle speed and cutting energy");
-  add_positive(command, "--force-limit", options.limits.force_N, "N, the most the device is asked for");
-  add_positive(command, "--torque-limit", options.limits.torque_Nmm, "N mm");
+  add_positive(command, "--force-limit", setup.limits.force_N, "N, the most the device is asked for");
+  add_positive(command, "--torque-limit", setup.limits.torque_Nmm, "N mm");
   command.add_option("--seed", options.seed, "Of the hand's tremor, and of the hands that --seeds draws")
       ->capture_default_str();
   add_config_option(command);
 }
 
-MillingSettings milling_settings(const MillingOptions& options) {
-  MillingSettings milling;
-  milling.removal_rate_mm3_per_Ns = options.removal_rate_mm3_per_Ns.value_or(
-      removal_rate_mm3_per_Ns(options.cutting, options.tool.burr_radius_mm));
-  return milling;
-}
-
-void add_algorithm_option(CLI::App& command, std::vector<AlgorithmId>& algorithms) {
-  std::vector<std::string> names;
-  for (const AlgorithmId id : kAllAlgorithms) names.emplace_back(name_of(id));
+void add_algorithm_option(CLI::App& command, std::vector<AlgorithmDescription>& algorithms) {
   command
       .add_option_function<std::vector<std::string>>(
           "--algorithm",
           [&algorithms](const std::vector<std::string>& chosen) {
             algorithms.clear();
             for (const std::string& name : chosen) {
-              const AlgorithmId id = *algorithm_named(name);
-              if (std::find(algorithms.begin(), algorithms.end(), id) == algorithms.end())
-                algorithms.push_back(id);
+              const AlgorithmDescription& algorithm = algorithm_named(name);
+              const bool is_there = std::any_of(algorithms.begin(), algorithms.end(),
+                                                [&](const auto& other) { return other.id == algorithm.id; });
+              if (!is_there) algorithms.push_back(algorithm);
             }
           },
           "Only this one; may repeat")
-      ->check(CLI::IsMember(names));
+      ->check(CLI::IsMember(algorithm_names()));
 }
 
 }  // namespace osteomill::app

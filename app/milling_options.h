@@ -1,28 +1,19 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include <CLI/App.hpp>
 
-#include "osteomill/geometry/wrench.h"
-#include "osteomill/haptics/haptic_settings.h"
-#include "osteomill/milling/burr_mill.h"
-#include "osteomill/milling/cutting_power.h"
-#include "osteomill/tool/milling_tool.h"
+#include "osteomill/haptics/algorithms.h"
+#include "osteomill/session/milling_setup.h"
 
 namespace osteomill::app {
 
 /// What every command that mills has in common.
 struct MillingOptions {
-  MillingTool tool;
-  HapticSettings haptics;
-  CuttingSettings cutting;
-  /// Not given: follows from `cutting` and the burr.
-  std::optional<double> removal_rate_mm3_per_Ns;
-  WrenchLimits limits;
+  MillingSetup setup;
   std::uint64_t seed = 1;
 };
 
@@ -33,9 +24,7 @@ void add_modes_option(CLI::App& command, std::vector<Mode>& modes);
 /// Adds the tool, the algorithms' settings, milling, limits, --seed and --config to a command.
 void add_milling_options(CLI::App& command, MillingOptions& options);
 
-MillingSettings milling_settings(const MillingOptions& options);
-
 /// Adds --algorithm, which may repeat; none given means all.
-void add_algorithm_option(CLI::App& command, std::vector<AlgorithmId>& algorithms);
+void add_algorithm_option(CLI::App& command, std::vector<AlgorithmDescription>& algorithms);
 
 }  // namespace osteomill::app

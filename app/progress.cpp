@@ -28,4 +28,15 @@ void end_progress() {
   std::fflush(stderr);
 }
 
+RunEvents events_on_terminal() {
+  return {show_progress, [](const std::string& line) {
+            end_progress();
+            fmt::print(stderr, "osteomill: {}\n", line);
+          }};
+}
+
+void print_faults(std::string_view who, const FaultCount& faults) {
+  if (const auto said = faults.sentence()) fmt::print(stderr, "osteomill: {}: {}\n", who, *said);
+}
+
 }  // namespace osteomill::app

@@ -10,9 +10,9 @@
 #include "app/trial_options.h"
 #include <fmt/core.h>
 
+#include "osteomill/experiment/measure_rates.h"
+#include "osteomill/experiment/write_rates_report.h"
 #include "osteomill/files/atomic_file.h"
-#include "osteomill/report/write_rates_report.h"
-#include "osteomill/session/measure_rates.h"
 
 namespace osteomill::app {
 
@@ -21,7 +21,7 @@ namespace {
 struct RatesOptions {
   ScanOptions scan;
   TrialOptions trial;
-  std::vector<AlgorithmId> algorithms{kAllAlgorithms.begin(), kAllAlgorithms.end()};
+  std::vector<AlgorithmDescription> algorithms = all_algorithms();
   std::string out = "osteomill-rates";
 };
 
@@ -46,7 +46,7 @@ void add_rates_command(CLI::App& program) {
   add_scan_options(*command, options->scan);
   command->add_option("--out", options->out, "Folder for the tables and the figure")->capture_default_str();
   add_algorithm_option(*command, options->algorithms);
-  add_mode_option(*command, options->trial.milling.haptics.mode);
+  add_mode_option(*command, options->trial.milling.setup.haptics.mode);
   add_trial_options(*command, options->trial);
   command->callback([=] {
     apply_config_file(*command);

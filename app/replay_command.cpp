@@ -4,7 +4,6 @@
 
 #include "app/commands.h"
 #include "app/config_file.h"
-#include "app/fault_count.h"
 #include "app/milling_options.h"
 #include "app/progress.h"
 #include "app/scan_options.h"
@@ -12,7 +11,7 @@
 #include <fmt/core.h>
 
 #include "osteomill/device/trajectory.h"
-#include "osteomill/haptics/make_algorithm.h"
+#include "osteomill/haptics/algorithms.h"
 #include "osteomill/recording/write_csv.h"
 #include "osteomill/session/replay.h"
 #include "osteomill/volume/densities.h"
@@ -25,21 +24,21 @@ struct ReplayOptions {
   std::string trajectory;
   ScanOptions scan;
   MillingOptions milling;
-  std::vector<AlgorithmId> algorithm;
+  std::vector<AlgorithmDescription> algorithm;
   std::string out;
 };
 
-void run_replay(const ReplayOptions& options) {
+void run_replay(ReplayOptions options) {
   const std::vector<TrajectoryPoint> trajectory = read_trajectory(options.trajectory);
   LoadedBone bone = load_bone(options.scan);
   const BoneDensities densities = estimate_densities(bone.volume);
-  MillingSession session(std::move(bone.volume), options.milling.tool,
-                         make_algorithm(options.algorithm.front(), options.milling.haptics), densities,
-                         milling_settings(options.milling), options.milling.limits);
+  options.milling.setup.algorithm = options.algorithm.front();
+  const auto session =
+      make_session(std::make_shared<Volume>(std::move(bone.volume)), densities, options.milling.setup);
   FaultCount faults;
   std::vector<TickRecord> log;
   log.reserve(trajectory.size());
-  replay(session, trajectory, [&](const TickRecord& record) {
+  replay(*session, trajectory, [&](const TickRecord& record) {
     log.push_back(record);
     faults.add(record);
     if (log.size() % 1000 == 0) {
@@ -47,7 +46,7 @@ void run_replay(const ReplayOptions& options) {
     }
   });
   end_progress();
-  faults.report(options.trajectory);
+  print_faults(options.trajectory, faults);
   write_csv(options.out, log);
   fmt::print("{}\n", options.out);
 }
@@ -64,7 +63,7 @@ void add_replay_command(CLI::App& program) {
   add_algorithm_option(*command, options->algorithm);
   command->get_option("--algorithm")->required()->expected(1);
   command->add_option("--out", options->out, "The log, CSV, a row a tick")->required();
-  add_mode_option(*command, options->milling.haptics.mode);
+  add_mode_option(*command, options->milling.setup.haptics.mode);
   add_milling_options(*command, options->milling);
   command->callback([=] {
     apply_config_file(*command);

@@ -7,6 +7,7 @@
 #include "app/progress.h"
 #include <fmt/core.h>
 
+#include "osteomill/experiment/comparison_report.h"
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/recording/read_recording.h"
 #include "osteomill/recording/write_csv.h"
@@ -37,7 +38,10 @@ void run_report(const ReportOptions& options) {
       write_csv(std::filesystem::path(options.out) / name, recording.records);
     }
   }
-  fmt::print("{}\n", write_report(recordings, options.out).string());
+  const bool comparison = are_of_comparison(recordings);
+  fmt::print("{}\n", (comparison ? write_comparison_report(recordings, options.out)
+                                 : write_report(recordings, options.out))
+                         .string());
 }
 
 }  // namespace

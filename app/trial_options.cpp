@@ -51,18 +51,19 @@ void add_trial_options(CLI::App& command, TrialOptions& options) {
 
 TrialSettings trial_settings(const TrialOptions& options) {
   TrialSettings trial;
-  trial.tool = options.milling.tool;
-  trial.haptics = options.milling.haptics;
-  trial.milling = milling_settings(options.milling);
-  trial.limits = options.milling.limits;
+  const MillingSetup& setup = options.milling.setup;
+  trial.tool = setup.tool;
+  trial.haptics = setup.haptics;
+  trial.milling = milling_settings(setup);
+  trial.limits = setup.limits;
   trial.hand_and_device = options.hand;
-  trial.hand_and_device.handle.limits = options.milling.limits;
+  trial.hand_and_device.handle.limits = setup.limits;
   trial.hand_and_device.seed = options.milling.seed;
   return trial;
 }
 
 MillingEntry place_entry(const Volume& bone, const TrialOptions& options) {
-  return osteomill::place_entry(bone, options.milling.tool, as_vector(options.entry_mm),
+  return osteomill::place_entry(bone, options.milling.setup.tool, as_vector(options.entry_mm),
                                 as_vector(options.direction));
 }
 

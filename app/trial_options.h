@@ -5,8 +5,8 @@
 #include "app/milling_options.h"
 #include <CLI/App.hpp>
 
-#include "osteomill/device/simulated_operator.h"
-#include "osteomill/session/milling_trial.h"
+#include "osteomill/experiment/milling_trial.h"
+#include "osteomill/operator/simulated_operator.h"
 
 namespace osteomill::app {
 

@@ -7,7 +7,7 @@
 #include "benchmarks/percentiles.h"
 #include <benchmark/benchmark.h>
 
-#include "osteomill/session/milling_trial.h"
+#include "osteomill/experiment/milling_trial.h"
 #include "osteomill/volume/densities.h"
 
 namespace osteomill::benchmarks {
@@ -15,7 +15,7 @@ namespace osteomill::benchmarks {
 namespace {
 
 struct Trial {
-  AlgorithmId algorithm;
+  std::string_view algorithm;
   Mode mode;
   Bone bone;
   bool milling;
@@ -31,9 +31,9 @@ TrialSettings settings_of(const Trial& trial) {
   settings.hand_and_device.script.holding_s = 1;
   settings.hand_and_device.script.settle_s = 0.5;
   if (trial.resolution > 0) {
-    if (trial.algorithm == AlgorithmId::line_proxy) settings.haptics.vertices = trial.resolution;
-    if (trial.algorithm == AlgorithmId::surface_points) settings.haptics.slices = trial.resolution;
-    if (trial.algorithm == AlgorithmId::point_shell) settings.haptics.shell_scale = trial.resolution;
+    const AlgorithmDescription& chosen = algorithm_named(trial.algorithm);
+    settings.haptics.named.push_back(
+        {chosen.id.name, chosen.resolution_setting, static_cast<double>(trial.resolution)});
   }
   return settings;
 }
@@ -44,7 +44,7 @@ void closed_loop(benchmark::State& state, const Trial& trial) {
   const MillingEntry entry = place_entry(bone, settings.tool);
   const BoneDensities densities = estimate_densities(bone);
   for ([[maybe_unused]] auto _ : state) {
-    MillingTrial run(bone, densities, entry, trial.algorithm, settings);
+    MillingTrial run(bone, densities, entry, algorithm_named(trial.algorithm), settings);
     TickTimes steps, milling;
     double removed_mm3 = 0, contacts = 0;
     while (!run.finished()) {
@@ -64,9 +64,8 @@ void closed_loop(benchmark::State& state, const Trial& trial) {
 }
 
 std::string name(const Trial& trial) {
-  std::string text = "closed_loop/" + std::string(name_of(trial.algorithm)) + "/" +
-                     std::string(name_of(trial.mode)) + "/" + name_of(trial.bone) +
-                     (trial.milling ? "/milling" : "/spindle_off");
+  std::string text = "closed_loop/" + std::string(trial.algorithm) + "/" + std::string(name_of(trial.mode)) +
+                     "/" + name_of(trial.bone) + (trial.milling ? "/milling" : "/spindle_off");
   if (trial.resolution > 0) text += "/resolution:" + std::to_string(trial.resolution);
   return text;
 }
@@ -79,18 +78,16 @@ void add(const Trial& trial) {
 }
 
 const bool kAdded = [] {
-  for (const AlgorithmId algorithm : kAllAlgorithms) {
+  for (const std::string& algorithm : algorithm_names()) {
     for (const Bone bone :
          {Bone::builtin, Bone::builtin_refined, Bone::real_tooth, Bone::real_tooth_refined}) {
       for (const bool milling : {true, false}) add({algorithm, Mode::steady, bone, milling});
     }
     add({algorithm, Mode::paper, Bone::builtin, true});
   }
-  for (const int vertices : {101, 1001})
-    add({AlgorithmId::line_proxy, Mode::steady, Bone::builtin, true, vertices});
-  for (const int slices : {10, 100})
-    add({AlgorithmId::surface_points, Mode::steady, Bone::builtin, true, slices});
-  for (const int scale : {2, 3}) add({AlgorithmId::point_shell, Mode::steady, Bone::builtin, true, scale});
+  for (const int vertices : {101, 1001}) add({"line-proxy", Mode::steady, Bone::builtin, true, vertices});
+  for (const int slices : {10, 100}) add({"surface-points", Mode::steady, Bone::builtin, true, slices});
+  for (const int scale : {2, 3}) add({"point-shell", Mode::steady, Bone::builtin, true, scale});
   return true;
 }();
 

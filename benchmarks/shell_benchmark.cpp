@@ -21,7 +21,7 @@ double allocated_bytes() {
 
 void build_shell(benchmark::State& state, Bone bone) {
   const Volume& volume = bone_volume(bone);
-  const ShellRules rules = PointShellSettings::defaults(Mode::steady).shell;
+  const point_shell::ShellRules rules = point_shell::Settings::defaults(Mode::steady).shell;
   for ([[maybe_unused]] auto _ : state) {
     const double before = allocated_bytes();
     const PointShell shell(volume, rules);

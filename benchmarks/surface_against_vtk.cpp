@@ -17,9 +17,11 @@
 #include <vtkPolyData.h>
 
 #include "osteomill/ct/read_scan.h"
+#include "osteomill/live/bone_follower.h"
+#include "osteomill/live/density_handover.h"
 #include "osteomill/milling/burr_mill.h"
-#include "osteomill/surface/live_surface.h"
 #include "osteomill/surface/surface_mesh.h"
+#include "osteomill/surface/surface_upkeep.h"
 #include "osteomill/volume/builtin_tooth.h"
 #include "osteomill/volume/densities.h"
 #include "osteomill/volume/isosurface.h"
@@ -142,23 +144,24 @@ FrameTimes mill_and_mesh(const Volume& bone, double radius_mm, vtkFlyingEdges3D*
   Volume volume = bone;
   Milling milling(volume, radius_mm);
   DensityHandover handover(volume.geometry(), 512);
-  SurfaceCopy copy(volume);
-  copy.remesh();
+  Volume copy = bone;
+  SurfaceUpkeep upkeep{SurfaceBricks(copy.geometry().dims)};
+  upkeep.remesh(DensityView(copy));
   FrameTimes times;
   for (int frame = 0; frame < kFrames; ++frame) {
     for (int tick = 0; tick < kTicks; ++tick) {
       const VolumeChange change = milling.tick();
       times.handing_over_us.add(1e3 * milliseconds([&] {
                                   handover.mark(change);
-                                  handover.send(volume, LiveSurface::kBricksPerTick);
+                                  handover.send(volume, BoneFollower::kBricksPerTick);
                                 }));
     }
     times.meshing.add(milliseconds([&] {
-      while (const DensityHandover::Brick* brick = handover.front()) {
-        copy.put(*brick);
+      while (DensityBrick* brick = handover.front()) {
+        upkeep.mark(swap_densities(copy, *brick));
         handover.pop();
       }
-      times.bricks.add(static_cast<double>(copy.remesh().size()));
+      times.bricks.add(static_cast<double>(upkeep.remesh(DensityView(copy)).size()));
     }));
   }
   if (flying != nullptr) {

@@ -7,7 +7,7 @@
 #include "benchmarks/percentiles.h"
 #include <benchmark/benchmark.h>
 
-#include "osteomill/haptics/make_algorithm.h"
+#include "osteomill/haptics/algorithms.h"
 #include "osteomill/haptics/point_shell/brick_contacts.h"
 #include "osteomill/haptics/point_shell/point_shell_algorithm.h"
 
@@ -25,7 +25,7 @@ Pose stirred(const Pose& pose, int tick) {
           pose.orientation};
 }
 
-void sleeved(benchmark::State& state, AlgorithmId algorithm, double spacing_mm) {
+void sleeved(benchmark::State& state, std::string_view algorithm, double spacing_mm) {
   const MillingTool tool;
   const Volume block = sleeve_block(spacing_mm, tool, kOverlap_mm);
   const Pose pose = pose_in_sleeve(block, tool);
@@ -49,7 +49,7 @@ void sleeved_contacts(benchmark::State& state, double spacing_mm) {
   const MillingTool tool;
   const Volume block = sleeve_block(spacing_mm, tool, kOverlap_mm);
   const Pose pose = pose_in_sleeve(block, tool);
-  PointShellAlgorithm algorithm(PointShellSettings::defaults(Mode::steady));
+  point_shell::PointShellAlgorithm algorithm(point_shell::Settings::defaults(Mode::steady));
   algorithm.prepare({&block, tool});
   int touching = 0;
   for ([[maybe_unused]] auto _ : state) {
@@ -69,9 +69,8 @@ void sleeved_contacts(benchmark::State& state, double spacing_mm) {
 const bool kAdded = [] {
   for (const double spacing_mm : {0.125, 0.0625}) {
     const std::string voxels = spacing_mm > 0.1 ? "/0.125mm" : "/0.0625mm";
-    for (const AlgorithmId algorithm : kAllAlgorithms) {
-      benchmark::RegisterBenchmark(("sleeved/" + std::string(name_of(algorithm)) + voxels).c_str(), sleeved,
-                                   algorithm, spacing_mm)
+    for (const std::string& algorithm : algorithm_names()) {
+      benchmark::RegisterBenchmark(("sleeved/" + algorithm + voxels).c_str(), sleeved, algorithm, spacing_mm)
           ->Iterations(1)
           ->Unit(benchmark::kMillisecond);
     }

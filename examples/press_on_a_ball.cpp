@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include <osteomill/haptics/make_algorithm.h>
+#include <osteomill/haptics/algorithms.h>
 
 namespace {
 
@@ -32,7 +32,7 @@ osteomill::Volume ball_of_bone() {
 
 int main() {
   const osteomill::Volume bone = ball_of_bone();
-  for (const osteomill::AlgorithmId id : osteomill::kAllAlgorithms) {
+  for (const std::string& id : osteomill::algorithm_names()) {
     const auto algorithm = osteomill::make_algorithm(id, {.mode = osteomill::Mode::paper});
     algorithm->prepare({&bone, osteomill::MillingTool{}});
     osteomill::HapticStep step;
@@ -40,8 +40,8 @@ int main() {
       step = algorithm->step({{0, 0, height_mm}, osteomill::Quat::Identity()}, 1e-3);
     }
     const osteomill::Vec3& force_N = step.wrench.force_N;
-    std::printf("%-14s force %6.3f %6.3f %6.3f N, %d contacts\n", osteomill::name_of(id).data(), force_N.x(),
-                force_N.y(), force_N.z(), step.contacts);
+    std::printf("%-14s force %6.3f %6.3f %6.3f N, %d contacts\n", id.c_str(), force_N.x(), force_N.y(),
+                force_N.z(), step.contacts);
     if (!(force_N.z() > 0)) return 1;
   }
   return 0;

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "osteomill/device/milling_entry.h"
 #include "osteomill/geometry/wrench.h"
+#include "osteomill/operator/milling_entry.h"
 
 namespace osteomill::testing_support {
 

@@ -2,24 +2,24 @@
 #include "tests/shapes.h"
 #include <gtest/gtest.h>
 
+#include "osteomill/live/bone_follower.h"
 #include "osteomill/milling/burr_mill.h"
-#include "osteomill/surface/live_surface.h"
 
 namespace osteomill {
 namespace {
 
 // Also while the drawing thread takes nothing and more is marked than finds room.
-TEST(TickAllocation, HandingChangesOverToTheSurfaceAllocatesNothing) {
+TEST(TickAllocation, HandingChangesOverToTheFollowerAllocatesNothing) {
   Volume volume = testing_support::shape_volume(testing_support::centred_cube(96, 0.25),
                                                 testing_support::ball(Vec3::Zero(), 10));
-  LiveSurface live(volume);
+  BoneFollower follower(volume);
   BurrMill mill(volume.geometry(), 1.5, {0, 1000}, {});
   const long before = testing_support::allocations_of_this_thread();
   for (int n = 0; n < 1000; ++n) {
-    live.volume_changed(volume, mill.step(volume, {0.01 * n, 0, 11 - 0.002 * n}, 4.0, 1e-3).change);
+    follower.bone_changed(volume, mill.step(volume, {0.01 * n, 0, 11 - 0.002 * n}, 4.0, 1e-3).change);
   }
-  live.volume_changed(volume, {volume.geometry().all_voxels()});
-  for (int n = 0; n < 1000; ++n) live.volume_changed(volume, {});
+  follower.bone_changed(volume, {volume.geometry().all_voxels()});
+  for (int n = 0; n < 1000; ++n) follower.bone_changed(volume, {});
   EXPECT_EQ(testing_support::allocations_of_this_thread() - before, 0);
 }
 

@@ -8,3 +8,4 @@ cmake --install "$1" --prefix "$folder/prefix" >/dev/null
 cmake -S "$2" -B "$folder/build" -G Ninja -DCMAKE_BUILD_TYPE=Debug -DCMAKE_PREFIX_PATH="$folder/prefix" >/dev/null
 cmake --build "$folder/build"
 "$folder/build/press_on_a_ball"
+"$folder/build/mill_live"

@@ -12,10 +12,10 @@
 #include <gtest/gtest.h>
 
 #include "osteomill/device/posed_device.h"
-#include "osteomill/haptics/make_algorithm.h"
-#include "osteomill/session/live_session.h"
+#include "osteomill/haptics/algorithms.h"
+#include "osteomill/live/bone_follower.h"
+#include "osteomill/live/live_session.h"
 #include "osteomill/session/milling_session.h"
-#include "osteomill/surface/live_surface.h"
 #include "osteomill/volume/densities.h"
 
 namespace osteomill {
@@ -30,7 +30,7 @@ TEST(TickAllocation, TheCounterCounts) {
 }
 
 struct Case {
-  AlgorithmId algorithm;
+  std::string_view algorithm;
   Mode mode;
 };
 
@@ -73,38 +73,39 @@ TEST_P(TickAllocation, NoTickAllocates) {
 }
 
 INSTANTIATE_TEST_SUITE_P(AllAlgorithms, TickAllocation,
-                         ::testing::Values(Case{AlgorithmId::line_proxy, Mode::paper},
-                                           Case{AlgorithmId::line_proxy, Mode::steady},
-                                           Case{AlgorithmId::surface_points, Mode::paper},
-                                           Case{AlgorithmId::surface_points, Mode::steady},
-                                           Case{AlgorithmId::point_shell, Mode::paper},
-                                           Case{AlgorithmId::point_shell, Mode::steady}),
+                         ::testing::Values(Case{"line-proxy", Mode::paper}, Case{"line-proxy", Mode::steady},
+                                           Case{"surface-points", Mode::paper},
+                                           Case{"surface-points", Mode::steady},
+                                           Case{"point-shell", Mode::paper},
+                                           Case{"point-shell", Mode::steady},
+                                           Case{"barrier-shell", Mode::steady}),
                          [](const auto& test) {
                            std::string name(name_of(test.param.algorithm));
                            name[name.find('-')] = '_';
                            return name + "_" + std::string(name_of(test.param.mode));
                          });
 
-// The whole loop of the haptic thread, with the surface's hand-over, the vibration, and commands coming in.
+// The whole loop of the haptic thread, with the hand-over to the follower, the vibration, and commands coming
+// in.
 TEST(TickAllocation, NoTickOfALiveSessionAllocates) {
   constexpr double kBallRadius_mm = 6;
   const Volume bone = testing_support::shape_volume(testing_support::centred_cube(64, 0.25),
                                                     testing_support::ball(Vec3::Zero(), kBallRadius_mm));
   const MillingTool tool;
   auto session =
-      std::make_unique<MillingSession>(bone, tool, make_algorithm(AlgorithmId::point_shell, {}),
+      std::make_unique<MillingSession>(bone, tool, make_algorithm("point-shell", {}),
                                        estimate_densities(bone), MillingSettings{}, WrenchLimits{});
   session->set_vibration({.on = true});
   PosedDevice device;
   device.put({{0, 0, kBallRadius_mm + tool.burr_radius_mm - 0.3}, Quat::Identity()});
-  LiveSurface surface(bone);
+  BoneFollower follower(bone);
   LiveSession live(std::move(session), device);
   std::atomic<int> ticks{0};
   std::atomic<long> allocations{-1};
   long before = 0;
   live.set_spindle(true);
   live.listen([&](const TickRecord&, const Volume& volume, const VolumeChange& change) {
-    surface.volume_changed(volume, change);
+    follower.bone_changed(volume, change);
     const int tick = ticks.fetch_add(1);
     if (tick == 5) before = allocations_of_this_thread();
     if (tick == 300) allocations = allocations_of_this_thread() - before;

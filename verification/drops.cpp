@@ -4,7 +4,7 @@
 #include "verification/sections.h"
 #include <fmt/core.h>
 
-#include "osteomill/device/simulated_handle.h"
+#include "osteomill/operator/simulated_handle.h"
 
 namespace osteomill::verification {
 
@@ -25,13 +25,13 @@ void fall(SimulatedHandle& handle, const Vec3& normal) {
 
 // The share of its kinetic energy with which a dropped handle leaves a plane of random slope again; 0 where
 // it stays.
-double rebound(AlgorithmId algorithm, double stiffness, double height_mm, SeededRandom& random) {
+double rebound(std::string_view algorithm, double stiffness, double height_mm, SeededRandom& random) {
   using namespace testing_support;
   const Vec3 normal = random_direction(random);
   const Volume volume = shape_volume(centred_cube(60, 0.2), plane(Vec3::Zero(), normal));
   const MillingTool tool;
   const auto haptics = prepared(algorithm, volume, tool, stiffness);
-  const bool centreline = algorithm == AlgorithmId::line_proxy;
+  const bool centreline = algorithm == "line-proxy";
   const double resting_mm = centreline ? 0 : tool.burr_radius_mm;
   SimulatedHandle handle(HandleSettings{},
                          {(resting_mm + height_mm) * normal, smallest_rotation(Vec3::UnitZ(), normal)});
@@ -62,9 +62,9 @@ Section drops() {
       {"algorithm, stiffness", "energy left", "at most", ""},
       {},
       {}};
-  for (const AlgorithmId algorithm : kAllAlgorithms) {
+  for (const std::string& algorithm : algorithm_names()) {
     for (const double stiffness : {1.0, 2.0, 5.0, 20.0}) {
-      if (stiffness > 5 && algorithm != AlgorithmId::surface_points) continue;
+      if (stiffness > 5 && algorithm != "surface-points") continue;
       SeededRandom random(5);
       std::vector<double> shares;
       for (int n = 0; n < kSlopes; ++n) {
@@ -72,9 +72,8 @@ Section drops() {
           shares.push_back(rebound(algorithm, stiffness, height_mm, random));
         }
       }
-      section.add(
-          {fmt::format("{}, {:.0f} N/mm", name_of(algorithm), stiffness), median_and_worst(shares), "1"},
-          quantile(shares, 1) < 1);
+      section.add({fmt::format("{}, {:.0f} N/mm", algorithm, stiffness), median_and_worst(shares), "1"},
+                  quantile(shares, 1) < 1);
     }
   }
   return section;

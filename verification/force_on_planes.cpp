@@ -19,7 +19,7 @@ struct OnAPlane {
 };
 
 // One press of the burr on a plane of random slope, `depth_mm` deep, the shaft within 40 degrees of upright.
-OnAPlane press(AlgorithmId algorithm, double stiffness, double depth_mm, double edge_voxels,
+OnAPlane press(std::string_view algorithm, double stiffness, double depth_mm, double edge_voxels,
                const std::vector<HapticSettings::Named>& named, SeededRandom& random) {
   using namespace testing_support;
   const Vec3 normal = random_direction(random);
@@ -46,7 +46,7 @@ void line_proxy_rows(Section& section) {
       const double depth = random.uniform(0.2, 1.2);
       // The spring acts on the centreline's tip: its depth is the centre's own.
       const OnAPlane felt =
-          press(AlgorithmId::line_proxy, 1, depth + MillingTool{}.burr_radius_mm, edge_voxels, {}, random);
+          press("line-proxy", 1, depth + MillingTool{}.burr_radius_mm, edge_voxels, {}, random);
       errors.push_back(std::abs(felt.along_N / depth - 1));
       sideways.push_back(felt.sideways_share);
     }
@@ -59,9 +59,9 @@ void line_proxy_rows(Section& section) {
 
 void point_shell_rows(Section& section) {
   // The contact at the least stiffness that the no-pull-through rule allows, so that depths are voxels.
-  const HapticSettings::Named soft{AlgorithmId::point_shell, "greatest-depth", 0};
-  PointShellSettings settings = PointShellSettings::defaults(Mode::steady);
-  settings.greatest_depth_mm = 0;
+  const HapticSettings::Named soft{"point-shell", "greatest-depth", 0};
+  point_shell::Settings settings = point_shell::Settings::defaults(Mode::steady);
+  settings.max_depth_mm = 0;
   const MillingTool tool;
   const double kA = contact_stiffness_N_per_mm3(settings, tool);
   for (const int scale : {1, 3}) {
@@ -70,9 +70,8 @@ void point_shell_rows(Section& section) {
       std::vector<double> errors;
       std::vector<double> sideways;
       for (int n = 0; n < kPlanes; ++n) {
-        const OnAPlane felt =
-            press(AlgorithmId::point_shell, 10, random.uniform(0.8, 2.0), edge_voxels,
-                  {soft, {AlgorithmId::point_shell, "scale", static_cast<double>(scale)}}, random);
+        const OnAPlane felt = press("point-shell", 10, random.uniform(0.8, 2.0), edge_voxels,
+                                    {soft, {"point-shell", "scale", static_cast<double>(scale)}}, random);
         const double depth = felt.tool_depth_mm;
         const double analytic = kA * std::numbers::pi * (tool.burr_radius_mm - depth) * depth * depth;
         errors.push_back(std::abs(felt.along_N / analytic - 1));

@@ -17,7 +17,7 @@ Section haptic_rates(const Bones& bones, const Effort& effort) {
       {},
       {}};
   const std::vector<double> rates_hz{1000, 500, 2000};
-  for (const AlgorithmId algorithm : kAllAlgorithms) {
+  for (const std::string& algorithm : algorithm_names()) {
     std::vector<TrialVariant> variants;
     for (const double rate_hz : rates_hz) {
       variants.push_back(
@@ -27,10 +27,10 @@ Section haptic_rates(const Bones& bones, const Effort& effort) {
     const double usual_mm3 = figures.front().metrics.removed_mm3;
     for (std::size_t n = 0; n < rates_hz.size(); ++n) {
       const RunMetrics& metrics = figures[n].metrics;
-      const double calm = algorithm == AlgorithmId::surface_points ? 0.1 : 0.06;
-      section.add({fmt::format("{}, {:.0f} Hz", name_of(algorithm), rates_hz[n]),
-                   figure(figures[n].hp_over_mean()), figure(metrics.torque_Nmm.step_max),
-                   figure(metrics.force_N.step_max), figure(metrics.removed_mm3)},
+      const double calm = algorithm == "surface-points" ? 0.1 : 0.06;
+      section.add({fmt::format("{}, {:.0f} Hz", algorithm, rates_hz[n]), figure(figures[n].hp_over_mean()),
+                   figure(metrics.torque_Nmm.step_max), figure(metrics.force_N.step_max),
+                   figure(metrics.removed_mm3)},
                   figures[n].hp_over_mean() <= calm && std::abs(metrics.removed_mm3 / usual_mm3 - 1) <= 0.05);
     }
   }

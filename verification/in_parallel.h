@@ -3,13 +3,13 @@
 #include <cstddef>
 #include <functional>
 
-#include "app/parallel.h"
+#include "osteomill/experiment/parallel.h"
 
 namespace osteomill::verification {
 
 /// Calls `job(0)` to `job(count - 1)`, as many at a time as there are cores. Throws what the first job threw.
 inline void in_parallel(std::size_t count, const std::function<void(std::size_t)>& job) {
-  app::run_in_parallel(count, app::core_count(), job, [](std::size_t) {});
+  run_in_parallel(count, core_count(), job, [](std::size_t) {});
 }
 
 }  // namespace osteomill::verification

@@ -15,19 +15,19 @@ constexpr std::uint64_t kFirstSeed = 11;
 
 // The most that each figure may be; infinite where it is only reported.
 struct Goals {
-  AlgorithmId algorithm;
+  std::string_view algorithm;
   double push_N;
   double hp_over_mean;
   double torque_step_Nmm;
   double force_step_N;
 };
 constexpr std::array<Goals, 6> kGoals{{
-    {AlgorithmId::line_proxy, 1.5, 0.03, 1, 0.15},
-    {AlgorithmId::surface_points, 1.5, 0.06, 1, 0.3},
-    {AlgorithmId::point_shell, 1.5, 0.02, 0.3, 0.06},
-    {AlgorithmId::line_proxy, 3, 0.06, 4, 0.4},
-    {AlgorithmId::surface_points, 3, kReported, 5, kReported},
-    {AlgorithmId::point_shell, 3, 0.03, 0.5, 0.15},
+    {"line-proxy", 1.5, 0.03, 1, 0.15},
+    {"surface-points", 1.5, 0.06, 1, 0.3},
+    {"point-shell", 1.5, 0.02, 0.3, 0.06},
+    {"line-proxy", 3, 0.06, 4, 0.4},
+    {"surface-points", 3, kReported, 5, kReported},
+    {"point-shell", 3, 0.03, 0.5, 0.15},
 }};
 constexpr double kLeastForce_N = 0.8;
 constexpr double kLeastRemoved_mm3 = 30;
@@ -61,8 +61,7 @@ bool holds(const Goals& goals, const OverSeeds& all, bool loaded) {
                     quantile(all.force_step, 1) <= goals.force_step_N;
   const bool paid = quantile(all.paid, 0) >= 1 - kPaidWithin && quantile(all.paid, 1) <= 1 + kPaidWithin;
   const bool works = quantile(all.force, 0) >= kLeastForce_N && quantile(all.removed, 0) >= kLeastRemoved_mm3;
-  const bool leans =
-      goals.algorithm != AlgorithmId::point_shell || quantile(all.torque, 0) >= kLeastTorqueOf3_Nmm;
+  const bool leans = goals.algorithm != "point-shell" || quantile(all.torque, 0) >= kLeastTorqueOf3_Nmm;
   return calm && paid && (!loaded || (works && leans));
 }
 
@@ -80,20 +79,20 @@ void add_rows(Section& section, const Volume& bone, const Effort& effort, bool r
   for (const Goals& goals : kGoals) {
     std::vector<TrialVariant> variants;
     for (int n = 0; n < effort.seeds; ++n) {
-      variants.push_back({.algorithm = goals.algorithm,
+      variants.push_back({.algorithm = std::string(goals.algorithm),
                           .push_N = goals.push_N,
                           .seed = kFirstSeed + static_cast<std::uint64_t>(n),
                           .phase_s = effort.phase_s,
                           .random_hand = random_hands});
     }
     const OverSeeds all = over_seeds(milling_figures(bone, variants));
-    section.add({fmt::format("{}, {} N{}", name_of(goals.algorithm), goals.push_N,
-                             random_hands ? ", drawn hands" : ""),
-                 median_and_worst(all.hp), median_and_worst(all.torque_step),
-                 median_and_worst(all.force_step), goal_text(goals), lowest_and_median(all.force),
-                 lowest_and_median(all.torque), lowest_and_median(all.removed), lowest_and_median(all.paid),
-                 median_and_worst(all.step_us), median_and_worst(all.milling_us)},
-                holds(goals, all, loaded));
+    section.add(
+        {fmt::format("{}, {} N{}", goals.algorithm, goals.push_N, random_hands ? ", drawn hands" : ""),
+         median_and_worst(all.hp), median_and_worst(all.torque_step), median_and_worst(all.force_step),
+         goal_text(goals), lowest_and_median(all.force), lowest_and_median(all.torque),
+         lowest_and_median(all.removed), lowest_and_median(all.paid), median_and_worst(all.step_us),
+         median_and_worst(all.milling_us)},
+        holds(goals, all, loaded));
   }
 }
 

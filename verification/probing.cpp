@@ -17,12 +17,12 @@ Quat random_orientation(SeededRandom& random) {
   return tilted * quaternion_from_rotation_vector({0, 0, random.uniform(0, 2 * std::numbers::pi)});
 }
 
-std::unique_ptr<HapticAlgorithm> prepared(AlgorithmId algorithm, const Volume& volume,
+std::unique_ptr<HapticAlgorithm> prepared(std::string_view algorithm, const Volume& volume,
                                           const MillingTool& tool, double stiffness_N_per_mm,
                                           std::vector<HapticSettings::Named> named) {
   HapticSettings settings;
-  settings.stiffness_N_per_mm = stiffness_N_per_mm;
   settings.named = std::move(named);
+  settings.set_option("stiffness", stiffness_N_per_mm);
   auto made = make_algorithm(algorithm, settings);
   made->prepare({&volume, tool});
   return made;

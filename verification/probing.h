@@ -7,8 +7,8 @@
 
 #include "tests/shapes.h"
 
-#include "osteomill/device/seeded_random.h"
-#include "osteomill/haptics/make_algorithm.h"
+#include "osteomill/haptics/algorithms.h"
+#include "osteomill/operator/seeded_random.h"
 
 namespace osteomill::verification {
 
@@ -20,7 +20,7 @@ Vec3 random_direction(SeededRandom& random);
 Quat random_orientation(SeededRandom& random);
 
 /// The algorithm, steady but for `named`, ready to feel the volume, which must outlive it.
-std::unique_ptr<HapticAlgorithm> prepared(AlgorithmId algorithm, const Volume& volume,
+std::unique_ptr<HapticAlgorithm> prepared(std::string_view algorithm, const Volume& volume,
                                           const MillingTool& tool, double stiffness_N_per_mm,
                                           std::vector<HapticSettings::Named> named = {});
 

@@ -6,8 +6,8 @@
 #include "verification/sections.h"
 #include <fmt/core.h>
 
-#include "osteomill/device/hand.h"
-#include "osteomill/device/simulated_handle.h"
+#include "osteomill/operator/hand.h"
+#include "osteomill/operator/simulated_handle.h"
 
 namespace osteomill::verification {
 
@@ -51,14 +51,13 @@ struct Outcome {
 };
 
 // What an algorithm keeps out of the bone: 1 the tool's centreline, 2 and 3 the tool.
-double past_surface_mm(AlgorithmId id, const BoneSurface& surface, const MillingTool& tool,
+double past_surface_mm(std::string_view id, const BoneSurface& surface, const MillingTool& tool,
                        const Pose& X_WT) {
-  return id == AlgorithmId::line_proxy ? surface.centreline_deep_mm(tool, X_WT)
-                                       : surface.deepest_mm(tool, X_WT);
+  return id == "line-proxy" ? surface.centreline_deep_mm(tool, X_WT) : surface.deepest_mm(tool, X_WT);
 }
 
-Outcome carry_out(const Push& push, AlgorithmId id, HapticAlgorithm& algorithm, const BoneSurface& surface,
-                  const MillingTool& tool) {
+Outcome carry_out(const Push& push, std::string_view id, HapticAlgorithm& algorithm,
+                  const BoneSurface& surface, const MillingTool& tool) {
   algorithm.reset();
   HandSettings hand;
   hand.push_N = push.force_N;
@@ -84,7 +83,8 @@ Outcome carry_out(const Push& push, AlgorithmId id, HapticAlgorithm& algorithm, 
   return outcome;
 }
 
-std::vector<Outcome> outcomes(AlgorithmId id, const Volume& bone, const BoneSurface& surface, int pushes) {
+std::vector<Outcome> outcomes(std::string_view id, const Volume& bone, const BoneSurface& surface,
+                              int pushes) {
   const MillingTool tool;
   std::vector<Outcome> all(static_cast<std::size_t>(pushes));
   in_parallel((all.size() + kBatch - 1) / kBatch, [&](std::size_t batch) {
@@ -113,7 +113,7 @@ Section random_pushes(const Bones& bones, const Effort& effort) {
       {},
       {}};
   const BoneSurface surface(bones.tooth);
-  for (const AlgorithmId id : kAllAlgorithms) {
+  for (const std::string& id : algorithm_names()) {
     std::vector<double> at_end;
     int ever = 0;
     for (const Outcome& outcome : outcomes(id, bones.tooth, surface, effort.pushes)) {
@@ -121,8 +121,8 @@ Section random_pushes(const Bones& bones, const Effort& effort) {
       if (outcome.deepest_mm > kDeepest_mm) ++ever;
     }
     const auto deeper = std::count_if(at_end.begin(), at_end.end(), [](double d) { return d > kDeepest_mm; });
-    section.add({std::string(name_of(id)), std::to_string(deeper), std::to_string(ever),
-                 figure(quantile(at_end, 0.5)), figure(quantile(at_end, 0.999)), figure(quantile(at_end, 1))},
+    section.add({id, std::to_string(deeper), std::to_string(ever), figure(quantile(at_end, 0.5)),
+                 figure(quantile(at_end, 0.999)), figure(quantile(at_end, 1))},
                 deeper == 0);
   }
   return section;

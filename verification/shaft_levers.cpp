@@ -19,7 +19,7 @@ struct OnAnEdge {
 
 // The shaft alone, 0.3 mm deep on the crest of a square edge, `lever_mm` from the burr; the scene is turned
 // at random against the grid.
-OnAnEdge press(AlgorithmId algorithm, double lever_mm, double edge_voxels, SeededRandom& random) {
+OnAnEdge press(std::string_view algorithm, double lever_mm, double edge_voxels, SeededRandom& random) {
   using namespace testing_support;
   const Quat turn = random_orientation(random);
   const Vec3 left = turn * Vec3(1, 0, 1).normalized();
@@ -27,9 +27,9 @@ OnAnEdge press(AlgorithmId algorithm, double lever_mm, double edge_voxels, Seede
   const Volume volume = shape_volume(
       centred_cube(64, 0.2), [&](const Vec3& p) { return std::max(left.dot(p), right.dot(p)); }, edge_voxels);
   const MillingTool tool;
-  const auto felt = prepared(algorithm, volume, tool, algorithm == AlgorithmId::surface_points ? 20 : 2);
+  const auto felt = prepared(algorithm, volume, tool, algorithm == "surface-points" ? 20 : 2);
   const Quat lying = turn * quaternion_from_rotation_vector({0, std::numbers::pi / 2, 0});
-  const bool centreline = algorithm == AlgorithmId::line_proxy;
+  const bool centreline = algorithm == "line-proxy";
   const double deep = centreline ? -0.3 : tool.shaft_radius_mm - 0.3;
   const HapticStep step =
       approach(*felt, turn * Vec3(-lever_mm, 0, 2), turn * Vec3(-lever_mm, 0, deep), lying);
@@ -52,7 +52,7 @@ Section shaft_levers() {
       {"algorithm, lever, edge", "torque error", "least force, N", "at most", ""},
       {},
       {}};
-  for (const AlgorithmId algorithm : kAllAlgorithms) {
+  for (const std::string& algorithm : algorithm_names()) {
     for (const double edge_voxels : {1.0, 2.0}) {
       for (const double lever_mm : {4.0, 8.0, 12.0, 20.0}) {
         SeededRandom random(3);
@@ -65,7 +65,7 @@ Section shaft_levers() {
           least_N = std::min(least_N, felt.force_N);
           right_sign = right_sign && felt.turns_away;
         }
-        section.add({fmt::format("{}, {:.0f} mm, {:.0f} voxels", name_of(algorithm), lever_mm, edge_voxels),
+        section.add({fmt::format("{}, {:.0f} mm, {:.0f} voxels", algorithm, lever_mm, edge_voxels),
                      median_and_worst(errors), figure(least_N), "0.02"},
                     right_sign && least_N > 0.01 && quantile(errors, 1) <= 0.02);
       }

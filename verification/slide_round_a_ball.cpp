@@ -19,10 +19,10 @@ struct Slide {
 };
 
 // From 50 degrees on one side over the top to 50 on the other, the shaft upright, in the plane at `azimuth`.
-void slide(AlgorithmId algorithm, const Volume& ball, double azimuth, Slide& felt) {
+void slide(std::string_view algorithm, const Volume& ball, double azimuth, Slide& felt) {
   const MillingTool tool;
   const auto haptics = prepared(algorithm, ball, tool, 1);
-  const bool centreline = algorithm == AlgorithmId::line_proxy;
+  const bool centreline = algorithm == "line-proxy";
   const double radius = kBall_mm + (centreline ? 0 : tool.burr_radius_mm) - kDepth_mm;
   const Vec3 aside(std::cos(azimuth), std::sin(azimuth), 0);
   const auto out_at = [&](double angle) -> Vec3 {
@@ -55,15 +55,15 @@ Section slide_round_a_ball() {
   for (const double spacing : {0.25, 0.20, 0.10}) {
     const Volume bone =
         shape_volume(centred_cube(static_cast<int>(12 / spacing), spacing), ball(Vec3::Zero(), kBall_mm));
-    for (const AlgorithmId algorithm : kAllAlgorithms) {
+    for (const std::string& algorithm : algorithm_names()) {
       Slide felt;
       for (const double azimuth : {0.0, 0.35, 0.8}) slide(algorithm, bone, azimuth, felt);
       const double median = quantile(felt.direction_deg, 0.5);
       const double p99 = quantile(felt.direction_deg, 0.99);
       const bool good = median <= 1 && p99 <= 2.5 && felt.largest_step_N <= 0.005;
-      section.add({fmt::format("{}, {:.2f} mm", name_of(algorithm), spacing), figure(median), figure(p99),
+      section.add({fmt::format("{}, {:.2f} mm", algorithm, spacing), figure(median), figure(p99),
                    figure(felt.largest_step_N)},
-                  good || algorithm == AlgorithmId::surface_points);
+                  good || algorithm == "surface-points");
     }
   }
   return section;

@@ -10,15 +10,16 @@ namespace osteomill::verification {
 namespace {
 
 // The settings in which `steady` differs from `paper`, as `paper` has them.
-std::vector<HapticSettings::Named> switches_off(AlgorithmId algorithm) {
+std::vector<HapticSettings::Named> switches_off(std::string_view algorithm) {
+  const AlgorithmDescription& described = algorithm_named(algorithm);
   HapticSettings paper;
   paper.mode = Mode::paper;
-  const auto as_printed = describe_algorithm(algorithm, paper);
-  const auto improved = describe_algorithm(algorithm, HapticSettings{});
+  const auto as_printed = setting_values(described, paper);
+  const auto improved = setting_values(described, HapticSettings{});
   std::vector<HapticSettings::Named> off;
   for (std::size_t n = 0; n < as_printed.size(); ++n) {
     if (as_printed[n].value == improved[n].value) continue;
-    off.push_back({algorithm, as_printed[n].name, as_printed[n].value});
+    off.push_back({described.id.name, as_printed[n].name, as_printed[n].value});
   }
   return off;
 }
@@ -30,12 +31,14 @@ struct Line {
   std::vector<std::string> cells;
 };
 
-void measure(Line& line, AlgorithmId algorithm, const Volume& bone, double phase_s) {
+void measure(Line& line, std::string_view algorithm, const Volume& bone, double phase_s) {
   for (const double push_N : {1.5, 3.0}) {
     try {
-      const TrialFigures f = milling_figures(
-          bone,
-          {.algorithm = algorithm, .push_N = push_N, .seed = 11, .phase_s = phase_s, .named = line.named});
+      const TrialFigures f = milling_figures(bone, {.algorithm = std::string(algorithm),
+                                                    .push_N = push_N,
+                                                    .seed = 11,
+                                                    .phase_s = phase_s,
+                                                    .named = line.named});
       line.cells.push_back(fmt::format("{} / {} / {}", figure(f.hp_over_mean()),
                                        figure(f.metrics.torque_Nmm.step_max),
                                        figure(f.metrics.force_N.step_max)));
@@ -62,15 +65,15 @@ Section switch_by_switch(const Bones& bones, const Effort& effort) {
       {"algorithm, without", "push 1.5 N", "step, us", "push 3 N", "step, us"},
       {},
       {}};
-  for (const AlgorithmId algorithm : kAllAlgorithms) {
+  for (const std::string& algorithm : algorithm_names()) {
     std::vector<Line> lines{{"nothing (steady)", {}, {}}};
     const std::vector<HapticSettings::Named> off = switches_off(algorithm);
-    for (const HapticSettings::Named& named : off) lines.push_back({"`" + named.name + "`", {named}, {}});
+    for (const HapticSettings::Named& named : off) lines.push_back({"`" + named.setting + "`", {named}, {}});
     lines.push_back({"any (paper)", off, {}});
     in_parallel(lines.size(),
                 [&](std::size_t n) { measure(lines[n], algorithm, bones.tooth, effort.phase_s); });
     for (Line& line : lines) {
-      line.cells.insert(line.cells.begin(), fmt::format("{}, {}", name_of(algorithm), line.name));
+      line.cells.insert(line.cells.begin(), fmt::format("{}, {}", algorithm, line.name));
       section.rows.push_back(line.cells);
     }
   }

@@ -2,7 +2,7 @@
 
 #include "verification/in_parallel.h"
 
-#include "osteomill/device/milling_entry.h"
+#include "osteomill/operator/milling_entry.h"
 #include "osteomill/volume/densities.h"
 
 namespace osteomill::verification {
@@ -25,8 +25,8 @@ TrialSettings settings_of(const TrialVariant& variant) {
 
 TrialFigures milling_figures(const Volume& bone, const TrialVariant& variant) {
   const TrialSettings settings = settings_of(variant);
-  MillingTrial trial(bone, estimate_densities(bone), place_entry(bone, settings.tool), variant.algorithm,
-                     settings);
+  MillingTrial trial(bone, estimate_densities(bone), place_entry(bone, settings.tool),
+                     algorithm_named(variant.algorithm), settings);
   Recording recording;
   recording.description.tick_period_s = variant.tick_s;
   std::vector<double> milling_us;

@@ -1,16 +1,17 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
+#include "osteomill/experiment/milling_trial.h"
 #include "osteomill/report/metrics.h"
-#include "osteomill/session/milling_trial.h"
 
 namespace osteomill::verification {
 
 /// How a trial differs from the default one.
 struct TrialVariant {
-  AlgorithmId algorithm = AlgorithmId::line_proxy;
+  std::string algorithm = "line-proxy";
   double push_N = 1.5;
   std::uint64_t seed = 1;
   double phase_s = 20;

@@ -45,9 +45,10 @@ struct Difference {
 
 // The greatest difference of two runs whose bones and poses differ by `turn`, as shares of the greatest
 // wrench.
-Difference difference(AlgorithmId algorithm, const Volume& straight, const Volume& turned, const Quat& turn) {
+Difference difference(std::string_view algorithm, const Volume& straight, const Volume& turned,
+                      const Quat& turn) {
   const MillingTool tool;
-  const double stiffness = algorithm == AlgorithmId::surface_points ? 20 : 2;
+  const double stiffness = algorithm == "surface-points" ? 20 : 2;
   const auto a = prepared(algorithm, straight, tool, stiffness);
   const auto b = prepared(algorithm, turned, tool, stiffness);
   double greatest_N = 0;
@@ -82,7 +83,7 @@ Section turned_scans() {
       {},
       {}};
   const Volume straight = holed_ball(Quat::Identity(), false);
-  for (const AlgorithmId algorithm : kAllAlgorithms) {
+  for (const std::string& algorithm : algorithm_names()) {
     for (const bool grid_turns_too : {true, false}) {
       SeededRandom random(4);
       std::vector<double> force;
@@ -93,8 +94,8 @@ Section turned_scans() {
         force.push_back(off.force_share);
         torque.push_back(off.torque_share);
       }
-      const double most = grid_turns_too ? 0.002 : (algorithm == AlgorithmId::surface_points ? 0.2 : 0.1);
-      section.add({fmt::format("{}, {}", name_of(algorithm), grid_turns_too ? "grid" : "bone"),
+      const double most = grid_turns_too ? 0.002 : (algorithm == "surface-points" ? 0.2 : 0.1);
+      section.add({fmt::format("{}, {}", algorithm, grid_turns_too ? "grid" : "bone"),
                    median_and_worst(force), median_and_worst(torque), figure(most)},
                   quantile(force, 1) <= most && quantile(torque, 1) <= most);
     }

@@ -7,7 +7,7 @@
 #include "verification/trial_figures.h"
 #include <fmt/core.h>
 
-#include "osteomill/device/milling_entry.h"
+#include "osteomill/operator/milling_entry.h"
 #include "osteomill/volume/densities.h"
 
 namespace osteomill::verification {
@@ -28,11 +28,12 @@ Volume block(double spacing_mm) {
 }
 
 // The volume (mm^3 of full density) that the trial took out of the block, counted from what is left.
-double hole_mm3(AlgorithmId algorithm, double spacing_mm, double seconds) {
+double hole_mm3(std::string_view algorithm, double spacing_mm, double seconds) {
   const Volume bone = block(spacing_mm);
   TrialSettings settings;
   settings.hand_and_device.script.milling_s = seconds;
-  MillingTrial trial(bone, estimate_densities(bone), place_entry(bone, settings.tool), algorithm, settings);
+  MillingTrial trial(bone, estimate_densities(bone), place_entry(bone, settings.tool),
+                     algorithm_named(algorithm), settings);
   while (trial.tick().milling_phase) {
   }
   const std::vector<float>& before = bone.grid().densities();
@@ -56,18 +57,18 @@ Section voxel_sizes(const Effort& effort) {
       {},
       {}};
   const std::vector<double> spacings{0.10, 0.20, 0.25};
-  std::vector<double> holes(spacings.size() * kAllAlgorithms.size());
+  std::vector<double> holes(spacings.size() * algorithm_names().size());
   in_parallel(holes.size(), [&](std::size_t n) {
     holes[n] =
-        hole_mm3(kAllAlgorithms[n / spacings.size()], spacings[n % spacings.size()], effort.phase_s / 2);
+        hole_mm3(algorithm_names()[n / spacings.size()], spacings[n % spacings.size()], effort.phase_s / 2);
   });
   for (std::size_t n = 0; n < holes.size(); ++n) {
     const double finest = holes[n - n % spacings.size()];
     const double off = holes[n] / finest - 1;
-    section.add({fmt::format("{}, {:.2f} mm", name_of(kAllAlgorithms[n / spacings.size()]),
-                             spacings[n % spacings.size()]),
-                 figure(holes[n]), fmt::format("{:+.2f} %", 100 * off), "2 %"},
-                std::abs(off) < 0.02);
+    section.add(
+        {fmt::format("{}, {:.2f} mm", algorithm_names()[n / spacings.size()], spacings[n % spacings.size()]),
+         figure(holes[n]), fmt::format("{:+.2f} %", 100 * off), "2 %"},
+        std::abs(off) < 0.02);
   }
   return section;
 }

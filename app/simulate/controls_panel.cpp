@@ -12,22 +12,7 @@ namespace osteomill::app {
 namespace {
 
 constexpr float kWidth_px = 300;
-
-const char* title_of(AlgorithmId algorithm) {
-  switch (algorithm) {
-    case AlgorithmId::line_proxy:
-      return "1 line proxy";
-    case AlgorithmId::surface_points:
-      return "2 surface points";
-    case AlgorithmId::point_shell:
-      return "3 point shell";
-  }
-  return "";
-}
-
-float default_stiffness(AlgorithmId algorithm) {
-  return algorithm == AlgorithmId::surface_points ? 20.0f : 2.0f;
-}
+constexpr const char* kStiffnessOption = "stiffness";
 
 // A slider whose change takes preparation, so that it counts when let go of.
 bool settle(const char* label, double& value, float least, float greatest, const char* format) {
@@ -47,12 +32,19 @@ void draw_scan(ViewState& view, const std::string& name) {
   if ((entered || pressed) && view.scan_path[0] != 0) view.scan_asked = view.scan_path.data();
 }
 
-void draw_algorithm(SimulationSettings& wanted, bool& changed) {
+double stiffness_in_force(const MillingSetup& wanted, const SettingDescription& setting) {
+  for (const SettingValue& value : setting_values(wanted.algorithm, wanted.haptics)) {
+    if (value.name == setting.name) return value.value;
+  }
+  return setting.value_in(wanted.haptics.mode);
+}
+
+void draw_algorithm(MillingSetup& wanted, bool& changed) {
   if (!ui::header("Algorithm", true)) return;
-  for (const AlgorithmId algorithm : kAllAlgorithms) {
-    if (ui::radio(title_of(algorithm), wanted.algorithm == algorithm)) {
+  for (const AlgorithmDescription& algorithm : all_algorithms()) {
+    if (ui::radio(algorithm.id.label.c_str(), wanted.algorithm.id == algorithm.id)) {
       wanted.algorithm = algorithm;
-      wanted.haptics.stiffness_N_per_mm.reset();
+      wanted.haptics.clear_option(kStiffnessOption);
       changed = true;
     }
   }
@@ -65,16 +57,16 @@ void draw_algorithm(SimulationSettings& wanted, bool& changed) {
     wanted.haptics.mode = Mode::paper;
     changed = true;
   }
-  double stiffness =
-      wanted.haptics.stiffness_N_per_mm.value_or(static_cast<double>(default_stiffness(wanted.algorithm)));
+  const SettingDescription* setting = setting_of_option(wanted.algorithm, kStiffnessOption);
+  if (setting == nullptr) return;
+  double stiffness = stiffness_in_force(wanted, *setting);
+  const double before = stiffness;
   const bool settled = settle("stiffness", stiffness, 0.5f, 30.0f, "%.1f N/mm");
-  if (stiffness != wanted.haptics.stiffness_N_per_mm.value_or(stiffness) || settled) {
-    wanted.haptics.stiffness_N_per_mm = stiffness;
-  }
+  if (stiffness != before) wanted.haptics.set_option(kStiffnessOption, stiffness);
   changed = changed || settled;
 }
 
-void draw_tool(SimulationSettings& wanted, bool& sound, bool& changed) {
+void draw_tool(MillingSetup& wanted, bool& sound, bool& changed) {
   if (!ui::header("Tool", true)) return;
   changed = settle("burr radius", wanted.tool.burr_radius_mm, 0.5f, 4.0f, "%.1f mm") || changed;
   changed = settle("shaft radius", wanted.tool.shaft_radius_mm, 0.3f, 3.0f, "%.1f mm") || changed;
@@ -85,28 +77,28 @@ void draw_tool(SimulationSettings& wanted, bool& sound, bool& changed) {
   ui::checkbox("sound", &sound);
 }
 
-void draw_session(ViewState& view, Simulation& simulation) {
+void draw_session(ViewState& view, LiveMilling& milling) {
   if (!ui::header("Milling", true)) return;
-  bool spindle = simulation.spindle_asked();
-  if (ui::checkbox("spindle on", &spindle)) simulation.set_spindle(spindle);
+  bool spindle = milling.spindle_asked();
+  if (ui::checkbox("spindle on", &spindle)) milling.set_spindle(spindle);
   ImGui::SameLine();
-  bool paused = simulation.state().paused;
-  if (ui::checkbox("pause", &paused)) simulation.set_paused(paused);
+  bool paused = milling.state().paused;
+  if (ui::checkbox("pause", &paused)) milling.set_paused(paused);
   if (ui::button(view.holding_tool ? "Let go (T)##hold" : "Take the tool (T)##hold")) {
     view.holding_tool = !view.holding_tool;
   }
-  const bool free = !simulation.preparing();
-  if (ui::button("Undo cut", free && simulation.cuts() > 0)) simulation.undo();
+  const bool free = !milling.preparing();
+  if (ui::button("Undo cut", free && milling.cuts() > 0)) milling.undo();
   ui::hint("Takes the last cut back; cuts of up to 256 MB are kept");
   ImGui::SameLine();
-  if (ui::button("Reset bone", free && simulation.touched())) simulation.reset();
+  if (ui::button("Reset bone", free && milling.touched())) milling.reset();
   ImGui::SameLine();
-  ImGui::TextDisabled("%d cuts", static_cast<int>(simulation.cuts()));
+  ImGui::TextDisabled("%d cuts", static_cast<int>(milling.cuts()));
 }
 
 void draw_isovalue(ViewState& view, Simulation& simulation) {
   if (!ui::header("Bone", false)) return;
-  const DensityHistogram& histogram = simulation.histogram();
+  const DensityHistogram& histogram = simulation.histogram;
   const ImVec2 place = ImGui::GetCursorScreenPos();
   const ImVec2 size(ImGui::CalcItemWidth(), 44);
   ImGui::PlotHistogram("##densities", histogram.log_counts.data(),
@@ -114,12 +106,12 @@ void draw_isovalue(ViewState& view, Simulation& simulation) {
   const float share = (view.isovalue - histogram.least) / (histogram.greatest - histogram.least);
   const float x = place.x + std::clamp(share, 0.0f, 1.0f) * size.x;
   ImGui::GetWindowDrawList()->AddLine({x, place.y}, {x, place.y + size.y}, IM_COL32(255, 180, 60, 255), 2);
-  ImGui::BeginDisabled(simulation.preparing());
+  ImGui::BeginDisabled(simulation.milling.preparing());
   if (ui::slider("isovalue", &view.isovalue, histogram.least, histogram.greatest, "%.0f",
                  ImGuiSliderFlags_AlwaysClamp)) {
-    simulation.surface().set_isovalue(static_cast<double>(view.isovalue));
+    simulation.milling.show_isovalue(static_cast<double>(view.isovalue));
   }
-  if (ui::released()) simulation.change_isovalue(static_cast<double>(view.isovalue));
+  if (ui::released()) simulation.milling.change_isovalue(static_cast<double>(view.isovalue));
   ui::hint("Bone is where the scan is denser");
   ImGui::EndDisabled();
 }
@@ -137,7 +129,7 @@ void draw_cuts(ViewState& view, const Simulation& simulation) {
     if (cut.on) {
       ImGui::SameLine(100);
       ui::checkbox("other side", &cut.other_side);
-      const auto extent = extent_along(simulation.bone().geometry(), cut.normal_W);
+      const auto extent = extent_along(simulation.milling.geometry(), cut.normal_W);
       ui::slider((std::string(names[n]) + " place").c_str(), &cut.offset_mm, static_cast<float>(extent[0]),
                  static_cast<float>(extent[1]), "%.1f mm");
     }
@@ -176,22 +168,22 @@ void draw_controls(ViewState& view, Simulation& simulation, FilesPanel& files, c
   ImGui::SetNextWindowSizeConstraints({kWidth_px, 0}, {kWidth_px, static_cast<float>(size.height) - 70});
   ImGui::Begin("osteomill", nullptr, ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize);
   ImGui::PushItemWidth(130);
-  draw_scan(view, simulation.scan_name());
+  draw_scan(view, simulation.scan_name);
   bool changed = false;
-  draw_session(view, simulation);
+  draw_session(view, simulation.milling);
   draw_algorithm(view.wanted, changed);
   draw_tool(view.wanted, view.sound, changed);
-  draw_view(view, simulation.state().record.X_WT.position_mm);
+  draw_view(view, simulation.milling.state().record.X_WT.position_mm);
   draw_cuts(view, simulation);
   draw_isovalue(view, simulation);
   files.draw(view, simulation);
   view.wanted_is_new = view.wanted_is_new || changed;
   view.changes += changed ? 1 : 0;
-  if (view.wanted_is_new && !simulation.preparing()) {
+  if (view.wanted_is_new && !simulation.milling.preparing()) {
     view.wanted_is_new = false;
-    simulation.change(view.wanted);
+    simulation.milling.change(view.wanted);
   }
-  if (simulation.preparing()) ImGui::TextColored({0.55f, 0.80f, 1.0f, 1}, "preparing ...");
+  if (simulation.milling.preparing()) ImGui::TextColored({0.55f, 0.80f, 1.0f, 1}, "preparing ...");
   if (!view.message.empty()) ImGui::TextWrapped("%s", view.message.c_str());
   ImGui::PopItemWidth();
   ImGui::End();

@@ -53,10 +53,13 @@ void CutUpdates::update(const ViewState& view, const Simulation& simulation, Sce
       continue;
     }
     const CutPlane plane = plane_of(view.cuts[n]);
-    const bool milled = shown.bone_version != simulation.bone_version() && pictures_ % kPicturesBetween == 0;
+    const bool milled =
+        shown.bone_version != simulation.milling.bone_version() && pictures_ % kPicturesBetween == 0;
     if (shown.on && same(shown.plane, plane) && !milled) continue;
-    renderer.set_cut_face(n, cut_face(simulation.bone(), plane, simulation.grey_window()));
-    shown = {true, plane, simulation.bone_version()};
+    shown = {true, plane, simulation.milling.bone_version()};
+    simulation.milling.read_bone([&](const Volume& bone) {
+      renderer.set_cut_face(n, cut_face(bone.grid(), plane, simulation.grey_window));
+    });
   }
 }
 
@@ -85,7 +88,7 @@ bool drag_cut(ViewState& view, const PixelSize& size) {
   const Vec3 anchor_W = view.bounds.centre_W;
   Eigen::Vector2d seen =
       pixel_of(view.camera, size, anchor_W + cut.normal_W) - pixel_of(view.camera, size, anchor_W);
-  const double full = 1 / mm_per_pixel(size, depth_of(view.camera, anchor_W));
+  const double full = 1 / mm_per_pixel(view.camera, size, depth_of(view.camera, anchor_W));
   if (seen.norm() < 0.2 * full) seen = Eigen::Vector2d(0, -full);
   const Eigen::Vector2d moved(static_cast<double>(io.MouseDelta.x), static_cast<double>(io.MouseDelta.y));
   cut.offset_mm += static_cast<float>(moved.dot(seen) / seen.squaredNorm());

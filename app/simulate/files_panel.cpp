@@ -36,8 +36,8 @@ std::string save_scan(const fs::path& path, const DensityGrid& grid) {
   return "Saved " + path.string();
 }
 
-std::string save_surface(const fs::path& path, DensityGrid grid, double isovalue) {
-  write_mesh(path, mesh_in_one_piece(DensityView(Volume(std::move(grid), isovalue))));
+std::string save_surface(const fs::path& path, const BrickMesh& mesh) {
+  write_mesh(path, mesh);
   return "Saved " + path.string();
 }
 
@@ -61,25 +61,26 @@ fs::path FilesPanel::name(const std::string& what) const {
 void FilesPanel::record(ViewState& view, Simulation& simulation) {
   attempt(view, [&] {
     create_folder(folder_);
-    if (simulation.recording()) {
-      last_recording_ = simulation.stop_recording();
+    if (simulation.milling.recording()) {
+      last_recording_ = simulation.milling.stop_recording();
       view.message = "Recorded " + last_recording_.string();
     } else {
-      simulation.start_recording(name("recording.h5"));
+      simulation.milling.start_recording(
+          name("recording.h5"), simulation.milling.describe(simulation.scan_name, simulation.command_line));
       view.message.clear();
     }
   });
 }
 
 void FilesPanel::end_recording(ViewState& view, Simulation& simulation) {
-  if (const auto ended = simulation.take_ended_recording()) last_recording_ = *ended;
-  if (!simulation.recording()) return;
+  if (const auto ended = simulation.milling.take_ended_recording()) last_recording_ = *ended;
+  if (!simulation.milling.recording()) return;
   record(view, simulation);
   view.message = "The change ended the recording " + last_recording_.string();
 }
 
 void FilesPanel::close(ViewState& view, Simulation& simulation) {
-  if (simulation.recording()) record(view, simulation);
+  if (simulation.milling.recording()) record(view, simulation);
   if (work_.valid()) work_.wait();
 }
 
@@ -88,7 +89,7 @@ void FilesPanel::make_report() {
 }
 
 void FilesPanel::end_with_report(ViewState& view, Simulation& simulation) {
-  if (simulation.recording()) record(view, simulation);
+  if (simulation.milling.recording()) record(view, simulation);
   if (!last_recording_.empty()) make_report();
 }
 
@@ -99,12 +100,13 @@ void FilesPanel::take_result(ViewState& view) {
 
 void FilesPanel::draw(ViewState& view, Simulation& simulation) {
   take_result(view);
-  if (const auto ended = simulation.take_ended_recording()) {
+  if (const auto ended = simulation.milling.take_ended_recording()) {
     last_recording_ = *ended;
     view.message = "The change ended the recording " + ended->string();
   }
   if (!ui::header("Record and save", true)) return;
-  if (ui::button(simulation.recording() ? "Stop recording##r" : "Record##r")) record(view, simulation);
+  if (ui::button(simulation.milling.recording() ? "Stop recording##r" : "Record##r"))
+    record(view, simulation);
   ImGui::SameLine();
   const bool free = !busy();
   if (ui::button("Report", free && !last_recording_.empty())) make_report();
@@ -113,15 +115,18 @@ void FilesPanel::draw(ViewState& view, Simulation& simulation) {
   if (ui::button("Save scan", free)) {
     attempt(view, [&] {
       create_folder(folder_);
-      save(std::async(std::launch::async, save_scan, name("milled.nrrd"), simulation.bone()));
+      DensityGrid grid;
+      simulation.milling.read_bone([&](const Volume& bone) { grid = bone.grid(); });
+      save(std::async(std::launch::async, save_scan, name("milled.nrrd"), std::move(grid)));
     });
   }
   ImGui::SameLine();
   if (ui::button("Save surface", free)) {
     attempt(view, [&] {
       create_folder(folder_);
-      save(std::async(std::launch::async, save_surface, name("surface.ply"), simulation.bone(),
-                      simulation.isovalue()));
+      BrickMesh mesh;
+      simulation.milling.read_bone([&](const Volume& bone) { mesh = mesh_in_one_piece(DensityView(bone)); });
+      save(std::async(std::launch::async, save_surface, name("surface.ply"), std::move(mesh)));
     });
   }
   ImGui::SameLine();

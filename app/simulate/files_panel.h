@@ -23,7 +23,7 @@ class FilesPanel {
   bool busy() const { return work_.valid(); }
   /// Whether anything was recorded since the window opened.
   bool recorded(const Simulation& simulation) const {
-    return simulation.recording() || !last_recording_.empty();
+    return simulation.milling.recording() || !last_recording_.empty();
   }
   /// Ends a recording that goes on and begins the report of the last one. Not while busy.
   void end_with_report(ViewState& view, Simulation& simulation);

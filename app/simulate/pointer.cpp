@@ -32,7 +32,7 @@ bool on_tool(const ViewState& view, const Pose& X_WT, const MillingTool& tool, c
       ray_through(view.camera, size, static_cast<double>(pointer.x), static_cast<double>(pointer.y));
   const Pose X_TW = X_WT.inverse();
   const double middle_mm = depth_of(view.camera, X_WT.position_mm);
-  const double reach_mm = kPointerReach_px * mm_per_pixel(size, middle_mm);
+  const double reach_mm = kPointerReach_px * mm_per_pixel(view.camera, size, middle_mm);
   for (int n = 0; n <= kSteps; ++n) {
     const double way_mm = middle_mm + tool.shaft_length_mm * (2.0 * n / kSteps - 1.0);
     const Vec3 point_W = view.camera.eye_W() + way_mm * ray;
@@ -68,17 +68,17 @@ ToolInput keys_for_tool() {
   return input;
 }
 
-void take_keys(ViewState& view, Simulation& simulation) {
+void take_keys(ViewState& view, LiveMilling& milling) {
   const ImGuiIO& io = ImGui::GetIO();
   if (io.WantTextInput) return;
   const auto pressed = [](int key) { return ImGui::IsKeyPressed(key, false); };
   if (pressed(GLFW_KEY_T)) view.holding_tool = !view.holding_tool;
   if (pressed(GLFW_KEY_ESCAPE)) view.holding_tool = false;
-  if (pressed(GLFW_KEY_SPACE)) simulation.set_spindle(!simulation.spindle_asked());
-  if (pressed(GLFW_KEY_P)) simulation.set_paused(!simulation.state().paused);
+  if (pressed(GLFW_KEY_SPACE)) milling.set_spindle(!milling.spindle_asked());
+  if (pressed(GLFW_KEY_P)) milling.set_paused(!milling.state().paused);
   if (pressed(GLFW_KEY_F1)) view.help = !view.help;
   if (pressed(GLFW_KEY_F11)) view.full_screen_asked = true;
-  if (io.KeyCtrl && pressed(GLFW_KEY_Z) && simulation.cuts() > 0) simulation.undo();
+  if (io.KeyCtrl && pressed(GLFW_KEY_Z) && milling.cuts() > 0) milling.undo();
 }
 
 }  // namespace
@@ -86,18 +86,19 @@ void take_keys(ViewState& view, Simulation& simulation) {
 void take_input(ViewState& view, Simulation& simulation, SpaceMouse& space_mouse, const PixelSize& size) {
   if (drag_cut(view, size)) return;
   const ImGuiIO& io = ImGui::GetIO();
-  const LiveState& state = simulation.state();
-  const MillingTool& tool = simulation.settings().tool;
+  LiveMilling& milling = simulation.milling;
+  const LiveState& state = milling.state();
+  const MillingTool& tool = milling.setup().tool;
   if (ImGui::IsMouseClicked(0)) {
     const bool on_picture = !io.WantCaptureMouse;
     view.dragging_tool = on_picture && !view.holding_tool && !io.KeyShift &&
                          on_tool(view, state.record.X_WT, tool, size, io.MousePos);
     view.dragging_view = on_picture && !view.dragging_tool && !view.holding_tool;
     view.pedal_down = on_picture && view.holding_tool;
-    if (view.pedal_down) simulation.set_spindle(true);
+    if (view.pedal_down) milling.set_spindle(true);
   }
   if (ImGui::IsMouseReleased(0)) {
-    if (view.pedal_down) simulation.set_spindle(false);
+    if (view.pedal_down) milling.set_spindle(false);
     view.pedal_down = false;
     view.dragging_tool = view.dragging_view = false;
   }
@@ -106,15 +107,15 @@ void take_input(ViewState& view, Simulation& simulation, SpaceMouse& space_mouse
 
   ToolInput input = keys_for_tool();
   input.space_mouse = space_mouse.read();
-  if (input.space_mouse.presses % 2 == 1) simulation.set_spindle(!simulation.spindle_asked());
+  if (input.space_mouse.presses % 2 == 1) milling.set_spindle(!milling.spindle_asked());
   input.touching = state.record.wrench.force_N.norm() > kTouching_N;
   if (on_picture && (view.holding_tool || view.dragging_tool) && !io.MouseDown[1] && !io.MouseDown[2]) {
     input.moved_px = {static_cast<double>(io.MouseDelta.x), static_cast<double>(io.MouseDelta.y)};
   }
   if (on_picture && view.holding_tool) input.wheel = static_cast<double>(io.MouseWheel);
   view.X_W_target = moved_target(view.X_W_target, state.record.X_WD, view.camera, size, input);
-  simulation.hand().pull_to(view.X_W_target);
-  take_keys(view, simulation);
+  simulation.hand.pull_to(view.X_W_target);
+  take_keys(view, milling);
 }
 
 }  // namespace osteomill::app

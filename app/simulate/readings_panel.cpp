@@ -64,23 +64,23 @@ void draw_readings(Simulation& simulation, double pictures_per_s, const PixelSiz
   ImGui::SetNextWindowPos({static_cast<float>(size.width) - kWidth_px - 8, 8});
   ImGui::SetNextWindowSize({kWidth_px, 0});
   ImGui::Begin("Readings", nullptr, ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize);
-  const TimingSummary timing = simulation.timing();
-  const LiveState& state = simulation.state();
+  const TimingSummary timing = simulation.milling.timing();
+  const LiveState& state = simulation.milling.state();
   row("haptic rate", fmt::format("{:.0f} Hz", timing.recent_rate_hz));
   row("step", fmt::format("{:.0f} us, p99 {:.0f} us", timing.step.p50_us, timing.step.p99_us));
   row("late ticks", fmt::format("{} of {}", timing.late_ticks + timing.missed_ticks, timing.ticks));
   row("pictures", fmt::format("{:.0f} / s", pictures_per_s));
   row("removed", fmt::format("{:.2f} mm^3", state.record.removed_mm3));
   ImGui::Separator();
-  const auto& history = simulation.history();
+  const auto& history = simulation.history;
   plot("force", "N", history, [](const TickRecord& r) { return r.wrench.force_N.norm(); }, 1.0f,
        {0.30f, 0.85f, 0.40f, 1});
   plot("torque", "N mm", history, [](const TickRecord& r) { return r.wrench.torque_Nmm.norm(); }, 5.0f,
        {0.98f, 0.76f, 0.25f, 1});
   draw_faults(history);
-  if (!simulation.refused_real_time().empty()) {
+  if (!simulation.milling.refused_real_time().empty()) {
     ImGui::PushTextWrapPos(0);
-    ImGui::TextColored(kWarning, "%s", simulation.refused_real_time().c_str());
+    ImGui::TextColored(kWarning, "%s", simulation.milling.refused_real_time().c_str());
     ImGui::PopTextWrapPos();
   }
   ImGui::End();

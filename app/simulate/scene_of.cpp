@@ -42,19 +42,19 @@ Camera camera_on_entry(const MillingEntry& entry, const Sphere& bounds) {
 }
 
 ViewScene scene_of(const ViewState& view, Simulation& simulation) {
-  const TickRecord& record = simulation.state().record;
+  const TickRecord& record = simulation.milling.state().record;
   ViewScene scene;
   scene.camera = view.camera;
   scene.bounds = view.bounds;
-  scene.tool = simulation.settings().tool;
+  scene.tool = simulation.milling.setup().tool;
   scene.X_WT = record.X_WT;
   // Where both are the same the ghost would only tint the tool.
   const double apart_mm = (record.X_WD.position_mm - record.X_WT.position_mm).norm();
   const double apart_rad = record.X_WD.orientation.angularDistance(record.X_WT.orientation);
   if (view.ghost && (apart_mm > kApart_mm || apart_rad > kApart_rad)) scene.X_WD = record.X_WD;
   if (view.arrows) scene.wrench = record.wrench;
-  scene.isovalue = simulation.isovalue();
-  scene.reference_density = simulation.densities().reference;
+  scene.isovalue = simulation.milling.isovalue();
+  scene.reference_density = simulation.milling.densities().reference;
   for (std::size_t n = 0; n < view.cuts.size(); ++n) {
     if (view.cuts[n].on) scene.cuts[n] = plane_of(view.cuts[n]);
   }

@@ -13,13 +13,13 @@ namespace {
 struct SimulateOptions {
   SimulatorOptions simulator;
   MillingOptions milling;
-  std::vector<AlgorithmId> algorithm{AlgorithmId::point_shell};
+  std::vector<AlgorithmDescription> algorithm{algorithm_named("point-shell")};
 };
 
 void run_simulate(SimulateOptions options) {
-  const MillingOptions& milling = options.milling;
-  options.simulator.settings = {milling.tool,    options.algorithm.front(),       milling.haptics,
-                                milling.cutting, milling.removal_rate_mm3_per_Ns, milling.limits};
+  options.simulator.setup = options.milling.setup;
+  options.simulator.setup.algorithm = options.algorithm.front();
+  options.simulator.setup.vibration = true;
   run_simulator(options.simulator);
 }
 

@@ -25,9 +25,9 @@
 #include <imgui.h>
 
 #include "osteomill/files/atomic_file.h"
+#include "osteomill/image/png.h"
 #include "osteomill/sound/sound_stream.h"
-#include "osteomill/surface/png.h"
-#include "osteomill/surface/scale_bar.h"
+#include "osteomill/view/image_annotations.h"
 #include "osteomill/view/scene_renderer.h"
 
 namespace osteomill::app {
@@ -109,8 +109,8 @@ class Simulator {
 
   void begin() {
     window_.begin_frame();
-    const bool settled = simulation_ && !simulation_->preparing() && !view_.wanted_is_new && !files_.busy() &&
-                         !opening_.valid();
+    const bool settled = simulation_ && !simulation_->milling.preparing() && !view_.wanted_is_new &&
+                         !files_.busy() && !opening_.valid();
     if (script_ && simulation_) script_->feed(seconds_since(last_picture_), settled, window_);
     last_picture_ = Clock::now();
     ImGui::NewFrame();
@@ -120,8 +120,8 @@ class Simulator {
     opened_scan_ = scan;
     opening_since_ = Clock::now();
     changes_before_ = view_.changes;
-    const SimulationSettings settings = simulation_ ? view_.wanted : options_.settings;
-    opening_ = std::async(std::launch::async, [scan, settings] { return Simulation::open(scan, settings); });
+    const MillingSetup setup = simulation_ ? view_.wanted : options_.setup;
+    opening_ = std::async(std::launch::async, open_for_milling, scan, setup);
   }
 
   void draw_opening() {
@@ -150,14 +150,14 @@ class Simulator {
   }
 
   void take_scan() {
-    Simulation::Opened opened = opening_.get();
+    OpenedScan opened = opening_.get();
     if (simulation_) {
       files_.end_recording(view_, *simulation_);
       view_.wanted_is_new = view_.changes != changes_before_;
-      options_.command_line += " # then opened in the window: " + opened.scan_name;
+      options_.command_line += " # then opened in the window: " + opened.name;
       simulation_.reset();
     } else {
-      view_.wanted = opened.settings;
+      view_.wanted = opened.milling.setup;
       view_.help = view_.help && first_time_of_help();
     }
     options_.scan = opened_scan_;
@@ -166,17 +166,17 @@ class Simulator {
   }
 
   void show_from_the_beginning() {
-    view_.bounds = bounds_of_bone(simulation_->bone(), simulation_->isovalue());
-    view_.camera = camera_on_entry(simulation_->entry(), view_.bounds);
-    view_.X_W_target = simulation_->state().record.X_WD;
-    view_.isovalue = static_cast<float>(simulation_->isovalue());
+    LiveMilling& milling = simulation_->milling;
+    milling.read_bone(
+        [&](const Volume& bone) { view_.bounds = bounds_of_bone(bone.grid(), bone.isovalue()); });
+    view_.camera = camera_on_entry(simulation_->entry, view_.bounds);
+    view_.X_W_target = milling.state().record.X_WD;
+    view_.isovalue = static_cast<float>(milling.isovalue());
     view_.holding_tool = view_.dragging_tool = view_.dragging_view = view_.pedal_down = false;
     view_.dragged_cut = -1;
     reset_cuts(view_);
     cuts_ = {};
-    renderer_ =
-        std::make_unique<SceneRenderer>(simulation_->surface().layout(), simulation_->bone().geometry());
-    surface_number_ = simulation_->surface_number();
+    renderer_ = std::make_unique<SceneRenderer>(milling.surface_layout(), milling.geometry());
   }
 
   void wait_for_scan() {
@@ -192,7 +192,7 @@ class Simulator {
       simulation_->update();
     } catch (const std::exception& error) {
       view_.complaint = error.what();
-      view_.wanted = simulation_->settings();
+      view_.wanted = simulation_->milling.setup();
     }
     take_input(view_, *simulation_, space_mouse_, size);
     take_surface();
@@ -213,18 +213,14 @@ class Simulator {
   void set_sound() {
     // What a firm hand presses with while cutting.
     constexpr double kFullLoad_N = 2;
-    const LiveState& state = simulation_->state();
+    const LiveState& state = simulation_->milling.state();
     const bool heard = view_.sound && state.spindle_on;
-    sound_.set({heard ? simulation_->settings().cutting.spindle_speed_rpm : 0,
+    sound_.set({heard ? simulation_->milling.setup().cutting.spindle_speed_rpm : 0,
                 state.record.burr_force_N / kFullLoad_N});
   }
 
   void take_surface() {
-    if (simulation_->surface_number() != surface_number_) {
-      renderer_->clear();
-      surface_number_ = simulation_->surface_number();
-    }
-    for (const ChangedBrick& changed : simulation_->surface().take_changed_bricks()) {
+    for (const ChangedBrick& changed : simulation_->milling.take_changed_bricks()) {
       renderer_->set_brick(changed.brick, changed.mesh);
     }
   }
@@ -232,7 +228,7 @@ class Simulator {
   void save_picture() {
     try {
       Image picture = renderer_->picture();
-      draw_scale_bar(picture, mm_per_pixel(window_.size(), view_.camera.distance_mm));
+      draw_annotation(picture, scale_bar_annotation(view_.camera, window_.size()), kInkOnDark);
       create_folder(options_.folder);
       const auto path = files_.name("picture.png");
       write_png(path, picture);
@@ -257,15 +253,15 @@ class Simulator {
   }
 
   void say(const std::string& text) {
-    const TimingSummary timing = simulation_->timing();
-    const TickRecord& record = simulation_->state().record;
+    const TimingSummary timing = simulation_->milling.timing();
+    const TickRecord& record = simulation_->milling.state().record;
     const double cpu_s = static_cast<double>(std::clock() - said_cpu_) / CLOCKS_PER_SEC;
     fmt::print(
         "{}: {:.1f} pictures/s ({:.0f} ms of all processors each), {} triangles, {:.1f} Hz, {} late, step "
         "p99 {:.0f} us, force {:.2f} N, removed {:.3f} mm^3, {} cuts, scan {}\n",
         text, rate_.per_s(), 1e3 * cpu_s / std::max(pictures_since_said_, 1), renderer_->triangle_count(),
         timing.rate_hz, timing.late_ticks, timing.step.p99_us, record.wrench.force_N.norm(),
-        record.removed_mm3, simulation_->cuts(), simulation_->scan_name());
+        record.removed_mm3, simulation_->milling.cuts(), simulation_->scan_name);
     if (!view_.complaint.empty()) fmt::print("dialogue: {}\n", view_.complaint);
     std::fflush(stdout);
     said_cpu_ = std::clock();
@@ -275,12 +271,11 @@ class Simulator {
   SimulatorOptions options_;
   Window window_;
   std::optional<UiScript> script_;
-  std::future<Simulation::Opened> opening_;
+  std::future<OpenedScan> opening_;
   ScanOptions opened_scan_;
   Clock::time_point opening_since_;
   int changes_before_ = 0;
   std::unique_ptr<SceneRenderer> renderer_;
-  int surface_number_ = 0;
   bool reported_ = false;
   ViewState view_;
   FilesPanel files_;

@@ -3,15 +3,15 @@
 #include <string>
 
 #include "app/scan_options.h"
-#include "app/simulate/simulation_settings.h"
 
+#include "osteomill/session/milling_setup.h"
 #include "osteomill/view/camera.h"
 
 namespace osteomill::app {
 
 struct SimulatorOptions {
   ScanOptions scan;
-  SimulationSettings settings;
+  MillingSetup setup;
   PixelSize size{1280, 800};
   /// Works the window in place of a person (ui_script.h); empty: nobody does.
   std::string script;

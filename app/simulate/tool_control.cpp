@@ -20,7 +20,7 @@ constexpr double kFarthestTurn_rad = 0.35;
 
 Pose moved_target(const Pose& X_W_target, const Pose& X_WD, const Camera& camera, const PixelSize& size,
                   const ToolInput& input) {
-  const double scale = mm_per_pixel(size, depth_of(camera, X_W_target.position_mm));
+  const double scale = mm_per_pixel(camera, size, depth_of(camera, X_W_target.position_mm));
   Vec3 move = -input.wheel * kWheelStep_mm * camera.towards_viewer_W() -
               input.passed_s * kKeysAway_mm_s * input.keys.z() * camera.towards_viewer_W();
   Vec3 turn = Vec3::Zero();

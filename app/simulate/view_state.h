@@ -3,8 +3,7 @@
 #include <array>
 #include <string>
 
-#include "app/simulate/simulation_settings.h"
-
+#include "osteomill/session/milling_setup.h"
 #include "osteomill/view/scene.h"
 
 namespace osteomill::app {
@@ -25,7 +24,7 @@ struct ViewState {
   /// The left button is the spindle's pedal as long as it is down.
   bool pedal_down = false;
   /// What the sliders say, and whether it is still to become real.
-  SimulationSettings wanted;
+  MillingSetup wanted;
   bool wanted_is_new = false;
   /// How often `wanted` was changed.
   int changes = 0;

@@ -8,14 +8,12 @@
 #include <imgui.h>
 
 #include "osteomill/files/input_error.h"
+#include "osteomill/view/image_annotations.h"
 #include "osteomill/view/scene_renderer.h"
 
 namespace osteomill::app {
 
 namespace {
-
-constexpr const char* kFont = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
-constexpr float kFontSize_px = 14;
 
 std::string last_complaint() {
   const char* text = nullptr;
@@ -34,7 +32,7 @@ void set_style() {
   style.Colors[ImGuiCol_Header] = ImVec4(0.20f, 0.30f, 0.40f, 0.7f);
   ImGuiIO& io = ImGui::GetIO();
   io.IniFilename = nullptr;
-  if (std::filesystem::exists(kFont)) io.Fonts->AddFontFromFileTTF(kFont, kFontSize_px);
+  if (std::filesystem::exists(kFontFile)) io.Fonts->AddFontFromFileTTF(kFontFile, kFontSize_px);
 }
 
 }  // namespace

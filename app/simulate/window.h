@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "osteomill/surface/image.h"
+#include "osteomill/image/image.h"
 #include "osteomill/view/camera.h"
 
 struct GLFWwindow;

@@ -2,10 +2,16 @@
 
 #include <cmath>
 
+#include <dcmtk/config/osconfig.h>
+#include <dcmtk/dcmdata/dcpixseq.h>
+#include <dcmtk/dcmdata/dcpxitem.h>
+#include <dcmtk/dcmdata/dctk.h>
 #include <fmt/format.h>
 
-#include "osteomill/ct/dicom_elements.h"
+#include "osteomill/ct/dicom_data.h"
 #include "osteomill/ct/parse_numbers.h"
+#include "osteomill/ct/volume_header.h"
+#include "osteomill/files/input_error.h"
 
 namespace osteomill {
 
@@ -13,207 +19,243 @@ namespace fs = std::filesystem;
 
 namespace {
 
-using namespace dicom_tag;
-
 // Compressed pixels may claim this much, and this many times their own length; a blank slice comes down a
 // lot.
 constexpr std::uint64_t kAlwaysAllowed_bytes = 1 << 26;
-constexpr std::uint64_t kMostCompression = 2000;
+constexpr std::uint64_t kMaxCompression = 2000;
 
-struct Fault {
-  std::string reason;
-};
-
-std::string text_of(const DicomItem& data, std::uint32_t tag) {
-  const auto element = data.elements.find(tag);
-  if (element == data.elements.end()) return {};
-  const std::string text = element->second.value.substr(0, element->second.value.find('\0'));
-  const std::size_t start = text.find_first_not_of(' ');
-  if (start == std::string::npos) return {};
-  return text.substr(start, text.find_last_not_of(' ') - start + 1);
+std::string text_of(DcmItem& data, const DcmTagKey& tag) {
+  OFString text;
+  if (data.findAndGetOFStringArray(tag, text).bad()) return {};
+  return trimmed(text.c_str());
 }
 
-// An unsigned short.
-std::optional<int> short_of(const DicomFile& file, std::uint32_t tag) {
-  const auto element = file.data.elements.find(tag);
-  if (element == file.data.elements.end() || element->second.value.size() < 2) return std::nullopt;
-  const auto first = static_cast<unsigned char>(element->second.value[0]);
-  const auto second = static_cast<unsigned char>(element->second.value[1]);
-  return file.big_endian ? first << 8 | second : second << 8 | first;
+std::optional<int> short_of(DcmItem& data, const DcmTagKey& tag) {
+  Uint16 number = 0;
+  if (data.findAndGetUint16(tag, number).bad()) return std::nullopt;
+  return number;
 }
 
-std::optional<std::vector<double>> numbers_of(const DicomItem& data, std::uint32_t tag, std::size_t count,
-                                              const char* name) {
-  const std::string text = text_of(data, tag);
-  if (text.empty()) return std::nullopt;
-  std::optional<std::vector<double>> numbers = parse_numbers(text, " \\");
-  if (!numbers || numbers->size() != count) {
-    throw Fault{fmt::format("has a {} that is not {} number{}", name, count, count == 1 ? "" : "s")};
+// The items of a sequence; none where there is no such sequence.
+std::vector<DcmItem*> items_of(DcmItem& data, const DcmTagKey& tag) {
+  std::vector<DcmItem*> items;
+  DcmSequenceOfItems* sequence = nullptr;
+  if (data.findAndGetSequence(tag, sequence).bad()) return items;
+  for (DcmObject* item = nullptr; (item = sequence->nextInContainer(item)) != nullptr;) {
+    items.push_back(static_cast<DcmItem*>(item));
   }
-  for (const double number : *numbers) {
-    if (!std::isfinite(number)) throw Fault{fmt::format("has a {} that is not finite", name)};
-  }
-  return numbers;
+  return items;
 }
 
-const std::vector<DicomItem>* items_of(const DicomItem& data, std::uint32_t tag) {
-  const auto element = data.elements.find(tag);
-  return element == data.elements.end() ? nullptr : &element->second.items;
-}
-
-// Where a frame's values are looked for: its own functional group, the group that all frames share, the data
-// set.
-class FrameValues {
+// One file on its way to a header.
+class FileReader {
  public:
-  FrameValues(const DicomItem& data, std::size_t frame)
+  FileReader(DcmDataset& data, DicomHeader& header)
       : data_(data),
-        shared_(items_of(data, kSharedGroups)),
-        own_(items_of(data, kFrameGroups)),
-        frame_(frame) {}
+        header_(header),
+        shared_(items_of(data, DCM_SharedFunctionalGroupsSequence)),
+        own_(items_of(data, DCM_PerFrameFunctionalGroupsSequence)) {}
 
-  std::optional<std::vector<double>> find(std::uint32_t group, std::uint32_t tag, std::size_t count,
-                                          const char* name) const {
-    std::optional<std::vector<double>> numbers = find_in(own_, frame_, group, tag, count, name);
-    if (!numbers) numbers = find_in(shared_, 0, group, tag, count, name);
-    if (!numbers) numbers = numbers_of(data_, tag, count, name);
-    return numbers;
-  }
+  void read_frames();
 
  private:
-  static std::optional<std::vector<double>> find_in(const std::vector<DicomItem>* items, std::size_t number,
-                                                    std::uint32_t group, std::uint32_t tag, std::size_t count,
-                                                    const char* name) {
-    if (items == nullptr || number >= items->size()) return std::nullopt;
-    const std::vector<DicomItem>* inner = items_of((*items)[number], group);
-    if (inner == nullptr || inner->empty()) return std::nullopt;
-    return numbers_of(inner->front(), tag, count, name);
-  }
+  InputError fault(const std::string& reason) const { return {header_.file.string(), reason}; }
 
-  const DicomItem& data_;
-  const std::vector<DicomItem>* shared_;
-  const std::vector<DicomItem>* own_;
-  std::size_t frame_;
+  std::optional<std::vector<double>> numbers(DcmItem& data, const DcmTagKey& tag, std::size_t count,
+                                             const char* name) const;
+  // Looked for in the frame's own functional group, the group that all frames share, the data set.
+  std::optional<std::vector<double>> frame_numbers(std::size_t frame, const DcmTagKey& group,
+                                                   const DcmTagKey& tag, std::size_t count,
+                                                   const char* name) const;
+  StoredPixels stored_pixels() const;
+  SlicePlane plane_of(std::size_t frame) const;
+  DicomSlice slice_of(std::size_t frame) const;
+  void check_byte_count() const;
+
+  DcmDataset& data_;
+  DicomHeader& header_;
+  std::vector<DcmItem*> shared_;
+  std::vector<DcmItem*> own_;
 };
 
-StoredPixels stored_pixels(const DicomFile& file) {
+std::optional<std::vector<double>> FileReader::numbers(DcmItem& data, const DcmTagKey& tag, std::size_t count,
+                                                       const char* name) const {
+  const std::string text = text_of(data, tag);
+  if (text.empty()) return std::nullopt;
+  std::optional<std::vector<double>> values = parse_numbers(text, " \\");
+  if (!values || values->size() != count) {
+    throw fault(fmt::format("has a {} that is not {} number{}", name, count, count == 1 ? "" : "s"));
+  }
+  for (const double value : *values) {
+    if (!std::isfinite(value)) throw fault(fmt::format("has a {} that is not finite", name));
+  }
+  return values;
+}
+
+std::optional<std::vector<double>> FileReader::frame_numbers(std::size_t frame, const DcmTagKey& group,
+                                                             const DcmTagKey& tag, std::size_t count,
+                                                             const char* name) const {
+  for (DcmItem* outer :
+       {frame < own_.size() ? own_[frame] : nullptr, shared_.empty() ? nullptr : shared_[0]}) {
+    DcmItem* inner = nullptr;
+    if (outer == nullptr || outer->findAndGetSequenceItem(group, inner).bad()) continue;
+    if (auto found = numbers(*inner, tag, count, name)) return found;
+  }
+  return numbers(data_, tag, count, name);
+}
+
+StoredPixels FileReader::stored_pixels() const {
   StoredPixels pixels;
-  pixels.bits_allocated = short_of(file, kBitsAllocated).value_or(0);
-  pixels.bits_stored = short_of(file, kBitsStored).value_or(pixels.bits_allocated);
-  pixels.is_signed = short_of(file, kPixelRepresentation).value_or(0) == 1;
-  const int high_bit = short_of(file, kHighBit).value_or(pixels.bits_stored - 1);
+  pixels.bits_allocated = short_of(data_, DCM_BitsAllocated).value_or(0);
+  pixels.bits_stored = short_of(data_, DCM_BitsStored).value_or(pixels.bits_allocated);
+  pixels.is_signed = short_of(data_, DCM_PixelRepresentation).value_or(0) == 1;
+  const int high_bit = short_of(data_, DCM_HighBit).value_or(pixels.bits_stored - 1);
   const bool whole_bytes =
       pixels.bits_allocated == 8 || pixels.bits_allocated == 16 || pixels.bits_allocated == 32;
   if (!whole_bytes || pixels.bits_stored < 1 || pixels.bits_stored > pixels.bits_allocated ||
       high_bit != pixels.bits_stored - 1) {
-    throw Fault{fmt::format("has pixels of {} bits in {}, the highest being bit {}, which is not supported",
-                            pixels.bits_stored, pixels.bits_allocated, high_bit)};
+    throw fault(fmt::format("has pixels of {} bits in {}, the highest being bit {}, which is not supported",
+                            pixels.bits_stored, pixels.bits_allocated, high_bit));
   }
   return pixels;
 }
 
-SlicePlane plane_of(const DicomHeader& header, const FrameValues& values) {
-  const auto spacing = values.find(kPixelMeasuresGroup, kPixelSpacing, 2, "PixelSpacing");
-  if (!spacing) throw Fault{"has no PixelSpacing, so its size is not known"};
-  const auto position = values.find(kPlanePositionGroup, kPosition, 3, "ImagePositionPatient");
-  if (!position) throw Fault{"has no ImagePositionPatient, so its place is not known"};
-  const auto orientation = values.find(kPlaneOrientationGroup, kOrientation, 6, "ImageOrientationPatient");
-  if (!orientation) throw Fault{"has no ImageOrientationPatient, so its place is not known"};
+SlicePlane FileReader::plane_of(std::size_t frame) const {
+  const auto spacing = frame_numbers(frame, DCM_PixelMeasuresSequence, DCM_PixelSpacing, 2, "PixelSpacing");
+  if (!spacing) throw fault("has no PixelSpacing, so its size is not known");
+  const auto position =
+      frame_numbers(frame, DCM_PlanePositionSequence, DCM_ImagePositionPatient, 3, "ImagePositionPatient");
+  if (!position) throw fault("has no ImagePositionPatient, so its place is not known");
+  const auto orientation = frame_numbers(frame, DCM_PlaneOrientationSequence, DCM_ImageOrientationPatient, 6,
+                                         "ImageOrientationPatient");
+  if (!orientation) throw fault("has no ImageOrientationPatient, so its place is not known");
 
   SlicePlane plane;
-  plane.columns = header.columns;
-  plane.rows = header.rows;
+  plane.columns = header_.columns;
+  plane.rows = header_.rows;
   // PixelSpacing: first from row to row, then from column to column (Part 3, 10.7.1.3).
   plane.row_distance_mm = (*spacing)[0];
   plane.column_distance_mm = (*spacing)[1];
-  plane.i_direction = Vec3((*orientation)[0], (*orientation)[1], (*orientation)[2]);
-  plane.j_direction = Vec3((*orientation)[3], (*orientation)[4], (*orientation)[5]);
-  plane.position_mm = Vec3((*position)[0], (*position)[1], (*position)[2]);
+  plane.i_direction = Vec3(orientation->data());
+  plane.j_direction = Vec3(orientation->data() + 3);
+  plane.position_mm = Vec3(position->data());
   return plane;
 }
 
-DicomSlice slice_of(const DicomHeader& header, const DicomFile& file, std::size_t frame) {
-  const FrameValues values(file.data, frame);
+DicomSlice FileReader::slice_of(std::size_t frame) const {
   DicomSlice slice;
-  slice.file = header.file;
+  slice.file = header_.file;
   slice.frame = frame;
-  slice.plane = plane_of(header, values);
-  const std::string instance_uid = text_of(file.data, kInstanceUid);
-  const std::string file_name = header.file.filename().string();
-  slice.plane.name = header.frames == 1 ? file_name : fmt::format("{} frame {}", file_name, frame + 1);
+  slice.plane = plane_of(frame);
+  const std::string instance_uid = text_of(data_, DCM_SOPInstanceUID);
+  const std::string file_name = header_.file.filename().string();
+  slice.plane.name = header_.frames == 1 ? file_name : fmt::format("{} frame {}", file_name, frame + 1);
   slice.plane.instance = instance_uid.empty() ? "" : fmt::format("{}#{}", instance_uid, frame);
-  slice.pixels = stored_pixels(file);
-  const auto slope = values.find(kPixelTransformationGroup, kRescaleSlope, 1, "RescaleSlope");
-  const auto intercept = values.find(kPixelTransformationGroup, kRescaleIntercept, 1, "RescaleIntercept");
-  if (slope) slice.pixels.slope = slope->front();
-  if (intercept) slice.pixels.intercept = intercept->front();
-  if (slice.pixels.slope == 0) throw Fault{"has a RescaleSlope of 0, which leaves nothing of its values"};
+  slice.pixels = stored_pixels();
+  const auto rescale = [&](const DcmTagKey& tag, const char* name) {
+    return frame_numbers(frame, DCM_PixelValueTransformationSequence, tag, 1, name);
+  };
+  if (const auto slope = rescale(DCM_RescaleSlope, "RescaleSlope")) slice.pixels.slope = slope->front();
+  if (const auto intercept = rescale(DCM_RescaleIntercept, "RescaleIntercept"))
+    slice.pixels.intercept = intercept->front();
+  if (slice.pixels.slope == 0) throw fault("has a RescaleSlope of 0, which leaves nothing of its values");
   return slice;
 }
 
-void check_byte_count(const DicomHeader& header, const DicomFile& file, const StoredPixels& pixels) {
-  const std::uint64_t needed = static_cast<std::uint64_t>(header.columns) *
-                               static_cast<std::uint64_t>(header.rows) * header.frames *
-                               static_cast<std::uint64_t>(pixels.bits_allocated / 8);
-  const std::uint64_t stored = file.pixels.bytes();
+void FileReader::check_byte_count() const {
+  const std::uint64_t needed = static_cast<std::uint64_t>(header_.columns) *
+                               static_cast<std::uint64_t>(header_.rows) * header_.frames *
+                               static_cast<std::uint64_t>(stored_pixels().bits_allocated / 8);
+  const std::uint64_t stored = header_.pixel_bytes;
   const std::uint64_t possible =
-      file.pixels.compressed ? stored * kMostCompression + kAlwaysAllowed_bytes : stored;
+      header_.is_compressed ? stored * kMaxCompression + kAlwaysAllowed_bytes : stored;
   if (needed > possible) {
-    throw Fault{fmt::format("is cut short: {} x {} pixels{} need {} bytes, it holds {}", header.columns,
-                            header.rows, header.frames > 1 ? fmt::format(" x {} frames", header.frames) : "",
-                            needed, stored)};
+    throw fault(fmt::format(
+        "is cut short: {} x {} pixels{} need {} bytes, it holds {}", header_.columns, header_.rows,
+        header_.frames > 1 ? fmt::format(" x {} frames", header_.frames) : "", needed, stored));
   }
 }
 
-void read_slices(DicomHeader& header, const DicomFile& file) {
-  if (!header.has_pixels) throw Fault{"has no pixels"};
-  if (header.columns < 1 || header.rows < 1) {
-    throw Fault{fmt::format("has no size: {} columns x {} rows", header.columns, header.rows)};
+void FileReader::read_frames() {
+  if (const auto frames = numbers(data_, DCM_NumberOfFrames, 1, "NumberOfFrames")) {
+    if (frames->front() < 1 || frames->front() > 1 << 16) throw fault("has no sensible NumberOfFrames");
+    header_.frames = static_cast<std::size_t>(frames->front());
   }
-  if (short_of(file, kSamplesPerPixel).value_or(1) != 1 || header.photometric.find("MONOCHROME") != 0) {
-    throw Fault{fmt::format("is a colour image ({}), not a scan", header.photometric)};
+  if (header_.pixel_bytes == 0) throw fault("has no pixels");
+  if (header_.columns < 1 || header_.rows < 1) {
+    throw fault(fmt::format("has no size: {} columns x {} rows", header_.columns, header_.rows));
   }
-  if (file.data.elements.contains(kModalityTable))
-    throw Fault{"needs a modality lookup table, which is not supported"};
-  const bool grouped = file.data.elements.contains(kFrameGroups);
-  if (header.frames > 1 && !grouped)
-    throw Fault{"has several frames and does not say where each of them lies"};
-  check_byte_count(header, file, stored_pixels(file));
-  for (std::size_t frame = 0; frame < header.frames; ++frame) {
-    header.slices.push_back(slice_of(header, file, frame));
+  if (short_of(data_, DCM_SamplesPerPixel).value_or(1) != 1 ||
+      !header_.photometric.starts_with("MONOCHROME")) {
+    throw fault(fmt::format("is a colour image ({}), not a scan", header_.photometric));
+  }
+  if (data_.tagExists(DCM_ModalityLUTSequence))
+    throw fault("needs a modality lookup table, which is not supported");
+  if (header_.frames > 1 && own_.empty())
+    throw fault("has several frames and does not say where each of them lies");
+  check_byte_count();
+  for (std::size_t frame = 0; frame < header_.frames; ++frame) {
+    header_.slices.push_back(slice_of(frame));
   }
 }
 
-void read_header(DicomHeader& header, const DicomFile& file) {
-  header.transfer_syntax = file.transfer_syntax;
-  header.has_pixels = file.pixels.bytes() > 0;
-  header.series_uid = text_of(file.data, kSeriesUid);
-  header.series_description = text_of(file.data, kSeriesDescription);
-  header.modality = text_of(file.data, kModality);
-  header.photometric = text_of(file.data, kPhotometric);
-  header.columns = short_of(file, kColumns).value_or(0);
-  header.rows = short_of(file, kRows).value_or(0);
-  header.is_localizer = text_of(file.data, kImageType).find("LOCALIZER") != std::string::npos;
-  // Damaged before the pixels: even the series may be unknown.
-  header.lost = file.fault && !header.has_pixels;
-  if (file.fault) throw Fault{*file.fault};
-  if (const auto frames = numbers_of(file.data, kFrames, 1, "NumberOfFrames")) {
-    if (frames->front() < 1 || frames->front() > 1 << 16) throw Fault{"has no sensible NumberOfFrames"};
-    header.frames = static_cast<std::size_t>(frames->front());
-  }
-  read_slices(header, file);
+std::uint64_t bytes_of_pixels(DcmDataset& data, bool is_compressed) {
+  DcmElement* pixels = nullptr;
+  if (data.findAndGetElement(DCM_PixelData, pixels).bad()) return 0;
+  if (!is_compressed) return pixels->getLength();
+  std::uint64_t bytes = 0;
+  for (DcmPixelItem* fragment : fragments_of(data)) bytes += fragment->getLength();
+  return bytes;
+}
+
+void describe(DcmDataset& data, DicomHeader& header) {
+  header.is_compressed = DcmXfer(data.getOriginalXfer()).isEncapsulated();
+  header.pixel_bytes = bytes_of_pixels(data, header.is_compressed);
+  header.series_uid = text_of(data, DCM_SeriesInstanceUID);
+  header.series_description = text_of(data, DCM_SeriesDescription);
+  header.modality = text_of(data, DCM_Modality);
+  header.photometric = text_of(data, DCM_PhotometricInterpretation);
+  header.columns = short_of(data, DCM_Columns).value_or(0);
+  header.rows = short_of(data, DCM_Rows).value_or(0);
+  header.is_localizer = text_of(data, DCM_ImageType).find("LOCALIZER") != std::string::npos;
 }
 
 }  // namespace
 
+std::vector<DcmPixelItem*> fragments_of(DcmDataset& data) {
+  std::vector<DcmPixelItem*> fragments;
+  DcmElement* element = nullptr;
+  DcmPixelSequence* sequence = nullptr;
+  if (data.findAndGetElement(DCM_PixelData, element).bad()) return fragments;
+  auto* pixels = dynamic_cast<DcmPixelData*>(element);
+  if (pixels == nullptr ||
+      pixels->getEncapsulatedRepresentation(data.getOriginalXfer(), nullptr, sequence).bad() ||
+      sequence == nullptr)
+    return fragments;
+  for (DcmObject* item = nullptr; (item = sequence->nextInContainer(item)) != nullptr;) {
+    fragments.push_back(static_cast<DcmPixelItem*>(item));
+  }
+  // The first is the table of offsets, which nobody needs.
+  if (!fragments.empty()) fragments.erase(fragments.begin());
+  return fragments;
+}
+
 std::optional<DicomHeader> read_dicom_header(const fs::path& path) {
-  const std::optional<DicomFile> file = read_dicom_elements(path);
-  if (!file) return std::nullopt;
   DicomHeader header;
   header.file = path;
+  header.lost = true;
   try {
-    read_header(header, *file);
-  } catch (const Fault& fault) {
-    header.fault = fault.reason;
+    std::optional<DicomData> loaded = load_dicom(path);
+    if (!loaded) return std::nullopt;
+    header.data = std::move(loaded->file);
+    DcmDataset& data = *header.data->getDataset();
+    describe(data, header);
+    header.lost = !loaded->damage.empty() && header.pixel_bytes == 0;
+    if (!loaded->damage.empty())
+      throw InputError(path.string(), "is cut short or damaged: " + loaded->damage);
+    FileReader(data, header).read_frames();
+  } catch (const InputError& fault) {
+    header.fault = fault;
     header.slices.clear();
   }
   return header;

@@ -4,10 +4,16 @@
 
 #include "osteomill/ct/dicom_slice.h"
 
+class DcmDataset;
+class DcmPixelItem;
+
 namespace osteomill {
 
-/// Reads what comes before the pixels; nothing where the file is not DICOM. A file that is damaged comes with
-/// a fault. Throws InputError only where the file cannot be opened.
+/// Reads what comes before the pixels; nothing where the file is not DICOM. A file that cannot be read or is
+/// damaged comes with a fault. Only within `with_dicom_stack`.
 std::optional<DicomHeader> read_dicom_header(const std::filesystem::path& path);
+
+/// The fragments of compressed pixels, in order; none where they are not compressed.
+std::vector<DcmPixelItem*> fragments_of(DcmDataset& data);
 
 }  // namespace osteomill

@@ -1,45 +1,34 @@
 #include "osteomill/ct/dicom_pixels.h"
 
 #include <algorithm>
-#include <bit>
+#include <cstdint>
 #include <cstring>
 #include <span>
 #include <type_traits>
 
+#include <dcmtk/config/osconfig.h>
+#include <dcmtk/dcmdata/dcfcache.h>
+#include <dcmtk/dcmdata/dcpixseq.h>
+#include <dcmtk/dcmdata/dcpxitem.h>
+#include <dcmtk/dcmdata/dctk.h>
 #include <fmt/format.h>
-#include <gdcmException.h>
-#include <gdcmImage.h>
-#include <gdcmSequenceOfFragments.h>
-#include <gdcmTrace.h>
-#include <gdcmUIDs.h>
 
-#include "osteomill/ct/captured_stderr.h"
-#include "osteomill/ct/dicom_elements.h"
-#include "osteomill/ct/jpeg_frame.h"
+#include "osteomill/ct/dicom_data.h"
+#include "osteomill/ct/dicom_file.h"
+#include "osteomill/ct/frame_decoders.h"
 #include "osteomill/files/input_error.h"
 
 namespace osteomill {
 
 namespace {
 
-struct Fault {
-  std::string reason;
-};
-
-std::string codec_name(const std::string& transfer_syntax) {
-  gdcm::UIDs names;
-  const bool known = names.SetFromUID(transfer_syntax.c_str()) && names.GetName() != nullptr;
-  return known ? names.GetName() : "transfer syntax " + transfer_syntax;
-}
-
 template <typename Stored>
-void rescale(const std::vector<char>& buffer, std::size_t first, const StoredPixels& pixels,
-             std::size_t count, float* densities) {
+void rescale(std::span<const char> values, const StoredPixels& pixels, float* densities) {
   // Bits above the stored ones may hold anything; the sign is in the highest stored one.
   using Wide = std::make_unsigned_t<Stored>;
   const int unused = static_cast<int>(8 * sizeof(Stored)) - pixels.bits_stored;
-  const char* bytes = buffer.data() + first * sizeof(Stored);
-  for (std::size_t n = 0; n < count; ++n, bytes += sizeof(Stored)) {
+  const char* bytes = values.data();
+  for (std::size_t n = 0; n < values.size() / sizeof(Stored); ++n, bytes += sizeof(Stored)) {
     Wide raw = 0;
     std::memcpy(&raw, bytes, sizeof(raw));
     raw = static_cast<Wide>(raw << unused);
@@ -48,135 +37,132 @@ void rescale(const std::vector<char>& buffer, std::size_t first, const StoredPix
   }
 }
 
-void rescale_frame(const std::vector<char>& buffer, std::size_t first, const StoredPixels& pixels,
-                   std::size_t count, float* densities) {
+void rescale_frame(std::span<const char> values, const StoredPixels& pixels, float* densities) {
   const int kind = pixels.is_signed ? -pixels.bits_allocated : pixels.bits_allocated;
   switch (kind) {
     case 8:
-      return rescale<std::uint8_t>(buffer, first, pixels, count, densities);
+      return rescale<std::uint8_t>(values, pixels, densities);
     case -8:
-      return rescale<std::int8_t>(buffer, first, pixels, count, densities);
+      return rescale<std::int8_t>(values, pixels, densities);
     case 16:
-      return rescale<std::uint16_t>(buffer, first, pixels, count, densities);
+      return rescale<std::uint16_t>(values, pixels, densities);
     case -16:
-      return rescale<std::int16_t>(buffer, first, pixels, count, densities);
+      return rescale<std::int16_t>(values, pixels, densities);
     case 32:
-      return rescale<std::uint32_t>(buffer, first, pixels, count, densities);
+      return rescale<std::uint32_t>(values, pixels, densities);
     default:
-      return rescale<std::int32_t>(buffer, first, pixels, count, densities);
+      return rescale<std::int32_t>(values, pixels, densities);
   }
 }
 
-std::vector<char> read_part(std::istream& in, const DicomPixels::Part& part) {
-  std::vector<char> bytes(part.length);
-  in.seekg(static_cast<std::streamoff>(part.offset));
-  if (!in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()))) throw Fault{"is cut short"};
-  return bytes;
+// The frames of one file, decoded one after the other.
+class FrameReader {
+ public:
+  explicit FrameReader(const DicomHeader& header);
+
+  // Stays until the next one is read.
+  std::span<const char> read(std::size_t frame);
+
+ private:
+  InputError fault(const std::string& reason) const { return {header_.file.string(), reason}; }
+  std::span<const unsigned char> bytes_of(DcmPixelItem* fragment) const;
+  std::vector<unsigned char> stream_of(std::size_t frame) const;
+  void decode_by_dcmtk(std::size_t frame);
+
+  const DicomHeader& header_;
+  DcmDataset& data_;
+  E_TransferSyntax syntax_;
+  FrameSize size_;
+  std::vector<DcmPixelItem*> fragments_;
+  DcmFileCache cache_;
+  Uint32 next_fragment_ = 0;
+  // DCMTK wants an even number of bytes.
+  std::vector<char> values_;
+};
+
+FrameReader::FrameReader(const DicomHeader& header)
+    : header_(header),
+      data_(*header.data->getDataset()),
+      syntax_(data_.getOriginalXfer()),
+      size_{header.columns, header.rows, header.slices.front().pixels.bits_allocated / 8},
+      fragments_(fragments_of(data_)),
+      values_(size_.bytes() + size_.bytes() % 2) {}
+
+std::span<const unsigned char> FrameReader::bytes_of(DcmPixelItem* fragment) const {
+  Uint8* bytes = nullptr;
+  if (fragment->getUint8Array(bytes).bad() || bytes == nullptr) throw fault("is cut short");
+  return {bytes, fragment->getLength()};
 }
 
-std::vector<char> read_plain(std::istream& in, const DicomFile& file, int bytes_a_value,
-                             std::uint64_t needed) {
-  std::vector<char> bytes = read_part(in, {file.pixels.parts.front().offset, needed});
-  if (file.big_endian == (std::endian::native == std::endian::big)) return bytes;
-  const auto step = static_cast<std::ptrdiff_t>(bytes_a_value);
-  for (auto value = bytes.begin(); value != bytes.end(); value += step) std::reverse(value, value + step);
-  return bytes;
+// The fragments of a frame: one, or all where there is one frame.
+std::vector<unsigned char> FrameReader::stream_of(std::size_t frame) const {
+  std::span<DcmPixelItem* const> fragments = fragments_;
+  if (header_.frames > 1) {
+    if (fragments.size() != header_.frames)
+      throw fault("has frames in several fragments each, which is not supported");
+    fragments = fragments.subspan(frame, 1);
+  }
+  std::vector<unsigned char> stream;
+  for (DcmPixelItem* fragment : fragments) {
+    const std::span<const unsigned char> bytes = bytes_of(fragment);
+    stream.insert(stream.end(), bytes.begin(), bytes.end());
+  }
+  return stream;
 }
 
-// The decoders take the stream's word for its size, and write as much.
-void check_frame(std::span<const char> fragment, const DicomHeader& header) {
-  const std::optional<JpegFrame> frame = find_jpeg_frame(fragment);
-  if (!frame) return;
-  const int most_bits = header.slices.front().pixels.bits_allocated;
-  if (frame->columns != header.columns || frame->rows != header.rows || frame->components != 1 ||
-      !frame->plain || frame->bits > most_bits) {
-    throw Fault{
-        fmt::format("is damaged: its compressed pixels ({} x {}, {} bits) are not what its header says",
-                    frame->columns, frame->rows, frame->bits)};
+void FrameReader::decode_by_dcmtk(std::size_t frame) {
+  OFString colours;
+  DcmElement* element = nullptr;
+  data_.findAndGetElement(DCM_PixelData, element);
+  auto* pixels = dynamic_cast<DcmPixelData*>(element);
+  if (pixels == nullptr) throw fault("has pixels of a kind that is not supported");
+  const JpegComplaints complaints;
+  const OFCondition decoded =
+      pixels->getUncompressedFrame(&data_, static_cast<Uint32>(frame), next_fragment_, values_.data(),
+                                   static_cast<Uint32>(values_.size()), colours, &cache_);
+  if (decoded.bad() || complaints.any()) {
+    throw fault(fmt::format("cannot be decoded ({}): its pixels are cut short or damaged",
+                            DcmXfer(syntax_).getXferName()));
   }
 }
 
-gdcm::DataElement fragments_of(std::istream& in, const DicomFile& file, const DicomHeader& header) {
-  const auto sequence = gdcm::SequenceOfFragments::New();
-  // The first is the table of offsets, which nobody needs.
-  for (std::size_t n = 1; n < file.pixels.parts.size(); ++n) {
-    const std::vector<char> bytes = read_part(in, file.pixels.parts[n]);
-    check_frame(bytes, header);
-    gdcm::Fragment fragment;
-    fragment.SetByteValue(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
-    sequence->AddFragment(fragment);
+std::span<const char> FrameReader::read(std::size_t frame) {
+  const std::span<char> values(values_.data(), size_.bytes());
+  const auto check = [&](bool decoded, const char* name) {
+    if (!decoded)
+      throw fault(fmt::format("cannot be decoded ({}): its pixels are cut short or damaged", name));
+  };
+  switch (syntax_) {
+    case EXS_RLELossless:
+      check(decode_rle(stream_of(frame), size_, values), "RLE");
+      break;
+    case EXS_JPEG2000LosslessOnly:
+    case EXS_JPEG2000:
+      check(decode_jpeg2000(stream_of(frame), size_, values), "JPEG 2000");
+      break;
+    default:
+      for (DcmPixelItem* fragment : fragments_) {
+        if (!jpeg_fits(bytes_of(fragment), size_))
+          throw fault("is damaged: its compressed pixels are not what its header says");
+      }
+      decode_by_dcmtk(frame);
+      // To DCMTK pixels are words of 16 bits, of which the higher comes first here.
+      if (syntax_ == EXS_BigEndianExplicit && size_.bytes_a_value == 4) {
+        for (std::size_t n = 0; n < values.size(); n += 4)
+          std::swap_ranges(&values[n], &values[n] + 2, &values[n] + 2);
+      }
   }
-  gdcm::DataElement element(gdcm::Tag(0x7FE0, 0x0010));
-  element.SetVR(gdcm::VR::OB);
-  element.SetValue(*sequence);
-  return element;
-}
-
-std::vector<char> decompress(std::istream& in, const DicomFile& file, const DicomHeader& header,
-                             std::uint64_t needed) {
-  const StoredPixels& pixels = header.slices.front().pixels;
-  const auto bits = static_cast<unsigned short>(pixels.bits_allocated);
-  const auto stored = static_cast<unsigned short>(pixels.bits_stored);
-  gdcm::Image image;
-  image.SetNumberOfDimensions(3);
-  image.SetDimension(0, static_cast<unsigned>(header.columns));
-  image.SetDimension(1, static_cast<unsigned>(header.rows));
-  image.SetDimension(2, static_cast<unsigned>(header.frames));
-  image.SetPixelFormat(gdcm::PixelFormat(1, bits, stored, static_cast<unsigned short>(stored - 1),
-                                         static_cast<unsigned short>(pixels.is_signed ? 1 : 0)));
-  image.SetPhotometricInterpretation(gdcm::PhotometricInterpretation::MONOCHROME2);
-  const auto syntax = gdcm::TransferSyntax::GetTSType(header.transfer_syntax.c_str());
-  if (syntax == gdcm::TransferSyntax::TS_END) {
-    throw Fault{fmt::format("is compressed in a way that is not known ({})", header.transfer_syntax)};
-  }
-  image.SetTransferSyntax(syntax);
-  image.SetDataElement(fragments_of(in, file, header));
-  std::vector<char> buffer(needed);
-  const CapturedStderr captured;
-  const bool done = image.GetBufferLength() == needed && image.GetBuffer(buffer.data()) &&
-                    image.GetBufferLength() == needed;
-  // libjpeg goes on with what it has.
-  if (!done || captured.text().find("Corrupt JPEG data") != std::string::npos) {
-    throw Fault{fmt::format("cannot be decompressed ({}): its pixels are cut short or damaged",
-                            codec_name(header.transfer_syntax))};
-  }
-  return buffer;
-}
-
-std::vector<char> read_pixels(const DicomHeader& header) {
-  const std::optional<DicomFile> file = read_dicom_elements(header.file);
-  if (!file || file->fault || file->pixels.parts.empty()) throw Fault{"has changed while it was read"};
-  const int value_bytes = header.slices.front().pixels.bits_allocated / 8;
-  const std::uint64_t needed = static_cast<std::uint64_t>(header.columns) *
-                               static_cast<std::uint64_t>(header.rows) * header.frames *
-                               static_cast<std::uint64_t>(value_bytes);
-  const std::unique_ptr<std::istream> in = open_dicom_data(header.file);
-  if (file->pixels.compressed) return decompress(*in, *file, header, needed);
-  if (file->pixels.bytes() < needed) throw Fault{"has changed while it was read"};
-  return read_plain(*in, *file, value_bytes, needed);
+  return values;
 }
 
 }  // namespace
 
-void read_dicom_densities(const std::string& subject, const DicomHeader& header,
+void read_dicom_densities(const DicomHeader& header,
                           const std::function<float*(std::size_t frame)>& frame_densities) {
-  gdcm::Trace::WarningOff();
-  gdcm::Trace::ErrorOff();
-  gdcm::Trace::DebugOff();
-  const std::string name = header.file.filename().string();
-  try {
-    const std::vector<char> buffer = read_pixels(header);
-    const std::size_t count =
-        static_cast<std::size_t>(header.columns) * static_cast<std::size_t>(header.rows);
-    for (const DicomSlice& slice : header.slices) {
-      float* densities = frame_densities(slice.frame);
-      if (densities != nullptr) rescale_frame(buffer, slice.frame * count, slice.pixels, count, densities);
-    }
-  } catch (const Fault& fault) {
-    throw InputError(subject, name + " " + fault.reason);
-  } catch (const gdcm::Exception&) {
-    throw InputError(subject,
-                     fmt::format("{} cannot be decompressed ({})", name, codec_name(header.transfer_syntax)));
+  FrameReader reader(header);
+  for (const DicomSlice& slice : header.slices) {
+    float* densities = frame_densities(slice.frame);
+    if (densities != nullptr) rescale_frame(reader.read(slice.frame), slice.pixels, densities);
   }
 }
 

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "osteomill/ct/dicom_data.h"
 #include "osteomill/ct/dicom_file.h"
 #include "osteomill/ct/dicom_pixels.h"
 #include "osteomill/ct/finite_densities.h"
@@ -31,14 +32,15 @@ std::string counted(std::size_t count, const std::string& noun, const std::strin
   return fmt::format("{} {}{}", count, noun, count == 1 ? "" : plural_ending);
 }
 
-Folder read_headers(const fs::path& folder) {
+// All files of the folder but `known`.
+Folder read_headers(const fs::path& folder, const fs::path& known = {}) {
   std::error_code error;
   std::vector<fs::path> files;
   Folder result;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
     std::error_code ignored;
     if (entry->is_directory(ignored)) result.has_folders = true;
-    if (entry->is_regular_file(ignored)) files.push_back(entry->path());
+    if (entry->is_regular_file(ignored) && entry->path().filename() != known) files.push_back(entry->path());
   }
   if (error) throw InputError(folder.string(), "cannot be read: " + error.message());
   std::sort(files.begin(), files.end());
@@ -105,10 +107,9 @@ Headers pick_series(Headers images, std::vector<std::string>& warnings) {
   return std::move(*largest);
 }
 
-void check_series(const std::string& subject, const Headers& series) {
+void check_series(const Headers& series) {
   for (const DicomHeader& header : series) {
-    if (!header.fault.empty())
-      throw InputError(subject, header.file.filename().string() + " " + header.fault);
+    if (header.fault) throw *header.fault;
   }
 }
 
@@ -123,7 +124,7 @@ void add_notes(const Headers& series, std::vector<std::string>& warnings) {
   }
 }
 
-std::vector<float> read_densities(const std::string& subject, const Headers& series, const SliceStack& stack,
+std::vector<float> read_densities(Headers& series, const SliceStack& stack,
                                   const std::vector<DicomSlice>& slices) {
   std::map<std::pair<fs::path, std::size_t>, std::size_t> place_of_frame;
   for (std::size_t k = 0; k < stack.order.size(); ++k) {
@@ -132,17 +133,18 @@ std::vector<float> read_densities(const std::string& subject, const Headers& ser
   }
   const std::size_t slice_size = stack.geometry.voxel_count() / stack.order.size();
   std::vector<float> densities(stack.geometry.voxel_count());
-  for (const DicomHeader& header : series) {
-    read_dicom_densities(subject, header, [&](std::size_t frame) -> float* {
+  for (DicomHeader& header : series) {
+    read_dicom_densities(header, [&](std::size_t frame) -> float* {
       const auto place = place_of_frame.find({header.file, frame});
       return place == place_of_frame.end() ? nullptr : densities.data() + place->second * slice_size;
     });
+    header.data.reset();
   }
   return densities;
 }
 
-Scan build_scan(const std::string& subject, const Headers& series, std::vector<std::string> warnings) {
-  check_series(subject, series);
+Scan build_scan(const std::string& subject, Headers series, std::vector<std::string> warnings) {
+  check_series(series);
   std::vector<DicomSlice> slices;
   std::vector<SlicePlane> planes;
   for (const DicomHeader& header : series) {
@@ -153,7 +155,7 @@ Scan build_scan(const std::string& subject, const Headers& series, std::vector<s
   }
   SliceStack stack = stack_slices(subject, planes);
   add_notes(series, warnings);
-  std::vector<float> densities = read_densities(subject, series, stack, slices);
+  std::vector<float> densities = read_densities(series, stack, slices);
   check_finite(subject, densities);
   straighten(subject, stack, densities);
   warnings.insert(warnings.end(), stack.warnings.begin(), stack.warnings.end());
@@ -166,13 +168,11 @@ void warn_of_other_files(std::size_t count, std::vector<std::string>& warnings) 
   }
 }
 
-}  // namespace
-
-Scan read_dicom_folder(const fs::path& folder) {
+Scan read_folder(const fs::path& folder) {
   const std::string subject = folder.string();
   Folder found = read_headers(folder);
   for (const DicomHeader& header : found.images) {
-    if (header.lost) throw InputError(subject, header.file.filename().string() + " " + header.fault);
+    if (header.lost) throw *header.fault;
   }
   std::vector<std::string> warnings;
   warn_of_other_files(found.other_files, warnings);
@@ -182,27 +182,47 @@ Scan read_dicom_folder(const fs::path& folder) {
                                   ? "holds no DICOM slices itself; name the folder within it that does"
                                   : "holds no DICOM slices");
   }
-  const Headers series = pick_series(std::move(found.images), warnings);
-  return build_scan(subject, series, std::move(warnings));
+  Headers series = pick_series(std::move(found.images), warnings);
+  return build_scan(subject, std::move(series), std::move(warnings));
 }
 
-std::optional<Scan> read_dicom_file(const fs::path& file) {
+// `series` holds one file; the others are beside it.
+void add_rest_of_series(Headers& series) {
+  const fs::path file = series.front().file;
+  const std::string uid = series.front().series_uid;
+  const fs::path folder = file.parent_path().empty() ? fs::path(".") : file.parent_path();
+  for (DicomHeader& other : read_headers(folder, file.filename()).images) {
+    if (!other.lost && other.series_uid == uid && !other.is_localizer) series.push_back(std::move(other));
+  }
+  std::sort(series.begin(), series.end(),
+            [](const DicomHeader& a, const DicomHeader& b) { return a.file.filename() < b.file.filename(); });
+}
+
+std::optional<Scan> read_file(const fs::path& file) {
   const std::string subject = file.string();
   std::optional<DicomHeader> header = read_dicom_header(file);
   if (!header) return std::nullopt;
-  if (!header->fault.empty()) throw InputError(subject, header->fault);
+  if (header->fault) throw *header->fault;
   if (!header->is_image()) throw InputError(subject, "is DICOM, but not an image");
   if (header->is_localizer) throw InputError(subject, "is a localizer, not a slice of a scan");
-  if (header->frames > 1) return build_scan(subject, {std::move(*header)}, {});
-
-  const fs::path folder = file.parent_path().empty() ? fs::path(".") : file.parent_path();
   Headers series;
-  for (DicomHeader& other : read_headers(folder).images) {
-    const bool same = !other.lost && other.series_uid == header->series_uid && !header->series_uid.empty();
-    const bool itself = other.file.filename() == file.filename();
-    if (itself || (same && !other.is_localizer)) series.push_back(std::move(other));
-  }
-  return build_scan(subject, series, {});
+  series.push_back(std::move(*header));
+  if (series.front().frames == 1 && !series.front().series_uid.empty()) add_rest_of_series(series);
+  return build_scan(subject, std::move(series), {});
+}
+
+}  // namespace
+
+Scan read_dicom_folder(const fs::path& folder) {
+  std::optional<Scan> scan;
+  with_dicom_stack([&] { scan = read_folder(folder); });
+  return std::move(*scan);
+}
+
+std::optional<Scan> read_dicom_file(const fs::path& file) {
+  std::optional<Scan> scan;
+  with_dicom_stack([&] { scan = read_file(file); });
+  return scan;
 }
 
 }  // namespace osteomill

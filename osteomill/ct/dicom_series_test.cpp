@@ -1,11 +1,14 @@
 #include <cstdint>
 
-#include <gdcmImageChangeTransferSyntax.h>
-#include <gdcmImageWriter.h>
-#include <gdcmReader.h>
-#include <gdcmTrace.h>
+#include <dcmtk/config/osconfig.h>
+#include <dcmtk/dcmdata/dcpixseq.h>
+#include <dcmtk/dcmdata/dcpxitem.h>
+#include <dcmtk/dcmdata/dcrleerg.h>
+#include <dcmtk/dcmdata/dctk.h>
+#include <dcmtk/dcmjpeg/djencode.h>
+#include <dcmtk/dcmjpls/djencode.h>
 
-#include "osteomill/ct/temporary_folder.h"
+#include "osteomill/ct/folder_test.h"
 
 namespace osteomill {
 namespace {
@@ -16,7 +19,7 @@ using testing_support::contains;
 constexpr int kColumns = 7;
 constexpr int kRows = 5;
 
-// One slice of a made-up series; GDCM writes it, so that the reader is not held against itself.
+// One slice of a made-up series.
 struct Slice {
   std::string file = {};
   int k = 0;
@@ -25,17 +28,8 @@ struct Slice {
   std::string position = {};
   std::string slope = "2";
   std::string image_type = "ORIGINAL\\PRIMARY\\AXIAL";
-  gdcm::TransferSyntax::TSType syntax = gdcm::TransferSyntax::ExplicitVRLittleEndian;
+  E_TransferSyntax syntax = EXS_LittleEndianExplicit;
 };
-
-void set_text(gdcm::DataSet& data, std::uint16_t group, std::uint16_t element, gdcm::VR::VRType vr,
-              std::string text) {
-  if (text.size() % 2 != 0) text += vr == gdcm::VR::UI ? '\0' : ' ';
-  gdcm::DataElement value(gdcm::Tag(group, element));
-  value.SetVR(vr);
-  value.SetByteValue(text.data(), static_cast<std::uint32_t>(text.size()));
-  data.Replace(value);
-}
 
 int stored_value(int i, int j, int k) {
   return i + 10 * j + 100 * k;
@@ -43,71 +37,51 @@ int stored_value(int i, int j, int k) {
 
 class DicomSeries : public testing_support::FolderTest {
  protected:
+  static void SetUpTestSuite() {
+    DcmRLEEncoderRegistration::registerCodecs();
+    DJEncoderRegistration::registerCodecs();
+    DJLSEncoderRegistration::registerCodecs();
+  }
+
   void write_slice(const Slice& slice) const {
-    gdcm::Trace::WarningOff();
-    gdcm::ImageWriter writer;
-    fill_image(slice, writer.GetImage());
-    gdcm::DataSet& data = writer.GetFile().GetDataSet();
+    DcmFileFormat file;
+    DcmDataset& data = *file.getDataset();
+    const auto set = [&](const DcmTagKey& tag, const std::string& text) {
+      ASSERT_TRUE(data.putAndInsertString(tag, text.c_str()).good());
+    };
     const std::string number = std::to_string(slice.k + 1);
-    set_text(data, 0x0008, 0x0008, gdcm::VR::CS, slice.image_type);
-    set_text(data, 0x0008, 0x0016, gdcm::VR::UI, "1.2.840.10008.5.1.4.1.1.2");
-    set_text(data, 0x0008, 0x0018, gdcm::VR::UI,
-             slice.instance.empty() ? slice.series + ".7." + number : slice.instance);
-    set_text(data, 0x0008, 0x0060, gdcm::VR::CS, "CT");
-    set_text(data, 0x0020, 0x000E, gdcm::VR::UI, slice.series);
-    writer.SetFileName((folder_ / slice.file).c_str());
-    ASSERT_TRUE(writer.Write());
-    rewrite(folder_ / slice.file, slice);
-  }
-
-  static void fill_image(const Slice& slice, gdcm::Image& image) {
-    image.SetNumberOfDimensions(2);
-    image.SetDimension(0, kColumns);
-    image.SetDimension(1, kRows);
-    image.SetPixelFormat(gdcm::PixelFormat(1, 16, 12, 11, 0));
-    image.SetPhotometricInterpretation(gdcm::PhotometricInterpretation::MONOCHROME2);
-    image.SetSpacing(0, 0.5);
-    image.SetSpacing(1, 0.25);
-    std::vector<std::uint16_t> pixels;
-    for (int j = 0; j < kRows; ++j) {
-      for (int i = 0; i < kColumns; ++i)
-        pixels.push_back(static_cast<std::uint16_t>(stored_value(i, j, slice.k)));
-    }
-    gdcm::DataElement element(gdcm::Tag(0x7FE0, 0x0010));
-    element.SetByteValue(reinterpret_cast<const char*>(pixels.data()),
-                         static_cast<std::uint32_t>(2 * pixels.size()));
-    image.SetDataElement(element);
-    image.SetTransferSyntax(gdcm::TransferSyntax::ExplicitVRLittleEndian);
-    if (slice.syntax == gdcm::TransferSyntax::ExplicitVRLittleEndian) return;
-    gdcm::ImageChangeTransferSyntax change;
-    change.SetTransferSyntax(slice.syntax);
-    change.SetInput(image);
-    ASSERT_TRUE(change.Change());
-    image = change.GetOutput();
-  }
-
-  // The image writer has its own mind about the place and the values of a slice, so they are set afterwards.
-  static void rewrite(const fs::path& file, const Slice& slice) {
-    gdcm::Reader reader;
-    reader.SetFileName(file.c_str());
-    ASSERT_TRUE(reader.Read());
-    gdcm::DataSet& data = reader.GetFile().GetDataSet();
     const std::string height = std::to_string(10 + 0.75 * slice.k);
-    set_text(data, 0x0020, 0x0032, gdcm::VR::DS, slice.position.empty() ? "1\\2\\" + height : slice.position);
-    set_text(data, 0x0020, 0x0037, gdcm::VR::DS, "1\\0\\0\\0\\1\\0");
-    set_text(data, 0x0028, 0x0030, gdcm::VR::DS, "0.25\\0.5");
-    set_text(data, 0x0028, 0x1052, gdcm::VR::DS, "-100");
-    set_text(data, 0x0028, 0x1053, gdcm::VR::DS, slice.slope);
-    gdcm::Writer writer;
-    writer.CheckFileMetaInformationOff();
-    writer.SetFile(reader.GetFile());
-    writer.SetFileName(file.c_str());
-    ASSERT_TRUE(writer.Write());
+    set(DCM_SOPClassUID, UID_CTImageStorage);
+    set(DCM_SOPInstanceUID, slice.instance.empty() ? slice.series + ".7." + number : slice.instance);
+    set(DCM_SeriesInstanceUID, slice.series);
+    set(DCM_Modality, "CT");
+    set(DCM_ImageType, slice.image_type);
+    set(DCM_ImagePositionPatient, slice.position.empty() ? "1\\2\\" + height : slice.position);
+    set(DCM_ImageOrientationPatient, "1\\0\\0\\0\\1\\0");
+    set(DCM_PixelSpacing, "0.25\\0.5");
+    set(DCM_RescaleIntercept, "-100");
+    set(DCM_RescaleSlope, slice.slope);
+    set(DCM_PhotometricInterpretation, "MONOCHROME2");
+    for (const auto& [tag, value] : {std::pair{DCM_Columns, kColumns},
+                                     {DCM_Rows, kRows},
+                                     {DCM_SamplesPerPixel, 1},
+                                     {DCM_BitsAllocated, 16},
+                                     {DCM_BitsStored, 12},
+                                     {DCM_HighBit, 11},
+                                     {DCM_PixelRepresentation, 0}}) {
+      data.putAndInsertUint16(tag, static_cast<Uint16>(value));
+    }
+    std::vector<Uint16> pixels;
+    for (int j = 0; j < kRows; ++j) {
+      for (int i = 0; i < kColumns; ++i) pixels.push_back(static_cast<Uint16>(stored_value(i, j, slice.k)));
+    }
+    data.putAndInsertUint16Array(DCM_PixelData, pixels.data(), pixels.size());
+    ASSERT_TRUE(data.chooseRepresentation(slice.syntax, nullptr).good());
+    ASSERT_TRUE(file.saveFile((folder_ / slice.file).c_str(), slice.syntax).good());
   }
 
   // Names run against the positions.
-  void write_series(
-      gdcm::TransferSyntax::TSType syntax = gdcm::TransferSyntax::ExplicitVRLittleEndian) const {
+  void write_series(E_TransferSyntax syntax = EXS_LittleEndianExplicit) const {
     for (int k = 0; k < 4; ++k) write_slice({.file = "f" + std::to_string(9 - k), .k = k, .syntax = syntax});
   }
 
@@ -137,12 +111,80 @@ TEST_F(DicomSeries, IsReadFromItsFolderAndFromAnyOfItsFiles) {
 }
 
 TEST_F(DicomSeries, EveryEncodingGivesTheSame) {
-  using Syntax = gdcm::TransferSyntax;
-  for (const auto syntax : {Syntax::ImplicitVRLittleEndian, Syntax::RLELossless, Syntax::JPEGLSLossless,
-                            Syntax::JPEGLosslessProcess14_1}) {
-    SCOPED_TRACE(Syntax::GetTSString(syntax));
+  for (const auto syntax : {EXS_LittleEndianImplicit, EXS_BigEndianExplicit, EXS_DeflatedLittleEndianExplicit,
+                            EXS_RLELossless, EXS_JPEGLSLossless, EXS_JPEGProcess14SV1}) {
+    SCOPED_TRACE(DcmXfer(syntax).getXferName());
     write_series(syntax);
     expect_series(read_scan(folder_));
+    EXPECT_TRUE(read_scan(folder_).warnings.empty());
+  }
+}
+
+// Parts of its only fragment become fragments of their own.
+void split_fragment(const fs::path& path) {
+  DcmFileFormat file;
+  ASSERT_TRUE(file.loadFile(path.c_str()).good());
+  const E_TransferSyntax syntax = file.getDataset()->getOriginalXfer();
+  DcmElement* element = nullptr;
+  file.getDataset()->findAndGetElement(DCM_PixelData, element);
+  DcmPixelSequence* sequence = nullptr;
+  ASSERT_TRUE(
+      dynamic_cast<DcmPixelData*>(element)->getEncapsulatedRepresentation(syntax, nullptr, sequence).good());
+  DcmPixelItem* whole = nullptr;
+  sequence->getItem(whole, 1);
+  Uint8* bytes = nullptr;
+  whole->getUint8Array(bytes);
+  const std::vector<Uint8> kept(bytes, bytes + whole->getLength());
+  const std::size_t half = kept.size() / 4 * 2;
+  whole->putUint8Array(kept.data(), half);
+  auto* second = new DcmPixelItem(DcmTag(DCM_Item, EVR_OB));
+  second->putUint8Array(kept.data() + half, kept.size() - half);
+  sequence->insert(second);
+  ASSERT_TRUE(file.saveFile(path.c_str(), syntax).good());
+}
+
+TEST_F(DicomSeries, AFrameMayLieInSeveralFragments) {
+  for (const auto syntax : {EXS_RLELossless, EXS_JPEGLSLossless, EXS_JPEGProcess14SV1}) {
+    SCOPED_TRACE(DcmXfer(syntax).getXferName());
+    write_series(syntax);
+    split_fragment(folder_ / "f7");
+    expect_series(read_scan(folder_));
+  }
+}
+
+// The decoder goes on with what it has, and would hand over what it made of it.
+TEST_F(DicomSeries, CompressedPixelsThatAreDamagedAreRefused) {
+  write_series(EXS_JPEGProcess14SV1);
+  std::ifstream in(folder_ / "f7", std::ios::binary);
+  std::string bytes((std::istreambuf_iterator<char>(in)), {});
+  in.close();
+  const std::size_t end = bytes.rfind("\xFF\xD9");
+  ASSERT_NE(end, std::string::npos);
+  std::string shorter = bytes;
+  shorter.replace(end - 10, 2, "\xFF\xD9");
+  write("f7", shorter);
+  EXPECT_TRUE(contains(refusal(folder_), "f7: cannot be decoded"));
+  std::string other = bytes;
+  const std::string size{"\x00\x05\x00\x07", 4};
+  ASSERT_NE(other.find(size), std::string::npos);
+  other.replace(other.find(size), 4, {"\x00\x07\x00\x05", 4});
+  write("f7", other);
+  EXPECT_TRUE(contains(refusal(folder_), "not what its header says"));
+}
+
+// An element of a sequence that holds a sequence, and so on.
+std::string nested(int depth) {
+  std::string bytes = std::string(128, '\0') + "DICM";
+  for (int n = 0; n < depth; ++n) {
+    bytes += std::string("\x08\x00\x40\x11SQ\0\0\xFF\xFF\xFF\xFF\xFE\xFF\x00\xE0\xFF\xFF\xFF\xFF", 20);
+  }
+  return bytes;
+}
+
+TEST_F(DicomSeries, SequencesNestedHoweverDeepAreRefused) {
+  for (const int depth : {10, 1000, 100'000, 500'000}) {
+    const fs::path path = write("deep", nested(depth));
+    EXPECT_TRUE(contains(refusal(path), "damaged")) << depth;
   }
 }
 
@@ -153,9 +195,7 @@ TEST_F(DicomSeries, ASliceThatIsMissingIsNoticed) {
 }
 
 TEST_F(DicomSeries, EveryLengthToWhichASliceCanBeCutIsNoticed) {
-  using Syntax = gdcm::TransferSyntax;
-  for (const auto syntax :
-       {Syntax::ExplicitVRLittleEndian, Syntax::ImplicitVRLittleEndian, Syntax::RLELossless}) {
+  for (const auto syntax : {EXS_LittleEndianExplicit, EXS_LittleEndianImplicit, EXS_RLELossless}) {
     write_series(syntax);
     const auto size = fs::file_size(folder_ / "f9");
     for (auto length = size - 1; length > 0; --length) {
@@ -229,7 +269,7 @@ TEST_F(DicomSeries, AFolderWithoutSlicesIsRefused) {
 TEST_F(DicomSeries, ASlopeOfZeroIsRefused) {
   write_series();
   write_slice({.file = "f8", .k = 1, .slope = "0"});
-  EXPECT_TRUE(contains(refusal(folder_), "f8 has a RescaleSlope of 0"));
+  EXPECT_TRUE(contains(refusal(folder_), "f8: has a RescaleSlope of 0"));
 }
 
 }  // namespace

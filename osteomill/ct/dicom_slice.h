@@ -2,10 +2,15 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "osteomill/ct/slice_stack.h"
+#include "osteomill/files/input_error.h"
+
+class DcmFileFormat;
 
 namespace osteomill {
 
@@ -35,22 +40,26 @@ struct DicomHeader {
   std::string series_description;
   std::string modality;
   std::string photometric;
-  std::string transfer_syntax;
   int columns = 0;
   int rows = 0;
   std::size_t frames = 1;
   /// A scout view to plan a scan by, not a part of it.
   bool is_localizer = false;
-  bool has_pixels = false;
+  bool is_compressed = false;
+  /// As they are stored; 0 where it has no pixels.
+  std::uint64_t pixel_bytes = 0;
   /// So damaged that even its series is not known.
   bool lost = false;
-  /// Why no slice can be made of it; empty where there is nothing to complain of.
-  std::string fault;
+  /// Why no slice can be made of it.
+  std::optional<InputError> fault;
   /// A slice for each frame; empty where there is a fault.
   std::vector<DicomSlice> slices;
 
+  /// What was read, pixels still in the file; goes away within `with_dicom_stack`.
+  std::shared_ptr<DcmFileFormat> data;
+
   /// Reports, plans, directories: not meant to be a picture.
-  bool is_image() const { return has_pixels || columns > 0 || rows > 0; }
+  bool is_image() const { return pixel_bytes > 0 || columns > 0 || rows > 0; }
 };
 
 }  // namespace osteomill

@@ -2,12 +2,11 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <cstring>
 #include <fstream>
+#include <map>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
-#include <zlib.h>
 
 #include "osteomill/ct/volume_header.h"
 #include "osteomill/files/input_error.h"
@@ -26,6 +25,7 @@ class Bytes {
  public:
   explicit Bytes(const std::array<char, kHeaderBytes>& bytes) : bytes_(bytes) {}
   void swap_order() { swap_ = !swap_; }
+  bool is_big_endian() const { return swap_ != (std::endian::native == std::endian::big); }
 
   template <typename Number>
   Number at(std::size_t offset) const {
@@ -46,19 +46,18 @@ class Bytes {
   bool swap_ = false;
 };
 
-bool is_gzip(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return in.get() == 0x1F && in.get() == 0x8B;
+// The file's bytes, whether it is compressed or not.
+ByteSource open_source(const std::string& subject, const fs::path& path) {
+  std::ifstream in = open_regular_file(subject, path);
+  const bool packed = in.get() == 0x1F && in.get() == 0x8B;
+  in.clear();
+  in.seekg(0);
+  return {std::move(in), packed ? Packing::gzip_or_zlib : Packing::none};
 }
 
-// zlib reads a file that is not compressed as it is.
-Bytes read_header(const std::string& subject) {
+Bytes read_header(const std::string& subject, ByteSource& source) {
   std::array<char, kHeaderBytes> bytes{};
-  gzFile file = gzopen(subject.c_str(), "rb");
-  if (file == nullptr) throw InputError(subject, "cannot be read");
-  const int count = gzread(file, bytes.data(), kHeaderBytes);
-  gzclose(file);
-  if (count != static_cast<int>(kHeaderBytes)) throw InputError(subject, "is cut short in its header");
+  if (source.read(bytes) != kHeaderBytes) throw InputError(subject, "is cut short in its header");
   Bytes header(bytes);
   if (header.at<std::int32_t>(0) != static_cast<std::int32_t>(kHeaderBytes)) header.swap_order();
   if (header.at<std::int32_t>(0) != static_cast<std::int32_t>(kHeaderBytes)) {
@@ -69,7 +68,7 @@ Bytes read_header(const std::string& subject) {
   return header;
 }
 
-std::array<int, 3> dims_of(const std::string& subject, const Bytes& header) {
+std::vector<double> sizes_of(const std::string& subject, const Bytes& header) {
   const int dimensions = header.whole(40);
   if (dimensions < 3 || dimensions > 7) {
     throw InputError(subject, fmt::format("is not a volume: it has {} dimensions", dimensions));
@@ -78,31 +77,21 @@ std::array<int, 3> dims_of(const std::string& subject, const Bytes& header) {
     const int size = header.whole(40 + 2 * static_cast<std::size_t>(axis));
     if (size > 1) throw InputError(subject, fmt::format("holds {} volumes or values a voxel, not one", size));
   }
-  return checked_dims(subject, {static_cast<double>(header.whole(42)), static_cast<double>(header.whole(44)),
-                                static_cast<double>(header.whole(46))});
+  return {static_cast<double>(header.whole(42)), static_cast<double>(header.whole(44)),
+          static_cast<double>(header.whole(46))};
 }
 
-std::uint64_t value_bytes(const std::string& subject, const Bytes& header) {
+VoxelType type_of(const std::string& subject, const Bytes& header) {
+  using enum VoxelType;
+  static const std::map<int, VoxelType> kTypes{{2, uint8},    {4, int16},    {8, int32},    {16, float32},
+                                               {64, float64}, {256, int8},   {512, uint16}, {768, uint32},
+                                               {1024, int64}, {1280, uint64}};
   const int type = header.whole(70);
-  switch (type) {
-    case 2:
-    case 256:
-      return 1;
-    case 4:
-    case 512:
-      return 2;
-    case 8:
-    case 16:
-    case 768:
-      return 4;
-    case 64:
-    case 1024:
-    case 1280:
-      return 8;
-    default:
-      throw InputError(subject,
-                       fmt::format("has voxels of type {}, which is not grey or not supported", type));
+  const auto found = kTypes.find(type);
+  if (found == kTypes.end()) {
+    throw InputError(subject, fmt::format("has voxels of type {}, which is not grey or not supported", type));
   }
+  return found->second;
 }
 
 double unit_of(const std::string& subject, const Bytes& header) {
@@ -125,7 +114,7 @@ struct Placement {
   Vec3 origin;
 };
 
-Placement by_sform(const std::string& subject, const Bytes& header) {
+Placement by_sform(const Bytes& header) {
   Placement placement;
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 4; ++column) {
@@ -134,7 +123,6 @@ Placement by_sform(const std::string& subject, const Bytes& header) {
       (column < 3 ? placement.steps(row, column) : placement.origin[row]) = value;
     }
   }
-  check_axes(subject, placement.steps);
   return placement;
 }
 
@@ -147,81 +135,76 @@ Placement by_qform(const Bytes& header, const Vec3& spacing) {
           Vec3(header.number(268), header.number(272), header.number(276))};
 }
 
-Placement placement_of(const std::string& subject, const Bytes& header, const Vec3& spacing,
-                       std::vector<std::string>& warnings) {
-  const bool has_qform = header.whole(252) > 0;
-  if (header.whole(254) > 0) {
-    const Placement placement = by_sform(subject, header);
-    const Vec3 lengths = placement.steps.colwise().norm();
-    if (((lengths - spacing).cwiseAbs().array() > kAgreement * spacing.array()).any()) {
-      throw InputError(subject, "contradicts itself: its sform and its pixdim give different voxel sizes");
-    }
-    if (has_qform) {
-      const Placement other = by_qform(header, spacing);
-      if ((other.steps - placement.steps).cwiseAbs().maxCoeff() > 0.01 * spacing.minCoeff()) {
-        warnings.push_back("its sform and its qform turn it differently; the sform was taken");
-      }
-    }
-    return placement;
-  }
-  if (has_qform) return by_qform(header, spacing);
+Placement placement_of(const Bytes& header, const Vec3& spacing, std::vector<std::string>& warnings) {
+  if (header.whole(254) > 0) return by_sform(header);
+  if (header.whole(252) > 0) return by_qform(header, spacing);
   warnings.push_back("does not say how it lies in the patient; its axes were taken for RAS");
   return {spacing.asDiagonal(), Vec3::Zero()};
 }
 
-GridGeometry geometry_of(const std::string& subject, const Bytes& header, VolumeHeader& result) {
-  const Vec3 spacing(header.number(80), header.number(84), header.number(88));
-  check_spacing(subject, {spacing.x(), spacing.y(), spacing.z()});
-  const Placement placement = placement_of(subject, header, spacing, result.warnings);
-  if (!placement.steps.allFinite() || !placement.origin.allFinite()) {
-    throw InputError(subject, "has a place that is not made of numbers");
+// What a header says twice should be the same.
+void check_agreement(const std::string& subject, const Bytes& header, const Placement& placement,
+                     const Vec3& spacing, std::vector<std::string>& warnings) {
+  const Vec3 lengths = placement.steps.colwise().norm();
+  if (((lengths - spacing).cwiseAbs().array() > kAgreement * spacing.array()).any()) {
+    throw InputError(subject, "contradicts itself: its sform and its pixdim give different voxel sizes");
   }
+  if (header.whole(254) > 0 && header.whole(252) > 0) {
+    const Placement other = by_qform(header, spacing);
+    if ((other.steps - placement.steps).cwiseAbs().maxCoeff() > 0.01 * spacing.minCoeff()) {
+      warnings.push_back("its sform and its qform turn it differently; the sform was taken");
+    }
+  }
+}
+
+GridGeometry geometry_of(const std::string& subject, const Bytes& header,
+                         std::vector<std::string>& warnings) {
+  const std::vector<double> sizes = sizes_of(subject, header);
+  const std::vector<double> spacing{header.number(80), header.number(84), header.number(88)};
+  const double unit_mm = unit_of(subject, header);
+  const Placement placement = placement_of(header, Vec3(spacing.data()), warnings);
+  const Vec3& origin = placement.origin;
+  checked_point(subject, "place", {origin.x(), origin.y(), origin.z()});
   const Vec3 lps_from_ras(-1, -1, 1);
-  GridGeometry geometry;
-  geometry.dims = result.dims;
-  geometry.spacing_mm = spacing * result.unit_mm;
-  // Adding 0 makes -0, which only puzzles, 0.
-  geometry.origin_mm = (lps_from_ras.cwiseProduct(placement.origin) * result.unit_mm).array() + 0.0;
-  geometry.direction = (lps_from_ras.asDiagonal() * placement.steps.colwise().normalized()).array() + 0.0;
+  const GridGeometry geometry =
+      checked_geometry(subject, sizes, spacing, placement.steps, origin, unit_mm, lps_from_ras);
+  check_agreement(subject, header, placement, Vec3(spacing.data()), warnings);
   return geometry;
 }
 
-// A slope of 0 means that the values are as stored (nifti1.h), yet ITK adds the intercept.
-void check_scaling(const std::string& subject, const Bytes& header, VolumeHeader& result) {
+// A slope of 0 means that the values are as stored (nifti1.h).
+void set_scaling(const std::string& subject, const Bytes& header, StoredVoxels& voxels,
+                 std::vector<std::string>& warnings) {
   const double slope = header.number(112);
   const double intercept = header.number(116);
   if (!std::isfinite(intercept) || std::isinf(slope)) {
     throw InputError(subject, "has a scl_slope or scl_inter that is not a number");
   }
   if (std::isnan(slope)) {
-    result.warnings.push_back("has a scl_slope that is not a number; its values were taken as stored");
+    warnings.push_back("has a scl_slope that is not a number; its values were taken as stored");
   }
-  if (std::isnan(slope) || slope == 0) result.added_by_itk = intercept;
+  if (std::isnan(slope) || slope == 0) return;
+  voxels.slope = slope;
+  voxels.intercept = intercept;
 }
 
 }  // namespace
 
-VolumeHeader check_nifti(const fs::path& path) {
+VolumeHeader read_nifti_header(const fs::path& path) {
   const std::string subject = path.string();
-  const Bytes header = read_header(subject);
-  VolumeHeader result;
-  result.dims = dims_of(subject, header);
-  result.unit_mm = unit_of(subject, header);
-  result.geometry = geometry_of(subject, header, result);
-  check_scaling(subject, header, result);
-
+  ByteSource source = open_source(subject, path);
+  const Bytes header = read_header(subject, source);
+  std::vector<std::string> warnings;
+  const GridGeometry geometry = geometry_of(subject, header, warnings);
   const double offset = header.number(108);
   if (!(offset >= static_cast<double>(kHeaderBytes) && offset < 1e12)) {
     throw InputError(subject, fmt::format("says that its voxels begin at byte {}", offset));
   }
-  StoredVoxels stored;
-  stored.file = path;
-  stored.bytes = result.geometry->voxel_count() * value_bytes(subject, header);
-  stored.compressed = is_gzip(path);
-  (stored.compressed ? stored.compressed_skip : stored.offset) = static_cast<std::uint64_t>(offset);
-  const std::vector<std::string> more = check_stored(subject, stored);
-  result.warnings.insert(result.warnings.end(), more.begin(), more.end());
-  return result;
+  StoredVoxels voxels{.source = std::move(source), .type = type_of(subject, header)};
+  voxels.big_endian = header.is_big_endian();
+  voxels.skip = static_cast<std::uint64_t>(offset) - kHeaderBytes;
+  set_scaling(subject, header, voxels, warnings);
+  return {geometry, std::move(voxels), std::move(warnings)};
 }
 
 }  // namespace osteomill

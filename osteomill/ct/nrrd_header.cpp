@@ -1,8 +1,11 @@
 // Nearly Raw Raster Data, http://teem.sourceforge.net/nrrd/format.html
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <fstream>
+#include <limits>
 #include <map>
+#include <sstream>
 
 #include <fmt/format.h>
 
@@ -18,8 +21,8 @@ namespace {
 
 struct Fields {
   std::map<std::string, std::string> values;
-  /// Just behind the empty line; 0 where there is none.
-  std::uint64_t end_of_header = 0;
+  /// An empty line parts the header from what follows it.
+  bool has_end = false;
 
   std::string operator[](const std::string& name) const {
     const auto found = values.find(name);
@@ -31,12 +34,6 @@ struct Fields {
 // Longer headers than this are no headers.
 constexpr std::size_t kLongestHeader = 1 << 22;
 
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
-
 // "data file" and "datafile" are the same field.
 std::string field_name(std::string_view text) {
   std::string name = lower(std::string(text));
@@ -44,25 +41,59 @@ std::string field_name(std::string_view text) {
   return name;
 }
 
-std::string trimmed(std::string_view text) {
-  const std::size_t start = text.find_first_not_of(" \t");
-  if (start == std::string_view::npos) return {};
-  return std::string(text.substr(start, text.find_last_not_of(" \t") - start + 1));
+// A field with a slip of the pen in its name would be missed in silence.
+void check_name(const std::string& subject, const std::string& name) {
+  constexpr std::array<std::string_view, 32> kNames{"axismaxs",
+                                                    "axismins",
+                                                    "blocksize",
+                                                    "byteskip",
+                                                    "centerings",
+                                                    "centers",
+                                                    "content",
+                                                    "data",
+                                                    "datafile",
+                                                    "dimension",
+                                                    "encoding",
+                                                    "endian",
+                                                    "kinds",
+                                                    "labels",
+                                                    "lineskip",
+                                                    "max",
+                                                    "measurementframe",
+                                                    "min",
+                                                    "number",
+                                                    "oldmax",
+                                                    "oldmin",
+                                                    "sampleunits",
+                                                    "sizes",
+                                                    "space",
+                                                    "spacedimension",
+                                                    "spacedirections",
+                                                    "spaceorigin",
+                                                    "spaceunits",
+                                                    "spacings",
+                                                    "thicknesses",
+                                                    "type",
+                                                    "units"};
+  if (std::find(kNames.begin(), kNames.end(), name) == kNames.end()) {
+    throw InputError(subject, fmt::format("has a field \"{:.40}\" that is not known", name));
+  }
 }
 
 Fields read_fields(const std::string& subject, std::istream& in) {
   Fields fields;
   std::string line;
   std::size_t length = 0;
-  if (!std::getline(in, line) || !line.starts_with("NRRD000")) {
-    throw InputError(subject, "is not NRRD: it does not begin with NRRD000");
+  if (!std::getline(in, line) || !line.starts_with("NRRD000") || line.size() < 8 || line[7] < '1' ||
+      line[7] > '5') {
+    throw InputError(subject, "is not NRRD: it does not begin with NRRD0001 to NRRD0005");
   }
   while (std::getline(in, line)) {
     length += line.size();
     if (length > kLongestHeader) throw InputError(subject, "has a header without an end");
     if (line.ends_with('\r')) line.pop_back();
     if (line.empty()) {
-      fields.end_of_header = static_cast<std::uint64_t>(in.tellg());
+      fields.has_end = true;
       break;
     }
     if (line.find('\0') != std::string::npos) throw InputError(subject, "has a zero byte in its header");
@@ -70,60 +101,31 @@ Fields read_fields(const std::string& subject, std::istream& in) {
     const std::size_t colon = line.find(':');
     if (colon == std::string::npos)
       throw InputError(subject, "has a header line that is not \"field: value\"");
-    fields.values[field_name(std::string_view(line).substr(0, colon))] =
-        trimmed(std::string_view(line).substr(colon + 1));
+    const std::string name = field_name(std::string_view(line).substr(0, colon));
+    check_name(subject, name);
+    fields.values[name] = trimmed(std::string_view(line).substr(colon + 1));
   }
   return fields;
 }
 
-std::uint64_t bytes_of_type(const std::string& subject, const std::string& type) {
-  static const std::map<std::string, std::uint64_t> kBytes{{"signed char", 1},
-                                                           {"int8", 1},
-                                                           {"int8_t", 1},
-                                                           {"uchar", 1},
-                                                           {"unsigned char", 1},
-                                                           {"uint8", 1},
-                                                           {"uint8_t", 1},
-                                                           {"short", 2},
-                                                           {"short int", 2},
-                                                           {"signed short", 2},
-                                                           {"signed short int", 2},
-                                                           {"int16", 2},
-                                                           {"int16_t", 2},
-                                                           {"ushort", 2},
-                                                           {"unsigned short", 2},
-                                                           {"unsigned short int", 2},
-                                                           {"uint16", 2},
-                                                           {"uint16_t", 2},
-                                                           {"int", 4},
-                                                           {"signed int", 4},
-                                                           {"int32", 4},
-                                                           {"int32_t", 4},
-                                                           {"uint", 4},
-                                                           {"unsigned int", 4},
-                                                           {"uint32", 4},
-                                                           {"uint32_t", 4},
-                                                           {"longlong", 8},
-                                                           {"long long", 8},
-                                                           {"long long int", 8},
-                                                           {"signed long long", 8},
-                                                           {"signed long long int", 8},
-                                                           {"int64", 8},
-                                                           {"int64_t", 8},
-                                                           {"ulonglong", 8},
-                                                           {"unsigned long long", 8},
-                                                           {"unsigned long long int", 8},
-                                                           {"uint64", 8},
-                                                           {"uint64_t", 8},
-                                                           {"float", 4},
-                                                           {"double", 8}};
-  const auto found = kBytes.find(type);
-  if (found == kBytes.end()) {
-    throw InputError(subject, type.empty()
-                                  ? "does not say of what type its voxels are"
-                                  : fmt::format("has voxels of type \"{}\", which is not known", type));
+VoxelType type_of(const std::string& subject, const std::string& type) {
+  using enum VoxelType;
+  constexpr std::array<std::pair<VoxelType, std::string_view>, 10> kNames{
+      {{int8, "|signed char|int8|int8_t|"},
+       {uint8, "|uchar|unsigned char|uint8|uint8_t|"},
+       {int16, "|short|short int|signed short|signed short int|int16|int16_t|"},
+       {uint16, "|ushort|unsigned short|unsigned short int|uint16|uint16_t|"},
+       {int32, "|int|signed int|int32|int32_t|"},
+       {uint32, "|uint|unsigned int|uint32|uint32_t|"},
+       {int64, "|longlong|long long|long long int|signed long long|signed long long int|int64|int64_t|"},
+       {uint64, "|ulonglong|unsigned long long|unsigned long long int|uint64|uint64_t|"},
+       {float32, "|float|"},
+       {float64, "|double|"}}};
+  if (type.empty()) throw InputError(subject, "does not say of what type its voxels are");
+  for (const auto& [known, names] : kNames) {
+    if (names.find("|" + type + "|") != std::string_view::npos) return known;
   }
-  return found->second;
+  throw InputError(subject, fmt::format("has voxels of type \"{:.40}\", which is not known", type));
 }
 
 std::vector<double> numbers(const std::string& subject, const Fields& fields, const std::string& name) {
@@ -164,119 +166,124 @@ Mat3 space_directions(const std::string& subject, const std::string& text) {
   return axes;
 }
 
-void check_placement(const std::string& subject, const Fields& fields, VolumeHeader& header) {
-  if (fields.has("spacedirections")) {
-    check_axes(subject, space_directions(subject, fields["spacedirections"]));
-    header.unit_mm = unit_of(subject, fields, "spaceunits");
-  } else if (fields.has("spacings")) {
-    check_spacing(subject, numbers(subject, fields, "spacings"));
-    header.unit_mm = unit_of(subject, fields, "units");
-  } else {
-    header.warnings.push_back("does not say how large its voxels are; 1 mm was assumed");
+// The signs that turn the axes of a space into LPS.
+Vec3 lps_from_space(const std::string& subject, const std::string& space,
+                    std::vector<std::string>& warnings) {
+  if (space.empty() || space == "left-posterior-superior" || space == "lps") return Vec3(1, 1, 1);
+  if (space == "right-anterior-superior" || space == "ras") return Vec3(-1, -1, 1);
+  if (space == "left-anterior-superior" || space == "las") return Vec3(1, -1, 1);
+  if (space != "scanner-xyz" && space != "3d-right-handed" && space != "3d-left-handed") {
+    throw InputError(subject, fmt::format("lies in a space that is not known: \"{:.40}\"", space));
   }
-  if (fields.has("spaceorigin")) {
-    const auto origin = parse_numbers(fields["spaceorigin"], "(), \t");
-    if (!origin || origin->size() != 3 || !Vec3((*origin)[0], (*origin)[1], (*origin)[2]).allFinite()) {
-      throw InputError(subject, "has a space origin that is not three numbers");
+  warnings.push_back(fmt::format("lies in the space \"{}\"; its axes were taken for LPS", space));
+  return Vec3::Ones();
+}
+
+// Along an axis of another kind lie several values of one voxel.
+void check_kinds(const std::string& subject, const std::string& kinds) {
+  std::istringstream words(lower(kinds));
+  for (std::string kind; words >> kind;) {
+    if (kind != "domain" && kind != "space" && kind != "time" && kind != "???" && kind != "none") {
+      throw InputError(subject, fmt::format("is not a grey volume: it has an axis of kind \"{}\"", kind));
     }
   }
-  static const std::vector<std::string> kPatient{
-      "",    "left-posterior-superior", "lps", "right-anterior-superior",
-      "ras", "left-anterior-superior",  "las"};
-  const std::string space = lower(fields["space"]);
-  if (std::find(kPatient.begin(), kPatient.end(), space) == kPatient.end()) {
-    header.warnings.push_back(fmt::format("lies in the space \"{}\"; its axes were taken for LPS", space));
-  }
 }
 
-std::uint64_t after_lines(const fs::path& file, std::uint64_t offset, double lines) {
-  std::ifstream in(file, std::ios::binary);
-  in.seekg(static_cast<std::streamoff>(offset));
-  std::string line;
-  for (double n = 0; n < lines && std::getline(in, line); ++n) offset += line.size() + 1;
-  return offset;
-}
-
-double skip_of(const std::string& subject, const Fields& fields, const std::string& name, double least) {
-  if (!fields.has(name)) return 0;
-  const std::vector<double> values = numbers(subject, fields, name);
-  if (values.size() != 1 || !(values[0] >= least && values[0] < 1e12)) {
-    throw InputError(subject, fmt::format("has a {} that is not supported: {}", name, fields[name]));
-  }
-  return values[0];
-}
-
-StoredVoxels where_stored(const std::string& subject, const fs::path& path, const Fields& fields) {
-  StoredVoxels stored;
-  const std::string name = fields[fields.has("datafile") ? "datafile" : "data"];
-  if (name.empty()) {
-    if (fields.end_of_header == 0) throw InputError(subject, "has a header without an end, and no data");
-    stored.file = path;
-    stored.offset = fields.end_of_header;
-  } else if (name.starts_with("LIST") || name.find('%') != std::string::npos) {
-    throw InputError(subject, "keeps its data in several files, which is not supported");
-  } else {
-    stored.file = path.parent_path() / name;
-  }
-  stored.offset = after_lines(stored.file, stored.offset, skip_of(subject, fields, "lineskip", 0));
-  return stored;
-}
-
-void check_data(const std::string& subject, StoredVoxels stored, const Fields& fields, VolumeHeader& header) {
-  const std::uint64_t value_bytes = bytes_of_type(subject, lower(fields["type"]));
-  GridGeometry grid;
-  grid.dims = header.dims;
-  stored.bytes = grid.voxel_count() * value_bytes;
-  const std::string encoding = lower(fields["encoding"]);
-  if (encoding == "ascii" || encoding == "txt" || encoding == "text") {
-    // One digit and one space each, at the least.
-    stored.bytes = 2 * grid.voxel_count() - 1;
-    check_stored(subject, stored);
-    return;
-  }
-  stored.compressed = encoding == "gzip" || encoding == "gz";
-  if (encoding != "raw" && !stored.compressed) {
-    throw InputError(subject, encoding.empty()
-                                  ? "does not say how its data are encoded"
-                                  : fmt::format("is encoded as \"{}\", which is not supported", encoding));
-  }
-  const std::string endian = lower(fields["endian"]);
-  if (value_bytes > 1 && endian != "little" && endian != "big") {
-    throw InputError(subject, "does not say whether its voxels are little or big endian");
-  }
-  const double byte_skip = skip_of(subject, fields, "byteskip", -1);
-  if (byte_skip < 0) {
-    // The voxels are what the data end with.
-    std::error_code error;
-    const std::uint64_t size = fs::file_size(stored.file, error);
-    if (!stored.compressed && !error && size >= stored.offset + stored.bytes)
-      stored.offset = size - stored.bytes;
-    check_stored(subject, stored);
-    return;
-  }
-  (stored.compressed ? stored.compressed_skip : stored.offset) += static_cast<std::uint64_t>(byte_skip);
-  const std::vector<std::string> more = check_stored(subject, stored);
-  header.warnings.insert(header.warnings.end(), more.begin(), more.end());
-}
-
-}  // namespace
-
-VolumeHeader check_nrrd(const fs::path& path) {
-  const std::string subject = path.string();
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw InputError(subject, "cannot be read");
-  const Fields fields = read_fields(subject, in);
-
-  VolumeHeader header;
+GridGeometry geometry_of(const std::string& subject, const Fields& fields,
+                         std::vector<std::string>& warnings) {
   const std::vector<double> dimension = numbers(subject, fields, "dimension");
   if (dimension.front() != 3) {
     throw InputError(subject,
                      fmt::format("is not a grey volume: it has {} dimensions, not 3", dimension.front()));
   }
-  header.dims = checked_dims(subject, numbers(subject, fields, "sizes"));
-  check_placement(subject, fields, header);
-  check_data(subject, where_stored(subject, path, fields), fields, header);
-  return header;
+  check_kinds(subject, fields["kinds"]);
+  Mat3 axes = Mat3::Identity();
+  std::vector<double> spacing{1, 1, 1};
+  double unit_mm = 1;
+  if (fields.has("spacedirections")) {
+    axes = space_directions(subject, fields["spacedirections"]);
+    for (int axis = 0; axis < 3; ++axis) spacing[static_cast<std::size_t>(axis)] = axes.col(axis).norm();
+    unit_mm = unit_of(subject, fields, "spaceunits");
+  } else if (fields.has("spacings")) {
+    spacing = numbers(subject, fields, "spacings");
+    unit_mm = unit_of(subject, fields, "units");
+  } else {
+    warnings.push_back("does not say how large its voxels are; 1 mm was assumed");
+  }
+  Vec3 origin = Vec3::Zero();
+  if (fields.has("spaceorigin")) {
+    const auto values = parse_numbers(fields["spaceorigin"], "(), \t");
+    origin = checked_point(subject, "space origin", values.value_or(std::vector<double>{}));
+  }
+  return checked_geometry(subject, numbers(subject, fields, "sizes"), spacing, axes, origin, unit_mm,
+                          lps_from_space(subject, lower(fields["space"]), warnings));
+}
+
+double skip_of(const std::string& subject, const Fields& fields, const std::string& name, double min) {
+  if (!fields.has(name)) return 0;
+  const std::vector<double> values = numbers(subject, fields, name);
+  if (values.size() != 1 || !(values[0] >= min && values[0] < 1e12)) {
+    throw InputError(subject, fmt::format("has a {} that is not supported: {}", name, fields[name]));
+  }
+  return values[0];
+}
+
+// The stream in which the voxels begin, behind the lines that are to be skipped.
+std::ifstream open_data(const std::string& subject, const fs::path& path, const Fields& fields,
+                        std::ifstream attached) {
+  const std::string name = fields[fields.has("datafile") ? "datafile" : "data"];
+  if (name.empty() && !fields.has_end) throw InputError(subject, "has a header without an end, and no data");
+  if (name.starts_with("LIST") || name.find('%') != std::string::npos) {
+    throw InputError(subject, "keeps its data in several files, which is not supported");
+  }
+  std::ifstream in =
+      name.empty() ? std::move(attached) : open_regular_file(subject, path.parent_path() / name);
+  const double lines = skip_of(subject, fields, "lineskip", 0);
+  for (double n = 0; n < lines && in; ++n) in.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
+  return in;
+}
+
+StoredVoxels voxels_of(const std::string& subject, const Fields& fields, std::ifstream data,
+                       std::uint64_t count) {
+  const VoxelType type = type_of(subject, lower(fields["type"]));
+  const std::string encoding = lower(fields["encoding"]);
+  const bool is_text = encoding == "ascii" || encoding == "txt" || encoding == "text";
+  const bool is_packed = encoding == "gzip" || encoding == "gz";
+  if (encoding != "raw" && !is_text && !is_packed) {
+    throw InputError(subject, encoding.empty()
+                                  ? "does not say how its data are encoded"
+                                  : fmt::format("is encoded as \"{}\", which is not supported", encoding));
+  }
+  StoredVoxels voxels{
+      .source = ByteSource(std::move(data), is_packed ? Packing::gzip_or_zlib : Packing::none),
+      .type = type,
+      .is_text = is_text};
+  const std::string endian = lower(fields["endian"]);
+  if (!is_text && bytes_of(type) > 1 && endian != "little" && endian != "big") {
+    throw InputError(subject, "does not say whether its voxels are little or big endian");
+  }
+  voxels.big_endian = endian == "big";
+  const double byte_skip = skip_of(subject, fields, "byteskip", is_text ? 0 : -1);
+  if (byte_skip < 0) {
+    // The voxels are what the data end with.
+    const std::uint64_t there = voxels.source.bytes_to_come();
+    voxels.skip = there - std::min(there, count * bytes_of(type));
+  } else {
+    voxels.skip = static_cast<std::uint64_t>(byte_skip);
+  }
+  return voxels;
+}
+
+}  // namespace
+
+VolumeHeader read_nrrd_header(const fs::path& path) {
+  const std::string subject = path.string();
+  std::ifstream in = open_regular_file(subject, path);
+  const Fields fields = read_fields(subject, in);
+  std::vector<std::string> warnings;
+  const GridGeometry geometry = geometry_of(subject, fields, warnings);
+  std::ifstream data = open_data(subject, path, fields, std::move(in));
+  return {geometry, voxels_of(subject, fields, std::move(data), geometry.voxel_count()), std::move(warnings)};
 }
 
 }  // namespace osteomill

@@ -2,10 +2,11 @@
 
 #include <filesystem>
 
-#include "osteomill/ct/itk_image.h"
 #include "osteomill/ct/read_scan.h"
 
 namespace osteomill {
+
+enum class VolumeFormat { nrrd, metaimage, nifti };
 
 /// Reads a volume that lies in one file (or in a header and a file of voxels).
 /// Throws InputError naming the file.

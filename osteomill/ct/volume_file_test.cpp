@@ -1,15 +1,26 @@
+#include <algorithm>
 #include <cstring>
 #include <limits>
 
+#include <sys/stat.h>
 #include <zlib.h>
 
-#include "osteomill/ct/temporary_folder.h"
+#include "osteomill/ct/folder_test.h"
 
 namespace osteomill {
 namespace {
 
 using testing_support::contains;
-using VolumeFile = testing_support::FolderTest;
+
+class VolumeFile : public testing_support::FolderTest {
+ protected:
+  std::filesystem::path write_gzip(const std::string& name, const std::string& bytes) const {
+    gzFile packed = gzopen((folder_ / name).c_str(), "wb");
+    gzwrite(packed, bytes.data(), static_cast<unsigned>(bytes.size()));
+    gzclose(packed);
+    return folder_ / name;
+  }
+};
 
 constexpr std::array<int, 3> kDims{4, 3, 2};
 
@@ -59,6 +70,28 @@ std::string zipped(const std::string& bytes) {
            static_cast<uLong>(bytes.size()));
   packed.resize(size);
   return packed;
+}
+
+std::string swapped(std::string bytes, std::size_t size) {
+  for (std::size_t at = 0; at + size <= bytes.size(); at += size) {
+    std::reverse(bytes.begin() + static_cast<std::ptrdiff_t>(at),
+                 bytes.begin() + static_cast<std::ptrdiff_t>(at + size));
+  }
+  return bytes;
+}
+
+// Of a NIfTI-1 header the numbers that `Nifti` sets.
+std::string swapped_header(std::string header) {
+  const auto swap = [&](std::size_t at, std::size_t end, std::size_t size) {
+    header.replace(at, end - at, swapped(header.substr(at, end - at), size));
+  };
+  swap(0, 4, 4);
+  swap(40, 56, 2);
+  swap(70, 74, 2);
+  swap(76, 120, 4);
+  swap(252, 256, 2);
+  swap(256, 328, 4);
+  return header;
 }
 
 // A NIfTI-1 header, field by field as nifti1.h lays it out.
@@ -112,11 +145,89 @@ TEST_F(VolumeFile, DetachedAndCompressedNrrdGiveTheSame) {
   expect_voxels(
       read_scan(write("b.nhdr", nrrd("encoding: raw\nbyte skip: -1\ndata file: a.raw\n" + kPlaced, "")))
           .grid);
-  gzFile packed = gzopen((folder_ / "a.gz").c_str(), "wb");
-  const std::string bytes = voxels<std::int16_t>();
-  gzwrite(packed, bytes.data(), static_cast<unsigned>(bytes.size()));
-  gzclose(packed);
+  write_gzip("a.gz", voxels<std::int16_t>());
   expect_voxels(read_scan(write("c.nhdr", nrrd("encoding: gzip\ndata file: a.gz\n" + kPlaced, ""))).grid);
+}
+
+TEST_F(VolumeFile, LasIsTurnedToLps) {
+  std::string fields = "encoding: raw\n" + kPlaced;
+  fields.replace(fields.find("LPS"), 3, "LAS");
+  const Scan scan = read_scan(write("a.nrrd", nrrd(fields, voxels<std::int16_t>())));
+  EXPECT_TRUE(scan.grid.geometry().world_from_voxel(Vec3(1, 2, 3)).isApprox(Vec3(7, 1.5, 3.5)));
+}
+
+TEST_F(VolumeFile, EveryTypeAndOrderOfBytesGivesTheSame) {
+  for (const auto& [type, bytes, met, code] : {std::tuple{"short", voxels<std::int16_t>(), "MET_SHORT", 4},
+                                               {"int", voxels<std::int32_t>(), "MET_INT", 8},
+                                               {"int64", voxels<std::int64_t>(), "MET_LONG_LONG", 1024},
+                                               {"float", voxels<float>(), "MET_FLOAT", 16},
+                                               {"double", voxels<double>(), "MET_DOUBLE", 64}}) {
+    const std::size_t size = bytes.size() / 24;
+    for (const bool big : {false, true}) {
+      SCOPED_TRACE(std::string(type) + (big ? " big endian" : " little endian"));
+      const std::string data = big ? swapped(bytes, size) : bytes;
+      std::string header = nrrd("encoding: raw\n" + kPlaced, data);
+      header.replace(header.find("short"), 5, type);
+      if (big) header.replace(header.find("little"), 6, "big");
+      expect_voxels(read_scan(write("a.nrrd", header)).grid);
+
+      header = mha(big ? "BinaryDataByteOrderMSB = True\n" : "", data);
+      header.replace(header.find("MET_SHORT"), 9, met);
+      expect_voxels(read_scan(write("a.mha", header)).grid);
+
+      header = Nifti().set<std::int16_t>(70, static_cast<std::int16_t>(code)).with("");
+      expect_voxels(read_scan(write("a.nii", (big ? swapped_header(header) : header) + data)).grid);
+    }
+  }
+}
+
+TEST_F(VolumeFile, TextIsReadAndChecked) {
+  const std::string fields = "encoding: ascii\n" + kPlaced;
+  std::string text;
+  for (int k = 0; k < kDims[2]; ++k) {
+    for (int j = 0; j < kDims[1]; ++j) {
+      for (int i = 0; i < kDims[0]; ++i)
+        text += std::to_string(i + 10 * j + 100 * k - 50) + (i == 3 ? "\n" : " ");
+    }
+  }
+  expect_voxels(read_scan(write("a.nrrd", nrrd(fields, text))).grid);
+  const std::string shorter = text.substr(0, text.rfind(' '));
+  EXPECT_TRUE(contains(refusal(write("b.nrrd", nrrd(fields, shorter))), "24 voxels, there are 23 numbers"));
+  for (const char* odd : {"1x", "1.5", "40000", "nan", "(1)"}) {
+    const std::string other = shorter + " " + odd + "\n";
+    EXPECT_TRUE(contains(refusal(write("c.nrrd", nrrd(fields, other))), "c.nrrd: holds ")) << odd;
+  }
+  const std::string longest = std::string(100'000, 'x');
+  EXPECT_LT(refusal(write("d.nrrd", nrrd(fields, text.substr(0, 60) + longest))).size(), 200U);
+}
+
+TEST_F(VolumeFile, CompressedDataMayHaveBytesBeforeTheVoxels) {
+  const std::string bytes = "skip" + voxels<std::int16_t>();
+  write_gzip("a.gz", bytes);
+  for (const char* skip : {"4", "-1"}) {
+    const std::string fields =
+        std::string("encoding: gzip\nbyte skip: ") + skip + "\ndata file: a.gz\n" + kPlaced;
+    expect_voxels(read_scan(write("a.nhdr", nrrd(fields, ""))).grid);
+  }
+}
+
+TEST_F(VolumeFile, AFieldOrSpaceWithASlipIsRefused) {
+  const std::string data = voxels<std::int16_t>();
+  EXPECT_TRUE(contains(refusal(write("a.nrrd", nrrd("encoding: raw\nspace drections: 1\n", data))),
+                       "\"spacedrections\" that is not known"));
+  EXPECT_TRUE(contains(refusal(write("b.nrrd", nrrd("encoding: raw\nspace: left-posterior\n", data))),
+                       "space that is not known"));
+  EXPECT_TRUE(contains(refusal(write("c.nrrd", nrrd("encoding: raw\nkinds: vector domain domain\n", data))),
+                       "axis of kind"));
+  const std::string longest(70'000, 'x');
+  EXPECT_LT(refusal(write("d.nrrd", nrrd("encoding: raw\n" + longest + ": 1\n", data))).size(), 200U);
+}
+
+// It would be waited for.
+TEST_F(VolumeFile, APipeIsNoDataFile) {
+  ASSERT_EQ(::mkfifo((folder_ / "pipe").c_str(), 0600), 0);
+  EXPECT_TRUE(contains(refusal(write("a.nhdr", nrrd("encoding: raw\nline skip: 1\ndata file: pipe\n", ""))),
+                       "pipe is no regular file"));
 }
 
 TEST_F(VolumeFile, UnitsOfLengthAreTurnedToMillimetres) {
@@ -137,15 +248,16 @@ TEST_F(VolumeFile, MetaImageIsPlacedByItsMatrix) {
   expect_voxels(read_scan(write("b.mha", mha(fields + "CompressedData = True\n" + size, packed))).grid);
 }
 
-// The library would give zeros for voxels then.
-TEST_F(VolumeFile, MetaImageThatCannotBeDecompressedIsRefused) {
+TEST_F(VolumeFile, CompressedDataSizeOfMetaImageIsCheckedWhereItIsThere) {
   const std::string packed = zipped(voxels<std::int16_t>());
   const std::string fields = "CompressedData = True\n";
-  EXPECT_TRUE(contains(refusal(write("a.mha", mha(fields, packed))), "cannot be decompressed"));
+  expect_voxels(read_scan(write("a.mha", mha(fields, packed))).grid);
   EXPECT_TRUE(
       contains(refusal(write("b.mha", mha(fields + "CompressedDataSize = 9\n", packed))), "take 9 bytes"));
   EXPECT_TRUE(contains(refusal(write("c.mha", mha(fields + "CompressedDataSize = 999\n", packed))),
                        "take 999 bytes"));
+  EXPECT_TRUE(
+      contains(refusal(write("d.mha", mha(fields, voxels<std::int16_t>()))), "cannot be decompressed"));
 }
 
 TEST_F(VolumeFile, NiftiIsTurnedFromRasToLps) {
@@ -154,6 +266,32 @@ TEST_F(VolumeFile, NiftiIsTurnedFromRasToLps) {
   EXPECT_EQ(scan.format, "NIfTI");
   EXPECT_TRUE(scan.warnings.empty());
   EXPECT_TRUE(scan.grid.geometry().world_from_voxel(Vec3(1, 2, 3)).isApprox(Vec3(-7, 1.5, 3.5)));
+}
+
+TEST_F(VolumeFile, DetachedMetaImageGivesTheSame) {
+  const std::string packed = zipped(voxels<std::int16_t>());
+  write("a.raw", voxels<std::int16_t>());
+  write("b.raw", "skip" + voxels<std::int16_t>());
+  write("a.zraw", packed);
+  for (const char* rest :
+       {"ElementDataFile = a.raw\n", "HeaderSize = 4\nElementDataFile = b.raw\n",
+        "HeaderSize = -1\nElementDataFile = b.raw\n", "CompressedData = True\nElementDataFile = a.zraw\n"}) {
+    SCOPED_TRACE(rest);
+    std::string header = mha("", "");
+    header.replace(header.find("ElementDataFile"), std::string::npos, rest);
+    expect_voxels(read_scan(write("a.mhd", header)).grid);
+  }
+}
+
+TEST_F(VolumeFile, CompressedNiftiGivesTheSameAndIsCheckedToItsEnd) {
+  const std::string bytes = Nifti().with(voxels<std::int16_t>());
+  const std::filesystem::path path = write_gzip("a.nii.gz", bytes);
+  expect_voxels(read_scan(path).grid);
+  const auto size = std::filesystem::file_size(path);
+  for (auto length = size - 1; length > 0; --length) {
+    std::filesystem::resize_file(path, length);
+    EXPECT_NE(refusal(path), "") << length << " of " << size;
+  }
 }
 
 TEST_F(VolumeFile, NiftiSlopeZeroMeansValuesAsStored) {

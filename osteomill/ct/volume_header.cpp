@@ -1,51 +1,18 @@
 #include "osteomill/ct/volume_header.h"
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <limits>
 #include <map>
 
 #include <fmt/format.h>
 
-#include "osteomill/ct/inflate.h"
 #include "osteomill/files/input_error.h"
 
 namespace osteomill {
 
-namespace fs = std::filesystem;
-
-std::vector<std::string> check_stored(const std::string& subject, const StoredVoxels& stored) {
-  std::error_code error;
-  if (!fs::is_regular_file(stored.file, error)) {
-    throw InputError(subject, fmt::format("its data file {} is not there", stored.file.string()));
-  }
-  const std::uint64_t size = fs::file_size(stored.file, error);
-  if (error) throw InputError(subject, fmt::format("its data file {} cannot be read", stored.file.string()));
-  const std::uint64_t there = size > stored.offset ? size - stored.offset : 0;
-  const auto cut_short = [&](std::uint64_t found) {
-    return InputError(
-        subject, fmt::format("is cut short: its voxels need {} bytes, there are {}", stored.bytes, found));
-  };
-  std::uint64_t found = there;
-  if (stored.compressed) {
-    const std::uint64_t needed = stored.bytes + stored.compressed_skip;
-    // Somewhat beyond what is needed, so as to come to the checksum.
-    const InflatedStream stream = measure_compressed(stored.file, stored.offset, 2 * needed + (1 << 20));
-    if (stream.bytes == 0) throw InputError(subject, "its compressed data cannot be decompressed");
-    if (stream.bytes < needed) throw cut_short(stream.bytes);
-    if (!stream.sound) {
-      throw InputError(subject, "its compressed data are cut short or damaged");
-    }
-    if (stored.compressed_bytes != 0 &&
-        (stored.compressed_bytes < stream.compressed_bytes || stored.compressed_bytes > there)) {
-      throw InputError(subject, fmt::format("says that its compressed data take {} bytes, they take {}",
-                                            stored.compressed_bytes, stream.compressed_bytes));
-    }
-    found = stream.bytes - stored.compressed_skip;
-  }
-  if (found < stored.bytes) throw cut_short(found);
-  if (found > stored.bytes) return {"holds more data than its sizes need; the rest was left out"};
-  return {};
-}
+namespace {
 
 std::array<int, 3> checked_dims(const std::string& subject, const std::vector<double>& sizes) {
   if (sizes.size() != 3)
@@ -91,6 +58,30 @@ void check_axes(const std::string& subject, const Mat3& axes) {
   }
 }
 
+}  // namespace
+
+GridGeometry checked_geometry(const std::string& subject, const std::vector<double>& sizes,
+                              const std::vector<double>& spacing, const Mat3& axes, const Vec3& origin,
+                              double unit_mm, const Vec3& lps_from_axes) {
+  GridGeometry geometry;
+  geometry.dims = checked_dims(subject, sizes);
+  check_spacing(subject, spacing);
+  check_axes(subject, axes);
+  geometry.spacing_mm = Vec3(spacing.data()) * unit_mm;
+  // Adding 0 makes -0, which only puzzles, 0.
+  geometry.origin_mm = (lps_from_axes.cwiseProduct(origin) * unit_mm).array() + 0.0;
+  geometry.direction = (lps_from_axes.asDiagonal() * axes.colwise().normalized()).array() + 0.0;
+  return geometry;
+}
+
+Vec3 checked_point(const std::string& subject, const std::string& name, const std::vector<double>& numbers) {
+  const bool is_point = numbers.size() == 3 && std::all_of(numbers.begin(), numbers.end(), [](double number) {
+                          return std::isfinite(number);
+                        });
+  if (!is_point) throw InputError(subject, fmt::format("has a {} that is not three numbers", name));
+  return Vec3(numbers.data());
+}
+
 double millimetres_in(const std::string& subject, std::string_view unit) {
   static const std::map<std::string, double, std::less<>> kUnits{
       {"", 1},           {"mm", 1},         {"millimeter", 1}, {"millimetre", 1},
@@ -101,6 +92,18 @@ double millimetres_in(const std::string& subject, std::string_view unit) {
   if (found == kUnits.end())
     throw InputError(subject, fmt::format("has lengths in \"{}\", which is not known", unit));
   return found->second;
+}
+
+std::string trimmed(std::string_view text) {
+  const std::size_t start = text.find_first_not_of(" \t\r");
+  if (start == std::string_view::npos) return {};
+  return std::string(text.substr(start, text.find_last_not_of(" \t\r") - start + 1));
+}
+
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
 }
 
 }  // namespace osteomill

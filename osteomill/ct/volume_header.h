@@ -1,63 +1,46 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "osteomill/ct/stored_voxels.h"
 #include "osteomill/volume/grid_geometry.h"
 
 namespace osteomill {
 
-/// What the header of a volume file says, as far as the library that reads the voxels leaves it unchecked.
+/// What the header of a volume file says, and the voxels behind it, ready to be read.
 struct VolumeHeader {
-  std::array<int, 3> dims{0, 0, 0};
-  /// Length of the header's unit of length.
-  double unit_mm = 1;
-  /// Where the format's own rules place the grid; otherwise the reading library's word is taken.
-  std::optional<GridGeometry> geometry;
-  /// What ITK adds to every value against the format's rules.
-  double added_by_itk = 0;
+  GridGeometry geometry;
+  StoredVoxels voxels;
   std::vector<std::string> warnings;
 };
 
-/// These read the header of one file each and check that its data are all there: no more is promised than the
-/// file holds, sizes and spacings are numbers above zero, the axes are at right angles, it is one grey
-/// volume. Throw InputError naming the file.
-VolumeHeader check_nrrd(const std::filesystem::path& path);
-VolumeHeader check_metaimage(const std::filesystem::path& path);
-VolumeHeader check_nifti(const std::filesystem::path& path);
+/// These read the header of one file each and check it: sizes and spacings are numbers above zero, the axes
+/// are at right angles, it is one grey volume. Throw InputError naming the file.
+VolumeHeader read_nrrd_header(const std::filesystem::path& path);
+VolumeHeader read_metaimage_header(const std::filesystem::path& path);
+VolumeHeader read_nifti_header(const std::filesystem::path& path);
 
-/// Where the voxels of a volume are kept, and how many bytes they take.
-struct StoredVoxels {
-  std::filesystem::path file;
-  std::uint64_t offset = 0;
-  std::uint64_t bytes = 0;
-  bool compressed = false;
-  /// How long the header says that the compressed data are; 0 where it does not say.
-  std::uint64_t compressed_bytes = 0;
-  /// Bytes before the voxels that are compressed with them.
-  std::uint64_t compressed_skip = 0;
-};
+/// A grid by what headers say of it, checked: sizes are three whole numbers above zero whose product can be a
+/// volume; the columns of `axes`, of which only the direction counts, are neither zero nor skew; spacings are
+/// finite and above zero. `unit_mm`: the millimetres in the unit of spacing and origin. `lps_from_axes`: the
+/// signs that turn the file's frame into LPS.
+GridGeometry checked_geometry(const std::string& subject, const std::vector<double>& sizes,
+                              const std::vector<double>& spacing, const Mat3& axes, const Vec3& origin,
+                              double unit_mm, const Vec3& lps_from_axes = Vec3::Ones());
 
-/// Throws InputError naming `subject` where the voxels are not all there; returns a warning where there is
-/// more.
-std::vector<std::string> check_stored(const std::string& subject, const StoredVoxels& stored);
-
-/// Three whole numbers above zero, whose product can be a volume.
-std::array<int, 3> checked_dims(const std::string& subject, const std::vector<double>& sizes);
-
-/// Three distances, finite and above zero.
-void check_spacing(const std::string& subject, const std::vector<double>& spacing);
-
-/// Three axes, one a column, as long as the voxels: neither zero nor skew.
-void check_axes(const std::string& subject, const Mat3& axes);
+/// Three finite numbers; throws InputError, calling them `name`, where they are not.
+Vec3 checked_point(const std::string& subject, const std::string& name, const std::vector<double>& numbers);
 
 /// Millimetres in a unit of length as headers name it ("mm", "um", ...); throws InputError where it is not
 /// known.
 double millimetres_in(const std::string& subject, std::string_view unit);
+
+/// `text` without blanks at its ends, and in small letters.
+std::string trimmed(std::string_view text);
+std::string lower(std::string text);
 
 }  // namespace osteomill

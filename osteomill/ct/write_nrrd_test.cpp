@@ -6,7 +6,7 @@
 #include "tests/shared_data.h"
 #include <Eigen/Geometry>
 
-#include "osteomill/ct/temporary_folder.h"
+#include "osteomill/ct/folder_test.h"
 
 namespace osteomill {
 namespace {

@@ -1,35 +1,36 @@
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "osteomill/haptics/algorithm_id.h"
+#include "osteomill/haptics/mode.h"
 
 namespace osteomill {
 
-/// What the user may say of the algorithms; what is left open takes the algorithm's own default
-/// (docs/algorithms.md lists them).
+/// What the user says of the algorithms' settings. What is left open takes each algorithm's own value for the
+/// mode.
 struct HapticSettings {
-  Mode mode = Mode::steady;
-  /// The spring of 1 and 2, the translational virtual coupling of 3.
-  std::optional<double> stiffness_N_per_mm;
-  /// The rotational virtual coupling of 3.
-  std::optional<double> torsional_stiffness_Nmm_per_rad;
-  /// Vertices of 1, the burr's centre included.
-  std::optional<int> vertices;
-  /// Slices of 2 along the shaft.
-  std::optional<int> slices;
-  /// Coarseness of the shell of 3: 1 takes every surface voxel.
-  std::optional<int> shell_scale;
-  /// Settings of one algorithm by its own names, after all others: the switches that tell `steady` from
-  /// `paper`.
   struct Named {
-    AlgorithmId algorithm;
-    std::string name;
+    /// Of this algorithm, by the setting's own name. Empty: of every algorithm that has a setting with an
+    /// option of that name (SettingDescription::option).
+    std::string algorithm;
+    std::string setting;
     double value;
   };
-  std::vector<Named> named;
+
+  Mode mode = Mode::steady;
+  /// Options are applied first, then what is said of one algorithm, each in this order.
+  std::vector<Named> named = {};
+
+  /// For every algorithm that has it, in the place of what was said before: `set_option("stiffness", 2)`.
+  void set_option(const std::string& option, double value) {
+    clear_option(option);
+    named.push_back({"", option, value});
+  }
+  /// Leaves it open again.
+  void clear_option(const std::string& option) {
+    std::erase_if(named, [&](const Named& one) { return one.algorithm.empty() && one.setting == option; });
+  }
 };
 
 }  // namespace osteomill

@@ -1,77 +1,70 @@
 #pragma once
 
+#include <memory>
 #include <span>
-#include <stdexcept>
 #include <string>
-#include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
+
+#include "osteomill/haptics/algorithm_description.h"
 
 namespace osteomill {
 
-/// A setting of an algorithm as people read and write it. A switch is 0 or 1, a choice its number.
-struct SettingValue {
-  std::string name;
-  double value = 0;
-  std::string unit;
-};
-
-/// Ties a setting's name to its place in an algorithm's settings, so that recordings list every setting and a
-/// configuration file may set each on its own. Made by `setting_field`.
+/// Ties a setting's description to its place in an algorithm's own struct of settings. Made by
+/// `setting_field`.
 template <typename Settings>
 struct SettingField {
-  std::string_view name;
-  std::string_view unit;
+  SettingDescription description;
   double (*get)(const Settings&);
-  /// False where the value does not fit the setting's type.
-  bool (*set)(Settings&, double);
+  void (*set)(Settings&, double);
 };
 
 /// The field for the switch, number or choice that `place`, a lambda without captures, returns a reference
 /// to.
 template <typename Settings, typename Place>
-constexpr SettingField<Settings> setting_field(std::string_view name, Place /*place*/,
-                                               std::string_view unit = "") {
-  return {name, unit,
+SettingField<Settings> setting_field(SettingDescription description, Place /*place*/) {
+  return {std::move(description),
           [](const Settings& settings) {
             Settings copy = settings;
             return static_cast<double>(Place{}(copy));
           },
           [](Settings& settings, double value) {
             auto& place = Place{}(settings);
-            using T = std::remove_reference_t<decltype(place)>;
-            constexpr bool kWhole = !std::is_floating_point_v<T>;
-            // Counts and choices are small; a cast of more would not be defined.
-            if (kWhole && !(value >= 0 && value <= 1e6)) return false;
-            place = static_cast<T>(value);
-            return static_cast<double>(place) == value;
+            place = static_cast<std::remove_reference_t<decltype(place)>>(value);
           }};
 }
 
-/// Every setting by name, in the order of the fields.
+/// Every setting at its value of the mode.
 template <typename Settings>
-std::vector<SettingValue> describe_settings(const Settings& settings,
-                                            std::span<const SettingField<Settings>> fields) {
-  std::vector<SettingValue> values;
+Settings settings_in(Mode mode, std::span<const SettingField<Settings>> fields) {
+  Settings settings;
   for (const SettingField<Settings>& field : fields) {
-    values.push_back({std::string(field.name), field.get(settings), std::string(field.unit)});
+    field.set(settings, field.description.value_in(mode));
   }
-  return values;
+  return settings;
 }
 
-/// Sets one by name. Throws std::invalid_argument where there is no such setting, or the value does not fit
-/// it: a switch takes 0 or 1, a count or a choice a whole number.
+/// Throws std::invalid_argument, naming algorithm and setting, where one is out of its range.
 template <typename Settings>
-void set_setting(Settings& settings, std::span<const SettingField<Settings>> fields, std::string_view name,
-                 double value) {
+void require_in_range(const AlgorithmId& algorithm, const Settings& settings,
+                      std::span<const SettingField<Settings>> fields) {
   for (const SettingField<Settings>& field : fields) {
-    if (field.name != name) continue;
-    if (!field.set(settings, value)) {
-      throw std::invalid_argument(std::string(name) + " does not take the value " + std::to_string(value));
-    }
-    return;
+    require_in_range(algorithm, field.description, field.get(settings));
   }
-  throw std::invalid_argument("there is no setting " + std::string(name));
+}
+
+/// Completes a description with these settings, and makes `Algorithm` from them.
+template <typename Algorithm, typename Settings>
+AlgorithmDescription with_settings(AlgorithmDescription description,
+                                   std::span<const SettingField<Settings>> fields) {
+  for (const SettingField<Settings>& field : fields) description.settings.push_back(field.description);
+  description.make = [fields](std::span<const double> values) -> std::unique_ptr<HapticAlgorithm> {
+    Settings settings;
+    for (std::size_t n = 0; n < fields.size(); ++n) fields[n].set(settings, values[n]);
+    return std::make_unique<Algorithm>(settings);
+  };
+  return description;
 }
 
 }  // namespace osteomill

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "osteomill/files/input_error.h"
+#include "osteomill/haptics/algorithms.h"
 #include "osteomill/recording/hdf5_attributes.h"
 
 namespace osteomill {
@@ -15,6 +16,7 @@ namespace {
 
 constexpr const char* kSettingsGroup = "settings";
 constexpr std::string_view kUnitSuffix = ".unit";
+constexpr std::string_view kUnknownColour = "#888888";
 
 void require_usable_keys(const std::vector<RunSetting>& settings) {
   std::set<std::string> seen;
@@ -61,6 +63,24 @@ std::vector<RunSetting> read_settings(const fs::path& path, hid_t file) {
   return settings;
 }
 
+// Recordings from before labels were kept hold the project's own algorithms only; of others the name serves.
+AlgorithmId read_algorithm(const fs::path& path, const AttributeReader& read) {
+  AlgorithmId algorithm{read.text("algorithm"), "", ""};
+  if (read.has("algorithm_label")) {
+    algorithm.label = read.text("algorithm_label");
+    algorithm.colour = read.text("algorithm_colour");
+  } else if (const AlgorithmDescription* known = find_algorithm(algorithm.name)) {
+    algorithm = known->id;
+  } else {
+    algorithm.label = algorithm.name;
+    algorithm.colour = kUnknownColour;
+  }
+  if (!is_usable(algorithm)) {
+    throw InputError(path.string(), "its algorithm has a name, label or colour that cannot be used");
+  }
+  return algorithm;
+}
+
 template <typename Value>
 Value require_known(const fs::path& path, std::optional<Value> value, const std::string& name) {
   if (!value) throw InputError(path.string(), "'" + name + "' is not known here");
@@ -71,6 +91,10 @@ Value require_known(const fs::path& path, std::optional<Value> value, const std:
 
 void write_description(const fs::path& path, hid_t file, const RunDescription& description) {
   require_usable_keys(description.settings);
+  if (!is_usable(description.algorithm) || !is_plain_name(description.segment)) {
+    throw std::invalid_argument("'" + description.algorithm.name + "', '" + description.segment +
+                                "': an algorithm or a segment that cannot be recorded by that name");
+  }
   const AttributeWriter write(path, file);
   const Vec3& spacing = description.spacing_mm;
   write.text("program_version", description.program_version);
@@ -81,9 +105,11 @@ void write_description(const fs::path& path, hid_t file, const RunDescription& d
   write.real("burr_radius_mm", description.tool.burr_radius_mm);
   write.real("shaft_radius_mm", description.tool.shaft_radius_mm);
   write.real("shaft_length_mm", description.tool.shaft_length_mm);
-  write.text("algorithm", std::string(name_of(description.algorithm)));
+  write.text("algorithm", description.algorithm.name);
+  write.text("algorithm_label", description.algorithm.label);
+  write.text("algorithm_colour", description.algorithm.colour);
   write.text("mode", std::string(name_of(description.mode)));
-  write.text("phase", std::string(name_of(description.phase)));
+  write.text("phase", description.segment);
   write.unsigned_integer("seed", description.seed);
   write.real("tick_period_s", description.tick_period_s);
   write_settings(path, file, description.settings);
@@ -100,12 +126,13 @@ RunDescription read_description(const fs::path& path, hid_t file) {
   description.isovalue = read.real("isovalue");
   description.tool = {read.real("burr_radius_mm"), read.real("shaft_radius_mm"),
                       read.real("shaft_length_mm")};
-  const std::string algorithm = read.text("algorithm");
+  description.algorithm = read_algorithm(path, read);
+  description.segment = read.text("phase");
+  if (!is_plain_name(description.segment)) {
+    throw InputError(path.string(), "the attribute 'phase' is not a plain name");
+  }
   const std::string mode = read.text("mode");
-  const std::string phase = read.text("phase");
-  description.algorithm = require_known(path, algorithm_named(algorithm), "algorithm " + algorithm);
   description.mode = require_known(path, mode_named(mode), "mode " + mode);
-  description.phase = require_known(path, phase_named(phase), "phase " + phase);
   description.seed = read.unsigned_integer("seed");
   description.tick_period_s = read.real("tick_period_s");
   if (!(std::isfinite(description.tick_period_s) && description.tick_period_s > 0)) {

@@ -116,12 +116,32 @@ TEST_F(ChangedRecording, AMissingOrMistypedAttributeIsNamed) {
   expect_refused(path_, "'isovalue' is of another type");
 }
 
-TEST_F(ChangedRecording, AnUnknownAlgorithmIsNamed) {
+TEST_F(ChangedRecording, AnAlgorithmOfAnotherProgramKeepsItsName) {
   change([this](hid_t file) {
-    H5Adelete(file, "algorithm");
+    for (const char* name : {"algorithm", "algorithm_label", "algorithm_colour"}) H5Adelete(file, name);
     AttributeWriter(path_, file).text("algorithm", "god-object");
   });
-  expect_refused(path_, "'algorithm god-object' is not known");
+  const AlgorithmId read = read_recording(path_).description.algorithm;
+  EXPECT_EQ(read.name, "god-object");
+  EXPECT_EQ(read.label, "god-object");
+}
+
+TEST_F(ChangedRecording, OneFromBeforeLabelsWereKeptIsShownAsTheOthers) {
+  change([](hid_t file) {
+    for (const char* name : {"algorithm_label", "algorithm_colour"}) H5Adelete(file, name);
+  });
+  const AlgorithmId& known = algorithm_named("point-shell").id;
+  const AlgorithmId read = read_recording(path_).description.algorithm;
+  EXPECT_EQ(read.label, known.label);
+  EXPECT_EQ(read.colour, known.colour);
+}
+
+TEST_F(ChangedRecording, AColourThatIsNoneIsRefused) {
+  change([this](hid_t file) {
+    H5Adelete(file, "algorithm_colour");
+    AttributeWriter(path_, file).text("algorithm_colour", "red'; system 'ls");
+  });
+  expect_refused(path_, "colour that cannot be used");
 }
 
 TEST_F(ChangedRecording, AFaultThatDoesNotExistIsRefused) {

@@ -7,13 +7,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include <readerwriterqueue/readerwriterqueue.h>
-#ifdef __SANITIZE_THREAD__
-#include <sanitizer/tsan_interface.h>
-extern "C" void __tsan_ignore_thread_begin();
-extern "C" void __tsan_ignore_thread_end();
-#endif
-
+#include "osteomill/device/spsc_queue.h"
 #include "osteomill/files/input_error.h"
 #include "osteomill/recording/recording.h"
 #include "osteomill/recording/recording_file.h"
@@ -36,49 +30,6 @@ bool is_plain_name(const std::string& name) {
   };
   return !name.empty() && std::all_of(name.begin(), name.end(), plain);
 }
-
-// The thread sanitizer does not know the fences by which the queue orders its slots. It is told to leave the
-// slots alone, and that what was written before a record went in is seen by who took it out.
-class QueueAccess {
- public:
-  explicit QueueAccess([[maybe_unused]] void* queue) {
-#ifdef __SANITIZE_THREAD__
-    queue_ = queue;
-    __tsan_release(queue_);
-    __tsan_ignore_thread_begin();
-#endif
-  }
-  ~QueueAccess() {
-#ifdef __SANITIZE_THREAD__
-    __tsan_ignore_thread_end();
-    __tsan_acquire(queue_);
-#endif
-  }
-  QueueAccess(const QueueAccess&) = delete;
-  QueueAccess& operator=(const QueueAccess&) = delete;
-
- private:
-#ifdef __SANITIZE_THREAD__
-  void* queue_;
-#endif
-};
-
-class TickQueue {
- public:
-  explicit TickQueue(std::size_t capacity) : queue_(capacity) {}
-
-  bool try_push(const TickRecord& record) noexcept {
-    const QueueAccess access(&queue_);
-    return queue_.try_enqueue(record);
-  }
-  bool try_pop(TickRecord& record) {
-    const QueueAccess access(&queue_);
-    return queue_.try_dequeue(record);
-  }
-
- private:
-  moodycamel::ReaderWriterQueue<TickRecord> queue_;
-};
 
 }  // namespace
 
@@ -127,7 +78,7 @@ struct Recorder::Impl {
 
   fs::path path;
   RecordingFile file;
-  TickQueue queue;
+  SpscQueue<TickRecord> queue;
   std::vector<TickRecord> rows;
   std::vector<RunPicture> pictures;
   std::atomic<std::uint64_t> dropped{0};

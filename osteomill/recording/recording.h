@@ -21,6 +21,9 @@ struct RunPicture {
 inline constexpr std::string_view kPictureBefore = "before";
 inline constexpr std::string_view kPictureAfter = "after";
 
+/// The key of the further setting of a run that has no pictures because OpenGL could not be had.
+inline constexpr std::string_view kPicturesKey = "pictures";
+
 /// One run, a record a tick.
 struct Recording {
   /// Where it was read from; errors name it.

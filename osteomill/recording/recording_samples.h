@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "osteomill/haptics/algorithms.h"
 #include "osteomill/recording/record_columns.h"
 #include "osteomill/recording/run_description.h"
 #include "osteomill/session/tick_record.h"
@@ -43,9 +44,9 @@ inline RunDescription sample_description() {
   d.spacing_mm = {0.1, 0.2, 1.0 / 3.0};
   d.isovalue = 1234.5;
   d.tool = {1.25, 0.75, 24};
-  d.algorithm = AlgorithmId::point_shell;
+  d.algorithm = algorithm_named("point-shell").id;
   d.mode = Mode::paper;
-  d.phase = RunPhase::holding;
+  d.segment = "holding";
   d.seed = 0xfedcba9876543210u;
   d.tick_period_s = 0.001;
   d.settings = {{"stiffness", 2.5, "N/mm"},

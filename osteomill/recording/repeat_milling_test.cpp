@@ -7,7 +7,7 @@
 
 #include "osteomill/device/posed_device.h"
 #include "osteomill/files/input_error.h"
-#include "osteomill/haptics/make_algorithm.h"
+#include "osteomill/haptics/algorithms.h"
 #include "osteomill/recording/read_recording.h"
 #include "osteomill/recording/recorder.h"
 #include "osteomill/recording/recording_samples.h"
@@ -45,8 +45,7 @@ struct Milled {
 
 // Presses down with the spindle on and off in turns, in ticks of two lengths, and records it to a file.
 Milled mill_and_record(const TestFolder& folder) {
-  MillingSession session(fresh_bone(), {}, make_algorithm(AlgorithmId::point_shell, {}), kDensities, kMilling,
-                         {});
+  MillingSession session(fresh_bone(), {}, make_algorithm("point-shell", {}), kDensities, kMilling, {});
   Recorder recorder(folder / "run.h5", description_of(session.volume()));
   PosedDevice device;
   double time_s = 0;

@@ -2,26 +2,16 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
 
 #include "osteomill/geometry/pose.h"
-#include "osteomill/haptics/algorithm_id.h"
+#include "osteomill/haptics/algorithm_description.h"
 #include "osteomill/tool/milling_tool.h"
 
 namespace osteomill {
-
-/// The two parts of the test of section 8.2. What was recorded outside that test is `milling`.
-enum class RunPhase : unsigned char { milling, holding };
-
-inline constexpr std::array<RunPhase, 2> kAllPhases{RunPhase::milling, RunPhase::holding};
-
-/// As written in files: "milling", "holding".
-std::string_view name_of(RunPhase phase);
-std::optional<RunPhase> phase_named(std::string_view name);
 
 /// One further setting of a run. `unit` is empty for a pure number, a choice or a name.
 struct RunSetting {
@@ -44,9 +34,10 @@ struct RunDescription {
   /// In the scan's own unit of density.
   double isovalue = 0;
   MillingTool tool;
-  AlgorithmId algorithm = AlgorithmId::line_proxy;
+  AlgorithmId algorithm;
   Mode mode = Mode::steady;
-  RunPhase phase = RunPhase::milling;
+  /// Which part of a longer run this is, in the words of whoever recorded it; empty where it is the whole.
+  std::string segment;
   std::uint64_t seed = 0;
   double tick_period_s = 0.001;
   /// Everything else that was set, in the order in which people should read it; every key once.

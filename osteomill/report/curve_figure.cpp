@@ -22,7 +22,7 @@ struct Curve {
 
 std::string data_file(const CurveColumn& column, const MeasuredRun& run) {
   const RunDescription& d = run.recording->description;
-  return fmt::format("{}-{}-{}.dat", column.name, name_of(d.phase), name_of(d.algorithm));
+  return fmt::format("{}-{}-{}.dat", column.name, d.segment, name_of(d.algorithm));
 }
 
 Curve write_curve(const CurveColumn& column, const MeasuredRun& run, std::size_t bins,
@@ -51,8 +51,10 @@ double last_time_s(const RunGroup& group) {
   return last;
 }
 
-std::string panel_title(RunPhase phase) {
-  return phase == RunPhase::milling ? "Milling" : "Holding still, not milling";
+std::string panel_title(std::string segment) {
+  if (segment.empty()) return "Whole session";
+  segment[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(segment[0])));
+  return segment;
 }
 
 // Drawn by hand at the figure's top: gnuplot's own is fitted to one panel, and is broken into rows where that
@@ -64,13 +66,13 @@ std::string legend(const RunGroup& group, double height_px) {
   const double y = 1 - kTop_px / height_px;
   std::string script;
   int tag = 101;
-  for (const AlgorithmId algorithm : algorithms) {
+  for (const AlgorithmId& algorithm : algorithms) {
     script += fmt::format(
         "set arrow {0} from screen {1:.4f},screen {2:.4f} to screen {3:.4f},screen {2:.4f} nohead lw 4 lc "
         "rgb '{4}'\n"
         "set label {0} '{5}' at screen {6:.4f},screen {2:.4f} left noenhanced\n",
-        tag++, x / kFigureWidth_px, y, (x + kLine_px) / kFigureWidth_px, colour_of(algorithm),
-        numbered_name(algorithm), (x + kLine_px + 10) / kFigureWidth_px);
+        tag++, x / kFigureWidth_px, y, (x + kLine_px) / kFigureWidth_px, algorithm.colour, algorithm.label,
+        (x + kLine_px + 10) / kFigureWidth_px);
     x += kEntry_px;
   }
   return script;
@@ -97,11 +99,11 @@ Place panel_place(std::size_t column, std::size_t columns, std::size_t row, std:
           (top - high + between_px) / height_px, top / height_px};
 }
 
-std::string panel(const RunGroup& group, const CurveColumn& column, RunPhase phase, const Place& place,
-                  bool lowest, std::size_t bins, const TemporaryFolder& work) {
+std::string panel(const RunGroup& group, const CurveColumn& column, const std::string& segment,
+                  const Place& place, bool lowest, std::size_t bins, const TemporaryFolder& work) {
   std::vector<Curve> curves;
-  for (const AlgorithmId algorithm : group.algorithms()) {
-    if (const MeasuredRun* run = group.find(algorithm, phase)) {
+  for (const AlgorithmId& algorithm : group.algorithms()) {
+    if (const MeasuredRun* run = group.find(algorithm.name, segment)) {
       curves.push_back(write_curve(column, *run, bins, work));
     }
   }
@@ -110,12 +112,12 @@ std::string panel(const RunGroup& group, const CurveColumn& column, RunPhase pha
   std::string script = fmt::format(
       "set lmargin at screen {:.4f}\nset rmargin at screen {:.4f}\nset bmargin at screen {:.4f}\n"
       "set tmargin at screen {:.4f}\nset title '{}' offset 0,-0.4\nset ylabel '{}'\n{}\n{}\n",
-      place.left, place.right, place.bottom, place.top, panel_title(phase), column.label,
+      place.left, place.right, place.bottom, place.top, panel_title(segment), column.label,
       lowest ? "set xlabel 'Time (s)'" : "unset xlabel", column.setup);
   std::string plot;
   for (const Curve& curve : curves) {
     plot += fmt::format("{}'{}' with lines lw 1.2 lc rgb '{}' notitle", plot.empty() ? "plot " : ", ",
-                        curve.file, colour_of(curve.algorithm));
+                        curve.file, curve.algorithm.colour);
   }
   return script + plot;
 }
@@ -144,7 +146,7 @@ double longest_tick_us(const RunGroup& group) {
   return longest;
 }
 
-// Shared by the panels of a column, so that the phases can be compared.
+// Shared by the panels of a column, so that the segments can be compared.
 std::string common_range(const RunGroup& group, const std::function<double(const TickRecord&)>& value) {
   double greatest = 0;
   for (const MeasuredRun& run : group.runs) {
@@ -162,8 +164,8 @@ std::string figure_name(const char* stem, const RunGroup& group) {
 Figure draw_curves(const RunGroup& group, const std::string& name, const std::vector<CurveColumn>& columns,
                    const std::filesystem::path& folder) {
   const TemporaryFolder work;
-  const std::vector<RunPhase> phases = group.phases();
-  FigureScript script{name, static_cast<int>(kFigureWidth_px), phases.size() > 1 ? 800 : 480, ""};
+  const std::vector<std::string> segments = group.segments();
+  FigureScript script{name, static_cast<int>(kFigureWidth_px), segments.size() > 1 ? 800 : 480, ""};
   script.body = fmt::format(
       "set multiplot\nset border 3 lc rgb '#444444'\nset tics nomirror out scale 0.6\n"
       "set grid lc rgb '#dddddd' lt 1 lw 0.7\nset xrange [0:{:.6g}]\n"
@@ -172,10 +174,10 @@ Figure draw_curves(const RunGroup& group, const std::string& name, const std::ve
   const std::size_t bins = 1000 / columns.size();
   script.body += legend(group, script.height_px);
   for (std::size_t c = 0; c < columns.size(); ++c) {
-    for (std::size_t row = 0; row < phases.size(); ++row) {
-      const Place place = panel_place(c, columns.size(), row, phases.size(), script.height_px);
+    for (std::size_t row = 0; row < segments.size(); ++row) {
+      const Place place = panel_place(c, columns.size(), row, segments.size(), script.height_px);
       if (row == 0) script.body += dashed_legend(columns[c], place, script.height_px);
-      script.body += panel(group, columns[c], phases[row], place, row + 1 == phases.size(), bins, work);
+      script.body += panel(group, columns[c], segments[row], place, row + 1 == segments.size(), bins, work);
       // Panels drawn later would print the legend again, on top of itself.
       script.body += "\nunset label\nunset arrow\n";
     }

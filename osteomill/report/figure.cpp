@@ -45,16 +45,4 @@ void write_figure_data(const fs::path& path, std::string_view bytes) {
   if (!out) throw InputError(path.string(), "cannot be written to its end (is the disk full?)");
 }
 
-std::string_view colour_of(AlgorithmId algorithm) {
-  switch (algorithm) {
-    case AlgorithmId::line_proxy:
-      return "#c8102e";
-    case AlgorithmId::surface_points:
-      return "#3fae49";
-    case AlgorithmId::point_shell:
-      return "#111111";
-  }
-  return "";
-}
-
 }  // namespace osteomill

@@ -4,7 +4,6 @@
 #include <string>
 #include <string_view>
 
-#include "osteomill/haptics/algorithm_id.h"
 #include "osteomill/report/gnuplot.h"
 
 namespace osteomill {
@@ -33,9 +32,5 @@ Figure draw_figure(const FigureScript& script, const TemporaryFolder& work,
 /// Writes a file that a figure is drawn from. Throws InputError where it cannot be written to its end:
 /// gnuplot would draw what there is of it.
 void write_figure_data(const std::filesystem::path& path, std::string_view bytes);
-
-/// The paper's colours, as gnuplot and HTML write them: 1 red, 2 green, 3 black. The green is light and the
-/// red dark, so that they differ in brightness too.
-std::string_view colour_of(AlgorithmId algorithm);
 
 }  // namespace osteomill

@@ -130,8 +130,8 @@ std::string summary_columns() {
 std::string summary_fields(const SummaryRow& row) {
   const RunMetrics& m = row.metrics;
   std::string fields =
-      fmt::format("{},{},{},{},{},{},{},{}", name_of(row.algorithm), name_of(row.mode), name_of(row.phase),
-                  m.steps, m.step_us.median, m.step_us.p99, m.step_us.max, m.rate_hz);
+      fmt::format("{},{},{},{},{},{},{},{}", name_of(row.algorithm), name_of(row.mode), row.segment, m.steps,
+                  m.step_us.median, m.step_us.p99, m.step_us.max, m.rate_hz);
   for (const VectorMetrics& v : {m.force_N, m.torque_Nmm}) {
     fields += fmt::format(",{},{},{},{}", v.mean, v.max, v.hp_rms, v.step_max);
   }

@@ -69,7 +69,7 @@ RunMetrics run_metrics(const Recording& recording);
 struct SummaryRow {
   AlgorithmId algorithm;
   Mode mode;
-  RunPhase phase;
+  std::string segment;
   RunMetrics metrics;
 };
 

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "osteomill/files/input_error.h"
+#include "osteomill/haptics/algorithms.h"
 
 namespace osteomill {
 namespace {
@@ -144,7 +145,7 @@ TEST(SummaryCsv, HasItsColumnsInOrder) {
   m.shaft = {14, 15.5};
   m.removed_mm3 = 16;
   write_summary_csv(path,
-                    std::vector<SummaryRow>{{AlgorithmId::point_shell, Mode::paper, RunPhase::holding, m}});
+                    std::vector<SummaryRow>{{algorithm_named("point-shell").id, Mode::paper, "holding", m}});
   std::ifstream in(path);
   std::string header, row;
   std::getline(in, header);

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "osteomill/files/input_error.h"
-#include "osteomill/report/shrink_png.h"
+#include "osteomill/image/png.h"
 
 namespace osteomill {
 
@@ -15,13 +15,15 @@ namespace {
 // As wide as a panel of two columns, so that the SVG, which holds the pictures, stays small.
 constexpr int kPanelWidth_px = 560;
 
-ShrunkPng shrunk(const Recording& recording, const RunPicture& picture) {
-  auto png = shrink_png(picture.png, kPanelWidth_px);
-  if (!png) {
+Image shrunk(const Recording& recording, const RunPicture& picture) {
+  const std::optional<Image> image = decode_png(picture.png);
+  if (!image) {
     throw InputError(recording.path.string(),
                      fmt::format("the picture '{}' is not a whole PNG of sensible size", picture.name));
   }
-  return *std::move(png);
+  const int factor = (image->width + kPanelWidth_px - 1) / kPanelWidth_px;
+  // A picture flatter than the factor would vanish.
+  return averaged_down(*image, std::min(factor, image->height));
 }
 
 struct Panel {
@@ -37,7 +39,7 @@ const RunPicture* picture_named(const Recording& recording, std::string_view nam
   return nullptr;
 }
 
-// The runs are ordered with milling first, so the first that has a picture is the one to take.
+// Of several segments the first that has a picture is the one to take.
 std::vector<Panel> panels_of(const RunGroup& group) {
   std::vector<Panel> panels;
   for (const MeasuredRun& run : group.runs) {
@@ -46,13 +48,13 @@ std::vector<Panel> panels_of(const RunGroup& group) {
       break;
     }
   }
-  for (const AlgorithmId algorithm : group.algorithms()) {
-    for (const RunPhase phase : group.phases()) {
-      const MeasuredRun* run = group.find(algorithm, phase);
+  for (const AlgorithmId& algorithm : group.algorithms()) {
+    for (const std::string& segment : group.segments()) {
+      const MeasuredRun* run = group.find(algorithm.name, segment);
       const RunPicture* after = run ? picture_named(*run->recording, kPictureAfter) : nullptr;
       if (after == nullptr) continue;
       panels.push_back(
-          {fmt::format("After {} ({:.1f} mm³ removed)", numbered_name(algorithm), run->metrics.removed_mm3),
+          {fmt::format("After {} ({:.1f} mm³ removed)", algorithm.label, run->metrics.removed_mm3),
            run->recording, after});
       break;
     }
@@ -68,7 +70,7 @@ std::optional<Figure> draw_picture_figure(const RunGroup& group, const std::file
   if (panels.empty()) return std::nullopt;
   const int columns = panels.size() == 1 ? 1 : 2;
   const int rows = (static_cast<int>(panels.size()) + columns - 1) / columns;
-  std::vector<ShrunkPng> pictures;
+  std::vector<Image> pictures;
   for (const Panel& panel : panels) pictures.push_back(shrunk(*panel.recording, *panel.picture));
   const int wide = columns == 1 ? 800 : kPanelWidth_px;
   const int high = std::clamp(wide * pictures[0].height / pictures[0].width, 200, 1000) + 40;
@@ -78,7 +80,7 @@ std::optional<Figure> draw_picture_figure(const RunGroup& group, const std::file
       "set tmargin 2\nset bmargin 0.3\nset autoscale xfix\nset autoscale yfix\n";
   for (std::size_t n = 0; n < panels.size(); ++n) {
     const std::string file = fmt::format("picture{}.png", n);
-    const std::vector<unsigned char>& png = pictures[n].png;
+    const std::vector<unsigned char>& png = encode_png(pictures[n]);
     write_figure_data(work / file, {reinterpret_cast<const char*>(png.data()), png.size()});
     const int column = static_cast<int>(n) % columns;
     const int row = static_cast<int>(n) / columns;

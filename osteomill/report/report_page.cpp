@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include "osteomill/report/findings.h"
 #include "osteomill/report/html.h"
 #include "osteomill/report/settings_table.h"
 
@@ -19,10 +18,6 @@ std::vector<const Recording*> all_recordings(const std::vector<DrawnGroup>& grou
     for (const MeasuredRun& run : drawn.group.runs) recordings.push_back(run.recording);
   }
   return recordings;
-}
-
-std::string paragraph(const std::string& text) {
-  return "<p>" + html_escaped(text) + "</p>\n";
 }
 
 std::string notice(const std::string& text) {
@@ -57,41 +52,18 @@ std::string what_was_run(const std::vector<const Recording*>& recordings) {
   for (const Recording* recording : recordings) {
     seconds = std::max(seconds, recording->records.back().time_s - recording->records.front().time_s);
   }
-  return paragraph(fmt::format("Scan: {}, {} × {} × {} voxels of {:.4g} × {:.4g} × {:.4g} mm, bone above "
-                               "{:.6g}. Tool: a burr of {:.4g} mm "
-                               "radius on a shaft of {:.4g} mm radius and {:.4g} mm length. {} {} of up to "
-                               "{:.4g} s at {:.6g} ticks a "
-                               "second, seed {}. osteomill {}.",
-                               d.scan_name, d.dims[0], d.dims[1], d.dims[2], d.spacing_mm.x(),
-                               d.spacing_mm.y(), d.spacing_mm.z(), d.isovalue, d.tool.burr_radius_mm,
-                               d.tool.shaft_radius_mm, d.tool.shaft_length_mm, recordings.size(),
-                               recordings.size() == 1 ? "recording" : "recordings", seconds,
-                               1 / d.tick_period_s, d.seed, d.program_version)) +
-         paragraph(
-             "While milling, the simulated hand moves the burr in until it touches, mills a hole and pushes "
-             "the shaft "
-             "against the hole's edge; while holding, it stands in the milled hole with the shaft against "
-             "the wall and "
-             "keeps as still as it can. What is reported is what was sent to the hand at every tick.");
+  return html_paragraph(fmt::format(
+             "Scan: {}, {} × {} × {} voxels of {:.4g} × {:.4g} × {:.4g} mm, bone above "
+             "{:.6g}. Tool: a burr of {:.4g} mm "
+             "radius on a shaft of {:.4g} mm radius and {:.4g} mm length. {} {} of up to "
+             "{:.4g} s at {:.6g} ticks a "
+             "second, seed {}. osteomill {}.",
+             d.scan_name, d.dims[0], d.dims[1], d.dims[2], d.spacing_mm.x(), d.spacing_mm.y(),
+             d.spacing_mm.z(), d.isovalue, d.tool.burr_radius_mm, d.tool.shaft_radius_mm,
+             d.tool.shaft_length_mm, recordings.size(), recordings.size() == 1 ? "recording" : "recordings",
+             seconds, 1 / d.tick_period_s, d.seed, d.program_version)) +
+         html_paragraph("What is reported is what was sent to the hand at every tick.");
 }
-
-std::string findings_table(const std::vector<Finding>& findings) {
-  HtmlTable table{{"The paper found", "Measured here", "Verdict", "Rule"}, {}};
-  for (const Finding& f : findings) {
-    const char* css = f.verdict == Verdict::agrees           ? "agrees"
-                      : f.verdict == Verdict::does_not_agree ? "differs"
-                                                             : "none";
-    table.rows.push_back({html_escaped(f.paper_says), html_escaped(f.measured),
-                          fmt::format("<span class=\"{}\">{}</span>", css, name_of(f.verdict)),
-                          "agrees where " + html_escaped(f.rule)});
-  }
-  return html_table(table);
-}
-
-struct MetricLine {
-  const char* label;
-  std::function<std::string(const MeasuredRun&)> cell;
-};
 
 MetricLine real_line(const char* label, const std::function<double(const RunMetrics&)>& value) {
   return {label, [value](const MeasuredRun& run) { return fmt::format("{:.4g}", value(run.metrics)); }};
@@ -99,17 +71,12 @@ MetricLine real_line(const char* label, const std::function<double(const RunMetr
 
 std::vector<MetricLine> metric_lines() {
   using M = RunMetrics;
-  const auto paper_rate = [](const MeasuredRun& run) {
-    const RunDescription& d = run.recording->description;
-    return fmt::format("{:.0f}", paper_mean_rate_hz(d.algorithm, d.phase));
-  };
   return {{"Ticks", [](const MeasuredRun& run) { return fmt::format("{}", run.metrics.steps); }},
           real_line("Compute time of a step, median (µs)", [](const M& m) { return m.step_us.median; }),
           real_line("… 99th percentile (µs)", [](const M& m) { return m.step_us.p99; }),
           real_line("… greatest (µs)", [](const M& m) { return m.step_us.max; }),
           {"Haptic rate that a 1 kHz loop would hold (Hz)",
            [](const MeasuredRun& run) { return fmt::format("{:.1f}", run.metrics.rate_hz); }},
-          {"… in the paper, mean, on a Pentium 4 (Hz)", paper_rate},
           real_line("Force, mean (N)", [](const M& m) { return m.force_N.mean; }),
           real_line("… greatest (N)", [](const M& m) { return m.force_N.max; }),
           real_line("… above 20 Hz, rms (N)", [](const M& m) { return m.force_N.hp_rms; }),
@@ -123,32 +90,43 @@ std::vector<MetricLine> metric_lines() {
           real_line("Bone removed in the phase (mm³)", [](const M& m) { return m.removed_mm3; })};
 }
 
-std::string metrics_table(const RunGroup& group) {
+std::string metrics_table(const RunGroup& group, const std::vector<MetricLine>& further) {
   HtmlTable table{{""}, {}, true};
   for (const MeasuredRun& run : group.runs) {
     const RunDescription& d = run.recording->description;
-    table.header.push_back(fmt::format("{}<br>{}", name_of(d.phase), numbered_name(d.algorithm)));
+    table.header.push_back(fmt::format("{}<br>{}", html_escaped(d.segment), html_escaped(d.algorithm.label)));
   }
-  for (const MetricLine& line : metric_lines()) {
+  std::vector<MetricLine> lines = metric_lines();
+  lines.insert(lines.end(), further.begin(), further.end());
+  for (const MetricLine& line : lines) {
     table.rows.push_back({line.label});
     for (const MeasuredRun& run : group.runs) table.rows.back().push_back(line.cell(run));
   }
   return html_table(table);
 }
 
-std::string group_section(const DrawnGroup& drawn) {
+// In the place of the pictures.
+std::string missing_pictures(const RunGroup& group) {
+  for (const MeasuredRun& run : group.runs) {
+    for (const RunSetting& setting : run.recording->description.settings) {
+      if (setting.key != kPicturesKey) continue;
+      return notice("No pictures of the bone: OpenGL could not be had when this was recorded.");
+    }
+  }
+  return "";
+}
+
+std::string group_section(const DrawnGroup& drawn, const PageText& text) {
   const RunGroup& group = drawn.group;
-  const std::vector<Finding> findings = check_findings(group);
   std::string html = fmt::format("<h2>Mode: {}</h2>\n", name_of(group.mode));
-  html += paragraph(
+  html += html_paragraph(
       group.mode == Mode::paper
           ? "The algorithms as the paper has them."
           : "The paper's algorithms with this project's named improvements, so what the paper found "
             "wrong with one of them need not be wrong here.");
-  for (const std::string& text : plain_paragraphs(group, findings)) html += paragraph(text);
-  html += "<h3>The paper's findings</h3>\n" + findings_table(findings);
-  html += "<h3>Figures of merit</h3>\n" + metrics_table(group);
-  html += "<h3>Figures</h3>\n";
+  if (text.about_group) html += text.about_group(group);
+  html += "<h3>Figures of merit</h3>\n" + metrics_table(group, text.further_metrics);
+  html += "<h3>Figures</h3>\n" + missing_pictures(group);
   for (const CaptionedFigure& figure : drawn.figures) {
     // Pictures of the bone are smaller as PNG, curves and clouds as SVG stay sharp.
     const bool photograph = figure.files.png.filename().string().starts_with("bone");
@@ -168,8 +146,9 @@ std::string how_to_repeat(const std::vector<const Recording*>& recordings) {
     }
   }
   std::string html = "<h2>How to repeat this</h2>\n";
-  if (commands.empty()) return html + paragraph("With the settings above; the recordings name no command.");
-  html += paragraph(
+  if (commands.empty())
+    return html + html_paragraph("With the settings above; the recordings name no command.");
+  html += html_paragraph(
       "With the same seed, forces, poses and removed bone come out the same; compute times are those "
       "of the machine.");
   html += "<pre>";
@@ -179,13 +158,18 @@ std::string how_to_repeat(const std::vector<const Recording*>& recordings) {
 
 }  // namespace
 
-std::string report_page(const std::vector<DrawnGroup>& groups, const PageAdditions& additions) {
+std::string html_paragraph(const std::string& text) {
+  return text.empty() ? "" : "<p>" + html_escaped(text) + "</p>\n";
+}
+
+std::string report_page(const std::vector<DrawnGroup>& groups, const PageText& text) {
   const std::vector<const Recording*> recordings = all_recordings(groups);
-  std::string body = additions.in_short.empty() ? "" : paragraph(additions.in_short);
-  body += "<h2>What was run</h2>\n" + notices(recordings) + what_was_run(recordings) + additions.sections;
-  for (const DrawnGroup& drawn : groups) body += group_section(drawn);
+  std::string body = html_paragraph(text.in_short);
+  body += "<h2>What was run</h2>\n" + notices(recordings) + what_was_run(recordings) +
+          html_paragraph(text.what_was_done) + text.sections;
+  for (const DrawnGroup& drawn : groups) body += group_section(drawn, text);
   body += "<h2>Settings</h2>\n" + html_table(settings_table(recordings)) + how_to_repeat(recordings);
-  return html_page("Three 6-DOF haptic algorithms compared while milling bone", body);
+  return html_page(text.title, body);
 }
 
 }  // namespace osteomill

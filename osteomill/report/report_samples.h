@@ -4,8 +4,8 @@
 #include <numbers>
 #include <vector>
 
+#include "osteomill/haptics/algorithms.h"
 #include "osteomill/recording/recording.h"
-#include "osteomill/session/rate_row.h"
 
 namespace osteomill::testing_support {
 
@@ -14,23 +14,23 @@ std::vector<unsigned char> sample_png(bool milled, int width = 320, int height =
 
 /// A recording as a run might leave it, with the paper's findings in it: 1 kicks in torque, 2 buzzes, 3 is
 /// calm. No measurement of anything.
-inline Recording sample_run(AlgorithmId algorithm, RunPhase phase, Mode mode = Mode::steady,
+inline Recording sample_run(std::string_view algorithm, std::string_view phase, Mode mode = Mode::steady,
                             int ticks = 20000) {
   using std::sin;
   constexpr double kTwoPi = 2 * std::numbers::pi;
-  const int a = static_cast<int>(algorithm);
-  const bool milling = phase == RunPhase::milling;
+  const int a = algorithm == "line-proxy" ? 0 : algorithm == "surface-points" ? 1 : 2;
+  const bool milling = phase == "milling";
   Recording recording;
-  recording.path = std::string(name_of(algorithm)) + "-" + std::string(name_of(phase)) + ".h5";
+  recording.path = std::string(algorithm) + "-" + std::string(phase) + ".h5";
   RunDescription& d = recording.description;
   d.program_version = "0.1.0";
   d.scan_name = "built-in tooth";
   d.dims = {256, 256, 176};
   d.spacing_mm = {0.1, 0.1, 0.1};
   d.isovalue = 1200;
-  d.algorithm = algorithm;
+  d.algorithm = algorithm_named(algorithm).id;
   d.mode = mode;
-  d.phase = phase;
+  d.segment = phase;
   d.seed = 1;
   d.settings = {{"stiffness", a == 1 ? 20.0 : 2.0, "N/mm"},
                 {"push", 1.5, "N"},
@@ -81,25 +81,11 @@ inline Recording sample_run(AlgorithmId algorithm, RunPhase phase, Mode mode = M
 /// Three algorithms, two phases.
 inline std::vector<Recording> sample_runs(Mode mode = Mode::steady, int ticks = 20000) {
   std::vector<Recording> runs;
-  for (const AlgorithmId algorithm : kAllAlgorithms) {
-    for (const RunPhase phase : kAllPhases) runs.push_back(sample_run(algorithm, phase, mode, ticks));
+  for (const std::string& algorithm : algorithm_names()) {
+    for (const char* phase : {"milling", "holding"})
+      runs.push_back(sample_run(algorithm, phase, mode, ticks));
   }
   return runs;
-}
-
-/// Rates at the paper's resolutions, beside the paper's own; the measured ones are made up.
-inline std::vector<RateRow> sample_rates() {
-  const auto row = [](AlgorithmId algorithm, const char* resolution, int points, double us, double paper_hz) {
-    return RateRow{algorithm, resolution, points, us, 1.7 * us, 1e6 / us, paper_hz};
-  };
-  using enum AlgorithmId;
-  return {row(line_proxy, "50 vertices", 51, 2.1, 984),    row(line_proxy, "100 vertices", 101, 4, 964),
-          row(line_proxy, "250 vertices", 251, 9, 884),    row(line_proxy, "500 vertices", 501, 18, 795),
-          row(line_proxy, "1000 vertices", 1001, 36, 544), row(surface_points, "10 slices", 104, 3, 974),
-          row(surface_points, "20 slices", 184, 5, 951),   row(surface_points, "30 slices", 264, 8, 922),
-          row(surface_points, "50 slices", 424, 13, 837),  row(surface_points, "100 slices", 824, 25, 622),
-          row(point_shell, "scale 1", 73800, 24, 127),     row(point_shell, "scale 2", 18549, 9, 507),
-          row(point_shell, "scale 3", 8399, 5, 987),       row(point_shell, "scale 4", 4700, 3.2, 0)};
 }
 
 }  // namespace osteomill::testing_support

@@ -1,6 +1,9 @@
 #include "osteomill/report/run_groups.h"
 
 #include <algorithm>
+#include <map>
+#include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -8,83 +11,72 @@
 
 namespace osteomill {
 
-const MeasuredRun* RunGroup::find(AlgorithmId algorithm, RunPhase phase) const {
+const MeasuredRun* RunGroup::find(std::string_view algorithm, std::string_view segment) const {
   for (const MeasuredRun& run : runs) {
     const RunDescription& description = run.recording->description;
-    if (description.algorithm == algorithm && description.phase == phase) return &run;
+    if (description.algorithm == algorithm && description.segment == segment) return &run;
   }
   return nullptr;
 }
 
-std::vector<RunPhase> RunGroup::phases() const {
-  std::vector<RunPhase> present;
-  for (const RunPhase phase : kAllPhases) {
-    const auto of_phase = [&](const MeasuredRun& run) { return run.recording->description.phase == phase; };
-    if (std::any_of(runs.begin(), runs.end(), of_phase)) present.push_back(phase);
+std::vector<std::string> RunGroup::segments() const {
+  std::vector<std::string> present;
+  for (const MeasuredRun& run : runs) {
+    const std::string& segment = run.recording->description.segment;
+    if (present.empty() || present.back() != segment) present.push_back(segment);
   }
   return present;
 }
 
 std::vector<AlgorithmId> RunGroup::algorithms() const {
   std::vector<AlgorithmId> present;
-  for (const AlgorithmId algorithm : kAllAlgorithms) {
-    const auto of_algorithm = [&](const MeasuredRun& run) {
-      return run.recording->description.algorithm == algorithm;
-    };
-    if (std::any_of(runs.begin(), runs.end(), of_algorithm)) present.push_back(algorithm);
-  }
-  return present;
+  for (const MeasuredRun& run : runs) present.push_back(run.recording->description.algorithm);
+  return each_once(std::move(present));
 }
+
+namespace {
+
+// Segments by when the first of their recordings began, so that they stand in the order in which they were
+// run.
+std::map<std::string, double> beginnings(const std::vector<Recording>& recordings) {
+  std::map<std::string, double> began_s;
+  for (const Recording& recording : recordings) {
+    if (recording.records.empty()) continue;
+    const double time_s = recording.records.front().time_s;
+    const auto [place, is_new] = began_s.try_emplace(recording.description.segment, time_s);
+    if (!is_new) place->second = std::min(place->second, time_s);
+  }
+  return began_s;
+}
+
+}  // namespace
 
 std::vector<RunGroup> group_runs(const std::vector<Recording>& recordings) {
   if (recordings.empty()) throw InputError("report", "there are no recordings to report on");
+  const std::map<std::string, double> began_s = beginnings(recordings);
   std::vector<RunGroup> groups;
   for (const Mode mode : {Mode::paper, Mode::steady}) {
     RunGroup group{mode, {}};
     for (const Recording& recording : recordings) {
       const RunDescription& d = recording.description;
       if (d.mode != mode) continue;
-      if (const MeasuredRun* twin = group.find(d.algorithm, d.phase)) {
+      if (const MeasuredRun* twin = group.find(d.algorithm.name, d.segment)) {
         throw InputError(
             recording.path.string(),
             fmt::format("is {}, {}, {} as {} is; a report has room for one of them", name_of(d.algorithm),
-                        name_of(d.mode), name_of(d.phase), twin->recording->path.string()));
+                        name_of(d.mode), d.segment, twin->recording->path.string()));
       }
       group.runs.push_back({&recording, run_metrics(recording)});
     }
-    const auto order = [](const MeasuredRun& run) {
-      return std::pair(run.recording->description.phase, run.recording->description.algorithm);
+    const auto order = [&](const MeasuredRun& run) {
+      const RunDescription& d = run.recording->description;
+      return std::tuple(began_s.at(d.segment), d.segment, d.algorithm);
     };
     std::sort(group.runs.begin(), group.runs.end(),
               [&](const MeasuredRun& a, const MeasuredRun& b) { return order(a) < order(b); });
     if (!group.runs.empty()) groups.push_back(std::move(group));
   }
   return groups;
-}
-
-std::string_view numbered_name(AlgorithmId algorithm) {
-  switch (algorithm) {
-    case AlgorithmId::line_proxy:
-      return "1 line-proxy";
-    case AlgorithmId::surface_points:
-      return "2 surface-points";
-    case AlgorithmId::point_shell:
-      return "3 point-shell";
-  }
-  return "";
-}
-
-double paper_mean_rate_hz(AlgorithmId algorithm, RunPhase phase) {
-  const bool milling = phase == RunPhase::milling;
-  switch (algorithm) {
-    case AlgorithmId::line_proxy:
-      return milling ? 976 : 988;
-    case AlgorithmId::surface_points:
-      return milling ? 955 : 963;
-    case AlgorithmId::point_shell:
-      return milling ? 973 : 989;
-  }
-  return 0;
 }
 
 }  // namespace osteomill

@@ -14,27 +14,22 @@ struct MeasuredRun {
   RunMetrics metrics;
 };
 
-/// The runs of one mode, which belong into the same figures; by phase, then in the paper's order of
-/// algorithms.
+/// The runs of one mode, which belong into the same figures; by segment, then by
+/// algorithm.
 struct RunGroup {
   Mode mode;
   std::vector<MeasuredRun> runs;
 
   /// Null where there is no such run.
-  const MeasuredRun* find(AlgorithmId algorithm, RunPhase phase) const;
-  /// Those that have a run.
-  std::vector<RunPhase> phases() const;
+  const MeasuredRun* find(std::string_view algorithm, std::string_view segment) const;
+  /// Those that have a run: segments in the order in which they began, algorithms in that of their labels.
+  std::vector<std::string> segments() const;
   std::vector<AlgorithmId> algorithms() const;
 };
 
 /// Measures and groups recordings; the groups point into `recordings`. Throws InputError where there are
-/// none, where two are of the same algorithm, mode and phase, or where one cannot be measured (run_metrics).
+/// none, where two are of the same algorithm, mode and segment, or where one cannot be measured
+/// (run_metrics).
 std::vector<RunGroup> group_runs(const std::vector<Recording>& recordings);
-
-/// "1 line-proxy": the paper's number of the algorithm and its name.
-std::string_view numbered_name(AlgorithmId algorithm);
-
-/// The paper's mean haptic rate, figure 6.
-double paper_mean_rate_hz(AlgorithmId algorithm, RunPhase phase);
 
 }  // namespace osteomill

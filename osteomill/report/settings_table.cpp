@@ -73,7 +73,7 @@ std::string value_of(const SettingLine& line, const std::vector<const Recording*
     if (!is_new && entry->second != line.values[n]) algorithm_decides = false;
     if (line.values[n]) {
       each += fmt::format("{}{}, {}, {}: {}", each.empty() ? "" : "; ", name_of(d.algorithm), name_of(d.mode),
-                          name_of(d.phase), *line.values[n]);
+                          d.segment, *line.values[n]);
     }
   }
   if (!algorithm_decides) return each;

@@ -20,15 +20,15 @@ std::vector<Vec3> directions_of(const MeasuredRun& run) {
   return directions;
 }
 
-std::vector<const MeasuredRun*> runs_of(const RunGroup& group, RunPhase phase) {
+std::vector<const MeasuredRun*> runs_of(const RunGroup& group, const std::string& segment) {
   std::vector<const MeasuredRun*> runs;
   for (const MeasuredRun& run : group.runs) {
-    if (run.recording->description.phase == phase) runs.push_back(&run);
+    if (run.recording->description.segment == segment) runs.push_back(&run);
   }
   return runs;
 }
 
-// A cube about all directions of a phase.
+// A cube about all directions of a segment.
 struct Cube {
   Vec3 centre = Vec3::Zero();
   double half = 0;
@@ -95,7 +95,7 @@ std::string degrees_text(double degrees) {
 std::string panel(const MeasuredRun& run, const Cube& cube, double column, double row, const Layout& layout,
                   const TemporaryFolder& work) {
   const RunDescription& d = run.recording->description;
-  const std::string file = fmt::format("shaft-{}-{}.dat", name_of(d.phase), name_of(d.algorithm));
+  const std::string file = fmt::format("shaft-{}-{}.dat", d.segment, name_of(d.algorithm));
   write_cloud(run, cube.centre, work / file);
   const double bar = 105 / layout.width_px;
   const double wide = (1 - bar) / layout.columns;
@@ -107,7 +107,7 @@ std::string panel(const MeasuredRun& run, const Cube& cube, double column, doubl
       "splot '{}' using 1:2:3:4 with points pt 7 ps 0.38 lc palette notitle\n"
       "unset colorbox\n",
       column * wide + 26 / layout.width_px, 1 - (row + 1) * high, wide, high - 46 / layout.height_px,
-      numbered_name(d.algorithm), name_of(d.phase), degrees_text(run.metrics.shaft.spread_deg),
+      d.algorithm.label, d.segment, degrees_text(run.metrics.shaft.spread_deg),
       degrees_text(run.metrics.shaft.excursion_deg), (column + 0.5) * wide,
       1 - row * high - 24 / layout.height_px, file);
 }
@@ -116,16 +116,16 @@ std::string panel(const MeasuredRun& run, const Cube& cube, double column, doubl
 
 Figure draw_shaft_figure(const RunGroup& group, const std::filesystem::path& folder) {
   const TemporaryFolder work;
-  const std::vector<RunPhase> phases = group.phases();
+  const std::vector<std::string> segments = group.segments();
   std::size_t columns = 1;
   double last_s = 0;
-  for (const RunPhase phase : phases) columns = std::max(columns, runs_of(group, phase).size());
+  for (const std::string& segment : segments) columns = std::max(columns, runs_of(group, segment).size());
   for (const MeasuredRun& run : group.runs) {
     last_s = std::max(last_s, run.recording->records.back().time_s - run.recording->records.front().time_s);
   }
   FigureScript script{fmt::format("fig9_shaft_{}", name_of(group.mode)),
-                      static_cast<int>(385 * columns + 105), static_cast<int>(425 * phases.size()), ""};
-  const Layout layout{static_cast<double>(columns), static_cast<double>(phases.size()),
+                      static_cast<int>(385 * columns + 105), static_cast<int>(425 * segments.size()), ""};
+  const Layout layout{static_cast<double>(columns), static_cast<double>(segments.size()),
                       static_cast<double>(script.width_px), static_cast<double>(script.height_px)};
   script.body = fmt::format(
       "set multiplot\nset palette defined (0 '#440154', 0.27 '#3b528b', 0.54 '#21918c', 0.8 '#5ec962', 1 "
@@ -137,8 +137,8 @@ Figure draw_shaft_figure(const RunGroup& group, const std::filesystem::path& fol
       "12 'y' at graph 1.46,0.5,0 center\n"
       "set label 13 'z' at graph 0,0,1.09 center offset 0,0.7\n",
       last_s, 1 - 92 / layout.width_px, 16 / layout.width_px);
-  for (std::size_t row = 0; row < phases.size(); ++row) {
-    const auto runs = runs_of(group, phases[row]);
+  for (std::size_t row = 0; row < segments.size(); ++row) {
+    const auto runs = runs_of(group, segments[row]);
     const Cube cube = cube_about(runs);
     script.body += axes(cube);
     for (std::size_t c = 0; c < runs.size(); ++c) {

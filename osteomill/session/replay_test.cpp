@@ -3,7 +3,7 @@
 #include "tests/shapes.h"
 #include <gtest/gtest.h>
 
-#include "osteomill/haptics/make_algorithm.h"
+#include "osteomill/haptics/algorithms.h"
 
 namespace osteomill {
 namespace {
@@ -19,8 +19,7 @@ std::vector<TrajectoryPoint> down_onto_the_plane(bool milling) {
 std::vector<TickRecord> replayed(bool milling) {
   Volume bone = testing_support::shape_volume(testing_support::centred_cube(40, 0.25),
                                               testing_support::plane(Vec3::Zero(), Vec3::UnitZ()));
-  MillingSession session(std::move(bone), MillingTool{},
-                         make_algorithm(AlgorithmId::point_shell, {.mode = Mode::paper}),
+  MillingSession session(std::move(bone), MillingTool{}, make_algorithm("point-shell", {.mode = Mode::paper}),
                          BoneDensities{0, 1000}, MillingSettings{}, WrenchLimits{});
   std::vector<TickRecord> log;
   replay(session, down_onto_the_plane(milling), [&](const TickRecord& record) { log.push_back(record); });

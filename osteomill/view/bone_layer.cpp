@@ -7,7 +7,6 @@
 #include <string>
 #include <utility>
 
-#include "osteomill/view/cavity_pass.h"
 #include "osteomill/view/shaders.h"
 
 namespace osteomill {
@@ -19,13 +18,6 @@ constexpr double kRoomAround_mm = 60;
 constexpr double kNearestDepth_mm = 1;
 // Sunk by this share of the blur's reach is as dark as it gets.
 constexpr double kDarkestAt = 0.55;
-
-Sphere bounds_of(const GridGeometry& geometry, const VoxelBox& cells) {
-  const Vec3 first(cells.first.i, cells.first.j, cells.first.k);
-  const Vec3 last(cells.last.i + 1, cells.last.j + 1, cells.last.k + 1);
-  return {geometry.world_from_voxel(Vec3(0.5 * (first + last))),
-          0.5 * geometry.spacing_mm.cwiseProduct(last - first).norm()};
-}
 
 // The planes of the view, each with the inside where n . p + d >= 0 for (n, d) of unit n.
 std::array<Eigen::Vector4d, 6> view_planes(const Projection& projection) {
@@ -119,6 +111,19 @@ gl::Program bone_program(const char* definitions) {
   return gl::make_program(vertex, shaders::kBoneFragment);
 }
 
+void set_uniforms(GLuint program, const ViewScene& scene, const Projection& projection, double reach_px) {
+  const auto place = [&](const char* name) { return glGetUniformLocation(program, name); };
+  glUniformMatrix4fv(place("camera_from_world"), 1, GL_FALSE, projection.camera_from_world.data());
+  glUniformMatrix4fv(place("clip_from_camera"), 1, GL_FALSE, projection.clip_from_camera.data());
+  glUniform1f(place("isovalue"), static_cast<float>(scene.isovalue));
+  glUniform1f(place("reference_density"), static_cast<float>(scene.reference_density));
+  glUniform3fv(place("light_from_below"), 1, scene.light_from_below.data());
+  glUniform2f(place("picture_size"), static_cast<float>(projection.size.width),
+              static_cast<float>(projection.size.height));
+  const double reach_mm = reach_px * mm_per_pixel(scene.camera, projection.size, 1.0);
+  glUniform1f(place("cavity_scale"), static_cast<float>(1 / (kDarkestAt * reach_mm)));
+}
+
 bool is_cut(const ViewScene& scene) {
   return std::any_of(scene.cuts.begin(), scene.cuts.end(), [](const auto& cut) { return cut.has_value(); });
 }
@@ -131,8 +136,31 @@ Projection projection_of(const ViewScene& scene, const PixelSize& size) {
   const double reach_mm = scene.bounds.radius_mm + kRoomAround_mm;
   projection.near_mm = std::max(depth_mm - reach_mm, kNearestDepth_mm);
   projection.far_mm = std::max(depth_mm + reach_mm, projection.near_mm + reach_mm);
-  projection.clip_from_camera = projection_matrix(size, projection.near_mm, projection.far_mm);
+  projection.clip_from_camera = projection_matrix(scene.camera, size, projection.near_mm, projection.far_mm);
   return projection;
+}
+
+Sphere bounding_sphere(const GridGeometry& geometry, const VoxelBox& cells) {
+  const Vec3 first(cells.first.i, cells.first.j, cells.first.k);
+  const Vec3 last(cells.last.i + 1, cells.last.j + 1, cells.last.k + 1);
+  return {geometry.world_from_voxel(Vec3(0.5 * (first + last))),
+          0.5 * geometry.spacing_mm.cwiseProduct(last - first).norm()};
+}
+
+std::vector<std::size_t> bricks_in_view(const SurfaceBricks& layout, const GridGeometry& geometry,
+                                        const ViewScene& scene, const Projection& projection) {
+  const auto planes = view_planes(projection);
+  const Vec3 eye_W = scene.camera.eye_W();
+  std::vector<std::pair<double, std::size_t>> found;
+  for (std::size_t brick = 0; brick < layout.count(); ++brick) {
+    const Sphere bounds = bounding_sphere(geometry, layout.cells(brick));
+    if (may_be_seen(planes, bounds)) found.emplace_back((bounds.centre_W - eye_W).squaredNorm(), brick);
+  }
+  std::sort(found.begin(), found.end());
+  std::vector<std::size_t> bricks;
+  bricks.reserve(found.size());
+  for (const auto& [way, brick] : found) bricks.push_back(brick);
+  return bricks;
 }
 
 void begin_cuts(GLuint program, const ViewScene& scene) {
@@ -158,7 +186,8 @@ BoneLayer::BoneLayer(const SurfaceBricks& layout, const GridGeometry& geometry)
       layout_(layout),
       geometry_(geometry),
       bricks_(layout.count()) {
-  for (std::size_t n = 0; n < bricks_.size(); ++n) bricks_[n].bounds = bounds_of(geometry, layout.cells(n));
+  for (std::size_t n = 0; n < bricks_.size(); ++n)
+    bricks_[n].bounds = bounding_sphere(geometry, layout.cells(n));
 }
 
 void BoneLayer::clear() {
@@ -201,18 +230,6 @@ void BoneLayer::set_brick(std::size_t number, const BrickMesh& mesh) {
   attribute(2, 1, offsetof(MeshVertex, density));
 }
 
-void BoneLayer::set_uniforms(GLuint program, const ViewScene& scene, const Projection& projection) {
-  const auto place = [&](const char* name) { return glGetUniformLocation(program, name); };
-  glUniformMatrix4fv(place("camera_from_world"), 1, GL_FALSE, projection.camera_from_world.data());
-  glUniformMatrix4fv(place("clip_from_camera"), 1, GL_FALSE, projection.clip_from_camera.data());
-  glUniform1f(place("isovalue"), static_cast<float>(scene.isovalue));
-  glUniform1f(place("reference_density"), static_cast<float>(scene.reference_density));
-  glUniform2f(place("picture_size"), static_cast<float>(projection.size.width),
-              static_cast<float>(projection.size.height));
-  const double reach_mm = CavityPass::kReach_px * mm_per_pixel(projection.size, 1.0);
-  glUniform1f(place("cavity_scale"), static_cast<float>(1 / (kDarkestAt * reach_mm)));
-}
-
 // Whether all of its triangles show their backs.
 bool BoneLayer::Brick::turned_away(const Vec3& eye_W) const {
   const Vec3 sight = bounds.centre_W - eye_W;
@@ -241,14 +258,14 @@ std::vector<const BoneLayer::Brick*> BoneLayer::seen_bricks(const ViewScene& sce
   return bricks;
 }
 
-void BoneLayer::draw(const ViewScene& scene, const Projection& projection, GLuint blurred_depths) const {
+void BoneLayer::draw(const ViewScene& scene, const Projection& projection, const CavityPass& cavities) const {
   const bool cut = is_cut(scene);
   const GLuint program = (cut ? cut_ : whole_).get();
   glUseProgram(program);
-  set_uniforms(program, scene, projection);
+  set_uniforms(program, scene, projection, cavities.reach_px());
   if (cut) begin_cuts(program, scene);
   glActiveTexture(GL_TEXTURE0);
-  glBindTexture(GL_TEXTURE_2D, blurred_depths);
+  glBindTexture(GL_TEXTURE_2D, cavities.blurred_depths());
   if (!cut) glEnable(GL_CULL_FACE);
   for (const Brick* brick : seen_bricks(scene, projection)) {
     glBindVertexArray(brick->vertex_array.get());

@@ -5,6 +5,7 @@
 
 #include "osteomill/surface/brick_mesh.h"
 #include "osteomill/surface/surface_bricks.h"
+#include "osteomill/view/cavity_pass.h"
 #include "osteomill/view/gl_objects.h"
 #include "osteomill/view/scene.h"
 #include "osteomill/volume/grid_geometry.h"
@@ -21,6 +22,13 @@ struct Projection {
 };
 Projection projection_of(const ViewScene& scene, const PixelSize& size);
 
+/// Holds a box of cells, each named by its least voxel.
+Sphere bounding_sphere(const GridGeometry& geometry, const VoxelBox& cells);
+
+/// The bricks, empty or not, that lie at least in part where the camera sees, the nearest first.
+std::vector<std::size_t> bricks_in_view(const SurfaceBricks& layout, const GridGeometry& geometry,
+                                        const ViewScene& scene, const Projection& projection);
+
 /// Hands the scene's cuts to the uniform `cuts` of the program in use and has OpenGL clip by them. Ends with
 /// `end_cuts`.
 void begin_cuts(GLuint program, const ViewScene& scene);
@@ -34,7 +42,7 @@ class BoneLayer {
   void clear();
   void set_brick(std::size_t brick, const BrickMesh& mesh);
   /// Only bricks that the camera may see, the nearest first; back faces only where the scene is cut open.
-  void draw(const ViewScene& scene, const Projection& projection, GLuint blurred_depths) const;
+  void draw(const ViewScene& scene, const Projection& projection, const CavityPass& cavities) const;
   std::size_t triangle_count() const;
 
  private:
@@ -50,7 +58,6 @@ class BoneLayer {
     bool turned_away(const Vec3& eye_W) const;
   };
   std::vector<const Brick*> seen_bricks(const ViewScene& scene, const Projection& projection) const;
-  static void set_uniforms(GLuint program, const ViewScene& scene, const Projection& projection);
 
   // Clipping costs time at every vertex.
   gl::Program whole_;

@@ -16,7 +16,9 @@ constexpr double kZoomPerWheelStep = 2.0;
 constexpr double kNearest_mm = 2.0;
 constexpr double kFarthest_mm = 5000.0;
 
-const double kHalfHeightPerDepth = std::tan(0.5 * Camera::kFieldOfView_rad);
+double half_height_per_depth(const Camera& camera) {
+  return std::tan(0.5 * camera.field_of_view_rad);
+}
 
 void come_closer(Camera& camera, double factor) {
   camera.distance_mm = std::clamp(camera.distance_mm / factor, kNearest_mm, kFarthest_mm);
@@ -36,7 +38,7 @@ Camera camera_on(const Sphere& sphere, const Vec3& direction_W, const Vec3& up_W
   Camera camera;
   camera.focus_W = sphere.centre_W;
   camera.orientation = Quat(axes).normalized();
-  camera.distance_mm = sphere.radius_mm / std::sin(0.5 * Camera::kFieldOfView_rad);
+  camera.distance_mm = sphere.radius_mm / std::sin(0.5 * camera.field_of_view_rad);
   return camera;
 }
 
@@ -48,7 +50,7 @@ void turn(Camera& camera, const PixelSize& size, double right_px, double down_px
 }
 
 void pan(Camera& camera, const PixelSize& size, double right_px, double down_px) {
-  const double scale = mm_per_pixel(size, camera.distance_mm);
+  const double scale = mm_per_pixel(camera, size, camera.distance_mm);
   camera.focus_W += scale * (down_px * camera.up_W() - right_px * camera.right_W());
 }
 
@@ -60,8 +62,8 @@ void zoom_by_wheel(Camera& camera, double steps) {
   come_closer(camera, std::pow(kZoomBase, kZoomPerWheelStep * steps));
 }
 
-double mm_per_pixel(const PixelSize& size, double depth_mm) {
-  return 2 * depth_mm * kHalfHeightPerDepth / size.height;
+double mm_per_pixel(const Camera& camera, const PixelSize& size, double depth_mm) {
+  return 2 * depth_mm * half_height_per_depth(camera) / size.height;
 }
 
 double depth_of(const Camera& camera, const Vec3& point_W) {
@@ -70,12 +72,12 @@ double depth_of(const Camera& camera, const Vec3& point_W) {
 
 Eigen::Vector2d pixel_of(const Camera& camera, const PixelSize& size, const Vec3& point_W) {
   const Vec3 point = in_camera(camera, point_W);
-  const double scale = mm_per_pixel(size, -point.z());
+  const double scale = mm_per_pixel(camera, size, -point.z());
   return {0.5 * size.width + point.x() / scale, 0.5 * size.height - point.y() / scale};
 }
 
 Vec3 ray_through(const Camera& camera, const PixelSize& size, double x_px, double y_px) {
-  const double scale = mm_per_pixel(size, 1.0);
+  const double scale = mm_per_pixel(camera, size, 1.0);
   const Vec3 ray((x_px - 0.5 * size.width) * scale, (0.5 * size.height - y_px) * scale, -1);
   return (camera.orientation * ray).normalized();
 }
@@ -88,8 +90,9 @@ Eigen::Matrix4f view_matrix(const Camera& camera) {
   return matrix;
 }
 
-Eigen::Matrix4f projection_matrix(const PixelSize& size, double near_mm, double far_mm) {
-  const double up = 1 / kHalfHeightPerDepth;
+Eigen::Matrix4f projection_matrix(const Camera& camera, const PixelSize& size, double near_mm,
+                                  double far_mm) {
+  const double up = 1 / half_height_per_depth(camera);
   Eigen::Matrix4f matrix = Eigen::Matrix4f::Zero();
   matrix(0, 0) = static_cast<float>(up * size.height / size.width);
   matrix(1, 1) = static_cast<float>(up);

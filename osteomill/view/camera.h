@@ -24,7 +24,8 @@ struct Camera {
   /// Of the camera's axes in W: x to the right, y up, z towards the viewer.
   Quat orientation = Quat::Identity();
 
-  static constexpr double kFieldOfView_rad = 0.52;  // from bottom to top
+  /// From bottom to top. The narrower and the further away, the less do lengths change with their depth.
+  double field_of_view_rad = 0.52;
 
   Vec3 right_W() const { return orientation * Vec3::UnitX(); }
   Vec3 up_W() const { return orientation * Vec3::UnitY(); }
@@ -44,7 +45,7 @@ void zoom_by_drag(Camera& camera, const PixelSize& size, double down_px);
 void zoom_by_wheel(Camera& camera, double steps);
 
 /// What a pixel is wide at a distance from the eye along the view.
-double mm_per_pixel(const PixelSize& size, double depth_mm);
+double mm_per_pixel(const Camera& camera, const PixelSize& size, double depth_mm);
 
 /// Of the point, from the eye along the view.
 double depth_of(const Camera& camera, const Vec3& point_W);
@@ -57,7 +58,7 @@ Vec3 ray_through(const Camera& camera, const PixelSize& size, double x_px, doubl
 
 /// World to camera, and camera to OpenGL's clip coordinates with the depths between `near_mm` and `far_mm`.
 Eigen::Matrix4f view_matrix(const Camera& camera);
-Eigen::Matrix4f projection_matrix(const PixelSize& size, double near_mm, double far_mm);
+Eigen::Matrix4f projection_matrix(const Camera& camera, const PixelSize& size, double near_mm, double far_mm);
 
 /// The six views along the patient's axes (W is LPS: +x left, +y posterior, +z superior).
 enum class ViewFrom : unsigned char { anterior, posterior, left, right, superior, inferior };

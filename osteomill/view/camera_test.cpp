@@ -10,7 +10,7 @@ const Sphere kSphere{{3, -2, 7}, 10};
 
 Eigen::Vector2d by_matrices(const Camera& camera, const Vec3& point_W) {
   const Eigen::Vector4f clip =
-      projection_matrix(kSize, 1, 1000) * view_matrix(camera) * point_W.cast<float>().homogeneous();
+      projection_matrix(camera, kSize, 1, 1000) * view_matrix(camera) * point_W.cast<float>().homogeneous();
   const Eigen::Vector4d seen = (clip / clip.w()).cast<double>();
   return {0.5 * kSize.width * (1 + seen.x()), 0.5 * kSize.height * (1 - seen.y())};
 }

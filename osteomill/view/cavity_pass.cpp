@@ -8,7 +8,12 @@ namespace osteomill {
 
 namespace {
 
-constexpr int kShrink = 8;
+// Small pixels that the blur reaches to each side.
+constexpr int kBlurSteps = 3;
+
+int shrunk(int pixels, int reach_px) {
+  return std::max(1, pixels * kBlurSteps / reach_px);
+}
 
 gl::Texture small_texture(const PixelSize& size, GLint filter) {
   return gl::make_texture(GL_RG32F, GL_RG, GL_FLOAT, size.width, size.height, filter);
@@ -25,8 +30,9 @@ gl::Framebuffer framebuffer_on(const gl::Texture& texture) {
 
 }  // namespace
 
-CavityPass::CavityPass(const PixelSize& size)
-    : size_{std::max(1, size.width / kShrink), std::max(1, size.height / kShrink)},
+CavityPass::CavityPass(const PixelSize& size, int reach_px)
+    : reach_px_(reach_px),
+      size_{shrunk(size.width, reach_px), shrunk(size.height, reach_px)},
       small_(small_texture(size_, GL_NEAREST)),
       half_blurred_(small_texture(size_, GL_NEAREST)),
       blurred_(small_texture(size_, GL_LINEAR)),

@@ -5,21 +5,22 @@
 
 namespace osteomill {
 
-/// Blurs the depths of a picture at an eighth of its size, for the next picture to tell what is sunk below
+/// Blurs the depths of a picture at a fraction of its size, for the next picture to tell what is sunk below
 /// its surroundings (after Luft, Colditz and Deussen 2006, whose unsharp mask of the depth buffer this is).
 class CavityPass {
  public:
-  explicit CavityPass(const PixelSize& size);
+  /// The blur reaches about `reach_px`, pixels of the picture.
+  explicit CavityPass(const PixelSize& size, int reach_px = 24);
 
   void blur(GLuint depths, double near_mm, double far_mm) const;
   /// Depths in mm times a weight, and the weight.
   GLuint blurred_depths() const { return blurred_.get(); }
-  /// How far the blur reaches, pixels of the picture.
-  static constexpr double kReach_px = 24;
+  double reach_px() const { return reach_px_; }
 
  private:
   void draw(const gl::Framebuffer& target, GLuint source) const;
 
+  double reach_px_;
   PixelSize size_;
   gl::Texture small_;
   gl::Texture half_blurred_;

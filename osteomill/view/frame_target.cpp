@@ -30,6 +30,14 @@ Image FrameTarget::read() const {
   return read_framebuffer(framebuffer_.get(), size_);
 }
 
+std::vector<float> FrameTarget::read_depths() const {
+  std::vector<float> depths(static_cast<std::size_t>(size_.width) * static_cast<std::size_t>(size_.height));
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_.get());
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glReadPixels(0, 0, size_.width, size_.height, GL_DEPTH_COMPONENT, GL_FLOAT, depths.data());
+  return depths;
+}
+
 Image read_framebuffer(unsigned framebuffer, const PixelSize& size) {
   Image image{size.width, size.height, {}};
   const std::size_t row = 3 * static_cast<std::size_t>(size.width);

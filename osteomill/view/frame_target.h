@@ -1,6 +1,8 @@
 #pragma once
 
-#include "osteomill/surface/image.h"
+#include <vector>
+
+#include "osteomill/image/image.h"
 #include "osteomill/view/camera.h"
 #include "osteomill/view/gl_objects.h"
 
@@ -16,6 +18,8 @@ class FrameTarget {
   GLuint framebuffer() const { return framebuffer_.get(); }
   GLuint depths() const { return depths_.get(); }
   Image read() const;
+  /// 0 to 1, row by row from the bottom.
+  std::vector<float> read_depths() const;
 
  private:
   PixelSize size_;

@@ -1,8 +1,10 @@
 #include "osteomill/view/offscreen_context.h"
 
+#include <mutex>
 #include <stdexcept>
 #include <string>
 
+#include <dlfcn.h>
 #include <epoxy/egl.h>
 
 namespace osteomill {
@@ -13,6 +15,29 @@ void require(bool good, const char* what) {
   if (!good) throw std::runtime_error(std::string("no OpenGL without a display: ") + what);
 }
 
+// epoxy ends the program where it finds no library to look its functions up in.
+bool can_be_loaded(const char* library) {
+  return dlopen(library, RTLD_LAZY | RTLD_LOCAL) != nullptr;
+}
+
+// EGL gives all threads the same display, and ending it ends the contexts of all: the last to go does it.
+std::mutex display_mutex;
+int display_users = 0;
+
+EGLDisplay begin_display() {
+  const std::scoped_lock lock(display_mutex);
+  const EGLDisplay display = eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, nullptr, nullptr);
+  require(display != EGL_NO_DISPLAY && eglInitialize(display, nullptr, nullptr) == EGL_TRUE,
+          "EGL cannot be started");
+  ++display_users;
+  return display;
+}
+
+void end_display(EGLDisplay display) {
+  const std::scoped_lock lock(display_mutex);
+  if (--display_users == 0) eglTerminate(display);
+}
+
 }  // namespace
 
 struct OffscreenContext::Impl {
@@ -21,18 +46,21 @@ struct OffscreenContext::Impl {
 
   ~Impl() {
     if (display == EGL_NO_DISPLAY) return;
-    eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
-    if (context != EGL_NO_CONTEXT) eglDestroyContext(display, context);
-    eglTerminate(display);
+    if (context != EGL_NO_CONTEXT) {
+      eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+      eglDestroyContext(display, context);
+    }
+    eglReleaseThread();
+    end_display(display);
   }
 };
 
 OffscreenContext::OffscreenContext() : impl_(std::make_unique<Impl>()) {
+  require(can_be_loaded("libEGL.so.1"), "libEGL.so.1 is missing");
+  require(can_be_loaded("libOpenGL.so.0") || can_be_loaded("libGL.so.1"), "libOpenGL.so.0 is missing");
   require(epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_MESA_platform_surfaceless"),
           "EGL knows no surfaceless platform");
-  impl_->display = eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, nullptr, nullptr);
-  require(impl_->display != EGL_NO_DISPLAY && eglInitialize(impl_->display, nullptr, nullptr) == EGL_TRUE,
-          "EGL cannot be started");
+  impl_->display = begin_display();
   require(eglBindAPI(EGL_OPENGL_API) == EGL_TRUE, "EGL has no desktop OpenGL");
   const EGLint wanted[] = {EGL_CONTEXT_MAJOR_VERSION,
                            3,

@@ -36,6 +36,8 @@ struct ViewScene {
   /// where hardly bone.
   double isovalue = 0;
   double reference_density = 1;
+  /// Red, green and blue of what the surroundings throw back from below: little where they are dark.
+  std::array<float, 3> light_from_below{0.20f, 0.17f, 0.16f};
 };
 
 /// A force arrow's length a newton, and a torque arrow's a newton millimetre.

@@ -61,8 +61,9 @@ bool same_cut(const std::optional<CutPlane>& a, const std::optional<CutPlane>& b
 bool same_view(const ViewScene& a, const ViewScene& b) {
   return a.camera.focus_W == b.camera.focus_W && a.camera.distance_mm == b.camera.distance_mm &&
          a.camera.orientation.coeffs() == b.camera.orientation.coeffs() &&
-         a.bounds.centre_W == b.bounds.centre_W && a.bounds.radius_mm == b.bounds.radius_mm &&
-         a.isovalue == b.isovalue && a.reference_density == b.reference_density &&
+         a.camera.field_of_view_rad == b.camera.field_of_view_rad && a.bounds.centre_W == b.bounds.centre_W &&
+         a.bounds.radius_mm == b.bounds.radius_mm && a.isovalue == b.isovalue &&
+         a.reference_density == b.reference_density && a.light_from_below == b.light_from_below &&
          std::equal(a.cuts.begin(), a.cuts.end(), b.cuts.begin(), same_cut);
 }
 
@@ -94,7 +95,7 @@ struct SceneRenderer::Impl {
     glDepthMask(GL_TRUE);
     glEnable(GL_DEPTH_TEST);
     glClear(GL_DEPTH_BUFFER_BIT);
-    bone.draw(scene, projection, cavities->blurred_depths());
+    bone.draw(scene, projection, *cavities);
     if (look_for_cavities) {
       cavities->blur(ground->depths(), projection.near_mm, projection.far_mm);
       ground->bind();

@@ -3,8 +3,8 @@
 #include <cstddef>
 #include <memory>
 
+#include "osteomill/image/image.h"
 #include "osteomill/surface/brick_mesh.h"
-#include "osteomill/surface/image.h"
 #include "osteomill/surface/surface_bricks.h"
 #include "osteomill/view/cut_face.h"
 #include "osteomill/view/scene.h"

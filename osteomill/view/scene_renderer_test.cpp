@@ -2,12 +2,13 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 
-#include "tests/read_png.h"
 #include "tests/shapes.h"
 #include <gtest/gtest.h>
 
-#include "osteomill/surface/png.h"
+#include "osteomill/image/png.h"
 #include "osteomill/surface/surface_mesh.h"
 #include "osteomill/view/offscreen_context.h"
 
@@ -52,7 +53,9 @@ class SceneRendererTest : public ::testing::Test {
     const std::filesystem::path kept =
         std::filesystem::path(OSTEOMILL_KEPT_PICTURES) / (std::string(test->name()) + ".png");
     if (std::getenv("OSTEOMILL_KEEP_PICTURES") != nullptr) write_png(kept, drawn);
-    const Image expected = testing_support::read_png(kept);
+    std::ifstream file(kept, std::ios::binary);
+    const std::vector<unsigned char> bytes{std::istreambuf_iterator<char>(file), {}};
+    const Image expected = decode_png(bytes).value_or(Image{});
     ASSERT_EQ(expected.rgb.size(), drawn.rgb.size());
     double sum = 0;
     std::size_t others = 0;
@@ -117,7 +120,8 @@ TEST_F(SceneRendererTest, APointOfTheToolIsDrawnWhereTheCameraSeesIt) {
   EXPECT_NE(std::vector<int>(with.pixel(x, y), with.pixel(x, y) + 3),
             std::vector<int>(without.pixel(x, y), without.pixel(x, y) + 3));
   const double radius_px =
-      scene_.tool.burr_radius_mm / mm_per_pixel(kSize, depth_of(scene_.camera, scene_.X_WT->position_mm));
+      scene_.tool.burr_radius_mm /
+      mm_per_pixel(scene_.camera, kSize, depth_of(scene_.camera, scene_.X_WT->position_mm));
   const int beside = static_cast<int>(burr.x() + 1.3 * radius_px);
   EXPECT_EQ(std::vector<int>(with.pixel(beside, y), with.pixel(beside, y) + 3),
             std::vector<int>(without.pixel(beside, y), without.pixel(beside, y) + 3));

@@ -51,6 +51,20 @@ TEST(Annotations, TheScaleBarMeasuresTheFocus) {
   EXPECT_NEAR(bar.lines[0].to.x() - bar.lines[0].from.x(), end.x() - 500, 1e-9);
 }
 
+TEST(Annotations, TheScaleBarHasARoundLengthThatFits) {
+  const auto length = [](double max_mm) {
+    const PixelSize size{1000, 1000};
+    Camera camera;
+    camera.distance_mm *= 4 * max_mm / (1000 * mm_per_pixel(camera, size, camera.distance_mm));
+    return scale_bar_annotation(camera, size).text;
+  };
+  EXPECT_EQ(length(6.3), "5 mm");
+  EXPECT_EQ(length(4.9), "2 mm");
+  EXPECT_EQ(length(1.4), "1 mm");
+  EXPECT_EQ(length(130), "100 mm");
+  EXPECT_EQ(length(0.03), "0.02 mm");
+}
+
 TEST(Annotations, LettersStandWhereThePatientsSidesAre) {
   const PixelSize size{1000, 700};
   const Camera camera = camera_from(ViewFrom::anterior, {Vec3::Zero(), 20});

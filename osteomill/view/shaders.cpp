@@ -28,7 +28,7 @@ void main() {
 )";
 
 // A key light over the viewer's left shoulder, a weaker one from the right, and light from all around that is
-// warmer and darker from below. Bone that lies deeper than what is around it in the picture (blurred_depth,
+// another from below. Bone that lies deeper than what is around it in the picture (blurred_depth,
 // of the picture before) gets less of all of them.
 const std::string_view kBoneFragment = R"(#version 330 core
 in vec3 normal_C;
@@ -37,6 +37,7 @@ in float bone_density;
 uniform float isovalue;
 uniform float reference_density;
 uniform vec2 picture_size;
+uniform vec3 light_from_below;
 uniform float cavity_scale;  // 1 / mm, at a depth of 1 mm
 uniform sampler2D blurred_depth;
 out vec4 colour;
@@ -62,7 +63,7 @@ void main() {
   float open = 1.0 - 0.62 * smoothstep(0.0, 1.0, sunk) + 0.06 * smoothstep(0.0, 1.0, -sunk);
   float key = max(dot(n, kTowardsKey), 0.0);
   float fill = max(dot(n, kTowardsFill), 0.0);
-  vec3 ambient = mix(vec3(0.20, 0.17, 0.16), vec3(0.33, 0.35, 0.39), 0.5 + 0.5 * n.y);
+  vec3 ambient = mix(light_from_below, vec3(0.33, 0.35, 0.39), 0.5 + 0.5 * n.y);
   float gloss = max(dot(n, kHalfWay), 0.0);
   gloss *= gloss;
   gloss *= gloss;

@@ -34,13 +34,22 @@ class Volume {
     for (std::size_t n = 0; n < count; ++n) grid_.set({columns[n], j, k}, densities[n]);
     bricks_.lower_row(j, k, columns, densities, count);
   }
+  /// Writes one voxel's density, up or down, as when a cut is taken back: where it rose `refresh_bricks` is
+  /// due. Not for the tick, nor while anyone works on this bone.
+  void set_density(const VoxelIndex& v, float density) {
+    grid_.set(v, density);
+    bricks_.lower(v, density);
+  }
+  /// Bone is where the density is greater from now on. Throws std::invalid_argument where it is not finite.
+  /// Not for the tick, nor while anyone works on this bone.
+  void set_isovalue(double isovalue);
   /// Makes the brick ranges around a changed box exact again; not for the tick.
   void refresh_bricks(const VoxelBox& box) { bricks_.refresh(grid_, box); }
 
  private:
   DensityGrid grid_;
   BrickRanges bricks_;
-  double isovalue_;
+  double isovalue_ = 0;
 };
 
 /// What milling changed in one step: every voxel whose density fell lies in `voxels` (empty where none did).

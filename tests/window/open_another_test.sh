@@ -44,7 +44,7 @@ wait 0.3
 say not-there
 click Close
 wait 0.3
-click 2 surface points
+click 2 surface-points
 settle
 click Save picture
 wait 0.5

@@ -26,6 +26,8 @@ constexpr double kDone_mm = 2e-4;
 constexpr double kDone_rad = 2e-5;
 // Of the energy, which is summed in single precision.
 constexpr double kEnergyRounding = 1e-6;
+// Less is no rise: the last, least step and another order of summing.
+constexpr double kNoRise = 1e-5;
 
 // The most that the tool moves between two gatherings, and what a gathering reaches for.
 constexpr Room kMostRoom{0.4, 0.03};
@@ -48,7 +50,7 @@ constexpr double kKept_mm = 2;
 // A tool that began in touch with bone: the distance it is given, and how fast and up to which its cores
 // grow.
 constexpr double kStartShare = 0.2;
-constexpr double kGrownShare = 0.1;
+constexpr double kGrownShare = 0.02;
 constexpr double kGrowth_mm_s = 5;
 // A device that moved so far in a tick was put there, not moved by a hand; the wrench then changes over so
 // long.
@@ -108,7 +110,7 @@ void BarrierShell::prepare(const Scene& scene) {
   volume_ = scene.volume;
   tool_ = scene.tool;
   centreline_T_ = centreline_vertices(scene.tool, kCentrelinePoints);
-  bricks_ = BoneBricks(*scene.volume, settings_.point_spacing_mm, settings_.shaft_spacing_factor == 2);
+  bricks_ = BoneBricks(*scene.volume, settings_.point_spacing_mm);
   near_ = NearBone(kNearPoints);
   reset();
 }
@@ -163,7 +165,7 @@ void BarrierShell::begin_outside(const Pose& X_WT) {
 void BarrierShell::grow_cores(double nearest_mm, double dt_s) {
   if (smaller_mm_ == 0) return;
   // No more than there is room for: in a hole too narrow for the tool they stay as small as it.
-  const double room_mm = 0.5 * (nearest_mm - kGrownShare * barrier_.width_mm);
+  const double room_mm = 0.2 * (nearest_mm - kGrownShare * barrier_.width_mm);
   const double growth = std::clamp(room_mm, 0.0, kGrowth_mm_s * std::max(0.0, dt_s));
   smaller_mm_ = std::max(0.0, smaller_mm_ - growth);
   has_energy_ = false;
@@ -214,7 +216,7 @@ void BarrierShell::watch_energy(const State& state) {
   if (!has_energy_) return;
   const double now_Nmm = state.barrier_Nmm + coupling_.energy_Nmm(state.X_WT, X_WD_before_);
   const double rise_Nmm = now_Nmm - energy_before_Nmm_;
-  if (rise_Nmm <= kEnergyRounding * (1 + energy_before_Nmm_)) return;
+  if (rise_Nmm <= kNoRise * (1 + energy_before_Nmm_)) return;
   ++counts_.energy_rises;
   counts_.energy_risen_Nmm += rise_Nmm;
   counts_.worst_rise_Nmm = std::max(counts_.worst_rise_Nmm, rise_Nmm);

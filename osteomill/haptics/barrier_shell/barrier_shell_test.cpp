@@ -30,7 +30,7 @@ HapticStep approach(BarrierShell& algorithm, const Vec3& from, const Vec3& to, c
 TEST(BarrierShell, InFreeSpaceTheWrenchIsExactlyZero) {
   const Volume volume = testing_support::shape_volume(testing_support::centred_cube(40, 0.25),
                                                       testing_support::ball(Vec3::Zero(), 3));
-  BarrierShell algorithm{Settings{}};
+  BarrierShell algorithm{Settings::defaults()};
   algorithm.prepare({&volume, {}});
   for (int n = 0; n < 2000; ++n) {
     const double angle = 0.01 * n;
@@ -48,7 +48,7 @@ TEST(BarrierShell, OnAPlaneTheForceIsAlongTheNormal) {
   const Volume volume = testing_support::shape_volume(testing_support::centred_cube(60, 0.2),
                                                       testing_support::plane(Vec3::Zero(), normal));
   const MillingTool tool;
-  BarrierShell algorithm{Settings{}};
+  BarrierShell algorithm{Settings::defaults()};
   algorithm.prepare({&volume, tool});
   constexpr double kDepth_mm = 0.8;
   const HapticStep step = approach(algorithm, 3 * normal, (tool.burr_radius_mm - kDepth_mm) * normal,
@@ -72,7 +72,9 @@ TEST(BarrierShell, SlidingRoundABallTurnsTheForceWithTheNormal) {
   const Volume volume = testing_support::shape_volume(testing_support::centred_cube(56, 0.25),
                                                       testing_support::ball(Vec3::Zero(), kBall_mm));
   const MillingTool tool;
-  BarrierShell algorithm{Settings{.translational_stiffness_N_per_mm = 1}};
+  Settings soft = Settings::defaults();
+  soft.translational_stiffness_N_per_mm = 1;
+  BarrierShell algorithm{soft};
   algorithm.prepare({&volume, tool});
   const double radius = kBall_mm + tool.burr_radius_mm - kDepth_mm;
   const auto out_at = [](double angle) { return Vec3(std::sin(angle), 0, std::cos(angle)); };
@@ -99,7 +101,7 @@ TEST(BarrierShell, TheShaftOnAnEdgeTurnsByForceTimesLever) {
       testing_support::shape_volume(testing_support::centred_cube(64, 0.2),
                                     [&](const Vec3& p) { return std::max(left.dot(p), right.dot(p)); });
   for (const double lever_mm : {4.0, 12.0, 20.0}) {
-    BarrierShell algorithm{Settings{}};
+    BarrierShell algorithm{Settings::defaults()};
     algorithm.prepare({&volume, {}});
     const Quat lying = turn * quaternion_from_rotation_vector({0, std::numbers::pi / 2, 0});
     const HapticStep step =
@@ -173,7 +175,7 @@ TEST(BarrierShell, NothingPushesThroughAThinSheet) {
       testing_support::centred_cube(48, 0.25), [&](const Vec3& p) { return std::abs(normal.dot(p)) - 0.25; });
   const std::vector<Vec3> surface = surface_points(volume);
   const MillingTool tool{1.5, 1.0, 8};
-  BarrierShell algorithm{Settings{}};
+  BarrierShell algorithm{Settings::defaults()};
   algorithm.prepare({&volume, tool});
   const Quat upright = smallest_rotation(Vec3::UnitZ(), normal);
   const Quat on_its_side = upright * quaternion_from_rotation_vector({std::numbers::pi / 2, 0, 0});
@@ -205,7 +207,7 @@ TEST(BarrierShell, RandomPushesIntoSpongyBoneStayOutside) {
   const std::vector<Vec3> surface = surface_points(volume);
   std::mt19937 bits(5);
   const MillingTool tool;
-  BarrierShell algorithm{Settings{}};
+  BarrierShell algorithm{Settings::defaults()};
   algorithm.prepare({&volume, tool});
   for (int n = 0; n < 300; ++n) {
     const Vec3 direction = random_vector(bits).normalized();
@@ -221,7 +223,7 @@ TEST(BarrierShell, RandomPushesIntoSpongyBoneStayOutside) {
 TEST(BarrierShell, AToolThatBeginsInsideBoneIsCarriedOutAndThenHeld) {
   const Volume volume = testing_support::shape_volume(testing_support::centred_cube(60, 0.2),
                                                       testing_support::plane(Vec3::Zero(), Vec3::UnitZ()));
-  BarrierShell algorithm{Settings{}};
+  BarrierShell algorithm{Settings::defaults()};
   algorithm.prepare({&volume, {}});
   double largest_step_N = 0;
   Vec3 before = Vec3::Zero();
@@ -246,7 +248,7 @@ TEST(BarrierShell, AHandOverInsideAWallIsHeldAndTheWrenchRamps) {
   const Volume volume = testing_support::shape_volume(testing_support::centred_cube(60, 0.2),
                                                       testing_support::plane(Vec3::Zero(), Vec3::UnitZ()));
   for (const double overlap_mm : {0.0, 0.3, 1.0}) {
-    BarrierShell algorithm{Settings{}};
+    BarrierShell algorithm{Settings::defaults()};
     algorithm.prepare({&volume, {}});
     algorithm.step({{0, 0, 1.5 - overlap_mm}, Quat::Identity()}, 0);
     Vec3 before = Vec3::Zero();
@@ -267,7 +269,7 @@ TEST(BarrierShell, AHandOverInsideAWallIsHeldAndTheWrenchRamps) {
 TEST(BarrierShell, ADeviceThatJumpsAcrossBoneIsHeldAndTheWrenchRamps) {
   const Volume volume = testing_support::shape_volume(testing_support::centred_cube(60, 0.2),
                                                       testing_support::ball(Vec3::Zero(), 4));
-  BarrierShell algorithm{Settings{}};
+  BarrierShell algorithm{Settings::defaults()};
   algorithm.prepare({&volume, {}});
   Vec3 before = approach(algorithm, {0, 0, 8}, {0, 0, 5}, Quat::Identity()).wrench.force_N;
   EXPECT_GT(before.z(), 0.5);
@@ -296,7 +298,7 @@ TEST(BarrierShell, TheSameInputGivesTheSameBitsAlsoAfterAReset) {
     }
     return felt;
   };
-  BarrierShell one{Settings{}}, other{Settings{}};
+  BarrierShell one{Settings::defaults()}, other{Settings::defaults()};
   one.prepare({&volume, {}});
   other.prepare({&volume, {}});
   const std::vector<double> first = run(one);
@@ -310,7 +312,7 @@ TEST(BarrierShell, ABurrPressedOnBoneThatIsMilledIsNeverLetGo) {
   Volume volume = testing_support::shape_volume(testing_support::centred_cube(60, 0.1),
                                                 testing_support::plane(Vec3::Zero(), Vec3::UnitZ()));
   const MillingTool tool;
-  BarrierShell algorithm{Settings{}};
+  BarrierShell algorithm{Settings::defaults()};
   algorithm.prepare({&volume, tool});
   std::mt19937 bits(9);
   Vec3 before = approach(algorithm, {0, 0, 3}, {0, 0, 0.5}, Quat::Identity()).wrench.force_N;

@@ -21,12 +21,11 @@ constexpr int kUnchangedCost = 20;
 
 }  // namespace
 
-BoneBricks::BoneBricks(const Volume& volume, double spacing_mm, bool with_coarse)
+BoneBricks::BoneBricks(const Volume& volume, double spacing_mm)
     : lattice_(volume, spacing_mm),
-      with_coarse_(with_coarse),
       octree_(lattice_.brick_dims()),
       fine_(kSlots, kFineChunks),
-      coarse_(with_coarse ? kSlots : 0, with_coarse ? kCoarseChunks : 0),
+      coarse_(kSlots, kCoarseChunks),
       brick_of_slot_(kSlots),
       fingerprints_(kSlots),
       found_(std::make_unique<SurfaceLattice::BrickSurface>()) {
@@ -64,7 +63,7 @@ int BoneBricks::make(const VoxelIndex& brick) {
   std::uint32_t& slot = slots_[index_of(brick)];
   const bool has_points = slot != kUnmade && slot != kNoPoints;
   found_->fingerprint = has_points ? fingerprints_[slot] : 0;
-  const int crossed = lattice_.find_surface(brick, with_coarse_, *found_);
+  const int crossed = lattice_.find_surface(brick, *found_);
   if (crossed == SurfaceLattice::kUnchanged) return kUnchangedCost;
   const std::int32_t before = slot == kUnmade     ? 1
                               : slot == kNoPoints ? 0
@@ -79,7 +78,7 @@ int BoneBricks::make(const VoxelIndex& brick) {
   if (slot != kNoPoints) {
     after = static_cast<std::int32_t>(fine_.replace(slot, {found_->fine.data(), found_->fine_count}));
     fingerprints_[slot] = found_->fingerprint;
-    if (with_coarse_) coarse_.replace(slot, {found_->coarse.data(), found_->coarse_count});
+    coarse_.replace(slot, {found_->coarse.data(), found_->coarse_count});
     if (after == 0) {
       free_slots_.push_back(slot);
       slot = kNoPoints;
@@ -116,14 +115,14 @@ int BoneBricks::visit(const VoxelIndex& brick) {
 
 bool BoneBricks::is_short_of_room() const {
   return free_slots_.size() < kSpareSlots || fine_.free_chunks() < kSpareChunks ||
-         (with_coarse_ && coarse_.free_chunks() < kSpareChunks);
+         coarse_.free_chunks() < kSpareChunks;
 }
 
 void BoneBricks::forget(std::uint32_t slot) {
   const VoxelIndex& brick = brick_of_slot_[slot];
   octree_.add(brick.i, brick.j, brick.k, 1 - static_cast<std::int32_t>(fine_.brick(slot).count));
   fine_.replace(slot, {});
-  if (with_coarse_) coarse_.replace(slot, {});
+  coarse_.replace(slot, {});
   slots_[index_of(brick)] = kUnmade;
   free_slots_.push_back(slot);
 }

@@ -17,13 +17,12 @@ namespace osteomill::barrier_shell {
 class BoneBricks {
  public:
   BoneBricks() = default;
-  /// `volume` outlives it. Points at `spacing_mm`, and `with_coarse` also at twice that.
-  BoneBricks(const Volume& volume, double spacing_mm, bool with_coarse);
+  /// `volume` outlives it. Points at most `spacing_mm` apart, and others twice as far where the bone is flat.
+  BoneBricks(const Volume& volume, double spacing_mm);
 
   const SurfaceLattice& lattice() const { return lattice_; }
   const BrickPoints& fine() const { return fine_; }
-  /// The same as `fine` where there are no coarse points.
-  const BrickPoints& coarse() const { return with_coarse_ ? coarse_ : fine_; }
+  const BrickPoints& coarse() const { return coarse_; }
   /// Counts points of the bricks that were made, and one of each other that may have some.
   const CountPyramid& octree() const { return octree_; }
   /// A box that holds all points of a node of the octree, in the grid's frame: its middle, and the radius of
@@ -63,7 +62,6 @@ class BoneBricks {
   void forget(std::uint32_t slot);
 
   SurfaceLattice lattice_;
-  bool with_coarse_ = false;
   CountPyramid octree_;
   std::vector<double> node_radii_mm_;
   std::vector<std::uint32_t> slots_;

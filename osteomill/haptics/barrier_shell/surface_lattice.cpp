@@ -260,7 +260,7 @@ ShellPoint SurfaceLattice::crossing(const float* here, const VoxelIndex& node, i
           outward * gradient[0], outward * gradient[1], outward * gradient[2]};
 }
 
-int SurfaceLattice::find_surface(const VoxelIndex& brick, bool with_coarse, BrickSurface& surface) const {
+int SurfaceLattice::find_surface(const VoxelIndex& brick, BrickSurface& surface) const {
   surface.fine_count = surface.coarse_count = 0;
   Block block;
   read_block(brick, block);
@@ -271,7 +271,7 @@ int SurfaceLattice::find_surface(const VoxelIndex& brick, bool with_coarse, Bric
   if (!find_bone(block, rows)) return 0;
   const int crossed =
       group_ == 1 ? list_crossings(block, rows, surface) : mean_crossings(block, rows, surface);
-  if (with_coarse) merge_flat_cells(surface);
+  merge_flat_cells(surface);
   return crossed;
 }
 

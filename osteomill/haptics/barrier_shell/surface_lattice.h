@@ -55,7 +55,7 @@ class SurfaceLattice {
   static constexpr int kUnchanged = -1;
   /// How many edges were crossed; `kUnchanged`, and no points, where `surface.fingerprint` is that of the
   /// densities as they still are.
-  int find_surface(const VoxelIndex& brick, bool with_coarse, BrickSurface& surface) const;
+  int find_surface(const VoxelIndex& brick, BrickSurface& surface) const;
 
  private:
   static constexpr std::size_t kRow = kMaxBlockNodes;

@@ -59,7 +59,7 @@ TEST(SurfaceLattice, PointsCoverABallAtAnyVoxelSize) {
     const Volume volume =
         testing_support::shape_volume(testing_support::centred_cube(static_cast<int>(8 / voxel_mm), voxel_mm),
                                       testing_support::ball({0.01, 0.02, 0.03}, kRadius_mm), 4);
-    BoneBricks bricks(volume, 0.13, true);
+    BoneBricks bricks(volume, 0.13);
     const BallFigures fine = figures(bricks.fine(), bricks, kRadius_mm);
     const BallFigures coarse = figures(bricks.coarse(), bricks, kRadius_mm);
     EXPECT_NEAR(fine.area_mm2, area_mm2, 0.02 * area_mm2) << voxel_mm;
@@ -76,7 +76,7 @@ TEST(SurfaceLattice, PointsCoverABallAtAnyVoxelSize) {
 TEST(SurfaceLattice, TheGridsBorderIsASurface) {
   const Volume volume = testing_support::shape_volume(testing_support::centred_cube(21, 0.1),
                                                       testing_support::plane({0, 0, 0.45}, {0, 0, 1}));
-  BoneBricks bricks(volume, 0.13, false);
+  BoneBricks bricks(volume, 0.13);
   double area_mm2 = 0;
   for_each_point(bricks.fine(), bricks.lattice(), bricks,
                  [&](const Vec3&, double area) { area_mm2 += area; });
@@ -91,7 +91,7 @@ TEST(BoneBricks, MillingBringsThemUpToDateWithinABudget) {
     Volume volume =
         testing_support::shape_volume(testing_support::centred_cube(static_cast<int>(6 / voxel_mm), voxel_mm),
                                       testing_support::ball(Vec3::Zero(), 2));
-    BoneBricks kept(volume, 0.13, true);
+    BoneBricks kept(volume, 0.13);
     figures(kept.fine(), kept, 2);
     VoxelBox changed;
     const auto& dims = volume.geometry().dims;
@@ -111,7 +111,7 @@ TEST(BoneBricks, MillingBringsThemUpToDateWithinABudget) {
     int ticks = 1;
     for (; !kept.is_up_to_date(); ++ticks) kept.refresh({}, 200);
     EXPECT_GT(ticks, 3);
-    BoneBricks anew(volume, 0.13, true);
+    BoneBricks anew(volume, 0.13);
     std::vector<Vec3> kept_points, new_points;
     for_each_point(kept.fine(), kept.lattice(), kept,
                    [&](const Vec3& p, double) { kept_points.push_back(p); });

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "osteomill/haptics/line_proxy/bone_march.h"
@@ -13,11 +14,9 @@
 #include "osteomill/haptics/line_proxy/translation_rotation_walk.h"
 #include "osteomill/tool/sample_points.h"
 
-namespace osteomill {
+namespace osteomill::line_proxy {
 
 namespace {
-
-using namespace line_proxy;
 
 // How far the surface is looked for where a tick finds the tip or the shaft deep in bone without having seen
 // it go in (switched on there, or moved there at once).
@@ -33,7 +32,7 @@ Vec3 moved_toward(const Vec3& from, const Vec3& to, double limit) {
 
 }  // namespace
 
-LineProxy::LineProxy(const LineProxySettings& settings) : settings_(settings) {
+LineProxy::LineProxy(const Settings& settings) : settings_(settings) {
   require_valid(settings);
 }
 
@@ -146,7 +145,7 @@ std::optional<Vec3> LineProxy::next_intersection(const Pose& X_WL) const {
   const ShaftProbe probe = densest_point(volume, shaft_vertices(), X_WL, *memory_.intersection_W);
   if (!(probe.density > volume.isovalue())) return std::nullopt;
   return move_point_proxy(volume, *memory_.intersection_W, probe.point_W,
-                          {settings_.normal, LineProxySettings::kNoLimit});
+                          {settings_.normal, std::numeric_limits<double>::infinity()});
 }
 
 void LineProxy::turn_reaction(const Pose& X_WL) {
@@ -260,4 +259,4 @@ void LineProxy::forget_what_is_not_finite() {
   if (!is_usable(memory_.reaction_N)) memory_.reaction_N.setZero();
 }
 
-}  // namespace osteomill
+}  // namespace osteomill::line_proxy

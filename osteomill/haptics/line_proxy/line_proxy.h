@@ -8,7 +8,7 @@
 #include "osteomill/haptics/line_proxy/line_proxy_settings.h"
 #include "osteomill/haptics/line_proxy/shaft_touch.h"
 
-namespace osteomill {
+namespace osteomill::line_proxy {
 
 /// Algorithm 1 of Eriksson 2012: the tool is its centreline, a row of vertices. Where the tip's vertex is in
 /// bone a point proxy stays on the surface and a spring pulls the hand to it; where the shaft, laid at that
@@ -17,7 +17,7 @@ namespace osteomill {
 class LineProxy final : public HapticAlgorithm {
  public:
   /// Throws std::invalid_argument where a setting is out of range.
-  explicit LineProxy(const LineProxySettings& settings);
+  explicit LineProxy(const Settings& settings);
 
   void prepare(const Scene& scene) override;
   HapticStep step(const Pose& X_WD, double dt_s) override;
@@ -42,7 +42,7 @@ class LineProxy final : public HapticAlgorithm {
     std::optional<Pose> X_WL;
     std::optional<Vec3> intersection_W;
     // With `shaft-contact` it is this that makes the intersection point.
-    line_proxy::ShaftTouch touch;
+    ShaftTouch touch;
     Vec3 arm_W = Vec3::Zero();
     Vec3 reaction_N = Vec3::Zero();
     // How far the simulated tool is kept from where the centreline would have it.
@@ -62,17 +62,17 @@ class LineProxy final : public HapticAlgorithm {
   void turn_reaction(const Pose& X_WL);
   void touch_with_shaft(const Pose& X_WL, const Vec3& device_tip_W, double dt_s);
   double first_lever_mm(const Pose& X_WL) const;
-  line_proxy::ShaftTouchRule touch_rule(double dt_s) const;
+  ShaftTouchRule touch_rule(double dt_s) const;
   double shaft_share(double arm_mm) const;
   Pose touching_tool(const Pose& X_WD, const Vec3& tool_tip_W) const;
   void keep_outside(Pose& X_WT, double dt_s);
   Pose simulated_tool(const Pose& X_WD, const Pose& touching, double dt_s);
   void forget_what_is_not_finite();
 
-  LineProxySettings settings_;
+  Settings settings_;
   Scene scene_;
   std::vector<Vec3> vertices_T_;
   Memory memory_;
 };
 
-}  // namespace osteomill
+}  // namespace osteomill::line_proxy

@@ -10,7 +10,7 @@
 
 // Algorithm 1 against a hand: a handle of 0.3 kg and 3e-4 kg m^2 in a spring of 500 N/m and 5 N s/m (0.5 N
 // m/rad) that pushes no harder than its limit, 20 substeps a tick.
-namespace osteomill {
+namespace osteomill::line_proxy {
 namespace {
 
 using testing_support::ball;
@@ -49,7 +49,7 @@ struct Hand {
 };
 
 LineProxy steady_on(const Volume& volume) {
-  LineProxy algorithm(LineProxySettings::defaults(Mode::steady));
+  LineProxy algorithm(Settings::defaults(Mode::steady));
   algorithm.prepare({&volume, MillingTool{}});
   return algorithm;
 }
@@ -171,7 +171,7 @@ TEST(LineProxyHand, APressedHandComesToRest) {
 TEST(LineProxyHand, ADropReboundsWithLessEnergy) {
   const Volume bone = shape_volume(centred_cube(60, 0.25), plane(Vec3::Zero(), Vec3::UnitZ()));
   for (const double stiffness : {2.0, 5.0}) {
-    LineProxySettings settings = LineProxySettings::defaults(Mode::steady);
+    Settings settings = Settings::defaults(Mode::steady);
     settings.stiffness_N_per_mm = stiffness;
     LineProxy algorithm(settings);
     algorithm.prepare({&bone, MillingTool{}});
@@ -193,4 +193,4 @@ TEST(LineProxyHand, ADropReboundsWithLessEnergy) {
 }
 
 }  // namespace
-}  // namespace osteomill
+}  // namespace osteomill::line_proxy

@@ -10,7 +10,7 @@
 #include "tests/shapes.h"
 #include <gtest/gtest.h>
 
-namespace osteomill {
+namespace osteomill::line_proxy {
 namespace {
 
 using testing_support::ball;
@@ -20,14 +20,14 @@ using testing_support::shape_volume;
 
 constexpr double kTick_s = 1e-3;
 
-LineProxy prepared(const LineProxySettings& settings, const Volume& volume) {
+LineProxy prepared(const Settings& settings, const Volume& volume) {
   LineProxy algorithm(settings);
   algorithm.prepare({&volume, MillingTool{}});
   return algorithm;
 }
 
 LineProxy prepared(Mode mode, const Volume& volume) {
-  return prepared(LineProxySettings::defaults(mode), volume);
+  return prepared(Settings::defaults(mode), volume);
 }
 
 // A tool that stands with its shaft along `shaft`.
@@ -95,7 +95,7 @@ TEST_P(LineProxyTest, OnAPlaneTheForceIsStiffnessTimesDepth) {
 void slide_round_a_ball(Mode mode, double voxel_mm) {
   const int voxels = static_cast<int>(18.0 / voxel_mm);
   const Volume bone = shape_volume(centred_cube(voxels, voxel_mm), ball(Vec3::Zero(), 8.0));
-  LineProxySettings settings = LineProxySettings::defaults(mode);
+  Settings settings = Settings::defaults(mode);
   settings.stiffness_N_per_mm = 1.0;
   LineProxy algorithm = prepared(settings, bone);
   const Vec3 across = Vec3(0.2, 1, -0.3).normalized();
@@ -322,7 +322,7 @@ TEST(LineProxy, WhatIsNotFiniteIsForgottenAtOnce) {
 }
 
 TEST(LineProxy, SettingsOutOfRangeAreRefused) {
-  LineProxySettings settings;
+  Settings settings;
   settings.vertices = 1;
   EXPECT_THROW(LineProxy{settings}, std::invalid_argument);
   settings = {};
@@ -334,9 +334,9 @@ TEST(LineProxy, SettingsOutOfRangeAreRefused) {
   settings = {};
   settings.rotation_steps = 0;
   EXPECT_THROW(LineProxy{settings}, std::invalid_argument);
-  LineProxy algorithm{LineProxySettings{}};
+  LineProxy algorithm{Settings{}};
   EXPECT_THROW(algorithm.prepare({nullptr, MillingTool{}}), std::invalid_argument);
 }
 
 }  // namespace
-}  // namespace osteomill
+}  // namespace osteomill::line_proxy

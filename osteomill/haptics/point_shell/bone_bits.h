@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace osteomill {
+namespace osteomill::point_shell {
 
 /// One bit a node of a grid: bone or not. Eight nodes of a row share a byte, and a layer of empty bytes lies
 /// all about, so that neighbours can be read without a look at the border. Safe in the haptic tick.
@@ -52,4 +52,4 @@ class BoneBits {
   std::vector<std::uint8_t> bytes_;
 };
 
-}  // namespace osteomill
+}  // namespace osteomill::point_shell

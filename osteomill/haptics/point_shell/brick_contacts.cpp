@@ -6,7 +6,7 @@
 #include "osteomill/haptics/point_shell/brick_kernel.h"
 #include "osteomill/haptics/point_shell/contact_point.h"
 
-namespace osteomill {
+namespace osteomill::point_shell {
 
 namespace {
 
@@ -138,4 +138,4 @@ ToolContacts contacts_by_bricks(const PointShell& shell, const MillingTool& mill
   return {contacts.burr.in_outer(R_WT), contacts.shaft.in_outer(R_WT), contacts.touching + sums.touching};
 }
 
-}  // namespace osteomill
+}  // namespace osteomill::point_shell

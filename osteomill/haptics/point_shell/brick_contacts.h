@@ -4,7 +4,7 @@
 #include "osteomill/haptics/point_shell/penalty.h"
 #include "osteomill/haptics/point_shell/point_shell.h"
 
-namespace osteomill {
+namespace osteomill::point_shell {
 
 /// What `contacts_by_octree` says with the tool in closed form, to the rounding of the sums, and much faster:
 /// nodes and bricks are culled by a sphere against the tool, a brick's points are sifted 32 at a time in
@@ -13,4 +13,4 @@ namespace osteomill {
 ToolContacts contacts_by_bricks(const PointShell& shell, const MillingTool& tool, const Pose& X_WT,
                                 const Penalty& penalty);
 
-}  // namespace osteomill
+}  // namespace osteomill::point_shell

@@ -11,7 +11,7 @@
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace osteomill {
+namespace osteomill::point_shell {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -347,11 +347,11 @@ void AddSpherePoints(const BrickPoints& points, std::uint32_t first_chunk, const
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace osteomill
+}  // namespace osteomill::point_shell
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace osteomill {
+namespace osteomill::point_shell {
 
 HWY_EXPORT(AddPoints);
 HWY_EXPORT(AddSidePoints);
@@ -376,5 +376,5 @@ std::int64_t kernel_targets() {
   return HWY_TARGETS;
 }
 
-}  // namespace osteomill
+}  // namespace osteomill::point_shell
 #endif

@@ -4,7 +4,7 @@
 
 #include "osteomill/haptics/bone_points/brick_points.h"
 
-namespace osteomill {
+namespace osteomill::point_shell {
 
 /// The tool and the penalty as the kernel reads them.
 struct KernelTool {
@@ -58,4 +58,4 @@ void add_sphere_points(const BrickPoints& points, std::uint32_t first_chunk, con
 /// The sets of vector instructions that `add_points` was compiled for, as bits of hwy/targets.h.
 std::int64_t kernel_targets();
 
-}  // namespace osteomill
+}  // namespace osteomill::point_shell

@@ -11,7 +11,7 @@
 #include "osteomill/haptics/point_shell/brick_contacts.h"
 #include "osteomill/haptics/point_shell/octree_contacts.h"
 
-namespace osteomill {
+namespace osteomill::point_shell {
 namespace {
 
 // Every set of vector instructions that this processor has and the kernel was compiled for.
@@ -49,7 +49,7 @@ PointShell bored_ball(Volume& volume, std::mt19937& bits) {
                        static_cast<int>(bits() % 60)};
     volume.lower_density(v, 0.3f * volume.grid()[v]);
   }
-  return PointShell(volume, PointShellSettings::defaults(Mode::steady).shell);
+  return PointShell(volume, Settings::defaults(Mode::steady).shell);
 }
 
 bool same_bits(const ContactSum& a, const ContactSum& b) {
@@ -122,4 +122,4 @@ TEST(BrickKernel, SlotsWithoutAPointAddNothing) {
 }
 
 }  // namespace
-}  // namespace osteomill
+}  // namespace osteomill::point_shell

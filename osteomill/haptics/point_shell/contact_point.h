@@ -5,7 +5,7 @@
 #include "osteomill/haptics/point_shell/penalty.h"
 #include "osteomill/haptics/point_shell/tool_from_grid.h"
 
-namespace osteomill {
+namespace osteomill::point_shell {
 
 /// Adds what one point of the shell, at `point_T` in the tool's frame, pushes: Eriksson 2012, 6.3. Safe in
 /// the haptic tick.
@@ -22,4 +22,4 @@ inline void touch_point(const ShellPoint& point, const Vec3& point_T, const Tool
   ++contacts.touching;
 }
 
-}  // namespace osteomill
+}  // namespace osteomill::point_shell

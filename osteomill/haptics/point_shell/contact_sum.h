@@ -2,7 +2,7 @@
 
 #include "osteomill/geometry/wrench.h"
 
-namespace osteomill {
+namespace osteomill::point_shell {
 
 /// The penalty forces of many points on the tool, summed, and how they change as the tool moves: with the
 /// tool moved by dx (mm) and turned by dw (rad, about the burr's centre) the force is force_N - K_ff dx -
@@ -65,4 +65,4 @@ struct ToolContacts {
   }
 };
 
-}  // namespace osteomill
+}  // namespace osteomill::point_shell

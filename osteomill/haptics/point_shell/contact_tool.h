@@ -6,7 +6,7 @@
 
 #include "osteomill/tool/sampled_distance_field.h"
 
-namespace osteomill {
+namespace osteomill::point_shell {
 
 /// The tool as the shell's points meet it ("SPO", Eriksson 2012, 6.1): a sampled signed distance field, or
 /// the same distance in closed form. Safe in the haptic tick once made.
@@ -50,4 +50,4 @@ class ContactTool {
   std::optional<SampledDistanceField> field_;
 };
 
-}  // namespace osteomill
+}  // namespace osteomill::point_shell

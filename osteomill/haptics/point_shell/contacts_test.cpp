@@ -9,7 +9,7 @@
 #include "osteomill/haptics/point_shell/octree_contacts.h"
 #include "osteomill/haptics/point_shell/virtual_coupling.h"
 
-namespace osteomill {
+namespace osteomill::point_shell {
 namespace {
 
 using testing_support::ball;
@@ -29,7 +29,7 @@ Vec3 random_vector(std::mt19937& bits) {
 }
 
 ShellRules rules_of(Mode mode, int scale) {
-  ShellRules rules = PointShellSettings::defaults(mode).shell;
+  ShellRules rules = Settings::defaults(mode).shell;
   rules.scale = scale;
   return rules;
 }
@@ -349,4 +349,4 @@ TEST(ContactSum, OnTheShaftTheLeftOutTermVanishesWithTheDepth) {
 }
 
 }  // namespace
-}  // namespace osteomill
+}  // namespace osteomill::point_shell

@@ -2,7 +2,7 @@
 
 #include "osteomill/haptics/point_shell/contact_point.h"
 
-namespace osteomill {
+namespace osteomill::point_shell {
 
 namespace {
 
@@ -44,4 +44,4 @@ ToolContacts contacts_by_octree(const PointShell& shell, const ContactTool& tool
   return {contacts.burr.in_outer(R_WT), contacts.shaft.in_outer(R_WT), contacts.touching};
 }
 
-}  // namespace osteomill
+}  // namespace osteomill::point_shell

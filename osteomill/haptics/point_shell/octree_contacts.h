@@ -5,7 +5,7 @@
 #include "osteomill/haptics/point_shell/penalty.h"
 #include "osteomill/haptics/point_shell/point_shell.h"
 
-namespace osteomill {
+namespace osteomill::point_shell {
 
 /// The points of the shell that lie in the tool at `X_WT`, summed in W's axes (Eriksson 2012, 6.2 and 6.3):
 /// boxes of the octree against the tool's bounding box, then each point of the boxes left against the tool's
@@ -13,4 +13,4 @@ namespace osteomill {
 ToolContacts contacts_by_octree(const PointShell& shell, const ContactTool& tool, const Pose& X_WT,
                                 const Penalty& penalty);
 
-}  // namespace osteomill
+}  // namespace osteomill::point_shell

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 
-namespace osteomill {
+namespace osteomill::point_shell {
 
 namespace {
 
@@ -266,4 +266,4 @@ ShellPoint PointShell::point_of(const VoxelIndex& cell, int bi, int bj, int bk) 
   return lattice_.point_of_cell(bone_, cell, {nodes * bi, nodes * bj, nodes * bk});
 }
 
-}  // namespace osteomill
+}  // namespace osteomill::point_shell

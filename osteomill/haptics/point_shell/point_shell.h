@@ -11,7 +11,7 @@
 #include "osteomill/haptics/point_shell/bone_bits.h"
 #include "osteomill/haptics/point_shell/shell_lattice.h"
 
-namespace osteomill {
+namespace osteomill::point_shell {
 
 /// The milled object as a point shell ("MPO", Eriksson 2012, 6.1): one point for every cell of the grid that
 /// holds surface voxels (bone with one of its 6 neighbours not bone), in bricks of 8 x 8 x 8 cells under an
@@ -121,4 +121,4 @@ void PointShell::for_each_point(F&& f) const {
   }
 }
 
-}  // namespace osteomill
+}  // namespace osteomill::point_shell

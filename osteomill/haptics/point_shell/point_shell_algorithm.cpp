@@ -8,7 +8,7 @@
 #include "osteomill/tool/sample_points.h"
 #include "osteomill/volume/sampling.h"
 
-namespace osteomill {
+namespace osteomill::point_shell {
 
 namespace {
 
@@ -34,7 +34,7 @@ bool is_at(const Pose& a, const Pose& b) {
 
 }  // namespace
 
-PointShellAlgorithm::PointShellAlgorithm(const PointShellSettings& settings)
+PointShellAlgorithm::PointShellAlgorithm(const Settings& settings)
     : settings_(settings),
       coupling_{settings.translational_stiffness_N_per_mm, settings.torsional_stiffness_Nmm_per_rad} {
   require_valid(settings);
@@ -80,7 +80,7 @@ ToolContacts PointShellAlgorithm::contacts_at(const Pose& X_WT) const {
 // The target itself, to the last bit, where the tick's limits let the tool reach it.
 Pose PointShellAlgorithm::towards(const Pose& X_WT_start, const Pose& target) const {
   const ToolMove wanted = move_between(X_WT_start, target);
-  const ToolMove allowed = limited(wanted, settings_.greatest_move_mm, settings_.greatest_turn_rad);
+  const ToolMove allowed = limited(wanted, settings_.max_move_mm, settings_.max_turn_rad);
   if (allowed.translation_mm == wanted.translation_mm && allowed.rotation_rad == wanted.rotation_rad) {
     return target;
   }
@@ -90,7 +90,7 @@ Pose PointShellAlgorithm::towards(const Pose& X_WT_start, const Pose& target) co
 // Short of the target where the coupling would let go faster than it may.
 Pose PointShellAlgorithm::released(const Pose& X_WT_start, const Pose& target, const Pose& X_WD,
                                    double dt_s) const {
-  if (!held_back_ || !(settings_.greatest_release_mm_s > 0) || !(settings_.greatest_release_rad_s > 0)) {
+  if (!held_back_ || !(settings_.max_release_mm_s > 0) || !(settings_.max_release_rad_s > 0)) {
     return target;
   }
   const double tick_s = std::clamp(dt_s, 0.0, kLongestTick_s);
@@ -104,9 +104,9 @@ Pose PointShellAlgorithm::released(const Pose& X_WT_start, const Pose& target, c
   const double share =
       share_released(X_WT_start, target, X_WD,
                      moved_mm + turned_rad * length_mm + fading * stretch.translation_mm.norm() +
-                         settings_.greatest_release_mm_s * tick_s,
+                         settings_.max_release_mm_s * tick_s,
                      turned_rad + kTurnByMove * moved_mm / length_mm + fading * stretch.rotation_rad.norm() +
-                         settings_.greatest_release_rad_s * tick_s);
+                         settings_.max_release_rad_s * tick_s);
   if (share >= 1) return target;
   const ToolMove whole = move_between(X_WT_start, target);
   return moved(X_WT_start, {share * whole.translation_mm, share * whole.rotation_rad});
@@ -187,4 +187,4 @@ Wrench PointShellAlgorithm::damping(const Pose& X_WD, double dt_s) const {
       settings_.torsional_damping_Nmms_per_rad / dt_s * (stretch.rotation_rad - stretch_.rotation_rad)};
 }
 
-}  // namespace osteomill
+}  // namespace osteomill::point_shell

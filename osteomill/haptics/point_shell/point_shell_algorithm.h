@@ -9,7 +9,7 @@
 #include "osteomill/haptics/point_shell/point_shell_settings.h"
 #include "osteomill/haptics/point_shell/virtual_coupling.h"
 
-namespace osteomill {
+namespace osteomill::point_shell {
 
 /// Algorithm 3 of Eriksson 2012, modified Barbic and James 2008: the bone is a shell of points, the tool a
 /// signed distance field. Points inside the tool push it out; a virtual coupling pulls it to the device; each
@@ -23,7 +23,7 @@ namespace osteomill {
 class PointShellAlgorithm final : public HapticAlgorithm {
  public:
   /// Throws std::invalid_argument where a setting is out of range.
-  explicit PointShellAlgorithm(const PointShellSettings& settings);
+  explicit PointShellAlgorithm(const Settings& settings);
 
   void prepare(const Scene& scene) override;
   HapticStep step(const Pose& X_WD, double dt_s) override;
@@ -31,7 +31,7 @@ class PointShellAlgorithm final : public HapticAlgorithm {
   void reset() override;
   int sample_point_count() const override { return static_cast<int>(shell_.point_count()); }
 
-  const PointShellSettings& settings() const { return settings_; }
+  const Settings& settings() const { return settings_; }
   const PointShell& shell() const { return shell_; }
   const Penalty& penalty() const { return penalty_; }
 
@@ -44,7 +44,7 @@ class PointShellAlgorithm final : public HapticAlgorithm {
   HapticStep balanced(const Pose& X_WD, double dt_s);
   Wrench damping(const Pose& X_WD, double dt_s) const;
 
-  PointShellSettings settings_;
+  Settings settings_;
   VirtualCoupling coupling_;
   ContactTool tool_;
   PointShell shell_;
@@ -63,4 +63,4 @@ class PointShellAlgorithm final : public HapticAlgorithm {
   ToolMove stretch_;
 };
 
-}  // namespace osteomill
+}  // namespace osteomill::point_shell

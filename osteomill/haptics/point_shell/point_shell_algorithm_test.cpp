@@ -11,7 +11,7 @@
 #include "tests/shapes.h"
 #include <gtest/gtest.h>
 
-namespace osteomill {
+namespace osteomill::point_shell {
 namespace {
 
 using testing_support::ball;
@@ -31,8 +31,8 @@ Vec3 random_vector(std::mt19937& bits) {
   return {x, y, z};
 }
 
-PointShellSettings full_resolution(Mode mode) {
-  PointShellSettings settings = PointShellSettings::defaults(mode);
+Settings full_resolution(Mode mode) {
+  Settings settings = Settings::defaults(mode);
   settings.shell.scale = 1;
   return settings;
 }
@@ -95,7 +95,7 @@ struct Slide {
   double greatest_step_N;
 };
 
-Slide slide_round_ball(const PointShellSettings& settings, double spacing_mm) {
+Slide slide_round_ball(const Settings& settings, double spacing_mm) {
   constexpr double kRadius = 4.0, kDepth = 0.5;
   const Volume volume = shape_volume(centred_cube(static_cast<int>(10.0 / spacing_mm), spacing_mm),
                                      ball({0.02, 0, 0}, kRadius));
@@ -127,7 +127,7 @@ Slide slide_round_ball(const PointShellSettings& settings, double spacing_mm) {
 }
 
 TEST(PointShellAlgorithm, SteadySlidesRoundABallWithoutARattle) {
-  PointShellSettings settings = full_resolution(Mode::steady);
+  Settings settings = full_resolution(Mode::steady);
   settings.translational_stiffness_N_per_mm = 1;
   for (const double spacing_mm : {0.125, 0.2}) {
     const Slide slide = slide_round_ball(settings, spacing_mm);
@@ -226,7 +226,7 @@ TEST(PointShellAlgorithm, AToolThatBeginsInsideBoneComesOutWithTheDevice) {
 TEST(PointShellAlgorithm, WhereBoneGivesWayTheWrenchFadesAtASpeed) {
   for (const double tick_s : {0.5e-3, 1e-3, 2e-3}) {
     Volume volume = shape_volume(centred_cube(40, 0.25), plane({0, 0, 0}, {0, 0, 1}));
-    const PointShellSettings settings = full_resolution(Mode::steady);
+    const Settings settings = full_resolution(Mode::steady);
     PointShellAlgorithm algorithm(settings);
     algorithm.prepare({&volume, kTool});
     Vec3 before;
@@ -248,7 +248,7 @@ TEST(PointShellAlgorithm, WhereBoneGivesWayTheWrenchFadesAtASpeed) {
     int ticks = 0;
     for (; before.norm() > 0 && ticks < 10000; ++ticks) {
       const Vec3 now = step_at(0.7);
-      const double at_a_speed = settings.translational_stiffness_N_per_mm * settings.greatest_release_mm_s;
+      const double at_a_speed = settings.translational_stiffness_N_per_mm * settings.max_release_mm_s;
       EXPECT_LE((now - before).norm(), (at_a_speed + before.norm() / 0.1) * tick_s + 1e-9);
       before = now;
     }
@@ -283,7 +283,7 @@ TEST(PointShellAlgorithm, TurningScanAndPosesTogetherTurnsTheWrench) {
   EXPECT_GT(greatest, 0.5);
 }
 
-std::vector<HapticStep> run_with_milling(const PointShellSettings& settings) {
+std::vector<HapticStep> run_with_milling(const Settings& settings) {
   Volume volume = shape_volume(centred_cube(50, 0.2), ball({0, 0, -1}, 3.5));
   PointShellAlgorithm algorithm(settings);
   algorithm.prepare({&volume, kTool});
@@ -322,7 +322,7 @@ TEST(PointShellAlgorithm, TheSameInputGivesTheSameBits) {
 
 // Without the kernel, the same run to the rounding of the sums.
 TEST(PointShellAlgorithm, TheBrickKernelChangesNothingThatCanBeFelt) {
-  PointShellSettings plain = full_resolution(Mode::steady);
+  Settings plain = full_resolution(Mode::steady);
   plain.brick_kernel = false;
   const auto fast = run_with_milling(full_resolution(Mode::steady));
   const auto slow = run_with_milling(plain);
@@ -352,7 +352,7 @@ TEST(PointShellAlgorithm, TheToolIsNotPulledThroughAWall) {
 
 TEST(PointShellAlgorithm, DampingActsOnTheSpeedOfTheStretchAlone) {
   const Volume volume = shape_volume(centred_cube(40, 0.2), plane({0, 0, 0}, {0, 0, 1}));
-  PointShellSettings damped = full_resolution(Mode::steady);
+  Settings damped = full_resolution(Mode::steady);
   damped.translational_damping_Ns_per_mm = 0.002;
   PointShellAlgorithm with(damped), without(full_resolution(Mode::steady));
   with.prepare({&volume, kTool});
@@ -382,38 +382,38 @@ TEST(PointShellAlgorithm, ResetForgetsTheContact) {
   EXPECT_EQ(step.wrench.force_N, Vec3::Zero());
 }
 
-TEST(PointShellSettings, TheContactStiffnessFollowsFromTheTwoRules) {
-  PointShellSettings paper = PointShellSettings::defaults(Mode::paper);
+TEST(Settings, TheContactStiffnessFollowsFromTheTwoRules) {
+  Settings paper = Settings::defaults(Mode::paper);
   const double kA = contact_stiffness_N_per_mm3(paper, kTool);
   // The penalty's peak on a plane, at d = 2r/3, is half as much again as the greatest force.
   EXPECT_NEAR(kA * std::numbers::pi * (1.5 - 1.0) * 1.0, 1.5 * 20, 1e-9);
-  const PointShellSettings steady = PointShellSettings::defaults(Mode::steady);
-  const double d = steady.greatest_depth_mm;
+  const Settings steady = Settings::defaults(Mode::steady);
+  const double d = steady.max_depth_mm;
   EXPECT_NEAR(contact_stiffness_N_per_mm3(steady, kTool) * std::numbers::pi * (1.5 - d) * d * d, 20, 1e-9);
   paper.contact_stiffness_N_per_mm3 = 7;
   EXPECT_EQ(contact_stiffness_N_per_mm3(paper, kTool), 7);
 }
 
-TEST(PointShellSettings, WhatIsOutOfRangeIsRefused) {
+TEST(Settings, WhatIsOutOfRangeIsRefused) {
   const auto refused = [](auto change) {
-    PointShellSettings settings = PointShellSettings::defaults(Mode::steady);
+    Settings settings = Settings::defaults(Mode::steady);
     change(settings);
     EXPECT_THROW(PointShellAlgorithm{settings}, std::invalid_argument);
   };
-  EXPECT_NO_THROW(PointShellAlgorithm(PointShellSettings::defaults(Mode::paper)));
-  EXPECT_NO_THROW(PointShellAlgorithm(PointShellSettings::defaults(Mode::steady)));
-  refused([](PointShellSettings& s) { s.shell.scale = 0; });
-  refused([](PointShellSettings& s) { s.shell.refreshed_points_per_tick = -1; });
-  refused([](PointShellSettings& s) { s.translational_stiffness_N_per_mm = 0; });
-  refused([](PointShellSettings& s) { s.torsional_stiffness_Nmm_per_rad = std::nan(""); });
-  refused([](PointShellSettings& s) { s.contact_stiffness_N_per_mm3 = -1; });
-  refused([](PointShellSettings& s) { s.solver_iterations = 0; });
-  refused([](PointShellSettings& s) { s.closed_form_distance = false; });
-  refused([](PointShellSettings& s) { s.shell.area_weights = false; });
-  refused([](PointShellSettings& s) { s.greatest_move_mm = -1; });
-  PointShellAlgorithm algorithm(PointShellSettings::defaults(Mode::steady));
+  EXPECT_NO_THROW(PointShellAlgorithm(Settings::defaults(Mode::paper)));
+  EXPECT_NO_THROW(PointShellAlgorithm(Settings::defaults(Mode::steady)));
+  refused([](Settings& s) { s.shell.scale = 0; });
+  refused([](Settings& s) { s.shell.refreshed_points_per_tick = -1; });
+  refused([](Settings& s) { s.translational_stiffness_N_per_mm = 0; });
+  refused([](Settings& s) { s.torsional_stiffness_Nmm_per_rad = std::nan(""); });
+  refused([](Settings& s) { s.contact_stiffness_N_per_mm3 = -1; });
+  refused([](Settings& s) { s.solver_iterations = 0; });
+  refused([](Settings& s) { s.closed_form_distance = false; });
+  refused([](Settings& s) { s.shell.area_weights = false; });
+  refused([](Settings& s) { s.max_move_mm = -1; });
+  PointShellAlgorithm algorithm(Settings::defaults(Mode::steady));
   EXPECT_THROW(algorithm.prepare({nullptr, kTool}), std::invalid_argument);
 }
 
 }  // namespace
-}  // namespace osteomill
+}  // namespace osteomill::point_shell

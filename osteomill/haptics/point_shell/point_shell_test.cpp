@@ -9,7 +9,7 @@
 #include "tests/shapes.h"
 #include <gtest/gtest.h>
 
-namespace osteomill {
+namespace osteomill::point_shell {
 namespace {
 
 using testing_support::ball;
@@ -22,13 +22,13 @@ double uniform(std::mt19937& bits, double from, double to) {
 }
 
 ShellRules paper_rules(int scale) {
-  ShellRules rules = PointShellSettings::defaults(Mode::paper).shell;
+  ShellRules rules = Settings::defaults(Mode::paper).shell;
   rules.scale = scale;
   return rules;
 }
 
 ShellRules steady_rules(int scale) {
-  ShellRules rules = PointShellSettings::defaults(Mode::steady).shell;
+  ShellRules rules = Settings::defaults(Mode::steady).shell;
   rules.scale = scale;
   return rules;
 }
@@ -299,4 +299,4 @@ TEST(BrickPoints, APoolThatRunsOutDropsPointsAndSaysSo) {
 }
 
 }  // namespace
-}  // namespace osteomill
+}  // namespace osteomill::point_shell

@@ -6,7 +6,7 @@
 
 #include "osteomill/haptics/bone_points/bits_above.h"
 
-namespace osteomill {
+namespace osteomill::point_shell {
 
 namespace {
 
@@ -223,4 +223,4 @@ void ShellLattice::weigh_by_area(Face& face, const Vec3& gradient_G) const {
   face.weight = face_mm2_[face.axis] * seen;
 }
 
-}  // namespace osteomill
+}  // namespace osteomill::point_shell

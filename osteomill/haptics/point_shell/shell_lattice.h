@@ -5,7 +5,7 @@
 #include "osteomill/haptics/point_shell/point_shell_settings.h"
 #include "osteomill/volume/volume.h"
 
-namespace osteomill {
+namespace osteomill::point_shell {
 
 /// The grid on which the shell finds the bone's surface, and how its nodes make up the cells that have one
 /// point each. Nodes are voxels, or (a coarse shell that samples anew) every `stride` voxels; a cell is
@@ -80,4 +80,4 @@ class ShellLattice {
   float bone_above_ = 0;
 };
 
-}  // namespace osteomill
+}  // namespace osteomill::point_shell

@@ -2,7 +2,7 @@
 
 #include "osteomill/haptics/point_shell/point_shell.h"
 
-namespace osteomill {
+namespace osteomill::point_shell {
 
 /// The grid's frame G seen from the tool: a point of G lies at `offset_mm + turn * p_G` in T. The turn
 /// mirrors where the grid is left-handed.
@@ -26,4 +26,4 @@ inline Vec3 normal_of(const ShellPoint& point) {
           static_cast<double>(point.normal_z)};
 }
 
-}  // namespace osteomill
+}  // namespace osteomill::point_shell

@@ -4,7 +4,7 @@
 
 #include <Eigen/Cholesky>
 
-namespace osteomill {
+namespace osteomill::point_shell {
 
 ToolMove limited(const ToolMove& move, double greatest_mm, double greatest_rad) {
   const double length_mm = move.translation_mm.norm(), angle_rad = move.rotation_rad.norm();
@@ -40,4 +40,4 @@ ToolMove balancing_move(const VirtualCoupling& coupling, const Pose& X_WT, const
   return {move.head<3>(), move.tail<3>()};
 }
 
-}  // namespace osteomill
+}  // namespace osteomill::point_shell

@@ -4,7 +4,7 @@
 #include "osteomill/haptics/point_shell/contact_sum.h"
 #include "osteomill/haptics/tool_move.h"
 
-namespace osteomill {
+namespace osteomill::point_shell {
 
 /// A spring between the simulated tool and the device.
 struct VirtualCoupling {
@@ -25,4 +25,4 @@ Wrench wrench_on_hand(const VirtualCoupling& coupling, const Pose& X_WT, const P
 ToolMove balancing_move(const VirtualCoupling& coupling, const Pose& X_WT, const Pose& X_WD,
                         const ContactSum& contacts);
 
-}  // namespace osteomill
+}  // namespace osteomill::point_shell

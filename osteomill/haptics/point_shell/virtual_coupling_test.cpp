@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace osteomill {
+namespace osteomill::point_shell {
 namespace {
 
 constexpr VirtualCoupling kCoupling{2.0, 1000.0};
@@ -78,4 +78,4 @@ TEST(VirtualCoupling, AMoveTowardsTheDeviceIsCutToWhatMayBeReleased) {
 }
 
 }  // namespace
-}  // namespace osteomill
+}  // namespace osteomill::point_shell

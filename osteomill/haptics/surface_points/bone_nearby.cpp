@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-namespace osteomill {
+namespace osteomill::surface_points {
 
 bool bone_near_disc(const Volume& volume, const Vec3& centre_W, const Vec3& axis_W, double radius_mm) {
   const GridGeometry& geometry = volume.geometry();
@@ -34,4 +34,4 @@ bool bone_near_disc(const Volume& volume, const Vec3& centre_W, const Vec3& axis
   return false;
 }
 
-}  // namespace osteomill
+}  // namespace osteomill::surface_points

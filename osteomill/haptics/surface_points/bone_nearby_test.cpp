@@ -9,7 +9,7 @@
 
 #include "osteomill/volume/sampling.h"
 
-namespace osteomill {
+namespace osteomill::surface_points {
 namespace {
 
 using testing_support::ball;
@@ -45,4 +45,4 @@ TEST(BoneNearby, NeverOverlooksBoneAndClearsMostOfTheAir) {
 }
 
 }  // namespace
-}  // namespace osteomill
+}  // namespace osteomill::surface_points

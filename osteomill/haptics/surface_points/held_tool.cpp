@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace osteomill {
+namespace osteomill::surface_points {
 
 namespace {
 
@@ -94,4 +94,4 @@ const Pose& HeldTool::follow(const Pose& X_WD) {
   return X_WT_;
 }
 
-}  // namespace osteomill
+}  // namespace osteomill::surface_points

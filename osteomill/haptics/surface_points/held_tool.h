@@ -4,7 +4,7 @@
 
 #include "osteomill/haptics/surface_points/tool_contacts.h"
 
-namespace osteomill {
+namespace osteomill::surface_points {
 
 /// A tool that follows the device as far as the bone lets it: a god-object with six degrees of freedom. Each
 /// step it goes to the pose nearest to the device's that overlaps no bone, as far as that is known from where
@@ -54,4 +54,4 @@ class HeldTool {
   bool placed_ = false;
 };
 
-}  // namespace osteomill
+}  // namespace osteomill::surface_points

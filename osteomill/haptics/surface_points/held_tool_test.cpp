@@ -5,7 +5,7 @@
 #include "tests/shapes.h"
 #include <gtest/gtest.h>
 
-namespace osteomill {
+namespace osteomill::surface_points {
 namespace {
 
 using testing_support::ball;
@@ -95,4 +95,4 @@ TEST(HeldTool, TheShaftsEndIsHeldToo) {
 }
 
 }  // namespace
-}  // namespace osteomill
+}  // namespace osteomill::surface_points

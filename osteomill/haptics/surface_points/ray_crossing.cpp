@@ -5,7 +5,7 @@
 
 #include "osteomill/volume/sampling.h"
 
-namespace osteomill {
+namespace osteomill::surface_points {
 
 namespace {
 
@@ -65,4 +65,4 @@ std::optional<double> share_to_bone(const Volume& volume, const Vec3& from_W, co
   return free < 1 ? first_bone(volume, ray, free, 1, kTolerance) : std::nullopt;
 }
 
-}  // namespace osteomill
+}  // namespace osteomill::surface_points

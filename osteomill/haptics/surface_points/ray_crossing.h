@@ -4,7 +4,7 @@
 
 #include "osteomill/volume/volume.h"
 
-namespace osteomill {
+namespace osteomill::surface_points {
 
 /// A straight way through the grid in continuous voxel coordinates: `origin + t * way`.
 struct VoxelRay {
@@ -24,4 +24,4 @@ std::optional<double> first_bone(const Volume& volume, const VoxelRay& ray, doub
 std::optional<double> share_to_bone(const Volume& volume, const Vec3& from_W, const Vec3& to_W,
                                     double known_free_mm = 0);
 
-}  // namespace osteomill
+}  // namespace osteomill::surface_points

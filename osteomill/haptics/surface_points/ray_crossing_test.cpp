@@ -7,7 +7,7 @@
 
 #include "osteomill/volume/isosurface.h"
 
-namespace osteomill {
+namespace osteomill::surface_points {
 namespace {
 
 using testing_support::ball;
@@ -37,4 +37,4 @@ TEST(RayCrossing, AgreesWithTheSlowSearch) {
 }
 
 }  // namespace
-}  // namespace osteomill
+}  // namespace osteomill::surface_points

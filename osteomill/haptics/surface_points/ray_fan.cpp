@@ -6,7 +6,7 @@
 
 #include <Eigen/LU>
 
-namespace osteomill {
+namespace osteomill::surface_points {
 
 namespace {
 
@@ -44,4 +44,4 @@ Vec3 nearest_direction(std::span<const Vec3> directions, const RayFan& fan, cons
   return inverse_distance.normalized();
 }
 
-}  // namespace osteomill
+}  // namespace osteomill::surface_points

@@ -6,7 +6,7 @@
 
 #include "osteomill/volume/volume.h"
 
-namespace osteomill {
+namespace osteomill::surface_points {
 
 /// Directions from one centre, and which of them lie side by side.
 struct RayFan {
@@ -29,4 +29,4 @@ using RayDistances = std::array<double, RayFan::kMostRays>;
 Vec3 nearest_direction(std::span<const Vec3> directions, const RayFan& fan, const RayDistances& distance_mm,
                        std::size_t n, const Vec3& axis);
 
-}  // namespace osteomill
+}  // namespace osteomill::surface_points

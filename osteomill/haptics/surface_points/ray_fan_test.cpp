@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace osteomill {
+namespace osteomill::surface_points {
 namespace {
 
 RayFan hedgehog() {
@@ -74,4 +74,4 @@ TEST(RayFan, TooManyRaysAreRefused) {
 }
 
 }  // namespace
-}  // namespace osteomill
+}  // namespace osteomill::surface_points

@@ -11,7 +11,7 @@
 #include "osteomill/tool/sample_points.h"
 #include "osteomill/volume/sampling.h"
 
-namespace osteomill {
+namespace osteomill::surface_points {
 
 namespace {
 
@@ -19,11 +19,11 @@ constexpr double kRateFilter_s = 2e-3;
 // A held centre stays this far outside bone, so that no spring's walk begins inside by rounding.
 constexpr double kClearOfSurface_mm = 0.01;
 // The held tool's bite and what it may lag behind by.
-constexpr double kHeldToolMayOverlap_mm = SurfacePointsSettings::kGreatestBite_mm + 0.15;
+constexpr double kHeldToolMayOverlap_mm = Settings::kMaxBite_mm + 0.15;
 
 }  // namespace
 
-SurfacePoints::SurfacePoints(const SurfacePointsSettings& settings) : settings_(settings) {
+SurfacePoints::SurfacePoints(const Settings& settings) : settings_(settings) {
   require_valid(settings_);
 }
 
@@ -44,8 +44,8 @@ void SurfacePoints::prepare(const Scene& scene) {
     rings_.push_back(std::move(fan));
   }
   if (rings > 0) ring_spacing_mm_ = (tool_.shaft_length_mm - shaft_start_mm(tool_)) / rings;
-  const double bite_mm = std::min(settings_.bite_voxels * volume_->geometry().spacing_mm.minCoeff(),
-                                  SurfacePointsSettings::kGreatestBite_mm);
+  const double bite_mm =
+      std::min(settings_.bite_voxels * volume_->geometry().spacing_mm.minCoeff(), Settings::kMaxBite_mm);
   held_tool_.prepare(*volume_, tool_, rings, std::min(bite_mm, 0.5 * tool_.burr_radius_mm));
 }
 
@@ -220,4 +220,4 @@ HapticStep SurfacePoints::step(const Pose& X_WD, double dt_s) {
   return result;
 }
 
-}  // namespace osteomill
+}  // namespace osteomill::surface_points

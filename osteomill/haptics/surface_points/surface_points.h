@@ -7,19 +7,19 @@
 #include "osteomill/haptics/surface_points/held_tool.h"
 #include "osteomill/haptics/surface_points/surface_points_settings.h"
 
-namespace osteomill {
+namespace osteomill::surface_points {
 
 /// Algorithm 2 of Eriksson 2012: vertices on the tool's surface, each that is in bone a spring back to the
 /// surface; the springs' forces and torques go straight to the hand (direct rendering, equations 14 to 21).
 ///
 /// As the paper has it, a sphere or slice whose centre is in bone sends the force of the step before, so the
 /// force has an upper limit beyond which the tool falls through, and nothing is held where the first contact
-/// is already that deep; a contact of the shaft alone sends a torque and no force. `SurfacePointsSettings`
+/// is already that deep; a contact of the shaft alone sends a torque and no force. `Settings`
 /// says what `steady` does instead.
 class SurfacePoints final : public HapticAlgorithm {
  public:
   /// Throws std::invalid_argument where a setting is out of range.
-  explicit SurfacePoints(const SurfacePointsSettings& settings);
+  explicit SurfacePoints(const Settings& settings);
 
   void prepare(const Scene& scene) override;
   HapticStep step(const Pose& X_WD, double dt_s) override;
@@ -57,7 +57,7 @@ class SurfacePoints final : public HapticAlgorithm {
   Vec3 soften(const Vec3& force_N) const;
   Vec3 damped(const Vec3& force_N, const Vec3& overlap_W_mm, double dt_s);
 
-  SurfacePointsSettings settings_;
+  Settings settings_;
   const Volume* volume_ = nullptr;
   MillingTool tool_;
   HeldTool held_tool_;
@@ -69,4 +69,4 @@ class SurfacePoints final : public HapticAlgorithm {
   double ring_spacing_mm_ = 0;
 };
 
-}  // namespace osteomill
+}  // namespace osteomill::surface_points

@@ -8,7 +8,7 @@
 
 #include "osteomill/haptics/surface_points/surface_points.h"
 
-namespace osteomill {
+namespace osteomill::surface_points {
 namespace {
 
 using testing_support::ball;
@@ -19,11 +19,11 @@ using testing_support::shape_volume;
 constexpr double kDt = 1e-3;
 const MillingTool kTool{1.5, 1.0, 25.0};
 
-SurfacePointsSettings steady() {
-  return SurfacePointsSettings::defaults(Mode::steady);
+Settings steady() {
+  return Settings::defaults(Mode::steady);
 }
 
-SurfacePoints prepared(const Volume& volume, const SurfacePointsSettings& settings) {
+SurfacePoints prepared(const Volume& volume, const Settings& settings) {
   SurfacePoints algorithm(settings);
   algorithm.prepare({&volume, kTool});
   return algorithm;
@@ -53,7 +53,7 @@ double integral_force_N(double k, double depth_mm) {
 TEST(SurfacePointsSteady, OnAPlaneTheForceIsTheIntegralOverTheSphere) {
   const Vec3 normal = Vec3(0.3, 0.2, 1).normalized();
   const Volume volume = slope(normal);
-  SurfacePointsSettings settings = steady();
+  Settings settings = steady();
   settings.greatest_stiffness_N_per_mm = 1e9;
   auto algorithm = prepared(volume, settings);
   std::mt19937_64 random(3);
@@ -77,7 +77,7 @@ TEST(SurfacePointsSteady, OnAPlaneTheForceIsTheIntegralOverTheSphere) {
 
 TEST(SurfacePointsSteady, TheContactIsNeverStifferThanAllowed) {
   const Volume volume = slope(Vec3::UnitZ());
-  SurfacePointsSettings settings = steady();
+  Settings settings = steady();
   settings.contact_damping_s_per_mm = 0;
   auto algorithm = prepared(volume, settings);
   double before = 0;
@@ -290,4 +290,4 @@ TEST(SurfacePointsSteady, TheSameInputGivesTheSameBits) {
 }
 
 }  // namespace
-}  // namespace osteomill
+}  // namespace osteomill::surface_points

@@ -10,7 +10,7 @@
 #include "osteomill/haptics/surface_points/vertex_spring.h"
 #include "osteomill/tool/sample_points.h"
 
-namespace osteomill {
+namespace osteomill::surface_points {
 namespace {
 
 using testing_support::ball;
@@ -21,14 +21,14 @@ using testing_support::shape_volume;
 constexpr double kDt = 1e-3;
 const MillingTool kTool{1.5, 1.0, 25.0};
 
-SurfacePoints prepared(const Volume& volume, const SurfacePointsSettings& settings) {
+SurfacePoints prepared(const Volume& volume, const Settings& settings) {
   SurfacePoints algorithm(settings);
   algorithm.prepare({&volume, kTool});
   return algorithm;
 }
 
-SurfacePointsSettings paper() {
-  return SurfacePointsSettings::defaults(Mode::paper);
+Settings paper() {
+  return Settings::defaults(Mode::paper);
 }
 
 // Bone below z = 0, its density falling linearly from 5000 at z = -5 to -5000 at z = +5 about the isovalue 0:
@@ -149,7 +149,7 @@ TEST(SurfacePointsPaper, TheToolIsWhereTheDeviceIs) {
 }
 
 TEST(SurfacePoints, AnImpossibleSettingIsRefused) {
-  SurfacePointsSettings settings = paper();
+  Settings settings = paper();
   settings.stiffness_N_per_mm = 0;
   EXPECT_THROW(SurfacePoints{settings}, std::invalid_argument);
   settings = paper();
@@ -160,4 +160,4 @@ TEST(SurfacePoints, AnImpossibleSettingIsRefused) {
 }
 
 }  // namespace
-}  // namespace osteomill
+}  // namespace osteomill::surface_points

@@ -11,7 +11,7 @@
 #include "osteomill/tool/sample_points.h"
 #include "osteomill/volume/sampling.h"
 
-namespace osteomill {
+namespace osteomill::surface_points {
 
 namespace {
 
@@ -189,4 +189,4 @@ std::span<const ToolContact> SurfaceContacts::find(const Pose& X_WT) {
   return contacts_;
 }
 
-}  // namespace osteomill
+}  // namespace osteomill::surface_points

@@ -8,7 +8,7 @@
 #include "osteomill/tool/milling_tool.h"
 #include "osteomill/volume/volume.h"
 
-namespace osteomill {
+namespace osteomill::surface_points {
 
 /// A place where a tool touches bone, or would within a short way: the tool's point there, the bone's outward
 /// unit normal, and the way left between the two along it (negative where they overlap). In W.
@@ -70,4 +70,4 @@ class SurfaceContacts {
   std::size_t first_of_part_ = 0;
 };
 
-}  // namespace osteomill
+}  // namespace osteomill::surface_points

@@ -3,7 +3,7 @@
 #include "osteomill/haptics/surface_points/ray_crossing.h"
 #include "osteomill/volume/sampling.h"
 
-namespace osteomill {
+namespace osteomill::surface_points {
 
 double interpolated_share(double vertex_density, double free_density, double isovalue) {
   return (vertex_density - isovalue) / (vertex_density - free_density);
@@ -23,4 +23,4 @@ Vec3 marched_spring(const Volume& volume, const Vec3& vertex_W, const Vec3& free
   return share ? Vec3((1 - *share) * (free_W - vertex_W)) : Vec3(Vec3::Zero());
 }
 
-}  // namespace osteomill
+}  // namespace osteomill::surface_points

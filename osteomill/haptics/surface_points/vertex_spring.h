@@ -2,7 +2,7 @@
 
 #include "osteomill/volume/volume.h"
 
-namespace osteomill {
+namespace osteomill::surface_points {
 
 /// Where the spring of (15) from a colliding vertex (density above the isovalue) to a free point (density at
 /// or below it) meets the surface, if the density ran linearly between the two: a share in (0, 1] of the way
@@ -19,4 +19,4 @@ Vec3 interpolated_spring(const Volume& volume, const Vec3& vertex_W, const Vec3&
 /// tick.
 Vec3 marched_spring(const Volume& volume, const Vec3& vertex_W, const Vec3& free_W, double known_free_mm = 0);
 
-}  // namespace osteomill
+}  // namespace osteomill::surface_points

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+struct z_stream_s;
+
+namespace osteomill {
+
+/// How the bytes of a file are packed. zlib finds out itself which of the first two it is.
+enum class Packing { none, gzip_or_zlib, deflate };
+
+/// A file's bytes in order, unpacked while they are read.
+class ByteSource {
+ public:
+  /// From where `in` stands to the end of its file.
+  ByteSource(std::ifstream in, Packing packing);
+
+  /// Fills `bytes` as far as there are any left; returns how many.
+  std::size_t read(std::span<char> bytes);
+  /// Reads past some bytes; false where there are not as many.
+  bool skip(std::uint64_t count);
+
+  bool is_packed() const { return stream_ != nullptr; }
+  /// What the file holds from where the source began, packed as it is.
+  std::uint64_t bytes_in_file() const { return in_file_; }
+  /// How many of these were needed so far.
+  std::uint64_t bytes_used() const;
+  /// More bytes than this cannot come.
+  std::uint64_t max_bytes() const;
+  /// How many will come. Of what is packed nothing may have been read yet, and all of it is unpacked once.
+  std::uint64_t bytes_to_come();
+  /// What was packed came to its proper end, and its checksums are right.
+  bool ended_well() const { return ended_; }
+
+ private:
+  struct EndInflate {
+    void operator()(z_stream_s* stream) const;
+  };
+
+  void refill();
+
+  std::ifstream in_;
+  std::uint64_t in_file_ = 0;
+  std::unique_ptr<z_stream_s, EndInflate> stream_;
+  std::vector<char> input_;
+  std::uint64_t used_ = 0;
+  bool ended_ = false;
+  bool damaged_ = false;
+};
+
+/// Opens a file for reading. Throws InputError naming `subject` where `file` is not there, no regular file (a
+/// pipe would wait for ever) or cannot be read.
+std::ifstream open_regular_file(const std::string& subject, const std::filesystem::path& file);
+
+}  // namespace osteomill

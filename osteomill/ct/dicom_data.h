@@ -1,0 +1,38 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+class DcmFileFormat;
+
+namespace osteomill {
+
+/// A DICOM file as DCMTK reads it: its elements, with long values (the pixels) left in the file until they
+/// are asked for.
+struct DicomData {
+  std::shared_ptr<DcmFileFormat> file;
+  /// What DCMTK says where the file is damaged; elements read before that stand. Empty where all is well.
+  std::string damage;
+};
+
+/// Nothing where the file is not DICOM at all. Throws InputError naming the file where it cannot be opened,
+/// or is built to take more memory or deeper recursion than any scan. Only within `with_dicom_stack`.
+std::optional<DicomData> load_dicom(const std::filesystem::path& path);
+
+/// Runs `work` on a thread of its own, waits for it, and hands on what it throws. DCMTK goes down into
+/// sequences, and clears them away again, by recursion; its stack here is enough for any file that
+/// `load_dicom` lets through.
+void with_dicom_stack(const std::function<void()>& work);
+
+/// While it lives, on this thread: whether a JPEG decoder complained that its data are damaged. It then goes
+/// on with what it has, and says so in DCMTK's log alone.
+class JpegComplaints {
+ public:
+  JpegComplaints();
+  bool any() const;
+};
+
+}  // namespace osteomill

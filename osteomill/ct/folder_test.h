@@ -1,0 +1,41 @@
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "osteomill/ct/read_scan.h"
+#include "osteomill/files/input_error.h"
+#include "osteomill/files/temporary_folder.h"
+
+namespace osteomill::testing_support {
+
+/// A test with a folder of its own, and with what reading a scan from it says.
+class FolderTest : public ::testing::Test {
+ protected:
+  std::filesystem::path write(const std::string& name, const std::string& bytes) const {
+    std::ofstream(folder_ / name, std::ios::binary) << bytes;
+    return folder_ / name;
+  }
+
+  /// Why the path is refused; empty where it is read.
+  static std::string refusal(const std::filesystem::path& path) {
+    try {
+      read_scan(path);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  const TemporaryFolder temporary_;
+  const std::filesystem::path folder_ = temporary_.path();
+};
+
+inline bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+}  // namespace osteomill::testing_support

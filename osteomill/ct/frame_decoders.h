@@ -1,0 +1,30 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace osteomill {
+
+/// What a DICOM header says of each of its grey frames.
+struct FrameSize {
+  int columns = 0;
+  int rows = 0;
+  /// 1, 2 or 4.
+  int bytes_a_value = 0;
+
+  std::size_t values() const { return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows); }
+  std::size_t bytes() const { return values() * static_cast<std::size_t>(bytes_a_value); }
+};
+
+/// These decode what DCMTK does not decode, or not safely: its RLE decoder reads and writes where a damaged
+/// header tells it to. One frame each, into `values` with room for `size.bytes()`; false where the stream is
+/// damaged, cut short, or of another size.
+bool decode_rle(std::span<const unsigned char> stream, const FrameSize& size, std::span<char> values);
+bool decode_jpeg2000(std::span<const unsigned char> stream, const FrameSize& size, std::span<char> values);
+
+/// Whether a JPEG or JPEG-LS stream, if it is one, holds one grey image of that size, or less than so many
+/// bits. DCMTK takes the stream's word for it.
+bool jpeg_fits(std::span<const unsigned char> stream, const FrameSize& size);
+
+}  // namespace osteomill

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <cstddef>
+#include <utility>
+
+#include <readerwriterqueue/readerwriterqueue.h>
+#ifdef __SANITIZE_THREAD__
+#include <sanitizer/tsan_interface.h>
+extern "C" void __tsan_ignore_thread_begin();
+extern "C" void __tsan_ignore_thread_end();
+#endif
+
+namespace osteomill {
+
+/// A queue of fixed capacity from one thread to one other (moodycamel's, with what the thread sanitizer has
+/// to be told). Both ends are safe in the haptic tick (no allocation, lock or system call) where making and
+/// moving a T is. Made and destroyed while neither thread uses it.
+template <typename T>
+class SpscQueue {
+ public:
+  /// Room for `capacity` values or a few more. Touches all its memory, so that no tick is the first to.
+  explicit SpscQueue(std::size_t capacity) : queue_(capacity) {
+    while (queue_.try_enqueue(T())) {
+    }
+    while (queue_.pop()) {
+    }
+  }
+
+  /// For the sending thread: makes a value at its place in the queue; false, and nothing made or moved from,
+  /// where the queue is full.
+  template <typename... From>
+  bool try_push(From&&... from) {
+    const Access access(&queue_);
+    return queue_.try_emplace(std::forward<From>(from)...);
+  }
+  /// For the receiving thread: the oldest value; false where there is none.
+  bool try_pop(T& value) {
+    const Access access(&queue_);
+    return queue_.try_dequeue(value);
+  }
+  /// For the receiving thread: the oldest value at its place, its own until `pop`; null where there is none.
+  T* front() {
+    const Access access(&queue_);
+    return queue_.peek();
+  }
+  void pop() {
+    const Access access(&queue_);
+    queue_.pop();
+  }
+
+ private:
+  // The thread sanitizer does not know the fences by which the queue orders its places. It is told to leave
+  // them alone, and that what was written before a value went in is seen by who took it out.
+  class Access {
+   public:
+    explicit Access([[maybe_unused]] void* queue) {
+#ifdef __SANITIZE_THREAD__
+      queue_ = queue;
+      __tsan_release(queue_);
+      __tsan_ignore_thread_begin();
+#endif
+    }
+    ~Access() {
+#ifdef __SANITIZE_THREAD__
+      __tsan_ignore_thread_end();
+      __tsan_acquire(queue_);
+#endif
+    }
+    Access(const Access&) = delete;
+    Access& operator=(const Access&) = delete;
+
+   private:
+#ifdef __SANITIZE_THREAD__
+    void* queue_;
+#endif
+  };
+
+  moodycamel::ReaderWriterQueue<T> queue_;
+};
+
+}  // namespace osteomill

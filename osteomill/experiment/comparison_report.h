@@ -1,0 +1,30 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "osteomill/experiment/measure_stability.h"
+#include "osteomill/experiment/study.h"
+#include "osteomill/recording/recording.h"
+
+namespace osteomill {
+
+/// What was measured beside the recordings.
+struct ReportExtras {
+  /// The recordings are then those of its first seed.
+  std::optional<Study> study;
+  std::vector<StabilityRow> stability;
+};
+
+/// Whether these are recordings of the test of section 8.2, and not of anything else that was milled.
+bool are_of_comparison(const std::vector<Recording>& recordings);
+
+/// The report of any session (write_report) with what the test of section 8.2 adds: the paper's findings held
+/// against it, and where there are extras, a section on each, with their numbers in study.csv and
+/// stability.csv. Returns the page's path. Throws as write_report does.
+std::filesystem::path write_comparison_report(const std::vector<Recording>& recordings,
+                                              const std::filesystem::path& out_dir,
+                                              const ReportExtras& extras = {});
+
+}  // namespace osteomill

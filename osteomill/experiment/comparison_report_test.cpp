@@ -1,0 +1,192 @@
+#include "osteomill/experiment/comparison_report.h"
+
+#include <fstream>
+#include <iterator>
+
+#include <gtest/gtest.h>
+
+#include "osteomill/experiment/paper.h"
+#include "osteomill/experiment/write_rates_report.h"
+#include "osteomill/files/input_error.h"
+#include "osteomill/haptics/algorithms.h"
+#include "osteomill/report/report_samples.h"
+
+namespace osteomill {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace testing_support;
+
+/// Rates at the paper's resolutions, beside the paper's own; the measured ones are made up.
+std::vector<RateRow> sample_rates() {
+  const auto row = [](std::string_view algorithm, const char* resolution, int points, double us,
+                      double paper_hz) {
+    return RateRow{algorithm_named(algorithm).id, resolution, points, us, 1.7 * us, 1e6 / us, paper_hz};
+  };
+  return {
+      row("line-proxy", "50 vertices", 51, 2.1, 984),    row("line-proxy", "100 vertices", 101, 4, 964),
+      row("line-proxy", "250 vertices", 251, 9, 884),    row("line-proxy", "500 vertices", 501, 18, 795),
+      row("line-proxy", "1000 vertices", 1001, 36, 544), row("surface-points", "10 slices", 104, 3, 974),
+      row("surface-points", "20 slices", 184, 5, 951),   row("surface-points", "30 slices", 264, 8, 922),
+      row("surface-points", "50 slices", 424, 13, 837),  row("surface-points", "100 slices", 824, 25, 622),
+      row("point-shell", "scale 1", 73800, 24, 127),     row("point-shell", "scale 2", 18549, 9, 507),
+      row("point-shell", "scale 3", 8399, 5, 987),       row("point-shell", "scale 4", 4700, 3.2, 0)};
+}
+
+std::string bytes_of(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+std::vector<std::string> names_in(const fs::path& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder)) names.push_back(entry.path().filename().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+class ReportTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    out_ = fs::path(::testing::TempDir()) / (std::string("osteomill_report_") +
+                                             ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    fs::remove_all(out_);
+  }
+  // Set OSTEOMILL_KEEP_REPORTS to look at what the tests have drawn.
+  void TearDown() override {
+    if (std::getenv("OSTEOMILL_KEEP_REPORTS") == nullptr) fs::remove_all(out_);
+  }
+
+  void expect_refused(const std::vector<Recording>& runs, const std::string& reason) {
+    try {
+      write_comparison_report(runs, out_);
+      ADD_FAILURE() << reason;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(reason), std::string::npos) << error.what();
+    }
+    EXPECT_FALSE(fs::exists(out_ / "report.html"));
+  }
+
+  fs::path out_;
+};
+
+TEST_F(ReportTest, AFullComparisonIsOnePageThatLoadsNothing) {
+  const fs::path page = write_comparison_report(sample_runs(), out_);
+  EXPECT_EQ(page, out_ / "report.html");
+  EXPECT_EQ(names_in(out_), (std::vector<std::string>{"figures", "report.html", "summary.csv"}));
+  std::vector<std::string> expected;
+  for (const char* name : {"bone", "fig6_rate", "fig7_force", "fig8_torque", "fig9_shaft"}) {
+    expected.push_back(std::string(name) + "_steady.png");
+    expected.push_back(std::string(name) + "_steady.svg");
+    EXPECT_LT(fs::file_size(out_ / "figures" / expected.back()), 1500000u) << name;
+    EXPECT_TRUE(bytes_of(out_ / "figures" / expected.back()).ends_with("</svg>\n\n")) << name;
+  }
+  EXPECT_EQ(names_in(out_ / "figures"), expected);
+  const std::string html = bytes_of(page);
+  EXPECT_TRUE(html.ends_with("</html>\n"));
+  for (const char* link : {"http", "<script", "<link", "url(", "src=\"f"}) {
+    EXPECT_EQ(html.find(link), std::string::npos) << link;
+  }
+  EXPECT_NE(html.find("osteomill compare --out &lt;folder&gt; --seed 1"), std::string::npos);
+  EXPECT_EQ(html.find("does not agree</span>"), std::string::npos);
+  const std::string summary = bytes_of(out_ / "summary.csv");
+  EXPECT_EQ(std::count(summary.begin(), summary.end(), '\n'), 7);
+  EXPECT_NE(summary.find("\npoint-shell,steady,holding,20000,"), std::string::npos);
+}
+
+TEST_F(ReportTest, OneRecordingIsEnough) {
+  Recording run = sample_run("surface-points", kHolding, Mode::paper, 500);
+  const std::string html = bytes_of(write_comparison_report({run}, out_));
+  EXPECT_NE(html.find("not recorded"), std::string::npos);
+  EXPECT_TRUE(fs::exists(out_ / "figures/fig9_shaft_paper.svg"));
+  EXPECT_FALSE(fs::exists(out_ / "figures/bone_paper.svg"));
+}
+
+TEST_F(ReportTest, BothModesHaveTheirOwnFiguresAndFindings) {
+  const std::vector<Recording> runs{sample_run("line-proxy", kHolding, Mode::steady, 200),
+                                    sample_run("line-proxy", kHolding, Mode::paper, 200)};
+  const std::string html = bytes_of(write_comparison_report(runs, out_));
+  EXPECT_NE(html.find("Mode: paper"), std::string::npos);
+  EXPECT_NE(html.find("Mode: steady"), std::string::npos);
+  EXPECT_EQ(names_in(out_ / "figures").size(), 16u);
+}
+
+TEST_F(ReportTest, AToolThatNeverMovesAndNeverTouchesIsDrawnToo) {
+  Recording run;
+  for (int n = 0; n < 100; ++n) {
+    TickRecord r;
+    r.time_s = 0.001 * n;
+    run.records.push_back(r);
+  }
+  write_comparison_report({run}, out_);
+  EXPECT_TRUE(fs::exists(out_ / "report.html"));
+}
+
+TEST_F(ReportTest, WhatAReaderMustKnowIsSaid) {
+  std::vector<Recording> runs;
+  for (const std::string& algorithm : algorithm_names()) {
+    runs.push_back(sample_run(algorithm, kHolding, Mode::steady, 200));
+  }
+  runs[0].complete = false;
+  runs[1].dropped = 7;
+  runs[2].description.scan_name = "<script>another</script>";
+  const std::string html = bytes_of(write_comparison_report(runs, out_));
+  EXPECT_NE(html.find("line-proxy-holding.h5 is unfinished"), std::string::npos);
+  EXPECT_NE(html.find("surface-points-holding.h5 lacks 7 ticks"), std::string::npos);
+  EXPECT_NE(html.find("point-shell-holding.h5 is of another scan"), std::string::npos);
+  EXPECT_NE(html.find("&lt;script&gt;another"), std::string::npos);
+  EXPECT_EQ(html.find("<script"), std::string::npos);
+}
+
+TEST_F(ReportTest, WherePicturesCouldNotBeMadeItIsSaidInTheirPlace) {
+  std::vector<Recording> runs{sample_run("line-proxy", kMilling, Mode::steady, 100)};
+  const std::string_view told = "No pictures of the bone: OpenGL could not be had";
+  EXPECT_EQ(bytes_of(write_report(runs, out_)).find(told), std::string::npos);
+  runs[0].pictures.clear();
+  runs[0].description.settings.push_back({std::string(kPicturesKey), "none, as OpenGL could not be had", ""});
+  const std::string html = bytes_of(write_report(runs, out_));
+  EXPECT_GT(html.find(told), html.find("<h3>Figures</h3>"));
+  EXPECT_LT(html.find(told), html.find("<figure>"));
+}
+
+TEST_F(ReportTest, DamagedPicturesAreNamed) {
+  std::vector<Recording> runs{sample_run("line-proxy", kMilling, Mode::steady, 100)};
+  runs[0].pictures[0].png = {1, 2, 3};
+  expect_refused(runs, "line-proxy-milling.h5: the picture 'after' is not a whole PNG");
+  runs[0].pictures[0].png = sample_png(true);
+  runs[0].pictures[0].png.resize(200);
+  expect_refused(runs, "is not a whole PNG");
+}
+
+TEST_F(ReportTest, AFolderThatCannotBeMadeIsNamed) {
+  std::ofstream(out_) << "a file";
+  expect_refused(sample_runs(Mode::steady, 100), out_.string());
+}
+
+TEST_F(ReportTest, RatesStandBesideThePapers) {
+  const fs::path page = write_rates_report(sample_rates(), out_);
+  EXPECT_EQ(page, out_ / "rates.html");
+  EXPECT_EQ(names_in(out_), (std::vector<std::string>{"figures", "rates.csv", "rates.html"}));
+  EXPECT_EQ(names_in(out_ / "figures"), (std::vector<std::string>{"rates.png", "rates.svg"}));
+  const std::string csv = bytes_of(out_ / "rates.csv");
+  EXPECT_TRUE(
+      csv.starts_with("algorithm,resolution,points,step_us_median,step_us_p99,rate_hz,paper_rate_hz\nline-"
+                      "proxy,50 vertices,51,2.1,"));
+  EXPECT_NE(csv.find("\npoint-shell,scale 4,4700,3.2,5.44,312500,\n"), std::string::npos) << csv;
+  const std::string html = bytes_of(page);
+  EXPECT_NE(html.find("14 of the 14 resolutions could run at 950 Hz"), std::string::npos);
+  EXPECT_NE(html.find("51 to 484 times as many steps"), std::string::npos);
+  EXPECT_EQ(html.find("http"), std::string::npos);
+}
+
+TEST_F(ReportTest, RatesOfAnyNameAndWithoutThePapersAreDrawn) {
+  std::vector<RateRow> rows{{algorithm_named("point-shell").id, "it's \"coarse\", `x`", 10, 5, 6, 2e5, 0}};
+  write_rates_report(rows, out_);
+  EXPECT_NE(bytes_of(out_ / "rates.csv").find("\"it's \"\"coarse\"\", `x`\",10"), std::string::npos);
+  EXPECT_THROW(write_rates_report({}, out_), InputError);
+  rows[0].rate_hz = 0;
+  EXPECT_THROW(write_rates_report(rows, out_), InputError);
+}
+
+}  // namespace
+}  // namespace osteomill

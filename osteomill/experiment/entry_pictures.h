@@ -1,0 +1,30 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "osteomill/experiment/run_events.h"
+#include "osteomill/operator/milling_entry.h"
+#include "osteomill/view/camera.h"
+#include "osteomill/volume/volume.h"
+
+namespace osteomill {
+
+/// PNGs of a bone from obliquely above an entry, before milling and after it, all from the same view. Where
+/// OpenGL cannot be had there are none, and a warning says so.
+class EntryPictures {
+ public:
+  EntryPictures(const Volume& before, double reference_density, const MillingEntry& entry,
+                const RunEvents& events);
+
+  const std::optional<std::vector<unsigned char>>& before() const { return before_; }
+  /// Nothing where there was none before either, or OpenGL failed since.
+  std::optional<std::vector<unsigned char>> of(const Volume& milled, const RunEvents& events) const;
+
+ private:
+  double reference_density_;
+  Camera camera_;
+  std::optional<std::vector<unsigned char>> before_;
+};
+
+}  // namespace osteomill

@@ -1,0 +1,229 @@
+#include "osteomill/experiment/findings.h"
+
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "osteomill/experiment/paper.h"
+
+namespace osteomill {
+
+namespace {
+
+constexpr std::string_view k3 = kPapersAlgorithms[2];
+
+constexpr double kBuzzRatio = 2.0;
+constexpr double kRestlessRatio = 1.5;
+
+// A value for each of the paper's algorithms, in its order.
+using PapersThree = std::array<double, kPapersAlgorithms.size()>;
+using Measure = std::function<double(const RunMetrics&)>;
+
+const Measure kForceBuzz = [](const RunMetrics& m) { return m.force_N.hp_rms; };
+const Measure kTorqueBuzz = [](const RunMetrics& m) { return m.torque_Nmm.hp_rms; };
+const Measure kTorqueStep = [](const RunMetrics& m) { return m.torque_Nmm.step_max; };
+const Measure kShaftSpread = [](const RunMetrics& m) { return m.shaft.spread_deg; };
+
+std::string during(std::string_view phase) {
+  return phase == kMilling ? "while milling" : "while holding";
+}
+
+// The measure of all three algorithms in a phase, or nothing where one is missing.
+std::optional<PapersThree> of_all(const RunGroup& group, std::string_view phase, const Measure& measure) {
+  PapersThree values{};
+  for (std::size_t n = 0; n < kPapersAlgorithms.size(); ++n) {
+    const MeasuredRun* run = group.find(kPapersAlgorithms[n], phase);
+    if (run == nullptr) return std::nullopt;
+    values[n] = measure(run->metrics);
+  }
+  return values;
+}
+
+Verdict verdict_of(bool agrees) {
+  return agrees ? Verdict::agrees : Verdict::does_not_agree;
+}
+
+// A finding about the three algorithms of one phase.
+Finding compare_three(const RunGroup& group, std::string_view phase, const Measure& measure, const char* unit,
+                      std::string paper_says, std::string rule,
+                      const std::function<bool(const PapersThree&)>& holds) {
+  Finding finding{std::move(paper_says), std::move(rule), "needs all three algorithms",
+                  Verdict::not_recorded};
+  if (const auto v = of_all(group, phase, measure)) {
+    finding.measured = fmt::format("1: {:.3g}, 2: {:.3g}, 3: {:.3g} {}", (*v)[0], (*v)[1], (*v)[2], unit);
+    finding.verdict = verdict_of(holds(*v));
+  }
+  return finding;
+}
+
+Finding rate_finding(const RunGroup& group) {
+  const auto slower = [](const MeasuredRun& a, const MeasuredRun& b) {
+    return a.metrics.rate_hz < b.metrics.rate_hz;
+  };
+  const MeasuredRun& slowest = *std::min_element(group.runs.begin(), group.runs.end(), slower);
+  const RunDescription& d = slowest.recording->description;
+  return {"Every algorithm holds the haptic rate",
+          fmt::format("the rate that a 1 kHz loop would hold is {:.0f} Hz or more in every recording",
+                      kLeastRate_hz),
+          fmt::format("lowest {:.1f} Hz ({}, {})", slowest.metrics.rate_hz, name_of(d.algorithm),
+                      during(d.segment)),
+          verdict_of(slowest.metrics.rate_hz >= kLeastRate_hz), true};
+}
+
+Finding force_finding(const RunGroup& group, std::string_view phase) {
+  return compare_three(
+      group, phase, kForceBuzz, "N", fmt::format("Force {}: 1 and 3 are steady, 2 buzzes", during(phase)),
+      fmt::format("the force above {:.0f} Hz (rms) of 2 is at least {} times that of 1 and of 3",
+                  kBuzzAbove_hz, kBuzzRatio),
+      [](const auto& v) { return v[1] >= kBuzzRatio * v[0] && v[1] >= kBuzzRatio * v[2]; });
+}
+
+Finding worst_torque_finding(const RunGroup& group, std::string_view phase) {
+  return compare_three(
+      group, phase, kTorqueBuzz, "N mm", fmt::format("Torque {}: 1 is the worst, 2 is better", during(phase)),
+      fmt::format("the torque above {:.0f} Hz (rms) of 1 is the greatest of the three", kBuzzAbove_hz),
+      [](const auto& v) { return v[0] > v[1] && v[0] > v[2]; });
+}
+
+Finding kick_finding(const RunGroup& group) {
+  return compare_three(group, kMilling, kTorqueStep, "N mm",
+                       "Torque while milling: the shaft is kicked away in 1, with a peak",
+                       "the greatest change of torque from one tick to the next is that of 1",
+                       [](const auto& v) { return v[0] > v[1] && v[0] > v[2]; });
+}
+
+Finding best_torque_finding(const RunGroup& group) {
+  return compare_three(
+      group, kHolding, kTorqueBuzz, "N mm", "Torque while holding: 3 is the best",
+      fmt::format("the torque above {:.0f} Hz (rms) of 3 is the least of the three", kBuzzAbove_hz),
+      [](const auto& v) { return v[2] < v[0] && v[2] < v[1]; });
+}
+
+Finding restless_finding(const RunGroup& group) {
+  Finding finding{
+      "Torque of 3: a little restless while milling",
+      fmt::format("its torque above {:.0f} Hz (rms) is at least {} times as great while milling as "
+                  "while holding",
+                  kBuzzAbove_hz, kRestlessRatio),
+      "needs both phases of 3", Verdict::not_recorded};
+  const MeasuredRun* milling = group.find(k3, kMilling);
+  const MeasuredRun* holding = group.find(k3, kHolding);
+  if (milling != nullptr && holding != nullptr) {
+    const double moving = kTorqueBuzz(milling->metrics);
+    const double still = kTorqueBuzz(holding->metrics);
+    finding.measured = fmt::format("milling: {:.3g}, holding: {:.3g} N mm", moving, still);
+    finding.verdict = verdict_of(moving > 0 && moving >= kRestlessRatio * still);
+  }
+  return finding;
+}
+
+Finding shaft_finding(const RunGroup& group, std::string_view phase) {
+  return compare_three(group, phase, kShaftSpread, "degrees",
+                       fmt::format("Shaft direction {}: 3 is the most compact", during(phase)),
+                       "the spread (rms angle about the mean direction) of 3 is the least of the three",
+                       [](const auto& v) { return v[2] < v[0] && v[2] < v[1]; });
+}
+
+struct Ranked {
+  AlgorithmId algorithm;
+  double value;
+};
+
+std::vector<Ranked> ranked(const RunGroup& group, std::string_view phase, const Measure& measure) {
+  std::vector<Ranked> order;
+  for (const AlgorithmId& algorithm : group.algorithms()) {
+    if (const MeasuredRun* run = group.find(algorithm.name, phase))
+      order.push_back({algorithm, measure(run->metrics)});
+  }
+  std::stable_sort(order.begin(), order.end(),
+                   [](const Ranked& a, const Ranked& b) { return a.value < b.value; });
+  return order;
+}
+
+std::string times(double ratio) {
+  if (ratio < 1.05) return "about the same";
+  return ratio < 9.95 ? fmt::format("{:.1f} times as much", ratio)
+                      : fmt::format("{:.0f} times as much", ratio);
+}
+
+// "the force buzzed least with point-shell: 0.012 N rms above 20 Hz, against 0.02 N with line-proxy (1.7
+// times as much)."
+std::string ranking_sentence(const RunGroup& group, std::string_view phase, const Measure& measure,
+                             const char* what, const char* unit, const char* explained) {
+  const std::vector<Ranked> order = ranked(group, phase, measure);
+  const Ranked& best = order.front();
+  const std::string best_value = fmt::format("{:.3g} {}{}", best.value, unit, explained);
+  if (order.size() == 1)
+    return fmt::format("{} came to {} with {}.", what, best_value, name_of(best.algorithm));
+  std::string others;
+  for (std::size_t n = 1; n < order.size(); ++n) {
+    const std::string ratio = best.value > 0 ? fmt::format(" ({})", times(order[n].value / best.value)) : "";
+    others += fmt::format("{}{:.3g} {} with {}{}", n == 1 ? "" : " and ", order[n].value, unit,
+                          name_of(order[n].algorithm), ratio);
+  }
+  return fmt::format("{} was least with {}: {}, against {}.", what, name_of(best.algorithm), best_value,
+                     others);
+}
+
+std::string phase_paragraph(const RunGroup& group, std::string_view phase) {
+  std::string start = during(phase);
+  start[0] = 'W';
+  return fmt::format(
+      "{}, {} {} {}", start,
+      ranking_sentence(group, phase, kForceBuzz, "the buzz in the force", "N", " rms above 20 Hz"),
+      ranking_sentence(group, phase, kTorqueBuzz, "The buzz in the torque", "N mm", " rms above 20 Hz"),
+      ranking_sentence(group, phase, kShaftSpread, "The spread of the shaft's direction", "degrees", " rms"));
+}
+
+std::string count_sentence(const std::vector<Finding>& findings) {
+  const auto count = [&](Verdict verdict) {
+    return std::count_if(findings.begin(), findings.end(),
+                         [&](const Finding& f) { return f.verdict == verdict; });
+  };
+  const auto agree = count(Verdict::agrees);
+  const auto tested = agree + count(Verdict::does_not_agree);
+  return fmt::format(
+      "Of the paper's {} findings these recordings can test {}; {} of them {} (see the table).",
+      findings.size(), tested, agree, agree == 1 ? "agrees" : "agree");
+}
+
+}  // namespace
+
+std::string_view name_of(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::agrees:
+      return "agrees";
+    case Verdict::does_not_agree:
+      return "does not agree";
+    case Verdict::not_recorded:
+      return "not recorded";
+  }
+  return "";
+}
+
+std::vector<Finding> check_findings(const RunGroup& group) {
+  std::vector<Finding> findings{rate_finding(group)};
+  for (const std::string_view phase : kPhases) findings.push_back(force_finding(group, phase));
+  for (const std::string_view phase : kPhases) findings.push_back(worst_torque_finding(group, phase));
+  findings.push_back(kick_finding(group));
+  findings.push_back(best_torque_finding(group));
+  findings.push_back(restless_finding(group));
+  for (const std::string_view phase : kPhases) findings.push_back(shaft_finding(group, phase));
+  return findings;
+}
+
+std::vector<std::string> plain_paragraphs(const RunGroup& group, const std::vector<Finding>& findings) {
+  std::vector<std::string> paragraphs;
+  for (const std::string& phase : group.segments()) paragraphs.push_back(phase_paragraph(group, phase));
+  const Finding rate = rate_finding(group);
+  paragraphs.push_back(fmt::format("The rate of 1000 Hz is {} within 5 % {}: {}. {}",
+                                   rate.verdict == Verdict::agrees ? "held" : "not held",
+                                   rate.verdict == Verdict::agrees ? "in every recording" : "throughout",
+                                   rate.measured, count_sentence(findings)));
+  return paragraphs;
+}
+
+}  // namespace osteomill

@@ -1,0 +1,81 @@
+#include "osteomill/experiment/measure_rates.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <string>
+#include <string_view>
+
+namespace osteomill {
+
+namespace {
+
+// One resolution of the paper's tables.
+struct Resolution {
+  std::string_view algorithm;
+  int value;
+  double paper_rate_hz;
+};
+
+const Resolution kPaperResolutions[] = {
+    {"line-proxy", 50, 984},      {"line-proxy", 100, 964},    {"line-proxy", 250, 884},
+    {"line-proxy", 500, 795},     {"line-proxy", 1000, 544},   {"surface-points", 10, 974},
+    {"surface-points", 20, 951},  {"surface-points", 30, 922}, {"surface-points", 50, 837},
+    {"surface-points", 100, 622}, {"point-shell", 1, 127},     {"point-shell", 2, 507},
+    {"point-shell", 3, 987},
+};
+
+// "50 vertices", "scale 2"
+std::string text_of(const AlgorithmDescription& algorithm, int value) {
+  const std::string number = std::to_string(value);
+  const std::string& name = algorithm.resolution_name;
+  return name.ends_with('s') ? number + " " + name : name + " " + number;
+}
+
+double percentile(const std::vector<double>& sorted, double share) {
+  const double place = share * static_cast<double>(sorted.size() - 1);
+  return sorted[static_cast<std::size_t>(std::lround(place))];
+}
+
+std::vector<double> sorted_step_times_us(MillingTrial& trial) {
+  std::vector<double> touching;
+  std::vector<double> all;
+  while (!trial.finished()) {
+    const TickRecord record = trial.tick().record;
+    all.push_back(record.compute_us);
+    if (record.contacts > 0) touching.push_back(record.compute_us);
+  }
+  std::vector<double>& times = touching.empty() ? all : touching;
+  std::sort(times.begin(), times.end());
+  return times;
+}
+
+}  // namespace
+
+std::vector<RateRow> measure_rates(const Volume& bone, const BoneDensities& densities,
+                                   const MillingEntry& entry,
+                                   const std::vector<AlgorithmDescription>& algorithms,
+                                   const TrialSettings& settings,
+                                   const std::function<void(std::string_view, double)>& progress) {
+  std::vector<RateRow> rows;
+  int done = 0;
+  for (const Resolution& resolution : kPaperResolutions) {
+    progress(resolution.algorithm, static_cast<double>(done++) / std::size(kPaperResolutions));
+    const auto algorithm = std::find_if(algorithms.begin(), algorithms.end(),
+                                        [&](const auto& one) { return one.id == resolution.algorithm; });
+    if (algorithm == algorithms.end()) continue;
+    TrialSettings trial_settings = settings;
+    trial_settings.spindle = false;
+    trial_settings.haptics.named.push_back(
+        {algorithm->id.name, algorithm->resolution_setting, static_cast<double>(resolution.value)});
+    MillingTrial trial(bone, densities, entry, *algorithm, trial_settings);
+    const std::vector<double> times_us = sorted_step_times_us(trial);
+    const double median_us = percentile(times_us, 0.5);
+    rows.push_back({algorithm->id, text_of(*algorithm, resolution.value),
+                    trial.algorithm().sample_point_count(), median_us, percentile(times_us, 0.99),
+                    1e6 / median_us, resolution.paper_rate_hz});
+  }
+  return rows;
+}
+
+}  // namespace osteomill

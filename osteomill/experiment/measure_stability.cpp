@@ -1,0 +1,81 @@
+#include "osteomill/experiment/measure_stability.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace osteomill {
+
+namespace {
+
+constexpr double kDampings_Ns_per_mm[] = {0.001, 0.002, 0.005, 0.010};
+constexpr double kDelays_s[] = {0.3e-3, 1e-3, 2e-3};
+
+constexpr const char* kStiffnessOption = "stiffness";
+
+}  // namespace
+
+std::vector<StabilityCase> stability_cases(const std::vector<AlgorithmDescription>& algorithms,
+                                           const std::vector<Mode>& modes) {
+  std::vector<StabilityCase> cases;
+  for (const Mode mode : modes) {
+    for (const AlgorithmDescription& algorithm : algorithms) {
+      if (setting_of_option(algorithm, kStiffnessOption) == nullptr) continue;
+      for (const double delay_s : kDelays_s) {
+        for (const double damping : kDampings_Ns_per_mm) cases.push_back({algorithm, mode, damping, delay_s});
+      }
+    }
+  }
+  return cases;
+}
+
+Volume flat_wall(const MillingTool& tool) {
+  constexpr double kMargin_mm = 0.5, kAbove_mm = 1, kEdge_voxels = 2;
+  constexpr double kVoxelsToTheRadius = 12, kLeastVoxel_mm = 0.05, kMostVoxel_mm = 0.5;
+  constexpr float kIsovalue = 500;
+  const double spacing_mm =
+      std::clamp(tool.burr_radius_mm / kVoxelsToTheRadius, kLeastVoxel_mm, kMostVoxel_mm);
+  // Deeper than the handle is ever pressed, be it the burr's centre that is felt.
+  const double thick_mm = tool.burr_radius_mm + 4;
+  const double half_mm = tool.burr_radius_mm + kMargin_mm;
+  GridGeometry geometry;
+  geometry.dims[0] = geometry.dims[1] = 1 + 2 * static_cast<int>(std::ceil(half_mm / spacing_mm));
+  geometry.dims[2] = 1 + static_cast<int>(std::ceil((thick_mm + kAbove_mm) / spacing_mm));
+  geometry.spacing_mm = Vec3::Constant(spacing_mm);
+  // The surface lies between two layers, nearer to one of them: no voxel is on it.
+  geometry.origin_mm = {-0.5 * (geometry.dims[0] - 1) * spacing_mm,
+                        -0.5 * (geometry.dims[1] - 1) * spacing_mm,
+                        -(std::floor(thick_mm / spacing_mm) + 0.3) * spacing_mm};
+  std::vector<float> densities;
+  densities.reserve(geometry.voxel_count());
+  const auto layer = static_cast<std::size_t>(geometry.dims[0]) * static_cast<std::size_t>(geometry.dims[1]);
+  for (int k = 0; k < geometry.dims[2]; ++k) {
+    const double height_mm = geometry.world_from_voxel(VoxelIndex{0, 0, k}).z();
+    const double share = std::clamp(0.5 - height_mm / (kEdge_voxels * spacing_mm), 0.0, 1.0);
+    densities.insert(densities.end(), layer, static_cast<float>(2 * kIsovalue * share));
+  }
+  return Volume(DensityGrid(geometry, std::move(densities)), kIsovalue);
+}
+
+StabilityRow measure_stability(const StabilityCase& setup, const Volume& wall, const MillingTool& tool,
+                               const HapticSettings& haptics, const HandleSettings& handle, double tick_s) {
+  WallPress press;
+  press.handle = handle;
+  press.handle.force_delay_s = setup.delay_s;
+  press.damping_Ns_per_mm = setup.damping_Ns_per_mm;
+  press.tick_s = tick_s;
+  HapticSettings settings = haptics;
+  settings.mode = setup.mode;
+  const std::string stiffness = setting_of_option(setup.algorithm, kStiffnessOption)->name;
+  settings.named.push_back({setup.algorithm.id.name, stiffness, 0});
+  const auto press_at = [&](double stiffness_N_per_mm) {
+    settings.named.back().value = stiffness_N_per_mm;
+    const auto algorithm = make_algorithm(setup.algorithm, settings);
+    algorithm->prepare({&wall, tool});
+    return press_on_wall(*algorithm, tool.burr_radius_mm, press);
+  };
+  const double rule = passive_stiffness_rule_N_per_mm(setup.damping_Ns_per_mm, tick_s, setup.delay_s);
+  return {setup, seek_stiffness_limit(press_at, rule), rule};
+}
+
+}  // namespace osteomill

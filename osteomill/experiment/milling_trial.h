@@ -1,0 +1,53 @@
+#pragma once
+
+#include <vector>
+
+#include "osteomill/haptics/algorithms.h"
+#include "osteomill/operator/simulated_operator.h"
+#include "osteomill/session/milling_session.h"
+
+namespace osteomill {
+
+/// All that a trial depends on but the bone, the entry and the algorithm.
+struct TrialSettings {
+  MillingTool tool;
+  HapticSettings haptics;
+  MillingSettings milling;
+  WrenchLimits limits;
+  OperatorSettings hand_and_device;
+  double tick_s = 1e-3;
+  /// False lets the hand go through its motions without removing bone, as section 8.1 measures rates.
+  bool spindle = true;
+};
+
+/// One algorithm in the test of section 8.2, in simulated time: a simulated hand mills a hole, leans the
+/// shaft on its edge, and then stands in it with the spindle off. The same settings give the same records on
+/// any machine, but for the compute times.
+class MillingTrial {
+ public:
+  struct Tick {
+    TickRecord record;
+    /// The first part of the test, as against holding still.
+    bool milling_phase;
+  };
+
+  /// Copies the bone. Throws std::invalid_argument where a setting is out of range.
+  MillingTrial(const Volume& bone, const BoneDensities& densities, const MillingEntry& entry,
+               const AlgorithmDescription& algorithm, const TrialSettings& settings);
+
+  bool finished() const { return operator_.finished(); }
+  /// The next tick; then the hand and the device move on. No allocation.
+  Tick tick();
+
+  /// The bone as milled so far.
+  const Volume& volume() const { return session_.volume(); }
+  const HapticAlgorithm& algorithm() const { return session_.algorithm(); }
+
+ private:
+  MillingSession session_;
+  SimulatedOperator operator_;
+  double tick_s_;
+  bool spindle_;
+};
+
+}  // namespace osteomill

@@ -1,0 +1,44 @@
+#include "osteomill/experiment/parallel.h"
+
+#include <algorithm>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace osteomill {
+
+std::size_t core_count() {
+  return std::max(1u, std::thread::hardware_concurrency());
+}
+
+void run_in_parallel(std::size_t count, std::size_t threads, const std::function<void(std::size_t)>& task,
+                     const std::function<void(std::size_t)>& done) {
+  std::mutex mutex;
+  std::size_t next = 0;
+  std::size_t finished = 0;
+  std::exception_ptr fault;
+  const auto work = [&] {
+    std::unique_lock lock(mutex);
+    while (next < count && !fault) {
+      const std::size_t mine = next++;
+      lock.unlock();
+      std::exception_ptr mine_failed;
+      try {
+        task(mine);
+      } catch (...) {
+        mine_failed = std::current_exception();
+      }
+      lock.lock();
+      if (mine_failed && !fault) fault = mine_failed;
+      if (!fault) done(++finished);
+    }
+  };
+  std::vector<std::jthread> others;
+  for (std::size_t n = 1; n < std::min(threads, count); ++n) others.emplace_back(work);
+  work();
+  others.clear();
+  if (fault) std::rethrow_exception(fault);
+}
+
+}  // namespace osteomill

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+
+#include "osteomill/haptics/algorithm_description.h"
+
+namespace osteomill {
+
+/// One line of section 8.1: how fast an algorithm steps at one resolution.
+struct RateRow {
+  AlgorithmId algorithm;
+  /// As people say it: "50 vertices", "20 slices", "scale 2".
+  std::string resolution;
+  /// Sample points: vertices of the tool, or points of the shell.
+  int points = 0;
+  double step_us_median = 0;
+  double step_us_p99 = 0;
+  /// What the median step would allow with nothing else to do, not capped at the haptic rate.
+  double rate_hz = 0;
+  /// What the paper has for this resolution, capped by its 1000 Hz loop.
+  double paper_rate_hz = 0;
+};
+
+}  // namespace osteomill

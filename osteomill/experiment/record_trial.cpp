@@ -1,0 +1,72 @@
+#include "osteomill/experiment/record_trial.h"
+
+#include <memory>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "osteomill/experiment/entry_pictures.h"
+#include "osteomill/experiment/paper.h"
+#include "osteomill/recording/recorder.h"
+#include "osteomill/recording/recording.h"
+#include "osteomill/session/fault_count.h"
+
+namespace osteomill {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr int kTicksBetweenProgress = 500;
+
+std::string recording_name(const TrialPlan& plan, const AlgorithmDescription& algorithm,
+                           std::string_view phase) {
+  const std::string mode =
+      plan.mode_in_names ? fmt::format("-{}", name_of(plan.settings.haptics.mode)) : std::string();
+  return fmt::format("{}{}-{}.h5", algorithm.id.name, mode, phase);
+}
+
+void add_pictures(Recorder& recorder, const EntryPictures& pictures, const Volume& milled,
+                  const RunEvents& events) {
+  if (pictures.before()) recorder.add_picture(std::string(kPictureBefore), *pictures.before());
+  if (auto after = pictures.of(milled, events)) {
+    recorder.add_picture(std::string(kPictureAfter), *std::move(after));
+  }
+}
+
+}  // namespace
+
+std::vector<fs::path> record_trial(const TrialPlan& plan, const AlgorithmDescription& algorithm,
+                                   const EntryPictures& pictures, const fs::path& folder,
+                                   const RunEvents& events) {
+  MillingTrial trial(plan.bone, plan.densities, plan.entry, algorithm, plan.settings);
+  std::vector<fs::path> paths;
+  std::vector<std::unique_ptr<Recorder>> recorders;
+  for (const std::string_view phase : kPhases) {
+    paths.push_back(folder / recording_name(plan, algorithm, phase));
+    RunDescription run = describe_trial(plan, algorithm, trial.algorithm().sample_point_count(), phase);
+    if (!pictures.before()) {
+      run.settings.push_back({std::string(kPicturesKey), "none, as OpenGL could not be had", ""});
+    }
+    recorders.push_back(std::make_unique<Recorder>(paths.back(), run));
+  }
+  Recorder& milling = *recorders[0];
+  Recorder& holding = *recorders[1];
+  const ScriptSettings& script = plan.settings.hand_and_device.script;
+  FaultCount faults;
+  for (int n = 0; !trial.finished(); ++n) {
+    const MillingTrial::Tick tick = trial.tick();
+    (tick.milling_phase ? milling : holding).push_waiting(tick.record);
+    faults.add(tick.record);
+    if (n % kTicksBetweenProgress == 0) {
+      events.tell_progress(algorithm.id.name, tick.record.time_s / (script.milling_s + script.holding_s));
+    }
+  }
+  add_pictures(milling, pictures, trial.volume(), events);
+  milling.close();
+  holding.close();
+  if (const auto said = faults.sentence()) events.warn(fmt::format("{}: {}", algorithm.id.name, *said));
+  return paths;
+}
+
+}  // namespace osteomill

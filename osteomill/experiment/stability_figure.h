@@ -1,0 +1,14 @@
+#pragma once
+
+#include <span>
+
+#include "osteomill/experiment/measure_stability.h"
+#include "osteomill/report/figure.h"
+
+namespace osteomill {
+
+/// The stiffness felt at the limit over the device's damping, a panel for each delay and mode, with the rule
+/// of the ideal wall.
+Figure draw_stability_figure(std::span<const StabilityRow> rows, const std::filesystem::path& folder);
+
+}  // namespace osteomill

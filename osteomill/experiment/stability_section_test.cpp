@@ -1,0 +1,119 @@
+#include "osteomill/experiment/stability_section.h"
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+
+#include <gtest/gtest.h>
+
+#include "osteomill/experiment/comparison_report.h"
+#include "osteomill/experiment/stability_figure.h"
+#include "osteomill/haptics/algorithms.h"
+#include "osteomill/report/report_samples.h"
+
+namespace osteomill {
+namespace {
+
+namespace fs = std::filesystem;
+using Kind = StiffnessLimit::Kind;
+
+std::string bytes_of(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+// 1 follows the rule, 2 feels half of it and has none on the last device, 3 never ends. No measurement.
+std::vector<StabilityRow> sample_rows(const std::vector<Mode>& modes) {
+  std::vector<StabilityRow> rows;
+  for (const StabilityCase& setup : stability_cases(all_algorithms(), modes)) {
+    const double rule = passive_stiffness_rule_N_per_mm(setup.damping_Ns_per_mm, 1e-3, setup.delay_s);
+    StabilityRow row{setup, {Kind::found, rule, rule}, rule};
+    if (setup.algorithm.id == "surface-points") row.limit = {Kind::found, 4 * rule, 0.5 * rule};
+    if (setup.algorithm.id == "surface-points" && setup.damping_Ns_per_mm == 0.01) row.limit = {};
+    if (setup.algorithm.id == "point-shell") row.limit = {Kind::above_all, 200, 9};
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+class StabilitySectionTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    out_ = fs::path(::testing::TempDir()) / (std::string("osteomill_stability_") +
+                                             ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    fs::remove_all(out_);
+    fs::create_directories(out_);
+  }
+  // Set OSTEOMILL_KEEP_REPORTS to look at what the tests have drawn.
+  void TearDown() override {
+    if (std::getenv("OSTEOMILL_KEEP_REPORTS") == nullptr) fs::remove_all(out_);
+  }
+  fs::path out_;
+};
+
+TEST_F(StabilitySectionTest, TheTableHasEveryDeviceOnce) {
+  const auto rows = sample_rows({Mode::paper, Mode::steady});
+  write_stability_csv(out_ / "stability.csv", rows);
+  const std::string csv = bytes_of(out_ / "stability.csv");
+  EXPECT_TRUE(
+      csv.starts_with("algorithm,mode,device_damping_Ns_per_m,device_delay_s,limit,stiffness_N_per_mm,felt_N_"
+                      "per_mm,rule_N_per_mm\n"
+                      "line-proxy,paper,1,0.0003,found,1.25"))
+      << csv;
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 73);
+  EXPECT_NE(csv.find("surface-points,steady,10,0.002,none,0,0,4\n"), std::string::npos) << csv;
+  EXPECT_NE(csv.find("point-shell,steady,10,0.002,above,200,9,4\n"), std::string::npos) << csv;
+}
+
+TEST_F(StabilitySectionTest, TheWordsGiveTheRangeAgainstTheRule) {
+  const auto rows = sample_rows({Mode::steady});
+  const std::string html = stability_section(rows, draw_stability_figure(rows, out_));
+  EXPECT_NE(
+      html.find("1 line-proxy 1.00 to 1.00; 2 surface-points 0.50 to 0.50, and passive at no stiffness on 3 "
+                "of 12 devices; 3 point-shell"),
+      std::string::npos);
+  EXPECT_NE(html.find("none passive"), std::string::npos);
+  EXPECT_NE(html.find("over 200 → 9"), std::string::npos);
+  EXPECT_EQ(html.find("mode paper"), std::string::npos);
+  EXPECT_TRUE(bytes_of(out_ / "stability.svg").ends_with("</svg>\n\n"));
+}
+
+TEST_F(StabilitySectionTest, OneAlgorithmThatIsNeverPassiveIsDrawnToo) {
+  std::vector<StabilityRow> rows = sample_rows({Mode::paper});
+  std::erase_if(rows, [](const StabilityRow& row) { return row.setup.algorithm.id != "line-proxy"; });
+  for (StabilityRow& row : rows) row.limit = {};
+  const std::string html = stability_section(rows, draw_stability_figure(rows, out_));
+  EXPECT_NE(html.find("1 line-proxy passive on no device"), std::string::npos);
+}
+
+TEST_F(StabilitySectionTest, TheReportOfAStudyHasItsFilesFiguresAndWords) {
+  ReportExtras extras;
+  std::vector<StudyRow> trials;
+  const auto runs = testing_support::sample_runs(Mode::steady, 500);
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    for (const Recording& run : runs) {
+      const RunDescription& d = run.description;
+      SummaryRow row{d.algorithm, d.mode, d.segment, run_metrics(run)};
+      row.metrics.force_N.hp_rms *= 1 + 0.01 * static_cast<double>(seed);
+      trials.push_back({seed, random_hand(seed), row});
+    }
+  }
+  extras.study.emplace(trials);
+  extras.stability = sample_rows({Mode::steady});
+  const std::string html = bytes_of(write_comparison_report(runs, out_, extras));
+  for (const char* file : {"study.csv", "stability.csv", "summary.csv", "figures/study_milling.svg",
+                           "figures/study_holding.png", "figures/stability.svg"}) {
+    EXPECT_TRUE(fs::exists(out_ / file)) << file;
+  }
+  const std::size_t in_short = html.find("Over 8 hands, ");
+  const std::size_t study = html.find("Study over 8 hands");
+  const std::size_t stability = html.find("Stability against a flat wall");
+  EXPECT_LT(in_short, html.find("What was run"));
+  EXPECT_LT(html.find("What was run"), study);
+  EXPECT_LT(study, stability);
+  EXPECT_LT(stability, html.find("Mode: steady"));
+  for (const char* link : {"http", "<script", "url("}) EXPECT_EQ(html.find(link), std::string::npos) << link;
+}
+
+}  // namespace
+}  // namespace osteomill

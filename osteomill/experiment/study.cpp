@@ -1,0 +1,139 @@
+#include "osteomill/experiment/study.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <ostream>
+#include <stdexcept>
+#include <tuple>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "osteomill/experiment/paper.h"
+#include "osteomill/files/atomic_file.h"
+
+namespace osteomill {
+
+namespace {
+
+constexpr double kMmPerM = 1000;
+
+using M = RunMetrics;
+
+constexpr std::array<KeyMetric, 10> kKeyMetrics{{
+    {"force above 20 Hz, rms", "N", [](const M& m) { return m.force_N.hp_rms; }},
+    {"force above 20 Hz / mean force", "",
+     [](const M& m) { return m.force_N.mean > 0 ? m.force_N.hp_rms / m.force_N.mean : 0.0; }},
+    {"greatest force step", "N", [](const M& m) { return m.force_N.step_max; }},
+    {"torque above 20 Hz, rms", "N mm", [](const M& m) { return m.torque_Nmm.hp_rms; }},
+    {"greatest torque step", "N mm", [](const M& m) { return m.torque_Nmm.step_max; }},
+    {"mean torque", "N mm", [](const M& m) { return m.torque_Nmm.mean; }},
+    {"spread of the shaft", "degrees", [](const M& m) { return m.shaft.spread_deg; }},
+    {"bone removed", "mm³", [](const M& m) { return m.removed_mm3; }},
+    {"step time, median", "µs", [](const M& m) { return m.step_us.median; }},
+    {"step time, 99th percentile", "µs", [](const M& m) { return m.step_us.p99; }},
+}};
+
+// Phase before algorithm, as in summary.csv.
+auto place(const SummaryRow& row) {
+  return std::tuple(row.mode, phase_number(row.segment), row.algorithm);
+}
+
+template <typename Values, typename Matches>
+auto present(const Values& all, std::span<const StudyRow> rows, const Matches& matches) {
+  std::vector<typename Values::value_type> found;
+  for (const auto& value : all) {
+    const auto has_it = [&](const StudyRow& row) { return matches(row.summary, value); };
+    if (std::any_of(rows.begin(), rows.end(), has_it)) found.push_back(value);
+  }
+  return found;
+}
+
+}  // namespace
+
+std::span<const KeyMetric> key_metrics() {
+  return kKeyMetrics;
+}
+
+std::string label_of(const KeyMetric& metric) {
+  return *metric.unit == '\0' ? metric.name : fmt::format("{} ({})", metric.name, metric.unit);
+}
+
+std::string short_label(const AlgorithmId& algorithm) {
+  return algorithm.label.substr(0, algorithm.label.find(' '));
+}
+
+Study::Study(std::vector<StudyRow> rows) : rows_(std::move(rows)) {
+  if (rows_.empty()) throw std::invalid_argument("study: there are no trials");
+  std::map<std::uint64_t, std::size_t> order;
+  for (const StudyRow& row : rows_) {
+    if (order.emplace(row.seed, seeds_.size()).second) seeds_.push_back(row.seed);
+  }
+  std::stable_sort(rows_.begin(), rows_.end(), [&](const StudyRow& a, const StudyRow& b) {
+    return std::tuple(order.at(a.seed), place(a.summary)) < std::tuple(order.at(b.seed), place(b.summary));
+  });
+  const std::size_t each = rows_.size() / seeds_.size();
+  for (std::size_t n = 0; n < rows_.size(); ++n) {
+    const StudyRow& row = rows_[n];
+    const bool again = n % each != 0 && place(row.summary) == place(rows_[n - 1].summary);
+    if (again || row.seed != seeds_[std::min(n / each, seeds_.size() - 1)] ||
+        place(row.summary) != place(rows_[n % each].summary)) {
+      throw std::invalid_argument(fmt::format("study: seed {} was not tried as the others were", row.seed));
+    }
+  }
+}
+
+std::span<const StudyRow> Study::rows_of_seed(std::size_t n) const {
+  const std::size_t each = rows_.size() / seeds_.size();
+  return std::span(rows_).subspan(n * each, each);
+}
+
+std::vector<AlgorithmId> Study::algorithms() const {
+  std::vector<AlgorithmId> tried;
+  for (const StudyRow& row : rows_) tried.push_back(row.summary.algorithm);
+  return each_once(std::move(tried));
+}
+
+std::vector<Mode> Study::modes() const {
+  return present(std::array{Mode::paper, Mode::steady}, rows_,
+                 [](const SummaryRow& r, Mode mode) { return r.mode == mode; });
+}
+
+std::vector<std::string_view> Study::phases() const {
+  return present(kPhases, rows_,
+                 [](const SummaryRow& r, std::string_view phase) { return r.segment == phase; });
+}
+
+std::vector<KeyMetric> Study::metrics_of(std::string_view phase) const {
+  std::vector<KeyMetric> metrics;
+  for (const KeyMetric& metric : kKeyMetrics) {
+    const auto has_some = [&](const StudyRow& row) {
+      return row.summary.segment == phase && metric.value(row.summary.metrics) != 0;
+    };
+    if (std::any_of(rows_.begin(), rows_.end(), has_some)) metrics.push_back(metric);
+  }
+  return metrics;
+}
+
+std::vector<double> Study::values(const AlgorithmId& algorithm, Mode mode, std::string_view phase,
+                                  const KeyMetric& metric) const {
+  std::vector<double> values;
+  for (const StudyRow& row : rows_) {
+    if (place(row.summary) == std::tuple(mode, phase_number(phase), algorithm))
+      values.push_back(metric.value(row.summary.metrics));
+  }
+  return values;
+}
+
+void write_study_csv(const std::filesystem::path& path, const Study& study) {
+  write_text_atomically(path, [&](std::ostream& out) {
+    out << "seed,hand_stiffness_N_per_m,hand_damping_Ns_per_m," << summary_columns() << '\n';
+    for (const StudyRow& row : study.rows()) {
+      out << fmt::format("{},{},{},{}\n", row.seed, kMmPerM * row.hand.stiffness_N_per_mm,
+                         kMmPerM * row.hand.damping_Ns_per_mm, summary_fields(row.summary));
+    }
+  });
+}
+
+}  // namespace osteomill

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "osteomill/operator/hand.h"
+#include "osteomill/report/metrics.h"
+
+namespace osteomill {
+
+/// One phase of one trial of a study.
+struct StudyRow {
+  std::uint64_t seed = 0;
+  HandSettings hand;
+  SummaryRow summary;
+};
+
+/// A figure of merit that a study compares.
+struct KeyMetric {
+  const char* name;
+  /// Empty for a pure number.
+  const char* unit;
+  double (*value)(const RunMetrics&);
+};
+
+/// Force, torque, shaft, bone removed and compute time, in the order in which people should read them.
+std::span<const KeyMetric> key_metrics();
+
+/// "force above 20 Hz, rms (N)".
+std::string label_of(const KeyMetric& metric);
+
+/// The first word of an algorithm's label, for narrow places: "1" of "1 line-proxy".
+std::string short_label(const AlgorithmId& algorithm);
+
+/// The same trials with many seeds, each in a hand of its own, so that algorithms and modes can be compared
+/// seed by seed.
+class Study {
+ public:
+  /// Rows in any order. Throws std::invalid_argument where there are none, or where a seed lacks an
+  /// algorithm, mode and phase that another has, or has it twice.
+  explicit Study(std::vector<StudyRow> rows);
+
+  /// By seed, in the order in which seeds first came; within a seed as in summary.csv.
+  const std::vector<StudyRow>& rows() const { return rows_; }
+  const std::vector<std::uint64_t>& seeds() const { return seeds_; }
+  /// The rows of the n-th seed.
+  std::span<const StudyRow> rows_of_seed(std::size_t n) const;
+
+  /// What was tried, in the paper's order.
+  std::vector<AlgorithmId> algorithms() const;
+  std::vector<Mode> modes() const;
+  std::vector<std::string_view> phases() const;
+
+  /// The key metrics but those that are zero throughout a phase (bone removed while holding).
+  std::vector<KeyMetric> metrics_of(std::string_view phase) const;
+
+  /// The metric's values, one a seed in the order of `seeds`; none where that was not tried.
+  std::vector<double> values(const AlgorithmId& algorithm, Mode mode, std::string_view phase,
+                             const KeyMetric& metric) const;
+
+ private:
+  std::vector<StudyRow> rows_;
+  std::vector<std::uint64_t> seeds_;
+};
+
+/// Writes study.csv: seed, the hand's stiffness (N/m) and damping (N s/m), and the columns of summary.csv.
+/// Whole or not at all. Throws InputError where it cannot be written.
+void write_study_csv(const std::filesystem::path& path, const Study& study);
+
+}  // namespace osteomill

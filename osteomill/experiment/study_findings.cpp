@@ -1,0 +1,76 @@
+#include "osteomill/experiment/study_findings.h"
+
+#include <cmath>
+
+namespace osteomill {
+
+namespace {
+
+// P(Binomial(n, 1/2) >= k).
+double chance_of_at_least(std::size_t k, std::size_t n) {
+  double exactly = std::ldexp(1.0, -static_cast<int>(n));
+  double below = 0;
+  for (std::size_t m = 0; m < k; ++m) {
+    below += exactly;
+    exactly *= static_cast<double>(n - m) / static_cast<double>(m + 1);
+  }
+  return std::max(0.0, 1 - below);
+}
+
+double median_of(const Study& study, const SummaryRow& row, double (*value)(const RunMetrics&)) {
+  return distribution_of(study.values(row.algorithm, row.mode, row.segment, {"", "", value})).median;
+}
+
+// Every metric that a finding looks at.
+RunMetrics medians_of(const Study& study, const SummaryRow& row) {
+  RunMetrics m;
+  m.rate_hz = median_of(study, row, [](const RunMetrics& r) { return r.rate_hz; });
+  m.force_N.hp_rms = median_of(study, row, [](const RunMetrics& r) { return r.force_N.hp_rms; });
+  m.torque_Nmm.hp_rms = median_of(study, row, [](const RunMetrics& r) { return r.torque_Nmm.hp_rms; });
+  m.torque_Nmm.step_max = median_of(study, row, [](const RunMetrics& r) { return r.torque_Nmm.step_max; });
+  m.shaft.spread_deg = median_of(study, row, [](const RunMetrics& r) { return r.shaft.spread_deg; });
+  return m;
+}
+
+// Findings ask a recording for its description alone.
+std::vector<Finding> findings_of(const std::vector<SummaryRow>& rows, Mode mode) {
+  std::vector<Recording> recordings(rows.size());
+  RunGroup group{mode, {}};
+  for (std::size_t n = 0; n < rows.size(); ++n) {
+    RunDescription& d = recordings[n].description;
+    d.algorithm = rows[n].algorithm;
+    d.mode = rows[n].mode;
+    d.segment = rows[n].segment;
+    group.runs.push_back({&recordings[n], rows[n].metrics});
+  }
+  return check_findings(group);
+}
+
+std::vector<SummaryRow> summaries(std::span<const StudyRow> rows, Mode mode) {
+  std::vector<SummaryRow> of_mode;
+  for (const StudyRow& row : rows) {
+    if (row.summary.mode == mode) of_mode.push_back(row.summary);
+  }
+  return of_mode;
+}
+
+}  // namespace
+
+std::vector<StudyFinding> check_study_findings(const Study& study, Mode mode) {
+  std::vector<SummaryRow> medians = summaries(study.rows_of_seed(0), mode);
+  if (medians.empty()) return {};
+  for (SummaryRow& row : medians) row.metrics = medians_of(study, row);
+  std::vector<StudyFinding> findings;
+  for (Finding& finding : findings_of(medians, mode)) findings.push_back({std::move(finding)});
+  for (std::size_t seed = 0; seed < study.seeds().size(); ++seed) {
+    const std::vector<Finding> once = findings_of(summaries(study.rows_of_seed(seed), mode), mode);
+    for (std::size_t n = 0; n < once.size(); ++n) {
+      findings[n].agreeing += once[n].verdict == Verdict::agrees;
+      findings[n].tested += once[n].verdict != Verdict::not_recorded;
+    }
+  }
+  for (StudyFinding& finding : findings) finding.p = chance_of_at_least(finding.agreeing, finding.tested);
+  return findings;
+}
+
+}  // namespace osteomill

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "osteomill/experiment/findings.h"
+#include "osteomill/experiment/study.h"
+
+namespace osteomill {
+
+/// One of the paper's findings, over all seeds of a study.
+struct StudyFinding {
+  /// The rule applied to the medians over the seeds.
+  Finding of_medians;
+  /// In how many seeds the rule holds, and to how many it can be applied.
+  std::size_t agreeing = 0;
+  std::size_t tested = 0;
+  /// The chance of so many, or more, by tossing a coin: the sign test that the rule holds in more than half
+  /// of all hands. 1 where it was not tested.
+  double p = 1;
+};
+
+/// The paper's findings on one mode's trials.
+std::vector<StudyFinding> check_study_findings(const Study& study, Mode mode);
+
+}  // namespace osteomill

@@ -1,0 +1,185 @@
+#include "osteomill/experiment/study.h"
+
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+
+#include <gtest/gtest.h>
+
+#include "osteomill/experiment/paper.h"
+#include "osteomill/experiment/study_comparison.h"
+#include "osteomill/experiment/study_findings.h"
+#include "osteomill/experiment/study_section.h"
+#include "osteomill/experiment/study_words.h"
+#include "osteomill/haptics/algorithms.h"
+
+namespace osteomill {
+namespace {
+
+// Values by hand: what is tested is what is made of them.
+struct Values {
+  double force_hp = 0;
+  double torque_hp = 0;
+};
+
+StudyRow row(std::uint64_t seed, std::string_view algorithm, Mode mode, std::string_view phase,
+             const Values& values) {
+  StudyRow row{seed, {}, {algorithm_named(algorithm).id, mode, std::string(phase), {}}};
+  row.hand.stiffness_N_per_mm = 0.1 * static_cast<double>(seed);
+  row.summary.metrics.rate_hz = 1000;
+  row.summary.metrics.force_N.mean = 2;
+  row.summary.metrics.force_N.hp_rms = values.force_hp;
+  row.summary.metrics.torque_Nmm.hp_rms = values.torque_hp;
+  return row;
+}
+
+// Seeds from 1: in `paper` 2 buzzes ten times as much as 1 and 3, which change places from seed to seed; in
+// `steady` 2 has a tenth of its buzz.
+std::vector<StudyRow> sample_rows(std::uint64_t seeds) {
+  std::vector<StudyRow> rows;
+  for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+    const double hand = 1 + 0.01 * static_cast<double>(seed);
+    const double turn = seed % 2 == 0 ? 0.01 : -0.01;
+    for (const Mode mode : {Mode::steady, Mode::paper}) {
+      for (const std::string_view phase : {kHolding, kMilling}) {
+        rows.push_back(row(seed, "point-shell", mode, phase, {0.1 * hand - turn * hand, 1}));
+        rows.push_back(row(seed, "line-proxy", mode, phase, {0.1 * hand + turn * hand, 3}));
+        rows.push_back(row(seed, "surface-points", mode, phase, {hand * (mode == Mode::paper ? 1 : 0.1), 2}));
+      }
+    }
+  }
+  return rows;
+}
+
+const KeyMetric& force_hp() {
+  return key_metrics()[0];
+}
+
+TEST(Study, RowsAreOrderedBySeedAndThenAsInTheSummary) {
+  std::vector<StudyRow> rows = sample_rows(2);
+  for (StudyRow& r : rows) r.seed = r.seed == 1 ? 7 : 3;
+  const Study study(rows);
+  EXPECT_EQ(study.seeds(), (std::vector<std::uint64_t>{7, 3}));
+  EXPECT_EQ(study.rows().size(), 24u);
+  EXPECT_EQ(study.rows()[0].seed, 7u);
+  EXPECT_EQ(study.rows()[0].summary.mode, Mode::paper);
+  EXPECT_EQ(study.rows()[0].summary.segment, kMilling);
+  EXPECT_EQ(study.rows()[1].summary.algorithm, "surface-points");
+  EXPECT_EQ(study.rows_of_seed(1).front().seed, 3u);
+  EXPECT_EQ(study.values(algorithm_named("surface-points").id, Mode::paper, kHolding, force_hp()),
+            (std::vector<double>{1.01, 1.02}));
+  EXPECT_EQ(study.algorithms().size(), 3u);
+  EXPECT_EQ(study.modes(), (std::vector<Mode>{Mode::paper, Mode::steady}));
+}
+
+TEST(Study, SeedsThatWereNotTriedAlikeAreRefused) {
+  EXPECT_THROW(Study({}), std::invalid_argument);
+  for (const std::size_t missing : {0u, 5u, 11u, 12u, 35u}) {
+    std::vector<StudyRow> rows = sample_rows(3);
+    rows.erase(rows.begin() + static_cast<std::ptrdiff_t>(missing));
+    EXPECT_THROW(Study{rows}, std::invalid_argument) << missing;
+  }
+  std::vector<StudyRow> twice = sample_rows(2);
+  twice[3] = twice[4];
+  EXPECT_THROW(Study{twice}, std::invalid_argument);
+  std::vector<StudyRow> all_twice = sample_rows(1);
+  const std::vector<StudyRow> again = all_twice;
+  all_twice.insert(all_twice.end(), again.begin(), again.end());
+  EXPECT_THROW(Study{all_twice}, std::invalid_argument);
+}
+
+TEST(Study, WhatDiffersInEveryHandIsSignificantFromSevenHandsOn) {
+  for (const std::uint64_t seeds : {6u, 7u}) {
+    const Study study(sample_rows(seeds));
+    const auto pairs = compare_algorithms(study, Mode::paper, kMilling, force_hp());
+    ASSERT_EQ(pairs.size(), 3u);
+    EXPECT_EQ(pairs[0].greater, "surface-points");
+    EXPECT_EQ(pairs[2].greater, "surface-points");
+    // Two of three pairs lie at the least p, 2^(1 - n); Holm takes three times the first.
+    EXPECT_DOUBLE_EQ(pairs[0].p, 3 * std::pow(0.5, static_cast<double>(seeds) - 1));
+    EXPECT_EQ(pairs[0].p <= kSignificance, seeds == 7);
+    EXPECT_GT(pairs[1].p, 0.5);
+  }
+}
+
+TEST(Study, WhatSteadyChangesIsARatioOfPairs) {
+  const Study study(sample_rows(8));
+  const auto changes = compare_modes(study, kHolding, force_hp());
+  ASSERT_EQ(changes.size(), 3u);
+  EXPECT_NEAR(changes[1].ratio.median, 0.1, 1e-12);
+  EXPECT_EQ(changes[1].ratios, 8u);
+  EXPECT_TRUE(changes[1].falls);
+  EXPECT_DOUBLE_EQ(changes[1].p, 3 * std::pow(0.5, 7));
+  EXPECT_EQ(changes[0].p, 1);
+  EXPECT_EQ(changes[0].ratio.median, 1);
+  // Nothing to divide by.
+  const auto removed = compare_modes(study, kHolding, key_metrics()[7]);
+  EXPECT_EQ(removed[0].ratios, 0u);
+  EXPECT_EQ(removed[0].p, 1);
+}
+
+TEST(Study, FindingsAreCountedHandByHand) {
+  std::vector<StudyRow> rows = sample_rows(5);
+  for (StudyRow& r : rows) {
+    // Seed 4 alone does not buzz.
+    if (r.seed == 4 && r.summary.algorithm == "surface-points") r.summary.metrics.force_N.hp_rms = 0.01;
+  }
+  const auto findings = check_study_findings(Study(rows), Mode::paper);
+  ASSERT_EQ(findings.size(), 10u);
+  EXPECT_TRUE(findings[1].of_medians.paper_says.starts_with("Force while milling"));
+  EXPECT_EQ(findings[1].of_medians.verdict, Verdict::agrees);
+  EXPECT_EQ(findings[1].agreeing, 4u);
+  EXPECT_EQ(findings[1].tested, 5u);
+  // (5 + 1) / 32.
+  EXPECT_DOUBLE_EQ(findings[1].p, 0.1875);
+  EXPECT_EQ(findings[0].agreeing, 5u);
+  EXPECT_TRUE(check_study_findings(Study(sample_rows(1)), Mode::steady)[1].of_medians.verdict ==
+              Verdict::does_not_agree);
+}
+
+TEST(Study, TheSectionSaysWhatSoFewHandsCanShow) {
+  const std::string three = study_section(Study(sample_rows(3)), {});
+  EXPECT_NE(three.find("3 hands can give is 0.25, after the correction 0.75, so that no difference"),
+            std::string::npos);
+  EXPECT_NE(three.find("the range of all values: 3 hands are too few"), std::string::npos);
+  EXPECT_NE(three.find("100 to 300 N/m"), std::string::npos);
+  EXPECT_EQ(three.find("<b>2 &gt; 1</b>"), std::string::npos);
+  const std::string ten = study_section(Study(sample_rows(10)), {});
+  EXPECT_NE(ten.find("covers the median with 97.9 %"), std::string::npos);
+  EXPECT_NE(ten.find("<b>2 &gt; 1</b>"), std::string::npos);
+  EXPECT_NE(ten.find("What steady changes"), std::string::npos);
+  // Zero throughout.
+  EXPECT_EQ(ten.find("bone removed"), std::string::npos);
+}
+
+TEST(Study, InShortBothSentencesNameTheirNumbers) {
+  const std::string both = study_in_two_sentences(Study(sample_rows(8)));
+  // All but the rate.
+  EXPECT_NE(both.find("Over 8 hands, 5 of the paper's 9 findings"), std::string::npos) << both;
+  EXPECT_NE(both.find("steady lowers the force of 2 surface-points (× 0.1) and does not significantly change "
+                      "the force of 1 line-proxy (× 1), "),
+            std::string::npos)
+      << both;
+  std::vector<StudyRow> rows = sample_rows(8);
+  std::erase_if(rows, [](const StudyRow& r) { return r.summary.mode == Mode::steady; });
+  const std::string paper = study_in_two_sentences(Study(rows));
+  EXPECT_NE(paper.find("in the torque from 3 point-shell (significant)"), std::string::npos) << paper;
+  EXPECT_NE(paper.find("in the force from"), std::string::npos) << paper;
+  std::erase_if(rows, [](const StudyRow& r) { return r.summary.algorithm != "line-proxy"; });
+  EXPECT_NE(study_in_two_sentences(Study(rows)).find("One algorithm"), std::string::npos);
+}
+
+TEST(Study, TheTableHasARowForEachPhaseOfEachTrial) {
+  const std::filesystem::path path = std::filesystem::path(::testing::TempDir()) / "osteomill_study.csv";
+  write_study_csv(path, Study(sample_rows(2)));
+  std::ifstream in(path);
+  const std::string csv{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  EXPECT_TRUE(
+      csv.starts_with("seed,hand_stiffness_N_per_m,hand_damping_Ns_per_m,algorithm,mode,phase,steps,"));
+  EXPECT_NE(csv.find("\n2,200,5,point-shell,steady,holding,0,"), std::string::npos) << csv;
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 25);
+  std::filesystem::remove(path);
+}
+
+}  // namespace
+}  // namespace osteomill

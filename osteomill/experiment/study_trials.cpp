@@ -1,0 +1,87 @@
+#include "osteomill/experiment/study_trials.h"
+
+#include <array>
+
+#include <fmt/core.h>
+
+#include "osteomill/experiment/paper.h"
+#include "osteomill/experiment/parallel.h"
+#include "osteomill/session/fault_count.h"
+
+namespace osteomill {
+
+namespace {
+
+struct Trial {
+  std::array<Recording, kPhases.size()> phases;
+  FaultCount faults;
+};
+
+Trial run(const TrialPlan& plan, const AlgorithmDescription& algorithm) {
+  MillingTrial trial(plan.bone, plan.densities, plan.entry, algorithm, plan.settings);
+  Trial result;
+  for (std::size_t n = 0; n < kPhases.size(); ++n) {
+    Recording& recording = result.phases[n];
+    recording.description =
+        describe_trial(plan, algorithm, trial.algorithm().sample_point_count(), kPhases[n]);
+    recording.path = fmt::format("{}, seed {}", algorithm.id.name, recording.description.seed);
+  }
+  while (!trial.finished()) {
+    const MillingTrial::Tick tick = trial.tick();
+    result.phases[tick.milling_phase ? 0 : 1].records.push_back(tick.record);
+    result.faults.add(tick.record);
+  }
+  return result;
+}
+
+}  // namespace
+
+StudyRow row_of(const TrialPlan& plan, const Recording& recording) {
+  const RunDescription& d = recording.description;
+  return {
+      d.seed, plan.settings.hand_and_device.hand, {d.algorithm, d.mode, d.segment, run_metrics(recording)}};
+}
+
+TrialPlan with_seed(const TrialPlan& plan, std::uint64_t seed) {
+  TrialPlan other = plan;
+  OperatorSettings& person = other.settings.hand_and_device;
+  const HandSettings asked_for = person.hand;
+  person.seed = seed;
+  person.hand = random_hand(seed);
+  person.hand.push_N = asked_for.push_N;
+  person.hand.push_lever_mm = asked_for.push_lever_mm;
+  person.hand.tremor_mm = asked_for.tremor_mm;
+  return other;
+}
+
+std::vector<StudyRow> run_study_trials(const std::vector<TrialPlan>& plans,
+                                       const std::vector<AlgorithmDescription>& algorithms,
+                                       std::size_t threads, const RunEvents& events) {
+  const std::size_t count = plans.size() * algorithms.size();
+  std::vector<std::vector<StudyRow>> rows(count);
+  std::vector<FaultCount> faults(count);
+  const auto plan_of = [&](std::size_t n) -> const TrialPlan& { return plans[n / algorithms.size()]; };
+  const auto algorithm_of = [&](std::size_t n) -> const AlgorithmDescription& {
+    return algorithms[n % algorithms.size()];
+  };
+  const auto task = [&](std::size_t n) {
+    const Trial trial = run(plan_of(n), algorithm_of(n));
+    for (const Recording& recording : trial.phases) rows[n].push_back(row_of(plan_of(n), recording));
+    faults[n] = trial.faults;
+  };
+  run_in_parallel(count, threads, task, [&](std::size_t done) {
+    events.tell_progress("study", static_cast<double>(done) / static_cast<double>(count));
+  });
+  std::vector<StudyRow> all;
+  for (std::size_t n = 0; n < count; ++n) {
+    all.insert(all.end(), rows[n].begin(), rows[n].end());
+    const TrialSettings& settings = plan_of(n).settings;
+    if (const auto said = faults[n].sentence()) {
+      events.warn(fmt::format("{}, {}, seed {}: {}", algorithm_of(n).id.name, name_of(settings.haptics.mode),
+                              settings.hand_and_device.seed, *said));
+    }
+  }
+  return all;
+}
+
+}  // namespace osteomill

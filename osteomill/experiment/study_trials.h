@@ -1,0 +1,25 @@
+#pragma once
+
+#include <vector>
+
+#include "osteomill/experiment/run_events.h"
+#include "osteomill/experiment/study.h"
+#include "osteomill/experiment/trial_plan.h"
+
+namespace osteomill {
+
+/// The plan's trial with another seed, in the hand that this seed draws (random_hand); what the published
+/// ranges do not say of a hand (its push, its tremor) stays the plan's.
+TrialPlan with_seed(const TrialPlan& plan, std::uint64_t seed);
+
+/// The row of a phase that was recorded.
+StudyRow row_of(const TrialPlan& plan, const Recording& recording);
+
+/// Runs every algorithm under every plan, measures both phases, and keeps nothing else. Trials run side by
+/// side on `threads` threads, each in simulated time: but for the step times, the rows are the same however
+/// many. Warns where wrenches were clamped.
+std::vector<StudyRow> run_study_trials(const std::vector<TrialPlan>& plans,
+                                       const std::vector<AlgorithmDescription>& algorithms,
+                                       std::size_t threads, const RunEvents& events);
+
+}  // namespace osteomill

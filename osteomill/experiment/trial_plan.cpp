@@ -1,0 +1,63 @@
+#include "osteomill/experiment/trial_plan.h"
+
+#include <vector>
+
+#include <fmt/core.h>
+
+#include "osteomill/recording/describe_run.h"
+
+namespace osteomill {
+
+namespace {
+
+using Settings = std::vector<RunSetting>;
+
+std::string point_text(const Vec3& v) {
+  return fmt::format("{},{},{}", v.x(), v.y(), v.z());
+}
+
+void add_hand(Settings& settings, const HandSettings& hand) {
+  settings.push_back({"hand.push", hand.push_N, "N"});
+  settings.push_back({"hand.push_lever", hand.push_lever_mm, "mm"});
+  settings.push_back({"hand.stiffness", hand.stiffness_N_per_mm, "N/mm"});
+  settings.push_back({"hand.damping", hand.damping_Ns_per_mm, "N s/mm"});
+  settings.push_back({"hand.torsional_stiffness", hand.torsional_stiffness_Nmm_per_rad, "N mm/rad"});
+  settings.push_back({"hand.torsional_damping", hand.torsional_damping_Nmms_per_rad, "N mm s/rad"});
+  settings.push_back({"hand.tremor", hand.tremor_mm, "mm"});
+}
+
+void add_device(Settings& settings, const HandleSettings& device) {
+  settings.push_back({"device.mass", device.mass_kg, "kg"});
+  settings.push_back({"device.inertia", device.inertia_kg_m2, "kg m^2"});
+  settings.push_back({"device.position_step", device.position_step_mm, "mm"});
+  settings.push_back({"device.rotation_step", device.rotation_step_rad, "rad"});
+  settings.push_back({"device.force_delay", device.force_delay_s, "s"});
+  settings.push_back({"device.substep", device.substep_s, "s"});
+}
+
+void add_script(Settings& settings, const ScriptSettings& script, const MillingEntry& entry) {
+  settings.push_back({std::string(kScriptEntryKey), point_text(entry.point_W), "mm"});
+  settings.push_back({"script.direction", point_text(entry.direction_W), ""});
+  settings.push_back({"script.milling", script.milling_s, "s"});
+  settings.push_back({"script.holding", script.holding_s, "s"});
+  settings.push_back({"script.depth", script.depth_mm, "mm"});
+}
+
+}  // namespace
+
+RunDescription describe_trial(const TrialPlan& plan, const AlgorithmDescription& algorithm, int sample_points,
+                              std::string_view phase) {
+  const TrialSettings& trial = plan.settings;
+  const OperatorSettings& person = trial.hand_and_device;
+  RunDescription run =
+      describe_run({plan.scan_name, plan.bone.geometry(), plan.bone.isovalue(), plan.densities, trial.tool,
+                    trial.haptics, trial.milling, trial.limits, person.seed, trial.tick_s, plan.command_line},
+                   algorithm, sample_points);
+  run.segment = phase;
+  add_hand(run.settings, person.hand);
+  add_device(run.settings, person.handle);
+  add_script(run.settings, person.script, plan.entry);
+  return run;
+}
+
+}  // namespace osteomill

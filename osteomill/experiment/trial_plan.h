@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "osteomill/experiment/milling_trial.h"
+#include "osteomill/recording/run_description.h"
+
+namespace osteomill {
+
+/// What every algorithm of a comparison has in common.
+struct TrialPlan {
+  /// As scanned; outlives the plan.
+  const Volume& bone;
+  std::string scan_name;
+  BoneDensities densities;
+  MillingEntry entry;
+  TrialSettings settings;
+  /// How the comparison was called, for whoever wants to repeat it.
+  std::string command_line;
+  /// Recordings carry the mode in their names, as a comparison of both modes needs.
+  bool mode_in_names = false;
+};
+
+/// The key of the setting in which every recording of this test says where the tool enters.
+inline constexpr std::string_view kScriptEntryKey = "script.entry";
+
+/// All that a recording says of a phase of section 8.2: what any session's says, and hand, device and script.
+RunDescription describe_trial(const TrialPlan& plan, const AlgorithmDescription& algorithm, int sample_points,
+                              std::string_view phase);
+
+}  // namespace osteomill

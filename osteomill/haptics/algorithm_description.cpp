@@ -1,0 +1,108 @@
+#include "osteomill/haptics/algorithm_description.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+
+namespace osteomill {
+
+namespace {
+
+constexpr const char* kInLabels = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_ ().,:+";
+constexpr std::string_view kPlain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
+
+std::string number(double value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
+
+std::string range_text(const SettingRange& range) {
+  constexpr double kSmallest = std::numeric_limits<double>::min();
+  constexpr double kLargest = std::numeric_limits<double>::max();
+  std::ostringstream text;
+  text << (range.whole ? "a whole number" : "a number");
+  if (range.min == kSmallest) {
+    text << " above 0";
+  } else {
+    text << " of " << range.min << (range.max < kLargest ? "" : " or more");
+  }
+  if (range.max < kLargest) text << " and at most " << range.max;
+  return text.str();
+}
+
+// NaN is in no range.
+bool lies_within(const SettingRange& range, double value) {
+  return value >= range.min && value <= range.max && (!range.whole || std::floor(value) == value);
+}
+
+}  // namespace
+
+bool is_plain_name(std::string_view name) {
+  return name.find_first_not_of(kPlain) == std::string_view::npos;
+}
+
+bool is_usable(const AlgorithmId& algorithm) {
+  const std::string_view colour = algorithm.colour;
+  return !algorithm.name.empty() && is_plain_name(algorithm.name) && !algorithm.label.empty() &&
+         algorithm.label.find_first_not_of(kInLabels) == std::string::npos && colour.size() == 7 &&
+         colour[0] == '#' && colour.find_first_not_of("0123456789abcdefABCDEF", 1) == std::string_view::npos;
+}
+
+std::vector<AlgorithmId> each_once(std::vector<AlgorithmId> algorithms) {
+  std::sort(algorithms.begin(), algorithms.end());
+  algorithms.erase(std::unique(algorithms.begin(), algorithms.end()), algorithms.end());
+  return algorithms;
+}
+
+const SettingDescription* setting_of_option(const AlgorithmDescription& algorithm, std::string_view option) {
+  for (const SettingDescription& setting : algorithm.settings) {
+    if (setting.option == option) return &setting;
+  }
+  return nullptr;
+}
+
+void require_in_range(const AlgorithmId& algorithm, const SettingDescription& setting, double value) {
+  if (lies_within(setting.range, value)) return;
+  throw std::invalid_argument(algorithm.name + ": " + setting.name + " must be " + range_text(setting.range) +
+                              ", not " + number(value));
+}
+
+std::vector<SettingValue> setting_values(const AlgorithmDescription& algorithm,
+                                         const HapticSettings& settings) {
+  std::vector<SettingValue> values;
+  for (const SettingDescription& setting : algorithm.settings) {
+    values.push_back({setting.name, setting.value_in(settings.mode), setting.unit});
+  }
+  const auto set = [&](const HapticSettings::Named& named, std::string SettingDescription::*name) {
+    bool known = false;
+    for (std::size_t n = 0; n < values.size(); ++n) {
+      const SettingDescription& setting = algorithm.settings[n];
+      if (setting.*name != named.setting) continue;
+      require_in_range(algorithm.id, setting, named.value);
+      values[n].value = named.value;
+      known = true;
+    }
+    return known;
+  };
+  for (const HapticSettings::Named& named : settings.named) {
+    if (named.algorithm.empty()) set(named, &SettingDescription::option);
+  }
+  for (const HapticSettings::Named& named : settings.named) {
+    if (named.algorithm == algorithm.id.name && !set(named, &SettingDescription::name)) {
+      throw std::invalid_argument(algorithm.id.name + ": there is no setting " + named.setting);
+    }
+  }
+  return values;
+}
+
+std::unique_ptr<HapticAlgorithm> make_algorithm(const AlgorithmDescription& algorithm,
+                                                const HapticSettings& settings) {
+  std::vector<double> values;
+  for (const SettingValue& setting : setting_values(algorithm, settings)) values.push_back(setting.value);
+  return algorithm.make(values);
+}
+
+}  // namespace osteomill

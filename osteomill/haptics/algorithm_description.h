@@ -1,0 +1,121 @@
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "osteomill/haptics/haptic_algorithm.h"
+#include "osteomill/haptics/haptic_settings.h"
+#include "osteomill/haptics/mode.h"
+
+namespace osteomill {
+
+/// By what people and files know an algorithm; what a recording keeps of it. Figures and file names are made
+/// from it, so the name holds letters, digits, '-' and '_' alone, the label also spaces and any of ().,:+
+/// (`is_usable`).
+struct AlgorithmId {
+  /// On the command line and in files: "point-shell". Two algorithms of one name are the same.
+  std::string name;
+  /// In figures and tables: "3 point-shell". Algorithms are listed in the order of their labels.
+  std::string label;
+  /// Of its curves, as HTML and gnuplot write it: "#c62828".
+  std::string colour;
+
+  friend bool operator==(const AlgorithmId& a, const AlgorithmId& b) { return a.name == b.name; }
+  friend bool operator==(const AlgorithmId& a, std::string_view name) { return a.name == name; }
+  friend bool operator<(const AlgorithmId& a, const AlgorithmId& b) { return a.label < b.label; }
+};
+inline const std::string& name_of(const AlgorithmId& algorithm) {
+  return algorithm.name;
+}
+
+bool is_usable(const AlgorithmId& algorithm);
+/// Whether it holds letters, digits, '-' and '_' alone.
+bool is_plain_name(std::string_view name);
+
+/// Each once, in the order of their labels.
+std::vector<AlgorithmId> each_once(std::vector<AlgorithmId> algorithms);
+
+/// A number's range; both ends belong to it. An infinite end means that the value may be infinite.
+struct SettingRange {
+  double min = 0;
+  double max = std::numeric_limits<double>::max();
+  /// A switch (0 or 1), a count or a choice.
+  bool whole = false;
+
+  static constexpr SettingRange positive() { return {.min = std::numeric_limits<double>::min()}; }
+  static constexpr SettingRange not_negative() { return {}; }
+  /// Above zero; infinite for no limit.
+  static constexpr SettingRange limit() {
+    return {.min = std::numeric_limits<double>::min(), .max = std::numeric_limits<double>::infinity()};
+  }
+  static constexpr SettingRange share() { return {.max = 1}; }
+  static constexpr SettingRange on_or_off() { return {.max = 1, .whole = true}; }
+  static constexpr SettingRange count(int min, int max) {
+    return {.min = static_cast<double>(min), .max = static_cast<double>(max), .whole = true};
+  }
+};
+
+/// All there is to say of one setting; nothing of it is said elsewhere.
+struct SettingDescription {
+  /// As `--set ALGORITHM.NAME=VALUE`, configuration files and recordings have it.
+  std::string name;
+  /// Empty for a pure number.
+  std::string unit;
+  SettingRange range;
+  /// Its value in either mode where the user says nothing.
+  double paper = 0;
+  double steady = 0;
+  /// One line.
+  std::string meaning;
+  /// An option of the command line (without the dashes) that sets it too, and every setting of another
+  /// algorithm that names the same option; empty for none.
+  std::string option = {};
+
+  double value_in(Mode mode) const { return mode == Mode::paper ? paper : steady; }
+};
+
+/// A setting with the value that is in force.
+struct SettingValue {
+  std::string name;
+  double value = 0;
+  std::string unit;
+};
+
+/// An algorithm as programs choose, set and show it. Each of the project's stands in its own folder
+/// (`algorithms.h` lists them); a program that links the library may make another and hand it to anything
+/// that takes one.
+struct AlgorithmDescription {
+  AlgorithmId id;
+  /// One line.
+  std::string summary;
+  /// The setting by which its resolution is chosen, and what people call that; empty where there is none.
+  std::string resolution_setting = {};
+  std::string resolution_name = {};
+  std::vector<SettingDescription> settings;
+  /// Makes it with a value for each of `settings`, all within their ranges. Throws std::invalid_argument
+  /// where values do not go together.
+  std::function<std::unique_ptr<HapticAlgorithm>(std::span<const double> values)> make;
+};
+
+/// The setting that an option of the command line sets; null where it has none.
+const SettingDescription* setting_of_option(const AlgorithmDescription& algorithm, std::string_view option);
+
+/// Throws std::invalid_argument, naming algorithm and setting, where the value does not lie in its range.
+void require_in_range(const AlgorithmId& algorithm, const SettingDescription& setting, double value);
+
+/// Every setting with the value that `make_algorithm` would use, in the order of the description. Throws
+/// std::invalid_argument, naming algorithm and setting, where one is out of range or unknown.
+std::vector<SettingValue> setting_values(const AlgorithmDescription& algorithm,
+                                         const HapticSettings& settings);
+
+/// The algorithm with these settings, still to be prepared. Throws as `setting_values` does.
+std::unique_ptr<HapticAlgorithm> make_algorithm(const AlgorithmDescription& algorithm,
+                                                const HapticSettings& settings);
+
+}  // namespace osteomill

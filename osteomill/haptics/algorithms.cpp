@@ -1,0 +1,47 @@
+#include "osteomill/haptics/algorithms.h"
+
+#include <stdexcept>
+
+#include "osteomill/haptics/barrier_shell/barrier_shell_description.h"
+#include "osteomill/haptics/line_proxy/line_proxy_description.h"
+#include "osteomill/haptics/point_shell/point_shell_description.h"
+#include "osteomill/haptics/surface_points/surface_points_description.h"
+
+namespace osteomill {
+
+const std::vector<AlgorithmDescription>& all_algorithms() {
+  static const std::vector<AlgorithmDescription> all{
+      line_proxy::description(),
+      surface_points::description(),
+      point_shell::description(),
+      barrier_shell::description(),
+  };
+  return all;
+}
+
+const std::vector<std::string>& algorithm_names() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all;
+    for (const AlgorithmDescription& algorithm : all_algorithms()) all.push_back(algorithm.id.name);
+    return all;
+  }();
+  return names;
+}
+
+const AlgorithmDescription* find_algorithm(std::string_view name) {
+  for (const AlgorithmDescription& algorithm : all_algorithms()) {
+    if (algorithm.id.name == name) return &algorithm;
+  }
+  return nullptr;
+}
+
+const AlgorithmDescription& algorithm_named(std::string_view name) {
+  if (const AlgorithmDescription* algorithm = find_algorithm(name)) return *algorithm;
+  throw std::invalid_argument("there is no algorithm " + std::string(name));
+}
+
+std::unique_ptr<HapticAlgorithm> make_algorithm(std::string_view name, const HapticSettings& settings) {
+  return make_algorithm(algorithm_named(name), settings);
+}
+
+}  // namespace osteomill

@@ -1,0 +1,268 @@
+#include "osteomill/live/bone_follower.h"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <optional>
+#include <shared_mutex>
+#include <thread>
+#include <utility>
+
+#include "osteomill/live/cut_history.h"
+#include "osteomill/live/density_handover.h"
+
+namespace osteomill {
+
+namespace {
+
+using namespace std::chrono_literals;
+
+// The haptic thread wakes nobody (that would be a system call), so the follower looks by itself: oftener than
+// 30 times a second, seldom enough that a brick milled at every tick is not meshed at every tick.
+constexpr auto kLookEvery = 20ms;
+// 1 MiB: what comes while the whole surface is meshed at a new isovalue.
+constexpr std::size_t kBricksOnTheirWay = 511;
+
+// What the drawing thread has not taken yet, each brick once.
+class Published {
+ public:
+  explicit Published(std::size_t bricks) : place_(bricks, -1) {}
+
+  void add(std::vector<ChangedBrick> changed) {
+    const std::lock_guard lock(mutex_);
+    for (ChangedBrick& brick : changed) {
+      std::int32_t& place = place_[brick.brick];
+      if (place >= 0) {
+        std::swap(bricks_[static_cast<std::size_t>(place)].mesh, brick.mesh);
+      } else {
+        place = static_cast<std::int32_t>(bricks_.size());
+        bricks_.push_back(std::move(brick));
+      }
+    }
+  }
+
+  std::vector<ChangedBrick> take() {
+    std::vector<ChangedBrick> taken;
+    {
+      const std::lock_guard lock(mutex_);
+      taken.swap(bricks_);
+      for (const ChangedBrick& brick : taken) place_[brick.brick] = -1;
+    }
+    std::sort(taken.begin(), taken.end(),
+              [](const ChangedBrick& a, const ChangedBrick& b) { return a.brick < b.brick; });
+    return taken;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<ChangedBrick> bricks_;
+  std::vector<std::int32_t> place_;  // by brick: where it stands in bricks_, or -1
+};
+
+}  // namespace
+
+struct BoneFollower::Impl {
+  Impl(const Volume& bone, std::size_t undo_bytes)
+      : handover(bone.geometry(), kBricksOnTheirWay),
+        layout(bone.geometry().dims),
+        published(layout.count()),
+        copy(std::make_shared<Volume>(bone)),
+        history(undo_bytes),
+        upkeep(layout),
+        shown_isovalue(bone.isovalue()) {
+    mesher = std::thread([this] { keep_up(); });
+  }
+  ~Impl() {
+    {
+      const std::lock_guard lock(mutex);
+      stopping = true;
+    }
+    woken.notify_one();
+    mesher.join();
+  }
+
+  void keep_up() {
+    std::unique_lock lock(mutex);
+    while (!stopping) {
+      const auto isovalue = std::exchange(new_isovalue, std::nullopt);
+      lock.unlock();
+      follow(isovalue);
+      mesh();
+      lock.lock();
+      woken.wait_for(lock, kLookEvery, [this] { return stopping || new_isovalue; });
+    }
+  }
+
+  void follow(const std::optional<double>& isovalue) {
+    const std::lock_guard lock(bone_mutex);
+    if (isovalue && *isovalue != shown_isovalue) {
+      shown_isovalue = *isovalue;
+      upkeep.mark_all();
+    }
+    take_over();
+  }
+
+  // The others may read meanwhile; no other thread marks what is to be meshed while one holds the lock.
+  void mesh() {
+    const std::shared_lock lock(bone_mutex);
+    published.add(upkeep.remesh({copy->grid(), copy->bricks(), shown_isovalue}));
+  }
+
+  // A bounded number, so that bricks which come as fast as they are taken cannot put off the meshing.
+  void take_over() {
+    DensityBrick* brick = handover.front();
+    for (std::size_t n = 0; brick != nullptr && n < kBricksOnTheirWay; ++n) {
+      if (put(*brick)) history.keep(*brick);
+      handover.pop();
+      brick = handover.front();
+    }
+  }
+
+  // What was there is in the brick afterwards. False where nothing changed.
+  bool put(DensityBrick& brick) {
+    const VoxelBox changed = swap_densities(*copy, brick);
+    if (changed.empty()) return false;
+    upkeep.mark(changed);
+    version.fetch_add(1, std::memory_order_release);
+    return true;
+  }
+
+  NextBone put_taken() {
+    for (auto& [place, brick] : taken->bricks) put(brick);
+    return {copy, taken->removed_mm3};
+  }
+
+  void show(double isovalue) {
+    {
+      const std::lock_guard lock(mutex);
+      new_isovalue = isovalue;
+    }
+    woken.notify_one();
+  }
+
+  DensityHandover handover;
+  const SurfaceBricks layout;
+  Published published;
+  std::atomic<std::uint64_t> version{1};
+
+  // Never taken by the haptic thread. Whoever writes holds it alone: into the copy or what goes with it, or
+  // receives from the haptic thread.
+  mutable std::shared_mutex bone_mutex;
+  std::shared_ptr<Volume> copy;
+  CutHistory history;
+  SurfaceUpkeep upkeep;
+  double shown_isovalue;
+  // While the copy is to become the bone: how the two differ.
+  std::optional<CutHistory::Taken> taken;
+  double isovalue_before = 0;
+
+  std::mutex mutex;
+  std::condition_variable woken;
+  std::optional<double> new_isovalue;
+  bool stopping = false;
+  std::thread mesher;
+};
+
+BoneFollower::BoneFollower(const Volume& bone, std::size_t undo_bytes)
+    : impl_(std::make_unique<Impl>(bone, undo_bytes)) {}
+
+BoneFollower::~BoneFollower() = default;
+
+void BoneFollower::bone_changed(const Volume& bone, const VolumeChange& change) noexcept {
+  impl_->handover.mark(change);
+  impl_->handover.send(bone, kBricksPerTick);
+}
+
+const SurfaceBricks& BoneFollower::layout() const {
+  return impl_->layout;
+}
+
+std::vector<ChangedBrick> BoneFollower::take_changed_bricks() {
+  return impl_->published.take();
+}
+
+void BoneFollower::show_isovalue(double isovalue) {
+  impl_->show(isovalue);
+}
+
+void BoneFollower::read(const std::function<void(const Volume&)>& use) const {
+  const std::shared_lock lock(impl_->bone_mutex);
+  use(*impl_->copy);
+}
+
+std::uint64_t BoneFollower::version() const {
+  return impl_->version.load(std::memory_order_acquire);
+}
+
+void BoneFollower::begin_cut(double removed_mm3) {
+  const std::lock_guard lock(impl_->bone_mutex);
+  impl_->take_over();
+  impl_->history.begin_cut(removed_mm3);
+}
+
+std::size_t BoneFollower::cuts() const {
+  const std::shared_lock lock(impl_->bone_mutex);
+  return impl_->history.cuts();
+}
+
+bool BoneFollower::touched() const {
+  const std::shared_lock lock(impl_->bone_mutex);
+  return impl_->history.touched();
+}
+
+bool BoneFollower::catch_up() {
+  const bool all_sent = impl_->handover.waiting() == 0;
+  const std::lock_guard lock(impl_->bone_mutex);
+  impl_->take_over();
+  return all_sent && impl_->handover.front() == nullptr;
+}
+
+BoneFollower::NextBone BoneFollower::without_last_cut() {
+  const std::lock_guard lock(impl_->bone_mutex);
+  impl_->isovalue_before = impl_->copy->isovalue();
+  impl_->taken = impl_->history.take_last();
+  return impl_->put_taken();
+}
+
+BoneFollower::NextBone BoneFollower::as_at_the_beginning() {
+  const std::lock_guard lock(impl_->bone_mutex);
+  impl_->isovalue_before = impl_->copy->isovalue();
+  impl_->taken = impl_->history.take_all();
+  return impl_->put_taken();
+}
+
+BoneFollower::NextBone BoneFollower::with_isovalue(double isovalue, double removed_mm3) {
+  const std::lock_guard lock(impl_->bone_mutex);
+  impl_->isovalue_before = impl_->copy->isovalue();
+  impl_->copy->set_isovalue(isovalue);
+  impl_->show(isovalue);
+  return {impl_->copy, removed_mm3};
+}
+
+void BoneFollower::swap(std::shared_ptr<Volume> bone_before) {
+  const std::lock_guard lock(impl_->bone_mutex);
+  const Volume& bone = *impl_->copy;
+  if (impl_->taken) {
+    for (const auto& [place, brick] : impl_->taken->bricks) {
+      DensityBrick now(bone.grid(), brick.first);
+      swap_densities(*bone_before, now);
+    }
+  }
+  bone_before->set_isovalue(bone.isovalue());
+  impl_->copy = std::move(bone_before);
+  impl_->taken.reset();
+}
+
+void BoneFollower::give_up() {
+  const std::lock_guard lock(impl_->bone_mutex);
+  if (impl_->taken) {
+    impl_->put_taken();
+    impl_->history.put_back(*std::exchange(impl_->taken, std::nullopt));
+  }
+  impl_->copy->set_isovalue(impl_->isovalue_before);
+  impl_->show(impl_->isovalue_before);
+}
+
+}  // namespace osteomill

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "osteomill/surface/surface_bricks.h"
+#include "osteomill/surface/surface_upkeep.h"
+#include "osteomill/volume/volume.h"
+
+namespace osteomill {
+
+/// Follows a bone that is being milled, for all who are not the haptic thread: the one copy of its densities
+/// (4 bytes a voxel), from which its surface is kept up on a thread of its own, cuts are drawn, files are
+/// saved, and to which what was milled is given back. The haptic thread hands over what changed and waits for
+/// nobody; the others wait for each other no longer than a few changed bricks take to be put in place or
+/// meshed (the whole bone after another isovalue).
+class BoneFollower {
+ public:
+  /// What a tick copies at most, 16 KiB; all that a burr of 3 mm changes has gone within 20 ticks.
+  static constexpr std::size_t kBricksPerTick = 8;
+  /// What cuts that can be taken back may take.
+  static constexpr std::size_t kUndoBytes = std::size_t{256} << 20;
+
+  /// Copies the bone and starts meshing all of it.
+  explicit BoneFollower(const Volume& bone, std::size_t undo_bytes = kUndoBytes);
+  ~BoneFollower();
+  BoneFollower(const BoneFollower&) = delete;
+  BoneFollower& operator=(const BoneFollower&) = delete;
+
+  /// To be called by the haptic thread at every tick with the bone and what the tick changed of it, an empty
+  /// change too: a part of what is to be copied may have been left to later ticks. Safe in the haptic tick:
+  /// copies at most a few bricks of 2 KiB, and never waits, allocates or throws.
+  void bone_changed(const Volume& bone, const VolumeChange& change) noexcept;
+
+  const SurfaceBricks& layout() const;
+  /// What changed of the surface since the last call, each brick once, as it is now; in the order of the
+  /// bricks. The first call that brings anything brings the whole surface. For one drawing thread; never
+  /// waits for meshing.
+  std::vector<ChangedBrick> take_changed_bricks();
+  /// Has the whole surface meshed anew at another isovalue; of several in short order, at the last one. The
+  /// bone's own isovalue stays. Any thread but the haptic one, as all that follows.
+  void show_isovalue(double isovalue);
+
+  /// Lets `use` read the bone as last handed over, some ticks behind; nothing is taken over meanwhile.
+  void read(const std::function<void(const Volume&)>& use) const;
+  /// Grows with every change of what is read.
+  std::uint64_t version() const;
+
+  /// What comes from now on belongs to another cut; `removed_mm3` is what had been removed before it.
+  void begin_cut(double removed_mm3);
+  /// How many cuts can be taken back, and whether anything was milled since the beginning.
+  std::size_t cuts() const;
+  bool touched() const;
+
+  /// Takes over what has arrived. True where nothing is left to come, so that the copy is the bone, provided
+  /// that the bone is held (LiveSession::hold_bone).
+  bool catch_up();
+
+  /// The copy, made ready to become the bone, and how much is then removed of it.
+  struct NextBone {
+    std::shared_ptr<Volume> bone;
+    double removed_mm3;
+  };
+  /// With the last cut taken back, as it was at the beginning, or with another isovalue
+  /// (std::invalid_argument where it is not finite). All three while the bone is held and the copy is caught
+  /// up, and until `swap` or `give_up` nobody writes into either. Cuts and surface show it at once.
+  NextBone without_last_cut();
+  NextBone as_at_the_beginning();
+  NextBone with_isovalue(double isovalue, double removed_mm3);
+  /// The copy has become the bone. What was the bone, which no tick uses any more, becomes the copy, so that
+  /// there are never more than the two.
+  void swap(std::shared_ptr<Volume> bone_before);
+  /// The copy becomes again what the bone is, and what was taken back can be taken back again.
+  void give_up();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace osteomill

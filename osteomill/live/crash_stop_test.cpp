@@ -1,0 +1,117 @@
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <thread>
+
+#include "tests/shapes.h"
+#include <gtest/gtest.h>
+#include <sys/mman.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "osteomill/haptics/algorithms.h"
+#include "osteomill/live/live_session.h"
+
+namespace osteomill {
+namespace {
+
+using namespace std::chrono_literals;
+
+// What another process can see of a device.
+struct Sent {
+  double force_N;
+  double greatest_N;
+};
+
+class SharedDevice : public Device {
+ public:
+  SharedDevice(Sent* sent, bool crashes) : sent_(sent), crashes_(crashes) {}
+  Pose read_pose() override {
+    if (crashes_ && ++ticks_ > 50) raise(SIGSEGV);
+    return {{0, 0, 1.2}, Quat::Identity()};
+  }
+  void write_wrench(const Wrench& wrench) override {
+    sent_->force_N = wrench.force_N.norm();
+    sent_->greatest_N = std::max(sent_->greatest_N, sent_->force_N);
+  }
+
+ private:
+  Sent* sent_;
+  bool crashes_;
+  int ticks_ = 0;
+};
+
+[[noreturn]] void run_live(Sent* sent, bool device_crashes, void (*crash)()) {
+  const Volume bone = testing_support::shape_volume(testing_support::centred_cube(40, 0.25),
+                                                    testing_support::plane(Vec3::Zero(), Vec3::UnitZ()));
+  SharedDevice device(sent, device_crashes);
+  LiveSession live(
+      std::make_unique<MillingSession>(bone, MillingTool{}, make_algorithm("point-shell", {}),
+                                       BoneDensities{0, 1000}, MillingSettings{}, WrenchLimits{}),
+      device);
+  live.start();
+  std::this_thread::sleep_for(100ms);
+  crash();
+  std::this_thread::sleep_for(1s);
+  _exit(0);
+}
+
+class CrashStopTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    void* shared = mmap(nullptr, sizeof(Sent), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    ASSERT_NE(shared, MAP_FAILED);
+    sent_ = static_cast<Sent*>(shared);
+  }
+  void TearDown() override { munmap(sent_, sizeof(Sent)); }
+
+  // The signal that the process died of.
+  int run(bool device_crashes, void (*crash)(), [[maybe_unused]] int expected) {
+    const pid_t child = fork();
+    if (child == 0) run_live(sent_, device_crashes, crash);
+    int status = 0;
+    waitpid(child, &status, 0);
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    // Sanitizers end a crashed program in their own way.
+    if (status != 0) return expected;
+#endif
+    return WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+  }
+
+  Sent* sent_ = nullptr;
+};
+
+TEST_F(CrashStopTest, ACrashOfAnotherThreadLeavesTheWrenchAtZero) {
+  EXPECT_EQ(run(
+                false, [] { raise(SIGSEGV); }, SIGSEGV),
+            SIGSEGV);
+  EXPECT_GT(sent_->greatest_N, 0.1);
+  EXPECT_EQ(sent_->force_N, 0);
+}
+
+TEST_F(CrashStopTest, SoDoesAnExceptionThatNobodyCatches) {
+  EXPECT_EQ(run(
+                false, [] { std::abort(); }, SIGABRT),
+            SIGABRT);
+  EXPECT_GT(sent_->greatest_N, 0.1);
+  EXPECT_EQ(sent_->force_N, 0);
+}
+
+TEST_F(CrashStopTest, SoDoesARequestToEnd) {
+  EXPECT_EQ(run(
+                false, [] { kill(getpid(), SIGTERM); }, SIGTERM),
+            SIGTERM);
+  EXPECT_GT(sent_->greatest_N, 0.1);
+  EXPECT_EQ(sent_->force_N, 0);
+}
+
+TEST_F(CrashStopTest, SoDoesACrashOfTheHapticThreadItself) {
+  EXPECT_EQ(run(
+                true, [] {}, SIGSEGV),
+            SIGSEGV);
+  EXPECT_GT(sent_->greatest_N, 0.1);
+  EXPECT_EQ(sent_->force_N, 0);
+}
+
+}  // namespace
+}  // namespace osteomill

@@ -1,0 +1,101 @@
+#include "osteomill/live/cut_history.h"
+
+#include "tests/shapes.h"
+#include <gtest/gtest.h>
+
+namespace osteomill {
+namespace {
+
+// 20 voxels a side: the bricks at the upper sides reach beyond the grid.
+class CutHistoryTest : public ::testing::Test {
+ protected:
+  void mill(const VoxelIndex& voxel) {
+    const VoxelIndex first{voxel.i / 8 * 8, voxel.j / 8 * 8, voxel.k / 8 * 8};
+    const DensityBrick before(bone_.grid(), first);
+    bone_.lower_density(voxel, bone_.grid()[voxel] - 100);
+    history_.keep(before);
+  }
+  double undo() { return put(history_.take_last()); }
+  double put(CutHistory::Taken taken) {
+    for (auto& [place, brick] : taken.bricks) swap_densities(bone_, brick);
+    return taken.removed_mm3;
+  }
+  const std::vector<float>& now() const { return bone_.grid().densities(); }
+
+  Volume bone_ = testing_support::shape_volume(testing_support::centred_cube(20, 0.25),
+                                               testing_support::plane(Vec3::Zero(), Vec3::UnitZ()));
+  const std::vector<float> before_ = bone_.grid().densities();
+  CutHistory history_{std::size_t{1} << 20};
+};
+
+TEST_F(CutHistoryTest, TakesCutsBackOneByOne) {
+  EXPECT_EQ(history_.cuts(), 0u);
+  history_.begin_cut(0);
+  mill({3, 4, 5});
+  mill({3, 4, 6});
+  history_.begin_cut(2.5);
+  const std::vector<float> after_first = now();
+  mill({3, 4, 5});
+  mill({18, 2, 9});
+  EXPECT_EQ(history_.cuts(), 2u);
+  EXPECT_EQ(undo(), 2.5);
+  EXPECT_EQ(now(), after_first);
+  EXPECT_EQ(history_.cuts(), 1u);
+  EXPECT_EQ(undo(), 0);
+  EXPECT_EQ(now(), before_);
+  EXPECT_EQ(history_.cuts(), 0u);
+  EXPECT_EQ(undo(), 0);
+}
+
+TEST_F(CutHistoryTest, ACutWithoutAChangeIsNone) {
+  history_.begin_cut(0);
+  history_.begin_cut(0);
+  mill({3, 4, 5});
+  history_.begin_cut(1);
+  history_.begin_cut(1);
+  EXPECT_EQ(history_.cuts(), 1u);
+  EXPECT_EQ(undo(), 0);
+  EXPECT_EQ(now(), before_);
+}
+
+TEST_F(CutHistoryTest, ResetsPastEveryCut) {
+  for (int n = 0; n < 5; ++n) {
+    history_.begin_cut(n);
+    mill({n, 4, 5});
+  }
+  undo();
+  put(history_.take_all());
+  EXPECT_EQ(now(), before_);
+  EXPECT_EQ(history_.cuts(), 0u);
+  EXPECT_FALSE(history_.touched());
+}
+
+TEST_F(CutHistoryTest, WhatIsPutBackCanBeTakenAgain) {
+  mill({3, 4, 5});
+  history_.begin_cut(2.5);
+  mill({18, 2, 9});
+  history_.put_back(history_.take_last());
+  EXPECT_EQ(history_.cuts(), 2u);
+  history_.put_back(history_.take_all());
+  EXPECT_EQ(history_.cuts(), 2u);
+  EXPECT_EQ(undo(), 2.5);
+  EXPECT_EQ(undo(), 0);
+  EXPECT_EQ(now(), before_);
+}
+
+TEST_F(CutHistoryTest, ForgetsTheOldestCutsBeyondItsMemory) {
+  history_ = CutHistory(2 * sizeof(DensityBrick));
+  for (int n = 0; n < 5; ++n) {
+    history_.begin_cut(n);
+    mill({n, 4, 5});
+  }
+  EXPECT_EQ(history_.cuts(), 2u);
+  EXPECT_EQ(undo(), 4);
+  EXPECT_EQ(undo(), 3);
+  EXPECT_EQ(history_.cuts(), 0u);
+  put(history_.take_all());
+  EXPECT_EQ(now(), before_);
+}
+
+}  // namespace
+}  // namespace osteomill

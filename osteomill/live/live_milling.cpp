@@ -1,0 +1,163 @@
+#include "osteomill/live/live_milling.h"
+
+#include <chrono>
+#include <thread>
+#include <utility>
+
+#include "osteomill/recording/describe_run.h"
+
+namespace osteomill {
+
+namespace {
+
+using namespace std::chrono_literals;
+
+}  // namespace
+
+PreparedMilling prepare_milling(std::shared_ptr<Volume> bone, const MillingSetup& setup) {
+  const BoneDensities densities = estimate_densities(*bone);
+  auto follower = std::make_unique<BoneFollower>(*bone);
+  return {setup, densities, std::move(follower), make_session(std::move(bone), densities, setup)};
+}
+
+LiveMilling::LiveMilling(PreparedMilling prepared, Device& device)
+    : setup_(prepared.setup),
+      densities_(prepared.densities),
+      geometry_(prepared.session->volume().geometry()),
+      isovalue_(prepared.session->volume().isovalue()),
+      follower_(std::move(prepared.follower)),
+      live_(std::move(prepared.session), device) {
+  listen();
+}
+
+LiveMilling::~LiveMilling() {
+  if (preparation_.valid()) preparation_.wait();
+  live_.stop();
+}
+
+void LiveMilling::listen() {
+  live_.wait_for(live_.listen([follower = follower_.get(), recorder = recorder_.get()](
+                                  const TickRecord& record, const Volume& bone, const VolumeChange& change) {
+    follower->bone_changed(bone, change);
+    if (recorder != nullptr) recorder->push(record);
+  }));
+}
+
+void LiveMilling::update() {
+  if (preparing() && preparation_.wait_for(0s) == std::future_status::ready) take_over();
+}
+
+void LiveMilling::finish_preparing() {
+  if (preparing()) take_over();
+}
+
+void LiveMilling::set_spindle(bool on) {
+  if (on && !spindle_) follower_->begin_cut(live_.state().record.removed_mm3);
+  spindle_ = on;
+  live_.set_spindle(on);
+}
+
+void LiveMilling::change(const MillingSetup& setup) {
+  if (preparing()) return;
+  live_.wait_for(live_.hold_bone(true));
+  preparation_ = std::async(std::launch::async, [this, setup, bone = live_.session().shared_volume(),
+                                                 removed_mm3 = live_.session().removed_mm3()] {
+    Prepared prepared{make_session(bone, densities_, setup), setup};
+    prepared.session->count_removed_from(removed_mm3);
+    return prepared;
+  });
+}
+
+void LiveMilling::change_isovalue(double isovalue) {
+  rebuild([this, isovalue] { return follower_->with_isovalue(isovalue, live_.session().removed_mm3()); });
+}
+
+void LiveMilling::undo() {
+  rebuild([this] { return follower_->without_last_cut(); });
+}
+
+void LiveMilling::reset() {
+  rebuild([this] { return follower_->as_at_the_beginning(); });
+}
+
+// The follower's copy becomes the bone, since it can be written while the bone is felt.
+void LiveMilling::rebuild(MakeBone make_bone) {
+  if (preparing()) return;
+  live_.wait_for(live_.hold_bone(true));
+  preparation_ = std::async(std::launch::async, [this, make_bone = std::move(make_bone), setup = setup_] {
+    catch_up();
+    const BoneFollower::NextBone next = make_bone();
+    try {
+      Prepared prepared{make_session(next.bone, densities_, setup), setup, true};
+      prepared.session->count_removed_from(next.removed_mm3);
+      return prepared;
+    } catch (...) {
+      follower_->give_up();
+      throw;
+    }
+  });
+}
+
+void LiveMilling::catch_up() {
+  while (!follower_->catch_up()) {
+    if (live_.running()) {
+      std::this_thread::sleep_for(1ms);
+    } else {
+      // No tick hands anything over any more.
+      follower_->bone_changed(live_.session().volume(), {});
+    }
+  }
+}
+
+void LiveMilling::take_over() {
+  std::exception_ptr failure;
+  try {
+    Prepared prepared = preparation_.get();
+    failure = end_recording();
+    const std::shared_ptr<Volume> bone_before = live_.session().shared_volume();
+    isovalue_ = prepared.session->volume().isovalue();
+    setup_ = prepared.setup;
+    live_.wait_for(live_.replace(std::move(prepared.session)));
+    if (prepared.other_bone) follower_->swap(bone_before);
+  } catch (...) {
+    failure = std::current_exception();
+  }
+  live_.hold_bone(false);
+  if (failure) std::rethrow_exception(failure);
+}
+
+// A recording that cannot be ended does not keep what was prepared from its place.
+std::exception_ptr LiveMilling::end_recording() {
+  if (!recording()) return {};
+  try {
+    ended_recording_ = stop_recording();
+  } catch (...) {
+    return std::current_exception();
+  }
+  return {};
+}
+
+RunDescription LiveMilling::describe(const std::string& scan_name, const std::string& command_line) const {
+  const RunFacts facts{
+      scan_name,     geometry_, isovalue_, densities_,  setup_.tool, setup_.haptics, milling_settings(setup_),
+      setup_.limits, 0,         1e-3,      command_line};
+  RunDescription run =
+      describe_run(facts, setup_.algorithm, live_.session().algorithm().sample_point_count());
+  run.settings.push_back({"vibration", setup_.vibration ? 1.0 : 0.0, ""});
+  return run;
+}
+
+void LiveMilling::start_recording(const std::filesystem::path& path, const RunDescription& description) {
+  recorder_ = std::make_unique<Recorder>(path, description);
+  recorder_path_ = path;
+  listen();
+}
+
+std::filesystem::path LiveMilling::stop_recording() {
+  const std::unique_ptr<Recorder> recorder = std::move(recorder_);
+  listen();
+  recorder->close();
+  return recorder_path_;
+}
+
+}  // namespace osteomill

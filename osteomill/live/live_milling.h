@@ -1,0 +1,129 @@
+#pragma once
+
+#include <exception>
+#include <filesystem>
+#include <functional>
+#include <future>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "osteomill/live/bone_follower.h"
+#include "osteomill/live/live_session.h"
+#include "osteomill/recording/recorder.h"
+#include "osteomill/session/milling_setup.h"
+
+namespace osteomill {
+
+/// A bone made ready for milling, which takes seconds.
+struct PreparedMilling {
+  MillingSetup setup;
+  BoneDensities densities;
+  std::unique_ptr<BoneFollower> follower;
+  std::unique_ptr<MillingSession> session;
+};
+
+/// In any thread, also while another bone is milled. Throws std::invalid_argument for settings out of range.
+PreparedMilling prepare_milling(std::shared_ptr<Volume> bone, const MillingSetup& setup);
+
+/// A bone that is milled in real time with a device, and all that can be done to it meanwhile. For one
+/// thread, beside the haptic one that this runs; one at a time. Whatever takes long (another algorithm or
+/// tool, taking a cut back) is prepared on a thread of its own: the tool goes on being felt, but nothing is
+/// milled until `update` has put it in place.
+class LiveMilling {
+ public:
+  /// `device` outlives this object, and is held where the simulated tool may be. Does not start yet.
+  LiveMilling(PreparedMilling prepared, Device& device);
+  LiveMilling(std::shared_ptr<Volume> bone, const MillingSetup& setup, Device& device)
+      : LiveMilling(prepare_milling(std::move(bone), setup), device) {}
+  ~LiveMilling();
+  LiveMilling(const LiveMilling&) = delete;
+  LiveMilling& operator=(const LiveMilling&) = delete;
+
+  void start() { live_.start(); }
+  void stop() { live_.stop(); }
+  bool running() const { return live_.running(); }
+
+  /// To be called often, as once a picture: puts in place what has been prepared. Throws what a preparation
+  /// failed with; milling goes on as it was.
+  void update();
+  /// Returns when nothing is being prepared any more. Throws as `update` does.
+  void finish_preparing();
+  bool preparing() const { return preparation_.valid(); }
+
+  /// Where it goes on is another cut, to be taken back by itself.
+  void set_spindle(bool on);
+  bool spindle_asked() const { return spindle_; }
+  void set_paused(bool paused) { live_.set_paused(paused); }
+  /// Another algorithm, tool or setting. This and the following do nothing while something is being prepared.
+  void change(const MillingSetup& setup);
+  void change_isovalue(double isovalue);
+  /// Takes the last cut back; or all of them.
+  void undo();
+  void reset();
+  std::size_t cuts() const { return follower_->cuts(); }
+  bool touched() const { return follower_->touched(); }
+
+  /// What a recording says of the milling as it is now.
+  RunDescription describe(const std::string& scan_name, const std::string& command_line) const;
+  /// Throws InputError where the file cannot be written; a recording is then not going on.
+  void start_recording(const std::filesystem::path& path, const RunDescription& description);
+  /// Returns the recording's name. Throws as Recorder::close does.
+  std::filesystem::path stop_recording();
+  bool recording() const { return recorder_ != nullptr; }
+  /// A recording tells of one bone, one tool and one algorithm: where any of them changes it ends. Its name
+  /// then, once.
+  std::optional<std::filesystem::path> take_ended_recording() {
+    return std::exchange(ended_recording_, std::nullopt);
+  }
+
+  const LiveState& state() { return live_.state(); }
+  /// Every tick in turn (LiveSession::next_record).
+  std::optional<TickRecord> next_record() { return live_.next_record(); }
+  TimingSummary timing() const { return live_.timing(); }
+  const std::string& refused_real_time() const { return live_.refused_real_time(); }
+
+  const MillingSetup& setup() const { return setup_; }
+  const BoneDensities& densities() const { return densities_; }
+  const GridGeometry& geometry() const { return geometry_; }
+  double isovalue() const { return isovalue_; }
+
+  /// The isosurface's bricks, what changed of it since the last call, and how it would look at another
+  /// isovalue (BoneFollower).
+  const SurfaceBricks& surface_layout() const { return follower_->layout(); }
+  std::vector<ChangedBrick> take_changed_bricks() { return follower_->take_changed_bricks(); }
+  void show_isovalue(double isovalue) { follower_->show_isovalue(isovalue); }
+  /// Lets `use` read the bone, some ticks behind; from any thread. The version grows with every change.
+  void read_bone(const std::function<void(const Volume&)>& use) const { follower_->read(use); }
+  std::uint64_t bone_version() const { return follower_->version(); }
+
+ private:
+  struct Prepared {
+    std::unique_ptr<MillingSession> session;
+    MillingSetup setup;
+    bool other_bone = false;
+  };
+  using MakeBone = std::function<BoneFollower::NextBone()>;
+
+  void listen();
+  void rebuild(MakeBone make_bone);
+  void catch_up();
+  void take_over();
+  std::exception_ptr end_recording();
+
+  MillingSetup setup_;
+  BoneDensities densities_;
+  GridGeometry geometry_;
+  double isovalue_;
+  std::unique_ptr<BoneFollower> follower_;
+  std::unique_ptr<Recorder> recorder_;
+  std::filesystem::path recorder_path_;
+  std::optional<std::filesystem::path> ended_recording_;
+  LiveSession live_;
+  std::future<Prepared> preparation_;
+  bool spindle_ = false;
+};
+
+}  // namespace osteomill

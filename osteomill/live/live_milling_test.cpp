@@ -1,0 +1,222 @@
+#include "osteomill/live/live_milling.h"
+
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <stdexcept>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "tests/shapes.h"
+#include <gtest/gtest.h>
+
+#include "osteomill/operator/milling_entry.h"
+#include "osteomill/operator/virtual_hand.h"
+#include "osteomill/recording/read_recording.h"
+#include "osteomill/surface/surface_mesh.h"
+
+namespace osteomill {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr double kIsovalue = 500;
+
+std::shared_ptr<Volume> ball_of_bone() {
+  return std::make_shared<Volume>(testing_support::shape_volume(testing_support::centred_cube(51, 0.25),
+                                                                testing_support::ball(Vec3::Zero(), 5.0)));
+}
+
+// A hand presses the burr into the top of a ball of bone.
+class LiveMillingTest : public ::testing::Test {
+ protected:
+  LiveMillingTest() {
+    milling_.start();
+    hand_.pull_to(pose_above(entry_, setup_.tool, -1.0));
+  }
+
+  // Mills for as long as it takes to remove that much more.
+  void mill(double more_mm3) {
+    const double before_mm3 = milling_.state().record.removed_mm3;
+    milling_.set_spindle(true);
+    for (int n = 0; n < 2000 && milling_.state().record.removed_mm3 < before_mm3 + more_mm3; ++n) {
+      milling_.update();
+      std::this_thread::sleep_for(5ms);
+    }
+    milling_.set_spindle(false);
+    EXPECT_GE(milling_.state().record.removed_mm3, before_mm3 + more_mm3);
+    settle();
+  }
+
+  // Returns when the follower has what was milled.
+  void settle() { std::this_thread::sleep_for(100ms); }
+
+  std::vector<float> bone() const {
+    std::vector<float> densities;
+    milling_.read_bone([&](const Volume& bone) { densities = bone.grid().densities(); });
+    return densities;
+  }
+
+  // Whether the surface taken brick by brick becomes that of the bone.
+  bool surface_is_the_bones() {
+    for (int n = 0; n < 200; ++n) {
+      for (ChangedBrick& brick : milling_.take_changed_bricks()) {
+        surface_[brick.brick] = std::move(brick.mesh);
+      }
+      bool same = false;
+      milling_.read_bone(
+          [&](const Volume& bone) { same = surface_ == mesh_surface(DensityView(bone)).bricks; });
+      if (same) return true;
+      std::this_thread::sleep_for(20ms);
+    }
+    return false;
+  }
+
+  std::shared_ptr<Volume> bone_ = ball_of_bone();
+  MillingSetup setup_;
+  MillingEntry entry_ = place_entry(*bone_, setup_.tool);
+  VirtualHand hand_{{}, pointing_hand(), pose_above(entry_, setup_.tool, 0.2)};
+  LiveMilling milling_{bone_, setup_, hand_};
+  const std::vector<float> untouched_ = ball_of_bone()->grid().densities();
+  std::vector<BrickMesh> surface_ = std::vector<BrickMesh>(milling_.surface_layout().count());
+};
+
+TEST_F(LiveMillingTest, TakesCutsBackOneByOneAndMillsOn) {
+  mill(0.3);
+  const std::vector<float> after_first = bone();
+  const double removed_mm3 = milling_.state().record.removed_mm3;
+  mill(0.3);
+  EXPECT_EQ(milling_.cuts(), 2u);
+  EXPECT_NE(bone(), after_first);
+  milling_.undo();
+  milling_.finish_preparing();
+  settle();
+  EXPECT_EQ(bone(), after_first);
+  EXPECT_EQ(milling_.state().record.removed_mm3, removed_mm3);
+  EXPECT_EQ(milling_.cuts(), 1u);
+  EXPECT_TRUE(surface_is_the_bones());
+  mill(0.3);
+  EXPECT_EQ(milling_.cuts(), 2u);
+  EXPECT_TRUE(surface_is_the_bones());
+  milling_.reset();
+  milling_.finish_preparing();
+  settle();
+  EXPECT_EQ(bone(), untouched_);
+  EXPECT_EQ(milling_.state().record.removed_mm3, 0);
+  EXPECT_FALSE(milling_.touched());
+  EXPECT_TRUE(surface_is_the_bones());
+}
+
+// What the haptic thread mills is what its follower shows, also after several exchanges of the two.
+TEST_F(LiveMillingTest, TheBoneThatIsFeltIsTheBoneThatIsSeen) {
+  for (int n = 0; n < 3; ++n) {
+    mill(0.2);
+    milling_.undo();
+    milling_.finish_preparing();
+    mill(0.2);
+  }
+  const std::uint64_t version = milling_.bone_version();
+  hand_.pull_to(pose_above(entry_, setup_.tool, -4.0));
+  for (int n = 0; n < 400 && milling_.state().record.wrench.force_N.norm() < 1.0; ++n) {
+    std::this_thread::sleep_for(5ms);
+  }
+  // The burr rests on what is left: its lowest point is on the surface of the copy.
+  const Pose X_WT = milling_.state().record.X_WT;
+  const Vec3 lowest_W = X_WT.position_mm + setup_.tool.burr_radius_mm * entry_.direction_W;
+  milling_.read_bone([&](const Volume& bone) {
+    const GridGeometry& geometry = bone.geometry();
+    const auto density_at = [&](const Vec3& point_W) {
+      const Vec3 voxel = geometry.voxel_from_world(point_W);
+      return bone.grid()[{static_cast<int>(std::lround(voxel.x())), static_cast<int>(std::lround(voxel.y())),
+                          static_cast<int>(std::lround(voxel.z()))}];
+    };
+    EXPECT_GT(density_at(lowest_W + 0.5 * entry_.direction_W), kIsovalue);
+    EXPECT_LT(density_at(X_WT.position_mm), kIsovalue);
+  });
+  EXPECT_EQ(milling_.bone_version(), version);
+}
+
+TEST_F(LiveMillingTest, AnotherAlgorithmAndToolTakeOver) {
+  mill(0.2);
+  const double removed_mm3 = milling_.state().record.removed_mm3;
+  const std::vector<float> milled = bone();
+  MillingSetup other = setup_;
+  other.algorithm = algorithm_named("surface-points");
+  other.tool.burr_radius_mm = 1.2;
+  milling_.change(other);
+  EXPECT_TRUE(milling_.preparing());
+  milling_.undo();  // nothing while that is prepared
+  milling_.finish_preparing();
+  EXPECT_FALSE(milling_.preparing());
+  EXPECT_EQ(milling_.setup().algorithm.id, "surface-points");
+  settle();
+  EXPECT_EQ(bone(), milled);
+  EXPECT_EQ(milling_.state().record.removed_mm3, removed_mm3);
+  mill(0.2);
+  EXPECT_TRUE(milling_.running());
+}
+
+TEST_F(LiveMillingTest, WhatCannotBePreparedLeavesAllAsItWas) {
+  mill(0.2);
+  const std::vector<float> milled = bone();
+  MillingSetup wrong = setup_;
+  wrong.tool.burr_radius_mm = -1;
+  milling_.change(wrong);
+  EXPECT_THROW(milling_.finish_preparing(), std::invalid_argument);
+  EXPECT_EQ(milling_.setup().tool.burr_radius_mm, setup_.tool.burr_radius_mm);
+  milling_.change_isovalue(std::numeric_limits<double>::quiet_NaN());
+  EXPECT_THROW(milling_.finish_preparing(), std::invalid_argument);
+  EXPECT_EQ(milling_.isovalue(), kIsovalue);
+  EXPECT_EQ(bone(), milled);
+  mill(0.1);
+}
+
+TEST_F(LiveMillingTest, AnotherIsovalueKeepsTheBoneAndWhatCanBeTakenBack) {
+  mill(0.3);
+  const std::vector<float> milled = bone();
+  milling_.change_isovalue(300);
+  milling_.finish_preparing();
+  EXPECT_EQ(milling_.isovalue(), 300);
+  EXPECT_EQ(bone(), milled);
+  EXPECT_TRUE(surface_is_the_bones());
+  milling_.undo();
+  milling_.finish_preparing();
+  EXPECT_EQ(bone(), untouched_);
+  milling_.read_bone([](const Volume& bone) { EXPECT_EQ(bone.isovalue(), 300); });
+  EXPECT_TRUE(surface_is_the_bones());
+}
+
+TEST_F(LiveMillingTest, ARecordingEndsWithWhatItTellsOf) {
+  const auto path = std::filesystem::temp_directory_path() / "osteomill_live_milling_test.h5";
+  std::filesystem::remove(path);
+  milling_.start_recording(path, milling_.describe("ball", ""));
+  mill(0.1);
+  EXPECT_TRUE(milling_.recording());
+  MillingSetup other = setup_;
+  other.algorithm = algorithm_named("surface-points");
+  milling_.change(other);
+  milling_.finish_preparing();
+  EXPECT_FALSE(milling_.recording());
+  EXPECT_EQ(milling_.take_ended_recording(), path);
+  EXPECT_FALSE(milling_.take_ended_recording());
+  const Recording recording = read_recording(path);
+  EXPECT_GT(recording.records.size(), 50u);
+  EXPECT_GT(recording.records.back().removed_mm3, 0.1);
+  std::filesystem::remove(path);
+}
+
+TEST_F(LiveMillingTest, WorksOnAfterItWasStopped) {
+  mill(0.2);
+  milling_.stop();
+  milling_.undo();
+  milling_.finish_preparing();
+  EXPECT_EQ(bone(), untouched_);
+  milling_.start();
+  mill(0.1);
+}
+
+}  // namespace
+}  // namespace osteomill

@@ -1,0 +1,182 @@
+#include "osteomill/live/live_session.h"
+
+#include <chrono>
+#include <stdexcept>
+#include <thread>
+
+#include "tests/shapes.h"
+#include <gtest/gtest.h>
+
+#include "osteomill/haptics/algorithms.h"
+
+namespace osteomill {
+namespace {
+
+using namespace std::chrono_literals;
+
+// Holds the burr 0.3 mm deep in the bone below z = 0 and remembers what it was sent. Its members are the
+// haptic thread's while the session runs.
+class PressedDevice : public Device {
+ public:
+  Pose X_WD{{0, 0, 1.2}, Quat::Identity()};
+  Wrench sent;
+  double greatest_force_N = 0;
+  double time_passed_s = 0;
+  int throw_at_tick = -1;
+  int ticks = 0;
+
+  Pose read_pose() override {
+    if (ticks++ == throw_at_tick) throw std::runtime_error("the cable came off");
+    return X_WD;
+  }
+  void write_wrench(const Wrench& wrench) override {
+    sent = wrench;
+    greatest_force_N = std::max(greatest_force_N, wrench.force_N.norm());
+  }
+  void tick_done(const Pose&, double dt_s) override { time_passed_s += dt_s; }
+};
+
+Volume half_space() {
+  return testing_support::shape_volume(testing_support::centred_cube(40, 0.25),
+                                       testing_support::plane(Vec3::Zero(), Vec3::UnitZ()));
+}
+
+std::unique_ptr<MillingSession> session_on(std::shared_ptr<Volume> bone, std::string_view algorithm) {
+  return std::make_unique<MillingSession>(std::move(bone), MillingTool{}, make_algorithm(algorithm, {}),
+                                          BoneDensities{0, 1000}, MillingSettings{}, WrenchLimits{});
+}
+
+class LiveSessionTest : public ::testing::Test {
+ protected:
+  std::shared_ptr<Volume> bone_ = std::make_shared<Volume>(half_space());
+  PressedDevice device_;
+  LiveSession live_{session_on(bone_, "point-shell"), device_};
+};
+
+TEST_F(LiveSessionTest, TicksInRealTimeAndStopsAtAWrenchOfZero) {
+  live_.start();
+  std::this_thread::sleep_for(300ms);
+  EXPECT_TRUE(live_.running());
+  const TickRecord record = live_.state().record;
+  EXPECT_GT(record.contacts, 0);
+  EXPECT_GT(record.wrench.force_N.z(), 0);
+  live_.stop();
+  EXPECT_FALSE(live_.running());
+  EXPECT_GT(device_.greatest_force_N, 0);
+  EXPECT_EQ(device_.sent.force_N, Vec3::Zero());
+  EXPECT_EQ(device_.sent.torque_Nmm, Vec3::Zero());
+  const TimingSummary timing = live_.timing();
+  // A loaded machine misses ticks, and says so; together they are the time that passed.
+  EXPECT_GT(timing.ticks, 20u);
+  EXPECT_NEAR(device_.time_passed_s, 1e-3 * static_cast<double>(timing.ticks + timing.missed_ticks), 0.05);
+  EXPECT_LE(timing.rate_hz, 1010);
+}
+
+TEST_F(LiveSessionTest, RecordsComeInOrder) {
+  live_.start();
+  std::this_thread::sleep_for(100ms);
+  live_.stop();
+  double last_s = -1;
+  std::uint64_t count = 0;
+  while (const auto record = live_.next_record()) {
+    EXPECT_GT(record->time_s, last_s);
+    last_s = record->time_s;
+    ++count;
+  }
+  EXPECT_EQ(count, live_.timing().ticks);
+}
+
+TEST_F(LiveSessionTest, TheSpindleMillsAndAHeldBoneIsNotMilled) {
+  live_.start();
+  live_.wait_for(live_.set_spindle(true));
+  std::this_thread::sleep_for(100ms);
+  live_.wait_for(live_.hold_bone(true));
+  const std::vector<float> held = bone_->grid().densities();
+  EXPECT_NE(held, half_space().grid().densities());
+  std::this_thread::sleep_for(50ms);
+  EXPECT_EQ(bone_->grid().densities(), held);
+  EXPECT_TRUE(live_.state().spindle_on);
+  live_.wait_for(live_.hold_bone(false));
+  std::this_thread::sleep_for(100ms);
+  live_.stop();
+  EXPECT_NE(bone_->grid().densities(), held);
+}
+
+TEST_F(LiveSessionTest, APauseSendsZeroAndKeepsTheTool) {
+  live_.start();
+  std::this_thread::sleep_for(30ms);
+  live_.wait_for(live_.set_spindle(true));
+  live_.wait_for(live_.set_paused(true));
+  std::this_thread::sleep_for(10ms);
+  const LiveState state = live_.state();
+  EXPECT_TRUE(state.paused);
+  EXPECT_FALSE(state.spindle_on);
+  EXPECT_EQ(state.record.wrench.force_N, Vec3::Zero());
+  EXPECT_GT(state.record.X_WT.position_mm.z(), device_.X_WD.position_mm.z());
+}
+
+TEST_F(LiveSessionTest, AnAlgorithmPreparedElsewhereTakesOver) {
+  live_.start();
+  std::this_thread::sleep_for(50ms);
+  live_.wait_for(live_.hold_bone(true));
+  const double removed_mm3 = 7;
+  auto next = session_on(bone_, "surface-points");
+  const int points = next->algorithm().sample_point_count();
+  next->count_removed_from(removed_mm3);
+  const double force_before_N = live_.state().record.wrench.force_N.z();
+  live_.wait_for(live_.replace(std::move(next)));
+  live_.wait_for(live_.hold_bone(false));
+  std::this_thread::sleep_for(50ms);
+  live_.stop();
+  EXPECT_EQ(live_.session().algorithm().sample_point_count(), points);
+  EXPECT_EQ(live_.state().record.removed_mm3, removed_mm3);
+  EXPECT_GT(force_before_N, 0);
+  EXPECT_GT(live_.state().record.wrench.force_N.z(), 0.1);
+}
+
+TEST_F(LiveSessionTest, ListenersHearEveryTickAndWhereTheBoneChanged) {
+  struct Heard {
+    int ticks = 0;
+    VoxelBox changed;
+  } heard;
+  live_.set_spindle(true);
+  live_.listen([&heard](const TickRecord&, const Volume&, const VolumeChange& change) {
+    ++heard.ticks;
+    if (change.voxels.empty()) return;
+    heard.changed.include(change.voxels.first);
+    heard.changed.include(change.voxels.last);
+  });
+  live_.start();
+  std::this_thread::sleep_for(100ms);
+  live_.wait_for(live_.listen({}));
+  const int ticks = heard.ticks;
+  std::this_thread::sleep_for(20ms);
+  live_.stop();
+  EXPECT_GT(ticks, 5);
+  EXPECT_EQ(heard.ticks, ticks);
+  ASSERT_FALSE(heard.changed.empty());
+  const Volume before = half_space();
+  int outside = 0;
+  for (std::size_t n = 0; n < before.geometry().voxel_count(); ++n) {
+    const int place = static_cast<int>(n);
+    const VoxelIndex voxel{place % 40, place / 40 % 40, place / 1600};
+    if (heard.changed.contains(voxel)) continue;
+    ++outside;
+    ASSERT_EQ(bone_->grid()[voxel], before.grid()[voxel]);
+  }
+  EXPECT_GT(outside, 50000);
+}
+
+TEST_F(LiveSessionTest, ADeviceThatThrowsEndsItAtZeroAndCommandsGoOn) {
+  device_.throw_at_tick = 30;
+  live_.start();
+  for (int n = 0; n < 1000 && live_.running(); ++n) std::this_thread::sleep_for(1ms);
+  EXPECT_FALSE(live_.running());
+  EXPECT_TRUE(live_.failed());
+  live_.wait_for(live_.set_spindle(true));
+  EXPECT_EQ(device_.sent.force_N, Vec3::Zero());
+  EXPECT_GT(device_.greatest_force_N, 0);
+}
+
+}  // namespace
+}  // namespace osteomill

@@ -1,0 +1,34 @@
+#include "osteomill/live/real_time.h"
+
+#include <cerrno>
+#include <cstring>
+
+#include <pthread.h>
+#include <sched.h>
+#include <sys/mman.h>
+
+namespace osteomill {
+
+namespace {
+
+// Above ordinary work, below the kernel's own threads that serve the devices.
+constexpr int kPriority = 40;
+
+}  // namespace
+
+std::string request_real_time() {
+  std::string refused;
+  sched_param priority{};
+  priority.sched_priority = kPriority;
+  if (const int error = pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority); error != 0) {
+    refused = std::string("no real-time scheduling (") + std::strerror(error) +
+              "): ticks will be late under load; rtprio in /etc/security/limits.conf allows it";
+  }
+  // Not what is allocated later: under a limit, locking that would make allocations fail.
+  if (mlockall(MCL_CURRENT) != 0) {
+    refused += std::string(refused.empty() ? "" : "; ") + "memory not locked (" + std::strerror(errno) + ")";
+  }
+  return refused;
+}
+
+}  // namespace osteomill

@@ -1,0 +1,61 @@
+#include "osteomill/live/time_histogram.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace osteomill {
+
+namespace {
+
+// One thread alone adds, so that no locked instruction is needed.
+template <typename T>
+void increment(std::atomic<T>& counter) {
+  counter.store(counter.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+}
+
+}  // namespace
+
+void TimeHistogram::add(double time_us) {
+  increment(bins_[bin_of(time_us)]);
+  increment(count_);
+  if (time_us > greatest_us_.load(std::memory_order_relaxed)) {
+    greatest_us_.store(time_us, std::memory_order_relaxed);
+  }
+}
+
+std::size_t TimeHistogram::bin_of(double time_us) {
+  if (!(time_us > 0)) return 0;
+  if (time_us < 1e3) return static_cast<std::size_t>(time_us);
+  if (time_us < 1e4) return kFineBins + static_cast<std::size_t>((time_us - 1e3) / 10);
+  return kBins - 1;
+}
+
+double TimeHistogram::upper_end_us(std::size_t bin) {
+  if (bin < kFineBins) return static_cast<double>(bin + 1);
+  if (bin + 1 < kBins) return 1e3 + 10 * static_cast<double>(bin - kFineBins + 1);
+  return std::numeric_limits<double>::infinity();
+}
+
+TimePercentiles TimeHistogram::percentiles() const {
+  std::array<std::uint32_t, kBins> counts;
+  std::uint64_t total = 0;
+  for (std::size_t n = 0; n < kBins; ++n) total += counts[n] = bins_[n].load(std::memory_order_relaxed);
+  TimePercentiles found;
+  if (total == 0) return found;
+  found.greatest_us = greatest_us_.load(std::memory_order_relaxed);
+  // The least time that at least this share of all times does not exceed.
+  const auto at_share = [&](double share) {
+    const auto wanted = static_cast<std::uint64_t>(std::ceil(share * static_cast<double>(total)));
+    std::uint64_t passed = 0;
+    std::size_t bin = 0;
+    while (bin + 1 < kBins && (passed += counts[bin]) < wanted) ++bin;
+    return std::min(upper_end_us(bin), found.greatest_us);
+  };
+  found.p50_us = at_share(0.5);
+  found.p99_us = at_share(0.99);
+  found.p999_us = at_share(0.999);
+  return found;
+}
+
+}  // namespace osteomill

@@ -1,0 +1,37 @@
+#include "osteomill/live/time_histogram.h"
+
+#include <gtest/gtest.h>
+
+namespace osteomill {
+namespace {
+
+TEST(TimeHistogram, NothingCountedIsZero) {
+  const TimeHistogram none;
+  EXPECT_EQ(none.percentiles().p50_us, 0);
+  EXPECT_EQ(none.percentiles().greatest_us, 0);
+}
+
+TEST(TimeHistogram, PercentilesOfKnownTimes) {
+  TimeHistogram times;
+  for (int n = 0; n < 1000; ++n) times.add(n + 0.5);
+  const TimePercentiles found = times.percentiles();
+  EXPECT_EQ(found.p50_us, 500);
+  EXPECT_EQ(found.p99_us, 990);
+  EXPECT_EQ(found.p999_us, 999);
+  EXPECT_EQ(found.greatest_us, 999.5);
+}
+
+TEST(TimeHistogram, LongTimesAreCountedCoarselyAndTheGreatestExactly) {
+  TimeHistogram times;
+  for (int n = 0; n < 98; ++n) times.add(3);
+  times.add(2345);
+  times.add(123456);
+  const TimePercentiles found = times.percentiles();
+  EXPECT_EQ(found.p50_us, 4);
+  EXPECT_EQ(found.p99_us, 2350);
+  EXPECT_EQ(found.p999_us, 123456);
+  EXPECT_EQ(times.count(), 100u);
+}
+
+}  // namespace
+}  // namespace osteomill

@@ -1,0 +1,142 @@
+#include "osteomill/operator/milling_script.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace osteomill {
+
+namespace {
+
+void require(bool holds, const char* what) {
+  if (!holds) throw std::invalid_argument(std::string("milling script: ") + what);
+}
+
+bool positive(double value) {
+  return std::isfinite(value) && value > 0;
+}
+bool not_negative(double value) {
+  return std::isfinite(value) && value >= 0;
+}
+bool share(double value) {
+  return value >= 0 && value <= 1;
+}
+
+// How far a spring is stretched when it gives `share` of its limit; a spring of no stiffness gives nothing.
+double stretch_for(double share, double limit, double stiffness) {
+  return stiffness > 0 ? share * limit / stiffness : 0.0;
+}
+
+}  // namespace
+
+void require_valid(const ScriptSettings& settings) {
+  require(not_negative(settings.milling_s) && not_negative(settings.holding_s),
+          "a phase must not be shorter than 0 s");
+  require(positive(settings.approach_s), "the approach must take longer than 0 s");
+  require(not_negative(settings.feed_mm_s) && not_negative(settings.lean_rad_s),
+          "feed (mm/s) and lean (rad/s) must not be negative");
+  require(not_negative(settings.depth_mm) && not_negative(settings.lean_limit_rad),
+          "depth (mm) and the limit of the lean (rad) must not be negative");
+  require(share(settings.feed_push_share) && share(settings.latest_lean_share) &&
+              share(settings.lean_torque_share) && share(settings.lean_push_share) &&
+              share(settings.lean_side_share) && share(settings.hold_side_share) &&
+              share(settings.hold_push_share) && share(settings.hold_torque_share),
+          "a share must lie in [0, 1]");
+  require(not_negative(settings.settle_s), "settling must not take less than 0 s");
+  require(not_negative(settings.push_correction_per_s) && not_negative(settings.torque_correction_per_s),
+          "a correction (1/s) must not be negative");
+}
+
+MillingScript::MillingScript(const ScriptSettings& settings, const HandSettings& hand,
+                             const MillingTool& tool, const MillingEntry& entry)
+    : settings_(settings), hand_(hand), tool_(tool), entry_(entry) {
+  require_valid(settings);
+  require_valid(hand);
+  require_valid(tool);
+  const Pose start = pose_above(entry, tool, kStartAbove_mm);
+  upright_ = start.orientation;
+  // About this axis the shaft, which points against the direction, turns towards the lateral side.
+  lean_axis_W_ = (-entry.direction_W).cross(entry.lateral_W).normalized();
+  along_mm_ = entry.direction_W.dot(start.position_mm - entry.point_W);
+  intent_.X_W_target = target();
+  intent_.milling = settings.milling_s > 0;
+}
+
+double MillingScript::shown_depth_mm(const Pose& X_WT) const {
+  return entry_.direction_W.dot(X_WT.position_mm - entry_.point_W) + tool_.burr_radius_mm;
+}
+
+ScriptStage MillingScript::next_stage(double time_s, const Pose& X_WT) const {
+  // Times are sums of ticks; a microsecond keeps a phase from beginning a tick late by a rounding.
+  const double now_s = time_s + 1e-6;
+  if (now_s >= settings_.milling_s + settings_.settle_s) return ScriptStage::hold;
+  if (now_s >= settings_.milling_s) return ScriptStage::settle;
+  if (intent_.stage == ScriptStage::lean || shown_depth_mm(X_WT) >= settings_.depth_mm ||
+      now_s >= settings_.latest_lean_share * settings_.milling_s) {
+    return ScriptStage::lean;
+  }
+  return along_mm_ >= -tool_.burr_radius_mm ? ScriptStage::feed : intent_.stage;
+}
+
+void MillingScript::push(double share, double slowest_mm_s, double fastest_mm_s, double dt_s,
+                         const Pose& X_WD) {
+  const double wanted_mm = stretch_for(share, hand_.push_N, hand_.stiffness_N_per_mm);
+  const double felt_mm = along_mm_ - entry_.direction_W.dot(X_WD.position_mm - entry_.point_W);
+  const double rate_mm_s = settings_.push_correction_per_s * (wanted_mm - felt_mm);
+  along_mm_ += dt_s * std::clamp(rate_mm_s, slowest_mm_s, fastest_mm_s);
+}
+
+void MillingScript::push_sideways(double share, double dt_s, const Pose& X_WD) {
+  const double wanted_mm = stretch_for(share, hand_.push_N, hand_.stiffness_N_per_mm);
+  const double felt_mm = sideways_mm_ - entry_.lateral_W.dot(X_WD.position_mm - entry_.point_W);
+  const double rate_mm_s = settings_.push_correction_per_s * (wanted_mm - felt_mm);
+  sideways_mm_ += dt_s * std::clamp(rate_mm_s, -settings_.feed_mm_s, settings_.feed_mm_s);
+  // Where nothing resists (a burr that slides over bone too hard for it) the target must not wander off.
+  sideways_mm_ = std::clamp(sideways_mm_, 0.0, wanted_mm);
+}
+
+void MillingScript::lean(double share, double dt_s, const Pose& X_WD) {
+  const double wanted_rad =
+      stretch_for(share, torque_limit_Nmm(hand_), hand_.torsional_stiffness_Nmm_per_rad);
+  const double felt_rad =
+      lean_axis_W_.dot(rotation_vector(target().orientation * X_WD.orientation.conjugate()));
+  const double rate_rad_s = settings_.torque_correction_per_s * (wanted_rad - felt_rad);
+  lean_rad_ += dt_s * std::clamp(rate_rad_s, -settings_.lean_rad_s, settings_.lean_rad_s);
+  lean_rad_ = std::clamp(lean_rad_, 0.0, settings_.lean_limit_rad);
+}
+
+Pose MillingScript::target() const {
+  return {entry_.point_W + along_mm_ * entry_.direction_W + sideways_mm_ * entry_.lateral_W,
+          (quaternion_from_rotation_vector(lean_rad_ * lean_axis_W_) * upright_).normalized()};
+}
+
+const ScriptIntent& MillingScript::step(double time_s, double dt_s, const Pose& X_WD, const Pose& X_WT) {
+  intent_.stage = next_stage(time_s, X_WT);
+  const double feed_mm_s = settings_.feed_mm_s;
+  switch (intent_.stage) {
+    case ScriptStage::approach:
+      push(settings_.feed_push_share, 0.0, kStartAbove_mm / settings_.approach_s, dt_s, X_WD);
+      break;
+    case ScriptStage::feed:
+      push(settings_.feed_push_share, 0.0, feed_mm_s, dt_s, X_WD);
+      break;
+    case ScriptStage::lean:
+      push(settings_.lean_push_share, -feed_mm_s, feed_mm_s, dt_s, X_WD);
+      push_sideways(settings_.lean_side_share, dt_s, X_WD);
+      lean(settings_.lean_torque_share, dt_s, X_WD);
+      break;
+    case ScriptStage::settle:
+      push(settings_.hold_push_share, -feed_mm_s, feed_mm_s, dt_s, X_WD);
+      push_sideways(settings_.hold_side_share, dt_s, X_WD);
+      lean(settings_.hold_torque_share, dt_s, X_WD);
+      break;
+    case ScriptStage::hold:
+      break;
+  }
+  intent_.milling = intent_.stage < ScriptStage::settle;
+  intent_.X_W_target = target();
+  return intent_;
+}
+
+}  // namespace osteomill

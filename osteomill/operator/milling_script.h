@@ -1,0 +1,91 @@
+#pragma once
+
+#include "osteomill/geometry/pose.h"
+#include "osteomill/operator/hand.h"
+#include "osteomill/operator/milling_entry.h"
+#include "osteomill/tool/milling_tool.h"
+
+namespace osteomill {
+
+/// The test of section 8.2 of the paper as one hand's intent: mill a hole and push the shaft against its
+/// edge, then stand in it and hold still. Shares are of the hand's push, or of the limit of its torque.
+struct ScriptSettings {
+  double milling_s = 20.0;
+  double holding_s = 20.0;
+  double approach_s = 1.0;
+  double feed_mm_s = 2.0;
+  double feed_push_share = 0.9;
+  /// The hole is deep enough to lean in when the shown burr's tip is this far below the entry, ...
+  double depth_mm = 3.0;
+  /// ... or when this share of the milling is over.
+  double latest_lean_share = 0.6;
+  double lean_rad_s = 0.14;  // 8 degrees a second
+  double lean_torque_share = 0.8;
+  double lean_push_share = 0.6;
+  /// Sideways, towards the rim that is leant against. Leaning by torque alone would press the burr into the
+  /// wall on the other side as hard as the shaft into the rim, and so mill that wall away instead of loading
+  /// the edge.
+  double lean_side_share = 0.6;
+  /// The shaft is never meant to stand further from the direction than this (35 degrees).
+  double lean_limit_rad = 0.61;
+  double hold_push_share = 0.5;
+  double hold_side_share = 0.6;
+  double hold_torque_share = 0.8;
+  /// How long the hand takes, at the start of the holding, to come to what it then holds.
+  double settle_s = 1.0;
+  /// How fast the hand corrects what it feels, as a rate (1/s) of the spring's stretch and of its twist: slow
+  /// against the swing of hand and handle (41 rad/s), so that the script neither damps nor drives it.
+  double push_correction_per_s = 4.0;
+  double torque_correction_per_s = 8.0;
+};
+
+/// Throws std::invalid_argument, naming it, where a setting is out of range.
+void require_valid(const ScriptSettings& settings);
+
+/// What the hand is about.
+enum class ScriptStage : unsigned char { approach, feed, lean, settle, hold };
+
+/// Where the hand wants the tool to be, and whether the spindle turns.
+struct ScriptIntent {
+  /// Without tremor.
+  Pose X_W_target;
+  bool milling = true;
+  ScriptStage stage = ScriptStage::approach;
+};
+
+/// The hand's intent, tick by tick. It feels its own springs (target against device) and sees the simulated
+/// tool, by which it judges how deep the hole is; it never looks at the bone. The same inputs give the same
+/// intents.
+class MillingScript {
+ public:
+  MillingScript(const ScriptSettings& settings, const HandSettings& hand, const MillingTool& tool,
+                const MillingEntry& entry);
+
+  /// What the script wants at time 0, and where the device is then.
+  const ScriptIntent& intent() const { return intent_; }
+  /// The intent at `time_s`, `dt_s` after the last one. `X_WD` is where the device is, `X_WT` where the
+  /// simulated tool is shown. Safe in the haptic tick.
+  const ScriptIntent& step(double time_s, double dt_s, const Pose& X_WD, const Pose& X_WT);
+
+ private:
+  ScriptStage next_stage(double time_s, const Pose& X_WT) const;
+  double shown_depth_mm(const Pose& X_WT) const;
+  void push(double share, double slowest_mm_s, double fastest_mm_s, double dt_s, const Pose& X_WD);
+  void push_sideways(double share, double dt_s, const Pose& X_WD);
+  void lean(double share, double dt_s, const Pose& X_WD);
+  Pose target() const;
+
+  ScriptSettings settings_;
+  HandSettings hand_;
+  MillingTool tool_;
+  MillingEntry entry_;
+  Quat upright_;
+  Vec3 lean_axis_W_;
+  // The target: how far along the direction past the entry, how far to the side, and how far leant.
+  double along_mm_ = 0;
+  double sideways_mm_ = 0;
+  double lean_rad_ = 0;
+  ScriptIntent intent_;
+};
+
+}  // namespace osteomill

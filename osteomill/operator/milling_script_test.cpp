@@ -1,0 +1,232 @@
+#include "osteomill/operator/milling_script.h"
+
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+#include "tests/analytic_hole.h"
+#include "tests/shapes.h"
+#include <gtest/gtest.h>
+
+#include "osteomill/operator/simulated_operator.h"
+
+namespace osteomill {
+namespace {
+
+using testing_support::AnalyticHole;
+using testing_support::centred_cube;
+using testing_support::shape_volume;
+
+constexpr double kTick_s = 1e-3;
+const MillingTool kTool;
+
+MillingEntry on_a_plane() {
+  static const Volume volume =
+      shape_volume(centred_cube(40, 0.5), testing_support::plane({0, 0, 1}, {0, 0, 1}));
+  return place_entry(volume, kTool);
+}
+
+MillingEntry on_a_ball() {
+  static const Volume volume = shape_volume(centred_cube(40, 0.5), testing_support::ball({0, 0, 0}, 8));
+  return place_entry(volume, kTool, Vec3(9, 7, 4), Vec3(-9, -7, -4));
+}
+
+struct Sample {
+  double time_s;
+  ScriptStage stage;
+  bool milling;
+  Pose X_W_target;
+  Pose X_WD;
+  Wrench hand;
+  double shown_tip_mm;
+  double device_mm;
+  double lean_rad;
+};
+
+OperatorSettings without_tremor() {
+  OperatorSettings settings;
+  settings.hand.tremor_mm = 0;
+  return settings;
+}
+
+std::vector<Sample> run(const OperatorSettings& settings, const MillingEntry& entry, AnalyticHole hole) {
+  SimulatedOperator person(settings, kTool, entry);
+  std::vector<Sample> samples;
+  while (!person.finished()) {
+    const Pose X_WD = person.read_pose();
+    const auto step = hole.step(X_WD, person.milling(), kTick_s);
+    person.write_wrench(step.wrench);
+    person.see(step.X_WT);
+    const auto depth_mm = [&](const Pose& X) { return entry.direction_W.dot(X.position_mm - entry.point_W); };
+    samples.push_back({person.time_s(), person.stage(), person.milling(), person.target(), X_WD,
+                       person.hand_wrench(), depth_mm(step.X_WT) + kTool.burr_radius_mm, depth_mm(X_WD),
+                       std::acos(std::min(1.0, -shaft_direction(X_WD).dot(entry.direction_W)))});
+    person.advance(kTick_s);
+  }
+  return samples;
+}
+
+AnalyticHole yielding_hole(const MillingEntry& entry, AnalyticHole::Kind kind = AnalyticHole::Kind::direct) {
+  return {entry, kTool.burr_radius_mm, kind, 0.35};
+}
+
+std::size_t first_of(const std::vector<Sample>& samples, ScriptStage stage) {
+  std::size_t n = 0;
+  while (n < samples.size() && samples[n].stage != stage) ++n;
+  return n;
+}
+
+template <typename Value>
+double mean_between(const std::vector<Sample>& samples, double from_s, double to_s, const Value& value) {
+  double sum = 0;
+  int count = 0;
+  for (const Sample& sample : samples) {
+    if (sample.time_s < from_s || sample.time_s >= to_s) continue;
+    sum += value(sample);
+    ++count;
+  }
+  return sum / count;
+}
+
+TEST(MillingScript, StartsThreeMillimetresAboveTheEntryAndTouchesAfterAboutASecond) {
+  for (const MillingEntry& entry : {on_a_plane(), on_a_ball()}) {
+    const auto samples = run(without_tremor(), entry, yielding_hole(entry));
+    EXPECT_NEAR(samples.front().shown_tip_mm, -3.0, 0.01);
+    std::size_t touch = 0;
+    while (samples[touch].shown_tip_mm < 0) ++touch;
+    EXPECT_NEAR(samples[touch].time_s, 1.0, 0.15);
+    EXPECT_EQ(samples[0].stage, ScriptStage::approach);
+    EXPECT_TRUE(samples[0].milling);
+    for (std::size_t n = 0; n < touch; ++n) EXPECT_LT(samples[n].lean_rad, 1e-3);
+  }
+}
+
+TEST(MillingScript, FeedsWithNineTenthsOfThePushUntilTheHoleIsThreeMillimetresDeep) {
+  for (double push_N : {1.5, 3.0}) {
+    OperatorSettings settings = without_tremor();
+    settings.hand.push_N = push_N;
+    const MillingEntry entry = on_a_ball();
+    // Bone the harder, the heavier the hand: the hole grows at the same speed.
+    const AnalyticHole hole(entry, kTool.burr_radius_mm, AnalyticHole::Kind::direct, 0.5 / push_N);
+    const auto samples = run(settings, entry, hole);
+    const std::size_t lean = first_of(samples, ScriptStage::lean);
+    ASSERT_LT(lean, samples.size());
+    EXPECT_NEAR(samples[lean].shown_tip_mm, 3.0, 0.02);
+    const double until_s = samples[lean].time_s;
+    const auto push_along = [&](const Sample& s) { return s.hand.force_N.dot(entry.direction_W); };
+    // The floor gives way, so that the feed follows a little behind nine tenths.
+    EXPECT_NEAR(mean_between(samples, until_s - 1, until_s, push_along) / push_N, 0.87, 0.04);
+    for (const Sample& s : samples) EXPECT_LT(s.hand.force_N.norm(), push_N + 0.1) << s.time_s;
+  }
+}
+
+TEST(MillingScript, LeansAtItsRateUntilTheTorqueIsThereAndKeepsItWithTheSpindleOn) {
+  const MillingEntry entry = on_a_ball();
+  const auto samples = run(without_tremor(), entry, yielding_hole(entry));
+  const double from_s = samples[first_of(samples, ScriptStage::lean)].time_s;
+  EXPECT_LT(from_s, 12.0);
+  // From rest to 0.7 of the play, free: 8 degrees a second.
+  const auto lean = [](const Sample& s) { return s.lean_rad; };
+  EXPECT_NEAR(mean_between(samples, from_s + 1.0, from_s + 1.001, lean), 0.14, 0.01);
+  const auto torque = [](const Sample& s) { return s.hand.torque_Nmm.norm(); };
+  const auto along = [&](const Sample& s) { return s.hand.force_N.dot(entry.direction_W); };
+  EXPECT_NEAR(mean_between(samples, 16, 20, torque), 0.8 * 15, 0.3);
+  EXPECT_NEAR(mean_between(samples, 16, 20, along), 0.6 * 1.5, 0.05);
+  EXPECT_TRUE(samples[19999].milling);
+  EXPECT_EQ(samples[19999].stage, ScriptStage::lean);
+  // The shaft leans towards the lateral side.
+  EXPECT_GT(shaft_direction(samples[19999].X_WD).dot(entry.lateral_W), 0.19);
+}
+
+TEST(MillingScript, HoldsStillWithTheSpindleOffAndTheShaftAgainstTheRim) {
+  const MillingEntry entry = on_a_ball();
+  const auto samples = run(without_tremor(), entry, yielding_hole(entry));
+  ASSERT_EQ(samples.size(), 40000u);
+  EXPECT_FALSE(samples[20000].milling);
+  EXPECT_EQ(samples[20000].stage, ScriptStage::settle);
+  EXPECT_EQ(samples[21000].stage, ScriptStage::hold);
+  for (std::size_t n = 21000; n < samples.size(); ++n) {
+    ASSERT_FALSE(samples[n].milling);
+    ASSERT_EQ(samples[n].X_W_target.position_mm, samples[21000].X_W_target.position_mm);
+    ASSERT_EQ(samples[n].X_W_target.orientation.coeffs(), samples[21000].X_W_target.orientation.coeffs());
+    ASSERT_LT((samples[n].X_WD.position_mm - samples[39999].X_WD.position_mm).norm(), 0.1) << n;
+  }
+  const auto torque = [](const Sample& s) { return s.hand.torque_Nmm.norm(); };
+  const auto along = [&](const Sample& s) { return s.hand.force_N.dot(entry.direction_W); };
+  EXPECT_NEAR(mean_between(samples, 22, 40, torque), 0.8 * 15, 0.3);
+  EXPECT_NEAR(mean_between(samples, 22, 40, along), 0.5 * 1.5, 0.05);
+}
+
+// The first algorithm meets the bone with the device's centre, 1.5 mm deeper than the burr that is shown, and
+// then sinks by force over stiffness: the hole is judged by what is shown.
+TEST(MillingScript, JudgesTheHoleByTheShownToolAndNotByTheDevice) {
+  const MillingEntry entry = on_a_plane();
+  const auto samples = run(without_tremor(), entry, yielding_hole(entry, AnalyticHole::Kind::line_proxy));
+  const std::size_t lean = first_of(samples, ScriptStage::lean);
+  ASSERT_LT(samples[lean].time_s, 12.0);
+  EXPECT_NEAR(samples[lean].shown_tip_mm, 3.0, 0.02);
+  EXPECT_GT(samples[lean].device_mm, 3.0 + 0.5);  // the direct tool's is at 1.5
+  const auto along = [&](const Sample& s) { return s.hand.force_N.dot(entry.direction_W); };
+  EXPECT_NEAR(mean_between(samples, samples[lean].time_s - 1, samples[lean].time_s, along), 0.87 * 1.5, 0.06);
+}
+
+TEST(MillingScript, BoneThatDoesNotYieldIsLeantOnAfterSixTenthsOfThePhaseAndNothingWandersOff) {
+  const MillingEntry entry = on_a_plane();
+  const auto samples =
+      run(without_tremor(), entry, {entry, kTool.burr_radius_mm, AnalyticHole::Kind::direct, 0.0});
+  EXPECT_NEAR(samples[first_of(samples, ScriptStage::lean)].time_s, 12.0, 0.002);
+  for (const Sample& s : samples) {
+    ASSERT_LT((s.X_WD.position_mm - entry.point_W).norm(), 6.0);
+    ASSERT_LT(s.lean_rad, 0.7);
+  }
+}
+
+TEST(MillingScript, InEmptyAirTheTargetKeepsWithinItsBounds) {
+  MillingEntry entry;  // no bone at all
+  OperatorSettings settings = without_tremor();
+  settings.script.milling_s = 4;
+  settings.script.holding_s = 2;
+  SimulatedOperator person(settings, kTool, entry);
+  while (!person.finished()) {
+    person.see(person.read_pose());
+    person.advance(kTick_s);
+    ASSERT_LT((person.target().position_mm - entry.point_W).norm(), 12.0);
+  }
+  EXPECT_NEAR(person.time_s(), 6.0, 1e-9);
+}
+
+TEST(MillingScript, TurningEverythingTurnsTheIntent) {
+  const Pose turn{{5, -3, 2}, quaternion_from_rotation_vector({0.7, 0.2, -0.4})};
+  const MillingEntry plain = on_a_ball();
+  const MillingEntry other{turn * plain.point_W, turn.orientation * plain.direction_W,
+                           turn.orientation * plain.lateral_W};
+  MillingScript one({}, {}, kTool, plain);
+  MillingScript two({}, {}, kTool, other);
+  for (int n = 1; n < 20500; ++n) {
+    const Pose& target = one.intent().X_W_target;
+    const Pose device{target.position_mm - Vec3(0.3, 0.1, 0.2),
+                      quaternion_from_rotation_vector({0.002, 0.003, 0}) * target.orientation};
+    const Pose device_turned = turn * device;
+    one.step(n * kTick_s, kTick_s, device, device);
+    two.step(n * kTick_s, kTick_s, device_turned, device_turned);
+    const Pose expected = turn * one.intent().X_W_target;
+    ASSERT_LT((expected.position_mm - two.intent().X_W_target.position_mm).norm(), 1e-8);
+    ASSERT_LT((shaft_direction(expected) - shaft_direction(two.intent().X_W_target)).norm(), 1e-8);
+    ASSERT_EQ(one.intent().stage, two.intent().stage);
+  }
+}
+
+TEST(MillingScript, ASettingOutOfRangeIsRefused) {
+  const auto refused = [](auto change) {
+    ScriptSettings settings;
+    change(settings);
+    EXPECT_THROW(MillingScript(settings, {}, kTool, {}), std::invalid_argument);
+  };
+  refused([](ScriptSettings& s) { s.milling_s = -1; });
+  refused([](ScriptSettings& s) { s.approach_s = 0; });
+  refused([](ScriptSettings& s) { s.lean_push_share = 1.5; });
+  refused([](ScriptSettings& s) { s.feed_mm_s = std::nan(""); });
+}
+
+}  // namespace
+}  // namespace osteomill

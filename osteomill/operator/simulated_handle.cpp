@@ -1,0 +1,101 @@
+#include "osteomill/operator/simulated_handle.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace osteomill {
+
+namespace {
+
+// 1 N = 1 kg m/s^2 = 1000 kg mm/s^2, and 1 N mm = 1e-3 N m.
+constexpr double kMmPerM = 1000.0;
+constexpr double kLongestDelay_s = 1.0;
+
+void require(bool holds, const char* what) {
+  if (!holds) throw std::invalid_argument(std::string("simulated handle: ") + what);
+}
+
+bool positive(double value) {
+  return std::isfinite(value) && value > 0;
+}
+bool not_negative(double value) {
+  return std::isfinite(value) && value >= 0;
+}
+
+std::size_t delay_substeps(const HandleSettings& settings) {
+  return static_cast<std::size_t>(std::llround(settings.force_delay_s / settings.substep_s));
+}
+
+Vec3 rounded_to(const Vec3& value, double step) {
+  if (step == 0) return value;
+  return step *
+         Vec3(std::round(value.x() / step), std::round(value.y() / step), std::round(value.z() / step));
+}
+
+}  // namespace
+
+void require_valid(const HandleSettings& settings) {
+  require(positive(settings.mass_kg), "the mass must be a positive number of kg");
+  require(positive(settings.inertia_kg_m2), "the inertia must be a positive number of kg m^2");
+  require(not_negative(settings.position_step_mm), "the encoder's step must not be negative (mm)");
+  require(not_negative(settings.rotation_step_rad), "the encoder's rotation step must not be negative (rad)");
+  require(positive(settings.substep_s) && settings.substep_s <= 1e-3, "the substep must lie in (0, 1 ms]");
+  require(not_negative(settings.force_delay_s) && settings.force_delay_s <= kLongestDelay_s,
+          "the force's delay must lie in [0, 1 s]");
+  require(not_negative(settings.limits.force_N) && not_negative(settings.limits.torque_Nmm),
+          "the limits of force (N) and torque (N mm) must not be negative");
+}
+
+SimulatedHandle::SimulatedHandle(const HandleSettings& settings, const Pose& X_WD) : settings_(settings) {
+  require_valid(settings);
+  delay_line_.resize(delay_substeps(settings) + 1);
+  reset(X_WD);
+}
+
+void SimulatedHandle::reset(const Pose& X_WD) {
+  X_WD_ = X_WD;
+  home_orientation_ = X_WD.orientation;
+  velocity_ = {};
+  commanded_ = {};
+  motor_wrench_ = {};
+  oldest_ = 0;
+  std::fill(delay_line_.begin(), delay_line_.end(), Wrench{});
+}
+
+Pose SimulatedHandle::read() const {
+  const Vec3 turned = rotation_vector(home_orientation_.conjugate() * X_WD_.orientation);
+  const Vec3 turned_as_read = rounded_to(turned, settings_.rotation_step_rad);
+  return {rounded_to(X_WD_.position_mm, settings_.position_step_mm),
+          (home_orientation_ * quaternion_from_rotation_vector(turned_as_read)).normalized()};
+}
+
+void SimulatedHandle::command(const Wrench& wrench) {
+  commanded_ = make_safe(wrench, settings_.limits).wrench;
+}
+
+void SimulatedHandle::advance(const Wrench& other) {
+  // The newest command takes the place of the one that the last substep used up; what is the oldest now was
+  // given `force_delay_s` ago.
+  const std::size_t newest = oldest_;
+  delay_line_[newest] = commanded_;
+  oldest_ = (oldest_ + 1) % delay_line_.size();
+  motor_wrench_ = delay_line_[oldest_];
+
+  const double h = settings_.substep_s;
+  const Vec3 force_N = motor_wrench_.force_N + other.force_N;
+  const Vec3 torque_Nmm = motor_wrench_.torque_Nmm + other.torque_Nmm;
+  velocity_.linear_mm_s += h * (kMmPerM / settings_.mass_kg) * force_N;
+  velocity_.angular_rad_s += h / (kMmPerM * settings_.inertia_kg_m2) * torque_Nmm;
+  X_WD_.position_mm += h * velocity_.linear_mm_s;
+  X_WD_.orientation =
+      (quaternion_from_rotation_vector(h * velocity_.angular_rad_s) * X_WD_.orientation).normalized();
+}
+
+double SimulatedHandle::kinetic_energy_Nmm() const {
+  return 0.5 * settings_.mass_kg * velocity_.linear_mm_s.squaredNorm() / kMmPerM +
+         0.5 * settings_.inertia_kg_m2 * kMmPerM * velocity_.angular_rad_s.squaredNorm();
+}
+
+}  // namespace osteomill

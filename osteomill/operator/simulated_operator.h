@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstdint>
+
+#include "osteomill/device/device.h"
+#include "osteomill/operator/hand.h"
+#include "osteomill/operator/milling_script.h"
+#include "osteomill/operator/simulated_handle.h"
+#include "osteomill/operator/tremor.h"
+
+namespace osteomill {
+
+struct OperatorSettings {
+  HandleSettings handle;
+  HandSettings hand;
+  ScriptSettings script;
+  /// Of the tremor.
+  std::uint64_t seed = 1;
+};
+
+/// A device and the hand that holds it, in simulated time: the same settings give the same run on any
+/// machine, however long a tick takes to compute. A tick is
+///     read_pose, (the algorithm), write_wrench, see, (milling while `milling()`), advance.
+/// Made outside the tick; nothing else allocates, locks, logs or throws.
+class SimulatedOperator final : public Device {
+ public:
+  /// Throws std::invalid_argument, naming it, where a setting is out of range, or where hand and handle
+  /// together are too stiff for the substep.
+  SimulatedOperator(const OperatorSettings& settings, const MillingTool& tool, const MillingEntry& entry);
+
+  /// As the encoder says.
+  Pose read_pose() override { return handle_.read(); }
+  void write_wrench(const Wrench& wrench) override { handle_.command(wrench); }
+  bool spindle_asked() const override { return milling(); }
+  void tick_done(const Pose& X_WT, double dt_s) override {
+    see(X_WT);
+    advance(dt_s);
+  }
+  /// Shows the operator the simulated tool, by which it judges how deep the hole is.
+  void see(const Pose& X_WT_simulated) { X_WT_seen_ = X_WT_simulated; }
+  /// Lets `dt_s` pass, in whole substeps of the handle; what is left over is kept for the next call. Nothing
+  /// passes where `dt_s` does not lie in (0, 1 s].
+  void advance(double dt_s);
+
+  double time_s() const { return static_cast<double>(substeps_) * handle_.settings().substep_s; }
+  /// Whether the spindle turns in the tick that begins now: the milling phase, and after it the holding.
+  bool milling() const { return script_.intent().milling; }
+  ScriptStage stage() const { return script_.intent().stage; }
+  /// Both phases are over.
+  bool finished() const;
+
+  /// Where the hand pulls to, with its tremor.
+  const Pose& target() const { return X_W_target_; }
+  /// What the hand did to the handle in the last substep.
+  const Wrench& hand_wrench() const { return hand_wrench_; }
+  /// The handle as it truly is, without the encoder's steps.
+  const SimulatedHandle& handle() const { return handle_; }
+
+ private:
+  Pose trembling(const Pose& X_W_intended) const;
+
+  HandSettings hand_;
+  double end_s_;
+  Tremor tremor_;
+  MillingScript script_;
+  SimulatedHandle handle_;
+  Pose X_WT_seen_;
+  Pose X_W_target_;
+  Wrench hand_wrench_;
+  std::int64_t substeps_ = 0;
+  double time_left_over_s_ = 0;
+};
+
+}  // namespace osteomill

@@ -1,0 +1,49 @@
+#include "osteomill/operator/virtual_hand.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace osteomill {
+
+namespace {
+
+// How fast the target follows what is asked for: over about two pictures.
+constexpr double kFollow_per_s = 30.0;
+constexpr double kLongestTick_s = 0.05;
+
+}  // namespace
+
+HandSettings pointing_hand() {
+  HandSettings hand;
+  hand.push_N = 2.5;
+  // Critical: 2 sqrt(k m) of the default handle along a line, and the same about an axis.
+  hand.damping_Ns_per_mm = 0.0245;
+  hand.torsional_damping_Nmms_per_rad = 24.5;
+  hand.tremor_mm = 0;
+  return hand;
+}
+
+VirtualHand::VirtualHand(const HandleSettings& handle, const HandSettings& hand, const Pose& X_WD)
+    : hand_(hand), handle_(handle, X_WD), push_N_(hand.push_N), X_W_target_(X_WD) {
+  require_valid(hand);
+  asked_.write(X_WD);
+}
+
+void VirtualHand::pull_to(const Pose& X_W_target) {
+  if (is_finite(X_W_target)) asked_.write(X_W_target);
+}
+
+void VirtualHand::tick_done(const Pose& /*X_WT*/, double dt_s) {
+  const double passed_s = std::clamp(dt_s, 0.0, kLongestTick_s);
+  hand_.push_N = std::max(push_N_.load(std::memory_order_relaxed), 0.0);
+  const Pose& asked = asked_.read();
+  const double share = 1 - std::exp(-kFollow_per_s * passed_s);
+  X_W_target_.position_mm += share * (asked.position_mm - X_W_target_.position_mm);
+  X_W_target_.orientation = X_W_target_.orientation.slerp(share, asked.orientation).normalized();
+  const auto substeps = static_cast<int>(std::lround(passed_s / handle_.settings().substep_s));
+  for (int n = 0; n < substeps; ++n) {
+    handle_.advance(hand_wrench(hand_, X_W_target_, Twist{}, handle_.pose(), handle_.velocity()));
+  }
+}
+
+}  // namespace osteomill

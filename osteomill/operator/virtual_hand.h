@@ -1,0 +1,44 @@
+#pragma once
+
+#include <atomic>
+
+#include "osteomill/device/device.h"
+#include "osteomill/device/latest_value.h"
+#include "osteomill/operator/hand.h"
+#include "osteomill/operator/simulated_handle.h"
+
+namespace osteomill {
+
+/// A simulated device whose handle is pulled towards a pose that another thread sets (a mouse, a SpaceMouse)
+/// by a spring and a damper that pushes no harder than its limit. So whoever has no haptic hardware sees
+/// resistance: bone holds the handle back.
+///
+/// `pull_to`, `set_push` and `set_spindle` are for one other thread and never wait.
+class VirtualHand final : public Device {
+ public:
+  /// At rest at `X_WD`. Throws std::invalid_argument as SimulatedHandle and the hand's settings do.
+  VirtualHand(const HandleSettings& handle, const HandSettings& hand, const Pose& X_WD);
+
+  /// Poses that are not finite are not taken.
+  void pull_to(const Pose& X_W_target);
+  /// The most that the hand pushes, N.
+  void set_push(double push_N) { push_N_.store(push_N, std::memory_order_relaxed); }
+
+  Pose read_pose() override { return handle_.read(); }
+  void write_wrench(const Wrench& wrench) override { handle_.command(wrench); }
+  void tick_done(const Pose& X_WT, double dt_s) override;
+
+ private:
+  HandSettings hand_;
+  SimulatedHandle handle_;
+  LatestValue<Pose> asked_;
+  std::atomic<double> push_N_;
+  // Where the hand pulls to now: it follows what is asked for smoothly, which comes only with every picture.
+  Pose X_W_target_;
+};
+
+/// A hand for pointing devices: as firm as the simulated operator's, without tremor, and damped so that it
+/// does not swing with the default handle.
+HandSettings pointing_hand();
+
+}  // namespace osteomill

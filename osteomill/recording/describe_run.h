@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "osteomill/geometry/wrench.h"
+#include "osteomill/haptics/haptic_settings.h"
+#include "osteomill/milling/burr_mill.h"
+#include "osteomill/recording/run_description.h"
+#include "osteomill/volume/densities.h"
+#include "osteomill/volume/grid_geometry.h"
+
+namespace osteomill {
+
+/// What any session is made of. Whoever runs it adds the settings of its own (a script, a hand) to what
+/// `describe_run` makes of this.
+struct RunFacts {
+  std::string scan_name;
+  GridGeometry geometry;
+  double isovalue = 0;
+  BoneDensities densities;
+  MillingTool tool;
+  HapticSettings haptics;
+  MillingSettings milling;
+  WrenchLimits limits;
+  std::uint64_t seed = 0;
+  double tick_s = 1e-3;
+  /// How the program was called; may be empty.
+  std::string command_line;
+};
+
+/// All that a recording says of such a session: program, scan, tool, every setting with its unit.
+/// `sample_points` is how many the algorithm works with as it stands.
+RunDescription describe_run(const RunFacts& facts, const AlgorithmDescription& algorithm, int sample_points);
+
+}  // namespace osteomill

@@ -1,0 +1,29 @@
+#include "osteomill/session/fault_count.h"
+
+#include <fmt/core.h>
+
+namespace osteomill {
+
+void FaultCount::add(const TickRecord& record) {
+  switch (record.fault) {
+    case WrenchFault::none:
+      return;
+    case WrenchFault::force_clamped:
+    case WrenchFault::torque_clamped:
+    case WrenchFault::force_and_torque_clamped:
+      ++clamped_;
+      return;
+    case WrenchFault::not_finite:
+    case WrenchFault::pose_not_finite:
+      ++not_finite_;
+      return;
+  }
+}
+
+std::optional<std::string> FaultCount::sentence() const {
+  if (clamped_ == 0 && not_finite_ == 0) return std::nullopt;
+  return fmt::format("{} wrenches were clamped to the device's limits, {} were not finite and sent as zero",
+                     clamped_, not_finite_);
+}
+
+}  // namespace osteomill

@@ -1,0 +1,46 @@
+#include "osteomill/surface/surface_upkeep.h"
+
+#include <numeric>
+
+#include "osteomill/surface/brick_mesher.h"
+
+namespace osteomill {
+
+SurfaceUpkeep::SurfaceUpkeep(const SurfaceBricks& layout) : layout_(layout), has_mesh_(layout.count(), 0) {
+  mark_all();
+}
+
+void SurfaceUpkeep::mark_all() {
+  marked_.assign(layout_.count(), 1);
+  to_mesh_.resize(layout_.count());
+  std::iota(to_mesh_.begin(), to_mesh_.end(), std::size_t{0});
+}
+
+void SurfaceUpkeep::mark(const VoxelBox& voxels) {
+  const VoxelBox bricks = layout_.touched_by(voxels);
+  for (int bk = bricks.first.k; bk <= bricks.last.k; ++bk) {
+    for (int bj = bricks.first.j; bj <= bricks.last.j; ++bj) {
+      for (int bi = bricks.first.i; bi <= bricks.last.i; ++bi) {
+        const std::size_t number = layout_.index(bi, bj, bk);
+        if (!marked_[number]) to_mesh_.push_back(number);
+        marked_[number] = 1;
+      }
+    }
+  }
+}
+
+std::vector<ChangedBrick> SurfaceUpkeep::remesh(const DensityView& view) {
+  std::vector<ChangedBrick> changed;
+  BrickMesher mesher(view);
+  for (const std::size_t brick : to_mesh_) {
+    marked_[brick] = 0;
+    mesher.mesh(brick);
+    const bool had_mesh = has_mesh_[brick] != 0;
+    has_mesh_[brick] = !mesher.indices().empty();
+    if (had_mesh || has_mesh_[brick]) changed.push_back({brick, mesher.copy()});
+  }
+  to_mesh_.clear();
+  return changed;
+}
+
+}  // namespace osteomill

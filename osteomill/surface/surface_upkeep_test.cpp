@@ -1,0 +1,56 @@
+#include "osteomill/surface/surface_upkeep.h"
+
+#include "tests/shapes.h"
+#include <gtest/gtest.h>
+
+namespace osteomill {
+namespace {
+
+using testing_support::ball;
+using testing_support::centred_cube;
+using testing_support::shape_volume;
+
+DensityView at_isovalue(const Volume& volume, double isovalue) {
+  return {volume.grid(), volume.bricks(), isovalue};
+}
+
+TEST(SurfaceUpkeep, KeptUpIsTheSurfaceMadeFromScratch) {
+  Volume volume = shape_volume(centred_cube(51, 0.25), ball(Vec3::Zero(), 5.0));
+  SurfaceUpkeep upkeep{SurfaceBricks(volume.geometry().dims)};
+  SurfaceMesh kept{upkeep.layout(), std::vector<BrickMesh>(upkeep.layout().count())};
+  const auto take = [&] {
+    std::vector<ChangedBrick> changed = upkeep.remesh(DensityView(volume));
+    const std::size_t count = changed.size();
+    for (ChangedBrick& brick : changed) kept.bricks[brick.brick] = std::move(brick.mesh);
+    return count;
+  };
+  EXPECT_GT(take(), 20u);  // of 64
+  // A hole that is made and filled again, across bricks.
+  for (const float density : {0.0f, 1000.0f}) {
+    for (int k = 40; k < 46; ++k) {
+      const VoxelBox row{{12, 25, k}, {20, 25, k}};
+      for (int i = row.first.i; i <= row.last.i; ++i) volume.set_density({i, 25, k}, density);
+      volume.refresh_bricks(row);
+      upkeep.mark(row);
+    }
+    const std::size_t meshed = take();
+    EXPECT_GT(meshed, 0u);
+    EXPECT_LT(meshed, 20u);
+    EXPECT_EQ(kept.bricks, mesh_surface(DensityView(volume)).bricks);
+  }
+  EXPECT_EQ(take(), 0u);
+}
+
+TEST(SurfaceUpkeep, SaysWhichBricksLostTheirTriangles) {
+  const Volume volume = shape_volume(centred_cube(40, 0.25), ball({-4, -4, -4}, 0.6));
+  SurfaceUpkeep upkeep{SurfaceBricks(volume.geometry().dims)};
+  EXPECT_EQ(upkeep.remesh(at_isovalue(volume, 500)).size(), 1u);
+  upkeep.mark_all();
+  const std::vector<ChangedBrick> changed = upkeep.remesh(at_isovalue(volume, 5000));
+  ASSERT_EQ(changed.size(), 1u);
+  EXPECT_TRUE(changed[0].mesh.empty());
+  EXPECT_TRUE(upkeep.remesh(at_isovalue(volume, 5000)).empty());
+}
+
+}  // namespace
+}  // namespace osteomill

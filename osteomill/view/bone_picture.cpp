@@ -1,0 +1,205 @@
+#include "osteomill/view/bone_picture.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "osteomill/surface/surface_mesh.h"
+#include "osteomill/view/annotations.h"
+#include "osteomill/view/bone_layer.h"
+#include "osteomill/view/cavity_pass.h"
+#include "osteomill/view/depth_tiles.h"
+#include "osteomill/view/frame_target.h"
+#include "osteomill/view/image_annotations.h"
+#include "osteomill/view/offscreen_context.h"
+#include "osteomill/volume/sampling.h"
+
+namespace osteomill {
+
+namespace {
+
+constexpr double kFieldOfView_rad = 0.04;
+constexpr double kMaxWhole_mm = 45.0;
+constexpr double kAroundEntry_mm = 24.0;
+// Around the entry as well: fewer would show no shape that anyone knows.
+constexpr double kAroundEntry_voxels = 32;
+constexpr double kMargin = 1.0 / 20;
+// Pixels drawn for one of the picture, along each side.
+constexpr int kFiner = 2;
+// The darkening of cavities reaches this share of the picture's height: about a burr's radius.
+constexpr double kCavityReach = 1.0 / 16;
+// Of annotations, which are made for a window: the picture's height over this.
+constexpr double kAnnotatedHeight_px = 480;
+// White paper.
+constexpr std::array<float, 3> kLightFromBelow{0.47f, 0.45f, 0.42f};
+// Surface that is in memory at once.
+constexpr std::size_t kTrianglesAtOnce = 400'000;
+
+// What a camera sees of the bone, from bottom to top or side to side, whichever is more.
+struct Extent {
+  Vec3 centre_W;
+  double size_mm;
+};
+
+Extent extent_of_bone(const Volume& bone, const Camera& camera) {
+  const Mat3 axes = camera.orientation.toRotationMatrix();
+  const GridGeometry& geometry = bone.geometry();
+  const BrickRanges& bricks = bone.bricks();
+  Eigen::AlignedBox3d box;
+  const auto take_in = [&](const VoxelBox& voxels) {
+    for (const int i : {voxels.first.i, voxels.last.i})
+      for (const int j : {voxels.first.j, voxels.last.j})
+        for (const int k : {voxels.first.k, voxels.last.k})
+          box.extend(axes.transpose() * geometry.world_from_voxel(VoxelIndex{i, j, k}));
+  };
+  for (int bk = 0; bk < bricks.dims()[2]; ++bk) {
+    for (int bj = 0; bj < bricks.dims()[1]; ++bj) {
+      for (int bi = 0; bi < bricks.dims()[0]; ++bi) {
+        if (static_cast<double>(bricks.at(bi, bj, bk).greatest) <= bone.isovalue()) continue;
+        constexpr int kSide = BrickRanges::kBrickVoxels;
+        const VoxelIndex first{bi * kSide, bj * kSide, bk * kSide};
+        take_in(VoxelBox{first, {first.i + kSide, first.j + kSide, first.k + kSide}}.intersected(
+            geometry.all_voxels()));
+      }
+    }
+  }
+  if (box.isEmpty()) take_in(geometry.all_voxels());
+  return {axes * box.center(), std::max(box.sizes().head<2>().maxCoeff(), 1e-3)};
+}
+
+ViewScene scene_with(const Volume& bone, double reference_density, const Camera& camera) {
+  ViewScene scene;
+  scene.camera = camera;
+  scene.bounds = bounding_sphere(bone.geometry(), bone.geometry().all_voxels());
+  scene.isovalue = bone.isovalue();
+  scene.reference_density = reference_density;
+  scene.light_from_below = kLightFromBelow;
+  return scene;
+}
+
+// A still picture has time for normals that are averaged over a voxel to all sides, so that voxels do not
+// show as terraces in glancing light, and for colours from deeper below the surface, where the scanner's blur
+// has ended.
+void look_closer(const Volume& bone, MeshVertex& vertex) {
+  const Vec3 point_W = Eigen::Map<const Eigen::Vector3f>(vertex.position_mm.data()).cast<double>();
+  const GridGeometry& geometry = bone.geometry();
+  Vec3 slope = density_gradient(bone.grid(), point_W, GradientKernel::smoothed);
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vec3 voxel = geometry.spacing_mm[axis] * geometry.direction.col(axis);
+    slope += density_gradient(bone.grid(), point_W + voxel, GradientKernel::smoothed) +
+             density_gradient(bone.grid(), point_W - voxel, GradientKernel::smoothed);
+  }
+  if (!(slope.norm() > 1e-9)) return;
+  const Vec3 normal_W = -slope.normalized();
+  Eigen::Map<Eigen::Vector3f>(vertex.normal.data()) = normal_W.cast<float>();
+  for (const double voxels : {1.25, 2.5}) {
+    const Vec3 below_W = point_W - voxels * geometry.spacing_mm.minCoeff() * normal_W;
+    vertex.density = std::max(vertex.density, static_cast<float>(density_at(bone.grid(), below_W)));
+  }
+}
+
+// Draws the bone, which is never in memory as a whole.
+class BonePainter {
+ public:
+  BonePainter(const Volume& bone, const ViewScene& scene, const PixelSize& size)
+      : bone_(bone),
+        scene_(scene),
+        projection_(projection_of(scene, size)),
+        layout_(bone.geometry().dims),
+        layer_(layout_, bone.geometry()),
+        target_(size),
+        cavities_(size, std::max(1, static_cast<int>(kCavityReach * size.height))) {}
+
+  Image paint() {
+    target_.bind();
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_LEQUAL);
+    glClearColor(1, 1, 1, 1);
+    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    // Once for the depths, which tell what is hidden and what is sunk, and once more to be seen.
+    const std::vector<std::size_t> seen =
+        draw(bricks_in_view(layout_, bone_.geometry(), scene_, projection_), For::depths);
+    cavities_.blur(target_.depths(), projection_.near_mm, projection_.far_mm);
+    target_.bind();
+    draw(seen, For::eyes);
+    Image image = target_.read();
+    if (glGetError() != GL_NO_ERROR) throw std::runtime_error("OpenGL cannot draw the bone");
+    return image;
+  }
+
+ private:
+  enum class For : unsigned char { depths, eyes };
+
+  // Draws these bricks, the nearest first, but for what is hidden by then, and returns those that were drawn.
+  std::vector<std::size_t> draw(const std::vector<std::size_t>& bricks, For whom) {
+    const DensityView view(bone_);
+    std::vector<std::size_t> drawn;
+    std::size_t done = 0;
+    DepthTiles depths(target_, projection_, scene_.camera);
+    const auto flush = [&] {
+      layer_.draw(scene_, projection_, cavities_);
+      for (; done < drawn.size(); ++done) layer_.set_brick(drawn[done], {});
+      depths = DepthTiles(target_, projection_, scene_.camera);
+    };
+    std::size_t triangles = 0;
+    for (const std::size_t brick : bricks) {
+      if (depths.hide(bounding_sphere(bone_.geometry(), layout_.cells(brick)))) continue;
+      BrickMesh mesh = mesh_brick(view, brick);
+      if (mesh.empty()) continue;
+      if (whom == For::eyes) {
+        for (MeshVertex& vertex : mesh.vertices) look_closer(bone_, vertex);
+      }
+      layer_.set_brick(brick, mesh);
+      drawn.push_back(brick);
+      triangles += mesh.triangle_count();
+      if (triangles < kTrianglesAtOnce) continue;
+      flush();
+      triangles = 0;
+    }
+    flush();
+    return drawn;
+  }
+
+  const Volume& bone_;
+  const ViewScene& scene_;
+  Projection projection_;
+  SurfaceBricks layout_;
+  BoneLayer layer_;
+  FrameTarget target_;
+  CavityPass cavities_;
+};
+
+}  // namespace
+
+Camera camera_above(const Volume& bone, const Vec3& entry_W, const Vec3& into_W, const Vec3& lateral_W) {
+  // Steep enough to look into a hole of its own width.
+  const Vec3 direction_W = 0.8 * into_W + 0.5 * into_W.cross(lateral_W) + 0.25 * lateral_W;
+  Camera camera = camera_on({entry_W, 1}, direction_W, -into_W);
+  double height_mm = std::max(kAroundEntry_mm, kAroundEntry_voxels * bone.geometry().spacing_mm.maxCoeff());
+  const Extent extent = extent_of_bone(bone, camera);
+  if (extent.size_mm < kMaxWhole_mm) {
+    camera.focus_W = extent.centre_W;
+    height_mm = (1 + 2 * kMargin) * extent.size_mm;
+  }
+  camera.field_of_view_rad = kFieldOfView_rad;
+  camera.distance_mm = 0.5 * height_mm / std::tan(0.5 * kFieldOfView_rad);
+  return camera;
+}
+
+Image bone_picture(const Volume& bone, double reference_density, const Camera& camera,
+                   const PixelSize& size) {
+  const OffscreenContext context;
+  const ViewScene scene = scene_with(bone, reference_density, camera);
+  BonePainter painter(bone, scene, {kFiner * size.width, kFiner * size.height});
+  Image image = averaged_down(painter.paint(), kFiner);
+  const double scale = std::max(1.0, size.height / kAnnotatedHeight_px);
+  const PixelSize annotated{static_cast<int>(size.width / scale), static_cast<int>(size.height / scale)};
+  draw_annotation(image, scale_bar_annotation(camera, annotated), kInkOnLight, scale);
+  return image;
+}
+
+}  // namespace osteomill

@@ -1,0 +1,23 @@
+#pragma once
+
+#include "osteomill/image/image.h"
+#include "osteomill/view/camera.h"
+#include "osteomill/volume/volume.h"
+
+namespace osteomill {
+
+/// Looks obliquely down at where a tool enters the bone at `entry_W` along the unit vector `into_W`: at all
+/// of the bone where it is small (a tooth), else at what lies around the entry. `lateral_W` is a unit vector
+/// across, which turns the view about the entry. For square pictures. From far away, so that lengths can be
+/// read off: what is nearer by half of the picture's height is drawn 2 % larger.
+Camera camera_above(const Volume& bone, const Vec3& entry_W, const Vec3& into_W, const Vec3& lateral_W);
+
+/// A picture of the bone on white with a scale bar, coloured and lit as in the window (scene.h says what
+/// `reference_density` is), drawn with an OpenGL context of its own; any thread, several at once. What the
+/// bone's surface needs is made piece by piece, so that a large scan takes no more memory than a small one.
+/// Throws std::runtime_error where OpenGL cannot be had or refuses something. Takes a second or so: not for
+/// the tick.
+Image bone_picture(const Volume& bone, double reference_density, const Camera& camera,
+                   const PixelSize& size = {1120, 1120});
+
+}  // namespace osteomill

@@ -1,0 +1,29 @@
+#include "osteomill/volume/density_histogram.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace osteomill {
+
+DensityHistogram histogram_of(const DensityGrid& grid) {
+  constexpr std::size_t kEvery = 7;
+  std::vector<float> sample;
+  for (std::size_t n = 0; n < grid.densities().size(); n += kEvery) sample.push_back(grid.densities()[n]);
+  std::sort(sample.begin(), sample.end());
+  const std::size_t rare = sample.size() / 2000;
+  DensityHistogram histogram;
+  histogram.least = sample[rare];
+  histogram.greatest = std::max(sample[sample.size() - 1 - rare], histogram.least + 1);
+  const float width =
+      (histogram.greatest - histogram.least) / static_cast<float>(histogram.log_counts.size());
+  for (const float density : sample) {
+    const auto bin = static_cast<std::ptrdiff_t>((density - histogram.least) / width);
+    if (bin >= 0 && bin < std::ssize(histogram.log_counts))
+      histogram.log_counts[static_cast<std::size_t>(bin)] += 1;
+  }
+  for (float& count : histogram.log_counts) count = std::log1p(count);
+  return histogram;
+}
+
+}  // namespace osteomill

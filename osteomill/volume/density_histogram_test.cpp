@@ -1,0 +1,35 @@
+#include "osteomill/volume/density_histogram.h"
+
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace osteomill {
+namespace {
+
+// Densities 0 to 999, each as often as any other, and one far away.
+TEST(DensityHistogram, CountsEvenlyAndLeavesTheRarestOut) {
+  GridGeometry geometry;
+  geometry.dims = {100, 100, 100};
+  std::vector<float> densities;
+  for (int n = 0; n < 1000000; ++n) densities.push_back(static_cast<float>(n % 1000));
+  densities.front() = 1e6f;
+  const DensityHistogram histogram = histogram_of(DensityGrid(geometry, densities));
+  EXPECT_NEAR(histogram.least, 0, 2);
+  EXPECT_NEAR(histogram.greatest, 999, 2);
+  // A seventh of a million in 128 bins.
+  for (const float count : histogram.log_counts) EXPECT_NEAR(count, std::log1p(1e6 / 7 / 128), 0.15);
+}
+
+TEST(DensityHistogram, OneDensityAlone) {
+  GridGeometry geometry;
+  geometry.dims = {10, 10, 10};
+  const DensityHistogram histogram = histogram_of(DensityGrid(geometry, std::vector<float>(1000, 40.0f)));
+  EXPECT_EQ(histogram.least, 40);
+  EXPECT_GT(histogram.greatest, histogram.least);
+  EXPECT_GT(histogram.log_counts.front(), 0);
+}
+
+}  // namespace
+}  // namespace osteomill
