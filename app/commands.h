@@ -18,6 +18,7 @@ void add_rates_command(CLI::App& program);
 void add_replay_command(CLI::App& program);
 void add_report_command(CLI::App& program);
 void add_save_command(CLI::App& program);
+void add_settings_command(CLI::App& program);
 void add_simulate_command(CLI::App& program, const std::string& command_line);
 
 }  // namespace osteomill::app

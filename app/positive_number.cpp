@@ -1,6 +1,6 @@
 #include "app/positive_number.h"
 
-#include <cmath>
+#include "osteomill/numbers/positive.h"
 
 namespace osteomill::app {
 
@@ -8,7 +8,7 @@ CLI::Validator positive_number() {
   return CLI::Validator(
       [](std::string& text) {
         double value = 0;
-        const bool good = CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value > 0;
+        const bool good = CLI::detail::lexical_cast(text, value) && is_positive(value);
         return good ? std::string() : text + " is not a positive number";
       },
       "POSITIVE");

@@ -9,11 +9,12 @@ function(osteomill_precompile name flags_from)
   target_precompile_headers(${name} PRIVATE ${ARGN})
 endfunction()
 
-set(often_read <algorithm> <array> <cmath> <filesystem> <functional> <memory> <optional> <string> <vector>
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+set(OSTEOMILL_OFTEN_READ <algorithm> <array> <cmath> <filesystem> <functional> <memory> <optional> <string> <vector>
   <Eigen/Core> <Eigen/Geometry>)
-osteomill_precompile(osteomill_library_headers "" ${often_read})
+osteomill_precompile(osteomill_library_headers "" ${OSTEOMILL_OFTEN_READ})
 set_target_properties(osteomill_library_headers PROPERTIES POSITION_INDEPENDENT_CODE ON)
 if(OSTEOMILL_BUILD_TESTS)
-  osteomill_precompile(osteomill_test_headers GTest::gtest ${often_read} <gtest/gtest.h>)
+  osteomill_precompile(osteomill_test_headers GTest::gtest ${OSTEOMILL_OFTEN_READ} <gtest/gtest.h>)
   target_compile_options(osteomill_test_headers PRIVATE -O1)
 endif()

@@ -1,29 +1,40 @@
-# osteomill_stage(NAME SOURCES ... [USES stages...] [LINK public libraries...] [LINK_PRIVATE ...] [TESTS ...])
-# One folder, one library osteomill_NAME (osteomill::NAME outside), one test program osteomill_NAME_test.
-function(osteomill_stage name)
-  cmake_parse_arguments(STAGE "" "" "SOURCES;USES;LINK;LINK_PRIVATE;TESTS;TEST_LINK" ${ARGN})
+# osteomill_stage(NAME
+#   HEADERS what a user may include: installed, and all that app, verification and examples may use; the rest are insides
+#   SOURCES ...
+#   USES stages...
+#   PACKAGES "HDF5 COMPONENTS C"...  what LINK and LINK_PRIVATE need, as find_package takes it; the installed package
+#                                    looks for the same, component by component
+#   LINK libraries in the headers; LINK_PRIVATE libraries in the sources alone
+#   TESTS ... TEST_LINK ...)
+# One folder, one library osteomill_NAME, one component osteomill::NAME, one test program osteomill_NAME_test.
+macro(osteomill_stage name)
+  cmake_parse_arguments(STAGE "" "" "HEADERS;SOURCES;USES;PACKAGES;LINK;LINK_PRIVATE;TESTS;TEST_LINK" ${ARGN})
+  # Packages are found in the folder's own scope, where its tests can link them too.
+  foreach(package IN LISTS STAGE_PACKAGES)
+    separate_arguments(package)
+    find_package(${package} REQUIRED)
+  endforeach()
+  osteomill_add_stage(${name})
+endmacro()
+
+function(osteomill_add_stage name)
   set(target osteomill_${name})
-  if(STAGE_SOURCES)
-    add_library(${target} STATIC ${STAGE_SOURCES})
-    set(scope PUBLIC)
-  else()
-    add_library(${target} INTERFACE)
-    set(scope INTERFACE)
-  endif()
+  add_library(${target} STATIC ${STAGE_SOURCES})
   add_library(osteomill::${name} ALIAS ${target})
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
-  target_include_directories(${target} ${scope}
-    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
-  target_compile_features(${target} ${scope} cxx_std_20)
-  list(TRANSFORM STAGE_USES PREPEND osteomill_)
-  target_link_libraries(${target} ${scope} ${STAGE_USES} ${STAGE_LINK})
-  if(STAGE_SOURCES)
-    target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:osteomill_compile_options> ${STAGE_LINK_PRIVATE})
-    if(OSTEOMILL_PRECOMPILED_HEADERS)
-      target_precompile_headers(${target} REUSE_FROM osteomill_library_headers)
-    endif()
+  target_sources(${target} PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${STAGE_HEADERS})
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  list(TRANSFORM STAGE_USES PREPEND osteomill_ OUTPUT_VARIABLE uses)
+  target_link_libraries(${target} PUBLIC ${uses} ${STAGE_LINK}
+    PRIVATE $<BUILD_INTERFACE:osteomill_compile_options> ${STAGE_LINK_PRIVATE})
+  if(OSTEOMILL_PRECOMPILED_HEADERS)
+    target_precompile_headers(${target} REUSE_FROM osteomill_library_headers)
   endif()
+  # What the installed package tells of the stage (OsteomillInstall.cmake).
   set_property(GLOBAL APPEND PROPERTY OSTEOMILL_STAGES ${name})
+  foreach(said USES PACKAGES LINK LINK_PRIVATE)
+    set_property(GLOBAL PROPERTY OSTEOMILL_${name}_${said} "${STAGE_${said}}")
+  endforeach()
   if(OSTEOMILL_BUILD_TESTS AND STAGE_TESTS)
     osteomill_test(${target}_test SOURCES ${STAGE_TESTS} LINK ${target} ${STAGE_TEST_LINK})
   endif()

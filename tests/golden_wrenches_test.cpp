@@ -65,7 +65,7 @@ INSTANTIATE_TEST_SUITE_P(AllAlgorithms, GoldenWrenches,
                                            Golden{"point-shell", Mode::steady, 0xfca531621ab039c2},
                                            Golden{"barrier-shell", Mode::steady, 0x0}),
                          [](const auto& test) {
-                           std::string name(name_of(test.param.algorithm));
+                           std::string name(test.param.algorithm);
                            name[name.find('-')] = '_';
                            return name + "_" + std::string(name_of(test.param.mode));
                          });

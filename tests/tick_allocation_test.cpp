@@ -80,7 +80,7 @@ INSTANTIATE_TEST_SUITE_P(AllAlgorithms, TickAllocation,
                                            Case{"point-shell", Mode::steady},
                                            Case{"barrier-shell", Mode::steady}),
                          [](const auto& test) {
-                           std::string name(name_of(test.param.algorithm));
+                           std::string name(test.param.algorithm);
                            name[name.find('-')] = '_';
                            return name + "_" + std::string(name_of(test.param.mode));
                          });

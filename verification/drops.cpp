@@ -73,7 +73,7 @@ Section drops() {
         }
       }
       section.add({fmt::format("{}, {:.0f} N/mm", algorithm, stiffness), median_and_worst(shares), "1"},
-                  quantile(shares, 1) < 1);
+                  percentile(shares, 1) < 1);
     }
   }
   return section;

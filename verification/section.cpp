@@ -28,15 +28,8 @@ std::string figure(double value) {
 }
 
 std::string median_and_worst(std::vector<double> values) {
-  const double median = quantile(values, 0.5);
-  return fmt::format("{} ({})", figure(median), figure(quantile(std::move(values), 1.0)));
-}
-
-double quantile(std::vector<double> values, double share) {
-  if (values.empty()) return 0;
-  std::sort(values.begin(), values.end());
-  const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size())));
-  return values[std::max<std::size_t>(rank, 1) - 1];
+  const Distribution d = distribution_of(std::move(values));
+  return fmt::format("{} ({})", figure(d.median), figure(d.max));
 }
 
 }  // namespace osteomill::verification

@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "osteomill/numbers/distribution.h"
+
 namespace osteomill::verification {
 
 /// One table of docs/verification.md: what was measured, how, and whether it is what it must be.
@@ -27,8 +29,5 @@ std::string figure(double value);
 
 /// "median (worst)" of figures that must be small.
 std::string median_and_worst(std::vector<double> values);
-
-/// The smallest value that at least this share of the values do not exceed; 0 for none.
-double quantile(std::vector<double> values, double share);
 
 }  // namespace osteomill::verification

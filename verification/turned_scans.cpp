@@ -97,7 +97,7 @@ Section turned_scans() {
       const double most = grid_turns_too ? 0.002 : (algorithm == "surface-points" ? 0.2 : 0.1);
       section.add({fmt::format("{}, {}", algorithm, grid_turns_too ? "grid" : "bone"),
                    median_and_worst(force), median_and_worst(torque), figure(most)},
-                  quantile(force, 1) <= most && quantile(torque, 1) <= most);
+                  percentile(force, 1) <= most && percentile(torque, 1) <= most);
     }
   }
   return section;

@@ -6,6 +6,8 @@
 #include <string>
 #include <string_view>
 
+#include "osteomill/numbers/distribution.h"
+
 namespace osteomill {
 
 namespace {
@@ -32,12 +34,7 @@ std::string text_of(const AlgorithmDescription& algorithm, int value) {
   return name.ends_with('s') ? number + " " + name : name + " " + number;
 }
 
-double percentile(const std::vector<double>& sorted, double share) {
-  const double place = share * static_cast<double>(sorted.size() - 1);
-  return sorted[static_cast<std::size_t>(std::lround(place))];
-}
-
-std::vector<double> sorted_step_times_us(MillingTrial& trial) {
+std::vector<double> step_times_us(MillingTrial& trial) {
   std::vector<double> touching;
   std::vector<double> all;
   while (!trial.finished()) {
@@ -45,9 +42,7 @@ std::vector<double> sorted_step_times_us(MillingTrial& trial) {
     all.push_back(record.compute_us);
     if (record.contacts > 0) touching.push_back(record.compute_us);
   }
-  std::vector<double>& times = touching.empty() ? all : touching;
-  std::sort(times.begin(), times.end());
-  return times;
+  return touching.empty() ? all : touching;
 }
 
 }  // namespace
@@ -69,11 +64,10 @@ std::vector<RateRow> measure_rates(const Volume& bone, const BoneDensities& dens
     trial_settings.haptics.named.push_back(
         {algorithm->id.name, algorithm->resolution_setting, static_cast<double>(resolution.value)});
     MillingTrial trial(bone, densities, entry, *algorithm, trial_settings);
-    const std::vector<double> times_us = sorted_step_times_us(trial);
-    const double median_us = percentile(times_us, 0.5);
+    const Distribution step_us = distribution_of(step_times_us(trial));
     rows.push_back({algorithm->id, text_of(*algorithm, resolution.value),
-                    trial.algorithm().sample_point_count(), median_us, percentile(times_us, 0.99),
-                    1e6 / median_us, resolution.paper_rate_hz});
+                    trial.algorithm().sample_point_count(), step_us.median, step_us.p99, 1e6 / step_us.median,
+                    resolution.paper_rate_hz});
   }
   return rows;
 }

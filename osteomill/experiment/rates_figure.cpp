@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "osteomill/files/temporary_folder.h"
+#include "osteomill/report/gnuplot.h"
 #include "osteomill/report/run_groups.h"
 
 namespace osteomill {

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "osteomill/experiment/paper.h"
+#include "osteomill/files/temporary_folder.h"
 #include "osteomill/report/run_groups.h"
 
 namespace osteomill {

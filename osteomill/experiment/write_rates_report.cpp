@@ -9,6 +9,7 @@
 #include "osteomill/experiment/rates_figure.h"
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/files/input_error.h"
+#include "osteomill/numbers/positive.h"
 #include "osteomill/report/html.h"
 #include "osteomill/report/metrics.h"
 
@@ -21,7 +22,7 @@ namespace {
 void require_usable(const std::vector<RateRow>& rows) {
   if (rows.empty()) throw InputError("rates", "there are no rates to report on");
   for (const RateRow& row : rows) {
-    if (!(std::isfinite(row.rate_hz) && row.rate_hz > 0)) {
+    if (!is_positive(row.rate_hz)) {
       throw InputError("rates", fmt::format("the rate of {} at {} is not a positive number",
                                             name_of(row.algorithm), row.resolution));
     }

@@ -48,6 +48,8 @@ struct SettingRange {
   /// A switch (0 or 1), a count or a choice.
   bool whole = false;
 
+  friend bool operator==(const SettingRange&, const SettingRange&) = default;
+
   static constexpr SettingRange positive() { return {.min = std::numeric_limits<double>::min()}; }
   static constexpr SettingRange not_negative() { return {}; }
   /// Above zero; infinite for no limit.

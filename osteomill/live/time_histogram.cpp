@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "osteomill/numbers/distribution.h"
+
 namespace osteomill {
 
 namespace {
@@ -46,7 +48,7 @@ TimePercentiles TimeHistogram::percentiles() const {
   found.greatest_us = greatest_us_.load(std::memory_order_relaxed);
   // The least time that at least this share of all times does not exceed.
   const auto at_share = [&](double share) {
-    const auto wanted = static_cast<std::uint64_t>(std::ceil(share * static_cast<double>(total)));
+    const std::uint64_t wanted = nearest_rank(share, total);
     std::uint64_t passed = 0;
     std::size_t bin = 0;
     while (bin + 1 < kBins && (passed += counts[bin]) < wanted) ++bin;

@@ -6,6 +6,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "osteomill/numbers/positive.h"
+
 namespace osteomill {
 
 namespace {
@@ -39,11 +41,9 @@ BurrReach make_reach(const GridGeometry& geometry, double burr_radius_mm, const 
                      const MillingSettings& settings) {
   require(geometry.voxel_count() > 0 && geometry.spacing_mm.minCoeff() > 0 && geometry.spacing_mm.allFinite(),
           "BurrMill: an empty grid");
-  require(burr_radius_mm > 0 && std::isfinite(burr_radius_mm), "BurrMill: the burr's radius must be above 0");
-  require(settings.removal_rate_mm3_per_Ns >= 0 && std::isfinite(settings.removal_rate_mm3_per_Ns),
-          "BurrMill: the removal rate must not be below 0");
-  require(settings.reach_voxels >= 0 && std::isfinite(settings.reach_voxels),
-          "BurrMill: the reach must not be below 0");
+  require_positive(burr_radius_mm, "BurrMill: the burr's radius");
+  require_not_negative(settings.removal_rate_mm3_per_Ns, "BurrMill: the removal rate");
+  require_not_negative(settings.reach_voxels, "BurrMill: the reach");
   require(std::isfinite(densities.surroundings) && std::isfinite(densities.reference) &&
               densities.reference > densities.surroundings,
           "BurrMill: the reference density must be above that of the surroundings");

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "osteomill/geometry/pose.h"
+#include "osteomill/numbers/row_major.h"
 #include "osteomill/volume/volume.h"
 
 namespace osteomill {
@@ -83,9 +84,7 @@ class BurrReach {
     return static_cast<std::size_t>(bj) +
            static_cast<std::size_t>(brick_dims_[1]) * static_cast<std::size_t>(bk);
   }
-  std::size_t brick_index(int bi, int bj, int bk) const {
-    return static_cast<std::size_t>(bi) + static_cast<std::size_t>(brick_dims_[0]) * brick_line(bj, bk);
-  }
+  std::size_t brick_index(int bi, int bj, int bk) const { return row_major(brick_dims_, bi, bj, bk); }
 
   GridGeometry geometry_;
   double radius_mm_;

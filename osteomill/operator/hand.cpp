@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "osteomill/numbers/positive.h"
 #include "osteomill/operator/seeded_random.h"
 
 namespace osteomill {
@@ -13,12 +14,6 @@ namespace {
 // The square of the lever by which rotation follows translation, 1e-3 m^2.
 constexpr double kLeverSquared_mm2 = 1000.0;
 
-void require_not_negative(double value, const char* name) {
-  if (!(std::isfinite(value) && value >= 0)) {
-    throw std::invalid_argument(std::string("hand: its ") + name + " must not be negative");
-  }
-}
-
 Vec3 limited(const Vec3& vector, double limit) {
   const double length = vector.norm();
   return length > limit ? Vec3(limit / length * vector) : vector;
@@ -27,13 +22,13 @@ Vec3 limited(const Vec3& vector, double limit) {
 }  // namespace
 
 void require_valid(const HandSettings& settings) {
-  require_not_negative(settings.stiffness_N_per_mm, "stiffness (N/mm)");
-  require_not_negative(settings.damping_Ns_per_mm, "damping (N s/mm)");
-  require_not_negative(settings.torsional_stiffness_Nmm_per_rad, "torsional stiffness (N mm/rad)");
-  require_not_negative(settings.torsional_damping_Nmms_per_rad, "torsional damping (N mm s/rad)");
-  require_not_negative(settings.push_N, "push (N)");
-  require_not_negative(settings.push_lever_mm, "push's lever (mm)");
-  require_not_negative(settings.tremor_mm, "tremor (mm)");
+  require_not_negative(settings.stiffness_N_per_mm, "hand: its stiffness (N/mm)");
+  require_not_negative(settings.damping_Ns_per_mm, "hand: its damping (N s/mm)");
+  require_not_negative(settings.torsional_stiffness_Nmm_per_rad, "hand: its torsional stiffness (N mm/rad)");
+  require_not_negative(settings.torsional_damping_Nmms_per_rad, "hand: its torsional damping (N mm s/rad)");
+  require_not_negative(settings.push_N, "hand: its push (N)");
+  require_not_negative(settings.push_lever_mm, "hand: its push's lever (mm)");
+  require_not_negative(settings.tremor_mm, "hand: its tremor (mm)");
 }
 
 Wrench hand_wrench(const HandSettings& hand, const Pose& X_W_target, const Twist& target_velocity,

@@ -16,10 +16,6 @@ constexpr double kTop_mm = 4.0 + 1e-6;
 constexpr int kSides = 36;
 constexpr double kFullTurn = 6.283185307179586;
 
-bool in_bone(const Volume& volume, const Vec3& point_W) {
-  return density_at(volume.grid(), point_W) > volume.isovalue();
-}
-
 template <typename Visit>
 void for_each_bone_voxel(const Volume& volume, const Visit& visit) {
   const auto& dims = volume.geometry().dims;
@@ -87,7 +83,7 @@ Top top_of_bone(const Volume& volume, const Vec3& direction_W) {
 std::optional<Vec3> surface_along(const Volume& volume, const Vec3& from_W, const Vec3& direction_W) {
   const BoundingBall ball = ball_around(volume.geometry());
   const double middle_mm = direction_W.dot(ball.centre_W - from_W);
-  if (!in_bone(volume, from_W)) {
+  if (!is_bone_at(volume, from_W)) {
     // Only the part of the line near the grid is walked, however far away it begins.
     const double first_mm = std::max(0.0, middle_mm - ball.radius_mm);
     const double last_mm = middle_mm + ball.radius_mm;
@@ -99,7 +95,7 @@ std::optional<Vec3> surface_along(const Volume& volume, const Vec3& from_W, cons
   Vec3 inside_W = from_W;
   for (double way_mm = 0; way_mm < 2 * ball.radius_mm + step_mm; way_mm += step_mm) {
     const Vec3 next_W = inside_W - step_mm * direction_W;
-    if (!in_bone(volume, next_W)) return bisect_crossing(volume, next_W, inside_W);
+    if (!is_bone_at(volume, next_W)) return bisect_crossing(volume, next_W, inside_W);
     inside_W = next_W;
   }
   return std::nullopt;

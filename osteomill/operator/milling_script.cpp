@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "osteomill/numbers/positive.h"
+
 namespace osteomill {
 
 namespace {
@@ -13,12 +15,6 @@ void require(bool holds, const char* what) {
   if (!holds) throw std::invalid_argument(std::string("milling script: ") + what);
 }
 
-bool positive(double value) {
-  return std::isfinite(value) && value > 0;
-}
-bool not_negative(double value) {
-  return std::isfinite(value) && value >= 0;
-}
 bool share(double value) {
   return value >= 0 && value <= 1;
 }
@@ -31,21 +27,22 @@ double stretch_for(double share, double limit, double stiffness) {
 }  // namespace
 
 void require_valid(const ScriptSettings& settings) {
-  require(not_negative(settings.milling_s) && not_negative(settings.holding_s),
+  require(is_not_negative(settings.milling_s) && is_not_negative(settings.holding_s),
           "a phase must not be shorter than 0 s");
-  require(positive(settings.approach_s), "the approach must take longer than 0 s");
-  require(not_negative(settings.feed_mm_s) && not_negative(settings.lean_rad_s),
+  require(is_positive(settings.approach_s), "the approach must take longer than 0 s");
+  require(is_not_negative(settings.feed_mm_s) && is_not_negative(settings.lean_rad_s),
           "feed (mm/s) and lean (rad/s) must not be negative");
-  require(not_negative(settings.depth_mm) && not_negative(settings.lean_limit_rad),
+  require(is_not_negative(settings.depth_mm) && is_not_negative(settings.lean_limit_rad),
           "depth (mm) and the limit of the lean (rad) must not be negative");
   require(share(settings.feed_push_share) && share(settings.latest_lean_share) &&
               share(settings.lean_torque_share) && share(settings.lean_push_share) &&
               share(settings.lean_side_share) && share(settings.hold_side_share) &&
               share(settings.hold_push_share) && share(settings.hold_torque_share),
           "a share must lie in [0, 1]");
-  require(not_negative(settings.settle_s), "settling must not take less than 0 s");
-  require(not_negative(settings.push_correction_per_s) && not_negative(settings.torque_correction_per_s),
-          "a correction (1/s) must not be negative");
+  require(is_not_negative(settings.settle_s), "settling must not take less than 0 s");
+  require(
+      is_not_negative(settings.push_correction_per_s) && is_not_negative(settings.torque_correction_per_s),
+      "a correction (1/s) must not be negative");
 }
 
 MillingScript::MillingScript(const ScriptSettings& settings, const HandSettings& hand,

@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "osteomill/numbers/positive.h"
+
 namespace osteomill {
 
 namespace {
@@ -15,13 +17,6 @@ constexpr double kLongestDelay_s = 1.0;
 
 void require(bool holds, const char* what) {
   if (!holds) throw std::invalid_argument(std::string("simulated handle: ") + what);
-}
-
-bool positive(double value) {
-  return std::isfinite(value) && value > 0;
-}
-bool not_negative(double value) {
-  return std::isfinite(value) && value >= 0;
 }
 
 std::size_t delay_substeps(const HandleSettings& settings) {
@@ -37,14 +32,15 @@ Vec3 rounded_to(const Vec3& value, double step) {
 }  // namespace
 
 void require_valid(const HandleSettings& settings) {
-  require(positive(settings.mass_kg), "the mass must be a positive number of kg");
-  require(positive(settings.inertia_kg_m2), "the inertia must be a positive number of kg m^2");
-  require(not_negative(settings.position_step_mm), "the encoder's step must not be negative (mm)");
-  require(not_negative(settings.rotation_step_rad), "the encoder's rotation step must not be negative (rad)");
-  require(positive(settings.substep_s) && settings.substep_s <= 1e-3, "the substep must lie in (0, 1 ms]");
-  require(not_negative(settings.force_delay_s) && settings.force_delay_s <= kLongestDelay_s,
+  require(is_positive(settings.mass_kg), "the mass must be a positive number of kg");
+  require(is_positive(settings.inertia_kg_m2), "the inertia must be a positive number of kg m^2");
+  require(is_not_negative(settings.position_step_mm), "the encoder's step must not be negative (mm)");
+  require(is_not_negative(settings.rotation_step_rad),
+          "the encoder's rotation step must not be negative (rad)");
+  require(is_positive(settings.substep_s) && settings.substep_s <= 1e-3, "the substep must lie in (0, 1 ms]");
+  require(is_not_negative(settings.force_delay_s) && settings.force_delay_s <= kLongestDelay_s,
           "the force's delay must lie in [0, 1 s]");
-  require(not_negative(settings.limits.force_N) && not_negative(settings.limits.torque_Nmm),
+  require(is_not_negative(settings.limits.force_N) && is_not_negative(settings.limits.torque_Nmm),
           "the limits of force (N) and torque (N mm) must not be negative");
 }
 

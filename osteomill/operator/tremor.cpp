@@ -3,6 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "osteomill/numbers/positive.h"
 #include "osteomill/operator/seeded_random.h"
 
 namespace osteomill {
@@ -33,9 +34,7 @@ double sine_of_turns(double turns) {
 }  // namespace
 
 Tremor::Tremor(std::uint64_t seed, double rms_mm) {
-  if (!(std::isfinite(rms_mm) && rms_mm >= 0)) {
-    throw std::invalid_argument("tremor: its root mean square must not be negative (mm)");
-  }
+  require_not_negative(rms_mm, "tremor: its root mean square (mm)");
   SeededRandom random(seed);
   for (auto& sines : axes_) {
     std::size_t next = 0;

@@ -6,6 +6,7 @@
 
 #include "osteomill/files/input_error.h"
 #include "osteomill/haptics/algorithms.h"
+#include "osteomill/numbers/positive.h"
 #include "osteomill/recording/hdf5_attributes.h"
 
 namespace osteomill {
@@ -135,7 +136,7 @@ RunDescription read_description(const fs::path& path, hid_t file) {
   description.mode = require_known(path, mode_named(mode), "mode " + mode);
   description.seed = read.unsigned_integer("seed");
   description.tick_period_s = read.real("tick_period_s");
-  if (!(std::isfinite(description.tick_period_s) && description.tick_period_s > 0)) {
+  if (!is_positive(description.tick_period_s)) {
     throw InputError(path.string(), "the attribute 'tick_period_s' is not a positive number");
   }
   description.settings = read_settings(path, file);

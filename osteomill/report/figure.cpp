@@ -6,6 +6,8 @@
 
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/files/input_error.h"
+#include "osteomill/files/temporary_folder.h"
+#include "osteomill/report/gnuplot.h"
 
 namespace osteomill {
 

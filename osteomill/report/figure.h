@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "osteomill/report/gnuplot.h"
+#include "osteomill/files/temporary_folder.h"
 
 namespace osteomill {
 

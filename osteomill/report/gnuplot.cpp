@@ -3,11 +3,9 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <system_error>
 
 #include <fcntl.h>
 #include <spawn.h>
-#include <stdlib.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -68,22 +66,6 @@ int wait_for(pid_t child) {
 }
 
 }  // namespace
-
-TemporaryFolder::TemporaryFolder() {
-  std::error_code error;
-  const fs::path parent = fs::temp_directory_path(error);
-  if (error) throw InputError("TMPDIR", "is no folder for temporary files: " + error.message());
-  std::string name = (parent / "osteomill-XXXXXX").string();
-  if (::mkdtemp(name.data()) == nullptr) {
-    throw InputError(parent.string(), std::string("cannot hold a temporary folder: ") + std::strerror(errno));
-  }
-  path_ = name;
-}
-
-TemporaryFolder::~TemporaryFolder() {
-  std::error_code ignored;
-  fs::remove_all(path_, ignored);
-}
 
 void run_gnuplot(const fs::path& folder, const std::string& script, const std::string& program) {
   write_script(folder / kScript, script);

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "osteomill/files/input_error.h"
+#include "osteomill/files/temporary_folder.h"
 
 namespace osteomill {
 namespace {
@@ -16,17 +17,6 @@ std::string failure_of(const TemporaryFolder& work, const std::string& script, c
     return error.what();
   }
   return "";
-}
-
-TEST(TemporaryFolder, IsGoneAfterwards) {
-  std::filesystem::path path;
-  {
-    const TemporaryFolder work;
-    path = work.path();
-    std::ofstream(work / "file") << "x";
-    EXPECT_TRUE(std::filesystem::exists(path / "file"));
-  }
-  EXPECT_FALSE(std::filesystem::exists(path));
 }
 
 TEST(Gnuplot, RunsInItsFolder) {

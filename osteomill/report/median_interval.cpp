@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "osteomill/numbers/distribution.h"
+
 namespace osteomill {
 
 MedianInterval median_interval(std::span<const double> values, double coverage) {
@@ -22,8 +24,8 @@ MedianInterval median_interval(std::span<const double> values, double coverage) 
     below += exactly;
     ++k;
   }
-  const double median = 0.5 * (sorted[(n - 1) / 2] + sorted[n / 2]);
-  return {median, sorted[k - 1], sorted[n - k], std::max(0.0, 1 - 2 * below), is_range};
+  return {distribution_of(sorted).median, sorted[k - 1], sorted[n - k], std::max(0.0, 1 - 2 * below),
+          is_range};
 }
 
 }  // namespace osteomill

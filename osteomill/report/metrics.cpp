@@ -52,15 +52,6 @@ void require_usable(const Recording& recording) {
 
 }  // namespace
 
-Distribution distribution_of(std::vector<double> values) {
-  if (values.empty()) return {};
-  std::sort(values.begin(), values.end());
-  const std::size_t n = values.size();
-  const double median = 0.5 * (values[(n - 1) / 2] + values[n / 2]);
-  const std::size_t rank = (99 * n + 99) / 100;
-  return {median, values[rank - 1], values.back()};
-}
-
 VectorMetrics vector_metrics(std::span<const Vec3> samples, double rate_hz) {
   VectorMetrics metrics;
   if (samples.empty()) return metrics;

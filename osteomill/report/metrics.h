@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "osteomill/numbers/distribution.h"
 #include "osteomill/recording/recording.h"
 
 namespace osteomill {
@@ -14,15 +15,6 @@ namespace osteomill {
 inline constexpr double kLeastRate_hz = 950.0;
 /// Where a hand stops following and starts to feel a buzz: "above 20 Hz" in all that is reported.
 inline constexpr double kBuzzAbove_hz = 20.0;
-
-/// Median (mean of the two middle values of an even number) and 99th percentile (nearest rank: the smallest
-/// value that at least 99 % do not exceed) of values, and the greatest of them. Zeros for no values.
-struct Distribution {
-  double median = 0;
-  double p99 = 0;
-  double max = 0;
-};
-Distribution distribution_of(std::vector<double> values);
 
 /// How a vector over time behaves: force (N) or torque (N mm).
 struct VectorMetrics {

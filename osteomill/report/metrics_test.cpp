@@ -16,19 +16,6 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-TEST(Distribution, KnownValues) {
-  std::vector<double> values(1000);
-  std::iota(values.begin(), values.end(), 1.0);
-  std::reverse(values.begin(), values.end());
-  const Distribution d = distribution_of(values);
-  EXPECT_DOUBLE_EQ(d.median, 500.5);
-  EXPECT_DOUBLE_EQ(d.p99, 990);
-  EXPECT_DOUBLE_EQ(d.max, 1000);
-  EXPECT_DOUBLE_EQ(distribution_of({3, 1, 2}).median, 2);
-  EXPECT_DOUBLE_EQ(distribution_of({7}).p99, 7);
-  EXPECT_DOUBLE_EQ(distribution_of({}).max, 0);
-}
-
 // 3 N that turn slowly, with 0.2 N at 100 Hz on top.
 TEST(VectorMetrics, ASteadyForceWithABuzzOnIt) {
   std::vector<Vec3> force;

@@ -6,7 +6,9 @@
 #include <fmt/format.h>
 
 #include "osteomill/files/input_error.h"
+#include "osteomill/files/temporary_folder.h"
 #include "osteomill/image/png.h"
+#include "osteomill/report/gnuplot.h"
 
 namespace osteomill {
 

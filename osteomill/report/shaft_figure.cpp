@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "osteomill/files/temporary_folder.h"
 #include "osteomill/report/thin_out.h"
 
 namespace osteomill {

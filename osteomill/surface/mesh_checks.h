@@ -10,6 +10,7 @@
 
 #include "osteomill/geometry/pose.h"
 #include "osteomill/surface/surface_mesh.h"
+#include "osteomill/volume/sampling.h"
 
 namespace osteomill::testing_support {
 
@@ -106,6 +107,32 @@ inline bool is_sound(const BrickMesh& mesh) {
          std::all_of(mesh.vertices.begin(), mesh.vertices.end(), [](const MeshVertex& vertex) {
            return is_finite(vertex) && std::abs(normal_of(vertex).norm() - 1) < 1e-4;
          });
+}
+
+/// What lies above the isovalue in the trilinear densities, by looking at 5 x 5 x 5 points of each cell.
+inline double trilinear_volume_mm3(const Volume& volume) {
+  const std::array<int, 3>& dims = volume.geometry().dims;
+  constexpr int kPoints = 5;
+  long inside = 0;
+  for (int k = -1; k < dims[2]; ++k) {
+    for (int j = -1; j < dims[1]; ++j) {
+      for (int i = -1; i < dims[0]; ++i) {
+        int bone = 0;
+        for (int c = 0; c < 8; ++c) {
+          bone += volume.is_bone_or_outside({i + (c & 1), j + (c >> 1 & 1), k + (c >> 2)});
+        }
+        if (bone == 8) inside += kPoints * kPoints * kPoints;
+        if (bone == 0 || bone == 8) continue;
+        for (int p = 0; p < kPoints * kPoints * kPoints; ++p) {
+          const Vec3 within =
+              (Vec3(p % kPoints, p / kPoints % kPoints, p / kPoints / kPoints) + Vec3::Constant(0.5)) /
+              kPoints;
+          inside += density_at_voxel(volume.grid(), Vec3(i, j, k) + within) > volume.isovalue();
+        }
+      }
+    }
+  }
+  return static_cast<double>(inside) / (kPoints * kPoints * kPoints) * volume.geometry().voxel_volume_mm3();
 }
 
 }  // namespace osteomill::testing_support

@@ -11,10 +11,7 @@ SurfaceBricks::SurfaceBricks(const std::array<int, 3>& voxel_dims) : voxel_dims_
 }
 
 std::array<int, 3> SurfaceBricks::coordinates(std::size_t brick) const {
-  const auto columns = static_cast<std::size_t>(dims_[0]);
-  const auto rows = static_cast<std::size_t>(dims_[1]);
-  return {static_cast<int>(brick % columns), static_cast<int>(brick / columns % rows),
-          static_cast<int>(brick / columns / rows)};
+  return cell_at(dims_, brick);
 }
 
 VoxelBox SurfaceBricks::cells(std::size_t brick) const {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 
+#include "osteomill/numbers/row_major.h"
 #include "osteomill/volume/grid_geometry.h"
 
 namespace osteomill {
@@ -20,16 +21,8 @@ class SurfaceBricks {
   explicit SurfaceBricks(const std::array<int, 3>& voxel_dims);
 
   const std::array<int, 3>& dims() const { return dims_; }
-  std::size_t count() const {
-    return static_cast<std::size_t>(dims_[0]) * static_cast<std::size_t>(dims_[1]) *
-           static_cast<std::size_t>(dims_[2]);
-  }
-  std::size_t index(int bi, int bj, int bk) const {
-    return static_cast<std::size_t>(bi) +
-           static_cast<std::size_t>(dims_[0]) *
-               (static_cast<std::size_t>(bj) +
-                static_cast<std::size_t>(dims_[1]) * static_cast<std::size_t>(bk));
-  }
+  std::size_t count() const { return cell_count(dims_); }
+  std::size_t index(int bi, int bj, int bk) const { return row_major(dims_, bi, bj, bk); }
   std::array<int, 3> coordinates(std::size_t brick) const;
 
   /// The cells of a brick, each by its least voxel, which may have coordinates of -1.

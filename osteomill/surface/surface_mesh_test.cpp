@@ -7,14 +7,11 @@
 #include <set>
 
 #include "tests/shapes.h"
-#include "tests/shared_data.h"
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-#include "osteomill/ct/read_scan.h"
 #include "osteomill/surface/mesh_checks.h"
 #include "osteomill/volume/builtin_tooth.h"
-#include "osteomill/volume/sampling.h"
 
 namespace osteomill {
 namespace {
@@ -28,6 +25,7 @@ using testing_support::is_sound;
 using testing_support::normal_of;
 using testing_support::position_of;
 using testing_support::shape_volume;
+using testing_support::trilinear_volume_mm3;
 using testing_support::welded_by_position;
 
 Volume volume_of(const std::array<int, 3>& dims, std::vector<float> densities, double isovalue) {
@@ -63,32 +61,6 @@ double partial_volume_mm3(const Volume& volume, double full) {
   for (const float density : volume.grid().densities())
     sum += std::clamp(static_cast<double>(density) / full, 0.0, 1.0);
   return sum * volume.geometry().voxel_volume_mm3();
-}
-
-// What lies above the isovalue in the trilinear densities, by looking at 5 x 5 x 5 points of each cell.
-double trilinear_volume_mm3(const Volume& volume) {
-  const std::array<int, 3>& dims = volume.geometry().dims;
-  constexpr int kPoints = 5;
-  long inside = 0;
-  for (int k = -1; k < dims[2]; ++k) {
-    for (int j = -1; j < dims[1]; ++j) {
-      for (int i = -1; i < dims[0]; ++i) {
-        int bone = 0;
-        for (int c = 0; c < 8; ++c) {
-          bone += volume.is_bone_or_outside({i + (c & 1), j + (c >> 1 & 1), k + (c >> 2)});
-        }
-        if (bone == 8) inside += kPoints * kPoints * kPoints;
-        if (bone == 0 || bone == 8) continue;
-        for (int p = 0; p < kPoints * kPoints * kPoints; ++p) {
-          const Vec3 within =
-              (Vec3(p % kPoints, p / kPoints % kPoints, p / kPoints / kPoints) + Vec3::Constant(0.5)) /
-              kPoints;
-          inside += density_at_voxel(volume.grid(), Vec3(i, j, k) + within) > volume.isovalue();
-        }
-      }
-    }
-  }
-  return static_cast<double>(inside) / (kPoints * kPoints * kPoints) * volume.geometry().voxel_volume_mm3();
 }
 
 void expect_volume_of_densities(const Volume& volume) {
@@ -288,19 +260,6 @@ TEST(SurfaceBricks, NameAllBricksThatAChangeReaches) {
 
 TEST(SurfaceMesh, OfTheBuiltinToothIsClosedAndOfItsSize) {
   expect_volume_of_densities(Volume(builtin_tooth(0.5), kBuiltinToothIsovalue));
-}
-
-TEST(SurfaceMesh, OfARealToothIsClosedAndOfItsSize) {
-  OSTEOMILL_NEEDS_SHARED("tooth/tooth_103x94x161_u16.nrrd");
-  const Scan scan = read_scan(testing_support::shared_data() / "tooth/tooth_103x94x161_u16.nrrd");
-  expect_volume_of_densities(Volume(scan.grid, 610));
-}
-
-// A skull that the scan cuts off.
-TEST(SurfaceMesh, OfARealSkullIsClosedAtTheBorderOfTheScan) {
-  OSTEOMILL_NEEDS_SHARED("cranium/cranium_256x256x108_i16.nrrd");
-  const Scan scan = read_scan(testing_support::shared_data() / "cranium/cranium_256x256x108_i16.nrrd");
-  EXPECT_TRUE(is_sound(mesh_in_one_piece(DensityView(Volume(scan.grid, 300)))));
 }
 
 }  // namespace

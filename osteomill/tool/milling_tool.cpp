@@ -1,26 +1,15 @@
 #include "osteomill/tool/milling_tool.h"
 
 #include <algorithm>
-#include <cmath>
-#include <stdexcept>
-#include <string>
+
+#include "osteomill/numbers/positive.h"
 
 namespace osteomill {
 
-namespace {
-
-void require_positive(double size_mm, const char* name) {
-  if (!(std::isfinite(size_mm) && size_mm > 0)) {
-    throw std::invalid_argument(std::string(name) + " must be a positive number of mm");
-  }
-}
-
-}  // namespace
-
 void require_valid(const MillingTool& tool) {
-  require_positive(tool.burr_radius_mm, "the burr's radius");
-  require_positive(tool.shaft_radius_mm, "the shaft's radius");
-  require_positive(tool.shaft_length_mm, "the shaft's length");
+  require_positive(tool.burr_radius_mm, "the burr's radius (mm)");
+  require_positive(tool.shaft_radius_mm, "the shaft's radius (mm)");
+  require_positive(tool.shaft_length_mm, "the shaft's length (mm)");
 }
 
 ToolBox bounding_box(const MillingTool& tool) {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "osteomill/numbers/positive.h"
+
 namespace osteomill {
 
 namespace {
@@ -30,12 +32,8 @@ double SampledDistanceField::suitable_spacing_mm(const MillingTool& tool) {
 SampledDistanceField::SampledDistanceField(const MillingTool& tool, double spacing_mm, double margin_mm)
     : spacing_mm_(spacing_mm) {
   require_valid(tool);
-  if (!(std::isfinite(spacing_mm) && spacing_mm > 0)) {
-    throw std::invalid_argument("the distance field's spacing must be a positive number of mm");
-  }
-  if (!(std::isfinite(margin_mm) && margin_mm >= 0)) {
-    throw std::invalid_argument("the distance field's margin must not be negative");
-  }
+  require_positive(spacing_mm, "the distance field's spacing (mm)");
+  require_not_negative(margin_mm, "the distance field's margin (mm)");
   const ToolBox tool_box = bounding_box(tool);
   const Vec3 cells = cells_of(tool_box, spacing_mm, margin_mm);
   if (!((cells + Vec3::Ones()).prod() <= kMostNodes)) {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "osteomill/numbers/row_major.h"
 #include "osteomill/tool/tool_distance.h"
 
 namespace osteomill {
@@ -35,12 +36,7 @@ class SampledDistanceField {
   // Distance, then gradient.
   using Node = std::array<float, 4>;
 
-  std::size_t node_index(int i, int j, int k) const {
-    return static_cast<std::size_t>(i) +
-           static_cast<std::size_t>(dims_[0]) *
-               (static_cast<std::size_t>(j) +
-                static_cast<std::size_t>(dims_[1]) * static_cast<std::size_t>(k));
-  }
+  std::size_t node_index(int i, int j, int k) const { return row_major(dims_, i, j, k); }
   void fill(const MillingTool& tool);
 
   double spacing_mm_;

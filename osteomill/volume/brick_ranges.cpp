@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "osteomill/numbers/row_major.h"
+
 namespace osteomill {
 
 namespace {
@@ -24,8 +26,7 @@ BrickRanges::BrickRanges(const DensityGrid& grid) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     dims_[axis] = (grid.geometry().dims[axis] + kBrickVoxels - 1) / kBrickVoxels;
   }
-  ranges_.resize(static_cast<std::size_t>(dims_[0]) * static_cast<std::size_t>(dims_[1]) *
-                 static_cast<std::size_t>(dims_[2]));
+  ranges_.resize(cell_count(dims_));
   refresh(grid, grid.geometry().all_voxels());
 }
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <vector>
 
+#include "osteomill/numbers/row_major.h"
 #include "osteomill/volume/density_grid.h"
 
 namespace osteomill {
@@ -37,12 +38,7 @@ class BrickRanges {
   void refresh(const DensityGrid& grid, const VoxelBox& box);
 
  private:
-  std::size_t index(int bi, int bj, int bk) const {
-    return static_cast<std::size_t>(bi) +
-           static_cast<std::size_t>(dims_[0]) *
-               (static_cast<std::size_t>(bj) +
-                static_cast<std::size_t>(dims_[1]) * static_cast<std::size_t>(bk));
-  }
+  std::size_t index(int bi, int bj, int bk) const { return row_major(dims_, bi, bj, bk); }
   static Range range_of(const DensityGrid& grid, int bi, int bj, int bk);
 
   std::array<int, 3> dims_{0, 0, 0};

@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "osteomill/numbers/row_major.h"
+
 namespace osteomill {
 
 namespace {
@@ -243,9 +245,7 @@ void fill_block(const GridGeometry& geometry, const VoxelBox& block, std::vector
   if (tooth(middle.x(), middle.y(), middle.z()) > kSteepest * reach_mm) return;
   for (int k = block.first.k; k <= block.last.k; ++k) {
     for (int j = block.first.j; j <= block.last.j; ++j) {
-      const std::size_t row = static_cast<std::size_t>(geometry.dims[0]) *
-                              (static_cast<std::size_t>(j) +
-                               static_cast<std::size_t>(geometry.dims[1]) * static_cast<std::size_t>(k));
+      const std::size_t row = row_major(geometry.dims, 0, j, k);
       for (int i = block.first.i; i <= block.last.i; ++i) {
         const Vec3 p = geometry.world_from_voxel(VoxelIndex{i, j, k});
         densities[row + static_cast<std::size_t>(i)] = static_cast<float>(density(p.x(), p.y(), p.z()));

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "osteomill/numbers/row_major.h"
 #include "osteomill/volume/grid_geometry.h"
 
 namespace osteomill {
@@ -20,12 +21,7 @@ class DensityGrid {
   /// The least density of the grid as it was made.
   float outside_density() const { return outside_density_; }
 
-  std::size_t linear_index(const VoxelIndex& v) const {
-    return static_cast<std::size_t>(v.i) +
-           static_cast<std::size_t>(geometry_.dims[0]) *
-               (static_cast<std::size_t>(v.j) +
-                static_cast<std::size_t>(geometry_.dims[1]) * static_cast<std::size_t>(v.k));
-  }
+  std::size_t linear_index(const VoxelIndex& v) const { return row_major(geometry_.dims, v.i, v.j, v.k); }
   bool contains(const VoxelIndex& v) const {
     return v.i >= 0 && v.j >= 0 && v.k >= 0 && v.i < geometry_.dims[0] && v.j < geometry_.dims[1] &&
            v.k < geometry_.dims[2];

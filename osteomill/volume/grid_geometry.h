@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "osteomill/geometry/pose.h"
+#include "osteomill/numbers/row_major.h"
 
 namespace osteomill {
 
@@ -61,10 +62,7 @@ struct GridGeometry {
   /// Columns: the unit directions of i, j, k in W; orthogonal, right- or left-handed.
   Mat3 direction = Mat3::Identity();
 
-  std::size_t voxel_count() const {
-    return static_cast<std::size_t>(dims[0]) * static_cast<std::size_t>(dims[1]) *
-           static_cast<std::size_t>(dims[2]);
-  }
+  std::size_t voxel_count() const { return cell_count(dims); }
   VoxelBox all_voxels() const { return {{0, 0, 0}, {dims[0] - 1, dims[1] - 1, dims[2] - 1}}; }
   double voxel_volume_mm3() const { return spacing_mm.prod(); }
 

@@ -7,6 +7,11 @@
 
 namespace osteomill {
 
+/// Whether there is bone at a point: density > isovalue. Safe in the haptic tick.
+inline bool is_bone_at(const Volume& volume, const Vec3& point_W) {
+  return density_at(volume.grid(), point_W) > volume.isovalue();
+}
+
 /// The unit vector out of the bone at a point (against the gradient), or nothing where the density is flat.
 /// Safe in the haptic tick.
 std::optional<Vec3> outward_normal(const Volume& volume, const Vec3& point_W, GradientKernel kernel);

@@ -217,6 +217,8 @@ TEST(BarrierShell, RandomPushesIntoSpongyBoneStayOutside) {
     const double speed_mm_s = 160 + 140 * unit_random(bits);
     EXPECT_LT(deepest_of_push(algorithm, surface, tool, from, direction, speed_mm_s, 38), 0.3) << n;
   }
+  // Nobody but the device adds energy to bone that stays as it is.
+  EXPECT_EQ(algorithm.counts().energy_rises, 0u) << algorithm.counts().worst_rise_Nmm;
   EXPECT_GT(algorithm.counts().nearest_share, 0);
 }
 
@@ -336,6 +338,7 @@ TEST(BarrierShell, ABurrPressedOnBoneThatIsMilledIsNeverLetGo) {
     algorithm.volume_changed(change);
   }
   EXPECT_LT(largest_step_N, 0.3);
+  EXPECT_LT(algorithm.counts().worst_rise_Nmm, 0.01);
 }
 
 }  // namespace

@@ -14,10 +14,10 @@ constexpr std::size_t kCoarseChunks = 16384;
 constexpr std::size_t kSpareSlots = 2048;
 constexpr std::size_t kSpareChunks = 4096;
 
-// What looking at a brick costs, in edges: without surface, and with all of its nodes read.
+// What looking at a brick costs, in edges: passed over, and for so many densities read and then looked at.
 constexpr int kPassedOverCost = 2;
-constexpr int kReadCost = 40;
-constexpr int kUnchangedCost = 20;
+constexpr int kDensitiesRead = 60;
+constexpr int kDensitiesSearched = 60;
 
 }  // namespace
 
@@ -64,7 +64,8 @@ int BoneBricks::make(const VoxelIndex& brick) {
   const bool has_points = slot != kUnmade && slot != kNoPoints;
   found_->fingerprint = has_points ? fingerprints_[slot] : 0;
   const int crossed = lattice_.find_surface(brick, *found_);
-  if (crossed == SurfaceLattice::kUnchanged) return kUnchangedCost;
+  const int read_cost = lattice_.densities_of_brick() / kDensitiesRead;
+  if (crossed == SurfaceLattice::kUnchanged) return read_cost;
   const std::int32_t before = slot == kUnmade     ? 1
                               : slot == kNoPoints ? 0
                                                   : static_cast<std::int32_t>(fine_.brick(slot).count);
@@ -85,7 +86,7 @@ int BoneBricks::make(const VoxelIndex& brick) {
     }
   }
   octree_.add(brick.i, brick.j, brick.k, after - before);
-  return kReadCost + crossed;
+  return read_cost + lattice_.densities_of_brick() / kDensitiesSearched + crossed;
 }
 
 void BoneBricks::refresh(const VoxelBox& voxels, int budget) {

@@ -27,6 +27,8 @@ class SurfaceLattice {
   /// Brick b begins at the edges whose lower node is `brick_nodes() * b - 1`: crossings between the scan's
   /// border and the nothing beyond it count.
   int brick_nodes() const { return brick_nodes_; }
+  /// The densities that a brick's points are made from.
+  int densities_of_brick() const { return (brick_nodes_ + 3) * (brick_nodes_ + 3) * (brick_nodes_ + 3); }
   /// Of neighbouring nodes.
   const Vec3& step_mm() const { return step_mm_; }
   /// Origin of a brick's frame (the grid's axes) in the grid's frame (origin at voxel 0, 0, 0).

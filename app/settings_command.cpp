@@ -1,0 +1,57 @@
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "app/commands.h"
+#include <fmt/core.h>
+
+#include "osteomill/haptics/algorithms.h"
+
+namespace osteomill::app {
+
+namespace {
+
+std::string number_text(double value, bool on_or_off) {
+  if (on_or_off) return value != 0 ? "on" : "off";
+  return std::isinf(value) ? "no limit" : fmt::format("{:g}", value);
+}
+
+std::string range_text(const SettingRange& range) {
+  if (range == SettingRange::on_or_off()) return "on, off";
+  std::string text = range.whole ? "whole, " : "";
+  text += range.min == std::numeric_limits<double>::min() ? "> 0" : fmt::format("{:g}", range.min);
+  if (range.max < std::numeric_limits<double>::max()) return text + fmt::format(" to {:g}", range.max);
+  return text + (range.min == std::numeric_limits<double>::min() ? "" : " or more");
+}
+
+void print_settings(const AlgorithmDescription& algorithm) {
+  fmt::print(
+      "\n## {}\n{}.\n\n| setting | unit | range | paper | steady | meaning |\n|---|---|---|---|---|---|\n",
+      algorithm.id.label, algorithm.summary);
+  for (const SettingDescription& setting : algorithm.settings) {
+    const bool on_or_off = setting.range == SettingRange::on_or_off();
+    const std::string option = setting.option.empty() ? "" : fmt::format(" (also `--{}`)", setting.option);
+    fmt::print("| `{}` | {} | {} | {} | {} | {}{} |\n", setting.name, setting.unit, range_text(setting.range),
+               number_text(setting.paper, on_or_off), number_text(setting.steady, on_or_off), setting.meaning,
+               option);
+  }
+}
+
+}  // namespace
+
+void add_settings_command(CLI::App& program) {
+  CLI::App* command =
+      program.add_subcommand("settings", "List every setting of every algorithm, as a Markdown table");
+  command->callback([] {
+    fmt::print(
+        "# Settings of the algorithms\n\n"
+        "Written by `osteomill settings`; a test holds this page to it. Set one with `--set "
+        "ALGORITHM.SETTING=VALUE` (on and off\nare `true` and `false`, no limit is `inf`), or as a key of "
+        "the "
+        "table `[ALGORITHM]` in a file for `--config`. Numbers in\nbrackets are the paper's equations; "
+        "[algorithms.md](algorithms.md) tells what each is for.\n");
+    for (const AlgorithmDescription& algorithm : all_algorithms()) print_settings(algorithm);
+  });
+}
+
+}  // namespace osteomill::app

@@ -1,0 +1,57 @@
+#!/usr/bin/env bash
+# Installs the built tree into an empty folder and uses it from there alone: its headers, each on its own; the examples;
+# projects that take one component, or everything; pkg-config.
+#   installed_package_test.sh BUILD_DIR SOURCE_DIR
+set -euo pipefail
+source=$2
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cmake --install "$1" --prefix "$folder/prefix" >/dev/null
+cd "$folder"
+config=$(find prefix -name osteomillConfig.cmake)
+told() { sed -nE "s/^set\(osteomill_($1)_$2 \"(.*)\"\)$/\2/p" "$config" | tr ';' '\n'; }
+mapfile -t components < <(sed -nE 's/^set\(osteomill_(.*)_uses .*/\1/p' "$config")
+fail() { echo "$*" >&2; exit 1; }
+
+for file in LICENSE README.md docs/architecture.md examples/press_on_a_ball.cpp; do
+  [ -s "prefix/share/doc/osteomill/$file" ] || fail "not installed: $file"
+done
+
+# Every header compiles alone. Eigen, which all that include another header read through geometry/pose.h, is compiled once.
+export PKG_CONFIG_PATH=$folder/prefix/lib/pkgconfig
+flags="-w $(pkg-config --cflags osteomill)"
+export flags
+grep -h '#include <Eigen' prefix/include/osteomill/geometry/pose.h >eigen.h
+g++ $flags -x c++-header eigen.h -o eigen.h.gch
+(cd prefix/include && find osteomill -name '*.h') | sort >headers
+alone() {
+  ! grep -qE '#include [<"](osteomill|Eigen)/' "prefix/include/$1" || with_eigen=(-include eigen.h)
+  g++ $flags "${with_eigen[@]}" -fsyntax-only -x c++ - <<<"#include \"$1\"" || { echo "$1 does not compile alone" >&2; exit 1; }
+}
+export -f alone
+xargs -P "$(nproc)" -n 1 bash -c 'alone "$1"' _ <headers
+
+user() {  # NAME CMAKE_ARGUMENTS...
+  cmake -S "$source/tests/package" -B "$1" -G Ninja -DCMAKE_PREFIX_PATH="$folder/prefix" \
+    -DSOURCE="$source/examples/press_on_a_ball.cpp" "${@:2}" >"$1.log" 2>&1
+}
+# Haptics alone, where nothing can be found that only other components need.
+mapfile -t absent < <(told '.*' packages | cut -d' ' -f1 | sort -u |
+  grep -vxF -f <(told 'files|geometry|volume|tool|haptics' packages | cut -d' ' -f1))
+disabled=("${absent[@]/#/-DCMAKE_DISABLE_FIND_PACKAGE_}")
+disabled=("${disabled[@]/%/=ON}")
+user haptics -DCOMPONENTS=haptics "${disabled[@]}" || { cat haptics.log; fail "haptics alone wants ${absent[*]}"; }
+cmake --build haptics >/dev/null && haptics/user >felt
+! user recording -DCOMPONENTS=recording "${disabled[@]}" || fail "recording was found without HDF5"
+! user misspelt -DCOMPONENTS=haptix && grep -q 'no component haptix' misspelt.log || fail "haptix was found"
+
+# Everything, as CMake and as pkg-config say it; with all of every library, so that nothing can be missing.
+user everything -DCOMPONENTS="$(printf '%s\n' "${components[@]}" | paste -sd';')" ||
+  { cat everything.log; fail "not everything was found"; }
+cmake --build everything >/dev/null && everything/user | cmp - felt
+g++ $(pkg-config --cflags osteomill-haptics) -c "$source/examples/press_on_a_ball.cpp" -o user.o
+g++ user.o -o whole -Wl,--whole-archive prefix/lib/libosteomill_*.a -Wl,--no-whole-archive \
+  $(pkg-config --static --libs osteomill)
+./whole | cmp - felt
+g++ user.o -o by_pkg_config $(pkg-config --static --libs osteomill-haptics)
+./by_pkg_config | cmp - felt
