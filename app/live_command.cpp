@@ -11,8 +11,6 @@
 #include "app/trial_options.h"
 #include <fmt/core.h>
 
-#include "osteomill/experiment/paper.h"
-#include "osteomill/experiment/trial_plan.h"
 #include "osteomill/live/live_milling.h"
 
 namespace osteomill::app {
@@ -78,17 +76,11 @@ void run_live(LiveOptions options, const std::string& command_line) {
   LoadedBone loaded = load_bone(options.scan);
   const auto bone = std::make_shared<Volume>(std::move(loaded.volume));
   PreparedMilling prepared = prepare_milling(bone, setup);
-  const TrialPlan plan{*bone,
-                       loaded.name,
-                       prepared.densities,
-                       place_entry(*bone, options.trial),
-                       trial_settings(options.trial),
-                       command_line};
-  const int points = prepared.session->algorithm().sample_point_count();
-  SimulatedOperator hand(plan.settings.hand_and_device, setup.tool, plan.entry);
+  SimulatedOperator hand(trial_settings(options.trial).hand_and_device, setup.tool,
+                         place_entry(*bone, options.trial));
   LiveMilling milling(std::move(prepared), hand);
   if (!options.record.empty()) {
-    milling.start_recording(options.record, describe_trial(plan, setup.algorithm, points, kMilling));
+    milling.start_recording(options.record, milling.describe(loaded.name, command_line));
   }
   milling.start();
   if (!milling.refused_real_time().empty())

@@ -62,7 +62,8 @@ INSTANTIATE_TEST_SUITE_P(AllAlgorithms, GoldenWrenches,
                                            Golden{"surface-points", Mode::paper, 0xf94f1400825febc5},
                                            Golden{"surface-points", Mode::steady, 0xade8d0d058621fba},
                                            Golden{"point-shell", Mode::paper, 0xfd4275f2a35c6bc3},
-                                           Golden{"point-shell", Mode::steady, 0xfca531621ab039c2}),
+                                           Golden{"point-shell", Mode::steady, 0xfca531621ab039c2},
+                                           Golden{"barrier-shell", Mode::steady, 0x180dabf0440e9d3d}),
                          [](const auto& test) {
                            std::string name(test.param.algorithm);
                            name[name.find('-')] = '_';

@@ -77,7 +77,8 @@ INSTANTIATE_TEST_SUITE_P(AllAlgorithms, TickAllocation,
                                            Case{"surface-points", Mode::paper},
                                            Case{"surface-points", Mode::steady},
                                            Case{"point-shell", Mode::paper},
-                                           Case{"point-shell", Mode::steady}),
+                                           Case{"point-shell", Mode::steady},
+                                           Case{"barrier-shell", Mode::steady}),
                          [](const auto& test) {
                            std::string name(test.param.algorithm);
                            name[name.find('-')] = '_';

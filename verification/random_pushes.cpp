@@ -103,7 +103,8 @@ std::vector<Outcome> outcomes(std::string_view id, const Volume& bone, const Bon
 Section random_pushes(const Bones& bones, const Effort& effort) {
   Section section{
       "Pushes from anywhere",
-      fmt::format("Must hold: the simulated tool never ends more than {} mm past the surface. {} pushes "
+      fmt::format("Must hold: the simulated tool never ends more than {} mm past the surface, that of 4 is "
+                  "never there. {} pushes "
                   "of 2 to 10 N at 20 to 300 mm/s against {}, burr or shaft first, from any side and in "
                   "any pose; the overlap of the tool (of 1, which collides the tool's centreline: of "
                   "that) with the isosurface, looked for every {} ms independently of the algorithms.",
@@ -123,7 +124,7 @@ Section random_pushes(const Bones& bones, const Effort& effort) {
     const auto deeper = std::count_if(at_end.begin(), at_end.end(), [](double d) { return d > kDeepest_mm; });
     section.add({id, std::to_string(deeper), std::to_string(ever), figure(distribution_of(at_end).median),
                  figure(percentile(at_end, 0.999)), figure(percentile(at_end, 1))},
-                deeper == 0);
+                deeper == 0 && (id != "barrier-shell" || ever == 0));
   }
   return section;
 }

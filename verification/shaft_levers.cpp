@@ -44,11 +44,12 @@ OnAnEdge press(std::string_view algorithm, double lever_mm, double edge_voxels, 
 Section shaft_levers() {
   Section section{
       "The shaft alone on an edge",
-      fmt::format("Must hold: torque = lever x force within 2 %, with the right sign, and a force that "
-                  "is felt. The shaft lies across the crest of a square edge, 0.3 mm deep (algorithm 1: "
-                  "its centreline), in {} random orientations of the scene; 0.2 mm voxels; torque's "
-                  "error as a share of lever x force, median (worst).",
-                  kOrientations),
+      fmt::format(
+          "Must hold: torque = lever x force within 2 % (4: 1 %), with the right sign, and a force that "
+          "is felt. The shaft lies across the crest of a square edge, 0.3 mm deep (algorithm 1: "
+          "its centreline), in {} random orientations of the scene; 0.2 mm voxels; torque's "
+          "error as a share of lever x force, median (worst).",
+          kOrientations),
       {"algorithm, lever, edge", "torque error", "least force, N", "at most", ""},
       {},
       {}};
@@ -59,6 +60,7 @@ Section shaft_levers() {
         std::vector<double> errors;
         double least_N = 1e9;
         bool right_sign = true;
+        const double most = algorithm == "barrier-shell" ? 0.01 : 0.02;
         for (int n = 0; n < kOrientations; ++n) {
           const OnAnEdge felt = press(algorithm, lever_mm, edge_voxels, random);
           errors.push_back(felt.torque_error_share);
@@ -66,8 +68,8 @@ Section shaft_levers() {
           right_sign = right_sign && felt.turns_away;
         }
         section.add({fmt::format("{}, {:.0f} mm, {:.0f} voxels", algorithm, lever_mm, edge_voxels),
-                     median_and_worst(errors), figure(least_N), "0.02"},
-                    right_sign && least_N > 0.01 && percentile(errors, 1) <= 0.02);
+                     median_and_worst(errors), figure(least_N), figure(most)},
+                    right_sign && least_N > 0.01 && percentile(errors, 1) <= most);
       }
     }
   }

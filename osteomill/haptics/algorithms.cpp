@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 
+#include "osteomill/haptics/barrier_shell/barrier_shell_description.h"
 #include "osteomill/haptics/line_proxy/line_proxy_description.h"
 #include "osteomill/haptics/point_shell/point_shell_description.h"
 #include "osteomill/haptics/surface_points/surface_points_description.h"
@@ -13,6 +14,7 @@ const std::vector<AlgorithmDescription>& all_algorithms() {
       line_proxy::description(),
       surface_points::description(),
       point_shell::description(),
+      barrier_shell::description(),
   };
   return all;
 }

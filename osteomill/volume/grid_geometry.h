@@ -22,6 +22,7 @@ struct VoxelBox {
   VoxelIndex first{0, 0, 0};
   VoxelIndex last{-1, -1, -1};
 
+  friend bool operator==(const VoxelBox&, const VoxelBox&) = default;
   bool empty() const { return last.i < first.i || last.j < first.j || last.k < first.k; }
   bool contains(const VoxelIndex& v) const {
     return v.i >= first.i && v.i <= last.i && v.j >= first.j && v.j <= last.j && v.k >= first.k &&

@@ -1,8 +1,8 @@
 #include "osteomill/haptics/line_proxy/line_proxy.h"
 
-#include <limits>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "osteomill/haptics/line_proxy/bone_march.h"

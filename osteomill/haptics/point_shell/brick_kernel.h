@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "osteomill/haptics/point_shell/brick_points.h"
+#include "osteomill/haptics/bone_points/brick_points.h"
 
 namespace osteomill::point_shell {
 

@@ -41,9 +41,10 @@ VoxelBox brick_cells(int bi, int bj, int bk) {
   return {{n * bi, n * bj, n * bk}, {n * bi + n - 1, n * bj + n - 1, n * bk + n - 1}};
 }
 
-VoxelIndex first_brick(const VoxelBox& cells) {
+VoxelBox bricks_of(const VoxelBox& cells) {
   constexpr int n = PointShell::kBrickCells;
-  return {cells.first.i / n, cells.first.j / n, cells.first.k / n};
+  return {{cells.first.i / n, cells.first.j / n, cells.first.k / n},
+          {cells.last.i / n, cells.last.j / n, cells.last.k / n}};
 }
 
 }  // namespace
@@ -80,54 +81,32 @@ PointShell::PointShell(const Volume& volume, const ShellRules& rules)
 }
 
 void PointShell::refresh(const VoxelBox& voxels) {
-  if (!voxels.empty()) {
-    waiting_.include(voxels.first);
-    waiting_.include(voxels.last);
-  }
+  sweep_.wait_for(voxels);
   const int budget = lattice_.rules().refreshed_points_per_tick;
   int spent = 0;
-  while (!sweep_.cells.empty() || start_sweep()) {
+  while (sweep_.is_walking() || start_sweep()) {
     if (budget != 0 && spent != 0 && spent + cost_of_next_brick() > budget) return;
-    spent += refresh_next_brick();
+    spent += visit(sweep_.brick());
+    sweep_.advance();
   }
 }
 
 // Begins with what has waited; changes from now on wait for the sweep after.
 bool PointShell::start_sweep() {
-  const VoxelBox nodes = lattice_.nodes_touched_by(waiting_);
-  waiting_ = {};
+  const VoxelBox nodes = lattice_.nodes_touched_by(sweep_.take_waiting());
   if (nodes.empty()) return false;
-  sweep_.nodes = nodes;
-  sweep_.cells =
+  swept_nodes_ = nodes;
+  swept_cells_ =
       cells_of_nodes(nodes.grown(lattice_.reach_nodes()).intersected(lattice_.geometry().all_voxels()));
-  sweep_.brick = first_brick(sweep_.cells);
-  sweep_.lowering = true;
+  sweep_.start(bricks_of(swept_cells_));
   return true;
 }
 
-// As far as can be told without a look; `refresh_next_brick` says what it was.
+// As far as can be told without a look; `visit` says what it was.
 int PointShell::cost_of_next_brick() const {
-  if (sweep_.lowering) return kLoweredBrickCost;
-  const VoxelIndex& b = sweep_.brick;
+  if (sweep_.is_first_pass()) return kLoweredBrickCost;
+  const VoxelIndex& b = sweep_.brick();
   return kBrickCost + static_cast<int>(octree_.count(0, b.i, b.j, b.k));
-}
-
-int PointShell::refresh_next_brick() {
-  VoxelIndex& b = sweep_.brick;
-  const VoxelBox& cells = sweep_.cells;
-  const int cost = visit(b);
-  if (++b.i <= cells.last.i / kBrickCells) return cost;
-  b.i = cells.first.i / kBrickCells;
-  if (++b.j <= cells.last.j / kBrickCells) return cost;
-  b.j = cells.first.j / kBrickCells;
-  if (++b.k <= cells.last.k / kBrickCells) return cost;
-  if (sweep_.lowering) {
-    sweep_.lowering = false;
-    b = first_brick(cells);
-  } else {
-    sweep_.cells = {};
-  }
-  return cost;
 }
 
 int PointShell::visit(const VoxelIndex& b) {
@@ -137,9 +116,9 @@ int PointShell::visit(const VoxelIndex& b) {
   const VoxelBox own_nodes{{g * own.first.i, g * own.first.j, g * own.first.k},
                            {g * own.last.i + g - 1, g * own.last.j + g - 1, g * own.last.k + g - 1}};
   // The second time for what has fallen since the first: a point is never computed for a voxel without bone.
-  lower_bone(own_nodes.intersected(sweep_.nodes));
-  if (sweep_.lowering) return kLoweredBrickCost;
-  return kBrickCost + refresh_brick(b.i, b.j, b.k, sweep_.cells);
+  lower_bone(own_nodes.intersected(swept_nodes_));
+  if (sweep_.is_first_pass()) return kLoweredBrickCost;
+  return kBrickCost + refresh_brick(b.i, b.j, b.k, swept_cells_);
 }
 
 // Where there is none there will be none.

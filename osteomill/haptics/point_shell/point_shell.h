@@ -5,9 +5,10 @@
 #include <span>
 #include <vector>
 
+#include "osteomill/haptics/bone_points/brick_points.h"
+#include "osteomill/haptics/bone_points/brick_sweep.h"
+#include "osteomill/haptics/bone_points/count_pyramid.h"
 #include "osteomill/haptics/point_shell/bone_bits.h"
-#include "osteomill/haptics/point_shell/brick_points.h"
-#include "osteomill/haptics/point_shell/count_pyramid.h"
 #include "osteomill/haptics/point_shell/shell_lattice.h"
 
 namespace osteomill::point_shell {
@@ -28,7 +29,7 @@ class PointShell {
   /// `ShellRules::refreshed_points_per_tick` has it: once a tick, with an empty box where nothing fell.
   void refresh(const VoxelBox& voxels);
   /// Whether no change waits for a later `refresh`.
-  bool is_up_to_date() const { return sweep_.cells.empty() && waiting_.empty(); }
+  bool is_up_to_date() const { return sweep_.is_idle(); }
 
   const ShellLattice& lattice() const { return lattice_; }
   const CountPyramid& octree() const { return octree_; }
@@ -72,17 +73,8 @@ class PointShell {
   CellMask mask_of(int bi, int bj, int bk, const VoxelBox& cells, CellMask mask) const;
   std::uint8_t mask_byte(int bi, int j, int k) const;
   bool holds_surface(const VoxelIndex& cell) const;
-  // The way through all bricks near changed voxels, one brick after the other: once to find where bone has
-  // gone, and once more, now that each brick's neighbours are known, to bring the points up to date.
-  struct Sweep {
-    VoxelBox nodes;
-    VoxelBox cells;
-    VoxelIndex brick;
-    bool lowering = false;
-  };
   bool start_sweep();
   int cost_of_next_brick() const;
-  int refresh_next_brick();
   int visit(const VoxelIndex& brick);
   bool holds_no_bone(const VoxelIndex& brick) const;
   int refresh_brick(int bi, int bj, int bk, const VoxelBox& cells);
@@ -100,8 +92,11 @@ class PointShell {
   // Room for one brick's points while it is rebuilt.
   std::vector<ShellPoint> old_points_;
   std::vector<ShellPoint> new_points_;
-  Sweep sweep_;
-  VoxelBox waiting_;
+  // First to find where bone has gone, then, now that each brick's neighbours are known, to bring the points
+  // up to date.
+  BrickSweep sweep_;
+  VoxelBox swept_nodes_;
+  VoxelBox swept_cells_;
 };
 
 template <typename F>

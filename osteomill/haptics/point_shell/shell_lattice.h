@@ -1,7 +1,7 @@
 #pragma once
 
+#include "osteomill/haptics/bone_points/brick_points.h"
 #include "osteomill/haptics/point_shell/bone_bits.h"
-#include "osteomill/haptics/point_shell/brick_points.h"
 #include "osteomill/haptics/point_shell/point_shell_settings.h"
 #include "osteomill/volume/volume.h"
 

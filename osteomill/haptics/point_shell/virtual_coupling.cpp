@@ -6,34 +6,12 @@
 
 namespace osteomill::point_shell {
 
-ToolMove move_between(const Pose& from, const Pose& to) {
-  return {to.position_mm - from.position_mm,
-          rotation_vector((to.orientation * from.orientation.conjugate()).normalized())};
-}
-
-Pose moved(const Pose& X_WT, const ToolMove& move) {
-  const Quat turn = quaternion_from_rotation_vector(move.rotation_rad);
-  return {X_WT.position_mm + move.translation_mm, (turn * X_WT.orientation).normalized()};
-}
-
 ToolMove limited(const ToolMove& move, double greatest_mm, double greatest_rad) {
   const double length_mm = move.translation_mm.norm(), angle_rad = move.rotation_rad.norm();
   double factor = 1;
   if (greatest_mm > 0 && length_mm > greatest_mm) factor = greatest_mm / length_mm;
   if (greatest_rad > 0 && angle_rad > greatest_rad) factor = std::min(factor, greatest_rad / angle_rad);
   return {factor * move.translation_mm, factor * move.rotation_rad};
-}
-
-double share_released(const Pose& X_WT_start, const Pose& X_WT_target, const Pose& X_WD, double allowed_mm,
-                      double allowed_rad) {
-  const ToolMove before = move_between(X_WD, X_WT_start);
-  const ToolMove after = move_between(X_WD, X_WT_target);
-  const double released_mm = before.translation_mm.norm() - after.translation_mm.norm();
-  const double released_rad = before.rotation_rad.norm() - after.rotation_rad.norm();
-  double share = 1;
-  if (released_mm > allowed_mm) share = allowed_mm / released_mm;
-  if (released_rad > allowed_rad) share = std::min(share, allowed_rad / released_rad);
-  return share;
 }
 
 Wrench wrench_on_hand(const VirtualCoupling& coupling, const Pose& X_WT, const Pose& X_WD) {

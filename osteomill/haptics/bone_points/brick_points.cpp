@@ -1,9 +1,9 @@
-#include "osteomill/haptics/point_shell/brick_points.h"
+#include "osteomill/haptics/bone_points/brick_points.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace osteomill::point_shell {
+namespace osteomill {
 
 namespace {
 
@@ -39,7 +39,7 @@ BrickPoints::Bound bound_of(std::span<const ShellPoint> points) {
 }  // namespace
 
 BrickPoints::BrickPoints(std::size_t brick_count, std::size_t chunk_capacity)
-    : chunks_(chunk_capacity), next_(chunk_capacity), bricks_(brick_count) {
+    : chunks_(chunk_capacity), next_(chunk_capacity), bricks_(brick_count), free_chunks_(chunk_capacity) {
   for (std::size_t n = chunk_capacity; n-- > 0;) {
     next_[n] = first_free_;
     first_free_ = static_cast<std::uint32_t>(n);
@@ -50,8 +50,8 @@ std::uint32_t BrickPoints::take_chunk() {
   const std::uint32_t taken = first_free_;
   if (taken == kNoChunk) return kNoChunk;
   first_free_ = next_[taken];
+  --free_chunks_;
   next_[taken] = kNoChunk;
-  for (std::size_t slot = 0; slot < PointChunk::kSlots; ++slot) chunks_[taken].set(slot, kNoPoint);
   return taken;
 }
 
@@ -69,6 +69,7 @@ void BrickPoints::set_chunk_count(Brick& brick, std::size_t wanted) {
     const std::uint32_t after = next_[spare];
     next_[spare] = first_free_;
     first_free_ = spare;
+    ++free_chunks_;
     spare = after;
   }
 }
@@ -107,4 +108,4 @@ void BrickPoints::move(std::size_t brick_index, std::uint32_t slot, const ShellP
       std::max(brick.bound.radius_mm, kBoundSlack * distance_to(point, brick.bound.centre_mm));
 }
 
-}  // namespace osteomill::point_shell
+}  // namespace osteomill

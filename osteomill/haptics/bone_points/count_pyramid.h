@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace osteomill::point_shell {
+namespace osteomill {
 
 /// An implicit octree over a grid of bricks: level 0 holds a count for every brick, each further level the
 /// sums of 2 x 2 x 2 counts of the level below, the last level a single count. A node without points is not
@@ -65,4 +65,4 @@ class CountPyramid {
   std::vector<Level> levels_;
 };
 
-}  // namespace osteomill::point_shell
+}  // namespace osteomill

@@ -1,10 +1,10 @@
-#include "osteomill/haptics/point_shell/count_pyramid.h"
+#include "osteomill/haptics/bone_points/count_pyramid.h"
 
 #include <vector>
 
 #include <gtest/gtest.h>
 
-namespace osteomill::point_shell {
+namespace osteomill {
 namespace {
 
 using Node = std::array<int, 3>;
@@ -52,4 +52,4 @@ TEST(CountPyramid, OneBrickIsItsOwnRoot) {
 }
 
 }  // namespace
-}  // namespace osteomill::point_shell
+}  // namespace osteomill

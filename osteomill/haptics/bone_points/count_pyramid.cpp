@@ -1,8 +1,8 @@
-#include "osteomill/haptics/point_shell/count_pyramid.h"
+#include "osteomill/haptics/bone_points/count_pyramid.h"
 
 #include <utility>
 
-namespace osteomill::point_shell {
+namespace osteomill {
 
 CountPyramid::CountPyramid(const std::array<int, 3>& dims) {
   std::array<int, 3> level_dims = dims;
@@ -25,4 +25,4 @@ void CountPyramid::add(int i, int j, int k, std::int32_t difference) {
   }
 }
 
-}  // namespace osteomill::point_shell
+}  // namespace osteomill

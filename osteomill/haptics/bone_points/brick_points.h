@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-namespace osteomill::point_shell {
+namespace osteomill {
 
 /// A point of the shell: where it lies in its brick's frame (mm) and the area of surface that it stands for
 /// (mm^2), and the unit normal out of that surface in the grid's axes (zero where it is not known).
@@ -74,6 +74,7 @@ class BrickPoints {
   const PointChunk& chunk(std::uint32_t index) const { return chunks_[index]; }
   std::uint32_t next_chunk(std::uint32_t index) const { return next_[index]; }
   std::size_t chunk_capacity() const { return chunks_.size(); }
+  std::size_t free_chunks() const { return free_chunks_; }
   /// Points that found no room since the start.
   std::uint64_t dropped() const { return dropped_; }
 
@@ -92,7 +93,8 @@ class BrickPoints {
   std::vector<std::uint32_t> next_;
   std::vector<Brick> bricks_;
   std::uint32_t first_free_ = kNoChunk;
+  std::size_t free_chunks_ = 0;
   std::uint64_t dropped_ = 0;
 };
 
-}  // namespace osteomill::point_shell
+}  // namespace osteomill

@@ -1,0 +1,362 @@
+#include "osteomill/haptics/barrier_shell/barrier_shell.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include <Eigen/Cholesky>
+
+#include "osteomill/haptics/tool_move.h"
+#include "osteomill/tool/sample_points.h"
+#include "osteomill/volume/sampling.h"
+
+namespace osteomill::barrier_shell {
+
+namespace {
+
+constexpr std::size_t kNearPoints = 65536;
+constexpr int kCentrelinePoints = 51;
+
+// Sums over the points a tick, at most.
+constexpr int kPasses = 4;
+// A step that is to be taken shorter for the energy to fall, and how often.
+constexpr double kShorter = 0.4;
+// Where the solver is done.
+constexpr double kDone_mm = 2e-4;
+constexpr double kDone_rad = 2e-5;
+// Of the energy, which is summed in single precision.
+constexpr double kEnergyRounding = 1e-6;
+// Less is no rise: the last, least step and another order of summing.
+constexpr double kNoRise = 1e-5;
+
+// The most that the tool moves between two gatherings, and what a gathering reaches for.
+constexpr Room kMostRoom{0.4, 0.03};
+constexpr Room kLeastRoom{0.05, 0.004};
+constexpr Room kRoomToSpare{0.03, 0.002};
+constexpr double kRoomPerMove = 3;
+// In free space: farther than the fastest hand goes in a tick.
+constexpr Room kFarthestFlight{5.0, 0.3};
+
+// What a tick may release by its length; a longer one (a machine that stood still) counts as this long.
+constexpr double kLongestTick_s = 5e-3;
+// Of the turn by which a move of the device would be made at the tool's far end.
+constexpr double kTurnByMove = 0.25;
+
+// Edges of the lattice brought up to date a tick.
+constexpr int kRefreshedPerTick = 1500;
+// Bricks nearer than this to the tool are not forgotten.
+constexpr double kKept_mm = 2;
+
+// A tool that began in touch with bone: the distance it is given, and how fast and up to which its cores
+// grow.
+constexpr double kStartShare = 0.2;
+constexpr double kGrownShare = 0.02;
+constexpr double kGrowth_mm_s = 5;
+// A device that moved so far in a tick was put there, not moved by a hand; the wrench then changes over so
+// long.
+constexpr double kJump_mm = 1;
+constexpr double kJump_rad = 0.1;
+constexpr double kFastestHand_mm_s = 1000;
+constexpr double kFastestHand_rad_s = 100;
+constexpr double kRamp_s = 0.2;
+
+Room room_of(const ToolMove& move) {
+  return {move.translation_mm.norm(), move.rotation_rad.norm()};
+}
+
+Room room_of(const Vector6& move_T) {
+  return {move_T.head<3>().norm(), move_T.tail<3>().norm()};
+}
+
+ToolMove in_world(const Pose& X_WT, const Vector6& move_T) {
+  return {X_WT.orientation * Vec3(move_T.head<3>()), X_WT.orientation * Vec3(move_T.tail<3>())};
+}
+
+// Newton's step; where the energy is not convex, that of a convex one above it.
+Vector6 newton_step(const EnergySum& sum) {
+  const Eigen::LLT<Matrix6> whole(sum.convex + sum.rest);
+  if (whole.info() == Eigen::Success) return -whole.solve(sum.gradient);
+  return -sum.convex.llt().solve(sum.gradient);
+}
+
+}  // namespace
+
+// A pose and what was summed there.
+struct BarrierShell::State {
+  Pose X_WT;
+  EnergySum sum;
+  double barrier_Nmm = 0;
+  Vec3 burr_force_T = Vec3::Zero();
+};
+
+struct BarrierShell::Step {
+  Vector6 move_T;
+  // So small that what is summed after it would be the same.
+  bool is_last = false;
+  bool is_held_back = false;
+  bool reaches_device = false;
+};
+
+BarrierShell::BarrierShell(const Settings& settings)
+    : settings_(settings),
+      coupling_{settings.translational_stiffness_N_per_mm, settings.torsional_stiffness_Nmm_per_rad},
+      barrier_{settings.skin_width_mm, settings.pressure_N_per_mm2} {
+  require_valid(settings);
+}
+
+void BarrierShell::prepare(const Scene& scene) {
+  if (scene.volume == nullptr) throw std::invalid_argument("barrier-shell: the scene has no volume");
+  require_valid(scene.tool);
+  volume_ = scene.volume;
+  tool_ = scene.tool;
+  centreline_T_ = centreline_vertices(scene.tool, kCentrelinePoints);
+  bricks_ = BoneBricks(*scene.volume, settings_.point_spacing_mm);
+  near_ = NearBone(kNearPoints);
+  reset();
+}
+
+void BarrierShell::reset() {
+  has_pose_ = false;
+  carried_ = false;
+  has_energy_ = false;
+  sent_ = {};
+}
+
+void BarrierShell::volume_changed(const VolumeChange& change) {
+  bricks_.refresh(change.voxels, kRefreshedPerTick);
+  refreshed_this_tick_ = true;
+}
+
+Cores BarrierShell::cores() const {
+  return Cores::within(tool_, settings_.rounding_mm, smaller_mm_);
+}
+
+bool BarrierShell::is_inside_bone(const Pose& X_WT) const {
+  return std::any_of(centreline_T_.begin(), centreline_T_.end(), [&](const Vec3& point_T) {
+    return density_at(volume_->grid(), X_WT * point_T) > volume_->isovalue();
+  });
+}
+
+// Nothing is known of where the tool came from: in bone it is carried out, beside bone it has come from
+// outside, however deep its rim may lie in it.
+void BarrierShell::begin(const Pose& X_WD) {
+  has_pose_ = true;
+  X_WD_before_ = X_WD;
+  carried_ = is_inside_bone(X_WD);
+  begin_outside(X_WD);
+}
+
+// With cores so small that no point is in them.
+void BarrierShell::begin_outside(const Pose& X_WT) {
+  X_WT_ = X_WT;
+  last_move_ = {};
+  smaller_mm_ = 0;
+  ramp_ = 0;
+  ramp_from_ = {};
+  has_energy_ = false;
+  if (carried_) return;
+  gather(X_WT, {});
+  const NearBone::Energy energy = near_.energy(cores(), barrier_, X_WT);
+  const double nearest_mm = std::min(energy.ball.nearest_mm, energy.cylinder.nearest_mm);
+  smaller_mm_ = std::max(0.0, kStartShare * barrier_.width_mm - nearest_mm);
+  if (energy.ball.touching + energy.cylinder.touching == 0) ramp_ = 1;
+}
+
+void BarrierShell::grow_cores(double nearest_mm, double dt_s) {
+  if (smaller_mm_ == 0) return;
+  // No more than there is room for: in a hole too narrow for the tool they stay as small as it.
+  const double room_mm = 0.2 * (nearest_mm - kGrownShare * barrier_.width_mm);
+  const double growth = std::clamp(room_mm, 0.0, kGrowth_mm_s * std::max(0.0, dt_s));
+  smaller_mm_ = std::max(0.0, smaller_mm_ - growth);
+  has_energy_ = false;
+}
+
+void BarrierShell::make_room_for_bricks() {
+  const SurfaceLattice& lattice = bricks_.lattice();
+  const Pose X_TW = X_WT_.inverse();
+  const double radius_mm = bricks_.node_radius_mm(0);
+  const Cores whole = Cores::within(tool_, 0);
+  bricks_.make_room([&](const VoxelIndex& b) {
+    const Vec3 middle_W = lattice.origin_W() + lattice.direction() * bricks_.node_middle_G(0, b.i, b.j, b.k);
+    const Vec3 middle_T = X_TW * middle_W;
+    return std::min(distance_to_ball(whole, middle_T).distance_mm,
+                    distance_to_cylinder(whole, middle_T).distance_mm) < radius_mm + kKept_mm;
+  });
+}
+
+void BarrierShell::gather(const Pose& X_WT, const Room& room) {
+  room_ = room_left_ = room;
+  near_.gather(bricks_, cores(), barrier_, X_WT, room);
+}
+
+BarrierShell::State BarrierShell::evaluated(const Pose& X_WT, const Pose& X_WD) {
+  const NearBone::Energy energy = near_.energy(cores(), barrier_, X_WT);
+  State state{X_WT, coupling_.sum(X_WT, X_WD), energy.ball.energy_Nmm + energy.cylinder.energy_Nmm,
+              energy.ball.gradient.head<3>()};
+  state.sum += energy.ball;
+  state.sum += energy.cylinder;
+  ++counts_.passes;
+  return state;
+}
+
+BarrierShell::Allowed BarrierShell::allowed_release(const Pose& X_WD, double dt_s) const {
+  const double tick_s = std::clamp(dt_s, 0.0, kLongestTick_s);
+  const Room device = room_of(move_between(X_WD_before_, X_WD));
+  const Room stretch = room_of(move_between(X_WD, X_WT_));
+  const double length_mm = std::max(tool_.shaft_length_mm, tool_.burr_radius_mm);
+  const double fading = std::min(1.0, tick_s / settings_.release_time_s);
+  return {device.move_mm + device.turn_rad * length_mm + fading * stretch.move_mm +
+              settings_.release_mm_s * tick_s,
+          device.turn_rad + kTurnByMove * device.move_mm / length_mm + fading * stretch.turn_rad +
+              settings_.release_rad_s * tick_s};
+}
+
+// What was stored must not have grown where nobody moved the device.
+void BarrierShell::watch_energy(const State& state) {
+  if (!has_energy_) return;
+  const double now_Nmm = state.barrier_Nmm + coupling_.energy_Nmm(state.X_WT, X_WD_before_);
+  const double rise_Nmm = now_Nmm - energy_before_Nmm_;
+  if (rise_Nmm <= kNoRise * (1 + energy_before_Nmm_)) return;
+  ++counts_.energy_rises;
+  counts_.energy_risen_Nmm += rise_Nmm;
+  counts_.worst_rise_Nmm = std::max(counts_.worst_rise_Nmm, rise_Nmm);
+}
+
+// Nothing near, nothing held back, and free space all the way.
+bool BarrierShell::may_fly(const Pose& X_WD, const Allowed& allowed) const {
+  const Room way = room_of(move_between(X_WT_, X_WD));
+  return near_.is_empty() && way.move_mm <= std::min(kFarthestFlight.move_mm, allowed.release_mm) &&
+         way.turn_rad <= std::min(kFarthestFlight.turn_rad, allowed.release_rad) &&
+         is_clear(bricks_, cores(), barrier_, X_WT_, way);
+}
+
+void BarrierShell::gather_for_next_move() {
+  const auto reach = [](double last, double spare, double least, double most) {
+    return std::clamp(kRoomPerMove * last + spare, least, most);
+  };
+  gather(X_WT_, {reach(last_move_.move_mm, kRoomToSpare.move_mm, kLeastRoom.move_mm, kMostRoom.move_mm),
+                 reach(last_move_.turn_rad, kRoomToSpare.turn_rad, kLeastRoom.turn_rad, kMostRoom.turn_rad)});
+}
+
+// The share of a step for which there is room since the gathering.
+double BarrierShell::share_with_room(const Room& step) const {
+  const double move = step.move_mm > room_left_.move_mm ? room_left_.move_mm / step.move_mm : 1;
+  const double turn = step.turn_rad > room_left_.turn_rad ? room_left_.turn_rad / step.turn_rad : 1;
+  return std::max(0.0, std::min(move, turn));
+}
+
+// Newton's, as much of it as is certified and may be released.
+BarrierShell::Step BarrierShell::next_step(const State& best, const Pose& X_WD, const Pose& start,
+                                           const Allowed& allowed) {
+  Step step{newton_step(best.sum)};
+  const Room wanted = room_of(step.move_T);
+  step.is_last = wanted.move_mm <= kDone_mm && wanted.turn_rad <= kDone_rad;
+  if (!step.is_last && share_with_room(wanted) < 1 && room_.move_mm < kMostRoom.move_mm) {
+    gather(best.X_WT, kMostRoom);
+    near_.energy(cores(), barrier_, best.X_WT);
+  }
+  if (near_.overflowed()) return {Vector6::Zero(), true};
+  double share = share_with_room(wanted);
+  share *= near_.certified({share * step.move_T.head<3>(), share * step.move_T.tail<3>()}, barrier_);
+  const Pose target = moved(best.X_WT, in_world(best.X_WT, share * step.move_T));
+  const Room stretch_before = room_of(move_between(X_WD, start));
+  const Room stretch = room_of(move_between(X_WD, best.X_WT));
+  const double released = share_released(
+      best.X_WT, target, X_WD, std::max(0.0, allowed.release_mm - (stretch_before.move_mm - stretch.move_mm)),
+      std::max(0.0, allowed.release_rad - (stretch_before.turn_rad - stretch.turn_rad)));
+  step.is_held_back = released < 1;
+  step.reaches_device = best.sum.touching == 0 && share >= 1 && released >= 1;
+  step.move_T *= share * released;
+  return step;
+}
+
+Pose BarrierShell::after(const State& best, const Step& step, const Pose& X_WD) {
+  return step.reaches_device ? X_WD : moved(best.X_WT, in_world(best.X_WT, step.move_T));
+}
+
+BarrierShell::State BarrierShell::solve(const Pose& X_WD, double dt_s) {
+  const Pose start = X_WT_;
+  const Allowed allowed = allowed_release(X_WD, dt_s);
+  gather_for_next_move();
+  if (may_fly(X_WD, allowed)) return {X_WD};
+  State best = evaluated(start, X_WD);
+  watch_energy(best);
+  counts_.nearest_share = std::min(counts_.nearest_share, best.sum.nearest_mm / barrier_.width_mm);
+  for (int passes = 1;;) {
+    Step step = next_step(best, X_WD, start, allowed);
+    if (step.is_last) {
+      best.X_WT = after(best, step, X_WD);
+      return best;
+    }
+    bool taken = false;
+    while (!taken && passes < kPasses) {
+      const State trial = evaluated(after(best, step, X_WD), X_WD);
+      ++passes;
+      taken = trial.sum.energy_Nmm <= best.sum.energy_Nmm * (1 + kEnergyRounding);
+      if (taken) {
+        room_left_.move_mm -= step.move_T.head<3>().norm();
+        room_left_.turn_rad -= step.move_T.tail<3>().norm();
+        best = trial;
+      } else {
+        step.move_T *= kShorter;
+        step.reaches_device = false;
+        ++counts_.backtracks;
+      }
+    }
+    if (taken && step.is_held_back) return best;
+    if (!taken) break;
+  }
+  ++counts_.unfinished;
+  return best;
+}
+
+HapticStep BarrierShell::report(const State& state, const Pose& X_WD, double dt_s) {
+  const Room device = room_of(move_between(X_WD_before_, X_WD));
+  if (device.move_mm > std::max(kJump_mm, kFastestHand_mm_s * dt_s) ||
+      device.turn_rad > std::max(kJump_rad, kFastestHand_rad_s * dt_s)) {
+    ramp_ = 0;
+    ramp_from_ = sent_;
+  }
+  HapticStep result;
+  result.X_WT = X_WT_;
+  result.contacts = state.sum.touching;
+  result.burr_force_N = state.burr_force_T.norm();
+  result.wrench = coupling_.wrench_on_hand(X_WT_, X_WD);
+  if (ramp_ < 1) {
+    ramp_ = std::min(1.0, ramp_ + std::max(0.0, dt_s) / kRamp_s);
+    result.wrench.force_N = ramp_ * result.wrench.force_N + (1 - ramp_) * ramp_from_.force_N;
+    result.wrench.torque_Nmm = ramp_ * result.wrench.torque_Nmm + (1 - ramp_) * ramp_from_.torque_Nmm;
+  }
+  sent_ = result.wrench;
+  return result;
+}
+
+HapticStep BarrierShell::step(const Pose& X_WD, double dt_s) {
+  if (!refreshed_this_tick_ && !bricks_.is_up_to_date()) bricks_.refresh({}, kRefreshedPerTick);
+  refreshed_this_tick_ = false;
+  make_room_for_bricks();
+  ++counts_.ticks;
+  if (!has_pose_) begin(X_WD);
+  if (carried_) {
+    carried_ = is_inside_bone(X_WD);
+    begin_outside(X_WD);
+  }
+  HapticStep result;
+  if (carried_) {
+    result.X_WT = X_WT_;
+    sent_ = {};
+  } else {
+    const Pose start = X_WT_;
+    const State state = solve(X_WD, dt_s);
+    X_WT_ = state.X_WT;
+    energy_before_Nmm_ = state.sum.energy_Nmm;
+    has_energy_ = true;
+    grow_cores(state.sum.nearest_mm, dt_s);
+    last_move_ = room_of(move_between(start, X_WT_));
+    result = report(state, X_WD, dt_s);
+  }
+  X_WD_before_ = X_WD;
+  return result;
+}
+
+}  // namespace osteomill::barrier_shell

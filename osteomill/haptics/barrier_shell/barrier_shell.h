@@ -1,0 +1,109 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "osteomill/haptics/barrier_shell/barrier_shell_settings.h"
+#include "osteomill/haptics/barrier_shell/bone_bricks.h"
+#include "osteomill/haptics/barrier_shell/coupling.h"
+#include "osteomill/haptics/barrier_shell/near_bone.h"
+#include "osteomill/haptics/haptic_algorithm.h"
+
+namespace osteomill::barrier_shell {
+
+/// What an algorithm counts about itself, from its start.
+struct Counts {
+  std::uint64_t ticks = 0;
+  /// Sums over the points.
+  std::uint64_t passes = 0;
+  std::uint64_t backtracks = 0;
+  /// Ticks that ended before the solver was done, at the best certified pose.
+  std::uint64_t unfinished = 0;
+  /// Ticks at whose start the stored energy was above that at the end of the tick before, with the device
+  /// where it was: what milling or points brought up to date have added. By how much, in all and at worst.
+  std::uint64_t energy_rises = 0;
+  double energy_risen_Nmm = 0;
+  double worst_rise_Nmm = 0;
+  /// The nearest that a point came to a core, as a share of the skin's width.
+  double nearest_share = 1;
+};
+
+/// Algorithm 4: the tool rests on a soft skin of bone that nothing can push through. Two convex cores within
+/// the tool keep away from the isosurface's points by a barrier that grows without bound; each tick a few
+/// Newton steps lower the sum of barrier and virtual coupling, and each step is certified free of penetration
+/// before it is taken. Incremental potential contact (Li et al. 2020) for a tool on a volume that changes.
+///
+/// `X_WT` of a step is the simulated tool, the wrench the coupling's; `contacts` counts the points that a
+/// core meets, `burr_force_N` is what the ball presses with.
+class BarrierShell final : public HapticAlgorithm {
+ public:
+  /// Throws std::invalid_argument where a setting is out of range.
+  explicit BarrierShell(const Settings& settings);
+
+  void prepare(const Scene& scene) override;
+  HapticStep step(const Pose& X_WD, double dt_s) override;
+  void volume_changed(const VolumeChange& change) override;
+  void reset() override;
+  /// Of the bricks that have been made, and one for each that has not but may have some.
+  int sample_point_count() const override { return static_cast<int>(bricks_.octree().total()); }
+
+  const Counts& counts() const { return counts_; }
+
+ private:
+  struct State;
+  struct Step;
+  struct Allowed {
+    double release_mm;
+    double release_rad;
+  };
+  void begin(const Pose& X_WD);
+  void begin_outside(const Pose& X_WT);
+  bool is_inside_bone(const Pose& X_WT) const;
+  void grow_cores(double nearest_mm, double dt_s);
+  Cores cores() const;
+  State evaluated(const Pose& X_WT, const Pose& X_WD);
+  void gather(const Pose& X_WT, const Room& room);
+  void make_room_for_bricks();
+  void gather_for_next_move();
+  bool may_fly(const Pose& X_WD, const Allowed& allowed) const;
+  Allowed allowed_release(const Pose& X_WD, double dt_s) const;
+  double share_with_room(const Room& step) const;
+  Step next_step(const State& best, const Pose& X_WD, const Pose& start, const Allowed& allowed);
+  static Pose after(const State& best, const Step& step, const Pose& X_WD);
+  State solve(const Pose& X_WD, double dt_s);
+  void watch_energy(const State& state);
+  HapticStep report(const State& state, const Pose& X_WD, double dt_s);
+
+  Settings settings_;
+  Coupling coupling_;
+  Barrier barrier_;
+  MillingTool tool_;
+  const Volume* volume_ = nullptr;
+  std::vector<Vec3> centreline_T_;
+  BoneBricks bricks_;
+  NearBone near_;
+  bool refreshed_this_tick_ = false;
+
+  bool has_pose_ = false;
+  Pose X_WT_;
+  Pose X_WD_before_;
+  // How far the tool went in the last tick: what the next gathering reaches for.
+  Room last_move_;
+  // Of the last gathering, and what is left of it.
+  Room room_;
+  Room room_left_;
+  // Began inside bone and has not yet been outside: with the device, and nothing is felt.
+  bool carried_ = false;
+  // By how much the cores are yet smaller than they will be, for a tool that began in touch with bone.
+  double smaller_mm_ = 0;
+  // The wrench goes from what was sent to what is to be felt.
+  double ramp_ = 1;
+  Wrench ramp_from_;
+  Wrench sent_;
+  // At the end of the last tick; none where nothing is to be compared.
+  double energy_before_Nmm_ = 0;
+  bool has_energy_ = false;
+  Counts counts_;
+};
+
+}  // namespace osteomill::barrier_shell

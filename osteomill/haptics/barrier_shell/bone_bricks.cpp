@@ -1,0 +1,131 @@
+#include "osteomill/haptics/barrier_shell/bone_bricks.h"
+
+#include <algorithm>
+
+namespace osteomill::barrier_shell {
+
+namespace {
+
+// Room for the bone near a tool with much to spare: of 200 000 to 800 000 points, 32 a chunk.
+constexpr std::size_t kSlots = 16384;
+constexpr std::size_t kFineChunks = 24576;
+constexpr std::size_t kCoarseChunks = 16384;
+// Kept free for what one tick makes.
+constexpr std::size_t kSpareSlots = 2048;
+constexpr std::size_t kSpareChunks = 4096;
+
+// What looking at a brick costs, in edges: passed over, and for so many densities read and then looked at.
+constexpr int kPassedOverCost = 2;
+constexpr int kDensitiesRead = 60;
+constexpr int kDensitiesSearched = 60;
+
+}  // namespace
+
+BoneBricks::BoneBricks(const Volume& volume, double spacing_mm)
+    : lattice_(volume, spacing_mm),
+      octree_(lattice_.brick_dims()),
+      fine_(kSlots, kFineChunks),
+      coarse_(kSlots, kCoarseChunks),
+      brick_of_slot_(kSlots),
+      fingerprints_(kSlots),
+      found_(std::make_unique<SurfaceLattice::BrickSurface>()) {
+  const auto& dims = lattice_.brick_dims();
+  slots_.resize(index_of({0, 0, dims[2]}), kNoPoints);
+  for (int k = 0; k < dims[2]; ++k) {
+    for (int j = 0; j < dims[1]; ++j) {
+      for (int i = 0; i < dims[0]; ++i) {
+        if (!lattice_.may_hold_surface({i, j, k})) continue;
+        slots_[index_of({i, j, k})] = kUnmade;
+        octree_.add(i, j, k, 1);
+      }
+    }
+  }
+  const double brick_mm = (lattice_.brick_nodes() * lattice_.step_mm()).norm();
+  for (int level = 0; level < octree_.level_count(); ++level) {
+    node_radii_mm_.push_back(0.5 * brick_mm * static_cast<double>(1 << level));
+  }
+  for (std::size_t n = kSlots; n-- > 0;) free_slots_.push_back(static_cast<std::uint32_t>(n));
+}
+
+Vec3 BoneBricks::node_middle_G(int level, int i, int j, int k) const {
+  const double half = 0.5 * lattice_.brick_nodes() * static_cast<double>(1 << level);
+  return lattice_.step_mm().cwiseProduct(half * Vec3(2 * i + 1, 2 * j + 1, 2 * k + 1) - Vec3::Ones());
+}
+
+std::uint32_t BoneBricks::slot_of(const VoxelIndex& brick) {
+  const std::uint32_t& slot = slots_[index_of(brick)];
+  if (slot == kUnmade) make(brick);
+  return slot;
+}
+
+// Makes a brick, or makes it anew; returns what it cost.
+int BoneBricks::make(const VoxelIndex& brick) {
+  std::uint32_t& slot = slots_[index_of(brick)];
+  const bool has_points = slot != kUnmade && slot != kNoPoints;
+  found_->fingerprint = has_points ? fingerprints_[slot] : 0;
+  const int crossed = lattice_.find_surface(brick, *found_);
+  const int read_cost = lattice_.densities_of_brick() / kDensitiesRead;
+  if (crossed == SurfaceLattice::kUnchanged) return read_cost;
+  const std::int32_t before = slot == kUnmade     ? 1
+                              : slot == kNoPoints ? 0
+                                                  : static_cast<std::int32_t>(fine_.brick(slot).count);
+  if (slot == kUnmade) slot = kNoPoints;
+  if (slot == kNoPoints && found_->fine_count > 0 && !free_slots_.empty()) {
+    slot = free_slots_.back();
+    free_slots_.pop_back();
+    brick_of_slot_[slot] = brick;
+  }
+  std::int32_t after = 0;
+  if (slot != kNoPoints) {
+    after = static_cast<std::int32_t>(fine_.replace(slot, {found_->fine.data(), found_->fine_count}));
+    fingerprints_[slot] = found_->fingerprint;
+    coarse_.replace(slot, {found_->coarse.data(), found_->coarse_count});
+    if (after == 0) {
+      free_slots_.push_back(slot);
+      slot = kNoPoints;
+    }
+  }
+  octree_.add(brick.i, brick.j, brick.k, after - before);
+  return read_cost + lattice_.densities_of_brick() / kDensitiesSearched + crossed;
+}
+
+void BoneBricks::refresh(const VoxelBox& voxels, int budget) {
+  sweep_.wait_for(voxels);
+  int spent = 0;
+  while (spent < budget && (sweep_.is_walking() || start_sweep())) {
+    spent += visit(sweep_.brick());
+    sweep_.advance();
+  }
+}
+
+bool BoneBricks::start_sweep() {
+  const VoxelBox bricks = lattice_.bricks_touched_by(sweep_.take_waiting());
+  if (bricks.empty()) return false;
+  sweep_.start(bricks);
+  return true;
+}
+
+// Bricks that had no surface come first: where it has moved into them it is found there before it is taken
+// from where it was.
+int BoneBricks::visit(const VoxelIndex& brick) {
+  const std::uint32_t slot = slots_[index_of(brick)];
+  if (slot == kUnmade || (slot == kNoPoints) != sweep_.is_first_pass()) return kPassedOverCost;
+  if (slot == kNoPoints && !lattice_.may_hold_surface(brick)) return kPassedOverCost;
+  return make(brick);
+}
+
+bool BoneBricks::is_short_of_room() const {
+  return free_slots_.size() < kSpareSlots || fine_.free_chunks() < kSpareChunks ||
+         coarse_.free_chunks() < kSpareChunks;
+}
+
+void BoneBricks::forget(std::uint32_t slot) {
+  const VoxelIndex& brick = brick_of_slot_[slot];
+  octree_.add(brick.i, brick.j, brick.k, 1 - static_cast<std::int32_t>(fine_.brick(slot).count));
+  fine_.replace(slot, {});
+  coarse_.replace(slot, {});
+  slots_[index_of(brick)] = kUnmade;
+  free_slots_.push_back(slot);
+}
+
+}  // namespace osteomill::barrier_shell

@@ -1,0 +1,123 @@
+#include "osteomill/haptics/barrier_shell/near_bone.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace osteomill::barrier_shell {
+
+namespace {
+
+// More than the rounding of a place near the tool.
+constexpr double kClear_mm = 1e-4;
+
+// The grid's frame seen from the tool; the turn mirrors where the grid is left-handed.
+struct GridSeen {
+  Mat3 turn;
+  Vec3 offset_mm;
+
+  GridSeen(const SurfaceLattice& lattice, const Pose& X_WT) {
+    const Mat3 R_TW = X_WT.orientation.toRotationMatrix().transpose();
+    turn = R_TW * lattice.direction();
+    offset_mm = R_TW * (lattice.origin_W() - X_WT.position_mm);
+  }
+  Vec3 operator*(const Vec3& point_G) const { return offset_mm + turn * point_G; }
+};
+
+// Which core a sphere of points may touch within the room.
+struct Meeting {
+  const Cores& cores;
+  double reach_mm;
+  double turn_rad;
+
+  bool ball(const Vec3& centre_T, double radius_mm) const {
+    const double within = cores.ball_radius_mm + reach_mm + radius_mm + kClear_mm;
+    return centre_T.squaredNorm() < within * within;
+  }
+  bool cylinder(const Vec3& centre_T, double radius_mm) const {
+    const double z = centre_T.z();
+    const double rho2 = centre_T.x() * centre_T.x() + centre_T.y() * centre_T.y();
+    const double lever = std::sqrt(rho2 + z * z) + radius_mm;
+    const double within = reach_mm + turn_rad * lever + radius_mm + kClear_mm;
+    const double beside = cores.cylinder_radius_mm + within;
+    if (rho2 >= beside * beside) return false;
+    return z > -within && z < cores.cylinder_length_mm + within;
+  }
+};
+
+Meeting meeting(const Cores& cores, const Barrier& barrier, const Room& room) {
+  return {cores, barrier.width_mm + room.move_mm, room.turn_rad};
+}
+
+Vec3 centre_of(const BrickPoints::Bound& bound) {
+  return {static_cast<double>(bound.centre_mm[0]), static_cast<double>(bound.centre_mm[1]),
+          static_cast<double>(bound.centre_mm[2])};
+}
+
+}  // namespace
+
+NearBone::NearBone(std::size_t capacity) : ball_(capacity), cylinder_(capacity) {}
+
+void NearBone::gather(BoneBricks& bricks, const Cores& cores, const Barrier& barrier, const Pose& X_WT,
+                      const Room& room) {
+  X_WT_gathered_ = X_WT;
+  ball_.count = cylinder_.count = 0;
+  ball_.overflowed = cylinder_.overflowed = false;
+  const SurfaceLattice& lattice = bricks.lattice();
+  const GridSeen X_TG(lattice, X_WT);
+  const Meeting meets = meeting(cores, barrier, room);
+  const Reach reach{meets.reach_mm, room.turn_rad};
+  const auto is_node_clear = [&](int level, int i, int j, int k) {
+    const Vec3 middle_T = X_TG * bricks.node_middle_G(level, i, j, k);
+    const double radius = bricks.node_radius_mm(level);
+    return !meets.ball(middle_T, radius) && !meets.cylinder(middle_T, radius);
+  };
+  bricks.octree().visit(is_node_clear, [&](int i, int j, int k) {
+    const std::uint32_t slot = bricks.slot_of({i, j, k});
+    if (slot == BoneBricks::kNoPoints) return;
+    const Vec3 origin_T = X_TG * lattice.brick_origin_G({i, j, k});
+    const Frame frame = frame_of(X_TG.turn, origin_T);
+    const auto each = [&](const BrickPoints& points, auto&& meets_core, auto&& gather_points,
+                          NearPoints& near) {
+      const BrickPoints::Brick& brick = points.brick(slot);
+      const Vec3 centre_T = origin_T + X_TG.turn * centre_of(brick.bound);
+      if (!meets_core(centre_T, static_cast<double>(brick.bound.radius_mm))) return;
+      gather_points(points, brick.first_chunk, frame, cores, reach, near);
+    };
+    each(
+        bricks.fine(), [&](const Vec3& c, double r) { return meets.ball(c, r); }, gather_near_ball, ball_);
+    each(
+        bricks.coarse(), [&](const Vec3& c, double r) { return meets.cylinder(c, r); }, gather_near_cylinder,
+        cylinder_);
+  });
+  close_gathering(ball_);
+  close_gathering(cylinder_);
+}
+
+NearBone::Energy NearBone::energy(const Cores& cores, const Barrier& barrier, const Pose& X_WT) {
+  const Mat3 R_TW = X_WT.orientation.toRotationMatrix().transpose();
+  const Frame moved = frame_of(R_TW * X_WT_gathered_.orientation.toRotationMatrix(),
+                               R_TW * (X_WT_gathered_.position_mm - X_WT.position_mm));
+  return {ball_energy(ball_, moved, cores, barrier), cylinder_energy(cylinder_, moved, cores, barrier)};
+}
+
+double NearBone::certified(const MoveT& move, const Barrier& barrier) const {
+  return certified_share(std::max(greatest_use_by_ball(ball_, move, barrier),
+                                  greatest_use_by_cylinder(cylinder_, move, barrier)));
+}
+
+bool is_clear(const BoneBricks& bricks, const Cores& cores, const Barrier& barrier, const Pose& X_WT,
+              const Room& room) {
+  const GridSeen X_TG(bricks.lattice(), X_WT);
+  const Meeting meets = meeting(cores, barrier, room);
+  bool clear = true;
+  const auto is_node_clear = [&](int level, int i, int j, int k) {
+    if (!clear) return true;
+    const Vec3 middle_T = X_TG * bricks.node_middle_G(level, i, j, k);
+    const double radius = bricks.node_radius_mm(level);
+    return !meets.ball(middle_T, radius) && !meets.cylinder(middle_T, radius);
+  };
+  bricks.octree().visit(is_node_clear, [&](int, int, int) { clear = false; });
+  return clear;
+}
+
+}  // namespace osteomill::barrier_shell

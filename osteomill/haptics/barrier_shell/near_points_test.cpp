@@ -1,0 +1,131 @@
+#include "osteomill/haptics/barrier_shell/near_points.h"
+
+#include <random>
+
+#include <Eigen/Eigenvalues>
+#include <gtest/gtest.h>
+#include <hwy/targets.h>
+
+namespace osteomill::barrier_shell {
+namespace {
+
+std::vector<std::int64_t> targets_here() {
+  std::vector<std::int64_t> targets;
+  const std::int64_t both = hwy::SupportedTargets() & compiled_targets();
+  for (int place = 0; place < 63; ++place) {
+    const std::int64_t bit = std::int64_t{1} << place;
+    if ((both & bit) != 0) targets.push_back(bit);
+  }
+  return targets;
+}
+
+struct Forced {
+  explicit Forced(std::int64_t target) { hwy::SetSupportedTargetsForTest(target); }
+  ~Forced() { hwy::SetSupportedTargetsForTest(0); }
+};
+
+double unit_random(std::mt19937& bits) {
+  return 2 * (static_cast<double>(bits()) / 4294967295.0) - 1;
+}
+
+// Points all about the tool, also beyond the shaft's end and below the burr, none of them in a core.
+std::vector<ShellPoint> random_points(const Cores& cores, std::mt19937& bits) {
+  std::vector<ShellPoint> points;
+  while (points.size() < 700) {
+    const Vec3 p(2 * unit_random(bits), 2 * unit_random(bits), 3.5 + 6 * unit_random(bits));
+    if (distance_to_ball(cores, p).distance_mm < 0.01) continue;
+    if (distance_to_cylinder(cores, p).distance_mm < 0.01) continue;
+    points.push_back({static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z()),
+                      static_cast<float>(0.01 * (1.1 + unit_random(bits)))});
+  }
+  return points;
+}
+
+struct Found {
+  EnergySum ball, cylinder;
+  double ball_use, cylinder_use;
+};
+
+Found found(const BrickPoints& points, const Cores& cores, const Barrier& barrier, const MoveT& move) {
+  const Frame still = frame_of(Mat3::Identity(), Vec3::Zero());
+  const Reach reach{barrier.width_mm + 0.05, 0.01};
+  NearPoints ball(2048), cylinder(2048);
+  gather_near_ball(points, points.brick(0).first_chunk, still, cores, reach, ball);
+  gather_near_cylinder(points, points.brick(0).first_chunk, still, cores, reach, cylinder);
+  close_gathering(ball);
+  close_gathering(cylinder);
+  Found f;
+  f.ball = ball_energy(ball, still, cores, barrier);
+  f.cylinder = cylinder_energy(cylinder, still, cores, barrier);
+  f.ball_use = greatest_use_by_ball(ball, move, barrier);
+  f.cylinder_use = greatest_use_by_cylinder(cylinder, move, barrier);
+  return f;
+}
+
+bool same_bits(const EnergySum& a, const EnergySum& b) {
+  return a.energy_Nmm == b.energy_Nmm && a.gradient == b.gradient && a.convex == b.convex &&
+         a.rest == b.rest && a.touching == b.touching && a.nearest_mm == b.nearest_mm;
+}
+
+void expect_near(const EnergySum& a, const EnergySum& b) {
+  constexpr double kRelative = 2e-4;  // single precision, near the core a steep barrier
+  EXPECT_EQ(a.touching, b.touching);
+  EXPECT_NEAR(a.nearest_mm, b.nearest_mm, 1e-5);
+  EXPECT_NEAR(a.energy_Nmm, b.energy_Nmm, kRelative * b.energy_Nmm);
+  EXPECT_LE((a.gradient - b.gradient).norm(), kRelative * b.gradient.norm());
+  const Matrix6 one = a.convex + a.rest, other = b.convex + b.rest;
+  EXPECT_LE((one - other).norm(), kRelative * (b.convex.norm() + b.rest.norm()));
+  EXPECT_GE(Eigen::SelfAdjointEigenSolver<Matrix6>(a.convex).eigenvalues().minCoeff(),
+            -1e-3 * a.convex.norm());
+}
+
+TEST(NearPoints, EveryInstructionSetGivesTheSameBitsAndThePlainSums) {
+  std::mt19937 bits(12);
+  const Barrier barrier{0.25, 3};
+  ASSERT_GE(targets_here().size(), 1u);
+  int on_ball = 0, on_cylinder = 0;
+  for (const MillingTool& tool : {MillingTool{1.5, 1.0, 8}, MillingTool{0.8, 1.2, 6}, MillingTool{1, 1, 7}}) {
+    const Cores cores = Cores::within(tool, 0.2);
+    for (int n = 0; n < 20; ++n) {
+      const std::vector<ShellPoint> all = random_points(cores, bits);
+      BrickPoints points(1, 64);
+      ASSERT_EQ(points.replace(0, all), all.size());
+      const MoveT move{0.1 * Vec3(unit_random(bits), unit_random(bits), unit_random(bits)),
+                       0.01 * Vec3(unit_random(bits), unit_random(bits), unit_random(bits))};
+      EnergySum ball, cylinder;
+      double ball_use = 0, cylinder_use = 0;
+      for (const ShellPoint& p : all) {
+        const Vec3 at(static_cast<double>(p.x_mm), static_cast<double>(p.y_mm), static_cast<double>(p.z_mm));
+        const CoreDistance b = distance_to_ball(cores, at), c = distance_to_cylinder(cores, at);
+        ball.add_point(barrier, at, b, static_cast<double>(p.area_mm2));
+        cylinder.add_point(barrier, at, c, static_cast<double>(p.area_mm2));
+        if (b.distance_mm < barrier.width_mm) {
+          ball_use = std::max(ball_use, distance_used_by_ball(b.outward_T, move) / b.distance_mm);
+        }
+        if (c.distance_mm < barrier.width_mm) {
+          cylinder_use = std::max(cylinder_use, distance_used(at, c.outward_T, move) / c.distance_mm);
+        }
+      }
+      on_ball += ball.touching;
+      on_cylinder += cylinder.touching;
+      std::vector<Found> fast;
+      for (const std::int64_t target : targets_here()) {
+        const Forced forced(target);
+        fast.push_back(found(points, cores, barrier, move));
+        EXPECT_TRUE(same_bits(fast.back().ball, fast.front().ball)) << hwy::TargetName(target);
+        EXPECT_TRUE(same_bits(fast.back().cylinder, fast.front().cylinder)) << hwy::TargetName(target);
+        EXPECT_EQ(fast.back().ball_use, fast.front().ball_use) << hwy::TargetName(target);
+        EXPECT_EQ(fast.back().cylinder_use, fast.front().cylinder_use) << hwy::TargetName(target);
+      }
+      expect_near(fast.front().ball, ball);
+      expect_near(fast.front().cylinder, cylinder);
+      EXPECT_GE(fast.front().ball_use, ball_use * (1 - 1e-3));
+      EXPECT_GE(fast.front().cylinder_use, cylinder_use * (1 - 1e-3));
+    }
+  }
+  EXPECT_GT(on_ball, 300);
+  EXPECT_GT(on_cylinder, 2000);
+}
+
+}  // namespace
+}  // namespace osteomill::barrier_shell
