@@ -14,7 +14,7 @@
 #include <fmt/core.h>
 
 #include "osteomill/experiment/comparison_report.h"
-#include "osteomill/experiment/measure_stability.h"
+#include "osteomill/experiment/measure_passivity.h"
 #include "osteomill/experiment/parallel.h"
 #include "osteomill/experiment/record_trial.h"
 #include "osteomill/experiment/study_trials.h"
@@ -28,8 +28,8 @@ namespace fs = std::filesystem;
 namespace {
 
 // The exact test of 200 pairs takes a hundredth of a second; nobody waits for 200 trials.
-constexpr int kMostSeeds = 200;
-constexpr int kMostThreads = 256;
+constexpr int kMaxSeeds = 200;
+constexpr int kMaxThreads = 256;
 
 struct CompareOptions {
   ScanOptions scan;
@@ -71,12 +71,12 @@ std::vector<StudyRow> try_other_seeds(const CompareOptions& options, const std::
                           events_on_terminal());
 }
 
-std::vector<StabilityRow> press_on_walls(const CompareOptions& options, const TrialSettings& settings) {
-  const std::vector<StabilityCase> cases = stability_cases(options.algorithms, options.modes);
+std::vector<PassivityRow> press_on_walls(const CompareOptions& options, const TrialSettings& settings) {
+  const std::vector<PassivityCase> cases = passivity_cases(options.algorithms, options.modes);
   const Volume wall = flat_wall(settings.tool);
-  std::vector<StabilityRow> rows(cases.size());
+  std::vector<PassivityRow> rows(cases.size());
   const auto task = [&](std::size_t n) {
-    rows[n] = measure_stability(cases[n], wall, settings.tool, settings.haptics,
+    rows[n] = measure_passivity(cases[n], wall, settings.tool, settings.haptics,
                                 settings.hand_and_device.handle, settings.tick_s);
   };
   run_in_parallel(cases.size(), static_cast<std::size_t>(options.threads), task, [&](std::size_t done) {
@@ -139,14 +139,14 @@ void add_compare_command(CLI::App& program, const std::string& command_line) {
           "--seeds", options->seeds,
           "How many hands try it, each with a seed of its own, --seed the first; the report then says "
           "which differences are significant")
-      ->check(CLI::Range(1, kMostSeeds))
+      ->check(CLI::Range(1, kMaxSeeds))
       ->capture_default_str();
   command->add_flag("--no-stability", options->no_stability,
                     "Leave out how stiff each algorithm can be against a flat wall");
   command
       ->add_option("--threads", options->threads,
                    "How many trials after the first, and walls, are run side by side")
-      ->check(CLI::Range(1, kMostThreads))
+      ->check(CLI::Range(1, kMaxThreads))
       ->capture_default_str();
   add_trial_options(*command, options->trial);
   command->callback([=] {

@@ -27,7 +27,7 @@ struct LiveOptions {
 
 void print_times(const char* what, const TimePercentiles& times) {
   fmt::print("{:<12} p50 {:6.0f}   p99 {:6.0f}   p99.9 {:6.0f}   greatest {:6.0f} us\n", what, times.p50_us,
-             times.p99_us, times.p999_us, times.greatest_us);
+             times.p99_us, times.p999_us, times.max_us);
 }
 
 void print_timing(const TimingSummary& timing) {

@@ -30,10 +30,10 @@ double suggested_isovalue(const ScanOptions& options, const DensityGrid& grid) {
 
 void require_isovalue_within(const Scan& scan, double isovalue) {
   const std::vector<float>& densities = scan.grid.densities();
-  const auto [least, greatest] = std::minmax_element(densities.begin(), densities.end());
-  if (isovalue < static_cast<double>(*greatest) && isovalue >= static_cast<double>(*least)) return;
+  const auto [min, max] = std::minmax_element(densities.begin(), densities.end());
+  if (isovalue < static_cast<double>(*max) && isovalue >= static_cast<double>(*min)) return;
   throw InputError(scan.name, fmt::format("the isovalue {:g} lies outside its values, {:g} to {:g}", isovalue,
-                                          *least, *greatest));
+                                          *min, *max));
 }
 
 void print_warnings(const Scan& scan) {

@@ -19,7 +19,7 @@ struct Row {
   std::map<std::string, double> counters;
 };
 
-Row least_of(const std::vector<const Run*>& runs) {
+Row min_of(const std::vector<const Run*>& runs) {
   const auto fastest = std::min_element(runs.begin(), runs.end(), [](const Run* a, const Run* b) {
     return a->GetAdjustedRealTime() < b->GetAdjustedRealTime();
   });
@@ -56,15 +56,14 @@ void MarkdownTable::ReportRuns(const std::vector<Run>& runs) {
     if (run.run_type == Run::RT_Iteration && !run.error_occurred) good.push_back(&run);
   }
   if (good.empty()) return;
-  Row row = least_of(good);
+  Row row = min_of(good);
   std::string name = good.front()->run_name.function_name;
   if (!good.front()->run_name.args.empty()) name += "/" + good.front()->run_name.args;
   const std::string p50 = take(row.counters, "p50_us"), p99 = take(row.counters, "p99_us"),
-                    greatest = take(row.counters, "max_us");
+                    max = take(row.counters, "max_us");
   std::string more;
   for (const auto& [counter, value] : row.counters) more += fmt::format("{} {:.4g}; ", counter, value);
-  GetOutputStream() << fmt::format("| {} | {} | {} | {} | {} | {} |\n", name, row.time, p50, p99, greatest,
-                                   more);
+  GetOutputStream() << fmt::format("| {} | {} | {} | {} | {} | {} |\n", name, row.time, p50, p99, max, more);
   GetOutputStream().flush();
 }
 

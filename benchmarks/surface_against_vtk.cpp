@@ -153,7 +153,7 @@ FrameTimes mill_and_mesh(const Volume& bone, double radius_mm, vtkFlyingEdges3D*
                                 }));
     }
     times.meshing.add(milliseconds([&] {
-      while (DensityBrick* brick = handover.front()) {
+      while (DensityBlock* brick = handover.front()) {
         upkeep.mark(swap_densities(copy, *brick));
         handover.pop();
       }

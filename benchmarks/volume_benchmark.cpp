@@ -55,7 +55,7 @@ void find_densities(benchmark::State& state, Bone bone) {
 
 void make_ranges(benchmark::State& state, Bone bone) {
   const Volume& volume = bone_volume(bone);
-  for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(BrickRanges(volume.grid()));
+  for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(BlockRanges(volume.grid()));
 }
 
 const bool kAdded = [] {

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kDamping_Ns_per_mm = 0.0055;
 constexpr double kWeight_N = 2.94;  // of the handle's 0.3 kg
-constexpr double kLongest_s = 1;
+constexpr double kMax_s = 1;
 constexpr int kSlopes = 6;
 
 // Lets one tick pass: the weight falls against `normal`, the device's own damping holds it back.
@@ -37,7 +37,7 @@ double rebound(std::string_view algorithm, double stiffness, double height_mm, S
                          {(resting_mm + height_mm) * normal, smallest_rotation(Vec3::UnitZ(), normal)});
   double came_with_Nmm = 0;
   double before_Nmm = 0;
-  for (int n = 0; n < static_cast<int>(kLongest_s / kTick_s); ++n) {
+  for (int n = 0; n < static_cast<int>(kMax_s / kTick_s); ++n) {
     const HapticStep step = haptics->step(handle.read(), kTick_s);
     handle.command(step.wrench);
     const bool touches = step.contacts > 0;

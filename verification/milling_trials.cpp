@@ -31,9 +31,9 @@ constexpr std::array<Goals, 8> kGoals{{
     {"point-shell", 3, 0.03, 0.5, 0.15},
     {"barrier-shell", 3, 0.02, 0.1, 0.02},
 }};
-constexpr double kLeastForce_N = 0.8;
-constexpr double kLeastRemoved_mm3 = 30;
-constexpr double kLeastTorqueOf3_Nmm = 4;
+constexpr double kMinForce_N = 0.8;
+constexpr double kMinRemoved_mm3 = 30;
+constexpr double kMinTorqueOf3_Nmm = 4;
 constexpr double kPaidWithin = 0.02;
 
 // One figure over the seeds.
@@ -62,10 +62,9 @@ bool holds(const Goals& goals, const OverSeeds& all, bool loaded) {
                     percentile(all.torque_step, 1) <= goals.torque_step_Nmm &&
                     percentile(all.force_step, 1) <= goals.force_step_N;
   const bool paid = percentile(all.paid, 0) >= 1 - kPaidWithin && percentile(all.paid, 1) <= 1 + kPaidWithin;
-  const bool works =
-      percentile(all.force, 0) >= kLeastForce_N && percentile(all.removed, 0) >= kLeastRemoved_mm3;
+  const bool works = percentile(all.force, 0) >= kMinForce_N && percentile(all.removed, 0) >= kMinRemoved_mm3;
   const bool leans = (goals.algorithm != "point-shell" && goals.algorithm != "barrier-shell") ||
-                     percentile(all.torque, 0) >= kLeastTorqueOf3_Nmm;
+                     percentile(all.torque, 0) >= kMinTorqueOf3_Nmm;
   return calm && paid && (!loaded || (works && leans));
 }
 
@@ -123,7 +122,7 @@ Section milling_the_tooth(const Bones& bones, const Effort& effort) {
                   "least {} N mm; what is removed is what the burr's force paid for within 2 %. On {}, the "
                   "simulated hand of `compare` for {:.0f} s, seeds {} to {} (settings were chosen on "
                   "others); median (worst) over the seeds. Times were taken with another trial beside.",
-                  kLeastForce_N, kLeastRemoved_mm3, kLeastTorqueOf3_Nmm, bones.tooth_name, effort.phase_s,
+                  kMinForce_N, kMinRemoved_mm3, kMinTorqueOf3_Nmm, bones.tooth_name, effort.phase_s,
                   kFirstSeed, kFirstSeed + static_cast<std::uint64_t>(effort.seeds) - 1),
       kHeader,
       {},

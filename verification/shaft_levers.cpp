@@ -58,18 +58,18 @@ Section shaft_levers() {
       for (const double lever_mm : {4.0, 8.0, 12.0, 20.0}) {
         SeededRandom random(3);
         std::vector<double> errors;
-        double least_N = 1e9;
+        double min_N = 1e9;
         bool right_sign = true;
-        const double most = algorithm == "barrier-shell" ? 0.01 : 0.02;
+        const double max = algorithm == "barrier-shell" ? 0.01 : 0.02;
         for (int n = 0; n < kOrientations; ++n) {
           const OnAnEdge felt = press(algorithm, lever_mm, edge_voxels, random);
           errors.push_back(felt.torque_error_share);
-          least_N = std::min(least_N, felt.force_N);
+          min_N = std::min(min_N, felt.force_N);
           right_sign = right_sign && felt.turns_away;
         }
         section.add({fmt::format("{}, {:.0f} mm, {:.0f} voxels", algorithm, lever_mm, edge_voxels),
-                     median_and_worst(errors), figure(least_N), figure(most)},
-                    right_sign && least_N > 0.01 && percentile(errors, 1) <= most);
+                     median_and_worst(errors), figure(min_N), figure(max)},
+                    right_sign && min_N > 0.01 && percentile(errors, 1) <= max);
       }
     }
   }

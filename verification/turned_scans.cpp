@@ -51,20 +51,20 @@ Difference difference(std::string_view algorithm, const Volume& straight, const 
   const double stiffness = algorithm == "surface-points" ? 20 : 2;
   const auto a = prepared(algorithm, straight, tool, stiffness);
   const auto b = prepared(algorithm, turned, tool, stiffness);
-  double greatest_N = 0;
-  double greatest_Nmm = 0;
+  double max_N = 0;
+  double max_Nmm = 0;
   double off_N = 0;
   double off_Nmm = 0;
   for (int n = 0; n < kTicks; ++n) {
     const Pose X = stand_and_lean(n / double{kTicks});
     const Wrench one = a->step(X, kTick_s).wrench;
     const Wrench two = b->step({turn * X.position_mm, turn * X.orientation}, kTick_s).wrench;
-    greatest_N = std::max(greatest_N, one.force_N.norm());
-    greatest_Nmm = std::max(greatest_Nmm, one.torque_Nmm.norm());
+    max_N = std::max(max_N, one.force_N.norm());
+    max_Nmm = std::max(max_Nmm, one.torque_Nmm.norm());
     off_N = std::max(off_N, (turn * one.force_N - two.force_N).norm());
     off_Nmm = std::max(off_Nmm, (turn * one.torque_Nmm - two.torque_Nmm).norm());
   }
-  return {off_N / greatest_N, off_Nmm / greatest_Nmm};
+  return {off_N / max_N, off_Nmm / max_Nmm};
 }
 
 }  // namespace
@@ -94,10 +94,10 @@ Section turned_scans() {
         force.push_back(off.force_share);
         torque.push_back(off.torque_share);
       }
-      const double most = grid_turns_too ? 0.002 : (algorithm == "surface-points" ? 0.2 : 0.1);
+      const double max = grid_turns_too ? 0.002 : (algorithm == "surface-points" ? 0.2 : 0.1);
       section.add({fmt::format("{}, {}", algorithm, grid_turns_too ? "grid" : "bone"),
-                   median_and_worst(force), median_and_worst(torque), figure(most)},
-                  percentile(force, 1) <= most && percentile(torque, 1) <= most);
+                   median_and_worst(force), median_and_worst(torque), figure(max)},
+                  percentile(force, 1) <= max && percentile(torque, 1) <= max);
     }
   }
   return section;

@@ -15,9 +15,9 @@ constexpr float kWidth_px = 300;
 constexpr const char* kStiffnessOption = "stiffness";
 
 // A slider whose change takes preparation, so that it counts when let go of.
-bool settle(const char* label, double& value, float least, float greatest, const char* format) {
+bool settle(const char* label, double& value, float min, float max, const char* format) {
   float shown = static_cast<float>(value);
-  if (ui::slider(label, &shown, least, greatest, format, ImGuiSliderFlags_AlwaysClamp)) {
+  if (ui::slider(label, &shown, min, max, format, ImGuiSliderFlags_AlwaysClamp)) {
     value = static_cast<double>(shown);
   }
   return ui::released();
@@ -103,11 +103,11 @@ void draw_isovalue(ViewState& view, Simulation& simulation) {
   const ImVec2 size(ImGui::CalcItemWidth(), 44);
   ImGui::PlotHistogram("##densities", histogram.log_counts.data(),
                        static_cast<int>(histogram.log_counts.size()), 0, nullptr, 0, FLT_MAX, size);
-  const float share = (view.isovalue - histogram.least) / (histogram.greatest - histogram.least);
+  const float share = (view.isovalue - histogram.min) / (histogram.max - histogram.min);
   const float x = place.x + std::clamp(share, 0.0f, 1.0f) * size.x;
   ImGui::GetWindowDrawList()->AddLine({x, place.y}, {x, place.y + size.y}, IM_COL32(255, 180, 60, 255), 2);
   ImGui::BeginDisabled(simulation.milling.preparing());
-  if (ui::slider("isovalue", &view.isovalue, histogram.least, histogram.greatest, "%.0f",
+  if (ui::slider("isovalue", &view.isovalue, histogram.min, histogram.max, "%.0f",
                  ImGuiSliderFlags_AlwaysClamp)) {
     simulation.milling.show_isovalue(static_cast<double>(view.isovalue));
   }

@@ -13,7 +13,7 @@ namespace {
 // While milling goes on, pictures from one sampling of a cut to the next.
 constexpr int kPicturesBetween = 8;
 
-bool same(const CutPlane& a, const CutPlane& b) {
+bool same(const ClipPlane& a, const ClipPlane& b) {
   return a.normal_W == b.normal_W && a.offset_mm == b.offset_mm;
 }
 
@@ -39,7 +39,7 @@ std::optional<std::size_t> cut_under(const ViewState& view, const PixelSize& siz
 
 }  // namespace
 
-CutPlane plane_of(const ViewState::Cut& cut) {
+ClipPlane plane_of(const ViewState::Cut& cut) {
   const double side = cut.other_side ? -1 : 1;
   return {side * cut.normal_W, side * static_cast<double>(cut.offset_mm)};
 }
@@ -52,13 +52,13 @@ void CutUpdates::update(const ViewState& view, const Simulation& simulation, Sce
       shown.on = false;
       continue;
     }
-    const CutPlane plane = plane_of(view.cuts[n]);
+    const ClipPlane plane = plane_of(view.cuts[n]);
     const bool milled =
         shown.bone_version != simulation.milling.bone_version() && pictures_ % kPicturesBetween == 0;
     if (shown.on && same(shown.plane, plane) && !milled) continue;
     shown = {true, plane, simulation.milling.bone_version()};
     simulation.milling.read_bone([&](const Volume& bone) {
-      renderer.set_cut_face(n, cut_face(bone.grid(), plane, simulation.grey_window));
+      renderer.set_clip_face(n, clip_face(bone.grid(), plane, simulation.grey_window));
     });
   }
 }

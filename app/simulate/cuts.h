@@ -10,7 +10,7 @@
 namespace osteomill::app {
 
 /// The cut of this number as a plane; its `other_side` turned round.
-CutPlane plane_of(const ViewState::Cut& cut);
+ClipPlane plane_of(const ViewState::Cut& cut);
 
 /// Keeps the grey values on the cuts up with the planes, and a few times a second with the milling.
 class CutUpdates {
@@ -20,10 +20,10 @@ class CutUpdates {
  private:
   struct Shown {
     bool on = false;
-    CutPlane plane;
+    ClipPlane plane;
     std::uint64_t bone_version = 0;
   };
-  std::array<Shown, kGreatestCutPlanes> shown_;
+  std::array<Shown, kMaxClipPlanes> shown_;
   int pictures_ = 0;
 };
 

@@ -32,15 +32,14 @@ void row(const char* name, const std::string& value) {
 }
 
 void plot(const char* name, const char* unit, const std::deque<TickRecord>& history,
-          double (*magnitude)(const TickRecord&), float least_scale, const ImVec4& colour) {
+          double (*magnitude)(const TickRecord&), float min_scale, const ImVec4& colour) {
   const std::vector<float> points = thinned(history, magnitude);
-  const float greatest = *std::max_element(points.begin(), points.end());
+  const float max = *std::max_element(points.begin(), points.end());
   const double now = history.empty() ? 0 : magnitude(history.back());
-  ImGui::Text("%s  %.2f %s  (5 s, up to %.2f)", name, now, unit, static_cast<double>(greatest));
+  ImGui::Text("%s  %.2f %s  (5 s, up to %.2f)", name, now, unit, static_cast<double>(max));
   ImGui::PushStyleColor(ImGuiCol_PlotLines, colour);
   ImGui::PlotLines((std::string("##") + name).c_str(), points.data(), static_cast<int>(points.size()), 0,
-                   nullptr, 0, std::max(1.1f * greatest, least_scale),
-                   {ImGui::GetContentRegionAvail().x, 56});
+                   nullptr, 0, std::max(1.1f * max, min_scale), {ImGui::GetContentRegionAvail().x, 56});
   ImGui::PopStyleColor();
 }
 

@@ -23,7 +23,7 @@ OpenedScan open_for_milling(const ScanOptions& scan, const MillingSetup& setup) 
   const MillingEntry entry = place_entry(*bone, setup.tool);
   const DensityHistogram histogram = histogram_of(bone->grid());
   PreparedMilling milling = prepare_milling(bone, setup);
-  const GreyWindow grey_window = grey_window_of(bone->grid(), milling.densities.surroundings);
+  const WindowLevel grey_window = window_level_of(bone->grid(), milling.densities.surroundings);
   return {loaded.name, entry, histogram, grey_window, std::move(milling)};
 }
 

@@ -8,7 +8,7 @@
 #include "osteomill/live/live_milling.h"
 #include "osteomill/operator/milling_entry.h"
 #include "osteomill/operator/virtual_hand.h"
-#include "osteomill/view/cut_face.h"
+#include "osteomill/view/clip_face.h"
 #include "osteomill/volume/density_histogram.h"
 
 namespace osteomill::app {
@@ -18,7 +18,7 @@ struct OpenedScan {
   std::string name;
   MillingEntry entry;
   DensityHistogram histogram;
-  GreyWindow grey_window;
+  WindowLevel grey_window;
   PreparedMilling milling;
 };
 
@@ -37,7 +37,7 @@ struct Simulation {
   std::string command_line;
   MillingEntry entry;
   DensityHistogram histogram;
-  GreyWindow grey_window;
+  WindowLevel grey_window;
   VirtualHand hand;
   LiveMilling milling;
   /// The ticks of the last 5 seconds.

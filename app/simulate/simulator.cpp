@@ -248,8 +248,8 @@ class Simulator {
     ++pictures_since_said_;
     if (std::exchange(view_.full_screen_asked, false)) window_.toggle_full_screen();
     // Faster than anyone sees only takes time from the others.
-    constexpr auto kShortest = 12ms;
-    std::this_thread::sleep_until(last_picture_ + kShortest);
+    constexpr auto kMin = 12ms;
+    std::this_thread::sleep_until(last_picture_ + kMin);
   }
 
   void say(const std::string& text) {

@@ -50,7 +50,7 @@ struct ViewState {
     Vec3 normal_W = Vec3::UnitZ();
     float offset_mm = 0;
   };
-  std::array<Cut, kGreatestCutPlanes> cuts;
+  std::array<Cut, kMaxClipPlanes> cuts;
   /// Which one the pointer drags, or -1.
   int dragged_cut = -1;
   /// While the slider is moved, before the bone is made anew.

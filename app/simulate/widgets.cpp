@@ -9,9 +9,9 @@ std::map<std::string, Place>& places() {
 
 void remember(const char* label) {
   const std::string text(label);
-  const ImVec2 least = ImGui::GetItemRectMin();
-  const ImVec2 greatest = ImGui::GetItemRectMax();
-  places()[text.substr(0, text.find("##"))] = {{0.5f * (least.x + greatest.x), 0.5f * (least.y + greatest.y)},
+  const ImVec2 min = ImGui::GetItemRectMin();
+  const ImVec2 max = ImGui::GetItemRectMax();
+  places()[text.substr(0, text.find("##"))] = {{0.5f * (min.x + max.x), 0.5f * (min.y + max.y)},
                                                ImGui::GetFrameCount()};
 }
 
@@ -35,9 +35,9 @@ bool radio(const char* label, bool chosen) {
   return pressed && !chosen;
 }
 
-bool slider(const char* label, float* value, float least, float greatest, const char* format,
+bool slider(const char* label, float* value, float min, float max, const char* format,
             ImGuiSliderFlags flags) {
-  const bool changed = ImGui::SliderFloat(label, value, least, greatest, format, flags);
+  const bool changed = ImGui::SliderFloat(label, value, min, max, format, flags);
   remember(label);
   return changed;
 }

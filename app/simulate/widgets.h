@@ -21,7 +21,7 @@ void remember(const char* label);
 bool button(const char* label, bool enabled = true);
 bool checkbox(const char* label, bool* value);
 bool radio(const char* label, bool chosen);
-bool slider(const char* label, float* value, float least, float greatest, const char* format,
+bool slider(const char* label, float* value, float min, float max, const char* format,
             ImGuiSliderFlags flags = 0);
 /// True when Enter was pressed in it.
 bool text_field(const char* label, char* text, std::size_t size);

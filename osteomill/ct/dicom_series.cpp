@@ -9,8 +9,8 @@
 #include "osteomill/ct/dicom_file.h"
 #include "osteomill/ct/dicom_pixels.h"
 #include "osteomill/ct/finite_densities.h"
+#include "osteomill/ct/gantry_tilt.h"
 #include "osteomill/ct/slice_stack.h"
-#include "osteomill/ct/straighten.h"
 #include "osteomill/files/input_error.h"
 
 namespace osteomill {
@@ -157,7 +157,7 @@ Scan build_scan(const std::string& subject, Headers series, std::vector<std::str
   add_notes(series, warnings);
   std::vector<float> densities = read_densities(series, stack, slices);
   check_finite(subject, densities);
-  straighten(subject, stack, densities);
+  correct_gantry_tilt(subject, stack, densities);
   warnings.insert(warnings.end(), stack.warnings.begin(), stack.warnings.end());
   return {DensityGrid(stack.geometry, std::move(densities)), subject, "DICOM", std::move(warnings)};
 }

@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::size_t kLongestHeader = 1 << 20;
+constexpr std::size_t kMaxHeader = 1 << 20;
 
 struct Fields {
   std::map<std::string, std::string> values;
@@ -45,7 +45,7 @@ Fields read_fields(const std::string& subject, std::istream& in) {
   while (!fields.has("ElementDataFile") && std::getline(in, line)) {
     length += line.size();
     const std::size_t equals = line.find('=');
-    if (equals == std::string::npos || length > kLongestHeader || line.find('\0') != std::string::npos) {
+    if (equals == std::string::npos || length > kMaxHeader || line.find('\0') != std::string::npos) {
       throw InputError(subject, "is not MetaImage: its header is not made of \"name = value\"");
     }
     fields.values[trimmed(std::string_view(line).substr(0, equals))] =

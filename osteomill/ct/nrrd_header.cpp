@@ -32,7 +32,7 @@ struct Fields {
 };
 
 // Longer headers than this are no headers.
-constexpr std::size_t kLongestHeader = 1 << 22;
+constexpr std::size_t kMaxHeader = 1 << 22;
 
 // "data file" and "datafile" are the same field.
 std::string field_name(std::string_view text) {
@@ -90,7 +90,7 @@ Fields read_fields(const std::string& subject, std::istream& in) {
   }
   while (std::getline(in, line)) {
     length += line.size();
-    if (length > kLongestHeader) throw InputError(subject, "has a header without an end");
+    if (length > kMaxHeader) throw InputError(subject, "has a header without an end");
     if (line.ends_with('\r')) line.pop_back();
     if (line.empty()) {
       fields.has_end = true;

@@ -59,7 +59,7 @@ void expect_numbers(const json& expected, const Scan& scan) {
     }
   }
   const std::vector<float>& densities = scan.grid.densities();
-  const auto [least, greatest] = std::minmax_element(densities.begin(), densities.end());
+  const auto [min, max] = std::minmax_element(densities.begin(), densities.end());
   const double mean =
       std::accumulate(densities.begin(), densities.end(), 0.0) / static_cast<double>(densities.size());
   const auto near = [](const json* number, double found, double tolerance) {
@@ -67,8 +67,8 @@ void expect_numbers(const json& expected, const Scan& scan) {
       EXPECT_NEAR(number->get<double>(), found, tolerance);
     }
   };
-  near(find(expected, {"hu_min", "min", "value_min"}), *least, 1e-3);
-  near(find(expected, {"hu_max", "max", "value_max"}), *greatest, 1e-3);
+  near(find(expected, {"hu_min", "min", "value_min"}), *min, 1e-3);
+  near(find(expected, {"hu_max", "max", "value_max"}), *max, 1e-3);
   near(find(expected, {"hu_mean", "mean", "value_mean"}), mean, 1e-4);
   if (const json* above = find(expected, {"voxels_above_iso"})) {
     const double iso = expected["suggested_iso"].get<double>();

@@ -15,16 +15,16 @@ std::array<double, 3> to_array(const Vec3& v) {
 
 void summarise_values(const std::vector<float>& densities, double isovalue, ScanSummary& summary) {
   double sum = 0;
-  float least = densities.front();
-  float greatest = densities.front();
+  float min = densities.front();
+  float max = densities.front();
   for (const float density : densities) {
     sum += static_cast<double>(density);
-    least = std::min(least, density);
-    greatest = std::max(greatest, density);
+    min = std::min(min, density);
+    max = std::max(max, density);
     summary.voxels_above_iso += static_cast<double>(density) > isovalue;
   }
-  summary.value_min = static_cast<double>(least);
-  summary.value_max = static_cast<double>(greatest);
+  summary.value_min = static_cast<double>(min);
+  summary.value_max = static_cast<double>(max);
   summary.value_mean = sum / static_cast<double>(densities.size());
 }
 

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "osteomill/ct/straighten.h"
+#include "osteomill/ct/gantry_tilt.h"
 #include "osteomill/files/input_error.h"
 
 namespace osteomill {
@@ -123,7 +123,7 @@ TEST(SliceStack, WhatMakesNoGridIsRefused) {
 
 // A density that is linear in space is kept exactly by linear interpolation, so it can be told at every
 // voxel.
-TEST(Straighten, EveryVoxelOfATiltedStackComesToItsPlace) {
+TEST(GantryTilt, EveryVoxelOfATiltedStackComesToItsPlace) {
   const auto density = [](const Vec3& p) { return 1000 + 3 * p.x() - 5 * p.y() + 7 * p.z(); };
   for (const Vec3& drift_mm : {Vec3(0.11, -0.2, 0), Vec3(-0.3, 0.07, 0), Vec3(0, 0.25, 0)}) {
     const Mat3 axes = some_rotation();
@@ -141,7 +141,7 @@ TEST(Straighten, EveryVoxelOfATiltedStackComesToItsPlace) {
     SliceStack stack = stack_slices("folder", slices);
     EXPECT_NEAR(stack.drift_j_mm, drift_mm.y(), 1e-12);
     const float outside = *std::min_element(densities.begin(), densities.end());
-    straighten("folder", stack, densities);
+    correct_gantry_tilt("folder", stack, densities);
     ASSERT_EQ(densities.size(), stack.geometry.voxel_count());
     EXPECT_EQ(stack.warnings.size(), 1U);
 
@@ -167,20 +167,20 @@ TEST(Straighten, EveryVoxelOfATiltedStackComesToItsPlace) {
   }
 }
 
-TEST(Straighten, AStraightStackIsLeftAlone) {
+TEST(GantryTilt, AStraightStackIsLeftAlone) {
   SliceStack stack = stack_slices("folder", series(3, 1.0));
   std::vector<float> densities(3 * 6 * 8, 5.0F);
-  straighten("folder", stack, densities);
+  correct_gantry_tilt("folder", stack, densities);
   EXPECT_EQ(stack.geometry.dims, (std::array<int, 3>{8, 6, 3}));
   EXPECT_TRUE(stack.warnings.empty());
 }
 
-TEST(Straighten, MoreThanAGantryCanTiltIsRefused) {
+TEST(GantryTilt, MoreThanAGantryCanTiltIsRefused) {
   std::vector<SlicePlane> slices = series(4, 0.5);
   for (std::size_t k = 0; k < slices.size(); ++k) slices[k].position_mm.x() += 0.6 * static_cast<double>(k);
   SliceStack stack = stack_slices("folder", slices);
   std::vector<float> densities(4 * 6 * 8, 5.0F);
-  EXPECT_THROW(straighten("folder", stack, densities), InputError);
+  EXPECT_THROW(correct_gantry_tilt("folder", stack, densities), InputError);
 }
 
 }  // namespace

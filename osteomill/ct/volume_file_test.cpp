@@ -197,8 +197,8 @@ TEST_F(VolumeFile, TextIsReadAndChecked) {
     const std::string other = shorter + " " + odd + "\n";
     EXPECT_TRUE(contains(refusal(write("c.nrrd", nrrd(fields, other))), "c.nrrd: holds ")) << odd;
   }
-  const std::string longest = std::string(100'000, 'x');
-  EXPECT_LT(refusal(write("d.nrrd", nrrd(fields, text.substr(0, 60) + longest))).size(), 200U);
+  const std::string long_line = std::string(100'000, 'x');
+  EXPECT_LT(refusal(write("d.nrrd", nrrd(fields, text.substr(0, 60) + long_line))).size(), 200U);
 }
 
 TEST_F(VolumeFile, CompressedDataMayHaveBytesBeforeTheVoxels) {
@@ -219,8 +219,8 @@ TEST_F(VolumeFile, AFieldOrSpaceWithASlipIsRefused) {
                        "space that is not known"));
   EXPECT_TRUE(contains(refusal(write("c.nrrd", nrrd("encoding: raw\nkinds: vector domain domain\n", data))),
                        "axis of kind"));
-  const std::string longest(70'000, 'x');
-  EXPECT_LT(refusal(write("d.nrrd", nrrd("encoding: raw\n" + longest + ": 1\n", data))).size(), 200U);
+  const std::string long_key(70'000, 'x');
+  EXPECT_LT(refusal(write("d.nrrd", nrrd("encoding: raw\n" + long_key + ": 1\n", data))).size(), 200U);
 }
 
 // It would be waited for.

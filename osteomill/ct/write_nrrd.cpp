@@ -61,10 +61,10 @@ class GzipWriter {
 
 template <typename Stored>
 bool holds_exactly(std::span<const float> densities) {
-  const auto least = static_cast<float>(std::numeric_limits<Stored>::min());
-  const auto greatest = static_cast<float>(std::numeric_limits<Stored>::max());
+  const auto min = static_cast<float>(std::numeric_limits<Stored>::min());
+  const auto max = static_cast<float>(std::numeric_limits<Stored>::max());
   return std::all_of(densities.begin(), densities.end(), [&](float density) {
-    return density >= least && density <= greatest && std::floor(density) == density;
+    return density >= min && density <= max && std::floor(density) == density;
   });
 }
 

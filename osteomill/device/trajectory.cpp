@@ -21,7 +21,7 @@ constexpr std::array<std::string_view, 9> kColumns{"time_s", "x_mm", "y_mm", "z_
                                                    "qx",     "qy",   "qz",   "milling"};
 constexpr double kUnitTolerance = 1e-3;
 // A longer line is no row of numbers: a binary file, most likely.
-constexpr std::size_t kLongestLine = 4096;
+constexpr std::size_t kMaxLine = 4096;
 
 using Row = std::array<double, kColumns.size()>;
 
@@ -76,7 +76,7 @@ class TrajectoryReader {
   bool next_line() {
     if (!std::getline(file_, line_)) return false;
     ++row_number_;
-    if (line_.size() > kLongestLine) fail("too long for a row of a trajectory");
+    if (line_.size() > kMaxLine) fail("too long for a row of a trajectory");
     return true;
   }
 

@@ -6,8 +6,8 @@
 
 #include "osteomill/experiment/findings.h"
 #include "osteomill/experiment/paper.h"
-#include "osteomill/experiment/stability_figure.h"
-#include "osteomill/experiment/stability_section.h"
+#include "osteomill/experiment/passivity_figure.h"
+#include "osteomill/experiment/passivity_section.h"
 #include "osteomill/experiment/study_figure.h"
 #include "osteomill/experiment/study_section.h"
 #include "osteomill/experiment/study_words.h"
@@ -96,9 +96,9 @@ fs::path write_comparison_report(const std::vector<Recording>& recordings, const
     add_study(*extras.study, out_dir, text);
   }
   if (!extras.stability.empty()) {
-    write_stability_csv(out_dir / "stability.csv", extras.stability);
+    write_passivity_csv(out_dir / "stability.csv", extras.stability);
     text.sections +=
-        stability_section(extras.stability, draw_stability_figure(extras.stability, out_dir / "figures"));
+        passivity_section(extras.stability, draw_passivity_figure(extras.stability, out_dir / "figures"));
   }
   return write_report(recordings, out_dir, text);
 }

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "osteomill/experiment/measure_stability.h"
+#include "osteomill/experiment/measure_passivity.h"
 #include "osteomill/experiment/study.h"
 #include "osteomill/recording/recording.h"
 
@@ -14,7 +14,7 @@ namespace osteomill {
 struct ReportExtras {
   /// The recordings are then those of its first seed.
   std::optional<Study> study;
-  std::vector<StabilityRow> stability;
+  std::vector<PassivityRow> stability;
 };
 
 /// Whether these are recordings of the test of section 8.2, and not of anything else that was milled.

@@ -67,10 +67,10 @@ Finding rate_finding(const RunGroup& group) {
   const RunDescription& d = slowest.recording->description;
   return {"Every algorithm holds the haptic rate",
           fmt::format("the rate that a 1 kHz loop would hold is {:.0f} Hz or more in every recording",
-                      kLeastRate_hz),
+                      kMinRate_hz),
           fmt::format("lowest {:.1f} Hz ({}, {})", slowest.metrics.rate_hz, name_of(d.algorithm),
                       during(d.segment)),
-          verdict_of(slowest.metrics.rate_hz >= kLeastRate_hz), true};
+          verdict_of(slowest.metrics.rate_hz >= kMinRate_hz), true};
 }
 
 Finding force_finding(const RunGroup& group, std::string_view phase) {

@@ -78,12 +78,12 @@ TEST_P(MillingTrialTest, LeavesAHoleAndStandsInItWithItsShaftAgainstTheWall) {
   EXPECT_EQ(run.milling.front().wrench.force_N, Vec3::Zero()) << "it begins in free space";
   EXPECT_GT(run.milling.back().removed_mm3, 10);
   EXPECT_EQ(run.holding.back().removed_mm3, run.milling.back().removed_mm3) << "the spindle is off";
-  double most_torque_Nmm = 0;
+  double max_torque_Nmm = 0;
   for (const TickRecord& record : run.holding) {
-    most_torque_Nmm = std::max(most_torque_Nmm, record.wrench.torque_Nmm.norm());
+    max_torque_Nmm = std::max(max_torque_Nmm, record.wrench.torque_Nmm.norm());
     EXPECT_EQ(record.fault, WrenchFault::none);
   }
-  EXPECT_GT(most_torque_Nmm, 0.2);
+  EXPECT_GT(max_torque_Nmm, 0.2);
 }
 
 TEST_P(MillingTrialTest, TakesWhatTheForceHasPaidFor) {

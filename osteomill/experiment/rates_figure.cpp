@@ -27,15 +27,15 @@ std::vector<RateRow> rows_of(std::span<const RateRow> rows, const AlgorithmId& a
 
 // Whole decades about all rates, so that all panels share one scale.
 std::string rate_range(std::span<const RateRow> rows) {
-  double least = 1000, greatest = 1000;
+  double min = 1000, max = 1000;
   for (const RateRow& row : rows) {
-    least = std::min(least, row.rate_hz);
-    greatest = std::max(greatest, row.rate_hz);
-    if (row.paper_rate_hz > 0) least = std::min(least, row.paper_rate_hz);
+    min = std::min(min, row.rate_hz);
+    max = std::max(max, row.rate_hz);
+    if (row.paper_rate_hz > 0) min = std::min(min, row.paper_rate_hz);
   }
-  least = std::max(least, 1e-3);
-  return fmt::format("set yrange [{:.4g}:{:.4g}]\n", std::pow(10.0, std::floor(std::log10(least) - 0.05)),
-                     std::pow(10.0, std::ceil(std::log10(greatest) + 0.05)));
+  min = std::max(min, 1e-3);
+  return fmt::format("set yrange [{:.4g}:{:.4g}]\n", std::pow(10.0, std::floor(std::log10(min) - 0.05)),
+                     std::pow(10.0, std::ceil(std::log10(max) + 0.05)));
 }
 
 std::string tics(const std::vector<RateRow>& rows) {

@@ -58,7 +58,7 @@ SignedRank signed_rank(std::span<const double> differences) {
   return test;
 }
 
-double least_p(std::size_t differences) {
+double min_p(std::size_t differences) {
   return differences == 0 ? 1.0 : std::ldexp(2.0, -static_cast<int>(differences));
 }
 
@@ -67,11 +67,11 @@ std::vector<double> holm_corrected(std::span<const double> p) {
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return p[a] < p[b]; });
   std::vector<double> corrected(p.size());
-  double least = 0;
+  double min = 0;
   for (std::size_t n = 0; n < order.size(); ++n) {
     const double times = static_cast<double>(order.size() - n);
-    least = std::max(least, std::min(1.0, times * p[order[n]]));
-    corrected[order[n]] = least;
+    min = std::max(min, std::min(1.0, times * p[order[n]]));
+    corrected[order[n]] = min;
   }
   return corrected;
 }

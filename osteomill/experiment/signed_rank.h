@@ -23,7 +23,7 @@ struct SignedRank {
 SignedRank signed_rank(std::span<const double> differences);
 
 /// The least p that this test can give with so many differences: 2^(1 - n).
-double least_p(std::size_t differences);
+double min_p(std::size_t differences);
 
 /// Holm's correction for testing several things at once (1979): p-values in the same order, each of which may
 /// be held against the level of significance as if it were alone.

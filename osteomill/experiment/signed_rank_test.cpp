@@ -61,10 +61,10 @@ TEST(SignedRank, ZerosAreLeftOutAndTiesShareTheirRanks) {
 
 TEST(SignedRank, AllOnOneSideGivesTheLeastP) {
   for (const std::size_t n : {1u, 3u, 8u, 30u, 200u}) {
-    EXPECT_DOUBLE_EQ(signed_rank(with_negative_sum(n, 0)).p, least_p(n)) << n;
+    EXPECT_DOUBLE_EQ(signed_rank(with_negative_sum(n, 0)).p, min_p(n)) << n;
   }
-  EXPECT_EQ(least_p(3), 0.25);
-  EXPECT_EQ(least_p(0), 1);
+  EXPECT_EQ(min_p(3), 0.25);
+  EXPECT_EQ(min_p(0), 1);
 }
 
 TEST(SignedRank, TheLotsAreFairForManyPairs) {

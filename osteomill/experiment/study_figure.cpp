@@ -17,7 +17,7 @@ constexpr double kWidth_px = 1150;
 constexpr double kPanelHeight_px = 280;
 constexpr double kTop_px = 52;
 constexpr std::size_t kColumns = 4;
-constexpr std::size_t kMostPanels = 8;
+constexpr std::size_t kMaxPanels = 8;
 // In units of the distance between two algorithms.
 constexpr double kModeShift = 0.2;
 constexpr double kScatter = 0.2;
@@ -36,13 +36,13 @@ std::vector<double> all_values(const Study& study, std::string_view phase, const
 
 // Whole decades where the values spread, so that at least two tics have a number.
 std::string range_for(const std::vector<double>& values) {
-  const auto [least, greatest] = std::minmax_element(values.begin(), values.end());
-  if (*least > 0 && *greatest > 4 * *least) {
+  const auto [min, max] = std::minmax_element(values.begin(), values.end());
+  if (*min > 0 && *max > 4 * *min) {
     return fmt::format("set logscale y\nset yrange [{:.6g}:{:.6g}]\n",
-                       std::pow(10.0, std::floor(std::log10(*least) + 1e-9)),
-                       std::pow(10.0, std::ceil(std::log10(*greatest) - 1e-9)));
+                       std::pow(10.0, std::floor(std::log10(*min) + 1e-9)),
+                       std::pow(10.0, std::ceil(std::log10(*max) - 1e-9)));
   }
-  return fmt::format("unset logscale y\nset yrange [0:{:.6g}]\n", *greatest > 0 ? 1.15 * *greatest : 1.0);
+  return fmt::format("unset logscale y\nset yrange [0:{:.6g}]\n", *max > 0 ? 1.15 * *max : 1.0);
 }
 
 // Two blocks: the dots, and the bars at the medians.
@@ -131,7 +131,7 @@ std::string legend(const Study& study, std::string_view phase, double height_px)
 Figure draw_study_figure(const Study& study, std::string_view phase, const std::filesystem::path& folder) {
   const TemporaryFolder work;
   std::vector<KeyMetric> metrics = study.metrics_of(phase);
-  if (metrics.size() > kMostPanels) metrics.resize(kMostPanels);
+  if (metrics.size() > kMaxPanels) metrics.resize(kMaxPanels);
   const std::size_t rows = (metrics.size() + kColumns - 1) / kColumns;
   const double height_px = kTop_px + static_cast<double>(std::max<std::size_t>(rows, 1)) * kPanelHeight_px;
   FigureScript script{fmt::format("study_{}", phase), static_cast<int>(kWidth_px),

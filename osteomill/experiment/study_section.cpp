@@ -97,17 +97,16 @@ std::string how_to_read(const Study& study) {
     damping.push_back(1e3 * row.hand.damping_Ns_per_mm);
   }
   const auto [softest, stiffest] = std::minmax_element(stiffness.begin(), stiffness.end());
-  const auto [least, most] = std::minmax_element(damping.begin(), damping.end());
+  const auto [min, max] = std::minmax_element(damping.begin(), damping.end());
   const MedianInterval interval = median_interval(std::vector<double>(n, 0.0));
   const std::size_t pairs = study.algorithms().size() * (study.algorithms().size() - 1) / 2;
-  const double least_corrected =
-      std::min(1.0, static_cast<double>(std::max<std::size_t>(pairs, 1)) * least_p(n));
+  const double min_corrected = std::min(1.0, static_cast<double>(std::max<std::size_t>(pairs, 1)) * min_p(n));
   std::string html = paragraph(fmt::format(
       "The same trial in {} hands: each seed (the first is {}) has a tremor and a hand of its own, drawn "
       "evenly from the published ranges; here {:.0f} to {:.0f} N/m and {:.2g} to {:.2g} N s/m. study.csv has "
       "every trial. Recordings are kept of seed {} alone, which is the one that the sections on each mode "
       "show; of the others only these figures of merit.",
-      n, study.seeds().front(), *softest, *stiffest, *least, *most, study.seeds().front()));
+      n, study.seeds().front(), *softest, *stiffest, *min, *max, study.seeds().front()));
   html += paragraph(
       interval.is_range
           ? fmt::format(
@@ -123,8 +122,8 @@ std::string how_to_read(const Study& study) {
       "after Holm over what is compared in one row (not over the rows); bold ones are significant (p at most "
       "{}). The least p "
       "that {} hands can give is {:.2g}, after the correction {:.2g}{}.",
-      kSignificance, n, least_p(n), least_corrected,
-      least_corrected > kSignificance ? ", so that no difference can be significant here" : ""));
+      kSignificance, n, min_p(n), min_corrected,
+      min_corrected > kSignificance ? ", so that no difference can be significant here" : ""));
   return html + paragraph(
                     "Step times are the machine's: those of the first seed were taken with nothing else of "
                     "this program running, the others with a trial beside on each further core, so compare "

@@ -72,10 +72,10 @@ std::string changes_sentence(const Study& study, std::string_view phase) {
 std::string steadiest(const Study& study, std::string_view phase, const KeyMetric& metric) {
   const Mode mode = study.modes().front();
   std::optional<AlgorithmId> best;
-  double least = 0;
+  double min = 0;
   for (const AlgorithmId& algorithm : study.algorithms()) {
     const double median = median_interval(study.values(algorithm, mode, phase, metric)).median;
-    if (!best || median < least) best = algorithm, least = median;
+    if (!best || median < min) best = algorithm, min = median;
   }
   const auto pairs = compare_algorithms(study, mode, phase, metric);
   const bool clear = std::all_of(pairs.begin(), pairs.end(), [&](const AlgorithmPair& pair) {

@@ -14,14 +14,14 @@ constexpr double kMmPerM = 1000;
 constexpr double kDepthStep_mm = 0.005;
 constexpr double kDeepest_mm = 3;
 constexpr int kSettleTicks = 50;
-constexpr double kLeastSwing_mm = 0.02;
-constexpr double kMostSwing_mm = 0.1;
+constexpr double kMinSwing_mm = 0.02;
+constexpr double kMaxSwing_mm = 0.1;
 constexpr double kDeadSwing_mm = 0.015;
 constexpr double kAtRest_mm_s = 0.1;
 constexpr double kGrowth = 4;
 constexpr double kDecay = 0.99;
 constexpr std::size_t kSwings = 36;
-constexpr double kLongest_s = 2;
+constexpr double kMax_s = 2;
 
 // The wall as the handle finds it: depth in, force out.
 class Wall {
@@ -96,10 +96,10 @@ class Swings {
     last_mm_ = depth_mm;
   }
   const std::vector<double>& sizes_mm() const { return sizes_mm_; }
-  double greatest(std::size_t from, std::size_t to) const {
-    double most = 0;
-    for (std::size_t n = from; n < to; ++n) most = std::max(most, sizes_mm_[n]);
-    return most;
+  double max(std::size_t from, std::size_t to) const {
+    double max = 0;
+    for (std::size_t n = from; n < to; ++n) max = std::max(max, sizes_mm_[n]);
+    return max;
   }
 
  private:
@@ -120,7 +120,7 @@ std::optional<bool> dies_out(const Swings& swings) {
 
 bool swing_dies_out(Wall& wall, const Rest& rest, const WallPress& press) {
   SimulatedHandle handle(press.handle, wall.pose_at(rest.depth_mm));
-  const double amplitude_mm = std::clamp(0.5 * rest.pressed_mm, kLeastSwing_mm, kMostSwing_mm);
+  const double amplitude_mm = std::clamp(0.5 * rest.pressed_mm, kMinSwing_mm, kMaxSwing_mm);
   // By the force over the whole depth; the slope may be that of a jump.
   const double stiffness_N_per_mm = press.bias_N / rest.pressed_mm;
   const double speed_mm_s = amplitude_mm * std::sqrt(kMmPerM * stiffness_N_per_mm / press.handle.mass_kg);
@@ -130,7 +130,7 @@ bool swing_dies_out(Wall& wall, const Rest& rest, const WallPress& press) {
   // A kick: this force for one substep gives that speed.
   Wrench other;
   other.force_N.z() = -press.handle.mass_kg * speed_mm_s / (kMmPerM * substep_s);
-  for (double time_s = 0; time_s < kLongest_s && swings.sizes_mm().size() < kSwings; time_s += press.tick_s) {
+  for (double time_s = 0; time_s < kMax_s && swings.sizes_mm().size() < kSwings; time_s += press.tick_s) {
     Wrench along;
     along.force_N.z() = wall.force_N(handle.read());
     if (!std::isfinite(along.force_N.z())) return false;
@@ -145,8 +145,8 @@ bool swing_dies_out(Wall& wall, const Rest& rest, const WallPress& press) {
   const std::size_t count = swings.sizes_mm().size();
   // An overdamped handle creeps to rest without turning; one that breaks through does not come to rest.
   if (count < 6) return handle.velocity().linear_mm_s.norm() < kAtRest_mm_s;
-  return swings.greatest(count - count / 3, count) <
-         kDecay * swings.greatest(count - 2 * (count / 3), count - count / 3);
+  return swings.max(count - count / 3, count) <
+         kDecay * swings.max(count - 2 * (count / 3), count - count / 3);
 }
 
 }  // namespace

@@ -62,14 +62,14 @@ std::string plain_words(const std::vector<RateRow>& rows) {
   std::size_t fast_enough = 0;
   for (const RateRow& row : rows) {
     if (row.paper_rate_hz > 0) ratios.push_back(row.rate_hz / row.paper_rate_hz);
-    if (row.rate_hz >= kLeastRate_hz) ++fast_enough;
+    if (row.rate_hz >= kMinRate_hz) ++fast_enough;
   }
   std::string text = fmt::format("{} of the {} resolutions could run at {:.0f} Hz or more here. ",
-                                 fast_enough, rows.size(), kLeastRate_hz);
+                                 fast_enough, rows.size(), kMinRate_hz);
   if (ratios.empty()) return text + "The paper has no rates at these resolutions.";
   double log_sum = 0;
   for (const double ratio : ratios) log_sum += std::log(ratio);
-  const auto [least, greatest] = std::minmax_element(ratios.begin(), ratios.end());
+  const auto [min, max] = std::minmax_element(ratios.begin(), ratios.end());
   return text +
          fmt::format(
              "Where the paper has a rate, this machine makes {} to {} times as many steps a second as the "
@@ -80,7 +80,7 @@ std::string plain_words(const std::vector<RateRow>& rows) {
              "apart "
              "the "
              "machines are only where the paper's rate lies well below 1000 Hz, and is too large elsewhere.",
-             ratio_text(*least), ratio_text(*greatest),
+             ratio_text(*min), ratio_text(*max),
              ratio_text(std::exp(log_sum / static_cast<double>(ratios.size()))));
 }
 

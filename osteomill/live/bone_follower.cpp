@@ -112,7 +112,7 @@ struct BoneFollower::Impl {
 
   // A bounded number, so that bricks which come as fast as they are taken cannot put off the meshing.
   void take_over() {
-    DensityBrick* brick = handover.front();
+    DensityBlock* brick = handover.front();
     for (std::size_t n = 0; brick != nullptr && n < kBricksOnTheirWay; ++n) {
       if (put(*brick)) history.keep(*brick);
       handover.pop();
@@ -121,7 +121,7 @@ struct BoneFollower::Impl {
   }
 
   // What was there is in the brick afterwards. False where nothing changed.
-  bool put(DensityBrick& brick) {
+  bool put(DensityBlock& brick) {
     const VoxelBox changed = swap_densities(*copy, brick);
     if (changed.empty()) return false;
     upkeep.mark(changed);
@@ -246,7 +246,7 @@ void BoneFollower::swap(std::shared_ptr<Volume> bone_before) {
   const Volume& bone = *impl_->copy;
   if (impl_->taken) {
     for (const auto& [place, brick] : impl_->taken->bricks) {
-      DensityBrick now(bone.grid(), brick.first);
+      DensityBlock now(bone.grid(), brick.first);
       swap_densities(*bone_before, now);
     }
   }

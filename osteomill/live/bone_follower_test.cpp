@@ -79,7 +79,7 @@ TEST(DensityHandover, SendsWhatIsMarkedOnceAndAsItIsThen) {
   EXPECT_EQ(handover.waiting(), 1u);
   EXPECT_EQ(handover.front(), nullptr);
   handover.send(volume, 10);
-  DensityBrick* brick = handover.front();
+  DensityBlock* brick = handover.front();
   ASSERT_NE(brick, nullptr);
   EXPECT_EQ(brick->first, (VoxelIndex{8, 0, 16}));
   EXPECT_EQ(brick->densities[1 + 8 * (3 + 8 * 1)], 4.0f);
@@ -118,14 +118,14 @@ std::vector<float> densities_of(const BoneFollower& follower) {
 bool ranges_hold(const BoneFollower& follower) {
   bool hold = true;
   follower.read([&](const Volume& copy) {
-    const BrickRanges exact(copy.grid());
+    const BlockRanges exact(copy.grid());
     const auto& dims = exact.dims();
     for (int bk = 0; bk < dims[2]; ++bk) {
       for (int bj = 0; bj < dims[1]; ++bj) {
         for (int bi = 0; bi < dims[0]; ++bi) {
           const auto& held = copy.bricks().at(bi, bj, bk);
           const auto& range = exact.at(bi, bj, bk);
-          hold = hold && held.least <= range.least && held.greatest >= range.greatest;
+          hold = hold && held.min <= range.min && held.max >= range.max;
         }
       }
     }

@@ -7,13 +7,13 @@ namespace osteomill {
 namespace {
 
 std::uint64_t place_of(const VoxelIndex& first) {
-  const auto part = [](int voxel) { return static_cast<std::uint64_t>(voxel / DensityBrick::kVoxels); };
+  const auto part = [](int voxel) { return static_cast<std::uint64_t>(voxel / DensityBlock::kVoxels); };
   return part(first.i) | part(first.j) << 20 | part(first.k) << 40;
 }
 
 }  // namespace
 
-void CutHistory::keep(const DensityBrick& before) {
+void CutHistory::keep(const DensityBlock& before) {
   const std::uint64_t place = place_of(before.first);
   first_.try_emplace(place, before);
   if (!cuts_.back().before.try_emplace(place, before).second) return;

@@ -5,7 +5,7 @@
 #include <deque>
 #include <unordered_map>
 
-#include "osteomill/live/density_brick.h"
+#include "osteomill/live/density_block.h"
 
 namespace osteomill {
 
@@ -16,7 +16,7 @@ namespace osteomill {
 class CutHistory {
  public:
   /// By the brick's place.
-  using Bricks = std::unordered_map<std::uint64_t, DensityBrick>;
+  using Bricks = std::unordered_map<std::uint64_t, DensityBlock>;
   struct Cut {
     Bricks before;
     double removed_before_mm3 = 0;
@@ -30,10 +30,10 @@ class CutHistory {
     std::deque<Cut> cuts;
   };
 
-  explicit CutHistory(std::size_t undo_bytes) : max_bricks_(undo_bytes / sizeof(DensityBrick)), cuts_(1) {}
+  explicit CutHistory(std::size_t undo_bytes) : max_bricks_(undo_bytes / sizeof(DensityBlock)), cuts_(1) {}
 
   /// A brick as it was, of which something has just changed.
-  void keep(const DensityBrick& before);
+  void keep(const DensityBlock& before);
   /// What comes from now on belongs to another cut; `removed_mm3` is what had been removed before it. Nothing
   /// where nothing was cut since the last call.
   void begin_cut(double removed_mm3);

@@ -11,7 +11,7 @@ class CutHistoryTest : public ::testing::Test {
  protected:
   void mill(const VoxelIndex& voxel) {
     const VoxelIndex first{voxel.i / 8 * 8, voxel.j / 8 * 8, voxel.k / 8 * 8};
-    const DensityBrick before(bone_.grid(), first);
+    const DensityBlock before(bone_.grid(), first);
     bone_.lower_density(voxel, bone_.grid()[voxel] - 100);
     history_.keep(before);
   }
@@ -84,7 +84,7 @@ TEST_F(CutHistoryTest, WhatIsPutBackCanBeTakenAgain) {
 }
 
 TEST_F(CutHistoryTest, ForgetsTheOldestCutsBeyondItsMemory) {
-  history_ = CutHistory(2 * sizeof(DensityBrick));
+  history_ = CutHistory(2 * sizeof(DensityBlock));
   for (int n = 0; n < 5; ++n) {
     history_.begin_cut(n);
     mill({n, 4, 5});

@@ -8,12 +8,12 @@ namespace osteomill {
 
 namespace {
 
-constexpr int kSide = DensityBrick::kVoxels;
+constexpr int kSide = DensityBlock::kVoxels;
 
 }  // namespace
 
 DensityHandover::DensityHandover(const GridGeometry& geometry, std::size_t capacity)
-    : on_their_way_(std::make_unique<SpscQueue<DensityBrick>>(std::max<std::size_t>(capacity, 1))) {
+    : on_their_way_(std::make_unique<SpscQueue<DensityBlock>>(std::max<std::size_t>(capacity, 1))) {
   std::size_t count = 1;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     brick_dims_[axis] = (geometry.dims[axis] + kSide - 1) / kSide;
@@ -43,9 +43,9 @@ void DensityHandover::mark(const VolumeChange& change) noexcept {
   waiting_.store(waiting, std::memory_order_release);
 }
 
-void DensityHandover::send(const Volume& volume, std::size_t most) noexcept {
+void DensityHandover::send(const Volume& volume, std::size_t max) noexcept {
   std::size_t waiting = waiting_.load(std::memory_order_relaxed);
-  for (std::size_t n = 0; n < most && waiting > 0; ++n) {
+  for (std::size_t n = 0; n < max && waiting > 0; ++n) {
     const std::uint32_t number = order_[next_];
     if (!on_their_way_->try_push(volume.grid(), first_voxel(number))) break;
     next_ = (next_ + 1) % order_.size();
@@ -61,7 +61,7 @@ VoxelIndex DensityHandover::first_voxel(std::uint32_t number) const noexcept {
           plain / brick_dims_[0] / brick_dims_[1] * kSide};
 }
 
-DensityBrick* DensityHandover::front() noexcept {
+DensityBlock* DensityHandover::front() noexcept {
   return on_their_way_->front();
 }
 

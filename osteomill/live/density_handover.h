@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "osteomill/live/density_brick.h"
+#include "osteomill/live/density_block.h"
 #include "osteomill/volume/volume.h"
 
 namespace osteomill {
@@ -27,14 +27,14 @@ class DensityHandover {
 
   /// The milling thread: what changed has to be sent. Safe in the haptic tick.
   void mark(const VolumeChange& change) noexcept;
-  /// The milling thread: copies up to `most` of the bricks marked, the longest marked first. Safe in the
+  /// The milling thread: copies up to `max` of the bricks marked, the longest marked first. Safe in the
   /// haptic tick.
-  void send(const Volume& volume, std::size_t most) noexcept;
+  void send(const Volume& volume, std::size_t max) noexcept;
   /// How many bricks are marked and not sent. From any thread: those it does not count can be received.
   std::size_t waiting() const noexcept { return waiting_.load(std::memory_order_acquire); }
 
   /// The receiving thread: the next brick, its own until `pop`; null where there is none.
-  DensityBrick* front() noexcept;
+  DensityBlock* front() noexcept;
   void pop() noexcept;
 
  private:
@@ -48,7 +48,7 @@ class DensityHandover {
   std::size_t next_ = 0;
   std::atomic<std::size_t> waiting_{0};
 
-  std::unique_ptr<SpscQueue<DensityBrick>> on_their_way_;
+  std::unique_ptr<SpscQueue<DensityBlock>> on_their_way_;
 };
 
 }  // namespace osteomill

@@ -15,7 +15,7 @@ namespace {
 using namespace std::chrono_literals;
 
 // A tick that comes later than this mills and moves as if it came at this time.
-constexpr double kLongestTick_s = 0.02;
+constexpr double kMaxTick_s = 0.02;
 
 constexpr std::size_t kCommands = 255;
 
@@ -133,7 +133,7 @@ void LiveSession::tick_until_stopped() {
     times.woke_ns = wait_until(next.deadline_ns);
     take_commands();
     const double passed_s = next.periods * tick_s_;
-    const TickRecord record = tick(time_s_, std::min(passed_s, kLongestTick_s));
+    const TickRecord record = tick(time_s_, std::min(passed_s, kMaxTick_s));
     times.done_ns = monotonic_now_ns();
     timing_.add(times, record);
     next = next_deadline(next.deadline_ns, times.done_ns, period_ns);

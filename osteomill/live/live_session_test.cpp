@@ -20,7 +20,7 @@ class PressedDevice : public Device {
  public:
   Pose X_WD{{0, 0, 1.2}, Quat::Identity()};
   Wrench sent;
-  double greatest_force_N = 0;
+  double max_force_N = 0;
   double time_passed_s = 0;
   int throw_at_tick = -1;
   int ticks = 0;
@@ -31,7 +31,7 @@ class PressedDevice : public Device {
   }
   void write_wrench(const Wrench& wrench) override {
     sent = wrench;
-    greatest_force_N = std::max(greatest_force_N, wrench.force_N.norm());
+    max_force_N = std::max(max_force_N, wrench.force_N.norm());
   }
   void tick_done(const Pose&, double dt_s) override { time_passed_s += dt_s; }
 };
@@ -62,7 +62,7 @@ TEST_F(LiveSessionTest, TicksInRealTimeAndStopsAtAWrenchOfZero) {
   EXPECT_GT(record.wrench.force_N.z(), 0);
   live_.stop();
   EXPECT_FALSE(live_.running());
-  EXPECT_GT(device_.greatest_force_N, 0);
+  EXPECT_GT(device_.max_force_N, 0);
   EXPECT_EQ(device_.sent.force_N, Vec3::Zero());
   EXPECT_EQ(device_.sent.torque_Nmm, Vec3::Zero());
   const TimingSummary timing = live_.timing();
@@ -175,7 +175,7 @@ TEST_F(LiveSessionTest, ADeviceThatThrowsEndsItAtZeroAndCommandsGoOn) {
   EXPECT_TRUE(live_.failed());
   live_.wait_for(live_.set_spindle(true));
   EXPECT_EQ(device_.sent.force_N, Vec3::Zero());
-  EXPECT_GT(device_.greatest_force_N, 0);
+  EXPECT_GT(device_.max_force_N, 0);
 }
 
 }  // namespace

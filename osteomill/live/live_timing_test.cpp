@@ -29,12 +29,12 @@ TEST(LiveTiming, StatisticsOfKnownDeadlines) {
   EXPECT_NEAR(found.recent_rate_hz, 1000, 1e-9);
   EXPECT_NEAR(found.lateness.p50_us, 40, 1);
   EXPECT_NEAR(found.lateness.p99_us, 90, 1);
-  EXPECT_EQ(found.lateness.greatest_us, 90);
+  EXPECT_EQ(found.lateness.max_us, 90);
   EXPECT_EQ(found.late_ticks, 0u);
   EXPECT_EQ(found.missed_ticks, 0u);
   EXPECT_EQ(found.step.p50_us, 30.5);
   EXPECT_EQ(found.milling.p99_us, 20.5);
-  EXPECT_EQ(found.tick.greatest_us, 80);
+  EXPECT_EQ(found.tick.max_us, 80);
 }
 
 // Every tick ends 2.5 ms after it was due, so that only every second deadline gets one.

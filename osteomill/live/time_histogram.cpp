@@ -21,8 +21,8 @@ void increment(std::atomic<T>& counter) {
 void TimeHistogram::add(double time_us) {
   increment(bins_[bin_of(time_us)]);
   increment(count_);
-  if (time_us > greatest_us_.load(std::memory_order_relaxed)) {
-    greatest_us_.store(time_us, std::memory_order_relaxed);
+  if (time_us > max_us_.load(std::memory_order_relaxed)) {
+    max_us_.store(time_us, std::memory_order_relaxed);
   }
 }
 
@@ -45,14 +45,14 @@ TimePercentiles TimeHistogram::percentiles() const {
   for (std::size_t n = 0; n < kBins; ++n) total += counts[n] = bins_[n].load(std::memory_order_relaxed);
   TimePercentiles found;
   if (total == 0) return found;
-  found.greatest_us = greatest_us_.load(std::memory_order_relaxed);
+  found.max_us = max_us_.load(std::memory_order_relaxed);
   // The least time that at least this share of all times does not exceed.
   const auto at_share = [&](double share) {
     const std::uint64_t wanted = nearest_rank(share, total);
     std::uint64_t passed = 0;
     std::size_t bin = 0;
     while (bin + 1 < kBins && (passed += counts[bin]) < wanted) ++bin;
-    return std::min(upper_end_us(bin), found.greatest_us);
+    return std::min(upper_end_us(bin), found.max_us);
   };
   found.p50_us = at_share(0.5);
   found.p99_us = at_share(0.99);

@@ -14,7 +14,7 @@ struct TimePercentiles {
   double p50_us = 0;
   double p99_us = 0;
   double p999_us = 0;
-  double greatest_us = 0;
+  double max_us = 0;
 };
 
 /// Counts times. One thread adds, safely in the haptic tick; any thread reads meanwhile, and may see some of
@@ -36,7 +36,7 @@ class TimeHistogram {
 
   std::array<std::atomic<std::uint32_t>, kBins> bins_{};
   std::atomic<std::uint64_t> count_{0};
-  std::atomic<double> greatest_us_{0};
+  std::atomic<double> max_us_{0};
 };
 
 }  // namespace osteomill

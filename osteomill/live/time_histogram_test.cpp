@@ -8,7 +8,7 @@ namespace {
 TEST(TimeHistogram, NothingCountedIsZero) {
   const TimeHistogram none;
   EXPECT_EQ(none.percentiles().p50_us, 0);
-  EXPECT_EQ(none.percentiles().greatest_us, 0);
+  EXPECT_EQ(none.percentiles().max_us, 0);
 }
 
 TEST(TimeHistogram, PercentilesOfKnownTimes) {
@@ -18,7 +18,7 @@ TEST(TimeHistogram, PercentilesOfKnownTimes) {
   EXPECT_EQ(found.p50_us, 500);
   EXPECT_EQ(found.p99_us, 990);
   EXPECT_EQ(found.p999_us, 999);
-  EXPECT_EQ(found.greatest_us, 999.5);
+  EXPECT_EQ(found.max_us, 999.5);
 }
 
 TEST(TimeHistogram, LongTimesAreCountedCoarselyAndTheGreatestExactly) {

@@ -19,7 +19,7 @@ constexpr double kCarryLayer_voxels = 0.5;
 constexpr int kSpreadingPasses = 8;
 // So many voxels a tick are lowered at most, but for the first ticks in which there are more.
 constexpr std::size_t kVoxelsOfTick = 512;
-constexpr unsigned kMostShares = 64;
+constexpr unsigned kMaxShares = 64;
 
 // The least float that is not below `density`.
 float float_not_below(double density) {
@@ -57,8 +57,7 @@ BurrMill::BurrMill(const GridGeometry& geometry, double burr_radius_mm, const Bo
                    const MillingSettings& settings)
     : mm3_per_density_(geometry.voxel_volume_mm3() / (densities.reference - densities.surroundings)),
       removal_rate_mm3_per_Ns_(settings.removal_rate_mm3_per_Ns),
-      greatest_carry_mm3_(half_ball_area(burr_radius_mm) * kCarryLayer_voxels *
-                          geometry.spacing_mm.minCoeff()),
+      max_carry_mm3_(half_ball_area(burr_radius_mm) * kCarryLayer_voxels * geometry.spacing_mm.minCoeff()),
       floor_density_(float_not_below(densities.surroundings)),
       reach_(make_reach(geometry, burr_radius_mm, densities, settings)),
       lowered_(reach_.capacity()) {}
@@ -76,7 +75,7 @@ MillingStep BurrMill::step(Volume& volume, const Vec3& burr_centre_W, double bur
   share_after(reach_.size());
   const MillingStep done = lower_overlaps(volume, drop_per_depth(budget_mm3 / mm3_per_density_));
   // Below zero by a rounding error where floats were rounded in the burr's favour; the next step pays for it.
-  carry_mm3_ = std::min(budget_mm3 - done.removed_mm3, greatest_carry_mm3_);
+  carry_mm3_ = std::min(budget_mm3 - done.removed_mm3, max_carry_mm3_);
   return done;
 }
 
@@ -86,11 +85,11 @@ MillingStep BurrMill::step(Volume& volume, const Vec3& burr_centre_W, double bur
 void BurrMill::share_after(std::size_t found) {
   found_of_round_ += found;
   ++share_.turn;
-  const bool too_many = found > 2 * kVoxelsOfTick && share_.count < kMostShares;
+  const bool too_many = found > 2 * kVoxelsOfTick && share_.count < kMaxShares;
   if (!too_many && share_.turn < share_.count) return;
   const std::size_t all = too_many ? found * share_.count : found_of_round_;
   share_ = {};
-  while (share_.count < kMostShares && all > kVoxelsOfTick * share_.count) share_.count *= 2;
+  while (share_.count < kMaxShares && all > kVoxelsOfTick * share_.count) share_.count *= 2;
   found_of_round_ = 0;
 }
 

@@ -70,7 +70,7 @@ class BurrMill {
 
   double mm3_per_density_;
   double removal_rate_mm3_per_Ns_;
-  double greatest_carry_mm3_;
+  double max_carry_mm3_;
   float floor_density_;
   BurrReach reach_;
   BurrReach::Share share_;

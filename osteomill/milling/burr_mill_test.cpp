@@ -242,17 +242,17 @@ TEST(BurrMill, CuttingAShareOfItsLinesAStepMakesTheSameHole) {
     BurrMill mill(volume.geometry(), kRadius_mm, kBone, kMilling);
     const Hole hole = mill_hole(volume, mill, 2, 0.8, 1000);
     // The surface left is that of a ball: no ridges from line to line. Its depth at places around the axis.
-    double least = 1, greatest = 0;
+    double min = 1, max = 0;
     for (int n = 0; n < 24; ++n) {
       const double angle = n * 2 * M_PI / 24;
       const Vec3 side(0.4 * std::cos(angle), 0.4 * std::sin(angle), 0);
       const std::optional<Vec3> surface =
           first_crossing(volume, side + Vec3::UnitZ(), side - 2 * Vec3::UnitZ());
       const double depth_mm = surface ? -surface->z() : 2.0;
-      least = std::min(least, depth_mm);
-      greatest = std::max(greatest, depth_mm);
+      min = std::min(min, depth_mm);
+      max = std::max(max, depth_mm);
     }
-    return std::pair(hole, greatest - least);
+    return std::pair(hole, max - min);
   };
   const auto [coarse, coarse_spread] = hole_in(0.25);
   const auto [fine, fine_spread] = hole_in(0.0625);

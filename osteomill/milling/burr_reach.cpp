@@ -10,14 +10,14 @@ namespace osteomill {
 namespace {
 
 // The cells of all voxel centres in a ball lie in the ball grown by half a cell's diagonal.
-std::size_t most_voxels_in_ball(const GridGeometry& geometry, double radius_mm) {
+std::size_t max_voxels_in_ball(const GridGeometry& geometry, double radius_mm) {
   const double grown_mm = radius_mm + 0.5 * geometry.spacing_mm.norm();
-  const double most =
+  const double max =
       4.0 / 3.0 * std::numbers::pi * grown_mm * grown_mm * grown_mm / geometry.voxel_volume_mm3();
-  return static_cast<std::size_t>(std::min(most + 1, static_cast<double>(geometry.voxel_count())));
+  return static_cast<std::size_t>(std::min(max + 1, static_cast<double>(geometry.voxel_count())));
 }
 
-std::size_t most_across(const GridGeometry& geometry, double radius_mm, int axis) {
+std::size_t max_across(const GridGeometry& geometry, double radius_mm, int axis) {
   const double across = 2 * radius_mm / geometry.spacing_mm[axis] + 2;
   const int dim = geometry.dims[static_cast<std::size_t>(axis)];
   return static_cast<std::size_t>(std::min(across, static_cast<double>(dim)));
@@ -26,7 +26,7 @@ std::size_t most_across(const GridGeometry& geometry, double radius_mm, int axis
 constexpr std::size_t kWordBits = 64;
 
 std::size_t row_in_brick(int j, int k) {
-  constexpr int kSide = BrickRanges::kBrickVoxels;
+  constexpr int kSide = BlockRanges::kBrickVoxels;
   return static_cast<std::size_t>(j % kSide + kSide * (k % kSide));
 }
 
@@ -45,11 +45,11 @@ BurrReach::BurrReach(const GridGeometry& geometry, double radius_mm, float floor
   bits_.resize(bricks);
   words_of_line_ = (static_cast<std::size_t>(brick_dims_[0]) + kWordBits - 1) / kWordBits;
   held_.resize(words_of_line_ * brick_line(0, brick_dims_[2]));
-  const std::size_t lines = most_across(geometry, radius_mm, 1) * most_across(geometry, radius_mm, 2);
-  rows_.reserve(lines * (most_across(geometry, radius_mm, 0) / kSide + 2));
+  const std::size_t lines = max_across(geometry, radius_mm, 1) * max_across(geometry, radius_mm, 2);
+  rows_.reserve(lines * (max_across(geometry, radius_mm, 0) / kSide + 2));
   candidates_.reserve(rows_.capacity());
   // One more than there can be, as a sign that there was room.
-  const std::size_t voxels = most_voxels_in_ball(geometry, radius_mm) + 1;
+  const std::size_t voxels = max_voxels_in_ball(geometry, radius_mm) + 1;
   columns_.resize(voxels);
   depths_mm_.resize(voxels);
   densities_.resize(voxels);
@@ -122,19 +122,19 @@ void BurrReach::measure(Squares& squares, double centre_mm, std::size_t axis) co
   squares.bricks = {squares.voxels.first / kSide, squares.voxels.last / kSide};
   for (int b = squares.bricks.first; b <= squares.bricks.last; ++b) {
     const int begin = kSide * b, end = std::min(begin + kSide, geometry_.dims[axis]);
-    double least = radius_mm_ * radius_mm_;
+    double min = radius_mm_ * radius_mm_;
     for (int n = begin; n < begin + kSide; ++n) {
       const double away = n * spacing - centre_mm;
       squares.of_voxel_mm2[static_cast<std::size_t>(n)] = away * away;
-      if (n < end) least = std::min(least, away * away);
+      if (n < end) min = std::min(min, away * away);
     }
-    squares.of_brick_mm2[static_cast<std::size_t>(b)] = least;
+    squares.of_brick_mm2[static_cast<std::size_t>(b)] = min;
   }
 }
 
 // Whether the brick holds anything.
 bool BurrReach::look_at(const Volume& volume, int bi, int bj, int bk) {
-  if (!(volume.bricks().at(bi, bj, bk).greatest > floor_density_)) return false;
+  if (!(volume.bricks().at(bi, bj, bk).max > floor_density_)) return false;
   Bits& bits = bits_[brick_index(bi, bj, bk)];
   bits.fill(0);
   const auto& dims = geometry_.dims;

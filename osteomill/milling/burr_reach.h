@@ -50,7 +50,7 @@ class BurrReach {
   const float* densities() const { return densities_.data(); }
 
  private:
-  static constexpr int kSide = BrickRanges::kBrickVoxels;
+  static constexpr int kSide = BlockRanges::kBrickVoxels;
   /// A bit a voxel: whether it may be denser than the floor. Byte j + 8 k, bit i.
   using Bits = std::array<std::uint8_t, kSide * kSide>;
   /// Indices along one axis, both ends among them; none where last < first.

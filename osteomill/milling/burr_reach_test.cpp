@@ -108,16 +108,16 @@ TEST(BurrReach, SharesOfLinesTogetherFindAllOnceWhileBoneGoes) {
         }
       };
       list(whole, expected);
-      std::size_t most = 0;
+      std::size_t max = 0;
       for (unsigned turn = 0; turn < count; ++turn) {
         shared.find(volume, centre_W, {count, turn});
         list(shared, found);
-        most = std::max(most, shared.size());
+        max = std::max(max, shared.size());
       }
       std::sort(expected.begin(), expected.end());
       std::sort(found.begin(), found.end());
       ASSERT_EQ(found, expected) << count;
-      EXPECT_LE(most, 3 * expected.size() / count + 8) << "lines are shared out evenly";
+      EXPECT_LE(max, 3 * expected.size() / count + 8) << "lines are shared out evenly";
       for (const std::size_t voxel : expected) {
         const int i = static_cast<int>(voxel % 540), j = static_cast<int>(voxel / 540 % 11);
         if (random() % 3 == 0) volume.lower_density({i, j, static_cast<int>(voxel / (540 * 11))}, kFloor);

@@ -70,8 +70,8 @@ TEST(Hand, ASettingOutOfRangeIsRefused) {
 }
 
 TEST(RandomHand, StaysInThePublishedRangesAndFillsThem) {
-  double least = 1e9;
-  double greatest = 0;
+  double min = 1e9;
+  double max = 0;
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     const HandSettings hand = random_hand(seed);
     EXPECT_NO_THROW(require_valid(hand));
@@ -81,11 +81,11 @@ TEST(RandomHand, StaysInThePublishedRangesAndFillsThem) {
     EXPECT_LE(hand.damping_Ns_per_mm, 0.010);
     EXPECT_NEAR(hand.torsional_stiffness_Nmm_per_rad / hand.stiffness_N_per_mm,
                 hand.torsional_damping_Nmms_per_rad / hand.damping_Ns_per_mm, 1e-9);
-    least = std::min(least, hand.stiffness_N_per_mm);
-    greatest = std::max(greatest, hand.stiffness_N_per_mm);
+    min = std::min(min, hand.stiffness_N_per_mm);
+    max = std::max(max, hand.stiffness_N_per_mm);
   }
-  EXPECT_LT(least, 0.17);
-  EXPECT_GT(greatest, 0.96);
+  EXPECT_LT(min, 0.17);
+  EXPECT_GT(max, 0.96);
 }
 
 // A study names its hands by their seeds, so a seed must mean the same hand on every machine and in every

@@ -56,22 +56,22 @@ struct Top {
 };
 
 Top top_of_bone(const Volume& volume, const Vec3& direction_W) {
-  double least_depth_mm = std::numeric_limits<double>::infinity();
+  double min_depth_mm = std::numeric_limits<double>::infinity();
   Top top;
   for_each_bone_voxel(volume, [&](const Vec3& p) {
     const double depth_mm = direction_W.dot(p);
-    if (depth_mm < least_depth_mm) {
-      least_depth_mm = depth_mm;
+    if (depth_mm < min_depth_mm) {
+      min_depth_mm = depth_mm;
       top.highest_W = p;
     }
   });
-  if (!std::isfinite(least_depth_mm)) {
+  if (!std::isfinite(min_depth_mm)) {
     throw InputError("scan", "no voxel is denser than the isovalue, so there is no bone to mill");
   }
   Vec3 sum_mm = Vec3::Zero();
   double count = 0;
   for_each_bone_voxel(volume, [&](const Vec3& p) {
-    if (direction_W.dot(p) > least_depth_mm + kTop_mm) return;
+    if (direction_W.dot(p) > min_depth_mm + kTop_mm) return;
     sum_mm += p - top.highest_W;
     count += 1;
   });
@@ -140,9 +140,9 @@ Vec3 towards_highest_rim(const Volume& volume, const MillingTool& tool, const Mi
   // A side must be higher by more than the noise of a crossing, so that flat bone gives the same side
   // everywhere.
   constexpr double kHigher_mm = 1e-3;
-  Eigen::Index least_axis = 0;
-  entry.direction_W.cwiseAbs().minCoeff(&least_axis);
-  const Vec3 first_W = entry.direction_W.cross(Vec3::Unit(least_axis)).normalized();
+  Eigen::Index min_axis = 0;
+  entry.direction_W.cwiseAbs().minCoeff(&min_axis);
+  const Vec3 first_W = entry.direction_W.cross(Vec3::Unit(min_axis)).normalized();
   const Vec3 second_W = entry.direction_W.cross(first_W);
   Vec3 best_W = first_W;
   double best_mm = -std::numeric_limits<double>::infinity();

@@ -12,8 +12,8 @@ class SeededRandom {
   explicit SeededRandom(std::uint64_t seed) : engine_(seed) {}
 
   /// Uniform in [least, greatest), in steps of 2^-53 of the range.
-  double uniform(double least, double greatest) {
-    return least + (greatest - least) * (static_cast<double>(engine_() >> 11) * 0x1p-53);
+  double uniform(double min, double max) {
+    return min + (max - min) * (static_cast<double>(engine_() >> 11) * 0x1p-53);
   }
 
  private:

@@ -13,7 +13,7 @@ namespace {
 
 // 1 N = 1 kg m/s^2 = 1000 kg mm/s^2, and 1 N mm = 1e-3 N m.
 constexpr double kMmPerM = 1000.0;
-constexpr double kLongestDelay_s = 1.0;
+constexpr double kMaxDelay_s = 1.0;
 
 void require(bool holds, const char* what) {
   if (!holds) throw std::invalid_argument(std::string("simulated handle: ") + what);
@@ -38,7 +38,7 @@ void require_valid(const HandleSettings& settings) {
   require(is_not_negative(settings.rotation_step_rad),
           "the encoder's rotation step must not be negative (rad)");
   require(is_positive(settings.substep_s) && settings.substep_s <= 1e-3, "the substep must lie in (0, 1 ms]");
-  require(is_not_negative(settings.force_delay_s) && settings.force_delay_s <= kLongestDelay_s,
+  require(is_not_negative(settings.force_delay_s) && settings.force_delay_s <= kMaxDelay_s,
           "the force's delay must lie in [0, 1 s]");
   require(is_not_negative(settings.limits.force_N) && is_not_negative(settings.limits.torque_Nmm),
           "the limits of force (N) and torque (N mm) must not be negative");

@@ -75,15 +75,15 @@ TEST(SimulatedHandle, AnUndampedSpringKeepsItsEnergyForAMinute) {
     return handle.kinetic_energy_Nmm() + 0.5 * kStiffness * handle.pose().position_mm.squaredNorm();
   };
   const double at_first = energy();
-  double least = at_first;
-  double greatest = at_first;
+  double min = at_first;
+  double max = at_first;
   for (int n = 0; n < 60 * 20000; ++n) {
     handle.advance({-kStiffness * handle.pose().position_mm, Vec3::Zero()});
-    least = std::min(least, energy());
-    greatest = std::max(greatest, energy());
+    min = std::min(min, energy());
+    max = std::max(max, energy());
   }
-  EXPECT_GT(least, 0.98 * at_first);
-  EXPECT_LT(greatest, 1.02 * at_first);
+  EXPECT_GT(min, 0.98 * at_first);
+  EXPECT_LT(max, 1.02 * at_first);
 }
 
 TEST(SimulatedHandle, ACommandActsThreeTenthsOfAMillisecondLaterAndUntilTheNext) {
@@ -199,12 +199,12 @@ TEST(SimulatedHandle, APassiveWallNeverGivesBackMoreEnergyThanCame) {
 double swing_after(double wall_N_per_mm, int ticks) {
   ReleasedHandle released(exact_encoder(), kDamping_Ns_per_m, 0.01, 0);
   for (int n = 0; n < ticks; ++n) released.tick(wall_N_per_mm, true);
-  double greatest_mm = 0;
+  double max_mm = 0;
   for (int n = 0; n < 200; ++n) {
     released.tick(wall_N_per_mm, true);
-    greatest_mm = std::max(greatest_mm, std::abs(released.handle().pose().position_mm.z()));
+    max_mm = std::max(max_mm, std::abs(released.handle().pose().position_mm.z()));
   }
-  return greatest_mm;
+  return max_mm;
 }
 
 TEST(SimulatedHandle, ASwingAgainstTheWallDiesBelowTheKnownLimitAndGrowsAboveIt) {

@@ -7,7 +7,7 @@ namespace osteomill {
 
 namespace {
 
-constexpr double kLongestAdvance_s = 1.0;
+constexpr double kMaxAdvance_s = 1.0;
 
 // The bound of semi-implicit Euler (simulated_handle.h), with a fourth of it left for the wall.
 void require_integrable(const HandleSettings& handle, const HandSettings& hand) {
@@ -46,7 +46,7 @@ bool SimulatedOperator::finished() const {
 }
 
 void SimulatedOperator::advance(double dt_s) {
-  if (!(dt_s > 0 && dt_s <= kLongestAdvance_s)) return;
+  if (!(dt_s > 0 && dt_s <= kMaxAdvance_s)) return;
   const double substep_s = handle_.settings().substep_s;
   const double owed_s = time_left_over_s_ + dt_s;
   // A rounding must not cost a substep.

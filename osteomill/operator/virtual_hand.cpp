@@ -9,7 +9,7 @@ namespace {
 
 // How fast the target follows what is asked for: over about two pictures.
 constexpr double kFollow_per_s = 30.0;
-constexpr double kLongestTick_s = 0.05;
+constexpr double kMaxTick_s = 0.05;
 
 }  // namespace
 
@@ -34,7 +34,7 @@ void VirtualHand::pull_to(const Pose& X_W_target) {
 }
 
 void VirtualHand::tick_done(const Pose& /*X_WT*/, double dt_s) {
-  const double passed_s = std::clamp(dt_s, 0.0, kLongestTick_s);
+  const double passed_s = std::clamp(dt_s, 0.0, kMaxTick_s);
   hand_.push_N = std::max(push_N_.load(std::memory_order_relaxed), 0.0);
   const Pose& asked = asked_.read();
   const double share = 1 - std::exp(-kFollow_per_s * passed_s);

@@ -8,7 +8,7 @@ namespace osteomill {
 
 namespace {
 
-constexpr std::size_t kLongestText = 60000;
+constexpr std::size_t kMaxText = 60000;
 
 }  // namespace
 
@@ -23,7 +23,7 @@ void AttributeWriter::write(const std::string& name, hid_t file_type, hid_t memo
 }
 
 void AttributeWriter::text(const std::string& name, const std::string& value) const {
-  if (value.size() > kLongestText) {
+  if (value.size() > kMaxText) {
     throw std::invalid_argument("the text of '" + name + "' is too long for a recording");
   }
   const Hdf5Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
@@ -80,7 +80,7 @@ std::string AttributeReader::text(const std::string& name) const {
   const Hdf5Handle space(H5Aget_space(attribute.get()), H5Sclose);
   const std::size_t size = H5Tget_size(type.get());
   if (H5Tget_class(type.get()) != H5T_STRING || H5Tis_variable_str(type.get()) != 0 || size < 1 ||
-      size > kLongestText + 1 || H5Sget_simple_extent_npoints(space.get()) != 1) {
+      size > kMaxText + 1 || H5Sget_simple_extent_npoints(space.get()) != 1) {
     throw InputError(file_.string(), "the attribute '" + name + "' is not a short text");
   }
   std::string value(size, '\0');

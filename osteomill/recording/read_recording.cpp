@@ -10,8 +10,8 @@
 #include "osteomill/recording/description_attributes.h"
 #include "osteomill/recording/hdf5_attributes.h"
 #include "osteomill/recording/record_columns.h"
+#include "osteomill/recording/recording_checksum.h"
 #include "osteomill/recording/recording_file.h"
-#include "osteomill/recording/recording_seal.h"
 
 namespace osteomill {
 
@@ -35,7 +35,7 @@ OpenRecording open_recording(const fs::path& path) {
   if (!fs::is_regular_file(path, error)) throw InputError(path.string(), "is not a file");
   const std::uintmax_t bytes = fs::file_size(path, error);
   if (error) throw InputError(path.string(), "cannot be read: " + error.message());
-  if (check_seal(path) == Seal::broken) {
+  if (check_checksum(path) == Checksum::broken) {
     throw InputError(path.string(), "is damaged or cut short: its checksum is not that of its content");
   }
   if (H5Fis_hdf5(path.c_str()) <= 0) throw InputError(path.string(), "is not an HDF5 file, so no recording");
@@ -107,10 +107,10 @@ std::size_t row_count(const OpenRecording& recording, const std::vector<OpenColu
 }
 
 void require_in_range(const OpenRecording& recording, const RecordColumn& column, double value) {
-  const double most = column.type == ColumnType::small_integer
-                          ? static_cast<double>(WrenchFault::pose_not_finite)
-                          : std::numeric_limits<int>::max();
-  if (column.type != ColumnType::real && !(value >= 0 && value <= most && value == std::floor(value))) {
+  const double max = column.type == ColumnType::small_integer
+                         ? static_cast<double>(WrenchFault::pose_not_finite)
+                         : std::numeric_limits<int>::max();
+  if (column.type != ColumnType::real && !(value >= 0 && value <= max && value == std::floor(value))) {
     refuse(recording, std::string("the column '") + column.name + "' holds " + std::to_string(value));
   }
 }

@@ -10,8 +10,8 @@
 #include "osteomill/files/input_error.h"
 #include "osteomill/recording/hdf5_attributes.h"
 #include "osteomill/recording/recorder.h"
+#include "osteomill/recording/recording_checksum.h"
 #include "osteomill/recording/recording_samples.h"
-#include "osteomill/recording/recording_seal.h"
 
 namespace osteomill {
 namespace {

@@ -4,7 +4,7 @@
 #include "osteomill/recording/description_attributes.h"
 #include "osteomill/recording/hdf5_attributes.h"
 #include "osteomill/recording/record_columns.h"
-#include "osteomill/recording/recording_seal.h"
+#include "osteomill/recording/recording_checksum.h"
 
 namespace osteomill {
 
@@ -150,7 +150,7 @@ void RecordingFile::finish(std::uint64_t dropped) {
   for (Hdf5Handle& column : columns_) closed = column.close() && closed;
   closed = file_.close() && closed;
   require(closed, "cannot be written to its end (is the disk full?)");
-  seal_recording(path_);
+  write_checksum(path_);
 }
 
 }  // namespace osteomill

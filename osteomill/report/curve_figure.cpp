@@ -139,21 +139,21 @@ double rate_of(const TickRecord& record) {
   return 1e6 / std::max(1000.0, busy_us(record));
 }
 
-double longest_tick_us(const RunGroup& group) {
-  double longest = 0;
+double max_tick_us(const RunGroup& group) {
+  double max = 0;
   for (const MeasuredRun& run : group.runs) {
-    for (const TickRecord& record : run.recording->records) longest = std::max(longest, busy_us(record));
+    for (const TickRecord& record : run.recording->records) max = std::max(max, busy_us(record));
   }
-  return longest;
+  return max;
 }
 
 // Shared by the panels of a column, so that the segments can be compared.
 std::string common_range(const RunGroup& group, const std::function<double(const TickRecord&)>& value) {
-  double greatest = 0;
+  double max = 0;
   for (const MeasuredRun& run : group.runs) {
-    for (const TickRecord& record : run.recording->records) greatest = std::max(greatest, value(record));
+    for (const TickRecord& record : run.recording->records) max = std::max(max, value(record));
   }
-  return fmt::format("set yrange [0:{:.6g}]", greatest > 0 ? 1.06 * greatest : 1.0);
+  return fmt::format("set yrange [0:{:.6g}]", max > 0 ? 1.06 * max : 1.0);
 }
 
 std::string figure_name(const char* stem, const RunGroup& group) {
@@ -189,17 +189,17 @@ Figure draw_curves(const RunGroup& group, const std::string& name, const std::ve
 }
 
 Figure draw_rate_figure(const RunGroup& group, const std::filesystem::path& folder) {
-  const double longest = longest_tick_us(group);
-  const double lowest_rate_hz = 1e6 / std::max(1000.0, longest);
+  const double max = max_tick_us(group);
+  const double lowest_rate_hz = 1e6 / std::max(1000.0, max);
   const CurveColumn rate{
       "rate", "Haptic rate (Hz)", rate_of,
       fmt::format("set yrange [{:.6g}:1020]\n{}", std::min(900.0, 100.0 * std::floor(lowest_rate_hz / 100.0)),
-                  dashed_line(kLeastRate_hz)),
+                  dashed_line(kMinRate_hz)),
       "950 Hz, the least acceptable"};
   const CurveColumn compute{"compute", "Compute time of a tick (µs)",
                             [](const TickRecord& r) { return std::max(0.1, busy_us(r)); },
                             fmt::format("set logscale y\nset yrange [*:{:.6g}]\nset format y '%g'\n{}",
-                                        std::max(3000.0, 1.5 * longest), dashed_line(1000)),
+                                        std::max(3000.0, 1.5 * max), dashed_line(1000)),
                             "1 ms, a tick at 1000 Hz"};
   return draw_curves(group, figure_name("fig6_rate", group), {rate, compute}, folder);
 }

@@ -20,14 +20,14 @@ std::vector<Vec3> sine(double hz, const Vec3& amplitude, const Vec3& offset = Ve
   return samples;
 }
 
-double greatest_inside(const std::vector<Vec3>& samples) {
-  double greatest = 0;
-  for (std::size_t n = 500; n + 500 < samples.size(); ++n) greatest = std::max(greatest, samples[n].norm());
-  return greatest;
+double max_inside(const std::vector<Vec3>& samples) {
+  double max = 0;
+  for (std::size_t n = 500; n + 500 < samples.size(); ++n) max = std::max(max, samples[n].norm());
+  return max;
 }
 
 TEST(HighPass, TakesAwayASlowSine) {
-  EXPECT_LT(greatest_inside(high_pass(sine(5, {1, 0, 0}), kRate_hz, 20)), 0.01);
+  EXPECT_LT(max_inside(high_pass(sine(5, {1, 0, 0}), kRate_hz, 20)), 0.01);
 }
 
 TEST(HighPass, LeavesAFastSineWhereItIsInTime) {
@@ -39,7 +39,7 @@ TEST(HighPass, LeavesAFastSineWhereItIsInTime) {
 }
 
 TEST(HighPass, LetsHalfThePowerThroughAtTheCutoff) {
-  EXPECT_NEAR(greatest_inside(high_pass(sine(20, {0, 1, 0}), kRate_hz, 20)), std::sqrt(0.5), 0.002);
+  EXPECT_NEAR(max_inside(high_pass(sine(20, {0, 1, 0}), kRate_hz, 20)), std::sqrt(0.5), 0.002);
 }
 
 // The ends must not ring, or every recording that starts under load would look unsteady.

@@ -71,15 +71,15 @@ DirectionMetrics direction_metrics(std::span<const Vec3> directions) {
   for (const Vec3& direction : directions) sum += direction;
   const Vec3 mean = sum.normalized();
   double square = 0;
-  double greatest = 0;
+  double max = 0;
   for (const Vec3& direction : directions) {
     const double angle = angle_rad(mean, direction);
     square += angle * angle;
-    greatest = std::max(greatest, angle);
+    max = std::max(max, angle);
   }
   const double degrees = 180.0 / std::numbers::pi;
   if (directions.empty()) return {};
-  return {degrees * std::sqrt(square / static_cast<double>(directions.size())), degrees * greatest};
+  return {degrees * std::sqrt(square / static_cast<double>(directions.size())), degrees * max};
 }
 
 double held_rate_hz(std::span<const double> busy_us) {

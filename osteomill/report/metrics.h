@@ -12,7 +12,7 @@
 namespace osteomill {
 
 /// The most that a milling loop should lose of 1000 Hz (paper, section 8.1).
-inline constexpr double kLeastRate_hz = 950.0;
+inline constexpr double kMinRate_hz = 950.0;
 /// Where a hand stops following and starts to feel a buzz: "above 20 Hz" in all that is reported.
 inline constexpr double kBuzzAbove_hz = 20.0;
 

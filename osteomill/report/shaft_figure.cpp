@@ -36,15 +36,15 @@ struct Cube {
 };
 
 Cube cube_about(const std::vector<const MeasuredRun*>& runs) {
-  Vec3 least = Vec3::Constant(2);
-  Vec3 greatest = Vec3::Constant(-2);
+  Vec3 min = Vec3::Constant(2);
+  Vec3 max = Vec3::Constant(-2);
   for (const MeasuredRun* run : runs) {
     for (const Vec3& direction : directions_of(*run)) {
-      least = least.cwiseMin(direction);
-      greatest = greatest.cwiseMax(direction);
+      min = min.cwiseMin(direction);
+      max = max.cwiseMax(direction);
     }
   }
-  return {0.5 * (least + greatest), std::max(1e-4, 0.54 * (greatest - least).maxCoeff())};
+  return {0.5 * (min + max), std::max(1e-4, 0.54 * (max - min).maxCoeff())};
 }
 
 // About two steps to an axis, of 1, 2 or 5 times a power of ten.

@@ -31,9 +31,9 @@ std::vector<std::size_t> thin_out_curve(std::span<const double> values, std::siz
   return two_of_each(values.size(), bins, [&](std::size_t first, std::size_t last) {
     const auto begin = values.begin() + static_cast<std::ptrdiff_t>(first);
     const auto end = values.begin() + static_cast<std::ptrdiff_t>(last);
-    const auto [least, greatest] = std::minmax_element(begin, end);
-    return std::pair(static_cast<std::size_t>(least - values.begin()),
-                     static_cast<std::size_t>(greatest - values.begin()));
+    const auto [min, max] = std::minmax_element(begin, end);
+    return std::pair(static_cast<std::size_t>(min - values.begin()),
+                     static_cast<std::size_t>(max - values.begin()));
   });
 }
 

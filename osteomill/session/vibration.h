@@ -11,7 +11,7 @@ struct VibrationSettings {
   double spindle_speed_rpm = 40000;
   /// Its amplitude as a share of the force with which the burr presses, and the most it may be.
   double force_share = 0.08;
-  double greatest_N = 0.3;
+  double max_N = 0.3;
 };
 
 /// How often a second the force goes round: the spindle's turns, divided by the least whole number that

@@ -35,7 +35,7 @@ TEST(Vibration, GoesRoundTheShaftAsStrongAsTheBurrPressesUpToItsLimit) {
   }
   EXPECT_NEAR(crossings, 100, 1);
   EXPECT_LT(sum.norm() / kTicks, 1e-3);
-  EXPECT_NEAR(vibration.force_N(X_WT, 100, 1e-3).norm(), settings.greatest_N, 1e-12);
+  EXPECT_NEAR(vibration.force_N(X_WT, 100, 1e-3).norm(), settings.max_N, 1e-12);
   EXPECT_EQ(vibration.force_N(X_WT, 0, 1e-3), Vec3::Zero());
 }
 

@@ -29,11 +29,11 @@ double strength(const std::vector<float>& sound, double frequency_hz) {
 
 double strongest_hz(const std::vector<float>& sound) {
   double found_hz = 0;
-  double greatest = 0;
+  double max = 0;
   for (double frequency_hz = 100; frequency_hz < 1300; frequency_hz += 3) {
     const double here = strength(sound, frequency_hz);
-    if (here <= greatest) continue;
-    greatest = here;
+    if (here <= max) continue;
+    max = here;
     found_hz = frequency_hz;
   }
   return found_hz;

@@ -16,13 +16,13 @@ namespace {
 
 // Vertices keep this far from voxel centres, as a share of the edge: where densities equal the isovalue,
 // the vertices about a voxel would fall together and the triangles between them have no area.
-constexpr float kLeastShare = 1.0f / 512;
+constexpr float kMinShare = 1.0f / 512;
 
-float greatest_float_not_above(double value) {
-  constexpr float kMost = std::numeric_limits<float>::max();
+float max_float_not_above(double value) {
+  constexpr float kMax = std::numeric_limits<float>::max();
   const auto rounded =
-      static_cast<float>(std::clamp(value, static_cast<double>(-kMost), static_cast<double>(kMost)));
-  return static_cast<double>(rounded) <= value ? rounded : std::nextafter(rounded, -kMost);
+      static_cast<float>(std::clamp(value, static_cast<double>(-kMax), static_cast<double>(kMax)));
+  return static_cast<double>(rounded) <= value ? rounded : std::nextafter(rounded, -kMax);
 }
 
 // Bit n where value n of `count` (a multiple of 4) is above the threshold.
@@ -50,7 +50,7 @@ constexpr std::uint32_t bit_span(int first, int last) {
 BrickMesher::BrickMesher(const DensityView& view)
     : view_(view),
       layout_(view.grid.geometry().dims),
-      threshold_(greatest_float_not_above(view.isovalue)),
+      threshold_(max_float_not_above(view.isovalue)),
       outside_(std::min(view.grid.outside_density(), threshold_)),
       mirrored_(view.grid.geometry().direction.determinant() < 0) {
   const GridGeometry& geometry = view.grid.geometry();
@@ -76,16 +76,16 @@ BrickMesher::BrickMesher(const DensityView& view)
 }
 
 bool BrickMesher::may_hold_surface(std::size_t brick) const {
-  constexpr int kRange = BrickRanges::kBrickVoxels;
+  constexpr int kRange = BlockRanges::kBrickVoxels;
   const VoxelBox cells = layout_.cells(brick);
   const std::array<int, 3>& dims = view_.ranges.dims();
   const auto at_border = [](int b, int count) { return b == 0 || b == count - 1; };
   for (int bk = std::max(cells.first.k, 0) / kRange; bk <= cells.last.k / kRange; ++bk) {
     for (int bj = std::max(cells.first.j, 0) / kRange; bj <= cells.last.j / kRange; ++bj) {
       for (int bi = std::max(cells.first.i, 0) / kRange; bi <= cells.last.i / kRange; ++bi) {
-        const BrickRanges::Range& range = view_.ranges.at(bi, bj, bk);
-        if (range.greatest <= threshold_) continue;
-        if (range.least <= threshold_ || at_border(bi, dims[0]) || at_border(bj, dims[1]) ||
+        const BlockRanges::Range& range = view_.ranges.at(bi, bj, bk);
+        if (range.max <= threshold_) continue;
+        if (range.min <= threshold_ || at_border(bi, dims[0]) || at_border(bj, dims[1]) ||
             at_border(bk, dims[2])) {
           return true;
         }
@@ -175,7 +175,7 @@ void BrickMesher::add_vertex(int i, int j, int k) {
   const bool bone_first = at[0] > threshold_;
   // Where differences of densities overflow the quotient is a NaN, and max answers its first argument.
   const float share =
-      std::min(std::max(kLeastShare, (threshold_ - at[0]) / (at[kAlong] - at[0])), 1 - kLeastShare);
+      std::min(std::max(kMinShare, (threshold_ - at[0]) / (at[kAlong] - at[0])), 1 - kMinShare);
 
   std::array<double, 3> voxel{static_cast<double>(corner_.i + i), static_cast<double>(corner_.j + j),
                               static_cast<double>(corner_.k + k)};

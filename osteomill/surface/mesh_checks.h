@@ -86,15 +86,15 @@ inline double enclosed_volume_mm3(const BrickMesh& mesh) {
 }
 
 /// Twice the least area of a triangle.
-inline double least_area_mm2(const BrickMesh& mesh) {
-  double least = 1e300;
+inline double min_area_mm2(const BrickMesh& mesh) {
+  double min = 1e300;
   for (std::size_t n = 0; n < mesh.indices.size(); n += 3) {
     const Vec3 a = position_of(mesh.vertices[mesh.indices[n]]);
     const Vec3 b = position_of(mesh.vertices[mesh.indices[n + 1]]);
     const Vec3 c = position_of(mesh.vertices[mesh.indices[n + 2]]);
-    least = std::min(least, (b - a).cross(c - a).norm() / 2);
+    min = std::min(min, (b - a).cross(c - a).norm() / 2);
   }
-  return least;
+  return min;
 }
 
 inline bool is_finite(const MeshVertex& vertex) {

@@ -5,7 +5,7 @@
 
 #include "osteomill/surface/brick_mesh.h"
 #include "osteomill/surface/surface_bricks.h"
-#include "osteomill/volume/brick_ranges.h"
+#include "osteomill/volume/block_ranges.h"
 #include "osteomill/volume/density_grid.h"
 #include "osteomill/volume/volume.h"
 
@@ -22,11 +22,11 @@ struct SurfaceMesh {
 /// both.
 struct DensityView {
   const DensityGrid& grid;
-  const BrickRanges& ranges;
+  const BlockRanges& ranges;
   /// Bone where the density is greater. The surface may be asked for at any, whatever the volume's own.
   double isovalue;
 
-  DensityView(const DensityGrid& grid_, const BrickRanges& ranges_, double isovalue_)
+  DensityView(const DensityGrid& grid_, const BlockRanges& ranges_, double isovalue_)
       : grid(grid_), ranges(ranges_), isovalue(isovalue_) {}
   explicit DensityView(const Volume& volume)
       : DensityView(volume.grid(), volume.bricks(), volume.isovalue()) {}

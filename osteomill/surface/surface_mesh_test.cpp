@@ -124,7 +124,7 @@ TEST(SurfaceMesh, OfNoiseIsClosed) {
 TEST(SurfaceMesh, OfFewValuesIsClosedAndHasNoEmptyTriangle) {
   for (unsigned seed = 0; seed < 6; ++seed) {
     const BrickMesh mesh = checked_mesh(random_volume({20, 35, 18}, seed, 4));
-    EXPECT_GT(testing_support::least_area_mm2(mesh), 1e-7);
+    EXPECT_GT(testing_support::min_area_mm2(mesh), 1e-7);
   }
 }
 
@@ -154,10 +154,10 @@ TEST(SurfaceMesh, OfNothingIsEmptyAndOfNothingButBoneAClosedBox) {
 }
 
 TEST(SurfaceMesh, IsFiniteForEveryFiniteDensity) {
-  const float most = std::numeric_limits<float>::max();
+  const float max = std::numeric_limits<float>::max();
   std::mt19937 random(3);
   std::vector<float> densities(12 * 12 * 12);
-  for (float& density : densities) density = random() % 2 ? most : -most;
+  for (float& density : densities) density = random() % 2 ? max : -max;
   for (const double isovalue : {1.0, 3e38, -3e38}) checked_mesh(volume_of({12, 12, 12}, densities, isovalue));
 }
 

@@ -17,8 +17,8 @@ void require_valid(const MillingTool& tool);
 
 /// An axis-aligned box in T.
 struct ToolBox {
-  Vec3 least_mm;
-  Vec3 greatest_mm;
+  Vec3 min_mm;
+  Vec3 max_mm;
 };
 ToolBox bounding_box(const MillingTool& tool);
 

@@ -29,14 +29,14 @@ TEST(CentrelineVertices, RunFromTheBurrsCentreToTheShaftsEnd) {
 TEST(SphereVertices, AreSpreadAsWidelyAs24PointsCanBe) {
   const auto vertices = sphere_vertices(kTool);
   for (const Vec3& vertex : vertices) EXPECT_NEAR(vertex.norm(), 1.5, 1e-12);
-  double least_deg = 180;
+  double min_deg = 180;
   for (std::size_t a = 0; a < vertices.size(); ++a) {
     for (std::size_t b = 0; b < a; ++b) {
       const double cosine = vertices[a].dot(vertices[b]) / (1.5 * 1.5);
-      least_deg = std::min(least_deg, std::acos(std::clamp(cosine, -1.0, 1.0)) * 180 / std::numbers::pi);
+      min_deg = std::min(min_deg, std::acos(std::clamp(cosine, -1.0, 1.0)) * 180 / std::numbers::pi);
     }
   }
-  EXPECT_NEAR(least_deg, 43.6908, 1e-4);  // the published answer of Tammes' problem for 24
+  EXPECT_NEAR(min_deg, 43.6908, 1e-4);  // the published answer of Tammes' problem for 24
 }
 
 // Balanced: no direction is favoured to first or second order.

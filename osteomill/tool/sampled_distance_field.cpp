@@ -11,12 +11,12 @@ namespace osteomill {
 namespace {
 
 constexpr double kMarginNodes = 2;
-constexpr double kMostNodes = 16e6;
+constexpr double kMaxNodes = 16e6;
 constexpr double kSuitableNodes = 2e6;
 
 // How many cells the box with its margin has along each axis, as a double: it may be beyond int's range.
 Vec3 cells_of(const ToolBox& tool_box, double spacing_mm, double margin_mm) {
-  const Vec3 size_mm = tool_box.greatest_mm - tool_box.least_mm;
+  const Vec3 size_mm = tool_box.max_mm - tool_box.min_mm;
   return (size_mm / spacing_mm).array().ceil() + 2 * (kMarginNodes + std::ceil(margin_mm / spacing_mm));
 }
 
@@ -36,13 +36,13 @@ SampledDistanceField::SampledDistanceField(const MillingTool& tool, double spaci
   require_not_negative(margin_mm, "the distance field's margin (mm)");
   const ToolBox tool_box = bounding_box(tool);
   const Vec3 cells = cells_of(tool_box, spacing_mm, margin_mm);
-  if (!((cells + Vec3::Ones()).prod() <= kMostNodes)) {
+  if (!((cells + Vec3::Ones()).prod() <= kMaxNodes)) {
     throw std::invalid_argument("the distance field's spacing is too fine for this tool");
   }
   for (std::size_t axis = 0; axis < 3; ++axis) {
     dims_[axis] = static_cast<int>(cells[static_cast<Eigen::Index>(axis)]) + 1;
   }
-  const Vec3 middle = 0.5 * (tool_box.least_mm + tool_box.greatest_mm);
+  const Vec3 middle = 0.5 * (tool_box.min_mm + tool_box.max_mm);
   box_ = {middle - 0.5 * spacing_mm * cells, middle + 0.5 * spacing_mm * cells};
   fill(tool);
 }
@@ -52,7 +52,7 @@ void SampledDistanceField::fill(const MillingTool& tool) {
   for (int k = 0; k < dims_[2]; ++k) {
     for (int j = 0; j < dims_[1]; ++j) {
       for (int i = 0; i < dims_[0]; ++i) {
-        const ToolDistance here = tool_distance(tool, box_.least_mm + spacing_mm_ * Vec3(i, j, k));
+        const ToolDistance here = tool_distance(tool, box_.min_mm + spacing_mm_ * Vec3(i, j, k));
         nodes_[node_index(i, j, k)] = {
             static_cast<float>(here.distance_mm), static_cast<float>(here.outward_T.x()),
             static_cast<float>(here.outward_T.y()), static_cast<float>(here.outward_T.z())};
@@ -62,7 +62,7 @@ void SampledDistanceField::fill(const MillingTool& tool) {
 }
 
 std::optional<ToolDistance> SampledDistanceField::at(const Vec3& point_T) const {
-  const Vec3 coordinate = (point_T - box_.least_mm) / spacing_mm_;
+  const Vec3 coordinate = (point_T - box_.min_mm) / spacing_mm_;
   int cell[3];
   double weight[3][2];
   for (int axis = 0; axis < 3; ++axis) {

@@ -70,13 +70,13 @@ TEST(SampledDistanceField, HalfTheSpacingIsAQuarterOfTheError) {
 
 TEST(SampledDistanceField, NodesAreExactAndTheToolLiesInside) {
   const SampledDistanceField field(kTool, 0.25);
-  const Vec3 node = field.box().least_mm + 0.25 * Vec3(4, 5, 6);
+  const Vec3 node = field.box().min_mm + 0.25 * Vec3(4, 5, 6);
   EXPECT_NEAR(field.at(node)->distance_mm, tool_distance(kTool, node).distance_mm, 1e-6);
   const ToolBox tool = bounding_box(kTool);
-  EXPECT_TRUE((field.box().least_mm.array() < tool.least_mm.array() - 0.4).all());
-  EXPECT_TRUE((field.box().greatest_mm.array() > tool.greatest_mm.array() + 0.4).all());
+  EXPECT_TRUE((field.box().min_mm.array() < tool.min_mm.array() - 0.4).all());
+  EXPECT_TRUE((field.box().max_mm.array() > tool.max_mm.array() + 0.4).all());
   EXPECT_TRUE(
-      (SampledDistanceField(kTool, 0.25, 1.1).box().least_mm.array() < tool.least_mm.array() - 1.5).all());
+      (SampledDistanceField(kTool, 0.25, 1.1).box().min_mm.array() < tool.min_mm.array() - 1.5).all());
   EXPECT_FALSE(field.at({0, 0, 40}));
   EXPECT_FALSE(field.at({std::nan(""), 0, 0}));
 }

@@ -12,7 +12,7 @@ constexpr double kMargin_px = 24;
 constexpr double kTick_px = 5;
 constexpr double kAxis_px = 30;
 constexpr double kLetter_px = 44;
-constexpr double kShortestAxis = 0.25;
+constexpr double kMinAxis = 0.25;
 
 // 1, 2 or 5 times a power of ten.
 double round_length_mm(double max_mm) {
@@ -46,7 +46,7 @@ std::vector<Annotation> orientation_letters(const Camera& camera, const PixelSiz
   std::vector<Annotation> letters;
   for (const auto& [name, axis_W] : axes) {
     const Eigen::Vector2d seen(axis_W.dot(camera.right_W()), -axis_W.dot(camera.up_W()));
-    if (seen.norm() < kShortestAxis) continue;
+    if (seen.norm() < kMinAxis) continue;
     letters.push_back({{{middle, middle + kAxis_px * seen}}, middle + kLetter_px * seen, name});
   }
   return letters;

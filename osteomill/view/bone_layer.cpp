@@ -100,9 +100,9 @@ Facing facing_of(const BrickMesh& mesh) {
   constexpr double kAnyWay_rad = 4;
   if (!(sum.norm() > 0)) return {Vec3::UnitZ(), kAnyWay_rad};
   const Vec3 axis = sum.normalized();
-  double least = 1;
-  for (const Vec3& normal : normals) least = std::min(least, axis.dot(normal));
-  return {axis, std::acos(std::clamp(least, -1.0, 1.0))};
+  double min = 1;
+  for (const Vec3& normal : normals) min = std::min(min, axis.dot(normal));
+  return {axis, std::acos(std::clamp(min, -1.0, 1.0))};
 }
 
 gl::Program bone_program(const char* definitions) {
@@ -165,19 +165,19 @@ std::vector<std::size_t> bricks_in_view(const SurfaceBricks& layout, const GridG
 
 void begin_cuts(GLuint program, const ViewScene& scene) {
   // Without a cut nothing is clipped: 0 . p >= -1.
-  std::array<std::array<float, 4>, kGreatestCutPlanes> cuts;
-  for (std::size_t n = 0; n < kGreatestCutPlanes; ++n) {
+  std::array<std::array<float, 4>, kMaxClipPlanes> cuts;
+  for (std::size_t n = 0; n < kMaxClipPlanes; ++n) {
     cuts[n] = {0, 0, 0, -1};
     if (!scene.cuts[n]) continue;
     const Eigen::Vector3f normal = scene.cuts[n]->normal_W.cast<float>();
     cuts[n] = {normal.x(), normal.y(), normal.z(), static_cast<float>(scene.cuts[n]->offset_mm)};
     glEnable(static_cast<GLenum>(GL_CLIP_DISTANCE0 + n));
   }
-  glUniform4fv(glGetUniformLocation(program, "cuts"), kGreatestCutPlanes, cuts.front().data());
+  glUniform4fv(glGetUniformLocation(program, "cuts"), kMaxClipPlanes, cuts.front().data());
 }
 
 void end_cuts() {
-  for (std::size_t n = 0; n < kGreatestCutPlanes; ++n) glDisable(static_cast<GLenum>(GL_CLIP_DISTANCE0 + n));
+  for (std::size_t n = 0; n < kMaxClipPlanes; ++n) glDisable(static_cast<GLenum>(GL_CLIP_DISTANCE0 + n));
 }
 
 BoneLayer::BoneLayer(const SurfaceBricks& layout, const GridGeometry& geometry)

@@ -48,7 +48,7 @@ struct Extent {
 Extent extent_of_bone(const Volume& bone, const Camera& camera) {
   const Mat3 axes = camera.orientation.toRotationMatrix();
   const GridGeometry& geometry = bone.geometry();
-  const BrickRanges& bricks = bone.bricks();
+  const BlockRanges& bricks = bone.bricks();
   Eigen::AlignedBox3d box;
   const auto take_in = [&](const VoxelBox& voxels) {
     for (const int i : {voxels.first.i, voxels.last.i})
@@ -59,8 +59,8 @@ Extent extent_of_bone(const Volume& bone, const Camera& camera) {
   for (int bk = 0; bk < bricks.dims()[2]; ++bk) {
     for (int bj = 0; bj < bricks.dims()[1]; ++bj) {
       for (int bi = 0; bi < bricks.dims()[0]; ++bi) {
-        if (static_cast<double>(bricks.at(bi, bj, bk).greatest) <= bone.isovalue()) continue;
-        constexpr int kSide = BrickRanges::kBrickVoxels;
+        if (static_cast<double>(bricks.at(bi, bj, bk).max) <= bone.isovalue()) continue;
+        constexpr int kSide = BlockRanges::kBrickVoxels;
         const VoxelIndex first{bi * kSide, bj * kSide, bk * kSide};
         take_in(VoxelBox{first, {first.i + kSide, first.j + kSide, first.k + kSide}}.intersected(
             geometry.all_voxels()));

@@ -6,14 +6,14 @@ namespace osteomill {
 
 namespace {
 
-constexpr double kLeastForce_N = 0.02;
+constexpr double kMinForce_N = 0.02;
 constexpr int kSteps = 200;
 
 }  // namespace
 
 std::optional<Vec3> point_of_action(const MillingTool& tool, const Pose& X_WT, const Wrench& wrench) {
   const double force_N = wrench.force_N.norm();
-  if (!(force_N > kLeastForce_N)) return std::nullopt;
+  if (!(force_N > kMinForce_N)) return std::nullopt;
   const Vec3 along = wrench.force_N / force_N;
   const Vec3 lever = wrench.force_N.cross(wrench.torque_Nmm) / (force_N * force_N);
   // The force pushes the tool away from the bone: it comes from outside, against the tool.

@@ -13,11 +13,11 @@
 namespace osteomill {
 
 /// Everything on this side of a plane is cut away: points p of W with normal . p < offset.
-struct CutPlane {
+struct ClipPlane {
   Vec3 normal_W = Vec3::UnitZ();
   double offset_mm = 0;
 };
-inline constexpr std::size_t kGreatestCutPlanes = 4;
+inline constexpr std::size_t kMaxClipPlanes = 4;
 
 /// What a picture shows beside the bone, all in W.
 struct ViewScene {
@@ -31,7 +31,7 @@ struct ViewScene {
   std::optional<Pose> X_WD;
   /// As it acts on the hand, drawn as arrows from the simulated burr, with the contact's point of action.
   Wrench wrench;
-  std::array<std::optional<CutPlane>, kGreatestCutPlanes> cuts;
+  std::array<std::optional<ClipPlane>, kMaxClipPlanes> cuts;
   /// What bone is coloured by: pale at the reference (dentine), white where much denser (enamel), reddish
   /// where hardly bone.
   double isovalue = 0;

@@ -5,7 +5,7 @@
 
 #include "osteomill/view/bone_layer.h"
 #include "osteomill/view/cavity_pass.h"
-#include "osteomill/view/cut_faces.h"
+#include "osteomill/view/clip_faces.h"
 #include "osteomill/view/frame_target.h"
 #include "osteomill/view/shaders.h"
 #include "osteomill/view/solid_shapes.h"
@@ -52,7 +52,7 @@ void draw_ghost(const SolidShapes& shapes, const MillingTool& tool, const Pose& 
 
 namespace {
 
-bool same_cut(const std::optional<CutPlane>& a, const std::optional<CutPlane>& b) {
+bool same_cut(const std::optional<ClipPlane>& a, const std::optional<ClipPlane>& b) {
   if (!a || !b) return a.has_value() == b.has_value();
   return a->normal_W == b->normal_W && a->offset_mm == b->offset_mm;
 }
@@ -143,7 +143,7 @@ struct SceneRenderer::Impl {
 
   BoneLayer bone;
   SolidShapes shapes;
-  CutFaces cut_faces;
+  ClipFaces cut_faces;
   gl::Program background;
   gl::VertexArray nothing;
   std::optional<FrameTarget> target;
@@ -170,7 +170,7 @@ void SceneRenderer::set_brick(std::size_t brick, const BrickMesh& mesh) {
   impl_->bone_changed = true;
 }
 
-void SceneRenderer::set_cut_face(std::size_t cut, const CutFace& face) {
+void SceneRenderer::set_clip_face(std::size_t cut, const ClipFace& face) {
   impl_->cut_faces.set(cut, face);
   impl_->ground_scene.reset();
 }

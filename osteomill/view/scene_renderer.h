@@ -6,7 +6,7 @@
 #include "osteomill/image/image.h"
 #include "osteomill/surface/brick_mesh.h"
 #include "osteomill/surface/surface_bricks.h"
-#include "osteomill/view/cut_face.h"
+#include "osteomill/view/clip_face.h"
 #include "osteomill/view/scene.h"
 #include "osteomill/volume/grid_geometry.h"
 
@@ -27,7 +27,7 @@ class SceneRenderer {
   /// A brick's triangles as they are now; none removes it.
   void set_brick(std::size_t brick, const BrickMesh& mesh);
   /// What the scene's cut of this number lays open. Drawn as far as the other cuts leave it.
-  void set_cut_face(std::size_t cut, const CutFace& face);
+  void set_clip_face(std::size_t cut, const ClipFace& face);
 
   /// Draws into a picture of its own. What lies deep is darkened after a picture drawn before (the first, and
   /// every fourth from there, is looked at), so that a still picture is drawn twice.

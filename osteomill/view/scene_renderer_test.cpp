@@ -104,8 +104,8 @@ TEST_F(SceneRendererTest, ToolGhostAndArrows) {
 }
 
 TEST_F(SceneRendererTest, CutWithItsGreys) {
-  scene_.cuts[0] = CutPlane{{0, 1, 0}, 0};
-  renderer_->set_cut_face(0, cut_face(bone_.grid(), *scene_.cuts[0], {-100, 1300}));
+  scene_.cuts[0] = ClipPlane{{0, 1, 0}, 0};
+  renderer_->set_clip_face(0, clip_face(bone_.grid(), *scene_.cuts[0], {-100, 1300}));
   expect_as_kept();
 }
 

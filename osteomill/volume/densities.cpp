@@ -23,12 +23,12 @@ std::optional<double> median(std::vector<float>& values) {
 // Takes every bone voxel to `visit`; bricks without bone are passed over.
 template <typename Visit>
 void for_each_bone_voxel(const Volume& volume, const Visit& visit) {
-  constexpr int kSide = BrickRanges::kBrickVoxels;
-  const BrickRanges& bricks = volume.bricks();
+  constexpr int kSide = BlockRanges::kBrickVoxels;
+  const BlockRanges& bricks = volume.bricks();
   for (int bk = 0; bk < bricks.dims()[2]; ++bk) {
     for (int bj = 0; bj < bricks.dims()[1]; ++bj) {
       for (int bi = 0; bi < bricks.dims()[0]; ++bi) {
-        if (static_cast<double>(bricks.at(bi, bj, bk).greatest) <= volume.isovalue()) continue;
+        if (static_cast<double>(bricks.at(bi, bj, bk).max) <= volume.isovalue()) continue;
         const VoxelIndex first{bi * kSide, bj * kSide, bk * kSide};
         const VoxelBox box =
             VoxelBox{first, {first.i + kSide - 1, first.j + kSide - 1, first.k + kSide - 1}}.intersected(
@@ -86,14 +86,14 @@ BoneDensities estimate_densities(const Volume& volume) {
 }
 
 double suggest_isovalue(const DensityGrid& grid) {
-  const auto [least_at, greatest_at] = std::minmax_element(grid.densities().begin(), grid.densities().end());
-  const double least = static_cast<double>(*least_at);
-  const double range = static_cast<double>(*greatest_at) - least;
-  if (!(range > 0)) return least;
+  const auto [min_at, max_at] = std::minmax_element(grid.densities().begin(), grid.densities().end());
+  const double min = static_cast<double>(*min_at);
+  const double range = static_cast<double>(*max_at) - min;
+  if (!(range > 0)) return min;
 
   std::array<double, kBins> counts{};
   for (const float density : grid.densities()) {
-    const double bin = (static_cast<double>(density) - least) / range * kBins;
+    const double bin = (static_cast<double>(density) - min) / range * kBins;
     counts[std::min(static_cast<std::size_t>(bin), kBins - 1)] += 1;
   }
   double all_sum = 0;
@@ -114,7 +114,7 @@ double suggest_isovalue(const DensityGrid& grid) {
     if (variance >= best) last_best = static_cast<double>(bin + 1);
     best = std::max(best, variance);
   }
-  return least + range * 0.5 * (first_best + last_best) / kBins;
+  return min + range * 0.5 * (first_best + last_best) / kBins;
 }
 
 }  // namespace osteomill

@@ -13,12 +13,11 @@ DensityHistogram histogram_of(const DensityGrid& grid) {
   std::sort(sample.begin(), sample.end());
   const std::size_t rare = sample.size() / 2000;
   DensityHistogram histogram;
-  histogram.least = sample[rare];
-  histogram.greatest = std::max(sample[sample.size() - 1 - rare], histogram.least + 1);
-  const float width =
-      (histogram.greatest - histogram.least) / static_cast<float>(histogram.log_counts.size());
+  histogram.min = sample[rare];
+  histogram.max = std::max(sample[sample.size() - 1 - rare], histogram.min + 1);
+  const float width = (histogram.max - histogram.min) / static_cast<float>(histogram.log_counts.size());
   for (const float density : sample) {
-    const auto bin = static_cast<std::ptrdiff_t>((density - histogram.least) / width);
+    const auto bin = static_cast<std::ptrdiff_t>((density - histogram.min) / width);
     if (bin >= 0 && bin < std::ssize(histogram.log_counts))
       histogram.log_counts[static_cast<std::size_t>(bin)] += 1;
   }

@@ -9,8 +9,8 @@ namespace osteomill {
 /// How often densities occur, for the isovalue to be chosen by: logarithms of counts, over all densities but
 /// the rarest at both ends.
 struct DensityHistogram {
-  float least = 0;
-  float greatest = 1;
+  float min = 0;
+  float max = 1;
   std::array<float, 128> log_counts{};
 };
 DensityHistogram histogram_of(const DensityGrid& grid);

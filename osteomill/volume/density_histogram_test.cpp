@@ -16,8 +16,8 @@ TEST(DensityHistogram, CountsEvenlyAndLeavesTheRarestOut) {
   for (int n = 0; n < 1000000; ++n) densities.push_back(static_cast<float>(n % 1000));
   densities.front() = 1e6f;
   const DensityHistogram histogram = histogram_of(DensityGrid(geometry, densities));
-  EXPECT_NEAR(histogram.least, 0, 2);
-  EXPECT_NEAR(histogram.greatest, 999, 2);
+  EXPECT_NEAR(histogram.min, 0, 2);
+  EXPECT_NEAR(histogram.max, 999, 2);
   // A seventh of a million in 128 bins.
   for (const float count : histogram.log_counts) EXPECT_NEAR(count, std::log1p(1e6 / 7 / 128), 0.15);
 }
@@ -26,8 +26,8 @@ TEST(DensityHistogram, OneDensityAlone) {
   GridGeometry geometry;
   geometry.dims = {10, 10, 10};
   const DensityHistogram histogram = histogram_of(DensityGrid(geometry, std::vector<float>(1000, 40.0f)));
-  EXPECT_EQ(histogram.least, 40);
-  EXPECT_GT(histogram.greatest, histogram.least);
+  EXPECT_EQ(histogram.min, 40);
+  EXPECT_GT(histogram.max, histogram.min);
   EXPECT_GT(histogram.log_counts.front(), 0);
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "osteomill/volume/brick_ranges.h"
+#include "osteomill/volume/block_ranges.h"
 #include "osteomill/volume/density_grid.h"
 
 namespace osteomill {
@@ -15,7 +15,7 @@ class Volume {
 
   const DensityGrid& grid() const { return grid_; }
   const GridGeometry& geometry() const { return grid_.geometry(); }
-  const BrickRanges& bricks() const { return bricks_; }
+  const BlockRanges& bricks() const { return bricks_; }
   double isovalue() const { return isovalue_; }
 
   /// `v` must lie in the grid.
@@ -48,7 +48,7 @@ class Volume {
 
  private:
   DensityGrid grid_;
-  BrickRanges bricks_;
+  BlockRanges bricks_;
   double isovalue_ = 0;
 };
 

@@ -30,15 +30,15 @@ constexpr double kEnergyRounding = 1e-6;
 constexpr double kNoRise = 1e-5;
 
 // The most that the tool moves between two gatherings, and what a gathering reaches for.
-constexpr Room kMostRoom{0.4, 0.03};
-constexpr Room kLeastRoom{0.05, 0.004};
+constexpr Room kMaxRoom{0.4, 0.03};
+constexpr Room kMinRoom{0.05, 0.004};
 constexpr Room kRoomToSpare{0.03, 0.002};
 constexpr double kRoomPerMove = 3;
 // In free space: farther than the fastest hand goes in a tick.
 constexpr Room kFarthestFlight{5.0, 0.3};
 
 // What a tick may release by its length; a longer one (a machine that stood still) counts as this long.
-constexpr double kLongestTick_s = 5e-3;
+constexpr double kMaxTick_s = 5e-3;
 // Of the turn by which a move of the device would be made at the tool's far end.
 constexpr double kTurnByMove = 0.25;
 
@@ -200,7 +200,7 @@ BarrierShell::State BarrierShell::evaluated(const Pose& X_WT, const Pose& X_WD) 
 }
 
 BarrierShell::Allowed BarrierShell::allowed_release(const Pose& X_WD, double dt_s) const {
-  const double tick_s = std::clamp(dt_s, 0.0, kLongestTick_s);
+  const double tick_s = std::clamp(dt_s, 0.0, kMaxTick_s);
   const Room device = room_of(move_between(X_WD_before_, X_WD));
   const Room stretch = room_of(move_between(X_WD, X_WT_));
   const double length_mm = std::max(tool_.shaft_length_mm, tool_.burr_radius_mm);
@@ -231,11 +231,11 @@ bool BarrierShell::may_fly(const Pose& X_WD, const Allowed& allowed) const {
 }
 
 void BarrierShell::gather_for_next_move() {
-  const auto reach = [](double last, double spare, double least, double most) {
-    return std::clamp(kRoomPerMove * last + spare, least, most);
+  const auto reach = [](double last, double spare, double min, double max) {
+    return std::clamp(kRoomPerMove * last + spare, min, max);
   };
-  gather(X_WT_, {reach(last_move_.move_mm, kRoomToSpare.move_mm, kLeastRoom.move_mm, kMostRoom.move_mm),
-                 reach(last_move_.turn_rad, kRoomToSpare.turn_rad, kLeastRoom.turn_rad, kMostRoom.turn_rad)});
+  gather(X_WT_, {reach(last_move_.move_mm, kRoomToSpare.move_mm, kMinRoom.move_mm, kMaxRoom.move_mm),
+                 reach(last_move_.turn_rad, kRoomToSpare.turn_rad, kMinRoom.turn_rad, kMaxRoom.turn_rad)});
 }
 
 // The share of a step for which there is room since the gathering.
@@ -251,8 +251,8 @@ BarrierShell::Step BarrierShell::next_step(const State& best, const Pose& X_WD, 
   Step step{newton_step(best.sum)};
   const Room wanted = room_of(step.move_T);
   step.is_last = wanted.move_mm <= kDone_mm && wanted.turn_rad <= kDone_rad;
-  if (!step.is_last && share_with_room(wanted) < 1 && room_.move_mm < kMostRoom.move_mm) {
-    gather(best.X_WT, kMostRoom);
+  if (!step.is_last && share_with_room(wanted) < 1 && room_.move_mm < kMaxRoom.move_mm) {
+    gather(best.X_WT, kMaxRoom);
     near_.energy(cores(), barrier_, best.X_WT);
   }
   if (near_.overflowed()) return {Vector6::Zero(), true};

@@ -30,8 +30,8 @@ inline constexpr double kDistanceKept = 0.1;
 
 /// The greatest share of a move that leaves every point `kDistanceKept` of its distance, given the greatest
 /// `distance_used / distance` of all points.
-inline double certified_share(double greatest_use) {
-  return greatest_use > 1 - kDistanceKept ? (1 - kDistanceKept) / greatest_use : 1.0;
+inline double certified_share(double max_use) {
+  return max_use > 1 - kDistanceKept ? (1 - kDistanceKept) / max_use : 1.0;
 }
 
 }  // namespace osteomill::barrier_shell

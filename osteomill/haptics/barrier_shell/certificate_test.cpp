@@ -28,7 +28,7 @@ Pose after(const Pose& X_WT, const MoveT& move, double t) {
 TEST(Certificate, IsNeverAboveTheDistanceAlongTheWay) {
   std::mt19937 bits(7);
   const Pose X_WT{{0.3, -0.2, 0.7}, quaternion_from_rotation_vector({0.4, 1.1, -0.3})};
-  double worst = 0, least_kept = 1;
+  double worst = 0, min_kept = 1;
   for (int n = 0; n < 1000000; ++n) {
     const Cores cores{0.05 + std::abs(unit_random(bits)) * 2, 0.05 + std::abs(unit_random(bits)),
                       0.5 + std::abs(unit_random(bits)) * 25};
@@ -48,11 +48,11 @@ TEST(Certificate, IsNeverAboveTheDistanceAlongTheWay) {
       const double then = distance_to(cores, after(X_WT, move, t).inverse() * point_W).distance_mm;
       const double bound = now.distance_mm - t * std::max(used, 0.0);
       worst = std::max(worst, bound - then);
-      least_kept = std::min(least_kept, then / now.distance_mm);
+      min_kept = std::min(min_kept, then / now.distance_mm);
     }
   }
   EXPECT_LE(worst, 1e-9);
-  EXPECT_GE(least_kept, kDistanceKept - 1e-6);
+  EXPECT_GE(min_kept, kDistanceKept - 1e-6);
 }
 
 // What slides along a core uses up nothing, however near it is; and straight at it, exactly the way.

@@ -9,7 +9,7 @@ namespace {
 
 // Of a length that is divided by, and of a core.
 constexpr double kTiny_mm = 1e-9;
-constexpr double kLeastCore_mm = 0.01;
+constexpr double kMinCore_mm = 0.01;
 
 Mat3 outer(const Vec3& v) {
   return v * v.transpose();
@@ -18,11 +18,11 @@ Mat3 outer(const Vec3& v) {
 }  // namespace
 
 Cores Cores::within(const MillingTool& tool, double inset_mm, double smaller_mm) {
-  const double least_mm = std::min({tool.burr_radius_mm, tool.shaft_radius_mm, tool.shaft_length_mm});
-  const double inset = std::min(inset_mm, 0.5 * least_mm) + smaller_mm;
-  return {std::max(tool.burr_radius_mm - inset, kLeastCore_mm),
-          std::max(tool.shaft_radius_mm - inset, kLeastCore_mm),
-          std::max(tool.shaft_length_mm - inset, kLeastCore_mm)};
+  const double min_mm = std::min({tool.burr_radius_mm, tool.shaft_radius_mm, tool.shaft_length_mm});
+  const double inset = std::min(inset_mm, 0.5 * min_mm) + smaller_mm;
+  return {std::max(tool.burr_radius_mm - inset, kMinCore_mm),
+          std::max(tool.shaft_radius_mm - inset, kMinCore_mm),
+          std::max(tool.shaft_length_mm - inset, kMinCore_mm)};
 }
 
 CoreDistance distance_to_ball(const Cores& cores, const Vec3& point_T) {

@@ -15,10 +15,10 @@ struct Spring {
   double stiffness;    // d force / d s
 };
 
-Spring spring(double stiffness, double most, double stretch) {
-  const double bend = most / stiffness;
+Spring spring(double stiffness, double max, double stretch) {
+  const double bend = max / stiffness;
   if (stretch <= bend) return {0.5 * stiffness * stretch * stretch, stiffness, stiffness};
-  return {most * (stretch - 0.5 * bend), most / stretch, 0};
+  return {max * (stretch - 0.5 * bend), max / stretch, 0};
 }
 
 // The second derivative of a spring of length |s| by s, what lies across s times `across`.

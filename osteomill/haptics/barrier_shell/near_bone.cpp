@@ -101,8 +101,8 @@ NearBone::Energy NearBone::energy(const Cores& cores, const Barrier& barrier, co
 }
 
 double NearBone::certified(const MoveT& move, const Barrier& barrier) const {
-  return certified_share(std::max(greatest_use_by_ball(ball_, move, barrier),
-                                  greatest_use_by_cylinder(cylinder_, move, barrier)));
+  return certified_share(
+      std::max(max_use_by_ball(ball_, move, barrier), max_use_by_cylinder(cylinder_, move, barrier)));
 }
 
 bool is_clear(const BoneBricks& bricks, const Cores& cores, const Barrier& barrier, const Pose& X_WT,

@@ -256,26 +256,25 @@ void SumSide(NearPoints& near, const Frame& moved, const KernelShape& shape, Sid
 
 // `use` of every group of points.
 template <typename Use>
-HWY_INLINE float greatest_use(const NearPoints& near, float least_distance, const Use& use) {
-  V greatest = hn::Zero(d);
+HWY_INLINE float max_use(const NearPoints& near, float min_distance, const Use& use) {
+  V max = hn::Zero(d);
   for (std::size_t n = 0; n < near.count; n += kWidth) {
-    const V distance = hn::Max(hn::LoadU(d, &near.distance[n]), constant(least_distance));
+    const V distance = hn::Max(hn::LoadU(d, &near.distance[n]), constant(min_distance));
     const Vector out{hn::LoadU(d, &near.out_x[n]), hn::LoadU(d, &near.out_y[n]),
                      hn::LoadU(d, &near.out_z[n])};
-    greatest = hn::Max(greatest, hn::Div(use(n, out), distance));
+    max = hn::Max(max, hn::Div(use(n, out), distance));
   }
-  return hn::GetLane(hn::MaxOfLanes(d, greatest));
+  return hn::GetLane(hn::MaxOfLanes(d, max));
 }
 
-float GreatestUseByBall(const NearPoints& near, const float (&delta)[3], float least_distance) {
+float GreatestUseByBall(const NearPoints& near, const float (&delta)[3], float min_distance) {
   const Vector move{constant(delta[0]), constant(delta[1]), constant(delta[2])};
-  return greatest_use(near, least_distance,
-                      [&](std::size_t, const Vector& out) HWY_ATTR { return dot(out, move); });
+  return max_use(near, min_distance, [&](std::size_t, const Vector& out) HWY_ATTR { return dot(out, move); });
 }
 
 // The move as delta (3) and omega (3), then |omega| |delta| and |omega|^2 / 2.
-float GreatestUseByCylinder(const NearPoints& near, const float (&move)[8], float least_distance) {
-  return greatest_use(near, least_distance, [&](std::size_t n, const Vector& out) HWY_ATTR {
+float GreatestUseByCylinder(const NearPoints& near, const float (&move)[8], float min_distance) {
+  return max_use(near, min_distance, [&](std::size_t n, const Vector& out) HWY_ATTR {
     const V x = hn::LoadU(d, &near.x[n]), y = hn::LoadU(d, &near.y[n]), z = hn::LoadU(d, &near.z[n]);
     const V wx = constant(move[3]), wy = constant(move[4]), wz = constant(move[5]);
     const Vector by{hn::Add(constant(move[0]), hn::Sub(hn::Mul(wy, z), hn::Mul(wz, y))),
@@ -322,14 +321,14 @@ void sum_side(NearPoints& near, const Frame& moved, const KernelShape& shape, Si
   HWY_DYNAMIC_DISPATCH(SumSide)(near, moved, shape, lanes);
 }
 
-double greatest_use_by_ball(const NearPoints& near, const MoveT& move, const Barrier& barrier) {
+double max_use_by_ball(const NearPoints& near, const MoveT& move, const Barrier& barrier) {
   const Eigen::Vector3f delta = move.delta_mm.cast<float>();
   return static_cast<double>(
       HWY_DYNAMIC_DISPATCH(GreatestUseByBall)(near, {delta.x(), delta.y(), delta.z()},
                                               static_cast<float>(Barrier::kNearestShare * barrier.width_mm)));
 }
 
-double greatest_use_by_cylinder(const NearPoints& near, const MoveT& move, const Barrier& barrier) {
+double max_use_by_cylinder(const NearPoints& near, const MoveT& move, const Barrier& barrier) {
   const Eigen::Vector3f delta = move.delta_mm.cast<float>(), omega = move.omega_rad.cast<float>();
   const double turn = move.omega_rad.norm();
   return static_cast<double>(HWY_DYNAMIC_DISPATCH(GreatestUseByCylinder)(

@@ -62,8 +62,8 @@ EnergySum ball_energy(NearPoints& near, const Frame& moved, const Cores& cores, 
 EnergySum cylinder_energy(NearPoints& near, const Frame& moved, const Cores& cores, const Barrier& barrier);
 
 /// The greatest `distance_used / distance` of a move, at the distances of the last sum; at least 0.
-double greatest_use_by_ball(const NearPoints& near, const MoveT& move, const Barrier& barrier);
-double greatest_use_by_cylinder(const NearPoints& near, const MoveT& move, const Barrier& barrier);
+double max_use_by_ball(const NearPoints& near, const MoveT& move, const Barrier& barrier);
+double max_use_by_cylinder(const NearPoints& near, const MoveT& move, const Barrier& barrier);
 
 /// The sets of vector instructions that this was compiled for, as bits of hwy/targets.h.
 std::int64_t compiled_targets();

@@ -57,8 +57,8 @@ Found found(const BrickPoints& points, const Cores& cores, const Barrier& barrie
   Found f;
   f.ball = ball_energy(ball, still, cores, barrier);
   f.cylinder = cylinder_energy(cylinder, still, cores, barrier);
-  f.ball_use = greatest_use_by_ball(ball, move, barrier);
-  f.cylinder_use = greatest_use_by_cylinder(cylinder, move, barrier);
+  f.ball_use = max_use_by_ball(ball, move, barrier);
+  f.cylinder_use = max_use_by_cylinder(cylinder, move, barrier);
   return f;
 }
 

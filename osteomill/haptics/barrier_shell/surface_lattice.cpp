@@ -13,7 +13,7 @@ namespace osteomill::barrier_shell {
 namespace {
 
 // Of the area of a cell's face that a crossing stands for.
-constexpr float kLeastSeen = 0.02f;
+constexpr float kMinSeen = 0.02f;
 constexpr float kSeenWithoutNormal = 0.6f;
 // Of the mean normal of points that one may stand for.
 constexpr float kFlat = 0.98f;
@@ -107,16 +107,16 @@ VoxelBox SurfaceLattice::voxels_of(const VoxelIndex& brick) const {
 }
 
 bool SurfaceLattice::may_hold_surface(const VoxelIndex& brick) const {
-  constexpr int kRange = BrickRanges::kBrickVoxels;
+  constexpr int kRange = BlockRanges::kBrickVoxels;
   const VoxelBox voxels = voxels_of(brick);
   const VoxelBox inside = voxels.intersected(volume_->geometry().all_voxels());
-  const BrickRanges& ranges = volume_->bricks();
+  const BlockRanges& ranges = volume_->bricks();
   bool any_bone = false, all_bone = inside == voxels;
   for (int k = inside.first.k / kRange; k <= inside.last.k / kRange; ++k) {
     for (int j = inside.first.j / kRange; j <= inside.last.j / kRange; ++j) {
       for (int i = inside.first.i / kRange; i <= inside.last.i / kRange; ++i) {
-        any_bone |= ranges.at(i, j, k).greatest > isovalue_;
-        all_bone &= ranges.at(i, j, k).least > isovalue_;
+        any_bone |= ranges.at(i, j, k).max > isovalue_;
+        all_bone &= ranges.at(i, j, k).min > isovalue_;
       }
     }
   }
@@ -253,7 +253,7 @@ ShellPoint SurfaceLattice::crossing(const float* here, const VoxelIndex& node, i
       std::sqrt(gradient[0] * gradient[0] + gradient[1] * gradient[1] + gradient[2] * gradient[2]);
   const float outward = steepness > 0 ? -1 / steepness : 0;
   const float seen =
-      steepness > 0 ? std::max(kLeastSeen, std::abs(outward * gradient[axis])) : kSeenWithoutNormal;
+      steepness > 0 ? std::max(kMinSeen, std::abs(outward * gradient[axis])) : kSeenWithoutNormal;
   float at[3] = {static_cast<float>(node.i), static_cast<float>(node.j), static_cast<float>(node.k)};
   at[axis] += fraction;
   return {at[0] * step_[0],      at[1] * step_[1],      at[2] * step_[2],     face_mm2_[axis] * seen,

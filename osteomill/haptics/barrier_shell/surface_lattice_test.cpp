@@ -100,9 +100,9 @@ TEST(BoneBricks, MillingBringsThemUpToDateWithinABudget) {
         for (int i = 0; i < dims[0]; ++i) {
           const double distance =
               (volume.geometry().world_from_voxel(VoxelIndex{i, j, k}) - Vec3(0, 0, 1.6)).norm();
-          const float most = static_cast<float>(1000 * std::clamp((distance - 1.2) / 0.5, 0.0, 1.0));
-          if (volume.grid()[{i, j, k}] <= most) continue;
-          volume.lower_density({i, j, k}, most);
+          const float max = static_cast<float>(1000 * std::clamp((distance - 1.2) / 0.5, 0.0, 1.0));
+          if (volume.grid()[{i, j, k}] <= max) continue;
+          volume.lower_density({i, j, k}, max);
           changed.include({i, j, k});
         }
       }

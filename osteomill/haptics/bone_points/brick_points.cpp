@@ -21,15 +21,13 @@ constexpr float kBoundSlack = 1.0001f;
 BrickPoints::Bound bound_of(std::span<const ShellPoint> points) {
   BrickPoints::Bound bound;
   if (points.empty()) return bound;
-  ShellPoint least = points.front(), greatest = points.front();
+  ShellPoint min = points.front(), max = points.front();
   for (const ShellPoint& point : points) {
-    least = {std::min(least.x_mm, point.x_mm), std::min(least.y_mm, point.y_mm),
-             std::min(least.z_mm, point.z_mm), 0};
-    greatest = {std::max(greatest.x_mm, point.x_mm), std::max(greatest.y_mm, point.y_mm),
-                std::max(greatest.z_mm, point.z_mm), 0};
+    min = {std::min(min.x_mm, point.x_mm), std::min(min.y_mm, point.y_mm), std::min(min.z_mm, point.z_mm), 0};
+    max = {std::max(max.x_mm, point.x_mm), std::max(max.y_mm, point.y_mm), std::max(max.z_mm, point.z_mm), 0};
   }
-  bound.centre_mm = {0.5f * (least.x_mm + greatest.x_mm), 0.5f * (least.y_mm + greatest.y_mm),
-                     0.5f * (least.z_mm + greatest.z_mm)};
+  bound.centre_mm = {0.5f * (min.x_mm + max.x_mm), 0.5f * (min.y_mm + max.y_mm),
+                     0.5f * (min.z_mm + max.z_mm)};
   for (const ShellPoint& point : points) {
     bound.radius_mm = std::max(bound.radius_mm, kBoundSlack * distance_to(point, bound.centre_mm));
   }

@@ -21,14 +21,14 @@ std::optional<Span> span_in_grid(const GridGeometry& geometry, const Vec3& from_
   const Vec3 way = geometry.voxel_from_world(to_W) - from;
   Span span;
   for (int axis = 0; axis < 3; ++axis) {
-    const double least = -1.0;
-    const double greatest = geometry.dims[static_cast<std::size_t>(axis)];
+    const double min = -1.0;
+    const double max = geometry.dims[static_cast<std::size_t>(axis)];
     if (way[axis] == 0.0) {
-      if (from[axis] < least || from[axis] > greatest) return std::nullopt;
+      if (from[axis] < min || from[axis] > max) return std::nullopt;
       continue;
     }
-    const double a = (least - from[axis]) / way[axis];
-    const double b = (greatest - from[axis]) / way[axis];
+    const double a = (min - from[axis]) / way[axis];
+    const double b = (max - from[axis]) / way[axis];
     span.first = std::max(span.first, std::min(a, b));
     span.last = std::min(span.last, std::max(a, b));
   }

@@ -75,12 +75,12 @@ struct WayOut {
 };
 
 // A surface that a line grazes may seem to lean the wrong way by an error of its normal.
-constexpr double kLeastSlope = 0.02;
+constexpr double kMinSlope = 0.02;
 
 std::optional<WayOut> way_out_between(const Line& line, const Stretch& stretch, const Vec3& lower,
                                       const Vec3& upper) {
-  const double lower_slope = std::max(kLeastSlope, -lower.dot(line.along_W));
-  const double upper_slope = std::max(kLeastSlope, upper.dot(line.along_W));
+  const double lower_slope = std::max(kMinSlope, -lower.dot(line.along_W));
+  const double upper_slope = std::max(kMinSlope, upper.dot(line.along_W));
   const Vec3 sum = upper_slope * lower + lower_slope * upper;
   const Vec3 across = sum - sum.dot(line.along_W) * line.along_W;
   const double size = across.norm();

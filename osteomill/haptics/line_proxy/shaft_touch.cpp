@@ -10,7 +10,7 @@ namespace {
 // The line is laid this much deeper than it is in balance, so that its contact is still found when it gets
 // shallower.
 constexpr double kMargin_voxels = 2.0;
-constexpr double kMostMargin_mm = 0.5;
+constexpr double kMaxMargin_mm = 0.5;
 constexpr double kMarginRate_mm_per_s = 10.0;
 // A device that moves changes the reaction as a spring so many times as stiff as the tip's at most.
 constexpr double kSlewStiffness = 2.0;
@@ -57,7 +57,7 @@ std::optional<ShaftTouch::Found> ShaftTouch::find(const Volume& volume, const Sh
   // Where the device has moved out by more than the margin, the push is undone bit by bit.
   const Vec3 pushed_mm = line.X_WL.position_mm - line.device_tip_W;
   const double full_margin_mm =
-      std::min(kMostMargin_mm, kMargin_voxels * volume.geometry().spacing_mm.minCoeff());
+      std::min(kMaxMargin_mm, kMargin_voxels * volume.geometry().spacing_mm.minCoeff());
   const double margin_mm = contact_ ? contact_->margin_mm : 0.0;
   const int tries = contact_ && !line.rest ? 3 : 1;
   for (int n = 0; n < tries; ++n) {

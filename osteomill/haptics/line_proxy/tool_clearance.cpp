@@ -31,9 +31,8 @@ void look(const Volume& volume, const Vec3& middle_W, const Vec3& radius_W, std:
   if (!in_bone(volume, middle_W + radius_W)) return;
   const double radius_mm = radius_W.norm();
   if (deepest) {
-    const double least_mm = deepest->depth_mm + kWorthIt_mm;
-    if (!(least_mm < radius_mm) || !in_bone(volume, middle_W + (1.0 - least_mm / radius_mm) * radius_W))
-      return;
+    const double min_mm = deepest->depth_mm + kWorthIt_mm;
+    if (!(min_mm < radius_mm) || !in_bone(volume, middle_W + (1.0 - min_mm / radius_mm) * radius_W)) return;
   }
   const double step_mm = 0.5 * volume.geometry().spacing_mm.minCoeff();
   Vec3 free_W = middle_W;

@@ -13,14 +13,14 @@ namespace {
 // More than the rounding of a place near the tool.
 constexpr double kClear_mm = 1e-6;
 
-KernelTool kernel_tool(const ContactTool& tool, const Penalty& penalty) {
+KernelTool kernel_tool(const ToolSignedDistance& tool, const Penalty& penalty) {
   const MillingTool& t = tool.tool();
   return {t.burr_radius_mm,
           t.shaft_radius_mm,
           t.shaft_length_mm,
-          ContactTool::burr_top_mm(t),
+          ToolSignedDistance::burr_top_mm(t),
           penalty.stiffness_N_per_mm3,
-          penalty.greatest_patch_mm2,
+          penalty.max_patch_mm2,
           penalty.reach_mm()};
 }
 
@@ -69,13 +69,13 @@ enum class Part : unsigned char { side, sphere, any };
 
 // Which part of the tool all points in a sphere meet, if they meet it at all.
 Part part_met(const KernelTool& tool, const Vec3& centre_T, double radius_mm) {
-  const double least_z = centre_T.z() - radius_mm, greatest_z = centre_T.z() + radius_mm;
+  const double min_z = centre_T.z() - radius_mm, max_z = centre_T.z() + radius_mm;
   const double beside_burr = std::max(tool.shaft_radius_mm, tool.burr_radius_mm + tool.reach_mm);
   const bool off_axis = centre_T.head<2>().norm() > radius_mm + kClear_mm;
-  if (off_axis && least_z > beside_burr && greatest_z < tool.shaft_length_mm - tool.shaft_radius_mm) {
+  if (off_axis && min_z > beside_burr && max_z < tool.shaft_length_mm - tool.shaft_radius_mm) {
     return Part::side;
   }
-  return greatest_z < -tool.reach_mm - kClear_mm ? Part::sphere : Part::any;
+  return max_z < -tool.reach_mm - kClear_mm ? Part::sphere : Part::any;
 }
 
 // Whether a sphere lies clear of the tool. Beside a corner of the shaft's end it may say no where it is
@@ -99,7 +99,7 @@ Vec3 centre_of(const BrickPoints::Bound& bound) {
 ToolContacts contacts_by_bricks(const PointShell& shell, const MillingTool& milling_tool, const Pose& X_WT,
                                 const Penalty& penalty) {
   const ToolFromGrid X_TG(shell, X_WT);
-  const ContactTool tool(milling_tool);
+  const ToolSignedDistance tool(milling_tool);
   const BrickPoints& points = shell.points();
   const double beyond_mm = penalty.reach_mm();
   const KernelTool shape = kernel_tool(tool, penalty);

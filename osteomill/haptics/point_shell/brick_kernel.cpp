@@ -59,7 +59,7 @@ struct Push {
 // and then no root is needed.
 HWY_INLINE Push push(const KernelTool& tool, M wanted, V distance, V area, V cosine, double curvature) {
   const V k = hn::Mul(constant(tool.stiffness_N_per_mm3), area);
-  const V patch = hn::Min(area, constant(tool.greatest_patch_mm2));
+  const V patch = hn::Min(area, constant(tool.max_patch_mm2));
   const V sine2 = hn::Max(hn::Zero(d), hn::Sub(constant(1), hn::Mul(cosine, cosine)));
   const V spread2 = hn::Mul(hn::Mul(constant(0.25), patch), sine2);
   const V mean = hn::Sub(hn::Neg(distance), hn::Mul(patch, constant(curvature / 24)));

@@ -14,7 +14,7 @@ struct KernelTool {
   /// Below this height on the axis a contact is the burr's.
   double burr_top_mm;
   double stiffness_N_per_mm3;
-  double greatest_patch_mm2;
+  double max_patch_mm2;
   /// How far outside the tool a point may still push.
   double reach_mm;
 };

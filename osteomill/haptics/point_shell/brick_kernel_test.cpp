@@ -86,7 +86,7 @@ TEST(BrickKernel, EveryInstructionSetGivesTheSameBitsAndThePlainSums) {
       if (n > 1) X_WT = {6 * random_vector(bits), quaternion_from_rotation_vector(3 * random_vector(bits))};
       const double patch_mm2 = n % 2 == 0 ? 0.0 : 2 * shell.lattice().cell_area_mm2();
       const Penalty penalty{20, patch_mm2};
-      const ToolContacts plain = contacts_by_octree(shell, ContactTool(tool), X_WT, penalty);
+      const ToolContacts plain = contacts_by_octree(shell, ToolSignedDistance(tool), X_WT, penalty);
       touched += plain.touching;
       std::vector<ToolContacts> fast;
       for (const std::int64_t target : targets) {

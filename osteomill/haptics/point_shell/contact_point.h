@@ -1,16 +1,16 @@
 #pragma once
 
 #include "osteomill/haptics/point_shell/contact_sum.h"
-#include "osteomill/haptics/point_shell/contact_tool.h"
 #include "osteomill/haptics/point_shell/penalty.h"
 #include "osteomill/haptics/point_shell/tool_from_grid.h"
+#include "osteomill/haptics/point_shell/tool_signed_distance.h"
 
 namespace osteomill::point_shell {
 
 /// Adds what one point of the shell, at `point_T` in the tool's frame, pushes: Eriksson 2012, 6.3. Safe in
 /// the haptic tick.
 inline void touch_point(const ShellPoint& point, const Vec3& point_T, const ToolFromGrid& X_TG,
-                        const ContactTool& tool, const Penalty& penalty, ToolContacts& contacts) {
+                        const ToolSignedDistance& tool, const Penalty& penalty, ToolContacts& contacts) {
   const std::optional<ToolDistance> distance = tool.distance(point_T);
   if (!distance) return;
   const double cosine = distance->outward_T.dot(X_TG.turn * normal_of(point));

@@ -45,8 +45,8 @@ SampledDistanceField fine_field() {
 }
 
 // The slow plain answer: every point of the shell.
-ToolContacts contacts_by_brute_force(const PointShell& shell, const ContactTool& tool, const Pose& X_WT,
-                                     const Penalty& penalty) {
+ToolContacts contacts_by_brute_force(const PointShell& shell, const ToolSignedDistance& tool,
+                                     const Pose& X_WT, const Penalty& penalty) {
   ToolContacts contacts;
   const Mat3 R_WT = X_WT.orientation.toRotationMatrix();
   shell.for_each_point([&](const Vec3& point_W, double area) {
@@ -85,15 +85,15 @@ GridGeometry turned_cube(int voxels, double spacing_mm) {
 TEST(OctreeContacts, FindsWhatLookingAtEveryPointFinds) {
   std::mt19937 bits(5);
   const Volume volume = shape_volume(turned_cube(60, 0.2), ball({0.3, 0.1, 0}, 5));
-  const ContactTool sampled(kTool, fine_field());
-  const ContactTool closed(kTool);
+  const ToolSignedDistance sampled(kTool, fine_field());
+  const ToolSignedDistance closed(kTool);
   for (const ShellRules& rules :
        {rules_of(Mode::paper, 1), rules_of(Mode::paper, 3), rules_of(Mode::steady, 2)}) {
     const PointShell shell(volume, rules);
     int touched = 0;
     for (int n = 0; n < 150; ++n) {
       const Pose X_WT = random_pose(bits, 7);
-      for (const ContactTool* tool : {&sampled, &closed}) {
+      for (const ToolSignedDistance* tool : {&sampled, &closed}) {
         const ToolContacts by_octree = contacts_by_octree(shell, *tool, X_WT, kOfPoints);
         const ToolContacts by_all = contacts_by_brute_force(shell, *tool, X_WT, kOfPoints);
         EXPECT_EQ(by_octree.touching, by_all.touching);
@@ -129,7 +129,7 @@ TEST(BrickContacts, AreTheOctreesToTheRounding) {
                               ? Pose{{0.02, 0.03, -2}, quaternion_from_rotation_vector({0.01, 0.02, 0})}
                               : random_pose(bits, 6);
         for (const Penalty& penalty : {kOfPoints, of_patches(shell)}) {
-          const ToolContacts plain = contacts_by_octree(shell, ContactTool(tool), X_WT, penalty);
+          const ToolContacts plain = contacts_by_octree(shell, ToolSignedDistance(tool), X_WT, penalty);
           const ToolContacts fast = contacts_by_bricks(shell, tool, X_WT, penalty);
           EXPECT_EQ(plain.touching, fast.touching);
           expect_near(fast.burr, plain.burr, 1e-9);
@@ -142,12 +142,12 @@ TEST(BrickContacts, AreTheOctreesToTheRounding) {
 
 // Force along the normal over kA pi (r - d) d^2, least and greatest of a slide over a plane.
 struct PlaneRatios {
-  double least = 1e9;
-  double greatest = 0;
+  double min = 1e9;
+  double max = 0;
   double sideways = 0;
 };
 
-PlaneRatios slide_over_plane(const ShellRules& rules, const ContactTool& tool, const Vec3& normal,
+PlaneRatios slide_over_plane(const ShellRules& rules, const ToolSignedDistance& tool, const Vec3& normal,
                              double depth_mm, double edge_voxels) {
   const Vec3 n = normal.normalized(), through(0.01, 0.02, -0.03);
   const Volume volume = shape_volume(centred_cube(48, 0.125), plane(through, n), edge_voxels);
@@ -159,8 +159,8 @@ PlaneRatios slide_over_plane(const ShellRules& rules, const ContactTool& tool, c
     const Pose X_WT{through + along + (1.5 - depth_mm) * n, smallest_rotation(Vec3::UnitZ(), n)};
     const Vec3 force = contacts_by_octree(shell, tool, X_WT, penalty).total().force_N;
     const double ratio = force.dot(n) / (20 * std::numbers::pi * (1.5 - depth_mm) * depth_mm * depth_mm);
-    ratios.least = std::min(ratios.least, ratio);
-    ratios.greatest = std::max(ratios.greatest, ratio);
+    ratios.min = std::min(ratios.min, ratio);
+    ratios.max = std::max(ratios.max, ratio);
     ratios.sideways = std::max(ratios.sideways, force.cross(n).norm() / force.norm());
   }
   return ratios;
@@ -170,49 +170,49 @@ const std::vector<Vec3> kNormals{{0, 0, 1},     {1, 0, 0},  {1, 1, 0},      {1, 
                                  {0.05, 0, -1}, {3, -2, 1}, {-0.4, 0.9, 2}, {0.37, 0.61, -0.2}};
 
 TEST(PlaneContact, SteadyIsTheAnalyticForceInEveryDirection) {
-  const ContactTool tool(kTool);
+  const ToolSignedDistance tool(kTool);
   for (const Vec3& normal : kNormals) {
     for (const double depth_mm : {0.125, 0.2, 0.4}) {
       const PlaneRatios r = slide_over_plane(rules_of(Mode::steady, 1), tool, normal, depth_mm, 2);
-      EXPECT_GT(r.least, 0.97) << normal.transpose() << " at " << depth_mm;
-      EXPECT_LT(r.greatest, 1.02) << normal.transpose() << " at " << depth_mm;
-      EXPECT_LT((r.greatest - r.least) / 2, 0.015);
+      EXPECT_GT(r.min, 0.97) << normal.transpose() << " at " << depth_mm;
+      EXPECT_LT(r.max, 1.02) << normal.transpose() << " at " << depth_mm;
+      EXPECT_LT((r.max - r.min) / 2, 0.015);
       EXPECT_LT(r.sideways, 0.01);
     }
   }
 }
 
 TEST(PlaneContact, SteadyHoldsAtScaleThreeAndOnOtherEdges) {
-  const ContactTool tool(kTool);
+  const ToolSignedDistance tool(kTool);
   for (const Vec3& normal : kNormals) {
     const PlaneRatios coarse = slide_over_plane(rules_of(Mode::steady, 3), tool, normal, 0.375, 2);
-    EXPECT_GT(coarse.least, 0.95) << normal.transpose();
-    EXPECT_LT(coarse.greatest, 1.05) << normal.transpose();
+    EXPECT_GT(coarse.min, 0.95) << normal.transpose();
+    EXPECT_LT(coarse.max, 1.05) << normal.transpose();
     const PlaneRatios wide = slide_over_plane(rules_of(Mode::steady, 1), tool, normal, 0.25, 4);
-    EXPECT_GT(wide.least, 0.98) << normal.transpose();
-    EXPECT_LT(wide.greatest, 1.02) << normal.transpose();
+    EXPECT_GT(wide.min, 0.98) << normal.transpose();
+    EXPECT_LT(wide.max, 1.02) << normal.transpose();
   }
   // An edge one voxel wide puts the isosurface itself up to 0.09 voxel off the plane where it follows an
   // axis.
   for (const Vec3& normal : {Vec3(1, 1, 0), Vec3(1, 1, 1), Vec3(1, 2, 3), Vec3(3, -2, 1)}) {
     const PlaneRatios sharp = slide_over_plane(rules_of(Mode::steady, 1), tool, normal, 0.25, 1);
-    EXPECT_GT(sharp.least, 0.96) << normal.transpose();
-    EXPECT_LT(sharp.greatest, 1.04) << normal.transpose();
+    EXPECT_GT(sharp.min, 0.96) << normal.transpose();
+    EXPECT_LT(sharp.max, 1.04) << normal.transpose();
   }
 }
 
 // What the paper's way gives: centres lie inside the bone, half a voxel and more, and are fewer where it
 // slopes.
 TEST(PlaneContact, PaperIsTooSoftByASlopeDependentPart) {
-  const ContactTool tool(kTool, fine_field());
+  const ToolSignedDistance tool(kTool, fine_field());
   const PlaneRatios straight = slide_over_plane(rules_of(Mode::paper, 1), tool, {0, 0, 1}, 0.25, 2);
-  EXPECT_NEAR(straight.least, 0.78, 0.04);
-  EXPECT_NEAR(straight.greatest, 0.78, 0.04);
+  EXPECT_NEAR(straight.min, 0.78, 0.04);
+  EXPECT_NEAR(straight.max, 0.78, 0.04);
   const PlaneRatios diagonal = slide_over_plane(rules_of(Mode::paper, 1), tool, {1, 1, 1}, 0.25, 2);
-  EXPECT_NEAR(diagonal.least, 0.43, 0.04);
-  EXPECT_NEAR(diagonal.greatest, 0.43, 0.04);
+  EXPECT_NEAR(diagonal.min, 0.43, 0.04);
+  EXPECT_NEAR(diagonal.max, 0.43, 0.04);
   const PlaneRatios coarse = slide_over_plane(rules_of(Mode::paper, 3), tool, {1, 1, 1}, 0.125, 2);
-  EXPECT_LT(coarse.least, 0.02);
+  EXPECT_LT(coarse.min, 0.02);
 }
 
 // Two spheres: the depth at an angle t off the line of centres integrates to
@@ -252,7 +252,7 @@ TEST(BallContact, PaperIsSofterButPushesOutwards) {
   std::mt19937 bits(10);
   const Volume volume = shape_volume(centred_cube(72, 0.125), ball({0, 0, 0}, 4));
   const PointShell shell(volume, rules_of(Mode::paper, 1));
-  const ContactTool tool(kTool, fine_field());
+  const ToolSignedDistance tool(kTool, fine_field());
   for (int n = 0; n < 100; ++n) {
     const Vec3 direction = random_vector(bits).normalized();
     const Pose X_WT{5.1 * direction, smallest_rotation(Vec3::UnitZ(), direction)};
@@ -267,7 +267,7 @@ TEST(BallContact, PaperIsSofterButPushesOutwards) {
 // One point, by itself: the derivative of its depth in the tool is n . dx + (r x n) . dw.
 TEST(ContactSum, ADerivativeRowIsTheDepthsOwn) {
   std::mt19937 bits(21);
-  const ContactTool sampled(kTool, fine_field());
+  const ToolSignedDistance sampled(kTool, fine_field());
   int tested = 0;
   for (int n = 0; n < 300; ++n) {
     const Pose X_WT = random_pose(bits, 3);
@@ -297,7 +297,7 @@ TEST(ContactSum, ADerivativeRowIsTheDepthsOwn) {
 TEST(ContactSum, TheDerivativeOfTheForceLacksOnlyTheTurningOfTheNormals) {
   const Volume volume = shape_volume(centred_cube(64, 0.125), ball({0, 0, -2.5}, 3));
   const PointShell shell(volume, rules_of(Mode::steady, 1));
-  const ContactTool tool(kTool);
+  const ToolSignedDistance tool(kTool);
   const Pose X_WT{{0.2, 0.1, 1.7}, quaternion_from_rotation_vector({0.3, 0.2, 0})};
   const ContactSum here = contacts_by_octree(shell, tool, X_WT, kOfPoints).total();
   Mat3 left_out = Mat3::Zero();
@@ -327,7 +327,7 @@ TEST(ContactSum, TheDerivativeOfTheForceLacksOnlyTheTurningOfTheNormals) {
 TEST(ContactSum, OnTheShaftTheLeftOutTermVanishesWithTheDepth) {
   const Volume volume = shape_volume(centred_cube(80, 0.1), plane({0, 0, 0.02}, {0, 0, 1}));
   const PointShell shell(volume, rules_of(Mode::steady, 1));
-  const ContactTool tool(kTool);
+  const ToolSignedDistance tool(kTool);
   const auto relative_error = [&](double depth_mm) {
     // The burr hangs free beyond the plane's border; the shaft lies along x.
     const Pose X_WT{{-6, 0, 1.02 - depth_mm}, smallest_rotation(Vec3::UnitZ(), Vec3::UnitX())};

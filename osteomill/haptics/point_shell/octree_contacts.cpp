@@ -9,8 +9,8 @@ namespace {
 // Whether one of the six face directions of the two boxes separates them. The nine directions across pairs of
 // edges would part a few more boxes; all that costs is a look at their points.
 bool is_apart(const ToolBox& tool_box, const PointShell::NodeBox& node, const ToolFromGrid& X_TG) {
-  const Vec3 tool_half = 0.5 * (tool_box.greatest_mm - tool_box.least_mm);
-  const Vec3 between = X_TG * node.middle_G - 0.5 * (tool_box.greatest_mm + tool_box.least_mm);
+  const Vec3 tool_half = 0.5 * (tool_box.max_mm - tool_box.min_mm);
+  const Vec3 between = X_TG * node.middle_G - 0.5 * (tool_box.max_mm + tool_box.min_mm);
   const Mat3 reach = X_TG.turn.cwiseAbs();
   const Vec3 along_tool = tool_half + reach * node.half_mm;
   if ((between.cwiseAbs().array() > along_tool.array()).any()) return true;
@@ -20,13 +20,13 @@ bool is_apart(const ToolBox& tool_box, const PointShell::NodeBox& node, const To
 
 }  // namespace
 
-ToolContacts contacts_by_octree(const PointShell& shell, const ContactTool& tool, const Pose& X_WT,
+ToolContacts contacts_by_octree(const PointShell& shell, const ToolSignedDistance& tool, const Pose& X_WT,
                                 const Penalty& penalty) {
   const ToolFromGrid X_TG(shell, X_WT);
   const BrickPoints& points = shell.points();
   ToolContacts contacts;
   const Vec3 reach_mm = Vec3::Constant(penalty.reach_mm());
-  const ToolBox box{tool.box().least_mm - reach_mm, tool.box().greatest_mm + reach_mm};
+  const ToolBox box{tool.box().min_mm - reach_mm, tool.box().max_mm + reach_mm};
   shell.octree().visit(
       [&](int level, int i, int j, int k) { return is_apart(box, shell.node_box(level, i, j, k), X_TG); },
       [&](int bi, int bj, int bk) {

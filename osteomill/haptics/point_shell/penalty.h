@@ -11,7 +11,7 @@ struct Penalty {
   double stiffness_N_per_mm3 = 1;
   /// 0 (paper): a point pushes with its own depth. Otherwise with the mean depth of the patch of surface that
   /// it stands for, a square of its area, but no larger than this.
-  double greatest_patch_mm2 = 0;
+  double max_patch_mm2 = 0;
 
   struct Push {
     double force_N;
@@ -20,7 +20,7 @@ struct Penalty {
   };
 
   /// How far outside the tool a point may lie and still push.
-  double reach_mm() const { return 0.5 * std::sqrt(greatest_patch_mm2); }
+  double reach_mm() const { return 0.5 * std::sqrt(max_patch_mm2); }
 
   /// The push of a point `depth_mm` deep in the tool (negative: outside it) that stands for `area_mm2` of
   /// surface; `cosine` is that between the surface's normal and the tool's, `curvature_per_mm` the sum of the
@@ -31,7 +31,7 @@ struct Penalty {
   /// slides on.
   Push push(double depth_mm, double area_mm2, double cosine, double curvature_per_mm) const {
     const double k = stiffness_N_per_mm3 * area_mm2;
-    const double patch_mm2 = std::min(area_mm2, greatest_patch_mm2);
+    const double patch_mm2 = std::min(area_mm2, max_patch_mm2);
     const double spread_mm = 0.5 * std::sqrt(patch_mm2 * std::max(0.0, 1 - cosine * cosine));
     const double mean_mm = depth_mm - patch_mm2 * curvature_per_mm / 24;
     if (mean_mm <= -spread_mm) return {0, 0};

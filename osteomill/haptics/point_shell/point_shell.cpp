@@ -75,8 +75,8 @@ PointShell::PointShell(const Volume& volume, const ShellRules& rules)
     chunks += (count_of(mask_of(bi, bj, bk, all_cells, {})) + PointChunk::kSlots - 1) / PointChunk::kSlots;
   });
   points_ = BrickPoints(masks_.size(), 2 * chunks + kSpareChunks);
-  old_points_.resize(kMostPointsOfBrick);
-  new_points_.resize(kMostPointsOfBrick);
+  old_points_.resize(kMaxPointsOfBrick);
+  new_points_.resize(kMaxPointsOfBrick);
   for_each_brick([&](int bi, int bj, int bk) { refresh_brick(bi, bj, bk, all_cells); });
 }
 

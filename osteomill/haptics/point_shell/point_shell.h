@@ -19,7 +19,7 @@ namespace osteomill::point_shell {
 class PointShell {
  public:
   static constexpr int kBrickCells = 8;
-  static constexpr std::size_t kMostPointsOfBrick = 512;
+  static constexpr std::size_t kMaxPointsOfBrick = 512;
 
   PointShell() = default;
   /// `volume` outlives the shell.

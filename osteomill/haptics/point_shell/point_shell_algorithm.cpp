@@ -13,7 +13,7 @@ namespace osteomill::point_shell {
 namespace {
 
 // What a tick may release by its length; a longer one (a machine that stood still) counts as this long.
-constexpr double kLongestTick_s = 5e-3;
+constexpr double kMaxTick_s = 5e-3;
 // In which a stretch that nothing holds any more falls to a third, if not sooner.
 constexpr double kReleaseTime_s = 0.1;
 // Of the turn by which a move of the device would be made at the tool's far end.
@@ -48,13 +48,13 @@ void PointShellAlgorithm::prepare(const Scene& scene) {
   penalty_.stiffness_N_per_mm3 = contact_stiffness_N_per_mm3(settings_, scene.tool);
   shell_ = PointShell(*scene.volume, settings_.shell);
   // Seen from a corner the surface in a cell is at most about twice a cell's side.
-  penalty_.greatest_patch_mm2 = settings_.patch_penalty ? 2 * shell_.lattice().cell_area_mm2() : 0;
+  penalty_.max_patch_mm2 = settings_.patch_penalty ? 2 * shell_.lattice().cell_area_mm2() : 0;
   if (settings_.closed_form_distance) {
-    tool_ = ContactTool(scene.tool);
+    tool_ = ToolSignedDistance(scene.tool);
   } else {
     const double spacing_mm =
         settings_.field_spacing_mm.value_or(SampledDistanceField::suitable_spacing_mm(scene.tool));
-    tool_ = ContactTool(scene.tool, SampledDistanceField(scene.tool, spacing_mm, penalty_.reach_mm()));
+    tool_ = ToolSignedDistance(scene.tool, SampledDistanceField(scene.tool, spacing_mm, penalty_.reach_mm()));
   }
   reset();
 }
@@ -93,7 +93,7 @@ Pose PointShellAlgorithm::released(const Pose& X_WT_start, const Pose& target, c
   if (!held_back_ || !(settings_.max_release_mm_s > 0) || !(settings_.max_release_rad_s > 0)) {
     return target;
   }
-  const double tick_s = std::clamp(dt_s, 0.0, kLongestTick_s);
+  const double tick_s = std::clamp(dt_s, 0.0, kMaxTick_s);
   const ToolMove device = move_between(X_WD_before_, X_WD);
   const double moved_mm = device.translation_mm.norm(), turned_rad = device.rotation_rad.norm();
   // A turn of the device may move the tool by what it moves the tool's far end, and a move turn it by a part

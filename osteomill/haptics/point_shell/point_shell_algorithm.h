@@ -3,10 +3,10 @@
 #include <vector>
 
 #include "osteomill/haptics/haptic_algorithm.h"
-#include "osteomill/haptics/point_shell/contact_tool.h"
 #include "osteomill/haptics/point_shell/penalty.h"
 #include "osteomill/haptics/point_shell/point_shell.h"
 #include "osteomill/haptics/point_shell/point_shell_settings.h"
+#include "osteomill/haptics/point_shell/tool_signed_distance.h"
 #include "osteomill/haptics/point_shell/virtual_coupling.h"
 
 namespace osteomill::point_shell {
@@ -46,7 +46,7 @@ class PointShellAlgorithm final : public HapticAlgorithm {
 
   Settings settings_;
   VirtualCoupling coupling_;
-  ContactTool tool_;
+  ToolSignedDistance tool_;
   PointShell shell_;
   Penalty penalty_;
 

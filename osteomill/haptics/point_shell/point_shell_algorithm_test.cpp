@@ -92,7 +92,7 @@ TEST(PointShellAlgorithm, PressedIntoAPlaneCouplingAndContactCarryTheSameForce) 
 struct Slide {
   double median_deg;
   double p99_deg;
-  double greatest_step_N;
+  double max_step_N;
 };
 
 Slide slide_round_ball(const Settings& settings, double spacing_mm) {
@@ -117,7 +117,7 @@ Slide slide_round_ball(const Settings& settings, double spacing_mm) {
     const Vec3 force = step_at(angle, kDepth).wrench.force_N;
     errors.push_back(std::acos(std::min(1.0, force.normalized().dot(direction(angle)))) * 180 /
                      std::numbers::pi);
-    slide.greatest_step_N = std::max(slide.greatest_step_N, (force - last).norm());
+    slide.max_step_N = std::max(slide.max_step_N, (force - last).norm());
     last = force;
   }
   std::sort(errors.begin(), errors.end());
@@ -133,7 +133,7 @@ TEST(PointShellAlgorithm, SteadySlidesRoundABallWithoutARattle) {
     const Slide slide = slide_round_ball(settings, spacing_mm);
     EXPECT_LE(slide.median_deg, 0.7) << spacing_mm;
     EXPECT_LE(slide.p99_deg, 2.0) << spacing_mm;
-    EXPECT_LE(slide.greatest_step_N, 0.0045) << spacing_mm;
+    EXPECT_LE(slide.max_step_N, 0.0045) << spacing_mm;
   }
 }
 
@@ -270,7 +270,7 @@ TEST(PointShellAlgorithm, TurningScanAndPosesTogetherTurnsTheWrench) {
   PointShellAlgorithm straight(full_resolution(Mode::steady)), rotated(full_resolution(Mode::steady));
   straight.prepare({&volume, kTool});
   rotated.prepare({&turned_volume, kTool});
-  double greatest = 0;
+  double max = 0;
   for (int n = 0; n < 300; ++n) {
     const Pose X_WD{{0.8, 0.004 * n - 0.6, 4.3 - 0.004 * n},
                     quaternion_from_rotation_vector({0.2, 0.001 * n, 0})};
@@ -278,9 +278,9 @@ TEST(PointShellAlgorithm, TurningScanAndPosesTogetherTurnsTheWrench) {
     const HapticStep there = rotated.step(turn * X_WD, kTick_s);
     EXPECT_LT((there.wrench.force_N - turn.orientation * here.wrench.force_N).norm(), 1e-4);
     EXPECT_LT((there.wrench.torque_Nmm - turn.orientation * here.wrench.torque_Nmm).norm(), 1e-3);
-    greatest = std::max(greatest, here.wrench.force_N.norm());
+    max = std::max(max, here.wrench.force_N.norm());
   }
-  EXPECT_GT(greatest, 0.5);
+  EXPECT_GT(max, 0.5);
 }
 
 std::vector<HapticStep> run_with_milling(const Settings& settings) {

@@ -84,12 +84,12 @@ void ShellLattice::prefetch_rows(const VoxelBox& nodes) const {
 
 bool ShellLattice::is_deep_in_bone(int bi, int bj, int bk) const {
   if (stride_ != 1 || group_ != 1) return false;
-  const BrickRanges& bricks = volume_->bricks();
+  const BlockRanges& bricks = volume_->bricks();
   const auto& dims = bricks.dims();
   if (bi < 1 || bj < 1 || bk < 1 || bi + 1 >= dims[0] || bj + 1 >= dims[1] || bk + 1 >= dims[2]) return false;
   // A brick's range takes the next layer of voxels above in, but not the one below.
-  return bricks.at(bi, bj, bk).least > bone_above_ && bricks.at(bi - 1, bj, bk).least > bone_above_ &&
-         bricks.at(bi, bj - 1, bk).least > bone_above_ && bricks.at(bi, bj, bk - 1).least > bone_above_;
+  return bricks.at(bi, bj, bk).min > bone_above_ && bricks.at(bi - 1, bj, bk).min > bone_above_ &&
+         bricks.at(bi, bj - 1, bk).min > bone_above_ && bricks.at(bi, bj, bk - 1).min > bone_above_;
 }
 
 VoxelBox ShellLattice::nodes_touched_by(const VoxelBox& voxels) const {

@@ -6,11 +6,11 @@
 
 namespace osteomill::point_shell {
 
-ToolMove limited(const ToolMove& move, double greatest_mm, double greatest_rad) {
+ToolMove limited(const ToolMove& move, double max_mm, double max_rad) {
   const double length_mm = move.translation_mm.norm(), angle_rad = move.rotation_rad.norm();
   double factor = 1;
-  if (greatest_mm > 0 && length_mm > greatest_mm) factor = greatest_mm / length_mm;
-  if (greatest_rad > 0 && angle_rad > greatest_rad) factor = std::min(factor, greatest_rad / angle_rad);
+  if (max_mm > 0 && length_mm > max_mm) factor = max_mm / length_mm;
+  if (max_rad > 0 && angle_rad > max_rad) factor = std::min(factor, max_rad / angle_rad);
   return {factor * move.translation_mm, factor * move.rotation_rad};
 }
 

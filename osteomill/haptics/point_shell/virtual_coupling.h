@@ -14,7 +14,7 @@ struct VirtualCoupling {
 
 /// The move cut short so that neither part exceeds its limit; both by the same factor, so that a tool that
 /// slides along the bone while it turns stays on it. A limit of 0 is none.
-ToolMove limited(const ToolMove& move, double greatest_mm, double greatest_rad);
+ToolMove limited(const ToolMove& move, double max_mm, double max_rad);
 
 /// The coupling's wrench as it acts on the hand that holds the device at `X_WD` (on the tool it is the
 /// opposite).

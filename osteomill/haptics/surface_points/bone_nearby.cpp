@@ -17,9 +17,9 @@ bool bone_near_disc(const Volume& volume, const Vec3& centre_W, const Vec3& axis
     const double extent =
         radius_mm * std::sqrt(std::max(0.0, 1 - axis[i] * axis[i])) / geometry.spacing_mm[i] + 1e-6;
     // Density falls off within a voxel beyond the border, so a disc there asks the border's bricks.
-    const double greatest = geometry.dims[n] - 1;
+    const double max = geometry.dims[n] - 1;
     const auto brick = [&](double voxel) {
-      return static_cast<int>(std::clamp(voxel, 0.0, greatest)) / BrickRanges::kBrickVoxels;
+      return static_cast<int>(std::clamp(voxel, 0.0, max)) / BlockRanges::kBrickVoxels;
     };
     first[n] = brick(std::floor(centre[i] - extent));
     last[n] = brick(std::floor(centre[i] + extent));
@@ -27,7 +27,7 @@ bool bone_near_disc(const Volume& volume, const Vec3& centre_W, const Vec3& axis
   for (int k = first[2]; k <= last[2]; ++k) {
     for (int j = first[1]; j <= last[1]; ++j) {
       for (int i = first[0]; i <= last[0]; ++i) {
-        if (static_cast<double>(volume.bricks().at(i, j, k).greatest) > volume.isovalue()) return true;
+        if (static_cast<double>(volume.bricks().at(i, j, k).max) > volume.isovalue()) return true;
       }
     }
   }

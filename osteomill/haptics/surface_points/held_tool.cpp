@@ -13,7 +13,7 @@ constexpr double kSoftness = 1e-3;
 constexpr double kSettled_mm = 1e-4;
 // An overlap is undone by this much a stride: undone at once, a jammed tool would be thrown from wall to
 // wall.
-constexpr double kGreatestRise_mm = 0.05;
+constexpr double kMaxRise_mm = 0.05;
 // With bone in the way, more strides than this bring a jammed tool no nearer.
 constexpr int kStridesInContact = 2;
 
@@ -29,11 +29,11 @@ void HeldTool::prepare(const Volume& volume, const MillingTool& tool, int rings,
 
 void HeldTool::set_limits() {
   limits_.clear();
-  for (const ToolContact& contact : contacts_.find(X_WT_)) {
+  for (const RayContact& contact : contacts_.find(X_WT_)) {
     Limit limit;
     limit.along = contact.normal_W;
     limit.about = (contact.point_W - X_WT_.position_mm).cross(contact.normal_W);
-    limit.gap_mm = std::max(contact.gap_mm, -kGreatestRise_mm);
+    limit.gap_mm = std::max(contact.gap_mm, -kMaxRise_mm);
     limit.response = 1 / (1 + limit.about.squaredNorm() / turn_weight_mm2_ + kSoftness);
     limits_.push_back(limit);
   }

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "osteomill/haptics/surface_points/tool_contacts.h"
+#include "osteomill/haptics/surface_points/ray_contacts.h"
 
 namespace osteomill::surface_points {
 
@@ -45,7 +45,7 @@ class HeldTool {
   void set_limits();
   bool limit_move(Move& move);
 
-  SurfaceContacts contacts_;
+  RayContacts contacts_;
   std::vector<Limit> limits_;
   double length_mm_ = 0;
   // What a turn costs against a shift, mm^2: the square of half the tool's length.

@@ -16,7 +16,7 @@ constexpr double kPrior = 1e-3;
 }  // namespace
 
 RayFan make_ray_fan(std::vector<Vec3> directions, double angle_rad) {
-  if (directions.size() > RayFan::kMostRays) throw std::invalid_argument("surface-points: too many rays");
+  if (directions.size() > RayFan::kMaxRays) throw std::invalid_argument("surface-points: too many rays");
   RayFan fan;
   fan.directions = std::move(directions);
   fan.neighbours.resize(fan.directions.size());

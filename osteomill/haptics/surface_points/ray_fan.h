@@ -10,8 +10,8 @@ namespace osteomill::surface_points {
 
 /// Directions from one centre, and which of them lie side by side.
 struct RayFan {
-  static constexpr std::size_t kMostRays = 64;
-  /// Unit vectors, at most `kMostRays`.
+  static constexpr std::size_t kMaxRays = 64;
+  /// Unit vectors, at most `kMaxRays`.
   std::vector<Vec3> directions;
   std::vector<std::vector<std::size_t>> neighbours;
 };
@@ -21,7 +21,7 @@ struct RayFan {
 RayFan make_ray_fan(std::vector<Vec3> directions, double angle_rad);
 
 /// Where bone is met along the rays of a fan, as distances from its centre (mm; infinite where it is not).
-using RayDistances = std::array<double, RayFan::kMostRays>;
+using RayDistances = std::array<double, RayFan::kMaxRays>;
 
 /// The direction from the centre to the nearest point of a surface that ray `n` and its neighbours meet,
 /// taken to be flat there: 1 / distance is then linear in the direction. With one ray met, that ray. An

@@ -37,11 +37,11 @@ TEST(RayFan, OnAPlaneTheNearestDirectionIsItsNormal) {
   for (const Vec3& normal : {Vec3(0.1, 0.2, 1), Vec3(-0.5, 0.3, 0.4), Vec3(1, 1, 0.9)}) {
     const Vec3 n = normal.normalized();
     const RayDistances distances = distances_to_plane(fan, n, 1.3);
-    std::size_t least = 0;
+    std::size_t min = 0;
     for (std::size_t m = 0; m < fan.directions.size(); ++m) {
-      if (distances[m] < distances[least]) least = m;
+      if (distances[m] < distances[min]) min = m;
     }
-    const Vec3 nearest = nearest_direction(fan.directions, fan, distances, least, Vec3::Zero());
+    const Vec3 nearest = nearest_direction(fan.directions, fan, distances, min, Vec3::Zero());
     EXPECT_LT((nearest - n).norm(), 1e-3);
   }
 }
@@ -69,7 +69,7 @@ TEST(RayFan, AnAxisKeepsItAcross) {
 }
 
 TEST(RayFan, TooManyRaysAreRefused) {
-  EXPECT_THROW(make_ray_fan(std::vector<Vec3>(RayFan::kMostRays + 1, Vec3::UnitX()), 1),
+  EXPECT_THROW(make_ray_fan(std::vector<Vec3>(RayFan::kMaxRays + 1, Vec3::UnitX()), 1),
                std::invalid_argument);
 }
 

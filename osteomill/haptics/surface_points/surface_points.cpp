@@ -159,7 +159,7 @@ double SurfacePoints::pushed_at_mm(const Fan& ring, const Quat& orientation, con
 Vec3 SurfacePoints::soften(const Vec3& force_N) const {
   const double k = settings_.stiffness_N_per_mm;
   const double r = tool_.burr_radius_mm;
-  const double slope = settings_.greatest_stiffness_N_per_mm;
+  const double slope = settings_.max_stiffness_N_per_mm;
   const double force = force_N.norm();
   if (force * k <= slope * slope * r) return force_N;
   const double force_at_slope = slope * slope * r / k;
@@ -208,7 +208,7 @@ HapticStep SurfacePoints::step(const Pose& X_WD, double dt_s) {
   const ShaftSum shaft = shaft_sum(X_WD, X_WH);
   result.contacts = sphere_.contacts + shaft.contacts;
   result.wrench.torque_Nmm = shaft.mean.torque_Nmm;
-  const double beyond = std::min(settings_.greatest_stiffness_N_per_mm, 0.5 * settings_.stiffness_N_per_mm);
+  const double beyond = std::min(settings_.max_stiffness_N_per_mm, 0.5 * settings_.stiffness_N_per_mm);
   result.wrench.force_N = soften(sphere_.force_W_N) + beyond * sphere_.held_back_W_mm;
   result.X_WT = X_WH;
   if (settings_.hold_tool) {

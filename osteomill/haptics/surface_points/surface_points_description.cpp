@@ -108,7 +108,7 @@ const std::vector<Field>& fields() {
            .steady = 3,
            .meaning = "Where a sphere on a plane would be stiffer than this, the force is made to grow with "
                       "this stiffness"},
-          [](Settings & s) -> auto& { return s.greatest_stiffness_N_per_mm; }),
+          [](Settings & s) -> auto& { return s.max_stiffness_N_per_mm; }),
       setting_field<Settings>(
           {.name = "bite",
            .unit = "voxels",

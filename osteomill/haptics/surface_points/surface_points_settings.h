@@ -16,7 +16,7 @@ struct Settings {
   bool slice_levers = false;
   bool hold_tool = false;
   int rings_per_slice = 0;
-  double greatest_stiffness_N_per_mm = 0;
+  double max_stiffness_N_per_mm = 0;
   /// In voxels of the smallest spacing, and at most `kMaxBite_mm`: bone that is denser than the isovalue lies
   /// up to a voxel behind the surface.
   double bite_voxels = 0;

@@ -54,7 +54,7 @@ TEST(SurfacePointsSteady, OnAPlaneTheForceIsTheIntegralOverTheSphere) {
   const Vec3 normal = Vec3(0.3, 0.2, 1).normalized();
   const Volume volume = slope(normal);
   Settings settings = steady();
-  settings.greatest_stiffness_N_per_mm = 1e9;
+  settings.max_stiffness_N_per_mm = 1e9;
   auto algorithm = prepared(volume, settings);
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> unit(-0.5, 0.5);
@@ -81,15 +81,15 @@ TEST(SurfacePointsSteady, TheContactIsNeverStifferThanAllowed) {
   settings.contact_damping_s_per_mm = 0;
   auto algorithm = prepared(volume, settings);
   double before = 0;
-  double least = 1e9;
+  double min = 1e9;
   for (int n = 0; n < 400; ++n) {
     const double force = algorithm.step({{0, 0, 1.6 - 0.01 * n}, Quat::Identity()}, kDt).wrench.force_N.z();
     // 24 vertices, not a smooth sphere: half as stiff again where four of them touch at once.
-    EXPECT_LT(force - before, 0.01 * 1.5 * settings.greatest_stiffness_N_per_mm) << n;
-    if (n > 60) least = std::min(least, force - before);
+    EXPECT_LT(force - before, 0.01 * 1.5 * settings.max_stiffness_N_per_mm) << n;
+    if (n > 60) min = std::min(min, force - before);
     before = force;
   }
-  EXPECT_GT(least, 0.005);  // it always pushes back harder, centre inside or not
+  EXPECT_GT(min, 0.005);  // it always pushes back harder, centre inside or not
   EXPECT_GT(before, 5.0);
 }
 

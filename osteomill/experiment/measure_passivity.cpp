@@ -1,4 +1,4 @@
-#include "osteomill/experiment/measure_stability.h"
+#include "osteomill/experiment/measure_passivity.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,9 +15,9 @@ constexpr const char* kStiffnessOption = "stiffness";
 
 }  // namespace
 
-std::vector<StabilityCase> stability_cases(const std::vector<AlgorithmDescription>& algorithms,
+std::vector<PassivityCase> passivity_cases(const std::vector<AlgorithmDescription>& algorithms,
                                            const std::vector<Mode>& modes) {
-  std::vector<StabilityCase> cases;
+  std::vector<PassivityCase> cases;
   for (const Mode mode : modes) {
     for (const AlgorithmDescription& algorithm : algorithms) {
       if (setting_of_option(algorithm, kStiffnessOption) == nullptr) continue;
@@ -31,10 +31,9 @@ std::vector<StabilityCase> stability_cases(const std::vector<AlgorithmDescriptio
 
 Volume flat_wall(const MillingTool& tool) {
   constexpr double kMargin_mm = 0.5, kAbove_mm = 1, kEdge_voxels = 2;
-  constexpr double kVoxelsToTheRadius = 12, kLeastVoxel_mm = 0.05, kMostVoxel_mm = 0.5;
+  constexpr double kVoxelsToTheRadius = 12, kMinVoxel_mm = 0.05, kMaxVoxel_mm = 0.5;
   constexpr float kIsovalue = 500;
-  const double spacing_mm =
-      std::clamp(tool.burr_radius_mm / kVoxelsToTheRadius, kLeastVoxel_mm, kMostVoxel_mm);
+  const double spacing_mm = std::clamp(tool.burr_radius_mm / kVoxelsToTheRadius, kMinVoxel_mm, kMaxVoxel_mm);
   // Deeper than the handle is ever pressed, be it the burr's centre that is felt.
   const double thick_mm = tool.burr_radius_mm + 4;
   const double half_mm = tool.burr_radius_mm + kMargin_mm;
@@ -57,7 +56,7 @@ Volume flat_wall(const MillingTool& tool) {
   return Volume(DensityGrid(geometry, std::move(densities)), kIsovalue);
 }
 
-StabilityRow measure_stability(const StabilityCase& setup, const Volume& wall, const MillingTool& tool,
+PassivityRow measure_passivity(const PassivityCase& setup, const Volume& wall, const MillingTool& tool,
                                const HapticSettings& haptics, const HandleSettings& handle, double tick_s) {
   WallPress press;
   press.handle = handle;

@@ -1,4 +1,4 @@
-#include "osteomill/experiment/measure_stability.h"
+#include "osteomill/experiment/measure_passivity.h"
 
 #include <cmath>
 #include <limits>
@@ -66,7 +66,7 @@ double exact_limit_N_per_mm(const WallPress& press) {
 }
 
 TEST(Stability, AnIdealSpringKeepsToTheRule) {
-  for (const StabilityCase& setup : stability_cases({algorithm_named("line-proxy")}, {Mode::steady})) {
+  for (const PassivityCase& setup : passivity_cases({algorithm_named("line-proxy")}, {Mode::steady})) {
     const WallPress press = device(setup.damping_Ns_per_mm, setup.delay_s);
     const StiffnessLimit limit = ideal_limit(press);
     const double rule = passive_stiffness_rule_N_per_mm(setup.damping_Ns_per_mm, 1e-3, setup.delay_s);

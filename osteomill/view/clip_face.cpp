@@ -1,4 +1,4 @@
-#include "osteomill/view/cut_face.h"
+#include "osteomill/view/clip_face.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,7 +20,7 @@ std::array<Vec3, 8> corners_of(const GridGeometry& geometry) {
 }
 
 // Where the edges of the grid's box cross the plane.
-std::vector<Vec3> crossings(const GridGeometry& geometry, const CutPlane& plane) {
+std::vector<Vec3> crossings(const GridGeometry& geometry, const ClipPlane& plane) {
   const std::array<Vec3, 8> corners = corners_of(geometry);
   std::vector<Vec3> found;
   for (std::size_t a = 0; a < 8; ++a) {
@@ -39,7 +39,7 @@ std::vector<Vec3> crossings(const GridGeometry& geometry, const CutPlane& plane)
 
 }  // namespace
 
-GreyWindow grey_window_of(const DensityGrid& grid, double surroundings_density) {
+WindowLevel window_level_of(const DensityGrid& grid, double surroundings_density) {
   std::vector<float> sample;
   constexpr std::size_t kEvery = 37;
   for (std::size_t n = 0; n < grid.densities().size(); n += kEvery) sample.push_back(grid.densities()[n]);
@@ -59,27 +59,28 @@ std::array<double, 2> extent_along(const GridGeometry& geometry, const Vec3& nor
   return extent;
 }
 
-CutFace cut_face(const DensityGrid& grid, const CutPlane& plane, const GreyWindow& window, int most_pixels) {
+ClipFace clip_face(const DensityGrid& grid, const ClipPlane& plane, const WindowLevel& window,
+                   int max_pixels) {
   const std::vector<Vec3> border = crossings(grid.geometry(), plane);
   if (border.size() < 3) return {};
   // Any two directions in the plane.
   const Vec3 some = std::abs(plane.normal_W.z()) < 0.9 ? Vec3::UnitZ() : Vec3::UnitY();
   const Vec3 across = some.cross(plane.normal_W).normalized();
   const Vec3 along = plane.normal_W.cross(across);
-  Eigen::Vector2d least(1e300, 1e300);
-  Eigen::Vector2d greatest(-1e300, -1e300);
+  Eigen::Vector2d min(1e300, 1e300);
+  Eigen::Vector2d max(-1e300, -1e300);
   for (const Vec3& point : border) {
     const Eigen::Vector2d place(across.dot(point), along.dot(point));
-    least = least.cwiseMin(place);
-    greatest = greatest.cwiseMax(place);
+    min = min.cwiseMin(place);
+    max = max.cwiseMax(place);
   }
-  const Eigen::Vector2d size_mm = greatest - least;
+  const Eigen::Vector2d size_mm = max - min;
   const double pixel_mm =
-      std::max(grid.geometry().spacing_mm.minCoeff(), size_mm.maxCoeff() / (most_pixels - 1));
-  CutFace face;
+      std::max(grid.geometry().spacing_mm.minCoeff(), size_mm.maxCoeff() / (max_pixels - 1));
+  ClipFace face;
   face.width = std::max(2, static_cast<int>(size_mm.x() / pixel_mm) + 1);
   face.height = std::max(2, static_cast<int>(size_mm.y() / pixel_mm) + 1);
-  const Vec3 first = plane.offset_mm * plane.normal_W + least.x() * across + least.y() * along;
+  const Vec3 first = plane.offset_mm * plane.normal_W + min.x() * across + min.y() * along;
   const auto at = [&](int x, int y) -> Vec3 { return first + pixel_mm * (x * across + y * along); };
   face.corners_W = {at(0, 0), at(face.width - 1, 0), at(face.width - 1, face.height - 1),
                     at(0, face.height - 1)};

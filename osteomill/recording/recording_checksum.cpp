@@ -1,4 +1,4 @@
-#include "osteomill/recording/recording_seal.h"
+#include "osteomill/recording/recording_checksum.h"
 
 #include <fstream>
 #include <string>
@@ -34,7 +34,7 @@ std::string seal_line(unsigned long crc) {
 
 }  // namespace
 
-void seal_recording(const fs::path& path) {
+void write_checksum(const fs::path& path) {
   std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
   file.seekg(kUserBlockBytes);
   const std::string line = seal_line(crc32_of_rest(file));
@@ -45,13 +45,13 @@ void seal_recording(const fs::path& path) {
   if (!file) throw InputError(path.string(), "cannot be written to its end (is the disk full?)");
 }
 
-Seal check_seal(const fs::path& path) {
+Checksum check_checksum(const fs::path& path) {
   std::ifstream in(path, std::ios::binary);
   if (!in) throw InputError(path.string(), "cannot be read");
   std::string block(kUserBlockBytes, '\0');
-  if (!in.read(block.data(), kUserBlockBytes) || !block.starts_with(kStart)) return Seal::none;
+  if (!in.read(block.data(), kUserBlockBytes) || !block.starts_with(kStart)) return Checksum::none;
   const std::string line = seal_line(crc32_of_rest(in));
-  return block.starts_with(line) ? Seal::intact : Seal::broken;
+  return block.starts_with(line) ? Checksum::intact : Checksum::broken;
 }
 
 }  // namespace osteomill

@@ -1,4 +1,4 @@
-#include "osteomill/volume/brick_ranges.h"
+#include "osteomill/volume/block_ranges.h"
 
 #include <random>
 
@@ -19,36 +19,36 @@ DensityGrid random_grid() {
   return DensityGrid(geometry, densities);
 }
 
-void expect_ranges_hold(const BrickRanges& bricks, const DensityGrid& grid, bool exact) {
+void expect_ranges_hold(const BlockRanges& bricks, const DensityGrid& grid, bool exact) {
   for (int bk = 0; bk < bricks.dims()[2]; ++bk) {
     for (int bj = 0; bj < bricks.dims()[1]; ++bj) {
       for (int bi = 0; bi < bricks.dims()[0]; ++bi) {
-        float least = 1e9f, greatest = -1e9f;
+        float min = 1e9f, max = -1e9f;
         for (int k = 8 * bk; k <= 8 * bk + 8; ++k)
           for (int j = 8 * bj; j <= 8 * bj + 8; ++j)
             for (int i = 8 * bi; i <= 8 * bi + 8; ++i) {
               if (!grid.contains({i, j, k})) continue;
-              least = std::min(least, grid[{i, j, k}]);
-              greatest = std::max(greatest, grid[{i, j, k}]);
+              min = std::min(min, grid[{i, j, k}]);
+              max = std::max(max, grid[{i, j, k}]);
             }
-        EXPECT_EQ(bricks.at(bi, bj, bk).least, least);
+        EXPECT_EQ(bricks.at(bi, bj, bk).min, min);
         if (exact) {
-          EXPECT_EQ(bricks.at(bi, bj, bk).greatest, greatest);
+          EXPECT_EQ(bricks.at(bi, bj, bk).max, max);
         }
-        EXPECT_GE(bricks.at(bi, bj, bk).greatest, greatest);
+        EXPECT_GE(bricks.at(bi, bj, bk).max, max);
       }
     }
   }
 }
 
-TEST(BrickRanges, AreTheExtremesOfEachBrickAndItsUpperNeighbours) {
+TEST(BlockRanges, AreTheExtremesOfEachBrickAndItsUpperNeighbours) {
   const DensityGrid grid = random_grid();
-  const BrickRanges bricks(grid);
+  const BlockRanges bricks(grid);
   EXPECT_EQ(bricks.dims(), (std::array<int, 3>{3, 1, 4}));
   expect_ranges_hold(bricks, grid, true);
 }
 
-TEST(BrickRanges, TakeAWholeRowInAsOneByOne) {
+TEST(BlockRanges, TakeAWholeRowInAsOneByOne) {
   Volume volume(random_grid(), 500);
   const std::vector<int> columns{0, 1, 7, 8, 11, 15, 16, 18};
   for (const int j : {0, 5}) {
@@ -64,7 +64,7 @@ TEST(BrickRanges, TakeAWholeRowInAsOneByOne) {
   }
 }
 
-TEST(BrickRanges, HoldWhileDensitiesFallAndAreExactAfterARefresh) {
+TEST(BlockRanges, HoldWhileDensitiesFallAndAreExactAfterARefresh) {
   Volume volume(random_grid(), 500);
   const VoxelBox box{{6, 2, 7}, {17, 7, 16}};
   for (int k = box.first.k; k <= box.last.k; ++k)

@@ -1,4 +1,4 @@
-#include "osteomill/experiment/stability_figure.h"
+#include "osteomill/experiment/passivity_figure.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +17,7 @@ constexpr double kWidth_px = 1150;
 constexpr double kPanelHeight_px = 330;
 constexpr double kTop_px = 50;
 
-double damping_Ns_per_m(const StabilityRow& row) {
+double damping_Ns_per_m(const PassivityRow& row) {
   return 1e3 * row.setup.damping_Ns_per_mm;
 }
 
@@ -26,8 +26,8 @@ struct Axes {
   std::vector<double> delays_s;
   std::vector<AlgorithmId> algorithms;
   std::vector<double> dampings_Ns_per_m;
-  double least_N_per_mm = 1;
-  double greatest_N_per_mm = 1;
+  double min_N_per_mm = 1;
+  double max_N_per_mm = 1;
 };
 
 template <typename T>
@@ -35,17 +35,17 @@ void add_once(std::vector<T>& all, const T& value) {
   if (std::find(all.begin(), all.end(), value) == all.end()) all.push_back(value);
 }
 
-Axes axes_of(std::span<const StabilityRow> rows) {
+Axes axes_of(std::span<const PassivityRow> rows) {
   Axes axes;
-  for (const StabilityRow& row : rows) {
+  for (const PassivityRow& row : rows) {
     add_once(axes.modes, row.setup.mode);
     add_once(axes.delays_s, row.setup.delay_s);
     add_once(axes.algorithms, row.setup.algorithm.id);
     add_once(axes.dampings_Ns_per_m, damping_Ns_per_m(row));
     for (const double stiffness : {row.rule_N_per_mm, row.limit.felt_N_per_mm}) {
       if (!(stiffness > 0)) continue;
-      axes.least_N_per_mm = std::min(axes.least_N_per_mm, stiffness);
-      axes.greatest_N_per_mm = std::max(axes.greatest_N_per_mm, stiffness);
+      axes.min_N_per_mm = std::min(axes.min_N_per_mm, stiffness);
+      axes.max_N_per_mm = std::max(axes.max_N_per_mm, stiffness);
     }
   }
   std::sort(axes.dampings_Ns_per_m.begin(), axes.dampings_Ns_per_m.end());
@@ -54,11 +54,11 @@ Axes axes_of(std::span<const StabilityRow> rows) {
 
 // Damping, felt stiffness or '?' where none was passive, the same where even the stiffest was, damping, rule.
 // Each algorithm a little aside, since several follow the rule.
-std::string curve_data(std::span<const StabilityRow> rows, const AlgorithmId& algorithm, double aside,
+std::string curve_data(std::span<const PassivityRow> rows, const AlgorithmId& algorithm, double aside,
                        Mode mode, double delay_s) {
   std::string data;
-  for (const StabilityRow& row : rows) {
-    const StabilityCase& setup = row.setup;
+  for (const PassivityRow& row : rows) {
+    const PassivityCase& setup = row.setup;
     if (setup.algorithm.id != algorithm || setup.mode != mode || setup.delay_s != delay_s) continue;
     const std::string felt = fmt::format("{:.6g}", row.limit.felt_N_per_mm);
     data += fmt::format("{:.6g} {} {} {:.6g} {:.6g}\n", aside * damping_Ns_per_m(row),
@@ -81,7 +81,7 @@ std::string frame(std::size_t column, std::size_t row, const Axes& axes, double 
       (top - kPanelHeight_px + below_px) / height_px, name_of(axes.modes[row]), 1e3 * axes.delays_s[column]);
 }
 
-std::string panel(std::span<const StabilityRow> rows, std::size_t column, std::size_t row, const Axes& axes,
+std::string panel(std::span<const PassivityRow> rows, std::size_t column, std::size_t row, const Axes& axes,
                   const TemporaryFolder& work) {
   std::string curves, rule;
   for (std::size_t n = 0; n < axes.algorithms.size(); ++n) {
@@ -126,14 +126,14 @@ std::string common(const Axes& axes, double height_px) {
              "'Felt at the "
              "limit (N/mm)'\nset xlabel 'Damping of the device (N s/m)'\n",
              axes.dampings_Ns_per_m.front() / 1.3, 1.3 * axes.dampings_Ns_per_m.back(),
-             std::pow(10.0, std::floor(std::log10(axes.least_N_per_mm))),
-             std::pow(10.0, std::ceil(std::log10(axes.greatest_N_per_mm))), tics) +
+             std::pow(10.0, std::floor(std::log10(axes.min_N_per_mm))),
+             std::pow(10.0, std::ceil(std::log10(axes.max_N_per_mm))), tics) +
          legend;
 }
 
 }  // namespace
 
-Figure draw_stability_figure(std::span<const StabilityRow> rows, const std::filesystem::path& folder) {
+Figure draw_passivity_figure(std::span<const PassivityRow> rows, const std::filesystem::path& folder) {
   const TemporaryFolder work;
   const Axes axes = axes_of(rows);
   const double height_px = kTop_px + kPanelHeight_px * static_cast<double>(axes.modes.size());

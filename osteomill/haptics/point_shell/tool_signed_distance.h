@@ -10,12 +10,12 @@ namespace osteomill::point_shell {
 
 /// The tool as the shell's points meet it ("SPO", Eriksson 2012, 6.1): a sampled signed distance field, or
 /// the same distance in closed form. Safe in the haptic tick once made.
-class ContactTool {
+class ToolSignedDistance {
  public:
-  ContactTool() = default;
-  explicit ContactTool(const MillingTool& tool)
+  ToolSignedDistance() = default;
+  explicit ToolSignedDistance(const MillingTool& tool)
       : tool_(tool), box_(bounding_box(tool)), burr_top_mm_(burr_top_mm(tool)) {}
-  ContactTool(const MillingTool& tool, SampledDistanceField field) : ContactTool(tool) {
+  ToolSignedDistance(const MillingTool& tool, SampledDistanceField field) : ToolSignedDistance(tool) {
     field_ = std::move(field);
   }
 

@@ -1,4 +1,4 @@
-#include "osteomill/experiment/stability_section.h"
+#include "osteomill/experiment/passivity_section.h"
 
 #include <algorithm>
 #include <ostream>
@@ -29,32 +29,32 @@ std::string_view name_of_kind(Kind kind) {
   return "";
 }
 
-std::string cell(const StabilityRow& row) {
+std::string cell(const PassivityRow& row) {
   if (row.limit.kind == Kind::below_all) return "none passive";
   return fmt::format("{}{:.3g} → {:.3g} (× {:.2f})", row.limit.kind == Kind::above_all ? "over " : "",
                      row.limit.stiffness_N_per_mm, row.limit.felt_N_per_mm,
                      row.limit.felt_N_per_mm / row.rule_N_per_mm);
 }
 
-std::vector<AlgorithmId> algorithms_of(std::span<const StabilityRow> rows, Mode mode) {
+std::vector<AlgorithmId> algorithms_of(std::span<const PassivityRow> rows, Mode mode) {
   std::vector<AlgorithmId> present;
-  for (const StabilityRow& row : rows) {
+  for (const PassivityRow& row : rows) {
     if (row.setup.mode == mode) present.push_back(row.setup.algorithm.id);
   }
   return each_once(std::move(present));
 }
 
 // A line a device, in the order of the first algorithm's rows.
-std::string mode_table(std::span<const StabilityRow> rows, Mode mode) {
+std::string mode_table(std::span<const PassivityRow> rows, Mode mode) {
   const auto algorithms = algorithms_of(rows, mode);
   HtmlTable table{{"Device: damping, delay", "2 b / (T + 2 τ)"}, {}, true};
   for (const AlgorithmId& algorithm : algorithms) table.header.emplace_back(algorithm.label);
-  for (const StabilityRow& device : rows) {
+  for (const PassivityRow& device : rows) {
     if (device.setup.mode != mode || device.setup.algorithm.id != algorithms.front()) continue;
     table.rows.push_back({fmt::format("{:.3g} N s/m, {:.3g} ms", 1e3 * device.setup.damping_Ns_per_mm,
                                       1e3 * device.setup.delay_s),
                           fmt::format("{:.3g}", device.rule_N_per_mm)});
-    for (const StabilityRow& row : rows) {
+    for (const PassivityRow& row : rows) {
       if (row.setup.mode == mode && row.setup.delay_s == device.setup.delay_s &&
           row.setup.damping_Ns_per_mm == device.setup.damping_Ns_per_mm)
         table.rows.back().push_back(cell(row));
@@ -64,10 +64,10 @@ std::string mode_table(std::span<const StabilityRow> rows, Mode mode) {
 }
 
 // "1 line-proxy 0.98 to 1.05"
-std::string range_against_rule(std::span<const StabilityRow> rows, const AlgorithmId& algorithm, Mode mode) {
+std::string range_against_rule(std::span<const PassivityRow> rows, const AlgorithmId& algorithm, Mode mode) {
   std::vector<double> ratios;
   std::size_t none = 0;
-  for (const StabilityRow& row : rows) {
+  for (const PassivityRow& row : rows) {
     if (row.setup.algorithm.id != algorithm || row.setup.mode != mode) continue;
     if (row.limit.kind == Kind::below_all) {
       ++none;
@@ -77,14 +77,14 @@ std::string range_against_rule(std::span<const StabilityRow> rows, const Algorit
   }
   const std::string& name = algorithm.label;
   if (ratios.empty()) return name + " passive on no device";
-  const auto [least, greatest] = std::minmax_element(ratios.begin(), ratios.end());
-  const std::string range = fmt::format("{} {:.2f} to {:.2f}", name, *least, *greatest);
+  const auto [min, max] = std::minmax_element(ratios.begin(), ratios.end());
+  const std::string range = fmt::format("{} {:.2f} to {:.2f}", name, *min, *max);
   if (none == 0) return range;
   return fmt::format("{}, and passive at no stiffness on {} of {} devices", range, none,
                      none + ratios.size());
 }
 
-std::string in_words(std::span<const StabilityRow> rows, Mode mode) {
+std::string in_words(std::span<const PassivityRow> rows, Mode mode) {
   std::string text;
   for (const AlgorithmId& algorithm : algorithms_of(rows, mode)) {
     text += (text.empty() ? "" : "; ") + range_against_rule(rows, algorithm, mode);
@@ -113,7 +113,7 @@ constexpr const char* kCaption =
 
 }  // namespace
 
-std::string stability_section(std::span<const StabilityRow> rows, const Figure& figure) {
+std::string passivity_section(std::span<const PassivityRow> rows, const Figure& figure) {
   std::string html = "<h2>Stability against a flat wall</h2>\n<p>" + html_escaped(kWhatWasDone) + "</p>\n" +
                      html_figure(figure.svg, kCaption);
   for (const Mode mode : {Mode::paper, Mode::steady}) {
@@ -126,12 +126,12 @@ std::string stability_section(std::span<const StabilityRow> rows, const Figure& 
   return html;
 }
 
-void write_stability_csv(const std::filesystem::path& path, std::span<const StabilityRow> rows) {
+void write_passivity_csv(const std::filesystem::path& path, std::span<const PassivityRow> rows) {
   write_text_atomically(path, [&](std::ostream& out) {
     out << "algorithm,mode,device_damping_Ns_per_m,device_delay_s,limit,stiffness_N_per_mm,felt_N_per_mm,"
            "rule_N_per_mm\n";
-    for (const StabilityRow& row : rows) {
-      const StabilityCase& setup = row.setup;
+    for (const PassivityRow& row : rows) {
+      const PassivityCase& setup = row.setup;
       out << fmt::format("{},{},{},{},{},{},{},{}\n", setup.algorithm.id.name, name_of(setup.mode),
                          1e3 * setup.damping_Ns_per_mm, setup.delay_s, name_of_kind(row.limit.kind),
                          row.limit.stiffness_N_per_mm, row.limit.felt_N_per_mm, row.rule_N_per_mm);

@@ -9,7 +9,7 @@ namespace osteomill {
 
 /// The grey values on a cut: bytes, row by row; the corners are the middles of the first pixel, of the end of
 /// its row, of the last pixel and of the beginning of the last row.
-struct CutFace {
+struct ClipFace {
   std::array<Vec3, 4> corners_W;
   int width = 0;
   int height = 0;
@@ -17,18 +17,18 @@ struct CutFace {
 };
 
 /// Which densities are black and white.
-struct GreyWindow {
+struct WindowLevel {
   double black = 0;
   double white = 1;
 };
 
 /// From just below the surroundings to nearly the densest bone (the 0.2 % above are white too).
-GreyWindow grey_window_of(const DensityGrid& grid, double surroundings_density);
+WindowLevel window_level_of(const DensityGrid& grid, double surroundings_density);
 
-/// The densities where the plane meets the grid, a pixel a voxel but no more than `most_pixels` along a side;
+/// The densities where the plane meets the grid, a pixel a voxel but no more than `max_pixels` along a side;
 /// black outside the grid. Nothing (no pixels) where the plane misses it. Not for the tick.
-CutFace cut_face(const DensityGrid& grid, const CutPlane& plane, const GreyWindow& window,
-                 int most_pixels = 320);
+ClipFace clip_face(const DensityGrid& grid, const ClipPlane& plane, const WindowLevel& window,
+                   int max_pixels = 320);
 
 /// The least and the greatest normal . p over the grid's corners: how far a plane can be moved.
 std::array<double, 2> extent_along(const GridGeometry& geometry, const Vec3& normal_W);

@@ -12,7 +12,7 @@ namespace osteomill::surface_points {
 
 /// A place where a tool touches bone, or would within a short way: the tool's point there, the bone's outward
 /// unit normal, and the way left between the two along it (negative where they overlap). In W.
-struct ToolContact {
+struct RayContact {
   Vec3 point_W;
   Vec3 normal_W;
   double gap_mm = 0;
@@ -24,7 +24,7 @@ struct ToolContact {
 /// flat there, comes nearest, and one more ray looks there. Other rays count where their bone stands out from
 /// all planes so found. Rays along the shaft find what its end meets. A ray that starts in bone finds
 /// nothing.
-class SurfaceContacts {
+class RayContacts {
  public:
   /// `rings` circles along the free shaft. The burr may stand `bite_mm` deep in bone before a contact counts
   /// as overlap. Allocates.
@@ -32,7 +32,7 @@ class SurfaceContacts {
   /// The most contacts that `find` can give. Safe in the haptic tick.
   std::size_t capacity() const { return contacts_.capacity(); }
   /// The contacts within `kReach_mm` of the tool at `X_WT`, until the next call. Safe in the haptic tick.
-  std::span<const ToolContact> find(const Pose& X_WT);
+  std::span<const RayContact> find(const Pose& X_WT);
 
   /// How far from the tool's surface bone is noticed.
   static constexpr double kReach_mm = 0.3;
@@ -47,8 +47,8 @@ class SurfaceContacts {
   };
   // A fan's directions as the tool stands, and as ways through the grid (voxels a mm).
   struct Rays {
-    std::array<Vec3, RayFan::kMostRays> directions_W;
-    std::array<Vec3, RayFan::kMostRays> ways;
+    std::array<Vec3, RayFan::kMaxRays> directions_W;
+    std::array<Vec3, RayFan::kMaxRays> ways;
   };
   Rays rays_of(const RayFan& fan, const Pose& X_WT) const;
   void find_at(const Part& part, const Rays& rays, const Vec3& centre_W);
@@ -65,7 +65,7 @@ class SurfaceContacts {
   std::vector<Vec3> ring_centres_T_;
   // On the shaft's end: its middle and near its rim.
   std::vector<Vec3> end_points_T_;
-  std::vector<ToolContact> contacts_;
+  std::vector<RayContact> contacts_;
   // Of the part looked at.
   std::size_t first_of_part_ = 0;
 };

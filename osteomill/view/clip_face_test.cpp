@@ -1,4 +1,4 @@
-#include "osteomill/view/cut_face.h"
+#include "osteomill/view/clip_face.h"
 
 #include "tests/shapes.h"
 #include <gtest/gtest.h>
@@ -20,11 +20,11 @@ DensityGrid ramp(const GridGeometry& geometry) {
   return DensityGrid(geometry, std::move(densities));
 }
 
-TEST(CutFace, ShowsTheDensitiesOfItsPlace) {
+TEST(ClipFace, ShowsTheDensitiesOfItsPlace) {
   const DensityGrid grid = ramp(testing_support::centred_cube(41, 0.25));
   for (const Vec3& normal : {Vec3(0, 0, 1), Vec3(1, 0, 0), Vec3(0.3, -0.5, 0.8)}) {
-    const CutPlane plane{normal.normalized(), 0.7};
-    const CutFace face = cut_face(grid, plane, {-100, 155});
+    const ClipPlane plane{normal.normalized(), 0.7};
+    const ClipFace face = clip_face(grid, plane, {-100, 155});
     ASSERT_GT(face.width, 20);
     ASSERT_GT(face.height, 20);
     ASSERT_EQ(face.greys.size(), static_cast<std::size_t>(face.width * face.height));
@@ -43,19 +43,19 @@ TEST(CutFace, ShowsTheDensitiesOfItsPlace) {
   }
 }
 
-TEST(CutFace, APlaneBesideTheGridShowsNothing) {
+TEST(ClipFace, APlaneBesideTheGridShowsNothing) {
   const DensityGrid grid = ramp(testing_support::centred_cube(21, 0.25));
-  EXPECT_TRUE(cut_face(grid, {Vec3::UnitX(), 30}, {0, 1}).greys.empty());
+  EXPECT_TRUE(clip_face(grid, {Vec3::UnitX(), 30}, {0, 1}).greys.empty());
 }
 
-TEST(CutFace, LargeOnesAreSampledMoreCoarsely) {
+TEST(ClipFace, LargeOnesAreSampledMoreCoarsely) {
   const DensityGrid grid = ramp(testing_support::centred_cube(60, 0.25));
-  const CutFace face = cut_face(grid, {Vec3::UnitX(), 0}, {0, 1}, 30);
+  const ClipFace face = clip_face(grid, {Vec3::UnitX(), 0}, {0, 1}, 30);
   EXPECT_LE(face.width, 31);
   EXPECT_LE(face.height, 31);
 }
 
-TEST(CutFace, PlanesCanBeMovedAsFarAsTheGridReaches) {
+TEST(ClipFace, PlanesCanBeMovedAsFarAsTheGridReaches) {
   const auto extent = extent_along(testing_support::centred_cube(41, 0.25), Vec3::UnitY());
   EXPECT_NEAR(extent[0], -5, 1e-9);
   EXPECT_NEAR(extent[1], 5, 1e-9);

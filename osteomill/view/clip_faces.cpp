@@ -1,17 +1,17 @@
-#include "osteomill/view/cut_faces.h"
+#include "osteomill/view/clip_faces.h"
 
 #include "osteomill/view/shaders.h"
 
 namespace osteomill {
 
-CutFaces::CutFaces() : program_(gl::make_program(shaders::kCutVertex, shaders::kCutFragment)) {
+ClipFaces::ClipFaces() : program_(gl::make_program(shaders::kCutVertex, shaders::kCutFragment)) {
   for (Face& face : faces_) {
     face.vertex_array = gl::make_vertex_array();
     face.corners = gl::make_buffer();
   }
 }
 
-void CutFaces::set(std::size_t cut, const CutFace& face) {
+void ClipFaces::set(std::size_t cut, const ClipFace& face) {
   Face& kept = faces_.at(cut);
   if (face.greys.empty()) {
     kept.greys = {};
@@ -40,7 +40,7 @@ void CutFaces::set(std::size_t cut, const CutFace& face) {
                         reinterpret_cast<const void*>(3 * sizeof(float)));
 }
 
-void CutFaces::draw(const ViewScene& scene, const Projection& projection) const {
+void ClipFaces::draw(const ViewScene& scene, const Projection& projection) const {
   const GLuint program = program_.get();
   glUseProgram(program);
   glUniformMatrix4fv(glGetUniformLocation(program, "camera_from_world"), 1, GL_FALSE,
@@ -48,7 +48,7 @@ void CutFaces::draw(const ViewScene& scene, const Projection& projection) const 
   glUniformMatrix4fv(glGetUniformLocation(program, "clip_from_camera"), 1, GL_FALSE,
                      projection.clip_from_camera.data());
   glActiveTexture(GL_TEXTURE0);
-  for (std::size_t n = 0; n < kGreatestCutPlanes; ++n) {
+  for (std::size_t n = 0; n < kMaxClipPlanes; ++n) {
     if (!scene.cuts[n] || faces_[n].greys.get() == 0) continue;
     ViewScene others = scene;
     others.cuts[n].reset();

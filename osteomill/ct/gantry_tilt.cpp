@@ -1,4 +1,4 @@
-#include "osteomill/ct/straighten.h"
+#include "osteomill/ct/gantry_tilt.h"
 
 #include <algorithm>
 #include <array>
@@ -14,7 +14,7 @@ namespace osteomill {
 namespace {
 
 // Gantries tilt by 30 degrees at most.
-constexpr double kMostTilt_deg = 45.0;
+constexpr double kMaxTilt_deg = 45.0;
 
 // A slice as it was taken; beyond its border there is `outside`.
 struct Slice {
@@ -61,13 +61,13 @@ void move_slice(const Slice& slice, const Shift& shift_i, const Shift& shift_j, 
 
 }  // namespace
 
-void straighten(const std::string& subject, SliceStack& stack, std::vector<float>& densities) {
+void correct_gantry_tilt(const std::string& subject, SliceStack& stack, std::vector<float>& densities) {
   if (stack.drift_i_mm == 0 && stack.drift_j_mm == 0) return;
   GridGeometry& geometry = stack.geometry;
   const double tilt_deg =
       std::atan2(std::hypot(stack.drift_i_mm, stack.drift_j_mm), geometry.spacing_mm.z()) * 180 /
       std::numbers::pi;
-  if (tilt_deg > kMostTilt_deg) {
+  if (tilt_deg > kMaxTilt_deg) {
     throw InputError(subject,
                      fmt::format("slices lean by {:.1f} degrees, which is no gantry tilt", tilt_deg));
   }

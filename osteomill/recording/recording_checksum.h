@@ -11,12 +11,12 @@ namespace osteomill {
 inline constexpr std::size_t kUserBlockBytes = 512;
 
 /// Writes the line into a recording that is finished and closed. Throws InputError where that fails.
-void seal_recording(const std::filesystem::path& path);
+void write_checksum(const std::filesystem::path& path);
 
 /// `none`: an unfinished recording, or one that another program has rewritten.
-enum class Seal : unsigned char { none, intact, broken };
+enum class Checksum : unsigned char { none, intact, broken };
 
 /// Throws InputError where the file cannot be read.
-Seal check_seal(const std::filesystem::path& path);
+Checksum check_checksum(const std::filesystem::path& path);
 
 }  // namespace osteomill

@@ -11,16 +11,16 @@ namespace osteomill {
 /// The least and greatest density in bricks of 8 x 8 x 8 voxels, each brick counted with one more layer of
 /// voxels at its upper sides, so that it speaks of every trilinear cell that begins in it. Ranges hold every
 /// density; after `lower` the upper end may be too wide until `refresh`.
-class BrickRanges {
+class BlockRanges {
  public:
   static constexpr int kBrickVoxels = 8;
   struct Range {
-    float least;
-    float greatest;
+    float min;
+    float max;
   };
 
-  BrickRanges() = default;
-  explicit BrickRanges(const DensityGrid& grid);
+  BlockRanges() = default;
+  explicit BlockRanges(const DensityGrid& grid);
 
   const std::array<int, 3>& dims() const { return dims_; }
   /// Brick coordinates from 0.

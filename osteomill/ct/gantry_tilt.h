@@ -11,6 +11,6 @@ namespace osteomill {
 /// linear interpolation within the slice. The grid grows so that nothing is lost; `densities` and `stack` are
 /// replaced, where there were no pixels the least density stands, and a warning says so. A straight stack is
 /// left alone. Throws InputError naming `subject` where the tilt is more than a gantry can do.
-void straighten(const std::string& subject, SliceStack& stack, std::vector<float>& densities);
+void correct_gantry_tilt(const std::string& subject, SliceStack& stack, std::vector<float>& densities);
 
 }  // namespace osteomill

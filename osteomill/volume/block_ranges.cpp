@@ -1,4 +1,4 @@
-#include "osteomill/volume/brick_ranges.h"
+#include "osteomill/volume/block_ranges.h"
 
 #include <algorithm>
 
@@ -16,13 +16,13 @@ struct BrickSpan {
 };
 
 BrickSpan bricks_counting(int v) {
-  const int own = v / BrickRanges::kBrickVoxels;
-  return {v % BrickRanges::kBrickVoxels == 0 && own > 0 ? own - 1 : own, own};
+  const int own = v / BlockRanges::kBrickVoxels;
+  return {v % BlockRanges::kBrickVoxels == 0 && own > 0 ? own - 1 : own, own};
 }
 
 }  // namespace
 
-BrickRanges::BrickRanges(const DensityGrid& grid) {
+BlockRanges::BlockRanges(const DensityGrid& grid) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     dims_[axis] = (grid.geometry().dims[axis] + kBrickVoxels - 1) / kBrickVoxels;
   }
@@ -30,7 +30,7 @@ BrickRanges::BrickRanges(const DensityGrid& grid) {
   refresh(grid, grid.geometry().all_voxels());
 }
 
-BrickRanges::Range BrickRanges::range_of(const DensityGrid& grid, int bi, int bj, int bk) {
+BlockRanges::Range BlockRanges::range_of(const DensityGrid& grid, int bi, int bj, int bk) {
   const VoxelIndex first{bi * kBrickVoxels, bj * kBrickVoxels, bk * kBrickVoxels};
   const VoxelBox box =
       VoxelBox{first, {first.i + kBrickVoxels, first.j + kBrickVoxels, first.k + kBrickVoxels}}.intersected(
@@ -39,47 +39,47 @@ BrickRanges::Range BrickRanges::range_of(const DensityGrid& grid, int bi, int bj
   for (int k = box.first.k; k <= box.last.k; ++k) {
     for (int j = box.first.j; j <= box.last.j; ++j) {
       const float* row = grid.densities().data() + grid.linear_index({box.first.i, j, k});
-      const auto [least, greatest] = std::minmax_element(row, row + (box.last.i - box.first.i + 1));
-      range.least = std::min(range.least, *least);
-      range.greatest = std::max(range.greatest, *greatest);
+      const auto [min, max] = std::minmax_element(row, row + (box.last.i - box.first.i + 1));
+      range.min = std::min(range.min, *min);
+      range.max = std::max(range.max, *max);
     }
   }
   return range;
 }
 
-void BrickRanges::lower(const VoxelIndex& v, float density) {
+void BlockRanges::lower(const VoxelIndex& v, float density) {
   const BrickSpan spans[3] = {bricks_counting(v.i), bricks_counting(v.j), bricks_counting(v.k)};
   for (int bk = spans[2].first; bk <= spans[2].last; ++bk) {
     for (int bj = spans[1].first; bj <= spans[1].last; ++bj) {
       for (int bi = spans[0].first; bi <= spans[0].last; ++bi) {
         Range& range = ranges_[index(bi, bj, bk)];
-        range.least = std::min(range.least, density);
+        range.min = std::min(range.min, density);
       }
     }
   }
 }
 
-void BrickRanges::lower_row(int j, int k, const int* columns, const float* densities, std::size_t count) {
+void BlockRanges::lower_row(int j, int k, const int* columns, const float* densities, std::size_t count) {
   const BrickSpan js = bricks_counting(j);
   const BrickSpan ks = bricks_counting(k);
   const auto lower_column = [&](int bi, float density) {
     for (int bk = ks.first; bk <= ks.last; ++bk) {
       for (int bj = js.first; bj <= js.last; ++bj) {
         Range& range = ranges_[index(bi, bj, bk)];
-        range.least = std::min(range.least, density);
+        range.min = std::min(range.min, density);
       }
     }
   };
   for (std::size_t n = 0; n < count;) {
     const int bi = columns[n] / kBrickVoxels;
     if (columns[n] % kBrickVoxels == 0 && bi > 0) lower_column(bi - 1, densities[n]);
-    float least = densities[n];
-    for (++n; n < count && columns[n] < (bi + 1) * kBrickVoxels; ++n) least = std::min(least, densities[n]);
-    lower_column(bi, least);
+    float min = densities[n];
+    for (++n; n < count && columns[n] < (bi + 1) * kBrickVoxels; ++n) min = std::min(min, densities[n]);
+    lower_column(bi, min);
   }
 }
 
-void BrickRanges::refresh(const DensityGrid& grid, const VoxelBox& box) {
+void BlockRanges::refresh(const DensityGrid& grid, const VoxelBox& box) {
   const VoxelBox inside = box.intersected(grid.geometry().all_voxels());
   if (inside.empty()) return;
   for (int bk = bricks_counting(inside.first.k).first; bk <= inside.last.k / kBrickVoxels; ++bk) {

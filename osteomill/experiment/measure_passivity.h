@@ -9,7 +9,7 @@
 namespace osteomill {
 
 /// One algorithm on one device.
-struct StabilityCase {
+struct PassivityCase {
   AlgorithmDescription algorithm;
   Mode mode = Mode::steady;
   double damping_Ns_per_mm = 0;
@@ -17,8 +17,8 @@ struct StabilityCase {
 };
 
 /// How stiff it can be there.
-struct StabilityRow {
-  StabilityCase setup;
+struct PassivityRow {
+  PassivityCase setup;
   /// By the algorithm's own setting (--stiffness), which need not be what is felt.
   StiffnessLimit limit;
   /// What an ideal wall could be.
@@ -27,7 +27,7 @@ struct StabilityRow {
 
 /// Every algorithm that has a setting of the option "stiffness", in every mode on devices with 1, 2, 5 and 10
 /// N s/m of damping and 0.3, 1 and 2 ms of delay.
-std::vector<StabilityCase> stability_cases(const std::vector<AlgorithmDescription>& algorithms,
+std::vector<PassivityCase> passivity_cases(const std::vector<AlgorithmDescription>& algorithms,
                                            const std::vector<Mode>& modes);
 
 /// Bone that fills z < 0, wide and deep enough to press this tool on, of voxels a twelfth of the burr's
@@ -37,7 +37,7 @@ Volume flat_wall(const MillingTool& tool);
 /// Seeks the greatest `--stiffness` at which the wall stays passive (wall_press.h). Of `haptics` everything
 /// counts but the mode and that stiffness, of `handle` all but the delay. Throws std::invalid_argument where
 /// a setting is out of range.
-StabilityRow measure_stability(const StabilityCase& setup, const Volume& wall, const MillingTool& tool,
+PassivityRow measure_passivity(const PassivityCase& setup, const Volume& wall, const MillingTool& tool,
                                const HapticSettings& haptics, const HandleSettings& handle, double tick_s);
 
 }  // namespace osteomill

@@ -1,4 +1,4 @@
-#include "osteomill/experiment/stability_section.h"
+#include "osteomill/experiment/passivity_section.h"
 
 #include <algorithm>
 #include <fstream>
@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "osteomill/experiment/comparison_report.h"
-#include "osteomill/experiment/stability_figure.h"
+#include "osteomill/experiment/passivity_figure.h"
 #include "osteomill/haptics/algorithms.h"
 #include "osteomill/report/report_samples.h"
 
@@ -23,11 +23,11 @@ std::string bytes_of(const fs::path& path) {
 }
 
 // 1 follows the rule, 2 feels half of it and has none on the last device, 3 never ends. No measurement.
-std::vector<StabilityRow> sample_rows(const std::vector<Mode>& modes) {
-  std::vector<StabilityRow> rows;
-  for (const StabilityCase& setup : stability_cases(all_algorithms(), modes)) {
+std::vector<PassivityRow> sample_rows(const std::vector<Mode>& modes) {
+  std::vector<PassivityRow> rows;
+  for (const PassivityCase& setup : passivity_cases(all_algorithms(), modes)) {
     const double rule = passive_stiffness_rule_N_per_mm(setup.damping_Ns_per_mm, 1e-3, setup.delay_s);
-    StabilityRow row{setup, {Kind::found, rule, rule}, rule};
+    PassivityRow row{setup, {Kind::found, rule, rule}, rule};
     if (setup.algorithm.id == "surface-points") row.limit = {Kind::found, 4 * rule, 0.5 * rule};
     if (setup.algorithm.id == "surface-points" && setup.damping_Ns_per_mm == 0.01) row.limit = {};
     if (setup.algorithm.id == "point-shell") row.limit = {Kind::above_all, 200, 9};
@@ -36,7 +36,7 @@ std::vector<StabilityRow> sample_rows(const std::vector<Mode>& modes) {
   return rows;
 }
 
-class StabilitySectionTest : public ::testing::Test {
+class PassivitySectionTest : public ::testing::Test {
  protected:
   void SetUp() override {
     out_ = fs::path(::testing::TempDir()) / (std::string("osteomill_stability_") +
@@ -51,9 +51,9 @@ class StabilitySectionTest : public ::testing::Test {
   fs::path out_;
 };
 
-TEST_F(StabilitySectionTest, TheTableHasEveryDeviceOnce) {
+TEST_F(PassivitySectionTest, TheTableHasEveryDeviceOnce) {
   const auto rows = sample_rows({Mode::paper, Mode::steady});
-  write_stability_csv(out_ / "stability.csv", rows);
+  write_passivity_csv(out_ / "stability.csv", rows);
   const std::string csv = bytes_of(out_ / "stability.csv");
   EXPECT_TRUE(
       csv.starts_with("algorithm,mode,device_damping_Ns_per_m,device_delay_s,limit,stiffness_N_per_mm,felt_N_"
@@ -65,9 +65,9 @@ TEST_F(StabilitySectionTest, TheTableHasEveryDeviceOnce) {
   EXPECT_NE(csv.find("point-shell,steady,10,0.002,above,200,9,4\n"), std::string::npos) << csv;
 }
 
-TEST_F(StabilitySectionTest, TheWordsGiveTheRangeAgainstTheRule) {
+TEST_F(PassivitySectionTest, TheWordsGiveTheRangeAgainstTheRule) {
   const auto rows = sample_rows({Mode::steady});
-  const std::string html = stability_section(rows, draw_stability_figure(rows, out_));
+  const std::string html = passivity_section(rows, draw_passivity_figure(rows, out_));
   EXPECT_NE(
       html.find("1 line-proxy 1.00 to 1.00; 2 surface-points 0.50 to 0.50, and passive at no stiffness on 3 "
                 "of 12 devices; 3 point-shell"),
@@ -78,15 +78,15 @@ TEST_F(StabilitySectionTest, TheWordsGiveTheRangeAgainstTheRule) {
   EXPECT_TRUE(bytes_of(out_ / "stability.svg").ends_with("</svg>\n\n"));
 }
 
-TEST_F(StabilitySectionTest, OneAlgorithmThatIsNeverPassiveIsDrawnToo) {
-  std::vector<StabilityRow> rows = sample_rows({Mode::paper});
-  std::erase_if(rows, [](const StabilityRow& row) { return row.setup.algorithm.id != "line-proxy"; });
-  for (StabilityRow& row : rows) row.limit = {};
-  const std::string html = stability_section(rows, draw_stability_figure(rows, out_));
+TEST_F(PassivitySectionTest, OneAlgorithmThatIsNeverPassiveIsDrawnToo) {
+  std::vector<PassivityRow> rows = sample_rows({Mode::paper});
+  std::erase_if(rows, [](const PassivityRow& row) { return row.setup.algorithm.id != "line-proxy"; });
+  for (PassivityRow& row : rows) row.limit = {};
+  const std::string html = passivity_section(rows, draw_passivity_figure(rows, out_));
   EXPECT_NE(html.find("1 line-proxy passive on no device"), std::string::npos);
 }
 
-TEST_F(StabilitySectionTest, TheReportOfAStudyHasItsFilesFiguresAndWords) {
+TEST_F(PassivitySectionTest, TheReportOfAStudyHasItsFilesFiguresAndWords) {
   ReportExtras extras;
   std::vector<StudyRow> trials;
   const auto runs = testing_support::sample_runs(Mode::steady, 500);

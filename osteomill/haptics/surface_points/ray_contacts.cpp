@@ -1,4 +1,4 @@
-#include "osteomill/haptics/surface_points/tool_contacts.h"
+#include "osteomill/haptics/surface_points/ray_contacts.h"
 
 #include <algorithm>
 #include <cmath>
@@ -35,15 +35,15 @@ bool is_bone(const Volume& volume, const Vec3& voxel) {
 
 // Where bone is first met along the ray, up to the reach beyond the radius.
 double distance_to_bone(const Volume& volume, const VoxelRay& ray, double radius) {
-  const double reach = radius + SurfaceContacts::kReach_mm;
+  const double reach = radius + RayContacts::kReach_mm;
   // Near the tool's surface is where bone is met nearly always.
-  const double near = std::max(0.0, radius - SurfaceContacts::kReach_mm);
+  const double near = std::max(0.0, radius - RayContacts::kReach_mm);
   if (const auto met = first_bone(volume, ray, near, reach, kTolerance)) return *met;
   if (near == 0 || !is_bone(volume, ray.origin + near * ray.way)) return kNoBone;
   return first_bone(volume, ray, 0, near, kTolerance).value_or(kNoBone);
 }
 
-bool is_least(const RayFan& fan, const RayDistances& distance_mm, std::size_t n) {
+bool is_min(const RayFan& fan, const RayDistances& distance_mm, std::size_t n) {
   return std::all_of(fan.neighbours[n].begin(), fan.neighbours[n].end(), [&](std::size_t m) {
     return distance_mm[n] < distance_mm[m] || (distance_mm[n] == distance_mm[m] && n < m);
   });
@@ -66,7 +66,7 @@ std::vector<Vec3> sphere_directions(const MillingTool& tool) {
 
 }  // namespace
 
-void SurfaceContacts::prepare(const Volume& volume, const MillingTool& tool, int rings, double bite_mm) {
+void RayContacts::prepare(const Volume& volume, const MillingTool& tool, int rings, double bite_mm) {
   volume_ = &volume;
   tool_ = tool;
   bite_mm_ = bite_mm;
@@ -93,7 +93,7 @@ void SurfaceContacts::prepare(const Volume& volume, const MillingTool& tool, int
                     end_points_T_.size());
 }
 
-SurfaceContacts::Rays SurfaceContacts::rays_of(const RayFan& fan, const Pose& X_WT) const {
+RayContacts::Rays RayContacts::rays_of(const RayFan& fan, const Pose& X_WT) const {
   Rays rays;
   const Mat3 turn = X_WT.orientation.toRotationMatrix();
   const Mat3 voxels = voxels_per_mm_ * turn;
@@ -106,10 +106,10 @@ SurfaceContacts::Rays SurfaceContacts::rays_of(const RayFan& fan, const Pose& X_
 
 // The contact's normal is the tool's own at the place, not the bone's: on an edge of the bone the two differ,
 // and only the tool's lets a shaft slide along itself.
-void SurfaceContacts::add_contact(const Part& part, const Vec3& centre_W, const Vec3& direction_W,
-                                  double distance_mm) {
-  const ToolContact contact{centre_W + part.radius_mm * direction_W, -direction_W,
-                            distance_mm - part.radius_mm + part.bite_mm};
+void RayContacts::add_contact(const Part& part, const Vec3& centre_W, const Vec3& direction_W,
+                              double distance_mm) {
+  const RayContact contact{centre_W + part.radius_mm * direction_W, -direction_W,
+                           distance_mm - part.radius_mm + part.bite_mm};
   for (std::size_t n = first_of_part_; n < contacts_.size(); ++n) {
     if (contacts_[n].normal_W.dot(contact.normal_W) < kSameNormal) continue;
     if (contact.gap_mm < contacts_[n].gap_mm) contacts_[n] = contact;
@@ -118,16 +118,16 @@ void SurfaceContacts::add_contact(const Part& part, const Vec3& centre_W, const 
   contacts_.push_back(contact);
 }
 
-bool SurfaceContacts::is_explained(const Part& part, const Vec3& direction_W, double distance_mm) const {
+bool RayContacts::is_explained(const Part& part, const Vec3& direction_W, double distance_mm) const {
   for (std::size_t n = first_of_part_; n < contacts_.size(); ++n) {
-    const ToolContact& contact = contacts_[n];
+    const RayContact& contact = contacts_[n];
     const double plane_mm = contact.gap_mm + part.radius_mm - part.bite_mm;
     if (-distance_mm * direction_W.dot(contact.normal_W) >= plane_mm - kOnPlane_mm) return true;
   }
   return false;
 }
 
-void SurfaceContacts::find_at(const Part& part, const Rays& rays, const Vec3& centre_W) {
+void RayContacts::find_at(const Part& part, const Rays& rays, const Vec3& centre_W) {
   const RayFan& fan = *part.fan;
   const std::size_t count = fan.directions.size();
   const Vec3 centre = volume_->geometry().voxel_from_world(centre_W);
@@ -144,7 +144,7 @@ void SurfaceContacts::find_at(const Part& part, const Rays& rays, const Vec3& ce
   const auto is_met = [&](std::size_t n) { return std::isfinite(distance_mm[n]); };
   const std::span directions(rays.directions_W.data(), count);
   for (std::size_t n = 0; n < count; ++n) {
-    if (!is_met(n) || !is_least(fan, distance_mm, n)) continue;
+    if (!is_met(n) || !is_min(fan, distance_mm, n)) continue;
     const Vec3 nearest = nearest_direction(directions, fan, distance_mm, n, part.axis_W);
     const double there = distance_to_bone(*volume_, {centre, voxels_per_mm_ * nearest}, part.radius_mm);
     const bool nearer = there < distance_mm[n];
@@ -157,7 +157,7 @@ void SurfaceContacts::find_at(const Part& part, const Rays& rays, const Vec3& ce
   }
 }
 
-void SurfaceContacts::find_at_end(const Pose& X_WT) {
+void RayContacts::find_at_end(const Pose& X_WT) {
   const Vec3 axis_W = shaft_direction(X_WT);
   const Vec3 way = voxels_per_mm_ * axis_W;
   for (const Vec3& end_T : end_points_T_) {
@@ -170,7 +170,7 @@ void SurfaceContacts::find_at_end(const Pose& X_WT) {
   }
 }
 
-std::span<const ToolContact> SurfaceContacts::find(const Pose& X_WT) {
+std::span<const RayContact> RayContacts::find(const Pose& X_WT) {
   contacts_.clear();
   if (bone_near_disc(*volume_, X_WT.position_mm, Vec3::Zero(), tool_.burr_radius_mm + kReach_mm)) {
     find_at({&sphere_, tool_.burr_radius_mm, bite_mm_, Vec3::Zero()}, rays_of(sphere_, X_WT),

@@ -1,4 +1,4 @@
-#include "osteomill/live/density_brick.h"
+#include "osteomill/live/density_block.h"
 
 #include <algorithm>
 
@@ -7,18 +7,18 @@ namespace osteomill {
 namespace {
 
 VoxelIndex sides_within(const GridGeometry& geometry, const VoxelIndex& first) {
-  constexpr int kSide = DensityBrick::kVoxels;
+  constexpr int kSide = DensityBlock::kVoxels;
   return {std::min(kSide, geometry.dims[0] - first.i), std::min(kSide, geometry.dims[1] - first.j),
           std::min(kSide, geometry.dims[2] - first.k)};
 }
 
 std::size_t row_place(int j, int k) {
-  return static_cast<std::size_t>(DensityBrick::kVoxels * (j + DensityBrick::kVoxels * k));
+  return static_cast<std::size_t>(DensityBlock::kVoxels * (j + DensityBlock::kVoxels * k));
 }
 
 }  // namespace
 
-DensityBrick::DensityBrick(const DensityGrid& grid, const VoxelIndex& first_) noexcept : first(first_) {
+DensityBlock::DensityBlock(const DensityGrid& grid, const VoxelIndex& first_) noexcept : first(first_) {
   const VoxelIndex sides = sides_within(grid.geometry(), first);
   if (sides != VoxelIndex{kVoxels, kVoxels, kVoxels}) densities.fill(0);
   for (int k = 0; k < sides.k; ++k) {
@@ -29,7 +29,7 @@ DensityBrick::DensityBrick(const DensityGrid& grid, const VoxelIndex& first_) no
   }
 }
 
-VoxelBox swap_densities(Volume& bone, DensityBrick& brick) {
+VoxelBox swap_densities(Volume& bone, DensityBlock& brick) {
   const VoxelIndex& first = brick.first;
   const VoxelIndex sides = sides_within(bone.geometry(), first);
   VoxelBox changed;

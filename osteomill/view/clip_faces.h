@@ -3,16 +3,16 @@
 #include <array>
 
 #include "osteomill/view/bone_layer.h"
-#include "osteomill/view/cut_face.h"
+#include "osteomill/view/clip_face.h"
 #include "osteomill/view/gl_objects.h"
 
 namespace osteomill {
 
 /// The grey values that cuts lay open.
-class CutFaces {
+class ClipFaces {
  public:
-  CutFaces();
-  void set(std::size_t cut, const CutFace& face);
+  ClipFaces();
+  void set(std::size_t cut, const ClipFace& face);
   /// Each face as far as the other cuts leave it.
   void draw(const ViewScene& scene, const Projection& projection) const;
 
@@ -23,7 +23,7 @@ class CutFaces {
     gl::Texture greys;
   };
   gl::Program program_;
-  std::array<Face, kGreatestCutPlanes> faces_;
+  std::array<Face, kMaxClipPlanes> faces_;
 };
 
 }  // namespace osteomill
