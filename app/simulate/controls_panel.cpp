@@ -151,8 +151,7 @@ void draw_view(ViewState& view, const Vec3& tool_W) {
   }
   if (ui::button("Whole")) view.camera = with_whole(view);
   ui::hint("All of the bone, as it is turned now");
-  ImGui::SameLine();
-  if (ui::button("Tool")) view.camera.focus_W = tool_W;
+  if (ui::button("Find tool")) view.camera.focus_W = tool_W;
   ui::hint("The burr into the middle");
   ui::checkbox("ghost", &view.ghost);
   ImGui::SameLine();

@@ -8,6 +8,7 @@
 #include <fmt/chrono.h>
 #include <fmt/core.h>
 #include <imgui.h>
+#include <unistd.h>
 
 #include "osteomill/ct/write_nrrd.h"
 #include "osteomill/files/atomic_file.h"
@@ -48,7 +49,7 @@ std::string report_on(const fs::path& recording, const fs::path& folder) {
 }  // namespace
 
 fs::path FilesPanel::name(const std::string& what) const {
-  const std::string time = fmt::format("{:%Y%m%d-%H%M%S}", fmt::localtime(std::time(nullptr)));
+  const std::string time = fmt::format("{:%Y%m%d-%H%M%S}-{}", fmt::localtime(std::time(nullptr)), ::getpid());
   const std::size_t dot = what.rfind('.');
   fs::path path = folder_ / fmt::format("{}-{}", time, what);
   for (int n = 2; fs::exists(path); ++n) {

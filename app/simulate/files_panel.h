@@ -9,8 +9,8 @@
 
 namespace osteomill::app {
 
-/// Recording, reports, and what can be saved. Files are named after the time and put into one folder. What
-/// takes long is done on a thread of its own.
+/// Recording, reports, and what can be saved, all into one folder. Files are named after the time and this
+/// process, so that several windows may share the folder. What takes long is done on a thread of its own.
 class FilesPanel {
  public:
   explicit FilesPanel(std::filesystem::path folder) : folder_(std::move(folder)) {}

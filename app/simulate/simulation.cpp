@@ -1,6 +1,8 @@
 #include "app/simulate/simulation.h"
 
+#include <chrono>
 #include <memory>
+#include <thread>
 #include <utility>
 
 namespace osteomill::app {
@@ -37,6 +39,11 @@ Simulation::Simulation(OpenedScan opened, const std::string& command_line_)
            pose_above(entry, opened.milling.setup.tool, kStartAbove_mm)),
       milling(std::move(opened.milling), hand) {
   milling.start();
+  // What is drawn and pulled begins at the tool, so its first tick is waited for.
+  while (history.empty() && milling.running()) {
+    std::this_thread::sleep_for(std::chrono::microseconds(200));
+    if (const auto record = milling.next_record()) history.push_back(*record);
+  }
 }
 
 void Simulation::update() {

@@ -19,6 +19,7 @@
 #include "app/simulate/pointer.h"
 #include "app/simulate/scene_of.h"
 #include "app/simulate/simulation.h"
+#include "app/simulate/state_text.h"
 #include "app/simulate/ui_script.h"
 #include "app/simulate/window.h"
 #include <fmt/core.h>
@@ -80,6 +81,7 @@ class Simulator {
       }
       finish();
     }
+    if (script_) script_->end();
     if (simulation_) files_.close(view_, *simulation_);
     if (!view_.complaint.empty()) fmt::print(stderr, "osteomill: {}\n", view_.complaint);
     if (reported_) {
@@ -215,8 +217,9 @@ class Simulator {
     constexpr double kFullLoad_N = 2;
     const LiveState& state = simulation_->milling.state();
     const bool heard = view_.sound && state.spindle_on;
-    sound_.set({heard ? simulation_->milling.setup().cutting.spindle_speed_rpm : 0,
-                state.record.burr_force_N / kFullLoad_N});
+    heard_ = {heard ? simulation_->milling.setup().cutting.spindle_speed_rpm : 0,
+              state.record.burr_force_N / kFullLoad_N};
+    sound_.set(heard_);
   }
 
   void take_surface() {
@@ -241,7 +244,12 @@ class Simulator {
   void finish() {
     window_.end_frame();
     if (script_ && simulation_) {
-      if (const std::string text = script_->after_drawing(window_); !text.empty()) say(text);
+      if (const UiScript::Saying saying = script_->after_drawing(window_); saying.state) {
+        fmt::print("{}", state_text(saying.text, view_, *simulation_, files_, heard_, window_.size()));
+        std::fflush(stdout);
+      } else if (!saying.text.empty()) {
+        say(saying.text);
+      }
     }
     window_.show();
     rate_.count();
@@ -281,6 +289,7 @@ class Simulator {
   FilesPanel files_;
   CutUpdates cuts_;
   SoundPlayer sound_;
+  SpindleState heard_;
   SpaceMouse space_mouse_;
   PictureRate rate_;
   int pictures_since_said_ = 0;

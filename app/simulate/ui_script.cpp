@@ -23,15 +23,19 @@ namespace {
 constexpr int kClickPictures = 12;
 
 const std::map<std::string, std::size_t> kWords{
-    {"wait", 1}, {"settle", 0}, {"glide", 3}, {"press", 1}, {"release", 1},    {"wheel", 2},
-    {"key", 1},  {"hold", 2},   {"click", 1}, {"drag", 2},  {"screenshot", 1}, {"say", 1},
-    {"type", 1}, {"open", 1},   {"quit", 0},  {"close", 0}};
+    {"wait", 1}, {"settle", 0}, {"glide", 3}, {"press", 1},      {"release", 1}, {"wheel", 2}, {"key", 1},
+    {"hold", 2}, {"click", 1},  {"drag", 2},  {"screenshot", 1}, {"say", 1},     {"type", 1},  {"open", 1},
+    {"quit", 0}, {"close", 0},  {"state", 1}, {"controls", 1},   {"await", 1}};
 
 const std::map<std::string, int> kKeys{
-    {"space", GLFW_KEY_SPACE}, {"escape", GLFW_KEY_ESCAPE},   {"shift", GLFW_KEY_LEFT_SHIFT},
-    {"up", GLFW_KEY_UP},       {"down", GLFW_KEY_DOWN},       {"left", GLFW_KEY_LEFT},
-    {"right", GLFW_KEY_RIGHT}, {"page-up", GLFW_KEY_PAGE_UP}, {"page-down", GLFW_KEY_PAGE_DOWN},
-    {"f1", GLFW_KEY_F1},       {"f11", GLFW_KEY_F11}};
+    {"space", GLFW_KEY_SPACE},      {"enter", GLFW_KEY_ENTER},          {"escape", GLFW_KEY_ESCAPE},
+    {"shift", GLFW_KEY_LEFT_SHIFT}, {"control", GLFW_KEY_LEFT_CONTROL}, {"arrow-up", GLFW_KEY_UP},
+    {"arrow-down", GLFW_KEY_DOWN},  {"arrow-left", GLFW_KEY_LEFT},      {"arrow-right", GLFW_KEY_RIGHT},
+    {"page-up", GLFW_KEY_PAGE_UP},  {"page-down", GLFW_KEY_PAGE_DOWN},  {"f1", GLFW_KEY_F1},
+    {"f11", GLFW_KEY_F11}};
+
+// What is done once the picture is there.
+const std::set<std::string> kDrawnFirst{"screenshot", "say", "state"};
 
 int key_named(const std::string& name) {
   if (const auto found = kKeys.find(name); found != kKeys.end()) return found->second;
@@ -41,9 +45,7 @@ int key_named(const std::string& name) {
   return -1;
 }
 
-std::size_t button_named(const std::string& name) {
-  return name == "right" ? 1 : name == "middle" ? 2 : 0;
-}
+const std::map<std::string, std::size_t> kButtons{{"left", 0}, {"right", 1}, {"middle", 2}};
 
 }  // namespace
 
@@ -75,6 +77,22 @@ double UiScript::number(const Action& action, std::size_t word) const {
   }
 }
 
+int UiScript::key_of(const Action& action) const {
+  const int key = key_named(action.words[0]);
+  if (key < 0) throw InputError(path_.string(), fmt::format("line {}: no such key", action.line));
+  return key;
+}
+
+void UiScript::press(const Action& action, bool down) {
+  if (const auto button = kButtons.find(action.words[0]); button != kButtons.end()) {
+    buttons_[button->second] = down;
+  } else if (down) {
+    held_keys_.insert(key_of(action));
+  } else {
+    held_keys_.erase(key_of(action));
+  }
+}
+
 void UiScript::begin(const Action& action, Window& window) {
   begun_ = true;
   time_left_s_ = 0;
@@ -88,14 +106,12 @@ void UiScript::begin(const Action& action, Window& window) {
     to_y_ = static_cast<float>(number(action, 1));
     time_left_s_ = number(action, 2);
   } else if (name == "press" || name == "release") {
-    buttons_[button_named(action.words[0])] = name == "press";
+    press(action, name == "press");
   } else if (name == "wheel") {
     wheel_left_ = number(action, 0);
     time_left_s_ = number(action, 1);
   } else if (name == "key" || name == "hold") {
-    const int key = key_named(action.words[0]);
-    if (key < 0) throw InputError(path_.string(), fmt::format("line {}: no such key", action.line));
-    keys_.push_back(key);
+    keys_.push_back(key_of(action));
     time_left_s_ = name == "hold" ? number(action, 1) : 0.05;
   } else if (name == "click" || name == "drag") {
     std::string label = action.text;
@@ -115,6 +131,8 @@ void UiScript::begin(const Action& action, Window& window) {
     window.drop(action.text);
   } else if (name == "quit") {
     window.ask_to_close();
+  } else if (name == "controls") {
+    controls_path_ = action.text;
   } else if (name == "close") {
     closed_ = true;
   }
@@ -133,6 +151,10 @@ void UiScript::feed(double passed_s, bool settled, Window& window) {
   bool pressed = false;
   if (now_ < actions_.size()) {
     const Action& action = actions_[now_];
+    if (action.name == "await") {
+      if (std::filesystem::exists(action.text)) next();
+      return;
+    }
     if (!begun_) begin(action, window);
     double share = time_left_s_ > passed_s ? passed_s / time_left_s_ : 1.0;
     if (click_picture_ > 0) {
@@ -147,10 +169,15 @@ void UiScript::feed(double passed_s, bool settled, Window& window) {
     time_left_s_ -= passed_s;
     std::fill(std::begin(io.KeysDown), std::end(io.KeysDown), false);
     for (const int key : keys_) io.KeysDown[key] = true;
-    io.KeyShift = std::find(keys_.begin(), keys_.end(), GLFW_KEY_LEFT_SHIFT) != keys_.end();
+    for (const int key : held_keys_) io.KeysDown[key] = true;
+    io.KeyShift = io.KeysDown[GLFW_KEY_LEFT_SHIFT];
+    io.KeyCtrl = io.KeysDown[GLFW_KEY_LEFT_CONTROL];
     const bool waits = action.name == "settle" && !settled;
-    const bool drawn_first = action.name == "screenshot" || action.name == "say";
-    if (time_left_s_ <= 0 && !waits && !drawn_first) next();
+    const bool drawn_first = kDrawnFirst.count(action.name) != 0;
+    const bool over = time_left_s_ <= 0 && !waits && !drawn_first;
+    if (over && keys_.empty()) next();
+    // Up again for a picture, so that the same key twice is two taps.
+    if (over) keys_.clear();
   }
   io.MousePos = {x_, y_};
   for (std::size_t n = 0; n < 3; ++n) io.MouseDown[n] = buttons_[n];
@@ -158,13 +185,21 @@ void UiScript::feed(double passed_s, bool settled, Window& window) {
   io.MouseWheel = static_cast<float>(wheel);
 }
 
-std::string UiScript::after_drawing(const Window& window) {
+void UiScript::end() const {
+  if (controls_path_.empty()) return;
+  std::ofstream file(controls_path_, std::ios::app);
+  for (const auto& [label, place] : ui::places()) file << "drawn " << label << '\n';
+  for (const std::string& label : ui::worked()) file << "worked " << label << '\n';
+}
+
+UiScript::Saying UiScript::after_drawing(const Window& window) {
   if (now_ >= actions_.size() || !begun_) return {};
   const Action action = actions_[now_];
-  if (action.name != "screenshot" && action.name != "say") return {};
+  if (kDrawnFirst.count(action.name) == 0) return {};
   if (action.name == "screenshot") write_png(action.text, window.picture());
   next();
-  return action.name == "say" ? action.text : std::string();
+  if (action.name == "screenshot") return {};
+  return {action.text, action.name == "state"};
 }
 
 }  // namespace osteomill::app

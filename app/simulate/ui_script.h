@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -14,17 +15,21 @@ namespace osteomill::app {
 ///     wait SECONDS
 ///     settle                          until nothing is being prepared
 ///     glide X Y SECONDS               moves the pointer there
-///     press BUTTON, release BUTTON    left, middle or right
+///     press NAME, release NAME        the button left, middle or right, or a key
 ///     wheel STEPS SECONDS             turns it step by step
-///     key NAME, hold NAME SECONDS     a letter, or space, escape, shift, up, down, left, right, page-up,
-///     page-down,
-///                                     f1, f11
+///     key NAME, hold NAME SECONDS     a letter, or space, enter, escape, shift, control, arrow-up,
+///     arrow-down,
+///                                     arrow-left, arrow-right, page-up, page-down, f1, f11
 ///     click LABEL                     the button, box or heading of that label
 ///     drag LABEL PIXELS               the slider of that label, to the right
 ///     type TEXT                       into the field that was clicked
 ///     open PATH                       drops that file or folder onto the window
 ///     screenshot FILE                 a PNG of the window
 ///     say TEXT                        on standard output, with the readings
+///     state NAME                      on standard output, all that the controls bring about (state_text.h)
+///     controls FILE                   once the window has closed, adds to it the labels of all controls that
+///                                     were drawn ("drawn LABEL") and of those that acted ("worked LABEL")
+///     await FILE                      until it is there; meanwhile pointer and keys are the display's own
 ///     quit                            asks to close, as the window's own button does
 ///     close                           closes without a question
 /// Empty lines and lines that begin with # mean nothing.
@@ -36,8 +41,14 @@ class UiScript {
   /// Before ImGui's frame begins: hands it the events of this picture. `passed_s` since the last one. Throws
   /// InputError where a label is not in the window.
   void feed(double passed_s, bool settled, Window& window);
-  /// After the window was drawn: screenshots. Returns what is to be said, or an empty text.
-  std::string after_drawing(const Window& window);
+  /// After the window was drawn: screenshots. What is to be said, if anything, and whether all of the state.
+  struct Saying {
+    std::string text;
+    bool state = false;
+  };
+  Saying after_drawing(const Window& window);
+  /// After the last picture.
+  void end() const;
   /// Whether the window is to close without a question.
   bool closed() const { return closed_; }
 
@@ -50,9 +61,12 @@ class UiScript {
   };
   void begin(const Action& action, Window& window);
   void next();
+  int key_of(const Action& action) const;
+  void press(const Action& action, bool down);
   double number(const Action& action, std::size_t word) const;
 
   std::filesystem::path path_;
+  std::filesystem::path controls_path_;
   std::vector<Action> actions_;
   std::size_t now_ = 0;
   double time_left_s_ = 0;
@@ -69,6 +83,8 @@ class UiScript {
   int click_picture_ = 0;
   double wheel_left_ = 0;
   std::vector<int> keys_;
+  // Pressed and not yet released.
+  std::set<int> held_keys_;
 };
 
 }  // namespace osteomill::app

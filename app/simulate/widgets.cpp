@@ -1,5 +1,7 @@
 #include "app/simulate/widgets.h"
 
+#include <algorithm>
+
 namespace osteomill::app::ui {
 
 std::map<std::string, Place>& places() {
@@ -7,50 +9,53 @@ std::map<std::string, Place>& places() {
   return kept;
 }
 
-void remember(const char* label) {
-  const std::string text(label);
+std::set<std::string>& worked() {
+  static std::set<std::string> kept;
+  return kept;
+}
+
+namespace {
+
+// Remembers the widget drawn last. Returns whether it acted.
+bool remember(const char* label, bool acted) {
+  std::string text(label);
+  text.erase(std::min(text.find("##"), text.size()));
   const ImVec2 min = ImGui::GetItemRectMin();
   const ImVec2 max = ImGui::GetItemRectMax();
-  places()[text.substr(0, text.find("##"))] = {{0.5f * (min.x + max.x), 0.5f * (min.y + max.y)},
-                                               ImGui::GetFrameCount()};
+  places()[text] = {{0.5f * (min.x + max.x), 0.5f * (min.y + max.y)}, ImGui::GetFrameCount()};
+  if (acted) worked().insert(text);
+  return acted;
 }
+
+}  // namespace
 
 bool button(const char* label, bool enabled) {
   if (!enabled) ImGui::BeginDisabled();
-  const bool pressed = ImGui::Button(label);
-  remember(label);
+  const bool pressed = remember(label, ImGui::Button(label) && enabled);
   if (!enabled) ImGui::EndDisabled();
-  return pressed && enabled;
+  return pressed;
 }
 
 bool checkbox(const char* label, bool* value) {
-  const bool changed = ImGui::Checkbox(label, value);
-  remember(label);
-  return changed;
+  return remember(label, ImGui::Checkbox(label, value));
 }
 
 bool radio(const char* label, bool chosen) {
-  const bool pressed = ImGui::RadioButton(label, chosen);
-  remember(label);
-  return pressed && !chosen;
+  return remember(label, ImGui::RadioButton(label, chosen) && !chosen);
 }
 
 bool slider(const char* label, float* value, float min, float max, const char* format,
             ImGuiSliderFlags flags) {
-  const bool changed = ImGui::SliderFloat(label, value, min, max, format, flags);
-  remember(label);
-  return changed;
+  return remember(label, ImGui::SliderFloat(label, value, min, max, format, flags));
 }
 
 bool text_field(const char* label, char* text, std::size_t size) {
-  const bool entered = ImGui::InputText(label, text, size, ImGuiInputTextFlags_EnterReturnsTrue);
-  remember(label);
-  return entered;
+  return remember(label, ImGui::InputText(label, text, size, ImGuiInputTextFlags_EnterReturnsTrue));
 }
 
 bool header(const char* label, bool open) {
   const bool shown = ImGui::CollapsingHeader(label, open ? ImGuiTreeNodeFlags_DefaultOpen : 0);
-  remember(label);
+  remember(label, ImGui::IsItemToggledOpen());
   return shown;
 }
 

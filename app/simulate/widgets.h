@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <map>
+#include <set>
 #include <string>
 
 #include <imgui.h>
@@ -15,8 +16,9 @@ struct Place {
   int frame = 0;
 };
 std::map<std::string, Place>& places();
-/// Remembers the widget drawn last.
-void remember(const char* label);
+/// The labels of those that did what they are for at least once: a button that was pressed, a slider that was
+/// moved. A test sees by it which were never worked.
+std::set<std::string>& worked();
 
 bool button(const char* label, bool enabled = true);
 bool checkbox(const char* label, bool* value);

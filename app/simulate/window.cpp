@@ -1,5 +1,6 @@
 #include "app/simulate/window.h"
 
+#include <algorithm>
 #include <filesystem>
 
 #include <GLFW/glfw3.h>
@@ -62,6 +63,11 @@ Window::Window(const std::string& title, const PixelSize& size) {
   ImGui::CreateContext();
   set_style();
   ImGui_ImplGlfw_InitForOpenGL(window_, true);
+  glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int scancode, int action, int mods) {
+    if (action == GLFW_REPEAT) return;
+    static_cast<Window*>(glfwGetWindowUserPointer(window))
+        ->key_events_.push_back({key, scancode, action, mods});
+  });
   ImGui_ImplOpenGL3_Init("#version 330 core");
 }
 
@@ -103,8 +109,23 @@ void Window::toggle_full_screen() {
   glfwSetWindowMonitor(window_, monitor, 0, 0, mode->width, mode->height, mode->refreshRate);
 }
 
+// ImGui looks at the keys once a picture. One that goes down and up in between is down in this picture and up
+// in the next, with all that came after it, so that no tap is lost and the order stays.
+void Window::hand_over_keys() {
+  std::vector<int> changed;
+  const auto again = [&](const KeyEvent& event) {
+    return std::find(changed.begin(), changed.end(), event.key) != changed.end();
+  };
+  for (; !key_events_.empty() && !again(key_events_.front()); key_events_.pop_front()) {
+    const KeyEvent& event = key_events_.front();
+    changed.push_back(event.key);
+    ImGui_ImplGlfw_KeyCallback(window_, event.key, event.scancode, event.action, event.mods);
+  }
+}
+
 void Window::begin_frame() {
   glfwPollEvents();
+  hand_over_keys();
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
 }

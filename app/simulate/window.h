@@ -1,5 +1,6 @@
 #pragma once
 
+#include <deque>
 #include <string>
 #include <utility>
 #include <vector>
@@ -42,7 +43,16 @@ class Window {
   void show();
 
  private:
+  struct KeyEvent {
+    int key;
+    int scancode;
+    int action;
+    int mods;
+  };
+  void hand_over_keys();
+
   GLFWwindow* window_ = nullptr;
+  std::deque<KeyEvent> key_events_;
   std::vector<std::string> dropped_;
   int windowed_place_[4] = {0, 0, 0, 0};
 };

@@ -62,7 +62,7 @@ const std::vector<Field>& fields() {
            .range = SettingRange::on_or_off(),
            .paper = 1,
            .steady = 1,
-           .meaning = "How the gradient behind a normal is taken: 0 central differences, 1 smoothed"},
+           .meaning = "Normals are taken from smoothed gradients; off: from central differences"},
           [](Settings & s) -> auto& { return s.normal.kernel; }),
       setting_field<Settings>(
           {.name = "normal-spread",

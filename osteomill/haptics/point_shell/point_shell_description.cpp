@@ -81,7 +81,7 @@ const std::vector<Field>& fields() {
            .range = SettingRange::on_or_off(),
            .paper = 0,
            .steady = 0,
-           .meaning = "How the gradient behind the area weights is taken: 0 central differences, 1 smoothed"},
+           .meaning = "The area weights are taken from smoothed gradients; off: from central differences"},
           [](Settings & s) -> auto& { return s.shell.gradient; }),
       setting_field<Settings>(
           {.name = "translational-stiffness",

@@ -1,0 +1,104 @@
+#include "app/simulate/state_text.h"
+
+#include <string_view>
+
+#include "app/simulate/scene_of.h"
+#include "app/simulate/widgets.h"
+#include <fmt/core.h>
+
+namespace osteomill::app {
+
+namespace {
+
+std::string text_of(const Vec3& v) {
+  return fmt::format("{:.3f} {:.3f} {:.3f}", v.x(), v.y(), v.z());
+}
+
+// As the viewer sees it: to the right, up, towards them.
+Vec3 seen(const Camera& camera, const Vec3& v_W) {
+  return camera.orientation.conjugate() * v_W;
+}
+
+class Lines {
+ public:
+  explicit Lines(std::string name) : name_(std::move(name)) {}
+  template <typename Value>
+  void add(std::string_view key, const Value& value) {
+    text_ += fmt::format("{}.{}={}\n", name_, key, value);
+  }
+  const std::string& text() const { return text_; }
+
+ private:
+  std::string name_;
+  std::string text_;
+};
+
+std::string shown_controls() {
+  std::string labels;
+  for (const auto& [label, place] : ui::places()) {
+    if (place.frame >= ImGui::GetFrameCount() - 1) labels += "[" + label + "]";
+  }
+  return labels;
+}
+
+void add_setup(Lines& lines, const MillingSetup& setup) {
+  lines.add("algorithm", setup.algorithm.id.name);
+  lines.add("mode", setup.haptics.mode == Mode::paper ? "paper" : "steady");
+  if (const SettingDescription* stiffness = setting_of_option(setup.algorithm, "stiffness")) {
+    for (const SettingValue& value : setting_values(setup.algorithm, setup.haptics)) {
+      if (value.name == stiffness->name) lines.add("stiffness", fmt::format("{:.2f}", value.value));
+    }
+  }
+  lines.add("burr_mm", fmt::format("{:.2f}", setup.tool.burr_radius_mm));
+  lines.add("shaft_mm", fmt::format("{:.2f}", setup.tool.shaft_radius_mm));
+  lines.add("rpm", fmt::format("{:.0f}", setup.cutting.spindle_speed_rpm));
+  lines.add("vibration", setup.vibration);
+}
+
+void add_scene(Lines& lines, const ViewScene& scene, const PixelSize& size) {
+  lines.add("towards_viewer", text_of(scene.camera.towards_viewer_W()));
+  lines.add("focus", text_of(scene.camera.focus_W));
+  lines.add("distance_mm", fmt::format("{:.2f}", scene.camera.distance_mm));
+  const Eigen::Vector2d tool = pixel_of(scene.camera, size, scene.X_WT->position_mm);
+  lines.add("tool_px", fmt::format("{:.0f} {:.0f}", tool.x(), tool.y()));
+  lines.add("tool_seen", text_of(seen(scene.camera, scene.X_WT->position_mm)));
+  lines.add("ghost", scene.X_WD.has_value());
+  lines.add("force_arrow_N", fmt::format("{:.3f}", scene.wrench.force_N.norm()));
+  const char* const names[] = {"axial", "coronal", "sagittal", "free"};
+  for (std::size_t n = 0; n < scene.cuts.size(); ++n) {
+    lines.add(names[n], scene.cuts[n] ? fmt::format("{} at {:.2f}", text_of(scene.cuts[n]->normal_W),
+                                                    scene.cuts[n]->offset_mm)
+                                      : "off");
+  }
+}
+
+}  // namespace
+
+std::string state_text(const std::string& name, const ViewState& view, Simulation& simulation,
+                       const FilesPanel& files, const SpindleState& heard, const PixelSize& size) {
+  Lines lines(name);
+  LiveMilling& milling = simulation.milling;
+  const LiveState& state = milling.state();
+  add_setup(lines, milling.setup());
+  add_scene(lines, scene_of(view, simulation), size);
+  lines.add("target_seen", text_of(seen(view.camera, view.X_W_target.position_mm)));
+  lines.add("target_turned", text_of(seen(view.camera, rotation_vector(view.X_W_target.orientation))));
+  lines.add("in_hand", view.holding_tool);
+  lines.add("spindle", state.spindle_on);
+  lines.add("paused", state.paused);
+  lines.add("heard_rpm", fmt::format("{:.0f}", heard.speed_rpm));
+  lines.add("isovalue", fmt::format("{:.0f}", milling.isovalue()));
+  lines.add("removed_mm3", fmt::format("{:.3f}", state.record.removed_mm3));
+  lines.add("cuts", milling.cuts());
+  lines.add("recording", milling.recording());
+  lines.add("last_recording", files.last_recording().string());
+  lines.add("scan", simulation.scan_name);
+  lines.add("help", view.help);
+  lines.add("message", view.message);
+  lines.add("dialogue", view.complaint);
+  lines.add("shown", shown_controls());
+  lines.add("size", fmt::format("{} x {}", size.width, size.height));
+  return lines.text();
+}
+
+}  // namespace osteomill::app

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+
+#include "app/simulate/files_panel.h"
+#include "app/simulate/simulation.h"
+#include "app/simulate/view_state.h"
+
+#include "osteomill/sound/spindle_sound.h"
+
+namespace osteomill::app {
+
+/// What the window's controls bring about, a line "NAME.KEY=VALUE" each: not how a control stands but what is
+/// in force, is drawn and is heard. For scripts (ui_script.h).
+std::string state_text(const std::string& name, const ViewState& view, Simulation& simulation,
+                       const FilesPanel& files, const SpindleState& heard, const PixelSize& size);
+
+}  // namespace osteomill::app

@@ -1,0 +1,256 @@
+#!/usr/bin/env bash
+# Every control of the window is worked, and what it brings about is held against what it is for; one that no line here
+# works, or that does nothing when it is worked, is named:
+#   controls_test.sh OSTEOMILL
+# Skipped (exit 77) without Xvfb. Screenshots stay in OSTEOMILL_PICTURES where that is set.
+set -euo pipefail
+osteomill=$1
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+source_folder=$here/../../app/simulate
+command -v xvfb-run >/dev/null || { echo "SKIPPED: needs xvfb-run"; exit 77; }
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cd "$folder"
+export XDG_STATE_HOME=$folder/state
+"$here/ball.sh" >ball.nrrd
+"$here/ball.sh" 4 >other.nrrd
+
+faults=0
+fault() { echo "FAILED: $1"; faults=1; }
+# Works the window by the lines of standard input, with what it says in `said`.
+window() {
+  { echo "controls $folder/controls"; sed 's/ *;; */\n/g'; } | tee -a worked_lines >actions
+  xvfb-run -a -s "-screen 0 1400x900x24" timeout 150 "$osteomill" simulate "$@" --out out --script actions >said 2>errors || {
+    echo "FAILED: exit code $?"; cat errors; exit 1; }
+  [ -z "${OSTEOMILL_PICTURES:-}" ] || cp ./*.png "$OSTEOMILL_PICTURES" 2>/dev/null || true
+}
+value() { sed -n "s/^$1\.$2=//p" said; }
+part() { value "$1" "$2" | cut -d' ' -f"$3"; }
+is() { [ "$(value "$1" "$2")" = "$3" ] || fault "at $1, $2 is '$(value "$1" "$2")' and not '$3'"; }
+# Where $1 and $2 are two moments: `changed A B KEY`, `same A B KEY`, `more A B KEY PART` (of a list of numbers).
+changed() { [ "$(value "$1" "$3")" != "$(value "$2" "$3")" ] || fault "$3 stays '$(value "$1" "$3")' from $1 to $2"; }
+same() { [ "$(value "$1" "$3")" = "$(value "$2" "$3")" ] || fault "$3 changes from $1 to $2: '$(value "$1" "$3")', '$(value "$2" "$3")'"; }
+more() {
+  awk -v a="$(part "$1" "$3" "${4:-1}")" -v b="$(part "$2" "$3" "${4:-1}")" 'BEGIN { exit !(b > a) }' ||
+    fault "$3 does not grow from $1 to $2: '$(value "$1" "$3")', '$(value "$2" "$3")'"
+}
+shows() { value "$1" shown | grep -qF "[$2]" || fault "at $1 there is no '$2'"; }
+hides() { ! value "$1" shown | grep -qF "[$2]" || fault "at $1 there is still '$2'"; }
+
+# --- Headings, views, camera, keys, tool in hand ------------------------------------------------------------------
+window ball.nrrd <<'END'
+wait 0.2 ;; state first ;; screenshot controls-1-help.png
+click Start milling ;; state start
+key f1 ;; state f1 ;; key f1 ;; state f1-again
+click Help ;; state help ;; click Start milling
+click Milling ;; state no-milling ;; click Milling
+click Algorithm ;; state no-algorithm ;; click Algorithm
+click Tool ;; state no-tool ;; click Tool
+click View ;; state no-view ;; click View
+click Record and save ;; state no-save ;; click Record and save
+click Cuts ;; state cuts-open ;; click Cuts
+click Bone ;; state bone-open ;; click Bone
+state before
+click A ;; state from-a
+click P ;; state from-p
+click L ;; state from-l
+click R ;; state from-r
+click S ;; state from-s
+click I ;; state from-i
+glide 500 700 0 ;; press left ;; glide 600 650 0.1 ;; release left ;; state turned
+press right ;; glide 600 600 0.1 ;; release right ;; state zoomed
+press middle ;; glide 660 600 0.1 ;; release middle ;; state panned
+press shift ;; press left ;; glide 660 660 0.1 ;; release left ;; release shift ;; state shift-panned
+wheel 3 0.1 ;; state wheeled
+click Whole ;; state whole
+click Find tool ;; state found
+glide 640 400 0.1 ;; press left ;; glide 700 330 0.2 ;; wait 0.3 ;; release left ;; state tool-dragged
+key t ;; state taken
+glide 760 330 0.2 ;; wait 0.3 ;; state moved
+press shift ;; glide 800 330 0.2 ;; release shift ;; wait 0.1 ;; state twisted
+wheel 5 0.3 ;; wait 0.1 ;; state pushed
+hold page-down 0.3 ;; wait 0.1 ;; state pulled
+hold page-up 0.3 ;; wait 0.1 ;; state pushed-again
+hold arrow-right 0.3 ;; state key-right
+hold arrow-left 0.4 ;; state key-left
+hold arrow-up 0.3 ;; state key-up
+hold arrow-down 0.4 ;; state key-down
+press shift ;; hold arrow-right 0.3 ;; release shift ;; state key-twisted
+press left ;; wait 0.1 ;; state pedal ;; release left ;; wait 0.1 ;; state no-pedal
+key space ;; wait 0.1 ;; state space ;; key space ;; wait 0.1 ;; state space-again
+key p ;; wait 0.1 ;; state p ;; key p ;; wait 0.1 ;; state p-again
+key escape ;; state escaped
+key t ;; key t ;; state t-twice
+click Take the tool (T) ;; state button-taken
+click Let go (T) ;; state button-let-go
+key f11 ;; wait 0.3 ;; state full ;; key f11 ;; wait 0.3 ;; state not-full
+screenshot controls-2-keys.png
+close
+END
+[ "$(value first tool_seen)" != "0.000 0.000 0.000" ] && same first before tool_seen || fault "the tool does not begin above the bone"
+is first help true; is start help false; is f1 help true; is f1-again help false; is help help true
+shows start "spindle on"; hides no-milling "spindle on"; shows no-milling stiffness
+hides no-algorithm steady; shows no-algorithm "burr radius"
+hides no-tool "burr radius"; shows no-tool ghost
+hides no-view ghost; shows no-view Record
+hides no-save Record; shows no-save ghost
+hides start axial; shows cuts-open axial
+hides start isovalue; shows bone-open isovalue
+for view in "a 0.000 -1.000 0.000" "p 0.000 1.000 0.000" "l 1.000 0.000 0.000" "r -1.000 0.000 0.000" \
+  "s 0.000 0.000 1.000" "i 0.000 0.000 -1.000"; do
+  [ "$(value "from-${view%% *}" towards_viewer | sed 's/-0\.000/0.000/g')" = "${view#* }" ] ||
+    fault "view ${view%% *} looks from $(value "from-${view%% *}" towards_viewer)"
+done
+changed from-i turned towards_viewer; same from-i turned distance_mm; same from-i turned focus
+more zoomed turned distance_mm; same turned zoomed towards_viewer
+changed zoomed panned focus; same zoomed panned towards_viewer; same zoomed panned distance_mm
+changed panned shift-panned focus; same panned shift-panned towards_viewer
+more wheeled shift-panned distance_mm
+same wheeled whole towards_viewer; changed wheeled whole focus; changed wheeled whole distance_mm
+changed whole found focus; is found tool_px "640 400"; same whole found towards_viewer
+more found tool-dragged tool_seen 1; more found tool-dragged tool_seen 2; same found tool-dragged towards_viewer
+is tool-dragged in_hand false; is taken in_hand true; is escaped in_hand false; is t-twice in_hand false
+is button-taken in_hand true; is button-let-go in_hand false
+more taken moved target_seen 1; more taken moved tool_seen 1; same taken moved towards_viewer
+changed moved twisted target_turned; same moved twisted target_seen
+more pushed twisted target_seen 3; more pushed pulled target_seen 3; more pushed-again pulled target_seen 3
+more pushed-again key-right target_seen 1; more key-left key-right target_seen 1
+more key-left key-up target_seen 2; more key-down key-up target_seen 2
+changed key-down key-twisted target_turned; same key-down key-twisted target_seen
+is taken spindle false; is pedal spindle true; is no-pedal spindle false
+is space spindle true; is space-again spindle false
+is p paused true; is p-again paused false
+same start not-full size; is full size "1400 x 900"
+
+# --- Milling, what is drawn and heard, algorithm, tool, scan's isovalue ----------------------------------------------
+window ball.nrrd --no-help <<'END'
+wait 0.2 ;; click S ;; glide 640 750 0 ;; key t ;; wheel 26 0.6 ;; wait 0.5 ;; key t ;; state touching
+click ghost ;; state no-ghost ;; click ghost
+click arrows ;; state no-arrows ;; click arrows
+click spindle on ;; wait 0.6 ;; state milling ;; click sound ;; wait 0.1 ;; state silent ;; click sound
+click spindle on ;; wait 0.2 ;; state milled
+click pause ;; wait 0.1 ;; state paused ;; click pause ;; wait 0.1 ;; state goes-on
+glide 640 750 0 ;; key t ;; wheel 4 0.2 ;; key space ;; wait 0.6 ;; key space ;; wheel 4 0.2 ;; key space ;; wait 0.6 ;; key space
+key t ;; wait 0.2 ;; state three-cuts ;; screenshot controls-3-milled.png
+click Undo cut ;; settle ;; wait 0.1 ;; state undone
+press control ;; key z ;; release control ;; settle ;; wait 0.1 ;; state undone-by-key
+click Reset bone ;; settle ;; wait 0.1 ;; state reset
+click 1 line-proxy ;; settle ;; state line-proxy
+drag stiffness 30 ;; settle ;; state line-proxy-stiffness
+click 2 surface-points ;; settle ;; state surface-points
+drag stiffness 30 ;; settle ;; state surface-points-stiffness
+click as in the paper ;; settle ;; state paper
+click 3 point-shell ;; settle ;; state point-shell
+drag stiffness -20 ;; settle ;; state point-shell-stiffness
+click steady ;; settle ;; state steady
+drag burr radius -10 ;; settle ;; state burr
+drag shaft radius -10 ;; settle ;; state shaft
+drag spindle 30 ;; settle ;; state rpm
+click vibration ;; settle ;; state no-vibration
+click Milling ;; click Algorithm ;; click Tool
+click Bone ;; drag isovalue 20 ;; settle ;; wait 0.2 ;; state isovalue
+screenshot controls-4-bone.png
+close
+END
+more touching milling removed_mm3; is touching removed_mm3 0.000; is touching spindle false; is milling spindle true
+is touching ghost true; is no-ghost ghost false
+more no-arrows touching force_arrow_N; is no-arrows force_arrow_N 0.000
+is milling heard_rpm "$(value milling rpm)"; is silent heard_rpm 0; is milled heard_rpm 0; is milled cuts 1
+is paused paused true; is goes-on paused false
+is three-cuts cuts 3; more milled three-cuts removed_mm3
+is undone cuts 2; more undone three-cuts removed_mm3
+is undone-by-key cuts 1; more undone-by-key undone removed_mm3; same milled undone-by-key removed_mm3
+is reset cuts 0; is reset removed_mm3 0.000
+for algorithm in line-proxy surface-points point-shell; do
+  is $algorithm algorithm $algorithm
+  # The first drag after an algorithm was chosen counts.
+  changed $algorithm $algorithm-stiffness stiffness
+done
+is line-proxy mode steady; is paper mode paper; is point-shell mode paper; is steady mode steady
+changed steady burr burr_mm; changed burr shaft shaft_mm; changed shaft rpm rpm
+is rpm vibration true; is no-vibration vibration false
+changed no-vibration isovalue isovalue
+
+# --- Cuts ---------------------------------------------------------------------------------------------------------
+cut_lines() {
+  echo "wait 0.2 ;; click Algorithm ;; click Tool ;; click Cuts ;; state none ;; click free ;; state free-on"
+  echo "glide 660 400 0.1 ;; press control ;; press left ;; glide 660 430 0.2 ;; release left ;; release control"
+  echo "state dragged ;; screenshot controls-5-free.png"
+  echo "click other side ;; state free-other ;; drag free place 20 ;; state free-moved ;; click free ;; state free-off"
+  for cut in axial coronal sagittal; do
+    echo "click $cut ;; wait 0.1 ;; state $cut-on ;; click other side ;; state $cut-other"
+    echo "drag $cut place 20 ;; state $cut-moved ;; click $cut ;; state $cut-off"
+  done
+  echo close
+}
+window ball.nrrd --no-help < <(cut_lines)
+for cut in axial coronal sagittal free; do
+  is none $cut off; is $cut-off $cut off
+  changed none $cut-on $cut; changed $cut-on $cut-other $cut; changed $cut-other $cut-moved $cut
+done
+normal() { value "$1" "$2" | sed -E 's/ at .*//; s/-0\.000/0.000/g'; }
+for cut in "axial 0.000 0.000 -1.000" "coronal 0.000 1.000 0.000" "sagittal -1.000 0.000 0.000"; do
+  name=${cut%% *}
+  [ "$(normal "$name-on" "$name")" = "${cut#* }" ] || fault "the $name cut is $(normal "$name-on" "$name")"
+done
+changed free-on dragged free
+[ "$(normal free-on free)" = "$(normal dragged free)" ] || fault "dragging the cut turns it"
+same free-on dragged towards_viewer
+
+# --- Files, dialogues, closing ------------------------------------------------------------------------------------
+echo "not a scan" >bad.nrrd
+window ball.nrrd --no-help <<'END'
+wait 0.2 ;; state start
+click Record ;; wait 0.3 ;; state recording ;; screenshot controls-6-recording.png
+click Stop recording ;; wait 0.1 ;; state recorded
+click Report ;; settle ;; wait 0.1 ;; state reported
+click Save scan ;; settle ;; wait 0.1 ;; state saved-scan
+click Save surface ;; settle ;; wait 0.1 ;; state saved-surface
+click Save picture ;; wait 0.2 ;; state saved-picture
+click scan ;; type other.nrrd ;; click Open ;; settle ;; wait 0.3 ;; state opened
+click scan ;; press control ;; key a ;; release control ;; type bad.nrrd ;; wait 0.1 ;; key enter ;; settle ;; wait 0.3 ;; state at-fault
+screenshot controls-7-fault.png ;; click Close ;; wait 0.1 ;; state fault-read
+quit ;; wait 0.2 ;; state asking ;; screenshot controls-8-asking.png ;; click Stay ;; wait 0.2 ;; state stayed
+quit ;; wait 0.2 ;; key escape ;; wait 0.2 ;; state stayed-by-key
+quit ;; wait 0.2 ;; click Make the report and close
+wait 60 ;; state still-there
+END
+is start recording false; is recording recording true; is recorded recording false
+recording=$(value recorded last_recording)
+[ -s "$recording" ] && [ -z "$(value start last_recording)" ] || fault "no recording '$recording'"
+for saved in "reported report/report.html" "saved-scan milled.nrrd" "saved-surface surface.ply" \
+  "saved-picture picture.png"; do
+  compgen -G "out/*-${saved#* }" >/dev/null || fault "no ${saved#* }"
+done
+value reported message | grep -q "^Report in out/" || fault "the report is not named"
+for saved in scan surface picture; do
+  value saved-$saved message | grep -q "^Saved out/" || fault "what Save $saved wrote is not named"
+done
+is start scan ball.nrrd; is opened scan other.nrrd; is at-fault scan other.nrrd
+value at-fault dialogue | grep -q "^bad.nrrd: ." || fault "the scan at fault is not named"
+is fault-read dialogue ""; hides fault-read Close
+shows asking Stay; hides stayed Stay; hides stayed-by-key Stay
+[ -z "$(value still-there scan)" ] || fault "it did not close after the report"
+[ "$(ls -d out/*-report* | wc -l)" -eq 2 ] || fault "there should be two reports"
+
+window ball.nrrd --no-help <<'END'
+wait 0.2 ;; click Record ;; wait 0.2 ;; quit ;; wait 0.2 ;; click Close without
+wait 60 ;; state still-there
+END
+[ -z "$(value still-there scan)" ] || fault "it did not close without a report"
+
+# --- Nothing was left out -----------------------------------------------------------------------------------------
+# Of the labels that were drawn, and of those that stand in the code.
+{ sed -n 's/^drawn //p' controls
+  grep -hoE 'ui::(button|checkbox|radio|slider|text_field|header)\([^;]*' "$source_folder"/*.cpp |
+    grep -oE '"[^"]+"' | tr -d '"' | sed 's/##.*//; /^ place$/d; /^%/d; /^$/d'; } | sort -u >labels
+sed -n 's/^worked //p' controls | sort -u >worked
+[ "$(wc -l <labels)" -gt 30 ] || fault "the labels are not found"
+while read -r label; do fault "the control '$label' was never worked, or did nothing"; done < <(comm -23 labels worked)
+# Of the keys that the code asks for.
+grep -ohE 'GLFW_KEY_[A-Z0-9_]+' "$source_folder/pointer.cpp" "$source_folder/overlay.cpp" | sort -u | sed 's/GLFW_KEY_//' |
+  while read -r key; do
+    name=$(tr 'A-Z_' 'a-z-' <<<"$key" | sed -E 's/^(up|down|left|right)$/arrow-\1/')
+    grep -qE "(^|;; )(key|hold) $name( |$)" worked_lines || { echo "FAILED: the key $name was never pressed"; exit 1; }
+  done || faults=1
+exit $faults

@@ -1,0 +1,60 @@
+#!/usr/bin/env bash
+# What comes from the display itself: keys that are tapped quicker than pictures follow each other, a click, a drag and
+# the wheel:
+#   real_keys_test.sh OSTEOMILL
+set -euo pipefail
+osteomill=$1
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+for tool in xvfb-run xdotool; do
+  command -v $tool >/dev/null || { echo "SKIPPED: needs $tool"; exit 77; }
+done
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cd "$folder"
+export XDG_STATE_HOME=$folder/state
+fail() { echo "FAILED: $1"; cat said errors; exit 1; }
+"$here/ball.sh" >ball.nrrd
+
+# The script of the window stands still at each `await` until the display's events have been sent.
+moments=(taps paused chord tapped-thrice clicked dragged wheeled)
+{
+  printf '%s\n' "wait 0.3" "state start"
+  for moment in "${moments[@]}"; do printf '%s\n' "say $moment" "await $moment" "state $moment"; done
+  echo close
+} >actions
+cat >hands <<'END'
+set -euo pipefail
+"$1" simulate ball.nrrd --no-help --script actions >said 2>errors & program=$!
+window=$(xdotool search --sync --onlyvisible --name '^osteomill$')
+xdotool windowfocus "$window" mousemove --window "$window" 640 700
+# Sends events once the window waits for them, and gives it time for some pictures.
+send() {
+  until grep -q "^$1: " said || ! kill -0 "$program"; do sleep 0.05; done
+  xdotool "${@:2}"
+  sleep 0.5
+  touch "$1"
+}
+# Down and up with nothing in between: mostly both come to the same picture.
+send taps key --delay 0 t key --delay 0 space key --delay 0 F1
+send paused key --delay 0 p
+send chord key --delay 0 t key --delay 0 ctrl+p
+# GLFW takes two presses of a key within a millisecond for one.
+send tapped-thrice key --delay 0 p sleep 0.003 key --delay 0 p sleep 0.003 key --delay 0 p
+# The box "pause" (17 pixels within its frame).
+send clicked mousemove --window "$window" 121 112 click 1
+send dragged mousemove --window "$window" 640 700 mousedown 1 mousemove --window "$window" 700 720 sleep 0.2 mouseup 1
+send wheeled click 4 click 4
+wait "$program"
+END
+xvfb-run -a -s "-screen 0 1280x800x24" timeout 100 bash hands "$osteomill" || fail "exit code $?"
+
+value() { sed -n "s/^$1\.$2=//p" said; }
+is() { [ "$(value "$1" "$2")" = "$3" ] || fail "at $1, $2 is '$(value "$1" "$2")' and not '$3'"; }
+for fact in in_hand spindle help; do is start $fact false; is taps $fact true; done
+is taps paused false; is paused paused true
+is chord in_hand false; is chord paused false
+is tapped-thrice paused true
+is clicked paused false
+[ "$(value clicked towards_viewer)" != "$(value dragged towards_viewer)" ] || fail "a drag does not turn the view"
+[ "$(value clicked distance_mm)" = "$(value dragged distance_mm)" ] || fail "a drag of the left button zooms"
+[ "$(value dragged distance_mm)" != "$(value wheeled distance_mm)" ] || fail "the wheel does not zoom"
