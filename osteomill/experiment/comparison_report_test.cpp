@@ -113,6 +113,7 @@ TEST_F(ReportTest, BothModesHaveTheirOwnFiguresAndFindings) {
 
 TEST_F(ReportTest, AToolThatNeverMovesAndNeverTouchesIsDrawnToo) {
   Recording run;
+  run.description.algorithm = algorithm_named("line-proxy").id;
   for (int n = 0; n < 100; ++n) {
     TickRecord r;
     r.time_s = 0.001 * n;

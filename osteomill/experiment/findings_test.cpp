@@ -17,7 +17,8 @@ Recording short_run(std::string_view algorithm, std::string_view phase) {
   recording.description.algorithm = algorithm_named(algorithm).id;
   recording.description.segment = phase;
   recording.records.resize(2);
-  recording.records[1].time_s = 0.001;
+  recording.records[0].time_s = phase == kHolding ? 20 : 0;
+  recording.records[1].time_s = recording.records[0].time_s + 0.001;
   return recording;
 }
 

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "osteomill/experiment/comparison_report.h"
+#include "osteomill/experiment/paper.h"
 #include "osteomill/experiment/passivity_figure.h"
 #include "osteomill/haptics/algorithms.h"
 #include "osteomill/report/report_samples.h"
@@ -25,7 +26,9 @@ std::string bytes_of(const fs::path& path) {
 // 1 follows the rule, 2 feels half of it and has none on the last device, 3 never ends. No measurement.
 std::vector<PassivityRow> sample_rows(const std::vector<Mode>& modes) {
   std::vector<PassivityRow> rows;
-  for (const PassivityCase& setup : passivity_cases(all_algorithms(), modes)) {
+  std::vector<AlgorithmDescription> algorithms;
+  for (const std::string_view name : kPapersAlgorithms) algorithms.push_back(algorithm_named(name));
+  for (const PassivityCase& setup : passivity_cases(algorithms, modes)) {
     const double rule = passive_stiffness_rule_N_per_mm(setup.damping_Ns_per_mm, 1e-3, setup.delay_s);
     PassivityRow row{setup, {Kind::found, rule, rule}, rule};
     if (setup.algorithm.id == "surface-points") row.limit = {Kind::found, 4 * rule, 0.5 * rule};

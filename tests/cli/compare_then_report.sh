@@ -17,11 +17,11 @@ for file in report.html summary.csv figures/fig7_force_steady.svg figures/fig7_f
   figures/stability.svg; do
   [ -s "a/$file" ] || fault "no $file"
 done
-[ "$(wc -l <a/summary.csv)" -eq 7 ] || fault "summary.csv should have a head and six rows"
-[ "$(ls a/*.h5 | wc -l)" -eq 6 ] || fault "there should be six recordings"
+[ "$(wc -l <a/summary.csv)" -eq 9 ] || fault "summary.csv should have a head and eight rows"
+[ "$(ls a/*.h5 | wc -l)" -eq 8 ] || fault "there should be eight recordings"
 grep -q "http://\|https://" <(sed 's|http://www.w3.org/[^"]*||g' a/report.html) && fault "report.html reaches for the network"
 
-[ "$(wc -l <a/stability.csv)" -eq 37 ] || fault "stability.csv should have a head and 3 x 12 rows"
+[ "$(wc -l <a/stability.csv)" -eq 49 ] || fault "stability.csv should have a head and 4 x 12 rows"
 
 "$osteomill" report a/*.h5 --csv --out b >b.out
 [ "$(wc -l <b/point-shell-holding.csv)" -eq 2001 ] || fault "the CSV should have a head and a row a tick"
