@@ -137,6 +137,7 @@ press control ;; key z ;; release control ;; settle ;; wait 0.1 ;; state undone-
 click Reset bone ;; settle ;; wait 0.1 ;; state reset
 click 1 line-proxy ;; settle ;; state line-proxy
 drag stiffness 30 ;; settle ;; state line-proxy-stiffness
+click 4 barrier-shell ;; settle ;; state barrier-shell
 click 2 surface-points ;; settle ;; state surface-points
 drag stiffness 30 ;; settle ;; state surface-points-stiffness
 click as in the paper ;; settle ;; state paper
@@ -161,6 +162,7 @@ is three-cuts cuts 3; more milled three-cuts removed_mm3
 is undone cuts 2; more undone three-cuts removed_mm3
 is undone-by-key cuts 1; more undone-by-key undone removed_mm3; same milled undone-by-key removed_mm3
 is reset cuts 0; is reset removed_mm3 0.000
+is barrier-shell algorithm barrier-shell
 for algorithm in line-proxy surface-points point-shell; do
   is $algorithm algorithm $algorithm
   # The first drag after an algorithm was chosen counts.
