@@ -20,8 +20,10 @@ struct MeshOptions {
 };
 
 void run_mesh(const MeshOptions& options) {
-  const std::string& out = options.scan.out();
-  mesh_format_of(out);  // before the scan is read
+  const std::string& out = options.scan.out;
+  // Before the scan is read.
+  mesh_format_of(out);
+  require_other_output(options.scan);
   const LoadedBone bone = load_milled_bone(options.scan, options.isovalue);
   const BrickMesh mesh = mesh_in_one_piece(DensityView(bone.volume));
   if (mesh.empty()) throw InputError(bone.name, "no bone is left to be meshed");

@@ -2,34 +2,34 @@
 
 #include <utility>
 
+#include "osteomill/files/atomic_file.h"
 #include "osteomill/recording/read_recording.h"
 #include "osteomill/recording/repeat_milling.h"
 
 namespace osteomill::app {
 
 void add_milled_scan_options(CLI::App& command, MilledScanOptions& options, const std::string& out_text) {
-  command
-      .add_option(
-          "[SCAN] OUT", options.scan_and_out,
-          "The scan (DICOM folder or file, NRRD, MetaImage or NIfTI; without one, the built-in tooth), "
-          "and the file to write, " +
-              out_text)
-      ->expected(1, 2)
-      ->required();
+  command.add_option("scan", options.scan,
+                     "DICOM folder or file, NRRD, MetaImage or NIfTI; without one, the built-in tooth");
+  command.add_option("--out", options.out, "The file to write, " + out_text)->required();
   command.add_option("--after", options.recording,
                      "A recording (HDF5) made with this scan: the bone as milled at its end");
 }
 
+void require_other_output(const MilledScanOptions& options) {
+  require_no_input(options.out, {options.scan, options.recording});
+}
+
 LoadedBone load_milled_bone(const MilledScanOptions& options, const std::optional<double>& isovalue) {
-  if (options.recording.empty()) return load_bone({options.scan(), isovalue});
+  if (options.recording.empty()) return load_bone({options.scan, isovalue});
   const Recording recording = read_recording(options.recording);
-  LoadedBone bone = load_bone({options.scan(), isovalue.value_or(recording.description.isovalue)});
+  LoadedBone bone = load_bone({options.scan, isovalue.value_or(recording.description.isovalue)});
   repeat_milling(bone.volume, recording);
   return bone;
 }
 
 DensityGrid load_milled_densities(const MilledScanOptions& options) {
-  Scan scan = open_scan({options.scan(), std::nullopt});
+  Scan scan = open_scan({options.scan, std::nullopt});
   print_warnings(scan);
   if (options.recording.empty()) return std::move(scan.grid);
   const Recording recording = read_recording(options.recording);

@@ -11,6 +11,7 @@
 #include <fmt/core.h>
 
 #include "osteomill/device/trajectory.h"
+#include "osteomill/files/atomic_file.h"
 #include "osteomill/haptics/algorithms.h"
 #include "osteomill/recording/write_csv.h"
 #include "osteomill/session/replay.h"
@@ -29,6 +30,7 @@ struct ReplayOptions {
 };
 
 void run_replay(ReplayOptions options) {
+  require_no_input(options.out, {options.trajectory, options.scan.scan});
   const std::vector<TrajectoryPoint> trajectory = read_trajectory(options.trajectory);
   LoadedBone bone = load_bone(options.scan);
   const BoneDensities densities = estimate_densities(bone.volume);

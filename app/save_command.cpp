@@ -13,11 +13,12 @@ namespace osteomill::app {
 namespace {
 
 void run_save(const MilledScanOptions& options) {
-  if (std::filesystem::path(options.out()).extension() != ".nrrd") {
-    throw InputError(options.out(), "a scan is saved as .nrrd");
+  if (std::filesystem::path(options.out).extension() != ".nrrd") {
+    throw InputError(options.out, "a scan is saved as .nrrd");
   }
-  write_nrrd(options.out(), load_milled_densities(options));
-  fmt::print("{}\n", options.out());
+  require_other_output(options);
+  write_nrrd(options.out, load_milled_densities(options));
+  fmt::print("{}\n", options.out);
 }
 
 }  // namespace

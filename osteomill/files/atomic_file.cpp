@@ -56,4 +56,15 @@ void create_folder(const fs::path& folder) {
   if (error) throw InputError(folder.string(), "cannot be created: " + error.message());
 }
 
+void require_no_input(const fs::path& out, const std::vector<fs::path>& inputs) {
+  std::error_code ignored;
+  if (!fs::exists(out, ignored)) return;
+  for (const fs::path& input : inputs) {
+    if (input.empty()) continue;
+    const bool same = fs::equivalent(out, input, ignored) ||
+                      fs::equivalent(fs::absolute(out, ignored).parent_path(), input, ignored);
+    if (same) throw InputError(out.string(), "is what is read; name another file to write");
+  }
+}
+
 }  // namespace osteomill

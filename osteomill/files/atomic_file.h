@@ -4,6 +4,7 @@
 #include <functional>
 #include <ostream>
 #include <string_view>
+#include <vector>
 
 namespace osteomill {
 
@@ -19,5 +20,9 @@ void write_text_atomically(const std::filesystem::path& path,
 
 /// Creates `folder` and its parents. Throws InputError naming it where that is impossible.
 void create_folder(const std::filesystem::path& folder);
+
+/// Throws InputError, naming `out`, where writing it would replace one of these inputs, or a file in one of
+/// them that is a folder. Empty inputs mean nothing.
+void require_no_input(const std::filesystem::path& out, const std::vector<std::filesystem::path>& inputs);
 
 }  // namespace osteomill

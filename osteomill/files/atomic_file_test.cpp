@@ -59,5 +59,17 @@ TEST_F(AtomicFileTest, AFolderThatIsMissingIsNamed) {
   }
 }
 
+TEST_F(AtomicFileTest, WhatIsReadIsNotToBeWritten) {
+  const fs::path scan = folder_ / "scan.nrrd";
+  std::ofstream(scan) << "mine";
+  fs::create_symlink(scan, folder_ / "link.nrrd");
+  EXPECT_THROW(require_no_input(scan, {"", scan}), InputError);
+  EXPECT_THROW(require_no_input(folder_ / "link.nrrd", {scan}), InputError);
+  // A slice of a folder that is read.
+  EXPECT_THROW(require_no_input(scan, {folder_}), InputError);
+  EXPECT_NO_THROW(require_no_input(folder_ / "new.nrrd", {scan, folder_}));
+  EXPECT_NO_THROW(require_no_input(scan, {"", folder_ / "none"}));
+}
+
 }  // namespace
 }  // namespace osteomill

@@ -18,26 +18,31 @@ refused() {  # REGEX COMMAND...
 
 "$osteomill" compare --seconds 1.5 --algorithm point-shell --out runs >/dev/null
 milling=runs/point-shell-milling.h5
-"$osteomill" mesh --after "$milling" milled.stl
-"$osteomill" save --after "$milling" milled.nrrd
-"$osteomill" mesh milled.nrrd --iso 750 saved.stl
+"$osteomill" mesh --after "$milling" --out milled.stl
+"$osteomill" save --after "$milling" --out milled.nrrd
+"$osteomill" mesh milled.nrrd --iso 750 --out saved.stl
 cmp milled.stl saved.stl || fault "the saved scan has another surface"
-"$osteomill" mesh whole.stl
+"$osteomill" mesh --out whole.stl
 cmp -s whole.stl milled.stl && fault "nothing was milled"
-"$osteomill" mesh again.stl --after "$milling"
+"$osteomill" mesh --out again.stl --after "$milling"
 cmp milled.stl again.stl || fault "the same twice differs"
 
-"$osteomill" save copy.nrrd
-"$osteomill" mesh copy.nrrd whole.ply --iso 750
-"$osteomill" mesh whole2.ply
+"$osteomill" save --out copy.nrrd
+"$osteomill" mesh copy.nrrd --out whole.ply --iso 750
+"$osteomill" mesh --out whole2.ply
 cmp whole.ply whole2.ply || fault "the saved scan is another"
 
 refused "^osteomill: runs/point-shell-holding.h5: goes on from other milling" \
-  "$osteomill" mesh a.stl --after runs/point-shell-holding.h5
-refused "^osteomill: $milling: was made with another scan" "$osteomill" save milled.nrrd a.nrrd --after "$milling"
+  "$osteomill" mesh --out a.stl --after runs/point-shell-holding.h5
+refused "^osteomill: $milling: was made with another scan" "$osteomill" save milled.nrrd --out a.nrrd --after "$milling"
 printf 'NRRD0004\ntype: short\ndimension: 3\nsizes: 2 2 2\nspacings: 1 1 1\nencoding: ascii\n\n1 2 3 4 5 6 7 1000\n' >tiny.nrrd
 refused "^osteomill: $milling: was made with another scan \(built-in tooth\): 256 x 256 x 176" \
-  "$osteomill" mesh tiny.nrrd a.stl --after "$milling"
+  "$osteomill" mesh tiny.nrrd --out a.stl --after "$milling"
+# What is read is never written over.
+cp copy.nrrd scan.nrrd
+refused "^osteomill: scan.nrrd: is what is read" "$osteomill" save scan.nrrd --out scan.nrrd
+refused "^osteomill: ./../[^:]*scan.nrrd: is what is read" "$osteomill" save scan.nrrd --out "./../$(basename "$PWD")/scan.nrrd"
+cmp copy.nrrd scan.nrrd || fault "a scan was written over"
 [ ! -e a.stl ] && [ ! -e a.nrrd ] || fault "a refusal left a file"
 find . -name '*.writing-*' | grep -q . && fault "left a half-written file"
 exit 0
