@@ -24,7 +24,7 @@ void build_shell(benchmark::State& state, Bone bone) {
   const point_shell::ShellRules rules = point_shell::Settings::defaults(Mode::steady).shell;
   for ([[maybe_unused]] auto _ : state) {
     const double before = allocated_bytes();
-    const PointShell shell(volume, rules);
+    const point_shell::PointShell shell(volume, rules);
     const double bytes = allocated_bytes() - before;
     state.counters["shell_points"] = shell.point_count();
     state.counters["bytes_per_point"] = bytes / shell.point_count();

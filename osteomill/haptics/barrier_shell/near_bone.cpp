@@ -16,8 +16,7 @@ struct GridSeen {
   Vec3 offset_mm;
 
   GridSeen(const SurfaceLattice& lattice, const Pose& X_WT) {
-    const Mat3 R_WT = X_WT.orientation.toRotationMatrix();
-    const Mat3 R_TW = R_WT.transpose();
+    const Mat3 R_TW = X_WT.orientation.conjugate().toRotationMatrix();
     turn = R_TW * lattice.direction();
     offset_mm = R_TW * (lattice.origin_W() - X_WT.position_mm);
   }
@@ -95,8 +94,7 @@ void NearBone::gather(BoneBricks& bricks, const Cores& cores, const Barrier& bar
 }
 
 NearBone::Energy NearBone::energy(const Cores& cores, const Barrier& barrier, const Pose& X_WT) {
-  const Mat3 R_WT = X_WT.orientation.toRotationMatrix();
-  const Mat3 R_TW = R_WT.transpose();
+  const Mat3 R_TW = X_WT.orientation.conjugate().toRotationMatrix();
   const Frame moved = frame_of(R_TW * X_WT_gathered_.orientation.toRotationMatrix(),
                                R_TW * (X_WT_gathered_.position_mm - X_WT.position_mm));
   return {ball_energy(ball_, moved, cores, barrier), cylinder_energy(cylinder_, moved, cores, barrier)};
