@@ -10,7 +10,7 @@ trap 'rm -rf "$folder"' EXIT
 cd "$folder"
 export XDG_STATE_HOME=$folder/state
 fail() { echo "FAILED: $1"; cat said errors; exit 1; }
-"$osteomill" save good.nrrd >/dev/null
+"$osteomill" save --out good.nrrd >/dev/null
 echo "not a scan" >bad.nrrd
 
 cat >actions <<END
