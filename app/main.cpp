@@ -23,7 +23,7 @@ int complain(const char* reason, int code) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App program("6-DOF haptic bone milling: three algorithms on a CT scan, measured", "osteomill");
+  CLI::App program("6-DOF haptic bone milling: haptic algorithms on a CT scan, measured", "osteomill");
   program.set_version_flag("--version", OSTEOMILL_VERSION);
   program.require_subcommand(1);
   osteomill::app::add_commands(program, osteomill::app::command_line_of(argc, argv));
