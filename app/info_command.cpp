@@ -17,9 +17,9 @@ struct InfoOptions {
 
 void run_info(const InfoOptions& options) {
   const Scan scan = open_scan(options.scan);
-  const double suggested = suggested_isovalue(options.scan, scan.grid);
+  const SuggestedIsovalue suggested = suggested_isovalue(options.scan, scan);
   if (options.scan.isovalue) require_isovalue_within(scan, *options.scan.isovalue);
-  const ScanSummary summary = summarise(scan, suggested, options.scan.isovalue.value_or(suggested));
+  const ScanSummary summary = summarise(scan, suggested, options.scan.isovalue.value_or(suggested.value));
   fmt::print("{}", options.json ? to_json(summary) : to_text(summary));
 }
 

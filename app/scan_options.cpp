@@ -9,7 +9,6 @@
 #include "osteomill/ct/read_scan.h"
 #include "osteomill/files/input_error.h"
 #include "osteomill/volume/builtin_tooth.h"
-#include "osteomill/volume/densities.h"
 
 namespace osteomill::app {
 
@@ -24,8 +23,14 @@ Scan open_scan(const ScanOptions& options) {
   return {builtin_tooth(), "built-in tooth", "made up", {}};
 }
 
-double suggested_isovalue(const ScanOptions& options, const DensityGrid& grid) {
-  return options.scan.empty() ? kBuiltinToothIsovalue : suggest_isovalue(grid);
+SuggestedIsovalue suggested_isovalue(const ScanOptions& options, const Scan& scan) {
+  if (options.scan.empty()) return {kBuiltinToothIsovalue, "halfway between air and the tooth's dentine"};
+  return suggest_isovalue(scan.grid, scan.in_hounsfield_units);
+}
+
+SuggestedIsovalue chosen_isovalue(const ScanOptions& options, const Scan& scan) {
+  if (options.isovalue) return {*options.isovalue, "given"};
+  return suggested_isovalue(options, scan);
 }
 
 void require_isovalue_within(const Scan& scan, double isovalue) {
@@ -45,13 +50,13 @@ void print_warnings(const Scan& scan) {
 LoadedBone load_bone(const ScanOptions& options) {
   Scan scan = open_scan(options);
   print_warnings(scan);
-  const double isovalue = options.isovalue.value_or(suggested_isovalue(options, scan.grid));
+  SuggestedIsovalue isovalue = chosen_isovalue(options, scan);
   if (!options.isovalue && !options.scan.empty()) {
-    fmt::print(stderr, "osteomill: {}: isovalue {:g} suggested from its values; --iso sets another\n",
-               scan.name, isovalue);
+    fmt::print(stderr, "osteomill: {}: isovalue {:g} suggested, {}; --iso sets another\n", scan.name,
+               isovalue.value, isovalue.how);
   }
-  require_isovalue_within(scan, isovalue);
-  return {Volume(std::move(scan.grid), isovalue), scan.name};
+  require_isovalue_within(scan, isovalue.value);
+  return {Volume(std::move(scan.grid), isovalue.value), scan.name, std::move(isovalue.how)};
 }
 
 }  // namespace osteomill::app

@@ -6,6 +6,7 @@
 #include <CLI/App.hpp>
 
 #include "osteomill/ct/read_scan.h"
+#include "osteomill/volume/suggest_isovalue.h"
 #include "osteomill/volume/volume.h"
 
 namespace osteomill::app {
@@ -25,7 +26,10 @@ void add_scan_options(CLI::App& command, ScanOptions& options);
 Scan open_scan(const ScanOptions& options);
 
 /// The isovalue that the user leaves us to choose for this scan.
-double suggested_isovalue(const ScanOptions& options, const DensityGrid& grid);
+SuggestedIsovalue suggested_isovalue(const ScanOptions& options, const Scan& scan);
+
+/// The isovalue in use: the user's, or else the suggested one.
+SuggestedIsovalue chosen_isovalue(const ScanOptions& options, const Scan& scan);
 
 /// The scan's warnings, one line each on standard error.
 void print_warnings(const Scan& scan);
@@ -39,6 +43,8 @@ struct LoadedBone {
   Volume volume;
   /// The scan as the user named it, or "built-in tooth".
   std::string name;
+  /// Where its isovalue came from: "given", or how it was suggested; half a sentence.
+  std::string isovalue_from;
 };
 
 /// Reads the scan; its warnings, and an isovalue that had to be suggested, go to standard error as one line

@@ -214,6 +214,8 @@ void describe(DcmDataset& data, DicomHeader& header) {
   header.series_uid = text_of(data, DCM_SeriesInstanceUID);
   header.series_description = text_of(data, DCM_SeriesDescription);
   header.modality = text_of(data, DCM_Modality);
+  const std::string unit = text_of(data, DCM_RescaleType);
+  header.in_hounsfield_units = header.modality == "CT" && (unit.empty() || unit == "HU");
   header.photometric = text_of(data, DCM_PhotometricInterpretation);
   header.columns = short_of(data, DCM_Columns).value_or(0);
   header.rows = short_of(data, DCM_Rows).value_or(0);

@@ -159,7 +159,8 @@ Scan build_scan(const std::string& subject, Headers series, std::vector<std::str
   check_finite(subject, densities);
   correct_gantry_tilt(subject, stack, densities);
   warnings.insert(warnings.end(), stack.warnings.begin(), stack.warnings.end());
-  return {DensityGrid(stack.geometry, std::move(densities)), subject, "DICOM", std::move(warnings)};
+  return {DensityGrid(stack.geometry, std::move(densities)), subject, "DICOM", std::move(warnings),
+          series.front().in_hounsfield_units};
 }
 
 void warn_of_other_files(std::size_t count, std::vector<std::string>& warnings) {

@@ -39,6 +39,8 @@ struct DicomHeader {
   std::string series_uid;
   std::string series_description;
   std::string modality;
+  /// CT, rescaled to what is not said to be another unit.
+  bool in_hounsfield_units = false;
   std::string photometric;
   int columns = 0;
   int rows = 0;

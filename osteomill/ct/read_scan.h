@@ -17,6 +17,8 @@ struct Scan {
   std::string format;
   /// One sentence each; what a user should know but what does not forbid milling.
   std::vector<std::string> warnings;
+  /// Where the file says so, as DICOM does of CT.
+  bool in_hounsfield_units = false;
 };
 
 /// Reads a DICOM series (a folder, its files in any order, or one multi-slice file), NRRD, MetaImage or

@@ -8,6 +8,7 @@
 
 #include "osteomill/ct/read_scan.h"
 #include "osteomill/files/input_error.h"
+#include "osteomill/volume/suggest_isovalue.h"
 
 namespace osteomill {
 namespace {
@@ -152,6 +153,37 @@ TEST(ReadRealScan, OddDicomFilesEndInAVolumeOrAClearRefusal) {
     }
   }
 }
+
+struct KnownIsovalue {
+  const char* scan;
+  double isovalue;
+};
+class RealScanIsovalue : public ::testing::TestWithParam<KnownIsovalue> {};
+
+// What those who know each scan count bone from. A label map's is anything between nothing and its first
+// label.
+TEST_P(RealScanIsovalue, SuggestedIsBone) {
+  const auto& [path, known] = GetParam();
+  OSTEOMILL_NEEDS_SHARED(path);
+  const Scan scan = read_scan(shared_data() / path);
+  const SuggestedIsovalue suggested = suggest_isovalue(scan.grid, scan.in_hounsfield_units);
+  EXPECT_NEAR(suggested.value, known, 0.15 * known) << suggested.how;
+}
+
+INSTANTIATE_TEST_SUITE_P(ReadRealScan, RealScanIsovalue,
+                         ::testing::Values(KnownIsovalue{"tooth/tooth_103x94x161_u16.nrrd", 610},
+                                           KnownIsovalue{"tooth/tooth_256x256x176_u16.nrrd", 610},
+                                           KnownIsovalue{"tooth/original/tooth.nhdr", 610},
+                                           KnownIsovalue{"tooth_dicom/series", 755},
+                                           KnownIsovalue{"tooth_dicom_cases/baseline_explicit_le", 755},
+                                           KnownIsovalue{"volumes_odd/nrrd/gzip.nrrd", 610},
+                                           KnownIsovalue{"cranium/cranium_256x256x108_i16.nrrd", 300},
+                                           KnownIsovalue{"head_quarter/headsq_quarter.mhd", 1150},
+                                           KnownIsovalue{"trabecular/lhdl_3155_D_4_bc_200x200x200_u8.nrrd",
+                                                         100},
+                                           KnownIsovalue{"jaw_labels/jaw_360x360x330_labels.nrrd", 0.5},
+                                           KnownIsovalue{"temporal_bone/ear3_256_labels.nrrd", 0.5},
+                                           KnownIsovalue{"temporal_bone/RT138_256_labels.nrrd", 0.5}));
 
 INSTANTIATE_TEST_SUITE_P(ReadRealScan, RealScanFacts,
                          ::testing::Values("tooth", "tooth_dicom", "cranium", "head_quarter", "jaw_labels",

@@ -1,6 +1,7 @@
 #include "osteomill/ct/scan_summary.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -30,7 +31,7 @@ void summarise_values(const std::vector<float>& densities, double isovalue, Scan
 
 }  // namespace
 
-ScanSummary summarise(const Scan& scan, double suggested_iso, double isovalue) {
+ScanSummary summarise(const Scan& scan, SuggestedIsovalue suggested_iso, double isovalue) {
   const GridGeometry& geometry = scan.grid.geometry();
   ScanSummary summary;
   summary.name = scan.name;
@@ -41,7 +42,7 @@ ScanSummary summarise(const Scan& scan, double suggested_iso, double isovalue) {
   for (int row = 0; row < 3; ++row) {
     summary.direction[static_cast<std::size_t>(row)] = to_array(geometry.direction.row(row).transpose());
   }
-  summary.suggested_iso = suggested_iso;
+  summary.suggested_iso = std::move(suggested_iso);
   summary.isovalue = isovalue;
   summary.warnings = scan.warnings;
   summarise_values(scan.grid.densities(), isovalue, summary);
@@ -56,7 +57,8 @@ std::string to_json(const ScanSummary& summary) {
                                     {"value_min", summary.value_min},
                                     {"value_max", summary.value_max},
                                     {"value_mean", summary.value_mean},
-                                    {"suggested_iso", summary.suggested_iso},
+                                    {"suggested_iso", summary.suggested_iso.value},
+                                    {"suggested_how", summary.suggested_iso.how},
                                     {"voxels_above_iso", summary.voxels_above_iso},
                                     {"warnings", summary.warnings}};
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
@@ -80,7 +82,8 @@ std::string to_text(const ScanSummary& summary) {
   }
   text += fmt::format("values      {:.6g} to {:.6g}, mean {:.6g}\n", summary.value_min, summary.value_max,
                       summary.value_mean);
-  text += fmt::format("isovalue    {:.6g} suggested\n", summary.suggested_iso);
+  text += fmt::format("isovalue    {:.6g} suggested, {}\n", summary.suggested_iso.value,
+                      summary.suggested_iso.how);
   text += fmt::format("bone        {} voxels above {:.6g}\n", summary.voxels_above_iso, summary.isovalue);
   for (const std::string& warning : summary.warnings) text += fmt::format("warning: {}\n", warning);
   return text;

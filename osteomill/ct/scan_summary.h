@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "osteomill/ct/read_scan.h"
+#include "osteomill/volume/suggest_isovalue.h"
 
 namespace osteomill {
 
@@ -22,7 +23,7 @@ struct ScanSummary {
   double value_min = 0;
   double value_max = 0;
   double value_mean = 0;
-  double suggested_iso = 0;
+  SuggestedIsovalue suggested_iso;
   /// The isovalue in use: the user's, or the suggested one.
   double isovalue = 0;
   /// Voxels whose density is greater than `isovalue`.
@@ -31,11 +32,11 @@ struct ScanSummary {
 };
 
 /// One pass over the voxels. `suggested_iso` is what is reported as suggested (`suggest_isovalue`).
-ScanSummary summarise(const Scan& scan, double suggested_iso, double isovalue);
+ScanSummary summarise(const Scan& scan, SuggestedIsovalue suggested_iso, double isovalue);
 
 /// A JSON object with the keys dims, spacing_mm, origin_mm, direction, value_min, value_max, value_mean,
-/// suggested_iso, voxels_above_iso and warnings, and a line feed at its end. Bytes of a warning that are not
-/// UTF-8 are replaced.
+/// suggested_iso, suggested_how, voxels_above_iso and warnings, and a line feed at its end. Bytes of a
+/// warning that are not UTF-8 are replaced.
 std::string to_json(const ScanSummary& summary);
 
 /// The same for people, a line each.

@@ -11,7 +11,6 @@ namespace osteomill {
 namespace {
 
 constexpr int kStepsAway = 8;
-constexpr std::size_t kBins = 1024;
 
 std::optional<double> median(std::vector<float>& values) {
   if (values.empty()) return std::nullopt;
@@ -83,38 +82,6 @@ BoneDensities estimate_densities(const Volume& volume) {
   }
   densities.reference = median(bone).value_or(2 * volume.isovalue() - densities.surroundings);
   return densities;
-}
-
-double suggest_isovalue(const DensityGrid& grid) {
-  const auto [min_at, max_at] = std::minmax_element(grid.densities().begin(), grid.densities().end());
-  const double min = static_cast<double>(*min_at);
-  const double range = static_cast<double>(*max_at) - min;
-  if (!(range > 0)) return min;
-
-  std::array<double, kBins> counts{};
-  for (const float density : grid.densities()) {
-    const double bin = (static_cast<double>(density) - min) / range * kBins;
-    counts[std::min(static_cast<std::size_t>(bin), kBins - 1)] += 1;
-  }
-  double all_sum = 0;
-  for (std::size_t bin = 0; bin < kBins; ++bin) all_sum += counts[bin] * static_cast<double>(bin);
-
-  // Otsu 1979, eq. 18: the variance between the classes below and above each threshold, whose maximum may be
-  // as wide as a gap in the histogram; its middle is taken.
-  const double all_count = static_cast<double>(grid.densities().size());
-  double count = 0, sum = 0, best = -1;
-  double first_best = 0.5 * kBins, last_best = first_best;
-  for (std::size_t bin = 0; bin + 1 < kBins; ++bin) {
-    count += counts[bin];
-    sum += counts[bin] * static_cast<double>(bin);
-    if (count == 0 || count == all_count) continue;
-    const double difference = sum / count - (all_sum - sum) / (all_count - count);
-    const double variance = count * (all_count - count) * difference * difference;
-    if (variance > best) first_best = static_cast<double>(bin + 1);
-    if (variance >= best) last_best = static_cast<double>(bin + 1);
-    best = std::max(best, variance);
-  }
-  return min + range * 0.5 * (first_best + last_best) / kBins;
 }
 
 }  // namespace osteomill

@@ -18,8 +18,4 @@ struct BoneDensities {
 /// isovalue > surroundings. Not for the tick.
 BoneDensities estimate_densities(const Volume& volume);
 
-/// The isovalue that best separates the grid's densities into two classes (Otsu 1979), strictly between its
-/// least and greatest density; where all densities are equal, that density. Not for the tick.
-double suggest_isovalue(const DensityGrid& grid);
-
 }  // namespace osteomill

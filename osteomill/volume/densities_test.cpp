@@ -1,8 +1,6 @@
 #include "osteomill/volume/densities.h"
 
-#include <cmath>
 #include <fstream>
-#include <random>
 #include <vector>
 
 #include "tests/shapes.h"
@@ -70,52 +68,6 @@ TEST(EstimateDensities, KeepTheirOrderWhateverTheVolume) {
     EXPECT_LT(densities.surroundings, volume.isovalue());
     EXPECT_GT(densities.reference, volume.isovalue());
   }
-}
-
-TEST(SuggestIsovalue, LiesMidwayBetweenTwoDensities) {
-  const GridGeometry geometry = centred_cube(10, 1);
-  std::vector<float> densities(geometry.voxel_count(), -100.0f);
-  for (std::size_t n = 0; n < 100; ++n) densities[n] = 300.0f;
-  EXPECT_NEAR(suggest_isovalue(DensityGrid(geometry, densities)), 100, 1);
-}
-
-TEST(SuggestIsovalue, SeparatesTwoNoisyClassesAsAPlainSearchDoes) {
-  const GridGeometry geometry = centred_cube(16, 1);
-  std::mt19937_64 random(5);
-  std::normal_distribution<float> low(100, 60), high(800, 150);
-  std::vector<float> densities;
-  for (std::size_t n = 0; n < geometry.voxel_count(); ++n) {
-    densities.push_back(n % 5 == 0 ? high(random) : low(random));
-  }
-  double best = -1, best_threshold = 0;
-  for (double threshold = 0; threshold < 900; threshold += 1) {
-    double count[2]{}, sum[2]{};
-    for (const float density : densities) {
-      const int side = static_cast<double>(density) > threshold ? 1 : 0;
-      count[side] += 1;
-      sum[side] += static_cast<double>(density);
-    }
-    const double variance = count[0] * count[1] * std::pow(sum[0] / count[0] - sum[1] / count[1], 2);
-    if (variance > best) best = variance, best_threshold = threshold;
-  }
-  EXPECT_NEAR(suggest_isovalue(DensityGrid(geometry, densities)), best_threshold, 5);
-}
-
-TEST(SuggestIsovalue, LiesStrictlyInsideTheRangeOrIsTheOnlyDensity) {
-  EXPECT_EQ(suggest_isovalue(uniform_volume(7, 0).grid()), 7);
-  const GridGeometry geometry = centred_cube(2, 1);
-  const float next = std::nextafter(1.0f, 2.0f);
-  const double between = suggest_isovalue(DensityGrid(geometry, {1, 1, 1, 1, 1, 1, 1, next}));
-  EXPECT_GT(between, 1.0);
-  EXPECT_LT(between, static_cast<double>(next));
-}
-
-TEST(SuggestIsovalue, OfTeethLiesBetweenAirAndDentine) {
-  const double builtin = suggest_isovalue(builtin_tooth(0.5));
-  EXPECT_GT(builtin, 300);
-  EXPECT_LT(builtin, 1300);
-  OSTEOMILL_NEEDS_SHARED("tooth/original/tooth.raw");
-  EXPECT_NEAR(suggest_isovalue(real_tooth().grid()), 610, 60);
 }
 
 }  // namespace
