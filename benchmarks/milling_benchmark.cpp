@@ -44,14 +44,14 @@ void mill(benchmark::State& state, double burr_radius_mm, double spacing_mm) {
       X_WD.position_mm.x() = 0.02 * std::sin(0.05 * ticks);
       if (step.contacts == 0) continue;
       MillingStep done;
-      const double cut_us =
-          cutting.time([&] { done = burr.step(volume, step.X_WT.position_mm, step.burr_force_N, kTick_s); });
+      const double cut_us = cutting.time(
+          [&] { done = burr.step(volume, step.X_WT.position_mm, step.burr_force_W_N, kTick_s); });
       const double refresh_us = refreshing.time([&] {
         if (!done.change.voxels.empty()) algorithm.volume_changed(done.change);
       });
       both.add(cut_us + refresh_us);
       removed_mm3 += done.removed_mm3;
-      pressed_mm3 += MillingSettings{}.removal_rate_mm3_per_Ns * step.burr_force_N * kTick_s;
+      pressed_mm3 += MillingSettings{}.removal_rate_mm3_per_Ns * step.burr_force_W_N.norm() * kTick_s;
       if (step.X_WT.position_mm.z() < -0.5 * burr_radius_mm) break;
     }
     both.report(state);

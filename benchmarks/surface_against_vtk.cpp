@@ -117,7 +117,7 @@ class Milling {
   }
   VolumeChange tick() {
     centre_ += into_ * 0.001;
-    return mill_.step(volume_, centre_, 4.0, 1e-3).change;
+    return mill_.step(volume_, centre_, {0, 0, -4.0}, 1e-3).change;
   }
 
  private:

@@ -16,7 +16,8 @@ TEST(TickAllocation, HandingChangesOverToTheFollowerAllocatesNothing) {
   BurrMill mill(volume.geometry(), 1.5, {0, 1000}, {});
   const long before = testing_support::allocations_of_this_thread();
   for (int n = 0; n < 1000; ++n) {
-    follower.bone_changed(volume, mill.step(volume, {0.01 * n, 0, 11 - 0.002 * n}, 4.0, 1e-3).change);
+    follower.bone_changed(volume,
+                          mill.step(volume, {0.01 * n, 0, 11 - 0.002 * n}, {0, 0, -4.0}, 1e-3).change);
   }
   follower.bone_changed(volume, {volume.geometry().all_voxels()});
   for (int n = 0; n < 1000; ++n) follower.bone_changed(volume, {});

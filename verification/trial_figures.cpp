@@ -34,7 +34,8 @@ TrialFigures milling_figures(const Volume& bone, const TrialVariant& variant) {
   for (MillingTrial::Tick tick = trial.tick(); tick.milling_phase; tick = trial.tick()) {
     recording.records.push_back(tick.record);
     milling_us.push_back(tick.record.milling_us);
-    paid_for_mm3 += settings.milling.removal_rate_mm3_per_Ns * tick.record.burr_force_N * variant.tick_s;
+    paid_for_mm3 +=
+        settings.milling.removal_rate_mm3_per_Ns * tick.record.burr_force_W_N.norm() * variant.tick_s;
   }
   TrialFigures figures;
   figures.metrics = run_metrics(recording);

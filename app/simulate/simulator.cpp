@@ -218,7 +218,7 @@ class Simulator {
     const LiveState& state = simulation_->milling.state();
     const bool heard = view_.sound && state.spindle_on;
     heard_ = {heard ? simulation_->milling.setup().cutting.spindle_speed_rpm : 0,
-              state.record.burr_force_N / kFullLoad_N};
+              state.record.burr_force_W_N.norm() / kFullLoad_N};
     sound_.set(heard_);
   }
 

@@ -90,7 +90,8 @@ TEST_P(MillingTrialTest, TakesWhatTheForceHasPaidFor) {
   const Run run = this->run(1);
   double pressed_mm3 = 0;
   for (const TickRecord& record : run.milling) {
-    pressed_mm3 += settings_.milling.removal_rate_mm3_per_Ns * record.burr_force_N * settings_.tick_s;
+    pressed_mm3 +=
+        settings_.milling.removal_rate_mm3_per_Ns * record.burr_force_W_N.norm() * settings_.tick_s;
   }
   EXPECT_NEAR(run.milling.back().removed_mm3 / pressed_mm3, 1.0, 0.02);
 }

@@ -20,8 +20,9 @@ struct HapticStep {
   Wrench wrench;
   /// The simulated tool: where the tool is drawn and where it cuts.
   Pose X_WT;
-  /// The magnitude of the force with which the burr (not the shaft) presses on the bone.
-  double burr_force_N = 0;
+  /// The force with which the burr (not the shaft) presses on the bone, in W; zero where something else holds
+  /// the tool. Milling is paid with it and cuts where it points.
+  Vec3 burr_force_W_N = Vec3::Zero();
   /// How many sample points (vertices, or points of the shell) touch.
   int contacts = 0;
 };

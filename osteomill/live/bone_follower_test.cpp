@@ -36,7 +36,7 @@ class Miller {
   VolumeChange tick() {
     angle_ += 0.002;
     const Vec3 centre = (6.3 - 0.2 * angle_) * Vec3(std::cos(angle_), std::sin(angle_), 0.2).normalized();
-    return mill_.step(volume_, centre, 4.0, 1e-3).change;
+    return mill_.step(volume_, centre, {0, 0, -4.0}, 1e-3).change;
   }
 
  private:

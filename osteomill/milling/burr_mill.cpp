@@ -62,8 +62,9 @@ BurrMill::BurrMill(const GridGeometry& geometry, double burr_radius_mm, const Bo
       reach_(make_reach(geometry, burr_radius_mm, densities, settings)),
       lowered_(reach_.capacity()) {}
 
-MillingStep BurrMill::step(Volume& volume, const Vec3& burr_centre_W, double burr_force_N, double dt_s) {
-  const double pressed_mm3 = removal_rate_mm3_per_Ns_ * burr_force_N * dt_s;
+MillingStep BurrMill::step(Volume& volume, const Vec3& burr_centre_W, const Vec3& burr_force_W_N,
+                           double dt_s) {
+  const double pressed_mm3 = removal_rate_mm3_per_Ns_ * burr_force_W_N.norm() * dt_s;
   if (!(pressed_mm3 > 0) || !std::isfinite(pressed_mm3) || !burr_centre_W.allFinite()) {
     if (dt_s > 0) force_free_s_ += dt_s;
     if (force_free_s_ >= kForgetAfter_s) carry_mm3_ = 0;

@@ -51,12 +51,12 @@ class BurrMill {
   BurrMill(const GridGeometry& geometry, double burr_radius_mm, const BoneDensities& densities,
            const MillingSettings& settings);
 
-  /// `burr_centre_W` is the simulated burr's centre, `burr_force_N` >= 0. Lowers densities of `volume`, whose
-  /// geometry is the one given at construction, never below the surroundings. Takes nothing where the force
-  /// or the centre is not finite. Safe in the haptic tick; time grows with the voxels overlapped. From step
-  /// to step only voxels new in reach are searched for bone, so between two calls of `reset` nobody may raise
-  /// densities of the same volume.
-  MillingStep step(Volume& volume, const Vec3& burr_centre_W, double burr_force_N, double dt_s);
+  /// `burr_centre_W` is the simulated burr's centre, `burr_force_W_N` its force on the bone. Lowers densities
+  /// of `volume`, whose geometry is the one given at construction, never below the surroundings. Takes
+  /// nothing where the force or the centre is not finite. Safe in the haptic tick; time grows with the voxels
+  /// overlapped. From step to step only voxels new in reach are searched for bone, so between two calls of
+  /// `reset` nobody may raise densities of the same volume.
+  MillingStep step(Volume& volume, const Vec3& burr_centre_W, const Vec3& burr_force_W_N, double dt_s);
   /// Forgets the carry and what was in reach.
   void reset();
   /// What was pressed for and not yet cut, mm^3 of reference density.

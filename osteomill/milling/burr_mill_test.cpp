@@ -22,6 +22,10 @@ constexpr BoneDensities kBone{0, 1000};
 const MillingSettings kMilling{.removal_rate_mm3_per_Ns = 2.0};
 constexpr double kRadius_mm = 1.5;
 
+Vec3 down(double force_N) {
+  return {0, 0, -force_N};
+}
+
 GridGeometry cube_of(double side_mm, double spacing_mm) {
   return centred_cube(static_cast<int>(std::lround(side_mm / spacing_mm)), spacing_mm);
 }
@@ -58,7 +62,7 @@ Hole mill_hole(Volume& volume, BurrMill& mill, double force_N, double seconds, d
   const double dt_s = 1 / rate_hz;
   for (int n = 0; n < static_cast<int>(std::lround(seconds * rate_hz)); ++n) {
     const double centre_depth_mm = hole_depth_mm(volume, down) - kRadius_mm + force_N / 20;
-    hole.removed_mm3 += mill.step(volume, centre_depth_mm * down, force_N, dt_s).removed_mm3;
+    hole.removed_mm3 += mill.step(volume, centre_depth_mm * down, force_N * down, dt_s).removed_mm3;
     hole.pressed_mm3 += kMilling.removal_rate_mm3_per_Ns * force_N * dt_s;
   }
   hole.depth_mm = hole_depth_mm(volume, down);
@@ -122,7 +126,7 @@ TEST(BurrMill, NeverStallsOnDenseBoneThatItOnlyTouches) {
       double height_mm = 1.8;
       for (int n = 0; n < 1000; ++n) {
         while (!touches_surface(volume, height_mm * normal)) height_mm -= 0.005;
-        removed_mm3 += mill.step(volume, height_mm * normal, 1.5, 0.001).removed_mm3;
+        removed_mm3 += mill.step(volume, height_mm * normal, -1.5 * normal, 0.001).removed_mm3;
       }
       EXPECT_NEAR(removed_mm3, 3, 0.02 * 3) << spacing_mm;
     }
@@ -137,16 +141,16 @@ TEST(BurrMill, TakesNothingWithoutForceOrWithoutASensibleInput) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double infinity = std::numeric_limits<double>::infinity();
   const Vec3 inside(0, 0, -0.5);
-  for (const double force_N : {0.0, -1.0, nan, infinity}) {
-    const MillingStep step = mill.step(volume, inside, force_N, 0.001);
+  for (const double force_N : {0.0, nan, infinity}) {
+    const MillingStep step = mill.step(volume, inside, {0, 0, -force_N}, 0.001);
     EXPECT_EQ(step.removed_mm3, 0);
     EXPECT_TRUE(step.change.voxels.empty());
   }
-  EXPECT_EQ(mill.step(volume, Vec3(nan, 0, 0), 1, 0.001).removed_mm3, 0);
-  EXPECT_EQ(mill.step(volume, Vec3(0, infinity, 0), 1, 0.001).removed_mm3, 0);
-  EXPECT_EQ(mill.step(volume, inside, 1, 0).removed_mm3, 0);
-  EXPECT_EQ(mill.step(volume, Vec3(0, 0, 3), 1, 0.001).removed_mm3, 0) << "in the air";
-  EXPECT_EQ(mill.step(volume, Vec3(1e300, 0, 0), 1, 0.001).removed_mm3, 0) << "far away";
+  EXPECT_EQ(mill.step(volume, Vec3(nan, 0, 0), down(1), 0.001).removed_mm3, 0);
+  EXPECT_EQ(mill.step(volume, Vec3(0, infinity, 0), down(1), 0.001).removed_mm3, 0);
+  EXPECT_EQ(mill.step(volume, inside, down(1), 0).removed_mm3, 0);
+  EXPECT_EQ(mill.step(volume, Vec3(0, 0, 3), down(1), 0.001).removed_mm3, 0) << "in the air";
+  EXPECT_EQ(mill.step(volume, Vec3(1e300, 0, 0), down(1), 0.001).removed_mm3, 0) << "far away";
   EXPECT_EQ(volume.grid().densities(), before);
 }
 
@@ -157,7 +161,8 @@ TEST(BurrMill, StopsAtTheSurroundingsAndCarriesTheRestWithinBounds) {
   BurrMill mill(geometry, kRadius_mm, bone, {});
   const double held_mm3 = charge_mm3(volume.grid(), bone);
   double removed_mm3 = 0;
-  for (int n = 0; n < 3000; ++n) removed_mm3 += mill.step(volume, Vec3(0, 0, -0.6), 5, 0.001).removed_mm3;
+  for (int n = 0; n < 3000; ++n)
+    removed_mm3 += mill.step(volume, Vec3(0, 0, -0.6), down(5), 0.001).removed_mm3;
   EXPECT_NEAR(held_mm3 - charge_mm3(volume.grid(), bone), removed_mm3, 1e-6);
   const Volume original = half_space(geometry);
   for (int k = 0; k < geometry.dims[2]; ++k)
@@ -184,11 +189,11 @@ TEST(BurrMill, ForgetsTheCarryOnlyAfterALift) {
   Volume volume = half_space(geometry);
   BurrMill mill(geometry, kRadius_mm, kBone, kMilling);
   const Vec3 air(0, 0, 3);
-  mill.step(volume, air, 10, 0.001);
-  for (int n = 0; n < 40; ++n) mill.step(volume, air, 0, 0.001);
+  mill.step(volume, air, down(10), 0.001);
+  for (int n = 0; n < 40; ++n) mill.step(volume, air, down(0), 0.001);
   EXPECT_NEAR(mill.carry_mm3(), 0.02, 1e-12) << "40 ms without force are no lift";
-  mill.step(volume, air, 1e-9, 0.001);
-  for (int n = 0; n < 51; ++n) mill.step(volume, air, 0, 0.001);
+  mill.step(volume, air, down(1e-9), 0.001);
+  for (int n = 0; n < 51; ++n) mill.step(volume, air, down(0), 0.001);
   EXPECT_EQ(mill.carry_mm3(), 0);
 }
 
@@ -197,7 +202,7 @@ TEST(BurrMill, CutsHardestWhereItIsDeepest) {
   Volume volume = half_space(geometry);
   BurrMill mill(geometry, kRadius_mm, kBone, kMilling);
   const Vec3 centre(0, 0, 1.0);
-  mill.step(volume, centre, 1.5, 0.001);
+  mill.step(volume, centre, down(1.5), 0.001);
   const Volume original = half_space(geometry);
   double deepest_drop = 0, ratio = 0;
   const double reach_mm = kRadius_mm + 0.2;
@@ -286,8 +291,9 @@ TEST(BurrMill, CutsATurnedGridAsItCutsAStraightOne) {
   BurrMill turned_mill(turned, kRadius_mm, kBone, kMilling);
   for (int n = 0; n < 300; ++n) {
     const Vec3 centre(0.002 * n, 0.1, 1.4 - 0.002 * n);
-    const MillingStep a = straight_mill.step(straight_volume, centre, 2, 0.001);
-    const MillingStep b = turned_mill.step(turned_volume, turned.direction * centre, 2, 0.001);
+    const MillingStep a = straight_mill.step(straight_volume, centre, down(2), 0.001);
+    const MillingStep b =
+        turned_mill.step(turned_volume, turned.direction * centre, turned.direction * down(2), 0.001);
     EXPECT_NEAR(a.removed_mm3, b.removed_mm3, 1e-6);
   }
   for (std::size_t n = 0; n < straight.voxel_count(); ++n) {
@@ -301,7 +307,8 @@ TEST(BurrMill, NamesExactlyTheBoxThatChanged) {
   BurrMill mill(geometry, kRadius_mm, kBone, kMilling);
   for (int n = 0; n < 200; ++n) {
     const std::vector<float> before = volume.grid().densities();
-    const VoxelBox said = mill.step(volume, Vec3(0.01 * n, 0.3, 1.4 - 0.005 * n), 1, 0.001).change.voxels;
+    const VoxelBox said =
+        mill.step(volume, Vec3(0.01 * n, 0.3, 1.4 - 0.005 * n), down(1), 0.001).change.voxels;
     VoxelBox changed;
     std::size_t index = 0;
     for (int k = 0; k < 30; ++k)
@@ -322,7 +329,7 @@ TEST(BurrMill, CutsAtTheEdgeOfTheGridWhatIsInside) {
   const double before_mm3 = charge_mm3(volume.grid(), kBone);
   double removed_mm3 = 0;
   for (int n = 0; n < 500; ++n) {
-    removed_mm3 += mill.step(volume, Vec3(2.2, -2.4, -2.0), 1, 0.001).removed_mm3;
+    removed_mm3 += mill.step(volume, Vec3(2.2, -2.4, -2.0), down(1), 0.001).removed_mm3;
   }
   EXPECT_NEAR(removed_mm3, 1.0, 0.02);
   EXPECT_NEAR(before_mm3 - charge_mm3(volume.grid(), kBone), removed_mm3, 1e-9);
@@ -336,7 +343,7 @@ TEST(BurrMill, PaysInFullForDropsBelowTheResolutionOfAFloat) {
   const double before_mm3 = charge_mm3(volume.grid(), kBone);
   double removed_mm3 = 0;
   for (int n = 0; n < 20000; ++n) {
-    removed_mm3 += mill.step(volume, Vec3(0, 0, 0.8), 2e-4, 0.001).removed_mm3;
+    removed_mm3 += mill.step(volume, Vec3(0, 0, 0.8), down(2e-4), 0.001).removed_mm3;
   }
   EXPECT_NEAR(removed_mm3 + mill.carry_mm3(), 20000 * 1e-3 * 2e-4 * 0.001, 1e-12);
   EXPECT_NEAR(before_mm3 - charge_mm3(volume.grid(), kBone), removed_mm3, 1e-11);

@@ -79,8 +79,8 @@ class ChangedRecording : public ::testing::Test {
 };
 
 TEST_F(ChangedRecording, AnotherVersionIsRefused) {
-  change([](hid_t file) { set_number(file, "osteomill_recording_version", 2); });
-  expect_refused(path_, "version 2");
+  change([](hid_t file) { set_number(file, "osteomill_recording_version", 1); });
+  expect_refused(path_, "version 1");
 }
 
 TEST_F(ChangedRecording, AMissingColumnIsNamed) {

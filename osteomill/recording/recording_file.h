@@ -13,7 +13,7 @@
 namespace osteomill {
 
 /// The version of the layout, in the root's attribute `osteomill_recording_version`.
-inline constexpr std::uint64_t kRecordingVersion = 1;
+inline constexpr std::uint64_t kRecordingVersion = 2;
 
 /// A recording being written, from one thread at a time. Root: the description's attributes, `complete` (0
 /// until `finish`) and `dropped_records`; /columns: a dataset a column (record_columns.h), each with its

@@ -77,7 +77,8 @@ void repeat_milling(Volume& volume, const Recording& recording) {
   for (std::size_t tick = 0; tick < recording.records.size(); ++tick) {
     const TickRecord& record = recording.records[tick];
     if (record.spindle_on) {
-      removed_mm3 += mill.step(volume, record.X_WT.position_mm, record.burr_force_N, record.dt_s).removed_mm3;
+      removed_mm3 +=
+          mill.step(volume, record.X_WT.position_mm, record.burr_force_W_N, record.dt_s).removed_mm3;
     }
     require_same_removal(recording, tick, removed_mm3);
   }

@@ -67,7 +67,7 @@ inline Recording sample_run(std::string_view algorithm, std::string_view phase, 
     r.X_WT = {{12 + 0.1 * sin(t), 12, 20 - 0.2 * t}, quaternion_from_rotation_vector(turn)};
     r.X_WD = r.X_WT;
     r.contacts = static_cast<int>(20 * load);
-    r.burr_force_N = load;
+    r.burr_force_W_N.z() = -load;
     r.removed_mm3 = milling ? 2.0 * std::max(0.0, t - 1.5) : 37.0;
     r.compute_us =
         step_us[a] * (1 + 0.2 * noise()) + (n % 3777 == 17 ? 300.0 : 0.0) + (n == 9000 ? 1080.0 : 0.0);

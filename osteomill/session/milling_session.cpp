@@ -54,7 +54,7 @@ TickRecord MillingSession::tick(Device& device, double time_s, double dt_s, bool
   record.wrench = safe.wrench;
   record.fault = safe.fault;
   record.contacts = step.contacts;
-  record.burr_force_N = step.burr_force_N;
+  record.burr_force_W_N = step.burr_force_W_N;
   record.removed_mm3 = removed_mm3_;
   return record;
 }
@@ -85,9 +85,9 @@ HapticStep MillingSession::step_safely(const Pose& X_WD, double dt_s, bool spind
     return nothing;
   }
   HapticStep step = algorithm_->step(X_WD, dt_s);
-  if (spindle_on) step.wrench.force_N += vibration_.force_N(step.X_WT, step.burr_force_N, dt_s);
+  if (spindle_on) step.wrench.force_N += vibration_.force_N(step.X_WT, step.burr_force_W_N.norm(), dt_s);
   safe = make_safe(step.wrench, limits_);
-  if (safe.fault == WrenchFault::not_finite || !is_finite(step.X_WT) || !std::isfinite(step.burr_force_N)) {
+  if (safe.fault == WrenchFault::not_finite || !is_finite(step.X_WT) || !step.burr_force_W_N.allFinite()) {
     // Whatever led there is still in the algorithm's memory of contacts.
     algorithm_->reset();
     safe = {Wrench{}, WrenchFault::not_finite};
@@ -98,7 +98,7 @@ HapticStep MillingSession::step_safely(const Pose& X_WD, double dt_s, bool spind
 }
 
 void MillingSession::mill(const HapticStep& step, double dt_s) {
-  const MillingStep cut = mill_.step(*volume_, step.X_WT.position_mm, step.burr_force_N, dt_s);
+  const MillingStep cut = mill_.step(*volume_, step.X_WT.position_mm, step.burr_force_W_N, dt_s);
   removed_mm3_ += cut.removed_mm3;
   last_change_ = cut.change;
   if (!cut.change.voxels.empty()) algorithm_->volume_changed(cut.change);

@@ -88,7 +88,7 @@ TEST_F(MillingSessionTest, AnIdleTickSendsZeroAndStepsNothing) {
 
 TEST_F(MillingSessionTest, AWrenchThatIsNotFiniteIsZeroAndTheContactsAreForgotten) {
   algorithm_->next.wrench.torque_Nmm.y() = std::numeric_limits<double>::quiet_NaN();
-  algorithm_->next.burr_force_N = 5;
+  algorithm_->next.burr_force_W_N.z() = -5;
   const TickRecord record = tick();
   EXPECT_EQ(record.fault, WrenchFault::not_finite);
   EXPECT_EQ(device_.sent().force_N, Vec3::Zero());
@@ -100,7 +100,7 @@ TEST_F(MillingSessionTest, AWrenchThatIsNotFiniteIsZeroAndTheContactsAreForgotte
 }
 
 TEST_F(MillingSessionTest, ABurrForceThatIsNotFiniteIsAFaultToo) {
-  algorithm_->next.burr_force_N = std::numeric_limits<double>::infinity();
+  algorithm_->next.burr_force_W_N.y() = std::numeric_limits<double>::infinity();
   EXPECT_EQ(tick().fault, WrenchFault::not_finite);
 }
 
@@ -115,7 +115,7 @@ TEST_F(MillingSessionTest, ADeviceWithoutAPoseGetsNothing) {
 }
 
 TEST_F(MillingSessionTest, BoneGoesWhileTheSpindleTurnsAndTheAlgorithmHearsOfIt) {
-  algorithm_->next.burr_force_N = 2;
+  algorithm_->next.burr_force_W_N.z() = -2;
   EXPECT_EQ(tick(false).removed_mm3, 0);
   EXPECT_TRUE(algorithm_->changes.empty());
   double removed_mm3 = 0;

@@ -19,7 +19,8 @@ struct TickRecord {
   Wrench wrench;
   WrenchFault fault = WrenchFault::none;
   int contacts = 0;
-  double burr_force_N = 0;
+  /// With which the burr pressed on the bone, in W.
+  Vec3 burr_force_W_N = Vec3::Zero();
   /// Since the start, in mm^3 of reference density.
   double removed_mm3 = 0;
   /// Time taken by the algorithm's step, and by milling with all that follows the volume.

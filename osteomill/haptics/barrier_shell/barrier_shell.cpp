@@ -320,7 +320,7 @@ HapticStep BarrierShell::report(const State& state, const Pose& X_WD, double dt_
   HapticStep result;
   result.X_WT = X_WT_;
   result.contacts = state.sum.touching;
-  result.burr_force_N = state.burr_force_T.norm();
+  result.burr_force_W_N = X_WT_.orientation * state.burr_force_T;
   result.wrench = coupling_.wrench_on_hand(X_WT_, X_WD);
   if (ramp_ < 1) {
     ramp_ = std::min(1.0, ramp_ + std::max(0.0, dt_s) / kRamp_s);

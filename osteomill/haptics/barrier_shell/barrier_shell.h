@@ -34,7 +34,7 @@ struct Counts {
 /// before it is taken. Incremental potential contact (Li et al. 2020) for a tool on a volume that changes.
 ///
 /// `X_WT` of a step is the simulated tool, the wrench the coupling's; `contacts` counts the points that a
-/// core meets, `burr_force_N` is what the ball presses with.
+/// core meets, `burr_force_W_N` is what the ball presses with.
 class BarrierShell final : public HapticAlgorithm {
  public:
   /// Throws std::invalid_argument where a setting is out of range.

@@ -70,8 +70,7 @@ HapticStep LineProxy::step(const Pose& X_WD, double dt_s) {
   result.wrench.force_N = tip_force(settings_.stiffness_N_per_mm, tool_tip_W, device_tip_W);  // eq. 6
   result.wrench.torque_Nmm = torque(memory_.arm_W, memory_.reaction_N);                       // eq. 11
   if (memory_.tip_proxy_W) {
-    result.burr_force_N =
-        tip_force(settings_.stiffness_N_per_mm, tool_tip_W, tip_probe_W(device_tip_W)).norm();
+    result.burr_force_W_N = -tip_force(settings_.stiffness_N_per_mm, tool_tip_W, tip_probe_W(device_tip_W));
   }
   result.contacts =
       (memory_.tip_proxy_W ? 1 : 0) +
@@ -83,7 +82,7 @@ HapticStep LineProxy::step(const Pose& X_WD, double dt_s) {
   // A burr that the shaft keeps off the bone does not press on it.
   if (settings_.show_outside && memory_.tip_proxy_W &&
       !burr_touches(*scene_.volume, scene_.tool, result.X_WT, *memory_.tip_proxy_W)) {
-    result.burr_force_N = 0;
+    result.burr_force_W_N.setZero();
   }
   return result;
 }

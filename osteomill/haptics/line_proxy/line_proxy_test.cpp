@@ -59,7 +59,7 @@ TEST_P(LineProxyTest, FreeSpaceIsExactlyZero) {
     const HapticStep step = algorithm.step(X_WD, kTick_s);
     ASSERT_EQ(step.wrench.force_N, Vec3::Zero()) << n;
     ASSERT_EQ(step.wrench.torque_Nmm, Vec3::Zero()) << n;
-    ASSERT_EQ(step.burr_force_N, 0.0);
+    ASSERT_EQ(step.burr_force_W_N, Vec3::Zero());
     ASSERT_EQ(step.contacts, 0);
     if (GetParam() == Mode::paper) {
       ASSERT_LT((step.X_WT.position_mm - X_WD.position_mm).norm(), 1e-12);
@@ -84,7 +84,7 @@ TEST_P(LineProxyTest, OnAPlaneTheForceIsStiffnessTimesDepth) {
       const double along = step.wrench.force_N.dot(normal);
       EXPECT_NEAR(along / expected.norm(), 1.0, 0.005) << normal.transpose() << " at " << depth_mm;
       EXPECT_LT((step.wrench.force_N - along * normal).norm() / along, 0.01) << normal.transpose();
-      EXPECT_DOUBLE_EQ(step.burr_force_N, step.wrench.force_N.norm());
+      EXPECT_EQ(step.burr_force_W_N, -step.wrench.force_N);
       EXPECT_LT(step.wrench.torque_Nmm.norm(), 1e-9);
       EXPECT_EQ(step.contacts, 1);
       EXPECT_LT((step.X_WT.position_mm - (foot + 1.5 * normal)).norm(), 0.03);
@@ -157,14 +157,14 @@ TEST_P(LineProxyTest, TheProxyFollowsMilledBoneDown) {
       algorithm.volume_changed({bone.geometry().all_voxels()});
     }
     const HapticStep step = algorithm.step(standing(tip, {0, 0, 1}), kTick_s);
-    EXPECT_LE(step.burr_force_N, force_before_N + 1e-4);
-    EXPECT_GE(step.burr_force_N, force_before_N - 0.15);
-    force_before_N = step.burr_force_N;
+    EXPECT_LE(step.burr_force_W_N.norm(), force_before_N + 1e-4);
+    EXPECT_GE(step.burr_force_W_N.norm(), force_before_N - 0.15);
+    force_before_N = step.burr_force_W_N.norm();
   }
   // The proxy is still on its way down the last 0.05 mm.
   HapticStep settled;
   for (int n = 0; n < 5; ++n) settled = algorithm.step(standing(tip, {0, 0, 1}), kTick_s);
-  EXPECT_NEAR(settled.burr_force_N, 2.0 * (1.5 - 1.0), 0.01);
+  EXPECT_NEAR(-settled.burr_force_W_N.z(), 2.0 * (1.5 - 1.0), 0.01);
 }
 
 // A block whose upper edge runs along y through (0, y, 4); the shaft leans away from it upwards, so that it
@@ -199,7 +199,7 @@ TEST_P(LineProxyTest, TheShaftOnAnEdgeTurnsTheHandAway) {
   // The edge is pushed towards +x, so it pushes the shaft back to -x, above the tip: about -y.
   EXPECT_LT(step.wrench.torque_Nmm.y(), -5.0);
   EXPECT_LT(std::abs(step.wrench.torque_Nmm.x()), 0.05 * step.wrench.torque_Nmm.norm());
-  EXPECT_EQ(step.burr_force_N, 0.0);
+  EXPECT_EQ(step.burr_force_W_N, Vec3::Zero());
   if (GetParam() == Mode::paper) {
     EXPECT_EQ(step.wrench.force_N, Vec3::Zero());
   }
@@ -311,7 +311,7 @@ TEST(LineProxy, WhatIsNotFiniteIsForgottenAtOnce) {
     const HapticStep step = algorithm.step(leaning(kTouchingTip_x + 1.5), kTick_s);
     if (!step.wrench.torque_Nmm.allFinite()) ++not_finite;
     EXPECT_TRUE(is_finite(step.X_WT));
-    EXPECT_TRUE(std::isfinite(step.burr_force_N));
+    EXPECT_TRUE(std::isfinite(step.burr_force_W_N.norm()));
   }
   EXPECT_GT(not_finite, 0);
   const HapticStep away = push(algorithm, leaning(kTouchingTip_x + 1.5), leaning(0).position_mm, 50);

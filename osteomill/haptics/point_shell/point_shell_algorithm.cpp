@@ -21,11 +21,11 @@ constexpr double kTurnByMove = 0.25;
 // Of the centreline, looked at for bone.
 constexpr int kCentrelinePoints = 51;
 
-// The burr's force after a move, by the derivatives from before it. A contact only pushes: where the move is
-// predicted to end in a pull, the burr has left.
-double burr_force_after(const ContactSum& burr, const ToolMove& move) {
+// The burr's force on the bone after a move, by the derivatives from before it. A contact only pushes: where
+// the move is predicted to end in a pull, the burr has left.
+Vec3 burr_force_after(const ContactSum& burr, const ToolMove& move) {
   const Vec3 force = burr.force_N - burr.K_ff * move.translation_mm - burr.K_ft * move.rotation_rad;
-  return force.dot(burr.force_N) > 0 ? force.norm() : 0.0;
+  return force.dot(burr.force_N) > 0 ? Vec3(-force) : Vec3(Vec3::Zero());
 }
 
 bool is_at(const Pose& a, const Pose& b) {
@@ -158,7 +158,7 @@ HapticStep PointShellAlgorithm::balanced(const Pose& X_WD, double dt_s) {
     }
     X_WT_ = released(start, X_WT_, X_WD, dt_s);
     const ToolMove step_move = move_between(before, X_WT_);
-    result.burr_force_N = burr_force_after(contacts.burr, step_move);
+    result.burr_force_W_N = burr_force_after(contacts.burr, step_move);
     if (step_move.translation_mm.norm() <= settings_.solver_tolerance_mm &&
         step_move.rotation_rad.norm() <= settings_.solver_tolerance_rad) {
       break;

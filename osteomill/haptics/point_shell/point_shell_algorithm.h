@@ -17,8 +17,8 @@ namespace osteomill::point_shell {
 /// Without contact the tool is at the device (steady: on its way there) and the wrench exactly zero; steady
 /// lets what was felt fade first.
 ///
-/// `X_WT` of a step is the simulated tool; `burr_force_N` the contact force of the points that touch the tool
-/// below the height at which its shaft comes out of the burr's sphere; `contacts` counts the points that
+/// `X_WT` of a step is the simulated tool; `burr_force_W_N` the contact force of the points that touch the
+/// tool below the height at which its shaft comes out of the burr's sphere; `contacts` counts the points that
 /// touch.
 class PointShellAlgorithm final : public HapticAlgorithm {
  public:

@@ -215,7 +215,7 @@ HapticStep SurfacePoints::step(const Pose& X_WD, double dt_s) {
     const Vec3 overlap_W_mm = X_WD.position_mm - X_WH.position_mm;
     result.wrench.force_N = damped(result.wrench.force_N, overlap_W_mm, dt_s);
   }
-  result.burr_force_N = result.wrench.force_N.norm();
+  result.burr_force_W_N = -result.wrench.force_N;
   if (settings_.shaft_force) result.wrench.force_N += shaft.mean.force_N;
   return result;
 }

@@ -104,7 +104,7 @@ TEST(SurfacePointsSteady, FreeSpaceIsExactlyZero) {
     const HapticStep step = algorithm.step(X, kDt);
     EXPECT_EQ(step.wrench.force_N, Vec3::Zero());
     EXPECT_EQ(step.wrench.torque_Nmm, Vec3::Zero());
-    EXPECT_EQ(step.burr_force_N, 0);
+    EXPECT_EQ(step.burr_force_W_N, Vec3::Zero());
     EXPECT_EQ(step.contacts, 0);
   }
 }
@@ -120,7 +120,7 @@ TEST(SurfacePointsSteady, TheShaftAloneOnARidgePushesAndTurnsTogether) {
     const HapticStep step = walk(algorithm, {-lever, 0, 1.3}, {-lever, 0, 0.7}, lying);
     const Vec3 force = step.wrench.force_N;
     EXPECT_GT(force.z(), 0.01) << lever;
-    EXPECT_EQ(step.burr_force_N, 0) << lever;
+    EXPECT_EQ(step.burr_force_W_N, Vec3::Zero()) << lever;
     const Vec3 expected = Vec3(lever, 0, 0).cross(force);
     EXPECT_LT((step.wrench.torque_Nmm - expected).norm(), 0.02 * expected.norm()) << lever;
     EXPECT_LT(step.wrench.torque_Nmm.y(), 0) << lever;
@@ -270,7 +270,7 @@ TEST(SurfacePointsSteady, NothingIsFeltWhereItStartsInside) {
   const Volume volume = slope(Vec3::UnitZ());
   auto algorithm = prepared(volume, steady());
   const HapticStep step = algorithm.step({{0, 0, -2}, Quat::Identity()}, kDt);
-  EXPECT_EQ(step.burr_force_N, 0);
+  EXPECT_EQ(step.burr_force_W_N, Vec3::Zero());
   EXPECT_GT(step.contacts, 12);
 }
 
