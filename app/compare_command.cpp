@@ -60,15 +60,26 @@ std::vector<TrialPlan> plans_of(const CompareOptions& options, const LoadedBone&
   return plans;
 }
 
-std::vector<StudyRow> try_other_seeds(const CompareOptions& options, const std::vector<TrialPlan>& plans) {
-  std::vector<TrialPlan> others;
-  for (int n = 1; n < options.seeds; ++n) {
-    for (const TrialPlan& plan : plans) {
-      others.push_back(with_seed(plan, options.trial.milling.seed + static_cast<std::uint64_t>(n)));
+// Every algorithm in every mode that it has, mode by mode.
+std::vector<StudyTrial> trials_of(const CompareOptions& options, const std::vector<TrialPlan>& plans) {
+  std::vector<StudyTrial> trials;
+  for (const TrialPlan& plan : plans) {
+    for (const AlgorithmDescription& algorithm : options.algorithms) {
+      if (runs_in(algorithm, plan.settings.haptics.mode, options.modes)) trials.push_back({plan, algorithm});
     }
   }
-  return run_study_trials(others, options.algorithms, static_cast<std::size_t>(options.threads),
-                          events_on_terminal());
+  return trials;
+}
+
+std::vector<StudyRow> try_other_seeds(const CompareOptions& options, const std::vector<StudyTrial>& trials) {
+  std::vector<StudyTrial> others;
+  for (int n = 1; n < options.seeds; ++n) {
+    for (const StudyTrial& trial : trials) {
+      const auto seed = options.trial.milling.seed + static_cast<std::uint64_t>(n);
+      others.push_back({with_seed(trial.plan, seed), trial.algorithm});
+    }
+  }
+  return run_study_trials(others, static_cast<std::size_t>(options.threads), events_on_terminal());
 }
 
 std::vector<PassivityRow> press_on_walls(const CompareOptions& options, const TrialSettings& settings) {
@@ -94,18 +105,16 @@ void run_compare(const CompareOptions& options, const std::string& command_line)
                                events_on_terminal());
   std::vector<Recording> recordings;
   std::vector<StudyRow> rows;
-  for (const TrialPlan& plan : plans) {
-    for (const AlgorithmDescription& algorithm : options.algorithms) {
-      for (const fs::path& path :
-           record_trial(plan, algorithm, pictures, options.out, events_on_terminal())) {
-        recordings.push_back(read_recording(path));
-        rows.push_back(row_of(plan, recordings.back()));
-      }
+  const std::vector<StudyTrial> trials = trials_of(options, plans);
+  for (const auto& [plan, algorithm] : trials) {
+    for (const fs::path& path : record_trial(plan, algorithm, pictures, options.out, events_on_terminal())) {
+      recordings.push_back(read_recording(path));
+      rows.push_back(row_of(plan, recordings.back()));
     }
   }
   ReportExtras extras;
   if (options.seeds > 1) {
-    const std::vector<StudyRow> others = try_other_seeds(options, plans);
+    const std::vector<StudyRow> others = try_other_seeds(options, trials);
     rows.insert(rows.end(), others.begin(), others.end());
     extras.study.emplace(std::move(rows));
   }

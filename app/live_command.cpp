@@ -20,7 +20,7 @@ namespace {
 struct LiveOptions {
   ScanOptions scan;
   TrialOptions trial;
-  std::vector<AlgorithmDescription> algorithm{algorithm_named("point-shell")};
+  std::vector<AlgorithmDescription> algorithm{default_algorithm()};
   double seconds = 60;
   std::string record;
 };

@@ -140,6 +140,7 @@ void add_milling_options(CLI::App& command, MillingOptions& options) {
 }
 
 void add_algorithm_option(CLI::App& command, std::vector<AlgorithmDescription>& algorithms) {
+  const std::string all = algorithms.size() > 1 ? "all" : algorithms.front().id.name;
   command
       .add_option_function<std::vector<std::string>>(
           "--algorithm",
@@ -153,7 +154,8 @@ void add_algorithm_option(CLI::App& command, std::vector<AlgorithmDescription>& 
             }
           },
           "Only this one; may repeat")
-      ->check(CLI::IsMember(algorithm_names()));
+      ->check(CLI::IsMember(algorithm_names()))
+      ->default_str(all);
 }
 
 }  // namespace osteomill::app

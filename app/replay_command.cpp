@@ -25,7 +25,7 @@ struct ReplayOptions {
   std::string trajectory;
   ScanOptions scan;
   MillingOptions milling;
-  std::vector<AlgorithmDescription> algorithm;
+  std::vector<AlgorithmDescription> algorithm{default_algorithm()};
   std::string out;
 };
 
@@ -63,7 +63,7 @@ void add_replay_command(CLI::App& program) {
       ->required();
   add_scan_options(*command, options->scan);
   add_algorithm_option(*command, options->algorithm);
-  command->get_option("--algorithm")->required()->expected(1);
+  command->get_option("--algorithm")->expected(1);
   command->add_option("--out", options->out, "The log, CSV, a row a tick")->required();
   add_mode_option(*command, options->milling.setup.haptics.mode);
   add_milling_options(*command, options->milling);

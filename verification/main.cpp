@@ -42,11 +42,13 @@ const std::vector<Named>& all_sections() {
       {"ball", [](const Bones&, const Effort&) { return slide_round_a_ball(); }},
       {"turned", [](const Bones&, const Effort&) { return turned_scans(); }},
       {"drops", [](const Bones&, const Effort&) { return drops(); }},
+      {"passivity", [](const Bones&, const Effort&) { return passivity(); }},
       {"pushes", random_pushes},
       {"voxels", [](const Bones&, const Effort& effort) { return voxel_sizes(effort); }},
       {"rates", haptic_rates},
       {"tooth", milling_the_tooth},
       {"second", milling_the_second_scan},
+      {"rig", the_rig_itself},
       {"switches", switch_by_switch},
   };
   return sections;

@@ -32,6 +32,8 @@ Section shaft_levers();
 Section slide_round_a_ball();
 Section turned_scans();
 Section drops();
+Section passivity();
+Section the_rig_itself(const Bones& bones, const Effort& effort);
 Section voxel_sizes(const Effort& effort);
 Section haptic_rates(const Bones& bones, const Effort& effort);
 Section random_pushes(const Bones& bones, const Effort& effort);

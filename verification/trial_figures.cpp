@@ -18,6 +18,10 @@ TrialSettings settings_of(const TrialVariant& variant) {
   if (variant.random_hand) operator_settings.hand = random_hand(variant.seed);
   operator_settings.hand.push_N = variant.push_N;
   operator_settings.script.milling_s = variant.phase_s;
+  settings.spindle = variant.spindle;
+  if (!variant.encoder) {
+    operator_settings.handle.position_step_mm = operator_settings.handle.rotation_step_rad = 0;
+  }
   return settings;
 }
 

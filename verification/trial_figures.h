@@ -18,6 +18,10 @@ struct TrialVariant {
   double tick_s = 1e-3;
   /// A hand drawn by the seed instead of the default one.
   bool random_hand = false;
+  /// False lets the hand go through its motions without removing bone.
+  bool spindle = true;
+  /// False reads the handle's pose without rounding.
+  bool encoder = true;
   std::vector<HapticSettings::Named> named = {};
 };
 

@@ -13,7 +13,7 @@ namespace {
 struct SimulateOptions {
   SimulatorOptions simulator;
   MillingOptions milling;
-  std::vector<AlgorithmDescription> algorithm{algorithm_named("point-shell")};
+  std::vector<AlgorithmDescription> algorithm{default_algorithm()};
 };
 
 void run_simulate(SimulateOptions options) {

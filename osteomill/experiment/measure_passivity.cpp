@@ -21,6 +21,7 @@ std::vector<PassivityCase> passivity_cases(const std::vector<AlgorithmDescriptio
   for (const Mode mode : modes) {
     for (const AlgorithmDescription& algorithm : algorithms) {
       if (setting_of_option(algorithm, kStiffnessOption) == nullptr) continue;
+      if (!runs_in(algorithm, mode, modes)) continue;
       for (const double delay_s : kDelays_s) {
         for (const double damping : kDampings_Ns_per_mm) cases.push_back({algorithm, mode, damping, delay_s});
       }

@@ -25,8 +25,8 @@ struct PassivityRow {
   double rule_N_per_mm = 0;
 };
 
-/// Every algorithm that has a setting of the option "stiffness", in every mode on devices with 1, 2, 5 and 10
-/// N s/m of damping and 0.3, 1 and 2 ms of delay.
+/// Every algorithm that has a setting of the option "stiffness", in every mode that it has, on devices with
+/// 1, 2, 5 and 10 N s/m of damping and 0.3, 1 and 2 ms of delay.
 std::vector<PassivityCase> passivity_cases(const std::vector<AlgorithmDescription>& algorithms,
                                            const std::vector<Mode>& modes);
 

@@ -12,14 +12,15 @@ namespace osteomill {
 
 namespace {
 
-struct Trial {
+struct PhasesOfTrial {
   std::array<Recording, kPhases.size()> phases;
   FaultCount faults;
 };
 
-Trial run(const TrialPlan& plan, const AlgorithmDescription& algorithm) {
+PhasesOfTrial run(const StudyTrial& planned) {
+  const auto& [plan, algorithm] = planned;
   MillingTrial trial(plan.bone, plan.densities, plan.entry, algorithm, plan.settings);
-  Trial result;
+  PhasesOfTrial result;
   for (std::size_t n = 0; n < kPhases.size(); ++n) {
     Recording& recording = result.phases[n];
     recording.description =
@@ -54,31 +55,25 @@ TrialPlan with_seed(const TrialPlan& plan, std::uint64_t seed) {
   return other;
 }
 
-std::vector<StudyRow> run_study_trials(const std::vector<TrialPlan>& plans,
-                                       const std::vector<AlgorithmDescription>& algorithms,
-                                       std::size_t threads, const RunEvents& events) {
-  const std::size_t count = plans.size() * algorithms.size();
-  std::vector<std::vector<StudyRow>> rows(count);
-  std::vector<FaultCount> faults(count);
-  const auto plan_of = [&](std::size_t n) -> const TrialPlan& { return plans[n / algorithms.size()]; };
-  const auto algorithm_of = [&](std::size_t n) -> const AlgorithmDescription& {
-    return algorithms[n % algorithms.size()];
-  };
+std::vector<StudyRow> run_study_trials(const std::vector<StudyTrial>& trials, std::size_t threads,
+                                       const RunEvents& events) {
+  std::vector<std::vector<StudyRow>> rows(trials.size());
+  std::vector<FaultCount> faults(trials.size());
   const auto task = [&](std::size_t n) {
-    const Trial trial = run(plan_of(n), algorithm_of(n));
-    for (const Recording& recording : trial.phases) rows[n].push_back(row_of(plan_of(n), recording));
+    const PhasesOfTrial trial = run(trials[n]);
+    for (const Recording& recording : trial.phases) rows[n].push_back(row_of(trials[n].plan, recording));
     faults[n] = trial.faults;
   };
-  run_in_parallel(count, threads, task, [&](std::size_t done) {
-    events.tell_progress("study", static_cast<double>(done) / static_cast<double>(count));
+  run_in_parallel(trials.size(), threads, task, [&](std::size_t done) {
+    events.tell_progress("study", static_cast<double>(done) / static_cast<double>(trials.size()));
   });
   std::vector<StudyRow> all;
-  for (std::size_t n = 0; n < count; ++n) {
+  for (std::size_t n = 0; n < trials.size(); ++n) {
     all.insert(all.end(), rows[n].begin(), rows[n].end());
-    const TrialSettings& settings = plan_of(n).settings;
+    const TrialSettings& settings = trials[n].plan.settings;
     if (const auto said = faults[n].sentence()) {
-      events.warn(fmt::format("{}, {}, seed {}: {}", algorithm_of(n).id.name, name_of(settings.haptics.mode),
-                              settings.hand_and_device.seed, *said));
+      events.warn(fmt::format("{}, {}, seed {}: {}", trials[n].algorithm.id.name,
+                              name_of(settings.haptics.mode), settings.hand_and_device.seed, *said));
     }
   }
   return all;

@@ -15,11 +15,16 @@ TrialPlan with_seed(const TrialPlan& plan, std::uint64_t seed);
 /// The row of a phase that was recorded.
 StudyRow row_of(const TrialPlan& plan, const Recording& recording);
 
-/// Runs every algorithm under every plan, measures both phases, and keeps nothing else. Trials run side by
-/// side on `threads` threads, each in simulated time: but for the step times, the rows are the same however
-/// many. Warns where wrenches were clamped.
-std::vector<StudyRow> run_study_trials(const std::vector<TrialPlan>& plans,
-                                       const std::vector<AlgorithmDescription>& algorithms,
-                                       std::size_t threads, const RunEvents& events);
+/// One algorithm under one plan.
+struct StudyTrial {
+  TrialPlan plan;
+  AlgorithmDescription algorithm;
+};
+
+/// Runs the trials, measures both phases, and keeps nothing else. Trials run side by side on `threads`
+/// threads, each in simulated time: but for the step times, the rows are the same however many. Warns where
+/// wrenches were clamped.
+std::vector<StudyRow> run_study_trials(const std::vector<StudyTrial>& trials, std::size_t threads,
+                                       const RunEvents& events);
 
 }  // namespace osteomill

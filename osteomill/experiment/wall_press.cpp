@@ -13,6 +13,8 @@ constexpr double kMmPerM = 1000;
 // Pressing slowly: 5 mm/s at 1000 Hz. From where it first resists, no wall is that soft.
 constexpr double kDepthStep_mm = 0.005;
 constexpr double kDeepest_mm = 3;
+// From free space: what an algorithm does for a tool that begins in touch is no part of the wall.
+constexpr double kBeginsAbove_mm = 0.5;
 constexpr int kSettleTicks = 50;
 constexpr double kMinSwing_mm = 0.02;
 constexpr double kMaxSwing_mm = 0.1;
@@ -54,7 +56,7 @@ struct Rest {
 };
 
 std::optional<Rest> press_slowly(Wall& wall, double bias_N) {
-  double depth_mm = -kDepthStep_mm;
+  double depth_mm = -kBeginsAbove_mm;
   double force_N = 0;
   double last_force_N = 0;
   double touch_mm = wall.burr_radius_mm();

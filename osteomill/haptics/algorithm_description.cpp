@@ -57,6 +57,12 @@ std::vector<AlgorithmId> each_once(std::vector<AlgorithmId> algorithms) {
   return algorithms;
 }
 
+bool runs_in(const AlgorithmDescription& algorithm, Mode mode, const std::vector<Mode>& asked) {
+  return mode == asked.back() ||
+         std::any_of(algorithm.settings.begin(), algorithm.settings.end(),
+                     [](const SettingDescription& setting) { return setting.paper != setting.steady; });
+}
+
 const SettingDescription* setting_of_option(const AlgorithmDescription& algorithm, std::string_view option) {
   for (const SettingDescription& setting : algorithm.settings) {
     if (setting.option == option) return &setting;

@@ -105,6 +105,10 @@ struct AlgorithmDescription {
   std::function<std::unique_ptr<HapticAlgorithm>(std::span<const double> values)> make;
 };
 
+/// Whether the algorithm is to be run in `mode`, one of those `asked` for: in each, or, where no setting
+/// tells them apart, in the last alone.
+bool runs_in(const AlgorithmDescription& algorithm, Mode mode, const std::vector<Mode>& asked);
+
 /// The setting that an option of the command line sets; null where it has none.
 const SettingDescription* setting_of_option(const AlgorithmDescription& algorithm, std::string_view option);
 

@@ -40,6 +40,10 @@ const AlgorithmDescription& algorithm_named(std::string_view name) {
   throw std::invalid_argument("there is no algorithm " + std::string(name));
 }
 
+const AlgorithmDescription& default_algorithm() {
+  return algorithm_named("barrier-shell");
+}
+
 std::unique_ptr<HapticAlgorithm> make_algorithm(std::string_view name, const HapticSettings& settings) {
   return make_algorithm(algorithm_named(name), settings);
 }

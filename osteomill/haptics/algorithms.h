@@ -22,6 +22,9 @@ const AlgorithmDescription* find_algorithm(std::string_view name);
 /// The one of that name. Throws std::invalid_argument where there is none.
 const AlgorithmDescription& algorithm_named(std::string_view name);
 
+/// The one that is used where nobody chose: barrier-shell.
+const AlgorithmDescription& default_algorithm();
+
 /// The same as make_algorithm of its description.
 std::unique_ptr<HapticAlgorithm> make_algorithm(std::string_view name, const HapticSettings& settings);
 

@@ -45,6 +45,15 @@ TEST(MakeAlgorithm, WhatTheUserSaysWins) {
   }
 }
 
+TEST(Algorithms, WhatHasOneModeRunsOnce) {
+  const std::vector<Mode> both{Mode::paper, Mode::steady};
+  EXPECT_TRUE(runs_in(algorithm_named("point-shell"), Mode::paper, both));
+  EXPECT_TRUE(runs_in(algorithm_named("point-shell"), Mode::steady, both));
+  EXPECT_FALSE(runs_in(algorithm_named("barrier-shell"), Mode::paper, both));
+  EXPECT_TRUE(runs_in(algorithm_named("barrier-shell"), Mode::steady, both));
+  EXPECT_TRUE(runs_in(algorithm_named("barrier-shell"), Mode::paper, {Mode::paper}));
+}
+
 TEST(MakeAlgorithm, WhatCannotBeIsRefused) {
   const auto refused = [](std::string_view algorithm, const HapticSettings& settings) {
     EXPECT_THROW(make_algorithm(algorithm, settings), std::invalid_argument);

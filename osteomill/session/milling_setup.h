@@ -15,7 +15,7 @@ namespace osteomill {
 /// Everything that can be chosen for milling a bone, beside the bone.
 struct MillingSetup {
   MillingTool tool;
-  AlgorithmDescription algorithm = algorithm_named("point-shell");
+  AlgorithmDescription algorithm = default_algorithm();
   HapticSettings haptics;
   CuttingSettings cutting;
   /// Not given: follows from `cutting` and the burr.

@@ -1,0 +1,50 @@
+#include <algorithm>
+#include <cmath>
+
+#include "verification/in_parallel.h"
+#include "verification/sections.h"
+#include <fmt/core.h>
+
+#include "osteomill/experiment/measure_passivity.h"
+#include "osteomill/haptics/algorithms.h"
+
+namespace osteomill::verification {
+
+Section passivity() {
+  Section section{
+      "How stiff before it is no longer passive",
+      "Must hold for 4: the greatest stiffness that dies out, as it is felt, is `2 b / (T + 2 tau)` within 5 "
+      "% "
+      "on every device; the others are reported. A handle of 0.3 kg pressed by 0.5 N on a flat wall at 1000 "
+      "Hz, let go with a swing; devices of 1, 2, 5 and 10 N s/m of damping and 0.3, 1 and 2 ms of delay. The "
+      "stiffness that is felt over the rule's, least, median and greatest of the devices; some have no "
+      "passive stiffness at all, or nothing but passive ones.",
+      {"algorithm", "least", "median", "greatest", "none passive", "all passive", ""},
+      {},
+      {}};
+  const MillingTool tool;
+  const Volume wall = flat_wall(tool);
+  const std::vector<PassivityCase> cases = passivity_cases(all_algorithms(), {Mode::steady});
+  std::vector<PassivityRow> rows(cases.size());
+  in_parallel(cases.size(),
+              [&](std::size_t n) { rows[n] = measure_passivity(cases[n], wall, tool, {}, {}, 1e-3); });
+  for (const AlgorithmDescription& algorithm : all_algorithms()) {
+    std::vector<double> shares;
+    int none = 0, all = 0;
+    for (const PassivityRow& row : rows) {
+      if (!(row.setup.algorithm.id == algorithm.id)) continue;
+      none += row.limit.kind == StiffnessLimit::Kind::below_all ? 1 : 0;
+      all += row.limit.kind == StiffnessLimit::Kind::above_all ? 1 : 0;
+      if (row.limit.kind == StiffnessLimit::Kind::found) {
+        shares.push_back(row.limit.felt_N_per_mm / row.rule_N_per_mm);
+      }
+    }
+    const double least = percentile(shares, 0), greatest = percentile(shares, 1);
+    section.add({algorithm.id.name, figure(least), figure(percentile(shares, 0.5)), figure(greatest),
+                 std::to_string(none), std::to_string(all)},
+                algorithm.id != "barrier-shell" || (none + all == 0 && least >= 0.95 && greatest <= 1.05));
+  }
+  return section;
+}
+
+}  // namespace osteomill::verification

@@ -1,0 +1,51 @@
+#include "verification/sections.h"
+#include "verification/trial_figures.h"
+#include <fmt/core.h>
+
+#include "osteomill/haptics/algorithms.h"
+
+namespace osteomill::verification {
+
+namespace {
+
+// The force above 20 Hz over its mean may be so much more than with the spindle off: what two runs of one
+// hand differ by.
+constexpr double kNoExcess = 1.05;
+
+}  // namespace
+
+Section the_rig_itself(const Bones& bones, const Effort& effort) {
+  Section section{
+      "What the rig itself does",
+      fmt::format(
+          "Must hold for 4: milling adds nothing to the force above 20 Hz that the hand's tremor makes with "
+          "the "
+          "spindle off (5 %); the others are reported. The hand of `compare` on {} for {:.0f} s, seed 11, "
+          "with "
+          "the spindle on, with the spindle off, and with the spindle on but the handle's pose read without "
+          "rounding: one step of the encoder, 1e-4 rad, is 0.1 N mm by itself at 1000 N mm/rad.",
+          bones.tooth_name, effort.phase_s),
+      {"algorithm, push", "force above 20 Hz / mean", "spindle off", "no rounding", "torque step, N mm",
+       "spindle off", "no rounding", "force step, N", "spindle off", "no rounding", ""},
+      {},
+      {}};
+  for (const double push_N : {1.5, 3.0}) {
+    for (const std::string& algorithm : algorithm_names()) {
+      const TrialVariant usual{
+          .algorithm = algorithm, .push_N = push_N, .seed = 11, .phase_s = effort.phase_s};
+      std::vector<TrialVariant> variants(3, usual);
+      variants[1].spindle = false;
+      variants[2].encoder = false;
+      const std::vector<TrialFigures> f = milling_figures(bones.tooth, variants);
+      std::vector<std::string> cells{fmt::format("{}, {} N", algorithm, push_N)};
+      for (const TrialFigures& run : f) cells.push_back(figure(run.hp_over_mean()));
+      for (const TrialFigures& run : f) cells.push_back(figure(run.metrics.torque_Nmm.step_max));
+      for (const TrialFigures& run : f) cells.push_back(figure(run.metrics.force_N.step_max));
+      section.add(std::move(cells),
+                  algorithm != "barrier-shell" || f[0].hp_over_mean() <= kNoExcess * f[1].hp_over_mean());
+    }
+  }
+  return section;
+}
+
+}  // namespace osteomill::verification
