@@ -224,7 +224,7 @@ class Simulator {
 
   void take_surface() {
     for (const ChangedBrick& changed : simulation_->milling.take_changed_bricks()) {
-      renderer_->set_brick(changed.brick, changed.mesh);
+      renderer_->set_brick(changed.brick, changed.mesh, changed.levels);
     }
   }
 

@@ -35,7 +35,7 @@ class Published {
     for (ChangedBrick& brick : changed) {
       std::int32_t& place = place_[brick.brick];
       if (place >= 0) {
-        std::swap(bricks_[static_cast<std::size_t>(place)].mesh, brick.mesh);
+        std::swap(bricks_[static_cast<std::size_t>(place)], brick);
       } else {
         place = static_cast<std::int32_t>(bricks_.size());
         bricks_.push_back(std::move(brick));

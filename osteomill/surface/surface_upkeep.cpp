@@ -1,6 +1,7 @@
 #include "osteomill/surface/surface_upkeep.h"
 
 #include <numeric>
+#include <utility>
 
 #include "osteomill/surface/brick_mesher.h"
 
@@ -37,7 +38,10 @@ std::vector<ChangedBrick> SurfaceUpkeep::remesh(const DensityView& view) {
     mesher.mesh(brick);
     const bool had_mesh = has_mesh_[brick] != 0;
     has_mesh_[brick] = !mesher.indices().empty();
-    if (had_mesh || has_mesh_[brick]) changed.push_back({brick, mesher.copy()});
+    if (!had_mesh && !has_mesh_[brick]) continue;
+    BrickMesh mesh = mesher.copy();
+    BrickLevels levels = levels_of(mesh, view.grid.geometry(), layout_.cells(brick));
+    changed.push_back({brick, std::move(mesh), std::move(levels)});
   }
   to_mesh_.clear();
   return changed;

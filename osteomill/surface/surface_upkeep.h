@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "osteomill/surface/brick_levels.h"
 #include "osteomill/surface/brick_mesh.h"
 #include "osteomill/surface/surface_bricks.h"
 #include "osteomill/surface/surface_mesh.h"
@@ -14,6 +15,8 @@ namespace osteomill {
 struct ChangedBrick {
   std::size_t brick;
   BrickMesh mesh;
+  /// The mesh with fewer triangles, for drawing it.
+  BrickLevels levels;
 };
 
 /// Which bricks of a surface have to be meshed anew as the densities change. Holds no densities. For one

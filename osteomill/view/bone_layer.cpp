@@ -185,18 +185,20 @@ BoneLayer::BoneLayer(const SurfaceBricks& layout, const GridGeometry& geometry)
       cut_(bone_program("#define CUT\n")),
       layout_(layout),
       geometry_(geometry),
-      bricks_(layout.count()) {
+      bricks_(layout.count()),
+      drawn_level_(layout.count(), -1) {
   for (std::size_t n = 0; n < bricks_.size(); ++n)
     bricks_[n].bounds = bounding_sphere(geometry, layout.cells(n));
 }
 
 void BoneLayer::clear() {
-  for (std::size_t n = 0; n < bricks_.size(); ++n) set_brick(n, {});
+  for (std::size_t n = 0; n < bricks_.size(); ++n) set_brick(n, {}, {});
 }
 
-void BoneLayer::set_brick(std::size_t number, const BrickMesh& mesh) {
+void BoneLayer::set_brick(std::size_t number, const BrickMesh& mesh, const BrickLevels& levels) {
   Brick& brick = bricks_[number];
-  brick.index_count = static_cast<GLsizei>(mesh.indices.size());
+  brick.levels = levels.levels;
+  brick.seams = levels.seams;
   if (mesh.empty()) {
     brick.vertex_array = {};
     brick.vertices = {};
@@ -211,15 +213,18 @@ void BoneLayer::set_brick(std::size_t number, const BrickMesh& mesh) {
   const Facing facing = facing_of(mesh);
   brick.facing_W = facing.axis_W;
   brick.facing_spread_rad = facing.spread_rad;
-  const std::vector<MeshVertex> vertices =
+  std::vector<MeshVertex> vertices =
       with_smooth_densities(mesh, on_border(mesh, geometry_, layout_.cells(number)));
+  vertices.insert(vertices.end(), levels.vertices.begin(), levels.vertices.end());
   glBindVertexArray(brick.vertex_array.get());
   glBindBuffer(GL_ARRAY_BUFFER, brick.vertices.get());
   glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(MeshVertex)),
                vertices.data(), GL_DYNAMIC_DRAW);
   glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, brick.indices.get());
-  glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.indices.size() * sizeof(std::uint32_t)),
-               mesh.indices.data(), GL_DYNAMIC_DRAW);
+  // A brick has less than 2^16 grid edges for vertices to lie on.
+  const std::vector<GLushort> indices(levels.indices.begin(), levels.indices.end());
+  glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(indices.size() * sizeof(GLushort)),
+               indices.data(), GL_DYNAMIC_DRAW);
   const auto attribute = [](GLuint place, GLint count, std::size_t offset) {
     glEnableVertexAttribArray(place);
     glVertexAttribPointer(place, count, GL_FLOAT, GL_FALSE, sizeof(MeshVertex),
@@ -240,25 +245,65 @@ bool BoneLayer::Brick::turned_away(const Vec3& eye_W) const {
 }
 
 // The nearest first, so that what they hide need not be coloured.
-std::vector<const BoneLayer::Brick*> BoneLayer::seen_bricks(const ViewScene& scene,
-                                                            const Projection& projection) const {
+std::vector<SeenBrick> BoneLayer::seen(const ViewScene& scene, const Projection& projection,
+                                       const Detail& detail) const {
   const auto planes = view_planes(projection);
   const Vec3 eye_W = scene.camera.eye_W();
   const bool cut = is_cut(scene);
-  std::vector<std::pair<double, const Brick*>> found;
-  for (const Brick& brick : bricks_) {
-    if (brick.index_count == 0 || !may_be_seen(planes, brick.bounds)) continue;
+  std::vector<std::pair<double, SeenBrick>> found;
+  for (std::size_t n = 0; n < bricks_.size(); ++n) {
+    const Brick& brick = bricks_[n];
+    if (brick.empty() || !may_be_seen(planes, brick.bounds)) continue;
     if (!cut && brick.turned_away(eye_W)) continue;
-    found.emplace_back((brick.bounds.centre_W - eye_W).squaredNorm(), &brick);
+    const double front_mm =
+        std::max(depth_of(scene.camera, brick.bounds.centre_W) - brick.bounds.radius_mm, projection.near_mm);
+    const bool sharp = detail.sharp && (detail.sharp->centre_W - brick.bounds.centre_W).norm() <
+                                           detail.sharp->radius_mm + brick.bounds.radius_mm;
+    const double widest_px = sharp ? std::min(detail.cell_px, 1.0) : detail.cell_px;
+    double cell_px =
+        2 * geometry_.spacing_mm.maxCoeff() / mm_per_pixel(scene.camera, projection.size, front_mm);
+    std::size_t level = 0;
+    for (; level + 1 < BrickLevels::kCount && cell_px <= widest_px; cell_px *= 2) ++level;
+    found.push_back({(brick.bounds.centre_W - eye_W).squaredNorm(), {n, level}});
   }
-  std::sort(found.begin(), found.end());
-  std::vector<const Brick*> bricks;
+  std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<SeenBrick> bricks;
   bricks.reserve(found.size());
   for (const auto& [way, brick] : found) bricks.push_back(brick);
   return bricks;
 }
 
-void BoneLayer::draw(const ViewScene& scene, const Projection& projection, const CavityPass& cavities) const {
+std::size_t BoneLayer::triangle_count(std::span<const SeenBrick> bricks) const {
+  std::size_t count = 0;
+  for (const SeenBrick& seen : bricks) count += bricks_[seen.brick].levels[seen.level].count / 3;
+  return count;
+}
+
+namespace {
+
+void draw_range(const BrickLevels::Range& range) {
+  if (range.count == 0) return;
+  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(range.count), GL_UNSIGNED_SHORT,
+                 reinterpret_cast<const void*>(range.first * sizeof(GLushort)));
+}
+
+}  // namespace
+
+// Towards neighbours of another level.
+void BoneLayer::draw_seams(std::size_t number, std::size_t level) const {
+  const std::array<int, 3> at = layout_.coordinates(number);
+  for (std::size_t face = 0; face < BrickLevels::kFaces; ++face) {
+    std::array<int, 3> other = at;
+    const std::size_t axis = face / 2;
+    other[axis] += face % 2 == 0 ? -1 : 1;
+    if (other[axis] < 0 || other[axis] >= layout_.dims()[axis]) continue;
+    const int beside = drawn_level_[layout_.index(other[0], other[1], other[2])];
+    if (beside >= 0 && beside != static_cast<int>(level)) draw_range(bricks_[number].seams[level][face]);
+  }
+}
+
+void BoneLayer::draw(const ViewScene& scene, const Projection& projection, const CavityPass& cavities,
+                     std::span<const SeenBrick> bricks) const {
   const bool cut = is_cut(scene);
   const GLuint program = (cut ? cut_ : whole_).get();
   glUseProgram(program);
@@ -267,17 +312,20 @@ void BoneLayer::draw(const ViewScene& scene, const Projection& projection, const
   glActiveTexture(GL_TEXTURE0);
   glBindTexture(GL_TEXTURE_2D, cavities.blurred_depths());
   if (!cut) glEnable(GL_CULL_FACE);
-  for (const Brick* brick : seen_bricks(scene, projection)) {
-    glBindVertexArray(brick->vertex_array.get());
-    glDrawElements(GL_TRIANGLES, brick->index_count, GL_UNSIGNED_INT, nullptr);
+  for (const SeenBrick& seen : bricks) drawn_level_[seen.brick] = static_cast<std::int8_t>(seen.level);
+  for (const SeenBrick& seen : bricks) {
+    glBindVertexArray(bricks_[seen.brick].vertex_array.get());
+    draw_range(bricks_[seen.brick].levels[seen.level]);
+    if (seen.level > 0) draw_seams(seen.brick, seen.level);
   }
+  for (const SeenBrick& seen : bricks) drawn_level_[seen.brick] = -1;
   glDisable(GL_CULL_FACE);
   end_cuts();
 }
 
 std::size_t BoneLayer::triangle_count() const {
   std::size_t count = 0;
-  for (const Brick& brick : bricks_) count += static_cast<std::size_t>(brick.index_count) / 3;
+  for (const Brick& brick : bricks_) count += brick.levels[0].count / 3;
   return count;
 }
 

@@ -1,8 +1,11 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
+#include <span>
 #include <vector>
 
+#include "osteomill/surface/brick_levels.h"
 #include "osteomill/surface/brick_mesh.h"
 #include "osteomill/surface/surface_bricks.h"
 #include "osteomill/view/cavity_pass.h"
@@ -34,30 +37,57 @@ std::vector<std::size_t> bricks_in_view(const SurfaceBricks& layout, const GridG
 void begin_cuts(GLuint program, const ViewScene& scene);
 void end_cuts();
 
+/// How closely the bone is looked at: a brick is drawn at the coarsest level whose cells are no wider in the
+/// picture than this.
+struct Detail {
+  double cell_px = 0;
+  /// No coarser than a pixel in here.
+  std::optional<Sphere> sharp;
+};
+/// All that can be told apart.
+inline constexpr Detail kFullDetail{0.5, std::nullopt};
+
+/// A brick that the camera may see, and how closely.
+struct SeenBrick {
+  std::size_t brick;
+  std::size_t level;
+};
+
 /// The bone's surface, a piece of graphics memory a brick, so that milling replaces only what changed.
 class BoneLayer {
  public:
   BoneLayer(const SurfaceBricks& layout, const GridGeometry& geometry);
 
   void clear();
-  void set_brick(std::size_t brick, const BrickMesh& mesh);
-  /// Only bricks that the camera may see, the nearest first; back faces only where the scene is cut open.
-  void draw(const ViewScene& scene, const Projection& projection, const CavityPass& cavities) const;
+  void set_brick(std::size_t brick, const BrickMesh& mesh, const BrickLevels& levels);
+
+  /// Only bricks that the camera may see, the nearest first.
+  std::vector<SeenBrick> seen(const ViewScene& scene, const Projection& projection,
+                              const Detail& detail) const;
+  std::size_t triangle_count(std::span<const SeenBrick> bricks) const;
+  /// Back faces only where the scene is cut open. Bricks of different levels meet without a gap where they
+  /// are drawn together.
+  void draw(const ViewScene& scene, const Projection& projection, const CavityPass& cavities,
+            std::span<const SeenBrick> bricks) const;
+  /// In full detail.
   std::size_t triangle_count() const;
+  const Sphere& bounds(std::size_t brick) const { return bricks_[brick].bounds; }
 
  private:
   struct Brick {
     gl::VertexArray vertex_array;
     gl::Buffer vertices;
     gl::Buffer indices;
-    GLsizei index_count = 0;
+    std::array<BrickLevels::Range, BrickLevels::kCount> levels{};
+    std::array<std::array<BrickLevels::Range, BrickLevels::kFaces>, BrickLevels::kCount> seams{};
     Sphere bounds;
     /// The triangles' normals all lie within this half angle about this axis.
     Vec3 facing_W = Vec3::UnitZ();
     double facing_spread_rad = 4;
+    bool empty() const { return levels[0].count == 0; }
     bool turned_away(const Vec3& eye_W) const;
   };
-  std::vector<const Brick*> seen_bricks(const ViewScene& scene, const Projection& projection) const;
+  void draw_seams(std::size_t brick, std::size_t level) const;
 
   // Clipping costs time at every vertex.
   gl::Program whole_;
@@ -65,6 +95,8 @@ class BoneLayer {
   SurfaceBricks layout_;
   GridGeometry geometry_;
   std::vector<Brick> bricks_;
+  // By brick: the level at which it is being drawn, or -1.
+  mutable std::vector<std::int8_t> drawn_level_;
 };
 
 }  // namespace osteomill

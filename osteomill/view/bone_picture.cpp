@@ -141,8 +141,8 @@ class BonePainter {
     std::size_t done = 0;
     DepthTiles depths(target_, projection_, scene_.camera);
     const auto flush = [&] {
-      layer_.draw(scene_, projection_, cavities_);
-      for (; done < drawn.size(); ++done) layer_.set_brick(drawn[done], {});
+      layer_.draw(scene_, projection_, cavities_, layer_.seen(scene_, projection_, kFullDetail));
+      for (; done < drawn.size(); ++done) layer_.set_brick(drawn[done], {}, {});
       depths = DepthTiles(target_, projection_, scene_.camera);
     };
     std::size_t triangles = 0;
@@ -153,7 +153,7 @@ class BonePainter {
       if (whom == For::eyes) {
         for (MeshVertex& vertex : mesh.vertices) look_closer(bone_, vertex);
       }
-      layer_.set_brick(brick, mesh);
+      layer_.set_brick(brick, mesh, full_detail(mesh));
       drawn.push_back(brick);
       triangles += mesh.triangle_count();
       if (triangles < kTrianglesAtOnce) continue;

@@ -1,13 +1,9 @@
 #include "osteomill/view/scene_renderer.h"
 
-#include <algorithm>
 #include <optional>
 
-#include "osteomill/view/bone_layer.h"
-#include "osteomill/view/cavity_pass.h"
-#include "osteomill/view/clip_faces.h"
+#include "osteomill/view/bone_ground.h"
 #include "osteomill/view/frame_target.h"
-#include "osteomill/view/shaders.h"
 #include "osteomill/view/solid_shapes.h"
 
 namespace osteomill {
@@ -22,8 +18,6 @@ constexpr Colour kContact{0.92f, 0.10f, 0.08f, 1};
 constexpr Colour kForce{0.15f, 0.80f, 0.25f, 1};
 constexpr Colour kTorque{0.98f, 0.72f, 0.10f, 1};
 constexpr double kArrowRadius_mm = 0.22;
-// Reading the depths makes a processor that draws wait for itself, and what is blurred changes little.
-constexpr unsigned kPicturesPerBlur = 4;
 
 void draw_tool(const SolidShapes& shapes, const MillingTool& tool, const Pose& X_WT, const Colour& burr,
                const Colour& shaft) {
@@ -50,63 +44,12 @@ void draw_ghost(const SolidShapes& shapes, const MillingTool& tool, const Pose& 
 
 }  // namespace
 
-namespace {
-
-bool same_cut(const std::optional<ClipPlane>& a, const std::optional<ClipPlane>& b) {
-  if (!a || !b) return a.has_value() == b.has_value();
-  return a->normal_W == b->normal_W && a->offset_mm == b->offset_mm;
-}
-
-// As far as the bone is drawn by it.
-bool same_view(const ViewScene& a, const ViewScene& b) {
-  return a.camera.focus_W == b.camera.focus_W && a.camera.distance_mm == b.camera.distance_mm &&
-         a.camera.orientation.coeffs() == b.camera.orientation.coeffs() &&
-         a.camera.field_of_view_rad == b.camera.field_of_view_rad && a.bounds.centre_W == b.bounds.centre_W &&
-         a.bounds.radius_mm == b.bounds.radius_mm && a.isovalue == b.isovalue &&
-         a.reference_density == b.reference_density && a.light_from_below == b.light_from_below &&
-         std::equal(a.cuts.begin(), a.cuts.end(), b.cuts.begin(), same_cut);
-}
-
-}  // namespace
-
 struct SceneRenderer::Impl {
-  Impl(const SurfaceBricks& layout, const GridGeometry& geometry)
-      : bone(layout, geometry),
-        background(gl::make_program(shaders::kScreenVertex, shaders::kBackgroundFragment)),
-        nothing(gl::make_vertex_array()) {}
-
-  // The bone with all that stands still beside it, in a picture of its own, to which the tool is added. It is
-  // drawn anew where the view changed, in every second picture while bone is milled, and until its shading
-  // has settled.
-  void keep_ground(const ViewScene& scene, const Projection& projection) {
-    if (!ground_scene || !same_view(*ground_scene, scene)) steady_pictures = 0;
-    const bool due = steady_pictures < 3 || (bone_changed && drawn % 2 == 0);
-    if (due) {
-      draw_ground(scene, projection, steady_pictures == 1 || drawn % kPicturesPerBlur == 0);
-      ground_scene = scene;
-      bone_changed = false;
-      ++steady_pictures;
-    }
-    ++drawn;
-  }
-
-  void draw_ground(const ViewScene& scene, const Projection& projection, bool look_for_cavities) {
-    ground->bind();
-    glDepthMask(GL_TRUE);
-    glEnable(GL_DEPTH_TEST);
-    glClear(GL_DEPTH_BUFFER_BIT);
-    bone.draw(scene, projection, *cavities);
-    if (look_for_cavities) {
-      cavities->blur(ground->depths(), projection.near_mm, projection.far_mm);
-      ground->bind();
-    }
-    draw_background();
-    cut_faces.draw(scene, projection);
-  }
+  Impl(const SurfaceBricks& layout, const GridGeometry& geometry) : ground(layout, geometry) {}
 
   void copy_ground() const {
     const PixelSize& size = target->size();
-    glBindFramebuffer(GL_READ_FRAMEBUFFER, ground->framebuffer());
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, ground.picture().framebuffer());
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, target->framebuffer());
     glBlitFramebuffer(0, 0, size.width, size.height, 0, 0, size.width, size.height,
                       GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT, GL_NEAREST);
@@ -116,18 +59,6 @@ struct SceneRenderer::Impl {
   void fit(const PixelSize& size) {
     if (target && target->size().width == size.width && target->size().height == size.height) return;
     target.emplace(size);
-    ground.emplace(size);
-    cavities.emplace(size);
-    drawn = 0;
-    ground_scene.reset();
-  }
-
-  void draw_background() const {
-    glDepthFunc(GL_LEQUAL);
-    glUseProgram(background.get());
-    glBindVertexArray(nothing.get());
-    glDrawArrays(GL_TRIANGLES, 0, 3);
-    glDepthFunc(GL_LESS);
   }
 
   // Over everything, since a contact lies where tool and bone hide it.
@@ -141,18 +72,9 @@ struct SceneRenderer::Impl {
     shapes.arrow(burr_W, kArrow_mm_per_Nmm * scene.wrench.torque_Nmm, 0.8 * kArrowRadius_mm, kTorque, 2);
   }
 
-  BoneLayer bone;
+  BoneGround ground;
   SolidShapes shapes;
-  ClipFaces cut_faces;
-  gl::Program background;
-  gl::VertexArray nothing;
   std::optional<FrameTarget> target;
-  std::optional<FrameTarget> ground;
-  std::optional<CavityPass> cavities;
-  std::optional<ViewScene> ground_scene;
-  int steady_pictures = 0;
-  bool bone_changed = false;
-  unsigned drawn = 0;
 };
 
 SceneRenderer::SceneRenderer(const SurfaceBricks& layout, const GridGeometry& geometry)
@@ -161,25 +83,26 @@ SceneRenderer::SceneRenderer(const SurfaceBricks& layout, const GridGeometry& ge
 SceneRenderer::~SceneRenderer() = default;
 
 void SceneRenderer::clear() {
-  impl_->bone.clear();
-  impl_->ground_scene.reset();
+  impl_->ground.clear();
 }
 
 void SceneRenderer::set_brick(std::size_t brick, const BrickMesh& mesh) {
-  impl_->bone.set_brick(brick, mesh);
-  impl_->bone_changed = true;
+  impl_->ground.set_brick(brick, mesh, full_detail(mesh));
+}
+
+void SceneRenderer::set_brick(std::size_t brick, const BrickMesh& mesh, const BrickLevels& levels) {
+  impl_->ground.set_brick(brick, mesh, levels);
 }
 
 void SceneRenderer::set_clip_face(std::size_t cut, const ClipFace& face) {
-  impl_->cut_faces.set(cut, face);
-  impl_->ground_scene.reset();
+  impl_->ground.set_clip_face(cut, face);
 }
 
 void SceneRenderer::draw(const ViewScene& scene, const PixelSize& size) {
   Impl& own = *impl_;
   own.fit(size);
   const Projection projection = projection_of(scene, size);
-  own.keep_ground(scene, projection);
+  own.ground.draw(scene, projection);
   own.copy_ground();
   own.shapes.begin(projection);
   if (scene.X_WT) draw_tool(own.shapes, scene.tool, *scene.X_WT, kBurr, kShaft);
@@ -200,8 +123,12 @@ void SceneRenderer::copy_to_window() const {
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
 }
 
+bool SceneRenderer::settled() const {
+  return impl_->ground.settled();
+}
+
 std::size_t SceneRenderer::triangle_count() const {
-  return impl_->bone.triangle_count();
+  return impl_->ground.triangle_count();
 }
 
 }  // namespace osteomill

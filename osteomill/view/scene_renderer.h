@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "osteomill/image/image.h"
+#include "osteomill/surface/brick_levels.h"
 #include "osteomill/surface/brick_mesh.h"
 #include "osteomill/surface/surface_bricks.h"
 #include "osteomill/view/clip_face.h"
@@ -26,12 +27,18 @@ class SceneRenderer {
   void clear();
   /// A brick's triangles as they are now; none removes it.
   void set_brick(std::size_t brick, const BrickMesh& mesh);
+  /// The same, where there are fewer triangles to draw it with while the view moves.
+  void set_brick(std::size_t brick, const BrickMesh& mesh, const BrickLevels& levels);
   /// What the scene's cut of this number lays open. Drawn as far as the other cuts leave it.
   void set_clip_face(std::size_t cut, const ClipFace& face);
 
-  /// Draws into a picture of its own. What lies deep is darkened after a picture drawn before (the first, and
-  /// every fourth from there, is looked at), so that a still picture is drawn twice.
+  /// Draws into a picture of its own, in a time that hardly depends on how many triangles there are: while
+  /// the view moves the bone has as many as there is time for, and full detail some pictures after it rests.
+  /// What lies deep is darkened after a picture drawn before, so that a still picture is drawn twice at
+  /// least.
   void draw(const ViewScene& scene, const PixelSize& size);
+  /// Whether drawing the same again would change nothing: the picture has full detail.
+  bool settled() const;
   /// The picture drawn last.
   Image picture() const;
   /// Copies it into the window's framebuffer, which has its size.

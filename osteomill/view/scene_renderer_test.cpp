@@ -10,6 +10,7 @@
 
 #include "osteomill/image/png.h"
 #include "osteomill/surface/surface_mesh.h"
+#include "osteomill/view/drawing_pace.h"
 #include "osteomill/view/offscreen_context.h"
 
 namespace osteomill {
@@ -134,6 +135,81 @@ TEST_F(SceneRendererTest, MilledBricksAreSeenWhileTheViewStandsStill) {
   const std::size_t bricks = SurfaceBricks(bone_.geometry().dims).count();
   for (std::size_t n = 0; n < bricks; ++n) renderer_->set_brick(n, {});
   EXPECT_LT(covered(picture()), 0.1 * all);
+}
+
+// Where bone is milled while the view stands still, only that part of the picture is drawn anew.
+TEST_F(SceneRendererTest, APictureDrawnPieceByPieceIsTheOneDrawnAtOnce) {
+  scene_.camera = camera_on({Vec3(0, 0, 4), 9}, {0.3, 1, -0.5}, Vec3::UnitZ());
+  while (!renderer_->settled()) renderer_->draw(scene_, kSize);
+  const Image before = renderer_->picture();
+  Volume milled = bone_;
+  const GridGeometry& geometry = milled.geometry();
+  for (int k = 0; k < geometry.dims[2]; ++k)
+    for (int j = 0; j < geometry.dims[1]; ++j)
+      for (int i = 0; i < geometry.dims[0]; ++i)
+        if ((geometry.world_from_voxel(VoxelIndex{i, j, k}) - Vec3(2, -4, 4)).norm() < 1.5)
+          milled.set_density({i, j, k}, 0);
+  milled.refresh_bricks(geometry.all_voxels());
+  const SurfaceMesh mesh = mesh_surface(DensityView(milled));
+  const SurfaceMesh old = mesh_surface(DensityView(bone_));
+  for (std::size_t n = 0; n < mesh.bricks.size(); ++n) {
+    if (mesh.bricks[n] != old.bricks[n]) renderer_->set_brick(n, mesh.bricks[n]);
+  }
+  EXPECT_FALSE(renderer_->settled());
+  for (int n = 0; n < 10; ++n) renderer_->draw(scene_, kSize);
+  const Image pieces = renderer_->picture();
+  // Another view in between, and all is drawn anew.
+  const Camera camera = scene_.camera;
+  turn(scene_.camera, kSize, 20, 5);
+  renderer_->draw(scene_, kSize);
+  scene_.camera = camera;
+  renderer_->draw(scene_, kSize);
+  while (!renderer_->settled()) renderer_->draw(scene_, kSize);
+  const Image whole = renderer_->picture();
+  std::size_t milled_away = 0;
+  std::size_t others = 0;
+  for (std::size_t n = 0; n < whole.rgb.size(); ++n) {
+    milled_away += std::abs(int(whole.rgb[n]) - int(before.rgb[n])) > kShades ? 1 : 0;
+    others += std::abs(int(whole.rgb[n]) - int(pieces.rgb[n])) > kShades ? 1 : 0;
+  }
+  EXPECT_GT(milled_away, 1000u);
+  EXPECT_LT(others, milled_away / 20);
+}
+
+// Pictures of a moving view with fewer triangles look much like the ones with all.
+TEST_F(SceneRendererTest, CoarserLevelsAreHardlyTold) {
+  scene_.camera.distance_mm *= 9;
+  while (!renderer_->settled()) renderer_->draw(scene_, kSize);
+  const Image all = renderer_->picture();
+  const SurfaceMesh mesh = mesh_surface(DensityView(bone_));
+  for (std::size_t n = 0; n < mesh.bricks.size(); ++n) {
+    BrickLevels levels = levels_of(mesh.bricks[n], bone_.geometry(), mesh.layout.cells(n));
+    levels.levels[0] = levels.levels[1 + n % 3];
+    levels.seams[0] = levels.seams[1 + n % 3];
+    renderer_->set_brick(n, mesh.bricks[n], levels);
+  }
+  const Image fewer = picture();
+  double sum = 0;
+  for (std::size_t n = 0; n < all.rgb.size(); ++n) sum += std::abs(int(all.rgb[n]) - int(fewer.rgb[n]));
+  EXPECT_GT(sum, 0);
+  EXPECT_LT(sum / static_cast<double>(all.rgb.size()), 1.5);
+}
+
+TEST(DrawingPace, HasFewerTrianglesTheLongerTheyTakeAndMoreAgainLater) {
+  DrawingPace pace;
+  const std::size_t first = pace.triangles();
+  for (int n = 0; n < 20; ++n) pace.drew(pace.triangles(), 2e-6 * static_cast<double>(pace.triangles()));
+  EXPECT_LT(pace.triangles(), first / 2);
+  EXPECT_GE(pace.triangles(), DrawingPace::kFewest);
+  for (int n = 0; n < 60; ++n) pace.drew(pace.triangles(), 1e-8 * static_cast<double>(pace.triangles()));
+  EXPECT_NEAR(static_cast<double>(pace.triangles()), DrawingPace::kBone_s / 1e-8, 2e5);
+}
+
+TEST(DrawingPace, OnePictureThatWasHeldUpCountsLittle) {
+  DrawingPace pace;
+  const std::size_t first = pace.triangles();
+  pace.drew(pace.triangles(), 1.0);
+  EXPECT_GT(pace.triangles(), first / 2);
 }
 
 TEST_F(SceneRendererTest, ABrickTakenAwayIsGone) {

@@ -1,0 +1,130 @@
+#include "osteomill/surface/brick_levels.h"
+
+#include <map>
+
+#include "tests/shapes.h"
+#include <gtest/gtest.h>
+
+#include "osteomill/surface/mesh_checks.h"
+#include "osteomill/surface/surface_mesh.h"
+
+namespace osteomill {
+namespace {
+
+using testing_support::ball;
+using testing_support::centred_cube;
+using testing_support::position_of;
+using testing_support::shape_volume;
+
+// A ball, a thin wall beside it and a drilled hole, over several bricks.
+Volume bone() {
+  GridGeometry geometry = centred_cube(70, 0.3);
+  geometry.direction = quaternion_from_rotation_vector({0.3, -0.2, 0.5}).toRotationMatrix();
+  return shape_volume(geometry, [](const Vec3& p) {
+    const double solid = std::max(p.norm() - 7, 1.5 - p.head<2>().norm());
+    const double wall = std::max(std::abs(p.x() + 8.6) - 0.35, p.norm() - 10);
+    return std::min(solid, wall);
+  });
+}
+
+class BrickLevelsTest : public ::testing::Test {
+ protected:
+  BrickLevelsTest() {
+    for (std::size_t n = 0; n < mesh_.bricks.size(); ++n) {
+      levels_.push_back(levels_of(mesh_.bricks[n], bone_.geometry(), mesh_.layout.cells(n)));
+    }
+  }
+
+  std::size_t triangles(std::size_t level) const {
+    std::size_t count = 0;
+    for (const BrickLevels& brick : levels_) count += brick.levels[level].count / 3;
+    return count;
+  }
+
+  const MeshVertex& vertex(std::size_t brick, std::size_t index) const {
+    const std::size_t n = levels_[brick].indices[index];
+    const std::vector<MeshVertex>& own = mesh_.bricks[brick].vertices;
+    return n < own.size() ? own[n] : levels_[brick].vertices[n - own.size()];
+  }
+
+  // How often more each edge between two places is gone along one way than the other.
+  using Balance = std::map<std::array<std::array<float, 3>, 2>, int>;
+  void add(Balance& balance, std::size_t brick, const BrickLevels::Range& range, std::size_t pace) const {
+    const auto at = [&](std::size_t n) { return vertex(brick, range.first + n).position_mm; };
+    for (std::size_t n = 0; n < range.count; n += pace) {
+      for (std::size_t corner = 0; corner < 3; ++corner) {
+        const auto from = at(n + corner);
+        const auto to = at(n + (corner + 1) % 3);
+        if (from < to) ++balance[{from, to}];
+        if (to < from) --balance[{to, from}];
+      }
+    }
+  }
+  static std::size_t open_edges(const Balance& balance) {
+    return static_cast<std::size_t>(
+        std::count_if(balance.begin(), balance.end(), [](const auto& edge) { return edge.second != 0; }));
+  }
+
+  Volume bone_ = bone();
+  SurfaceMesh mesh_ = mesh_surface(DensityView(bone_));
+  std::vector<BrickLevels> levels_;
+};
+
+TEST_F(BrickLevelsTest, LevelZeroIsTheMesh) {
+  for (std::size_t n = 0; n < levels_.size(); ++n) {
+    ASSERT_EQ(levels_[n].levels[0].count, mesh_.bricks[n].indices.size());
+    ASSERT_TRUE(std::equal(mesh_.bricks[n].indices.begin(), mesh_.bricks[n].indices.end(),
+                           levels_[n].indices.begin()));
+  }
+}
+
+TEST_F(BrickLevelsTest, EachLevelHasAFractionOfTheTrianglesOfTheOneBefore) {
+  for (std::size_t level = 1; level < BrickLevels::kCount; ++level) {
+    EXPECT_LT(triangles(level), triangles(level - 1) / 2) << level;
+    EXPECT_GT(triangles(level), 100u) << level;
+  }
+}
+
+TEST_F(BrickLevelsTest, BricksOfOneLevelMeetWithoutAGap) {
+  for (std::size_t level = 0; level < BrickLevels::kCount; ++level) {
+    Balance balance;
+    for (std::size_t n = 0; n < levels_.size(); ++n) add(balance, n, levels_[n].levels[level], 3);
+    EXPECT_EQ(open_edges(balance), 0u) << level;
+  }
+}
+
+// Each brick at a level of its own, with the seams that go with it.
+TEST_F(BrickLevelsTest, SeamsCloseTheGapsBetweenLevels) {
+  Balance without;
+  Balance with;
+  for (std::size_t n = 0; n < levels_.size(); ++n) {
+    const std::size_t level = (n * 7 + n / 5) % BrickLevels::kCount;
+    add(without, n, levels_[n].levels[level], 3);
+    add(with, n, levels_[n].levels[level], 3);
+    // Each triangle is there once more, turned over.
+    for (const BrickLevels::Range& seam : levels_[n].seams[level]) add(with, n, seam, 6);
+  }
+  EXPECT_GT(open_edges(without), 100u);
+  EXPECT_EQ(open_edges(with), 0u);
+}
+
+// What is drawn stays within a cell's diagonal of what is there.
+TEST_F(BrickLevelsTest, NoLevelLeavesTheSurface) {
+  for (std::size_t level = 1; level < BrickLevels::kCount; ++level) {
+    const double reach_mm = std::sqrt(3.0) * static_cast<double>(1 << level) * 0.3;
+    for (std::size_t n = 0; n < levels_.size(); ++n) {
+      const BrickLevels::Range& range = levels_[n].levels[level];
+      for (std::size_t at = range.first; at < range.first + range.count; at += 3) {
+        Vec3 middle = Vec3::Zero();
+        for (std::size_t corner = 0; corner < 3; ++corner) middle += position_of(vertex(n, at + corner)) / 3;
+        double nearest_mm = reach_mm + 1;
+        for (const MeshVertex& own : mesh_.bricks[n].vertices)
+          nearest_mm = std::min(nearest_mm, (position_of(own) - middle).norm());
+        ASSERT_LT(nearest_mm, reach_mm);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace osteomill

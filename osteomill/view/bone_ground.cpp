@@ -1,0 +1,232 @@
+#include "osteomill/view/bone_ground.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "osteomill/view/depth_tiles.h"
+#include "osteomill/view/shaders.h"
+
+namespace osteomill {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// Reading the depths makes a processor that draws wait for itself, and what is blurred changes little.
+constexpr unsigned kPicturesPerBlur = 4;
+constexpr double kCoarsest_px = 64;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+bool same_cut(const std::optional<ClipPlane>& a, const std::optional<ClipPlane>& b) {
+  if (!a || !b) return a.has_value() == b.has_value();
+  return a->normal_W == b->normal_W && a->offset_mm == b->offset_mm;
+}
+
+// As far as the bone is drawn by it.
+bool same_view(const ViewScene& a, const ViewScene& b) {
+  return a.camera.focus_W == b.camera.focus_W && a.camera.distance_mm == b.camera.distance_mm &&
+         a.camera.orientation.coeffs() == b.camera.orientation.coeffs() &&
+         a.camera.field_of_view_rad == b.camera.field_of_view_rad && a.bounds.centre_W == b.bounds.centre_W &&
+         a.bounds.radius_mm == b.bounds.radius_mm && a.isovalue == b.isovalue &&
+         a.reference_density == b.reference_density && a.light_from_below == b.light_from_below &&
+         std::equal(a.cuts.begin(), a.cuts.end(), b.cuts.begin(), same_cut);
+}
+
+// Where a sphere is drawn at the most, pixels from the lower left; everywhere where it reaches the eye.
+Eigen::AlignedBox2d drawn_within(const ViewScene& scene, const Projection& projection, const Sphere& sphere) {
+  const double front_mm = depth_of(scene.camera, sphere.centre_W) - sphere.radius_mm;
+  const Eigen::Vector2d all(projection.size.width, projection.size.height);
+  if (front_mm < projection.near_mm) return {Eigen::Vector2d::Zero(), all};
+  Eigen::Vector2d middle = pixel_of(scene.camera, projection.size, sphere.centre_W);
+  middle.y() = projection.size.height - middle.y();
+  // Off the picture's middle a ball is seen longish.
+  const double aside = (middle - 0.5 * all).norm() * mm_per_pixel(scene.camera, projection.size, 1.0);
+  const double reach_px =
+      std::hypot(1.0, aside) * sphere.radius_mm / mm_per_pixel(scene.camera, projection.size, front_mm);
+  return {middle.array() - reach_px, middle.array() + reach_px};
+}
+
+void clear_depths(const FrameTarget& target) {
+  target.bind();
+  glDepthMask(GL_TRUE);
+  glEnable(GL_DEPTH_TEST);
+  glClear(GL_DEPTH_BUFFER_BIT);
+}
+
+}  // namespace
+
+BoneGround::BoneGround(const SurfaceBricks& layout, const GridGeometry& geometry)
+    : bone_(layout, geometry),
+      background_(gl::make_program(shaders::kScreenVertex, shaders::kBackgroundFragment)),
+      nothing_(gl::make_vertex_array()) {}
+
+void BoneGround::clear() {
+  bone_.clear();
+  scene_.reset();
+}
+
+void BoneGround::set_brick(std::size_t brick, const BrickMesh& mesh, const BrickLevels& levels) {
+  bone_.set_brick(brick, mesh, levels);
+  changed_.insert(brick);
+  changed_since_.insert(brick);
+}
+
+void BoneGround::set_clip_face(std::size_t cut, const ClipFace& face) {
+  cut_faces_.set(cut, face);
+  scene_.reset();
+}
+
+void BoneGround::fit(const PixelSize& size) {
+  if (shown_ && shown_->size().width == size.width && shown_->size().height == size.height) return;
+  shown_.emplace(size);
+  next_.emplace(size);
+  cavities_.emplace(size);
+  drawn_ = 0;
+  scene_.reset();
+}
+
+void BoneGround::draw(const ViewScene& scene, const Projection& projection) {
+  fit(projection.size);
+  const bool same = scene_ && same_view(*scene_, scene);
+  if (same && draw_changed(scene, projection)) {
+    if (!settled_) refine(scene, projection);
+  } else {
+    draw_at_once(scene, projection);
+  }
+  scene_ = scene;
+  ++drawn_;
+}
+
+void BoneGround::draw_at_once(const ViewScene& scene, const Projection& projection) {
+  const auto start = Clock::now();
+  const Detail detail = detail_in_time(scene, projection);
+  const std::vector<SeenBrick> seen = bone_.seen(scene, projection, detail);
+  clear_depths(*shown_);
+  bone_.draw(scene, projection, *cavities_, seen);
+  draw_around(scene, projection);
+  if (drawn_ % kPicturesPerBlur == 0) look_for_cavities(projection);
+  // Else it would not be known how long it took.
+  glFinish();
+  pace_.drew(bone_.triangle_count(seen), seconds_since(start));
+  settled_ = refining_ = false;
+  changed_.clear();
+  to_shade_.clear();
+}
+
+// The finest that there is time for. It gets finer only where that leaves some, so that it does not change to
+// and fro.
+Detail BoneGround::detail_in_time(const ViewScene& scene, const Projection& projection) {
+  Detail detail{kFullDetail.cell_px, std::nullopt};
+  if (scene.X_WT) detail.sharp = Sphere{scene.X_WT->position_mm, 2 * scene.tool.burr_radius_mm};
+  const double allowed = static_cast<double>(pace_.triangles());
+  for (; detail.cell_px < kCoarsest_px; detail.cell_px *= std::numbers::sqrt2) {
+    const auto count = static_cast<double>(bone_.triangle_count(bone_.seen(scene, projection, detail)));
+    if (count <= (detail.cell_px < cell_px_ ? 0.75 : 1.0) * allowed) break;
+  }
+  cell_px_ = detail.cell_px;
+  return detail;
+}
+
+void BoneGround::begin_refining(const ViewScene& scene, const Projection& projection) {
+  look_for_cavities(projection);
+  to_refine_ = bone_.seen(scene, projection, kFullDetail);
+  refined_ = 0;
+  refining_ = true;
+  changed_since_.clear();
+  clear_depths(*next_);
+}
+
+// The nearest first, as many as there is time for.
+void BoneGround::refine(const ViewScene& scene, const Projection& projection) {
+  if (!refining_) begin_refining(scene, projection);
+  const auto start = Clock::now();
+  next_->bind();
+  glEnable(GL_DEPTH_TEST);
+  std::optional<DepthTiles> before;
+  if (refined_ > 0) before.emplace(*next_, projection, scene.camera);
+  std::vector<SeenBrick> slice;
+  std::size_t triangles = 0;
+  for (; refined_ < to_refine_.size() && triangles < pace_.triangles(); ++refined_) {
+    const SeenBrick& seen = to_refine_[refined_];
+    if (before && before->hide(bone_.bounds(seen.brick))) continue;
+    slice.push_back(seen);
+    triangles += bone_.triangle_count({&seen, 1});
+  }
+  next_->bind();
+  bone_.draw(scene, projection, *cavities_, slice);
+  if (refined_ == to_refine_.size()) {
+    draw_around(scene, projection);
+    std::swap(shown_, next_);
+    settled_ = true;
+    refining_ = false;
+    changed_ = std::exchange(changed_since_, {});
+  }
+  glFinish();
+  pace_.drew(triangles, seconds_since(start));
+}
+
+// Also once more when nothing changes any longer, since what lies deep is darkened after the picture before.
+// False where that would take longer than a picture may.
+bool BoneGround::draw_changed(const ViewScene& scene, const Projection& projection) {
+  const bool last = changed_.empty();
+  if (last && to_shade_.empty()) return true;
+  const auto start = Clock::now();
+  if (last || drawn_ % kPicturesPerBlur == 0) look_for_cavities(projection);
+  to_shade_.insert(changed_.begin(), changed_.end());
+  const Rectangle part = changed_part(last ? to_shade_ : changed_, scene, projection);
+  const Eigen::AlignedBox2d box(Eigen::Vector2d(part.left, part.bottom),
+                                Eigen::Vector2d(part.left + part.width, part.bottom + part.height));
+  std::vector<SeenBrick> seen = bone_.seen(scene, projection, kFullDetail);
+  std::erase_if(seen, [&](const SeenBrick& brick) {
+    return !box.intersects(drawn_within(scene, projection, bone_.bounds(brick.brick)));
+  });
+  const std::size_t triangles = bone_.triangle_count(seen);
+  if (triangles > pace_.triangles()) return false;
+  glEnable(GL_SCISSOR_TEST);
+  glScissor(part.left, part.bottom, part.width, part.height);
+  clear_depths(*shown_);
+  bone_.draw(scene, projection, *cavities_, seen);
+  draw_around(scene, projection);
+  glDisable(GL_SCISSOR_TEST);
+  glFinish();
+  pace_.drew(triangles, seconds_since(start));
+  changed_.clear();
+  if (last) to_shade_.clear();
+  return true;
+}
+
+BoneGround::Rectangle BoneGround::changed_part(const std::set<std::size_t>& bricks, const ViewScene& scene,
+                                               const Projection& projection) const {
+  Eigen::AlignedBox2d box;
+  for (const std::size_t brick : bricks) box.extend(drawn_within(scene, projection, bone_.bounds(brick)));
+  // What is milled away darkens and lightens what is around it.
+  const double more_px = cavities_->reach_px();
+  const Eigen::Array2d all(projection.size.width, projection.size.height);
+  const Eigen::Array2d first = (box.min().array() - more_px).floor().max(0.0).min(all);
+  const Eigen::Array2d last = (box.max().array() + more_px).ceil().min(all).max(first);
+  const Eigen::Array2i place = first.cast<int>();
+  const Eigen::Array2i extent = last.cast<int>() - place;
+  return {place.x(), place.y(), extent.x(), extent.y()};
+}
+
+void BoneGround::look_for_cavities(const Projection& projection) {
+  cavities_->blur(shown_->depths(), projection.near_mm, projection.far_mm);
+}
+
+// Into the picture that is bound.
+void BoneGround::draw_around(const ViewScene& scene, const Projection& projection) {
+  glDepthFunc(GL_LEQUAL);
+  glUseProgram(background_.get());
+  glBindVertexArray(nothing_.get());
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  glDepthFunc(GL_LESS);
+  cut_faces_.draw(scene, projection);
+}
+
+}  // namespace osteomill

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <set>
+#include <vector>
+
+#include "osteomill/view/bone_layer.h"
+#include "osteomill/view/cavity_pass.h"
+#include "osteomill/view/clip_faces.h"
+#include "osteomill/view/drawing_pace.h"
+#include "osteomill/view/frame_target.h"
+
+namespace osteomill {
+
+/// The bone with all that stands still beside it, in a picture of its own, however many triangles it has:
+/// while the view moves with as many as there is time for; where it rests in full detail, brick by brick in a
+/// second picture that takes the first one's place when it is done; and where bone is milled only the part of
+/// the picture in which it changed.
+class BoneGround {
+ public:
+  BoneGround(const SurfaceBricks& layout, const GridGeometry& geometry);
+
+  void clear();
+  void set_brick(std::size_t brick, const BrickMesh& mesh, const BrickLevels& levels);
+  void set_clip_face(std::size_t cut, const ClipFace& face);
+  std::size_t triangle_count() const { return bone_.triangle_count(); }
+
+  /// One picture's work.
+  void draw(const ViewScene& scene, const Projection& projection);
+  const FrameTarget& picture() const { return *shown_; }
+  /// Nothing is left to be drawn while neither view nor bone changes.
+  bool settled() const { return settled_ && changed_.empty() && to_shade_.empty(); }
+
+ private:
+  struct Rectangle {
+    int left, bottom, width, height;
+  };
+
+  void fit(const PixelSize& size);
+  void draw_at_once(const ViewScene& scene, const Projection& projection);
+  void begin_refining(const ViewScene& scene, const Projection& projection);
+  void refine(const ViewScene& scene, const Projection& projection);
+  bool draw_changed(const ViewScene& scene, const Projection& projection);
+  Rectangle changed_part(const std::set<std::size_t>& bricks, const ViewScene& scene,
+                         const Projection& projection) const;
+  Detail detail_in_time(const ViewScene& scene, const Projection& projection);
+  void draw_around(const ViewScene& scene, const Projection& projection);
+  void look_for_cavities(const Projection& projection);
+
+  BoneLayer bone_;
+  ClipFaces cut_faces_;
+  gl::Program background_;
+  gl::VertexArray nothing_;
+  std::optional<FrameTarget> shown_;
+  // Where full detail is drawn.
+  std::optional<FrameTarget> next_;
+  std::optional<CavityPass> cavities_;
+  std::optional<ViewScene> scene_;
+  DrawingPace pace_;
+  double cell_px_ = kFullDetail.cell_px;
+  std::vector<SeenBrick> to_refine_;
+  std::size_t refined_ = 0;
+  bool refining_ = false;
+  bool settled_ = false;
+  // Bricks that are drawn as they were: in the picture shown, and since refining began.
+  std::set<std::size_t> changed_;
+  std::set<std::size_t> changed_since_;
+  // Drawn since, but with the darkening of a picture before.
+  std::set<std::size_t> to_shade_;
+  unsigned drawn_ = 0;
+};
+
+}  // namespace osteomill
