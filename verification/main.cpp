@@ -45,6 +45,7 @@ const std::vector<Named>& all_sections() {
       {"passivity", [](const Bones&, const Effort&) { return passivity(); }},
       {"pushes", random_pushes},
       {"voxels", [](const Bones&, const Effort& effort) { return voxel_sizes(effort); }},
+      {"swept", [](const Bones&, const Effort& effort) { return swept_holes(effort); }},
       {"rates", haptic_rates},
       {"tooth", milling_the_tooth},
       {"second", milling_the_second_scan},

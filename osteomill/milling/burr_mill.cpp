@@ -6,6 +6,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "osteomill/milling/burr_advance.h"
 #include "osteomill/numbers/positive.h"
 
 namespace osteomill {
@@ -13,12 +14,18 @@ namespace osteomill {
 namespace {
 
 constexpr double kForgetAfter_s = 0.05;
-constexpr double kCarryLayer_voxels = 0.5;
-// Each pass settles the voxels that are emptied; more than a few are needed only where a single step empties
-// nearly everything in reach, and what is left then is carried.
-constexpr int kSpreadingPasses = 8;
-// So many voxels a tick are lowered at most, but for the first ticks in which there are more.
-constexpr std::size_t kVoxelsOfTick = 512;
+constexpr double kMaxCarry_s = 0.01;
+// How far ahead the ball looks for bone: a voxel, since the voxels of a dense bone lie up to that behind its
+// surface, and no less than an algorithm may keep the burr from what it presses on.
+constexpr double kMinReachAhead_mm = 0.12;
+// How fast it goes ahead, and how far back where it has cut less than it overlaps.
+constexpr double kMaxAhead_mm_s = 20;
+constexpr double kMaxBack_mm = 1.0;
+// So many pieces of rows a tick are looked at; up to the second number rather than have some lines cut so
+// much deeper than the others.
+constexpr std::size_t kPiecesOfTick = 1024;
+constexpr std::size_t kMaxPiecesOfTick = 4096;
+constexpr double kMaxUneven_voxels = 0.3;
 constexpr unsigned kMaxShares = 64;
 
 // The least float that is not below `density`.
@@ -33,8 +40,13 @@ void require(bool right, const char* what) {
   if (!right) throw std::invalid_argument(what);
 }
 
-double half_ball_area(double radius_mm) {
-  return 2 * std::numbers::pi * radius_mm * radius_mm;
+double max_ahead(const GridGeometry& geometry) {
+  return std::max(geometry.spacing_mm.maxCoeff(), kMinReachAhead_mm);
+}
+
+// Of a ball about the burr and the same ball ahead of it.
+double reach_mm(const GridGeometry& geometry, double radius_mm, double ahead_mm) {
+  return radius_mm + 0.5 * ahead_mm + CutProfile::kReach_voxels * geometry.spacing_mm.maxCoeff();
 }
 
 BurrReach make_reach(const GridGeometry& geometry, double burr_radius_mm, const BoneDensities& densities,
@@ -43,11 +55,10 @@ BurrReach make_reach(const GridGeometry& geometry, double burr_radius_mm, const 
           "BurrMill: an empty grid");
   require_positive(burr_radius_mm, "BurrMill: the burr's radius");
   require_not_negative(settings.removal_rate_mm3_per_Ns, "BurrMill: the removal rate");
-  require_not_negative(settings.reach_voxels, "BurrMill: the reach");
   require(std::isfinite(densities.surroundings) && std::isfinite(densities.reference) &&
               densities.reference > densities.surroundings,
           "BurrMill: the reference density must be above that of the surroundings");
-  return BurrReach(geometry, burr_radius_mm + settings.reach_voxels * geometry.spacing_mm.maxCoeff(),
+  return BurrReach(geometry, reach_mm(geometry, burr_radius_mm, max_ahead(geometry)),
                    float_not_below(densities.surroundings));
 }
 
@@ -55,113 +66,101 @@ BurrReach make_reach(const GridGeometry& geometry, double burr_radius_mm, const 
 
 BurrMill::BurrMill(const GridGeometry& geometry, double burr_radius_mm, const BoneDensities& densities,
                    const MillingSettings& settings)
-    : mm3_per_density_(geometry.voxel_volume_mm3() / (densities.reference - densities.surroundings)),
+    : geometry_(geometry),
+      radius_mm_(burr_radius_mm),
+      densities_(densities),
+      mm3_per_density_(geometry.voxel_volume_mm3() / (densities.reference - densities.surroundings)),
       removal_rate_mm3_per_Ns_(settings.removal_rate_mm3_per_Ns),
-      max_carry_mm3_(half_ball_area(burr_radius_mm) * kCarryLayer_voxels * geometry.spacing_mm.minCoeff()),
-      floor_density_(float_not_below(densities.surroundings)),
+      max_ahead_mm_(max_ahead(geometry)),
       reach_(make_reach(geometry, burr_radius_mm, densities, settings)),
-      lowered_(reach_.capacity()) {}
+      voxels_(geometry, reach_.max_voxels(), reach_.max_pieces()) {}
 
 MillingStep BurrMill::step(Volume& volume, const Vec3& burr_centre_W, const Vec3& burr_force_W_N,
                            double dt_s) {
-  const double pressed_mm3 = removal_rate_mm3_per_Ns_ * burr_force_W_N.norm() * dt_s;
+  const double rate_mm3_s = removal_rate_mm3_per_Ns_ * burr_force_W_N.norm();
+  const double pressed_mm3 = rate_mm3_s * dt_s;
   if (!(pressed_mm3 > 0) || !std::isfinite(pressed_mm3) || !burr_centre_W.allFinite()) {
-    if (dt_s > 0) force_free_s_ += dt_s;
-    if (force_free_s_ >= kForgetAfter_s) carry_mm3_ = 0;
+    lift(dt_s);
     return {};
   }
   force_free_s_ = 0;
   const double budget_mm3 = carry_mm3_ + pressed_mm3;
-  reach_.find(volume, burr_centre_W, share_);
-  share_after(reach_.size());
-  const MillingStep done = lower_overlaps(volume, drop_per_depth(budget_mm3 / mm3_per_density_));
+  const CuttingBall ball = ball_in_grid(burr_centre_W, burr_force_W_N);
+  const double max_ahead_mm = std::min(std::max(ahead_mm_, 0.0) + kMaxAhead_mm_s * dt_s, max_ahead_mm_);
+  find(volume, ball, max_ahead_mm, pressed_mm3);
+  const BurrAdvance advance = advance_within(budget_mm3 / mm3_per_density_, voxels_, ahead_mm_,
+                                             -std::min(radius_mm_, kMaxBack_mm), max_ahead_mm);
+  ahead_mm_ = advance.ahead_mm;
+  const MillingStep done = lower_found(volume, voxels_.lower(ahead_mm_, advance.shares));
   // Below zero by a rounding error where floats were rounded in the burr's favour; the next step pays for it.
-  carry_mm3_ = std::min(budget_mm3 - done.removed_mm3, max_carry_mm3_);
+  carry_mm3_ = std::min(budget_mm3 - done.removed_mm3, kMaxCarry_s * rate_mm3_s);
   return done;
 }
 
-// A burr deep in its hole overlaps tens of thousands of voxels, and takes a thousandth of each in a tick.
-// Every second line then takes twice as much every second tick, and so on: lines, since they sample all of
-// the burr alike.
-void BurrMill::share_after(std::size_t found) {
-  found_of_round_ += found;
-  ++share_.turn;
-  const bool too_many = found > 2 * kVoxelsOfTick && share_.count < kMaxShares;
-  if (!too_many && share_.turn < share_.count) return;
-  const std::size_t all = too_many ? found * share_.count : found_of_round_;
-  share_ = {};
-  while (share_.count < kMaxShares && all > kVoxelsOfTick * share_.count) share_.count *= 2;
-  found_of_round_ = 0;
+void BurrMill::lift(double dt_s) {
+  if (dt_s > 0) force_free_s_ += dt_s;
+  if (force_free_s_ < kForgetAfter_s) return;
+  carry_mm3_ = 0;
+  ahead_mm_ = 0;
 }
 
 void BurrMill::reset() {
   share_ = {};
   found_of_round_ = 0;
+  ahead_mm_ = 0;
   carry_mm3_ = 0;
   force_free_s_ = 0;
   reach_.forget();
 }
 
-// At `rate` of drop per mm of depth: what the voxels hold that it empties, and the depths of the others.
-// Summed in four lanes, for speed.
-void BurrMill::sum_overlaps(double rate, double& emptied, double& depths) const {
-  constexpr std::size_t kLanes = 4;
-  const float* depths_mm = reach_.depths_mm();
-  const float* densities = reach_.densities();
-  double emptied_lane[kLanes] = {}, depths_lane[kLanes] = {};
-  const auto add = [&](std::size_t n, std::size_t lane) {
-    const double depth = static_cast<double>(depths_mm[n]);
-    const double left = static_cast<double>(densities[n] - floor_density_);
-    const bool empties = rate * depth >= left;
-    emptied_lane[lane] += empties ? left : 0;
-    depths_lane[lane] += empties ? 0 : depth;
+CuttingBall BurrMill::ball_in_grid(const Vec3& centre_W, const Vec3& force_W_N) const {
+  const auto to_grid = geometry_.direction.transpose();
+  return {to_grid * (centre_W - geometry_.origin_mm), to_grid * force_W_N.normalized(), radius_mm_};
+}
+
+void BurrMill::find(const Volume& volume, const CuttingBall& ball, double max_ahead_mm, double pressed_mm3) {
+  reach_.find(volume, ball.centre_mm + 0.5 * max_ahead_mm * ball.ahead,
+              reach_mm(geometry_, radius_mm_, max_ahead_mm), share_);
+  const double contact_mm2 = std::numbers::pi * radius_mm_ * radius_mm_;
+  share_after(reach_.pieces().size(), pressed_mm3 / contact_mm2 / geometry_.spacing_mm.minCoeff());
+  const CutProfile profile = CutProfile::between(static_cast<double>(reach_.floor_density()),
+                                                 volume.isovalue(), densities_.reference);
+  voxels_.gather(volume.grid(), reach_, ball, profile, max_ahead_mm);
+}
+
+// A burr deep in its hole has tens of thousands of voxels before it, and takes a thousandth of each in a
+// tick. Every second line then takes twice as much every second tick, and so on: lines, since they sample all
+// of the burr alike.
+void BurrMill::share_after(std::size_t found, double advance_voxels) {
+  found_of_round_ += found;
+  ++share_.turn;
+  const auto may_double = [&](std::size_t all) {
+    const bool even = 2 * share_.count * advance_voxels <= kMaxUneven_voxels;
+    return share_.count < kMaxShares && all > (even ? kPiecesOfTick : kMaxPiecesOfTick) * share_.count;
   };
-  std::size_t n = 0;
-  for (; n + kLanes <= reach_.size(); n += kLanes) {
-    for (std::size_t lane = 0; lane < kLanes; ++lane) add(n + lane, lane);
-  }
-  for (; n < reach_.size(); ++n) add(n, 0);
-  emptied = (emptied_lane[0] + emptied_lane[1]) + (emptied_lane[2] + emptied_lane[3]);
-  depths = (depths_lane[0] + depths_lane[1]) + (depths_lane[2] + depths_lane[3]);
+  const bool too_many = found > 2 * kPiecesOfTick && may_double(found * share_.count);
+  if (!too_many && share_.turn < share_.count) return;
+  const std::size_t all = too_many ? found * share_.count : found_of_round_;
+  share_ = {};
+  while (may_double(all)) share_.count *= 2;
+  found_of_round_ = 0;
 }
 
-// The drop per mm of depth, with each voxel's drop limited to what it holds, that spends the budget (a sum of
-// densities): what the emptied voxels cannot take goes to the others, pass by pass.
-double BurrMill::drop_per_depth(double density_budget) const {
-  double rate = 0;
-  for (int pass = 0; pass < kSpreadingPasses; ++pass) {
-    double emptied = 0;
-    double depths = 0;
-    sum_overlaps(rate, emptied, depths);
-    const double next = (density_budget - emptied) / depths;
-    if (!(depths > 0) || !(next > rate)) break;
-    rate = next;
-  }
-  return rate;
-}
-
-MillingStep BurrMill::lower_overlaps(Volume& volume, double drop_per_depth) {
-  const float drop_per_mm = static_cast<float>(drop_per_depth);
-  const float* before = reach_.densities();
-  for (std::size_t n = 0; n < reach_.size(); ++n) {
-    lowered_[n] = std::max(before[n] - drop_per_mm * reach_.depths_mm()[n], floor_density_);
-  }
+MillingStep BurrMill::lower_found(Volume& volume, double dropped) const {
   MillingStep done;
-  double dropped = 0;
-  for (const BurrReach::Row& row : reach_.rows()) {
-    std::size_t begin = row.begin;
-    std::size_t end = row.end;
-    while (begin < end && !(lowered_[begin] < before[begin])) ++begin;
-    if (begin == end) continue;
-    while (!(lowered_[end - 1] < before[end - 1])) --end;
-    for (std::size_t n = begin; n < end; ++n) {
-      dropped += static_cast<double>(before[n]) - static_cast<double>(lowered_[n]);
-    }
-    volume.lower_row(row.j, row.k, reach_.columns() + begin, lowered_.data() + begin, end - begin);
-    done.change.voxels.include({reach_.columns()[begin], row.j, row.k});
-    done.change.voxels.include({reach_.columns()[end - 1], row.j, row.k});
-  }
   done.removed_mm3 = dropped * mm3_per_density_;
+  const int* columns = voxels_.columns();
+  const float* before = voxels_.before();
+  const float* after = voxels_.after();
+  for (const CutVoxels::Row& row : voxels_.rows()) {
+    std::size_t begin = row.begin, end = row.end;
+    while (begin < end && !(after[begin] < before[begin])) ++begin;
+    if (begin == end) continue;
+    while (!(after[end - 1] < before[end - 1])) --end;
+    volume.lower_row(row.j, row.k, columns + begin, after + begin, end - begin);
+    done.change.voxels.include({columns[begin], row.j, row.k});
+    done.change.voxels.include({columns[end - 1], row.j, row.k});
+  }
   return done;
 }
 

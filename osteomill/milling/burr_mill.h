@@ -1,9 +1,8 @@
 #pragma once
 
-#include <vector>
-
 #include "osteomill/geometry/pose.h"
 #include "osteomill/milling/burr_reach.h"
+#include "osteomill/milling/cut_voxels.h"
 #include "osteomill/milling/cutting_power.h"
 #include "osteomill/tool/milling_tool.h"
 #include "osteomill/volume/densities.h"
@@ -15,10 +14,6 @@ struct MillingSettings {
   /// kappa: mm^3 of reference density removed a newton of burr force and second.
   double removal_rate_mm3_per_Ns =
       osteomill::removal_rate_mm3_per_Ns(CuttingSettings{}, MillingTool{}.burr_radius_mm);
-  /// How far beyond the burr's radius it still cuts, in voxels (of the largest spacing). With less than 1, a
-  /// burr that touches the isosurface without sinking in stalls on dense bone: the surface of enamel lies up
-  /// to 1 - isovalue / density voxels before the voxels that make it.
-  double reach_voxels = 1.0;
 };
 
 /// What one step of milling did.
@@ -29,25 +24,24 @@ struct MillingStep {
   double removed_mm3 = 0;
 };
 
-/// Removes bone where the burr presses on it, by energy: each step may take kappa * force * dt, spread over
-/// the voxels that the burr overlaps, hardest to the deepest. What could not be spent is carried over, so
-/// that neither haptic rate nor voxel size changes the hole.
+/// Removes the bone that the burr sweeps, by energy: each step may take kappa * force * dt. The burr's ball
+/// goes ahead of where it is shown, along its force on the bone, until what it would carve costs just that;
+/// behind its centre it carves where it is shown. So bone goes where the burr presses, most in the middle of
+/// the contact, and a wall that it only slides past stays. What is carved is a surface (cut_profile.h): the
+/// same hole in any voxels, and nothing more where the burr has been before.
 ///
-/// The carry is what a burr may cut later without pressing for it, so it has two limits. It never exceeds the
-/// charge of half a voxel's thickness of reference bone under half the burr (2 pi r^2 * spacing / 2):
-/// pressing on where nothing is left in reach saves up no deeper bite. And it is forgotten after 50 ms
-/// without force: a burr lifted off owes nothing to the place it touches next. Cutting without pause meets
-/// neither limit.
+/// What could not be spent is carried over, but for no more than 10 ms of pressing, and forgotten after 50 ms
+/// without force.
 ///
-/// Where the burr overlaps more than about five hundred voxels, a step looks at every second line of the
-/// grid, or at every fourth, ... sixty-fourth, in turn, and spends all of its budget there: so a step's time
-/// is bounded whatever the burr and the voxels.
+/// Where the burr meets more bone than a step has time for, it looks at every second line of the grid, or at
+/// every fourth, ... sixty-fourth, in turn, and spends all of its budget there: so a step's time is bounded
+/// whatever the burr and the voxels.
 ///
 /// Not in the paper, whose milling rule is in earlier work; docs/algorithms.md.
 class BurrMill {
  public:
-  /// Allocates all that `step` needs for this grid and burr. Throws std::invalid_argument where a radius,
-  /// rate or reach is out of range or the reference is not denser than the surroundings.
+  /// Allocates all that `step` needs for this grid and burr. Throws std::invalid_argument where the radius or
+  /// the rate is out of range or the reference is not denser than the surroundings.
   BurrMill(const GridGeometry& geometry, double burr_radius_mm, const BoneDensities& densities,
            const MillingSettings& settings);
 
@@ -63,20 +57,23 @@ class BurrMill {
   double carry_mm3() const { return carry_mm3_; }
 
  private:
-  void share_after(std::size_t found);
-  void sum_overlaps(double rate, double& emptied, double& depths) const;
-  double drop_per_depth(double density_budget) const;
-  MillingStep lower_overlaps(Volume& volume, double drop_per_depth);
+  void lift(double dt_s);
+  void share_after(std::size_t found, double advance_voxels);
+  CuttingBall ball_in_grid(const Vec3& centre_W, const Vec3& force_W_N) const;
+  void find(const Volume& volume, const CuttingBall& ball, double max_ahead_mm, double pressed_mm3);
+  MillingStep lower_found(Volume& volume, double dropped) const;
 
+  GridGeometry geometry_;
+  double radius_mm_;
+  BoneDensities densities_;
   double mm3_per_density_;
   double removal_rate_mm3_per_Ns_;
-  double max_carry_mm3_;
-  float floor_density_;
+  double max_ahead_mm_;
   BurrReach reach_;
+  CutVoxels voxels_;
   BurrReach::Share share_;
   std::size_t found_of_round_ = 0;  // since all lines had their turn
-  std::vector<float> lowered_;      // the new densities of what is in reach
-
+  double ahead_mm_ = 0;
   double carry_mm3_ = 0;
   double force_free_s_ = 0;
 };

@@ -82,7 +82,7 @@ TEST(BurrMill, RemovesWhatTheForcePaysFor) {
     BurrMill mill(geometry, kRadius_mm, kBone, kMilling);
     const double before_mm3 = charge_mm3(volume.grid(), kBone);
     const Hole hole = mill_hole(volume, mill, force_N, 3 / force_N, 1000);
-    EXPECT_NEAR(hole.removed_mm3 / hole.pressed_mm3, 1, 0.02) << force_N;
+    EXPECT_NEAR(hole.removed_mm3 / hole.pressed_mm3, 1, 0.01) << force_N;
     EXPECT_NEAR(before_mm3 - charge_mm3(volume.grid(), kBone), hole.removed_mm3, 1e-9) << force_N;
     EXPECT_GT(hole.depth_mm, 0.8) << force_N;
   }
@@ -154,33 +154,35 @@ TEST(BurrMill, TakesNothingWithoutForceOrWithoutASensibleInput) {
   EXPECT_EQ(volume.grid().densities(), before);
 }
 
-TEST(BurrMill, StopsAtTheSurroundingsAndCarriesTheRestWithinBounds) {
-  const GridGeometry geometry = cube_of(5, 0.25);
+TEST(BurrMill, StopsWhereItsReachEndsAndCarriesTheRestWithinBounds) {
+  constexpr double kSpacing_mm = 0.25, kForce_N = 5;
+  const GridGeometry geometry = cube_of(5, kSpacing_mm);
   Volume volume = half_space(geometry);
+  const Volume original = volume;
   const BoneDensities bone{391.7, 900};
-  BurrMill mill(geometry, kRadius_mm, bone, {});
+  BurrMill mill(geometry, kRadius_mm, bone, kMilling);
   const double held_mm3 = charge_mm3(volume.grid(), bone);
+  const Vec3 centre(0, 0, -0.6);
   double removed_mm3 = 0;
-  for (int n = 0; n < 3000; ++n)
-    removed_mm3 += mill.step(volume, Vec3(0, 0, -0.6), down(5), 0.001).removed_mm3;
+  for (int n = 0; n < 3000; ++n) removed_mm3 += mill.step(volume, centre, down(kForce_N), 0.001).removed_mm3;
   EXPECT_NEAR(held_mm3 - charge_mm3(volume.grid(), bone), removed_mm3, 1e-6);
-  const Volume original = half_space(geometry);
+  // A voxel ahead, and as far outside as cutting to a surface lowers the voxels beyond it.
+  const double outside_mm = kRadius_mm + (1 + 1.55) * kSpacing_mm, inside_mm = kRadius_mm - kSpacing_mm;
   for (int k = 0; k < geometry.dims[2]; ++k)
     for (int j = 0; j < geometry.dims[1]; ++j)
       for (int i = 0; i < geometry.dims[0]; ++i) {
         const double now = static_cast<double>(volume.grid()[{i, j, k}]);
         const double was = static_cast<double>(original.grid()[{i, j, k}]);
-        const double distance_mm = (geometry.world_from_voxel(VoxelIndex{i, j, k}) - Vec3(0, 0, -0.6)).norm();
-        if (distance_mm < kRadius_mm + 0.25 - 1e-5) {
+        const double distance_mm = (geometry.world_from_voxel(VoxelIndex{i, j, k}) - centre).norm();
+        if (distance_mm < inside_mm) {
           EXPECT_NEAR(now, std::min(was, 391.7), 1e-3);
-          if (was > 391.7) {
-            EXPECT_GE(now, 391.7);
-          }
-        } else {
+        }
+        if (distance_mm > outside_mm) {
           EXPECT_EQ(now, was);
         }
+        EXPECT_TRUE(now >= 391.7 || now == was);
       }
-  EXPECT_LE(mill.carry_mm3(), 2 * M_PI * kRadius_mm * kRadius_mm * 0.125 + 1e-12);
+  EXPECT_LE(mill.carry_mm3(), kMilling.removal_rate_mm3_per_Ns * kForce_N * 0.01 * (1 + 1e-12));
   EXPECT_GT(mill.carry_mm3(), 0);
 }
 
@@ -197,27 +199,35 @@ TEST(BurrMill, ForgetsTheCarryOnlyAfterALift) {
   EXPECT_EQ(mill.carry_mm3(), 0);
 }
 
-TEST(BurrMill, CutsHardestWhereItIsDeepest) {
-  const GridGeometry geometry = cube_of(6, 0.2);
-  Volume volume = half_space(geometry);
+TEST(BurrMill, CutsWhereItPresses) {
+  // In a hole that fits it, pressed at an angle: bone goes on that side and on no other.
+  const GridGeometry geometry = cube_of(6, 0.125);
+  Volume volume = shape_volume(geometry, [](const Vec3& p) { return kRadius_mm - p.norm(); });
+  const Volume before = volume;
   BurrMill mill(geometry, kRadius_mm, kBone, kMilling);
-  const Vec3 centre(0, 0, 1.0);
-  mill.step(volume, centre, down(1.5), 0.001);
-  const Volume original = half_space(geometry);
-  double deepest_drop = 0, ratio = 0;
-  const double reach_mm = kRadius_mm + 0.2;
-  for (int k = 0; k < 30; ++k)
-    for (int j = 0; j < 30; ++j)
-      for (int i = 0; i < 30; ++i) {
-        const VoxelIndex v{i, j, k};
-        const double drop = static_cast<double>(original.grid()[v]) - static_cast<double>(volume.grid()[v]);
-        const double depth_mm = reach_mm - (geometry.world_from_voxel(v) - centre).norm();
-        if (drop <= 0 || volume.grid()[v] <= 0) continue;
-        if (ratio == 0) ratio = drop / depth_mm;
-        EXPECT_NEAR(drop / depth_mm, ratio, 0.01 * ratio);
-        deepest_drop = std::max(deepest_drop, drop);
+  const Vec3 press = Vec3(0.5, 0.3, -0.8).normalized();
+  for (int n = 0; n < 200; ++n) mill.step(volume, Vec3::Zero(), 1.5 * press, 0.001);
+  double lost_there = 0, deepest_drop = 0;
+  Vec3 deepest = Vec3::Zero();
+  std::size_t index = 0;
+  for (int k = 0; k < geometry.dims[2]; ++k)
+    for (int j = 0; j < geometry.dims[1]; ++j)
+      for (int i = 0; i < geometry.dims[0]; ++i, ++index) {
+        const Vec3 at = geometry.world_from_voxel(VoxelIndex{i, j, k});
+        const double drop = static_cast<double>(before.grid().densities()[index]) -
+                            static_cast<double>(volume.grid().densities()[index]);
+        if (at.dot(press) <= 0) {
+          ASSERT_NEAR(drop, 0, 60) << "the edge of the hole, rounded off in its voxels";
+        } else {
+          lost_there += drop;
+        }
+        if (drop > deepest_drop) {
+          deepest_drop = drop;
+          deepest = at;
+        }
       }
-  EXPECT_GT(deepest_drop, 1);
+  EXPECT_GT(lost_there, 10 * 60);
+  EXPECT_GT(deepest.normalized().dot(press), 0.8);
 }
 
 TEST(BurrMill, MakesTheSameHoleAtAnyHapticRate) {
@@ -289,15 +299,18 @@ TEST(BurrMill, CutsATurnedGridAsItCutsAStraightOne) {
   turned_volume = Volume(DensityGrid(turned, straight_volume.grid().densities()), 500);
   BurrMill straight_mill(straight, kRadius_mm, kBone, kMilling);
   BurrMill turned_mill(turned, kRadius_mm, kBone, kMilling);
+  double straight_mm3 = 0, turned_mm3 = 0;
   for (int n = 0; n < 300; ++n) {
     const Vec3 centre(0.002 * n, 0.1, 1.4 - 0.002 * n);
     const MillingStep a = straight_mill.step(straight_volume, centre, down(2), 0.001);
     const MillingStep b =
         turned_mill.step(turned_volume, turned.direction * centre, turned.direction * down(2), 0.001);
-    EXPECT_NEAR(a.removed_mm3, b.removed_mm3, 1e-6);
+    straight_mm3 += a.removed_mm3;
+    turned_mm3 += b.removed_mm3;
   }
+  EXPECT_NEAR(turned_mm3, straight_mm3, 1e-3 * straight_mm3);
   for (std::size_t n = 0; n < straight.voxel_count(); ++n) {
-    ASSERT_NEAR(straight_volume.grid().densities()[n], turned_volume.grid().densities()[n], 0.05);
+    ASSERT_NEAR(straight_volume.grid().densities()[n], turned_volume.grid().densities()[n], 2);
   }
 }
 
@@ -329,33 +342,31 @@ TEST(BurrMill, CutsAtTheEdgeOfTheGridWhatIsInside) {
   const double before_mm3 = charge_mm3(volume.grid(), kBone);
   double removed_mm3 = 0;
   for (int n = 0; n < 500; ++n) {
-    removed_mm3 += mill.step(volume, Vec3(2.2, -2.4, -2.0), down(1), 0.001).removed_mm3;
+    removed_mm3 += mill.step(volume, Vec3(2.2, -2.4, -2.0), Vec3(-1, 1, 1).normalized(), 0.001).removed_mm3;
   }
   EXPECT_NEAR(removed_mm3, 1.0, 0.02);
   EXPECT_NEAR(before_mm3 - charge_mm3(volume.grid(), kBone), removed_mm3, 1e-9);
 }
 
-TEST(BurrMill, PaysInFullForDropsBelowTheResolutionOfAFloat) {
-  // Each voxel's share of a step is about 1e-7, far below what a float of 1000 can tell.
+TEST(BurrMill, CountsExactlyWhatItTakesEvenNearTheResolutionOfAFloat) {
   const GridGeometry geometry = cube_of(5, 0.25);
   Volume volume = half_space(geometry);
-  BurrMill mill(geometry, kRadius_mm, kBone, {1e-3, 1.0});
+  BurrMill mill(geometry, kRadius_mm, kBone, {1e-2});
   const double before_mm3 = charge_mm3(volume.grid(), kBone);
   double removed_mm3 = 0;
   for (int n = 0; n < 20000; ++n) {
-    removed_mm3 += mill.step(volume, Vec3(0, 0, 0.8), down(2e-4), 0.001).removed_mm3;
+    removed_mm3 += mill.step(volume, Vec3(0, 0, 1.4), down(1e-2), 0.001).removed_mm3;
   }
-  EXPECT_NEAR(removed_mm3 + mill.carry_mm3(), 20000 * 1e-3 * 2e-4 * 0.001, 1e-12);
   EXPECT_NEAR(before_mm3 - charge_mm3(volume.grid(), kBone), removed_mm3, 1e-11);
   EXPECT_GT(removed_mm3, 0);
+  EXPECT_LE(removed_mm3, 20000 * 1e-2 * 1e-2 * 0.001 * (1 + 1e-6));
 }
 
 TEST(BurrMill, RefusesSettingsOutOfRange) {
   const GridGeometry geometry = cube_of(2, 0.25);
   EXPECT_THROW(BurrMill(geometry, 0, kBone, kMilling), std::invalid_argument);
   EXPECT_THROW(BurrMill(geometry, 1, {5, 5}, {}), std::invalid_argument);
-  EXPECT_THROW(BurrMill(geometry, 1, kBone, {-1, 1.0}), std::invalid_argument);
-  EXPECT_THROW(BurrMill(geometry, 1, kBone, {2, -0.5}), std::invalid_argument);
+  EXPECT_THROW(BurrMill(geometry, 1, kBone, {-1}), std::invalid_argument);
   EXPECT_THROW(BurrMill(GridGeometry{}, 1, kBone, kMilling), std::invalid_argument);
 }
 

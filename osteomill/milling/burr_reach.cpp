@@ -32,8 +32,10 @@ std::size_t row_in_brick(int j, int k) {
 
 }  // namespace
 
-BurrReach::BurrReach(const GridGeometry& geometry, double radius_mm, float floor_density)
-    : geometry_(geometry), radius_mm_(radius_mm), floor_density_(floor_density) {
+BurrReach::BurrReach(const GridGeometry& geometry, double max_radius_mm, float floor_density)
+    : geometry_(geometry),
+      max_voxels_(max_voxels_in_ball(geometry, max_radius_mm)),
+      floor_density_(floor_density) {
   std::size_t bricks = 1;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     brick_dims_[axis] = (geometry.dims[axis] + kSide - 1) / kSide;
@@ -45,26 +47,18 @@ BurrReach::BurrReach(const GridGeometry& geometry, double radius_mm, float floor
   bits_.resize(bricks);
   words_of_line_ = (static_cast<std::size_t>(brick_dims_[0]) + kWordBits - 1) / kWordBits;
   held_.resize(words_of_line_ * brick_line(0, brick_dims_[2]));
-  const std::size_t lines = max_across(geometry, radius_mm, 1) * max_across(geometry, radius_mm, 2);
-  rows_.reserve(lines * (max_across(geometry, radius_mm, 0) / kSide + 2));
-  candidates_.reserve(rows_.capacity());
-  // One more than there can be, as a sign that there was room.
-  const std::size_t voxels = max_voxels_in_ball(geometry, radius_mm) + 1;
-  columns_.resize(voxels);
-  depths_mm_.resize(voxels);
-  densities_.resize(voxels);
+  const std::size_t lines = max_across(geometry, max_radius_mm, 1) * max_across(geometry, max_radius_mm, 2);
+  pieces_.reserve(lines * (max_across(geometry, max_radius_mm, 0) / kSide + 2));
 }
 
-void BurrReach::find(const Volume& volume, const Vec3& centre_W, const Share& share) {
+void BurrReach::find(const Volume& volume, const Vec3& centre_mm, double radius_mm, const Share& share) {
   if (known_volume_ != &volume) {
     std::fill(known_.begin(), known_.end(), false);
     std::fill(held_.begin(), held_.end(), ~std::uint64_t{0});
   }
   known_volume_ = &volume;
-  candidates_.clear();
-  rows_.clear();
-  size_ = 0;
-  const Vec3 centre_mm = geometry_.direction.transpose() * (centre_W - geometry_.origin_mm);
+  radius_mm_ = radius_mm;
+  pieces_.clear();
   for (std::size_t axis = 0; axis < 3; ++axis) {
     measure(squares_[axis], centre_mm[static_cast<Eigen::Index>(axis)], axis);
   }
@@ -79,11 +73,10 @@ void BurrReach::find(const Volume& volume, const Vec3& centre_W, const Share& sh
       if (left2 <= 0) continue;
       for (std::size_t word = first_word; word <= last_word; ++word) {
         const std::uint64_t held = held_in_ball(volume, bj, bk, word, left2);
-        if (held != 0) find_candidates(volume.grid(), word, held, bj, bk, share);
+        if (held != 0) find_pieces(volume.grid(), word, held, bj, bk, share);
       }
     }
   }
-  for (const Candidate& candidate : candidates_) take(volume.grid(), candidate);
 }
 
 // The bricks of a word, a bit each, that lie less than the root of `left2_mm2` away along the line and may
@@ -154,8 +147,8 @@ bool BurrReach::look_at(const Volume& volume, int bi, int bj, int bk) {
   return holds;
 }
 
-void BurrReach::find_candidates(const DensityGrid& grid, std::size_t word, std::uint64_t held, int bj, int bk,
-                                const Share& share) {
+void BurrReach::find_pieces(const DensityGrid& grid, std::size_t word, std::uint64_t held, int bj, int bk,
+                            const Share& share) {
   const auto& dims = geometry_.dims;
   const auto& [x, y, z] = squares_;
   const int end_j = std::min(kSide * bj + kSide, dims[1]), end_k = std::min(kSide * bk + kSide, dims[2]);
@@ -175,7 +168,7 @@ void BurrReach::find_candidates(const DensityGrid& grid, std::size_t word, std::
         const unsigned inside = byte & in_ball(bi, half2);
         if (inside == 0) continue;
         const VoxelIndex first{kSide * bi, j, k};
-        candidates_.push_back({grid.linear_index(first), first, static_cast<std::uint8_t>(inside)});
+        pieces_.push_back({grid.linear_index(first), first, static_cast<std::uint8_t>(inside)});
         // Each row lies in a cache line of its own; by the time that all are known, the first have come.
         grid.prefetch(first);
       }
@@ -191,33 +184,8 @@ unsigned BurrReach::in_ball(int bi, double half2_mm2) const {
   return bits;
 }
 
-// Lists those that are denser than the floor, and forgets the others.
-void BurrReach::take(const DensityGrid& grid, const Candidate& candidate) {
-  const std::size_t begin = size_;
-  const auto& [x, y, z] = squares_;
-  const auto& [i, j, k] = candidate.first;
-  const float* densities = grid.densities().data() + candidate.first_voxel;
-  const double across2 =
-      y.of_voxel_mm2[static_cast<std::size_t>(j)] + z.of_voxel_mm2[static_cast<std::size_t>(k)];
-  const double* along2 = &x.of_voxel_mm2[static_cast<std::size_t>(i)];
-  unsigned gone = 0;
-  for (unsigned bits = candidate.bits; bits != 0; bits &= bits - 1) {
-    const int n = std::countr_zero(bits);
-    if (!(densities[n] > floor_density_)) {
-      gone |= 1u << n;
-      continue;
-    }
-    columns_[size_] = i + n;
-    densities_[size_] = densities[n];
-    depths_mm_[size_] = static_cast<float>(std::max(0.0, radius_mm_ - std::sqrt(across2 + along2[n])));
-    ++size_;
-  }
-  if (size_ > begin) rows_.push_back({j, k, begin, size_});
-  if (gone != 0) forget_voxels(candidate.first, gone);
-}
-
-// They hold nothing any more.
-void BurrReach::forget_voxels(const VoxelIndex& first, unsigned gone) {
+void BurrReach::forget_voxels(const Piece& piece, unsigned gone) {
+  const VoxelIndex& first = piece.first;
   const int bi = first.i / kSide, bj = first.j / kSide, bk = first.k / kSide;
   Bits& bits = bits_[brick_index(bi, bj, bk)];
   std::uint8_t& byte = bits[row_in_brick(first.j, first.k)];

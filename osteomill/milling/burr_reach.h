@@ -11,14 +11,14 @@
 
 namespace osteomill {
 
-/// The voxels that a ball overlaps and that are denser than a floor. It remembers, in bricks of 8 x 8 x 8
-/// voxels and a bit a voxel, which ones held nothing when last looked at, so that a step costs little more
-/// than the voxels it finds: in its hole a burr is all about emptied bricks. Voxels are found brick by brick,
-/// row by row (i runs along a row, a row is at most 8 voxels).
+/// Where a ball overlaps voxels that are denser than a floor. It remembers, in bricks of 8 x 8 x 8 voxels and
+/// a bit a voxel, which ones held nothing when last looked at, so that a step costs little more than what it
+/// finds: in its hole a burr is all about emptied bricks. What is found are pieces of rows (i runs along a
+/// row), brick by brick.
 class BurrReach {
  public:
-  /// Allocates all that `find` needs. `radius_mm` is above 0, the grid not empty.
-  BurrReach(const GridGeometry& geometry, double radius_mm, float floor_density);
+  /// Allocates all that `find` needs. `max_radius_mm` is above 0, the grid not empty.
+  BurrReach(const GridGeometry& geometry, double max_radius_mm, float floor_density);
 
   /// The rows that a step looks at, where a ball has more voxels than a step has time for: those of every
   /// `count`-th line of the grid, shifted with `turn` so that `count` turns see all. `count` is a power of 2.
@@ -26,28 +26,25 @@ class BurrReach {
     unsigned count = 1;
     unsigned turn = 0;
   };
-  /// Finds what the ball about `centre_W` (finite) overlaps, or a share of it. Safe in the haptic tick.
-  void find(const Volume& volume, const Vec3& centre_W, const Share& share = {1, 0});
+  /// The voxels of a row within a brick: a bit each, from `first` on, for those that lie in the ball and may
+  /// be denser than the floor.
+  struct Piece {
+    std::size_t first_voxel;
+    VoxelIndex first;
+    std::uint8_t bits;
+  };
+  /// Finds what the ball overlaps, or a share of it. `centre_mm` (finite) is in the grid's axes, from the
+  /// first voxel's centre; `radius_mm` at most the greatest. Safe in the haptic tick.
+  void find(const Volume& volume, const Vec3& centre_mm, double radius_mm, const Share& share = {1, 0});
+  const std::vector<Piece>& pieces() const { return pieces_; }
+  /// Those of a piece that hold nothing any more are not found again.
+  void forget_voxels(const Piece& piece, unsigned gone);
   /// Has the next `find` look at every voxel.
   void forget() { known_volume_ = nullptr; }
-
-  /// A row's voxels are [begin, end) of the lists below.
-  struct Row {
-    int j;
-    int k;
-    std::size_t begin;
-    std::size_t end;
-  };
-  const std::vector<Row>& rows() const { return rows_; }
-  std::size_t size() const { return size_; }
-  /// The most that can ever be found.
-  std::size_t capacity() const { return densities_.size(); }
-  /// Column of each voxel found.
-  const int* columns() const { return columns_.data(); }
-  /// How deep each one's centre lies in the ball, mm, at least 0.
-  const float* depths_mm() const { return depths_mm_.data(); }
-  /// Each one's density as found, above the floor.
-  const float* densities() const { return densities_.data(); }
+  float floor_density() const { return floor_density_; }
+  /// The most that can be found at once.
+  std::size_t max_voxels() const { return max_voxels_; }
+  std::size_t max_pieces() const { return pieces_.capacity(); }
 
  private:
   static constexpr int kSide = BlockRanges::kBrickVoxels;
@@ -69,17 +66,9 @@ class BurrReach {
   void measure(Squares& squares, double centre_mm, std::size_t axis) const;
   std::uint64_t held_in_ball(const Volume& volume, int bj, int bk, std::size_t word, double left2_mm2);
   bool look_at(const Volume& volume, int bi, int bj, int bk);
-  /// Voxels of a row that lie in the ball and may be denser than the floor.
-  struct Candidate {
-    std::size_t first_voxel;
-    VoxelIndex first;
-    std::uint8_t bits;
-  };
-  void find_candidates(const DensityGrid& grid, std::size_t word, std::uint64_t held, int bj, int bk,
-                       const Share& share);
+  void find_pieces(const DensityGrid& grid, std::size_t word, std::uint64_t held, int bj, int bk,
+                   const Share& share);
   unsigned in_ball(int bi, double half2_mm2) const;
-  void take(const DensityGrid& grid, const Candidate& candidate);
-  void forget_voxels(const VoxelIndex& first, unsigned gone);
   std::size_t brick_line(int bj, int bk) const {
     return static_cast<std::size_t>(bj) +
            static_cast<std::size_t>(brick_dims_[1]) * static_cast<std::size_t>(bk);
@@ -87,7 +76,8 @@ class BurrReach {
   std::size_t brick_index(int bi, int bj, int bk) const { return row_major(brick_dims_, bi, bj, bk); }
 
   GridGeometry geometry_;
-  double radius_mm_;
+  double radius_mm_ = 0;
+  std::size_t max_voxels_;
   float floor_density_;
   std::array<int, 3> brick_dims_;
 
@@ -99,12 +89,7 @@ class BurrReach {
   std::vector<Bits> bits_;
   std::array<Squares, 3> squares_;
 
-  std::vector<Candidate> candidates_;
-  std::vector<Row> rows_;
-  std::size_t size_ = 0;
-  std::vector<int> columns_;
-  std::vector<float> depths_mm_;
-  std::vector<float> densities_;
+  std::vector<Piece> pieces_;
 };
 
 }  // namespace osteomill

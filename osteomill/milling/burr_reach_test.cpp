@@ -34,28 +34,56 @@ double unit_random(std::mt19937_64& random) {
   return static_cast<double>(random() >> 11) * 0x1p-53;
 }
 
-// Every voxel of the grid, one by one. Those on the ball's very surface may be found or not.
-void expect_found_as_one_by_one(const BurrReach& reach, const Volume& volume, const Vec3& centre_W,
-                                double radius_mm) {
-  std::vector<bool> found(volume.geometry().voxel_count(), false);
-  for (const BurrReach::Row& row : reach.rows()) {
-    for (std::size_t n = row.begin; n < row.end; ++n) {
-      const VoxelIndex v{reach.columns()[n], row.j, row.k};
-      ASSERT_FALSE(found[volume.grid().linear_index(v)]) << "twice";
-      found[volume.grid().linear_index(v)] = true;
-      ASSERT_EQ(reach.densities()[n], volume.grid()[v]);
-      const double depth_mm = radius_mm - (volume.geometry().world_from_voxel(v) - centre_W).norm();
-      ASSERT_NEAR(static_cast<double>(reach.depths_mm()[n]), depth_mm, 1e-6);
+Vec3 in_grid(const Vec3& voxel, const GridGeometry& geometry) {
+  return voxel.cwiseProduct(geometry.spacing_mm);
+}
+
+template <typename Visit>
+void for_each_found(const BurrReach& reach, const Visit& visit) {
+  for (const BurrReach::Piece& piece : reach.pieces()) {
+    for (int n = 0; n < 8; ++n) {
+      if ((piece.bits >> n & 1) != 0) visit(VoxelIndex{piece.first.i + n, piece.first.j, piece.first.k});
     }
   }
+}
+
+// As the mill does: what holds nothing is forgotten.
+void forget_empty(BurrReach& reach, const Volume& volume) {
+  for (const BurrReach::Piece& piece : reach.pieces()) {
+    unsigned gone = 0;
+    for (int n = 0; n < 8; ++n) {
+      const VoxelIndex v{piece.first.i + n, piece.first.j, piece.first.k};
+      if ((piece.bits >> n & 1) != 0 && !(volume.grid()[v] > kFloor)) gone |= 1u << n;
+    }
+    if (gone != 0) reach.forget_voxels(piece, gone);
+  }
+}
+
+// Every voxel of the grid, one by one. Those on the ball's very surface may be found or not. `empty` are
+// those that were found empty before.
+void expect_found_as_one_by_one(const BurrReach& reach, const Volume& volume, const Vec3& centre_mm,
+                                double radius_mm, std::vector<bool>& empty) {
+  std::vector<bool> found(volume.geometry().voxel_count(), false);
+  for_each_found(reach, [&](const VoxelIndex& v) {
+    ASSERT_TRUE(volume.grid().contains(v));
+    ASSERT_FALSE(found[volume.grid().linear_index(v)]) << "twice";
+    found[volume.grid().linear_index(v)] = true;
+  });
   const auto& dims = volume.geometry().dims;
   for (int k = 0; k < dims[2]; ++k)
     for (int j = 0; j < dims[1]; ++j)
       for (int i = 0; i < dims[0]; ++i) {
         const VoxelIndex v{i, j, k};
-        const double depth_mm = radius_mm - (volume.geometry().world_from_voxel(v) - centre_W).norm();
+        const std::size_t n = volume.grid().linear_index(v);
+        const double depth_mm = radius_mm - (in_grid(Vec3(i, j, k), volume.geometry()) - centre_mm).norm();
         if (std::abs(depth_mm) < 1e-9) continue;
-        ASSERT_EQ(found[volume.grid().linear_index(v)], depth_mm > 0 && volume.grid()[v] > kFloor);
+        const bool bone = volume.grid()[v] > kFloor;
+        if (bone || depth_mm <= 0) {
+          ASSERT_EQ(found[n], bone && depth_mm > 0);
+        } else if (found[n]) {
+          ASSERT_FALSE(empty[n]) << "found again after it was found empty";
+          empty[n] = true;
+        }
       }
 }
 
@@ -65,6 +93,7 @@ TEST(BurrReach, FindsWhatAPlainSearchFindsWhileBoneGoesAndTheBallMoves) {
   Volume volume = random_volume(geometry, random);
   constexpr double kRadius_mm = 1.3;
   BurrReach reach(geometry, kRadius_mm, kFloor);
+  std::vector<bool> empty(geometry.voxel_count(), false);
   Vec3 voxel(15, 12, 10);
   for (int n = 0; n < 300; ++n) {
     // Small moves, and at times a leap, also to where the ball lies partly or wholly outside the grid.
@@ -73,14 +102,13 @@ TEST(BurrReach, FindsWhatAPlainSearchFindsWhileBoneGoesAndTheBallMoves) {
       voxel[axis] += size * (unit_random(random) - 0.5);
     }
     if (n % 40 == 39) voxel = Vec3(15, 12, 10);
-    const Vec3 centre_W = geometry.world_from_voxel(voxel);
-    reach.find(volume, centre_W);
-    expect_found_as_one_by_one(reach, volume, centre_W, kRadius_mm);
-    for (const BurrReach::Row& row : reach.rows()) {
-      for (std::size_t at = row.begin; at < row.end; ++at) {
-        if (random() % 3 == 0) volume.lower_density({reach.columns()[at], row.j, row.k}, kFloor);
-      }
-    }
+    const double radius_mm = n % 5 == 0 ? 0.7 * kRadius_mm : kRadius_mm;
+    reach.find(volume, in_grid(voxel, geometry), radius_mm);
+    expect_found_as_one_by_one(reach, volume, in_grid(voxel, geometry), radius_mm, empty);
+    forget_empty(reach, volume);
+    for_each_found(reach, [&](const VoxelIndex& v) {
+      if (random() % 3 == 0) volume.lower_density(v, kFloor);
+    });
   }
 }
 
@@ -96,23 +124,20 @@ TEST(BurrReach, SharesOfLinesTogetherFindAllOnceWhileBoneGoes) {
     BurrReach shared(geometry, kRadius_mm, kFloor);
     for (int round = 0; round < 3; ++round) {
       // The ball lies across the border of two words.
-      const Vec3 centre_W = geometry.world_from_voxel(Vec3(510 + 0.7 * round, 5.2, 6.1));
-      whole.find(volume, centre_W);
-      ASSERT_GT(whole.size(), 100u);
+      const Vec3 centre_mm = in_grid(Vec3(510 + 0.7 * round, 5.2, 6.1), geometry);
+      whole.find(volume, centre_mm, kRadius_mm);
       std::vector<std::size_t> expected, found;
       const auto list = [&](const BurrReach& reach, std::vector<std::size_t>& voxels) {
-        for (const BurrReach::Row& row : reach.rows()) {
-          for (std::size_t n = row.begin; n < row.end; ++n) {
-            voxels.push_back(volume.grid().linear_index({reach.columns()[n], row.j, row.k}));
-          }
-        }
+        for_each_found(reach, [&](const VoxelIndex& v) { voxels.push_back(volume.grid().linear_index(v)); });
       };
       list(whole, expected);
+      ASSERT_GT(expected.size(), 100u);
       std::size_t max = 0;
       for (unsigned turn = 0; turn < count; ++turn) {
-        shared.find(volume, centre_W, {count, turn});
+        shared.find(volume, centre_mm, kRadius_mm, {count, turn});
+        const std::size_t before = found.size();
         list(shared, found);
-        max = std::max(max, shared.size());
+        max = std::max(max, found.size() - before);
       }
       std::sort(expected.begin(), expected.end());
       std::sort(found.begin(), found.end());
@@ -131,15 +156,18 @@ TEST(BurrReach, HasRoomForABallFullOfBoneAtAnyShift) {
     const GridGeometry geometry = turned_geometry();
     const Volume volume(DensityGrid(geometry, std::vector<float>(geometry.voxel_count(), 1000.0f)), 500);
     BurrReach reach(geometry, radius_mm, kFloor);
-    const std::size_t room_for_rows = reach.rows().capacity();
+    const std::size_t room = reach.max_pieces();
+    std::size_t found = 0;
     for (int n = 0; n < 200; ++n) {
       reach.forget();
-      reach.find(volume, geometry.world_from_voxel(Vec3(15 + 0.01 * n, 12 + 0.013 * n, 10 - 0.017 * n)));
-      ASSERT_LT(reach.size(), reach.capacity());
-      ASSERT_EQ(reach.rows().capacity(), room_for_rows) << "rows were allocated";
+      reach.find(volume, in_grid(Vec3(15 + 0.01 * n, 12 + 0.013 * n, 10 - 0.017 * n), geometry), radius_mm);
+      found = 0;
+      for_each_found(reach, [&](const VoxelIndex&) { ++found; });
+      ASSERT_LE(found, reach.max_voxels());
+      ASSERT_EQ(reach.max_pieces(), room) << "pieces were allocated";
     }
     if (radius_mm == 20.0) {
-      EXPECT_EQ(reach.size(), geometry.voxel_count());
+      EXPECT_EQ(found, geometry.voxel_count());
     }
   }
 }
@@ -148,21 +176,23 @@ TEST(BurrReach, LooksAtAllAgainInAnotherVolumeOrAfterForgetting) {
   const GridGeometry geometry = turned_geometry();
   const Volume empty(DensityGrid(geometry, std::vector<float>(geometry.voxel_count(), 0.0f)), 500);
   Volume full(DensityGrid(geometry, std::vector<float>(geometry.voxel_count(), 1000.0f)), 500);
-  const Vec3 centre_W = geometry.world_from_voxel(Vec3(15, 12, 10));
+  const Vec3 centre_mm = in_grid(Vec3(15, 12, 10), geometry);
   BurrReach reach(geometry, 1.0, kFloor);
-  reach.find(empty, centre_W);
-  EXPECT_EQ(reach.size(), 0u);
-  reach.find(full, centre_W);
-  EXPECT_GT(reach.size(), 100u);
-  const std::size_t all = reach.size();
+  reach.find(empty, centre_mm, 1.0);
+  EXPECT_EQ(reach.pieces().size(), 0u);
+  reach.find(full, centre_mm, 1.0);
+  EXPECT_GT(reach.pieces().size(), 50u);
+  const std::size_t all = reach.pieces().size();
   const Volume another = full;
   full = empty;
-  reach.find(full, centre_W);
-  EXPECT_EQ(reach.size(), 0u);
+  reach.find(full, centre_mm, 1.0);
+  forget_empty(reach, full);
+  reach.find(full, centre_mm, 1.0);
+  EXPECT_EQ(reach.pieces().size(), 0u);
   full = another;
   reach.forget();
-  reach.find(full, centre_W);
-  EXPECT_EQ(reach.size(), all);
+  reach.find(full, centre_mm, 1.0);
+  EXPECT_EQ(reach.pieces().size(), all);
 }
 
 }  // namespace

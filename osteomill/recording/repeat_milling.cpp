@@ -43,8 +43,7 @@ double number_of(const Recording& recording, const char* key) {
 BurrMill make_mill(const Recording& recording, const GridGeometry& geometry) {
   const BoneDensities densities{number_of(recording, "milling.surroundings_density"),
                                 number_of(recording, "milling.reference_density")};
-  const MillingSettings milling{number_of(recording, "milling.removal_rate"),
-                                number_of(recording, "milling.reach")};
+  const MillingSettings milling{number_of(recording, "milling.removal_rate")};
   try {
     return BurrMill(geometry, recording.description.tool.burr_radius_mm, densities, milling);
   } catch (const std::invalid_argument& error) {

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "osteomill/milling/burr_reach.h"
+#include "osteomill/milling/cut_profile.h"
+#include "osteomill/milling/cut_voxels.h"
+
+namespace osteomill {
+
+/// In vector instructions chosen at run time, with the same bits from all of them. All distances are from the
+/// ball's centre, in the grid's axes, mm; times `kLanes`, lists are read beyond their ends.
+struct CutKernelBall {
+  float radius;
+  /// Unit vector.
+  float ahead[3];
+  float spacing[3];
+  bool cubic;
+};
+
+/// Appends those voxels of a row's piece that the ball lowers with its leading half `max_ahead` ahead. `x`:
+/// the piece's `kLanes` columns, `y` and `z` its row, from the centre. Returns those that are denser than the
+/// surroundings, a bit each.
+struct CutPiece {
+  const float* densities;
+  const float* x;
+  float y, z;
+  int column;
+  unsigned bits;
+};
+unsigned gather_piece(const CutPiece& piece, const CutKernelBall& ball, const CutProfile& profile,
+                      float max_ahead, CutLists& lists);
+
+/// Leading drops, their derivative by `ahead`, and trailing drops, over [begin, end), both multiples of
+/// `kLanes`, in `kLanes` lanes each.
+struct CutSums {
+  alignas(64) float leading[CutLists::kLanes] = {};
+  alignas(64) float slope[CutLists::kLanes] = {};
+  alignas(64) float trailing[CutLists::kLanes] = {};
+};
+void sum_drops(const CutLists& lists, std::size_t begin, std::size_t end, float radius,
+               const CutProfile& profile, float ahead, CutSums& sums);
+
+/// Fills `lists.after`.
+void lower_densities(CutLists& lists, float radius, const CutProfile& profile, float ahead,
+                     float leading_share, float trailing_share);
+
+/// For tests: the sets of vector instructions that this was compiled for, as Highway numbers them.
+std::int64_t cut_kernel_targets();
+
+}  // namespace osteomill

@@ -1,0 +1,123 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "osteomill/volume/sampling.h"
+#include "osteomill/volume/volume.h"
+
+namespace osteomill::testing_support {
+
+/// The plain way to say what a ball sweeps: on a lattice of points, the signed distance to the union of the
+/// balls about all centres of a path.
+class SweptPath {
+ public:
+  /// Points a little less than `spacing_mm` apart about all of the path.
+  SweptPath(const std::vector<Vec3>& centres_W, double radius_mm, double spacing_mm)
+      : radius_mm_(radius_mm), spacing_mm_(spacing_mm), first_W_(centres_W.at(0)) {
+    Vec3 last_W = first_W_;
+    for (const Vec3& centre_W : centres_W) {
+      first_W_ = first_W_.cwiseMin(centre_W);
+      last_W = last_W.cwiseMax(centre_W);
+    }
+    first_W_.array() -= radius_mm + kMargin_mm;
+    last_W.array() += radius_mm + kMargin_mm;
+    for (int axis = 0; axis < 3; ++axis) {
+      dims_[axis] = static_cast<int>(std::ceil((last_W[axis] - first_W_[axis]) / spacing_mm)) + 1;
+    }
+    distances_mm_.assign(static_cast<std::size_t>(dims_[0]) * static_cast<std::size_t>(dims_[1]) *
+                             static_cast<std::size_t>(dims_[2]),
+                         kFar_mm);
+    // Between centres so close the union of balls has no ridges to speak of: a^2 / 8 r.
+    const double apart_mm = std::sqrt(0.002 * radius_mm);
+    Vec3 before_W = centres_W.front();
+    add(before_W);
+    for (const Vec3& centre_W : centres_W) {
+      if ((centre_W - before_W).norm() < apart_mm && &centre_W != &centres_W.back()) continue;
+      add(before_W = centre_W);
+    }
+  }
+
+  template <typename Visit>
+  void for_each_point(const Visit& visit) const {
+    std::size_t n = 0;
+    for (int k = 0; k < dims_[2]; ++k)
+      for (int j = 0; j < dims_[1]; ++j)
+        for (int i = 0; i < dims_[0]; ++i) visit(point_W(i, j, k), static_cast<double>(distances_mm_[n++]));
+  }
+  double point_mm3() const { return spacing_mm_ * spacing_mm_ * spacing_mm_; }
+
+ private:
+  static constexpr double kMargin_mm = 0.6;
+  static constexpr float kFar_mm = 2 * static_cast<float>(kMargin_mm);
+
+  Vec3 point_W(int i, int j, int k) const { return first_W_ + spacing_mm_ * Vec3(i, j, k); }
+  void add(const Vec3& centre_W) {
+    const double reach_mm = radius_mm_ + kMargin_mm;
+    int from[3], to[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      const double at = (centre_W[axis] - first_W_[axis]) / spacing_mm_;
+      from[axis] = std::max(0, static_cast<int>(std::ceil(at - reach_mm / spacing_mm_)));
+      to[axis] = std::min(dims_[axis] - 1, static_cast<int>(std::floor(at + reach_mm / spacing_mm_)));
+    }
+    for (int k = from[2]; k <= to[2]; ++k)
+      for (int j = from[1]; j <= to[1]; ++j) {
+        float* row = &distances_mm_[static_cast<std::size_t>(dims_[0]) *
+                                    (static_cast<std::size_t>(j) +
+                                     static_cast<std::size_t>(dims_[1]) * static_cast<std::size_t>(k))];
+        const Vec3 start = point_W(0, j, k) - centre_W;
+        const double across2 = start.y() * start.y() + start.z() * start.z();
+        for (int i = from[0]; i <= to[0]; ++i) {
+          const double x = start.x() + spacing_mm_ * i;
+          row[i] = std::min(row[i], static_cast<float>(std::sqrt(x * x + across2) - radius_mm_));
+        }
+      }
+  }
+
+  double radius_mm_;
+  double spacing_mm_;
+  Vec3 first_W_;
+  int dims_[3] = {};
+  std::vector<float> distances_mm_;
+};
+
+/// What was cut against what was swept, by the surface as it is seen and felt (densities interpolated), where
+/// there was bone for two voxels all around: without the rim, where the cut meets the surface that was there,
+/// since an edge is rounded within the voxels that it goes through.
+struct Carving {
+  double swept_mm3 = 0;
+  double carved_mm3 = 0;
+  /// Swept and still bone: how deep within the sweep the deepest lies.
+  double left_mm = 0;
+  /// Not swept and no bone any more: how far outside the sweep the farthest lies.
+  double lost_mm = 0;
+
+  double share() const { return carved_mm3 / swept_mm3; }
+};
+
+inline bool is_deep_in_bone(const Volume& volume, const Vec3& point_W) {
+  const GridGeometry& geometry = volume.geometry();
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vec3 voxel_W = geometry.spacing_mm[axis] * geometry.direction.col(axis);
+    for (const double side : {-2.0, 0.0, 2.0}) {
+      if (!(density_at(volume.grid(), point_W + side * voxel_W) > volume.isovalue())) return false;
+    }
+  }
+  return true;
+}
+
+inline Carving carving(const Volume& before, const Volume& after, const SweptPath& path) {
+  Carving result;
+  path.for_each_point([&](const Vec3& point_W, double distance_mm) {
+    const bool bone = density_at(after.grid(), point_W) > after.isovalue();
+    if ((bone && distance_mm >= 0) || !is_deep_in_bone(before, point_W)) return;
+    if (distance_mm < 0) result.swept_mm3 += path.point_mm3();
+    if (!bone) result.carved_mm3 += path.point_mm3();
+    if (bone) result.left_mm = std::max(result.left_mm, -distance_mm);
+    if (!bone) result.lost_mm = std::max(result.lost_mm, distance_mm);
+  });
+  return result;
+}
+
+}  // namespace osteomill::testing_support
