@@ -57,13 +57,13 @@ TEST_P(GoldenWrenches, AreTheSameBitsAtAnyOptimisation) {
 }
 
 INSTANTIATE_TEST_SUITE_P(AllAlgorithms, GoldenWrenches,
-                         ::testing::Values(Golden{"line-proxy", Mode::paper, 0x0213284c29e45f61},
-                                           Golden{"line-proxy", Mode::steady, 0x7117898fb05e1511},
-                                           Golden{"surface-points", Mode::paper, 0xf94f1400825febc5},
-                                           Golden{"surface-points", Mode::steady, 0xade8d0d058621fba},
-                                           Golden{"point-shell", Mode::paper, 0xfd4275f2a35c6bc3},
-                                           Golden{"point-shell", Mode::steady, 0xfca531621ab039c2},
-                                           Golden{"barrier-shell", Mode::steady, 0x180dabf0440e9d3d}),
+                         ::testing::Values(Golden{"line-proxy", Mode::paper, 0x050dc953281f696a},
+                                           Golden{"line-proxy", Mode::steady, 0x1862b4b97d6f227a},
+                                           Golden{"surface-points", Mode::paper, 0xe2ea466e2b30f36e},
+                                           Golden{"surface-points", Mode::steady, 0x8930ec19ae883bb4},
+                                           Golden{"point-shell", Mode::paper, 0xd4d2cd25e4997312},
+                                           Golden{"point-shell", Mode::steady, 0x0b822b9ea0c9f2ba},
+                                           Golden{"barrier-shell", Mode::steady, 0x2eba6954a6931680}),
                          [](const auto& test) {
                            std::string name(test.param.algorithm);
                            name[name.find('-')] = '_';

@@ -18,9 +18,7 @@ constexpr double kMaxCarry_s = 0.01;
 // How far ahead the ball looks for bone: a voxel, since the voxels of a dense bone lie up to that behind its
 // surface, and no less than an algorithm may keep the burr from what it presses on.
 constexpr double kMinReachAhead_mm = 0.12;
-// How fast it goes ahead, and how far back where it has cut less than it overlaps.
 constexpr double kMaxAhead_mm_s = 20;
-constexpr double kMaxBack_mm = 1.0;
 // So many pieces of rows a tick are looked at; up to the second number rather than have some lines cut so
 // much deeper than the others.
 constexpr std::size_t kPiecesOfTick = 1024;
@@ -42,6 +40,11 @@ void require(bool right, const char* what) {
 
 double max_ahead(const GridGeometry& geometry) {
   return std::max(geometry.spacing_mm.maxCoeff(), kMinReachAhead_mm);
+}
+
+// Where the ball's leading half cuts nothing, however deep in bone the burr is.
+double min_ahead(const GridGeometry& geometry, double radius_mm) {
+  return -radius_mm - CutProfile::kReach_voxels * geometry.spacing_mm.maxCoeff();
 }
 
 // Of a ball about the burr and the same ball ahead of it.
@@ -71,6 +74,7 @@ BurrMill::BurrMill(const GridGeometry& geometry, double burr_radius_mm, const Bo
       densities_(densities),
       mm3_per_density_(geometry.voxel_volume_mm3() / (densities.reference - densities.surroundings)),
       removal_rate_mm3_per_Ns_(settings.removal_rate_mm3_per_Ns),
+      min_ahead_mm_(min_ahead(geometry, burr_radius_mm)),
       max_ahead_mm_(max_ahead(geometry)),
       reach_(make_reach(geometry, burr_radius_mm, densities, settings)),
       voxels_(geometry, reach_.max_voxels(), reach_.max_pieces()) {}
@@ -88,8 +92,8 @@ MillingStep BurrMill::step(Volume& volume, const Vec3& burr_centre_W, const Vec3
   const CuttingBall ball = ball_in_grid(burr_centre_W, burr_force_W_N);
   const double max_ahead_mm = std::min(std::max(ahead_mm_, 0.0) + kMaxAhead_mm_s * dt_s, max_ahead_mm_);
   find(volume, ball, max_ahead_mm, pressed_mm3);
-  const BurrAdvance advance = advance_within(budget_mm3 / mm3_per_density_, voxels_, ahead_mm_,
-                                             -std::min(radius_mm_, kMaxBack_mm), max_ahead_mm);
+  const BurrAdvance advance =
+      advance_within(budget_mm3 / mm3_per_density_, voxels_, ahead_mm_, min_ahead_mm_, max_ahead_mm);
   ahead_mm_ = advance.ahead_mm;
   const MillingStep done = lower_found(volume, voxels_.lower(ahead_mm_, advance.shares));
   // Below zero by a rounding error where floats were rounded in the burr's favour; the next step pays for it.

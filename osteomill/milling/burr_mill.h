@@ -68,6 +68,7 @@ class BurrMill {
   BoneDensities densities_;
   double mm3_per_density_;
   double removal_rate_mm3_per_Ns_;
+  double min_ahead_mm_;
   double max_ahead_mm_;
   BurrReach reach_;
   CutVoxels voxels_;
