@@ -8,6 +8,7 @@
 
 #include "osteomill/ct/read_scan.h"
 #include "osteomill/files/input_error.h"
+#include "osteomill/numbers/work_progress.h"
 #include "osteomill/volume/builtin_tooth.h"
 
 namespace osteomill::app {
@@ -35,7 +36,16 @@ SuggestedIsovalue chosen_isovalue(const ScanOptions& options, const Scan& scan) 
 
 void require_isovalue_within(const Scan& scan, double isovalue) {
   const std::vector<float>& densities = scan.grid.densities();
-  const auto [min, max] = std::minmax_element(densities.begin(), densities.end());
+  const float* min = densities.data();
+  const float* max = min;
+  constexpr std::size_t kAtOnce = 1 << 22;
+  for (std::size_t n = 0; n < densities.size(); n += kAtOnce) {
+    const float* const end = densities.data() + std::min(n + kAtOnce, densities.size());
+    const auto [low, high] = std::minmax_element(&densities[n], end);
+    if (*low < *min) min = low;
+    if (*high > *max) max = high;
+    WorkProgress::done(n, 2 * densities.size());
+  }
   if (isovalue < static_cast<double>(*max) && isovalue >= static_cast<double>(*min)) return;
   throw InputError(scan.name, fmt::format("the isovalue {:g} lies outside its values, {:g} to {:g}", isovalue,
                                           *min, *max));
@@ -48,9 +58,13 @@ void print_warnings(const Scan& scan) {
 }
 
 LoadedBone load_bone(const ScanOptions& options) {
-  Scan scan = open_scan(options);
+  Scan scan = [&] {
+    const WorkProgress::Part reading(0.75);
+    return open_scan(options);
+  }();
   print_warnings(scan);
   SuggestedIsovalue isovalue = chosen_isovalue(options, scan);
+  const WorkProgress::Part looking(1);
   if (!options.isovalue && !options.scan.empty()) {
     fmt::print(stderr, "osteomill: {}: isovalue {:g} suggested, {}; --iso sets another\n", scan.name,
                isovalue.value, isovalue.how);

@@ -123,17 +123,20 @@ void draw_closing(ViewState& view) {
   ImGui::EndPopup();
 }
 
-void draw_loading(const std::string& what, double passed_s, const PixelSize& size, bool above) {
+bool draw_loading(const std::string& what, double share_done, double passed_s, const PixelSize& size,
+                  bool above) {
   if (above) {
     begin_at({0.5f * static_cast<float>(size.width), 8}, "Opening", {0.5f, 0});
   } else {
     begin_in_the_middle("Opening", size);
   }
   ImGui::Text("%s", what.c_str());
-  // How long it takes is not known beforehand: the bar comes closer and closer to its end.
-  ImGui::ProgressBar(static_cast<float>(1 - std::exp(-passed_s / 2.5)), {360, 0}, "");
+  ImGui::ProgressBar(static_cast<float>(share_done), {360, 0});
   ImGui::Text("%.0f s", passed_s);
+  ImGui::SameLine();
+  const bool given_up = ui::button("Cancel") || ImGui::IsKeyPressed(GLFW_KEY_ESCAPE, false);
   ImGui::End();
+  return given_up;
 }
 
 }  // namespace osteomill::app

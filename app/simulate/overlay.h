@@ -17,7 +17,9 @@ void draw_complaint(ViewState& view);
 /// Asks whether to make the report before the window closes.
 void draw_closing(ViewState& view);
 
-/// In the middle of an empty window, or above the bone that is milled meanwhile.
-void draw_loading(const std::string& what, double passed_s, const PixelSize& size, bool above);
+/// In the middle of an empty window, or above the bone that is milled meanwhile: how far opening a scan is.
+/// True when it is to be given up.
+bool draw_loading(const std::string& what, double share_done, double passed_s, const PixelSize& size,
+                  bool above);
 
 }  // namespace osteomill::app

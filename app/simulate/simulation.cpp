@@ -5,6 +5,8 @@
 #include <thread>
 #include <utility>
 
+#include "osteomill/numbers/work_progress.h"
+
 namespace osteomill::app {
 
 namespace {
@@ -20,10 +22,17 @@ HandleSettings handle_settings(const MillingSetup& setup) {
 }  // namespace
 
 OpenedScan open_for_milling(const ScanOptions& scan, const MillingSetup& setup) {
-  LoadedBone loaded = load_bone(scan);
+  LoadedBone loaded = [&] {
+    const WorkProgress::Part reading(0.4);
+    return load_bone(scan);
+  }();
   auto bone = std::make_shared<Volume>(std::move(loaded.volume));
-  const MillingEntry entry = place_entry(*bone, setup.tool);
+  const MillingEntry entry = [&] {
+    const WorkProgress::Part looking(0.45);
+    return place_entry(*bone, setup.tool);
+  }();
   const DensityHistogram histogram = histogram_of(bone->grid());
+  const WorkProgress::Part preparing(1);
   PreparedMilling milling = prepare_milling(bone, setup);
   const WindowLevel grey_window = window_level_of(bone->grid(), milling.densities.surroundings);
   return {loaded.name, entry, histogram, grey_window, std::move(milling)};

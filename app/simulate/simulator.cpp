@@ -14,6 +14,7 @@
 #include "app/simulate/cuts.h"
 #include "app/simulate/files_panel.h"
 #include "app/simulate/first_time.h"
+#include "app/simulate/opening.h"
 #include "app/simulate/overlay.h"
 #include "app/simulate/panels.h"
 #include "app/simulate/pointer.h"
@@ -113,7 +114,8 @@ class Simulator {
     window_.begin_frame();
     const bool settled = simulation_ && !simulation_->milling.preparing() && !view_.wanted_is_new &&
                          !files_.busy() && !opening_.valid();
-    if (script_ && simulation_) script_->feed(seconds_since(last_picture_), settled, window_);
+    if (script_ && (simulation_ || script_->at_once()))
+      script_->feed(seconds_since(last_picture_), settled, window_);
     last_picture_ = Clock::now();
     ImGui::NewFrame();
   }
@@ -123,12 +125,21 @@ class Simulator {
     opening_since_ = Clock::now();
     changes_before_ = view_.changes;
     const MillingSetup setup = simulation_ ? view_.wanted : options_.setup;
-    opening_ = std::async(std::launch::async, open_for_milling, scan, setup);
+    opening_.begin([scan, setup] { return open_for_milling(scan, setup); });
   }
 
   void draw_opening() {
     const std::string what = opened_scan_.scan.empty() ? "built-in tooth" : opened_scan_.scan;
-    draw_loading(what, seconds_since(opening_since_), window_.size(), simulation_ != nullptr);
+    const bool given_up = draw_loading(what, opening_.share_done(), seconds_since(opening_since_),
+                                       window_.size(), simulation_ != nullptr);
+    if (given_up) give_up_opening(what);
+  }
+
+  void give_up_opening(const std::string& what) {
+    opening_.stop();
+    view_.message = "Opening " + what + " was given up";
+    // There is nothing to be shown.
+    if (!simulation_) view_.closing = Closing::now;
   }
 
   // Another scan, once it was read; the one that is milled goes on until then.
@@ -137,8 +148,6 @@ class Simulator {
     if (!view_.scan_asked.empty()) asked.push_back(std::exchange(view_.scan_asked, {}));
     if (asked.size() > 1) {
       view_.complaint = "One scan at a time: a file, or the folder of a series";
-    } else if (!asked.empty() && opening_.valid()) {
-      view_.complaint = asked.front() + ": " + opened_scan_.scan + " is still being opened";
     } else if (!asked.empty()) {
       begin_opening({asked.front(), {}});
     }
@@ -182,6 +191,8 @@ class Simulator {
   }
 
   void wait_for_scan() {
+    // The last thing said is what is meant.
+    if (const auto asked = window_.take_dropped(); !asked.empty()) begin_opening({asked.back(), {}});
     if (opening_.wait_for(0s) == std::future_status::ready) take_scan();
     draw_opening();
   }
@@ -243,14 +254,7 @@ class Simulator {
 
   void finish() {
     window_.end_frame();
-    if (script_ && simulation_) {
-      if (const UiScript::Saying saying = script_->after_drawing(window_); saying.state) {
-        fmt::print("{}", state_text(saying.text, view_, *simulation_, files_, heard_, window_.size()));
-        std::fflush(stdout);
-      } else if (!saying.text.empty()) {
-        say(saying.text);
-      }
-    }
+    if (script_ && (simulation_ || script_->at_once())) tell(script_->after_drawing(window_));
     window_.show();
     rate_.count();
     ++pictures_since_said_;
@@ -258,6 +262,16 @@ class Simulator {
     // Faster than anyone sees only takes time from the others.
     constexpr auto kMin = 12ms;
     std::this_thread::sleep_until(last_picture_ + kMin);
+  }
+
+  void tell(const UiScript::Saying& saying) {
+    if (saying.text.empty() || !simulation_) return;
+    if (saying.state) {
+      fmt::print("{}", state_text(saying.text, view_, *simulation_, files_, heard_, window_.size()));
+      std::fflush(stdout);
+    } else {
+      say(saying.text);
+    }
   }
 
   void say(const std::string& text) {
@@ -279,7 +293,7 @@ class Simulator {
   SimulatorOptions options_;
   Window window_;
   std::optional<UiScript> script_;
-  std::future<OpenedScan> opening_;
+  Opening opening_;
   ScanOptions opened_scan_;
   Clock::time_point opening_since_;
   int changes_before_ = 0;

@@ -23,9 +23,9 @@ namespace {
 constexpr int kClickPictures = 12;
 
 const std::map<std::string, std::size_t> kWords{
-    {"wait", 1}, {"settle", 0}, {"glide", 3}, {"press", 1},      {"release", 1}, {"wheel", 2}, {"key", 1},
-    {"hold", 2}, {"click", 1},  {"drag", 2},  {"screenshot", 1}, {"say", 1},     {"type", 1},  {"open", 1},
-    {"quit", 0}, {"close", 0},  {"state", 1}, {"controls", 1},   {"await", 1}};
+    {"at-once", 0}, {"wait", 1}, {"settle", 0}, {"glide", 3}, {"press", 1},      {"release", 1}, {"wheel", 2},
+    {"key", 1},     {"hold", 2}, {"click", 1},  {"drag", 2},  {"screenshot", 1}, {"say", 1},     {"type", 1},
+    {"open", 1},    {"quit", 0}, {"close", 0},  {"state", 1}, {"controls", 1},   {"await", 1}};
 
 const std::map<std::string, int> kKeys{
     {"space", GLFW_KEY_SPACE},      {"enter", GLFW_KEY_ENTER},          {"escape", GLFW_KEY_ESCAPE},

@@ -12,6 +12,7 @@ namespace osteomill::app {
 
 /// Works the window as a person would, by pointer and keys, from a text file with a line for each action, so
 /// that the whole window can be tested:
+///     at-once                         as the first line: begins while the first scan is still being opened
 ///     wait SECONDS
 ///     settle                          until nothing is being prepared
 ///     glide X Y SECONDS               moves the pointer there
@@ -49,6 +50,8 @@ class UiScript {
   Saying after_drawing(const Window& window);
   /// After the last picture.
   void end() const;
+  /// Whether it begins before there is a scan.
+  bool at_once() const { return !actions_.empty() && actions_.front().name == "at-once"; }
   /// Whether the window is to close without a question.
   bool closed() const { return closed_; }
 

@@ -17,6 +17,7 @@
 
 #include "osteomill/ct/byte_source.h"
 #include "osteomill/files/input_error.h"
+#include "osteomill/numbers/work_progress.h"
 
 namespace osteomill {
 
@@ -145,11 +146,13 @@ std::optional<DicomData> load_dicom(const fs::path& path) {
 void with_dicom_stack(const std::function<void()>& work) {
   struct Job {
     const std::function<void()>& work;
+    const WorkProgress::OfOtherThread progress;
     std::exception_ptr thrown = nullptr;
-  } job{work};
+  } job{work, {}};
   const auto run = [](void* argument) -> void* {
     auto& mine = *static_cast<Job*>(argument);
     try {
+      const WorkProgress::OfOtherThread::Here here(mine.progress);
       mine.work();
     } catch (...) {
       mine.thrown = std::current_exception();

@@ -12,6 +12,7 @@
 #include "osteomill/ct/gantry_tilt.h"
 #include "osteomill/ct/slice_stack.h"
 #include "osteomill/files/input_error.h"
+#include "osteomill/numbers/work_progress.h"
 
 namespace osteomill {
 
@@ -45,6 +46,7 @@ Folder read_headers(const fs::path& folder, const fs::path& known = {}) {
   if (error) throw InputError(folder.string(), "cannot be read: " + error.message());
   std::sort(files.begin(), files.end());
   for (const fs::path& file : files) {
+    WorkProgress::done(result.images.size() + result.other_files, files.size());
     std::optional<DicomHeader> header = read_dicom_header(file);
     if (header && (header->is_image() || header->lost)) {
       result.images.push_back(std::move(*header));
@@ -133,8 +135,10 @@ std::vector<float> read_densities(Headers& series, const SliceStack& stack,
   }
   const std::size_t slice_size = stack.geometry.voxel_count() / stack.order.size();
   std::vector<float> densities(stack.geometry.voxel_count());
+  std::size_t read = 0;
   for (DicomHeader& header : series) {
     read_dicom_densities(header, [&](std::size_t frame) -> float* {
+      WorkProgress::done(read++, slices.size());
       const auto place = place_of_frame.find({header.file, frame});
       return place == place_of_frame.end() ? nullptr : densities.data() + place->second * slice_size;
     });
@@ -155,7 +159,12 @@ Scan build_scan(const std::string& subject, Headers series, std::vector<std::str
   }
   SliceStack stack = stack_slices(subject, planes);
   add_notes(series, warnings);
-  std::vector<float> densities = read_densities(series, stack, slices);
+  std::vector<float> densities;
+  {
+    const WorkProgress::Part reading(0.95);
+    densities = read_densities(series, stack, slices);
+  }
+  const WorkProgress::Part checking(1);
   check_finite(subject, densities);
   correct_gantry_tilt(subject, stack, densities);
   warnings.insert(warnings.end(), stack.warnings.begin(), stack.warnings.end());
@@ -171,7 +180,12 @@ void warn_of_other_files(std::size_t count, std::vector<std::string>& warnings) 
 
 Scan read_folder(const fs::path& folder) {
   const std::string subject = folder.string();
-  Folder found = read_headers(folder);
+  Folder found;
+  {
+    const WorkProgress::Part looking(0.3);
+    found = read_headers(folder);
+  }
+  const WorkProgress::Part reading(1);
   for (const DicomHeader& header : found.images) {
     if (header.lost) throw *header.fault;
   }

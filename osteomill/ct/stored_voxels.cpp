@@ -10,6 +10,7 @@
 
 #include "osteomill/ct/parse_numbers.h"
 #include "osteomill/files/input_error.h"
+#include "osteomill/numbers/work_progress.h"
 
 namespace osteomill {
 
@@ -111,6 +112,7 @@ std::vector<float> read_binary(const std::string& subject, StoredVoxels& stored,
     if (found == 0) throw InputError(subject, "its compressed data cannot be decompressed");
     if (here < wanted.size()) throw cut_short(subject, needed, found);
     append(wanted, stored, densities);
+    WorkProgress::done(found, needed);
   }
   check_rest(subject, stored, needed, warnings);
   return densities;

@@ -2,6 +2,7 @@
 
 #include "osteomill/ct/finite_densities.h"
 #include "osteomill/ct/volume_header.h"
+#include "osteomill/numbers/work_progress.h"
 
 namespace osteomill {
 
@@ -10,8 +11,12 @@ namespace fs = std::filesystem;
 namespace {
 
 Scan read_behind(VolumeHeader header, const std::string& subject, const char* format) {
-  std::vector<float> densities =
-      read_voxels(subject, header.voxels, header.geometry.voxel_count(), header.warnings);
+  std::vector<float> densities;
+  {
+    const WorkProgress::Part reading(0.85);
+    densities = read_voxels(subject, header.voxels, header.geometry.voxel_count(), header.warnings);
+  }
+  const WorkProgress::Part checking(1);
   check_finite(subject, densities);
   return {DensityGrid(header.geometry, std::move(densities)), subject, format, std::move(header.warnings)};
 }

@@ -12,6 +12,7 @@
 
 #include "osteomill/live/cut_history.h"
 #include "osteomill/live/density_handover.h"
+#include "osteomill/numbers/work_progress.h"
 
 namespace osteomill {
 
@@ -24,6 +25,21 @@ using namespace std::chrono_literals;
 constexpr auto kLookEvery = 20ms;
 // 1 MiB: what comes while the whole surface is meshed at a new isovalue.
 constexpr std::size_t kBricksOnTheirWay = 511;
+
+// A large one takes a while.
+std::shared_ptr<Volume> copy_of(const Volume& bone) {
+  const WorkProgress::Part copying(0.3);
+  const std::vector<float>& from = bone.grid().densities();
+  std::vector<float> densities;
+  densities.reserve(from.size());
+  constexpr std::size_t kAtOnce = 1 << 22;
+  for (std::size_t n = 0; n < from.size(); n += kAtOnce) {
+    const std::size_t count = std::min(kAtOnce, from.size() - n);
+    densities.insert(densities.end(), &from[n], &from[n] + count);
+    WorkProgress::done(n, from.size());
+  }
+  return std::make_shared<Volume>(DensityGrid(bone.geometry(), std::move(densities)), bone.isovalue());
+}
 
 // What the drawing thread has not taken yet, each brick once.
 class Published {
@@ -68,10 +84,14 @@ struct BoneFollower::Impl {
       : handover(bone.geometry(), kBricksOnTheirWay),
         layout(bone.geometry().dims),
         published(layout.count()),
-        copy(std::make_shared<Volume>(bone)),
+        copy(copy_of(bone)),
         history(undo_bytes),
         upkeep(layout),
         shown_isovalue(bone.isovalue()) {
+    {
+      const WorkProgress::Part meshing(1);
+      mesh();
+    }
     mesher = std::thread([this] { keep_up(); });
   }
   ~Impl() {
@@ -84,14 +104,21 @@ struct BoneFollower::Impl {
   }
 
   void keep_up() {
-    std::unique_lock lock(mutex);
-    while (!stopping) {
-      const auto isovalue = std::exchange(new_isovalue, std::nullopt);
-      lock.unlock();
-      follow(isovalue);
-      mesh();
-      lock.lock();
-      woken.wait_for(lock, kLookEvery, [this] { return stopping || new_isovalue; });
+    const WorkProgress meshing([this](double) {
+      if (stopping) throw WorkStopped();
+    });
+    try {
+      std::unique_lock lock(mutex);
+      while (!stopping) {
+        const auto isovalue = std::exchange(new_isovalue, std::nullopt);
+        lock.unlock();
+        follow(isovalue);
+        mesh();
+        lock.lock();
+        woken.wait_for(lock, kLookEvery, [this] { return stopping || new_isovalue; });
+      }
+    } catch (const WorkStopped&) {
+      // The whole bone was being meshed.
     }
   }
 
@@ -161,7 +188,7 @@ struct BoneFollower::Impl {
   std::mutex mutex;
   std::condition_variable woken;
   std::optional<double> new_isovalue;
-  bool stopping = false;
+  std::atomic<bool> stopping = false;
   std::thread mesher;
 };
 

@@ -4,6 +4,7 @@
 #include <thread>
 #include <utility>
 
+#include "osteomill/numbers/work_progress.h"
 #include "osteomill/recording/describe_run.h"
 
 namespace osteomill {
@@ -15,8 +16,17 @@ using namespace std::chrono_literals;
 }  // namespace
 
 PreparedMilling prepare_milling(std::shared_ptr<Volume> bone, const MillingSetup& setup) {
-  const BoneDensities densities = estimate_densities(*bone);
-  auto follower = std::make_unique<BoneFollower>(*bone);
+  BoneDensities densities;
+  std::unique_ptr<BoneFollower> follower;
+  {
+    const WorkProgress::Part looking(0.2);
+    densities = estimate_densities(*bone);
+  }
+  {
+    const WorkProgress::Part meshing(0.8);
+    follower = std::make_unique<BoneFollower>(*bone);
+  }
+  const WorkProgress::Part preparing(1);
   return {setup, densities, std::move(follower), make_session(std::move(bone), densities, setup)};
 }
 

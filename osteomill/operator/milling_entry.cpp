@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "osteomill/files/input_error.h"
+#include "osteomill/numbers/work_progress.h"
 #include "osteomill/volume/isosurface.h"
 
 namespace osteomill {
@@ -20,6 +21,7 @@ template <typename Visit>
 void for_each_bone_voxel(const Volume& volume, const Visit& visit) {
   const auto& dims = volume.geometry().dims;
   for (int k = 0; k < dims[2]; ++k) {
+    WorkProgress::done(static_cast<std::size_t>(k), static_cast<std::size_t>(dims[2]));
     for (int j = 0; j < dims[1]; ++j) {
       for (int i = 0; i < dims[0]; ++i) {
         const VoxelIndex v{i, j, k};

@@ -3,6 +3,7 @@
 #include <numeric>
 #include <utility>
 
+#include "osteomill/numbers/work_progress.h"
 #include "osteomill/surface/brick_mesher.h"
 
 namespace osteomill {
@@ -33,7 +34,9 @@ void SurfaceUpkeep::mark(const VoxelBox& voxels) {
 std::vector<ChangedBrick> SurfaceUpkeep::remesh(const DensityView& view) {
   std::vector<ChangedBrick> changed;
   BrickMesher mesher(view);
-  for (const std::size_t brick : to_mesh_) {
+  for (std::size_t n = 0; n < to_mesh_.size(); ++n) {
+    const std::size_t brick = to_mesh_[n];
+    if (n % 64 == 0) WorkProgress::done(n, to_mesh_.size());
     marked_[brick] = 0;
     mesher.mesh(brick);
     const bool had_mesh = has_mesh_[brick] != 0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "osteomill/numbers/row_major.h"
+#include "osteomill/numbers/work_progress.h"
 
 namespace osteomill {
 
@@ -27,7 +28,12 @@ BlockRanges::BlockRanges(const DensityGrid& grid) {
     dims_[axis] = (grid.geometry().dims[axis] + kBrickVoxels - 1) / kBrickVoxels;
   }
   ranges_.resize(cell_count(dims_));
-  refresh(grid, grid.geometry().all_voxels());
+  for (int bk = 0; bk < dims_[2]; ++bk) {
+    for (int bj = 0; bj < dims_[1]; ++bj) {
+      for (int bi = 0; bi < dims_[0]; ++bi) ranges_[index(bi, bj, bk)] = range_of(grid, bi, bj, bk);
+    }
+    WorkProgress::done(static_cast<std::size_t>(bk), static_cast<std::size_t>(dims_[2]));
+  }
 }
 
 BlockRanges::Range BlockRanges::range_of(const DensityGrid& grid, int bi, int bj, int bk) {

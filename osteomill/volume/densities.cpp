@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 #include <vector>
+
+#include "osteomill/numbers/work_progress.h"
 
 namespace osteomill {
 
@@ -12,11 +16,38 @@ namespace {
 
 constexpr int kStepsAway = 8;
 
-std::optional<double> median(std::vector<float>& values) {
+// Grows with the number.
+std::uint32_t rank_of(float value) {
+  const auto bits = std::bit_cast<std::uint32_t>(value);
+  return (bits >> 31) != 0 ? ~bits : bits | 1u << 31;
+}
+
+// By counting how often the upper and then the lower half of the rank is which: there may be a hundred
+// million.
+std::optional<double> median(const std::vector<float>& values) {
   if (values.empty()) return std::nullopt;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return static_cast<double>(*middle);
+  std::size_t before = values.size() / 2;
+  std::uint32_t upper = 0;
+  std::vector<std::size_t> counts;
+  // How many of those `half` says are which; returns the one in which the wanted one lies.
+  const auto find = [&](const auto& half) {
+    counts.assign(1 << 16, 0);
+    constexpr std::size_t kAtOnce = 1 << 22;
+    for (std::size_t first = 0; first < values.size(); first += kAtOnce) {
+      const std::size_t last = std::min(first + kAtOnce, values.size());
+      for (std::size_t n = first; n < last; ++n) half(rank_of(values[n]));
+      WorkProgress::done(1);
+    }
+    std::uint32_t place = 0;
+    for (; before >= counts[place]; ++place) before -= counts[place];
+    return place;
+  };
+  upper = find([&](std::uint32_t rank) { ++counts[rank >> 16]; });
+  const std::uint32_t lower = find([&](std::uint32_t rank) {
+    if (rank >> 16 == upper) ++counts[rank & 0xffff];
+  });
+  const std::uint32_t rank = upper << 16 | lower;
+  return static_cast<double>(std::bit_cast<float>((rank >> 31) != 0 ? rank & ~(1u << 31) : ~rank));
 }
 
 // Takes every bone voxel to `visit`; bricks without bone are passed over.
@@ -25,6 +56,7 @@ void for_each_bone_voxel(const Volume& volume, const Visit& visit) {
   constexpr int kSide = BlockRanges::kBrickVoxels;
   const BlockRanges& bricks = volume.bricks();
   for (int bk = 0; bk < bricks.dims()[2]; ++bk) {
+    WorkProgress::done(static_cast<std::size_t>(bk), static_cast<std::size_t>(bricks.dims()[2]));
     for (int bj = 0; bj < bricks.dims()[1]; ++bj) {
       for (int bi = 0; bi < bricks.dims()[0]; ++bi) {
         if (static_cast<double>(bricks.at(bi, bj, bk).max) <= volume.isovalue()) continue;

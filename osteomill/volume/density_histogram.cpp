@@ -7,9 +7,11 @@
 namespace osteomill {
 
 DensityHistogram histogram_of(const DensityGrid& grid) {
-  constexpr std::size_t kEvery = 7;
+  // An odd number, so that not all come from the same columns.
+  constexpr std::size_t kEnough = 1'000'000;
+  const std::size_t every = std::max<std::size_t>(7, grid.densities().size() / kEnough | 1);
   std::vector<float> sample;
-  for (std::size_t n = 0; n < grid.densities().size(); n += kEvery) sample.push_back(grid.densities()[n]);
+  for (std::size_t n = 0; n < grid.densities().size(); n += every) sample.push_back(grid.densities()[n]);
   std::sort(sample.begin(), sample.end());
   const std::size_t rare = sample.size() / 2000;
   DensityHistogram histogram;

@@ -10,6 +10,8 @@
 
 #include <fmt/format.h>
 
+#include "osteomill/numbers/work_progress.h"
+
 namespace osteomill {
 
 namespace {
@@ -32,6 +34,7 @@ std::vector<Sample> samples_of(const DensityGrid& grid) {
   };
   std::vector<Sample> samples;
   for (int k = 0; k < dims[2]; k += step) {
+    WorkProgress::done(0);
     for (int j = 0; j < dims[1]; j += step) {
       for (int i = 0; i < dims[0]; i += step) {
         double change = 0;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "osteomill/numbers/work_progress.h"
+
 namespace osteomill::barrier_shell {
 
 namespace {
@@ -32,6 +34,7 @@ BoneBricks::BoneBricks(const Volume& volume, double spacing_mm)
   const auto& dims = lattice_.brick_dims();
   slots_.resize(index_of({0, 0, dims[2]}), kNoPoints);
   for (int k = 0; k < dims[2]; ++k) {
+    WorkProgress::done(static_cast<std::size_t>(k), static_cast<std::size_t>(dims[2]));
     for (int j = 0; j < dims[1]; ++j) {
       for (int i = 0; i < dims[0]; ++i) {
         if (!lattice_.may_hold_surface({i, j, k})) continue;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "osteomill/numbers/work_progress.h"
+
 namespace osteomill {
 
 namespace {
@@ -37,7 +39,13 @@ BrickPoints::Bound bound_of(std::span<const ShellPoint> points) {
 }  // namespace
 
 BrickPoints::BrickPoints(std::size_t brick_count, std::size_t chunk_capacity)
-    : chunks_(chunk_capacity), next_(chunk_capacity), bricks_(brick_count), free_chunks_(chunk_capacity) {
+    : next_(chunk_capacity), bricks_(brick_count), free_chunks_(chunk_capacity) {
+  chunks_.reserve(chunk_capacity);
+  constexpr std::size_t kAtOnce = 1 << 14;
+  while (chunks_.size() < chunk_capacity) {
+    chunks_.resize(std::min(chunks_.size() + kAtOnce, chunk_capacity));
+    WorkProgress::done(chunks_.size(), chunk_capacity);
+  }
   for (std::size_t n = chunk_capacity; n-- > 0;) {
     next_[n] = first_free_;
     first_free_ = static_cast<std::uint32_t>(n);

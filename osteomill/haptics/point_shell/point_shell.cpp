@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 
+#include "osteomill/numbers/work_progress.h"
+
 namespace osteomill::point_shell {
 
 namespace {
@@ -66,15 +68,23 @@ PointShell::PointShell(const Volume& volume, const ShellRules& rules)
   std::size_t chunks = 0;
   const auto for_each_brick = [&](auto&& f) {
     for (int bk = 0; bk < bricks[2]; ++bk) {
+      WorkProgress::done(static_cast<std::size_t>(bk), static_cast<std::size_t>(bricks[2]));
       for (int bj = 0; bj < bricks[1]; ++bj) {
         for (int bi = 0; bi < bricks[0]; ++bi) f(bi, bj, bk);
       }
     }
   };
-  for_each_brick([&](int bi, int bj, int bk) {
-    chunks += (count_of(mask_of(bi, bj, bk, all_cells, {})) + PointChunk::kSlots - 1) / PointChunk::kSlots;
-  });
-  points_ = BrickPoints(masks_.size(), 2 * chunks + kSpareChunks);
+  {
+    const WorkProgress::Part counting(0.4);
+    for_each_brick([&](int bi, int bj, int bk) {
+      chunks += (count_of(mask_of(bi, bj, bk, all_cells, {})) + PointChunk::kSlots - 1) / PointChunk::kSlots;
+    });
+  }
+  {
+    const WorkProgress::Part making_room(0.6);
+    points_ = BrickPoints(masks_.size(), 2 * chunks + kSpareChunks);
+  }
+  const WorkProgress::Part placing(1);
   old_points_.resize(kMaxPointsOfBrick);
   new_points_.resize(kMaxPointsOfBrick);
   for_each_brick([&](int bi, int bj, int bk) { refresh_brick(bi, bj, bk, all_cells); });
@@ -135,6 +145,7 @@ bool PointShell::holds_no_bone(const VoxelIndex& b) const {
 void PointShell::find_bone() {
   const auto& dims = lattice_.node_dims();
   for (int k = 0; k < dims[2]; ++k) {
+    WorkProgress::done(0);
     for (int j = 0; j < dims[1]; ++j) {
       for (int byte = 0; 8 * byte < dims[0]; ++byte)
         bone_.set_byte(byte, j, k, lattice_.bone_byte(byte, j, k));

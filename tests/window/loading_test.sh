@@ -1,0 +1,53 @@
+#!/usr/bin/env bash
+# While a large scan is opened its loading can be given up, by button and key, another can be opened instead, and the
+# window can be closed:
+#   loading_test.sh OSTEOMILL
+set -euo pipefail
+osteomill=$1
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+command -v xvfb-run >/dev/null || { echo "SKIPPED: needs xvfb-run"; exit 77; }
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cd "$folder"
+export XDG_STATE_HOME=$folder/state
+fail() { echo "FAILED: $1"; cat said errors; exit 1; }
+"$here/ball.sh" >ball.nrrd
+"$here/ball.sh" 4 >other.nrrd
+# Bone below, air above: 480^3 voxels of a byte.
+{ printf 'NRRD0004\ntype: uint8\ndimension: 3\nsizes: 480 480 480\nspacings: 0.1 0.1 0.1\nencoding: raw\n\n'
+  head -c $((480 * 480 * 240)) /dev/zero | tr '\0' '\310'
+  head -c $((480 * 480 * 240)) /dev/zero; } >large.nrrd
+window() {
+  sed 's/ *;; */\n/g' >actions
+  xvfb-run -a -s "-screen 0 1280x800x24" timeout 100 "$osteomill" simulate "$@" --no-help --script actions >said 2>errors
+}
+value() { sed -n "s/^$1\.$2=//p" said; }
+is() { [ "$(value "$1" "$2")" = "$3" ] || fail "at $1, $2 is '$(value "$1" "$2")' and not '$3'"; }
+
+# Of the first scan, before there is anything else: it closes, and `state`, which needs a scan, is never said.
+for way in quit "click Cancel" "key escape"; do
+  printf '%s\n' at-once "wait 0.3" "screenshot opening.png" "$way" "wait 100" "state never" |
+    window large.nrrd --iso 100 || fail "exit code $? after '$way'"
+  [ ! -s said ] || fail "the scan was opened in spite of '$way'"
+  [ -s opening.png ] || fail "nothing was drawn while it was opened"
+done
+[ -z "${OSTEOMILL_PICTURES:-}" ] || cp opening.png "$OSTEOMILL_PICTURES"
+printf '%s\n' at-once "wait 0.3" "open other.nrrd" settle "wait 0.3" "state instead" close | window large.nrrd --iso 100 ||
+  fail "exit code $?"
+is instead scan other.nrrd
+
+# Of another scan, while one is milled.
+window ball.nrrd <<'END' || fail "exit code $?"
+wait 0.2 ;; open large.nrrd ;; wait 0.3 ;; click Cancel ;; wait 0.3 ;; state by-button
+open large.nrrd ;; wait 0.3 ;; key escape ;; wait 0.3 ;; state by-key
+open large.nrrd ;; wait 0.3 ;; open other.nrrd ;; settle ;; wait 0.3 ;; state instead
+open large.nrrd ;; wait 0.3 ;; quit ;; wait 100 ;; state never
+END
+for moment in by-button by-key; do
+  is $moment scan ball.nrrd
+  is $moment message "Opening large.nrrd was given up"
+  ! value $moment shown | grep -qF "[Cancel]" || fail "at $moment it still loads"
+done
+is instead scan other.nrrd
+! value instead dialogue | grep -q . || fail "giving up is complained about"
+[ -z "$(value never scan)" ] || fail "it did not close"
