@@ -65,15 +65,21 @@ void mill(benchmark::State& state, double burr_radius_mm, double spacing_mm) {
   }
 }
 
+// Of scans of 256, 512 and 1024 voxels along a tooth.
 const bool kAdded = [] {
-  for (const double radius_mm : {1.5, 3.0}) {
-    for (const double spacing_mm : {0.125, 0.0625}) {
-      const std::string name = "milling/burr_" + std::string(radius_mm > 2 ? "3.0mm" : "1.5mm") +
-                               (spacing_mm > 0.1 ? "/0.125mm" : "/0.0625mm");
-      benchmark::RegisterBenchmark(name.c_str(), mill, radius_mm, spacing_mm)
-          ->Iterations(1)
-          ->Unit(benchmark::kMillisecond);
-    }
+  struct Case {
+    const char* name;
+    double burr_radius_mm, spacing_mm;
+  };
+  for (const Case& c : {Case{"1.5mm/0.125mm", 1.5, 0.125},
+                        {"1.5mm/0.0625mm", 1.5, 0.0625},
+                        {"1.5mm/0.031mm", 1.5, 0.03125},
+                        {"3.0mm/0.125mm", 3, 0.125},
+                        {"3.0mm/0.0625mm", 3, 0.0625}}) {
+    benchmark::RegisterBenchmark(("milling/burr_" + std::string(c.name)).c_str(), mill, c.burr_radius_mm,
+                                 c.spacing_mm)
+        ->Iterations(1)
+        ->Unit(benchmark::kMillisecond);
   }
   return true;
 }();

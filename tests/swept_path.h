@@ -93,7 +93,7 @@ struct Carving {
   /// Not swept and no bone any more: how far outside the sweep the farthest lies.
   double lost_mm = 0;
 
-  double share() const { return carved_mm3 / swept_mm3; }
+  double share() const { return swept_mm3 > 0 ? carved_mm3 / swept_mm3 : 0.0; }
 };
 
 inline bool is_deep_in_bone(const Volume& volume, const Vec3& point_W) {

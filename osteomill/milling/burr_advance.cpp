@@ -14,8 +14,10 @@ constexpr double kNoDistance_mm = 1e-7;
 // Of the budget, for what the trailing half overlaps.
 constexpr double kMaxTrailing = 0.5;
 
+// All of nothing where there is nothing; a budget may be below zero by what floats rounded before.
 double part(double of, double all) {
-  return all > of ? of / all : 1.0;
+  const double spent = std::max(of, 0.0);
+  return all > spent ? spent / all : 1.0;
 }
 
 // Between `low`, where the cost is below the budget, and `high`, where it is above: Newton's place, an end

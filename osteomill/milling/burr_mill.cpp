@@ -23,7 +23,7 @@ constexpr double kMaxAhead_mm_s = 20;
 // much deeper than the others.
 constexpr std::size_t kPiecesOfTick = 1024;
 constexpr std::size_t kMaxPiecesOfTick = 4096;
-constexpr double kMaxUneven_voxels = 0.3;
+constexpr double kMaxUneven_voxels = 0.6;
 constexpr unsigned kMaxShares = 64;
 
 // The least float that is not below `density`.

@@ -79,12 +79,13 @@ unsigned GatherPiece(const CutPiece& piece, const CutKernelBall& ball, const Cut
     const M lowered = hn::And(bone, hn::Gt(before, density(profile, t)));
     if (hn::AllFalse(d, lowered)) continue;
     const std::size_t n = lists.size;
-    hn::CompressStore(distance2, lowered, d, &lists.distance2_mm2[n]);
-    hn::CompressStore(along, lowered, d, &lists.ahead_mm[n]);
-    hn::CompressStore(per_mm, lowered, d, &lists.voxels_per_mm[n]);
-    hn::CompressStore(hn::Iota(di, piece.column + static_cast<int>(lane)), hn::RebindMask(di, lowered), di,
-                      &lists.columns[n]);
-    lists.size += hn::CompressStore(before, lowered, d, &lists.before[n]);
+    hn::StoreU(hn::Compress(distance2, lowered), d, &lists.distance2_mm2[n]);
+    hn::StoreU(hn::Compress(along, lowered), d, &lists.ahead_mm[n]);
+    hn::StoreU(hn::Compress(per_mm, lowered), d, &lists.voxels_per_mm[n]);
+    hn::StoreU(hn::Compress(before, lowered), d, &lists.before[n]);
+    const auto columns = hn::Iota(di, piece.column + static_cast<int>(lane));
+    hn::StoreU(hn::Compress(columns, hn::RebindMask(di, lowered)), di, &lists.columns[n]);
+    lists.size += hn::CountTrue(d, lowered);
   }
   return denser;
 }

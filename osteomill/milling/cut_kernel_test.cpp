@@ -132,6 +132,10 @@ TEST(BurrAdvance, SpendsTheBudgetAndNoMore) {
       EXPECT_GE(spent, 0.985 * budget) << share;
     }
   }
+  for (const double budget : {0.0, -1e-9}) {
+    const BurrAdvance none = advance_within(budget, g.voxels, 0, -1, 0.2);
+    EXPECT_LE(g.voxels.lower(none.ahead_mm, none.shares), 1e-3) << budget << ", but for how floats round";
+  }
   const BurrAdvance more = advance_within(3 * (all.leading + all.trailing), g.voxels, 0, -1, 0.2);
   EXPECT_EQ(more.ahead_mm, 0.2) << "all that is in reach";
   EXPECT_NEAR(g.voxels.lower(more.ahead_mm, more.shares), all.leading + all.trailing, 1);
