@@ -49,6 +49,7 @@ const std::vector<Named>& all_sections() {
       {"rates", haptic_rates},
       {"tooth", milling_the_tooth},
       {"second", milling_the_second_scan},
+      {"energy", energy_of_barrier_shell},
       {"rig", the_rig_itself},
       {"switches", switch_by_switch},
   };

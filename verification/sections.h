@@ -33,6 +33,7 @@ Section slide_round_a_ball();
 Section turned_scans();
 Section drops();
 Section passivity();
+Section energy_of_barrier_shell(const Bones& bones, const Effort& effort);
 Section the_rig_itself(const Bones& bones, const Effort& effort);
 Section voxel_sizes(const Effort& effort);
 Section swept_holes(const Effort& effort);

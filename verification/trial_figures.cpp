@@ -44,6 +44,7 @@ TrialFigures milling_figures(const Volume& bone, const TrialVariant& variant) {
   TrialFigures figures;
   figures.metrics = run_metrics(recording);
   figures.paid_share = figures.metrics.removed_mm3 / paid_for_mm3;
+  if (const auto* counts = barrier_shell::counts_of(trial.algorithm())) figures.counts = *counts;
   figures.milling_us = distribution_of(milling_us);
   return figures;
 }

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "osteomill/experiment/milling_trial.h"
+#include "osteomill/haptics/barrier_shell/barrier_shell_counts.h"
 #include "osteomill/report/metrics.h"
 
 namespace osteomill::verification {
@@ -30,6 +32,8 @@ struct TrialFigures {
   RunMetrics metrics;
   /// What was removed / (kappa times the integral of the burr's force).
   double paid_share = 0;
+  /// Of barrier-shell alone.
+  std::optional<barrier_shell::Counts> counts;
   /// Of each tick's milling with all that follows the volume.
   Distribution milling_us;
 

@@ -97,6 +97,11 @@ struct BarrierShell::Step {
   bool reaches_device = false;
 };
 
+const Counts* counts_of(const HapticAlgorithm& algorithm) {
+  const auto* shell = dynamic_cast<const BarrierShell*>(&algorithm);
+  return shell == nullptr ? nullptr : &shell->counts();
+}
+
 BarrierShell::BarrierShell(const Settings& settings)
     : settings_(settings),
       coupling_{settings.translational_stiffness_N_per_mm, settings.torsional_stiffness_Nmm_per_rad},

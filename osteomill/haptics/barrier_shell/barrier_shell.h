@@ -1,8 +1,8 @@
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
+#include "osteomill/haptics/barrier_shell/barrier_shell_counts.h"
 #include "osteomill/haptics/barrier_shell/barrier_shell_settings.h"
 #include "osteomill/haptics/barrier_shell/bone_bricks.h"
 #include "osteomill/haptics/barrier_shell/coupling.h"
@@ -10,23 +10,6 @@
 #include "osteomill/haptics/haptic_algorithm.h"
 
 namespace osteomill::barrier_shell {
-
-/// What an algorithm counts about itself, from its start.
-struct Counts {
-  std::uint64_t ticks = 0;
-  /// Sums over the points.
-  std::uint64_t passes = 0;
-  std::uint64_t backtracks = 0;
-  /// Ticks that ended before the solver was done, at the best certified pose.
-  std::uint64_t unfinished = 0;
-  /// Ticks at whose start the stored energy was above that at the end of the tick before, with the device
-  /// where it was: what milling or points brought up to date have added. By how much, in all and at worst.
-  std::uint64_t energy_rises = 0;
-  double energy_risen_Nmm = 0;
-  double worst_rise_Nmm = 0;
-  /// The nearest that a point came to a core, as a share of the skin's width.
-  double nearest_share = 1;
-};
 
 /// Algorithm 4: the tool rests on a soft skin of bone that nothing can push through. Two convex cores within
 /// the tool keep away from the isosurface's points by a barrier that grows without bound; each tick a few
