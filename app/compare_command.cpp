@@ -45,13 +45,14 @@ struct CompareOptions {
 // One plan a mode, with the first seed.
 std::vector<TrialPlan> plans_of(const CompareOptions& options, const LoadedBone& bone,
                                 const std::string& command_line) {
-  const TrialPlan plan{bone.volume,
-                       bone.name,
-                       estimate_densities(bone.volume),
-                       place_entry(bone.volume, options.trial),
-                       trial_settings(options.trial),
-                       command_line,
-                       options.modes.size() > 1};
+  TrialPlan plan{bone.volume,
+                 bone.name,
+                 estimate_densities(bone.volume),
+                 place_entry(bone.volume, options.trial),
+                 trial_settings(options.trial),
+                 command_line,
+                 options.modes.size() > 1};
+  plan.settings.hand_and_device.script = until_felt(plan.settings.hand_and_device.script);
   std::vector<TrialPlan> plans;
   for (const Mode mode : options.modes) {
     plans.push_back(options.seeds > 1 ? with_seed(plan, options.trial.milling.seed) : plan);

@@ -30,9 +30,12 @@ std::vector<Run> runs(const Bones& bones, const Effort& effort) {
 Section energy_of_barrier_shell(const Bones& bones, const Effort& effort) {
   Section section{
       "What barrier-shell stores",
-      "Must hold: what is stored falls in every tick by itself, and where bone is removed too, but for what new "
-      "points add whose areas are not quite the old ones': at most 0.001 N mm in a tick, and in all a thousandth "
-      "of the work that the burr's force pays for. The rises are those at the start of a tick, at the pose of "
+      "Must hold: what is stored falls in every tick by itself, and where bone is removed too, but for what "
+      "new "
+      "points add whose areas are not quite the old ones': at most 0.001 N mm in a tick, and in all a "
+      "thousandth "
+      "of the work that the burr's force pays for. The rises are those at the start of a tick, at the pose "
+      "of "
       "the tool and of the device at the end of the last. The solver's passes are sums over the points; an "
       "unfinished tick ends at the best pose that was certified.",
       {"bone, push", "ticks with a rise", "risen in all, N mm", "at worst in a tick, N mm", "passes a tick",
@@ -46,11 +49,11 @@ Section energy_of_barrier_shell(const Bones& bones, const Effort& effort) {
       return fmt::format("{:.2g} %", 100 * static_cast<double>(count) / static_cast<double>(c.ticks));
     };
     const double work_Nmm = figures.metrics.removed_mm3 * CuttingSettings{}.specific_energy_Nmm_per_mm3;
-    section.add({run.name, share(c.energy_rises), figure(c.energy_risen_Nmm), figure(c.worst_rise_Nmm),
-                 figure(static_cast<double>(c.passes) / static_cast<double>(c.ticks)), share(c.unfinished),
-                 figure(c.nearest_share), figure(figures.metrics.force_N.mean),
-                 figure(figures.metrics.removed_mm3)},
-                c.worst_rise_Nmm <= 0.001 && c.energy_risen_Nmm <= 1e-3 * work_Nmm && c.nearest_share > 0);
+    section.add(
+        {run.name, share(c.energy_rises), figure(c.energy_risen_Nmm), figure(c.worst_rise_Nmm),
+         figure(static_cast<double>(c.passes) / static_cast<double>(c.ticks)), share(c.unfinished),
+         figure(c.nearest_share), figure(figures.metrics.force_N.mean), figure(figures.metrics.removed_mm3)},
+        c.worst_rise_Nmm <= 0.001 && c.energy_risen_Nmm <= 1e-3 * work_Nmm && c.nearest_share > 0);
   }
   return section;
 }

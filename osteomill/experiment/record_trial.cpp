@@ -1,5 +1,6 @@
 #include "osteomill/experiment/record_trial.h"
 
+#include <algorithm>
 #include <memory>
 #include <utility>
 
@@ -59,12 +60,19 @@ std::vector<fs::path> record_trial(const TrialPlan& plan, const AlgorithmDescrip
     (tick.milling_phase ? milling : holding).push_waiting(tick.record);
     faults.add(tick.record);
     if (n % kTicksBetweenProgress == 0) {
-      events.tell_progress(algorithm.id.name, tick.record.time_s / (script.milling_s + script.holding_s));
+      // A trial that takes longer than asked for, since the hand does not yet feel what it should, stays at
+      // its end.
+      const double asked_s = script.milling_s + script.holding_s;
+      events.tell_progress(algorithm.id.name, std::min(1.0, tick.record.time_s / asked_s));
     }
   }
   add_pictures(milling, pictures, trial.volume(), events);
   milling.close();
   holding.close();
+  if (script.longest_milling_s > script.milling_s && !trial.has_leant()) {
+    events.warn(fmt::format("{}: in {:g} s of milling the shaft leant on the bone for less than {:g} s",
+                            algorithm.id.name, script.longest_milling_s, script.leant_s));
+  }
   if (const auto said = faults.sentence()) events.warn(fmt::format("{}: {}", algorithm.id.name, *said));
   return paths;
 }

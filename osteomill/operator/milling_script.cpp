@@ -19,6 +19,14 @@ bool share(double value) {
   return value >= 0 && value <= 1;
 }
 
+// Of what the hand wants to feel, enough to say that it does.
+constexpr double kFelt = 0.8;
+// Of the torque with which it leans, enough to say that the shaft rests on bone.
+constexpr double kLeant = 0.5;
+
+// Times are sums of ticks; this keeps a stage from beginning a tick late by a rounding.
+constexpr double kRounding_s = 1e-6;
+
 // How far a spring is stretched when it gives `share` of its limit; a spring of no stiffness gives nothing.
 double stretch_for(double share, double limit, double stiffness) {
   return stiffness > 0 ? share * limit / stiffness : 0.0;
@@ -40,9 +48,18 @@ void require_valid(const ScriptSettings& settings) {
               share(settings.hold_push_share) && share(settings.hold_torque_share),
           "a share must lie in [0, 1]");
   require(is_not_negative(settings.settle_s), "settling must not take less than 0 s");
+  require(is_not_negative(settings.longest_milling_s) && is_not_negative(settings.longest_settle_s) &&
+              is_not_negative(settings.leant_s),
+          "a time must not be less than 0 s");
   require(
       is_not_negative(settings.push_correction_per_s) && is_not_negative(settings.torque_correction_per_s),
       "a correction (1/s) must not be negative");
+}
+
+ScriptSettings until_felt(ScriptSettings settings) {
+  settings.longest_milling_s = 3 * settings.milling_s;
+  settings.longest_settle_s = settings.settle_s + 0.5 * settings.holding_s;
+  return settings;
 }
 
 MillingScript::MillingScript(const ScriptSettings& settings, const HandSettings& hand,
@@ -64,16 +81,56 @@ double MillingScript::shown_depth_mm(const Pose& X_WT) const {
   return entry_.direction_W.dot(X_WT.position_mm - entry_.point_W) + tool_.burr_radius_mm;
 }
 
-ScriptStage MillingScript::next_stage(double time_s, const Pose& X_WT) const {
-  // Times are sums of ticks; a microsecond keeps a phase from beginning a tick late by a rounding.
-  const double now_s = time_s + 1e-6;
-  if (now_s >= settings_.milling_s + settings_.settle_s) return ScriptStage::hold;
-  if (now_s >= settings_.milling_s) return ScriptStage::settle;
-  if (intent_.stage == ScriptStage::lean || shown_depth_mm(X_WT) >= settings_.depth_mm ||
-      now_s >= settings_.latest_lean_share * settings_.milling_s) {
-    return ScriptStage::lean;
+// Of the hand's push and of its torque, what its springs give.
+double MillingScript::felt_push_share(const Pose& X_WD) const {
+  const double stretch_mm = along_mm_ - entry_.direction_W.dot(X_WD.position_mm - entry_.point_W);
+  return hand_.push_N > 0 ? stretch_mm * hand_.stiffness_N_per_mm / hand_.push_N : 0;
+}
+
+double MillingScript::felt_torque_share(const Pose& X_WD) const {
+  const double limit_Nmm = torque_limit_Nmm(hand_);
+  const double turn_rad =
+      lean_axis_W_.dot(rotation_vector(target().orientation * X_WD.orientation.conjugate()));
+  return limit_Nmm > 0 ? turn_rad * hand_.torsional_stiffness_Nmm_per_rad / limit_Nmm : 0;
+}
+
+bool MillingScript::is_milled(double now_s) const {
+  return now_s >= std::max(settings_.milling_s, settings_.longest_milling_s) ||
+         (now_s >= settings_.milling_s && leant_s_ >= settings_.leant_s);
+}
+
+bool MillingScript::is_settled(double now_s, const Pose& X_WD) const {
+  const double settling_s = now_s - stage_began_s_;
+  const double least_s = std::min(settings_.settle_s, settings_.holding_s);
+  const bool is_held = settings_.holding_s > settings_.settle_s;
+  if (settling_s >= std::max(least_s, is_held ? settings_.longest_settle_s : 0)) return true;
+  return settling_s >= least_s && felt_push_share(X_WD) >= kFelt * settings_.hold_push_share &&
+         felt_torque_share(X_WD) >= kFelt * settings_.hold_torque_share;
+}
+
+void MillingScript::begin(ScriptStage stage, double now_s) {
+  intent_.stage = stage;
+  stage_began_s_ = now_s - kRounding_s;
+}
+
+void MillingScript::advance_stage(double now_s, double dt_s, const Pose& X_WD, const Pose& X_WT) {
+  const bool is_milling = intent_.stage < ScriptStage::settle;
+  if (is_milling && is_milled(now_s)) begin(ScriptStage::settle, now_s);
+  if (intent_.stage == ScriptStage::settle && is_settled(now_s, X_WD)) begin(ScriptStage::hold, now_s);
+  if (intent_.stage == ScriptStage::hold &&
+      now_s - stage_began_s_ >= settings_.holding_s - settings_.settle_s) {
+    begin(ScriptStage::done, now_s);
   }
-  return along_mm_ >= -tool_.burr_radius_mm ? ScriptStage::feed : intent_.stage;
+  if (intent_.stage >= ScriptStage::settle) return;
+  const double latest_s =
+      settings_.latest_lean_share * std::max(settings_.milling_s, settings_.longest_milling_s);
+  if (intent_.stage == ScriptStage::lean) {
+    if (felt_torque_share(X_WD) >= kLeant * settings_.lean_torque_share) leant_s_ += dt_s;
+  } else if (shown_depth_mm(X_WT) >= settings_.depth_mm || now_s >= latest_s) {
+    begin(ScriptStage::lean, now_s);
+  } else if (along_mm_ >= -tool_.burr_radius_mm) {
+    intent_.stage = ScriptStage::feed;
+  }
 }
 
 void MillingScript::push(double share, double slowest_mm_s, double fastest_mm_s, double dt_s,
@@ -109,7 +166,7 @@ Pose MillingScript::target() const {
 }
 
 const ScriptIntent& MillingScript::step(double time_s, double dt_s, const Pose& X_WD, const Pose& X_WT) {
-  intent_.stage = next_stage(time_s, X_WT);
+  advance_stage(time_s + kRounding_s, dt_s, X_WD, X_WT);
   const double feed_mm_s = settings_.feed_mm_s;
   switch (intent_.stage) {
     case ScriptStage::approach:
@@ -129,6 +186,7 @@ const ScriptIntent& MillingScript::step(double time_s, double dt_s, const Pose& 
       lean(settings_.hold_torque_share, dt_s, X_WD);
       break;
     case ScriptStage::hold:
+    case ScriptStage::done:
       break;
   }
   intent_.milling = intent_.stage < ScriptStage::settle;

@@ -195,6 +195,36 @@ TEST(MillingScript, InEmptyAirTheTargetKeepsWithinItsBounds) {
   EXPECT_NEAR(person.time_s(), 6.0, 1e-9);
 }
 
+// A hand that never feels the wall mills and settles as long as it may; one that does as long as it must.
+TEST(MillingScript, MillsUntilTheShaftHasLeantAndHoldsWhatItFeels) {
+  OperatorSettings settings = without_tremor();
+  settings.script.milling_s = 8;
+  settings.script.holding_s = 4;
+  settings.script = until_felt(settings.script);
+  const auto milled_and_held_s = [&](double wall_Nmm_per_rad) {
+    SimulatedOperator person(settings, kTool, {});
+    double milled_s = 0;
+    while (!person.finished()) {
+      const Pose device = person.read_pose();
+      // Bone below, and a wall that resists the shaft's turning.
+      const Vec3 turn =
+          rotation_vector(device.orientation * pose_above({}, kTool, 0).orientation.conjugate());
+      person.write_wrench({{0, 0, std::max(0.0, 2 * (kTool.burr_radius_mm - 4 - device.position_mm.z()))},
+                           -wall_Nmm_per_rad * turn});
+      person.see(device);
+      if (person.milling()) milled_s = person.time_s();
+      person.advance(kTick_s);
+    }
+    return std::pair(milled_s, person.time_s() - milled_s);
+  };
+  const auto [milled_s, held_s] = milled_and_held_s(300);
+  EXPECT_NEAR(milled_s, 8, 1.5);
+  EXPECT_NEAR(held_s, 4, 0.01);
+  const auto [milled_in_air_s, held_in_air_s] = milled_and_held_s(0);
+  EXPECT_NEAR(milled_in_air_s, 24, 0.01);
+  EXPECT_NEAR(held_in_air_s, 4 + 2, 0.01);
+}
+
 TEST(MillingScript, TurningEverythingTurnsTheIntent) {
   const Pose turn{{5, -3, 2}, quaternion_from_rotation_vector({0.7, 0.2, -0.4})};
   const MillingEntry plain = on_a_ball();

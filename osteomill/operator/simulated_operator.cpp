@@ -28,7 +28,6 @@ void require_integrable(const HandleSettings& handle, const HandSettings& hand) 
 SimulatedOperator::SimulatedOperator(const OperatorSettings& settings, const MillingTool& tool,
                                      const MillingEntry& entry)
     : hand_(settings.hand),
-      end_s_(settings.script.milling_s + settings.script.holding_s),
       tremor_(settings.seed, settings.hand.tremor_mm),
       script_(settings.script, settings.hand, tool, entry),
       handle_(settings.handle, script_.intent().X_W_target) {
@@ -39,10 +38,6 @@ SimulatedOperator::SimulatedOperator(const OperatorSettings& settings, const Mil
 
 Pose SimulatedOperator::trembling(const Pose& X_W_intended) const {
   return {X_W_intended.position_mm + tremor_.at(time_s()), X_W_intended.orientation};
-}
-
-bool SimulatedOperator::finished() const {
-  return time_s() + 0.5 * handle_.settings().substep_s >= end_s_;
 }
 
 void SimulatedOperator::advance(double dt_s) {

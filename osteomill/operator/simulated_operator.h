@@ -46,8 +46,10 @@ class SimulatedOperator final : public Device {
   /// Whether the spindle turns in the tick that begins now: the milling phase, and after it the holding.
   bool milling() const { return script_.intent().milling; }
   ScriptStage stage() const { return script_.intent().stage; }
+  /// Whether the shaft has leant on bone for long enough (ScriptSettings::leant_s).
+  bool has_leant() const { return script_.has_leant(); }
   /// Both phases are over.
-  bool finished() const;
+  bool finished() const { return stage() == ScriptStage::done; }
 
   /// Where the hand pulls to, with its tremor.
   const Pose& target() const { return X_W_target_; }
@@ -60,7 +62,6 @@ class SimulatedOperator final : public Device {
   Pose trembling(const Pose& X_W_intended) const;
 
   HandSettings hand_;
-  double end_s_;
   Tremor tremor_;
   MillingScript script_;
   SimulatedHandle handle_;
