@@ -52,7 +52,7 @@ std::vector<TrialPlan> plans_of(const CompareOptions& options, const LoadedBone&
                  trial_settings(options.trial),
                  command_line,
                  options.modes.size() > 1};
-  plan.settings.hand_and_device.script = until_felt(plan.settings.hand_and_device.script);
+  plan.settings.hand_and_device.script.until_leant = true;
   std::vector<TrialPlan> plans;
   for (const Mode mode : options.modes) {
     plans.push_back(options.seeds > 1 ? with_seed(plan, options.trial.milling.seed) : plan);

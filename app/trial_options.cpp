@@ -40,7 +40,7 @@ void add_trial_options(CLI::App& command, TrialOptions& options) {
   command
       .add_option_function<double>(
           "--seconds", [&script](double seconds) { script.milling_s = script.holding_s = seconds; },
-          "s, how long each phase lasts")
+          "s, how long each phase lasts (compare: about; docs/algorithms.md)")
       ->check(positive_number())
       ->default_str(std::to_string(static_cast<int>(script.milling_s)));
   add_vector(command, "--entry", options.entry_mm, "mm, from where the tool enters (the top of the bone)");

@@ -69,9 +69,9 @@ std::vector<fs::path> record_trial(const TrialPlan& plan, const AlgorithmDescrip
   add_pictures(milling, pictures, trial.volume(), events);
   milling.close();
   holding.close();
-  if (script.longest_milling_s > script.milling_s && !trial.has_leant()) {
-    events.warn(fmt::format("{}: in {:g} s of milling the shaft leant on the bone for less than {:g} s",
-                            algorithm.id.name, script.longest_milling_s, script.leant_s));
+  if (script.until_leant && !trial.has_leant()) {
+    events.warn(fmt::format("{}: the shaft leant on the bone for less than {:g} s", algorithm.id.name,
+                            script.leant_share * script.milling_s));
   }
   if (const auto said = faults.sentence()) events.warn(fmt::format("{}: {}", algorithm.id.name, *said));
   return paths;

@@ -39,9 +39,8 @@ void add_script(Settings& settings, const ScriptSettings& script, const MillingE
   settings.push_back({std::string(kScriptEntryKey), point_text(entry.point_W), "mm"});
   settings.push_back({"script.direction", point_text(entry.direction_W), ""});
   settings.push_back({"script.milling", script.milling_s, "s"});
-  settings.push_back({"script.longest-milling", script.longest_milling_s, "s"});
+  settings.push_back({"script.until-leant", script.until_leant ? 1.0 : 0.0, ""});
   settings.push_back({"script.holding", script.holding_s, "s"});
-  settings.push_back({"script.longest-settling", script.longest_settle_s, "s"});
   settings.push_back({"script.depth", script.depth_mm, "mm"});
 }
 

@@ -24,6 +24,7 @@ constexpr double kFelt = 0.8;
 // Of the torque with which it leans, enough to say that the shaft rests on bone.
 constexpr double kLeant = 0.5;
 
+constexpr double kLongestMilling = 3;
 // Times are sums of ticks; this keeps a stage from beginning a tick late by a rounding.
 constexpr double kRounding_s = 1e-6;
 
@@ -45,21 +46,14 @@ void require_valid(const ScriptSettings& settings) {
   require(share(settings.feed_push_share) && share(settings.latest_lean_share) &&
               share(settings.lean_torque_share) && share(settings.lean_push_share) &&
               share(settings.lean_side_share) && share(settings.hold_side_share) &&
-              share(settings.hold_push_share) && share(settings.hold_torque_share),
+              share(settings.hold_push_share) && share(settings.hold_torque_share) &&
+              share(settings.leant_share) && share(settings.longest_lean_share) &&
+              share(settings.longest_settle_share),
           "a share must lie in [0, 1]");
   require(is_not_negative(settings.settle_s), "settling must not take less than 0 s");
-  require(is_not_negative(settings.longest_milling_s) && is_not_negative(settings.longest_settle_s) &&
-              is_not_negative(settings.leant_s),
-          "a time must not be less than 0 s");
   require(
       is_not_negative(settings.push_correction_per_s) && is_not_negative(settings.torque_correction_per_s),
       "a correction (1/s) must not be negative");
-}
-
-ScriptSettings until_felt(ScriptSettings settings) {
-  settings.longest_milling_s = 3 * settings.milling_s;
-  settings.longest_settle_s = settings.settle_s + 0.5 * settings.holding_s;
-  return settings;
 }
 
 MillingScript::MillingScript(const ScriptSettings& settings, const HandSettings& hand,
@@ -94,17 +88,21 @@ double MillingScript::felt_torque_share(const Pose& X_WD) const {
   return limit_Nmm > 0 ? turn_rad * hand_.torsional_stiffness_Nmm_per_rad / limit_Nmm : 0;
 }
 
+double MillingScript::longest_milling_s() const {
+  return settings_.until_leant ? kLongestMilling * settings_.milling_s : settings_.milling_s;
+}
+
 bool MillingScript::is_milled(double now_s) const {
-  return now_s >= std::max(settings_.milling_s, settings_.longest_milling_s) ||
-         (now_s >= settings_.milling_s && leant_s_ >= settings_.leant_s);
+  if (now_s >= longest_milling_s()) return true;
+  return settings_.until_leant && intent_.stage == ScriptStage::lean &&
+         (has_leant() || now_s - stage_began_s_ >= settings_.longest_lean_share * settings_.milling_s);
 }
 
 bool MillingScript::is_settled(double now_s, const Pose& X_WD) const {
   const double settling_s = now_s - stage_began_s_;
-  const double least_s = std::min(settings_.settle_s, settings_.holding_s);
-  const bool is_held = settings_.holding_s > settings_.settle_s;
-  if (settling_s >= std::max(least_s, is_held ? settings_.longest_settle_s : 0)) return true;
-  return settling_s >= least_s && felt_push_share(X_WD) >= kFelt * settings_.hold_push_share &&
+  if (settling_s < std::min(settings_.settle_s, settings_.holding_s)) return false;
+  if (!settings_.until_leant || settling_s >= settings_.longest_settle_share * settings_.holding_s) return true;
+  return felt_push_share(X_WD) >= kFelt * settings_.hold_push_share &&
          felt_torque_share(X_WD) >= kFelt * settings_.hold_torque_share;
 }
 
@@ -122,8 +120,7 @@ void MillingScript::advance_stage(double now_s, double dt_s, const Pose& X_WD, c
     begin(ScriptStage::done, now_s);
   }
   if (intent_.stage >= ScriptStage::settle) return;
-  const double latest_s =
-      settings_.latest_lean_share * std::max(settings_.milling_s, settings_.longest_milling_s);
+  const double latest_s = settings_.latest_lean_share * longest_milling_s();
   if (intent_.stage == ScriptStage::lean) {
     if (felt_torque_share(X_WD) >= kLeant * settings_.lean_torque_share) leant_s_ += dt_s;
   } else if (shown_depth_mm(X_WT) >= settings_.depth_mm || now_s >= latest_s) {

@@ -10,18 +10,20 @@ namespace osteomill {
 /// The test of section 8.2 of the paper as one hand's intent: mill a hole and push the shaft against its
 /// edge, then stand in it and hold still. Shares are of the hand's push, or of the limit of its torque.
 struct ScriptSettings {
-  /// The milling lasts at least this long, and until the shaft has leant on bone for `leant_s`, ...
+  /// The milling lasts so long ...
   double milling_s = 20.0;
-  /// ... but no longer than this; less than `milling_s` stands for that.
-  double longest_milling_s = 0;
-  double leant_s = 2.0;
+  /// ... or, with true, until the shaft has leant on bone or the hand has tried that, for these shares of it, or
+  /// three times as long.
+  bool until_leant = false;
+  double leant_share = 0.15;
+  double longest_lean_share = 0.4;
   double holding_s = 20.0;
   double approach_s = 1.0;
   double feed_mm_s = 2.0;
   double feed_push_share = 0.9;
   /// The hole is deep enough to lean in when the shown burr's tip is this far below the entry, ...
   double depth_mm = 3.0;
-  /// ... or when this share of the longest milling is over.
+  /// ... or when this share of the (longest) milling is over.
   double latest_lean_share = 0.6;
   double lean_rad_s = 0.14;  // 8 degrees a second
   double lean_torque_share = 0.8;
@@ -36,11 +38,10 @@ struct ScriptSettings {
   double hold_side_share = 0.6;
   double hold_torque_share = 0.8;
   /// How long the hand takes, at the start of the holding, to come to what it then holds: at least this, and
-  /// until it feels that push and torque, ...
+  /// with `until_leant` until it feels that push and torque, but no longer than this share of the holding.
+  /// What it takes beyond `settle_s` makes the holding so much longer.
   double settle_s = 1.0;
-  /// ... but no longer than this; less than `settle_s` stands for that. What it takes beyond `settle_s` makes
-  /// the holding so much longer.
-  double longest_settle_s = 0;
+  double longest_settle_share = 0.5;
   /// How fast the hand corrects what it feels, as a rate (1/s) of the spring's stretch and of its twist: slow
   /// against the swing of hand and handle (41 rad/s), so that the script neither damps nor drives it.
   double push_correction_per_s = 4.0;
@@ -49,10 +50,6 @@ struct ScriptSettings {
 
 /// Throws std::invalid_argument, naming it, where a setting is out of range.
 void require_valid(const ScriptSettings& settings);
-
-/// The same, but bound to touch: it mills and settles until the hand feels what it should, for at most three
-/// times as long and half of the holding more.
-ScriptSettings until_felt(ScriptSettings settings);
 
 /// What the hand is about.
 enum class ScriptStage : unsigned char { approach, feed, lean, settle, hold, done };
@@ -76,7 +73,7 @@ class MillingScript {
   /// What the script wants at time 0, and where the device is then.
   const ScriptIntent& intent() const { return intent_; }
   /// Whether the shaft has leant on something for as long as the milling is to go on for.
-  bool has_leant() const { return leant_s_ >= settings_.leant_s; }
+  bool has_leant() const { return leant_s_ >= settings_.leant_share * settings_.milling_s; }
   /// The intent at `time_s`, `dt_s` after the last one. `X_WD` is where the device is, `X_WT` where the
   /// simulated tool is shown. Safe in the haptic tick.
   const ScriptIntent& step(double time_s, double dt_s, const Pose& X_WD, const Pose& X_WT);
@@ -84,6 +81,7 @@ class MillingScript {
  private:
   void advance_stage(double now_s, double dt_s, const Pose& X_WD, const Pose& X_WT);
   void begin(ScriptStage stage, double now_s);
+  double longest_milling_s() const;
   bool is_milled(double now_s) const;
   bool is_settled(double now_s, const Pose& X_WD) const;
   double shown_depth_mm(const Pose& X_WT) const;
