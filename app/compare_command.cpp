@@ -103,7 +103,7 @@ void run_compare(const CompareOptions& options, const std::string& command_line)
   const std::vector<TrialPlan> plans = plans_of(options, bone, command_line);
   create_folder(options.out);
   const EntryPictures pictures(bone.volume, plans.front().densities.reference, plans.front().entry,
-                               events_on_terminal());
+                               events_on_terminal(), !options.scan.scan.empty());
   std::vector<Recording> recordings;
   std::vector<StudyRow> rows;
   const std::vector<StudyTrial> trials = trials_of(options, plans);

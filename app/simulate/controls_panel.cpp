@@ -100,7 +100,7 @@ void draw_isovalue(ViewState& view, Simulation& simulation) {
   if (!ui::header("Bone", false)) return;
   const DensityHistogram& histogram = simulation.histogram;
   const ImVec2 place = ImGui::GetCursorScreenPos();
-  const ImVec2 size(ImGui::CalcItemWidth(), 44);
+  const ImVec2 size(ImGui::CalcItemWidth(), ui::px(44));
   ImGui::PlotHistogram("##densities", histogram.log_counts.data(),
                        static_cast<int>(histogram.log_counts.size()), 0, nullptr, 0, FLT_MAX, size);
   const float share = (view.isovalue - histogram.min) / (histogram.max - histogram.min);
@@ -127,7 +127,7 @@ void draw_cuts(ViewState& view, const Simulation& simulation) {
       cut.offset_mm = static_cast<float>(cut.normal_W.dot(view.bounds.centre_W));
     }
     if (cut.on) {
-      ImGui::SameLine(100);
+      ImGui::SameLine(ui::px(100));
       ui::checkbox("other side", &cut.other_side);
       const auto extent = extent_along(simulation.milling.geometry(), cut.normal_W);
       ui::slider((std::string(names[n]) + " place").c_str(), &cut.offset_mm, static_cast<float>(extent[0]),
@@ -158,15 +158,19 @@ void draw_view(ViewState& view, const Vec3& tool_W) {
   ui::checkbox("arrows", &view.arrows);
   ImGui::SameLine();
   if (ui::button("Help")) view.help = true;
+  if (ui::button("Smaller text")) --view.text_steps;
+  ImGui::SameLine();
+  if (ui::button("Larger text")) ++view.text_steps;
 }
 
 }  // namespace
 
 void draw_controls(ViewState& view, Simulation& simulation, FilesPanel& files, const PixelSize& size) {
-  ImGui::SetNextWindowPos({8, 8});
-  ImGui::SetNextWindowSizeConstraints({kWidth_px, 0}, {kWidth_px, static_cast<float>(size.height) - 70});
+  ImGui::SetNextWindowPos({ui::px(8), ui::px(8)});
+  const float width = ui::px(kWidth_px);
+  ImGui::SetNextWindowSizeConstraints({width, 0}, {width, static_cast<float>(size.height) - ui::px(70)});
   ImGui::Begin("osteomill", nullptr, ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize);
-  ImGui::PushItemWidth(130);
+  ImGui::PushItemWidth(ui::px(130));
   draw_scan(view, simulation.scan_name);
   bool changed = false;
   draw_session(view, simulation.milling);

@@ -30,18 +30,23 @@ ImVec2 at(const Eigen::Vector2d& place) {
 }
 
 // On a dark edge, so that it is read before bone as well.
-void draw(ImDrawList& list, const Annotation& annotation) {
+void draw(ImDrawList& list, Annotation annotation) {
   constexpr ImU32 kDark = IM_COL32(0, 0, 0, 190);
   constexpr ImU32 kLight = IM_COL32(236, 238, 242, 255);
-  for (const Annotation::Line& line : annotation.lines) list.AddLine(at(line.from), at(line.to), kDark, 4);
-  for (const Annotation::Line& line : annotation.lines) list.AddLine(at(line.from), at(line.to), kLight, 2);
+  for (Annotation::Line& line : annotation.lines)
+    line = {static_cast<double>(ui::px(1)) * line.from, static_cast<double>(ui::px(1)) * line.to};
+  annotation.place *= static_cast<double>(ui::px(1));
+  for (const Annotation::Line& line : annotation.lines)
+    list.AddLine(at(line.from), at(line.to), kDark, ui::px(4));
+  for (const Annotation::Line& line : annotation.lines)
+    list.AddLine(at(line.from), at(line.to), kLight, ui::px(2));
   const char* text = annotation.text.c_str();
   const ImVec2 size = ImGui::CalcTextSize(text);
   const ImVec2 middle = at(annotation.place);
   const ImVec2 place(middle.x - 0.5f * size.x, middle.y - 0.5f * size.y);
-  for (const ImVec2& aside : {ImVec2(1, 1), ImVec2(-1, 1), ImVec2(1, -1), ImVec2(-1, -1)}) {
-    list.AddText({place.x + aside.x, place.y + aside.y}, kDark, text);
-  }
+  const float aside = ui::px(1);
+  for (const float x : {-aside, aside})
+    for (const float y : {-aside, aside}) list.AddText({place.x + x, place.y + y}, kDark, text);
   list.AddText(place, kLight, text);
 }
 
@@ -61,9 +66,12 @@ void begin_in_the_middle(const char* title, const PixelSize& size) {
 
 void draw_annotations(const ViewState& view, const PixelSize& size, bool patient) {
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
-  draw(list, scale_bar_annotation(view.camera, size));
+  // As it would be at the usual size of text.
+  const PixelSize usual{static_cast<int>(static_cast<float>(size.width) / ui::px(1)),
+                        static_cast<int>(static_cast<float>(size.height) / ui::px(1))};
+  draw(list, scale_bar_annotation(view.camera, usual));
   if (!patient) return;
-  for (const Annotation& letter : orientation_letters(view.camera, size)) draw(list, letter);
+  for (const Annotation& letter : orientation_letters(view.camera, usual)) draw(list, letter);
 }
 
 void draw_help(ViewState& view, const PixelSize& size) {
@@ -92,7 +100,7 @@ void draw_complaint(ViewState& view) {
   constexpr const char* kTitle = "That did not work";
   if (!view.complaint.empty() && !ImGui::IsPopupOpen(kTitle)) ImGui::OpenPopup(kTitle);
   if (!ImGui::BeginPopupModal(kTitle, nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
-  ImGui::PushTextWrapPos(520);
+  ImGui::PushTextWrapPos(ui::px(520));
   ImGui::TextUnformatted(view.complaint.c_str());
   ImGui::PopTextWrapPos();
   ImGui::Spacing();
@@ -126,12 +134,12 @@ void draw_closing(ViewState& view) {
 bool draw_loading(const std::string& what, double share_done, double passed_s, const PixelSize& size,
                   bool above) {
   if (above) {
-    begin_at({0.5f * static_cast<float>(size.width), 8}, "Opening", {0.5f, 0});
+    begin_at({0.5f * static_cast<float>(size.width), ui::px(8)}, "Opening", {0.5f, 0});
   } else {
     begin_in_the_middle("Opening", size);
   }
   ImGui::Text("%s", what.c_str());
-  ImGui::ProgressBar(static_cast<float>(share_done), {360, 0});
+  ImGui::ProgressBar(static_cast<float>(share_done), {ui::px(360), 0});
   ImGui::Text("%.0f s", passed_s);
   ImGui::SameLine();
   const bool given_up = ui::button("Cancel") || ImGui::IsKeyPressed(GLFW_KEY_ESCAPE, false);

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "app/simulate/panels.h"
+#include "app/simulate/widgets.h"
 #include <fmt/core.h>
 #include <imgui.h>
 
@@ -27,7 +28,7 @@ std::vector<float> thinned(const std::deque<TickRecord>& history, double (*magni
 
 void row(const char* name, const std::string& value) {
   ImGui::TextUnformatted(name);
-  ImGui::SameLine(96);
+  ImGui::SameLine(ui::px(96));
   ImGui::TextUnformatted(value.c_str());
 }
 
@@ -39,7 +40,8 @@ void plot(const char* name, const char* unit, const std::deque<TickRecord>& hist
   ImGui::Text("%s  %.2f %s  (5 s, up to %.2f)", name, now, unit, static_cast<double>(max));
   ImGui::PushStyleColor(ImGuiCol_PlotLines, colour);
   ImGui::PlotLines((std::string("##") + name).c_str(), points.data(), static_cast<int>(points.size()), 0,
-                   nullptr, 0, std::max(1.1f * max, min_scale), {ImGui::GetContentRegionAvail().x, 56});
+                   nullptr, 0, std::max(1.1f * max, min_scale),
+                   {ImGui::GetContentRegionAvail().x, ui::px(56)});
   ImGui::PopStyleColor();
 }
 
@@ -60,8 +62,8 @@ void draw_faults(const std::deque<TickRecord>& history) {
 }  // namespace
 
 void draw_readings(Simulation& simulation, double pictures_per_s, const PixelSize& size) {
-  ImGui::SetNextWindowPos({static_cast<float>(size.width) - kWidth_px - 8, 8});
-  ImGui::SetNextWindowSize({kWidth_px, 0});
+  ImGui::SetNextWindowPos({static_cast<float>(size.width) - ui::px(kWidth_px + 8), ui::px(8)});
+  ImGui::SetNextWindowSize({ui::px(kWidth_px), 0});
   ImGui::Begin("Readings", nullptr, ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize);
   const TimingSummary timing = simulation.milling.timing();
   const LiveState& state = simulation.milling.state();

@@ -4,6 +4,7 @@
 #include "app/commands.h"
 #include "app/config_file.h"
 #include "app/milling_options.h"
+#include "app/simulate/screen_scale.h"
 #include "app/simulate/simulator.h"
 
 namespace osteomill::app {
@@ -36,6 +37,10 @@ void add_simulate_command(CLI::App& program, const std::string& command_line) {
   add_milling_options(*command, options->milling);
   command->add_option("--out", options->simulator.folder, "Folder for recordings and what is saved")
       ->capture_default_str();
+  command
+      ->add_option("--ui-scale", options->simulator.ui_scale,
+                   "How much larger than usual text is (2 at 4K), else as the screen asks for")
+      ->check(CLI::Range(kMinScale, kMaxScale));
   command->add_flag("--no-help", options->simulator.no_help,
                     "Begin without the page that explains the controls (else shown the first time)");
   command->add_option("--script", options->simulator.script,

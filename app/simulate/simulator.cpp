@@ -19,6 +19,7 @@
 #include "app/simulate/panels.h"
 #include "app/simulate/pointer.h"
 #include "app/simulate/scene_of.h"
+#include "app/simulate/screen_scale.h"
 #include "app/simulate/simulation.h"
 #include "app/simulate/state_text.h"
 #include "app/simulate/ui_script.h"
@@ -63,10 +64,12 @@ class PictureRate {
 };
 
 // Everything between opening the window and closing it.
+constexpr int kMostPictures = 500;
+
 class Simulator {
  public:
   explicit Simulator(const SimulatorOptions& options)
-      : options_(options), window_("osteomill", options.size), files_(options.folder) {
+      : options_(options), window_("osteomill", options.size, options.ui_scale), files_(options.folder) {
     if (!options.script.empty()) script_.emplace(options.script);
     view_.help = !options.no_help;
   }
@@ -241,8 +244,18 @@ class Simulator {
 
   void save_picture() {
     try {
+      // In full detail, also where the view has just come to rest.
+      for (int n = 0; n < kMostPictures && !renderer_->settled(); ++n)
+        renderer_->draw(scene_of(view_, *simulation_), window_.size());
       Image picture = renderer_->picture();
-      draw_annotation(picture, scale_bar_annotation(view_.camera, window_.size()), kInkOnDark);
+      const double scale = window_.ui_scale();
+      const PixelSize usual{static_cast<int>(picture.width / scale),
+                            static_cast<int>(picture.height / scale)};
+      draw_annotation(picture, scale_bar_annotation(view_.camera, usual), kInkOnDark, scale);
+      if (!options_.scan.scan.empty()) {
+        for (const Annotation& letter : orientation_letters(view_.camera, usual))
+          draw_annotation(picture, letter, kInkOnDark, scale);
+      }
       create_folder(options_.folder);
       const auto path = files_.name("picture.png");
       write_png(path, picture);
@@ -259,6 +272,10 @@ class Simulator {
     rate_.count();
     ++pictures_since_said_;
     if (std::exchange(view_.full_screen_asked, false)) window_.toggle_full_screen();
+    if (const int steps = std::exchange(view_.text_steps, 0); steps != 0) {
+      constexpr double kStep = 0.25;
+      window_.ask_ui_scale(std::clamp(window_.ui_scale() + kStep * steps, kMinScale, kMaxScale));
+    }
     // Faster than anyone sees only takes time from the others.
     constexpr auto kMin = 12ms;
     std::this_thread::sleep_until(last_picture_ + kMin);

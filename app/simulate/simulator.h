@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "app/scan_options.h"
@@ -13,6 +14,8 @@ struct SimulatorOptions {
   ScanOptions scan;
   MillingSetup setup;
   PixelSize size{1280, 800};
+  /// How much larger than usual text is; not given: as the screen asks for.
+  std::optional<double> ui_scale;
   /// Works the window in place of a person (ui_script.h); empty: nobody does.
   std::string script;
   bool no_help = false;

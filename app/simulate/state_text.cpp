@@ -97,6 +97,7 @@ std::string state_text(const std::string& name, const ViewState& view, Simulatio
   lines.add("message", view.message);
   lines.add("dialogue", view.complaint);
   lines.add("shown", shown_controls());
+  lines.add("ui_scale", fmt::format("{:.2f}", static_cast<double>(ui::px(1))));
   lines.add("size", fmt::format("{} x {}", size.width, size.height));
   return lines.text();
 }

@@ -23,9 +23,10 @@ namespace {
 constexpr int kClickPictures = 12;
 
 const std::map<std::string, std::size_t> kWords{
-    {"at-once", 0}, {"wait", 1}, {"settle", 0}, {"glide", 3}, {"press", 1},      {"release", 1}, {"wheel", 2},
-    {"key", 1},     {"hold", 2}, {"click", 1},  {"drag", 2},  {"screenshot", 1}, {"say", 1},     {"type", 1},
-    {"open", 1},    {"quit", 0}, {"close", 0},  {"state", 1}, {"controls", 1},   {"await", 1}};
+    {"at-once", 0},    {"resize", 2},   {"wait", 1}, {"settle", 0}, {"glide", 3}, {"press", 1},
+    {"release", 1},    {"wheel", 2},    {"key", 1},  {"hold", 2},   {"click", 1}, {"drag", 2},
+    {"screenshot", 1}, {"say", 1},      {"type", 1}, {"open", 1},   {"quit", 0},  {"close", 0},
+    {"state", 1},      {"controls", 1}, {"await", 1}};
 
 const std::map<std::string, int> kKeys{
     {"space", GLFW_KEY_SPACE},      {"enter", GLFW_KEY_ENTER},          {"escape", GLFW_KEY_ESCAPE},
@@ -129,6 +130,8 @@ void UiScript::begin(const Action& action, Window& window) {
     ImGui::GetIO().AddInputCharactersUTF8(action.text.c_str());
   } else if (name == "open") {
     window.drop(action.text);
+  } else if (name == "resize") {
+    window.resize({static_cast<int>(number(action, 0)), static_cast<int>(number(action, 1))});
   } else if (name == "quit") {
     window.ask_to_close();
   } else if (name == "controls") {

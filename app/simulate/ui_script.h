@@ -31,6 +31,7 @@ namespace osteomill::app {
 ///     controls FILE                   once the window has closed, adds to it the labels of all controls that
 ///                                     were drawn ("drawn LABEL") and of those that acted ("worked LABEL")
 ///     await FILE                      until it is there; meanwhile pointer and keys are the display's own
+///     resize WIDTH HEIGHT             the window
 ///     quit                            asks to close, as the window's own button does
 ///     close                           closes without a question
 /// Empty lines and lines that begin with # mean nothing.

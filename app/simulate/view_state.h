@@ -35,6 +35,8 @@ struct ViewState {
   /// What is typed as the scan to open, and the scan that is to be opened (the button was pressed).
   std::array<char, 4096> scan_path{};
   std::string scan_asked;
+  /// So many times larger text was asked for, less the times that smaller was.
+  int text_steps = 0;
   bool full_screen_asked = false;
   bool picture_asked = false;
   Closing closing = Closing::no;

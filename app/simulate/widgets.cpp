@@ -4,6 +4,20 @@
 
 namespace osteomill::app::ui {
 
+namespace {
+
+float scale_of_all = 1;
+
+}  // namespace
+
+float px(float length) {
+  return length * scale_of_all;
+}
+
+void set_scale(double scale) {
+  scale_of_all = static_cast<float>(scale);
+}
+
 std::map<std::string, Place>& places() {
   static std::map<std::string, Place> kept;
   return kept;

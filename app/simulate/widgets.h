@@ -20,6 +20,10 @@ std::map<std::string, Place>& places();
 /// moved. A test sees by it which were never worked.
 std::set<std::string>& worked();
 
+/// A length of the layout, given as it is where text has its usual size.
+float px(float length);
+void set_scale(double scale);
+
 bool button(const char* label, bool enabled = true);
 bool checkbox(const char* label, bool* value);
 bool radio(const char* label, bool chosen);

@@ -1,8 +1,11 @@
 #include "app/simulate/window.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
+#include "app/simulate/screen_scale.h"
+#include "app/simulate/widgets.h"
 #include <GLFW/glfw3.h>
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
@@ -22,7 +25,8 @@ std::string last_complaint() {
   return text != nullptr ? text : "no reason given";
 }
 
-void set_style() {
+void set_style(double scale) {
+  ImGui::GetStyle() = ImGuiStyle();
   ImGui::StyleColorsDark();
   ImGuiStyle& style = ImGui::GetStyle();
   style.WindowRounding = 5;
@@ -31,14 +35,69 @@ void set_style() {
   style.WindowBorderSize = 0;
   style.Colors[ImGuiCol_WindowBg] = ImVec4(0.09f, 0.10f, 0.12f, 0.92f);
   style.Colors[ImGuiCol_Header] = ImVec4(0.20f, 0.30f, 0.40f, 0.7f);
-  ImGuiIO& io = ImGui::GetIO();
-  io.IniFilename = nullptr;
-  if (std::filesystem::exists(kFontFile)) io.Fonts->AddFontFromFileTTF(kFontFile, kFontSize_px);
+  style.ScaleAllSizes(static_cast<float>(scale));
+  ImFontAtlas& fonts = *ImGui::GetIO().Fonts;
+  fonts.Clear();
+  const float size_px = static_cast<float>(scale) * kFontSize_px;
+  if (std::filesystem::exists(kFontFile)) {
+    fonts.AddFontFromFileTTF(kFontFile, size_px);
+  } else {
+    ImFontConfig config;
+    config.SizePixels = size_px;
+    fonts.AddFontDefault(&config);
+  }
+}
+
+// The screen that holds the window's middle, or the first.
+GLFWmonitor* monitor_of(GLFWwindow* window) {
+  int left = 0, top = 0, width = 0, height = 0, count = 0;
+  glfwGetWindowPos(window, &left, &top);
+  glfwGetWindowSize(window, &width, &height);
+  GLFWmonitor** const monitors = glfwGetMonitors(&count);
+  for (int n = 0; n < count; ++n) {
+    int x = 0, y = 0;
+    glfwGetMonitorPos(monitors[n], &x, &y);
+    const GLFWvidmode* const mode = glfwGetVideoMode(monitors[n]);
+    const int right = left + width / 2 - x;
+    const int down = top + height / 2 - y;
+    if (mode != nullptr && right >= 0 && down >= 0 && right < mode->width && down < mode->height)
+      return monitors[n];
+  }
+  return glfwGetPrimaryMonitor();
+}
+
+double screens_scale(GLFWmonitor* monitor, double content_scale) {
+  Screen screen{{0, 0}, 0, content_scale};
+  const GLFWvidmode* const mode = monitor != nullptr ? glfwGetVideoMode(monitor) : nullptr;
+  if (mode != nullptr) {
+    int width_mm = 0, height_mm = 0;
+    glfwGetMonitorPhysicalSize(monitor, &width_mm, &height_mm);
+    screen.size = {mode->width, mode->height};
+    screen.height_mm = height_mm;
+  }
+  return scale_for(screen);
+}
+
+// As large as text is, and no larger than the screen without its bars.
+PixelSize fitting_size(const PixelSize& size, const std::optional<double>& ui_scale) {
+  GLFWmonitor* const monitor = glfwGetPrimaryMonitor();
+  if (monitor == nullptr) return size;
+  float content_scale = 1;
+  glfwGetMonitorContentScale(monitor, &content_scale, nullptr);
+  const double scale = ui_scale.value_or(screens_scale(monitor, static_cast<double>(content_scale)));
+  int left = 0, top = 0, width = 0, height = 0;
+  glfwGetMonitorWorkarea(monitor, &left, &top, &width, &height);
+  const auto fitting = [scale](int length, int room) {
+    const int wanted = static_cast<int>(std::lround(length * std::max(scale, 1.0)));
+    return room > 0 ? std::min(wanted, room) : wanted;
+  };
+  return {fitting(size.width, width), fitting(size.height, height)};
 }
 
 }  // namespace
 
-Window::Window(const std::string& title, const PixelSize& size) {
+Window::Window(const std::string& title, const PixelSize& size, const std::optional<double>& ui_scale)
+    : asked_scale_(ui_scale) {
   if (glfwInit() == GLFW_FALSE) throw InputError("simulate", "no window can be opened: " + last_complaint());
   glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
   glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
@@ -47,7 +106,8 @@ Window::Window(const std::string& title, const PixelSize& size) {
   // What is drawn has depths of its own; the window shows only the result.
   glfwWindowHint(GLFW_DEPTH_BITS, 0);
   glfwWindowHint(GLFW_STENCIL_BITS, 0);
-  window_ = glfwCreateWindow(size.width, size.height, title.c_str(), nullptr, nullptr);
+  const PixelSize fitting = fitting_size(size, ui_scale);
+  window_ = glfwCreateWindow(fitting.width, fitting.height, title.c_str(), nullptr, nullptr);
   if (window_ == nullptr) {
     const std::string reason = last_complaint();
     glfwTerminate();
@@ -61,7 +121,7 @@ Window::Window(const std::string& title, const PixelSize& size) {
     for (int n = 0; n < count; ++n) self->drop(paths[n]);
   });
   ImGui::CreateContext();
-  set_style();
+  ImGui::GetIO().IniFilename = nullptr;
   ImGui_ImplGlfw_InitForOpenGL(window_, true);
   glfwSetKeyCallback(window_, [](GLFWwindow* window, int key, int scancode, int action, int mods) {
     if (action == GLFW_REPEAT) return;
@@ -123,9 +183,33 @@ void Window::hand_over_keys() {
   }
 }
 
+void Window::resize(const PixelSize& size) {
+  glfwSetWindowSize(window_, size.width, size.height);
+}
+
+// Another screen, another size of the window, or another wish.
+void Window::follow_scale() {
+  float content_scale = 1;
+  glfwGetWindowContentScale(window_, &content_scale, nullptr);
+  if (static_cast<double>(content_scale) != content_scale_) {
+    content_scale_ = static_cast<double>(content_scale);
+    screens_scale_ = screens_scale(monitor_of(window_), content_scale_);
+  }
+  const PixelSize now = size();
+  if (now.width < 1 || now.height < 1) return;
+  const double scale = fitting_scale(asked_scale_.value_or(screens_scale_), now);
+  if (scale == scale_) return;
+  scale_ = scale;
+  set_style(scale);
+  ui::set_scale(scale);
+  ImGui_ImplOpenGL3_DestroyFontsTexture();
+  ImGui_ImplOpenGL3_CreateFontsTexture();
+}
+
 void Window::begin_frame() {
   glfwPollEvents();
   hand_over_keys();
+  follow_scale();
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <deque>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,7 +17,9 @@ namespace osteomill::app {
 /// a time. Throws InputError where none can be opened (no display).
 class Window {
  public:
-  Window(const std::string& title, const PixelSize& size);
+  /// `size` is what it would have on an ordinary screen; it is no larger than the screen. `ui_scale`: how
+  /// much larger than usual text is, else as the screen asks for.
+  Window(const std::string& title, const PixelSize& size, const std::optional<double>& ui_scale);
   ~Window();
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
@@ -28,6 +31,12 @@ class Window {
   /// Of the framebuffer.
   PixelSize size() const;
   void toggle_full_screen();
+  void resize(const PixelSize& size);
+
+  /// How much larger than usual text is drawn: what was asked for, as far as the window has room for it. Of
+  /// this picture, from `begin_frame` on.
+  double ui_scale() const { return scale_; }
+  void ask_ui_scale(double scale) { asked_scale_ = scale; }
 
   /// The files and folders that were dropped onto the window since the last call.
   std::vector<std::string> take_dropped() { return std::exchange(dropped_, {}); }
@@ -51,7 +60,13 @@ class Window {
   };
   void hand_over_keys();
 
+  void follow_scale();
+
   GLFWwindow* window_ = nullptr;
+  std::optional<double> asked_scale_;
+  double content_scale_ = 0;
+  double screens_scale_ = 1;
+  double scale_ = 0;
   std::deque<KeyEvent> key_events_;
   std::vector<std::string> dropped_;
   int windowed_place_[4] = {0, 0, 0, 0};

@@ -10,12 +10,13 @@
 
 namespace osteomill {
 
-/// PNGs of a bone from obliquely above an entry, before milling and after it, all from the same view. Where
-/// OpenGL cannot be had there are none, and a warning says so.
+/// PNGs of a bone from obliquely above an entry, before milling and after it, all from the same view, those
+/// of a patient with the letters of the patient's directions. Where OpenGL cannot be had there are none, and
+/// a warning says so.
 class EntryPictures {
  public:
   EntryPictures(const Volume& before, double reference_density, const MillingEntry& entry,
-                const RunEvents& events);
+                const RunEvents& events, bool of_patient = false);
 
   const std::optional<std::vector<unsigned char>>& before() const { return before_; }
   /// Nothing where there was none before either, or OpenGL failed since.
@@ -23,6 +24,7 @@ class EntryPictures {
 
  private:
   double reference_density_;
+  bool of_patient_;
   Camera camera_;
   std::optional<std::vector<unsigned char>> before_;
 };

@@ -1,5 +1,6 @@
 #include "osteomill/view/annotations.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <utility>
@@ -10,6 +11,8 @@ namespace {
 
 constexpr double kMargin_px = 24;
 constexpr double kTick_px = 5;
+// Half of the longest text.
+constexpr double kTextReach_px = 84;
 constexpr double kAxis_px = 30;
 constexpr double kLetter_px = 44;
 constexpr double kMinAxis = 0.25;
@@ -32,10 +35,13 @@ Annotation scale_bar_annotation(const Camera& camera, const PixelSize& size) {
   const Eigen::Vector2d right = left + Eigen::Vector2d(length_mm / pixel_mm, 0);
   const Eigen::Vector2d tick(0, kTick_px);
   std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%g mm", length_mm);
-  return {{{left, right}, {left - tick, left + tick}, {right - tick, right + tick}},
-          0.5 * (left + right) - Eigen::Vector2d(0, 14),
-          text.data()};
+  // Where lengths change with their depth by more than a few hundredths.
+  constexpr double kWide_rad = 0.1;
+  const char* const where = camera.field_of_view_rad > kWide_rad ? " at the centre" : "";
+  std::snprintf(text.data(), text.size(), "%g mm%s", length_mm, where);
+  Eigen::Vector2d place = 0.5 * (left + right) - Eigen::Vector2d(0, 14);
+  place.x() = std::max(place.x(), kTextReach_px);
+  return {{{left, right}, {left - tick, left + tick}, {right - tick, right + tick}}, place, text.data()};
 }
 
 std::vector<Annotation> orientation_letters(const Camera& camera, const PixelSize& size) {

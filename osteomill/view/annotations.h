@@ -21,7 +21,7 @@ struct Annotation {
 };
 
 /// A bar of a round length in mm at the focus, in the lower left corner, at most a quarter of the picture
-/// long.
+/// long. Says so where what is nearer is drawn noticeably larger.
 Annotation scale_bar_annotation(const Camera& camera, const PixelSize& size);
 
 /// The patient's directions (L R A P S I, of W's LPS axes) about a point in the lower right corner, each

@@ -190,8 +190,8 @@ Camera camera_above(const Volume& bone, const Vec3& entry_W, const Vec3& into_W,
   return camera;
 }
 
-Image bone_picture(const Volume& bone, double reference_density, const Camera& camera,
-                   const PixelSize& size) {
+Image bone_picture(const Volume& bone, double reference_density, const Camera& camera, const PixelSize& size,
+                   bool of_patient) {
   const OffscreenContext context;
   const ViewScene scene = scene_with(bone, reference_density, camera);
   BonePainter painter(bone, scene, {kFiner * size.width, kFiner * size.height});
@@ -199,6 +199,10 @@ Image bone_picture(const Volume& bone, double reference_density, const Camera& c
   const double scale = std::max(1.0, size.height / kAnnotatedHeight_px);
   const PixelSize annotated{static_cast<int>(size.width / scale), static_cast<int>(size.height / scale)};
   draw_annotation(image, scale_bar_annotation(camera, annotated), kInkOnLight, scale);
+  if (of_patient) {
+    for (const Annotation& letter : orientation_letters(camera, annotated))
+      draw_annotation(image, letter, kInkOnLight, scale);
+  }
   return image;
 }
 

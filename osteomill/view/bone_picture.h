@@ -17,7 +17,8 @@ Camera camera_above(const Volume& bone, const Vec3& entry_W, const Vec3& into_W,
 /// bone's surface needs is made piece by piece, so that a large scan takes no more memory than a small one.
 /// Throws std::runtime_error where OpenGL cannot be had or refuses something. Takes a second or so: not for
 /// the tick.
+/// `of_patient`: with the letters of the patient's directions, which nothing made up has.
 Image bone_picture(const Volume& bone, double reference_density, const Camera& camera,
-                   const PixelSize& size = {1120, 1120});
+                   const PixelSize& size = {1120, 1120}, bool of_patient = false);
 
 }  // namespace osteomill

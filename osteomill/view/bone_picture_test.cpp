@@ -61,6 +61,24 @@ Camera camera_from_above(const Volume& bone) {
   return camera_above(bone, {0, 0, 2}, -Vec3::UnitZ(), Vec3::UnitX());
 }
 
+// A patient's letters stand in the lower right corner, and nothing else is drawn otherwise.
+TEST(BonePicture, OnlyAPatientHasSides) {
+  const Volume bone = shape_volume(centred_cube(72, 0.25), ball(Vec3::Zero(), 5));
+  const Camera camera = camera_from_above(bone);
+  const Image without = bone_picture(bone, 900, camera, kSize);
+  const Image with = bone_picture(bone, 900, camera, kSize, true);
+  int in_corner = 0;
+  int elsewhere = 0;
+  for (int y = 0; y < kSize.height; ++y) {
+    for (int x = 0; x < kSize.width; ++x) {
+      const bool corner = x > kSize.width - 130 && y > kSize.height - 130;
+      if (brightness(with, x, y) != brightness(without, x, y)) ++(corner ? in_corner : elsewhere);
+    }
+  }
+  EXPECT_GT(in_corner, 200);
+  EXPECT_EQ(elsewhere, 0);
+}
+
 TEST(BonePicture, ABallHasTheAreaOfItsDiscWhereverItStands) {
   for (const Vec3& middle : {Vec3(0.3, -0.2, 0.4), Vec3(2, 2, -2)}) {
     const Volume bone = shape_volume(centred_cube(72, 0.25), ball(middle, 5));

@@ -46,7 +46,7 @@ TEST(Annotations, TheScaleBarMeasuresTheFocus) {
   const PixelSize size{1000, 700};
   const Camera camera = camera_on({Vec3(1, 2, 3), 20}, Vec3::UnitY(), Vec3::UnitZ());
   const Annotation bar = scale_bar_annotation(camera, size);
-  EXPECT_EQ(bar.text, "10 mm");
+  EXPECT_EQ(bar.text, "10 mm at the centre");
   const Eigen::Vector2d end = pixel_of(camera, size, camera.focus_W + 10 * camera.right_W());
   EXPECT_NEAR(bar.lines[0].to.x() - bar.lines[0].from.x(), end.x() - 500, 1e-9);
 }
@@ -55,6 +55,7 @@ TEST(Annotations, TheScaleBarHasARoundLengthThatFits) {
   const auto length = [](double max_mm) {
     const PixelSize size{1000, 1000};
     Camera camera;
+    camera.field_of_view_rad = 0.04;
     camera.distance_mm *= 4 * max_mm / (1000 * mm_per_pixel(camera, size, camera.distance_mm));
     return scale_bar_annotation(camera, size).text;
   };

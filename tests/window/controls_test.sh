@@ -64,6 +64,7 @@ press shift ;; press left ;; glide 660 660 0.1 ;; release left ;; release shift 
 wheel 3 0.1 ;; state wheeled
 click Whole ;; state whole
 click Find tool ;; state found
+click Larger text ;; wait 0.1 ;; state larger ;; click Smaller text ;; wait 0.1 ;; state usual
 glide 640 400 0.1 ;; press left ;; glide 700 330 0.2 ;; wait 0.3 ;; release left ;; state tool-dragged
 key t ;; state taken
 glide 760 330 0.2 ;; wait 0.3 ;; state moved
@@ -109,6 +110,7 @@ more wheeled shift-panned distance_mm
 same wheeled whole towards_viewer; changed wheeled whole focus; changed wheeled whole distance_mm
 changed whole found focus; is found tool_px "640 400"; same whole found towards_viewer
 more found tool-dragged tool_seen 1; more found tool-dragged tool_seen 2; same found tool-dragged towards_viewer
+is found ui_scale 1.00; is larger ui_scale 1.25; is usual ui_scale 1.00
 is tool-dragged in_hand false; is taken in_hand true; is escaped in_hand false; is t-twice in_hand false
 is button-taken in_hand true; is button-let-go in_hand false
 more taken moved target_seen 1; more taken moved tool_seen 1; same taken moved towards_viewer
@@ -201,6 +203,10 @@ same free-on dragged towards_viewer
 
 # --- Files, dialogues, closing ------------------------------------------------------------------------------------
 echo "not a scan" >bad.nrrd
+# Bone below, air above: 480^3 voxels of a byte, which take a while.
+{ printf 'NRRD0004\ntype: uint8\ndimension: 3\nsizes: 480 480 480\nspacings: 0.1 0.1 0.1\nencoding: raw\n\n'
+  head -c $((480 * 480 * 240)) /dev/zero | tr '\0' '\310'
+  head -c $((480 * 480 * 240)) /dev/zero; } >large.nrrd
 window ball.nrrd --no-help <<'END'
 wait 0.2 ;; state start
 click Record ;; wait 0.3 ;; state recording ;; screenshot controls-6-recording.png
@@ -209,6 +215,7 @@ click Report ;; settle ;; wait 0.1 ;; state reported
 click Save scan ;; settle ;; wait 0.1 ;; state saved-scan
 click Save surface ;; settle ;; wait 0.1 ;; state saved-surface
 click Save picture ;; wait 0.2 ;; state saved-picture
+open large.nrrd ;; wait 0.3 ;; click Cancel ;; wait 0.2 ;; state given-up
 click scan ;; type other.nrrd ;; click Open ;; settle ;; wait 0.3 ;; state opened
 click scan ;; press control ;; key a ;; release control ;; type bad.nrrd ;; wait 0.1 ;; key enter ;; settle ;; wait 0.3 ;; state at-fault
 screenshot controls-7-fault.png ;; click Close ;; wait 0.1 ;; state fault-read
@@ -228,6 +235,7 @@ value reported message | grep -q "^Report in out/" || fault "the report is not n
 for saved in scan surface picture; do
   value saved-$saved message | grep -q "^Saved out/" || fault "what Save $saved wrote is not named"
 done
+is given-up scan ball.nrrd; is given-up message "Opening large.nrrd was given up"; hides given-up Cancel
 is start scan ball.nrrd; is opened scan other.nrrd; is at-fault scan other.nrrd
 value at-fault dialogue | grep -q "^bad.nrrd: ." || fault "the scan at fault is not named"
 is fault-read dialogue ""; hides fault-read Close

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "osteomill/view/camera.h"
+
+namespace osteomill::app {
+
+/// A screen as the system tells of it.
+struct Screen {
+  PixelSize size;
+  /// 0 where it is not known.
+  double height_mm = 0;
+  /// How much larger than usual the system wants text.
+  double content_scale = 1;
+};
+
+/// How much larger than on an ordinary screen (96 dots an inch) text and all that is measured by it must be
+/// to be read: what the system wants, or, where it wants nothing, what the density of the screen's dots asks
+/// for.
+double scale_for(const Screen& screen);
+
+/// The scale asked for, or the greatest at which both columns and a view between them have room in the
+/// window.
+double fitting_scale(double asked, const PixelSize& window);
+
+inline constexpr double kMinScale = 0.7;
+inline constexpr double kMaxScale = 4;
+
+}  // namespace osteomill::app

@@ -1,0 +1,51 @@
+#!/usr/bin/env bash
+# Text has the size that was asked for as far as the window has room for it, also where that changes while it is open;
+# what has no room is reached by scrolling:
+#   layout_test.sh OSTEOMILL
+set -euo pipefail
+osteomill=$1
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+command -v xvfb-run >/dev/null || { echo "SKIPPED: needs xvfb-run"; exit 77; }
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cd "$folder"
+export XDG_STATE_HOME=$folder/state
+fail() { echo "FAILED: $1"; cat said errors; exit 1; }
+"$here/ball.sh" >ball.nrrd
+# On a screen of this size.
+window() {
+  local screen=$1
+  shift
+  sed 's/ *;; */\n/g' >actions
+  xvfb-run -a -s "-screen 0 ${screen}x24" timeout 100 "$osteomill" simulate ball.nrrd --no-help --out out --script actions \
+    "$@" >said 2>errors || fail "exit code $?"
+  [ -z "${OSTEOMILL_PICTURES:-}" ] || cp ./*.png "$OSTEOMILL_PICTURES"
+}
+value() { sed -n "s/^$1\.$2=//p" said; }
+is() { [ "$(value "$1" "$2")" = "$3" ] || fail "at $1, $2 is '$(value "$1" "$2")' and not '$3'"; }
+
+window 1024x600 <<'END'
+wait 0.3 ;; state small ;; screenshot layout-1024x600.png
+glide 100 400 0 ;; wheel -60 0.5 ;; wait 0.2 ;; click Save picture ;; wait 0.3 ;; state saved ;; screenshot layout-scrolled.png
+close
+END
+is small size "1024 x 600"; is small ui_scale 1.00
+compgen -G "out/*-picture.png" >/dev/null || fail "what lies below cannot be reached"
+value saved message | grep -q "^Saved out/" || fail "the picture is not named"
+
+window 1920x1080 --ui-scale 2 <<'END'
+wait 0.3 ;; state twice ;; screenshot layout-twice.png
+resize 1024 600 ;; wait 0.3 ;; state little-room ;; screenshot layout-little-room.png
+resize 1900 1000 ;; wait 0.3 ;; state room-again
+glide 200 600 0 ;; wheel -60 0.5 ;; wait 0.2 ;; click Smaller text ;; wait 0.2 ;; state smaller
+close
+END
+is twice size "1920 x 1080"; is twice ui_scale 2.00
+is little-room size "1024 x 600"
+awk -v s="$(value little-room ui_scale)" 'BEGIN { exit !(s > 1 && s < 1.5) }' || fail "text does not fit into 1024 x 600"
+is room-again ui_scale 2.00; is smaller ui_scale 1.75
+
+for wrong in 0 100 large; do
+  "$osteomill" simulate --ui-scale $wrong >said 2>errors && fail "--ui-scale $wrong is taken"
+  [ $? -eq 2 ] || fail "--ui-scale $wrong ends otherwise"
+done
