@@ -24,6 +24,8 @@ constexpr double kMaxAhead_mm_s = 20;
 constexpr std::size_t kPiecesOfTick = 1024;
 constexpr std::size_t kMaxPiecesOfTick = 4096;
 constexpr double kMaxUneven_voxels = 0.6;
+// And never more, even in the first ticks, before it is known how many there are.
+constexpr std::size_t kRoomForPieces = 2 * kMaxPiecesOfTick;
 constexpr unsigned kMaxShares = 64;
 
 // The least float that is not below `density`.
@@ -62,7 +64,7 @@ BurrReach make_reach(const GridGeometry& geometry, double burr_radius_mm, const 
               densities.reference > densities.surroundings,
           "BurrMill: the reference density must be above that of the surroundings");
   return BurrReach(geometry, reach_mm(geometry, burr_radius_mm, max_ahead(geometry)),
-                   float_not_below(densities.surroundings));
+                   float_not_below(densities.surroundings), kRoomForPieces);
 }
 
 }  // namespace

@@ -23,6 +23,11 @@ std::size_t max_across(const GridGeometry& geometry, double radius_mm, int axis)
   return static_cast<std::size_t>(std::min(across, static_cast<double>(dim)));
 }
 
+std::size_t max_pieces_in_ball(const GridGeometry& geometry, double radius_mm) {
+  const std::size_t lines = max_across(geometry, radius_mm, 1) * max_across(geometry, radius_mm, 2);
+  return lines * (max_across(geometry, radius_mm, 0) / BlockRanges::kBrickVoxels + 2);
+}
+
 constexpr std::size_t kWordBits = 64;
 
 std::size_t row_in_brick(int j, int k) {
@@ -32,10 +37,13 @@ std::size_t row_in_brick(int j, int k) {
 
 }  // namespace
 
-BurrReach::BurrReach(const GridGeometry& geometry, double max_radius_mm, float floor_density)
+BurrReach::BurrReach(const GridGeometry& geometry, double max_radius_mm, float floor_density,
+                     std::size_t max_pieces)
     : geometry_(geometry),
-      max_voxels_(max_voxels_in_ball(geometry, max_radius_mm)),
+      max_pieces_(std::min(max_pieces, max_pieces_in_ball(geometry, max_radius_mm))),
       floor_density_(floor_density) {
+  max_voxels_ =
+      std::min(max_voxels_in_ball(geometry, max_radius_mm), static_cast<std::size_t>(kSide) * max_pieces_);
   std::size_t bricks = 1;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     brick_dims_[axis] = (geometry.dims[axis] + kSide - 1) / kSide;
@@ -47,8 +55,7 @@ BurrReach::BurrReach(const GridGeometry& geometry, double max_radius_mm, float f
   bits_.resize(bricks);
   words_of_line_ = (static_cast<std::size_t>(brick_dims_[0]) + kWordBits - 1) / kWordBits;
   held_.resize(words_of_line_ * brick_line(0, brick_dims_[2]));
-  const std::size_t lines = max_across(geometry, max_radius_mm, 1) * max_across(geometry, max_radius_mm, 2);
-  pieces_.reserve(lines * (max_across(geometry, max_radius_mm, 0) / kSide + 2));
+  pieces_.reserve(max_pieces_);
 }
 
 void BurrReach::find(const Volume& volume, const Vec3& centre_mm, double radius_mm, const Share& share) {
@@ -167,6 +174,7 @@ void BurrReach::find_pieces(const DensityGrid& grid, std::size_t word, std::uint
         if (byte == 0 || x.of_brick_mm2[static_cast<std::size_t>(bi)] >= half2) continue;
         const unsigned inside = byte & in_ball(bi, half2);
         if (inside == 0) continue;
+        if (pieces_.size() == max_pieces_) return;
         const VoxelIndex first{kSide * bi, j, k};
         pieces_.push_back({grid.linear_index(first), first, static_cast<std::uint8_t>(inside)});
         // Each row lies in a cache line of its own; by the time that all are known, the first have come.

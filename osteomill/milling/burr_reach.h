@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "osteomill/geometry/pose.h"
@@ -17,8 +18,10 @@ namespace osteomill {
 /// row), brick by brick.
 class BurrReach {
  public:
-  /// Allocates all that `find` needs. `max_radius_mm` is above 0, the grid not empty.
-  BurrReach(const GridGeometry& geometry, double max_radius_mm, float floor_density);
+  /// Allocates all that `find` needs. `max_radius_mm` is above 0, the grid not empty. No more than
+  /// `max_pieces` are found at once.
+  BurrReach(const GridGeometry& geometry, double max_radius_mm, float floor_density,
+            std::size_t max_pieces = std::numeric_limits<std::size_t>::max());
 
   /// The rows that a step looks at, where a ball has more voxels than a step has time for: those of every
   /// `count`-th line of the grid, shifted with `turn` so that `count` turns see all. `count` is a power of 2.
@@ -44,7 +47,7 @@ class BurrReach {
   float floor_density() const { return floor_density_; }
   /// The most that can be found at once.
   std::size_t max_voxels() const { return max_voxels_; }
-  std::size_t max_pieces() const { return pieces_.capacity(); }
+  std::size_t max_pieces() const { return max_pieces_; }
 
  private:
   static constexpr int kSide = BlockRanges::kBrickVoxels;
@@ -77,7 +80,8 @@ class BurrReach {
 
   GridGeometry geometry_;
   double radius_mm_ = 0;
-  std::size_t max_voxels_;
+  std::size_t max_voxels_ = 0;
+  std::size_t max_pieces_;
   float floor_density_;
   std::array<int, 3> brick_dims_;
 

@@ -156,7 +156,7 @@ TEST(BurrReach, HasRoomForABallFullOfBoneAtAnyShift) {
     const GridGeometry geometry = turned_geometry();
     const Volume volume(DensityGrid(geometry, std::vector<float>(geometry.voxel_count(), 1000.0f)), 500);
     BurrReach reach(geometry, radius_mm, kFloor);
-    const std::size_t room = reach.max_pieces();
+    const std::size_t room = reach.pieces().capacity();
     std::size_t found = 0;
     for (int n = 0; n < 200; ++n) {
       reach.forget();
@@ -164,12 +164,21 @@ TEST(BurrReach, HasRoomForABallFullOfBoneAtAnyShift) {
       found = 0;
       for_each_found(reach, [&](const VoxelIndex&) { ++found; });
       ASSERT_LE(found, reach.max_voxels());
-      ASSERT_EQ(reach.max_pieces(), room) << "pieces were allocated";
+      ASSERT_EQ(reach.pieces().capacity(), room) << "pieces were allocated";
     }
     if (radius_mm == 20.0) {
       EXPECT_EQ(found, geometry.voxel_count());
     }
   }
+}
+
+TEST(BurrReach, FindsNoMoreThanItIsGivenRoomFor) {
+  const GridGeometry geometry = turned_geometry();
+  const Volume volume(DensityGrid(geometry, std::vector<float>(geometry.voxel_count(), 1000.0f)), 500);
+  BurrReach reach(geometry, 2.0, kFloor, 20);
+  reach.find(volume, in_grid(Vec3(15, 12, 10), geometry), 2.0);
+  EXPECT_EQ(reach.pieces().size(), 20u);
+  EXPECT_EQ(reach.max_voxels(), 160u);
 }
 
 TEST(BurrReach, LooksAtAllAgainInAnotherVolumeOrAfterForgetting) {
