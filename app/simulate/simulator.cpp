@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <ctime>
+#include <deque>
 #include <exception>
 #include <future>
 #include <memory>
@@ -190,6 +191,7 @@ class Simulator {
     view_.dragged_cut = -1;
     reset_cuts(view_);
     cuts_ = {};
+    to_draw_.clear();
     renderer_ = std::make_unique<SceneRenderer>(milling.surface_layout(), milling.geometry());
   }
 
@@ -237,7 +239,13 @@ class Simulator {
   }
 
   void take_surface() {
-    for (const ChangedBrick& changed : simulation_->milling.take_changed_bricks()) {
+    for (ChangedBrick& changed : simulation_->milling.take_changed_bricks())
+      to_draw_.push_back(std::move(changed));
+    // All of a large bone's take longer than a picture may.
+    constexpr double kMost_s = 0.02;
+    for (const auto start = Clock::now(); !to_draw_.empty() && seconds_since(start) < kMost_s;
+         to_draw_.pop_front()) {
+      const ChangedBrick& changed = to_draw_.front();
       renderer_->set_brick(changed.brick, changed.mesh, changed.levels);
     }
   }
@@ -315,6 +323,8 @@ class Simulator {
   Clock::time_point opening_since_;
   int changes_before_ = 0;
   std::unique_ptr<SceneRenderer> renderer_;
+  // Of the surface, in the order in which they changed.
+  std::deque<ChangedBrick> to_draw_;
   bool reported_ = false;
   ViewState view_;
   FilesPanel files_;

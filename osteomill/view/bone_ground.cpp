@@ -105,8 +105,7 @@ void BoneGround::draw(const ViewScene& scene, const Projection& projection) {
 
 void BoneGround::draw_at_once(const ViewScene& scene, const Projection& projection) {
   const auto start = Clock::now();
-  const Detail detail = detail_in_time(scene, projection);
-  const std::vector<SeenBrick> seen = bone_.seen(scene, projection, detail);
+  const std::vector<SeenBrick> seen = seen_in_time(scene, projection);
   clear_depths(*shown_);
   bone_.draw(scene, projection, *cavities_, seen);
   draw_around(scene, projection);
@@ -121,16 +120,19 @@ void BoneGround::draw_at_once(const ViewScene& scene, const Projection& projecti
 
 // The finest that there is time for. It gets finer only where that leaves some, so that it does not change to
 // and fro.
-Detail BoneGround::detail_in_time(const ViewScene& scene, const Projection& projection) {
-  Detail detail{kFullDetail.cell_px, std::nullopt};
+std::vector<SeenBrick> BoneGround::seen_in_time(const ViewScene& scene, const Projection& projection) {
+  Detail detail = kFullDetail;
   if (scene.X_WT) detail.sharp = Sphere{scene.X_WT->position_mm, 2 * scene.tool.burr_radius_mm};
-  const double allowed = static_cast<double>(pace_.triangles());
-  for (; detail.cell_px < kCoarsest_px; detail.cell_px *= std::numbers::sqrt2) {
-    const auto count = static_cast<double>(bone_.triangle_count(bone_.seen(scene, projection, detail)));
+  std::vector<SeenBrick> seen = bone_.seen(scene, projection, detail);
+  const auto allowed = static_cast<double>(pace_.triangles());
+  while (detail.cell_px < kCoarsest_px) {
+    const auto count = static_cast<double>(bone_.triangle_count(seen));
     if (count <= (detail.cell_px < cell_px_ ? 0.75 : 1.0) * allowed) break;
+    detail.cell_px *= std::numbers::sqrt2;
+    bone_.choose_levels(seen, detail);
   }
   cell_px_ = detail.cell_px;
-  return detail;
+  return seen;
 }
 
 void BoneGround::begin_refining(const ViewScene& scene, const Projection& projection) {

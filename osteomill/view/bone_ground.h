@@ -45,7 +45,7 @@ class BoneGround {
   bool draw_changed(const ViewScene& scene, const Projection& projection);
   Rectangle changed_part(const std::set<std::size_t>& bricks, const ViewScene& scene,
                          const Projection& projection) const;
-  Detail detail_in_time(const ViewScene& scene, const Projection& projection);
+  std::vector<SeenBrick> seen_in_time(const ViewScene& scene, const Projection& projection);
   void draw_around(const ViewScene& scene, const Projection& projection);
   void look_for_cavities(const Projection& projection);
 

@@ -259,18 +259,27 @@ std::vector<SeenBrick> BoneLayer::seen(const ViewScene& scene, const Projection&
         std::max(depth_of(scene.camera, brick.bounds.centre_W) - brick.bounds.radius_mm, projection.near_mm);
     const bool sharp = detail.sharp && (detail.sharp->centre_W - brick.bounds.centre_W).norm() <
                                            detail.sharp->radius_mm + brick.bounds.radius_mm;
-    const double widest_px = sharp ? std::min(detail.cell_px, 1.0) : detail.cell_px;
-    double cell_px =
-        2 * geometry_.spacing_mm.maxCoeff() / mm_per_pixel(scene.camera, projection.size, front_mm);
-    std::size_t level = 0;
-    for (; level + 1 < BrickLevels::kCount && cell_px <= widest_px; cell_px *= 2) ++level;
-    found.push_back({(brick.bounds.centre_W - eye_W).squaredNorm(), {n, level}});
+    const double cell_px =
+        geometry_.spacing_mm.maxCoeff() / mm_per_pixel(scene.camera, projection.size, front_mm);
+    found.push_back({(brick.bounds.centre_W - eye_W).squaredNorm(), {n, 0, cell_px, sharp}});
   }
   std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<SeenBrick> bricks;
   bricks.reserve(found.size());
   for (const auto& [way, brick] : found) bricks.push_back(brick);
+  choose_levels(bricks, detail);
   return bricks;
+}
+
+void BoneLayer::choose_levels(std::span<SeenBrick> bricks, const Detail& detail) const {
+  for (SeenBrick& seen : bricks) {
+    const double widest_px = seen.sharp ? std::min(detail.cell_px, 1.0) : detail.cell_px;
+    seen.level = 0;
+    for (double cell_px = 2 * seen.cell_px; seen.level + 1 < BrickLevels::kCount && cell_px <= widest_px;
+         cell_px *= 2) {
+      ++seen.level;
+    }
+  }
 }
 
 std::size_t BoneLayer::triangle_count(std::span<const SeenBrick> bricks) const {

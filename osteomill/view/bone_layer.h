@@ -51,6 +51,9 @@ inline constexpr Detail kFullDetail{0.5, std::nullopt};
 struct SeenBrick {
   std::size_t brick;
   std::size_t level;
+  /// How wide a cell of the finest level is in the picture where the brick is nearest.
+  double cell_px;
+  bool sharp;
 };
 
 /// The bone's surface, a piece of graphics memory a brick, so that milling replaces only what changed.
@@ -64,6 +67,8 @@ class BoneLayer {
   /// Only bricks that the camera may see, the nearest first.
   std::vector<SeenBrick> seen(const ViewScene& scene, const Projection& projection,
                               const Detail& detail) const;
+  /// The same bricks in another detail.
+  void choose_levels(std::span<SeenBrick> bricks, const Detail& detail) const;
   std::size_t triangle_count(std::span<const SeenBrick> bricks) const;
   /// Back faces only where the scene is cut open. Bricks of different levels meet without a gap where they
   /// are drawn together.
