@@ -5,12 +5,12 @@
 
 #include "app/commands.h"
 #include "app/config_file.h"
+#include "app/positive_number.h"
 #include "app/progress.h"
 #include "app/scan_options.h"
 #include "app/trial_options.h"
 #include <CLI/Error.hpp>
 #include <CLI/Option.hpp>
-#include <CLI/Validators.hpp>
 #include <fmt/core.h>
 
 #include "osteomill/experiment/comparison_report.h"
@@ -20,6 +20,7 @@
 #include "osteomill/experiment/study_trials.h"
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/recording/read_recording.h"
+#include "osteomill/session/milling_setup.h"
 
 namespace osteomill::app {
 
@@ -100,6 +101,7 @@ std::vector<PassivityRow> press_on_walls(const CompareOptions& options, const Tr
 
 void run_compare(const CompareOptions& options, const std::string& command_line) {
   const LoadedBone bone = load_bone(options.scan);
+  require_workable(options.trial.milling.setup.tool, bone.volume.geometry());
   const std::vector<TrialPlan> plans = plans_of(options, bone, command_line);
   create_folder(options.out);
   const EntryPictures pictures(bone.volume, plans.front().densities.reference, plans.front().entry,
@@ -139,8 +141,11 @@ void add_compare_command(CLI::App& program, const std::string& command_line) {
   auto options = std::make_shared<CompareOptions>();
   CLI::App* command = program.add_subcommand(
       "compare", "Mill with each algorithm in a simulated hand (section 8.2 of the paper) and report");
+  command->group("Compare and measure");
   add_scan_options(*command, options->scan);
-  command->add_option("--out", options->out, "Folder for the report and the recordings")
+  command->option_defaults()->group("The comparison");
+  command->add_option("--out", options->out, "For the report and the recordings")
+      ->type_name("FOLDER")
       ->capture_default_str();
   add_algorithm_option(*command, options->algorithms);
   add_modes_option(*command, options->modes);
@@ -149,16 +154,17 @@ void add_compare_command(CLI::App& program, const std::string& command_line) {
           "--seeds", options->seeds,
           "How many hands try it, each with a seed of its own, --seed the first; the report then says "
           "which differences are significant")
-      ->check(CLI::Range(1, kMaxSeeds))
+      ->check(whole_number(1, kMaxSeeds))
+      ->type_name("COUNT")
       ->capture_default_str();
   command->add_flag("--no-stability", options->no_stability,
                     "Leave out how stiff each algorithm can be against a flat wall");
-  command
-      ->add_option("--threads", options->threads,
-                   "How many trials after the first, and walls, are run side by side")
-      ->check(CLI::Range(1, kMaxThreads))
+  command->add_option("--threads", options->threads, "How many trials after the first are run side by side")
+      ->check(whole_number(1, kMaxThreads))
+      ->type_name("COUNT")
       ->capture_default_str();
   add_trial_options(*command, options->trial);
+  add_quiet_option(*command);
   command->callback([=] {
     apply_config_file(*command);
     if (options->seeds > 1) refuse_a_hand(*command);

@@ -1,8 +1,11 @@
 #include "app/config_file.h"
 
+#include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <vector>
 
+#include "app/nearest_word.h"
 #include <CLI/Error.hpp>
 #include <fmt/core.h>
 #include <toml++/toml.h>
@@ -43,8 +46,32 @@ std::vector<std::string> option_values(const toml::node& value, const std::strin
   return values;
 }
 
+// The library goes down into a name's parts by recursion, however many there are.
+void require_short_names(const std::string& file) {
+  constexpr std::ptrdiff_t kMaxDots = 1000;
+  std::ifstream in(file);
+  std::string line;
+  for (int number = 1; std::getline(in, line); ++number) {
+    if (std::count(line.begin(), line.end(), '.') > kMaxDots)
+      throw InputError(file, fmt::format("line {}: has a name of over {} parts", number, kMaxDots));
+  }
+}
+
+// What may stand in the file: the options without their dashes, and tables named after algorithms.
+std::vector<std::string> keys_of(const CLI::App& command) {
+  std::vector<std::string> keys;
+  for (const std::string& name : option_names(command)) {
+    if (name != kConfigOption && name != "--help") keys.push_back(name.substr(2));
+  }
+  if (command.get_option_no_throw("--set") != nullptr) {
+    for (const std::string& name : algorithm_names()) keys.push_back(name);
+  }
+  return keys;
+}
+
 toml::table parse(const std::string& file) {
   if (!std::filesystem::is_regular_file(file)) throw InputError(file, "no such file");
+  require_short_names(file);
   try {
     return toml::parse_file(file);
   } catch (const toml::parse_error& error) {
@@ -107,8 +134,8 @@ void apply_config_file(CLI::App& command) {
     }
     CLI::Option* option = command.get_option_no_throw("--" + name);
     if (option == nullptr || name == "config" || name == "help") {
-      throw InputError(file, fmt::format("line {}: {} has no option {}", value.source().begin.line,
-                                         command.get_name(), name));
+      throw InputError(file, fmt::format("line {}: {} has no option {}{}", value.source().begin.line,
+                                         command.get_name(), name, did_you_mean(name, keys_of(command))));
     }
     if (option->count() == 0) give(*option, value, file, name);
   }

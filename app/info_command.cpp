@@ -1,10 +1,15 @@
 #include <memory>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "app/commands.h"
 #include "app/scan_options.h"
 #include <fmt/core.h>
 
 #include "osteomill/ct/scan_summary.h"
+#include "osteomill/operator/milling_entry.h"
+#include "osteomill/volume/isovalue_warnings.h"
 
 namespace osteomill::app {
 
@@ -16,10 +21,18 @@ struct InfoOptions {
 };
 
 void run_info(const InfoOptions& options) {
-  const Scan scan = open_scan(options.scan);
+  Scan scan = open_scan(options.scan);
   const SuggestedIsovalue suggested = suggested_isovalue(options.scan, scan);
-  if (options.scan.isovalue) require_isovalue_within(scan, *options.scan.isovalue);
-  const ScanSummary summary = summarise(scan, suggested, options.scan.isovalue.value_or(suggested.value));
+  const double isovalue = options.scan.isovalue.value_or(suggested.value);
+  ScanSummary summary = summarise(scan, suggested, isovalue);
+  const auto add = [&](const std::vector<std::string>& warnings) {
+    summary.warnings.insert(summary.warnings.end(), warnings.begin(), warnings.end());
+  };
+  add(isovalue_warnings(scan.grid, isovalue));
+  if (is_within(scan.grid, isovalue)) {
+    const Volume bone(std::move(scan.grid), isovalue);
+    add(entry_warnings(bone, MillingTool{}, place_entry(bone, MillingTool{})));
+  }
   fmt::print("{}", options.json ? to_json(summary) : to_text(summary));
 }
 
@@ -28,6 +41,7 @@ void run_info(const InfoOptions& options) {
 void add_info_command(CLI::App& program) {
   auto options = std::make_shared<InfoOptions>();
   CLI::App* command = program.add_subcommand("info", "Show what was read of a scan");
+  command->group("Scans");
   add_scan_options(*command, options->scan);
   command->add_flag("--json", options->json, "As JSON");
   command->callback([=] { run_info(*options); });

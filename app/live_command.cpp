@@ -12,6 +12,8 @@
 #include <fmt/core.h>
 
 #include "osteomill/live/live_milling.h"
+#include "osteomill/session/fault_count.h"
+#include "osteomill/session/milling_setup.h"
 
 namespace osteomill::app {
 
@@ -31,7 +33,8 @@ void print_times(const char* what, const TimePercentiles& times) {
 }
 
 void print_timing(const TimingSummary& timing) {
-  fmt::print("rate         {:.1f} Hz over {} ticks\n", timing.rate_hz, timing.ticks);
+  fmt::print("rate         {:.1f} Hz by the ticks' work; {:.1f} ticks a second counted, {} ticks\n",
+             timing.rate_hz, timing.ticks_per_s, timing.ticks);
   print_times("lateness", timing.lateness);
   fmt::print("late ticks   {} by over 1 ms ({:.3f} %), {} missed\n", timing.late_ticks,
              100.0 * static_cast<double>(timing.late_ticks) / static_cast<double>(timing.ticks),
@@ -74,6 +77,7 @@ void run_live(LiveOptions options, const std::string& command_line) {
   MillingSetup setup = options.trial.milling.setup;
   setup.algorithm = options.algorithm.front();
   LoadedBone loaded = load_bone(options.scan);
+  require_workable(setup.tool, loaded.volume.geometry());
   const auto bone = std::make_shared<Volume>(std::move(loaded.volume));
   PreparedMilling prepared = prepare_milling(bone, setup);
   SimulatedOperator hand(trial_settings(options.trial).hand_and_device, setup.tool,
@@ -83,11 +87,10 @@ void run_live(LiveOptions options, const std::string& command_line) {
     milling.start_recording(options.record, milling.describe(loaded.name, command_line));
   }
   milling.start();
-  if (!milling.refused_real_time().empty())
-    fmt::print(stderr, "osteomill: {}\n", milling.refused_real_time());
+  if (!milling.refused_real_time().empty()) warn(milling.refused_real_time());
   const Seen seen = run_for(milling, options.seconds);
   if (milling.recording()) milling.stop_recording();
-  print_faults(setup.algorithm.id.name, seen.faults);
+  if (const auto said = seen.faults.sentence()) warn(setup.algorithm.id.name + ": " + *said);
   print_timing(milling.timing());
   fmt::print("removed      {:.2f} mm^3, {} bricks of the surface meshed\n",
              milling.state().record.removed_mm3, seen.bricks);
@@ -99,13 +102,16 @@ void add_live_command(CLI::App& program, const std::string& command_line) {
   auto options = std::make_shared<LiveOptions>();
   CLI::App* command = program.add_subcommand(
       "live", "Run one algorithm in real time with the simulated hand, and say how well time is kept");
+  command->group("Compare and measure");
   add_scan_options(*command, options->scan);
   add_algorithm_option(*command, options->algorithm);
   command->get_option("--algorithm")->expected(1);
   add_trial_options(*command, options->trial);
   command->remove_option(command->get_option("--seconds"));
-  add_positive(*command, "--seconds", options->seconds, "s, half of it milling, half holding still");
-  command->add_option("--record", options->record, "A recording (HDF5) of every tick");
+  command->option_defaults()->group("The hand and its device");
+  add_positive(*command, "--seconds", options->seconds, "s", "Half of it milling, half holding still");
+  command->add_option("--record", options->record, "A recording (HDF5) of every tick")->type_name("FILE");
+  add_quiet_option(*command);
   command->callback([=] {
     apply_config_file(*command);
     run_live(*options, command_line);

@@ -1,9 +1,13 @@
 #include <cstdio>
 #include <exception>
+#include <memory>
 #include <stdexcept>
 
 #include "app/command_line.h"
 #include "app/commands.h"
+#include "app/help_text.h"
+#include "app/nearest_word.h"
+#include "app/progress.h"
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
@@ -16,7 +20,7 @@ constexpr int kInputAtFault = 1;
 constexpr int kWrongUsage = 2;
 
 int complain(const char* reason, int code) {
-  fmt::print(stderr, "osteomill: {}\n", reason);
+  fmt::print(stderr, "osteomill: {}\n", osteomill::app::in_one_line(reason));
   return code;
 }
 
@@ -25,10 +29,15 @@ int complain(const char* reason, int code) {
 int main(int argc, char** argv) {
   CLI::App program("6-DOF haptic bone milling: haptic algorithms on a CT scan, measured", "osteomill");
   program.set_version_flag("--version", OSTEOMILL_VERSION);
-  program.require_subcommand(1);
+  program.formatter(std::make_shared<osteomill::app::HelpText>());
+  program.get_formatter()->label("SUBCOMMAND", "COMMAND");
   osteomill::app::add_commands(program, osteomill::app::command_line_of(argc, argv));
   try {
+    osteomill::app::require_known_words(program, argc, argv);
     program.parse(argc, argv);
+    if (program.get_subcommands().empty()) {
+      return complain("no command is given; osteomill --help lists them", kWrongUsage);
+    }
     return kDone;
   } catch (const CLI::CallForHelp& help) {
     return program.exit(help);

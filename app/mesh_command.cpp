@@ -4,6 +4,8 @@
 
 #include "app/commands.h"
 #include "app/milled_scan.h"
+#include "app/positive_number.h"
+#include "app/progress.h"
 #include <fmt/core.h>
 
 #include "osteomill/files/input_error.h"
@@ -37,8 +39,12 @@ void add_mesh_command(CLI::App& program) {
   auto options = std::make_shared<MeshOptions>();
   CLI::App* command =
       program.add_subcommand("mesh", "Write the bone's surface as one closed mesh of triangles, in mm");
+  command->group("Scans");
   add_milled_scan_options(*command, options->scan, ".stl, .ply or .obj");
-  command->add_option("--iso", options->isovalue, "Isovalue: bone where the density is greater");
+  command->add_option("--iso", options->isovalue, "Isovalue: bone where the density is greater")
+      ->check(not_empty())
+      ->type_name("DENSITY");
+  add_quiet_option(*command);
   command->callback([=] { run_mesh(*options); });
 }
 

@@ -2,6 +2,9 @@
 
 #include <utility>
 
+#include "app/positive_number.h"
+#include "app/progress.h"
+
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/recording/read_recording.h"
 #include "osteomill/recording/repeat_milling.h"
@@ -9,11 +12,12 @@
 namespace osteomill::app {
 
 void add_milled_scan_options(CLI::App& command, MilledScanOptions& options, const std::string& out_text) {
-  command.add_option("scan", options.scan,
-                     "DICOM folder or file, NRRD, MetaImage or NIfTI; without one, the built-in tooth");
-  command.add_option("--out", options.out, "The file to write, " + out_text)->required();
-  command.add_option("--after", options.recording,
-                     "A recording (HDF5) made with this scan: the bone as milled at its end");
+  command.add_option("scan", options.scan, kScanText)->check(not_empty());
+  command.add_option("--out", options.out, "The file to write, " + out_text)->required()->type_name("FILE");
+  command
+      .add_option("--after", options.recording,
+                  "A recording (HDF5) made with this scan: the bone as milled at its end")
+      ->type_name("FILE");
 }
 
 void require_other_output(const MilledScanOptions& options) {
@@ -23,19 +27,22 @@ void require_other_output(const MilledScanOptions& options) {
 LoadedBone load_milled_bone(const MilledScanOptions& options, const std::optional<double>& isovalue) {
   if (options.recording.empty()) return load_bone({options.scan, isovalue});
   const Recording recording = read_recording(options.recording);
-  LoadedBone bone = load_bone({options.scan, isovalue.value_or(recording.description.isovalue)});
+  LoadedBone bone = read_bone({options.scan, isovalue.value_or(recording.description.isovalue)});
   repeat_milling(bone.volume, recording);
+  for (const std::string& warning : bone.warnings) warn(warning);
   return bone;
 }
 
 DensityGrid load_milled_densities(const MilledScanOptions& options) {
   Scan scan = open_scan({options.scan, std::nullopt});
-  print_warnings(scan);
-  if (options.recording.empty()) return std::move(scan.grid);
-  const Recording recording = read_recording(options.recording);
-  Volume volume(std::move(scan.grid), recording.description.isovalue);
-  repeat_milling(volume, recording);
-  return volume.grid();
+  if (!options.recording.empty()) {
+    const Recording recording = read_recording(options.recording);
+    Volume volume(std::move(scan.grid), recording.description.isovalue);
+    repeat_milling(volume, recording);
+    scan.grid = volume.grid();
+  }
+  for (const std::string& warning : scan.warnings) warn(scan.name + ": " + warning);
+  return std::move(scan.grid);
 }
 
 }  // namespace osteomill::app

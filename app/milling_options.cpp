@@ -3,13 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <stdexcept>
 
 #include "app/config_file.h"
+#include "app/nearest_word.h"
 #include "app/positive_number.h"
 #include <CLI/Error.hpp>
 #include <CLI/Option.hpp>
 #include <CLI/Validators.hpp>
+#include <fmt/core.h>
 
 #include "osteomill/haptics/algorithms.h"
 
@@ -19,8 +22,9 @@ void add_mode_option(CLI::App& command, Mode& mode) {
   command
       .add_option_function<std::string>(
           "--mode", [&mode](const std::string& name) { mode = *mode_named(name); },
-          "'paper' as published, 'steady' with every improvement")
-      ->check(CLI::IsMember({"paper", "steady"}))
+          "paper as published, steady with every improvement")
+      ->check(one_of("mode", {"paper", "steady"}))
+      ->type_name("MODE")
       ->default_str(std::string(name_of(mode)));
 }
 
@@ -32,12 +36,19 @@ void add_modes_option(CLI::App& command, std::vector<Mode>& modes) {
             const auto one = mode_named(name);
             modes = one ? std::vector{*one} : std::vector{Mode::paper, Mode::steady};
           },
-          "'paper' as published, 'steady' with every improvement, or 'both'")
-      ->check(CLI::IsMember({"paper", "steady", "both"}))
+          "paper as published, steady with every improvement, or both")
+      ->check(one_of("mode", {"paper", "steady", "both"}))
+      ->type_name("MODE")
       ->default_str(std::string(name_of(modes.front())));
 }
 
 namespace {
+
+std::vector<std::string> setting_names(const AlgorithmDescription& algorithm) {
+  std::vector<std::string> names;
+  for (const SettingDescription& setting : algorithm.settings) names.push_back(setting.name);
+  return names;
+}
 
 // "point-shell.look-ahead=false"
 HapticSettings::Named named_setting(const std::string& text) {
@@ -48,7 +59,15 @@ HapticSettings::Named named_setting(const std::string& text) {
   }
   HapticSettings::Named named{text.substr(0, dot), text.substr(dot + 1, equals - dot - 1), 0};
   const AlgorithmDescription* algorithm = find_algorithm(named.algorithm);
-  if (algorithm == nullptr) throw CLI::ValidationError("--set", named.algorithm + " is no algorithm");
+  if (algorithm == nullptr) {
+    throw CLI::ValidationError("--set", "there is no algorithm " + named.algorithm +
+                                            did_you_mean(named.algorithm, algorithm_names()));
+  }
+  if (const std::vector<std::string> known = setting_names(*algorithm);
+      std::find(known.begin(), known.end(), named.setting) == known.end()) {
+    throw CLI::ValidationError("--set", fmt::format("{} has no setting {}{}", named.algorithm, named.setting,
+                                                    did_you_mean(named.setting, known)));
+  }
   const std::string value = text.substr(equals + 1);
   if (value == "true" || value == "false") {
     named.value = value == "true" ? 1 : 0;
@@ -122,25 +141,35 @@ void add_shared_settings(CLI::App& command, HapticSettings& haptics) {
 
 void add_milling_options(CLI::App& command, MillingOptions& options) {
   MillingSetup& setup = options.setup;
-  add_positive(command, "--burr-radius", setup.tool.burr_radius_mm, "mm");
-  add_positive(command, "--shaft-radius", setup.tool.shaft_radius_mm, "mm");
-  add_positive(command, "--shaft-length", setup.tool.shaft_length_mm, "mm");
+  command.option_defaults()->group("Tool");
+  add_positive(command, "--burr-radius", setup.tool.burr_radius_mm, "mm", "Of the burr's sphere");
+  add_positive(command, "--shaft-radius", setup.tool.shaft_radius_mm, "mm", "Of the shaft");
+  add_positive(command, "--shaft-length", setup.tool.shaft_length_mm, "mm", "From the burr's centre");
+  command.option_defaults()->group("Settings of the algorithms");
   add_shared_settings(command, setup.haptics);
   add_named_settings(command, setup.haptics);
-  add_positive(command, "--spindle-speed", setup.cutting.spindle_speed_rpm, "rpm");
-  add_positive(command, "--cutting-energy", setup.cutting.specific_energy_Nmm_per_mm3,
-               "N mm/mm^3, the work that removes bone of the reference density");
-  add_positive(command, "--removal-rate", setup.removal_rate_mm3_per_Ns,
-               "kappa, mm^3/(N s); else from burr, spindle speed and cutting energy");
-  add_positive(command, "--force-limit", setup.limits.force_N, "N, the most the device is asked for");
-  add_positive(command, "--torque-limit", setup.limits.torque_Nmm, "N mm");
+  command.option_defaults()->group("Cutting");
+  add_positive(command, "--spindle-speed", setup.cutting.spindle_speed_rpm, "rpm", "Of the burr");
+  add_positive(command, "--cutting-energy", setup.cutting.specific_energy_Nmm_per_mm3, "N.mm/mm^3",
+               "The work that removes bone of the reference density");
+  add_positive(command, "--removal-rate", setup.removal_rate_mm3_per_Ns, "mm^3/(N.s)",
+               "kappa; else it follows from burr, spindle speed and cutting energy");
+  command.option_defaults()->group("Limits of the device");
+  add_positive(command, "--force-limit", setup.limits.force_N, "N", "The most it is asked for");
+  add_positive(command, "--torque-limit", setup.limits.torque_Nmm, "N.mm", "The most it is asked for");
+  command.option_defaults()->group("Options");
   command.add_option("--seed", options.seed, "Of the hand's tremor, and of the hands that --seeds draws")
+      ->check(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
+      ->type_name("NUMBER")
       ->capture_default_str();
   add_config_option(command);
 }
 
 void add_algorithm_option(CLI::App& command, std::vector<AlgorithmDescription>& algorithms) {
   const std::string all = algorithms.size() > 1 ? "all" : algorithms.front().id.name;
+  std::string what;
+  for (const std::string& name : algorithm_names()) what += (what.empty() ? "" : ", ") + name;
+  if (algorithms.size() > 1) what += "; may repeat";
   command
       .add_option_function<std::vector<std::string>>(
           "--algorithm",
@@ -153,8 +182,9 @@ void add_algorithm_option(CLI::App& command, std::vector<AlgorithmDescription>& 
               if (!is_there) algorithms.push_back(algorithm);
             }
           },
-          "Only this one; may repeat")
-      ->check(CLI::IsMember(algorithm_names()))
+          what)
+      ->check(one_of("algorithm", algorithm_names()))
+      ->type_name("NAME")
       ->default_str(all);
 }
 

@@ -1,5 +1,7 @@
 #include "app/progress.h"
 
+#include <chrono>
+#include <cmath>
 #include <cstdio>
 
 #include <fmt/core.h>
@@ -9,34 +11,81 @@ namespace osteomill::app {
 
 namespace {
 
+using Clock = std::chrono::steady_clock;
+
+bool quiet = false;
+
 bool on_terminal() {
   static const bool terminal = ::isatty(STDERR_FILENO) == 1;
   return terminal;
 }
 
+struct Work {
+  std::string what;
+  Clock::time_point start;
+  double fraction_done = 0;
+  int tenths_said = 0;
+};
+Work work;
+
+std::string time_text(double seconds) {
+  const long whole = std::lround(seconds);
+  if (whole < 60) return fmt::format("{} s", whole);
+  if (whole < 3600) return fmt::format("{} min {:02} s", whole / 60, whole % 60);
+  return fmt::format("{} h {:02} min", whole / 3600, whole / 60 % 60);
+}
+
 }  // namespace
 
+void add_quiet_option(CLI::App& command) {
+  command
+      .add_flag_function(
+          "--quiet", [](std::int64_t) { quiet = true; }, "Nothing but errors on standard error")
+      ->group("Options");
+}
+
 void show_progress(std::string_view what, double fraction_done) {
-  if (!on_terminal()) return;
-  fmt::print(stderr, "\r\033[K{} {:3.0f} %", what, 100 * fraction_done);
-  std::fflush(stderr);
+  constexpr double kSilent_s = 1;
+  if (quiet) return;
+  const Clock::time_point now = Clock::now();
+  if (what != work.what || fraction_done < work.fraction_done) work = {std::string(what), now, 0, 0};
+  work.fraction_done = fraction_done;
+  const double passed_s = std::chrono::duration<double>(now - work.start).count();
+  if (!(fraction_done > 0) || passed_s < kSilent_s) return;
+  const std::string line = fmt::format("{} {:3.0f} %, {} left", what, 100 * fraction_done,
+                                       time_text(passed_s * (1 - fraction_done) / fraction_done));
+  if (on_terminal()) {
+    fmt::print(stderr, "\r\033[K{}", line);
+    std::fflush(stderr);
+  } else if (const int tenths = static_cast<int>(10 * fraction_done + 1e-9); tenths > work.tenths_said) {
+    work.tenths_said = tenths;
+    fmt::print(stderr, "{}\n", line);
+  }
 }
 
 void end_progress() {
-  if (!on_terminal()) return;
+  work = {};
+  if (quiet || !on_terminal()) return;
   fmt::print(stderr, "\r\033[K");
   std::fflush(stderr);
 }
 
-RunEvents events_on_terminal() {
-  return {show_progress, [](const std::string& line) {
-            end_progress();
-            fmt::print(stderr, "osteomill: {}\n", line);
-          }};
+void warn(std::string_view line) {
+  if (quiet) return;
+  if (on_terminal()) fmt::print(stderr, "\r\033[K");
+  fmt::print(stderr, "osteomill: warning: {}\n", in_one_line(line));
 }
 
-void print_faults(std::string_view who, const FaultCount& faults) {
-  if (const auto said = faults.sentence()) fmt::print(stderr, "osteomill: {}: {}\n", who, *said);
+RunEvents events_on_terminal() {
+  return {show_progress, warn};
+}
+
+std::string in_one_line(std::string_view text) {
+  std::string line(text);
+  for (char& c : line) {
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+  }
+  return line;
 }
 
 }  // namespace osteomill::app

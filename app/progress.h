@@ -1,22 +1,30 @@
 #pragma once
 
+#include <string>
 #include <string_view>
 
+#include <CLI/App.hpp>
+
 #include "osteomill/experiment/run_events.h"
-#include "osteomill/session/fault_count.h"
 
 namespace osteomill::app {
 
-/// One line on standard error that is written over as the work goes on; silent where standard error is no
-/// terminal.
+/// Adds --quiet: nothing but errors on standard error.
+void add_quiet_option(CLI::App& command);
+
+/// How far the work `what` is, and how long it still takes, on standard error: on a terminal one line that is
+/// written over, else a line each tenth. Silent in the work's first second. From one thread at a time.
 void show_progress(std::string_view what, double fraction_done);
-/// Clears that line.
+/// The work is done: clears the line on a terminal.
 void end_progress();
 
-/// Progress as above, and warnings as one line each on standard error.
+/// One line on standard error that names what it is about and does not forbid going on.
+void warn(std::string_view line);
+
+/// Progress and warnings as above.
 RunEvents events_on_terminal();
 
-/// One line on standard error, beginning with `who`, where any wrench could not be sent as it was.
-void print_faults(std::string_view who, const FaultCount& faults);
+/// What may hold a file's name, in one line: control characters as `?`.
+std::string in_one_line(std::string_view text);
 
 }  // namespace osteomill::app

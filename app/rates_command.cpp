@@ -13,6 +13,7 @@
 #include "osteomill/experiment/measure_rates.h"
 #include "osteomill/experiment/write_rates_report.h"
 #include "osteomill/files/atomic_file.h"
+#include "osteomill/session/milling_setup.h"
 
 namespace osteomill::app {
 
@@ -27,6 +28,7 @@ struct RatesOptions {
 
 void run_rates(const RatesOptions& options) {
   const LoadedBone bone = load_bone(options.scan);
+  require_workable(options.trial.milling.setup.tool, bone.volume.geometry());
   const TrialSettings settings = trial_settings(options.trial);
   const MillingEntry entry = place_entry(bone.volume, options.trial);
   create_folder(options.out);
@@ -44,10 +46,15 @@ void add_rates_command(CLI::App& program) {
   CLI::App* command =
       program.add_subcommand("rates", "Time each algorithm against resolution (section 8.1 of the paper)");
   add_scan_options(*command, options->scan);
-  command->add_option("--out", options->out, "Folder for the tables and the figure")->capture_default_str();
+  command->group("Compare and measure");
+  command->option_defaults()->group("The measurement");
+  command->add_option("--out", options->out, "For the tables and the figure")
+      ->type_name("FOLDER")
+      ->capture_default_str();
   add_algorithm_option(*command, options->algorithms);
   add_mode_option(*command, options->trial.milling.setup.haptics.mode);
   add_trial_options(*command, options->trial);
+  add_quiet_option(*command);
   command->callback([=] {
     apply_config_file(*command);
     run_rates(*options);

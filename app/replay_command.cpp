@@ -7,13 +7,14 @@
 #include "app/milling_options.h"
 #include "app/progress.h"
 #include "app/scan_options.h"
-#include <CLI/Validators.hpp>
 #include <fmt/core.h>
 
 #include "osteomill/device/trajectory.h"
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/haptics/algorithms.h"
 #include "osteomill/recording/write_csv.h"
+#include "osteomill/session/fault_count.h"
+#include "osteomill/session/milling_setup.h"
 #include "osteomill/session/replay.h"
 #include "osteomill/volume/densities.h"
 
@@ -33,6 +34,7 @@ void run_replay(ReplayOptions options) {
   require_no_input(options.out, {options.trajectory, options.scan.scan});
   const std::vector<TrajectoryPoint> trajectory = read_trajectory(options.trajectory);
   LoadedBone bone = load_bone(options.scan);
+  require_workable(options.milling.setup.tool, bone.volume.geometry());
   const BoneDensities densities = estimate_densities(bone.volume);
   options.milling.setup.algorithm = options.algorithm.front();
   const auto session =
@@ -48,7 +50,7 @@ void run_replay(ReplayOptions options) {
     }
   });
   end_progress();
-  print_faults(options.trajectory, faults);
+  if (const auto said = faults.sentence()) warn(options.trajectory + ": " + *said);
   write_csv(options.out, log);
   fmt::print("{}\n", options.out);
 }
@@ -59,14 +61,17 @@ void add_replay_command(CLI::App& program) {
   auto options = std::make_shared<ReplayOptions>();
   CLI::App* command =
       program.add_subcommand("replay", "Drive one algorithm along a trajectory and log every tick");
+  command->group("Recordings");
   command->add_option("trajectory", options->trajectory, "CSV: time_s,x_mm,y_mm,z_mm,qw,qx,qy,qz,milling")
       ->required();
   add_scan_options(*command, options->scan);
+  command->option_defaults()->group("The replay");
   add_algorithm_option(*command, options->algorithm);
   command->get_option("--algorithm")->expected(1);
-  command->add_option("--out", options->out, "The log, CSV, a row a tick")->required();
+  command->add_option("--out", options->out, "The log, CSV, a row a tick")->required()->type_name("FILE");
   add_mode_option(*command, options->milling.setup.haptics.mode);
   add_milling_options(*command, options->milling);
+  add_quiet_option(*command);
   command->callback([=] {
     apply_config_file(*command);
     run_replay(*options);

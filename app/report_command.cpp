@@ -49,10 +49,12 @@ void run_report(const ReportOptions& options) {
 void add_report_command(CLI::App& program) {
   auto options = std::make_shared<ReportOptions>();
   CLI::App* command = program.add_subcommand("report", "Make the report of recordings again");
+  command->group("Recordings");
   command->add_option("recordings", options->recordings, "Recordings (.h5), of compare, live or the window")
       ->required();
-  command->add_option("--out", options->out, "Folder for the report")->capture_default_str();
+  command->add_option("--out", options->out, "For the report")->type_name("FOLDER")->capture_default_str();
   command->add_flag("--csv", options->csv, "Write each recording's ticks as CSV too");
+  add_quiet_option(*command);
   command->callback([=] { run_report(*options); });
 }
 

@@ -3,6 +3,7 @@
 
 #include "app/commands.h"
 #include "app/milled_scan.h"
+#include "app/progress.h"
 #include <fmt/core.h>
 
 #include "osteomill/ct/write_nrrd.h"
@@ -27,7 +28,9 @@ void add_save_command(CLI::App& program) {
   auto options = std::make_shared<MilledScanOptions>();
   CLI::App* command =
       program.add_subcommand("save", "Save the scan, as it was or as milled, as NRRD in the patient's frame");
+  command->group("Scans");
   add_milled_scan_options(*command, *options, ".nrrd");
+  add_quiet_option(*command);
   command->callback([=] { run_save(*options); });
 }
 

@@ -1,22 +1,26 @@
 #include "app/scan_options.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <utility>
 
+#include "app/positive_number.h"
+#include "app/progress.h"
 #include <fmt/core.h>
 
 #include "osteomill/ct/read_scan.h"
 #include "osteomill/files/input_error.h"
 #include "osteomill/numbers/work_progress.h"
 #include "osteomill/volume/builtin_tooth.h"
+#include "osteomill/volume/isovalue_warnings.h"
 
 namespace osteomill::app {
 
 void add_scan_options(CLI::App& command, ScanOptions& options) {
-  command.add_option("scan", options.scan,
-                     "DICOM folder or file, NRRD, MetaImage or NIfTI; without one, the built-in tooth");
-  command.add_option("--iso", options.isovalue, "Isovalue: bone where the density is greater");
+  command.option_defaults()->group("Scan");
+  command.add_option("scan", options.scan, kScanText)->check(not_empty());
+  command.add_option("--iso", options.isovalue, "Isovalue: bone where the density is greater")
+      ->check(not_empty())
+      ->type_name("DENSITY");
 }
 
 Scan open_scan(const ScanOptions& options) {
@@ -34,43 +38,30 @@ SuggestedIsovalue chosen_isovalue(const ScanOptions& options, const Scan& scan) 
   return suggested_isovalue(options, scan);
 }
 
-void require_isovalue_within(const Scan& scan, double isovalue) {
-  const std::vector<float>& densities = scan.grid.densities();
-  const float* min = densities.data();
-  const float* max = min;
-  constexpr std::size_t kAtOnce = 1 << 22;
-  for (std::size_t n = 0; n < densities.size(); n += kAtOnce) {
-    const float* const end = densities.data() + std::min(n + kAtOnce, densities.size());
-    const auto [low, high] = std::minmax_element(&densities[n], end);
-    if (*low < *min) min = low;
-    if (*high > *max) max = high;
-    WorkProgress::done(n, 2 * densities.size());
-  }
-  if (isovalue < static_cast<double>(*max) && isovalue >= static_cast<double>(*min)) return;
-  throw InputError(scan.name, fmt::format("the isovalue {:g} lies outside its values, {:g} to {:g}", isovalue,
-                                          *min, *max));
-}
-
-void print_warnings(const Scan& scan) {
-  for (const std::string& warning : scan.warnings) {
-    fmt::print(stderr, "osteomill: {}: warning: {}\n", scan.name, warning);
-  }
-}
-
-LoadedBone load_bone(const ScanOptions& options) {
+LoadedBone read_bone(const ScanOptions& options) {
   Scan scan = [&] {
     const WorkProgress::Part reading(0.75);
     return open_scan(options);
   }();
-  print_warnings(scan);
-  SuggestedIsovalue isovalue = chosen_isovalue(options, scan);
   const WorkProgress::Part looking(1);
+  SuggestedIsovalue isovalue = chosen_isovalue(options, scan);
+  std::vector<std::string> warnings = std::move(scan.warnings);
   if (!options.isovalue && !options.scan.empty()) {
-    fmt::print(stderr, "osteomill: {}: isovalue {:g} suggested, {}; --iso sets another\n", scan.name,
-               isovalue.value, isovalue.how);
+    warnings.push_back(
+        fmt::format("isovalue {:g} suggested, {}; --iso sets another", isovalue.value, isovalue.how));
   }
-  require_isovalue_within(scan, isovalue.value);
-  return {Volume(std::move(scan.grid), isovalue.value), scan.name, std::move(isovalue.how)};
+  const std::vector<std::string> of_isovalue = isovalue_warnings(scan.grid, isovalue.value);
+  if (!is_within(scan.grid, isovalue.value)) throw InputError(scan.name, of_isovalue.front());
+  warnings.insert(warnings.end(), of_isovalue.begin(), of_isovalue.end());
+  for (std::string& warning : warnings) warning = scan.name + ": " + warning;
+  return {Volume(std::move(scan.grid), isovalue.value), scan.name, std::move(isovalue.how),
+          std::move(warnings)};
+}
+
+LoadedBone load_bone(const ScanOptions& options) {
+  LoadedBone bone = read_bone(options);
+  for (const std::string& warning : bone.warnings) warn(warning);
+  return bone;
 }
 
 }  // namespace osteomill::app

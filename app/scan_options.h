@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <CLI/App.hpp>
 
@@ -19,6 +20,10 @@ struct ScanOptions {
   std::optional<double> isovalue;
 };
 
+/// What SCAN may be, for help.
+inline constexpr const char* kScanText =
+    "DICOM folder or file, NRRD, MetaImage or NIfTI; without one, the built-in tooth";
+
 /// Adds SCAN and --iso to a command.
 void add_scan_options(CLI::App& command, ScanOptions& options);
 
@@ -31,13 +36,6 @@ SuggestedIsovalue suggested_isovalue(const ScanOptions& options, const Scan& sca
 /// The isovalue in use: the user's, or else the suggested one.
 SuggestedIsovalue chosen_isovalue(const ScanOptions& options, const Scan& scan);
 
-/// The scan's warnings, one line each on standard error.
-void print_warnings(const Scan& scan);
-
-/// Throws InputError where the isovalue lies outside the scan's values, so that there is no bone, or nothing
-/// but bone.
-void require_isovalue_within(const Scan& scan, double isovalue);
-
 /// A bone ready to be milled.
 struct LoadedBone {
   Volume volume;
@@ -45,10 +43,14 @@ struct LoadedBone {
   std::string name;
   /// Where its isovalue came from: "given", or how it was suggested; half a sentence.
   std::string isovalue_from;
+  /// Of the scan and the isovalue, each naming the scan.
+  std::vector<std::string> warnings;
 };
 
-/// Reads the scan; its warnings, and an isovalue that had to be suggested, go to standard error as one line
-/// each. Throws InputError where the scan or the isovalue is at fault.
+/// Throws InputError where the scan or the isovalue is at fault.
+LoadedBone read_bone(const ScanOptions& options);
+
+/// The same, and its warnings go to standard error, one line each.
 LoadedBone load_bone(const ScanOptions& options);
 
 }  // namespace osteomill::app

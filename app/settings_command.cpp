@@ -42,6 +42,7 @@ void print_settings(const AlgorithmDescription& algorithm) {
 void add_settings_command(CLI::App& program) {
   CLI::App* command =
       program.add_subcommand("settings", "List every setting of every algorithm, as a Markdown table");
+  command->group("Reference");
   command->callback([] {
     fmt::print(
         "# Settings of the algorithms\n\n"

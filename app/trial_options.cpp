@@ -4,6 +4,7 @@
 #include <string>
 
 #include "app/positive_number.h"
+#include "app/progress.h"
 #include <CLI/Option.hpp>
 
 namespace osteomill::app {
@@ -23,28 +24,33 @@ std::optional<Vec3> as_vector(const std::vector<double>& numbers) {
 void add_hand_options(CLI::App& command, OperatorSettings& settings) {
   HandSettings& hand = settings.hand;
   HandleSettings& handle = settings.handle;
-  add_positive(command, "--push", hand.push_N, "N, the most that the hand pushes");
-  add_positive(command, "--hand-stiffness", hand.stiffness_N_per_mm, "N/mm");
-  add_positive(command, "--hand-damping", hand.damping_Ns_per_mm, "N s/mm");
-  add_positive(command, "--hand-torsional-stiffness", hand.torsional_stiffness_Nmm_per_rad, "N mm/rad");
-  add_positive(command, "--hand-torsional-damping", hand.torsional_damping_Nmms_per_rad, "N mm s/rad");
-  add_positive(command, "--device-mass", handle.mass_kg, "kg");
-  add_positive(command, "--device-inertia", handle.inertia_kg_m2, "kg m^2");
-  add_positive(command, "--device-delay", handle.force_delay_s, "s, from a wrench sent to its effect");
+  add_positive(command, "--push", hand.push_N, "N", "The most that the hand pushes");
+  add_positive(command, "--hand-stiffness", hand.stiffness_N_per_mm, "N/mm", "Of the hand");
+  add_positive(command, "--hand-damping", hand.damping_Ns_per_mm, "N.s/mm", "Of the hand");
+  add_positive(command, "--hand-torsional-stiffness", hand.torsional_stiffness_Nmm_per_rad, "N.mm/rad",
+               "Of the hand, about its turning");
+  add_positive(command, "--hand-torsional-damping", hand.torsional_damping_Nmms_per_rad, "N.mm.s/rad",
+               "Of the hand, about its turning");
+  add_positive(command, "--device-mass", handle.mass_kg, "kg", "Of the handle");
+  add_positive(command, "--device-inertia", handle.inertia_kg_m2, "kg.m^2", "Of the handle");
+  add_positive(command, "--device-delay", handle.force_delay_s, "s", "From a wrench sent to its effect");
 }
 
 }  // namespace
 
 void add_trial_options(CLI::App& command, TrialOptions& options) {
   ScriptSettings& script = options.hand.script;
+  command.option_defaults()->group("The hand and its device");
   command
       .add_option_function<double>(
           "--seconds", [&script](double seconds) { script.milling_s = script.holding_s = seconds; },
-          "s, how long each phase lasts (compare: about; docs/algorithms.md)")
+          "How long each phase lasts (compare: about; docs/algorithms.md)")
       ->check(positive_number())
+      ->type_name("s")
       ->default_str(std::to_string(static_cast<int>(script.milling_s)));
-  add_vector(command, "--entry", options.entry_mm, "mm, from where the tool enters (the top of the bone)");
-  add_vector(command, "--direction", options.direction, "Which way it enters (0,0,-1)");
+  add_vector(command, "--entry", options.entry_mm,
+             "From where the tool enters, in mm; else the top of the bone");
+  add_vector(command, "--direction", options.direction, "Which way it enters; else 0,0,-1");
   add_hand_options(command, options.hand);
   add_milling_options(command, options.milling);
 }
@@ -63,8 +69,11 @@ TrialSettings trial_settings(const TrialOptions& options) {
 }
 
 MillingEntry place_entry(const Volume& bone, const TrialOptions& options) {
-  return osteomill::place_entry(bone, options.milling.setup.tool, as_vector(options.entry_mm),
-                                as_vector(options.direction));
+  const MillingTool& tool = options.milling.setup.tool;
+  const MillingEntry entry =
+      osteomill::place_entry(bone, tool, as_vector(options.entry_mm), as_vector(options.direction));
+  for (const std::string& warning : entry_warnings(bone, tool, entry)) warn(warning);
+  return entry;
 }
 
 }  // namespace osteomill::app

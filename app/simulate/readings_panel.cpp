@@ -67,7 +67,7 @@ void draw_readings(Simulation& simulation, double pictures_per_s, const PixelSiz
   ImGui::Begin("Readings", nullptr, ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize);
   const TimingSummary timing = simulation.milling.timing();
   const LiveState& state = simulation.milling.state();
-  row("haptic rate", fmt::format("{:.0f} Hz", timing.recent_rate_hz));
+  row("haptic rate", fmt::format("{:.0f} ticks/s", timing.recent_ticks_per_s));
   row("step", fmt::format("{:.0f} us, p99 {:.0f} us", timing.step.p50_us, timing.step.p99_us));
   row("late ticks", fmt::format("{} of {}", timing.late_ticks + timing.missed_ticks, timing.ticks));
   row("pictures", fmt::format("{:.0f} / s", pictures_per_s));

@@ -31,11 +31,15 @@ void add_simulate_command(CLI::App& program, const std::string& command_line) {
   options->simulator.command_line = command_line;
   CLI::App* command =
       program.add_subcommand("simulate", "Open the window: see the bone, take the burr, mill");
+  command->group("In a window");
   add_scan_options(*command, options->simulator.scan);
+  command->option_defaults()->group("Algorithm");
   add_algorithm_option(*command, options->algorithm);
   command->get_option("--algorithm")->expected(1);
   add_milling_options(*command, options->milling);
-  command->add_option("--out", options->simulator.folder, "Folder for recordings and what is saved")
+  command->option_defaults()->group("The window");
+  command->add_option("--out", options->simulator.folder, "For recordings and what is saved")
+      ->type_name("FOLDER")
       ->capture_default_str();
   command
       ->add_option("--ui-scale", options->simulator.ui_scale,
@@ -43,8 +47,10 @@ void add_simulate_command(CLI::App& program, const std::string& command_line) {
       ->check(CLI::Range(kMinScale, kMaxScale));
   command->add_flag("--no-help", options->simulator.no_help,
                     "Begin without the page that explains the controls (else shown the first time)");
-  command->add_option("--script", options->simulator.script,
-                      "Work the window from this file (app/simulate/ui_script.h)");
+  command
+      ->add_option("--script", options->simulator.script,
+                   "Work the window from this file (app/simulate/ui_script.h)")
+      ->type_name("FILE");
   command->callback([=] {
     apply_config_file(*command);
     run_simulate(*options);

@@ -307,7 +307,7 @@ class Simulator {
         "{}: {:.1f} pictures/s ({:.0f} ms of all processors each), {} triangles, {:.1f} Hz, {} late, step "
         "p99 {:.0f} us, force {:.2f} N, removed {:.3f} mm^3, {} cuts, scan {}\n",
         text, rate_.per_s(), 1e3 * cpu_s / std::max(pictures_since_said_, 1), renderer_->triangle_count(),
-        timing.rate_hz, timing.late_ticks, timing.step.p99_us, record.wrench.force_N.norm(),
+        timing.ticks_per_s, timing.late_ticks, timing.step.p99_us, record.wrench.force_N.norm(),
         record.removed_mm3, simulation_->milling.cuts(), simulation_->scan_name);
     if (!view_.complaint.empty()) fmt::print("dialogue: {}\n", view_.complaint);
     std::fflush(stdout);

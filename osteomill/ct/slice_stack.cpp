@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
+#include "osteomill/ct/plausible_scan.h"
 #include "osteomill/files/input_error.h"
 
 namespace osteomill {
@@ -176,6 +177,7 @@ SliceStack stack_slices(const std::string& subject, std::span<const SlicePlane> 
   stack.geometry.spacing_mm = {lowest.column_distance_mm, lowest.row_distance_mm, 0};
   stack.geometry.origin_mm = lowest.position_mm;
   check_distances(subject, slices, normal, stack);
+  check_plausible(subject, stack.geometry);
   find_drift(subject, slices, stack);
   return stack;
 }

@@ -118,6 +118,7 @@ TEST(SliceStack, WhatMakesNoGridIsRefused) {
   EXPECT_TRUE(contains(changed([](SlicePlane& s) { s.position_mm.x() += 1; }), "to the side"));
   EXPECT_TRUE(contains(changed([](SlicePlane& s) { s.position_mm.x() = std::nan(""); }), "not a number"));
   EXPECT_TRUE(contains(refusal(series(1, 1.0)), "only one slice"));
+  EXPECT_TRUE(contains(refusal(series(5, 500)), "mm apart"));
   EXPECT_TRUE(contains(refusal({}), "no slices"));
 }
 

@@ -1,6 +1,6 @@
 #include "osteomill/ct/volume_file.h"
 
-#include "osteomill/ct/finite_densities.h"
+#include "osteomill/ct/plausible_scan.h"
 #include "osteomill/ct/volume_header.h"
 #include "osteomill/numbers/work_progress.h"
 

@@ -349,6 +349,25 @@ TEST_F(VolumeFile, SpacingsThatAreNoDistanceAreRefused) {
                        "different voxel sizes"));
 }
 
+TEST_F(VolumeFile, PlacesThatNoBoneCanHaveAreRefused) {
+  const auto of = [&](const std::string& spacings, const std::string& origin) {
+    const std::string fields = "space: LPS\nspace directions: (" + spacings + ",0,0) (0,1,0) (0,0,1)\n" +
+                               "space origin: (0," + origin + ",0)\nencoding: raw\n";
+    return write("a.nrrd", nrrd(fields, voxels<std::int16_t>()));
+  };
+  for (const char* spacing : {"0.0009", "100.1", "1e-6", "1e100"})
+    EXPECT_TRUE(contains(refusal(of(spacing, "0")), "mm apart")) << spacing;
+  for (const char* spacing : {"1e-200", "1e300"}) EXPECT_NE(refusal(of(spacing, "0")), "") << spacing;
+  for (const char* origin : {"100001", "-1e300"})
+    EXPECT_TRUE(contains(refusal(of("1", origin)), "from its origin")) << origin;
+  EXPECT_EQ(read_scan(of("0.001", "-1e5")).grid.geometry().spacing_mm.x(), 0.001);
+  EXPECT_EQ(read_scan(of("100", "1e5")).grid.geometry().spacing_mm.x(), 100);
+  EXPECT_TRUE(contains(refusal(write("a.mha", mha("ElementSpacing = 1e308 1 1\n", voxels<std::int16_t>()))),
+                       "1e+308 mm apart"));
+  EXPECT_TRUE(contains(refusal(write("a.nii", Nifti().set<float>(88, 1e-6F).with(voxels<std::int16_t>()))),
+                       "mm apart"));
+}
+
 TEST_F(VolumeFile, VoxelsThatAreNotFiniteAreRefused) {
   for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
     std::string data = voxels<float>();

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "osteomill/ct/plausible_scan.h"
 #include "osteomill/files/input_error.h"
 
 namespace osteomill {
@@ -71,6 +72,7 @@ GridGeometry checked_geometry(const std::string& subject, const std::vector<doub
   // Adding 0 makes -0, which only puzzles, 0.
   geometry.origin_mm = (lps_from_axes.cwiseProduct(origin) * unit_mm).array() + 0.0;
   geometry.direction = (lps_from_axes.asDiagonal() * axes.colwise().normalized()).array() + 0.0;
+  check_plausible(subject, geometry);
   return geometry;
 }
 

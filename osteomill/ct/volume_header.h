@@ -26,8 +26,8 @@ VolumeHeader read_nifti_header(const std::filesystem::path& path);
 
 /// A grid by what headers say of it, checked: sizes are three whole numbers above zero whose product can be a
 /// volume; the columns of `axes`, of which only the direction counts, are neither zero nor skew; spacings are
-/// finite and above zero. `unit_mm`: the millimetres in the unit of spacing and origin. `lps_from_axes`: the
-/// signs that turn the file's frame into LPS.
+/// finite, above zero and, like the origin, those of a bone (`check_plausible`). `unit_mm`: the millimetres
+/// in the unit of spacing and origin. `lps_from_axes`: the signs that turn the file's frame into LPS.
 GridGeometry checked_geometry(const std::string& subject, const std::vector<double>& sizes,
                               const std::vector<double>& spacing, const Mat3& axes, const Vec3& origin,
                               double unit_mm, const Vec3& lps_from_axes = Vec3::Ones());

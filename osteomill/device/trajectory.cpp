@@ -75,7 +75,8 @@ class TrajectoryReader {
 
   bool next_line() {
     if (!std::getline(file_, line_)) return false;
-    ++row_number_;
+    // Spreadsheets put a byte order mark before the first line.
+    if (row_number_++ == 0 && line_.starts_with("\xEF\xBB\xBF")) line_.erase(0, 3);
     if (line_.size() > kMaxLine) fail("too long for a row of a trajectory");
     return true;
   }

@@ -54,6 +54,10 @@ TEST_F(TrajectoryTest, ColumnsAreFoundByName) {
   EXPECT_EQ(points[0].time_s, 5);
 }
 
+TEST_F(TrajectoryTest, AByteOrderMarkIsNoPartOfAName) {
+  EXPECT_EQ(read("\xEF\xBB\xBF" + std::string(kHead) + "0,1,2,3,1,0,0,0,0\n").size(), 1u);
+}
+
 TEST_F(TrajectoryTest, FaultsNameTheRow) {
   const std::string head = kHead;
   EXPECT_EQ(fault_of(""), "is empty");

@@ -66,8 +66,10 @@ Finding rate_finding(const RunGroup& group) {
   const MeasuredRun& slowest = *std::min_element(group.runs.begin(), group.runs.end(), slower);
   const RunDescription& d = slowest.recording->description;
   return {"Every algorithm holds the haptic rate",
-          fmt::format("the rate that a 1 kHz loop would hold is {:.0f} Hz or more in every recording",
-                      kMinRate_hz),
+          fmt::format(
+              "the rate that a 1 kHz loop would hold with the CPU time of its ticks is {:.0f} Hz or more in "
+              "every recording",
+              kMinRate_hz),
           fmt::format("lowest {:.1f} Hz ({}, {})", slowest.metrics.rate_hz, name_of(d.algorithm),
                       during(d.segment)),
           verdict_of(slowest.metrics.rate_hz >= kMinRate_hz), true};

@@ -34,15 +34,23 @@ std::string text_of(const AlgorithmDescription& algorithm, int value) {
   return name.ends_with('s') ? number + " " + name : name + " " + number;
 }
 
-std::vector<double> step_times_us(MillingTrial& trial) {
-  std::vector<double> touching;
-  std::vector<double> all;
+struct Times {
+  std::vector<double> step_us;
+  HeldRate held;
+  void add(const TickRecord& record) {
+    step_us.push_back(record.compute_us);
+    held.add(record.busy_us());
+  }
+};
+
+Times times_of(MillingTrial& trial) {
+  Times touching, all;
   while (!trial.finished()) {
     const TickRecord record = trial.tick().record;
-    all.push_back(record.compute_us);
-    if (record.contacts > 0) touching.push_back(record.compute_us);
+    all.add(record);
+    if (record.contacts > 0) touching.add(record);
   }
-  return touching.empty() ? all : touching;
+  return touching.step_us.empty() ? all : touching;
 }
 
 }  // namespace
@@ -64,10 +72,11 @@ std::vector<RateRow> measure_rates(const Volume& bone, const BoneDensities& dens
     trial_settings.haptics.named.push_back(
         {algorithm->id.name, algorithm->resolution_setting, static_cast<double>(resolution.value)});
     MillingTrial trial(bone, densities, entry, *algorithm, trial_settings);
-    const Distribution step_us = distribution_of(step_times_us(trial));
+    const Times times = times_of(trial);
+    const Distribution step_us = distribution_of(times.step_us);
     rows.push_back({algorithm->id, text_of(*algorithm, resolution.value),
-                    trial.algorithm().sample_point_count(), step_us.median, step_us.p99, 1e6 / step_us.median,
-                    resolution.paper_rate_hz});
+                    trial.algorithm().sample_point_count(), step_us.median, step_us.p99, times.held.rate_hz(),
+                    1e6 / step_us.median, resolution.paper_rate_hz});
   }
   return rows;
 }

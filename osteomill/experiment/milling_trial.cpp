@@ -1,6 +1,19 @@
 #include "osteomill/experiment/milling_trial.h"
 
+#include <time.h>
+
 namespace osteomill {
+
+namespace {
+
+// A system call, so it is made outside the tick: before the pose is read and after the bone is milled.
+double thread_cpu_us() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return 1e6 * static_cast<double>(now.tv_sec) + 1e-3 * static_cast<double>(now.tv_nsec);
+}
+
+}  // namespace
 
 MillingTrial::MillingTrial(const Volume& bone, const BoneDensities& densities, const MillingEntry& entry,
                            const AlgorithmDescription& algorithm, const TrialSettings& settings)
@@ -12,7 +25,9 @@ MillingTrial::MillingTrial(const Volume& bone, const BoneDensities& densities, c
 
 MillingTrial::Tick MillingTrial::tick() {
   const bool milling_phase = operator_.milling();
-  const TickRecord record = session_.tick(operator_, operator_.time_s(), tick_s_, milling_phase && spindle_);
+  const double before_us = thread_cpu_us();
+  TickRecord record = session_.tick(operator_, operator_.time_s(), tick_s_, milling_phase && spindle_);
+  record.tick_cpu_us = thread_cpu_us() - before_us;
   operator_.see(record.X_WT);
   operator_.advance(tick_s_);
   return {record, milling_phase};

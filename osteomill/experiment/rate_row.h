@@ -15,8 +15,10 @@ struct RateRow {
   int points = 0;
   double step_us_median = 0;
   double step_us_p99 = 0;
-  /// What the median step would allow with nothing else to do, not capped at the haptic rate.
+  /// HeldRate of the ticks: of a loop at 1000 Hz, as in the paper.
   double rate_hz = 0;
+  /// What the median step would allow with nothing else to do and nothing to wait for.
+  double steps_per_s = 0;
   /// What the paper has for this resolution, capped by its 1000 Hz loop.
   double paper_rate_hz = 0;
 };

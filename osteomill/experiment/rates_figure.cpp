@@ -29,8 +29,8 @@ std::vector<RateRow> rows_of(std::span<const RateRow> rows, const AlgorithmId& a
 std::string rate_range(std::span<const RateRow> rows) {
   double min = 1000, max = 1000;
   for (const RateRow& row : rows) {
-    min = std::min(min, row.rate_hz);
-    max = std::max(max, row.rate_hz);
+    min = std::min(min, row.steps_per_s);
+    max = std::max(max, row.steps_per_s);
     if (row.paper_rate_hz > 0) min = std::min(min, row.paper_rate_hz);
   }
   min = std::max(min, 1e-3);
@@ -55,7 +55,7 @@ std::string panel(const std::vector<RateRow>& rows, std::size_t column, std::siz
   for (std::size_t n = 0; n < rows.size(); ++n) {
     const bool known = rows[n].paper_rate_hz > 0;
     in_paper = in_paper || known;
-    data += fmt::format("{} {:.6g} {}\n", n, rows[n].rate_hz,
+    data += fmt::format("{} {:.6g} {}\n", n, rows[n].steps_per_s,
                         known ? fmt::format("{:.6g}", rows[n].paper_rate_hz) : "?");
   }
   write_figure_data(work / file, data);

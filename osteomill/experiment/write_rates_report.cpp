@@ -22,7 +22,7 @@ namespace {
 void require_usable(const std::vector<RateRow>& rows) {
   if (rows.empty()) throw InputError("rates", "there are no rates to report on");
   for (const RateRow& row : rows) {
-    if (!is_positive(row.rate_hz)) {
+    if (!is_positive(row.rate_hz) || !is_positive(row.steps_per_s)) {
       throw InputError("rates", fmt::format("the rate of {} at {} is not a positive number",
                                             name_of(row.algorithm), row.resolution));
     }
@@ -42,10 +42,10 @@ std::string csv_field(const std::string& text) {
 
 void write_rates_csv(const fs::path& path, const std::vector<RateRow>& rows) {
   write_text_atomically(path, [&](std::ostream& out) {
-    out << "algorithm,resolution,points,step_us_median,step_us_p99,rate_hz,paper_rate_hz\n";
+    out << "algorithm,resolution,points,step_us_median,step_us_p99,rate_hz,steps_per_s,paper_rate_hz\n";
     for (const RateRow& r : rows) {
-      out << fmt::format("{},{},{},{},{},{},{}\n", name_of(r.algorithm), csv_field(r.resolution), r.points,
-                         r.step_us_median, r.step_us_p99, r.rate_hz,
+      out << fmt::format("{},{},{},{},{},{},{},{}\n", name_of(r.algorithm), csv_field(r.resolution), r.points,
+                         r.step_us_median, r.step_us_p99, r.rate_hz, r.steps_per_s,
                          r.paper_rate_hz > 0 ? fmt::format("{}", r.paper_rate_hz) : "");
     }
   });
@@ -61,11 +61,12 @@ std::string plain_words(const std::vector<RateRow>& rows) {
   std::vector<double> ratios;
   std::size_t fast_enough = 0;
   for (const RateRow& row : rows) {
-    if (row.paper_rate_hz > 0) ratios.push_back(row.rate_hz / row.paper_rate_hz);
+    if (row.paper_rate_hz > 0) ratios.push_back(row.steps_per_s / row.paper_rate_hz);
     if (row.rate_hz >= kMinRate_hz) ++fast_enough;
   }
-  std::string text = fmt::format("{} of the {} resolutions could run at {:.0f} Hz or more here. ",
-                                 fast_enough, rows.size(), kMinRate_hz);
+  std::string text =
+      fmt::format("{} of the {} resolutions hold {:.0f} Hz or more in a loop of 1000 Hz here. ", fast_enough,
+                  rows.size(), kMinRate_hz);
   if (ratios.empty()) return text + "The paper has no rates at these resolutions.";
   double log_sum = 0;
   for (const double ratio : ratios) log_sum += std::log(ratio);
@@ -76,7 +77,8 @@ std::string plain_words(const std::vector<RateRow>& rows) {
              "paper's Pentium 4 of 3.3 GHz, {} times in the geometric mean. The paper's rates are those of a "
              "loop that waits for its next millisecond and does more than the step, so they end at 1000 Hz; "
              "those "
-             "measured here are of the step alone and have no such end. The ratio therefore tells how far "
+             "compared with them here are of the step alone and have no such end. The ratio therefore tells "
+             "how far "
              "apart "
              "the "
              "machines are only where the paper's rate lies well below 1000 Hz, and is too large elsewhere.",
@@ -85,15 +87,17 @@ std::string plain_words(const std::vector<RateRow>& rows) {
 }
 
 HtmlTable rates_table(const std::vector<RateRow>& rows) {
-  HtmlTable table{{"Algorithm", "Resolution", "Points", "Step, median (µs)", "Step, 99th percentile (µs)",
-                   "Steps a second (Hz)", "In the paper (Hz)"},
-                  {},
-                  true};
+  HtmlTable table{
+      {"Algorithm", "Resolution", "Points", "Step, median (µs)", "Step, 99th percentile (µs)",
+       "Rate that a 1 kHz loop would hold (Hz)", "In the paper (Hz)", "Steps a second, of the step alone"},
+      {},
+      true};
   for (const RateRow& r : rows) {
     table.rows.push_back({std::string(name_of(r.algorithm)), html_escaped(r.resolution),
                           fmt::format("{}", r.points), fmt::format("{:.4g}", r.step_us_median),
                           fmt::format("{:.4g}", r.step_us_p99), fmt::format("{:.0f}", r.rate_hz),
-                          r.paper_rate_hz > 0 ? fmt::format("{:.0f}", r.paper_rate_hz) : "–"});
+                          r.paper_rate_hz > 0 ? fmt::format("{:.0f}", r.paper_rate_hz) : "–",
+                          fmt::format("{:.0f}", r.steps_per_s)});
   }
   return table;
 }

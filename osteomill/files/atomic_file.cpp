@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "osteomill/files/input_error.h"
+#include "osteomill/files/temporary_folder.h"
 
 namespace osteomill {
 
@@ -21,18 +22,43 @@ fs::path name_beside(const fs::path& path) {
   return path.parent_path() / name;
 }
 
+void write_into(const fs::path& path, const std::function<void(const fs::path&)>& write) {
+  const TemporaryFolder folder;
+  const fs::path whole = folder / ("whole" + path.extension().string());
+  write(whole);
+  std::ofstream out(path, std::ios::binary);
+  out << std::ifstream(whole, std::ios::binary).rdbuf();
+  out.close();
+  if (!out) throw InputError(path.string(), "cannot be written to its end");
+}
+
 }  // namespace
 
-void write_file_atomically(const fs::path& path, const std::function<void(const fs::path&)>& write) {
-  const fs::path beside = name_beside(path);
+fs::path behind_links(const fs::path& path) {
+  constexpr int kMostLinks = 40;
   std::error_code error;
+  fs::path target = path;
+  for (int n = 0; fs::is_symlink(fs::symlink_status(target, error)); ++n) {
+    if (n == kMostLinks) throw InputError(path.string(), "is a link that leads to itself");
+    target = target.parent_path() / fs::read_symlink(target, error);
+  }
+  return target;
+}
+
+void write_file_atomically(const fs::path& path, const std::function<void(const fs::path&)>& write) {
+  std::error_code error;
+  const fs::path target = behind_links(path);
+  const fs::file_status status = fs::status(target, error);
+  if (fs::is_directory(status)) throw InputError(path.string(), "cannot be written: it is a folder");
+  if (fs::exists(status) && !fs::is_regular_file(status)) return write_into(path, write);
+  const fs::path beside = name_beside(target);
   try {
     write(beside);
   } catch (...) {
     fs::remove(beside, error);
     throw;
   }
-  fs::rename(beside, path, error);
+  fs::rename(beside, target, error);
   if (error) {
     const std::string reason = "cannot be written: " + error.message();
     fs::remove(beside, error);

@@ -2,8 +2,10 @@
 
 #include <fstream>
 #include <sstream>
+#include <thread>
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "osteomill/files/input_error.h"
 
@@ -48,6 +50,34 @@ TEST_F(AtomicFileTest, AFailedWriteLeavesTheOldFileAndNoOther) {
                std::runtime_error);
   EXPECT_EQ(content(folder_ / "a.csv"), "old");
   EXPECT_EQ(file_count(), 1);
+}
+
+TEST_F(AtomicFileTest, ALinkStaysAndWhatItLeadsToIsWritten) {
+  std::ofstream(folder_ / "real.csv") << "old";
+  fs::create_symlink("real.csv", folder_ / "link.csv");
+  fs::create_symlink("later.csv", folder_ / "ahead.csv");
+  for (const char* link : {"link.csv", "ahead.csv"})
+    write_text_atomically(folder_ / link, [](std::ostream& out) { out << "new"; });
+  EXPECT_TRUE(fs::is_symlink(folder_ / "link.csv"));
+  EXPECT_EQ(content(folder_ / "real.csv"), "new");
+  EXPECT_EQ(content(folder_ / "later.csv"), "new");
+  EXPECT_EQ(file_count(), 4);
+}
+
+TEST_F(AtomicFileTest, WhatIsNoFileIsWrittenInto) {
+  const fs::path pipe = folder_ / "pipe.csv";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  std::string read;
+  std::thread reader([&] { read = content(pipe); });
+  write_text_atomically(pipe, [](std::ostream& out) { out << "1,2\n"; });
+  reader.join();
+  EXPECT_EQ(read, "1,2\n");
+  EXPECT_TRUE(fs::is_fifo(pipe));
+  EXPECT_EQ(file_count(), 1);
+}
+
+TEST_F(AtomicFileTest, AFolderIsNamed) {
+  EXPECT_THROW(write_text_atomically(folder_, [](std::ostream&) {}), InputError);
 }
 
 TEST_F(AtomicFileTest, AFolderThatIsMissingIsNamed) {

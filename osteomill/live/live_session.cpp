@@ -35,7 +35,8 @@ LiveSession::LiveSession(std::unique_ptr<MillingSession> session, Device& device
       tick_s_(tick_s),
       crash_stop_(device),
       session_(std::move(session)),
-      queues_(std::make_unique<Queues>()) {}
+      queues_(std::make_unique<Queues>()),
+      timing_(tick_s) {}
 
 LiveSession::~LiveSession() {
   stop();

@@ -5,6 +5,7 @@
 
 #include "osteomill/live/tick_clock.h"
 #include "osteomill/live/time_histogram.h"
+#include "osteomill/numbers/distribution.h"
 #include "osteomill/session/tick_record.h"
 
 namespace osteomill {
@@ -21,9 +22,11 @@ struct TickTimes {
 /// How well a live session keeps its time.
 struct TimingSummary {
   std::uint64_t ticks = 0;
-  /// Over the whole time, and over the last second that was completed (0 before).
+  /// What the ticks' work allows a loop of this period (HeldRate), whether they woke in time or not.
   double rate_hz = 0;
-  double recent_rate_hz = 0;
+  /// Counted by the clock: over the whole time, and over the last second that was completed (0 before).
+  double ticks_per_s = 0;
+  double recent_ticks_per_s = 0;
   /// From the deadline to the waking.
   TimePercentiles lateness;
   /// Ticks that woke more than 1 ms late, and deadlines that passed without a tick.
@@ -38,6 +41,7 @@ struct TimingSummary {
 /// Counts ticks' times. One thread adds, safely in the haptic tick; any thread reads meanwhile.
 class LiveTiming {
  public:
+  explicit LiveTiming(double tick_s = 1e-3) : held_(1e6 * tick_s) {}
   void add(const TickTimes& times, const TickRecord& record);
   TimingSummary summary() const;
 
@@ -52,8 +56,10 @@ class LiveTiming {
   std::atomic<std::uint64_t> missed_ticks_{0};
   std::atomic<Nanoseconds> first_ns_{0};
   std::atomic<Nanoseconds> last_ns_{0};
-  std::atomic<double> recent_rate_hz_{0};
+  std::atomic<double> rate_hz_{0};
+  std::atomic<double> recent_ticks_per_s_{0};
   // The adding thread's own.
+  HeldRate held_;
   Nanoseconds second_began_ns_ = 0;
   int ticks_this_second_ = 0;
 };

@@ -46,13 +46,15 @@ TimePercentiles TimeHistogram::percentiles() const {
   TimePercentiles found;
   if (total == 0) return found;
   found.max_us = max_us_.load(std::memory_order_relaxed);
-  // The least time that at least this share of all times does not exceed.
-  const auto at_share = [&](double share) {
-    const std::uint64_t wanted = nearest_rank(share, total);
+  const auto of_rank = [&](std::uint64_t rank) {
     std::uint64_t passed = 0;
     std::size_t bin = 0;
-    while (bin + 1 < kBins && (passed += counts[bin]) < wanted) ++bin;
+    while (bin + 1 < kBins && (passed += counts[bin]) < rank) ++bin;
     return std::min(upper_end_us(bin), found.max_us);
+  };
+  const auto at_share = [&](double share) {
+    const auto [lower, upper] = percentile_ranks(share, total);
+    return 0.5 * (of_rank(lower) + of_rank(upper));
   };
   found.p50_us = at_share(0.5);
   found.p99_us = at_share(0.99);

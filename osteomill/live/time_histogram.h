@@ -7,8 +7,9 @@
 
 namespace osteomill {
 
-/// Percentiles of a histogram of times, microseconds. Each is the upper end of the bin it falls into (1 us
-/// wide up to 1 ms, 10 us up to 10 ms), or the greatest time, where that is less. All zero where none was
+/// Percentiles (numbers/distribution.h) of a histogram of times, microseconds. A time counts as the upper end
+/// of the bin it falls into (1 us wide up to 1 ms, 10 us up to 10 ms), or as the greatest time, where that is
+/// less. All zero where none was
 /// counted.
 struct TimePercentiles {
   double p50_us = 0;

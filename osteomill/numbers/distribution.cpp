@@ -1,29 +1,40 @@
 #include "osteomill/numbers/distribution.h"
 
-#include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace osteomill {
 
-std::size_t nearest_rank(double share, std::size_t count) {
-  // A share such as 0.999 is not exact in a double: a product a hair above a whole number is that number.
-  const double rank = std::ceil(share * static_cast<double>(count) - 1e-6);
-  return std::clamp<std::size_t>(rank > 0 ? static_cast<std::size_t>(rank) : 0, 1,
-                                 std::max<std::size_t>(count, 1));
+namespace {
+
+double of_ascending(std::span<const double> values, double share) {
+  const auto [lower, upper] = percentile_ranks(share, values.size());
+  return 0.5 * (values[lower - 1] + values[upper - 1]);
+}
+
+}  // namespace
+
+PercentileRanks percentile_ranks(double share, std::size_t count) {
+  // A share such as 0.999 is not exact in a double: a product a hair from a whole number is that number.
+  constexpr double kHair = 1e-6;
+  const double rank = share * static_cast<double>(count);
+  const auto clamped = [&](double number) {
+    return std::clamp<std::size_t>(number > 0 ? static_cast<std::size_t>(number) : 0, 1,
+                                   std::max<std::size_t>(count, 1));
+  };
+  return {clamped(std::ceil(rank - kHair)), clamped(std::floor(rank + kHair) + 1)};
 }
 
 double percentile(std::vector<double> values, double share) {
   if (values.empty()) return 0;
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(nearest_rank(share, values.size()) - 1);
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
+  std::sort(values.begin(), values.end());
+  return of_ascending(values, share);
 }
 
 Distribution distribution_of(std::vector<double> values) {
   if (values.empty()) return {};
   std::sort(values.begin(), values.end());
-  const std::size_t n = values.size();
-  return {0.5 * (values[(n - 1) / 2] + values[n / 2]), values[nearest_rank(0.99, n) - 1], values.back()};
+  return {of_ascending(values, 0.5), of_ascending(values, 0.99), values.back()};
 }
 
 }  // namespace osteomill

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "osteomill/files/input_error.h"
 #include "osteomill/numbers/work_progress.h"
+#include "osteomill/operator/entry_places.h"
 #include "osteomill/volume/isosurface.h"
 
 namespace osteomill {
@@ -15,7 +17,7 @@ namespace {
 // A little more than 4 mm: a layer of voxels at just that depth counts whichever way its last bit falls.
 constexpr double kTop_mm = 4.0 + 1e-6;
 constexpr int kSides = 36;
-constexpr double kFullTurn = 6.283185307179586;
+constexpr double kFullTurn = 2 * std::numbers::pi;
 
 template <typename Visit>
 void for_each_bone_voxel(const Volume& volume, const Visit& visit) {
@@ -29,18 +31,6 @@ void for_each_bone_voxel(const Volume& volume, const Visit& visit) {
       }
     }
   }
-}
-
-// A ball that holds all densities, also those that fall off beyond the border voxels.
-struct BoundingBall {
-  Vec3 centre_W;
-  double radius_mm;
-};
-
-BoundingBall ball_around(const GridGeometry& geometry) {
-  const Vec3 voxels(geometry.dims[0], geometry.dims[1], geometry.dims[2]);
-  return {geometry.world_from_voxel(Vec3(0.5 * (voxels - Vec3::Ones()))),
-          0.5 * geometry.spacing_mm.cwiseProduct(voxels).norm() + 2 * geometry.spacing_mm.maxCoeff()};
 }
 
 Vec3 unit_direction(const std::optional<Vec3>& direction) {
@@ -80,47 +70,6 @@ Top top_of_bone(const Volume& volume, const Vec3& direction_W) {
   const Vec3 offset_mm = sum_mm / count;
   top.middle_W = top.highest_W + offset_mm - direction_W.dot(offset_mm) * direction_W;
   return top;
-}
-
-std::optional<Vec3> surface_along(const Volume& volume, const Vec3& from_W, const Vec3& direction_W) {
-  const BoundingBall ball = ball_around(volume.geometry());
-  const double middle_mm = direction_W.dot(ball.centre_W - from_W);
-  if (!is_bone_at(volume, from_W)) {
-    // Only the part of the line near the grid is walked, however far away it begins.
-    const double first_mm = std::max(0.0, middle_mm - ball.radius_mm);
-    const double last_mm = middle_mm + ball.radius_mm;
-    if (!(last_mm > first_mm)) return std::nullopt;
-    return first_crossing(volume, from_W + first_mm * direction_W, from_W + last_mm * direction_W);
-  }
-  // Back out of the bone in steps that miss no gap of a voxel; beyond the ball there is none.
-  const double step_mm = 0.5 * volume.geometry().spacing_mm.minCoeff();
-  Vec3 inside_W = from_W;
-  for (double way_mm = 0; way_mm < 2 * ball.radius_mm + step_mm; way_mm += step_mm) {
-    const Vec3 next_W = inside_W - step_mm * direction_W;
-    if (!is_bone_at(volume, next_W)) return bisect_crossing(volume, next_W, inside_W);
-    inside_W = next_W;
-  }
-  return std::nullopt;
-}
-
-// Whether no bone lies in the tool, by lines along the shaft and from the burr's centre to its surface.
-bool tool_is_free(const Volume& volume, const MillingTool& tool, const Pose& X_WT) {
-  const auto free_between = [&](const Vec3& from_T, const Vec3& to_T) {
-    return !first_crossing(volume, X_WT * from_T, X_WT * to_T);
-  };
-  const Vec3 end = tool.shaft_length_mm * Vec3::UnitZ();
-  if (!free_between(-tool.burr_radius_mm * Vec3::UnitZ(), end)) return false;
-  constexpr int kLines = 12;
-  for (int n = 0; n < kLines; ++n) {
-    const double angle = kFullTurn * n / kLines;
-    const Vec3 across(std::cos(angle), std::sin(angle), 0);
-    if (!free_between(tool.shaft_radius_mm * across, tool.shaft_radius_mm * across + end)) return false;
-    for (double slope : {-2.0, -1.0, -0.5, 0.0, 1.0}) {
-      const Vec3 to_surface = tool.burr_radius_mm * (across + slope * Vec3::UnitZ()).normalized();
-      if (!free_between(Vec3::Zero(), to_surface)) return false;
-    }
-  }
-  return true;
 }
 
 // How high the rim of the hole to come stands on one side, above the entry; a side without bone is far below.
@@ -189,7 +138,34 @@ MillingEntry top_entry(const Volume& volume, const MillingTool& tool, const Top&
   return entry;
 }
 
+// The top, where the tool can stay in bone there, else the highest place where it can, else seen from another
+// side, unless a direction was asked for; and if there is none the top all the same.
+MillingEntry default_entry(const Volume& volume, const MillingTool& tool, const Top& top,
+                           const Vec3& direction_W, bool given_direction) {
+  const MillingEntry at_top = top_entry(volume, tool, top, direction_W);
+  // In the middle of a rim that the volume cuts off is a hollow.
+  const double below_mm = direction_W.dot(at_top.point_W - top.highest_W);
+  if (below_mm < 2 * kTop_mm && can_stay(volume, tool, at_top)) return at_top;
+  std::vector<Vec3> directions{direction_W};
+  if (!given_direction) {
+    for (const Vec3& side : {Vec3(0, 1, 0), Vec3(0, -1, 0), Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 0, 1)})
+      directions.push_back(side);
+  }
+  for (const Vec3& direction : directions) {
+    if (const auto found = find_entry(volume, tool, direction)) return *found;
+  }
+  return at_top;
+}
+
 }  // namespace
+
+std::vector<std::string> entry_warnings(const Volume& volume, const MillingTool& tool,
+                                        const MillingEntry& entry) {
+  if (is_on_cut_edge(volume.geometry(), entry.point_W))
+    return {"the tool enters where the border of the volume cuts the bone off"};
+  if (!can_stay(volume, tool, entry)) return {"where the tool enters it does not stay in bone for long"};
+  return {};
+}
 
 Pose pose_above(const MillingEntry& entry, const MillingTool& tool, double above_mm) {
   return {entry.point_W - (tool.burr_radius_mm + above_mm) * entry.direction_W,
@@ -201,8 +177,8 @@ MillingEntry place_entry(const Volume& volume, const MillingTool& tool, const st
   require_valid(tool);
   const Vec3 direction_W = unit_direction(direction);
   const Top top = top_of_bone(volume, direction_W);
-  MillingEntry placed =
-      entry ? given_entry(volume, tool, *entry, direction_W) : top_entry(volume, tool, top, direction_W);
+  MillingEntry placed = entry ? given_entry(volume, tool, *entry, direction_W)
+                              : default_entry(volume, tool, top, direction_W, direction.has_value());
   placed.lateral_W = towards_highest_rim(volume, tool, placed);
   return placed;
 }

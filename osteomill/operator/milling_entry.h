@@ -1,6 +1,8 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "osteomill/tool/milling_tool.h"
 #include "osteomill/volume/volume.h"
@@ -26,7 +28,9 @@ struct MillingEntry {
 /// point at which the way back leaves it. Not given: the top of the bone, that is where the direction meets
 /// it first: the middle of all bone within 4 mm of its highest voxel, and from above it the first bone along
 /// the direction. Where there is none (the middle of a ring), or the tool does not fit above it, the highest
-/// voxel itself.
+/// voxel itself. Where a tool could not enter there and stay in bone (the volume cuts it off, or it is a thin
+/// edge), the highest place where it could, and where no direction was given either, seen from another side
+/// if need be.
 ///
 /// Throws InputError: no bone in the scan; an entry or direction that is not finite, a direction without
 /// length; a line from a given entry that misses the bone; bone in the way of the tool above a given entry.
@@ -34,6 +38,11 @@ struct MillingEntry {
 MillingEntry place_entry(const Volume& volume, const MillingTool& tool,
                          const std::optional<Vec3>& entry = std::nullopt,
                          const std::optional<Vec3>& direction = std::nullopt);
+
+/// What a user should know of this place, a sentence each: that the border of the volume cuts the bone off
+/// there, or that the tool does not stay in bone.
+std::vector<std::string> entry_warnings(const Volume& volume, const MillingTool& tool,
+                                        const MillingEntry& entry);
 
 /// The tool with its shaft against the entry's direction, its burr's surface `above_mm` above the entry.
 Pose pose_above(const MillingEntry& entry, const MillingTool& tool, double above_mm);

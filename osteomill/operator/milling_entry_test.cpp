@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "osteomill/files/input_error.h"
+#include "osteomill/volume/isovalue_warnings.h"
 
 namespace osteomill {
 namespace {
@@ -137,6 +138,47 @@ TEST(PlaceEntry, TheToolStandsAboveTheEntryAlongTheDirection) {
   const Pose pose = pose_above(entry, kTool, 3.0);
   EXPECT_TRUE(pose.position_mm.isApprox(Vec3(1, 2, 3 - 4.5), 1e-12));
   EXPECT_TRUE(shaft_direction(pose).isApprox(Vec3(0, 0, -1), 1e-12));
+}
+
+// A skull's vault whose top lies beyond the scan: the highest voxels are the cut edge of a wall.
+TEST(PlaceEntry, WhereTheVolumeCutsTheBoneOffAnotherPlaceIsFound) {
+  const auto vault = [](const Vec3& p) { return std::abs(p.norm() - 20) - 3; };
+  GridGeometry geometry = centred_cube(60, 1);
+  geometry.dims[2] = 42;
+  const Volume volume = shape_volume(geometry, vault);
+  EXPECT_EQ(isovalue_warnings(volume.grid(), volume.isovalue()).size(), 1u);
+  const MillingEntry entry = place_entry(volume, kTool);
+  EXPECT_TRUE(entry_warnings(volume, kTool, entry).empty());
+  EXPECT_NEAR(entry.point_W.norm(), 23, 0.5) << "outside, not in the hollow";
+  EXPECT_GT(-entry.direction_W.dot(entry.point_W.normalized()), 0.4);
+  // Asked for, the edge is entered all the same, and said to be one.
+  const MillingEntry edge = place_entry(volume, kTool, Vec3(17, 0, 30), Vec3(0, 0, -1));
+  ASSERT_EQ(entry_warnings(volume, kTool, edge).size(), 1u);
+  EXPECT_NE(entry_warnings(volume, kTool, edge).front().find("cuts the bone off"), std::string::npos);
+}
+
+TEST(PlaceEntry, AThinEdgeIsNotWhereAToolStays) {
+  // A fin on a block: the fin is the top.
+  const auto finned = [](const Vec3& p) {
+    const double block = std::max({std::abs(p.x()) - 12, std::abs(p.y()) - 12, p.z()});
+    const double fin = std::max({std::abs(p.x() - 8) - 0.5, std::abs(p.y()) - 6, std::abs(p.z() - 3) - 4});
+    return std::min(block, fin);
+  };
+  const Volume volume = shape_volume(centred_cube(60, 0.5), finned);
+  const MillingEntry entry = place_entry(volume, kTool);
+  EXPECT_NEAR(entry.point_W.z(), 0, 0.1);
+  EXPECT_TRUE(entry_warnings(volume, kTool, entry).empty());
+}
+
+TEST(PlaceEntry, WhereNoPlaceIsGoodTheTopIsTakenAndSaid) {
+  // A lattice of thin rods.
+  const auto rods = [](const Vec3& p) {
+    const auto off = [](double x) { return std::abs(x - 4 * std::round(x / 4)); };
+    return std::hypot(off(p.x()), off(p.y())) - 0.5;
+  };
+  const Volume volume = shape_volume(centred_cube(48, 0.25), rods);
+  const MillingEntry entry = place_entry(volume, kTool, std::nullopt, Vec3(0, 0, -1));
+  EXPECT_EQ(entry_warnings(volume, kTool, entry).size(), 1u);
 }
 
 }  // namespace

@@ -101,7 +101,8 @@ bool MillingScript::is_milled(double now_s) const {
 bool MillingScript::is_settled(double now_s, const Pose& X_WD) const {
   const double settling_s = now_s - stage_began_s_;
   if (settling_s < std::min(settings_.settle_s, settings_.holding_s)) return false;
-  if (!settings_.until_leant || settling_s >= settings_.longest_settle_share * settings_.holding_s) return true;
+  if (!settings_.until_leant || settling_s >= settings_.longest_settle_share * settings_.holding_s)
+    return true;
   return felt_push_share(X_WD) >= kFelt * settings_.hold_push_share &&
          felt_torque_share(X_WD) >= kFelt * settings_.hold_torque_share;
 }

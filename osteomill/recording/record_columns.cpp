@@ -38,6 +38,7 @@ constexpr std::array kColumns{
     RecordColumn{"removed_mm3", "mm^3", real, true, OSTEOMILL_FIELD(removed_mm3)},
     RecordColumn{"compute_us", "us", real, true, OSTEOMILL_FIELD(compute_us)},
     RecordColumn{"milling_us", "us", real, false, OSTEOMILL_FIELD(milling_us)},
+    RecordColumn{"tick_cpu_us", "us", real, false, OSTEOMILL_FIELD(tick_cpu_us)},
     RecordColumn{"burr_force_x_N", "N", real, false, OSTEOMILL_FIELD(burr_force_W_N.x())},
     RecordColumn{"burr_force_y_N", "N", real, false, OSTEOMILL_FIELD(burr_force_W_N.y())},
     RecordColumn{"burr_force_z_N", "N", real, false, OSTEOMILL_FIELD(burr_force_W_N.z())},

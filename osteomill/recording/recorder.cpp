@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "osteomill/device/spsc_queue.h"
+#include "osteomill/files/atomic_file.h"
 #include "osteomill/files/input_error.h"
 #include "osteomill/recording/recording.h"
 #include "osteomill/recording/recording_file.h"
@@ -35,7 +36,7 @@ bool is_plain_name(const std::string& name) {
 
 struct Recorder::Impl {
   Impl(const fs::path& path_, const RunDescription& description, std::size_t capacity)
-      : path(path_), file(unfinished_recording_path(path_), description), queue(capacity) {
+      : path(behind_links(path_)), file(unfinished_recording_path(path), description), queue(capacity) {
     rows.reserve(kRowsAtOnce);
     writer = std::thread([this] { write_until_stopped(); });
   }

@@ -131,18 +131,14 @@ std::string dashed_legend(const CurveColumn& column, const Place& place, double 
       column.dashed, 0.5 * (place.left + place.right), 1 - kTop_px / height_px);
 }
 
-double busy_us(const TickRecord& record) {
-  return record.compute_us + record.milling_us;
-}
-
 double rate_of(const TickRecord& record) {
-  return 1e6 / std::max(1000.0, busy_us(record));
+  return 1e6 / std::max(1000.0, record.busy_us());
 }
 
 double max_tick_us(const RunGroup& group) {
   double max = 0;
   for (const MeasuredRun& run : group.runs) {
-    for (const TickRecord& record : run.recording->records) max = std::max(max, busy_us(record));
+    for (const TickRecord& record : run.recording->records) max = std::max(max, record.busy_us());
   }
   return max;
 }
@@ -197,7 +193,7 @@ Figure draw_rate_figure(const RunGroup& group, const std::filesystem::path& fold
                   dashed_line(kMinRate_hz)),
       "950 Hz, the least acceptable"};
   const CurveColumn compute{"compute", "Compute time of a tick (µs)",
-                            [](const TickRecord& r) { return std::max(0.1, busy_us(r)); },
+                            [](const TickRecord& r) { return std::max(0.1, r.busy_us()); },
                             fmt::format("set logscale y\nset yrange [*:{:.6g}]\nset format y '%g'\n{}",
                                         std::max(3000.0, 1.5 * max), dashed_line(1000)),
                             "1 ms, a tick at 1000 Hz"};

@@ -29,7 +29,7 @@ double angle_rad(const Vec3& a, const Vec3& b) {
 bool all_finite(const TickRecord& r) {
   return std::isfinite(r.time_s) && is_finite(r.X_WD) && is_finite(r.X_WT) && r.wrench.force_N.allFinite() &&
          r.wrench.torque_Nmm.allFinite() && std::isfinite(r.removed_mm3) && std::isfinite(r.compute_us) &&
-         std::isfinite(r.milling_us);
+         std::isfinite(r.milling_us) && std::isfinite(r.tick_cpu_us);
 }
 
 void require_usable(const Recording& recording) {
@@ -82,28 +82,25 @@ DirectionMetrics direction_metrics(std::span<const Vec3> directions) {
   return {degrees * std::sqrt(square / static_cast<double>(directions.size())), degrees * max};
 }
 
-double held_rate_hz(std::span<const double> busy_us) {
-  double sum_us = 0;
-  for (const double busy : busy_us) sum_us += std::max(1000.0, busy);
-  return busy_us.empty() ? 0.0 : 1e6 * static_cast<double>(busy_us.size()) / sum_us;
-}
-
 RunMetrics run_metrics(const Recording& recording) {
   require_usable(recording);
   std::vector<Vec3> force_N, torque_Nmm, shaft_W;
-  std::vector<double> step_us, busy_us;
+  std::vector<double> step_us, cpu_us;
+  HeldRate held(1e6 * recording.description.tick_period_s);
   for (const TickRecord& record : recording.records) {
     force_N.push_back(record.wrench.force_N);
     torque_Nmm.push_back(record.wrench.torque_Nmm);
     shaft_W.push_back(shaft_direction(record.X_WT));
     step_us.push_back(record.compute_us);
-    busy_us.push_back(record.compute_us + record.milling_us);
+    cpu_us.push_back(record.tick_cpu_us);
+    held.add(record.busy_us());
   }
   const double rate_hz = 1.0 / recording.description.tick_period_s;
   RunMetrics metrics;
   metrics.steps = recording.records.size();
   metrics.step_us = distribution_of(step_us);
-  metrics.rate_hz = held_rate_hz(busy_us);
+  if (const Distribution cpu = distribution_of(cpu_us); cpu.max > 0) metrics.cpu_us = cpu;
+  metrics.rate_hz = held.rate_hz();
   metrics.force_N = vector_metrics(force_N, rate_hz);
   metrics.torque_Nmm = vector_metrics(torque_Nmm, rate_hz);
   metrics.shaft = direction_metrics(shaft_W);
@@ -112,7 +109,8 @@ RunMetrics run_metrics(const Recording& recording) {
 }
 
 std::string summary_columns() {
-  return "algorithm,mode,phase,steps,step_us_median,step_us_p99,step_us_max,rate_hz,"
+  return "algorithm,mode,phase,steps,step_us_median,step_us_p99,step_us_max,"
+         "cpu_us_median,cpu_us_p99,cpu_us_max,rate_hz,"
          "force_mean_N,force_max_N,force_hp_rms_N,force_step_max_N,"
          "torque_mean_Nmm,torque_max_Nmm,torque_hp_rms_Nmm,torque_step_max_Nmm,"
          "shaft_spread_deg,shaft_excursion_deg,removed_mm3";
@@ -120,9 +118,10 @@ std::string summary_columns() {
 
 std::string summary_fields(const SummaryRow& row) {
   const RunMetrics& m = row.metrics;
-  std::string fields =
-      fmt::format("{},{},{},{},{},{},{},{}", name_of(row.algorithm), name_of(row.mode), row.segment, m.steps,
-                  m.step_us.median, m.step_us.p99, m.step_us.max, m.rate_hz);
+  std::string fields = fmt::format("{},{},{},{},{},{},{}", name_of(row.algorithm), name_of(row.mode),
+                                   row.segment, m.steps, m.step_us.median, m.step_us.p99, m.step_us.max);
+  fields += m.cpu_us ? fmt::format(",{},{},{}", m.cpu_us->median, m.cpu_us->p99, m.cpu_us->max) : ",,,";
+  fields += fmt::format(",{}", m.rate_hz);
   for (const VectorMetrics& v : {m.force_N, m.torque_Nmm}) {
     fields += fmt::format(",{},{},{},{}", v.mean, v.max, v.hp_rms, v.step_max);
   }

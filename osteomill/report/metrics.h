@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -36,15 +37,14 @@ struct DirectionMetrics {
 };
 DirectionMetrics direction_metrics(std::span<const Vec3> directions);
 
-/// The rate a 1 kHz loop would hold whose ticks take this long: 1 / mean(max(1 ms, busy time)).
-double held_rate_hz(std::span<const double> busy_us);
-
 /// All figures of one recording: the columns of summary.csv.
 struct RunMetrics {
   std::size_t steps = 0;
-  /// Of the algorithm's step alone (`compute_us`).
+  /// Of the algorithm's step alone, by the clock (`compute_us`).
   Distribution step_us;
-  /// Of the tick's whole work: the algorithm's step and milling.
+  /// Of the whole tick, the thread's own CPU time; nothing where it was not measured.
+  std::optional<Distribution> cpu_us;
+  /// HeldRate over the ticks' whole work (TickRecord::busy_us), for the recording's tick.
   double rate_hz = 0;
   VectorMetrics force_N;
   VectorMetrics torque_Nmm;

@@ -66,11 +66,6 @@ TEST(DirectionMetrics, ASineInOnePlane) {
   EXPECT_NEAR(direction_metrics(directions).excursion_deg, 1e-3 * degrees, 1e-8);
 }
 
-TEST(HeldRate, OnlyWhatIsLongerThanATickCosts) {
-  EXPECT_DOUBLE_EQ(held_rate_hz(std::vector<double>{10, 999, 0}), 1000);
-  EXPECT_DOUBLE_EQ(held_rate_hz(std::vector<double>{10, 3000}), 500);
-}
-
 Recording simple_recording(int ticks) {
   Recording recording;
   recording.path = "some/run.h5";
@@ -96,6 +91,17 @@ TEST(RunMetrics, PutsTheFiguresOfARecordingTogether) {
   EXPECT_DOUBLE_EQ(m.torque_Nmm.max, 10);
   EXPECT_NEAR(m.force_N.hp_rms, 0, 1e-12);
   EXPECT_DOUBLE_EQ(m.removed_mm3, 0.25 * 999);
+}
+
+// A machine that does something else for a while lengthens what the clock says of a tick, not its own work.
+TEST(RunMetrics, TheRateIsThatOfTheThreadsOwnTimeWhereItIsKnown) {
+  Recording preempted = simple_recording(1000);
+  EXPECT_FALSE(run_metrics(preempted).cpu_us.has_value());
+  for (TickRecord& record : preempted.records) record.tick_cpu_us = record.time_s < 0.5 ? 100 : 1250;
+  const RunMetrics m = run_metrics(preempted);
+  EXPECT_DOUBLE_EQ(m.cpu_us->median, 675);
+  EXPECT_DOUBLE_EQ(m.cpu_us->max, 1250);
+  EXPECT_NEAR(m.rate_hz, 1e6 / (0.5 * (1000 + 1250)), 1e-9);
 }
 
 void expect_refused(const Recording& recording, const std::string& reason) {
@@ -139,10 +145,11 @@ TEST(SummaryCsv, HasItsColumnsInOrder) {
   std::getline(in, row);
   EXPECT_EQ(
       header,
-      "algorithm,mode,phase,steps,step_us_median,step_us_p99,step_us_max,rate_hz,force_mean_N,force_max_N,"
+      "algorithm,mode,phase,steps,step_us_median,step_us_p99,step_us_max,cpu_us_median,cpu_us_p99,cpu_us_max,"
+      "rate_hz,force_mean_N,force_max_N,"
       "force_hp_rms_N,force_step_max_N,torque_mean_Nmm,torque_max_Nmm,torque_hp_rms_Nmm,torque_step_max_Nmm,"
       "shaft_spread_deg,shaft_excursion_deg,removed_mm3");
-  EXPECT_EQ(row, "point-shell,paper,holding,1,2,3,4,5,6,7,8,9,10,11,12,13,14,15.5,16");
+  EXPECT_EQ(row, "point-shell,paper,holding,1,2,3,4,,,,5,6,7,8,9,10,11,12,13,14,15.5,16");
   std::filesystem::remove(path);
 }
 

@@ -69,25 +69,36 @@ MetricLine real_line(const char* label, const std::function<double(const RunMetr
   return {label, [value](const MeasuredRun& run) { return fmt::format("{:.4g}", value(run.metrics)); }};
 }
 
+MetricLine cpu_line(const char* label, double (*value)(const Distribution&)) {
+  return {label, [value](const MeasuredRun& run) {
+            const auto& cpu_us = run.metrics.cpu_us;
+            return cpu_us ? fmt::format("{:.4g}", value(*cpu_us)) : "not measured";
+          }};
+}
+
 std::vector<MetricLine> metric_lines() {
   using M = RunMetrics;
-  return {{"Ticks", [](const MeasuredRun& run) { return fmt::format("{}", run.metrics.steps); }},
-          real_line("Compute time of a step, median (µs)", [](const M& m) { return m.step_us.median; }),
-          real_line("… 99th percentile (µs)", [](const M& m) { return m.step_us.p99; }),
-          real_line("… greatest (µs)", [](const M& m) { return m.step_us.max; }),
-          {"Haptic rate that a 1 kHz loop would hold (Hz)",
-           [](const MeasuredRun& run) { return fmt::format("{:.1f}", run.metrics.rate_hz); }},
-          real_line("Force, mean (N)", [](const M& m) { return m.force_N.mean; }),
-          real_line("… greatest (N)", [](const M& m) { return m.force_N.max; }),
-          real_line("… above 20 Hz, rms (N)", [](const M& m) { return m.force_N.hp_rms; }),
-          real_line("… greatest change in a tick (N)", [](const M& m) { return m.force_N.step_max; }),
-          real_line("Torque, mean (N mm)", [](const M& m) { return m.torque_Nmm.mean; }),
-          real_line("… greatest (N mm)", [](const M& m) { return m.torque_Nmm.max; }),
-          real_line("… above 20 Hz, rms (N mm)", [](const M& m) { return m.torque_Nmm.hp_rms; }),
-          real_line("… greatest change in a tick (N mm)", [](const M& m) { return m.torque_Nmm.step_max; }),
-          real_line("Shaft direction, spread (degrees)", [](const M& m) { return m.shaft.spread_deg; }),
-          real_line("… greatest excursion (degrees)", [](const M& m) { return m.shaft.excursion_deg; }),
-          real_line("Bone removed in the phase (mm³)", [](const M& m) { return m.removed_mm3; })};
+  return {
+      {"Ticks", [](const MeasuredRun& run) { return fmt::format("{}", run.metrics.steps); }},
+      real_line("Compute time of a step, median (µs)", [](const M& m) { return m.step_us.median; }),
+      real_line("… 99th percentile (µs)", [](const M& m) { return m.step_us.p99; }),
+      real_line("… greatest (µs)", [](const M& m) { return m.step_us.max; }),
+      cpu_line("Work of a whole tick, CPU time, median (µs)", [](const Distribution& d) { return d.median; }),
+      cpu_line("… 99th percentile (µs)", [](const Distribution& d) { return d.p99; }),
+      cpu_line("… greatest (µs)", [](const Distribution& d) { return d.max; }),
+      {"Haptic rate that a 1 kHz loop would hold (Hz)",
+       [](const MeasuredRun& run) { return fmt::format("{:.1f}", run.metrics.rate_hz); }},
+      real_line("Force, mean (N)", [](const M& m) { return m.force_N.mean; }),
+      real_line("… greatest (N)", [](const M& m) { return m.force_N.max; }),
+      real_line("… above 20 Hz, rms (N)", [](const M& m) { return m.force_N.hp_rms; }),
+      real_line("… greatest change in a tick (N)", [](const M& m) { return m.force_N.step_max; }),
+      real_line("Torque, mean (N mm)", [](const M& m) { return m.torque_Nmm.mean; }),
+      real_line("… greatest (N mm)", [](const M& m) { return m.torque_Nmm.max; }),
+      real_line("… above 20 Hz, rms (N mm)", [](const M& m) { return m.torque_Nmm.hp_rms; }),
+      real_line("… greatest change in a tick (N mm)", [](const M& m) { return m.torque_Nmm.step_max; }),
+      real_line("Shaft direction, spread (degrees)", [](const M& m) { return m.shaft.spread_deg; }),
+      real_line("… greatest excursion (degrees)", [](const M& m) { return m.shaft.excursion_deg; }),
+      real_line("Bone removed in the phase (mm³)", [](const M& m) { return m.removed_mm3; })};
 }
 
 std::string metrics_table(const RunGroup& group, const std::vector<MetricLine>& further) {

@@ -7,9 +7,32 @@
 #include <gtest/gtest.h>
 
 #include "osteomill/device/posed_device.h"
+#include "osteomill/session/milling_setup.h"
 
 namespace osteomill {
 namespace {
+
+std::string fault_of(const MillingTool& tool) {
+  GridGeometry tooth;
+  tooth.dims = {256, 256, 176};
+  tooth.spacing_mm = Vec3::Constant(0.125);
+  try {
+    require_workable(tool, tooth);
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(RequireWorkable, NamesAToolThatCannotWorkInTheScan) {
+  EXPECT_EQ(fault_of({}), "");
+  EXPECT_EQ(fault_of({3, 3, 100}), "");
+  EXPECT_NE(fault_of({50, 1, 25}).find("the burr's radius, 50 mm, makes it 100 mm wide"), std::string::npos);
+  EXPECT_NE(fault_of({1, 20, 25}).find("the shaft's radius, 20 mm"), std::string::npos);
+  EXPECT_NE(fault_of({1, 1, 2000}).find("the shaft's length"), std::string::npos);
+  EXPECT_NE(fault_of({0.02, 0.02, 25}).find("0.16 of the scan's voxels"), std::string::npos);
+  EXPECT_NE(fault_of({-1, 1, 25}), "");
+}
 
 // An algorithm that says what it is told to, and what it was told.
 class ScriptedAlgorithm : public HapticAlgorithm {

@@ -25,10 +25,16 @@ struct MillingSetup {
   bool vibration = false;
 };
 
+/// Throws std::invalid_argument, with one line that says why, where a tool cannot work in a scan with this
+/// grid: its burr or shaft is wider than the whole scan, its shaft longer than a metre, or its burr so many
+/// voxels wide that no algorithm follows it at the haptic rate, or so few that the scan has nothing for it to
+/// feel. At once, before anything is prepared.
+void require_workable(const MillingTool& tool, const GridGeometry& scan);
+
 MillingSettings milling_settings(const MillingSetup& setup);
 
 /// A session ready to tick; takes as long as the algorithm's preparation. Throws std::invalid_argument where
-/// a setting is out of range.
+/// a setting is out of range or the tool cannot work (`require_workable`).
 std::unique_ptr<MillingSession> make_session(std::shared_ptr<Volume> bone, const BoneDensities& densities,
                                              const MillingSetup& setup);
 

@@ -26,6 +26,13 @@ struct TickRecord {
   /// Time taken by the algorithm's step, and by milling with all that follows the volume.
   double compute_us = 0;
   double milling_us = 0;
+  /// CPU time that the thread itself had for the whole tick, which no other program on the machine lengthens.
+  /// 0 where it was not measured: asking for it is a system call, so only whoever runs ticks that no hand
+  /// waits for can ask, before and after them.
+  double tick_cpu_us = 0;
+
+  /// How long the tick kept its loop busy: by the thread's own CPU time where it is known, else by the clock.
+  double busy_us() const { return tick_cpu_us > 0 ? tick_cpu_us : compute_us + milling_us; }
 };
 
 }  // namespace osteomill

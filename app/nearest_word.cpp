@@ -1,0 +1,138 @@
+#include "app/nearest_word.h"
+
+#include <algorithm>
+#include <cctype>
+#include <numeric>
+#include <optional>
+
+#include <CLI/Error.hpp>
+#include <CLI/Option.hpp>
+#include <fmt/core.h>
+
+namespace osteomill::app {
+
+namespace {
+
+// Levenshtein 1966: how many letters have to be put in, taken away or changed to make one of the other.
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t changed = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({row[j] + 1, diagonal + 1, changed});
+    }
+  }
+  return row.back();
+}
+
+std::string without_dashes_before(std::string_view word) {
+  const std::size_t first = word.find_first_not_of('-');
+  std::string bare(first == std::string_view::npos ? "" : word.substr(first));
+  std::transform(bare.begin(), bare.end(), bare.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return bare;
+}
+
+// Of two words of which one begins with the other, what the longer has beyond it costs little.
+std::size_t distance(const std::string& word, const std::string& known) {
+  constexpr std::size_t kTelling = 3;
+  const std::size_t common = std::min(word.size(), known.size());
+  if (common >= kTelling && word.compare(0, common, known, 0, common) == 0) return 1;
+  return edit_distance(word, known);
+}
+
+std::optional<std::string> nearest(std::string_view word, const std::vector<std::string>& known) {
+  const std::string bare = without_dashes_before(word);
+  std::size_t least = std::max<std::size_t>(1, bare.size() / 3) + 1;
+  std::optional<std::string> best;
+  for (const std::string& one : known) {
+    const std::size_t far = distance(bare, without_dashes_before(one));
+    if (far < least) {
+      least = far;
+      best = one;
+    }
+  }
+  return best;
+}
+
+std::string with_and(const std::vector<std::string>& words) {
+  std::string text;
+  for (std::size_t n = 0; n < words.size(); ++n) {
+    text += (n == 0 ? "" : n + 1 == words.size() ? " and " : ", ") + words[n];
+  }
+  return text;
+}
+
+class UnknownWord : public CLI::ParseError {
+ public:
+  explicit UnknownWord(const std::string& what)
+      : CLI::ParseError("UnknownWord", what, CLI::ExitCodes::ExtrasError) {}
+};
+
+std::string see_help(const std::string& hint, const std::string& of) {
+  return hint.empty() ? fmt::format("; {} --help lists them", of) : hint;
+}
+
+// "-0.5" is a number and "--" ends the options.
+bool is_option(std::string_view word) {
+  if (word.size() < 2 || word[0] != '-') return false;
+  return word[1] == '-' ? word.size() > 2 : std::isalpha(static_cast<unsigned char>(word[1])) != 0;
+}
+
+}  // namespace
+
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& known) {
+  constexpr std::size_t kFew = 5;
+  if (const auto near = nearest(word, known)) return fmt::format("; did you mean {}?", *near);
+  if (known.size() > kFew || known.empty()) return "";
+  return fmt::format("; there {} {}", known.size() == 1 ? "is" : "are", with_and(known));
+}
+
+CLI::Validator one_of(const std::string& kind, const std::vector<std::string>& names) {
+  return CLI::Validator(
+      [=](std::string& word) {
+        if (std::find(names.begin(), names.end(), word) != names.end()) return std::string();
+        return fmt::format("there is no {} {}{}", kind, word, did_you_mean(word, names));
+      },
+      "");
+}
+
+std::vector<std::string> option_names(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  return names;
+}
+
+void require_known_words(const CLI::App& program, int argc, const char* const* argv) {
+  const CLI::App* command = nullptr;
+  for (int n = 1; n < argc; ++n) {
+    const std::string word = argv[n];
+    if (word == "--") return;
+    const CLI::App& where = command != nullptr ? *command : program;
+    if (is_option(word)) {
+      const std::string name = word[1] == '-' ? word.substr(0, word.find('=')) : word.substr(0, 2);
+      if (where.get_option_no_throw(name) == nullptr) {
+        throw UnknownWord(fmt::format("{} has no option {}{}", where.get_name(), name,
+                                      see_help(did_you_mean(name, option_names(where)), where.get_name())));
+      }
+    } else if (command == nullptr) {
+      std::vector<std::string> names;
+      for (const CLI::App* one : program.get_subcommands({})) {
+        names.push_back(one->get_name());
+        if (one->get_name() == word) command = one;
+      }
+      if (command == nullptr) {
+        throw UnknownWord(fmt::format("there is no command {}{}", word,
+                                      see_help(did_you_mean(word, names), program.get_name())));
+      }
+    }
+  }
+}
+
+}  // namespace osteomill::app

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <CLI/App.hpp>
+#include <CLI/Validators.hpp>
+
+namespace osteomill::app {
+
+/// The end of a message about a word that is not known: "; did you mean point-shell?", or where none of the
+/// known words is near and they are few, "; there are paper and steady", else nothing.
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& known);
+
+/// Refuses what is none of `names`; `kind` says what they are ("algorithm").
+CLI::Validator one_of(const std::string& kind, const std::vector<std::string>& names);
+
+/// The names of a command's options, with their dashes.
+std::vector<std::string> option_names(const CLI::App& command);
+
+/// Throws CLI::ParseError where the command, or any option of it, is not known, naming it and the nearest
+/// that is. Before parsing, which would name what is missing first.
+void require_known_words(const CLI::App& program, int argc, const char* const* argv);
+
+}  // namespace osteomill::app

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "osteomill/files/input_error.h"
+#include "osteomill/numbers/work_progress.h"
+#include "osteomill/volume/grid_geometry.h"
+
+namespace osteomill {
+
+/// Throws InputError naming `subject` where a grid lies as no bone can: voxels under 1 um or over 100 mm
+/// apart, or a first voxel over 100 m from the scanner's own origin. What is measured by such numbers later
+/// would take for ever or overflow.
+inline void check_plausible(const std::string& subject, const GridGeometry& geometry) {
+  constexpr double kMinSpacing_mm = 1e-3, kMaxSpacing_mm = 100, kMaxOrigin_mm = 1e5;
+  for (const double spacing_mm : geometry.spacing_mm) {
+    if (!(spacing_mm >= kMinSpacing_mm && spacing_mm <= kMaxSpacing_mm)) {
+      throw InputError(subject, fmt::format("has voxels {:.6g} mm apart; a bone's are between {} and {} mm",
+                                            spacing_mm, kMinSpacing_mm, kMaxSpacing_mm));
+    }
+  }
+  for (const double origin_mm : geometry.origin_mm) {
+    if (!(std::abs(origin_mm) <= kMaxOrigin_mm)) {
+      throw InputError(subject, fmt::format("begins {:.6g} mm from its origin; no scanner is that large",
+                                            std::abs(origin_mm)));
+    }
+  }
+}
+
+/// Throws InputError naming `subject` where a density is not a finite number: nothing sensible can be milled
+/// there.
+inline void check_finite(const std::string& subject, const std::vector<float>& densities) {
+  constexpr std::size_t kAtOnce = 1 << 22;
+  std::ptrdiff_t count = 0;
+  for (std::size_t first = 0; first < densities.size(); first += kAtOnce) {
+    const std::size_t last = std::min(first + kAtOnce, densities.size());
+    count += std::count_if(densities.begin() + static_cast<std::ptrdiff_t>(first),
+                           densities.begin() + static_cast<std::ptrdiff_t>(last),
+                           [](float v) { return !std::isfinite(v); });
+    WorkProgress::done(last, densities.size());
+  }
+  if (count > 0) {
+    throw InputError(subject, std::to_string(count) + " voxels hold no finite number (NaN or infinity)");
+  }
+}
+
+}  // namespace osteomill

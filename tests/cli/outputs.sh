@@ -1,0 +1,59 @@
+#!/usr/bin/env bash
+# What stands where a file is to be written is never lost: a link stays a link, a device a device, and what is read is not
+# written over. A disk that is full is one line and leaves nothing.
+set -euo pipefail
+osteomill=$1
+folder=$(mktemp -d)
+mounted=""
+trap '[ -z "$mounted" ] || umount "$folder/small"; rm -rf "$folder"' EXIT
+cd "$folder"
+
+fault() { echo "FAILED: $1"; exit 1; }
+printf 'time_s,x_mm,y_mm,z_mm,qw,qx,qy,qz,milling\n0,0,0,30,1,0,0,0,0\n0.001,0,0,30,1,0,0,0,1\n' >poses.csv
+replay() { "$osteomill" replay poses.csv --quiet --algorithm line-proxy --out "$1" >out.txt 2>err.txt; }
+
+replay log.csv
+echo old >real.csv
+ln -s real.csv link.csv
+replay link.csv
+[ -L link.csv ] || fault "the link was replaced"
+[ "$(wc -l <real.csv)" -eq 3 ] || fault "what the link leads to was not written"
+
+mkfifo pipe.csv
+cat pipe.csv >read.csv &
+replay pipe.csv
+wait
+[ -p pipe.csv ] || fault "the pipe was replaced"
+[ "$(wc -l <read.csv)" -eq 3 ] || fault "the pipe's reader got nothing"
+
+# A device of our own, which swallows all like /dev/null, where the machine allows it.
+if mknod -m 666 null.csv c 1 3 2>err.txt; then
+  replay null.csv
+  [ -c null.csv ] || fault "the device was replaced"
+else
+  echo "no devices can be made here, so none was written to"
+fi
+
+code=0
+replay poses.csv || code=$?
+[ "$code" -eq 1 ] && grep -q "^osteomill: poses.csv: is what is read" err.txt || fault "the trajectory was written over"
+ln -s poses.csv other.csv
+replay other.csv && fault "the trajectory was written over through a link"
+[ "$(wc -l <poses.csv)" -eq 3 ] || fault "the trajectory was written over"
+
+mkdir small
+for size in 100k 400k 3m; do
+  if ! mount -t tmpfs -o size=$size none small 2>err.txt; then
+    echo "no small disk can be mounted here, so none was filled"
+    break
+  fi
+  mounted=yes
+  code=0
+  timeout 120 "$osteomill" compare --seconds 4 --quiet --algorithm line-proxy --no-stability --out small/out >out.txt 2>err.txt ||
+    code=$?
+  [ "$code" -eq 1 ] || fault "a disk of $size: exit code $code, $(cat err.txt)"
+  [ "$(wc -l <err.txt)" -eq 1 ] || fault "a disk of $size: $(cat err.txt)"
+  umount small
+  mounted=""
+done
+exit 0
