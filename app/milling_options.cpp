@@ -50,7 +50,7 @@ std::vector<std::string> setting_names(const AlgorithmDescription& algorithm) {
   return names;
 }
 
-// "point-shell.look-ahead=false"
+// "point-shell.guarded-move=false"
 HapticSettings::Named named_setting(const std::string& text) {
   const std::size_t dot = text.find('.');
   const std::size_t equals = text.find('=');

@@ -57,12 +57,12 @@ TEST_P(GoldenWrenches, AreTheSameBitsAtAnyOptimisation) {
 }
 
 INSTANTIATE_TEST_SUITE_P(AllAlgorithms, GoldenWrenches,
-                         ::testing::Values(Golden{"line-proxy", Mode::paper, 0x050dc953281f696a},
-                                           Golden{"line-proxy", Mode::steady, 0x1862b4b97d6f227a},
+                         ::testing::Values(Golden{"line-proxy", Mode::paper, 0x952a745285f10cda},
+                                           Golden{"line-proxy", Mode::steady, 0x30ac3f7dbf152e8b},
                                            Golden{"surface-points", Mode::paper, 0xe2ea466e2b30f36e},
-                                           Golden{"surface-points", Mode::steady, 0x8930ec19ae883bb4},
+                                           Golden{"surface-points", Mode::steady, 0x787d19b3b1635c60},
                                            Golden{"point-shell", Mode::paper, 0xd4d2cd25e4997312},
-                                           Golden{"point-shell", Mode::steady, 0x0b822b9ea0c9f2ba},
+                                           Golden{"point-shell", Mode::steady, 0x1f7f49d9953ce570},
                                            Golden{"barrier-shell", Mode::steady, 0x2eba6954a6931680}),
                          [](const auto& test) {
                            std::string name(test.param.algorithm);

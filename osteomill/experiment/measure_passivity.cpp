@@ -71,7 +71,7 @@ PassivityRow measure_passivity(const PassivityCase& setup, const Volume& wall, c
   const auto press_at = [&](double stiffness_N_per_mm) {
     settings.named.back().value = stiffness_N_per_mm;
     const auto algorithm = make_algorithm(setup.algorithm, settings);
-    algorithm->prepare({&wall, tool});
+    algorithm->prepare({&wall, tool, tick_s});
     return press_on_wall(*algorithm, tool.burr_radius_mm, press);
   };
   const double rule = passive_stiffness_rule_N_per_mm(setup.damping_Ns_per_mm, tick_s, setup.delay_s);

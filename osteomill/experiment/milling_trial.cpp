@@ -18,7 +18,7 @@ double thread_cpu_us() {
 MillingTrial::MillingTrial(const Volume& bone, const BoneDensities& densities, const MillingEntry& entry,
                            const AlgorithmDescription& algorithm, const TrialSettings& settings)
     : session_(bone, settings.tool, make_algorithm(algorithm, settings.haptics), densities, settings.milling,
-               settings.limits),
+               settings.limits, settings.tick_s),
       operator_(settings.hand_and_device, settings.tool, entry),
       tick_s_(settings.tick_s),
       spindle_(settings.spindle) {}

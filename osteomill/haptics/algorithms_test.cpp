@@ -24,20 +24,18 @@ TEST(MakeAlgorithm, DefaultsAreThePapers) {
   EXPECT_EQ(setting("surface-points", paper, "stiffness"), 20);
   EXPECT_EQ(setting("point-shell", paper, "scale"), 1);
   EXPECT_EQ(setting("point-shell", paper, "translational-stiffness"), 2);
-  EXPECT_EQ(setting("point-shell", paper, "points-on-isosurface"), 0);
-  EXPECT_EQ(setting("point-shell", {.mode = Mode::steady}, "points-on-isosurface"), 1);
+  EXPECT_EQ(setting("point-shell", paper, "surface-shell"), 0);
+  EXPECT_EQ(setting("point-shell", {.mode = Mode::steady}, "surface-shell"), 1);
 }
 
 TEST(MakeAlgorithm, WhatTheUserSaysWins) {
   HapticSettings settings{.mode = Mode::steady};
   settings.set_option("stiffness", 3);
   settings.set_option("shell-scale", 2);
-  settings.named.push_back({"point-shell", "points-on-isosurface", 0});
-  settings.named.push_back({"line-proxy", "clamp-fraction", 0});
-  EXPECT_EQ(setting("point-shell", settings, "points-on-isosurface"), 0);
-  EXPECT_EQ(setting("point-shell", settings, "area-weights"), 1);
+  settings.named.push_back({"point-shell", "surface-shell", 0});
+  EXPECT_EQ(setting("point-shell", settings, "surface-shell"), 0);
+  EXPECT_EQ(setting("point-shell", settings, "guarded-move"), 1);
   EXPECT_EQ(setting("point-shell", settings, "scale"), 2);
-  EXPECT_EQ(setting("line-proxy", settings, "clamp-fraction"), 0);
   for (const auto& [algorithm, name] :
        {std::pair{"line-proxy", "stiffness"}, std::pair{"surface-points", "stiffness"},
         std::pair{"point-shell", "translational-stiffness"}}) {
@@ -64,7 +62,7 @@ TEST(MakeAlgorithm, WhatCannotBeIsRefused) {
   settings = {};
   settings.named = {{"surface-points", "no-such-thing", 1}};
   refused("surface-points", settings);
-  settings.named = {{"surface-points", "march-to-surface", 0.5}};
+  settings.named = {{"surface-points", "hold-tool", 0.5}};
   refused("surface-points", settings);
   settings.named = {{"surface-points", "slices", 2.5}};
   refused("surface-points", settings);

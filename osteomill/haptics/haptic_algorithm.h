@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "osteomill/geometry/pose.h"
 #include "osteomill/geometry/wrench.h"
 #include "osteomill/tool/milling_tool.h"
@@ -12,6 +14,9 @@ namespace osteomill {
 struct Scene {
   const Volume* volume = nullptr;
   MillingTool tool;
+  /// The loop's nominal period: stiffness that a slower loop cannot hold follows it, never the length of one
+  /// tick, which may be late.
+  double tick_period_s = 1e-3;
 };
 
 /// What one step of an algorithm says.
@@ -20,6 +25,9 @@ struct HapticStep {
   Wrench wrench;
   /// The simulated tool: where the tool is drawn and where it cuts.
   Pose X_WT;
+  /// The felt tool: where the springs that give the wrench hold the tool, against the device. Nothing where
+  /// that is `X_WT`.
+  std::optional<Pose> X_WF;
   /// The force with which the burr (not the shaft) presses on the bone, in W; zero where something else holds
   /// the tool. Milling is paid with it and cuts where it points.
   Vec3 burr_force_W_N = Vec3::Zero();

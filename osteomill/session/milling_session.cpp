@@ -18,18 +18,20 @@ double microseconds_since(Clock::time_point start) {
 
 MillingSession::MillingSession(Volume volume, const MillingTool& tool,
                                std::unique_ptr<HapticAlgorithm> algorithm, const BoneDensities& densities,
-                               const MillingSettings& milling, const WrenchLimits& limits)
+                               const MillingSettings& milling, const WrenchLimits& limits,
+                               double tick_period_s)
     : MillingSession(std::make_shared<Volume>(std::move(volume)), tool, std::move(algorithm), densities,
-                     milling, limits) {}
+                     milling, limits, tick_period_s) {}
 
 MillingSession::MillingSession(std::shared_ptr<Volume> volume, const MillingTool& tool,
                                std::unique_ptr<HapticAlgorithm> algorithm, const BoneDensities& densities,
-                               const MillingSettings& milling, const WrenchLimits& limits)
+                               const MillingSettings& milling, const WrenchLimits& limits,
+                               double tick_period_s)
     : volume_(std::move(volume)),
       algorithm_(std::move(algorithm)),
       mill_(volume_->geometry(), tool.burr_radius_mm, densities, milling),
       limits_(limits) {
-  algorithm_->prepare({volume_.get(), tool});
+  algorithm_->prepare({volume_.get(), tool, tick_period_s});
 }
 
 TickRecord MillingSession::tick(Device& device, double time_s, double dt_s, bool spindle_on) {

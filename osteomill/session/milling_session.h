@@ -15,14 +15,15 @@ namespace osteomill {
 /// The wrench goes out before bone is removed, so that milling cannot delay the hand.
 class MillingSession {
  public:
-  /// Takes the bone over and prepares the algorithm; may allocate. Throws std::invalid_argument as `prepare`
-  /// does.
+  /// Takes the bone over and prepares the algorithm for ticks of nominally `tick_period_s`; may allocate.
+  /// Throws std::invalid_argument as `prepare` does.
   MillingSession(Volume volume, const MillingTool& tool, std::unique_ptr<HapticAlgorithm> algorithm,
-                 const BoneDensities& densities, const MillingSettings& milling, const WrenchLimits& limits);
+                 const BoneDensities& densities, const MillingSettings& milling, const WrenchLimits& limits,
+                 double tick_period_s = 1e-3);
   /// The same on a bone that another session has milled, which takes no further tick while this one lives.
   MillingSession(std::shared_ptr<Volume> volume, const MillingTool& tool,
                  std::unique_ptr<HapticAlgorithm> algorithm, const BoneDensities& densities,
-                 const MillingSettings& milling, const WrenchLimits& limits);
+                 const MillingSettings& milling, const WrenchLimits& limits, double tick_period_s = 1e-3);
 
   /// One haptic tick of `dt_s`, begun at `time_s`; bone is removed where `spindle_on`. A wrench that is not
   /// finite, or a device pose that is not, sends zero and is recorded as the record's fault. Real-time safe:

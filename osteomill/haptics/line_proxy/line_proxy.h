@@ -5,15 +5,17 @@
 #include <vector>
 
 #include "osteomill/haptics/haptic_algorithm.h"
+#include "osteomill/haptics/line_proxy/held_line.h"
 #include "osteomill/haptics/line_proxy/line_proxy_settings.h"
-#include "osteomill/haptics/line_proxy/shaft_touch.h"
+#include "osteomill/haptics/line_proxy/surface_normal.h"
 
 namespace osteomill::line_proxy {
 
 /// Algorithm 1 of Eriksson 2012: the tool is its centreline, a row of vertices. Where the tip's vertex is in
 /// bone a point proxy stays on the surface and a spring pulls the hand to it; where the shaft, laid at that
 /// proxy, is in bone an intersection point (IP) stays on the surface and turns the hand about the tip. Tip
-/// and shaft remember their contacts separately. Threads and real time: as HapticAlgorithm.
+/// and shaft remember their contacts separately. With `hold-line` both are one: the line that bone holds out
+/// (`HeldLine`). Threads and real time: as HapticAlgorithm.
 class LineProxy final : public HapticAlgorithm {
  public:
   /// Throws std::invalid_argument where a setting is out of range.
@@ -35,14 +37,10 @@ class LineProxy final : public HapticAlgorithm {
   struct Memory {
     std::optional<Vec3> device_before_W;
     std::optional<Vec3> device_tip_W;
-    // What the tip's proxy followed: the device's tip, moved on by the shaft's push.
-    std::optional<Vec3> tip_probe_W;
     std::optional<Vec3> tip_proxy_W;
     // The centreline, laid at the tip's proxy where there is one.
     std::optional<Pose> X_WL;
     std::optional<Vec3> intersection_W;
-    // With `shaft-contact` it is this that makes the intersection point.
-    ShaftTouch touch;
     Vec3 arm_W = Vec3::Zero();
     Vec3 reaction_N = Vec3::Zero();
     // How far the simulated tool is kept from where the centreline would have it.
@@ -53,24 +51,25 @@ class LineProxy final : public HapticAlgorithm {
   };
 
   std::span<const Vec3> shaft_vertices() const { return std::span(vertices_T_).subspan(1); }
-  Vec3 tip_probe_W(const Vec3& device_tip_W) const;
-  void follow_with_tip_proxy(const Vec3& tip_probe_W, double dt_s);
-  std::optional<Vec3> first_tip_proxy(const Vec3& tip_probe_W) const;
+  void follow_as_printed(const Pose& X_WD, HapticStep& result);
+  void follow_with_line(const Pose& X_WD, double dt_s, HapticStep& result);
+  void follow_with_tip_proxy(const Vec3& tip_W);
+  std::optional<Vec3> first_tip_proxy(const Vec3& tip_W) const;
   void follow_with_intersection(const Pose& X_WL);
   std::optional<Vec3> first_intersection(const Pose& X_WL) const;
   std::optional<Vec3> next_intersection(const Pose& X_WL) const;
   void turn_reaction(const Pose& X_WL);
-  void touch_with_shaft(const Pose& X_WL, const Vec3& device_tip_W, double dt_s);
-  double first_lever_mm(const Pose& X_WL) const;
-  ShaftTouchRule touch_rule(double dt_s) const;
-  double shaft_share(double arm_mm) const;
+  double drawn_share(double arm_mm) const;
   Pose touching_tool(const Pose& X_WD, const Vec3& tool_tip_W) const;
   void keep_outside(Pose& X_WT, double dt_s);
-  Pose simulated_tool(const Pose& X_WD, const Pose& touching, double dt_s);
+  Pose gliding_tool(const Pose& X_WD, const Pose& touching, double dt_s);
   void forget_what_is_not_finite();
 
   Settings settings_;
   Scene scene_;
+  NormalRule normal_;
+  double turning_Nmm_per_rad_ = 0;
+  HeldLine held_line_;
   std::vector<Vec3> vertices_T_;
   Memory memory_;
 };

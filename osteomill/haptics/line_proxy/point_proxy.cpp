@@ -50,56 +50,35 @@ Vec3 shortened(const Vec3& vector, double limit) {
   return length <= limit ? vector : Vec3(vector * (limit / length));
 }
 
-// Straight toward the probe until bone is in the way or the travel is used up.
-Vec3 marched(const Volume& volume, const Vec3& proxy_W, const Vec3& probe_W, double travel_mm) {
+// Straight toward the probe until bone is in the way.
+Vec3 marched(const Volume& volume, const Vec3& proxy_W, const Vec3& probe_W) {
   const Vec3 way = probe_W - proxy_W;
   const double distance = way.norm();
   if (distance == 0.0) return probe_W;
   if (distance > kTouching_mm && in_bone(volume, proxy_W + (kTouching_mm / distance) * way)) return proxy_W;
-  const Vec3 target = distance <= travel_mm ? probe_W : Vec3(proxy_W + (travel_mm / distance) * way);
-  return crossing_in_grid(volume, proxy_W, target).value_or(target);
-}
-
-// The whole way to the probe's foot overshoots on concave bone, by more than it gained where the probe lies
-// deeper than the radius of curvature. Aitken's rule finds the share of the way that does not (Kuettler and
-// Wall 2008).
-double relaxed(double relaxation, const Vec3& aside_before, const Vec3& aside) {
-  const Vec3 change = aside - aside_before;
-  const double squared = change.squaredNorm();
-  if (aside_before.isZero() || !(squared > 0.0)) return relaxation;
-  return std::clamp(-relaxation * aside_before.dot(change) / squared, 0.1, 1.0);
+  return crossing_in_grid(volume, proxy_W, probe_W).value_or(probe_W);
 }
 
 }  // namespace
 
 Vec3 move_point_proxy(const Volume& volume, const Vec3& proxy_W, const Vec3& probe_W,
-                      const PointProxyRule& rule) {
+                      const NormalRule& rule) {
   Vec3 proxy = proxy_W;
   if (in_bone(volume, proxy)) {
-    const auto out = raised_out(volume, proxy, rule.normal);
+    const auto out = raised_out(volume, proxy, rule);
     if (!out) return proxy_W;
     proxy = *out;
   }
-  double travel_mm = rule.travel_limit_mm;
-  Vec3 aside_before = Vec3::Zero();
-  double relaxation = 1.0;
-  for (int n = 0; n < kSlides && travel_mm > 0.0; ++n) {
-    const Vec3 start = proxy;
-    proxy = marched(volume, proxy, probe_W, travel_mm);
-    travel_mm -= (proxy - start).norm();
-    if (proxy == probe_W || !(travel_mm > 0.0)) return proxy;
-    const auto normal = surface_normal(volume, proxy, rule.normal);
+  for (int n = 0; n < kSlides; ++n) {
+    proxy = marched(volume, proxy, probe_W);
+    if (proxy == probe_W) return proxy;
+    const auto normal = surface_normal(volume, proxy, rule);
     if (!normal) return proxy;
     const Vec3 to_probe = probe_W - proxy;
     const Vec3 aside = to_probe - to_probe.dot(*normal) * *normal;
     if (aside.norm() < kAtRest_mm) return proxy;
-    relaxation = relaxed(relaxation, aside_before, aside);
-    aside_before = aside;
     // A slide of more than a voxel could step over a wall or a crack.
-    const Vec3 next =
-        slid(volume, proxy, shortened(relaxation * aside, std::min(voxel_mm(volume), travel_mm)), *normal);
-    travel_mm -= (next - proxy).norm();
-    proxy = next;
+    proxy = slid(volume, proxy, shortened(aside, voxel_mm(volume)), *normal);
   }
   return proxy;
 }

@@ -5,13 +5,6 @@
 
 namespace osteomill::line_proxy {
 
-/// How a point proxy goes after its probe.
-struct PointProxyRule {
-  NormalRule normal;
-  /// The most that the proxy may travel in one call; infinity for no limit.
-  double travel_limit_mm;
-};
-
 /// The 3-DOF point proxy on the isosurface: a point that follows a probe but never enters the bone. The paper
 /// takes it from earlier work without describing it; this is the usual one (Zilles and Salisbury 1995,
 /// Ruspini 1997) on an isosurface. In turns it
@@ -22,6 +15,6 @@ struct PointProxyRule {
 /// where the way to it is free. A proxy that starts in bone is first brought out along the normal; where that
 /// fails it stays. Safe in the haptic tick.
 Vec3 move_point_proxy(const Volume& volume, const Vec3& proxy_W, const Vec3& probe_W,
-                      const PointProxyRule& rule);
+                      const NormalRule& normal);
 
 }  // namespace osteomill::line_proxy

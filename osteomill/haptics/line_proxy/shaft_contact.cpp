@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <optional>
 
 #include "osteomill/volume/isosurface.h"
 #include "osteomill/volume/sampling.h"
@@ -35,37 +37,47 @@ struct Stretch {
   bool leaves;
 };
 
-double distance_to(const Stretch& stretch, double lever_mm) {
-  return std::max({0.0, stretch.lower_mm - lever_mm, lever_mm - stretch.upper_mm});
-}
-
-std::optional<Stretch> nearest_stretch(const Line& line, const ShaftSpan& span, double near_mm) {
-  std::optional<Stretch> nearest;
-  std::optional<Stretch> current;
-  const int samples = static_cast<int>((span.end_mm - span.start_mm) / span.sample_mm + 0.5);
-  const double sample_mm = (span.end_mm - span.start_mm) / std::max(1, samples);
-  for (int n = 0; n <= samples + 1; ++n) {
-    const double lever_mm = span.start_mm + n * sample_mm;
-    if (n <= samples && line.in_bone(lever_mm)) {
-      if (!current) current = Stretch{lever_mm, lever_mm, n > 0, false};
-      current->upper_mm = lever_mm;
-      current->leaves = n < samples;
-    } else if (current) {
-      if (!nearest || distance_to(*current, near_mm) < distance_to(*nearest, near_mm)) nearest = current;
-      current.reset();
+// The first stretches of the span in bone, their ends to where the line passes the surface.
+class Stretches {
+ public:
+  Stretches(const Line& line, const ShaftSpan& span) : line_(line), span_(span) {
+    const int samples = static_cast<int>((span.end_mm - span.start_mm) / span.sample_mm + 0.5);
+    sample_mm_ = (span.end_mm - span.start_mm) / std::max(1, samples);
+    std::optional<Stretch> current;
+    for (int n = 0; n <= samples + 1 && count_ < all_.size(); ++n) {
+      const double lever_mm = span.start_mm + n * sample_mm_;
+      if (n <= samples && line.in_bone(lever_mm)) {
+        if (!current) current = Stretch{lever_mm, lever_mm, n > 0, false};
+        current->upper_mm = lever_mm;
+        current->leaves = n < samples;
+      } else if (current) {
+        all_[count_++] = to_the_surface(*current);
+        current.reset();
+      }
     }
   }
-  if (!nearest) return std::nullopt;
-  // The line may come out of the bone between the span and the tip.
-  if (!nearest->enters && !line.in_bone(0.0)) {
-    nearest->enters = true;
-    nearest->lower_mm = line.crossing(0.0, nearest->lower_mm);
-  } else if (nearest->enters) {
-    nearest->lower_mm = line.crossing(nearest->lower_mm - sample_mm, nearest->lower_mm);
+  auto begin() const { return all_.begin(); }
+  auto end() const { return all_.begin() + static_cast<std::ptrdiff_t>(count_); }
+
+ private:
+  Stretch to_the_surface(Stretch stretch) const {
+    if (stretch.enters) {
+      stretch.lower_mm = line_.crossing(stretch.lower_mm - sample_mm_, stretch.lower_mm);
+    } else if (!line_.in_bone(0.0)) {
+      // The line may come out of the bone between the span and the tip.
+      stretch.enters = true;
+      stretch.lower_mm = line_.crossing(0.0, stretch.lower_mm);
+    }
+    if (stretch.leaves) stretch.upper_mm = line_.crossing(stretch.upper_mm + sample_mm_, stretch.upper_mm);
+    return stretch;
   }
-  if (nearest->leaves) nearest->upper_mm = line.crossing(nearest->upper_mm + sample_mm, nearest->upper_mm);
-  return nearest;
-}
+
+  const Line& line_;
+  const ShaftSpan& span_;
+  double sample_mm_ = 0;
+  std::array<Stretch, ShaftContacts::kStretches> all_;
+  std::size_t count_ = 0;
+};
 
 // Out of the bone at the stretch's ends, and how steeply each end's surface stands against the line.
 struct WayOut {
@@ -147,32 +159,45 @@ class WeightedMean {
   double depths_ = 0.0;
 };
 
-}  // namespace
+// How far the line was from the middle of the stretch when it was free, across itself unless the end is in.
+Vec3 way_back(const Line& line, const Stretch& stretch, const Pose& X_WL_before) {
+  const double lever_mm = 0.5 * (stretch.lower_mm + stretch.upper_mm);
+  const Vec3 back = X_WL_before * Vec3(0, 0, lever_mm) - line.at(lever_mm);
+  return stretch.leaves ? Vec3(back - back.dot(line.along_W) * line.along_W) : back;
+}
 
-std::optional<ShaftContact> shaft_contact(const Volume& volume, const ShaftSpan& span, const Pose& X_WL,
-                                          double near_mm, const Vec3& out_before_W, const NormalRule& normal,
-                                          double softness_mm) {
-  const Line line{volume, X_WL.position_mm, shaft_direction(X_WL)};
-  const auto stretch = nearest_stretch(line, span, near_mm);
-  if (!stretch) return std::nullopt;
-  const double voxel_mm = volume.geometry().spacing_mm.minCoeff();
-  const double length_mm = stretch->upper_mm - stretch->lower_mm;
-  auto way = way_out(line, *stretch, normal);
-  if (!way && !out_before_W.isZero()) way = WayOut{out_before_W, length_mm};
-  if (!way) return std::nullopt;
+void add_contacts(const Line& line, const Stretch& stretch, const Pose& X_WL_before, const NormalRule& normal,
+                  double softness_mm, ShaftContacts& contacts) {
+  // Less is rounding, and leads nowhere.
+  constexpr double kWayBack_mm = 0.01;
+  const double voxel_mm = line.volume.geometry().spacing_mm.minCoeff();
+  const double length_mm = stretch.upper_mm - stretch.lower_mm;
+  const Vec3 back_W = way_back(line, stretch, X_WL_before);
+  const double back_mm = back_W.norm();
+  auto way = way_out(line, stretch, normal);
+  if (back_mm > kWayBack_mm && (!way || way->out_W.dot(back_W) < 0))
+    way = WayOut{back_W / back_mm, length_mm};
+  if (!way) return;
+  const auto add = [&](double lever_mm, double depth_mm) {
+    contacts.all[contacts.count++] = {lever_mm, way->out_W, depth_mm};
+  };
   // Further than this lies another surface; a line along a face is as deep as it was laid.
   const double limit_mm = 2.0 * (way->wedge_depth_mm + softness_mm) + voxel_mm;
 
   std::array<double, kPlaces> depths_mm{};
   double deepest_mm = 0.0;
-  const auto lever_of = [&](int n) { return stretch->lower_mm + (n + 0.5) / kPlaces * length_mm; };
+  const auto lever_of = [&](int n) { return stretch.lower_mm + (n + 0.5) / kPlaces * length_mm; };
   for (int n = 0; n < kPlaces; ++n) {
     double& depth_mm = depths_mm[static_cast<std::size_t>(n)];
     depth_mm = depth_along(line, line.at(lever_of(n)), way->out_W, limit_mm).value_or(0.0);
     deepest_mm = std::max(deepest_mm, depth_mm);
   }
   const double window_mm = std::min(softness_mm, deepest_mm);
-  if (!(window_mm > 0.0)) return std::nullopt;
+  // No surface that way: back by what it came.
+  if (!(window_mm > 0.0)) {
+    add(0.5 * (stretch.lower_mm + stretch.upper_mm), back_mm);
+    return;
+  }
   WeightedMean blunt;
   WeightedMean sharp;
   for (int n = 0; n < kPlaces; ++n) {
@@ -185,7 +210,20 @@ std::optional<ShaftContact> shaft_contact(const Volume& volume, const ShaftSpan&
   // On a wedge the means with the first and the third power are off its apex as 5 to 3.
   const double lever_mm = 2.5 * sharp.lever_mm() - 1.5 * blunt.lever_mm();
   const double depth_mm = 2.5 * sharp.depth_mm() - 1.5 * blunt.depth_mm();
-  return ShaftContact{std::clamp(lever_mm, stretch->lower_mm, stretch->upper_mm), way->out_W, depth_mm};
+  add(std::clamp(lever_mm, stretch.lower_mm, stretch.upper_mm), depth_mm);
+  for (int n = 1; n < kPlaces; n += 3) add(lever_of(n), depths_mm[static_cast<std::size_t>(n)]);
+}
+
+}  // namespace
+
+ShaftContacts shaft_contacts(const Volume& volume, const ShaftSpan& span, const Pose& X_WL,
+                             const Pose& X_WL_before, const NormalRule& normal, double softness_mm) {
+  const Line line{volume, X_WL.position_mm, shaft_direction(X_WL)};
+  ShaftContacts contacts;
+  for (const Stretch& stretch : Stretches(line, span)) {
+    add_contacts(line, stretch, X_WL_before, normal, softness_mm, contacts);
+  }
+  return contacts;
 }
 
 }  // namespace osteomill::line_proxy

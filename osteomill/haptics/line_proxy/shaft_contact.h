@@ -1,6 +1,7 @@
 #pragma once
 
-#include <optional>
+#include <array>
+#include <cstddef>
 
 #include "osteomill/geometry/pose.h"
 #include "osteomill/haptics/line_proxy/surface_normal.h"
@@ -27,14 +28,23 @@ struct ShaftContact {
   double depth_mm;
 };
 
-/// The contact of the line through the origin of `X_WL` along its +z, on the stretch in bone nearest to
-/// `near_mm`; nothing where the span is free, or where no way out is found (`out_before_W`, a unit vector or
-/// zero, is taken where the bone itself does not tell). The direction follows from the surface's normals
-/// where the line goes in and out, and the place is the mean of that stretch, weighted by how little less
-/// deep than its deepest it is, down to nothing at `softness_mm` less: at an edge the edge, on a face what
-/// stands out, moving smoothly with the line. Safe in the haptic tick.
-std::optional<ShaftContact> shaft_contact(const Volume& volume, const ShaftSpan& span, const Pose& X_WL,
-                                          double near_mm, const Vec3& out_before_W, const NormalRule& normal,
-                                          double softness_mm);
+/// The contacts of one line, from the tip up: of each stretch in bone the apex, and places along it, so that
+/// what lies along a face is held along it.
+struct ShaftContacts {
+  static constexpr std::size_t kStretches = 4;
+  static constexpr std::size_t kPlaces = 7;
+  static constexpr std::size_t kMax = kStretches * (1 + kPlaces);
+  std::array<ShaftContact, kMax> all;
+  std::size_t count = 0;
+};
+
+/// The contacts of the line through the origin of `X_WL` along its +z, of the first four stretches of it in
+/// bone. The direction follows from the surface's normals where the line goes in and out; where they do
+/// not tell, or would lead on, away from where the line was free before (`X_WL_before`), back there. The
+/// apex is the mean of the stretch, weighted by how little less deep than its deepest it is, down to nothing
+/// at `softness_mm` less: at an edge the edge, on a face what stands out, moving smoothly with the line. Safe
+/// in the haptic tick.
+ShaftContacts shaft_contacts(const Volume& volume, const ShaftSpan& span, const Pose& X_WL,
+                             const Pose& X_WL_before, const NormalRule& normal, double softness_mm);
 
 }  // namespace osteomill::line_proxy

@@ -1,7 +1,5 @@
 #include "osteomill/haptics/line_proxy/translation_rotation_walk.h"
 
-#include <algorithm>
-
 #include "osteomill/haptics/line_proxy/equations.h"
 #include "osteomill/volume/sampling.h"
 
@@ -9,15 +7,8 @@ namespace osteomill::line_proxy {
 
 namespace {
 
-double fraction_of_step(double before, double at, double isovalue, FractionRule rule) {
-  const double fraction = crossing_fraction(before, at, isovalue);  // eq. 1
-  if (rule == FractionRule::as_printed) return fraction;
-  if (before >= isovalue) return 0.0;  // in bone already: the best that is known is where it was
-  return std::clamp(fraction, 0.0, 1.0);
-}
-
 std::optional<WalkHit> most_active_vertex(const Volume& volume, std::span<const Vec3> vertices_T,
-                                          const Pose& before, const Pose& at, FractionRule rule) {
+                                          const Pose& before, const Pose& at) {
   std::optional<WalkHit> most_active;
   for (const Vec3& vertex_T : vertices_T) {
     const Vec3 at_W = at * vertex_T;
@@ -25,7 +16,7 @@ std::optional<WalkHit> most_active_vertex(const Volume& volume, std::span<const 
     if (!(density > volume.isovalue())) continue;
     const Vec3 before_W = before * vertex_T;
     const double density_before = density_at(volume.grid(), before_W);
-    const double fraction = fraction_of_step(density_before, density, volume.isovalue(), rule);
+    const double fraction = crossing_fraction(density_before, density, volume.isovalue());  // eq. 1
     if (!most_active || fraction < most_active->fraction) most_active = WalkHit{before_W, at_W, fraction};
   }
   return most_active;
@@ -34,8 +25,7 @@ std::optional<WalkHit> most_active_vertex(const Volume& volume, std::span<const 
 }  // namespace
 
 std::optional<WalkHit> walk_to_collision(const Volume& volume, std::span<const Vec3> vertices_T,
-                                         const Pose& X_WT_before, const Pose& X_WT, const WalkSteps& steps,
-                                         FractionRule rule) {
+                                         const Pose& X_WT_before, const Pose& X_WT, const WalkSteps& steps) {
   const Vec3 step_d =
       translation_step(X_WT.position_mm - X_WT_before.position_mm, steps.translation);  // eq. 3
   const Quat turn = X_WT.orientation * X_WT_before.orientation.conjugate();
@@ -50,7 +40,7 @@ std::optional<WalkHit> walk_to_collision(const Volume& volume, std::span<const V
       at.orientation =
           quaternion_from_rotation_vector((n - steps.translation) * step_alpha) * X_WT_before.orientation;
     }
-    if (const auto hit = most_active_vertex(volume, vertices_T, before, at, rule)) return hit;
+    if (const auto hit = most_active_vertex(volume, vertices_T, before, at)) return hit;
     before = at;
   }
   return std::nullopt;

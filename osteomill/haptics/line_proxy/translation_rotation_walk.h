@@ -23,15 +23,11 @@ struct WalkHit {
   double fraction;
 };
 
-/// How the fraction of eq. 1 is taken where its vertex was in bone already at step n-1.
-enum class FractionRule : unsigned char { as_printed, kept_within_step };
-
 /// The translation/rotation method of section 4.3: from the pose of the tick before to that of this tick,
 /// first the whole translation, then the whole rotation (the shorter way round, about the tip), step by step
 /// until a vertex of the shaft collides. `vertices_T` are the shaft's; the tip's vertex has a proxy of its
 /// own and takes no part. Nothing where none collides on the way. Safe in the haptic tick.
 std::optional<WalkHit> walk_to_collision(const Volume& volume, std::span<const Vec3> vertices_T,
-                                         const Pose& X_WT_before, const Pose& X_WT, const WalkSteps& steps,
-                                         FractionRule rule);
+                                         const Pose& X_WT_before, const Pose& X_WT, const WalkSteps& steps);
 
 }  // namespace osteomill::line_proxy

@@ -152,7 +152,7 @@ PlaneRatios slide_over_plane(const ShellRules& rules, const ToolSignedDistance& 
   const Vec3 n = normal.normalized(), through(0.01, 0.02, -0.03);
   const Volume volume = shape_volume(centred_cube(48, 0.125), plane(through, n), edge_voxels);
   const PointShell shell(volume, rules);
-  const Penalty penalty = rules.area_weights ? of_patches(shell) : kOfPoints;
+  const Penalty penalty = rules.surface_shell ? of_patches(shell) : kOfPoints;
   PlaneRatios ratios;
   for (int step = 0; step < 60; ++step) {
     const Vec3 along = (0.016 * step - 0.5) * n.unitOrthogonal() + 0.003 * step * n.cross(n.unitOrthogonal());

@@ -60,7 +60,7 @@ PointShell::PointShell(const Volume& volume, const ShellRules& rules)
   masks_.resize(brick_index(0, 0, bricks[2]));
   brick_side_mm_ = kBrickCells * lattice_.group() * lattice_.geometry().spacing_mm;
   // A point on the isosurface may lie beyond its own cell, on the way to the next node.
-  box_margin_mm_ = (rules.points_on_isosurface ? 1.0 : 0.0) * lattice_.geometry().spacing_mm;
+  box_margin_mm_ = (rules.surface_shell ? 1.0 : 0.0) * lattice_.geometry().spacing_mm;
 
   const VoxelBox all_nodes = lattice_.geometry().all_voxels();
   find_bone();
@@ -92,7 +92,8 @@ PointShell::PointShell(const Volume& volume, const ShellRules& rules)
 
 void PointShell::refresh(const VoxelBox& voxels) {
   sweep_.wait_for(voxels);
-  const int budget = lattice_.rules().refreshed_points_per_tick;
+  const ShellRules& rules = lattice_.rules();
+  const int budget = rules.surface_shell ? rules.refreshed_points_per_tick : 0;
   int spent = 0;
   while (sweep_.is_walking() || start_sweep()) {
     if (budget != 0 && spent != 0 && spent + cost_of_next_brick() > budget) return;
@@ -221,7 +222,7 @@ int PointShell::refresh_brick(int bi, int bj, int bk, const VoxelBox& cells) {
   const CellMask& before = masks_[brick_index(bi, bj, bk)];
   const CellMask mask = mask_of(bi, bj, bk, cells, before);
   if (mask != before) return rebuild_brick(bi, bj, bk, cells, mask);
-  if (lattice_.rules().follow_partial_changes) return move_points(bi, bj, bk, cells);
+  if (lattice_.rules().surface_shell) return move_points(bi, bj, bk, cells);
   return 0;
 }
 
@@ -253,7 +254,7 @@ int PointShell::rebuild_brick(int bi, int bj, int bk, const VoxelBox& cells, con
   std::size_t old_slot = 0, new_count = 0;
   int computed = 0;
   const VoxelIndex first = brick_cells(bi, bj, bk).first;
-  const bool follow = lattice_.rules().follow_partial_changes;
+  const bool follow = lattice_.rules().surface_shell;
   CellMask either;
   for (std::size_t row = 0; row < either.size(); ++row) {
     either[row] = static_cast<std::uint8_t>(before[row] | mask[row]);

@@ -12,12 +12,13 @@ namespace osteomill::point_shell {
 
 namespace {
 
-// What a tick may release by its length; a longer one (a machine that stood still) counts as this long.
-constexpr double kMaxTick_s = 5e-3;
-// In which a stretch that nothing holds any more falls to a third, if not sooner.
-constexpr double kReleaseTime_s = 0.1;
-// Of the turn by which a move of the device would be made at the tool's far end.
-constexpr double kTurnByMove = 0.25;
+// Newton steps a tick; the second only where the first moved the tool by more than this.
+constexpr int kSteps = 2;
+constexpr double kSettled_mm = 0.005;
+constexpr double kSettled_rad = 0.0005;
+// The most that the tool moves in a tick: further, it could leap past thin walls.
+constexpr double kMaxMove_mm = 0.5;
+constexpr double kMaxTurn_rad = 0.05;
 // Of the centreline, looked at for bone.
 constexpr int kCentrelinePoints = 51;
 
@@ -48,12 +49,11 @@ void PointShellAlgorithm::prepare(const Scene& scene) {
   penalty_.stiffness_N_per_mm3 = contact_stiffness_N_per_mm3(settings_, scene.tool);
   shell_ = PointShell(*scene.volume, settings_.shell);
   // Seen from a corner the surface in a cell is at most about twice a cell's side.
-  penalty_.max_patch_mm2 = settings_.patch_penalty ? 2 * shell_.lattice().cell_area_mm2() : 0;
-  if (settings_.closed_form_distance) {
+  penalty_.max_patch_mm2 = settings_.shell.surface_shell ? 2 * shell_.lattice().cell_area_mm2() : 0;
+  if (settings_.shell.surface_shell) {
     tool_ = ToolSignedDistance(scene.tool);
   } else {
-    const double spacing_mm =
-        settings_.field_spacing_mm.value_or(SampledDistanceField::suitable_spacing_mm(scene.tool));
+    const double spacing_mm = SampledDistanceField::suitable_spacing_mm(scene.tool);
     tool_ = ToolSignedDistance(scene.tool, SampledDistanceField(scene.tool, spacing_mm, penalty_.reach_mm()));
   }
   reset();
@@ -63,8 +63,7 @@ void PointShellAlgorithm::reset() {
   has_pose_ = false;
   in_contact_ = false;
   held_back_ = false;
-  inside_bone_ = false;
-  stretch_ = {};
+  carried_ = false;
 }
 
 void PointShellAlgorithm::volume_changed(const VolumeChange& change) {
@@ -73,43 +72,28 @@ void PointShellAlgorithm::volume_changed(const VolumeChange& change) {
 }
 
 ToolContacts PointShellAlgorithm::contacts_at(const Pose& X_WT) const {
-  if (settings_.brick_kernel) return contacts_by_bricks(shell_, tool_.tool(), X_WT, penalty_);
+  if (settings_.shell.surface_shell && !settings_.by_octree) {
+    return contacts_by_bricks(shell_, tool_.tool(), X_WT, penalty_);
+  }
   return contacts_by_octree(shell_, tool_, X_WT, penalty_);
 }
 
 // The target itself, to the last bit, where the tick's limits let the tool reach it.
 Pose PointShellAlgorithm::towards(const Pose& X_WT_start, const Pose& target) const {
+  if (!settings_.guarded_move) return target;
   const ToolMove wanted = move_between(X_WT_start, target);
-  const ToolMove allowed = limited(wanted, settings_.max_move_mm, settings_.max_turn_rad);
+  const ToolMove allowed = limited(wanted, kMaxMove_mm, kMaxTurn_rad);
   if (allowed.translation_mm == wanted.translation_mm && allowed.rotation_rad == wanted.rotation_rad) {
     return target;
   }
   return moved(X_WT_start, allowed);
 }
 
-// Short of the target where the coupling would let go faster than it may.
-Pose PointShellAlgorithm::released(const Pose& X_WT_start, const Pose& target, const Pose& X_WD,
-                                   double dt_s) const {
-  if (!held_back_ || !(settings_.max_release_mm_s > 0) || !(settings_.max_release_rad_s > 0)) {
-    return target;
-  }
-  const double tick_s = std::clamp(dt_s, 0.0, kMaxTick_s);
-  const ToolMove device = move_between(X_WD_before_, X_WD);
-  const double moved_mm = device.translation_mm.norm(), turned_rad = device.rotation_rad.norm();
-  // A turn of the device may move the tool by what it moves the tool's far end, and a move turn it by a part
-  // of that: held up in its turn alone, a tool that leaves the bone would be dragged behind.
+Pose PointShellAlgorithm::let_go(const Pose& X_WT_start, const Pose& target, const Pose& X_WD,
+                                 double dt_s) const {
+  if (!held_back_ || !settings_.guarded_move) return target;
   const double length_mm = std::max(tool_.tool().shaft_length_mm, tool_.tool().burr_radius_mm);
-  const ToolMove stretch = move_between(X_WD, X_WT_start);
-  const double fading = tick_s / kReleaseTime_s;
-  const double share =
-      share_released(X_WT_start, target, X_WD,
-                     moved_mm + turned_rad * length_mm + fading * stretch.translation_mm.norm() +
-                         settings_.max_release_mm_s * tick_s,
-                     turned_rad + kTurnByMove * moved_mm / length_mm + fading * stretch.rotation_rad.norm() +
-                         settings_.max_release_rad_s * tick_s);
-  if (share >= 1) return target;
-  const ToolMove whole = move_between(X_WT_start, target);
-  return moved(X_WT_start, {share * whole.translation_mm, share * whole.rotation_rad});
+  return released(X_WT_start, target, X_WD_before_, X_WD, length_mm, dt_s);
 }
 
 bool PointShellAlgorithm::is_inside_bone(const Pose& X_WT) const {
@@ -118,36 +102,31 @@ bool PointShellAlgorithm::is_inside_bone(const Pose& X_WT) const {
   });
 }
 
-// Inside bone: with the device, and nothing felt.
-HapticStep PointShellAlgorithm::carried(const Pose& X_WD) {
-  X_WT_ = towards(X_WT_, X_WD);
-  in_contact_ = false;
-  held_back_ = false;
-  stretch_ = {};
-  HapticStep result;
-  result.X_WT = X_WT_;
-  return result;
-}
-
 HapticStep PointShellAlgorithm::step(const Pose& X_WD, double dt_s) {
   if (!refreshed_this_tick_ && !shell_.is_up_to_date()) shell_.refresh({});
   refreshed_this_tick_ = false;
-  const bool may_be_inside = !has_pose_ || in_contact_ || inside_bone_;
-  if (!has_pose_) X_WT_ = X_WD_before_ = X_WD;
+  const bool begins = !has_pose_;
+  if (begins) X_WT_ = X_WD_before_ = X_WD;
   has_pose_ = true;
-  inside_bone_ = settings_.carry_out_of_bone && may_be_inside && is_inside_bone(X_WT_);
-  const HapticStep result = inside_bone_ ? carried(X_WD) : balanced(X_WD, dt_s);
+  if (begins) carried_ = settings_.guarded_move && is_inside_bone(X_WD);
+  if (carried_) carried_ = is_inside_bone(X_WD) || contacts_at(X_WD).touching > 0;
+  HapticStep result;
+  if (carried_) {
+    result.X_WT = X_WT_ = X_WD;
+  } else {
+    result = balanced(X_WD, dt_s);
+  }
   X_WD_before_ = X_WD;
   return result;
 }
 
 HapticStep PointShellAlgorithm::balanced(const Pose& X_WD, double dt_s) {
   const Pose start = X_WT_;
-  if (settings_.look_ahead && !in_contact_) X_WT_ = released(start, towards(start, X_WD), X_WD, dt_s);
+  if (settings_.guarded_move && !in_contact_) X_WT_ = let_go(start, towards(start, X_WD), X_WD, dt_s);
 
   HapticStep result;
   ToolContacts contacts;
-  for (int n = 0; n < settings_.solver_iterations; ++n) {
+  for (int n = 0; n < (settings_.guarded_move ? kSteps : 1); ++n) {
     contacts = contacts_at(X_WT_);
     const Pose before = X_WT_;
     if (contacts.touching == 0) {
@@ -156,11 +135,10 @@ HapticStep PointShellAlgorithm::balanced(const Pose& X_WD, double dt_s) {
       const ToolMove move = balancing_move(coupling_, X_WT_, X_WD, contacts.total());
       X_WT_ = towards(start, moved(X_WT_, move));
     }
-    X_WT_ = released(start, X_WT_, X_WD, dt_s);
+    X_WT_ = let_go(start, X_WT_, X_WD, dt_s);
     const ToolMove step_move = move_between(before, X_WT_);
     result.burr_force_W_N = burr_force_after(contacts.burr, step_move);
-    if (step_move.translation_mm.norm() <= settings_.solver_tolerance_mm &&
-        step_move.rotation_rad.norm() <= settings_.solver_tolerance_rad) {
+    if (step_move.translation_mm.norm() <= kSettled_mm && step_move.rotation_rad.norm() <= kSettled_rad) {
       break;
     }
   }
@@ -168,23 +146,8 @@ HapticStep PointShellAlgorithm::balanced(const Pose& X_WD, double dt_s) {
   held_back_ = in_contact_ || (held_back_ && !is_at(X_WT_, X_WD));
   result.X_WT = X_WT_;
   result.contacts = contacts.touching;
-  if (held_back_) {
-    result.wrench = wrench_on_hand(coupling_, X_WT_, X_WD);
-    const Wrench damped = damping(X_WD, dt_s);
-    result.wrench.force_N += damped.force_N;
-    result.wrench.torque_Nmm += damped.torque_Nmm;
-  }
-  stretch_ = held_back_ ? move_between(X_WD, X_WT_) : ToolMove{};
+  if (held_back_) result.wrench = wrench_on_hand(coupling_, X_WT_, X_WD);
   return result;
-}
-
-// On the speed at which the coupling's stretch changes.
-Wrench PointShellAlgorithm::damping(const Pose& X_WD, double dt_s) const {
-  if (!(dt_s > 0)) return {};
-  const ToolMove stretch = move_between(X_WD, X_WT_);
-  return {
-      settings_.translational_damping_Ns_per_mm / dt_s * (stretch.translation_mm - stretch_.translation_mm),
-      settings_.torsional_damping_Nmms_per_rad / dt_s * (stretch.rotation_rad - stretch_.rotation_rad)};
 }
 
 }  // namespace osteomill::point_shell

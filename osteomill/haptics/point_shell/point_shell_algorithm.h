@@ -38,11 +38,9 @@ class PointShellAlgorithm final : public HapticAlgorithm {
  private:
   ToolContacts contacts_at(const Pose& X_WT) const;
   Pose towards(const Pose& X_WT_start, const Pose& target) const;
-  Pose released(const Pose& X_WT_start, const Pose& target, const Pose& X_WD, double dt_s) const;
+  Pose let_go(const Pose& X_WT_start, const Pose& target, const Pose& X_WD, double dt_s) const;
   bool is_inside_bone(const Pose& X_WT) const;
-  HapticStep carried(const Pose& X_WD);
   HapticStep balanced(const Pose& X_WD, double dt_s);
-  Wrench damping(const Pose& X_WD, double dt_s) const;
 
   Settings settings_;
   VirtualCoupling coupling_;
@@ -55,12 +53,12 @@ class PointShellAlgorithm final : public HapticAlgorithm {
   bool in_contact_ = false;
   // In contact, or on the way back to the device from it.
   bool held_back_ = false;
-  bool inside_bone_ = false;
+  // Began inside bone and has not yet been outside: with the device, and nothing is felt.
+  bool carried_ = false;
   const Volume* volume_ = nullptr;
   std::vector<Vec3> centreline_T_;
   Pose X_WT_;
   Pose X_WD_before_;
-  ToolMove stretch_;
 };
 
 }  // namespace osteomill::point_shell

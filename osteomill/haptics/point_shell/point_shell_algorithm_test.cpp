@@ -222,6 +222,39 @@ TEST(PointShellAlgorithm, AToolThatBeginsInsideBoneComesOutWithTheDevice) {
   }
 }
 
+// The end face is flat: a vertex of the centreline lies in it, and bone behind it.
+TEST(PointShellAlgorithm, TheShaftsEndPressesAsHardAsTheBurr) {
+  const Volume volume = shape_volume(centred_cube(40, 0.25), plane({0, 0, 0}, {0, 0, 1}));
+  PointShellAlgorithm algorithm(full_resolution(Mode::steady));
+  algorithm.prepare({&volume, kTool});
+  const Quat end_down = smallest_rotation(Vec3::UnitZ(), -Vec3::UnitZ());
+  HapticStep step;
+  for (int n = 0; n <= 300; ++n) {
+    step = algorithm.step({{0, 0, 25 + std::max(-1.0, 1 - 0.01 * n)}, end_down}, kTick_s);
+  }
+  EXPECT_GT(step.wrench.force_N.z(), 1.8);  // of 2 N/mm, 1 mm deep
+}
+
+// Bone that stays inside the burr, as where milling has left a splinter, must not let go of a tool that came
+// from outside.
+TEST(PointShellAlgorithm, ASplinterInsideTheBurrDoesNotLetGo) {
+  const auto splinter = [](const Vec3& p) {
+    return std::max(Vec3(p.x(), p.y(), 0).norm() - 0.3, std::abs(p.z() - 0.8) - 0.6);
+  };
+  const Volume volume =
+      shape_volume(centred_cube(48, 0.2), [&](const Vec3& p) { return std::min(p.z(), splinter(p)); });
+  PointShellAlgorithm algorithm(full_resolution(Mode::steady));
+  algorithm.prepare({&volume, kTool});
+  HapticStep step;
+  for (int n = 0; n <= 600; ++n) {
+    step = algorithm.step({{0, 0, std::max(-1.5, 4.5 - 0.01 * n)}, Quat::Identity()}, kTick_s);
+    if (n > 450) {
+      EXPECT_GT(step.wrench.force_N.z(), 0.5) << n;
+    }
+  }
+  EXPECT_GT(step.X_WT.position_mm.z(), 0);
+}
+
 // A shelf of bone is gone from one tick to the next.
 TEST(PointShellAlgorithm, WhereBoneGivesWayTheWrenchFadesAtASpeed) {
   for (const double tick_s : {0.5e-3, 1e-3, 2e-3}) {
@@ -248,7 +281,8 @@ TEST(PointShellAlgorithm, WhereBoneGivesWayTheWrenchFadesAtASpeed) {
     int ticks = 0;
     for (; before.norm() > 0 && ticks < 10000; ++ticks) {
       const Vec3 now = step_at(0.7);
-      const double at_a_speed = settings.translational_stiffness_N_per_mm * settings.max_release_mm_s;
+      constexpr double kRelease_mm_s = 15;
+      const double at_a_speed = settings.translational_stiffness_N_per_mm * kRelease_mm_s;
       EXPECT_LE((now - before).norm(), (at_a_speed + before.norm() / 0.1) * tick_s + 1e-9);
       before = now;
     }
@@ -323,7 +357,7 @@ TEST(PointShellAlgorithm, TheSameInputGivesTheSameBits) {
 // Without the kernel, the same run to the rounding of the sums.
 TEST(PointShellAlgorithm, TheBrickKernelChangesNothingThatCanBeFelt) {
   Settings plain = full_resolution(Mode::steady);
-  plain.brick_kernel = false;
+  plain.by_octree = true;
   const auto fast = run_with_milling(full_resolution(Mode::steady));
   const auto slow = run_with_milling(plain);
   for (std::size_t n = 0; n < fast.size(); ++n) {
@@ -350,26 +384,6 @@ TEST(PointShellAlgorithm, TheToolIsNotPulledThroughAWall) {
   EXPECT_EQ(algorithm.step({{0.1, 0.2, 4}, Quat::Identity()}, kTick_s).X_WT.position_mm.z() > 2.3, true);
 }
 
-TEST(PointShellAlgorithm, DampingActsOnTheSpeedOfTheStretchAlone) {
-  const Volume volume = shape_volume(centred_cube(40, 0.2), plane({0, 0, 0}, {0, 0, 1}));
-  Settings damped = full_resolution(Mode::steady);
-  damped.translational_damping_Ns_per_mm = 0.002;
-  PointShellAlgorithm with(damped), without(full_resolution(Mode::steady));
-  with.prepare({&volume, kTool});
-  without.prepare({&volume, kTool});
-  for (int n = 0; n < 200; ++n) {
-    const Pose X_WD{{0, 0, std::max(1.6 - 0.01 * n, 0.6)}, Quat::Identity()};
-    const double difference =
-        with.step(X_WD, kTick_s).wrench.force_N.z() - without.step(X_WD, kTick_s).wrench.force_N.z();
-    if (n > 40 && n < 95) {
-      EXPECT_GT(difference, 0.01);  // sinking in at 10 mm/s
-      EXPECT_LT(difference, 0.0201);
-    } else if (n > 110) {
-      EXPECT_NEAR(difference, 0, 1e-6);
-    }
-  }
-}
-
 TEST(PointShellAlgorithm, ResetForgetsTheContact) {
   const Volume volume = shape_volume(centred_cube(40, 0.2), plane({0, 0, 0}, {0, 0, 1}));
   PointShellAlgorithm algorithm(full_resolution(Mode::steady));
@@ -383,15 +397,13 @@ TEST(PointShellAlgorithm, ResetForgetsTheContact) {
 }
 
 TEST(Settings, TheContactStiffnessFollowsFromTheTwoRules) {
-  Settings paper = Settings::defaults(Mode::paper);
+  const Settings paper = Settings::defaults(Mode::paper);
   const double kA = contact_stiffness_N_per_mm3(paper, kTool);
   // The penalty's peak on a plane, at d = 2r/3, is half as much again as the greatest force.
   EXPECT_NEAR(kA * std::numbers::pi * (1.5 - 1.0) * 1.0, 1.5 * 20, 1e-9);
   const Settings steady = Settings::defaults(Mode::steady);
   const double d = steady.max_depth_mm;
   EXPECT_NEAR(contact_stiffness_N_per_mm3(steady, kTool) * std::numbers::pi * (1.5 - d) * d * d, 20, 1e-9);
-  paper.contact_stiffness_N_per_mm3 = 7;
-  EXPECT_EQ(contact_stiffness_N_per_mm3(paper, kTool), 7);
 }
 
 TEST(Settings, WhatIsOutOfRangeIsRefused) {
@@ -403,14 +415,9 @@ TEST(Settings, WhatIsOutOfRangeIsRefused) {
   EXPECT_NO_THROW(PointShellAlgorithm(Settings::defaults(Mode::paper)));
   EXPECT_NO_THROW(PointShellAlgorithm(Settings::defaults(Mode::steady)));
   refused([](Settings& s) { s.shell.scale = 0; });
-  refused([](Settings& s) { s.shell.refreshed_points_per_tick = -1; });
   refused([](Settings& s) { s.translational_stiffness_N_per_mm = 0; });
   refused([](Settings& s) { s.torsional_stiffness_Nmm_per_rad = std::nan(""); });
-  refused([](Settings& s) { s.contact_stiffness_N_per_mm3 = -1; });
-  refused([](Settings& s) { s.solver_iterations = 0; });
-  refused([](Settings& s) { s.closed_form_distance = false; });
-  refused([](Settings& s) { s.shell.area_weights = false; });
-  refused([](Settings& s) { s.max_move_mm = -1; });
+  refused([](Settings& s) { s.max_depth_mm = -1; });
   PointShellAlgorithm algorithm(Settings::defaults(Mode::steady));
   EXPECT_THROW(algorithm.prepare({nullptr, kTool}), std::invalid_argument);
 }

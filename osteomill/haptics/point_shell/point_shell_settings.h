@@ -1,23 +1,20 @@
 #pragma once
 
-#include <optional>
-
 #include "osteomill/haptics/mode.h"
 #include "osteomill/tool/milling_tool.h"
-#include "osteomill/volume/grid_geometry.h"
-#include "osteomill/volume/sampling.h"
 
 namespace osteomill::point_shell {
 
 /// What the points of the shell are and how they are kept up.
 struct ShellRules {
   int scale = 1;
-  bool cells_from_surface_voxels = false;
-  bool points_on_isosurface = false;
-  bool area_weights = false;
-  bool follow_partial_changes = false;
-  int refreshed_points_per_tick = 0;
-  GradientKernel gradient = GradientKernel::central;
+  /// False (paper): the centres of the surface voxels, each for the square of its cell; points come and go
+  /// with their voxels, all at once. True: points lie on the isosurface, where the grid's edges to the
+  /// neighbours that are not bone cross it, stand for their voxel's exposed faces seen along the normal, and
+  /// move while densities fall; a coarse cell is the weighted mean of the surface voxels in it.
+  bool surface_shell = false;
+  /// About how many points of a surface shell a tick brings up to date, brick by brick in turn; 0 for all.
+  int refreshed_points_per_tick = 256;
 };
 
 /// What algorithm 3 is made of; point_shell_description.cpp says of each setting what it means, its range and
@@ -26,27 +23,14 @@ struct Settings {
   ShellRules shell;
   double translational_stiffness_N_per_mm = 0;
   double torsional_stiffness_Nmm_per_rad = 0;
-  double translational_damping_Ns_per_mm = 0;
-  double torsional_damping_Nmms_per_rad = 0;
-  /// kA: newton a mm of depth and a mm^2 of surface. Left open it follows from the next two.
-  std::optional<double> contact_stiffness_N_per_mm3;
-  double max_force_N = 0;
   double max_depth_mm = 0;
-  bool patch_penalty = false;
-  bool closed_form_distance = false;
-  /// Spacing of the sampled field; left open, `SampledDistanceField::suitable_spacing_mm`.
-  std::optional<double> field_spacing_mm;
-  bool brick_kernel = false;
-  double max_move_mm = 0;
-  double max_turn_rad = 0;
-  /// Beside a share of the stretch, so that a long one takes no longer than 0.1 s to fall to a third.
-  double max_release_mm_s = 0;
-  double max_release_rad_s = 0;
-  bool carry_out_of_bone = false;
-  bool look_ahead = false;
-  int solver_iterations = 0;
-  double solver_tolerance_mm = 0;
-  double solver_tolerance_rad = 0;
+  bool guarded_move = false;
+  /// How it is computed, not what, and for tests alone: a surface shell's sums point by point from the
+  /// octree, in the place of many at a time from bricks.
+  bool by_octree = false;
+
+  /// No burr may be pulled through bone by this force: the greatest that a device is sent by default.
+  static constexpr double kMaxForce_N = 20;
 
   static Settings defaults(Mode mode);
 };
@@ -54,7 +38,8 @@ struct Settings {
 /// Throws std::invalid_argument, naming the setting, where one is out of range.
 void require_valid(const Settings& settings);
 
-/// kA in N/mm^3: the one that is set, or the smallest that both rules allow.
+/// kA in N/mm^3, newton a mm of depth and a mm^2 of surface: the smallest at which `kMaxForce_N` neither
+/// pulls the burr through a plane nor presses it deeper than `max_depth_mm` (0: no such rule).
 double contact_stiffness_N_per_mm3(const Settings& settings, const MillingTool& tool);
 
 }  // namespace osteomill::point_shell

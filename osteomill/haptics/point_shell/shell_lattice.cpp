@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "osteomill/haptics/bone_points/bits_above.h"
+#include "osteomill/volume/sampling.h"
 
 namespace osteomill::point_shell {
 
@@ -39,8 +40,8 @@ GridGeometry lattice_geometry(const GridGeometry& voxels, int stride) {
 ShellLattice::ShellLattice(const Volume& volume, const ShellRules& rules)
     : volume_(&volume),
       rules_(rules),
-      stride_(rules.cells_from_surface_voxels ? 1 : rules.scale),
-      group_(rules.cells_from_surface_voxels ? rules.scale : 1),
+      stride_(rules.surface_shell ? 1 : rules.scale),
+      group_(rules.surface_shell ? rules.scale : 1),
       geometry_(lattice_geometry(volume.geometry(), stride_)),
       cell_area_mm2_(std::pow(volume.geometry().voxel_volume_mm3(), 2.0 / 3.0) * rules.scale * rules.scale),
       face_mm2_(geometry_.voxel_volume_mm3() * geometry_.spacing_mm.cwiseInverse()),
@@ -128,7 +129,7 @@ ShellPoint ShellLattice::point_of_cell(const BoneBits& bone, const VoxelIndex& c
   const Vec3 normal = length > 1e-9 ? Vec3((1 / length) * sum.normal) : Vec3(Vec3::Zero());
   return {
       static_cast<float>(mean_mm.x()), static_cast<float>(mean_mm.y()),
-      static_cast<float>(mean_mm.z()), static_cast<float>(rules_.area_weights ? sum.weight : cell_area_mm2_),
+      static_cast<float>(mean_mm.z()), static_cast<float>(rules_.surface_shell ? sum.weight : cell_area_mm2_),
       static_cast<float>(normal.x()),  static_cast<float>(normal.y()),
       static_cast<float>(normal.z())};
 }
@@ -140,15 +141,16 @@ void ShellLattice::add_node(const BoneBits& bone, const VoxelIndex& node, const 
     add_inner_voxel(node, frame_origin, sum);
     return;
   }
-  const bool needs_crossing = rules_.points_on_isosurface || rules_.area_weights;
   for (int axis = 0; axis < 3; ++axis) {
     for (const int side : {-1, 1}) {
       VoxelIndex outer = node;
       component(outer, axis) += side;
       if (bone.is_bone(outer.i, outer.j, outer.k)) continue;
       Face face{axis, side};
-      if (needs_crossing) face.fraction = crossing_fraction(density(node), outer);
-      if (rules_.area_weights) weigh_by_area(face, gradient_on_edge(node, axis, side * face.fraction));
+      if (rules_.surface_shell) {
+        face.fraction = crossing_fraction(density(node), outer);
+        weigh_by_area(face, gradient_on_edge(node, axis, side * face.fraction));
+      }
       add_face(face, node, frame_origin, sum);
     }
   }
@@ -157,7 +159,7 @@ void ShellLattice::add_node(const BoneBits& bone, const VoxelIndex& node, const 
 void ShellLattice::add_face(const Face& face, const VoxelIndex& node, const VoxelIndex& frame_origin,
                             WeightedSum& sum) const {
   Vec3 at(node.i - frame_origin.i, node.j - frame_origin.j, node.k - frame_origin.k);
-  if (rules_.points_on_isosurface) at[face.axis] += face.side * face.fraction;
+  if (rules_.surface_shell) at[face.axis] += face.side * face.fraction;
   sum.position_mm += face.weight * geometry_.spacing_mm.cwiseProduct(at);
   sum.normal += face.weight * face.normal_G;
   sum.weight += face.weight;
@@ -165,9 +167,8 @@ void ShellLattice::add_face(const Face& face, const VoxelIndex& node, const Voxe
 
 // Whether the shorter way below serves: a voxel with all that it needs inside the grid.
 bool ShellLattice::is_inner_voxel(const VoxelIndex& node) const {
-  const bool plain_central = rules_.gradient == GradientKernel::central || !rules_.area_weights;
-  return stride_ == 1 && plain_central && node.i >= 2 && node.j >= 2 && node.k >= 2 &&
-         node.i < geometry_.dims[0] - 2 && node.j < geometry_.dims[1] - 2 && node.k < geometry_.dims[2] - 2;
+  return stride_ == 1 && node.i >= 2 && node.j >= 2 && node.k >= 2 && node.i < geometry_.dims[0] - 2 &&
+         node.j < geometry_.dims[1] - 2 && node.k < geometry_.dims[2] - 2;
 }
 
 // The same as the rest of `add_node`, straight from the voxels: milling calls this hundreds of times a tick.
@@ -182,14 +183,14 @@ void ShellLattice::add_inner_voxel(const VoxelIndex& voxel, const VoxelIndex& fr
                 static_cast<double>(at[next[1]] - at[-next[1]]) * half_per_mm_[1],
                 static_cast<double>(at[next[2]] - at[-next[2]]) * half_per_mm_[2]);
   };
-  const Vec3 gradient_here = rules_.area_weights ? gradient_at(here) : Vec3(Vec3::Zero());
+  const Vec3 gradient_here = rules_.surface_shell ? gradient_at(here) : Vec3(Vec3::Zero());
   const double inside = static_cast<double>(*here);
   for (int axis = 0; axis < 3; ++axis) {
     for (const int side : {-1, 1}) {
       const float* outer = here + side * next[axis];
       if (*outer > bone_above_) continue;
       Face face{axis, side, (inside - volume_->isovalue()) / (inside - static_cast<double>(*outer))};
-      if (rules_.area_weights) {
+      if (rules_.surface_shell) {
         weigh_by_area(face, (1 - face.fraction) * gradient_here + face.fraction * gradient_at(outer));
       }
       add_face(face, voxel, frame_origin, sum);
@@ -209,7 +210,7 @@ Vec3 ShellLattice::gradient_on_edge(const VoxelIndex& node, int axis, double off
   Vec3 at(node.i, node.j, node.k);
   at[axis] += offset;
   return geometry_.direction.transpose() *
-         density_gradient(volume_->grid(), geometry_.world_from_voxel(at), rules_.gradient);
+         density_gradient(volume_->grid(), geometry_.world_from_voxel(at), GradientKernel::central);
 }
 
 // A face counts for its area seen along the surface's normal n, A_a |n_a|: over a plane that adds up to

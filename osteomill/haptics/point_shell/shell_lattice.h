@@ -37,7 +37,7 @@ class ShellLattice {
   /// The nodes whose density depends on voxels in `voxels`, within the lattice.
   VoxelBox nodes_touched_by(const VoxelBox& voxels) const;
   /// How far, in nodes, a change of density reaches into points.
-  int reach_nodes() const { return rules_.area_weights ? 2 : 1; }
+  int reach_nodes() const { return rules_.surface_shell ? 2 : 1; }
 
   /// The point of a cell that has surface nodes, in the frame whose origin is the node `frame_origin` and
   /// whose axes are the grid's.

@@ -14,6 +14,9 @@ constexpr double kSettled_mm = 1e-4;
 // An overlap is undone by this much a stride: undone at once, a jammed tool would be thrown from wall to
 // wall.
 constexpr double kMaxRise_mm = 0.05;
+// How often it looks where it would go, and the overlap there that is none.
+constexpr int kLooks = 4;
+constexpr double kUnseen_mm = 0.005;
 // With bone in the way, more strides than this bring a jammed tool no nearer.
 constexpr int kStridesInContact = 2;
 
@@ -21,22 +24,37 @@ constexpr int kStridesInContact = 2;
 
 void HeldTool::prepare(const Volume& volume, const MillingTool& tool, int rings, double bite_mm) {
   contacts_.prepare(volume, tool, rings, bite_mm);
-  limits_.reserve(contacts_.capacity());
+  limits_.reserve((1 + kLooks) * contacts_.capacity());
   length_mm_ = std::max(tool.burr_radius_mm, tool.shaft_length_mm);
   turn_weight_mm2_ = 0.25 * length_mm_ * length_mm_;
   placed_ = false;
 }
 
-void HeldTool::set_limits() {
-  limits_.clear();
-  for (const RayContact& contact : contacts_.find(X_WT_)) {
+double HeldTool::travel_mm(const Move& move) const {
+  return move.shift_mm.norm() + move.turn_rad.norm() * length_mm_;
+}
+
+Pose HeldTool::after(const Move& move) const {
+  return {X_WT_.position_mm + move.shift_mm,
+          (quaternion_from_rotation_vector(move.turn_rad) * X_WT_.orientation).normalized()};
+}
+
+// What is seen from the pose after the move `at`, as limits to a move from where the tool stands. True where
+// the tool would overlap bone there.
+bool HeldTool::add_limits(const Move& at) {
+  const Pose X_WT = after(at);
+  bool overlaps = false;
+  for (const RayContact& contact : contacts_.find(X_WT)) {
     Limit limit;
     limit.along = contact.normal_W;
-    limit.about = (contact.point_W - X_WT_.position_mm).cross(contact.normal_W);
-    limit.gap_mm = std::max(contact.gap_mm, -kMaxRise_mm);
+    limit.about = (contact.point_W - X_WT.position_mm).cross(contact.normal_W);
+    overlaps = overlaps || contact.gap_mm < -kUnseen_mm;
+    limit.gap_mm =
+        std::max(contact.gap_mm - limit.along.dot(at.shift_mm) - limit.about.dot(at.turn_rad), -kMaxRise_mm);
     limit.response = 1 / (1 + limit.about.squaredNorm() / turn_weight_mm2_ + kSoftness);
     limits_.push_back(limit);
   }
+  return overlaps;
 }
 
 // The allowed move nearest to `move`: projected Gauss-Seidel on the contacts' pushes. True where any of them
@@ -62,20 +80,34 @@ bool HeldTool::limit_move(Move& move) {
   return pushed;
 }
 
+// Looked for from where the tool stands, and where bone is near, where it would go: what only shows there is
+// a limit too.
+HeldTool::Move HeldTool::limited(const Move& wanted, bool& pushed) {
+  limits_.clear();
+  add_limits({});
+  Move move = wanted;
+  pushed = limit_move(move);
+  for (int look = 0; look < kLooks && !limits_.empty(); ++look) {
+    const double share = std::min(1.0, kStride_mm / travel_mm(move));
+    if (!add_limits({share * move.shift_mm, share * move.turn_rad})) break;
+    for (Limit& limit : limits_) limit.push = 0;
+    move = wanted;
+    pushed = limit_move(move);
+  }
+  return move;
+}
+
 HeldTool::Stride HeldTool::stride(const Pose& X_WD) {
-  set_limits();
-  Move move{X_WD.position_mm - X_WT_.position_mm,
-            rotation_vector(X_WD.orientation * X_WT_.orientation.conjugate())};
-  const bool pushed = limit_move(move);
-  const double travel_mm = move.shift_mm.norm() + move.turn_rad.norm() * length_mm_;
-  if (travel_mm <= kStride_mm && !pushed) {
+  bool pushed = false;
+  const Move move = limited({X_WD.position_mm - X_WT_.position_mm,
+                             rotation_vector(X_WD.orientation * X_WT_.orientation.conjugate())},
+                            pushed);
+  if (travel_mm(move) <= kStride_mm && !pushed) {
     X_WT_ = X_WD;
     return Stride::arrived;
   }
-  const double share = std::min(1.0, kStride_mm / travel_mm);
-  X_WT_.position_mm += share * move.shift_mm;
-  X_WT_.orientation =
-      (quaternion_from_rotation_vector(share * move.turn_rad) * X_WT_.orientation).normalized();
+  const double share = std::min(1.0, kStride_mm / travel_mm(move));
+  X_WT_ = after({share * move.shift_mm, share * move.turn_rad});
   if (share == 1) return Stride::arrived;
   return pushed ? Stride::pushed : Stride::free;
 }

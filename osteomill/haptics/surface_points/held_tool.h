@@ -8,7 +8,8 @@ namespace osteomill::surface_points {
 
 /// A tool that follows the device as far as the bone lets it: a god-object with six degrees of freedom. Each
 /// step it goes to the pose nearest to the device's that overlaps no bone, as far as that is known from where
-/// it stands (the contacts' tangent planes), without friction, and never further than it can see.
+/// it stands (the contacts' tangent planes), without friction, and never further than it can see. Near bone
+/// it looks again where it is about to go, and takes what it meets there into account.
 class HeldTool {
  public:
   /// `rings` circles stand for the shaft; the burr rests `bite_mm` deep in bone. Allocates.
@@ -42,8 +43,11 @@ class HeldTool {
   // bone in that way.
   enum class Stride : unsigned char { arrived, free, pushed };
   Stride stride(const Pose& X_WD);
-  void set_limits();
+  bool add_limits(const Move& at);
+  double travel_mm(const Move& move) const;
+  Pose after(const Move& move) const;
   bool limit_move(Move& move);
+  Move limited(const Move& wanted, bool& pushed);
 
   RayContacts contacts_;
   std::vector<Limit> limits_;

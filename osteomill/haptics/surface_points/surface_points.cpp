@@ -16,10 +16,21 @@ namespace osteomill::surface_points {
 namespace {
 
 constexpr double kRateFilter_s = 2e-3;
+// Of the sphere's contact, in proportion to its force (Hunt and Crossley 1975).
+constexpr double kContactDamping_s_per_mm = 0.003;
+// How deep in bone the held burr rests: bone that is denser than the isovalue lies up to a voxel behind the
+// surface, and a burr that only touches sticks in its own hole.
+constexpr double kBite_voxels = 0.3;
+constexpr double kMaxBite_mm = 0.2;
+// Circles that stand for a slice where the shaft is felt: an edge between two would slip through.
+constexpr int kRingsPerSlice = 3;
+// The share of a mean by force that is added to the mean by number of (20), in which an edge is as many times
+// too soft as there are slices.
+constexpr double kEdgeShare = 0.1;
 // A held centre stays this far outside bone, so that no spring's walk begins inside by rounding.
 constexpr double kClearOfSurface_mm = 0.01;
 // The held tool's bite and what it may lag behind by.
-constexpr double kHeldToolMayOverlap_mm = Settings::kMaxBite_mm + 0.15;
+constexpr double kHeldToolMayOverlap_mm = kMaxBite_mm + 0.15;
 
 }  // namespace
 
@@ -35,23 +46,41 @@ void SurfacePoints::prepare(const Scene& scene) {
   const auto on_sphere = sphere_vertices(tool_);
   sphere_ = Fan{};
   sphere_.arms_T.assign(on_sphere.begin(), on_sphere.end());
+  sphere_.longest_arm_mm = tool_.burr_radius_mm;
+  prepare_shaft();
+  const double bite_mm = std::min(kBite_voxels * volume_->geometry().spacing_mm.minCoeff(), kMaxBite_mm);
+  held_tool_.prepare(*volume_, tool_, static_cast<int>(rings_.size()),
+                     std::min(bite_mm, 0.5 * tool_.burr_radius_mm));
+}
+
+void SurfacePoints::prepare_shaft() {
   rings_.clear();
-  const int rings = settings_.slices * settings_.rings_per_slice;
+  end_.reset();
+  const int rings = settings_.slices * (settings_.shaft_force ? kRingsPerSlice : 1);
   for (const ShaftSlice& ring : slice_vertices(tool_, rings)) {
     Fan fan;
+    fan.is_ring = true;
+    fan.longest_arm_mm = tool_.shaft_radius_mm;
     fan.centre_T = ring.centre_T;
     for (const Vec3& vertex : ring.vertices_T) fan.arms_T.emplace_back(vertex - ring.centre_T);
     rings_.push_back(std::move(fan));
   }
-  if (rings > 0) ring_spacing_mm_ = (tool_.shaft_length_mm - shaft_start_mm(tool_)) / rings;
-  const double bite_mm =
-      std::min(settings_.bite_voxels * volume_->geometry().spacing_mm.minCoeff(), Settings::kMaxBite_mm);
-  held_tool_.prepare(*volume_, tool_, rings, std::min(bite_mm, 0.5 * tool_.burr_radius_mm));
+  if (rings_.empty()) return;
+  ring_spacing_mm_ = (tool_.shaft_length_mm - shaft_start_mm(tool_)) / rings;
+  if (!settings_.shaft_force) return;
+  // The middle of the end face and its rim, about a centre a radius within.
+  const Vec3 inward_T(0, 0, tool_.shaft_radius_mm);
+  end_ = Fan{};
+  end_->centre_T = Vec3(0, 0, tool_.shaft_length_mm) - inward_T;
+  end_->arms_T.push_back(inward_T);
+  for (const Vec3& arm_T : rings_.front().arms_T) end_->arms_T.emplace_back(inward_T + arm_T);
+  end_->longest_arm_mm = end_->arms_T.back().norm();
 }
 
 void SurfacePoints::reset() {
   sphere_.force_W_N.setZero();
   for (Fan& ring : rings_) ring.force_W_N.setZero();
+  if (end_) end_->force_W_N.setZero();
   held_tool_.reset();
   last_overlap_W_mm_.setZero();
   overlap_rate_W_mm_s_.setZero();
@@ -60,6 +89,7 @@ void SurfacePoints::reset() {
 int SurfacePoints::sample_point_count() const {
   std::size_t count = sphere_.arms_T.size();
   for (const Fan& ring : rings_) count += ring.arms_T.size();
+  if (end_) count += end_->arms_T.size();
   return static_cast<int>(count);
 }
 
@@ -67,21 +97,28 @@ bool SurfacePoints::in_bone(const Vec3& point_W) const {
   return density_at(volume_->grid(), point_W) > volume_->isovalue();
 }
 
+Vec3 SurfacePoints::reach_of(const Vec3& vertex_W, const Vec3& centre_W, double free_mm) const {
+  if (settings_.reach == Reach::to_first_bone) return marched_spring(*volume_, vertex_W, centre_W, free_mm);
+  const Vec3 reach = interpolated_spring(*volume_, vertex_W, centre_W);
+  if (settings_.reach == Reach::to_surface || reach.isZero(0)) return reach;
+  return centre_W - vertex_W - reach;
+}
+
 // The sum of the springs of a fan whose centre lies at `centre_W`, `free_mm` or more from bone, with the tool
 // turned as it is.
 Vec3 SurfacePoints::sum_of_reaches(Fan& fan, const Quat& orientation, const Vec3& centre_W,
                                    double free_mm) const {
-  const Vec3 axis_W = &fan == &sphere_ ? Vec3(Vec3::Zero()) : Vec3(orientation * Vec3::UnitZ());
-  if (!bone_near_disc(*volume_, centre_W, axis_W, fan.arms_T.front().norm())) return Vec3::Zero();
-  const bool through_walls = settings_.march_to_surface && settings_.thin_walls_hold && &fan == &sphere_;
+  const Vec3 axis_W = fan.is_ring ? Vec3(orientation * Vec3::UnitZ()) : Vec3(Vec3::Zero());
+  if (!bone_near_disc(*volume_, centre_W, axis_W, fan.longest_arm_mm)) return Vec3::Zero();
+  // A vertex that has come out behind a thin wall must not let go.
+  const bool through_walls = settings_.reach == Reach::to_first_bone && !fan.is_ring;
   Vec3 reach_mm = Vec3::Zero();
   fan.deepest_mm = 0;
   for (std::size_t n = 0; n < fan.arms_T.size(); ++n) {
     const Vec3& arm_T = fan.arms_T[n];
     const Vec3 vertex_W = centre_W + orientation * arm_T;
     if (!through_walls && !in_bone(vertex_W)) continue;
-    const Vec3 reach = settings_.march_to_surface ? marched_spring(*volume_, vertex_W, centre_W, free_mm)
-                                                  : interpolated_spring(*volume_, vertex_W, centre_W);
+    const Vec3 reach = reach_of(vertex_W, centre_W, free_mm);
     if (reach.isZero(0)) continue;
     ++fan.contacts;
     reach_mm += reach;
@@ -136,7 +173,7 @@ void SurfacePoints::update(Fan& fan, const Pose& X_WD, const Pose& X_WH) const {
     fan.force_W_N.setZero();
   }
   // Else (17), (19): a centre in bone keeps the force of the step before.
-  const bool is_pushed = settings_.slice_levers && centre_W && fan.contacts > 0 && &fan != &sphere_;
+  const bool is_pushed = settings_.shaft_force && fan.is_ring && centre_W && fan.contacts > 0;
   fan.pushed_at_mm = is_pushed ? pushed_at_mm(fan, X_WD.orientation, *centre_W, free_mm) : 0.0;
 }
 
@@ -174,7 +211,7 @@ Vec3 SurfacePoints::damped(const Vec3& force_N, const Vec3& overlap_W_mm, double
   const double force = force_N.norm();
   if (force == 0) return force_N;
   const double sinking_mm_s = -overlap_rate_W_mm_s_.dot(force_N) / force;
-  return std::clamp(1 + settings_.contact_damping_s_per_mm * sinking_mm_s, 0.0, 2.0) * force_N;
+  return std::clamp(1 + kContactDamping_s_per_mm * sinking_mm_s, 0.0, 2.0) * force_N;
 }
 
 SurfacePoints::ShaftSum SurfacePoints::shaft_sum(const Pose& X_WD, const Pose& X_WH) {
@@ -195,10 +232,26 @@ SurfacePoints::ShaftSum SurfacePoints::shaft_sum(const Pose& X_WD, const Pose& X
   }
   // (20), (21), and the share that an edge has beside them.
   const double each = rings_.empty() ? 0.0 : 1.0 / static_cast<double>(rings_.size());
-  const double beside = forces_N > 0 ? settings_.edge_share / forces_N : 0.0;
+  const double beside = forces_N > 0 ? (settings_.shaft_force ? kEdgeShare : 0.0) / forces_N : 0.0;
   sum.mean.force_N = each * sum.mean.force_N + beside * by_force.force_N;
   sum.mean.torque_Nmm = each * sum.mean.torque_Nmm + beside * by_force.torque_Nmm;
+  if (end_) add_end(X_WD, X_WH, sum);
   return sum;
+}
+
+// The end stands in bone as a body of its own, as the burr does.
+void SurfacePoints::add_end(const Pose& X_WD, const Pose& X_WH, ShaftSum& sum) {
+  update(*end_, X_WD, X_WH);
+  sum.contacts += end_->contacts;
+  const double share = std::min(1.0, settings_.max_stiffness_N_per_mm / settings_.stiffness_N_per_mm);
+  const Vec3 force_N = share * end_->force_W_N + beyond_N_per_mm() * end_->held_back_W_mm;
+  sum.mean.force_N += force_N;
+  sum.mean.torque_Nmm += (X_WD.orientation * end_->centre_T).cross(force_N);
+}
+
+// Of the spring to a centre that cannot follow the device.
+double SurfacePoints::beyond_N_per_mm() const {
+  return std::min(settings_.max_stiffness_N_per_mm, 0.5 * settings_.stiffness_N_per_mm);
 }
 
 HapticStep SurfacePoints::step(const Pose& X_WD, double dt_s) {
@@ -208,8 +261,7 @@ HapticStep SurfacePoints::step(const Pose& X_WD, double dt_s) {
   const ShaftSum shaft = shaft_sum(X_WD, X_WH);
   result.contacts = sphere_.contacts + shaft.contacts;
   result.wrench.torque_Nmm = shaft.mean.torque_Nmm;
-  const double beyond = std::min(settings_.max_stiffness_N_per_mm, 0.5 * settings_.stiffness_N_per_mm);
-  result.wrench.force_N = soften(sphere_.force_W_N) + beyond * sphere_.held_back_W_mm;
+  result.wrench.force_N = soften(sphere_.force_W_N) + beyond_N_per_mm() * sphere_.held_back_W_mm;
   result.X_WT = X_WH;
   if (settings_.hold_tool) {
     const Vec3 overlap_W_mm = X_WD.position_mm - X_WH.position_mm;

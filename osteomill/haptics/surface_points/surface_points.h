@@ -28,11 +28,13 @@ class SurfacePoints final : public HapticAlgorithm {
   int sample_point_count() const override;
 
  private:
-  // The vertices that share a centre: the sphere, or a circle of the shaft.
+  // The vertices that share a centre: the sphere, a circle of the shaft, or the shaft's end.
   struct Fan {
+    bool is_ring = false;
     Vec3 centre_T = Vec3::Zero();
     // From the centre to each vertex.
     std::vector<Vec3> arms_T;
+    double longest_arm_mm = 0;
     // Of this step or, where the centre is in bone, of the last step when it was not: (17), (19).
     Vec3 force_W_N = Vec3::Zero();
     // From the device's centre back to where bone stopped the held tool's way to it.
@@ -47,10 +49,14 @@ class SurfacePoints final : public HapticAlgorithm {
     Wrench mean;
     int contacts = 0;
   };
+  void prepare_shaft();
+  double beyond_N_per_mm() const;
   ShaftSum shaft_sum(const Pose& X_WD, const Pose& X_WH);
+  void add_end(const Pose& X_WD, const Pose& X_WH, ShaftSum& sum);
   void update(Fan& fan, const Pose& X_WD, const Pose& X_WH) const;
   double free_about_held_mm(const Fan& fan) const;
   std::optional<Vec3> held_centre(const Fan& fan, const Pose& X_WD, const Pose& X_WH) const;
+  Vec3 reach_of(const Vec3& vertex_W, const Vec3& centre_W, double free_mm) const;
   Vec3 sum_of_reaches(Fan& fan, const Quat& orientation, const Vec3& centre_W, double free_mm) const;
   double pushed_at_mm(const Fan& ring, const Quat& orientation, const Vec3& centre_W, double free_mm) const;
   bool in_bone(const Vec3& point_W) const;
@@ -67,6 +73,8 @@ class SurfacePoints final : public HapticAlgorithm {
   Fan sphere_;
   std::vector<Fan> rings_;
   double ring_spacing_mm_ = 0;
+  // Nothing where the shaft is not felt as force.
+  std::optional<Fan> end_;
 };
 
 }  // namespace osteomill::surface_points

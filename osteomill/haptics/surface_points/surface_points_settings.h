@@ -4,24 +4,20 @@
 
 namespace osteomill::surface_points {
 
+/// How far a vertex in bone is pulled towards its centre, a_i of (15): by a fraction that is measured from
+/// the centre, as printed; to where linear densities would cross the isovalue; to where a walk from the
+/// centre first meets bone, which sees thin walls too.
+enum class Reach : unsigned char { as_printed, to_surface, to_first_bone };
+
 /// What algorithm 2 is made of; surface_points_description.cpp says of each setting what it means, its range
 /// and its value in either mode.
 struct Settings {
   double stiffness_N_per_mm = 0;
   int slices = 0;
-  bool march_to_surface = false;
-  bool thin_walls_hold = false;
-  bool shaft_force = false;
-  double edge_share = 0;
-  bool slice_levers = false;
+  Reach reach = Reach::to_surface;
   bool hold_tool = false;
-  int rings_per_slice = 0;
+  bool shaft_force = false;
   double max_stiffness_N_per_mm = 0;
-  /// In voxels of the smallest spacing, and at most `kMaxBite_mm`: bone that is denser than the isovalue lies
-  /// up to a voxel behind the surface.
-  double bite_voxels = 0;
-  static constexpr double kMaxBite_mm = 0.2;
-  double contact_damping_s_per_mm = 0;
 
   static Settings defaults(Mode mode);
 };

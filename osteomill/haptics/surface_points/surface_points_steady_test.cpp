@@ -77,13 +77,14 @@ TEST(SurfacePointsSteady, OnAPlaneTheForceIsTheIntegralOverTheSphere) {
 
 TEST(SurfacePointsSteady, TheContactIsNeverStifferThanAllowed) {
   const Volume volume = slope(Vec3::UnitZ());
-  Settings settings = steady();
-  settings.contact_damping_s_per_mm = 0;
+  const Settings settings = steady();
+  constexpr double kSlowTick_s = 1;  // so slow that the damping does not show
   auto algorithm = prepared(volume, settings);
   double before = 0;
   double min = 1e9;
   for (int n = 0; n < 400; ++n) {
-    const double force = algorithm.step({{0, 0, 1.6 - 0.01 * n}, Quat::Identity()}, kDt).wrench.force_N.z();
+    const double force =
+        algorithm.step({{0, 0, 1.6 - 0.01 * n}, Quat::Identity()}, kSlowTick_s).wrench.force_N.z();
     // 24 vertices, not a smooth sphere: half as stiff again where four of them touch at once.
     EXPECT_LT(force - before, 0.01 * 1.5 * settings.max_stiffness_N_per_mm) << n;
     if (n > 60) min = std::min(min, force - before);
@@ -91,6 +92,17 @@ TEST(SurfacePointsSteady, TheContactIsNeverStifferThanAllowed) {
   }
   EXPECT_GT(min, 0.005);  // it always pushes back harder, centre inside or not
   EXPECT_GT(before, 5.0);
+}
+
+TEST(SurfacePointsSteady, TheShaftsEndPressesAsABodyOfItsOwn) {
+  const Volume volume = slope(Vec3::UnitZ());
+  auto algorithm = prepared(volume, steady());
+  const Quat end_down = smallest_rotation(Vec3::UnitZ(), -Vec3::UnitZ());
+  const HapticStep step =
+      walk(algorithm, {0, 0, kTool.shaft_length_mm + 1}, {0, 0, kTool.shaft_length_mm - 1}, end_down);
+  EXPECT_GT(step.wrench.force_N.z(), 2.0);
+  EXPECT_LT(step.wrench.force_N.z(), 4.0);
+  EXPECT_LT(step.wrench.torque_Nmm.norm(), 0.02 * kTool.shaft_length_mm * step.wrench.force_N.norm());
 }
 
 TEST(SurfacePointsSteady, FreeSpaceIsExactlyZero) {
