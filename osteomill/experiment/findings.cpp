@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <functional>
 #include <optional>
 
@@ -31,15 +32,22 @@ std::string during(std::string_view phase) {
   return phase == kMilling ? "while milling" : "while holding";
 }
 
-// The measure of all three algorithms in a phase, or nothing where one is missing.
-std::optional<PapersThree> of_all(const RunGroup& group, std::string_view phase, const Measure& measure) {
-  PapersThree values{};
+using ThreeRuns = std::array<const MeasuredRun*, kPapersAlgorithms.size()>;
+
+// The runs of all three algorithms in a phase, or nothing where one is missing.
+std::optional<ThreeRuns> of_all(const RunGroup& group, std::string_view phase) {
+  ThreeRuns runs{};
   for (std::size_t n = 0; n < kPapersAlgorithms.size(); ++n) {
-    const MeasuredRun* run = group.find(kPapersAlgorithms[n], phase);
-    if (run == nullptr) return std::nullopt;
-    values[n] = measure(run->metrics);
+    runs[n] = group.find(kPapersAlgorithms[n], phase);
+    if (runs[n] == nullptr) return std::nullopt;
   }
-  return values;
+  return runs;
+}
+
+// "0.012", or "lost contact after 3.2 s".
+std::string value_text(const MeasuredRun& run, const Measure& measure) {
+  const double value = measure(run.metrics);
+  return std::isnan(value) ? contact_words(run.metrics.contact) : fmt::format("{:.3g}", value);
 }
 
 Verdict verdict_of(bool agrees) {
@@ -52,9 +60,13 @@ Finding compare_three(const RunGroup& group, std::string_view phase, const Measu
                       const std::function<bool(const PapersThree&)>& holds) {
   Finding finding{std::move(paper_says), std::move(rule), "needs all three algorithms",
                   Verdict::not_recorded};
-  if (const auto v = of_all(group, phase, measure)) {
-    finding.measured = fmt::format("1: {:.3g}, 2: {:.3g}, 3: {:.3g} {}", (*v)[0], (*v)[1], (*v)[2], unit);
-    finding.verdict = verdict_of(holds(*v));
+  if (const auto runs = of_all(group, phase)) {
+    PapersThree v{};
+    for (std::size_t n = 0; n < v.size(); ++n) v[n] = measure((*runs)[n]->metrics);
+    finding.measured = fmt::format("1: {}, 2: {}, 3: {} {}", value_text(*(*runs)[0], measure),
+                                   value_text(*(*runs)[1], measure), value_text(*(*runs)[2], measure), unit);
+    const bool known = std::none_of(v.begin(), v.end(), [](double value) { return std::isnan(value); });
+    finding.verdict = known ? verdict_of(holds(v)) : Verdict::lost_contact;
   }
   return finding;
 }
@@ -116,8 +128,11 @@ Finding restless_finding(const RunGroup& group) {
   if (milling != nullptr && holding != nullptr) {
     const double moving = kTorqueBuzz(milling->metrics);
     const double still = kTorqueBuzz(holding->metrics);
-    finding.measured = fmt::format("milling: {:.3g}, holding: {:.3g} N mm", moving, still);
-    finding.verdict = verdict_of(moving > 0 && moving >= kRestlessRatio * still);
+    finding.measured = fmt::format("milling: {}, holding: {} N mm", value_text(*milling, kTorqueBuzz),
+                                   value_text(*holding, kTorqueBuzz));
+    finding.verdict = std::isnan(moving) || std::isnan(still)
+                          ? Verdict::lost_contact
+                          : verdict_of(moving > 0 && moving >= kRestlessRatio * still);
   }
   return finding;
 }
@@ -137,8 +152,9 @@ struct Ranked {
 std::vector<Ranked> ranked(const RunGroup& group, std::string_view phase, const Measure& measure) {
   std::vector<Ranked> order;
   for (const AlgorithmId& algorithm : group.algorithms()) {
-    if (const MeasuredRun* run = group.find(algorithm.name, phase))
-      order.push_back({algorithm, measure(run->metrics)});
+    const MeasuredRun* run = group.find(algorithm.name, phase);
+    if (run == nullptr || std::isnan(measure(run->metrics))) continue;
+    order.push_back({algorithm, measure(run->metrics)});
   }
   std::stable_sort(order.begin(), order.end(),
                    [](const Ranked& a, const Ranked& b) { return a.value < b.value; });
@@ -156,6 +172,7 @@ std::string times(double ratio) {
 std::string ranking_sentence(const RunGroup& group, std::string_view phase, const Measure& measure,
                              const char* what, const char* unit, const char* explained) {
   const std::vector<Ranked> order = ranked(group, phase, measure);
+  if (order.empty()) return fmt::format("{} could not be measured.", what);
   const Ranked& best = order.front();
   const std::string best_value = fmt::format("{:.3g} {}{}", best.value, unit, explained);
   if (order.size() == 1)
@@ -170,14 +187,26 @@ std::string ranking_sentence(const RunGroup& group, std::string_view phase, cons
                      others);
 }
 
+// " line-proxy lost contact after 3.2 s and is left out."
+std::string left_out(const RunGroup& group, std::string_view phase) {
+  std::string text;
+  for (const AlgorithmId& algorithm : group.algorithms()) {
+    const MeasuredRun* run = group.find(algorithm.name, phase);
+    if (run == nullptr || !std::isnan(kForceBuzz(run->metrics))) continue;
+    text += fmt::format(" {} {} and is left out.", algorithm.name, contact_words(run->metrics.contact));
+  }
+  return text;
+}
+
 std::string phase_paragraph(const RunGroup& group, std::string_view phase) {
   std::string start = during(phase);
   start[0] = 'W';
   return fmt::format(
-      "{}, {} {} {}", start,
+      "{}, {} {} {}{}", start,
       ranking_sentence(group, phase, kForceBuzz, "the buzz in the force", "N", " rms above 20 Hz"),
       ranking_sentence(group, phase, kTorqueBuzz, "The buzz in the torque", "N mm", " rms above 20 Hz"),
-      ranking_sentence(group, phase, kShaftSpread, "The spread of the shaft's direction", "degrees", " rms"));
+      ranking_sentence(group, phase, kShaftSpread, "The spread of the shaft's direction", "degrees", " rms"),
+      left_out(group, phase));
 }
 
 std::string count_sentence(const std::vector<Finding>& findings) {
@@ -202,6 +231,8 @@ std::string_view name_of(Verdict verdict) {
       return "does not agree";
     case Verdict::not_recorded:
       return "not recorded";
+    case Verdict::lost_contact:
+      return "lost contact";
   }
   return "";
 }

@@ -7,10 +7,13 @@
 
 namespace osteomill {
 
-enum class Verdict : unsigned char { agrees, does_not_agree, not_recorded };
+enum class Verdict : unsigned char { agrees, does_not_agree, not_recorded, lost_contact };
 
-/// "agrees", "does not agree", "not recorded".
+/// "agrees", "does not agree", "not recorded", "lost contact".
 std::string_view name_of(Verdict verdict);
+inline bool is_tested(Verdict verdict) {
+  return verdict == Verdict::agrees || verdict == Verdict::does_not_agree;
+}
 
 /// One thing that the paper found, held against the recordings by a rule that is stated.
 struct Finding {
@@ -24,7 +27,7 @@ struct Finding {
 };
 
 /// The paper's findings (section 8.2) on rate, force, torque and shaft direction. One that needs runs which
-/// are not there is `not_recorded`.
+/// are not there is `not_recorded`, one that needs a run that had not enough contact `lost_contact`.
 std::vector<Finding> check_findings(const RunGroup& group);
 
 /// In plain words: who was the steadiest in force, in torque and in shaft direction and by how much,

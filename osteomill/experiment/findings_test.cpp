@@ -1,6 +1,7 @@
 #include "osteomill/experiment/findings.h"
 
 #include <algorithm>
+#include <limits>
 
 #include <gtest/gtest.h>
 
@@ -64,6 +65,20 @@ class FindingsTest : public ::testing::Test {
 TEST_F(FindingsTest, WhatThePaperFoundAgrees) {
   EXPECT_TRUE(disagreeing().empty());
   EXPECT_EQ(check_findings(group_).size(), 10u);
+}
+
+TEST_F(FindingsTest, WhoLostContactIsNeitherBestNorWorst) {
+  RunMetrics& m = metrics("surface-points", kHolding);
+  m.contact = {0.05, 0.05, 0, 3.2};
+  m.force_N.hp_rms = m.torque_Nmm.hp_rms = m.shaft.spread_deg = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(disagreeing().empty());
+  const std::vector<Finding> findings = check_findings(group_);
+  EXPECT_EQ(std::count_if(findings.begin(), findings.end(),
+                          [](const Finding& f) { return f.verdict == Verdict::lost_contact; }),
+            4);
+  const std::string text = plain_paragraphs(group_, findings).at(1);
+  EXPECT_NE(text.find("surface-points lost contact after 3.2 s and is left out."), std::string::npos) << text;
+  EXPECT_EQ(text.find("nan"), std::string::npos) << text;
 }
 
 TEST_F(FindingsTest, EachRuleCanFail) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <ostream>
 #include <stdexcept>
@@ -24,7 +25,7 @@ using M = RunMetrics;
 constexpr std::array<KeyMetric, 10> kKeyMetrics{{
     {"force above 20 Hz, rms", "N", [](const M& m) { return m.force_N.hp_rms; }},
     {"force above 20 Hz / mean force", "",
-     [](const M& m) { return m.force_N.mean > 0 ? m.force_N.hp_rms / m.force_N.mean : 0.0; }},
+     [](const M& m) { return m.force_N.mean == 0 ? 0.0 : m.force_N.hp_rms / m.force_N.mean; }},
     {"greatest force step", "N", [](const M& m) { return m.force_N.step_max; }},
     {"torque above 20 Hz, rms", "N mm", [](const M& m) { return m.torque_Nmm.hp_rms; }},
     {"greatest torque step", "N mm", [](const M& m) { return m.torque_Nmm.step_max; }},
@@ -109,21 +110,44 @@ std::vector<KeyMetric> Study::metrics_of(std::string_view phase) const {
   std::vector<KeyMetric> metrics;
   for (const KeyMetric& metric : kKeyMetrics) {
     const auto has_some = [&](const StudyRow& row) {
-      return row.summary.segment == phase && metric.value(row.summary.metrics) != 0;
+      const double value = metric.value(row.summary.metrics);
+      return row.summary.segment == phase && value != 0 && !std::isnan(value);
     };
     if (std::any_of(rows_.begin(), rows_.end(), has_some)) metrics.push_back(metric);
   }
   return metrics;
 }
 
-std::vector<double> Study::values(const AlgorithmId& algorithm, Mode mode, std::string_view phase,
-                                  const KeyMetric& metric) const {
+std::vector<double> Study::all_values(const Tried& tried, std::string_view phase,
+                                      const KeyMetric& metric) const {
   std::vector<double> values;
   for (const StudyRow& row : rows_) {
-    if (place(row.summary) == std::tuple(mode, phase_number(phase), algorithm))
+    if (place(row.summary) == std::tuple(tried.mode, phase_number(phase), tried.algorithm))
       values.push_back(metric.value(row.summary.metrics));
   }
   return values;
+}
+
+std::vector<double> Study::values(const AlgorithmId& algorithm, Mode mode, std::string_view phase,
+                                  const KeyMetric& metric) const {
+  std::vector<double> values = all_values({algorithm, mode}, phase, metric);
+  std::erase_if(values, [](double value) { return std::isnan(value); });
+  return values;
+}
+
+std::pair<std::vector<double>, std::vector<double>> Study::paired_values(const Tried& first,
+                                                                         const Tried& second,
+                                                                         std::string_view phase,
+                                                                         const KeyMetric& metric) const {
+  const std::vector<double> all_first = all_values(first, phase, metric);
+  const std::vector<double> all_second = all_values(second, phase, metric);
+  std::pair<std::vector<double>, std::vector<double>> pairs;
+  for (std::size_t n = 0; n < std::min(all_first.size(), all_second.size()); ++n) {
+    if (std::isnan(all_first[n]) || std::isnan(all_second[n])) continue;
+    pairs.first.push_back(all_first[n]);
+    pairs.second.push_back(all_second[n]);
+  }
+  return pairs;
 }
 
 void write_study_csv(const std::filesystem::path& path, const Study& study) {

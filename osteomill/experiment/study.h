@@ -57,11 +57,24 @@ class Study {
   /// The key metrics but those that are zero throughout a phase (bone removed while holding).
   std::vector<KeyMetric> metrics_of(std::string_view phase) const;
 
-  /// The metric's values, one a seed in the order of `seeds`; none where that was not tried.
+  /// What is compared: an algorithm in a mode.
+  struct Tried {
+    AlgorithmId algorithm;
+    Mode mode;
+  };
+  /// The metric's values, one a seed in the order of `seeds`, but for those without enough contact to measure
+  /// it; none where that was not tried.
   std::vector<double> values(const AlgorithmId& algorithm, Mode mode, std::string_view phase,
                              const KeyMetric& metric) const;
+  /// The same of two, of the seeds in which both could be measured.
+  std::pair<std::vector<double>, std::vector<double>> paired_values(const Tried& first, const Tried& second,
+                                                                    std::string_view phase,
+                                                                    const KeyMetric& metric) const;
 
  private:
+  // One a seed; not a number where it could not be measured.
+  std::vector<double> all_values(const Tried& tried, std::string_view phase, const KeyMetric& metric) const;
+
   std::vector<StudyRow> rows_;
   std::vector<std::uint64_t> seeds_;
 };

@@ -28,8 +28,8 @@ std::vector<AlgorithmPair> compare_algorithms(const Study& study, Mode mode, std
   std::vector<AlgorithmPair> pairs;
   for (std::size_t a = 0; a < algorithms.size(); ++a) {
     for (std::size_t b = a + 1; b < algorithms.size(); ++b) {
-      const auto first = study.values(algorithms[a], mode, phase, metric);
-      const auto second = study.values(algorithms[b], mode, phase, metric);
+      const auto [first, second] =
+          study.paired_values({algorithms[a], mode}, {algorithms[b], mode}, phase, metric);
       if (first.empty() || second.empty()) continue;
       const SignedRank test = paired_test(first, second);
       pairs.push_back({algorithms[a], algorithms[b],
@@ -43,8 +43,8 @@ std::vector<AlgorithmPair> compare_algorithms(const Study& study, Mode mode, std
 std::vector<ModeChange> compare_modes(const Study& study, std::string_view phase, const KeyMetric& metric) {
   std::vector<ModeChange> changes;
   for (const AlgorithmId& algorithm : study.algorithms()) {
-    const auto paper = study.values(algorithm, Mode::paper, phase, metric);
-    const auto steady = study.values(algorithm, Mode::steady, phase, metric);
+    const auto [paper, steady] =
+        study.paired_values({algorithm, Mode::paper}, {algorithm, Mode::steady}, phase, metric);
     if (paper.empty() || steady.empty()) continue;
     std::vector<double> ratios;
     for (std::size_t n = 0; n < paper.size(); ++n) {

@@ -36,6 +36,7 @@ std::vector<double> all_values(const Study& study, std::string_view phase, const
 
 // Whole decades where the values spread, so that at least two tics have a number.
 std::string range_for(const std::vector<double>& values) {
+  if (values.empty()) return "unset logscale y\nset yrange [0:1]\n";
   const auto [min, max] = std::minmax_element(values.begin(), values.end());
   if (*min > 0 && *max > 4 * *min) {
     return fmt::format("set logscale y\nset yrange [{:.6g}:{:.6g}]\n",
@@ -78,7 +79,9 @@ std::string panel(const Study& study, std::string_view phase, const KeyMetric& m
     for (const AlgorithmId& algorithm : study.algorithms()) {
       const std::string file = fmt::format("study-{}-{}-{}.dat", number, name_of(mode), name_of(algorithm));
       const double x = static_cast<double>(place++) + shift;
-      write_figure_data(work / file, dots_and_bars(study.values(algorithm, mode, phase, metric), x));
+      const std::vector<double> values = study.values(algorithm, mode, phase, metric);
+      if (values.empty()) continue;
+      write_figure_data(work / file, dots_and_bars(values, x));
       plot += fmt::format(
           "{0}'{1}' index 1 with lines lw 2.5 lc rgb '{2}' notitle, '{1}' index 0 with points pt {3} ps 0.8 "
           "lw "

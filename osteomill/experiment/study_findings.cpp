@@ -1,6 +1,7 @@
 #include "osteomill/experiment/study_findings.h"
 
 #include <cmath>
+#include <limits>
 
 namespace osteomill {
 
@@ -17,13 +18,16 @@ double chance_of_at_least(std::size_t k, std::size_t n) {
   return std::max(0.0, 1 - below);
 }
 
+// Not a number where no seed could be measured.
 double median_of(const Study& study, const SummaryRow& row, double (*value)(const RunMetrics&)) {
-  return distribution_of(study.values(row.algorithm, row.mode, row.segment, {"", "", value})).median;
+  const std::vector<double> values = study.values(row.algorithm, row.mode, row.segment, {"", "", value});
+  return values.empty() ? std::numeric_limits<double>::quiet_NaN() : distribution_of(values).median;
 }
 
 // Every metric that a finding looks at.
 RunMetrics medians_of(const Study& study, const SummaryRow& row) {
   RunMetrics m;
+  m.contact.any = median_of(study, row, [](const RunMetrics& r) { return r.contact.any; });
   m.rate_hz = median_of(study, row, [](const RunMetrics& r) { return r.rate_hz; });
   m.force_N.hp_rms = median_of(study, row, [](const RunMetrics& r) { return r.force_N.hp_rms; });
   m.torque_Nmm.hp_rms = median_of(study, row, [](const RunMetrics& r) { return r.torque_Nmm.hp_rms; });
@@ -66,7 +70,7 @@ std::vector<StudyFinding> check_study_findings(const Study& study, Mode mode) {
     const std::vector<Finding> once = findings_of(summaries(study.rows_of_seed(seed), mode), mode);
     for (std::size_t n = 0; n < once.size(); ++n) {
       findings[n].agreeing += once[n].verdict == Verdict::agrees;
-      findings[n].tested += once[n].verdict != Verdict::not_recorded;
+      findings[n].tested += is_tested(once[n].verdict);
     }
   }
   for (StudyFinding& finding : findings) finding.p = chance_of_at_least(finding.agreeing, finding.tested);

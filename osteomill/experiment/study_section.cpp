@@ -44,8 +44,8 @@ std::string algorithms_table(const Study& study, Mode mode, std::string_view pha
   for (const KeyMetric& metric : study.metrics_of(phase)) {
     table.rows.push_back({html_escaped(label_of(metric))});
     for (const AlgorithmId& algorithm : study.algorithms()) {
-      table.rows.back().push_back(
-          interval_text(median_interval(study.values(algorithm, mode, phase, metric))));
+      const std::vector<double> values = study.values(algorithm, mode, phase, metric);
+      table.rows.back().push_back(values.empty() ? "lost contact" : interval_text(median_interval(values)));
     }
     std::string pairs;
     for (const AlgorithmPair& pair : compare_algorithms(study, mode, phase, metric)) {

@@ -36,7 +36,7 @@ std::string findings_sentence(const Study& study, Mode mode) {
   std::vector<std::string> against;
   for (const StudyFinding& f : check_study_findings(study, mode)) {
     if (f.of_medians.of_the_machine) continue;
-    tested += f.of_medians.verdict != Verdict::not_recorded;
+    tested += is_tested(f.of_medians.verdict);
     agreeing += f.of_medians.verdict == Verdict::agrees;
     if (f.of_medians.verdict == Verdict::does_not_agree) {
       against.push_back(fmt::format("“{}” ({} of {} hands)", f.of_medians.paper_says, f.agreeing, f.tested));
@@ -74,9 +74,12 @@ std::string steadiest(const Study& study, std::string_view phase, const KeyMetri
   std::optional<AlgorithmId> best;
   double min = 0;
   for (const AlgorithmId& algorithm : study.algorithms()) {
-    const double median = median_interval(study.values(algorithm, mode, phase, metric)).median;
+    const std::vector<double> values = study.values(algorithm, mode, phase, metric);
+    if (values.empty()) continue;
+    const double median = median_interval(values).median;
     if (!best || median < min) best = algorithm, min = median;
   }
+  if (!best) return "none, since none touched";
   const auto pairs = compare_algorithms(study, mode, phase, metric);
   const bool clear = std::all_of(pairs.begin(), pairs.end(), [&](const AlgorithmPair& pair) {
     const bool about_best = pair.first == *best || pair.second == *best;

@@ -12,8 +12,8 @@ namespace osteomill {
 struct ScriptSettings {
   /// The milling lasts so long ...
   double milling_s = 20.0;
-  /// ... or, with true, until the shaft has leant on bone or the hand has tried that, for these shares of it, or
-  /// three times as long.
+  /// ... or, with true, until the shaft has leant on bone or the hand has tried that, for these shares of it,
+  /// or three times as long.
   bool until_leant = false;
   double leant_share = 0.15;
   double longest_lean_share = 0.4;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <ostream>
 
@@ -15,11 +16,7 @@ namespace osteomill {
 
 namespace {
 
-double root_mean_square(std::span<const Vec3> samples) {
-  double sum = 0;
-  for (const Vec3& sample : samples) sum += sample.squaredNorm();
-  return samples.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(samples.size()));
-}
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 // The angle of two unit vectors; an arc cosine would lose the small ones.
 double angle_rad(const Vec3& a, const Vec3& b) {
@@ -52,17 +49,27 @@ void require_usable(const Recording& recording) {
 
 }  // namespace
 
-VectorMetrics vector_metrics(std::span<const Vec3> samples, double rate_hz) {
+VectorMetrics vector_metrics(std::span<const Vec3> samples, double rate_hz,
+                             const std::vector<bool>& counted) {
+  const auto counts = [&](std::size_t n) { return counted.empty() || counted[n]; };
+  const std::vector<Vec3> high = high_pass(samples, rate_hz, kBuzzAbove_hz);
   VectorMetrics metrics;
-  if (samples.empty()) return metrics;
+  double squares = 0;
+  std::size_t count = 0;
   for (std::size_t n = 0; n < samples.size(); ++n) {
+    if (n > 0 && (counts(n) || counts(n - 1))) {
+      metrics.step_max = std::max(metrics.step_max, (samples[n] - samples[n - 1]).norm());
+    }
+    if (!counts(n)) continue;
     const double size = samples[n].norm();
     metrics.mean += size;
     metrics.max = std::max(metrics.max, size);
-    if (n > 0) metrics.step_max = std::max(metrics.step_max, (samples[n] - samples[n - 1]).norm());
+    squares += high[n].squaredNorm();
+    ++count;
   }
-  metrics.mean /= static_cast<double>(samples.size());
-  metrics.hp_rms = root_mean_square(high_pass(samples, rate_hz, kBuzzAbove_hz));
+  if (count == 0) return metrics;
+  metrics.mean /= static_cast<double>(count);
+  metrics.hp_rms = std::sqrt(squares / static_cast<double>(count));
   return metrics;
 }
 
@@ -85,12 +92,14 @@ DirectionMetrics direction_metrics(std::span<const Vec3> directions) {
 RunMetrics run_metrics(const Recording& recording) {
   require_usable(recording);
   std::vector<Vec3> force_N, torque_Nmm, shaft_W;
+  std::vector<bool> touches;
   std::vector<double> step_us, cpu_us;
   HeldRate held(1e6 * recording.description.tick_period_s);
   for (const TickRecord& record : recording.records) {
     force_N.push_back(record.wrench.force_N);
     torque_Nmm.push_back(record.wrench.torque_Nmm);
-    shaft_W.push_back(shaft_direction(record.X_WT));
+    touches.push_back(contact_of(record).any);
+    if (touches.back()) shaft_W.push_back(shaft_direction(record.X_WT));
     step_us.push_back(record.compute_us);
     cpu_us.push_back(record.tick_cpu_us);
     held.add(record.busy_us());
@@ -101,31 +110,42 @@ RunMetrics run_metrics(const Recording& recording) {
   metrics.step_us = distribution_of(step_us);
   if (const Distribution cpu = distribution_of(cpu_us); cpu.max > 0) metrics.cpu_us = cpu;
   metrics.rate_hz = held.rate_hz();
-  metrics.force_N = vector_metrics(force_N, rate_hz);
-  metrics.torque_Nmm = vector_metrics(torque_Nmm, rate_hz);
-  metrics.shaft = direction_metrics(shaft_W);
+  metrics.contact = contact_shares(recording.records);
+  metrics.force_N = metrics.torque_Nmm = {kUnknown, kUnknown, kUnknown, kUnknown};
+  metrics.shaft = {kUnknown, kUnknown};
+  if (metrics.contact.enough()) {
+    metrics.force_N = vector_metrics(force_N, rate_hz, touches);
+    metrics.torque_Nmm = vector_metrics(torque_Nmm, rate_hz, touches);
+    metrics.shaft = direction_metrics(shaft_W);
+  }
   metrics.removed_mm3 = recording.records.back().removed_mm3 - recording.records.front().removed_mm3;
   return metrics;
 }
 
 std::string summary_columns() {
-  return "algorithm,mode,phase,steps,step_us_median,step_us_p99,step_us_max,"
-         "cpu_us_median,cpu_us_p99,cpu_us_max,rate_hz,"
+  return "algorithm,mode,phase,steps,step_us_median,step_us_p99,step_us_max,rate_hz,"
          "force_mean_N,force_max_N,force_hp_rms_N,force_step_max_N,"
          "torque_mean_Nmm,torque_max_Nmm,torque_hp_rms_Nmm,torque_step_max_Nmm,"
-         "shaft_spread_deg,shaft_excursion_deg,removed_mm3";
+         "shaft_spread_deg,shaft_excursion_deg,removed_mm3,"
+         "contact_share,burr_contact_share,shaft_contact_share,cpu_us_median,cpu_us_p99,cpu_us_max";
 }
 
 std::string summary_fields(const SummaryRow& row) {
   const RunMetrics& m = row.metrics;
-  std::string fields = fmt::format("{},{},{},{},{},{},{}", name_of(row.algorithm), name_of(row.mode),
-                                   row.segment, m.steps, m.step_us.median, m.step_us.p99, m.step_us.max);
-  fields += m.cpu_us ? fmt::format(",{},{},{}", m.cpu_us->median, m.cpu_us->p99, m.cpu_us->max) : ",,,";
-  fields += fmt::format(",{}", m.rate_hz);
+  std::string fields =
+      fmt::format("{},{},{},{},{},{},{},{}", name_of(row.algorithm), name_of(row.mode), row.segment, m.steps,
+                  m.step_us.median, m.step_us.p99, m.step_us.max, m.rate_hz);
+  const auto add = [&](double value) { fields += std::isnan(value) ? "," : fmt::format(",{}", value); };
   for (const VectorMetrics& v : {m.force_N, m.torque_Nmm}) {
-    fields += fmt::format(",{},{},{},{}", v.mean, v.max, v.hp_rms, v.step_max);
+    for (const double value : {v.mean, v.max, v.hp_rms, v.step_max}) add(value);
   }
-  return fields + fmt::format(",{},{},{}", m.shaft.spread_deg, m.shaft.excursion_deg, m.removed_mm3);
+  for (const double value : {m.shaft.spread_deg, m.shaft.excursion_deg, m.removed_mm3, m.contact.any,
+                             m.contact.burr, m.contact.shaft}) {
+    add(value);
+  }
+  const Distribution cpu = m.cpu_us.value_or(Distribution{kUnknown, kUnknown, kUnknown});
+  for (const double value : {cpu.median, cpu.p99, cpu.max}) add(value);
+  return fields;
 }
 
 void write_summary_csv(const std::filesystem::path& path, std::span<const SummaryRow> rows) {

@@ -9,6 +9,7 @@
 
 #include "osteomill/numbers/distribution.h"
 #include "osteomill/recording/recording.h"
+#include "osteomill/report/contact.h"
 
 namespace osteomill {
 
@@ -27,7 +28,10 @@ struct VectorMetrics {
   /// The greatest magnitude of the difference between two ticks that follow each other.
   double step_max = 0;
 };
-VectorMetrics vector_metrics(std::span<const Vec3> samples, double rate_hz);
+/// Over the ticks that are `counted` (empty: all); a step counts where one of its two ticks does. Zeros for
+/// none.
+VectorMetrics vector_metrics(std::span<const Vec3> samples, double rate_hz,
+                             const std::vector<bool>& counted = {});
 
 /// How far unit directions stray from their mean (the direction of their sum), in degrees: the root of the
 /// mean square angle, and the greatest angle. Zeros for no directions.
@@ -46,9 +50,11 @@ struct RunMetrics {
   std::optional<Distribution> cpu_us;
   /// HeldRate over the ticks' whole work (TickRecord::busy_us), for the recording's tick.
   double rate_hz = 0;
+  ContactShares contact;
+  /// While in contact; not a number where there was not enough of it.
   VectorMetrics force_N;
   VectorMetrics torque_Nmm;
-  /// Of the simulated tool's shaft.
+  /// Of the simulated tool's shaft, likewise.
   DirectionMetrics shaft;
   /// Between the first tick and the last.
   double removed_mm3 = 0;

@@ -104,6 +104,32 @@ TEST(RunMetrics, TheRateIsThatOfTheThreadsOwnTimeWhereItIsKnown) {
   EXPECT_NEAR(m.rate_hz, 1e6 / (0.5 * (1000 + 1250)), 1e-9);
 }
 
+// What is felt is measured while something is felt: free air before and after changes nothing but the shares.
+TEST(RunMetrics, FreeAirIsNotMeasured) {
+  const RunMetrics touching = run_metrics(simple_recording(4000));
+  Recording longer = simple_recording(10000);
+  for (std::size_t n = 4000; n < 10000; ++n) longer.records[n].wrench = {};
+  const RunMetrics m = run_metrics(longer);
+  EXPECT_DOUBLE_EQ(m.contact.any, 0.4);
+  EXPECT_DOUBLE_EQ(m.contact.shaft, 0.4);
+  EXPECT_EQ(m.contact.burr, 0);
+  EXPECT_EQ(contact_words(m.contact), "lost contact after 4.0 s");
+  EXPECT_DOUBLE_EQ(m.force_N.mean, touching.force_N.mean);
+  EXPECT_DOUBLE_EQ(m.torque_Nmm.mean, touching.torque_Nmm.mean);
+  EXPECT_DOUBLE_EQ(m.force_N.step_max, 3) << "letting go is felt";
+  EXPECT_FALSE(touching.contact.lost_after_s);
+}
+
+TEST(RunMetrics, WithoutContactThereIsNothingToMeasure) {
+  Recording air = simple_recording(4000);
+  for (TickRecord& record : air.records) record.wrench = {};
+  const RunMetrics m = run_metrics(air);
+  EXPECT_EQ(contact_words(m.contact), "never touched");
+  EXPECT_TRUE(std::isnan(m.force_N.hp_rms) && std::isnan(m.torque_Nmm.mean) &&
+              std::isnan(m.shaft.spread_deg));
+  EXPECT_NE(summary_fields({{}, Mode::paper, "holding", m}).find(",,,,,,,,,,"), std::string::npos);
+}
+
 void expect_refused(const Recording& recording, const std::string& reason) {
   try {
     run_metrics(recording);
@@ -137,6 +163,7 @@ TEST(SummaryCsv, HasItsColumnsInOrder) {
   m.torque_Nmm = {10, 11, 12, 13};
   m.shaft = {14, 15.5};
   m.removed_mm3 = 16;
+  m.contact = {0.75, 0.5, 0.25, {}};
   write_summary_csv(path,
                     std::vector<SummaryRow>{{algorithm_named("point-shell").id, Mode::paper, "holding", m}});
   std::ifstream in(path);
@@ -145,11 +172,11 @@ TEST(SummaryCsv, HasItsColumnsInOrder) {
   std::getline(in, row);
   EXPECT_EQ(
       header,
-      "algorithm,mode,phase,steps,step_us_median,step_us_p99,step_us_max,cpu_us_median,cpu_us_p99,cpu_us_max,"
-      "rate_hz,force_mean_N,force_max_N,"
+      "algorithm,mode,phase,steps,step_us_median,step_us_p99,step_us_max,rate_hz,force_mean_N,force_max_N,"
       "force_hp_rms_N,force_step_max_N,torque_mean_Nmm,torque_max_Nmm,torque_hp_rms_Nmm,torque_step_max_Nmm,"
-      "shaft_spread_deg,shaft_excursion_deg,removed_mm3");
-  EXPECT_EQ(row, "point-shell,paper,holding,1,2,3,4,,,,5,6,7,8,9,10,11,12,13,14,15.5,16");
+      "shaft_spread_deg,shaft_excursion_deg,removed_mm3,contact_share,burr_contact_share,shaft_contact_share,"
+      "cpu_us_median,cpu_us_p99,cpu_us_max");
+  EXPECT_EQ(row, "point-shell,paper,holding,1,2,3,4,5,6,7,8,9,10,11,12,13,14,15.5,16,0.75,0.5,0.25,,,");
   std::filesystem::remove(path);
 }
 

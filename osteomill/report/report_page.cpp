@@ -1,6 +1,7 @@
 #include "osteomill/report/report_page.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 
 #include <fmt/format.h>
@@ -66,7 +67,10 @@ std::string what_was_run(const std::vector<const Recording*>& recordings) {
 }
 
 MetricLine real_line(const char* label, const std::function<double(const RunMetrics&)>& value) {
-  return {label, [value](const MeasuredRun& run) { return fmt::format("{:.4g}", value(run.metrics)); }};
+  return {label, [value](const MeasuredRun& run) {
+            const double number = value(run.metrics);
+            return std::isnan(number) ? contact_words(run.metrics.contact) : fmt::format("{:.4g}", number);
+          }};
 }
 
 MetricLine cpu_line(const char* label, double (*value)(const Distribution&)) {
@@ -88,11 +92,14 @@ std::vector<MetricLine> metric_lines() {
       cpu_line("… greatest (µs)", [](const Distribution& d) { return d.max; }),
       {"Haptic rate that a 1 kHz loop would hold (Hz)",
        [](const MeasuredRun& run) { return fmt::format("{:.1f}", run.metrics.rate_hz); }},
-      real_line("Force, mean (N)", [](const M& m) { return m.force_N.mean; }),
+      real_line("In contact, share of the time", [](const M& m) { return m.contact.any; }),
+      real_line("… with the burr", [](const M& m) { return m.contact.burr; }),
+      real_line("… with the shaft", [](const M& m) { return m.contact.shaft; }),
+      real_line("Force while in contact, mean (N)", [](const M& m) { return m.force_N.mean; }),
       real_line("… greatest (N)", [](const M& m) { return m.force_N.max; }),
       real_line("… above 20 Hz, rms (N)", [](const M& m) { return m.force_N.hp_rms; }),
       real_line("… greatest change in a tick (N)", [](const M& m) { return m.force_N.step_max; }),
-      real_line("Torque, mean (N mm)", [](const M& m) { return m.torque_Nmm.mean; }),
+      real_line("Torque while in contact, mean (N mm)", [](const M& m) { return m.torque_Nmm.mean; }),
       real_line("… greatest (N mm)", [](const M& m) { return m.torque_Nmm.max; }),
       real_line("… above 20 Hz, rms (N mm)", [](const M& m) { return m.torque_Nmm.hp_rms; }),
       real_line("… greatest change in a tick (N mm)", [](const M& m) { return m.torque_Nmm.step_max; }),

@@ -1,0 +1,48 @@
+#include "osteomill/report/contact.h"
+
+#include <fmt/format.h>
+
+namespace osteomill {
+
+namespace {
+
+constexpr double kFelt_N = 0.02;
+constexpr double kFelt_Nmm = 0.2;
+constexpr double kLost_s = 1;
+
+}  // namespace
+
+Contact contact_of(const TickRecord& record) {
+  Contact contact;
+  contact.burr = record.burr_force_W_N.norm() >= kFelt_N;
+  contact.shaft = record.wrench.torque_Nmm.norm() >= kFelt_Nmm;
+  contact.any = contact.burr || contact.shaft || record.wrench.force_N.norm() >= kFelt_N;
+  return contact;
+}
+
+ContactShares contact_shares(std::span<const TickRecord> records) {
+  ContactShares shares;
+  if (records.empty()) return shares;
+  const double began_s = records.front().time_s;
+  double last_s = began_s;
+  for (const TickRecord& record : records) {
+    const Contact contact = contact_of(record);
+    shares.any += contact.any;
+    shares.burr += contact.burr;
+    shares.shaft += contact.shaft;
+    if (contact.any) last_s = record.time_s;
+  }
+  if (shares.any == 0 || records.back().time_s - last_s >= kLost_s) shares.lost_after_s = last_s - began_s;
+  for (double* share : {&shares.any, &shares.burr, &shares.shaft}) {
+    *share /= static_cast<double>(records.size());
+  }
+  return shares;
+}
+
+std::string contact_words(const ContactShares& contact) {
+  if (contact.any == 0) return "never touched";
+  if (contact.lost_after_s) return fmt::format("lost contact after {:.1f} s", *contact.lost_after_s);
+  return fmt::format("touched for {:.0f} % of the time", 100 * contact.any);
+}
+
+}  // namespace osteomill
