@@ -55,7 +55,7 @@ LoadedBone read_bone(const ScanOptions& options) {
   warnings.insert(warnings.end(), of_isovalue.begin(), of_isovalue.end());
   for (std::string& warning : warnings) warning = scan.name + ": " + warning;
   return {Volume(std::move(scan.grid), isovalue.value), scan.name, std::move(isovalue.how),
-          std::move(warnings)};
+          std::move(warnings), scan.in_hounsfield_units};
 }
 
 LoadedBone load_bone(const ScanOptions& options) {

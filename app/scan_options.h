@@ -45,6 +45,7 @@ struct LoadedBone {
   std::string isovalue_from;
   /// Of the scan and the isovalue, each naming the scan.
   std::vector<std::string> warnings;
+  bool in_hounsfield_units = false;
 };
 
 /// Throws InputError where the scan or the isovalue is at fault.

@@ -2,8 +2,11 @@
 #include <cctype>
 #include <cfloat>
 #include <string>
+#include <utility>
 
+#include "app/simulate/cuts.h"
 #include "app/simulate/panels.h"
+#include "app/simulate/state_text.h"
 #include "app/simulate/widgets.h"
 #include <imgui.h>
 
@@ -41,7 +44,9 @@ double stiffness_in_force(const MillingSetup& wanted, const SettingDescription& 
 
 void draw_algorithm(MillingSetup& wanted, bool& changed) {
   if (!ui::header("Algorithm", true)) return;
+  bool left = true;
   for (const AlgorithmDescription& algorithm : all_algorithms()) {
+    if (!std::exchange(left, !left)) ImGui::SameLine(ui::px(kWidth_px / 2));
     if (ui::radio(algorithm.id.label.c_str(), wanted.algorithm.id == algorithm.id)) {
       wanted.algorithm = algorithm;
       wanted.haptics.clear_option(kStiffnessOption);
@@ -84,6 +89,7 @@ void draw_session(ViewState& view, LiveMilling& milling) {
   ImGui::SameLine();
   bool paused = milling.state().paused;
   if (ui::checkbox("pause", &paused)) milling.set_paused(paused);
+  ImGui::SameLine();
   if (ui::button(view.holding_tool ? "Let go (T)##hold" : "Take the tool (T)##hold")) {
     view.holding_tool = !view.holding_tool;
   }
@@ -91,40 +97,47 @@ void draw_session(ViewState& view, LiveMilling& milling) {
   if (ui::button("Undo cut", free && milling.cuts() > 0)) milling.undo();
   ui::hint("Takes the last cut back; cuts of up to 256 MB are kept");
   ImGui::SameLine();
-  if (ui::button("Reset bone", free && milling.touched())) milling.reset();
+  if (ui::button("Reset bone", free && milling.touched())) view.reset_asked = true;
   ImGui::SameLine();
   ImGui::TextDisabled("%d cuts", static_cast<int>(milling.cuts()));
 }
 
 void draw_isovalue(ViewState& view, Simulation& simulation) {
-  if (!ui::header("Bone", false)) return;
+  if (!ui::header("Bone", true)) return;
   const DensityHistogram& histogram = simulation.histogram;
+  LiveMilling& milling = simulation.milling;
+  float isovalue = view.isovalue.value_or(static_cast<float>(milling.isovalue()));
   const ImVec2 place = ImGui::GetCursorScreenPos();
-  const ImVec2 size(ImGui::CalcItemWidth(), ui::px(44));
+  const ImVec2 size(ImGui::CalcItemWidth(), 1.5f * ImGui::GetFontSize());
   ImGui::PlotHistogram("##densities", histogram.log_counts.data(),
                        static_cast<int>(histogram.log_counts.size()), 0, nullptr, 0, FLT_MAX, size);
-  const float share = (view.isovalue - histogram.min) / (histogram.max - histogram.min);
+  const float share = (isovalue - histogram.min) / (histogram.max - histogram.min);
   const float x = place.x + std::clamp(share, 0.0f, 1.0f) * size.x;
   ImGui::GetWindowDrawList()->AddLine({x, place.y}, {x, place.y + size.y}, IM_COL32(255, 180, 60, 255), 2);
-  ImGui::BeginDisabled(simulation.milling.preparing());
-  if (ui::slider("isovalue", &view.isovalue, histogram.min, histogram.max, "%.0f",
+  ImGui::BeginDisabled(milling.preparing());
+  const std::string format = "%.4g" + simulation.unit;
+  if (ui::slider("isovalue", &isovalue, histogram.min, histogram.max, format.c_str(),
                  ImGuiSliderFlags_AlwaysClamp)) {
-    simulation.milling.show_isovalue(static_cast<double>(view.isovalue));
+    view.isovalue = isovalue;
+    milling.show_isovalue(static_cast<double>(isovalue));
   }
-  if (ui::released()) simulation.milling.change_isovalue(static_cast<double>(view.isovalue));
-  ui::hint("Bone is where the scan is denser");
+  const bool moved = ImGui::IsItemActive();
+  if (ui::released() && view.isovalue) milling.change_isovalue(static_cast<double>(*view.isovalue));
+  ui::hint("Bone is where the scan is denser. Drag, or click with Ctrl to type a number");
   ImGui::EndDisabled();
+  if (!moved && !milling.preparing()) view.isovalue.reset();
+  ImGui::TextWrapped("%s", isovalue_text(simulation).c_str());
 }
 
-void draw_cuts(ViewState& view, const Simulation& simulation) {
+void draw_cuts(ViewState& view, Simulation& simulation) {
   if (!ui::header("Cuts", false)) return;
   const char* names[] = {"axial", "coronal", "sagittal", "free"};
   for (std::size_t n = 0; n < view.cuts.size(); ++n) {
     ViewState::Cut& cut = view.cuts[n];
     ImGui::PushID(static_cast<int>(n));
-    if (ui::checkbox(names[n], &cut.on) && cut.on && n == 3) {
-      cut.normal_W = -view.camera.towards_viewer_W();
-      cut.offset_mm = static_cast<float>(cut.normal_W.dot(view.bounds.centre_W));
+    if (ui::checkbox(names[n], &cut.on) && cut.on) {
+      if (n == 3) cut.normal_W = -view.camera.towards_viewer_W();
+      begin_cut_at(view, cut, simulation.milling.state().record.X_WT.position_mm);
     }
     if (cut.on) {
       ImGui::SameLine(ui::px(100));
@@ -137,22 +150,22 @@ void draw_cuts(ViewState& view, const Simulation& simulation) {
   }
 }
 
-Camera with_whole(const ViewState& view) {
-  return camera_on(view.bounds, -view.camera.towards_viewer_W(), view.camera.up_W());
-}
-
-void draw_view(ViewState& view, const Vec3& tool_W) {
+void draw_view(ViewState& view, const Vec3& tool_W, const PixelSize& size) {
   if (!ui::header("View", true)) return;
   for (const ViewFrom from : kAllViews) {
     std::string letter(1, static_cast<char>(std::toupper(name_of(from).front())));
-    if (ui::button((letter + "##view").c_str())) view.camera = camera_from(from, view.bounds);
+    if (ui::button((letter + "##view").c_str()))
+      view.camera = with_whole(camera_from(from, view.box.bounds()), view.box, size);
     ui::hint(("From " + std::string(name_of(from))).c_str());
     ImGui::SameLine();
   }
-  if (ui::button("Whole")) view.camera = with_whole(view);
+  if (ui::button("Whole")) view.camera = with_whole(view.camera, view.box, size);
   ui::hint("All of the bone, as it is turned now");
   if (ui::button("Find tool")) view.camera.focus_W = tool_W;
   ui::hint("The burr into the middle");
+  ImGui::SameLine();
+  if (ui::button("Bring it here (B)##bring")) view.bring_asked = true;
+  ui::hint("The tool before the bone in the middle of the view; with the key, under the pointer");
   ui::checkbox("ghost", &view.ghost);
   ImGui::SameLine();
   ui::checkbox("arrows", &view.arrows);
@@ -173,18 +186,23 @@ void draw_controls(ViewState& view, Simulation& simulation, FilesPanel& files, c
   ImGui::PushItemWidth(ui::px(130));
   draw_scan(view, simulation.scan_name);
   bool changed = false;
+  draw_isovalue(view, simulation);
   draw_session(view, simulation.milling);
   draw_algorithm(view.wanted, changed);
   draw_tool(view.wanted, view.sound, changed);
-  draw_view(view, simulation.milling.state().record.X_WT.position_mm);
+  draw_view(view, simulation.milling.state().record.X_WT.position_mm, size);
   draw_cuts(view, simulation);
-  draw_isovalue(view, simulation);
   files.draw(view, simulation);
   view.wanted_is_new = view.wanted_is_new || changed;
   view.changes += changed ? 1 : 0;
   if (view.wanted_is_new && !simulation.milling.preparing()) {
     view.wanted_is_new = false;
-    simulation.milling.change(view.wanted);
+    if (const std::string fault = tool_fault(view.wanted.tool, view.box); !fault.empty()) {
+      view.complaint = fault;
+      view.wanted = simulation.milling.setup();
+    } else {
+      simulation.milling.change(view.wanted);
+    }
   }
   if (simulation.milling.preparing()) ImGui::TextColored({0.55f, 0.80f, 1.0f, 1}, "preparing ...");
   if (!view.message.empty()) ImGui::TextWrapped("%s", view.message.c_str());

@@ -1,5 +1,6 @@
 #include "app/simulate/cuts.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -21,6 +22,7 @@ bool same(const ClipPlane& a, const ClipPlane& b) {
 std::optional<std::size_t> cut_under(const ViewState& view, const PixelSize& size, double x_px, double y_px) {
   const Vec3 ray = ray_through(view.camera, size, x_px, y_px);
   const Vec3 eye = view.camera.eye_W();
+  const Sphere bounds = view.box.bounds();
   double nearest_mm = std::numeric_limits<double>::infinity();
   std::optional<std::size_t> found;
   for (std::size_t n = 0; n < view.cuts.size(); ++n) {
@@ -30,7 +32,7 @@ std::optional<std::size_t> cut_under(const ViewState& view, const PixelSize& siz
     const double way_mm = (static_cast<double>(cut.offset_mm) - cut.normal_W.dot(eye)) / towards;
     const Vec3 point_W = eye + way_mm * ray;
     if (way_mm <= 0 || way_mm > nearest_mm) continue;
-    if ((point_W - view.bounds.centre_W).norm() > 1.1 * view.bounds.radius_mm) continue;
+    if ((point_W - bounds.centre_W).norm() > 1.1 * bounds.radius_mm) continue;
     nearest_mm = way_mm;
     found = n;
   }
@@ -69,8 +71,21 @@ void reset_cuts(ViewState& view) {
   for (std::size_t n = 0; n < view.cuts.size(); ++n) {
     view.cuts[n] = {};
     view.cuts[n].normal_W = normals[n];
-    view.cuts[n].offset_mm = static_cast<float>(normals[n].dot(view.bounds.centre_W));
   }
+}
+
+void begin_cut_at(const ViewState& view, ViewState::Cut& cut, const Vec3& tool_W) {
+  constexpr double kLeast = 0.1;
+  double least_mm = std::numeric_limits<double>::infinity();
+  double most_mm = -least_mm;
+  for (const Vec3& corner_W : view.box.corners_W) {
+    least_mm = std::min(least_mm, cut.normal_W.dot(corner_W));
+    most_mm = std::max(most_mm, cut.normal_W.dot(corner_W));
+  }
+  const double place_mm = cut.normal_W.dot(tool_W);
+  cut.offset_mm = static_cast<float>(std::clamp(place_mm, least_mm, most_mm));
+  // Beyond the bone, or near its end, it would leave nothing to be seen.
+  cut.other_side = place_mm > most_mm - kLeast * (most_mm - least_mm);
 }
 
 bool drag_cut(ViewState& view, const PixelSize& size) {
@@ -85,7 +100,7 @@ bool drag_cut(ViewState& view, const PixelSize& size) {
   ViewState::Cut& cut = view.cuts[static_cast<std::size_t>(view.dragged_cut)];
   // The normal as it is seen, pixels a mm; towards the viewer it hardly moves in the picture: then upwards is
   // on.
-  const Vec3 anchor_W = view.bounds.centre_W;
+  const Vec3 anchor_W = view.box.centre_W();
   Eigen::Vector2d seen =
       pixel_of(view.camera, size, anchor_W + cut.normal_W) - pixel_of(view.camera, size, anchor_W);
   const double full = 1 / mm_per_pixel(view.camera, size, depth_of(view.camera, anchor_W));

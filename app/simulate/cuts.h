@@ -27,8 +27,12 @@ class CutUpdates {
   int pictures_ = 0;
 };
 
-/// Three planes across the patient and one that faces the camera, all through the bone's middle and off.
+/// Three planes across the patient and one that faces the camera, all off.
 void reset_cuts(ViewState& view);
+
+/// A cut that is switched on begins at the burr's centre, or at the end of the bone nearest to it; on the
+/// side that leaves bone to be seen.
+void begin_cut_at(const ViewState& view, ViewState::Cut& cut, const Vec3& tool_W);
 
 /// Ctrl with the left button drags the cut under the pointer along its normal; true while it does.
 bool drag_cut(ViewState& view, const PixelSize& size);

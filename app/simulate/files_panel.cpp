@@ -3,15 +3,19 @@
 #include <chrono>
 #include <ctime>
 #include <functional>
+#include <thread>
 
 #include "app/simulate/widgets.h"
 #include <fmt/chrono.h>
 #include <fmt/core.h>
 #include <imgui.h>
+#include <spawn.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "osteomill/ct/write_nrrd.h"
 #include "osteomill/files/atomic_file.h"
+#include "osteomill/files/input_error.h"
 #include "osteomill/recording/read_recording.h"
 #include "osteomill/report/write_report.h"
 #include "osteomill/surface/mesh_file.h"
@@ -32,18 +36,16 @@ void attempt(ViewState& view, const std::function<void()>& work) {
   }
 }
 
-std::string save_scan(const fs::path& path, const DensityGrid& grid) {
-  write_nrrd(path, grid);
-  return "Saved " + path.string();
-}
-
-std::string save_surface(const fs::path& path, const BrickMesh& mesh) {
-  write_mesh(path, mesh);
-  return "Saved " + path.string();
-}
-
-std::string report_on(const fs::path& recording, const fs::path& folder) {
-  return "Report in " + write_report({read_recording(recording)}, folder).string();
+// Whatever the desktop opens it with.
+void open_outside(const fs::path& path) {
+  std::string program = "xdg-open";
+  std::string argument = fs::absolute(path).string();
+  char* const arguments[] = {program.data(), argument.data(), nullptr};
+  pid_t child = 0;
+  if (::posix_spawnp(&child, program.c_str(), nullptr, nullptr, arguments, environ) != 0) {
+    throw InputError(argument, "cannot be opened from here: there is no xdg-open");
+  }
+  std::thread([child] { ::waitpid(child, nullptr, 0); }).detach();
 }
 
 }  // namespace
@@ -65,9 +67,11 @@ void FilesPanel::record(ViewState& view, Simulation& simulation) {
     if (simulation.milling.recording()) {
       last_recording_ = simulation.milling.stop_recording();
       view.message = "Recorded " + last_recording_.string();
+      view.result = last_recording_;
     } else {
       simulation.milling.start_recording(
           name("recording.h5"), simulation.milling.describe(simulation.scan_name, simulation.command_line));
+      recording_since_ = std::chrono::steady_clock::now();
       view.message.clear();
     }
   });
@@ -86,7 +90,10 @@ void FilesPanel::close(ViewState& view, Simulation& simulation) {
 }
 
 void FilesPanel::make_report() {
-  work_ = std::async(std::launch::async, report_on, last_recording_, name("report"));
+  work_ = std::async(std::launch::async, [recording = last_recording_, folder = name("report")] {
+    const fs::path page = write_report({read_recording(recording)}, folder);
+    return Done{"Report in " + page.string(), page};
+  });
 }
 
 void FilesPanel::end_with_report(ViewState& view, Simulation& simulation) {
@@ -94,13 +101,51 @@ void FilesPanel::end_with_report(ViewState& view, Simulation& simulation) {
   if (!last_recording_.empty()) make_report();
 }
 
-void FilesPanel::take_result(ViewState& view) {
+void FilesPanel::save_scan(ViewState& view, Simulation& simulation) {
+  attempt(view, [&] {
+    create_folder(folder_);
+    DensityGrid grid;
+    std::uint64_t version = 0;
+    simulation.milling.read_bone([&](const Volume& bone) {
+      grid = bone.grid();
+      version = simulation.milling.bone_version();
+    });
+    work_ = std::async(std::launch::async, [path = name("milled.nrrd"), grid = std::move(grid)] {
+      write_nrrd(path, grid);
+      return Done{"Saved " + path.string(), path};
+    });
+    saving_version_ = version;
+  });
+}
+
+void FilesPanel::take_result(ViewState& view, Simulation& simulation) {
   if (!work_.valid() || work_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
-  attempt(view, [&] { view.message = work_.get(); });
+  const auto version = std::exchange(saving_version_, std::nullopt);
+  attempt(view, [&] {
+    Done done = work_.get();
+    view.message = std::move(done.said);
+    view.result = std::move(done.result);
+    if (version) simulation.autosave.saved(*version);
+  });
+}
+
+std::optional<double> FilesPanel::recording_s(const Simulation& simulation) const {
+  if (!simulation.milling.recording()) return std::nullopt;
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - recording_since_).count();
+}
+
+void FilesPanel::draw_result(ViewState& view) {
+  if (view.result.empty()) return;
+  if (ui::button("Open folder"))
+    attempt(view, [&] { open_outside(fs::absolute(view.result).parent_path()); });
+  ui::hint("The folder of what was saved last");
+  if (view.result.extension() != ".html") return;
+  ImGui::SameLine();
+  if (ui::button("Open report")) attempt(view, [&] { open_outside(view.result); });
 }
 
 void FilesPanel::draw(ViewState& view, Simulation& simulation) {
-  take_result(view);
+  take_result(view, simulation);
   if (const auto ended = simulation.milling.take_ended_recording()) {
     last_recording_ = *ended;
     view.message = "The change ended the recording " + ended->string();
@@ -112,26 +157,22 @@ void FilesPanel::draw(ViewState& view, Simulation& simulation) {
   const bool free = !busy();
   if (ui::button("Report", free && !last_recording_.empty())) make_report();
   ui::hint("Figures and tables of the last recording");
-  const auto save = [&](std::future<std::string> work) { work_ = std::move(work); };
-  if (ui::button("Save scan", free)) {
-    attempt(view, [&] {
-      create_folder(folder_);
-      DensityGrid grid;
-      simulation.milling.read_bone([&](const Volume& bone) { grid = bone.grid(); });
-      save(std::async(std::launch::async, save_scan, name("milled.nrrd"), std::move(grid)));
-    });
-  }
+  if (ui::button("Save scan", free)) save_scan(view, simulation);
   ImGui::SameLine();
   if (ui::button("Save surface", free)) {
     attempt(view, [&] {
       create_folder(folder_);
       BrickMesh mesh;
       simulation.milling.read_bone([&](const Volume& bone) { mesh = mesh_in_one_piece(DensityView(bone)); });
-      save(std::async(std::launch::async, save_surface, name("surface.ply"), std::move(mesh)));
+      work_ = std::async(std::launch::async, [path = name("surface.ply"), mesh = std::move(mesh)] {
+        write_mesh(path, mesh);
+        return Done{"Saved " + path.string(), path};
+      });
     });
   }
   ImGui::SameLine();
   if (ui::button("Save picture")) view.picture_asked = true;
+  draw_result(view);
   if (busy()) {
     ImGui::TextColored({0.55f, 0.80f, 1.0f, 1}, "writing ...");
   }

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <future>
+#include <optional>
 #include <string>
 
 #include "app/simulate/simulation.h"
@@ -27,8 +29,12 @@ class FilesPanel {
   }
   /// Ends a recording that goes on and begins the report of the last one. Not while busy.
   void end_with_report(ViewState& view, Simulation& simulation);
+  /// Begins to write the milled bone. Not while busy.
+  void save_scan(ViewState& view, Simulation& simulation);
   /// Tells in the view how it went once what was being written is written.
-  void take_result(ViewState& view);
+  void take_result(ViewState& view, Simulation& simulation);
+  /// For how long a recording has been going on, s; nothing where none does.
+  std::optional<double> recording_s(const Simulation& simulation) const;
   const std::filesystem::path& last_recording() const { return last_recording_; }
   /// A new name in the folder.
   std::filesystem::path name(const std::string& what) const;
@@ -39,8 +45,16 @@ class FilesPanel {
 
   std::filesystem::path folder_;
   std::filesystem::path last_recording_;
-  // Returns what is to be said.
-  std::future<std::string> work_;
+  struct Done {
+    std::string said;
+    std::filesystem::path result;
+  };
+  void draw_result(ViewState& view);
+
+  std::chrono::steady_clock::time_point recording_since_;
+  std::future<Done> work_;
+  // Of the bone that is being saved.
+  std::optional<std::uint64_t> saving_version_;
 };
 
 }  // namespace osteomill::app

@@ -2,8 +2,10 @@
 
 #include <cmath>
 
+#include "app/simulate/dialogues.h"
 #include "app/simulate/widgets.h"
 #include <GLFW/glfw3.h>
+#include <fmt/core.h>
 #include <imgui.h>
 
 #include "osteomill/view/annotations.h"
@@ -15,6 +17,7 @@ namespace {
 constexpr const char* kControls[][2] = {
     {"Turn, pan, zoom the view", "left drag, middle (or Shift+left) drag, right drag or wheel"},
     {"Take the tool in hand, and let go", "T (or drag the tool itself)"},
+    {"Bring it before the bone", "B: under the pointer"},
     {"Move it", "mouse, or arrow keys"},
     {"Press it in, pull it back", "wheel, or Page Up and Page Down"},
     {"Turn it", "Shift with mouse or arrow keys"},
@@ -74,61 +77,53 @@ void draw_annotations(const ViewState& view, const PixelSize& size, bool patient
   for (const Annotation& letter : orientation_letters(view.camera, usual)) draw(list, letter);
 }
 
-void draw_help(ViewState& view, const PixelSize& size) {
+void draw_help(ViewState& view, const PixelSize& size, float top_px) {
   if (!view.help) return;
-  begin_in_the_middle("How to mill", size);
-  if (ImGui::BeginTable("controls", 2)) {
-    for (const auto& [what, how] : kControls) {
-      ImGui::TableNextRow();
-      ImGui::TableNextColumn();
-      ImGui::TextUnformatted(what);
-      ImGui::TableNextColumn();
-      ImGui::TextColored({0.55f, 0.80f, 1.0f, 1.0f}, "%s", how);
-    }
-    ImGui::EndTable();
+  // Beside the bone and the tool, which it explains.
+  const float width = ui::px(250);
+  const auto width_px = static_cast<float>(size.width);
+  ImGui::SetNextWindowPos({width_px - width - ui::px(8), top_px});
+  ImGui::SetNextWindowSizeConstraints({width, 0},
+                                      {width, static_cast<float>(size.height) - top_px - ui::px(8)});
+  ImGui::Begin("How to mill", nullptr,
+               ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoFocusOnAppearing);
+  if (ui::button("Start milling")) view.help = false;
+  ImGui::PushTextWrapPos(0);
+  for (const auto& [what, how] : kControls) {
+    ImGui::TextUnformatted(what);
+    ImGui::PushStyleColor(ImGuiCol_Text, {0.55f, 0.80f, 1.0f, 1.0f});
+    ImGui::TextWrapped("%s", how);
+    ImGui::PopStyleColor();
   }
   ImGui::Spacing();
   ImGui::TextUnformatted(
-      "Grey and gold: the tool as bone lets it be. Blue: where your hand is; the further it sinks in,\n"
-      "the harder you press. Green: the force on your hand, amber: the torque, red: where it acts.");
-  ImGui::Spacing();
-  if (ui::button("Start milling")) view.help = false;
-  ImGui::End();
-}
-
-void draw_complaint(ViewState& view) {
-  constexpr const char* kTitle = "That did not work";
-  if (!view.complaint.empty() && !ImGui::IsPopupOpen(kTitle)) ImGui::OpenPopup(kTitle);
-  if (!ImGui::BeginPopupModal(kTitle, nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
-  ImGui::PushTextWrapPos(ui::px(520));
-  ImGui::TextUnformatted(view.complaint.c_str());
+      "Grey and gold: the tool as bone lets it be. Blue: your hand; the further it sinks in, the harder you "
+      "press. Green: the force on it, amber: the torque, red: where it acts.");
   ImGui::PopTextWrapPos();
-  ImGui::Spacing();
-  if (ui::button("Close")) {
-    view.complaint.clear();
-    ImGui::CloseCurrentPopup();
-  }
-  ImGui::EndPopup();
+  ImGui::End();
+  if (dialogue_open() || ImGui::GetIO().WantTextInput) return;
+  const auto pressed = [](int key) { return ImGui::IsKeyPressed(key, false); };
+  if (pressed(GLFW_KEY_ENTER) || pressed(GLFW_KEY_ESCAPE)) view.help = false;
 }
 
-void draw_closing(ViewState& view) {
-  constexpr const char* kTitle = "Close osteomill";
-  const bool shown = view.closing != Closing::no && view.complaint.empty();
-  if (shown && !ImGui::IsPopupOpen(kTitle)) ImGui::OpenPopup(kTitle);
-  if (!ImGui::BeginPopupModal(kTitle, nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
-  if (!shown) ImGui::CloseCurrentPopup();
-  if (view.closing == Closing::asking) {
-    ImGui::TextUnformatted("What you did was recorded. Shall its report be made?");
-    ImGui::Spacing();
-    if (ui::button("Make the report and close")) view.closing = Closing::report_asked;
-    ImGui::SameLine();
-    if (ui::button("Close without")) view.closing = Closing::now;
-    ImGui::SameLine();
-    if (ui::button("Stay") || ImGui::IsKeyPressed(GLFW_KEY_ESCAPE, false)) view.closing = Closing::no;
-  } else {
-    ImGui::TextUnformatted("Writing the report ...");
-  }
-  ImGui::EndPopup();
+std::string recording_text(double recording_s) {
+  const auto whole_s = static_cast<int>(recording_s);
+  return fmt::format("REC {}:{:02}", whole_s / 60, whole_s % 60);
+}
+
+void draw_recording(double recording_s, const PixelSize& size) {
+  const std::string text = recording_text(recording_s);
+  const ImVec2 text_px = ImGui::CalcTextSize(text.c_str());
+  const float margin = 0.5f * text_px.y;
+  const ImVec2 place(0.5f * (static_cast<float>(size.width) - text_px.x), ui::px(8) + margin);
+  ImDrawList& list = *ImGui::GetForegroundDrawList();
+  list.AddRectFilled({place.x - 3 * margin, place.y - margin},
+                     {place.x + text_px.x + margin, place.y + text_px.y + margin}, IM_COL32(200, 30, 30, 255),
+                     margin);
+  list.AddCircleFilled({place.x - 1.6f * margin, place.y + 0.5f * text_px.y}, 0.6f * margin,
+                       IM_COL32(255, 255, 255, 255));
+  list.AddText(place, IM_COL32(255, 255, 255, 255), text.c_str());
 }
 
 bool draw_loading(const std::string& what, double share_done, double passed_s, const PixelSize& size,

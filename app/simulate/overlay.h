@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "app/simulate/simulation.h"
 #include "app/simulate/view_state.h"
 
@@ -8,14 +10,12 @@ namespace osteomill::app {
 /// Scale bar and orientation letters over the picture.
 void draw_annotations(const ViewState& view, const PixelSize& size, bool patient);
 
-/// How everything is done, over everything, until it is sent away.
-void draw_help(ViewState& view, const PixelSize& size);
+/// How everything is done, on the right from `top_px` down, until it is sent away.
+void draw_help(ViewState& view, const PixelSize& size, float top_px);
 
-/// A dialogue with what went wrong, until it is sent away.
-void draw_complaint(ViewState& view);
-
-/// Asks whether to make the report before the window closes.
-void draw_closing(ViewState& view);
+/// A red badge with how long a recording has been going on.
+std::string recording_text(double recording_s);
+void draw_recording(double recording_s, const PixelSize& size);
 
 /// In the middle of an empty window, or above the bone that is milled meanwhile: how far opening a scan is.
 /// True when it is to be given up.

@@ -9,7 +9,7 @@ namespace osteomill::app {
 /// The column on the left: everything that can be set.
 void draw_controls(ViewState& view, Simulation& simulation, FilesPanel& files, const PixelSize& size);
 
-/// The column on the right: everything that is measured.
-void draw_readings(Simulation& simulation, double pictures_per_s, const PixelSize& size);
+/// The column on the right: everything that is measured. Returns where the next thing below has room.
+float draw_readings(Simulation& simulation, double pictures_per_s, const PixelSize& size);
 
 }  // namespace osteomill::app

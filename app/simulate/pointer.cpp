@@ -1,8 +1,10 @@
 #include "app/simulate/pointer.h"
 
 #include <cmath>
+#include <utility>
 
 #include "app/simulate/cuts.h"
+#include "app/simulate/dialogues.h"
 #include "app/simulate/tool_control.h"
 #include <GLFW/glfw3.h>
 #include <imgui.h>
@@ -81,9 +83,44 @@ void take_keys(ViewState& view, LiveMilling& milling) {
   if (io.KeyCtrl && pressed(GLFW_KEY_Z) && milling.cuts() > 0) milling.undo();
 }
 
+// Where the pointer is, if it is on bone, or else in the middle.
+void bring_tool(ViewState& view, Simulation& simulation, const PixelSize& size, bool at_pointer) {
+  LiveMilling& milling = simulation.milling;
+  const MillingTool& tool = milling.setup().tool;
+  const ImVec2& pointer = ImGui::GetIO().MousePos;
+  milling.set_spindle(false);
+  milling.read_bone([&](const Volume& bone) {
+    if (at_pointer) {
+      view.X_W_brought = tool_before(bone, tool, view.camera, size, static_cast<double>(pointer.x),
+                                     static_cast<double>(pointer.y));
+    }
+    if (!view.X_W_brought) view.X_W_brought = tool_before_middle(bone, tool, view.camera, size);
+  });
+  milling.place(*view.X_W_brought, [&hand = simulation.hand](const Pose& X_WD) { hand.put_at(X_WD); });
+}
+
+void pull_tool(ViewState& view, Simulation& simulation, const ToolInput& input, const PixelSize& size) {
+  if (view.X_W_brought) {
+    if (simulation.milling.placing()) return;
+    view.X_W_target = *std::exchange(view.X_W_brought, std::nullopt);
+  }
+  const Pose& X_WD = simulation.milling.state().record.X_WD;
+  view.X_W_target = moved_target(view.X_W_target, X_WD, view.camera, size, input);
+  simulation.hand.pull_to(view.X_W_target);
+}
+
+void let_go_of_buttons(ViewState& view, LiveMilling& milling) {
+  if (view.pedal_down) milling.set_spindle(false);
+  view.pedal_down = view.dragging_tool = view.dragging_view = false;
+}
+
 }  // namespace
 
 void take_input(ViewState& view, Simulation& simulation, SpaceMouse& space_mouse, const PixelSize& size) {
+  if (dialogue_open()) {
+    let_go_of_buttons(view, simulation.milling);
+    return;
+  }
   if (drag_cut(view, size)) return;
   const ImGuiIO& io = ImGui::GetIO();
   LiveMilling& milling = simulation.milling;
@@ -97,11 +134,7 @@ void take_input(ViewState& view, Simulation& simulation, SpaceMouse& space_mouse
     view.pedal_down = on_picture && view.holding_tool;
     if (view.pedal_down) milling.set_spindle(true);
   }
-  if (ImGui::IsMouseReleased(0)) {
-    if (view.pedal_down) milling.set_spindle(false);
-    view.pedal_down = false;
-    view.dragging_tool = view.dragging_view = false;
-  }
+  if (ImGui::IsMouseReleased(0)) let_go_of_buttons(view, milling);
   const bool on_picture = !io.WantCaptureMouse || view.dragging_view || view.dragging_tool;
   if (on_picture) move_camera(view, size, !view.dragging_view);
 
@@ -113,9 +146,12 @@ void take_input(ViewState& view, Simulation& simulation, SpaceMouse& space_mouse
     input.moved_px = {static_cast<double>(io.MouseDelta.x), static_cast<double>(io.MouseDelta.y)};
   }
   if (on_picture && view.holding_tool) input.wheel = static_cast<double>(io.MouseWheel);
-  view.X_W_target = moved_target(view.X_W_target, state.record.X_WD, view.camera, size, input);
-  simulation.hand.pull_to(view.X_W_target);
+  pull_tool(view, simulation, input, size);
   take_keys(view, milling);
+  const bool by_key = !io.WantTextInput && ImGui::IsKeyPressed(GLFW_KEY_B, false);
+  if ((std::exchange(view.bring_asked, false) || by_key) && !milling.placing()) {
+    bring_tool(view, simulation, size, by_key && !io.WantCaptureMouse);
+  }
 }
 
 }  // namespace osteomill::app

@@ -61,7 +61,7 @@ void draw_faults(const std::deque<TickRecord>& history) {
 
 }  // namespace
 
-void draw_readings(Simulation& simulation, double pictures_per_s, const PixelSize& size) {
+float draw_readings(Simulation& simulation, double pictures_per_s, const PixelSize& size) {
   ImGui::SetNextWindowPos({static_cast<float>(size.width) - ui::px(kWidth_px + 8), ui::px(8)});
   ImGui::SetNextWindowSize({ui::px(kWidth_px), 0});
   ImGui::Begin("Readings", nullptr, ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize);
@@ -84,7 +84,9 @@ void draw_readings(Simulation& simulation, double pictures_per_s, const PixelSiz
     ImGui::TextColored(kWarning, "%s", simulation.milling.refused_real_time().c_str());
     ImGui::PopTextWrapPos();
   }
+  const float below_px = ImGui::GetWindowPos().y + ImGui::GetWindowSize().y + ui::px(8);
   ImGui::End();
+  return below_px;
 }
 
 }  // namespace osteomill::app

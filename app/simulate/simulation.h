@@ -4,9 +4,10 @@
 #include <string>
 
 #include "app/scan_options.h"
+#include "app/simulate/autosave.h"
+#include "app/simulate/bone_view.h"
 
 #include "osteomill/live/live_milling.h"
-#include "osteomill/operator/milling_entry.h"
 #include "osteomill/operator/virtual_hand.h"
 #include "osteomill/view/clip_face.h"
 #include "osteomill/volume/density_histogram.h"
@@ -16,30 +17,43 @@ namespace osteomill::app {
 /// A scan made ready for milling, and what the window shows of it beside its surface.
 struct OpenedScan {
   std::string name;
-  MillingEntry entry;
+  /// Of which scan it is, without anything milled.
+  MilledBone as_scanned;
+  /// Where its isovalue came from, half a sentence, and "HU" where that is its unit.
+  std::string isovalue_from;
+  std::string unit;
+  BoneBox box;
   DensityHistogram histogram;
   WindowLevel grey_window;
   PreparedMilling milling;
 };
 
-/// Takes seconds; in any thread, also while another scan is milled. Throws InputError as `load_bone` does,
-/// and std::invalid_argument for settings out of range.
-OpenedScan open_for_milling(const ScanOptions& scan, const MillingSetup& setup);
+/// Takes seconds; in any thread, also while another scan is milled. `milled` in its place where it is the
+/// file of what was milled of this scan before. Throws InputError as `load_bone` does, and
+/// std::invalid_argument for settings out of range.
+OpenedScan open_for_milling(const ScanOptions& scan, const MillingSetup& setup,
+                            const std::filesystem::path& milled = {});
 
 /// A scan that is being milled by a virtual hand. Begins to tick when it is made; one at a time.
 struct Simulation {
-  Simulation(OpenedScan opened, const std::string& command_line);
+  /// The tool begins at `X_WT`. What was milled before may already be kept in `autosave_file`.
+  Simulation(OpenedScan opened, const Pose& X_WT, const std::string& command_line,
+             std::optional<AutosaveFile> autosave_file = std::nullopt);
 
-  /// Once a picture: as LiveMilling::update, and keeps the ticks.
+  /// Once a picture: as LiveMilling::update, and keeps the ticks and what was milled.
   void update();
 
   std::string scan_name;
   std::string command_line;
-  MillingEntry entry;
+  /// The one it was opened with.
+  double first_isovalue;
+  std::string isovalue_from;
+  std::string unit;
   DensityHistogram histogram;
   WindowLevel grey_window;
   VirtualHand hand;
   LiveMilling milling;
+  Autosave autosave;
   /// The ticks of the last 5 seconds.
   std::deque<TickRecord> history;
 };

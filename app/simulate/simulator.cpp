@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "app/simulate/cuts.h"
+#include "app/simulate/dialogues.h"
 #include "app/simulate/files_panel.h"
 #include "app/simulate/first_time.h"
 #include "app/simulate/opening.h"
@@ -76,18 +77,25 @@ class Simulator {
   }
 
   void run() {
-    begin_opening(options_.scan);
+    // What a program left that ended without asking comes before the scan that was named.
+    left_ = last_left_milling();
+    if (!left_) begin_opening(options_.scan);
     while (!over()) {
       begin();
       if (simulation_) {
         work();
+      } else if (left_) {
+        decide_on_left_milling();
       } else {
         wait_for_scan();
       }
       finish();
     }
     if (script_) script_->end();
-    if (simulation_) files_.close(view_, *simulation_);
+    if (simulation_) {
+      files_.close(view_, *simulation_);
+      simulation_->autosave.discard();
+    }
     if (!view_.complaint.empty()) fmt::print(stderr, "osteomill: {}\n", view_.complaint);
     if (reported_) {
       fmt::print("{}\n{}\n", files_.last_recording().string(), view_.message);
@@ -97,16 +105,31 @@ class Simulator {
   }
 
  private:
+  // Does it at once where nothing is lost by it.
+  void ask_before(const char* what, const UnsavedQuestion::Action& go_on,
+                  const UnsavedQuestion::Action& stay = {}) {
+    if (question_.asking()) return;
+    if (simulation_ && simulation_->autosave.unsaved(simulation_->milling)) {
+      question_.ask(what, go_on, stay);
+    } else {
+      go_on();
+    }
+  }
+
+  void close() {
+    const bool recorded = simulation_ && files_.recorded(*simulation_);
+    view_.closing = recorded ? Closing::asking : Closing::now;
+  }
+
   bool over() {
     if (window_.take_close_asked() && view_.closing == Closing::no) {
-      const bool recorded = simulation_ && files_.recorded(*simulation_);
-      view_.closing = recorded ? Closing::asking : Closing::now;
+      ask_before("Closing the window", [this] { close(); });
     }
     if (view_.closing == Closing::report_asked && !files_.busy()) {
       files_.end_with_report(view_, *simulation_);
       view_.closing = Closing::reporting;
     } else if (view_.closing == Closing::reporting) {
-      files_.take_result(view_);
+      files_.take_result(view_, *simulation_);
       reported_ = !files_.busy() && view_.complaint.empty();
       // Whoever is to read why there is no report stays.
       if (!files_.busy()) view_.closing = reported_ ? Closing::now : Closing::no;
@@ -117,19 +140,37 @@ class Simulator {
   void begin() {
     window_.begin_frame();
     const bool settled = simulation_ && !simulation_->milling.preparing() && !view_.wanted_is_new &&
-                         !files_.busy() && !opening_.valid();
-    if (script_ && (simulation_ || script_->at_once()))
+                         !files_.busy() && (!opening() || question_.asking());
+    if (script_ && (simulation_ || left_ || script_->at_once())) {
       script_->feed(seconds_since(last_picture_), settled, window_);
+    }
     last_picture_ = Clock::now();
     ImGui::NewFrame();
   }
 
-  void begin_opening(const ScanOptions& scan) {
+  void decide_on_left_milling() {
+    const auto answer = draw_left_milling(left_->facts);
+    if (!answer) return;
+    if (*answer == LeftAnswer::remove) left_->file.clear();
+    if (*answer == LeftAnswer::open) {
+      begin_opening({left_->facts.scan, left_->facts.isovalue}, std::move(left_->file));
+    } else {
+      begin_opening(options_.scan);
+    }
+    left_.reset();
+  }
+
+  bool opening() const { return opening_.valid() || opened_; }
+
+  void begin_opening(const ScanOptions& scan, std::optional<AutosaveFile> milled = std::nullopt) {
     opened_scan_ = scan;
+    opened_milled_ = std::move(milled);
     opening_since_ = Clock::now();
     changes_before_ = view_.changes;
     const MillingSetup setup = simulation_ ? view_.wanted : options_.setup;
-    opening_.begin([scan, setup] { return open_for_milling(scan, setup); });
+    opening_.begin([scan, setup, milled = opened_milled_ ? opened_milled_->path() : std::filesystem::path()] {
+      return open_for_milling(scan, setup, milled);
+    });
   }
 
   void draw_opening() {
@@ -141,6 +182,7 @@ class Simulator {
 
   void give_up_opening(const std::string& what) {
     opening_.stop();
+    opened_milled_.reset();
     view_.message = "Opening " + what + " was given up";
     // There is nothing to be shown.
     if (!simulation_) view_.closing = Closing::now;
@@ -152,41 +194,56 @@ class Simulator {
     if (!view_.scan_asked.empty()) asked.push_back(std::exchange(view_.scan_asked, {}));
     if (asked.size() > 1) {
       view_.complaint = "One scan at a time: a file, or the folder of a series";
-    } else if (!asked.empty()) {
+    } else if (!asked.empty() && !question_.asking()) {
       begin_opening({asked.front(), {}});
     }
-    if (!opening_.valid() || opening_.wait_for(0s) != std::future_status::ready) return;
-    try {
-      take_scan();
-    } catch (const std::exception& error) {
-      if (!simulation_) throw;
-      view_.complaint = error.what();
+    if (opening_.valid() && opening_.wait_for(0s) == std::future_status::ready) {
+      try {
+        opened_ = opening_.get();
+      } catch (const std::exception& error) {
+        view_.complaint = error.what();
+      }
     }
+    if (!opened_ || files_.busy()) return;
+    ask_before(
+        "Opening another scan", [this] { take_scan(); }, [this] { opened_.reset(); });
   }
 
   void take_scan() {
-    OpenedScan opened = opening_.get();
+    OpenedScan opened = std::move(*opened_);
+    opened_.reset();
     if (simulation_) {
       files_.end_recording(view_, *simulation_);
+      simulation_->autosave.discard();
       view_.wanted_is_new = view_.changes != changes_before_;
       options_.command_line += " # then opened in the window: " + opened.name;
+      view_.message = fmt::format("Opened {}: isovalue {:.4g}{}, {}", opened.name, opened.as_scanned.isovalue,
+                                  opened.unit, opened.isovalue_from);
+      view_.result.clear();
       simulation_.reset();
     } else {
       view_.wanted = opened.milling.setup;
       view_.help = view_.help && first_time_of_help();
     }
     options_.scan = opened_scan_;
-    simulation_ = std::make_unique<Simulation>(std::move(opened), options_.command_line);
+    const PixelSize size = window_.size();
+    view_.box = opened.box;
+    window_.set_title(std::filesystem::path(opened.name).filename().string() + " - osteomill");
+    view_.camera = first_camera(view_.box, size);
+    const Volume& bone = opened.milling.session->volume();
+    // Before its upper half, so that the shaft leaves the bone in sight.
+    const Pose X_WT =
+        tool_before_middle(bone, opened.milling.setup.tool, view_.camera, size, 0.15 * size.height);
+    simulation_ = std::make_unique<Simulation>(std::move(opened), X_WT, options_.command_line,
+                                               std::exchange(opened_milled_, std::nullopt));
     show_from_the_beginning();
   }
 
   void show_from_the_beginning() {
     LiveMilling& milling = simulation_->milling;
-    milling.read_bone(
-        [&](const Volume& bone) { view_.bounds = bounds_of_bone(bone.grid(), bone.isovalue()); });
-    view_.camera = camera_on_entry(simulation_->entry, view_.bounds);
     view_.X_W_target = milling.state().record.X_WD;
-    view_.isovalue = static_cast<float>(milling.isovalue());
+    view_.isovalue.reset();
+    view_.X_W_brought.reset();
     view_.holding_tool = view_.dragging_tool = view_.dragging_view = view_.pedal_down = false;
     view_.dragged_cut = -1;
     reset_cuts(view_);
@@ -198,20 +255,38 @@ class Simulator {
   void wait_for_scan() {
     // The last thing said is what is meant.
     if (const auto asked = window_.take_dropped(); !asked.empty()) begin_opening({asked.back(), {}});
-    if (opening_.wait_for(0s) == std::future_status::ready) take_scan();
+    if (opening_.wait_for(0s) == std::future_status::ready) take_first_scan();
     draw_opening();
+  }
+
+  void take_first_scan() {
+    try {
+      opened_ = opening_.get();
+    } catch (const std::exception& error) {
+      if (!opened_milled_) throw;
+      // It stays for another start, when its scan may be there again.
+      view_.complaint = error.what();
+      begin_opening(options_.scan);
+      return;
+    }
+    take_scan();
   }
 
   void work() {
     const PixelSize size = window_.size();
     if (size.width < 1 || size.height < 1) return;
+    question_.proceed(view_, *simulation_, files_);
     open_another();
+    if (std::exchange(view_.reset_asked, false)) {
+      ask_before("Resetting the bone", [this] { simulation_->milling.reset(); });
+    }
     try {
       simulation_->update();
     } catch (const std::exception& error) {
       view_.complaint = error.what();
       view_.wanted = simulation_->milling.setup();
     }
+    if (view_.message.empty()) view_.message = simulation_->autosave.take_complaint();
     take_input(view_, *simulation_, space_mouse_, size);
     take_surface();
     cuts_.update(view_, *simulation_, *renderer_);
@@ -220,10 +295,12 @@ class Simulator {
     if (std::exchange(view_.picture_asked, false)) save_picture();
     draw_annotations(view_, size, !options_.scan.scan.empty());
     draw_controls(view_, *simulation_, files_, size);
-    draw_readings(*simulation_, rate_.per_s(), size);
+    const float below_px = draw_readings(*simulation_, rate_.per_s(), size);
     if (opening_.valid()) draw_opening();
-    draw_help(view_, size);
+    draw_help(view_, size, below_px);
+    if (const auto recording_s = files_.recording_s(*simulation_)) draw_recording(*recording_s, size);
     draw_complaint(view_);
+    question_.draw();
     draw_closing(view_);
     set_sound();
   }
@@ -268,6 +345,7 @@ class Simulator {
       const auto path = files_.name("picture.png");
       write_png(path, picture);
       view_.message = "Saved " + path.string();
+      view_.result = path;
     } catch (const std::exception& error) {
       view_.complaint = error.what();
     }
@@ -275,7 +353,7 @@ class Simulator {
 
   void finish() {
     window_.end_frame();
-    if (script_ && (simulation_ || script_->at_once())) tell(script_->after_drawing(window_));
+    if (script_ && (simulation_ || left_ || script_->at_once())) tell(script_->after_drawing(window_));
     window_.show();
     rate_.count();
     ++pictures_since_said_;
@@ -290,13 +368,15 @@ class Simulator {
   }
 
   void tell(const UiScript::Saying& saying) {
-    if (saying.text.empty() || !simulation_) return;
-    if (saying.state) {
+    if (saying.text.empty()) return;
+    if (!simulation_) {
+      if (left_) fmt::print("{}\n", saying.text);
+    } else if (saying.state) {
       fmt::print("{}", state_text(saying.text, view_, *simulation_, files_, heard_, window_.size()));
-      std::fflush(stdout);
     } else {
       say(saying.text);
     }
+    std::fflush(stdout);
   }
 
   void say(const std::string& text) {
@@ -319,6 +399,12 @@ class Simulator {
   Window window_;
   std::optional<UiScript> script_;
   Opening opening_;
+  // What is offered of an earlier program.
+  std::optional<LeftMilling> left_;
+  // Read, and waiting for an answer to what becomes of the one that is milled.
+  std::optional<OpenedScan> opened_;
+  std::optional<AutosaveFile> opened_milled_;
+  UnsavedQuestion question_;
   ScanOptions opened_scan_;
   Clock::time_point opening_since_;
   int changes_before_ = 0;

@@ -2,6 +2,7 @@
 
 #include <string_view>
 
+#include "app/simulate/overlay.h"
 #include "app/simulate/scene_of.h"
 #include "app/simulate/widgets.h"
 #include <fmt/core.h>
@@ -55,12 +56,22 @@ void add_setup(Lines& lines, const MillingSetup& setup) {
   lines.add("vibration", setup.vibration);
 }
 
-void add_scene(Lines& lines, const ViewScene& scene, const PixelSize& size) {
+void add_scene(Lines& lines, const ViewState& view, const ViewScene& scene, const PixelSize& size) {
   lines.add("towards_viewer", text_of(scene.camera.towards_viewer_W()));
   lines.add("focus", text_of(scene.camera.focus_W));
   lines.add("distance_mm", fmt::format("{:.2f}", scene.camera.distance_mm));
   const Eigen::Vector2d tool = pixel_of(scene.camera, size, scene.X_WT->position_mm);
+  int seen_whole = 0;
+  for (const Vec3& corner_W : view.box.corners_W) {
+    const Eigen::Vector2d corner = pixel_of(scene.camera, size, corner_W);
+    seen_whole +=
+        corner.x() > 300 && corner.x() < size.width - 300 && corner.y() > 0 && corner.y() < size.height ? 1
+                                                                                                        : 0;
+  }
+  lines.add("corners_seen", seen_whole);
+  lines.add("up_seen", text_of(seen(scene.camera, Vec3::UnitZ())));
   lines.add("tool_px", fmt::format("{:.0f} {:.0f}", tool.x(), tool.y()));
+  lines.add("tool_W", text_of(scene.X_WT->position_mm));
   lines.add("tool_seen", text_of(seen(scene.camera, scene.X_WT->position_mm)));
   lines.add("ghost", scene.X_WD.has_value());
   lines.add("force_arrow_N", fmt::format("{:.3f}", scene.wrench.force_N.norm()));
@@ -74,23 +85,35 @@ void add_scene(Lines& lines, const ViewScene& scene, const PixelSize& size) {
 
 }  // namespace
 
+std::string isovalue_text(const Simulation& simulation) {
+  if (simulation.milling.isovalue() == simulation.first_isovalue) return simulation.isovalue_from;
+  return fmt::format("set here; first {:.4g}{}, {}", simulation.first_isovalue, simulation.unit,
+                     simulation.isovalue_from);
+}
+
 std::string state_text(const std::string& name, const ViewState& view, Simulation& simulation,
                        const FilesPanel& files, const SpindleState& heard, const PixelSize& size) {
   Lines lines(name);
   LiveMilling& milling = simulation.milling;
   const LiveState& state = milling.state();
   add_setup(lines, milling.setup());
-  add_scene(lines, scene_of(view, simulation), size);
+  add_scene(lines, view, scene_of(view, simulation), size);
   lines.add("target_seen", text_of(seen(view.camera, view.X_W_target.position_mm)));
   lines.add("target_turned", text_of(seen(view.camera, rotation_vector(view.X_W_target.orientation))));
+  lines.add("shaft_seen", text_of(seen(view.camera, state.record.X_WT.orientation * Vec3::UnitZ())));
+  lines.add("force_N", fmt::format("{:.3f}", state.record.wrench.force_N.norm()));
   lines.add("in_hand", view.holding_tool);
   lines.add("spindle", state.spindle_on);
   lines.add("paused", state.paused);
   lines.add("heard_rpm", fmt::format("{:.0f}", heard.speed_rpm));
-  lines.add("isovalue", fmt::format("{:.0f}", milling.isovalue()));
+  lines.add("isovalue", fmt::format("{:.6g}", milling.isovalue()));
+  lines.add("isovalue_from", isovalue_text(simulation));
   lines.add("removed_mm3", fmt::format("{:.3f}", state.record.removed_mm3));
   lines.add("cuts", milling.cuts());
+  lines.add("unsaved", simulation.autosave.unsaved(milling));
   lines.add("recording", milling.recording());
+  const auto recording_s = files.recording_s(simulation);
+  lines.add("badge", recording_s ? recording_text(*recording_s) : "");
   lines.add("last_recording", files.last_recording().string());
   lines.add("scan", simulation.scan_name);
   lines.add("help", view.help);

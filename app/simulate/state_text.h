@@ -15,4 +15,7 @@ namespace osteomill::app {
 std::string state_text(const std::string& name, const ViewState& view, Simulation& simulation,
                        const FilesPanel& files, const SpindleState& heard, const PixelSize& size);
 
+/// Where the isovalue in force came from.
+std::string isovalue_text(const Simulation& simulation);
+
 }  // namespace osteomill::app

@@ -1,7 +1,11 @@
 #pragma once
 
 #include <array>
+#include <filesystem>
+#include <optional>
 #include <string>
+
+#include "app/simulate/bone_view.h"
 
 #include "osteomill/session/milling_setup.h"
 #include "osteomill/view/scene.h"
@@ -14,8 +18,11 @@ enum class Closing { no, asking, report_asked, reporting, now };
 /// What the window shows and how, beside the simulation itself.
 struct ViewState {
   Camera camera;
-  Sphere bounds;
+  BoneBox box;
   Pose X_W_target;
+  /// Where the tool is brought to, until it is there.
+  std::optional<Pose> X_W_brought;
+  bool bring_asked = false;
   /// The pointer moves the tool without a button.
   bool holding_tool = false;
   /// What the left button drags, settled where it went down.
@@ -37,13 +44,15 @@ struct ViewState {
   std::string scan_asked;
   /// So many times larger text was asked for, less the times that smaller was.
   int text_steps = 0;
+  bool reset_asked = false;
   bool full_screen_asked = false;
   bool picture_asked = false;
   Closing closing = Closing::no;
   /// A dialogue that waits to be read.
   std::string complaint;
-  /// What was done last.
+  /// What was done last, and the file or folder that came of it, if any did.
   std::string message;
+  std::filesystem::path result;
 
   /// The three planes across the patient and a free one, with their places along their normals.
   struct Cut {
@@ -55,8 +64,8 @@ struct ViewState {
   std::array<Cut, kMaxClipPlanes> cuts;
   /// Which one the pointer drags, or -1.
   int dragged_cut = -1;
-  /// While the slider is moved, before the bone is made anew.
-  float isovalue = 0;
+  /// While the slider is moved, and until the bone is made anew.
+  std::optional<float> isovalue;
 };
 
 }  // namespace osteomill::app

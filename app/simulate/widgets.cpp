@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <GLFW/glfw3.h>
+
 namespace osteomill::app::ui {
 
 namespace {
@@ -75,6 +77,23 @@ bool header(const char* label, bool open) {
 
 bool released() {
   return ImGui::IsItemDeactivatedAfterEdit();
+}
+
+std::optional<std::size_t> choice(std::initializer_list<const char*> labels) {
+  std::optional<std::size_t> chosen;
+  std::size_t n = 0;
+  for (const char* label : labels) {
+    if (n > 0) ImGui::SameLine();
+    if (button(label)) chosen = n;
+    ++n;
+  }
+  // The key that led to the dialogue may still be going down.
+  if (ImGui::IsWindowAppearing()) return chosen;
+  const auto pressed = [](int key) { return ImGui::IsKeyPressed(key, false); };
+  if (pressed(GLFW_KEY_ENTER) || pressed(GLFW_KEY_KP_ENTER)) chosen = 0;
+  if (pressed(GLFW_KEY_ESCAPE)) chosen = labels.size() - 1;
+  if (chosen) worked().insert(labels.begin()[*chosen]);
+  return chosen;
 }
 
 void hint(const char* text) {

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstddef>
+#include <initializer_list>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 
@@ -34,6 +36,8 @@ bool text_field(const char* label, char* text, std::size_t size);
 bool header(const char* label, bool open);
 /// True when a change of the slider drawn last is over.
 bool released();
+/// A dialogue's buttons in a row, by number the one that was chosen: Enter is the first, Esc the last.
+std::optional<std::size_t> choice(std::initializer_list<const char*> labels);
 /// Explains the widget drawn last where the pointer rests on it.
 void hint(const char* text);
 

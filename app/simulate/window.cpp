@@ -149,6 +149,10 @@ bool Window::take_close_asked() {
   return asked;
 }
 
+void Window::set_title(const std::string& title) {
+  glfwSetWindowTitle(window_, title.c_str());
+}
+
 PixelSize Window::size() const {
   PixelSize size;
   glfwGetFramebufferSize(window_, &size.width, &size.height);

@@ -28,6 +28,7 @@ class Window {
   void ask_to_close();
   /// Whether closing was asked for since the last call.
   bool take_close_asked();
+  void set_title(const std::string& title);
   /// Of the framebuffer.
   PixelSize size() const;
   void toggle_full_screen();

@@ -156,9 +156,18 @@ struct BoneFollower::Impl {
     return true;
   }
 
-  NextBone put_taken() {
-    for (auto& [place, brick] : taken->bricks) put(brick);
-    return {copy, taken->removed_mm3};
+  // After it `differing` holds what was there.
+  void put_differing() {
+    for (DensityBlock& brick : differing) put(brick);
+  }
+
+  NextBone without(CutHistory::Taken cuts) {
+    isovalue_before = copy->isovalue();
+    taken = std::move(cuts);
+    differing.clear();
+    for (const auto& [place, brick] : taken->bricks) differing.push_back(brick);
+    put_differing();
+    return {copy, taken->removed_mm3, {}};
   }
 
   void show(double isovalue) {
@@ -182,6 +191,7 @@ struct BoneFollower::Impl {
   SurfaceUpkeep upkeep;
   double shown_isovalue;
   // While the copy is to become the bone: how the two differ.
+  std::vector<DensityBlock> differing;
   std::optional<CutHistory::Taken> taken;
   double isovalue_before = 0;
 
@@ -196,6 +206,15 @@ BoneFollower::BoneFollower(const Volume& bone, std::size_t undo_bytes)
     : impl_(std::make_unique<Impl>(bone, undo_bytes)) {}
 
 BoneFollower::~BoneFollower() = default;
+
+void BoneFollower::begin_with(Volume& bone, const std::vector<DensityBlock>& milled) {
+  const std::lock_guard lock(impl_->bone_mutex);
+  for (DensityBlock brick : milled) {
+    DensityBlock same = brick;
+    swap_densities(bone, same);
+    if (impl_->put(brick)) impl_->history.keep(brick);
+  }
+}
 
 void BoneFollower::bone_changed(const Volume& bone, const VolumeChange& change) noexcept {
   impl_->handover.mark(change);
@@ -239,6 +258,16 @@ bool BoneFollower::touched() const {
   return impl_->history.touched();
 }
 
+std::vector<DensityBlock> BoneFollower::touched_bricks() const {
+  const std::shared_lock lock(impl_->bone_mutex);
+  std::vector<DensityBlock> bricks;
+  bricks.reserve(impl_->history.first().size());
+  for (const auto& [place, first] : impl_->history.first()) {
+    bricks.emplace_back(impl_->copy->grid(), first.first);
+  }
+  return bricks;
+}
+
 bool BoneFollower::catch_up() {
   const bool all_sent = impl_->handover.waiting() == 0;
   const std::lock_guard lock(impl_->bone_mutex);
@@ -248,46 +277,49 @@ bool BoneFollower::catch_up() {
 
 BoneFollower::NextBone BoneFollower::without_last_cut() {
   const std::lock_guard lock(impl_->bone_mutex);
-  impl_->isovalue_before = impl_->copy->isovalue();
-  impl_->taken = impl_->history.take_last();
-  return impl_->put_taken();
+  return impl_->without(impl_->history.take_last());
 }
 
 BoneFollower::NextBone BoneFollower::as_at_the_beginning() {
   const std::lock_guard lock(impl_->bone_mutex);
-  impl_->isovalue_before = impl_->copy->isovalue();
-  impl_->taken = impl_->history.take_all();
-  return impl_->put_taken();
+  return impl_->without(impl_->history.take_all());
 }
 
 BoneFollower::NextBone BoneFollower::with_isovalue(double isovalue, double removed_mm3) {
+  Volume& copy = *impl_->copy;
+  {
+    const std::lock_guard lock(impl_->bone_mutex);
+    impl_->isovalue_before = copy.isovalue();
+    copy.set_isovalue(isovalue);
+    impl_->show(isovalue);
+  }
+  // Goes through every voxel, while others read.
+  const BoneDensities densities = estimate_densities(copy);
   const std::lock_guard lock(impl_->bone_mutex);
-  impl_->isovalue_before = impl_->copy->isovalue();
-  impl_->copy->set_isovalue(isovalue);
-  impl_->show(isovalue);
-  return {impl_->copy, removed_mm3};
+  impl_->differing = impl_->history.keep_emptied(copy.grid(), impl_->isovalue_before, isovalue,
+                                                 static_cast<float>(densities.surroundings));
+  impl_->put_differing();
+  return {impl_->copy, removed_mm3, densities};
 }
 
 void BoneFollower::swap(std::shared_ptr<Volume> bone_before) {
   const std::lock_guard lock(impl_->bone_mutex);
   const Volume& bone = *impl_->copy;
-  if (impl_->taken) {
-    for (const auto& [place, brick] : impl_->taken->bricks) {
-      DensityBlock now(bone.grid(), brick.first);
-      swap_densities(*bone_before, now);
-    }
+  for (const DensityBlock& brick : impl_->differing) {
+    DensityBlock now(bone.grid(), brick.first);
+    swap_densities(*bone_before, now);
   }
   bone_before->set_isovalue(bone.isovalue());
   impl_->copy = std::move(bone_before);
+  impl_->differing.clear();
   impl_->taken.reset();
 }
 
 void BoneFollower::give_up() {
   const std::lock_guard lock(impl_->bone_mutex);
-  if (impl_->taken) {
-    impl_->put_taken();
-    impl_->history.put_back(*std::exchange(impl_->taken, std::nullopt));
-  }
+  impl_->put_differing();
+  impl_->differing.clear();
+  if (impl_->taken) impl_->history.put_back(*std::exchange(impl_->taken, std::nullopt));
   impl_->copy->set_isovalue(impl_->isovalue_before);
   impl_->show(impl_->isovalue_before);
 }

@@ -4,10 +4,13 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
+#include "osteomill/live/density_block.h"
 #include "osteomill/surface/surface_bricks.h"
 #include "osteomill/surface/surface_upkeep.h"
+#include "osteomill/volume/densities.h"
 #include "osteomill/volume/volume.h"
 
 namespace osteomill {
@@ -29,6 +32,9 @@ class BoneFollower {
   ~BoneFollower();
   BoneFollower(const BoneFollower&) = delete;
   BoneFollower& operator=(const BoneFollower&) = delete;
+
+  /// What was milled of this bone at another time goes into both, as one cut. Before the first tick.
+  void begin_with(Volume& bone, const std::vector<DensityBlock>& milled);
 
   /// To be called by the haptic thread at every tick with the bone and what the tick changed of it, an empty
   /// change too: a part of what is to be copied may have been left to later ticks. Safe in the haptic tick:
@@ -54,6 +60,8 @@ class BoneFollower {
   /// How many cuts can be taken back, and whether anything was milled since the beginning.
   std::size_t cuts() const;
   bool touched() const;
+  /// Every brick that was ever milled, as it is now.
+  std::vector<DensityBlock> touched_bricks() const;
 
   /// Takes over what has arrived. True where nothing is left to come, so that the copy is the bone, provided
   /// that the bone is held (LiveSession::hold_bone).
@@ -63,10 +71,13 @@ class BoneFollower {
   struct NextBone {
     std::shared_ptr<Volume> bone;
     double removed_mm3;
+    /// Where another isovalue makes them others.
+    std::optional<BoneDensities> densities;
   };
   /// With the last cut taken back, as it was at the beginning, or with another isovalue
-  /// (std::invalid_argument where it is not finite). All three while the bone is held and the copy is caught
-  /// up, and until `swap` or `give_up` nobody writes into either. Cuts and surface show it at once.
+  /// (std::invalid_argument where it is not finite), at which what milling had emptied stays empty. All three
+  /// while the bone is held and the copy is caught up, and until `swap` or `give_up` nobody writes into
+  /// either. Cuts and surface show it at once.
   NextBone without_last_cut();
   NextBone as_at_the_beginning();
   NextBone with_isovalue(double isovalue, double removed_mm3);

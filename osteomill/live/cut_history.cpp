@@ -11,6 +11,20 @@ std::uint64_t place_of(const VoxelIndex& first) {
   return part(first.i) | part(first.j) << 20 | part(first.k) << 40;
 }
 
+// Whether any voxel was.
+bool lower_emptied(DensityBlock& brick, const DensityBlock& first, double isovalue_before, double isovalue,
+                   float floor) {
+  bool lowered = false;
+  for (std::size_t n = 0; n < brick.densities.size(); ++n) {
+    float& density = brick.densities[n];
+    const bool emptied = density < first.densities[n] && static_cast<double>(density) <= isovalue_before;
+    if (!emptied || static_cast<double>(density) <= isovalue) continue;
+    density = floor;
+    lowered = true;
+  }
+  return lowered;
+}
+
 }  // namespace
 
 void CutHistory::keep(const DensityBlock& before) {
@@ -46,6 +60,21 @@ CutHistory::Taken CutHistory::take_last() {
 CutHistory::Taken CutHistory::take_all() {
   bricks_in_cuts_ = 0;
   return {std::exchange(first_, {}), 0, std::exchange(cuts_, std::deque<Cut>(1))};
+}
+
+std::vector<DensityBlock> CutHistory::keep_emptied(const DensityGrid& grid, double isovalue_before,
+                                                   double isovalue, float floor) {
+  for (Cut& cut : cuts_) {
+    for (auto& [place, brick] : cut.before) {
+      lower_emptied(brick, first_.at(place), isovalue_before, isovalue, floor);
+    }
+  }
+  std::vector<DensityBlock> differing;
+  for (const auto& [place, first] : first_) {
+    DensityBlock now(grid, first.first);
+    if (lower_emptied(now, first, isovalue_before, isovalue, floor)) differing.push_back(now);
+  }
+  return differing;
 }
 
 void CutHistory::put_back(Taken taken) {

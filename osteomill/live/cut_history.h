@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <deque>
 #include <unordered_map>
+#include <vector>
 
 #include "osteomill/live/density_block.h"
 
@@ -41,6 +42,8 @@ class CutHistory {
   /// How many cuts can be taken back.
   std::size_t cuts() const;
   bool touched() const { return !first_.empty(); }
+  /// Every brick that was touched, as it was at the beginning.
+  const Bricks& first() const { return first_; }
 
   /// The last cut; without bricks where there is none.
   Taken take_last();
@@ -48,6 +51,12 @@ class CutHistory {
   Taken take_all();
   /// As it was before `taken` was taken, nothing having been kept since.
   void put_back(Taken taken);
+
+  /// Another isovalue, at which voxels that milling had emptied might count as bone again: they go down to
+  /// `floor`, in all that can be taken back and in the bricks returned, which are those of `grid` that
+  /// differ.
+  std::vector<DensityBlock> keep_emptied(const DensityGrid& grid, double isovalue_before, double isovalue,
+                                         float floor);
 
  private:
   void forget_oldest();

@@ -97,5 +97,30 @@ TEST_F(CutHistoryTest, ForgetsTheOldestCutsBeyondItsMemory) {
   EXPECT_EQ(now(), before_);
 }
 
+// Inside bone of 1000: emptied to 400 and 0, lowered to 700; and outside, where nothing was milled.
+TEST_F(CutHistoryTest, WhatWasEmptiedStaysEmptyAtALowerIsovalue) {
+  const auto mill_to = [&](const VoxelIndex& voxel, float density) {
+    while (bone_.grid()[voxel] > density) mill(voxel);
+  };
+  mill_to({3, 4, 2}, 400);
+  history_.begin_cut(1);
+  mill_to({3, 4, 3}, 0);
+  mill_to({3, 4, 4}, 700);
+  const std::vector<float> milled = now();
+  std::vector<DensityBlock> differing = history_.keep_emptied(bone_.grid(), 500, 50, -30);
+  ASSERT_EQ(differing.size(), 1u);
+  swap_densities(bone_, differing.front());
+  std::vector<float> expected = milled;
+  expected[bone_.grid().linear_index({3, 4, 2})] = -30;
+  EXPECT_EQ(now(), expected);
+  // The first cut's hole is still one when the second is taken back.
+  undo();
+  expected = before_;
+  expected[bone_.grid().linear_index({3, 4, 2})] = -30;
+  EXPECT_EQ(now(), expected);
+  undo();
+  EXPECT_EQ(now(), before_);
+}
+
 }  // namespace
 }  // namespace osteomill

@@ -15,7 +15,8 @@ using namespace std::chrono_literals;
 
 }  // namespace
 
-PreparedMilling prepare_milling(std::shared_ptr<Volume> bone, const MillingSetup& setup) {
+PreparedMilling prepare_milling(std::shared_ptr<Volume> bone, const MillingSetup& setup,
+                                const MilledBefore& before) {
   BoneDensities densities;
   std::unique_ptr<BoneFollower> follower;
   {
@@ -26,8 +27,11 @@ PreparedMilling prepare_milling(std::shared_ptr<Volume> bone, const MillingSetup
     const WorkProgress::Part meshing(0.8);
     follower = std::make_unique<BoneFollower>(*bone);
   }
+  follower->begin_with(*bone, before.bricks);
   const WorkProgress::Part preparing(1);
-  return {setup, densities, std::move(follower), make_session(std::move(bone), densities, setup)};
+  auto session = make_session(std::move(bone), densities, setup);
+  session->count_removed_from(before.removed_mm3);
+  return {setup, densities, std::move(follower), std::move(session)};
 }
 
 LiveMilling::LiveMilling(PreparedMilling prepared, Device& device)
@@ -72,7 +76,7 @@ void LiveMilling::change(const MillingSetup& setup) {
   live_.wait_for(live_.hold_bone(true));
   preparation_ = std::async(std::launch::async, [this, setup, bone = live_.session().shared_volume(),
                                                  removed_mm3 = live_.session().removed_mm3()] {
-    Prepared prepared{make_session(bone, densities_, setup), setup};
+    Prepared prepared{make_session(bone, densities_, setup), setup, densities_};
     prepared.session->count_removed_from(removed_mm3);
     return prepared;
   });
@@ -98,7 +102,8 @@ void LiveMilling::rebuild(MakeBone make_bone) {
     catch_up();
     const BoneFollower::NextBone next = make_bone();
     try {
-      Prepared prepared{make_session(next.bone, densities_, setup), setup, true};
+      const BoneDensities densities = next.densities.value_or(densities_);
+      Prepared prepared{make_session(next.bone, densities, setup), setup, densities, true};
       prepared.session->count_removed_from(next.removed_mm3);
       return prepared;
     } catch (...) {
@@ -127,6 +132,7 @@ void LiveMilling::take_over() {
     const std::shared_ptr<Volume> bone_before = live_.session().shared_volume();
     isovalue_ = prepared.session->volume().isovalue();
     setup_ = prepared.setup;
+    densities_ = prepared.densities;
     live_.wait_for(live_.replace(std::move(prepared.session)));
     if (prepared.other_bone) follower_->swap(bone_before);
   } catch (...) {

@@ -25,8 +25,16 @@ struct PreparedMilling {
   std::unique_ptr<MillingSession> session;
 };
 
-/// In any thread, also while another bone is milled. Throws std::invalid_argument for settings out of range.
-PreparedMilling prepare_milling(std::shared_ptr<Volume> bone, const MillingSetup& setup);
+/// What was milled of a bone at another time.
+struct MilledBefore {
+  std::vector<DensityBlock> bricks;
+  double removed_mm3 = 0;
+};
+
+/// In any thread, also while another bone is milled. `bone` as scanned; what was milled of it before can be
+/// taken back as one cut. Throws std::invalid_argument for settings out of range.
+PreparedMilling prepare_milling(std::shared_ptr<Volume> bone, const MillingSetup& setup,
+                                const MilledBefore& before = {});
 
 /// A bone that is milled in real time with a device, and all that can be done to it meanwhile. For one
 /// thread, beside the haptic one that this runs; one at a time. Whatever takes long (another algorithm or
@@ -57,6 +65,9 @@ class LiveMilling {
   void set_spindle(bool on);
   bool spindle_asked() const { return spindle_; }
   void set_paused(bool paused) { live_.set_paused(paused); }
+  /// The tool and its device to a pose free of bone (LiveSession::place).
+  void place(const Pose& X_WD, std::function<void(const Pose&)> put) { live_.place(X_WD, std::move(put)); }
+  bool placing() const { return live_.placing(); }
   /// Another algorithm, tool or setting. This and the following do nothing while something is being prepared.
   void change(const MillingSetup& setup);
   void change_isovalue(double isovalue);
@@ -65,6 +76,8 @@ class LiveMilling {
   void reset();
   std::size_t cuts() const { return follower_->cuts(); }
   bool touched() const { return follower_->touched(); }
+  /// Every brick that was ever milled, as it is now; from any thread.
+  std::vector<DensityBlock> touched_bricks() const { return follower_->touched_bricks(); }
 
   /// What a recording says of the milling as it is now.
   RunDescription describe(const std::string& scan_name, const std::string& command_line) const;
@@ -103,6 +116,7 @@ class LiveMilling {
   struct Prepared {
     std::unique_ptr<MillingSession> session;
     MillingSetup setup;
+    BoneDensities densities;
     bool other_bone = false;
   };
   using MakeBone = std::function<BoneFollower::NextBone()>;

@@ -17,6 +17,8 @@ using namespace std::chrono_literals;
 // A tick that comes later than this mills and moves as if it came at this time.
 constexpr double kMaxTick_s = 0.02;
 
+constexpr double kFade_s = 0.05;
+
 constexpr std::size_t kCommands = 255;
 
 }  // namespace
@@ -94,6 +96,12 @@ LiveSession::CommandNumber LiveSession::hold_bone(bool held) {
 
 LiveSession::CommandNumber LiveSession::replace(std::unique_ptr<MillingSession> session) {
   return send(Replace{std::move(session)});
+}
+
+LiveSession::CommandNumber LiveSession::place(const Pose& X_WD, std::function<void(const Pose&)> put) {
+  if (placing()) return commands_sent_;
+  placing_.store(true, std::memory_order_release);
+  return send(Place{X_WD, std::make_unique<std::function<void(const Pose&)>>(std::move(put))});
 }
 
 LiveSession::CommandNumber LiveSession::listen(TickListener listener) {
@@ -175,16 +183,35 @@ void LiveSession::apply(Action& action) {
   } else if (auto* replace = std::get_if<Replace>(&action)) {
     std::swap(session_, replace->session);
     session_->take_over_tool(last_X_WT_);
+  } else if (auto* place = std::get_if<Place>(&action)) {
+    std::swap(place_, *place);
+    fading_ = true;
   } else if (auto* listen = std::get_if<Listen>(&action)) {
     std::swap(listener_, listen->listener);
   }
 }
 
+// True in the tick in which the tool comes to its place.
+bool LiveSession::fade_and_place(double dt_s) {
+  if (!fading_) return false;
+  wrench_share_ -= dt_s / kFade_s;
+  if (wrench_share_ <= 0) {
+    (*place_.put)(place_.X_WD);
+    session_->begin_at(place_.X_WD);
+    wrench_share_ = 1;
+    fading_ = false;
+  }
+  session_->set_wrench_share(wrench_share_);
+  return !fading_;
+}
+
 TickRecord LiveSession::tick(double time_s, double dt_s) {
-  const bool spindle_on = !paused_ && (spindle_ || device_.spindle_asked());
+  const bool placed = fade_and_place(dt_s);
+  const bool spindle_on = !paused_ && !fading_ && (spindle_ || device_.spindle_asked());
   const TickRecord record = step(time_s, dt_s, spindle_on && !bone_held_);
   if (listener_) (*listener_)(record, session_->volume(), session_->last_change());
   state_.write({record, spindle_on, paused_});
+  if (placed) placing_.store(false, std::memory_order_release);
   queues_->records.try_push(record);
   last_X_WT_ = record.X_WT;
   return record;

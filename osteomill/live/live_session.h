@@ -56,6 +56,12 @@ class LiveSession {
   CommandNumber hold_bone(bool held);
   /// Another algorithm, tool, setting or bone, prepared beforehand.
   CommandNumber replace(std::unique_ptr<MillingSession> session);
+  /// The tool to a pose free of bone, however far away. The wrench fades within 50 ms, in which nothing is
+  /// milled, so that the hand feels no step; then the haptic thread calls `put`, which moves the device there
+  /// (and keeps to the rules of the tick), and the algorithm begins anew. One at a time: nothing while
+  /// `placing`.
+  CommandNumber place(const Pose& X_WD, std::function<void(const Pose&)> put);
+  bool placing() const { return placing_.load(std::memory_order_acquire); }
   /// In place of the listener before, which is no longer called once the command is done. May be empty.
   CommandNumber listen(TickListener listener);
   bool is_done(CommandNumber number) const {
@@ -93,10 +99,14 @@ class LiveSession {
   struct Replace {
     std::unique_ptr<MillingSession> session;
   };
+  struct Place {
+    Pose X_WD;
+    std::unique_ptr<std::function<void(const Pose&)>> put;
+  };
   struct Listen {
     std::unique_ptr<TickListener> listener;
   };
-  using Action = std::variant<std::monostate, SetSpindle, SetPaused, HoldBone, Replace, Listen>;
+  using Action = std::variant<std::monostate, SetSpindle, SetPaused, HoldBone, Replace, Place, Listen>;
   struct Queues;
 
   CommandNumber send(Action action);
@@ -105,6 +115,7 @@ class LiveSession {
   void take_commands();
   void destroy_retired();
   void apply(Action& action);
+  bool fade_and_place(double dt_s);
   TickRecord tick(double time_s, double dt_s);
   TickRecord step(double time_s, double dt_s, bool mills);
 
@@ -125,6 +136,10 @@ class LiveSession {
   bool bone_held_ = false;
   double time_s_ = 0;
   std::optional<Pose> last_X_WT_;
+  Place place_;
+  bool fading_ = false;
+  double wrench_share_ = 1;
+  std::atomic<bool> placing_{false};
 
   std::unique_ptr<Queues> queues_;
   std::atomic<CommandNumber> commands_done_{0};

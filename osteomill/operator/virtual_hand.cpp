@@ -26,20 +26,27 @@ HandSettings pointing_hand() {
 VirtualHand::VirtualHand(const HandleSettings& handle, const HandSettings& hand, const Pose& X_WD)
     : hand_(hand), handle_(handle, X_WD), push_N_(hand.push_N), X_W_target_(X_WD) {
   require_valid(hand);
-  asked_.write(X_WD);
 }
 
 void VirtualHand::pull_to(const Pose& X_W_target) {
-  if (is_finite(X_W_target)) asked_.write(X_W_target);
+  if (is_finite(X_W_target)) asked_.write({X_W_target, ++pulls_});
+}
+
+void VirtualHand::put_at(const Pose& X_WD) {
+  if (!is_finite(X_WD)) return;
+  handle_.reset(X_WD);
+  X_W_target_ = X_WD;
+  over_ = asked_.read().number;
 }
 
 void VirtualHand::tick_done(const Pose& /*X_WT*/, double dt_s) {
   const double passed_s = std::clamp(dt_s, 0.0, kMaxTick_s);
   hand_.push_N = std::max(push_N_.load(std::memory_order_relaxed), 0.0);
-  const Pose& asked = asked_.read();
+  const Asked& asked = asked_.read();
+  const Pose& X_W_asked = asked.number > over_ ? asked.X_W : X_W_target_;
   const double share = 1 - std::exp(-kFollow_per_s * passed_s);
-  X_W_target_.position_mm += share * (asked.position_mm - X_W_target_.position_mm);
-  X_W_target_.orientation = X_W_target_.orientation.slerp(share, asked.orientation).normalized();
+  X_W_target_.position_mm += share * (X_W_asked.position_mm - X_W_target_.position_mm);
+  X_W_target_.orientation = X_W_target_.orientation.slerp(share, X_W_asked.orientation).normalized();
   const auto substeps = static_cast<int>(std::lround(passed_s / handle_.settings().substep_s));
   for (int n = 0; n < substeps; ++n) {
     handle_.advance(hand_wrench(hand_, X_W_target_, Twist{}, handle_.pose(), handle_.velocity()));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 
 #include "osteomill/device/device.h"
 #include "osteomill/device/latest_value.h"
@@ -21,6 +22,9 @@ class VirtualHand final : public Device {
 
   /// Poses that are not finite are not taken.
   void pull_to(const Pose& X_W_target);
+  /// The haptic thread, between two ticks: the hand and its handle are there, at rest, and stay until the
+  /// next `pull_to` after it. Safe in the tick.
+  void put_at(const Pose& X_WD);
   /// The most that the hand pushes, N.
   void set_push(double push_N) { push_N_.store(push_N, std::memory_order_relaxed); }
 
@@ -31,7 +35,14 @@ class VirtualHand final : public Device {
  private:
   HandSettings hand_;
   SimulatedHandle handle_;
-  LatestValue<Pose> asked_;
+  struct Asked {
+    Pose X_W;
+    std::uint64_t number = 0;
+  };
+  LatestValue<Asked> asked_;
+  std::uint64_t pulls_ = 0;
+  // The last pull that does not count any more.
+  std::uint64_t over_ = 0;
   std::atomic<double> push_N_;
   // Where the hand pulls to now: it follows what is asked for smoothly, which comes only with every picture.
   Pose X_W_target_;

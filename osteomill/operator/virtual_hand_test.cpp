@@ -52,5 +52,22 @@ TEST(VirtualHand, StaysWhereItIsWhenNothingIsAsked) {
   EXPECT_NEAR((hand.read_pose().position_mm - kStart.position_mm).norm(), 0, 0.005);
 }
 
+TEST(VirtualHand, StaysWhereItIsPutUntilItIsPulledAgain) {
+  VirtualHand hand({}, pointing_hand(), Pose{});
+  const auto pass = [&](int ticks) {
+    for (int n = 0; n < ticks; ++n) hand.tick_done({}, 1e-3);
+  };
+  hand.pull_to({{5, 0, 0}, Quat::Identity()});
+  pass(50);
+  const Pose there{{-40, 7, 3}, quaternion_from_rotation_vector({0.3, 0, 0})};
+  hand.put_at(there);
+  pass(200);
+  EXPECT_LT((hand.read_pose().position_mm - there.position_mm).norm(), 0.01);
+  EXPECT_LT(hand.read_pose().orientation.angularDistance(there.orientation), 1e-3);
+  hand.pull_to({{-38, 7, 3}, there.orientation});
+  pass(1000);
+  EXPECT_NEAR(hand.read_pose().position_mm.x(), -38, 0.05);
+}
+
 }  // namespace
 }  // namespace osteomill

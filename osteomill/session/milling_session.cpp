@@ -68,6 +68,11 @@ void MillingSession::take_over_tool(const std::optional<Pose>& X_WT) {
   algorithm_->step(*X_WT, kUsualTick_s);
 }
 
+void MillingSession::begin_at(const Pose& X_WT) {
+  algorithm_->reset();
+  take_over_tool(X_WT);
+}
+
 TickRecord MillingSession::idle_tick(Device& device, double time_s) {
   TickRecord record;
   record.time_s = time_s;
@@ -88,6 +93,8 @@ HapticStep MillingSession::step_safely(const Pose& X_WD, double dt_s, bool spind
   }
   HapticStep step = algorithm_->step(X_WD, dt_s);
   if (spindle_on) step.wrench.force_N += vibration_.force_N(step.X_WT, step.burr_force_W_N.norm(), dt_s);
+  step.wrench.force_N *= wrench_share_;
+  step.wrench.torque_Nmm *= wrench_share_;
   safe = make_safe(step.wrench, limits_);
   if (safe.fault == WrenchFault::not_finite || !is_finite(step.X_WT) || !step.burr_force_W_N.allFinite()) {
     // Whatever led there is still in the algorithm's memory of contacts.

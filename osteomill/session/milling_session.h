@@ -39,6 +39,10 @@ class MillingSession {
   /// Has the algorithm begin at a simulated tool that another session left, outside the bone, and not at a
   /// device that may have sunk into it; nothing for no pose. As safe as `tick`.
   void take_over_tool(const std::optional<Pose>& X_WT);
+  /// Has the algorithm begin anew at a pose free of bone, whatever was touched before. As safe as `tick`.
+  void begin_at(const Pose& X_WT);
+  /// How much of its wrench is sent, 0 to 1; 1 until set. As safe as `tick`.
+  void set_wrench_share(double share) { wrench_share_ = share; }
 
   /// What the last tick changed of the volume.
   const VolumeChange& last_change() const { return last_change_; }
@@ -60,6 +64,7 @@ class MillingSession {
   BurrMill mill_;
   Vibration vibration_;
   WrenchLimits limits_;
+  double wrench_share_ = 1;
   double removed_mm3_ = 0;
   VolumeChange last_change_;
   Pose last_X_WT_;

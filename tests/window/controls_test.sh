@@ -14,6 +14,7 @@ cd "$folder"
 export XDG_STATE_HOME=$folder/state
 "$here/ball.sh" >ball.nrrd
 "$here/ball.sh" 4 >other.nrrd
+"$here/ball.sh" 1 >small.nrrd
 
 faults=0
 fault() { echo "FAILED: $1"; faults=1; }
@@ -41,7 +42,7 @@ hides() { ! value "$1" shown | grep -qF "[$2]" || fault "at $1 there is still '$
 window ball.nrrd <<'END'
 wait 0.2 ;; state first ;; screenshot controls-1-help.png
 click Start milling ;; state start
-key f1 ;; state f1 ;; key f1 ;; state f1-again
+key f1 ;; state f1 ;; key f1 ;; state f1-again ;; key f1 ;; key enter ;; state f1-enter ;; key f1 ;; key escape ;; state f1-escape
 click Help ;; state help ;; click Start milling
 click Milling ;; state no-milling ;; click Milling
 click Algorithm ;; state no-algorithm ;; click Algorithm
@@ -49,7 +50,7 @@ click Tool ;; state no-tool ;; click Tool
 click View ;; state no-view ;; click View
 click Record and save ;; state no-save ;; click Record and save
 click Cuts ;; state cuts-open ;; click Cuts
-click Bone ;; state bone-open ;; click Bone
+click Bone ;; state no-bone ;; click Bone
 state before
 click A ;; state from-a
 click P ;; state from-p
@@ -65,6 +66,9 @@ wheel 3 0.1 ;; state wheeled
 click Whole ;; state whole
 click Find tool ;; state found
 click Larger text ;; wait 0.1 ;; state larger ;; click Smaller text ;; wait 0.1 ;; state usual
+click A ;; hold page-down 3 ;; click S ;; press middle ;; glide 700 600 0 ;; wait 0.1 ;; release middle ;; state lost
+click Bring it here (B) ;; wait 0.2 ;; state brought ;; click Whole ;; glide 600 430 0 ;; key b ;; wait 0.2 ;; state brought-by-key
+click Find tool ;; state refound
 glide 640 400 0.1 ;; press left ;; glide 700 330 0.2 ;; wait 0.3 ;; release left ;; state tool-dragged
 key t ;; state taken
 glide 760 330 0.2 ;; wait 0.3 ;; state moved
@@ -89,14 +93,14 @@ screenshot controls-2-keys.png
 close
 END
 [ "$(value first tool_seen)" != "0.000 0.000 0.000" ] && same first before tool_seen || fault "the tool does not begin above the bone"
-is first help true; is start help false; is f1 help true; is f1-again help false; is help help true
+is first help true; is start help false; is f1 help true; is f1-again help false; is f1-enter help false; is f1-escape help false; is help help true
 shows start "spindle on"; hides no-milling "spindle on"; shows no-milling stiffness
 hides no-algorithm steady; shows no-algorithm "burr radius"
 hides no-tool "burr radius"; shows no-tool ghost
 hides no-view ghost; shows no-view Record
 hides no-save Record; shows no-save ghost
 hides start axial; shows cuts-open axial
-hides start isovalue; shows bone-open isovalue
+hides no-bone isovalue; shows start isovalue
 for view in "a 0.000 -1.000 0.000" "p 0.000 1.000 0.000" "l 1.000 0.000 0.000" "r -1.000 0.000 0.000" \
   "s 0.000 0.000 1.000" "i 0.000 0.000 -1.000"; do
   [ "$(value "from-${view%% *}" towards_viewer | sed 's/-0\.000/0.000/g')" = "${view#* }" ] ||
@@ -109,8 +113,21 @@ changed panned shift-panned focus; same panned shift-panned towards_viewer
 more wheeled shift-panned distance_mm
 same wheeled whole towards_viewer; changed wheeled whole focus; changed wheeled whole distance_mm
 changed whole found focus; is found tool_px "640 400"; same whole found towards_viewer
-more found tool-dragged tool_seen 1; more found tool-dragged tool_seen 2; same found tool-dragged towards_viewer
 is found ui_scale 1.00; is larger ui_scale 1.25; is usual ui_scale 1.00
+# The tool is free, before the bone where it was asked for, the shaft towards the viewer; the key goes by the pointer.
+near() {
+  awk -v x="$(part "$1" tool_px 1)" -v y="$(part "$1" tool_px 2)" -v a="$2" -v b="$3" 'BEGIN { exit !((x - a) ^ 2 + (y - b) ^ 2 < 9) }' ||
+    fault "at $1 the tool is at $(value "$1" tool_px) and not at $2 $3"
+}
+changed lost brought tool_px; near brought 640 400; near brought-by-key 600 430
+for moment in first brought brought-by-key; do
+  is $moment force_N 0.000
+  awk -v z="$(part $moment shaft_seen 3)" 'BEGIN { exit !(z > 0.4) }' || fault "at $moment the shaft points away"
+done
+# All of the bone is in the first picture, upright.
+is first corners_seen 8
+awk -v up="$(part first up_seen 2)" 'BEGIN { exit !(up > 0.7) }' || fault "the bone does not begin upright"
+more refound tool-dragged tool_seen 1; more refound tool-dragged tool_seen 2; same refound tool-dragged towards_viewer
 is tool-dragged in_hand false; is taken in_hand true; is escaped in_hand false; is t-twice in_hand false
 is button-taken in_hand true; is button-let-go in_hand false
 more taken moved target_seen 1; more taken moved tool_seen 1; same taken moved towards_viewer
@@ -126,7 +143,7 @@ same start not-full size; is full size "1400 x 900"
 
 # --- Milling, what is drawn and heard, algorithm, tool, scan's isovalue ----------------------------------------------
 window ball.nrrd --no-help <<'END'
-wait 0.2 ;; click S ;; glide 640 750 0 ;; key t ;; wheel 26 0.6 ;; wait 0.5 ;; key t ;; state touching
+wait 0.2 ;; click S ;; glide 640 750 0 ;; key b ;; wait 0.2 ;; key t ;; wheel 26 0.6 ;; wait 0.5 ;; key t ;; state touching
 click ghost ;; state no-ghost ;; click ghost
 click arrows ;; state no-arrows ;; click arrows
 click spindle on ;; wait 0.6 ;; state milling ;; click sound ;; wait 0.1 ;; state silent ;; click sound
@@ -136,7 +153,10 @@ glide 640 750 0 ;; key t ;; wheel 4 0.2 ;; key space ;; wait 0.6 ;; key space ;;
 key t ;; wait 0.2 ;; state three-cuts ;; screenshot controls-3-milled.png
 click Undo cut ;; settle ;; wait 0.1 ;; state undone
 press control ;; key z ;; release control ;; settle ;; wait 0.1 ;; state undone-by-key
-click Reset bone ;; settle ;; wait 0.1 ;; state reset
+click Reset bone ;; wait 0.1 ;; click Cancel ;; wait 0.1 ;; state not-reset
+click Reset bone ;; wait 0.1 ;; click Save ;; settle ;; wait 0.1 ;; state reset
+glide 640 750 0 ;; key b ;; wait 0.2 ;; key t ;; wheel 26 0.6 ;; key space ;; wait 0.4 ;; key space ;; key t ;; state milled-again
+click Reset bone ;; wait 0.1 ;; click Discard ;; settle ;; wait 0.1 ;; state reset-again
 click 1 line-proxy ;; settle ;; state line-proxy
 drag stiffness 30 ;; settle ;; state line-proxy-stiffness
 click 4 barrier-shell ;; settle ;; state barrier-shell
@@ -151,7 +171,8 @@ drag shaft radius -10 ;; settle ;; state shaft
 drag spindle 30 ;; settle ;; state rpm
 click vibration ;; settle ;; state no-vibration
 click Milling ;; click Algorithm ;; click Tool
-click Bone ;; drag isovalue 20 ;; settle ;; wait 0.2 ;; state isovalue
+drag isovalue 20 ;; settle ;; wait 0.2 ;; state isovalue
+press control ;; click isovalue ;; release control ;; type 500 ;; key enter ;; settle ;; wait 0.2 ;; state typed
 screenshot controls-4-bone.png
 close
 END
@@ -163,7 +184,9 @@ is paused paused true; is goes-on paused false
 is three-cuts cuts 3; more milled three-cuts removed_mm3
 is undone cuts 2; more undone three-cuts removed_mm3
 is undone-by-key cuts 1; more undone-by-key undone removed_mm3; same milled undone-by-key removed_mm3
-is reset cuts 0; is reset removed_mm3 0.000
+is not-reset cuts 1; is reset cuts 0; is reset removed_mm3 0.000
+more reset milled-again removed_mm3; is reset-again removed_mm3 0.000
+compgen -G "out/*-milled.nrrd" >/dev/null || fault "Save before resetting did not save"
 is barrier-shell algorithm barrier-shell
 for algorithm in line-proxy surface-points point-shell; do
   is $algorithm algorithm $algorithm
@@ -173,7 +196,9 @@ done
 is line-proxy mode steady; is paper mode paper; is point-shell mode paper; is steady mode steady
 changed steady burr burr_mm; changed burr shaft shaft_mm; changed shaft rpm rpm
 is rpm vibration true; is no-vibration vibration false
-changed no-vibration isovalue isovalue
+more no-vibration isovalue isovalue; is typed isovalue 500
+value no-vibration isovalue_from | grep -q "^suggested: " || fault "nobody is told that the isovalue was suggested"
+value typed isovalue_from | grep -q "^set here; first" || fault "nobody is told that the isovalue was set"
 
 # --- Cuts ---------------------------------------------------------------------------------------------------------
 cut_lines() {
@@ -197,6 +222,9 @@ for cut in "axial 0.000 0.000 -1.000" "coronal 0.000 1.000 0.000" "sagittal -1.0
   name=${cut%% *}
   [ "$(normal "$name-on" "$name")" = "${cut#* }" ] || fault "the $name cut is $(normal "$name-on" "$name")"
 done
+# Through the burr, which stands beside the middle.
+awk -v x="$(part sagittal-on tool_W 1)" -v at="$(value sagittal-on sagittal | sed 's/.* at //')" 'BEGIN { exit !((at + x) ^ 2 < 1e-3) }' ||
+  fault "the sagittal cut begins at $(value sagittal-on sagittal) and the tool is at $(value sagittal-on tool_W)"
 changed free-on dragged free
 [ "$(normal free-on free)" = "$(normal dragged free)" ] || fault "dragging the cut turns it"
 same free-on dragged towards_viewer
@@ -207,11 +235,16 @@ echo "not a scan" >bad.nrrd
 { printf 'NRRD0004\ntype: uint8\ndimension: 3\nsizes: 480 480 480\nspacings: 0.1 0.1 0.1\nencoding: raw\n\n'
   head -c $((480 * 480 * 240)) /dev/zero | tr '\0' '\310'
   head -c $((480 * 480 * 240)) /dev/zero; } >large.nrrd
+# What the desktop is asked to open.
+mkdir bin
+printf '%s\n' '#!/bin/sh' 'case "$1" in *report.html) touch opened-report ;; */out|*-report) touch opened-out ;; esac' >bin/xdg-open
+chmod +x bin/xdg-open
+PATH=$folder/bin:$PATH
 window ball.nrrd --no-help <<'END'
 wait 0.2 ;; state start
 click Record ;; wait 0.3 ;; state recording ;; screenshot controls-6-recording.png
 click Stop recording ;; wait 0.1 ;; state recorded
-click Report ;; settle ;; wait 0.1 ;; state reported
+click Report ;; settle ;; wait 0.1 ;; state reported ;; click Open report ;; await opened-report ;; click Open folder ;; await opened-out
 click Save scan ;; settle ;; wait 0.1 ;; state saved-scan
 click Save surface ;; settle ;; wait 0.1 ;; state saved-surface
 click Save picture ;; wait 0.2 ;; state saved-picture
@@ -224,6 +257,8 @@ quit ;; wait 0.2 ;; key escape ;; wait 0.2 ;; state stayed-by-key
 quit ;; wait 0.2 ;; click Make the report and close
 wait 60 ;; state still-there
 END
+[[ $(value recording badge) == "REC 0:0"? ]] && is start badge "" && is recorded badge "" || fault "the badge says '$(value recording badge)'"
+value opened message | grep -q "^Opened other.nrrd: isovalue .* suggested: " || fault "the isovalue of what was opened is not told"
 is start recording false; is recording recording true; is recorded recording false
 recording=$(value recorded last_recording)
 [ -s "$recording" ] && [ -z "$(value start last_recording)" ] || fault "no recording '$recording'"
@@ -244,9 +279,16 @@ shows asking Stay; hides stayed Stay; hides stayed-by-key Stay
 [ "$(ls -d out/*-report* | wc -l)" -eq 2 ] || fault "there should be two reports"
 
 window ball.nrrd --no-help <<'END'
-wait 0.2 ;; click Record ;; wait 0.2 ;; quit ;; wait 0.2 ;; click Close without
+wait 0.2 ;; open small.nrrd ;; settle ;; wait 0.3 ;; state too-large ;; key escape ;; wait 0.1 ;; state as-before
+click Record ;; wait 0.2 ;; quit ;; wait 0.2 ;; click Close without
 wait 60 ;; state still-there
 END
+# A tool that cannot work with the bone is refused, wherever it comes from.
+value too-large dialogue | grep -q "^small.nrrd: a burr of .* mm radius is wider than the whole bone" || fault "a burr wider than the bone is taken"
+is too-large scan ball.nrrd; is as-before dialogue ""; is as-before scan ball.nrrd
+xvfb-run -a timeout 60 "$osteomill" simulate ball.nrrd --burr-radius 50 >said 2>errors && fault "a burr of 50 mm begins" || code=$?
+[ "$code" -eq 1 ] && grep -q "^osteomill: ball.nrrd: a burr of 50 mm radius is wider than the whole bone" errors ||
+  fault "a burr of 50 mm ends with $code and $(cat errors)"
 [ -z "$(value still-there scan)" ] || fault "it did not close without a report"
 
 # --- Nothing was left out -----------------------------------------------------------------------------------------

@@ -16,7 +16,7 @@ fail() { echo "FAILED: $1"; cat said errors; exit 1; }
 "$here/ball.sh" >ball.nrrd
 
 # The script of the window stands still at each `await` until the display's events have been sent.
-moments=(taps paused chord tapped-thrice clicked dragged wheeled)
+moments=(taps paused chord tapped-thrice clicked dragged wheeled brought)
 {
   printf '%s\n' "wait 0.3" "state start"
   for moment in "${moments[@]}"; do printf '%s\n' "say $moment" "await $moment" "state $moment"; done
@@ -25,7 +25,7 @@ moments=(taps paused chord tapped-thrice clicked dragged wheeled)
 cat >hands <<'END'
 set -euo pipefail
 "$1" simulate ball.nrrd --no-help --script actions >said 2>errors & program=$!
-window=$(xdotool search --sync --onlyvisible --name '^osteomill$')
+window=$(xdotool search --sync --onlyvisible --name '^ball.nrrd - osteomill$')
 xdotool windowfocus "$window" mousemove --window "$window" 640 700
 # Sends events once the window waits for them, and gives it time for some pictures.
 send() {
@@ -41,9 +41,10 @@ send chord key --delay 0 t key --delay 0 ctrl+p
 # GLFW takes two presses of a key within a millisecond for one.
 send tapped-thrice key --delay 0 p sleep 0.003 key --delay 0 p sleep 0.003 key --delay 0 p
 # The box "pause" (17 pixels within its frame).
-send clicked mousemove --window "$window" 121 112 click 1
+send clicked mousemove --window "$window" 121 202 click 1
 send dragged mousemove --window "$window" 640 700 mousedown 1 mousemove --window "$window" 700 720 sleep 0.2 mouseup 1
 send wheeled click 4 click 4
+send brought mousemove --window "$window" 640 400 key --delay 0 b
 wait "$program"
 END
 xvfb-run -a -s "-screen 0 1280x800x24" timeout 100 bash hands "$osteomill" || fail "exit code $?"
@@ -58,3 +59,4 @@ is clicked paused false
 [ "$(value clicked towards_viewer)" != "$(value dragged towards_viewer)" ] || fail "a drag does not turn the view"
 [ "$(value clicked distance_mm)" = "$(value dragged distance_mm)" ] || fail "a drag of the left button zooms"
 [ "$(value dragged distance_mm)" != "$(value wheeled distance_mm)" ] || fail "the wheel does not zoom"
+[ "$(value wheeled tool_px)" != "640 400" ] && is brought tool_px "640 400"

@@ -1,0 +1,191 @@
+#include "app/simulate/autosave.h"
+
+#include <algorithm>
+#include <ctime>
+#include <exception>
+#include <system_error>
+
+#include "app/simulate/first_time.h"
+#include <fcntl.h>
+#include <fmt/chrono.h>
+#include <fmt/core.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "osteomill/files/atomic_file.h"
+#include "osteomill/files/input_error.h"
+
+namespace osteomill::app {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr const char* kExtension = ".milled";
+constexpr const char* kLockExtension = ".lock";
+constexpr auto kBetween = 5s;
+constexpr int kWritingShare = 50;
+// 1 GiB.
+constexpr std::size_t kMaxBricks = (std::size_t{1} << 30) / sizeof(DensityBlock);
+
+fs::path autosave_folder() {
+  const fs::path state = state_folder();
+  return state.empty() ? fs::path() : state / "autosave";
+}
+
+fs::path lock_of(const fs::path& path) {
+  return path.string() + kLockExtension;
+}
+
+// Whoever removed the lock's file meanwhile has taken the name away with it.
+bool still_there(int lock, const fs::path& path) {
+  struct stat held {};
+  struct stat named {};
+  return ::fstat(lock, &held) == 0 && ::stat(path.c_str(), &named) == 0 && held.st_ino == named.st_ino;
+}
+
+std::vector<fs::path> names_in(const fs::path& folder) {
+  std::vector<fs::path> names;
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+    const fs::path& name = entry.path();
+    const bool hidden = name.filename().string().starts_with('.');
+    if (!hidden && name.extension() == kExtension) names.push_back(name);
+    if (!hidden && name.extension() == kLockExtension) names.push_back(fs::path(name).replace_extension());
+  }
+  // They begin with the time.
+  std::sort(names.rbegin(), names.rend());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
+  return names;
+}
+
+}  // namespace
+
+std::optional<AutosaveFile> AutosaveFile::locked(const fs::path& path) {
+  const fs::path lock_path = lock_of(path);
+  const int lock = ::open(lock_path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+  if (lock < 0) return std::nullopt;
+  if (::flock(lock, LOCK_EX | LOCK_NB) != 0 || !still_there(lock, lock_path)) {
+    ::close(lock);
+    return std::nullopt;
+  }
+  return AutosaveFile(path, lock);
+}
+
+std::optional<AutosaveFile> AutosaveFile::make() {
+  const fs::path folder = autosave_folder();
+  if (folder.empty()) return std::nullopt;
+  try {
+    create_folder(folder);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+  const std::string time = fmt::format("{:%Y%m%d-%H%M%S}-{}", fmt::localtime(std::time(nullptr)), ::getpid());
+  for (int n = 1; n < 100; ++n) {
+    const fs::path path = folder / fmt::format("{}-{}{}", time, n, kExtension);
+    if (fs::exists(path) || fs::exists(lock_of(path))) continue;
+    if (auto file = locked(path)) return file;
+  }
+  return std::nullopt;
+}
+
+std::optional<LeftMilling> last_left_milling() {
+  for (const fs::path& path : names_in(autosave_folder())) {
+    auto file = AutosaveFile::locked(path);
+    if (!file) continue;
+    std::error_code ignored;
+    // Whoever had it may have ended without anything to leave; then its lock goes with `file`.
+    if (!fs::exists(path, ignored)) continue;
+    try {
+      return LeftMilling{std::move(*file), read_milled_bone_facts(path)};
+    } catch (const InputError&) {
+      // Not ours to remove: another version of the program may read it.
+    }
+  }
+  return std::nullopt;
+}
+
+AutosaveFile::~AutosaveFile() {
+  if (lock_ < 0) return;
+  std::error_code ignored;
+  if (!fs::exists(path_, ignored)) fs::remove(lock_of(path_), ignored);
+  ::close(lock_);
+}
+
+AutosaveFile::AutosaveFile(AutosaveFile&& other) noexcept
+    : path_(std::move(other.path_)), lock_(std::exchange(other.lock_, -1)) {}
+
+AutosaveFile& AutosaveFile::operator=(AutosaveFile&& other) noexcept {
+  std::swap(path_, other.path_);
+  std::swap(lock_, other.lock_);
+  return *this;
+}
+
+void AutosaveFile::clear() const {
+  std::error_code ignored;
+  fs::remove(path_, ignored);
+  // What a program left that was killed while it wrote.
+  const std::string half = "." + path_.stem().string() + ".";
+  for (const auto& entry : fs::directory_iterator(path_.parent_path(), ignored)) {
+    if (entry.path().filename().string().starts_with(half)) fs::remove(entry.path(), ignored);
+  }
+}
+
+Autosave::Autosave(MilledBone scan, std::optional<AutosaveFile> file)
+    : scan_(std::move(scan)), file_(std::move(file)), kept_(file_.has_value()) {}
+
+Autosave::~Autosave() {
+  if (work_.valid()) work_.wait();
+}
+
+void Autosave::take_result() {
+  try {
+    const Clock::duration took = work_.get();
+    next_ = Clock::now() + std::max<Clock::duration>(kBetween, kWritingShare * took);
+  } catch (const std::exception& error) {
+    next_ = Clock::now() + 60s;
+    complaint_ = std::string("What is milled is not kept for the next start: ") + error.what();
+  }
+}
+
+void Autosave::update(LiveMilling& milling) {
+  if (work_.valid() && work_.wait_for(0s) == std::future_status::ready) take_result();
+  if (work_.valid()) return;
+  if (!unsaved(milling)) {
+    if (std::exchange(kept_, false)) file_->clear();
+    return;
+  }
+  const std::uint64_t version = milling.bone_version();
+  if (version == kept_version_ || Clock::now() < next_) return;
+  if (!file_) file_ = AutosaveFile::make();
+  if (!file_) {
+    next_ = Clock::time_point::max();
+    complaint_ = "What is milled is not kept for the next start, since its folder cannot be written: " +
+                 autosave_folder().string();
+    return;
+  }
+  kept_version_ = version;
+  kept_ = true;
+  MilledBone milled = scan_;
+  milled.isovalue = milling.isovalue();
+  milled.removed_mm3 = milling.state().record.removed_mm3;
+  work_ =
+      std::async(std::launch::async, [&milling, path = file_->path(), milled = std::move(milled)]() mutable {
+        const Clock::time_point start = Clock::now();
+        milled.bricks = milling.touched_bricks();
+        if (milled.bricks.size() > kMaxBricks) throw InputError(path.string(), "would take more than 1 GiB");
+        write_milled_bone(path, milled);
+        return Clock::now() - start;
+      });
+}
+
+void Autosave::discard() {
+  if (work_.valid()) work_.wait();
+  if (file_) file_->clear();
+  kept_ = false;
+}
+
+}  // namespace osteomill::app

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <future>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "osteomill/live/live_milling.h"
+#include "osteomill/live/milled_bone.h"
+
+namespace osteomill::app {
+
+/// The name of a file of milled bone in the user's state folder, this object's alone for as long as it lives:
+/// a lock goes with it that the system takes away however the program ends, so that windows which are open at
+/// the same time never touch each other's. What the file holds stays when the object goes.
+class AutosaveFile {
+ public:
+  /// A new name; nothing where the folder cannot be made or written, or the user has none.
+  static std::optional<AutosaveFile> make();
+  /// This one; nothing where another has it.
+  static std::optional<AutosaveFile> locked(const std::filesystem::path& path);
+
+  ~AutosaveFile();
+  AutosaveFile(AutosaveFile&& other) noexcept;
+  AutosaveFile& operator=(AutosaveFile&& other) noexcept;
+
+  const std::filesystem::path& path() const { return path_; }
+  /// Removes what it holds.
+  void clear() const;
+
+ private:
+  AutosaveFile(std::filesystem::path path, int lock) : path_(std::move(path)), lock_(lock) {}
+
+  std::filesystem::path path_;
+  int lock_ = -1;
+};
+
+/// What a program left that has ended, and what it is of.
+struct LeftMilling {
+  AutosaveFile file;
+  MilledBone facts;
+};
+/// The last one; nothing where there is none.
+std::optional<LeftMilling> last_left_milling();
+
+/// Keeps what was milled and not saved in such a file, a few seconds behind: the first time at once, then no
+/// oftener than every 5 s and for no more than 2 % of the time. Reads the follower's copy and writes in a
+/// thread of its own.
+class Autosave {
+ public:
+  /// What is milled of this scan; in `file`, or in a new one.
+  Autosave(MilledBone scan, std::optional<AutosaveFile> file);
+  ~Autosave();
+
+  /// Once a picture. Where nothing is milled that is not saved there is no file either.
+  void update(LiveMilling& milling);
+  /// The bone as it was at this version is saved.
+  void saved(std::uint64_t bone_version) { saved_version_ = bone_version; }
+  /// Whether bone was milled that is not saved.
+  bool unsaved(const LiveMilling& milling) const {
+    return milling.touched() && milling.bone_version() != saved_version_;
+  }
+  /// The user lets it go.
+  void discard();
+  /// Why there is no autosave, once; else empty.
+  std::string take_complaint() { return std::exchange(complaint_, {}); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void take_result();
+
+  MilledBone scan_;
+  std::optional<AutosaveFile> file_;
+  std::uint64_t saved_version_ = 0;
+  std::uint64_t kept_version_ = 0;
+  bool kept_ = false;
+  Clock::time_point next_;
+  std::string complaint_;
+  // How long it took.
+  std::future<Clock::duration> work_;
+};
+
+}  // namespace osteomill::app

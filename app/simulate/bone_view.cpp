@@ -1,0 +1,117 @@
+#include "app/simulate/bone_view.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/simulate/widgets.h"
+#include <fmt/core.h>
+
+#include "osteomill/operator/free_pose.h"
+#include "osteomill/volume/isosurface.h"
+
+namespace osteomill::app {
+
+namespace {
+
+// The panels on both sides, and what is left free around the bone.
+constexpr float kPanels_px = 616;
+constexpr double kFilled = 0.85;
+constexpr double kAside_rad = 0.5;
+constexpr double kAbove_rad = 0.35;
+
+VoxelBox voxels_of_bone(const Volume& bone) {
+  VoxelBox box;
+  const auto& dims = bone.geometry().dims;
+  const float* density = bone.grid().densities().data();
+  for (int k = 0; k < dims[2]; ++k) {
+    for (int j = 0; j < dims[1]; ++j) {
+      for (int i = 0; i < dims[0]; ++i) {
+        if (static_cast<double>(*density++) > bone.isovalue()) box.include({i, j, k});
+      }
+    }
+  }
+  return box.empty() ? bone.geometry().all_voxels() : box;
+}
+
+}  // namespace
+
+Sphere BoneBox::bounds() const {
+  return {centre_W(), std::max(0.5 * (corners_W.back() - corners_W.front()).norm(), 1.0)};
+}
+
+BoneBox box_of_bone(const Volume& bone) {
+  const VoxelBox voxels = voxels_of_bone(bone);
+  BoneBox box;
+  for (std::size_t n = 0; n < 8; ++n) {
+    box.corners_W[n] = bone.geometry().world_from_voxel(VoxelIndex{
+        (n & 1) != 0 ? voxels.last.i : voxels.first.i, (n & 2) != 0 ? voxels.last.j : voxels.first.j,
+        (n & 4) != 0 ? voxels.last.k : voxels.first.k});
+  }
+  return box;
+}
+
+std::string tool_fault(const MillingTool& tool, const BoneBox& box) {
+  const double widest_mm = (box.corners_W.back() - box.corners_W.front()).norm();
+  const double radius_mm = std::max(tool.burr_radius_mm, tool.shaft_radius_mm);
+  if (2 * radius_mm <= widest_mm) return {};
+  return fmt::format("{} of {:g} mm radius is wider than the whole bone, {:.3g} mm",
+                     tool.burr_radius_mm == radius_mm ? "a burr" : "a shaft", radius_mm, widest_mm);
+}
+
+Camera with_whole(Camera camera, const BoneBox& box, const PixelSize& size) {
+  camera.focus_W = box.centre_W();
+  const double up = std::tan(0.5 * camera.field_of_view_rad) * kFilled;
+  // Of a narrow window the panels would leave nothing.
+  const double free_px = std::max(size.width - static_cast<double>(ui::px(kPanels_px)), 0.3 * size.width);
+  const double across = up * free_px / size.height;
+  camera.distance_mm = 2;
+  for (const Vec3& corner_W : box.corners_W) {
+    const Vec3 corner = camera.orientation.conjugate() * (corner_W - camera.focus_W);
+    const double away_mm = std::max(std::abs(corner.x()) / across, std::abs(corner.y()) / up);
+    camera.distance_mm = std::max(camera.distance_mm, corner.z() + away_mm);
+  }
+  return camera;
+}
+
+Camera first_camera(const BoneBox& box, const PixelSize& size) {
+  Vec3 extent_mm = Vec3::Zero();
+  for (const Vec3& corner_W : box.corners_W) {
+    extent_mm = extent_mm.cwiseMax(2 * (corner_W - box.centre_W()).cwiseAbs());
+  }
+  // W is LPS: +x to the patient's left, +y to the back.
+  const Vec3 left = Vec3::UnitX();
+  const Vec3 front = -Vec3::UnitY();
+  const bool from_left = extent_mm.y() > extent_mm.x();
+  const Vec3 level = from_left ? Vec3(std::cos(kAside_rad) * left + std::sin(kAside_rad) * front)
+                               : Vec3(std::cos(kAside_rad) * front + std::sin(kAside_rad) * left);
+  const Vec3 towards_viewer = std::cos(kAbove_rad) * level + std::sin(kAbove_rad) * Vec3::UnitZ();
+  return with_whole(camera_on(box.bounds(), -towards_viewer, Vec3::UnitZ()), box, size);
+}
+
+std::optional<Pose> tool_before(const Volume& bone, const MillingTool& tool, const Camera& camera,
+                                const PixelSize& size, double x_px, double y_px) {
+  const Vec3 ray_W = ray_through(camera, size, x_px, y_px);
+  const GridGeometry& geometry = bone.geometry();
+  const Vec3 last = Vec3(geometry.dims[0] - 1, geometry.dims[1] - 1, geometry.dims[2] - 1);
+  const Vec3 centre_W = geometry.world_from_voxel(Vec3(0.5 * last));
+  const double radius_mm =
+      0.5 * geometry.spacing_mm.cwiseProduct(last).norm() + 2 * geometry.spacing_mm.maxCoeff();
+  const double middle_mm = ray_W.dot(centre_W - camera.eye_W());
+  if (middle_mm + radius_mm <= 0) return std::nullopt;
+  const auto point_W = first_crossing(bone, camera.eye_W() + std::max(0.0, middle_mm - radius_mm) * ray_W,
+                                      camera.eye_W() + (middle_mm + radius_mm) * ray_W);
+  if (!point_W) return std::nullopt;
+  // Towards the eye and not along the view, so that it stands where the point is seen.
+  const Vec3 right_W = camera.up_W().cross(-ray_W).normalized();
+  return free_pose_before(bone, tool, *point_W, -ray_W, -ray_W.cross(right_W));
+}
+
+Pose tool_before_middle(const Volume& bone, const MillingTool& tool, const Camera& camera,
+                        const PixelSize& size, double above_px) {
+  const auto X_WT = tool_before(bone, tool, camera, size, 0.5 * size.width, 0.5 * size.height - above_px);
+  if (X_WT) return *X_WT;
+  if (above_px != 0) return tool_before_middle(bone, tool, camera, size);
+  return free_pose_before(bone, tool, camera.focus_W, camera.towards_viewer_W(), camera.up_W());
+}
+
+}  // namespace osteomill::app

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+
+#include "osteomill/tool/milling_tool.h"
+#include "osteomill/view/camera.h"
+#include "osteomill/volume/volume.h"
+
+namespace osteomill::app {
+
+/// The box along the grid's axes that holds all bone (all of the grid where there is none).
+struct BoneBox {
+  std::array<Vec3, 8> corners_W;
+
+  Vec3 centre_W() const { return 0.5 * (corners_W.front() + corners_W.back()); }
+  Sphere bounds() const;
+};
+/// Goes through every voxel.
+BoneBox box_of_bone(const Volume& bone);
+
+/// In one line why the tool cannot work with this bone; empty where it can.
+std::string tool_fault(const MillingTool& tool, const BoneBox& box);
+
+/// The camera turned as it is, with all of the bone between the panels.
+Camera with_whole(Camera camera, const BoneBox& box, const PixelSize& size);
+
+/// All of the bone upright by the patient's axes: from the front, or from the left where the bone is deeper
+/// than wide, a little from above and aside.
+Camera first_camera(const BoneBox& box, const PixelSize& size);
+
+/// The tool free of bone, before the point of bone that is seen at a pixel; nothing where no bone is.
+std::optional<Pose> tool_before(const Volume& bone, const MillingTool& tool, const Camera& camera,
+                                const PixelSize& size, double x_px, double y_px);
+/// The same in the middle of the view, or `above_px` above it; where no bone is, where it would be.
+Pose tool_before_middle(const Volume& bone, const MillingTool& tool, const Camera& camera,
+                        const PixelSize& size, double above_px = 0);
+
+}  // namespace osteomill::app
