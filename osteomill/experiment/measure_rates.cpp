@@ -6,30 +6,34 @@
 #include <string>
 #include <string_view>
 
+#include <fmt/format.h>
+
 #include "osteomill/numbers/distribution.h"
 
 namespace osteomill {
 
 namespace {
 
-// One resolution of the paper's tables.
+// Of the paper's tables, or of our own algorithm, for which the paper has no rate (0).
 struct Resolution {
   std::string_view algorithm;
-  int value;
-  double paper_rate_hz;
+  double value;
+  double paper_rate_hz = 0;
+  const char* unit = "";
 };
 
-const Resolution kPaperResolutions[] = {
-    {"line-proxy", 50, 984},      {"line-proxy", 100, 964},    {"line-proxy", 250, 884},
-    {"line-proxy", 500, 795},     {"line-proxy", 1000, 544},   {"surface-points", 10, 974},
-    {"surface-points", 20, 951},  {"surface-points", 30, 922}, {"surface-points", 50, 837},
-    {"surface-points", 100, 622}, {"point-shell", 1, 127},     {"point-shell", 2, 507},
-    {"point-shell", 3, 987},
+const Resolution kResolutions[] = {
+    {"line-proxy", 50, 984},           {"line-proxy", 100, 964},          {"line-proxy", 250, 884},
+    {"line-proxy", 500, 795},          {"line-proxy", 1000, 544},         {"surface-points", 10, 974},
+    {"surface-points", 20, 951},       {"surface-points", 30, 922},       {"surface-points", 50, 837},
+    {"surface-points", 100, 622},      {"point-shell", 1, 127},           {"point-shell", 2, 507},
+    {"point-shell", 3, 987},           {"barrier-shell", 0.26, 0, " mm"}, {"barrier-shell", 0.13, 0, " mm"},
+    {"barrier-shell", 0.10, 0, " mm"},
 };
 
-// "50 vertices", "scale 2"
-std::string text_of(const AlgorithmDescription& algorithm, int value) {
-  const std::string number = std::to_string(value);
+// "50 vertices", "scale 2", "spacing 0.13 mm"
+std::string text_of(const AlgorithmDescription& algorithm, const Resolution& resolution) {
+  const std::string number = fmt::format("{:g}{}", resolution.value, resolution.unit);
   const std::string& name = algorithm.resolution_name;
   return name.ends_with('s') ? number + " " + name : name + " " + number;
 }
@@ -62,21 +66,21 @@ std::vector<RateRow> measure_rates(const Volume& bone, const BoneDensities& dens
                                    const std::function<void(std::string_view, double)>& progress) {
   std::vector<RateRow> rows;
   int done = 0;
-  for (const Resolution& resolution : kPaperResolutions) {
-    progress(resolution.algorithm, static_cast<double>(done++) / std::size(kPaperResolutions));
+  for (const Resolution& resolution : kResolutions) {
+    progress(resolution.algorithm, static_cast<double>(done++) / std::size(kResolutions));
     const auto algorithm = std::find_if(algorithms.begin(), algorithms.end(),
                                         [&](const auto& one) { return one.id == resolution.algorithm; });
     if (algorithm == algorithms.end()) continue;
     TrialSettings trial_settings = settings;
     trial_settings.spindle = false;
     trial_settings.haptics.named.push_back(
-        {algorithm->id.name, algorithm->resolution_setting, static_cast<double>(resolution.value)});
+        {algorithm->id.name, algorithm->resolution_setting, resolution.value});
     MillingTrial trial(bone, densities, entry, *algorithm, trial_settings);
     const Times times = times_of(trial);
     const Distribution step_us = distribution_of(times.step_us);
-    rows.push_back({algorithm->id, text_of(*algorithm, resolution.value),
-                    trial.algorithm().sample_point_count(), step_us.median, step_us.p99, times.held.rate_hz(),
-                    1e6 / step_us.median, resolution.paper_rate_hz});
+    rows.push_back({algorithm->id, text_of(*algorithm, resolution), trial.algorithm().sample_point_count(),
+                    step_us.median, step_us.p99, times.held.rate_hz(), 1e6 / step_us.median,
+                    resolution.paper_rate_hz});
   }
   return rows;
 }

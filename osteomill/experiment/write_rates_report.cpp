@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <ostream>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -12,6 +13,7 @@
 #include "osteomill/numbers/positive.h"
 #include "osteomill/report/html.h"
 #include "osteomill/report/metrics.h"
+#include "osteomill/report/report_page.h"
 
 namespace osteomill {
 
@@ -86,6 +88,15 @@ std::string plain_words(const std::vector<RateRow>& rows) {
              ratio_text(std::exp(log_sum / static_cast<double>(ratios.size()))));
 }
 
+constexpr std::string_view kWhatRatesMean =
+    "Two rates stand in the table. The rate that a 1 kHz loop would hold is what section 8.1 of the paper "
+    "measures: a tick that is done early waits for its millisecond, one that is late puts the next off, and "
+    "all of the tick's work counts, not the step alone. So it is never above 1000 Hz, and 1000 Hz means that "
+    "no tick was late. Steps a second are 1,000,000 over the median step in microseconds: what the "
+    "algorithm's step alone would allow, with nothing else to do and nothing to wait for. The figure draws "
+    "these, since the other hardly tells fast algorithms apart. Only steps in contact are counted. "
+    "barrier-shell is not the paper's, so nothing of the paper stands beside it.";
+
 HtmlTable rates_table(const std::vector<RateRow>& rows) {
   HtmlTable table{
       {"Algorithm", "Resolution", "Points", "Step, median (µs)", "Step, 99th percentile (µs)",
@@ -109,7 +120,7 @@ fs::path write_rates_report(const std::vector<RateRow>& rows, const fs::path& ou
   create_folder(out_dir / "figures");
   const Figure figure = draw_rates_figure(rows, out_dir / "figures");
   write_rates_csv(out_dir / "rates.csv", rows);
-  std::string body = "<p>" + html_escaped(plain_words(rows)) + "</p>\n";
+  std::string body = html_paragraph(plain_words(rows)) + html_paragraph(std::string(kWhatRatesMean));
   body += html_figure(figure.svg,
                       "Steps a second against resolution, on a logarithmic scale. The paper's section 8.1.");
   body += html_table(rates_table(rows));

@@ -1,6 +1,9 @@
 #include "osteomill/haptics/algorithms.h"
 
+#include <algorithm>
+#include <cmath>
 #include <stdexcept>
+#include <string>
 
 #include "tests/shapes.h"
 #include <gtest/gtest.h>
@@ -50,6 +53,37 @@ TEST(Algorithms, WhatHasOneModeRunsOnce) {
   EXPECT_FALSE(runs_in(algorithm_named("barrier-shell"), Mode::paper, both));
   EXPECT_TRUE(runs_in(algorithm_named("barrier-shell"), Mode::steady, both));
   EXPECT_TRUE(runs_in(algorithm_named("barrier-shell"), Mode::paper, {Mode::paper}));
+}
+
+// The shaft's end first against a sheet two voxels thick, with a device that goes 5 mm past it.
+class ThinSheet : public ::testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Algorithms, ThinSheet, ::testing::ValuesIn(algorithm_names()), [](const auto& of) {
+  std::string name = of.param;
+  std::erase(name, '-');
+  return name;
+});
+
+TEST_P(ThinSheet, HoldsTheShaftsEndAtAnySpeed) {
+  constexpr double kTick_s = 1e-3;
+  constexpr double kSheetTop_mm = 0.25;
+  const Volume bone = testing_support::shape_volume(
+      testing_support::centred_cube(48, 0.25), [](const Vec3& p) { return std::abs(p.z()) - kSheetTop_mm; });
+  const MillingTool tool;
+  const Vec3 end_T(0, 0, tool.shaft_length_mm);
+  for (const double speed_mm_s : {20.0, 50.0, 100.0, 150.0, 200.0, 300.0}) {
+    const auto algorithm = make_algorithm(GetParam(), HapticSettings{});
+    algorithm->prepare({&bone, tool, kTick_s});
+    Pose X_WD{Vec3::Zero(), smallest_rotation(Vec3::UnitZ(), -Vec3::UnitZ())};
+    HapticStep step;
+    double lowest_mm = 2;
+    for (double end_z = 2; end_z > -5; end_z -= speed_mm_s * kTick_s) {
+      X_WD.position_mm = {0.1, 0.05, end_z + tool.shaft_length_mm};
+      step = algorithm->step(X_WD, kTick_s);
+      lowest_mm = std::min(lowest_mm, (step.X_WF.value_or(step.X_WT) * end_T).z());
+    }
+    EXPECT_GT(lowest_mm, kSheetTop_mm - 0.15) << speed_mm_s;
+    EXPECT_GT(step.wrench.force_N.z(), 8) << speed_mm_s;
+  }
 }
 
 TEST(MakeAlgorithm, WhatCannotBeIsRefused) {

@@ -363,23 +363,6 @@ TEST_P(LineProxyTest, ABallIsPressedStraightDownOnItsTop) {
   }
 }
 
-// The shaft's end first against a sheet two voxels thick, with a device that goes 5 mm past it.
-TEST(LineProxy, AThinSheetHoldsTheShaftsEnd) {
-  const Volume bone =
-      shape_volume(centred_cube(48, 0.25), [](const Vec3& p) { return std::abs(p.z()) - 0.25; });
-  const double length_mm = MillingTool{}.shaft_length_mm;
-  for (const double speed_mm_s : {20.0, 50.0, 100.0, 150.0, 200.0, 300.0}) {
-    LineProxy algorithm = prepared(Mode::steady, bone);
-    const Vec3 down = -Vec3::UnitZ();
-    HapticStep step;
-    for (double end_z = 2; end_z > -5; end_z -= speed_mm_s * kTick_s) {
-      step = algorithm.step(standing(Vec3(0.1, 0.05, end_z) - length_mm * down, down), kTick_s);
-    }
-    EXPECT_GT((*step.X_WF * Vec3(0, 0, length_mm)).z(), 0.25 - 0.05) << speed_mm_s;
-    EXPECT_GT(step.wrench.force_N.z(), 8) << speed_mm_s;
-  }
-}
-
 TEST(LineProxy, SettingsOutOfRangeAreRefused) {
   const Settings paper = Settings::defaults(Mode::paper);
   Settings settings = paper;
