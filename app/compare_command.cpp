@@ -1,5 +1,8 @@
+#include <algorithm>
 #include <filesystem>
+#include <limits>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -14,6 +17,7 @@
 #include <fmt/core.h>
 
 #include "osteomill/experiment/comparison_report.h"
+#include "osteomill/experiment/match_stiffness.h"
 #include "osteomill/experiment/measure_passivity.h"
 #include "osteomill/experiment/parallel.h"
 #include "osteomill/experiment/record_trial.h"
@@ -40,6 +44,9 @@ struct CompareOptions {
   int seeds = 1;
   int threads = static_cast<int>(core_count());
   bool no_stability = false;
+  bool match_stiffness = false;
+  /// As what it is to be felt; 0 for the softest.
+  double matched_N_per_mm = 0;
   std::string out = "osteomill-comparison";
 };
 
@@ -73,6 +80,33 @@ std::vector<StudyTrial> trials_of(const CompareOptions& options, const std::vect
   return trials;
 }
 
+double softest_felt_N_per_mm(const std::vector<StudyTrial>& trials, const StiffnessTrial& trial) {
+  double softest = std::numeric_limits<double>::infinity();
+  for (const auto& [plan, algorithm] : trials) {
+    const double felt = felt_stiffness_N_per_mm(algorithm, plan.settings.haptics, trial);
+    if (!(felt > 0)) throw std::invalid_argument(algorithm.id.name + " carries no 0.5 N on a flat wall");
+    softest = std::min(softest, felt);
+  }
+  return softest;
+}
+
+void match_stiffness(const CompareOptions& options, std::vector<TrialPlan>& plans) {
+  const MillingTool tool = plans.front().settings.tool;
+  const Volume wall = flat_wall(tool);
+  const StiffnessTrial trial{wall, tool, plans.front().settings.tick_s};
+  const double felt_N_per_mm = options.matched_N_per_mm > 0
+                                   ? options.matched_N_per_mm
+                                   : softest_felt_N_per_mm(trials_of(options, plans), trial);
+  for (TrialPlan& plan : plans) {
+    HapticSettings& haptics = plan.settings.haptics;
+    for (const AlgorithmDescription& algorithm : options.algorithms) {
+      if (!runs_in(algorithm, haptics.mode, options.modes)) continue;
+      haptics.named.push_back(setting_felt_as(felt_N_per_mm, algorithm, haptics, trial));
+    }
+    plan.matched_N_per_mm = felt_N_per_mm;
+  }
+}
+
 std::vector<StudyRow> try_other_seeds(const CompareOptions& options, const std::vector<StudyTrial>& trials) {
   std::vector<StudyTrial> others;
   for (int n = 1; n < options.seeds; ++n) {
@@ -102,7 +136,8 @@ std::vector<PassivityRow> press_on_walls(const CompareOptions& options, const Tr
 void run_compare(const CompareOptions& options, const std::string& command_line) {
   const LoadedBone bone = load_bone(options.scan);
   require_workable(options.trial.milling.setup.tool, bone.volume.geometry());
-  const std::vector<TrialPlan> plans = plans_of(options, bone, command_line);
+  std::vector<TrialPlan> plans = plans_of(options, bone, command_line);
+  if (options.match_stiffness) match_stiffness(options, plans);
   create_folder(options.out);
   const EntryPictures pictures(bone.volume, plans.front().densities.reference, plans.front().entry,
                                events_on_terminal(), !options.scan.scan.empty());
@@ -135,6 +170,32 @@ void refuse_a_hand(const CLI::App& command) {
   }
 }
 
+void refuse_a_stiffness(const CLI::App& command) {
+  if (command.count("--stiffness") > 0) {
+    throw CLI::ValidationError("--stiffness", "cannot be given with --match-stiffness, which chooses it");
+  }
+}
+
+void add_match_stiffness(CLI::App& command, CompareOptions& options) {
+  const auto take = [&options](const std::string& text) {
+    options.match_stiffness = true;
+    const bool softest = text.empty() || text == "softest";
+    options.matched_N_per_mm = softest ? 0 : std::stod(text);
+  };
+  const auto check = [](const std::string& text) {
+    const bool usable = text.empty() || text == "softest" || positive_number()(std::string(text)).empty();
+    return usable ? std::string() : text + " is neither a positive number nor softest";
+  };
+  command
+      .add_option_function<std::string>("--match-stiffness", take,
+                                        "Choose each algorithm's stiffness so that a flat wall is felt alike "
+                                        "with all: as this, or as with the "
+                                        "softest (docs/algorithms.md)")
+      ->expected(0, 1)
+      ->check(check)
+      ->type_name("N/mm|softest");
+}
+
 }  // namespace
 
 void add_compare_command(CLI::App& program, const std::string& command_line) {
@@ -163,11 +224,13 @@ void add_compare_command(CLI::App& program, const std::string& command_line) {
       ->check(whole_number(1, kMaxThreads))
       ->type_name("COUNT")
       ->capture_default_str();
+  add_match_stiffness(*command, *options);
   add_trial_options(*command, options->trial);
   add_quiet_option(*command);
   command->callback([=] {
     apply_config_file(*command);
     if (options->seeds > 1) refuse_a_hand(*command);
+    if (options->match_stiffness) refuse_a_stiffness(*command);
     run_compare(*options, command_line);
   });
 }

@@ -1,6 +1,8 @@
 #include "osteomill/experiment/comparison_report.h"
 
 #include <algorithm>
+#include <optional>
+#include <variant>
 
 #include <fmt/format.h>
 
@@ -66,6 +68,31 @@ PageText page_text() {
   return text;
 }
 
+std::optional<double> matched_N_per_mm(const Recording& recording) {
+  for (const RunSetting& setting : recording.description.settings) {
+    if (setting.key != kMatchedStiffnessKey) continue;
+    if (const double* felt_N_per_mm = std::get_if<double>(&setting.value)) return *felt_N_per_mm;
+  }
+  return std::nullopt;
+}
+
+std::string about_stiffness(const std::vector<Recording>& recordings) {
+  const std::optional<double> felt_N_per_mm = matched_N_per_mm(recordings.front());
+  const bool is_matched =
+      felt_N_per_mm && std::all_of(recordings.begin(), recordings.end(), [&](const Recording& recording) {
+        return matched_N_per_mm(recording) == felt_N_per_mm;
+      });
+  if (is_matched) {
+    return fmt::format(
+        "Stiffness is matched: each algorithm's was chosen so that a flat wall is felt as {:.3g} N/mm (the "
+        "slope of the force over the depth about 0.5 N, pressed with the burr). How it resists turning, and "
+        "what is felt of an edge or with the shaft, is not matched.",
+        *felt_N_per_mm);
+  }
+  return "Stiffness is not matched: each algorithm has that of its own equations, and the hand feels another "
+         "from each. What differs in force between them is partly this (compare --match-stiffness).";
+}
+
 void add_study(const Study& study, const fs::path& out_dir, PageText& page) {
   std::vector<CaptionedFigure> figures;
   for (const std::string_view phase : study.phases()) {
@@ -90,6 +117,7 @@ bool are_of_comparison(const std::vector<Recording>& recordings) {
 fs::path write_comparison_report(const std::vector<Recording>& recordings, const fs::path& out_dir,
                                  const ReportExtras& extras) {
   PageText text = page_text();
+  if (!recordings.empty()) text.what_was_done += " " + about_stiffness(recordings);
   create_folder(out_dir / "figures");
   if (extras.study) {
     write_study_csv(out_dir / "study.csv", *extras.study);

@@ -58,6 +58,9 @@ RunDescription describe_trial(const TrialPlan& plan, const AlgorithmDescription&
   add_hand(run.settings, person.hand);
   add_device(run.settings, person.handle);
   add_script(run.settings, person.script, plan.entry);
+  if (plan.matched_N_per_mm) {
+    run.settings.push_back({std::string(kMatchedStiffnessKey), *plan.matched_N_per_mm, "N/mm"});
+  }
   return run;
 }
 

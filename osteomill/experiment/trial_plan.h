@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -20,10 +21,16 @@ struct TrialPlan {
   std::string command_line;
   /// Recordings carry the mode in their names, as a comparison of both modes needs.
   bool mode_in_names = false;
+  /// As what every algorithm's stiffness was chosen to be felt on a flat wall (match_stiffness.h); nothing
+  /// where each has its own.
+  std::optional<double> matched_N_per_mm = std::nullopt;
 };
 
 /// The key of the setting in which every recording of this test says where the tool enters.
 inline constexpr std::string_view kScriptEntryKey = "script.entry";
+
+/// The key of the setting in which a recording says TrialPlan::matched_N_per_mm.
+inline constexpr std::string_view kMatchedStiffnessKey = "matched.felt_stiffness";
 
 /// All that a recording says of a phase of section 8.2: what any session's says, and hand, device and script.
 RunDescription describe_trial(const TrialPlan& plan, const AlgorithmDescription& algorithm, int sample_points,

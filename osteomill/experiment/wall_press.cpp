@@ -162,4 +162,10 @@ WallPressResult press_on_wall(HapticAlgorithm& algorithm, double burr_radius_mm,
           rest->felt_N_per_mm};
 }
 
+double press_slowly_on_wall(HapticAlgorithm& algorithm, double burr_radius_mm, const WallPress& press) {
+  Wall wall(algorithm, burr_radius_mm, press);
+  const std::optional<Rest> rest = press_slowly(wall, press.bias_N);
+  return rest ? rest->felt_N_per_mm : 0;
+}
+
 }  // namespace osteomill

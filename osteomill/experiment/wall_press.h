@@ -41,4 +41,8 @@ struct WallPressResult {
 /// Throws std::invalid_argument where a setting of the handle is out of range.
 WallPressResult press_on_wall(HapticAlgorithm& algorithm, double burr_radius_mm, const WallPress& press);
 
+/// The first part of it alone: the stiffness that a hand feels about the bias force, of `press` but for its
+/// handle and damping; 0 where the wall gives way.
+double press_slowly_on_wall(HapticAlgorithm& algorithm, double burr_radius_mm, const WallPress& press);
+
 }  // namespace osteomill

@@ -41,5 +41,9 @@ diff <(untimed a/summary.csv) <(untimed e/summary.csv) || fault "without picture
 [ "$(wc -l <d/summary.csv)" -eq 3 ] || fault "one algorithm, two phases"
 diff <(untimed a/summary.csv | grep point-shell) <(untimed d/summary.csv | grep point-shell) >/dev/null &&
   fault "another seed gave the same numbers"
+"$osteomill" compare --seconds 0.3 --match-stiffness --no-stability --out f >f.out
+grep -q "Stiffness is matched: .* felt as [0-9.]* N/mm" f/report.html || fault "the report should say that stiffness is matched"
+grep -q "matched.felt_stiffness" f/report.html || fault "the settings should say as what stiffness is felt"
+grep -q "Stiffness is not matched" a/report.html || fault "the report should say that stiffness is not matched"
 find . -name '*.writing-*' -o -name '*.part.*' | grep -q . && fault "left a half-written file"
 exit 0

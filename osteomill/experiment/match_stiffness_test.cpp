@@ -1,0 +1,112 @@
+#include "osteomill/experiment/match_stiffness.h"
+
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "osteomill/experiment/measure_passivity.h"
+
+namespace osteomill {
+namespace {
+
+const MillingTool kTool;
+constexpr double kTick_s = 1e-3;
+
+const Volume& wall() {
+  static const Volume volume = flat_wall(kTool);
+  return volume;
+}
+
+// The force at rest at this depth, come from outside.
+double force_at_rest_N(HapticAlgorithm& algorithm, double depth_mm) {
+  Pose X_WD;
+  double force_N = 0;
+  algorithm.reset();
+  for (double at_mm = -0.5; at_mm < depth_mm; at_mm += 0.01) {
+    X_WD.position_mm.z() = kTool.burr_radius_mm - at_mm;
+    algorithm.step(X_WD, kTick_s);
+  }
+  X_WD.position_mm.z() = kTool.burr_radius_mm - depth_mm;
+  for (int n = 0; n < 300; ++n) force_N = algorithm.step(X_WD, kTick_s).wrench.force_N.z();
+  return force_N;
+}
+
+// Between 0.4 and 0.6 N, by what is felt at rest.
+double slope_at_rest_N_per_mm(HapticAlgorithm& algorithm) {
+  std::optional<double> from_mm, from_N;
+  for (double depth_mm = -0.2; depth_mm < 3; depth_mm += 0.02) {
+    const double force_N = force_at_rest_N(algorithm, depth_mm);
+    if (!from_mm && force_N >= 0.4) {
+      from_mm = depth_mm;
+      from_N = force_N;
+    }
+    if (from_mm && force_N >= 0.6) return (force_N - *from_N) / (depth_mm - *from_mm);
+  }
+  return 0;
+}
+
+using Case = std::tuple<std::string, Mode>;
+
+// But for the one whose force rises in steps.
+std::vector<Case> cases() {
+  std::vector<Case> all;
+  for (const std::string& name : algorithm_names()) {
+    for (const Mode mode : {Mode::paper, Mode::steady}) {
+      if (name != "surface-points" || mode != Mode::paper) all.emplace_back(name, mode);
+    }
+  }
+  return all;
+}
+
+class MatchStiffness : public ::testing::TestWithParam<Case> {};
+INSTANTIATE_TEST_SUITE_P(Algorithms, MatchStiffness, ::testing::ValuesIn(cases()), [](const auto& of) {
+  std::string name = std::get<0>(of.param);
+  std::erase(name, '-');
+  return name + "_" + std::string(name_of(std::get<1>(of.param)));
+});
+
+TEST_P(MatchStiffness, IsFeltAsAskedFor) {
+  const auto& [name, mode] = GetParam();
+  const AlgorithmDescription& algorithm = algorithm_named(name);
+  HapticSettings haptics{.mode = mode};
+  const double felt_N_per_mm = 0.8;
+  haptics.named.push_back(setting_felt_as(felt_N_per_mm, algorithm, haptics, {wall(), kTool, kTick_s}));
+  const auto made = make_algorithm(algorithm, haptics);
+  made->prepare({&wall(), kTool, kTick_s});
+  EXPECT_NEAR(slope_at_rest_N_per_mm(*made), felt_N_per_mm, 0.1 * felt_N_per_mm)
+      << "at " << haptics.named.back().value;
+}
+
+TEST(MatchStiffness, ASpringToTheSurfaceIsFeltAsItsStiffness) {
+  const AlgorithmDescription& algorithm = algorithm_named("line-proxy");
+  const auto named = setting_felt_as(1.3, algorithm, {}, {wall(), kTool, kTick_s});
+  EXPECT_EQ(named.setting, "stiffness");
+  EXPECT_NEAR(named.value, 1.3, 0.02 * 1.3);
+}
+
+TEST(MatchStiffness, WhatNoSettingGivesIsRefused) {
+  const StiffnessTrial trial{wall(), kTool, kTick_s};
+  for (const std::string& name : algorithm_names()) {
+    EXPECT_THROW(setting_felt_as(1e4, algorithm_named(name), {}, trial), std::invalid_argument) << name;
+    EXPECT_THROW(setting_felt_as(1e-4, algorithm_named(name), {}, trial), std::invalid_argument) << name;
+  }
+}
+
+// The paper's second pushes with one ring of vertices after another, each capped as it is all in bone.
+TEST(MatchStiffness, ASlopeThatIsLeaptOverIsRefused) {
+  try {
+    setting_felt_as(1.5, algorithm_named("surface-points"), {.mode = Mode::paper}, {wall(), kTool, kTick_s});
+    ADD_FAILURE();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("surface-points in paper cannot be felt as 1.5 N/mm"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace osteomill
