@@ -25,6 +25,8 @@ struct Options {
   double tooth_iso = 755;
   std::string second;
   double second_iso = 300;
+  std::string spongy;
+  double spongy_iso = 100;
   std::string out;
   std::vector<std::string> only;
   Effort effort;
@@ -44,6 +46,10 @@ const std::vector<Named>& all_sections() {
       {"drops", [](const Bones&, const Effort&) { return drops(); }},
       {"passivity", [](const Bones&, const Effort&) { return passivity(); }},
       {"pushes", random_pushes},
+      {"tools", tools_and_pushes},
+      {"sheets", [](const Bones&, const Effort&) { return thin_bone(); }},
+      {"spongy", [](const Bones& bones, const Effort&) { return spongy_bone(bones); }},
+      {"through", [](const Bones&, const Effort& effort) { return breaking_through(effort); }},
       {"voxels", [](const Bones&, const Effort& effort) { return voxel_sizes(effort); }},
       {"swept", [](const Bones&, const Effort& effort) { return swept_holes(effort); }},
       {"rates", haptic_rates},
@@ -63,6 +69,8 @@ void add_options(CLI::App& program, Options& options) {
   program.add_option("--tooth-iso", options.tooth_iso, "Its isovalue")->capture_default_str();
   program.add_option("--second", options.second, "A second scan, on which nothing was chosen");
   program.add_option("--second-iso", options.second_iso, "Its isovalue")->capture_default_str();
+  program.add_option("--spongy", options.spongy, "Micro-CT of spongy bone");
+  program.add_option("--spongy-iso", options.spongy_iso, "Its isovalue")->capture_default_str();
   program.add_option("--out", options.out, "Markdown file (standard output)");
   program.add_option("--only", options.only, "Sections")->check(CLI::IsMember(names));
   program.add_option("--pushes", options.effort.pushes, "Random pushes an algorithm")->capture_default_str();
@@ -71,12 +79,17 @@ void add_options(CLI::App& program, Options& options) {
 }
 
 Bones load_bones(const Options& options) {
-  Bones bones = options.tooth.empty()
-                    ? Bones{Volume(builtin_tooth(), kBuiltinToothIsovalue), "the built-in tooth", {}, {}}
-                    : Bones{Volume(read_scan(options.tooth).grid, options.tooth_iso), "a real tooth", {}, {}};
+  Bones bones =
+      options.tooth.empty()
+          ? Bones{Volume(builtin_tooth(), kBuiltinToothIsovalue), "the built-in tooth", {}, {}, {}, {}}
+          : Bones{Volume(read_scan(options.tooth).grid, options.tooth_iso), "a real tooth", {}, {}, {}, {}};
   if (!options.second.empty()) {
     bones.second.emplace(read_scan(options.second).grid, options.second_iso);
     bones.second_name = "a cranium";
+  }
+  if (!options.spongy.empty()) {
+    bones.spongy.emplace(read_scan(options.spongy).grid, options.spongy_iso);
+    bones.spongy_name = "spongy bone";
   }
   return bones;
 }
@@ -91,7 +104,10 @@ bool measure(const Options& options, std::string& text) {
   const Bones bones = load_bones(options);
   bool all_hold = true;
   for (const Named& named : all_sections()) {
-    if (!wanted(options, named) || (named.name == "second" && !bones.second)) continue;
+    if (!wanted(options, named) || (named.name == "second" && !bones.second) ||
+        (named.name == "spongy" && !bones.spongy)) {
+      continue;
+    }
     const auto begin = std::chrono::steady_clock::now();
     const Section section = named.measure(bones, options.effort);
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;

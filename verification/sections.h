@@ -18,6 +18,9 @@ struct Bones {
   /// A second scan, on which no setting was chosen.
   std::optional<Volume> second;
   std::string second_name;
+  /// Micro-CT of spongy bone.
+  std::optional<Volume> spongy;
+  std::string spongy_name;
 };
 
 /// How much to do: the counts of the full run, or of a quick look.
@@ -33,6 +36,10 @@ Section slide_round_a_ball();
 Section turned_scans();
 Section drops();
 Section passivity();
+Section thin_bone();
+Section spongy_bone(const Bones& bones);
+Section tools_and_pushes(const Bones& bones, const Effort& effort);
+Section breaking_through(const Effort& effort);
 Section energy_of_barrier_shell(const Bones& bones, const Effort& effort);
 Section the_rig_itself(const Bones& bones, const Effort& effort);
 Section voxel_sizes(const Effort& effort);

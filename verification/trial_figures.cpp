@@ -12,6 +12,9 @@ namespace {
 TrialSettings settings_of(const TrialVariant& variant) {
   TrialSettings settings;
   settings.tick_s = variant.tick_s;
+  settings.tool = variant.tool;
+  settings.milling.removal_rate_mm3_per_Ns =
+      removal_rate_mm3_per_Ns(CuttingSettings{}, variant.tool.burr_radius_mm);
   settings.haptics.named = variant.named;
   OperatorSettings& operator_settings = settings.hand_and_device;
   operator_settings.seed = variant.seed;

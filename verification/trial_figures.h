@@ -25,6 +25,7 @@ struct TrialVariant {
   /// False reads the handle's pose without rounding.
   bool encoder = true;
   std::vector<HapticSettings::Named> named = {};
+  MillingTool tool = {};
 };
 
 /// One algorithm's milling in the test of section 8.2.

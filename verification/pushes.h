@@ -1,0 +1,50 @@
+#pragma once
+
+#include <algorithm>
+#include <string_view>
+#include <vector>
+
+#include "verification/bone_surface.h"
+
+namespace osteomill::verification {
+
+/// Pushes of a handle by a hand: how hard, how fast, with which tool.
+struct PushKind {
+  MillingTool tool;
+  double min_N = 2;
+  double max_N = 10;
+  double min_mm_s = 20;
+  double max_mm_s = 300;
+};
+
+/// How far past the surface something came, at any time and at the end.
+struct Depth {
+  double ever_mm = -1;
+  double at_end_mm = -1;
+
+  void look(double deep_mm) {
+    at_end_mm = deep_mm;
+    ever_mm = std::max(ever_mm, deep_mm);
+  }
+};
+
+/// What is felt (of 1 the centreline that it collides, of the others the tool), and what is drawn.
+struct PushOutcome {
+  Depth felt;
+  Depth drawn_centreline;
+  Depth drawn_tool;
+};
+
+inline constexpr int kTicksBetweenLooks = 4;
+
+/// So many pushes against a bone, the same ones for each algorithm: towards random points of its surface,
+/// from any side and in any pose, each begun in free space; looked at every `kTicksBetweenLooks` ticks
+/// independently of the algorithm.
+std::vector<PushOutcome> push_outcomes(std::string_view algorithm, const Volume& bone,
+                                       const BoneSurface& surface, const PushKind& kind, int count);
+
+/// How many came deeper than `limit_mm` at some time or at the end.
+std::size_t count_deeper(const std::vector<PushOutcome>& all, Depth PushOutcome::*what, double Depth::*when,
+                         double limit_mm);
+
+}  // namespace osteomill::verification
