@@ -39,9 +39,6 @@ constexpr Room kFarthestFlight{5.0, 0.3};
 
 // What a tick may release by its length; a longer one (a machine that stood still) counts as this long.
 constexpr double kMaxTick_s = 5e-3;
-// Of the turn by which a move of the device would be made at the tool's far end.
-constexpr double kTurnByMove = 0.25;
-
 // Edges of the lattice brought up to date a tick.
 constexpr int kRefreshedPerTick = 1500;
 // Bricks nearer than this to the tool are not forgotten.
@@ -70,6 +67,16 @@ Room room_of(const Vector6& move_T) {
 
 ToolMove in_world(const Pose& X_WT, const Vector6& move_T) {
   return {X_WT.orientation * Vec3(move_T.head<3>()), X_WT.orientation * Vec3(move_T.tail<3>())};
+}
+
+// Of a move that changes a stretch, as much as leaves it `least` all the way; all where it only grows.
+double share_above(const Vec3& stretch, const Vec3& change, double least) {
+  const double along = stretch.dot(change);
+  if (least <= 0 || along >= 0) return 1;
+  const double spare = stretch.squaredNorm() - least * least;
+  if (spare <= 0) return 0;
+  const double root = along * along - change.squaredNorm() * spare;
+  return root <= 0 ? 1 : std::min(1.0, (-along - std::sqrt(root)) / change.squaredNorm());
 }
 
 // Newton's step; where the energy is not convex, that of a convex one above it.
@@ -204,16 +211,14 @@ BarrierShell::State BarrierShell::evaluated(const Pose& X_WT, const Pose& X_WD) 
   return state;
 }
 
-BarrierShell::Allowed BarrierShell::allowed_release(const Pose& X_WD, double dt_s) const {
+// The coupling's stretch, which is what is felt, may fall so far in a tick and no farther: against that at
+// the end of the last one, so that a tool that goes along with the device keeps it.
+Room BarrierShell::least_stretch(double dt_s) const {
   const double tick_s = std::clamp(dt_s, 0.0, kMaxTick_s);
-  const Room device = room_of(move_between(X_WD_before_, X_WD));
-  const Room stretch = room_of(move_between(X_WD, X_WT_));
-  const double length_mm = std::max(tool_.shaft_length_mm, tool_.burr_radius_mm);
-  const double fading = std::min(1.0, tick_s / settings_.release_time_s);
-  return {device.move_mm + device.turn_rad * length_mm + fading * stretch.move_mm +
-              settings_.release_mm_s * tick_s,
-          device.turn_rad + kTurnByMove * device.move_mm / length_mm + fading * stretch.turn_rad +
-              settings_.release_rad_s * tick_s};
+  const double kept = 1 - std::min(1.0, tick_s / settings_.release_time_s);
+  const Room before = room_of(move_between(X_WD_before_, X_WT_));
+  return {kept * before.move_mm - settings_.release_mm_s * tick_s,
+          kept * before.turn_rad - settings_.release_rad_s * tick_s};
 }
 
 // What was stored must not have grown where nobody moved the device.
@@ -228,10 +233,10 @@ void BarrierShell::watch_energy(const State& state) {
 }
 
 // Nothing near, nothing held back, and free space all the way.
-bool BarrierShell::may_fly(const Pose& X_WD, const Allowed& allowed) const {
+bool BarrierShell::may_fly(const Pose& X_WD, const Room& least) const {
   const Room way = room_of(move_between(X_WT_, X_WD));
-  return near_.is_empty() && way.move_mm <= std::min(kFarthestFlight.move_mm, allowed.release_mm) &&
-         way.turn_rad <= std::min(kFarthestFlight.turn_rad, allowed.release_rad) &&
+  return near_.is_empty() && least.move_mm <= 0 && least.turn_rad <= 0 &&
+         way.move_mm <= kFarthestFlight.move_mm && way.turn_rad <= kFarthestFlight.turn_rad &&
          is_clear(bricks_, cores(), barrier_, X_WT_, way);
 }
 
@@ -251,8 +256,7 @@ double BarrierShell::share_with_room(const Room& step) const {
 }
 
 // Newton's, as much of it as is certified and may be released.
-BarrierShell::Step BarrierShell::next_step(const State& best, const Pose& X_WD, const Pose& start,
-                                           const Allowed& allowed) {
+BarrierShell::Step BarrierShell::next_step(const State& best, const Pose& X_WD, const Room& least) {
   Step step{newton_step(best.sum)};
   const Room wanted = room_of(step.move_T);
   step.is_last = wanted.move_mm <= kDone_mm && wanted.turn_rad <= kDone_rad;
@@ -261,17 +265,18 @@ BarrierShell::Step BarrierShell::next_step(const State& best, const Pose& X_WD, 
     near_.energy(cores(), barrier_, best.X_WT);
   }
   if (near_.overflowed()) return {Vector6::Zero(), true};
-  double share = share_with_room(wanted);
-  share *= near_.certified({share * step.move_T.head<3>(), share * step.move_T.tail<3>()}, barrier_);
-  const Pose target = moved(best.X_WT, in_world(best.X_WT, share * step.move_T));
-  const Room stretch_before = room_of(move_between(X_WD, start));
-  const Room stretch = room_of(move_between(X_WD, best.X_WT));
-  const double released = share_released(
-      best.X_WT, target, X_WD, std::max(0.0, allowed.release_mm - (stretch_before.move_mm - stretch.move_mm)),
-      std::max(0.0, allowed.release_rad - (stretch_before.turn_rad - stretch.turn_rad)));
-  step.is_held_back = released < 1;
-  step.reaches_device = best.sum.touching == 0 && share >= 1 && released >= 1;
-  step.move_T *= share * released;
+  const ToolMove stretch = move_between(X_WD, best.X_WT);
+  const ToolMove change = in_world(best.X_WT, step.move_T);
+  const double move = share_above(stretch.translation_mm, change.translation_mm, least.move_mm);
+  const double turn = share_above(stretch.rotation_rad, change.rotation_rad, least.turn_rad);
+  step.move_T.head<3>() *= move;
+  step.move_T.tail<3>() *= turn;
+  const double with_room = share_with_room(room_of(step.move_T));
+  step.move_T *= with_room;
+  const double certified = near_.certified({step.move_T.head<3>(), step.move_T.tail<3>()}, barrier_);
+  step.move_T *= certified;
+  step.is_held_back = move < 1 || turn < 1;
+  step.reaches_device = best.sum.touching == 0 && !step.is_held_back && with_room >= 1 && certified >= 1;
   return step;
 }
 
@@ -281,14 +286,14 @@ Pose BarrierShell::after(const State& best, const Step& step, const Pose& X_WD) 
 
 BarrierShell::State BarrierShell::solve(const Pose& X_WD, double dt_s) {
   const Pose start = X_WT_;
-  const Allowed allowed = allowed_release(X_WD, dt_s);
+  const Room least = least_stretch(dt_s);
   gather_for_next_move();
-  if (may_fly(X_WD, allowed)) return {X_WD};
+  if (may_fly(X_WD, least)) return {X_WD};
   State best = evaluated(start, X_WD);
   watch_energy(best);
   counts_.nearest_share = std::min(counts_.nearest_share, best.sum.nearest_mm / barrier_.width_mm);
   for (int passes = 1;;) {
-    Step step = next_step(best, X_WD, start, allowed);
+    Step step = next_step(best, X_WD, least);
     if (step.is_last) {
       best.X_WT = after(best, step, X_WD);
       return best;

@@ -35,10 +35,6 @@ class BarrierShell final : public HapticAlgorithm {
  private:
   struct State;
   struct Step;
-  struct Allowed {
-    double release_mm;
-    double release_rad;
-  };
   void begin(const Pose& X_WD);
   void begin_outside(const Pose& X_WT);
   bool is_inside_bone(const Pose& X_WT) const;
@@ -48,10 +44,10 @@ class BarrierShell final : public HapticAlgorithm {
   void gather(const Pose& X_WT, const Room& room);
   void make_room_for_bricks();
   void gather_for_next_move();
-  bool may_fly(const Pose& X_WD, const Allowed& allowed) const;
-  Allowed allowed_release(const Pose& X_WD, double dt_s) const;
+  bool may_fly(const Pose& X_WD, const Room& least) const;
+  Room least_stretch(double dt_s) const;
   double share_with_room(const Room& step) const;
-  Step next_step(const State& best, const Pose& X_WD, const Pose& start, const Allowed& allowed);
+  Step next_step(const State& best, const Pose& X_WD, const Room& least);
   static Pose after(const State& best, const Step& step, const Pose& X_WD);
   State solve(const Pose& X_WD, double dt_s);
   void watch_energy(const State& state);
