@@ -9,9 +9,15 @@ namespace osteomill::verification {
 
 namespace {
 
-constexpr double kBall_mm = 5;
 constexpr double kDepth_mm = 0.5;
 constexpr double kSpeed_mm_s = 16;
+
+struct Case {
+  double voxel_mm;
+  double ball_mm;
+  double edge_voxels;
+};
+constexpr Case kCases[] = {{0.25, 5, 2}, {0.20, 5, 2}, {0.10, 5, 2}, {0.25, 5, 1}, {1, 9, 2}};
 
 struct Slide {
   std::vector<double> direction_deg;
@@ -19,11 +25,11 @@ struct Slide {
 };
 
 // From 50 degrees on one side over the top to 50 on the other, the shaft upright, in the plane at `azimuth`.
-void slide(std::string_view algorithm, const Volume& ball, double azimuth, Slide& felt) {
+void slide(std::string_view algorithm, const Volume& ball, double ball_mm, double azimuth, Slide& felt) {
   const MillingTool tool;
   const auto haptics = prepared(algorithm, ball, tool, 1);
   const bool centreline = algorithm == "line-proxy";
-  const double radius = kBall_mm + (centreline ? 0 : tool.burr_radius_mm) - kDepth_mm;
+  const double radius = ball_mm + (centreline ? 0 : tool.burr_radius_mm) - kDepth_mm;
   const Vec3 aside(std::cos(azimuth), std::sin(azimuth), 0);
   const auto out_at = [&](double angle) -> Vec3 {
     return std::sin(angle) * aside + std::cos(angle) * Vec3::UnitZ();
@@ -44,28 +50,34 @@ void slide(std::string_view algorithm, const Volume& ball, double azimuth, Slide
 }  // namespace
 
 Section slide_round_a_ball() {
-  Section section{"Sliding round a ball",
-                  "Must hold for 1 and 3: the force's direction errs by at most 1 degree (median) and "
-                  "2.5 (99 %), and steps by at most 0.005 N from tick to tick; 4: 0.1, 0.5 and 0.002; 2 is "
-                  "reported. A burr "
-                  "0.5 mm deep in a ball of 5 mm at 16 mm/s, 1 N/mm, over the top in three planes.",
-                  {"algorithm, voxels", "direction, degrees: median", "99 %", "largest step, N", ""},
-                  {},
-                  {}};
+  Section section{
+      "Sliding round a ball",
+      "Must hold for 1 and 3: the force's direction errs by at most 1 degree (median) and "
+      "2.5 (99 %), and steps by at most 0.005 N from tick to tick; 4: 0.1, 0.5 and 0.002; 2 is "
+      "reported. In 1 mm voxels and with an edge of one voxel the goal of 4 is 0.5 and 1.5, the others "
+      "are reported. A burr 0.5 mm deep in a ball at 16 mm/s, 1 N/mm, over the top in three planes.",
+      {"algorithm, voxels, edge, ball", "direction, degrees: median", "99 %", "largest step, N", ""},
+      {},
+      {}};
   using namespace testing_support;
-  for (const double spacing : {0.25, 0.20, 0.10}) {
+  for (const Case& one : kCases) {
+    const bool is_coarse = one.voxel_mm > 0.25 || one.edge_voxels < 2;
     const Volume bone =
-        shape_volume(centred_cube(static_cast<int>(12 / spacing), spacing), ball(Vec3::Zero(), kBall_mm));
+        shape_volume(centred_cube(static_cast<int>((2 * one.ball_mm + 2) / one.voxel_mm), one.voxel_mm),
+                     ball(Vec3::Zero(), one.ball_mm), one.edge_voxels);
     for (const std::string& algorithm : algorithm_names()) {
       Slide felt;
-      for (const double azimuth : {0.0, 0.35, 0.8}) slide(algorithm, bone, azimuth, felt);
+      for (const double azimuth : {0.0, 0.35, 0.8}) slide(algorithm, bone, one.ball_mm, azimuth, felt);
       const double median = distribution_of(felt.direction_deg).median;
       const double p99 = percentile(felt.direction_deg, 0.99);
+      const double step_N = felt.largest_step_N;
       const bool ours = algorithm == "barrier-shell";
-      const bool good = ours ? median <= 0.1 && p99 <= 0.5 && felt.largest_step_N <= 0.002
-                             : median <= 1 && p99 <= 2.5 && felt.largest_step_N <= 0.005;
-      section.add({fmt::format("{}, {:.2f} mm", algorithm, spacing), figure(median), figure(p99),
-                   figure(felt.largest_step_N)},
+      const bool good = is_coarse ? !ours || (median <= 0.5 && p99 <= 1.5)
+                        : ours    ? median <= 0.1 && p99 <= 0.5 && step_N <= 0.002
+                                  : median <= 1 && p99 <= 2.5 && step_N <= 0.005;
+      section.add({fmt::format("{}, {:.2f} mm, {:.0f}, {:.0f} mm", algorithm, one.voxel_mm, one.edge_voxels,
+                               one.ball_mm),
+                   figure(median), figure(p99), figure(step_N)},
                   good || algorithm == "surface-points");
     }
   }

@@ -59,7 +59,7 @@ const std::vector<Field>& fields() {
           "the next two",
           [](Settings & s) -> auto& { return s.release_time_s; }),
       number(
-          "release", "mm/s", 15, "How fast the tool may come nearer to the device, beside its own motion",
+          "release", "mm/s", 15, "How fast what the coupling is stretched by may fall at least",
           [](Settings & s) -> auto& { return s.release_mm_s; }),
       number(
           "release-turn", "rad/s", 0.05, "The same of its turning",
