@@ -179,8 +179,8 @@ void refuse_a_stiffness(const CLI::App& command) {
 void add_match_stiffness(CLI::App& command, CompareOptions& options) {
   const auto take = [&options](const std::string& text) {
     options.match_stiffness = true;
-    const bool softest = text.empty() || text == "softest";
-    options.matched_N_per_mm = softest ? 0 : std::stod(text);
+    options.matched_N_per_mm = 0;
+    if (!text.empty() && text != "softest") CLI::detail::lexical_cast(text, options.matched_N_per_mm);
   };
   const auto check = [](const std::string& text) {
     const bool usable = text.empty() || text == "softest" || positive_number()(std::string(text)).empty();

@@ -29,6 +29,10 @@ struct Pressed {
 
 // Why what was sought is not between these two.
 std::string reason(const Pressed& low, const Pressed& high) {
+  if (low.felt_N_per_mm == 0.0 && high.felt_N_per_mm) {
+    return fmt::format("the softest that carries the press, {:.4g}, is felt as {:.4g}",
+                       high.stiffness_N_per_mm, *high.felt_N_per_mm);
+  }
   if (low.felt_N_per_mm && high.felt_N_per_mm) {
     return fmt::format(
         "at a stiffness of {:.4g} that leaps from {:.3g} to {:.3g}, as its force rises in steps",
@@ -52,7 +56,7 @@ double felt_stiffness_N_per_mm(const AlgorithmDescription& algorithm, const Hapt
 
 HapticSettings::Named setting_felt_as(double felt_N_per_mm, const AlgorithmDescription& algorithm,
                                       const HapticSettings& haptics, const StiffnessTrial& trial) {
-  const SettingDescription* setting = setting_of_option(algorithm, std::string(kStiffnessOption));
+  const SettingDescription* setting = setting_of_option(algorithm, kStiffnessOption);
   if (setting == nullptr) {
     throw std::invalid_argument(algorithm.id.name + " has no stiffness that could be matched");
   }

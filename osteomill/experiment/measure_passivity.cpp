@@ -13,8 +13,6 @@ namespace {
 constexpr double kDampings_Ns_per_mm[] = {0.001, 0.002, 0.005, 0.010};
 constexpr double kDelays_s[] = {0.3e-3, 1e-3, 2e-3};
 
-const std::string kOption{kStiffnessOption};
-
 }  // namespace
 
 std::vector<PassivityCase> passivity_cases(const std::vector<AlgorithmDescription>& algorithms,
@@ -22,7 +20,7 @@ std::vector<PassivityCase> passivity_cases(const std::vector<AlgorithmDescriptio
   std::vector<PassivityCase> cases;
   for (const Mode mode : modes) {
     for (const AlgorithmDescription& algorithm : algorithms) {
-      if (setting_of_option(algorithm, kOption) == nullptr) continue;
+      if (setting_of_option(algorithm, kStiffnessOption) == nullptr) continue;
       if (!runs_in(algorithm, mode, modes)) continue;
       for (const double delay_s : kDelays_s) {
         for (const double damping : kDampings_Ns_per_mm) cases.push_back({algorithm, mode, damping, delay_s});
@@ -68,7 +66,7 @@ PassivityRow measure_passivity(const PassivityCase& setup, const Volume& wall, c
   press.tick_s = tick_s;
   HapticSettings settings = haptics;
   settings.mode = setup.mode;
-  const std::string stiffness = setting_of_option(setup.algorithm, kOption)->name;
+  const std::string stiffness = setting_of_option(setup.algorithm, kStiffnessOption)->name;
   settings.named.push_back({setup.algorithm.id.name, stiffness, 0});
   const auto press_at = [&](double stiffness_N_per_mm) {
     settings.named.back().value = stiffness_N_per_mm;

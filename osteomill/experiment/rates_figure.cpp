@@ -43,7 +43,7 @@ std::string tics(const std::vector<RateRow>& rows) {
   for (std::size_t n = 0; n < rows.size(); ++n) {
     list += fmt::format("{}{} {}", n == 0 ? "" : ", ", gnuplot_quoted(rows[n].resolution), n);
   }
-  return fmt::format("set xtics noenhanced rotate by -35 left ({})\n", list);
+  return fmt::format("set xtics noenhanced rotate by 35 right ({})\n", list);
 }
 
 std::string panel(const std::vector<RateRow>& rows, std::size_t column, std::size_t columns,
