@@ -42,6 +42,8 @@ Volume make(Bone bone) {
       return Volume(builtin_tooth(), kBuiltinToothIsovalue);
     case Bone::builtin_refined:
       return Volume(builtin_tooth(2.0), kBuiltinToothIsovalue);
+    case Bone::builtin_finest:
+      return Volume(builtin_tooth(4.0), kBuiltinToothIsovalue);
     case Bone::real_tooth:
       return Volume(read_scan(kRealTooth).grid, kRealToothIsovalue);
     case Bone::real_tooth_refined:
@@ -58,6 +60,8 @@ std::string name_of(Bone bone) {
       return "builtin_256";
     case Bone::builtin_refined:
       return "builtin_512";
+    case Bone::builtin_finest:
+      return "builtin_1024";
     case Bone::real_tooth:
       return "tooth_256";
     case Bone::real_tooth_refined:
@@ -67,7 +71,8 @@ std::string name_of(Bone bone) {
 }
 
 bool is_here(Bone bone) {
-  return bone == Bone::builtin || bone == Bone::builtin_refined || std::filesystem::exists(kRealTooth);
+  const bool is_real = bone == Bone::real_tooth || bone == Bone::real_tooth_refined;
+  return !is_real || std::filesystem::exists(kRealTooth);
 }
 
 const Volume& bone_volume(Bone bone) {

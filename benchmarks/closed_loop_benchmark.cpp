@@ -84,6 +84,7 @@ const bool kAdded = [] {
       for (const bool milling : {true, false}) add({algorithm, Mode::steady, bone, milling});
     }
     add({algorithm, Mode::paper, Bone::builtin, true});
+    add({algorithm, Mode::steady, Bone::builtin_finest, true});
   }
   for (const int vertices : {101, 1001}) add({"line-proxy", Mode::steady, Bone::builtin, true, vertices});
   for (const int slices : {10, 100}) add({"surface-points", Mode::steady, Bone::builtin, true, slices});
