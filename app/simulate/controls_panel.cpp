@@ -26,8 +26,22 @@ bool settle(const char* label, double& value, float min, float max, const char* 
   return ui::released();
 }
 
+// Its end, which tells one scan from another, where there is no room for all of it.
+std::string end_that_fits(const std::string& name) {
+  const float room = ImGui::GetContentRegionAvail().x;
+  std::string shown = name;
+  std::size_t first = 0;
+  while (ImGui::CalcTextSize(shown.c_str()).x > room && first < name.size()) {
+    do ++first;
+    while (first < name.size() && (static_cast<unsigned char>(name[first]) & 0xC0) == 0x80);
+    shown = "..." + name.substr(first);
+  }
+  return shown;
+}
+
 void draw_scan(ViewState& view, const std::string& name) {
-  ImGui::TextUnformatted(name.c_str());
+  ImGui::TextUnformatted(end_that_fits(name).c_str());
+  ui::hint(name.c_str());
   const bool entered = ui::text_field("scan", view.scan_path.data(), view.scan_path.size());
   ui::hint("A DICOM folder, NRRD, MetaImage or NIfTI file; or drop it onto the window");
   ImGui::SameLine();
@@ -99,7 +113,8 @@ void draw_session(ViewState& view, LiveMilling& milling) {
   ImGui::SameLine();
   if (ui::button("Reset bone", free && milling.touched())) view.reset_asked = true;
   ImGui::SameLine();
-  ImGui::TextDisabled("%d cuts", static_cast<int>(milling.cuts()));
+  const auto cuts = static_cast<int>(milling.cuts());
+  ImGui::TextDisabled(cuts == 1 ? "%d cut" : "%d cuts", cuts);
 }
 
 void draw_isovalue(ViewState& view, Simulation& simulation) {
@@ -204,8 +219,6 @@ void draw_controls(ViewState& view, Simulation& simulation, FilesPanel& files, c
       simulation.milling.change(view.wanted);
     }
   }
-  if (simulation.milling.preparing()) ImGui::TextColored({0.55f, 0.80f, 1.0f, 1}, "preparing ...");
-  if (!view.message.empty()) ImGui::TextWrapped("%s", view.message.c_str());
   ImGui::PopItemWidth();
   ImGui::End();
 }

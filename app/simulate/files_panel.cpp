@@ -134,14 +134,38 @@ std::optional<double> FilesPanel::recording_s(const Simulation& simulation) cons
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - recording_since_).count();
 }
 
-void FilesPanel::draw_result(ViewState& view) {
-  if (view.result.empty()) return;
-  if (ui::button("Open folder"))
-    attempt(view, [&] { open_outside(fs::absolute(view.result).parent_path()); });
-  ui::hint("The folder of what was saved last");
-  if (view.result.extension() != ".html") return;
-  ImGui::SameLine();
-  if (ui::button("Open report")) attempt(view, [&] { open_outside(view.result); });
+float FilesPanel::draw_said(ViewState& view, const Simulation& simulation, const PixelSize& size,
+                            float top_px) {
+  const bool preparing = simulation.milling.preparing();
+  if (view.message.empty() && !busy() && !preparing) return top_px;
+  ImGui::SetNextWindowPos({static_cast<float>(size.width) - ui::px(ui::kRightWidth_px + 8), top_px});
+  ImGui::SetNextWindowSize({ui::px(ui::kRightWidth_px), 0});
+  ImGui::Begin("##said", nullptr,
+               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
+                   ImGuiWindowFlags_NoFocusOnAppearing);
+  const ImVec4 going_on(0.55f, 0.80f, 1.0f, 1);
+  if (preparing) ImGui::TextColored(going_on, "preparing ...");
+  if (busy()) ImGui::TextColored(going_on, "writing ...");
+  if (!view.message.empty()) {
+    ImGui::TextWrapped("%s", view.message.c_str());
+    if (view.result.extension() == ".html") {
+      if (ui::button("Open report")) attempt(view, [&] { open_outside(view.result); });
+      ImGui::SameLine();
+    }
+    if (!view.result.empty()) {
+      if (ui::button("Open folder"))
+        attempt(view, [&] { open_outside(fs::absolute(view.result).parent_path()); });
+      ui::hint("The folder of what was saved last");
+      ImGui::SameLine();
+    }
+    if (ui::button("Hide")) {
+      view.message.clear();
+      view.result.clear();
+    }
+  }
+  const float below_px = ImGui::GetWindowPos().y + ImGui::GetWindowSize().y + ui::px(8);
+  ImGui::End();
+  return below_px;
 }
 
 void FilesPanel::draw(ViewState& view, Simulation& simulation) {
@@ -172,10 +196,6 @@ void FilesPanel::draw(ViewState& view, Simulation& simulation) {
   }
   ImGui::SameLine();
   if (ui::button("Save picture")) view.picture_asked = true;
-  draw_result(view);
-  if (busy()) {
-    ImGui::TextColored({0.55f, 0.80f, 1.0f, 1}, "writing ...");
-  }
 }
 
 }  // namespace osteomill::app

@@ -18,6 +18,9 @@ class FilesPanel {
   explicit FilesPanel(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
   void draw(ViewState& view, Simulation& simulation);
+  /// On the right from `top_px` down: what is going on, what was done last, and buttons that open what came
+  /// of it. Returns where it ends.
+  float draw_said(ViewState& view, const Simulation& simulation, const PixelSize& size, float top_px);
   /// Ends a recording that still goes on.
   void close(ViewState& view, Simulation& simulation);
   /// Ends a recording that goes on since what it tells of changes.
@@ -49,8 +52,6 @@ class FilesPanel {
     std::string said;
     std::filesystem::path result;
   };
-  void draw_result(ViewState& view);
-
   std::chrono::steady_clock::time_point recording_since_;
   std::future<Done> work_;
   // Of the bone that is being saved.

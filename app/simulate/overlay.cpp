@@ -22,10 +22,10 @@ constexpr const char* kControls[][2] = {
     {"Press it in, pull it back", "wheel, or Page Up and Page Down"},
     {"Turn it", "Shift with mouse or arrow keys"},
     {"Mill", "left button while the tool is in hand, or Space on and off"},
-    {"With a SpaceMouse", "push and twist it; a button turns the spindle on and off"},
     {"Move a cut", "Ctrl with left drag on it, or its slider"},
     {"Pause, take back the last cut", "P, Ctrl+Z"},
     {"Full screen, this page", "F11, F1"},
+    {"With a SpaceMouse", "push and twist it; a button turns the spindle on and off"},
 };
 
 ImVec2 at(const Eigen::Vector2d& place) {
@@ -80,7 +80,7 @@ void draw_annotations(const ViewState& view, const PixelSize& size, bool patient
 void draw_help(ViewState& view, const PixelSize& size, float top_px) {
   if (!view.help) return;
   // Beside the bone and the tool, which it explains.
-  const float width = ui::px(250);
+  const float width = ui::px(ui::kRightWidth_px);
   const auto width_px = static_cast<float>(size.width);
   ImGui::SetNextWindowPos({width_px - width - ui::px(8), top_px});
   ImGui::SetNextWindowSizeConstraints({width, 0},
@@ -90,16 +90,18 @@ void draw_help(ViewState& view, const PixelSize& size, float top_px) {
                    ImGuiWindowFlags_NoFocusOnAppearing);
   if (ui::button("Start milling")) view.help = false;
   ImGui::PushTextWrapPos(0);
+  ImGui::TextUnformatted(
+      "Grey and gold: the tool as bone lets it be. Blue: your hand; the further it sinks in, the harder you "
+      "press. Green: the force on it, amber: the torque, red: where it acts.");
+  // So that all of it is in sight in a window of the usual size.
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {ui::px(8), ui::px(1)});
   for (const auto& [what, how] : kControls) {
     ImGui::TextUnformatted(what);
     ImGui::PushStyleColor(ImGuiCol_Text, {0.55f, 0.80f, 1.0f, 1.0f});
     ImGui::TextWrapped("%s", how);
     ImGui::PopStyleColor();
   }
-  ImGui::Spacing();
-  ImGui::TextUnformatted(
-      "Grey and gold: the tool as bone lets it be. Blue: your hand; the further it sinks in, the harder you "
-      "press. Green: the force on it, amber: the torque, red: where it acts.");
+  ImGui::PopStyleVar();
   ImGui::PopTextWrapPos();
   ImGui::End();
   if (dialogue_open() || ImGui::GetIO().WantTextInput) return;

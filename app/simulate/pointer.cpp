@@ -1,6 +1,7 @@
 #include "app/simulate/pointer.h"
 
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "app/simulate/cuts.h"
@@ -9,6 +10,7 @@
 #include <GLFW/glfw3.h>
 #include <imgui.h>
 
+#include "osteomill/operator/entry_places.h"
 #include "osteomill/tool/tool_distance.h"
 
 namespace osteomill::app {
@@ -83,17 +85,14 @@ void take_keys(ViewState& view, LiveMilling& milling) {
   if (io.KeyCtrl && pressed(GLFW_KEY_Z) && milling.cuts() > 0) milling.undo();
 }
 
-// Where the pointer is, if it is on bone, or else in the middle.
-void bring_tool(ViewState& view, Simulation& simulation, const PixelSize& size, bool at_pointer) {
+// Before the bone that is seen at the pixel, if there is any, or else in the middle.
+void bring_tool(ViewState& view, Simulation& simulation, const PixelSize& size,
+                const std::optional<Eigen::Vector2d>& pixel) {
   LiveMilling& milling = simulation.milling;
   const MillingTool& tool = milling.setup().tool;
-  const ImVec2& pointer = ImGui::GetIO().MousePos;
   milling.set_spindle(false);
   milling.read_bone([&](const Volume& bone) {
-    if (at_pointer) {
-      view.X_W_brought = tool_before(bone, tool, view.camera, size, static_cast<double>(pointer.x),
-                                     static_cast<double>(pointer.y));
-    }
+    if (pixel) view.X_W_brought = tool_before(bone, tool, view.camera, size, pixel->x(), pixel->y());
     if (!view.X_W_brought) view.X_W_brought = tool_before_middle(bone, tool, view.camera, size);
   });
   milling.place(*view.X_W_brought, [&hand = simulation.hand](const Pose& X_WD) { hand.put_at(X_WD); });
@@ -150,8 +149,22 @@ void take_input(ViewState& view, Simulation& simulation, SpaceMouse& space_mouse
   take_keys(view, milling);
   const bool by_key = !io.WantTextInput && ImGui::IsKeyPressed(GLFW_KEY_B, false);
   if ((std::exchange(view.bring_asked, false) || by_key) && !milling.placing()) {
-    bring_tool(view, simulation, size, by_key && !io.WantCaptureMouse);
+    std::optional<Eigen::Vector2d> pointer;
+    if (by_key && !io.WantCaptureMouse)
+      pointer = {static_cast<double>(io.MousePos.x), static_cast<double>(io.MousePos.y)};
+    bring_tool(view, simulation, size, pointer);
   }
+}
+
+void free_tool(ViewState& view, Simulation& simulation, const PixelSize& size) {
+  const Pose X_WT = simulation.milling.state().record.X_WT;
+  // What only presses on bone is no deeper in it than this.
+  MillingTool core = simulation.milling.setup().tool;
+  core.burr_radius_mm *= 0.5;
+  core.shaft_radius_mm *= 0.5;
+  bool free = true;
+  simulation.milling.read_bone([&](const Volume& bone) { free = tool_is_free(bone, core, X_WT); });
+  if (!free) bring_tool(view, simulation, size, pixel_of(view.camera, size, X_WT.position_mm));
 }
 
 }  // namespace osteomill::app

@@ -11,7 +11,6 @@ namespace osteomill::app {
 
 namespace {
 
-constexpr float kWidth_px = 250;
 constexpr std::size_t kPlotPoints = 200;
 const ImVec4 kWarning{1.0f, 0.72f, 0.25f, 1};
 
@@ -62,8 +61,8 @@ void draw_faults(const std::deque<TickRecord>& history) {
 }  // namespace
 
 float draw_readings(Simulation& simulation, double pictures_per_s, const PixelSize& size) {
-  ImGui::SetNextWindowPos({static_cast<float>(size.width) - ui::px(kWidth_px + 8), ui::px(8)});
-  ImGui::SetNextWindowSize({ui::px(kWidth_px), 0});
+  ImGui::SetNextWindowPos({static_cast<float>(size.width) - ui::px(ui::kRightWidth_px + 8), ui::px(8)});
+  ImGui::SetNextWindowSize({ui::px(ui::kRightWidth_px), 0});
   ImGui::Begin("Readings", nullptr, ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize);
   const TimingSummary timing = simulation.milling.timing();
   const LiveState& state = simulation.milling.state();

@@ -281,7 +281,9 @@ class Simulator {
       ask_before("Resetting the bone", [this] { simulation_->milling.reset(); });
     }
     try {
+      const bool prepared = simulation_->milling.preparing();
       simulation_->update();
+      if (prepared && !simulation_->milling.preparing()) free_tool(view_, *simulation_, size);
     } catch (const std::exception& error) {
       view_.complaint = error.what();
       view_.wanted = simulation_->milling.setup();
@@ -295,7 +297,8 @@ class Simulator {
     if (std::exchange(view_.picture_asked, false)) save_picture();
     draw_annotations(view_, size, !options_.scan.scan.empty());
     draw_controls(view_, *simulation_, files_, size);
-    const float below_px = draw_readings(*simulation_, rate_.per_s(), size);
+    float below_px = draw_readings(*simulation_, rate_.per_s(), size);
+    below_px = files_.draw_said(view_, *simulation_, size, below_px);
     if (opening_.valid()) draw_opening();
     draw_help(view_, size, below_px);
     if (const auto recording_s = files_.recording_s(*simulation_)) draw_recording(*recording_s, size);

@@ -34,12 +34,16 @@ class Lines {
   std::string text_;
 };
 
-std::string shown_controls() {
+// All that can be clicked now, and where.
+void add_controls(Lines& lines) {
   std::string labels;
   for (const auto& [label, place] : ui::places()) {
-    if (place.frame >= ImGui::GetFrameCount() - 1) labels += "[" + label + "]";
+    if (place.frame < ImGui::GetFrameCount() - 1) continue;
+    labels += "[" + label + "]";
+    const Eigen::Vector2d middle(static_cast<double>(place.middle.x), static_cast<double>(place.middle.y));
+    lines.add("place of " + label, fmt::format("{:.0f} {:.0f}", middle.x(), middle.y()));
   }
-  return labels;
+  lines.add("shown", labels);
 }
 
 void add_setup(Lines& lines, const MillingSetup& setup) {
@@ -119,7 +123,7 @@ std::string state_text(const std::string& name, const ViewState& view, Simulatio
   lines.add("help", view.help);
   lines.add("message", view.message);
   lines.add("dialogue", view.complaint);
-  lines.add("shown", shown_controls());
+  add_controls(lines);
   lines.add("ui_scale", fmt::format("{:.2f}", static_cast<double>(ui::px(1))));
   lines.add("size", fmt::format("{} x {}", size.width, size.height));
   return lines.text();

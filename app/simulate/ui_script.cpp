@@ -162,7 +162,8 @@ void UiScript::feed(double passed_s, bool settled, Window& window) {
     double share = time_left_s_ > passed_s ? passed_s / time_left_s_ : 1.0;
     if (click_picture_ > 0) {
       pressed = click_picture_ > 2 && click_picture_ < kClickPictures - 2;
-      share = pressed ? 0.5 : 0.0;
+      // Where it was pressed first, and from there.
+      share = pressed && click_picture_ > 3 ? 0.5 : 0.0;
       if (click_picture_++ < kClickPictures) time_left_s_ = 2 * passed_s;
     }
     x_ += static_cast<float>(share) * (to_x_ - x_);

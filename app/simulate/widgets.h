@@ -25,6 +25,8 @@ std::set<std::string>& worked();
 /// A length of the layout, given as it is where text has its usual size.
 float px(float length);
 void set_scale(double scale);
+/// Of what stands below one another on the right, at the usual size of text.
+inline constexpr float kRightWidth_px = 250;
 
 bool button(const char* label, bool enabled = true);
 bool checkbox(const char* label, bool* value);

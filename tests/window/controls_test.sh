@@ -200,6 +200,19 @@ more no-vibration isovalue isovalue; is typed isovalue 500
 value no-vibration isovalue_from | grep -q "^suggested: " || fault "nobody is told that the isovalue was suggested"
 value typed isovalue_from | grep -q "^set here; first" || fault "nobody is told that the isovalue was set"
 
+# --- A tool in bone that comes back, or grows ----------------------------------------------------------------------
+window ball.nrrd --no-help <<'END'
+wait 0.2 ;; click S ;; glide 640 750 0 ;; key b ;; wait 0.2 ;; key t ;; wheel 26 0.6 ;; wait 0.3 ;; key t
+click 3 point-shell ;; settle ;; drag spindle 60 ;; settle ;; drag stiffness 30 ;; settle ;; wait 0.3 ;; state pressing
+glide 640 750 0 ;; key t ;; key space ;; wheel 20 1 ;; wait 2 ;; key space ;; key t ;; wait 0.3 ;; state in-hole
+click Undo cut ;; settle ;; wait 0.5 ;; state out
+drag burr radius 60 ;; settle ;; wait 0.2 ;; state wide
+close
+END
+more pressing out tool_seen 3; more in-hole pressing tool_seen 3; more in-hole out tool_seen 3; is out force_N 0.000
+awk -v f="$(value pressing force_N)" 'BEGIN { exit !(f > 0) }' || fault "the tool was taken away where it only pressed"
+is wide burr_mm 4.00
+
 # --- Cuts ---------------------------------------------------------------------------------------------------------
 cut_lines() {
   echo "wait 0.2 ;; click Algorithm ;; click Tool ;; click Cuts ;; state none ;; click free ;; state free-on"
@@ -247,7 +260,7 @@ click Stop recording ;; wait 0.1 ;; state recorded
 click Report ;; settle ;; wait 0.1 ;; state reported ;; click Open report ;; await opened-report ;; click Open folder ;; await opened-out
 click Save scan ;; settle ;; wait 0.1 ;; state saved-scan
 click Save surface ;; settle ;; wait 0.1 ;; state saved-surface
-click Save picture ;; wait 0.2 ;; state saved-picture
+click Save picture ;; wait 0.2 ;; state saved-picture ;; click Hide ;; wait 0.1 ;; state hidden
 open large.nrrd ;; wait 0.3 ;; click Cancel ;; wait 0.2 ;; state given-up
 click scan ;; type other.nrrd ;; click Open ;; settle ;; wait 0.3 ;; state opened
 click scan ;; press control ;; key a ;; release control ;; type bad.nrrd ;; wait 0.1 ;; key enter ;; settle ;; wait 0.3 ;; state at-fault
@@ -270,6 +283,7 @@ value reported message | grep -q "^Report in out/" || fault "the report is not n
 for saved in scan surface picture; do
   value saved-$saved message | grep -q "^Saved out/" || fault "what Save $saved wrote is not named"
 done
+is hidden message ""; hides hidden "Open folder"
 is given-up scan ball.nrrd; is given-up message "Opening large.nrrd was given up"; hides given-up Cancel
 is start scan ball.nrrd; is opened scan other.nrrd; is at-fault scan other.nrrd
 value at-fault dialogue | grep -q "^bad.nrrd: ." || fault "the scan at fault is not named"
