@@ -60,6 +60,8 @@ cat >both <<'END'
 until grep -q "^killed.size" said-killed || ! kill -0 "$program"; do sleep 0.05; done
 "$1" simulate ball.nrrd --no-help --script beside-actions >said 2>>errors
 kill -KILL "$program"
+# What it had locked is free once it has ended.
+wait "$program" || true
 END
 xvfb-run -a -s "-screen 0 1280x800x24" timeout 100 bash both "$osteomill" 2>/dev/null || fail "exit code $?"
 is beside scan ball.nrrd; hides beside "Open it"
