@@ -31,10 +31,10 @@ struct Line {
 
 // A stretch of the line in bone; whether it goes in above its lower end, and comes out below its upper end.
 struct Stretch {
-  double lower_mm;
-  double upper_mm;
-  bool enters;
-  bool leaves;
+  double lower_mm = 0;
+  double upper_mm = 0;
+  bool enters = false;
+  bool leaves = false;
 };
 
 // The first stretches of the span in bone, their ends to where the line passes the surface.
@@ -43,16 +43,18 @@ class Stretches {
   Stretches(const Line& line, const ShaftSpan& span) : line_(line), span_(span) {
     const int samples = static_cast<int>((span.end_mm - span.start_mm) / span.sample_mm + 0.5);
     sample_mm_ = (span.end_mm - span.start_mm) / std::max(1, samples);
-    std::optional<Stretch> current;
+    Stretch current;
+    bool is_in_bone = false;
     for (int n = 0; n <= samples + 1 && count_ < all_.size(); ++n) {
       const double lever_mm = span.start_mm + n * sample_mm_;
       if (n <= samples && line.in_bone(lever_mm)) {
-        if (!current) current = Stretch{lever_mm, lever_mm, n > 0, false};
-        current->upper_mm = lever_mm;
-        current->leaves = n < samples;
-      } else if (current) {
-        all_[count_++] = to_the_surface(*current);
-        current.reset();
+        if (!is_in_bone) current = {lever_mm, lever_mm, n > 0, false};
+        is_in_bone = true;
+        current.upper_mm = lever_mm;
+        current.leaves = n < samples;
+      } else if (is_in_bone) {
+        all_[count_++] = to_the_surface(current);
+        is_in_bone = false;
       }
     }
   }
