@@ -36,6 +36,7 @@ PreparedMilling prepare_milling(std::shared_ptr<Volume> bone, const MillingSetup
 
 LiveMilling::LiveMilling(PreparedMilling prepared, Device& device)
     : setup_(prepared.setup),
+      sample_points_(prepared.session->algorithm().sample_point_count()),
       densities_(prepared.densities),
       geometry_(prepared.session->volume().geometry()),
       isovalue_(prepared.session->volume().isovalue()),
@@ -132,6 +133,7 @@ void LiveMilling::take_over() {
     const std::shared_ptr<Volume> bone_before = live_.session().shared_volume();
     isovalue_ = prepared.session->volume().isovalue();
     setup_ = prepared.setup;
+    sample_points_ = prepared.session->algorithm().sample_point_count();
     densities_ = prepared.densities;
     live_.wait_for(live_.replace(std::move(prepared.session)));
     if (prepared.other_bone) follower_->swap(bone_before);
@@ -157,8 +159,7 @@ RunDescription LiveMilling::describe(const std::string& scan_name, const std::st
   const RunFacts facts{
       scan_name,     geometry_, isovalue_, densities_,  setup_.tool, setup_.haptics, milling_settings(setup_),
       setup_.limits, 0,         1e-3,      command_line};
-  RunDescription run =
-      describe_run(facts, setup_.algorithm, live_.session().algorithm().sample_point_count());
+  RunDescription run = describe_run(facts, setup_.algorithm, sample_points_);
   run.settings.push_back({"vibration", setup_.vibration ? 1.0 : 0.0, ""});
   return run;
 }

@@ -128,6 +128,8 @@ class LiveMilling {
   std::exception_ptr end_recording();
 
   MillingSetup setup_;
+  // As prepared: the haptic thread's algorithm changes them.
+  int sample_points_;
   BoneDensities densities_;
   GridGeometry geometry_;
   double isovalue_;

@@ -51,8 +51,14 @@ class LiveMillingTest : public ::testing::Test {
     settle();
   }
 
-  // Returns when the follower has what was milled.
-  void settle() { std::this_thread::sleep_for(100ms); }
+  // Returns when the follower has what was milled, and nothing changes any more.
+  void settle() const {
+    for (int n = 0; n < 50; ++n) {
+      const std::vector<float> before = bone();
+      std::this_thread::sleep_for(100ms);
+      if (bone() == before) return;
+    }
+  }
 
   std::vector<float> bone() const {
     std::vector<float> densities;
