@@ -16,9 +16,9 @@ constexpr int kSweeps = 100;
 constexpr double kSettled_mm = 1e-6;
 // Lets contacts that contradict one another (a line jammed between two walls) share the error.
 constexpr double kSoftness = 1e-4;
-// An overlap that is none, and the most of one that a stride undoes.
-constexpr double kOverlap_mm = 5e-4;
-constexpr double kMaxRise_mm = 0.05;
+// The line is kept so far off the bone, and a move that would still end in it is halved so often at most.
+constexpr double kSkin_mm = 1e-3;
+constexpr int kHalvings = 6;
 // Contacts are told apart, and means taken, within so much of their depth.
 constexpr double kSoftContact_voxels = 2.0;
 constexpr double kMaxSoftContact_mm = 0.5;
@@ -84,10 +84,12 @@ void HeldLine::reset() {
   shaft_push_.reset();
 }
 
-bool HeldLine::is_in_bone() const {
-  if (in_bone(*volume_, X_WL_.position_mm)) return true;
-  for (double lever_mm = span_.start_mm; lever_mm <= span_.end_mm; lever_mm += span_.sample_mm) {
-    if (in_bone(*volume_, X_WL_ * Vec3(0, 0, lever_mm))) return true;
+bool HeldLine::is_in_bone(const Pose& X_WL) const {
+  if (in_bone(*volume_, X_WL.position_mm)) return true;
+  const Vec3 along_W = shaft_direction(X_WL);
+  const int samples = static_cast<int>((span_.end_mm - span_.start_mm) / span_.sample_mm + 0.5);
+  for (int n = 0; n <= samples; ++n) {
+    if (in_bone(*volume_, X_WL.position_mm + (span_.start_mm + n * span_.sample_mm) * along_W)) return true;
   }
   return false;
 }
@@ -96,15 +98,15 @@ double HeldLine::travel_mm(const ToolMove& move) const {
   return move.translation_mm.norm() + move.rotation_rad.norm() * span_.end_mm;
 }
 
-// True where there is an overlap to speak of.
+// False where there is no room for more. The line stands outside, so that staying is always allowed.
 bool HeldLine::add_limit(const Vec3& out_W, const Vec3& about_W, double depth_mm, const ToolMove& at,
                          bool is_tip, double lever_mm) {
   if (limit_count_ == limits_.size()) return false;
   const double gap_mm =
-      std::max(-kMaxRise_mm, -(depth_mm + out_W.dot(at.translation_mm) + about_W.dot(at.rotation_rad)));
+      std::max(0.0, -(depth_mm + kSkin_mm + out_W.dot(at.translation_mm) + about_W.dot(at.rotation_rad)));
   const double response = 1 / (1 + about_W.squaredNorm() / turn_weight_mm2_ + kSoftness);
   limits_[limit_count_++] = {out_W, about_W, gap_mm, response, is_tip, lever_mm};
-  return depth_mm > kOverlap_mm;
+  return true;
 }
 
 // `X_WL` is where the line would be after the move `at`.
@@ -187,13 +189,27 @@ ToolMove HeldLine::allowed(const ToolMove& wanted, bool& pushed) {
   return move;
 }
 
+// At most a stride of a move, and as much of it as ends outside bone.
+void HeldLine::go(const ToolMove& move) {
+  double share = stride_share(move);
+  for (int n = 0; n <= kHalvings; ++n, share /= 2) {
+    const Pose X_WL = moved(X_WL_, share * move);
+    if (is_in_bone(X_WL)) continue;
+    X_WL_ = X_WL;
+    return;
+  }
+}
+
 // Straight to the device, where bone did not hold the line before.
 void HeldLine::fly(const Pose& X_WD) {
   bool pushed = false;
   const ToolMove move = allowed(move_between(X_WL_, X_WD), pushed);
-  const double share = stride_share(move);
-  X_WL_ = share == 1 && !pushed ? X_WD : moved(X_WL_, share * move);
   take_pushes();
+  if (!pushed && stride_share(move) == 1) {
+    X_WL_ = X_WD;
+  } else {
+    go(move);
+  }
 }
 
 // With the device as it moves, and on towards where the springs' energy is least.
@@ -202,7 +218,7 @@ void HeldLine::slide(const ToolMove& device, const Pose& X_WD, const Leap& most)
   bool pushed = false;
   ToolMove move = allowed(device + kRelaxation * (whole - device), pushed);
   take_pushes();
-  if (!pushed && most.allows(whole - device) == 1) {
+  if (!pushed && most.allows(whole - device) == 1 && !is_in_bone(X_WD)) {
     X_WL_ = X_WD;
     return;
   }
@@ -214,7 +230,7 @@ void HeldLine::slide(const ToolMove& device, const Pose& X_WD, const Leap& most)
     const Vec3 turned = move.rotation_rad - device.rotation_rad;
     move.rotation_rad = device.rotation_rad + most.turn_rad / std::max(most.turn_rad, turned.norm()) * turned;
   }
-  X_WL_ = moved(X_WL_, stride_share(move) * move);
+  go(move);
 }
 
 void HeldLine::take_pushes() {
@@ -249,7 +265,7 @@ void HeldLine::follow(const Pose& X_WD, double dt_s) {
   if (!placed_) X_WL_ = X_WD_before_ = X_WD;
   if (!placed_ || carried_) {
     X_WL_ = X_WD;
-    carried_ = is_in_bone();
+    carried_ = is_in_bone(X_WL_);
     placed_ = true;
   }
   if (!carried_) {

@@ -75,10 +75,11 @@ class HeldLine {
   };
   double stride_share(const ToolMove& move) const;
   ToolMove allowed(const ToolMove& wanted, bool& pushed);
+  void go(const ToolMove& move);
   void fly(const Pose& X_WD);
   void slide(const ToolMove& device, const Pose& X_WD, const Leap& most);
   void take_pushes();
-  bool is_in_bone() const;
+  bool is_in_bone(const Pose& X_WL) const;
 
   const Volume* volume_ = nullptr;
   ShaftSpan span_{};
