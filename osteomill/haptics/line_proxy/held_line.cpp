@@ -19,6 +19,8 @@ constexpr double kSoftness = 1e-4;
 // The line is kept so far off the bone, and a move that would still end in it is halved so often at most.
 constexpr double kSkin_mm = 1e-3;
 constexpr int kHalvings = 6;
+// How far a stride may climb on what it meets.
+constexpr double kMaxClimb_mm = 0.05;
 // Contacts are told apart, and means taken, within so much of their depth.
 constexpr double kSoftContact_voxels = 2.0;
 constexpr double kMaxSoftContact_mm = 0.5;
@@ -45,6 +47,7 @@ constexpr double kTurnByMove = 0.25;
 // would be thrown from one to the other.
 constexpr double kRelaxation = 0.5;
 constexpr double kLeast = 1e-12;
+constexpr double kAnyLeap = 1e9;
 constexpr double kGivenWay_mm = 0.1;
 // A slow machine's tick counts as this long.
 constexpr double kMaxTick_s = 5e-3;
@@ -85,25 +88,18 @@ void HeldLine::reset() {
 }
 
 bool HeldLine::is_in_bone(const Pose& X_WL) const {
-  if (in_bone(*volume_, X_WL.position_mm)) return true;
-  const Vec3 along_W = shaft_direction(X_WL);
-  const int samples = static_cast<int>((span_.end_mm - span_.start_mm) / span_.sample_mm + 0.5);
-  for (int n = 0; n <= samples; ++n) {
-    if (in_bone(*volume_, X_WL.position_mm + (span_.start_mm + n * span_.sample_mm) * along_W)) return true;
-  }
-  return false;
+  return in_bone(*volume_, X_WL.position_mm) || shaft_in_bone(*volume_, span_, X_WL);
 }
 
 double HeldLine::travel_mm(const ToolMove& move) const {
   return move.translation_mm.norm() + move.rotation_rad.norm() * span_.end_mm;
 }
 
-// False where there is no room for more. The line stands outside, so that staying is always allowed.
+// False where there is no room for more.
 bool HeldLine::add_limit(const Vec3& out_W, const Vec3& about_W, double depth_mm, const ToolMove& at,
                          bool is_tip, double lever_mm) {
   if (limit_count_ == limits_.size()) return false;
-  const double gap_mm =
-      std::max(0.0, -(depth_mm + kSkin_mm + out_W.dot(at.translation_mm) + about_W.dot(at.rotation_rad)));
+  const double gap_mm = -(depth_mm + kSkin_mm + out_W.dot(at.translation_mm) + about_W.dot(at.rotation_rad));
   const double response = 1 / (1 + about_W.squaredNorm() / turn_weight_mm2_ + kSoftness);
   limits_[limit_count_++] = {out_W, about_W, gap_mm, response, is_tip, lever_mm};
   return true;
@@ -141,16 +137,15 @@ bool HeldLine::add_shaft_limits(const Pose& X_WL, const ToolMove& at) {
   return overlaps;
 }
 
-// The move of least energy that the limits allow: projected Gauss-Seidel on their pushes. True where any
-// pushes.
-bool HeldLine::solve(ToolMove& move) {
+// The move nearest to the one that is wanted that the limits allow: projected Gauss-Seidel on their pushes.
+ToolMove HeldLine::allowed(const ToolMove& wanted, double climb_mm) {
+  ToolMove move = wanted;
   for (std::size_t n = 0; n < limit_count_; ++n) limits_[n].push = 0;
-  bool pushed = false;
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     double change = 0;
     for (std::size_t n = 0; n < limit_count_; ++n) {
       Limit& limit = limits_[n];
-      const double overlap = -limit.gap_mm - limit.along.dot(move.translation_mm) -
+      const double overlap = std::min(climb_mm, -limit.gap_mm) - limit.along.dot(move.translation_mm) -
                              limit.about.dot(move.rotation_rad) - kSoftness * limit.push;
       const double push = std::max(0.0, limit.push + limit.response * overlap);
       const double more = push - limit.push;
@@ -159,78 +154,74 @@ bool HeldLine::solve(ToolMove& move) {
       move.translation_mm += more * limit.along;
       move.rotation_rad += more / turn_weight_mm2_ * limit.about;
       change = std::max(change, std::abs(more));
-      pushed = true;
     }
     if (change < kSettled_mm) break;
-  }
-  return pushed;
-}
-
-// As much of a move as a stride may be.
-double HeldLine::stride_share(const ToolMove& move) const {
-  return kStride_mm / std::max(kStride_mm, travel_mm(move));
-}
-
-// The move nearest to the one that is wanted that the bone allows, as far as it shows from where the line
-// stands and from where a stride would take it.
-ToolMove HeldLine::allowed(const ToolMove& wanted, bool& pushed) {
-  ToolMove move = wanted;
-  limit_count_ = 0;
-  pushed = false;
-  for (int look = 0; look <= kLooks; ++look) {
-    const ToolMove near = stride_share(move) * move;
-    const Pose X_WL = moved(X_WL_, near);
-    const bool tip = add_tip_limit(X_WL, near);
-    const bool shaft = add_shaft_limits(X_WL, near);
-    if (!tip && !shaft) break;
-    move = wanted;
-    pushed = solve(move);
   }
   return move;
 }
 
-// At most a stride of a move, and as much of it as ends outside bone.
-void HeldLine::go(const ToolMove& move) {
-  double share = stride_share(move);
-  for (int n = 0; n <= kHalvings; ++n, share /= 2) {
-    const Pose X_WL = moved(X_WL_, share * move);
-    if (is_in_bone(X_WL)) continue;
-    X_WL_ = X_WL;
-    return;
-  }
+// As much of a move as a stride may be.
+ToolMove HeldLine::stride(const ToolMove& move) const {
+  return kStride_mm / std::max(kStride_mm, travel_mm(move)) * move;
 }
 
-// Straight to the device, where bone did not hold the line before.
-void HeldLine::fly(const Pose& X_WD) {
-  bool pushed = false;
-  const ToolMove move = allowed(move_between(X_WL_, X_WD), pushed);
+// What bone leaves of a move, as far as it shows from where a stride would take the line, becomes the limits.
+void HeldLine::look_along(const ToolMove& wanted) {
+  limit_count_ = 0;
+  ToolMove move = wanted;
+  for (int look = 0; look <= kLooks; ++look) {
+    const ToolMove near = stride(move);
+    const Pose X_WL = moved(X_WL_, near);
+    const bool tip = add_tip_limit(X_WL, near);
+    const bool shaft = add_shaft_limits(X_WL, near);
+    if (!tip && !shaft) break;
+    move = allowed(wanted, kMaxClimb_mm);
+  }
   take_pushes();
-  if (!pushed && stride_share(move) == 1) {
-    X_WL_ = X_WD;
-  } else {
-    go(move);
-  }
 }
 
-// With the device as it moves, and on towards where the springs' energy is least.
+// What the springs hold, per their stiffness at the tip.
+double HeldLine::energy_mm2(const Pose& X_WL, const Pose& X_WD) const {
+  const ToolMove stretch = move_between(X_WL, X_WD);
+  return stretch.translation_mm.squaredNorm() + turn_weight_mm2_ * stretch.rotation_rad.squaredNorm();
+}
+
+// False, and the line stays, where the move ends in bone or stretches the springs.
+bool HeldLine::go(const ToolMove& move, const Pose& X_WD) {
+  const Pose X_WL = moved(X_WL_, move);
+  if (energy_mm2(X_WL, X_WD) > energy_mm2(X_WL_, X_WD) || is_in_bone(X_WL)) return false;
+  X_WL_ = X_WL;
+  return true;
+}
+
+// Not further from the device's own move than may be; where going along with the device is itself a leap, the
+// turn, and with it the torque, comes over a few ticks.
+ToolMove HeldLine::held_to(const Leap& most, const ToolMove& device, const ToolMove& wanted,
+                           double climb_mm) {
+  ToolMove move = allowed(wanted, climb_mm);
+  const double share = most.allows(move - device);
+  if (share == 1) return move;
+  const ToolMove with_device = allowed(device, climb_mm);
+  move = with_device + share * (move - with_device);
+  const Vec3 turned = move.rotation_rad - device.rotation_rad;
+  move.rotation_rad = device.rotation_rad + most.turn_rad / std::max(most.turn_rad, turned.norm()) * turned;
+  return move;
+}
+
+// With the device as it moves, and on towards where the springs' energy is least. A move that climbs on what
+// it meets may cost more than it gives: then one that does not climb, or as much of it as bone leaves.
 void HeldLine::slide(const ToolMove& device, const Pose& X_WD, const Leap& most) {
   const ToolMove whole = move_between(X_WL_, X_WD);
-  bool pushed = false;
-  ToolMove move = allowed(device + kRelaxation * (whole - device), pushed);
-  take_pushes();
-  if (!pushed && most.allows(whole - device) == 1 && !is_in_bone(X_WD)) {
+  const ToolMove wanted = device + kRelaxation * (whole - device);
+  look_along(wanted);
+  const bool may_land = limit_count_ == 0 && travel_mm(whole) <= kStride_mm && most.allows(whole - device) == 1;
+  if (may_land && !is_in_bone(X_WD)) {
     X_WL_ = X_WD;
     return;
   }
-  if (const double share = most.allows(move - device); share < 1) {
-    const ToolMove with_device = allowed(device, pushed);
-    move = with_device + share * (move - with_device);
-    // Where going along with the device is itself a leap, the turn, and with it the torque, comes over a few
-    // ticks.
-    const Vec3 turned = move.rotation_rad - device.rotation_rad;
-    move.rotation_rad = device.rotation_rad + most.turn_rad / std::max(most.turn_rad, turned.norm()) * turned;
-  }
-  go(move);
+  if (go(stride(held_to(most, device, wanted, kMaxClimb_mm)), X_WD)) return;
+  ToolMove level = stride(held_to(most, device, wanted, 0));
+  for (int n = 0; n < kHalvings && !go(level, X_WD); ++n) level = 0.5 * level;
 }
 
 void HeldLine::take_pushes() {
@@ -253,12 +244,23 @@ void HeldLine::take_pushes() {
   const Vec3 below_W = X_WL_.position_mm - kGivenWay_mm * tip_normal_W_;
   tip_rests_ = tip_push > 0 || (tip_rests_ && in_bone(*volume_, below_W));
   shaft_push_.reset();
-  if (push > 0) shaft_push_ = ShaftPush{springs_.tip_N_per_mm * force, moment / push};
+  if (push > 0) shaft_push_ = ShaftPush{springs_.tip_N_per_mm / kRelaxation * force, moment / push};
 }
 
 double HeldLine::Leap::allows(const ToolMove& leap) const {
   return std::min(move_mm / std::max(move_mm, leap.translation_mm.norm()),
                   turn_rad / std::max(turn_rad, leap.rotation_rad.norm()));
+}
+
+// As much as the device moves may be gone the other way: a line that went along with a device that draws back
+// would give the hand more than it put in. A line that is not held goes to the device as it may.
+HeldLine::Leap HeldLine::leap_in_a_stride(const ToolMove& device, double dt_s, double part) const {
+  if (!held_back_) return {kAnyLeap, kAnyLeap};
+  const double tick_s = std::clamp(dt_s, 0.0, kMaxTick_s);
+  const double device_mm = device.translation_mm.norm();
+  return {part * (device_mm + kLeap_mm_s * tick_s) + kLeast,
+          part * (device.rotation_rad.norm() + kTurnByMove * device_mm / span_.end_mm + kLeap_rad_s * tick_s) +
+              kLeast};
 }
 
 void HeldLine::follow(const Pose& X_WD, double dt_s) {
@@ -273,21 +275,9 @@ void HeldLine::follow(const Pose& X_WD, double dt_s) {
     const double way_mm = travel_mm(held_back_ ? device : move_between(X_WL_, X_WD));
     const int strides = std::clamp(static_cast<int>(std::ceil(way_mm / kStride_mm)), 1, kStrides);
     const double part = 1.0 / strides;
-    const double tick_s = std::clamp(dt_s, 0.0, kMaxTick_s);
-    // As much as the device moves may be gone the other way: a line that went along with a device that draws
-    // back would give the hand more than it put in.
-    const double device_mm = device.translation_mm.norm();
-    const Leap most{
-        part * (device_mm + kLeap_mm_s * tick_s) + kLeast,
-        part * (device.rotation_rad.norm() + kTurnByMove * device_mm / span_.end_mm + kLeap_rad_s * tick_s) +
-            kLeast};
-    for (int n = 1; n <= strides; ++n) {
-      if (held_back_) {
-        slide(part * device, moved(X_WD, -(1 - n * part) * device), most);
-      } else {
-        fly(X_WD);
-      }
-      if (is_at(X_WL_, X_WD)) break;
+    const Leap most = leap_in_a_stride(device, dt_s, part);
+    for (int n = 1; n <= strides && !is_at(X_WL_, X_WD); ++n) {
+      slide(part * device, moved(X_WD, -(1 - n * part) * device), most);
     }
     held_back_ = tip_rests_ || shaft_push_ || (held_back_ && !is_at(X_WL_, X_WD));
   }

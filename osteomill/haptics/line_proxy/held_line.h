@@ -65,7 +65,9 @@ class HeldLine {
   bool add_shaft_limits(const Pose& X_WL, const ToolMove& at);
   bool add_limit(const Vec3& out_W, const Vec3& about_W, double depth_mm, const ToolMove& at, bool is_tip,
                  double lever_mm);
-  bool solve(ToolMove& move);
+  ToolMove allowed(const ToolMove& wanted, double climb_mm);
+  ToolMove stride(const ToolMove& move) const;
+  void look_along(const ToolMove& wanted);
   // How far the line may go beyond the device's own movement.
   struct Leap {
     double move_mm;
@@ -73,10 +75,10 @@ class HeldLine {
     // What share of a leap that is.
     double allows(const ToolMove& leap) const;
   };
-  double stride_share(const ToolMove& move) const;
-  ToolMove allowed(const ToolMove& wanted, bool& pushed);
-  void go(const ToolMove& move);
-  void fly(const Pose& X_WD);
+  Leap leap_in_a_stride(const ToolMove& device, double dt_s, double part) const;
+  ToolMove held_to(const Leap& most, const ToolMove& device, const ToolMove& wanted, double climb_mm);
+  double energy_mm2(const Pose& X_WL, const Pose& X_WD) const;
+  bool go(const ToolMove& move, const Pose& X_WD);
   void slide(const ToolMove& device, const Pose& X_WD, const Leap& most);
   void take_pushes();
   bool is_in_bone(const Pose& X_WL) const;

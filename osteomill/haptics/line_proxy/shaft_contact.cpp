@@ -37,31 +37,46 @@ struct Stretch {
   bool leaves = false;
 };
 
-// The first stretches of the span in bone, their ends to where the line passes the surface.
+// The first stretches of the span in bone, at most so many, their ends to where the line passes the surface.
 class Stretches {
  public:
-  Stretches(const Line& line, const ShaftSpan& span) : line_(line), span_(span) {
+  Stretches(const Line& line, const ShaftSpan& span, std::size_t most = ShaftContacts::kStretches)
+      : line_(line), span_(span) {
     const int samples = static_cast<int>((span.end_mm - span.start_mm) / span.sample_mm + 0.5);
     sample_mm_ = (span.end_mm - span.start_mm) / std::max(1, samples);
     Stretch current;
-    bool is_in_bone = false;
-    for (int n = 0; n <= samples + 1 && count_ < all_.size(); ++n) {
+    // The two samples before.
+    double before = 0;
+    double above = 0;
+    for (int n = 0; n <= samples + 1 && count_ < most; ++n) {
       const double lever_mm = span.start_mm + n * sample_mm_;
-      if (n <= samples && line.in_bone(lever_mm)) {
-        if (!is_in_bone) current = {lever_mm, lever_mm, n > 0, false};
-        is_in_bone = true;
+      const double next = n <= samples ? line.above_isovalue(line.at(lever_mm)) : 0;
+      if (next > 0) {
+        if (!(above > 0)) current = {lever_mm, lever_mm, n > 0, false};
         current.upper_mm = lever_mm;
         current.leaves = n < samples;
-      } else if (is_in_bone) {
+      } else if (above > 0) {
         all_[count_++] = to_the_surface(current);
-        is_in_bone = false;
+      } else if (n >= 2 && n <= samples && above >= before && above >= next) {
+        add_peak(lever_mm - sample_mm_, before, above, next);
       }
+      before = above;
+      above = next;
     }
   }
+  bool empty() const { return count_ == 0; }
   auto begin() const { return all_.begin(); }
   auto end() const { return all_.begin() + static_cast<std::ptrdiff_t>(count_); }
 
  private:
+  // Between samples that are all outside, an edge that stands out.
+  void add_peak(double lever_mm, double before, double at, double after) {
+    const double bend = before - 2 * at + after;
+    if (!(bend < 0) || at - (after - before) * (after - before) / (8 * bend) <= 0) return;
+    const double peak_mm = lever_mm - 0.5 * sample_mm_ * (after - before) / bend;
+    if (line_.in_bone(peak_mm)) all_[count_++] = to_the_surface({peak_mm, peak_mm, true, true});
+  }
+
   Stretch to_the_surface(Stretch stretch) const {
     if (stretch.enters) {
       stretch.lower_mm = line_.crossing(stretch.lower_mm - sample_mm_, stretch.lower_mm);
@@ -217,6 +232,10 @@ void add_contacts(const Line& line, const Stretch& stretch, const Pose& X_WL_bef
 }
 
 }  // namespace
+
+bool shaft_in_bone(const Volume& volume, const ShaftSpan& span, const Pose& X_WL) {
+  return !Stretches({volume, X_WL.position_mm, shaft_direction(X_WL)}, span, 1).empty();
+}
 
 ShaftContacts shaft_contacts(const Volume& volume, const ShaftSpan& span, const Pose& X_WL,
                              const Pose& X_WL_before, const NormalRule& normal, double softness_mm) {

@@ -38,6 +38,9 @@ struct ShaftContacts {
   std::size_t count = 0;
 };
 
+/// Whether any of the line's span lies in bone, looked at as for its contacts. Safe in the haptic tick.
+bool shaft_in_bone(const Volume& volume, const ShaftSpan& span, const Pose& X_WL);
+
 /// The contacts of the line through the origin of `X_WL` along its +z, of the first four stretches of it in
 /// bone. The direction follows from the surface's normals where the line goes in and out; where they do
 /// not tell, or would lead on, away from where the line was free before (`X_WL_before`), back there. The
