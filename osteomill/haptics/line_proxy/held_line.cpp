@@ -19,8 +19,10 @@ constexpr double kSoftness = 1e-4;
 // The line is kept so far off the bone, and a move that would still end in it is halved so often at most.
 constexpr double kSkin_mm = 1e-3;
 constexpr int kHalvings = 6;
-// How far a stride may climb on what it meets.
+// How far a stride may climb on what it meets, and how much higher in all than it was.
 constexpr double kMaxClimb_mm = 0.05;
+constexpr double kMaxSlope = 0.25;
+constexpr double kRoughness_mm = 0.02;
 // Contacts are told apart, and means taken, within so much of their depth.
 constexpr double kSoftContact_voxels = 2.0;
 constexpr double kMaxSoftContact_mm = 0.5;
@@ -82,6 +84,7 @@ void HeldLine::reset() {
   placed_ = false;
   carried_ = false;
   held_back_ = false;
+  climbed_mm2_ = 0;
   limit_count_ = 0;
   tip_rests_ = false;
   shaft_push_.reset();
@@ -96,12 +99,22 @@ double HeldLine::travel_mm(const ToolMove& move) const {
 }
 
 // False where there is no room for more.
-bool HeldLine::add_limit(const Vec3& out_W, const Vec3& about_W, double depth_mm, const ToolMove& at,
-                         bool is_tip, double lever_mm) {
+bool HeldLine::add_limit(const Vec3& out_W, double depth_mm, const ToolMove& at, bool is_tip,
+                         const Vec3& arm_W) {
   if (limit_count_ == limits_.size()) return false;
-  const double gap_mm = -(depth_mm + kSkin_mm + out_W.dot(at.translation_mm) + about_W.dot(at.rotation_rad));
+  const Vec3 way_W = at.translation_mm + at.rotation_rad.cross(arm_W);
+  Vec3 along_W = out_W;
+  double climb_mm = depth_mm + kSkin_mm + out_W.dot(way_W);
+  // The line stands outside the bone, so it cannot have gone in deeper than it went: what says so leads the
+  // wrong way out.
+  const double way_mm = way_W.norm();
+  if (climb_mm > kSkin_mm + kMaxSlope * way_mm && way_mm > 0) {
+    along_W = -way_W / way_mm;
+    climb_mm = 0;
+  }
+  const Vec3 about_W = arm_W.cross(along_W);
   const double response = 1 / (1 + about_W.squaredNorm() / turn_weight_mm2_ + kSoftness);
-  limits_[limit_count_++] = {out_W, about_W, gap_mm, response, is_tip, lever_mm};
+  limits_[limit_count_++] = {along_W, about_W, -climb_mm, response, is_tip, arm_W.norm()};
   return true;
 }
 
@@ -120,7 +133,7 @@ bool HeldLine::add_tip_limit(const Pose& X_WL, const ToolMove& at) {
       in_bone(volume, to_W) ? way_out_along(volume, to_W, normal_W, reach_mm).value_or(met_W.value_or(from_W))
                             : *met_W;
   const Vec3 out_W = surface_normal(volume, surface_W, normal_).value_or(normal_W);
-  return add_limit(out_W, Vec3::Zero(), out_W.dot(surface_W - to_W), at, true, 0);
+  return add_limit(out_W, out_W.dot(surface_W - to_W), at, true, Vec3::Zero());
 }
 
 bool HeldLine::add_shaft_limits(const Pose& X_WL, const ToolMove& at) {
@@ -131,8 +144,7 @@ bool HeldLine::add_shaft_limits(const Pose& X_WL, const ToolMove& at) {
   bool overlaps = false;
   for (std::size_t n = 0; n < contacts.count; ++n) {
     const ShaftContact& contact = contacts.all[n];
-    const Vec3 about_W = (contact.lever_mm * axis_W).cross(contact.out_W);
-    overlaps = add_limit(contact.out_W, about_W, contact.depth_mm, at, false, contact.lever_mm) || overlaps;
+    overlaps = add_limit(contact.out_W, contact.depth_mm, at, false, contact.lever_mm * axis_W) || overlaps;
   }
   return overlaps;
 }
@@ -161,16 +173,16 @@ ToolMove HeldLine::allowed(const ToolMove& wanted, double climb_mm) {
 }
 
 // As much of a move as a stride may be.
-ToolMove HeldLine::stride(const ToolMove& move) const {
-  return kStride_mm / std::max(kStride_mm, travel_mm(move)) * move;
+ToolMove HeldLine::stride(const ToolMove& move, double longest_mm) const {
+  return longest_mm / std::max(longest_mm, travel_mm(move)) * move;
 }
 
 // What bone leaves of a move, as far as it shows from where a stride would take the line, becomes the limits.
-void HeldLine::look_along(const ToolMove& wanted) {
+void HeldLine::look_along(const ToolMove& wanted, double longest_mm) {
   limit_count_ = 0;
   ToolMove move = wanted;
   for (int look = 0; look <= kLooks; ++look) {
-    const ToolMove near = stride(move);
+    const ToolMove near = stride(move, longest_mm);
     const Pose X_WL = moved(X_WL_, near);
     const bool tip = add_tip_limit(X_WL, near);
     const bool shaft = add_shaft_limits(X_WL, near);
@@ -186,10 +198,14 @@ double HeldLine::energy_mm2(const Pose& X_WL, const Pose& X_WD) const {
   return stretch.translation_mm.squaredNorm() + turn_weight_mm2_ * stretch.rotation_rad.squaredNorm();
 }
 
-// False, and the line stays, where the move ends in bone or stretches the springs.
+// False, and the line stays, where the move ends in bone, or would stretch the springs by more than it takes to
+// climb over the bone's roughness: what is climbed has to be come down again before more is.
 bool HeldLine::go(const ToolMove& move, const Pose& X_WD) {
   const Pose X_WL = moved(X_WL_, move);
-  if (energy_mm2(X_WL, X_WD) > energy_mm2(X_WL_, X_WD) || is_in_bone(X_WL)) return false;
+  const double energy_before_mm2 = energy_mm2(X_WL_, X_WD);
+  const double climbed_mm2 = climbed_mm2_ + energy_mm2(X_WL, X_WD) - energy_before_mm2;
+  if (climbed_mm2 > 2 * kRoughness_mm * std::sqrt(energy_before_mm2) || is_in_bone(X_WL)) return false;
+  climbed_mm2_ = std::max(0.0, climbed_mm2);
   X_WL_ = X_WL;
   return true;
 }
@@ -213,14 +229,15 @@ ToolMove HeldLine::held_to(const Leap& most, const ToolMove& device, const ToolM
 void HeldLine::slide(const ToolMove& device, const Pose& X_WD, const Leap& most) {
   const ToolMove whole = move_between(X_WL_, X_WD);
   const ToolMove wanted = device + kRelaxation * (whole - device);
-  look_along(wanted);
+  const double longest_mm = std::min(kStride_mm, travel_mm(device) + most.move_mm + most.turn_rad * span_.end_mm);
+  look_along(wanted, longest_mm);
   const bool may_land = limit_count_ == 0 && travel_mm(whole) <= kStride_mm && most.allows(whole - device) == 1;
   if (may_land && !is_in_bone(X_WD)) {
     X_WL_ = X_WD;
     return;
   }
-  if (go(stride(held_to(most, device, wanted, kMaxClimb_mm)), X_WD)) return;
-  ToolMove level = stride(held_to(most, device, wanted, 0));
+  if (go(stride(held_to(most, device, wanted, kMaxClimb_mm), longest_mm), X_WD)) return;
+  ToolMove level = stride(held_to(most, device, wanted, 0), longest_mm);
   for (int n = 0; n < kHalvings && !go(level, X_WD); ++n) level = 0.5 * level;
 }
 

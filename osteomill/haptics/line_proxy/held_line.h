@@ -63,11 +63,10 @@ class HeldLine {
   double travel_mm(const ToolMove& move) const;
   bool add_tip_limit(const Pose& X_WL, const ToolMove& at);
   bool add_shaft_limits(const Pose& X_WL, const ToolMove& at);
-  bool add_limit(const Vec3& out_W, const Vec3& about_W, double depth_mm, const ToolMove& at, bool is_tip,
-                 double lever_mm);
+  bool add_limit(const Vec3& out_W, double depth_mm, const ToolMove& at, bool is_tip, const Vec3& arm_W);
   ToolMove allowed(const ToolMove& wanted, double climb_mm);
-  ToolMove stride(const ToolMove& move) const;
-  void look_along(const ToolMove& wanted);
+  ToolMove stride(const ToolMove& move, double longest_mm) const;
+  void look_along(const ToolMove& wanted, double longest_mm);
   // How far the line may go beyond the device's own movement.
   struct Leap {
     double move_mm;
@@ -93,6 +92,7 @@ class HeldLine {
   bool placed_ = false;
   bool carried_ = false;
   bool held_back_ = false;
+  double climbed_mm2_ = 0;
   Pose X_WL_;
   Pose X_WD_before_;
   std::array<Limit, kLimits> limits_;
