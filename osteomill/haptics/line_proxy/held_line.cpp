@@ -15,9 +15,9 @@ constexpr int kStrides = 8;
 constexpr int kSweeps = 100;
 constexpr double kSettled_mm = 1e-6;
 // Lets contacts that contradict one another (a line jammed between two walls) share the error.
-constexpr double kSoftness = 1e-4;
+constexpr double kSoftness = 1e-5;
 // The line is kept so far off the bone, and a move that would still end in it is halved so often at most.
-constexpr double kSkin_mm = 1e-3;
+constexpr double kSkin_mm = 2e-5;
 constexpr int kHalvings = 6;
 // How far a stride may climb on what it meets, and how much higher in all than it was.
 constexpr double kMaxClimb_mm = 0.05;
