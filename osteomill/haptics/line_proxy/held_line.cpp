@@ -19,10 +19,9 @@ constexpr double kSoftness = 1e-5;
 // The line is kept so far off the bone, and a move that would still end in it is halved so often at most.
 constexpr double kSkin_mm = 2e-5;
 constexpr int kHalvings = 6;
-// How far a stride may climb on what it meets, and how much higher in all than it was.
-constexpr double kMaxClimb_mm = 0.05;
+// How steeply a stride may climb on what it meets, and how much higher in all than it was.
 constexpr double kMaxSlope = 0.25;
-constexpr double kRoughness_mm = 0.02;
+constexpr double kRoughness_voxels = 0.15;
 // Contacts are told apart, and means taken, within so much of their depth.
 constexpr double kSoftContact_voxels = 2.0;
 constexpr double kMaxSoftContact_mm = 0.5;
@@ -150,14 +149,14 @@ bool HeldLine::add_shaft_limits(const Pose& X_WL, const ToolMove& at) {
 }
 
 // The move nearest to the one that is wanted that the limits allow: projected Gauss-Seidel on their pushes.
-ToolMove HeldLine::allowed(const ToolMove& wanted, double climb_mm) {
+ToolMove HeldLine::allowed(const ToolMove& wanted) {
   ToolMove move = wanted;
   for (std::size_t n = 0; n < limit_count_; ++n) limits_[n].push = 0;
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     double change = 0;
     for (std::size_t n = 0; n < limit_count_; ++n) {
       Limit& limit = limits_[n];
-      const double overlap = std::min(climb_mm, -limit.gap_mm) - limit.along.dot(move.translation_mm) -
+      const double overlap = -limit.gap_mm - limit.along.dot(move.translation_mm) -
                              limit.about.dot(move.rotation_rad) - kSoftness * limit.push;
       const double push = std::max(0.0, limit.push + limit.response * overlap);
       const double more = push - limit.push;
@@ -187,7 +186,7 @@ void HeldLine::look_along(const ToolMove& wanted, double longest_mm) {
     const bool tip = add_tip_limit(X_WL, near);
     const bool shaft = add_shaft_limits(X_WL, near);
     if (!tip && !shaft) break;
-    move = allowed(wanted, kMaxClimb_mm);
+    move = allowed(wanted);
   }
   take_pushes();
 }
@@ -204,7 +203,8 @@ bool HeldLine::go(const ToolMove& move, const Pose& X_WD) {
   const Pose X_WL = moved(X_WL_, move);
   const double energy_before_mm2 = energy_mm2(X_WL_, X_WD);
   const double climbed_mm2 = climbed_mm2_ + energy_mm2(X_WL, X_WD) - energy_before_mm2;
-  if (climbed_mm2 > 2 * kRoughness_mm * std::sqrt(energy_before_mm2) || is_in_bone(X_WL)) return false;
+  const double roughness_mm = kRoughness_voxels * volume_->geometry().spacing_mm.minCoeff();
+  if (climbed_mm2 > 2 * roughness_mm * std::sqrt(energy_before_mm2) || is_in_bone(X_WL)) return false;
   climbed_mm2_ = std::max(0.0, climbed_mm2);
   X_WL_ = X_WL;
   return true;
@@ -212,20 +212,18 @@ bool HeldLine::go(const ToolMove& move, const Pose& X_WD) {
 
 // Not further from the device's own move than may be; where going along with the device is itself a leap, the
 // turn, and with it the torque, comes over a few ticks.
-ToolMove HeldLine::held_to(const Leap& most, const ToolMove& device, const ToolMove& wanted,
-                           double climb_mm) {
-  ToolMove move = allowed(wanted, climb_mm);
+ToolMove HeldLine::held_to(const Leap& most, const ToolMove& device, const ToolMove& wanted) {
+  ToolMove move = allowed(wanted);
   const double share = most.allows(move - device);
   if (share == 1) return move;
-  const ToolMove with_device = allowed(device, climb_mm);
+  const ToolMove with_device = allowed(device);
   move = with_device + share * (move - with_device);
   const Vec3 turned = move.rotation_rad - device.rotation_rad;
   move.rotation_rad = device.rotation_rad + most.turn_rad / std::max(most.turn_rad, turned.norm()) * turned;
   return move;
 }
 
-// With the device as it moves, and on towards where the springs' energy is least. A move that climbs on what
-// it meets may cost more than it gives: then one that does not climb, or as much of it as bone leaves.
+// With the device as it moves, and on towards where the springs' energy is least.
 void HeldLine::slide(const ToolMove& device, const Pose& X_WD, const Leap& most) {
   const ToolMove whole = move_between(X_WL_, X_WD);
   const ToolMove wanted = device + kRelaxation * (whole - device);
@@ -236,9 +234,8 @@ void HeldLine::slide(const ToolMove& device, const Pose& X_WD, const Leap& most)
     X_WL_ = X_WD;
     return;
   }
-  if (go(stride(held_to(most, device, wanted, kMaxClimb_mm), longest_mm), X_WD)) return;
-  ToolMove level = stride(held_to(most, device, wanted, 0), longest_mm);
-  for (int n = 0; n < kHalvings && !go(level, X_WD); ++n) level = 0.5 * level;
+  ToolMove move = stride(held_to(most, device, wanted), longest_mm);
+  for (int n = 0; n <= kHalvings && !go(move, X_WD); ++n) move = 0.5 * move;
 }
 
 void HeldLine::take_pushes() {
