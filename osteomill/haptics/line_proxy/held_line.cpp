@@ -197,8 +197,8 @@ double HeldLine::energy_mm2(const Pose& X_WL, const Pose& X_WD) const {
   return stretch.translation_mm.squaredNorm() + turn_weight_mm2_ * stretch.rotation_rad.squaredNorm();
 }
 
-// False, and the line stays, where the move ends in bone, or would stretch the springs by more than it takes to
-// climb over the bone's roughness: what is climbed has to be come down again before more is.
+// False, and the line stays, where the move ends in bone, or would stretch the springs by more than it takes
+// to climb over the bone's roughness: what is climbed has to be come down again before more is.
 bool HeldLine::go(const ToolMove& move, const Pose& X_WD) {
   const Pose X_WL = moved(X_WL_, move);
   const double energy_before_mm2 = energy_mm2(X_WL_, X_WD);
@@ -227,9 +227,11 @@ ToolMove HeldLine::held_to(const Leap& most, const ToolMove& device, const ToolM
 void HeldLine::slide(const ToolMove& device, const Pose& X_WD, const Leap& most) {
   const ToolMove whole = move_between(X_WL_, X_WD);
   const ToolMove wanted = device + kRelaxation * (whole - device);
-  const double longest_mm = std::min(kStride_mm, travel_mm(device) + most.move_mm + most.turn_rad * span_.end_mm);
+  const double longest_mm =
+      std::min(kStride_mm, travel_mm(device) + most.move_mm + most.turn_rad * span_.end_mm);
   look_along(wanted, longest_mm);
-  const bool may_land = limit_count_ == 0 && travel_mm(whole) <= kStride_mm && most.allows(whole - device) == 1;
+  const bool may_land =
+      limit_count_ == 0 && travel_mm(whole) <= kStride_mm && most.allows(whole - device) == 1;
   if (may_land && !is_in_bone(X_WD)) {
     X_WL_ = X_WD;
     return;
@@ -272,9 +274,10 @@ HeldLine::Leap HeldLine::leap_in_a_stride(const ToolMove& device, double dt_s, d
   if (!held_back_) return {kAnyLeap, kAnyLeap};
   const double tick_s = std::clamp(dt_s, 0.0, kMaxTick_s);
   const double device_mm = device.translation_mm.norm();
-  return {part * (device_mm + kLeap_mm_s * tick_s) + kLeast,
-          part * (device.rotation_rad.norm() + kTurnByMove * device_mm / span_.end_mm + kLeap_rad_s * tick_s) +
-              kLeast};
+  return {
+      part * (device_mm + kLeap_mm_s * tick_s) + kLeast,
+      part * (device.rotation_rad.norm() + kTurnByMove * device_mm / span_.end_mm + kLeap_rad_s * tick_s) +
+          kLeast};
 }
 
 void HeldLine::follow(const Pose& X_WD, double dt_s) {

@@ -17,8 +17,9 @@ struct LineSprings {
 /// The tool's centreline as it follows the device's as far as bone lets it, tip, flank and far end: a
 /// god-object with the freedom of a pose. In each tick it goes, without friction, to where the springs'
 /// energy is least among the poses that the bone leaves it. It moves by strides and looks where each would
-/// end: what it meets there, as the planes of tip and shaft, limits the stride, and it looks again. Where the
-/// bone lets it leap, it goes at a limited speed beside the device's own.
+/// end: what it meets there, as the planes of tip and shaft, limits the stride, and it looks again. It ends
+/// outside bone, and does not stretch the springs but by what it takes to climb over the voxels' roughness.
+/// Where the bone lets it leap, it goes at a limited speed beside the device's own.
 ///
 /// A line that begins in bone goes with the device, and is not held, until it is outside.
 class HeldLine {
