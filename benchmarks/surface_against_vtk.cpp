@@ -90,7 +90,7 @@ vtkNew<vtkImageData> share_with_vtk(const Volume& volume) {
   image->SetDimensions(geometry.dims[0], geometry.dims[1], geometry.dims[2]);
   image->SetSpacing(geometry.spacing_mm.x(), geometry.spacing_mm.y(), geometry.spacing_mm.z());
   vtkNew<vtkFloatArray> densities;
-  const std::vector<float>& values = volume.grid().densities();
+  const CopyOnWriteFloats& values = volume.grid().densities();
   densities->SetArray(const_cast<float*>(values.data()), static_cast<vtkIdType>(values.size()), 1);
   image->GetPointData()->SetScalars(densities);
   return image;

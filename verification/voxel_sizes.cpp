@@ -36,8 +36,8 @@ double hole_mm3(std::string_view algorithm, double spacing_mm, double seconds) {
                      algorithm_named(algorithm), settings);
   while (trial.tick().milling_phase) {
   }
-  const std::vector<float>& before = bone.grid().densities();
-  const std::vector<float>& after = trial.volume().grid().densities();
+  const CopyOnWriteFloats& before = bone.grid().densities();
+  const CopyOnWriteFloats& after = trial.volume().grid().densities();
   double lost = 0;
   for (std::size_t n = 0; n < before.size(); ++n) lost += before[n] - after[n];
   return lost / 1000 * bone.geometry().voxel_volume_mm3();

@@ -59,7 +59,7 @@ void expect_numbers(const json& expected, const Scan& scan) {
       EXPECT_NEAR((*iop)[static_cast<std::size_t>(n)].get<double>(), geometry.direction(n % 3, n / 3), 1e-5);
     }
   }
-  const std::vector<float>& densities = scan.grid.densities();
+  const CopyOnWriteFloats& densities = scan.grid.densities();
   const auto [min, max] = std::minmax_element(densities.begin(), densities.end());
   const double mean =
       std::accumulate(densities.begin(), densities.end(), 0.0) / static_cast<double>(densities.size());

@@ -14,7 +14,7 @@ std::array<double, 3> to_array(const Vec3& v) {
   return {v.x(), v.y(), v.z()};
 }
 
-void summarise_values(const std::vector<float>& densities, double isovalue, ScanSummary& summary) {
+void summarise_values(const CopyOnWriteFloats& densities, double isovalue, ScanSummary& summary) {
   double sum = 0;
   float min = densities.front();
   float max = densities.front();

@@ -12,7 +12,10 @@ Scan some_scan() {
   geometry.spacing_mm = Vec3(0.5, 0.25, 2);
   geometry.origin_mm = Vec3(-1, 2, 3);
   geometry.direction << 0, 0, 1, 1, 0, 0, 0, 1, 0;
-  return {DensityGrid(geometry, {-5, 0, 10, 20, 30, 35}), "some.nrrd", "NRRD", {"one \xFF thing"}};
+  return {DensityGrid(geometry, std::vector<float>{-5, 0, 10, 20, 30, 35}),
+          "some.nrrd",
+          "NRRD",
+          {"one \xFF thing"}};
 }
 
 TEST(ScanSummary, JsonHasTheContractsKeys) {

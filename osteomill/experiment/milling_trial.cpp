@@ -28,6 +28,7 @@ MillingTrial::Tick MillingTrial::tick() {
   const double before_us = thread_cpu_us();
   TickRecord record = session_.tick(operator_, operator_.time_s(), tick_s_, milling_phase && spindle_);
   record.tick_cpu_us = thread_cpu_us() - before_us;
+  session_.prepare_next_ticks();
   operator_.see(record.X_WT);
   operator_.advance(tick_s_);
   return {record, milling_phase};

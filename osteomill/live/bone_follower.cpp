@@ -26,21 +26,6 @@ constexpr auto kLookEvery = 20ms;
 // 1 MiB: what comes while the whole surface is meshed at a new isovalue.
 constexpr std::size_t kBricksOnTheirWay = 511;
 
-// A large one takes a while.
-std::shared_ptr<Volume> copy_of(const Volume& bone) {
-  const WorkProgress::Part copying(0.3);
-  const std::vector<float>& from = bone.grid().densities();
-  std::vector<float> densities;
-  densities.reserve(from.size());
-  constexpr std::size_t kAtOnce = 1 << 22;
-  for (std::size_t n = 0; n < from.size(); n += kAtOnce) {
-    const std::size_t count = std::min(kAtOnce, from.size() - n);
-    densities.insert(densities.end(), &from[n], &from[n] + count);
-    WorkProgress::done(n, from.size());
-  }
-  return std::make_shared<Volume>(DensityGrid(bone.geometry(), std::move(densities)), bone.isovalue());
-}
-
 // What the drawing thread has not taken yet, each brick once.
 class Published {
  public:
@@ -80,18 +65,16 @@ class Published {
 }  // namespace
 
 struct BoneFollower::Impl {
-  Impl(const Volume& bone, std::size_t undo_bytes)
-      : handover(bone.geometry(), kBricksOnTheirWay),
-        layout(bone.geometry().dims),
+  Impl(std::shared_ptr<Volume> milled, std::size_t undo_bytes)
+      : handover(milled->geometry(), kBricksOnTheirWay),
+        layout(milled->geometry().dims),
         published(layout.count()),
-        copy(copy_of(bone)),
+        bone(std::move(milled)),
+        copy(std::make_shared<Volume>(*bone)),
         history(undo_bytes),
         upkeep(layout),
-        shown_isovalue(bone.isovalue()) {
-    {
-      const WorkProgress::Part meshing(1);
-      mesh();
-    }
+        shown_isovalue(bone->isovalue()) {
+    mesh();
     mesher = std::thread([this] { keep_up(); });
   }
   ~Impl() {
@@ -123,12 +106,19 @@ struct BoneFollower::Impl {
   }
 
   void follow(const std::optional<double>& isovalue) {
-    const std::lock_guard lock(bone_mutex);
-    if (isovalue && *isovalue != shown_isovalue) {
-      shown_isovalue = *isovalue;
-      upkeep.mark_all();
+    std::shared_ptr<Volume> milled;
+    VoxelBox where;
+    {
+      const std::lock_guard lock(bone_mutex);
+      if (isovalue && *isovalue != shown_isovalue) {
+        shown_isovalue = *isovalue;
+        upkeep.mark_all();
+      }
+      take_over();
+      milled = bone;
+      where = std::exchange(arrived, {});
     }
-    take_over();
+    milled->prepare_about(where);
   }
 
   // The others may read meanwhile; no other thread marks what is to be meshed while one holds the lock.
@@ -141,7 +131,11 @@ struct BoneFollower::Impl {
   void take_over() {
     DensityBlock* brick = handover.front();
     for (std::size_t n = 0; brick != nullptr && n < kBricksOnTheirWay; ++n) {
-      if (put(*brick)) history.keep(*brick);
+      if (put(*brick)) {
+        history.keep(*brick);
+        arrived.include(brick->first);
+        arrived.include(brick->last());
+      }
       handover.pop();
       brick = handover.front();
     }
@@ -186,7 +180,10 @@ struct BoneFollower::Impl {
   // Never taken by the haptic thread. Whoever writes holds it alone: into the copy or what goes with it, or
   // receives from the haptic thread.
   mutable std::shared_mutex bone_mutex;
+  // Milled by the haptic thread, which alone reads and writes its densities.
+  std::shared_ptr<Volume> bone;
   std::shared_ptr<Volume> copy;
+  VoxelBox arrived;  // since the thread last looked
   CutHistory history;
   SurfaceUpkeep upkeep;
   double shown_isovalue;
@@ -202,16 +199,16 @@ struct BoneFollower::Impl {
   std::thread mesher;
 };
 
-BoneFollower::BoneFollower(const Volume& bone, std::size_t undo_bytes)
-    : impl_(std::make_unique<Impl>(bone, undo_bytes)) {}
+BoneFollower::BoneFollower(std::shared_ptr<Volume> bone, std::size_t undo_bytes)
+    : impl_(std::make_unique<Impl>(std::move(bone), undo_bytes)) {}
 
 BoneFollower::~BoneFollower() = default;
 
-void BoneFollower::begin_with(Volume& bone, const std::vector<DensityBlock>& milled) {
+void BoneFollower::begin_with(const std::vector<DensityBlock>& milled) {
   const std::lock_guard lock(impl_->bone_mutex);
   for (DensityBlock brick : milled) {
     DensityBlock same = brick;
-    swap_densities(bone, same);
+    swap_densities(*impl_->bone, same);
     if (impl_->put(brick)) impl_->history.keep(brick);
   }
 }
@@ -302,15 +299,15 @@ BoneFollower::NextBone BoneFollower::with_isovalue(double isovalue, double remov
   return {impl_->copy, removed_mm3, densities};
 }
 
-void BoneFollower::swap(std::shared_ptr<Volume> bone_before) {
+void BoneFollower::swap() {
   const std::lock_guard lock(impl_->bone_mutex);
-  const Volume& bone = *impl_->copy;
+  std::swap(impl_->bone, impl_->copy);
+  const Volume& bone = *impl_->bone;
   for (const DensityBlock& brick : impl_->differing) {
     DensityBlock now(bone.grid(), brick.first);
-    swap_densities(*bone_before, now);
+    swap_densities(*impl_->copy, now);
   }
-  bone_before->set_isovalue(bone.isovalue());
-  impl_->copy = std::move(bone_before);
+  impl_->copy->set_isovalue(bone.isovalue());
   impl_->differing.clear();
   impl_->taken.reset();
 }

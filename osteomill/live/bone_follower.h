@@ -16,10 +16,10 @@
 namespace osteomill {
 
 /// Follows a bone that is being milled, for all who are not the haptic thread: the one copy of its densities
-/// (4 bytes a voxel), from which its surface is kept up on a thread of its own, cuts are drawn, files are
-/// saved, and to which what was milled is given back. The haptic thread hands over what changed and waits for
-/// nobody; the others wait for each other no longer than a few changed bricks take to be put in place or
-/// meshed (the whole bone after another isovalue).
+/// (which shares with it what was not milled), from which its surface is kept up on a thread of its own, cuts
+/// are drawn, files are saved, and to which what was milled is given back. The haptic thread hands over what
+/// changed and waits for nobody; the others wait for each other no longer than a few changed bricks take to
+/// be put in place or meshed (the whole bone after another isovalue).
 class BoneFollower {
  public:
   /// What a tick copies at most, 16 KiB; all that a burr of 3 mm changes has gone within 20 ticks.
@@ -27,14 +27,15 @@ class BoneFollower {
   /// What cuts that can be taken back may take.
   static constexpr std::size_t kUndoBytes = std::size_t{256} << 20;
 
-  /// Copies the bone and starts meshing all of it.
-  explicit BoneFollower(const Volume& bone, std::size_t undo_bytes = kUndoBytes);
+  /// Copies the bone and starts meshing all of it; has the memory made that milling it takes
+  /// (Volume::prepare_about) ahead of the burr.
+  explicit BoneFollower(std::shared_ptr<Volume> bone, std::size_t undo_bytes = kUndoBytes);
   ~BoneFollower();
   BoneFollower(const BoneFollower&) = delete;
   BoneFollower& operator=(const BoneFollower&) = delete;
 
   /// What was milled of this bone at another time goes into both, as one cut. Before the first tick.
-  void begin_with(Volume& bone, const std::vector<DensityBlock>& milled);
+  void begin_with(const std::vector<DensityBlock>& milled);
 
   /// To be called by the haptic thread at every tick with the bone and what the tick changed of it, an empty
   /// change too: a part of what is to be copied may have been left to later ticks. Safe in the haptic tick:
@@ -83,7 +84,7 @@ class BoneFollower {
   NextBone with_isovalue(double isovalue, double removed_mm3);
   /// The copy has become the bone. What was the bone, which no tick uses any more, becomes the copy, so that
   /// there are never more than the two.
-  void swap(std::shared_ptr<Volume> bone_before);
+  void swap();
   /// The copy becomes again what the bone is, and what was taken back can be taken back again.
   void give_up();
 

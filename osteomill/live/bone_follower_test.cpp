@@ -108,8 +108,8 @@ TEST(DensityHandover, KeepsMarkedWhatFindsNoRoomAndSendsTheLongestMarkedFirst) {
   EXPECT_EQ(handover.front(), nullptr);
 }
 
-std::vector<float> densities_of(const BoneFollower& follower) {
-  std::vector<float> densities;
+CopyOnWriteFloats densities_of(const BoneFollower& follower) {
+  CopyOnWriteFloats densities;
   follower.read([&](const Volume& copy) { densities = copy.grid().densities(); });
   return densities;
 }
@@ -144,16 +144,16 @@ class BoneFollowerTest : public ::testing::Test {
   }
   // As a live session does: the bone that was prepared is milled from now on.
   void swap(const BoneFollower::NextBone& next) {
-    const std::shared_ptr<Volume> before = std::exchange(bone_, next.bone);
-    follower_.swap(before);
-    EXPECT_NE(before, next.bone);
+    EXPECT_NE(bone_, next.bone);
+    bone_ = next.bone;
+    follower_.swap();
     miller_.emplace(*bone_);
   }
-  const std::vector<float>& now() const { return bone_->grid().densities(); }
+  const CopyOnWriteFloats& now() const { return bone_->grid().densities(); }
 
   std::shared_ptr<Volume> bone_ = std::make_shared<Volume>(ball_of_bone());
   std::optional<Miller> miller_{*bone_};
-  BoneFollower follower_{*bone_};
+  BoneFollower follower_{bone_};
   Collected collected_{follower_.layout()};
 };
 
@@ -186,11 +186,11 @@ TEST_F(BoneFollowerTest, LosesNothingThatFindsNoRoom) {
 }
 
 TEST_F(BoneFollowerTest, TakesCutsBackInBothCopies) {
-  const std::vector<float> untouched = now();
+  const CopyOnWriteFloats untouched = now();
   follower_.begin_cut(0);
   mill(300);
   catch_up();
-  const std::vector<float> after_first = now();
+  const CopyOnWriteFloats after_first = now();
   follower_.begin_cut(2.5);
   mill(300);
   catch_up();
@@ -243,7 +243,7 @@ TEST_F(BoneFollowerTest, WhatIsGivenUpIsAsItWas) {
 TEST_F(BoneFollowerTest, AnotherIsovalueIsThatOfBothCopies) {
   mill(300);
   catch_up();
-  const std::vector<float> milled = now();
+  const CopyOnWriteFloats milled = now();
   swap(follower_.with_isovalue(700, 1.5));
   EXPECT_EQ(bone_->isovalue(), 700);
   EXPECT_EQ(now(), milled);
@@ -255,8 +255,9 @@ TEST_F(BoneFollowerTest, AnotherIsovalueIsThatOfBothCopies) {
 // Ticks at full speed on one thread, drawing on another, the surface on its own; also with the thread
 // sanitizer.
 TEST(BoneFollower, KeepsUpWithMillingAtFullSpeed) {
-  Volume volume = ball_of_bone();
-  BoneFollower live(volume);
+  const auto bone = std::make_shared<Volume>(ball_of_bone());
+  Volume& volume = *bone;
+  BoneFollower live(bone);
   Collected collected(live.layout());
   std::atomic<bool> done{false};
   std::thread haptic([&] {
@@ -275,8 +276,9 @@ TEST(BoneFollower, KeepsUpWithMillingAtFullSpeed) {
 }
 
 TEST(BoneFollower, FollowsTheIsovalueWhileMilling) {
-  Volume volume = ball_of_bone();
-  BoneFollower live(volume);
+  const auto bone = std::make_shared<Volume>(ball_of_bone());
+  Volume& volume = *bone;
+  BoneFollower live(bone);
   Collected collected(live.layout());
   Miller miller(volume);
   for (int tick = 0; tick < 600; ++tick) {
@@ -288,10 +290,10 @@ TEST(BoneFollower, FollowsTheIsovalueWhileMilling) {
 }
 
 TEST(BoneFollower, StopsInTheMiddleOfItsWork) {
-  const Volume volume = ball_of_bone();
+  const auto bone = std::make_shared<Volume>(ball_of_bone());
   for (int n = 0; n < 5; ++n) {
-    BoneFollower live(volume);
-    live.bone_changed(volume, {volume.geometry().all_voxels()});
+    BoneFollower live(bone);
+    live.bone_changed(*bone, {bone->geometry().all_voxels()});
   }
 }
 

@@ -20,11 +20,11 @@ class CutHistoryTest : public ::testing::Test {
     for (auto& [place, brick] : taken.bricks) swap_densities(bone_, brick);
     return taken.removed_mm3;
   }
-  const std::vector<float>& now() const { return bone_.grid().densities(); }
+  const CopyOnWriteFloats& now() const { return bone_.grid().densities(); }
 
   Volume bone_ = testing_support::shape_volume(testing_support::centred_cube(20, 0.25),
                                                testing_support::plane(Vec3::Zero(), Vec3::UnitZ()));
-  const std::vector<float> before_ = bone_.grid().densities();
+  const CopyOnWriteFloats before_ = bone_.grid().densities();
   CutHistory history_{std::size_t{1} << 20};
 };
 
@@ -34,7 +34,7 @@ TEST_F(CutHistoryTest, TakesCutsBackOneByOne) {
   mill({3, 4, 5});
   mill({3, 4, 6});
   history_.begin_cut(2.5);
-  const std::vector<float> after_first = now();
+  const CopyOnWriteFloats after_first = now();
   mill({3, 4, 5});
   mill({18, 2, 9});
   EXPECT_EQ(history_.cuts(), 2u);
@@ -106,17 +106,17 @@ TEST_F(CutHistoryTest, WhatWasEmptiedStaysEmptyAtALowerIsovalue) {
   history_.begin_cut(1);
   mill_to({3, 4, 3}, 0);
   mill_to({3, 4, 4}, 700);
-  const std::vector<float> milled = now();
+  const CopyOnWriteFloats milled = now();
   std::vector<DensityBlock> differing = history_.keep_emptied(bone_.grid(), 500, 50, -30);
   ASSERT_EQ(differing.size(), 1u);
   swap_densities(bone_, differing.front());
-  std::vector<float> expected = milled;
-  expected[bone_.grid().linear_index({3, 4, 2})] = -30;
+  CopyOnWriteFloats expected = milled;
+  expected.set(bone_.grid().linear_index({3, 4, 2}), -30);
   EXPECT_EQ(now(), expected);
   // The first cut's hole is still one when the second is taken back.
   undo();
   expected = before_;
-  expected[bone_.grid().linear_index({3, 4, 2})] = -30;
+  expected.set(bone_.grid().linear_index({3, 4, 2}), -30);
   EXPECT_EQ(now(), expected);
   undo();
   EXPECT_EQ(now(), before_);

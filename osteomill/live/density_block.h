@@ -13,6 +13,7 @@ struct DensityBlock {
 
   /// The lowest voxel; the brick may reach beyond the grid, where its densities mean nothing.
   VoxelIndex first;
+  VoxelIndex last() const { return {first.i + kVoxels - 1, first.j + kVoxels - 1, first.k + kVoxels - 1}; }
   /// Along i fastest.
   std::array<float, static_cast<std::size_t>(kVoxels* kVoxels* kVoxels)> densities;
 

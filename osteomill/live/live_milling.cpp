@@ -25,9 +25,9 @@ PreparedMilling prepare_milling(std::shared_ptr<Volume> bone, const MillingSetup
   }
   {
     const WorkProgress::Part meshing(0.8);
-    follower = std::make_unique<BoneFollower>(*bone);
+    follower = std::make_unique<BoneFollower>(bone);
   }
-  follower->begin_with(*bone, before.bricks);
+  follower->begin_with(before.bricks);
   const WorkProgress::Part preparing(1);
   auto session = make_session(std::move(bone), densities, setup);
   session->count_removed_from(before.removed_mm3);
@@ -130,13 +130,12 @@ void LiveMilling::take_over() {
   try {
     Prepared prepared = preparation_.get();
     failure = end_recording();
-    const std::shared_ptr<Volume> bone_before = live_.session().shared_volume();
     isovalue_ = prepared.session->volume().isovalue();
     setup_ = prepared.setup;
     sample_points_ = prepared.session->algorithm().sample_point_count();
     densities_ = prepared.densities;
     live_.wait_for(live_.replace(std::move(prepared.session)));
-    if (prepared.other_bone) follower_->swap(bone_before);
+    if (prepared.other_bone) follower_->swap();
   } catch (...) {
     failure = std::current_exception();
   }

@@ -54,14 +54,14 @@ class LiveMillingTest : public ::testing::Test {
   // Returns when the follower has what was milled, and nothing changes any more.
   void settle() const {
     for (int n = 0; n < 50; ++n) {
-      const std::vector<float> before = bone();
+      const CopyOnWriteFloats before = bone();
       std::this_thread::sleep_for(100ms);
       if (bone() == before) return;
     }
   }
 
-  std::vector<float> bone() const {
-    std::vector<float> densities;
+  CopyOnWriteFloats bone() const {
+    CopyOnWriteFloats densities;
     milling_.read_bone([&](const Volume& bone) { densities = bone.grid().densities(); });
     return densities;
   }
@@ -86,13 +86,13 @@ class LiveMillingTest : public ::testing::Test {
   MillingEntry entry_ = place_entry(*bone_, setup_.tool);
   VirtualHand hand_{{}, pointing_hand(), pose_above(entry_, setup_.tool, 0.2)};
   LiveMilling milling_{bone_, setup_, hand_};
-  const std::vector<float> untouched_ = ball_of_bone()->grid().densities();
+  const CopyOnWriteFloats untouched_ = ball_of_bone()->grid().densities();
   std::vector<BrickMesh> surface_ = std::vector<BrickMesh>(milling_.surface_layout().count());
 };
 
 TEST_F(LiveMillingTest, TakesCutsBackOneByOneAndMillsOn) {
   mill(0.3);
-  const std::vector<float> after_first = bone();
+  const CopyOnWriteFloats after_first = bone();
   const double removed_mm3 = milling_.state().record.removed_mm3;
   mill(0.3);
   EXPECT_EQ(milling_.cuts(), 2u);
@@ -148,7 +148,7 @@ TEST_F(LiveMillingTest, TheBoneThatIsFeltIsTheBoneThatIsSeen) {
 TEST_F(LiveMillingTest, AnotherAlgorithmAndToolTakeOver) {
   mill(0.2);
   const double removed_mm3 = milling_.state().record.removed_mm3;
-  const std::vector<float> milled = bone();
+  const CopyOnWriteFloats milled = bone();
   MillingSetup other = setup_;
   other.algorithm = algorithm_named("surface-points");
   other.tool.burr_radius_mm = 1.2;
@@ -167,7 +167,7 @@ TEST_F(LiveMillingTest, AnotherAlgorithmAndToolTakeOver) {
 
 TEST_F(LiveMillingTest, WhatCannotBePreparedLeavesAllAsItWas) {
   mill(0.2);
-  const std::vector<float> milled = bone();
+  const CopyOnWriteFloats milled = bone();
   MillingSetup wrong = setup_;
   wrong.tool.burr_radius_mm = -1;
   milling_.change(wrong);
@@ -182,11 +182,11 @@ TEST_F(LiveMillingTest, WhatCannotBePreparedLeavesAllAsItWas) {
 
 TEST_F(LiveMillingTest, AnotherIsovalueKeepsTheHoleAndWhatCanBeTakenBack) {
   mill(0.3);
-  const std::vector<float> milled = bone();
+  const CopyOnWriteFloats milled = bone();
   milling_.change_isovalue(300);
   milling_.finish_preparing();
   EXPECT_EQ(milling_.isovalue(), 300);
-  const std::vector<float> now = bone();
+  const CopyOnWriteFloats now = bone();
   for (std::size_t n = 0; n < now.size(); ++n) {
     if (milled[n] < untouched_[n] && milled[n] <= 500) {
       EXPECT_LE(now[n], 300) << n;
@@ -206,13 +206,13 @@ TEST_F(LiveMillingTest, AnotherIsovalueKeepsTheHoleAndWhatCanBeTakenBack) {
 TEST_F(LiveMillingTest, GoesOnWithWhatWasMilledBefore) {
   mill(0.3);
   const double removed_mm3 = milling_.state().record.removed_mm3;
-  const std::vector<float> milled = bone();
+  const CopyOnWriteFloats milled = bone();
   milling_.stop();
 
   VirtualHand hand({}, pointing_hand(), pose_above(entry_, setup_.tool, 0.2));
   LiveMilling again(prepare_milling(ball_of_bone(), setup_, {milling_.touched_bricks(), removed_mm3}), hand);
   const auto bone_again = [&] {
-    std::vector<float> densities;
+    CopyOnWriteFloats densities;
     again.read_bone([&](const Volume& bone) { densities = bone.grid().densities(); });
     return densities;
   };

@@ -91,7 +91,7 @@ TEST_F(LiveSessionTest, TheSpindleMillsAndAHeldBoneIsNotMilled) {
   live_.wait_for(live_.set_spindle(true));
   std::this_thread::sleep_for(100ms);
   live_.wait_for(live_.hold_bone(true));
-  const std::vector<float> held = bone_->grid().densities();
+  const CopyOnWriteFloats held = bone_->grid().densities();
   EXPECT_NE(held, half_space().grid().densities());
   std::this_thread::sleep_for(50ms);
   EXPECT_EQ(bone_->grid().densities(), held);

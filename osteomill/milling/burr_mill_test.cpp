@@ -91,7 +91,7 @@ TEST(BurrMill, RemovesWhatTheForcePaysFor) {
 TEST(BurrMill, CutsEnamelSlowerInProportionToItsDensity) {
   const GridGeometry geometry = cube_of(7, 0.125);
   Volume dentine = half_space(geometry);
-  std::vector<float> denser = dentine.grid().densities();
+  std::vector<float> denser(dentine.grid().densities().begin(), dentine.grid().densities().end());
   for (float& density : denser) density *= 1.9f;
   Volume enamel(DensityGrid(geometry, denser), 1.9 * 500);
   BurrMill dentine_mill(geometry, kRadius_mm, kBone, kMilling);
@@ -118,9 +118,10 @@ TEST(BurrMill, NeverStallsOnDenseBoneThatItOnlyTouches) {
   // voxels lie behind the isosurface.
   for (const double spacing_mm : {0.125, 0.25}) {
     for (const Vec3& normal : {Vec3(0, 0, 1), Vec3(Vec3::Ones().normalized())}) {
-      std::vector<float> densities = half_space(cube_of(6, spacing_mm), normal).grid().densities();
+      const Volume bone = half_space(cube_of(6, spacing_mm), normal);
+      std::vector<float> densities(bone.grid().densities().begin(), bone.grid().densities().end());
       for (float& density : densities) density *= 3;
-      Volume volume(DensityGrid(cube_of(6, spacing_mm), densities), 500);
+      Volume volume(DensityGrid(bone.geometry(), densities), 500);
       BurrMill mill(volume.geometry(), kRadius_mm, kBone, kMilling);
       double removed_mm3 = 0;
       double height_mm = 1.8;
@@ -136,7 +137,7 @@ TEST(BurrMill, NeverStallsOnDenseBoneThatItOnlyTouches) {
 TEST(BurrMill, TakesNothingWithoutForceOrWithoutASensibleInput) {
   const GridGeometry geometry = cube_of(5, 0.25);
   Volume volume = half_space(geometry);
-  const std::vector<float> before = volume.grid().densities();
+  const CopyOnWriteFloats before = volume.grid().densities();
   BurrMill mill(geometry, kRadius_mm, kBone, kMilling);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double infinity = std::numeric_limits<double>::infinity();
@@ -319,7 +320,7 @@ TEST(BurrMill, NamesExactlyTheBoxThatChanged) {
   Volume volume = half_space(geometry);
   BurrMill mill(geometry, kRadius_mm, kBone, kMilling);
   for (int n = 0; n < 200; ++n) {
-    const std::vector<float> before = volume.grid().densities();
+    const CopyOnWriteFloats before = volume.grid().densities();
     const VoxelBox said =
         mill.step(volume, Vec3(0.01 * n, 0.3, 1.4 - 0.005 * n), down(1), 0.001).change.voxels;
     VoxelBox changed;

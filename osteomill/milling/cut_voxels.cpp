@@ -75,7 +75,7 @@ void CutVoxels::gather(const DensityGrid& grid, BurrReach& reach, const CuttingB
   lists_.size = 0;
   measure(ball, ball.radius_mm + max_ahead_mm + CutProfile::kReach_voxels * geometry_.spacing_mm.maxCoeff());
   const CutKernelBall kernel = kernel_ball(ball, geometry_.spacing_mm);
-  const std::vector<float>& densities = grid.densities();
+  const CopyOnWriteFloats& densities = grid.densities();
   for (const BurrReach::Piece& piece : reach.pieces()) {
     const auto& [i, j, k] = piece.first;
     const float* row = densities.data() + piece.first_voxel;

@@ -30,6 +30,10 @@ class MillingSession {
   /// no allocation, lock, log, exception or system call.
   TickRecord tick(Device& device, double time_s, double dt_s, bool spindle_on);
 
+  /// To be called between ticks by one who may wait for memory: has ready what the next ones may change
+  /// (Volume::prepare_about). Where nobody calls it, ticks that mill new bone take microseconds longer.
+  void prepare_next_ticks() { volume_->prepare_about(last_change_.voxels); }
+
   /// Off until set; before the first tick.
   void set_vibration(const VibrationSettings& settings) { vibration_ = Vibration(settings); }
 

@@ -1,23 +1,22 @@
 #pragma once
 
-#include <vector>
-
 #include "osteomill/numbers/row_major.h"
+#include "osteomill/volume/copy_on_write_floats.h"
 #include "osteomill/volume/grid_geometry.h"
 
 namespace osteomill {
 
 /// The densities of a scan, one float a voxel (Hounsfield units where the scan has them), i running fastest.
-/// Outside the grid there is nothing: every voxel there counts as `outside_density()`.
-/// Reading is safe in the haptic tick; one thread writes.
+/// Outside the grid there is nothing: every voxel there counts as `outside_density()`. Copies share what was
+/// changed in neither. Reading is safe in the haptic tick; one thread writes.
 class DensityGrid {
  public:
   DensityGrid() = default;
   /// `densities` has `geometry.voxel_count()` values, all finite (the readers see to that).
-  DensityGrid(const GridGeometry& geometry, std::vector<float> densities);
+  DensityGrid(const GridGeometry& geometry, CopyOnWriteFloats densities);
 
   const GridGeometry& geometry() const { return geometry_; }
-  const std::vector<float>& densities() const { return densities_; }
+  const CopyOnWriteFloats& densities() const { return densities_; }
   /// The least density of the grid as it was made.
   float outside_density() const { return outside_density_; }
 
@@ -41,12 +40,16 @@ class DensityGrid {
 #endif
   }
   void set(const VoxelIndex& v, float density) {
-    densities_[linear_index(v)] = density;
+    densities_.set(linear_index(v), density);
   }
+  /// Has the memory for changes about `changed` made before they come (CopyOnWriteFloats::prepare): as far as
+  /// a burr may go on from there in some tens of milliseconds.
+  void prepare_about(const VoxelBox& changed);
 
  private:
   GridGeometry geometry_;
-  std::vector<float> densities_;
+  CopyOnWriteFloats densities_;
+  VoxelBox prepared_;
   float outside_density_ = 0;
 };
 

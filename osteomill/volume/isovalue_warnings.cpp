@@ -20,13 +20,12 @@ struct Range {
   bool holds(double isovalue) const { return isovalue < max && isovalue >= min; }
 };
 
-Range range_of(const std::vector<float>& densities) {
+Range range_of(const CopyOnWriteFloats& densities) {
   constexpr std::size_t kAtOnce = 1 << 22;
   float min = densities.front(), max = min;
   for (std::size_t first = 0; first < densities.size(); first += kAtOnce) {
     const std::size_t last = std::min(first + kAtOnce, densities.size());
-    const auto [low, high] = std::minmax_element(densities.begin() + static_cast<std::ptrdiff_t>(first),
-                                                 densities.begin() + static_cast<std::ptrdiff_t>(last));
+    const auto [low, high] = std::minmax_element(densities.begin() + first, densities.begin() + last);
     min = std::min(min, *low);
     max = std::max(max, *high);
     WorkProgress::done(first, 2 * densities.size());

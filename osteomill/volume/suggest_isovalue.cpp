@@ -118,7 +118,7 @@ std::optional<double> below_first_label(const DensityGrid& grid, std::span<const
     labels.push_back(sample.density);
   }
   std::size_t labelled = 0, alike = 0;
-  const std::vector<float>& densities = grid.densities();
+  const CopyOnWriteFloats& densities = grid.densities();
   for (std::size_t n = 1; n < densities.size(); ++n) {
     if (static_cast<double>(densities[n]) == labels.front()) continue;
     ++labelled;

@@ -101,7 +101,8 @@ TEST(SuggestIsovalue, LiesStrictlyInsideTheRangeOrIsTheOnlyDensity) {
   const float next = std::nextafter(1.0f, 2.0f);
   std::mt19937_64 random(9);
   for (const float top : {next, 2.0f, 1000.0f, 1e30f}) {
-    const double between = suggest_isovalue(DensityGrid(geometry, {1, 1, 1, 1, 1, 1, 1, top})).value;
+    const double between =
+        suggest_isovalue(DensityGrid(geometry, std::vector<float>{1, 1, 1, 1, 1, 1, 1, top})).value;
     EXPECT_GT(between, 1.0);
     EXPECT_LT(between, static_cast<double>(top));
   }

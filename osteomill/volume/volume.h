@@ -7,7 +7,7 @@ namespace osteomill {
 
 /// The bone as every stage sees it: densities, the isovalue that bounds the bone (bone where density >
 /// isovalue), and the range of densities brick by brick. The haptic thread alone lowers densities; everyone
-/// else reads copies.
+/// else reads copies, which cost what is changed in them.
 class Volume {
  public:
   /// Throws std::invalid_argument where the isovalue is not finite.
@@ -34,6 +34,8 @@ class Volume {
     for (std::size_t n = 0; n < count; ++n) grid_.set({columns[n], j, k}, densities[n]);
     bricks_.lower_row(j, k, columns, densities, count);
   }
+  /// See DensityGrid; by another thread than the one that lowers where that one must not wait.
+  void prepare_about(const VoxelBox& changed) { grid_.prepare_about(changed); }
   /// Writes one voxel's density, up or down, as when a cut is taken back: where it rose `refresh_bricks` is
   /// due. Not for the tick, nor while anyone works on this bone.
   void set_density(const VoxelIndex& v, float density) {

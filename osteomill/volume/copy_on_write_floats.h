@@ -1,0 +1,67 @@
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace osteomill {
+
+/// An array of floats whose copies share its memory until they differ: a copy costs the pages (4 KiB) that
+/// were written in it or in what it was copied from. Reading costs what reading any array does.
+///
+/// The system makes a page of its own where one is written for the first time, which takes microseconds; a
+/// thread that cannot wait has `prepare` called for it. One thread writes; no one copies meanwhile.
+class CopyOnWriteFloats {
+ public:
+  using value_type = float;
+  using const_iterator = const float*;
+  using iterator = const_iterator;
+
+  CopyOnWriteFloats() = default;
+  /// Gives the memory of `values` back while they are taken over, so that both never stand whole. Throws
+  /// std::bad_alloc, and WorkStopped as all long work.
+  CopyOnWriteFloats(std::vector<float> values);
+  CopyOnWriteFloats(const CopyOnWriteFloats& other);
+  CopyOnWriteFloats(CopyOnWriteFloats&& other) noexcept { swap(other); }
+  CopyOnWriteFloats& operator=(CopyOnWriteFloats other) noexcept {
+    swap(other);
+    return *this;
+  }
+  ~CopyOnWriteFloats();
+
+  std::size_t size() const { return size_; }
+  bool empty() const { return size_ == 0; }
+  /// 64 bytes behind the last may be read too.
+  const float* data() const { return values_; }
+  const float* begin() const { return values_; }
+  const float* end() const { return values_ + size_; }
+  float front() const { return *values_; }
+  float operator[](std::size_t n) const { return values_[n]; }
+  bool operator==(const CopyOnWriteFloats& other) const;
+
+  /// Safe in the haptic tick, and where `prepare` was called swift too.
+  void set(std::size_t n, float value) {
+    values_[n] = value;
+    std::atomic_ref(written_[n / kPageFloats]).store(1, std::memory_order_relaxed);
+  }
+  /// Has the pages of [first, last] made before they are written. One thread at a time, which may be another
+  /// than the one that writes; waits for the system.
+  void prepare(std::size_t first, std::size_t last);
+
+ private:
+  class Original;
+  static constexpr std::size_t kPageFloats = 1024;
+
+  void map();
+  void swap(CopyOnWriteFloats& other) noexcept;
+
+  std::shared_ptr<const Original> original_;
+  float* values_ = nullptr;
+  std::size_t size_ = 0;
+  // By page: whether it was made for this copy, and so may differ from the original.
+  std::vector<std::uint8_t> written_;
+};
+
+}  // namespace osteomill
