@@ -62,7 +62,7 @@ INSTANTIATE_TEST_SUITE_P(AllAlgorithms, GoldenWrenches,
                                            Golden{"surface-points", Mode::paper, 0xe2ea466e2b30f36e},
                                            Golden{"surface-points", Mode::steady, 0x787d19b3b1635c60},
                                            Golden{"point-shell", Mode::paper, 0xd4d2cd25e4997312},
-                                           Golden{"point-shell", Mode::steady, 0x1f7f49d9953ce570},
+                                           Golden{"point-shell", Mode::steady, 0x4c2ecb878a97b7b2},
                                            Golden{"barrier-shell", Mode::steady, 0x2eba6954a6931680}),
                          [](const auto& test) {
                            std::string name(test.param.algorithm);

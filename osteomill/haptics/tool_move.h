@@ -16,16 +16,33 @@ ToolMove move_between(const Pose& from, const Pose& to);
 /// The pose after the move.
 Pose moved(const Pose& X_WT, const ToolMove& move);
 
-/// Short of the target where a tool that was held back would come nearer to the device faster than it may, so
-/// that what is felt fades where bone gives way: at 15 mm/s and 0.05 rad/s, beside the device's own motion
-/// and a stretch that falls to a third in 0.1 s. Being pushed away is not held up. `length_mm` from the
-/// burr's centre to the tool's far end. The target itself, to the last bit, where it may be reached.
-Pose released(const Pose& X_WT_start, const Pose& X_WT_target, const Pose& X_WD_before, const Pose& X_WD,
-              double length_mm, double dt_s);
+/// What a tick may add to the device's own move: a share `tick / time_s` of the stretch between device and
+/// tool, and a speed.
+struct Release {
+  double time_s = 0.1;
+  double mm_s = 15;
+  double rad_s = 0.05;
+};
 
-/// What share of the tool's move from `start` to `target` (0..1) brings it no more than `allowed_mm` and
-/// `allowed_rad` nearer to the device; 1 where the whole move does not.
-double share_released(const Pose& X_WT_start, const Pose& X_WT_target, const Pose& X_WD, double allowed_mm,
-                      double allowed_rad);
+/// How far the simulated tool may go in a tick, so that what is felt, the stretch between it and the device,
+/// does not leap where bone gives way. Held on a spring by surfaces without friction, a tool goes along with
+/// the device by a projection of the device's move, and all projections of a vector lie on the sphere of
+/// which it is a diameter: so the tool's move stays in that ball, and its turn in the other, grown by the
+/// release. A turn of the device may also move a tool that is held at a lever, and a move turn it: by half,
+/// at the length `sqrt(torsional / translational stiffness)`, and on the side on which the stretch grows.
+/// Standing still always lies within. In W's axes.
+struct MoveBound {
+  ToolMove middle;
+  double radius_mm = 0;
+  double radius_rad = 0;
+};
+MoveBound move_bound(const Pose& X_WT, const Pose& X_WD_before, const Pose& X_WD, double spring_length_mm,
+                     const Release& release, double dt_s);
+
+/// The share (0..1) of a change that keeps `from` + share `change` in the ball about `middle`; 0 where `from`
+/// is not in it.
+double share_within(const Vec3& middle, double radius, const Vec3& from, const Vec3& change);
+/// The share of a move from the tick's start that stays within both balls.
+double share_within(const MoveBound& bound, const ToolMove& move);
 
 }  // namespace osteomill

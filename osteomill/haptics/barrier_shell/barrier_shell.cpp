@@ -37,8 +37,6 @@ constexpr double kRoomPerMove = 3;
 // In free space: farther than the fastest hand goes in a tick.
 constexpr Room kFarthestFlight{5.0, 0.3};
 
-// What a tick may release by its length; a longer one (a machine that stood still) counts as this long.
-constexpr double kMaxTick_s = 5e-3;
 // Edges of the lattice brought up to date a tick.
 constexpr int kRefreshedPerTick = 1500;
 // Bricks nearer than this to the tool are not forgotten.
@@ -69,21 +67,52 @@ ToolMove in_world(const Pose& X_WT, const Vector6& move_T) {
   return {X_WT.orientation * Vec3(move_T.head<3>()), X_WT.orientation * Vec3(move_T.tail<3>())};
 }
 
-// Of a move that changes a stretch, as much as leaves it `least` all the way; all where it only grows.
-double share_above(const Vec3& stretch, const Vec3& change, double least) {
-  const double along = stretch.dot(change);
-  if (least <= 0 || along >= 0) return 1;
-  const double spare = stretch.squaredNorm() - least * least;
-  if (spare <= 0) return 0;
-  const double root = along * along - change.squaredNorm() * spare;
-  return root <= 0 ? 1 : std::min(1.0, (-along - std::sqrt(root)) / change.squaredNorm());
-}
+// How often the damping is corrected, and by how much a step may then leave the balls before it is cut short.
+constexpr int kDampings = 6;
+constexpr double kBoundKept = 1.01;
 
-// Newton's step; where the energy is not convex, that of a convex one above it.
-Vector6 newton_step(const EnergySum& sum) {
-  const Eigen::LLT<Matrix6> whole(sum.convex + sum.rest);
-  if (whole.info() == Eigen::Success) return -whole.solve(sum.gradient);
-  return -sum.convex.llt().solve(sum.gradient);
+struct NewtonStep {
+  Vector6 move_T;
+  bool is_damped = false;
+};
+
+// Newton's step; where the energy is not convex, that of a convex one above it. Where it would leave one of
+// the balls in which the tool's move may end, damping in proportion to the coupling's stiffness C keeps it in
+// both, so that force and torque fade together: u = so_far_T + step, with so_far_T the move since the tick's
+// start less the balls' middles, solves (H + mu C) u = H so_far_T - g, and mu is brought to where u lies on
+// the sphere, as in a trust region (More and Sorensen 1983).
+NewtonStep newton_step(const EnergySum& sum, const Coupling& coupling, const Vector6& so_far_T,
+                       const MoveBound& bound) {
+  Matrix6 H = sum.convex + sum.rest;
+  Eigen::LLT<Matrix6> factor(H);
+  if (factor.info() != Eigen::Success) factor.compute(H = sum.convex);
+  NewtonStep step{-factor.solve(sum.gradient)};
+  Vector6 stiffness;
+  stiffness << Vec3::Constant(coupling.translational_N_per_mm),
+      Vec3::Constant(coupling.torsional_Nmm_per_rad);
+  const Vector6 pull = H * so_far_T - sum.gradient;
+  const double radii[2] = {bound.radius_mm, bound.radius_rad};
+  double damping = 0;
+  for (int n = 0; n < kDampings; ++n) {
+    const Vector6 u = so_far_T + step.move_T;
+    const double over[2] = {u.head<3>().norm() / radii[0], u.tail<3>().norm() / radii[1]};
+    const int worse = over[1] > over[0] ? 1 : 0;
+    if (over[worse] <= kBoundKept) break;
+    const Vector6 falling = factor.solve(stiffness.cwiseProduct(u));
+    const auto part = u.segment<3>(3 * worse);
+    damping +=
+        (over[worse] - 1) * part.squaredNorm() / std::max(part.dot(falling.segment<3>(3 * worse)), 1e-12);
+    step.is_damped = true;
+    Matrix6 damped = H;
+    damped.diagonal() += damping * stiffness;
+    factor.compute(damped);
+    step.move_T = factor.solve(pull) - so_far_T;
+  }
+  for (int part = 0; part < 2; ++part) {
+    step.move_T *= share_within(Vec3::Zero(), kBoundKept * radii[part], so_far_T.segment<3>(3 * part),
+                                step.move_T.segment<3>(3 * part));
+  }
+  return step;
 }
 
 }  // namespace
@@ -100,7 +129,6 @@ struct BarrierShell::Step {
   Vector6 move_T;
   // So small that what is summed after it would be the same.
   bool is_last = false;
-  bool is_held_back = false;
   bool reaches_device = false;
 };
 
@@ -211,16 +239,6 @@ BarrierShell::State BarrierShell::evaluated(const Pose& X_WT, const Pose& X_WD) 
   return state;
 }
 
-// The coupling's stretch, which is what is felt, may fall so far in a tick and no farther: against that at
-// the end of the last one, so that a tool that goes along with the device keeps it.
-Room BarrierShell::least_stretch(double dt_s) const {
-  const double tick_s = std::clamp(dt_s, 0.0, kMaxTick_s);
-  const double kept = 1 - std::min(1.0, tick_s / settings_.release_time_s);
-  const Room before = room_of(move_between(X_WD_before_, X_WT_));
-  return {kept * before.move_mm - settings_.release_mm_s * tick_s,
-          kept * before.turn_rad - settings_.release_rad_s * tick_s};
-}
-
 // What was stored must not have grown where nobody moved the device.
 void BarrierShell::watch_energy(const State& state) {
   if (!has_energy_) return;
@@ -233,11 +251,11 @@ void BarrierShell::watch_energy(const State& state) {
 }
 
 // Nothing near, nothing held back, and free space all the way.
-bool BarrierShell::may_fly(const Pose& X_WD, const Room& least) const {
-  const Room way = room_of(move_between(X_WT_, X_WD));
-  return near_.is_empty() && least.move_mm <= 0 && least.turn_rad <= 0 &&
-         way.move_mm <= kFarthestFlight.move_mm && way.turn_rad <= kFarthestFlight.turn_rad &&
-         is_clear(bricks_, cores(), barrier_, X_WT_, way);
+bool BarrierShell::may_fly(const Pose& X_WD, const MoveBound& bound) const {
+  const ToolMove move = move_between(X_WT_, X_WD);
+  const Room way = room_of(move);
+  return near_.is_empty() && share_within(bound, move) >= 1 && way.move_mm <= kFarthestFlight.move_mm &&
+         way.turn_rad <= kFarthestFlight.turn_rad && is_clear(bricks_, cores(), barrier_, X_WT_, way);
 }
 
 void BarrierShell::gather_for_next_move() {
@@ -256,27 +274,31 @@ double BarrierShell::share_with_room(const Room& step) const {
 }
 
 // Newton's, as much of it as is certified and may be released.
-BarrierShell::Step BarrierShell::next_step(const State& best, const Pose& X_WD, const Room& least) {
-  Step step{newton_step(best.sum)};
+BarrierShell::Step BarrierShell::next_step(const State& best, const MoveBound& bound) {
+  const ToolMove so_far = move_between(X_WT_, best.X_WT);
+  const Vec3 moved = so_far.translation_mm - bound.middle.translation_mm;
+  const Vec3 turned = so_far.rotation_rad - bound.middle.rotation_rad;
+  const Quat to_T = best.X_WT.orientation.conjugate();
+  Vector6 so_far_T;
+  so_far_T << to_T * moved, to_T * turned;
+  const NewtonStep newton = newton_step(best.sum, coupling_, so_far_T, bound);
+  Step step{newton.move_T};
   const Room wanted = room_of(step.move_T);
   step.is_last = wanted.move_mm <= kDone_mm && wanted.turn_rad <= kDone_rad;
+  // Nothing is summed after it: back from the rim of a ball, where the damping is a little too much, it
+  // stays.
+  const Vector6 slope = best.sum.gradient + 0.5 * (best.sum.convex + best.sum.rest) * step.move_T;
+  if (step.is_last && slope.dot(step.move_T) > 0) step.move_T.setZero();
   if (!step.is_last && share_with_room(wanted) < 1 && room_.move_mm < kMaxRoom.move_mm) {
     gather(best.X_WT, kMaxRoom);
     near_.energy(cores(), barrier_, best.X_WT);
   }
   if (near_.overflowed()) return {Vector6::Zero(), true};
-  const ToolMove stretch = move_between(X_WD, best.X_WT);
-  const ToolMove change = in_world(best.X_WT, step.move_T);
-  const double move = share_above(stretch.translation_mm, change.translation_mm, least.move_mm);
-  const double turn = share_above(stretch.rotation_rad, change.rotation_rad, least.turn_rad);
-  step.move_T.head<3>() *= move;
-  step.move_T.tail<3>() *= turn;
-  const double with_room = share_with_room(room_of(step.move_T));
+  const double with_room = share_with_room(wanted);
   step.move_T *= with_room;
   const double certified = near_.certified({step.move_T.head<3>(), step.move_T.tail<3>()}, barrier_);
   step.move_T *= certified;
-  step.is_held_back = move < 1 || turn < 1;
-  step.reaches_device = best.sum.touching == 0 && !step.is_held_back && with_room >= 1 && certified >= 1;
+  step.reaches_device = best.sum.touching == 0 && !newton.is_damped && with_room >= 1 && certified >= 1;
   return step;
 }
 
@@ -286,14 +308,16 @@ Pose BarrierShell::after(const State& best, const Step& step, const Pose& X_WD) 
 
 BarrierShell::State BarrierShell::solve(const Pose& X_WD, double dt_s) {
   const Pose start = X_WT_;
-  const Room least = least_stretch(dt_s);
+  const MoveBound bound =
+      move_bound(start, X_WD_before_, X_WD, coupling_.length_mm(),
+                 {settings_.release_time_s, settings_.release_mm_s, settings_.release_rad_s}, dt_s);
   gather_for_next_move();
-  if (may_fly(X_WD, least)) return {X_WD};
+  if (may_fly(X_WD, bound)) return {X_WD};
   State best = evaluated(start, X_WD);
   watch_energy(best);
   counts_.nearest_share = std::min(counts_.nearest_share, best.sum.nearest_mm / barrier_.width_mm);
   for (int passes = 1;;) {
-    Step step = next_step(best, X_WD, least);
+    Step step = next_step(best, bound);
     if (step.is_last) {
       best.X_WT = after(best, step, X_WD);
       return best;
@@ -313,7 +337,6 @@ BarrierShell::State BarrierShell::solve(const Pose& X_WD, double dt_s) {
         ++counts_.backtracks;
       }
     }
-    if (taken && step.is_held_back) return best;
     if (!taken) break;
   }
   ++counts_.unfinished;

@@ -8,6 +8,7 @@
 #include "osteomill/haptics/barrier_shell/coupling.h"
 #include "osteomill/haptics/barrier_shell/near_bone.h"
 #include "osteomill/haptics/haptic_algorithm.h"
+#include "osteomill/haptics/tool_move.h"
 
 namespace osteomill::barrier_shell {
 
@@ -44,10 +45,9 @@ class BarrierShell final : public HapticAlgorithm {
   void gather(const Pose& X_WT, const Room& room);
   void make_room_for_bricks();
   void gather_for_next_move();
-  bool may_fly(const Pose& X_WD, const Room& least) const;
-  Room least_stretch(double dt_s) const;
+  bool may_fly(const Pose& X_WD, const MoveBound& bound) const;
   double share_with_room(const Room& step) const;
-  Step next_step(const State& best, const Pose& X_WD, const Room& least);
+  Step next_step(const State& best, const MoveBound& bound);
   static Pose after(const State& best, const Step& step, const Pose& X_WD);
   State solve(const Pose& X_WD, double dt_s);
   void watch_energy(const State& state);

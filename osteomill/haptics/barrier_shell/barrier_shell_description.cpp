@@ -5,6 +5,7 @@
 #include "osteomill/haptics/barrier_shell/barrier_shell.h"
 #include "osteomill/haptics/barrier_shell/barrier_shell_settings.h"
 #include "osteomill/haptics/setting_fields.h"
+#include "osteomill/haptics/tool_move.h"
 
 namespace osteomill::barrier_shell {
 
@@ -54,15 +55,16 @@ const std::vector<Field>& fields() {
           "shaft where the bone is flat",
           [](Settings & s) -> auto& { return s.point_spacing_mm; }),
       number(
-          "release-time", "s", 0.1,
+          "release-time", "s", Release{}.time_s,
           "In which a stretch of the coupling that nothing holds any more falls to a third, if not sooner by "
           "the next two",
           [](Settings & s) -> auto& { return s.release_time_s; }),
       number(
-          "release", "mm/s", 15, "How fast what the coupling is stretched by may fall at least",
+          "release", "mm/s", Release{}.mm_s,
+          "How fast the tool may move beside what the device's own move leads it to",
           [](Settings & s) -> auto& { return s.release_mm_s; }),
       number(
-          "release-turn", "rad/s", 0.05, "The same of its turning",
+          "release-turn", "rad/s", Release{}.rad_s, "The same of its turning",
           [](Settings & s) -> auto& { return s.release_rad_s; }),
   };
   return all;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 #include "osteomill/geometry/wrench.h"
 #include "osteomill/haptics/barrier_shell/energy_sum.h"
 
@@ -15,6 +17,8 @@ struct Coupling {
 
   /// As it acts on the hand that holds the device at `X_WD`, in W.
   Wrench wrench_on_hand(const Pose& X_WT, const Pose& X_WD) const;
+  /// At which a force stretches both springs alike, to the same energy.
+  double length_mm() const { return std::sqrt(torsional_Nmm_per_rad / translational_N_per_mm); }
   double energy_Nmm(const Pose& X_WT, const Pose& X_WD) const;
   /// Energy and its derivatives by a move of the tool; `convex` is the whole second derivative.
   EnergySum sum(const Pose& X_WT, const Pose& X_WD) const;

@@ -1,6 +1,7 @@
 #include "osteomill/haptics/point_shell/point_shell_algorithm.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "osteomill/haptics/point_shell/brick_contacts.h"
@@ -89,11 +90,13 @@ Pose PointShellAlgorithm::towards(const Pose& X_WT_start, const Pose& target) co
   return moved(X_WT_start, allowed);
 }
 
-Pose PointShellAlgorithm::let_go(const Pose& X_WT_start, const Pose& target, const Pose& X_WD,
-                                 double dt_s) const {
+// Short of the target, along the way there, where what is felt would leap.
+Pose PointShellAlgorithm::let_go(const Pose& X_WT_start, const Pose& target, const MoveBound& bound) const {
   if (!held_back_ || !settings_.guarded_move) return target;
-  const double length_mm = std::max(tool_.tool().shaft_length_mm, tool_.tool().burr_radius_mm);
-  return released(X_WT_start, target, X_WD_before_, X_WD, length_mm, dt_s);
+  const ToolMove whole = move_between(X_WT_start, target);
+  const double share = share_within(bound, whole);
+  if (share >= 1) return target;
+  return moved(X_WT_start, {share * whole.translation_mm, share * whole.rotation_rad});
 }
 
 bool PointShellAlgorithm::is_inside_bone(const Pose& X_WT) const {
@@ -122,7 +125,10 @@ HapticStep PointShellAlgorithm::step(const Pose& X_WD, double dt_s) {
 
 HapticStep PointShellAlgorithm::balanced(const Pose& X_WD, double dt_s) {
   const Pose start = X_WT_;
-  if (settings_.guarded_move && !in_contact_) X_WT_ = let_go(start, towards(start, X_WD), X_WD, dt_s);
+  const double spring_length_mm =
+      std::sqrt(settings_.torsional_stiffness_Nmm_per_rad / settings_.translational_stiffness_N_per_mm);
+  const MoveBound bound = move_bound(start, X_WD_before_, X_WD, spring_length_mm, Release{}, dt_s);
+  if (settings_.guarded_move && !in_contact_) X_WT_ = let_go(start, towards(start, X_WD), bound);
 
   HapticStep result;
   ToolContacts contacts;
@@ -135,7 +141,7 @@ HapticStep PointShellAlgorithm::balanced(const Pose& X_WD, double dt_s) {
       const ToolMove move = balancing_move(coupling_, X_WT_, X_WD, contacts.total());
       X_WT_ = towards(start, moved(X_WT_, move));
     }
-    X_WT_ = let_go(start, X_WT_, X_WD, dt_s);
+    X_WT_ = let_go(start, X_WT_, bound);
     const ToolMove step_move = move_between(before, X_WT_);
     result.burr_force_W_N = burr_force_after(contacts.burr, step_move);
     if (step_move.translation_mm.norm() <= kSettled_mm && step_move.rotation_rad.norm() <= kSettled_rad) {

@@ -38,7 +38,7 @@ class PointShellAlgorithm final : public HapticAlgorithm {
  private:
   ToolContacts contacts_at(const Pose& X_WT) const;
   Pose towards(const Pose& X_WT_start, const Pose& target) const;
-  Pose let_go(const Pose& X_WT_start, const Pose& target, const Pose& X_WD, double dt_s) const;
+  Pose let_go(const Pose& X_WT_start, const Pose& target, const MoveBound& bound) const;
   bool is_inside_bone(const Pose& X_WT) const;
   HapticStep balanced(const Pose& X_WD, double dt_s);
 

@@ -43,9 +43,8 @@ const std::vector<Field>& fields() {
           [](Settings & s) -> auto& { return s.max_depth_mm; }),
       setting_field<Settings>(
           {"guarded-move", "", SettingRange::on_or_off(), 0, 1,
-           "The tool looks where it goes: two Newton steps a tick, 0.5 mm and 0.05 rad at most, and let go "
-           "at "
-           "15 mm/s and 0.05 rad/s; off: one step of any length"},
+           "The tool looks where it goes: two Newton steps a tick, 0.5 mm and 0.05 rad at most, and beside "
+           "what the device's own move leads it to 15 mm/s and 0.05 rad/s; off: one step of any length"},
           [](Settings & s) -> auto& { return s.guarded_move; }),
   };
   return all;

@@ -58,24 +58,5 @@ TEST(VirtualCoupling, AMoveIsCutShortByOneFactor) {
   EXPECT_EQ(limited(move, 0, 0).rotation_rad, move.rotation_rad);
 }
 
-TEST(VirtualCoupling, AMoveBetweenPosesLeadsFromOneToTheOther) {
-  const Pose from{{1, 2, 3}, quaternion_from_rotation_vector({0.1, 0.2, 0.3})};
-  const Pose to{{4, 1, 3}, quaternion_from_rotation_vector({-0.7, 0.2, 0.9})};
-  const Pose after = moved(from, move_between(from, to));
-  EXPECT_LT((after.position_mm - to.position_mm).norm(), 1e-12);
-  EXPECT_LT(rotation_vector(after.orientation * to.orientation.conjugate()).norm(), 1e-12);
-}
-
-TEST(VirtualCoupling, AMoveTowardsTheDeviceIsCutToWhatMayBeReleased) {
-  const Pose device{{0, 0, 0}, Quat::Identity()};
-  const Pose start{{2, 0, 0}, quaternion_from_rotation_vector({0, 0.4, 0})};
-  const Pose half_way{{1, 0, 0}, quaternion_from_rotation_vector({0, 0.2, 0})};
-  EXPECT_DOUBLE_EQ(share_released(start, half_way, device, 0.25, 1), 0.25);
-  EXPECT_NEAR(share_released(start, half_way, device, 2, 0.05), 0.25, 1e-12);
-  EXPECT_EQ(share_released(start, half_way, device, 2, 1), 1);
-  // Being pushed away is not held up.
-  EXPECT_EQ(share_released(half_way, start, device, 0, 0), 1);
-}
-
 }  // namespace
 }  // namespace osteomill::point_shell
