@@ -52,10 +52,16 @@ void draw_faults(const std::deque<TickRecord>& history) {
   const auto not_finite = std::count_if(history.begin(), history.end(), [](const TickRecord& record) {
     return record.fault == WrenchFault::not_finite || record.fault == WrenchFault::pose_not_finite;
   });
+  const auto unsafe = std::count_if(history.begin(), history.end(), [](const TickRecord& record) {
+    return record.fault == WrenchFault::pose_jumped || record.fault == WrenchFault::tick_late;
+  });
   if (clamped > 0)
     ImGui::TextColored(kWarning, "clamped to the limit: %d of 5000 ticks", static_cast<int>(clamped));
   if (not_finite > 0)
     ImGui::TextColored(kWarning, "not finite, sent as zero: %d ticks", static_cast<int>(not_finite));
+  if (unsafe > 0)
+    ImGui::TextColored(kWarning, "device jumped or tick late, sent as zero: %d ticks",
+                       static_cast<int>(unsafe));
 }
 
 }  // namespace

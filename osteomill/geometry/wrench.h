@@ -27,6 +27,11 @@ enum class WrenchFault : unsigned char {
   not_finite = 4,
   /// The device gave no finite pose; zero was sent.
   pose_not_finite = 5,
+  /// The device moved further in a tick than a hand can, or the tick came too late; zero was sent.
+  pose_jumped = 6,
+  tick_late = 7,
+  /// Not yet as much as was asked for was sent: it comes up slowly, or changes no faster than it may.
+  eased = 8,
 };
 
 struct SafeWrench {

@@ -17,8 +17,6 @@ using namespace std::chrono_literals;
 // A tick that comes later than this mills and moves as if it came at this time.
 constexpr double kMaxTick_s = 0.02;
 
-constexpr double kFade_s = 0.05;
-
 constexpr std::size_t kCommands = 255;
 
 }  // namespace
@@ -38,7 +36,9 @@ LiveSession::LiveSession(std::unique_ptr<MillingSession> session, Device& device
       crash_stop_(device),
       session_(std::move(session)),
       queues_(std::make_unique<Queues>()),
-      timing_(tick_s) {}
+      timing_(tick_s) {
+  session_->guard().protect_a_hand();
+}
 
 LiveSession::~LiveSession() {
   stop();
@@ -182,32 +182,30 @@ void LiveSession::apply(Action& action) {
     bone_held_ = hold->held;
   } else if (auto* replace = std::get_if<Replace>(&action)) {
     std::swap(session_, replace->session);
+    session_->guard().take_over(replace->session->guard());
     session_->take_over_tool(last_X_WT_);
   } else if (auto* place = std::get_if<Place>(&action)) {
     std::swap(place_, *place);
-    fading_ = true;
+    letting_go_ = true;
+    session_->guard().let_go();
   } else if (auto* listen = std::get_if<Listen>(&action)) {
     std::swap(listener_, listen->listener);
   }
 }
 
 // True in the tick in which the tool comes to its place.
-bool LiveSession::fade_and_place(double dt_s) {
-  if (!fading_) return false;
-  wrench_share_ -= dt_s / kFade_s;
-  if (wrench_share_ <= 0) {
-    (*place_.put)(place_.X_WD);
-    session_->begin_at(place_.X_WD);
-    wrench_share_ = 1;
-    fading_ = false;
-  }
-  session_->set_wrench_share(wrench_share_);
-  return !fading_;
+bool LiveSession::place_when_at_rest() {
+  if (!letting_go_ || !session_->guard().is_at_rest()) return false;
+  (*place_.put)(place_.X_WD);
+  session_->begin_at(place_.X_WD);
+  session_->guard().begin_anew();
+  letting_go_ = false;
+  return true;
 }
 
 TickRecord LiveSession::tick(double time_s, double dt_s) {
-  const bool placed = fade_and_place(dt_s);
-  const bool spindle_on = !paused_ && !fading_ && (spindle_ || device_.spindle_asked());
+  const bool placed = place_when_at_rest();
+  const bool spindle_on = !paused_ && !letting_go_ && (spindle_ || device_.spindle_asked());
   const TickRecord record = step(time_s, dt_s, spindle_on && !bone_held_);
   if (listener_) (*listener_)(record, session_->volume(), session_->last_change());
   state_.write({record, spindle_on, paused_});
@@ -218,7 +216,7 @@ TickRecord LiveSession::tick(double time_s, double dt_s) {
 }
 
 TickRecord LiveSession::step(double time_s, double dt_s, bool mills) {
-  return paused_ ? session_->idle_tick(device_, time_s) : session_->tick(device_, time_s, dt_s, mills);
+  return paused_ ? session_->idle_tick(device_, time_s, dt_s) : session_->tick(device_, time_s, dt_s, mills);
 }
 
 }  // namespace osteomill

@@ -115,7 +115,7 @@ class LiveSession {
   void take_commands();
   void destroy_retired();
   void apply(Action& action);
-  bool fade_and_place(double dt_s);
+  bool place_when_at_rest();
   TickRecord tick(double time_s, double dt_s);
   TickRecord step(double time_s, double dt_s, bool mills);
 
@@ -137,8 +137,7 @@ class LiveSession {
   double time_s_ = 0;
   std::optional<Pose> last_X_WT_;
   Place place_;
-  bool fading_ = false;
-  double wrench_share_ = 1;
+  bool letting_go_ = false;
   std::atomic<bool> placing_{false};
 
   std::unique_ptr<Queues> queues_;

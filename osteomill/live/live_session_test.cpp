@@ -148,6 +148,7 @@ TEST_F(LiveSessionTest, ListenersHearEveryTickAndWhereTheBoneChanged) {
   });
   live_.start();
   std::this_thread::sleep_for(100ms);
+  live_.wait_for(live_.set_spindle(false));
   live_.wait_for(live_.listen({}));
   const int ticks = heard.ticks;
   std::this_thread::sleep_for(20ms);

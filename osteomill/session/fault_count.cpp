@@ -7,6 +7,7 @@ namespace osteomill {
 void FaultCount::add(const TickRecord& record) {
   switch (record.fault) {
     case WrenchFault::none:
+    case WrenchFault::eased:
       return;
     case WrenchFault::force_clamped:
     case WrenchFault::torque_clamped:
@@ -17,13 +18,19 @@ void FaultCount::add(const TickRecord& record) {
     case WrenchFault::pose_not_finite:
       ++not_finite_;
       return;
+    case WrenchFault::pose_jumped:
+    case WrenchFault::tick_late:
+      ++jumped_or_late_;
+      return;
   }
 }
 
 std::optional<std::string> FaultCount::sentence() const {
-  if (clamped_ == 0 && not_finite_ == 0) return std::nullopt;
-  return fmt::format("{} wrenches were clamped to the device's limits, {} were not finite and sent as zero",
-                     clamped_, not_finite_);
+  if (clamped_ == 0 && not_finite_ == 0 && jumped_or_late_ == 0) return std::nullopt;
+  return fmt::format(
+      "{} wrenches were clamped to the device's limits, {} were not finite and sent as zero, {} were sent as "
+      "zero since the device jumped or the tick came late",
+      clamped_, not_finite_, jumped_or_late_);
 }
 
 }  // namespace osteomill

@@ -1,7 +1,9 @@
 #include "osteomill/session/milling_session.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace osteomill {
@@ -12,6 +14,15 @@ using Clock = std::chrono::steady_clock;
 
 double microseconds_since(Clock::time_point start) {
   return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+}
+
+const Wrench kNotFinite{Vec3::Constant(std::numeric_limits<double>::quiet_NaN()), Vec3::Zero()};
+
+// Of a force, as far as what is sent has its direction: the bone that goes is paid with what the hand gives.
+double share_sent(const Vec3& asked_N, const Vec3& sent_N) {
+  return sent_N == asked_N || asked_N.isZero(0)
+             ? 1
+             : std::clamp(sent_N.dot(asked_N) / asked_N.squaredNorm(), 0.0, 1.0);
 }
 
 }  // namespace
@@ -30,7 +41,7 @@ MillingSession::MillingSession(std::shared_ptr<Volume> volume, const MillingTool
     : volume_(std::move(volume)),
       algorithm_(std::move(algorithm)),
       mill_(volume_->geometry(), tool.burr_radius_mm, densities, milling),
-      limits_(limits) {
+      guard_(GuardSettings{limits}) {
   algorithm_->prepare({volume_.get(), tool, tick_period_s});
 }
 
@@ -73,13 +84,14 @@ void MillingSession::begin_at(const Pose& X_WT) {
   take_over_tool(X_WT);
 }
 
-TickRecord MillingSession::idle_tick(Device& device, double time_s) {
+TickRecord MillingSession::idle_tick(Device& device, double time_s, double dt_s) {
   TickRecord record;
   record.time_s = time_s;
   record.X_WD = device.read_pose();
   record.X_WT = last_X_WT_;
   record.removed_mm3 = removed_mm3_;
-  device.write_wrench(Wrench{});
+  record.wrench = guard_.pass_zero(dt_s).wrench;
+  device.write_wrench(record.wrench);
   last_change_ = {};
   return record;
 }
@@ -88,20 +100,19 @@ HapticStep MillingSession::step_safely(const Pose& X_WD, double dt_s, bool spind
   HapticStep nothing;
   nothing.X_WT = last_X_WT_;
   if (!is_finite(X_WD)) {
-    safe = {Wrench{}, WrenchFault::pose_not_finite};
+    safe = {guard_.pass_zero(dt_s).wrench, WrenchFault::pose_not_finite};
     return nothing;
   }
   HapticStep step = algorithm_->step(X_WD, dt_s);
   if (spindle_on) step.wrench.force_N += vibration_.force_N(step.X_WT, step.burr_force_W_N.norm(), dt_s);
-  step.wrench.force_N *= wrench_share_;
-  step.wrench.torque_Nmm *= wrench_share_;
-  safe = make_safe(step.wrench, limits_);
-  if (safe.fault == WrenchFault::not_finite || !is_finite(step.X_WT) || !step.burr_force_W_N.allFinite()) {
+  const bool is_usable = is_finite(step.X_WT) && step.burr_force_W_N.allFinite();
+  safe = guard_.pass(is_usable ? step.wrench : kNotFinite, X_WD, dt_s);
+  if (safe.fault == WrenchFault::not_finite) {
     // Whatever led there is still in the algorithm's memory of contacts.
     algorithm_->reset();
-    safe = {Wrench{}, WrenchFault::not_finite};
     return nothing;
   }
+  step.burr_force_W_N *= share_sent(step.wrench.force_N, safe.wrench.force_N);
   last_X_WT_ = step.X_WT;
   return step;
 }

@@ -8,6 +8,7 @@
 #include "osteomill/milling/burr_mill.h"
 #include "osteomill/session/tick_record.h"
 #include "osteomill/session/vibration.h"
+#include "osteomill/session/wrench_guard.h"
 
 namespace osteomill {
 
@@ -25,9 +26,9 @@ class MillingSession {
                  std::unique_ptr<HapticAlgorithm> algorithm, const BoneDensities& densities,
                  const MillingSettings& milling, const WrenchLimits& limits, double tick_period_s = 1e-3);
 
-  /// One haptic tick of `dt_s`, begun at `time_s`; bone is removed where `spindle_on`. A wrench that is not
-  /// finite, or a device pose that is not, sends zero and is recorded as the record's fault. Real-time safe:
-  /// no allocation, lock, log, exception or system call.
+  /// One haptic tick of `dt_s`, begun at `time_s`; bone is removed where `spindle_on`, as much as the force
+  /// that is sent pays for. A wrench that is not finite, or a device pose that is not, sends zero and is
+  /// recorded as the record's fault. Real-time safe: no allocation, lock, log, exception or system call.
   TickRecord tick(Device& device, double time_s, double dt_s, bool spindle_on);
 
   /// To be called between ticks by one who may wait for memory: has ready what the next ones may change
@@ -38,15 +39,16 @@ class MillingSession {
   void set_vibration(const VibrationSettings& settings) { vibration_ = Vibration(settings); }
 
   /// A tick of a pause: zero is sent, nothing is computed, and contacts are kept. As safe as `tick`.
-  TickRecord idle_tick(Device& device, double time_s);
+  TickRecord idle_tick(Device& device, double time_s, double dt_s);
+
+  /// What stands between the algorithm and the hand; only the limits until set. As safe as `tick`.
+  WrenchGuard& guard() { return guard_; }
 
   /// Has the algorithm begin at a simulated tool that another session left, outside the bone, and not at a
   /// device that may have sunk into it; nothing for no pose. As safe as `tick`.
   void take_over_tool(const std::optional<Pose>& X_WT);
   /// Has the algorithm begin anew at a pose free of bone, whatever was touched before. As safe as `tick`.
   void begin_at(const Pose& X_WT);
-  /// How much of its wrench is sent, 0 to 1; 1 until set. As safe as `tick`.
-  void set_wrench_share(double share) { wrench_share_ = share; }
 
   /// What the last tick changed of the volume.
   const VolumeChange& last_change() const { return last_change_; }
@@ -67,8 +69,7 @@ class MillingSession {
   std::unique_ptr<HapticAlgorithm> algorithm_;
   BurrMill mill_;
   Vibration vibration_;
-  WrenchLimits limits_;
-  double wrench_share_ = 1;
+  WrenchGuard guard_;
   double removed_mm3_ = 0;
   VolumeChange last_change_;
   Pose last_X_WT_;

@@ -101,7 +101,7 @@ TEST_F(MillingSessionTest, TheToolOfAnotherSessionIsWhereTheAlgorithmBegins) {
 TEST_F(MillingSessionTest, AnIdleTickSendsZeroAndStepsNothing) {
   algorithm_->next.wrench = {{0, 0, 3}, {0, 40, 0}};
   tick(true);
-  const TickRecord idle = session_->idle_tick(device_, 1);
+  const TickRecord idle = session_->idle_tick(device_, 1, 1e-3);
   EXPECT_EQ(device_.sent().force_N, Vec3::Zero());
   EXPECT_EQ(idle.wrench.torque_Nmm, Vec3::Zero());
   EXPECT_EQ(idle.X_WT.position_mm, device_.read_pose().position_mm);

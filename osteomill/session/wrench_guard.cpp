@@ -1,0 +1,102 @@
+#include "osteomill/session/wrench_guard.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace osteomill {
+
+namespace {
+
+// A late tick allows no larger a step than this one.
+constexpr double kUsualTick_s = 1e-3;
+
+Wrench operator*(double share, const Wrench& wrench) {
+  return {share * wrench.force_N, share * wrench.torque_Nmm};
+}
+Wrench operator+(const Wrench& a, const Wrench& b) {
+  return {a.force_N + b.force_N, a.torque_Nmm + b.torque_Nmm};
+}
+
+bool is_zero(const Wrench& wrench) {
+  return wrench.force_N.isZero(0) && wrench.torque_Nmm.isZero(0);
+}
+
+// `to`, or as far towards it as may be.
+Vec3 towards(const Vec3& from, const Vec3& to, double most, bool& short_of_it) {
+  const double way = (to - from).norm();
+  if (way <= most) return to;
+  short_of_it = true;
+  return from + most / way * (to - from);
+}
+
+}  // namespace
+
+GuardSettings GuardSettings::for_a_hand(const WrenchLimits& limits) {
+  return {limits, 4000, 1e5, 0.1, 5, 0.01};
+}
+
+void WrenchGuard::begin_anew() {
+  from_ = sent_;
+  blended_ = 0;
+  let_go_ = false;
+  device_W_.reset();
+}
+
+void WrenchGuard::take_over(const WrenchGuard& before) {
+  const WrenchLimits limits = settings_.limits;
+  *this = before;
+  settings_.limits = limits;
+  begin_anew();
+}
+
+void WrenchGuard::let_go() {
+  begin_anew();
+  let_go_ = true;
+}
+
+bool WrenchGuard::is_at_rest() const {
+  return is_zero(sent_);
+}
+
+SafeWrench WrenchGuard::approach(const Wrench& target, WrenchFault fault, double dt_s) {
+  const double tick_s = std::min(dt_s, kUsualTick_s);
+  bool short_of_it = false;
+  sent_.force_N = towards(sent_.force_N, target.force_N, settings_.max_force_rate_N_s * tick_s, short_of_it);
+  sent_.torque_Nmm =
+      towards(sent_.torque_Nmm, target.torque_Nmm, settings_.max_torque_rate_Nmm_s * tick_s, short_of_it);
+  return {sent_, short_of_it && fault == WrenchFault::none ? WrenchFault::eased : fault};
+}
+
+SafeWrench WrenchGuard::pass_zero(double dt_s) {
+  const SafeWrench safe = approach({}, WrenchFault::none, dt_s);
+  from_ = {};
+  blended_ = 0;
+  device_W_.reset();
+  return safe;
+}
+
+SafeWrench WrenchGuard::pass(const Wrench& asked, const Pose& X_WD, double dt_s) {
+  const SafeWrench within = make_safe(asked, settings_.limits);
+  WrenchFault fault = within.fault;
+  if (device_W_ && (X_WD.position_mm - *device_W_).norm() > settings_.max_move_mm) {
+    fault = WrenchFault::pose_jumped;
+  } else if (dt_s > settings_.max_tick_s) {
+    fault = WrenchFault::tick_late;
+  }
+  if (fault == WrenchFault::not_finite || fault == WrenchFault::pose_jumped ||
+      fault == WrenchFault::tick_late) {
+    const Wrench sent = pass_zero(dt_s).wrench;
+    device_W_ = X_WD.position_mm;
+    return {sent, fault};
+  }
+  device_W_ = X_WD.position_mm;
+  const Wrench wanted = let_go_ ? Wrench{} : within.wrench;
+  blended_ = settings_.blend_s > 0 ? std::min(1.0, blended_ + dt_s / settings_.blend_s) : 1;
+  // In free space there is nothing to come up slowly.
+  if (is_zero(wanted) && is_zero(from_)) blended_ = 1;
+  if (blended_ == 1) return approach(wanted, fault, dt_s);
+  const Wrench target = (1 - blended_) * from_ + blended_ * wanted;
+  return approach(target, fault == WrenchFault::none ? WrenchFault::eased : fault, dt_s);
+}
+
+}  // namespace osteomill

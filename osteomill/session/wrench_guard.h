@@ -1,0 +1,66 @@
+#pragma once
+
+#include <limits>
+#include <optional>
+
+#include "osteomill/geometry/wrench.h"
+
+namespace osteomill {
+
+/// What a wrench may be, and how fast it may change, on its way to a hand.
+struct GuardSettings {
+  static constexpr double kAny = std::numeric_limits<double>::infinity();
+
+  WrenchLimits limits;
+  /// The most by which force and torque change, as vectors.
+  double max_force_rate_N_s = kAny;
+  double max_torque_rate_Nmm_s = kAny;
+  /// How long it takes from what was sent before to what is asked for, where they need not agree.
+  double blend_s = 0;
+  /// The furthest that a device moves in a tick, and the longest tick; beyond them zero is sent.
+  double max_move_mm = kAny;
+  double max_tick_s = kAny;
+
+  /// For a person's hand: from 20 N or 500 N mm to zero within 5 ms, a blend of 0.1 s, moves of up to 5 mm
+  /// and ticks of up to 10 ms. The default only shortens to the limits, for hands that are simulated.
+  static GuardSettings for_a_hand(const WrenchLimits& limits);
+};
+
+/// Stands between an algorithm and a hand: what is sent is within the limits, changes no faster than it may,
+/// and comes up slowly where the hand may have sunk into bone unfelt (at the start, after a pause, with
+/// another algorithm or bone, after a fault). One thread's; all of it is safe in the haptic tick.
+class WrenchGuard {
+ public:
+  WrenchGuard() : WrenchGuard(GuardSettings{}) {}
+  explicit WrenchGuard(const GuardSettings& settings) : settings_(settings) {}
+
+  /// From now on for a person's hand, within the limits that were set.
+  void protect_a_hand() { settings_ = GuardSettings::for_a_hand(settings_.limits); }
+  /// From now what is asked for comes up slowly, from what was last sent.
+  void begin_anew();
+  /// The same where another guard stood until now, with its settings but the limits.
+  void take_over(const WrenchGuard& before);
+  /// From now zero is sent, come down to slowly, until `begin_anew`.
+  void let_go();
+  /// Zero was sent last.
+  bool is_at_rest() const;
+
+  /// What to send for a wrench in a tick of `dt_s`, with the reason where that is not what was asked for. One
+  /// that is not finite is zero, and what follows begins anew.
+  SafeWrench pass(const Wrench& asked, const Pose& X_WD, double dt_s);
+  /// The same where nothing is felt: no pose, or a pause.
+  SafeWrench pass_zero(double dt_s);
+
+ private:
+  SafeWrench approach(const Wrench& target, WrenchFault fault, double dt_s);
+
+  GuardSettings settings_;
+  Wrench sent_;
+  // The wrench from which a blend began, and how much of it is over.
+  Wrench from_;
+  double blended_ = 0;
+  bool let_go_ = false;
+  std::optional<Vec3> device_W_;
+};
+
+}  // namespace osteomill

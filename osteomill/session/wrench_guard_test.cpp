@@ -1,0 +1,239 @@
+#include "osteomill/session/wrench_guard.h"
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+#include <string>
+
+#include "tests/shapes.h"
+#include <gtest/gtest.h>
+
+#include "osteomill/device/posed_device.h"
+#include "osteomill/haptics/algorithms.h"
+#include "osteomill/session/milling_session.h"
+
+namespace osteomill {
+namespace {
+
+constexpr double kTick_s = 1e-3;
+// What for_a_hand allows in a tick: 20 N and 500 N mm are gone in five.
+constexpr double kMaxStep_N = 4 + 1e-9;
+constexpr double kMaxStep_Nmm = 100 + 1e-9;
+const Pose kHere{{1, 2, 3}, Quat::Identity()};
+
+Wrench down(double force_N) {
+  return {{0, 0, -force_N}, {0, 10 * force_N, 0}};
+}
+
+WrenchGuard for_a_hand() {
+  return WrenchGuard(GuardSettings::for_a_hand({}));
+}
+
+// A hand that has felt nothing, and then this for long enough.
+WrenchGuard holding(double force_N) {
+  WrenchGuard guard = for_a_hand();
+  guard.pass({}, kHere, kTick_s);
+  for (int n = 0; n < 10; ++n) guard.pass(down(force_N), kHere, kTick_s);
+  return guard;
+}
+
+TEST(WrenchGuard, FromFreeSpaceAContactIsFeltAtOnce) {
+  WrenchGuard guard = for_a_hand();
+  guard.pass({}, kHere, kTick_s);
+  const SafeWrench safe = guard.pass(down(3), kHere, kTick_s);
+  EXPECT_EQ(safe.wrench.force_N, down(3).force_N);
+  EXPECT_EQ(safe.fault, WrenchFault::none);
+}
+
+TEST(WrenchGuard, AStartInBoneComesUpSlowly) {
+  WrenchGuard guard = for_a_hand();
+  for (int n = 1; n <= 99; ++n) {
+    const SafeWrench safe = guard.pass(down(6), kHere, kTick_s);
+    ASSERT_NEAR(safe.wrench.force_N.norm(), 6 * 0.01 * n, 1e-9) << n;
+    ASSERT_EQ(safe.fault, WrenchFault::eased);
+  }
+  guard.pass(down(6), kHere, kTick_s);
+  EXPECT_EQ(guard.pass(down(6), kHere, kTick_s).fault, WrenchFault::none);
+}
+
+TEST(WrenchGuard, NoStepIsLargerThanAHandMayFeel) {
+  WrenchGuard guard = holding(0);
+  Vec3 before_N = Vec3::Zero();
+  for (const double force_N : {15.0, -15.0, 3.0, 20.0, -20.0, 0.0}) {
+    for (int n = 0; n < 3; ++n) {
+      const Vec3 sent_N = guard.pass(down(force_N), kHere, kTick_s).wrench.force_N;
+      ASSERT_LE((sent_N - before_N).norm(), kMaxStep_N);
+      before_N = sent_N;
+    }
+  }
+}
+
+// In each what was wrong is said, 20 N are zero within 5 ms, and afterwards it comes up slowly.
+TEST(WrenchGuard, AFaultEndsInZeroWithin5ms) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  struct Fault {
+    Wrench asked;
+    Pose X_WD;
+    double dt_s;
+    WrenchFault name;
+  };
+  const Fault faults[] = {{{{nan, 0, 0}, Vec3::Zero()}, kHere, kTick_s, WrenchFault::not_finite},
+                          {down(20), {{1, 2, 53}, Quat::Identity()}, kTick_s, WrenchFault::pose_jumped},
+                          {down(20), kHere, 0.02, WrenchFault::tick_late}};
+  for (const Fault& fault : faults) {
+    WrenchGuard guard = holding(20);
+    double sent_N = 20;
+    Pose X_WD = fault.X_WD;
+    for (int n = 0; n < 5; ++n) {
+      // A device that jumps to and fro.
+      if (n % 2 == 1 && fault.name == WrenchFault::pose_jumped)
+        X_WD = kHere;
+      else
+        X_WD = fault.X_WD;
+      const SafeWrench safe = guard.pass(fault.asked, X_WD, fault.dt_s);
+      ASSERT_EQ(safe.fault, fault.name);
+      ASSERT_LE(std::abs(sent_N - safe.wrench.force_N.norm()), kMaxStep_N);
+      sent_N = safe.wrench.force_N.norm();
+    }
+    EXPECT_NEAR(sent_N, 0, 1e-9);
+    EXPECT_LT(guard.pass(down(20), X_WD, kTick_s).wrench.force_N.norm(), 0.3);
+  }
+}
+
+TEST(WrenchGuard, AfterAPauseItComesUpSlowly) {
+  WrenchGuard guard = holding(6);
+  for (int n = 0; n < 5; ++n) guard.pass_zero(kTick_s);
+  EXPECT_TRUE(guard.is_at_rest());
+  EXPECT_LT(guard.pass(down(10), kHere, kTick_s).wrench.force_N.norm(), 0.2);
+}
+
+TEST(WrenchGuard, AnotherAlgorithmGoesOnFromWhatWasSent) {
+  WrenchGuard after(GuardSettings{{10, 500}});
+  after.take_over(holding(2));
+  double before_N = 2;
+  for (int n = 0; n < 200; ++n) {
+    const double sent_N = after.pass(down(14), kHere, kTick_s).wrench.force_N.norm();
+    ASSERT_GE(sent_N, before_N - 1e-9);
+    ASSERT_LE(sent_N, before_N + 0.1);
+    before_N = sent_N;
+  }
+  EXPECT_NEAR(before_N, 10, 1e-9);
+}
+
+TEST(WrenchGuard, LetGoItComesDownToRest) {
+  WrenchGuard guard = holding(6);
+  guard.let_go();
+  double before_N = 6;
+  for (int n = 0; n < 101; ++n) {
+    const double sent_N = guard.pass(down(6), kHere, kTick_s).wrench.force_N.norm();
+    ASSERT_LE(std::abs(sent_N - before_N), 0.1);
+    before_N = sent_N;
+  }
+  EXPECT_TRUE(guard.is_at_rest());
+}
+
+// A hand on a flat bone with every algorithm: what happens between two ticks, and the largest steps then.
+class GuardedSession : public ::testing::TestWithParam<std::string> {
+ protected:
+  GuardedSession() : session_(make(GetParam())) { put(3); }
+
+  std::unique_ptr<MillingSession> make(const std::string& algorithm) {
+    auto session = std::make_unique<MillingSession>(
+        testing_support::shape_volume(testing_support::centred_cube(60, 0.25),
+                                      testing_support::plane(Vec3::Zero(), Vec3::UnitZ())),
+        MillingTool{}, make_algorithm(algorithm, HapticSettings{}), BoneDensities{0, 1000}, MillingSettings{},
+        WrenchLimits{});
+    session->guard().protect_a_hand();
+    return session;
+  }
+  void put(double height_mm) { device_.put({{0, 0, height_mm}, Quat::Identity()}); }
+  void tick(int count) {
+    for (int n = 0; n < count; ++n) {
+      sent(session_->tick(device_, 0, kTick_s, false).wrench);
+    }
+  }
+  void sent(const Wrench& wrench) {
+    EXPECT_LE((wrench.force_N - sent_.force_N).norm(), kMaxStep_N);
+    EXPECT_LE((wrench.torque_Nmm - sent_.torque_Nmm).norm(), kMaxStep_Nmm);
+    step_N_ = std::max(step_N_, (wrench.force_N - sent_.force_N).norm());
+    sent_ = wrench;
+  }
+  // From free space down to so far above the surface.
+  void press(double height_mm) {
+    for (double here_mm = 3; here_mm > height_mm; here_mm -= 0.02) {
+      put(here_mm);
+      tick(1);
+    }
+    tick(20);
+    step_N_ = 0;
+  }
+
+  std::unique_ptr<MillingSession> session_;
+  PosedDevice device_;
+  Wrench sent_;
+  double step_N_ = 0;
+};
+INSTANTIATE_TEST_SUITE_P(EveryAlgorithm, GuardedSession, ::testing::ValuesIn(algorithm_names()),
+                         [](const auto& of) {
+                           std::string name = of.param;
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
+
+TEST_P(GuardedSession, AfterAPauseInWhichTheHandSankNothingSteps) {
+  press(0.8);
+  for (int n = 0; n < 50; ++n) {
+    put(0.8 - 0.1 * n);
+    sent(session_->idle_tick(device_, 0, kTick_s).wrench);
+  }
+  EXPECT_EQ(sent_.force_N, Vec3::Zero());
+  step_N_ = 0;
+  tick(200);
+  EXPECT_LT(step_N_, 0.3);
+}
+
+TEST_P(GuardedSession, AStartInBoneDoesNotStep) {
+  put(-2);
+  tick(200);
+  EXPECT_LT(step_N_, 0.3);
+}
+
+TEST_P(GuardedSession, ADeviceThatVanishesGetsZeroWithin5ms) {
+  press(0.3);
+  device_.put({Vec3::Constant(std::numeric_limits<double>::quiet_NaN()), Quat::Identity()});
+  tick(5);
+  EXPECT_EQ(sent_.force_N, Vec3::Zero());
+  EXPECT_EQ(sent_.torque_Nmm, Vec3::Zero());
+}
+
+TEST_P(GuardedSession, AfterADeviceJumped50mmTheWrenchComesUpSlowly) {
+  press(0.3);
+  for (const double height_mm : {-50.0, -0.5}) {
+    put(height_mm);
+    EXPECT_EQ(session_->tick(device_, 0, kTick_s, false).fault, WrenchFault::pose_jumped);
+    sent_ = device_.sent();
+    tick(5);
+    step_N_ = 0;
+    tick(50);
+    EXPECT_LT(step_N_, 0.3) << height_mm;
+  }
+}
+
+TEST_P(GuardedSession, EveryOtherAlgorithmTakesOverWithoutAStep) {
+  for (const std::string& other : algorithm_names()) {
+    put(3);
+    tick(10);
+    press(0.3);
+    auto next = make(other);
+    next->guard().take_over(session_->guard());
+    std::swap(session_, next);
+    session_->take_over_tool(Pose{{0, 0, 1.2}, Quat::Identity()});
+    tick(200);
+    EXPECT_LT(step_N_, 0.3) << other;
+    session_ = make(GetParam());
+    sent_ = {};
+  }
+}
+
+}  // namespace
+}  // namespace osteomill
