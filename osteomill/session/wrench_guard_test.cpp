@@ -212,10 +212,9 @@ TEST_P(GuardedSession, AfterADeviceJumped50mmTheWrenchComesUpSlowly) {
     put(height_mm);
     EXPECT_EQ(session_->tick(device_, 0, kTick_s, false).fault, WrenchFault::pose_jumped);
     sent_ = device_.sent();
-    tick(5);
-    step_N_ = 0;
-    tick(50);
-    EXPECT_LT(step_N_, 0.3) << height_mm;
+    // A tenth of the way to what it asks for, 20 N at the most.
+    tick(10);
+    EXPECT_LE(sent_.force_N.norm(), 2 + 1e-9) << height_mm;
   }
 }
 
