@@ -44,6 +44,7 @@ const std::vector<Named>& all_sections() {
       {"ball", [](const Bones&, const Effort&) { return slide_round_a_ball(); }},
       {"turned", [](const Bones&, const Effort&) { return turned_scans(); }},
       {"drops", [](const Bones&, const Effort&) { return drops(); }},
+      {"returned", [](const Bones&, const Effort&) { return energy_given_back(); }},
       {"passivity", [](const Bones&, const Effort&) { return passivity(); }},
       {"pushes", random_pushes},
       {"tools", tools_and_pushes},

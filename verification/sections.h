@@ -35,6 +35,7 @@ Section shaft_levers();
 Section slide_round_a_ball();
 Section turned_scans();
 Section drops();
+Section energy_given_back();
 Section passivity();
 Section thin_bone();
 Section spongy_bone(const Bones& bones);

@@ -1,0 +1,152 @@
+#include <algorithm>
+
+#include "verification/probing.h"
+#include "verification/sections.h"
+#include <fmt/core.h>
+
+#include "osteomill/haptics/tool_move.h"
+
+namespace osteomill::verification {
+
+namespace {
+
+using namespace testing_support;
+
+constexpr double kSpeed_mm_s = 20;
+constexpr double kDeep_mm = 0.5;
+constexpr int kWays = 12;
+constexpr int kPresses = 20;
+// Of the shaft's length, where it meets the edge.
+constexpr double kLever_mm = 10;
+
+// Watches what goes through the device: a wrench is held for a tick, in which the device moves.
+struct PassivityObserver {
+  double put_in_Nmm = 0;
+  double given_back_Nmm = 0;
+
+  void look(const Wrench& wrench, const Pose& X_WD, const Pose& X_WD_next) {
+    const ToolMove move = move_between(X_WD, X_WD_next);
+    const double to_the_hand_Nmm =
+        wrench.force_N.dot(move.translation_mm) + wrench.torque_Nmm.dot(move.rotation_rad);
+    (to_the_hand_Nmm > 0 ? given_back_Nmm : put_in_Nmm) += std::abs(to_the_hand_Nmm);
+  }
+  double share() const { return given_back_Nmm / put_in_Nmm; }
+};
+
+// Takes the device from one pose to the next at the speed of the section, by its burr or by the turn at the
+// shaft's lever, whichever is longer.
+void go(HapticAlgorithm& algorithm, Pose& X_WD, const Pose& X_WD_to, PassivityObserver& observer) {
+  const ToolMove way = move_between(X_WD, X_WD_to);
+  const double length_mm = std::max(way.translation_mm.norm(), way.rotation_rad.norm() * kLever_mm);
+  const int ticks = std::max(1, static_cast<int>(length_mm / (kSpeed_mm_s * kTick_s)));
+  const Pose X_WD_from = X_WD;
+  for (int n = 1; n <= ticks; ++n) {
+    const double share = static_cast<double>(n) / ticks;
+    const Pose X_WD_next = moved(X_WD_from, {share * way.translation_mm, share * way.rotation_rad});
+    observer.look(algorithm.step(X_WD, kTick_s).wrench, X_WD, X_WD_next);
+    X_WD = X_WD_next;
+  }
+}
+
+double felt_radius_mm(std::string_view algorithm, double radius_mm) {
+  return algorithm == "line-proxy" ? 0 : radius_mm;
+}
+
+std::unique_ptr<HapticAlgorithm> usual(std::string_view algorithm, const Volume& bone) {
+  return prepared(algorithm, bone, MillingTool{}, algorithm == "surface-points" ? 20 : 2);
+}
+
+// Pressed in and drawn back along one line.
+double pressed_once(std::string_view algorithm, const Volume& bone, const Pose& X_W_touching,
+                    const Vec3& out) {
+  const auto felt = usual(algorithm, bone);
+  Pose X_WD{X_W_touching.position_mm + 1.0 * out, X_W_touching.orientation};
+  const Pose X_W_free = X_WD;
+  PassivityObserver observer;
+  go(*felt, X_WD, {X_W_touching.position_mm - kDeep_mm * out, X_W_touching.orientation}, observer);
+  go(*felt, X_WD, X_W_free, observer);
+  return observer.share();
+}
+
+double with_the_burr(std::string_view algorithm, SeededRandom& random) {
+  const Vec3 out = random_direction(random);
+  const Volume bone = shape_volume(centred_cube(60, 0.2), plane(Vec3::Zero(), out));
+  return pressed_once(
+      algorithm, bone,
+      {felt_radius_mm(algorithm, MillingTool{}.burr_radius_mm) * out, smallest_rotation(Vec3::UnitZ(), out)},
+      out);
+}
+
+double with_the_shaft(std::string_view algorithm, SeededRandom& random) {
+  const Quat turn = random_orientation(random);
+  const Vec3 left = turn * Vec3(1, 0, 1).normalized();
+  const Vec3 right = turn * Vec3(-1, 0, 1).normalized();
+  const Volume bone =
+      shape_volume(centred_cube(64, 0.2), [&](const Vec3& p) { return std::max(left.dot(p), right.dot(p)); });
+  const double radius_mm = felt_radius_mm(algorithm, MillingTool{}.shaft_radius_mm);
+  return pressed_once(algorithm, bone,
+                      {turn * Vec3(-kLever_mm, 0, radius_mm),
+                       turn * quaternion_from_rotation_vector({0, std::numbers::pi / 2, 0})},
+                      turn * Vec3::UnitZ());
+}
+
+// Pressed and leant at random in a hole, again and again: burr and shaft at once, and two walls at once.
+double in_a_hole(std::string_view algorithm, SeededRandom& random) {
+  const Vec3 axis = random_direction(random);
+  const double radius_mm = felt_radius_mm(algorithm, MillingTool{}.burr_radius_mm);
+  const Volume bone = shape_volume(centred_cube(64, 0.2), [&](const Vec3& p) {
+    const double along_mm = axis.dot(p);
+    const double to_the_wall_mm = 0.3 + radius_mm - (p - along_mm * axis).norm();
+    return std::max(along_mm - 3, std::min(2 + radius_mm + along_mm, to_the_wall_mm));
+  });
+  const auto felt = usual(algorithm, bone);
+  const Quat upright = smallest_rotation(Vec3::UnitZ(), axis);
+  const Pose X_W_free{5 * axis, upright};
+  Pose X_WD = X_W_free;
+  PassivityObserver observer;
+  for (int n = 0; n < kPresses; ++n) {
+    const Quat lean = quaternion_from_rotation_vector(random.uniform(0, 0.1) * random_direction(random));
+    go(*felt, X_WD, {random.uniform(-3, 0) * axis + 0.6 * random_direction(random), lean * upright},
+       observer);
+  }
+  go(*felt, X_WD, X_W_free, observer);
+  return observer.share();
+}
+
+}  // namespace
+
+Section energy_given_back() {
+  // In: the wrench of the tick before, too little by half a tick's way; out: too much.
+  const double lag = kSpeed_mm_s * kTick_s / kDeep_mm;
+  const double ideal = (1 + lag) / (1 - lag);
+  Section section{
+      "Energy given back",
+      fmt::format(
+          "Must hold: a device that is pressed {} mm into bone and drawn back at {:.0f} mm/s gets at most "
+          "5 % more of what was put in than a spring that is sampled at 1 kHz gives, {:.3f}, and one that is "
+          "pressed and leant {} times in a hole, burr and shaft at once, no more either. Watched at the "
+          "device, the wrench of a tick times the movement until the next; {} turns of the scene against the "
+          "grid; given back / put in, median (worst).",
+          kDeep_mm, kSpeed_mm_s, ideal, kPresses, kWays),
+      {"algorithm", "burr on a plane", "shaft on an edge", "in a hole", ""},
+      {},
+      {}};
+  for (const std::string& algorithm : algorithm_names()) {
+    std::vector<std::vector<double>> shares;
+    for (const auto& way : {with_the_burr, with_the_shaft, in_a_hole}) {
+      SeededRandom random(7);
+      shares.emplace_back();
+      for (int n = 0; n < kWays; ++n) shares.back().push_back(way(algorithm, random));
+    }
+    std::vector<std::string> cells{algorithm};
+    bool holds = true;
+    for (const auto& of_way : shares) {
+      cells.push_back(median_and_worst(of_way));
+      holds = holds && percentile(of_way, 1) <= 1.05 * ideal;
+    }
+    section.add(cells, holds);
+  }
+  return section;
+}
+
+}  // namespace osteomill::verification
