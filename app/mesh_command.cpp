@@ -1,5 +1,4 @@
 #include <memory>
-#include <optional>
 #include <string>
 
 #include "app/commands.h"
@@ -16,17 +15,12 @@ namespace osteomill::app {
 
 namespace {
 
-struct MeshOptions {
-  MilledScanOptions scan;
-  std::optional<double> isovalue;
-};
-
-void run_mesh(const MeshOptions& options) {
-  const std::string& out = options.scan.out;
+void run_mesh(const MilledScanOptions& options) {
+  const std::string& out = options.out;
   // Before the scan is read.
   mesh_format_of(out);
-  require_other_output(options.scan);
-  const LoadedBone bone = load_milled_bone(options.scan, options.isovalue);
+  require_other_output(options);
+  const LoadedBone bone = load_milled_bone(options);
   const BrickMesh mesh = mesh_in_one_piece(DensityView(bone.volume));
   if (mesh.empty()) throw InputError(bone.name, "no bone is left to be meshed");
   write_mesh(out, mesh);
@@ -36,12 +30,12 @@ void run_mesh(const MeshOptions& options) {
 }  // namespace
 
 void add_mesh_command(CLI::App& program) {
-  auto options = std::make_shared<MeshOptions>();
+  auto options = std::make_shared<MilledScanOptions>();
   CLI::App* command =
       program.add_subcommand("mesh", "Write the bone's surface as one closed mesh of triangles, in mm");
   command->group("Scans");
-  add_milled_scan_options(*command, options->scan, ".stl, .ply or .obj");
-  command->add_option("--iso", options->isovalue, "Isovalue: bone where the density is greater")
+  add_milled_scan_options(*command, *options, ".stl, .ply or .obj");
+  command->add_option("--iso", options->scan.isovalue, "Isovalue: bone where the density is greater")
       ->check(not_empty())
       ->type_name("DENSITY");
   add_quiet_option(*command);

@@ -12,7 +12,7 @@
 namespace osteomill::app {
 
 void add_milled_scan_options(CLI::App& command, MilledScanOptions& options, const std::string& out_text) {
-  command.add_option("scan", options.scan, kScanText)->check(not_empty());
+  add_scan_source(command, options.scan);
   command.add_option("--out", options.out, "The file to write, " + out_text)->required()->type_name("FILE");
   command
       .add_option("--after", options.recording,
@@ -21,20 +21,22 @@ void add_milled_scan_options(CLI::App& command, MilledScanOptions& options, cons
 }
 
 void require_other_output(const MilledScanOptions& options) {
-  require_no_input(options.out, {options.scan, options.recording});
+  require_no_input(options.out, {options.scan.scan, options.recording});
 }
 
-LoadedBone load_milled_bone(const MilledScanOptions& options, const std::optional<double>& isovalue) {
-  if (options.recording.empty()) return load_bone({options.scan, isovalue});
+LoadedBone load_milled_bone(const MilledScanOptions& options) {
+  if (options.recording.empty()) return load_bone(options.scan);
   const Recording recording = read_recording(options.recording);
-  LoadedBone bone = read_bone({options.scan, isovalue.value_or(recording.description.isovalue)});
+  ScanOptions scan = options.scan;
+  if (!scan.isovalue) scan.isovalue = recording.description.isovalue;
+  LoadedBone bone = read_bone(scan);
   repeat_milling(bone.volume, recording);
   for (const std::string& warning : bone.warnings) warn(warning);
   return bone;
 }
 
 DensityGrid load_milled_densities(const MilledScanOptions& options) {
-  Scan scan = open_scan({options.scan, std::nullopt});
+  Scan scan = open_scan(options.scan);
   if (!options.recording.empty()) {
     const Recording recording = read_recording(options.recording);
     Volume volume(std::move(scan.grid), recording.description.isovalue);

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <string>
 
 #include "app/scan_options.h"
@@ -10,8 +9,7 @@ namespace osteomill::app {
 
 /// The options of the commands that write a bone to a file, as it was scanned or as a recording left it.
 struct MilledScanOptions {
-  /// Empty: the built-in tooth.
-  std::string scan;
+  ScanOptions scan;
   std::string out;
   /// Empty: as scanned.
   std::string recording;
@@ -23,10 +21,10 @@ void add_milled_scan_options(CLI::App& command, MilledScanOptions& options, cons
 /// Throws InputError where the file to write is one that is read.
 void require_other_output(const MilledScanOptions& options);
 
-/// The bone, milled as the recording did where there is one. The isovalue is `isovalue`, else the
-/// recording's, else a suggested one. Throws InputError where the scan, the isovalue or the recording is at
-/// fault.
-LoadedBone load_milled_bone(const MilledScanOptions& options, const std::optional<double>& isovalue);
+/// The bone, milled as the recording did where there is one. The isovalue is the one given, else
+/// the recording's, else a suggested one. Throws InputError where the scan, the isovalue or the recording is
+/// at fault.
+LoadedBone load_milled_bone(const MilledScanOptions& options);
 
 /// The same where no isovalue matters.
 DensityGrid load_milled_densities(const MilledScanOptions& options);

@@ -15,16 +15,36 @@
 
 namespace osteomill::app {
 
+void add_scan_source(CLI::App& command, ScanOptions& options) {
+  command.add_option("scan", options.scan, kScanText)->check(not_empty());
+  command
+      .add_option(
+          "--series", options.read.series,
+          "Which DICOM series, where there are several: its number in what info lists, or the beginning "
+          "of its UID; else the largest CT")
+      ->check(not_empty())
+      ->type_name("SERIES");
+  command
+      .add_option_function<double>(
+          "--max-memory",
+          [&](double gigabytes) {
+            options.read.max_memory_bytes = static_cast<std::uint64_t>(gigabytes * 1e9);
+          },
+          "Refuse a scan whose voxels, or whose unpacked files, take more; else what the machine has")
+      ->check(CLI::Range(1e-3, 1e6))
+      ->type_name("GB");
+}
+
 void add_scan_options(CLI::App& command, ScanOptions& options) {
   command.option_defaults()->group("Scan");
-  command.add_option("scan", options.scan, kScanText)->check(not_empty());
+  add_scan_source(command, options);
   command.add_option("--iso", options.isovalue, "Isovalue: bone where the density is greater")
       ->check(not_empty())
       ->type_name("DENSITY");
 }
 
 Scan open_scan(const ScanOptions& options) {
-  if (!options.scan.empty()) return read_scan(options.scan);
+  if (!options.scan.empty()) return read_scan(options.scan, options.read);
   return {builtin_tooth(), "built-in tooth", "made up", {}};
 }
 

@@ -18,13 +18,18 @@ struct ScanOptions {
   std::string scan;
   /// Not given: the built-in tooth's own, or one suggested from the scan's values.
   std::optional<double> isovalue;
+  ReadOptions read;
 };
 
 /// What SCAN may be, for help.
 inline constexpr const char* kScanText =
-    "DICOM folder or file, NRRD, MetaImage or NIfTI; without one, the built-in tooth";
+    "DICOM folder or file, NRRD, MetaImage, NIfTI, or one of them in a zip file; without one, the built-in "
+    "tooth";
 
-/// Adds SCAN and --iso to a command.
+/// Adds SCAN and what it takes to read it: --series, --max-memory.
+void add_scan_source(CLI::App& command, ScanOptions& options);
+
+/// The same, and --iso.
 void add_scan_options(CLI::App& command, ScanOptions& options);
 
 /// The scan, or the built-in tooth; the scan's warnings are its own. Throws InputError as `read_scan` does.

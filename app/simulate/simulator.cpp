@@ -153,7 +153,7 @@ class Simulator {
     if (!answer) return;
     if (*answer == LeftAnswer::remove) left_->file.clear();
     if (*answer == LeftAnswer::open) {
-      begin_opening({left_->facts.scan, left_->facts.isovalue}, std::move(left_->file));
+      begin_opening({left_->facts.scan, left_->facts.isovalue, options_.scan.read}, std::move(left_->file));
     } else {
       begin_opening(options_.scan);
     }
@@ -188,6 +188,10 @@ class Simulator {
     if (!simulation_) view_.closing = Closing::now;
   }
 
+  ScanOptions another(const std::string& scan) const {
+    return {scan, std::nullopt, {.series = "", .max_memory_bytes = options_.scan.read.max_memory_bytes}};
+  }
+
   // Another scan, once it was read; the one that is milled goes on until then.
   void open_another() {
     std::vector<std::string> asked = window_.take_dropped();
@@ -195,7 +199,7 @@ class Simulator {
     if (asked.size() > 1) {
       view_.complaint = "One scan at a time: a file, or the folder of a series";
     } else if (!asked.empty() && !question_.asking()) {
-      begin_opening({asked.front(), {}});
+      begin_opening(another(asked.front()));
     }
     if (opening_.valid() && opening_.wait_for(0s) == std::future_status::ready) {
       try {
@@ -254,7 +258,7 @@ class Simulator {
 
   void wait_for_scan() {
     // The last thing said is what is meant.
-    if (const auto asked = window_.take_dropped(); !asked.empty()) begin_opening({asked.back(), {}});
+    if (const auto asked = window_.take_dropped(); !asked.empty()) begin_opening(another(asked.back()));
     if (opening_.wait_for(0s) == std::future_status::ready) take_first_scan();
     draw_opening();
   }

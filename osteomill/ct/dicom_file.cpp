@@ -1,5 +1,6 @@
 #include "osteomill/ct/dicom_file.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <dcmtk/config/osconfig.h>
@@ -63,7 +64,8 @@ class FileReader {
 
   std::optional<std::vector<double>> numbers(DcmItem& data, const DcmTagKey& tag, std::size_t count,
                                              const char* name) const;
-  // Looked for in the frame's own functional group, the group that all frames share, the data set.
+  // Where a value of the frame is looked for: its own functional group, the one that all share, the data set.
+  std::vector<DcmItem*> groups_of(std::size_t frame, const DcmTagKey& group) const;
   std::optional<std::vector<double>> frame_numbers(std::size_t frame, const DcmTagKey& group,
                                                    const DcmTagKey& tag, std::size_t count,
                                                    const char* name) const;
@@ -92,16 +94,24 @@ std::optional<std::vector<double>> FileReader::numbers(DcmItem& data, const DcmT
   return values;
 }
 
-std::optional<std::vector<double>> FileReader::frame_numbers(std::size_t frame, const DcmTagKey& group,
-                                                             const DcmTagKey& tag, std::size_t count,
-                                                             const char* name) const {
+std::vector<DcmItem*> FileReader::groups_of(std::size_t frame, const DcmTagKey& group) const {
+  std::vector<DcmItem*> found;
   for (DcmItem* outer :
        {frame < own_.size() ? own_[frame] : nullptr, shared_.empty() ? nullptr : shared_[0]}) {
     DcmItem* inner = nullptr;
-    if (outer == nullptr || outer->findAndGetSequenceItem(group, inner).bad()) continue;
-    if (auto found = numbers(*inner, tag, count, name)) return found;
+    if (outer != nullptr && outer->findAndGetSequenceItem(group, inner).good()) found.push_back(inner);
   }
-  return numbers(data_, tag, count, name);
+  found.push_back(&data_);
+  return found;
+}
+
+std::optional<std::vector<double>> FileReader::frame_numbers(std::size_t frame, const DcmTagKey& group,
+                                                             const DcmTagKey& tag, std::size_t count,
+                                                             const char* name) const {
+  for (DcmItem* place : groups_of(frame, group)) {
+    if (auto found = numbers(*place, tag, count, name)) return found;
+  }
+  return std::nullopt;
 }
 
 StoredPixels FileReader::stored_pixels() const {
@@ -194,6 +204,11 @@ void FileReader::read_frames() {
   if (header_.frames > 1 && own_.empty())
     throw fault("has several frames and does not say where each of them lies");
   check_byte_count();
+  std::string unit;
+  for (DcmItem* place : groups_of(0, DCM_PixelValueTransformationSequence)) {
+    if (unit.empty()) unit = text_of(*place, DCM_RescaleType);
+  }
+  header_.in_hounsfield_units = header_.modality == "CT" && (unit.empty() || unit == "HU");
   for (std::size_t frame = 0; frame < header_.frames; ++frame) {
     header_.slices.push_back(slice_of(frame));
   }
@@ -208,17 +223,30 @@ std::uint64_t bytes_of_pixels(DcmDataset& data, bool is_compressed) {
   return bytes;
 }
 
+// The images that a DICOMDIR names. A part of a name is of capitals, digits and underscores (Part 10, 8.2),
+// so that none leads out of the folder.
+std::vector<fs::path> listed_files(DcmDataset& data) {
+  std::vector<fs::path> files;
+  for (DcmItem* record : items_of(data, DCM_DirectoryRecordSequence)) {
+    if (text_of(*record, DCM_DirectoryRecordType) != "IMAGE") continue;
+    std::string name = text_of(*record, DCM_ReferencedFileID);
+    std::replace(name.begin(), name.end(), '\\', '/');
+    if (name.empty() || name.front() == '/' || name.find("..") != std::string::npos) continue;
+    files.emplace_back(name);
+  }
+  return files;
+}
+
 void describe(DcmDataset& data, DicomHeader& header) {
   header.is_compressed = DcmXfer(data.getOriginalXfer()).isEncapsulated();
   header.pixel_bytes = bytes_of_pixels(data, header.is_compressed);
   header.series_uid = text_of(data, DCM_SeriesInstanceUID);
   header.series_description = text_of(data, DCM_SeriesDescription);
   header.modality = text_of(data, DCM_Modality);
-  const std::string unit = text_of(data, DCM_RescaleType);
-  header.in_hounsfield_units = header.modality == "CT" && (unit.empty() || unit == "HU");
   header.photometric = text_of(data, DCM_PhotometricInterpretation);
   header.columns = short_of(data, DCM_Columns).value_or(0);
   header.rows = short_of(data, DCM_Rows).value_or(0);
+  header.listed_files = listed_files(data);
   header.is_localizer = text_of(data, DCM_ImageType).find("LOCALIZER") != std::string::npos;
 }
 
@@ -255,7 +283,7 @@ std::optional<DicomHeader> read_dicom_header(const fs::path& path) {
     header.lost = !loaded->damage.empty() && header.pixel_bytes == 0;
     if (!loaded->damage.empty())
       throw InputError(path.string(), "is cut short or damaged: " + loaded->damage);
-    FileReader(data, header).read_frames();
+    if (!header.is_directory()) FileReader(data, header).read_frames();
   } catch (const InputError& fault) {
     header.fault = fault;
     header.slices.clear();

@@ -1,18 +1,33 @@
 #pragma once
 
-#include <filesystem>
-#include <optional>
+#include <string>
+#include <vector>
 
-#include "osteomill/ct/read_scan.h"
+#include "osteomill/ct/dicom_slice.h"
 
 namespace osteomill {
 
-/// Reads the largest series of slices that lies in `folder` itself; a warning names what was left out.
-/// Throws InputError naming the folder.
-Scan read_dicom_folder(const std::filesystem::path& folder);
+/// One series: pictures that were taken together, in the order of their files.
+struct DicomSeries {
+  std::string uid;
+  std::vector<DicomHeader> headers;
 
-/// Reads the series to which a file belongs, from the folder in which it lies, or the frames of a file that
-/// has several. Nothing where the file is not DICOM. Throws InputError naming the file.
-std::optional<Scan> read_dicom_file(const std::filesystem::path& file);
+  bool is_ct() const;
+  /// Of those slices that can be read.
+  std::uint64_t pixel_count() const;
+};
+
+/// Sorts pictures by their series; where no series is named, by their folder. In the order of their first
+/// files.
+std::vector<DicomSeries> sort_into_series(std::vector<DicomHeader> images);
+
+/// What a user knows a series by, in a line: number, modality, description, size, spacing, where it lies,
+/// UID.
+std::string describe_series(std::size_t number, const DicomSeries& series);
+
+/// Which of `all` is `wanted`: a number from 1, a UID or the beginning of one. Empty: the one with the most
+/// pixels, CT before others. Throws InputError naming `subject` where none, or more than one, is.
+std::size_t pick_series(const std::string& subject, const std::vector<DicomSeries>& all,
+                        const std::string& wanted);
 
 }  // namespace osteomill

@@ -50,6 +50,8 @@ struct DicomHeader {
   bool is_compressed = false;
   /// As they are stored; 0 where it has no pixels.
   std::uint64_t pixel_bytes = 0;
+  /// Of a DICOMDIR: the images that it names, relative to its folder.
+  std::vector<std::filesystem::path> listed_files;
   /// So damaged that even its series is not known.
   bool lost = false;
   /// Why no slice can be made of it.
@@ -60,6 +62,8 @@ struct DicomHeader {
   /// What was read, pixels still in the file; goes away within `with_dicom_stack`.
   std::shared_ptr<DcmFileFormat> data;
 
+  /// It lists the files of a disc.
+  bool is_directory() const { return !listed_files.empty(); }
   /// Reports, plans, directories: not meant to be a picture.
   bool is_image() const { return pixel_bytes > 0 || columns > 0 || rows > 0; }
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,16 @@ inline void check_plausible(const std::string& subject, const GridGeometry& geom
       throw InputError(subject, fmt::format("begins {:.6g} mm from its origin; no scanner is that large",
                                             std::abs(origin_mm)));
     }
+  }
+}
+
+/// Throws InputError naming `subject` where so many densities would take more memory than they may.
+inline void check_memory(const std::string& subject, std::uint64_t voxels, std::uint64_t max_bytes) {
+  const std::uint64_t needed = voxels * sizeof(float);
+  if (needed > max_bytes) {
+    throw InputError(subject,
+                     fmt::format("needs {:.3g} GB for its voxels, over the {:.3g} GB that it may take",
+                                 static_cast<double>(needed) * 1e-9, static_cast<double>(max_bytes) * 1e-9));
   }
 }
 

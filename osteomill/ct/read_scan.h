@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -7,6 +8,9 @@
 #include "osteomill/volume/density_grid.h"
 
 namespace osteomill {
+
+/// All the memory that there is.
+std::uint64_t memory_of_machine();
 
 /// A scan as read.
 struct Scan {
@@ -19,13 +23,27 @@ struct Scan {
   std::vector<std::string> warnings;
   /// Where the file says so, as DICOM does of CT.
   bool in_hounsfield_units = false;
+  /// Where there are several DICOM series, a line on each in the order of their numbers: modality,
+  /// description, size, spacing, where it lies, UID.
+  std::vector<std::string> series = {};
 };
 
-/// Reads a DICOM series (a folder, its files in any order, or one multi-slice file), NRRD, MetaImage or
-/// NIfTI. W is the patient's LPS frame in mm (NIfTI's RAS is turned into it); stored values are rescaled to
-/// what they mean (RescaleSlope, RescaleIntercept). Throws InputError, naming the path and the reason, where
-/// it is not a scan that can be placed in space without guessing. Bounded memory: sizes are checked against
-/// the file before anything is allocated.
-Scan read_scan(const std::filesystem::path& path);
+/// What to read, and how much of the machine that may take.
+struct ReadOptions {
+  /// Which DICOM series where there are several: its number (from 1), its UID or the beginning of that.
+  /// Empty: the largest CT, with a warning.
+  std::string series;
+  /// What the densities may take, and what is unpacked of an archive. As it is, the machine's memory.
+  std::uint64_t max_memory_bytes = memory_of_machine();
+};
+
+/// Reads a DICOM series (a folder and the folders in it, files in any order; a DICOMDIR; one of its files,
+/// with the rest of its series beside it; an Enhanced multi-frame file), NRRD, MetaImage or NIfTI, or a zip
+/// archive or folder of any of these. W is the patient's LPS frame in mm (NIfTI's RAS is turned into it);
+/// stored values are rescaled to what they mean (RescaleSlope, RescaleIntercept). Throws InputError, naming
+/// the path and the reason, where it is not a scan that can be placed in space without guessing. Bounded
+/// memory: what the header asks for is held against the file and the options before it is allocated. Names of
+/// patients, their dates and numbers are never read.
+Scan read_scan(const std::filesystem::path& path, const ReadOptions& options = {});
 
 }  // namespace osteomill

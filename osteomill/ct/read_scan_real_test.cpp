@@ -137,9 +137,21 @@ TEST_P(RealScanFacts, AreMet) {
   expect_facts(shared_data() / GetParam());
 }
 
-TEST(ReadRealScan, AnUnevenStackIsRefused) {
-  OSTEOMILL_NEEDS_SHARED("head_tilt_dicom/series");
-  EXPECT_THROW(read_scan(shared_data() / "head_tilt_dicom/series"), InputError);
+TEST(ReadRealScan, AnUnevenStackOfATiltedGantryIsPutStraight) {
+  OSTEOMILL_NEEDS_SHARED("head_tilt_dicom/facts.json");
+  const json facts = read_json(shared_data() / "head_tilt_dicom/facts.json")["series/"];
+  const Scan scan = read_scan(shared_data() / "head_tilt_dicom/series");
+  const GridGeometry& geometry = scan.grid.geometry();
+  const json& heights_mm = facts["positions_along_normal_mm"];
+  const double height_mm = heights_mm.back().get<double>() - heights_mm.front().get<double>();
+  EXPECT_NEAR(geometry.spacing_mm.z() * (geometry.dims[2] - 1), height_mm, 1e-3);
+  EXPECT_NEAR(geometry.spacing_mm.z(), 4.002, 0.01);
+  ASSERT_GE(scan.warnings.size(), 2U);
+  EXPECT_NE(scan.warnings[0].find("1.081"), std::string::npos) << scan.warnings[0];
+  EXPECT_NE(scan.warnings[1].find("18.5 degrees"), std::string::npos) << scan.warnings[1];
+  const auto [min, max] = std::minmax_element(scan.grid.densities().begin(), scan.grid.densities().end());
+  EXPECT_GE(*min, facts["hu_min"].get<float>());
+  EXPECT_LE(*max, facts["hu_max"].get<float>());
 }
 
 TEST(ReadRealScan, OddDicomFilesEndInAVolumeOrAClearRefusal) {
@@ -179,6 +191,7 @@ INSTANTIATE_TEST_SUITE_P(ReadRealScan, RealScanIsovalue,
                                            KnownIsovalue{"volumes_odd/nrrd/gzip.nrrd", 610},
                                            KnownIsovalue{"cranium/cranium_256x256x108_i16.nrrd", 300},
                                            KnownIsovalue{"head_quarter/headsq_quarter.mhd", 1150},
+                                           KnownIsovalue{"head_tilt_dicom/series", 250},
                                            KnownIsovalue{"trabecular/lhdl_3155_D_4_bc_200x200x200_u8.nrrd",
                                                          100},
                                            KnownIsovalue{"jaw_labels/jaw_360x360x330_labels.nrrd", 0.5},

@@ -45,22 +45,24 @@ ScanSummary summarise(const Scan& scan, SuggestedIsovalue suggested_iso, double 
   summary.suggested_iso = std::move(suggested_iso);
   summary.isovalue = isovalue;
   summary.warnings = scan.warnings;
+  summary.series = scan.series;
   summarise_values(scan.grid.densities(), isovalue, summary);
   return summary;
 }
 
 std::string to_json(const ScanSummary& summary) {
-  const nlohmann::ordered_json json{{"dims", summary.dims},
-                                    {"spacing_mm", summary.spacing_mm},
-                                    {"origin_mm", summary.origin_mm},
-                                    {"direction", summary.direction},
-                                    {"value_min", summary.value_min},
-                                    {"value_max", summary.value_max},
-                                    {"value_mean", summary.value_mean},
-                                    {"suggested_iso", summary.suggested_iso.value},
-                                    {"suggested_how", summary.suggested_iso.how},
-                                    {"voxels_above_iso", summary.voxels_above_iso},
-                                    {"warnings", summary.warnings}};
+  nlohmann::ordered_json json{{"dims", summary.dims},
+                              {"spacing_mm", summary.spacing_mm},
+                              {"origin_mm", summary.origin_mm},
+                              {"direction", summary.direction},
+                              {"value_min", summary.value_min},
+                              {"value_max", summary.value_max},
+                              {"value_mean", summary.value_mean},
+                              {"suggested_iso", summary.suggested_iso.value},
+                              {"suggested_how", summary.suggested_iso.how},
+                              {"voxels_above_iso", summary.voxels_above_iso},
+                              {"warnings", summary.warnings}};
+  if (!summary.series.empty()) json["series"] = summary.series;
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
 }
 
@@ -85,6 +87,7 @@ std::string to_text(const ScanSummary& summary) {
   text += fmt::format("isovalue    {:.6g} suggested, {}\n", summary.suggested_iso.value,
                       summary.suggested_iso.how);
   text += fmt::format("bone        {} voxels above {:.6g}\n", summary.voxels_above_iso, summary.isovalue);
+  for (const std::string& series : summary.series) text += fmt::format("series      {}\n", series);
   for (const std::string& warning : summary.warnings) text += fmt::format("warning: {}\n", warning);
   return text;
 }

@@ -29,14 +29,16 @@ struct ScanSummary {
   /// Voxels whose density is greater than `isovalue`.
   std::size_t voxels_above_iso = 0;
   std::vector<std::string> warnings;
+  /// As `Scan::series`.
+  std::vector<std::string> series;
 };
 
 /// One pass over the voxels. `suggested_iso` is what is reported as suggested (`suggest_isovalue`).
 ScanSummary summarise(const Scan& scan, SuggestedIsovalue suggested_iso, double isovalue);
 
 /// A JSON object with the keys dims, spacing_mm, origin_mm, direction, value_min, value_max, value_mean,
-/// suggested_iso, suggested_how, voxels_above_iso and warnings, and a line feed at its end. Bytes of a
-/// warning that are not UTF-8 are replaced.
+/// suggested_iso, suggested_how, voxels_above_iso, warnings, series where there are several, and a line feed
+/// at its end. Bytes of a warning that are not UTF-8 are replaced.
 std::string to_json(const ScanSummary& summary);
 
 /// The same for people, a line each.

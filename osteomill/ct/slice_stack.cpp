@@ -18,9 +18,15 @@ namespace {
 constexpr double kDirectionTolerance = 1e-3;
 constexpr double kSpacingTolerance = 1e-3;
 constexpr double kSamePlace_mm = 1e-4;
-// A distance may differ from the usual one by this share of it, and a slice be off its place in the grid by
-// twice that.
+// A distance may differ from the mean one by this share of it, and a slice be off its place in the grid by
+// twice that, without being moved.
 constexpr double kDistanceTolerance = 0.05;
+// A gap wider than this share of those beside it lacks a slice.
+constexpr double kMissing = 1.5;
+// Between slices further apart than this, nobody knows what the bone is like.
+constexpr double kMaxUnevenGap_mm = 10;
+// An uneven stack becomes at most as many times as many slices.
+constexpr double kMostSlices = 4;
 // Sideways, in pixels: what cannot be seen after trilinear sampling.
 constexpr double kSidewaysTolerance = 0.25;
 
@@ -73,82 +79,111 @@ Mat3 axes_of(const SlicePlane& slice) {
 
 void drop_copies(const std::string& subject, std::span<const SlicePlane> slices, const Vec3& normal,
                  SliceStack& stack) {
-  std::vector<std::size_t> kept;
+  std::vector<std::size_t> kept, copies;
   for (const std::size_t n : stack.order) {
-    if (!kept.empty()) {
-      const SlicePlane& below = slices[kept.back()];
-      const SlicePlane& slice = slices[n];
-      if (normal.dot(slice.position_mm - below.position_mm) < kSamePlace_mm) {
-        if (slice.instance.empty() || slice.instance != below.instance) {
-          throw InputError(
-              subject, fmt::format("{} and {} are different images at one position", below.name, slice.name));
-        }
-        stack.warnings.push_back(fmt::format("{} is a copy of {} and was left out", slice.name, below.name));
-        continue;
-      }
+    const bool first_here =
+        kept.empty() ||
+        !(normal.dot(slices[n].position_mm - slices[kept.back()].position_mm) < kSamePlace_mm);
+    (first_here ? kept : copies).push_back(n);
+    if (first_here) continue;
+    const SlicePlane& below = slices[kept.back()];
+    if (slices[n].instance.empty() || slices[n].instance != below.instance) {
+      throw InputError(
+          subject, fmt::format("{} and {} are different images at one position", below.name, slices[n].name));
     }
-    kept.push_back(n);
+  }
+  if (!copies.empty()) {
+    stack.warnings.push_back(fmt::format("{} cop{} of other slices left out: {}", copies.size(),
+                                         copies.size() == 1 ? "y" : "ies", slices[copies.front()].name));
   }
   stack.order = std::move(kept);
 }
 
-// The lower of the two in the middle: a hole is wider than what is usual.
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+// How far each of the slices that were kept lies above the first.
+std::vector<double> heights_of(std::span<const SlicePlane> slices, const Vec3& normal,
+                               const SliceStack& stack) {
+  const double lowest_mm = normal.dot(slices[stack.order.front()].position_mm);
+  std::vector<double> heights_mm;
+  for (const std::size_t n : stack.order) heights_mm.push_back(normal.dot(slices[n].position_mm) - lowest_mm);
+  return heights_mm;
 }
 
-void check_distances(const std::string& subject, std::span<const SlicePlane> slices, const Vec3& normal,
-                     SliceStack& stack) {
-  const std::size_t count = stack.order.size();
-  std::vector<double> heights_mm;
-  for (const std::size_t n : stack.order) heights_mm.push_back(normal.dot(slices[n].position_mm));
-  std::vector<double> gaps_mm;
-  for (std::size_t k = 1; k < count; ++k) gaps_mm.push_back(heights_mm[k] - heights_mm[k - 1]);
-  const double usual_mm = median_of(gaps_mm);
-  const double mean_mm = (heights_mm.back() - heights_mm.front()) / static_cast<double>(count - 1);
+bool are_even(std::span<const double> heights_mm, std::span<const double> gaps_mm) {
+  const double mean_mm = heights_mm.back() / static_cast<double>(gaps_mm.size());
+  for (std::size_t k = 0; k < gaps_mm.size(); ++k) {
+    // Small differences may add up.
+    const double off_mm = heights_mm[k + 1] - mean_mm * static_cast<double>(k + 1);
+    if (std::abs(gaps_mm[k] - mean_mm) > kDistanceTolerance * mean_mm ||
+        std::abs(off_mm) > 2 * kDistanceTolerance * mean_mm)
+      return false;
+  }
+  return true;
+}
 
-  const auto complain = [&](const char* what, std::size_t k) {
-    throw InputError(subject,
-                     fmt::format("{}: {:.6g} mm between {} and {}, {:.6g} mm usually", what, gaps_mm[k - 1],
-                                 slices[stack.order[k - 1]].name, slices[stack.order[k]].name, usual_mm));
+// Where a table's feed was changed the distances that follow are alike; beside a lost slice they are not.
+bool slice_is_missing(std::span<const double> gaps_mm, std::size_t k) {
+  double beside_mm = 0;
+  if (k > 0) beside_mm = gaps_mm[k - 1];
+  if (k + 1 < gaps_mm.size()) beside_mm = std::max(beside_mm, gaps_mm[k + 1]);
+  return gaps_mm.size() > 1 && gaps_mm[k] > kMissing * beside_mm;
+}
+
+// The grid's slices along the normal.
+void place_slices(const std::string& subject, std::span<const SlicePlane> slices, const Vec3& normal,
+                  SliceStack& stack) {
+  std::vector<double> heights_mm = heights_of(slices, normal, stack);
+  std::vector<double> gaps_mm;
+  for (std::size_t k = 1; k < heights_mm.size(); ++k) gaps_mm.push_back(heights_mm[k] - heights_mm[k - 1]);
+  const auto between = [&](std::size_t k) {
+    return fmt::format("{:.6g} mm between {} and {}", gaps_mm[k], slices[stack.order[k]].name,
+                       slices[stack.order[k + 1]].name);
   };
-  for (std::size_t k = 1; k < count; ++k) {
-    if (gaps_mm[k - 1] > 1.5 * usual_mm) complain("a slice is missing", k);
-    if (std::abs(gaps_mm[k - 1] - usual_mm) > kDistanceTolerance * usual_mm) {
-      complain("slices lie at uneven distances", k);
+  std::vector<double> sorted_mm = gaps_mm;
+  std::sort(sorted_mm.begin(), sorted_mm.end());
+  const bool even = are_even(heights_mm, gaps_mm);
+  for (std::size_t k = 0; k < gaps_mm.size() && !even; ++k) {
+    if (slice_is_missing(gaps_mm, k)) {
+      throw InputError(subject, fmt::format("a slice is missing: {}, {:.6g} mm usually", between(k),
+                                            sorted_mm[(sorted_mm.size() - 1) / 2]));
+    }
+    if (gaps_mm[k] > kMaxUnevenGap_mm) {
+      throw InputError(subject,
+                       fmt::format("slices lie at uneven distances, too far to fill in: {}", between(k)));
     }
   }
-  // Small differences may add up.
-  for (std::size_t k = 1; k < count; ++k) {
-    const double off_mm = heights_mm[k] - heights_mm[0] - mean_mm * static_cast<double>(k);
-    if (std::abs(off_mm) > 2 * kDistanceTolerance * usual_mm) complain("slices lie at uneven distances", k);
-  }
-  stack.geometry.spacing_mm.z() = mean_mm;
+  const double mean_mm = heights_mm.back() / static_cast<double>(gaps_mm.size());
+  const double finest_mm = std::max(sorted_mm[sorted_mm.size() / 10], mean_mm / kMostSlices);
+  const double steps = even ? static_cast<double>(gaps_mm.size()) : std::round(heights_mm.back() / finest_mm);
+  stack.geometry.dims[2] = static_cast<int>(steps) + 1;
+  stack.geometry.spacing_mm.z() = heights_mm.back() / steps;
+  if (even) return;
+  const auto widest = std::max_element(gaps_mm.begin(), gaps_mm.end());
+  stack.warnings.push_back(
+      fmt::format("slices lie at uneven distances, {:.6g} to {}: interpolated to {} slices {:.6g} mm apart",
+                  sorted_mm.front(), between(static_cast<std::size_t>(widest - gaps_mm.begin())),
+                  stack.geometry.dims[2], stack.geometry.spacing_mm.z()));
+  stack.heights_mm = std::move(heights_mm);
 }
 
 void find_drift(const std::string& subject, std::span<const SlicePlane> slices, SliceStack& stack) {
   const Mat3& axes = stack.geometry.direction;
-  const Vec3& first_mm = slices[stack.order.front()].position_mm;
-  const double steps = static_cast<double>(stack.order.size() - 1);
-  const Vec3 climb_mm = axes.transpose() * (slices[stack.order.back()].position_mm - first_mm);
-  const double drift_i_mm = climb_mm.x() / steps;
-  const double drift_j_mm = climb_mm.y() / steps;
   const Vec3& spacing_mm = stack.geometry.spacing_mm;
-  for (std::size_t k = 0; k < stack.order.size(); ++k) {
-    const SlicePlane& slice = slices[stack.order[k]];
-    const Vec3 offset_mm = axes.transpose() * (slice.position_mm - first_mm);
-    const double off_i = (offset_mm.x() - drift_i_mm * static_cast<double>(k)) / spacing_mm.x();
-    const double off_j = (offset_mm.y() - drift_j_mm * static_cast<double>(k)) / spacing_mm.y();
-    if (std::abs(off_i) > kSidewaysTolerance || std::abs(off_j) > kSidewaysTolerance) {
-      throw InputError(subject, slice.name + " lies to the side of the other slices");
+  const auto offset_mm = [&](std::size_t n) -> Vec3 {
+    return axes.transpose() * (slices[n].position_mm - slices[stack.order.front()].position_mm);
+  };
+  const Vec3 climb_mm = offset_mm(stack.order.back());
+  for (const std::size_t n : stack.order) {
+    const Vec3 here_mm = offset_mm(n);
+    const Vec3 off_mm = here_mm - climb_mm * (here_mm.z() / climb_mm.z());
+    if (std::abs(off_mm.x()) > kSidewaysTolerance * spacing_mm.x() ||
+        std::abs(off_mm.y()) > kSidewaysTolerance * spacing_mm.y()) {
+      throw InputError(subject, slices[n].name + " lies to the side of the other slices");
     }
   }
   if (std::abs(climb_mm.x()) > kSidewaysTolerance * spacing_mm.x() ||
       std::abs(climb_mm.y()) > kSidewaysTolerance * spacing_mm.y()) {
-    stack.drift_i_mm = drift_i_mm;
-    stack.drift_j_mm = drift_j_mm;
+    stack.drift_i_mm = climb_mm.x() / (stack.geometry.dims[2] - 1);
+    stack.drift_j_mm = climb_mm.y() / (stack.geometry.dims[2] - 1);
   }
 }
 
@@ -173,10 +208,10 @@ SliceStack stack_slices(const std::string& subject, std::span<const SlicePlane> 
                      "only one slice: its thickness cannot be known, and a volume needs at least two");
   }
   const SlicePlane& lowest = slices[stack.order.front()];
-  stack.geometry.dims = {lowest.columns, lowest.rows, static_cast<int>(stack.order.size())};
+  stack.geometry.dims = {lowest.columns, lowest.rows, 0};
   stack.geometry.spacing_mm = {lowest.column_distance_mm, lowest.row_distance_mm, 0};
   stack.geometry.origin_mm = lowest.position_mm;
-  check_distances(subject, slices, normal, stack);
+  place_slices(subject, slices, normal, stack);
   check_plausible(subject, stack.geometry);
   find_drift(subject, slices, stack);
   return stack;

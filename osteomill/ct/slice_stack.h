@@ -28,20 +28,25 @@ struct SlicePlane {
 
 /// Slices put in order along their common normal.
 struct SliceStack {
-  /// The straight grid on which the slices lie, or nearly: see `drift_mm`.
+  /// The straight grid on which the slices lie, or nearly: see `heights_mm` and the drift.
   GridGeometry geometry;
   /// For every k the number of the slice that lies there; copies are left out.
   std::vector<std::size_t> order;
-  /// By how much each slice lies further along i and j than the one below: a gantry tilt. Zero where the
-  /// stack is straight; else the grid's slices have to be shifted before they are in their place.
+  /// How far above the lowest each slice lies, where these are not the heights of the grid's slices, which
+  /// may then be more or fewer: their densities have to be interpolated (`even_out_slices`). Else empty.
+  std::vector<double> heights_mm;
+  /// By how much each of the grid's slices lies further along i and j than the one below: a gantry tilt. Zero
+  /// where the stack is straight; else they have to be shifted before they are in their place.
   double drift_i_mm = 0;
   double drift_j_mm = 0;
   std::vector<std::string> warnings;
 };
 
 /// Puts the slices in order of their position along the normal, lowest first, whatever order they come in.
-/// Throws InputError naming `subject` where they make no regular grid: fewer than two, not all of one size,
-/// spacing and orientation, two at one position, a gap, uneven distances.
+/// Where their distances differ, as where a table's feed was changed, the grid is as fine as nine tenths of
+/// them ask for, and a warning names the largest. Throws InputError naming `subject` where no grid holds them
+/// all: fewer than two, not all of one size, spacing and orientation, two at one position, or a gap that is
+/// over 1.5 times those beside it (a slice is missing) or over 10 mm while others are less.
 SliceStack stack_slices(const std::string& subject, std::span<const SlicePlane> slices);
 
 }  // namespace osteomill

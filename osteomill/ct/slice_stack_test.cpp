@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "osteomill/ct/even_slices.h"
 #include "osteomill/ct/gantry_tilt.h"
 #include "osteomill/files/input_error.h"
 
@@ -80,13 +81,69 @@ TEST(SliceStack, AMissingSliceIsNamedByItsNeighbours) {
   }
 }
 
-TEST(SliceStack, DistancesThatGrowAreRefusedHoweverSlowly) {
+// The densities of slices whose pixels are linear in space.
+template <typename Density>
+std::vector<float> pixels_of(const std::vector<SlicePlane>& slices, const SliceStack& stack,
+                             const Density& density) {
+  std::vector<float> densities;
+  for (const std::size_t n : stack.order) {
+    const SlicePlane& slice = slices[n];
+    for (int j = 0; j < slice.rows; ++j) {
+      for (int i = 0; i < slice.columns; ++i) {
+        densities.push_back(static_cast<float>(density(slice.position_mm +
+                                                       slice.i_direction * (slice.column_distance_mm * i) +
+                                                       slice.j_direction * (slice.row_distance_mm * j))));
+      }
+    }
+  }
+  return densities;
+}
+
+TEST(SliceStack, UnevenDistancesAreEvenedOutAndNamed) {
+  const auto density = [](const Vec3& p) { return 1000 + 3 * p.x() - 5 * p.y() + 7 * p.z(); };
+  // As after a change of the table's feed, with an overlap where it changed.
+  std::vector<SlicePlane> slices = series(11, 0);
+  double height_mm = 3;
+  for (std::size_t k = 0; k < slices.size(); ++k) {
+    slices[k].position_mm.z() = height_mm;
+    height_mm += k < 5 ? 2 : k == 5 ? 0.5 : 3.5;
+  }
+  SliceStack stack = stack_slices("folder", slices);
+  ASSERT_EQ(stack.warnings.size(), 1U);
+  EXPECT_EQ(
+      stack.warnings.front(),
+      "slices lie at uneven distances, 0.5 to 3.5 mm between slice6 and slice7: interpolated to 13 slices "
+      "2.04167 mm apart");
+  EXPECT_EQ(stack.geometry.dims[2], 13);
+  std::vector<float> densities = pixels_of(slices, stack, density);
+  even_out_slices(stack, densities);
+  ASSERT_EQ(densities.size(), stack.geometry.voxel_count());
+  std::size_t n = 0;
+  for (int k = 0; k < 13; ++k) {
+    for (int j = 0; j < 6; ++j) {
+      for (int i = 0; i < 8; ++i, ++n) {
+        const Vec3 p = stack.geometry.world_from_voxel(VoxelIndex{i, j, k});
+        EXPECT_NEAR(static_cast<double>(densities[n]), density(p), 1e-3);
+      }
+    }
+  }
+  EXPECT_TRUE(stack.heights_mm.empty());
+}
+
+TEST(SliceStack, DistancesThatGrowAreNoticedHoweverSlowly) {
   std::vector<SlicePlane> slices = series(60, 1.0);
   for (std::size_t k = 0; k < slices.size(); ++k) {
     const auto n = static_cast<double>(k);
     slices[k].position_mm.z() = n + 0.0005 * n * n;
   }
-  EXPECT_TRUE(contains(refusal(slices), "uneven"));
+  EXPECT_TRUE(contains(stack_slices("folder", slices).warnings.front(), "uneven"));
+}
+
+TEST(SliceStack, UnevenDistancesThatAreTooLargeAreRefused) {
+  std::vector<SlicePlane> slices = series(12, 8);
+  for (std::size_t k = 6; k < slices.size(); ++k)
+    slices[k].position_mm.z() += 3 * (static_cast<double>(k) - 5);
+  EXPECT_TRUE(contains(refusal(slices), "too far to fill in: 11 mm between slice5 and slice6"));
 }
 
 TEST(SliceStack, ACopyIsLeftOutAndAnotherImageAtItsPlaceIsNot) {

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "osteomill/ct/parse_numbers.h"
+#include "osteomill/ct/plausible_scan.h"
 #include "osteomill/files/input_error.h"
 #include "osteomill/numbers/work_progress.h"
 
@@ -17,6 +18,8 @@ namespace osteomill {
 namespace {
 
 constexpr std::size_t kBlock = 1 << 18;
+// A number and what parts it from the next take fewer letters than this; text behind that is not wanted.
+constexpr std::uint64_t kMaxLetters = 64;
 // So much beyond the voxels is read on to come to the checksum.
 constexpr std::uint64_t kMaxRest = 1 << 20;
 
@@ -94,13 +97,14 @@ void check_rest(const std::string& subject, StoredVoxels& stored, std::uint64_t 
 }
 
 std::vector<float> read_binary(const std::string& subject, StoredVoxels& stored, std::uint64_t count,
-                               std::vector<std::string>& warnings) {
+                               std::uint64_t max_bytes, std::vector<std::string>& warnings) {
   ByteSource& source = stored.source;
   const std::uint64_t needed = count * bytes_of(stored.type);
   const std::uint64_t possible = source.max_bytes();
   if (possible < stored.skip + needed) {
     throw cut_short(subject, needed, possible - std::min(possible, stored.skip));
   }
+  check_memory(subject, count, max_bytes);
   if (!source.skip(stored.skip)) throw InputError(subject, "its compressed data cannot be decompressed");
   std::vector<float> densities;
   densities.reserve(count);
@@ -119,13 +123,19 @@ std::vector<float> read_binary(const std::string& subject, StoredVoxels& stored,
 }
 
 std::vector<float> read_text(const std::string& subject, StoredVoxels& stored, std::uint64_t count,
-                             std::vector<std::string>& warnings) {
+                             std::uint64_t max_bytes, std::vector<std::string>& warnings) {
   stored.source.skip(stored.skip);
   // One digit and one space each, at the least.
   const std::uint64_t needed = 2 * count - 1;
-  std::string text(stored.source.max_bytes(), '\0');
-  if (text.size() < needed) throw cut_short(subject, needed, text.size());
-  stored.source.read(text);
+  const std::uint64_t possible = stored.source.max_bytes();
+  if (possible < needed) throw cut_short(subject, needed, possible);
+  check_memory(subject, count, max_bytes);
+  std::string text;
+  std::vector<char> block(kBlock);
+  for (std::size_t here = kBlock; here == kBlock && text.size() < kMaxLetters * count + kBlock;) {
+    here = stored.source.read(block);
+    text.append(block.data(), here);
+  }
   const std::optional<std::vector<double>> numbers = parse_numbers(text);
   if (!numbers) throw InputError(subject, "holds something between its voxels that is not a number");
   if (numbers->size() < count) {
@@ -149,9 +159,9 @@ std::uint64_t bytes_of(VoxelType type) {
 }
 
 std::vector<float> read_voxels(const std::string& subject, StoredVoxels& stored, std::uint64_t count,
-                               std::vector<std::string>& warnings) {
-  return stored.is_text ? read_text(subject, stored, count, warnings)
-                        : read_binary(subject, stored, count, warnings);
+                               std::uint64_t max_bytes, std::vector<std::string>& warnings) {
+  return stored.is_text ? read_text(subject, stored, count, max_bytes, warnings)
+                        : read_binary(subject, stored, count, max_bytes, warnings);
 }
 
 }  // namespace osteomill

@@ -30,8 +30,9 @@ struct StoredVoxels {
 };
 
 /// Reads `count` densities. Nothing is allocated that the file cannot hold. Throws InputError naming
-/// `subject` where the voxels are not all there or damaged; adds a warning where there is more.
+/// `subject` where the voxels are not all there or damaged, or the densities would take over `max_bytes`;
+/// adds a warning where there is more.
 std::vector<float> read_voxels(const std::string& subject, StoredVoxels& stored, std::uint64_t count,
-                               std::vector<std::string>& warnings);
+                               std::uint64_t max_bytes, std::vector<std::string>& warnings);
 
 }  // namespace osteomill

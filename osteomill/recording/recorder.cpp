@@ -32,11 +32,21 @@ bool is_plain_name(const std::string& name) {
   return !name.empty() && std::all_of(name.begin(), name.end(), plain);
 }
 
+// HDF5 writes here and there in a file, which then takes the place of what was there.
+fs::path file_behind(const fs::path& path) {
+  const fs::path file = behind_links(path);
+  std::error_code error;
+  const fs::file_status status = fs::status(file, error);
+  if (fs::exists(status) && !fs::is_regular_file(status))
+    throw InputError(path.string(), "is no regular file, which a recording has to be");
+  return file;
+}
+
 }  // namespace
 
 struct Recorder::Impl {
   Impl(const fs::path& path_, const RunDescription& description, std::size_t capacity)
-      : path(behind_links(path_)), file(unfinished_recording_path(path), description), queue(capacity) {
+      : path(file_behind(path_)), file(unfinished_recording_path(path), description), queue(capacity) {
     rows.reserve(kRowsAtOnce);
     writer = std::thread([this] { write_until_stopped(); });
   }

@@ -34,6 +34,20 @@ else
   echo "no devices can be made here, so none was written to"
 fi
 
+# A recording cannot be written to what is no file, and takes nothing's place. Nor is anything left in a folder that may
+# not be written.
+[ ! -c null.csv ] || mv null.csv null.h5
+mkdir locked
+chmod 555 locked
+for out in pipe.csv null.h5 locked/a.h5; do
+  [ -e "$out" ] || [ "$(id -u)" -ne 0 -a "$out" = locked/a.h5 ] || continue
+  code=0
+  "$osteomill" live --quiet --seconds 0.2 --algorithm line-proxy --record "$out" >out.txt 2>err.txt || code=$?
+  [ "$code" -eq 1 ] && [ "$(wc -l <err.txt)" -eq 1 ] || fault "a recording to $out: exit code $code, $(cat err.txt)"
+  [ ! -f "$out" ] || fault "$out was replaced"
+done
+[ -z "$(ls locked)" ] || fault "something was left in a folder that may not be written"
+
 code=0
 replay poses.csv || code=$?
 [ "$code" -eq 1 ] && grep -q "^osteomill: poses.csv: is what is read" err.txt || fault "the trajectory was written over"

@@ -1,3 +1,4 @@
+#include <array>
 #include <cstdint>
 
 #include <dcmtk/config/osconfig.h>
@@ -29,6 +30,7 @@ struct Slice {
   std::string slope = "2";
   std::string image_type = "ORIGINAL\\PRIMARY\\AXIAL";
   E_TransferSyntax syntax = EXS_LittleEndianExplicit;
+  std::string modality = "CT";
 };
 
 int stored_value(int i, int j, int k) {
@@ -54,7 +56,10 @@ class DicomSeries : public testing_support::FolderTest {
     set(DCM_SOPClassUID, UID_CTImageStorage);
     set(DCM_SOPInstanceUID, slice.instance.empty() ? slice.series + ".7." + number : slice.instance);
     set(DCM_SeriesInstanceUID, slice.series);
-    set(DCM_Modality, "CT");
+    set(DCM_Modality, slice.modality);
+    set(DCM_SeriesDescription, "made up");
+    // Nobody's: what is told of a series must not hold it.
+    set(DCM_PatientName, "Doe^Jane");
     set(DCM_ImageType, slice.image_type);
     set(DCM_ImagePositionPatient, slice.position.empty() ? "1\\2\\" + height : slice.position);
     set(DCM_ImageOrientationPatient, "1\\0\\0\\0\\1\\0");
@@ -222,15 +227,134 @@ TEST_F(DicomSeries, OtherFilesAndLocalizersAreLeftOutWithAWarning) {
   EXPECT_TRUE(contains(scan.warnings[1], "scout"));
 }
 
-TEST_F(DicomSeries, TheLargestOfSeveralSeriesIsReadAndNamed) {
+Scan read_series(const fs::path& path, const std::string& series) {
+  return read_scan(path, {.series = series});
+}
+
+TEST_F(DicomSeries, TheLargestCtOfSeveralSeriesIsReadAndAnyCanBeChosen) {
   write_series();
-  for (int k = 0; k < 3; ++k) write_slice({.file = "a" + std::to_string(k), .k = k + 5, .series = "1.2.4"});
+  fs::create_directories(folder_ / "more" / "deep");
+  for (int k = 0; k < 3; ++k)
+    write_slice({.file = "more/deep/a" + std::to_string(k), .k = k, .series = "1.2.40"});
+  for (int k = 0; k < 6; ++k)
+    write_slice({.file = "more/m" + std::to_string(k), .k = k, .series = "1.2.5", .modality = "MR"});
   const Scan scan = read_scan(folder_);
   expect_series(scan);
   ASSERT_EQ(scan.warnings.size(), 1U);
-  EXPECT_TRUE(
-      contains(scan.warnings[0], "\"1.2.3\" (4 slices, from f6) was read, left out: \"1.2.4\" (3 slices"));
-  EXPECT_EQ(read_scan(folder_ / "a1").grid.geometry().dims[2], 3);
+  EXPECT_EQ(
+      scan.warnings[0],
+      "holds 3 series; the largest CT was read, 1: CT \"made up\", 7 x 5 x 4, 0.5 x 0.25 x 0.75 mm, from "
+      "f6, 1.2.3");
+  ASSERT_EQ(scan.series.size(), 3U);
+  EXPECT_TRUE(contains(scan.series[1], "2: CT \"made up\", 7 x 5 x 3"));
+  EXPECT_TRUE(contains(scan.series[2], "3: MR \"made up\", 7 x 5 x 6"));
+  for (const auto& [wanted, slices] : {std::pair{"1", 4}, {"2", 3}, {"3", 6}, {"1.2.40", 3}, {"1.2.5", 6}}) {
+    const Scan chosen = read_series(folder_, wanted);
+    EXPECT_EQ(chosen.grid.geometry().dims[2], slices) << wanted;
+    EXPECT_FALSE(contains(chosen.warnings.empty() ? "" : chosen.warnings[0], "series")) << chosen.warnings[0];
+  }
+  for (const char* wanted : {"4", "0", "1.2", "9.9"}) {
+    EXPECT_THROW(read_series(folder_, wanted), InputError) << wanted;
+  }
+  // The series of a file is its own.
+  EXPECT_EQ(read_scan(folder_ / "more/deep/a1").grid.geometry().dims[2], 3);
+  EXPECT_THROW(read_series(folder_ / "more/deep/a1", "1.2.5"), InputError);
+}
+
+// As on a disc: names in capitals, each record with what lies under it.
+TEST_F(DicomSeries, ADicomdirLeadsToItsSeries) {
+  fs::create_directories(folder_ / "IMAGES" / "S1");
+  fs::create_directories(folder_ / "images2");
+  DcmFileFormat directory;
+  auto* records = new DcmSequenceOfItems(DCM_DirectoryRecordSequence);
+  const auto add = [&](const char* type, const std::string& file) {
+    auto* record = new DcmItem;
+    record->putAndInsertString(DCM_DirectoryRecordType, type);
+    if (!file.empty()) record->putAndInsertString(DCM_ReferencedFileID, file.c_str());
+    records->append(record);
+  };
+  add("PATIENT", "");
+  for (int k = 0; k < 4; ++k) {
+    write_slice({.file = "IMAGES/S1/I" + std::to_string(k), .k = k});
+    add("IMAGE", "IMAGES\\S1\\I" + std::to_string(k));
+  }
+  // Not named, so not looked for; and one that some systems show in small letters.
+  write_slice({.file = "IMAGES/S1/OTHER", .k = 9});
+  for (int k = 0; k < 2; ++k) {
+    write_slice({.file = "images2/i" + std::to_string(k), .k = k, .series = "1.2.9"});
+    add("IMAGE", "IMAGES2\\I" + std::to_string(k));
+  }
+  directory.getDataset()->insert(records);
+  directory.getDataset()->putAndInsertString(DCM_SOPClassUID, UID_MediaStorageDirectoryStorage);
+  directory.getDataset()->putAndInsertString(DCM_SOPInstanceUID, "1.2.3.4");
+  const fs::path dicomdir = folder_ / "DICOMDIR";
+  ASSERT_TRUE(directory.saveFile(dicomdir.c_str(), EXS_LittleEndianExplicit).good());
+  expect_series(read_scan(dicomdir));
+  EXPECT_EQ(read_scan(dicomdir).series.size(), 2U);
+  EXPECT_EQ(read_series(dicomdir, "2").grid.geometry().dims[2], 2);
+  fs::remove(folder_ / "IMAGES" / "S1" / "I2");
+  EXPECT_TRUE(contains(refusal(dicomdir), "DICOMDIR: names IMAGES/S1/I2, which is not there"));
+}
+
+// Enhanced CT: all frames in one file, each with a place and a meaning of its own.
+TEST_F(DicomSeries, FramesOfAnEnhancedFileLieWhereTheirGroupsSay) {
+  DcmFileFormat file;
+  DcmDataset& data = *file.getDataset();
+  write_slice({.file = "one"});
+  ASSERT_TRUE(file.loadFile((folder_ / "one").c_str()).good());
+  for (const DcmTagKey& tag : {DCM_ImagePositionPatient, DCM_ImageOrientationPatient, DCM_PixelSpacing,
+                               DCM_RescaleSlope, DCM_RescaleIntercept})
+    data.findAndDeleteElement(tag);
+  const auto put = [&](const DcmTagKey& group, int frame, const DcmTagKey& tag, const std::string& text) {
+    const bool shared = frame < 0;
+    DcmItem* outer = nullptr;
+    DcmItem* inner = nullptr;
+    ASSERT_TRUE(data.findOrCreateSequenceItem(
+                        shared ? DCM_SharedFunctionalGroupsSequence : DCM_PerFrameFunctionalGroupsSequence,
+                        outer, shared ? 0 : frame)
+                    .good());
+    ASSERT_TRUE(outer->findOrCreateSequenceItem(group, inner, 0).good());
+    inner->putAndInsertString(tag, text.c_str());
+  };
+  put(DCM_PixelMeasuresSequence, -1, DCM_PixelSpacing, "0.25\\0.5");
+  put(DCM_PlaneOrientationSequence, -1, DCM_ImageOrientationPatient, "1\\0\\0\\0\\1\\0");
+  std::vector<Uint16> pixels;
+  // The frames are not in the order of their places, and the slope of one is another.
+  const std::array<int, 4> place_of_frame{2, 0, 3, 1};
+  for (int frame = 0; frame < 4; ++frame) {
+    const int k = place_of_frame[static_cast<std::size_t>(frame)];
+    put(DCM_PlanePositionSequence, frame, DCM_ImagePositionPatient, "1\\2\\" + std::to_string(10 + 0.75 * k));
+    put(DCM_PixelValueTransformationSequence, frame, DCM_RescaleSlope, k == 3 ? "1" : "2");
+    put(DCM_PixelValueTransformationSequence, frame, DCM_RescaleIntercept, "-100");
+    put(DCM_PixelValueTransformationSequence, frame, DCM_RescaleType, "HU");
+    for (int j = 0; j < kRows; ++j) {
+      for (int i = 0; i < kColumns; ++i)
+        pixels.push_back(static_cast<Uint16>((k == 3 ? 2 : 1) * stored_value(i, j, k)));
+    }
+  }
+  data.putAndInsertString(DCM_NumberOfFrames, "4");
+  data.putAndInsertUint16Array(DCM_PixelData, pixels.data(), pixels.size());
+  for (const auto syntax : {EXS_LittleEndianExplicit, EXS_RLELossless, EXS_JPEGLSLossless}) {
+    SCOPED_TRACE(DcmXfer(syntax).getXferName());
+    ASSERT_TRUE(data.chooseRepresentation(syntax, nullptr).good());
+    ASSERT_TRUE(file.saveFile((folder_ / "many").c_str(), syntax).good());
+    expect_series(read_scan(folder_ / "many"));
+    EXPECT_TRUE(read_scan(folder_ / "many").in_hounsfield_units);
+  }
+  put(DCM_PixelValueTransformationSequence, 0, DCM_RescaleType, "ML_100G");
+  ASSERT_TRUE(file.saveFile((folder_ / "many").c_str(), EXS_JPEGLSLossless).good());
+  EXPECT_FALSE(read_scan(folder_ / "many").in_hounsfield_units);
+}
+
+TEST_F(DicomSeries, MoreMemoryThanAllowedIsRefusedBeforeItIsTaken) {
+  write_series();
+  EXPECT_NO_THROW(read_scan(folder_, {.series = "", .max_memory_bytes = 4 * kColumns * kRows * 4}));
+  try {
+    read_scan(folder_, {.series = "", .max_memory_bytes = 4 * kColumns * kRows * 4 - 1});
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_TRUE(contains(error.what(), "for its voxels, over the")) << error.what();
+  }
 }
 
 TEST_F(DicomSeries, TwoImagesAtOnePlaceAreRefusedAndACopyIsNot) {
@@ -260,7 +384,7 @@ TEST_F(DicomSeries, AFolderWithoutSlicesIsRefused) {
   write("notes.txt", "hello");
   EXPECT_TRUE(contains(refusal(folder_), "holds no DICOM slices"));
   fs::create_directories(folder_ / "series");
-  EXPECT_TRUE(contains(refusal(folder_), "name the folder within it"));
+  EXPECT_TRUE(contains(refusal(folder_), "holds no DICOM slices"));
   write_slice({.file = "one"});
   EXPECT_TRUE(contains(refusal(folder_), "only one slice"));
   EXPECT_TRUE(contains(refusal(folder_ / "one"), "only one slice"));

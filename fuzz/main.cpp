@@ -1,0 +1,81 @@
+// The target that OSTEOMILL_FUZZ names, as libFuzzer runs it. With OSTEOMILL_FUZZ_SEEDS every target's seeds
+// are written to a folder of its name in that folder instead.
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+
+#include "fuzz/targets.h"
+
+#include "osteomill/files/input_error.h"
+#include "osteomill/files/temporary_folder.h"
+
+namespace osteomill::fuzzing {
+
+namespace fs = std::filesystem;
+
+const std::vector<Target>& targets() {
+  static const std::vector<Target> all = [] {
+    std::vector<Target> found = volume_targets();
+    for (const auto& part : {dicom_targets(), run_targets()})
+      found.insert(found.end(), part.begin(), part.end());
+    return found;
+  }();
+  return all;
+}
+
+void write_bytes(const fs::path& file, Bytes bytes) {
+  std::ofstream(file, std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+}
+
+std::string read_bytes(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+namespace {
+
+void write_seeds(const fs::path& folder) {
+  for (const Target& target : targets()) {
+    const TemporaryFolder work;
+    create_folder(folder / target.name);
+    int number = 0;
+    for (const std::string& seed : target.seeds(work.path()))
+      std::ofstream(folder / target.name / ("seed" + std::to_string(number++)), std::ios::binary) << seed;
+    std::puts(target.name);
+  }
+}
+
+const Target& chosen_target() {
+  const char* const name = std::getenv("OSTEOMILL_FUZZ");
+  for (const Target& target : targets()) {
+    if (name != nullptr && name == std::string(target.name)) return target;
+  }
+  std::fputs("OSTEOMILL_FUZZ has to name a target\n", stderr);
+  std::exit(2);
+}
+
+}  // namespace
+}  // namespace osteomill::fuzzing
+
+extern "C" int LLVMFuzzerInitialize(int*, char***) {
+  if (const char* const folder = std::getenv("OSTEOMILL_FUZZ_SEEDS")) {
+    osteomill::fuzzing::write_seeds(folder);
+    std::exit(0);
+  }
+  return 0;
+}
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const osteomill::fuzzing::Target& target = osteomill::fuzzing::chosen_target();
+  static const osteomill::TemporaryFolder folder;
+  try {
+    target.read({data, size}, folder.path());
+  } catch (const osteomill::InputError& fault) {
+    // What a user is told is one line.
+    if (std::string(fault.what()).find('\n') != std::string::npos) std::abort();
+  }
+  return 0;
+}

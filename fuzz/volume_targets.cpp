@@ -1,0 +1,125 @@
+#include "fuzz/targets.h"
+#include <minizip/zip.h>
+#include <zlib.h>
+
+#include "osteomill/ct/read_scan.h"
+#include "osteomill/ct/write_nrrd.h"
+
+namespace osteomill::fuzzing {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+const ReadOptions kSmall{.series = "", .max_memory_bytes = 1 << 26};
+
+auto read_as(const std::string& name) {
+  return [name](Bytes bytes, const fs::path& folder) {
+    write_bytes(folder / name, bytes);
+    read_scan(folder / name, kSmall);
+  };
+}
+
+std::string pixels() {
+  std::string bytes;
+  for (int n = 0; n < 3 * 4 * 5; ++n) bytes += {static_cast<char>(7 * n), static_cast<char>(n / 20)};
+  return bytes;
+}
+
+std::string deflated(const std::string& bytes) {
+  std::string packed(compressBound(bytes.size()), '\0');
+  uLongf size = packed.size();
+  compress(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(bytes.data()),
+           bytes.size());
+  packed.resize(size);
+  return packed;
+}
+
+std::vector<std::string> nrrd_seeds(const fs::path& folder) {
+  const std::string head =
+      "NRRD0005\n# made up\ntype: int16\ndimension: 3\nspace: left-posterior-superior\nsizes: 3 4 5\n"
+      "space directions: (0.5,0,0) (0,0.5,0) (0,0,1)\nspace origin: (1,2,3)\nkinds: domain domain domain\n"
+      "endian: little\n";
+  std::string text =
+      "NRRD0004\ntype: short\ndimension: 3\nsizes: 3 4 5\nspacings: 1 1 2\nencoding: ascii\n\n";
+  for (int n = 0; n < 60; ++n) text += std::to_string(n) + (n % 3 == 2 ? "\n" : " ");
+  std::vector<float> densities(60, 2.5F);
+  densities[7] = 1000;
+  GridGeometry geometry;
+  geometry.dims = {3, 4, 5};
+  write_nrrd(folder / "a.nrrd", DensityGrid(geometry, densities));
+  return {head + "encoding: raw\n\n" + pixels(), head + "byte skip: 4\nencoding: raw\n\n1234" + pixels(),
+          text, read_bytes(folder / "a.nrrd")};
+}
+
+std::vector<std::string> metaimage_seeds(const fs::path&) {
+  const auto head = [](const std::string& packing) {
+    return "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\n" + packing +
+           "TransformMatrix = 1 0 0 0 1 0 0 0 1\nOffset = 1 2 3\nElementSpacing = 0.5 0.5 1\nDimSize = 3 4 "
+           "5\n"
+           "ElementType = MET_SHORT\nElementDataFile = LOCAL\n";
+  };
+  const std::string packed = deflated(pixels());
+  return {
+      head("CompressedData = False\n") + pixels(),
+      head("CompressedData = True\nCompressedDataSize = " + std::to_string(packed.size()) + "\n") + packed};
+}
+
+// The fields of a NIfTI-1 header that are looked at, at their places.
+std::vector<std::string> nifti_seeds(const fs::path& folder) {
+  std::string head(352, '\0');
+  const auto put = [&](std::size_t at, auto value) {
+    head.replace(at, sizeof(value), reinterpret_cast<const char*>(&value), sizeof(value));
+  };
+  put(0, 348);
+  for (const auto& [at, value] :
+       {std::pair{40, 3}, {42, 3}, {44, 4}, {46, 5}, {48, 1}, {70, 4}, {72, 16}, {254, 1}})
+    put(static_cast<std::size_t>(at), static_cast<std::int16_t>(value));
+  for (const auto& [at, value] : {std::pair{76, 1.0F},
+                                  {80, 0.5F},
+                                  {84, 0.5F},
+                                  {88, 1.0F},
+                                  {108, 352.0F},
+                                  {112, 1.0F},
+                                  {280, 0.5F},
+                                  {300, 0.5F},
+                                  {320, 1.0F}})
+    put(static_cast<std::size_t>(at), value);
+  put(123, char{2});
+  head.replace(344, 4, std::string("n+1\0", 4));
+  const std::string sform = head + pixels();
+  put(252, std::int16_t{1});
+  put(254, std::int16_t{0});
+  const std::string qform = head + pixels();
+  const fs::path packed = folder / "a.gz";
+  gzFile const file = gzopen(packed.c_str(), "wb");
+  gzwrite(file, sform.data(), static_cast<unsigned>(sform.size()));
+  gzclose(file);
+  return {sform, qform, read_bytes(packed)};
+}
+
+std::vector<std::string> zip_seeds(const fs::path& folder) {
+  const fs::path path = folder / "a.zip";
+  zipFile const zip = zipOpen64(path.c_str(), APPEND_STATUS_CREATE);
+  for (const auto& [name, bytes] :
+       {std::pair<std::string, std::string>{"case/a.nrrd", nrrd_seeds(folder).front()},
+        {"case/notes.txt", "notes"}}) {
+    const zip_fileinfo info{};
+    zipOpenNewFileInZip(zip, name.c_str(), &info, nullptr, 0, nullptr, 0, nullptr, Z_DEFLATED, 9);
+    zipWriteInFileInZip(zip, bytes.data(), static_cast<unsigned>(bytes.size()));
+    zipCloseFileInZip(zip);
+  }
+  zipClose(zip, nullptr);
+  return {read_bytes(path)};
+}
+
+}  // namespace
+
+std::vector<Target> volume_targets() {
+  return {{"nrrd", read_as("a.nrrd"), nrrd_seeds},
+          {"metaimage", read_as("a.mha"), metaimage_seeds},
+          {"nifti", read_as("a.nii.gz"), nifti_seeds},
+          {"zip", read_as("a.zip"), zip_seeds}};
+}
+
+}  // namespace osteomill::fuzzing
