@@ -27,8 +27,8 @@ void add_scan_source(CLI::App& command, ScanOptions& options) {
   command
       .add_option_function<double>(
           "--max-memory",
-          [&](double gigabytes) {
-            options.read.max_memory_bytes = static_cast<std::uint64_t>(gigabytes * 1e9);
+          [&bytes = options.read.max_memory_bytes](double gigabytes) {
+            bytes = static_cast<std::uint64_t>(gigabytes * 1e9);
           },
           "Refuse a scan whose voxels, or whose unpacked files, take more; else what the machine has")
       ->check(CLI::Range(1e-3, 1e6))
