@@ -6,6 +6,9 @@
 #include <string>
 #include <vector>
 
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include "osteomill/files/input_error.h"
 #include "osteomill/recording/description_attributes.h"
 #include "osteomill/recording/hdf5_attributes.h"
@@ -31,13 +34,7 @@ struct OpenRecording {
 
 OpenRecording open_recording(const fs::path& path) {
   std::error_code error;
-  if (!fs::exists(path, error)) throw InputError(path.string(), "no such file");
-  if (!fs::is_regular_file(path, error)) throw InputError(path.string(), "is not a file");
   const std::uintmax_t bytes = fs::file_size(path, error);
-  if (error) throw InputError(path.string(), "cannot be read: " + error.message());
-  if (check_checksum(path) == Checksum::broken) {
-    throw InputError(path.string(), "is damaged or cut short: its checksum is not that of its content");
-  }
   if (H5Fis_hdf5(path.c_str()) <= 0) throw InputError(path.string(), "is not an HDF5 file, so no recording");
   OpenRecording recording{path, bytes,
                           Hdf5Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose)};
@@ -167,10 +164,7 @@ std::vector<RunPicture> read_pictures(const OpenRecording& recording) {
   return pictures;
 }
 
-}  // namespace
-
-Recording read_recording(const fs::path& path) {
-  const Hdf5Lock lock;
+Recording read_open_file(const fs::path& path) {
   const OpenRecording open = open_recording(path);
   const AttributeReader root(path, open.file.get());
   require_our_version(open, root);
@@ -182,6 +176,40 @@ Recording read_recording(const fs::path& path) {
   recording.records = read_records(open, recording.complete);
   recording.pictures = read_pictures(open);
   return recording;
+}
+
+// HDF5 ends the program on some damaged files, or never comes back. Where no checksum tells them, another
+// process tries first.
+void try_in_child(const fs::path& path) {
+  constexpr unsigned kMax_s = 60;
+  const ::pid_t child = ::fork();
+  if (child == 0) {
+    ::alarm(kMax_s);
+    try {
+      read_open_file(path);
+    } catch (...) {
+      // It will be said by who reads it next.
+    }
+    ::_exit(0);
+  }
+  int status = 0;
+  if (child > 0 && ::waitpid(child, &status, 0) == child && status != 0)
+    throw InputError(path.string(), "is damaged: it ends the program that reads it");
+}
+
+}  // namespace
+
+Recording read_recording(const fs::path& path) {
+  const Hdf5Lock lock;
+  std::error_code error;
+  if (!fs::exists(path, error)) throw InputError(path.string(), "no such file");
+  if (!fs::is_regular_file(path, error)) throw InputError(path.string(), "is not a file");
+  const Checksum checksum = check_checksum(path);
+  if (checksum == Checksum::broken) {
+    throw InputError(path.string(), "is damaged or cut short: its checksum is not that of its content");
+  }
+  if (checksum == Checksum::none) try_in_child(path);
+  return read_open_file(path);
 }
 
 }  // namespace osteomill

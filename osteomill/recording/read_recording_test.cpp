@@ -189,6 +189,25 @@ TEST_F(ChangedRecording, AnyDamagedByteIsNoticed) {
   }
 }
 
+TEST_F(ChangedRecording, WithoutItsChecksumADamagedByteEndsNoProgram) {
+  remove_seal();
+  const std::string whole = bytes_of(path_);
+  std::uint64_t state = 54321;
+  for (int round = 0; round < 100; ++round) {
+    std::string damaged = whole;
+    for (int n = 0; n < 8; ++n) {
+      state = state * 6364136223846793005u + 1442695040888963407u;
+      damaged[kUserBlockBytes + (state >> 20) % (20000 - kUserBlockBytes)] = static_cast<char>(state >> 50);
+    }
+    write_bytes(path_, damaged);
+    try {
+      read_recording(path_);
+    } catch (const InputError& fault) {
+      EXPECT_NE(std::string(fault.what()).find(path_.string()), std::string::npos);
+    }
+  }
+}
+
 TEST_F(ChangedRecording, WithoutItsChecksumItIsStillRead) {
   remove_seal();
   EXPECT_EQ(read_recording(path_).records.size(), 1500u);
