@@ -4,8 +4,6 @@
 #include "verification/sections.h"
 #include <fmt/core.h>
 
-#include "osteomill/haptics/tool_move.h"
-
 namespace osteomill::verification {
 
 namespace {
@@ -19,15 +17,18 @@ constexpr int kPresses = 20;
 // Of the shaft's length, where it meets the edge.
 constexpr double kLever_mm = 10;
 
+Vec3 turn_between(const Pose& from, const Pose& to) {
+  return rotation_vector(to.orientation * from.orientation.conjugate());
+}
+
 // Watches what goes through the device: a wrench is held for a tick, in which the device moves.
 struct PassivityObserver {
   double put_in_Nmm = 0;
   double given_back_Nmm = 0;
 
   void look(const Wrench& wrench, const Pose& X_WD, const Pose& X_WD_next) {
-    const ToolMove move = move_between(X_WD, X_WD_next);
-    const double to_the_hand_Nmm =
-        wrench.force_N.dot(move.translation_mm) + wrench.torque_Nmm.dot(move.rotation_rad);
+    const double to_the_hand_Nmm = wrench.force_N.dot(X_WD_next.position_mm - X_WD.position_mm) +
+                                   wrench.torque_Nmm.dot(turn_between(X_WD, X_WD_next));
     (to_the_hand_Nmm > 0 ? given_back_Nmm : put_in_Nmm) += std::abs(to_the_hand_Nmm);
   }
   double share() const { return given_back_Nmm / put_in_Nmm; }
@@ -36,13 +37,16 @@ struct PassivityObserver {
 // Takes the device from one pose to the next at the speed of the section, by its burr or by the turn at the
 // shaft's lever, whichever is longer.
 void go(HapticAlgorithm& algorithm, Pose& X_WD, const Pose& X_WD_to, PassivityObserver& observer) {
-  const ToolMove way = move_between(X_WD, X_WD_to);
-  const double length_mm = std::max(way.translation_mm.norm(), way.rotation_rad.norm() * kLever_mm);
+  const Vec3 way_mm = X_WD_to.position_mm - X_WD.position_mm;
+  const Vec3 turn_rad = turn_between(X_WD, X_WD_to);
+  const double length_mm = std::max(way_mm.norm(), turn_rad.norm() * kLever_mm);
   const int ticks = std::max(1, static_cast<int>(length_mm / (kSpeed_mm_s * kTick_s)));
   const Pose X_WD_from = X_WD;
   for (int n = 1; n <= ticks; ++n) {
     const double share = static_cast<double>(n) / ticks;
-    const Pose X_WD_next = moved(X_WD_from, {share * way.translation_mm, share * way.rotation_rad});
+    const Pose X_WD_next{
+        X_WD_from.position_mm + share * way_mm,
+        (quaternion_from_rotation_vector(share * turn_rad) * X_WD_from.orientation).normalized()};
     observer.look(algorithm.step(X_WD, kTick_s).wrench, X_WD, X_WD_next);
     X_WD = X_WD_next;
   }
