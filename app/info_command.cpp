@@ -30,7 +30,11 @@ void run_info(const InfoOptions& options) {
   };
   add(isovalue_warnings(scan.grid, isovalue));
   if (is_within(scan.grid, isovalue)) {
-    const Volume bone(std::move(scan.grid), isovalue);
+    LabelsRead labels = labels_of(options.scan, scan.grid);
+    add(labels.warnings);
+    Volume bone = bone_of(std::move(scan.grid), isovalue);
+    bone.set_labels(std::move(labels.map));
+    summary.labels = summarise_labels(bone);
     add(entry_warnings(bone, MillingTool{}, place_entry(bone, MillingTool{})));
   }
   fmt::print("{}", options.json ? to_json(summary) : to_text(summary));

@@ -13,6 +13,7 @@
 
 #include "osteomill/live/live_milling.h"
 #include "osteomill/session/fault_count.h"
+#include "osteomill/session/label_count.h"
 #include "osteomill/session/milling_setup.h"
 
 namespace osteomill::app {
@@ -47,16 +48,21 @@ void print_timing(const TimingSummary& timing) {
 // What a window would have taken meanwhile.
 struct Seen {
   FaultCount faults;
+  LabelCount labels;
   std::size_t bricks = 0;
 };
 
-Seen run_for(LiveMilling& milling, double seconds) {
+Seen run_for(LiveMilling& milling, double seconds, const std::shared_ptr<const LabelMap>& labels) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
   double passed_s = 0;
   Seen seen;
+  if (labels) seen.labels = LabelCount(labels->labels());
   const auto take = [&] {
-    while (const auto record = milling.next_record()) seen.faults.add(*record);
+    while (const auto record = milling.next_record()) {
+      seen.faults.add(*record);
+      if (const Label* touched = seen.labels.add(*record)) warn(no_go_warning(*touched, *record));
+    }
     seen.bricks += milling.take_changed_bricks().size();
   };
   while (passed_s < seconds && milling.running()) {
@@ -79,6 +85,7 @@ void run_live(LiveOptions options, const std::string& command_line) {
   LoadedBone loaded = load_bone(options.scan);
   require_workable(setup.tool, loaded.volume.geometry());
   const auto bone = std::make_shared<Volume>(std::move(loaded.volume));
+  const std::shared_ptr<const LabelMap> labels = bone->labels();
   PreparedMilling prepared = prepare_milling(bone, setup);
   SimulatedOperator hand(trial_settings(options.trial).hand_and_device, setup.tool,
                          place_entry(*bone, options.trial));
@@ -88,12 +95,13 @@ void run_live(LiveOptions options, const std::string& command_line) {
   }
   milling.start();
   if (!milling.refused_real_time().empty()) warn(milling.refused_real_time());
-  const Seen seen = run_for(milling, options.seconds);
+  const Seen seen = run_for(milling, options.seconds, labels);
   if (milling.recording()) milling.stop_recording();
   if (const auto said = seen.faults.sentence()) warn(setup.algorithm.id.name + ": " + *said);
   print_timing(milling.timing());
   fmt::print("removed      {:.2f} mm^3, {} bricks of the surface meshed\n",
              milling.state().record.removed_mm3, seen.bricks);
+  for (const std::string& line : label_lines(seen.labels)) fmt::print("label        {}\n", line);
 }
 
 }  // namespace

@@ -39,7 +39,7 @@ DensityGrid load_milled_densities(const MilledScanOptions& options) {
   Scan scan = open_scan(options.scan);
   if (!options.recording.empty()) {
     const Recording recording = read_recording(options.recording);
-    Volume volume(std::move(scan.grid), recording.description.isovalue);
+    Volume volume = bone_of(std::move(scan.grid), recording.description.isovalue);
     repeat_milling(volume, recording);
     scan.grid = volume.grid();
   }

@@ -14,6 +14,7 @@
 #include "osteomill/haptics/algorithms.h"
 #include "osteomill/recording/write_csv.h"
 #include "osteomill/session/fault_count.h"
+#include "osteomill/session/label_count.h"
 #include "osteomill/session/milling_setup.h"
 #include "osteomill/session/replay.h"
 #include "osteomill/volume/densities.h"
@@ -40,11 +41,14 @@ void run_replay(ReplayOptions options) {
   const auto session =
       make_session(std::make_shared<Volume>(std::move(bone.volume)), densities, options.milling.setup);
   FaultCount faults;
+  LabelCount labels;
+  if (session->volume().labels()) labels = LabelCount(session->volume().labels()->labels());
   std::vector<TickRecord> log;
   log.reserve(trajectory.size());
   replay(*session, trajectory, [&](const TickRecord& record) {
     log.push_back(record);
     faults.add(record);
+    if (const Label* touched = labels.add(record)) warn(no_go_warning(*touched, record));
     if (log.size() % 1000 == 0) {
       show_progress("replay", static_cast<double>(log.size()) / static_cast<double>(trajectory.size()));
     }
@@ -52,6 +56,7 @@ void run_replay(ReplayOptions options) {
   end_progress();
   if (const auto said = faults.sentence()) warn(options.trajectory + ": " + *said);
   write_csv(options.out, log);
+  for (const std::string& line : label_lines(labels)) fmt::print("label {}\n", line);
   fmt::print("{}\n", options.out);
 }
 

@@ -12,8 +12,31 @@
 #include "osteomill/numbers/work_progress.h"
 #include "osteomill/volume/builtin_tooth.h"
 #include "osteomill/volume/isovalue_warnings.h"
+#include "osteomill/volume/label_scan.h"
 
 namespace osteomill::app {
+
+namespace {
+
+void add_label_options(CLI::App& command, LabelFiles& labels) {
+  const auto take = [&labels](const std::vector<std::string>& said) { labels.no_go = said; };
+  command
+      .add_option("--labels", labels.map,
+                  "A label map of the scan (NRRD, .seg.nrrd, NIfTI, MetaImage), on any grid")
+      ->check(not_empty())
+      ->type_name("FILE");
+  command
+      .add_option("--label-table", labels.table, "Names and colours of labels: a colour table of 3D Slicer's")
+      ->check(not_empty())
+      ->type_name("FILE");
+  command
+      .add_option_function<std::vector<std::string>>("--no-go", take,
+                                                     "Labels that the burr must not touch, by name or value")
+      ->delimiter(',')
+      ->type_name("LABEL,...");
+}
+
+}  // namespace
 
 void add_scan_source(CLI::App& command, ScanOptions& options) {
   command.add_option("scan", options.scan, kScanText)->check(not_empty());
@@ -41,6 +64,7 @@ void add_scan_options(CLI::App& command, ScanOptions& options) {
   command.add_option("--iso", options.isovalue, "Isovalue: bone where the density is greater")
       ->check(not_empty())
       ->type_name("DENSITY");
+  add_label_options(command, options.labels);
 }
 
 Scan open_scan(const ScanOptions& options) {
@@ -56,6 +80,29 @@ SuggestedIsovalue suggested_isovalue(const ScanOptions& options, const Scan& sca
 SuggestedIsovalue chosen_isovalue(const ScanOptions& options, const Scan& scan) {
   if (options.isovalue) return {*options.isovalue, "given"};
   return suggested_isovalue(options, scan);
+}
+
+Volume bone_of(DensityGrid grid, double isovalue) {
+  if (isovalue_of_labels(grid)) grid = bone_of_labels(grid, isovalue);
+  return Volume(std::move(grid), isovalue);
+}
+
+LabelsRead labels_of(const ScanOptions& options, const DensityGrid& grid) {
+  LabelFiles files = options.labels;
+  const bool own = files.map.empty() && is_label_file(options.scan) && isovalue_of_labels(grid);
+  if (own) files.map = options.scan;
+  if (files.map.empty()) {
+    if (!files.table.empty() || !files.no_go.empty())
+      throw InputError(options.scan.empty() ? "the built-in tooth" : options.scan,
+                       "has no labels; --labels gives them");
+    return {};
+  }
+  LabelsRead read = read_labels(files, grid.geometry(), options.read.max_memory_bytes);
+  if (own) {
+    read.warnings.push_back(files.map.string() +
+                            ": is a label map, not a scan: what it labels is taken for bone of one density");
+  }
+  return read;
 }
 
 LoadedBone read_bone(const ScanOptions& options) {
@@ -74,8 +121,11 @@ LoadedBone read_bone(const ScanOptions& options) {
   if (!is_within(scan.grid, isovalue.value)) throw InputError(scan.name, of_isovalue.front());
   warnings.insert(warnings.end(), of_isovalue.begin(), of_isovalue.end());
   for (std::string& warning : warnings) warning = scan.name + ": " + warning;
-  return {Volume(std::move(scan.grid), isovalue.value), scan.name, std::move(isovalue.how),
-          std::move(warnings), scan.in_hounsfield_units};
+  LabelsRead labels = labels_of(options, scan.grid);
+  warnings.insert(warnings.end(), labels.warnings.begin(), labels.warnings.end());
+  Volume bone = bone_of(std::move(scan.grid), isovalue.value);
+  bone.set_labels(std::move(labels.map));
+  return {std::move(bone), scan.name, std::move(isovalue.how), std::move(warnings), scan.in_hounsfield_units};
 }
 
 LoadedBone load_bone(const ScanOptions& options) {

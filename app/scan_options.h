@@ -6,6 +6,7 @@
 
 #include <CLI/App.hpp>
 
+#include "osteomill/ct/read_labels.h"
 #include "osteomill/ct/read_scan.h"
 #include "osteomill/volume/suggest_isovalue.h"
 #include "osteomill/volume/volume.h"
@@ -19,6 +20,8 @@ struct ScanOptions {
   /// Not given: the built-in tooth's own, or one suggested from the scan's values.
   std::optional<double> isovalue;
   ReadOptions read;
+  /// Of a label map beside the scan; without one none, but where the scan is itself a label map.
+  LabelFiles labels{};
 };
 
 /// What SCAN may be, for help.
@@ -29,7 +32,7 @@ inline constexpr const char* kScanText =
 /// Adds SCAN and what it takes to read it: --series, --max-memory.
 void add_scan_source(CLI::App& command, ScanOptions& options);
 
-/// The same, and --iso.
+/// The same, --iso and those of labels.
 void add_scan_options(CLI::App& command, ScanOptions& options);
 
 /// The scan, or the built-in tooth; the scan's warnings are its own. Throws InputError as `read_scan` does.
@@ -41,7 +44,15 @@ SuggestedIsovalue suggested_isovalue(const ScanOptions& options, const Scan& sca
 /// The isovalue in use: the user's, or else the suggested one.
 SuggestedIsovalue chosen_isovalue(const ScanOptions& options, const Scan& scan);
 
-/// A bone ready to be milled.
+/// The bone of a scan: its densities with the isovalue, or, of a scan that is itself a label map, whatever is
+/// labelled above the isovalue, all of one density.
+Volume bone_of(DensityGrid grid, double isovalue);
+
+/// The labels of a scan, if it has any: those that were asked for, or its own. Their warnings name the file.
+/// Throws InputError as `read_labels` does.
+LabelsRead labels_of(const ScanOptions& options, const DensityGrid& grid);
+
+/// A bone ready to be milled, with its labels.
 struct LoadedBone {
   Volume volume;
   /// The scan as the user named it, or "built-in tooth".

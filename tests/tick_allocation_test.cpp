@@ -1,5 +1,6 @@
 #include <atomic>
 #include <chrono>
+#include <cstdlib>
 #include <limits>
 #include <memory>
 #include <string>
@@ -36,12 +37,27 @@ struct Case {
 
 class TickAllocation : public ::testing::TestWithParam<Case> {};
 
+// A no-go structure in the middle of bone of five other labels.
+std::shared_ptr<const LabelMap> labels_of(const GridGeometry& grid) {
+  std::vector<LabelMap::Place> places;
+  for (int k = 0; k < grid.dims[2]; ++k) {
+    for (int j = 0; j < grid.dims[1]; ++j) {
+      for (int i = 0; i < grid.dims[0]; ++i)
+        places.push_back(static_cast<LabelMap::Place>(std::abs(i - 32) < 3 ? 6 : 1 + i % 5));
+    }
+  }
+  std::vector<Label> labels(6);
+  labels.back().no_go = true;
+  return std::make_shared<const LabelMap>(labels, grid, grid, places);
+}
+
 // Comes down, mills, leans the shaft on the edge; also a jump across the bone, a pose that is not finite, and
 // a reset.
 TEST_P(TickAllocation, NoTickAllocates) {
   constexpr double kBallRadius_mm = 6;
   Volume volume = testing_support::shape_volume(testing_support::centred_cube(64, 0.25),
                                                 testing_support::ball(Vec3::Zero(), kBallRadius_mm));
+  volume.set_labels(labels_of(volume.geometry()));
   const MillingTool tool;
   const BoneDensities densities = estimate_densities(volume);
   MillingSession session(std::move(volume), tool,
@@ -50,7 +66,8 @@ TEST_P(TickAllocation, NoTickAllocates) {
   PosedDevice device;
   constexpr int kTicks = 3000;
   int touching = 0;
-  double removed_mm3 = 0;
+  double removed_mm3 = 0, labelled_mm3 = 0;
+  bool touched_no_go = false;
   const long before = allocations_of_this_thread();
   for (int n = 0; n < kTicks; ++n) {
     Pose pose = testing_support::down_and_lean(kBallRadius_mm, tool.burr_radius_mm, 2.0,
@@ -61,6 +78,10 @@ TEST_P(TickAllocation, NoTickAllocates) {
     const TickRecord record = session.tick(device, n * 1e-3, 1e-3, true);
     touching += record.contacts > 0 ? 1 : 0;
     removed_mm3 = record.removed_mm3;
+    for (const LabelCut& cut : record.label_cuts) {
+      labelled_mm3 += cut.removed_mm3;
+      touched_no_go = touched_no_go || cut.label == 6;
+    }
     if (n == 2500) {
       EXPECT_EQ(record.fault, WrenchFault::pose_not_finite);
       EXPECT_EQ(device.sent().force_N, Vec3::Zero());
@@ -70,6 +91,8 @@ TEST_P(TickAllocation, NoTickAllocates) {
   EXPECT_EQ(allocated, 0);
   EXPECT_GT(touching, kTicks / 3);
   EXPECT_GT(removed_mm3, 0.1);
+  EXPECT_NEAR(labelled_mm3, removed_mm3, 1e-9);
+  EXPECT_TRUE(touched_no_go);
 }
 
 INSTANTIATE_TEST_SUITE_P(AllAlgorithms, TickAllocation,

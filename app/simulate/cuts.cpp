@@ -13,6 +13,8 @@ namespace {
 
 // While milling goes on, pictures from one sampling of a cut to the next.
 constexpr int kPicturesBetween = 8;
+// Along the longer side of what a cut lays open.
+constexpr int kMaxPixels = 320;
 
 bool same(const ClipPlane& a, const ClipPlane& b) {
   return a.normal_W == b.normal_W && a.offset_mm == b.offset_mm;
@@ -57,10 +59,11 @@ void CutUpdates::update(const ViewState& view, const Simulation& simulation, Sce
     const ClipPlane plane = plane_of(view.cuts[n]);
     const bool milled =
         shown.bone_version != simulation.milling.bone_version() && pictures_ % kPicturesBetween == 0;
-    if (shown.on && same(shown.plane, plane) && !milled) continue;
-    shown = {true, plane, simulation.milling.bone_version()};
+    if (shown.on && same(shown.plane, plane) && shown.labels == view.labels && !milled) continue;
+    shown = {true, plane, view.labels, simulation.milling.bone_version()};
     simulation.milling.read_bone([&](const Volume& bone) {
-      renderer.set_clip_face(n, clip_face(bone.grid(), plane, simulation.grey_window));
+      renderer.set_clip_face(n, clip_face(bone.grid(), plane, simulation.grey_window, kMaxPixels,
+                                          view.labels ? bone.labels().get() : nullptr));
     });
   }
 }

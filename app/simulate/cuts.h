@@ -21,6 +21,7 @@ class CutUpdates {
   struct Shown {
     bool on = false;
     ClipPlane plane;
+    bool labels = false;
     std::uint64_t bone_version = 0;
   };
   std::array<Shown, kMaxClipPlanes> shown_;

@@ -12,4 +12,10 @@ void draw_controls(ViewState& view, Simulation& simulation, FilesPanel& files, c
 /// The column on the right: everything that is measured. Returns where the next thing below has room.
 float draw_readings(Simulation& simulation, double pictures_per_s, const PixelSize& size);
 
+/// Below it, where the bone has labels: a legend, and how much of each was removed.
+float draw_labels(ViewState& view, const Simulation& simulation, const PixelSize& size, float top_px);
+
+/// For some seconds after the burr touched a no-go label: a red line across the top that says so.
+void draw_no_go(Simulation& simulation, const PixelSize& size);
+
 }  // namespace osteomill::app

@@ -25,6 +25,7 @@ ViewScene scene_of(const ViewState& view, Simulation& simulation) {
   const double apart_rad = record.X_WD.orientation.angularDistance(record.X_WT.orientation);
   if (view.ghost && (apart_mm > kApart_mm || apart_rad > kApart_rad)) scene.X_WD = record.X_WD;
   if (view.arrows) scene.wrench = record.wrench;
+  scene.show_labels = view.labels;
   scene.isovalue = simulation.milling.isovalue();
   scene.reference_density = simulation.milling.densities().reference;
   for (std::size_t n = 0; n < view.cuts.size(); ++n) {

@@ -1,9 +1,9 @@
 #include "app/simulate/simulation.h"
 
-#include <chrono>
-#include <memory>
 #include <thread>
 #include <utility>
+
+#include "app/progress.h"
 
 #include "osteomill/files/input_error.h"
 #include "osteomill/numbers/work_progress.h"
@@ -49,6 +49,7 @@ OpenedScan open_for_milling(const ScanOptions& scan, const MillingSetup& setup,
   }
   auto bone = std::make_shared<Volume>(std::move(loaded.volume));
   const BoneBox box = box_of_bone(*bone);
+  const std::shared_ptr<const LabelMap> labels = bone->labels();
   if (const std::string fault = tool_fault(setup.tool, box); !fault.empty())
     throw InputError(loaded.name, fault);
   const DensityHistogram histogram = histogram_of(bone->grid());
@@ -62,6 +63,7 @@ OpenedScan open_for_milling(const ScanOptions& scan, const MillingSetup& setup,
           box,
           histogram,
           grey_window,
+          labels,
           std::move(prepared)};
 }
 
@@ -76,7 +78,9 @@ Simulation::Simulation(OpenedScan opened, const Pose& X_WT, const std::string& c
       grey_window(opened.grey_window),
       hand(handle_settings(opened.milling.setup), pointing_hand(), X_WT),
       milling(std::move(opened.milling), hand),
-      autosave(std::move(opened.as_scanned), std::move(autosave_file)) {
+      autosave(std::move(opened.as_scanned), std::move(autosave_file)),
+      labels(std::move(opened.labels)) {
+  if (labels) label_count = LabelCount(labels->labels());
   milling.start();
   // What is drawn and pulled begins at the tool, so its first tick is waited for.
   while (history.empty() && milling.running()) {
@@ -86,10 +90,29 @@ Simulation::Simulation(OpenedScan opened, const Pose& X_WT, const std::string& c
 }
 
 void Simulation::update() {
-  while (const auto record = milling.next_record()) history.push_back(*record);
+  while (const auto record = milling.next_record()) {
+    history.push_back(*record);
+    if (const Label* touched = label_count.add(*record)) {
+      no_go_text = no_go_warning(*touched, *record);
+      no_go_s = record->time_s;
+      warn(no_go_text);
+    }
+  }
   while (history.size() > kHistory) history.pop_front();
   milling.update();
   autosave.update(milling);
+  count_labels();
+}
+
+// Goes through all that was ever milled, so not at every picture.
+void Simulation::count_labels() {
+  constexpr auto kEvery = std::chrono::milliseconds(500);
+  const auto now = std::chrono::steady_clock::now();
+  const std::uint64_t version = milling.bone_version();
+  if (!labels || version == counted_version_ || now - counted_ < kEvery) return;
+  removed_by_label_mm3 = milling.removed_by_label();
+  counted_version_ = version;
+  counted_ = now;
 }
 
 }  // namespace osteomill::app

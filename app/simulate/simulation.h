@@ -1,7 +1,10 @@
 #pragma once
 
+#include <chrono>
 #include <deque>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "app/scan_options.h"
 #include "app/simulate/autosave.h"
@@ -9,6 +12,7 @@
 
 #include "osteomill/live/live_milling.h"
 #include "osteomill/operator/virtual_hand.h"
+#include "osteomill/session/label_count.h"
 #include "osteomill/view/clip_face.h"
 #include "osteomill/volume/density_histogram.h"
 
@@ -25,6 +29,7 @@ struct OpenedScan {
   BoneBox box;
   DensityHistogram histogram;
   WindowLevel grey_window;
+  std::shared_ptr<const LabelMap> labels;
   PreparedMilling milling;
 };
 
@@ -54,8 +59,22 @@ struct Simulation {
   VirtualHand hand;
   LiveMilling milling;
   Autosave autosave;
+  /// Null where the bone has none.
+  std::shared_ptr<const LabelMap> labels;
+  /// What the burr met of them, and how much of each has gone (LiveMilling::removed_by_label).
+  LabelCount label_count;
+  std::vector<double> removed_by_label_mm3;
+  /// The no-go contact that began last: what to tell of it, and the session's time.
+  std::string no_go_text;
+  double no_go_s = 0;
   /// The ticks of the last 5 seconds.
   std::deque<TickRecord> history;
+
+ private:
+  void count_labels();
+
+  std::uint64_t counted_version_ = 0;
+  std::chrono::steady_clock::time_point counted_;
 };
 
 }  // namespace osteomill::app

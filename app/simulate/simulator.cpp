@@ -253,7 +253,8 @@ class Simulator {
     reset_cuts(view_);
     cuts_ = {};
     to_draw_.clear();
-    renderer_ = std::make_unique<SceneRenderer>(milling.surface_layout(), milling.geometry());
+    renderer_ =
+        std::make_unique<SceneRenderer>(milling.surface_layout(), milling.geometry(), simulation_->labels);
   }
 
   void wait_for_scan() {
@@ -302,10 +303,12 @@ class Simulator {
     draw_annotations(view_, size, !options_.scan.scan.empty());
     draw_controls(view_, *simulation_, files_, size);
     float below_px = draw_readings(*simulation_, rate_.per_s(), size);
+    below_px = draw_labels(view_, *simulation_, size, below_px);
     below_px = files_.draw_said(view_, *simulation_, size, below_px);
     if (opening_.valid()) draw_opening();
     draw_help(view_, size, below_px);
     if (const auto recording_s = files_.recording_s(*simulation_)) draw_recording(*recording_s, size);
+    draw_no_go(*simulation_, size);
     draw_complaint(view_);
     question_.draw();
     draw_closing(view_);

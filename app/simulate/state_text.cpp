@@ -114,6 +114,12 @@ std::string state_text(const std::string& name, const ViewState& view, Simulatio
   lines.add("isovalue_from", isovalue_text(simulation));
   lines.add("removed_mm3", fmt::format("{:.3f}", state.record.removed_mm3));
   lines.add("cuts", milling.cuts());
+  for (std::size_t n = 0; n < simulation.label_count.labels().size(); ++n) {
+    const bool counted = n + 1 < simulation.removed_by_label_mm3.size();
+    lines.add("removed of " + simulation.label_count.labels()[n].name,
+              fmt::format("{:.3f}", counted ? simulation.removed_by_label_mm3[n + 1] : 0));
+  }
+  lines.add("no_go", simulation.no_go_text);
   lines.add("unsaved", simulation.autosave.unsaved(milling));
   lines.add("recording", milling.recording());
   const auto recording_s = files.recording_s(simulation);

@@ -37,6 +37,7 @@ struct ViewState {
   int changes = 0;
   bool ghost = true;
   bool arrows = true;
+  bool labels = true;
   bool sound = true;
   bool help = true;
   /// What is typed as the scan to open, and the scan that is to be opened (the button was pressed).

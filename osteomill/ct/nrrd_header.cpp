@@ -21,6 +21,7 @@ namespace {
 
 struct Fields {
   std::map<std::string, std::string> values;
+  std::map<std::string, std::string> key_values;
   /// An empty line parts the header from what follows it.
   bool has_end = false;
 
@@ -97,7 +98,11 @@ Fields read_fields(const std::string& subject, std::istream& in) {
       break;
     }
     if (line.find('\0') != std::string::npos) throw InputError(subject, "has a zero byte in its header");
-    if (line.starts_with('#') || line.find(":=") != std::string::npos) continue;
+    if (line.starts_with('#')) continue;
+    if (const std::size_t equals = line.find(":="); equals != std::string::npos) {
+      fields.key_values[line.substr(0, equals)] = line.substr(equals + 2);
+      continue;
+    }
     const std::size_t colon = line.find(':');
     if (colon == std::string::npos)
       throw InputError(subject, "has a header line that is not \"field: value\"");
@@ -183,6 +188,10 @@ Vec3 lps_from_space(const std::string& subject, const std::string& space,
 void check_kinds(const std::string& subject, const std::string& kinds) {
   std::istringstream words(lower(kinds));
   for (std::string kind; words >> kind;) {
+    if (kind == "list") {
+      throw InputError(subject,
+                       "has several layers, as a segmentation whose segments overlap; save it with one");
+    }
     if (kind != "domain" && kind != "space" && kind != "time" && kind != "???" && kind != "none") {
       throw InputError(subject, fmt::format("is not a grey volume: it has an axis of kind \"{}\"", kind));
     }
@@ -283,7 +292,8 @@ VolumeHeader read_nrrd_header(const fs::path& path) {
   std::vector<std::string> warnings;
   const GridGeometry geometry = geometry_of(subject, fields, warnings);
   std::ifstream data = open_data(subject, path, fields, std::move(in));
-  return {geometry, voxels_of(subject, fields, std::move(data), geometry.voxel_count()), std::move(warnings)};
+  return {geometry, voxels_of(subject, fields, std::move(data), geometry.voxel_count()), std::move(warnings),
+          fields.key_values};
 }
 
 }  // namespace osteomill

@@ -1,7 +1,5 @@
 #include "osteomill/ct/read_scan.h"
 
-#include <algorithm>
-#include <cctype>
 #include <new>
 
 #include <fmt/format.h>
@@ -19,29 +17,19 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::optional<VolumeFormat> format_by_name(const fs::path& path) {
-  std::string name = path.filename().string();
-  std::transform(name.begin(), name.end(), name.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (name.ends_with(".nrrd") || name.ends_with(".nhdr")) return VolumeFormat::nrrd;
-  if (name.ends_with(".mha") || name.ends_with(".mhd")) return VolumeFormat::metaimage;
-  if (name.ends_with(".nii") || name.ends_with(".nii.gz")) return VolumeFormat::nifti;
-  return std::nullopt;
-}
-
 // Of a folder without DICOM: its only volume file.
 Scan read_folder(const fs::path& folder, const ReadOptions& options) {
   if (std::optional<Scan> scan = read_dicom_folder(folder, options)) return std::move(*scan);
   std::vector<fs::path> volumes;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
     const bool hidden = entry.path().filename().string().starts_with('.');
-    if (entry.is_regular_file() && !hidden && format_by_name(entry.path())) volumes.push_back(entry.path());
+    if (entry.is_regular_file() && !hidden && volume_format_of(entry.path())) volumes.push_back(entry.path());
   }
   if (volumes.empty()) throw InputError(folder.string(), "holds no DICOM slices");
   if (volumes.size() > 1) {
     throw InputError(folder.string(), fmt::format("holds {} scans; name one of them", volumes.size()));
   }
-  return read_volume_file(volumes.front(), *format_by_name(volumes.front()), options);
+  return read_volume_file(volumes.front(), *volume_format_of(volumes.front()), options);
 }
 
 std::string with_name(std::string text, const std::string& unpacked, const std::string& archive) {
@@ -73,7 +61,7 @@ Scan read_any(const fs::path& path, const ReadOptions& options) {
   if (fs::is_directory(status)) return read_folder(path, options);
   if (!fs::is_regular_file(status)) throw InputError(path.string(), "is neither a file nor a folder");
   if (fs::file_size(path, error) == 0) throw InputError(path.string(), "is empty");
-  if (const auto format = format_by_name(path)) return read_volume_file(path, *format, options);
+  if (const auto format = volume_format_of(path)) return read_volume_file(path, *format, options);
   if (is_zip(path)) return read_zip(path, options);
   if (std::optional<Scan> scan = read_dicom_file(path, options)) return std::move(*scan);
   throw InputError(

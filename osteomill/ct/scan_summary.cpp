@@ -50,6 +50,29 @@ ScanSummary summarise(const Scan& scan, SuggestedIsovalue suggested_iso, double 
   return summary;
 }
 
+std::vector<LabelSummary> summarise_labels(const Volume& bone) {
+  std::vector<LabelSummary> summaries;
+  const std::shared_ptr<const LabelMap>& map = bone.labels();
+  if (!map) return summaries;
+  for (const Label& label : map->labels()) summaries.push_back({label});
+  const VoxelBox& box = map->box();
+  for (int k = box.first.k; k <= box.last.k; ++k) {
+    for (int j = box.first.j; j <= box.last.j; ++j) {
+      for (int i = box.first.i; i <= box.last.i; ++i) {
+        const LabelMap::Place place = map->at({i, j, k});
+        if (place == 0) continue;
+        LabelSummary& summary = summaries[place - 1u];
+        ++summary.voxels;
+        summary.bone_voxels += bone.is_bone({i, j, k}) ? 1 : 0;
+      }
+    }
+  }
+  const double voxel_mm3 = bone.geometry().voxel_volume_mm3();
+  for (LabelSummary& summary : summaries)
+    summary.volume_mm3 = static_cast<double>(summary.voxels) * voxel_mm3;
+  return summaries;
+}
+
 std::string to_json(const ScanSummary& summary) {
   nlohmann::ordered_json json{{"dims", summary.dims},
                               {"spacing_mm", summary.spacing_mm},
@@ -63,6 +86,15 @@ std::string to_json(const ScanSummary& summary) {
                               {"voxels_above_iso", summary.voxels_above_iso},
                               {"warnings", summary.warnings}};
   if (!summary.series.empty()) json["series"] = summary.series;
+  for (const LabelSummary& of : summary.labels) {
+    json["labels"].push_back({{"value", of.label.value},
+                              {"name", of.label.name},
+                              {"colour", hex_colour(of.label)},
+                              {"no_go", of.label.no_go},
+                              {"voxels", of.voxels},
+                              {"volume_mm3", of.volume_mm3},
+                              {"bone_voxels", of.bone_voxels}});
+  }
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
 }
 
@@ -88,6 +120,13 @@ std::string to_text(const ScanSummary& summary) {
                       summary.suggested_iso.how);
   text += fmt::format("bone        {} voxels above {:.6g}\n", summary.voxels_above_iso, summary.isovalue);
   for (const std::string& series : summary.series) text += fmt::format("series      {}\n", series);
+  for (const LabelSummary& of : summary.labels) {
+    text += fmt::format(
+        "label       {} {}, {}: {} voxels, {:.5g} mm^3, {:.0f} % bone{}\n", of.label.value, of.label.name,
+        hex_colour(of.label), of.voxels, of.volume_mm3,
+        of.voxels > 0 ? 100.0 * static_cast<double>(of.bone_voxels) / static_cast<double>(of.voxels) : 0.0,
+        of.label.no_go ? ", no-go" : "");
+  }
   for (const std::string& warning : summary.warnings) text += fmt::format("warning: {}\n", warning);
   return text;
 }

@@ -7,8 +7,18 @@
 
 #include "osteomill/ct/read_scan.h"
 #include "osteomill/volume/suggest_isovalue.h"
+#include "osteomill/volume/volume.h"
 
 namespace osteomill {
+
+/// How much of a scan a label has.
+struct LabelSummary {
+  Label label;
+  std::size_t voxels = 0;
+  double volume_mm3 = 0;
+  /// Of these voxels, those that are bone.
+  std::size_t bone_voxels = 0;
+};
 
 /// What `osteomill info` tells of a scan. Lengths in mm, in the patient's LPS frame.
 struct ScanSummary {
@@ -31,13 +41,19 @@ struct ScanSummary {
   std::vector<std::string> warnings;
   /// As `Scan::series`.
   std::vector<std::string> series;
+  /// Empty where the scan has no labels.
+  std::vector<LabelSummary> labels{};
 };
 
 /// One pass over the voxels. `suggested_iso` is what is reported as suggested (`suggest_isovalue`).
 ScanSummary summarise(const Scan& scan, SuggestedIsovalue suggested_iso, double isovalue);
 
+/// Of the bone's labels, if it has any. One pass over their voxels.
+std::vector<LabelSummary> summarise_labels(const Volume& bone);
+
 /// A JSON object with the keys dims, spacing_mm, origin_mm, direction, value_min, value_max, value_mean,
-/// suggested_iso, suggested_how, voxels_above_iso, warnings, series where there are several, and a line feed
+/// suggested_iso, suggested_how, voxels_above_iso, warnings, series where there are several, labels
+/// where there are any, and a line feed
 /// at its end. Bytes of a warning that are not UTF-8 are replaced.
 std::string to_json(const ScanSummary& summary);
 

@@ -1,5 +1,7 @@
 #include "osteomill/ct/volume_file.h"
 
+#include <array>
+
 #include <fmt/format.h>
 
 #include "osteomill/ct/plausible_scan.h"
@@ -31,15 +33,29 @@ Scan read_behind(VolumeHeader header, const std::string& subject, const char* fo
 
 }  // namespace
 
-Scan read_volume_file(const fs::path& path, VolumeFormat format, const ReadOptions& options) {
+std::optional<VolumeFormat> volume_format_of(const fs::path& path) {
+  const std::string name = lower(path.filename().string());
+  if (name.ends_with(".nrrd") || name.ends_with(".nhdr")) return VolumeFormat::nrrd;
+  if (name.ends_with(".mha") || name.ends_with(".mhd")) return VolumeFormat::metaimage;
+  if (name.ends_with(".nii") || name.ends_with(".nii.gz")) return VolumeFormat::nifti;
+  return std::nullopt;
+}
+
+VolumeHeader read_volume_header(const fs::path& path, VolumeFormat format) {
   switch (format) {
     case VolumeFormat::nrrd:
-      return read_behind(read_nrrd_header(path), path.string(), "NRRD", options);
+      return read_nrrd_header(path);
     case VolumeFormat::metaimage:
-      return read_behind(read_metaimage_header(path), path.string(), "MetaImage", options);
+      return read_metaimage_header(path);
     default:
-      return read_behind(read_nifti_header(path), path.string(), "NIfTI", options);
+      return read_nifti_header(path);
   }
+}
+
+Scan read_volume_file(const fs::path& path, VolumeFormat format, const ReadOptions& options) {
+  constexpr std::array kNames{"NRRD", "MetaImage", "NIfTI"};
+  return read_behind(read_volume_header(path, format), path.string(),
+                     kNames[static_cast<std::size_t>(format)], options);
 }
 
 }  // namespace osteomill

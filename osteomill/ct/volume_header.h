@@ -2,6 +2,7 @@
 
 #include <array>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,6 +17,8 @@ struct VolumeHeader {
   GridGeometry geometry;
   StoredVoxels voxels;
   std::vector<std::string> warnings;
+  /// What NRRD calls key/value pairs, in which programs keep what the format has no field for.
+  std::map<std::string, std::string> key_values{};
 };
 
 /// These read the header of one file each and check it: sizes and spacings are numbers above zero, the axes

@@ -11,6 +11,7 @@
 #include "osteomill/recording/recorder.h"
 #include "osteomill/recording/recording.h"
 #include "osteomill/session/fault_count.h"
+#include "osteomill/session/label_count.h"
 
 namespace osteomill {
 
@@ -55,10 +56,15 @@ std::vector<fs::path> record_trial(const TrialPlan& plan, const AlgorithmDescrip
   Recorder& holding = *recorders[1];
   const ScriptSettings& script = plan.settings.hand_and_device.script;
   FaultCount faults;
+  LabelCount labels;
+  if (plan.bone.labels()) labels = LabelCount(plan.bone.labels()->labels());
   for (int n = 0; !trial.finished(); ++n) {
     const MillingTrial::Tick tick = trial.tick();
     (tick.milling_phase ? milling : holding).push_waiting(tick.record);
     faults.add(tick.record);
+    if (const Label* touched = labels.add(tick.record)) {
+      events.warn(fmt::format("{}: {}", algorithm.id.name, no_go_warning(*touched, tick.record)));
+    }
     if (n % kTicksBetweenProgress == 0) {
       // A trial that takes longer than asked for, since the hand does not yet feel what it should, stays at
       // its end.

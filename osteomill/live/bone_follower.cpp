@@ -265,6 +265,26 @@ std::vector<DensityBlock> BoneFollower::touched_bricks() const {
   return bricks;
 }
 
+std::vector<double> BoneFollower::drops_by_label() const {
+  const std::shared_lock lock(impl_->bone_mutex);
+  const Volume& bone = *impl_->copy;
+  if (!bone.labels()) return {};
+  std::vector<double> drops(bone.labels()->labels().size() + 1);
+  for (const auto& [place, first] : impl_->history.first()) {
+    const float* before = first.densities.data();
+    for (int k = 0; k < DensityBlock::kVoxels; ++k) {
+      for (int j = 0; j < DensityBlock::kVoxels; ++j) {
+        for (int i = 0; i < DensityBlock::kVoxels; ++i, ++before) {
+          const VoxelIndex v{first.first.i + i, first.first.j + j, first.first.k + k};
+          const LabelMap::Place label = bone.labels()->at(v);
+          if (label != 0) drops[label] += static_cast<double>(*before) - static_cast<double>(bone.grid()[v]);
+        }
+      }
+    }
+  }
+  return drops;
+}
+
 bool BoneFollower::catch_up() {
   const bool all_sent = impl_->handover.waiting() == 0;
   const std::lock_guard lock(impl_->bone_mutex);

@@ -63,6 +63,9 @@ class BoneFollower {
   bool touched() const;
   /// Every brick that was ever milled, as it is now.
   std::vector<DensityBlock> touched_bricks() const;
+  /// By how much densities have fallen since the beginning, summed over each label's voxels, by its place;
+  /// empty for a bone without labels.
+  std::vector<double> drops_by_label() const;
 
   /// Takes over what has arrived. True where nothing is left to come, so that the copy is the bone, provided
   /// that the bone is held (LiveSession::hold_bone).

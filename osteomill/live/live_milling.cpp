@@ -154,10 +154,27 @@ std::exception_ptr LiveMilling::end_recording() {
   return {};
 }
 
+std::vector<double> LiveMilling::removed_by_label() const {
+  std::vector<double> removed_mm3 = follower_->drops_by_label();
+  for (double& drop : removed_mm3) {
+    drop *= geometry_.voxel_volume_mm3() / (densities_.reference - densities_.surroundings);
+  }
+  return removed_mm3;
+}
+
 RunDescription LiveMilling::describe(const std::string& scan_name, const std::string& command_line) const {
-  const RunFacts facts{
-      scan_name,     geometry_, isovalue_, densities_,  setup_.tool, setup_.haptics, milling_settings(setup_),
-      setup_.limits, 0,         1e-3,      command_line};
+  const RunFacts facts{scan_name,
+                       geometry_,
+                       isovalue_,
+                       densities_,
+                       setup_.tool,
+                       setup_.haptics,
+                       milling_settings(setup_),
+                       setup_.limits,
+                       0,
+                       1e-3,
+                       command_line,
+                       live_.session().volume().labels()};
   RunDescription run = describe_run(facts, setup_.algorithm, sample_points_);
   run.settings.push_back({"vibration", setup_.vibration ? 1.0 : 0.0, ""});
   return run;

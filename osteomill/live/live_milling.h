@@ -79,6 +79,10 @@ class LiveMilling {
   /// Every brick that was ever milled, as it is now; from any thread.
   std::vector<DensityBlock> touched_bricks() const { return follower_->touched_bricks(); }
 
+  /// How much of each label's bone has gone since the beginning, mm^3 of reference density, by the labels'
+  /// places from 1; what was taken back counts no more. Empty for a bone without labels.
+  std::vector<double> removed_by_label() const;
+
   /// What a recording says of the milling as it is now.
   RunDescription describe(const std::string& scan_name, const std::string& command_line) const;
   /// Throws InputError where the file cannot be written; a recording is then not going on.

@@ -26,8 +26,14 @@ using namespace std::chrono_literals;
 constexpr double kIsovalue = 500;
 
 std::shared_ptr<Volume> ball_of_bone() {
-  return std::make_shared<Volume>(testing_support::shape_volume(testing_support::centred_cube(51, 0.25),
-                                                                testing_support::ball(Vec3::Zero(), 5.0)));
+  auto bone = std::make_shared<Volume>(testing_support::shape_volume(
+      testing_support::centred_cube(51, 0.25), testing_support::ball(Vec3::Zero(), 5.0)));
+  // Its left half, and its right.
+  std::vector<LabelMap::Place> places;
+  for (std::size_t n = 0; n < bone->geometry().voxel_count(); ++n) places.push_back(n % 51 < 25 ? 1 : 2);
+  const GridGeometry& grid = bone->geometry();
+  bone->set_labels(std::make_shared<const LabelMap>(std::vector<Label>(2), grid, grid, places));
+  return bone;
 }
 
 // A hand presses the burr into the top of a ball of bone.
@@ -102,6 +108,11 @@ TEST_F(LiveMillingTest, TakesCutsBackOneByOneAndMillsOn) {
   settle();
   EXPECT_EQ(bone(), after_first);
   EXPECT_EQ(milling_.state().record.removed_mm3, removed_mm3);
+  const std::vector<double> of_label_mm3 = milling_.removed_by_label();
+  ASSERT_EQ(of_label_mm3.size(), 3u);
+  EXPECT_NEAR(of_label_mm3[1] + of_label_mm3[2], removed_mm3, 1e-6);
+  EXPECT_GT(of_label_mm3[1], 0.2 * removed_mm3);
+  EXPECT_GT(of_label_mm3[2], 0.2 * removed_mm3);
   EXPECT_EQ(milling_.cuts(), 1u);
   EXPECT_TRUE(surface_is_the_bones());
   mill(0.3);
@@ -112,6 +123,7 @@ TEST_F(LiveMillingTest, TakesCutsBackOneByOneAndMillsOn) {
   settle();
   EXPECT_EQ(bone(), untouched_);
   EXPECT_EQ(milling_.state().record.removed_mm3, 0);
+  EXPECT_EQ(milling_.removed_by_label(), (std::vector<double>{0, 0, 0}));
   EXPECT_FALSE(milling_.touched());
   EXPECT_TRUE(surface_is_the_bones());
 }

@@ -152,7 +152,14 @@ void BurrMill::share_after(std::size_t found, double advance_voxels) {
   found_of_round_ = 0;
 }
 
-MillingStep BurrMill::lower_found(Volume& volume, double dropped) const {
+void BurrMill::count_labels(const LabelMap& labels, const CutVoxels::Row& row) {
+  for (std::size_t n = row.begin; n < row.end; ++n) {
+    const double drop = static_cast<double>(voxels_.before()[n]) - static_cast<double>(voxels_.after()[n]);
+    if (drop > 0) by_label_.add(labels.at({voxels_.columns()[n], row.j, row.k}), drop * mm3_per_density_);
+  }
+}
+
+MillingStep BurrMill::lower_found(Volume& volume, double dropped) {
   MillingStep done;
   done.removed_mm3 = dropped * mm3_per_density_;
   const int* columns = voxels_.columns();
@@ -164,6 +171,7 @@ MillingStep BurrMill::lower_found(Volume& volume, double dropped) const {
     if (begin == end) continue;
     while (!(after[end - 1] < before[end - 1])) --end;
     volume.lower_row(row.j, row.k, columns + begin, after + begin, end - begin);
+    if (volume.labels()) count_labels(*volume.labels(), {row.j, row.k, begin, end});
     done.change.voxels.include({columns[begin], row.j, row.k});
     done.change.voxels.include({columns[end - 1], row.j, row.k});
   }

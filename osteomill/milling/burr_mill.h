@@ -4,6 +4,7 @@
 #include "osteomill/milling/burr_reach.h"
 #include "osteomill/milling/cut_voxels.h"
 #include "osteomill/milling/cutting_power.h"
+#include "osteomill/milling/label_tally.h"
 #include "osteomill/tool/milling_tool.h"
 #include "osteomill/volume/densities.h"
 #include "osteomill/volume/volume.h"
@@ -51,6 +52,8 @@ class BurrMill {
   /// overlapped. From step to step only voxels new in reach are searched for bone, so between two calls of
   /// `reset` nobody may raise densities of the same volume.
   MillingStep step(Volume& volume, const Vec3& burr_centre_W, const Vec3& burr_force_W_N, double dt_s);
+  /// Where the volume has labels: what the steps took of each and nobody has taken from here.
+  LabelTally& by_label() { return by_label_; }
   /// Forgets the carry and what was in reach.
   void reset();
   /// What was pressed for and not yet cut, mm^3 of reference density.
@@ -61,7 +64,8 @@ class BurrMill {
   void share_after(std::size_t found, double advance_voxels);
   CuttingBall ball_in_grid(const Vec3& centre_W, const Vec3& force_W_N) const;
   void find(const Volume& volume, const CuttingBall& ball, double max_ahead_mm, double pressed_mm3);
-  MillingStep lower_found(Volume& volume, double dropped) const;
+  MillingStep lower_found(Volume& volume, double dropped);
+  void count_labels(const LabelMap& labels, const CutVoxels::Row& row);
 
   GridGeometry geometry_;
   double radius_mm_;
@@ -72,6 +76,7 @@ class BurrMill {
   double max_ahead_mm_;
   BurrReach reach_;
   CutVoxels voxels_;
+  LabelTally by_label_;
   BurrReach::Share share_;
   std::size_t found_of_round_ = 0;  // since all lines had their turn
   double ahead_mm_ = 0;

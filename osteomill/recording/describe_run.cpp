@@ -41,6 +41,7 @@ RunDescription describe_run(const RunFacts& facts, const AlgorithmDescription& a
   run.mode = facts.haptics.mode;
   run.seed = facts.seed;
   run.tick_period_s = facts.tick_s;
+  if (facts.labels) run.labels = facts.labels->labels();
   run.settings.push_back({std::string(kCommandLineKey), facts.command_line, ""});
   add_algorithm(run.settings, algorithm, facts.haptics, sample_points);
   add_milling(run.settings, facts.milling, facts.densities);

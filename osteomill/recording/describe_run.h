@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 
 #include "osteomill/geometry/wrench.h"
@@ -27,6 +28,8 @@ struct RunFacts {
   double tick_s = 1e-3;
   /// How the program was called; may be empty.
   std::string command_line;
+  /// Null where the bone has none.
+  std::shared_ptr<const LabelMap> labels{};
 };
 
 /// All that a recording says of such a session: program, scan, tool, every setting with its unit.

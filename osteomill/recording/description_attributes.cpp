@@ -1,6 +1,8 @@
 #include "osteomill/recording/description_attributes.h"
 
+#include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <set>
 #include <stdexcept>
 
@@ -16,6 +18,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kSettingsGroup = "settings";
+constexpr const char* kLabelsGroup = "labels";
 constexpr std::string_view kUnitSuffix = ".unit";
 constexpr std::string_view kUnknownColour = "#888888";
 
@@ -28,11 +31,18 @@ void require_usable_keys(const std::vector<RunSetting>& settings) {
   }
 }
 
-void write_settings(const fs::path& path, hid_t file, const std::vector<RunSetting>& settings) {
+// Whose attributes are listed in the order in which they were made.
+Hdf5Handle create_ordered_group(const fs::path& path, hid_t file, const char* name) {
   const Hdf5Handle order(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
   H5Pset_attr_creation_order(order.get(), H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
-  const Hdf5Handle group(H5Gcreate2(file, kSettingsGroup, H5P_DEFAULT, order.get(), H5P_DEFAULT), H5Gclose);
-  if (!group.valid()) throw InputError(path.string(), "the group of settings cannot be written");
+  Hdf5Handle group(H5Gcreate2(file, name, H5P_DEFAULT, order.get(), H5P_DEFAULT), H5Gclose);
+  if (!group.valid())
+    throw InputError(path.string(), std::string("the group of ") + name + " cannot be written");
+  return group;
+}
+
+void write_settings(const fs::path& path, hid_t file, const std::vector<RunSetting>& settings) {
+  const Hdf5Handle group = create_ordered_group(path, file, kSettingsGroup);
   const AttributeWriter write(path, group.get());
   for (const RunSetting& setting : settings) {
     if (const double* number = std::get_if<double>(&setting.value)) {
@@ -64,7 +74,45 @@ std::vector<RunSetting> read_settings(const fs::path& path, hid_t file) {
   return settings;
 }
 
-// Recordings from before labels were kept hold the project's own algorithms only; of others the name serves.
+void write_labels(const fs::path& path, hid_t file, const std::vector<Label>& labels) {
+  if (labels.empty()) return;
+  const Hdf5Handle group = create_ordered_group(path, file, kLabelsGroup);
+  const AttributeWriter write(path, group.get());
+  for (const Label& label : labels) {
+    const std::string value = std::to_string(label.value);
+    write.text(value + ".name", label.name);
+    write.text(value + ".colour", hex_colour(label));
+    write.unsigned_integer(value + ".no_go", label.no_go ? 1 : 0);
+  }
+}
+
+std::vector<Label> read_labels(const fs::path& path, hid_t file) {
+  std::vector<Label> labels;
+  if (H5Lexists(file, kLabelsGroup, H5P_DEFAULT) <= 0) return labels;
+  const Hdf5Handle group(H5Gopen2(file, kLabelsGroup, H5P_DEFAULT), H5Gclose);
+  const AttributeReader read(path, group.get());
+  for (const std::string& name : read.names()) {
+    if (!name.ends_with(".name")) continue;
+    const std::string value = name.substr(0, name.find('.'));
+    Label label;
+    const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), label.value);
+    const std::string colour = read.text(value + ".colour");
+    unsigned rgb = 0;
+    if (error != std::errc() || end != value.data() + value.size() || labels.size() == LabelMap::kMaxLabels ||
+        colour.size() != 7 || std::sscanf(colour.c_str(), "#%6x", &rgb) != 1) {
+      throw InputError(path.string(), "has a label that cannot be used: '" + name + "'");
+    }
+    label.name = read.text(name);
+    label.colour = {static_cast<std::uint8_t>(rgb >> 16), static_cast<std::uint8_t>(rgb >> 8),
+                    static_cast<std::uint8_t>(rgb)};
+    label.no_go = read.unsigned_integer(value + ".no_go") != 0;
+    labels.push_back(std::move(label));
+  }
+  return labels;
+}
+
+// Recordings from before algorithms' labels were kept hold the project's own algorithms only; of others the
+// name serves.
 AlgorithmId read_algorithm(const fs::path& path, const AttributeReader& read) {
   AlgorithmId algorithm{read.text("algorithm"), "", ""};
   if (read.has("algorithm_label")) {
@@ -114,6 +162,7 @@ void write_description(const fs::path& path, hid_t file, const RunDescription& d
   write.unsigned_integer("seed", description.seed);
   write.real("tick_period_s", description.tick_period_s);
   write_settings(path, file, description.settings);
+  write_labels(path, file, description.labels);
 }
 
 RunDescription read_description(const fs::path& path, hid_t file) {
@@ -140,6 +189,7 @@ RunDescription read_description(const fs::path& path, hid_t file) {
     throw InputError(path.string(), "the attribute 'tick_period_s' is not a positive number");
   }
   description.settings = read_settings(path, file);
+  description.labels = read_labels(path, file);
   return description;
 }
 

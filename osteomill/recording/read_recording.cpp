@@ -1,6 +1,7 @@
 #include "osteomill/recording/read_recording.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -112,27 +113,73 @@ void require_in_range(const OpenRecording& recording, const RecordColumn& column
   }
 }
 
+std::vector<double> read_values(const OpenRecording& recording, hid_t dataset, const std::string& name,
+                                hsize_t rows) {
+  std::vector<double> values(rows);
+  const hsize_t from = 0;
+  const Hdf5Handle memory(H5Screate_simple(1, &rows, nullptr), H5Sclose);
+  const Hdf5Handle space(H5Dget_space(dataset), H5Sclose);
+  if (rows > 0 &&
+      (H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, &from, nullptr, &rows, nullptr) < 0 ||
+       H5Dread(dataset, H5T_NATIVE_DOUBLE, memory.get(), space.get(), H5P_DEFAULT, values.data()) < 0)) {
+    refuse(recording, "the column '" + name + "' cannot be read");
+  }
+  return values;
+}
+
 std::vector<TickRecord> read_records(const OpenRecording& recording, bool complete) {
   const std::vector<OpenColumn> columns = open_columns(recording);
   const hsize_t rows = row_count(recording, columns, complete);
   std::vector<TickRecord> records(rows);
-  std::vector<double> values(rows);
-  const hsize_t from = 0;
-  const Hdf5Handle memory(H5Screate_simple(1, &rows, nullptr), H5Sclose);
   for (const OpenColumn& open : columns) {
-    if (rows == 0) break;
-    const hid_t dataset = open.dataset.get();
-    const Hdf5Handle space(H5Dget_space(dataset), H5Sclose);
-    if (H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, &from, nullptr, &rows, nullptr) < 0 ||
-        H5Dread(dataset, H5T_NATIVE_DOUBLE, memory.get(), space.get(), H5P_DEFAULT, values.data()) < 0) {
-      refuse(recording, std::string("the column '") + open.column->name + "' cannot be read");
-    }
+    const std::vector<double> values = read_values(recording, open.dataset.get(), open.column->name, rows);
     for (std::size_t row = 0; row < records.size(); ++row) {
       require_in_range(recording, *open.column, values[row]);
       open.column->set(records[row], values[row]);
     }
   }
   return records;
+}
+
+void put_cut(const OpenRecording& recording, const std::vector<Label>& labels, double value,
+             double removed_mm3, TickRecord& record) {
+  const auto label = std::find_if(labels.begin(), labels.end(), [&](const Label& known) {
+    return static_cast<double>(known.value) == value;
+  });
+  const auto free = std::find_if(record.label_cuts.begin(), record.label_cuts.end(),
+                                 [](const LabelCut& cut) { return cut.label == 0; });
+  if (label == labels.end() || free == record.label_cuts.end()) {
+    refuse(recording, "has a cut of a label that cannot be");
+  }
+  *free = {static_cast<LabelMap::Place>(label - labels.begin() + 1), removed_mm3};
+}
+
+// What ticks cut of labels goes into their records.
+void read_cuts(const OpenRecording& recording, const std::vector<Label>& labels, bool complete,
+               std::vector<TickRecord>& records) {
+  if (labels.empty()) return;
+  constexpr std::array kNames{"row", "label", "removed_mm3"};
+  std::array<Hdf5Handle, kNames.size()> datasets;
+  std::array<std::vector<double>, kNames.size()> columns;
+  std::array<std::size_t, kNames.size()> lengths{};
+  for (std::size_t n = 0; n < kNames.size(); ++n) {
+    const std::string name = std::string("labels/") + kNames[n];
+    datasets[n] = Hdf5Handle(H5Dopen2(recording.file.get(), name.c_str(), H5P_DEFAULT), H5Dclose);
+    if (!datasets[n].valid()) refuse(recording, "has no column '" + name + "'");
+    lengths[n] = checked_length(recording, datasets[n].get(), name);
+  }
+  const auto [least, most] = std::minmax_element(lengths.begin(), lengths.end());
+  if (complete && *least != *most) refuse(recording, "has columns of unequal lengths in 'labels'");
+  for (std::size_t n = 0; n < kNames.size(); ++n)
+    columns[n] = read_values(recording, datasets[n].get(), kNames[n], *least);
+  for (std::size_t n = 0; n < *least; ++n) {
+    const double row = columns[0][n];
+    if (row >= 0 && row < static_cast<double>(records.size())) {
+      put_cut(recording, labels, columns[1][n], columns[2][n], records[static_cast<std::size_t>(row)]);
+    } else if (complete) {
+      refuse(recording, "has a cut of a label in a row that is not there");
+    }
+  }
 }
 
 std::vector<std::string> picture_names(const OpenRecording& recording, hid_t group) {
@@ -174,6 +221,7 @@ Recording read_open_file(const fs::path& path) {
   recording.dropped = root.unsigned_integer("dropped_records");
   recording.description = read_description(path, open.file.get());
   recording.records = read_records(open, recording.complete);
+  read_cuts(open, recording.description.labels, recording.complete, recording.records);
   recording.pictures = read_pictures(open);
   return recording;
 }

@@ -10,6 +10,7 @@
 #include "osteomill/geometry/pose.h"
 #include "osteomill/haptics/algorithm_description.h"
 #include "osteomill/tool/milling_tool.h"
+#include "osteomill/volume/label_map.h"
 
 namespace osteomill {
 
@@ -42,6 +43,8 @@ struct RunDescription {
   double tick_period_s = 0.001;
   /// Everything else that was set, in the order in which people should read it; every key once.
   std::vector<RunSetting> settings;
+  /// Of the bone's label map, by their places in it; empty where it has none. Every value once.
+  std::vector<Label> labels;
 };
 
 }  // namespace osteomill

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "osteomill/report/html.h"
+#include "osteomill/report/label_section.h"
 #include "osteomill/report/settings_table.h"
 
 namespace osteomill {
@@ -144,6 +145,7 @@ std::string group_section(const DrawnGroup& drawn, const PageText& text) {
             "wrong with one of them need not be wrong here.");
   if (text.about_group) html += text.about_group(group);
   html += "<h3>Figures of merit</h3>\n" + metrics_table(group, text.further_metrics);
+  html += label_section(group);
   html += "<h3>Figures</h3>\n" + missing_pictures(group);
   for (const CaptionedFigure& figure : drawn.figures) {
     // Pictures of the bone are smaller as PNG, curves and clouds as SVG stay sharp.

@@ -4,6 +4,7 @@
 
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/report/curve_figure.h"
+#include "osteomill/report/label_section.h"
 #include "osteomill/report/metrics.h"
 #include "osteomill/report/picture_figure.h"
 #include "osteomill/report/shaft_figure.h"
@@ -35,6 +36,9 @@ DrawnGroup draw(RunGroup group, const fs::path& folder, const PageText& text) {
   add("shaft", draw_shaft_figure(group, folder),
       "Where the simulated tool's shaft points: a point on the unit sphere a tick, coloured by time. The "
       "panels of a row have the same ranges; a compact cloud is a steady shaft.");
+  if (const auto labels = draw_label_figure(group, folder)) {
+    add("labels", *labels, "What was removed of each label over time, in the labels' colours.");
+  }
   return {std::move(group), std::move(figures)};
 }
 

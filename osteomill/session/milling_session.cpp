@@ -41,6 +41,7 @@ MillingSession::MillingSession(std::shared_ptr<Volume> volume, const MillingTool
     : volume_(std::move(volume)),
       algorithm_(std::move(algorithm)),
       mill_(volume_->geometry(), tool.burr_radius_mm, densities, milling),
+      no_go_(volume_->labels(), tool.burr_radius_mm),
       guard_(GuardSettings{limits}) {
   algorithm_->prepare({volume_.get(), tool, tick_period_s});
 }
@@ -61,6 +62,7 @@ TickRecord MillingSession::tick(Device& device, double time_s, double dt_s, bool
   const Clock::time_point milling_start = Clock::now();
   last_change_ = {};
   if (spindle_on) mill(step, dt_s);
+  record.label_cuts = mill_.by_label().take();
   record.milling_us = microseconds_since(milling_start);
 
   record.X_WT = step.X_WT;
@@ -119,6 +121,7 @@ HapticStep MillingSession::step_safely(const Pose& X_WD, double dt_s, bool spind
 
 void MillingSession::mill(const HapticStep& step, double dt_s) {
   const MillingStep cut = mill_.step(*volume_, step.X_WT.position_mm, step.burr_force_W_N, dt_s);
+  no_go_.look(step.X_WT.position_mm, mill_.by_label());
   removed_mm3_ += cut.removed_mm3;
   last_change_ = cut.change;
   if (!cut.change.voxels.empty()) algorithm_->volume_changed(cut.change);

@@ -6,6 +6,7 @@
 #include "osteomill/device/device.h"
 #include "osteomill/haptics/haptic_algorithm.h"
 #include "osteomill/milling/burr_mill.h"
+#include "osteomill/milling/no_go_watch.h"
 #include "osteomill/session/tick_record.h"
 #include "osteomill/session/vibration.h"
 #include "osteomill/session/wrench_guard.h"
@@ -68,6 +69,7 @@ class MillingSession {
   std::shared_ptr<Volume> volume_;
   std::unique_ptr<HapticAlgorithm> algorithm_;
   BurrMill mill_;
+  NoGoWatch no_go_;
   Vibration vibration_;
   WrenchGuard guard_;
   double removed_mm3_ = 0;

@@ -2,6 +2,7 @@
 
 #include "osteomill/geometry/pose.h"
 #include "osteomill/geometry/wrench.h"
+#include "osteomill/milling/label_tally.h"
 
 namespace osteomill {
 
@@ -23,6 +24,8 @@ struct TickRecord {
   Vec3 burr_force_W_N = Vec3::Zero();
   /// Since the start, in mm^3 of reference density.
   double removed_mm3 = 0;
+  /// In this tick, where the bone has labels: what was taken of which, and which no-go ones were touched.
+  LabelCuts label_cuts{};
   /// Time taken by the algorithm's step, and by milling with all that follows the volume.
   double compute_us = 0;
   double milling_us = 0;

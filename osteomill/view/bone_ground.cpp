@@ -35,7 +35,7 @@ bool same_view(const ViewScene& a, const ViewScene& b) {
          a.camera.field_of_view_rad == b.camera.field_of_view_rad && a.bounds.centre_W == b.bounds.centre_W &&
          a.bounds.radius_mm == b.bounds.radius_mm && a.isovalue == b.isovalue &&
          a.reference_density == b.reference_density && a.light_from_below == b.light_from_below &&
-         std::equal(a.cuts.begin(), a.cuts.end(), b.cuts.begin(), same_cut);
+         a.show_labels == b.show_labels && std::equal(a.cuts.begin(), a.cuts.end(), b.cuts.begin(), same_cut);
 }
 
 // Where a sphere is drawn at the most, pixels from the lower left; everywhere where it reaches the eye.
@@ -61,8 +61,9 @@ void clear_depths(const FrameTarget& target) {
 
 }  // namespace
 
-BoneGround::BoneGround(const SurfaceBricks& layout, const GridGeometry& geometry)
-    : bone_(layout, geometry),
+BoneGround::BoneGround(const SurfaceBricks& layout, const GridGeometry& geometry,
+                       std::shared_ptr<const LabelMap> labels)
+    : bone_(layout, geometry, std::move(labels)),
       background_(gl::make_program(shaders::kScreenVertex, shaders::kBackgroundFragment)),
       nothing_(gl::make_vertex_array()) {}
 

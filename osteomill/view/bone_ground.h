@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <set>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "osteomill/view/clip_faces.h"
 #include "osteomill/view/drawing_pace.h"
 #include "osteomill/view/frame_target.h"
+#include "osteomill/volume/label_map.h"
 
 namespace osteomill {
 
@@ -20,7 +22,8 @@ namespace osteomill {
 /// the picture in which it changed.
 class BoneGround {
  public:
-  BoneGround(const SurfaceBricks& layout, const GridGeometry& geometry);
+  BoneGround(const SurfaceBricks& layout, const GridGeometry& geometry,
+             std::shared_ptr<const LabelMap> labels);
 
   void clear();
   void set_brick(std::size_t brick, const BrickMesh& mesh, const BrickLevels& levels);

@@ -78,6 +78,23 @@ std::vector<MeshVertex> with_smooth_densities(const BrickMesh& mesh, const std::
   return vertices;
 }
 
+// The label's colour, of which the fourth channel says whether there is one.
+using LabelColour = std::array<std::uint8_t, 4>;
+
+// Of the bone just under the surface: of a scan's label map the outermost voxels are often left out.
+LabelColour label_colour_below(const LabelMap& labels, const MeshVertex& vertex) {
+  const Vec3 point_W = Eigen::Map<const Eigen::Vector3f>(vertex.position_mm.data()).cast<double>();
+  const Vec3 normal_W = Eigen::Map<const Eigen::Vector3f>(vertex.normal.data()).cast<double>();
+  const double voxel_mm = labels.scan_geometry().spacing_mm.maxCoeff();
+  for (const double voxels : {0.5, 0.0, 1.0, 1.5}) {
+    const LabelMap::Place place = labels.nearest_to(point_W - voxels * voxel_mm * normal_W);
+    if (place == 0) continue;
+    const auto& [red, green, blue] = labels.label(place).colour;
+    return {red, green, blue, 255};
+  }
+  return {};
+}
+
 struct Facing {
   Vec3 axis_W;
   double spread_rad;
@@ -117,6 +134,8 @@ void set_uniforms(GLuint program, const ViewScene& scene, const Projection& proj
   glUniformMatrix4fv(place("clip_from_camera"), 1, GL_FALSE, projection.clip_from_camera.data());
   glUniform1f(place("isovalue"), static_cast<float>(scene.isovalue));
   glUniform1f(place("reference_density"), static_cast<float>(scene.reference_density));
+  constexpr float kLabelShare = 0.8f;
+  glUniform1f(place("label_share"), scene.show_labels ? kLabelShare : 0.0f);
   glUniform3fv(place("light_from_below"), 1, scene.light_from_below.data());
   glUniform2f(place("picture_size"), static_cast<float>(projection.size.width),
               static_cast<float>(projection.size.height));
@@ -180,11 +199,13 @@ void end_cuts() {
   for (std::size_t n = 0; n < kMaxClipPlanes; ++n) glDisable(static_cast<GLenum>(GL_CLIP_DISTANCE0 + n));
 }
 
-BoneLayer::BoneLayer(const SurfaceBricks& layout, const GridGeometry& geometry)
+BoneLayer::BoneLayer(const SurfaceBricks& layout, const GridGeometry& geometry,
+                     std::shared_ptr<const LabelMap> labels)
     : whole_(bone_program("")),
       cut_(bone_program("#define CUT\n")),
       layout_(layout),
       geometry_(geometry),
+      labels_(std::move(labels)),
       bricks_(layout.count()),
       drawn_level_(layout.count(), -1) {
   for (std::size_t n = 0; n < bricks_.size(); ++n)
@@ -233,6 +254,19 @@ void BoneLayer::set_brick(std::size_t number, const BrickMesh& mesh, const Brick
   attribute(0, 3, offsetof(MeshVertex, position_mm));
   attribute(1, 3, offsetof(MeshVertex, normal));
   attribute(2, 1, offsetof(MeshVertex, density));
+  if (labels_) set_label_colours(brick, vertices);
+}
+
+void BoneLayer::set_label_colours(Brick& brick, const std::vector<MeshVertex>& vertices) {
+  if (brick.label_colours.get() == 0) brick.label_colours = gl::make_buffer();
+  std::vector<LabelColour> colours;
+  colours.reserve(vertices.size());
+  for (const MeshVertex& vertex : vertices) colours.push_back(label_colour_below(*labels_, vertex));
+  glBindBuffer(GL_ARRAY_BUFFER, brick.label_colours.get());
+  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(colours.size() * sizeof(LabelColour)), colours.data(),
+               GL_DYNAMIC_DRAW);
+  glEnableVertexAttribArray(3);
+  glVertexAttribPointer(3, 4, GL_UNSIGNED_BYTE, GL_TRUE, sizeof(LabelColour), nullptr);
 }
 
 // Whether all of its triangles show their backs.
@@ -321,6 +355,8 @@ void BoneLayer::draw(const ViewScene& scene, const Projection& projection, const
   glActiveTexture(GL_TEXTURE0);
   glBindTexture(GL_TEXTURE_2D, cavities.blurred_depths());
   if (!cut) glEnable(GL_CULL_FACE);
+  // Of vertices without labels.
+  glVertexAttrib4f(3, 0, 0, 0, 0);
   for (const SeenBrick& seen : bricks) drawn_level_[seen.brick] = static_cast<std::int8_t>(seen.level);
   for (const SeenBrick& seen : bricks) {
     glBindVertexArray(bricks_[seen.brick].vertex_array.get());

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "osteomill/view/gl_objects.h"
 #include "osteomill/view/scene.h"
 #include "osteomill/volume/grid_geometry.h"
+#include "osteomill/volume/label_map.h"
 
 namespace osteomill {
 
@@ -59,7 +61,9 @@ struct SeenBrick {
 /// The bone's surface, a piece of graphics memory a brick, so that milling replaces only what changed.
 class BoneLayer {
  public:
-  BoneLayer(const SurfaceBricks& layout, const GridGeometry& geometry);
+  /// `labels` are those of the bone; null for none.
+  BoneLayer(const SurfaceBricks& layout, const GridGeometry& geometry,
+            std::shared_ptr<const LabelMap> labels = nullptr);
 
   void clear();
   void set_brick(std::size_t brick, const BrickMesh& mesh, const BrickLevels& levels);
@@ -83,6 +87,8 @@ class BoneLayer {
     gl::VertexArray vertex_array;
     gl::Buffer vertices;
     gl::Buffer indices;
+    /// Of the vertices; none where there are no labels.
+    gl::Buffer label_colours;
     std::array<BrickLevels::Range, BrickLevels::kCount> levels{};
     std::array<std::array<BrickLevels::Range, BrickLevels::kFaces>, BrickLevels::kCount> seams{};
     Sphere bounds;
@@ -92,6 +98,7 @@ class BoneLayer {
     bool empty() const { return levels[0].count == 0; }
     bool turned_away(const Vec3& eye_W) const;
   };
+  void set_label_colours(Brick& brick, const std::vector<MeshVertex>& vertices);
   void draw_seams(std::size_t brick, std::size_t level) const;
 
   // Clipping costs time at every vertex.
@@ -99,6 +106,7 @@ class BoneLayer {
   gl::Program cut_;
   SurfaceBricks layout_;
   GridGeometry geometry_;
+  std::shared_ptr<const LabelMap> labels_;
   std::vector<Brick> bricks_;
   // By brick: the level at which it is being drawn, or -1.
   mutable std::vector<std::int8_t> drawn_level_;

@@ -110,7 +110,7 @@ class BonePainter {
         scene_(scene),
         projection_(projection_of(scene, size)),
         layout_(bone.geometry().dims),
-        layer_(layout_, bone.geometry()),
+        layer_(layout_, bone.geometry(), bone.labels()),
         target_(size),
         cavities_(size, std::max(1, static_cast<int>(kCavityReach * size.height))) {}
 

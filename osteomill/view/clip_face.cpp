@@ -59,8 +59,8 @@ std::array<double, 2> extent_along(const GridGeometry& geometry, const Vec3& nor
   return extent;
 }
 
-ClipFace clip_face(const DensityGrid& grid, const ClipPlane& plane, const WindowLevel& window,
-                   int max_pixels) {
+ClipFace clip_face(const DensityGrid& grid, const ClipPlane& plane, const WindowLevel& window, int max_pixels,
+                   const LabelMap* labels) {
   const std::vector<Vec3> border = crossings(grid.geometry(), plane);
   if (border.size() < 3) return {};
   // Any two directions in the plane.
@@ -90,6 +90,9 @@ ClipFace clip_face(const DensityGrid& grid, const ClipPlane& plane, const Window
     for (int x = 0; x < face.width; ++x) {
       const double grey = scale * (density_at(grid, at(x, y)) - window.black);
       face.greys.push_back(static_cast<unsigned char>(std::clamp(grey, 0.0, 255.0)));
+      if (labels == nullptr) continue;
+      const LabelMap::Place label = labels->nearest_to(at(x, y));
+      face.label_colours.push_back(label == 0 ? std::array<unsigned char, 3>{} : labels->label(label).colour);
     }
   }
   return face;

@@ -1,19 +1,23 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "osteomill/view/scene.h"
 #include "osteomill/volume/density_grid.h"
+#include "osteomill/volume/label_map.h"
 
 namespace osteomill {
 
-/// The grey values on a cut: bytes, row by row; the corners are the middles of the first pixel, of the end of
-/// its row, of the last pixel and of the beginning of the last row.
+/// What a cut lays open: grey values, bytes, row by row; the corners are the middles of the first pixel, of
+/// the end of its row, of the last pixel and of the beginning of the last row.
 struct ClipFace {
   std::array<Vec3, 4> corners_W;
   int width = 0;
   int height = 0;
   std::vector<unsigned char> greys;
+  /// Where the bone has labels: of each pixel the label's colour, or black for none. Else empty.
+  std::vector<std::array<unsigned char, 3>> label_colours;
 };
 
 /// Which densities are black and white.
@@ -26,9 +30,10 @@ struct WindowLevel {
 WindowLevel window_level_of(const DensityGrid& grid, double surroundings_density);
 
 /// The densities where the plane meets the grid, a pixel a voxel but no more than `max_pixels` along a side;
-/// black outside the grid. Nothing (no pixels) where the plane misses it. Not for the tick.
+/// black outside the grid. With `labels`, those of the voxels nearest to the pixels. Nothing (no pixels)
+/// where the plane misses it. Not for the tick.
 ClipFace clip_face(const DensityGrid& grid, const ClipPlane& plane, const WindowLevel& window,
-                   int max_pixels = 320);
+                   int max_pixels = 320, const LabelMap* labels = nullptr);
 
 /// The least and the greatest normal . p over the grid's corners: how far a plane can be moved.
 std::array<double, 2> extent_along(const GridGeometry& geometry, const Vec3& normal_W);

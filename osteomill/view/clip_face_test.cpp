@@ -1,5 +1,7 @@
 #include "osteomill/view/clip_face.h"
 
+#include <map>
+
 #include "tests/shapes.h"
 #include <gtest/gtest.h>
 
@@ -59,6 +61,23 @@ TEST(ClipFace, PlanesCanBeMovedAsFarAsTheGridReaches) {
   const auto extent = extent_along(testing_support::centred_cube(41, 0.25), Vec3::UnitY());
   EXPECT_NEAR(extent[0], -5, 1e-9);
   EXPECT_NEAR(extent[1], 5, 1e-9);
+}
+
+TEST(ClipFace, ShowsTheLabelsOfTheNearestVoxels) {
+  const GridGeometry geometry = testing_support::centred_cube(8, 1.0);
+  std::vector<LabelMap::Place> places;
+  for (int k = 0; k < 8; ++k)
+    for (int j = 0; j < 8; ++j)
+      for (int i = 0; i < 8; ++i) places.push_back(i < 4 ? 0 : j < 4 ? 1 : 2);
+  const LabelMap labels({{1, "a", {10, 20, 30}}, {2, "b", {40, 50, 60}}}, geometry, geometry, places);
+  const DensityGrid grid(geometry, std::vector<float>(geometry.voxel_count(), 100.0f));
+  const ClipFace face = clip_face(grid, {Vec3::UnitZ(), 0.1}, {0, 200}, 320, &labels);
+  ASSERT_EQ(face.label_colours.size(), face.greys.size());
+  std::map<std::array<unsigned char, 3>, int> counts;
+  for (const auto& colour : face.label_colours) ++counts[colour];
+  EXPECT_EQ((counts[{0, 0, 0}]), 32);
+  EXPECT_EQ((counts[{10, 20, 30}]), 16);
+  EXPECT_EQ((counts[{40, 50, 60}]), 16);
 }
 
 }  // namespace

@@ -1,8 +1,33 @@
 #include "osteomill/view/clip_faces.h"
 
+#include <array>
+#include <vector>
+
 #include "osteomill/view/shaders.h"
 
 namespace osteomill {
+
+namespace {
+
+// A label's colour over its grey value, and never quite dark: a nerve's canal may be as dark as air.
+std::vector<std::array<unsigned char, 3>> pixels_of(const ClipFace& face) {
+  constexpr double kLabel = 0.55, kLeast = 0.35;
+  std::vector<std::array<unsigned char, 3>> pixels;
+  pixels.reserve(face.greys.size());
+  for (std::size_t n = 0; n < face.greys.size(); ++n) {
+    const unsigned char grey = face.greys[n];
+    pixels.push_back({grey, grey, grey});
+    if (face.label_colours.empty() || face.label_colours[n] == std::array<unsigned char, 3>{}) continue;
+    const double light = kLeast + (1 - kLeast) * grey / 255;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double tinted = (1 - kLabel) * grey + kLabel * light * face.label_colours[n][c];
+      pixels.back()[c] = static_cast<unsigned char>(tinted);
+    }
+  }
+  return pixels;
+}
+
+}  // namespace
 
 ClipFaces::ClipFaces() : program_(gl::make_program(shaders::kCutVertex, shaders::kCutFragment)) {
   for (Face& face : faces_) {
@@ -14,13 +39,13 @@ ClipFaces::ClipFaces() : program_(gl::make_program(shaders::kCutVertex, shaders:
 void ClipFaces::set(std::size_t cut, const ClipFace& face) {
   Face& kept = faces_.at(cut);
   if (face.greys.empty()) {
-    kept.greys = {};
+    kept.pixels = {};
     return;
   }
-  kept.greys = gl::make_texture(GL_R8, GL_RED, GL_UNSIGNED_BYTE, face.width, face.height, GL_LINEAR);
+  kept.pixels = gl::make_texture(GL_RGB8, GL_RGB, GL_UNSIGNED_BYTE, face.width, face.height, GL_LINEAR);
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-  glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, face.width, face.height, GL_RED, GL_UNSIGNED_BYTE,
-                  face.greys.data());
+  glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, face.width, face.height, GL_RGB, GL_UNSIGNED_BYTE,
+                  pixels_of(face).data());
   // As a fan; the outermost pixels' middles lie half a pixel within the texture.
   const float u = 0.5f / static_cast<float>(face.width);
   const float v = 0.5f / static_cast<float>(face.height);
@@ -49,11 +74,11 @@ void ClipFaces::draw(const ViewScene& scene, const Projection& projection) const
                      projection.clip_from_camera.data());
   glActiveTexture(GL_TEXTURE0);
   for (std::size_t n = 0; n < kMaxClipPlanes; ++n) {
-    if (!scene.cuts[n] || faces_[n].greys.get() == 0) continue;
+    if (!scene.cuts[n] || faces_[n].pixels.get() == 0) continue;
     ViewScene others = scene;
     others.cuts[n].reset();
     begin_cuts(program, others);
-    glBindTexture(GL_TEXTURE_2D, faces_[n].greys.get());
+    glBindTexture(GL_TEXTURE_2D, faces_[n].pixels.get());
     glBindVertexArray(faces_[n].vertex_array.get());
     glDrawArrays(GL_TRIANGLE_FAN, 0, 4);
     end_cuts();

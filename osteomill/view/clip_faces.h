@@ -8,7 +8,7 @@
 
 namespace osteomill {
 
-/// The grey values that cuts lay open.
+/// What cuts lay open: grey values, tinted by labels.
 class ClipFaces {
  public:
   ClipFaces();
@@ -20,7 +20,7 @@ class ClipFaces {
   struct Face {
     gl::VertexArray vertex_array;
     gl::Buffer corners;
-    gl::Texture greys;
+    gl::Texture pixels;
   };
   gl::Program program_;
   std::array<Face, kMaxClipPlanes> faces_;

@@ -32,8 +32,10 @@ struct ViewScene {
   /// As it acts on the hand, drawn as arrows from the simulated burr, with the contact's point of action.
   Wrench wrench;
   std::array<std::optional<ClipPlane>, kMaxClipPlanes> cuts;
-  /// What bone is coloured by: pale at the reference (dentine), white where much denser (enamel), reddish
-  /// where hardly bone.
+  /// Bone that has a label is shown in the label's colour.
+  bool show_labels = true;
+  /// What other bone is coloured by: pale at the reference (dentine), white where much denser (enamel),
+  /// reddish where hardly bone.
   double isovalue = 0;
   double reference_density = 1;
   /// Red, green and blue of what the surroundings throw back from below: little where they are dark.

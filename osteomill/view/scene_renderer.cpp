@@ -45,7 +45,8 @@ void draw_ghost(const SolidShapes& shapes, const MillingTool& tool, const Pose& 
 }  // namespace
 
 struct SceneRenderer::Impl {
-  Impl(const SurfaceBricks& layout, const GridGeometry& geometry) : ground(layout, geometry) {}
+  Impl(const SurfaceBricks& layout, const GridGeometry& geometry, std::shared_ptr<const LabelMap> labels)
+      : ground(layout, geometry, std::move(labels)) {}
 
   void copy_ground() const {
     const PixelSize& size = target->size();
@@ -77,8 +78,9 @@ struct SceneRenderer::Impl {
   std::optional<FrameTarget> target;
 };
 
-SceneRenderer::SceneRenderer(const SurfaceBricks& layout, const GridGeometry& geometry)
-    : impl_(std::make_unique<Impl>(layout, geometry)) {}
+SceneRenderer::SceneRenderer(const SurfaceBricks& layout, const GridGeometry& geometry,
+                             std::shared_ptr<const LabelMap> labels)
+    : impl_(std::make_unique<Impl>(layout, geometry, std::move(labels))) {}
 
 SceneRenderer::~SceneRenderer() = default;
 

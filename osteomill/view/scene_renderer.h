@@ -10,6 +10,7 @@
 #include "osteomill/view/clip_face.h"
 #include "osteomill/view/scene.h"
 #include "osteomill/volume/grid_geometry.h"
+#include "osteomill/volume/label_map.h"
 
 namespace osteomill {
 
@@ -18,7 +19,9 @@ namespace osteomill {
 /// at the end. Throws std::runtime_error where OpenGL refuses something.
 class SceneRenderer {
  public:
-  SceneRenderer(const SurfaceBricks& layout, const GridGeometry& geometry);
+  /// `labels` are those of the bone; null for none.
+  SceneRenderer(const SurfaceBricks& layout, const GridGeometry& geometry,
+                std::shared_ptr<const LabelMap> labels = nullptr);
   ~SceneRenderer();
   SceneRenderer(const SceneRenderer&) = delete;
   SceneRenderer& operator=(const SceneRenderer&) = delete;

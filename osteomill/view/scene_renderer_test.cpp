@@ -220,5 +220,26 @@ TEST_F(SceneRendererTest, ABrickTakenAwayIsGone) {
   EXPECT_LT(covered(picture()), 0.1 * all);
 }
 
+// How much more of the first channel than of the third a picture has, by its pixels' sum.
+double redness(const Image& image) {
+  double sum = 0;
+  for (std::size_t n = 0; n < image.rgb.size(); n += 3) sum += int(image.rgb[n]) - int(image.rgb[n + 2]);
+  return sum / static_cast<double>(image.rgb.size() / 3);
+}
+
+TEST_F(SceneRendererTest, BoneHasTheColoursOfItsLabels) {
+  const double without = redness(picture());
+  const GridGeometry& geometry = bone_.geometry();
+  const auto labels =
+      std::make_shared<const LabelMap>(std::vector<Label>{{1, "blue", {0, 0, 255}}}, geometry, geometry,
+                                       std::vector<LabelMap::Place>(geometry.voxel_count(), 1));
+  const SurfaceMesh mesh = mesh_surface(DensityView(bone_));
+  renderer_ = std::make_unique<SceneRenderer>(mesh.layout, geometry, labels);
+  for (std::size_t n = 0; n < mesh.bricks.size(); ++n) renderer_->set_brick(n, mesh.bricks[n]);
+  EXPECT_LT(redness(picture()), without - 20);
+  scene_.show_labels = false;
+  EXPECT_NEAR(redness(picture()), without, 0.01);
+}
+
 }  // namespace
 }  // namespace osteomill

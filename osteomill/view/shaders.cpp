@@ -6,6 +6,7 @@ const std::string_view kBoneVertex = R"(
 layout(location = 0) in vec3 position_W;
 layout(location = 1) in vec3 normal_W;
 layout(location = 2) in float density;
+layout(location = 3) in vec4 label;
 uniform mat4 camera_from_world;
 uniform mat4 clip_from_camera;
 #ifdef CUT
@@ -15,12 +16,14 @@ out float gl_ClipDistance[4];
 out vec3 normal_C;
 out float depth_mm;
 out float bone_density;
+out vec4 label_colour;
 void main() {
   vec4 position_C = camera_from_world * vec4(position_W, 1.0);
   gl_Position = clip_from_camera * position_C;
   normal_C = mat3(camera_from_world) * normal_W;
   depth_mm = -position_C.z;
   bone_density = density;
+  label_colour = vec4(label.rgb * label.a, label.a);
 #ifdef CUT
   for (int n = 0; n < 4; ++n) gl_ClipDistance[n] = dot(cuts[n].xyz, position_W) - cuts[n].w;
 #endif
@@ -34,6 +37,8 @@ const std::string_view kBoneFragment = R"(#version 330 core
 in vec3 normal_C;
 in float depth_mm;
 in float bone_density;
+in vec4 label_colour;  // times its share
+uniform float label_share;
 uniform float isovalue;
 uniform float reference_density;
 uniform vec2 picture_size;
@@ -52,6 +57,7 @@ void main() {
   float share = (bone_density - isovalue) / max(reference_density - isovalue, 1e-6);
   vec3 base = share < 1.0 ? mix(kSoft, kBone, smoothstep(0.05, 0.85, share))
                           : mix(kBone, kEnamel, smoothstep(1.05, 2.1, share));
+  base = (1.0 - label_share * label_colour.a) * base + label_share * label_colour.rgb;
   if (!gl_FrontFacing) {
     colour = vec4(0.42 * base, 1.0);
     return;
@@ -161,15 +167,14 @@ void main() {
 }
 )";
 
-// Grey values; what is as dark as air lets the view through.
+// Grey values, or labels' colours; what is as dark as air lets the view through.
 const std::string_view kCutFragment = R"(#version 330 core
 in vec2 place;
-uniform sampler2D greys;
+uniform sampler2D pixels;
 out vec4 colour;
 void main() {
-  float grey = texture(greys, place).r;
-  if (grey < 0.14) discard;
-  colour = vec4(vec3(grey), 1.0);
+  colour = vec4(texture(pixels, place).rgb, 1.0);
+  if (max(colour.r, max(colour.g, colour.b)) < 0.14) discard;
 }
 )";
 

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "osteomill/numbers/work_progress.h"
+#include "osteomill/volume/label_scan.h"
 
 namespace osteomill {
 
@@ -108,26 +109,6 @@ double commonest(std::span<const Sample> samples) {
   return min + (static_cast<double>(best) + 0.5) * width;
 }
 
-// Between the two lowest labels, where it is a map of labels.
-std::optional<double> below_first_label(const DensityGrid& grid, std::span<const Sample> samples) {
-  constexpr std::size_t kMaxLabels = 256;
-  std::vector<double> labels;
-  for (const Sample& sample : samples) {
-    if (!labels.empty() && labels.back() == sample.density) continue;
-    if (sample.density != std::floor(sample.density) || labels.size() == kMaxLabels) return std::nullopt;
-    labels.push_back(sample.density);
-  }
-  std::size_t labelled = 0, alike = 0;
-  const CopyOnWriteFloats& densities = grid.densities();
-  for (std::size_t n = 1; n < densities.size(); ++n) {
-    if (static_cast<double>(densities[n]) == labels.front()) continue;
-    ++labelled;
-    alike += densities[n] == densities[n - 1];
-  }
-  if (2 * alike < labelled) return std::nullopt;
-  return 0.5 * (labels[0] + labels[1]);
-}
-
 // What the densities are of, as far as they tell.
 struct Materials {
   // The commonest density around the bone and in it; of a body, those of air and soft tissue.
@@ -168,7 +149,7 @@ SuggestedIsovalue suggest_isovalue(const DensityGrid& grid, bool in_hounsfield_u
   if (!(samples.back().density > samples.front().density)) {
     return {samples.front().density, "the only density there is"};
   }
-  if (const auto below = below_first_label(grid, samples)) {
+  if (const auto below = isovalue_of_labels(grid)) {
     return {*below, "a map of labels: all that is labelled"};
   }
   Materials found = materials_of(samples, in_hounsfield_units);

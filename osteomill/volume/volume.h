@@ -1,7 +1,10 @@
 #pragma once
 
+#include <memory>
+
 #include "osteomill/volume/block_ranges.h"
 #include "osteomill/volume/density_grid.h"
+#include "osteomill/volume/label_map.h"
 
 namespace osteomill {
 
@@ -17,6 +20,10 @@ class Volume {
   const GridGeometry& geometry() const { return grid_.geometry(); }
   const BlockRanges& bricks() const { return bricks_; }
   double isovalue() const { return isovalue_; }
+  /// Which structures the bone is made of; null where nobody said. Copies of the bone share it.
+  const std::shared_ptr<const LabelMap>& labels() const { return labels_; }
+  /// Not for the tick. The map is of this grid.
+  void set_labels(std::shared_ptr<const LabelMap> labels) { labels_ = std::move(labels); }
 
   /// `v` must lie in the grid.
   bool is_bone(const VoxelIndex& v) const { return static_cast<double>(grid_[v]) > isovalue_; }
@@ -52,6 +59,7 @@ class Volume {
   DensityGrid grid_;
   BlockRanges bricks_;
   double isovalue_ = 0;
+  std::shared_ptr<const LabelMap> labels_;
 };
 
 /// What milling changed in one step: every voxel whose density fell lies in `voxels` (empty where none did).

@@ -1,0 +1,77 @@
+#include <algorithm>
+
+#include "app/simulate/panels.h"
+#include "app/simulate/widgets.h"
+#include <fmt/core.h>
+#include <imgui.h>
+
+namespace osteomill::app {
+
+namespace {
+
+const ImVec4 kNoGo{1.0f, 0.38f, 0.30f, 1};
+// Of what more there is, the list is scrolled.
+constexpr std::size_t kMostRows = 12;
+
+ImU32 colour_of(const Label& label) {
+  return IM_COL32(label.colour[0], label.colour[1], label.colour[2], 255);
+}
+
+void draw_row(const Simulation& simulation, std::size_t n) {
+  const Label& label = simulation.label_count.labels()[n];
+  const float side = ImGui::GetTextLineHeight();
+  const ImVec2 place = ImGui::GetCursorScreenPos();
+  ImGui::GetWindowDrawList()->AddRectFilled(place, {place.x + side, place.y + side}, colour_of(label), 2);
+  ImGui::Dummy({side, side});
+  ImGui::SameLine();
+  const ImVec4 text = label.no_go ? kNoGo : ImGui::GetStyleColorVec4(ImGuiCol_Text);
+  ImGui::TextColored(text, "%s%s", label.name.c_str(), label.no_go ? " (no-go)" : "");
+  const LabelCount::Entry& entry = simulation.label_count.entries()[n];
+  if (entry.contacts > 0) {
+    ui::hint(fmt::format("The burr was in it for {:.1f} s, first at {:.1f} s, pressing with {:.2f} N (mean) "
+                         "and {:.2f} N (greatest)",
+                         entry.time_s, entry.first_s, entry.force_mean_N, entry.force_max_N)
+                 .c_str());
+  }
+  const std::vector<double>& removed_mm3 = simulation.removed_by_label_mm3;
+  if (n + 1 >= removed_mm3.size() || (entry.contacts == 0 && removed_mm3[n + 1] == 0)) return;
+  const std::string removed = fmt::format("{:.2f} mm^3", removed_mm3[n + 1]);
+  ImGui::SameLine(ImGui::GetContentRegionMax().x - ImGui::CalcTextSize(removed.c_str()).x);
+  ImGui::TextUnformatted(removed.c_str());
+}
+
+}  // namespace
+
+float draw_labels(ViewState& view, const Simulation& simulation, const PixelSize& size, float top_px) {
+  const std::size_t count = simulation.label_count.labels().size();
+  if (count == 0) return top_px;
+  ImGui::SetNextWindowPos({static_cast<float>(size.width) - ui::px(ui::kRightWidth_px + 8), top_px});
+  ImGui::SetNextWindowSize({ui::px(ui::kRightWidth_px), 0});
+  ImGui::Begin("Labels", nullptr,
+               ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoFocusOnAppearing);
+  ui::checkbox("label colours", &view.labels);
+  ui::hint("Bone in the colours of its label map; how much of each label was removed stands beside it");
+  const float rows = static_cast<float>(std::min(count, kMostRows));
+  ImGui::BeginChild("##labels", {0, rows * ImGui::GetTextLineHeightWithSpacing()});
+  for (std::size_t n = 0; n < count; ++n) draw_row(simulation, n);
+  ImGui::EndChild();
+  const float below_px = ImGui::GetWindowPos().y + ImGui::GetWindowSize().y + ui::px(8);
+  ImGui::End();
+  return below_px;
+}
+
+void draw_no_go(Simulation& simulation, const PixelSize& size) {
+  constexpr double kShown_s = 4;
+  const double now_s = simulation.milling.state().record.time_s;
+  if (simulation.no_go_text.empty() || now_s - simulation.no_go_s > kShown_s) return;
+  const ImVec2 text_px = ImGui::CalcTextSize(simulation.no_go_text.c_str());
+  const float margin = 0.7f * text_px.y;
+  const ImVec2 place(0.5f * (static_cast<float>(size.width) - text_px.x), ui::px(48) + margin);
+  ImDrawList& list = *ImGui::GetForegroundDrawList();
+  list.AddRectFilled({place.x - 2 * margin, place.y - margin},
+                     {place.x + text_px.x + 2 * margin, place.y + text_px.y + margin},
+                     IM_COL32(190, 25, 25, 245), margin);
+  list.AddText(place, IM_COL32(255, 255, 255, 255), simulation.no_go_text.c_str());
+}
+
+}  // namespace osteomill::app

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "osteomill/ct/read_scan.h"
+#include "osteomill/volume/label_map.h"
+
+namespace osteomill {
+
+/// Where the labels of a scan are to be had.
+struct LabelFiles {
+  /// NRRD, NIfTI or MetaImage; a voxel's value is its label, 0 is none.
+  std::filesystem::path map;
+  /// A table of names and colours (label_table.h), before those that a .seg.nrrd has itself; may be empty.
+  std::filesystem::path table;
+  /// Labels that no burr may touch, by value or by name (case does not matter).
+  std::vector<std::string> no_go;
+};
+
+/// Whether `read_labels` reads files of such a name.
+bool is_label_file(const std::filesystem::path& path);
+
+struct LabelsRead {
+  std::shared_ptr<const LabelMap> map;
+  /// One sentence each, naming the file.
+  std::vector<std::string> warnings;
+};
+
+/// Reads a label map and puts it on the scan's grid, whatever its own is, by the nearest voxel. Labels
+/// without a name are called "label 3", those without a colour get one that differs from their neighbours'.
+/// Throws InputError, naming the file, where it cannot be read, its values are no labels (not whole, beyond a
+/// million, more than LabelMap::kMaxLabels), it labels nothing, or nothing of the scan; and where a no-go
+/// label is not in it, or where its voxels take more memory than allowed.
+LabelsRead read_labels(const LabelFiles& files, const GridGeometry& scan,
+                       std::uint64_t max_memory_bytes = memory_of_machine());
+
+}  // namespace osteomill

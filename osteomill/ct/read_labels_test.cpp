@@ -1,0 +1,111 @@
+#include "osteomill/ct/read_labels.h"
+
+#include "osteomill/ct/folder_test.h"
+#include "osteomill/ct/label_table.h"
+
+namespace osteomill {
+namespace {
+
+using testing_support::contains;
+
+class ReadLabels : public testing_support::FolderTest {
+ protected:
+  // 2 x 2 x 2 voxels of 1 mm.
+  static std::string map_of(const std::string& values, const std::string& fields = "",
+                            const std::string& type = "float") {
+    return "NRRD0004\ntype: " + type +
+           "\ndimension: 3\nsizes: 2 2 2\nencoding: ascii\nspace: LPS\n"
+           "space directions: (1,0,0) (0,1,0) (0,0,1)\nspace origin: (0,0,0)\n" +
+           fields + "\n" + values + "\n";
+  }
+  static GridGeometry scan() {
+    GridGeometry geometry;
+    geometry.dims = {2, 2, 2};
+    return geometry;
+  }
+  std::string refusal_of(const LabelFiles& files, const GridGeometry& geometry = scan()) const {
+    try {
+      read_labels(files, geometry);
+    } catch (const InputError& error) {
+      const std::string what = error.what();
+      EXPECT_FALSE(contains(what, "\n"));
+      return what;
+    }
+    return "";
+  }
+};
+
+TEST_F(ReadLabels, TakesNamesAndColoursOfSlicersSegmentations) {
+  const auto file = write("jaw.seg.nrrd", map_of("0 4 4 7 0 0 -2 7",
+                                                 "Segment0_Name:=Lower jaw\nSegment0_LabelValue:=4\n"
+                                                 "Segment0_Color:=1 0.5 0\nSegment1_Name:=Nerve\n"
+                                                 "Segment1_LabelValue:=7\nSegment1_Color:=0 0 1\n",
+                                                 "short"));
+  const LabelsRead read = read_labels({file, {}, {"NERVE"}}, scan());
+  ASSERT_EQ(read.map->labels().size(), 3u);
+  EXPECT_EQ(read.map->labels()[1], (Label{4, "Lower jaw", {255, 128, 0}, false}));
+  EXPECT_EQ(read.map->labels()[2], (Label{7, "Nerve", {0, 0, 255}, true}));
+  EXPECT_EQ(read.map->labels()[0].name, "label -2");
+  EXPECT_EQ(read.map->voxel_counts(), (std::vector<std::size_t>{0, 1, 2, 2}));
+  EXPECT_EQ(read.map->at({1, 1, 0}), 3);
+  EXPECT_TRUE(read.warnings.empty());
+}
+
+TEST_F(ReadLabels, TakesNamesAndColoursOfATableBeforeTheFilesOwn) {
+  const auto file = write("a.seg.nrrd", map_of("0 1 2 3 0 0 0 0",
+                                               "Segment0_Name:=Old\nSegment0_LabelValue:=1\n"
+                                               "Segment1_Name:=Kept\nSegment1_LabelValue:=2\n"));
+  const auto table =
+      write("a.ctbl", "# Color table file\r\n0 Background 0 0 0 0\r\n\r\n1 left_facial nerve 10 20 30 255\n");
+  const LabelsRead read = read_labels({file, table, {"3", "left facial nerve"}}, scan());
+  EXPECT_EQ(read.map->labels()[0], (Label{1, "left facial nerve", {10, 20, 30}, true}));
+  EXPECT_EQ(read.map->labels()[1].name, "Kept");
+  EXPECT_EQ(read.map->labels()[2].name, "label 3");
+  EXPECT_TRUE(read.map->labels()[2].no_go);
+  ASSERT_EQ(read.warnings.size(), 1u);
+  EXPECT_TRUE(contains(read.warnings[0], "a.ctbl: has no entry for label 3")) << read.warnings[0];
+}
+
+TEST_F(ReadLabels, RefusesWhatIsNoLabelMapInOneLine) {
+  const auto refused = [&](const std::string& values, const std::string& fields = "") {
+    return refusal_of({write("m.nrrd", map_of(values, fields)), {}, {}});
+  };
+  EXPECT_TRUE(contains(refused("0 1 1.5 2 0 0 0 0"), "it holds 1.5, and labels are whole numbers"));
+  EXPECT_TRUE(contains(refused("0 1 nan 2 0 0 0 0"), "m.nrrd: is not a label map"));
+  EXPECT_TRUE(contains(refused("0 1 2e7 2 0 0 0 0"), "labels are whole numbers up to a million"));
+  EXPECT_TRUE(contains(refused("0 0 0 0 0 0 0 0"), "labels nothing: all its voxels are 0"));
+  EXPECT_TRUE(contains(refused("0 1 2 3 0 0 0"), "is cut short"));
+  EXPECT_TRUE(contains(refused("0 1 2 3 0 0 0 0", "kinds: list domain domain\n"), "several layers"));
+  GridGeometry elsewhere = scan();
+  elsewhere.origin_mm = {50, 0, 0};
+  const auto one = write("m.nrrd", map_of("0 1 2 3 0 0 0 0"));
+  EXPECT_TRUE(
+      contains(refusal_of({one, {}, {}}, elsewhere),
+               "labels nothing of the scan: it lies at 0 to 1, 0 to 1, 0 to 1 mm, the scan at 50 to 51"));
+  EXPECT_TRUE(contains(refusal_of({one, {}, {"dura"}}),
+                       "has no label \"dura\" to be no-go; it has 1 label 1, 2 label 2, 3 label 3"));
+  EXPECT_TRUE(contains(refusal_of({folder_ / "none.nrrd", {}, {}}), "no such file"));
+  EXPECT_TRUE(contains(refusal_of({write("labels.txt", "1"), {}, {}}), "is not a label map"));
+  EXPECT_TRUE(contains(refusal_of({one, write("t.ctbl", "1 a 0 0 0 255\n2 b 0 0 900 255\n"), {}}),
+                       "t.ctbl: line 2 is not"));
+  EXPECT_TRUE(contains(refusal_of({one, write("t.ctbl", "# nothing\n"), {}}), "t.ctbl: has no labels"));
+}
+
+TEST_F(ReadLabels, RefusesMoreLabelsThanItKeeps) {
+  std::string values;
+  for (int n = 0; n < 343; ++n) values += std::to_string(n) + " ";
+  std::string map = map_of(values);
+  map.replace(map.find("2 2 2"), 5, "7 7 7");
+  EXPECT_TRUE(contains(refusal_of({write("many.nrrd", map), {}, {}}), "has more than 255 labels"));
+}
+
+TEST_F(ReadLabels, SaysWhereAMapReachesBeyondTheScan) {
+  GridGeometry half = scan();
+  half.dims = {1, 2, 2};
+  const LabelsRead read = read_labels({write("m.nrrd", map_of("1 1 1 1 1 1 1 1")), {}, {}}, half);
+  ASSERT_EQ(read.warnings.size(), 1u);
+  EXPECT_TRUE(contains(read.warnings[0], "50 % of what it labels lies outside the scan")) << read.warnings[0];
+}
+
+}  // namespace
+}  // namespace osteomill

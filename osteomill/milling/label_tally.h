@@ -1,0 +1,58 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+
+#include "osteomill/volume/label_map.h"
+
+namespace osteomill {
+
+/// What a tick took of one label, and that it touched it at all. `label` 0 is no entry.
+struct LabelCut {
+  LabelMap::Place label = 0;
+  /// Of reference density, as MillingStep counts.
+  double removed_mm3 = 0;
+  friend bool operator==(const LabelCut&, const LabelCut&) = default;
+};
+/// What a tick tells of labels: first the entries, then empty ones.
+using LabelCuts = std::array<LabelCut, 4>;
+
+/// What was taken of each label and not yet told. Of fixed size; safe in the haptic tick. A tick tells of a
+/// few labels; where a burr cuts more at once, the others wait for the next ticks, so that nothing is lost.
+class LabelTally {
+ public:
+  /// Of no label: nothing.
+  void add(LabelMap::Place label, double removed_mm3) {
+    if (label == 0) return;
+    if (!waits_[label]) {
+      waits_[label] = true;
+      waiting_[count_++] = label;
+    }
+    removed_mm3_[label] += removed_mm3;
+  }
+
+  /// Those that have waited longest.
+  LabelCuts take() {
+    LabelCuts cuts;
+    const std::size_t taken = std::min(cuts.size(), count_);
+    for (std::size_t n = 0; n < taken; ++n) {
+      const LabelMap::Place label = waiting_[n];
+      cuts[n] = {label, removed_mm3_[label]};
+      removed_mm3_[label] = 0;
+      waits_[label] = false;
+    }
+    std::copy(waiting_.begin() + static_cast<std::ptrdiff_t>(taken),
+              waiting_.begin() + static_cast<std::ptrdiff_t>(count_), waiting_.begin());
+    count_ -= taken;
+    return cuts;
+  }
+
+ private:
+  std::array<double, LabelMap::kMaxLabels + 1> removed_mm3_{};
+  std::array<bool, LabelMap::kMaxLabels + 1> waits_{};
+  std::array<LabelMap::Place, LabelMap::kMaxLabels> waiting_{};
+  std::size_t count_ = 0;
+};
+
+}  // namespace osteomill

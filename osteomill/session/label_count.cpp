@@ -1,0 +1,49 @@
+#include "osteomill/session/label_count.h"
+
+#include <algorithm>
+
+#include <fmt/core.h>
+
+namespace osteomill {
+
+const Label* LabelCount::add(const TickRecord& record) {
+  constexpr double kApart_s = 0.5;
+  const Label* begun = nullptr;
+  for (const LabelCut& cut : record.label_cuts) {
+    if (cut.label == 0 || cut.label > labels_.size()) continue;
+    Entry& entry = entries_[cut.label - 1u];
+    const double force_N = record.burr_force_W_N.norm();
+    if (entry.contacts == 0) entry.first_s = record.time_s;
+    if (entry.contacts == 0 || record.time_s - entry.last_s >= kApart_s) {
+      ++entry.contacts;
+      if (labels_[cut.label - 1u].no_go) begun = &labels_[cut.label - 1u];
+    }
+    entry.last_s = record.time_s;
+    entry.removed_mm3 += cut.removed_mm3;
+    entry.time_s += record.dt_s;
+    if (entry.time_s > 0) entry.force_mean_N += (force_N - entry.force_mean_N) * record.dt_s / entry.time_s;
+    entry.force_max_N = std::max(entry.force_max_N, force_N);
+  }
+  return begun;
+}
+
+std::string no_go_warning(const Label& label, const TickRecord& record) {
+  return fmt::format("no-go: the burr touched {} at {:.3f} s, pressing with {:.2f} N", label.name,
+                     record.time_s, record.burr_force_W_N.norm());
+}
+
+std::vector<std::string> label_lines(const LabelCount& count) {
+  std::vector<std::string> lines;
+  for (std::size_t n = 0; n < count.labels().size(); ++n) {
+    const Label& label = count.labels()[n];
+    const LabelCount::Entry& entry = count.entries()[n];
+    if (entry.contacts == 0) continue;
+    lines.push_back(fmt::format(
+        "{} {}: {:.2f} mm^3 removed, first at {:.3f} s, {:.2f} s in all, force {:.2f} N mean, {:.2f} N max{}",
+        label.value, label.name, entry.removed_mm3, entry.first_s, entry.time_s, entry.force_mean_N,
+        entry.force_max_N, label.no_go ? " (no-go)" : ""));
+  }
+  return lines;
+}
+
+}  // namespace osteomill

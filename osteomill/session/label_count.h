@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "osteomill/session/tick_record.h"
+#include "osteomill/volume/label_map.h"
+
+namespace osteomill {
+
+/// How much of each label was removed, when and with what force, from every tick in turn. Not for the tick.
+class LabelCount {
+ public:
+  struct Entry {
+    /// Of reference density, as TickRecord counts.
+    double removed_mm3 = 0;
+    /// When the burr first and last cut or touched it.
+    double first_s = 0;
+    double last_s = 0;
+    /// For how long it did in all, and how the burr pressed on bone meanwhile.
+    double time_s = 0;
+    double force_mean_N = 0;
+    double force_max_N = 0;
+    /// How often, where half a second without parts one contact from the next.
+    int contacts = 0;
+  };
+
+  LabelCount() = default;
+  explicit LabelCount(std::vector<Label> labels) : labels_(std::move(labels)), entries_(labels_.size()) {}
+
+  /// Returns the no-go label with which a contact begins in this tick, or null.
+  const Label* add(const TickRecord& record);
+
+  const std::vector<Label>& labels() const { return labels_; }
+  /// One for each label.
+  const std::vector<Entry>& entries() const { return entries_; }
+
+ private:
+  std::vector<Label> labels_;
+  std::vector<Entry> entries_;
+};
+
+/// What to tell people of a contact that begins with a no-go label.
+std::string no_go_warning(const Label& label, const TickRecord& record);
+
+/// A line for each label that was cut or touched, without line feeds.
+std::vector<std::string> label_lines(const LabelCount& count);
+
+}  // namespace osteomill

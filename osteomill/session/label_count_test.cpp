@@ -1,0 +1,44 @@
+#include "osteomill/session/label_count.h"
+
+#include <gtest/gtest.h>
+
+namespace osteomill {
+namespace {
+
+TickRecord tick(double time_s, double force_N, const LabelCuts& cuts) {
+  TickRecord record;
+  record.time_s = time_s;
+  record.dt_s = 1e-3;
+  record.burr_force_W_N = {0, 0, -force_N};
+  record.label_cuts = cuts;
+  return record;
+}
+
+TEST(LabelCount, SaysHowMuchWhenAndWithWhatForce) {
+  LabelCount count({{3, "bone", {}}, {8, "nerve", {}, true}});
+  EXPECT_EQ(count.add(tick(0, 9, {})), nullptr);
+  EXPECT_EQ(count.add(tick(1.000, 1, {LabelCut{1, 0.5}})), nullptr);
+  const Label* touched = count.add(tick(1.001, 3, {LabelCut{1, 0.25}, LabelCut{2, 0}}));
+  ASSERT_NE(touched, nullptr);
+  EXPECT_EQ(touched->name, "nerve");
+  EXPECT_EQ(no_go_warning(*touched, tick(1.001, 3, {})),
+            "no-go: the burr touched nerve at 1.001 s, pressing with 3.00 N");
+  // The same contact, and half a second later another.
+  EXPECT_EQ(count.add(tick(1.4, 2, {LabelCut{2, 0.125}})), nullptr);
+  EXPECT_NE(count.add(tick(1.95, 2, {LabelCut{2, 0.125}})), nullptr);
+  const LabelCount::Entry& bone = count.entries()[0];
+  EXPECT_DOUBLE_EQ(bone.removed_mm3, 0.75);
+  EXPECT_DOUBLE_EQ(bone.first_s, 1.0);
+  EXPECT_DOUBLE_EQ(bone.last_s, 1.001);
+  EXPECT_DOUBLE_EQ(bone.time_s, 0.002);
+  EXPECT_DOUBLE_EQ(bone.force_mean_N, 2);
+  EXPECT_DOUBLE_EQ(bone.force_max_N, 3);
+  EXPECT_EQ(bone.contacts, 1);
+  const LabelCount::Entry& nerve = count.entries()[1];
+  EXPECT_DOUBLE_EQ(nerve.removed_mm3, 0.25);
+  EXPECT_EQ(nerve.contacts, 2);
+  EXPECT_EQ(label_lines(count).size(), 2u);
+}
+
+}  // namespace
+}  // namespace osteomill

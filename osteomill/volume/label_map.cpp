@@ -1,0 +1,101 @@
+#include "osteomill/volume/label_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "osteomill/numbers/work_progress.h"
+
+namespace osteomill {
+
+namespace {
+
+// Calls `use` with every voxel of a box, along i fastest.
+template <typename Use>
+void for_each_voxel(const VoxelBox& box, const Use& use) {
+  for (int k = box.first.k; k <= box.last.k; ++k) {
+    WorkProgress::done(0);
+    for (int j = box.first.j; j <= box.last.j; ++j)
+      for (int i = box.first.i; i <= box.last.i; ++i) use(VoxelIndex{i, j, k});
+  }
+}
+
+VoxelBox labelled_box(const GridGeometry& own, const std::vector<LabelMap::Place>& places) {
+  VoxelBox box;
+  std::size_t n = 0;
+  for_each_voxel(own.all_voxels(), [&](const VoxelIndex& v) {
+    if (places[n++] != 0) box.include(v);
+  });
+  return box;
+}
+
+int nearest(double voxel, int dim) {
+  // Beyond the grid alike, however far: no voxel lies there, and an int could not hold it.
+  return static_cast<int>(std::lround(std::clamp(voxel, -2.0, static_cast<double>(dim) + 1)));
+}
+
+VoxelIndex nearest_voxel(const GridGeometry& geometry, const Vec3& point_W) {
+  const Vec3 voxel = geometry.voxel_from_world(point_W);
+  return {nearest(voxel.x(), geometry.dims[0]), nearest(voxel.y(), geometry.dims[1]),
+          nearest(voxel.z(), geometry.dims[2])};
+}
+
+// The voxels of `scan` whose centres may lie in those of `own`.
+VoxelBox covered(const GridGeometry& scan, const GridGeometry& own, const VoxelBox& voxels) {
+  VoxelBox box;
+  if (voxels.empty()) return box;
+  for (unsigned n = 0; n < 8; ++n) {
+    const Vec3 corner((n & 1) != 0 ? voxels.last.i + 0.5 : voxels.first.i - 0.5,
+                      (n & 2) != 0 ? voxels.last.j + 0.5 : voxels.first.j - 0.5,
+                      (n & 4) != 0 ? voxels.last.k + 0.5 : voxels.first.k - 0.5);
+    box.include(nearest_voxel(scan, own.world_from_voxel(corner)));
+  }
+  return box.grown(1).intersected(scan.all_voxels());
+}
+
+}  // namespace
+
+std::string hex_colour(const Label& label) {
+  return fmt::format("#{:02x}{:02x}{:02x}", label.colour[0], label.colour[1], label.colour[2]);
+}
+
+LabelMap::LabelMap(std::vector<Label> labels, const GridGeometry& scan, const GridGeometry& own,
+                   const std::vector<Place>& places)
+    : labels_(std::move(labels)), scan_(scan) {
+  if (labels_.size() > kMaxLabels) throw std::invalid_argument("LabelMap: too many labels");
+  if (places.size() != own.voxel_count() ||
+      std::any_of(places.begin(), places.end(), [&](Place place) { return place > labels_.size(); })) {
+    throw std::invalid_argument("LabelMap: places that do not fit its grid or labels");
+  }
+  const VoxelBox own_voxels = own.all_voxels();
+  const auto at_nearest = [&](const VoxelIndex& v) -> Place {
+    const VoxelIndex in_own = nearest_voxel(own, scan.world_from_voxel(v));
+    return own_voxels.contains(in_own) ? places[row_major(own.dims, in_own.i, in_own.j, in_own.k)] : 0;
+  };
+  for_each_voxel(covered(scan, own, labelled_box(own, places)), [&](const VoxelIndex& v) {
+    const Place place = at_nearest(v);
+    if (place == 0) return;
+    box_.include(v);
+    if (label(place).no_go) no_go_box_.include(v);
+  });
+  if (box_.empty()) return;
+  dims_ = {box_.last.i - box_.first.i + 1, box_.last.j - box_.first.j + 1, box_.last.k - box_.first.k + 1};
+  places_.reserve(cell_count(dims_));
+  for_each_voxel(box_, [&](const VoxelIndex& v) { places_.push_back(at_nearest(v)); });
+}
+
+std::vector<std::size_t> LabelMap::voxel_counts() const {
+  std::vector<std::size_t> counts(labels_.size() + 1);
+  for (const Place place : places_) ++counts[place];
+  counts[0] = 0;
+  return counts;
+}
+
+LabelMap::Place LabelMap::nearest_to(const Vec3& point_W) const {
+  return at(nearest_voxel(scan_, point_W));
+}
+
+}  // namespace osteomill

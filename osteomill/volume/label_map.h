@@ -1,0 +1,72 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "osteomill/volume/grid_geometry.h"
+
+namespace osteomill {
+
+/// What a label map knows of one of its labels.
+struct Label {
+  /// As it stands in the map's file.
+  int value = 0;
+  std::string name;
+  /// Red, green, blue.
+  std::array<std::uint8_t, 3> colour{};
+  /// A structure that no burr may touch.
+  bool no_go = false;
+  friend bool operator==(const Label&, const Label&) = default;
+};
+
+/// "#rrggbb".
+std::string hex_colour(const Label& label);
+
+/// Which structure each voxel of a scan belongs to. Labels are names, not quantities: they are looked up at
+/// the nearest voxel and never interpolated. Kept on the scan's grid, a byte a voxel, in the box that holds
+/// all labels. Does not change; reading is safe in the haptic tick and from any thread.
+class LabelMap {
+ public:
+  /// A label by its place in `labels()`, counted from 1; 0 is no label.
+  using Place = std::uint8_t;
+  static constexpr std::size_t kMaxLabels = 255;
+
+  /// A label map on a grid of its own: `places` has a value a voxel of `own`, i running fastest. Each voxel
+  /// of `scan` gets the label of the voxel of `own` that is nearest to its centre, none outside of `own`.
+  /// Throws std::invalid_argument for more than `kMaxLabels` labels or places that do not fit.
+  LabelMap(std::vector<Label> labels, const GridGeometry& scan, const GridGeometry& own,
+           const std::vector<Place>& places);
+
+  const std::vector<Label>& labels() const { return labels_; }
+  /// `place` is not 0.
+  const Label& label(Place place) const { return labels_[place - 1u]; }
+  /// Any voxel of the scan.
+  Place at(const VoxelIndex& v) const {
+    if (!box_.contains(v)) return 0;
+    return places_[row_major(dims_, v.i - box_.first.i, v.j - box_.first.j, v.k - box_.first.k)];
+  }
+  /// At the voxel nearest to any finite point of W.
+  Place nearest_to(const Vec3& point_W) const;
+
+  /// How many voxels of the scan have each label, by its place; of no label, none are counted. Goes through
+  /// all of them.
+  std::vector<std::size_t> voxel_counts() const;
+
+  /// Where there are labels; empty where there is none.
+  const VoxelBox& box() const { return box_; }
+  /// The box that holds all labels that are no-go; empty where there is none.
+  const VoxelBox& no_go_box() const { return no_go_box_; }
+  const GridGeometry& scan_geometry() const { return scan_; }
+
+ private:
+  std::vector<Label> labels_;
+  GridGeometry scan_;
+  VoxelBox box_;
+  VoxelBox no_go_box_;
+  std::array<int, 3> dims_{0, 0, 0};
+  std::vector<Place> places_;
+};
+
+}  // namespace osteomill
