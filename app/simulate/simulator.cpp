@@ -153,7 +153,12 @@ class Simulator {
     if (!answer) return;
     if (*answer == LeftAnswer::remove) left_->file.clear();
     if (*answer == LeftAnswer::open) {
-      begin_opening({left_->facts.scan, left_->facts.isovalue, options_.scan.read}, std::move(left_->file));
+      ScanOptions scan{left_->facts.scan, left_->facts.isovalue, options_.scan.read};
+      // Those that were asked for again.
+      std::error_code other;
+      if (std::filesystem::equivalent(scan.scan, options_.scan.scan, other))
+        scan.labels = options_.scan.labels;
+      begin_opening(scan, std::move(left_->file));
     } else {
       begin_opening(options_.scan);
     }

@@ -179,8 +179,7 @@ LabelsRead read_labels(const LabelFiles& files, const GridGeometry& scan, std::u
     }
     LabelsRead read;
     const std::vector<float> values =
-        read_voxels(subject, header.voxels, header.geometry.voxel_count(),
-                                                  max_memory_bytes, header.warnings);
+        read_voxels(subject, header.voxels, header.geometry.voxel_count(), max_memory_bytes, header.warnings);
     for (const std::string& warning : header.warnings) read.warnings.push_back(subject + ": " + warning);
     const FoundLabels found = find_labels(subject, values);
     std::vector<Label> labels = make_labels(found, table, files);

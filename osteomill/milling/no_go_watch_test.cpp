@@ -28,8 +28,8 @@ std::shared_ptr<const LabelMap> nerve_in_bone() {
 
 TEST(NoGoWatch, FindsAStructureFromWhereverTheBurrComes) {
   const NoGoWatch watch(nerve_in_bone(), kRadius_mm);
-  for (int n = 0; n < 200; ++n) {
-    const double z = 1 - (2 * n + 1) / 200.0, turn = 2.4 * n;
+  for (int n = 0; n < 60; ++n) {
+    const double z = 1 - (2 * n + 1) / 60.0, turn = 2.4 * n;
     const Vec3 from(std::sqrt(1 - z * z) * std::cos(turn), std::sqrt(1 - z * z) * std::sin(turn), z);
     double touched_mm = -1;
     for (double distance_mm = 4; distance_mm > 0 && touched_mm < 0; distance_mm -= 0.02) {
