@@ -53,6 +53,7 @@ const std::vector<Named>& all_sections() {
       {"through", [](const Bones&, const Effort& effort) { return breaking_through(effort); }},
       {"voxels", [](const Bones&, const Effort& effort) { return voxel_sizes(effort); }},
       {"swept", [](const Bones&, const Effort& effort) { return swept_holes(effort); }},
+      {"fine", [](const Bones&, const Effort& effort) { return fine_scans(effort); }},
       {"rates", haptic_rates},
       {"tooth", milling_the_tooth},
       {"second", milling_the_second_scan},

@@ -1,0 +1,140 @@
+#include <cmath>
+#include <fstream>
+#include <vector>
+
+#include "tests/shapes.h"
+#include "verification/sections.h"
+#include <fmt/core.h>
+
+#include "osteomill/experiment/milling_trial.h"
+#include "osteomill/operator/milling_entry.h"
+#include "osteomill/report/metrics.h"
+#include "osteomill/volume/builtin_tooth.h"
+#include "osteomill/volume/densities.h"
+
+namespace osteomill::verification {
+
+namespace {
+
+constexpr double kForceWithin = 0.03;
+constexpr double kMaxStep_us = 120, kMaxMilling_us = 100, kMaxTick_us = 1000;
+constexpr double kCoarse_mm = 0.125, kFine_mm = 0.03125;
+
+// 13.75 x 13.75 x 9.375 mm, 440 x 440 x 300 of the fine voxels, with a margin about the bone.
+Volume block(double spacing_mm) {
+  GridGeometry geometry;
+  const auto voxels = [&](double mm) { return static_cast<int>(std::lround(mm / spacing_mm)); };
+  geometry.dims = {voxels(13.75), voxels(13.75), voxels(9.375)};
+  geometry.spacing_mm = Vec3::Constant(spacing_mm);
+  geometry.origin_mm = Vec3::Constant(0.5 * spacing_mm);
+  constexpr double kEdge_mm = 0.25;
+  return testing_support::shape_volume(
+      geometry,
+      [](const Vec3& p) {
+        return std::max(
+            {std::abs(p.x() - 6.875) - 6.5, std::abs(p.y() - 6.875) - 6.5, p.z() - 9, 0.375 - p.z()});
+      },
+      kEdge_mm / spacing_mm);
+}
+
+// What this process has for itself, in MiB; 0 where the system does not say.
+double own_memory_MiB() {
+  std::ifstream in("/proc/self/status");
+  for (std::string word; in >> word;) {
+    double kiB = 0;
+    if (word == "RssAnon:" && in >> kiB) return kiB / 1024;
+  }
+  return 0;
+}
+
+struct Figures {
+  RunMetrics milling, holding;
+  Distribution milling_us;
+  int faults = 0;
+  double memory_MiB = 0;
+};
+
+Figures figures_of(const Volume& bone, const std::string& algorithm, double phase_s) {
+  TrialSettings settings;
+  settings.hand_and_device.seed = 11;
+  settings.hand_and_device.script.until_leant = true;
+  settings.hand_and_device.script.milling_s = phase_s;
+  settings.hand_and_device.script.holding_s = 0.5 * phase_s;
+  const double before_MiB = own_memory_MiB();
+  MillingTrial trial(bone, estimate_densities(bone), place_entry(bone, settings.tool),
+                     algorithm_named(algorithm), settings);
+  Figures figures;
+  Recording milling, holding;
+  std::vector<double> milling_us;
+  while (!trial.finished()) {
+    const MillingTrial::Tick tick = trial.tick();
+    (tick.milling_phase ? milling : holding).records.push_back(tick.record);
+    if (tick.milling_phase) milling_us.push_back(tick.record.milling_us);
+    figures.faults += tick.record.fault != WrenchFault::none;
+  }
+  figures.memory_MiB = own_memory_MiB() - before_MiB;
+  figures.milling = run_metrics(milling);
+  figures.holding = run_metrics(holding);
+  figures.milling_us = distribution_of(milling_us);
+  return figures;
+}
+
+std::string of_both(double fine, double coarse) {
+  return fmt::format("{} ({:+.1f} %)", figure(fine), 100 * (fine / coarse - 1));
+}
+
+void add_row(Section& section, const std::string& bone, const std::string& algorithm, const Figures& fine,
+             const Figures& coarse) {
+  const auto alike = [](const VectorMetrics& a, const VectorMetrics& b) {
+    return std::abs(a.mean / b.mean - 1) <= kForceWithin;
+  };
+  const double tick_us = std::max(fine.milling.cpu_us->max, fine.holding.cpu_us->max);
+  const bool swift = algorithm != "point-shell" ||
+                     (fine.milling.step_us.p99 <= kMaxStep_us && fine.milling_us.p99 <= kMaxMilling_us);
+  section.add({fmt::format("{}, {}", bone, algorithm),
+               of_both(fine.milling.force_N.mean, coarse.milling.force_N.mean),
+               of_both(fine.holding.force_N.mean, coarse.holding.force_N.mean),
+               figure(fine.milling.force_N.step_max), figure(fine.milling.torque_Nmm.step_max),
+               fmt::format("{}", fine.faults), figure(fine.milling.step_us.p99), figure(fine.milling_us.p99),
+               figure(tick_us), fmt::format("{:.0f}", fine.memory_MiB)},
+              alike(fine.milling.force_N, coarse.milling.force_N) &&
+                  alike(fine.holding.force_N, coarse.holding.force_N) && fine.faults == 0 && swift &&
+                  tick_us <= kMaxTick_us);
+}
+
+void add_rows(Section& section, const std::string& name, const Volume& fine, const Volume& coarse,
+              double phase_s) {
+  for (const std::string& algorithm : algorithm_names()) {
+    const Figures figures = figures_of(fine, algorithm, phase_s);
+    add_row(section, name, algorithm, figures, figures_of(coarse, algorithm, phase_s));
+  }
+}
+
+}  // namespace
+
+Section fine_scans(const Effort& effort) {
+  const double phase_s = 0.5 * effort.phase_s;
+  Section section{
+      "Voxels of 0.031 mm",
+      fmt::format(
+          "Must hold: the mean force while milling and while holding is that at {} mm within {:g} %, every "
+          "wrench is finite, no tick takes over {:g} us of CPU time; for point-shell 99 % of the steps take "
+          "at "
+          "most {:g} us, of milling with the refresh of its shell {:g} us. A block of 440 x 440 x 300 "
+          "voxels, "
+          "and the built-in tooth of 1024 x 1024 x 704, milled for {:g} s (longer until the shaft has leant) "
+          "and held, push 1.5 N, seed 11, one trial at a time. In brackets against {} mm. Memory: what the "
+          "trial "
+          "takes beside the scan, the pages of it that were made for milling among it.",
+          kCoarse_mm, 100 * kForceWithin, kMaxTick_us, kMaxStep_us, kMaxMilling_us, phase_s, kCoarse_mm),
+      {"bone, algorithm", "force milling, N", "force holding, N", "force step, N", "torque step, N mm",
+       "faults", "step p99, us", "milling p99, us", "longest tick, us CPU", "memory, MiB", ""},
+      {},
+      {}};
+  add_rows(section, "block", block(kFine_mm), block(kCoarse_mm), phase_s);
+  add_rows(section, "tooth", Volume(builtin_tooth(kCoarse_mm / kFine_mm), kBuiltinToothIsovalue),
+           Volume(builtin_tooth(), kBuiltinToothIsovalue), phase_s);
+  return section;
+}
+
+}  // namespace osteomill::verification
