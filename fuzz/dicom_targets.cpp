@@ -177,7 +177,7 @@ std::vector<std::string> jpeg2000_seeds(const fs::path& folder) {
   size.dx = size.dy = 1;
   size.w = kColumns;
   size.h = kRows;
-  size.prec = size.bpp = 12;
+  size.prec = 12;
   opj_image_t* const image = opj_image_create(1, &size, OPJ_CLRSPC_GRAY);
   image->x1 = kColumns;
   image->y1 = kRows;

@@ -40,7 +40,7 @@ namespace {
 void write_seeds(const fs::path& folder) {
   for (const Target& target : targets()) {
     const TemporaryFolder work;
-    create_folder(folder / target.name);
+    fs::create_directories(folder / target.name);
     int number = 0;
     for (const std::string& seed : target.seeds(work.path()))
       std::ofstream(folder / target.name / ("seed" + std::to_string(number++)), std::ios::binary) << seed;
