@@ -20,7 +20,7 @@ constexpr int kSize = 20;
 // All that a scanner writes of who lay in it.
 const std::vector<std::pair<DcmTagKey, std::string>> kPatient{
     {DCM_PatientName, "Zzyzx^Quilla"},          {DCM_PatientID, "QX-7719302"},
-    {DCM_PatientBirthDate, "19510203"},         {DCM_OtherPatientIDs, "QX-7719302"},
+    {DCM_PatientBirthDate, "19510203"},         {DCM_OtherPatientNames, "Zzyzx"},
     {DCM_PatientAddress, "Zzyzx Road 7719302"}, {DCM_ReferringPhysicianName, "Zzyzx^Doctor"}};
 const std::vector<std::string> kSecrets{"Zzyzx", "Quilla", "7719302", "19510203"};
 
