@@ -1,3 +1,5 @@
+#include <memory>
+
 #include "tests/count_allocations.h"
 #include "tests/shapes.h"
 #include <gtest/gtest.h>
@@ -10,9 +12,10 @@ namespace {
 
 // Also while the drawing thread takes nothing and more is marked than finds room.
 TEST(TickAllocation, HandingChangesOverToTheFollowerAllocatesNothing) {
-  Volume volume = testing_support::shape_volume(testing_support::centred_cube(96, 0.25),
-                                                testing_support::ball(Vec3::Zero(), 10));
-  BoneFollower follower(volume);
+  const auto bone = std::make_shared<Volume>(testing_support::shape_volume(
+      testing_support::centred_cube(96, 0.25), testing_support::ball(Vec3::Zero(), 10)));
+  BoneFollower follower(bone);
+  Volume& volume = *bone;
   BurrMill mill(volume.geometry(), 1.5, {0, 1000}, {});
   const long before = testing_support::allocations_of_this_thread();
   for (int n = 0; n < 1000; ++n) {

@@ -112,12 +112,12 @@ INSTANTIATE_TEST_SUITE_P(AllAlgorithms, TickAllocation,
 // in.
 TEST(TickAllocation, NoTickOfALiveSessionAllocates) {
   constexpr double kBallRadius_mm = 6;
-  const Volume bone = testing_support::shape_volume(testing_support::centred_cube(64, 0.25),
-                                                    testing_support::ball(Vec3::Zero(), kBallRadius_mm));
+  const auto bone = std::make_shared<Volume>(testing_support::shape_volume(
+      testing_support::centred_cube(64, 0.25), testing_support::ball(Vec3::Zero(), kBallRadius_mm)));
   const MillingTool tool;
   auto session =
       std::make_unique<MillingSession>(bone, tool, make_algorithm("point-shell", {}),
-                                       estimate_densities(bone), MillingSettings{}, WrenchLimits{});
+                                       estimate_densities(*bone), MillingSettings{}, WrenchLimits{});
   session->set_vibration({.on = true});
   PosedDevice device;
   device.put({{0, 0, kBallRadius_mm + tool.burr_radius_mm - 0.3}, Quat::Identity()});

@@ -63,7 +63,8 @@ float draw_labels(ViewState& view, const Simulation& simulation, const PixelSize
 void draw_no_go(Simulation& simulation, const PixelSize& size) {
   constexpr double kShown_s = 4;
   const double now_s = simulation.milling.state().record.time_s;
-  if (simulation.no_go_text.empty() || now_s - simulation.no_go_s > kShown_s) return;
+  const auto last_s = simulation.label_count.last_no_go_s();
+  if (!last_s || now_s - *last_s > kShown_s) return;
   const ImVec2 text_px = ImGui::CalcTextSize(simulation.no_go_text.c_str());
   const float margin = 0.7f * text_px.y;
   const ImVec2 place(0.5f * (static_cast<float>(size.width) - text_px.x), ui::px(48) + margin);

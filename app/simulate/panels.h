@@ -15,7 +15,7 @@ float draw_readings(Simulation& simulation, double pictures_per_s, const PixelSi
 /// Below it, where the bone has labels: a legend, and how much of each was removed.
 float draw_labels(ViewState& view, const Simulation& simulation, const PixelSize& size, float top_px);
 
-/// For some seconds after the burr touched a no-go label: a red line across the top that says so.
+/// While the burr touches a no-go label and some seconds after: a red line across the top that says so.
 void draw_no_go(Simulation& simulation, const PixelSize& size);
 
 }  // namespace osteomill::app

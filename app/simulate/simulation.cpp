@@ -94,7 +94,6 @@ void Simulation::update() {
     history.push_back(*record);
     if (const Label* touched = label_count.add(*record)) {
       no_go_text = no_go_warning(*touched, *record);
-      no_go_s = record->time_s;
       warn(no_go_text);
     }
   }

@@ -64,9 +64,8 @@ struct Simulation {
   /// What the burr met of them, and how much of each has gone (LiveMilling::removed_by_label).
   LabelCount label_count;
   std::vector<double> removed_by_label_mm3;
-  /// The no-go contact that began last: what to tell of it, and the session's time.
+  /// What to tell of the no-go contact that began last.
   std::string no_go_text;
-  double no_go_s = 0;
   /// The ticks of the last 5 seconds.
   std::deque<TickRecord> history;
 

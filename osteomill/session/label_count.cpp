@@ -27,6 +27,15 @@ const Label* LabelCount::add(const TickRecord& record) {
   return begun;
 }
 
+std::optional<double> LabelCount::last_no_go_s() const {
+  std::optional<double> last_s;
+  for (std::size_t n = 0; n < labels_.size(); ++n) {
+    if (labels_[n].no_go && entries_[n].contacts > 0)
+      last_s = std::max(last_s.value_or(entries_[n].last_s), entries_[n].last_s);
+  }
+  return last_s;
+}
+
 std::string no_go_warning(const Label& label, const TickRecord& record) {
   return fmt::format("no-go: the burr touched {} at {:.3f} s, pressing with {:.2f} N", label.name,
                      record.time_s, record.burr_force_W_N.norm());

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,6 +31,9 @@ class LabelCount {
 
   /// Returns the no-go label with which a contact begins in this tick, or null.
   const Label* add(const TickRecord& record);
+
+  /// When the burr last cut or touched a no-go label.
+  std::optional<double> last_no_go_s() const;
 
   const std::vector<Label>& labels() const { return labels_; }
   /// One for each label.

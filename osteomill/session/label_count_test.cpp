@@ -37,6 +37,7 @@ TEST(LabelCount, SaysHowMuchWhenAndWithWhatForce) {
   const LabelCount::Entry& nerve = count.entries()[1];
   EXPECT_DOUBLE_EQ(nerve.removed_mm3, 0.25);
   EXPECT_EQ(nerve.contacts, 2);
+  EXPECT_EQ(count.last_no_go_s(), 1.95);
   EXPECT_EQ(label_lines(count).size(), 2u);
 }
 
