@@ -85,7 +85,7 @@ INSTANTIATE_TEST_SUITE_P(
                       // Of the heavy hand only the torque is asked; the rest is kept in sight.
                       Goal{"surface-points", 3.0, 0.10, 5, 1.0}, Goal{"point-shell", 1.5, 0.02, 0.3, 0.06},
                       // The hole is no wider than the burr, and the shaft jams in it.
-                      Goal{"point-shell", 3.0, 0.03, 0.6, 0.15},
+                      Goal{"point-shell", 3.0, 0.03, 0.5, 0.15},
                       // At other rates; in a tick twice as long the wrench may step twice as far.
                       Goal{"point-shell", 1.5, 0.02, 0.6, 0.12, 2e-3},
                       Goal{"point-shell", 3.0, 0.03, 0.5, 0.15, 0.5e-3}));

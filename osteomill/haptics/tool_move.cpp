@@ -28,12 +28,14 @@ MoveBound move_bound(const Pose& X_WT, const Pose& X_WD_before, const Pose& X_WD
   const double fading = std::min(1.0, tick_s / release.time_s);
   const ToolMove device = move_between(X_WD_before, X_WD), stretch = move_between(X_WD_before, X_WT);
   const double moved_mm = device.translation_mm.norm(), turned_rad = device.rotation_rad.norm();
-  const double by_turn_mm = 0.25 * spring_length_mm * turned_rad;
-  const double by_move_rad = 0.25 * moved_mm / spring_length_mm;
-  return {{0.5 * device.translation_mm + by_turn_mm * stretch.translation_mm.normalized(),
-           0.5 * device.rotation_rad + by_move_rad * stretch.rotation_rad.normalized()},
-          0.5 * moved_mm + by_turn_mm + fading * stretch.translation_mm.norm() + release.mm_s * tick_s,
-          0.5 * turned_rad + by_move_rad + fading * stretch.rotation_rad.norm() + release.rad_s * tick_s};
+  // By so much more along the stretch, to where it grows, and to where it fades.
+  const double grow_mm = 0.5 * spring_length_mm * turned_rad,
+               fade_mm = fading * stretch.translation_mm.norm();
+  const double grow_rad = 0.5 * moved_mm / spring_length_mm, fade_rad = fading * stretch.rotation_rad.norm();
+  return {{0.5 * (device.translation_mm + (grow_mm - fade_mm) * stretch.translation_mm.normalized()),
+           0.5 * (device.rotation_rad + (grow_rad - fade_rad) * stretch.rotation_rad.normalized())},
+          0.5 * (moved_mm + grow_mm + fade_mm) + release.mm_s * tick_s,
+          0.5 * (turned_rad + grow_rad + fade_rad) + release.rad_s * tick_s};
 }
 
 double share_within(const Vec3& middle, double radius, const Vec3& from, const Vec3& change) {

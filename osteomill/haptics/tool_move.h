@@ -28,8 +28,9 @@ struct Release {
 /// does not leap where bone gives way. Held on a spring by surfaces without friction, a tool goes along with
 /// the device by a projection of the device's move, and all projections of a vector lie on the sphere of
 /// which it is a diameter: so the tool's move stays in that ball, and its turn in the other, grown by the
-/// release. A turn of the device may also move a tool that is held at a lever, and a move turn it: by half,
-/// at the length `sqrt(torsional / translational stiffness)`, and on the side on which the stretch grows.
+/// release's speed, and by its share on the side on which the stretch fades. A turn of the device may also
+/// move a tool that is held at a lever, and a move turn it: by half, at the length `sqrt(torsional /
+/// translational stiffness)`, and on the side on which the stretch grows.
 /// Standing still always lies within. In W's axes.
 struct MoveBound {
   ToolMove middle;
