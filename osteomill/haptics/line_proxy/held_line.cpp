@@ -176,8 +176,8 @@ ToolMove HeldLine::stride(const ToolMove& move, double longest_mm) const {
   return longest_mm / std::max(longest_mm, travel_mm(move)) * move;
 }
 
-// What bone leaves of a move, as far as it shows from where a stride would take the line, becomes the limits.
-void HeldLine::look_along(const ToolMove& wanted, double longest_mm) {
+// What bone leaves of a move, as far as it shows from where a stride would take the line.
+ToolMove HeldLine::look_along(const ToolMove& wanted, double longest_mm) {
   limit_count_ = 0;
   ToolMove move = wanted;
   for (int look = 0; look <= kLooks; ++look) {
@@ -189,6 +189,7 @@ void HeldLine::look_along(const ToolMove& wanted, double longest_mm) {
     move = allowed(wanted);
   }
   take_pushes();
+  return move;
 }
 
 // What the springs hold, per their stiffness at the tip.
@@ -212,8 +213,7 @@ bool HeldLine::go(const ToolMove& move, const Pose& X_WD) {
 
 // Not further from the device's own move than may be; where going along with the device is itself a leap, the
 // turn, and with it the torque, comes over a few ticks.
-ToolMove HeldLine::held_to(const Leap& most, const ToolMove& device, const ToolMove& wanted) {
-  ToolMove move = allowed(wanted);
+ToolMove HeldLine::held_to(const Leap& most, const ToolMove& device, ToolMove move) {
   const double share = most.allows(move - device);
   if (share == 1) return move;
   const ToolMove with_device = allowed(device);
@@ -229,14 +229,14 @@ void HeldLine::slide(const ToolMove& device, const Pose& X_WD, const Leap& most)
   const ToolMove wanted = device + kRelaxation * (whole - device);
   const double longest_mm =
       std::min(kStride_mm, travel_mm(device) + most.move_mm + most.turn_rad * span_.end_mm);
-  look_along(wanted, longest_mm);
+  const ToolMove left = look_along(wanted, longest_mm);
   const bool may_land =
       limit_count_ == 0 && travel_mm(whole) <= kStride_mm && most.allows(whole - device) == 1;
   if (may_land && !is_in_bone(X_WD)) {
     X_WL_ = X_WD;
     return;
   }
-  ToolMove move = stride(held_to(most, device, wanted), longest_mm);
+  ToolMove move = stride(held_to(most, device, left), longest_mm);
   for (int n = 0; n <= kHalvings && !go(move, X_WD); ++n) move = 0.5 * move;
 }
 

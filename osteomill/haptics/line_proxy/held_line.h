@@ -67,7 +67,7 @@ class HeldLine {
   bool add_limit(const Vec3& out_W, double depth_mm, const ToolMove& at, bool is_tip, const Vec3& arm_W);
   ToolMove allowed(const ToolMove& wanted);
   ToolMove stride(const ToolMove& move, double longest_mm) const;
-  void look_along(const ToolMove& wanted, double longest_mm);
+  ToolMove look_along(const ToolMove& wanted, double longest_mm);
   // How far the line may go beyond the device's own movement.
   struct Leap {
     double move_mm;
@@ -76,7 +76,7 @@ class HeldLine {
     double allows(const ToolMove& leap) const;
   };
   Leap leap_in_a_stride(const ToolMove& device, double dt_s, double part) const;
-  ToolMove held_to(const Leap& most, const ToolMove& device, const ToolMove& wanted);
+  ToolMove held_to(const Leap& most, const ToolMove& device, ToolMove move);
   double energy_mm2(const Pose& X_WL, const Pose& X_WD) const;
   bool go(const ToolMove& move, const Pose& X_WD);
   void slide(const ToolMove& device, const Pose& X_WD, const Leap& most);
