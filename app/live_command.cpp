@@ -1,5 +1,6 @@
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 
@@ -11,6 +12,7 @@
 #include "app/trial_options.h"
 #include <fmt/core.h>
 
+#include "osteomill/experiment/entry_pictures.h"
 #include "osteomill/live/live_milling.h"
 #include "osteomill/session/fault_count.h"
 #include "osteomill/session/label_count.h"
@@ -87,11 +89,18 @@ void run_live(LiveOptions options, const std::string& command_line) {
   const auto bone = std::make_shared<Volume>(std::move(loaded.volume));
   const std::shared_ptr<const LabelMap> labels = bone->labels();
   PreparedMilling prepared = prepare_milling(bone, setup);
-  SimulatedOperator hand(trial_settings(options.trial).hand_and_device, setup.tool,
-                         place_entry(*bone, options.trial));
+  const BoneDensities densities = prepared.densities;
+  const MillingEntry entry = place_entry(*bone, options.trial);
+  SimulatedOperator hand(trial_settings(options.trial).hand_and_device, setup.tool, entry);
   LiveMilling milling(std::move(prepared), hand);
+  std::optional<EntryPictures> pictures;
   if (!options.record.empty()) {
-    milling.start_recording(options.record, milling.describe(loaded.name, command_line));
+    pictures.emplace(*bone, densities.reference, entry, events_on_terminal(), !options.scan.scan.empty());
+    milling.start_recording(options.record, milling.describe(loaded.name, command_line), [&] {
+      std::optional<std::vector<unsigned char>> png;
+      milling.read_bone([&](const Volume& now) { png = pictures->of(now, events_on_terminal()); });
+      return png.value_or(std::vector<unsigned char>{});
+    });
   }
   milling.start();
   if (!milling.refused_real_time().empty()) warn(milling.refused_real_time());

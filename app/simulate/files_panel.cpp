@@ -16,6 +16,7 @@
 #include "osteomill/ct/write_nrrd.h"
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/files/input_error.h"
+#include "osteomill/image/png.h"
 #include "osteomill/recording/read_recording.h"
 #include "osteomill/report/write_report.h"
 #include "osteomill/surface/mesh_file.h"
@@ -70,7 +71,8 @@ void FilesPanel::record(ViewState& view, Simulation& simulation) {
       view.result = last_recording_;
     } else {
       simulation.milling.start_recording(
-          name("recording.h5"), simulation.milling.describe(simulation.scan_name, simulation.command_line));
+          name("recording.h5"), simulation.milling.describe(simulation.scan_name, simulation.command_line),
+          [this, camera = view.camera] { return encode_png(take_picture_(camera)); });
       recording_since_ = std::chrono::steady_clock::now();
       view.message.clear();
     }

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <functional>
 #include <future>
 #include <optional>
 #include <string>
@@ -9,13 +10,19 @@
 #include "app/simulate/simulation.h"
 #include "app/simulate/view_state.h"
 
+#include "osteomill/image/image.h"
+#include "osteomill/view/camera.h"
+
 namespace osteomill::app {
 
 /// Recording, reports, and what can be saved, all into one folder. Files are named after the time and this
 /// process, so that several windows may share the folder. What takes long is done on a thread of its own.
 class FilesPanel {
  public:
-  explicit FilesPanel(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  /// The view as from a camera.
+  using TakePicture = std::function<Image(const Camera&)>;
+  FilesPanel(std::filesystem::path folder, TakePicture take_picture)
+      : folder_(std::move(folder)), take_picture_(std::move(take_picture)) {}
 
   void draw(ViewState& view, Simulation& simulation);
   /// On the right from `top_px` down: what is going on, what was done last, and buttons that open what came
@@ -47,6 +54,7 @@ class FilesPanel {
   void make_report();
 
   std::filesystem::path folder_;
+  TakePicture take_picture_;
   std::filesystem::path last_recording_;
   struct Done {
     std::string said;

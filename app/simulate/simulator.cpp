@@ -71,7 +71,9 @@ constexpr int kMostPictures = 500;
 class Simulator {
  public:
   explicit Simulator(const SimulatorOptions& options)
-      : options_(options), window_("osteomill", options.size, options.ui_scale), files_(options.folder) {
+      : options_(options),
+        window_("osteomill", options.size, options.ui_scale),
+        files_(options.folder, [this](const Camera& camera) { return picture(camera); }) {
     if (!options.script.empty()) script_.emplace(options.script);
     view_.help = !options.no_help;
   }
@@ -342,12 +344,18 @@ class Simulator {
     }
   }
 
+  // In full detail, also where the view has just come to rest.
+  Image picture(const Camera& camera) {
+    ViewScene scene = scene_of(view_, *simulation_);
+    scene.camera = camera;
+    renderer_->draw(scene, window_.size());
+    for (int n = 0; n < kMostPictures && !renderer_->settled(); ++n) renderer_->draw(scene, window_.size());
+    return renderer_->picture();
+  }
+
   void save_picture() {
     try {
-      // In full detail, also where the view has just come to rest.
-      for (int n = 0; n < kMostPictures && !renderer_->settled(); ++n)
-        renderer_->draw(scene_of(view_, *simulation_), window_.size());
-      Image picture = renderer_->picture();
+      Image picture = this->picture(view_.camera);
       const double scale = window_.ui_scale();
       const PixelSize usual{static_cast<int>(picture.width / scale),
                             static_cast<int>(picture.height / scale)};

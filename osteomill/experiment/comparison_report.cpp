@@ -6,14 +6,15 @@
 
 #include <fmt/format.h>
 
-#include "osteomill/experiment/findings.h"
 #include "osteomill/experiment/paper.h"
 #include "osteomill/experiment/passivity_figure.h"
 #include "osteomill/experiment/passivity_section.h"
+#include "osteomill/experiment/signed_rank.h"
 #include "osteomill/experiment/study_figure.h"
+#include "osteomill/experiment/study_findings.h"
 #include "osteomill/experiment/study_section.h"
-#include "osteomill/experiment/study_words.h"
 #include "osteomill/experiment/trial_plan.h"
+#include "osteomill/experiment/verdict.h"
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/report/html.h"
 #include "osteomill/report/write_report.h"
@@ -24,48 +25,48 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::string findings_table(const std::vector<Finding>& findings) {
-  HtmlTable table{{"The paper found", "Measured here", "Verdict", "Rule"}, {}};
-  for (const Finding& f : findings) {
-    const char* css = f.verdict == Verdict::agrees           ? "agrees"
-                      : f.verdict == Verdict::does_not_agree ? "differs"
-                                                             : "none";
-    table.rows.push_back({html_escaped(f.paper_says), html_escaped(f.measured),
-                          fmt::format("<span class=\"{}\">{}</span>", css, name_of(f.verdict)),
-                          "agrees where " + html_escaped(f.rule)});
+const char* css_of(Verdict verdict) {
+  return verdict == Verdict::agrees ? "agrees" : verdict == Verdict::does_not_agree ? "differs" : "none";
+}
+
+std::string findings_table(const Study& study, Mode mode) {
+  const bool one = study.seeds().size() == 1;
+  HtmlTable table{{"The paper found", one ? "Measured here" : "Medians over the hands",
+                   one ? "In this hand" : "Verdict", "Rule"},
+                  {}};
+  if (!one)
+    table.header.insert(table.header.end() - 1, {"In how many hands", "Sign test, in more than half"});
+  for (const StudyFinding& f : check_study_findings(study, mode)) {
+    const Verdict verdict = f.of_medians.verdict;
+    std::vector<std::string> row{
+        html_escaped(f.of_medians.paper_says), html_escaped(f.of_medians.measured),
+        fmt::format("<span class=\"{}\">{}</span>", css_of(verdict), name_of(verdict))};
+    if (!one) {
+      row.push_back(fmt::format("{} of {}", f.agreeing, f.tested));
+      row.push_back(html_escaped(p_text(f.p)));
+    }
+    row.push_back("agrees where " + html_escaped(f.of_medians.rule));
+    table.rows.push_back(std::move(row));
   }
   return html_table(table);
 }
 
-std::string about_group(const RunGroup& group) {
-  const std::vector<Finding> findings = check_findings(group);
-  std::string html;
-  for (const std::string& text : plain_paragraphs(group, findings)) html += html_paragraph(text);
-  return html + "<h3>The paper's findings</h3>\n" + findings_table(findings);
+std::string findings_section(const Study& study) {
+  std::string html = "<h2>The paper's findings</h2>\n";
+  html += html_paragraph(
+      "What section 8.2 of the paper says it found, each held against what was measured by a rule of this "
+      "project. Mode paper has the algorithms as the paper has them; steady has this project's named "
+      "improvements, so what the paper found wrong with one of them need not be wrong there.");
+  for (const Mode mode : study.modes()) {
+    html += fmt::format("<h3>Mode {}</h3>\n", name_of(mode)) + findings_table(study, mode);
+  }
+  return html;
 }
 
 std::string paper_rate(const MeasuredRun& run) {
   const RunDescription& d = run.recording->description;
   const auto rate_hz = paper_mean_rate_hz(d.algorithm.name, d.segment);
   return rate_hz ? fmt::format("{:.0f}", *rate_hz) : "";
-}
-
-PageText page_text() {
-  PageText text;
-  text.title = "6-DOF haptic algorithms compared while milling bone";
-  text.what_was_done =
-      "While milling, the simulated hand moves the burr in until it touches, mills a hole and pushes the "
-      "shaft "
-      "against the hole's edge; while holding, it stands in the milled hole with the shaft against the wall "
-      "and "
-      "keeps as still as it can.";
-  text.about_group = about_group;
-  text.further_metrics = {{"Haptic rate in the paper, mean, on a Pentium 4 (Hz)", paper_rate}};
-  text.caption_notes = {{"rate", "The paper's figure 6."},
-                        {"force", "The paper's figure 7."},
-                        {"torque", "The paper's figure 8."},
-                        {"shaft", "The paper's figure 9."}};
-  return text;
 }
 
 std::optional<double> matched_N_per_mm(const Recording& recording) {
@@ -93,15 +94,38 @@ std::string about_stiffness(const std::vector<Recording>& recordings) {
          "from each. What differs in force between them is partly this (compare --match-stiffness).";
 }
 
-void add_study(const Study& study, const fs::path& out_dir, PageText& page) {
+// What was compared, whether that can show anything, and what it shows.
+std::string opening(const Study& study, const std::vector<Recording>& recordings) {
+  std::string html = html_paragraph(what_was_compared(study, recordings.front().description.scan_name) + " " +
+                                    about_stiffness(recordings));
+  if (const std::string few = too_few_hands(study); !few.empty()) {
+    html = "<p class=\"notice\">" + html_escaped(few) + "</p>\n" + html;
+  }
+  html += "<ul>\n";
+  for (const std::string& sentence : verdict(study)) html += "<li>" + html_escaped(sentence) + "</li>\n";
+  return html + "</ul>\n";
+}
+
+// Of what was recorded, as the first and only seed.
+Study study_of(const std::vector<RunGroup>& groups) {
+  std::vector<StudyRow> rows;
+  for (const RunGroup& group : groups) {
+    for (const MeasuredRun& run : group.runs) {
+      const RunDescription& d = run.recording->description;
+      rows.push_back({0, {}, {d.algorithm, d.mode, d.segment, run.metrics}});
+    }
+  }
+  return Study(std::move(rows));
+}
+
+std::string hands_section(const Study& study, const fs::path& out_dir) {
   std::vector<CaptionedFigure> figures;
   for (const std::string_view phase : study.phases()) {
     figures.push_back(
         {draw_study_figure(study, phase, out_dir / "figures"),
          "Every hand of the study, by algorithm and mode; logarithmic where values lie far apart."});
   }
-  page.in_short = study_in_two_sentences(study);
-  page.sections += study_section(study, figures);
+  return study_section(study, figures);
 }
 
 }  // namespace
@@ -116,19 +140,28 @@ bool are_of_comparison(const std::vector<Recording>& recordings) {
 
 fs::path write_comparison_report(const std::vector<Recording>& recordings, const fs::path& out_dir,
                                  const ReportExtras& extras) {
-  PageText text = page_text();
-  if (!recordings.empty()) text.what_was_done += " " + about_stiffness(recordings);
+  const std::vector<RunGroup> groups = group_runs(recordings);
+  const Study study = extras.study ? *extras.study : study_of(groups);
   create_folder(out_dir / "figures");
+  PageText text;
+  text.title = "6-DOF haptic algorithms compared while milling bone";
+  text.opening = opening(study, recordings);
+  text.sections = findings_section(study);
   if (extras.study) {
-    write_study_csv(out_dir / "study.csv", *extras.study);
-    add_study(*extras.study, out_dir, text);
+    write_study_csv(out_dir / "study.csv", study);
+    text.sections += hands_section(study, out_dir);
   }
   if (!extras.stability.empty()) {
     write_passivity_csv(out_dir / "stability.csv", extras.stability);
     text.sections +=
         passivity_section(extras.stability, draw_passivity_figure(extras.stability, out_dir / "figures"));
   }
-  return write_report(recordings, out_dir, text);
+  text.further_times = {{"Haptic rate in the paper, mean, on a Pentium 4 (Hz)", paper_rate}};
+  text.caption_notes = {{"rate", "The paper's figure 6."},
+                        {"force", "The paper's figure 7."},
+                        {"torque", "The paper's figure 8."},
+                        {"shaft", "The paper's figure 9."}};
+  return write_report(groups, out_dir, text);
 }
 
 }  // namespace osteomill

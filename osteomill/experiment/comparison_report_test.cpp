@@ -10,6 +10,7 @@
 #include "osteomill/files/input_error.h"
 #include "osteomill/haptics/algorithms.h"
 #include "osteomill/report/report_samples.h"
+#include "osteomill/report/write_report.h"
 
 namespace osteomill {
 namespace {
@@ -76,7 +77,8 @@ TEST_F(ReportTest, AFullComparisonIsOnePageThatLoadsNothing) {
   EXPECT_EQ(page, out_ / "report.html");
   EXPECT_EQ(names_in(out_), (std::vector<std::string>{"figures", "report.html", "summary.csv"}));
   std::vector<std::string> expected;
-  for (const char* name : {"bone", "fig6_rate", "fig7_force", "fig8_torque", "fig9_shaft"}) {
+  for (const char* name :
+       {"bone", "fig6_rate", "fig7_force", "fig8_torque", "fig9_shaft", "path", "removed"}) {
     expected.push_back(std::string(name) + "_steady.png");
     expected.push_back(std::string(name) + "_steady.svg");
     EXPECT_LT(fs::file_size(out_ / "figures" / expected.back()), 1500000u) << name;
@@ -95,6 +97,22 @@ TEST_F(ReportTest, AFullComparisonIsOnePageThatLoadsNothing) {
   EXPECT_NE(summary.find("\npoint-shell,steady,holding,20000,"), std::string::npos);
 }
 
+// Of a person at the window it tells what that one did, and nothing of a trial that was none.
+TEST_F(ReportTest, ASessionSpeaksOfItself) {
+  Recording run = sample_run("point-shell", "milling");
+  run.description.segment = "";
+  for (TickRecord& record : run.records) record.spindle_on = record.time_s < 5, record.dt_s = 0.001;
+  const std::string html = bytes_of(write_report({run}, out_));
+  EXPECT_NE(html.find("<p>3 point-shell: 20.0 s, of which the spindle ran for 5.0 s. The burr went "),
+            std::string::npos);
+  EXPECT_NE(html.find("mm³ of bone were removed. The tool touched for "), std::string::npos);
+  for (const char* of_a_trial :
+       {"simulated hand", "paper", "hand tried", "nothing is claimed", "Milling<br>"}) {
+    EXPECT_EQ(html.find(of_a_trial), std::string::npos) << of_a_trial;
+  }
+  EXPECT_LT(html.find("The bone before and after"), html.find(">Force<"));
+}
+
 TEST_F(ReportTest, OneRecordingIsEnough) {
   Recording run = sample_run("surface-points", kHolding, Mode::paper, 500);
   const std::string html = bytes_of(write_comparison_report({run}, out_));
@@ -107,9 +125,9 @@ TEST_F(ReportTest, BothModesHaveTheirOwnFiguresAndFindings) {
   const std::vector<Recording> runs{sample_run("line-proxy", kHolding, Mode::steady, 200),
                                     sample_run("line-proxy", kHolding, Mode::paper, 200)};
   const std::string html = bytes_of(write_comparison_report(runs, out_));
-  EXPECT_NE(html.find("Mode: paper"), std::string::npos);
-  EXPECT_NE(html.find("Mode: steady"), std::string::npos);
-  EXPECT_EQ(names_in(out_ / "figures").size(), 16u);
+  EXPECT_NE(html.find("<h3>Mode paper"), std::string::npos);
+  EXPECT_NE(html.find("<h3>Mode steady"), std::string::npos);
+  EXPECT_EQ(names_in(out_ / "figures").size(), 24u);
 }
 
 TEST_F(ReportTest, AToolThatNeverMovesAndNeverTouchesIsDrawnToo) {
@@ -147,7 +165,7 @@ TEST_F(ReportTest, WherePicturesCouldNotBeMadeItIsSaidInTheirPlace) {
   runs[0].pictures.clear();
   runs[0].description.settings.push_back({std::string(kPicturesKey), "none, as OpenGL could not be had", ""});
   const std::string html = bytes_of(write_comparison_report(runs, out_));
-  EXPECT_GT(html.find(told), html.find("<h3>Figures</h3>"));
+  EXPECT_GT(html.find(told), html.find("The bone before and after"));
   EXPECT_LT(html.find(told), html.find("<figure>"));
 }
 

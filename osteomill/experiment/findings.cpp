@@ -144,83 +144,6 @@ Finding shaft_finding(const RunGroup& group, std::string_view phase) {
                        [](const auto& v) { return v[2] < v[0] && v[2] < v[1]; });
 }
 
-struct Ranked {
-  AlgorithmId algorithm;
-  double value;
-};
-
-std::vector<Ranked> ranked(const RunGroup& group, std::string_view phase, const Measure& measure) {
-  std::vector<Ranked> order;
-  for (const AlgorithmId& algorithm : group.algorithms()) {
-    const MeasuredRun* run = group.find(algorithm.name, phase);
-    if (run == nullptr || std::isnan(measure(run->metrics))) continue;
-    order.push_back({algorithm, measure(run->metrics)});
-  }
-  std::stable_sort(order.begin(), order.end(),
-                   [](const Ranked& a, const Ranked& b) { return a.value < b.value; });
-  return order;
-}
-
-std::string times(double ratio) {
-  if (ratio < 1.05) return "about the same";
-  return ratio < 9.95 ? fmt::format("{:.1f} times as much", ratio)
-                      : fmt::format("{:.0f} times as much", ratio);
-}
-
-// "the force buzzed least with point-shell: 0.012 N rms above 20 Hz, against 0.02 N with line-proxy (1.7
-// times as much)."
-std::string ranking_sentence(const RunGroup& group, std::string_view phase, const Measure& measure,
-                             const char* what, const char* unit, const char* explained) {
-  const std::vector<Ranked> order = ranked(group, phase, measure);
-  if (order.empty()) return fmt::format("{} could not be measured.", what);
-  const Ranked& best = order.front();
-  const std::string best_value = fmt::format("{:.3g} {}{}", best.value, unit, explained);
-  if (order.size() == 1)
-    return fmt::format("{} came to {} with {}.", what, best_value, name_of(best.algorithm));
-  std::string others;
-  for (std::size_t n = 1; n < order.size(); ++n) {
-    const std::string ratio = best.value > 0 ? fmt::format(" ({})", times(order[n].value / best.value)) : "";
-    others += fmt::format("{}{:.3g} {} with {}{}", n == 1 ? "" : " and ", order[n].value, unit,
-                          name_of(order[n].algorithm), ratio);
-  }
-  return fmt::format("{} was least with {}: {}, against {}.", what, name_of(best.algorithm), best_value,
-                     others);
-}
-
-// " line-proxy lost contact after 3.2 s and is left out."
-std::string left_out(const RunGroup& group, std::string_view phase) {
-  std::string text;
-  for (const AlgorithmId& algorithm : group.algorithms()) {
-    const MeasuredRun* run = group.find(algorithm.name, phase);
-    if (run == nullptr || !std::isnan(kForceBuzz(run->metrics))) continue;
-    text += fmt::format(" {} {} and is left out.", algorithm.name, contact_words(run->metrics.contact));
-  }
-  return text;
-}
-
-std::string phase_paragraph(const RunGroup& group, std::string_view phase) {
-  std::string start = during(phase);
-  start[0] = 'W';
-  return fmt::format(
-      "{}, {} {} {}{}", start,
-      ranking_sentence(group, phase, kForceBuzz, "the buzz in the force", "N", " rms above 20 Hz"),
-      ranking_sentence(group, phase, kTorqueBuzz, "The buzz in the torque", "N mm", " rms above 20 Hz"),
-      ranking_sentence(group, phase, kShaftSpread, "The spread of the shaft's direction", "degrees", " rms"),
-      left_out(group, phase));
-}
-
-std::string count_sentence(const std::vector<Finding>& findings) {
-  const auto count = [&](Verdict verdict) {
-    return std::count_if(findings.begin(), findings.end(),
-                         [&](const Finding& f) { return f.verdict == verdict; });
-  };
-  const auto agree = count(Verdict::agrees);
-  const auto tested = agree + count(Verdict::does_not_agree);
-  return fmt::format(
-      "Of the paper's {} findings these recordings can test {}; {} of them {} (see the table).",
-      findings.size(), tested, agree, agree == 1 ? "agrees" : "agree");
-}
-
 }  // namespace
 
 std::string_view name_of(Verdict verdict) {
@@ -246,17 +169,6 @@ std::vector<Finding> check_findings(const RunGroup& group) {
   findings.push_back(restless_finding(group));
   for (const std::string_view phase : kPhases) findings.push_back(shaft_finding(group, phase));
   return findings;
-}
-
-std::vector<std::string> plain_paragraphs(const RunGroup& group, const std::vector<Finding>& findings) {
-  std::vector<std::string> paragraphs;
-  for (const std::string& phase : group.segments()) paragraphs.push_back(phase_paragraph(group, phase));
-  const Finding rate = rate_finding(group);
-  paragraphs.push_back(fmt::format("The rate of 1000 Hz is {} within 5 % {}: {}. {}",
-                                   rate.verdict == Verdict::agrees ? "held" : "not held",
-                                   rate.verdict == Verdict::agrees ? "in every recording" : "throughout",
-                                   rate.measured, count_sentence(findings)));
-  return paragraphs;
 }
 
 }  // namespace osteomill

@@ -30,8 +30,4 @@ struct Finding {
 /// are not there is `not_recorded`, one that needs a run that had not enough contact `lost_contact`.
 std::vector<Finding> check_findings(const RunGroup& group);
 
-/// In plain words: who was the steadiest in force, in torque and in shaft direction and by how much,
-/// whether the rate holds, and how many of the findings agree.
-std::vector<std::string> plain_paragraphs(const RunGroup& group, const std::vector<Finding>& findings);
-
 }  // namespace osteomill

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include <fmt/format.h>
+
 namespace osteomill {
 
 namespace {
@@ -56,6 +58,10 @@ SignedRank signed_rank(std::span<const double> differences) {
   test.negative = 0.5 * static_cast<double>(negative);
   test.p = std::min(1.0, 2 * chance_of_at_most(ranks, std::min(positive, negative)));
   return test;
+}
+
+std::string p_text(double p) {
+  return p < 0.001 ? "p < 0.001" : fmt::format("p = {:.2g}", p);
 }
 
 double min_p(std::size_t differences) {

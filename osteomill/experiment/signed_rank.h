@@ -2,9 +2,13 @@
 
 #include <cstddef>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace osteomill {
+
+/// The level below which a difference is called significant.
+inline constexpr double kSignificance = 0.05;
 
 /// Wilcoxon's signed-rank test of paired differences.
 struct SignedRank {
@@ -21,6 +25,9 @@ struct SignedRank {
 /// Differences of the same size share the mean of their ranks, and the distribution is the one of those
 /// ranks. Takes time in proportion to the cube of the number of differences (0.01 s for 200).
 SignedRank signed_rank(std::span<const double> differences);
+
+/// "p = 0.012", "p < 0.001".
+std::string p_text(double p);
 
 /// The least p that this test can give with so many differences: 2^(1 - n).
 double min_p(std::size_t differences);

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "osteomill/experiment/paper.h"
+#include "osteomill/experiment/signed_rank.h"
 #include "osteomill/files/atomic_file.h"
 
 namespace osteomill {
@@ -23,14 +24,14 @@ constexpr double kMmPerM = 1000;
 using M = RunMetrics;
 
 constexpr std::array<KeyMetric, 10> kKeyMetrics{{
-    {"force above 20 Hz, rms", "N", [](const M& m) { return m.force_N.hp_rms; }},
+    {"force above 20 Hz, rms", "N", [](const M& m) { return m.force_N.hp_rms; }, true},
     {"force above 20 Hz / mean force", "",
      [](const M& m) { return m.force_N.mean == 0 ? 0.0 : m.force_N.hp_rms / m.force_N.mean; }},
-    {"greatest force step", "N", [](const M& m) { return m.force_N.step_max; }},
-    {"torque above 20 Hz, rms", "N mm", [](const M& m) { return m.torque_Nmm.hp_rms; }},
-    {"greatest torque step", "N mm", [](const M& m) { return m.torque_Nmm.step_max; }},
+    {"greatest force step", "N", [](const M& m) { return m.force_N.step_max; }, true},
+    {"torque above 20 Hz, rms", "N mm", [](const M& m) { return m.torque_Nmm.hp_rms; }, true},
+    {"greatest torque step", "N mm", [](const M& m) { return m.torque_Nmm.step_max; }, true},
     {"mean torque", "N mm", [](const M& m) { return m.torque_Nmm.mean; }},
-    {"spread of the shaft", "degrees", [](const M& m) { return m.shaft.spread_deg; }},
+    {"spread of the shaft", "degrees", [](const M& m) { return m.shaft.spread_deg; }, true},
     {"bone removed", "mm³", [](const M& m) { return m.removed_mm3; }},
     {"step time, median", "µs", [](const M& m) { return m.step_us.median; }},
     {"step time, 99th percentile", "µs", [](const M& m) { return m.step_us.p99; }},
@@ -104,6 +105,14 @@ std::vector<Mode> Study::modes() const {
 std::vector<std::string_view> Study::phases() const {
   return present(kPhases, rows_,
                  [](const SummaryRow& r, std::string_view phase) { return r.segment == phase; });
+}
+
+std::size_t Study::seeds_needed() const {
+  const std::size_t algorithms = this->algorithms().size();
+  const std::size_t pairs = std::max<std::size_t>(algorithms * (algorithms - 1) / 2, 1);
+  std::size_t seeds = 1;
+  while (static_cast<double>(pairs) * min_p(seeds) > kSignificance) ++seeds;
+  return seeds;
 }
 
 std::vector<KeyMetric> Study::metrics_of(std::string_view phase) const {

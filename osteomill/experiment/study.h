@@ -24,6 +24,8 @@ struct KeyMetric {
   /// Empty for a pure number.
   const char* unit;
   double (*value)(const RunMetrics&);
+  /// More of it is more unrest in the hand.
+  bool is_unrest = false;
 };
 
 /// Force, torque, shaft, bone removed and compute time, in the order in which people should read them.
@@ -53,6 +55,9 @@ class Study {
   std::vector<AlgorithmId> algorithms() const;
   std::vector<Mode> modes() const;
   std::vector<std::string_view> phases() const;
+
+  /// The fewest seeds from which a difference between two of so many algorithms can be significant.
+  std::size_t seeds_needed() const;
 
   /// The key metrics but those that are zero throughout a phase (bone removed while holding).
   std::vector<KeyMetric> metrics_of(std::string_view phase) const;

@@ -7,9 +7,6 @@
 
 namespace osteomill {
 
-/// The level below which a difference is called significant.
-inline constexpr double kSignificance = 0.05;
-
 /// Two algorithms in one mode and phase, paired seed by seed.
 struct AlgorithmPair {
   AlgorithmId first;

@@ -7,20 +7,11 @@
 #include "osteomill/experiment/paper.h"
 #include "osteomill/experiment/signed_rank.h"
 #include "osteomill/experiment/study_comparison.h"
-#include "osteomill/experiment/study_findings.h"
 #include "osteomill/report/html.h"
 
 namespace osteomill {
 
 namespace {
-
-std::string paragraph(const std::string& text) {
-  return "<p>" + html_escaped(text) + "</p>\n";
-}
-
-std::string p_text(double p) {
-  return p < 0.001 ? "p < 0.001" : fmt::format("p = {:.2g}", p);
-}
 
 std::string interval_text(const MedianInterval& interval) {
   return fmt::format("{:.3g} [{:.3g}, {:.3g}]", interval.median, interval.low, interval.high);
@@ -56,22 +47,6 @@ std::string algorithms_table(const Study& study, Mode mode, std::string_view pha
   return html_table(table);
 }
 
-std::string findings_table(const Study& study, Mode mode) {
-  HtmlTable table{{"The paper found", "Medians over the hands", "Verdict", "In how many hands",
-                   "Sign test, in more than half"},
-                  {}};
-  for (const StudyFinding& f : check_study_findings(study, mode)) {
-    const Verdict verdict = f.of_medians.verdict;
-    const char* css = verdict == Verdict::agrees           ? "agrees"
-                      : verdict == Verdict::does_not_agree ? "differs"
-                                                           : "none";
-    table.rows.push_back({html_escaped(f.of_medians.paper_says), html_escaped(f.of_medians.measured),
-                          fmt::format("<span class=\"{}\">{}</span>", css, name_of(verdict)),
-                          fmt::format("{} of {}", f.agreeing, f.tested), html_escaped(p_text(f.p))});
-  }
-  return html_table(table);
-}
-
 std::string changes_table(const Study& study, std::string_view phase) {
   HtmlTable table{{"steady / paper, median over the hands [interval]"}, {}, true};
   for (const AlgorithmId& algorithm : study.algorithms()) table.header.emplace_back(algorithm.label);
@@ -101,13 +76,14 @@ std::string how_to_read(const Study& study) {
   const MedianInterval interval = median_interval(std::vector<double>(n, 0.0));
   const std::size_t pairs = study.algorithms().size() * (study.algorithms().size() - 1) / 2;
   const double min_corrected = std::min(1.0, static_cast<double>(std::max<std::size_t>(pairs, 1)) * min_p(n));
-  std::string html = paragraph(fmt::format(
+  std::string html = html_paragraph(fmt::format(
       "The same trial in {} hands: each seed (the first is {}) has a tremor and a hand of its own, drawn "
       "evenly from the published ranges; here {:.0f} to {:.0f} N/m and {:.2g} to {:.2g} N s/m. study.csv has "
-      "every trial. Recordings are kept of seed {} alone, which is the one that the sections on each mode "
-      "show; of the others only these figures of merit.",
+      "every trial. Recordings are kept of seed {} alone, which is the one that the figures of force, "
+      "torque, "
+      "shaft and path show; of the others only these figures of merit.",
       n, study.seeds().front(), *softest, *stiffest, *min, *max, study.seeds().front()));
-  html += paragraph(
+  html += html_paragraph(
       interval.is_range
           ? fmt::format(
                 "In brackets stands the range of all values: {} hands are too few for a 95 % interval "
@@ -117,14 +93,14 @@ std::string how_to_read(const Study& study) {
                 "In brackets stands a confidence interval of the median between two order statistics, "
                 "by the binomial distribution; it covers the median with {:.3g} %.",
                 100 * interval.coverage));
-  html += paragraph(fmt::format(
+  html += html_paragraph(fmt::format(
       "Differences are tested hand by hand with Wilcoxon's signed-rank test, exact and two-sided, corrected "
       "after Holm over what is compared in one row (not over the rows); bold ones are significant (p at most "
       "{}). The least p "
       "that {} hands can give is {:.2g}, after the correction {:.2g}{}.",
       kSignificance, n, min_p(n), min_corrected,
       min_corrected > kSignificance ? ", so that no difference can be significant here" : ""));
-  return html + paragraph(
+  return html + html_paragraph(
                     "Step times are the machine's: those of the first seed were taken with nothing else of "
                     "this program running, the others with a trial beside on each further core, so compare "
                     "them with care. Everything else comes out the same on any machine.");
@@ -139,10 +115,6 @@ std::string phase_title(std::string_view phase) {
 std::string study_section(const Study& study, const std::vector<CaptionedFigure>& figures) {
   std::string html = fmt::format("<h2>Study over {} hands</h2>\n", study.seeds().size()) + how_to_read(study);
   for (const CaptionedFigure& figure : figures) html += html_figure(figure.files.svg, figure.caption);
-  for (const Mode mode : study.modes()) {
-    html += fmt::format("<h3>The paper's findings over the hands, mode {}</h3>\n", name_of(mode));
-    html += findings_table(study, mode);
-  }
   for (const Mode mode : study.modes()) {
     for (const std::string_view phase : study.phases()) {
       html += fmt::format("<h3>{}, mode {}</h3>\n", phase_title(phase), name_of(mode));

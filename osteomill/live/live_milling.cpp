@@ -1,17 +1,24 @@
 #include "osteomill/live/live_milling.h"
 
 #include <chrono>
+#include <string_view>
 #include <thread>
 #include <utility>
 
 #include "osteomill/numbers/work_progress.h"
 #include "osteomill/recording/describe_run.h"
+#include "osteomill/recording/recording.h"
 
 namespace osteomill {
 
 namespace {
 
 using namespace std::chrono_literals;
+
+void add_picture(Recorder& recorder, std::string_view name, const LiveMilling::TakePicture& take) {
+  if (!take) return;
+  if (auto png = take(); !png.empty()) recorder.add_picture(std::string(name), std::move(png));
+}
 
 }  // namespace
 
@@ -180,15 +187,20 @@ RunDescription LiveMilling::describe(const std::string& scan_name, const std::st
   return run;
 }
 
-void LiveMilling::start_recording(const std::filesystem::path& path, const RunDescription& description) {
-  recorder_ = std::make_unique<Recorder>(path, description);
+void LiveMilling::start_recording(const std::filesystem::path& path, const RunDescription& description,
+                                  TakePicture picture) {
+  auto recorder = std::make_unique<Recorder>(path, description);
+  add_picture(*recorder, kPictureBefore, picture);
+  recorder_ = std::move(recorder);
   recorder_path_ = path;
+  take_picture_ = std::move(picture);
   listen();
 }
 
 std::filesystem::path LiveMilling::stop_recording() {
   const std::unique_ptr<Recorder> recorder = std::move(recorder_);
   listen();
+  add_picture(*recorder, kPictureAfter, std::exchange(take_picture_, {}));
   recorder->close();
   return recorder_path_;
 }

@@ -85,8 +85,12 @@ class LiveMilling {
 
   /// What a recording says of the milling as it is now.
   RunDescription describe(const std::string& scan_name, const std::string& command_line) const;
-  /// Throws InputError where the file cannot be written; a recording is then not going on.
-  void start_recording(const std::filesystem::path& path, const RunDescription& description);
+  /// A PNG of the bone as it is; empty where there is none.
+  using TakePicture = std::function<std::vector<unsigned char>()>;
+  /// `picture`, where it is given, is taken now and, by whatever the recording ends, then. Throws InputError
+  /// where the file cannot be written; a recording is then not going on.
+  void start_recording(const std::filesystem::path& path, const RunDescription& description,
+                       TakePicture picture = {});
   /// Returns the recording's name. Throws as Recorder::close does.
   std::filesystem::path stop_recording();
   bool recording() const { return recorder_ != nullptr; }
@@ -140,6 +144,7 @@ class LiveMilling {
   std::unique_ptr<BoneFollower> follower_;
   std::unique_ptr<Recorder> recorder_;
   std::filesystem::path recorder_path_;
+  TakePicture take_picture_;
   std::optional<std::filesystem::path> ended_recording_;
   LiveSession live_;
   std::future<Prepared> preparation_;

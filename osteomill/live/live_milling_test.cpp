@@ -278,7 +278,9 @@ TEST_F(LiveMillingTest, TheToolIsPlacedWithoutAStepInTheWrench) {
 TEST_F(LiveMillingTest, ARecordingEndsWithWhatItTellsOf) {
   const auto path = std::filesystem::temp_directory_path() / "osteomill_live_milling_test.h5";
   std::filesystem::remove(path);
-  milling_.start_recording(path, milling_.describe("ball", ""));
+  unsigned char pictures = 0;
+  milling_.start_recording(path, milling_.describe("ball", ""),
+                           [&] { return std::vector<unsigned char>{++pictures}; });
   mill(0.1);
   EXPECT_TRUE(milling_.recording());
   MillingSetup other = setup_;
@@ -291,6 +293,11 @@ TEST_F(LiveMillingTest, ARecordingEndsWithWhatItTellsOf) {
   const Recording recording = read_recording(path);
   EXPECT_GT(recording.records.size(), 50u);
   EXPECT_GT(recording.records.back().removed_mm3, 0.1);
+  ASSERT_EQ(recording.pictures.size(), 2u) << "before and after, whatever it ended by";
+  EXPECT_EQ(recording.pictures[0].name, kPictureAfter);
+  EXPECT_EQ(recording.pictures[0].png, std::vector<unsigned char>{2});
+  EXPECT_EQ(recording.pictures[1].name, kPictureBefore);
+  EXPECT_EQ(recording.pictures[1].png, std::vector<unsigned char>{1});
   std::filesystem::remove(path);
 }
 

@@ -212,4 +212,22 @@ Figure draw_torque_figure(const RunGroup& group, const std::filesystem::path& fo
                      {{"torque", "Torque (N mm)", magnitude, common_range(group, magnitude), ""}}, folder);
 }
 
+Figure draw_removed_figure(const RunGroup& group, const std::filesystem::path& folder) {
+  const auto removed_mm3 = [](const TickRecord& r) { return r.removed_mm3; };
+  return draw_curves(group, figure_name("removed", group),
+                     {{"removed", "Bone removed (mm³)", removed_mm3, common_range(group, removed_mm3), ""}},
+                     folder);
+}
+
+Figure draw_path_figure(const RunGroup& group, const std::filesystem::path& folder) {
+  constexpr const char* kAxes[] = {"x", "y", "z"};
+  std::vector<CurveColumn> columns;
+  for (int axis = 0; axis < 3; ++axis) {
+    columns.push_back({fmt::format("path_{}", kAxes[axis]), fmt::format("Burr along {} (mm)", kAxes[axis]),
+                       [axis](const TickRecord& r) { return r.X_WT.position_mm[axis]; }, "set yrange [*:*]",
+                       ""});
+  }
+  return draw_curves(group, figure_name("path", group), columns, folder);
+}
+
 }  // namespace osteomill

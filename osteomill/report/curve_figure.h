@@ -32,4 +32,8 @@ Figure draw_rate_figure(const RunGroup& group, const std::filesystem::path& fold
 Figure draw_force_figure(const RunGroup& group, const std::filesystem::path& folder);
 Figure draw_torque_figure(const RunGroup& group, const std::filesystem::path& folder);
 
+/// Bone removed since the start, and the burr's centre along each axis of W.
+Figure draw_removed_figure(const RunGroup& group, const std::filesystem::path& folder);
+Figure draw_path_figure(const RunGroup& group, const std::filesystem::path& folder);
+
 }  // namespace osteomill

@@ -23,6 +23,18 @@ double angle_rad(const Vec3& a, const Vec3& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
+double path_mm(std::span<const TickRecord> records) {
+  constexpr double kEvery_s = 0.02;
+  double path = 0;
+  const TickRecord* last = &records.front();
+  for (const TickRecord& record : records) {
+    if (record.time_s - last->time_s < kEvery_s) continue;
+    path += (record.X_WT.position_mm - last->X_WT.position_mm).norm();
+    last = &record;
+  }
+  return path;
+}
+
 bool all_finite(const TickRecord& r) {
   return std::isfinite(r.time_s) && is_finite(r.X_WD) && is_finite(r.X_WT) && r.wrench.force_N.allFinite() &&
          r.wrench.torque_Nmm.allFinite() && std::isfinite(r.removed_mm3) && std::isfinite(r.compute_us) &&
@@ -119,6 +131,7 @@ RunMetrics run_metrics(const Recording& recording) {
     metrics.shaft = direction_metrics(shaft_W);
   }
   metrics.removed_mm3 = recording.records.back().removed_mm3 - recording.records.front().removed_mm3;
+  metrics.path_mm = path_mm(recording.records);
   return metrics;
 }
 

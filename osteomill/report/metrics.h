@@ -58,6 +58,9 @@ struct RunMetrics {
   DirectionMetrics shaft;
   /// Between the first tick and the last.
   double removed_mm3 = 0;
+  /// How far the burr's centre went, by where it was every 0.02 s: from tick to tick a trembling hand goes
+  /// far without getting anywhere.
+  double path_mm = 0;
 };
 
 /// Throws InputError, naming the recording, where it has fewer than two ticks, its time does not increase, a

@@ -104,6 +104,14 @@ TEST(RunMetrics, TheRateIsThatOfTheThreadsOwnTimeWhereItIsKnown) {
   EXPECT_NEAR(m.rate_hz, 1e6 / (0.5 * (1000 + 1250)), 1e-9);
 }
 
+TEST(RunMetrics, APathIsHowFarTheBurrGotAndNotHowMuchItTrembled) {
+  Recording moving = simple_recording(1001);
+  for (std::size_t n = 0; n < moving.records.size(); ++n) {
+    moving.records[n].X_WT.position_mm = {0.01 * static_cast<double>(n), n % 2 == 0 ? 0.0 : 0.05, 0};
+  }
+  EXPECT_NEAR(run_metrics(moving).path_mm, 10, 0.25);
+}
+
 // What is felt is measured while something is felt: free air before and after changes nothing but the shares.
 TEST(RunMetrics, FreeAirIsNotMeasured) {
   const RunMetrics touching = run_metrics(simple_recording(4000));

@@ -81,47 +81,88 @@ MetricLine cpu_line(const char* label, double (*value)(const Distribution&)) {
           }};
 }
 
-std::vector<MetricLine> metric_lines() {
-  using M = RunMetrics;
+using M = RunMetrics;
+
+// What a reader wants to know at once: figures and the metrics beside them.
+struct Topic {
+  const char* title;
+  std::vector<const char*> figures;
+  std::vector<MetricLine> lines;
+};
+
+std::vector<Topic> felt_topics() {
   return {
-      {"Ticks", [](const MeasuredRun& run) { return fmt::format("{}", run.metrics.steps); }},
-      real_line("Compute time of a step, median (µs)", [](const M& m) { return m.step_us.median; }),
-      real_line("… 99th percentile (µs)", [](const M& m) { return m.step_us.p99; }),
-      real_line("… greatest (µs)", [](const M& m) { return m.step_us.max; }),
-      cpu_line("Work of a whole tick, CPU time, median (µs)", [](const Distribution& d) { return d.median; }),
-      cpu_line("… 99th percentile (µs)", [](const Distribution& d) { return d.p99; }),
-      cpu_line("… greatest (µs)", [](const Distribution& d) { return d.max; }),
-      {"Haptic rate that a 1 kHz loop would hold (Hz)",
-       [](const MeasuredRun& run) { return fmt::format("{:.1f}", run.metrics.rate_hz); }},
-      real_line("In contact, share of the time", [](const M& m) { return m.contact.any; }),
-      real_line("… with the burr", [](const M& m) { return m.contact.burr; }),
-      real_line("… with the shaft", [](const M& m) { return m.contact.shaft; }),
-      real_line("Force while in contact, mean (N)", [](const M& m) { return m.force_N.mean; }),
-      real_line("… greatest (N)", [](const M& m) { return m.force_N.max; }),
-      real_line("… above 20 Hz, rms (N)", [](const M& m) { return m.force_N.hp_rms; }),
-      real_line("… greatest change in a tick (N)", [](const M& m) { return m.force_N.step_max; }),
-      real_line("Torque while in contact, mean (N mm)", [](const M& m) { return m.torque_Nmm.mean; }),
-      real_line("… greatest (N mm)", [](const M& m) { return m.torque_Nmm.max; }),
-      real_line("… above 20 Hz, rms (N mm)", [](const M& m) { return m.torque_Nmm.hp_rms; }),
-      real_line("… greatest change in a tick (N mm)", [](const M& m) { return m.torque_Nmm.step_max; }),
-      real_line("Shaft direction, spread (degrees)", [](const M& m) { return m.shaft.spread_deg; }),
-      real_line("… greatest excursion (degrees)", [](const M& m) { return m.shaft.excursion_deg; }),
-      real_line("Bone removed in the phase (mm³)", [](const M& m) { return m.removed_mm3; })};
+      {"Force",
+       {"force"},
+       {real_line("Force while in contact, mean (N)", [](const M& m) { return m.force_N.mean; }),
+        real_line("… greatest (N)", [](const M& m) { return m.force_N.max; }),
+        real_line("… above 20 Hz, rms (N)", [](const M& m) { return m.force_N.hp_rms; }),
+        real_line("… greatest change in a tick (N)", [](const M& m) { return m.force_N.step_max; })}},
+      {"Torque",
+       {"torque"},
+       {real_line("Torque while in contact, mean (N mm)", [](const M& m) { return m.torque_Nmm.mean; }),
+        real_line("… greatest (N mm)", [](const M& m) { return m.torque_Nmm.max; }),
+        real_line("… above 20 Hz, rms (N mm)", [](const M& m) { return m.torque_Nmm.hp_rms; }),
+        real_line("… greatest change in a tick (N mm)", [](const M& m) { return m.torque_Nmm.step_max; })}},
+      {"Shaft",
+       {"shaft"},
+       {real_line("Shaft direction, spread (degrees)", [](const M& m) { return m.shaft.spread_deg; }),
+        real_line("… greatest excursion (degrees)", [](const M& m) { return m.shaft.excursion_deg; })}},
+      {"Path and bone removed",
+       {"removed", "path"},
+       {real_line("Bone removed (mm³)", [](const M& m) { return m.removed_mm3; }),
+        real_line("Path of the burr's centre (mm)", [](const M& m) { return m.path_mm; }),
+        real_line("In contact, share of the time", [](const M& m) { return m.contact.any; }),
+        real_line("… with the burr", [](const M& m) { return m.contact.burr; }),
+        real_line("… with the shaft", [](const M& m) { return m.contact.shaft; })}}};
 }
 
-std::string metrics_table(const RunGroup& group, const std::vector<MetricLine>& further) {
+Topic times(const std::vector<MetricLine>& further) {
+  Topic topic{"How long the ticks took",
+              {"rate"},
+              {{"Ticks", [](const MeasuredRun& run) { return fmt::format("{}", run.metrics.steps); }},
+               real_line("Compute time of a step, median (µs)", [](const M& m) { return m.step_us.median; }),
+               real_line("… 99th percentile (µs)", [](const M& m) { return m.step_us.p99; }),
+               real_line("… greatest (µs)", [](const M& m) { return m.step_us.max; }),
+               cpu_line("Work of a whole tick, CPU time, median (µs)",
+                        [](const Distribution& d) { return d.median; }),
+               cpu_line("… 99th percentile (µs)", [](const Distribution& d) { return d.p99; }),
+               cpu_line("… greatest (µs)", [](const Distribution& d) { return d.max; }),
+               {"Haptic rate that a 1 kHz loop would hold (Hz)",
+                [](const MeasuredRun& run) { return fmt::format("{:.1f}", run.metrics.rate_hz); }}}};
+  topic.lines.insert(topic.lines.end(), further.begin(), further.end());
+  return topic;
+}
+
+std::string metrics_table(const RunGroup& group, const std::vector<MetricLine>& lines) {
   HtmlTable table{{""}, {}, true};
   for (const MeasuredRun& run : group.runs) {
     const RunDescription& d = run.recording->description;
-    table.header.push_back(fmt::format("{}<br>{}", html_escaped(d.segment), html_escaped(d.algorithm.label)));
+    const std::string segment = d.segment.empty() ? "" : html_escaped(d.segment) + "<br>";
+    table.header.push_back(segment + html_escaped(d.algorithm.label));
   }
-  std::vector<MetricLine> lines = metric_lines();
-  lines.insert(lines.end(), further.begin(), further.end());
   for (const MetricLine& line : lines) {
     table.rows.push_back({line.label});
     for (const MeasuredRun& run : group.runs) table.rows.back().push_back(line.cell(run));
   }
   return html_table(table);
+}
+
+std::string mode_heading(const DrawnGroup& drawn, const std::vector<DrawnGroup>& groups) {
+  return groups.size() > 1 ? fmt::format("<h3>Mode {}</h3>\n", name_of(drawn.group.mode)) : "";
+}
+
+std::string topic_section(const Topic& topic, const std::vector<DrawnGroup>& groups) {
+  std::string html = fmt::format("<h2>{}</h2>\n", topic.title);
+  for (const DrawnGroup& drawn : groups) {
+    html += mode_heading(drawn, groups);
+    for (const char* name : topic.figures) {
+      const CaptionedFigure& figure = drawn.figures.at(name);
+      html += html_figure(figure.files.svg, figure.caption);
+    }
+    html += metrics_table(drawn.group, topic.lines);
+  }
+  return html;
 }
 
 // In the place of the pictures.
@@ -135,22 +176,65 @@ std::string missing_pictures(const RunGroup& group) {
   return "";
 }
 
-std::string group_section(const DrawnGroup& drawn, const PageText& text) {
-  const RunGroup& group = drawn.group;
-  std::string html = fmt::format("<h2>Mode: {}</h2>\n", name_of(group.mode));
-  html += html_paragraph(
-      group.mode == Mode::paper
-          ? "The algorithms as the paper has them."
-          : "The paper's algorithms with this project's named improvements, so what the paper found "
-            "wrong with one of them need not be wrong here.");
-  if (text.about_group) html += text.about_group(group);
-  html += "<h3>Figures of merit</h3>\n" + metrics_table(group, text.further_metrics);
-  html += label_section(group);
-  html += "<h3>Figures</h3>\n" + missing_pictures(group);
-  for (const CaptionedFigure& figure : drawn.figures) {
-    // Pictures of the bone are smaller as PNG, curves and clouds as SVG stay sharp.
-    const bool photograph = figure.files.png.filename().string().starts_with("bone");
-    html += html_figure(photograph ? figure.files.png : figure.files.svg, figure.caption);
+// Pictures of the bone are smaller as PNG; curves and clouds stay sharp as SVG.
+std::string pictures_section(const std::vector<DrawnGroup>& groups) {
+  std::string html;
+  for (const DrawnGroup& drawn : groups) {
+    const auto bone = drawn.figures.find("bone");
+    const std::string shown = bone == drawn.figures.end()
+                                  ? missing_pictures(drawn.group)
+                                  : html_figure(bone->second.files.png, bone->second.caption);
+    if (!shown.empty()) html += mode_heading(drawn, groups) + shown;
+  }
+  return html.empty() ? "" : "<h2>The bone before and after</h2>\n" + html;
+}
+
+// Of a scan with labels.
+std::string labels_section(const std::vector<DrawnGroup>& groups) {
+  std::string html;
+  for (const DrawnGroup& drawn : groups) {
+    const std::string text = label_section(drawn.group);
+    if (text.empty()) continue;
+    html += mode_heading(drawn, groups) + text;
+    const auto figure = drawn.figures.find("labels");
+    if (figure != drawn.figures.end()) html += html_figure(figure->second.files.svg, figure->second.caption);
+  }
+  return html;
+}
+
+double spindle_s(const Recording& recording) {
+  double on_s = 0;
+  for (const TickRecord& record : recording.records) on_s += record.spindle_on ? record.dt_s : 0;
+  return on_s;
+}
+
+// What a session was, to whoever held the tool.
+std::string session_in_words(const MeasuredRun& run) {
+  const RunDescription& d = run.recording->description;
+  const RunMetrics& m = run.metrics;
+  const auto& records = run.recording->records;
+  const std::string text = fmt::format(
+      "{}{}: {:.1f} s, of which the spindle ran for {:.1f} s. The burr went {:.0f} mm, and {:.1f} mm³ of "
+      "bone "
+      "were "
+      "removed. ",
+      d.algorithm.label, d.segment.empty() ? "" : ", " + d.segment,
+      records.back().time_s - records.front().time_s, spindle_s(*run.recording), m.path_mm, m.removed_mm3);
+  if (!m.contact.enough()) {
+    return text + fmt::format("The tool {}, too little to say what was felt.", contact_words(m.contact));
+  }
+  return text +
+         fmt::format(
+             "The tool touched for {:.0f} % of the time, the shaft for {:.0f} %; while it did, the hand "
+             "felt {:.2g} N and {:.2g} N mm on average, at most {:.2g} N and {:.2g} N mm.",
+             100 * m.contact.any, 100 * m.contact.shaft, m.force_N.mean, m.torque_Nmm.mean, m.force_N.max,
+             m.torque_Nmm.max);
+}
+
+std::string sessions_in_words(const std::vector<DrawnGroup>& groups) {
+  std::string html;
+  for (const DrawnGroup& drawn : groups) {
+    for (const MeasuredRun& run : drawn.group.runs) html += html_paragraph(session_in_words(run));
   }
   return html;
 }
@@ -184,10 +268,12 @@ std::string html_paragraph(const std::string& text) {
 
 std::string report_page(const std::vector<DrawnGroup>& groups, const PageText& text) {
   const std::vector<const Recording*> recordings = all_recordings(groups);
-  std::string body = html_paragraph(text.in_short);
-  body += "<h2>What was run</h2>\n" + notices(recordings) + what_was_run(recordings) +
-          html_paragraph(text.what_was_done) + text.sections;
-  for (const DrawnGroup& drawn : groups) body += group_section(drawn, text);
+  std::string body = notices(recordings) + (text.opening.empty() ? sessions_in_words(groups) : text.opening);
+  body += pictures_section(groups);
+  for (const Topic& topic : felt_topics()) body += topic_section(topic, groups);
+  body += labels_section(groups);
+  body += text.sections + topic_section(times(text.further_times), groups);
+  body += "<h2>What was run</h2>\n" + what_was_run(recordings);
   body += "<h2>Settings</h2>\n" + html_table(settings_table(recordings)) + how_to_repeat(recordings);
   return html_page(text.title, body);
 }

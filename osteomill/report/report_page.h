@@ -19,16 +19,13 @@ struct MetricLine {
 /// What whoever made the recordings has to say of them; all of it may be empty. A plain session has nothing.
 struct PageText {
   std::string title = "What was milled, and what the hand felt";
-  /// Plain text at the page's top.
-  std::string in_short;
-  /// A paragraph of plain text after what was run.
-  std::string what_was_done;
-  /// HTML after that.
+  /// HTML at the page's top, what a reader came for. Where it is empty the page says there of each run how
+  /// long it took, how far the burr went, what was removed and what was felt.
+  std::string opening;
+  /// HTML between what was felt and what was set.
   std::string sections;
-  /// HTML at the head of a mode's runs.
-  std::function<std::string(const RunGroup&)> about_group;
-  /// Below the metrics that any session has.
-  std::vector<MetricLine> further_metrics;
+  /// Below the times that any session has.
+  std::vector<MetricLine> further_times;
   /// More to say below a figure, by the figure's name without the mode ("force").
   std::map<std::string, std::string> caption_notes;
 };
@@ -38,17 +35,18 @@ struct CaptionedFigure {
   std::string caption;
 };
 
-/// A mode's runs and the figures drawn from them.
+/// A mode's runs and the figures drawn from them, by what they show ("force").
 struct DrawnGroup {
   RunGroup group;
-  std::vector<CaptionedFigure> figures;
+  std::map<std::string, CaptionedFigure> figures;
 };
 
 /// A paragraph of plain text, as HTML.
 std::string html_paragraph(const std::string& text);
 
-/// The page report.html: what was run, all figures and tables, the settings, and how to repeat it, with what
-/// `text` adds. The figures are in the page itself. Throws InputError where a figure cannot be read.
+/// The page report.html, what matters most first: the opening, the bone before and after, force, torque,
+/// shaft and path, each with its figures and metrics, then what `text` adds, times, settings, and how to
+/// repeat it. The figures are in the page itself. Throws InputError where a figure cannot be read.
 std::string report_page(const std::vector<DrawnGroup>& groups, const PageText& text);
 
 }  // namespace osteomill

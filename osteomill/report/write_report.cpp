@@ -15,19 +15,16 @@ namespace fs = std::filesystem;
 
 namespace {
 
-DrawnGroup draw(RunGroup group, const fs::path& folder, const PageText& text) {
-  std::vector<CaptionedFigure> figures;
+DrawnGroup draw(const RunGroup& group, const fs::path& folder, const PageText& text) {
+  DrawnGroup drawn{group, {}};
   const auto add = [&](const std::string& name, const Figure& figure, std::string caption) {
     const auto note = text.caption_notes.find(name);
     if (note != text.caption_notes.end()) caption += " " + note->second;
-    figures.push_back({figure, std::move(caption)});
+    drawn.figures[name] = {figure, std::move(caption)};
   };
   if (const auto bone = draw_picture_figure(group, folder)) {
     add("bone", *bone, "The bone before, and after each algorithm's run.");
   }
-  add("rate", draw_rate_figure(group, folder),
-      "Haptic rate that the loop would hold, tick by tick (left), and the time that a tick's algorithm and "
-      "milling took (right).");
   add("force", draw_force_figure(group, folder),
       "Magnitude of the force sent to the hand. Each pixel's least and greatest are drawn, so no spike is "
       "lost.");
@@ -36,10 +33,16 @@ DrawnGroup draw(RunGroup group, const fs::path& folder, const PageText& text) {
   add("shaft", draw_shaft_figure(group, folder),
       "Where the simulated tool's shaft points: a point on the unit sphere a tick, coloured by time. The "
       "panels of a row have the same ranges; a compact cloud is a steady shaft.");
+  add("removed", draw_removed_figure(group, folder),
+      "Bone removed since the milling began, in mm³ of bone of the reference density.");
+  add("path", draw_path_figure(group, folder), "Where the burr's centre was, along the scan's axes.");
   if (const auto labels = draw_label_figure(group, folder)) {
     add("labels", *labels, "What was removed of each label over time, in the labels' colours.");
   }
-  return {std::move(group), std::move(figures)};
+  add("rate", draw_rate_figure(group, folder),
+      "Haptic rate that the loop would hold, tick by tick (left), and the time that a tick's algorithm and "
+      "milling took (right).");
+  return drawn;
 }
 
 std::vector<SummaryRow> summary_rows(const std::vector<RunGroup>& groups) {
@@ -55,17 +58,19 @@ std::vector<SummaryRow> summary_rows(const std::vector<RunGroup>& groups) {
 
 }  // namespace
 
-fs::path write_report(const std::vector<Recording>& recordings, const fs::path& out_dir,
-                      const PageText& text) {
-  std::vector<RunGroup> groups = group_runs(recordings);
+fs::path write_report(const std::vector<RunGroup>& groups, const fs::path& out_dir, const PageText& text) {
   create_folder(out_dir / "figures");
   // First, so that the numbers are there even where no figure can be drawn.
   write_summary_csv(out_dir / "summary.csv", summary_rows(groups));
   std::vector<DrawnGroup> drawn;
-  for (RunGroup& group : groups) drawn.push_back(draw(std::move(group), out_dir / "figures", text));
+  for (const RunGroup& group : groups) drawn.push_back(draw(group, out_dir / "figures", text));
   const fs::path page = out_dir / "report.html";
   write_text_atomically(page, [&](std::ostream& out) { out << report_page(drawn, text); });
   return page;
+}
+
+fs::path write_report(const std::vector<Recording>& recordings, const fs::path& out_dir) {
+  return write_report(group_runs(recordings), out_dir);
 }
 
 }  // namespace osteomill

@@ -8,12 +8,16 @@
 
 namespace osteomill {
 
-/// Writes `out_dir`/report.html, summary.csv and figures/ (each figure as SVG and PNG) from any number of
-/// recordings, one for each algorithm, mode and segment that there is; returns the path of report.html. Files
-/// appear whole, the page last. Throws InputError where there are no recordings, two are of the same
-/// algorithm, mode and segment, one cannot be measured, gnuplot is missing or fails, or a file cannot be
-/// written.
+/// Writes `out_dir`/report.html, summary.csv and figures/ (each figure as SVG and PNG) of runs that were
+/// measured (group_runs); returns the path of report.html. Files appear whole, the page last. Throws
+/// InputError where gnuplot is missing or fails, or a file cannot be written.
+std::filesystem::path write_report(const std::vector<RunGroup>& groups, const std::filesystem::path& out_dir,
+                                   const PageText& text = {});
+
+/// The same of any number of recordings, one for each algorithm, mode and segment that there is. Throws
+/// InputError also where there are no recordings, two are of the same algorithm, mode and segment, or one
+/// cannot be measured.
 std::filesystem::path write_report(const std::vector<Recording>& recordings,
-                                   const std::filesystem::path& out_dir, const PageText& text = {});
+                                   const std::filesystem::path& out_dir);
 
 }  // namespace osteomill

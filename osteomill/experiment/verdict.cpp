@@ -1,0 +1,204 @@
+#include "osteomill/experiment/verdict.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "osteomill/experiment/paper.h"
+#include "osteomill/experiment/signed_rank.h"
+#include "osteomill/experiment/study_comparison.h"
+#include "osteomill/experiment/study_findings.h"
+
+namespace osteomill {
+
+namespace {
+
+constexpr std::size_t kChangesTold = 4;
+
+const KeyMetric& metric_named(std::string_view name) {
+  const auto all = key_metrics();
+  return *std::find_if(all.begin(), all.end(), [&](const KeyMetric& metric) { return metric.name == name; });
+}
+
+bool too_few(const Study& study) {
+  return study.seeds().size() < study.seeds_needed();
+}
+
+std::string hands(std::size_t count) {
+  return count == 1 ? "one hand" : fmt::format("{} hands", count);
+}
+
+std::string during(std::string_view phase) {
+  return phase == kMilling ? "while milling" : "while holding still";
+}
+
+std::string joined(const std::vector<std::string>& parts) {
+  std::string text;
+  for (std::size_t n = 0; n < parts.size(); ++n) {
+    text += (n == 0 ? "" : n + 1 == parts.size() ? " and " : ", ") + parts[n];
+  }
+  return text;
+}
+
+bool was_tried(const Study& study, Mode mode, const AlgorithmId& algorithm) {
+  const auto& rows = study.rows();
+  return std::any_of(rows.begin(), rows.end(), [&](const StudyRow& row) {
+    return row.summary.mode == mode && row.summary.algorithm == algorithm;
+  });
+}
+
+// "; least with 3 point-shell, significantly against 1 and 2, not against 4"
+std::string least_words(const Study& study, Mode mode, std::string_view phase, const KeyMetric& metric,
+                        const AlgorithmId& least) {
+  std::vector<std::string> clear, unclear;
+  for (const AlgorithmPair& pair : compare_algorithms(study, mode, phase, metric)) {
+    if (pair.first != least && pair.second != least) continue;
+    const AlgorithmId& other = pair.first == least ? pair.second : pair.first;
+    const bool is_clear = pair.p <= kSignificance && pair.greater == other;
+    (is_clear ? clear : unclear).push_back(short_label(other));
+  }
+  std::string text = "; least with " + least.label;
+  if (!clear.empty()) text += ", significantly against " + joined(clear);
+  if (!unclear.empty())
+    text += fmt::format("{} not against {}", clear.empty() ? ", but" : ",", joined(unclear));
+  return text;
+}
+
+// "0.02 N (1 line-proxy), lost contact (2 surface-points) and 0.01 N (3 point-shell)", and who has least.
+std::string values_words(const Study& study, Mode mode, std::string_view phase, const KeyMetric& metric) {
+  std::vector<std::string> values;
+  std::optional<AlgorithmId> least;
+  double min = 0;
+  for (const AlgorithmId& algorithm : study.algorithms()) {
+    if (!was_tried(study, mode, algorithm)) continue;
+    const std::vector<double> of_seeds = study.values(algorithm, mode, phase, metric);
+    if (of_seeds.empty()) {
+      values.push_back(fmt::format("lost contact ({})", algorithm.label));
+      continue;
+    }
+    const double median = median_interval(of_seeds).median;
+    values.push_back(fmt::format("{:.3g} {} ({})", median, metric.unit, algorithm.label));
+    if (!least || median < min) least = algorithm, min = median;
+  }
+  const bool claims = metric.is_unrest && least && values.size() > 1 && !too_few(study);
+  return joined(values) + (claims ? least_words(study, mode, phase, metric, *least) : "");
+}
+
+// "Force above 20 Hz, rms, while milling, median of the hands: paper 0.02 N (1 line-proxy) ...; steady ..."
+std::string values_sentence(const Study& study, std::string_view phase, const KeyMetric& metric) {
+  std::string text = fmt::format("{}, {}{}: ", metric.name, during(phase),
+                                 study.seeds().size() > 1 ? ", median of the hands" : "");
+  text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  std::vector<std::string> modes;
+  for (const Mode mode : study.modes()) {
+    modes.push_back((study.modes().size() > 1 ? fmt::format("in {} ", name_of(mode)) : "") +
+                    values_words(study, mode, phase, metric));
+  }
+  return fmt::format("{}{}.", text, fmt::join(modes, "; "));
+}
+
+std::string findings_sentence(const Study& study) {
+  const Mode mode = study.modes().front();
+  std::size_t total = 0, agreeing = 0, untested = 0;
+  std::vector<std::string> against;
+  for (const StudyFinding& f : check_study_findings(study, mode)) {
+    if (f.of_medians.of_the_machine) continue;
+    ++total;
+    agreeing += f.of_medians.verdict == Verdict::agrees;
+    untested += !is_tested(f.of_medians.verdict);
+    if (f.of_medians.verdict != Verdict::does_not_agree) continue;
+    const std::string in = too_few(study) ? "" : fmt::format(" ({} of {} hands)", f.agreeing, f.tested);
+    against.push_back(fmt::format("“{}”{}", f.of_medians.paper_says, in));
+  }
+  const std::string where = too_few(study)
+                                ? "are as in " + hands(study.seeds().size()) + " here"
+                                : fmt::format("hold in the medians of {}", hands(study.seeds().size()));
+  return fmt::format("Of the paper's {} findings on force, torque and shaft {} {}, mode {}{}{}.", total,
+                     agreeing, where, name_of(mode), against.empty() ? "" : "; not so " + joined(against),
+                     untested == 0 ? "" : fmt::format("; {} could not be tested", untested));
+}
+
+struct Change {
+  std::string what;
+  double ratio;
+};
+
+// "force step of 1 while milling (× 0.7), ..., and 3 more", the most changed first.
+std::string changes_words(std::vector<Change> changes) {
+  std::stable_sort(changes.begin(), changes.end(), [](const Change& a, const Change& b) {
+    return std::abs(std::log(a.ratio)) > std::abs(std::log(b.ratio));
+  });
+  std::vector<std::string> told;
+  for (const Change& change : changes) {
+    if (told.size() == kChangesTold) break;
+    told.push_back(fmt::format("{} (× {:.2g})", change.what, change.ratio));
+  }
+  if (changes.size() > told.size()) told.push_back(fmt::format("{} more", changes.size() - told.size()));
+  return told.empty() ? "nothing" : joined(told);
+}
+
+// With too few hands every change is told, else the significant ones.
+std::string changes_sentence(const Study& study) {
+  std::vector<Change> worse, better;
+  for (const std::string_view phase : study.phases()) {
+    for (const KeyMetric& metric : key_metrics()) {
+      if (!metric.is_unrest) continue;
+      for (const ModeChange& change : compare_modes(study, phase, metric)) {
+        const double ratio = change.ratio.median;
+        if (!(ratio > 0) || ratio == 1 || (!too_few(study) && change.p > kSignificance)) continue;
+        (ratio > 1 ? worse : better)
+            .push_back({fmt::format("{} of {} {}", metric.name, short_label(change.algorithm), during(phase)),
+                        ratio});
+      }
+    }
+  }
+  return fmt::format("Against paper, steady makes {}worse: {}; and better: {}.",
+                     too_few(study) ? "" : "significantly ", changes_words(std::move(worse)),
+                     changes_words(std::move(better)));
+}
+
+}  // namespace
+
+std::string what_was_compared(const Study& study, std::string_view scan_name) {
+  std::vector<std::string> algorithms, modes;
+  for (const AlgorithmId& algorithm : study.algorithms()) algorithms.push_back(algorithm.label);
+  for (const Mode mode : study.modes()) modes.emplace_back(name_of(mode));
+  return fmt::format(
+      "{}, mode {}, milled the same bone ({}) in {}. Each moved the burr in until it touched, milled a hole "
+      "and pushed the shaft against the hole's edge; then, with the spindle off, it stood in that hole with "
+      "the shaft against the wall and kept as still as it could.",
+      joined(algorithms), joined(modes), scan_name,
+      study.seeds().size() == 1 ? "one simulated hand"
+                                : fmt::format("{} simulated hands", study.seeds().size()));
+}
+
+std::string too_few_hands(const Study& study) {
+  if (!too_few(study)) return "";
+  return fmt::format(
+      "This is {}, and nothing is claimed of which algorithm is the better: {} are the fewest that can show "
+      "a difference (--seeds {}). The numbers are those of this trial.",
+      hands(study.seeds().size()), study.seeds_needed(), study.seeds_needed());
+}
+
+std::vector<std::string> verdict(const Study& study) {
+  std::vector<std::string> sentences;
+  const auto tell = [&](std::string_view phase, const char* metric) {
+    const auto phases = study.phases();
+    if (std::find(phases.begin(), phases.end(), phase) != phases.end())
+      sentences.push_back(values_sentence(study, phase, metric_named(metric)));
+  };
+  tell(kMilling, "force above 20 Hz, rms");
+  tell(kMilling, "torque above 20 Hz, rms");
+  tell(kHolding, "spread of the shaft");
+  sentences.push_back(findings_sentence(study));
+  if (study.modes().size() > 1) {
+    sentences.push_back(changes_sentence(study));
+  } else {
+    tell(kMilling, "bone removed");
+  }
+  return sentences;
+}
+
+}  // namespace osteomill

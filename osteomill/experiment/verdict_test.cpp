@@ -1,0 +1,88 @@
+#include "osteomill/experiment/verdict.h"
+
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "osteomill/experiment/study_samples.h"
+
+namespace osteomill {
+namespace {
+
+using testing_support::sample_rows;
+
+std::string verdict_of(const std::vector<StudyRow>& rows) {
+  std::string text;
+  for (const std::string& sentence : verdict(Study(rows))) text += sentence + "\n";
+  return text;
+}
+
+void expect_says(const std::string& text, const std::string& what) {
+  EXPECT_NE(text.find(what), std::string::npos) << what << "\n in:\n" << text;
+}
+
+TEST(Verdict, IsFiveSentencesWithTheirNumbers) {
+  const std::string text = verdict_of(sample_rows(8));
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 5);
+  expect_says(text,
+              "Force above 20 Hz, rms, while milling, median of the hands: in paper 0.104 N (1 line-proxy), "
+              "1.04 N (2 surface-points) and 0.104 N (3 point-shell); least with");
+  expect_says(text, "least with 3 point-shell, significantly against 1 and 2");
+  expect_says(text, "5 hold in the medians of 8 hands, mode paper; not so");
+  expect_says(
+      text,
+      "Against paper, steady makes significantly worse: nothing; and better: force above 20 Hz, rms of 2 "
+      "while milling (× 0.1)");
+  EXPECT_TRUE(too_few_hands(Study(sample_rows(8))).empty());
+}
+
+TEST(Verdict, WhatSteadyMakesWorseIsSaid) {
+  std::vector<StudyRow> rows = sample_rows(8);
+  for (StudyRow& r : rows) {
+    if (r.summary.algorithm == "point-shell" && r.summary.mode == Mode::steady &&
+        r.summary.segment == kMilling)
+      r.summary.metrics.torque_Nmm.hp_rms *= 1.6;
+  }
+  expect_says(
+      verdict_of(rows),
+      "steady makes significantly worse: torque above 20 Hz, rms of 3 while milling (× 1.6); and better: ");
+}
+
+TEST(Verdict, WithTooFewHandsNothingIsClaimed) {
+  const Study one{sample_rows(1)};
+  EXPECT_TRUE(too_few_hands(one).starts_with(
+      "This is one hand, and nothing is claimed of which algorithm is the better: 7 are the fewest"));
+  const std::string text = verdict_of(sample_rows(6));
+  for (const char* claim : {"least", "significant", "hold in the medians"}) {
+    EXPECT_EQ(text.find(claim), std::string::npos) << claim << " in " << text;
+  }
+  expect_says(text, "are as in 6 hands here");
+}
+
+TEST(Verdict, WhoLostContactIsNamedAndNeverTheLeast) {
+  std::vector<StudyRow> rows = sample_rows(8);
+  for (StudyRow& r : rows) {
+    if (r.summary.algorithm == "point-shell") {
+      r.summary.metrics.force_N.hp_rms = r.summary.metrics.torque_Nmm.hp_rms =
+          std::numeric_limits<double>::quiet_NaN();
+    }
+  }
+  const std::string text = verdict_of(rows);
+  expect_says(text, "lost contact (3 point-shell); least with 1 line-proxy, significantly against 2");
+  expect_says(text, "could not be tested");
+  EXPECT_EQ(text.find("nan"), std::string::npos) << text;
+}
+
+TEST(Verdict, OneModeAndOneAlgorithmHaveNothingToBeComparedWith) {
+  std::vector<StudyRow> rows = sample_rows(8);
+  std::erase_if(rows, [](const StudyRow& r) {
+    return r.summary.mode == Mode::steady || r.summary.algorithm != "line-proxy";
+  });
+  const std::string text = verdict_of(rows);
+  EXPECT_EQ(text.find("least"), std::string::npos) << text;
+  EXPECT_EQ(text.find("steady"), std::string::npos) << text;
+  expect_says(text, "Bone removed, while milling, median of the hands: 0 mm³ (1 line-proxy).");
+}
+
+}  // namespace
+}  // namespace osteomill
