@@ -154,6 +154,9 @@ void add_milling_options(CLI::App& command, MillingOptions& options) {
                "The work that removes bone of the reference density");
   add_positive(command, "--removal-rate", setup.removal_rate_mm3_per_Ns, "mm^3/(N.s)",
                "kappa; else it follows from burr, spindle speed and cutting energy");
+  command.add_flag("--cutting-reaction,!--no-cutting-reaction", setup.cutting_reaction,
+                   fmt::format("The hand feels the burr pull along its rim, whose pole cuts less{}",
+                               setup.cutting_reaction ? " (on unless turned off)" : ""));
   command.option_defaults()->group("Limits of the device");
   add_positive(command, "--force-limit", setup.limits.force_N, "N", "The most it is asked for");
   add_positive(command, "--torque-limit", setup.limits.torque_Nmm, "N.mm", "The most it is asked for");

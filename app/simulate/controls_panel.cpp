@@ -93,6 +93,9 @@ void draw_tool(MillingSetup& wanted, bool& sound, bool& changed) {
   changed = ui::checkbox("vibration", &wanted.vibration) || changed;
   ui::hint("The hand feels the burr cut");
   ImGui::SameLine();
+  changed = ui::checkbox("burr pulls", &wanted.cutting_reaction) || changed;
+  ui::hint("Cutting holds the burr back along its rim: it walks off sideways and turns the handle");
+  ImGui::SameLine();
   ui::checkbox("sound", &sound);
 }
 

@@ -29,6 +29,7 @@ void run_simulate(SimulateOptions options) {
 void add_simulate_command(CLI::App& program, const std::string& command_line) {
   auto options = std::make_shared<SimulateOptions>();
   options->simulator.command_line = command_line;
+  options->milling.setup.cutting_reaction = true;
   CLI::App* command =
       program.add_subcommand("simulate", "Open the window: see the bone, take the burr, mill");
   command->group("In a window");

@@ -15,6 +15,9 @@ struct MillingSettings {
   /// kappa: mm^3 of reference density removed a newton of burr force and second.
   double removal_rate_mm3_per_Ns =
       osteomill::removal_rate_mm3_per_Ns(CuttingSettings{}, MillingTool{}.burr_radius_mm);
+  /// The cutting force along the burr's speed as a share of its force, where the hand is to feel that
+  /// (CuttingReaction); 0 where not, and all of the burr then cuts as its rim does.
+  double reaction_share = 0;
 };
 
 /// What one step of milling did.

@@ -18,6 +18,7 @@ void add_algorithm(Settings& settings, const AlgorithmDescription& algorithm, co
 
 void add_milling(Settings& settings, const MillingSettings& milling, const BoneDensities& densities) {
   settings.push_back({"milling.removal_rate", milling.removal_rate_mm3_per_Ns, "mm^3/(N s)"});
+  settings.push_back({"milling.reaction_share", milling.reaction_share, ""});
   settings.push_back({"milling.surroundings_density", densities.surroundings, ""});
   settings.push_back({"milling.reference_density", densities.reference, ""});
 }

@@ -7,6 +7,7 @@
 
 #include "osteomill/files/input_error.h"
 #include "osteomill/milling/burr_mill.h"
+#include "osteomill/milling/cutting_reaction.h"
 
 namespace osteomill {
 
@@ -29,21 +30,30 @@ void require_same_grid(const Recording& recording, const GridGeometry& geometry)
                      grid_text(run.dims, run.spacing_mm), grid_text(geometry.dims, geometry.spacing_mm)));
 }
 
-double number_of(const Recording& recording, const char* key) {
+const double* find_number(const Recording& recording, const char* key) {
   const std::vector<RunSetting>& settings = recording.description.settings;
   const auto found = std::find_if(settings.begin(), settings.end(),
                                   [&](const RunSetting& setting) { return setting.key == key; });
-  const double* number = found == settings.end() ? nullptr : std::get_if<double>(&found->value);
+  return found == settings.end() ? nullptr : std::get_if<double>(&found->value);
+}
+
+double number_of(const Recording& recording, const char* key) {
+  const double* number = find_number(recording, key);
   if (number == nullptr) {
     refuse(recording, fmt::format("has no setting '{}', so its milling cannot be repeated", key));
   }
   return *number;
 }
 
-BurrMill make_mill(const Recording& recording, const GridGeometry& geometry) {
+MillingSettings milling_of(const Recording& recording) {
+  // Recordings from before the burr was held back do not have it.
+  const double* reaction_share = find_number(recording, "milling.reaction_share");
+  return {number_of(recording, "milling.removal_rate"), reaction_share == nullptr ? 0 : *reaction_share};
+}
+
+BurrMill make_mill(const Recording& recording, const MillingSettings& milling, const GridGeometry& geometry) {
   const BoneDensities densities{number_of(recording, "milling.surroundings_density"),
                                 number_of(recording, "milling.reference_density")};
-  const MillingSettings milling{number_of(recording, "milling.removal_rate")};
   try {
     return BurrMill(geometry, recording.description.tool.burr_radius_mm, densities, milling);
   } catch (const std::invalid_argument& error) {
@@ -71,13 +81,14 @@ void repeat_milling(Volume& volume, const Recording& recording) {
   if (recording.dropped > 0) {
     refuse(recording, fmt::format("lost {} ticks, so its milling cannot be repeated", recording.dropped));
   }
-  BurrMill mill = make_mill(recording, volume.geometry());
+  const MillingSettings milling = milling_of(recording);
+  BurrMill mill = make_mill(recording, milling, volume.geometry());
   double removed_mm3 = 0;
   for (std::size_t tick = 0; tick < recording.records.size(); ++tick) {
     const TickRecord& record = recording.records[tick];
     if (record.spindle_on) {
-      removed_mm3 +=
-          mill.step(volume, record.X_WT.position_mm, record.burr_force_W_N, record.dt_s).removed_mm3;
+      const Vec3 paying_W_N = paying_force_W_N(milling, record.X_WT, record.burr_force_W_N);
+      removed_mm3 += mill.step(volume, record.X_WT.position_mm, paying_W_N, record.dt_s).removed_mm3;
     }
     require_same_removal(recording, tick, removed_mm3);
   }

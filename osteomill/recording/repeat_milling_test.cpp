@@ -19,7 +19,7 @@ namespace {
 using testing_support::TestFolder;
 
 constexpr BoneDensities kDensities{0, 1000};
-const MillingSettings kMilling{3.0};
+const MillingSettings kMilling{3.0, 0.3};
 
 Volume fresh_bone(double radius_mm = 5) {
   return testing_support::shape_volume(testing_support::centred_cube(60, 0.25),
@@ -32,6 +32,7 @@ RunDescription description_of(const Volume& bone) {
   run.spacing_mm = bone.geometry().spacing_mm;
   run.tool = {};
   run.settings = {{"milling.removal_rate", kMilling.removal_rate_mm3_per_Ns, ""},
+                  {"milling.reaction_share", kMilling.reaction_share, ""},
                   {"milling.surroundings_density", kDensities.surroundings, ""},
                   {"milling.reference_density", kDensities.reference, ""}};
   return run;

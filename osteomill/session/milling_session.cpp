@@ -40,7 +40,9 @@ MillingSession::MillingSession(std::shared_ptr<Volume> volume, const MillingTool
                                double tick_period_s)
     : volume_(std::move(volume)),
       algorithm_(std::move(algorithm)),
+      milling_(milling),
       mill_(volume_->geometry(), tool.burr_radius_mm, densities, milling),
+      reaction_(milling, tool.burr_radius_mm),
       no_go_(volume_->labels(), tool.burr_radius_mm),
       guard_(GuardSettings{limits}) {
   algorithm_->prepare({volume_.get(), tool, tick_period_s});
@@ -61,7 +63,7 @@ TickRecord MillingSession::tick(Device& device, double time_s, double dt_s, bool
 
   const Clock::time_point milling_start = Clock::now();
   last_change_ = {};
-  if (spindle_on) mill(step, dt_s);
+  mill(step, spindle_on, dt_s);
   record.label_cuts = mill_.by_label().take();
   record.milling_us = microseconds_since(milling_start);
 
@@ -83,6 +85,7 @@ void MillingSession::take_over_tool(const std::optional<Pose>& X_WT) {
 
 void MillingSession::begin_at(const Pose& X_WT) {
   algorithm_->reset();
+  reaction_.reset();
   take_over_tool(X_WT);
 }
 
@@ -94,6 +97,7 @@ TickRecord MillingSession::idle_tick(Device& device, double time_s, double dt_s)
   record.removed_mm3 = removed_mm3_;
   record.wrench = guard_.pass_zero(dt_s).wrench;
   device.write_wrench(record.wrench);
+  reaction_.reset();
   last_change_ = {};
   return record;
 }
@@ -107,11 +111,14 @@ HapticStep MillingSession::step_safely(const Pose& X_WD, double dt_s, bool spind
   }
   HapticStep step = algorithm_->step(X_WD, dt_s);
   if (spindle_on) step.wrench.force_N += vibration_.force_N(step.X_WT, step.burr_force_W_N.norm(), dt_s);
+  step.wrench.force_N += reaction_.wrench().force_N;
+  step.wrench.torque_Nmm += reaction_.wrench().torque_Nmm;
   const bool is_usable = is_finite(step.X_WT) && step.burr_force_W_N.allFinite();
   safe = guard_.pass(is_usable ? step.wrench : kNotFinite, X_WD, dt_s);
   if (safe.fault == WrenchFault::not_finite) {
     // Whatever led there is still in the algorithm's memory of contacts.
     algorithm_->reset();
+    reaction_.reset();
     return nothing;
   }
   step.burr_force_W_N *= share_sent(step.wrench.force_N, safe.wrench.force_N);
@@ -119,9 +126,14 @@ HapticStep MillingSession::step_safely(const Pose& X_WD, double dt_s, bool spind
   return step;
 }
 
-void MillingSession::mill(const HapticStep& step, double dt_s) {
-  const MillingStep cut = mill_.step(*volume_, step.X_WT.position_mm, step.burr_force_W_N, dt_s);
-  no_go_.look(step.X_WT.position_mm, mill_.by_label());
+void MillingSession::mill(const HapticStep& step, bool spindle_on, double dt_s) {
+  MillingStep cut;
+  if (spindle_on) {
+    cut = mill_.step(*volume_, step.X_WT.position_mm,
+                     paying_force_W_N(milling_, step.X_WT, step.burr_force_W_N), dt_s);
+    no_go_.look(step.X_WT.position_mm, mill_.by_label());
+  }
+  reaction_.follow(step.X_WT, step.burr_force_W_N, cut.removed_mm3, dt_s);
   removed_mm3_ += cut.removed_mm3;
   last_change_ = cut.change;
   if (!cut.change.voxels.empty()) algorithm_->volume_changed(cut.change);

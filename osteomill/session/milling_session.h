@@ -6,6 +6,7 @@
 #include "osteomill/device/device.h"
 #include "osteomill/haptics/haptic_algorithm.h"
 #include "osteomill/milling/burr_mill.h"
+#include "osteomill/milling/cutting_reaction.h"
 #include "osteomill/milling/no_go_watch.h"
 #include "osteomill/session/tick_record.h"
 #include "osteomill/session/vibration.h"
@@ -63,12 +64,14 @@ class MillingSession {
 
  private:
   HapticStep step_safely(const Pose& X_WD, double dt_s, bool spindle_on, SafeWrench& safe);
-  void mill(const HapticStep& step, double dt_s);
+  void mill(const HapticStep& step, bool spindle_on, double dt_s);
 
   // Behind a pointer since the algorithm keeps its address.
   std::shared_ptr<Volume> volume_;
   std::unique_ptr<HapticAlgorithm> algorithm_;
+  MillingSettings milling_;
   BurrMill mill_;
+  CuttingReaction reaction_;
   NoGoWatch no_go_;
   Vibration vibration_;
   WrenchGuard guard_;

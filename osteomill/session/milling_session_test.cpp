@@ -58,12 +58,14 @@ class MillingSessionTest : public ::testing::Test {
   MillingSessionTest() {
     Volume bone = testing_support::shape_volume(testing_support::centred_cube(40, 0.25),
                                                 testing_support::plane(Vec3::Zero(), Vec3::UnitZ()));
+    start(std::move(bone), MillingSettings{}, WrenchLimits{20, 500});
+    device_.put({{0, 0, 1.0}, Quat::Identity()});
+  }
+  void start(Volume bone, const MillingSettings& milling, const WrenchLimits& limits) {
     auto algorithm = std::make_unique<ScriptedAlgorithm>();
     algorithm_ = algorithm.get();
-    session_ =
-        std::make_unique<MillingSession>(std::move(bone), MillingTool{}, std::move(algorithm),
-                                         BoneDensities{0, 1000}, MillingSettings{}, WrenchLimits{20, 500});
-    device_.put({{0, 0, 1.0}, Quat::Identity()});
+    session_ = std::make_unique<MillingSession>(std::move(bone), MillingTool{}, std::move(algorithm),
+                                                BoneDensities{0, 1000}, milling, limits);
   }
   TickRecord tick(bool spindle_on = true) {
     return session_->tick(device_, time_s_ += 1e-3, 1e-3, spindle_on);
@@ -88,6 +90,30 @@ TEST_F(MillingSessionTest, TooMuchIsClampedAndSaid) {
   algorithm_->next.wrench = {{0, 0, 300}, {0, 40, 0}};
   EXPECT_EQ(tick().fault, WrenchFault::force_clamped);
   EXPECT_TRUE(device_.sent().force_N.isApprox(Vec3(0, 0, 20)));
+}
+
+// The burr lies on its side, the hand to the right, and presses down: it is held back along the bone.
+TEST_F(MillingSessionTest, CuttingPullsAtTheHandWithinTheDevicesLimits) {
+  MillingSettings milling;
+  milling.reaction_share = 0.3;
+  start(session_->volume(), milling, {0.25, 500});
+  const Pose lying{{0, 0, 1.45}, Quat::FromTwoVectors(Vec3::UnitZ(), Vec3::UnitX())};
+  device_.put(lying);
+  algorithm_->next.X_WT = lying;
+  algorithm_->next.burr_force_W_N = {0, 0, -1};
+  EXPECT_EQ(tick().wrench.force_N.norm(), 0) << "nothing was cut yet";
+  TickRecord record;
+  for (int n = 0; n < 50; ++n) record = tick();
+  EXPECT_GT(record.removed_mm3, 0.05);
+  EXPECT_NEAR(std::abs(record.wrench.force_N.y()), 2.0 / 3.0 * 0.3, 0.01);
+  EXPECT_NEAR(record.wrench.force_N.x(), 0, 1e-9);
+  algorithm_->next.wrench.force_N = {0, 0, 0.2};
+  record = tick();
+  EXPECT_EQ(record.fault, WrenchFault::force_clamped);
+  EXPECT_LE(record.wrench.force_N.norm(), 0.25 + 1e-12);
+  algorithm_->next.wrench = {};
+  for (int n = 0; n < 150; ++n) record = tick(false);
+  EXPECT_EQ(record.wrench.force_N.norm() + record.wrench.torque_Nmm.norm(), 0) << "the spindle is off";
 }
 
 TEST_F(MillingSessionTest, TheToolOfAnotherSessionIsWhereTheAlgorithmBegins) {

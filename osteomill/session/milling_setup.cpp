@@ -41,6 +41,7 @@ MillingSettings milling_settings(const MillingSetup& setup) {
   MillingSettings milling;
   milling.removal_rate_mm3_per_Ns = setup.removal_rate_mm3_per_Ns.value_or(
       removal_rate_mm3_per_Ns(setup.cutting, setup.tool.burr_radius_mm));
+  if (setup.cutting_reaction) milling.reaction_share = setup.cutting.tangential_share;
   return milling;
 }
 

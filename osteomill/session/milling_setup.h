@@ -23,6 +23,8 @@ struct MillingSetup {
   WrenchLimits limits;
   /// The hand feels the burr cut.
   bool vibration = false;
+  /// The hand feels how cutting holds the burr back along its speed (CuttingReaction).
+  bool cutting_reaction = false;
 };
 
 /// Throws std::invalid_argument, with one line that says why, where a tool cannot work in a scan with this

@@ -1,0 +1,56 @@
+#include "osteomill/milling/cutting_reaction.h"
+
+#include <cmath>
+
+namespace osteomill {
+
+namespace {
+
+constexpr double kSmooth_s = 0.01;
+// Less is nothing, so that a tool in free space feels just that.
+constexpr double kNothing_N = 1e-4;
+constexpr double kNothing_Nmm = 1e-4;
+// Of the unit normals n over half a ball, weighted by their cosine to `ahead`: the mean of n . ahead, and in
+// the mean of n n^T what is alike in all directions and what is along `ahead` alone.
+constexpr double kMeanAlong = 2.0 / 3.0;
+constexpr double kAround = 0.25;
+constexpr double kAlong = 0.25;
+
+// Each piece of the burr moves along spin x n, is held back along that, and has the lever r n.
+Wrench reaction(const Vec3& ahead_W, const Vec3& shaft_W, double burr_radius_mm, double cutting_N) {
+  const Vec3 spin_W = -shaft_W;
+  const Vec3 mean_n_n_spin = kAround * spin_W + kAlong * ahead_W.dot(spin_W) * ahead_W;
+  return {-cutting_N * kMeanAlong * spin_W.cross(ahead_W),
+          -cutting_N * burr_radius_mm * (spin_W - mean_n_n_spin)};
+}
+
+}  // namespace
+
+double rim_share(const Vec3& ahead_W, const Vec3& shaft_W) {
+  const double along = shaft_W.dot(ahead_W);
+  return 1 - kAround - kAlong * along * along;
+}
+
+Vec3 paying_force_W_N(const MillingSettings& settings, const Pose& X_WT, const Vec3& burr_force_W_N) {
+  const double force_N = burr_force_W_N.norm();
+  if (!(settings.reaction_share > 0) || !(force_N > 0)) return burr_force_W_N;
+  return rim_share(burr_force_W_N / force_N, shaft_direction(X_WT)) * burr_force_W_N;
+}
+
+void CuttingReaction::follow(const Pose& X_WT, const Vec3& burr_force_W_N, double removed_mm3, double dt_s) {
+  if (!(settings_.reaction_share > 0) || !(dt_s > 0)) return;
+  Wrench now;
+  const double force_N = burr_force_W_N.norm();
+  if (removed_mm3 > 0 && force_N > 0 && std::isfinite(force_N)) {
+    const Vec3 ahead_W = burr_force_W_N / force_N, shaft_W = shaft_direction(X_WT);
+    const double paid_N =
+        removed_mm3 / (settings_.removal_rate_mm3_per_Ns * rim_share(ahead_W, shaft_W) * dt_s);
+    now = reaction(ahead_W, shaft_W, radius_mm_, settings_.reaction_share * paid_N);
+  }
+  const double share = dt_s / (kSmooth_s + dt_s);
+  wrench_.force_N += share * (now.force_N - wrench_.force_N);
+  wrench_.torque_Nmm += share * (now.torque_Nmm - wrench_.torque_Nmm);
+  if (wrench_.force_N.norm() < kNothing_N && wrench_.torque_Nmm.norm() < kNothing_Nmm) reset();
+}
+
+}  // namespace osteomill
