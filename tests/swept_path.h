@@ -46,6 +46,17 @@ class SweptPath {
       for (int j = 0; j < dims_[1]; ++j)
         for (int i = 0; i < dims_[0]; ++i) visit(point_W(i, j, k), static_cast<double>(distances_mm_[n++]));
   }
+  /// At the point of the lattice that is nearest, at most twice the margin.
+  double distance_mm(const Vec3& point_W) const {
+    std::size_t at[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto n = std::lround((point_W[axis] - first_W_[axis]) / spacing_mm_);
+      at[axis] = static_cast<std::size_t>(std::clamp<long>(n, 0, dims_[axis] - 1));
+    }
+    return static_cast<double>(
+        distances_mm_[at[0] + static_cast<std::size_t>(dims_[0]) *
+                                  (at[1] + static_cast<std::size_t>(dims_[1]) * at[2])]);
+  }
   double point_mm3() const { return spacing_mm_ * spacing_mm_ * spacing_mm_; }
 
  private:
@@ -84,14 +95,17 @@ class SweptPath {
 
 /// What was cut against what was swept, by the surface as it is seen and felt (densities interpolated), where
 /// there was bone for two voxels all around: without the rim, where the cut meets the surface that was there,
-/// since an edge is rounded within the voxels that it goes through.
+/// since an edge is rounded within the voxels that it goes through. Edges that two passes leave between them
+/// are told apart.
 struct Carving {
   double swept_mm3 = 0;
   double carved_mm3 = 0;
   /// Swept and still bone: how deep within the sweep the deepest lies.
   double left_mm = 0;
-  /// Not swept and no bone any more: how far outside the sweep the farthest lies.
+  /// Not swept and no bone any more: how far outside the sweep the farthest lies, where the swept surface is
+  /// smooth, and on the edges between two passes.
   double lost_mm = 0;
+  double edge_lost_mm = 0;
 
   double share() const { return swept_mm3 > 0 ? carved_mm3 / swept_mm3 : 0.0; }
 };
@@ -107,6 +121,19 @@ inline bool is_deep_in_bone(const Volume& volume, const Vec3& point_W) {
   return true;
 }
 
+/// Whether the nearest swept surfaces on two sides of the point, a voxel apart, face different ways: the
+/// distance then grows slower than the way.
+inline bool is_at_edge(const SweptPath& path, const GridGeometry& geometry, const Vec3& point_W) {
+  constexpr double kLeastSlope = 0.97, kMostApart_mm = 0.25;
+  Vec3 slope;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vec3 aside_W = std::min(geometry.spacing_mm.maxCoeff(), kMostApart_mm) * Vec3::Unit(axis);
+    slope[axis] =
+        (path.distance_mm(point_W + aside_W) - path.distance_mm(point_W - aside_W)) / (2 * aside_W.norm());
+  }
+  return slope.norm() < kLeastSlope;
+}
+
 inline Carving carving(const Volume& before, const Volume& after, const SweptPath& path) {
   Carving result;
   path.for_each_point([&](const Vec3& point_W, double distance_mm) {
@@ -115,7 +142,9 @@ inline Carving carving(const Volume& before, const Volume& after, const SweptPat
     if (distance_mm < 0) result.swept_mm3 += path.point_mm3();
     if (!bone) result.carved_mm3 += path.point_mm3();
     if (bone) result.left_mm = std::max(result.left_mm, -distance_mm);
-    if (!bone) result.lost_mm = std::max(result.lost_mm, distance_mm);
+    if (bone || distance_mm <= std::min(result.lost_mm, result.edge_lost_mm)) return;
+    double& lost_mm = is_at_edge(path, before.geometry(), point_W) ? result.edge_lost_mm : result.lost_mm;
+    lost_mm = std::max(lost_mm, distance_mm);
   });
   return result;
 }
