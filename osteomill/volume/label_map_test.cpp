@@ -1,5 +1,7 @@
 #include "osteomill/volume/label_map.h"
 
+#include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <stdexcept>
 
@@ -140,6 +142,19 @@ TEST(LabelScan, DensitiesAreNoLabels) {
   // A few whole numbers, but as noise.
   for (std::size_t n = 0; n < densities.size(); ++n) densities[n] = static_cast<float>((n * 7919) % 5);
   EXPECT_FALSE(isovalue_of_labels(DensityGrid(geometry, densities)));
+  // A ball with a soft edge, whose shades are whole numbers.
+  std::size_t n = 0;
+  const GridGeometry soft = centred_cube(32, 0.5);
+  std::vector<float> ball(soft.voxel_count());
+  for (int k = 0; k < 32; ++k) {
+    for (int j = 0; j < 32; ++j) {
+      for (int i = 0; i < 32; ++i) {
+        const double share = 5.5 - soft.world_from_voxel(VoxelIndex{i, j, k}).norm();
+        ball[n++] = static_cast<float>(std::floor(1500 * std::clamp(share, 0.0, 1.0)));
+      }
+    }
+  }
+  EXPECT_FALSE(isovalue_of_labels(DensityGrid(soft, ball)));
   std::fill(densities.begin(), densities.end(), 3.0f);
   EXPECT_FALSE(isovalue_of_labels(DensityGrid(geometry, densities)));
   densities[5] = 0.5f;

@@ -1,5 +1,6 @@
 #include "osteomill/volume/label_scan.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <utility>
@@ -50,12 +51,11 @@ std::optional<double> isovalue_of_labels(const DensityGrid& grid) {
     return labels;
   });
   if (!labels || counts.size() < 2) return std::nullopt;
-  std::size_t labelled = 0, alike = 0;
-  for (auto above = std::next(counts.begin()); above != counts.end(); ++above) {
-    labelled += above->second.voxels;
-    alike += above->second.like_the_one_before;
-  }
-  if (2 * alike < labelled) return std::nullopt;
+  // Structures are pieces, unlike the shades of a soft edge or noise.
+  const auto pieces = std::count_if(std::next(counts.begin()), counts.end(), [](const auto& entry) {
+    return 2 * entry.second.like_the_one_before >= entry.second.voxels;
+  });
+  if (2 * static_cast<std::size_t>(pieces) < counts.size() - 1) return std::nullopt;
   return 0.5 *
          (static_cast<double>(counts.begin()->first) + static_cast<double>(std::next(counts.begin())->first));
 }

@@ -17,7 +17,7 @@ struct SuggestedIsovalue {
 inline constexpr double kBone_HU = 260;
 
 /// The isovalue that bounds the bone, by what the densities are:
-/// - a map of labels (few whole numbers, most with neighbours like themselves): between the two lowest, so
+/// - a map of labels (few whole numbers, most of which occur in pieces): between the two lowest, so
 ///   that whatever is labelled is bone;
 /// - a scan of a body, which has its two commonest densities, air and soft tissue, 1000 apart: 260 HU, and
 ///   where the file does not say that it is in Hounsfield units, 260 above water, which lies 40 below soft
