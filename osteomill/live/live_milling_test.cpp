@@ -32,7 +32,8 @@ std::shared_ptr<Volume> ball_of_bone() {
   std::vector<LabelMap::Place> places;
   for (std::size_t n = 0; n < bone->geometry().voxel_count(); ++n) places.push_back(n % 51 < 25 ? 1 : 2);
   const GridGeometry& grid = bone->geometry();
-  bone->set_labels(std::make_shared<const LabelMap>(std::vector<Label>(2), grid, grid, places));
+  bone->set_labels(
+      std::make_shared<const LabelMap>(std::vector<Label>{{1, "left"}, {2, "right"}}, grid, grid, places));
   return bone;
 }
 

@@ -105,9 +105,8 @@ std::size_t row_count(const OpenRecording& recording, const std::vector<OpenColu
 }
 
 void require_in_range(const OpenRecording& recording, const RecordColumn& column, double value) {
-  const double max = column.type == ColumnType::small_integer
-                         ? static_cast<double>(WrenchFault::pose_not_finite)
-                         : std::numeric_limits<int>::max();
+  const double max = column.type == ColumnType::small_integer ? static_cast<double>(WrenchFault::eased)
+                                                              : std::numeric_limits<int>::max();
   if (column.type != ColumnType::real && !(value >= 0 && value <= max && value == std::floor(value))) {
     refuse(recording, std::string("the column '") + column.name + "' holds " + std::to_string(value));
   }

@@ -69,7 +69,7 @@ inline TickRecord sample_record(int tick) {
   }
   record.time_s = tick * 0.001;
   record.contacts = tick % 300000;
-  record.fault = static_cast<WrenchFault>(tick % 6);
+  record.fault = static_cast<WrenchFault>(tick % 9);
   record.spindle_on = tick % 3 == 0;
   return record;
 }

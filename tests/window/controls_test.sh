@@ -65,7 +65,7 @@ press shift ;; press left ;; glide 660 660 0.1 ;; release left ;; release shift 
 wheel 3 0.1 ;; state wheeled
 click Whole ;; state whole
 click Find tool ;; state found
-click Larger text ;; wait 0.1 ;; state larger ;; click Smaller text ;; wait 0.1 ;; state usual
+click Algorithm ;; click Larger text ;; wait 0.1 ;; state larger ;; click Smaller text ;; wait 0.1 ;; state usual ;; click Algorithm
 click A ;; hold page-down 3 ;; click S ;; press middle ;; glide 700 600 0 ;; wait 0.1 ;; release middle ;; state lost
 click Bring it here (B) ;; wait 0.2 ;; state brought ;; click Whole ;; glide 600 430 0 ;; key b ;; wait 0.2 ;; state brought-by-key
 click Find tool ;; state refound
@@ -170,6 +170,7 @@ drag burr radius -10 ;; settle ;; state burr
 drag shaft radius -10 ;; settle ;; state shaft
 drag spindle 30 ;; settle ;; state rpm
 click vibration ;; settle ;; state no-vibration
+click burr pulls ;; settle ;; state no-pull
 click Milling ;; click Algorithm ;; click Tool
 drag isovalue 20 ;; settle ;; wait 0.2 ;; state isovalue
 press control ;; click isovalue ;; release control ;; type 500 ;; key enter ;; settle ;; wait 0.2 ;; state typed
@@ -196,6 +197,7 @@ done
 is line-proxy mode steady; is paper mode paper; is point-shell mode paper; is steady mode steady
 changed steady burr burr_mm; changed burr shaft shaft_mm; changed shaft rpm rpm
 is rpm vibration true; is no-vibration vibration false
+is no-vibration cutting_reaction true; is no-pull cutting_reaction false
 more no-vibration isovalue isovalue; is typed isovalue 500
 value no-vibration isovalue_from | grep -q "^suggested: " || fault "nobody is told that the isovalue was suggested"
 value typed isovalue_from | grep -q "^set here; first" || fault "nobody is told that the isovalue was set"
@@ -304,6 +306,20 @@ xvfb-run -a timeout 60 "$osteomill" simulate ball.nrrd --burr-radius 50 >said 2>
 [ "$code" -eq 1 ] && grep -q "^osteomill: ball.nrrd: a burr of 50 mm radius is wider than the whole bone" errors ||
   fault "a burr of 50 mm ends with $code and $(cat errors)"
 [ -z "$(value still-there scan)" ] || fault "it did not close without a report"
+
+# --- Labels -------------------------------------------------------------------------------------------------------
+# The ball's left half is one label, its right half another.
+{
+  printf 'NRRD0004\ntype: uchar\ndimension: 3\nsizes: 32 32 32\nspacings: 0.5 0.5 0.5\nencoding: ascii\n\n'
+  for ((row = 0; row < 32 * 32; ++row)); do printf '1 %.0s' {1..16}; printf '2 %.0s' {1..16}; done
+} >halves.nrrd
+window ball.nrrd --labels halves.nrrd --no-help <<'END'
+wait 0.3 ;; state labelled ;; screenshot labelled.png
+click label colours ;; wait 0.2 ;; state plain ;; screenshot plain.png
+close
+END
+shows labelled "label colours"
+! cmp -s labelled.png plain.png || fault "the colours of the labels are not seen"
 
 # --- Nothing was left out -----------------------------------------------------------------------------------------
 # Of the labels that were drawn, and of those that stand in the code.

@@ -40,8 +40,7 @@ send paused key --delay 0 p
 send chord key --delay 0 t key --delay 0 ctrl+p
 # GLFW takes two presses of a key within a millisecond for one.
 send tapped-thrice key --delay 0 p sleep 0.003 key --delay 0 p sleep 0.003 key --delay 0 p
-# The box "pause" (17 pixels within its frame).
-send clicked mousemove --window "$window" 121 202 click 1
+send clicked mousemove --window "$window" $(sed -n 's/^start\.place of pause=//p' said) click 1
 send dragged mousemove --window "$window" 640 700 mousedown 1 sleep 0.7 mousemove --window "$window" 670 710 sleep 0.7 mousemove --window "$window" 700 720 sleep 0.7 mouseup 1
 send wheeled click 4 click 4
 send brought mousemove --window "$window" 640 400 key --delay 0 b

@@ -72,7 +72,7 @@ const MillingTool kTools[] = {{1.5, 1.0, 25}, {0.8, 1.2, 6}, {2, 0.5, 12}, {0.7,
 
 TEST(BrickKernel, EveryInstructionSetGivesTheSameBitsAndThePlainSums) {
   std::mt19937 bits(31);
-  Volume volume(DensityGrid(testing_support::centred_cube(1, 1), {0}), 0);
+  Volume volume(DensityGrid(testing_support::centred_cube(1, 1), std::vector<float>{0}), 0);
   const PointShell shell = bored_ball(volume, bits);
   const std::vector<std::int64_t> targets = targets_here();
   RecordProperty("targets", static_cast<int>(targets.size()));
