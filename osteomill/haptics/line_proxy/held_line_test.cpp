@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "tests/shapes.h"
 #include <gtest/gtest.h>
@@ -72,6 +73,28 @@ TEST(HeldLine, InARoughHoleItIsNeverInBoneNorPushedAgainstItsSprings) {
     }
   }
   EXPECT_GT(held, 30);
+}
+
+// Two voxels thick, met by the tip, by the flank and by the shaft's end, at the speeds of a hand.
+TEST(HeldLine, NoSheetOfBoneIsGoneThrough) {
+  const Volume bone =
+      shape_volume(centred_cube(64, kVoxel_mm), [](const Vec3& p) { return std::abs(p.z()) - 0.25; });
+  const Pose tip_first{Vec3(0.1, 0.2, 2), Quat::Identity()};
+  const Pose flank_first{Vec3(-5, 0.2, 2), quaternion_from_rotation_vector({0, std::numbers::pi / 2, 0})};
+  const Pose end_first{Vec3(0.1, 0.2, 22), quaternion_from_rotation_vector({std::numbers::pi, 0, 0})};
+  for (const Pose& from : {tip_first, flank_first, end_first}) {
+    for (const double speed_mm_s : {20.0, 100.0, 300.0}) {
+      HeldLine line;
+      line.prepare(bone, kSpan, NormalRule{}, kSprings);
+      Pose X_WD = from;
+      for (double way_mm = 0; way_mm < 7; way_mm += speed_mm_s * kTick_s) {
+        X_WD.position_mm.z() = from.position_mm.z() - way_mm;
+        line.follow(X_WD, kTick_s);
+      }
+      const double lowest_mm = std::min(line.X_WL().position_mm.z(), (line.X_WL() * Vec3(0, 0, 20)).z());
+      EXPECT_GT(lowest_mm, 0) << from.position_mm.z() << " at " << speed_mm_s;
+    }
+  }
 }
 
 }  // namespace
