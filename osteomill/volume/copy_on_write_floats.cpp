@@ -84,9 +84,14 @@ CopyOnWriteFloats::CopyOnWriteFloats(std::vector<float> values) : size_(values.s
 }
 
 CopyOnWriteFloats::CopyOnWriteFloats(const CopyOnWriteFloats& other)
-    : original_(other.original_), size_(other.size_), written_(other.written_) {
+    : original_(other.original_), size_(other.size_), written_(other.written_.size()) {
   if (empty()) return;
   map();
+  // Another thread may be preparing pages, which changes nothing in them.
+  for (std::size_t page = 0; page < written_.size(); ++page) {
+    auto& made = const_cast<std::uint8_t&>(other.written_[page]);
+    written_[page] = std::atomic_ref(made).load(std::memory_order_relaxed);
+  }
   // What both may read counts once in the process's memory until it is read here and there.
   if (std::ranges::count(written_, 0) == std::ssize(written_)) {
     madvise(other.values_, mapped_bytes(size_), MADV_DONTNEED);
