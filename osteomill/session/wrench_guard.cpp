@@ -59,11 +59,14 @@ bool WrenchGuard::is_at_rest() const {
 }
 
 SafeWrench WrenchGuard::approach(const Wrench& target, WrenchFault fault, double dt_s) {
-  const double tick_s = std::min(dt_s, kUsualTick_s);
+  const double tick_s = dt_s > 0 ? std::min(dt_s, kUsualTick_s) : 0;
+  // No limit stays none in a tick of no length.
+  const auto in_a_tick = [&](double rate) { return rate < GuardSettings::kAny ? rate * tick_s : rate; };
   bool short_of_it = false;
-  sent_.force_N = towards(sent_.force_N, target.force_N, settings_.max_force_rate_N_s * tick_s, short_of_it);
+  sent_.force_N =
+      towards(sent_.force_N, target.force_N, in_a_tick(settings_.max_force_rate_N_s), short_of_it);
   sent_.torque_Nmm =
-      towards(sent_.torque_Nmm, target.torque_Nmm, settings_.max_torque_rate_Nmm_s * tick_s, short_of_it);
+      towards(sent_.torque_Nmm, target.torque_Nmm, in_a_tick(settings_.max_torque_rate_Nmm_s), short_of_it);
   return {sent_, short_of_it && fault == WrenchFault::none ? WrenchFault::eased : fault};
 }
 

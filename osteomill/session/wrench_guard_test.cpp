@@ -45,6 +45,15 @@ TEST(WrenchGuard, FromFreeSpaceAContactIsFeltAtOnce) {
   EXPECT_EQ(safe.fault, WrenchFault::none);
 }
 
+TEST(WrenchGuard, ATickOfNoLengthGivesNumbers) {
+  WrenchGuard simulated;
+  WrenchGuard guarded = holding(3);
+  for (const double force_N : {3.0, 3.0, 5.0}) {
+    EXPECT_EQ(simulated.pass(down(force_N), kHere, 0).wrench.force_N, down(force_N).force_N);
+    EXPECT_EQ(guarded.pass(down(force_N), kHere, 0).wrench.force_N, down(3).force_N);
+  }
+}
+
 TEST(WrenchGuard, AStartInBoneComesUpSlowly) {
   WrenchGuard guard = for_a_hand();
   for (int n = 1; n <= 99; ++n) {
