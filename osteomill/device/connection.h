@@ -14,6 +14,9 @@ struct DeviceCapabilities {
   /// Degrees of freedom that it senses (3: position alone; 6) and drives (3: force alone; 6).
   int sensed = 6;
   int driven = 6;
+  /// How the base D stands before the operator, placed as its maker means it to be: from D into the
+  /// operator's view V (x to the right, y up, z towards the operator).
+  Quat R_VD = Quat::Identity();
   /// Size of the box that its handle reaches, along the axes of its base D. 0 where unknown.
   Vec3 workspace_D_mm = Vec3::Zero();
   /// The most that its motors give.

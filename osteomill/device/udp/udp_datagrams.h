@@ -1,0 +1,59 @@
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstdint>
+
+namespace osteomill::udp {
+
+// The datagrams of docs/udp-device.md, byte for byte: little-endian, IEEE 754, no padding.
+static_assert(std::endian::native == std::endian::little);
+
+enum class Kind : std::uint16_t { question = 1, answer = 2, state = 3, wrench = 4 };
+
+constexpr std::array<char, 4> kMagic{'O', 'M', 'I', 'L'};
+constexpr std::uint16_t kVersion = 1;
+
+struct Head {
+  std::array<char, 4> magic = kMagic;
+  std::uint16_t version = kVersion;
+  Kind kind{};
+  std::uint32_t sequence = 0;
+  std::uint32_t reserved = 0;
+};
+static_assert(sizeof(Head) == 16);
+
+struct Answer {
+  static constexpr Kind kKind = Kind::answer;
+  Head head;
+  std::array<char, 64> name{};
+  std::uint32_t sensed = 0;
+  std::uint32_t driven = 0;
+  std::array<double, 3> workspace_mm{};
+  double max_force_N = 0;
+  double max_torque_Nmm = 0;
+  double rate_Hz = 0;
+};
+static_assert(sizeof(Answer) == 136);
+
+struct State {
+  static constexpr Kind kKind = Kind::state;
+  Head head;
+  std::array<double, 3> position_mm{};
+  std::array<double, 4> orientation_wxyz{};
+  std::array<double, 3> velocity_mm_s{};
+  std::array<double, 3> angular_velocity_rad_s{};
+  std::uint32_t buttons = 0;
+  std::uint32_t reserved = 0;
+};
+static_assert(sizeof(State) == 128);
+
+struct SentWrench {
+  static constexpr Kind kKind = Kind::wrench;
+  Head head;
+  std::array<double, 3> force_N{};
+  std::array<double, 3> torque_Nmm{};
+};
+static_assert(sizeof(SentWrench) == 64);
+
+}  // namespace osteomill::udp
