@@ -22,31 +22,34 @@ std::uint32_t rank_of(float value) {
   return (bits >> 31) != 0 ? ~bits : bits | 1u << 31;
 }
 
-// By counting how often the upper and then the lower half of the rank is which: there may be a hundred
-// million.
-std::optional<double> median(const std::vector<float>& values) {
-  if (values.empty()) return std::nullopt;
-  std::size_t before = values.size() / 2;
-  std::uint32_t upper = 0;
-  std::vector<std::size_t> counts;
-  // How many of those `half` says are which; returns the one in which the wanted one lies.
-  const auto find = [&](const auto& half) {
-    counts.assign(1 << 16, 0);
-    constexpr std::size_t kAtOnce = 1 << 22;
-    for (std::size_t first = 0; first < values.size(); first += kAtOnce) {
-      const std::size_t last = std::min(first + kAtOnce, values.size());
-      for (std::size_t n = first; n < last; ++n) half(rank_of(values[n]));
-      WorkProgress::done(1);
-    }
+// Of the values that `for_each` takes to whatever it is given, twice the same ones: by counting how often the
+// upper and then the lower half of the rank is which. There may be a billion, which nobody wants to keep.
+template <typename ForEach>
+std::optional<double> median(const ForEach& for_each) {
+  std::vector<std::size_t> counts(1 << 16);
+  std::size_t all = 0;
+  {
+    const WorkProgress::Part first(0.5);
+    for_each([&](float value) {
+      ++counts[rank_of(value) >> 16];
+      ++all;
+    });
+  }
+  if (all == 0) return std::nullopt;
+  std::size_t before = all / 2;
+  // In which half rank the wanted one lies, and how many of that come before it.
+  const auto find = [&] {
     std::uint32_t place = 0;
     for (; before >= counts[place]; ++place) before -= counts[place];
     return place;
   };
-  upper = find([&](std::uint32_t rank) { ++counts[rank >> 16]; });
-  const std::uint32_t lower = find([&](std::uint32_t rank) {
-    if (rank >> 16 == upper) ++counts[rank & 0xffff];
+  const std::uint32_t upper = find();
+  counts.assign(counts.size(), 0);
+  const WorkProgress::Part second(1);
+  for_each([&](float value) {
+    if (const std::uint32_t rank = rank_of(value); rank >> 16 == upper) ++counts[rank & 0xffff];
   });
-  const std::uint32_t rank = upper << 16 | lower;
+  const std::uint32_t rank = upper << 16 | find();
   return static_cast<double>(std::bit_cast<float>((rank >> 31) != 0 ? rank & ~(1u << 31) : ~rank));
 }
 
@@ -85,34 +88,50 @@ std::optional<float> density_away(const Volume& volume, const VoxelIndex& bone, 
   return volume.grid()[{v[0], v[1], v[2]}];
 }
 
-double surroundings_without_a_surface(const Volume& volume) {
-  std::vector<float> others;
-  for (const float density : volume.grid().densities()) {
-    if (static_cast<double>(density) < volume.isovalue()) others.push_back(density);
+// Of the places around the bone that lie well outside of it.
+std::optional<double> median_around(const Volume& volume) {
+  std::vector<float> around;
+  {
+    const WorkProgress::Part looking(0.9);
+    for_each_bone_voxel(volume, [&](const VoxelIndex& v) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        for (const int sign : {-1, 1}) {
+          if (const std::optional<float> density = density_away(volume, v, axis, sign))
+            around.push_back(*density);
+        }
+      }
+    });
   }
-  return median(others).value_or(volume.isovalue() - std::max(1.0, std::abs(volume.isovalue())));
+  const WorkProgress::Part counting(1);
+  return median([&](const auto& take) { std::for_each(around.begin(), around.end(), take); });
+}
+
+double surroundings_without_a_surface(const Volume& volume) {
+  const std::optional<double> others = median([&](const auto& take) {
+    const auto& densities = volume.grid().densities();
+    for (std::size_t n = 0; n < densities.size(); ++n) {
+      if (n % (1 << 22) == 0) WorkProgress::done(n, densities.size());
+      if (static_cast<double>(densities[n]) < volume.isovalue()) take(densities[n]);
+    }
+  });
+  return others.value_or(volume.isovalue() - std::max(1.0, std::abs(volume.isovalue())));
 }
 
 }  // namespace
 
 BoneDensities estimate_densities(const Volume& volume) {
-  std::vector<float> bone;
-  std::vector<float> around;
-  for_each_bone_voxel(volume, [&](const VoxelIndex& v) {
-    bone.push_back(volume.grid()[v]);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      for (const int sign : {-1, 1}) {
-        if (const std::optional<float> density = density_away(volume, v, axis, sign))
-          around.push_back(*density);
-      }
-    }
-  });
   BoneDensities densities;
-  densities.surroundings = median(around).value_or(volume.isovalue());
-  if (!(densities.surroundings < volume.isovalue())) {
-    densities.surroundings = surroundings_without_a_surface(volume);
+  {
+    const WorkProgress::Part around(0.5);
+    densities.surroundings = median_around(volume).value_or(volume.isovalue());
+    if (!(densities.surroundings < volume.isovalue())) {
+      densities.surroundings = surroundings_without_a_surface(volume);
+    }
   }
-  densities.reference = median(bone).value_or(2 * volume.isovalue() - densities.surroundings);
+  const WorkProgress::Part bone(1);
+  densities.reference = median([&](const auto& take) {
+                          for_each_bone_voxel(volume, [&](const VoxelIndex& v) { take(volume.grid()[v]); });
+                        }).value_or(2 * volume.isovalue() - densities.surroundings);
   return densities;
 }
 
