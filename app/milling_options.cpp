@@ -160,6 +160,8 @@ void add_milling_options(CLI::App& command, MillingOptions& options) {
   command.option_defaults()->group("Limits of the device");
   add_positive(command, "--force-limit", setup.limits.force_N, "N", "The most it is asked for");
   add_positive(command, "--torque-limit", setup.limits.torque_Nmm, "N.mm", "The most it is asked for");
+  command.add_flag("--passivity-controller,!--no-passivity-controller", setup.passivity_controller,
+                   "Dampens a contact that has given the hand more energy than it took");
   command.option_defaults()->group("Options");
   command.add_option("--seed", options.seed, "Of the hand's tremor, and of the hands that --seeds draws")
       ->check(whole_number(0, std::numeric_limits<std::uint64_t>::max()))

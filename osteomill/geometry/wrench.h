@@ -30,7 +30,7 @@ enum class WrenchFault : unsigned char {
   /// The device moved further in a tick than a hand can, or the tick came too late; zero was sent.
   pose_jumped = 6,
   tick_late = 7,
-  /// Not yet as much as was asked for was sent: it comes up slowly, or changes no faster than it may.
+  /// Not what was asked for was sent: it comes up slowly, changes no faster than it may, or is damped.
   eased = 8,
 };
 

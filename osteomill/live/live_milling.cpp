@@ -184,6 +184,7 @@ RunDescription LiveMilling::describe(const std::string& scan_name, const std::st
                        live_.session().volume().labels()};
   RunDescription run = describe_run(facts, setup_.algorithm, sample_points_);
   run.settings.push_back({"vibration", setup_.vibration ? 1.0 : 0.0, ""});
+  run.settings.push_back({"passivity_controller", setup_.passivity_controller ? 1.0 : 0.0, ""});
   return run;
 }
 

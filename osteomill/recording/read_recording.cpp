@@ -84,6 +84,7 @@ std::vector<OpenColumn> open_columns(const OpenRecording& recording) {
   for (const RecordColumn& column : record_columns()) {
     const std::string place = std::string("columns/") + column.name;
     Hdf5Handle dataset(H5Dopen2(recording.file.get(), place.c_str(), H5P_DEFAULT), H5Dclose);
+    if (!dataset.valid() && column.may_lack) continue;
     if (!dataset.valid()) refuse(recording, std::string("has no column '") + column.name + "'");
     const std::size_t rows = checked_length(recording, dataset.get(), column.name);
     columns.push_back({&column, std::move(dataset), rows});

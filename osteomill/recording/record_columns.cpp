@@ -49,6 +49,7 @@ constexpr std::array kColumns{
     RecordColumn{"fault", "", small_integer, false,
                  [](const TickRecord& r) -> double { return static_cast<double>(r.fault); },
                  [](TickRecord& r, double value) { r.fault = static_cast<WrenchFault>(value); }},
+    RecordColumn{"energy_given_Nmm", "N mm", real, true, OSTEOMILL_FIELD(energy_given_Nmm), true},
 };
 
 #undef OSTEOMILL_FIELD

@@ -70,6 +70,7 @@ TickRecord MillingSession::tick(Device& device, double time_s, double dt_s, bool
   record.X_WT = step.X_WT;
   record.wrench = safe.wrench;
   record.fault = safe.fault;
+  record.energy_given_Nmm = guard_.energy_given_Nmm();
   record.contacts = step.contacts;
   record.burr_force_W_N = step.burr_force_W_N;
   record.removed_mm3 = removed_mm3_;
@@ -95,7 +96,8 @@ TickRecord MillingSession::idle_tick(Device& device, double time_s, double dt_s)
   record.X_WD = device.read_pose();
   record.X_WT = last_X_WT_;
   record.removed_mm3 = removed_mm3_;
-  record.wrench = guard_.pass_zero(dt_s).wrench;
+  record.wrench = guard_.pass_zero(record.X_WD, dt_s).wrench;
+  record.energy_given_Nmm = guard_.energy_given_Nmm();
   device.write_wrench(record.wrench);
   reaction_.reset();
   last_change_ = {};
@@ -106,7 +108,7 @@ HapticStep MillingSession::step_safely(const Pose& X_WD, double dt_s, bool spind
   HapticStep nothing;
   nothing.X_WT = last_X_WT_;
   if (!is_finite(X_WD)) {
-    safe = {guard_.pass_zero(dt_s).wrench, WrenchFault::pose_not_finite};
+    safe = {guard_.pass_zero(X_WD, dt_s).wrench, WrenchFault::pose_not_finite};
     return nothing;
   }
   HapticStep step = algorithm_->step(X_WD, dt_s);

@@ -55,6 +55,7 @@ std::unique_ptr<MillingSession> make_session(std::shared_ptr<Volume> bone, const
   vibration.on = setup.vibration;
   vibration.spindle_speed_rpm = setup.cutting.spindle_speed_rpm;
   session->set_vibration(vibration);
+  session->guard().control_passivity(setup.passivity_controller);
   return session;
 }
 

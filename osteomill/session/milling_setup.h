@@ -21,6 +21,8 @@ struct MillingSetup {
   /// Not given: follows from `cutting` and the burr.
   std::optional<double> removal_rate_mm3_per_Ns;
   WrenchLimits limits;
+  /// Damping where the hand has been given more energy than it gave (WrenchGuard).
+  bool passivity_controller = false;
   /// The hand feels the burr cut.
   bool vibration = false;
   /// The hand feels how cutting holds the burr back along its speed (CuttingReaction).

@@ -19,6 +19,8 @@ struct TickRecord {
   /// What was sent to the device (safe), in W about the burr's centre.
   Wrench wrench;
   WrenchFault fault = WrenchFault::none;
+  /// Given to the hand less what it gave, up to this tick's pose (PassivityObserver), in N mm.
+  double energy_given_Nmm = 0;
   int contacts = 0;
   /// With which the burr pressed on the bone, in W.
   Vec3 burr_force_W_N = Vec3::Zero();

@@ -67,10 +67,16 @@ SafeWrench WrenchGuard::approach(const Wrench& target, WrenchFault fault, double
       towards(sent_.force_N, target.force_N, in_a_tick(settings_.max_force_rate_N_s), short_of_it);
   sent_.torque_Nmm =
       towards(sent_.torque_Nmm, target.torque_Nmm, in_a_tick(settings_.max_torque_rate_Nmm_s), short_of_it);
+  observer_.send(sent_);
   return {sent_, short_of_it && fault == WrenchFault::none ? WrenchFault::eased : fault};
 }
 
-SafeWrench WrenchGuard::pass_zero(double dt_s) {
+SafeWrench WrenchGuard::pass_zero(const Pose& X_WD, double dt_s) {
+  observer_.move_to(X_WD);
+  return send_zero(dt_s);
+}
+
+SafeWrench WrenchGuard::send_zero(double dt_s) {
   const SafeWrench safe = approach({}, WrenchFault::none, dt_s);
   from_ = {};
   blended_ = 0;
@@ -79,8 +85,12 @@ SafeWrench WrenchGuard::pass_zero(double dt_s) {
 }
 
 SafeWrench WrenchGuard::pass(const Wrench& asked, const Pose& X_WD, double dt_s) {
-  const SafeWrench within = make_safe(asked, settings_.limits);
+  observer_.move_to(X_WD);
+  const Wrench damping = controls_passivity_ && !is_zero(asked) ? observer_.damping(dt_s) : Wrench{};
+  const bool is_damped = !is_zero(damping);
+  const SafeWrench within = make_safe(is_damped ? asked + damping : asked, settings_.limits);
   WrenchFault fault = within.fault;
+  if (fault == WrenchFault::none && is_damped) fault = WrenchFault::eased;
   if (device_W_ && (X_WD.position_mm - *device_W_).norm() > settings_.max_move_mm) {
     fault = WrenchFault::pose_jumped;
   } else if (dt_s > settings_.max_tick_s) {
@@ -88,7 +98,7 @@ SafeWrench WrenchGuard::pass(const Wrench& asked, const Pose& X_WD, double dt_s)
   }
   if (fault == WrenchFault::not_finite || fault == WrenchFault::pose_jumped ||
       fault == WrenchFault::tick_late) {
-    const Wrench sent = pass_zero(dt_s).wrench;
+    const Wrench sent = send_zero(dt_s).wrench;
     device_W_ = X_WD.position_mm;
     return {sent, fault};
   }

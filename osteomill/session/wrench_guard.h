@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "osteomill/geometry/wrench.h"
+#include "osteomill/session/passivity_observer.h"
 
 namespace osteomill {
 
@@ -28,7 +29,8 @@ struct GuardSettings {
 
 /// Stands between an algorithm and a hand: what is sent is within the limits, changes no faster than it may,
 /// and comes up slowly where the hand may have sunk into bone unfelt (at the start, after a pause, with
-/// another algorithm or bone, after a fault). One thread's; all of it is safe in the haptic tick.
+/// another algorithm or bone, after a fault). It counts the energy that the hand is given, and can keep it
+/// from being more than the hand gave. One thread's; all of it is safe in the haptic tick.
 class WrenchGuard {
  public:
   WrenchGuard() : WrenchGuard(GuardSettings{}) {}
@@ -36,6 +38,11 @@ class WrenchGuard {
 
   /// From now on for a person's hand, within the limits that were set.
   void protect_a_hand() { settings_ = GuardSettings::for_a_hand(settings_.limits); }
+  /// Whether a damper is felt on contact while the hand has been given more energy than it gave
+  /// (PassivityObserver); off until set.
+  void control_passivity(bool on) { controls_passivity_ = on; }
+  /// Given to the hand less what it gave, in N mm, up to the last pose.
+  double energy_given_Nmm() const { return observer_.energy_given_Nmm(); }
   /// From now what is asked for comes up slowly, from what was last sent.
   void begin_anew();
   /// The same where another guard stood until now, with its settings but the limits.
@@ -48,10 +55,11 @@ class WrenchGuard {
   /// What to send for a wrench in a tick of `dt_s`, with the reason where that is not what was asked for. One
   /// that is not finite is zero, and what follows begins anew.
   SafeWrench pass(const Wrench& asked, const Pose& X_WD, double dt_s);
-  /// The same where nothing is felt: no pose, or a pause.
-  SafeWrench pass_zero(double dt_s);
+  /// The same where nothing is felt: no pose that is finite, or a pause.
+  SafeWrench pass_zero(const Pose& X_WD, double dt_s);
 
  private:
+  SafeWrench send_zero(double dt_s);
   SafeWrench approach(const Wrench& target, WrenchFault fault, double dt_s);
 
   GuardSettings settings_;
@@ -61,6 +69,8 @@ class WrenchGuard {
   double blended_ = 0;
   bool let_go_ = false;
   std::optional<Vec3> device_W_;
+  PassivityObserver observer_;
+  bool controls_passivity_ = false;
 };
 
 }  // namespace osteomill

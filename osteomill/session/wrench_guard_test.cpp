@@ -111,7 +111,7 @@ TEST(WrenchGuard, AFaultEndsInZeroWithin5ms) {
 
 TEST(WrenchGuard, AfterAPauseItComesUpSlowly) {
   WrenchGuard guard = holding(6);
-  for (int n = 0; n < 5; ++n) guard.pass_zero(kTick_s);
+  for (int n = 0; n < 5; ++n) guard.pass_zero(kHere, kTick_s);
   EXPECT_TRUE(guard.is_at_rest());
   EXPECT_LT(guard.pass(down(10), kHere, kTick_s).wrench.force_N.norm(), 0.2);
 }
