@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "osteomill/device/force_dimension/force_dimension_connection.h"
+#include "osteomill/device/touch/touch_connection.h"
 #include "osteomill/device/udp/udp_connection.h"
 
 namespace osteomill {
@@ -10,6 +12,10 @@ namespace osteomill {
 namespace {
 
 constexpr std::array kKinds{
+    HardwareKind{"dhd", "NUMBER", "Force Dimension and Falcon, by the maker's libdhd", &find_force_dimension,
+                 &open_force_dimension},
+    HardwareKind{"hd", "NAME", "3D Systems Touch and Phantom, by the maker's libHD", &find_touch,
+                 &open_touch},
     HardwareKind{"udp", "HOST:PORT", "a laboratory's own device, by datagrams (docs/udp-device.md)",
                  &find_udp, &open_udp},
 };

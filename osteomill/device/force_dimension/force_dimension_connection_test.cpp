@@ -1,0 +1,147 @@
+#include "osteomill/device/force_dimension/force_dimension_connection.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <numbers>
+#include <string>
+
+#include <dlfcn.h>
+#include <gtest/gtest.h>
+
+#include "osteomill/device/force_dimension/dhd_stand_in.h"
+#include "osteomill/files/input_error.h"
+
+namespace osteomill {
+namespace {
+
+class ForceDimension : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    setenv("OSTEOMILL_DHD_LIBRARY", OSTEOMILL_DHD_STAND_IN, 1);
+    library_ = dlopen(OSTEOMILL_DHD_STAND_IN, RTLD_NOW);
+    ASSERT_NE(library_, nullptr) << dlerror();
+    device_ = reinterpret_cast<DhdStandIn* (*)()>(dlsym(library_, "dhd_stand_in"))();
+    *device_ = {};
+    device_->is_held = true;
+  }
+  void TearDown() override {
+    dlclose(library_);
+    unsetenv("OSTEOMILL_DHD_LIBRARY");
+  }
+  std::string refusal(const std::string& address = "") {
+    try {
+      open_force_dimension(address);
+      return "";
+    } catch (const InputError& error) {
+      return error.what();
+    }
+  }
+
+  DhdStandIn* device_ = nullptr;
+
+ private:
+  void* library_ = nullptr;
+};
+
+TEST_F(ForceDimension, SaysWhatItCan) {
+  const auto connection = open_force_dimension("");
+  const DeviceCapabilities& can = connection->capabilities();
+  EXPECT_EQ(can.name, "Force Dimension sigma.7 4711");
+  EXPECT_EQ(can.sensed, 6);
+  EXPECT_EQ(can.driven, 6);
+  EXPECT_EQ(can.limits.force_N, 20);
+  EXPECT_EQ(device_->max_force_N, 20);
+  EXPECT_TRUE(device_->has_force);
+  EXPECT_FALSE(device_->has_brakes);
+  // Its x points to the operator, its y to the right, its z up.
+  EXPECT_TRUE((can.R_VD * Vec3::UnitX()).isApprox(Vec3::UnitZ()));
+  EXPECT_TRUE((can.R_VD * Vec3::UnitY()).isApprox(Vec3::UnitX()));
+}
+
+TEST_F(ForceDimension, ReadsMmFromMAndTurnsFromFrames) {
+  const auto connection = open_force_dimension("");
+  device_->position_m = {0.01, -0.02, 0.03};
+  device_->velocity_m_s = {0.1, 0.2, -0.3};
+  device_->angular_velocity_rad_s = {1, 2, 3};
+  device_->buttons = 5;
+  // A quarter turn about z: x of the handle points along y.
+  const double quarter[3][3] = {{0, -1, 0}, {1, 0, 0}, {0, 0, 1}};
+  std::copy_n(&quarter[0][0], 9, &device_->frame[0][0]);
+  DeviceInput input;
+  ASSERT_EQ(connection->read(input), ConnectionStatus::fresh);
+  EXPECT_TRUE(input.X_DH.position_mm.isApprox(Vec3(10, -20, 30)));
+  EXPECT_TRUE(input.velocity_D_mm_s.isApprox(Vec3(100, 200, -300)));
+  EXPECT_EQ(input.angular_velocity_D_rad_s, Vec3(1, 2, 3));
+  EXPECT_EQ(input.buttons, 5u);
+  EXPECT_NEAR((rotation_vector(input.X_DH.orientation) - Vec3(0, 0, std::numbers::pi / 2)).norm(), 0, 1e-12);
+}
+
+TEST_F(ForceDimension, WritesNAndNm) {
+  const auto connection = open_force_dimension("");
+  EXPECT_EQ(connection->write({{1, 2, 3}, {40, 50, 60}}), ConnectionStatus::fresh);
+  const std::array<double, 7> sent{1, 2, 3, 0.04, 0.05, 0.06, 0};
+  EXPECT_EQ(device_->sent, sent);
+}
+
+TEST_F(ForceDimension, AWristThatIsNotThereIsNotSensedOrDriven) {
+  device_->has_wrist = device_->has_active_wrist = false;
+  const auto connection = open_force_dimension("");
+  EXPECT_EQ(connection->capabilities().sensed, 3);
+  EXPECT_EQ(connection->capabilities().driven, 3);
+  connection->write({{1, 2, 3}, {40, 50, 60}});
+  EXPECT_EQ(device_->sent[3], 0);
+  DeviceInput input;
+  device_->frame[0][0] = 0;
+  ASSERT_EQ(connection->read(input), ConnectionStatus::fresh);
+  EXPECT_TRUE(input.X_DH.orientation.isApprox(Quat::Identity()));
+}
+
+TEST_F(ForceDimension, ThatHasNoNewPoseIsSilentAndOneThatFailsLost) {
+  const auto connection = open_force_dimension("");
+  DeviceInput input;
+  device_->pose_result = 1;
+  EXPECT_EQ(connection->read(input), ConnectionStatus::silent);
+  device_->pose_result = 0;
+  EXPECT_EQ(connection->read(input), ConnectionStatus::fresh);
+  device_->fails_in = "dhdGetPositionAndOrientationFrame";
+  EXPECT_EQ(connection->read(input), ConnectionStatus::lost);
+  device_->fails_in = "dhdSetForceAndTorqueAndGripperForce";
+  EXPECT_EQ(connection->write({}), ConnectionStatus::lost);
+}
+
+TEST_F(ForceDimension, ClosingSendsZeroAndStops) {
+  auto connection = open_force_dimension("");
+  connection->write({{1, 2, 3}, Vec3::Zero()});
+  connection.reset();
+  EXPECT_EQ(device_->sent, (std::array<double, 7>{}));
+  EXPECT_TRUE(device_->is_stopped);
+  EXPECT_EQ(device_->opened, -1);
+}
+
+TEST_F(ForceDimension, WhyThereIsNoneIsSaid) {
+  EXPECT_EQ(refusal("left"), "dhd: 'left' is not the number of a device");
+  EXPECT_EQ(refusal("1"), "dhd: there is no device 1, the last of 1 is 0");
+  device_->fails_in = "dhdOpenID";
+  EXPECT_EQ(refusal(), "dhd: the stand-in fails");
+  device_->fails_in = "dhdEnableForce";
+  EXPECT_EQ(refusal(), "dhd: the stand-in fails");
+  EXPECT_EQ(device_->opened, -1);
+  EXPECT_TRUE(find_force_dimension("").there);
+  EXPECT_EQ(find_force_dimension("").text, "a device connected");
+  device_->devices = 0;
+  EXPECT_EQ(find_force_dimension("").text, "dhd: no device is connected");
+}
+
+TEST_F(ForceDimension, ALibraryThatIsMissingOrAnotherIsSaid) {
+  unsetenv("OSTEOMILL_DHD_LIBRARY");
+  EXPECT_EQ(refusal(),
+            "dhd: libdhd.so.3 of the maker's software is not installed; OSTEOMILL_DHD_LIBRARY may name it");
+  setenv("OSTEOMILL_DHD_LIBRARY", "/nowhere/libdhd.so", 1);
+  EXPECT_NE(refusal().find("/nowhere/libdhd.so"), std::string::npos);
+  setenv("OSTEOMILL_DHD_LIBRARY", "libm.so.6", 1);
+  EXPECT_EQ(refusal(), "dhd: libm.so.6 has no dhdGetDeviceCount");
+}
+
+}  // namespace
+}  // namespace osteomill

@@ -1,0 +1,252 @@
+#include "osteomill/device/touch/touch_connection.h"
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cstdlib>
+#include <string_view>
+#include <thread>
+
+#include <fmt/core.h>
+
+#include "osteomill/device/latest_value.h"
+#include "osteomill/device/vendor_library.h"
+#include "osteomill/files/input_error.h"
+
+namespace osteomill {
+
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+// Of libHD 3, as its reference gives them: what is asked for and set, and what a frame's function returns.
+enum Parameter : unsigned {
+  kCurrentButtons = 0x2000,
+  kCurrentVelocity = 0x2051,
+  kCurrentTransform = 0x2052,
+  kCurrentAngularVelocity = 0x2053,
+  kDeviceModelType = 0x2501,
+  kDeviceSerialNumber = 0x2504,
+  kUsableWorkspace = 0x2551,
+  kInputDof = 0x2553,
+  kOutputDof = 0x2554,
+  kNominalMaxForce = 0x2603,
+  kNominalMaxTorque = 0x2622,
+  kCurrentForce = 0x2700,
+  kCurrentTorque = 0x2701,
+  kForceOutput = 0x4000,
+};
+constexpr unsigned kInvalidHandle = 0xffffffff;
+constexpr unsigned kContinue = 1;
+constexpr unsigned short kDefaultPriority = 0xffff / 2;
+// Errors of 0x02.. are of forces (motors too warm, a force or velocity too large): the device goes on.
+constexpr bool is_of_force(unsigned code) {
+  return code >> 8 == 2;
+}
+
+// A wrench that nobody has renewed for so long is zero, in the servo thread of the library itself.
+constexpr auto kLapse = 20ms;
+constexpr auto kBetweenLooks = 200us;
+
+struct HdError {
+  unsigned code;
+  int internal_code;
+  unsigned device;
+};
+
+struct Hd {
+  explicit Hd(const VendorLibrary& library)
+      : init_device(library.function<unsigned(const char*)>("hdInitDevice")),
+        disable_device(library.function<void(unsigned)>("hdDisableDevice")),
+        begin_frame(library.function<void(unsigned)>("hdBeginFrame")),
+        end_frame(library.function<void(unsigned)>("hdEndFrame")),
+        get_doubles(library.function<void(unsigned, double*)>("hdGetDoublev")),
+        set_doubles(library.function<void(unsigned, const double*)>("hdSetDoublev")),
+        get_integers(library.function<void(unsigned, int*)>("hdGetIntegerv")),
+        get_string(library.function<const char*(unsigned)>("hdGetString")),
+        enable(library.function<void(unsigned)>("hdEnable")),
+        get_error(library.function<HdError()>("hdGetError")),
+        error_string(library.function<const char*(unsigned)>("hdGetErrorString")),
+        schedule(library.function<unsigned long(unsigned (*)(void*), void*, unsigned short)>(
+            "hdScheduleAsynchronous")),
+        unschedule(library.function<void(unsigned long)>("hdUnschedule")),
+        start_scheduler(library.function<void()>("hdStartScheduler")),
+        stop_scheduler(library.function<void()>("hdStopScheduler")) {}
+
+  unsigned (*init_device)(const char*);
+  void (*disable_device)(unsigned);
+  void (*begin_frame)(unsigned);
+  void (*end_frame)(unsigned);
+  void (*get_doubles)(unsigned, double*);
+  void (*set_doubles)(unsigned, const double*);
+  void (*get_integers)(unsigned, int*);
+  const char* (*get_string)(unsigned);
+  void (*enable)(unsigned);
+  HdError (*get_error)();
+  const char* (*error_string)(unsigned);
+  unsigned long (*schedule)(unsigned (*)(void*), void*, unsigned short);
+  void (*unschedule)(unsigned long);
+  void (*start_scheduler)();
+  void (*stop_scheduler)();
+};
+
+struct Library {
+  VendorLibrary file{"hd", "OSTEOMILL_HD_LIBRARY", {"libHD.so", "libHD.so.3.4", "libHD.so.3"}};
+  Hd hd{file};
+};
+
+double torque_unit_per_Nmm() {
+  const char* const unit = std::getenv("OSTEOMILL_HD_TORQUE_UNIT");
+  const std::string_view name = unit == nullptr ? "" : unit;
+  if (name == "Nm") return 1e-3;
+  if (name.empty() || name == "Nmm") return 1;
+  throw InputError("OSTEOMILL_HD_TORQUE_UNIT", fmt::format("'{}' is neither Nmm nor Nm", name));
+}
+
+struct SentWrench {
+  Wrench wrench;
+  Clock::time_point time{};
+};
+
+class TouchConnection final : public Connection {
+ public:
+  explicit TouchConnection(const std::string& address) : torque_unit_per_Nmm_(torque_unit_per_Nmm()) {
+    device_ = hd_.init_device(address.empty() ? nullptr : address.c_str());
+    if (const unsigned code = hd_.get_error().code; code != 0 || device_ == kInvalidHandle) {
+      const char* const why = hd_.error_string(code);
+      throw InputError("hd", code != 0 && why != nullptr ? why : "the device cannot be opened");
+    }
+    ask();
+    hd_.enable(kForceOutput);
+    frames_ = hd_.schedule([](void* self) { return static_cast<TouchConnection*>(self)->frame(); }, this,
+                           kDefaultPriority);
+    hd_.start_scheduler();
+    if (const unsigned code = hd_.get_error().code; code != 0) {
+      const std::string why = hd_.error_string(code);
+      close();
+      throw InputError("hd", why);
+    }
+  }
+  ~TouchConnection() override {
+    write({});
+    // Two frames, so that it was sent; none come where the library hangs.
+    const unsigned before = frames_done_;
+    for (const auto end = Clock::now() + 20ms; frames_done_ - before < 2 && Clock::now() < end;)
+      std::this_thread::sleep_for(kBetweenLooks);
+    close();
+  }
+  TouchConnection(const TouchConnection&) = delete;
+  TouchConnection& operator=(const TouchConnection&) = delete;
+
+  const DeviceCapabilities& capabilities() const override { return capabilities_; }
+
+  ConnectionStatus read(DeviceInput& input) override {
+    const auto end = Clock::now() + 2ms;
+    while (frames_done_.load(std::memory_order_acquire) == frames_seen_) {
+      if (is_lost_.load(std::memory_order_relaxed)) return ConnectionStatus::lost;
+      if (Clock::now() + kBetweenLooks > end) return ConnectionStatus::silent;
+      std::this_thread::sleep_for(kBetweenLooks);
+    }
+    frames_seen_ = frames_done_.load(std::memory_order_acquire);
+    input = input_.read();
+    return ConnectionStatus::fresh;
+  }
+
+  ConnectionStatus write(const Wrench& wrench_D) override {
+    sent_.write({wrench_D, Clock::now()});
+    return is_lost_.load(std::memory_order_relaxed) ? ConnectionStatus::lost : ConnectionStatus::fresh;
+  }
+
+ private:
+  void ask() {
+    const auto string_of = [&](unsigned parameter) {
+      const char* const text = hd_.get_string(parameter);
+      return std::string(text == nullptr ? "" : text);
+    };
+    capabilities_.name =
+        fmt::format("3D Systems {} {}", string_of(kDeviceModelType), string_of(kDeviceSerialNumber));
+    int input_dof = 3, output_dof = 3;
+    hd_.get_integers(kInputDof, &input_dof);
+    hd_.get_integers(kOutputDof, &output_dof);
+    capabilities_.sensed = input_dof >= 6 ? 6 : 3;
+    capabilities_.driven = output_dof >= 6 ? 6 : 3;
+    std::array<double, 6> corners_mm{};
+    hd_.get_doubles(kUsableWorkspace, corners_mm.data());
+    for (int axis = 0; axis < 3; ++axis)
+      capabilities_.workspace_D_mm[axis] = corners_mm[axis + 3] - corners_mm[axis];
+    double force_N = 0, torque_Nmm = 0;
+    hd_.get_doubles(kNominalMaxForce, &force_N);
+    if (capabilities_.driven == 6) hd_.get_doubles(kNominalMaxTorque, &torque_Nmm);
+    capabilities_.limits = {force_N, torque_Nmm};
+  }
+
+  // One servo tick of the library's own thread, at 1 kHz.
+  unsigned frame() {
+    hd_.begin_frame(device_);
+    DeviceInput input;
+    // Columns, as OpenGL has them; mm.
+    std::array<double, 16> transform{};
+    hd_.get_doubles(kCurrentTransform, transform.data());
+    const Eigen::Map<const Eigen::Matrix4d> X_DH(transform.data());
+    input.X_DH.position_mm = X_DH.topRightCorner<3, 1>();
+    hd_.get_doubles(kCurrentVelocity, input.velocity_D_mm_s.data());
+    if (capabilities_.sensed == 6) {
+      input.X_DH.orientation = Quat(Mat3(X_DH.topLeftCorner<3, 3>())).normalized();
+      hd_.get_doubles(kCurrentAngularVelocity, input.angular_velocity_D_rad_s.data());
+    }
+    int buttons = 0;
+    hd_.get_integers(kCurrentButtons, &buttons);
+    input.buttons = static_cast<unsigned>(buttons);
+
+    const SentWrench& sent = sent_.read();
+    const Wrench wrench = Clock::now() - sent.time < kLapse ? sent.wrench : Wrench{};
+    hd_.set_doubles(kCurrentForce, wrench.force_N.data());
+    if (capabilities_.driven == 6) {
+      const Vec3 torque = torque_unit_per_Nmm_ * wrench.torque_Nmm;
+      hd_.set_doubles(kCurrentTorque, torque.data());
+    }
+    hd_.end_frame(device_);
+    if (const unsigned code = hd_.get_error().code; code != 0 && !is_of_force(code)) {
+      is_lost_.store(true, std::memory_order_relaxed);
+      return kContinue;
+    }
+    input_.write(input);
+    frames_done_.fetch_add(1, std::memory_order_release);
+    return kContinue;
+  }
+
+  void close() {
+    hd_.stop_scheduler();
+    hd_.unschedule(frames_);
+    hd_.disable_device(device_);
+  }
+
+  Library library_;
+  const Hd& hd_ = library_.hd;
+  double torque_unit_per_Nmm_;
+  unsigned device_ = kInvalidHandle;
+  unsigned long frames_ = 0;
+  DeviceCapabilities capabilities_;
+  LatestValue<DeviceInput> input_;
+  LatestValue<SentWrench> sent_;
+  std::atomic<unsigned> frames_done_{0};
+  unsigned frames_seen_ = 0;
+  std::atomic<bool> is_lost_{false};
+};
+
+}  // namespace
+
+std::unique_ptr<Connection> open_touch(const std::string& address) {
+  return std::make_unique<TouchConnection>(address);
+}
+
+FoundDevice find_touch(const std::string& address) {
+  try {
+    return {true, TouchConnection(address).capabilities().name};
+  } catch (const InputError& error) {
+    return {false, error.what()};
+  }
+}
+
+}  // namespace osteomill

@@ -1,0 +1,163 @@
+#include "osteomill/device/touch/touch_connection.h"
+
+#include <chrono>
+#include <cstdlib>
+#include <numbers>
+#include <string>
+#include <thread>
+
+#include <dlfcn.h>
+#include <gtest/gtest.h>
+
+#include "osteomill/device/touch/hd_stand_in.h"
+#include "osteomill/files/input_error.h"
+
+namespace osteomill {
+namespace {
+
+using namespace std::chrono_literals;
+
+class Touch : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    setenv("OSTEOMILL_HD_LIBRARY", OSTEOMILL_HD_STAND_IN, 1);
+    library_ = dlopen(OSTEOMILL_HD_STAND_IN, RTLD_NOW);
+    ASSERT_NE(library_, nullptr) << dlerror();
+    device_ = reinterpret_cast<HdStandIn* (*)()>(dlsym(library_, "hd_stand_in"))();
+    device_->is_held = true;
+  }
+  // Unloaded, so that the next test finds it as it was built.
+  void TearDown() override {
+    connection_.reset();
+    dlclose(library_);
+    unsetenv("OSTEOMILL_HD_LIBRARY");
+    unsetenv("OSTEOMILL_HD_TORQUE_UNIT");
+  }
+  void open(const std::string& address = "") { connection_ = open_touch(address); }
+  std::string refusal(const std::string& address = "") {
+    try {
+      open_touch(address);
+      return "";
+    } catch (const InputError& error) {
+      return error.what();
+    }
+  }
+  // Until a frame has begun since now and one more is done.
+  void await_frame() {
+    const int before = device_->frames;
+    while (device_->frames < before + 2) std::this_thread::sleep_for(200us);
+  }
+  Vec3 force() const { return {device_->force[0], device_->force[1], device_->force[2]}; }
+  Vec3 torque() const { return {device_->torque[0], device_->torque[1], device_->torque[2]}; }
+  ConnectionStatus read_until_it_is(ConnectionStatus wanted, DeviceInput& input) {
+    ConnectionStatus status = connection_->read(input);
+    for (int n = 0; n < 1000 && status != wanted; ++n) status = connection_->read(input);
+    return status;
+  }
+
+  HdStandIn* device_ = nullptr;
+  std::unique_ptr<Connection> connection_;
+
+ private:
+  void* library_ = nullptr;
+};
+
+TEST_F(Touch, SaysWhatItCan) {
+  open("Left");
+  const DeviceCapabilities& can = connection_->capabilities();
+  EXPECT_EQ(can.name, "3D Systems Touch 0815");
+  EXPECT_EQ(can.sensed, 6);
+  EXPECT_EQ(can.driven, 3);
+  EXPECT_EQ(can.limits.force_N, 3.3);
+  EXPECT_EQ(can.workspace_D_mm, Vec3(160, 120, 70));
+  EXPECT_TRUE(device_->has_force);
+}
+
+TEST_F(Touch, ReadsColumnsInMm) {
+  // A quarter turn about z: x of the handle, the first column, points along y.
+  device_->transform = {0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1, 0, 10, -20, 30, 1};
+  device_->velocity_mm_s = {1, 2, 3};
+  device_->angular_velocity_rad_s = {4, 5, 6};
+  device_->buttons = 2;
+  open();
+  DeviceInput input;
+  ASSERT_EQ(read_until_it_is(ConnectionStatus::fresh, input), ConnectionStatus::fresh);
+  EXPECT_EQ(input.X_DH.position_mm, Vec3(10, -20, 30));
+  EXPECT_NEAR((rotation_vector(input.X_DH.orientation) - Vec3(0, 0, std::numbers::pi / 2)).norm(), 0, 1e-12);
+  EXPECT_EQ(input.velocity_D_mm_s, Vec3(1, 2, 3));
+  EXPECT_EQ(input.angular_velocity_D_rad_s, Vec3(4, 5, 6));
+  EXPECT_EQ(input.buttons, 2u);
+}
+
+TEST_F(Touch, WritesTheForceAndNoTorqueThatItCannotDrive) {
+  open();
+  connection_->write({{1, 2, 3}, {40, 50, 60}});
+  await_frame();
+  EXPECT_EQ(force(), Vec3(1, 2, 3));
+  EXPECT_EQ(torque(), Vec3::Zero());
+}
+
+TEST_F(Touch, TorqueIsInNmmOrInNm) {
+  device_->output_dof = 6;
+  open();
+  EXPECT_EQ(connection_->capabilities().limits.torque_Nmm, 188);
+  connection_->write({Vec3::Zero(), {40, 50, 60}});
+  await_frame();
+  EXPECT_EQ(torque(), Vec3(40, 50, 60));
+  connection_.reset();
+  setenv("OSTEOMILL_HD_TORQUE_UNIT", "Nm", 1);
+  open();
+  connection_->write({Vec3::Zero(), {40, 50, 60}});
+  await_frame();
+  EXPECT_TRUE(torque().isApprox(Vec3(0.04, 0.05, 0.06)));
+  connection_.reset();
+  setenv("OSTEOMILL_HD_TORQUE_UNIT", "pound-feet", 1);
+  EXPECT_EQ(refusal(), "OSTEOMILL_HD_TORQUE_UNIT: 'pound-feet' is neither Nmm nor Nm");
+}
+
+TEST_F(Touch, AWrenchThatIsNotRenewedLapses) {
+  open();
+  connection_->write({{1, 2, 3}, Vec3::Zero()});
+  std::this_thread::sleep_for(30ms);
+  await_frame();
+  EXPECT_EQ(force(), Vec3::Zero());
+}
+
+TEST_F(Touch, OneThatHangsIsSilentAndOneThatFailsLost) {
+  open();
+  DeviceInput input;
+  // Warm motors are no reason.
+  device_->error = 0x0200;
+  await_frame();
+  EXPECT_EQ(read_until_it_is(ConnectionStatus::fresh, input), ConnectionStatus::fresh);
+  device_->error = 0;
+  device_->hangs = true;
+  EXPECT_EQ(read_until_it_is(ConnectionStatus::silent, input), ConnectionStatus::silent);
+  device_->hangs = false;
+  EXPECT_EQ(read_until_it_is(ConnectionStatus::fresh, input), ConnectionStatus::fresh);
+  device_->error = 0x0302;
+  EXPECT_EQ(read_until_it_is(ConnectionStatus::lost, input), ConnectionStatus::lost);
+  EXPECT_EQ(connection_->write({}), ConnectionStatus::lost);
+}
+
+TEST_F(Touch, ClosingSendsZero) {
+  open();
+  connection_->write({{1, 2, 3}, Vec3::Zero()});
+  await_frame();
+  connection_.reset();
+  EXPECT_EQ(force(), Vec3::Zero());
+  EXPECT_FALSE(device_->is_open);
+}
+
+TEST_F(Touch, WhyThereIsNoneIsSaid) {
+  EXPECT_EQ(refusal("Right"), "hd: the stand-in fails");
+  EXPECT_EQ(find_touch("").text, "3D Systems Touch 0815");
+  device_->is_there = false;
+  EXPECT_FALSE(find_touch("").there);
+  unsetenv("OSTEOMILL_HD_LIBRARY");
+  EXPECT_EQ(refusal(),
+            "hd: libHD.so of the maker's software is not installed; OSTEOMILL_HD_LIBRARY may name it");
+}
+
+}  // namespace
+}  // namespace osteomill
