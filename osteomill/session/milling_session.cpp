@@ -80,7 +80,7 @@ TickRecord MillingSession::tick(Device& device, double time_s, double dt_s, bool
 void MillingSession::take_over_tool(const std::optional<Pose>& X_WT) {
   if (!X_WT || !is_finite(*X_WT)) return;
   constexpr double kUsualTick_s = 1e-3;
-  last_X_WT_ = *X_WT;
+  last_X_WT_ = X_WT;
   algorithm_->step(*X_WT, kUsualTick_s);
 }
 
@@ -94,7 +94,7 @@ TickRecord MillingSession::idle_tick(Device& device, double time_s, double dt_s)
   TickRecord record;
   record.time_s = time_s;
   record.X_WD = device.read_pose();
-  record.X_WT = last_X_WT_;
+  record.X_WT = last_X_WT_.value_or(Pose{});
   record.removed_mm3 = removed_mm3_;
   record.wrench = guard_.pass_zero(record.X_WD, dt_s).wrench;
   record.energy_given_Nmm = guard_.energy_given_Nmm();
@@ -106,7 +106,7 @@ TickRecord MillingSession::idle_tick(Device& device, double time_s, double dt_s)
 
 HapticStep MillingSession::step_safely(const Pose& X_WD, double dt_s, bool spindle_on, SafeWrench& safe) {
   HapticStep nothing;
-  nothing.X_WT = last_X_WT_;
+  nothing.X_WT = last_X_WT_.value_or(Pose{});
   if (!is_finite(X_WD)) {
     safe = {guard_.pass_zero(X_WD, dt_s).wrench, WrenchFault::pose_not_finite};
     return nothing;
@@ -120,9 +120,11 @@ HapticStep MillingSession::step_safely(const Pose& X_WD, double dt_s, bool spind
   const bool is_usable = is_finite(step.X_WT) && step.burr_force_W_N.allFinite();
   safe = guard_.pass(is_usable ? step.wrench : kNotFinite, X_WD, dt_s);
   if (safe.fault == WrenchFault::not_finite) {
-    // Whatever led there is still in the algorithm's memory of contacts.
+    // Whatever led there is still in the algorithm's memory of contacts. The tool itself is still outside the
+    // bone, where the device may have sunk into it.
     algorithm_->reset();
     reaction_.reset();
+    take_over_tool(last_X_WT_);
     return nothing;
   }
   step.burr_force_W_N *= share_sent(step.wrench.force_N, safe.wrench.force_N);

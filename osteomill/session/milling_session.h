@@ -77,7 +77,7 @@ class MillingSession {
   WrenchGuard guard_;
   double removed_mm3_ = 0;
   VolumeChange last_change_;
-  Pose last_X_WT_;
+  std::optional<Pose> last_X_WT_;
 };
 
 }  // namespace osteomill

@@ -148,6 +148,15 @@ TEST_F(MillingSessionTest, AWrenchThatIsNotFiniteIsZeroAndTheContactsAreForgotte
   EXPECT_EQ(tick().fault, WrenchFault::none);
 }
 
+TEST_F(MillingSessionTest, AfterAWrenchThatIsNotFiniteTheToolIsWhereItWasAndNotAtADeviceInBone) {
+  tick();
+  device_.put(Pose{{0, 0, 0.5}, Quat::Identity()});
+  algorithm_->next.wrench.force_N.x() = std::numeric_limits<double>::quiet_NaN();
+  tick();
+  ASSERT_EQ(algorithm_->resets, 1);
+  EXPECT_EQ(algorithm_->steps.back().position_mm, Vec3(0, 0, 1.0));
+}
+
 TEST_F(MillingSessionTest, ABurrForceThatIsNotFiniteIsAFaultToo) {
   algorithm_->next.burr_force_W_N.y() = std::numeric_limits<double>::infinity();
   EXPECT_EQ(tick().fault, WrenchFault::not_finite);

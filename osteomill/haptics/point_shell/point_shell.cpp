@@ -126,7 +126,7 @@ int PointShell::visit(const VoxelIndex& b) {
   const VoxelBox own = brick_cells(b.i, b.j, b.k);
   const VoxelBox own_nodes{{g * own.first.i, g * own.first.j, g * own.first.k},
                            {g * own.last.i + g - 1, g * own.last.j + g - 1, g * own.last.k + g - 1}};
-  // The second time for what has fallen since the first: a point is never computed for a voxel without bone.
+  // The second time for what has fallen since the first.
   lower_bone(own_nodes.intersected(swept_nodes_));
   if (sweep_.is_first_pass()) return kLoweredBrickCost;
   return kBrickCost + refresh_brick(b.i, b.j, b.k, swept_cells_);

@@ -242,6 +242,27 @@ TEST(PointShell, SpreadOverTicksItIsTheSameInTheEnd) {
   }
 }
 
+// What fell after a sweep has begun waits for the next one, and may be all gone meanwhile.
+TEST(PointShell, PointsThatWaitForTheirTurnAreFinite) {
+  GridGeometry geometry = oblique_geometry();
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    Volume volume = shape_volume(geometry, ball(geometry.world_from_voxel(Vec3(18, 20, 12)), 3.4));
+    ShellRules rules = steady_rules(1);
+    rules.refreshed_points_per_tick = 50;
+    PointShell shell(volume, rules);
+    std::mt19937 bits(seed);
+    for (int n = 0; n < 40; ++n) {
+      VoxelBox changed;
+      mill_at_random(volume, bits, changed);
+      shell.refresh(changed);
+      for (const WorldPoint& point : points_of(shell)) {
+        ASSERT_LT(point.position.norm(), 100) << "seed " << seed << ", tick " << n;
+        ASSERT_TRUE(std::isfinite(point.area));
+      }
+    }
+  }
+}
+
 TEST(PointShell, PointsFollowADensityThatFallsOnlyInPart) {
   Volume volume = shape_volume(centred_cube(24, 0.25), plane({0, 0, 0.1}, {0, 0, 1}));
   for (const bool follow : {true, false}) {

@@ -27,6 +27,13 @@ float largest_float_up_to(double value) {
              : nearest;
 }
 
+// How far from a bone voxel to a neighbour that is not bone the isosurface lies: density runs linearly along
+// an edge of the grid. None of the way where the voxel itself has fallen since it was last looked at, as it
+// will be again.
+double share_to_surface(double inside, double outside, double isovalue) {
+  return inside > isovalue ? (inside - isovalue) / (inside - outside) : 0;
+}
+
 GridGeometry lattice_geometry(const GridGeometry& voxels, int stride) {
   GridGeometry lattice = voxels;
   lattice.origin_mm = voxels.world_from_voxel(Vec3::Constant(0.5 * (stride - 1)).eval());
@@ -189,7 +196,7 @@ void ShellLattice::add_inner_voxel(const VoxelIndex& voxel, const VoxelIndex& fr
     for (const int side : {-1, 1}) {
       const float* outer = here + side * next[axis];
       if (*outer > bone_above_) continue;
-      Face face{axis, side, (inside - volume_->isovalue()) / (inside - static_cast<double>(*outer))};
+      Face face{axis, side, share_to_surface(inside, static_cast<double>(*outer), volume_->isovalue())};
       if (rules_.surface_shell) {
         weigh_by_area(face, (1 - face.fraction) * gradient_here + face.fraction * gradient_at(outer));
       }
@@ -198,12 +205,11 @@ void ShellLattice::add_inner_voxel(const VoxelIndex& voxel, const VoxelIndex& fr
   }
 }
 
-// Density runs linearly along an edge of the grid, so this is where the isosurface crosses it.
 double ShellLattice::crossing_fraction(double inside, const VoxelIndex& outer_node) const {
   const double outside = density(outer_node);
   const double iso = volume_->isovalue();
   // Beyond the border the outside density may be bone's: the surface is then the border voxel's face.
-  return outside <= iso ? (inside - iso) / (inside - outside) : 0.5;
+  return outside <= iso ? share_to_surface(inside, outside, iso) : 0.5;
 }
 
 Vec3 ShellLattice::gradient_on_edge(const VoxelIndex& node, int axis, double offset) const {
