@@ -4,6 +4,8 @@
 #include <array>
 
 #include "osteomill/device/force_dimension/force_dimension_connection.h"
+#include "osteomill/device/haply/haply_connection.h"
+#include "osteomill/device/openigtlink/openigtlink_connection.h"
 #include "osteomill/device/touch/touch_connection.h"
 #include "osteomill/device/udp/udp_connection.h"
 
@@ -14,8 +16,11 @@ namespace {
 constexpr std::array kKinds{
     HardwareKind{"dhd", "NUMBER", "Force Dimension and Falcon, by the maker's libdhd", &find_force_dimension,
                  &open_force_dimension},
+    HardwareKind{"haply", "HOST:PORT", "Haply Inverse3, by the maker's service", &find_haply, &open_haply},
     HardwareKind{"hd", "NAME", "3D Systems Touch and Phantom, by the maker's libHD", &find_touch,
                  &open_touch},
+    HardwareKind{"openigtlink", "HOST:PORT", "a tracker or robot that serves OpenIGTLink (PLUS, 3D Slicer)",
+                 &find_openigtlink, &open_openigtlink},
     HardwareKind{"udp", "HOST:PORT", "a laboratory's own device, by datagrams (docs/udp-device.md)",
                  &find_udp, &open_udp},
 };

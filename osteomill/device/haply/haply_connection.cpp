@@ -1,0 +1,188 @@
+#include "osteomill/device/haply/haply_connection.h"
+
+#include <chrono>
+#include <optional>
+#include <thread>
+
+#include <fmt/core.h>
+#include <nlohmann/json.hpp>
+
+#include "osteomill/device/haply/web_socket.h"
+#include "osteomill/device/host_and_port.h"
+#include "osteomill/files/input_error.h"
+
+namespace osteomill {
+
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+using Json = nlohmann::json;
+
+// The service speaks of m.
+constexpr double kMmPerM = 1000;
+// The first text names every device with its settings; later ones are a few kB.
+constexpr std::size_t kMostBytes = 1 << 18;
+constexpr auto kInventoryWithin = 100ms;
+constexpr auto kWait = 1500us;
+constexpr auto kBetweenReadings = 500us;
+constexpr auto kAskAgainAfter = 20ms;
+constexpr const char* kGrips[] = {"wireless_verse_grip", "verse_grip"};
+
+// Nothing where a key is missing or something else is there than was expected: never an exception.
+const Json* member(const Json* of, const char* key) {
+  if (of == nullptr || !of->is_object()) return nullptr;
+  const auto found = of->find(key);
+  return found == of->end() ? nullptr : &*found;
+}
+
+const Json* first_of(const Json* of, const char* key) {
+  const Json* const list = member(of, key);
+  return list != nullptr && list->is_array() && !list->empty() ? &list->front() : nullptr;
+}
+
+bool take(const Json* numbers, const char* key, double& value) {
+  const Json* const number = member(numbers, key);
+  if (number == nullptr || !number->is_number()) return false;
+  value = number->get<double>();
+  return true;
+}
+
+bool take(const Json* numbers, Vec3& vector) {
+  return take(numbers, "x", vector.x()) && take(numbers, "y", vector.y()) && take(numbers, "z", vector.z());
+}
+
+bool is_true(const Json* value) {
+  return value != nullptr && value->is_boolean() && value->get<bool>();
+}
+
+const Json* grip_of(const Json& message) {
+  for (const char* kind : kGrips) {
+    if (const Json* const grip = first_of(&message, kind)) return grip;
+  }
+  return nullptr;
+}
+
+bool take_grip(const Json* grip, DeviceInput& input) {
+  const Json* const state = member(grip, "state");
+  const Json* const orientation = member(state, "orientation");
+  Vec3 xyz;
+  double w = 0;
+  if (!take(orientation, xyz) || !take(orientation, "w", w)) return false;
+  const Quat R_DH(w, xyz.x(), xyz.y(), xyz.z());
+  if (R_DH.norm() < 0.5) return false;
+  input.X_DH.orientation = R_DH.normalized();
+  // A wired grip has one button, a wireless one three.
+  const Json* const buttons = member(state, "buttons");
+  input.buttons = is_true(member(state, "button")) || is_true(member(buttons, "a")) ? 1 : 0;
+  input.buttons |= is_true(member(buttons, "b")) ? 2u : 0u;
+  input.buttons |= is_true(member(buttons, "c")) ? 4u : 0u;
+  return true;
+}
+
+class HaplyConnection final : public Connection {
+ public:
+  explicit HaplyConnection(const HostAndPort& at) : socket_(name_of(at), at.host, at.port, kMostBytes) {
+    const std::string name = name_of(at);
+    const auto text = socket_.receive(kInventoryWithin);
+    if (!text) throw InputError(name, "the service does not say which devices it has");
+    const Json inventory = Json::parse(*text, nullptr, false);
+    const Json* const id = member(first_of(&inventory, "inverse3"), "device_id");
+    if (id == nullptr || !id->is_string()) throw InputError(name, "the service has no Inverse3");
+    id_ = id->get<std::string>();
+    // Version 3.5 counts its sessions, and takes a force as `vector`; before it was `values`.
+    force_key_ = inventory.contains("session_id") ? "vector" : "values";
+    has_grip_ = grip_of(inventory) != nullptr;
+    capabilities_.name = "Haply Inverse3 " + id_;
+    capabilities_.sensed = has_grip_ ? 6 : 3;
+    capabilities_.driven = 3;
+    capabilities_.R_VD = Mat3{{1, 0, 0}, {0, 0, 1}, {0, -1, 0}};
+    capabilities_.limits = {10, 0};
+    ask();
+  }
+  ~HaplyConnection() override {
+    wrench_ = {};
+    ask();
+  }
+  HaplyConnection(const HaplyConnection&) = delete;
+  HaplyConnection& operator=(const HaplyConnection&) = delete;
+
+  const DeviceCapabilities& capabilities() const override { return capabilities_; }
+
+  ConnectionStatus read(DeviceInput& input) override {
+    const auto text = socket_.receive(kWait);
+    if (!text) return socket_.is_open() ? ConnectionStatus::silent : ConnectionStatus::lost;
+    is_asked_ = false;
+    // One that answers at once is not asked as often as it could answer.
+    std::this_thread::sleep_until(next_);
+    next_ = Clock::now() + kBetweenReadings;
+    return take_state(*text, input) ? ConnectionStatus::fresh : ConnectionStatus::silent;
+  }
+
+  ConnectionStatus write(const Wrench& wrench_D) override {
+    wrench_ = wrench_D;
+    // One text at a time is on its way: a slow service would else work off wrenches of long ago.
+    if (!is_asked_ || Clock::now() - asked_ > kAskAgainAfter) ask();
+    return socket_.is_open() ? ConnectionStatus::fresh : ConnectionStatus::lost;
+  }
+
+ private:
+  static std::string name_of(const HostAndPort& at) { return fmt::format("haply:{}:{}", at.host, at.port); }
+
+  // The force, for which the service answers with the state of all devices.
+  void ask() {
+    const Vec3& force_N = wrench_.force_N;
+    const Json force{{force_key_, {{"x", force_N.x()}, {"y", force_N.y()}, {"z", force_N.z()}}}};
+    const Json device{{"device_id", id_}, {"commands", {{"set_cursor_force", force}}}};
+    socket_.send(Json{{"inverse3", Json::array({device})}}.dump());
+    is_asked_ = true;
+    asked_ = Clock::now();
+  }
+
+  bool take_state(const std::string& text, DeviceInput& input) const {
+    const Json message = Json::parse(text, nullptr, false);
+    const Json* const device = first_of(&message, "inverse3");
+    const Json* const id = member(device, "device_id");
+    if (id == nullptr || *id != id_) return false;
+    const Json* const state = member(device, "state");
+    DeviceInput now;
+    if (!take(member(state, "cursor_position"), now.X_DH.position_mm) ||
+        !take(member(state, "cursor_velocity"), now.velocity_D_mm_s) ||
+        (has_grip_ && !take_grip(grip_of(message), now)))
+      return false;
+    now.X_DH.position_mm *= kMmPerM;
+    now.velocity_D_mm_s *= kMmPerM;
+    input = now;
+    return true;
+  }
+
+  WebSocket socket_;
+  std::string id_;
+  std::string force_key_;
+  bool has_grip_ = false;
+  DeviceCapabilities capabilities_;
+  Wrench wrench_;
+  bool is_asked_ = false;
+  Clock::time_point asked_;
+  Clock::time_point next_ = Clock::now();
+};
+
+HostAndPort place_of(const std::string& address) {
+  return host_and_port("haply", address.empty() ? kHaplyAddress : address);
+}
+
+}  // namespace
+
+std::unique_ptr<Connection> open_haply(const std::string& address) {
+  return std::make_unique<HaplyConnection>(place_of(address));
+}
+
+FoundDevice find_haply(const std::string& address) {
+  try {
+    return {true, HaplyConnection(place_of(address)).capabilities().name};
+  } catch (const InputError& error) {
+    return {false, error.what()};
+  }
+}
+
+}  // namespace osteomill

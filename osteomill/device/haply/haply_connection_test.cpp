@@ -1,0 +1,188 @@
+#include "osteomill/device/haply/haply_connection.h"
+
+#include <chrono>
+#include <numbers>
+#include <string>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "osteomill/device/haply/haply_stand_in.h"
+#include "osteomill/files/input_error.h"
+
+namespace osteomill {
+namespace {
+
+using namespace std::chrono_literals;
+using testing_support::HaplyStandIn;
+
+class Haply : public ::testing::Test {
+ protected:
+  void open() {
+    service_.is_held = true;
+    connection_ = open_haply(service_.address());
+  }
+  std::string refusal() {
+    try {
+      open();
+      return "";
+    } catch (const InputError& error) {
+      return error.what();
+    }
+  }
+  // As the device's thread does, until it has what is wanted; not long where it never comes.
+  ConnectionStatus go_on_until(ConnectionStatus wanted, DeviceInput& input) {
+    ConnectionStatus status = connection_->read(input);
+    for (int n = 0; n < 300 && status != wanted; ++n) {
+      connection_->write(wrench_);
+      status = connection_->read(input);
+    }
+    return status;
+  }
+  Vec3 force_N() const { return Vec3(service_.force_N().data()); }
+  void await_force(const Vec3& wanted_N) {
+    DeviceInput input;
+    for (int n = 0; n < 300 && force_N() != wanted_N; ++n) go_on_until(ConnectionStatus::fresh, input);
+    EXPECT_EQ(force_N(), wanted_N);
+  }
+
+  HaplyStandIn service_;
+  std::unique_ptr<Connection> connection_;
+  Wrench wrench_;
+};
+
+TEST_F(Haply, SaysWhatItCan) {
+  open();
+  const DeviceCapabilities& can = connection_->capabilities();
+  EXPECT_EQ(can.name, "Haply Inverse3 049D");
+  EXPECT_EQ(can.sensed, 6);
+  EXPECT_EQ(can.driven, 3);
+  // Its y points away from the operator, its z up.
+  EXPECT_TRUE((can.R_VD * Vec3::UnitY()).isApprox(-Vec3::UnitZ()));
+  EXPECT_TRUE((can.R_VD * Vec3::UnitZ()).isApprox(Vec3::UnitY()));
+}
+
+TEST_F(Haply, ReadsMmFromMAndTheGrip) {
+  open();
+  DeviceInput input;
+  ASSERT_EQ(go_on_until(ConnectionStatus::fresh, input), ConnectionStatus::fresh);
+  EXPECT_TRUE(input.X_DH.position_mm.isApprox(Vec3(10, -20, 30)));
+  EXPECT_TRUE(input.velocity_D_mm_s.isApprox(Vec3(100, 200, -300)));
+  EXPECT_NEAR((rotation_vector(input.X_DH.orientation) - Vec3(0, 0, std::numbers::pi / 2)).norm(), 0, 1e-12);
+  EXPECT_EQ(input.buttons, 5u);
+}
+
+TEST_F(Haply, AWiredGripHasOneButton) {
+  service_.grip = "verse_grip";
+  open();
+  DeviceInput input;
+  ASSERT_EQ(go_on_until(ConnectionStatus::fresh, input), ConnectionStatus::fresh);
+  EXPECT_EQ(input.buttons, 1u);
+}
+
+TEST_F(Haply, WithoutAGripPositionAloneIsSensed) {
+  service_.grip = nullptr;
+  open();
+  EXPECT_EQ(connection_->capabilities().sensed, 3);
+  DeviceInput input;
+  ASSERT_EQ(go_on_until(ConnectionStatus::fresh, input), ConnectionStatus::fresh);
+  EXPECT_TRUE(input.X_DH.orientation.isApprox(Quat::Identity()));
+}
+
+TEST_F(Haply, AForceGoesAsItsVersionHasIt) {
+  wrench_.force_N = {1, 2, 3};
+  open();
+  await_force({1, 2, 3});
+  EXPECT_NE(service_.heard().back().find("\"vector\""), std::string::npos);
+}
+
+TEST_F(Haply, BeforeVersion3_5AForceIsCalledValues) {
+  service_.is_3_5 = false;
+  wrench_.force_N = {1, 2, 3};
+  open();
+  await_force({1, 2, 3});
+  EXPECT_NE(service_.heard().back().find("\"values\""), std::string::npos);
+}
+
+TEST_F(Haply, ClosingSendsZero) {
+  wrench_.force_N = {1, 2, 3};
+  open();
+  await_force({1, 2, 3});
+  connection_.reset();
+  for (int n = 0; n < 100 && force_N() != Vec3::Zero(); ++n) std::this_thread::sleep_for(1ms);
+  EXPECT_EQ(force_N(), Vec3::Zero());
+}
+
+TEST_F(Haply, WhatIsNoStateIsSilence) {
+  open();
+  DeviceInput input;
+  ASSERT_EQ(go_on_until(ConnectionStatus::fresh, input), ConnectionStatus::fresh);
+  const std::string state = service_.state().dump();
+  std::string without_velocity = state;
+  without_velocity.replace(state.find("cursor_velocity"), 15, "cursor_viscosity");
+  std::string text_for_number = state;
+  text_for_number.replace(state.find("-0.02"), 5, "\"far\"");
+  const std::string bad[] = {"{",
+                             "[]",
+                             "3",
+                             "\xff\xfe",
+                             "{}",
+                             R"({"inverse3":[]})",
+                             R"({"inverse3":[3]})",
+                             R"({"inverse3":[{"device_id":"049D"}]})",
+                             R"({"inverse3":[{"device_id":"049D","state":[]}]})",
+                             state.substr(0, state.size() / 2),
+                             without_velocity,
+                             text_for_number,
+                             std::string(200000, '['),
+                             std::string(100000, '{') + std::string(100000, '}')};
+  for (const std::string& text : bad) {
+    service_.say(text);
+    go_on_until(ConnectionStatus::silent, input);
+    for (int n = 0; n < 5; ++n) {
+      connection_->write({});
+      EXPECT_EQ(connection_->read(input), ConnectionStatus::silent) << text.substr(0, 80);
+    }
+  }
+  service_.say("");
+  EXPECT_EQ(go_on_until(ConnectionStatus::fresh, input), ConnectionStatus::fresh);
+}
+
+TEST_F(Haply, ATextThatIsTooLongIsTheEnd) {
+  open();
+  service_.say(std::string(1 << 20, ' '));
+  DeviceInput input;
+  EXPECT_EQ(go_on_until(ConnectionStatus::lost, input), ConnectionStatus::lost);
+}
+
+TEST_F(Haply, AServiceThatIsMuteIsSilentAndOneThatClosesLost) {
+  open();
+  DeviceInput input;
+  service_.is_mute = true;
+  go_on_until(ConnectionStatus::silent, input);
+  const std::size_t before = service_.heard().size();
+  const auto start = std::chrono::steady_clock::now();
+  for (int n = 0; n < 20; ++n) {
+    connection_->write({});
+    EXPECT_EQ(connection_->read(input), ConnectionStatus::silent);
+  }
+  // Not asked at every turn, so that it has no wrenches of long ago to work off.
+  const auto took = std::chrono::steady_clock::now() - start;
+  EXPECT_LE(service_.heard().size() - before, static_cast<std::size_t>(took / 20ms) + 1);
+  service_.is_mute = false;
+  EXPECT_EQ(go_on_until(ConnectionStatus::fresh, input), ConnectionStatus::fresh);
+  service_.closes = true;
+  EXPECT_EQ(go_on_until(ConnectionStatus::lost, input), ConnectionStatus::lost);
+  EXPECT_EQ(connection_->write({}), ConnectionStatus::lost);
+}
+
+TEST_F(Haply, WhyThereIsNoneIsSaid) {
+  EXPECT_EQ(find_haply(service_.address()).text, "Haply Inverse3 049D");
+  service_.has_device = false;
+  EXPECT_EQ(refusal(), "haply:" + service_.address() + ": the service has no Inverse3");
+  EXPECT_EQ(find_haply("127.0.0.1:1").text, "haply:127.0.0.1:1: nothing answers there");
+  EXPECT_EQ(find_haply("nowhere").text, "haply:nowhere: is not of the form HOST:PORT");
+}
+
+}  // namespace
+}  // namespace osteomill

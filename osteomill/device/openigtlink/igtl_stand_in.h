@@ -1,0 +1,147 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <igtlImageMessage.h>
+#include <igtlMessageHeader.h>
+#include <igtlSensorMessage.h>
+#include <igtlServerSocket.h>
+#include <igtlTransformMessage.h>
+
+#include "osteomill/device/stand_in.h"
+
+namespace osteomill::testing_support {
+
+/// Stands in for a tracker or for 3D Slicer: an OpenIGTLink server made of the library's own sockets, which
+/// sends a tool's pose every millisecond and keeps what it is sent.
+class IgtlStandIn {
+ public:
+  explicit IgtlStandIn(int port = 0) {
+    server_ = igtl::ServerSocket::New();
+    server_->CreateServer(port);
+    port_ = server_->GetServerPort();
+    thread_ = std::thread([this] { serve(); });
+  }
+  ~IgtlStandIn() {
+    ends_ = true;
+    thread_.join();
+    server_->CloseSocket();
+  }
+  IgtlStandIn(const IgtlStandIn&) = delete;
+  IgtlStandIn& operator=(const IgtlStandIn&) = delete;
+
+  int port() const { return port_; }
+  std::string address() const { return "127.0.0.1:" + std::to_string(port_); }
+
+  /// Makes a message (packed) that is sent from now on in place of the pose; none: the pose again.
+  using MakeBytes = std::function<std::vector<unsigned char>()>;
+  void say(MakeBytes make) {
+    const std::lock_guard lock(mutex_);
+    make_ = std::move(make);
+  }
+  std::atomic<bool> is_mute{false};
+  std::atomic<bool> closes{false};
+  /// The handle sweeps where this is not set.
+  std::atomic<bool> is_held{false};
+
+  /// The values of the SENSOR message of a name that came last.
+  std::array<double, 3> sensor(const std::string& name) const {
+    const std::lock_guard lock(mutex_);
+    const auto found = sensors_.find(name);
+    return found == sensors_.end() ? std::array<double, 3>{NAN, NAN, NAN} : found->second;
+  }
+  igtl::igtlUnit unit(const std::string& name) const {
+    const std::lock_guard lock(mutex_);
+    return units_.at(name);
+  }
+  double most_N() const { return most_N_; }
+
+  /// A TRANSFORM message: a quarter turn about z, at (10, -20, 30) mm.
+  static std::vector<unsigned char> transform(const char* name, float x_mm = 10) {
+    igtl::Matrix4x4 matrix = {{0, -1, 0, x_mm}, {1, 0, 0, -20}, {0, 0, 1, 30}, {0, 0, 0, 1}};
+    const auto message = igtl::TransformMessage::New();
+    message->SetDeviceName(name);
+    message->SetMatrix(matrix);
+    return packed(*message);
+  }
+  static std::vector<unsigned char> packed(igtl::MessageBase& message) {
+    message.Pack();
+    const auto* const begin = static_cast<const unsigned char*>(message.GetPackPointer());
+    return {begin, begin + message.GetPackSize()};
+  }
+
+ private:
+  void serve() {
+    while (!ends_) {
+      const auto client = server_->WaitForConnection(20);
+      if (client.IsNull()) continue;
+      closes = false;
+      client->SetReceiveTimeout(1);
+      while (!ends_ && !closes && client->GetConnected() && speak(*client) && listen(*client)) {
+      }
+      client->CloseSocket();
+      const auto force_N = sensor("OsteomillForce");
+      log_of_stand_in("closed, most", most_N_.load(), "last", force_N[0], force_N[1], force_N[2]);
+    }
+  }
+
+  bool speak(igtl::Socket& client) {
+    if (is_mute) return true;
+    MakeBytes make;
+    {
+      const std::lock_guard lock(mutex_);
+      make = make_;
+    }
+    const auto bytes = make ? make() : transform("Drill", is_held ? 10 : static_cast<float>(swept_mm()));
+    return client.Send(bytes.data(), static_cast<int>(bytes.size())) != 0;
+  }
+
+  // Whatever comes within a millisecond.
+  bool listen(igtl::Socket& client) {
+    while (true) {
+      const auto header = igtl::MessageHeader::New();
+      header->InitPack();
+      const int length = client.Receive(header->GetPackPointer(), header->GetPackSize());
+      if (length == 0) return false;
+      if (length < 0) return true;
+      header->Unpack();
+      if (std::strcmp(header->GetDeviceType(), "SENSOR") != 0) {
+        client.Skip(header->GetBodySizeToRead());
+        continue;
+      }
+      const auto message = igtl::SensorMessage::New();
+      message->SetMessageHeader(header);
+      message->AllocatePack();
+      client.Receive(message->GetPackBodyPointer(), message->GetPackBodySize());
+      if ((message->Unpack(1) & igtl::MessageHeader::UNPACK_BODY) == 0) return false;
+      const std::lock_guard lock(mutex_);
+      auto& values = sensors_[message->GetDeviceName()];
+      for (unsigned n = 0; n < 3; ++n) values[n] = message->GetValue(n);
+      units_[message->GetDeviceName()] = message->GetUnit();
+      if (std::strcmp(message->GetDeviceName(), "OsteomillForce") == 0)
+        most_N_ = std::max(most_N_.load(), std::hypot(values[0], values[1], values[2]));
+    }
+  }
+
+  igtl::ServerSocket::Pointer server_;
+  int port_ = 0;
+  std::atomic<bool> ends_{false};
+  mutable std::mutex mutex_;
+  MakeBytes make_;
+  std::map<std::string, std::array<double, 3>> sensors_;
+  std::map<std::string, igtl::igtlUnit> units_;
+  std::atomic<double> most_N_{0};
+  std::thread thread_;
+};
+
+}  // namespace osteomill::testing_support
