@@ -219,7 +219,8 @@ std::uint64_t bytes_of_pixels(DcmDataset& data, bool is_compressed) {
   if (data.findAndGetElement(DCM_PixelData, pixels).bad()) return 0;
   if (!is_compressed) return pixels->getLength();
   std::uint64_t bytes = 0;
-  for (DcmPixelItem* fragment : fragments_of(data)) bytes += fragment->getLength();
+  const std::vector<DcmPixelItem*> items = pixel_items_of(data);
+  for (std::size_t n = 1; n < items.size(); ++n) bytes += items[n]->getLength();
   return bytes;
 }
 
@@ -252,22 +253,20 @@ void describe(DcmDataset& data, DicomHeader& header) {
 
 }  // namespace
 
-std::vector<DcmPixelItem*> fragments_of(DcmDataset& data) {
-  std::vector<DcmPixelItem*> fragments;
+std::vector<DcmPixelItem*> pixel_items_of(DcmDataset& data) {
+  std::vector<DcmPixelItem*> items;
   DcmElement* element = nullptr;
   DcmPixelSequence* sequence = nullptr;
-  if (data.findAndGetElement(DCM_PixelData, element).bad()) return fragments;
+  if (data.findAndGetElement(DCM_PixelData, element).bad()) return items;
   auto* pixels = dynamic_cast<DcmPixelData*>(element);
   if (pixels == nullptr ||
       pixels->getEncapsulatedRepresentation(data.getOriginalXfer(), nullptr, sequence).bad() ||
       sequence == nullptr)
-    return fragments;
+    return items;
   for (DcmObject* item = nullptr; (item = sequence->nextInContainer(item)) != nullptr;) {
-    fragments.push_back(static_cast<DcmPixelItem*>(item));
+    items.push_back(static_cast<DcmPixelItem*>(item));
   }
-  // The first is the table of offsets, which nobody needs.
-  if (!fragments.empty()) fragments.erase(fragments.begin());
-  return fragments;
+  return items;
 }
 
 std::optional<DicomHeader> read_dicom_header(const fs::path& path) {

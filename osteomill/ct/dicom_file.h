@@ -13,7 +13,8 @@ namespace osteomill {
 /// damaged comes with a fault. Only within `with_dicom_stack`.
 std::optional<DicomHeader> read_dicom_header(const std::filesystem::path& path);
 
-/// The fragments of compressed pixels, in order; none where they are not compressed.
-std::vector<DcmPixelItem*> fragments_of(DcmDataset& data);
+/// The items of compressed pixels: the table of offsets, and the fragments in order. None where they are not
+/// compressed.
+std::vector<DcmPixelItem*> pixel_items_of(DcmDataset& data);
 
 }  // namespace osteomill

@@ -65,17 +65,23 @@ class FrameReader {
 
  private:
   InputError fault(const std::string& reason) const { return {header_.file.string(), reason}; }
-  std::span<const unsigned char> bytes_of(DcmPixelItem* fragment) const;
+  InputError damaged() const {
+    return fault(fmt::format("cannot be decoded ({}): its pixels are cut short or damaged",
+                             DcmXfer(syntax_).getXferName()));
+  }
+  std::span<const unsigned char> bytes_of(DcmPixelItem* item) const;
+  std::size_t first_fragment(std::size_t frame) const;
   std::vector<unsigned char> stream_of(std::size_t frame) const;
-  void decode_by_dcmtk(std::size_t frame);
+  void decode_jpeg(std::span<const unsigned char> stream);
+  void read_uncompressed(std::size_t frame);
+  void read_by_dcmtk(DcmDataset& data, std::size_t frame, DcmFileCache* cache);
 
   const DicomHeader& header_;
   DcmDataset& data_;
   E_TransferSyntax syntax_;
   FrameSize size_;
-  std::vector<DcmPixelItem*> fragments_;
+  std::vector<DcmPixelItem*> items_;
   DcmFileCache cache_;
-  Uint32 next_fragment_ = 0;
   // DCMTK wants an even number of bytes.
   std::vector<char> values_;
 };
@@ -85,72 +91,103 @@ FrameReader::FrameReader(const DicomHeader& header)
       data_(*header.data->getDataset()),
       syntax_(data_.getOriginalXfer()),
       size_{header.columns, header.rows, header.slices.front().pixels.bits_allocated / 8},
-      fragments_(fragments_of(data_)),
+      items_(pixel_items_of(data_)),
       values_(size_.bytes() + size_.bytes() % 2) {}
 
-std::span<const unsigned char> FrameReader::bytes_of(DcmPixelItem* fragment) const {
+std::span<const unsigned char> FrameReader::bytes_of(DcmPixelItem* item) const {
   Uint8* bytes = nullptr;
-  if (fragment->getUint8Array(bytes).bad() || bytes == nullptr) throw fault("is cut short");
-  return {bytes, fragment->getLength()};
+  if (item->getUint8Array(bytes).bad() || bytes == nullptr) throw fault("is cut short");
+  return {bytes, item->getLength()};
 }
 
-// The fragments of a frame: one, or all where there is one frame.
-std::vector<unsigned char> FrameReader::stream_of(std::size_t frame) const {
-  std::span<DcmPixelItem* const> fragments = fragments_;
-  if (header_.frames > 1) {
-    if (fragments.size() != header_.frames)
-      throw fault("has frames in several fragments each, which is not supported");
-    fragments = fragments.subspan(frame, 1);
+// The item with which a frame begins: there is one frame, there are as many fragments as frames, or the table
+// says how many bytes lie before it, 8 of them before each fragment (Part 5, A.4).
+std::size_t FrameReader::first_fragment(std::size_t frame) const {
+  if (frame == 0 || items_.size() == header_.frames + 1) return frame + 1;
+  if (frame == header_.frames) return items_.size();
+  const std::size_t offsets = items_.front()->getLength() / sizeof(std::uint32_t);
+  if (offsets == header_.frames) {
+    std::uint32_t offset = 0;
+    std::memcpy(&offset, bytes_of(items_.front()).data() + frame * sizeof(offset), sizeof(offset));
+    std::uint64_t before = 0;
+    for (std::size_t n = 1; n < items_.size(); before += 8 + items_[n++]->getLength()) {
+      if (before == offset) return n;
+    }
   }
+  throw fault("does not say in which of its fragments each frame lies");
+}
+
+std::vector<unsigned char> FrameReader::stream_of(std::size_t frame) const {
   std::vector<unsigned char> stream;
-  for (DcmPixelItem* fragment : fragments) {
-    const std::span<const unsigned char> bytes = bytes_of(fragment);
+  const std::size_t end = first_fragment(frame + 1);
+  for (std::size_t n = first_fragment(frame); n < end; ++n) {
+    const std::span<const unsigned char> bytes = bytes_of(items_[n]);
     stream.insert(stream.end(), bytes.begin(), bytes.end());
   }
   return stream;
 }
 
-void FrameReader::decode_by_dcmtk(std::size_t frame) {
+void FrameReader::read_by_dcmtk(DcmDataset& data, std::size_t frame, DcmFileCache* cache) {
   OFString colours;
   DcmElement* element = nullptr;
-  data_.findAndGetElement(DCM_PixelData, element);
+  data.findAndGetElement(DCM_PixelData, element);
   auto* pixels = dynamic_cast<DcmPixelData*>(element);
   if (pixels == nullptr) throw fault("has pixels of a kind that is not supported");
+  Uint32 fragment = 0;
   const JpegComplaints complaints;
-  const OFCondition decoded =
-      pixels->getUncompressedFrame(&data_, static_cast<Uint32>(frame), next_fragment_, values_.data(),
-                                   static_cast<Uint32>(values_.size()), colours, &cache_);
-  if (decoded.bad() || complaints.any()) {
-    throw fault(fmt::format("cannot be decoded ({}): its pixels are cut short or damaged",
-                            DcmXfer(syntax_).getXferName()));
+  const OFCondition read =
+      pixels->getUncompressedFrame(&data, static_cast<Uint32>(frame), fragment, values_.data(),
+                                   static_cast<Uint32>(values_.size()), colours, cache);
+  if (read.bad() || complaints.any()) throw damaged();
+}
+
+// In a data set of its own that holds nothing else, so that no table of offsets leads elsewhere.
+void FrameReader::decode_jpeg(std::span<const unsigned char> stream) {
+  if (!jpeg_fits(stream, size_))
+    throw fault("is damaged: its compressed pixels are not what its header says");
+  DcmDataset alone;
+  for (const DcmTagKey& tag : {DCM_SamplesPerPixel, DCM_PhotometricInterpretation, DCM_Rows, DCM_Columns,
+                               DCM_BitsAllocated, DCM_BitsStored, DCM_HighBit, DCM_PixelRepresentation}) {
+    DcmElement* copy = nullptr;
+    if (data_.findAndGetElement(tag, copy, OFFalse, OFTrue).good()) alone.insert(copy);
+  }
+  auto* sequence = new DcmPixelSequence(DCM_PixelSequenceTag);
+  sequence->insert(new DcmPixelItem(DCM_PixelItemTag));
+  auto* fragment = new DcmPixelItem(DCM_PixelItemTag);
+  fragment->putUint8Array(stream.data(), stream.size());
+  sequence->insert(fragment);
+  auto* pixels = new DcmPixelData(DCM_PixelData);
+  pixels->putOriginalRepresentation(syntax_, nullptr, sequence);
+  alone.insert(pixels);
+  read_by_dcmtk(alone, 0, nullptr);
+}
+
+void FrameReader::read_uncompressed(std::size_t frame) {
+  read_by_dcmtk(data_, frame, &cache_);
+  // To DCMTK pixels are words of 16 bits, of which the higher comes first here.
+  if (syntax_ == EXS_BigEndianExplicit && size_.bytes_a_value == 4) {
+    for (std::size_t n = 0; n < size_.bytes(); n += 4)
+      std::swap_ranges(&values_[n], &values_[n] + 2, &values_[n] + 2);
   }
 }
 
 std::span<const char> FrameReader::read(std::size_t frame) {
   const std::span<char> values(values_.data(), size_.bytes());
-  const auto check = [&](bool decoded, const char* name) {
-    if (!decoded)
-      throw fault(fmt::format("cannot be decoded ({}): its pixels are cut short or damaged", name));
-  };
+  if (items_.empty()) {
+    read_uncompressed(frame);
+    return values;
+  }
+  const std::vector<unsigned char> stream = stream_of(frame);
   switch (syntax_) {
     case EXS_RLELossless:
-      check(decode_rle(stream_of(frame), size_, values), "RLE");
+      if (!decode_rle(stream, size_, values)) throw damaged();
       break;
     case EXS_JPEG2000LosslessOnly:
     case EXS_JPEG2000:
-      check(decode_jpeg2000(stream_of(frame), size_, values), "JPEG 2000");
+      if (!decode_jpeg2000(stream, size_, values)) throw damaged();
       break;
     default:
-      for (DcmPixelItem* fragment : fragments_) {
-        if (!jpeg_fits(bytes_of(fragment), size_))
-          throw fault("is damaged: its compressed pixels are not what its header says");
-      }
-      decode_by_dcmtk(frame);
-      // To DCMTK pixels are words of 16 bits, of which the higher comes first here.
-      if (syntax_ == EXS_BigEndianExplicit && size_.bytes_a_value == 4) {
-        for (std::size_t n = 0; n < values.size(); n += 4)
-          std::swap_ranges(&values[n], &values[n] + 2, &values[n] + 2);
-      }
+      decode_jpeg(stream);
   }
   return values;
 }

@@ -83,6 +83,11 @@ bool is_frame_marker(int marker) {
          marker == 0xF7;
 }
 
+// Those that have a length: not TEM, RST, SOI, EOI and what is reserved.
+bool is_segment_marker(int marker) {
+  return marker >= 0xC0 && marker < 0xFF && !(marker >= 0xD0 && marker <= 0xD9);
+}
+
 }  // namespace
 
 bool decode_rle(Bytes stream, const FrameSize& size, std::span<char> values) {
@@ -140,7 +145,7 @@ bool decode_jpeg2000(Bytes bytes, const FrameSize& size, std::span<char> values)
 
 bool jpeg_fits(Bytes bytes, const FrameSize& size) {
   const auto number = [&](std::size_t n) { return bytes[n] << 8 | bytes[n + 1]; };
-  if (bytes.size() < 2 || number(0) != 0xFFD8) return true;
+  if (bytes.size() < 2 || number(0) != 0xFFD8) return false;
   std::size_t here = 2;
   // A segment: FF, marker, length of what follows.
   while (here + 10 <= bytes.size() && bytes[here] == 0xFF) {
@@ -149,6 +154,7 @@ bool jpeg_fits(Bytes bytes, const FrameSize& size) {
       return bytes[here + 4] <= 8 * size.bytes_a_value && number(here + 5) == size.rows &&
              number(here + 7) == size.columns && bytes[here + 9] == 1;
     }
+    if (!is_segment_marker(marker) && marker != 0xFF) return false;
     here += marker == 0xFF ? 1 : 2 + static_cast<std::size_t>(number(here + 2));
   }
   return false;

@@ -23,8 +23,8 @@ struct FrameSize {
 bool decode_rle(std::span<const unsigned char> stream, const FrameSize& size, std::span<char> values);
 bool decode_jpeg2000(std::span<const unsigned char> stream, const FrameSize& size, std::span<char> values);
 
-/// Whether a JPEG or JPEG-LS stream, if it is one, holds one grey image of that size, or less than so many
-/// bits. DCMTK takes the stream's word for it.
+/// Whether a stream begins as JPEG or JPEG-LS, with nothing but segments before a grey image of that size and
+/// no more than so many bits. DCMTK takes the stream's word for it, and looks for ever at what is no segment.
 bool jpeg_fits(std::span<const unsigned char> stream, const FrameSize& size);
 
 }  // namespace osteomill

@@ -4,7 +4,8 @@
 #include <cstring>
 
 #include <gtest/gtest.h>
-#include <openjpeg.h>
+
+#include "osteomill/ct/made_up_dicom.h"
 
 namespace osteomill {
 namespace {
@@ -89,49 +90,20 @@ TEST(FrameDecoders, RleThatIsDamagedIsRefused) {
   }
 }
 
-// OpenJPEG's own encoder, into memory.
-Bytes jpeg2000_stream() {
-  opj_image_cmptparm_t component{};
-  component.dx = component.dy = 1;
-  component.w = static_cast<OPJ_UINT32>(kSize.columns);
-  component.h = static_cast<OPJ_UINT32>(kSize.rows);
-  component.prec = 16;
-  component.sgnd = 1;
-  opj_image_t* image = opj_image_create(1, &component, OPJ_CLRSPC_GRAY);
-  image->x1 = component.w;
-  image->y1 = component.h;
-  for (std::size_t n = 0; n < kSize.values(); ++n) image->comps[0].data[n] = value_at(n);
-  opj_cparameters_t parameters;
-  opj_set_default_encoder_parameters(&parameters);
-  parameters.numresolution = 2;
-  parameters.tcp_numlayers = 1;
-  parameters.cp_disto_alloc = 1;
-  opj_codec_t* codec = opj_create_compress(OPJ_CODEC_J2K);
-  EXPECT_TRUE(opj_setup_encoder(codec, &parameters, image));
-  Bytes bytes;
-  opj_stream_t* stream = opj_stream_default_create(OPJ_FALSE);
-  opj_stream_set_user_data(stream, &bytes, nullptr);
-  opj_stream_set_write_function(stream, [](void* from, OPJ_SIZE_T count, void* user) {
-    auto* first = static_cast<unsigned char*>(from);
-    static_cast<Bytes*>(user)->insert(static_cast<Bytes*>(user)->end(), first, first + count);
-    return count;
-  });
-  EXPECT_TRUE(opj_start_compress(codec, image, stream) && opj_encode(codec, stream) &&
-              opj_end_compress(codec, stream));
-  opj_stream_destroy(stream);
-  opj_destroy_codec(codec);
-  opj_image_destroy(image);
-  return bytes;
+Bytes jpeg2000_of_values() {
+  std::vector<int> values;
+  for (std::size_t n = 0; n < kSize.values(); ++n) values.push_back(value_at(n));
+  return testing_support::jpeg2000_stream(values, kSize.columns, kSize.rows, 16, true);
 }
 
 TEST(FrameDecoders, Jpeg2000GivesTheValues) {
   std::vector<char> values(kSize.bytes());
-  ASSERT_TRUE(decode_jpeg2000(jpeg2000_stream(), kSize, values));
+  ASSERT_TRUE(decode_jpeg2000(jpeg2000_of_values(), kSize, values));
   expect_values(values);
 }
 
 TEST(FrameDecoders, Jpeg2000OfAnotherSizeOrCutShortIsRefused) {
-  const Bytes whole = jpeg2000_stream();
+  const Bytes whole = jpeg2000_of_values();
   for (const FrameSize& size : {FrameSize{5, 7, 2}, {7, 6, 2}, {7, 5, 1}}) {
     std::vector<char> values(size.bytes());
     EXPECT_FALSE(decode_jpeg2000(whole, size, values));
@@ -156,7 +128,15 @@ TEST(FrameDecoders, AJpegHeaderOfAnotherSizeDoesNotFit) {
   for (std::size_t length = 2; length < 18; ++length) {
     EXPECT_FALSE(jpeg_fits(std::span(jpeg).first(length), kSize)) << length;
   }
-  EXPECT_TRUE(jpeg_fits(Bytes{1, 2, 3}, kSize)) << "not JPEG";
+  EXPECT_FALSE(jpeg_fits(Bytes{1, 2, 3}, kSize)) << "not JPEG";
+  Bytes no_start = jpeg;
+  no_start[1] = 0x01;
+  EXPECT_FALSE(jpeg_fits(no_start, kSize));
+  for (const unsigned char lone : Bytes{0x01, 0x02, 0xD0, 0xD8, 0xD9}) {
+    Bytes other = jpeg;
+    other[3] = lone;
+    EXPECT_FALSE(jpeg_fits(other, kSize)) << "a marker that begins no segment";
+  }
 }
 
 }  // namespace

@@ -1,0 +1,169 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <dcmtk/config/osconfig.h>
+#include <dcmtk/dcmdata/dcpixseq.h>
+#include <dcmtk/dcmdata/dcpxitem.h>
+#include <dcmtk/dcmdata/dcrleerg.h>
+#include <dcmtk/dcmdata/dctk.h>
+#include <dcmtk/dcmjpeg/djencode.h>
+#include <dcmtk/dcmjpls/djencode.h>
+#include <openjpeg.h>
+
+/// DICOM that tests and fuzzing make, in every encoding that there is an encoder for.
+namespace osteomill::testing_support {
+
+inline constexpr int kColumns = 7;
+inline constexpr int kRows = 5;
+
+/// One slice of a made-up series, 0.5 x 0.25 mm, 0.75 mm above the one before.
+struct Slice {
+  std::string file = {};
+  int k = 0;
+  std::string series = "1.2.3";
+  std::string instance = {};
+  std::string position = {};
+  std::string slope = "2";
+  std::string image_type = "ORIGINAL\\PRIMARY\\AXIAL";
+  E_TransferSyntax syntax = EXS_LittleEndianExplicit;
+  std::string modality = "CT";
+  /// A value's, in 8 or 16.
+  int bits = 12;
+};
+
+inline int stored_value(int i, int j, int k) {
+  return i + 10 * j + 100 * k;
+}
+
+/// Of slice k, row by row.
+inline std::vector<int> stored_values(int k) {
+  std::vector<int> values;
+  for (int j = 0; j < kRows; ++j) {
+    for (int i = 0; i < kColumns; ++i) values.push_back(stored_value(i, j, k));
+  }
+  return values;
+}
+
+inline void register_encoders() {
+  static const bool once = [] {
+    DcmRLEEncoderRegistration::registerCodecs();
+    DJEncoderRegistration::registerCodecs();
+    DJLSEncoderRegistration::registerCodecs();
+    return true;
+  }();
+  static_cast<void>(once);
+}
+
+inline void put_pixels(DcmDataset& data, const std::vector<int>& values, int bits) {
+  if (bits > 8) {
+    const std::vector<Uint16> words(values.begin(), values.end());
+    data.putAndInsertUint16Array(DCM_PixelData, words.data(), words.size());
+  } else {
+    std::vector<Uint8> bytes(values.begin(), values.end());
+    if (bytes.size() % 2 != 0) bytes.push_back(0);
+    data.putAndInsertUint8Array(DCM_PixelData, bytes.data(), bytes.size());
+  }
+}
+
+inline std::unique_ptr<DcmFileFormat> made_up_slice(const Slice& slice) {
+  auto file = std::make_unique<DcmFileFormat>();
+  DcmDataset& data = *file->getDataset();
+  const std::string number = std::to_string(slice.k + 1);
+  const std::string height = std::to_string(10 + 0.75 * slice.k);
+  for (const auto& [tag, text] :
+       {std::pair{DCM_SOPClassUID, std::string(UID_CTImageStorage)},
+        {DCM_SOPInstanceUID, slice.instance.empty() ? slice.series + ".7." + number : slice.instance},
+        {DCM_SeriesInstanceUID, slice.series},
+        {DCM_Modality, slice.modality},
+        {DCM_SeriesDescription, "made up"},
+        // Nobody's: what is told of a series must not hold it.
+        {DCM_PatientName, "Doe^Jane"},
+        {DCM_ImageType, slice.image_type},
+        {DCM_ImagePositionPatient, slice.position.empty() ? "1\\2\\" + height : slice.position},
+        {DCM_ImageOrientationPatient, "1\\0\\0\\0\\1\\0"},
+        {DCM_PixelSpacing, "0.25\\0.5"},
+        {DCM_RescaleIntercept, "-100"},
+        {DCM_RescaleSlope, slice.slope},
+        {DCM_PhotometricInterpretation, "MONOCHROME2"}})
+    data.putAndInsertString(tag, text.c_str());
+  for (const auto& [tag, value] : {std::pair{DCM_Columns, kColumns},
+                                   {DCM_Rows, kRows},
+                                   {DCM_SamplesPerPixel, 1},
+                                   {DCM_BitsAllocated, slice.bits > 8 ? 16 : 8},
+                                   {DCM_BitsStored, slice.bits},
+                                   {DCM_HighBit, slice.bits - 1},
+                                   {DCM_PixelRepresentation, 0}})
+    data.putAndInsertUint16(tag, static_cast<Uint16>(value));
+  put_pixels(data, stored_values(slice.k), slice.bits);
+  return file;
+}
+
+/// False where it cannot be encoded so, or not written.
+inline bool save(DcmFileFormat& file, const std::filesystem::path& path, E_TransferSyntax syntax) {
+  register_encoders();
+  return file.getDataset()->chooseRepresentation(syntax, nullptr).good() &&
+         file.saveFile(path.c_str(), syntax).good();
+}
+
+/// The compressed pixels; the first item is the table of offsets.
+inline DcmPixelSequence* fragments(DcmDataset& data, E_TransferSyntax syntax) {
+  DcmElement* element = nullptr;
+  DcmPixelSequence* sequence = nullptr;
+  data.findAndGetElement(DCM_PixelData, element);
+  dynamic_cast<DcmPixelData*>(element)->getEncapsulatedRepresentation(syntax, nullptr, sequence);
+  return sequence;
+}
+
+inline std::vector<unsigned char> bytes_of(DcmPixelItem& fragment) {
+  Uint8* bytes = nullptr;
+  fragment.getUint8Array(bytes);
+  return {bytes, bytes + fragment.getLength()};
+}
+
+/// A JPEG 2000 code stream of one grey frame, by OpenJPEG, as DCMTK has no encoder. `ratio`: how much smaller
+/// it shall be, at a loss; 0: lossless.
+inline std::vector<unsigned char> jpeg2000_stream(std::span<const int> values, int columns, int rows,
+                                                  int bits, bool is_signed, float ratio = 0) {
+  opj_image_cmptparm_t component{};
+  component.dx = component.dy = 1;
+  component.w = static_cast<OPJ_UINT32>(columns);
+  component.h = static_cast<OPJ_UINT32>(rows);
+  component.prec = static_cast<OPJ_UINT32>(bits);
+  component.sgnd = is_signed ? 1 : 0;
+  opj_image_t* const image = opj_image_create(1, &component, OPJ_CLRSPC_GRAY);
+  image->x1 = component.w;
+  image->y1 = component.h;
+  std::copy(values.begin(), values.end(), image->comps[0].data);
+  opj_cparameters_t parameters;
+  opj_set_default_encoder_parameters(&parameters);
+  parameters.numresolution = 2;
+  parameters.tcp_numlayers = 1;
+  parameters.tcp_rates[0] = ratio;
+  parameters.irreversible = ratio > 0 ? 1 : 0;
+  parameters.cp_disto_alloc = 1;
+  opj_codec_t* const codec = opj_create_compress(OPJ_CODEC_J2K);
+  std::vector<unsigned char> bytes;
+  opj_stream_t* const stream = opj_stream_default_create(OPJ_FALSE);
+  opj_stream_set_user_data(stream, &bytes, nullptr);
+  opj_stream_set_write_function(stream, [](void* from, OPJ_SIZE_T count, void* user) {
+    auto* first = static_cast<unsigned char*>(from);
+    auto& kept = *static_cast<std::vector<unsigned char>*>(user);
+    kept.insert(kept.end(), first, first + count);
+    return count;
+  });
+  const bool made = opj_setup_encoder(codec, &parameters, image) &&
+                    opj_start_compress(codec, image, stream) && opj_encode(codec, stream) &&
+                    opj_end_compress(codec, stream);
+  opj_stream_destroy(stream);
+  opj_destroy_codec(codec);
+  opj_image_destroy(image);
+  if (!made) bytes.clear();
+  return bytes;
+}
+
+}  // namespace osteomill::testing_support
