@@ -1,118 +1,62 @@
-#include <array>
-#include <memory>
-
 #include "fuzz/targets.h"
-#include <dcmtk/config/osconfig.h>
-#include <dcmtk/dcmdata/dcpixseq.h>
-#include <dcmtk/dcmdata/dcpxitem.h>
-#include <dcmtk/dcmdata/dcrleerg.h>
-#include <dcmtk/dcmdata/dctk.h>
-#include <dcmtk/dcmjpeg/djencode.h>
-#include <dcmtk/dcmjpls/djencode.h>
-#include <openjpeg.h>
 
-#include "osteomill/ct/read_scan.h"
+#include "osteomill/ct/made_up_dicom.h"
 
 namespace osteomill::fuzzing {
 
 namespace fs = std::filesystem;
+using namespace testing_support;
 
 namespace {
 
-constexpr int kColumns = 8;
-constexpr int kRows = 6;
-
-const ReadOptions kSmall{.series = "", .max_memory_bytes = 1 << 26};
-
-std::vector<Uint16> pixels_of(int k) {
-  std::vector<Uint16> pixels;
-  for (int n = 0; n < kColumns * kRows; ++n) pixels.push_back(static_cast<Uint16>(n * (k + 1) % 3000));
-  return pixels;
-}
-
-void register_encoders() {
-  static const bool once = [] {
-    DcmRLEEncoderRegistration::registerCodecs();
-    DJEncoderRegistration::registerCodecs();
-    DJLSEncoderRegistration::registerCodecs();
-    return true;
-  }();
-  static_cast<void>(once);
-}
-
-// A slice of a made-up series of two.
-std::unique_ptr<DcmFileFormat> slice(int k) {
-  register_encoders();
-  auto file = std::make_unique<DcmFileFormat>();
-  DcmDataset& data = *file->getDataset();
-  const std::string height = std::to_string(k);
-  for (const auto& [tag, text] : {std::pair{DCM_SOPClassUID, std::string(UID_CTImageStorage)},
-                                  {DCM_SOPInstanceUID, "1.2.3.7." + height},
-                                  {DCM_SeriesInstanceUID, "1.2.3"},
-                                  {DCM_Modality, "CT"},
-                                  {DCM_ImagePositionPatient, "1\\2\\" + height},
-                                  {DCM_ImageOrientationPatient, "1\\0\\0\\0\\1\\0"},
-                                  {DCM_PixelSpacing, "0.25\\0.5"},
-                                  {DCM_RescaleIntercept, "-100"},
-                                  {DCM_RescaleSlope, "2"},
-                                  {DCM_PhotometricInterpretation, "MONOCHROME2"}})
-    data.putAndInsertString(tag, text.c_str());
-  for (const auto& [tag, value] : {std::pair{DCM_Columns, kColumns},
-                                   {DCM_Rows, kRows},
-                                   {DCM_SamplesPerPixel, 1},
-                                   {DCM_BitsAllocated, 16},
-                                   {DCM_BitsStored, 12},
-                                   {DCM_HighBit, 11},
-                                   {DCM_PixelRepresentation, 0}})
-    data.putAndInsertUint16(tag, static_cast<Uint16>(value));
-  const std::vector<Uint16> pixels = pixels_of(k);
-  data.putAndInsertUint16Array(DCM_PixelData, pixels.data(), pixels.size());
-  return file;
-}
-
-void save(DcmFileFormat& file, const fs::path& path, E_TransferSyntax syntax) {
-  file.getDataset()->chooseRepresentation(syntax, nullptr);
-  file.saveFile(path.c_str(), syntax);
+void save_sound_slice(const fs::path& folder) {
+  if (!fs::exists(folder / "sound"))
+    save(*made_up_slice({.k = 1}), folder / "sound", EXS_LittleEndianExplicit);
 }
 
 // The bytes are a file; beside it lies a sound slice of its series.
 void read_file(Bytes bytes, const fs::path& folder) {
-  if (!fs::exists(folder / "sound")) save(*slice(1), folder / "sound", EXS_LittleEndianExplicit);
+  save_sound_slice(folder);
   write_bytes(folder / "file", bytes);
-  read_scan(folder, kSmall);
+  read_as_info_does(folder);
 }
 
 void read_directory(Bytes bytes, const fs::path& folder) {
   for (int k = 0; k < 2 && !fs::exists(folder / "I1"); ++k)
-    save(*slice(k), folder / ("I" + std::to_string(k)), EXS_LittleEndianExplicit);
+    save(*made_up_slice({.k = k}), folder / ("I" + std::to_string(k)), EXS_LittleEndianExplicit);
   write_bytes(folder / "DICOMDIR", bytes);
-  read_scan(folder / "DICOMDIR", kSmall);
+  read_as_info_does(folder / "DICOMDIR");
 }
 
-std::vector<std::string> file_seeds(const fs::path& folder) {
-  std::vector<std::string> seeds;
-  for (const auto syntax : {EXS_LittleEndianExplicit, EXS_LittleEndianImplicit, EXS_BigEndianExplicit,
-                            EXS_DeflatedLittleEndianExplicit, EXS_RLELossless}) {
-    save(*slice(0), folder / "a", syntax);
-    seeds.push_back(read_bytes(folder / "a"));
-  }
-  const auto frames = slice(0);
-  DcmDataset& data = *frames->getDataset();
-  std::vector<Uint16> pixels = pixels_of(0);
-  pixels.insert(pixels.end(), pixels.begin(), pixels.end());
-  data.putAndInsertUint16Array(DCM_PixelData, pixels.data(), pixels.size());
+// Frames of one file, each with a place and a slope of its own.
+std::unique_ptr<DcmFileFormat> enhanced() {
+  auto file = made_up_slice({});
+  DcmDataset& data = *file->getDataset();
+  std::vector<int> values = stored_values(0);
+  values.insert(values.end(), values.begin(), values.end());
+  put_pixels(data, values, 12);
   data.putAndInsertString(DCM_NumberOfFrames, "2");
   for (int frame = 0; frame < 2; ++frame) {
     DcmItem* outer = nullptr;
     DcmItem* inner = nullptr;
     data.findOrCreateSequenceItem(DCM_PerFrameFunctionalGroupsSequence, outer, frame);
     outer->findOrCreateSequenceItem(DCM_PlanePositionSequence, inner);
-    inner->putAndInsertString(DCM_ImagePositionPatient, frame == 0 ? "1\\2\\3" : "1\\2\\4");
+    inner->putAndInsertString(DCM_ImagePositionPatient, frame == 0 ? "1\\2\\10" : "1\\2\\9.25");
     outer->findOrCreateSequenceItem(DCM_PixelValueTransformationSequence, inner);
     inner->putAndInsertString(DCM_RescaleSlope, "3");
   }
-  save(*frames, folder / "a", EXS_LittleEndianExplicit);
-  seeds.push_back(read_bytes(folder / "a"));
+  return file;
+}
+
+std::vector<std::string> file_seeds(const fs::path& folder) {
+  std::vector<std::string> seeds;
+  for (const auto syntax : {EXS_LittleEndianExplicit, EXS_LittleEndianImplicit, EXS_BigEndianExplicit,
+                            EXS_RLELossless, EXS_JPEGLSLossless, EXS_JPEGProcess14SV1}) {
+    save(*made_up_slice({}), folder / "a", syntax);
+    seeds.push_back(read_bytes(folder / "a"));
+    save(*enhanced(), folder / "a", syntax);
+    seeds.push_back(read_bytes(folder / "a"));
+  }
   return seeds;
 }
 
@@ -131,19 +75,33 @@ std::vector<std::string> directory_seeds(const fs::path& folder) {
   return {read_bytes(folder / "a")};
 }
 
-DcmPixelSequence* fragments(DcmDataset& data, E_TransferSyntax syntax) {
-  DcmElement* element = nullptr;
-  DcmPixelSequence* sequence = nullptr;
-  data.findAndGetElement(DCM_PixelData, element);
-  dynamic_cast<DcmPixelData*>(element)->getEncapsulatedRepresentation(syntax, nullptr, sequence);
-  return sequence;
+// A slice as a file whose data set is deflated, parted where the deflated data begin.
+std::pair<std::string, std::string> deflated_slice(const fs::path& file) {
+  constexpr std::size_t kGroupLength = 140, kAfterIt = 144;
+  save(*made_up_slice({}), file, EXS_DeflatedLittleEndianExplicit);
+  const std::string bytes = read_bytes(file);
+  const std::size_t start = kAfterIt + static_cast<unsigned char>(bytes[kGroupLength]) +
+                            256U * static_cast<unsigned char>(bytes[kGroupLength + 1]);
+  return {bytes.substr(0, start), bytes.substr(start)};
+}
+
+// The bytes are what is inflated.
+void read_deflated(Bytes bytes, const fs::path& folder) {
+  static const std::string head = deflated_slice(folder / "file").first;
+  std::string file = head;
+  file.append(bytes.begin(), bytes.end());
+  read_file({reinterpret_cast<const unsigned char*>(file.data()), file.size()}, folder);
+}
+
+std::vector<std::string> deflated_seeds(const fs::path& folder) {
+  return {deflated_slice(folder / "a").second};
 }
 
 // The bytes are the compressed pixels of a slice, whose series is sound otherwise.
-auto read_pixels_of(E_TransferSyntax syntax) {
-  return [syntax](Bytes bytes, const fs::path& folder) {
-    if (!fs::exists(folder / "sound")) save(*slice(1), folder / "sound", EXS_LittleEndianExplicit);
-    const auto damaged = slice(0);
+auto read_pixels_of(E_TransferSyntax syntax, int bits) {
+  return [=](Bytes bytes, const fs::path& folder) {
+    save_sound_slice(folder);
+    const auto damaged = made_up_slice({.bits = bits});
     auto* pixels = new DcmPixelData(DCM_PixelData);
     auto* sequence = new DcmPixelSequence(DCM_PixelSequenceTag);
     sequence->insert(new DcmPixelItem(DCM_PixelItemTag));
@@ -155,60 +113,52 @@ auto read_pixels_of(E_TransferSyntax syntax) {
     pixels->putOriginalRepresentation(syntax, nullptr, sequence);
     damaged->getDataset()->insert(pixels, OFTrue);
     damaged->saveFile((folder / "damaged").c_str(), syntax);
-    read_scan(folder, kSmall);
+    read_as_info_does(folder);
   };
 }
 
-auto pixel_seeds(E_TransferSyntax syntax) {
-  return [syntax](const fs::path&) -> std::vector<std::string> {
-    const auto file = slice(0);
+std::string text_of(const std::vector<unsigned char>& bytes) {
+  return {bytes.begin(), bytes.end()};
+}
+
+auto pixel_seeds(E_TransferSyntax syntax, int bits) {
+  return [=](const fs::path&) -> std::vector<std::string> {
+    register_encoders();
+    const auto file = made_up_slice({.bits = bits});
     file->getDataset()->chooseRepresentation(syntax, nullptr);
     DcmPixelItem* item = nullptr;
     fragments(*file->getDataset(), syntax)->getItem(item, 1);
-    Uint8* bytes = nullptr;
-    item->getUint8Array(bytes);
-    return {std::string(reinterpret_cast<const char*>(bytes), item->getLength())};
+    return {text_of(bytes_of(*item))};
   };
 }
 
-// DCMTK has no encoder of JPEG 2000.
-std::vector<std::string> jpeg2000_seeds(const fs::path& folder) {
-  opj_image_cmptparm_t size{};
-  size.dx = size.dy = 1;
-  size.w = kColumns;
-  size.h = kRows;
-  size.prec = 12;
-  opj_image_t* const image = opj_image_create(1, &size, OPJ_CLRSPC_GRAY);
-  image->x1 = kColumns;
-  image->y1 = kRows;
-  const std::vector<Uint16> pixels = pixels_of(0);
-  std::copy(pixels.begin(), pixels.end(), image->comps[0].data);
-  opj_cparameters_t parameters;
-  opj_set_default_encoder_parameters(&parameters);
-  parameters.tcp_numlayers = 1;
-  parameters.cp_disto_alloc = 1;
-  parameters.numresolution = 3;
-  opj_codec_t* const codec = opj_create_compress(OPJ_CODEC_J2K);
-  opj_setup_encoder(codec, &parameters, image);
-  opj_stream_t* const stream = opj_stream_create_default_file_stream((folder / "a").c_str(), OPJ_FALSE);
-  opj_start_compress(codec, image, stream);
-  opj_encode(codec, stream);
-  opj_end_compress(codec, stream);
-  opj_stream_destroy(stream);
-  opj_destroy_codec(codec);
-  opj_image_destroy(image);
-  return {read_bytes(folder / "a")};
+std::vector<std::string> jpeg2000_seeds(const fs::path&) {
+  std::vector<std::string> seeds;
+  for (const float ratio : {0.0F, 3.0F})
+    seeds.push_back(text_of(jpeg2000_stream(stored_values(0), kColumns, kRows, 12, false, ratio)));
+  return seeds;
+}
+
+Target pixels(const char* name, E_TransferSyntax syntax, int bits) {
+  return {name, read_pixels_of(syntax, bits), pixel_seeds(syntax, bits)};
 }
 
 }  // namespace
 
+// DCMTK has a JPEG decoder each for pixels of up to 8, 12 and 16 bits.
 std::vector<Target> dicom_targets() {
   return {{"dicom", read_file, file_seeds},
           {"dicomdir", read_directory, directory_seeds},
-          {"rle", read_pixels_of(EXS_RLELossless), pixel_seeds(EXS_RLELossless)},
-          {"jpeg", read_pixels_of(EXS_JPEGProcess14SV1), pixel_seeds(EXS_JPEGProcess14SV1)},
-          {"jpegls", read_pixels_of(EXS_JPEGLSLossless), pixel_seeds(EXS_JPEGLSLossless)},
-          {"jpeg2000", read_pixels_of(EXS_JPEG2000LosslessOnly), jpeg2000_seeds}};
+          {"deflated", read_deflated, deflated_seeds},
+          pixels("rle", EXS_RLELossless, 12),
+          pixels("jpeg-lossy-8", EXS_JPEGProcess1, 8),
+          pixels("jpeg-lossy-12", EXS_JPEGProcess2_4, 12),
+          pixels("jpeg-lossless-8", EXS_JPEGProcess14SV1, 8),
+          pixels("jpeg-lossless-12", EXS_JPEGProcess14SV1, 12),
+          pixels("jpeg-lossless-16", EXS_JPEGProcess14SV1, 16),
+          pixels("jpegls", EXS_JPEGLSLossless, 12),
+          pixels("jpegls-lossy", EXS_JPEGLSLossy, 12),
+          {"jpeg2000", read_pixels_of(EXS_JPEG2000, 12), jpeg2000_seeds}};
 }
 
 }  // namespace osteomill::fuzzing

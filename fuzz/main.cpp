@@ -8,8 +8,10 @@
 
 #include "fuzz/targets.h"
 
+#include "osteomill/ct/scan_summary.h"
 #include "osteomill/files/input_error.h"
 #include "osteomill/files/temporary_folder.h"
+#include "osteomill/volume/isovalue_warnings.h"
 
 namespace osteomill::fuzzing {
 
@@ -23,6 +25,13 @@ const std::vector<Target>& targets() {
     return found;
   }();
   return all;
+}
+
+void read_as_info_does(const fs::path& path) {
+  const Scan scan = read_scan(path, {.series = "", .max_memory_bytes = 1 << 26});
+  const SuggestedIsovalue suggested = suggest_isovalue(scan.grid, scan.in_hounsfield_units);
+  isovalue_warnings(scan.grid, suggested.value);
+  to_json(summarise(scan, suggested, suggested.value));
 }
 
 void write_bytes(const fs::path& file, Bytes bytes) {
@@ -42,8 +51,13 @@ void write_seeds(const fs::path& folder) {
     const TemporaryFolder work;
     fs::create_directories(folder / target.name);
     int number = 0;
-    for (const std::string& seed : target.seeds(work.path()))
-      std::ofstream(folder / target.name / ("seed" + std::to_string(number++)), std::ios::binary) << seed;
+    for (const std::string& seed : target.seeds(work.path())) {
+      const fs::path file = folder / target.name / ("seed" + std::to_string(number++));
+      std::ofstream(file, std::ios::binary) << seed;
+      // One that is refused would lead nowhere.
+      const TemporaryFolder alone;
+      target.read({reinterpret_cast<const unsigned char*>(seed.data()), seed.size()}, alone.path());
+    }
     std::puts(target.name);
   }
 }
@@ -62,7 +76,12 @@ const Target& chosen_target() {
 
 extern "C" int LLVMFuzzerInitialize(int*, char***) {
   if (const char* const folder = std::getenv("OSTEOMILL_FUZZ_SEEDS")) {
-    osteomill::fuzzing::write_seeds(folder);
+    try {
+      osteomill::fuzzing::write_seeds(folder);
+    } catch (const osteomill::InputError& fault) {
+      std::fprintf(stderr, "a seed is refused: %s\n", fault.what());
+      std::exit(1);
+    }
     std::exit(0);
   }
   return 0;

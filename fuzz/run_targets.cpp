@@ -1,11 +1,16 @@
+#include <algorithm>
+
 #include "app/config_file.h"
 #include "app/milling_options.h"
 #include "fuzz/targets.h"
 #include <CLI/CLI.hpp>
+#include <hdf5.h>
 
 #include "osteomill/device/trajectory.h"
 #include "osteomill/haptics/algorithms.h"
+#include "osteomill/live/milled_bone.h"
 #include "osteomill/recording/read_recording.h"
+#include "osteomill/recording/recording_checksum.h"
 #include "osteomill/recording/recording_file.h"
 
 namespace osteomill::fuzzing {
@@ -47,22 +52,149 @@ std::vector<std::string> config_seeds(const fs::path&) {
       "seconds = [1, 2]\nout = '''a\nb'''\nset = ['point-shell.scale=2']\n[a.b.c]\nd = {e = 1979-05-27}\n"};
 }
 
+void read_milled_bone_of(Bytes bytes, const fs::path& folder) {
+  write_bytes(folder / "a.milled", bytes);
+  read_milled_bone(folder / "a.milled");
+}
+
+std::vector<std::string> milled_bone_seeds(const fs::path& folder) {
+  MilledBone milled;
+  milled.scan = "/scans/a \"b\"";
+  milled.name = "a";
+  milled.isovalue = 0.5;
+  milled.dims = {9, 8, 8};
+  GridGeometry geometry;
+  geometry.dims = milled.dims;
+  const DensityGrid grid(geometry, std::vector<float>(geometry.voxel_count(), 1));
+  milled.bricks = {DensityBlock(grid, {0, 0, 0}), DensityBlock(grid, {8, 0, 0})};
+  write_milled_bone(folder / "a.milled", milled);
+  return {read_bytes(folder / "a.milled")};
+}
+
+// Not finished, since the checksum would refuse whatever is changed in one that is.
+std::string unfinished_recording(const fs::path& file) {
+  RunDescription description;
+  description.scan_name = "made up";
+  description.algorithm = algorithm_named("point-shell").id;
+  description.settings = {{"stiffness", 2.5, "N/mm"}, {"command_line", std::string("osteomill"), ""}};
+  description.labels = {{3, "nerve", {255, 0, 0}, true}};
+  TickRecord record;
+  record.label_cuts[0] = {1, 0.5};
+  {
+    RecordingFile recording(file, description);
+    recording.append(std::vector<TickRecord>(3, record));
+    recording.add_picture("bone", std::vector<unsigned char>{1, 2, 3});
+    recording.flush(0);
+  }
+  return read_bytes(file);
+}
+
 void read_recording_of(Bytes bytes, const fs::path& folder) {
   write_bytes(folder / "a.h5", bytes);
   read_recording(folder / "a.h5");
 }
 
-// One that is not finished, since the checksum would refuse whatever is changed in one that is.
 std::vector<std::string> recording_seeds(const fs::path& folder) {
-  RunDescription description;
-  description.scan_name = "made up";
-  description.algorithm = algorithm_named("point-shell").id;
-  {
-    RecordingFile file(folder / "a.h5", description);
-    file.append(std::vector<TickRecord>(3));
-    file.flush(0);
+  return {unfinished_recording(folder / "a.h5")};
+}
+
+// What the bytes tell to do, one after the other.
+class Orders {
+ public:
+  explicit Orders(Bytes bytes) : bytes_(bytes) {}
+  unsigned next() { return fill(1).front(); }
+  std::vector<unsigned char> fill(std::size_t count) {
+    std::vector<unsigned char> taken(count);
+    const std::size_t there = std::min(count, bytes_.size());
+    std::copy_n(bytes_.begin(), there, taken.begin());
+    bytes_ = bytes_.subspan(there);
+    return taken;
   }
-  return {read_bytes(folder / "a.h5")};
+
+ private:
+  Bytes bytes_;
+};
+
+void change_attribute(hid_t object, const std::string& name, Orders& orders) {
+  const unsigned order = orders.next() % 8;
+  if (order == 1) H5Adelete(object, name.c_str());
+  if (order == 2) {
+    // Of another type or length.
+    H5Adelete(object, name.c_str());
+    const hsize_t count = orders.next() % 4;
+    const hid_t space = H5Screate_simple(1, &count, nullptr);
+    const hid_t types[] = {H5T_NATIVE_DOUBLE, H5T_NATIVE_INT64, H5T_C_S1, H5T_NATIVE_FLOAT};
+    H5Aclose(H5Acreate2(object, name.c_str(), types[orders.next() % 4], space, H5P_DEFAULT, H5P_DEFAULT));
+    H5Sclose(space);
+  }
+  if (order > 4) {
+    const hid_t attribute = H5Aopen(object, name.c_str(), H5P_DEFAULT);
+    const hid_t type = H5Aget_type(attribute);
+    H5Awrite(attribute, type, orders.fill(H5Aget_storage_size(attribute)).data());
+    H5Tclose(type);
+    H5Aclose(attribute);
+  }
+}
+
+void change_column(hid_t file, const std::string& name, Orders& orders) {
+  const unsigned order = orders.next() % 8;
+  const hid_t dataset = H5Dopen2(file, name.c_str(), H5P_DEFAULT);
+  if (order == 1) H5Ldelete(file, name.c_str(), H5P_DEFAULT);
+  if (order == 2) {
+    const hsize_t rows = orders.next() % 8;
+    H5Dset_extent(dataset, &rows);
+  }
+  if (order > 4) {
+    const hid_t type = H5Dget_type(dataset);
+    const hid_t space = H5Dget_space(dataset);
+    const auto values = static_cast<std::size_t>(H5Sget_simple_extent_npoints(space));
+    H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, orders.fill(values * H5Tget_size(type)).data());
+    H5Sclose(space);
+    H5Tclose(type);
+  }
+  H5Dclose(dataset);
+}
+
+std::vector<std::string> attributes_of(hid_t object) {
+  std::vector<std::string> names;
+  const auto keep = [](hid_t, const char* name, const H5A_info_t*, void* list) -> herr_t {
+    static_cast<std::vector<std::string>*>(list)->emplace_back(name);
+    return 0;
+  };
+  H5Aiterate2(object, H5_INDEX_NAME, H5_ITER_INC, nullptr, keep, &names);
+  return names;
+}
+
+// Every attribute and column of a recording changed as the bytes tell, and its checksum made anew: what HDF5
+// itself makes of damaged files stays out.
+void read_changed_recording(Bytes bytes, const fs::path& folder) {
+  static const std::string whole = unfinished_recording(folder / "a.h5");
+  write_bytes(folder / "a.h5", {reinterpret_cast<const unsigned char*>(whole.data()), whole.size()});
+  Orders orders(bytes);
+  const hid_t file = H5Fopen((folder / "a.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  struct Object {
+    std::string name;
+    bool is_dataset;
+  };
+  std::vector<Object> objects;
+  const auto keep = [](hid_t, const char* name, const H5O_info_t* info, void* list) -> herr_t {
+    static_cast<std::vector<Object>*>(list)->push_back({name, info->type == H5O_TYPE_DATASET});
+    return 0;
+  };
+  H5Ovisit(file, H5_INDEX_NAME, H5_ITER_INC, keep, &objects);
+  for (const Object& one : objects) {
+    const hid_t object = H5Oopen(file, one.name.c_str(), H5P_DEFAULT);
+    for (const std::string& name : attributes_of(object)) change_attribute(object, name, orders);
+    H5Oclose(object);
+    if (one.is_dataset) change_column(file, one.name, orders);
+  }
+  H5Fclose(file);
+  write_checksum(folder / "a.h5");
+  read_recording(folder / "a.h5");
+}
+
+std::vector<std::string> recording_orders(const fs::path&) {
+  return {std::string(200, '\0')};
 }
 
 }  // namespace
@@ -70,7 +202,9 @@ std::vector<std::string> recording_seeds(const fs::path& folder) {
 std::vector<Target> run_targets() {
   return {{"trajectory", read_trajectory_of, trajectory_seeds},
           {"config", read_config, config_seeds},
-          {"recording", read_recording_of, recording_seeds}};
+          {"milled-bone", read_milled_bone_of, milled_bone_seeds},
+          {"recording", read_recording_of, recording_seeds},
+          {"recording-values", read_changed_recording, recording_orders}};
 }
 
 }  // namespace osteomill::fuzzing

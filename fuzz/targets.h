@@ -21,11 +21,14 @@ struct Target {
 
 const std::vector<Target>& targets();
 
-/// Parts of `targets`: files of volumes and archives; DICOM, by its elements and by each decoder;
-/// trajectories, configurations and recordings.
+/// Parts of `targets`: files of volumes, archives and labels; DICOM, by its elements and by each decoder;
+/// trajectories, configurations, milled bones and recordings.
 std::vector<Target> volume_targets();
 std::vector<Target> dicom_targets();
 std::vector<Target> run_targets();
+
+/// Reads a scan, in little memory, and makes of it what `osteomill info` tells.
+void read_as_info_does(const std::filesystem::path& path);
 
 void write_bytes(const std::filesystem::path& file, Bytes bytes);
 std::string read_bytes(const std::filesystem::path& file);

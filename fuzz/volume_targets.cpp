@@ -1,8 +1,10 @@
+#include <fstream>
+
 #include "fuzz/targets.h"
 #include <minizip/zip.h>
 #include <zlib.h>
 
-#include "osteomill/ct/read_scan.h"
+#include "osteomill/ct/read_labels.h"
 #include "osteomill/ct/write_nrrd.h"
 
 namespace osteomill::fuzzing {
@@ -11,13 +13,46 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const ReadOptions kSmall{.series = "", .max_memory_bytes = 1 << 26};
-
 auto read_as(const std::string& name) {
   return [name](Bytes bytes, const fs::path& folder) {
     write_bytes(folder / name, bytes);
-    read_scan(folder / name, kSmall);
+    read_as_info_does(folder / name);
   };
+}
+
+GridGeometry small_grid() {
+  GridGeometry geometry;
+  geometry.dims = {3, 4, 5};
+  return geometry;
+}
+
+void read_label_map(Bytes bytes, const fs::path& folder) {
+  write_bytes(folder / "a.seg.nrrd", bytes);
+  read_labels({folder / "a.seg.nrrd", {}, {}}, small_grid(), 1 << 26);
+}
+
+std::vector<std::string> label_seeds(const fs::path&) {
+  std::string voxels;
+  for (int n = 0; n < 60; ++n) voxels += std::to_string(n / 12) + " ";
+  const std::string head = "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 3 4 5\nencoding: ascii\n";
+  return {head + "spacings: 1 1 1\n\n" + voxels,
+          head +
+              "space: LPS\nspace directions: (1,0,0) (0,1,0) (0,0,1)\nspace origin: (0,0,0)\n"
+              "kinds: domain domain domain\nSegment0_Name:=Lower jaw\nSegment0_LabelValue:=3\n"
+              "Segment0_Color:=1 0.5 0\nSegment1_Name:=Nerve\nSegment1_ID:=n\n\n" +
+              voxels};
+}
+
+void read_label_table_of(Bytes bytes, const fs::path& folder) {
+  static const std::string map = label_seeds(folder).front();
+  std::ofstream(folder / "map.nrrd") << map;
+  write_bytes(folder / "a.ctbl", bytes);
+  read_labels({folder / "map.nrrd", folder / "a.ctbl", {"1"}}, small_grid());
+}
+
+std::vector<std::string> label_table_seeds(const fs::path&) {
+  return {
+      "# Color table file\r\n0 Background 0 0 0 0\r\n\r\n1 left_facial nerve 10 20 30 255\n2 b 1 2 3 4\n"};
 }
 
 std::string pixels() {
@@ -45,9 +80,7 @@ std::vector<std::string> nrrd_seeds(const fs::path& folder) {
   for (int n = 0; n < 60; ++n) text += std::to_string(n) + (n % 3 == 2 ? "\n" : " ");
   std::vector<float> densities(60, 2.5F);
   densities[7] = 1000;
-  GridGeometry geometry;
-  geometry.dims = {3, 4, 5};
-  write_nrrd(folder / "a.nrrd", DensityGrid(geometry, densities));
+  write_nrrd(folder / "a.nrrd", DensityGrid(small_grid(), densities));
   return {head + "encoding: raw\n\n" + pixels(), head + "byte skip: 4\nencoding: raw\n\n1234" + pixels(),
           text, read_bytes(folder / "a.nrrd")};
 }
@@ -116,10 +149,10 @@ std::vector<std::string> zip_seeds(const fs::path& folder) {
 }  // namespace
 
 std::vector<Target> volume_targets() {
-  return {{"nrrd", read_as("a.nrrd"), nrrd_seeds},
-          {"metaimage", read_as("a.mha"), metaimage_seeds},
-          {"nifti", read_as("a.nii.gz"), nifti_seeds},
-          {"zip", read_as("a.zip"), zip_seeds}};
+  return {
+      {"nrrd", read_as("a.nrrd"), nrrd_seeds},     {"metaimage", read_as("a.mha"), metaimage_seeds},
+      {"nifti", read_as("a.nii.gz"), nifti_seeds}, {"zip", read_as("a.zip"), zip_seeds},
+      {"labels", read_label_map, label_seeds},     {"label-table", read_label_table_of, label_table_seeds}};
 }
 
 }  // namespace osteomill::fuzzing
