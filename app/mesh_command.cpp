@@ -18,12 +18,15 @@ namespace {
 void run_mesh(const MilledScanOptions& options) {
   const std::string& out = options.out;
   // Before the scan is read.
-  mesh_format_of(out);
+  const MeshFormat format = mesh_format_of(out);
   require_other_output(options);
   const LoadedBone bone = load_milled_bone(options);
   const BrickMesh mesh = mesh_in_one_piece(DensityView(bone.volume));
   if (mesh.empty()) throw InputError(bone.name, "no bone is left to be meshed");
-  write_mesh(out, mesh);
+  const LabelMap* const labels = bone.volume.labels().get();
+  if (labels != nullptr && !holds_colours(format))
+    warn(out + ": STL holds no colours, so the labels are left out; .ply and .obj keep them");
+  write_mesh(out, mesh, labels);
   fmt::print("{}\n", out);
 }
 
@@ -38,6 +41,7 @@ void add_mesh_command(CLI::App& program) {
   command->add_option("--iso", options->scan.isovalue, "Isovalue: bone where the density is greater")
       ->check(not_empty())
       ->type_name("DENSITY");
+  add_label_options(*command, options->scan.labels);
   add_quiet_option(*command);
   command->callback([=] { run_mesh(*options); });
 }

@@ -16,10 +16,7 @@
 
 namespace osteomill::app {
 
-namespace {
-
 void add_label_options(CLI::App& command, LabelFiles& labels) {
-  const auto take = [&labels](const std::vector<std::string>& said) { labels.no_go = said; };
   command
       .add_option("--labels", labels.map,
                   "A label map of the scan (NRRD, .seg.nrrd, NIfTI, MetaImage), on any grid")
@@ -29,14 +26,7 @@ void add_label_options(CLI::App& command, LabelFiles& labels) {
       .add_option("--label-table", labels.table, "Names and colours of labels: a colour table of 3D Slicer's")
       ->check(not_empty())
       ->type_name("FILE");
-  command
-      .add_option_function<std::vector<std::string>>("--no-go", take,
-                                                     "Labels that the burr must not touch, by name or value")
-      ->delimiter(',')
-      ->type_name("LABEL,...");
 }
-
-}  // namespace
 
 void add_scan_source(CLI::App& command, ScanOptions& options) {
   command.add_option("scan", options.scan, kScanText)->check(not_empty());
@@ -65,6 +55,12 @@ void add_scan_options(CLI::App& command, ScanOptions& options) {
       ->check(not_empty())
       ->type_name("DENSITY");
   add_label_options(command, options.labels);
+  const auto take = [&labels = options.labels](const std::vector<std::string>& said) { labels.no_go = said; };
+  command
+      .add_option_function<std::vector<std::string>>("--no-go", take,
+                                                     "Labels that the burr must not touch, by name or value")
+      ->delimiter(',')
+      ->type_name("LABEL,...");
 }
 
 Scan open_scan(const ScanOptions& options) {

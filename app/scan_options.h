@@ -32,7 +32,10 @@ inline constexpr const char* kScanText =
 /// Adds SCAN and what it takes to read it: --series, --max-memory.
 void add_scan_source(CLI::App& command, ScanOptions& options);
 
-/// The same, --iso and those of labels.
+/// Adds where its labels are: --labels, --label-table.
+void add_label_options(CLI::App& command, LabelFiles& labels);
+
+/// All of these, --iso and --no-go.
 void add_scan_options(CLI::App& command, ScanOptions& options);
 
 /// The scan, or the built-in tooth; the scan's warnings are its own. Throws InputError as `read_scan` does.

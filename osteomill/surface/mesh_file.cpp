@@ -11,6 +11,7 @@
 
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/files/input_error.h"
+#include "osteomill/surface/vertex_label.h"
 
 namespace osteomill {
 
@@ -82,7 +83,15 @@ void write_stl(Output& out, const BrickMesh& mesh) {
   }
 }
 
-void write_ply(Output& out, const BrickMesh& mesh) {
+// What is under a vertex that has no label.
+const Label kUnlabelled{0, "", {222, 194, 148}, false};
+
+const Label& label_of(const LabelMap& labels, const MeshVertex& vertex) {
+  const LabelMap::Place place = label_below(labels, vertex);
+  return place == 0 ? kUnlabelled : labels.label(place);
+}
+
+void write_ply(Output& out, const BrickMesh& mesh, const LabelMap* labels) {
   out.text(
       "ply\nformat binary_little_endian 1.0\ncomment osteomill isosurface, mm, SPACE=LPS\nelement vertex ");
   out.number(mesh.vertices.size());
@@ -90,29 +99,48 @@ void write_ply(Output& out, const BrickMesh& mesh) {
     out.text("\nproperty float ");
     out.text(property);
   }
+  if (labels != nullptr) {
+    out.text("\nproperty uchar red\nproperty uchar green\nproperty uchar blue\nproperty int label");
+  }
   out.text("\nelement face ");
   out.number(mesh.triangle_count());
   out.text("\nproperty list uchar int vertex_indices\nend_header\n");
-  for (const MeshVertex& vertex : mesh.vertices) out.bytes(vertex);
+  for (const MeshVertex& vertex : mesh.vertices) {
+    out.bytes(vertex);
+    if (labels == nullptr) continue;
+    const Label& label = label_of(*labels, vertex);
+    out.bytes(label.colour);
+    out.bytes(static_cast<std::int32_t>(label.value));
+  }
   for (std::size_t n = 0; n < mesh.indices.size(); n += 3) {
     out.bytes(std::uint8_t{3});
     for (std::size_t c = 0; c < 3; ++c) out.bytes(mesh.indices[n + c]);
   }
 }
 
-void write_row(Output& out, std::string_view what, const Point& numbers) {
-  out.text(what);
+void write_numbers(Output& out, const Point& numbers) {
   for (const float number : numbers) {
     out.text(" ");
     out.number(number);
   }
-  out.text("\n");
 }
 
-void write_obj(Output& out, const BrickMesh& mesh) {
+void write_obj(Output& out, const BrickMesh& mesh, const LabelMap* labels) {
   out.text("# osteomill isosurface, mm, SPACE=LPS\n");
-  for (const MeshVertex& vertex : mesh.vertices) write_row(out, "v", vertex.position_mm);
-  for (const MeshVertex& vertex : mesh.vertices) write_row(out, "vn", vertex.normal);
+  for (const MeshVertex& vertex : mesh.vertices) {
+    out.text("v");
+    write_numbers(out, vertex.position_mm);
+    if (labels != nullptr) {
+      const auto& [red, green, blue] = label_of(*labels, vertex).colour;
+      write_numbers(out, {red / 255.0f, green / 255.0f, blue / 255.0f});
+    }
+    out.text("\n");
+  }
+  for (const MeshVertex& vertex : mesh.vertices) {
+    out.text("vn");
+    write_numbers(out, vertex.normal);
+    out.text("\n");
+  }
   for (std::size_t n = 0; n < mesh.indices.size(); n += 3) {
     out.text("f");
     for (std::size_t c = 0; c < 3; ++c) {
@@ -138,7 +166,11 @@ MeshFormat mesh_format_of(const std::filesystem::path& path) {
   throw InputError(path.string(), "a mesh is written as .stl, .ply or .obj");
 }
 
-void write_mesh(const std::filesystem::path& path, const BrickMesh& mesh) {
+bool holds_colours(MeshFormat format) {
+  return format != MeshFormat::stl;
+}
+
+void write_mesh(const std::filesystem::path& path, const BrickMesh& mesh, const LabelMap* labels) {
   const MeshFormat format = mesh_format_of(path);
   write_text_atomically(path, [&](std::ostream& stream) {
     Output out(stream);
@@ -146,9 +178,9 @@ void write_mesh(const std::filesystem::path& path, const BrickMesh& mesh) {
       case MeshFormat::stl:
         return write_stl(out, mesh);
       case MeshFormat::ply:
-        return write_ply(out, mesh);
+        return write_ply(out, mesh, labels);
       case MeshFormat::obj:
-        return write_obj(out, mesh);
+        return write_obj(out, mesh, labels);
     }
   });
 }

@@ -31,10 +31,10 @@ BrickMesh far_ball() {
       DensityView(testing_support::shape_volume(geometry, testing_support::ball(centre, 2))));
 }
 
-std::string written(const BrickMesh& mesh, const std::string& name) {
+std::string written(const BrickMesh& mesh, const std::string& name, const LabelMap* labels = nullptr) {
   const std::filesystem::path path =
       std::filesystem::path(testing::TempDir()) / ("osteomill_mesh_file_" + name);
-  write_mesh(path, mesh);
+  write_mesh(path, mesh, labels);
   std::ifstream in(path, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
   std::filesystem::remove(path);
@@ -118,6 +118,55 @@ TEST(MeshFile, ObjReadsBackToTheSameNumbers) {
     EXPECT_EQ(read.vertices[n].position_mm, mesh.vertices[n].position_mm);
   }
   EXPECT_GT(enclosed_volume_mm3(read), 33);
+}
+
+// A ball of 2 mm, of which the half with x > 0 is a structure.
+struct HalfLabelled {
+  GridGeometry grid = testing_support::centred_cube(24, 0.25);
+  BrickMesh mesh = mesh_in_one_piece(
+      DensityView(testing_support::shape_volume(grid, testing_support::ball(Vec3::Zero(), 2))));
+  LabelMap labels = {{{7, "crown", {0, 51, 255}, false}}, grid, grid, places()};
+
+  std::vector<LabelMap::Place> places() const {
+    std::vector<LabelMap::Place> places(grid.voxel_count());
+    for (std::size_t n = 0; n < places.size(); ++n) places[n] = n % 24 < 12 ? 0 : 1;
+    return places;
+  }
+};
+
+TEST(MeshFile, PlyHoldsColourAndValueOfTheLabelUnderEachVertex) {
+  const auto& [grid, mesh, labels] = HalfLabelled();
+  const std::string bytes = written(mesh, "b.ply", &labels);
+  std::size_t at = bytes.find("end_header\n") + 11;
+  EXPECT_NE(bytes.find("uchar red\nproperty uchar green\nproperty uchar blue\nproperty int label\n"),
+            std::string::npos);
+  for (const MeshVertex& vertex : mesh.vertices) {
+    EXPECT_EQ(take<MeshVertex>(bytes, at), vertex);
+    const auto colour = take<std::array<std::uint8_t, 3>>(bytes, at);
+    const auto value = take<std::int32_t>(bytes, at);
+    EXPECT_EQ(colour == labels.label(1).colour, value == 7);
+    // Between the two what lies under the surface counts, not the nearest.
+    if (std::abs(vertex.position_mm[0]) > 0.6f) {
+      EXPECT_EQ(value, vertex.position_mm[0] > 0 ? 7 : 0);
+    }
+  }
+  EXPECT_EQ(bytes.size(), at + 13 * mesh.triangle_count());
+}
+
+TEST(MeshFile, ObjHoldsTheLabelsColourBehindEachPlace) {
+  const auto& [grid, mesh, labels] = HalfLabelled();
+  std::istringstream in(written(mesh, "b.obj", &labels));
+  std::string line;
+  std::getline(in, line);
+  for (const MeshVertex& vertex : mesh.vertices) {
+    std::getline(in, line);
+    const bool crown = line.ends_with(" 0 0.2 1");
+    if (std::abs(vertex.position_mm[0]) > 0.6f) {
+      EXPECT_EQ(crown, vertex.position_mm[0] > 0) << line;
+    }
+  }
+  std::getline(in, line);
+  EXPECT_TRUE(line.starts_with("vn ")) << line;
 }
 
 // Programs that weld by position, as all do that read STL, find the same closed surface.

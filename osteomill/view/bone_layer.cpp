@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "osteomill/surface/vertex_label.h"
 #include "osteomill/view/shaders.h"
 
 namespace osteomill {
@@ -81,18 +82,11 @@ std::vector<MeshVertex> with_smooth_densities(const BrickMesh& mesh, const std::
 // The label's colour, of which the fourth channel says whether there is one.
 using LabelColour = std::array<std::uint8_t, 4>;
 
-// Of the bone just under the surface: of a scan's label map the outermost voxels are often left out.
 LabelColour label_colour_below(const LabelMap& labels, const MeshVertex& vertex) {
-  const Vec3 point_W = Eigen::Map<const Eigen::Vector3f>(vertex.position_mm.data()).cast<double>();
-  const Vec3 normal_W = Eigen::Map<const Eigen::Vector3f>(vertex.normal.data()).cast<double>();
-  const double voxel_mm = labels.scan_geometry().spacing_mm.maxCoeff();
-  for (const double voxels : {0.5, 0.0, 1.0, 1.5}) {
-    const LabelMap::Place place = labels.nearest_to(point_W - voxels * voxel_mm * normal_W);
-    if (place == 0) continue;
-    const auto& [red, green, blue] = labels.label(place).colour;
-    return {red, green, blue, 255};
-  }
-  return {};
+  const LabelMap::Place place = label_below(labels, vertex);
+  if (place == 0) return {};
+  const auto& [red, green, blue] = labels.label(place).colour;
+  return {red, green, blue, 255};
 }
 
 struct Facing {
