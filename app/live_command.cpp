@@ -63,7 +63,7 @@ Seen run_for(LiveMilling& milling, double seconds, const std::shared_ptr<const L
   const auto take = [&] {
     while (const auto record = milling.next_record()) {
       seen.faults.add(*record);
-      if (const Label* touched = seen.labels.add(*record)) warn(no_go_warning(*touched, *record));
+      if (const Label* touched = seen.labels.add(*record)) warn_of_no_go(no_go_warning(*touched, *record));
     }
     seen.bricks += milling.take_changed_bricks().size();
   };

@@ -40,7 +40,8 @@ std::string time_text(double seconds) {
 void add_quiet_option(CLI::App& command) {
   command
       .add_flag_function(
-          "--quiet", [](std::int64_t) { quiet = true; }, "Nothing but errors on standard error")
+          "--quiet", [](std::int64_t) { quiet = true; },
+          "Nothing but errors and no-go contacts on standard error")
       ->group("Options");
 }
 
@@ -71,13 +72,16 @@ void end_progress() {
 }
 
 void warn(std::string_view line) {
-  if (quiet) return;
+  if (!quiet) warn_of_no_go(line);
+}
+
+void warn_of_no_go(std::string_view line) {
   if (on_terminal()) fmt::print(stderr, "\r\033[K");
   fmt::print(stderr, "osteomill: warning: {}\n", in_one_line(line));
 }
 
 RunEvents events_on_terminal() {
-  return {show_progress, warn};
+  return {show_progress, warn, warn_of_no_go};
 }
 
 std::string in_one_line(std::string_view text) {

@@ -9,7 +9,7 @@
 
 namespace osteomill::app {
 
-/// Adds --quiet: nothing but errors on standard error.
+/// Adds --quiet: nothing but errors and no-go contacts on standard error.
 void add_quiet_option(CLI::App& command);
 
 /// How far the work `what` is, and how long it still takes, on standard error: on a terminal one line that is
@@ -20,6 +20,10 @@ void end_progress();
 
 /// One line on standard error that names what it is about and does not forbid going on.
 void warn(std::string_view line);
+
+/// The same of a burr that has come into a no-go structure: --quiet does not silence what was asked for with
+/// --no-go.
+void warn_of_no_go(std::string_view line);
 
 /// Progress and warnings as above.
 RunEvents events_on_terminal();

@@ -48,7 +48,7 @@ void run_replay(ReplayOptions options) {
   replay(*session, trajectory, [&](const TickRecord& record) {
     log.push_back(record);
     faults.add(record);
-    if (const Label* touched = labels.add(record)) warn(no_go_warning(*touched, record));
+    if (const Label* touched = labels.add(record)) warn_of_no_go(no_go_warning(*touched, record));
     if (log.size() % 1000 == 0) {
       show_progress("replay", static_cast<double>(log.size()) / static_cast<double>(trajectory.size()));
     }

@@ -63,7 +63,7 @@ std::vector<fs::path> record_trial(const TrialPlan& plan, const AlgorithmDescrip
     (tick.milling_phase ? milling : holding).push_waiting(tick.record);
     faults.add(tick.record);
     if (const Label* touched = labels.add(tick.record)) {
-      events.warn(fmt::format("{}: {}", algorithm.id.name, no_go_warning(*touched, tick.record)));
+      events.tell_no_go(fmt::format("{}: {}", algorithm.id.name, no_go_warning(*touched, tick.record)));
     }
     if (n % kTicksBetweenProgress == 0) {
       // A trial that takes longer than asked for, since the hand does not yet feel what it should, stays at

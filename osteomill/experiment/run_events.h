@@ -12,12 +12,17 @@ struct RunEvents {
   std::function<void(std::string_view what, double fraction_done)> progress;
   /// One line that people should see.
   std::function<void(const std::string& line)> warning;
+  /// The burr has come into a no-go structure; one line.
+  std::function<void(const std::string& line)> no_go;
 
   void tell_progress(std::string_view what, double fraction_done) const {
     if (progress) progress(what, fraction_done);
   }
   void warn(const std::string& line) const {
     if (warning) warning(line);
+  }
+  void tell_no_go(const std::string& line) const {
+    if (no_go) no_go(line);
   }
 };
 
