@@ -25,8 +25,22 @@ std::string isovalue_from(const ScanOptions& scan, const LoadedBone& loaded, boo
   return scan.isovalue ? "given with --iso" : "suggested: " + loaded.isovalue_from;
 }
 
-std::string absolute_path(const std::string& scan) {
-  return scan.empty() ? scan : std::filesystem::absolute(scan).lexically_normal().string();
+std::string absolute_path(const std::filesystem::path& path) {
+  return path.empty() ? std::string() : std::filesystem::absolute(path).lexically_normal().string();
+}
+
+MilledBone nothing_milled_of(const ScanOptions& scan, const LoadedBone& loaded) {
+  MilledBone bone;
+  bone.scan = absolute_path(scan.scan);
+  bone.series = scan.read.series;
+  bone.labels = absolute_path(scan.labels.map);
+  bone.label_table = absolute_path(scan.labels.table);
+  bone.no_go = scan.labels.no_go;
+  bone.name = loaded.name;
+  bone.isovalue = loaded.volume.isovalue();
+  bone.dims = loaded.volume.geometry().dims;
+  bone.fingerprint = fingerprint_of(loaded.volume.grid());
+  return bone;
 }
 
 }  // namespace
@@ -37,10 +51,7 @@ OpenedScan open_for_milling(const ScanOptions& scan, const MillingSetup& setup,
     const WorkProgress::Part reading(0.4);
     return load_bone(scan);
   }();
-  const DensityGrid& grid = loaded.volume.grid();
-  MilledBone as_scanned = {
-      absolute_path(scan.scan), loaded.name, loaded.volume.isovalue(), 0, grid.geometry().dims,
-      fingerprint_of(grid),     {}};
+  MilledBone as_scanned = nothing_milled_of(scan, loaded);
   MilledBefore before;
   if (!milled.empty()) {
     MilledBone kept = read_milled_bone(milled);

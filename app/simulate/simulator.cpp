@@ -155,10 +155,15 @@ class Simulator {
     if (!answer) return;
     if (*answer == LeftAnswer::remove) left_->file.clear();
     if (*answer == LeftAnswer::open) {
-      ScanOptions scan{left_->facts.scan, left_->facts.isovalue, options_.scan.read};
-      // Those that were asked for again.
+      const MilledBone& left = left_->facts;
+      ScanOptions scan{left.scan,
+                       left.isovalue,
+                       {.series = left.series, .max_memory_bytes = options_.scan.read.max_memory_bytes},
+                       {left.labels, left.label_table, left.no_go}};
+      // Those that are asked for now.
       std::error_code other;
-      if (std::filesystem::equivalent(scan.scan, options_.scan.scan, other))
+      if (!options_.scan.labels.map.empty() &&
+          std::filesystem::equivalent(left.scan, options_.scan.scan, other))
         scan.labels = options_.scan.labels;
       begin_opening(scan, std::move(left_->file));
     } else {

@@ -19,7 +19,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "bricks are written as they lie in memory");
 
-constexpr const char* kFirstLine = "osteomill milled bone 1";
+constexpr const char* kFirstLine = "osteomill milled bone 2";
 constexpr std::size_t kBrickBytes = 3 * sizeof(std::int32_t) + sizeof(DensityBlock::densities);
 
 template <typename Value>
@@ -37,6 +37,15 @@ bool has_label(std::istream& in, const char* label) {
   return in >> word && word == label;
 }
 
+// As many texts as a number before them says.
+bool read_texts(std::istream& in, std::vector<std::string>& texts) {
+  std::size_t count = 0;
+  std::string text;
+  if (!(in >> count)) return false;
+  while (texts.size() < count && in >> std::quoted(text)) texts.push_back(text);
+  return texts.size() == count;
+}
+
 struct Facts {
   MilledBone milled;
   std::size_t bricks = 0;
@@ -50,6 +59,10 @@ Facts read_facts(std::istream& in, const fs::path& path) {
   Facts facts;
   MilledBone& milled = facts.milled;
   bool ok = has_label(in, "scan") && in >> std::quoted(milled.scan);
+  ok = ok && has_label(in, "series") && in >> std::quoted(milled.series);
+  ok = ok && has_label(in, "labels") && in >> std::quoted(milled.labels);
+  ok = ok && has_label(in, "label_table") && in >> std::quoted(milled.label_table);
+  ok = ok && has_label(in, "no_go") && read_texts(in, milled.no_go);
   ok = ok && has_label(in, "name") && in >> std::quoted(milled.name);
   ok = ok && has_label(in, "isovalue") && in >> milled.isovalue;
   ok = ok && has_label(in, "removed_mm3") && in >> milled.removed_mm3;
@@ -108,10 +121,13 @@ void require_same_scan(const MilledBone& milled, const MilledBone& read) {
 void write_milled_bone(const fs::path& path, const MilledBone& milled) {
   write_text_atomically(path, [&](std::ostream& out) {
     out << kFirstLine << std::setprecision(std::numeric_limits<double>::max_digits10) << "\nscan "
-        << std::quoted(milled.scan) << "\nname " << std::quoted(milled.name) << "\nisovalue "
-        << milled.isovalue << "\nremoved_mm3 " << milled.removed_mm3 << "\ndims " << milled.dims[0] << ' '
-        << milled.dims[1] << ' ' << milled.dims[2] << "\nfingerprint " << milled.fingerprint << "\nbricks "
-        << milled.bricks.size() << '\n';
+        << std::quoted(milled.scan) << "\nseries " << std::quoted(milled.series) << "\nlabels "
+        << std::quoted(milled.labels) << "\nlabel_table " << std::quoted(milled.label_table) << "\nno_go "
+        << milled.no_go.size();
+    for (const std::string& label : milled.no_go) out << ' ' << std::quoted(label);
+    out << "\nname " << std::quoted(milled.name) << "\nisovalue " << milled.isovalue << "\nremoved_mm3 "
+        << milled.removed_mm3 << "\ndims " << milled.dims[0] << ' ' << milled.dims[1] << ' ' << milled.dims[2]
+        << "\nfingerprint " << milled.fingerprint << "\nbricks " << milled.bricks.size() << '\n';
     for (const DensityBlock& brick : milled.bricks) {
       put(out, std::array<std::int32_t, 3>{brick.first.i, brick.first.j, brick.first.k});
       put(out, brick.densities);

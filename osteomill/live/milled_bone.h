@@ -14,6 +14,12 @@ namespace osteomill {
 struct MilledBone {
   /// Where the scan was read from; empty for the built-in tooth.
   std::string scan;
+  /// Which series of it was asked for, where its labels are, and which of them no burr may touch, all in the
+  /// user's words; empty where that was left open.
+  std::string series;
+  std::string labels;
+  std::string label_table;
+  std::vector<std::string> no_go;
   /// As the user knows it.
   std::string name;
   double isovalue = 0;

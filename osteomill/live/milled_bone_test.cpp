@@ -26,8 +26,17 @@ Volume small_ball() {
 
 MilledBone sample() {
   const Volume bone = small_ball();
-  MilledBone milled{"/scans/a \"b\"\n c",        "a b", 1.0 / 3, 2.5, bone.geometry().dims,
-                    fingerprint_of(bone.grid()), {}};
+  MilledBone milled{"/scans/a \"b\"\n c",
+                    "1.2.3",
+                    "/scans/a.seg.nrrd",
+                    "",
+                    {"facial nerve", "7"},
+                    "a b",
+                    1.0 / 3,
+                    2.5,
+                    bone.geometry().dims,
+                    fingerprint_of(bone.grid()),
+                    {}};
   for (const VoxelIndex& first : {VoxelIndex{8, 8, 8}, VoxelIndex{16, 0, 16}}) {
     milled.bricks.emplace_back(bone.grid(), first);
     milled.bricks.back().densities[3] = -0.125f;
@@ -46,6 +55,10 @@ TEST(MilledBone, ComesBackAsItWas) {
   write_milled_bone(folder / "a.milled", milled);
   const MilledBone read = read_milled_bone(folder / "a.milled");
   EXPECT_EQ(read.scan, milled.scan);
+  EXPECT_EQ(read.series, milled.series);
+  EXPECT_EQ(read.labels, milled.labels);
+  EXPECT_EQ(read.label_table, milled.label_table);
+  EXPECT_EQ(read.no_go, milled.no_go);
   EXPECT_EQ(read.name, milled.name);
   EXPECT_EQ(read.isovalue, milled.isovalue);
   EXPECT_EQ(read.removed_mm3, milled.removed_mm3);
