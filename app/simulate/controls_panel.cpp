@@ -187,8 +187,12 @@ void draw_view(ViewState& view, const Vec3& tool_W, const PixelSize& size) {
   ui::checkbox("ghost", &view.ghost);
   ImGui::SameLine();
   ui::checkbox("arrows", &view.arrows);
-  ImGui::SameLine();
+}
+
+// Above all else: whoever cannot read what stands there, or not reach what lies below, needs these.
+void draw_reading_aids(ViewState& view) {
   if (ui::button("Help")) view.help = true;
+  ImGui::SameLine();
   if (ui::button("Smaller text")) --view.text_steps;
   ImGui::SameLine();
   if (ui::button("Larger text")) ++view.text_steps;
@@ -202,6 +206,7 @@ void draw_controls(ViewState& view, Simulation& simulation, FilesPanel& files, c
   ImGui::SetNextWindowSizeConstraints({width, 0}, {width, static_cast<float>(size.height) - ui::px(70)});
   ImGui::Begin("osteomill", nullptr, ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize);
   ImGui::PushItemWidth(ui::px(130));
+  draw_reading_aids(view);
   draw_scan(view, simulation.scan_name);
   bool changed = false;
   draw_isovalue(view, simulation);

@@ -37,13 +37,20 @@ window 1920x1080 --ui-scale 2 <<'END'
 wait 0.3 ;; state twice ;; screenshot layout-twice.png
 resize 1024 600 ;; wait 0.3 ;; state little-room ;; screenshot layout-little-room.png
 resize 1900 1000 ;; wait 0.3 ;; state room-again
-glide 200 600 0 ;; wheel -60 0.5 ;; wait 0.2 ;; click Smaller text ;; wait 0.2 ;; state smaller
+click Smaller text ;; wait 0.2 ;; state smaller
 close
 END
 is twice size "1920 x 1080"; is twice ui_scale 2.00
 is little-room size "1024 x 600"
 awk -v s="$(value little-room ui_scale)" 'BEGIN { exit !(s > 1 && s < 1.5) }' || fail "text does not fit into 1024 x 600"
 is room-again ui_scale 2.00; is smaller ui_scale 1.75
+
+# At any size of text those that change it are in sight.
+window 1280x800 --ui-scale 1.25 <<'END'
+wait 0.3 ;; screenshot layout-larger.png ;; click Smaller text ;; wait 0.2 ;; state usual
+close
+END
+is usual ui_scale 1.00
 
 for wrong in 0 100 large; do
   "$osteomill" simulate --ui-scale $wrong >said 2>errors && fail "--ui-scale $wrong is taken"
