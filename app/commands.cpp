@@ -11,6 +11,7 @@ void add_commands(CLI::App& program, const std::string& command_line) {
   add_info_command(program);
   add_mesh_command(program);
   add_save_command(program);
+  add_devices_command(program);
   add_settings_command(program);
   add_report_command(program);
 }

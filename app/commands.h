@@ -11,6 +11,7 @@ namespace osteomill::app {
 void add_commands(CLI::App& program, const std::string& command_line);
 
 void add_compare_command(CLI::App& program, const std::string& command_line);
+void add_devices_command(CLI::App& program);
 void add_info_command(CLI::App& program);
 void add_live_command(CLI::App& program, const std::string& command_line);
 void add_mesh_command(CLI::App& program);

@@ -6,14 +6,18 @@
 
 #include "app/commands.h"
 #include "app/config_file.h"
+#include "app/device_option.h"
 #include "app/positive_number.h"
 #include "app/progress.h"
 #include "app/scan_options.h"
 #include "app/trial_options.h"
 #include <fmt/core.h>
 
+#include "osteomill/device/space_mouse.h"
 #include "osteomill/experiment/entry_pictures.h"
+#include "osteomill/files/input_error.h"
 #include "osteomill/live/live_milling.h"
+#include "osteomill/operator/virtual_hand.h"
 #include "osteomill/session/fault_count.h"
 #include "osteomill/session/label_count.h"
 #include "osteomill/session/milling_setup.h"
@@ -22,12 +26,16 @@ namespace osteomill::app {
 
 namespace {
 
+constexpr double kEvery_s = 0.02;
+
 struct LiveOptions {
   ScanOptions scan;
   TrialOptions trial;
   std::vector<AlgorithmDescription> algorithm{default_algorithm()};
   double seconds = 60;
   std::string record;
+  DeviceOption device{kSimulated};
+  bool spindle = false;
 };
 
 void print_times(const char* what, const TimePercentiles& times) {
@@ -54,7 +62,75 @@ struct Seen {
   std::size_t bricks = 0;
 };
 
-Seen run_for(LiveMilling& milling, double seconds, const std::shared_ptr<const LabelMap>& labels) {
+// Who holds the tool, and what is to be done for them meanwhile.
+class Holder {
+ public:
+  explicit Holder(const DeviceOption& option) : option_(option), hardware_(open_device(option)) {
+    if (option.is(kMouse)) throw InputError("--device mouse", "needs the window: osteomill simulate");
+    if (!option.is(kSpaceMouse)) return;
+    space_mouse_.emplace();
+    if (!space_mouse_->present()) throw InputError("--device spacemouse", kNoSpaceMouse);
+  }
+
+  const ConnectedDevice* hardware() const { return hardware_.get(); }
+  // Before the entry, with what may be asked for of them.
+  Device& take_tool(const TrialOptions& trial, MillingSetup& setup, const MillingEntry& entry) {
+    const Pose X_WT = pose_above(entry, setup.tool, kHeldAbove_mm);
+    if (hardware_) {
+      setup.limits = hardware_->limits_W(setup.limits);
+      hardware_->put_at(X_WT);
+      return *hardware_;
+    }
+    const OperatorSettings simulated = trial_settings(trial).hand_and_device;
+    if (!space_mouse_) return simulated_.emplace(simulated, setup.tool, entry);
+    X_W_target_ = X_WT;
+    return virtual_.emplace(simulated.handle, pointing_hand(), X_WT);
+  }
+
+  void update(double passed_s) {
+    if (hardware_) warn_of(hardware_->report());
+    if (!space_mouse_) return;
+    const Mat3 axes = view_from_the_front().toRotationMatrix();
+    const SpaceMouseState state = space_mouse_->read();
+    X_W_target_.position_mm += passed_s * kSpaceMouse_mm_s * (axes * state.push);
+    X_W_target_.orientation =
+        quaternion_from_rotation_vector(passed_s * kSpaceMouse_rad_s * (axes * state.twist)) *
+        X_W_target_.orientation;
+    virtual_->pull_to(X_W_target_);
+  }
+
+  void print() const {
+    if (!hardware_) return;
+    const DeviceReport report = hardware_->report();
+    fmt::print(
+        "device       {}: {:.0f} poses/s, {} times at fault, {} times opened again, {} wrenches came late\n",
+        hardware_->capabilities().name, report.inputs_per_s, report.faults, report.reopened,
+        report.late_wrenches);
+  }
+  void describe(RunDescription& run) const { describe_device(run, option_.device, hardware_.get()); }
+
+ private:
+  static constexpr double kHeldAbove_mm = 1;
+
+  // Once when it begins, and once when it is over.
+  void warn_of(const DeviceReport& report) {
+    if (report.state == state_) return;
+    state_ = report.state;
+    const bool well = state_ == DeviceReport::State::ok;
+    warn(hardware_->capabilities().name + (well ? ": gives poses again" : ": " + report.complaint()));
+  }
+
+  DeviceOption option_;
+  std::unique_ptr<ConnectedDevice> hardware_;
+  DeviceReport::State state_ = DeviceReport::State::ok;
+  std::optional<SpaceMouse> space_mouse_;
+  std::optional<SimulatedOperator> simulated_;
+  std::optional<VirtualHand> virtual_;
+  Pose X_W_target_;
+};
+
+Seen run_for(LiveMilling& milling, double seconds, const std::shared_ptr<const LabelMap>& labels,
+             Holder& holder) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
   double passed_s = 0;
@@ -68,9 +144,10 @@ Seen run_for(LiveMilling& milling, double seconds, const std::shared_ptr<const L
     seen.bricks += milling.take_changed_bricks().size();
   };
   while (passed_s < seconds && milling.running()) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    std::this_thread::sleep_for(std::chrono::duration<double>(kEvery_s));
     passed_s = std::chrono::duration<double>(Clock::now() - start).count();
     take();
+    holder.update(kEvery_s);
     show_progress("live", passed_s / seconds);
   }
   milling.stop();
@@ -82,21 +159,25 @@ Seen run_for(LiveMilling& milling, double seconds, const std::shared_ptr<const L
 void run_live(LiveOptions options, const std::string& command_line) {
   ScriptSettings& script = options.trial.hand.script;
   script.milling_s = script.holding_s = 0.5 * options.seconds;
+  Holder holder(options.device);
   MillingSetup setup = options.trial.milling.setup;
   setup.algorithm = options.algorithm.front();
   LoadedBone loaded = load_bone(options.scan);
   require_workable(setup.tool, loaded.volume.geometry());
   const auto bone = std::make_shared<Volume>(std::move(loaded.volume));
   const std::shared_ptr<const LabelMap> labels = bone->labels();
+  const MillingEntry entry = place_entry(*bone, options.trial);
+  Device& device = holder.take_tool(options.trial, setup, entry);
   PreparedMilling prepared = prepare_milling(bone, setup);
   const BoneDensities densities = prepared.densities;
-  const MillingEntry entry = place_entry(*bone, options.trial);
-  SimulatedOperator hand(trial_settings(options.trial).hand_and_device, setup.tool, entry);
-  LiveMilling milling(std::move(prepared), hand);
+  LiveMilling milling(std::move(prepared), device);
+  if (options.spindle) milling.set_spindle(true);
   std::optional<EntryPictures> pictures;
   if (!options.record.empty()) {
     pictures.emplace(*bone, densities.reference, entry, events_on_terminal(), !options.scan.scan.empty());
-    milling.start_recording(options.record, milling.describe(loaded.name, command_line), [&] {
+    RunDescription run = milling.describe(loaded.name, command_line);
+    holder.describe(run);
+    milling.start_recording(options.record, run, [&] {
       std::optional<std::vector<unsigned char>> png;
       milling.read_bone([&](const Volume& now) { png = pictures->of(now, events_on_terminal()); });
       return png.value_or(std::vector<unsigned char>{});
@@ -104,12 +185,13 @@ void run_live(LiveOptions options, const std::string& command_line) {
   }
   milling.start();
   if (!milling.refused_real_time().empty()) warn(milling.refused_real_time());
-  const Seen seen = run_for(milling, options.seconds, labels);
+  const Seen seen = run_for(milling, options.seconds, labels, holder);
   if (milling.recording()) milling.stop_recording();
   if (const auto said = seen.faults.sentence()) warn(setup.algorithm.id.name + ": " + *said);
   print_timing(milling.timing());
   fmt::print("removed      {:.2f} mm^3, {} bricks of the surface meshed\n",
              milling.state().record.removed_mm3, seen.bricks);
+  holder.print();
   for (const std::string& line : label_lines(seen.labels)) fmt::print("label        {}\n", line);
 }
 
@@ -118,7 +200,8 @@ void run_live(LiveOptions options, const std::string& command_line) {
 void add_live_command(CLI::App& program, const std::string& command_line) {
   auto options = std::make_shared<LiveOptions>();
   CLI::App* command = program.add_subcommand(
-      "live", "Run one algorithm in real time with the simulated hand, and say how well time is kept");
+      "live",
+      "Run one algorithm in real time with a device or the simulated hand, and say how well time is kept");
   command->group("Compare and measure");
   add_scan_options(*command, options->scan);
   add_algorithm_option(*command, options->algorithm);
@@ -126,8 +209,11 @@ void add_live_command(CLI::App& program, const std::string& command_line) {
   add_trial_options(*command, options->trial);
   command->remove_option(command->get_option("--seconds"));
   command->option_defaults()->group("The hand and its device");
-  add_positive(*command, "--seconds", options->seconds, "s", "Half of it milling, half holding still");
+  add_positive(*command, "--seconds", options->seconds, "s",
+               "How long; the simulated hand mills for half of it and holds still for the other");
   command->add_option("--record", options->record, "A recording (HDF5) of every tick")->type_name("FILE");
+  add_device_option(*command, options->device);
+  command->add_flag("--spindle", options->spindle, "The spindle turns without a button of the device");
   add_quiet_option(*command);
   command->callback([=] {
     apply_config_file(*command);

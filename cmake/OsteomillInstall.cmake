@@ -14,6 +14,7 @@ set(pkgconfig_DCMTK::dcmdata "-ldcmdata -loflog -lofstd")
 set(pkgconfig_DCMTK::dcmjpeg "-ldcmjpeg -ldcmimgle")
 set(pkgconfig_DCMTK::dcmjpls -ldcmjpls)
 set(pkgconfig_openjp2 libopenjp2)
+set(pkgconfig_tomlplusplus::tomlplusplus tomlplusplus)
 
 # Sorts libraries as the stages link them into PREFIX_packages and PREFIX_flags.
 function(osteomill_pkgconfig_names prefix)

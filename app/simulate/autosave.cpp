@@ -5,7 +5,6 @@
 #include <exception>
 #include <system_error>
 
-#include "app/simulate/first_time.h"
 #include <fcntl.h>
 #include <fmt/chrono.h>
 #include <fmt/core.h>
@@ -15,6 +14,7 @@
 
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/files/input_error.h"
+#include "osteomill/files/user_folders.h"
 
 namespace osteomill::app {
 

@@ -99,16 +99,18 @@ void draw_tool(MillingSetup& wanted, bool& sound, bool& changed) {
   ui::checkbox("sound", &sound);
 }
 
-void draw_session(ViewState& view, LiveMilling& milling) {
+void draw_session(ViewState& view, LiveMilling& milling, bool by_pointer) {
   if (!ui::header("Milling", true)) return;
   bool spindle = milling.spindle_asked();
   if (ui::checkbox("spindle on", &spindle)) milling.set_spindle(spindle);
   ImGui::SameLine();
   bool paused = milling.state().paused;
   if (ui::checkbox("pause", &paused)) milling.set_paused(paused);
-  ImGui::SameLine();
-  if (ui::button(view.holding_tool ? "Let go (T)##hold" : "Take the tool (T)##hold")) {
-    view.holding_tool = !view.holding_tool;
+  if (by_pointer) {
+    ImGui::SameLine();
+    if (ui::button(view.holding_tool ? "Let go (T)##hold" : "Take the tool (T)##hold")) {
+      view.holding_tool = !view.holding_tool;
+    }
   }
   const bool free = !milling.preparing();
   if (ui::button("Undo cut", free && milling.cuts() > 0)) milling.undo();
@@ -210,7 +212,8 @@ void draw_controls(ViewState& view, Simulation& simulation, FilesPanel& files, c
   draw_scan(view, simulation.scan_name);
   bool changed = false;
   draw_isovalue(view, simulation);
-  draw_session(view, simulation.milling);
+  draw_session(view, simulation.milling, simulation.holder.is_pointer());
+  if (simulation.holder.hardware != nullptr) draw_device(view, *simulation.holder.hardware);
   draw_algorithm(view.wanted, changed);
   draw_tool(view.wanted, view.sound, changed);
   draw_view(view, simulation.milling.state().record.X_WT.position_mm, size);

@@ -71,7 +71,7 @@ void FilesPanel::record(ViewState& view, Simulation& simulation) {
       view.result = last_recording_;
     } else {
       simulation.milling.start_recording(
-          name("recording.h5"), simulation.milling.describe(simulation.scan_name, simulation.command_line),
+          name("recording.h5"), simulation.describe(),
           [this, camera = view.camera] { return encode_png(take_picture_(camera)); });
       recording_since_ = std::chrono::steady_clock::now();
       view.message.clear();

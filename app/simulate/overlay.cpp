@@ -26,6 +26,7 @@ constexpr const char* kControls[][2] = {
     {"Pause, take back the last cut", "P, Ctrl+Z"},
     {"Full screen, this page", "F11, F1"},
     {"With a SpaceMouse", "push and twist it; a button turns the spindle on and off"},
+    {"With a haptic device", "its first button mills; hold C or its second to move the hand alone"},
 };
 
 ImVec2 at(const Eigen::Vector2d& place) {

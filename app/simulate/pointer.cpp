@@ -72,11 +72,11 @@ ToolInput keys_for_tool() {
   return input;
 }
 
-void take_keys(ViewState& view, LiveMilling& milling) {
+void take_keys(ViewState& view, LiveMilling& milling, bool by_pointer) {
   const ImGuiIO& io = ImGui::GetIO();
   if (io.WantTextInput) return;
   const auto pressed = [](int key) { return ImGui::IsKeyPressed(key, false); };
-  if (pressed(GLFW_KEY_T)) view.holding_tool = !view.holding_tool;
+  if (pressed(GLFW_KEY_T) && by_pointer) view.holding_tool = !view.holding_tool;
   if (pressed(GLFW_KEY_ESCAPE)) view.holding_tool = false;
   if (pressed(GLFW_KEY_SPACE)) milling.set_spindle(!milling.spindle_asked());
   if (pressed(GLFW_KEY_P)) milling.set_paused(!milling.state().paused);
@@ -95,7 +95,7 @@ void bring_tool(ViewState& view, Simulation& simulation, const PixelSize& size,
     if (pixel) view.X_W_brought = tool_before(bone, tool, view.camera, size, pixel->x(), pixel->y());
     if (!view.X_W_brought) view.X_W_brought = tool_before_middle(bone, tool, view.camera, size);
   });
-  milling.place(*view.X_W_brought, [&hand = simulation.hand](const Pose& X_WD) { hand.put_at(X_WD); });
+  milling.place(*view.X_W_brought);
 }
 
 void pull_tool(ViewState& view, Simulation& simulation, const ToolInput& input, const PixelSize& size) {
@@ -103,6 +103,7 @@ void pull_tool(ViewState& view, Simulation& simulation, const ToolInput& input, 
     if (simulation.milling.placing()) return;
     view.X_W_target = *std::exchange(view.X_W_brought, std::nullopt);
   }
+  if (!simulation.holder.is_pointer()) return;
   const Pose& X_WD = simulation.milling.state().record.X_WD;
   view.X_W_target = moved_target(view.X_W_target, X_WD, view.camera, size, input);
   simulation.hand.pull_to(view.X_W_target);
@@ -127,7 +128,7 @@ void take_input(ViewState& view, Simulation& simulation, SpaceMouse& space_mouse
   const MillingTool& tool = milling.setup().tool;
   if (ImGui::IsMouseClicked(0)) {
     const bool on_picture = !io.WantCaptureMouse;
-    view.dragging_tool = on_picture && !view.holding_tool && !io.KeyShift &&
+    view.dragging_tool = on_picture && !view.holding_tool && !io.KeyShift && simulation.holder.is_pointer() &&
                          on_tool(view, state.record.X_WT, tool, size, io.MousePos);
     view.dragging_view = on_picture && !view.dragging_tool && !view.holding_tool;
     view.pedal_down = on_picture && view.holding_tool;
@@ -146,7 +147,12 @@ void take_input(ViewState& view, Simulation& simulation, SpaceMouse& space_mouse
   }
   if (on_picture && view.holding_tool) input.wheel = static_cast<double>(io.MouseWheel);
   pull_tool(view, simulation, input, size);
-  take_keys(view, milling);
+  if (ConnectedDevice* hardware = simulation.holder.hardware) {
+    hardware->set_view(view.camera.orientation);
+    const bool clutched = !io.WantTextInput && held(GLFW_KEY_C);
+    hardware->set_clutched(clutched || view.calibration.step != ViewState::Calibration::Step::none);
+  }
+  take_keys(view, milling, simulation.holder.is_pointer());
   const bool by_key = !io.WantTextInput && ImGui::IsKeyPressed(GLFW_KEY_B, false);
   if ((std::exchange(view.bring_asked, false) || by_key) && !milling.placing()) {
     std::optional<Eigen::Vector2d> pointer;

@@ -12,7 +12,6 @@ namespace osteomill::app {
 namespace {
 
 constexpr std::size_t kPlotPoints = 200;
-const ImVec4 kWarning{1.0f, 0.72f, 0.25f, 1};
 
 // The greatest of each stretch of ticks: peaks must not fall between two points.
 std::vector<float> thinned(const std::deque<TickRecord>& history, double (*magnitude)(const TickRecord&)) {
@@ -50,17 +49,22 @@ void draw_faults(const std::deque<TickRecord>& history) {
            record.fault == WrenchFault::force_and_torque_clamped;
   });
   const auto not_finite = std::count_if(history.begin(), history.end(), [](const TickRecord& record) {
-    return record.fault == WrenchFault::not_finite || record.fault == WrenchFault::pose_not_finite;
+    return record.fault == WrenchFault::not_finite;
+  });
+  const auto no_pose = std::count_if(history.begin(), history.end(), [](const TickRecord& record) {
+    return record.fault == WrenchFault::pose_not_finite;
   });
   const auto unsafe = std::count_if(history.begin(), history.end(), [](const TickRecord& record) {
     return record.fault == WrenchFault::pose_jumped || record.fault == WrenchFault::tick_late;
   });
   if (clamped > 0)
-    ImGui::TextColored(kWarning, "clamped to the limit: %d of 5000 ticks", static_cast<int>(clamped));
+    ImGui::TextColored(ui::kWarning, "clamped to the limit: %d of 5000 ticks", static_cast<int>(clamped));
   if (not_finite > 0)
-    ImGui::TextColored(kWarning, "not finite, sent as zero: %d ticks", static_cast<int>(not_finite));
+    ImGui::TextColored(ui::kWarning, "not finite, sent as zero: %d ticks", static_cast<int>(not_finite));
+  if (no_pose > 0)
+    ImGui::TextColored(ui::kWarning, "no pose to feel with: %d ticks", static_cast<int>(no_pose));
   if (unsafe > 0)
-    ImGui::TextColored(kWarning, "device jumped or tick late, sent as zero: %d ticks",
+    ImGui::TextColored(ui::kWarning, "device jumped or tick late, sent as zero: %d ticks",
                        static_cast<int>(unsafe));
 }
 
@@ -86,7 +90,7 @@ float draw_readings(Simulation& simulation, double pictures_per_s, const PixelSi
   draw_faults(history);
   if (!simulation.milling.refused_real_time().empty()) {
     ImGui::PushTextWrapPos(0);
-    ImGui::TextColored(kWarning, "%s", simulation.milling.refused_real_time().c_str());
+    ImGui::TextColored(ui::kWarning, "%s", simulation.milling.refused_real_time().c_str());
     ImGui::PopTextWrapPos();
   }
   const float below_px = ImGui::GetWindowPos().y + ImGui::GetWindowSize().y + ui::px(8);

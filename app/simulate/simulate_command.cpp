@@ -38,6 +38,7 @@ void add_simulate_command(CLI::App& program, const std::string& command_line) {
   add_algorithm_option(*command, options->algorithm);
   command->get_option("--algorithm")->expected(1);
   add_milling_options(*command, options->milling);
+  add_device_option(*command, options->simulator.device);
   command->option_defaults()->group("The window");
   command->add_option("--out", options->simulator.folder, "For recordings and what is saved")
       ->type_name("FOLDER")

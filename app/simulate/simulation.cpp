@@ -78,8 +78,8 @@ OpenedScan open_for_milling(const ScanOptions& scan, const MillingSetup& setup,
           std::move(prepared)};
 }
 
-Simulation::Simulation(OpenedScan opened, const Pose& X_WT, const std::string& command_line_,
-                       std::optional<AutosaveFile> autosave_file)
+Simulation::Simulation(OpenedScan opened, const Pose& X_WT, const Holder& holder_,
+                       const std::string& command_line_, std::optional<AutosaveFile> autosave_file)
     : scan_name(std::move(opened.name)),
       command_line(command_line_),
       first_isovalue(opened.as_scanned.isovalue),
@@ -87,8 +87,10 @@ Simulation::Simulation(OpenedScan opened, const Pose& X_WT, const std::string& c
       unit(std::move(opened.unit)),
       histogram(opened.histogram),
       grey_window(opened.grey_window),
+      holder(holder_),
       hand(handle_settings(opened.milling.setup), pointing_hand(), X_WT),
-      milling(std::move(opened.milling), hand),
+      device(take_tool(opened.milling.setup, opened.milling.session->volume(), X_WT)),
+      milling(std::move(opened.milling), device),
       autosave(std::move(opened.as_scanned), std::move(autosave_file)),
       labels(std::move(opened.labels)) {
   if (labels) label_count = LabelCount(labels->labels());
@@ -98,6 +100,23 @@ Simulation::Simulation(OpenedScan opened, const Pose& X_WT, const std::string& c
     std::this_thread::sleep_for(std::chrono::microseconds(200));
     if (const auto record = milling.next_record()) history.push_back(*record);
   }
+}
+
+Device& Simulation::take_tool(const MillingSetup& setup, const Volume& bone, const Pose& X_WT) {
+  if (holder.hardware != nullptr) {
+    holder.hardware->put_at(X_WT);
+    return *holder.hardware;
+  }
+  if (holder.is_pointer()) return hand;
+  OperatorSettings settings;
+  settings.handle = handle_settings(setup);
+  return simulated.emplace(settings, setup.tool, place_entry(bone, setup.tool));
+}
+
+RunDescription Simulation::describe() const {
+  RunDescription run = milling.describe(scan_name, command_line);
+  describe_device(run, holder.name, holder.hardware);
+  return run;
 }
 
 void Simulation::update() {

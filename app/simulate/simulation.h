@@ -6,11 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "app/device_option.h"
 #include "app/scan_options.h"
 #include "app/simulate/autosave.h"
 #include "app/simulate/bone_view.h"
 
 #include "osteomill/live/live_milling.h"
+#include "osteomill/operator/simulated_operator.h"
 #include "osteomill/operator/virtual_hand.h"
 #include "osteomill/session/label_count.h"
 #include "osteomill/view/clip_face.h"
@@ -39,14 +41,26 @@ struct OpenedScan {
 OpenedScan open_for_milling(const ScanOptions& scan, const MillingSetup& setup,
                             const std::filesystem::path& milled = {});
 
-/// A scan that is being milled by a virtual hand. Begins to tick when it is made; one at a time.
+/// Who holds the tool: hardware, which outlives the simulation, or a hand without hardware of this name.
+struct Holder {
+  std::string name = kMouse;
+  ConnectedDevice* hardware = nullptr;
+
+  /// What moves the tool is mouse, keyboard or SpaceMouse.
+  bool is_pointer() const { return hardware == nullptr && name != kSimulated; }
+};
+
+/// A scan that is being milled. Begins to tick when it is made; one at a time.
 struct Simulation {
-  /// The tool begins at `X_WT`. What was milled before may already be kept in `autosave_file`.
-  Simulation(OpenedScan opened, const Pose& X_WT, const std::string& command_line,
+  /// The tool begins at `X_WT`; with the simulated operator where they begin. What was milled before may
+  /// already be kept in `autosave_file`.
+  Simulation(OpenedScan opened, const Pose& X_WT, const Holder& holder, const std::string& command_line,
              std::optional<AutosaveFile> autosave_file = std::nullopt);
 
   /// Once a picture: as LiveMilling::update, and keeps the ticks and what was milled.
   void update();
+  /// What a recording that is begun now says of it.
+  RunDescription describe() const;
 
   std::string scan_name;
   std::string command_line;
@@ -56,7 +70,12 @@ struct Simulation {
   std::string unit;
   DensityHistogram histogram;
   WindowLevel grey_window;
+  Holder holder;
+  /// Pulled where the pointer is, where it is a pointer that moves the tool.
   VirtualHand hand;
+  std::optional<SimulatedOperator> simulated;
+  /// That of them which holds the tool.
+  Device& device;
   LiveMilling milling;
   Autosave autosave;
   /// Null where the bone has none.
@@ -70,6 +89,7 @@ struct Simulation {
   std::deque<TickRecord> history;
 
  private:
+  Device& take_tool(const MillingSetup& setup, const Volume& bone, const Pose& X_WT);
   void count_labels();
 
   std::uint64_t counted_version_ = 0;

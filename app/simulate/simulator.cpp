@@ -30,6 +30,7 @@
 #include <imgui.h>
 
 #include "osteomill/files/atomic_file.h"
+#include "osteomill/files/input_error.h"
 #include "osteomill/image/png.h"
 #include "osteomill/sound/sound_stream.h"
 #include "osteomill/view/image_annotations.h"
@@ -72,8 +73,12 @@ class Simulator {
  public:
   explicit Simulator(const SimulatorOptions& options)
       : options_(options),
+        hardware_(open_device(options.device)),
         window_("osteomill", options.size, options.ui_scale),
         files_(options.folder, [this](const Camera& camera) { return picture(camera); }) {
+    if (options.device.is(kSpaceMouse) && !space_mouse_.present())
+      throw InputError("--device spacemouse", kNoSpaceMouse);
+    if (hardware_) options_.setup.limits = hardware_->limits_W(options_.setup.limits);
     if (!options.script.empty()) script_.emplace(options.script);
     view_.help = !options.no_help;
   }
@@ -250,7 +255,8 @@ class Simulator {
     // Before its upper half, so that the shaft leaves the bone in sight.
     const Pose X_WT =
         tool_before_middle(bone, opened.milling.setup.tool, view_.camera, size, 0.15 * size.height);
-    simulation_ = std::make_unique<Simulation>(std::move(opened), X_WT, options_.command_line,
+    const Holder holder{options_.device.device, hardware_.get()};
+    simulation_ = std::make_unique<Simulation>(std::move(opened), X_WT, holder, options_.command_line,
                                                std::exchange(opened_milled_, std::nullopt));
     show_from_the_beginning();
   }
@@ -424,6 +430,7 @@ class Simulator {
   }
 
   SimulatorOptions options_;
+  std::unique_ptr<ConnectedDevice> hardware_;
   Window window_;
   std::optional<UiScript> script_;
   Opening opening_;

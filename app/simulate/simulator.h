@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "app/device_option.h"
 #include "app/scan_options.h"
 
 #include "osteomill/session/milling_setup.h"
@@ -13,6 +14,7 @@ namespace osteomill::app {
 struct SimulatorOptions {
   ScanOptions scan;
   MillingSetup setup;
+  DeviceOption device{kMouse};
   PixelSize size{1280, 800};
   /// How much larger than usual text is; not given: as the screen asks for.
   std::optional<double> ui_scale;
@@ -24,8 +26,8 @@ struct SimulatorOptions {
   std::string command_line;
 };
 
-/// Opens the window and returns when it is closed. Throws InputError where no window can be opened, or the
-/// scan is at fault.
+/// Opens the window and returns when it is closed. Throws InputError where no window can be opened, the
+/// device cannot be had, or the scan is at fault.
 void run_simulator(const SimulatorOptions& options);
 
 }  // namespace osteomill::app

@@ -121,6 +121,9 @@ std::string state_text(const std::string& name, const ViewState& view, Simulatio
               fmt::format("{:.3f}", counted ? simulation.removed_by_label_mm3[n + 1] : 0));
   }
   lines.add("no_go", simulation.no_go_text);
+  const ConnectedDevice* hardware = simulation.holder.hardware;
+  lines.add("device", hardware != nullptr ? hardware->capabilities().name : simulation.holder.name);
+  lines.add("device_fault", hardware != nullptr ? hardware->report().complaint() : "");
   lines.add("unsaved", simulation.autosave.unsaved(milling));
   lines.add("recording", milling.recording());
   const auto recording_s = files.recording_s(simulation);

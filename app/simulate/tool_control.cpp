@@ -9,8 +9,6 @@ constexpr double kWheelStep_mm = 0.2;
 constexpr double kKeys_mm_s = 6;
 constexpr double kKeysAway_mm_s = 3;
 constexpr double kKeysTurn_rad_s = 0.6;
-constexpr double kSpaceMouse_mm_s = 20;
-constexpr double kSpaceMouse_rad_s = 1.2;
 // Against bone the hand's springs push no harder beyond these; free of it, the tool is on its way.
 constexpr double kFarthest_mm = 6;
 constexpr double kFarthestFree_mm = 25;

@@ -30,6 +30,14 @@ struct ViewState {
   bool dragging_view = false;
   /// The left button is the spindle's pedal as long as it is down.
   bool pedal_down = false;
+  /// How far the operator is with telling by two moves how the device stands; the tool stays meanwhile.
+  struct Calibration {
+    enum class Step { none, right, up };
+    Step step = Step::none;
+    Vec3 from_D_mm = Vec3::Zero();
+    Vec3 right_D_mm = Vec3::Zero();
+  };
+  Calibration calibration;
   /// What the sliders say, and whether it is still to become real.
   MillingSetup wanted;
   bool wanted_is_new = false;

@@ -27,6 +27,8 @@ float px(float length);
 void set_scale(double scale);
 /// Of what stands below one another on the right, at the usual size of text.
 inline constexpr float kRightWidth_px = 250;
+/// The colour of what is not as it should be.
+inline const ImVec4 kWarning{1.0f, 0.72f, 0.25f, 1};
 
 bool button(const char* label, bool enabled = true);
 bool checkbox(const char* label, bool* value);

@@ -5,10 +5,9 @@
 
 namespace osteomill {
 
-/// Where poses come from and wrenches go: a simulated operator, a virtual hand, a recorded trajectory; there
-/// is none for hardware yet (docs/add-a-device.md). All calls come from the haptic thread, once a tick, and
-/// none allocates, locks, logs or throws. But when the program crashes in real time and the haptic thread
-/// does not answer, zero is written from the signal's handler.
+/// Where poses come from and wrenches go: hardware behind its thread (ConnectedDevice), a simulated operator,
+/// a virtual hand, a recorded trajectory. All calls come from the haptic thread, once a tick, and none
+/// allocates, locks, logs or throws; only `let_go` may come from anywhere.
 class Device {
  public:
   virtual ~Device() = default;
@@ -22,6 +21,15 @@ class Device {
   /// The tick is over: where the simulated tool is shown, and how long it is until the next pose is read. A
   /// simulated device moves on; hardware has nothing to do.
   virtual void tick_done(const Pose& /*X_WT*/, double /*dt_s*/) {}
+  /// Between two ticks: the tool is to be there, wherever the hand is, and moves on from there with it. A
+  /// device that gives poses of its own (a trajectory) does nothing.
+  virtual void put_at(const Pose& /*X_WD*/) {}
+  /// The program is ending: zero from now on, whatever is written later. From any thread, and from a signal's
+  /// handler. True once zero has gone out; it is asked again until then.
+  virtual bool let_go() {
+    write_wrench(Wrench{});
+    return true;
+  }
 };
 
 }  // namespace osteomill

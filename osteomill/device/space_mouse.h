@@ -13,6 +13,10 @@ struct SpaceMouseState {
   int presses = 0;
 };
 
+/// How fast one that is pushed or twisted as far as it goes moves and turns what it moves.
+inline constexpr double kSpaceMouse_mm_s = 20;
+inline constexpr double kSpaceMouse_rad_s = 1.2;
+
 /// A SpaceMouse behind the daemon spacenavd (or whatever listens at the socket that SPNAV_SOCKET names). One
 /// at a time; for one thread, not the haptic one.
 class SpaceMouse {

@@ -44,7 +44,7 @@ void CrashStop::stop_the_device() {
   asked_.store(true, std::memory_order_release);
   const timespec wait{0, kWait_ns};
   for (int n = 0; n < kWaits && !stopped_.load(std::memory_order_acquire); ++n) nanosleep(&wait, nullptr);
-  if (!stopped_.load(std::memory_order_acquire)) device_.write_wrench(Wrench{});
+  for (int n = 0; n < kWaits && !device_.let_go(); ++n) nanosleep(&wait, nullptr);
 }
 
 }  // namespace osteomill

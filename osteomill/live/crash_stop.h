@@ -11,8 +11,8 @@ namespace osteomill {
 /// The signal then does what it did before. One at a time; made before the haptic thread starts ticking,
 /// destroyed after it has ended.
 ///
-/// The haptic thread is asked to stop and given 50 ms to send zero itself, since devices are used by one
-/// thread; where it does not answer (it may be the one that crashed), zero is sent from the signal's handler.
+/// The haptic thread is asked to stop and given 50 ms to send zero itself (it may be the one that crashed);
+/// then the device is let go of from the signal's handler, and given 50 ms to say that zero has gone out.
 class CrashStop {
  public:
   explicit CrashStop(Device& device);

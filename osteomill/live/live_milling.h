@@ -66,7 +66,7 @@ class LiveMilling {
   bool spindle_asked() const { return spindle_; }
   void set_paused(bool paused) { live_.set_paused(paused); }
   /// The tool and its device to a pose free of bone (LiveSession::place).
-  void place(const Pose& X_WD, std::function<void(const Pose&)> put) { live_.place(X_WD, std::move(put)); }
+  void place(const Pose& X_WD) { live_.place(X_WD); }
   bool placing() const { return live_.placing(); }
   /// Another algorithm, tool or setting. This and the following do nothing while something is being prepared.
   void change(const MillingSetup& setup);

@@ -254,7 +254,7 @@ TEST_F(LiveMillingTest, TheToolIsPlacedWithoutAStepInTheWrench) {
       while (milling_.next_record()) {
       }
       milling_.set_spindle(true);
-      milling_.place(X_W_free, [this](const Pose& X_WD) { hand_.put_at(X_WD); });
+      milling_.place(X_W_free);
       milling_.set_spindle(false);
       while (milling_.placing()) std::this_thread::sleep_for(1ms);
       EXPECT_LT((milling_.state().record.X_WD.position_mm - X_W_free.position_mm).norm(), 0.1);

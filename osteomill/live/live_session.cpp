@@ -5,8 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "osteomill/device/real_time.h"
 #include "osteomill/device/spsc_queue.h"
-#include "osteomill/live/real_time.h"
 
 namespace osteomill {
 
@@ -98,10 +98,10 @@ LiveSession::CommandNumber LiveSession::replace(std::unique_ptr<MillingSession> 
   return send(Replace{std::move(session)});
 }
 
-LiveSession::CommandNumber LiveSession::place(const Pose& X_WD, std::function<void(const Pose&)> put) {
+LiveSession::CommandNumber LiveSession::place(const Pose& X_WD) {
   if (placing()) return commands_sent_;
   placing_.store(true, std::memory_order_release);
-  return send(Place{X_WD, std::make_unique<std::function<void(const Pose&)>>(std::move(put))});
+  return send(Place{X_WD});
 }
 
 LiveSession::CommandNumber LiveSession::listen(TickListener listener) {
@@ -184,8 +184,8 @@ void LiveSession::apply(Action& action) {
     std::swap(session_, replace->session);
     session_->guard().take_over(replace->session->guard());
     session_->take_over_tool(last_X_WT_);
-  } else if (auto* place = std::get_if<Place>(&action)) {
-    std::swap(place_, *place);
+  } else if (const auto* place = std::get_if<Place>(&action)) {
+    place_ = *place;
     letting_go_ = true;
     session_->guard().let_go();
   } else if (auto* listen = std::get_if<Listen>(&action)) {
@@ -196,7 +196,7 @@ void LiveSession::apply(Action& action) {
 // True in the tick in which the tool comes to its place.
 bool LiveSession::place_when_at_rest() {
   if (!letting_go_ || !session_->guard().is_at_rest()) return false;
-  (*place_.put)(place_.X_WD);
+  device_.put_at(place_.X_WD);
   session_->begin_at(place_.X_WD);
   session_->guard().begin_anew();
   letting_go_ = false;

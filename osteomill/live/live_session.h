@@ -57,10 +57,10 @@ class LiveSession {
   /// Another algorithm, tool, setting or bone, prepared beforehand.
   CommandNumber replace(std::unique_ptr<MillingSession> session);
   /// The tool to a pose free of bone, however far away. The wrench fades within 50 ms, in which nothing is
-  /// milled, so that the hand feels no step; then the haptic thread calls `put`, which moves the device there
-  /// (and keeps to the rules of the tick), and the algorithm begins anew. One at a time: nothing while
+  /// milled, so that the hand feels no step; then the device is put there (Device::put_at), and the algorithm
+  /// begins anew. One at a time: nothing while
   /// `placing`.
-  CommandNumber place(const Pose& X_WD, std::function<void(const Pose&)> put);
+  CommandNumber place(const Pose& X_WD);
   bool placing() const { return placing_.load(std::memory_order_acquire); }
   /// In place of the listener before, which is no longer called once the command is done. May be empty.
   CommandNumber listen(TickListener listener);
@@ -101,7 +101,6 @@ class LiveSession {
   };
   struct Place {
     Pose X_WD;
-    std::unique_ptr<std::function<void(const Pose&)>> put;
   };
   struct Listen {
     std::unique_ptr<TickListener> listener;

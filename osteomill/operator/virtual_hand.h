@@ -24,7 +24,7 @@ class VirtualHand final : public Device {
   void pull_to(const Pose& X_W_target);
   /// The haptic thread, between two ticks: the hand and its handle are there, at rest, and stay until the
   /// next `pull_to` after it. Safe in the tick.
-  void put_at(const Pose& X_WD);
+  void put_at(const Pose& X_WD) override;
   /// The most that the hand pushes, N.
   void set_push(double push_N) { push_N_.store(push_N, std::memory_order_relaxed); }
 

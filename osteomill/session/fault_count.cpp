@@ -15,8 +15,10 @@ void FaultCount::add(const TickRecord& record) {
       ++clamped_;
       return;
     case WrenchFault::not_finite:
-    case WrenchFault::pose_not_finite:
       ++not_finite_;
+      return;
+    case WrenchFault::pose_not_finite:
+      ++no_pose_;
       return;
     case WrenchFault::pose_jumped:
     case WrenchFault::tick_late:
@@ -26,11 +28,13 @@ void FaultCount::add(const TickRecord& record) {
 }
 
 std::optional<std::string> FaultCount::sentence() const {
-  if (clamped_ == 0 && not_finite_ == 0 && jumped_or_late_ == 0) return std::nullopt;
+  if (clamped_ == 0 && not_finite_ == 0 && no_pose_ == 0 && jumped_or_late_ == 0) return std::nullopt;
   return fmt::format(
       "{} wrenches were clamped to the device's limits, {} were not finite and sent as zero, {} were sent as "
-      "zero since the device jumped or the tick came late",
-      clamped_, not_finite_, jumped_or_late_);
+      "zero since the device gave no pose (a clutch that was held among them), {} since it jumped or the "
+      "tick "
+      "came late",
+      clamped_, not_finite_, no_pose_, jumped_or_late_);
 }
 
 }  // namespace osteomill

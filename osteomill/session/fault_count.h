@@ -17,6 +17,7 @@ class FaultCount {
  private:
   int clamped_ = 0;
   int not_finite_ = 0;
+  int no_pose_ = 0;
   int jumped_or_late_ = 0;
 };
 

@@ -17,22 +17,10 @@ Wrench operator+(const Wrench& a, const Wrench& b) {
   return {a.force_N + b.force_N, a.torque_Nmm + b.torque_Nmm};
 }
 
-bool is_zero(const Wrench& wrench) {
-  return wrench.force_N.isZero(0) && wrench.torque_Nmm.isZero(0);
-}
-
-// `to`, or as far towards it as may be.
-Vec3 towards(const Vec3& from, const Vec3& to, double most, bool& short_of_it) {
-  const double way = (to - from).norm();
-  if (way <= most) return to;
-  short_of_it = true;
-  return from + most / way * (to - from);
-}
-
 }  // namespace
 
 GuardSettings GuardSettings::for_a_hand(const WrenchLimits& limits) {
-  return {limits, 4000, 1e5, 0.1, 5, 0.01};
+  return {limits, kRatesForAHand, 0.1, 5, 0.005};
 }
 
 void WrenchGuard::begin_anew() {
@@ -60,13 +48,8 @@ bool WrenchGuard::is_at_rest() const {
 
 SafeWrench WrenchGuard::approach(const Wrench& target, WrenchFault fault, double dt_s) {
   const double tick_s = dt_s > 0 ? std::min(dt_s, kUsualTick_s) : 0;
-  // No limit stays none in a tick of no length.
-  const auto in_a_tick = [&](double rate) { return rate < GuardSettings::kAny ? rate * tick_s : rate; };
-  bool short_of_it = false;
-  sent_.force_N =
-      towards(sent_.force_N, target.force_N, in_a_tick(settings_.max_force_rate_N_s), short_of_it);
-  sent_.torque_Nmm =
-      towards(sent_.torque_Nmm, target.torque_Nmm, in_a_tick(settings_.max_torque_rate_Nmm_s), short_of_it);
+  sent_ = osteomill::approach(sent_, target, settings_.rates, tick_s);
+  const bool short_of_it = sent_.force_N != target.force_N || sent_.torque_Nmm != target.torque_Nmm;
   observer_.send(sent_);
   return {sent_, short_of_it && fault == WrenchFault::none ? WrenchFault::eased : fault};
 }

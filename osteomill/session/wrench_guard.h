@@ -1,29 +1,26 @@
 #pragma once
 
-#include <limits>
 #include <optional>
 
-#include "osteomill/geometry/wrench.h"
+#include "osteomill/geometry/wrench_rates.h"
 #include "osteomill/session/passivity_observer.h"
 
 namespace osteomill {
 
 /// What a wrench may be, and how fast it may change, on its way to a hand.
 struct GuardSettings {
-  static constexpr double kAny = std::numeric_limits<double>::infinity();
+  static constexpr double kAny = WrenchRates::kAny;
 
   WrenchLimits limits;
-  /// The most by which force and torque change, as vectors.
-  double max_force_rate_N_s = kAny;
-  double max_torque_rate_Nmm_s = kAny;
+  WrenchRates rates;
   /// How long it takes from what was sent before to what is asked for, where they need not agree.
   double blend_s = 0;
   /// The furthest that a device moves in a tick, and the longest tick; beyond them zero is sent.
   double max_move_mm = kAny;
   double max_tick_s = kAny;
 
-  /// For a person's hand: from 20 N or 500 N mm to zero within 5 ms, a blend of 0.1 s, moves of up to 5 mm
-  /// and ticks of up to 10 ms. The default only shortens to the limits, for hands that are simulated.
+  /// For a person's hand: kRatesForAHand, a blend of 0.1 s, moves of up to 5 mm and ticks of up to 5 ms. The
+  /// default only shortens to the limits, for hands that are simulated.
   static GuardSettings for_a_hand(const WrenchLimits& limits);
 };
 

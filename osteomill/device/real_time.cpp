@@ -1,4 +1,4 @@
-#include "osteomill/live/real_time.h"
+#include "osteomill/device/real_time.h"
 
 #include <cerrno>
 #include <cstring>

@@ -1,0 +1,130 @@
+#include "app/device_option.h"
+
+#include "app/nearest_word.h"
+#include "app/positive_number.h"
+#include "app/progress.h"
+#include <CLI/Option.hpp>
+#include <CLI/Validators.hpp>
+#include <fmt/core.h>
+
+#include "osteomill/device/hardware.h"
+#include "osteomill/device/workspace_file.h"
+
+namespace osteomill::app {
+
+namespace {
+
+std::string name_in(const std::string& device) {
+  return device.substr(0, device.find(':'));
+}
+
+std::string address_in(const std::string& device) {
+  const std::size_t colon = device.find(':');
+  return colon == std::string::npos ? "" : device.substr(colon + 1);
+}
+
+std::vector<std::string> device_names() {
+  std::vector<std::string> names{kMouse, kSpaceMouse, kSimulated};
+  for (const HardwareKind& kind : hardware_kinds()) names.emplace_back(kind.name);
+  return names;
+}
+
+CLI::Validator known_device() {
+  return CLI::Validator(
+      [](std::string& text) -> std::string {
+        const std::string name = name_in(text);
+        const HardwareKind* kind = hardware_named(name);
+        const bool has_address = name != text;
+        if (kind != nullptr) return has_address && kind->address.empty() ? name + " takes no address" : "";
+        for (const std::string& known : device_names()) {
+          if (known == name) return has_address ? name + " takes no address" : "";
+        }
+        const std::string near = did_you_mean(name, device_names());
+        return "there is no device " + name + (near.empty() ? "; osteomill devices lists them" : near);
+      },
+      "");
+}
+
+// What was given on the command line comes before what was kept.
+WorkspaceSettings workspace_of(const DeviceOption& option, const std::string& device_name) {
+  const auto path = workspace_path(device_name);
+  const auto kept = read_workspace(path);
+  WorkspaceSettings settings = kept.value_or(WorkspaceSettings{});
+  settings.scale = option.scale.value_or(settings.scale);
+  settings.power = option.power.value_or(settings.power);
+  settings.shaft_lever_mm = option.shaft_lever_mm.value_or(settings.shaft_lever_mm);
+  if (option.turn_deg.size() == 3)
+    settings.turn_V_deg = {option.turn_deg[0], option.turn_deg[1], option.turn_deg[2]};
+  require_valid(settings);
+  if (settings != kept.value_or(WorkspaceSettings{}) && !path.empty())
+    keep_workspace(path, device_name, settings);
+  return settings;
+}
+
+std::string degrees_of_freedom(const DeviceCapabilities& device) {
+  return fmt::format("{} degrees of freedom sensed, {} driven, up to {:g} N", device.sensed, device.driven,
+                     device.limits.force_N) +
+         (device.driven == 6 ? fmt::format(" and {:g} N mm", device.limits.torque_Nmm) : "");
+}
+
+}  // namespace
+
+void add_device_option(CLI::App& command, DeviceOption& option) {
+  command.option_defaults()->group("The device");
+  command
+      .add_option("--device", option.device,
+                  "Who holds the tool: NAME or NAME:ADDRESS; osteomill devices lists what is there")
+      ->check(known_device())
+      ->type_name("DEVICE")
+      ->capture_default_str();
+  command.add_option("--device-scale", option.scale, "By how much the tool moves further than the handle")
+      ->check(positive_number())
+      ->type_name("NUMBER");
+  command.add_option("--device-power", option.power, "How much of the tool's power the hand feels")
+      ->check(positive_number())
+      ->type_name("NUMBER");
+  command
+      .add_option("--device-turn", option.turn_deg,
+                  "How the device stands, turned in degrees about right, up and towards you")
+      ->delimiter(',')
+      ->expected(3)
+      ->type_name("X,Y,Z");
+  command
+      .add_option("--shaft-lever", option.shaft_lever_mm,
+                  "For a device of force alone: what turns the shaft as a force, with the hand so far up it "
+                  "(0: not)")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("mm");
+}
+
+std::unique_ptr<ConnectedDevice> open_device(const DeviceOption& option) {
+  const HardwareKind* kind = hardware_named(name_in(option.device));
+  if (kind == nullptr) return nullptr;
+  const auto open = [kind, address = address_in(option.device)] { return kind->open(address); };
+  auto device = std::make_unique<ConnectedDevice>(open);
+  device->set_workspace(workspace_of(option, device->capabilities().name));
+  device->start();
+  fmt::print(stderr, "osteomill: {}: {}\n", device->capabilities().name,
+             degrees_of_freedom(device->capabilities()));
+  return device;
+}
+
+void describe_device(RunDescription& run, const std::string& hand, const ConnectedDevice* device) {
+  if (device == nullptr) {
+    run.settings.push_back({"device", hand, ""});
+    return;
+  }
+  const DeviceCapabilities& can = device->capabilities();
+  const WorkspaceSettings& workspace = device->workspace();
+  run.settings.push_back({"device", can.name, ""});
+  run.settings.push_back({"device.sensed", static_cast<double>(can.sensed), ""});
+  run.settings.push_back({"device.driven", static_cast<double>(can.driven), ""});
+  run.settings.push_back({"device.scale", workspace.scale, ""});
+  run.settings.push_back({"device.power", workspace.power, ""});
+  const char* const axes[] = {"right", "up", "towards"};
+  for (Eigen::Index n = 0; n < 3; ++n)
+    run.settings.push_back({fmt::format("device.turn_{}", axes[n]), workspace.turn_V_deg[n], "deg"});
+  run.settings.push_back({"device.shaft_lever", workspace.shaft_lever_mm, "mm"});
+}
+
+}  // namespace osteomill::app

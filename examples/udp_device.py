@@ -1,0 +1,95 @@
+#!/usr/bin/env python3
+"""The device's side of docs/udp-device.md in Python: udp_device.py [PORT]. What udp_device.c does, to try things out
+with; at 1 kHz use C, whose loop is not held up. Replace read_handle() and drive_motors()."""
+import math
+import select
+import socket
+import struct
+import sys
+import time
+
+HEAD = struct.Struct("<4sHHII")
+ANSWER = struct.Struct("<64sII3dddd")
+STATE = struct.Struct("<3d4d3d3dII")
+WRENCH = struct.Struct("<3d3d")
+QUESTION_KIND, ANSWER_KIND, STATE_KIND, WRENCH_KIND = 1, 2, 3, 4
+
+PERIOD_S = 1e-3
+LAPSE_S = 5e-3  # an older wrench is zero
+CONVERSATION_S = 0.1  # whoever has sent nothing for so long gets no more states
+FORCE_RATE_N_S = 4000  # a hand bears no faster change
+TORQUE_RATE_NMM_S = 1e5
+
+
+def read_handle(time_s):
+    """Yours: position in mm (x to the operator's right, y up, z towards them), orientation, velocities, buttons."""
+    y_mm = 2 * math.cos(0.5 * math.pi * time_s) - 2
+    velocity_mm_s = -math.pi * math.sin(0.5 * math.pi * time_s)
+    return (0, y_mm, 0), (1, 0, 0, 0), (0, velocity_mm_s, 0), (0, 0, 0), 1
+
+
+def drive_motors(force_N, torque_Nmm):
+    """Yours: as they act on the hand, about the handle's origin, along the same axes."""
+
+
+def head(kind, sequence):
+    return HEAD.pack(b"OMIL", 1, kind, sequence & 0xFFFFFFFF, 0)
+
+
+def approach(sent, wanted, most):
+    way = [w - s for s, w in zip(sent, wanted)]
+    length = math.hypot(*way)
+    share = most / length if length > most else 1
+    return [s + share * w for s, w in zip(sent, way)]
+
+
+def main():
+    port = int(sys.argv[1]) if len(sys.argv) > 1 else 47117
+    to_all = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    to_all.bind(("127.0.0.1", port))
+    name = b"example device in Python"
+    answer = ANSWER.pack(name, 6, 6, 100, 100, 100, 10, 200, 1000)
+    partner, newest, asked = None, 0, ((0, 0, 0), (0, 0, 0))
+    sent_N, sent_Nmm, states = [0] * 3, [0] * 3, 0
+    heard_s = started_s = -math.inf
+    next_s = time.monotonic()
+    while True:
+        while (left_s := next_s - time.monotonic()) > 0:
+            if not select.select([to_all], [], [], left_s)[0]:
+                continue
+            datagram, sender = to_all.recvfrom(256)
+            if len(datagram) < HEAD.size:
+                continue
+            magic, version, kind, sequence, _ = HEAD.unpack_from(datagram)
+            if magic != b"OMIL" or version != 1:
+                continue
+            if kind == QUESTION_KIND:
+                to_all.sendto(head(ANSWER_KIND, sequence) + answer, sender)
+            elif kind == WRENCH_KIND and len(datagram) == HEAD.size + WRENCH.size:
+                talking = next_s - heard_s < CONVERSATION_S
+                overtaken = (sequence - newest) & 0xFFFFFFFF in range(0x80000000, 0x100000000) or sequence == newest
+                if talking and (sender != partner or overtaken):
+                    continue
+                numbers = WRENCH.unpack_from(datagram, HEAD.size)
+                if not all(map(math.isfinite, numbers)):
+                    continue
+                if not talking:
+                    started_s = next_s
+                partner, newest, asked, heard_s = sender, sequence, (numbers[:3], numbers[3:]), time.monotonic()
+        if time.monotonic() - next_s > 10 * PERIOD_S:
+            next_s = time.monotonic()  # held up: nothing is made up for
+        old = time.monotonic() - heard_s > LAPSE_S
+        force_N, torque_Nmm = ((0, 0, 0), (0, 0, 0)) if old else asked
+        sent_N = approach(sent_N, force_N, FORCE_RATE_N_S * PERIOD_S)
+        sent_Nmm = approach(sent_Nmm, torque_Nmm, TORQUE_RATE_NMM_S * PERIOD_S)
+        drive_motors(sent_N, sent_Nmm)
+        if time.monotonic() - heard_s < CONVERSATION_S:
+            states += 1
+            position, orientation, velocity, angular, buttons = read_handle(next_s - started_s)
+            state = STATE.pack(*position, *orientation, *velocity, *angular, buttons, 0)
+            to_all.sendto(head(STATE_KIND, states) + state, partner)
+        next_s += PERIOD_S
+
+
+if __name__ == "__main__":
+    main()

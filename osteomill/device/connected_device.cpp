@@ -1,0 +1,274 @@
+#include "osteomill/device/connected_device.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <exception>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "osteomill/device/real_time.h"
+#include "osteomill/files/input_error.h"
+#include "osteomill/geometry/wrench_rates.h"
+
+namespace osteomill {
+
+namespace {
+
+using namespace std::chrono_literals;
+using State = DeviceReport::State;
+
+// However long a round took, what is sent makes no larger a step than in this time.
+constexpr double kLongestRound_s = 2e-3;
+constexpr double kUnitTolerance = 1e-3;
+constexpr int kWaitsForPose = 500;
+// What it takes to come down from anything, and then some.
+constexpr int kMostRoundsAtTheEnd = 50;
+
+double steady_now_s() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+const Pose kNoPose{Vec3::Constant(std::numeric_limits<double>::quiet_NaN()), Quat::Identity()};
+
+bool is_pose(const Pose& pose) {
+  return is_finite(pose) && std::abs(pose.orientation.norm() - 1) < kUnitTolerance;
+}
+
+bool same(const Pose& a, const Pose& b) {
+  return a.position_mm == b.position_mm && a.orientation.coeffs() == b.orientation.coeffs();
+}
+
+ConnectedDeviceSettings with_a_clock(ConnectedDeviceSettings settings) {
+  if (!settings.now_s) settings.now_s = &steady_now_s;
+  return settings;
+}
+
+}  // namespace
+
+std::string DeviceReport::complaint() const {
+  switch (state) {
+    case State::ok:
+      return {};
+    case State::silent:
+      return fmt::format("has given no pose for {:.1f} s", since_s);
+    case State::stuck:
+      return fmt::format("has given the same pose for {:.1f} s, to the last bit", since_s);
+    case State::not_finite:
+      return fmt::format("has given poses that are none for {:.1f} s", since_s);
+    case State::lost:
+      return fmt::format("has been gone for {:.1f} s ({})", since_s, reason);
+  }
+  return {};
+}
+
+ConnectedDevice::ConnectedDevice(OpenConnection open, ConnectedDeviceSettings settings)
+    : open_(std::move(open)),
+      settings_(with_a_clock(std::move(settings))),
+      connection_(open_()),
+      sent_s_(settings_.now_s()),
+      counting_since_s_(sent_s_),
+      state_since_s_(sent_s_),
+      capabilities_(connection_->capabilities()),
+      workspace_(capabilities_, {}) {}
+
+ConnectedDevice::~ConnectedDevice() {
+  let_go();
+  ending_.store(true, std::memory_order_release);
+  if (thread_.joinable()) thread_.join();
+}
+
+void ConnectedDevice::start() {
+  thread_ = std::thread([this] { run(); });
+  for (int n = 0; n < kWaitsForPose && state_.load(std::memory_order_acquire) != State::ok; ++n)
+    std::this_thread::sleep_for(1ms);
+  if (const DeviceReport now = report(); now.state != State::ok)
+    throw InputError(capabilities_.name, now.complaint());
+}
+
+void ConnectedDevice::run() {
+  request_real_time();
+  while (!ending_.load(std::memory_order_acquire)) {
+    exchange();
+    if (!connection_) std::this_thread::sleep_for(1ms);
+  }
+  for (int n = 0; n < kMostRoundsAtTheEnd && !at_rest_.load(std::memory_order_relaxed); ++n) exchange();
+}
+
+void ConnectedDevice::exchange() {
+  try {
+    if (!connection_) {
+      at_rest_.store(true, std::memory_order_release);
+      reopen();
+    } else {
+      DeviceInput input;
+      const ConnectionStatus heard = connection_->read(input);
+      if (heard == ConnectionStatus::fresh) hear(input);
+      if (heard == ConnectionStatus::lost || send() == ConnectionStatus::lost)
+        lose("the connection was closed");
+    }
+  } catch (const std::exception& error) {
+    // A back end that throws breaks its contract.
+    lose(error.what());
+  }
+  judge();
+}
+
+void ConnectedDevice::hear(const DeviceInput& input) {
+  const double now_s = settings_.now_s();
+  finite_ = is_pose(input.X_DH);
+  if (!same(input.X_DH, newest_.input.X_DH)) {
+    stuck_ = false;
+    changed_s_ = now_s;
+  } else if (!stuck_) {
+    // A handle that was laid down is held by nobody.
+    if (is_zero(sent_D_)) changed_s_ = now_s;
+    stuck_ = now_s - changed_s_ > settings_.max_still_s;
+  }
+  newest_.input = input;
+  newest_.at_s = now_s;
+  newest_.usable = finite_ && !stuck_;
+  if (newest_.usable) {
+    if (now_s - usable_s_ > settings_.gone_s) ++newest_.returns;
+    usable_s_ = now_s;
+  }
+  heard_.write(newest_);
+  count_input(now_s);
+}
+
+void ConnectedDevice::count_input(double now_s) {
+  ++counted_;
+  const double passed_s = now_s - counting_since_s_;
+  if (passed_s < 1) return;
+  inputs_per_s_.store(counted_ / passed_s, std::memory_order_relaxed);
+  counting_since_s_ = now_s;
+  counted_ = 0;
+}
+
+ConnectionStatus ConnectedDevice::send() {
+  const double now_s = settings_.now_s();
+  const Asked& asked = asked_.read();
+  const bool late = now_s - asked.at_s > settings_.max_age_s;
+  if (late && !wrench_was_late_ && !is_zero(asked.wrench_D))
+    late_wrenches_.fetch_add(1, std::memory_order_relaxed);
+  wrench_was_late_ = late;
+  const bool felt = !late && !let_go_.load(std::memory_order_acquire);
+  const Wrench target = felt ? make_safe(asked.wrench_D, capabilities_.limits).wrench : Wrench{};
+  sent_D_ = approach(sent_D_, target, kRatesForAHand, std::clamp(now_s - sent_s_, 0.0, kLongestRound_s));
+  sent_s_ = now_s;
+  const ConnectionStatus status = connection_->write(sent_D_);
+  at_rest_.store(is_zero(sent_D_), std::memory_order_release);
+  return status;
+}
+
+void ConnectedDevice::lose(const std::string& reason) {
+  connection_.reset();
+  sent_D_ = {};
+  lost_s_ = settings_.now_s();
+  const std::lock_guard lock(said_mutex_);
+  reason_ = reason;
+}
+
+void ConnectedDevice::reopen() {
+  if (settings_.now_s() - lost_s_ < settings_.reopen_s) return;
+  connection_ = open_();
+  const DeviceCapabilities& now = connection_->capabilities();
+  if (now.name != capabilities_.name || now.driven != capabilities_.driven ||
+      now.sensed != capabilities_.sensed) {
+    lose("another device is there: " + now.name);
+    return;
+  }
+  sent_s_ = settings_.now_s();
+  reopened_.fetch_add(1, std::memory_order_relaxed);
+}
+
+void ConnectedDevice::judge() {
+  const double now_s = settings_.now_s();
+  if (const std::unique_lock lock(said_mutex_, std::try_to_lock); lock)
+    handle_D_mm_ = newest_.input.X_DH.position_mm;
+  State state = State::ok;
+  if (!connection_) {
+    state = State::lost;
+  } else if (now_s - newest_.at_s > settings_.max_age_s) {
+    state = State::silent;
+  } else if (!finite_) {
+    state = State::not_finite;
+  } else if (stuck_) {
+    state = State::stuck;
+  }
+  const State before = state_.load(std::memory_order_relaxed);
+  if (state == before) return;
+  if (before == State::ok) faults_.fetch_add(1, std::memory_order_relaxed);
+  state_since_s_.store(now_s, std::memory_order_relaxed);
+  state_.store(state, std::memory_order_release);
+}
+
+void ConnectedDevice::set_workspace(const WorkspaceSettings& settings) {
+  require_valid(settings);
+  way_set_.settings = settings;
+  ++way_set_.number;
+  way_.write(way_set_);
+}
+
+void ConnectedDevice::set_view(const Quat& R_WV) {
+  if (way_set_.R_WV.coeffs() == R_WV.coeffs()) return;
+  way_set_.R_WV = R_WV;
+  ++way_set_.number;
+  way_.write(way_set_);
+}
+
+DeviceReport ConnectedDevice::report() const {
+  DeviceReport report;
+  report.state = state_.load(std::memory_order_acquire);
+  report.since_s = settings_.now_s() - state_since_s_.load(std::memory_order_relaxed);
+  report.inputs_per_s = inputs_per_s_.load(std::memory_order_relaxed);
+  report.faults = faults_.load(std::memory_order_relaxed);
+  report.late_wrenches = late_wrenches_.load(std::memory_order_relaxed);
+  report.reopened = reopened_.load(std::memory_order_relaxed);
+  const std::lock_guard lock(said_mutex_);
+  report.reason = reason_;
+  report.handle_D_mm = handle_D_mm_;
+  return report;
+}
+
+Pose ConnectedDevice::read_pose() {
+  const Heard& heard = heard_.read();
+  const DeviceInput& input = heard.input;
+  const bool there = heard.usable && settings_.now_s() - heard.at_s <= settings_.max_age_s;
+  const bool clutched =
+      clutched_.load(std::memory_order_relaxed) || (there && (input.buttons & kClutchButton) != 0);
+  has_pose_ = there && !clutched;
+  buttons_ = has_pose_ ? input.buttons : 0;
+  if (clutched) anchor_anew_ = true;
+  if (!has_pose_) return kNoPose;
+  if (std::exchange(returns_, heard.returns) != heard.returns) anchor_anew_ = true;
+  if (const Way& way = way_.read(); std::exchange(way_taken_, way.number) != way.number) {
+    workspace_.set(way.settings, way.R_WV);
+    workspace_.anchor(X_WD_, input.X_DH);
+  }
+  if (std::exchange(anchor_anew_, false)) workspace_.anchor(X_WT_, input.X_DH);
+  X_WD_ = workspace_.tool_pose(input.X_DH);
+  return X_WD_;
+}
+
+void ConnectedDevice::write_wrench(const Wrench& wrench) {
+  asked_.write({workspace_.wrench_D(wrench, shaft_direction(X_WD_)), settings_.now_s()});
+}
+
+void ConnectedDevice::tick_done(const Pose& X_WT, double /*dt_s*/) {
+  if (has_pose_ && is_finite(X_WT)) X_WT_ = X_WT;
+}
+
+void ConnectedDevice::put_at(const Pose& X_WD) {
+  X_WT_ = X_WD;
+  anchor_anew_ = true;
+}
+
+bool ConnectedDevice::let_go() {
+  // What is being sent right now may still be something.
+  if (!let_go_.exchange(true, std::memory_order_acq_rel)) at_rest_.store(false, std::memory_order_release);
+  return at_rest_.load(std::memory_order_acquire);
+}
+
+}  // namespace osteomill

@@ -1,0 +1,189 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "osteomill/device/connection.h"
+#include "osteomill/device/device.h"
+#include "osteomill/device/latest_value.h"
+#include "osteomill/device/workspace.h"
+
+namespace osteomill {
+
+using OpenConnection = std::function<std::unique_ptr<Connection>()>;
+
+struct ConnectedDeviceSettings {
+  /// What is older is no longer true: an input (the haptic thread then has no pose, and sends zero) and a
+  /// wrench (the device is then sent zero, whatever the haptic thread is doing).
+  double max_age_s = 5e-3;
+  /// While something is felt, no hand holds still to the last bit for as long as this: the device is stuck.
+  double max_still_s = 0.5;
+  /// After this long without a pose the tool goes on from where it is, not from where the hand is by then.
+  double gone_s = 0.1;
+  double reopen_s = 0.5;
+  /// A clock that never goes back; tests have their own.
+  std::function<double()> now_s;
+};
+
+/// What there is to be said of a device. Any thread.
+struct DeviceReport {
+  enum class State : unsigned char {
+    ok,
+    /// No input for longer than `max_age_s`.
+    silent,
+    /// The same input to the last bit, over and over.
+    stuck,
+    /// It gives poses that are not finite, or turned by no rotation.
+    not_finite,
+    /// Gone; it is being opened again.
+    lost,
+  };
+  State state = State::ok;
+  /// How long it has been so.
+  double since_s = 0;
+  /// Why it cannot be had, where it is lost.
+  std::string reason;
+  double inputs_per_s = 0;
+  /// Where its handle was a moment ago.
+  Vec3 handle_D_mm = Vec3::Zero();
+  /// How often it left `ok`, how often the haptic thread's wrench was too old, and how often it was opened
+  /// again.
+  std::uint64_t faults = 0;
+  std::uint64_t late_wrenches = 0;
+  std::uint64_t reopened = 0;
+  /// Where something is wrong with it, what, in a sentence without a full stop; else empty.
+  std::string complaint() const;
+};
+
+/// Haptic hardware as a session's device, whichever its back end is. A thread of its own reads the connection
+/// and writes to it, so that nothing the hardware does makes a tick wait, and watches over both sides. What
+/// is written is within the device's limits, and never changes faster than kRatesForAHand; it comes down to
+/// zero where the wrench is too old, the device is lost or let go of, and at the end. A device that is lost
+/// is opened again until it is there.
+///
+/// The first button asks for the spindle. While the second is held (or `set_clutched`) the handle moves
+/// without the tool, which has no pose then; so it is felt nothing, and afterwards from where the tool is.
+class ConnectedDevice final : public Device {
+ public:
+  static constexpr unsigned kSpindleButton = 1;
+  static constexpr unsigned kClutchButton = 2;
+
+  /// Opens the device. Throws as `open` does.
+  explicit ConnectedDevice(OpenConnection open, ConnectedDeviceSettings settings = {});
+  /// Returns when zero has been sent and the device is closed.
+  ~ConnectedDevice() override;
+  ConnectedDevice(const ConnectedDevice&) = delete;
+  ConnectedDevice& operator=(const ConnectedDevice&) = delete;
+
+  /// Starts the thread; returns when the device has given a pose. Throws InputError where it gives none
+  /// within half a second.
+  void start();
+  /// What the thread does, once: for a test that keeps time itself, in place of `start`.
+  void exchange();
+
+  const DeviceCapabilities& capabilities() const { return capabilities_; }
+
+  /// For one other thread (the window's): how the handle moves the tool, and from where the operator looks,
+  /// at the front where that is not set. The tool stays where it is. Throws std::invalid_argument as
+  /// Workspace.
+  void set_workspace(const WorkspaceSettings& settings);
+  void set_view(const Quat& R_WV);
+  const WorkspaceSettings& workspace() const { return way_set_.settings; }
+  /// The most that the device gives and `limits` allow, in W (Workspace::limits_W).
+  WrenchLimits limits_W(const WrenchLimits& limits) const {
+    return Workspace(capabilities_, workspace()).limits_W(limits);
+  }
+  void set_clutched(bool clutched) { clutched_.store(clutched, std::memory_order_relaxed); }
+  DeviceReport report() const;
+
+  Pose read_pose() override;
+  void write_wrench(const Wrench& wrench) override;
+  bool spindle_asked() const override { return (buttons_ & kSpindleButton) != 0; }
+  void tick_done(const Pose& X_WT, double dt_s) override;
+  void put_at(const Pose& X_WD) override;
+  bool let_go() override;
+
+ private:
+  struct Heard {
+    DeviceInput input;
+    double at_s = -std::numeric_limits<double>::infinity();
+    // Neither stuck nor not finite.
+    bool usable = false;
+    // How often it was gone before.
+    std::uint64_t returns = 0;
+  };
+  struct Asked {
+    Wrench wrench_D;
+    double at_s = -std::numeric_limits<double>::infinity();
+  };
+  struct Way {
+    WorkspaceSettings settings;
+    Quat R_WV = view_from_the_front();
+    std::uint64_t number = 0;
+  };
+
+  void run();
+  void hear(const DeviceInput& input);
+  ConnectionStatus send();
+  void lose(const std::string& reason);
+  void reopen();
+  void judge();
+  void count_input(double now_s);
+
+  OpenConnection open_;
+  ConnectedDeviceSettings settings_;
+  LatestValue<Heard> heard_;
+  LatestValue<Asked> asked_;
+  Way way_set_;
+  LatestValue<Way> way_;
+  std::atomic<bool> clutched_{false};
+  std::atomic<bool> let_go_{false};
+  std::atomic<bool> at_rest_{true};
+  std::atomic<bool> ending_{false};
+  std::thread thread_;
+
+  // The device's thread's.
+  std::unique_ptr<Connection> connection_;
+  Heard newest_;
+  Wrench sent_D_;
+  double sent_s_;
+  double changed_s_ = 0;
+  double usable_s_ = -std::numeric_limits<double>::infinity();
+  double lost_s_ = 0;
+  bool finite_ = false;
+  bool stuck_ = false;
+  bool wrench_was_late_ = false;
+  double counting_since_s_;
+  int counted_ = 0;
+
+  // What it is judged to be; written by the device's thread.
+  std::atomic<DeviceReport::State> state_{DeviceReport::State::silent};
+  std::atomic<double> state_since_s_;
+  std::atomic<double> inputs_per_s_{0};
+  std::atomic<std::uint64_t> faults_{0};
+  std::atomic<std::uint64_t> late_wrenches_{0};
+  std::atomic<std::uint64_t> reopened_{0};
+  // Of the next two; while all is well the device's thread does not wait for it.
+  mutable std::mutex said_mutex_;
+  std::string reason_;
+  Vec3 handle_D_mm_ = Vec3::Zero();
+
+  // The haptic thread's.
+  DeviceCapabilities capabilities_;
+  Workspace workspace_;
+  Pose X_WD_;
+  Pose X_WT_;
+  bool has_pose_ = false;
+  bool anchor_anew_ = true;
+  std::uint64_t returns_ = 0;
+  std::uint64_t way_taken_ = 0;
+  unsigned buttons_ = 0;
+};
+
+}  // namespace osteomill

@@ -1,0 +1,285 @@
+#include "osteomill/device/connected_device.h"
+
+#include <atomic>
+#include <cmath>
+#include <thread>
+
+#include "tests/scripted_device.h"
+#include <gtest/gtest.h>
+
+#include "osteomill/files/input_error.h"
+
+namespace osteomill {
+namespace {
+
+using State = DeviceReport::State;
+constexpr double kTick_s = 1e-3;
+// kRatesForAHand in a tick.
+constexpr double kMaxStep_N = 4 + 1e-6;
+const Pose kStart{{5, 6, 7}, quaternion_from_rotation_vector({0, 0.3, 0})};
+
+class ConnectedDeviceTest : public ::testing::Test {
+ protected:
+  ConnectedDeviceTest() {
+    device_.put_at(kStart);
+    run(5);
+  }
+  // A tick of the haptic thread, unless it hangs, and a round of the device's.
+  void tick() {
+    hardware_.now_s += kTick_s;
+    // A hand trembles.
+    hardware_.input.X_DH.position_mm.x() += trembles_ ? 1e-3 * std::sin(300 * hardware_.now_s) : 0;
+    if (!hangs_) {
+      pose_ = device_.read_pose();
+      device_.write_wrench(is_finite(pose_) ? asked_ : Wrench{});
+      device_.tick_done(is_finite(pose_) ? pose_ : kStart, kTick_s);
+    }
+    device_.exchange();
+  }
+  void run(int ticks) {
+    for (int n = 0; n < ticks; ++n) tick();
+  }
+  double felt_N() const { return hardware_.last().force_N.norm(); }
+  void expect_no_step() const { EXPECT_LE(hardware_.largest_step().force_N.norm(), kMaxStep_N); }
+
+  testing_support::ScriptedDevice hardware_;
+  ConnectedDevice device_{hardware_.way(), hardware_.settings()};
+  Wrench asked_;
+  Pose pose_;
+  bool hangs_ = false;
+  bool trembles_ = true;
+};
+
+TEST_F(ConnectedDeviceTest, MovesTheToolFromWhereItWasPutAndTurnsTheWrenchBack) {
+  trembles_ = false;
+  run(2);
+  const Vec3 before_mm = pose_.position_mm;
+  hardware_.input.X_DH.position_mm += Vec3(0, 1, 0);
+  // Up on the screen is up on the patient, and the force of the bone below is up as well.
+  asked_.force_N = {0, 0, 3};
+  run(3);
+  EXPECT_NEAR((pose_.position_mm - before_mm - Vec3(0, 0, 1)).norm(), 0, 1e-12);
+  EXPECT_NEAR((hardware_.last().force_N - Vec3(0, 3, 0)).norm(), 0, 1e-12);
+  EXPECT_EQ(device_.report().state, State::ok);
+  EXPECT_EQ(device_.report().complaint(), "");
+}
+
+TEST_F(ConnectedDeviceTest, AHangingHapticThreadLeavesTheHandAtZeroWithin5ms) {
+  asked_.force_N = {0, 0, 19};
+  run(20);
+  EXPECT_NEAR(felt_N(), 19, 1e-9);
+  hangs_ = true;
+  run(5);
+  EXPECT_NEAR(felt_N(), 19, 1e-9);
+  run(5);
+  EXPECT_EQ(felt_N(), 0);
+  EXPECT_EQ(device_.report().late_wrenches, 1u);
+  expect_no_step();
+}
+
+TEST_F(ConnectedDeviceTest, WithoutInputThereIsNoPose) {
+  hardware_.silent = true;
+  run(5);
+  EXPECT_TRUE(is_finite(pose_));
+  run(2);
+  EXPECT_FALSE(is_finite(pose_));
+  EXPECT_EQ(device_.report().state, State::silent);
+  EXPECT_NE(device_.report().complaint().find("no pose for"), std::string::npos);
+  hardware_.silent = false;
+  run(2);
+  EXPECT_TRUE(is_finite(pose_));
+  EXPECT_EQ(device_.report().faults, 1u);
+}
+
+// 20 inputs a second are no haptic device.
+TEST_F(ConnectedDeviceTest, SoIsItForADeviceThatIsTooSlow) {
+  int poses = 0;
+  for (int n = 0; n < 1000; ++n) {
+    hardware_.silent = n % 50 != 0;
+    tick();
+    poses += is_finite(pose_) ? 1 : 0;
+  }
+  EXPECT_LE(poses, 20 * 6);
+  EXPECT_GE(device_.report().faults, 19u);
+}
+
+TEST_F(ConnectedDeviceTest, APoseThatIsNoneIsNotHandedOn) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const Pose before = hardware_.input.X_DH;
+  for (const Pose& wrong : {Pose{{nan, 0, 0}, Quat::Identity()}, Pose{{0, 0, 0}, Quat(0, 0, 0, 0)},
+                            Pose{{0, 0, 0}, Quat(nan, 0, 0, 0)}, Pose{{0, 0, 0}, Quat(2, 0, 0, 0)}}) {
+    hardware_.input.X_DH = wrong;
+    run(3);
+    EXPECT_FALSE(is_finite(pose_));
+    EXPECT_EQ(device_.report().state, State::not_finite);
+    hardware_.input.X_DH = before;
+    run(3);
+    EXPECT_TRUE(is_finite(pose_));
+  }
+}
+
+TEST_F(ConnectedDeviceTest, ADeviceThatIsStuckIsFoundOutWhileSomethingIsFelt) {
+  trembles_ = false;
+  // Laid down.
+  run(2000);
+  EXPECT_EQ(device_.report().state, State::ok);
+  asked_.force_N = {0, 0, 2};
+  run(495);
+  EXPECT_EQ(device_.report().state, State::ok);
+  run(20);
+  EXPECT_EQ(device_.report().state, State::stuck);
+  EXPECT_FALSE(is_finite(pose_));
+  EXPECT_EQ(felt_N(), 0);
+  // That nothing is felt any more does not free it; that it moves does.
+  run(1000);
+  EXPECT_EQ(device_.report().state, State::stuck);
+  trembles_ = true;
+  run(3);
+  EXPECT_EQ(device_.report().state, State::ok);
+  expect_no_step();
+}
+
+TEST_F(ConnectedDeviceTest, ALostDeviceIsOpenedAgainAndTheToolGoesOnFromWhereItIs) {
+  run(10);
+  const Vec3 left_W = pose_.position_mm;
+  hardware_.gone = true;
+  run(700);
+  const DeviceReport gone = device_.report();
+  EXPECT_EQ(gone.state, State::lost);
+  EXPECT_EQ(gone.reason, "scripted: cannot be had");
+  EXPECT_FALSE(is_finite(pose_));
+  EXPECT_EQ(hardware_.closed, 1);
+  hardware_.gone = false;
+  trembles_ = false;
+  hardware_.input.X_DH.position_mm = {100, 0, 0};
+  run(600);
+  EXPECT_EQ(device_.report().state, State::ok);
+  EXPECT_EQ(device_.report().reopened, 1u);
+  EXPECT_LT((pose_.position_mm - left_W).norm(), 0.01);
+}
+
+TEST_F(ConnectedDeviceTest, AnotherDeviceInItsPlaceIsNotTaken) {
+  hardware_.gone = true;
+  run(10);
+  hardware_.gone = false;
+  hardware_.can.name = "another";
+  run(600);
+  EXPECT_EQ(device_.report().state, State::lost);
+  EXPECT_EQ(device_.report().reason, "another device is there: another");
+}
+
+TEST_F(ConnectedDeviceTest, ABackEndThatThrowsIsALostDevice) {
+  hardware_.throws = true;
+  run(2);
+  EXPECT_EQ(device_.report().state, State::lost);
+  EXPECT_EQ(device_.report().reason, "the cable came off");
+}
+
+TEST_F(ConnectedDeviceTest, AClutchMovesTheHandleWithoutTheTool) {
+  trembles_ = false;
+  hardware_.input.buttons = ConnectedDevice::kSpindleButton;
+  run(3);
+  EXPECT_TRUE(device_.spindle_asked());
+  const Pose held = pose_;
+  hardware_.input.buttons |= ConnectedDevice::kClutchButton;
+  asked_.force_N = {0, 0, 1};
+  run(3);
+  EXPECT_FALSE(is_finite(pose_));
+  EXPECT_FALSE(device_.spindle_asked());
+  EXPECT_EQ(felt_N(), 0);
+  hardware_.input.X_DH = {{40, -30, 20}, quaternion_from_rotation_vector({1, 0, 0})};
+  run(3);
+  hardware_.input.buttons = 0;
+  run(3);
+  EXPECT_LT((pose_.position_mm - held.position_mm).norm(), 1e-9);
+  EXPECT_LT(pose_.orientation.angularDistance(held.orientation), 1e-7);
+}
+
+TEST_F(ConnectedDeviceTest, ATurnedViewTurnsTheHandsWayAndLeavesTheTool) {
+  trembles_ = false;
+  run(2);
+  const Vec3 before_mm = pose_.position_mm;
+  device_.set_view(quaternion_from_rotation_vector({0, 0, 1}));
+  run(2);
+  EXPECT_LT((pose_.position_mm - before_mm).norm(), 1e-12);
+  hardware_.input.X_DH.position_mm += Vec3(0, 0, 2);
+  run(2);
+  EXPECT_LT((pose_.position_mm - before_mm - Vec3(0, 0, 2)).norm(), 1e-12);
+}
+
+TEST_F(ConnectedDeviceTest, NothingPassesTheDevicesLimits) {
+  asked_ = {{0, 0, 500}, {0, 9000, 0}};
+  run(50);
+  EXPECT_NEAR(felt_N(), 20, 1e-9);
+  EXPECT_NEAR(hardware_.last().torque_Nmm.norm(), 500, 1e-9);
+  expect_no_step();
+}
+
+TEST_F(ConnectedDeviceTest, LetGoOfItGetsZeroForGood) {
+  asked_.force_N = {0, 0, 10};
+  run(20);
+  EXPECT_FALSE(device_.let_go());
+  tick();
+  EXPECT_FALSE(device_.let_go());
+  run(4);
+  EXPECT_TRUE(device_.let_go());
+  run(20);
+  EXPECT_EQ(felt_N(), 0);
+  expect_no_step();
+}
+
+// With its thread and the real clock.
+class RunningDevice : public ::testing::Test {
+ protected:
+  // Answers as a device does at about 1 kHz.
+  class Way final : public Connection {
+   public:
+    explicit Way(RunningDevice& test) : test_(test) { can_.name = "running"; }
+    const DeviceCapabilities& capabilities() const override { return can_; }
+    ConnectionStatus read(DeviceInput& input) override {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      if (test_.dumb_) return ConnectionStatus::silent;
+      input.X_DH.position_mm.x() = 1e-3 * ++reads_;
+      return ConnectionStatus::fresh;
+    }
+    ConnectionStatus write(const Wrench& wrench_D) override {
+      test_.felt_N_ = wrench_D.force_N.norm();
+      test_.most_N_ = std::max(test_.most_N_.load(), wrench_D.force_N.norm());
+      return ConnectionStatus::fresh;
+    }
+
+   private:
+    RunningDevice& test_;
+    DeviceCapabilities can_;
+    int reads_ = 0;
+  };
+  OpenConnection way() {
+    return [this] { return std::make_unique<Way>(*this); };
+  }
+
+  std::atomic<bool> dumb_{false};
+  std::atomic<double> felt_N_{-1};
+  std::atomic<double> most_N_{0};
+};
+
+TEST_F(RunningDevice, ComesDownToZeroBeforeItIsClosed) {
+  {
+    ConnectedDevice device(way(), {});
+    device.start();
+    while (felt_N_ < 8) {
+      device.write_wrench({{8, 0, 0}, Vec3::Zero()});
+      std::this_thread::sleep_for(std::chrono::microseconds(200));
+    }
+  }
+  EXPECT_EQ(felt_N_, 0);
+  EXPECT_EQ(most_N_, 8);
+}
+
+TEST_F(RunningDevice, ADeviceThatGivesNoPoseIsRefused) {
+  dumb_ = true;
+  ConnectedDevice device(way(), {});
+  EXPECT_THROW(device.start(), InputError);
+}
+
+}  // namespace
+}  // namespace osteomill

@@ -1,0 +1,215 @@
+// Everything that can go wrong between an algorithm and a hand, from the bone to what the hand got: a session
+// with its guard, a connected device, and hardware that fails, in simulated time.
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <memory>
+
+#include "tests/scripted_device.h"
+#include "tests/shapes.h"
+#include <gtest/gtest.h>
+
+#include "osteomill/geometry/wrench_rates.h"
+#include "osteomill/haptics/algorithms.h"
+#include "osteomill/session/milling_session.h"
+
+namespace osteomill {
+namespace {
+
+constexpr double kTick_s = 1e-3;
+// kRatesForAHand in a millisecond.
+constexpr double kMaxStep_N = 4 + 1e-6;
+constexpr double kMaxStep_Nmm = 100 + 1e-6;
+// How long it takes to know (an input or a wrench is old), and to come down.
+constexpr int kTicksToKnow = 5;
+constexpr int kTicksToZero = 5;
+
+class DeviceFaults : public ::testing::TestWithParam<std::string> {
+ protected:
+  DeviceFaults() {
+    session_.guard().protect_a_hand();
+    device_.put_at({{0, 0, 3}, Quat::Identity()});
+    // Down onto the bone below z = 0, and into it; some feel the burr there, some the middle of it.
+    for (int n = 0; n < 600 && (n == 0 || felt_N() < 2); ++n) {
+      hardware_.input.X_DH.position_mm.y() -= 0.01;
+      tick();
+    }
+    run(50);
+    EXPECT_GT(felt_N(), 1);
+    EXPECT_EQ(record_.fault, WrenchFault::none);
+  }
+
+  void tick(double dt_s = kTick_s) {
+    hardware_.now_s += dt_s;
+    hardware_.input.X_DH.position_mm.x() = 1e-3 * std::sin(300 * hardware_.now_s);
+    if (!hangs_) {
+      record_ = session_.tick(device_, hardware_.now_s, dt_s, false);
+      device_.tick_done(record_.X_WT, dt_s);
+    }
+    device_.exchange();
+  }
+  void run(int ticks) {
+    for (int n = 0; n < ticks; ++n) tick();
+  }
+  // A device that is gone cannot be sent anything.
+  Wrench felt() const { return hardware_.got.empty() ? Wrench{} : hardware_.last(); }
+  double felt_N() const { return felt().force_N.norm(); }
+
+  // The fault, then what the hand got: zero in time and from then on as long as it lasts.
+  void expect_zero_after(const std::function<void()>& fault, int ticks_to_know) {
+    hardware_.got.clear();
+    fault();
+    run(ticks_to_know + kTicksToZero);
+    for (int n = 0; n < 200; ++n) {
+      EXPECT_TRUE(is_zero(felt())) << n;
+      tick();
+    }
+    expect_no_step();
+  }
+  // All is well again, and comes up slowly.
+  void expect_slow_return(const std::function<void()>& mend) {
+    hardware_.got.clear();
+    mend();
+    for (int n = 0; n < 10; ++n) {
+      tick();
+      // A tenth of the limit.
+      EXPECT_LE(felt_N(), 2) << n;
+    }
+    run(700);
+    EXPECT_EQ(record_.fault, WrenchFault::none);
+    EXPECT_TRUE(is_finite(record_.X_WD));
+    expect_no_step();
+  }
+  void expect_no_step() const {
+    const Wrench step = hardware_.largest_step();
+    EXPECT_LE(step.force_N.norm(), kMaxStep_N);
+    EXPECT_LE(step.torque_Nmm.norm(), kMaxStep_Nmm);
+  }
+
+  testing_support::ScriptedDevice hardware_;
+  ConnectedDevice device_{hardware_.way(), hardware_.settings()};
+  MillingSession session_{testing_support::shape_volume(testing_support::centred_cube(60, 0.25),
+                                                        testing_support::plane(Vec3::Zero(), Vec3::UnitZ())),
+                          MillingTool{},
+                          make_algorithm(GetParam(), HapticSettings{}),
+                          BoneDensities{0, 1000},
+                          MillingSettings{},
+                          WrenchLimits{}};
+  TickRecord record_;
+  bool hangs_ = false;
+};
+INSTANTIATE_TEST_SUITE_P(EveryAlgorithm, DeviceFaults, ::testing::ValuesIn(algorithm_names()),
+                         [](const auto& of) {
+                           std::string name = of.param;
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
+
+TEST_P(DeviceFaults, VanishesAndComesBack) {
+  expect_zero_after([this] { hardware_.gone = true; }, 1);
+  // It cannot be sent anything while it is gone, and begins at zero.
+  expect_slow_return([this] { hardware_.gone = false; });
+  EXPECT_EQ(device_.report().reopened, 1u);
+}
+
+TEST_P(DeviceFaults, FallsSilent) {
+  expect_zero_after([this] { hardware_.silent = true; }, kTicksToKnow + 1);
+  EXPECT_EQ(record_.fault, WrenchFault::pose_not_finite);
+  expect_slow_return([this] { hardware_.silent = false; });
+}
+
+TEST_P(DeviceFaults, IsStuckWhileItsClockRuns) {
+  const DeviceInput stuck = hardware_.input;
+  const auto stay = [&](int ticks) {
+    for (int n = 0; n < ticks; ++n) {
+      hardware_.now_s += kTick_s;
+      hardware_.input = stuck;
+      record_ = session_.tick(device_, hardware_.now_s, kTick_s, false);
+      device_.tick_done(record_.X_WT, kTick_s);
+      device_.exchange();
+    }
+  };
+  hardware_.got.clear();
+  stay(500);
+  EXPECT_GT(felt_N(), 1);
+  stay(2 + kTicksToZero);
+  EXPECT_EQ(felt_N(), 0);
+  stay(500);
+  EXPECT_EQ(felt_N(), 0);
+  expect_no_step();
+  expect_slow_return([] {});
+}
+
+TEST_P(DeviceFaults, GivesNumbersThatAreNone) {
+  const Pose before = hardware_.input.X_DH;
+  expect_zero_after(
+      [this] { hardware_.input.X_DH.position_mm.y() = std::numeric_limits<double>::quiet_NaN(); }, 1);
+  EXPECT_EQ(record_.fault, WrenchFault::pose_not_finite);
+  expect_slow_return([&] { hardware_.input.X_DH = before; });
+}
+
+// Deeper into the bone, where 20 N would be asked for.
+TEST_P(DeviceFaults, JumpsBy50mm) {
+  const double before_N = felt_N();
+  hardware_.got.clear();
+  hardware_.input.X_DH.position_mm.y() -= 50;
+  run(2);
+  EXPECT_EQ(record_.fault, WrenchFault::pose_jumped);
+  run(kTicksToZero);
+  // What comes up again is a hundredth of the limit in each tick.
+  EXPECT_LE(felt_N(), std::min(before_N, 20 * 0.01 * (kTicksToZero + 1)) + 1e-9);
+  run(200);
+  expect_no_step();
+}
+
+TEST_P(DeviceFaults, IsSlow) {
+  hardware_.got.clear();
+  double most_N = 0;
+  for (int n = 0; n < 1000; ++n) {
+    hardware_.silent = n % 50 != 0;
+    tick();
+    if (n > kTicksToKnow + kTicksToZero) most_N = std::max(most_N, felt_N());
+    // Between two inputs it has come down.
+    if (n > 50 && n % 50 > kTicksToKnow + kTicksToZero + 1) {
+      EXPECT_EQ(felt_N(), 0) << n;
+    }
+  }
+  // What a blend begins with in the few ticks of an input.
+  EXPECT_LT(most_N, 1.5);
+  expect_no_step();
+}
+
+TEST_P(DeviceFaults, TheHapticThreadHangs) {
+  expect_zero_after([this] { hangs_ = true; }, kTicksToKnow + 1);
+  EXPECT_EQ(device_.report().late_wrenches, 1u);
+}
+
+TEST_P(DeviceFaults, TicksComeLateBy5ms) {
+  hardware_.got.clear();
+  // The device's own thread goes on meanwhile.
+  for (int late = 0; late < 20; ++late) {
+    for (int n = 0; n < 5; ++n) {
+      hardware_.now_s += kTick_s;
+      hardware_.input.X_DH.position_mm.x() = 1e-3 * std::sin(300 * hardware_.now_s);
+      device_.exchange();
+    }
+    hardware_.now_s += kTick_s;
+    record_ = session_.tick(device_, hardware_.now_s, 6e-3, false);
+    device_.tick_done(record_.X_WT, 6e-3);
+    device_.exchange();
+    EXPECT_EQ(record_.fault, WrenchFault::tick_late);
+    if (late >= 5) {
+      EXPECT_EQ(felt_N(), 0) << late;
+    }
+  }
+  expect_no_step();
+}
+
+TEST_P(DeviceFaults, TheProgramIsEnding) {
+  expect_zero_after([this] { device_.let_go(); }, 0);
+}
+
+}  // namespace
+}  // namespace osteomill

@@ -1,0 +1,71 @@
+#!/usr/bin/env bash
+# What the hand got, as its device wrote it down, when either side of the datagrams is killed:
+#   killed_test.sh OSTEOMILL UDP_DEVICE
+# The device is the example in C: a line for every millisecond, with the time, when it last heard a wrench, the force
+# and the torque that it drove.
+set -euo pipefail
+osteomill=$1 udp_device=$2
+folder=$(mktemp -d)
+device= program=
+end() { kill -9 $device $program 2>/dev/null || true; rm -rf "$folder"; }
+trap end EXIT
+cd "$folder"
+export XDG_CONFIG_HOME=$folder/config
+port=$((20000 + $$ % 20000))
+fail() { echo "FAILED: $1"; tail -n 3 hand said errors 2>/dev/null || true; exit 1; }
+begin_device() { "$udp_device" "$port" hand & device=$!; }
+begin_milling() { "$osteomill" live --device "udp:127.0.0.1:$port" --seconds "$1" >said 2>errors & program=$!; }
+until_true() {  # SECONDS WHAT COMMAND...
+  for _ in $(seq $((10 * $1))); do
+    "${@:3}" && return
+    sleep 0.1
+  done
+  fail "never $2"
+}
+pressed() { [ -s hand ] && tail -n 1 hand | awk '{ exit !($3 * $3 + $4 * $4 + $5 * $5 > 0.01) }'; }
+# No step above 4 N or 100 N mm in a millisecond, and once the last wrench is 5 ms old, zero within 5 more.
+judge() {
+  awk -v lapse="$1" '
+    function change(from, a, b, c) { return sqrt((a - was[from])^2 + (b - was[from + 1])^2 + (c - was[from + 2])^2) }
+    NR > 1 && (change(3, $3, $4, $5) > 4.0001 || change(6, $6, $7, $8) > 100.01) { print "a step in line " NR; exit 1 }
+    { for (n = 3; n <= 8; ++n) was[n] = $n; old = $1 - $2 > 0.0051 ? old + 1 : 0 }
+    old > 5 && ($3 != 0 || $4 != 0 || $5 != 0 || $6 != 0 || $7 != 0 || $8 != 0) { print "felt in line " NR; exit 1 }
+    { force = sqrt($3^2 + $4^2 + $5^2); most = force > most ? force : most }
+    END { if (most < 0.1) { print "nothing was ever felt"; exit 1 }
+          if (lapse && (old < 6 || force != 0)) { print "the last wrench never lapsed"; exit 1 } }' hand || fail "$2"
+}
+
+# osteomill is killed while the hand presses: the device's own lapse lets go of it.
+begin_device
+begin_milling 60
+until_true 60 pressed pressed
+kill -9 $program
+sleep 0.3
+kill $device
+wait $device || fail "the device ended otherwise"
+judge 1 "osteomill killed"
+
+# It is asked to end: the hand is let go of by a wrench, before it is a matter of lapsing.
+begin_device
+begin_milling 60
+until_true 60 pressed pressed
+kill -TERM $program
+sleep 0.3
+kill $device
+wait $device || true
+judge 1 "osteomill ended"
+
+# The device is killed: osteomill says so, and goes on when it is there again.
+begin_device
+begin_milling 8
+until_true 60 pressed pressed
+kill -9 $device
+wait $device 2>/dev/null || true
+until_true 5 "missed" grep -qE "example device: has (been gone|given no pose) for" errors
+judge 0 "the device killed"
+begin_device
+until_true 5 "there again" grep -q "example device: gives poses again" errors
+wait $program || fail "osteomill ended with $?"
+grep -qE "^device +example device: .* poses/s, [1-9]" said || fail "what was wrong is not counted"
+kill $device
+judge 1 "osteomill at its end"

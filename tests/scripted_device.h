@@ -1,0 +1,84 @@
+#pragma once
+
+#include <memory>
+#include <stdexcept>
+#include <vector>
+
+#include "osteomill/device/connected_device.h"
+#include "osteomill/files/input_error.h"
+
+namespace osteomill::testing_support {
+
+/// Haptic hardware in simulated time, whose faults a test scripts, and what its hand got.
+struct ScriptedDevice {
+  struct Got {
+    double at_s;
+    Wrench wrench_D;
+  };
+  DeviceCapabilities can;
+  double now_s = 10;
+  DeviceInput input;
+  /// It gives no input; it is gone, and cannot be opened.
+  bool silent = false;
+  bool gone = false;
+  bool throws = false;
+  std::vector<Got> got;
+  int opened = 0;
+  int closed = 0;
+
+  ScriptedDevice() { can.name = "scripted"; }
+  ScriptedDevice(const ScriptedDevice&) = delete;
+  ScriptedDevice& operator=(const ScriptedDevice&) = delete;
+
+  OpenConnection way() {
+    return [this] { return std::make_unique<Way>(*this); };
+  }
+  ConnectedDeviceSettings settings() {
+    ConnectedDeviceSettings settings;
+    settings.now_s = [this] { return now_s; };
+    return settings;
+  }
+  const Wrench& last() const { return got.back().wrench_D; }
+
+  /// The largest steps of force and torque from one writing to the next, a millisecond apart.
+  Wrench largest_step() const {
+    Wrench largest;
+    for (std::size_t n = 1; n < got.size(); ++n) {
+      const Vec3 force_N = got[n].wrench_D.force_N - got[n - 1].wrench_D.force_N;
+      const Vec3 torque_Nmm = got[n].wrench_D.torque_Nmm - got[n - 1].wrench_D.torque_Nmm;
+      if (force_N.norm() > largest.force_N.norm()) largest.force_N = force_N;
+      if (torque_Nmm.norm() > largest.torque_Nmm.norm()) largest.torque_Nmm = torque_Nmm;
+    }
+    return largest;
+  }
+
+ private:
+  class Way final : public Connection {
+   public:
+    explicit Way(ScriptedDevice& device) : device_(device) {
+      if (device.gone) throw InputError(device.can.name, "cannot be had");
+      ++device.opened;
+    }
+    ~Way() override { ++device_.closed; }
+    Way(const Way&) = delete;
+    Way& operator=(const Way&) = delete;
+    const DeviceCapabilities& capabilities() const override { return device_.can; }
+    ConnectionStatus read(DeviceInput& input) override {
+      if (device_.throws) throw std::runtime_error("the cable came off");
+      if (device_.gone) return ConnectionStatus::lost;
+      if (device_.silent) return ConnectionStatus::silent;
+      input = device_.input;
+      return ConnectionStatus::fresh;
+    }
+    ConnectionStatus write(const Wrench& wrench_D) override {
+      if (device_.gone) return ConnectionStatus::lost;
+      device_.got.push_back({device_.now_s, wrench_D});
+      return ConnectionStatus::fresh;
+    }
+
+   private:
+    ScriptedDevice& device_;
+  };
+};
+
+}  // namespace osteomill::testing_support
