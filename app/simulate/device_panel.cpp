@@ -37,7 +37,7 @@ void draw_calibration(ViewState& view, ConnectedDevice& device, const Vec3& hand
   switch (calibration.step) {
     case Step::none:
       if (!ui::button("Calibrate")) return;
-      calibration = {Step::right, handle_D_mm, {}};
+      calibration = {Step::right, handle_D_mm, Vec3::Zero()};
       return;
     case Step::right:
       ImGui::TextUnformatted("Move your hand to the right, then");

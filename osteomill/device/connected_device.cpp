@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <csignal>
 #include <exception>
 #include <utility>
 
@@ -88,6 +89,11 @@ void ConnectedDevice::start() {
 }
 
 void ConnectedDevice::run() {
+  // Whoever handles them waits for this thread (CrashStop).
+  sigset_t requests_to_end;
+  sigemptyset(&requests_to_end);
+  for (const int signal : {SIGTERM, SIGHUP, SIGINT}) sigaddset(&requests_to_end, signal);
+  pthread_sigmask(SIG_BLOCK, &requests_to_end, nullptr);
   request_real_time();
   while (!ending_.load(std::memory_order_acquire)) {
     exchange();
