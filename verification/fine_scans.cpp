@@ -1,7 +1,7 @@
 #include <cmath>
-#include <fstream>
 #include <vector>
 
+#include "tests/own_memory.h"
 #include "tests/shapes.h"
 #include "verification/sections.h"
 #include <fmt/core.h>
@@ -37,16 +37,6 @@ Volume block(double spacing_mm) {
       kEdge_mm / spacing_mm);
 }
 
-// What this process has for itself, in MiB; 0 where the system does not say.
-double own_memory_MiB() {
-  std::ifstream in("/proc/self/status");
-  for (std::string word; in >> word;) {
-    double kiB = 0;
-    if (word == "RssAnon:" && in >> kiB) return kiB / 1024;
-  }
-  return 0;
-}
-
 struct Figures {
   RunMetrics milling, holding;
   Distribution milling_us;
@@ -60,7 +50,7 @@ Figures figures_of(const Volume& bone, const std::string& algorithm, double phas
   settings.hand_and_device.script.until_leant = true;
   settings.hand_and_device.script.milling_s = phase_s;
   settings.hand_and_device.script.holding_s = 0.5 * phase_s;
-  const double before_MiB = own_memory_MiB();
+  const double before_MiB = testing_support::own_memory_MiB();
   MillingTrial trial(bone, estimate_densities(bone), place_entry(bone, settings.tool),
                      algorithm_named(algorithm), settings);
   Figures figures;
@@ -72,7 +62,7 @@ Figures figures_of(const Volume& bone, const std::string& algorithm, double phas
     if (tick.milling_phase) milling_us.push_back(tick.record.milling_us);
     figures.faults += tick.record.fault != WrenchFault::none;
   }
-  figures.memory_MiB = own_memory_MiB() - before_MiB;
+  figures.memory_MiB = testing_support::own_memory_MiB() - before_MiB;
   figures.milling = run_metrics(milling);
   figures.holding = run_metrics(holding);
   figures.milling_us = distribution_of(milling_us);

@@ -24,8 +24,8 @@ std::string request_real_time() {
     refused = std::string("no real-time scheduling (") + std::strerror(error) +
               "): ticks will be late under load; rtprio in /etc/security/limits.conf allows it";
   }
-  // Not what is allocated later: under a limit, locking that would make allocations fail. And pages as they are:
-  // made present for writing, all that copies of a bone share would be copied.
+  // Not what is allocated later: under a limit, locking that would make allocations fail. And pages as they
+  // are: made present for writing, all that copies of a bone share would be copied.
   if (mlockall(MCL_CURRENT | MCL_ONFAULT) != 0) {
     refused += std::string(refused.empty() ? "" : "; ") + "memory not locked (" + std::strerror(errno) + ")";
   }

@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "tests/own_memory.h"
 #include "tests/shapes.h"
 #include <gtest/gtest.h>
 
@@ -70,6 +71,17 @@ TEST_F(LiveSessionTest, TicksInRealTimeAndStopsAtAWrenchOfZero) {
   EXPECT_GT(timing.ticks, 20u);
   EXPECT_NEAR(device_.time_passed_s, 1e-3 * static_cast<double>(timing.ticks + timing.missed_ticks), 0.05);
   EXPECT_LE(timing.ticks_per_s, 1010);
+}
+
+TEST_F(LiveSessionTest, CopiesOfABoneShareItsPagesInRealTimeToo) {
+  GridGeometry geometry;
+  geometry.dims = {256, 256, 256};
+  const Volume scan(DensityGrid(geometry, std::vector<float>(256 * 256 * 256, 1000.0f)), 500);
+  const Volume copy = scan;
+  const double before_MiB = testing_support::own_memory_MiB();
+  live_.start();
+  live_.stop();
+  EXPECT_LT(testing_support::own_memory_MiB(), before_MiB + 32) << "one copy is 64 MiB";
 }
 
 TEST_F(LiveSessionTest, RecordsComeInOrder) {

@@ -1,16 +1,17 @@
 #include "osteomill/volume/copy_on_write_floats.h"
 
 #include <cstddef>
-#include <fstream>
 #include <numeric>
-#include <string>
 #include <thread>
 #include <vector>
 
+#include "tests/own_memory.h"
 #include <gtest/gtest.h>
 
 namespace osteomill {
 namespace {
+
+using testing_support::own_memory_MiB;
 
 constexpr std::size_t kCount = 10'000'000;
 
@@ -18,16 +19,6 @@ std::vector<float> ascending(std::size_t count) {
   std::vector<float> values(count);
   std::iota(values.begin(), values.end(), 0.0f);
   return values;
-}
-
-// What the system says that this process alone holds and that would go with it.
-double own_MiB() {
-  std::ifstream in("/proc/self/status");
-  for (std::string word; in >> word;) {
-    double kiB = 0;
-    if (word == "RssAnon:" && in >> kiB) return kiB / 1024;
-  }
-  return 0;
 }
 
 TEST(CopyOnWriteFloats, HoldsWhatItWasGiven) {
@@ -94,14 +85,14 @@ TEST(CopyOnWriteFloats, PreparingChangesNothingAndSharesNothingWritten) {
 // 40 MB; what the allocator itself keeps is well below a tenth of it.
 TEST(CopyOnWriteFloats, CopiesTakeTheMemoryOfWhatWasWritten) {
   const CopyOnWriteFloats first(ascending(kCount));
-  const double before_MiB = own_MiB();
+  const double before_MiB = own_memory_MiB();
   std::vector<CopyOnWriteFloats> copies(10, first);
   for (CopyOnWriteFloats& copy : copies) {
     for (std::size_t n = 0; n < kCount / 100; ++n) copy.set(n, -1);
     EXPECT_EQ(std::accumulate(copy.begin() + kCount / 100, copy.begin() + kCount / 50, 0.0),
               std::accumulate(first.begin() + kCount / 100, first.begin() + kCount / 50, 0.0));
   }
-  EXPECT_LT(own_MiB() - before_MiB, 8);
+  EXPECT_LT(own_memory_MiB() - before_MiB, 8);
 }
 
 }  // namespace
