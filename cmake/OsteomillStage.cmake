@@ -55,3 +55,14 @@ function(osteomill_test name)
   endif()
   gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 300)
 endfunction()
+
+# osteomill_use_openigtlink(TARGETS...): its headers for those that there are. Its own package would put compiler flags on
+# everything.
+function(osteomill_use_openigtlink)
+  find_path(OPENIGTLINK_HEADERS igtlMessageBase.h PATH_SUFFIXES openigtlink REQUIRED)
+  foreach(target IN LISTS ARGN)
+    if(TARGET ${target})
+      target_include_directories(${target} SYSTEM PRIVATE ${OPENIGTLINK_HEADERS})
+    endif()
+  endforeach()
+endfunction()

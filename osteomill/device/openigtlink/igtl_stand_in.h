@@ -66,6 +66,21 @@ class IgtlStandIn {
   }
   double most_N() const { return most_N_; }
 
+  /// An image as it has been put together of the IMAGE messages that came.
+  struct Image {
+    int messages = 0;
+    /// How many values the last message had.
+    std::size_t last_values = 0;
+    std::array<int, 3> dims{};
+    std::array<float, 3> spacing_mm{};
+    igtl::Matrix4x4 matrix{};
+    std::vector<float> values;
+  };
+  Image image() const {
+    const std::lock_guard lock(mutex_);
+    return image_;
+  }
+
   /// A TRANSFORM message: a quarter turn about z, at (10, -20, 30) mm.
   static std::vector<unsigned char> transform(const char* name, float x_mm = 10) {
     igtl::Matrix4x4 matrix = {{0, -1, 0, x_mm}, {1, 0, 0, -20}, {0, 0, 1, 30}, {0, 0, 0, 1}};
@@ -115,8 +130,8 @@ class IgtlStandIn {
       if (length == 0) return false;
       if (length < 0) return true;
       header->Unpack();
-      if (std::strcmp(header->GetDeviceType(), "SENSOR") != 0) {
-        client.Skip(header->GetBodySizeToRead());
+      if (std::strcmp(header->GetDeviceType(), "IMAGE") == 0) {
+        if (!take_image(client, header)) return false;
         continue;
       }
       const auto message = igtl::SensorMessage::New();
@@ -133,6 +148,33 @@ class IgtlStandIn {
     }
   }
 
+  bool take_image(igtl::Socket& client, const igtl::MessageHeader::Pointer& header) {
+    const auto message = igtl::ImageMessage::New();
+    message->SetMessageHeader(header);
+    message->AllocatePack();
+    client.SetReceiveTimeout(2000);
+    client.Receive(message->GetPackBodyPointer(), message->GetPackBodySize());
+    client.SetReceiveTimeout(1);
+    if ((message->Unpack(1) & igtl::MessageHeader::UNPACK_BODY) == 0) return false;
+    const std::lock_guard lock(mutex_);
+    message->GetDimensions(image_.dims.data());
+    message->GetSpacing(image_.spacing_mm.data());
+    message->GetMatrix(image_.matrix);
+    int dims[3], first[3];
+    message->GetSubVolume(dims, first);
+    image_.values.resize(static_cast<std::size_t>(image_.dims[0]) * image_.dims[1] * image_.dims[2], NAN);
+    image_.last_values = static_cast<std::size_t>(dims[0]) * dims[1] * dims[2];
+    ++image_.messages;
+    const auto* value = static_cast<const float*>(message->GetScalarPointer());
+    for (int k = first[2]; k < first[2] + dims[2]; ++k) {
+      for (int j = first[1]; j < first[1] + dims[1]; ++j) {
+        for (int i = first[0]; i < first[0] + dims[0]; ++i)
+          image_.values[(static_cast<std::size_t>(k) * image_.dims[1] + j) * image_.dims[0] + i] = *value++;
+      }
+    }
+    return true;
+  }
+
   igtl::ServerSocket::Pointer server_;
   int port_ = 0;
   std::atomic<bool> ends_{false};
@@ -140,6 +182,7 @@ class IgtlStandIn {
   MakeBytes make_;
   std::map<std::string, std::array<double, 3>> sensors_;
   std::map<std::string, igtl::igtlUnit> units_;
+  Image image_;
   std::atomic<double> most_N_{0};
   std::thread thread_;
 };

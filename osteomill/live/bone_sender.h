@@ -1,0 +1,45 @@
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "osteomill/live/bone_follower.h"
+
+namespace osteomill {
+
+class TcpStream;
+
+/// Sends the bone as it is milled to whoever takes OpenIGTLink (3D Slicer, PLUS): IMAGE messages called
+/// OsteomillBone, at the beginning all of it, then at most twice a second, where it has changed, the box of
+/// all that was ever milled, as a part of that image. Densities as in the scan, as 32-bit floats, in the
+/// patient's axes (RAS, as the protocol has them). On a thread of its own, for which neither the haptic
+/// thread nor anyone else waits longer than such a box takes to be copied.
+class BoneSender {
+ public:
+  /// To HOST:PORT. `bone` outlives this. Throws InputError where the address is none, nothing listens there,
+  /// or the bone does not fit into a message (2 GiB).
+  BoneSender(const BoneFollower& bone, const std::string& address);
+  /// Sends the bone as it is by then, where that takes no longer than two seconds.
+  ~BoneSender();
+  BoneSender(const BoneSender&) = delete;
+  BoneSender& operator=(const BoneSender&) = delete;
+
+  /// Whether the receiver is still there; nothing is sent any more where it is not. Any thread.
+  bool is_connected() const { return is_connected_.load(std::memory_order_relaxed); }
+
+ private:
+  void run(TcpStream& stream);
+
+  const BoneFollower& bone_;
+  std::atomic<bool> is_connected_{true};
+  std::mutex mutex_;
+  std::condition_variable end_;
+  bool ends_ = false;
+  std::thread thread_;
+};
+
+}  // namespace osteomill
