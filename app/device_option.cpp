@@ -97,6 +97,11 @@ void add_device_option(CLI::App& command, DeviceOption& option) {
       ->type_name("mm");
 }
 
+void add_send_bone_option(CLI::App& command, std::string& address) {
+  command.add_option("--send-bone", address, "The bone as it is milled, by OpenIGTLink, as to 3D Slicer")
+      ->type_name("HOST:PORT");
+}
+
 std::unique_ptr<ConnectedDevice> open_device(const DeviceOption& option) {
   const HardwareKind* kind = hardware_named(name_in(option.device));
   if (kind == nullptr) return nullptr;

@@ -33,6 +33,9 @@ struct DeviceOption {
 /// Adds --device, which is `option.device` where it is not given, and how its workspace lies.
 void add_device_option(CLI::App& command, DeviceOption& option);
 
+/// Adds --send-bone: where the bone goes as it is milled (BoneSender), nowhere where that is empty.
+void add_send_bone_option(CLI::App& command, std::string& address);
+
 /// The haptic hardware that was asked for, its workspace as it was kept for it by its name, with what was
 /// given of it now, which is kept as well; says on standard error which device that is. Null for a hand
 /// without hardware. Throws InputError where the device cannot be had.

@@ -16,6 +16,7 @@
 #include "osteomill/device/space_mouse.h"
 #include "osteomill/experiment/entry_pictures.h"
 #include "osteomill/files/input_error.h"
+#include "osteomill/live/bone_sender.h"
 #include "osteomill/live/live_milling.h"
 #include "osteomill/operator/virtual_hand.h"
 #include "osteomill/session/fault_count.h"
@@ -36,6 +37,7 @@ struct LiveOptions {
   std::string record;
   DeviceOption device{kSimulated};
   bool spindle = false;
+  std::string send_bone;
 };
 
 void print_times(const char* what, const TimePercentiles& times) {
@@ -172,6 +174,8 @@ void run_live(LiveOptions options, const std::string& command_line) {
   const BoneDensities densities = prepared.densities;
   LiveMilling milling(std::move(prepared), device);
   if (options.spindle) milling.set_spindle(true);
+  std::optional<BoneSender> sender;
+  if (!options.send_bone.empty()) sender.emplace(milling.follower(), options.send_bone);
   std::optional<EntryPictures> pictures;
   if (!options.record.empty()) {
     pictures.emplace(*bone, densities.reference, entry, events_on_terminal(), !options.scan.scan.empty());
@@ -187,6 +191,7 @@ void run_live(LiveOptions options, const std::string& command_line) {
   if (!milling.refused_real_time().empty()) warn(milling.refused_real_time());
   const Seen seen = run_for(milling, options.seconds, labels, holder);
   if (milling.recording()) milling.stop_recording();
+  if (sender && !sender->is_connected()) warn("--send-bone " + options.send_bone + ": the receiver has gone");
   if (const auto said = seen.faults.sentence()) warn(setup.algorithm.id.name + ": " + *said);
   print_timing(milling.timing());
   fmt::print("removed      {:.2f} mm^3, {} bricks of the surface meshed\n",
@@ -214,6 +219,7 @@ void add_live_command(CLI::App& program, const std::string& command_line) {
   command->add_option("--record", options->record, "A recording (HDF5) of every tick")->type_name("FILE");
   add_device_option(*command, options->device);
   command->add_flag("--spindle", options->spindle, "The spindle turns without a button of the device");
+  add_send_bone_option(*command, options->send_bone);
   add_quiet_option(*command);
   command->callback([=] {
     apply_config_file(*command);

@@ -32,6 +32,7 @@
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/files/input_error.h"
 #include "osteomill/image/png.h"
+#include "osteomill/live/bone_sender.h"
 #include "osteomill/sound/sound_stream.h"
 #include "osteomill/view/image_annotations.h"
 #include "osteomill/view/scene_renderer.h"
@@ -241,6 +242,7 @@ class Simulator {
       view_.message = fmt::format("Opened {}: isovalue {:.4g}{}, {}", opened.name, opened.as_scanned.isovalue,
                                   opened.unit, opened.isovalue_from);
       view_.result.clear();
+      sender_.reset();
       simulation_.reset();
     } else {
       view_.wanted = opened.milling.setup;
@@ -258,7 +260,18 @@ class Simulator {
     const Holder holder{options_.device.device, hardware_.get()};
     simulation_ = std::make_unique<Simulation>(std::move(opened), X_WT, holder, options_.command_line,
                                                std::exchange(opened_milled_, std::nullopt));
+    send_bone();
     show_from_the_beginning();
+  }
+
+  // Where nobody takes it, milling goes on without.
+  void send_bone() {
+    if (options_.send_bone.empty()) return;
+    try {
+      sender_.emplace(simulation_->milling.follower(), options_.send_bone);
+    } catch (const InputError& error) {
+      view_.complaint = error.what();
+    }
   }
 
   void show_from_the_beginning() {
@@ -459,6 +472,7 @@ class Simulator {
   Clock::time_point last_picture_ = Clock::now();
   // Ends first: no tick outlives what it tells of.
   std::unique_ptr<Simulation> simulation_;
+  std::optional<BoneSender> sender_;
 };
 
 }  // namespace

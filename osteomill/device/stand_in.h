@@ -8,10 +8,12 @@
 
 namespace osteomill::testing_support {
 
-/// Where a stand-in's handle is when nobody holds it: along an axis to and fro, once in two seconds.
+/// Where a stand-in's handle is when no test holds it: ever further along an axis, and a little to and fro.
 inline double swept_mm() {
-  const std::chrono::duration<double> now = std::chrono::steady_clock::now().time_since_epoch();
-  return 30 * std::sin(std::numbers::pi * now.count());
+  using Clock = std::chrono::steady_clock;
+  static const Clock::time_point start = Clock::now();
+  const double time_s = std::chrono::duration<double>(Clock::now() - start).count();
+  return 25 * time_s + 3 * std::sin(2 * std::numbers::pi * time_s);
 }
 
 /// What a stand-in was sent, as a line in the file that OSTEOMILL_STAND_IN_LOG names; nowhere without it.

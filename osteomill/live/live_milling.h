@@ -119,6 +119,8 @@ class LiveMilling {
   /// Lets `use` read the bone, some ticks behind; from any thread. The version grows with every change.
   void read_bone(const std::function<void(const Volume&)>& use) const { follower_->read(use); }
   std::uint64_t bone_version() const { return follower_->version(); }
+  /// For whoever else follows the bone (BoneSender).
+  const BoneFollower& follower() const { return *follower_; }
 
  private:
   struct Prepared {

@@ -8,6 +8,7 @@
 #include <mutex>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <libwebsockets.h>
@@ -112,7 +113,9 @@ class HaplyStandIn {
         return 0;
       }
       case LWS_CALLBACK_RECEIVE:
-        self->hear({static_cast<const char*>(data), length});
+        self->coming_.append(static_cast<const char*>(data), length);
+        if (lws_is_final_fragment(socket) == 0 || lws_remaining_packet_payload(socket) != 0) return 0;
+        self->hear(std::exchange(self->coming_, {}));
         if (self->closes) return -1;
         if (self->is_mute) return 0;
         std::this_thread::sleep_for(std::chrono::milliseconds(self->delay_ms));
@@ -161,6 +164,7 @@ class HaplyStandIn {
   lws_context* context_ = nullptr;
   int port_ = 0;
   std::atomic<bool> ends_{false};
+  std::string coming_;
   std::vector<std::string> going_;
   mutable std::mutex mutex_;
   std::string instead_;

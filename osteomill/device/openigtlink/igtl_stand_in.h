@@ -101,9 +101,15 @@ class IgtlStandIn {
       const auto client = server_->WaitForConnection(20);
       if (client.IsNull()) continue;
       closes = false;
-      client->SetReceiveTimeout(1);
-      while (!ends_ && !closes && client->GetConnected() && speak(*client) && listen(*client)) {
+      client->SetReceiveTimeout(20);
+      std::atomic<bool> is_over{false};
+      std::thread speaker([&] {
+        while (!is_over && speak(*client)) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      });
+      while (!ends_ && !closes && client->GetConnected() && listen(*client)) {
       }
+      is_over = true;
+      speaker.join();
       client->CloseSocket();
       const auto force_N = sensor("OsteomillForce");
       log_of_stand_in("closed, most", most_N_.load(), "last", force_N[0], force_N[1], force_N[2]);
@@ -121,9 +127,9 @@ class IgtlStandIn {
     return client.Send(bytes.data(), static_cast<int>(bytes.size())) != 0;
   }
 
-  // Whatever comes within a millisecond.
+  // False where the other side is gone.
   bool listen(igtl::Socket& client) {
-    while (true) {
+    while (!ends_ && !closes) {
       const auto header = igtl::MessageHeader::New();
       header->InitPack();
       const int length = client.Receive(header->GetPackPointer(), header->GetPackSize());
@@ -146,6 +152,7 @@ class IgtlStandIn {
       if (std::strcmp(message->GetDeviceName(), "OsteomillForce") == 0)
         most_N_ = std::max(most_N_.load(), std::hypot(values[0], values[1], values[2]));
     }
+    return true;
   }
 
   bool take_image(igtl::Socket& client, const igtl::MessageHeader::Pointer& header) {
@@ -154,7 +161,7 @@ class IgtlStandIn {
     message->AllocatePack();
     client.SetReceiveTimeout(2000);
     client.Receive(message->GetPackBodyPointer(), message->GetPackBodySize());
-    client.SetReceiveTimeout(1);
+    client.SetReceiveTimeout(20);
     if ((message->Unpack(1) & igtl::MessageHeader::UNPACK_BODY) == 0) return false;
     const std::lock_guard lock(mutex_);
     message->GetDimensions(image_.dims.data());
