@@ -7,7 +7,7 @@ void add_commands(CLI::App& program, const std::string& command_line) {
   add_compare_command(program, command_line);
   add_live_command(program, command_line);
   add_rates_command(program);
-  add_replay_command(program);
+  add_replay_command(program, command_line);
   add_info_command(program);
   add_mesh_command(program);
   add_save_command(program);

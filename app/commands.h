@@ -16,7 +16,7 @@ void add_info_command(CLI::App& program);
 void add_live_command(CLI::App& program, const std::string& command_line);
 void add_mesh_command(CLI::App& program);
 void add_rates_command(CLI::App& program);
-void add_replay_command(CLI::App& program);
+void add_replay_command(CLI::App& program, const std::string& command_line);
 void add_report_command(CLI::App& program);
 void add_save_command(CLI::App& program);
 void add_settings_command(CLI::App& program);

@@ -25,6 +25,7 @@
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/recording/read_recording.h"
 #include "osteomill/session/milling_setup.h"
+#include "osteomill/volume/density_hash.h"
 
 namespace osteomill::app {
 
@@ -60,6 +61,7 @@ std::vector<TrialPlan> plans_of(const CompareOptions& options, const LoadedBone&
                  trial_settings(options.trial),
                  command_line,
                  options.modes.size() > 1};
+  plan.scan_hash = fingerprint_of(bone.volume.grid());
   plan.settings.hand_and_device.script.until_leant = true;
   std::vector<TrialPlan> plans;
   for (const Mode mode : options.modes) {

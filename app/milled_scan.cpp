@@ -26,7 +26,7 @@ void require_other_output(const MilledScanOptions& options) {
 
 LoadedBone load_milled_bone(const MilledScanOptions& options) {
   if (options.recording.empty()) return load_bone(options.scan);
-  const Recording recording = read_recording(options.recording);
+  const Recording recording = read_with_what_came_before(options.recording);
   ScanOptions scan = options.scan;
   if (!scan.isovalue) scan.isovalue = recording.description.isovalue;
   LoadedBone bone = read_bone(scan);
@@ -38,7 +38,7 @@ LoadedBone load_milled_bone(const MilledScanOptions& options) {
 DensityGrid load_milled_densities(const MilledScanOptions& options) {
   Scan scan = open_scan(options.scan);
   if (!options.recording.empty()) {
-    const Recording recording = read_recording(options.recording);
+    const Recording recording = read_with_what_came_before(options.recording);
     Volume volume = bone_of(std::move(scan.grid), recording.description.isovalue);
     repeat_milling(volume, recording);
     scan.grid = volume.grid();

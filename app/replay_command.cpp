@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -7,11 +9,17 @@
 #include "app/milling_options.h"
 #include "app/progress.h"
 #include "app/scan_options.h"
+#include <CLI/Error.hpp>
 #include <fmt/core.h>
 
 #include "osteomill/device/trajectory.h"
 #include "osteomill/files/atomic_file.h"
+#include "osteomill/files/input_error.h"
 #include "osteomill/haptics/algorithms.h"
+#include "osteomill/recording/read_recording.h"
+#include "osteomill/recording/recorder.h"
+#include "osteomill/recording/replay_recording.h"
+#include "osteomill/recording/session_settings.h"
 #include "osteomill/recording/write_csv.h"
 #include "osteomill/session/fault_count.h"
 #include "osteomill/session/label_count.h"
@@ -24,62 +32,218 @@ namespace osteomill::app {
 namespace {
 
 struct ReplayOptions {
-  std::string trajectory;
+  std::string input;
   ScanOptions scan;
   MillingOptions milling;
   std::vector<AlgorithmDescription> algorithm{default_algorithm()};
   std::string out;
+  std::string record;
+  bool verify = false;
+  // What was given, of a recording's own.
+  bool other_algorithm = false;
+  bool other_mode = false;
+  bool other_force_limit = false;
+  bool other_torque_limit = false;
+  bool other_reaction = false;
 };
 
-void run_replay(ReplayOptions options) {
-  require_no_input(options.out, {options.trajectory, options.scan.scan});
-  const std::vector<TrajectoryPoint> trajectory = read_trajectory(options.trajectory);
+// The log, and what is to be told of ticks.
+class Log {
+ public:
+  Log(const ReplayOptions& options, std::size_t ticks, const Volume& bone)
+      : options_(options), ticks_(ticks) {
+    if (bone.labels()) labels_ = LabelCount(bone.labels()->labels());
+    log_.reserve(ticks);
+  }
+
+  void add(const TickRecord& record) {
+    log_.push_back(record);
+    faults_.add(record);
+    if (const Label* touched = labels_.add(record)) warn_of_no_go(no_go_warning(*touched, record));
+    if (log_.size() % 1000 == 0)
+      show_progress("replay", static_cast<double>(log_.size()) / static_cast<double>(ticks_));
+  }
+
+  void write() const {
+    end_progress();
+    if (const auto said = faults_.sentence()) warn(options_.input + ": " + *said);
+    if (!options_.out.empty()) write_csv(options_.out, log_);
+    for (const std::string& line : label_lines(labels_)) fmt::print("label {}\n", line);
+    if (!options_.out.empty()) fmt::print("{}\n", options_.out);
+  }
+
+ private:
+  const ReplayOptions& options_;
+  std::size_t ticks_;
+  FaultCount faults_;
+  LabelCount labels_;
+  std::vector<TickRecord> log_;
+};
+
+void replay_trajectory(ReplayOptions options) {
+  const std::vector<TrajectoryPoint> trajectory = read_trajectory(options.input);
   LoadedBone bone = load_bone(options.scan);
   require_workable(options.milling.setup.tool, bone.volume.geometry());
   const BoneDensities densities = estimate_densities(bone.volume);
   options.milling.setup.algorithm = options.algorithm.front();
   const auto session =
       make_session(std::make_shared<Volume>(std::move(bone.volume)), densities, options.milling.setup);
-  FaultCount faults;
-  LabelCount labels;
-  if (session->volume().labels()) labels = LabelCount(session->volume().labels()->labels());
-  std::vector<TickRecord> log;
-  log.reserve(trajectory.size());
-  replay(*session, trajectory, [&](const TickRecord& record) {
-    log.push_back(record);
-    faults.add(record);
-    if (const Label* touched = labels.add(record)) warn_of_no_go(no_go_warning(*touched, record));
-    if (log.size() % 1000 == 0) {
-      show_progress("replay", static_cast<double>(log.size()) / static_cast<double>(trajectory.size()));
-    }
+  Log log(options, trajectory.size(), session->volume());
+  replay(*session, trajectory, [&](const TickRecord& record) { log.add(record); });
+  log.write();
+}
+
+// As it was read when the recording was made: the scan that is named, or else the one that it names.
+Volume scan_of(const ReplayOptions& options, const Recording& recording) {
+  ScanOptions scan = options.scan;
+  if (scan.scan.empty() && recording.description.scan_name != open_scan({}).name)
+    scan.scan = recording.description.scan_name;
+  scan.isovalue = recording.description.isovalue;
+  LoadedBone bone = read_bone(scan);
+  require_made_with(recording, bone.volume);
+  const auto& labels = bone.volume.labels();
+  if (labels && labels->fingerprint() != recording.description.label_map_hash)
+    throw InputError(recording.path.string(), "was made with other labels");
+  return std::move(bone.volume);
+}
+
+void verify(const Volume& scan, const Recording& recording) {
+  const Verification verified = verify_recording(scan, recording, [&](std::size_t ticks) {
+    if (ticks % 1000 == 0)
+      show_progress("verify", static_cast<double>(ticks) / static_cast<double>(recording.records.size()));
   });
   end_progress();
-  if (const auto said = faults.sentence()) warn(options.trajectory + ": " + *said);
-  write_csv(options.out, log);
-  for (const std::string& line : label_lines(labels)) fmt::print("label {}\n", line);
-  fmt::print("{}\n", options.out);
+  if (const auto& difference = verified.difference) {
+    throw InputError(recording.path.string(),
+                     fmt::format("differs from tick {} on ({:.3f} s): {}", difference->record,
+                                 difference->time_s, difference->what));
+  }
+  fmt::print("same: {} ticks (wrenches, tool, milling), the bone after {} of them\n", verified.ticks,
+             verified.bones);
+}
+
+// What was said for all algorithms, said for this one, so that it comes after what was recorded.
+HapticSettings settings_for(const AlgorithmDescription& algorithm, const HapticSettings& said) {
+  HapticSettings own{said.mode};
+  for (const HapticSettings::Named& named : said.named) {
+    if (!named.algorithm.empty()) {
+      own.named.push_back(named);
+    } else if (const SettingDescription* setting = setting_of_option(algorithm, named.setting)) {
+      own.named.push_back({algorithm.id.name, setting->name, named.value});
+    }
+  }
+  return own;
+}
+
+RunDescription run_as(const ReplayOptions& options, RunDescription run) {
+  const AlgorithmDescription* algorithm =
+      options.other_algorithm ? &options.algorithm.front() : find_algorithm(run.algorithm.name);
+  if (algorithm == nullptr) return run;
+  const HapticSettings said = settings_for(*algorithm, options.milling.setup.haptics);
+  HapticSettings haptics{options.other_mode ? said.mode : run.mode};
+  // Settings of another algorithm, or of another mode, mean nothing here.
+  if (run.algorithm == algorithm->id && haptics.mode == run.mode) haptics = haptic_settings(run);
+  haptics.named.insert(haptics.named.end(), said.named.begin(), said.named.end());
+  set_algorithm(run, *algorithm, haptics, 0);
+  SessionSettings session = session_settings(run, options.input);
+  const MillingSetup& setup = options.milling.setup;
+  if (options.other_force_limit) session.guard.limits.force_N = setup.limits.force_N;
+  if (options.other_torque_limit) session.guard.limits.torque_Nmm = setup.limits.torque_Nmm;
+  if (options.other_reaction) session.milling.reaction_share = milling_settings(setup).reaction_share;
+  set_session_settings(run, session);
+  return run;
+}
+
+void replay_another_way(const ReplayOptions& options, const std::string& command_line, const Volume& scan,
+                        const Recording& recording) {
+  Log log(options, recording.records.size(), scan);
+  std::optional<Recorder> recorder;
+  std::uint32_t session_number = 0;
+  Replay replay;
+  replay.as = [&](const RunDescription& run) { return run_as(options, run); };
+  replay.begun = [&](SessionStart start, const MillingSession& session) {
+    if (options.record.empty()) return;
+    for (RunSetting& setting : start.run.settings)
+      if (setting.key == kCommandLineKey) setting.value = command_line;
+    set_algorithm(start.run, algorithm_named(start.run.algorithm.name), haptic_settings(start.run),
+                  session.algorithm().sample_point_count());
+    if (!recorder)
+      recorder.emplace(options.record, start.run, Recorder::kUsualCapacity, Recorder::Begins::when_told);
+    recorder->begin_session(session_number++, std::move(start));
+  };
+  replay.tick = [&](const TickRecord&, const TickRecord& now) {
+    log.add(now);
+    if (recorder) recorder->push_waiting(now);
+    return true;
+  };
+  replay_recording(scan, recording, replay);
+  log.write();
+  if (recorder) {
+    recorder->close();
+    fmt::print("{}\n", options.record);
+  }
+}
+
+void run_replay(const ReplayOptions& options, const std::string& command_line) {
+  for (const std::string& out : {options.out, options.record})
+    require_no_input(out, {options.input, options.scan.scan});
+  if (!is_hdf5(options.input)) {
+    if (options.verify || !options.record.empty())
+      throw InputError(options.input, "is no recording, so there is nothing to verify or to record anew");
+    if (options.out.empty()) throw CLI::RequiredError("--out");
+    return replay_trajectory(options);
+  }
+  if (!options.verify && options.out.empty() && options.record.empty())
+    throw CLI::RequiredError("--verify, --out or --record");
+  const Recording recording = read_with_what_came_before(options.input);
+  const Volume scan = scan_of(options, recording);
+  if (options.verify) verify(scan, recording);
+  if (!options.out.empty() || !options.record.empty())
+    replay_another_way(options, command_line, scan, recording);
+}
+
+// A recording is of one scan, milled with one tool; only what turns motion into a wrench can be another.
+void take_what_was_given(const CLI::App& command, ReplayOptions& options) {
+  const auto given = [&](const char* option) { return command.count(option) > 0; };
+  options.other_algorithm = given("--algorithm");
+  options.other_mode = given("--mode");
+  options.other_force_limit = given("--force-limit");
+  options.other_torque_limit = given("--torque-limit");
+  options.other_reaction = given("--cutting-reaction");
+  if (!is_hdf5(options.input)) return;
+  for (const char* option : {"--iso", "--burr-radius", "--shaft-radius", "--shaft-length", "--spindle-speed",
+                             "--cutting-energy", "--removal-rate", "--seed"}) {
+    if (given(option)) throw CLI::ValidationError(option, "is the recording's own, and cannot be given");
+  }
 }
 
 }  // namespace
 
-void add_replay_command(CLI::App& program) {
+void add_replay_command(CLI::App& program, const std::string& command_line) {
   auto options = std::make_shared<ReplayOptions>();
-  CLI::App* command =
-      program.add_subcommand("replay", "Drive one algorithm along a trajectory and log every tick");
+  CLI::App* command = program.add_subcommand(
+      "replay", "Drive one algorithm along a trajectory, or run a recording again, and log every tick");
   command->group("Recordings");
-  command->add_option("trajectory", options->trajectory, "CSV: time_s,x_mm,y_mm,z_mm,qw,qx,qy,qz,milling")
-      ->required();
+  command
+      ->add_option("input", options->input, "A recording, or CSV: time_s,x_mm,y_mm,z_mm,qw,qx,qy,qz,milling")
+      ->required()
+      ->type_name("TRAJECTORY|RECORDING");
   add_scan_options(*command, options->scan);
   command->option_defaults()->group("The replay");
+  command->add_flag("--verify", options->verify,
+                    "Whether a recording comes out again to the bit, or the first tick that differs");
   add_algorithm_option(*command, options->algorithm);
   command->get_option("--algorithm")->expected(1);
-  command->add_option("--out", options->out, "The log, CSV, a row a tick")->required()->type_name("FILE");
+  command->add_option("--out", options->out, "The log, CSV, a row a tick")->type_name("FILE");
+  command->add_option("--record", options->record, "Of a recording's motion, another recording")
+      ->type_name("FILE");
   add_mode_option(*command, options->milling.setup.haptics.mode);
   add_milling_options(*command, options->milling);
   add_quiet_option(*command);
   command->callback([=] {
     apply_config_file(*command);
-    run_replay(*options);
+    take_what_was_given(*command, *options);
+    run_replay(*options, command_line);
   });
 }
 

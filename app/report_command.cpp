@@ -1,6 +1,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/commands.h"
@@ -25,19 +26,18 @@ struct ReportOptions {
 
 void run_report(const ReportOptions& options) {
   std::vector<Recording> recordings;
+  if (options.csv) create_folder(options.out);
   for (const std::string& path : options.recordings) {
     show_progress("reading",
                   static_cast<double>(recordings.size()) / static_cast<double>(options.recordings.size()));
-    recordings.push_back(read_recording(path));
-  }
-  end_progress();
-  if (options.csv) {
-    create_folder(options.out);
-    for (const Recording& recording : recordings) {
+    Recording recording = read_recording(path);
+    if (options.csv) {
       const std::filesystem::path name = recording.path.filename().replace_extension(".csv");
       write_csv(std::filesystem::path(options.out) / name, recording.records);
     }
+    for (Recording& stretch : in_stretches(std::move(recording))) recordings.push_back(std::move(stretch));
   }
+  end_progress();
   const bool comparison = are_of_comparison(recordings);
   fmt::print("{}\n", (comparison ? write_comparison_report(recordings, options.out)
                                  : write_report(recordings, options.out))

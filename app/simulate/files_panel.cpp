@@ -80,26 +80,23 @@ void FilesPanel::record(ViewState& view, Simulation& simulation) {
 }
 
 void FilesPanel::end_recording(ViewState& view, Simulation& simulation) {
-  if (const auto ended = simulation.milling.take_ended_recording()) last_recording_ = *ended;
-  if (!simulation.milling.recording()) return;
-  record(view, simulation);
-  view.message = "The change ended the recording " + last_recording_.string();
+  if (simulation.milling.recording()) record(view, simulation);
 }
 
 void FilesPanel::close(ViewState& view, Simulation& simulation) {
-  if (simulation.milling.recording()) record(view, simulation);
+  end_recording(view, simulation);
   if (work_.valid()) work_.wait();
 }
 
 void FilesPanel::make_report() {
   work_ = std::async(std::launch::async, [recording = last_recording_, folder = name("report")] {
-    const fs::path page = write_report({read_recording(recording)}, folder);
+    const fs::path page = write_report(in_stretches(read_recording(recording)), folder);
     return Done{"Report in " + page.string(), page};
   });
 }
 
 void FilesPanel::end_with_report(ViewState& view, Simulation& simulation) {
-  if (simulation.milling.recording()) record(view, simulation);
+  end_recording(view, simulation);
   if (!last_recording_.empty()) make_report();
 }
 
@@ -172,9 +169,10 @@ float FilesPanel::draw_said(ViewState& view, const Simulation& simulation, const
 
 void FilesPanel::draw(ViewState& view, Simulation& simulation) {
   take_result(view, simulation);
-  if (const auto ended = simulation.milling.take_ended_recording()) {
-    last_recording_ = *ended;
-    view.message = "The change ended the recording " + ended->string();
+  // A full disk: what was milled so far stays, under the name of what is unfinished.
+  if (simulation.milling.recording_failed()) {
+    attempt(view, [&] { simulation.milling.stop_recording(); });
+    view.message.clear();
   }
   if (!ui::header("Record and save", true)) return;
   if (ui::button(simulation.milling.recording() ? "Stop recording##r" : "Record##r"))

@@ -30,7 +30,7 @@ class FilesPanel {
   float draw_said(ViewState& view, const Simulation& simulation, const PixelSize& size, float top_px);
   /// Ends a recording that still goes on.
   void close(ViewState& view, Simulation& simulation);
-  /// Ends a recording that goes on since what it tells of changes.
+  /// The same, where nothing more is to be closed.
   void end_recording(ViewState& view, Simulation& simulation);
   bool busy() const { return work_.valid(); }
   /// Whether anything was recorded since the window opened.

@@ -50,7 +50,12 @@ std::vector<fs::path> record_trial(const TrialPlan& plan, const AlgorithmDescrip
     if (!pictures.before()) {
       run.settings.push_back({std::string(kPicturesKey), "none, as OpenGL could not be had", ""});
     }
-    recorders.push_back(std::make_unique<Recorder>(paths.back(), run));
+    const bool first = recorders.empty();
+    recorders.push_back(std::make_unique<Recorder>(
+        paths.back(), run, Recorder::kUsualCapacity,
+        first ? Recorder::Begins::with_the_recording : Recorder::Begins::when_told));
+    // The session goes on from phase to phase.
+    if (!first) recorders.back()->begin_session(0, {.goes_on_from = paths.front().filename().string()});
   }
   Recorder& milling = *recorders[0];
   Recorder& holding = *recorders[1];

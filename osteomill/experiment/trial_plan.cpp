@@ -50,10 +50,18 @@ RunDescription describe_trial(const TrialPlan& plan, const AlgorithmDescription&
                               std::string_view phase) {
   const TrialSettings& trial = plan.settings;
   const OperatorSettings& person = trial.hand_and_device;
-  RunDescription run = describe_run(
-      {plan.scan_name, plan.bone.geometry(), plan.bone.isovalue(), plan.densities, trial.tool, trial.haptics,
-       trial.milling, trial.limits, person.seed, trial.tick_s, plan.command_line, plan.bone.labels()},
-      algorithm, sample_points);
+  RunDescription run = describe_run({.scan_name = plan.scan_name,
+                                     .scan_hash = plan.scan_hash,
+                                     .geometry = plan.bone.geometry(),
+                                     .isovalue = plan.bone.isovalue(),
+                                     .tool = trial.tool,
+                                     .haptics = trial.haptics,
+                                     .session = {plan.densities, trial.milling, {}, {trial.limits}},
+                                     .seed = person.seed,
+                                     .tick_s = trial.tick_s,
+                                     .command_line = plan.command_line,
+                                     .labels = plan.bone.labels()},
+                                    algorithm, sample_points);
   run.segment = phase;
   add_hand(run.settings, person.hand);
   add_device(run.settings, person.handle);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -24,6 +25,8 @@ struct TrialPlan {
   /// As what every algorithm's stiffness was chosen to be felt on a flat wall (match_stiffness.h); nothing
   /// where each has its own.
   std::optional<double> matched_N_per_mm = std::nullopt;
+  /// Of the bone as scanned (fingerprint_of), for its recordings to be verified.
+  std::uint64_t scan_hash = 0;
 };
 
 /// The key of the setting in which every recording of this test says where the tool enters.

@@ -7,10 +7,10 @@
 #include <optional>
 #include <vector>
 
-#include "osteomill/live/density_block.h"
 #include "osteomill/surface/surface_bricks.h"
 #include "osteomill/surface/surface_upkeep.h"
 #include "osteomill/volume/densities.h"
+#include "osteomill/volume/density_block.h"
 #include "osteomill/volume/volume.h"
 
 namespace osteomill {

@@ -6,7 +6,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "osteomill/live/density_block.h"
+#include "osteomill/volume/density_block.h"
 
 namespace osteomill {
 

@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "osteomill/live/density_block.h"
+#include "osteomill/volume/density_block.h"
 #include "osteomill/volume/volume.h"
 
 namespace osteomill {

@@ -8,6 +8,7 @@
 #include "osteomill/numbers/work_progress.h"
 #include "osteomill/recording/describe_run.h"
 #include "osteomill/recording/recording.h"
+#include "osteomill/volume/density_hash.h"
 
 namespace osteomill {
 
@@ -26,6 +27,7 @@ PreparedMilling prepare_milling(std::shared_ptr<Volume> bone, const MillingSetup
                                 const MilledBefore& before) {
   BoneDensities densities;
   std::unique_ptr<BoneFollower> follower;
+  const std::uint64_t scan_hash = fingerprint_of(bone->grid());
   {
     const WorkProgress::Part looking(0.2);
     densities = estimate_densities(*bone);
@@ -38,13 +40,14 @@ PreparedMilling prepare_milling(std::shared_ptr<Volume> bone, const MillingSetup
   const WorkProgress::Part preparing(1);
   auto session = make_session(std::move(bone), densities, setup);
   session->count_removed_from(before.removed_mm3);
-  return {setup, densities, std::move(follower), std::move(session)};
+  return {setup, densities, scan_hash, std::move(follower), std::move(session)};
 }
 
 LiveMilling::LiveMilling(PreparedMilling prepared, Device& device)
     : setup_(prepared.setup),
       sample_points_(prepared.session->algorithm().sample_point_count()),
       densities_(prepared.densities),
+      scan_hash_(prepared.scan_hash),
       geometry_(prepared.session->volume().geometry()),
       isovalue_(prepared.session->volume().isovalue()),
       follower_(std::move(prepared.follower)),
@@ -58,10 +61,10 @@ LiveMilling::~LiveMilling() {
 }
 
 void LiveMilling::listen() {
-  live_.wait_for(live_.listen([follower = follower_.get(), recorder = recorder_.get()](
+  live_.wait_for(live_.listen([follower = follower_.get(), recorder = recorder_.get(), from = recorded_from_](
                                   const TickRecord& record, const Volume& bone, const VolumeChange& change) {
     follower->bone_changed(bone, change);
-    if (recorder != nullptr) recorder->push(record);
+    if (recorder != nullptr && record.session >= from) recorder->push(record);
   }));
 }
 
@@ -84,7 +87,9 @@ void LiveMilling::change(const MillingSetup& setup) {
   live_.wait_for(live_.hold_bone(true));
   preparation_ = std::async(std::launch::async, [this, setup, bone = live_.session().shared_volume(),
                                                  removed_mm3 = live_.session().removed_mm3()] {
-    Prepared prepared{make_session(bone, densities_, setup), setup, densities_};
+    catch_up();
+    Prepared prepared{make_session(bone, densities_, setup), setup, densities_, removed_mm3,
+                      follower_->touched_bricks()};
     prepared.session->count_removed_from(removed_mm3);
     return prepared;
   });
@@ -111,7 +116,12 @@ void LiveMilling::rebuild(MakeBone make_bone) {
     const BoneFollower::NextBone next = make_bone();
     try {
       const BoneDensities densities = next.densities.value_or(densities_);
-      Prepared prepared{make_session(next.bone, densities, setup), setup, densities, true};
+      Prepared prepared{make_session(next.bone, densities, setup),
+                        setup,
+                        densities,
+                        next.removed_mm3,
+                        follower_->touched_bricks(),
+                        true};
       prepared.session->count_removed_from(next.removed_mm3);
       return prepared;
     } catch (...) {
@@ -136,29 +146,19 @@ void LiveMilling::take_over() {
   std::exception_ptr failure;
   try {
     Prepared prepared = preparation_.get();
-    failure = end_recording();
     isovalue_ = prepared.session->volume().isovalue();
     setup_ = prepared.setup;
     sample_points_ = prepared.session->algorithm().sample_point_count();
     densities_ = prepared.densities;
     live_.wait_for(live_.replace(std::move(prepared.session)));
+    ++session_number_;
     if (prepared.other_bone) follower_->swap();
+    if (recorder_) tell_recorder(live_.taken_over(), prepared.removed_mm3, std::move(prepared.bricks));
   } catch (...) {
     failure = std::current_exception();
   }
   live_.hold_bone(false);
   if (failure) std::rethrow_exception(failure);
-}
-
-// A recording that cannot be ended does not keep what was prepared from its place.
-std::exception_ptr LiveMilling::end_recording() {
-  if (!recording()) return {};
-  try {
-    ended_recording_ = stop_recording();
-  } catch (...) {
-    return std::current_exception();
-  }
-  return {};
 }
 
 std::vector<double> LiveMilling::removed_by_label() const {
@@ -170,35 +170,49 @@ std::vector<double> LiveMilling::removed_by_label() const {
 }
 
 RunDescription LiveMilling::describe(const std::string& scan_name, const std::string& command_line) const {
-  const RunFacts facts{scan_name,
-                       geometry_,
-                       isovalue_,
-                       densities_,
-                       setup_.tool,
-                       setup_.haptics,
-                       milling_settings(setup_),
-                       setup_.limits,
-                       0,
-                       1e-3,
-                       command_line,
-                       live_.session().volume().labels()};
-  RunDescription run = describe_run(facts, setup_.algorithm, sample_points_);
-  run.settings.push_back({"vibration", setup_.vibration ? 1.0 : 0.0, ""});
-  run.settings.push_back({"passivity_controller", setup_.passivity_controller ? 1.0 : 0.0, ""});
-  return run;
+  VibrationSettings vibration;
+  vibration.on = setup_.vibration;
+  vibration.spindle_speed_rpm = setup_.cutting.spindle_speed_rpm;
+  GuardSettings guard = GuardSettings::for_a_hand(setup_.limits);
+  guard.passivity_controller = setup_.passivity_controller;
+  const RunFacts facts{.scan_name = scan_name,
+                       .scan_hash = scan_hash_,
+                       .geometry = geometry_,
+                       .isovalue = isovalue_,
+                       .tool = setup_.tool,
+                       .haptics = setup_.haptics,
+                       .session = {densities_, milling_settings(setup_), vibration, guard},
+                       .command_line = command_line,
+                       .labels = live_.session().volume().labels()};
+  return describe_run(facts, setup_.algorithm, sample_points_);
 }
 
 void LiveMilling::start_recording(const std::filesystem::path& path, const RunDescription& description,
                                   TakePicture picture) {
-  auto recorder = std::make_unique<Recorder>(path, description);
+  finish_preparing();
+  auto recorder =
+      std::make_unique<Recorder>(path, description, Recorder::kUsualCapacity, Recorder::Begins::when_told);
   add_picture(*recorder, kPictureBefore, picture);
   recorder_ = std::move(recorder);
   recorder_path_ = path;
   take_picture_ = std::move(picture);
+  recorded_ = description;
+  const bool untouched = !live_.running() && live_.timing().ticks == 0;
+  recorded_from_ = untouched ? session_number_ : session_number_ + 1;
+  if (untouched) tell_recorder({}, live_.session().removed_mm3(), follower_->touched_bricks());
   listen();
+  if (!untouched) change(setup_);
+}
+
+void LiveMilling::tell_recorder(const TakenOver& taken_over, double removed_mm3,
+                                std::vector<DensityBlock> bricks) {
+  RunDescription run = describe(recorded_.scan_name, "");
+  recorder_->begin_session(session_number_, {std::move(run), taken_over, removed_mm3, std::move(bricks), ""});
 }
 
 std::filesystem::path LiveMilling::stop_recording() {
+  // One that was stopped before it could begin still begins.
+  if (session_number_ < recorded_from_) finish_preparing();
   const std::unique_ptr<Recorder> recorder = std::move(recorder_);
   listen();
   add_picture(*recorder, kPictureAfter, std::exchange(take_picture_, {}));

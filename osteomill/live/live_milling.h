@@ -1,13 +1,12 @@
 #pragma once
 
-#include <exception>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <future>
 #include <memory>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "osteomill/live/bone_follower.h"
@@ -21,6 +20,8 @@ namespace osteomill {
 struct PreparedMilling {
   MillingSetup setup;
   BoneDensities densities;
+  /// Of the scan, before anything was milled (fingerprint_of).
+  std::uint64_t scan_hash = 0;
   std::unique_ptr<BoneFollower> follower;
   std::unique_ptr<MillingSession> session;
 };
@@ -87,18 +88,17 @@ class LiveMilling {
   RunDescription describe(const std::string& scan_name, const std::string& command_line) const;
   /// A PNG of the bone as it is; empty where there is none.
   using TakePicture = std::function<std::vector<unsigned char>()>;
-  /// `picture`, where it is given, is taken now and, by whatever the recording ends, then. Throws InputError
-  /// where the file cannot be written; a recording is then not going on.
+  /// Goes on over whatever is changed or taken back. Where something has been felt already the session begins
+  /// anew as with another algorithm, so that the recording holds all it takes to replay it; it has then
+  /// ticks from when that is prepared. `picture`, where it is given, is taken now and at the end. Throws
+  /// InputError where the file cannot be written; a recording is then not going on.
   void start_recording(const std::filesystem::path& path, const RunDescription& description,
                        TakePicture picture = {});
   /// Returns the recording's name. Throws as Recorder::close does.
   std::filesystem::path stop_recording();
   bool recording() const { return recorder_ != nullptr; }
-  /// A recording tells of one bone, one tool and one algorithm: where any of them changes it ends. Its name
-  /// then, once.
-  std::optional<std::filesystem::path> take_ended_recording() {
-    return std::exchange(ended_recording_, std::nullopt);
-  }
+  /// Writing has failed (a full disk): stop_recording says why. Milling goes on.
+  bool recording_failed() const { return recorder_ && recorder_->failed(); }
 
   const LiveState& state() { return live_.state(); }
   /// Every tick in turn (LiveSession::next_record).
@@ -127,6 +127,8 @@ class LiveMilling {
     std::unique_ptr<MillingSession> session;
     MillingSetup setup;
     BoneDensities densities;
+    double removed_mm3 = 0;
+    std::vector<DensityBlock> bricks;
     bool other_bone = false;
   };
   using MakeBone = std::function<BoneFollower::NextBone()>;
@@ -135,19 +137,24 @@ class LiveMilling {
   void rebuild(MakeBone make_bone);
   void catch_up();
   void take_over();
-  std::exception_ptr end_recording();
+  void tell_recorder(const TakenOver& taken_over, double removed_mm3, std::vector<DensityBlock> bricks);
 
   MillingSetup setup_;
   // As prepared: the haptic thread's algorithm changes them.
   int sample_points_;
   BoneDensities densities_;
+  std::uint64_t scan_hash_;
   GridGeometry geometry_;
   double isovalue_;
   std::unique_ptr<BoneFollower> follower_;
   std::unique_ptr<Recorder> recorder_;
   std::filesystem::path recorder_path_;
   TakePicture take_picture_;
-  std::optional<std::filesystem::path> ended_recording_;
+  // What the recording says of the scan.
+  RunDescription recorded_;
+  // The first session that is recorded, and the last that was made.
+  std::uint32_t recorded_from_ = 0;
+  std::uint32_t session_number_ = 0;
   LiveSession live_;
   std::future<Prepared> preparation_;
   bool spindle_ = false;

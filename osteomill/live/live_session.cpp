@@ -182,12 +182,15 @@ void LiveSession::apply(Action& action) {
     bone_held_ = hold->held;
   } else if (auto* replace = std::get_if<Replace>(&action)) {
     std::swap(session_, replace->session);
-    session_->guard().take_over(replace->session->guard());
-    session_->take_over_tool(last_X_WT_);
+    taken_over_ = replace->session->left();
+    session_->guard().protect_a_hand();
+    session_->take_over(taken_over_);
+    if (letting_go_) session_->let_go();
+    ++session_number_;
   } else if (const auto* place = std::get_if<Place>(&action)) {
     place_ = *place;
     letting_go_ = true;
-    session_->guard().let_go();
+    session_->let_go();
   } else if (auto* listen = std::get_if<Listen>(&action)) {
     std::swap(listener_, listen->listener);
   }
@@ -197,8 +200,7 @@ void LiveSession::apply(Action& action) {
 bool LiveSession::place_when_at_rest() {
   if (!letting_go_ || !session_->guard().is_at_rest()) return false;
   device_.put_at(place_.X_WD);
-  session_->begin_at(place_.X_WD);
-  session_->guard().begin_anew();
+  session_->place();
   letting_go_ = false;
   return true;
 }
@@ -206,12 +208,12 @@ bool LiveSession::place_when_at_rest() {
 TickRecord LiveSession::tick(double time_s, double dt_s) {
   const bool placed = place_when_at_rest();
   const bool spindle_on = !paused_ && !letting_go_ && (spindle_ || device_.spindle_asked());
-  const TickRecord record = step(time_s, dt_s, spindle_on && !bone_held_);
+  TickRecord record = step(time_s, dt_s, spindle_on && !bone_held_);
+  record.session = session_number_;
   if (listener_) (*listener_)(record, session_->volume(), session_->last_change());
   state_.write({record, spindle_on, paused_});
   if (placed) placing_.store(false, std::memory_order_release);
   queues_->records.try_push(record);
-  last_X_WT_ = record.X_WT;
   return record;
 }
 

@@ -64,6 +64,8 @@ class LiveSession {
   bool placing() const { return placing_.load(std::memory_order_acquire); }
   /// In place of the listener before, which is no longer called once the command is done. May be empty.
   CommandNumber listen(TickListener listener);
+  /// What the session of the last `replace` that is done began from.
+  const TakenOver& taken_over() const { return taken_over_; }
   bool is_done(CommandNumber number) const {
     return commands_done_.load(std::memory_order_acquire) >= number;
   }
@@ -134,7 +136,8 @@ class LiveSession {
   bool paused_ = false;
   bool bone_held_ = false;
   double time_s_ = 0;
-  std::optional<Pose> last_X_WT_;
+  std::uint32_t session_number_ = 0;
+  TakenOver taken_over_;
   Place place_;
   bool letting_go_ = false;
   std::atomic<bool> placing_{false};

@@ -104,15 +104,6 @@ std::ifstream opened(const fs::path& path) {
 
 }  // namespace
 
-// FNV-1a, a voxel at a time.
-std::uint64_t fingerprint_of(const DensityGrid& grid) {
-  std::uint64_t hash = 0xcbf29ce484222325;
-  for (const float density : grid.densities()) {
-    hash = (hash ^ std::bit_cast<std::uint32_t>(density)) * 0x100000001b3;
-  }
-  return hash;
-}
-
 void require_same_scan(const MilledBone& milled, const MilledBone& read) {
   if (milled.dims == read.dims && milled.fingerprint == read.fingerprint) return;
   throw InputError(read.name, "has changed since it was milled, so what was milled cannot be put into it");

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "osteomill/live/density_block.h"
+#include "osteomill/volume/density_block.h"
 #include "osteomill/volume/grid_geometry.h"
 
 namespace osteomill {
@@ -25,14 +25,11 @@ struct MilledBone {
   double isovalue = 0;
   double removed_mm3 = 0;
   std::array<int, 3> dims{};
-  /// Of the scan's densities as they were read (`fingerprint_of`).
+  /// Of the scan's densities as they were read (fingerprint_of, density_hash.h).
   std::uint64_t fingerprint = 0;
   /// Every brick that was ever milled, as it is now.
   std::vector<DensityBlock> bricks;
 };
-
-/// A number that two scans hardly share. Goes through every voxel; not for the tick.
-std::uint64_t fingerprint_of(const DensityGrid& grid);
 
 /// Throws InputError, naming the scan that was read, where the other was milled of another.
 void require_same_scan(const MilledBone& milled, const MilledBone& read);

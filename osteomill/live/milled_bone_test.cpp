@@ -10,6 +10,7 @@
 
 #include "osteomill/files/input_error.h"
 #include "osteomill/files/temporary_folder.h"
+#include "osteomill/volume/density_hash.h"
 
 namespace osteomill {
 namespace {

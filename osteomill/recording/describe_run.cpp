@@ -1,31 +1,46 @@
 #include "osteomill/recording/describe_run.h"
 
-#include "osteomill/haptics/algorithms.h"
+#include <ctime>
+#include <fstream>
+
+#include <fmt/chrono.h>
+#include <sys/utsname.h>
+
+#include "osteomill/volume/label_map.h"
 
 namespace osteomill {
 
 namespace {
 
-using Settings = std::vector<RunSetting>;
-
-void add_algorithm(Settings& settings, const AlgorithmDescription& algorithm, const HapticSettings& haptics,
-                   int sample_points) {
-  settings.push_back({"sample_points", static_cast<double>(sample_points), ""});
-  for (const SettingValue& value : setting_values(algorithm, haptics)) {
-    settings.push_back({"algorithm." + value.name, value.value, value.unit});
+// The first line of /proc/cpuinfo that names it.
+std::string processor_name() {
+  std::ifstream in("/proc/cpuinfo");
+  for (std::string line; std::getline(in, line);) {
+    const std::size_t colon = line.find(": ");
+    if (line.starts_with("model name") && colon != std::string::npos) return line.substr(colon + 2);
   }
+  return "";
 }
 
-void add_milling(Settings& settings, const MillingSettings& milling, const BoneDensities& densities) {
-  settings.push_back({"milling.removal_rate", milling.removal_rate_mm3_per_Ns, "mm^3/(N s)"});
-  settings.push_back({"milling.reaction_share", milling.reaction_share, ""});
-  settings.push_back({"milling.surroundings_density", densities.surroundings, ""});
-  settings.push_back({"milling.reference_density", densities.reference, ""});
-}
-
-void add_limits(Settings& settings, const WrenchLimits& limits) {
-  settings.push_back({"limit.force", limits.force_N, "N"});
-  settings.push_back({"limit.torque", limits.torque_Nmm, "N mm"});
+Origin made_here_and_now() {
+  utsname system{};
+  ::uname(&system);
+  Origin made;
+  made.date_utc = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
+  made.host = system.nodename;
+  made.system = fmt::format("{} {} {}", system.sysname, system.release, system.machine);
+  made.processor = processor_name();
+#ifdef __clang__
+  made.compiler = __VERSION__;
+#else
+  made.compiler = "GCC " __VERSION__;
+#endif
+#ifdef __OPTIMIZE__
+  made.build = "optimised";
+#else
+  made.build = "not optimised";
+#endif
+  return made;
 }
 
 }  // namespace
@@ -33,20 +48,24 @@ void add_limits(Settings& settings, const WrenchLimits& limits) {
 RunDescription describe_run(const RunFacts& facts, const AlgorithmDescription& algorithm, int sample_points) {
   RunDescription run;
   run.program_version = OSTEOMILL_VERSION;
+  run.made = made_here_and_now();
   run.scan_name = facts.scan_name;
   run.dims = facts.geometry.dims;
   run.spacing_mm = facts.geometry.spacing_mm;
+  run.origin_mm = facts.geometry.origin_mm;
+  run.direction = facts.geometry.direction;
+  run.scan_hash = facts.scan_hash;
   run.isovalue = facts.isovalue;
   run.tool = facts.tool;
-  run.algorithm = algorithm.id;
-  run.mode = facts.haptics.mode;
   run.seed = facts.seed;
   run.tick_period_s = facts.tick_s;
-  if (facts.labels) run.labels = facts.labels->labels();
+  if (facts.labels) {
+    run.labels = facts.labels->labels();
+    run.label_map_hash = facts.labels->fingerprint();
+  }
   run.settings.push_back({std::string(kCommandLineKey), facts.command_line, ""});
-  add_algorithm(run.settings, algorithm, facts.haptics, sample_points);
-  add_milling(run.settings, facts.milling, facts.densities);
-  add_limits(run.settings, facts.limits);
+  set_algorithm(run, algorithm, facts.haptics, sample_points);
+  set_session_settings(run, facts.session);
   return run;
 }
 

@@ -4,11 +4,9 @@
 #include <memory>
 #include <string>
 
-#include "osteomill/geometry/wrench.h"
 #include "osteomill/haptics/haptic_settings.h"
-#include "osteomill/milling/burr_mill.h"
 #include "osteomill/recording/run_description.h"
-#include "osteomill/volume/densities.h"
+#include "osteomill/recording/session_settings.h"
 #include "osteomill/volume/grid_geometry.h"
 
 namespace osteomill {
@@ -17,13 +15,13 @@ namespace osteomill {
 /// `describe_run` makes of this.
 struct RunFacts {
   std::string scan_name;
+  /// Of the scan as it was read (fingerprint_of); a recording can be verified only against that one.
+  std::uint64_t scan_hash = 0;
   GridGeometry geometry;
   double isovalue = 0;
-  BoneDensities densities;
   MillingTool tool;
   HapticSettings haptics;
-  MillingSettings milling;
-  WrenchLimits limits;
+  SessionSettings session;
   std::uint64_t seed = 0;
   double tick_s = 1e-3;
   /// How the program was called; may be empty.

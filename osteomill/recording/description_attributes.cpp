@@ -1,10 +1,12 @@
 #include "osteomill/recording/description_attributes.h"
 
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <set>
 #include <stdexcept>
+#include <utility>
 
 #include "osteomill/files/input_error.h"
 #include "osteomill/haptics/algorithms.h"
@@ -20,6 +22,12 @@ namespace {
 constexpr const char* kSettingsGroup = "settings";
 constexpr const char* kLabelsGroup = "labels";
 constexpr std::string_view kUnitSuffix = ".unit";
+constexpr std::array kAxes{"axis_i", "axis_j", "axis_k"};
+constexpr std::array kOriginAttributes{
+    std::pair{"date_utc", &Origin::date_utc}, std::pair{"host", &Origin::host},
+    std::pair{"system", &Origin::system},     std::pair{"processor", &Origin::processor},
+    std::pair{"compiler", &Origin::compiler}, std::pair{"build", &Origin::build},
+};
 constexpr std::string_view kUnknownColour = "#888888";
 
 void require_usable_keys(const std::vector<RunSetting>& settings) {
@@ -145,11 +153,16 @@ void write_description(const fs::path& path, hid_t file, const RunDescription& d
                                 "': an algorithm or a segment that cannot be recorded by that name");
   }
   const AttributeWriter write(path, file);
-  const Vec3& spacing = description.spacing_mm;
   write.text("program_version", description.program_version);
+  for (const auto& [name, member] : kOriginAttributes) write.text(name, description.made.*member);
   write.text("scan_name", description.scan_name);
   write.integers("dims", description.dims);
-  write.reals("spacing_mm", {spacing.x(), spacing.y(), spacing.z()});
+  write.vector("spacing_mm", description.spacing_mm);
+  write.vector("origin_mm", description.origin_mm);
+  for (Eigen::Index axis = 0; axis < 3; ++axis)
+    write.vector(kAxes[static_cast<std::size_t>(axis)], Vec3(description.direction.col(axis)));
+  write.unsigned_integer("scan_hash", description.scan_hash);
+  write.unsigned_integer("label_map_hash", description.label_map_hash);
   write.real("isovalue", description.isovalue);
   write.real("burr_radius_mm", description.tool.burr_radius_mm);
   write.real("shaft_radius_mm", description.tool.shaft_radius_mm);
@@ -171,8 +184,16 @@ RunDescription read_description(const fs::path& path, hid_t file) {
   description.program_version = read.text("program_version");
   description.scan_name = read.text("scan_name");
   description.dims = read.integers("dims");
-  const auto spacing = read.reals("spacing_mm");
-  description.spacing_mm = {spacing[0], spacing[1], spacing[2]};
+  description.spacing_mm = read.vector("spacing_mm");
+  // Version 2 has none of these.
+  if (read.has("scan_hash")) {
+    for (const auto& [name, member] : kOriginAttributes) description.made.*member = read.text(name);
+    description.origin_mm = read.vector("origin_mm");
+    for (Eigen::Index axis = 0; axis < 3; ++axis)
+      description.direction.col(axis) = read.vector(kAxes[static_cast<std::size_t>(axis)]);
+    description.scan_hash = read.unsigned_integer("scan_hash");
+    description.label_map_hash = read.unsigned_integer("label_map_hash");
+  }
   description.isovalue = read.real("isovalue");
   description.tool = {read.real("burr_radius_mm"), read.real("shaft_radius_mm"),
                       read.real("shaft_length_mm")};

@@ -40,7 +40,7 @@ void AttributeWriter::unsigned_integer(const std::string& name, std::uint64_t va
   write(name, H5T_STD_U64LE, H5T_NATIVE_UINT64, 1, &value);
 }
 
-void AttributeWriter::reals(const std::string& name, const std::array<double, 3>& values) const {
+void AttributeWriter::reals(const std::string& name, std::span<const double> values) const {
   write(name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, values.size(), values.data());
 }
 
@@ -102,10 +102,14 @@ std::uint64_t AttributeReader::unsigned_integer(const std::string& name) const {
   return value;
 }
 
-std::array<double, 3> AttributeReader::reals(const std::string& name) const {
-  std::array<double, 3> values{};
-  read(name, H5T_FLOAT, H5T_NATIVE_DOUBLE, 3, values.data());
-  return values;
+void AttributeReader::reals(const std::string& name, std::span<double> values) const {
+  read(name, H5T_FLOAT, H5T_NATIVE_DOUBLE, std::ssize(values), values.data());
+}
+
+Vec3 AttributeReader::vector(const std::string& name) const {
+  Vec3 value;
+  reals(name, {value.data(), 3});
+  return value;
 }
 
 std::array<int, 3> AttributeReader::integers(const std::string& name) const {

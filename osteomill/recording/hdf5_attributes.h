@@ -3,9 +3,11 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "osteomill/geometry/pose.h"
 #include "osteomill/recording/hdf5_handle.h"
 
 namespace osteomill {
@@ -19,7 +21,8 @@ class AttributeWriter {
   void text(const std::string& name, const std::string& value) const;
   void real(const std::string& name, double value) const;
   void unsigned_integer(const std::string& name, std::uint64_t value) const;
-  void reals(const std::string& name, const std::array<double, 3>& values) const;
+  void reals(const std::string& name, std::span<const double> values) const;
+  void vector(const std::string& name, const Vec3& value) const { reals(name, {value.data(), 3}); }
   void integers(const std::string& name, const std::array<int, 3>& values) const;
   /// Writes over the value of an attribute that is there.
   void replace_unsigned_integer(const std::string& name, std::uint64_t value) const;
@@ -41,7 +44,9 @@ class AttributeReader {
   std::string text(const std::string& name) const;
   double real(const std::string& name) const;
   std::uint64_t unsigned_integer(const std::string& name) const;
-  std::array<double, 3> reals(const std::string& name) const;
+  /// As many as there is room for.
+  void reals(const std::string& name, std::span<double> values) const;
+  Vec3 vector(const std::string& name) const;
   std::array<int, 3> integers(const std::string& name) const;
   bool has(const std::string& name) const;
   bool is_text(const std::string& name) const;

@@ -4,7 +4,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include <sys/wait.h>
@@ -48,9 +50,10 @@ OpenRecording open_recording(const fs::path& path) {
 void require_our_version(const OpenRecording& recording, const AttributeReader& root) {
   if (!root.has("osteomill_recording_version")) refuse(recording, "is HDF5, but no recording of osteomill");
   const std::uint64_t version = root.unsigned_integer("osteomill_recording_version");
-  if (version != kRecordingVersion) {
+  if (version < kOldestVersion || version > kRecordingVersion) {
     refuse(recording, "is a recording of version " + std::to_string(version) +
-                          "; this program reads version " + std::to_string(kRecordingVersion));
+                          "; this program reads versions " + std::to_string(kOldestVersion) + " to " +
+                          std::to_string(kRecordingVersion));
   }
 }
 
@@ -113,18 +116,24 @@ void require_in_range(const OpenRecording& recording, const RecordColumn& column
   }
 }
 
-std::vector<double> read_values(const OpenRecording& recording, hid_t dataset, const std::string& name,
-                                hsize_t rows) {
-  std::vector<double> values(rows);
+template <typename Value>
+std::vector<Value> read_values(const OpenRecording& recording, hid_t dataset, hid_t memory_type,
+                               const std::string& name, hsize_t rows) {
+  std::vector<Value> values(rows);
   const hsize_t from = 0;
   const Hdf5Handle memory(H5Screate_simple(1, &rows, nullptr), H5Sclose);
   const Hdf5Handle space(H5Dget_space(dataset), H5Sclose);
   if (rows > 0 &&
       (H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, &from, nullptr, &rows, nullptr) < 0 ||
-       H5Dread(dataset, H5T_NATIVE_DOUBLE, memory.get(), space.get(), H5P_DEFAULT, values.data()) < 0)) {
+       H5Dread(dataset, memory_type, memory.get(), space.get(), H5P_DEFAULT, values.data()) < 0)) {
     refuse(recording, "the column '" + name + "' cannot be read");
   }
   return values;
+}
+
+std::vector<double> read_reals(const OpenRecording& recording, hid_t dataset, const std::string& name,
+                               hsize_t rows) {
+  return read_values<double>(recording, dataset, H5T_NATIVE_DOUBLE, name, rows);
 }
 
 std::vector<TickRecord> read_records(const OpenRecording& recording, bool complete) {
@@ -132,7 +141,7 @@ std::vector<TickRecord> read_records(const OpenRecording& recording, bool comple
   const hsize_t rows = row_count(recording, columns, complete);
   std::vector<TickRecord> records(rows);
   for (const OpenColumn& open : columns) {
-    const std::vector<double> values = read_values(recording, open.dataset.get(), open.column->name, rows);
+    const std::vector<double> values = read_reals(recording, open.dataset.get(), open.column->name, rows);
     for (std::size_t row = 0; row < records.size(); ++row) {
       require_in_range(recording, *open.column, values[row]);
       open.column->set(records[row], values[row]);
@@ -154,31 +163,151 @@ void put_cut(const OpenRecording& recording, const std::vector<Label>& labels, d
   *free = {static_cast<LabelMap::Place>(label - labels.begin() + 1), removed_mm3};
 }
 
+struct OpenDataset {
+  std::string name;
+  Hdf5Handle dataset;
+  std::size_t length;
+};
+
+OpenDataset open_dataset(const OpenRecording& recording, const std::string& name) {
+  OpenDataset open{name, Hdf5Handle(H5Dopen2(recording.file.get(), name.c_str(), H5P_DEFAULT), H5Dclose), 0};
+  if (!open.dataset.valid()) refuse(recording, "has no column '" + name + "'");
+  open.length = checked_length(recording, open.dataset.get(), name);
+  return open;
+}
+
+// Of columns that belong together; of unequal lengths only where the recording is unfinished.
+std::size_t common_length(const OpenRecording& recording, std::span<const OpenDataset> columns,
+                          bool complete) {
+  const auto [least, most] = std::ranges::minmax_element(columns, {}, &OpenDataset::length);
+  if (complete && least->length != most->length)
+    refuse(recording, "has columns of unequal lengths about '" + columns.front().name + "'");
+  return least->length;
+}
+
 // What ticks cut of labels goes into their records.
 void read_cuts(const OpenRecording& recording, const std::vector<Label>& labels, bool complete,
                std::vector<TickRecord>& records) {
   if (labels.empty()) return;
-  constexpr std::array kNames{"row", "label", "removed_mm3"};
-  std::array<Hdf5Handle, kNames.size()> datasets;
-  std::array<std::vector<double>, kNames.size()> columns;
-  std::array<std::size_t, kNames.size()> lengths{};
-  for (std::size_t n = 0; n < kNames.size(); ++n) {
-    const std::string name = std::string("labels/") + kNames[n];
-    datasets[n] = Hdf5Handle(H5Dopen2(recording.file.get(), name.c_str(), H5P_DEFAULT), H5Dclose);
-    if (!datasets[n].valid()) refuse(recording, "has no column '" + name + "'");
-    lengths[n] = checked_length(recording, datasets[n].get(), name);
-  }
-  const auto [least, most] = std::minmax_element(lengths.begin(), lengths.end());
-  if (complete && *least != *most) refuse(recording, "has columns of unequal lengths in 'labels'");
-  for (std::size_t n = 0; n < kNames.size(); ++n)
-    columns[n] = read_values(recording, datasets[n].get(), kNames[n], *least);
-  for (std::size_t n = 0; n < *least; ++n) {
-    const double row = columns[0][n];
+  const std::array columns{open_dataset(recording, "labels/row"), open_dataset(recording, "labels/label"),
+                           open_dataset(recording, "labels/removed_mm3")};
+  const std::size_t length = common_length(recording, columns, complete);
+  std::array<std::vector<double>, columns.size()> values;
+  for (std::size_t n = 0; n < columns.size(); ++n)
+    values[n] = read_reals(recording, columns[n].dataset.get(), columns[n].name, length);
+  for (std::size_t n = 0; n < length; ++n) {
+    const double row = values[0][n];
     if (row >= 0 && row < static_cast<double>(records.size())) {
-      put_cut(recording, labels, columns[1][n], columns[2][n], records[static_cast<std::size_t>(row)]);
+      put_cut(recording, labels, values[1][n], values[2][n], records[static_cast<std::size_t>(row)]);
     } else if (complete) {
       refuse(recording, "has a cut of a label in a row that is not there");
     }
+  }
+}
+
+std::vector<BoneHash> read_hashes(const OpenRecording& recording, bool complete, std::size_t records) {
+  const std::array columns{open_dataset(recording, "bone_hash/row"),
+                           open_dataset(recording, "bone_hash/hash")};
+  const std::size_t length = common_length(recording, columns, complete);
+  std::array<std::vector<std::uint64_t>, columns.size()> values;
+  for (std::size_t n = 0; n < columns.size(); ++n) {
+    values[n] = read_values<std::uint64_t>(recording, columns[n].dataset.get(), H5T_NATIVE_UINT64,
+                                           columns[n].name, length);
+  }
+  std::vector<BoneHash> hashes;
+  for (std::size_t n = 0; n < length; ++n) {
+    const bool there = values[0][n] < records && (n == 0 || values[0][n] > values[0][n - 1]);
+    if (!there && complete) refuse(recording, "has a hash of the bone in a row that is not there");
+    if (there) hashes.push_back({values[0][n], values[1][n]});
+  }
+  return hashes;
+}
+
+// `width` numbers for each of as many rows as there are, which the file is large enough to hold.
+template <typename Value>
+std::vector<Value> read_table(const OpenRecording& recording, hid_t group, const char* name,
+                              hid_t memory_type, hsize_t width) {
+  constexpr double kMostThatDeflateSaves = 1100;
+  const Hdf5Handle dataset(H5Dopen2(group, name, H5P_DEFAULT), H5Dclose);
+  const Hdf5Handle space(H5Dget_space(dataset.get()), H5Sclose);
+  std::array<hsize_t, 2> size{};
+  if (!dataset.valid() || H5Sget_simple_extent_ndims(space.get()) != 2 ||
+      H5Sget_simple_extent_dims(space.get(), size.data(), nullptr) != 2 || size[1] != width) {
+    refuse(recording, std::string("'") + name + "' of a session is not the table that it should be");
+  }
+  if (static_cast<double>(size[0]) * static_cast<double>(width * sizeof(Value)) >
+      kMostThatDeflateSaves * static_cast<double>(recording.bytes)) {
+    refuse(recording, std::string("'") + name + "' of a session claims more than the file can hold");
+  }
+  std::vector<Value> values(size[0] * width);
+  if (!values.empty() &&
+      H5Dread(dataset.get(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) {
+    refuse(recording, std::string("'") + name + "' of a session cannot be read");
+  }
+  return values;
+}
+
+std::vector<DensityBlock> read_bricks(const OpenRecording& recording, hid_t group,
+                                      const std::array<int, 3>& dims) {
+  if (H5Lexists(group, "brick_first", H5P_DEFAULT) <= 0) return {};
+  constexpr std::size_t kDensities = std::tuple_size_v<decltype(DensityBlock::densities)>;
+  const auto first = read_table<int>(recording, group, "brick_first", H5T_NATIVE_INT, 3);
+  const auto densities = read_table<float>(recording, group, "brick_densities", H5T_NATIVE_FLOAT, kDensities);
+  std::vector<DensityBlock> bricks(first.size() / 3);
+  bool right = densities.size() == bricks.size() * kDensities &&
+               std::ranges::all_of(densities, [](float density) { return std::isfinite(density); });
+  for (std::size_t n = 0; right && n < bricks.size(); ++n) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const int voxel = first[3 * n + axis];
+      right = right && voxel >= 0 && voxel < dims[axis] && voxel % DensityBlock::kVoxels == 0;
+    }
+    bricks[n].first = {first[3 * n], first[3 * n + 1], first[3 * n + 2]};
+    std::copy_n(densities.data() + n * kDensities, kDensities, bricks[n].densities.begin());
+  }
+  if (!right) refuse(recording, "has bricks of a bone that cannot be");
+  return bricks;
+}
+
+SessionStart read_session_start(const OpenRecording& recording, hid_t group, const RunDescription* run) {
+  const AttributeReader read(recording.path, group);
+  SessionStart start;
+  start.run = run != nullptr ? *run : read_description(recording.path, group);
+  start.goes_on_from = read.text("goes_on_from");
+  start.removed_mm3 = read.real("removed_mm3");
+  start.taken_over.sent = {read.vector("force_N"), read.vector("torque_Nmm")};
+  if (read.has("tool_mm")) {
+    std::array<double, 4> q{};
+    read.reals("tool_wxyz", q);
+    start.taken_over.X_WT = Pose{read.vector("tool_mm"), Quat(q[0], q[1], q[2], q[3])};
+  }
+  start.bricks = read_bricks(recording, group, start.run.dims);
+  return start;
+}
+
+// Of an unfinished recording only those of which records are there.
+std::vector<RecordedSession> read_sessions(const OpenRecording& open, const Recording& recording) {
+  std::vector<RecordedSession> sessions;
+  for (;;) {
+    const std::string place = "sessions/" + std::to_string(sessions.size());
+    if (H5Lexists(open.file.get(), place.c_str(), H5P_DEFAULT) <= 0) break;
+    const Hdf5Handle group(H5Gopen2(open.file.get(), place.c_str(), H5P_DEFAULT), H5Gclose);
+    if (!group.valid()) refuse(open, "'" + place + "' cannot be opened");
+    const std::uint64_t row = AttributeReader(open.path, group.get()).unsigned_integer("row");
+    const bool right = sessions.empty() ? row == 0 : row >= sessions.back().first;
+    if (!recording.complete && row >= recording.records.size() && !sessions.empty()) break;
+    if (!right || row > recording.records.size()) refuse(open, "'" + place + "' begins where it cannot");
+    const RunDescription* first = sessions.empty() ? &recording.description : nullptr;
+    sessions.push_back({row, read_session_start(open, group.get(), first)});
+    sessions.back().start.run.labels = recording.description.labels;
+  }
+  return sessions;
+}
+
+void number_records(Recording& recording) {
+  std::uint32_t session = 0;
+  for (std::size_t row = 0; row < recording.records.size(); ++row) {
+    while (session + 1 < recording.sessions.size() && recording.sessions[session + 1].first <= row) ++session;
+    recording.records[row].session = session;
   }
 }
 
@@ -222,6 +351,11 @@ Recording read_open_file(const fs::path& path) {
   recording.description = read_description(path, open.file.get());
   recording.records = read_records(open, recording.complete);
   read_cuts(open, recording.description.labels, recording.complete, recording.records);
+  if (H5Lexists(open.file.get(), "sessions", H5P_DEFAULT) > 0) {
+    recording.bone_hashes = read_hashes(open, recording.complete, recording.records.size());
+    recording.sessions = read_sessions(open, recording);
+    number_records(recording);
+  }
   recording.pictures = read_pictures(open);
   return recording;
 }
@@ -258,6 +392,39 @@ Recording read_recording(const fs::path& path) {
   }
   if (checksum == Checksum::none) try_in_child(path);
   return read_open_file(path);
+}
+
+Recording read_with_what_came_before(const fs::path& path) {
+  Recording recording = read_recording(path);
+  if (recording.sessions.empty() || recording.sessions.front().start.goes_on_from.empty()) return recording;
+  const fs::path name = recording.sessions.front().start.goes_on_from;
+  if (name != name.filename()) throw InputError(path.string(), "goes on from a recording elsewhere");
+  Recording whole = read_recording(path.parent_path() / name);
+  const bool begins = !whole.sessions.empty() && whole.sessions.front().start.goes_on_from.empty();
+  if (!begins || whole.description.scan_hash != recording.description.scan_hash) {
+    throw InputError(path.string(), "goes on from " + name.string() + ", which is not what came before it");
+  }
+  const std::size_t before = whole.records.size();
+  const std::size_t sessions_before = whole.sessions.size();
+  for (auto session = recording.sessions.begin() + 1; session != recording.sessions.end(); ++session)
+    whole.sessions.push_back({before + session->first, std::move(session->start)});
+  for (const BoneHash& hash : recording.bone_hashes)
+    whole.bone_hashes.push_back({before + hash.record, hash.hash});
+  for (TickRecord& record : recording.records) {
+    record.session += static_cast<std::uint32_t>(sessions_before - 1);
+    whole.records.push_back(record);
+  }
+  whole.path = path;
+  whole.pictures = std::move(recording.pictures);
+  whole.complete = whole.complete && recording.complete;
+  whole.dropped += recording.dropped;
+  return whole;
+}
+
+bool is_hdf5(const fs::path& path) {
+  const Hdf5Lock lock;
+  std::error_code ignored;
+  return fs::is_regular_file(path, ignored) && H5Fis_hdf5(path.c_str()) > 0;
 }
 
 }  // namespace osteomill

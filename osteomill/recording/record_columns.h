@@ -13,6 +13,8 @@ struct RecordColumn {
   const char* name;
   /// Empty for a pure number.
   const char* unit;
+  /// In a few words, with the frame.
+  const char* meaning;
   ColumnType type;
   /// Whether the CSV log has it (recordings have all).
   bool in_log;

@@ -3,9 +3,13 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <deque>
 #include <exception>
+#include <mutex>
+#include <optional>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 
 #include "osteomill/device/spsc_queue.h"
 #include "osteomill/files/atomic_file.h"
@@ -20,10 +24,12 @@ using namespace std::chrono_literals;
 
 namespace {
 
-constexpr auto kFlushEvery = 100ms;
+constexpr auto kFlushEvery = 400ms;
+// Pieces of the file are written whole, unless records come so slowly that they would wait for longer.
+constexpr auto kWaitAtMost = 800ms;
 // The pushing thread wakes nobody (that would be a system call), so the writing thread looks by itself.
 constexpr auto kLookEvery = 2ms;
-constexpr std::size_t kRowsAtOnce = 1024;
+constexpr std::size_t kRowsAtOnce = 2 * RecordingFile::kChunkRows;
 
 bool is_plain_name(const std::string& name) {
   const auto plain = [](char c) {
@@ -45,8 +51,14 @@ fs::path file_behind(const fs::path& path) {
 }  // namespace
 
 struct Recorder::Impl {
-  Impl(const fs::path& path_, const RunDescription& description, std::size_t capacity)
+  using Clock = std::chrono::steady_clock;
+
+  Impl(const fs::path& path_, const RunDescription& description, std::size_t capacity, Begins begins)
       : path(file_behind(path_)), file(unfinished_recording_path(path), description), queue(capacity) {
+    if (begins == Begins::with_the_recording) {
+      file.begin_session({}, 0);
+      session = 0;
+    }
     rows.reserve(kRowsAtOnce);
     writer = std::thread([this] { write_until_stopped(); });
   }
@@ -59,15 +71,20 @@ struct Recorder::Impl {
 
   void write_until_stopped() noexcept {
     try {
-      auto flushed = std::chrono::steady_clock::now();
+      auto flushed = Clock::now();
+      std::uint64_t flushed_rows = 0;
       for (bool all_written = false; !all_written;) {
         // Read before the queue: what was pushed before the stop is then still written.
         const bool last = stopping.load(std::memory_order_acquire);
-        const bool emptied = write_some();
+        const bool emptied = take_some();
         all_written = last && emptied;
-        if (const auto now = std::chrono::steady_clock::now(); all_written || now - flushed >= kFlushEvery) {
+        const auto now = Clock::now();
+        if (rows.empty()) waiting_since = now;
+        write_rows(all_written || now - waiting_since >= kWaitAtMost);
+        if (all_written || (file.rows() > flushed_rows && now - flushed >= kFlushEvery)) {
           file.flush(dropped.load(std::memory_order_relaxed));
           flushed = now;
+          flushed_rows = file.rows();
         }
         if (emptied && !last) std::this_thread::sleep_for(kLookEvery);
       }
@@ -78,19 +95,48 @@ struct Recorder::Impl {
   }
 
   // A bounded part of the queue, so that records which come as fast as they are written cannot put off the
-  // flush.
-  bool write_some() {
-    rows.clear();
-    TickRecord record;
-    while (rows.size() < kRowsAtOnce && queue.try_pop(record)) rows.push_back(record);
-    file.append(rows);
-    return rows.size() < kRowsAtOnce;
+  // flush. False where there is more.
+  bool take_some() {
+    while (rows.size() < kRowsAtOnce) {
+      const TickRecord* record = queue.front();
+      if (record == nullptr) return true;
+      if (session != record->session && !begin_session_of(*record)) return true;
+      rows.push_back(*record);
+      queue.pop();
+    }
+    return false;
+  }
+
+  // False where nobody has said yet what it began from.
+  bool begin_session_of(const TickRecord& record) {
+    const std::lock_guard lock(starts_mutex);
+    for (; !starts.empty() && starts.front().first <= record.session; starts.pop_front()) {
+      file.begin_session(starts.front().second, file.rows() + rows.size());
+      session = starts.front().first;
+    }
+    return session == record.session;
+  }
+
+  // Up to the end of a piece of the file, or all.
+  void write_rows(bool all) {
+    const std::size_t room = RecordingFile::kChunkRows - file.rows() % RecordingFile::kChunkRows;
+    std::size_t count = rows.size();
+    if (!all) count = count < room ? 0 : count - (count - room) % RecordingFile::kChunkRows;
+    if (count == 0) return;
+    file.append({rows.data(), count});
+    rows.erase(rows.begin(), rows.begin() + static_cast<std::ptrdiff_t>(count));
+    waiting_since = Clock::now();
   }
 
   fs::path path;
   RecordingFile file;
   SpscQueue<TickRecord> queue;
+  // The writing thread's: taken from the queue and not yet written, and of which session the last one is.
   std::vector<TickRecord> rows;
+  Clock::time_point waiting_since;
+  std::optional<std::uint32_t> session;
+  std::mutex starts_mutex;
+  std::deque<std::pair<std::uint32_t, SessionStart>> starts;
   std::vector<RunPicture> pictures;
   std::atomic<std::uint64_t> dropped{0};
   std::atomic<bool> stopping{false};
@@ -101,8 +147,9 @@ struct Recorder::Impl {
   std::thread writer;
 };
 
-Recorder::Recorder(const fs::path& path, const RunDescription& description, std::size_t capacity)
-    : impl_(std::make_unique<Impl>(path, description, capacity)) {}
+Recorder::Recorder(const fs::path& path, const RunDescription& description, std::size_t capacity,
+                   Begins begins)
+    : impl_(std::make_unique<Impl>(path, description, capacity, begins)) {}
 
 Recorder::~Recorder() = default;
 
@@ -117,6 +164,11 @@ void Recorder::push_waiting(const TickRecord& record) {
     if (failed()) std::rethrow_exception(impl_->failure);
     std::this_thread::sleep_for(200us);
   }
+}
+
+void Recorder::begin_session(std::uint32_t number, SessionStart start) {
+  const std::lock_guard lock(impl_->starts_mutex);
+  impl_->starts.emplace_back(number, std::move(start));
 }
 
 std::uint64_t Recorder::dropped() const noexcept {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "osteomill/recording/run_description.h"
+#include "osteomill/recording/session_start.h"
 #include "osteomill/session/tick_record.h"
 
 namespace osteomill {
@@ -14,20 +15,29 @@ namespace osteomill {
 /// Writes one record a tick to an HDF5 file (the layout: recording_file.h) from a thread of its own.
 ///
 /// While it runs the file is called NAME.part.h5 where NAME.h5 was asked for; `close` gives it its name, so a
-/// file of the final name is always whole. About every 100 ms what was recorded so far is made safe: a
-/// program that is killed leaves a NAME.part.h5 that read_recording opens, less the last tenth of a second,
-/// and that other HDF5 programs open too (hence the extension stays last). A recorder destroyed without
-/// `close`, as when an exception passes, leaves the same. NAME.part.h5 is written over by the next recording
-/// of that name.
+/// file of the final name is always whole. Twice a second what was recorded so far is made safe: a program
+/// that is killed leaves a NAME.part.h5 that read_recording opens, less the last second at the most, and that
+/// other HDF5 programs open too (hence the extension stays last). A recorder destroyed without `close`, as
+/// when an exception passes, leaves the same, less nothing. NAME.part.h5 is written over by the next
+/// recording of that name.
+///
+/// Where several sessions follow each other on a bone (LiveSession::replace), `begin_session` is told of
+/// each; the records say by their number of which they are.
 ///
 /// One thread pushes; another (or the same) makes, closes and destroys the recorder, after the last push.
 class Recorder {
  public:
+  static constexpr std::size_t kUsualCapacity = 16384;
+
+  /// When records are written: those of a session that begins with the recording at once, others from when
+  /// `begin_session` says what they began from.
+  enum class Begins : unsigned char { with_the_recording, when_told };
+
   /// The queue holds `capacity` records (16 s at 1000 Hz) or a few more. Throws InputError, naming the file,
   /// where it cannot be created, and std::invalid_argument where the description cannot be stored
   /// (description_attributes.h).
   Recorder(const std::filesystem::path& path, const RunDescription& description,
-           std::size_t capacity = 16384);
+           std::size_t capacity = kUsualCapacity, Begins begins = Begins::with_the_recording);
   ~Recorder();
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
@@ -38,6 +48,10 @@ class Recorder {
   /// The same for runs in simulated time, outside the tick: waits while the queue is full. Throws the
   /// InputError with which writing failed, if it did.
   void push_waiting(const TickRecord& record);
+
+  /// What the session of this number began from: at the first record of that number, which may have been
+  /// pushed before. In the order of the numbers. The first one's description is the recording's own.
+  void begin_session(std::uint32_t number, SessionStart start);
 
   /// How many records were lost. From any thread.
   std::uint64_t dropped() const noexcept;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "osteomill/recording/run_description.h"
+#include "osteomill/recording/session_start.h"
 #include "osteomill/session/tick_record.h"
 
 namespace osteomill {
@@ -24,19 +25,42 @@ inline constexpr std::string_view kPictureAfter = "after";
 /// The key of the further setting of a run that has no pictures because OpenGL could not be had.
 inline constexpr std::string_view kPicturesKey = "pictures";
 
+/// A session in a recording: what it began from, and its first tick as an index of the records.
+struct RecordedSession {
+  std::size_t first = 0;
+  SessionStart start;
+};
+
+/// What the bone was after a tick (TickRecord::bone_hash).
+struct BoneHash {
+  std::size_t record = 0;
+  std::uint64_t hash = 0;
+  friend bool operator==(const BoneHash&, const BoneHash&) = default;
+};
+
 /// One run, a record a tick.
 struct Recording {
   /// Where it was read from; errors name it.
   std::filesystem::path path;
+  /// Of the first session.
   RunDescription description;
+  /// In turn, from the first record on; none in a recording of version 2. Read records carry the session's
+  /// place here as TickRecord::session.
+  std::vector<RecordedSession> sessions;
+  /// Every hundredth record's, and the last one's.
+  std::vector<BoneHash> bone_hashes;
   std::vector<TickRecord> records;
   /// Sorted by name.
   std::vector<RunPicture> pictures;
-  /// False where the program ended before it closed the recording; the last tenth of a second or so is
-  /// missing.
+  /// False where the program ended before it closed the recording; up to the last
+  /// second is missing.
   bool complete = true;
   /// Ticks that found the recorder's queue full and are not among `records`.
   std::uint64_t dropped = 0;
 };
+
+/// One recording for each stretch in which algorithm, tool and settings stayed as they were (what was taken
+/// back ends none), for whoever measures them: where there are several, by their numbers as segments.
+std::vector<Recording> in_stretches(Recording recording);
 
 }  // namespace osteomill

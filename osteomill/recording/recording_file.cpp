@@ -1,5 +1,7 @@
 #include "osteomill/recording/recording_file.h"
 
+#include <array>
+
 #include "osteomill/files/input_error.h"
 #include "osteomill/recording/description_attributes.h"
 #include "osteomill/recording/hdf5_attributes.h"
@@ -12,7 +14,23 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr hsize_t kChunkRows = 1024;
+// What comes seldom is written again with every flush until a piece is whole.
+constexpr hsize_t kChunkOfFew = 64;
+// Higher levels take longer and save next to nothing: the last bits of poses and forces are noise.
+constexpr unsigned kDeflateLevel = 1;
+
+constexpr const char* kConventions =
+    "Units are in each dataset's attribute 'unit' (mm, N, N mm, s, kg, rad); its attribute 'meaning' says "
+    "what "
+    "it is. Frame W: the scan's patient frame, DICOM LPS axes, mm. Frame T: origin at the burr's centre, +z "
+    "along the shaft to the hand. X_WT is T's pose in W; X_WD the device's, as a tool pose. Quaternions are "
+    "w, x, y, z. Wrenches act on the hand, in W's axes, about the burr's centre. Voxel (i, j, k) lies at "
+    "origin_mm + i spacing_mm[0] axis_i + j spacing_mm[1] axis_j + k spacing_mm[2] axis_k. osteomill: "
+    "docs/formats.md.";
+constexpr const char* kFaultCodes =
+    "0 none, 1 force clamped, 2 torque clamped, 3 both clamped, 4 the algorithm's wrench was not finite, 5 "
+    "the "
+    "device's pose was not finite, 6 the device jumped, 7 the tick was late, 8 eased";
 
 hid_t file_type(ColumnType type) {
   switch (type) {
@@ -24,6 +42,25 @@ hid_t file_type(ColumnType type) {
       return H5T_STD_U8LE;
   }
   return H5I_INVALID_HID;
+}
+
+template <typename Value>
+hid_t memory_type();
+template <>
+hid_t memory_type<double>() {
+  return H5T_NATIVE_DOUBLE;
+}
+template <>
+hid_t memory_type<float>() {
+  return H5T_NATIVE_FLOAT;
+}
+template <>
+hid_t memory_type<std::int32_t>() {
+  return H5T_NATIVE_INT32;
+}
+template <>
+hid_t memory_type<std::uint64_t>() {
+  return H5T_NATIVE_UINT64;
 }
 
 // The library's metadata reach the disk only when the file is flushed. Left to itself it also writes some of
@@ -45,14 +82,15 @@ RecordingFile::RecordingFile(const fs::path& path, const RunDescription& descrip
   const Hdf5Lock lock;
   const Hdf5Handle layout(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
   H5Pset_userblock(layout.get(), kUserBlockBytes);
+  // What is written anew goes elsewhere: until the next flush the file on the disk speaks of the old place.
+  H5Pset_file_space_strategy(layout.get(), H5F_FSPACE_STRATEGY_NONE, false, 1);
   file_ = Hdf5Handle(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, layout.get(), H5P_DEFAULT), H5Fclose);
   require(file_.valid(), "cannot be created");
   try {
     lay_out(description);
   } catch (...) {
     // Here, since the members go when the lock has gone.
-    columns_.clear();
-    cut_columns_.clear();
+    close_columns();
     file_.close();
     std::error_code ignored;
     fs::remove(path, ignored);
@@ -65,53 +103,117 @@ void RecordingFile::lay_out(const RunDescription& description) {
   write.unsigned_integer("osteomill_recording_version", kRecordingVersion);
   write.unsigned_integer("complete", 0);
   write.unsigned_integer("dropped_records", 0);
+  write.text("conventions", kConventions);
   write_description(path_, file_.get(), description);
-  create_columns();
   labels_ = description.labels;
-  if (!labels_.empty()) create_cut_columns();
-  const Hdf5Handle pictures(H5Gcreate2(file_.get(), "pictures", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
-                            H5Gclose);
-  require(pictures.valid(), "the group of pictures cannot be written");
+  create_columns();
+  create_group(file_.get(), "pictures");
+  create_group(file_.get(), "sessions");
   require(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL) >= 0, "cannot be written (is the disk full?)");
   require(keep_metadata_until_flush(file_.get()), "cannot be set up for writing");
 }
 
 RecordingFile::~RecordingFile() {
   const Hdf5Lock lock;
-  columns_.clear();
-  cut_columns_.clear();
+  close_columns();
   file_.close();
 }
 
+void RecordingFile::close_columns() {
+  for (std::vector<Column>* columns : {&columns_, &cut_columns_, &hash_columns_}) columns->clear();
+}
+
+Hdf5Handle RecordingFile::create_group(hid_t in, const std::string& name) const {
+  Hdf5Handle group(H5Gcreate2(in, name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
+  require(group.valid(), "cannot be written (is the disk full?)");
+  return group;
+}
+
 void RecordingFile::create_columns() {
-  const Hdf5Handle group(H5Gcreate2(file_.get(), "columns", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose);
+  const Hdf5Handle group = create_group(file_.get(), "columns");
   for (const RecordColumn& column : record_columns()) {
-    columns_.push_back(create_column(group.get(), column.name, file_type(column.type), column.unit));
+    columns_.push_back(
+        create_column(group.get(), column.name, file_type(column.type), column.unit, 1, kChunkRows));
+    const AttributeWriter write(path_, columns_.back().dataset.get());
+    write.text("meaning", column.meaning);
+    if (std::string_view(column.name) == "fault") write.text("codes", kFaultCodes);
   }
+  const Hdf5Handle hashes = create_group(file_.get(), "bone_hash");
+  for (const char* name : {"row", "hash"})
+    hash_columns_.push_back(create_column(hashes.get(), name, H5T_STD_U64LE, "", 1, kChunkOfFew));
+  if (labels_.empty()) return;
+  const Hdf5Handle labels(H5Gopen2(file_.get(), "labels", H5P_DEFAULT), H5Gclose);
+  cut_columns_.push_back(create_column(labels.get(), "row", H5T_STD_U64LE, "", 1, kChunkOfFew));
+  cut_columns_.push_back(create_column(labels.get(), "label", H5T_STD_I32LE, "", 1, kChunkOfFew));
+  cut_columns_.push_back(create_column(labels.get(), "removed_mm3", H5T_IEEE_F64LE, "mm^3", 1, kChunkOfFew));
 }
 
-void RecordingFile::create_cut_columns() {
-  const Hdf5Handle group(H5Gopen2(file_.get(), "labels", H5P_DEFAULT), H5Gclose);
-  cut_columns_.push_back(create_column(group.get(), "row", H5T_STD_U64LE, ""));
-  cut_columns_.push_back(create_column(group.get(), "label", H5T_STD_I32LE, ""));
-  cut_columns_.push_back(create_column(group.get(), "removed_mm3", H5T_IEEE_F64LE, "mm^3"));
-}
-
-Hdf5Handle RecordingFile::create_column(hid_t group, const char* name, hid_t type, const char* unit) const {
-  const hsize_t none = 0;
-  const hsize_t unlimited = H5S_UNLIMITED;
-  const Hdf5Handle space(H5Screate_simple(1, &none, &unlimited), H5Sclose);
-  const Hdf5Handle chunked(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-  H5Pset_chunk(chunked.get(), 1, &kChunkRows);
-  Hdf5Handle dataset(H5Dcreate2(group, name, type, space.get(), H5P_DEFAULT, chunked.get(), H5P_DEFAULT),
-                     H5Dclose);
-  require(dataset.valid(), "a column cannot be created");
-  AttributeWriter(path_, dataset.get()).text("unit", unit);
-  return dataset;
+RecordingFile::Column RecordingFile::create_column(hid_t group, const char* name, hid_t type,
+                                                   const char* unit, hsize_t width,
+                                                   hsize_t chunk_rows) const {
+  const int rank = width == 1 ? 1 : 2;
+  const std::array<hsize_t, 2> none{0, width};
+  const std::array<hsize_t, 2> unlimited{H5S_UNLIMITED, width};
+  const std::array<hsize_t, 2> chunk{chunk_rows, width};
+  const Hdf5Handle space(H5Screate_simple(rank, none.data(), unlimited.data()), H5Sclose);
+  const Hdf5Handle pieces(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  H5Pset_chunk(pieces.get(), rank, chunk.data());
+  H5Pset_shuffle(pieces.get());
+  H5Pset_deflate(pieces.get(), kDeflateLevel);
+  const Hdf5Handle access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose);
+  // No more than the piece that is being written.
+  H5Pset_chunk_cache(access.get(), 3, 2 * chunk_rows * width * sizeof(double), 1);
+  Column column{
+      Hdf5Handle(H5Dcreate2(group, name, type, space.get(), H5P_DEFAULT, pieces.get(), access.get()),
+                 H5Dclose),
+      width};
+  require(column.dataset.valid(), "a column cannot be created");
+  AttributeWriter(path_, column.dataset.get()).text("unit", unit);
+  return column;
 }
 
 void RecordingFile::require(bool ok, const char* what) const {
   if (!ok) throw InputError(path_.string(), what);
+}
+
+void RecordingFile::begin_session(const SessionStart& start, std::uint64_t row) {
+  const Hdf5Lock lock;
+  const std::string place = "sessions/" + std::to_string(sessions_);
+  const Hdf5Handle group = create_group(file_.get(), place);
+  const AttributeWriter write(path_, group.get());
+  write.unsigned_integer("row", row);
+  write.text("goes_on_from", start.goes_on_from);
+  write.real("removed_mm3", start.removed_mm3);
+  write.vector("force_N", start.taken_over.sent.force_N);
+  write.vector("torque_Nmm", start.taken_over.sent.torque_Nmm);
+  if (const auto& X_WT = start.taken_over.X_WT) {
+    const Quat& q = X_WT->orientation;
+    write.vector("tool_mm", X_WT->position_mm);
+    write.reals("tool_wxyz", std::array{q.w(), q.x(), q.y(), q.z()});
+  }
+  if (!start.bricks.empty()) write_bricks(group.get(), start.bricks);
+  if (sessions_ > 0) {
+    // The labels are the recording's.
+    RunDescription run = start.run;
+    run.labels.clear();
+    write_description(path_, group.get(), run);
+  }
+  ++sessions_;
+}
+
+void RecordingFile::write_bricks(hid_t session, std::span<const DensityBlock> bricks) const {
+  std::vector<std::int32_t> first;
+  std::vector<float> densities;
+  for (const DensityBlock& brick : bricks) {
+    for (const int n : {brick.first.i, brick.first.j, brick.first.k}) first.push_back(n);
+    densities.insert(densities.end(), brick.densities.begin(), brick.densities.end());
+  }
+  constexpr hsize_t kBricksOfChunk = 32;
+  Column first_column = create_column(session, "brick_first", H5T_STD_I32LE, "voxels", 3, kBricksOfChunk);
+  append_to<std::int32_t>(first_column, first);
+  Column density_column = create_column(session, "brick_densities", H5T_IEEE_F32LE, "",
+                                        std::tuple_size_v<decltype(DensityBlock::densities)>, kBricksOfChunk);
+  append_to<float>(density_column, densities);
 }
 
 void RecordingFile::append(std::span<const TickRecord> records) {
@@ -122,9 +224,10 @@ void RecordingFile::append(std::span<const TickRecord> records) {
     for (std::size_t row = 0; row < records.size(); ++row) {
       values_[row] = record_columns()[c].get(records[row]);
     }
-    append_values(columns_[c].get(), rows_);
+    append_to<double>(columns_[c], values_);
   }
   if (!labels_.empty()) append_cuts(records);
+  append_hashes(records);
   rows_ += records.size();
 }
 
@@ -136,27 +239,46 @@ void RecordingFile::append_cuts(std::span<const TickRecord> records) {
         if (cut.label != 0 && cut.label <= labels_.size()) values_.push_back(value(n, cut));
       }
     }
-    if (!values_.empty()) append_values(cut_columns_[column].get(), cuts_);
+    append_to<double>(cut_columns_[column], values_);
   };
   append(0, [&](std::size_t n, const LabelCut&) { return static_cast<double>(rows_ + n); });
   append(1, [&](std::size_t, const LabelCut& cut) {
     return static_cast<double>(labels_[cut.label - 1u].value);
   });
   append(2, [](std::size_t, const LabelCut& cut) { return cut.removed_mm3; });
-  cuts_ += values_.size();
 }
 
-// `values_` behind the rows that are there.
-void RecordingFile::append_values(hid_t dataset, hsize_t rows) const {
-  const hsize_t count = values_.size();
-  const hsize_t all = rows + count;
-  const Hdf5Handle memory(H5Screate_simple(1, &count, nullptr), H5Sclose);
-  bool ok = H5Dset_extent(dataset, &all) >= 0;
+void RecordingFile::append_hashes(std::span<const TickRecord> records) {
+  for (std::size_t n = 0; n < records.size(); ++n) {
+    last_ = {rows_ + n, records[n].bone_hash};
+    if ((last_.record + 1) % kHashRows == 0) append_hash(last_);
+  }
+}
+
+void RecordingFile::append_hash(const BoneHash& hash) {
+  const std::uint64_t row = hash.record;
+  append_to<std::uint64_t>(hash_columns_[0], {&row, 1});
+  append_to<std::uint64_t>(hash_columns_[1], {&hash.hash, 1});
+}
+
+// Whole rows, behind those that are there.
+template <typename Value>
+void RecordingFile::append_to(Column& column, std::span<const Value> values) const {
+  if (values.empty()) return;
+  const int rank = column.width == 1 ? 1 : 2;
+  const std::array<hsize_t, 2> count{values.size() / column.width, column.width};
+  const std::array<hsize_t, 2> from{column.rows, 0};
+  const std::array<hsize_t, 2> all{column.rows + count[0], column.width};
+  const hid_t dataset = column.dataset.get();
+  const Hdf5Handle memory(H5Screate_simple(rank, count.data(), nullptr), H5Sclose);
+  bool ok = H5Dset_extent(dataset, all.data()) >= 0;
   const Hdf5Handle space(H5Dget_space(dataset), H5Sclose);
-  ok = ok && H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, &rows, nullptr, &count, nullptr) >= 0;
-  ok =
-      ok && H5Dwrite(dataset, H5T_NATIVE_DOUBLE, memory.get(), space.get(), H5P_DEFAULT, values_.data()) >= 0;
+  ok = ok &&
+       H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, from.data(), nullptr, count.data(), nullptr) >= 0;
+  ok = ok &&
+       H5Dwrite(dataset, memory_type<Value>(), memory.get(), space.get(), H5P_DEFAULT, values.data()) >= 0;
   require(ok, "cannot be written (is the disk full?)");
+  column.rows = all[0];
 }
 
 void RecordingFile::flush(std::uint64_t dropped) {
@@ -180,12 +302,13 @@ void RecordingFile::add_picture(const std::string& name, std::span<const unsigne
 
 void RecordingFile::finish(std::uint64_t dropped) {
   const Hdf5Lock lock;
+  if (rows_ > 0 && rows_ % kHashRows != 0) append_hash(last_);
   const AttributeWriter write(path_, file_.get());
   write.replace_unsigned_integer("dropped_records", dropped);
   write.replace_unsigned_integer("complete", 1);
   bool closed = true;
-  for (std::vector<Hdf5Handle>* columns : {&columns_, &cut_columns_})
-    for (Hdf5Handle& column : *columns) closed = column.close() && closed;
+  for (std::vector<Column>* columns : {&columns_, &cut_columns_, &hash_columns_})
+    for (Column& column : *columns) closed = column.dataset.close() && closed;
   closed = file_.close() && closed;
   require(closed, "cannot be written to its end (is the disk full?)");
   write_checksum(path_);

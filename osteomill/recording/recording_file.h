@@ -7,21 +7,24 @@
 #include <vector>
 
 #include "osteomill/recording/hdf5_handle.h"
-#include "osteomill/recording/run_description.h"
-#include "osteomill/session/tick_record.h"
+#include "osteomill/recording/recording.h"
 
 namespace osteomill {
 
-/// The version of the layout, in the root's attribute `osteomill_recording_version`.
-inline constexpr std::uint64_t kRecordingVersion = 2;
+/// The version of the layout, in the root's attribute `osteomill_recording_version`, and the oldest that is
+/// read.
+inline constexpr std::uint64_t kRecordingVersion = 3;
+inline constexpr std::uint64_t kOldestVersion = 2;
 
-/// A recording being written, from one thread at a time. Root: the description's attributes, `complete` (0
-/// until `finish`) and `dropped_records`; /columns: a dataset a column (record_columns.h), each with its
-/// `unit`; /labels: see description_attributes.h, and what ticks cut of them; /settings: see
-/// description_attributes.h; /pictures: the bytes of PNG files. A finished file begins with its checksum
-/// (recording_seal.h). Every failure is an InputError that names `path`.
+/// A recording being written, from one thread at a time; docs/formats.md describes it. Every failure is an
+/// InputError that names `path`; after one the file stays as it is.
 class RecordingFile {
  public:
+  /// Columns are compressed in pieces of so many rows. A piece that is written once and whole costs least.
+  static constexpr std::size_t kChunkRows = 512;
+  /// A row in so many has the bone's hash.
+  static constexpr std::uint64_t kHashRows = 100;
+
   /// Creates the file, over one that is there.
   RecordingFile(const std::filesystem::path& path, const RunDescription& description);
   /// Closes the file as it is: readable, and not marked complete unless `finish` came first.
@@ -29,7 +32,10 @@ class RecordingFile {
   RecordingFile(const RecordingFile&) = delete;
   RecordingFile& operator=(const RecordingFile&) = delete;
 
+  /// The rows from `row` on are of another session; the first one's description is the recording's own.
+  void begin_session(const SessionStart& start, std::uint64_t row);
   void append(std::span<const TickRecord> records);
+  std::uint64_t rows() const { return rows_; }
   /// What was appended so far survives the end of this program, however it ends.
   void flush(std::uint64_t dropped);
   void add_picture(const std::string& name, std::span<const unsigned char> png);
@@ -37,23 +43,38 @@ class RecordingFile {
   void finish(std::uint64_t dropped);
 
  private:
+  /// A dataset of `width` numbers a row, and how many rows it has.
+  struct Column {
+    Hdf5Handle dataset;
+    hsize_t width = 1;
+    hsize_t rows = 0;
+  };
+
   void lay_out(const RunDescription& description);
   void create_columns();
-  void create_cut_columns();
-  Hdf5Handle create_column(hid_t group, const char* name, hid_t type, const char* unit) const;
+  void close_columns();
+  Hdf5Handle create_group(hid_t in, const std::string& name) const;
+  Column create_column(hid_t group, const char* name, hid_t type, const char* unit, hsize_t width,
+                       hsize_t chunk_rows) const;
   void append_cuts(std::span<const TickRecord> records);
-  void append_values(hid_t dataset, hsize_t rows) const;
+  void append_hashes(std::span<const TickRecord> records);
+  void append_hash(const BoneHash& hash);
+  template <typename Value>
+  void append_to(Column& column, std::span<const Value> values) const;
+  void write_bricks(hid_t session, std::span<const DensityBlock> bricks) const;
   void require(bool ok, const char* what) const;
 
   std::filesystem::path path_;
   Hdf5Handle file_;
-  std::vector<Hdf5Handle> columns_;
+  std::vector<Column> columns_;
   // What was cut of labels: row, label, removed_mm3; empty where the bone has none.
-  std::vector<Hdf5Handle> cut_columns_;
+  std::vector<Column> cut_columns_;
+  std::vector<Column> hash_columns_;
   std::vector<Label> labels_;
-  hsize_t cuts_ = 0;
   std::vector<double> values_;
-  hsize_t rows_ = 0;
+  std::uint64_t rows_ = 0;
+  std::uint64_t sessions_ = 0;
+  BoneHash last_;
 };
 
 }  // namespace osteomill

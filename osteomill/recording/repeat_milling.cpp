@@ -8,6 +8,8 @@
 #include "osteomill/files/input_error.h"
 #include "osteomill/milling/burr_mill.h"
 #include "osteomill/milling/cutting_reaction.h"
+#include "osteomill/recording/replay_recording.h"
+#include "osteomill/recording/session_settings.h"
 
 namespace osteomill {
 
@@ -17,45 +19,10 @@ namespace {
   throw InputError(recording.path.string(), reason);
 }
 
-std::string grid_text(const std::array<int, 3>& dims, const Vec3& spacing_mm) {
-  return fmt::format("{} x {} x {} voxels of {:.6g} x {:.6g} x {:.6g} mm", dims[0], dims[1], dims[2],
-                     spacing_mm.x(), spacing_mm.y(), spacing_mm.z());
-}
-
-void require_same_grid(const Recording& recording, const GridGeometry& geometry) {
-  const RunDescription& run = recording.description;
-  if (run.dims == geometry.dims && run.spacing_mm.isApprox(geometry.spacing_mm, 1e-9)) return;
-  refuse(recording,
-         fmt::format("was made with another scan ({}): {}, not {}", run.scan_name,
-                     grid_text(run.dims, run.spacing_mm), grid_text(geometry.dims, geometry.spacing_mm)));
-}
-
-const double* find_number(const Recording& recording, const char* key) {
-  const std::vector<RunSetting>& settings = recording.description.settings;
-  const auto found = std::find_if(settings.begin(), settings.end(),
-                                  [&](const RunSetting& setting) { return setting.key == key; });
-  return found == settings.end() ? nullptr : std::get_if<double>(&found->value);
-}
-
-double number_of(const Recording& recording, const char* key) {
-  const double* number = find_number(recording, key);
-  if (number == nullptr) {
-    refuse(recording, fmt::format("has no setting '{}', so its milling cannot be repeated", key));
-  }
-  return *number;
-}
-
-MillingSettings milling_of(const Recording& recording) {
-  // Recordings from before the burr was held back do not have it.
-  const double* reaction_share = find_number(recording, "milling.reaction_share");
-  return {number_of(recording, "milling.removal_rate"), reaction_share == nullptr ? 0 : *reaction_share};
-}
-
-BurrMill make_mill(const Recording& recording, const MillingSettings& milling, const GridGeometry& geometry) {
-  const BoneDensities densities{number_of(recording, "milling.surroundings_density"),
-                                number_of(recording, "milling.reference_density")};
+BurrMill make_mill(const Recording& recording, const RunDescription& run, const SessionSettings& settings,
+                   const GridGeometry& geometry) {
   try {
-    return BurrMill(geometry, recording.description.tool.burr_radius_mm, densities, milling);
+    return BurrMill(geometry, run.tool.burr_radius_mm, settings.densities, settings.milling);
   } catch (const std::invalid_argument& error) {
     refuse(recording, fmt::format("cannot be repeated: {}", error.what()));
   }
@@ -74,24 +41,45 @@ void require_same_removal(const Recording& recording, std::size_t tick, double r
                                 recorded_mm3, removed_mm3));
 }
 
-}  // namespace
+// Of version 2, whose recordings hold one session and begin with the scan.
+std::vector<RecordedSession> sessions_of(const Recording& recording) {
+  if (!recording.sessions.empty()) return recording.sessions;
+  return {{0, {recording.description, {}, 0, {}, ""}}};
+}
 
-void repeat_milling(Volume& volume, const Recording& recording) {
-  require_same_grid(recording, volume.geometry());
-  if (recording.dropped > 0) {
-    refuse(recording, fmt::format("lost {} ticks, so its milling cannot be repeated", recording.dropped));
-  }
-  const MillingSettings milling = milling_of(recording);
-  BurrMill mill = make_mill(recording, milling, volume.geometry());
-  double removed_mm3 = 0;
-  for (std::size_t tick = 0; tick < recording.records.size(); ++tick) {
+void repeat_session(Volume& volume, const Recording& recording, const RecordedSession& session,
+                    std::size_t end) {
+  const SessionStart& start = session.start;
+  const SessionSettings settings = session_settings(start.run, recording.path);
+  BurrMill mill = make_mill(recording, start.run, settings, volume.geometry());
+  volume.set_isovalue(start.run.isovalue);
+  for (DensityBlock brick : start.bricks) swap_densities(volume, brick);
+  double removed_mm3 = start.removed_mm3;
+  for (std::size_t tick = session.first; tick < end; ++tick) {
     const TickRecord& record = recording.records[tick];
     if (record.spindle_on) {
-      const Vec3 paying_W_N = paying_force_W_N(milling, record.X_WT, record.burr_force_W_N);
+      const Vec3 paying_W_N = paying_force_W_N(settings.milling, record.X_WT, record.burr_force_W_N);
       removed_mm3 += mill.step(volume, record.X_WT.position_mm, paying_W_N, record.dt_s).removed_mm3;
     }
     require_same_removal(recording, tick, removed_mm3);
   }
+}
+
+}  // namespace
+
+void repeat_milling(Volume& volume, const Recording& recording) {
+  require_made_with(recording, volume);
+  if (recording.dropped > 0) {
+    refuse(recording, fmt::format("lost {} ticks, so its milling cannot be repeated", recording.dropped));
+  }
+  const Volume scan = volume;
+  const std::vector<RecordedSession> sessions = sessions_of(recording);
+  for (std::size_t n = 0; n < sessions.size(); ++n) {
+    if (n > 0) volume = scan;
+    repeat_session(volume, recording, sessions[n],
+                   n + 1 < sessions.size() ? sessions[n + 1].first : recording.records.size());
+  }
+  volume.set_isovalue(scan.isovalue());
 }
 
 }  // namespace osteomill

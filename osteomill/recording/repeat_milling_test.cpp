@@ -11,6 +11,7 @@
 #include "osteomill/recording/read_recording.h"
 #include "osteomill/recording/recorder.h"
 #include "osteomill/recording/recording_samples.h"
+#include "osteomill/recording/session_settings.h"
 #include "osteomill/session/milling_session.h"
 
 namespace osteomill {
@@ -31,10 +32,8 @@ RunDescription description_of(const Volume& bone) {
   run.dims = bone.geometry().dims;
   run.spacing_mm = bone.geometry().spacing_mm;
   run.tool = {};
-  run.settings = {{"milling.removal_rate", kMilling.removal_rate_mm3_per_Ns, ""},
-                  {"milling.reaction_share", kMilling.reaction_share, ""},
-                  {"milling.surroundings_density", kDensities.surroundings, ""},
-                  {"milling.reference_density", kDensities.reference, ""}};
+  run.settings.clear();
+  set_session_settings(run, {kDensities, kMilling, {}, {}});
   return run;
 }
 
@@ -98,10 +97,10 @@ TEST(RepeatMilling, RefusesWhatItCannotRepeat) {
   other.records.erase(other.records.begin(), other.records.begin() + 800);
   EXPECT_NE(refusal(fresh_bone(), other).find("goes on from other milling"), std::string::npos);
   other = recording;
-  other.description.settings.erase(other.description.settings.begin());
+  other.sessions[0].start.run.settings.erase(other.sessions[0].start.run.settings.begin());
   EXPECT_NE(refusal(fresh_bone(), other).find("'milling.removal_rate'"), std::string::npos);
   other = recording;
-  other.description.settings[0].value = -1.0;
+  other.sessions[0].start.run.settings[0].value = -1.0;
   EXPECT_NE(refusal(fresh_bone(), other).find("cannot be repeated"), std::string::npos);
   EXPECT_EQ(refusal(fresh_bone(), recording), "");
 }

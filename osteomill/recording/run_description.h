@@ -25,13 +25,34 @@ struct RunSetting {
 /// The key of the further setting that holds the command by which the run can be repeated (reports show it).
 inline constexpr std::string_view kCommandLineKey = "command_line";
 
+/// Where and when a recording was made. Nothing of it is of a patient.
+struct Origin {
+  /// "2026-11-22T13:45:00Z".
+  std::string date_utc;
+  std::string host;
+  std::string system;
+  std::string processor;
+  std::string compiler;
+  /// "optimised" or "not optimised".
+  std::string build;
+  friend bool operator==(const Origin&, const Origin&) = default;
+};
+
 /// What a recording says of itself: enough to know what was run and to run it again.
 struct RunDescription {
   std::string program_version;
+  Origin made;
   /// The scan as the user named it, or what the built-in tooth is called.
   std::string scan_name;
   std::array<int, 3> dims{0, 0, 0};
   Vec3 spacing_mm = Vec3::Ones();
+  /// Where the grid lies (GridGeometry).
+  Vec3 origin_mm = Vec3::Zero();
+  Mat3 direction = Mat3::Identity();
+  /// Of the densities as they were read, and of the label map (density_hash.h); 0 where nobody said, or there
+  /// is none.
+  std::uint64_t scan_hash = 0;
+  std::uint64_t label_map_hash = 0;
   /// In the scan's own unit of density.
   double isovalue = 0;
   MillingTool tool;

@@ -48,12 +48,24 @@ MillingSession::MillingSession(std::shared_ptr<Volume> volume, const MillingTool
   algorithm_->prepare({volume_.get(), tool, tick_period_s});
 }
 
-TickRecord MillingSession::tick(Device& device, double time_s, double dt_s, bool spindle_on) {
+TickRecord MillingSession::begin_record(Device& device, double time_s, double dt_s) {
   TickRecord record;
   record.time_s = time_s;
   record.dt_s = dt_s;
-  record.spindle_on = spindle_on;
+  record.let_go = std::exchange(let_go_asked_, false);
+  if (record.let_go) guard_.let_go();
   record.X_WD = device.read_pose();
+  if (place_asked_ && is_finite(record.X_WD)) {
+    place_asked_ = false;
+    record.placed = true;
+    begin_at(record.X_WD);
+  }
+  return record;
+}
+
+TickRecord MillingSession::tick(Device& device, double time_s, double dt_s, bool spindle_on) {
+  TickRecord record = begin_record(device, time_s, dt_s);
+  record.spindle_on = spindle_on;
 
   const Clock::time_point start = Clock::now();
   SafeWrench safe;
@@ -74,28 +86,46 @@ TickRecord MillingSession::tick(Device& device, double time_s, double dt_s, bool
   record.contacts = step.contacts;
   record.burr_force_W_N = step.burr_force_W_N;
   record.removed_mm3 = removed_mm3_;
+  record.bone_hash = volume_->change_hash();
   return record;
 }
 
-void MillingSession::take_over_tool(const std::optional<Pose>& X_WT) {
-  if (!X_WT || !is_finite(*X_WT)) return;
-  constexpr double kUsualTick_s = 1e-3;
-  last_X_WT_ = X_WT;
-  algorithm_->step(*X_WT, kUsualTick_s);
+void MillingSession::take_over(const TakenOver& before) {
+  guard_.begin_from(before.sent);
+  if (before.X_WT && is_finite(*before.X_WT)) begin_at(*before.X_WT);
+}
+
+TakenOver MillingSession::left() const {
+  return {last_X_WT_, guard_.sent()};
+}
+
+void MillingSession::let_go() {
+  let_go_asked_ = true;
+}
+
+void MillingSession::place() {
+  place_asked_ = true;
 }
 
 void MillingSession::begin_at(const Pose& X_WT) {
+  guard_.begin_anew();
+  last_X_WT_ = X_WT;
+  forget_contacts(X_WT);
+}
+
+void MillingSession::forget_contacts(const std::optional<Pose>& X_WT) {
+  constexpr double kUsualTick_s = 1e-3;
   algorithm_->reset();
   reaction_.reset();
-  take_over_tool(X_WT);
+  if (X_WT) algorithm_->step(*X_WT, kUsualTick_s);
 }
 
 TickRecord MillingSession::idle_tick(Device& device, double time_s, double dt_s) {
-  TickRecord record;
-  record.time_s = time_s;
-  record.X_WD = device.read_pose();
+  TickRecord record = begin_record(device, time_s, dt_s);
+  record.paused = true;
   record.X_WT = last_X_WT_.value_or(Pose{});
   record.removed_mm3 = removed_mm3_;
+  record.bone_hash = volume_->change_hash();
   record.wrench = guard_.pass_zero(record.X_WD, dt_s).wrench;
   record.energy_given_Nmm = guard_.energy_given_Nmm();
   device.write_wrench(record.wrench);
@@ -122,9 +152,7 @@ HapticStep MillingSession::step_safely(const Pose& X_WD, double dt_s, bool spind
   if (safe.fault == WrenchFault::not_finite) {
     // Whatever led there is still in the algorithm's memory of contacts. The tool itself is still outside the
     // bone, where the device may have sunk into it.
-    algorithm_->reset();
-    reaction_.reset();
-    take_over_tool(last_X_WT_);
+    forget_contacts(last_X_WT_);
     return nothing;
   }
   step.burr_force_W_N *= share_sent(step.wrench.force_N, safe.wrench.force_N);

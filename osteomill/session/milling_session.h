@@ -14,6 +14,13 @@
 
 namespace osteomill {
 
+/// What a session leaves to the one that goes on from it: where its simulated tool is, outside the bone (a
+/// session that begins at the device, which may have sunk into it, has nothing), and what the hand feels.
+struct TakenOver {
+  std::optional<Pose> X_WT;
+  Wrench sent;
+};
+
 /// One tool, one bone and one algorithm, tick by tick: read the pose, compute, send the wrench, remove bone.
 /// The wrench goes out before bone is removed, so that milling cannot delay the hand.
 class MillingSession {
@@ -46,11 +53,17 @@ class MillingSession {
   /// What stands between the algorithm and the hand; only the limits until set. As safe as `tick`.
   WrenchGuard& guard() { return guard_; }
 
-  /// Has the algorithm begin at a simulated tool that another session left, outside the bone, and not at a
-  /// device that may have sunk into it; nothing for no pose. As safe as `tick`.
-  void take_over_tool(const std::optional<Pose>& X_WT);
-  /// Has the algorithm begin anew at a pose free of bone, whatever was touched before. As safe as `tick`.
-  void begin_at(const Pose& X_WT);
+  /// Before the first tick: begins where another session is left, whose wrench the hand feels. As safe as
+  /// `tick`.
+  void take_over(const TakenOver& before);
+  /// To be taken over by another, after the last tick.
+  TakenOver left() const;
+
+  /// From the next tick on zero is sent, come down to slowly, until the tool is placed. As safe as `tick`.
+  void let_go();
+  /// In the next tick the algorithm begins anew where the device then is, whatever was touched before; the
+  /// device is free of bone. As safe as `tick`.
+  void place();
 
   /// What the last tick changed of the volume.
   const VolumeChange& last_change() const { return last_change_; }
@@ -63,6 +76,9 @@ class MillingSession {
   const HapticAlgorithm& algorithm() const { return *algorithm_; }
 
  private:
+  TickRecord begin_record(Device& device, double time_s, double dt_s);
+  void begin_at(const Pose& X_WT);
+  void forget_contacts(const std::optional<Pose>& X_WT);
   HapticStep step_safely(const Pose& X_WD, double dt_s, bool spindle_on, SafeWrench& safe);
   void mill(const HapticStep& step, bool spindle_on, double dt_s);
 
@@ -77,7 +93,10 @@ class MillingSession {
   WrenchGuard guard_;
   double removed_mm3_ = 0;
   VolumeChange last_change_;
+  // Nothing before the first tick.
   std::optional<Pose> last_X_WT_;
+  bool let_go_asked_ = false;
+  bool place_asked_ = false;
 };
 
 }  // namespace osteomill

@@ -117,7 +117,7 @@ TEST_F(MillingSessionTest, CuttingPullsAtTheHandWithinTheDevicesLimits) {
 }
 
 TEST_F(MillingSessionTest, TheToolOfAnotherSessionIsWhereTheAlgorithmBegins) {
-  session_->take_over_tool(Pose{{0, 0, 1.5}, Quat::Identity()});
+  session_->take_over({Pose{{0, 0, 1.5}, Quat::Identity()}, {}});
   tick();
   ASSERT_EQ(algorithm_->steps.size(), 2u);
   EXPECT_EQ(algorithm_->steps[0].position_mm, Vec3(0, 0, 1.5));

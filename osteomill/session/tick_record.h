@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+
 #include "osteomill/geometry/pose.h"
 #include "osteomill/geometry/wrench.h"
 #include "osteomill/milling/label_tally.h"
@@ -13,6 +15,14 @@ struct TickRecord {
   /// force all that milling depends on.
   double dt_s = 0;
   bool spindle_on = false;
+  /// The other inputs of a session, with the device's pose: a tick of a pause; from this one on nothing is
+  /// felt until the tool is placed; before it the tool was placed where the device is, and contacts
+  /// forgotten.
+  bool paused = false;
+  bool let_go = false;
+  bool placed = false;
+  /// Which of the sessions that follow each other on a bone it is of, where there are several.
+  std::uint32_t session = 0;
   /// The device's pose as read, and the simulated tool's.
   Pose X_WD;
   Pose X_WT;
@@ -26,6 +36,8 @@ struct TickRecord {
   Vec3 burr_force_W_N = Vec3::Zero();
   /// Since the start, in mm^3 of reference density.
   double removed_mm3 = 0;
+  /// Of the bone after the tick (Volume::change_hash).
+  std::uint64_t bone_hash = 0;
   /// In this tick, where the bone has labels: what was taken of which, and which no-go ones were touched.
   LabelCuts label_cuts{};
   /// Time taken by the algorithm's step, and by milling with all that follows the volume.

@@ -23,6 +23,12 @@ GuardSettings GuardSettings::for_a_hand(const WrenchLimits& limits) {
   return {limits, kRatesForAHand, 0.1, 5, 0.005};
 }
 
+void WrenchGuard::protect_a_hand() {
+  const bool passivity_controller = settings_.passivity_controller;
+  settings_ = GuardSettings::for_a_hand(settings_.limits);
+  settings_.passivity_controller = passivity_controller;
+}
+
 void WrenchGuard::begin_anew() {
   from_ = sent_;
   blended_ = 0;
@@ -30,10 +36,10 @@ void WrenchGuard::begin_anew() {
   device_W_.reset();
 }
 
-void WrenchGuard::take_over(const WrenchGuard& before) {
-  const WrenchLimits limits = settings_.limits;
-  *this = before;
-  settings_.limits = limits;
+void WrenchGuard::begin_from(const Wrench& sent) {
+  sent_ = sent;
+  observer_ = {};
+  observer_.send(sent);
   begin_anew();
 }
 
@@ -69,7 +75,8 @@ SafeWrench WrenchGuard::send_zero(double dt_s) {
 
 SafeWrench WrenchGuard::pass(const Wrench& asked, const Pose& X_WD, double dt_s) {
   observer_.move_to(X_WD);
-  const Wrench damping = controls_passivity_ && !is_zero(asked) ? observer_.damping(dt_s) : Wrench{};
+  const Wrench damping =
+      settings_.passivity_controller && !is_zero(asked) ? observer_.damping(dt_s) : Wrench{};
   const bool is_damped = !is_zero(damping);
   const SafeWrench within = make_safe(is_damped ? asked + damping : asked, settings_.limits);
   WrenchFault fault = within.fault;

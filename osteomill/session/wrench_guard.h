@@ -18,6 +18,8 @@ struct GuardSettings {
   /// The furthest that a device moves in a tick, and the longest tick; beyond them zero is sent.
   double max_move_mm = kAny;
   double max_tick_s = kAny;
+  /// A damper is felt on contact while the hand has been given more energy than it gave (PassivityObserver).
+  bool passivity_controller = false;
 
   /// For a person's hand: kRatesForAHand, a blend of 0.1 s, moves of up to 5 mm and ticks of up to 5 ms. The
   /// default only shortens to the limits, for hands that are simulated.
@@ -34,20 +36,20 @@ class WrenchGuard {
   explicit WrenchGuard(const GuardSettings& settings) : settings_(settings) {}
 
   /// From now on for a person's hand, within the limits that were set.
-  void protect_a_hand() { settings_ = GuardSettings::for_a_hand(settings_.limits); }
-  /// Whether a damper is felt on contact while the hand has been given more energy than it gave
-  /// (PassivityObserver); off until set.
-  void control_passivity(bool on) { controls_passivity_ = on; }
+  void protect_a_hand();
+  void control_passivity(bool on) { settings_.passivity_controller = on; }
   /// Given to the hand less what it gave, in N mm, up to the last pose.
   double energy_given_Nmm() const { return observer_.energy_given_Nmm(); }
   /// From now what is asked for comes up slowly, from what was last sent.
   void begin_anew();
-  /// The same where another guard stood until now, with its settings but the limits.
-  void take_over(const WrenchGuard& before);
+  /// The same where the hand feels `sent`, from whatever stood here before; energy is counted from here.
+  void begin_from(const Wrench& sent);
   /// From now zero is sent, come down to slowly, until `begin_anew`.
   void let_go();
+  const Wrench& sent() const { return sent_; }
   /// Zero was sent last.
   bool is_at_rest() const;
+  const GuardSettings& settings() const { return settings_; }
 
   /// What to send for a wrench in a tick of `dt_s`, with the reason where that is not what was asked for. One
   /// that is not finite is zero, and what follows begins anew.
@@ -67,7 +69,6 @@ class WrenchGuard {
   bool let_go_ = false;
   std::optional<Vec3> device_W_;
   PassivityObserver observer_;
-  bool controls_passivity_ = false;
 };
 
 }  // namespace osteomill

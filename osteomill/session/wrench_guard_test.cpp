@@ -118,7 +118,7 @@ TEST(WrenchGuard, AfterAPauseItComesUpSlowly) {
 
 TEST(WrenchGuard, AnotherAlgorithmGoesOnFromWhatWasSent) {
   WrenchGuard after(GuardSettings{{10, 500}});
-  after.take_over(holding(2));
+  after.begin_from(holding(2).sent());
   double before_N = 2;
   for (int n = 0; n < 200; ++n) {
     const double sent_N = after.pass(down(14), kHere, kTick_s).wrench.force_N.norm();
@@ -233,9 +233,8 @@ TEST_P(GuardedSession, EveryOtherAlgorithmTakesOverWithoutAStep) {
     tick(10);
     press(0.3);
     auto next = make(other);
-    next->guard().take_over(session_->guard());
     std::swap(session_, next);
-    session_->take_over_tool(Pose{{0, 0, 1.2}, Quat::Identity()});
+    session_->take_over({Pose{{0, 0, 1.2}, Quat::Identity()}, next->left().sent});
     tick(200);
     EXPECT_LT(step_N_, 0.3) << other;
     session_ = make(GetParam());

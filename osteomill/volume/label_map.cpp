@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "osteomill/numbers/work_progress.h"
+#include "osteomill/volume/density_hash.h"
 
 namespace osteomill {
 
@@ -85,6 +86,11 @@ LabelMap::LabelMap(std::vector<Label> labels, const GridGeometry& scan, const Gr
   dims_ = {box_.last.i - box_.first.i + 1, box_.last.j - box_.first.j + 1, box_.last.k - box_.first.k + 1};
   places_.reserve(cell_count(dims_));
   for_each_voxel(box_, [&](const VoxelIndex& v) { places_.push_back(at_nearest(v)); });
+  WordHash hash;
+  for (const VoxelIndex& corner : {box_.first, box_.last})
+    for (const int n : {corner.i, corner.j, corner.k}) hash.add(static_cast<std::uint64_t>(n));
+  for (const Place place : places_) hash.add(place == 0 ? 0 : static_cast<std::uint64_t>(label(place).value));
+  fingerprint_ = hash.value();
 }
 
 std::vector<std::size_t> LabelMap::voxel_counts() const {

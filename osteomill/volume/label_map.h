@@ -59,6 +59,8 @@ class LabelMap {
   /// The box that holds all labels that are no-go; empty where there is none.
   const VoxelBox& no_go_box() const { return no_go_box_; }
   const GridGeometry& scan_geometry() const { return scan_; }
+  /// A number that two label maps hardly share: of where which value lies, not of what labels are called.
+  std::uint64_t fingerprint() const { return fingerprint_; }
 
  private:
   std::vector<Label> labels_;
@@ -67,6 +69,7 @@ class LabelMap {
   VoxelBox no_go_box_;
   std::array<int, 3> dims_{0, 0, 0};
   std::vector<Place> places_;
+  std::uint64_t fingerprint_ = 0;
 };
 
 }  // namespace osteomill

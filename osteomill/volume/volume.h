@@ -1,9 +1,11 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 
 #include "osteomill/volume/block_ranges.h"
 #include "osteomill/volume/density_grid.h"
+#include "osteomill/volume/density_hash.h"
 #include "osteomill/volume/label_map.h"
 
 namespace osteomill {
@@ -31,14 +33,11 @@ class Volume {
   bool is_bone_or_outside(const VoxelIndex& v) const { return grid_.contains(v) && is_bone(v); }
 
   /// Lowers one voxel's density (milling never raises it). Safe in the haptic tick.
-  void lower_density(const VoxelIndex& v, float density) {
-    grid_.set(v, density);
-    bricks_.lower(v, density);
-  }
+  void lower_density(const VoxelIndex& v, float density) { set_density(v, density); }
   /// Lowers `count` voxels of one row, whose columns ascend. Safe in the haptic tick, and faster than one by
   /// one.
   void lower_row(int j, int k, const int* columns, const float* densities, std::size_t count) {
-    for (std::size_t n = 0; n < count; ++n) grid_.set({columns[n], j, k}, densities[n]);
+    for (std::size_t n = 0; n < count; ++n) set_hashed({columns[n], j, k}, densities[n]);
     bricks_.lower_row(j, k, columns, densities, count);
   }
   /// See DensityGrid; by another thread than the one that lowers where that one must not wait.
@@ -46,9 +45,12 @@ class Volume {
   /// Writes one voxel's density, up or down, as when a cut is taken back: where it rose `refresh_bricks` is
   /// due. Not for the tick, nor while anyone works on this bone.
   void set_density(const VoxelIndex& v, float density) {
-    grid_.set(v, density);
+    set_hashed(v, density);
     bricks_.lower(v, density);
   }
+  /// By what the densities differ from those it was made with, however that came about: 0 where they do not,
+  /// and the same for all bones of one scan that are the same. Safe in the haptic tick.
+  std::uint64_t change_hash() const { return change_hash_; }
   /// Bone is where the density is greater from now on. Throws std::invalid_argument where it is not finite.
   /// Not for the tick, nor while anyone works on this bone.
   void set_isovalue(double isovalue);
@@ -56,9 +58,16 @@ class Volume {
   void refresh_bricks(const VoxelBox& box) { bricks_.refresh(grid_, box); }
 
  private:
+  void set_hashed(const VoxelIndex& v, float density) {
+    const std::size_t voxel = grid_.linear_index(v);
+    change_hash_ += density_hash(voxel, density) - density_hash(voxel, grid_[v]);
+    grid_.set(v, density);
+  }
+
   DensityGrid grid_;
   BlockRanges bricks_;
   double isovalue_ = 0;
+  std::uint64_t change_hash_ = 0;
   std::shared_ptr<const LabelMap> labels_;
 };
 

@@ -1,4 +1,4 @@
-#include "osteomill/live/density_block.h"
+#include "osteomill/volume/density_block.h"
 
 #include <algorithm>
 

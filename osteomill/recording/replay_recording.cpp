@@ -1,0 +1,149 @@
+#include "osteomill/recording/replay_recording.h"
+
+#include <bit>
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "osteomill/device/posed_device.h"
+#include "osteomill/files/input_error.h"
+#include "osteomill/recording/record_columns.h"
+#include "osteomill/recording/session_settings.h"
+#include "osteomill/session/milling_setup.h"
+#include "osteomill/volume/density_hash.h"
+
+namespace osteomill {
+
+namespace {
+
+[[noreturn]] void refuse(const Recording& recording, const std::string& reason) {
+  throw InputError(recording.path.string(), reason);
+}
+
+std::string grid_text(const std::array<int, 3>& dims, const Vec3& spacing_mm) {
+  return fmt::format("{} x {} x {} voxels of {:.6g} x {:.6g} x {:.6g} mm", dims[0], dims[1], dims[2],
+                     spacing_mm.x(), spacing_mm.y(), spacing_mm.z());
+}
+
+void require_replayable(const Recording& recording) {
+  if (recording.sessions.empty())
+    refuse(recording, "is of version 2, which does not hold all that a replay takes");
+  if (recording.dropped > 0)
+    refuse(recording, fmt::format("lost {} ticks, so it cannot be replayed", recording.dropped));
+  if (!recording.sessions.front().start.goes_on_from.empty())
+    refuse(recording, "goes on from " + recording.sessions.front().start.goes_on_from);
+}
+
+std::shared_ptr<Volume> bone_at(const Volume& scan, const SessionStart& start) {
+  auto bone = std::make_shared<Volume>(scan);
+  bone->set_isovalue(start.run.isovalue);
+  for (DensityBlock brick : start.bricks) swap_densities(*bone, brick);
+  return bone;
+}
+
+std::unique_ptr<MillingSession> session_at(const Volume& scan, const SessionStart& start,
+                                           const Recording& recording, const Replay& replay) {
+  const RunDescription& run = start.run;
+  const AlgorithmDescription* algorithm = replay.find(run.algorithm.name);
+  if (algorithm == nullptr) refuse(recording, "its algorithm " + run.algorithm.name + " is not known here");
+  const SessionSettings settings = session_settings(run, recording.path);
+  try {
+    require_workable(run.tool, scan.geometry());
+    auto session = std::make_unique<MillingSession>(
+        bone_at(scan, start), run.tool, make_algorithm(*algorithm, haptic_settings(run)), settings.densities,
+        settings.milling, settings.guard.limits, run.tick_period_s);
+    session->set_vibration(settings.vibration);
+    session->guard() = WrenchGuard(settings.guard);
+    session->count_removed_from(start.removed_mm3);
+    session->take_over(start.taken_over);
+    return session;
+  } catch (const std::invalid_argument& error) {
+    refuse(recording, fmt::format("cannot be replayed: {}", error.what()));
+  }
+}
+
+TickRecord tick_again(MillingSession& session, const TickRecord& recorded) {
+  PosedDevice device;
+  device.put(recorded.X_WD);
+  if (recorded.let_go) session.let_go();
+  if (recorded.placed) session.place();
+  return recorded.paused ? session.idle_tick(device, recorded.time_s, recorded.dt_s)
+                         : session.tick(device, recorded.time_s, recorded.dt_s, recorded.spindle_on);
+}
+
+bool is_measured(const RecordColumn& column) {
+  return std::string_view(column.unit) == "us";
+}
+
+std::optional<std::string> difference_of(const TickRecord& recorded, const TickRecord& now) {
+  for (const RecordColumn& column : record_columns()) {
+    if (is_measured(column)) continue;
+    const double then = column.get(recorded);
+    const double again = column.get(now);
+    if (std::bit_cast<std::uint64_t>(then) == std::bit_cast<std::uint64_t>(again)) continue;
+    return fmt::format("{} is {} where {} was recorded (by {:.3g})", column.name, again, then, again - then);
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+void require_made_with(const Recording& recording, const Volume& scan) {
+  const RunDescription& run = recording.description;
+  const GridGeometry& geometry = scan.geometry();
+  if (run.dims != geometry.dims || !run.spacing_mm.isApprox(geometry.spacing_mm, 1e-9)) {
+    refuse(recording,
+           fmt::format("was made with another scan ({}): {}, not {}", run.scan_name,
+                       grid_text(run.dims, run.spacing_mm), grid_text(geometry.dims, geometry.spacing_mm)));
+  }
+  if (run.scan_hash != 0 && run.scan_hash != fingerprint_of(scan.grid()))
+    refuse(recording, fmt::format("was made with another scan ({}): its densities differ", run.scan_name));
+}
+
+void replay_recording(const Volume& scan, const Recording& recording, const Replay& replay) {
+  require_replayable(recording);
+  require_made_with(recording, scan);
+  for (std::size_t n = 0; n < recording.sessions.size(); ++n) {
+    SessionStart start = recording.sessions[n].start;
+    if (replay.as) start.run = replay.as(start.run);
+    const auto session = session_at(scan, start, recording, replay);
+    if (replay.begun) replay.begun(start, *session);
+    const std::size_t end =
+        n + 1 < recording.sessions.size() ? recording.sessions[n + 1].first : recording.records.size();
+    for (std::size_t row = recording.sessions[n].first; row < end; ++row) {
+      const TickRecord& recorded = recording.records[row];
+      TickRecord now = tick_again(*session, recorded);
+      now.session = recorded.session;
+      session->prepare_next_ticks();
+      if (!replay.tick(recorded, now)) return;
+    }
+  }
+}
+
+Verification verify_recording(const Volume& scan, const Recording& recording,
+                              const std::function<void(std::size_t ticks)>& told) {
+  Verification verified;
+  auto hash = recording.bone_hashes.begin();
+  Replay replay;
+  replay.tick = [&](const TickRecord& recorded, const TickRecord& now) {
+    auto what = difference_of(recorded, now);
+    const bool has_hash = hash != recording.bone_hashes.end() && hash->record == verified.ticks;
+    if (!what && has_hash && hash->hash != now.bone_hash) what = "the bone is another";
+    if (what) {
+      verified.difference = {verified.ticks, recorded.time_s, *std::move(what)};
+      return false;
+    }
+    if (has_hash) {
+      ++hash;
+      ++verified.bones;
+    }
+    ++verified.ticks;
+    if (told) told(verified.ticks);
+    return true;
+  };
+  replay_recording(scan, recording, replay);
+  return verified;
+}
+
+}  // namespace osteomill

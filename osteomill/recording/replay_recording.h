@@ -1,0 +1,57 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "osteomill/haptics/algorithms.h"
+#include "osteomill/recording/recording.h"
+#include "osteomill/session/milling_session.h"
+
+namespace osteomill {
+
+/// Throws InputError, naming the recording, where it was made with another scan than `scan`, which is as it
+/// was read.
+void require_made_with(const Recording& recording, const Volume& scan);
+
+/// How a recording is run again, and who hears of it.
+struct Replay {
+  /// By what name which algorithm is meant.
+  std::function<const AlgorithmDescription*(std::string_view)> find = find_algorithm;
+  /// As what each session is run; as it was, where this is empty.
+  std::function<RunDescription(const RunDescription&)> as;
+  /// Of each session before its first tick; may be empty.
+  std::function<void(const SessionStart&, const MillingSession&)> begun;
+  /// Of each tick, as it was and as it is now. Returns whether to go on.
+  std::function<bool(const TickRecord& recorded, const TickRecord& now)> tick;
+};
+
+/// Runs the recording's ticks again through the same code as any session's: what the device, its spindle and
+/// its operator did comes from the recording, all else is computed. Every session begins from the bone, the
+/// tool and the wrench that it began from. Throws InputError, naming the recording, where that cannot be: it
+/// is of another scan or of version 2, lost ticks, or what it goes by is unknown here or out of range.
+void replay_recording(const Volume& scan, const Recording& recording, const Replay& replay);
+
+/// Where a recording and its replay first differ.
+struct Difference {
+  std::size_t record = 0;
+  double time_s = 0;
+  /// In one clause: "force_x_N is 1.5 where 1.25 was recorded".
+  std::string what;
+};
+
+struct Verification {
+  /// That were the same, and after how many of them the bone was held against the recording's.
+  std::size_t ticks = 0;
+  std::size_t bones = 0;
+  std::optional<Difference> difference;
+};
+
+/// Whether the recording comes out again bit for bit: everything of every tick but times, and the bone.
+/// `told` hears how many ticks are done; may be empty. Throws as `replay_recording`.
+Verification verify_recording(const Volume& scan, const Recording& recording,
+                              const std::function<void(std::size_t ticks)>& told = {});
+
+}  // namespace osteomill
