@@ -64,6 +64,15 @@ struct Seen {
   std::size_t bricks = 0;
 };
 
+// A full disk ends the recording, not the session.
+void end_recording(LiveMilling& milling) {
+  try {
+    milling.stop_recording();
+  } catch (const InputError& error) {
+    warn(error.what());
+  }
+}
+
 // Who holds the tool, and what is to be done for them meanwhile.
 class Holder {
  public:
@@ -144,6 +153,7 @@ Seen run_for(LiveMilling& milling, double seconds, const std::shared_ptr<const L
       if (const Label* touched = seen.labels.add(*record)) warn_of_no_go(no_go_warning(*touched, *record));
     }
     seen.bricks += milling.take_changed_bricks().size();
+    if (milling.recording_failed()) end_recording(milling);
   };
   while (passed_s < seconds && milling.running()) {
     std::this_thread::sleep_for(std::chrono::duration<double>(kEvery_s));
@@ -190,7 +200,7 @@ void run_live(LiveOptions options, const std::string& command_line) {
   milling.start();
   if (!milling.refused_real_time().empty()) warn(milling.refused_real_time());
   const Seen seen = run_for(milling, options.seconds, labels, holder);
-  if (milling.recording()) milling.stop_recording();
+  if (milling.recording()) end_recording(milling);
   if (sender && !sender->is_connected()) warn("--send-bone " + options.send_bone + ": the receiver has gone");
   if (const auto said = seen.faults.sentence()) warn(setup.algorithm.id.name + ": " + *said);
   print_timing(milling.timing());

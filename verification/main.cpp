@@ -60,6 +60,7 @@ const std::vector<Named>& all_sections() {
       {"energy", energy_of_barrier_shell},
       {"rig", the_rig_itself},
       {"switches", switch_by_switch},
+      {"soak", soak},
   };
   return sections;
 }
@@ -77,6 +78,7 @@ void add_options(CLI::App& program, Options& options) {
   program.add_option("--only", options.only, "Sections")->check(CLI::IsMember(names));
   program.add_option("--pushes", options.effort.pushes, "Random pushes an algorithm")->capture_default_str();
   program.add_option("--seeds", options.effort.seeds, "Seeds a row")->capture_default_str();
+  program.add_option("--soak", options.effort.soak_min, "min, the long session")->capture_default_str();
   program.add_option("--seconds", options.effort.phase_s, "s, a milling phase")->capture_default_str();
 }
 

@@ -28,6 +28,7 @@ struct Effort {
   int pushes = 10000;
   int seeds = 5;
   double phase_s = 20;
+  double soak_min = 60;
 };
 
 Section force_on_planes();
@@ -50,6 +51,7 @@ Section haptic_rates(const Bones& bones, const Effort& effort);
 Section random_pushes(const Bones& bones, const Effort& effort);
 Section milling_the_tooth(const Bones& bones, const Effort& effort);
 Section milling_the_second_scan(const Bones& bones, const Effort& effort);
+Section soak(const Bones& bones, const Effort& effort);
 Section switch_by_switch(const Bones& bones, const Effort& effort);
 
 }  // namespace osteomill::verification

@@ -83,6 +83,30 @@ TEST_F(ChangedRecording, AnotherVersionIsRefused) {
   expect_refused(path_, "version 1");
 }
 
+TEST_F(ChangedRecording, Version2IsReadAsOneSessionThatCannotBeReplayed) {
+  change([](hid_t file) {
+    set_number(file, "osteomill_recording_version", 2);
+    for (const char* later : {"columns/paused", "columns/let_go", "columns/placed",
+                              "columns/energy_given_Nmm", "bone_hash", "sessions"})
+      ASSERT_GE(H5Ldelete(file, later, H5P_DEFAULT), 0) << later;
+    for (const char* later : {"scan_hash", "label_map_hash", "date_utc", "host", "origin_mm", "axis_i"})
+      ASSERT_GE(H5Adelete(file, later), 0) << later;
+  });
+  const Recording read = read_recording(path_);
+  EXPECT_EQ(read.records.size(), 1500u);
+  EXPECT_TRUE(read.sessions.empty());
+  EXPECT_EQ(read.description.settings, sample_description().settings);
+}
+
+TEST_F(ChangedRecording, ASessionThatCannotBeIsRefused) {
+  change([](hid_t file) {
+    const hid_t session = H5Gopen2(file, "sessions/0", H5P_DEFAULT);
+    set_number(session, "row", 5);
+    H5Gclose(session);
+  });
+  expect_refused(path_, "'sessions/0' begins where it cannot");
+}
+
 TEST_F(ChangedRecording, AMissingColumnIsNamed) {
   change([](hid_t file) { H5Ldelete(file, "columns/torque_y_Nmm", H5P_DEFAULT); });
   expect_refused(path_, "no column 'torque_y_Nmm'");

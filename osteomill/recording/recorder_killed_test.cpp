@@ -48,14 +48,14 @@ class SharedCount {
 
 TEST(KilledRecorder, LeavesARecordingThatReadsUpToShortlyBeforeItsEnd) {
   const TestFolder folder;
-  for (int round = 0; round < 5; ++round) {
+  for (int round = 0; round < 3; ++round) {
     SharedCount pushed;
     const pid_t child = ::fork();
     if (child == 0) record_forever(folder / "run.h5", *pushed);
     while ((*pushed).load() < 200) std::this_thread::sleep_for(1ms);
     const int well_before = (*pushed).load();
-    // Rounds end at different moments between two flushes.
-    std::this_thread::sleep_for(600ms + round * 23ms);
+    // All but the last second is there; rounds end at different moments between two flushes.
+    std::this_thread::sleep_for(1000ms + round * 37ms);
     ::kill(child, SIGKILL);
     int status = 0;
     ASSERT_EQ(::waitpid(child, &status, 0), child);

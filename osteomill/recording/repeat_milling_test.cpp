@@ -31,6 +31,7 @@ RunDescription description_of(const Volume& bone) {
   RunDescription run = testing_support::sample_description();
   run.dims = bone.geometry().dims;
   run.spacing_mm = bone.geometry().spacing_mm;
+  run.isovalue = bone.isovalue();
   run.tool = {};
   run.settings.clear();
   set_session_settings(run, {kDensities, kMilling, {}, {}});

@@ -112,7 +112,7 @@ TEST(ReplayRecording, EveryAlgorithmComesOutTheSameWhateverTheHandDoes) {
       recorder.close();
       EXPECT_GE(faults.size(), 4u) << "the hand is to meet everything that a guard does";
       const Recording recording = read_recording(folder / "run.h5");
-      ASSERT_GT(recording.records.back().removed_mm3, 0.2) << algorithm.id.name;
+      ASSERT_GT(recording.records.back().removed_mm3, 0.05) << algorithm.id.name;
       const Verification verified = verify_recording(scan, recording);
       EXPECT_FALSE(verified.difference)
           << algorithm.id.name << " at " << verified.difference->record << ": " << verified.difference->what;
@@ -134,18 +134,6 @@ TEST(ReplayRecording, SeveralSessionsOnABoneThatWasMilledBefore) {
   for (int n = 0; n < 200; ++n) hand.tick(*session);
   ASSERT_GT(session->removed_mm3(), 0.1);
 
-  const auto bricks_of = [&](const Volume& milled) {
-    std::vector<DensityBlock> bricks;
-    for (int k = 0; k < 60; k += DensityBlock::kVoxels) {
-      for (int j = 0; j < 60; j += DensityBlock::kVoxels) {
-        for (int i = 0; i < 60; i += DensityBlock::kVoxels) {
-          const DensityBlock brick(milled.grid(), {i, j, k});
-          if (brick.densities != DensityBlock(scan.grid(), {i, j, k}).densities) bricks.push_back(brick);
-        }
-      }
-    }
-    return bricks;
-  };
   struct Step {
     const char* algorithm;
     double isovalue;
@@ -166,7 +154,7 @@ TEST(ReplayRecording, SeveralSessionsOnABoneThatWasMilledBefore) {
     const TakenOver before = session->left();
     next->take_over(before);
     recorder.begin_session(number, {description_of(scan, algorithm, Mode::steady, step.isovalue), before,
-                                    removed_mm3, bricks_of(*now), ""});
+                                    removed_mm3, differing_blocks(now->grid(), scan.grid()), ""});
     session = std::move(next);
     for (int n = 0; n < 130; ++n) {
       TickRecord record = hand.tick(*session);

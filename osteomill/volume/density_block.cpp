@@ -52,4 +52,19 @@ VoxelBox swap_densities(Volume& bone, DensityBlock& brick) {
   return changed;
 }
 
+std::vector<DensityBlock> differing_blocks(const DensityGrid& bone, const DensityGrid& scan) {
+  constexpr int kSide = DensityBlock::kVoxels;
+  const std::array<int, 3>& dims = scan.geometry().dims;
+  std::vector<DensityBlock> blocks;
+  for (int k = 0; k < dims[2]; k += kSide) {
+    for (int j = 0; j < dims[1]; j += kSide) {
+      for (int i = 0; i < dims[0]; i += kSide) {
+        const DensityBlock block(bone, {i, j, k});
+        if (block.densities != DensityBlock(scan, {i, j, k}).densities) blocks.push_back(block);
+      }
+    }
+  }
+  return blocks;
+}
+
 }  // namespace osteomill

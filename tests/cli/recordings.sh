@@ -1,0 +1,63 @@
+#!/usr/bin/env bash
+# Recordings of every kind come out again to the bit, or say why not; one of a program that is killed opens and lacks the
+# last second at the most; a full disk ends the recording and nothing else.
+#   recordings.sh OSTEOMILL [KILLS]
+set -euo pipefail
+osteomill=$1
+kills=${2:-3}
+folder=$(mktemp -d)
+mounted=""
+trap '[ -z "$mounted" ] || umount "$folder/small"; rm -rf "$folder"' EXIT
+cd "$folder"
+
+fault() { echo "FAILED: $1"; exit 1; }
+same() { "$osteomill" replay "$@" --verify --quiet >said.txt 2>said.err || fault "$1: $(cat said.err)"; grep -q "^same: " said.txt || fault "$1"; }
+
+"$osteomill" compare --seconds 1 --no-stability --quiet --cutting-reaction --force-limit 2 --out c >/dev/null
+for recording in c/*.h5; do same "$recording"; done
+[ "$(ls c/*.h5 | wc -l)" -eq 8 ] || fault "there should be eight recordings"
+
+# The same hand through another algorithm, and what comes of it replays too; a report has room for both.
+"$osteomill" replay c/line-proxy-milling.h5 --algorithm point-shell --mode paper --stiffness 2 --quiet --out other.csv --record other.h5 >/dev/null
+[ "$(wc -l <other.csv)" -eq 1001 ] || fault "the log should have a head and a row a tick"
+same other.h5
+"$osteomill" report c/line-proxy-milling.h5 other.h5 --quiet --out both >/dev/null
+cut -d, -f14-19 other.csv | diff -q - <("$osteomill" report c/line-proxy-milling.h5 --csv --quiet --out b >/dev/null; cut -d, -f14-19 b/line-proxy-milling.csv) >/dev/null &&
+  fault "another algorithm gave the same wrenches"
+
+# Another scan, a damaged one, what a recording does not take.
+"$osteomill" save --out tooth.nrrd --quiet >/dev/null
+"$osteomill" mesh --after c/line-proxy-holding.h5 --out after.ply --quiet >/dev/null || fault "the bone after both phases"
+refused() { local reason=$1; shift; "$osteomill" replay "$@" --quiet >/dev/null 2>said.err && fault "$* was taken"
+  [ "$(wc -l <said.err)" -eq 1 ] && grep -q "$reason" said.err || fault "$*: $(cat said.err)"; }
+"$osteomill" save --after c/line-proxy-milling.h5 --out milled.nrrd --quiet >/dev/null
+same c/line-proxy-milling.h5 tooth.nrrd
+refused "was made with another scan" c/line-proxy-milling.h5 milled.nrrd --verify
+refused "is the recording's own" c/line-proxy-milling.h5 --burr-radius 2 --out x.csv
+refused "is no recording" other.csv --verify
+mv c/line-proxy-milling.h5 c/away.h5
+refused "line-proxy-milling.h5: no such file" c/line-proxy-holding.h5 --verify
+
+# Killed at any moment.
+for ((n = 0; n < kills; ++n)); do
+  "$osteomill" live --record killed.h5 --seconds 60 --quiet --algorithm line-proxy 2>/dev/null >/dev/null &
+  live=$!
+  for ((k = 0; k < 600; ++k)); do [ -e killed.part.h5 ] && break; sleep 0.05; done
+  sleep $((RANDOM % 3 + 1)).$((RANDOM % 1000 + 1000))
+  kill -9 $live
+  wait $live 2>/dev/null || true
+  same killed.part.h5
+  rm killed.part.h5
+done
+
+# A disk of 2 MB, where the machine allows one: else files of no more.
+mkdir small
+if mount -t tmpfs -o size=2m none small 2>/dev/null; then mounted=yes; fi
+limited() { if [ -n "$mounted" ]; then "$@"; else (trap '' XFSZ; ulimit -f 2048; exec "$@"); fi; }
+code=0
+limited "$osteomill" compare --seconds 30 --algorithm line-proxy --no-stability --quiet --out small/c >said.txt 2>said.err || code=$?
+[ $code -eq 1 ] && [ "$(wc -l <said.err)" -eq 1 ] && grep -q "is the disk full?" said.err || fault "compare on a full disk ended with $code: $(cat said.err)"
+rm -rf small/*
+limited "$osteomill" live --seconds 14 --algorithm line-proxy --record small/live.h5 --seed 2 >said.txt 2>said.err || fault "live ended with its recording: $(cat said.err)"
+grep -q "small/live.part.h5: .*is the disk full?" said.err || fault "live said nothing of the full disk: $(cat said.err)"
+grep -q "^removed " said.txt || fault "live did not go on"
