@@ -117,7 +117,7 @@ TEST(WrenchGuard, AfterAPauseItComesUpSlowly) {
 }
 
 TEST(WrenchGuard, AnotherAlgorithmGoesOnFromWhatWasSent) {
-  WrenchGuard after(GuardSettings{{10, 500}});
+  WrenchGuard after(GuardSettings::for_a_hand({10, 500}));
   after.begin_from(holding(2).sent());
   double before_N = 2;
   for (int n = 0; n < 200; ++n) {
