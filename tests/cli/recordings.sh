@@ -19,11 +19,12 @@ for recording in c/*.h5; do same "$recording"; done
 
 # The same hand through another algorithm, and what comes of it replays too; a report has room for both.
 "$osteomill" replay c/line-proxy-milling.h5 --algorithm point-shell --mode paper --stiffness 2 --quiet --out other.csv --record other.h5 >/dev/null
-[ "$(wc -l <other.csv)" -eq 1001 ] || fault "the log should have a head and a row a tick"
 same other.h5
 "$osteomill" report c/line-proxy-milling.h5 other.h5 --quiet --out both >/dev/null
-cut -d, -f14-19 other.csv | diff -q - <("$osteomill" report c/line-proxy-milling.h5 --csv --quiet --out b >/dev/null; cut -d, -f14-19 b/line-proxy-milling.csv) >/dev/null &&
-  fault "another algorithm gave the same wrenches"
+"$osteomill" report c/line-proxy-milling.h5 --csv --quiet --out b >/dev/null
+[ "$(wc -l <other.csv)" -eq "$(wc -l <b/line-proxy-milling.csv)" ] || fault "the log should have a head and a row a tick"
+cmp -s <(cut -d, -f2-8 other.csv) <(cut -d, -f2-8 b/line-proxy-milling.csv) || fault "the hand moved otherwise"
+! cmp -s <(cut -d, -f16-21 other.csv) <(cut -d, -f16-21 b/line-proxy-milling.csv) || fault "another algorithm gave the same wrenches"
 
 # Another scan, a damaged one, what a recording does not take.
 "$osteomill" save --out tooth.nrrd --quiet >/dev/null
