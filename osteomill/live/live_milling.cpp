@@ -21,6 +21,15 @@ void add_picture(Recorder& recorder, std::string_view name, const LiveMilling::T
   if (auto png = take(); !png.empty()) recorder.add_picture(std::string(name), std::move(png));
 }
 
+// As live sessions are made (make_session, LiveSession).
+SessionSettings settings_of(const MillingSetup& setup, const BoneDensities& densities) {
+  SessionSettings settings{densities, milling_settings(setup), {}, GuardSettings::for_a_hand(setup.limits)};
+  settings.vibration.on = setup.vibration;
+  settings.vibration.spindle_speed_rpm = setup.cutting.spindle_speed_rpm;
+  settings.guard.passivity_controller = setup.passivity_controller;
+  return settings;
+}
+
 }  // namespace
 
 PreparedMilling prepare_milling(std::shared_ptr<Volume> bone, const MillingSetup& setup,
@@ -170,18 +179,13 @@ std::vector<double> LiveMilling::removed_by_label() const {
 }
 
 RunDescription LiveMilling::describe(const std::string& scan_name, const std::string& command_line) const {
-  VibrationSettings vibration;
-  vibration.on = setup_.vibration;
-  vibration.spindle_speed_rpm = setup_.cutting.spindle_speed_rpm;
-  GuardSettings guard = GuardSettings::for_a_hand(setup_.limits);
-  guard.passivity_controller = setup_.passivity_controller;
   const RunFacts facts{.scan_name = scan_name,
                        .scan_hash = scan_hash_,
                        .geometry = geometry_,
                        .isovalue = isovalue_,
                        .tool = setup_.tool,
                        .haptics = setup_.haptics,
-                       .session = {densities_, milling_settings(setup_), vibration, guard},
+                       .session = settings_of(setup_, densities_),
                        .command_line = command_line,
                        .labels = live_.session().volume().labels()};
   return describe_run(facts, setup_.algorithm, sample_points_);
@@ -206,7 +210,11 @@ void LiveMilling::start_recording(const std::filesystem::path& path, const RunDe
 
 void LiveMilling::tell_recorder(const TakenOver& taken_over, double removed_mm3,
                                 std::vector<DensityBlock> bricks) {
-  RunDescription run = describe(recorded_.scan_name, "");
+  RunDescription run = recorded_;
+  run.tool = setup_.tool;
+  run.isovalue = isovalue_;
+  set_algorithm(run, setup_.algorithm, setup_.haptics, sample_points_);
+  set_session_settings(run, settings_of(setup_, densities_));
   recorder_->begin_session(session_number_, {std::move(run), taken_over, removed_mm3, std::move(bricks), ""});
 }
 

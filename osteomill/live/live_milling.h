@@ -150,7 +150,7 @@ class LiveMilling {
   std::unique_ptr<Recorder> recorder_;
   std::filesystem::path recorder_path_;
   TakePicture take_picture_;
-  // What the recording says of the scan.
+  // What the recording says of its first session.
   RunDescription recorded_;
   // The first session that is recorded, and the last that was made.
   std::uint32_t recorded_from_ = 0;
