@@ -114,7 +114,8 @@ class Holder {
     if (!hardware_) return;
     const DeviceReport report = hardware_->report();
     fmt::print(
-        "device       {}: {:.0f} poses/s, {} times at fault, {} times opened again, {} wrenches came late\n",
+        "device       {}: {:.0f} poses/s, {} times without a pose, {} times opened again, {} wrenches came "
+        "late\n",
         hardware_->capabilities().name, report.inputs_per_s, report.faults, report.reopened,
         report.late_wrenches);
   }
@@ -123,11 +124,12 @@ class Holder {
  private:
   static constexpr double kHeldAbove_mm = 1;
 
-  // Once when it begins, and once when it is over.
+  // Once when it has lasted, and once when it is over; what was shorter is counted.
   void warn_of(const DeviceReport& report) {
-    if (report.state == state_) return;
+    constexpr double kLasting_s = 0.1;
+    const bool well = report.state == DeviceReport::State::ok;
+    if (report.state == state_ || (!well && report.since_s < kLasting_s)) return;
     state_ = report.state;
-    const bool well = state_ == DeviceReport::State::ok;
     warn(hardware_->capabilities().name + (well ? ": gives poses again" : ": " + report.complaint()));
   }
 

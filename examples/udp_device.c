@@ -13,6 +13,7 @@
 #include <math.h>
 #include <netinet/in.h>
 #include <poll.h>
+#include <sched.h>
 #include <signal.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -108,6 +109,9 @@ int main(int count, char **words) {
     fprintf(stderr, "udp_device: port %d: %s\n", port, strerror(errno));
     return 1;
   }
+  /* Before all ordinary work, where the system allows it. */
+  const struct sched_param priority = {.sched_priority = 30};
+  sched_setscheduler(0, SCHED_FIFO, &priority);
   signal(SIGINT, end);
   signal(SIGTERM, end);
 

@@ -213,7 +213,6 @@ void draw_controls(ViewState& view, Simulation& simulation, FilesPanel& files, c
   bool changed = false;
   draw_isovalue(view, simulation);
   draw_session(view, simulation.milling, simulation.holder.is_pointer());
-  if (simulation.holder.hardware != nullptr) draw_device(view, *simulation.holder.hardware);
   draw_algorithm(view.wanted, changed);
   draw_tool(view.wanted, view.sound, changed);
   draw_view(view, simulation.milling.state().record.X_WT.position_mm, size);

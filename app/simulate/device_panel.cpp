@@ -56,7 +56,7 @@ void draw_calibration(ViewState& view, ConnectedDevice& device, const Vec3& hand
 }  // namespace
 
 void draw_device(ViewState& view, ConnectedDevice& device) {
-  if (!ui::header("Device", true)) return;
+  ImGui::Separator();
   const DeviceReport report = device.report();
   ImGui::PushTextWrapPos(0);
   ImGui::TextUnformatted(device.capabilities().name.c_str());

@@ -9,11 +9,11 @@ namespace osteomill::app {
 /// The column on the left: everything that can be set.
 void draw_controls(ViewState& view, Simulation& simulation, FilesPanel& files, const PixelSize& size);
 
+/// The column on the right: everything that is measured. Returns where the next thing below has room.
+float draw_readings(ViewState& view, Simulation& simulation, double pictures_per_s, const PixelSize& size);
+
 /// Part of it where hardware holds the tool: how the device is, and how it stands before the operator.
 void draw_device(ViewState& view, ConnectedDevice& device);
-
-/// The column on the right: everything that is measured. Returns where the next thing below has room.
-float draw_readings(Simulation& simulation, double pictures_per_s, const PixelSize& size);
 
 /// Below it, where the bone has labels: a legend, and how much of each was removed.
 float draw_labels(ViewState& view, const Simulation& simulation, const PixelSize& size, float top_px);

@@ -70,7 +70,7 @@ void draw_faults(const std::deque<TickRecord>& history) {
 
 }  // namespace
 
-float draw_readings(Simulation& simulation, double pictures_per_s, const PixelSize& size) {
+float draw_readings(ViewState& view, Simulation& simulation, double pictures_per_s, const PixelSize& size) {
   ImGui::SetNextWindowPos({static_cast<float>(size.width) - ui::px(ui::kRightWidth_px + 8), ui::px(8)});
   ImGui::SetNextWindowSize({ui::px(ui::kRightWidth_px), 0});
   ImGui::Begin("Readings", nullptr, ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize);
@@ -81,6 +81,7 @@ float draw_readings(Simulation& simulation, double pictures_per_s, const PixelSi
   row("late ticks", fmt::format("{} of {}", timing.late_ticks + timing.missed_ticks, timing.ticks));
   row("pictures", fmt::format("{:.0f} / s", pictures_per_s));
   row("removed", fmt::format("{:.2f} mm^3", state.record.removed_mm3));
+  if (simulation.holder.hardware != nullptr) draw_device(view, *simulation.holder.hardware);
   ImGui::Separator();
   const auto& history = simulation.history;
   plot("force", "N", history, [](const TickRecord& r) { return r.wrench.force_N.norm(); }, 1.0f,

@@ -333,7 +333,7 @@ class Simulator {
     if (std::exchange(view_.picture_asked, false)) save_picture();
     draw_annotations(view_, size, !options_.scan.scan.empty());
     draw_controls(view_, *simulation_, files_, size);
-    float below_px = draw_readings(*simulation_, rate_.per_s(), size);
+    float below_px = draw_readings(view_, *simulation_, rate_.per_s(), size);
     below_px = draw_labels(view_, *simulation_, size, below_px);
     below_px = files_.draw_said(view_, *simulation_, size, below_px);
     if (opening_.valid()) draw_opening();

@@ -140,11 +140,10 @@ void ConnectedDevice::hear(const DeviceInput& input) {
     usable_s_ = now_s;
   }
   heard_.write(newest_);
-  count_input(now_s);
+  ++counted_;
 }
 
 void ConnectedDevice::count_input(double now_s) {
-  ++counted_;
   const double passed_s = now_s - counting_since_s_;
   if (passed_s < 1) return;
   inputs_per_s_.store(counted_ / passed_s, std::memory_order_relaxed);
@@ -193,6 +192,7 @@ void ConnectedDevice::judge() {
   const double now_s = settings_.now_s();
   if (const std::unique_lock lock(said_mutex_, std::try_to_lock); lock)
     handle_D_mm_ = newest_.input.X_DH.position_mm;
+  count_input(now_s);
   State state = State::ok;
   if (!connection_) {
     state = State::lost;

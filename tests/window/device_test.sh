@@ -3,10 +3,11 @@
 #   device_test.sh OSTEOMILL UDP_DEVICE
 set -euo pipefail
 osteomill=$1 udp_device=$2
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 command -v xvfb-run >/dev/null || { echo "SKIPPED: needs xvfb-run"; exit 77; }
 folder=$(mktemp -d)
 device=
-end() { [ -z "$device" ] || kill -9 "$device" 2>/dev/null || true; rm -rf "$folder"; }
+end() { [ -z "${KEEP:-}" ] || cp said errors ./*.png "$KEEP" || true; [ -z "$device" ] || kill -9 "$device" 2>/dev/null || true; rm -rf "$folder"; }
 trap end EXIT
 cd "$folder"
 export XDG_CONFIG_HOME=$folder/config XDG_STATE_HOME=$folder/state
@@ -22,11 +23,11 @@ state moving
 wait 0.7
 state moved
 click Calibrate
-wait 0.2
+wait 0.4
 click That was right
-wait 0.2
+wait 0.4
 click That was up
-wait 0.3
+wait 0.5
 state calibrated
 key enter
 wait 0.3
@@ -46,7 +47,7 @@ click Stop recording
 wait 0.5
 close
 E2
-bash "$(dirname "$0")/ball.sh" >ball.nrrd
+bash "$here/ball.sh" >ball.nrrd
 xvfb-run -a -s "-screen 0 1280x800x24" timeout 120 "$osteomill" simulate ball.nrrd --device "udp:127.0.0.1:$port" \
   --device-scale 0.5 --no-help --script actions >said 2>errors &
 window=$!
@@ -78,4 +79,3 @@ grep -qE "^stopped.device_fault=has given no pose for" said || fail "a stopped d
 [ "$(sed -n 's/^scale = //p' config/osteomill/devices/example-device.toml)" = 0.5 ] || fail "its workspace is not kept"
 "$osteomill" report ./*recording.h5 --out report >text
 grep -q "example device" report/report.html || fail "the recording does not name it"
-[ -z "${KEEP:-}" ] || cp ./*.png "$KEEP"

@@ -14,6 +14,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "osteomill/device/host_and_port.h"
 #include "osteomill/device/udp/udp_datagrams.h"
 #include "osteomill/files/input_error.h"
 
@@ -35,19 +36,18 @@ constexpr int kMostAtOnce = 64;
 class Socket {
  public:
   explicit Socket(const std::string& address) : address_(address) {
-    const std::size_t colon = address.rfind(':');
-    if (colon == std::string::npos || colon == 0) fail("is not of the form HOST:PORT");
+    const HostAndPort at = host_and_port("udp", address);
     addrinfo hints{};
     hints.ai_socktype = SOCK_DGRAM;
     hints.ai_flags = AI_NUMERICSERV;
     addrinfo* found = nullptr;
-    const std::string host = address.substr(0, colon);
-    if (const int error = getaddrinfo(host.c_str(), address.c_str() + colon + 1, &hints, &found); error != 0)
+    const std::string port = std::to_string(at.port);
+    if (const int error = getaddrinfo(at.host.c_str(), port.c_str(), &hints, &found); error != 0)
       fail(gai_strerror(error));
-    for (const addrinfo* at = found; at != nullptr && socket_ < 0; at = at->ai_next) {
-      socket_ = ::socket(at->ai_family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+    for (const addrinfo* one = found; one != nullptr && socket_ < 0; one = one->ai_next) {
+      socket_ = ::socket(one->ai_family, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
       // So that nobody else is heard.
-      if (socket_ >= 0 && ::connect(socket_, at->ai_addr, at->ai_addrlen) != 0) close();
+      if (socket_ >= 0 && ::connect(socket_, one->ai_addr, one->ai_addrlen) != 0) close();
     }
     freeaddrinfo(found);
     if (socket_ < 0) fail(std::strerror(errno));
