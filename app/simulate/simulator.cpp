@@ -147,8 +147,8 @@ class Simulator {
 
   void begin() {
     window_.begin_frame();
-    const bool settled = simulation_ && !simulation_->milling.preparing() && !view_.wanted_is_new &&
-                         !files_.busy() && (!opening() || question_.asking());
+    const bool settled = simulation_ && to_draw_.empty() && !simulation_->milling.preparing() &&
+                         !view_.wanted_is_new && !files_.busy() && (!opening() || question_.asking());
     if (script_ && (simulation_ || left_ || script_->at_once())) {
       script_->feed(seconds_since(last_picture_), settled, window_);
     }
@@ -359,9 +359,10 @@ class Simulator {
   void take_surface() {
     for (ChangedBrick& changed : simulation_->milling.take_changed_bricks())
       to_draw_.push_back(std::move(changed));
-    // All of a large bone's take longer than a picture may.
-    constexpr double kMost_s = 0.02;
-    for (const auto start = Clock::now(); !to_draw_.empty() && seconds_since(start) < kMost_s;
+    // All of a large bone's take longer than a picture may. Where pictures take long anyway, as without a
+    // graphics card, the bone would else come together over minutes.
+    const double most_s = std::max(0.02, 0.5 / std::max(rate_.per_s(), 1.0));
+    for (const auto start = Clock::now(); !to_draw_.empty() && seconds_since(start) < most_s;
          to_draw_.pop_front()) {
       const ChangedBrick& changed = to_draw_.front();
       renderer_->set_brick(changed.brick, changed.mesh, changed.levels);
