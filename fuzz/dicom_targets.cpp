@@ -28,8 +28,8 @@ void read_directory(Bytes bytes, const fs::path& folder) {
   read_as_info_does(folder / "DICOMDIR");
 }
 
-// Frames of one file, each with a place and a slope of its own.
-std::unique_ptr<DcmFileFormat> enhanced() {
+// Frames of one file, each with a slope of its own, the second at this height.
+std::unique_ptr<DcmFileFormat> enhanced(const std::string& height_mm = "9.25") {
   auto file = made_up_slice({});
   DcmDataset& data = *file->getDataset();
   std::vector<int> values = stored_values(0);
@@ -41,7 +41,7 @@ std::unique_ptr<DcmFileFormat> enhanced() {
     DcmItem* inner = nullptr;
     data.findOrCreateSequenceItem(DCM_PerFrameFunctionalGroupsSequence, outer, frame);
     outer->findOrCreateSequenceItem(DCM_PlanePositionSequence, inner);
-    inner->putAndInsertString(DCM_ImagePositionPatient, frame == 0 ? "1\\2\\10" : "1\\2\\9.25");
+    inner->putAndInsertString(DCM_ImagePositionPatient, ("1\\2\\" + (frame == 0 ? "10" : height_mm)).c_str());
     outer->findOrCreateSequenceItem(DCM_PixelValueTransformationSequence, inner);
     inner->putAndInsertString(DCM_RescaleSlope, "3");
   }
@@ -50,6 +50,11 @@ std::unique_ptr<DcmFileFormat> enhanced() {
 
 std::vector<std::string> file_seeds(const fs::path& folder) {
   std::vector<std::string> seeds;
+  // At uneven distances, and by a tilted gantry.
+  save(*enhanced("9.35"), folder / "a", EXS_LittleEndianExplicit);
+  seeds.push_back(read_bytes(folder / "a"));
+  save(*made_up_slice({.position = "1\\2.25\\10"}), folder / "a", EXS_LittleEndianExplicit);
+  seeds.push_back(read_bytes(folder / "a"));
   for (const auto syntax : {EXS_LittleEndianExplicit, EXS_LittleEndianImplicit, EXS_BigEndianExplicit,
                             EXS_RLELossless, EXS_JPEGLSLossless, EXS_JPEGProcess14SV1}) {
     save(*made_up_slice({}), folder / "a", syntax);

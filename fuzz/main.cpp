@@ -31,7 +31,9 @@ void read_as_info_does(const fs::path& path) {
   const Scan scan = read_scan(path, {.series = "", .max_memory_bytes = 1 << 26});
   const SuggestedIsovalue suggested = suggest_isovalue(scan.grid, scan.in_hounsfield_units);
   isovalue_warnings(scan.grid, suggested.value);
-  to_json(summarise(scan, suggested, suggested.value));
+  const ScanSummary summary = summarise(scan, suggested, suggested.value);
+  to_json(summary);
+  to_text(summary);
 }
 
 void write_bytes(const fs::path& file, Bytes bytes) {
