@@ -28,15 +28,13 @@ grep -q "http://\|https://" <(sed 's|http://www.w3.org/[^"]*||g' a/report.html) 
 [ "$(wc -l <b/point-shell-holding.csv)" -eq 2001 ] || fault "the CSV should have a head and a row a tick"
 cmp a/summary.csv b/summary.csv || fault "the report made again says something else"
 
-"$osteomill" compare --seconds 2 --no-stability --out c >c.out
-diff <(untimed a/summary.csv) <(untimed c/summary.csv) || fault "the same seed gave other numbers"
 grep -q "No pictures of the bone" a/report.html && fault "pictures are missing"
 __EGL_VENDOR_LIBRARY_FILENAMES=/dev/null "$osteomill" compare --seconds 2 --no-stability --out e >e.out 2>e.err
 [ "$(grep -c "no pictures of the bone are recorded: no OpenGL" e.err)" -eq 1 ] ||
   fault "without OpenGL one line should say so"
 grep -q "No pictures of the bone: OpenGL could not be had" e/report.html || fault "the report misses pictures in silence"
 [ ! -e e/figures/bone_steady.png ] && [ -s a/figures/bone_steady.png ] || fault "pictures where there are none"
-diff <(untimed a/summary.csv) <(untimed e/summary.csv) || fault "without pictures there are other numbers"
+diff <(untimed a/summary.csv) <(untimed e/summary.csv) || fault "the same seed gave other numbers"
 "$osteomill" compare --seconds 2 --seed 2 --algorithm point-shell --no-stability --out d >d.out
 [ "$(wc -l <d/summary.csv)" -eq 3 ] || fault "one algorithm, two phases"
 diff <(untimed a/summary.csv | grep point-shell) <(untimed d/summary.csv | grep point-shell) >/dev/null &&
