@@ -115,8 +115,15 @@ void RecordingFile::lay_out(const RunDescription& description) {
 
 RecordingFile::~RecordingFile() {
   const Hdf5Lock lock;
+  if (unsafe_) forget_unsafe_rows();
   close_columns();
   file_.close();
+}
+
+// What a full disk did not take would be read as zeros.
+void RecordingFile::forget_unsafe_rows() {
+  for (std::vector<Column>* columns : {&columns_, &cut_columns_, &hash_columns_})
+    for (const Column& column : *columns) H5Dset_extent(column.dataset.get(), &column.safe_rows);
 }
 
 void RecordingFile::close_columns() {
@@ -219,6 +226,7 @@ void RecordingFile::write_bricks(hid_t session, std::span<const DensityBlock> br
 void RecordingFile::append(std::span<const TickRecord> records) {
   if (records.empty()) return;
   const Hdf5Lock lock;
+  unsafe_ = true;
   values_.resize(records.size());
   for (std::size_t c = 0; c < columns_.size(); ++c) {
     for (std::size_t row = 0; row < records.size(); ++row) {
@@ -285,6 +293,9 @@ void RecordingFile::flush(std::uint64_t dropped) {
   const Hdf5Lock lock;
   AttributeWriter(path_, file_.get()).replace_unsigned_integer("dropped_records", dropped);
   require(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL) >= 0, "cannot be written (is the disk full?)");
+  for (std::vector<Column>* columns : {&columns_, &cut_columns_, &hash_columns_})
+    for (Column& column : *columns) column.safe_rows = column.rows;
+  unsafe_ = false;
 }
 
 void RecordingFile::add_picture(const std::string& name, std::span<const unsigned char> png) {

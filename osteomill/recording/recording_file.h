@@ -43,16 +43,18 @@ class RecordingFile {
   void finish(std::uint64_t dropped);
 
  private:
-  /// A dataset of `width` numbers a row, and how many rows it has.
+  /// A dataset of `width` numbers a row, how many rows it has, and how many of them are safe.
   struct Column {
     Hdf5Handle dataset;
     hsize_t width = 1;
     hsize_t rows = 0;
+    hsize_t safe_rows = 0;
   };
 
   void lay_out(const RunDescription& description);
   void create_columns();
   void close_columns();
+  void forget_unsafe_rows();
   Hdf5Handle create_group(hid_t in, const std::string& name) const;
   Column create_column(hid_t group, const char* name, hid_t type, const char* unit, hsize_t width,
                        hsize_t chunk_rows) const;
@@ -75,6 +77,8 @@ class RecordingFile {
   std::uint64_t rows_ = 0;
   std::uint64_t sessions_ = 0;
   BoneHash last_;
+  // Since the last flush something was appended.
+  bool unsafe_ = false;
 };
 
 }  // namespace osteomill

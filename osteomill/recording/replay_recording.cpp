@@ -27,6 +27,7 @@ std::string grid_text(const std::array<int, 3>& dims, const Vec3& spacing_mm) {
 }
 
 void require_replayable(const Recording& recording) {
+  if (recording.records.empty()) refuse(recording, "holds no ticks");
   if (recording.sessions.empty())
     refuse(recording, "is of version 2, which does not hold all that a replay takes");
   if (recording.dropped > 0)

@@ -41,10 +41,11 @@ refused "line-proxy-milling.h5: no such file" c/line-proxy-holding.h5 --verify
 
 # Killed at any moment.
 for ((n = 0; n < kills; ++n)); do
-  "$osteomill" live --record killed.h5 --seconds 60 --quiet --algorithm line-proxy 2>/dev/null >/dev/null &
+  __EGL_VENDOR_LIBRARY_FILENAMES=/dev/null "$osteomill" live --record killed.h5 --seconds 600 --quiet --algorithm line-proxy >/dev/null 2>&1 &
   live=$!
-  for ((k = 0; k < 600; ++k)); do [ -e killed.part.h5 ] && break; sleep 0.05; done
-  sleep $((RANDOM % 3 + 1)).$((RANDOM % 1000 + 1000))
+  # From the first ticks on.
+  for ((k = 0; k < 600; ++k)); do [ "$(stat -c %s killed.part.h5 2>/dev/null || echo 0)" -gt 120000 ] && break; sleep 0.05; done
+  sleep $((RANDOM % 3)).$((RANDOM % 1000 + 1000))
   kill -9 $live
   wait $live 2>/dev/null || true
   same killed.part.h5
@@ -58,6 +59,7 @@ limited() { if [ -n "$mounted" ]; then "$@"; else (trap '' XFSZ; ulimit -f 2048;
 code=0
 limited "$osteomill" compare --seconds 30 --algorithm line-proxy --no-stability --quiet --out small/c >said.txt 2>said.err || code=$?
 [ $code -eq 1 ] && [ "$(wc -l <said.err)" -eq 1 ] && grep -q "is the disk full?" said.err || fault "compare on a full disk ended with $code: $(cat said.err)"
+same small/c/line-proxy-milling.part.h5
 rm -rf small/*
 limited "$osteomill" live --seconds 14 --algorithm line-proxy --record small/live.h5 --seed 2 >said.txt 2>said.err || fault "live ended with its recording: $(cat said.err)"
 grep -q "small/live.part.h5: .*is the disk full?" said.err || fault "live said nothing of the full disk: $(cat said.err)"
