@@ -26,7 +26,7 @@ void read_trajectory_of(Bytes bytes, const fs::path& folder) {
 
 std::vector<std::string> trajectory_seeds(const fs::path&) {
   return {"time_s,x_mm,y_mm,z_mm,qw,qx,qy,qz,milling\n0,0,0,30,1,0,0,0,0\n0.001,0,0,30,1,0,0,0,1\n",
-          "# a comment\nmilling,time_s,qw,qx,qy,qz,x_mm,y_mm,z_mm,other\n1,0.5,0,1,0,0,1e-3,-2,3,text\n"};
+          "milling,time_s,qw,qx,qy,qz,x_mm,y_mm,z_mm,other\n1,0.5,0,1,0,0,1e-3,-2,3,text\n"};
 }
 
 void read_config(Bytes bytes, const fs::path& folder) {
@@ -49,7 +49,7 @@ std::vector<std::string> config_seeds(const fs::path&) {
   return {
       "quiet = true\nseconds = 1.5\nout = \"x\"\nburr-radius = 2\n[point-shell]\nguarded-move = true\nscale "
       "= 2\n",
-      "seconds = [1, 2]\nout = '''a\nb'''\nset = ['point-shell.scale=2']\n[a.b.c]\nd = {e = 1979-05-27}\n"};
+      "seconds = 2.5 # s\nout = '''a\nb'''\nset = ['point-shell.scale=2']\n"};
 }
 
 void read_milled_bone_of(Bytes bytes, const fs::path& folder) {
