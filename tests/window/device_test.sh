@@ -22,6 +22,12 @@ wait 2
 state moving
 wait 0.7
 state moved
+press c
+wait 0.2
+state clutched
+wait 0.5
+state clutched_on
+release c
 click Calibrate
 wait 0.4
 click That was right
@@ -72,6 +78,7 @@ for state in moving moved going_on; do
   [ -z "$(value $state.device_fault)" ] || fail "$state: $(value $state.device_fault)"
 done
 [ "$(value moving.tool_W)" != "$(value moved.tool_W)" ] || fail "the tool does not move"
+[ "$(value clutched.tool_W)" = "$(value clutched_on.tool_W)" ] || fail "the clutch does not hold the tool"
 [ "$(value moving.spindle)" = true ] || fail "its button does not mill"
 grep -q "^calibrated.dialogue=The two moves were shorter than 10 mm" said || fail "moves of no length calibrate"
 grep -qE "^stopped.device_fault=has given no pose for" said || fail "a stopped device is not said"
