@@ -120,10 +120,15 @@ RecordingFile::~RecordingFile() {
   file_.close();
 }
 
-// What a full disk did not take would be read as zeros.
+// What a full disk did not take would be read as zeros: all of a piece that was being filled, since,
+// compressed anew, it is written to another place as it grows.
 void RecordingFile::forget_unsafe_rows() {
-  for (std::vector<Column>* columns : {&columns_, &cut_columns_, &hash_columns_})
-    for (const Column& column : *columns) H5Dset_extent(column.dataset.get(), &column.safe_rows);
+  for (std::vector<Column>* columns : {&columns_, &cut_columns_, &hash_columns_}) {
+    for (const Column& column : *columns) {
+      const hsize_t whole = column.safe_rows - column.safe_rows % column.chunk_rows;
+      H5Dset_extent(column.dataset.get(), &whole);
+    }
+  }
 }
 
 void RecordingFile::close_columns() {
@@ -173,7 +178,7 @@ RecordingFile::Column RecordingFile::create_column(hid_t group, const char* name
   Column column{
       Hdf5Handle(H5Dcreate2(group, name, type, space.get(), H5P_DEFAULT, pieces.get(), access.get()),
                  H5Dclose),
-      width};
+      width, chunk_rows};
   require(column.dataset.valid(), "a column cannot be created");
   AttributeWriter(path_, column.dataset.get()).text("unit", unit);
   return column;

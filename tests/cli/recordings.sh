@@ -37,7 +37,7 @@ refused "was made with another scan" c/line-proxy-milling.h5 milled.nrrd --verif
 refused "is the recording's own" c/line-proxy-milling.h5 --burr-radius 2 --out x.csv
 refused "is no recording" other.csv --verify
 mv c/line-proxy-milling.h5 c/away.h5
-refused "line-proxy-milling.h5: no such file" c/line-proxy-holding.h5 --verify
+refused "goes on from line-proxy-milling.h5, which is not beside it" c/line-proxy-holding.h5 --verify
 
 # Killed at any moment.
 for ((n = 0; n < kills; ++n)); do
