@@ -13,6 +13,14 @@ namespace osteomill {
 /// the device adds (delay, rounding). One thread's; all of it is safe in the haptic tick.
 class PassivityObserver {
  public:
+  /// Counts from zero, for a device that may be anywhere and is sent `sent`.
+  void begin_anew(const Wrench& sent) {
+    energy_given_Nmm_ = 0;
+    sent_ = sent;
+    X_WD_.reset();
+    moved_mm_.setZero();
+    turned_rad_.setZero();
+  }
   /// The device was read at `X_WD`: counts the work of what was sent since the last reading. One that is not
   /// finite breaks the count off until the next that is.
   void move_to(const Pose& X_WD);

@@ -38,8 +38,7 @@ void WrenchGuard::begin_anew() {
 
 void WrenchGuard::begin_from(const Wrench& sent) {
   sent_ = sent;
-  observer_ = {};
-  observer_.send(sent);
+  observer_.begin_anew(sent);
   begin_anew();
 }
 
