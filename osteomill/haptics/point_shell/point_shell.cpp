@@ -13,7 +13,7 @@ namespace {
 // chunk).
 constexpr std::size_t kSpareChunks = 8192;
 
-// What looking at a brick costs, in points computed.
+// What looking at a brick costs, in points computed, where a cell is one node.
 constexpr int kBrickCost = 10;
 constexpr int kLoweredBrickCost = 8;
 constexpr int kBrickPassedOverCost = 1;
@@ -115,30 +115,44 @@ bool PointShell::start_sweep() {
 
 // As far as can be told without a look; `visit` says what it was.
 int PointShell::cost_of_next_brick() const {
-  if (sweep_.is_first_pass()) return kLoweredBrickCost;
   const VoxelIndex& b = sweep_.brick();
-  return kBrickCost + static_cast<int>(octree_.count(0, b.i, b.j, b.k));
+  return sweep_.is_first_pass() ? lowering_cost()
+                                : refreshing_cost(static_cast<int>(octree_.count(0, b.i, b.j, b.k)));
+}
+
+// Every node of a brick is looked at, and for a point the nodes of its cell that lie on the surface.
+int PointShell::lowering_cost() const {
+  const int g = lattice_.group();
+  return g * g * g * kLoweredBrickCost;
+}
+
+int PointShell::refreshing_cost(int points) const {
+  const int g = lattice_.group();
+  return g * g * (g * kBrickCost + points);
 }
 
 int PointShell::visit(const VoxelIndex& b) {
   if (holds_no_bone(b) || lattice_.is_deep_in_bone(b.i, b.j, b.k)) return kBrickPassedOverCost;
-  const int g = lattice_.group();
-  const VoxelBox own = brick_cells(b.i, b.j, b.k);
-  const VoxelBox own_nodes{{g * own.first.i, g * own.first.j, g * own.first.k},
-                           {g * own.last.i + g - 1, g * own.last.j + g - 1, g * own.last.k + g - 1}};
   // The second time for what has fallen since the first.
-  lower_bone(own_nodes.intersected(swept_nodes_));
-  if (sweep_.is_first_pass()) return kLoweredBrickCost;
-  return kBrickCost + refresh_brick(b.i, b.j, b.k, swept_cells_);
+  lower_bone(nodes_of_brick(b).intersected(swept_nodes_));
+  if (sweep_.is_first_pass()) return lowering_cost();
+  return refreshing_cost(refresh_brick(b.i, b.j, b.k, swept_cells_));
+}
+
+VoxelBox PointShell::nodes_of_brick(const VoxelIndex& b) const {
+  const int n = kBrickCells * lattice_.group();
+  return {{n * b.i, n * b.j, n * b.k}, {n * b.i + n - 1, n * b.j + n - 1, n * b.k + n - 1}};
 }
 
 // Where there is none there will be none.
 bool PointShell::holds_no_bone(const VoxelIndex& b) const {
-  if (lattice_.group() != 1 || octree_.count(0, b.i, b.j, b.k) != 0) return false;
-  const VoxelBox own = brick_cells(b.i, b.j, b.k).intersected(lattice_.geometry().all_voxels());
+  if (octree_.count(0, b.i, b.j, b.k) != 0) return false;
+  const VoxelBox own = nodes_of_brick(b).intersected(lattice_.geometry().all_voxels());
   unsigned bits = 0;
   for (int k = own.first.k; k <= own.last.k; ++k) {
-    for (int j = own.first.j; j <= own.last.j; ++j) bits |= bone_.byte(b.i, j, k);
+    for (int j = own.first.j; j <= own.last.j; ++j) {
+      for (int byte = own.first.i / 8; byte <= own.last.i / 8; ++byte) bits |= bone_.byte(byte, j, k);
+    }
   }
   return bits == 0;
 }
@@ -177,33 +191,23 @@ VoxelBox PointShell::cells_of_nodes(const VoxelBox& nodes) const {
           {nodes.last.i / g, nodes.last.j / g, nodes.last.k / g}};
 }
 
-bool PointShell::holds_surface(const VoxelIndex& cell) const {
-  const int g = lattice_.group();
-  const auto& dims = lattice_.node_dims();
-  const int end_i = std::min(g * cell.i + g, dims[0]);
-  const int end_j = std::min(g * cell.j + g, dims[1]);
-  const int end_k = std::min(g * cell.k + g, dims[2]);
-  for (int k = g * cell.k; k < end_k; ++k) {
-    for (int j = g * cell.j; j < end_j; ++j) {
-      for (int byte = g * cell.i / 8; byte <= (end_i - 1) / 8; ++byte) {
-        const unsigned from = 0xffu << std::max(0, g * cell.i - 8 * byte);
-        const unsigned to = (1u << std::min(8, end_i - 8 * byte)) - 1;
-        if ((bone_.surface_byte(byte, j, k) & from & to) != 0) return true;
-      }
-    }
-  }
-  return false;
-}
-
-// The cells 8 bi to 8 bi + 7 of row j of slice k that have a point.
+// The cells 8 bi to 8 bi + 7 of row j of slice k that have a point: those with a node on the surface.
 std::uint8_t PointShell::mask_byte(int bi, int j, int k) const {
-  if (lattice_.group() == 1) return bone_.surface_byte(bi, j, k);
-  unsigned bits = 0;
-  const int end = std::min(8 * bi + 8, lattice_.cell_dims()[0]);
-  for (int i = 8 * bi; i < end; ++i) {
-    if (holds_surface({i, j, k})) bits |= 1u << (i - 8 * bi);
+  const int g = lattice_.group();
+  if (g == 1) return bone_.surface_byte(bi, j, k);
+  const auto& dims = lattice_.node_dims();
+  const int end_j = std::min(g * j + g, dims[1]), end_k = std::min(g * k + g, dims[2]);
+  const int end_byte = std::min(g * bi + g, (dims[0] + 7) / 8);
+  unsigned cells = 0;
+  for (int byte = g * bi; byte < end_byte; ++byte) {
+    unsigned nodes = 0;
+    for (int node_k = g * k; node_k < end_k; ++node_k) {
+      for (int node_j = g * j; node_j < end_j; ++node_j) nodes |= bone_.surface_byte(byte, node_j, node_k);
+    }
+    const int first = 8 * (byte - g * bi);
+    for (; nodes != 0; nodes &= nodes - 1) cells |= 1u << ((first + std::countr_zero(nodes)) / g);
   }
-  return static_cast<std::uint8_t>(bits);
+  return static_cast<std::uint8_t>(cells);
 }
 
 // `mask` with the rows of `cells` made new.
@@ -274,8 +278,7 @@ int PointShell::rebuild_brick(int bi, int bj, int bk, const VoxelBox& cells, con
 }
 
 ShellPoint PointShell::point_of(const VoxelIndex& cell, int bi, int bj, int bk) const {
-  const int nodes = kBrickCells * lattice_.group();
-  return lattice_.point_of_cell(bone_, cell, {nodes * bi, nodes * bj, nodes * bk});
+  return lattice_.point_of_cell(bone_, cell, nodes_of_brick({bi, bj, bk}).first);
 }
 
 }  // namespace osteomill::point_shell

@@ -72,10 +72,12 @@ class PointShell {
   VoxelBox cells_of_nodes(const VoxelBox& nodes) const;
   CellMask mask_of(int bi, int bj, int bk, const VoxelBox& cells, CellMask mask) const;
   std::uint8_t mask_byte(int bi, int j, int k) const;
-  bool holds_surface(const VoxelIndex& cell) const;
   bool start_sweep();
   int cost_of_next_brick() const;
+  int lowering_cost() const;
+  int refreshing_cost(int points) const;
   int visit(const VoxelIndex& brick);
+  VoxelBox nodes_of_brick(const VoxelIndex& brick) const;
   bool holds_no_bone(const VoxelIndex& brick) const;
   int refresh_brick(int bi, int bj, int bk, const VoxelBox& cells);
   int move_points(int bi, int bj, int bk, const VoxelBox& cells);

@@ -21,8 +21,10 @@ const std::vector<Field>& fields() {
   // Name, unit, range, value in paper, in steady, meaning, option.
   static const std::vector<Field> all{
       setting_field<Settings>(
-          {"scale", "", SettingRange::count(1, 32), 1, 1,
-           "Coarseness: a cell of the shell is this many voxels wide along each axis", "shell-scale"},
+          {"scale", "", SettingRange::count(1, ShellRules::kMaxScale), 1, 1,
+           "Coarseness: a cell of the shell is this many voxels wide along each axis; with surface-shell, in "
+           "voxels of less than 0.0625 mm, as many as are that wide",
+           "shell-scale"},
           [](Settings & s) -> auto& { return s.shell.scale; }),
       setting_field<Settings>(
           {"surface-shell", "", SettingRange::on_or_off(), 0, 1,

@@ -7,6 +7,9 @@ namespace osteomill::point_shell {
 
 /// What the points of the shell are and how they are kept up.
 struct ShellRules {
+  static constexpr int kMaxScale = 32;
+  /// A cell is so many voxels wide along each axis; in a surface shell of a fine scan more, as many as are
+  /// 0.0625 mm.
   int scale = 1;
   /// False (paper): the centres of the surface voxels, each for the square of its cell; points come and go
   /// with their voxels, all at once. True: points lie on the isosurface, where the grid's edges to the

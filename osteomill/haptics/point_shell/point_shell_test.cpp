@@ -140,6 +140,22 @@ TEST(PointShell, SteadyPointsLieOnTheSurfaceAndShareOutItsArea) {
   }
 }
 
+// So that the cost of a tick does not grow with the square of how fine a scan is.
+TEST(PointShell, AFineScanHasLessThanTwiceThePointsOfOneOfASixteenthOfAMillimetre) {
+  constexpr double kRadius = 1.5, kCoarse_mm = 0.0625;
+  const Volume coarse = shape_volume(centred_cube(56, kCoarse_mm), ball(Vec3::Zero(), kRadius));
+  const std::uint32_t points = PointShell(coarse, steady_rules(1)).point_count();
+  for (const int finer : {2, 3}) {
+    const Volume fine =
+        shape_volume(centred_cube(56 * finer, kCoarse_mm / finer), ball(Vec3::Zero(), kRadius));
+    const PointShell shell(fine, steady_rules(1));
+    EXPECT_LT(shell.point_count(), 2 * points) << finer;
+    double area = 0;
+    for (const WorldPoint& point : points_of(shell)) area += point.area;
+    EXPECT_NEAR(area / (4 * std::numbers::pi * kRadius * kRadius), 1, 0.015) << finer;
+  }
+}
+
 TEST(PointShell, TheAreaOfAPlaneDoesNotDependOnItsSlopeOrOnUnevenSpacing) {
   GridGeometry geometry = centred_cube(48, 0.2);
   geometry.spacing_mm = {0.2, 0.15, 0.25};
@@ -235,10 +251,12 @@ TEST(PointShell, KeptUpIsTheSameAsRebuilt) {
 }
 
 TEST(PointShell, SpreadOverTicksItIsTheSameInTheEnd) {
-  for (const int budget : {1, 50, 400}) {
-    ShellRules rules = steady_rules(1);
-    rules.refreshed_points_per_tick = budget;
-    expect_kept_up(rules);
+  for (const int scale : {1, 2}) {
+    for (const int budget : {1, 50, 400}) {
+      ShellRules rules = steady_rules(scale);
+      rules.refreshed_points_per_tick = budget;
+      expect_kept_up(rules);
+    }
   }
 }
 

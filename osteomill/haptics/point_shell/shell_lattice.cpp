@@ -34,6 +34,16 @@ double share_to_surface(double inside, double outside, double isovalue) {
   return inside > isovalue ? (inside - isovalue) / (inside - outside) : 0;
 }
 
+// Points nearer to one another say nothing more about a burr of a millimetre, and a tick's cost would grow
+// with their number: with the square of how fine the scan is.
+constexpr double kFinestCell_mm = 0.0625;
+
+int nodes_of_cell(const ShellRules& rules, const GridGeometry& voxels) {
+  const double finest = (1 + 1e-6) * kFinestCell_mm / voxels.spacing_mm.maxCoeff();
+  return std::max(rules.scale,
+                  static_cast<int>(std::min(finest, static_cast<double>(ShellRules::kMaxScale))));
+}
+
 GridGeometry lattice_geometry(const GridGeometry& voxels, int stride) {
   GridGeometry lattice = voxels;
   lattice.origin_mm = voxels.world_from_voxel(Vec3::Constant(0.5 * (stride - 1)).eval());
@@ -48,7 +58,7 @@ ShellLattice::ShellLattice(const Volume& volume, const ShellRules& rules)
     : volume_(&volume),
       rules_(rules),
       stride_(rules.surface_shell ? 1 : rules.scale),
-      group_(rules.surface_shell ? rules.scale : 1),
+      group_(rules.surface_shell ? nodes_of_cell(rules, volume.geometry()) : 1),
       geometry_(lattice_geometry(volume.geometry(), stride_)),
       cell_area_mm2_(std::pow(volume.geometry().voxel_volume_mm3(), 2.0 / 3.0) * rules.scale * rules.scale),
       face_mm2_(geometry_.voxel_volume_mm3() * geometry_.spacing_mm.cwiseInverse()),
@@ -91,13 +101,22 @@ void ShellLattice::prefetch_rows(const VoxelBox& nodes) const {
 }
 
 bool ShellLattice::is_deep_in_bone(int bi, int bj, int bk) const {
-  if (stride_ != 1 || group_ != 1) return false;
+  if (stride_ != 1) return false;
   const BlockRanges& bricks = volume_->bricks();
   const auto& dims = bricks.dims();
-  if (bi < 1 || bj < 1 || bk < 1 || bi + 1 >= dims[0] || bj + 1 >= dims[1] || bk + 1 >= dims[2]) return false;
+  const VoxelIndex first{group_ * bi, group_ * bj, group_ * bk};
+  const VoxelIndex end{first.i + group_, first.j + group_, first.k + group_};
+  if (bi < 1 || bj < 1 || bk < 1 || end.i >= dims[0] || end.j >= dims[1] || end.k >= dims[2]) return false;
   // A brick's range takes the next layer of voxels above in, but not the one below.
-  return bricks.at(bi, bj, bk).min > bone_above_ && bricks.at(bi - 1, bj, bk).min > bone_above_ &&
-         bricks.at(bi, bj - 1, bk).min > bone_above_ && bricks.at(bi, bj, bk - 1).min > bone_above_;
+  for (int k = first.k - 1; k < end.k; ++k) {
+    for (int j = first.j - 1; j < end.j; ++j) {
+      for (int i = first.i - 1; i < end.i; ++i) {
+        const bool beside = (i < first.i) + (j < first.j) + (k < first.k) <= 1;
+        if (beside && !(bricks.at(i, j, k).min > bone_above_)) return false;
+      }
+    }
+  }
+  return true;
 }
 
 VoxelBox ShellLattice::nodes_touched_by(const VoxelBox& voxels) const {

@@ -31,7 +31,7 @@ class ShellLattice {
   bool is_bone(const VoxelIndex& node) const { return density(node) > volume_->isovalue(); }
   /// Asks for rows of nodes ahead of reading them; the box must be in the lattice.
   void prefetch_rows(const VoxelBox& nodes) const;
-  /// Whether brick bi, bj, bk of 8 x 8 x 8 nodes and all that borders on it is bone, so that it can hold no
+  /// Whether brick bi, bj, bk of 8 x 8 x 8 cells and all that borders on it is bone, so that it can hold no
   /// surface: may say no where it is so.
   bool is_deep_in_bone(int bi, int bj, int bk) const;
   /// The nodes whose density depends on voxels in `voxels`, within the lattice.
