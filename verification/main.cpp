@@ -56,6 +56,7 @@ const std::vector<Named>& all_sections() {
       {"fine", [](const Bones&, const Effort& effort) { return fine_scans(effort); }},
       {"rates", haptic_rates},
       {"tooth", milling_the_tooth},
+      {"reaction", milling_with_cutting_reaction},
       {"second", milling_the_second_scan},
       {"energy", energy_of_barrier_shell},
       {"rig", the_rig_itself},

@@ -78,7 +78,14 @@ std::string goal_text(const Goals& goals) {
                      text(goals.force_step_N));
 }
 
-void add_rows(Section& section, const Volume& bone, const Effort& effort, bool random_hands, bool loaded) {
+struct Rows {
+  bool random_hands = false;
+  /// Whether force, torque and removal must reach what stands above too.
+  bool loaded = false;
+  bool cutting_reaction = false;
+};
+
+void add_rows(Section& section, const Volume& bone, const Effort& effort, const Rows& rows) {
   for (const Goals& goals : kGoals) {
     std::vector<TrialVariant> variants;
     for (int n = 0; n < effort.seeds; ++n) {
@@ -86,16 +93,17 @@ void add_rows(Section& section, const Volume& bone, const Effort& effort, bool r
                           .push_N = goals.push_N,
                           .seed = kFirstSeed + static_cast<std::uint64_t>(n),
                           .phase_s = effort.phase_s,
-                          .random_hand = random_hands});
+                          .random_hand = rows.random_hands,
+                          .cutting_reaction = rows.cutting_reaction});
     }
     const OverSeeds all = over_seeds(milling_figures(bone, variants));
     section.add(
-        {fmt::format("{}, {} N{}", goals.algorithm, goals.push_N, random_hands ? ", drawn hands" : ""),
+        {fmt::format("{}, {} N{}", goals.algorithm, goals.push_N, rows.random_hands ? ", drawn hands" : ""),
          median_and_worst(all.hp), median_and_worst(all.torque_step), median_and_worst(all.force_step),
          goal_text(goals), lowest_and_median(all.force), lowest_and_median(all.torque),
          lowest_and_median(all.removed), lowest_and_median(all.paid), median_and_worst(all.step_us),
          median_and_worst(all.milling_us)},
-        holds(goals, all, loaded));
+        holds(goals, all, rows.loaded));
   }
 }
 
@@ -127,8 +135,23 @@ Section milling_the_tooth(const Bones& bones, const Effort& effort) {
       kHeader,
       {},
       {}};
-  add_rows(section, bones.tooth, effort, false, true);
-  add_rows(section, bones.tooth, effort, true, false);
+  add_rows(section, bones.tooth, effort, {.loaded = true});
+  add_rows(section, bones.tooth, effort, {.random_hands = true});
+  return section;
+}
+
+Section milling_with_cutting_reaction(const Bones& bones, const Effort& effort) {
+  Section section{
+      "Milling while the cutting pulls at the burr",
+      fmt::format(
+          "The same on {} with `--cutting-reaction`: the hand feels the burr held back along its "
+          "speed, which pushes it aside and turns the handle. Must hold: as calm as without, and what "
+          "is removed is what paid for it, the pole less than the equator.",
+          bones.tooth_name),
+      kHeader,
+      {},
+      {}};
+  add_rows(section, bones.tooth, effort, {.cutting_reaction = true});
   return section;
 }
 
@@ -139,7 +162,7 @@ Section milling_the_second_scan(const Bones& bones, const Effort& effort) {
                   kHeader,
                   {},
                   {}};
-  if (bones.second) add_rows(section, *bones.second, effort, false, false);
+  if (bones.second) add_rows(section, *bones.second, effort, {});
   return section;
 }
 

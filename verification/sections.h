@@ -50,6 +50,7 @@ Section swept_holes(const Effort& effort);
 Section haptic_rates(const Bones& bones, const Effort& effort);
 Section random_pushes(const Bones& bones, const Effort& effort);
 Section milling_the_tooth(const Bones& bones, const Effort& effort);
+Section milling_with_cutting_reaction(const Bones& bones, const Effort& effort);
 Section milling_the_second_scan(const Bones& bones, const Effort& effort);
 Section soak(const Bones& bones, const Effort& effort);
 Section switch_by_switch(const Bones& bones, const Effort& effort);

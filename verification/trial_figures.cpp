@@ -2,6 +2,7 @@
 
 #include "verification/in_parallel.h"
 
+#include "osteomill/milling/cutting_reaction.h"
 #include "osteomill/operator/milling_entry.h"
 #include "osteomill/volume/densities.h"
 
@@ -15,6 +16,7 @@ TrialSettings settings_of(const TrialVariant& variant) {
   settings.tool = variant.tool;
   settings.milling.removal_rate_mm3_per_Ns =
       removal_rate_mm3_per_Ns(CuttingSettings{}, variant.tool.burr_radius_mm);
+  if (variant.cutting_reaction) settings.milling.reaction_share = CuttingSettings{}.tangential_share;
   settings.haptics.named = variant.named;
   OperatorSettings& operator_settings = settings.hand_and_device;
   operator_settings.seed = variant.seed;
@@ -41,8 +43,8 @@ TrialFigures milling_figures(const Volume& bone, const TrialVariant& variant) {
   for (MillingTrial::Tick tick = trial.tick(); tick.milling_phase; tick = trial.tick()) {
     recording.records.push_back(tick.record);
     milling_us.push_back(tick.record.milling_us);
-    paid_for_mm3 +=
-        settings.milling.removal_rate_mm3_per_Ns * tick.record.burr_force_W_N.norm() * variant.tick_s;
+    const Vec3 paying_N = paying_force_W_N(settings.milling, tick.record.X_WT, tick.record.burr_force_W_N);
+    paid_for_mm3 += settings.milling.removal_rate_mm3_per_Ns * paying_N.norm() * variant.tick_s;
   }
   TrialFigures figures;
   figures.metrics = run_metrics(recording);

@@ -24,6 +24,8 @@ struct TrialVariant {
   bool spindle = true;
   /// False reads the handle's pose without rounding.
   bool encoder = true;
+  /// True has the hand feel what cutting does to the burr (CuttingReaction).
+  bool cutting_reaction = false;
   std::vector<HapticSettings::Named> named = {};
   MillingTool tool = {};
 };
@@ -31,7 +33,7 @@ struct TrialVariant {
 /// One algorithm's milling in the test of section 8.2.
 struct TrialFigures {
   RunMetrics metrics;
-  /// What was removed / (kappa times the integral of the burr's force).
+  /// What was removed / (kappa times the integral of the burr's force, of what pays of it).
   double paid_share = 0;
   /// Of barrier-shell alone.
   std::optional<barrier_shell::Counts> counts;

@@ -9,6 +9,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "osteomill/numbers/compress_lanes-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace osteomill {
 namespace HWY_NAMESPACE {
@@ -53,12 +55,6 @@ HWY_INLINE V voxels_per_mm(const CutKernelBall& ball, V x, V y, V z, V distance2
   return hn::Sqrt(hn::Div(distance2, hn::Max(across, constant(kTiny_mm * kTiny_mm))));
 }
 
-HWY_INLINE unsigned bits_of(M mask) {
-  std::uint8_t bytes[8] = {};
-  hn::StoreMaskBits(d, mask, bytes);
-  return bytes[0];
-}
-
 unsigned GatherPiece(const CutPiece& piece, const CutKernelBall& ball, const CutProfile& profile,
                      float max_ahead, CutLists& lists) {
   unsigned denser = 0;
@@ -69,7 +65,7 @@ unsigned GatherPiece(const CutPiece& piece, const CutKernelBall& ball, const Cut
     const std::uint8_t bits[8] = {static_cast<std::uint8_t>(piece.bits >> lane)};
     const V before = hn::LoadU(d, piece.densities + lane);
     const M bone = hn::And(hn::LoadMaskBits(d, bits), hn::Gt(before, constant(profile.surroundings)));
-    denser |= bits_of(bone) << lane;
+    denser |= bits_of(d, bone) << lane;
     const V x = hn::LoadU(d, piece.x + lane);
     const V distance2 = hn::Add(squared(x), across);
     const V along = hn::Add(hn::Mul(x, constant(ball.ahead[0])), along_across);
@@ -79,12 +75,12 @@ unsigned GatherPiece(const CutPiece& piece, const CutKernelBall& ball, const Cut
     const M lowered = hn::And(bone, hn::Gt(before, density(profile, t)));
     if (hn::AllFalse(d, lowered)) continue;
     const std::size_t n = lists.size;
-    hn::StoreU(hn::Compress(distance2, lowered), d, &lists.distance2_mm2[n]);
-    hn::StoreU(hn::Compress(along, lowered), d, &lists.ahead_mm[n]);
-    hn::StoreU(hn::Compress(per_mm, lowered), d, &lists.voxels_per_mm[n]);
-    hn::StoreU(hn::Compress(before, lowered), d, &lists.before[n]);
-    const auto columns = hn::Iota(di, piece.column + static_cast<int>(lane));
-    hn::StoreU(hn::Compress(columns, hn::RebindMask(di, lowered)), di, &lists.columns[n]);
+    const CompressLanes<D> to_front(d, lowered);
+    hn::StoreU(to_front(distance2), d, &lists.distance2_mm2[n]);
+    hn::StoreU(to_front(along), d, &lists.ahead_mm[n]);
+    hn::StoreU(to_front(per_mm), d, &lists.voxels_per_mm[n]);
+    hn::StoreU(to_front(before), d, &lists.before[n]);
+    hn::StoreU(to_front(hn::Iota(di, piece.column + static_cast<int>(lane))), di, &lists.columns[n]);
     lists.size += hn::CountTrue(d, lowered);
   }
   return denser;

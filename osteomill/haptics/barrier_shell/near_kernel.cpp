@@ -11,11 +11,14 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "osteomill/numbers/compress_lanes-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace osteomill::barrier_shell {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
+namespace lane_moves = osteomill::HWY_NAMESPACE;
 
 // Never hn::MulAdd: it rounds once where the processor can, and twice elsewhere.
 using D = hn::CappedTag<float, NearPoints::kLanes>;
@@ -75,10 +78,12 @@ HWY_INLINE void gather(const BrickPoints& points, std::uint32_t first_chunk, con
       const M found = is_near(at);
       if (hn::AllFalse(d, found)) continue;
       const std::size_t n = near.count;
-      hn::CompressStore(at.x, found, d, &near.gathered_x[n]);
-      hn::CompressStore(at.y, found, d, &near.gathered_y[n]);
-      hn::CompressStore(at.z, found, d, &near.gathered_z[n]);
-      near.count += hn::CompressStore(hn::Load(d, &chunk.area_mm2[slot]), found, d, &near.area[n]);
+      const lane_moves::CompressLanes<D> to_front(d, found);
+      hn::StoreU(to_front(at.x), d, &near.gathered_x[n]);
+      hn::StoreU(to_front(at.y), d, &near.gathered_y[n]);
+      hn::StoreU(to_front(at.z), d, &near.gathered_z[n]);
+      hn::StoreU(to_front(hn::Load(d, &chunk.area_mm2[slot])), d, &near.area[n]);
+      near.count += hn::CountTrue(d, found);
     }
   }
 }
@@ -182,10 +187,7 @@ void SumBall(NearPoints& near, const Frame& moved, const KernelShape& shape, Bal
 }
 
 HWY_INLINE void list_beyond_end(NearPoints& near, M beyond, std::size_t n) {
-  std::uint8_t bytes[8] = {};
-  hn::StoreMaskBits(d, beyond, bytes);
-  std::uint32_t bits = (bytes[0] | static_cast<std::uint32_t>(bytes[1]) << 8) & ((1u << kWidth) - 1u);
-  for (; bits != 0; bits &= bits - 1) {
+  for (unsigned bits = lane_moves::bits_of(d, beyond) & ((1u << kWidth) - 1u); bits != 0; bits &= bits - 1) {
     near.beyond_end.push_back(static_cast<std::uint32_t>(n) +
                               static_cast<std::uint32_t>(std::countr_zero(bits)));
   }

@@ -1,0 +1,59 @@
+// Included once for each set of vector instructions, hence the guard that hwy/foreach_target.h toggles.
+#if defined(OSTEOMILL_COMPRESS_LANES_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef OSTEOMILL_COMPRESS_LANES_INL
+#undef OSTEOMILL_COMPRESS_LANES_INL
+#else
+#define OSTEOMILL_COMPRESS_LANES_INL
+#endif
+
+#include <cstdint>
+
+#include <hwy/highway.h>
+
+#include "osteomill/numbers/lane_order.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace osteomill {
+namespace HWY_NAMESPACE {
+
+/// A bit a lane.
+template <class D>
+HWY_INLINE unsigned bits_of(D d, hwy::HWY_NAMESPACE::Mask<D> mask) {
+  std::uint8_t bytes[8] = {};
+  hwy::HWY_NAMESPACE::StoreMaskBits(d, mask, bytes);
+  return bytes[0] | static_cast<unsigned>(bytes[1]) << 8;
+}
+
+/// Moves the lanes that a mask names to the front, in their order, of as many vectors as there are; what the
+/// others hold then is anything. Highway's own Compress looks its table up anew for each, and GCC 12 copies
+/// that whole table to the stack first: two thirds of the time of a gathering, with AVX2.
+template <class D>
+class CompressLanes {
+ public:
+  HWY_INLINE CompressLanes(D d, hwy::HWY_NAMESPACE::Mask<D> mask) : d_(d), mask_(mask) {
+    bits_ = bits_of(d, mask);
+  }
+  HWY_INLINE unsigned bits() const { return bits_; }
+
+  template <class V>
+  HWY_INLINE V operator()(V v) const {
+    namespace hn = hwy::HWY_NAMESPACE;
+    const hn::DFromV<V> dv;
+#if HWY_MAX_BYTES <= 32
+    return hn::TableLookupLanes(v, hn::SetTableIndices(dv, kLaneOrder[bits_].data()));
+#else
+    return hn::Compress(v, hn::RebindMask(dv, mask_));
+#endif
+  }
+
+ private:
+  D d_;
+  hwy::HWY_NAMESPACE::Mask<D> mask_;
+  unsigned bits_;
+};
+
+}  // namespace HWY_NAMESPACE
+}  // namespace osteomill
+HWY_AFTER_NAMESPACE();
+
+#endif
