@@ -30,10 +30,7 @@ HWY_INLINE unsigned bits_of(D d, hwy::HWY_NAMESPACE::Mask<D> mask) {
 template <class D>
 class CompressLanes {
  public:
-  HWY_INLINE CompressLanes(D d, hwy::HWY_NAMESPACE::Mask<D> mask) : d_(d), mask_(mask) {
-    bits_ = bits_of(d, mask);
-  }
-  HWY_INLINE unsigned bits() const { return bits_; }
+  HWY_INLINE CompressLanes(D d, hwy::HWY_NAMESPACE::Mask<D> mask) : mask_(mask), bits_(bits_of(d, mask)) {}
 
   template <class V>
   HWY_INLINE V operator()(V v) const {
@@ -47,7 +44,6 @@ class CompressLanes {
   }
 
  private:
-  D d_;
   hwy::HWY_NAMESPACE::Mask<D> mask_;
   unsigned bits_;
 };

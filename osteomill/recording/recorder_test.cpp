@@ -7,12 +7,14 @@
 #include <thread>
 
 #include <gtest/gtest.h>
+#include <malloc.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include "osteomill/files/input_error.h"
 #include "osteomill/recording/read_recording.h"
+#include "osteomill/recording/recording_file.h"
 #include "osteomill/recording/recording_samples.h"
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -63,6 +65,23 @@ void expect_same(const RunDescription& a, const RunDescription& b) {
   EXPECT_EQ(a.seed, b.seed);
   EXPECT_EQ(a.tick_period_s, b.tick_period_s);
   EXPECT_EQ(a.settings, b.settings);
+}
+
+// An hour has some 3600 flushes.
+TEST(RecordingFile, TakesNoMoreMemoryTheLongerItIs) {
+  const TestFolder folder;
+  RecordingFile file(folder.path() / "long.h5", sample_description());
+  std::vector<TickRecord> second(1000);
+  const auto seconds = [&](int count) {
+    for (int n = 0; n < count; ++n) {
+      for (TickRecord& record : second) record = sample_record(static_cast<int>(file.rows()));
+      file.append(second);
+      file.flush(0);
+    }
+    return static_cast<double>(::mallinfo2().uordblks);
+  };
+  const double before = seconds(30);
+  EXPECT_LT(seconds(60), before + 0.5e6);
 }
 
 TEST(Recorder, WhatIsRecordedReadsBackBitForBit) {

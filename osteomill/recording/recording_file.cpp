@@ -18,6 +18,8 @@ namespace {
 constexpr hsize_t kChunkOfFew = 64;
 // Higher levels take longer and save next to nothing: the last bits of poses and forces are noise.
 constexpr unsigned kDeflateLevel = 1;
+// Some ten seconds of pieces.
+constexpr std::uint64_t kFlushesRemembered = 10;
 
 constexpr const char* kConventions =
     "Units are in each dataset's attribute 'unit' (mm, N, N mm, s, kg, rad); its attribute 'meaning' says "
@@ -65,6 +67,7 @@ hid_t memory_type<std::uint64_t>() {
 
 // The library's metadata reach the disk only when the file is flushed. Left to itself it also writes some of
 // them whenever its cache is full, and a program killed between the two leaves a file that nobody can open.
+// So none leave the memory by themselves: `forget_flushed_metadata`.
 bool keep_metadata_until_flush(hid_t file) {
   H5AC_cache_config_t config;
   config.version = H5AC__CURR_CACHE_CONFIG_VERSION;
@@ -84,7 +87,9 @@ RecordingFile::RecordingFile(const fs::path& path, const RunDescription& descrip
   H5Pset_userblock(layout.get(), kUserBlockBytes);
   // What is written anew goes elsewhere: until the next flush the file on the disk speaks of the old place.
   H5Pset_file_space_strategy(layout.get(), H5F_FSPACE_STRATEGY_NONE, false, 1);
-  file_ = Hdf5Handle(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, layout.get(), H5P_DEFAULT), H5Fclose);
+  const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  H5Pset_evict_on_close(access.get(), true);
+  file_ = Hdf5Handle(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, layout.get(), access.get()), H5Fclose);
   require(file_.valid(), "cannot be created");
   try {
     lay_out(description);
@@ -301,6 +306,21 @@ void RecordingFile::flush(std::uint64_t dropped) {
   for (std::vector<Column>* columns : {&columns_, &cut_columns_, &hash_columns_})
     for (Column& column : *columns) column.safe_rows = column.rows;
   unsafe_ = false;
+  if (++flushes_ % kFlushesRemembered == 0) forget_flushed_metadata();
+}
+
+// Where each piece lies: 100 MB an hour. They go with a dataset that is closed (H5Pset_evict_on_close).
+void RecordingFile::forget_flushed_metadata() {
+  for (std::vector<Column>* columns : {&columns_, &cut_columns_, &hash_columns_}) {
+    for (Column& column : *columns) {
+      const Hdf5Handle access(H5Dget_access_plist(column.dataset.get()), H5Pclose);
+      std::string name(static_cast<std::size_t>(H5Iget_name(column.dataset.get(), nullptr, 0)), '\0');
+      H5Iget_name(column.dataset.get(), name.data(), name.size() + 1);
+      column.dataset.close();
+      column.dataset = Hdf5Handle(H5Dopen2(file_.get(), name.c_str(), access.get()), H5Dclose);
+      require(column.dataset.valid(), "a column cannot be opened again");
+    }
+  }
 }
 
 void RecordingFile::add_picture(const std::string& name, std::span<const unsigned char> png) {

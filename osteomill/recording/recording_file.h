@@ -56,6 +56,7 @@ class RecordingFile {
   void create_columns();
   void close_columns();
   void forget_unsafe_rows();
+  void forget_flushed_metadata();
   Hdf5Handle create_group(hid_t in, const std::string& name) const;
   Column create_column(hid_t group, const char* name, hid_t type, const char* unit, hsize_t width,
                        hsize_t chunk_rows) const;
@@ -78,6 +79,7 @@ class RecordingFile {
   std::uint64_t rows_ = 0;
   std::uint64_t sessions_ = 0;
   BoneHash last_;
+  std::uint64_t flushes_ = 0;
   // Since the last flush something was appended.
   bool unsafe_ = false;
 };
