@@ -20,7 +20,7 @@ constexpr int kInputAtFault = 1;
 constexpr int kWrongUsage = 2;
 
 int complain(const char* reason, int code) {
-  fmt::print(stderr, "osteomill: {}\n", osteomill::app::in_one_line(reason));
+  fmt::print(stderr, "osteomill: {}\n", osteomill::in_one_line(reason));
   return code;
 }
 

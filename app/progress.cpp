@@ -7,6 +7,8 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
+#include "osteomill/files/input_error.h"
+
 namespace osteomill::app {
 
 namespace {
@@ -82,14 +84,6 @@ void warn_of_no_go(std::string_view line) {
 
 RunEvents events_on_terminal() {
   return {show_progress, warn, warn_of_no_go};
-}
-
-std::string in_one_line(std::string_view text) {
-  std::string line(text);
-  for (char& c : line) {
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
-  }
-  return line;
 }
 
 }  // namespace osteomill::app

@@ -28,7 +28,4 @@ void warn_of_no_go(std::string_view line);
 /// Progress and warnings as above.
 RunEvents events_on_terminal();
 
-/// What may hold a file's name, in one line: control characters as `?`.
-std::string in_one_line(std::string_view text);
-
 }  // namespace osteomill::app

@@ -6,14 +6,19 @@
 
 namespace osteomill {
 
+/// The text with a question mark for every control character, a line's end among them: a file's own words may
+/// hold anything.
+std::string in_one_line(std::string_view text);
+
 /// What the user handed us is at fault: a file, a folder, a row of it, or an option's value.
 /// The command line prints `what()` as its one line and exits with code 1.
 /// Never thrown inside a haptic tick.
 class InputError : public std::runtime_error {
  public:
   /// `subject` names the file (or option), `reason` says what is wrong with it, without a full stop.
+  /// `what()` is one line whatever they hold.
   InputError(std::string_view subject, std::string_view reason)
-      : std::runtime_error(std::string(subject) + ": " + std::string(reason)) {}
+      : std::runtime_error(in_one_line(std::string(subject) + ": " + std::string(reason))) {}
 };
 
 }  // namespace osteomill
