@@ -107,7 +107,7 @@ std::string frame(const KeyMetric& metric, std::size_t number, double height_px)
 }
 
 std::string legend(const Study& study, std::string_view phase, double height_px) {
-  constexpr double kName_px = 160, kMode_px = 100, kTitle_px = 130, kDots_px = 300;
+  constexpr double kName_px = 135, kMode_px = 85, kTitle_px = 105, kDots_px = 310;
   double x_px = 0.5 * (kWidth_px - kTitle_px - kName_px * static_cast<double>(study.algorithms().size()) -
                        kMode_px * static_cast<double>(study.modes().size()) - kDots_px);
   std::string script;
