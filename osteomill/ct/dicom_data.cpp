@@ -137,9 +137,8 @@ std::optional<DicomData> load_dicom(const fs::path& path) {
   set_up_dcmtk();
   if (!looks_like_dicom(path)) return std::nullopt;
   check_bounds(path);
-  DicomData data{std::make_shared<DcmFileFormat>(), ""};
-  const OFCondition read = data.file->loadFile(path.c_str(), EXS_Unknown, EGL_noChange, kMaxValueBytes);
-  if (read.bad()) data.damage = read.text();
+  DicomData data{std::make_shared<DcmFileFormat>()};
+  data.damaged = data.file->loadFile(path.c_str(), EXS_Unknown, EGL_noChange, kMaxValueBytes).bad();
   return data;
 }
 

@@ -4,7 +4,6 @@
 #include <functional>
 #include <memory>
 #include <optional>
-#include <string>
 
 class DcmFileFormat;
 
@@ -14,8 +13,8 @@ namespace osteomill {
 /// are asked for.
 struct DicomData {
   std::shared_ptr<DcmFileFormat> file;
-  /// What DCMTK says where the file is damaged; elements read before that stand. Empty where all is well.
-  std::string damage;
+  /// The file is cut short or damaged; elements read before that stand.
+  bool damaged = false;
 };
 
 /// Nothing where the file is not DICOM at all. Throws InputError naming the file where it cannot be opened,

@@ -279,9 +279,8 @@ std::optional<DicomHeader> read_dicom_header(const fs::path& path) {
     header.data = std::move(loaded->file);
     DcmDataset& data = *header.data->getDataset();
     describe(data, header);
-    header.lost = !loaded->damage.empty() && header.pixel_bytes == 0;
-    if (!loaded->damage.empty())
-      throw InputError(path.string(), "is cut short or damaged: " + loaded->damage);
+    header.lost = loaded->damaged && header.pixel_bytes == 0;
+    if (loaded->damaged) throw InputError(path.string(), "is cut short or damaged");
     if (!header.is_directory()) FileReader(data, header).read_frames();
   } catch (const InputError& fault) {
     header.fault = fault;
