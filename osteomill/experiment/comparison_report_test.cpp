@@ -3,6 +3,7 @@
 #include <fstream>
 #include <iterator>
 
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 
 #include "osteomill/experiment/paper.h"
@@ -111,6 +112,18 @@ TEST_F(ReportTest, ASessionSpeaksOfItself) {
     EXPECT_EQ(html.find(of_a_trial), std::string::npos) << of_a_trial;
   }
   EXPECT_LT(html.find("The bone before and after"), html.find(">Force<"));
+}
+
+TEST_F(ReportTest, ACutThatWasTakenBackIsNoBoneRemovedBelowNothing) {
+  Recording run = sample_run("point-shell", "milling");
+  run.description.segment = "";
+  run.records.back().removed_mm3 = run.records.front().removed_mm3;
+  const double most_mm3 = run.records[run.records.size() - 2].removed_mm3;
+  ASSERT_GT(most_mm3, 1);
+  const std::string html = bytes_of(write_report({run}, out_));
+  EXPECT_NE(
+      html.find(fmt::format("and {0:.1f} mm³ of bone were removed; {0:.1f} mm³ were put back.", most_mm3)),
+      std::string::npos);
 }
 
 TEST_F(ReportTest, OneRecordingIsEnough) {

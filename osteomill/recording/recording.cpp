@@ -50,8 +50,11 @@ std::vector<Recording> in_stretches(Recording recording) {
                            recording.records.begin() + static_cast<std::ptrdiff_t>(end));
     stretch.complete = recording.complete;
     stretch.dropped = n == 0 ? recording.dropped : 0;
-    if (n == 0) stretch.pictures = recording.pictures;
     stretches.push_back(std::move(stretch));
+  }
+  for (const RunPicture& picture : recording.pictures) {
+    Recording& shown = picture.name == kPictureAfter ? stretches.back() : stretches.front();
+    shown.pictures.push_back(picture);
   }
   return stretches;
 }

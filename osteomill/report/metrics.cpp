@@ -60,6 +60,15 @@ void require_usable(const Recording& recording) {
   }
 }
 
+// Milling takes and only an undo or a reset gives.
+double put_back_mm3(const std::vector<TickRecord>& records) {
+  double sum_mm3 = 0;
+  for (std::size_t n = 1; n < records.size(); ++n) {
+    sum_mm3 += std::max(0.0, records[n - 1].removed_mm3 - records[n].removed_mm3);
+  }
+  return sum_mm3;
+}
+
 }  // namespace
 
 VectorMetrics vector_metrics(std::span<const Vec3> samples, double rate_hz,
@@ -131,7 +140,9 @@ RunMetrics run_metrics(const Recording& recording) {
     metrics.torque_Nmm = vector_metrics(torque_Nmm, rate_hz, touches);
     metrics.shaft = direction_metrics(shaft_W);
   }
-  metrics.removed_mm3 = recording.records.back().removed_mm3 - recording.records.front().removed_mm3;
+  metrics.put_back_mm3 = put_back_mm3(recording.records);
+  metrics.removed_mm3 =
+      recording.records.back().removed_mm3 - recording.records.front().removed_mm3 + metrics.put_back_mm3;
   metrics.path_mm = path_mm(recording.records);
   return metrics;
 }

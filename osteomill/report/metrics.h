@@ -56,8 +56,10 @@ struct RunMetrics {
   VectorMetrics torque_Nmm;
   /// Of the simulated tool's shaft, likewise.
   DirectionMetrics shaft;
-  /// Between the first tick and the last.
+  /// By milling, after the first tick.
   double removed_mm3 = 0;
+  /// Of cuts that were taken back.
+  double put_back_mm3 = 0;
   /// How far the burr's centre went, by where it was every 0.02 s: from tick to tick a trembling hand goes
   /// far without getting anywhere.
   double path_mm = 0;

@@ -55,8 +55,11 @@ std::vector<Panel> panels_of(const RunGroup& group) {
       const MeasuredRun* run = group.find(algorithm.name, segment);
       const RunPicture* after = run ? picture_named(*run->recording, kPictureAfter) : nullptr;
       if (after == nullptr) continue;
+      // The last part of several: cuts may have been taken back since the picture before.
+      const bool whole = picture_named(*run->recording, kPictureBefore) != nullptr;
       panels.push_back(
-          {fmt::format("After {} ({:.1f} mm³ removed)", algorithm.label, run->metrics.removed_mm3),
+          {whole ? fmt::format("After {} ({:.1f} mm³ removed)", algorithm.label, run->metrics.removed_mm3)
+                 : std::string("At the end"),
            run->recording, after});
       break;
     }

@@ -213,13 +213,14 @@ std::string session_in_words(const MeasuredRun& run) {
   const RunDescription& d = run.recording->description;
   const RunMetrics& m = run.metrics;
   const auto& records = run.recording->records;
+  const std::string put_back =
+      m.put_back_mm3 > 0 ? fmt::format("; {:.1f} mm³ were put back", m.put_back_mm3) : "";
   const std::string text = fmt::format(
       "{}{}: {:.1f} s, of which the spindle ran for {:.1f} s. The burr went {:.0f} mm, and {:.1f} mm³ of "
-      "bone "
-      "were "
-      "removed. ",
+      "bone were removed{}. ",
       d.algorithm.label, d.segment.empty() ? "" : ", " + d.segment,
-      records.back().time_s - records.front().time_s, spindle_s(*run.recording), m.path_mm, m.removed_mm3);
+      records.back().time_s - records.front().time_s, spindle_s(*run.recording), m.path_mm, m.removed_mm3,
+      put_back);
   if (!m.contact.enough()) {
     return text + fmt::format("The tool {}, too little to say what was felt.", contact_words(m.contact));
   }
