@@ -2,6 +2,7 @@
 
 #include <fstream>
 
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 
 #include "osteomill/files/input_error.h"
@@ -38,7 +39,7 @@ class TrajectoryTest : public ::testing::Test {
 };
 
 TEST_F(TrajectoryTest, ReadsPosesToTheLastBit) {
-  const auto points = read(std::string(kHead) + "0,0.1,-2,3e-3,1,0,0,0,0\r\n0.001,1,2,3,0,0.6,0,0.8,1\n\n");
+  const auto points = read(fmt::format("{}0,0.1,-2,3e-3,1,0,0,0,0\r\n0.001,1,2,3,0,0.6,0,0.8,1\n\n", kHead));
   ASSERT_EQ(points.size(), 2u);
   EXPECT_EQ(points[0].X_WD.position_mm, Vec3(0.1, -2, 3e-3));
   EXPECT_FALSE(points[0].milling);

@@ -32,8 +32,9 @@ class Haply : public ::testing::Test {
   }
   // As the device's thread does, until it has what is wanted; not long where it never comes.
   ConnectionStatus go_on_until(ConnectionStatus wanted, DeviceInput& input) {
+    const auto until = std::chrono::steady_clock::now() + 5s;
     ConnectionStatus status = connection_->read(input);
-    for (int n = 0; n < 300 && status != wanted; ++n) {
+    while (status != wanted && std::chrono::steady_clock::now() < until) {
       connection_->write(wrench_);
       status = connection_->read(input);
     }

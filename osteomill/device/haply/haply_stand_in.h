@@ -49,9 +49,9 @@ class HaplyStandIn {
   std::string address() const { return "127.0.0.1:" + std::to_string(port_); }
 
   /// Set before a client connects.
-  bool is_3_5 = true;
+  std::atomic<bool> is_3_5{true};
   const char* grip = "wireless_verse_grip";
-  bool has_device = true;
+  std::atomic<bool> has_device{true};
 
   /// Said from now on in place of a state.
   void say(const std::string& text) {

@@ -17,7 +17,7 @@ std::thread g_scheduler;
 std::atomic<bool> g_runs{false};
 unsigned (*g_callback)(void*) = nullptr;
 void* g_data = nullptr;
-unsigned g_error = 0;
+std::atomic<unsigned> g_error = 0;
 double g_most_N = 0;
 
 void run() {
@@ -60,7 +60,7 @@ void hdBeginFrame(unsigned) {
   if (!g_state.is_held) g_state.transform[12] = osteomill::testing_support::swept_mm();
 }
 void hdEndFrame(unsigned) {
-  g_error = g_state.error;
+  g_error = g_state.error.load();
   ++g_state.frames;
   g_most_N = std::max(g_most_N, std::hypot(g_state.force[0], g_state.force[1], g_state.force[2]));
 }
@@ -89,8 +89,7 @@ void hdEnable(unsigned what) {
   if (what == 0x4000) g_state.has_force = true;
 }
 HDErrorInfo hdGetError() {
-  const unsigned code = g_error;
-  g_error = 0;
+  const unsigned code = g_error.exchange(0);
   return {code, 0, 7};
 }
 const char* hdGetErrorString(unsigned) {
