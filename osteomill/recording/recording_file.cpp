@@ -1,6 +1,7 @@
 #include "osteomill/recording/recording_file.h"
 
 #include <array>
+#include <limits>
 
 #include "osteomill/files/input_error.h"
 #include "osteomill/recording/description_attributes.h"
@@ -108,6 +109,7 @@ void RecordingFile::lay_out(const RunDescription& description) {
   write.unsigned_integer("osteomill_recording_version", kRecordingVersion);
   write.unsigned_integer("complete", 0);
   write.unsigned_integer("dropped_records", 0);
+  write.unsigned_integer("safe_rows", std::numeric_limits<std::uint64_t>::max());
   write.text("conventions", kConventions);
   write_description(path_, file_.get(), description);
   labels_ = description.labels;
@@ -128,7 +130,15 @@ RecordingFile::~RecordingFile() {
 // What a full disk did not take would be read as zeros: all of a piece that was being filled, since,
 // compressed anew, it is written to another place as it grows.
 void RecordingFile::forget_unsafe_rows() {
-  for (std::vector<Column>* columns : {&columns_, &cut_columns_, &hash_columns_}) {
+  const Column& ticks = columns_.front();
+  try {
+    AttributeWriter(path_, file_.get())
+        .replace_unsigned_integer("safe_rows", ticks.safe_rows - ticks.safe_rows % ticks.chunk_rows);
+  } catch (const InputError&) {
+    // The file then says nothing of it, as one that is cut short.
+  }
+  // A column whose writing failed cannot be shortened without harm to its pieces: only the few rows of these.
+  for (std::vector<Column>* columns : {&cut_columns_, &hash_columns_}) {
     for (const Column& column : *columns) {
       const hsize_t whole = column.safe_rows - column.safe_rows % column.chunk_rows;
       H5Dset_extent(column.dataset.get(), &whole);
