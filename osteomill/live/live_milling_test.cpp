@@ -253,8 +253,12 @@ TEST_F(LiveMillingTest, TheToolIsPlacedWithoutAStepInTheWrench) {
     for (const double above_mm : {-1.0, -4.0, 500.0}) {
       hand_.pull_to(pose_above(entry_, setup_.tool, above_mm));
       std::this_thread::sleep_for(300ms);
-      while (milling_.next_record()) {
-      }
+      // On a busy machine a tick may come so late that zero is sent as fast as a hand may feel it.
+      double allowed_step_N = 0.4;
+      const auto allow_for_late = [&](const TickRecord& record) {
+        if (record.fault == WrenchFault::tick_late) allowed_step_N = 1e-3 * kRatesForAHand.force_N_s + 1e-9;
+      };
+      while (const auto record = milling_.next_record()) allow_for_late(*record);
       milling_.set_spindle(true);
       milling_.place(X_W_free);
       milling_.set_spindle(false);
@@ -266,13 +270,14 @@ TEST_F(LiveMillingTest, TheToolIsPlacedWithoutAStepInTheWrench) {
       double removed_mm3 = -1;
       while (const auto record = milling_.next_record()) {
         const double now_N = record->wrench.force_N.norm();
+        allow_for_late(*record);
         if (force_N >= 0) greatest_step_N = std::max(greatest_step_N, std::abs(now_N - force_N));
         force_N = now_N;
         if (removed_mm3 < 0) removed_mm3 = record->removed_mm3;
         EXPECT_LE(record->removed_mm3, removed_mm3 + 1e-3);
       }
       EXPECT_EQ(force_N, 0) << algorithm.id.name << " from " << above_mm;
-      EXPECT_LT(greatest_step_N, 0.4) << algorithm.id.name << " from " << above_mm;
+      EXPECT_LT(greatest_step_N, allowed_step_N) << algorithm.id.name << " from " << above_mm;
       EXPECT_LT((milling_.state().record.X_WT.position_mm - X_W_free.position_mm).norm(), 0.1);
     }
   }

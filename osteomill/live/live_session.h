@@ -56,10 +56,9 @@ class LiveSession {
   CommandNumber hold_bone(bool held);
   /// Another algorithm, tool, setting or bone, prepared beforehand.
   CommandNumber replace(std::unique_ptr<MillingSession> session);
-  /// The tool to a pose free of bone, however far away. The wrench fades within 50 ms, in which nothing is
-  /// milled, so that the hand feels no step; then the device is put there (Device::put_at), and the algorithm
-  /// begins anew. One at a time: nothing while
-  /// `placing`.
+  /// The tool to a pose free of bone, however far away. The wrench fades in a hundred ticks, in which nothing
+  /// is milled, so that the hand feels no step; then the device is put there (Device::put_at), and the
+  /// algorithm begins anew. One at a time: nothing while `placing`.
   CommandNumber place(const Pose& X_WD);
   bool placing() const { return placing_.load(std::memory_order_acquire); }
   /// In place of the listener before, which is no longer called once the command is done. May be empty.

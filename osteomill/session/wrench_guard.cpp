@@ -7,8 +7,11 @@ namespace osteomill {
 
 namespace {
 
-// A late tick allows no larger a step than this one.
-constexpr double kUsualTick_s = 1e-3;
+// A late tick allows no larger a step than one of this length.
+double usual_tick_s(double dt_s) {
+  constexpr double kUsualTick_s = 1e-3;
+  return dt_s > 0 ? std::min(dt_s, kUsualTick_s) : 0;
+}
 
 Wrench operator*(double share, const Wrench& wrench) {
   return {share * wrench.force_N, share * wrench.torque_Nmm};
@@ -52,8 +55,7 @@ bool WrenchGuard::is_at_rest() const {
 }
 
 SafeWrench WrenchGuard::approach(const Wrench& target, WrenchFault fault, double dt_s) {
-  const double tick_s = dt_s > 0 ? std::min(dt_s, kUsualTick_s) : 0;
-  sent_ = osteomill::approach(sent_, target, settings_.rates, tick_s);
+  sent_ = osteomill::approach(sent_, target, settings_.rates, usual_tick_s(dt_s));
   const bool short_of_it = sent_.force_N != target.force_N || sent_.torque_Nmm != target.torque_Nmm;
   observer_.send(sent_);
   return {sent_, short_of_it && fault == WrenchFault::none ? WrenchFault::eased : fault};
@@ -93,7 +95,7 @@ SafeWrench WrenchGuard::pass(const Wrench& asked, const Pose& X_WD, double dt_s)
   }
   device_W_ = X_WD.position_mm;
   const Wrench wanted = let_go_ ? Wrench{} : within.wrench;
-  blended_ = settings_.blend_s > 0 ? std::min(1.0, blended_ + dt_s / settings_.blend_s) : 1;
+  blended_ = settings_.blend_s > 0 ? std::min(1.0, blended_ + usual_tick_s(dt_s) / settings_.blend_s) : 1;
   // In free space there is nothing to come up slowly.
   if (is_zero(wanted) && is_zero(from_)) blended_ = 1;
   if (blended_ == 1) return approach(wanted, fault, dt_s);

@@ -65,6 +65,16 @@ TEST(WrenchGuard, AStartInBoneComesUpSlowly) {
   EXPECT_EQ(guard.pass(down(6), kHere, kTick_s).fault, WrenchFault::none);
 }
 
+TEST(WrenchGuard, LateTicksComeUpInNoLargerSteps) {
+  WrenchGuard guard = for_a_hand();
+  double before_N = 0;
+  for (int n = 0; n < 50; ++n) {
+    const double sent_N = guard.pass(down(6), kHere, n % 2 ? kTick_s : 4 * kTick_s).wrench.force_N.norm();
+    ASSERT_NEAR(sent_N - before_N, 0.06, 1e-9) << n;
+    before_N = sent_N;
+  }
+}
+
 TEST(WrenchGuard, NoStepIsLargerThanAHandMayFeel) {
   WrenchGuard guard = holding(0);
   Vec3 before_N = Vec3::Zero();
