@@ -51,7 +51,7 @@ class LiveMillingTest : public ::testing::Test {
   void mill(double more_mm3) {
     const double before_mm3 = milling_.state().record.removed_mm3;
     milling_.set_spindle(true);
-    for (int n = 0; n < 2000 && milling_.state().record.removed_mm3 < before_mm3 + more_mm3; ++n) {
+    for (int n = 0; n < 12000 && milling_.state().record.removed_mm3 < before_mm3 + more_mm3; ++n) {
       milling_.update();
       std::this_thread::sleep_for(5ms);
     }
@@ -344,7 +344,7 @@ TEST_F(LiveMillingTest, ARecordingFromTheFirstTickOnNeedsNoneBefore) {
   milling.start_recording(folder / "live.h5", milling.describe("ball", ""));
   EXPECT_FALSE(milling.preparing());
   milling.start();
-  std::this_thread::sleep_for(50ms);
+  for (int n = 0; n < 2000 && milling.timing().ticks < 50; ++n) std::this_thread::sleep_for(5ms);
   milling.stop();
   milling.stop_recording();
   const Recording recording = read_recording(folder / "live.h5");

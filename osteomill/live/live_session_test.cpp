@@ -49,6 +49,16 @@ std::unique_ptr<MillingSession> session_on(std::shared_ptr<Volume> bone, std::st
 
 class LiveSessionTest : public ::testing::Test {
  protected:
+  // A busy machine ticks as it can.
+  template <typename Condition>
+  bool comes_true(Condition condition) {
+    for (int n = 0; n < 4000 && !condition(); ++n) std::this_thread::sleep_for(5ms);
+    return condition();
+  }
+  bool pushes() {
+    return comes_true([&] { return live_.state().record.wrench.force_N.z() > 0; });
+  }
+
   std::shared_ptr<Volume> bone_ = std::make_shared<Volume>(half_space());
   PressedDevice device_;
   LiveSession live_{session_on(bone_, "point-shell"), device_};
@@ -56,11 +66,10 @@ class LiveSessionTest : public ::testing::Test {
 
 TEST_F(LiveSessionTest, TicksInRealTimeAndStopsAtAWrenchOfZero) {
   live_.start();
-  std::this_thread::sleep_for(300ms);
+  EXPECT_TRUE(pushes());
+  EXPECT_TRUE(comes_true([&] { return live_.state().record.contacts > 0; }));
+  EXPECT_TRUE(comes_true([&] { return live_.timing().ticks > 20; }));
   EXPECT_TRUE(live_.running());
-  const TickRecord record = live_.state().record;
-  EXPECT_GT(record.contacts, 0);
-  EXPECT_GT(record.wrench.force_N.z(), 0);
   live_.stop();
   EXPECT_FALSE(live_.running());
   EXPECT_GT(device_.max_force_N, 0);
@@ -68,7 +77,6 @@ TEST_F(LiveSessionTest, TicksInRealTimeAndStopsAtAWrenchOfZero) {
   EXPECT_EQ(device_.sent.torque_Nmm, Vec3::Zero());
   const TimingSummary timing = live_.timing();
   // A loaded machine misses ticks, and says so; together they are the time that passed.
-  EXPECT_GT(timing.ticks, 20u);
   EXPECT_NEAR(device_.time_passed_s, 1e-3 * static_cast<double>(timing.ticks + timing.missed_ticks), 0.05);
   EXPECT_LE(timing.ticks_per_s, 1010);
 }
@@ -101,25 +109,26 @@ TEST_F(LiveSessionTest, RecordsComeInOrder) {
 TEST_F(LiveSessionTest, TheSpindleMillsAndAHeldBoneIsNotMilled) {
   live_.start();
   live_.wait_for(live_.set_spindle(true));
-  std::this_thread::sleep_for(100ms);
+  EXPECT_TRUE(comes_true([&] { return live_.state().record.removed_mm3 > 0; }));
   live_.wait_for(live_.hold_bone(true));
+  const double removed_mm3 = live_.state().record.removed_mm3;
   const CopyOnWriteFloats held = bone_->grid().densities();
   EXPECT_NE(held, half_space().grid().densities());
   std::this_thread::sleep_for(50ms);
   EXPECT_EQ(bone_->grid().densities(), held);
   EXPECT_TRUE(live_.state().spindle_on);
   live_.wait_for(live_.hold_bone(false));
-  std::this_thread::sleep_for(100ms);
+  EXPECT_TRUE(comes_true([&] { return live_.state().record.removed_mm3 > removed_mm3; }));
   live_.stop();
   EXPECT_NE(bone_->grid().densities(), held);
 }
 
 TEST_F(LiveSessionTest, APauseSendsZeroAndKeepsTheTool) {
   live_.start();
-  std::this_thread::sleep_for(30ms);
+  EXPECT_TRUE(pushes());
   live_.wait_for(live_.set_spindle(true));
   live_.wait_for(live_.set_paused(true));
-  std::this_thread::sleep_for(10ms);
+  EXPECT_TRUE(comes_true([&] { return is_zero(live_.state().record.wrench); }));
   const LiveState state = live_.state();
   EXPECT_TRUE(state.paused);
   EXPECT_FALSE(state.spindle_on);
@@ -129,21 +138,21 @@ TEST_F(LiveSessionTest, APauseSendsZeroAndKeepsTheTool) {
 
 TEST_F(LiveSessionTest, AnAlgorithmPreparedElsewhereTakesOver) {
   live_.start();
-  std::this_thread::sleep_for(50ms);
+  EXPECT_TRUE(pushes());
   live_.wait_for(live_.hold_bone(true));
   const double removed_mm3 = 7;
   auto next = session_on(bone_, "surface-points");
   const int points = next->algorithm().sample_point_count();
   next->count_removed_from(removed_mm3);
-  const double force_before_N = live_.state().record.wrench.force_N.z();
   live_.wait_for(live_.replace(std::move(next)));
   live_.wait_for(live_.hold_bone(false));
-  std::this_thread::sleep_for(50ms);
+  EXPECT_TRUE(comes_true([&] {
+    const TickRecord& record = live_.state().record;
+    return record.session == 1 && record.wrench.force_N.z() > 0;
+  }));
   live_.stop();
   EXPECT_EQ(live_.session().algorithm().sample_point_count(), points);
   EXPECT_EQ(live_.state().record.removed_mm3, removed_mm3);
-  EXPECT_GT(force_before_N, 0);
-  EXPECT_GT(live_.state().record.wrench.force_N.z(), 0.1);
 }
 
 TEST_F(LiveSessionTest, ListenersHearEveryTickAndWhereTheBoneChanged) {
