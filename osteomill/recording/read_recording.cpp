@@ -136,10 +136,9 @@ std::vector<double> read_reals(const OpenRecording& recording, hid_t dataset, co
   return read_values<double>(recording, dataset, H5T_NATIVE_DOUBLE, name, rows);
 }
 
-// `safe_rows`: behind these a full disk may have left anything.
-std::vector<TickRecord> read_records(const OpenRecording& recording, bool complete, std::uint64_t safe_rows) {
+std::vector<TickRecord> read_records(const OpenRecording& recording, bool complete) {
   const std::vector<OpenColumn> columns = open_columns(recording);
-  const hsize_t rows = std::min<hsize_t>(row_count(recording, columns, complete), safe_rows);
+  const hsize_t rows = row_count(recording, columns, complete);
   std::vector<TickRecord> records(rows);
   for (const OpenColumn& open : columns) {
     const std::vector<double> values = read_reals(recording, open.dataset.get(), open.column->name, rows);
@@ -350,9 +349,7 @@ Recording read_open_file(const fs::path& path) {
   recording.complete = root.unsigned_integer("complete") != 0;
   recording.dropped = root.unsigned_integer("dropped_records");
   recording.description = read_description(path, open.file.get());
-  const std::uint64_t safe_rows =
-      root.has("safe_rows") ? root.unsigned_integer("safe_rows") : std::numeric_limits<std::uint64_t>::max();
-  recording.records = read_records(open, recording.complete, safe_rows);
+  recording.records = read_records(open, recording.complete);
   read_cuts(open, recording.description.labels, recording.complete, recording.records);
   if (H5Lexists(open.file.get(), "sessions", H5P_DEFAULT) > 0) {
     recording.bone_hashes = read_hashes(open, recording.complete, recording.records.size());

@@ -243,34 +243,47 @@ TEST(Recorder, KeysAndNamesThatCannotBeStoredAreRefused) {
   EXPECT_THROW(recorder.add_picture("../x", {1}), std::invalid_argument);
 }
 
-// A limit to the size of files stands in for a full disk; in a child, since it cannot be lifted again.
-TEST(Recorder, AFullDiskIsReportedAndLeavesNoFinishedName) {
+// Limits to the size of files stand in for full disks; in a child, since they cannot be lifted again. All
+// that was taken before the disk refused can be read.
+TEST(Recorder, AFullDiskIsReportedAndWhatWasWrittenIsWhole) {
   const TestFolder folder;
-  const pid_t child = ::fork();
-  if (child == 0) {
-    std::signal(SIGXFSZ, SIG_IGN);
-    const rlimit limit{300000, 300000};
-    ::setrlimit(RLIMIT_FSIZE, &limit);
-    auto* recorder = new Recorder(folder / "run.h5", sample_description(), 256);
-    bool told = false;
-    try {
-      // The disk is met at the first flush; a recorder that never tells is ended by the test's own limit.
-      for (int tick = 0; tick < 10000000; ++tick) recorder->push_waiting(sample_record(tick));
-    } catch (const InputError& error) {
-      told = std::string(error.what()).find("is the disk full?") != std::string::npos;
+  std::size_t most_rows = 0;
+  for (rlim_t limit_bytes = 400'000; limit_bytes < 6'000'000; limit_bytes += 700'001) {
+    const pid_t child = ::fork();
+    if (child == 0) {
+      std::signal(SIGXFSZ, SIG_IGN);
+      const rlimit limit{limit_bytes, limit_bytes};
+      ::setrlimit(RLIMIT_FSIZE, &limit);
+      auto recorder = std::make_unique<Recorder>(folder / "run.h5", sample_description(), 256);
+      bool told = false;
+      try {
+        for (int tick = 0; tick < 10'000'000; ++tick) recorder->push_waiting(sample_record(tick));
+      } catch (const InputError& error) {
+        told = std::string(error.what()).find("is the disk full?") != std::string::npos;
+      }
+      bool told_at_close = false;
+      try {
+        recorder->close();
+      } catch (const InputError&) {
+        told_at_close = true;
+      }
+      const bool failed = recorder->failed();
+      recorder.reset();
+      ::_exit(told && told_at_close && failed ? 0 : 1);
     }
-    bool told_at_close = false;
-    try {
-      recorder->close();
-    } catch (const InputError&) {
-      told_at_close = true;
-    }
-    ::_exit(told && told_at_close && recorder->failed() ? 0 : 1);
+    int status = -1;
+    ASSERT_EQ(::waitpid(child, &status, 0), child);
+    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
+    EXPECT_FALSE(fs::exists(folder / "run.h5"));
+    const Recording recording = read_recording(unfinished_recording_path(folder / "run.h5"));
+    for (std::size_t row = 0; row < recording.records.size(); ++row)
+      ASSERT_EQ(recording.records[row].X_WT.position_mm,
+                sample_record(static_cast<int>(row)).X_WT.position_mm)
+          << row << " of " << recording.records.size() << " in " << limit_bytes;
+    EXPECT_GE(recording.records.size(), most_rows);
+    most_rows = recording.records.size();
   }
-  int status = -1;
-  ASSERT_EQ(::waitpid(child, &status, 0), child);
-  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
-  EXPECT_FALSE(fs::exists(folder / "run.h5"));
+  EXPECT_GT(most_rows, 10'000u);
 }
 
 }  // namespace

@@ -1,7 +1,10 @@
 #include "osteomill/recording/recording_file.h"
 
 #include <array>
-#include <limits>
+#include <tuple>
+
+#include <fcntl.h>
+#include <unistd.h>
 
 #include "osteomill/files/input_error.h"
 #include "osteomill/recording/description_attributes.h"
@@ -21,6 +24,8 @@ constexpr hsize_t kChunkOfFew = 64;
 constexpr unsigned kDeflateLevel = 1;
 // Some ten seconds of pieces.
 constexpr std::uint64_t kFlushesRemembered = 10;
+// What HDF5 adds of its own until the next flush: where the pieces lie, and who is who in a session.
+constexpr std::uint64_t kRoomForMetadata = 256 * 1024;
 
 constexpr const char* kConventions =
     "Units are in each dataset's attribute 'unit' (mm, N, N mm, s, kg, rad); its attribute 'meaning' says "
@@ -96,8 +101,7 @@ RecordingFile::RecordingFile(const fs::path& path, const RunDescription& descrip
     lay_out(description);
   } catch (...) {
     // Here, since the members go when the lock has gone.
-    close_columns();
-    file_.close();
+    close();
     std::error_code ignored;
     fs::remove(path, ignored);
     throw;
@@ -105,11 +109,11 @@ RecordingFile::RecordingFile(const fs::path& path, const RunDescription& descrip
 }
 
 void RecordingFile::lay_out(const RunDescription& description) {
+  reserve(0);
   const AttributeWriter write(path_, file_.get());
   write.unsigned_integer("osteomill_recording_version", kRecordingVersion);
   write.unsigned_integer("complete", 0);
   write.unsigned_integer("dropped_records", 0);
-  write.unsigned_integer("safe_rows", std::numeric_limits<std::uint64_t>::max());
   write.text("conventions", kConventions);
   write_description(path_, file_.get(), description);
   labels_ = description.labels;
@@ -122,32 +126,44 @@ void RecordingFile::lay_out(const RunDescription& description) {
 
 RecordingFile::~RecordingFile() {
   const Hdf5Lock lock;
-  if (unsafe_) forget_unsafe_rows();
-  close_columns();
-  file_.close();
+  close();
 }
 
-// What a full disk did not take would be read as zeros: all of a piece that was being filled, since,
-// compressed anew, it is written to another place as it grows.
-void RecordingFile::forget_unsafe_rows() {
-  const Column& ticks = columns_.front();
+bool RecordingFile::close() {
+  bool closed = true;
+  for (std::vector<Column>* columns : {&columns_, &cut_columns_, &hash_columns_})
+    for (Column& column : *columns) closed = column.dataset.close() && closed;
+  if (!file_.valid()) return closed;
+  closed = H5Fflush(file_.get(), H5F_SCOPE_GLOBAL) >= 0 && closed;
   try {
-    AttributeWriter(path_, file_.get())
-        .replace_unsigned_integer("safe_rows", ticks.safe_rows - ticks.safe_rows % ticks.chunk_rows);
+    closed = ::ftruncate(descriptor(), static_cast<::off_t>(end())) == 0 && closed;
   } catch (const InputError&) {
-    // The file then says nothing of it, as one that is cut short.
+    closed = false;
   }
-  // A column whose writing failed cannot be shortened without harm to its pieces: only the few rows of these.
-  for (std::vector<Column>* columns : {&cut_columns_, &hash_columns_}) {
-    for (const Column& column : *columns) {
-      const hsize_t whole = column.safe_rows - column.safe_rows % column.chunk_rows;
-      H5Dset_extent(column.dataset.get(), &whole);
-    }
-  }
+  return file_.close() && closed;
 }
 
-void RecordingFile::close_columns() {
-  for (std::vector<Column>* columns : {&columns_, &cut_columns_, &hash_columns_}) columns->clear();
+int RecordingFile::descriptor() const {
+  void* descriptor = nullptr;
+  require(H5Fget_vfd_handle(file_.get(), H5P_DEFAULT, &descriptor) >= 0, "cannot be set up for writing");
+  return *static_cast<const int*>(descriptor);
+}
+
+std::uint64_t RecordingFile::end() const {
+  haddr_t end = 0;
+  require(H5Fget_eoa(file_.get(), &end) >= 0, "cannot be set up for writing");
+  return end;
+}
+
+// HDF5 leaves nobody knows what of a file whose writing failed half-way. Here it cannot: the disk is asked
+// for the room first, and what was written before it refused is whole.
+void RecordingFile::reserve(std::uint64_t bytes) {
+  const std::uint64_t wanted = end() + bytes + kRoomForMetadata;
+  if (wanted <= reserved_) return;
+  const int error = ::posix_fallocate(descriptor(), static_cast<::off_t>(reserved_),
+                                      static_cast<::off_t>(wanted - reserved_));
+  require(error == 0, "cannot be written (is the disk full?)");
+  reserved_ = wanted;
 }
 
 Hdf5Handle RecordingFile::create_group(hid_t in, const std::string& name) const {
@@ -205,6 +221,7 @@ void RecordingFile::require(bool ok, const char* what) const {
 
 void RecordingFile::begin_session(const SessionStart& start, std::uint64_t row) {
   const Hdf5Lock lock;
+  reserve(start.bricks.size() * sizeof(DensityBlock));
   const std::string place = "sessions/" + std::to_string(sessions_);
   const Hdf5Handle group = create_group(file_.get(), place);
   const AttributeWriter write(path_, group.get());
@@ -246,7 +263,10 @@ void RecordingFile::write_bricks(hid_t session, std::span<const DensityBlock> br
 void RecordingFile::append(std::span<const TickRecord> records) {
   if (records.empty()) return;
   const Hdf5Lock lock;
-  unsafe_ = true;
+  // Each column in whole pieces, of which one may be begun and one may be written again; those of cuts hold a
+  // few numbers a record at the most.
+  reserve((records.size() + 2 * kChunkRows) *
+          (columns_.size() + 2 + 3 * std::tuple_size_v<LabelCuts>)*sizeof(double));
   values_.resize(records.size());
   for (std::size_t c = 0; c < columns_.size(); ++c) {
     for (std::size_t row = 0; row < records.size(); ++row) {
@@ -313,9 +333,6 @@ void RecordingFile::flush(std::uint64_t dropped) {
   const Hdf5Lock lock;
   AttributeWriter(path_, file_.get()).replace_unsigned_integer("dropped_records", dropped);
   require(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL) >= 0, "cannot be written (is the disk full?)");
-  for (std::vector<Column>* columns : {&columns_, &cut_columns_, &hash_columns_})
-    for (Column& column : *columns) column.safe_rows = column.rows;
-  unsafe_ = false;
   if (++flushes_ % kFlushesRemembered == 0) forget_flushed_metadata();
 }
 
@@ -336,6 +353,7 @@ void RecordingFile::forget_flushed_metadata() {
 void RecordingFile::add_picture(const std::string& name, std::span<const unsigned char> png) {
   const Hdf5Lock lock;
   const hsize_t size = png.size();
+  reserve(size);
   const Hdf5Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose);
   const std::string place = "pictures/" + name;
   const Hdf5Handle dataset(H5Dcreate2(file_.get(), place.c_str(), H5T_STD_U8LE, space.get(), H5P_DEFAULT,
@@ -349,14 +367,11 @@ void RecordingFile::add_picture(const std::string& name, std::span<const unsigne
 void RecordingFile::finish(std::uint64_t dropped) {
   const Hdf5Lock lock;
   if (rows_ > 0 && rows_ % kHashRows != 0) append_hash(last_);
+  reserve(0);
   const AttributeWriter write(path_, file_.get());
   write.replace_unsigned_integer("dropped_records", dropped);
   write.replace_unsigned_integer("complete", 1);
-  bool closed = true;
-  for (std::vector<Column>* columns : {&columns_, &cut_columns_, &hash_columns_})
-    for (Column& column : *columns) closed = column.dataset.close() && closed;
-  closed = file_.close() && closed;
-  require(closed, "cannot be written to its end (is the disk full?)");
+  require(close(), "cannot be written to its end (is the disk full?)");
   write_checksum(path_);
 }
 

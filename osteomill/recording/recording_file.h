@@ -17,7 +17,8 @@ inline constexpr std::uint64_t kRecordingVersion = 3;
 inline constexpr std::uint64_t kOldestVersion = 2;
 
 /// A recording being written, from one thread at a time; docs/formats.md describes it. Every failure is an
-/// InputError that names `path`; after one the file stays as it is.
+/// InputError that names `path`; after one the file is closed with what it holds. Room on the disk is taken
+/// before anything is written: a full disk ends a recording and spoils nothing of it.
 class RecordingFile {
  public:
   /// Columns are compressed in pieces of so many rows. A piece that is written once and whole costs least.
@@ -43,19 +44,22 @@ class RecordingFile {
   void finish(std::uint64_t dropped);
 
  private:
-  /// A dataset of `width` numbers a row, how many rows it has, and how many of them are safe.
+  /// A dataset of `width` numbers a row, and how many rows it has.
   struct Column {
     Hdf5Handle dataset;
     hsize_t width = 1;
     hsize_t chunk_rows = 1;
     hsize_t rows = 0;
-    hsize_t safe_rows = 0;
   };
 
   void lay_out(const RunDescription& description);
   void create_columns();
-  void close_columns();
-  void forget_unsafe_rows();
+  bool close();
+  int descriptor() const;
+  /// Of the file, in bytes, with what has not reached the disk yet.
+  std::uint64_t end() const;
+  /// Room on the disk for so much more than there is.
+  void reserve(std::uint64_t bytes);
   void forget_flushed_metadata();
   Hdf5Handle create_group(hid_t in, const std::string& name) const;
   Column create_column(hid_t group, const char* name, hid_t type, const char* unit, hsize_t width,
@@ -80,8 +84,8 @@ class RecordingFile {
   std::uint64_t sessions_ = 0;
   BoneHash last_;
   std::uint64_t flushes_ = 0;
-  // Since the last flush something was appended.
-  bool unsafe_ = false;
+  // As many bytes of the file have room on the disk.
+  std::uint64_t reserved_ = 0;
 };
 
 }  // namespace osteomill

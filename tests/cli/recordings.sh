@@ -43,8 +43,8 @@ refused "goes on from line-proxy-milling.h5, which is not beside it" c/line-prox
 for ((n = 0; n < kills; ++n)); do
   __EGL_VENDOR_LIBRARY_FILENAMES=/dev/null "$osteomill" live --record killed.h5 --seconds 600 --quiet --algorithm line-proxy >/dev/null 2>&1 &
   live=$!
-  # From the first ticks on.
-  for ((k = 0; k < 600; ++k)); do [ "$(stat -c %s killed.part.h5 2>/dev/null || echo 0)" -gt 120000 ] && break; sleep 0.05; done
+  # Room is taken for the first ticks just before they are written.
+  for ((k = 0; k < 600; ++k)); do [ "$(stat -c %s killed.part.h5 2>/dev/null || echo 0)" -gt 600000 ] && break; sleep 0.05; done
   sleep $((RANDOM % 3)).$((RANDOM % 1000 + 1000))
   kill -9 $live
   wait $live 2>/dev/null || true
@@ -52,10 +52,10 @@ for ((n = 0; n < kills; ++n)); do
   rm killed.part.h5
 done
 
-# A disk of 1 MB, where the machine allows one: else files of no more.
+# A disk of 2 MB, where the machine allows one: else files of no more.
 mkdir small
-if mount -t tmpfs -o size=1m none small 2>/dev/null; then mounted=yes; fi
-limited() { if [ -n "$mounted" ]; then "$@"; else (trap '' XFSZ; ulimit -f 1024; exec "$@"); fi; }
+if mount -t tmpfs -o size=2m none small 2>/dev/null; then mounted=yes; fi
+limited() { if [ -n "$mounted" ]; then "$@"; else (trap '' XFSZ; ulimit -f 2048; exec "$@"); fi; }
 code=0
 limited "$osteomill" compare --seconds 10 --algorithm line-proxy --no-stability --quiet --out small/c >said.txt 2>said.err || code=$?
 [ $code -eq 1 ] && [ "$(wc -l <said.err)" -eq 1 ] && grep -q "is the disk full?" said.err || fault "compare on a full disk ended with $code: $(cat said.err)"
