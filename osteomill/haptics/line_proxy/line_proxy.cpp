@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "osteomill/haptics/burr_presses.h"
 #include "osteomill/haptics/line_proxy/bone_march.h"
 #include "osteomill/haptics/line_proxy/equations.h"
 #include "osteomill/haptics/line_proxy/point_proxy.h"
@@ -85,9 +86,9 @@ HapticStep LineProxy::step(const Pose& X_WD, double dt_s) {
   Pose touching = touching_tool(X_WD, X_WF.position_mm);
   if (settings_.show_outside) keep_outside(touching, dt_s);
   result.X_WT = settings_.show_outside ? gliding_tool(X_WD, touching, dt_s) : touching;
-  // A burr that the shaft keeps off the bone does not press on it.
+  // A burr that the shaft, or a wall beside it, keeps off the bone does not press on it.
   if (settings_.show_outside && memory_.tip_proxy_W &&
-      !burr_touches(*scene_.volume, scene_.tool, result.X_WT, *memory_.tip_proxy_W)) {
+      !burr_presses(*scene_.volume, scene_.tool, result.X_WT, result.burr_force_W_N)) {
     result.burr_force_W_N.setZero();
   }
   return result;

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <optional>
 
+#include "osteomill/haptics/burr_presses.h"
 #include "osteomill/haptics/line_proxy/bone_march.h"
 #include "osteomill/volume/isosurface.h"
 
@@ -51,18 +52,10 @@ void look(const Volume& volume, const Vec3& middle_W, const Vec3& radius_W, std:
   deepest = Overlap{middle_W, surface_W, radius_mm, depth_mm};
 }
 
-constexpr int kBurrDirections = 26;
-
-// Towards the corners, edges and faces of a cube about the burr, in T.
-Vec3 burr_direction(int n) {
-  const int cell = n < kBurrDirections / 2 ? n : n + 1;  // the middle one is no direction
-  return Vec3(cell % 3 - 1, cell / 3 % 3 - 1, cell / 9 - 1).normalized();
-}
-
 std::optional<Overlap> deepest_overlap(const Volume& volume, const MillingTool& tool, const Pose& X_WT) {
   std::optional<Overlap> deepest;
-  for (int n = 0; n < kBurrDirections; ++n) {
-    look(volume, X_WT.position_mm, tool.burr_radius_mm * (X_WT.orientation * burr_direction(n)), deepest);
+  for (int n = 0; n < kCubeDirections; ++n) {
+    look(volume, X_WT.position_mm, tool.burr_radius_mm * (X_WT.orientation * cube_direction(n)), deepest);
   }
   const int slices = std::max(1, static_cast<int>(tool.shaft_length_mm / kSliceSpacing_mm));
   for (int slice = 1; slice <= slices; ++slice) {
@@ -86,16 +79,6 @@ std::optional<Vec3> clearing_move(const Volume& volume, const MillingTool& tool,
   const Vec3 out = surface_normal(volume, overlap->surface_W, normal).value_or(inward);
   const double away_mm = out.dot(overlap->middle_W - overlap->surface_W);
   return std::clamp(overlap->radius_mm - away_mm, 0.0, overlap->radius_mm) * out;
-}
-
-bool burr_touches(const Volume& volume, const MillingTool& tool, const Pose& X_WT, const Vec3& likely_W) {
-  const double reach_mm = tool.burr_radius_mm + volume.geometry().spacing_mm.maxCoeff();
-  const Vec3 likely = (likely_W - X_WT.position_mm).normalized();
-  if (in_bone(volume, X_WT.position_mm + reach_mm * likely)) return true;
-  for (int n = 0; n < kBurrDirections; ++n) {
-    if (in_bone(volume, X_WT.position_mm + reach_mm * (X_WT.orientation * burr_direction(n)))) return true;
-  }
-  return false;
 }
 
 }  // namespace osteomill::line_proxy

@@ -15,8 +15,4 @@ namespace osteomill::line_proxy {
 std::optional<Vec3> clearing_move(const Volume& volume, const MillingTool& tool, const Pose& X_WT,
                                   const NormalRule& normal);
 
-/// Whether bone lies within a voxel of the burr, in one of 26 directions or in that of `likely_W`. Safe in
-/// the haptic tick.
-bool burr_touches(const Volume& volume, const MillingTool& tool, const Pose& X_WT, const Vec3& likely_W);
-
 }  // namespace osteomill::line_proxy

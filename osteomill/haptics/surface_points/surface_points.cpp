@@ -5,6 +5,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "osteomill/haptics/burr_presses.h"
 #include "osteomill/haptics/surface_points/bone_nearby.h"
 #include "osteomill/haptics/surface_points/ray_crossing.h"
 #include "osteomill/haptics/surface_points/vertex_spring.h"
@@ -268,6 +269,8 @@ HapticStep SurfacePoints::step(const Pose& X_WD, double dt_s) {
     result.wrench.force_N = damped(result.wrench.force_N, overlap_W_mm, dt_s);
   }
   result.burr_force_W_N = -result.wrench.force_N;
+  if (settings_.hold_tool && !burr_presses(*volume_, tool_, X_WH, result.burr_force_W_N))
+    result.burr_force_W_N.setZero();
   if (settings_.shaft_force) result.wrench.force_N += shaft.mean.force_N;
   return result;
 }
