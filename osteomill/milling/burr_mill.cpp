@@ -8,16 +8,13 @@
 
 #include "osteomill/milling/burr_advance.h"
 #include "osteomill/numbers/positive.h"
+#include "osteomill/tool/burr_presses.h"
 
 namespace osteomill {
 
 namespace {
 
 constexpr double kForgetAfter_s = 0.05;
-constexpr double kMaxCarry_s = 0.01;
-// How far ahead the ball looks for bone: a voxel, since the voxels of a dense bone lie up to that behind its
-// surface, and no less than an algorithm may keep the burr from what it presses on.
-constexpr double kMinReachAhead_mm = 0.12;
 constexpr double kMaxAhead_mm_s = 20;
 // So many pieces of rows a tick are looked at; up to the second number rather than have some lines cut so
 // much deeper than the others.
@@ -40,10 +37,6 @@ void require(bool right, const char* what) {
   if (!right) throw std::invalid_argument(what);
 }
 
-double max_ahead(const GridGeometry& geometry) {
-  return std::max(geometry.spacing_mm.maxCoeff(), kMinReachAhead_mm);
-}
-
 // Where the ball's leading half cuts nothing, however deep in bone the burr is.
 double min_ahead(const GridGeometry& geometry, double radius_mm) {
   return -radius_mm - CutProfile::kReach_voxels * geometry.spacing_mm.maxCoeff();
@@ -63,7 +56,7 @@ BurrReach make_reach(const GridGeometry& geometry, double burr_radius_mm, const 
   require(std::isfinite(densities.surroundings) && std::isfinite(densities.reference) &&
               densities.reference > densities.surroundings,
           "BurrMill: the reference density must be above that of the surroundings");
-  return BurrReach(geometry, reach_mm(geometry, burr_radius_mm, max_ahead(geometry)),
+  return BurrReach(geometry, reach_mm(geometry, burr_radius_mm, pressing_reach_mm(geometry)),
                    float_not_below(densities.surroundings), kRoomForPieces);
 }
 
@@ -77,7 +70,7 @@ BurrMill::BurrMill(const GridGeometry& geometry, double burr_radius_mm, const Bo
       mm3_per_density_(geometry.voxel_volume_mm3() / (densities.reference - densities.surroundings)),
       removal_rate_mm3_per_Ns_(settings.removal_rate_mm3_per_Ns),
       min_ahead_mm_(min_ahead(geometry, burr_radius_mm)),
-      max_ahead_mm_(max_ahead(geometry)),
+      max_ahead_mm_(pressing_reach_mm(geometry)),
       reach_(make_reach(geometry, burr_radius_mm, densities, settings)),
       voxels_(geometry, reach_.max_voxels(), reach_.max_pieces()) {}
 
@@ -99,7 +92,7 @@ MillingStep BurrMill::step(Volume& volume, const Vec3& burr_centre_W, const Vec3
   ahead_mm_ = advance.ahead_mm;
   const MillingStep done = lower_found(volume, voxels_.lower(ahead_mm_, advance.shares));
   // Below zero by a rounding error where floats were rounded in the burr's favour; the next step pays for it.
-  carry_mm3_ = std::min(budget_mm3 - done.removed_mm3, kMaxCarry_s * rate_mm3_s);
+  carry_mm3_ = std::min(budget_mm3 - done.removed_mm3, kPressingKept_s * rate_mm3_s);
   return done;
 }
 

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "osteomill/haptics/burr_presses.h"
 #include "osteomill/haptics/line_proxy/bone_march.h"
 #include "osteomill/haptics/line_proxy/equations.h"
 #include "osteomill/haptics/line_proxy/point_proxy.h"
@@ -87,8 +86,8 @@ HapticStep LineProxy::step(const Pose& X_WD, double dt_s) {
   if (settings_.show_outside) keep_outside(touching, dt_s);
   result.X_WT = settings_.show_outside ? gliding_tool(X_WD, touching, dt_s) : touching;
   // A burr that the shaft, or a wall beside it, keeps off the bone does not press on it.
-  if (settings_.show_outside && memory_.tip_proxy_W &&
-      !burr_presses(*scene_.volume, scene_.tool, result.X_WT, result.burr_force_W_N)) {
+  if (settings_.show_outside && !memory_.burr.presses(*scene_.volume, scene_.tool.burr_radius_mm,
+                                                      result.X_WT.position_mm, result.burr_force_W_N, dt_s)) {
     result.burr_force_W_N.setZero();
   }
   return result;

@@ -8,6 +8,7 @@
 #include "osteomill/haptics/line_proxy/held_line.h"
 #include "osteomill/haptics/line_proxy/line_proxy_settings.h"
 #include "osteomill/haptics/line_proxy/surface_normal.h"
+#include "osteomill/tool/burr_presses.h"
 
 namespace osteomill::line_proxy {
 
@@ -48,6 +49,7 @@ class LineProxy final : public HapticAlgorithm {
     // The simulated tool against the device: moved by, turned by (a rotation vector in W).
     Vec3 tool_shift_W = Vec3::Zero();
     Vec3 tool_turn_W = Vec3::Zero();
+    PressingBurr burr;
   };
 
   std::span<const Vec3> shaft_vertices() const { return std::span(vertices_T_).subspan(1); }

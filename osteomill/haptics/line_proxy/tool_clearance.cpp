@@ -5,7 +5,6 @@
 #include <numbers>
 #include <optional>
 
-#include "osteomill/haptics/burr_presses.h"
 #include "osteomill/haptics/line_proxy/bone_march.h"
 #include "osteomill/volume/isosurface.h"
 
@@ -52,10 +51,18 @@ void look(const Volume& volume, const Vec3& middle_W, const Vec3& radius_W, std:
   deepest = Overlap{middle_W, surface_W, radius_mm, depth_mm};
 }
 
+constexpr int kBurrDirections = 26;
+
+// Towards the corners, edges and faces of a cube about the burr, in T.
+Vec3 burr_direction(int n) {
+  const int cell = n < kBurrDirections / 2 ? n : n + 1;  // the middle one is no direction
+  return Vec3(cell % 3 - 1, cell / 3 % 3 - 1, cell / 9 - 1).normalized();
+}
+
 std::optional<Overlap> deepest_overlap(const Volume& volume, const MillingTool& tool, const Pose& X_WT) {
   std::optional<Overlap> deepest;
-  for (int n = 0; n < kCubeDirections; ++n) {
-    look(volume, X_WT.position_mm, tool.burr_radius_mm * (X_WT.orientation * cube_direction(n)), deepest);
+  for (int n = 0; n < kBurrDirections; ++n) {
+    look(volume, X_WT.position_mm, tool.burr_radius_mm * (X_WT.orientation * burr_direction(n)), deepest);
   }
   const int slices = std::max(1, static_cast<int>(tool.shaft_length_mm / kSliceSpacing_mm));
   for (int slice = 1; slice <= slices; ++slice) {

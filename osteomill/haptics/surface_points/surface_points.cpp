@@ -5,7 +5,6 @@
 #include <optional>
 #include <stdexcept>
 
-#include "osteomill/haptics/burr_presses.h"
 #include "osteomill/haptics/surface_points/bone_nearby.h"
 #include "osteomill/haptics/surface_points/ray_crossing.h"
 #include "osteomill/haptics/surface_points/vertex_spring.h"
@@ -83,6 +82,7 @@ void SurfacePoints::reset() {
   for (Fan& ring : rings_) ring.force_W_N.setZero();
   if (end_) end_->force_W_N.setZero();
   held_tool_.reset();
+  burr_.reset();
   last_overlap_W_mm_.setZero();
   overlap_rate_W_mm_s_.setZero();
 }
@@ -269,8 +269,10 @@ HapticStep SurfacePoints::step(const Pose& X_WD, double dt_s) {
     result.wrench.force_N = damped(result.wrench.force_N, overlap_W_mm, dt_s);
   }
   result.burr_force_W_N = -result.wrench.force_N;
-  if (settings_.hold_tool && !burr_presses(*volume_, tool_, X_WH, result.burr_force_W_N))
+  if (settings_.hold_tool &&
+      !burr_.presses(*volume_, tool_.burr_radius_mm, X_WH.position_mm, result.burr_force_W_N, dt_s)) {
     result.burr_force_W_N.setZero();
+  }
   if (settings_.shaft_force) result.wrench.force_N += shaft.mean.force_N;
   return result;
 }

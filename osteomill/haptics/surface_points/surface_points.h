@@ -6,6 +6,7 @@
 #include "osteomill/haptics/haptic_algorithm.h"
 #include "osteomill/haptics/surface_points/held_tool.h"
 #include "osteomill/haptics/surface_points/surface_points_settings.h"
+#include "osteomill/tool/burr_presses.h"
 
 namespace osteomill::surface_points {
 
@@ -67,6 +68,7 @@ class SurfacePoints final : public HapticAlgorithm {
   const Volume* volume_ = nullptr;
   MillingTool tool_;
   HeldTool held_tool_;
+  PressingBurr burr_;
   // From the held tool's burr to the device's, and its filtered rate.
   Vec3 last_overlap_W_mm_ = Vec3::Zero();
   Vec3 overlap_rate_W_mm_s_ = Vec3::Zero();

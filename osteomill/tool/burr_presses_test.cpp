@@ -1,0 +1,53 @@
+#include "osteomill/tool/burr_presses.h"
+
+#include <algorithm>
+
+#include "tests/shapes.h"
+#include <gtest/gtest.h>
+
+namespace osteomill {
+namespace {
+
+using testing_support::centred_cube;
+using testing_support::shape_volume;
+
+constexpr double kVoxel_mm = 0.25;
+
+// Bone below z = 0 and beyond x = 2.
+Volume floor_and_wall() {
+  return shape_volume(centred_cube(48, kVoxel_mm),
+                      [](const Vec3& point_W) { return std::min(point_W.z(), 2 - point_W.x()); });
+}
+
+TEST(BurrPresses, OnWhatLiesAheadOfItWithinAVoxel) {
+  const Volume bone = floor_and_wall();
+  constexpr double r = 1.5;
+  const auto presses = [&](const Vec3& burr_W, const Vec3& force_N) {
+    return burr_presses(bone, r, burr_W, force_N);
+  };
+  const Vec3 down(0, 0, -2), aside(0.1, 0, 0);
+  EXPECT_TRUE(presses({-2, 0, r + 0.8 * kVoxel_mm}, down));
+  EXPECT_FALSE(presses({-2, 0, r + 1.2 * kVoxel_mm}, down));
+  EXPECT_FALSE(presses({-2, 0, r + 0.1 * kVoxel_mm}, -down)) << "away from it";
+  // Against the wall, and high above the floor.
+  const Vec3 at_wall_W(2 - r, 0, 3);
+  EXPECT_TRUE(presses(at_wall_W, aside));
+  EXPECT_FALSE(presses(at_wall_W, down)) << "along the wall";
+  EXPECT_FALSE(presses({-2, 0, r}, Vec3::Zero()));
+}
+
+TEST(PressingBurr, CountsForAMomentAfterTheBoneHasGone) {
+  const Volume bone = floor_and_wall();
+  PressingBurr burr;
+  const auto presses = [&](double height_mm) {
+    return burr.presses(bone, 1.5, {-2, 0, 1.5 + height_mm}, {0, 0, -2}, 1e-3);
+  };
+  EXPECT_FALSE(presses(1)) << "it never did";
+  EXPECT_TRUE(presses(0.1));
+  int ticks = 0;
+  while (ticks < 100 && presses(1)) ++ticks;
+  EXPECT_NEAR(ticks, 1e3 * kPressingKept_s, 1);
+}
+
+}  // namespace
+}  // namespace osteomill
