@@ -49,7 +49,7 @@ std::optional<Vec3> crossing_in_grid(const Volume& volume, const Vec3& from_W, c
 }
 
 std::optional<Vec3> nearest_exit(const Volume& volume, const Vec3& point_W, double reach_mm) {
-  if (!in_bone(volume, point_W)) return point_W;
+  if (!is_bone_at(volume, point_W)) return point_W;
   const double step_mm = 0.5 * volume.geometry().spacing_mm.minCoeff();
   std::optional<Vec3> exit;
   for (int n = 0; n < 27; ++n) {
@@ -59,7 +59,7 @@ std::optional<Vec3> nearest_exit(const Volume& volume, const Vec3& point_W, doub
     // Each found exit shortens the reach of the rest.
     for (double distance = step_mm; distance <= reach_mm; distance += step_mm) {
       const Vec3 here = point_W + distance * direction;
-      if (!in_bone(volume, here)) {
+      if (!is_bone_at(volume, here)) {
         exit = bisect_crossing(volume, here, inside);
         reach_mm = (*exit - point_W).norm();
         break;

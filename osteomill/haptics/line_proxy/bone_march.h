@@ -2,16 +2,11 @@
 
 #include <optional>
 
-#include "osteomill/volume/sampling.h"
-#include "osteomill/volume/volume.h"
+#include "osteomill/volume/isosurface.h"
 
 /// Marching from and to bone. Safe in the haptic tick, for any finite points: the time is bounded by the size
 /// of the grid, not by how far apart the points are.
 namespace osteomill::line_proxy {
-
-inline bool in_bone(const Volume& volume, const Vec3& point_W) {
-  return density_at(volume.grid(), point_W) > volume.isovalue();
-}
 
 /// As osteomill::first_crossing, but walks only the part of the segment that lies in the grid.
 std::optional<Vec3> crossing_in_grid(const Volume& volume, const Vec3& from_W, const Vec3& to_W);

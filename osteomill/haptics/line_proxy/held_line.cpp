@@ -33,7 +33,7 @@ std::optional<Vec3> way_out_along(const Volume& volume, const Vec3& point_W, con
   Vec3 inside_W = point_W;
   for (double way_mm = step_mm; way_mm < reach_mm + step_mm; way_mm += step_mm) {
     const Vec3 here_W = point_W + way_mm * out_W;
-    if (!in_bone(volume, here_W)) return bisect_crossing(volume, here_W, inside_W);
+    if (!is_bone_at(volume, here_W)) return bisect_crossing(volume, here_W, inside_W);
     inside_W = here_W;
   }
   return std::nullopt;
@@ -90,7 +90,7 @@ void HeldLine::reset() {
 }
 
 bool HeldLine::is_in_bone(const Pose& X_WL) const {
-  return in_bone(*volume_, X_WL.position_mm) || shaft_in_bone(*volume_, span_, X_WL);
+  return is_bone_at(*volume_, X_WL.position_mm) || shaft_in_bone(*volume_, span_, X_WL);
 }
 
 double HeldLine::travel_mm(const ToolMove& move) const {
@@ -122,15 +122,16 @@ bool HeldLine::add_tip_limit(const Pose& X_WL, const ToolMove& at) {
   const Volume& volume = *volume_;
   const Vec3& from_W = X_WL_.position_mm;
   const Vec3& to_W = X_WL.position_mm;
-  const bool begins_in_bone = in_bone(volume, from_W);
+  const bool begins_in_bone = is_bone_at(volume, from_W);
   const std::optional<Vec3> met_W = begins_in_bone ? std::nullopt : first_crossing(volume, from_W, to_W);
-  if (!met_W && !in_bone(volume, to_W)) return false;
+  if (!met_W && !is_bone_at(volume, to_W)) return false;
   const Vec3 back_W = (from_W - to_W).normalized();
   const Vec3 normal_W = surface_normal(volume, met_W.value_or(to_W), normal_).value_or(back_W);
   const double reach_mm = kStride_mm + 2 * volume.geometry().spacing_mm.maxCoeff();
   const Vec3 surface_W =
-      in_bone(volume, to_W) ? way_out_along(volume, to_W, normal_W, reach_mm).value_or(met_W.value_or(from_W))
-                            : *met_W;
+      is_bone_at(volume, to_W)
+          ? way_out_along(volume, to_W, normal_W, reach_mm).value_or(met_W.value_or(from_W))
+          : *met_W;
   const Vec3 out_W = surface_normal(volume, surface_W, normal_).value_or(normal_W);
   return add_limit(out_W, out_W.dot(surface_W - to_W), at, true, Vec3::Zero());
 }
@@ -258,7 +259,7 @@ void HeldLine::take_pushes() {
   }
   // Bone that milling takes from under a tip is followed down, not lost.
   const Vec3 below_W = X_WL_.position_mm - kGivenWay_mm * tip_normal_W_;
-  tip_rests_ = tip_push > 0 || (tip_rests_ && in_bone(*volume_, below_W));
+  tip_rests_ = tip_push > 0 || (tip_rests_ && is_bone_at(*volume_, below_W));
   shaft_push_.reset();
   if (push > 0) shaft_push_ = ShaftPush{springs_.tip_N_per_mm / kRelaxation * force, moment / push};
 }

@@ -135,7 +135,7 @@ void LineProxy::follow_as_printed(const Pose& X_WD, HapticStep& result) {
 
 void LineProxy::follow_with_tip_proxy(const Vec3& tip_W) {
   const Volume& volume = *scene_.volume;
-  if (!in_bone(volume, tip_W)) {
+  if (!is_bone_at(volume, tip_W)) {
     memory_.tip_proxy_W.reset();
     return;
   }
@@ -147,7 +147,7 @@ void LineProxy::follow_with_tip_proxy(const Vec3& tip_W) {
 
 std::optional<Vec3> LineProxy::first_tip_proxy(const Vec3& tip_W) const {
   const Volume& volume = *scene_.volume;
-  if (memory_.device_tip_W && !in_bone(volume, *memory_.device_tip_W)) {
+  if (memory_.device_tip_W && !is_bone_at(volume, *memory_.device_tip_W)) {
     return crossing_in_grid(volume, *memory_.device_tip_W, tip_W);
   }
   return nearest_exit(volume, tip_W, kExitReach_mm);

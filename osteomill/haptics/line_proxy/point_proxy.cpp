@@ -26,7 +26,7 @@ std::optional<Vec3> raised_out(const Volume& volume, const Vec3& point_W, const 
   Vec3 inside = point_W;
   for (int n = 1; n <= 8; ++n) {
     const Vec3 here = point_W + 0.25 * n * voxel_mm(volume) * *normal;
-    if (!in_bone(volume, here)) return bisect_crossing(volume, here, inside);
+    if (!is_bone_at(volume, here)) return bisect_crossing(volume, here, inside);
     inside = here;
   }
   return std::nullopt;
@@ -37,12 +37,12 @@ std::optional<Vec3> raised_out(const Volume& volume, const Vec3& point_W, const 
 Vec3 slid(const Volume& volume, const Vec3& proxy_W, const Vec3& tangent, const Vec3& normal) {
   const Vec3 aside = proxy_W + tangent;
   const double reach_mm = tangent.norm() + kTouching_mm;
-  if (!in_bone(volume, aside)) {
+  if (!is_bone_at(volume, aside)) {
     const Vec3 below = aside - reach_mm * normal;
-    return in_bone(volume, below) ? bisect_crossing(volume, aside, below) : aside;
+    return is_bone_at(volume, below) ? bisect_crossing(volume, aside, below) : aside;
   }
   const Vec3 above = aside + reach_mm * normal;
-  return bisect_crossing(volume, in_bone(volume, above) ? proxy_W : above, aside);
+  return bisect_crossing(volume, is_bone_at(volume, above) ? proxy_W : above, aside);
 }
 
 Vec3 shortened(const Vec3& vector, double limit) {
@@ -55,7 +55,8 @@ Vec3 marched(const Volume& volume, const Vec3& proxy_W, const Vec3& probe_W) {
   const Vec3 way = probe_W - proxy_W;
   const double distance = way.norm();
   if (distance == 0.0) return probe_W;
-  if (distance > kTouching_mm && in_bone(volume, proxy_W + (kTouching_mm / distance) * way)) return proxy_W;
+  if (distance > kTouching_mm && is_bone_at(volume, proxy_W + (kTouching_mm / distance) * way))
+    return proxy_W;
   return crossing_in_grid(volume, proxy_W, probe_W).value_or(probe_W);
 }
 
@@ -64,7 +65,7 @@ Vec3 marched(const Volume& volume, const Vec3& proxy_W, const Vec3& probe_W) {
 Vec3 move_point_proxy(const Volume& volume, const Vec3& proxy_W, const Vec3& probe_W,
                       const NormalRule& rule) {
   Vec3 proxy = proxy_W;
-  if (in_bone(volume, proxy)) {
+  if (is_bone_at(volume, proxy)) {
     const auto out = raised_out(volume, proxy, rule);
     if (!out) return proxy_W;
     proxy = *out;

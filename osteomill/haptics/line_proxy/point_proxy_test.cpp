@@ -65,7 +65,7 @@ TEST(PointProxy, GoesRoundABallToTheSideOfTheProbe) {
     const Vec3 out(std::sin(angle), 0, std::cos(angle));
     proxy = move_point_proxy(bone, proxy, 3.0 * out, kFree);
     ASSERT_LT((proxy - 4.0 * out).norm(), 0.06) << n;
-    ASSERT_FALSE(in_bone(bone, proxy)) << n;
+    ASSERT_FALSE(is_bone_at(bone, proxy)) << n;
   }
 }
 

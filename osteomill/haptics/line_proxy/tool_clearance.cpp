@@ -28,24 +28,25 @@ struct Overlap {
 
 // Bone between a point of the tool's surface and the middle, where it reaches deeper than what is known.
 void look(const Volume& volume, const Vec3& middle_W, const Vec3& radius_W, std::optional<Overlap>& deepest) {
-  if (!in_bone(volume, middle_W + radius_W)) return;
+  if (!is_bone_at(volume, middle_W + radius_W)) return;
   const double radius_mm = radius_W.norm();
   if (deepest) {
     const double min_mm = deepest->depth_mm + kWorthIt_mm;
-    if (!(min_mm < radius_mm) || !in_bone(volume, middle_W + (1.0 - min_mm / radius_mm) * radius_W)) return;
+    if (!(min_mm < radius_mm) || !is_bone_at(volume, middle_W + (1.0 - min_mm / radius_mm) * radius_W))
+      return;
   }
   const double step_mm = 0.5 * volume.geometry().spacing_mm.minCoeff();
   Vec3 free_W = middle_W;
   Vec3 inside_W = middle_W + radius_W;
   for (double reach_mm = step_mm; reach_mm < radius_mm; reach_mm += step_mm) {
     const Vec3 here_W = middle_W + reach_mm / radius_mm * radius_W;
-    if (in_bone(volume, here_W)) {
+    if (is_bone_at(volume, here_W)) {
       inside_W = here_W;
       break;
     }
     free_W = here_W;
   }
-  if (in_bone(volume, free_W)) return;  // the middle itself
+  if (is_bone_at(volume, free_W)) return;  // the middle itself
   const Vec3 surface_W = bisect_crossing(volume, free_W, inside_W, kTolerance_mm);
   const double depth_mm = radius_mm - (surface_W - middle_W).norm();
   deepest = Overlap{middle_W, surface_W, radius_mm, depth_mm};
