@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 #include "osteomill/volume/volume.h"
 
 namespace osteomill {
@@ -12,19 +14,21 @@ double pressing_reach_mm(const GridGeometry& geometry);
 /// A wall beside a burr may hold it, but is not what it presses on. Safe in the haptic tick.
 bool burr_presses(const Volume& volume, double burr_radius_mm, const Vec3& burr_W, const Vec3& force_W_N);
 
-/// For so long after bone was last ahead of it a burr counts as pressing, and what it could not spend
-/// meanwhile is kept for when bone is there again: it may swing on what it presses on.
+/// A burr may swing on what it presses on: so much of the time for which bone was ahead of it counts as well
+/// after the bone has gone, and what could not be spent meanwhile is kept for when it is there again.
 inline constexpr double kPressingKept_s = 0.01;
 
-/// The same from tick to tick.
+/// `burr_presses` from tick to tick.
 class PressingBurr {
  public:
   void reset() { away_s_ = kPressingKept_s; }
   /// Safe in the haptic tick.
   bool presses(const Volume& volume, double burr_radius_mm, const Vec3& burr_W, const Vec3& force_W_N,
                double dt_s) {
-    away_s_ = burr_presses(volume, burr_radius_mm, burr_W, force_W_N) ? 0 : away_s_ + dt_s;
-    return away_s_ < kPressingKept_s;
+    const bool ahead = burr_presses(volume, burr_radius_mm, burr_W, force_W_N);
+    const bool kept = away_s_ < kPressingKept_s;
+    away_s_ = std::clamp(ahead ? away_s_ - dt_s : away_s_ + dt_s, 0.0, kPressingKept_s);
+    return ahead || kept;
   }
 
  private:
