@@ -27,19 +27,17 @@ bool burr_presses(const Volume& volume, double burr_radius_mm, const Vec3& burr_
   if (!(force_W_N.squaredNorm() > 0)) return false;
   const Vec3 ahead = force_W_N.normalized();
   const Vec3 moved_W = burr_W + pressing_reach_mm(volume.geometry()) * ahead;
-  const Vec3 aside = ahead.unitOrthogonal();
-  const Vec3 across = ahead.cross(aside);
-  // A sunflower's seeds, from the middle to the rim.
-  constexpr double kGoldenAngle = std::numbers::pi * (3 - 2.2360679774997896964);
+  // A sunflower's seeds, from the middle to the rim, each turned on from the last by the golden angle.
+  constexpr double kCosine = -0.73736887807831990, kSine = 0.67549029426152364;
   const double cap_mm2 = 2 * std::numbers::pi * (1 - kRim) * burr_radius_mm * burr_radius_mm;
   const int looks =
       static_cast<int>(std::clamp(cap_mm2 / (kApart_mm * kApart_mm), 1.0, static_cast<double>(kMaxLooks)));
+  Vec3 turned = ahead.unitOrthogonal();
   for (int n = 0; n < looks; ++n) {
     const double cosine = 1 - (1 - kRim) * (n + 0.5) / looks;
-    const double sine = std::sqrt(1 - cosine * cosine);
-    const double angle = kGoldenAngle * n;
-    const Vec3 direction = cosine * ahead + sine * (std::cos(angle) * aside + std::sin(angle) * across);
+    const Vec3 direction = cosine * ahead + std::sqrt(1 - cosine * cosine) * turned;
     if (is_bone_at(volume, moved_W + burr_radius_mm * direction)) return true;
+    turned = kCosine * turned + kSine * ahead.cross(turned);
   }
   return false;
 }

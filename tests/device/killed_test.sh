@@ -67,5 +67,7 @@ begin_device
 until_true 5 "there again" grep -q "example device: gives poses again" errors
 wait $program || fail "osteomill ended with $?"
 grep -qE "^device +example device: .* poses/s, [1-9]" said || fail "what was wrong is not counted"
+sleep 0.3
 kill $device
+wait $device || true
 judge 1 "osteomill at its end"
