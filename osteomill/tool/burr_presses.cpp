@@ -11,8 +11,8 @@ namespace osteomill {
 namespace {
 
 // How far apart the burr is looked at, and how often at most; it is asked in every tick.
-constexpr double kApart_mm = 0.15;
-constexpr int kMaxLooks = 512;
+constexpr double kApart_mm = 0.25;
+constexpr int kMaxLooks = 256;
 // The cosine with the force's direction beyond which the ball, moved on, hardly goes where it was not.
 constexpr double kRim = 0.25;
 
