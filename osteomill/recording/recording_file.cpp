@@ -1,6 +1,7 @@
 #include "osteomill/recording/recording_file.h"
 
 #include <array>
+#include <cerrno>
 #include <tuple>
 
 #include <fcntl.h>
@@ -160,8 +161,11 @@ std::uint64_t RecordingFile::end() const {
 void RecordingFile::reserve(std::uint64_t bytes) {
   const std::uint64_t wanted = end() + bytes + kRoomForMetadata;
   if (wanted <= reserved_) return;
-  const int error = ::posix_fallocate(descriptor(), static_cast<::off_t>(reserved_),
-                                      static_cast<::off_t>(wanted - reserved_));
+  int error = EINTR;
+  while (error == EINTR) {
+    error = ::posix_fallocate(descriptor(), static_cast<::off_t>(reserved_),
+                              static_cast<::off_t>(wanted - reserved_));
+  }
   require(error == 0, "cannot be written (is the disk full?)");
   reserved_ = wanted;
 }
