@@ -143,7 +143,8 @@ void FrameReader::read_by_dcmtk(DcmDataset& data, std::size_t frame, DcmFileCach
 
 // In a data set of its own that holds nothing else, so that no table of offsets leads elsewhere.
 void FrameReader::decode_jpeg(std::span<const unsigned char> stream) {
-  if (!jpeg_fits(stream, size_))
+  const bool is_jpeg_ls = syntax_ == EXS_JPEGLSLossless || syntax_ == EXS_JPEGLSLossy;
+  if (!jpeg_fits(stream, is_jpeg_ls ? JpegKind::jpeg_ls : JpegKind::jpeg, size_))
     throw fault("is damaged: its compressed pixels are not what its header says");
   DcmDataset alone;
   for (const DcmTagKey& tag : {DCM_SamplesPerPixel, DCM_PhotometricInterpretation, DCM_Rows, DCM_Columns,

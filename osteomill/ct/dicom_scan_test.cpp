@@ -120,6 +120,10 @@ TEST_F(DicomSeries, CompressedPixelsThatAreDamagedAreRefused) {
   endless.replace(endless.rfind("\xFF\xD8"), 2, "\xFF\x01");
   write("f7", endless);
   EXPECT_TRUE(contains(refusal(folder_), "not what its header says"));
+  endless = bytes;
+  endless.replace(endless.find("\xFF\xC3"), 2, "\xFF\xF7");
+  write("f7", endless);
+  EXPECT_TRUE(contains(refusal(folder_), "not what its header says"));
 }
 
 // An element of a sequence that holds a sequence, and so on.

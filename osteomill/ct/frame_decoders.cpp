@@ -78,14 +78,16 @@ bool is_grey_of(const opj_image_t& image, const FrameSize& size) {
 }
 
 // SOF0 to SOF15 without DHT, JPG and DAC; SOF55 is JPEG-LS.
-bool is_frame_marker(int marker) {
-  return (marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC) ||
-         marker == 0xF7;
+bool is_frame_marker(JpegKind kind, int marker) {
+  if (kind == JpegKind::jpeg_ls) return marker == 0xF7;
+  return marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC;
 }
 
-// Those that have a length: not TEM, RST, SOI, EOI and what is reserved.
-bool is_segment_marker(int marker) {
-  return marker >= 0xC0 && marker < 0xFF && !(marker >= 0xD0 && marker <= 0xD9);
+// Those that have a length: not TEM, RST, SOI, EOI and what is reserved; nor the other kind's image.
+bool is_segment_marker(JpegKind kind, int marker) {
+  const JpegKind other = kind == JpegKind::jpeg ? JpegKind::jpeg_ls : JpegKind::jpeg;
+  return marker >= 0xC0 && marker < 0xFF && !(marker >= 0xD0 && marker <= 0xD9) &&
+         !is_frame_marker(other, marker);
 }
 
 }  // namespace
@@ -143,18 +145,18 @@ bool decode_jpeg2000(Bytes bytes, const FrameSize& size, std::span<char> values)
   return true;
 }
 
-bool jpeg_fits(Bytes bytes, const FrameSize& size) {
+bool jpeg_fits(Bytes bytes, JpegKind kind, const FrameSize& size) {
   const auto number = [&](std::size_t n) { return bytes[n] << 8 | bytes[n + 1]; };
   if (bytes.size() < 2 || number(0) != 0xFFD8) return false;
   std::size_t here = 2;
   // A segment: FF, marker, length of what follows.
   while (here + 10 <= bytes.size() && bytes[here] == 0xFF) {
     const int marker = bytes[here + 1];
-    if (is_frame_marker(marker)) {
+    if (is_frame_marker(kind, marker)) {
       return bytes[here + 4] <= 8 * size.bytes_a_value && number(here + 5) == size.rows &&
              number(here + 7) == size.columns && bytes[here + 9] == 1;
     }
-    if (!is_segment_marker(marker) && marker != 0xFF) return false;
+    if (!is_segment_marker(kind, marker) && marker != 0xFF) return false;
     here += marker == 0xFF ? 1 : 2 + static_cast<std::size_t>(number(here + 2));
   }
   return false;

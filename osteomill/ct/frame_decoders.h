@@ -23,8 +23,10 @@ struct FrameSize {
 bool decode_rle(std::span<const unsigned char> stream, const FrameSize& size, std::span<char> values);
 bool decode_jpeg2000(std::span<const unsigned char> stream, const FrameSize& size, std::span<char> values);
 
-/// Whether a stream begins as JPEG or JPEG-LS, with nothing but segments before a grey image of that size and
-/// no more than so many bits. DCMTK takes the stream's word for it, and looks for ever at what is no segment.
-bool jpeg_fits(std::span<const unsigned char> stream, const FrameSize& size);
+enum class JpegKind { jpeg, jpeg_ls };
+/// Whether a stream begins as the kind that it is said to be, with nothing but segments before a grey image
+/// of that size and no more than so many bits. DCMTK takes the stream's word for it, and looks for ever at
+/// what is no segment, or for the other kind's image.
+bool jpeg_fits(std::span<const unsigned char> stream, JpegKind kind, const FrameSize& size);
 
 }  // namespace osteomill
