@@ -6,7 +6,7 @@
 #include <benchmark/benchmark.h>
 #include <malloc.h>
 
-#include "osteomill/haptics/point_shell/point_shell_algorithm.h"
+#include "osteomill/haptics/bone_points/bone_bricks.h"
 #include "osteomill/milling/burr_mill.h"
 #include "osteomill/volume/densities.h"
 
@@ -21,13 +21,10 @@ double allocated_bytes() {
 
 void build_shell(benchmark::State& state, Bone bone) {
   const Volume& volume = bone_volume(bone);
-  const point_shell::ShellRules rules = point_shell::Settings::defaults(Mode::steady).shell;
   for ([[maybe_unused]] auto _ : state) {
     const double before = allocated_bytes();
-    const point_shell::PointShell shell(volume, rules);
+    const BoneBricks bricks(volume, BoneBricks::kSpacing_mm, BoneBricks::Points::fine);
     const double bytes = allocated_bytes() - before;
-    state.counters["shell_points"] = shell.point_count();
-    state.counters["bytes_per_point"] = bytes / shell.point_count();
     state.counters["bytes_per_voxel"] = bytes / static_cast<double>(volume.geometry().voxel_count());
   }
 }

@@ -9,7 +9,7 @@
 
 #include "osteomill/haptics/algorithms.h"
 #include "osteomill/haptics/point_shell/brick_contacts.h"
-#include "osteomill/haptics/point_shell/point_shell_algorithm.h"
+#include "osteomill/haptics/point_shell/point_shell_settings.h"
 
 namespace osteomill::benchmarks {
 
@@ -49,21 +49,20 @@ void sleeved_contacts(benchmark::State& state, double spacing_mm) {
   const MillingTool tool;
   const Volume block = sleeve_block(spacing_mm, tool, kOverlap_mm);
   const Pose pose = pose_in_sleeve(block, tool);
-  point_shell::PointShellAlgorithm algorithm(point_shell::Settings::defaults(Mode::steady));
-  algorithm.prepare({&block, tool});
+  BoneBricks bricks(block, BoneBricks::kSpacing_mm, BoneBricks::Points::fine);
+  const point_shell::Settings settings = point_shell::Settings::defaults(Mode::steady);
+  const point_shell::Penalty penalty{contact_stiffness_N_per_mm3(settings, tool),
+                                     2 * bricks.lattice().cell_area_mm2()};
   int touching = 0;
   for ([[maybe_unused]] auto _ : state) {
     TickTimes looks;
     for (int n = 0; n < kTicks; ++n) {
-      looks.time([&] {
-        touching =
-            contacts_by_bricks(algorithm.shell(), tool, stirred(pose, n), algorithm.penalty()).touching;
-      });
+      looks.time([&] { touching = contacts_by_bricks(bricks, tool, stirred(pose, n), penalty).touching; });
     }
     looks.report(state);
   }
   state.counters["contacts"] = touching;
-  state.counters["sample_points"] = algorithm.sample_point_count();
+  state.counters["sample_points"] = bricks.octree().total();
 }
 
 const bool kAdded = [] {

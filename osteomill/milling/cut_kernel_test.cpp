@@ -5,30 +5,16 @@
 #include <random>
 #include <vector>
 
+#include "tests/instruction_sets.h"
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include "osteomill/milling/burr_advance.h"
 
 namespace osteomill {
 namespace {
 
-// Every set of vector instructions that this processor has and the kernel was compiled for.
-std::vector<std::int64_t> targets_here() {
-  std::vector<std::int64_t> targets;
-  const std::int64_t both = hwy::SupportedTargets() & cut_kernel_targets();
-  for (int place = 0; place < 63; ++place) {
-    const std::int64_t bit = std::int64_t{1} << place;
-    if ((both & bit) != 0) targets.push_back(bit);
-  }
-  return targets;
-}
-
-// Uses one set while it lives.
-struct Forced {
-  explicit Forced(std::int64_t target) { hwy::SetSupportedTargetsForTest(target); }
-  ~Forced() { hwy::SetSupportedTargetsForTest(0); }
-};
+using testing_support::ForcedInstructionSet;
+using testing_support::instruction_sets_here;
 
 constexpr double kRadius_mm = 1.3;
 const CutProfile kProfile = CutProfile::between(-100, 450, 1000);
@@ -98,11 +84,11 @@ TEST(CutKernel, CostsWhatAPlainSumOfDropsDoes) {
 
 TEST(CutKernel, EverySetOfInstructionsGivesTheSameBits) {
   const Volume bone = random_bone(Vec3(0.12, 0.15, 0.2));
-  const std::vector<std::int64_t> targets = targets_here();
+  const std::vector<std::int64_t> targets = instruction_sets_here(cut_kernel_targets());
   ASSERT_GE(targets.size(), 2u);
   std::vector<double> first;
   for (const std::int64_t target : targets) {
-    const Forced forced(target);
+    const ForcedInstructionSet forced(target);
     Gathered g = gathered(bone, 0.2);
     const CutVoxels::Cost cost = g.voxels.cost(0.11);
     std::vector<double> numbers{cost.leading, cost.slope_per_mm, cost.trailing,

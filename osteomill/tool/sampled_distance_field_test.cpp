@@ -4,16 +4,15 @@
 #include <random>
 #include <stdexcept>
 
+#include "tests/random.h"
 #include <gtest/gtest.h>
 
 namespace osteomill {
 namespace {
 
-const MillingTool kTool{1.5, 1.0, 25.0};
+using testing_support::uniform;
 
-double uniform(std::mt19937& bits, double from, double to) {
-  return from + (to - from) * (static_cast<double>(bits()) / 4294967295.0);
-}
+const MillingTool kTool{1.5, 1.0, 25.0};
 
 // Points of the depths at which contact happens, away from the tool's creases (the seam of burr and shaft,
 // the rim of the flat end, the axis), where interpolation cannot follow the kink.

@@ -53,14 +53,28 @@ BlockRanges::Range BlockRanges::range_of(const DensityGrid& grid, int bi, int bj
   return range;
 }
 
+std::uint32_t BlockRanges::changes_in(const VoxelBox& voxels) const {
+  constexpr int n = kBrickVoxels;
+  std::uint32_t changes = 0;
+  for (int bk = voxels.first.k / n; bk <= voxels.last.k / n; ++bk) {
+    for (int bj = voxels.first.j / n; bj <= voxels.last.j / n; ++bj) {
+      for (int bi = voxels.first.i / n; bi <= voxels.last.i / n; ++bi) changes += at(bi, bj, bk).changes;
+    }
+  }
+  return changes;
+}
+
+void BlockRanges::lower_brick(int bi, int bj, int bk, float density) {
+  Range& range = ranges_[index(bi, bj, bk)];
+  range.min = std::min(range.min, density);
+  ++range.changes;
+}
+
 void BlockRanges::lower(const VoxelIndex& v, float density) {
   const BrickSpan spans[3] = {bricks_counting(v.i), bricks_counting(v.j), bricks_counting(v.k)};
   for (int bk = spans[2].first; bk <= spans[2].last; ++bk) {
     for (int bj = spans[1].first; bj <= spans[1].last; ++bj) {
-      for (int bi = spans[0].first; bi <= spans[0].last; ++bi) {
-        Range& range = ranges_[index(bi, bj, bk)];
-        range.min = std::min(range.min, density);
-      }
+      for (int bi = spans[0].first; bi <= spans[0].last; ++bi) lower_brick(bi, bj, bk, density);
     }
   }
 }
@@ -70,10 +84,7 @@ void BlockRanges::lower_row(int j, int k, const int* columns, const float* densi
   const BrickSpan ks = bricks_counting(k);
   const auto lower_column = [&](int bi, float density) {
     for (int bk = ks.first; bk <= ks.last; ++bk) {
-      for (int bj = js.first; bj <= js.last; ++bj) {
-        Range& range = ranges_[index(bi, bj, bk)];
-        range.min = std::min(range.min, density);
-      }
+      for (int bj = js.first; bj <= js.last; ++bj) lower_brick(bi, bj, bk, density);
     }
   };
   for (std::size_t n = 0; n < count;) {
@@ -91,7 +102,10 @@ void BlockRanges::refresh(const DensityGrid& grid, const VoxelBox& box) {
   for (int bk = bricks_counting(inside.first.k).first; bk <= inside.last.k / kBrickVoxels; ++bk) {
     for (int bj = bricks_counting(inside.first.j).first; bj <= inside.last.j / kBrickVoxels; ++bj) {
       for (int bi = bricks_counting(inside.first.i).first; bi <= inside.last.i / kBrickVoxels; ++bi) {
-        ranges_[index(bi, bj, bk)] = range_of(grid, bi, bj, bk);
+        Range& range = ranges_[index(bi, bj, bk)];
+        const std::uint32_t changes = range.changes + 1;
+        range = range_of(grid, bi, bj, bk);
+        range.changes = changes;
       }
     }
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "osteomill/numbers/row_major.h"
@@ -17,6 +18,8 @@ class BlockRanges {
   struct Range {
     float min;
     float max;
+    /// Grows (and begins at 0 again after 2^32) whenever one of its densities is taken in anew.
+    std::uint32_t changes = 0;
   };
 
   BlockRanges() = default;
@@ -30,6 +33,10 @@ class BlockRanges {
     return at(v.i / kBrickVoxels, v.j / kBrickVoxels, v.k / kBrickVoxels);
   }
 
+  /// Differs from what it was before where any of these voxels, all in the grid, was taken in anew since.
+  /// Safe in the haptic tick.
+  std::uint32_t changes_in(const VoxelBox& voxels) const;
+
   /// Takes a new, lower density of one voxel in. Safe in the haptic tick.
   void lower(const VoxelIndex& v, float density);
   /// The same for `count` voxels of one row, whose columns ascend. Safe in the haptic tick.
@@ -39,6 +46,7 @@ class BlockRanges {
 
  private:
   std::size_t index(int bi, int bj, int bk) const { return row_major(dims_, bi, bj, bk); }
+  void lower_brick(int bi, int bj, int bk, float density);
   static Range range_of(const DensityGrid& grid, int bi, int bj, int bk);
 
   std::array<int, 3> dims_{0, 0, 0};

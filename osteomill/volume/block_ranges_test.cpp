@@ -75,5 +75,26 @@ TEST(BlockRanges, HoldWhileDensitiesFallAndAreExactAfterARefresh) {
   expect_ranges_hold(volume.bricks(), volume.grid(), true);
 }
 
+TEST(BlockRanges, SayWhereADensityWasTakenInAnew) {
+  Volume volume(random_grid(), 500);
+  const VoxelBox all = volume.geometry().all_voxels();
+  const BlockRanges& ranges = volume.bricks();
+  for (const VoxelIndex& v : {VoxelIndex{0, 0, 0}, all.last, VoxelIndex{8, 7, 8}, VoxelIndex{7, 3, 16}}) {
+    const VoxelBox near = VoxelBox{v, v}.grown(2).intersected(all);
+    const std::uint32_t before = ranges.changes_in(near), of_all = ranges.changes_in(all);
+    EXPECT_EQ(ranges.changes_in(near), before);
+    volume.lower_density(v, -3000);
+    EXPECT_NE(ranges.changes_in(near), before);
+    EXPECT_NE(ranges.changes_in(all), of_all);
+    const std::uint32_t lowered = ranges.changes_in(near);
+    const float lower = -4000;
+    volume.lower_row(v.j, v.k, &v.i, &lower, 1);
+    EXPECT_NE(ranges.changes_in(near), lowered);
+    const std::uint32_t again = ranges.changes_in(near);
+    volume.refresh_bricks({v, v});
+    EXPECT_NE(ranges.changes_in(near), again);
+  }
+}
+
 }  // namespace
 }  // namespace osteomill

@@ -37,11 +37,6 @@ constexpr double kRoomPerMove = 3;
 // In free space: farther than the fastest hand goes in a tick.
 constexpr Room kFarthestFlight{5.0, 0.3};
 
-// Edges of the lattice brought up to date a tick.
-constexpr int kRefreshedPerTick = 1500;
-// Bricks nearer than this to the tool are not forgotten.
-constexpr double kKept_mm = 2;
-
 // A tool that began in touch with bone: the distance it is given, and how fast and up to which its cores
 // grow.
 constexpr double kStartShare = 0.2;
@@ -152,7 +147,7 @@ void BarrierShell::prepare(const Scene& scene) {
   volume_ = scene.volume;
   tool_ = scene.tool;
   centreline_T_ = centreline_vertices(scene.tool, kCentrelinePoints);
-  bricks_ = BoneBricks(*scene.volume, settings_.point_spacing_mm);
+  bricks_ = BoneBricks(*scene.volume, settings_.point_spacing_mm, BoneBricks::Points::fine_and_coarse);
   near_ = NearBone(kNearPoints);
   reset();
 }
@@ -165,7 +160,7 @@ void BarrierShell::reset() {
 }
 
 void BarrierShell::volume_changed(const VolumeChange& change) {
-  bricks_.refresh(change.voxels, kRefreshedPerTick);
+  bricks_.refresh(change.voxels);
   refreshed_this_tick_ = true;
 }
 
@@ -211,19 +206,6 @@ void BarrierShell::grow_cores(double nearest_mm, double dt_s) {
   const double growth = std::clamp(room_mm, 0.0, kGrowth_mm_s * std::max(0.0, dt_s));
   smaller_mm_ = std::max(0.0, smaller_mm_ - growth);
   has_energy_ = false;
-}
-
-void BarrierShell::make_room_for_bricks() {
-  const SurfaceLattice& lattice = bricks_.lattice();
-  const Pose X_TW = X_WT_.inverse();
-  const double radius_mm = bricks_.node_radius_mm(0);
-  const Cores whole = Cores::within(tool_, 0);
-  bricks_.make_room([&](const VoxelIndex& b) {
-    const Vec3 middle_W = lattice.origin_W() + lattice.direction() * bricks_.node_middle_G(0, b.i, b.j, b.k);
-    const Vec3 middle_T = X_TW * middle_W;
-    return std::min(distance_to_ball(whole, middle_T).distance_mm,
-                    distance_to_cylinder(whole, middle_T).distance_mm) < radius_mm + kKept_mm;
-  });
 }
 
 void BarrierShell::gather(const Pose& X_WT, const Room& room) {
@@ -367,9 +349,9 @@ HapticStep BarrierShell::report(const State& state, const Pose& X_WD, double dt_
 }
 
 HapticStep BarrierShell::step(const Pose& X_WD, double dt_s) {
-  if (!refreshed_this_tick_ && !bricks_.is_up_to_date()) bricks_.refresh({}, kRefreshedPerTick);
+  if (!refreshed_this_tick_ && !bricks_.is_up_to_date()) bricks_.refresh({});
   refreshed_this_tick_ = false;
-  make_room_for_bricks();
+  bricks_.make_room(tool_, X_WT_);
   ++counts_.ticks;
   if (!has_pose_) begin(X_WD);
   if (carried_) {

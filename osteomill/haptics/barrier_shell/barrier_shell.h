@@ -4,9 +4,9 @@
 
 #include "osteomill/haptics/barrier_shell/barrier_shell_counts.h"
 #include "osteomill/haptics/barrier_shell/barrier_shell_settings.h"
-#include "osteomill/haptics/barrier_shell/bone_bricks.h"
 #include "osteomill/haptics/barrier_shell/coupling.h"
 #include "osteomill/haptics/barrier_shell/near_bone.h"
+#include "osteomill/haptics/bone_points/bone_bricks.h"
 #include "osteomill/haptics/haptic_algorithm.h"
 #include "osteomill/haptics/tool_move.h"
 
@@ -43,7 +43,6 @@ class BarrierShell final : public HapticAlgorithm {
   Cores cores() const;
   State evaluated(const Pose& X_WT, const Pose& X_WD);
   void gather(const Pose& X_WT, const Room& room);
-  void make_room_for_bricks();
   void gather_for_next_move();
   bool may_fly(const Pose& X_WD, const MoveBound& bound) const;
   double share_with_room(const Room& step) const;

@@ -50,7 +50,7 @@ const std::vector<Field>& fields() {
           "pressure", "N/mm2", 3, "p0 of the skin's pressure p0 / 3 x^2 (3 - 2 x) / (1 - x)^2",
           [](Settings & s) -> auto& { return s.pressure_N_per_mm2; }),
       number(
-          "point-spacing", "mm", 0.13,
+          "point-spacing", "mm", BoneBricks::kSpacing_mm,
           "How far apart the points of bone lie at most, whatever the scan's voxels; twice as far at the "
           "shaft where the bone is flat",
           [](Settings & s) -> auto& { return s.point_spacing_mm; }),

@@ -6,6 +6,7 @@
 #include <random>
 #include <vector>
 
+#include "tests/random.h"
 #include "tests/shapes.h"
 #include <gtest/gtest.h>
 
@@ -13,6 +14,9 @@
 
 namespace osteomill::barrier_shell {
 namespace {
+
+using testing_support::random_vector;
+using testing_support::uniform;
 
 constexpr double kTick_s = 1e-3;
 
@@ -147,14 +151,6 @@ double deepest_mm(const std::vector<Vec3>& surface, const MillingTool& tool, con
   return -nearest;
 }
 
-double unit_random(std::mt19937& bits) {
-  return 2 * (static_cast<double>(bits()) / 4294967295.0) - 1;
-}
-Vec3 random_vector(std::mt19937& bits) {
-  const double x = unit_random(bits), y = unit_random(bits), z = unit_random(bits);
-  return {x, y, z};
-}
-
 // The device goes on through, at up to 300 mm/s, until the coupling pulls with all that it has.
 double deepest_of_push(BarrierShell& algorithm, const std::vector<Vec3>& surface, const MillingTool& tool,
                        Pose X_WD, const Vec3& direction, double speed_mm_s, double way_mm) {
@@ -214,7 +210,7 @@ TEST(BarrierShell, RandomPushesIntoSpongyBoneStayOutside) {
     const Quat orientation = quaternion_from_rotation_vector(3 * random_vector(bits));
     // From where the tool is clear of the bone in any pose.
     const Pose from{-31 * direction + 2 * random_vector(bits), orientation};
-    const double speed_mm_s = 160 + 140 * unit_random(bits);
+    const double speed_mm_s = 160 + 140 * uniform(bits, -1, 1);
     EXPECT_LT(deepest_of_push(algorithm, surface, tool, from, direction, speed_mm_s, 38), 0.3) << n;
   }
   // Nobody but the device adds energy to bone that stays as it is.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <random>
 
+#include "tests/random.h"
 #include <gtest/gtest.h>
 
 #include "osteomill/haptics/tool_move.h"
@@ -11,13 +12,8 @@
 namespace osteomill::barrier_shell {
 namespace {
 
-double unit_random(std::mt19937& bits) {
-  return 2 * (static_cast<double>(bits()) / 4294967295.0) - 1;
-}
-Vec3 random_vector(std::mt19937& bits) {
-  const double x = unit_random(bits), y = unit_random(bits), z = unit_random(bits);
-  return {x, y, z};
-}
+using testing_support::random_vector;
+using testing_support::uniform;
 
 Pose after(const Pose& X_WT, const MoveT& move, double t) {
   return moved(X_WT, {X_WT.orientation * (t * move.delta_mm), X_WT.orientation * (t * move.omega_rad)});
@@ -30,10 +26,10 @@ TEST(Certificate, IsNeverAboveTheDistanceAlongTheWay) {
   const Pose X_WT{{0.3, -0.2, 0.7}, quaternion_from_rotation_vector({0.4, 1.1, -0.3})};
   double worst = 0, min_kept = 1;
   for (int n = 0; n < 1000000; ++n) {
-    const Cores cores{0.05 + std::abs(unit_random(bits)) * 2, 0.05 + std::abs(unit_random(bits)),
-                      0.5 + std::abs(unit_random(bits)) * 25};
-    const Vec3 point_T(3 * unit_random(bits), 3 * unit_random(bits), 13 + 16 * unit_random(bits));
-    const double size = std::pow(10, 2 * unit_random(bits) - 1);
+    const Cores cores{0.05 + std::abs(uniform(bits, -1, 1)) * 2, 0.05 + std::abs(uniform(bits, -1, 1)),
+                      0.5 + std::abs(uniform(bits, -1, 1)) * 25};
+    const Vec3 point_T(3 * uniform(bits, -1, 1), 3 * uniform(bits, -1, 1), 13 + 16 * uniform(bits, -1, 1));
+    const double size = std::pow(10, 2 * uniform(bits, -1, 1) - 1);
     const MoveT move{size * random_vector(bits), 0.1 * size * random_vector(bits)};
     const Vec3 point_W = X_WT * point_T;
     const bool is_ball = n % 2 == 0;
@@ -44,7 +40,7 @@ TEST(Certificate, IsNeverAboveTheDistanceAlongTheWay) {
         is_ball ? distance_used_by_ball(now.outward_T, move) : distance_used(point_T, now.outward_T, move);
     const double share = certified_share(std::max(0.0, used / now.distance_mm));
     // Where the way is longest, and at a random place of what is certified.
-    for (const double t : {share, share * std::abs(unit_random(bits))}) {
+    for (const double t : {share, share * std::abs(uniform(bits, -1, 1))}) {
       const double then = distance_to(cores, after(X_WT, move, t).inverse() * point_W).distance_mm;
       const double bound = now.distance_mm - t * std::max(used, 0.0);
       worst = std::max(worst, bound - then);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <random>
 
+#include "tests/random.h"
 #include <gtest/gtest.h>
 
 #include "osteomill/haptics/barrier_shell/coupling.h"
@@ -11,15 +12,10 @@
 namespace osteomill::barrier_shell {
 namespace {
 
-constexpr Barrier kBarrier{0.25, 3.0};
+using testing_support::random_vector;
+using testing_support::uniform;
 
-double unit_random(std::mt19937& bits) {
-  return 2 * (static_cast<double>(bits()) / 4294967295.0) - 1;
-}
-Vec3 random_vector(std::mt19937& bits) {
-  const double x = unit_random(bits), y = unit_random(bits), z = unit_random(bits);
-  return {x, y, z};
-}
+constexpr Barrier kBarrier{0.25, 3.0};
 
 TEST(Barrier, PressureAndStiffnessAreTheEnergysDerivatives) {
   constexpr double kStep = 1e-6;
@@ -65,7 +61,7 @@ TEST(EnergySum, DerivativesOfEveryPartOfBothCoresAreThoseOfTheEnergy) {
   int side = 0, end = 0, rim = 0, ball = 0;
   for (int n = 0; n < 20000 && (side < 20 || end < 20 || rim < 20 || ball < 20); ++n) {
     const Pose X_WT{random_vector(bits), quaternion_from_rotation_vector(2 * random_vector(bits))};
-    const Vec3 point_T(1.4 * unit_random(bits), 1.4 * unit_random(bits), 4 + 6 * unit_random(bits));
+    const Vec3 point_T(1.4 * uniform(bits, -1, 1), 1.4 * uniform(bits, -1, 1), 4 + 6 * uniform(bits, -1, 1));
     const Vec3 point_W = X_WT * point_T;
     for (const auto& distance_to : {distance_to_ball, distance_to_cylinder}) {
       const double d = distance_to(cores, point_T).distance_mm;

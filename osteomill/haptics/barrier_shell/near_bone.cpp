@@ -3,25 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "osteomill/haptics/bone_points/tool_from_grid.h"
+
 namespace osteomill::barrier_shell {
 
 namespace {
 
 // More than the rounding of a place near the tool.
 constexpr double kClear_mm = 1e-4;
-
-// The grid's frame seen from the tool; the turn mirrors where the grid is left-handed.
-struct GridSeen {
-  Mat3 turn;
-  Vec3 offset_mm;
-
-  GridSeen(const SurfaceLattice& lattice, const Pose& X_WT) {
-    const Mat3 R_TW = X_WT.orientation.conjugate().toRotationMatrix();
-    turn = R_TW * lattice.direction();
-    offset_mm = R_TW * (lattice.origin_W() - X_WT.position_mm);
-  }
-  Vec3 operator*(const Vec3& point_G) const { return offset_mm + turn * point_G; }
-};
 
 // Which core a sphere of points may touch within the room.
 struct Meeting {
@@ -48,11 +37,6 @@ Meeting meeting(const Cores& cores, const Barrier& barrier, const Room& room) {
   return {cores, barrier.width_mm + room.move_mm, room.turn_rad};
 }
 
-Vec3 centre_of(const BrickPoints::Bound& bound) {
-  return {static_cast<double>(bound.centre_mm[0]), static_cast<double>(bound.centre_mm[1]),
-          static_cast<double>(bound.centre_mm[2])};
-}
-
 }  // namespace
 
 NearBone::NearBone(std::size_t capacity) : ball_(capacity), cylinder_(capacity) {}
@@ -63,7 +47,7 @@ void NearBone::gather(BoneBricks& bricks, const Cores& cores, const Barrier& bar
   ball_.count = cylinder_.count = 0;
   ball_.overflowed = cylinder_.overflowed = false;
   const SurfaceLattice& lattice = bricks.lattice();
-  const GridSeen X_TG(lattice, X_WT);
+  const ToolFromGrid X_TG(lattice, X_WT);
   const Meeting meets = meeting(cores, barrier, room);
   const Reach reach{meets.reach_mm, room.turn_rad};
   const auto is_node_clear = [&](int level, int i, int j, int k) {
@@ -79,7 +63,7 @@ void NearBone::gather(BoneBricks& bricks, const Cores& cores, const Barrier& bar
     const auto each = [&](const BrickPoints& points, auto&& meets_core, auto&& gather_points,
                           NearPoints& near) {
       const BrickPoints::Brick& brick = points.brick(slot);
-      const Vec3 centre_T = origin_T + X_TG.turn * centre_of(brick.bound);
+      const Vec3 centre_T = origin_T + X_TG.turn * brick.bound.centre();
       if (!meets_core(centre_T, static_cast<double>(brick.bound.radius_mm))) return;
       gather_points(points, brick.first_chunk, frame, cores, reach, near);
     };
@@ -107,7 +91,7 @@ double NearBone::certified(const MoveT& move, const Barrier& barrier) const {
 
 bool is_clear(const BoneBricks& bricks, const Cores& cores, const Barrier& barrier, const Pose& X_WT,
               const Room& room) {
-  const GridSeen X_TG(bricks.lattice(), X_WT);
+  const ToolFromGrid X_TG(bricks.lattice(), X_WT);
   const Meeting meets = meeting(cores, barrier, room);
   bool clear = true;
   const auto is_node_clear = [&](int level, int i, int j, int k) {

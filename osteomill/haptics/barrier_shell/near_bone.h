@@ -1,7 +1,7 @@
 #pragma once
 
-#include "osteomill/haptics/barrier_shell/bone_bricks.h"
 #include "osteomill/haptics/barrier_shell/near_points.h"
+#include "osteomill/haptics/bone_points/bone_bricks.h"
 
 namespace osteomill::barrier_shell {
 

@@ -2,41 +2,27 @@
 
 #include <random>
 
+#include "tests/instruction_sets.h"
+#include "tests/random.h"
 #include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 namespace osteomill::barrier_shell {
 namespace {
 
-std::vector<std::int64_t> targets_here() {
-  std::vector<std::int64_t> targets;
-  const std::int64_t both = hwy::SupportedTargets() & compiled_targets();
-  for (int place = 0; place < 63; ++place) {
-    const std::int64_t bit = std::int64_t{1} << place;
-    if ((both & bit) != 0) targets.push_back(bit);
-  }
-  return targets;
-}
-
-struct Forced {
-  explicit Forced(std::int64_t target) { hwy::SetSupportedTargetsForTest(target); }
-  ~Forced() { hwy::SetSupportedTargetsForTest(0); }
-};
-
-double unit_random(std::mt19937& bits) {
-  return 2 * (static_cast<double>(bits()) / 4294967295.0) - 1;
-}
+using testing_support::ForcedInstructionSet;
+using testing_support::instruction_sets_here;
+using testing_support::uniform;
 
 // Points all about the tool, also beyond the shaft's end and below the burr, none of them in a core.
 std::vector<ShellPoint> random_points(const Cores& cores, std::mt19937& bits) {
   std::vector<ShellPoint> points;
   while (points.size() < 700) {
-    const Vec3 p(2 * unit_random(bits), 2 * unit_random(bits), 3.5 + 6 * unit_random(bits));
+    const Vec3 p(2 * uniform(bits, -1, 1), 2 * uniform(bits, -1, 1), 3.5 + 6 * uniform(bits, -1, 1));
     if (distance_to_ball(cores, p).distance_mm < 0.01) continue;
     if (distance_to_cylinder(cores, p).distance_mm < 0.01) continue;
     points.push_back({static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z()),
-                      static_cast<float>(0.01 * (1.1 + unit_random(bits)))});
+                      static_cast<float>(0.01 * (1.1 + uniform(bits, -1, 1)))});
   }
   return points;
 }
@@ -82,7 +68,7 @@ void expect_near(const EnergySum& a, const EnergySum& b) {
 TEST(NearPoints, EveryInstructionSetGivesTheSameBitsAndThePlainSums) {
   std::mt19937 bits(12);
   const Barrier barrier{0.25, 3};
-  ASSERT_GE(targets_here().size(), 1u);
+  ASSERT_GE(instruction_sets_here(compiled_targets()).size(), 1u);
   int on_ball = 0, on_cylinder = 0;
   for (const MillingTool& tool : {MillingTool{1.5, 1.0, 8}, MillingTool{0.8, 1.2, 6}, MillingTool{1, 1, 7}}) {
     const Cores cores = Cores::within(tool, 0.2);
@@ -90,8 +76,8 @@ TEST(NearPoints, EveryInstructionSetGivesTheSameBitsAndThePlainSums) {
       const std::vector<ShellPoint> all = random_points(cores, bits);
       BrickPoints points(1, 64);
       ASSERT_EQ(points.replace(0, all), all.size());
-      const MoveT move{0.1 * Vec3(unit_random(bits), unit_random(bits), unit_random(bits)),
-                       0.01 * Vec3(unit_random(bits), unit_random(bits), unit_random(bits))};
+      const MoveT move{0.1 * Vec3(uniform(bits, -1, 1), uniform(bits, -1, 1), uniform(bits, -1, 1)),
+                       0.01 * Vec3(uniform(bits, -1, 1), uniform(bits, -1, 1), uniform(bits, -1, 1))};
       EnergySum ball, cylinder;
       double ball_use = 0, cylinder_use = 0;
       for (const ShellPoint& p : all) {
@@ -109,8 +95,8 @@ TEST(NearPoints, EveryInstructionSetGivesTheSameBitsAndThePlainSums) {
       on_ball += ball.touching;
       on_cylinder += cylinder.touching;
       std::vector<Found> fast;
-      for (const std::int64_t target : targets_here()) {
-        const Forced forced(target);
+      for (const std::int64_t target : instruction_sets_here(compiled_targets())) {
+        const ForcedInstructionSet forced(target);
         fast.push_back(found(points, cores, barrier, move));
         EXPECT_TRUE(same_bits(fast.back().ball, fast.front().ball)) << hwy::TargetName(target);
         EXPECT_TRUE(same_bits(fast.back().cylinder, fast.front().cylinder)) << hwy::TargetName(target);

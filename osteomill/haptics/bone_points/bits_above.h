@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
+#include <limits>
 
 #ifdef __SSE2__  // every x86-64 has it
 #include <emmintrin.h>
@@ -20,6 +22,14 @@ inline std::uint8_t eight_above(const float* row, float limit) {
   for (int n = 0; n < 8; ++n) bits |= static_cast<unsigned>(row[n] > limit) << n;
   return static_cast<std::uint8_t>(bits);
 #endif
+}
+
+/// What a float has to be above to be above `value`.
+inline float largest_float_up_to(double value) {
+  const float nearest = static_cast<float>(value);
+  return static_cast<double>(nearest) > value
+             ? std::nextafter(nearest, -std::numeric_limits<float>::infinity())
+             : nearest;
 }
 
 }  // namespace osteomill

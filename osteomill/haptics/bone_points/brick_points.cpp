@@ -95,23 +95,4 @@ std::uint32_t BrickPoints::replace(std::size_t brick_index, std::span<const Shel
   return brick.count;
 }
 
-void BrickPoints::copy(std::size_t brick_index, std::span<ShellPoint> points) const {
-  const Brick& brick = bricks_[brick_index];
-  std::size_t n = 0;
-  for (std::uint32_t c = brick.first_chunk; c != kNoChunk; c = next_[c]) {
-    for (std::size_t slot = 0; slot < PointChunk::kSlots && n < brick.count; ++slot) {
-      points[n++] = chunks_[c].point(slot);
-    }
-  }
-}
-
-void BrickPoints::move(std::size_t brick_index, std::uint32_t slot, const ShellPoint& point) {
-  Brick& brick = bricks_[brick_index];
-  std::uint32_t c = brick.first_chunk;
-  for (std::size_t n = slot / PointChunk::kSlots; n > 0; --n) c = next_[c];
-  chunks_[c].set(slot % PointChunk::kSlots, point);
-  brick.bound.radius_mm =
-      std::max(brick.bound.radius_mm, kBoundSlack * distance_to(point, brick.bound.centre_mm));
-}
-
 }  // namespace osteomill

@@ -7,6 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "osteomill/geometry/pose.h"
+
 namespace osteomill {
 
 /// A point of the shell: where it lies in its brick's frame (mm) and the area of surface that it stands for
@@ -19,6 +21,13 @@ struct ShellPoint {
   float normal_x = 0;
   float normal_y = 0;
   float normal_z = 0;
+
+  Vec3 position_mm() const {
+    return {static_cast<double>(x_mm), static_cast<double>(y_mm), static_cast<double>(z_mm)};
+  }
+  Vec3 normal() const {
+    return {static_cast<double>(normal_x), static_cast<double>(normal_y), static_cast<double>(normal_z)};
+  }
   friend bool operator==(const ShellPoint&, const ShellPoint&) = default;
 };
 
@@ -60,6 +69,11 @@ class BrickPoints {
   struct Bound {
     std::array<float, 3> centre_mm{0, 0, 0};
     float radius_mm = 0;
+
+    Vec3 centre() const {
+      return {static_cast<double>(centre_mm[0]), static_cast<double>(centre_mm[1]),
+              static_cast<double>(centre_mm[2])};
+    }
   };
   struct Brick {
     std::uint32_t first_chunk = kNoChunk;
@@ -80,10 +94,16 @@ class BrickPoints {
 
   /// Puts `points` in the place of the brick's points; how many there was room for.
   std::uint32_t replace(std::size_t brick, std::span<const ShellPoint> points);
-  /// Copies the brick's points to `points`, which has room for them.
-  void copy(std::size_t brick, std::span<ShellPoint> points) const;
-  /// Moves one point, `slot` < the brick's count. The bound grows where it must.
-  void move(std::size_t brick, std::uint32_t slot, const ShellPoint& point);
+  /// Calls `f(point)` for each of the brick's points, in their order.
+  template <typename F>
+  void for_each_of(std::size_t brick, F&& f) const {
+    std::uint32_t left = bricks_[brick].count;
+    for (std::uint32_t c = bricks_[brick].first_chunk; left > 0; c = next_[c]) {
+      for (std::size_t slot = 0; slot < PointChunk::kSlots && left > 0; ++slot, --left) {
+        f(chunks_[c].point(slot));
+      }
+    }
+  }
 
  private:
   std::uint32_t take_chunk();

@@ -89,46 +89,39 @@ bool is_clear(const MillingTool& tool, const Vec3& centre_T, double radius_mm) {
   return radial_squared > shaft_reach * shaft_reach || z < -radius_mm || z > tool.shaft_length_mm + radius_mm;
 }
 
-Vec3 centre_of(const BrickPoints::Bound& bound) {
-  return {static_cast<double>(bound.centre_mm[0]), static_cast<double>(bound.centre_mm[1]),
-          static_cast<double>(bound.centre_mm[2])};
-}
-
 }  // namespace
 
-ToolContacts contacts_by_bricks(const PointShell& shell, const MillingTool& milling_tool, const Pose& X_WT,
+ToolContacts contacts_by_bricks(BoneBricks& bricks, const MillingTool& milling_tool, const Pose& X_WT,
                                 const Penalty& penalty) {
-  const ToolFromGrid X_TG(shell, X_WT);
+  const ToolFromGrid X_TG(bricks.lattice(), X_WT);
   const ToolSignedDistance tool(milling_tool);
-  const BrickPoints& points = shell.points();
+  const BrickPoints& points = bricks.fine();
   const double beyond_mm = penalty.reach_mm();
   const KernelTool shape = kernel_tool(tool, penalty);
   KernelFrame frame = kernel_frame(X_TG.turn);
   KernelSums sums;
   ToolContacts contacts;
   const auto is_node_clear = [&](int level, int i, int j, int k) {
-    if (level == 0) {
-      const BrickPoints::Bound& bound = points.brick(shell.brick_index(i, j, k)).bound;
-      return is_clear(milling_tool, X_TG * (shell.brick_origin_G(i, j, k) + centre_of(bound)),
-                      static_cast<double>(bound.radius_mm) + beyond_mm);
-    }
-    const PointShell::NodeBox box = shell.node_box(level, i, j, k);
-    return is_clear(milling_tool, X_TG * box.middle_G, box.half_mm.norm() + beyond_mm);
+    return is_clear(milling_tool, X_TG * bricks.node_middle_G(level, i, j, k),
+                    bricks.node_radius_mm(level) + beyond_mm);
   };
-  shell.octree().visit(is_node_clear, [&](int bi, int bj, int bk) {
-    const Vec3 origin_T = X_TG * shell.brick_origin_G(bi, bj, bk);
+  bricks.octree().visit(is_node_clear, [&](int bi, int bj, int bk) {
+    const std::uint32_t slot = bricks.slot_of({bi, bj, bk});
+    if (slot == BoneBricks::kNoPoints) return;
+    const BrickPoints::Brick& brick = points.brick(slot);
+    const double radius_mm = static_cast<double>(brick.bound.radius_mm);
+    const Vec3 origin_T = X_TG * bricks.lattice().brick_origin_G({bi, bj, bk});
+    const Vec3 centre_T = origin_T + X_TG.turn * brick.bound.centre();
+    if (is_clear(milling_tool, centre_T, radius_mm + beyond_mm)) return;
     for (int axis = 0; axis < 3; ++axis) frame.origin_mm[axis] = origin_T[axis];
-    const BrickPoints::Brick& brick = points.brick(shell.brick_index(bi, bj, bk));
-    const std::uint32_t first = brick.first_chunk;
-    const Vec3 centre_T = origin_T + X_TG.turn * centre_of(brick.bound);
-    const Part part = part_met(shape, centre_T, static_cast<double>(brick.bound.radius_mm));
-    if (part == Part::side) return add_side_points(points, first, frame, shape, sums);
-    if (part == Part::sphere) return add_sphere_points(points, first, frame, shape, sums);
-    for (std::uint32_t c = first; c != BrickPoints::kNoChunk; c = points.next_chunk(c)) {
+    const Part part = part_met(shape, centre_T, radius_mm);
+    if (part == Part::side) return add_side_points(points, brick.first_chunk, frame, shape, sums);
+    if (part == Part::sphere) return add_sphere_points(points, brick.first_chunk, frame, shape, sums);
+    for (std::uint32_t c = brick.first_chunk; c != BrickPoints::kNoChunk; c = points.next_chunk(c)) {
       const PointChunk& chunk = points.chunk(c);
       for (std::uint32_t rest = add_points(chunk, frame, shape, sums); rest != 0; rest &= rest - 1) {
         const ShellPoint point = chunk.point(static_cast<std::size_t>(std::countr_zero(rest)));
-        touch_point(point, origin_T + X_TG.turn * position_of(point), X_TG, tool, penalty, contacts);
+        touch_point(point, origin_T + X_TG.turn * point.position_mm(), X_TG, tool, penalty, contacts);
       }
     }
   });

@@ -1,8 +1,9 @@
 #pragma once
 
+#include "osteomill/haptics/bone_points/brick_points.h"
+#include "osteomill/haptics/bone_points/tool_from_grid.h"
 #include "osteomill/haptics/point_shell/contact_sum.h"
 #include "osteomill/haptics/point_shell/penalty.h"
-#include "osteomill/haptics/point_shell/tool_from_grid.h"
 #include "osteomill/haptics/point_shell/tool_signed_distance.h"
 
 namespace osteomill::point_shell {
@@ -13,7 +14,7 @@ inline void touch_point(const ShellPoint& point, const Vec3& point_T, const Tool
                         const ToolSignedDistance& tool, const Penalty& penalty, ToolContacts& contacts) {
   const std::optional<ToolDistance> distance = tool.distance(point_T);
   if (!distance) return;
-  const double cosine = distance->outward_T.dot(X_TG.turn * normal_of(point));
+  const double cosine = distance->outward_T.dot(X_TG.turn * point.normal());
   const Penalty::Push push = penalty.push(-distance->distance_mm, static_cast<double>(point.area_mm2), cosine,
                                           tool.curvature_per_mm(point_T));
   if (!(push.force_N > 0)) return;

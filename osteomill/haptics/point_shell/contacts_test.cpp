@@ -2,10 +2,13 @@
 #include <numbers>
 #include <random>
 
+#include "tests/random.h"
 #include "tests/shapes.h"
 #include <gtest/gtest.h>
 
+#include "osteomill/haptics/bone_points/every_point.h"
 #include "osteomill/haptics/point_shell/brick_contacts.h"
+#include "osteomill/haptics/point_shell/contact_point.h"
 #include "osteomill/haptics/point_shell/octree_contacts.h"
 #include "osteomill/haptics/point_shell/virtual_coupling.h"
 
@@ -15,37 +18,28 @@ namespace {
 using testing_support::ball;
 using testing_support::centred_cube;
 using testing_support::plane;
+using testing_support::random_vector;
 using testing_support::shape_volume;
+using testing_support::uniform;
 
 const MillingTool kTool{1.5, 1.0, 25.0};
 
-double uniform(std::mt19937& bits, double from, double to) {
-  return from + (to - from) * (static_cast<double>(bits()) / 4294967295.0);
-}
-
-Vec3 random_vector(std::mt19937& bits) {
-  const double x = uniform(bits, -1, 1), y = uniform(bits, -1, 1), z = uniform(bits, -1, 1);
-  return {x, y, z};
-}
-
-ShellRules rules_of(Mode mode, int scale) {
-  ShellRules rules = Settings::defaults(mode).shell;
-  rules.scale = scale;
-  return rules;
-}
-
 constexpr Penalty kOfPoints{20, 0};
 // Patches of two cells' areas at most, as the algorithm has it.
-Penalty of_patches(const PointShell& shell) {
-  return {20, 2 * shell.lattice().cell_area_mm2()};
+Penalty of_patches(const BoneBricks& bricks) {
+  return {20, 2 * bricks.lattice().cell_area_mm2()};
+}
+
+BoneBricks fine_bricks(const Volume& volume, double spacing_mm = BoneBricks::kSpacing_mm) {
+  return BoneBricks(volume, spacing_mm, BoneBricks::Points::fine);
 }
 
 SampledDistanceField fine_field() {
   return SampledDistanceField(kTool, SampledDistanceField::suitable_spacing_mm(kTool));
 }
 
-// The slow plain answer: every point of the shell.
-ToolContacts contacts_by_brute_force(const PointShell& shell, const ToolSignedDistance& tool,
+// The slow plain answers: every point of the shell.
+ToolContacts contacts_by_brute_force(const VoxelShell& shell, const ToolSignedDistance& tool,
                                      const Pose& X_WT, const Penalty& penalty) {
   ToolContacts contacts;
   const Mat3 R_WT = X_WT.orientation.toRotationMatrix();
@@ -59,6 +53,18 @@ ToolContacts contacts_by_brute_force(const PointShell& shell, const ToolSignedDi
         .add(-k * distance->distance_mm, k, R_WT * distance->outward_T, point_W - X_WT.position_mm);
   });
   return contacts;
+}
+
+ToolContacts contacts_one_by_one(BoneBricks& bricks, const MillingTool& milling_tool, const Pose& X_WT,
+                                 const Penalty& penalty) {
+  ToolContacts contacts;
+  const ToolSignedDistance tool(milling_tool);
+  const ToolFromGrid X_TG(bricks.lattice(), X_WT);
+  for_each_point(bricks, bricks.fine(), [&](const ShellPoint& point, const Vec3& origin_G) {
+    touch_point(point, X_TG * (origin_G + point.position_mm()), X_TG, tool, penalty, contacts);
+  });
+  const Mat3 R_WT = X_WT.orientation.toRotationMatrix();
+  return {contacts.burr.in_outer(R_WT), contacts.shaft.in_outer(R_WT), contacts.touching};
 }
 
 void expect_near(const ContactSum& a, const ContactSum& b, double relative) {
@@ -87,9 +93,8 @@ TEST(OctreeContacts, FindsWhatLookingAtEveryPointFinds) {
   const Volume volume = shape_volume(turned_cube(60, 0.2), ball({0.3, 0.1, 0}, 5));
   const ToolSignedDistance sampled(kTool, fine_field());
   const ToolSignedDistance closed(kTool);
-  for (const ShellRules& rules :
-       {rules_of(Mode::paper, 1), rules_of(Mode::paper, 3), rules_of(Mode::steady, 2)}) {
-    const PointShell shell(volume, rules);
+  for (const int scale : {1, 3}) {
+    const VoxelShell shell(volume, scale);
     int touched = 0;
     for (int n = 0; n < 150; ++n) {
       const Pose X_WT = random_pose(bits, 7);
@@ -106,7 +111,7 @@ TEST(OctreeContacts, FindsWhatLookingAtEveryPointFinds) {
   }
 }
 
-TEST(BrickContacts, AreTheOctreesToTheRounding) {
+TEST(BrickContacts, AreThePointsOneByOneToTheRounding) {
   std::mt19937 bits(6);
   // A ball with a hole in which the shaft is sleeved, and one that has been milled at random.
   const auto sleeve = [](const Vec3& p) {
@@ -114,9 +119,9 @@ TEST(BrickContacts, AreTheOctreesToTheRounding) {
   };
   for (const MillingTool& tool : {kTool, MillingTool{0.8, 1.2, 6}, MillingTool{2, 0.5, 12}}) {
     Volume volume = shape_volume(turned_cube(60, 0.2), sleeve);
-    for (const int scale : {1, 3}) {
-      PointShell shell(volume, rules_of(Mode::steady, scale));
-      for (int n = 0; n < 400; ++n) {
+    for (const double spacing_mm : {0.13, 0.39}) {
+      BoneBricks bricks = fine_bricks(volume, spacing_mm);
+      for (int n = 0; n < 200; ++n) {
         VoxelBox changed;
         for (int m = 0; m < 5; ++m) {
           const VoxelIndex v{static_cast<int>(bits() % 60), static_cast<int>(bits() % 60),
@@ -124,13 +129,13 @@ TEST(BrickContacts, AreTheOctreesToTheRounding) {
           volume.lower_density(v, 0.3f * volume.grid()[v]);
           changed.include(v);
         }
-        shell.refresh(changed);
+        bricks.refresh(changed);
         const Pose X_WT = n % 4 == 0
                               ? Pose{{0.02, 0.03, -2}, quaternion_from_rotation_vector({0.01, 0.02, 0})}
                               : random_pose(bits, 6);
-        for (const Penalty& penalty : {kOfPoints, of_patches(shell)}) {
-          const ToolContacts plain = contacts_by_octree(shell, ToolSignedDistance(tool), X_WT, penalty);
-          const ToolContacts fast = contacts_by_bricks(shell, tool, X_WT, penalty);
+        for (const Penalty& penalty : {kOfPoints, of_patches(bricks)}) {
+          const ToolContacts plain = contacts_one_by_one(bricks, tool, X_WT, penalty);
+          const ToolContacts fast = contacts_by_bricks(bricks, tool, X_WT, penalty);
           EXPECT_EQ(plain.touching, fast.touching);
           expect_near(fast.burr, plain.burr, 1e-9);
           expect_near(fast.shaft, plain.shaft, 1e-9);
@@ -147,17 +152,18 @@ struct PlaneRatios {
   double sideways = 0;
 };
 
-PlaneRatios slide_over_plane(const ShellRules& rules, const ToolSignedDistance& tool, const Vec3& normal,
-                             double depth_mm, double edge_voxels) {
+// `contacts(volume)` makes what gives the contacts at a pose.
+template <typename Contacts>
+PlaneRatios slide_over_plane(const Contacts& contacts, const Vec3& normal, double depth_mm,
+                             double edge_voxels) {
   const Vec3 n = normal.normalized(), through(0.01, 0.02, -0.03);
   const Volume volume = shape_volume(centred_cube(48, 0.125), plane(through, n), edge_voxels);
-  const PointShell shell(volume, rules);
-  const Penalty penalty = rules.surface_shell ? of_patches(shell) : kOfPoints;
+  auto contacts_at = contacts(volume);
   PlaneRatios ratios;
   for (int step = 0; step < 60; ++step) {
     const Vec3 along = (0.016 * step - 0.5) * n.unitOrthogonal() + 0.003 * step * n.cross(n.unitOrthogonal());
     const Pose X_WT{through + along + (1.5 - depth_mm) * n, smallest_rotation(Vec3::UnitZ(), n)};
-    const Vec3 force = contacts_by_octree(shell, tool, X_WT, penalty).total().force_N;
+    const Vec3 force = contacts_at(X_WT).total().force_N;
     const double ratio = force.dot(n) / (20 * std::numbers::pi * (1.5 - depth_mm) * depth_mm * depth_mm);
     ratios.min = std::min(ratios.min, ratio);
     ratios.max = std::max(ratios.max, ratio);
@@ -166,14 +172,28 @@ PlaneRatios slide_over_plane(const ShellRules& rules, const ToolSignedDistance& 
   return ratios;
 }
 
+auto surface_points_apart(double spacing_mm) {
+  return [spacing_mm](const Volume& volume) {
+    return [bricks = fine_bricks(volume, spacing_mm)](const Pose& X_WT) mutable {
+      return contacts_by_bricks(bricks, kTool, X_WT, of_patches(bricks));
+    };
+  };
+}
+
+auto voxel_centres(int scale) {
+  return [scale](const Volume& volume) {
+    return [shell = VoxelShell(volume, scale), tool = ToolSignedDistance(kTool, fine_field())](
+               const Pose& X_WT) { return contacts_by_octree(shell, tool, X_WT, kOfPoints); };
+  };
+}
+
 const std::vector<Vec3> kNormals{{0, 0, 1},     {1, 0, 0},  {1, 1, 0},      {1, 1, 1},         {1, 2, 3},
                                  {0.05, 0, -1}, {3, -2, 1}, {-0.4, 0.9, 2}, {0.37, 0.61, -0.2}};
 
 TEST(PlaneContact, SteadyIsTheAnalyticForceInEveryDirection) {
-  const ToolSignedDistance tool(kTool);
   for (const Vec3& normal : kNormals) {
     for (const double depth_mm : {0.125, 0.2, 0.4}) {
-      const PlaneRatios r = slide_over_plane(rules_of(Mode::steady, 1), tool, normal, depth_mm, 2);
+      const PlaneRatios r = slide_over_plane(surface_points_apart(0.13), normal, depth_mm, 2);
       EXPECT_GT(r.min, 0.97) << normal.transpose() << " at " << depth_mm;
       EXPECT_LT(r.max, 1.02) << normal.transpose() << " at " << depth_mm;
       EXPECT_LT((r.max - r.min) / 2, 0.015);
@@ -182,20 +202,19 @@ TEST(PlaneContact, SteadyIsTheAnalyticForceInEveryDirection) {
   }
 }
 
-TEST(PlaneContact, SteadyHoldsAtScaleThreeAndOnOtherEdges) {
-  const ToolSignedDistance tool(kTool);
+TEST(PlaneContact, SteadyHoldsWithPointsFartherApartAndOnOtherEdges) {
   for (const Vec3& normal : kNormals) {
-    const PlaneRatios coarse = slide_over_plane(rules_of(Mode::steady, 3), tool, normal, 0.375, 2);
+    const PlaneRatios coarse = slide_over_plane(surface_points_apart(0.5), normal, 0.375, 2);
     EXPECT_GT(coarse.min, 0.95) << normal.transpose();
     EXPECT_LT(coarse.max, 1.05) << normal.transpose();
-    const PlaneRatios wide = slide_over_plane(rules_of(Mode::steady, 1), tool, normal, 0.25, 4);
+    const PlaneRatios wide = slide_over_plane(surface_points_apart(0.13), normal, 0.25, 4);
     EXPECT_GT(wide.min, 0.98) << normal.transpose();
     EXPECT_LT(wide.max, 1.02) << normal.transpose();
   }
   // An edge one voxel wide puts the isosurface itself up to 0.09 voxel off the plane where it follows an
   // axis.
   for (const Vec3& normal : {Vec3(1, 1, 0), Vec3(1, 1, 1), Vec3(1, 2, 3), Vec3(3, -2, 1)}) {
-    const PlaneRatios sharp = slide_over_plane(rules_of(Mode::steady, 1), tool, normal, 0.25, 1);
+    const PlaneRatios sharp = slide_over_plane(surface_points_apart(0.13), normal, 0.25, 1);
     EXPECT_GT(sharp.min, 0.96) << normal.transpose();
     EXPECT_LT(sharp.max, 1.04) << normal.transpose();
   }
@@ -204,14 +223,13 @@ TEST(PlaneContact, SteadyHoldsAtScaleThreeAndOnOtherEdges) {
 // What the paper's way gives: centres lie inside the bone, half a voxel and more, and are fewer where it
 // slopes.
 TEST(PlaneContact, PaperIsTooSoftByASlopeDependentPart) {
-  const ToolSignedDistance tool(kTool, fine_field());
-  const PlaneRatios straight = slide_over_plane(rules_of(Mode::paper, 1), tool, {0, 0, 1}, 0.25, 2);
+  const PlaneRatios straight = slide_over_plane(voxel_centres(1), {0, 0, 1}, 0.25, 2);
   EXPECT_NEAR(straight.min, 0.78, 0.04);
   EXPECT_NEAR(straight.max, 0.78, 0.04);
-  const PlaneRatios diagonal = slide_over_plane(rules_of(Mode::paper, 1), tool, {1, 1, 1}, 0.25, 2);
+  const PlaneRatios diagonal = slide_over_plane(voxel_centres(1), {1, 1, 1}, 0.25, 2);
   EXPECT_NEAR(diagonal.min, 0.43, 0.04);
   EXPECT_NEAR(diagonal.max, 0.43, 0.04);
-  const PlaneRatios coarse = slide_over_plane(rules_of(Mode::paper, 3), tool, {1, 1, 1}, 0.125, 2);
+  const PlaneRatios coarse = slide_over_plane(voxel_centres(3), {1, 1, 1}, 0.125, 2);
   EXPECT_LT(coarse.min, 0.02);
 }
 
@@ -235,12 +253,12 @@ double ball_force(double bone_radius, double burr_radius, double between) {
 TEST(BallContact, SteadyIsTheIntegralOverTheBall) {
   std::mt19937 bits(9);
   const Volume volume = shape_volume(centred_cube(72, 0.125), ball({0, 0, 0}, 4));
-  const PointShell shell(volume, rules_of(Mode::steady, 1));
+  BoneBricks bricks = fine_bricks(volume);
   for (int n = 0; n < 100; ++n) {
     const Vec3 direction = random_vector(bits).normalized();
     const double depth_mm = uniform(bits, 0.15, 0.5);
     const Pose X_WT{(5.5 - depth_mm) * direction, smallest_rotation(Vec3::UnitZ(), direction)};
-    const ContactSum sum = contacts_by_bricks(shell, kTool, X_WT, of_patches(shell)).total();
+    const ContactSum sum = contacts_by_bricks(bricks, kTool, X_WT, of_patches(bricks)).total();
     const double expected = 20 * ball_force(4, 1.5, 5.5 - depth_mm);
     EXPECT_NEAR(sum.force_N.dot(direction) / expected, 1, 0.035);
     EXPECT_LT(sum.force_N.cross(direction).norm() / sum.force_N.norm(), 0.015);
@@ -251,7 +269,7 @@ TEST(BallContact, SteadyIsTheIntegralOverTheBall) {
 TEST(BallContact, PaperIsSofterButPushesOutwards) {
   std::mt19937 bits(10);
   const Volume volume = shape_volume(centred_cube(72, 0.125), ball({0, 0, 0}, 4));
-  const PointShell shell(volume, rules_of(Mode::paper, 1));
+  const VoxelShell shell(volume, 1);
   const ToolSignedDistance tool(kTool, fine_field());
   for (int n = 0; n < 100; ++n) {
     const Vec3 direction = random_vector(bits).normalized();
@@ -296,12 +314,11 @@ TEST(ContactSum, ADerivativeRowIsTheDepthsOwn) {
 // point at the distance s from the centre, k depth / s (1 - n n^T) adds to the derivative of the force.
 TEST(ContactSum, TheDerivativeOfTheForceLacksOnlyTheTurningOfTheNormals) {
   const Volume volume = shape_volume(centred_cube(64, 0.125), ball({0, 0, -2.5}, 3));
-  const PointShell shell(volume, rules_of(Mode::steady, 1));
-  const ToolSignedDistance tool(kTool);
+  BoneBricks bricks = fine_bricks(volume);
   const Pose X_WT{{0.2, 0.1, 1.7}, quaternion_from_rotation_vector({0.3, 0.2, 0})};
-  const ContactSum here = contacts_by_octree(shell, tool, X_WT, kOfPoints).total();
+  const ContactSum here = contacts_by_bricks(bricks, kTool, X_WT, kOfPoints).total();
   Mat3 left_out = Mat3::Zero();
-  shell.for_each_point([&](const Vec3& point_W, double area) {
+  for_each_point(bricks, [&](const Vec3& point_W, double area) {
     const Vec3 r = point_W - X_WT.position_mm;
     const double s = r.norm(), depth = 1.5 - s;
     if (!(depth > 0)) return;
@@ -313,7 +330,7 @@ TEST(ContactSum, TheDerivativeOfTheForceLacksOnlyTheTurningOfTheNormals) {
   for (int axis = 0; axis < 3; ++axis) {
     const auto force_at = [&](double step) {
       const Pose shifted{X_WT.position_mm + step * Vec3::Unit(axis), X_WT.orientation};
-      return contacts_by_octree(shell, tool, shifted, kOfPoints).total().force_N;
+      return contacts_by_bricks(bricks, kTool, shifted, kOfPoints).total().force_N;
     };
     differences.col(axis) = (force_at(kStep) - force_at(-kStep)) / (2 * kStep);
   }
@@ -326,18 +343,17 @@ TEST(ContactSum, TheDerivativeOfTheForceLacksOnlyTheTurningOfTheNormals) {
 // turns approach -K as the depth goes to zero, the term left out being proportional to it.
 TEST(ContactSum, OnTheShaftTheLeftOutTermVanishesWithTheDepth) {
   const Volume volume = shape_volume(centred_cube(80, 0.1), plane({0, 0, 0.02}, {0, 0, 1}));
-  const PointShell shell(volume, rules_of(Mode::steady, 1));
-  const ToolSignedDistance tool(kTool);
+  BoneBricks bricks = fine_bricks(volume);
   const auto relative_error = [&](double depth_mm) {
     // The burr hangs free beyond the plane's border; the shaft lies along x.
     const Pose X_WT{{-6, 0, 1.02 - depth_mm}, smallest_rotation(Vec3::UnitZ(), Vec3::UnitX())};
-    const ContactSum here = contacts_by_octree(shell, tool, X_WT, kOfPoints).total();
+    const ContactSum here = contacts_by_bricks(bricks, kTool, X_WT, kOfPoints).total();
     Mat3 differences;
     constexpr double kStep = 1e-7;
     for (int axis = 0; axis < 3; ++axis) {
       const auto torque_at = [&](double step) {
         const Pose turned = moved(X_WT, {Vec3::Zero(), step * Vec3::Unit(axis)});
-        return contacts_by_octree(shell, tool, turned, kOfPoints).total().torque_Nmm;
+        return contacts_by_bricks(bricks, kTool, turned, kOfPoints).total().torque_Nmm;
       };
       differences.col(axis) = (torque_at(kStep) - torque_at(-kStep)) / (2 * kStep);
     }

@@ -48,12 +48,14 @@ void PointShellAlgorithm::prepare(const Scene& scene) {
   volume_ = scene.volume;
   centreline_T_ = centreline_vertices(scene.tool, kCentrelinePoints);
   penalty_.stiffness_N_per_mm3 = contact_stiffness_N_per_mm3(settings_, scene.tool);
-  shell_ = PointShell(*scene.volume, settings_.shell);
-  // Seen from a corner the surface in a cell is at most about twice a cell's side.
-  penalty_.max_patch_mm2 = settings_.shell.surface_shell ? 2 * shell_.lattice().cell_area_mm2() : 0;
-  if (settings_.shell.surface_shell) {
+  if (settings_.surface_shell) {
+    surface_ = BoneBricks(*scene.volume, settings_.scale * BoneBricks::kSpacing_mm, BoneBricks::Points::fine);
+    // Seen from a corner the surface in a cell is at most about twice a cell's side.
+    penalty_.max_patch_mm2 = 2 * surface_.lattice().cell_area_mm2();
     tool_ = ToolSignedDistance(scene.tool);
   } else {
+    voxels_ = VoxelShell(*scene.volume, settings_.scale);
+    penalty_.max_patch_mm2 = 0;
     const double spacing_mm = SampledDistanceField::suitable_spacing_mm(scene.tool);
     tool_ = ToolSignedDistance(scene.tool, SampledDistanceField(scene.tool, spacing_mm, penalty_.reach_mm()));
   }
@@ -67,16 +69,22 @@ void PointShellAlgorithm::reset() {
   carried_ = false;
 }
 
+int PointShellAlgorithm::sample_point_count() const {
+  return static_cast<int>(settings_.surface_shell ? surface_.octree().total() : voxels_.point_count());
+}
+
 void PointShellAlgorithm::volume_changed(const VolumeChange& change) {
-  shell_.refresh(change.voxels);
+  if (settings_.surface_shell) {
+    surface_.refresh(change.voxels);
+  } else {
+    voxels_.refresh(change.voxels);
+  }
   refreshed_this_tick_ = true;
 }
 
-ToolContacts PointShellAlgorithm::contacts_at(const Pose& X_WT) const {
-  if (settings_.shell.surface_shell && !settings_.by_octree) {
-    return contacts_by_bricks(shell_, tool_.tool(), X_WT, penalty_);
-  }
-  return contacts_by_octree(shell_, tool_, X_WT, penalty_);
+ToolContacts PointShellAlgorithm::contacts_at(const Pose& X_WT) {
+  return settings_.surface_shell ? contacts_by_bricks(surface_, tool_.tool(), X_WT, penalty_)
+                                 : contacts_by_octree(voxels_, tool_, X_WT, penalty_);
 }
 
 // The target itself, to the last bit, where the tick's limits let the tool reach it.
@@ -106,7 +114,10 @@ bool PointShellAlgorithm::is_inside_bone(const Pose& X_WT) const {
 }
 
 HapticStep PointShellAlgorithm::step(const Pose& X_WD, double dt_s) {
-  if (!refreshed_this_tick_ && !shell_.is_up_to_date()) shell_.refresh({});
+  if (settings_.surface_shell) {
+    if (!refreshed_this_tick_ && !surface_.is_up_to_date()) surface_.refresh({});
+    surface_.make_room(tool_.tool(), X_WT_);
+  }
   refreshed_this_tick_ = false;
   const bool begins = !has_pose_;
   if (begins) X_WT_ = X_WD_before_ = X_WD;

@@ -2,12 +2,13 @@
 
 #include <vector>
 
+#include "osteomill/haptics/bone_points/bone_bricks.h"
 #include "osteomill/haptics/haptic_algorithm.h"
 #include "osteomill/haptics/point_shell/penalty.h"
-#include "osteomill/haptics/point_shell/point_shell.h"
 #include "osteomill/haptics/point_shell/point_shell_settings.h"
 #include "osteomill/haptics/point_shell/tool_signed_distance.h"
 #include "osteomill/haptics/point_shell/virtual_coupling.h"
+#include "osteomill/haptics/point_shell/voxel_shell.h"
 
 namespace osteomill::point_shell {
 
@@ -29,14 +30,13 @@ class PointShellAlgorithm final : public HapticAlgorithm {
   HapticStep step(const Pose& X_WD, double dt_s) override;
   void volume_changed(const VolumeChange& change) override;
   void reset() override;
-  int sample_point_count() const override { return static_cast<int>(shell_.point_count()); }
+  int sample_point_count() const override;
 
   const Settings& settings() const { return settings_; }
-  const PointShell& shell() const { return shell_; }
   const Penalty& penalty() const { return penalty_; }
 
  private:
-  ToolContacts contacts_at(const Pose& X_WT) const;
+  ToolContacts contacts_at(const Pose& X_WT);
   Pose towards(const Pose& X_WT_start, const Pose& target) const;
   Pose let_go(const Pose& X_WT_start, const Pose& target, const MoveBound& bound) const;
   bool is_inside_bone(const Pose& X_WT) const;
@@ -45,7 +45,9 @@ class PointShellAlgorithm final : public HapticAlgorithm {
   Settings settings_;
   VirtualCoupling coupling_;
   ToolSignedDistance tool_;
-  PointShell shell_;
+  // The bone, one or the other.
+  VoxelShell voxels_;
+  BoneBricks surface_;
   Penalty penalty_;
 
   bool refreshed_this_tick_ = false;

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "tests/random.h"
 #include "tests/shapes.h"
 #include <gtest/gtest.h>
 
@@ -17,23 +18,15 @@ namespace {
 using testing_support::ball;
 using testing_support::centred_cube;
 using testing_support::plane;
+using testing_support::random_vector;
 using testing_support::shape_volume;
 
 const MillingTool kTool{1.5, 1.0, 25.0};
 constexpr double kTick_s = 1e-3;
 
-double uniform(std::mt19937& bits, double from, double to) {
-  return from + (to - from) * (static_cast<double>(bits()) / 4294967295.0);
-}
-
-Vec3 random_vector(std::mt19937& bits) {
-  const double x = uniform(bits, -1, 1), y = uniform(bits, -1, 1), z = uniform(bits, -1, 1);
-  return {x, y, z};
-}
-
 Settings full_resolution(Mode mode) {
   Settings settings = Settings::defaults(mode);
-  settings.shell.scale = 1;
+  settings.scale = 1;
   return settings;
 }
 
@@ -354,18 +347,6 @@ TEST(PointShellAlgorithm, TheSameInputGivesTheSameBits) {
   }
 }
 
-// Without the kernel, the same run to the rounding of the sums.
-TEST(PointShellAlgorithm, TheBrickKernelChangesNothingThatCanBeFelt) {
-  Settings plain = full_resolution(Mode::steady);
-  plain.by_octree = true;
-  const auto fast = run_with_milling(full_resolution(Mode::steady));
-  const auto slow = run_with_milling(plain);
-  for (std::size_t n = 0; n < fast.size(); ++n) {
-    EXPECT_LT((fast[n].wrench.force_N - slow[n].wrench.force_N).norm(), 1e-8);
-    EXPECT_LT((fast[n].wrench.torque_Nmm - slow[n].wrench.torque_Nmm).norm(), 1e-8);
-  }
-}
-
 // A device that runs far ahead: the tool follows it no faster than its limits and stays on its side of the
 // bone.
 TEST(PointShellAlgorithm, TheToolIsNotPulledThroughAWall) {
@@ -414,7 +395,7 @@ TEST(Settings, WhatIsOutOfRangeIsRefused) {
   };
   EXPECT_NO_THROW(PointShellAlgorithm(Settings::defaults(Mode::paper)));
   EXPECT_NO_THROW(PointShellAlgorithm(Settings::defaults(Mode::steady)));
-  refused([](Settings& s) { s.shell.scale = 0; });
+  refused([](Settings& s) { s.scale = 0; });
   refused([](Settings& s) { s.translational_stiffness_N_per_mm = 0; });
   refused([](Settings& s) { s.torsional_stiffness_Nmm_per_rad = std::nan(""); });
   refused([](Settings& s) { s.max_depth_mm = -1; });

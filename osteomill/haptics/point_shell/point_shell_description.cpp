@@ -21,16 +21,17 @@ const std::vector<Field>& fields() {
   // Name, unit, range, value in paper, in steady, meaning, option.
   static const std::vector<Field> all{
       setting_field<Settings>(
-          {"scale", "", SettingRange::count(1, ShellRules::kMaxScale), 1, 1,
-           "Coarseness: a cell of the shell is this many voxels wide along each axis; with surface-shell, in "
-           "voxels of less than 0.0625 mm, as many as are that wide",
+          {"scale", "", SettingRange::count(1, VoxelShell::kMaxScale), 1, 1,
+           "Coarseness: the voxels whose centres are points are this many of the scan's wide along each "
+           "axis; "
+           "with surface-shell the points lie this many times 0.13 mm apart, or as the scan's voxels do",
            "shell-scale"},
-          [](Settings & s) -> auto& { return s.shell.scale; }),
+          [](Settings & s) -> auto& { return s.scale; }),
       setting_field<Settings>(
           {"surface-shell", "", SettingRange::on_or_off(), 0, 1,
            "Points lie on the isosurface, each for the patch of surface that it stands for, and follow "
            "densities as they fall; off: voxel centres inside the bone, all alike"},
-          [](Settings & s) -> auto& { return s.shell.surface_shell; }),
+          [](Settings & s) -> auto& { return s.surface_shell; }),
       setting_field<Settings>(
           {"translational-stiffness", "N/mm", SettingRange::positive(), 2, 2,
            "Virtual coupling between device and simulated tool", "stiffness"},

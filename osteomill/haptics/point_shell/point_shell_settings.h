@@ -5,33 +5,17 @@
 
 namespace osteomill::point_shell {
 
-/// What the points of the shell are and how they are kept up.
-struct ShellRules {
-  static constexpr int kMaxScale = 32;
-  /// A cell is so many voxels wide along each axis; in a surface shell of a fine scan more, as many as are
-  /// 0.0625 mm.
-  int scale = 1;
-  /// False (paper): the centres of the surface voxels, each for the square of its cell; points come and go
-  /// with their voxels, all at once. True: points lie on the isosurface, where the grid's edges to the
-  /// neighbours that are not bone cross it, stand for their voxel's exposed faces seen along the normal, and
-  /// move while densities fall; a coarse cell is the weighted mean of the surface voxels in it.
-  bool surface_shell = false;
-  /// About how many points of a surface shell a tick brings up to date, brick by brick in turn; 0 for all.
-  int refreshed_points_per_tick = 256;
-};
-
 /// What algorithm 3 is made of; point_shell_description.cpp says of each setting what it means, its range and
 /// its value in either mode.
 struct Settings {
-  ShellRules shell;
+  /// Of the voxels whose centres are points, or of `BoneBricks::kSpacing_mm`.
+  int scale = 1;
+  /// False (paper): VoxelShell. True: BoneBricks.
+  bool surface_shell = false;
   double translational_stiffness_N_per_mm = 0;
   double torsional_stiffness_Nmm_per_rad = 0;
   double max_depth_mm = 0;
   bool guarded_move = false;
-  /// How it is computed, not what, and for tests alone: a surface shell's sums point by point from the
-  /// octree, in the place of many at a time from bricks.
-  bool by_octree = false;
-
   /// No burr may be pulled through bone by this force: the greatest that a device is sent by default.
   static constexpr double kMaxForce_N = 20;
 

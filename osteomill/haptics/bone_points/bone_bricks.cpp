@@ -1,10 +1,11 @@
-#include "osteomill/haptics/barrier_shell/bone_bricks.h"
+#include "osteomill/haptics/bone_points/bone_bricks.h"
 
 #include <algorithm>
 
 #include "osteomill/numbers/work_progress.h"
+#include "osteomill/tool/tool_distance.h"
 
-namespace osteomill::barrier_shell {
+namespace osteomill {
 
 namespace {
 
@@ -15,30 +16,31 @@ constexpr std::size_t kCoarseChunks = 16384;
 // Kept free for what one tick makes.
 constexpr std::size_t kSpareSlots = 2048;
 constexpr std::size_t kSpareChunks = 4096;
+// Bricks nearer than this to the tool are not forgotten.
+constexpr double kKept_mm = 2;
 
-// What looking at a brick costs, in edges: passed over, and for so many densities read and then looked at.
+// What looking at a brick costs, in points made: passed over, and for so many densities.
 constexpr int kPassedOverCost = 2;
-constexpr int kDensitiesRead = 60;
-constexpr int kDensitiesSearched = 60;
+constexpr int kDensitiesLookedAt = 60;
 
 }  // namespace
 
-BoneBricks::BoneBricks(const Volume& volume, double spacing_mm)
+BoneBricks::BoneBricks(const Volume& volume, double spacing_mm, Points points)
     : lattice_(volume, spacing_mm),
+      kinds_(points),
       octree_(lattice_.brick_dims()),
       fine_(kSlots, kFineChunks),
-      coarse_(kSlots, kCoarseChunks),
+      coarse_(kSlots, points == Points::fine ? 0 : kCoarseChunks),
       brick_of_slot_(kSlots),
-      fingerprints_(kSlots),
       found_(std::make_unique<SurfaceLattice::BrickSurface>()) {
   const auto& dims = lattice_.brick_dims();
-  slots_.resize(index_of({0, 0, dims[2]}), kNoPoints);
+  places_.resize(cell_count(dims), {kNoPoints, 0});
   for (int k = 0; k < dims[2]; ++k) {
     WorkProgress::done(static_cast<std::size_t>(k), static_cast<std::size_t>(dims[2]));
     for (int j = 0; j < dims[1]; ++j) {
       for (int i = 0; i < dims[0]; ++i) {
         if (!lattice_.may_hold_surface({i, j, k})) continue;
-        slots_[index_of({i, j, k})] = kUnmade;
+        places_[index_of({i, j, k})].slot = kUnmade;
         octree_.add(i, j, k, 1);
       }
     }
@@ -56,19 +58,17 @@ Vec3 BoneBricks::node_middle_G(int level, int i, int j, int k) const {
 }
 
 std::uint32_t BoneBricks::slot_of(const VoxelIndex& brick) {
-  const std::uint32_t& slot = slots_[index_of(brick)];
-  if (slot == kUnmade) make(brick);
-  return slot;
+  const Place& place = places_[index_of(brick)];
+  if (place.slot == kUnmade) make(brick);
+  return place.slot;
 }
 
 // Makes a brick, or makes it anew; returns what it cost.
 int BoneBricks::make(const VoxelIndex& brick) {
-  std::uint32_t& slot = slots_[index_of(brick)];
-  const bool has_points = slot != kUnmade && slot != kNoPoints;
-  found_->fingerprint = has_points ? fingerprints_[slot] : 0;
-  const int crossed = lattice_.find_surface(brick, *found_);
-  const int read_cost = lattice_.densities_of_brick() / kDensitiesRead;
-  if (crossed == SurfaceLattice::kUnchanged) return read_cost;
+  Place& place = places_[index_of(brick)];
+  std::uint32_t& slot = place.slot;
+  place.changes = lattice_.changes_of(brick);
+  lattice_.find_surface(brick, *found_);
   const std::int32_t before = slot == kUnmade     ? 1
                               : slot == kNoPoints ? 0
                                                   : static_cast<std::int32_t>(fine_.brick(slot).count);
@@ -81,15 +81,17 @@ int BoneBricks::make(const VoxelIndex& brick) {
   std::int32_t after = 0;
   if (slot != kNoPoints) {
     after = static_cast<std::int32_t>(fine_.replace(slot, {found_->fine.data(), found_->fine_count}));
-    fingerprints_[slot] = found_->fingerprint;
-    coarse_.replace(slot, {found_->coarse.data(), found_->coarse_count});
+    if (kinds_ == Points::fine_and_coarse) {
+      SurfaceLattice::merge_flat_cells(*found_);
+      coarse_.replace(slot, {found_->coarse.data(), found_->coarse_count});
+    }
     if (after == 0) {
       free_slots_.push_back(slot);
       slot = kNoPoints;
     }
   }
   octree_.add(brick.i, brick.j, brick.k, after - before);
-  return read_cost + lattice_.densities_of_brick() / kDensitiesSearched + crossed;
+  return lattice_.densities_of_brick() / kDensitiesLookedAt + static_cast<int>(found_->fine_count);
 }
 
 void BoneBricks::refresh(const VoxelBox& voxels, int budget) {
@@ -111,24 +113,39 @@ bool BoneBricks::start_sweep() {
 // Bricks that had no surface come first: where it has moved into them it is found there before it is taken
 // from where it was.
 int BoneBricks::visit(const VoxelIndex& brick) {
-  const std::uint32_t slot = slots_[index_of(brick)];
-  if (slot == kUnmade || (slot == kNoPoints) != sweep_.is_first_pass()) return kPassedOverCost;
-  if (slot == kNoPoints && !lattice_.may_hold_surface(brick)) return kPassedOverCost;
+  const Place& place = places_[index_of(brick)];
+  if (place.slot == kUnmade || (place.slot == kNoPoints) != sweep_.is_first_pass()) return kPassedOverCost;
+  if (place.changes == lattice_.changes_of(brick)) return kPassedOverCost;
+  if (place.slot == kNoPoints && !lattice_.may_hold_surface(brick)) return kPassedOverCost;
   return make(brick);
+}
+
+void BoneBricks::make_room(const MillingTool& tool, const Pose& X_WT) {
+  const Pose X_TW = X_WT.inverse();
+  for (std::size_t n = 0; n < brick_of_slot_.size() && is_short_of_room(); ++n) {
+    const std::uint32_t slot = static_cast<std::uint32_t>(next_to_forget_);
+    next_to_forget_ = (next_to_forget_ + 1) % brick_of_slot_.size();
+    if (fine_.brick(slot).count != 0 && !is_near(tool, X_TW, brick_of_slot_[slot])) forget(slot);
+  }
 }
 
 bool BoneBricks::is_short_of_room() const {
   return free_slots_.size() < kSpareSlots || fine_.free_chunks() < kSpareChunks ||
-         coarse_.free_chunks() < kSpareChunks;
+         (kinds_ == Points::fine_and_coarse && coarse_.free_chunks() < kSpareChunks);
+}
+
+bool BoneBricks::is_near(const MillingTool& tool, const Pose& X_TW, const VoxelIndex& b) const {
+  const Vec3 middle_W = lattice_.origin_W() + lattice_.direction() * node_middle_G(0, b.i, b.j, b.k);
+  return tool_distance(tool, X_TW * middle_W).distance_mm < node_radius_mm(0) + kKept_mm;
 }
 
 void BoneBricks::forget(std::uint32_t slot) {
   const VoxelIndex& brick = brick_of_slot_[slot];
   octree_.add(brick.i, brick.j, brick.k, 1 - static_cast<std::int32_t>(fine_.brick(slot).count));
   fine_.replace(slot, {});
-  coarse_.replace(slot, {});
-  slots_[index_of(brick)] = kUnmade;
+  if (kinds_ == Points::fine_and_coarse) coarse_.replace(slot, {});
+  places_[index_of(brick)].slot = kUnmade;
   free_slots_.push_back(slot);
 }
 
-}  // namespace osteomill::barrier_shell
+}  // namespace osteomill

@@ -4,11 +4,14 @@
 #include <memory>
 #include <vector>
 
-#include "osteomill/haptics/barrier_shell/surface_lattice.h"
+#include "osteomill/geometry/pose.h"
 #include "osteomill/haptics/bone_points/brick_sweep.h"
 #include "osteomill/haptics/bone_points/count_pyramid.h"
+#include "osteomill/haptics/bone_points/surface_lattice.h"
+#include "osteomill/numbers/row_major.h"
+#include "osteomill/tool/milling_tool.h"
 
-namespace osteomill::barrier_shell {
+namespace osteomill {
 
 /// The bone's surface as points in bricks, made when the tool comes near and forgotten when room runs out, so
 /// that neither time nor memory grows with the scan. Milling takes densities away only, so a brick that has
@@ -16,9 +19,19 @@ namespace osteomill::barrier_shell {
 /// haptic tick.
 class BoneBricks {
  public:
+  enum class Points {
+    /// All at the lattice's spacing.
+    fine,
+    /// Others as well, twice as far apart where the bone is flat.
+    fine_and_coarse
+  };
+
+  /// For a burr of a millimetre, points nearer to one another say nothing more.
+  static constexpr double kSpacing_mm = 0.13;
+
   BoneBricks() = default;
-  /// `volume` outlives it. Points at most `spacing_mm` apart, and others twice as far where the bone is flat.
-  BoneBricks(const Volume& volume, double spacing_mm);
+  /// `volume` outlives it. Points at most `spacing_mm` apart.
+  BoneBricks(const Volume& volume, double spacing_mm, Points points);
 
   const SurfaceLattice& lattice() const { return lattice_; }
   const BrickPoints& fine() const { return fine_; }
@@ -34,56 +47,48 @@ class BoneBricks {
   /// The slot of the brick in `fine` and `coarse`, which is made if it was not; `kNoPoints` where it has
   /// none.
   std::uint32_t slot_of(const VoxelIndex& brick);
-  bool is_made(const VoxelIndex& brick) const { return slots_[index_of(brick)] != kUnmade; }
+  bool is_made(const VoxelIndex& brick) const { return places_[index_of(brick)].slot != kUnmade; }
 
-  /// Says that densities fell in `voxels`, and brings about `budget` edges' worth of points up to date.
-  void refresh(const VoxelBox& voxels, int budget);
+  /// About how many points are brought up to date a tick.
+  static constexpr int kRefreshedPerTick = 450;
+  /// Says that densities fell in `voxels`, and brings about `budget` points up to date, and what it takes to
+  /// find them.
+  void refresh(const VoxelBox& voxels, int budget = kRefreshedPerTick);
   bool is_up_to_date() const { return sweep_.is_idle(); }
-  /// Makes room if little is left, by forgetting bricks of which `is_needed(brick)` says that they are not.
-  template <typename IsNeeded>
-  void make_room(const IsNeeded& is_needed);
+  /// Makes room if little is left, by forgetting bricks that are not near the tool.
+  void make_room(const MillingTool& tool, const Pose& X_WT);
   /// Points that found no room: none as long as `make_room` was called.
   std::uint64_t dropped() const { return fine_.dropped() + coarse_.dropped(); }
 
  private:
   static constexpr std::uint32_t kUnmade = 0xfffffffeu;
 
-  std::size_t index_of(const VoxelIndex& b) const {
-    const auto& dims = octree_.dims(0);
-    return static_cast<std::size_t>(b.i) +
-           static_cast<std::size_t>(dims[0]) *
-               (static_cast<std::size_t>(b.j) +
-                static_cast<std::size_t>(dims[1]) * static_cast<std::size_t>(b.k));
-  }
+  std::size_t index_of(const VoxelIndex& b) const { return row_major(octree_.dims(0), b.i, b.j, b.k); }
   int make(const VoxelIndex& brick);
   int visit(const VoxelIndex& brick);
   bool start_sweep();
   bool is_short_of_room() const;
+  bool is_near(const MillingTool& tool, const Pose& X_TW, const VoxelIndex& brick) const;
   void forget(std::uint32_t slot);
 
   SurfaceLattice lattice_;
+  Points kinds_ = Points::fine;
   CountPyramid octree_;
   std::vector<double> node_radii_mm_;
-  std::vector<std::uint32_t> slots_;
+  struct Place {
+    std::uint32_t slot;
+    /// Of the densities that its points are of.
+    std::uint32_t changes;
+  };
+  std::vector<Place> places_;
   BrickPoints fine_;
   BrickPoints coarse_;
   std::vector<std::uint32_t> free_slots_;
   // Which brick a slot is of, and where forgetting goes on.
   std::vector<VoxelIndex> brick_of_slot_;
-  // Of the densities that its points are of.
-  std::vector<std::uint64_t> fingerprints_;
   std::size_t next_to_forget_ = 0;
   BrickSweep sweep_;
   std::unique_ptr<SurfaceLattice::BrickSurface> found_;
 };
 
-template <typename IsNeeded>
-void BoneBricks::make_room(const IsNeeded& is_needed) {
-  for (std::size_t n = 0; n < brick_of_slot_.size() && is_short_of_room(); ++n) {
-    const std::uint32_t slot = static_cast<std::uint32_t>(next_to_forget_);
-    next_to_forget_ = (next_to_forget_ + 1) % brick_of_slot_.size();
-    if (fine_.brick(slot).count != 0 && !is_needed(brick_of_slot_[slot])) forget(slot);
-  }
-}
-
-}  // namespace osteomill::barrier_shell
+}  // namespace osteomill

@@ -1,0 +1,336 @@
+#include "osteomill/haptics/bone_points/surface_lattice.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "osteomill/haptics/bone_points/bits_above.h"
+
+namespace osteomill {
+
+namespace {
+
+// Of the mean normal of points that one may stand for.
+constexpr float kFlat = 0.98f;
+// Of the area: crossings whose normals are against one another.
+constexpr float kNoNormal = 1e-6f;
+
+int divide_down(int value, int divisor) {
+  const int quotient = value / divisor;
+  return value % divisor < 0 ? quotient - 1 : quotient;
+}
+
+// The weighted mean of points; the mean normal is the shorter the more the surface bends.
+class Mean {
+ public:
+  void add(const ShellPoint& point) {
+    sum_.x_mm += point.area_mm2 * point.x_mm;
+    sum_.y_mm += point.area_mm2 * point.y_mm;
+    sum_.z_mm += point.area_mm2 * point.z_mm;
+    sum_.area_mm2 += point.area_mm2;
+    sum_.normal_x += point.area_mm2 * point.normal_x;
+    sum_.normal_y += point.area_mm2 * point.normal_y;
+    sum_.normal_z += point.area_mm2 * point.normal_z;
+  }
+  bool is_empty() const { return !(sum_.area_mm2 > 0); }
+  ShellPoint mean() const {
+    const float share = 1 / sum_.area_mm2;
+    return {share * sum_.x_mm,     share * sum_.y_mm,     share * sum_.z_mm,    sum_.area_mm2,
+            share * sum_.normal_x, share * sum_.normal_y, share * sum_.normal_z};
+  }
+
+ private:
+  ShellPoint sum_{0, 0, 0, 0};
+};
+
+bool is_flat(const ShellPoint& mean) {
+  return mean.normal_x * mean.normal_x + mean.normal_y * mean.normal_y + mean.normal_z * mean.normal_z >
+         kFlat * kFlat;
+}
+
+}  // namespace
+
+SurfaceLattice::SurfaceLattice(const Volume& volume, double spacing_mm) : volume_(&volume) {
+  const GridGeometry& geometry = volume.geometry();
+  const double voxel_mm = geometry.spacing_mm.maxCoeff();
+  constexpr double kRounding = 1e-9;
+  steps_per_voxel_ = std::max(1, static_cast<int>(std::ceil(voxel_mm / spacing_mm - kRounding)));
+  // A brick of 16 nodes holds two cells of eight a side.
+  while (group_ < 8 && 2 * group_ * voxel_mm <= spacing_mm * (1 + kRounding)) group_ *= 2;
+  line_step_ = std::max(1, group_ / 2);
+  on_lines_ = 0;
+  for (int n = 0; n < 32; n += line_step_) on_lines_ |= 1u << n;
+  brick_nodes_ = group_ == 1 ? 8 : kMaxBrickNodes;
+  step_mm_ = geometry.spacing_mm / steps_per_voxel_;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const int nodes = (geometry.dims[axis] - 1) * steps_per_voxel_ + 1;
+    brick_dims_[axis] = (nodes + brick_nodes_) / brick_nodes_;
+  }
+  isovalue_ = largest_float_up_to(volume.isovalue());
+  outside_ = std::min(volume.grid().outside_density(), isovalue_ - 1);
+  for (int axis = 0; axis < 3; ++axis) {
+    crossing_steps_.step[axis] = static_cast<float>(step_mm_[axis]);
+    crossing_steps_.per_step[axis] = static_cast<float>(1 / step_mm_[axis]);
+    crossing_steps_.face[axis] =
+        static_cast<float>(line_step_ * line_step_ * step_mm_.prod() / step_mm_[axis]);
+  }
+}
+
+double SurfaceLattice::cell_area_mm2() const {
+  return std::pow(step_mm_.prod(), 2.0 / 3.0) * group_ * group_;
+}
+
+float SurfaceLattice::density(const VoxelIndex& voxel) const {
+  return volume_->grid().contains(voxel) ? volume_->grid()[voxel] : outside_;
+}
+
+// The voxels on which the nodes at the ends of a brick's edges depend, or those of so many nodes more on
+// every side; beyond the grid too.
+VoxelBox SurfaceLattice::voxels_of(const VoxelIndex& brick, int more_nodes) const {
+  const int n = brick_nodes_, s = steps_per_voxel_;
+  const auto first = [&](int b) { return divide_down(n * b - 1 - more_nodes, s); };
+  const auto last = [&](int b) { return divide_down(n * b + n - 2 + more_nodes, s) + 1; };
+  return {{first(brick.i), first(brick.j), first(brick.k)}, {last(brick.i), last(brick.j), last(brick.k)}};
+}
+
+// The weights of crossings depend on one more node all round.
+std::uint32_t SurfaceLattice::changes_of(const VoxelIndex& brick) const {
+  return volume_->bricks().changes_in(voxels_of(brick, 1).intersected(volume_->geometry().all_voxels()));
+}
+
+bool SurfaceLattice::may_hold_surface(const VoxelIndex& brick) const {
+  constexpr int kRange = BlockRanges::kBrickVoxels;
+  const VoxelBox voxels = voxels_of(brick, 0);
+  const VoxelBox inside = voxels.intersected(volume_->geometry().all_voxels());
+  const BlockRanges& ranges = volume_->bricks();
+  bool any_bone = false, all_bone = inside == voxels;
+  for (int k = inside.first.k / kRange; k <= inside.last.k / kRange; ++k) {
+    for (int j = inside.first.j / kRange; j <= inside.last.j / kRange; ++j) {
+      for (int i = inside.first.i / kRange; i <= inside.last.i / kRange; ++i) {
+        any_bone |= ranges.at(i, j, k).max > isovalue_;
+        all_bone &= ranges.at(i, j, k).min > isovalue_;
+      }
+    }
+  }
+  if (!any_bone || all_bone) return false;
+  if (steps_per_voxel_ == 1) return true;
+  // A brick within a few voxels of a coarse scan: look at them.
+  any_bone = false;
+  all_bone = inside == voxels;
+  for (int k = inside.first.k; k <= inside.last.k; ++k) {
+    for (int j = inside.first.j; j <= inside.last.j; ++j) {
+      for (int i = inside.first.i; i <= inside.last.i; ++i) {
+        const bool bone = volume_->grid()[{i, j, k}] > isovalue_;
+        any_bone |= bone;
+        all_bone &= bone;
+      }
+    }
+  }
+  return any_bone && !all_bone;
+}
+
+VoxelBox SurfaceLattice::bricks_touched_by(const VoxelBox& voxels) const {
+  if (voxels.empty()) return voxels;
+  const int n = brick_nodes_, s = steps_per_voxel_;
+  // A node reads voxels less than one away; a crossing's weight nodes from one below its lower one to two
+  // above; and a brick's first lower node is one below its own.
+  const auto first = [&](int v) { return std::max(0, divide_down((v - 1) * s + 1 - 2 + 1, n)); };
+  const auto last = [&](int v, std::size_t axis) {
+    return std::min(brick_dims_[axis] - 1, divide_down((v + 1) * s - 1 + 1 + 1, n));
+  };
+  return {{first(voxels.first.i), first(voxels.first.j), first(voxels.first.k)},
+          {last(voxels.last.i, 0), last(voxels.last.j, 1), last(voxels.last.k, 2)}};
+}
+
+// The scan itself where it can be, else what is put into the block.
+SurfaceLattice::Nodes SurfaceLattice::nodes_of(const VoxelIndex& brick, Block& block) const {
+  const DensityGrid& grid = volume_->grid();
+  // The first node is one below the brick's, and gradients need one more.
+  const VoxelIndex first{brick_nodes_ * brick.i - 2, brick_nodes_ * brick.j - 2, brick_nodes_ * brick.k - 2};
+  const int last = brick_nodes_ + 2;
+  // The kernel reads whole rows of eight.
+  const bool inside =
+      grid.contains(first) &&
+      grid.contains({first.i + last + static_cast<int>(CrossingRow::kNodes), first.j + last, first.k + last});
+  if (steps_per_voxel_ == 1 && inside) {
+    const auto& dims = grid.geometry().dims;
+    const std::ptrdiff_t row = dims[0];
+    return {grid.densities().data() + grid.linear_index({first.i + 1, first.j + 1, first.k + 1}),
+            {1, row, row * dims[1]}};
+  }
+  if (steps_per_voxel_ == 1) {
+    copy_voxels(first, block);
+  } else {
+    interpolate_voxels(first, block);
+  }
+  return {&block[1 + kRow + kSlice], {1, kRow, kSlice}};
+}
+
+void SurfaceLattice::copy_voxels(const VoxelIndex& first, Block& block) const {
+  const int count = brick_nodes_ + 3;
+  for (int k = 0; k < count; ++k) {
+    for (int j = 0; j < count; ++j) {
+      float* row = &block[static_cast<std::size_t>(k) * kSlice + static_cast<std::size_t>(j) * kRow];
+      for (int i = 0; i < count; ++i) row[i] = density({first.i + i, first.j + j, first.k + k});
+    }
+  }
+}
+
+// Trilinear, one axis after the other. Every voxel has a weight of at least zero, so that a node's density
+// falls with its voxels'.
+void SurfaceLattice::interpolate_voxels(const VoxelIndex& first, Block& block) const {
+  const int count = brick_nodes_ + 3, s = steps_per_voxel_;
+  const auto voxel = [&](int node) { return divide_down(node, s); };
+  const VoxelIndex from{voxel(first.i), voxel(first.j), voxel(first.k)};
+  const float per_step = 1.0f / static_cast<float>(s);
+  struct Place {
+    std::size_t cell;
+    float fraction;
+  };
+  std::array<std::array<Place, kMaxBlockNodes>, 3> places;
+  const std::array<int, 3> nodes{first.i, first.j, first.k}, voxels{from.i, from.j, from.k};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (int n = 0; n < count; ++n) {
+      const int cell = voxel(nodes[axis] + n);
+      places[axis][static_cast<std::size_t>(n)] = {static_cast<std::size_t>(cell - voxels[axis]),
+                                                   per_step * static_cast<float>(nodes[axis] + n - s * cell)};
+    }
+  }
+  const std::size_t n = static_cast<std::size_t>(count);
+  const auto needed = [&](std::size_t axis) { return places[axis][n - 1].cell + 2; };
+  const auto between = [](float a, float b, float fraction) { return a + fraction * (b - a); };
+  std::array<float, kSlice> rows;           // one slice of voxels, its rows interpolated
+  std::array<float, kSlice * kRow> slices;  // nodes in i and j, voxels in k
+  for (std::size_t k = 0; k < needed(2); ++k) {
+    for (std::size_t j = 0; j < needed(1); ++j) {
+      std::array<float, kRow + 1> row;
+      for (std::size_t i = 0; i < needed(0); ++i) {
+        row[i] = density(
+            {from.i + static_cast<int>(i), from.j + static_cast<int>(j), from.k + static_cast<int>(k)});
+      }
+      for (std::size_t i = 0; i < n; ++i) {
+        const Place& p = places[0][i];
+        rows[j * kRow + i] = between(row[p.cell], row[p.cell + 1], p.fraction);
+      }
+    }
+    for (std::size_t j = 0; j < n; ++j) {
+      const Place& p = places[1][j];
+      for (std::size_t i = 0; i < n; ++i) {
+        slices[k * kSlice + j * kRow + i] =
+            between(rows[p.cell * kRow + i], rows[(p.cell + 1) * kRow + i], p.fraction);
+      }
+    }
+  }
+  for (std::size_t k = 0; k < n; ++k) {
+    const Place& p = places[2][k];
+    for (std::size_t j = 0; j < n; ++j) {
+      for (std::size_t i = 0; i < n; ++i) {
+        const std::size_t at = j * kRow + i;
+        block[k * kSlice + at] =
+            between(slices[p.cell * kSlice + at], slices[(p.cell + 1) * kSlice + at], p.fraction);
+      }
+    }
+  }
+}
+
+void SurfaceLattice::find_surface(const VoxelIndex& brick, BrickSurface& surface) const {
+  surface.fine_count = surface.coarse_count = 0;
+  Block block;
+  const Nodes nodes = nodes_of(brick, block);
+  Rows rows{};
+  if (find_bone(nodes, rows)) mean_crossings(nodes, rows, surface);
+}
+
+// Of the rows that lines lie in. Whether bone and no bone meet there.
+bool SurfaceLattice::find_bone(const Nodes& nodes, Rows& rows) const {
+  std::uint32_t any = 0, all = ~0u;
+  for (int k = 0; k <= brick_nodes_; ++k) {
+    const int step = k % line_step_ == 0 ? 1 : line_step_;
+    for (int j = 0; j <= brick_nodes_; j += step) {
+      const float* row = nodes.at(0, j, k);
+      std::uint32_t bits = eight_above(row, isovalue_);
+      if (brick_nodes_ == 16) bits |= static_cast<std::uint32_t>(eight_above(row + 8, isovalue_)) << 8;
+      bits |= static_cast<std::uint32_t>(row[brick_nodes_] > isovalue_) << brick_nodes_;
+      rows[row_index(j, k)] = bits;
+      any |= bits;
+      all &= bits;
+    }
+  }
+  const std::uint32_t whole = (2u << brick_nodes_) - 1;
+  return any != 0 && (all & whole) != whole;
+}
+
+// Of the edges along lines from a row's nodes, those that are crossed.
+SurfaceLattice::CrossedEdges SurfaceLattice::crossed_edges(const Rows& rows, int j, int k) const {
+  const std::uint32_t lower = (1u << brick_nodes_) - 1;
+  const std::uint32_t on_j = j % line_step_ == 0 ? lower : 0, on_k = k % line_step_ == 0 ? lower : 0;
+  const std::uint32_t here = rows[row_index(j, k)];
+  return {(here ^ (here >> 1)) & on_j & on_k, (here ^ rows[row_index(j + 1, k)]) & on_lines_ & on_k,
+          (here ^ rows[row_index(j, k + 1)]) & on_lines_ & on_j};
+}
+
+// One point for each cell, a row of cells after the other.
+void SurfaceLattice::mean_crossings(const Nodes& nodes, const Rows& rows, BrickSurface& surface) const {
+  constexpr int n = static_cast<int>(CrossingRow::kNodes);
+  const int side = brick_nodes_ / group_;
+  const CrossingLattice lattice{{nodes.next[0], nodes.next[1], nodes.next[2]}, isovalue_, crossing_steps_};
+  for (int cell_k = 0; cell_k < side; ++cell_k) {
+    for (int cell_j = 0; cell_j < side; ++cell_j) {
+      CellSums sums;
+      std::uint32_t crossed = 0;
+      for (int k = group_ * cell_k; k < group_ * (cell_k + 1); ++k) {
+        for (int j = group_ * cell_j; j < group_ * (cell_j + 1); ++j) {
+          const CrossedEdges edges = crossed_edges(rows, j, k);
+          const std::uint32_t of_row = edges[0] | edges[1] | edges[2];
+          if (of_row == 0) continue;
+          if (crossed == 0) sums = {};
+          crossed |= of_row;
+          for (int i = 0; of_row >> i != 0; i += n) {
+            // The brick's frame begins one node above its first.
+            const CrossingRow row{
+                nodes.at(i, j, k), i - 1, j - 1, k - 1, {edges[0] >> i, edges[1] >> i, edges[2] >> i}};
+            add_crossings(lattice, row, sums[static_cast<std::size_t>(i / n)]);
+          }
+        }
+      }
+      for (int cell_i = 0; crossed != 0; ++cell_i, crossed >>= group_) {
+        if ((crossed & ((1u << group_) - 1)) == 0) continue;
+        surface.coarse_cell[surface.fine_count] =
+            static_cast<std::uint8_t>(cell_i / 2 + 4 * (cell_j / 2) + 16 * (cell_k / 2));
+        surface.fine[surface.fine_count++] = mean_of_cell(sums, cell_i);
+      }
+    }
+  }
+}
+
+ShellPoint SurfaceLattice::mean_of_cell(const CellSums& sums, int cell_i) const {
+  constexpr int n = static_cast<int>(CrossingRow::kNodes);
+  float of_cell[CrossingSums::kSums] = {};
+  for (int i = group_ * cell_i; i < group_ * (cell_i + 1); ++i) {
+    const CrossingSums& of_nodes = sums[static_cast<std::size_t>(i / n)];
+    for (int sum = 0; sum < CrossingSums::kSums; ++sum) of_cell[sum] += of_nodes.rows[sum][i % n];
+  }
+  const auto& [x, y, z, area, normal_x, normal_y, normal_z] = of_cell;
+  const float share = 1 / area;
+  const float length = std::sqrt(normal_x * normal_x + normal_y * normal_y + normal_z * normal_z);
+  const float unit = length > kNoNormal * area ? 1 / length : 0;
+  return {share * x, share * y, share * z, area, unit * normal_x, unit * normal_y, unit * normal_z};
+}
+
+void SurfaceLattice::merge_flat_cells(BrickSurface& surface) {
+  surface.coarse_count = 0;
+  std::array<Mean, 64> cells;
+  for (std::size_t n = 0; n < surface.fine_count; ++n) cells[surface.coarse_cell[n]].add(surface.fine[n]);
+  std::array<bool, 64> flat{};
+  for (std::size_t cell = 0; cell < cells.size(); ++cell) {
+    if (cells[cell].is_empty()) continue;
+    const ShellPoint mean = cells[cell].mean();
+    flat[cell] = is_flat(mean);
+    if (flat[cell]) surface.coarse[surface.coarse_count++] = mean;
+  }
+  for (std::size_t n = 0; n < surface.fine_count; ++n) {
+    if (!flat[surface.coarse_cell[n]]) surface.coarse[surface.coarse_count++] = surface.fine[n];
+  }
+}
+
+}  // namespace osteomill
