@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "app/commands.h"
+#include "app/progress.h"
 #include "app/scan_options.h"
 #include <fmt/core.h>
 
@@ -48,6 +49,7 @@ void add_info_command(CLI::App& program) {
   command->group("Scans");
   add_scan_options(*command, options->scan);
   command->add_flag("--json", options->json, "As JSON");
+  add_quiet_option(*command);
   command->callback([=] { run_info(*options); });
 }
 

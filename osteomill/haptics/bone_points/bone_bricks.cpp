@@ -32,15 +32,16 @@ BoneBricks::BoneBricks(const Volume& volume, double spacing_mm, Points points)
       fine_(kSlots, kFineChunks),
       coarse_(kSlots, points == Points::fine ? 0 : kCoarseChunks),
       brick_of_slot_(kSlots),
+      changes_(kSlots),
       found_(std::make_unique<SurfaceLattice::BrickSurface>()) {
   const auto& dims = lattice_.brick_dims();
-  places_.resize(cell_count(dims), {kNoPoints, 0});
+  slots_.resize(cell_count(dims), kNoPoints);
   for (int k = 0; k < dims[2]; ++k) {
     WorkProgress::done(static_cast<std::size_t>(k), static_cast<std::size_t>(dims[2]));
     for (int j = 0; j < dims[1]; ++j) {
       for (int i = 0; i < dims[0]; ++i) {
         if (!lattice_.may_hold_surface({i, j, k})) continue;
-        places_[index_of({i, j, k})].slot = kUnmade;
+        slots_[index_of({i, j, k})] = kUnmade;
         octree_.add(i, j, k, 1);
       }
     }
@@ -58,16 +59,15 @@ Vec3 BoneBricks::node_middle_G(int level, int i, int j, int k) const {
 }
 
 std::uint32_t BoneBricks::slot_of(const VoxelIndex& brick) {
-  const Place& place = places_[index_of(brick)];
-  if (place.slot == kUnmade) make(brick);
-  return place.slot;
+  const std::uint32_t& slot = slots_[index_of(brick)];
+  if (slot == kUnmade) make(brick);
+  return slot == kEmptied ? kNoPoints : slot;
 }
 
 // Makes a brick, or makes it anew; returns what it cost.
 int BoneBricks::make(const VoxelIndex& brick) {
-  Place& place = places_[index_of(brick)];
-  std::uint32_t& slot = place.slot;
-  place.changes = lattice_.changes_of(brick);
+  std::uint32_t& slot = slots_[index_of(brick)];
+  const std::uint32_t changes = lattice_.changes_of(brick);
   lattice_.find_surface(brick, *found_);
   const std::int32_t before = slot == kUnmade     ? 1
                               : slot == kNoPoints ? 0
@@ -80,6 +80,7 @@ int BoneBricks::make(const VoxelIndex& brick) {
   }
   std::int32_t after = 0;
   if (slot != kNoPoints) {
+    changes_[slot] = changes;
     after = static_cast<std::int32_t>(fine_.replace(slot, {found_->fine.data(), found_->fine_count}));
     if (kinds_ == Points::fine_and_coarse) {
       SurfaceLattice::merge_flat_cells(*found_);
@@ -90,6 +91,7 @@ int BoneBricks::make(const VoxelIndex& brick) {
       slot = kNoPoints;
     }
   }
+  if (!found_->has_bone) slot = kEmptied;
   octree_.add(brick.i, brick.j, brick.k, after - before);
   return lattice_.densities_of_brick() / kDensitiesLookedAt + static_cast<int>(found_->fine_count);
 }
@@ -113,11 +115,12 @@ bool BoneBricks::start_sweep() {
 // Bricks that had no surface come first: where it has moved into them it is found there before it is taken
 // from where it was.
 int BoneBricks::visit(const VoxelIndex& brick) {
-  const Place& place = places_[index_of(brick)];
-  if (place.slot == kUnmade || (place.slot == kNoPoints) != sweep_.is_first_pass()) return kPassedOverCost;
-  if (place.changes == lattice_.changes_of(brick)) return kPassedOverCost;
-  if (place.slot == kNoPoints && !lattice_.may_hold_surface(brick)) return kPassedOverCost;
-  return make(brick);
+  const std::uint32_t slot = slots_[index_of(brick)];
+  if (slot == kUnmade || slot == kEmptied) return kPassedOverCost;
+  if ((slot == kNoPoints) != sweep_.is_first_pass()) return kPassedOverCost;
+  const bool has_changed =
+      slot == kNoPoints ? lattice_.may_hold_surface(brick) : changes_[slot] != lattice_.changes_of(brick);
+  return has_changed ? make(brick) : kPassedOverCost;
 }
 
 void BoneBricks::make_room(const MillingTool& tool, const Pose& X_WT) {
@@ -144,7 +147,7 @@ void BoneBricks::forget(std::uint32_t slot) {
   octree_.add(brick.i, brick.j, brick.k, 1 - static_cast<std::int32_t>(fine_.brick(slot).count));
   fine_.replace(slot, {});
   if (kinds_ == Points::fine_and_coarse) coarse_.replace(slot, {});
-  places_[index_of(brick)].slot = kUnmade;
+  slots_[index_of(brick)] = kUnmade;
   free_slots_.push_back(slot);
 }
 

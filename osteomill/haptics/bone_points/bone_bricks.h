@@ -47,7 +47,7 @@ class BoneBricks {
   /// The slot of the brick in `fine` and `coarse`, which is made if it was not; `kNoPoints` where it has
   /// none.
   std::uint32_t slot_of(const VoxelIndex& brick);
-  bool is_made(const VoxelIndex& brick) const { return places_[index_of(brick)].slot != kUnmade; }
+  bool is_made(const VoxelIndex& brick) const { return slots_[index_of(brick)] != kUnmade; }
 
   /// About how many points are brought up to date a tick.
   static constexpr int kRefreshedPerTick = 450;
@@ -62,6 +62,8 @@ class BoneBricks {
 
  private:
   static constexpr std::uint32_t kUnmade = 0xfffffffeu;
+  // Without points, and without bone: it will have none.
+  static constexpr std::uint32_t kEmptied = 0xfffffffdu;
 
   std::size_t index_of(const VoxelIndex& b) const { return row_major(octree_.dims(0), b.i, b.j, b.k); }
   int make(const VoxelIndex& brick);
@@ -75,17 +77,13 @@ class BoneBricks {
   Points kinds_ = Points::fine;
   CountPyramid octree_;
   std::vector<double> node_radii_mm_;
-  struct Place {
-    std::uint32_t slot;
-    /// Of the densities that its points are of.
-    std::uint32_t changes;
-  };
-  std::vector<Place> places_;
+  std::vector<std::uint32_t> slots_;
   BrickPoints fine_;
   BrickPoints coarse_;
   std::vector<std::uint32_t> free_slots_;
-  // Which brick a slot is of, and where forgetting goes on.
+  // Which brick a slot is of, and of which densities its points are.
   std::vector<VoxelIndex> brick_of_slot_;
+  std::vector<std::uint32_t> changes_;
   std::size_t next_to_forget_ = 0;
   BrickSweep sweep_;
   std::unique_ptr<SurfaceLattice::BrickSurface> found_;

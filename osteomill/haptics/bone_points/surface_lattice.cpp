@@ -238,11 +238,13 @@ void SurfaceLattice::find_surface(const VoxelIndex& brick, BrickSurface& surface
   Block block;
   const Nodes nodes = nodes_of(brick, block);
   Rows rows{};
-  if (find_bone(nodes, rows)) mean_crossings(nodes, rows, surface);
+  const Found found = find_bone(nodes, rows);
+  surface.has_bone = found != Found::nothing;
+  if (found == Found::surface) mean_crossings(nodes, rows, surface);
 }
 
-// Of the rows that lines lie in. Whether bone and no bone meet there.
-bool SurfaceLattice::find_bone(const Nodes& nodes, Rows& rows) const {
+// In the rows that lines lie in.
+SurfaceLattice::Found SurfaceLattice::find_bone(const Nodes& nodes, Rows& rows) const {
   std::uint32_t any = 0, all = ~0u;
   for (int k = 0; k <= brick_nodes_; ++k) {
     const int step = k % line_step_ == 0 ? 1 : line_step_;
@@ -257,7 +259,8 @@ bool SurfaceLattice::find_bone(const Nodes& nodes, Rows& rows) const {
     }
   }
   const std::uint32_t whole = (2u << brick_nodes_) - 1;
-  return any != 0 && (all & whole) != whole;
+  if (any == 0) return Found::nothing;
+  return (all & whole) == whole ? Found::bone_alone : Found::surface;
 }
 
 // Of the edges along lines from a row's nodes, those that are crossed.

@@ -59,6 +59,8 @@ class SurfaceLattice {
     std::array<std::uint8_t, kMaxPointsOfBrick> coarse_cell;
     std::size_t fine_count = 0;
     std::size_t coarse_count = 0;
+    /// Whether anything that lines meet is bone.
+    bool has_bone = false;
   };
   /// Fine points alone.
   void find_surface(const VoxelIndex& brick, BrickSurface& surface) const;
@@ -88,7 +90,8 @@ class SurfaceLattice {
   void copy_voxels(const VoxelIndex& first, Block& block) const;
   void interpolate_voxels(const VoxelIndex& first, Block& block) const;
   float density(const VoxelIndex& voxel) const;
-  bool find_bone(const Nodes& nodes, Rows& rows) const;
+  enum class Found { nothing, bone_alone, surface };
+  Found find_bone(const Nodes& nodes, Rows& rows) const;
   using CrossedEdges = std::array<std::uint32_t, 3>;
   CrossedEdges crossed_edges(const Rows& rows, int j, int k) const;
   // Of a row of cells' nodes.
