@@ -50,7 +50,7 @@ class BoneBricks {
   bool is_made(const VoxelIndex& brick) const { return slots_[index_of(brick)] != kUnmade; }
 
   /// About how many points are brought up to date a tick.
-  static constexpr int kRefreshedPerTick = 450;
+  static constexpr int kRefreshedPerTick = 700;
   /// Says that densities fell in `voxels`, and brings about `budget` points up to date, and what it takes to
   /// find them.
   void refresh(const VoxelBox& voxels, int budget = kRefreshedPerTick);
