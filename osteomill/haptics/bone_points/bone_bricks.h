@@ -14,9 +14,9 @@
 namespace osteomill {
 
 /// The bone's surface as points in bricks, made when the tool comes near and forgotten when room runs out, so
-/// that neither time nor memory grows with the scan. Milling takes densities away only, so a brick that has
-/// not been brought up to date shows more bone than there is. Building allocates; all else is safe in the
-/// haptic tick.
+/// that neither time nor, but for 9 bytes a brick, memory grows with the scan. Milling takes densities away
+/// only, so a brick that has not been brought up to date shows more bone than there is. Building allocates;
+/// all else is safe in the haptic tick.
 class BoneBricks {
  public:
   enum class Points {
@@ -47,7 +47,6 @@ class BoneBricks {
   /// The slot of the brick in `fine` and `coarse`, which is made if it was not; `kNoPoints` where it has
   /// none.
   std::uint32_t slot_of(const VoxelIndex& brick);
-  bool is_made(const VoxelIndex& brick) const { return slots_[index_of(brick)] != kUnmade; }
 
   /// About how many points are brought up to date a tick.
   static constexpr int kRefreshedPerTick = 700;
