@@ -63,7 +63,7 @@ INSTANTIATE_TEST_SUITE_P(AllAlgorithms, GoldenWrenches,
                                            Golden{"surface-points", Mode::steady, 0x787d19b3b1635c60},
                                            Golden{"point-shell", Mode::paper, 0xd4d2cd25e4997312},
                                            Golden{"point-shell", Mode::steady, 0x9efd96ac2153b9f5},
-                                           Golden{"barrier-shell", Mode::steady, 0xc221de5d7c55b7e0}),
+                                           Golden{"barrier-shell", Mode::steady, 0x91ac256b71ba3754}),
                          [](const auto& test) {
                            std::string name(test.param.algorithm);
                            name[name.find('-')] = '_';

@@ -68,6 +68,14 @@ constexpr double kBoundKept = 1.01;
 // Of a radius that is divided by: in a tick of no length nothing is released.
 constexpr double kMinRadius = 1e-9;
 
+// A small tool's skin is thinner with its rounding, so that what is drawn is felt at once. And a burr meets
+// about its section of bone: with pressures against that, any burr is held alike where it is drawn.
+Barrier skin_of(const MillingTool& tool, const Settings& settings) {
+  const double thinner = inset_within(tool, settings.rounding_mm) / settings.rounding_mm;
+  const double smaller = MillingTool{}.burr_radius_mm / tool.burr_radius_mm;
+  return {thinner * settings.skin_width_mm, smaller * smaller * settings.pressure_N_per_mm2};
+}
+
 struct NewtonStep {
   Vector6 move_T;
   bool is_damped = false;
@@ -136,8 +144,7 @@ const Counts* counts_of(const HapticAlgorithm& algorithm) {
 
 BarrierShell::BarrierShell(const Settings& settings)
     : settings_(settings),
-      coupling_{settings.translational_stiffness_N_per_mm, settings.torsional_stiffness_Nmm_per_rad},
-      barrier_{settings.skin_width_mm, settings.pressure_N_per_mm2} {
+      coupling_{settings.translational_stiffness_N_per_mm, settings.torsional_stiffness_Nmm_per_rad} {
   require_valid(settings);
 }
 
@@ -146,6 +153,7 @@ void BarrierShell::prepare(const Scene& scene) {
   require_valid(scene.tool);
   volume_ = scene.volume;
   tool_ = scene.tool;
+  barrier_ = skin_of(scene.tool, settings_);
   centreline_T_ = centreline_vertices(scene.tool, kCentrelinePoints);
   bricks_ = BoneBricks(*scene.volume, settings_.point_spacing_mm, BoneBricks::Points::fine_and_coarse);
   near_ = NearBone(kNearPoints);

@@ -54,7 +54,7 @@ class BarrierShell final : public HapticAlgorithm {
 
   Settings settings_;
   Coupling coupling_;
-  Barrier barrier_;
+  Barrier barrier_{};
   MillingTool tool_;
   const Volume* volume_ = nullptr;
   std::vector<Vec3> centreline_T_;

@@ -41,13 +41,17 @@ const std::vector<Field>& fields() {
           "torsional-stiffness", "N mm/rad", 1000, "The same about rotation",
           [](Settings & s) -> auto& { return s.torsional_stiffness_Nmm_per_rad; }, "torsional-stiffness"),
       number(
-          "skin-width", "mm", 0.25, "How far from the tool's cores bone is felt",
+          "skin-width", "mm", 0.25,
+          "How far from the tool's cores bone is felt; less where the rounding is less",
           [](Settings & s) -> auto& { return s.skin_width_mm; }),
       number(
-          "rounding", "mm", 0.20, "How far the cores lie within the tool, at most half of its least radius",
+          "rounding", "mm", 0.212, "How far the cores lie within the tool, at most half of its least radius",
           [](Settings & s) -> auto& { return s.rounding_mm; }),
       number(
-          "pressure", "N/mm2", 3, "p0 of the skin's pressure p0 / 3 x^2 (3 - 2 x) / (1 - x)^2",
+          "pressure", "N/mm2", 3,
+          "p0 of the skin's pressure p0 / 3 x^2 (3 - 2 x) / (1 - x)^2, for a burr of 1.5 mm radius; of "
+          "another it "
+          "goes against its section",
           [](Settings & s) -> auto& { return s.pressure_N_per_mm2; }),
       number(
           "point-spacing", "mm", BoneBricks::kSpacing_mm,

@@ -67,6 +67,42 @@ TEST(BarrierShell, OnAPlaneTheForceIsAlongTheNormal) {
   EXPECT_EQ(algorithm.counts().energy_rises, 0u);
 }
 
+// The pressure's integral over a ball's lower half in a bowl of its own shape, `down_mm` below the bowl's
+// middle, along its axis.
+double bowl_force_N(double radius_mm, double rounding_mm, const Barrier& skin, double down_mm) {
+  constexpr int kRings = 2000;
+  double force_N = 0;
+  for (int n = 0; n < kRings; ++n) {
+    const double cosine = (n + 0.5) / kRings;
+    force_N += 2 * std::numbers::pi * radius_mm * radius_mm / kRings * cosine *
+               skin.at(rounding_mm - down_mm * cosine).pressure;
+  }
+  return force_N;
+}
+
+TEST(BarrierShell, ABurrOfAnySizeRestsInItsOwnHoleWhereItIsDrawn) {
+  for (const double radius_mm : {0.5, 1.0, 1.5, 3.0}) {
+    const MillingTool tool{radius_mm, 0.7 * radius_mm, 25};
+    const auto plate = testing_support::plane(Vec3::Zero(), Vec3::UnitZ());
+    const auto ball = testing_support::ball(Vec3::Zero(), radius_mm);
+    const Volume volume = testing_support::shape_volume(
+        testing_support::centred_cube(96, radius_mm / 30),
+        [&](const Vec3& point_W) { return std::max(plate(point_W), -ball(point_W)); });
+    const Settings settings = Settings::defaults();
+    BarrierShell algorithm{settings};
+    algorithm.prepare({&volume, tool});
+    const HapticStep step = approach(algorithm, {0, 0, 2 * radius_mm}, {0, 0, -1.5 / 2}, Quat::Identity());
+    const double down_mm = -step.X_WT.position_mm.z();
+    EXPECT_NEAR(down_mm, 0, 0.03) << radius_mm;
+    // Against the energy's own integral.
+    const double rounding_mm = inset_within(tool, settings.rounding_mm);
+    const Barrier skin{settings.skin_width_mm * rounding_mm / settings.rounding_mm,
+                       settings.pressure_N_per_mm2 * 1.5 * 1.5 / (radius_mm * radius_mm)};
+    EXPECT_NEAR(-step.burr_force_W_N.z(), bowl_force_N(radius_mm, rounding_mm, skin, down_mm), 0.1)
+        << radius_mm;
+  }
+}
+
 double angle_deg(const Vec3& a, const Vec3& b) {
   return 180 / std::numbers::pi * std::atan2(a.cross(b).norm(), a.dot(b));
 }

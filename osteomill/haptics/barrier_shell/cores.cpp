@@ -17,9 +17,13 @@ Mat3 outer(const Vec3& v) {
 
 }  // namespace
 
-Cores Cores::within(const MillingTool& tool, double inset_mm, double smaller_mm) {
-  const double min_mm = std::min({tool.burr_radius_mm, tool.shaft_radius_mm, tool.shaft_length_mm});
-  const double inset = std::min(inset_mm, 0.5 * min_mm) + smaller_mm;
+double inset_within(const MillingTool& tool, double rounding_mm) {
+  return std::min(rounding_mm,
+                  0.5 * std::min({tool.burr_radius_mm, tool.shaft_radius_mm, tool.shaft_length_mm}));
+}
+
+Cores Cores::within(const MillingTool& tool, double rounding_mm, double smaller_mm) {
+  const double inset = inset_within(tool, rounding_mm) + smaller_mm;
   return {std::max(tool.burr_radius_mm - inset, kMinCore_mm),
           std::max(tool.shaft_radius_mm - inset, kMinCore_mm),
           std::max(tool.shaft_length_mm - inset, kMinCore_mm)};

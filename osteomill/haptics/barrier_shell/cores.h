@@ -4,6 +4,9 @@
 
 namespace osteomill::barrier_shell {
 
+/// How far within the tool's surface its cores lie: the rounding, but at most half of its least radius.
+double inset_within(const MillingTool& tool, double rounding_mm);
+
 /// The two convex bodies within the tool that bone never reaches, in T: a ball about the burr's centre and a
 /// cylinder along the shaft from z = 0 to `cylinder_length_mm`. A burr of another convex shape would be
 /// another core.
@@ -12,9 +15,9 @@ struct Cores {
   double cylinder_radius_mm;
   double cylinder_length_mm;
 
-  /// `inset_mm` within the tool's surface, but at most half of its least radius; `smaller_mm` more where a
-  /// tool that began in touch with bone has not yet grown to its size (at least a hair of each core stays).
-  static Cores within(const MillingTool& tool, double inset_mm, double smaller_mm = 0);
+  /// `inset_within` the tool's surface; `smaller_mm` more where a tool that began in touch with bone has not
+  /// yet grown to its size (at least a hair of each core stays).
+  static Cores within(const MillingTool& tool, double rounding_mm, double smaller_mm = 0);
 };
 
 /// Distance of a point of bone to a core (negative inside), its gradient (the unit direction out of the core)
