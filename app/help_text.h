@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include <CLI/Formatter.hpp>
 
 namespace osteomill::app {

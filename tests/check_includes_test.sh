@@ -50,3 +50,12 @@ expect_refused app/x.cpp tests/shapes.h
 expect_refused verification/x.cpp app/main.h
 expect_refused benchmarks/x.cpp verification/section.h
 expect_refused tests/x.cpp benchmarks/bones.h
+
+# What is compiled beforehand hides a header's missing include.
+says() { printf '%s\n' "$@" >"$tree/osteomill/volume/x.h"; }
+plant osteomill/volume/x.h osteomill/volume/public.h
+says '// std::vector is told of.' '#include <string>' 'std::string text(std::string_view from);'
+"$check" "$tree" || { echo "refused: a header that includes what it names" >&2; exit 1; }
+says '#include <string>' 'std::vector<int> numbers();'
+! "$check" "$tree" >"$tree/said" 2>/dev/null && grep -q '^osteomill/volume/x.h:2: .*<vector>' "$tree/said" ||
+  { echo "not found: std::vector without <vector>" >&2; exit 1; }

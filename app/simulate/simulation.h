@@ -2,7 +2,9 @@
 
 #include <chrono>
 #include <deque>
+#include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <filesystem>
+
 #include "osteomill/experiment/study.h"
 #include "osteomill/report/figure.h"
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <filesystem>
+
 #include "osteomill/report/figure.h"
 #include "osteomill/report/run_groups.h"
 

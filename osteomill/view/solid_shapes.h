@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include "osteomill/view/bone_layer.h"
 #include "osteomill/view/gl_objects.h"

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "osteomill/haptics/bone_points/brick_points.h"
 #include "osteomill/haptics/bone_points/tool_from_grid.h"
 #include "osteomill/haptics/point_shell/contact_sum.h"
