@@ -37,6 +37,13 @@ void require(bool right, const char* what) {
   if (!right) throw std::invalid_argument(what);
 }
 
+// A little farther than where bone counts as ahead of the burr: a cut surface, interpolated, lies that much
+// to either side of where it was cut, and what counts must be there to be cut.
+double max_ahead(const GridGeometry& geometry) {
+  constexpr double kFarther_voxels = 0.25;
+  return pressing_reach_mm(geometry) + kFarther_voxels * geometry.spacing_mm.maxCoeff();
+}
+
 // Where the ball's leading half cuts nothing, however deep in bone the burr is.
 double min_ahead(const GridGeometry& geometry, double radius_mm) {
   return -radius_mm - CutProfile::kReach_voxels * geometry.spacing_mm.maxCoeff();
@@ -56,7 +63,7 @@ BurrReach make_reach(const GridGeometry& geometry, double burr_radius_mm, const 
   require(std::isfinite(densities.surroundings) && std::isfinite(densities.reference) &&
               densities.reference > densities.surroundings,
           "BurrMill: the reference density must be above that of the surroundings");
-  return BurrReach(geometry, reach_mm(geometry, burr_radius_mm, pressing_reach_mm(geometry)),
+  return BurrReach(geometry, reach_mm(geometry, burr_radius_mm, max_ahead(geometry)),
                    float_not_below(densities.surroundings), kRoomForPieces);
 }
 
@@ -70,7 +77,7 @@ BurrMill::BurrMill(const GridGeometry& geometry, double burr_radius_mm, const Bo
       mm3_per_density_(geometry.voxel_volume_mm3() / (densities.reference - densities.surroundings)),
       removal_rate_mm3_per_Ns_(settings.removal_rate_mm3_per_Ns),
       min_ahead_mm_(min_ahead(geometry, burr_radius_mm)),
-      max_ahead_mm_(pressing_reach_mm(geometry)),
+      max_ahead_mm_(max_ahead(geometry)),
       reach_(make_reach(geometry, burr_radius_mm, densities, settings)),
       voxels_(geometry, reach_.max_voxels(), reach_.max_pieces()) {}
 
