@@ -37,10 +37,10 @@ void require(bool right, const char* what) {
   if (!right) throw std::invalid_argument(what);
 }
 
-// A little farther than where bone counts as ahead of the burr: a cut surface, interpolated, lies that much
-// to either side of where it was cut, and what counts must be there to be cut.
+// Farther than where bone counts as ahead of the burr, by what an interpolated surface may lie beside where
+// it was cut: what counts must be there to be cut.
 double max_ahead(const GridGeometry& geometry) {
-  constexpr double kFarther_voxels = 0.25;
+  constexpr double kFarther_voxels = 0.5;
   return pressing_reach_mm(geometry) + kFarther_voxels * geometry.spacing_mm.maxCoeff();
 }
 

@@ -20,7 +20,7 @@ constexpr double kRim = 0.25;
 
 double pressing_reach_mm(const GridGeometry& geometry) {
   constexpr double kKeptOff_mm = 0.12;
-  return std::max(geometry.spacing_mm.maxCoeff(), kKeptOff_mm);
+  return std::max(0.5 * geometry.spacing_mm.maxCoeff(), kKeptOff_mm);
 }
 
 bool burr_presses(const Volume& volume, double burr_radius_mm, const Vec3& burr_W, const Vec3& force_W_N) {

@@ -6,8 +6,8 @@
 
 namespace osteomill {
 
-/// How far off a burr what it presses on may lie: a voxel, since the voxels of a dense bone lie up to that
-/// behind its surface, and no less than what a proxy or a skin keeps it off. In mm.
+/// How far off a burr what it presses on may lie: as far as a proxy or a skin keeps it off, and no less than
+/// half a voxel, which a coarse scan's surface may be wrong. In mm.
 double pressing_reach_mm(const GridGeometry& geometry);
 
 /// Whether bone lies ahead of a burr that presses with this force, no farther off than `pressing_reach_mm`.

@@ -19,15 +19,16 @@ Volume floor_and_wall() {
                       [](const Vec3& point_W) { return std::min(point_W.z(), 2 - point_W.x()); });
 }
 
-TEST(BurrPresses, OnWhatLiesAheadOfItWithinAVoxel) {
+TEST(BurrPresses, OnWhatLiesAheadOfItWithinReach) {
   const Volume bone = floor_and_wall();
   constexpr double r = 1.5;
   const auto presses = [&](const Vec3& burr_W, const Vec3& force_N) {
     return burr_presses(bone, r, burr_W, force_N);
   };
   const Vec3 down(0, 0, -2), aside(0.1, 0, 0);
-  EXPECT_TRUE(presses({-2, 0, r + 0.8 * kVoxel_mm}, down));
-  EXPECT_FALSE(presses({-2, 0, r + 1.2 * kVoxel_mm}, down));
+  const double reach_mm = pressing_reach_mm(bone.geometry());
+  EXPECT_TRUE(presses({-2, 0, r + 0.8 * reach_mm}, down));
+  EXPECT_FALSE(presses({-2, 0, r + 1.2 * reach_mm}, down));
   EXPECT_FALSE(presses({-2, 0, r + 0.1 * kVoxel_mm}, -down)) << "away from it";
   // Against the wall, and high above the floor.
   const Vec3 at_wall_W(2 - r, 0, 3);
