@@ -67,7 +67,8 @@ TEST(BurrMill, SharesOutACarvedBallAmongLabelsAsGeometryDoes) {
   const double ball_mm3 = 4 * std::numbers::pi * std::pow(kRadius_mm, 3) / 3;
   const double disc_mm2 = std::numbers::pi * kRadius_mm * kRadius_mm;
   const double ahead_mm = (removed_mm3 - ball_mm3) / disc_mm2;
-  EXPECT_NEAR(ahead_mm, 0.1, 0.06);
+  // As far as it goes at most: 0.12 mm and half a voxel.
+  EXPECT_NEAR(ahead_mm, 0.17, 0.03);
   const auto above_mm3 = [&](double z) {
     const double segment_mm2 =
         kRadius_mm * kRadius_mm * std::acos(z / kRadius_mm) - z * std::sqrt(kRadius_mm * kRadius_mm - z * z);
