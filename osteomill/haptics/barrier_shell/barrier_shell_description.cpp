@@ -49,8 +49,7 @@ const std::vector<Field>& fields() {
           [](Settings & s) -> auto& { return s.rounding_mm; }),
       number(
           "pressure", "N/mm2", 3,
-          "p0 of the skin's pressure p0 / 3 x^2 (3 - 2 x) / (1 - x)^2, for a burr of 1.5 mm radius; of "
-          "another it "
+          "p0 of the skin's pressure p0 / 3 x^2 (3 - 2 x) / (1 - x)^2, for the default burr; of another it "
           "goes against its section",
           [](Settings & s) -> auto& { return s.pressure_N_per_mm2; }),
       number(
