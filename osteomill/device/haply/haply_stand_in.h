@@ -5,7 +5,8 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
+#include <deque>
+#include <map>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -103,37 +104,47 @@ class HaplyStandIn {
   }
 
  private:
+  // With one client: what another did not wait for is not for the next.
+  struct Talk {
+    std::string coming;
+    std::deque<std::string> going;
+  };
+
   static int on_event(lws* socket, lws_callback_reasons reason, void*, void* data, size_t length) {
     auto* const self = static_cast<HaplyStandIn*>(lws_context_user(lws_get_context(socket)));
     switch (reason) {
       case LWS_CALLBACK_ESTABLISHED: {
         nlohmann::json inventory = self->state();
         if (self->is_3_5) inventory["session_id"] = 7;
-        self->going_.push_back(inventory.dump());
+        self->talks_[socket].going.push_back(inventory.dump());
         lws_callback_on_writable(socket);
         return 0;
       }
-      case LWS_CALLBACK_RECEIVE:
-        self->coming_.append(static_cast<const char*>(data), length);
+      case LWS_CALLBACK_RECEIVE: {
+        Talk& talk = self->talks_[socket];
+        talk.coming.append(static_cast<const char*>(data), length);
         if (lws_is_final_fragment(socket) == 0 || lws_remaining_packet_payload(socket) != 0) return 0;
-        self->hear(std::exchange(self->coming_, {}));
+        self->hear(std::exchange(talk.coming, {}));
         if (self->closes) return -1;
         if (self->is_mute) return 0;
         std::this_thread::sleep_for(std::chrono::milliseconds(self->delay_ms));
-        self->going_.push_back(self->answer());
+        talk.going.push_back(self->answer());
         lws_callback_on_writable(socket);
         return 0;
+      }
       case LWS_CALLBACK_SERVER_WRITEABLE: {
-        if (self->going_.empty()) return 0;
-        const std::string text = self->going_.front();
-        self->going_.erase(self->going_.begin());
+        std::deque<std::string>& going = self->talks_[socket].going;
+        if (going.empty()) return 0;
+        const std::string text = going.front();
+        going.pop_front();
         std::vector<unsigned char> packet(LWS_PRE + text.size());
         std::copy(text.begin(), text.end(), packet.begin() + LWS_PRE);
         lws_write(socket, packet.data() + LWS_PRE, text.size(), LWS_WRITE_TEXT);
-        if (!self->going_.empty()) lws_callback_on_writable(socket);
+        if (!going.empty()) lws_callback_on_writable(socket);
         return 0;
       }
       case LWS_CALLBACK_CLOSED: {
+        self->talks_.erase(socket);
         const auto& [x, y, z] = self->force_N_;
         log_of_stand_in("closed, heard", self->heard_.size(), "most", self->most_N_.load(), "last", x, y, z);
         return 0;
@@ -165,8 +176,7 @@ class HaplyStandIn {
   lws_context* context_ = nullptr;
   int port_ = 0;
   std::atomic<bool> ends_{false};
-  std::string coming_;
-  std::vector<std::string> going_;
+  std::map<lws*, Talk> talks_;
   mutable std::mutex mutex_;
   std::string instead_;
   std::vector<std::string> heard_;
