@@ -35,27 +35,21 @@ double interpolate(double a, double b, double fraction) {
   return a + fraction * (b - a);
 }
 
-double interpolate_cell(const std::array<float, 8>& corner, const Vec3& f) {
-  const double y0 =
-      interpolate(interpolate(corner[0], corner[1], f.x()), interpolate(corner[2], corner[3], f.x()), f.y());
-  const double y1 =
-      interpolate(interpolate(corner[4], corner[5], f.x()), interpolate(corner[6], corner[7], f.x()), f.y());
-  return interpolate(y0, y1, f.z());
+// The corners in pairs along i, whose first densities these point at, j running faster than k.
+inline double interpolate_cell(const float* pair00, const float* pair10, const float* pair01,
+                               const float* pair11, double fx, double fy, double fz) {
+  const auto along_i = [fx](const float* pair) { return interpolate(pair[0], pair[1], fx); };
+  return interpolate(interpolate(along_i(pair00), along_i(pair10), fy),
+                     interpolate(along_i(pair01), along_i(pair11), fy), fz);
 }
 
 bool is_interior(const DensityGrid& grid, const VoxelIndex& first, const VoxelIndex& last) {
   return grid.contains(first) && grid.contains(last);
 }
 
+// Of a cell that is not wholly in the grid.
 std::array<float, 8> cell_corners(const DensityGrid& grid, const VoxelIndex& c) {
-  const auto& dims = grid.geometry().dims;
   std::array<float, 8> corner;
-  if (is_interior(grid, c, {c.i + 1, c.j + 1, c.k + 1})) {
-    const float* row = grid.densities().data() + grid.linear_index(c);
-    const std::size_t nx = static_cast<std::size_t>(dims[0]);
-    const std::size_t nxy = nx * static_cast<std::size_t>(dims[1]);
-    return {row[0], row[1], row[nx], row[nx + 1], row[nxy], row[nxy + 1], row[nxy + nx], row[nxy + nx + 1]};
-  }
   for (int n = 0; n < 8; ++n) {
     corner[static_cast<std::size_t>(n)] =
         grid.at_or_outside({c.i + (n & 1), c.j + ((n >> 1) & 1), c.k + (n >> 2)});
@@ -109,13 +103,13 @@ double density_at_voxel(const DensityGrid& grid, const Vec3& voxel) {
     const float* row = grid.densities().data() + grid.linear_index(c);
     const std::size_t nx = static_cast<std::size_t>(dims[0]);
     const std::size_t nxy = nx * static_cast<std::size_t>(dims[1]);
-    return interpolate_cell(
-        {row[0], row[1], row[nx], row[nx + 1], row[nxy], row[nxy + 1], row[nxy + nx], row[nxy + nx + 1]},
-        {x - c.i, y - c.j, z - c.k});
+    return interpolate_cell(row, row + nx, row + nxy, row + nxy + nx, x - c.i, y - c.j, z - c.k);
   }
   const Cell cell = cell_around(grid, voxel);
   if (cell.far_outside) return grid.outside_density();
-  return interpolate_cell(cell_corners(grid, cell.first), cell.fraction);
+  const std::array<float, 8> corner = cell_corners(grid, cell.first);
+  const Vec3& f = cell.fraction;
+  return interpolate_cell(&corner[0], &corner[2], &corner[4], &corner[6], f.x(), f.y(), f.z());
 }
 
 double density_at(const DensityGrid& grid, const Vec3& point_W) {

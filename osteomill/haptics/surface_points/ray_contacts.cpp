@@ -16,8 +16,8 @@ namespace osteomill::surface_points {
 namespace {
 
 constexpr double kNoBone = std::numeric_limits<double>::infinity();
-// Share of half a voxel to which a crossing is found.
-constexpr double kTolerance = 0.01;
+// To which a crossing is found.
+constexpr double kTolerance_mm = 0.001;
 // Contacts of one part this alike are one: 11 degrees apart.
 constexpr double kSameNormal = 0.98;
 // Rays of the sphere nearer than this are neighbours: its 54 directions lie 21 to 28 degrees apart.
@@ -38,9 +38,9 @@ double distance_to_bone(const Volume& volume, const VoxelRay& ray, double radius
   const double reach = radius + RayContacts::kReach_mm;
   // Near the tool's surface is where bone is met nearly always.
   const double near = std::max(0.0, radius - RayContacts::kReach_mm);
-  if (const auto met = first_bone(volume, ray, near, reach, kTolerance)) return *met;
+  if (const auto met = first_bone(volume, ray, near, reach, kTolerance_mm)) return *met;
   if (near == 0 || !is_bone(volume, ray.origin + near * ray.way)) return kNoBone;
-  return first_bone(volume, ray, 0, near, kTolerance).value_or(kNoBone);
+  return first_bone(volume, ray, 0, near, kTolerance_mm).value_or(kNoBone);
 }
 
 bool is_min(const RayFan& fan, const RayDistances& distance_mm, std::size_t n) {
@@ -164,7 +164,7 @@ void RayContacts::find_at_end(const Pose& X_WT) {
     const Vec3 end_W = X_WT * end_T;
     const VoxelRay ray{volume_->geometry().voxel_from_world(end_W), way};
     if (!is_bone(*volume_, ray.origin + kReach_mm * way)) continue;
-    if (const auto met = first_bone(*volume_, ray, -kReach_mm, kReach_mm, kTolerance)) {
+    if (const auto met = first_bone(*volume_, ray, -kReach_mm, kReach_mm, kTolerance_mm)) {
       contacts_.push_back({end_W, -axis_W, *met});
     }
   }

@@ -9,46 +9,48 @@ namespace osteomill::surface_points {
 
 namespace {
 
+constexpr double kLeastLook_mm = 0.045;
+
 struct Sample {
-  double at;
+  double at_mm;
   double above;  // density above the isovalue
 };
 
-double above_isovalue(const Volume& volume, const VoxelRay& ray, double at) {
-  return density_at_voxel(volume.grid(), ray.origin + at * ray.way) - volume.isovalue();
+double above_isovalue(const Volume& volume, const VoxelRay& ray, double at_mm) {
+  return density_at_voxel(volume.grid(), ray.origin + at_mm * ray.way) - volume.isovalue();
 }
 
 // Regula falsi with the Illinois halving, which keeps one end from standing still.
-double close_in(const Volume& volume, const VoxelRay& ray, Sample outside, Sample inside, double tolerance) {
-  for (int n = 0; n < 8 && inside.at - outside.at > tolerance; ++n) {
+double close_in(const Volume& volume, const VoxelRay& ray, Sample outside, Sample inside,
+                double tolerance_mm) {
+  for (int n = 0; n < 8 && inside.at_mm - outside.at_mm > tolerance_mm; ++n) {
     const double fraction = outside.above / (outside.above - inside.above);
-    const double at = outside.at + fraction * (inside.at - outside.at);
-    const double above = above_isovalue(volume, ray, at);
-    if (std::abs(at - inside.at) < tolerance || std::abs(at - outside.at) < tolerance) return at;
+    const double at_mm = outside.at_mm + fraction * (inside.at_mm - outside.at_mm);
+    const double above = above_isovalue(volume, ray, at_mm);
+    if (std::min(inside.at_mm - at_mm, at_mm - outside.at_mm) < tolerance_mm) return at_mm;
     if (above > 0) {
-      inside = {at, above};
+      inside = {at_mm, above};
       outside.above *= 0.5;
     } else {
-      outside = {at, above};
+      outside = {at_mm, above};
       inside.above *= 0.5;
     }
   }
-  return outside.at;
+  return outside.at_mm;
 }
 
 }  // namespace
 
-std::optional<double> first_bone(const Volume& volume, const VoxelRay& ray, double from, double to,
-                                 double tolerance) {
-  Sample before{from, above_isovalue(volume, ray, from)};
+std::optional<double> first_bone(const Volume& volume, const VoxelRay& ray, double from_mm, double to_mm,
+                                 double tolerance_mm) {
+  Sample before{from_mm, above_isovalue(volume, ray, from_mm)};
   if (before.above > 0) return std::nullopt;
-  const double voxels = (to - from) * ray.way.norm();
-  const int steps = std::max(1, static_cast<int>(std::ceil(2 * std::min(voxels, 1e4))));
-  const double step = (to - from) / steps;
-  for (int n = 1; n <= steps; ++n) {
-    const double at = from + n * step;
-    const Sample here{at, above_isovalue(volume, ray, at)};
-    if (here.above > 0) return close_in(volume, ray, before, here, tolerance * step);
+  const double looks_mm = std::max(0.5 / ray.way.norm(), kLeastLook_mm);
+  const int looks = static_cast<int>(std::clamp(std::ceil((to_mm - from_mm) / looks_mm), 1.0, 2e4));
+  for (int n = 1; n <= looks; ++n) {
+    const double at_mm = from_mm + n * (to_mm - from_mm) / looks;
+    const Sample here{at_mm, above_isovalue(volume, ray, at_mm)};
+    if (here.above > 0) return close_in(volume, ray, before, here, tolerance_mm);
     before = here;
   }
   return std::nullopt;
@@ -56,13 +58,20 @@ std::optional<double> first_bone(const Volume& volume, const VoxelRay& ray, doub
 
 std::optional<double> share_to_bone(const Volume& volume, const Vec3& from_W, const Vec3& to_W,
                                     double known_free_mm) {
-  constexpr double kTolerance = 1e-3;
+  constexpr double kTolerance_mm = 1e-4;
+  const double way_mm = (to_W - from_W).norm();
+  if (way_mm == 0) return std::nullopt;
   const Vec3 from = volume.geometry().voxel_from_world(from_W);
-  const VoxelRay ray{from, volume.geometry().voxel_from_world(to_W) - from};
-  if (!(known_free_mm > 0)) return first_bone(volume, ray, 0, 1, kTolerance);
-  const double free = std::min(1.0, known_free_mm / (to_W - from_W).norm());
-  if (above_isovalue(volume, ray, free) > 0) return first_bone(volume, ray, 0, free, kTolerance);
-  return free < 1 ? first_bone(volume, ray, free, 1, kTolerance) : std::nullopt;
+  const VoxelRay ray{from, (volume.geometry().voxel_from_world(to_W) - from) / way_mm};
+  const auto share = [&](double begin_mm, double end_mm) {
+    std::optional<double> met = first_bone(volume, ray, begin_mm, end_mm, kTolerance_mm);
+    if (met) *met /= way_mm;
+    return met;
+  };
+  if (!(known_free_mm > 0)) return share(0, way_mm);
+  const double free_mm = std::min(way_mm, known_free_mm);
+  if (above_isovalue(volume, ray, free_mm) > 0) return share(0, free_mm);
+  return free_mm < way_mm ? share(free_mm, way_mm) : std::nullopt;
 }
 
 }  // namespace osteomill::surface_points

@@ -1,5 +1,6 @@
 #include "osteomill/haptics/surface_points/ray_crossing.h"
 
+#include <cmath>
 #include <random>
 
 #include "tests/shapes.h"
@@ -34,6 +35,28 @@ TEST(RayCrossing, AgreesWithTheSlowSearch) {
     EXPECT_LT((from + *share * (to - from) - *slow).norm(), 1e-3);
   }
   EXPECT_GT(met, 50);
+}
+
+// In the finest scans it looks less often than every half voxel.
+TEST(RayCrossing, FindsASheetOfAFewFineVoxels) {
+  constexpr double kThickness_mm = 0.06;
+  const Volume volume = shape_volume(centred_cube(64, 0.02), [](const Vec3& p) {
+    return std::abs(Vec3(1, 2, 3).normalized().dot(p)) - 0.5 * kThickness_mm;
+  });
+  std::mt19937_64 random(2);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  int met = 0;
+  for (int n = 0; n < 500; ++n) {
+    const Vec3 from = 0.6 * Vec3(unit(random), unit(random), unit(random));
+    const Vec3 to = 0.6 * Vec3(unit(random), unit(random), unit(random));
+    const auto slow = first_crossing(volume, from, to);
+    if (!slow || density_at(volume.grid(), from) > volume.isovalue()) continue;
+    const auto share = share_to_bone(volume, from, to);
+    ASSERT_TRUE(share) << n;
+    ++met;
+    EXPECT_LT((from + *share * (to - from) - *slow).norm(), 1e-3);
+  }
+  EXPECT_GT(met, 100);
 }
 
 }  // namespace
