@@ -9,6 +9,7 @@
 #include "osteomill/experiment/paper.h"
 #include "osteomill/experiment/passivity_figure.h"
 #include "osteomill/experiment/passivity_section.h"
+#include "osteomill/experiment/phase_metrics.h"
 #include "osteomill/experiment/signed_rank.h"
 #include "osteomill/experiment/study_figure.h"
 #include "osteomill/experiment/study_findings.h"
@@ -140,7 +141,7 @@ bool are_of_comparison(const std::vector<Recording>& recordings) {
 
 fs::path write_comparison_report(const std::vector<Recording>& recordings, const fs::path& out_dir,
                                  const ReportExtras& extras) {
-  const std::vector<RunGroup> groups = group_runs(recordings);
+  const std::vector<RunGroup> groups = group_runs(recordings, phase_metrics);
   const Study study = extras.study ? *extras.study : study_of(groups);
   create_folder(out_dir / "figures");
   PageText text;

@@ -69,7 +69,8 @@ TEST_F(FindingsTest, WhatThePaperFoundAgrees) {
 
 TEST_F(FindingsTest, WhoLostContactIsNeitherBestNorWorst) {
   RunMetrics& m = metrics("surface-points", kHolding);
-  m.contact = {0.05, 0.05, 0, 3.2};
+  m.contact.any = m.contact.force = 0.05;
+  m.contact.lost_after_s = 3.2;
   m.force_N.hp_rms = m.torque_Nmm.hp_rms = m.shaft.spread_deg = std::numeric_limits<double>::quiet_NaN();
   EXPECT_TRUE(disagreeing().empty());
   const std::vector<Finding> findings = check_findings(group_);

@@ -36,8 +36,8 @@ class MillingTrial {
                const AlgorithmDescription& algorithm, const TrialSettings& settings);
 
   bool finished() const { return operator_.finished(); }
-  /// Whether the shaft has leant on bone for long enough (ScriptSettings::leant_s).
-  bool has_leant() const { return operator_.has_leant(); }
+  /// What the hand could not bring about.
+  const ScriptShortfall& shortfall() const { return operator_.shortfall(); }
   /// The next tick; then the hand and the device move on. No allocation.
   Tick tick();
 

@@ -54,10 +54,13 @@ std::string mode_table(std::span<const PassivityRow> rows, Mode mode) {
     table.rows.push_back({fmt::format("{:.3g} N s/m, {:.3g} ms", 1e3 * device.setup.damping_Ns_per_mm,
                                       1e3 * device.setup.delay_s),
                           fmt::format("{:.3g}", device.rule_N_per_mm)});
-    for (const PassivityRow& row : rows) {
-      if (row.setup.mode == mode && row.setup.delay_s == device.setup.delay_s &&
-          row.setup.damping_Ns_per_mm == device.setup.damping_Ns_per_mm)
-        table.rows.back().push_back(cell(row));
+    for (const AlgorithmId& algorithm : algorithms) {
+      const auto row = std::find_if(rows.begin(), rows.end(), [&](const PassivityRow& of) {
+        return of.setup.mode == mode && of.setup.algorithm.id == algorithm &&
+               of.setup.delay_s == device.setup.delay_s &&
+               of.setup.damping_Ns_per_mm == device.setup.damping_Ns_per_mm;
+      });
+      table.rows.back().push_back(row == rows.end() ? "–" : cell(*row));
     }
   }
   return html_table(table);

@@ -54,6 +54,21 @@ class PassivitySectionTest : public ::testing::Test {
   fs::path out_;
 };
 
+TEST_F(PassivitySectionTest, AColumnIsOfItsAlgorithmInWhateverOrderTheyWereMeasured) {
+  auto rows = sample_rows({Mode::steady});
+  const Figure figure = draw_passivity_figure(rows, out_);
+  const std::string html = passivity_section(rows, figure);
+  std::stable_sort(rows.begin(), rows.end(), [](const PassivityRow& a, const PassivityRow& b) {
+    return a.setup.algorithm.id.label > b.setup.algorithm.id.label;
+  });
+  const std::string reversed = passivity_section(rows, figure);
+  const auto first_row = [](const std::string& page) {
+    const std::size_t begin = page.find("N s/m", page.find("<table"));
+    return page.substr(begin, page.find("</tr>", begin) - begin);
+  };
+  EXPECT_NE(reversed.find(first_row(html)), std::string::npos) << first_row(html) << " not in " << reversed;
+}
+
 TEST_F(PassivitySectionTest, TheTableHasEveryDeviceOnce) {
   const auto rows = sample_rows({Mode::paper, Mode::steady});
   write_passivity_csv(out_ / "stability.csv", rows);

@@ -80,10 +80,8 @@ std::vector<fs::path> record_trial(const TrialPlan& plan, const AlgorithmDescrip
   add_pictures(milling, pictures, trial.volume(), events);
   milling.close();
   holding.close();
-  if (script.until_leant && !trial.has_leant()) {
-    events.warn(fmt::format("{}: the shaft leant on the bone for less than {:g} s", algorithm.id.name,
-                            script.leant_share * script.milling_s));
-  }
+  if (const std::string said = shortfall_words(trial.shortfall(), script); !said.empty())
+    events.warn(fmt::format("{}, {}: {}", algorithm.id.name, name_of(plan.settings.haptics.mode), said));
   if (const auto said = faults.sentence()) events.warn(fmt::format("{}: {}", algorithm.id.name, *said));
   return paths;
 }

@@ -33,7 +33,7 @@ constexpr std::array<KeyMetric, 10> kKeyMetrics{{
     {"mean torque", "N mm", [](const M& m) { return m.torque_Nmm.mean; }},
     {"spread of the shaft", "degrees", [](const M& m) { return m.shaft.spread_deg; }, true},
     {"bone removed", "mm³", [](const M& m) { return m.removed_mm3; }},
-    {"step time, median", "µs", [](const M& m) { return m.step_us.median; }},
+    {"step time, median", "µs", [](const M& m) { return m.step_us.median; }, true},
     {"step time, 99th percentile", "µs", [](const M& m) { return m.step_us.p99; }},
 }};
 
@@ -127,6 +127,12 @@ std::vector<KeyMetric> Study::metrics_of(std::string_view phase) const {
   return metrics;
 }
 
+bool Study::was_tried(const Tried& tried) const {
+  return std::any_of(rows_.begin(), rows_.end(), [&](const StudyRow& row) {
+    return row.summary.mode == tried.mode && row.summary.algorithm == tried.algorithm;
+  });
+}
+
 std::vector<double> Study::all_values(const Tried& tried, std::string_view phase,
                                       const KeyMetric& metric) const {
   std::vector<double> values;
@@ -142,6 +148,23 @@ std::vector<double> Study::values(const AlgorithmId& algorithm, Mode mode, std::
   std::vector<double> values = all_values({algorithm, mode}, phase, metric);
   std::erase_if(values, [](double value) { return std::isnan(value); });
   return values;
+}
+
+ContactShares Study::contact(const Tried& tried, std::string_view phase) const {
+  const auto median = [&](double (*value)(const M&)) {
+    return distribution_of(values(tried.algorithm, tried.mode, phase, {"", "", value})).median;
+  };
+  ContactShares shares;
+  shares.any = median([](const M& m) { return m.contact.any; });
+  shares.burr = median([](const M& m) { return m.contact.burr; });
+  shares.shaft = median([](const M& m) { return m.contact.shaft; });
+  shares.force = median([](const M& m) { return m.contact.force; });
+  shares.torque = median([](const M& m) { return m.contact.torque; });
+  const auto lost_after_s = [](const M& m) { return m.contact.lost_after_s.value_or(std::nan("")); };
+  const std::vector<double> lost = values(tried.algorithm, tried.mode, phase, {"", "", lost_after_s});
+  if (!lost.empty() && !are_most(seeds_.size() - lost.size()))
+    shares.lost_after_s = distribution_of(lost).median;
+  return shares;
 }
 
 std::pair<std::vector<double>, std::vector<double>> Study::paired_values(const Tried& first,

@@ -24,8 +24,8 @@ struct KeyMetric {
   /// Empty for a pure number.
   const char* unit;
   double (*value)(const RunMetrics&);
-  /// More of it is more unrest in the hand.
-  bool is_unrest = false;
+  /// Of unrest in the hand, and of time.
+  bool less_is_better = false;
 };
 
 /// Force, torque, shaft, bone removed and compute time, in the order in which people should read them.
@@ -67,11 +67,17 @@ class Study {
     AlgorithmId algorithm;
     Mode mode;
   };
+  bool was_tried(const Tried& tried) const;
   /// The metric's values, one a seed in the order of `seeds`, but for those without enough contact to measure
   /// it; none where that was not tried.
   std::vector<double> values(const AlgorithmId& algorithm, Mode mode, std::string_view phase,
                              const KeyMetric& metric) const;
-  /// The same of two, of the seeds in which both could be measured.
+  /// For how much of the phase the tool touched: medians of the seeds. `lost_after_s` is that of those which
+  /// lost contact, where they are no fewer than half.
+  ContactShares contact(const Tried& tried, std::string_view phase) const;
+  /// Whether so many seeds are enough to speak of them all: more than half.
+  bool are_most(std::size_t seeds) const { return 2 * seeds > seeds_.size(); }
+  /// The values of two, of the seeds in which both could be measured.
   std::pair<std::vector<double>, std::vector<double>> paired_values(const Tried& first, const Tried& second,
                                                                     std::string_view phase,
                                                                     const KeyMetric& metric) const;

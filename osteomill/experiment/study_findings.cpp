@@ -18,16 +18,17 @@ double chance_of_at_least(std::size_t k, std::size_t n) {
   return std::max(0.0, 1 - below);
 }
 
-// Not a number where no seed could be measured.
+// Not a number where no more than half of the seeds could be measured.
 double median_of(const Study& study, const SummaryRow& row, double (*value)(const RunMetrics&)) {
   const std::vector<double> values = study.values(row.algorithm, row.mode, row.segment, {"", "", value});
-  return values.empty() ? std::numeric_limits<double>::quiet_NaN() : distribution_of(values).median;
+  return study.are_most(values.size()) ? distribution_of(values).median
+                                       : std::numeric_limits<double>::quiet_NaN();
 }
 
 // Every metric that a finding looks at.
 RunMetrics medians_of(const Study& study, const SummaryRow& row) {
   RunMetrics m;
-  m.contact.any = median_of(study, row, [](const RunMetrics& r) { return r.contact.any; });
+  m.contact = study.contact({row.algorithm, row.mode}, row.segment);
   m.rate_hz = median_of(study, row, [](const RunMetrics& r) { return r.rate_hz; });
   m.force_N.hp_rms = median_of(study, row, [](const RunMetrics& r) { return r.force_N.hp_rms; });
   m.torque_Nmm.hp_rms = median_of(study, row, [](const RunMetrics& r) { return r.torque_Nmm.hp_rms; });

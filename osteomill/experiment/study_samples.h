@@ -20,6 +20,7 @@ inline StudyRow row(std::uint64_t seed, std::string_view algorithm, Mode mode, s
   StudyRow row{seed, {}, {algorithm_named(algorithm).id, mode, std::string(phase), {}}};
   row.hand.stiffness_N_per_mm = 0.1 * static_cast<double>(seed);
   row.summary.metrics.rate_hz = 1000;
+  row.summary.metrics.contact = {1, 1, 1, 1, 1, {}};
   row.summary.metrics.force_N.mean = 2;
   row.summary.metrics.force_N.hp_rms = values.force_hp;
   row.summary.metrics.torque_Nmm.hp_rms = values.torque_hp;

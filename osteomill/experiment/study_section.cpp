@@ -28,6 +28,18 @@ std::string pair_text(const AlgorithmPair& pair) {
                      short_label(pair.second), p_text(pair.p));
 }
 
+// "0.02 [0.01, 0.03]", with the hands where it could not be measured in all; else why not in any.
+std::string values_text(const Study& study, const Study::Tried& tried, std::string_view phase,
+                        const KeyMetric& metric) {
+  if (!study.was_tried(tried)) return "–";
+  const std::vector<double> values = study.values(tried.algorithm, tried.mode, phase, metric);
+  if (values.empty()) return contact_words(study.contact(tried, phase));
+  const std::string text = interval_text(median_interval(values));
+  return values.size() == study.seeds().size()
+             ? text
+             : fmt::format("{} in {} of {} hands", text, values.size(), study.seeds().size());
+}
+
 std::string algorithms_table(const Study& study, Mode mode, std::string_view phase) {
   HtmlTable table{{"Median over the hands [interval]"}, {}, true};
   for (const AlgorithmId& algorithm : study.algorithms()) table.header.emplace_back(algorithm.label);
@@ -35,8 +47,7 @@ std::string algorithms_table(const Study& study, Mode mode, std::string_view pha
   for (const KeyMetric& metric : study.metrics_of(phase)) {
     table.rows.push_back({html_escaped(label_of(metric))});
     for (const AlgorithmId& algorithm : study.algorithms()) {
-      const std::vector<double> values = study.values(algorithm, mode, phase, metric);
-      table.rows.back().push_back(values.empty() ? "lost contact" : interval_text(median_interval(values)));
+      table.rows.back().push_back(values_text(study, {algorithm, mode}, phase, metric));
     }
     std::string pairs;
     for (const AlgorithmPair& pair : compare_algorithms(study, mode, phase, metric)) {
@@ -47,17 +58,24 @@ std::string algorithms_table(const Study& study, Mode mode, std::string_view pha
   return html_table(table);
 }
 
+std::string change_text(const ModeChange& change) {
+  const std::string p = html_escaped(p_text(change.p));
+  return fmt::format(
+      "{:.3g} → {:.3g}<br>× {}<br>{}", change.paper.median, change.steady.median,
+      change.ratios > 0 ? interval_text(change.ratio) : "–",
+      change.p <= kSignificance ? "<b>" + p + "</b>" : "<span class=\"none\">" + p + "</span>");
+}
+
 std::string changes_table(const Study& study, std::string_view phase) {
   HtmlTable table{{"steady / paper, median over the hands [interval]"}, {}, true};
   for (const AlgorithmId& algorithm : study.algorithms()) table.header.emplace_back(algorithm.label);
   for (const KeyMetric& metric : study.metrics_of(phase)) {
     table.rows.push_back({html_escaped(label_of(metric))});
-    for (const ModeChange& change : compare_modes(study, phase, metric)) {
-      const std::string p = html_escaped(p_text(change.p));
-      table.rows.back().push_back(fmt::format(
-          "{:.3g} → {:.3g}<br>× {}<br>{}", change.paper.median, change.steady.median,
-          change.ratios > 0 ? interval_text(change.ratio) : "–",
-          change.p <= kSignificance ? "<b>" + p + "</b>" : "<span class=\"none\">" + p + "</span>"));
+    const std::vector<ModeChange> changes = compare_modes(study, phase, metric);
+    for (const AlgorithmId& algorithm : study.algorithms()) {
+      const auto change = std::find_if(changes.begin(), changes.end(),
+                                       [&](const ModeChange& of) { return of.algorithm == algorithm; });
+      table.rows.back().push_back(change == changes.end() ? "–" : change_text(*change));
     }
   }
   return html_table(table);

@@ -120,6 +120,22 @@ TEST(Study, TheSectionSaysWhatSoFewHandsCanShow) {
   EXPECT_EQ(ten.find("bone removed"), std::string::npos);
 }
 
+// 4 has no `paper`: its column stands empty, and the others stay under their names.
+TEST(Study, AColumnIsOfItsAlgorithm) {
+  std::vector<StudyRow> rows = sample_rows(7);
+  std::erase_if(rows, [](const StudyRow& r) {
+    return r.summary.algorithm == "line-proxy" && r.summary.mode == Mode::paper;
+  });
+  const std::string html = study_section(Study(rows), {});
+  EXPECT_EQ(html.find("lost contact"), std::string::npos);
+  const std::size_t table = html.find("What steady changes: Milling");
+  ASSERT_NE(table, std::string::npos);
+  const std::size_t row = html.find("force above 20 Hz, rms", table);
+  const std::size_t none = html.find("–", row), change = html.find("× 0.1 ", row);
+  ASSERT_NE(change, std::string::npos) << html.substr(table, 2000);
+  EXPECT_LT(none, change) << "1, without a pair, stands before 2";
+}
+
 TEST(Study, AsManySeedsAreNeededAsCanShowADifference) {
   std::vector<StudyRow> rows = sample_rows(1);
   EXPECT_EQ(Study(rows).seeds_needed(), 7u) << "three pairs, 3 * 2^-6 <= 0.05";

@@ -6,6 +6,7 @@
 
 #include "osteomill/experiment/paper.h"
 #include "osteomill/experiment/parallel.h"
+#include "osteomill/experiment/phase_metrics.h"
 #include "osteomill/session/fault_count.h"
 
 namespace osteomill {
@@ -15,6 +16,13 @@ namespace {
 struct PhasesOfTrial {
   std::array<Recording, kPhases.size()> phases;
   FaultCount faults;
+  ScriptShortfall shortfall;
+};
+
+// What of a trial people should see.
+struct Said {
+  std::optional<std::string> faults;
+  std::string shortfall;
 };
 
 PhasesOfTrial run(const StudyTrial& planned) {
@@ -32,6 +40,7 @@ PhasesOfTrial run(const StudyTrial& planned) {
     result.phases[tick.milling_phase ? 0 : 1].records.push_back(tick.record);
     result.faults.add(tick.record);
   }
+  result.shortfall = trial.shortfall();
   return result;
 }
 
@@ -40,7 +49,7 @@ PhasesOfTrial run(const StudyTrial& planned) {
 StudyRow row_of(const TrialPlan& plan, const Recording& recording) {
   const RunDescription& d = recording.description;
   return {
-      d.seed, plan.settings.hand_and_device.hand, {d.algorithm, d.mode, d.segment, run_metrics(recording)}};
+      d.seed, plan.settings.hand_and_device.hand, {d.algorithm, d.mode, d.segment, phase_metrics(recording)}};
 }
 
 TrialPlan with_seed(const TrialPlan& plan, std::uint64_t seed) {
@@ -58,11 +67,12 @@ TrialPlan with_seed(const TrialPlan& plan, std::uint64_t seed) {
 std::vector<StudyRow> run_study_trials(const std::vector<StudyTrial>& trials, std::size_t threads,
                                        const RunEvents& events) {
   std::vector<std::vector<StudyRow>> rows(trials.size());
-  std::vector<FaultCount> faults(trials.size());
+  std::vector<Said> said(trials.size());
   const auto task = [&](std::size_t n) {
     const PhasesOfTrial trial = run(trials[n]);
     for (const Recording& recording : trial.phases) rows[n].push_back(row_of(trials[n].plan, recording));
-    faults[n] = trial.faults;
+    said[n] = {trial.faults.sentence(),
+               shortfall_words(trial.shortfall, trials[n].plan.settings.hand_and_device.script)};
   };
   run_in_parallel(trials.size(), threads, task, [&](std::size_t done) {
     events.tell_progress("study", static_cast<double>(done) / static_cast<double>(trials.size()));
@@ -71,10 +81,12 @@ std::vector<StudyRow> run_study_trials(const std::vector<StudyTrial>& trials, st
   for (std::size_t n = 0; n < trials.size(); ++n) {
     all.insert(all.end(), rows[n].begin(), rows[n].end());
     const TrialSettings& settings = trials[n].plan.settings;
-    if (const auto said = faults[n].sentence()) {
+    const auto warn = [&](const std::string& line) {
       events.warn(fmt::format("{}, {}, seed {}: {}", trials[n].algorithm.id.name,
-                              name_of(settings.haptics.mode), settings.hand_and_device.seed, *said));
-    }
+                              name_of(settings.haptics.mode), settings.hand_and_device.seed, line));
+    };
+    if (said[n].faults) warn(*said[n].faults);
+    if (!said[n].shortfall.empty()) warn(said[n].shortfall);
   }
   return all;
 }

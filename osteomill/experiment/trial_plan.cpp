@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include "osteomill/recording/describe_run.h"
 
@@ -40,7 +40,7 @@ void add_script(Settings& settings, const ScriptSettings& script, const MillingE
   settings.push_back({"script.direction", point_text(entry.direction_W), ""});
   settings.push_back({"script.milling", script.milling_s, "s"});
   settings.push_back({"script.until-leant", script.until_leant ? 1.0 : 0.0, ""});
-  settings.push_back({"script.holding", script.holding_s, "s"});
+  settings.push_back({std::string(kScriptHoldingKey), script.holding_s, "s"});
   settings.push_back({"script.depth", script.depth_mm, "mm"});
 }
 
@@ -70,6 +70,18 @@ RunDescription describe_trial(const TrialPlan& plan, const AlgorithmDescription&
     run.settings.push_back({std::string(kMatchedStiffnessKey), *plan.matched_N_per_mm, "N/mm"});
   }
   return run;
+}
+
+std::string shortfall_words(const ScriptShortfall& shortfall, const ScriptSettings& script) {
+  std::vector<std::string> parts;
+  if (shortfall.shallow)
+    parts.push_back(fmt::format("the hole stayed shallower than {:g} mm", script.depth_mm));
+  if (shortfall.hardly_leant) {
+    parts.push_back(fmt::format("the shaft leant on the bone for less than {:g} s",
+                                script.leant_share * script.milling_s));
+  }
+  if (shortfall.unsettled) parts.emplace_back("the hand did not come to feel what it wanted to hold");
+  return fmt::format("{}", fmt::join(parts, "; "));
 }
 
 }  // namespace osteomill

@@ -32,11 +32,17 @@ struct TrialPlan {
 /// The key of the setting in which every recording of this test says where the tool enters.
 inline constexpr std::string_view kScriptEntryKey = "script.entry";
 
+/// And how long it was to be held there, in s.
+inline constexpr std::string_view kScriptHoldingKey = "script.holding";
+
 /// The key of the setting in which a recording says TrialPlan::matched_N_per_mm.
 inline constexpr std::string_view kMatchedStiffnessKey = "matched.felt_stiffness";
 
 /// All that a recording says of a phase of section 8.2: what any session's says, and hand, device and script.
 RunDescription describe_trial(const TrialPlan& plan, const AlgorithmDescription& algorithm, int sample_points,
                               std::string_view phase);
+
+/// "the hole stayed shallower than 3 mm; the shaft leant on the bone for less than 3 s"; empty for none.
+std::string shortfall_words(const ScriptShortfall& shortfall, const ScriptSettings& script);
 
 }  // namespace osteomill

@@ -42,14 +42,7 @@ std::string joined(const std::vector<std::string>& parts) {
   return text;
 }
 
-bool was_tried(const Study& study, Mode mode, const AlgorithmId& algorithm) {
-  const auto& rows = study.rows();
-  return std::any_of(rows.begin(), rows.end(), [&](const StudyRow& row) {
-    return row.summary.mode == mode && row.summary.algorithm == algorithm;
-  });
-}
-
-// "; least with 3 point-shell, significantly against 1 and 2, not against 4"
+// "; least with 3 point-shell, significantly against 1 and 2, not against 4", or that none is.
 std::string least_words(const Study& study, Mode mode, std::string_view phase, const KeyMetric& metric,
                         const AlgorithmId& least) {
   std::vector<std::string> clear, unclear;
@@ -59,30 +52,33 @@ std::string least_words(const Study& study, Mode mode, std::string_view phase, c
     const bool is_clear = pair.p <= kSignificance && pair.greater == other;
     (is_clear ? clear : unclear).push_back(short_label(other));
   }
-  std::string text = "; least with " + least.label;
-  if (!clear.empty()) text += ", significantly against " + joined(clear);
-  if (!unclear.empty())
-    text += fmt::format("{} not against {}", clear.empty() ? ", but" : ",", joined(unclear));
-  return text;
+  if (clear.empty()) return "; no difference between the least and another is significant";
+  return fmt::format("; least with {}, significantly against {}{}", least.label, joined(clear),
+                     unclear.empty() ? "" : ", not against " + joined(unclear));
 }
 
-// "0.02 N (1 line-proxy), lost contact (2 surface-points) and 0.01 N (3 point-shell)", and who has least.
+// "0.02 N (1 line-proxy), lost contact after 3.2 s (2 surface-points) and 0.01 N (3 point-shell, in 7 of 8
+// hands)", and who has least.
 std::string values_words(const Study& study, Mode mode, std::string_view phase, const KeyMetric& metric) {
   std::vector<std::string> values;
   std::optional<AlgorithmId> least;
   double min = 0;
   for (const AlgorithmId& algorithm : study.algorithms()) {
-    if (!was_tried(study, mode, algorithm)) continue;
+    if (!study.was_tried({algorithm, mode})) continue;
     const std::vector<double> of_seeds = study.values(algorithm, mode, phase, metric);
     if (of_seeds.empty()) {
-      values.push_back(fmt::format("lost contact ({})", algorithm.label));
+      values.push_back(
+          fmt::format("{} ({})", contact_words(study.contact({algorithm, mode}, phase)), algorithm.label));
       continue;
     }
     const double median = median_interval(of_seeds).median;
-    values.push_back(fmt::format("{:.3g} {} ({})", median, metric.unit, algorithm.label));
-    if (!least || median < min) least = algorithm, min = median;
+    const std::size_t all = study.seeds().size();
+    values.push_back(
+        fmt::format("{:.3g} {} ({}{})", median, metric.unit, algorithm.label,
+                    of_seeds.size() < all ? fmt::format(", in {} of {} hands", of_seeds.size(), all) : ""));
+    if (study.are_most(of_seeds.size()) && (!least || median < min)) least = algorithm, min = median;
   }
-  const bool claims = metric.is_unrest && least && values.size() > 1 && !too_few(study);
+  const bool claims = metric.less_is_better && least && values.size() > 1 && !too_few(study);
   return joined(values) + (claims ? least_words(study, mode, phase, metric, *least) : "");
 }
 
@@ -126,37 +122,63 @@ struct Change {
 };
 
 // "force step of 1 while milling (× 0.7), ..., and 3 more", the most changed first.
-std::string changes_words(std::vector<Change> changes) {
+std::string changes_words(std::vector<Change> changes, std::size_t most_told) {
   std::stable_sort(changes.begin(), changes.end(), [](const Change& a, const Change& b) {
     return std::abs(std::log(a.ratio)) > std::abs(std::log(b.ratio));
   });
   std::vector<std::string> told;
   for (const Change& change : changes) {
-    if (told.size() == kChangesTold) break;
+    if (told.size() == most_told) break;
     told.push_back(fmt::format("{} (× {:.2g})", change.what, change.ratio));
   }
   if (changes.size() > told.size()) told.push_back(fmt::format("{} more", changes.size() - told.size()));
   return told.empty() ? "nothing" : joined(told);
 }
 
-// With too few hands every change is told, else the significant ones.
+// With too few hands what changed, and not whether that is better; else all that is significantly worse, and
+// some of what is better.
 std::string changes_sentence(const Study& study) {
-  std::vector<Change> worse, better;
+  std::vector<Change> worse, better, all;
   for (const std::string_view phase : study.phases()) {
     for (const KeyMetric& metric : key_metrics()) {
-      if (!metric.is_unrest) continue;
+      if (!metric.less_is_better) continue;
       for (const ModeChange& change : compare_modes(study, phase, metric)) {
         const double ratio = change.ratio.median;
         if (!(ratio > 0) || ratio == 1 || (!too_few(study) && change.p > kSignificance)) continue;
-        (ratio > 1 ? worse : better)
-            .push_back({fmt::format("{} of {} {}", metric.name, short_label(change.algorithm), during(phase)),
-                        ratio});
+        all.push_back(
+            {fmt::format("{} of {} {}", metric.name, short_label(change.algorithm), during(phase)), ratio});
+        (ratio > 1 ? worse : better).push_back(all.back());
       }
     }
   }
-  return fmt::format("Against paper, steady makes {}worse: {}; and better: {}.",
-                     too_few(study) ? "" : "significantly ", changes_words(std::move(worse)),
-                     changes_words(std::move(better)));
+  if (too_few(study)) {
+    return fmt::format("Of {}, what is most unlike in steady and in paper: {}.", hands(study.seeds().size()),
+                       changes_words(std::move(all), kChangesTold));
+  }
+  return fmt::format("Against paper, steady makes significantly worse: {}; and better: {}.",
+                     changes_words(worse, worse.size()), changes_words(std::move(better), kChangesTold));
+}
+
+// In whose holding the shaft did not do what it was to.
+std::string not_leaning(const Study& study) {
+  constexpr double kLeans = 0.5;
+  std::vector<std::string> who;
+  for (const AlgorithmId& algorithm : study.algorithms()) {
+    for (const Mode mode : study.modes()) {
+      const std::vector<double> shares = study.values(
+          algorithm, mode, kHolding, {"", "", [](const RunMetrics& m) { return m.contact.shaft; }});
+      const auto few =
+          std::count_if(shares.begin(), shares.end(), [](double share) { return share < kLeans; });
+      if (few == 0) continue;
+      who.push_back(
+          fmt::format("{} in {}{}", algorithm.label, name_of(mode),
+                      shares.size() == 1 ? "" : fmt::format(" ({} of {} hands)", few, shares.size())));
+    }
+  }
+  return who.empty()
+             ? ""
+             : fmt::format(" The shaft stood against the wall for less than half of that time with {}.",
+                           joined(who));
 }
 
 }  // namespace
@@ -166,12 +188,14 @@ std::string what_was_compared(const Study& study, std::string_view scan_name) {
   for (const AlgorithmId& algorithm : study.algorithms()) algorithms.push_back(algorithm.label);
   for (const Mode mode : study.modes()) modes.emplace_back(name_of(mode));
   return fmt::format(
-      "{}, mode {}, milled the same bone ({}) in {}. Each moved the burr in until it touched, milled a hole "
-      "and pushed the shaft against the hole's edge; then, with the spindle off, it stood in that hole with "
-      "the shaft against the wall and kept as still as it could.",
+      "{}, mode {}, milled the same bone ({}) in {}. Each was to move the burr in until it touched, mill a "
+      "hole "
+      "and push the shaft against the hole's edge; then, with the spindle off, to stand in that hole with "
+      "the shaft against the wall and keep as still as it could.{}",
       joined(algorithms), joined(modes), scan_name,
       study.seeds().size() == 1 ? "one simulated hand"
-                                : fmt::format("{} simulated hands", study.seeds().size()));
+                                : fmt::format("{} simulated hands", study.seeds().size()),
+      not_leaning(study));
 }
 
 std::string too_few_hands(const Study& study) {

@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "osteomill/experiment/study_samples.h"
@@ -19,6 +20,12 @@ std::string verdict_of(const std::vector<StudyRow>& rows) {
 
 void expect_says(const std::string& text, const std::string& what) {
   EXPECT_NE(text.find(what), std::string::npos) << what << "\n in:\n" << text;
+}
+
+void lose(StudyRow& row) {
+  RunMetrics& m = row.summary.metrics;
+  m.force_N.hp_rms = m.torque_Nmm.hp_rms = std::numeric_limits<double>::quiet_NaN();
+  m.contact.lost_after_s = 3.2;
 }
 
 TEST(Verdict, IsFiveSentencesWithTheirNumbers) {
@@ -57,18 +64,53 @@ TEST(Verdict, WithTooFewHandsNothingIsClaimed) {
     EXPECT_EQ(text.find(claim), std::string::npos) << claim << " in " << text;
   }
   expect_says(text, "are as in 6 hands here");
+  expect_says(text, "Of 6 hands, what is most unlike in steady and in paper: force above 20 Hz");
+  for (const char* claim : {"better", "worse"}) EXPECT_EQ(text.find(claim), std::string::npos) << text;
+}
+
+TEST(Verdict, WhereSomeHandsLostContactTheMedianSaysOfHowMany) {
+  for (const std::uint64_t lost : {3u, 4u}) {
+    std::vector<StudyRow> rows = sample_rows(8);
+    for (StudyRow& r : rows) {
+      if (r.summary.algorithm == "line-proxy" && r.seed <= lost) lose(r);
+    }
+    const std::string text = verdict_of(rows);
+    expect_says(text, fmt::format("(1 line-proxy, in {} of 8 hands)", 8 - lost));
+    // Half of the hands do not speak for all.
+    EXPECT_EQ(text.find("could not be tested") != std::string::npos, lost == 4) << text;
+  }
+}
+
+TEST(Verdict, WhereNothingIsSignificantNobodyIsLeast) {
+  std::vector<StudyRow> rows = sample_rows(8);
+  std::erase_if(rows, [](const StudyRow& r) { return r.summary.algorithm == "surface-points"; });
+  for (StudyRow& r : rows) {
+    r.summary.metrics.force_N.hp_rms =
+        r.seed % 2 == (r.summary.algorithm == "line-proxy" ? 0u : 1u) ? 0.1 : 0.2;
+  }
+  expect_says(verdict_of(rows), "; no difference between the least and another is significant");
+}
+
+TEST(Verdict, WhoseShaftDidNotLeanIsNamed) {
+  std::vector<StudyRow> rows = sample_rows(8);
+  for (StudyRow& r : rows) {
+    r.summary.metrics.contact.shaft =
+        r.summary.algorithm == "line-proxy" && r.summary.mode == Mode::paper && r.seed < 4 ? 0.2 : 1;
+  }
+  const std::string text = what_was_compared(Study(rows), "ball");
+  expect_says(text, "less than half of that time with 1 line-proxy in paper (3 of 8 hands).");
+  for (StudyRow& r : rows) r.summary.metrics.contact.shaft = 1;
+  EXPECT_EQ(what_was_compared(Study(rows), "ball").find("less than half"), std::string::npos);
 }
 
 TEST(Verdict, WhoLostContactIsNamedAndNeverTheLeast) {
   std::vector<StudyRow> rows = sample_rows(8);
   for (StudyRow& r : rows) {
-    if (r.summary.algorithm == "point-shell") {
-      r.summary.metrics.force_N.hp_rms = r.summary.metrics.torque_Nmm.hp_rms =
-          std::numeric_limits<double>::quiet_NaN();
-    }
+    if (r.summary.algorithm == "point-shell") lose(r);
   }
   const std::string text = verdict_of(rows);
-  expect_says(text, "lost contact (3 point-shell); least with 1 line-proxy, significantly against 2");
+  expect_says(text,
+              "lost contact after 3.2 s (3 point-shell); least with 1 line-proxy, significantly against 2");
   expect_says(text, "could not be tested");
   EXPECT_EQ(text.find("nan"), std::string::npos) << text;
 }

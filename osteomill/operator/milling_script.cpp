@@ -103,6 +103,10 @@ bool MillingScript::is_settled(double now_s, const Pose& X_WD) const {
   if (settling_s < std::min(settings_.settle_s, settings_.holding_s)) return false;
   if (!settings_.until_leant || settling_s >= settings_.longest_settle_share * settings_.holding_s)
     return true;
+  return feels_what_it_holds(X_WD);
+}
+
+bool MillingScript::feels_what_it_holds(const Pose& X_WD) const {
   return felt_push_share(X_WD) >= kFelt * settings_.hold_push_share &&
          felt_torque_share(X_WD) >= kFelt * settings_.hold_torque_share;
 }
@@ -114,8 +118,15 @@ void MillingScript::begin(ScriptStage stage, double now_s) {
 
 void MillingScript::advance_stage(double now_s, double dt_s, const Pose& X_WD, const Pose& X_WT) {
   const bool is_milling = intent_.stage < ScriptStage::settle;
-  if (is_milling && is_milled(now_s)) begin(ScriptStage::settle, now_s);
-  if (intent_.stage == ScriptStage::settle && is_settled(now_s, X_WD)) begin(ScriptStage::hold, now_s);
+  if (is_milling && is_milled(now_s)) {
+    shortfall_.shallow |= intent_.stage < ScriptStage::lean;
+    shortfall_.hardly_leant = settings_.until_leant && !has_leant();
+    begin(ScriptStage::settle, now_s);
+  }
+  if (intent_.stage == ScriptStage::settle && is_settled(now_s, X_WD)) {
+    shortfall_.unsettled = settings_.until_leant && !feels_what_it_holds(X_WD);
+    begin(ScriptStage::hold, now_s);
+  }
   if (intent_.stage == ScriptStage::hold &&
       now_s - stage_began_s_ >= settings_.holding_s - settings_.settle_s) {
     begin(ScriptStage::done, now_s);
@@ -125,6 +136,7 @@ void MillingScript::advance_stage(double now_s, double dt_s, const Pose& X_WD, c
   if (intent_.stage == ScriptStage::lean) {
     if (felt_torque_share(X_WD) >= kLeant * settings_.lean_torque_share) leant_s_ += dt_s;
   } else if (shown_depth_mm(X_WT) >= settings_.depth_mm || now_s >= latest_s) {
+    shortfall_.shallow = shown_depth_mm(X_WT) < settings_.depth_mm;
     begin(ScriptStage::lean, now_s);
   } else if (along_mm_ >= -tool_.burr_radius_mm) {
     intent_.stage = ScriptStage::feed;

@@ -51,6 +51,16 @@ struct ScriptSettings {
 /// Throws std::invalid_argument, naming it, where a setting is out of range.
 void require_valid(const ScriptSettings& settings);
 
+/// What of the test the hand could not bring about in the time it had.
+struct ScriptShortfall {
+  /// The hole was not deep enough when the hand began to lean.
+  bool shallow = false;
+  /// The shaft leant on bone for less than it was to.
+  bool hardly_leant = false;
+  /// The hand did not come to feel the push and the torque that it wanted to hold.
+  bool unsettled = false;
+};
+
 /// What the hand is about.
 enum class ScriptStage : unsigned char { approach, feed, lean, settle, hold, done };
 
@@ -72,13 +82,16 @@ class MillingScript {
 
   /// What the script wants at time 0, and where the device is then.
   const ScriptIntent& intent() const { return intent_; }
-  /// Whether the shaft has leant on something for as long as the milling is to go on for.
-  bool has_leant() const { return leant_s_ >= settings_.leant_share * settings_.milling_s; }
+  /// Of what has been tried so far; with a milling of a given length leaning and settling are not waited for,
+  /// and not judged.
+  const ScriptShortfall& shortfall() const { return shortfall_; }
   /// The intent at `time_s`, `dt_s` after the last one. `X_WD` is where the device is, `X_WT` where the
   /// simulated tool is shown. Safe in the haptic tick.
   const ScriptIntent& step(double time_s, double dt_s, const Pose& X_WD, const Pose& X_WT);
 
  private:
+  bool has_leant() const { return leant_s_ >= settings_.leant_share * settings_.milling_s; }
+  bool feels_what_it_holds(const Pose& X_WD) const;
   void advance_stage(double now_s, double dt_s, const Pose& X_WD, const Pose& X_WT);
   void begin(ScriptStage stage, double now_s);
   double longest_milling_s() const;
@@ -105,6 +118,7 @@ class MillingScript {
   // Since when the present stage, and how long in all the shaft has leant on something.
   double stage_began_s_ = 0;
   double leant_s_ = 0;
+  ScriptShortfall shortfall_;
   ScriptIntent intent_;
 };
 

@@ -46,8 +46,7 @@ class SimulatedOperator final : public Device {
   /// Whether the spindle turns in the tick that begins now: the milling phase, and after it the holding.
   bool milling() const { return script_.intent().milling; }
   ScriptStage stage() const { return script_.intent().stage; }
-  /// Whether the shaft has leant on bone for long enough (ScriptSettings::leant_s).
-  bool has_leant() const { return script_.has_leant(); }
+  const ScriptShortfall& shortfall() const { return script_.shortfall(); }
   /// Both phases are over.
   bool finished() const { return stage() == ScriptStage::done; }
 

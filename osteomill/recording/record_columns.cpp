@@ -18,6 +18,9 @@ constexpr const char* kForce = "force sent to the hand, frame W";
 constexpr const char* kTorque = "torque sent to the hand, frame W, about the burr's centre";
 constexpr const char* kBurrForce = "force of the burr on the bone, frame W";
 
+constexpr const char* kCuttingTorque =
+    "of the torque sent, what the cutting adds (--cutting-reaction), frame W";
+
 #define OSTEOMILL_FIELD(field) \
   [](const TickRecord& r) -> double { return r.field; }, [](TickRecord& r, double value) { r.field = value; }
 
@@ -77,6 +80,12 @@ constexpr std::array kColumns{
     RecordColumn{"placed", "",
                  "1 where the tool was placed at the device before the tick, contacts forgotten",
                  small_integer, false, OSTEOMILL_FLAG(placed), true},
+    RecordColumn{"cutting_torque_x_Nmm", "N mm", kCuttingTorque, real, false,
+                 OSTEOMILL_FIELD(cutting_torque_W_Nmm.x()), true},
+    RecordColumn{"cutting_torque_y_Nmm", "N mm", kCuttingTorque, real, false,
+                 OSTEOMILL_FIELD(cutting_torque_W_Nmm.y()), true},
+    RecordColumn{"cutting_torque_z_Nmm", "N mm", kCuttingTorque, real, false,
+                 OSTEOMILL_FIELD(cutting_torque_W_Nmm.z()), true},
 };
 
 #undef OSTEOMILL_FLAG

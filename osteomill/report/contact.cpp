@@ -15,8 +15,9 @@ constexpr double kLost_s = 1;
 Contact contact_of(const TickRecord& record) {
   Contact contact;
   contact.burr = record.burr_force_W_N.norm() >= kFelt_N;
-  contact.shaft = record.wrench.torque_Nmm.norm() >= kFelt_Nmm;
-  contact.any = contact.burr || contact.shaft || record.wrench.force_N.norm() >= kFelt_N;
+  contact.shaft = (record.wrench.torque_Nmm - record.cutting_torque_W_Nmm).norm() >= kFelt_Nmm;
+  contact.force = contact.burr || record.wrench.force_N.norm() >= kFelt_N;
+  contact.torque = record.wrench.torque_Nmm.norm() >= kFelt_Nmm;
   return contact;
 }
 
@@ -27,22 +28,29 @@ ContactShares contact_shares(std::span<const TickRecord> records) {
   double last_s = began_s;
   for (const TickRecord& record : records) {
     const Contact contact = contact_of(record);
-    shares.any += contact.any;
+    shares.any += contact.any();
     shares.burr += contact.burr;
     shares.shaft += contact.shaft;
-    if (contact.any) last_s = record.time_s;
+    shares.force += contact.force;
+    shares.torque += contact.torque;
+    if (contact.any()) last_s = record.time_s;
   }
   if (shares.any == 0 || records.back().time_s - last_s >= kLost_s) shares.lost_after_s = last_s - began_s;
-  for (double* share : {&shares.any, &shares.burr, &shares.shaft}) {
+  for (double* share : {&shares.any, &shares.burr, &shares.shaft, &shares.force, &shares.torque}) {
     *share /= static_cast<double>(records.size());
   }
   return shares;
 }
 
 std::string contact_words(const ContactShares& contact) {
+  const auto share_of_time = [](double share) {
+    return fmt::format("for {:.0f} % of the time", 100 * share);
+  };
   if (contact.any == 0) return "never touched";
   if (contact.lost_after_s) return fmt::format("lost contact after {:.1f} s", *contact.lost_after_s);
-  return fmt::format("touched for {:.0f} % of the time", 100 * contact.any);
+  if (!is_enough_contact(contact.any)) return "touched " + share_of_time(contact.any);
+  if (!is_enough_contact(contact.shaft)) return "the shaft touched " + share_of_time(contact.shaft);
+  return "felt a force " + share_of_time(contact.force);
 }
 
 }  // namespace osteomill

@@ -8,32 +8,42 @@
 
 namespace osteomill {
 
-/// What the tool leant on in a tick. The burr does where it presses with 0.02 N or more. The shaft does where
-/// the hand feels 0.2 N mm or more, twice a step of the encoder: what presses on the burr's ball has no lever
-/// about its centre.
+/// What the tool leant on in a tick, and what the hand felt of it.
 struct Contact {
+  /// It presses with 0.02 N or more.
   bool burr = false;
+  /// Without what cutting adds, the torque is 0.2 N mm or more, twice a step of the encoder: what presses on
+  /// the burr's ball has no lever about its centre.
   bool shaft = false;
-  /// Or the hand feels 0.02 N of either.
-  bool any = false;
+  /// The burr touches, or the hand feels 0.02 N or more.
+  bool force = false;
+  /// The hand feels 0.2 N mm or more.
+  bool torque = false;
+
+  bool any() const { return force || torque; }
 };
 Contact contact_of(const TickRecord& record);
 
-/// For how much of a recording the tool touched.
+/// For how much of a recording the tool touched, each as a share of its ticks.
 struct ContactShares {
   double any = 0;
   double burr = 0;
   double shaft = 0;
+  double force = 0;
+  double torque = 0;
   /// When the last contact ended, from the first tick on, where the recording goes on for a second or more
   /// without any; 0 where there was none at all.
   std::optional<double> lost_after_s;
-
-  /// Whether there is enough of it to measure what is felt: a tenth of the ticks.
-  bool enough() const { return any >= 0.1; }
 };
 ContactShares contact_shares(std::span<const TickRecord> records);
 
-/// "lost contact after 3.2 s", "never touched", or, where neither is true, "touched for 4 % of the time".
+/// Whether a share of contact is enough to measure what is felt in it: a tenth of the ticks.
+inline bool is_enough_contact(double share) {
+  return share >= 0.1;
+}
+
+/// Why something that is felt could not be measured: "never touched", "lost contact after 3.2 s", "touched
+/// for 4 % of the time", "the shaft touched for 4 % of the time" or "felt a force for 4 % of the time".
 std::string contact_words(const ContactShares& contact);
 
 }  // namespace osteomill

@@ -120,7 +120,7 @@ RunMetrics run_metrics(const Recording& recording) {
   for (const TickRecord& record : recording.records) {
     force_N.push_back(record.wrench.force_N);
     torque_Nmm.push_back(record.wrench.torque_Nmm);
-    touches.push_back(contact_of(record).any);
+    touches.push_back(contact_of(record).any());
     if (touches.back()) shaft_W.push_back(shaft_direction(record.X_WT));
     step_us.push_back(record.compute_us);
     cpu_us.push_back(record.tick_cpu_us);
@@ -135,11 +135,10 @@ RunMetrics run_metrics(const Recording& recording) {
   metrics.contact = contact_shares(recording.records);
   metrics.force_N = metrics.torque_Nmm = {kUnknown, kUnknown, kUnknown, kUnknown};
   metrics.shaft = {kUnknown, kUnknown};
-  if (metrics.contact.enough()) {
-    metrics.force_N = vector_metrics(force_N, rate_hz, touches);
-    metrics.torque_Nmm = vector_metrics(torque_Nmm, rate_hz, touches);
-    metrics.shaft = direction_metrics(shaft_W);
-  }
+  const ContactShares& contact = metrics.contact;
+  if (is_enough_contact(contact.force)) metrics.force_N = vector_metrics(force_N, rate_hz, touches);
+  if (is_enough_contact(contact.torque)) metrics.torque_Nmm = vector_metrics(torque_Nmm, rate_hz, touches);
+  if (is_enough_contact(contact.shaft)) metrics.shaft = direction_metrics(shaft_W);
   metrics.put_back_mm3 = put_back_mm3(recording.records);
   metrics.removed_mm3 =
       recording.records.back().removed_mm3 - recording.records.front().removed_mm3 + metrics.put_back_mm3;

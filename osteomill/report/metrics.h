@@ -51,10 +51,11 @@ struct RunMetrics {
   /// HeldRate over the ticks' whole work (TickRecord::busy_us), for the recording's tick.
   double rate_hz = 0;
   ContactShares contact;
-  /// While in contact; not a number where there was not enough of it.
+  /// While in contact; not a number where the hand did not feel a force, or a torque, for long enough.
   VectorMetrics force_N;
   VectorMetrics torque_Nmm;
-  /// Of the simulated tool's shaft, likewise.
+  /// Of the simulated tool's shaft while in contact; not a number where the shaft did not touch for long
+  /// enough.
   DirectionMetrics shaft;
   /// By milling, after the first tick.
   double removed_mm3 = 0;

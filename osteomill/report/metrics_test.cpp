@@ -128,6 +128,34 @@ TEST(RunMetrics, FreeAirIsNotMeasured) {
   EXPECT_FALSE(touching.contact.lost_after_s);
 }
 
+// A burr that is pressed has no torque to be steady or not, and a shaft that touches nothing no direction of
+// its own.
+TEST(RunMetrics, ATorqueIsMeasuredWhereThereIsOne) {
+  Recording burr_alone = simple_recording(4000);
+  for (TickRecord& record : burr_alone.records) record.wrench.torque_Nmm *= 1e-6;
+  const RunMetrics m = run_metrics(burr_alone);
+  EXPECT_EQ(contact_words(m.contact), "the shaft touched for 0 % of the time");
+  EXPECT_DOUBLE_EQ(m.force_N.mean, 3);
+  EXPECT_TRUE(std::isnan(m.torque_Nmm.hp_rms) && std::isnan(m.shaft.spread_deg));
+
+  Recording torque_alone = simple_recording(4000);
+  for (TickRecord& record : torque_alone.records) record.wrench.force_N.setZero();
+  const RunMetrics of_torque = run_metrics(torque_alone);
+  EXPECT_EQ(contact_words(of_torque.contact), "felt a force for 0 % of the time");
+  EXPECT_TRUE(std::isnan(of_torque.force_N.mean));
+  EXPECT_FALSE(std::isnan(of_torque.torque_Nmm.mean) || std::isnan(of_torque.shaft.spread_deg));
+}
+
+TEST(RunMetrics, WhatCuttingAddsIsNoContactOfTheShaft) {
+  Recording cutting = simple_recording(4000);
+  for (TickRecord& record : cutting.records) record.cutting_torque_W_Nmm = record.wrench.torque_Nmm;
+  const RunMetrics m = run_metrics(cutting);
+  EXPECT_EQ(m.contact.shaft, 0);
+  EXPECT_EQ(m.contact.torque, 1);
+  EXPECT_FALSE(std::isnan(m.torque_Nmm.mean));
+  EXPECT_TRUE(std::isnan(m.shaft.spread_deg));
+}
+
 TEST(RunMetrics, WithoutContactThereIsNothingToMeasure) {
   Recording air = simple_recording(4000);
   for (TickRecord& record : air.records) record.wrench = {};
@@ -178,7 +206,9 @@ TEST(SummaryCsv, HasItsColumnsInOrder) {
   m.torque_Nmm = {10, 11, 12, 13};
   m.shaft = {14, 15.5};
   m.removed_mm3 = 16;
-  m.contact = {0.75, 0.5, 0.25, {}};
+  m.contact.any = 0.75;
+  m.contact.burr = 0.5;
+  m.contact.shaft = 0.25;
   write_summary_csv(path,
                     std::vector<SummaryRow>{{algorithm_named("point-shell").id, Mode::paper, "holding", m}});
   std::ifstream in(path);

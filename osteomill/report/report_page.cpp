@@ -221,15 +221,21 @@ std::string session_in_words(const MeasuredRun& run) {
       d.algorithm.label, d.segment.empty() ? "" : ", " + d.segment,
       records.back().time_s - records.front().time_s, spindle_s(*run.recording), m.path_mm, m.removed_mm3,
       put_back);
-  if (!m.contact.enough()) {
+  if (!is_enough_contact(m.contact.any)) {
     return text + fmt::format("The tool {}, too little to say what was felt.", contact_words(m.contact));
+  }
+  std::vector<std::string> means, greatest;
+  for (const auto& [felt, unit] : {std::pair(&m.force_N, "N"), std::pair(&m.torque_Nmm, "N mm")}) {
+    if (std::isnan(felt->mean)) continue;
+    means.push_back(fmt::format("{:.2g} {}", felt->mean, unit));
+    greatest.push_back(fmt::format("{:.2g} {}", felt->max, unit));
   }
   return text +
          fmt::format(
              "The tool touched for {:.0f} % of the time, the shaft for {:.0f} %; while it did, the hand "
-             "felt {:.2g} N and {:.2g} N mm on average, at most {:.2g} N and {:.2g} N mm.",
-             100 * m.contact.any, 100 * m.contact.shaft, m.force_N.mean, m.torque_Nmm.mean, m.force_N.max,
-             m.torque_Nmm.max);
+             "felt {} on average, at most {}.",
+             100 * m.contact.any, 100 * m.contact.shaft, fmt::join(means, " and "),
+             fmt::join(greatest, " and "));
 }
 
 std::string sessions_in_words(const std::vector<DrawnGroup>& groups) {

@@ -51,7 +51,8 @@ std::map<std::string, double> beginnings(const std::vector<Recording>& recording
 
 }  // namespace
 
-std::vector<RunGroup> group_runs(const std::vector<Recording>& recordings) {
+std::vector<RunGroup> group_runs(const std::vector<Recording>& recordings,
+                                 RunMetrics (*measure)(const Recording&)) {
   if (recordings.empty()) throw InputError("report", "there are no recordings to report on");
   const std::map<std::string, double> began_s = beginnings(recordings);
   std::vector<RunGroup> groups;
@@ -66,7 +67,7 @@ std::vector<RunGroup> group_runs(const std::vector<Recording>& recordings) {
             fmt::format("is {}, {}, {} as {} is; a report has room for one of them", name_of(d.algorithm),
                         name_of(d.mode), d.segment, twin->recording->path.string()));
       }
-      group.runs.push_back({&recording, run_metrics(recording)});
+      group.runs.push_back({&recording, measure(recording)});
     }
     const auto order = [&](const MeasuredRun& run) {
       const RunDescription& d = run.recording->description;

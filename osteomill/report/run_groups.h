@@ -31,6 +31,7 @@ struct RunGroup {
 /// Measures and groups recordings; the groups point into `recordings`. Throws InputError where there are
 /// none, where two are of the same algorithm, mode and segment, or where one cannot be measured
 /// (run_metrics).
-std::vector<RunGroup> group_runs(const std::vector<Recording>& recordings);
+std::vector<RunGroup> group_runs(const std::vector<Recording>& recordings,
+                                 RunMetrics (*measure)(const Recording&) = run_metrics);
 
 }  // namespace osteomill

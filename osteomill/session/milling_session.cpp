@@ -19,10 +19,8 @@ double microseconds_since(Clock::time_point start) {
 const Wrench kNotFinite{Vec3::Constant(std::numeric_limits<double>::quiet_NaN()), Vec3::Zero()};
 
 // Of a force, as far as what is sent has its direction: the bone that goes is paid with what the hand gives.
-double share_sent(const Vec3& asked_N, const Vec3& sent_N) {
-  return sent_N == asked_N || asked_N.isZero(0)
-             ? 1
-             : std::clamp(sent_N.dot(asked_N) / asked_N.squaredNorm(), 0.0, 1.0);
+double share_sent(const Vec3& asked, const Vec3& sent) {
+  return sent == asked || asked.isZero(0) ? 1 : std::clamp(sent.dot(asked) / asked.squaredNorm(), 0.0, 1.0);
 }
 
 }  // namespace
@@ -68,8 +66,7 @@ TickRecord MillingSession::tick(Device& device, double time_s, double dt_s, bool
   record.spindle_on = spindle_on;
 
   const Clock::time_point start = Clock::now();
-  SafeWrench safe;
-  const HapticStep step = step_safely(record.X_WD, dt_s, spindle_on, safe);
+  const auto [step, safe, cutting_torque_W_Nmm] = step_safely(record.X_WD, dt_s, spindle_on);
   record.compute_us = microseconds_since(start);
   device.write_wrench(safe.wrench);
 
@@ -82,6 +79,7 @@ TickRecord MillingSession::tick(Device& device, double time_s, double dt_s, bool
   record.X_WT = step.X_WT;
   record.wrench = safe.wrench;
   record.fault = safe.fault;
+  record.cutting_torque_W_Nmm = cutting_torque_W_Nmm;
   record.energy_given_Nmm = guard_.energy_given_Nmm();
   record.contacts = step.contacts;
   record.burr_force_W_N = step.burr_force_W_N;
@@ -134,12 +132,11 @@ TickRecord MillingSession::idle_tick(Device& device, double time_s, double dt_s)
   return record;
 }
 
-HapticStep MillingSession::step_safely(const Pose& X_WD, double dt_s, bool spindle_on, SafeWrench& safe) {
+MillingSession::SafeStep MillingSession::step_safely(const Pose& X_WD, double dt_s, bool spindle_on) {
   HapticStep nothing;
   nothing.X_WT = last_X_WT_.value_or(Pose{});
   if (!is_finite(X_WD)) {
-    safe = {guard_.pass_zero(X_WD, dt_s).wrench, WrenchFault::pose_not_finite};
-    return nothing;
+    return {nothing, {guard_.pass_zero(X_WD, dt_s).wrench, WrenchFault::pose_not_finite}};
   }
   HapticStep step = algorithm_->step(X_WD, dt_s);
   if (spindle_on) step.wrench.force_N += vibration_.force_N(step.X_WT, step.burr_force_W_N.norm(), dt_s);
@@ -148,16 +145,17 @@ HapticStep MillingSession::step_safely(const Pose& X_WD, double dt_s, bool spind
     step.wrench.torque_Nmm += reaction_.wrench().torque_Nmm;
   }
   const bool is_usable = is_finite(step.X_WT) && step.burr_force_W_N.allFinite();
-  safe = guard_.pass(is_usable ? step.wrench : kNotFinite, X_WD, dt_s);
+  const SafeWrench safe = guard_.pass(is_usable ? step.wrench : kNotFinite, X_WD, dt_s);
   if (safe.fault == WrenchFault::not_finite) {
     // Whatever led there is still in the algorithm's memory of contacts. The tool itself is still outside the
     // bone, where the device may have sunk into it.
     forget_contacts(last_X_WT_);
-    return nothing;
+    return {nothing, safe};
   }
   step.burr_force_W_N *= share_sent(step.wrench.force_N, safe.wrench.force_N);
   last_X_WT_ = step.X_WT;
-  return step;
+  return {step, safe,
+          share_sent(step.wrench.torque_Nmm, safe.wrench.torque_Nmm) * reaction_.wrench().torque_Nmm};
 }
 
 void MillingSession::mill(const HapticStep& step, bool spindle_on, double dt_s) {

@@ -79,7 +79,13 @@ class MillingSession {
   TickRecord begin_record(Device& device, double time_s, double dt_s);
   void begin_at(const Pose& X_WT);
   void forget_contacts(const std::optional<Pose>& X_WT);
-  HapticStep step_safely(const Pose& X_WD, double dt_s, bool spindle_on, SafeWrench& safe);
+  struct SafeStep {
+    HapticStep step;
+    SafeWrench sent;
+    // Of the torque sent.
+    Vec3 cutting_torque_W_Nmm = Vec3::Zero();
+  };
+  SafeStep step_safely(const Pose& X_WD, double dt_s, bool spindle_on);
   void mill(const HapticStep& step, bool spindle_on, double dt_s);
 
   // Behind a pointer since the algorithm keeps its address.

@@ -29,6 +29,8 @@ struct TickRecord {
   /// What was sent to the device (safe), in W about the burr's centre.
   Wrench wrench;
   WrenchFault fault = WrenchFault::none;
+  /// Of its torque, what the cutting adds (CuttingReaction).
+  Vec3 cutting_torque_W_Nmm = Vec3::Zero();
   /// Given to the hand less what it gave, up to this tick's pose (PassivityObserver), in N mm.
   double energy_given_Nmm = 0;
   int contacts = 0;
