@@ -39,12 +39,11 @@ Pose HeldTool::after(const Move& move) const {
           (quaternion_from_rotation_vector(move.turn_rad) * X_WT_.orientation).normalized()};
 }
 
-// What is seen from the pose after the move `at`, as limits to a move from where the tool stands. True where
-// the tool would overlap bone there.
-bool HeldTool::add_limits(const Move& at) {
-  const Pose X_WT = after(at);
+// What is seen from `X_WT`, the pose after the move `at`, as limits to a move from where the tool stands.
+// True where the tool would overlap bone there.
+bool HeldTool::add_limits(std::span<const RayContact> contacts, const Move& at, const Pose& X_WT) {
   bool overlaps = false;
-  for (const RayContact& contact : contacts_.find(X_WT)) {
+  for (const RayContact& contact : contacts) {
     Limit limit;
     limit.along = contact.normal_W;
     limit.about = (contact.point_W - X_WT.position_mm).cross(contact.normal_W);
@@ -84,12 +83,14 @@ bool HeldTool::limit_move(Move& move) {
 // a limit too.
 HeldTool::Move HeldTool::limited(const Move& wanted, bool& pushed) {
   limits_.clear();
-  add_limits({});
+  add_limits(contacts_.find(X_WT_), {}, X_WT_);
   Move move = wanted;
   pushed = limit_move(move);
   for (int look = 0; look < kLooks && !limits_.empty(); ++look) {
     const double share = std::min(1.0, kStride_mm / travel_mm(move));
-    if (!add_limits({share * move.shift_mm, share * move.turn_rad})) break;
+    const Move ahead{share * move.shift_mm, share * move.turn_rad};
+    const Pose X_WT = after(ahead);
+    if (!add_limits(contacts_.find_again(X_WT, travel_mm(ahead)), ahead, X_WT)) break;
     for (Limit& limit : limits_) limit.push = 0;
     move = wanted;
     pushed = limit_move(move);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "osteomill/haptics/surface_points/ray_contacts.h"
@@ -43,7 +44,7 @@ class HeldTool {
   // bone in that way.
   enum class Stride : unsigned char { arrived, free, pushed };
   Stride stride(const Pose& X_WD);
-  bool add_limits(const Move& at);
+  bool add_limits(std::span<const RayContact> contacts, const Move& at, const Pose& X_WT);
   double travel_mm(const Move& move) const;
   Pose after(const Move& move) const;
   bool limit_move(Move& move);

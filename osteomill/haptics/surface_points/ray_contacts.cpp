@@ -38,9 +38,11 @@ double distance_to_bone(const Volume& volume, const VoxelRay& ray, double radius
   const double reach = radius + RayContacts::kReach_mm;
   // Near the tool's surface is where bone is met nearly always.
   const double near = std::max(0.0, radius - RayContacts::kReach_mm);
-  if (const auto met = first_bone(volume, ray, near, reach, kTolerance_mm)) return *met;
-  if (near == 0 || !is_bone(volume, ray.origin + near * ray.way)) return kNoBone;
-  return first_bone(volume, ray, 0, near, kTolerance_mm).value_or(kNoBone);
+  std::optional<double> met = first_bone(volume, ray, near, reach, kTolerance_mm);
+  if (!met && near > 0 && is_bone(volume, ray.origin + near * ray.way))
+    met = first_bone(volume, ray, 0, near, kTolerance_mm);
+  // No less than is told apart: the nearest direction is sought by inverse distances.
+  return met ? std::max(*met, kTolerance_mm) : kNoBone;
 }
 
 bool is_min(const RayFan& fan, const RayDistances& distance_mm, std::size_t n) {
@@ -88,8 +90,12 @@ void RayContacts::prepare(const Volume& volume, const MillingTool& tool, int rin
     }
   }
   ring_ = make_ray_fan(std::move(around), 2.2 * std::numbers::pi / kSliceVertices);
+  seen_mm_.assign(
+      sphere_.directions.size() + ring_.directions.size() * ring_centres_T_.size() + end_points_T_.size(),
+      kNoBone);
   contacts_.clear();
-  contacts_.reserve(sphere_.directions.size() + ring_.directions.size() * ring_centres_T_.size() +
+  // A ray may stand for two: where it goes, and where the surface about it comes nearest.
+  contacts_.reserve(2 * (sphere_.directions.size() + ring_.directions.size() * ring_centres_T_.size()) +
                     end_points_T_.size());
 }
 
@@ -127,6 +133,16 @@ bool RayContacts::is_explained(const Part& part, const Vec3& direction_W, double
   return false;
 }
 
+// Within the reach of a point of the tool's surface; true where it is not known.
+bool RayContacts::bone_near(const Vec3& point_W) const {
+  return bone_near_disc(*volume_, point_W, Vec3::Zero(), kReach_mm);
+}
+
+// Whether a ray that leaves the tool at `end_W` is followed.
+bool RayContacts::is_in_view(std::size_t ray, const Vec3& end_W) const {
+  return sees_anew_ ? bone_near(end_W) : seen_mm_[ray] <= view_mm_;
+}
+
 void RayContacts::find_at(const Part& part, const Rays& rays, const Vec3& centre_W) {
   const RayFan& fan = *part.fan;
   const std::size_t count = fan.directions.size();
@@ -136,9 +152,11 @@ void RayContacts::find_at(const Part& part, const Rays& rays, const Vec3& centre
   bool any = false;
   for (std::size_t n = 0; n < count; ++n) {
     distance_mm[n] = kNoBone;
-    if (!is_bone(*volume_, centre + (part.radius_mm + kReach_mm) * rays.ways[n])) continue;
-    distance_mm[n] = distance_to_bone(*volume_, {centre, rays.ways[n]}, part.radius_mm);
-    any = true;
+    if (is_in_view(part.first_ray + n, centre_W + part.radius_mm * rays.directions_W[n])) {
+      distance_mm[n] = distance_to_bone(*volume_, {centre, rays.ways[n]}, part.radius_mm);
+      any = any || std::isfinite(distance_mm[n]);
+    }
+    if (sees_anew_) seen_mm_[part.first_ray + n] = distance_mm[n] - part.radius_mm;
   }
   if (!any) return;
   const auto is_met = [&](std::size_t n) { return std::isfinite(distance_mm[n]); };
@@ -160,30 +178,47 @@ void RayContacts::find_at(const Part& part, const Rays& rays, const Vec3& centre
 void RayContacts::find_at_end(const Pose& X_WT) {
   const Vec3 axis_W = shaft_direction(X_WT);
   const Vec3 way = voxels_per_mm_ * axis_W;
-  for (const Vec3& end_T : end_points_T_) {
-    const Vec3 end_W = X_WT * end_T;
+  const std::size_t first_ray = seen_mm_.size() - end_points_T_.size();
+  for (std::size_t n = 0; n < end_points_T_.size(); ++n) {
+    const Vec3 end_W = X_WT * end_points_T_[n];
     const VoxelRay ray{volume_->geometry().voxel_from_world(end_W), way};
-    if (!is_bone(*volume_, ray.origin + kReach_mm * way)) continue;
-    if (const auto met = first_bone(*volume_, ray, -kReach_mm, kReach_mm, kTolerance_mm)) {
-      contacts_.push_back({end_W, -axis_W, *met});
-    }
+    std::optional<double> met;
+    if (is_in_view(first_ray + n, end_W))
+      met = first_bone(*volume_, ray, -kReach_mm, kReach_mm, kTolerance_mm);
+    if (met) contacts_.push_back({end_W, -axis_W, *met});
+    if (sees_anew_) seen_mm_[first_ray + n] = met.value_or(kNoBone);
   }
 }
 
 std::span<const RayContact> RayContacts::find(const Pose& X_WT) {
+  sees_anew_ = true;
+  std::fill(seen_mm_.begin(), seen_mm_.end(), kNoBone);
+  return find_in_view(X_WT);
+}
+
+std::span<const RayContact> RayContacts::find_again(const Pose& X_WT, double travel_mm) {
+  // Beside a ray bone may be nearer than along it.
+  constexpr double kMargin_mm = 0.1;
+  sees_anew_ = false;
+  view_mm_ = travel_mm + kMargin_mm;
+  return find_in_view(X_WT);
+}
+
+std::span<const RayContact> RayContacts::find_in_view(const Pose& X_WT) {
   contacts_.clear();
   if (bone_near_disc(*volume_, X_WT.position_mm, Vec3::Zero(), tool_.burr_radius_mm + kReach_mm)) {
-    find_at({&sphere_, tool_.burr_radius_mm, bite_mm_, Vec3::Zero()}, rays_of(sphere_, X_WT),
+    find_at({&sphere_, tool_.burr_radius_mm, bite_mm_, Vec3::Zero(), 0}, rays_of(sphere_, X_WT),
             X_WT.position_mm);
   }
   const Vec3 axis_W = shaft_direction(X_WT);
-  const Part ring{&ring_, tool_.shaft_radius_mm, 0.0, axis_W};
+  Part ring{&ring_, tool_.shaft_radius_mm, 0.0, axis_W, sphere_.directions.size()};
   const Rays rays = rays_of(ring_, X_WT);
   for (const Vec3& centre_T : ring_centres_T_) {
     const Vec3 centre_W = X_WT * centre_T;
     if (bone_near_disc(*volume_, centre_W, axis_W, ring.radius_mm + kReach_mm)) {
       find_at(ring, rays, centre_W);
     }
+    ring.first_ray += ring_.directions.size();
   }
   find_at_end(X_WT);
   return contacts_;

@@ -33,6 +33,9 @@ class RayContacts {
   std::size_t capacity() const { return contacts_.capacity(); }
   /// The contacts within `kReach_mm` of the tool at `X_WT`, until the next call. Safe in the haptic tick.
   std::span<const RayContact> find(const Pose& X_WT);
+  /// The same where no point of the tool is farther than `travel_mm` from where it was when `find` looked
+  /// last: only those rays are followed again along which bone was near enough then. Safe in the haptic tick.
+  std::span<const RayContact> find_again(const Pose& X_WT, double travel_mm);
 
   /// How far from the tool's surface bone is noticed.
   static constexpr double kReach_mm = 0.3;
@@ -44,6 +47,8 @@ class RayContacts {
     double radius_mm;
     double bite_mm;
     Vec3 axis_W;
+    // The place of its first ray in `seen_mm_`.
+    std::size_t first_ray;
   };
   // A fan's directions as the tool stands, and as ways through the grid (voxels a mm).
   struct Rays {
@@ -53,6 +58,9 @@ class RayContacts {
   Rays rays_of(const RayFan& fan, const Pose& X_WT) const;
   void find_at(const Part& part, const Rays& rays, const Vec3& centre_W);
   void find_at_end(const Pose& X_WT);
+  bool bone_near(const Vec3& point_W) const;
+  std::span<const RayContact> find_in_view(const Pose& X_WT);
+  bool is_in_view(std::size_t ray, const Vec3& end_W) const;
   void add_contact(const Part& part, const Vec3& centre_W, const Vec3& direction_W, double distance_mm);
   bool is_explained(const Part& part, const Vec3& direction_W, double distance_mm) const;
 
@@ -66,6 +74,11 @@ class RayContacts {
   // On the shaft's end: its middle and near its rim.
   std::vector<Vec3> end_points_T_;
   std::vector<RayContact> contacts_;
+  // How far beyond the tool's surface each ray met bone when all were followed last, and up to where that
+  // counts now.
+  std::vector<double> seen_mm_;
+  double view_mm_ = 0;
+  bool sees_anew_ = true;
   // Of the part looked at.
   std::size_t first_of_part_ = 0;
 };

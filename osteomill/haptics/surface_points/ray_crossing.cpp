@@ -24,7 +24,8 @@ double above_isovalue(const Volume& volume, const VoxelRay& ray, double at_mm) {
 double close_in(const Volume& volume, const VoxelRay& ray, Sample outside, Sample inside,
                 double tolerance_mm) {
   for (int n = 0; n < 8 && inside.at_mm - outside.at_mm > tolerance_mm; ++n) {
-    const double fraction = outside.above / (outside.above - inside.above);
+    // A density that is the isovalue's itself says nothing of how far the crossing is.
+    const double fraction = outside.above < 0 ? outside.above / (outside.above - inside.above) : 0.5;
     const double at_mm = outside.at_mm + fraction * (inside.at_mm - outside.at_mm);
     const double above = above_isovalue(volume, ray, at_mm);
     if (std::min(inside.at_mm - at_mm, at_mm - outside.at_mm) < tolerance_mm) return at_mm;

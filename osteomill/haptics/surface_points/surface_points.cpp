@@ -49,15 +49,18 @@ void SurfacePoints::prepare(const Scene& scene) {
   sphere_.longest_arm_mm = tool_.burr_radius_mm;
   prepare_shaft();
   const double bite_mm = std::min(kBite_voxels * volume_->geometry().spacing_mm.minCoeff(), kMaxBite_mm);
-  held_tool_.prepare(*volume_, tool_, static_cast<int>(rings_.size()),
-                     std::min(bite_mm, 0.5 * tool_.burr_radius_mm));
+  held_tool_.prepare(*volume_, tool_, rings(), std::min(bite_mm, 0.5 * tool_.burr_radius_mm));
+  reset();
+}
+
+int SurfacePoints::rings() const {
+  return settings_.slices * (settings_.shaft_force ? kRingsPerSlice : 1);
 }
 
 void SurfacePoints::prepare_shaft() {
   rings_.clear();
   end_.reset();
-  const int rings = settings_.slices * (settings_.shaft_force ? kRingsPerSlice : 1);
-  for (const ShaftSlice& ring : slice_vertices(tool_, rings)) {
+  for (const ShaftSlice& ring : slice_vertices(tool_, rings())) {
     Fan fan;
     fan.is_ring = true;
     fan.longest_arm_mm = tool_.shaft_radius_mm;
@@ -66,7 +69,7 @@ void SurfacePoints::prepare_shaft() {
     rings_.push_back(std::move(fan));
   }
   if (rings_.empty()) return;
-  ring_spacing_mm_ = (tool_.shaft_length_mm - shaft_start_mm(tool_)) / rings;
+  ring_spacing_mm_ = (tool_.shaft_length_mm - shaft_start_mm(tool_)) / rings();
   if (!settings_.shaft_force) return;
   // The middle of the end face and its rim, about a centre a radius within.
   const Vec3 inward_T(0, 0, tool_.shaft_radius_mm);
@@ -142,8 +145,8 @@ std::optional<Vec3> SurfacePoints::held_centre(const Fan& fan, const Pose& X_WD,
   const Vec3 device_W = X_WD * fan.centre_T;
   const Vec3 held_W = X_WH * fan.centre_T;
   const Vec3 way = device_W - held_W;
-  // The held tool keeps a centre a radius away from bone: a shorter way needs no search.
-  if (way.norm() < 0.8 * fan.arms_T.front().norm() && !in_bone(device_W)) return device_W;
+  // Within what the held tool keeps free no search is needed.
+  if (way.norm() < free_about_held_mm(fan) && !in_bone(device_W)) return device_W;
   if (!bone_near_disc(*volume_, 0.5 * (held_W + device_W), Vec3::Zero(), 0.5 * way.norm())) return device_W;
   if (in_bone(held_W)) return std::nullopt;
   const std::optional<double> share = share_to_bone(*volume_, held_W, device_W, free_about_held_mm(fan));

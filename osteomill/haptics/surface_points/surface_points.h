@@ -51,6 +51,7 @@ class SurfacePoints final : public HapticAlgorithm {
     int contacts = 0;
   };
   void prepare_shaft();
+  int rings() const;
   double beyond_N_per_mm() const;
   ShaftSum shaft_sum(const Pose& X_WD, const Pose& X_WH);
   void add_end(const Pose& X_WD, const Pose& X_WH, ShaftSum& sum);

@@ -44,6 +44,19 @@ Volume linear_plane() {
   return Volume(DensityGrid(geometry, densities), 0.0);
 }
 
+// A burr may be as large as all of the shaft is long.
+TEST(SurfacePoints, AToolWhoseShaftItsBurrSwallowsIsABurr) {
+  const Volume volume = shape_volume(centred_cube(64, 0.25), plane(Vec3::Zero(), Vec3::UnitZ()));
+  for (const Mode mode : {Mode::paper, Mode::steady}) {
+    SurfacePoints algorithm(Settings::defaults(mode));
+    algorithm.prepare({&volume, MillingTool{3, 1, 2}});
+    algorithm.step({{0, 0, 3.5}, Quat::Identity()}, kDt);
+    const HapticStep pressed = algorithm.step({{0, 0, 2.5}, Quat::Identity()}, kDt);
+    EXPECT_GT(pressed.wrench.force_N.z(), 0.1);
+    EXPECT_LT(pressed.wrench.torque_Nmm.norm(), 0.1);
+  }
+}
+
 TEST(SurfacePointsPaper, Equation15ReachesFromTheVertexToTheSurface) {
   // Vertex 300 above the isovalue, centre 100 below it: three quarters of the way.
   EXPECT_DOUBLE_EQ(interpolated_share(1300, 900, 1000), 0.75);
