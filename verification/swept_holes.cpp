@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <cmath>
+#include <span>
+#include <string>
 
 #include "tests/shapes.h"
 #include "tests/swept_path.h"
@@ -19,6 +21,8 @@ using testing_support::Carving;
 
 constexpr double kVolumeWithin = 0.02;
 constexpr double kPaidWithin = 0.01;
+// Of the shares cut with one burr and push, the greatest to the least.
+constexpr double kAlikeWithin = 0.015;
 
 struct Hole {
   const char* name;
@@ -97,6 +101,21 @@ Milled mill(std::string_view algorithm, const Hole& hole, double seconds) {
   return {testing_support::carving(bone, trial.volume(), path), removed_mm3 / paid_for_mm3};
 }
 
+// Of the holes that differ in their voxels alone.
+void add_all_voxels(Section& section, const std::string& algorithm, const std::vector<Hole>& holes,
+                    std::span<const Milled> milled) {
+  const Hole usual{};
+  std::vector<double> shares;
+  for (std::size_t n = 0; n < holes.size(); ++n) {
+    if (holes[n].burr_radius_mm == usual.burr_radius_mm && holes[n].push_N == usual.push_N)
+      shares.push_back(milled[n].carving.share());
+  }
+  const auto [least, greatest] = std::minmax_element(shares.begin(), shares.end());
+  section.add(
+      {algorithm + ", all voxels", "", fmt::format("{:.3f} to {:.3f}", *least, *greatest), "", "", "", ""},
+      *greatest / *least - 1 <= kAlikeWithin);
+}
+
 }  // namespace
 
 Section swept_holes(const Effort& effort) {
@@ -112,8 +131,10 @@ Section swept_holes(const Effort& effort) {
           "s in the middling rows); surfaces by interpolation, counted where bone lay for two voxels around. "
           "Edges that two passes leave between them are rounded within their voxels, as interpolation has "
           "it; "
-          "they are reported apart and not judged.",
-          100 * kVolumeWithin, 100 * kPaidWithin, effort.phase_s / 2),
+          "they are reported apart and not judged. With one burr and push the shares cut in all voxels are "
+          "alike "
+          "within {:g} %.",
+          100 * kVolumeWithin, 100 * kPaidWithin, effort.phase_s / 2, 100 * kAlikeWithin),
       {"algorithm, voxels", "swept, mm3", "cut / swept", "left, mm", "lost, mm", "lost at edges, mm",
        "removed / paid for", ""},
       {},
@@ -134,6 +155,9 @@ Section swept_holes(const Effort& effort) {
         std::abs(c.share() - 1) <= kVolumeWithin && c.left_mm <= 0.5 * voxel_mm &&
             c.lost_mm <= std::min(0.25 * voxel_mm, 0.03) &&
             std::abs(milled[n].paid_share - 1) <= kPaidWithin);
+  }
+  for (std::size_t n = 0; n < algorithm_names().size(); ++n) {
+    add_all_voxels(section, algorithm_names()[n], all, std::span(milled).subspan(n * all.size(), all.size()));
   }
   return section;
 }

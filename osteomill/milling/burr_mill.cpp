@@ -110,15 +110,6 @@ void BurrMill::lift(double dt_s) {
   ahead_mm_ = 0;
 }
 
-void BurrMill::reset() {
-  share_ = {};
-  found_of_round_ = 0;
-  ahead_mm_ = 0;
-  carry_mm3_ = 0;
-  force_free_s_ = 0;
-  reach_.forget();
-}
-
 CuttingBall BurrMill::ball_in_grid(const Vec3& centre_W, const Vec3& force_W_N) const {
   const auto to_grid = geometry_.direction.transpose();
   return {to_grid * (centre_W - geometry_.origin_mm), to_grid * force_W_N.normalized(), radius_mm_};

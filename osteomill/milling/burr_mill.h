@@ -52,13 +52,11 @@ class BurrMill {
   /// `burr_centre_W` is the simulated burr's centre, `burr_force_W_N` its force on the bone. Lowers densities
   /// of `volume`, whose geometry is the one given at construction, never below the surroundings. Takes
   /// nothing where the force or the centre is not finite. Safe in the haptic tick; time grows with the voxels
-  /// overlapped. From step to step only voxels new in reach are searched for bone, so between two calls of
-  /// `reset` nobody may raise densities of the same volume.
+  /// overlapped. From step to step only voxels new in reach are searched for bone, so nobody may raise
+  /// densities of the same volume as long as this lives.
   MillingStep step(Volume& volume, const Vec3& burr_centre_W, const Vec3& burr_force_W_N, double dt_s);
   /// Where the volume has labels: what the steps took of each and nobody has taken from here.
   LabelTally& by_label() { return by_label_; }
-  /// Forgets the carry and what was in reach.
-  void reset();
   /// What was pressed for and not yet cut, mm^3 of reference density.
   double carry_mm3() const { return carry_mm3_; }
 

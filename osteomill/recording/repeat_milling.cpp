@@ -57,8 +57,10 @@ void repeat_session(Volume& volume, const Recording& recording, const RecordedSe
   double removed_mm3 = start.removed_mm3;
   for (std::size_t tick = session.first; tick < end; ++tick) {
     const TickRecord& record = recording.records[tick];
-    if (record.spindle_on) {
-      const Vec3 paying_W_N = paying_force_W_N(settings.milling, record.X_WT, record.burr_force_W_N);
+    if (!record.paused) {
+      const Vec3 paying_W_N = record.spindle_on
+                                  ? paying_force_W_N(settings.milling, record.X_WT, record.burr_force_W_N)
+                                  : Vec3::Zero();
       removed_mm3 += mill.step(volume, record.X_WT.position_mm, paying_W_N, record.dt_s).removed_mm3;
     }
     require_same_removal(recording, tick, removed_mm3);

@@ -351,6 +351,8 @@ HapticStep BarrierShell::report(const State& state, const Pose& X_WD, double dt_
     ramp_ = std::min(1.0, ramp_ + std::max(0.0, dt_s) / kRamp_s);
     result.wrench.force_N = ramp_ * result.wrench.force_N + (1 - ramp_) * ramp_from_.force_N;
     result.wrench.torque_Nmm = ramp_ * result.wrench.torque_Nmm + (1 - ramp_) * ramp_from_.torque_Nmm;
+    // Bone is paid for with what the hand gives.
+    result.burr_force_W_N *= ramp_;
   }
   sent_ = result.wrench;
   return result;

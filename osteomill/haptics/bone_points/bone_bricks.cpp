@@ -60,8 +60,8 @@ Vec3 BoneBricks::node_middle_G(int level, int i, int j, int k) const {
 
 std::uint32_t BoneBricks::slot_of(const VoxelIndex& brick) {
   const std::uint32_t& slot = slots_[index_of(brick)];
-  if (slot == kUnmade) make(brick);
-  return slot == kEmptied ? kNoPoints : slot;
+  if (slot == kUnmade && has_room()) make(brick);
+  return slot == kEmptied || slot == kUnmade ? kNoPoints : slot;
 }
 
 // Makes a brick, or makes it anew; returns what it cost.
@@ -73,7 +73,7 @@ int BoneBricks::make(const VoxelIndex& brick) {
                               : slot == kNoPoints ? 0
                                                   : static_cast<std::int32_t>(fine_.brick(slot).count);
   if (slot == kUnmade) slot = kNoPoints;
-  if (slot == kNoPoints && found_->fine_count > 0 && !free_slots_.empty()) {
+  if (slot == kNoPoints && found_->fine_count > 0) {
     slot = free_slots_.back();
     free_slots_.pop_back();
     brick_of_slot_[slot] = brick;
@@ -118,9 +118,19 @@ int BoneBricks::visit(const VoxelIndex& brick) {
   const std::uint32_t slot = slots_[index_of(brick)];
   if (slot == kUnmade || slot == kEmptied) return kPassedOverCost;
   if ((slot == kNoPoints) != sweep_.is_first_pass()) return kPassedOverCost;
-  const bool has_changed =
-      slot == kNoPoints ? lattice_.may_hold_surface(brick) : changes_[slot] != lattice_.changes_of(brick);
-  return has_changed ? make(brick) : kPassedOverCost;
+  if (slot != kNoPoints) return changes_[slot] != lattice_.changes_of(brick) ? make(brick) : kPassedOverCost;
+  if (!lattice_.may_hold_surface(brick)) return kPassedOverCost;
+  if (has_room()) return make(brick);
+  slots_[index_of(brick)] = kUnmade;
+  octree_.add(brick.i, brick.j, brick.k, 1);
+  return kPassedOverCost;
+}
+
+// For one more brick, however many points it has.
+bool BoneBricks::has_room() const {
+  constexpr std::size_t kMostChunks = SurfaceLattice::kMaxPointsOfBrick / PointChunk::kSlots + 1;
+  return !free_slots_.empty() && fine_.free_chunks() >= kMostChunks &&
+         (kinds_ == Points::fine || coarse_.free_chunks() >= kMostChunks);
 }
 
 void BoneBricks::make_room(const MillingTool& tool, const Pose& X_WT) {

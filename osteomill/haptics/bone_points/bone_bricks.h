@@ -45,7 +45,7 @@ class BoneBricks {
 
   static constexpr std::uint32_t kNoPoints = 0xffffffffu;
   /// The slot of the brick in `fine` and `coarse`, which is made if it was not; `kNoPoints` where it has
-  /// none.
+  /// none, or where there is no room to make it.
   std::uint32_t slot_of(const VoxelIndex& brick);
 
   /// About how many points are brought up to date a tick.
@@ -56,7 +56,7 @@ class BoneBricks {
   bool is_up_to_date() const { return sweep_.is_idle(); }
   /// Makes room if little is left, by forgetting bricks that are not near the tool.
   void make_room(const MillingTool& tool, const Pose& X_WT);
-  /// Points that found no room: none as long as `make_room` was called.
+  /// Points that found no room as bricks that had some grew.
   std::uint64_t dropped() const { return fine_.dropped() + coarse_.dropped(); }
 
  private:
@@ -69,6 +69,7 @@ class BoneBricks {
   int visit(const VoxelIndex& brick);
   bool start_sweep();
   bool is_short_of_room() const;
+  bool has_room() const;
   bool is_near(const MillingTool& tool, const Pose& X_TW, const VoxelIndex& brick) const;
   void forget(std::uint32_t slot);
 

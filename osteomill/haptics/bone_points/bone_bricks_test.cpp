@@ -103,5 +103,36 @@ TEST(BoneBricks, MilledAtRandomTheyAreInTheEndAsMadeAnew) {
   }
 }
 
+// Bone in every brick of a scan, all asked for at once.
+TEST(BoneBricks, ABrickThatFoundNoRoomIsMadeWhenThereIs) {
+  const Volume volume =
+      testing_support::shape_volume(testing_support::centred_cube(224, 0.13), [](const Vec3& p) {
+        return 0.4 - std::abs(std::remainder(p.x(), 0.9)) - std::abs(std::remainder(p.y(), 0.9));
+      });
+  BoneBricks bricks(volume, 0.13, BoneBricks::Points::fine);
+  const auto& dims = bricks.octree().dims(0);
+  const auto all = [&](const auto& visit) {
+    for (int k = 0; k < dims[2]; ++k) {
+      for (int j = 0; j < dims[1]; ++j) {
+        for (int i = 0; i < dims[0]; ++i) visit(VoxelIndex{i, j, k});
+      }
+    }
+  };
+  std::vector<VoxelIndex> missing;
+  all([&](const VoxelIndex& brick) {
+    if (bricks.slot_of(brick) == BoneBricks::kNoPoints) missing.push_back(brick);
+  });
+  const MillingTool far_away{1.5, 1, 25};
+  bricks.make_room(far_away, {{1000, 0, 0}, Quat::Identity()});
+  std::size_t made = 0;
+  for (const VoxelIndex& brick : missing) {
+    const std::uint32_t slot = bricks.slot_of(brick);
+    if (slot == BoneBricks::kNoPoints) continue;
+    ++made;
+    EXPECT_GT(bricks.fine().brick(slot).count, 0u);
+  }
+  EXPECT_GT(made, 100u);
+}
+
 }  // namespace
 }  // namespace osteomill
