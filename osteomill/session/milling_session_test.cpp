@@ -107,6 +107,8 @@ TEST_F(MillingSessionTest, CuttingPullsAtTheHandWithinTheDevicesLimits) {
   EXPECT_GT(record.removed_mm3, 0.05);
   EXPECT_NEAR(std::abs(record.wrench.force_N.y()), 2.0 / 3.0 * 0.3, 0.01);
   EXPECT_NEAR(record.wrench.force_N.x(), 0, 1e-9);
+  EXPECT_GT(record.cutting_torque_W_Nmm.norm(), 0.2);
+  EXPECT_TRUE(record.cutting_torque_W_Nmm.isApprox(record.wrench.torque_Nmm)) << "the algorithm gives none";
   algorithm_->next.wrench.force_N = {0, 0, 0.2};
   record = tick();
   EXPECT_EQ(record.fault, WrenchFault::force_clamped);
@@ -114,6 +116,20 @@ TEST_F(MillingSessionTest, CuttingPullsAtTheHandWithinTheDevicesLimits) {
   algorithm_->next.wrench = {};
   for (int n = 0; n < 150; ++n) record = tick(false);
   EXPECT_EQ(record.wrench.force_N.norm() + record.wrench.torque_Nmm.norm(), 0) << "the spindle is off";
+}
+
+// A burr that starts to turn again cuts no more in its first tick than one that never turned.
+TEST_F(MillingSessionTest, ASpindleThatStandsStillForgetsWhatItWasPressedFor) {
+  device_.put({{0, 0, 1.4}, Quat::Identity()});
+  algorithm_->next.burr_force_W_N = {0, 0, -5};
+  for (int n = 0; n < 8; ++n) tick();
+  for (int n = 0; n < 100; ++n) tick(false);
+  const double before_mm3 = session_->removed_mm3();
+  const Volume bone = session_->volume();
+  const double again_mm3 = tick().removed_mm3 - before_mm3;
+  start(bone, MillingSettings{}, WrenchLimits{20, 500});
+  algorithm_->next.burr_force_W_N = {0, 0, -5};
+  EXPECT_EQ(again_mm3, tick().removed_mm3);
 }
 
 TEST_F(MillingSessionTest, TheToolOfAnotherSessionIsWhereTheAlgorithmBegins) {
