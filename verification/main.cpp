@@ -58,6 +58,7 @@ const std::vector<Named>& all_sections() {
       {"tooth", milling_the_tooth},
       {"reaction", milling_with_cutting_reaction},
       {"second", milling_the_second_scan},
+      {"paper", papers_findings},
       {"energy", energy_of_barrier_shell},
       {"rig", the_rig_itself},
       {"switches", switch_by_switch},
@@ -134,7 +135,7 @@ int run(int argc, char** argv) {
     return program.exit(error) == 0 ? 0 : 2;
   }
   std::string text =
-      "# Verification\nMade by `scripts/verify`. Every table is measured in `steady` mode "
+      "# Verification\nMade by `scripts/verify`. Every table is measured in `steady` mode, "
       "with the default settings; *misses* marks what is not as it must be.\n\n";
   const bool all_hold = measure(options, text);
   if (options.out.empty()) {

@@ -8,8 +8,8 @@
 
 #include "osteomill/volume/volume.h"
 
-// What docs/verification.md is made of, a function a table. Each measures `steady`, the default, and is the
-// same on any machine but for compute times.
+// What docs/verification.md is made of, a function a table. Each measures `steady`, the default, but where it
+// says otherwise, and is the same on any machine but for compute times.
 namespace osteomill::verification {
 
 /// The bones that are milled and pushed against.
@@ -43,6 +43,8 @@ Section thin_bone();
 Section spongy_bone(const Bones& bones);
 Section tools_and_pushes(const Bones& bones, const Effort& effort);
 Section breaking_through(const Effort& effort);
+/// Of `paper`, as the paper has its algorithms.
+Section papers_findings(const Bones& bones, const Effort& effort);
 Section energy_of_barrier_shell(const Bones& bones, const Effort& effort);
 Section the_rig_itself(const Bones& bones, const Effort& effort);
 Section voxel_sizes(const Effort& effort);
