@@ -21,7 +21,7 @@ struct Section {
   void add(std::vector<std::string> cells, bool holds);
 };
 
-/// The section as Markdown, its misses named below the table.
+/// The section as Markdown.
 std::string to_markdown(const Section& section);
 
 /// A number with three significant digits.

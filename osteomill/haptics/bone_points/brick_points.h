@@ -87,7 +87,6 @@ class BrickPoints {
   const Brick& brick(std::size_t index) const { return bricks_[index]; }
   const PointChunk& chunk(std::uint32_t index) const { return chunks_[index]; }
   std::uint32_t next_chunk(std::uint32_t index) const { return next_[index]; }
-  std::size_t chunk_capacity() const { return chunks_.size(); }
   std::size_t free_chunks() const { return free_chunks_; }
   /// Points that found no room since the start.
   std::uint64_t dropped() const { return dropped_; }

@@ -29,8 +29,7 @@ class LineProxy final : public HapticAlgorithm {
   void reset() override;
   int sample_point_count() const override { return static_cast<int>(vertices_T_.size()); }
 
-  /// For drawing and tests: the tip's proxy and the intersection point in W, where there are any.
-  const std::optional<Vec3>& tip_proxy_W() const { return memory_.tip_proxy_W; }
+  /// For drawing and tests: the intersection point in W, where there is one.
   const std::optional<Vec3>& intersection_W() const { return memory_.intersection_W; }
 
  private:

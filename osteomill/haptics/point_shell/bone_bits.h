@@ -22,9 +22,6 @@ class BoneBits {
   /// Nodes 8 * `byte` to 8 * `byte` + 7 of row j of slice k, the first in the lowest bit.
   std::uint8_t byte(int byte, int j, int k) const { return bytes_[index(byte, j, k)]; }
   void set_byte(int byte, int j, int k, std::uint8_t bits) { bytes_[index(byte, j, k)] = bits; }
-  bool is_bone(int i, int j, int k) const {
-    return (bytes_[index((i + 8) / 8 - 1, j, k)] >> ((i + 8) % 8) & 1) != 0;
-  }
 
   /// The nodes of that byte which are bone and have at least one of their 6 neighbours not bone.
   std::uint8_t surface_byte(int byte, int j, int k) const {

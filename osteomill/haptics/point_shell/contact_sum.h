@@ -31,11 +31,6 @@ struct ContactSum {
     K_ft += kn * m.transpose();
     K_tt += km * m.transpose();
   }
-  /// The same for a point whose n passes through the burr's centre, as on the burr's sphere: no torque.
-  void add_central(double push_N, double stiffness_N_per_mm, const Vec3& n) {
-    force_N -= push_N * n;
-    K_ff += (stiffness_N_per_mm * n) * n.transpose();
-  }
   ContactSum& operator+=(const ContactSum& other) {
     force_N += other.force_N;
     torque_Nmm += other.torque_Nmm;

@@ -32,7 +32,6 @@ class PointShellAlgorithm final : public HapticAlgorithm {
   void reset() override;
   int sample_point_count() const override;
 
-  const Settings& settings() const { return settings_; }
   const Penalty& penalty() const { return penalty_; }
 
  private:
