@@ -24,7 +24,7 @@ std::string to_markdown(const Section& section) {
 }
 
 std::string figure(double value) {
-  return fmt::format("{:.3g}", value);
+  return std::isnan(value) ? "-" : fmt::format("{:.3g}", value);
 }
 
 std::string median_and_worst(std::vector<double> values) {

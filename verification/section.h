@@ -24,7 +24,7 @@ struct Section {
 /// The section as Markdown.
 std::string to_markdown(const Section& section);
 
-/// A number with three significant digits.
+/// A number with three significant digits; "-" for what could not be measured.
 std::string figure(double value);
 
 /// "median (worst)" of figures that must be small.
