@@ -135,8 +135,8 @@ int run(int argc, char** argv) {
     return program.exit(error) == 0 ? 0 : 2;
   }
   std::string text =
-      "# Verification\nMade by `scripts/verify`. Every table is measured in `steady` mode, "
-      "with the default settings; *misses* marks what is not as it must be.\n\n";
+      "# Verification\nMade by `scripts/verify`. Every table is measured in `steady` mode, but where it says "
+      "otherwise, with the default settings; *misses* marks what is not as it must be.\n\n";
   const bool all_hold = measure(options, text);
   if (options.out.empty()) {
     std::cout << text;

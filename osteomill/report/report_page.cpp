@@ -230,6 +230,10 @@ std::string session_in_words(const MeasuredRun& run) {
     means.push_back(fmt::format("{:.2g} {}", felt->mean, unit));
     greatest.push_back(fmt::format("{:.2g} {}", felt->max, unit));
   }
+  if (means.empty()) {
+    return text + fmt::format("The tool touched for {:.0f} % of the time, too little to say what was felt.",
+                              100 * m.contact.any);
+  }
   return text +
          fmt::format(
              "The tool touched for {:.0f} % of the time, the shaft for {:.0f} %; while it did, the hand "
