@@ -22,6 +22,20 @@ until_true() {  # SECONDS WHAT COMMAND...
   done
   fail "never $2"
 }
+# On a machine that is held up the tool may be placed when the handle is lowest, and then comes no lower: once more.
+press() {  # SECONDS
+  for _ in 1 2 3 4 5; do
+    begin_device
+    begin_milling "$1"
+    for _ in $(seq 70); do
+      ! pressed || return 0
+      sleep 0.1
+    done
+    kill -9 $program $device
+    wait $program $device 2>/dev/null || true
+  done
+  fail "never pressed"
+}
 pressed() { [ -s hand ] && tail -n 1 hand | awk '{ exit !($3 * $3 + $4 * $4 + $5 * $5 > 0.01) }'; }
 # No step above 4 N or 100 N mm in a millisecond, and once the last wrench is 5 ms old, zero within 5 more.
 judge() {
@@ -36,9 +50,7 @@ judge() {
 }
 
 # osteomill is killed while the hand presses: the device's own lapse lets go of it.
-begin_device
-begin_milling 60
-until_true 60 pressed pressed
+press 60
 kill -9 $program
 sleep 0.3
 kill $device
@@ -46,9 +58,7 @@ wait $device || fail "the device ended otherwise"
 judge 1 "osteomill killed"
 
 # It is asked to end: the hand is let go of by a wrench, before it is a matter of lapsing.
-begin_device
-begin_milling 60
-until_true 60 pressed pressed
+press 60
 kill -TERM $program
 sleep 0.3
 kill $device
@@ -56,9 +66,7 @@ wait $device || true
 judge 1 "osteomill ended"
 
 # The device is killed: osteomill says so, and goes on when it is there again.
-begin_device
-begin_milling 8
-until_true 60 pressed pressed
+press 8
 kill -9 $device
 wait $device 2>/dev/null || true
 until_true 5 "missed" grep -qE "example device: has (been gone|given no pose) for" errors
