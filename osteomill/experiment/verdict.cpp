@@ -189,9 +189,8 @@ std::string what_was_compared(const Study& study, std::string_view scan_name) {
   for (const Mode mode : study.modes()) modes.emplace_back(name_of(mode));
   return fmt::format(
       "{}, mode {}, milled the same bone ({}) in {}. Each was to move the burr in until it touched, mill a "
-      "hole "
-      "and push the shaft against the hole's edge; then, with the spindle off, to stand in that hole with "
-      "the shaft against the wall and keep as still as it could.{}",
+      "hole and push the shaft against the hole's edge; then, with the spindle off, to stand in that hole "
+      "with the shaft against the wall and keep as still as it could.{}",
       joined(algorithms), joined(modes), scan_name,
       study.seeds().size() == 1 ? "one simulated hand"
                                 : fmt::format("{} simulated hands", study.seeds().size()),

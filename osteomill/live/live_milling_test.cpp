@@ -259,10 +259,11 @@ TEST_F(LiveMillingTest, TheToolIsPlacedWithoutAStepInTheWrench) {
         if (record.fault == WrenchFault::tick_late) allowed_step_N = 1e-3 * kRatesForAHand.force_N_s + 1e-9;
       };
       while (const auto record = milling_.next_record()) allow_for_late(*record);
-      milling_.set_spindle(true);
+      // Asked for before, the burr may mill until this thread has asked for its place.
       milling_.place(X_W_free);
-      milling_.set_spindle(false);
+      milling_.set_spindle(true);
       while (milling_.placing()) std::this_thread::sleep_for(1ms);
+      milling_.set_spindle(false);
       EXPECT_LT((milling_.state().record.X_WD.position_mm - X_W_free.position_mm).norm(), 0.1);
       std::this_thread::sleep_for(20ms);
       double force_N = -1;
