@@ -43,7 +43,8 @@ TrialFigures milling_figures(const Volume& bone, const TrialVariant& variant) {
   for (MillingTrial::Tick tick = trial.tick(); tick.milling_phase; tick = trial.tick()) {
     recording.records.push_back(tick.record);
     milling_us.push_back(tick.record.milling_us);
-    const Vec3 paying_N = paying_force_W_N(settings.milling, tick.record.X_WT, tick.record.burr_force_W_N);
+    const Vec3 paying_N = paying_force_W_N(settings.milling, tick.record.X_WT, tick.record.burr_force_W_N,
+                                           tick.record.spindle_on);
     paid_for_mm3 += settings.milling.removal_rate_mm3_per_Ns * paying_N.norm() * variant.tick_s;
   }
   TrialFigures figures;

@@ -31,7 +31,9 @@ double rim_share(const Vec3& ahead_W, const Vec3& shaft_W) {
   return 1 - kAround - kAlong * along * along;
 }
 
-Vec3 paying_force_W_N(const MillingSettings& settings, const Pose& X_WT, const Vec3& burr_force_W_N) {
+Vec3 paying_force_W_N(const MillingSettings& settings, const Pose& X_WT, const Vec3& burr_force_W_N,
+                      bool spindle_on) {
+  if (!spindle_on) return Vec3::Zero();
   const double force_N = burr_force_W_N.norm();
   if (!(settings.reaction_share > 0) || !(force_N > 0)) return burr_force_W_N;
   return rim_share(burr_force_W_N / force_N, shaft_direction(X_WT)) * burr_force_W_N;

@@ -12,9 +12,11 @@ namespace osteomill {
 /// cosine of the angle from it. Each piece of the burr is held back in proportion to its speed.
 double rim_share(const Vec3& ahead_W, const Vec3& shaft_W);
 
-/// The force that pays for what is cut: the burr's force, less where its pole presses. All of it where there
-/// is no reaction (`MillingSettings::reaction_share`). Safe in the haptic tick.
-Vec3 paying_force_W_N(const MillingSettings& settings, const Pose& X_WT, const Vec3& burr_force_W_N);
+/// The force that pays for what is cut: none where the burr does not turn, so that it forgets what it had
+/// pressed for as one that is lifted does; else the burr's force, less where its pole presses, and all of it
+/// where there is no reaction (`MillingSettings::reaction_share`). Safe in the haptic tick.
+Vec3 paying_force_W_N(const MillingSettings& settings, const Pose& X_WT, const Vec3& burr_force_W_N,
+                      bool spindle_on);
 
 /// What cutting does to the hand: the burr, which turns clockwise as the hand sees it, is held back along its
 /// speed, so that it pulls sideways along its rim and turns the handle. The power of its torque about the

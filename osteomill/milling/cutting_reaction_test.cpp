@@ -28,7 +28,7 @@ Pose upright(const Vec3& position_mm = Vec3::Zero()) {
 
 Wrench settled(const Vec3& force_W_N, const Pose& X_WT = upright()) {
   CuttingReaction reaction(settings(), kRadius_mm);
-  const double paid_N = paying_force_W_N(settings(), X_WT, force_W_N).norm();
+  const double paid_N = paying_force_W_N(settings(), X_WT, force_W_N, true).norm();
   for (int n = 0; n < 500; ++n) {
     reaction.follow(X_WT, force_W_N, settings().removal_rate_mm3_per_Ns * paid_N * kTick_s, kTick_s);
   }
@@ -75,15 +75,16 @@ TEST(CuttingReaction, TheBurrWalksOffAgainstItsTurning) {
 }
 
 TEST(CuttingReaction, ThePoleCutsLessThanTheEquator) {
-  EXPECT_NEAR(paying_force_W_N(settings(), upright(), {2, 0, 0}).norm(), 1.5, 1e-12);
-  EXPECT_NEAR(paying_force_W_N(settings(), upright(), {0, 0, -2}).norm(), 1.0, 1e-12);
+  EXPECT_NEAR(paying_force_W_N(settings(), upright(), {2, 0, 0}, true).norm(), 1.5, 1e-12);
+  EXPECT_NEAR(paying_force_W_N(settings(), upright(), {0, 0, -2}, true).norm(), 1.0, 1e-12);
   EXPECT_NEAR(settled({0, 0, -2}).force_N.norm(), 0, 1e-12) << "no side is pulled more than another";
 }
 
 TEST(CuttingReaction, WithoutItAllOfTheForcePaysAndNothingIsFelt) {
   MillingSettings off = settings();
   off.reaction_share = 0;
-  EXPECT_EQ(paying_force_W_N(off, upright(), {0, 0, -2}), Vec3(0, 0, -2));
+  EXPECT_EQ(paying_force_W_N(off, upright(), {0, 0, -2}, true), Vec3(0, 0, -2));
+  EXPECT_EQ(paying_force_W_N(off, upright(), {0, 0, -2}, false), Vec3::Zero());
   CuttingReaction reaction(off, kRadius_mm);
   reaction.follow(upright(), {1, 0, 0}, 0.01, kTick_s);
   EXPECT_EQ(reaction.wrench().force_N.norm() + reaction.wrench().torque_Nmm.norm(), 0);
@@ -122,7 +123,7 @@ TEST(CuttingReaction, TheSpindlePaysForTheBone) {
       const Pose X_WT = upright((-1.4 + 0.001 * n) * into);
       const Vec3 force_N = 1.5 * into;
       const MillingStep cut =
-          mill.step(volume, X_WT.position_mm, paying_force_W_N(settings(), X_WT, force_N), kTick_s);
+          mill.step(volume, X_WT.position_mm, paying_force_W_N(settings(), X_WT, force_N, true), kTick_s);
       reaction.follow(X_WT, force_N, cut.removed_mm3, kTick_s);
       removed_mm3 += cut.removed_mm3;
       const double speed_rad_s = 2 * std::numbers::pi * cutting.spindle_speed_rpm / 60;

@@ -17,7 +17,6 @@ constexpr const char* kToolTurn =
 constexpr const char* kForce = "force sent to the hand, frame W";
 constexpr const char* kTorque = "torque sent to the hand, frame W, about the burr's centre";
 constexpr const char* kBurrForce = "force of the burr on the bone, frame W";
-
 constexpr const char* kCuttingTorque =
     "of the torque sent, what the cutting adds (--cutting-reaction), frame W";
 

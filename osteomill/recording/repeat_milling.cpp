@@ -58,9 +58,8 @@ void repeat_session(Volume& volume, const Recording& recording, const RecordedSe
   for (std::size_t tick = session.first; tick < end; ++tick) {
     const TickRecord& record = recording.records[tick];
     if (!record.paused) {
-      const Vec3 paying_W_N = record.spindle_on
-                                  ? paying_force_W_N(settings.milling, record.X_WT, record.burr_force_W_N)
-                                  : Vec3::Zero();
+      const Vec3 paying_W_N =
+          paying_force_W_N(settings.milling, record.X_WT, record.burr_force_W_N, record.spindle_on);
       removed_mm3 += mill.step(volume, record.X_WT.position_mm, paying_W_N, record.dt_s).removed_mm3;
     }
     require_same_removal(recording, tick, removed_mm3);

@@ -159,10 +159,9 @@ MillingSession::SafeStep MillingSession::step_safely(const Pose& X_WD, double dt
 }
 
 void MillingSession::mill(const HapticStep& step, bool spindle_on, double dt_s) {
-  // A burr that does not turn forgets what it had pressed for, as one that is lifted does.
-  const Vec3 paying_W_N =
-      spindle_on ? paying_force_W_N(milling_, step.X_WT, step.burr_force_W_N) : Vec3::Zero();
-  const MillingStep cut = mill_.step(*volume_, step.X_WT.position_mm, paying_W_N, dt_s);
+  const MillingStep cut =
+      mill_.step(*volume_, step.X_WT.position_mm,
+                 paying_force_W_N(milling_, step.X_WT, step.burr_force_W_N, spindle_on), dt_s);
   if (spindle_on) no_go_.look(step.X_WT.position_mm, mill_.by_label());
   reaction_.follow(step.X_WT, step.burr_force_W_N, cut.removed_mm3, dt_s);
   last_change_ = cut.change;
