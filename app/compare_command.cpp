@@ -19,6 +19,7 @@
 #include "osteomill/experiment/comparison_report.h"
 #include "osteomill/experiment/match_stiffness.h"
 #include "osteomill/experiment/measure_passivity.h"
+#include "osteomill/experiment/paper.h"
 #include "osteomill/experiment/parallel.h"
 #include "osteomill/experiment/record_trial.h"
 #include "osteomill/experiment/study_trials.h"
@@ -109,12 +110,21 @@ void match_stiffness(const CompareOptions& options, std::vector<TrialPlan>& plan
   }
 }
 
-std::vector<StudyRow> try_other_seeds(const CompareOptions& options, const std::vector<StudyTrial>& trials) {
+// Of the paper's algorithm 2 as published, every hand tries other grips too.
+void add_other_grips(std::vector<StudyTrial>& others, StudyTrial trial) {
+  if (trial.plan.settings.haptics.mode != Mode::paper || !(trial.algorithm.id == kPapersAlgorithms[1]))
+    return;
+  for (StudyTrial& grip : trials_in_other_grips(trial.plan)) others.push_back(std::move(grip));
+}
+
+std::vector<StudyRow> try_other_hands(const CompareOptions& options, const std::vector<StudyTrial>& trials) {
   std::vector<StudyTrial> others;
+  for (const StudyTrial& trial : trials) add_other_grips(others, trial);
   for (int n = 1; n < options.seeds; ++n) {
     for (const StudyTrial& trial : trials) {
       const auto seed = options.trial.milling.seed + static_cast<std::uint64_t>(n);
       others.push_back({with_seed(trial.plan, seed), trial.algorithm});
+      add_other_grips(others, others.back());
     }
   }
   return run_study_trials(others, static_cast<std::size_t>(options.threads), events_on_terminal());
@@ -153,11 +163,9 @@ void run_compare(const CompareOptions& options, const std::string& command_line)
     }
   }
   ReportExtras extras;
-  if (options.seeds > 1) {
-    const std::vector<StudyRow> others = try_other_seeds(options, trials);
-    rows.insert(rows.end(), others.begin(), others.end());
-    extras.study.emplace(std::move(rows));
-  }
+  const std::vector<StudyRow> others = try_other_hands(options, trials);
+  rows.insert(rows.end(), others.begin(), others.end());
+  extras.study.emplace(std::move(rows));
   if (!options.no_stability) extras.stability = press_on_walls(options, plans.front().settings);
   fmt::print("{}\n", write_comparison_report(recordings, options.out, extras).string());
 }

@@ -59,6 +59,7 @@ const std::vector<Named>& all_sections() {
       {"reaction", milling_with_cutting_reaction},
       {"second", milling_the_second_scan},
       {"paper", papers_findings},
+      {"choices", papers_choices},
       {"energy", energy_of_barrier_shell},
       {"rig", the_rig_itself},
       {"switches", switch_by_switch},

@@ -45,6 +45,8 @@ Section tools_and_pushes(const Bones& bones, const Effort& effort);
 Section breaking_through(const Effort& effort);
 /// Of `paper`, as the paper has its algorithms.
 Section papers_findings(const Bones& bones, const Effort& effort);
+/// The same with one thing another way that the paper leaves open.
+Section papers_choices(const Bones& bones, const Effort& effort);
 Section energy_of_barrier_shell(const Bones& bones, const Effort& effort);
 Section the_rig_itself(const Bones& bones, const Effort& effort);
 Section voxel_sizes(const Effort& effort);

@@ -148,7 +148,7 @@ fs::path write_comparison_report(const std::vector<Recording>& recordings, const
   text.title = "6-DOF haptic algorithms compared while milling bone";
   text.opening = opening(study, recordings);
   text.sections = findings_section(study);
-  if (extras.study) {
+  if (study.seeds().size() > 1) {
     write_study_csv(out_dir / "study.csv", study);
     text.sections += hands_section(study, out_dir);
   }

@@ -12,7 +12,7 @@ namespace osteomill {
 
 /// What was measured beside the recordings.
 struct ReportExtras {
-  /// The recordings are then those of its first seed.
+  /// The recordings are then those of its first seed. Of one seed alone it adds its other grips.
   std::optional<Study> study;
   std::vector<PassivityRow> stability;
 };

@@ -1,12 +1,13 @@
 #include "osteomill/experiment/findings.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <optional>
 
+#include <fmt/args.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "osteomill/experiment/paper.h"
 
@@ -14,60 +15,62 @@ namespace osteomill {
 
 namespace {
 
-constexpr std::string_view k3 = kPapersAlgorithms[2];
+// The thresholds of the rules, which say themselves what each is for.
+constexpr double kCalmerBy = 2;
+constexpr double kGripRatio = 1.25;
+constexpr double kFollows = 0.5;
+constexpr double kStableShare = 0.2;
+constexpr double kMinContacts = 10, kMaxContacts = 20;
 
-constexpr double kBuzzRatio = 2.0;
-constexpr double kRestlessRatio = 1.5;
-
-// A value for each of the paper's algorithms, in its order.
-using PapersThree = std::array<double, kPapersAlgorithms.size()>;
-using Measure = std::function<double(const RunMetrics&)>;
-
-const Measure kForceBuzz = [](const RunMetrics& m) { return m.force_N.hp_rms; };
-const Measure kTorqueBuzz = [](const RunMetrics& m) { return m.torque_Nmm.hp_rms; };
-const Measure kTorqueStep = [](const RunMetrics& m) { return m.torque_Nmm.step_max; };
-const Measure kShaftSpread = [](const RunMetrics& m) { return m.shaft.spread_deg; };
-
-std::string during(std::string_view phase) {
-  return phase == kMilling ? "while milling" : "while holding";
+double force_hp(const RunMetrics& m) {
+  return m.force_N.hp_rms;
+}
+double torque_hp(const RunMetrics& m) {
+  return m.torque_Nmm.hp_rms;
+}
+double torque_step(const RunMetrics& m) {
+  return m.torque_Nmm.step_max;
+}
+double share_hp(const VectorMetrics& v) {
+  return v.hp_rms / v.mean;
+}
+// How much less calm the torque is than the force, each against its mean.
+double torque_unrest(const RunMetrics& m) {
+  return share_hp(m.torque_Nmm) / share_hp(m.force_N);
+}
+double torque_share(const RunMetrics& m) {
+  return share_hp(m.torque_Nmm);
 }
 
-using ThreeRuns = std::array<const MeasuredRun*, kPapersAlgorithms.size()>;
+// What a rule needs of one algorithm in one phase.
+struct Needed {
+  std::size_t algorithm;
+  std::string_view phase;
+  double (*value)(const RunMetrics&);
+};
 
-// The runs of all three algorithms in a phase, or nothing where one is missing.
-std::optional<ThreeRuns> of_all(const RunGroup& group, std::string_view phase) {
-  ThreeRuns runs{};
-  for (std::size_t n = 0; n < kPapersAlgorithms.size(); ++n) {
-    runs[n] = group.find(kPapersAlgorithms[n], phase);
-    if (runs[n] == nullptr) return std::nullopt;
-  }
-  return runs;
-}
-
-// "0.012", or "lost contact after 3.2 s".
-std::string value_text(const MeasuredRun& run, const Measure& measure) {
-  const double value = measure(run.metrics);
+std::string value_text(const MeasuredRun& run, double value) {
   return std::isnan(value) ? contact_words(run.metrics.contact) : fmt::format("{:.3g}", value);
 }
 
-Verdict verdict_of(bool agrees) {
-  return agrees ? Verdict::agrees : Verdict::does_not_agree;
-}
-
-// A finding about the three algorithms of one phase.
-Finding compare_three(const RunGroup& group, std::string_view phase, const Measure& measure, const char* unit,
-                      std::string paper_says, std::string rule,
-                      const std::function<bool(const PapersThree&)>& holds) {
-  Finding finding{std::move(paper_says), std::move(rule), "needs all three algorithms",
-                  Verdict::not_recorded};
-  if (const auto runs = of_all(group, phase)) {
-    PapersThree v{};
-    for (std::size_t n = 0; n < v.size(); ++n) v[n] = measure((*runs)[n]->metrics);
-    finding.measured = fmt::format("1: {}, 2: {}, 3: {} {}", value_text(*(*runs)[0], measure),
-                                   value_text(*(*runs)[1], measure), value_text(*(*runs)[2], measure), unit);
-    const bool known = std::none_of(v.begin(), v.end(), [](double value) { return std::isnan(value); });
-    finding.verdict = known ? verdict_of(holds(v)) : Verdict::lost_contact;
+// The rule applied to the values, in their order; `words` has a {} for each.
+Finding finding_on(const RunGroup& group, std::string paper_says, std::string rule,
+                   const std::vector<Needed>& needed, std::string_view words,
+                   const std::function<bool(const std::vector<double>&)>& holds) {
+  Finding finding{std::move(paper_says), std::move(rule), "needs other recordings", Verdict::not_recorded};
+  std::vector<double> values;
+  fmt::dynamic_format_arg_store<fmt::format_context> texts;
+  for (const Needed& one : needed) {
+    const MeasuredRun* run = group.find(kPapersAlgorithms[one.algorithm - 1], one.phase);
+    if (run == nullptr) return finding;
+    values.push_back(one.value(run->metrics));
+    texts.push_back(value_text(*run, values.back()));
   }
+  finding.measured = fmt::vformat(words, texts);
+  const bool known = std::none_of(values.begin(), values.end(), [](double v) { return std::isnan(v); });
+  finding.verdict = !known          ? Verdict::lost_contact
+                    : holds(values) ? Verdict::agrees
+                                    : Verdict::does_not_agree;
   return finding;
 }
 
@@ -77,71 +80,124 @@ Finding rate_finding(const RunGroup& group) {
   };
   const MeasuredRun& slowest = *std::min_element(group.runs.begin(), group.runs.end(), slower);
   const RunDescription& d = slowest.recording->description;
-  return {"Every algorithm holds the haptic rate",
+  return {"“all the algorithms fulfill the real-time requirements”",
           fmt::format(
               "the rate that a 1 kHz loop would hold with the CPU time of its ticks is {:.0f} Hz or more in "
               "every recording",
               kMinRate_hz),
-          fmt::format("lowest {:.1f} Hz ({}, {})", slowest.metrics.rate_hz, name_of(d.algorithm),
-                      during(d.segment)),
-          verdict_of(slowest.metrics.rate_hz >= kMinRate_hz), true};
+          fmt::format("lowest {:.1f} Hz ({}, {})", slowest.metrics.rate_hz, name_of(d.algorithm), d.segment),
+          slowest.metrics.rate_hz >= kMinRate_hz ? Verdict::agrees : Verdict::does_not_agree, true};
 }
 
-Finding force_finding(const RunGroup& group, std::string_view phase) {
-  return compare_three(
-      group, phase, kForceBuzz, "N", fmt::format("Force {}: 1 and 3 are steady, 2 buzzes", during(phase)),
-      fmt::format("the force above {:.0f} Hz (rms) of 2 is at least {} times that of 1 and of 3",
-                  kBuzzAbove_hz, kBuzzRatio),
-      [](const auto& v) { return v[1] >= kBuzzRatio * v[0] && v[1] >= kBuzzRatio * v[2]; });
+Finding force_finding(const RunGroup& group) {
+  return finding_on(
+      group, "force: 1 and 3 “more stable than Algorithm #2 independent of case scenario”",
+      fmt::format("in both parts 2's force above {:.0f} Hz (rms) is at least {:g} times that of 1 and of 3",
+                  kBuzzAbove_hz, kCalmerBy),
+      {{1, kMilling, force_hp},
+       {2, kMilling, force_hp},
+       {3, kMilling, force_hp},
+       {1, kHolding, force_hp},
+       {2, kHolding, force_hp},
+       {3, kHolding, force_hp}},
+      "milling 1: {}, 2: {}, 3: {} N; holding 1: {}, 2: {}, 3: {} N", [](const auto& v) {
+        return v[1] >= kCalmerBy * std::max(v[0], v[2]) && v[4] >= kCalmerBy * std::max(v[3], v[5]);
+      });
 }
 
-Finding worst_torque_finding(const RunGroup& group, std::string_view phase) {
-  return compare_three(
-      group, phase, kTorqueBuzz, "N mm", fmt::format("Torque {}: 1 is the worst, 2 is better", during(phase)),
-      fmt::format("the torque above {:.0f} Hz (rms) of 1 is the greatest of the three", kBuzzAbove_hz),
-      [](const auto& v) { return v[0] > v[1] && v[0] > v[2]; });
-}
-
-Finding kick_finding(const RunGroup& group) {
-  return compare_three(group, kMilling, kTorqueStep, "N mm",
-                       "Torque while milling: the shaft is kicked away in 1, with a peak",
-                       "the greatest change of torque from one tick to the next is that of 1",
-                       [](const auto& v) { return v[0] > v[1] && v[0] > v[2]; });
-}
-
-Finding best_torque_finding(const RunGroup& group) {
-  return compare_three(
-      group, kHolding, kTorqueBuzz, "N mm", "Torque while holding: 3 is the best",
-      fmt::format("the torque above {:.0f} Hz (rms) of 3 is the least of the three", kBuzzAbove_hz),
-      [](const auto& v) { return v[2] < v[0] && v[2] < v[1]; });
-}
-
-Finding restless_finding(const RunGroup& group) {
+Finding grip_finding(const GripForces& grips) {
   Finding finding{
-      "Torque of 3: a little restless while milling",
-      fmt::format("its torque above {:.0f} Hz (rms) is at least {} times as great while milling as "
-                  "while holding",
-                  kBuzzAbove_hz, kRestlessRatio),
-      "needs both phases of 3", Verdict::not_recorded};
-  const MeasuredRun* milling = group.find(k3, kMilling);
-  const MeasuredRun* holding = group.find(k3, kHolding);
-  if (milling != nullptr && holding != nullptr) {
-    const double moving = kTorqueBuzz(milling->metrics);
-    const double still = kTorqueBuzz(holding->metrics);
-    finding.measured = fmt::format("milling: {}, holding: {} N mm", value_text(*milling, kTorqueBuzz),
-                                   value_text(*holding, kTorqueBuzz));
-    finding.verdict = std::isnan(moving) || std::isnan(still)
-                          ? Verdict::lost_contact
-                          : verdict_of(moving > 0 && moving >= kRestlessRatio * still);
+      "2's vibration: “the magnitude is based on how hard the user is holding and gripping the device”",
+      fmt::format("from grip to grip of the same hand ({:g} times its stiffness and damping) 2's force above "
+                  "{:.0f} Hz (rms), while holding, grows throughout or falls throughout, by a factor of "
+                  "{:g} or more in all",
+                  fmt::join(kGrips, ", "), kBuzzAbove_hz, kGripRatio),
+      "needs three grips", Verdict::not_recorded};
+  if (grips.empty()) return finding;
+  finding.measured = fmt::format("{:.3g} N", fmt::join(grips, ", "));
+  if (std::any_of(grips.begin(), grips.end(), [](double v) { return std::isnan(v); })) {
+    finding.verdict = Verdict::lost_contact;
+    return finding;
   }
+  const bool one_way =
+      std::is_sorted(grips.begin(), grips.end()) || std::is_sorted(grips.rbegin(), grips.rend());
+  const auto [min, max] = std::minmax_element(grips.begin(), grips.end());
+  finding.verdict = one_way && *max >= kGripRatio * *min ? Verdict::agrees : Verdict::does_not_agree;
   return finding;
 }
 
-Finding shaft_finding(const RunGroup& group, std::string_view phase) {
-  return compare_three(group, phase, kShaftSpread, "degrees",
-                       fmt::format("Shaft direction {}: 3 is the most compact", during(phase)),
-                       "the spread (rms angle about the mean direction) of 3 is the least of the three",
-                       [](const auto& v) { return v[2] < v[0] && v[2] < v[1]; });
+Finding kick_finding(const RunGroup& group) {
+  const auto turn = [](const RunMetrics& m) { return m.turns.max_deg; };
+  return finding_on(
+      group,
+      "1 “kicks away the shaft at a moment”, with “a peak in the torque signal when milling”; the shaft's "
+      "jump “occurs at the same time”",
+      "while milling the greatest step of the torque is 1's, and in the 50 ms about it 1's shaft turns "
+      "further than those of 2 and 3 ever do in such a time",
+      {{1, kMilling, torque_step},
+       {2, kMilling, torque_step},
+       {3, kMilling, torque_step},
+       {1, kMilling, [](const RunMetrics& m) { return m.turns.at_torque_step_deg; }},
+       {2, kMilling, turn},
+       {3, kMilling, turn}},
+      "step 1: {}, 2: {}, 3: {} N mm; turn 1 then: {}, 2 at most: {}, 3 at most: {} degrees",
+      [](const auto& v) { return v[0] > std::max(v[1], v[2]) && v[3] > std::max(v[4], v[5]); });
+}
+
+Finding pattern_finding(const RunGroup& group) {
+  const auto follows = [](const RunMetrics& m) { return m.torque_follows_force; };
+  return finding_on(
+      group,
+      "2's torque seems “to follow the same pattern as for the force feedback, but Algorithm #2 is more "
+      "stable than Algorithm #1”",
+      fmt::format("in both parts the multiple correlation of 2's torque with its force of the 10 ms about "
+                  "it, both above {0:.0f} Hz, is {1:g} or more; and its torque above {0:.0f} Hz (rms) is "
+                  "less than that of 1 while milling",
+                  kBuzzAbove_hz, kFollows),
+      {{2, kMilling, follows}, {2, kHolding, follows}, {1, kMilling, torque_hp}, {2, kMilling, torque_hp}},
+      "correlation milling {}, holding {}; torque milling 1: {}, 2: {} N mm",
+      [](const auto& v) { return std::min(v[0], v[1]) >= kFollows && v[3] < v[2]; });
+}
+
+Finding restless_finding(const RunGroup& group) {
+  return finding_on(
+      group, "3's torque “is a bit more unstable than the force feedback, especially for the milling case”",
+      fmt::format("what its torque has above {:.0f} Hz (rms), against its mean, is more than the same of its "
+                  "force while milling, and in proportion more than while holding",
+                  kBuzzAbove_hz),
+      {{3, kMilling, torque_unrest}, {3, kHolding, torque_unrest}},
+      "torque's share / force's share: milling {}, holding {}",
+      [](const auto& v) { return v[0] > 1 && v[0] > v[1]; });
+}
+
+Finding stable_torque_finding(const RunGroup& group) {
+  return finding_on(
+      group,
+      "torque: “For the non-milling case both Algorithm #2 and Algorithm #3 give stable torque feedback”",
+      fmt::format("while holding, the torque above {:.0f} Hz (rms) of 2 and of 3 is at most {:g} of its mean",
+                  kBuzzAbove_hz, kStableShare),
+      {{2, kHolding, torque_share}, {3, kHolding, torque_share}}, "2: {}, 3: {}",
+      [](const auto& v) { return std::max(v[0], v[1]) <= kStableShare; });
+}
+
+Finding shaft_finding(const RunGroup& group) {
+  const auto spread = [](const RunMetrics& m) { return m.shaft.spread_deg; };
+  return finding_on(
+      group, "shaft: “For the milling case … Algorithm #1 generates a very unstable behavior of the shaft”",
+      "while milling the spread of the shaft's direction (rms angle about the mean) is the "
+      "greatest in 1",
+      {{1, kMilling, spread}, {2, kMilling, spread}, {3, kMilling, spread}}, "1: {}, 2: {}, 3: {} degrees",
+      [](const auto& v) { return v[0] > std::max(v[1], v[2]); });
+}
+
+Finding contacts_finding(const RunGroup& group) {
+  return finding_on(
+      group,
+      "“an average number of approximately [1]5 points … are really colliding in each haptic loop” with 3",
+      fmt::format("while milling {:g} to {:g} points touch, on the average of the ticks in contact",
+                  kMinContacts, kMaxContacts),
+      {{3, kMilling, [](const RunMetrics& m) { return m.contacts_mean; }}}, "{}",
+      [](const auto& v) { return v[0] >= kMinContacts && v[0] <= kMaxContacts; });
 }
 
 }  // namespace
@@ -160,15 +216,10 @@ std::string_view name_of(Verdict verdict) {
   return "";
 }
 
-std::vector<Finding> check_findings(const RunGroup& group) {
-  std::vector<Finding> findings{rate_finding(group)};
-  for (const std::string_view phase : kPhases) findings.push_back(force_finding(group, phase));
-  for (const std::string_view phase : kPhases) findings.push_back(worst_torque_finding(group, phase));
-  findings.push_back(kick_finding(group));
-  findings.push_back(best_torque_finding(group));
-  findings.push_back(restless_finding(group));
-  for (const std::string_view phase : kPhases) findings.push_back(shaft_finding(group, phase));
-  return findings;
+std::vector<Finding> check_findings(const RunGroup& group, const GripForces& grips) {
+  return {rate_finding(group),          force_finding(group),   grip_finding(grips),
+          kick_finding(group),          pattern_finding(group), restless_finding(group),
+          stable_torque_finding(group), shaft_finding(group),   contacts_finding(group)};
 }
 
 }  // namespace osteomill

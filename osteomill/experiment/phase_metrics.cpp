@@ -43,10 +43,14 @@ RunMetrics metrics_of_time_held(const Recording& recording) {
 
 RunMetrics phase_metrics(const Recording& recording) {
   RunMetrics metrics = metrics_of_time_held(recording);
+  // The spindle is off while holding: what does not touch at all was lost before.
+  metrics.contact.lost_while_milling |= recording.description.segment == kHolding && metrics.contact.any == 0;
   if (metrics.contact.lost_after_s) {
     constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
     metrics.force_N = metrics.torque_Nmm = {kUnknown, kUnknown, kUnknown, kUnknown};
     metrics.shaft = {kUnknown, kUnknown};
+    metrics.turns = {kUnknown, kUnknown};
+    metrics.torque_follows_force = kUnknown;
   }
   return metrics;
 }

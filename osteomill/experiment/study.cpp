@@ -67,6 +67,10 @@ std::string short_label(const AlgorithmId& algorithm) {
 }
 
 Study::Study(std::vector<StudyRow> rows) : rows_(std::move(rows)) {
+  const auto others =
+      std::stable_partition(rows_.begin(), rows_.end(), [](const StudyRow& row) { return row.grip == 1; });
+  other_grips_.assign(others, rows_.end());
+  rows_.erase(others, rows_.end());
   if (rows_.empty()) throw std::invalid_argument("study: there are no trials");
   std::map<std::uint64_t, std::size_t> order;
   for (const StudyRow& row : rows_) {
@@ -164,6 +168,9 @@ ContactShares Study::contact(const Tried& tried, std::string_view phase) const {
   const std::vector<double> lost = values(tried.algorithm, tried.mode, phase, {"", "", lost_after_s});
   if (!lost.empty() && !are_most(seeds_.size() - lost.size()))
     shares.lost_after_s = distribution_of(lost).median;
+  const auto while_milling = [](const M& m) { return m.contact.lost_while_milling ? 1.0 : 0.0; };
+  shares.lost_while_milling =
+      distribution_of(values(tried.algorithm, tried.mode, phase, {"", "", while_milling})).median > 0.5;
   return shares;
 }
 

@@ -16,6 +16,8 @@ struct StudyRow {
   std::uint64_t seed = 0;
   HandSettings hand;
   SummaryRow summary;
+  /// Of trials beside the study's, in other grips of its hands (TrialPlan::grip).
+  double grip = 1;
 };
 
 /// A figure of merit that a study compares.
@@ -41,12 +43,13 @@ std::string short_label(const AlgorithmId& algorithm);
 /// seed by seed.
 class Study {
  public:
-  /// Rows in any order. Throws std::invalid_argument where there are none, or where a seed lacks an
-  /// algorithm, mode and phase that another has, or has it twice.
+  /// Rows in any order; those of other grips are kept apart. Throws std::invalid_argument where there are
+  /// none, or where a seed lacks an algorithm, mode and phase that another has, or has it twice.
   explicit Study(std::vector<StudyRow> rows);
 
   /// By seed, in the order in which seeds first came; within a seed as in summary.csv.
   const std::vector<StudyRow>& rows() const { return rows_; }
+  const std::vector<StudyRow>& rows_of_other_grips() const { return other_grips_; }
   const std::vector<std::uint64_t>& seeds() const { return seeds_; }
   /// The rows of the n-th seed.
   std::span<const StudyRow> rows_of_seed(std::size_t n) const;
@@ -87,6 +90,7 @@ class Study {
   std::vector<double> all_values(const Tried& tried, std::string_view phase, const KeyMetric& metric) const;
 
   std::vector<StudyRow> rows_;
+  std::vector<StudyRow> other_grips_;
   std::vector<std::uint64_t> seeds_;
 };
 

@@ -4,6 +4,7 @@
 
 #include <fmt/core.h>
 
+#include "osteomill/experiment/findings.h"
 #include "osteomill/experiment/paper.h"
 #include "osteomill/experiment/parallel.h"
 #include "osteomill/experiment/phase_metrics.h"
@@ -48,8 +49,22 @@ PhasesOfTrial run(const StudyTrial& planned) {
 
 StudyRow row_of(const TrialPlan& plan, const Recording& recording) {
   const RunDescription& d = recording.description;
-  return {
-      d.seed, plan.settings.hand_and_device.hand, {d.algorithm, d.mode, d.segment, phase_metrics(recording)}};
+  return {d.seed,
+          plan.settings.hand_and_device.hand,
+          {d.algorithm, d.mode, d.segment, phase_metrics(recording)},
+          plan.grip};
+}
+
+std::vector<StudyTrial> trials_in_other_grips(const TrialPlan& plan) {
+  std::vector<StudyTrial> trials;
+  for (const double grip : kGrips) {
+    if (grip == 1) continue;
+    trials.push_back({plan, algorithm_named(kPapersAlgorithms[1])});
+    HandSettings& hand = trials.back().plan.settings.hand_and_device.hand;
+    hand = gripping(hand, grip);
+    trials.back().plan.grip = grip;
+  }
+  return trials;
 }
 
 TrialPlan with_seed(const TrialPlan& plan, std::uint64_t seed) {

@@ -8,18 +8,21 @@
 
 namespace osteomill {
 
-/// The plan's trial with another seed, in the hand that this seed draws (random_hand); what the published
-/// ranges do not say of a hand (its push, its tremor) stays the plan's.
-TrialPlan with_seed(const TrialPlan& plan, std::uint64_t seed);
-
-/// The row of a phase that was recorded.
-StudyRow row_of(const TrialPlan& plan, const Recording& recording);
-
 /// One algorithm under one plan.
 struct StudyTrial {
   TrialPlan plan;
   AlgorithmDescription algorithm;
 };
+
+/// The plan's trial with another seed, in the hand that this seed draws (random_hand); what the published
+/// ranges do not say of a hand (its push, its tremor) stays the plan's.
+TrialPlan with_seed(const TrialPlan& plan, std::uint64_t seed);
+
+/// The plan's trial of algorithm 2 in its hand's other grips, for the paper's finding on them (findings.h).
+std::vector<StudyTrial> trials_in_other_grips(const TrialPlan& plan);
+
+/// The row of a phase that was recorded.
+StudyRow row_of(const TrialPlan& plan, const Recording& recording);
 
 /// Runs the trials, measures both phases, and keeps nothing else. Trials run side by side on `threads`
 /// threads, each in simulated time: but for the step times, the rows are the same however many. Warns where

@@ -24,6 +24,7 @@ void add_hand(Settings& settings, const HandSettings& hand) {
   settings.push_back({"hand.torsional_stiffness", hand.torsional_stiffness_Nmm_per_rad, "N mm/rad"});
   settings.push_back({"hand.torsional_damping", hand.torsional_damping_Nmms_per_rad, "N mm s/rad"});
   settings.push_back({"hand.tremor", hand.tremor_mm, "mm"});
+  settings.push_back({"hand.tremor_turn", hand.tremor_rad, "rad"});
 }
 
 void add_device(Settings& settings, const HandleSettings& device) {
@@ -80,6 +81,8 @@ std::string shortfall_words(const ScriptShortfall& shortfall, const ScriptSettin
     parts.push_back(fmt::format("the shaft leant on the bone for less than {:g} s",
                                 script.leant_share * script.milling_s));
   }
+  if (shortfall.lost)
+    parts.emplace_back("the tool was lost while milling: it left the bone as the hand leant");
   if (shortfall.unsettled) parts.emplace_back("the hand did not come to feel what it wanted to hold");
   return fmt::format("{}", fmt::join(parts, "; "));
 }

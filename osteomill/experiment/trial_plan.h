@@ -22,6 +22,8 @@ struct TrialPlan {
   std::string command_line;
   /// Recordings carry the mode in their names, as a comparison of both modes needs.
   bool mode_in_names = false;
+  /// How many times as firmly the hand grips as it is said to otherwise; its settings are those of the grip.
+  double grip = 1;
   /// As what every algorithm's stiffness was chosen to be felt on a flat wall (match_stiffness.h); nothing
   /// where each has its own.
   std::optional<double> matched_N_per_mm = std::nullopt;

@@ -29,6 +29,7 @@ void require_valid(const HandSettings& settings) {
   require_not_negative(settings.push_N, "hand: its push (N)");
   require_not_negative(settings.push_lever_mm, "hand: its push's lever (mm)");
   require_not_negative(settings.tremor_mm, "hand: its tremor (mm)");
+  require_not_negative(settings.tremor_rad, "hand: its tremor's turning (rad)");
 }
 
 Wrench hand_wrench(const HandSettings& hand, const Pose& X_W_target, const Twist& target_velocity,
@@ -49,6 +50,14 @@ HandSettings random_hand(std::uint64_t seed) {
   hand.damping_Ns_per_mm = random.uniform(0.005, 0.010);
   hand.torsional_stiffness_Nmm_per_rad = kLeverSquared_mm2 * hand.stiffness_N_per_mm;
   hand.torsional_damping_Nmms_per_rad = kLeverSquared_mm2 * hand.damping_Ns_per_mm;
+  return hand;
+}
+
+HandSettings gripping(HandSettings hand, double firmness) {
+  for (double* value : {&hand.stiffness_N_per_mm, &hand.damping_Ns_per_mm,
+                        &hand.torsional_stiffness_Nmm_per_rad, &hand.torsional_damping_Nmms_per_rad}) {
+    *value *= firmness;
+  }
   return hand;
 }
 

@@ -25,8 +25,13 @@ struct HandSettings {
   double push_N = 1.5;
   /// The torsional spring gives at most push_N at this lever.
   double push_lever_mm = 10.0;
-  /// Root mean square of the tremor along each axis.
+  /// Root mean square of the tremor along each axis: instruments held still over an eye were measured with
+  /// 0.038 mm in all (Singh and Riviere 2002).
   double tremor_mm = 0.02;
+  /// The same of its turning about each axis. Hands held out were measured with 0.01 g at 7 Hz (the commonest
+  /// of 97; 0.0015 to 0.035 g; Wade, Gresty and Findley 1982): 0.036 mm, some 80 mm from the wrist that
+  /// turns.
+  double tremor_rad = 0.0005;
 };
 
 /// Throws std::invalid_argument, naming it, where a setting is negative or not finite.
@@ -43,9 +48,14 @@ Wrench hand_wrench(const HandSettings& hand, const Pose& X_W_target, const Twist
                    const Pose& X_WD, const Twist& velocity);
 
 /// A hand drawn from the range of real ones, for studies over many: stiffness uniform from 135 to 1000 N/m,
-/// damping from 5 to 10 N s/m, rotation by the same lever as above. One arm was published in 2015 with 135
-/// N/m, 6.5 N s/m and 0.55 kg; firm grips reach about 1000 N/m. Push and tremor stay at their defaults. The
-/// same seed gives the same hand.
+/// damping from 5 to 10 N s/m, rotation by the same lever as above. The softest is an arm that holds a haptic
+/// device lightly (135 N/m, 6.45 N s/m, 0.554 kg; van Beek et al. 2015, Scientific Reports 5:18004); firm
+/// grips reach about 1000 N/m. Push and tremor stay at their defaults. The same seed gives the same hand.
 HandSettings random_hand(std::uint64_t seed);
+
+/// The same hand gripping so many times as firmly: all its stiffness and damping times `firmness`, since
+/// both rise steadily with the force of the grip (Hasser and Cutkosky 2002, nine hands on a knob; stiffness
+/// in proportion: Hoeppner, McIntyre and van der Smagt 2013).
+HandSettings gripping(HandSettings hand, double firmness);
 
 }  // namespace osteomill

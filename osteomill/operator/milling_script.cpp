@@ -21,8 +21,12 @@ bool share(double value) {
 
 // Of what the hand wants to feel, enough to say that it does.
 constexpr double kFelt = 0.8;
-// Of the torque with which it leans, enough to say that the shaft rests on bone.
-constexpr double kLeant = 0.5;
+// What a hand feels of force and of torque (twice a step of the encoder), and for how long it is sure of it.
+constexpr double kFelt_N = 0.02;
+constexpr double kFelt_Nmm = 0.2;
+constexpr double kWallGone_s = 0.2;
+// A little more than the time after which a recording counts as without contact to its end.
+constexpr double kLost_s = 1.01;
 
 constexpr double kLongestMilling = 3;
 // Times are sums of ticks; this keeps a stage from beginning a tick late by a rounding.
@@ -81,11 +85,16 @@ double MillingScript::felt_push_share(const Pose& X_WD) const {
   return hand_.push_N > 0 ? stretch_mm * hand_.stiffness_N_per_mm / hand_.push_N : 0;
 }
 
-double MillingScript::felt_torque_share(const Pose& X_WD) const {
-  const double limit_Nmm = torque_limit_Nmm(hand_);
-  const double turn_rad =
-      lean_axis_W_.dot(rotation_vector(target().orientation * X_WD.orientation.conjugate()));
-  return limit_Nmm > 0 ? turn_rad * hand_.torsional_stiffness_Nmm_per_rad / limit_Nmm : 0;
+double MillingScript::leant_by_rad(const Pose& X_WD) const {
+  return lean_axis_W_.dot(rotation_vector(X_WD.orientation * upright_.conjugate()));
+}
+
+void MillingScript::feel(double dt_s, const Pose& X_WD, const Wrench& felt) {
+  const bool shaft_touches = felt.torque_Nmm.norm() >= kFelt_Nmm;
+  shaft_free_s_ = shaft_touches ? 0 : shaft_free_s_ + dt_s;
+  free_s_ = shaft_touches || felt.force_N.norm() >= kFelt_N ? 0 : free_s_ + dt_s;
+  if (shaft_touches && !wall_rad_) wall_rad_ = leant_by_rad(X_WD);
+  if (shaft_free_s_ >= kWallGone_s) wall_rad_.reset();
 }
 
 double MillingScript::longest_milling_s() const {
@@ -95,20 +104,21 @@ double MillingScript::longest_milling_s() const {
 bool MillingScript::is_milled(double now_s) const {
   if (now_s >= longest_milling_s()) return true;
   return settings_.until_leant && intent_.stage == ScriptStage::lean &&
-         (has_leant() || now_s - stage_began_s_ >= settings_.longest_lean_share * settings_.milling_s);
+         (shortfall_.lost || has_leant() ||
+          now_s - stage_began_s_ >= settings_.longest_lean_share * settings_.milling_s);
 }
 
 bool MillingScript::is_settled(double now_s, const Pose& X_WD) const {
   const double settling_s = now_s - stage_began_s_;
   if (settling_s < std::min(settings_.settle_s, settings_.holding_s)) return false;
-  if (!settings_.until_leant || settling_s >= settings_.longest_settle_share * settings_.holding_s)
+  if (!settings_.until_leant || shortfall_.lost ||
+      settling_s >= settings_.longest_settle_share * settings_.holding_s)
     return true;
   return feels_what_it_holds(X_WD);
 }
 
 bool MillingScript::feels_what_it_holds(const Pose& X_WD) const {
-  return felt_push_share(X_WD) >= kFelt * settings_.hold_push_share &&
-         felt_torque_share(X_WD) >= kFelt * settings_.hold_torque_share;
+  return felt_push_share(X_WD) >= kFelt * settings_.hold_push_share && wall_rad_;
 }
 
 void MillingScript::begin(ScriptStage stage, double now_s) {
@@ -118,13 +128,14 @@ void MillingScript::begin(ScriptStage stage, double now_s) {
 
 void MillingScript::advance_stage(double now_s, double dt_s, const Pose& X_WD, const Pose& X_WT) {
   const bool is_milling = intent_.stage < ScriptStage::settle;
+  shortfall_.lost |= settings_.until_leant && intent_.stage == ScriptStage::lean && free_s_ >= kLost_s;
   if (is_milling && is_milled(now_s)) {
     shortfall_.shallow |= intent_.stage < ScriptStage::lean;
-    shortfall_.hardly_leant = settings_.until_leant && !has_leant();
+    shortfall_.hardly_leant = settings_.until_leant && !shortfall_.lost && !has_leant();
     begin(ScriptStage::settle, now_s);
   }
   if (intent_.stage == ScriptStage::settle && is_settled(now_s, X_WD)) {
-    shortfall_.unsettled = settings_.until_leant && !feels_what_it_holds(X_WD);
+    shortfall_.unsettled = settings_.until_leant && !shortfall_.lost && !feels_what_it_holds(X_WD);
     begin(ScriptStage::hold, now_s);
   }
   if (intent_.stage == ScriptStage::hold &&
@@ -134,7 +145,7 @@ void MillingScript::advance_stage(double now_s, double dt_s, const Pose& X_WD, c
   if (intent_.stage >= ScriptStage::settle) return;
   const double latest_s = settings_.latest_lean_share * longest_milling_s();
   if (intent_.stage == ScriptStage::lean) {
-    if (felt_torque_share(X_WD) >= kLeant * settings_.lean_torque_share) leant_s_ += dt_s;
+    if (shaft_free_s_ == 0) leant_s_ += dt_s;
   } else if (shown_depth_mm(X_WT) >= settings_.depth_mm || now_s >= latest_s) {
     shortfall_.shallow = shown_depth_mm(X_WT) < settings_.depth_mm;
     begin(ScriptStage::lean, now_s);
@@ -167,7 +178,8 @@ void MillingScript::lean(double share, double dt_s, const Pose& X_WD) {
       lean_axis_W_.dot(rotation_vector(target().orientation * X_WD.orientation.conjugate()));
   const double rate_rad_s = settings_.torque_correction_per_s * (wanted_rad - felt_rad);
   lean_rad_ += dt_s * std::clamp(rate_rad_s, -settings_.lean_rad_s, settings_.lean_rad_s);
-  lean_rad_ = std::clamp(lean_rad_, 0.0, settings_.lean_limit_rad);
+  const double limit_rad = wall_rad_ ? *wall_rad_ + wanted_rad : settings_.lean_limit_rad;
+  lean_rad_ = std::clamp(lean_rad_, 0.0, std::clamp(limit_rad, 0.0, settings_.lean_limit_rad));
 }
 
 Pose MillingScript::target() const {
@@ -175,7 +187,9 @@ Pose MillingScript::target() const {
           (quaternion_from_rotation_vector(lean_rad_ * lean_axis_W_) * upright_).normalized()};
 }
 
-const ScriptIntent& MillingScript::step(double time_s, double dt_s, const Pose& X_WD, const Pose& X_WT) {
+const ScriptIntent& MillingScript::step(double time_s, double dt_s, const Pose& X_WD, const Pose& X_WT,
+                                        const Wrench& felt) {
+  feel(dt_s, X_WD, felt);
   advance_stage(time_s + kRounding_s, dt_s, X_WD, X_WT);
   const double feed_mm_s = settings_.feed_mm_s;
   switch (intent_.stage) {
@@ -191,6 +205,7 @@ const ScriptIntent& MillingScript::step(double time_s, double dt_s, const Pose& 
       lean(settings_.lean_torque_share, dt_s, X_WD);
       break;
     case ScriptStage::settle:
+      if (shortfall_.lost) break;  // the hand stays where it is
       push(settings_.hold_push_share, -feed_mm_s, feed_mm_s, dt_s, X_WD);
       push_sideways(settings_.hold_side_share, dt_s, X_WD);
       lean(settings_.hold_torque_share, dt_s, X_WD);

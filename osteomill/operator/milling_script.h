@@ -1,6 +1,9 @@
 #pragma once
 
+#include <optional>
+
 #include "osteomill/geometry/pose.h"
+#include "osteomill/geometry/wrench.h"
 #include "osteomill/operator/hand.h"
 #include "osteomill/operator/milling_entry.h"
 #include "osteomill/tool/milling_tool.h"
@@ -26,6 +29,8 @@ struct ScriptSettings {
   /// ... or when this share of the (longest) milling is over.
   double latest_lean_share = 0.6;
   double lean_rad_s = 0.14;  // 8 degrees a second
+  /// It leans until the shaft meets the wall, and from there by what its spring takes for this torque: no
+  /// further, where the wall gives way.
   double lean_torque_share = 0.8;
   double lean_push_share = 0.6;
   /// Sideways, towards the rim that is leant against. Leaning by torque alone would press the burr into the
@@ -38,7 +43,7 @@ struct ScriptSettings {
   double hold_side_share = 0.6;
   double hold_torque_share = 0.8;
   /// How long the hand takes, at the start of the holding, to come to what it then holds: at least this, and
-  /// with `until_leant` until it feels that push and torque, but no longer than this share of the holding.
+  /// with `until_leant` until it feels that push and the wall, but no longer than this share of the holding.
   /// What it takes beyond `settle_s` makes the holding so much longer.
   double settle_s = 1.0;
   double longest_settle_share = 0.5;
@@ -57,7 +62,9 @@ struct ScriptShortfall {
   bool shallow = false;
   /// The shaft leant on bone for less than it was to.
   bool hardly_leant = false;
-  /// The hand did not come to feel the push and the torque that it wanted to hold.
+  /// The tool left the bone while it leant, and found none any more.
+  bool lost = false;
+  /// The hand did not come to feel the push that it wanted to hold, with the shaft against the wall.
   bool unsettled = false;
 };
 
@@ -72,9 +79,9 @@ struct ScriptIntent {
   ScriptStage stage = ScriptStage::approach;
 };
 
-/// The hand's intent, tick by tick. It feels its own springs (target against device) and sees the simulated
-/// tool, by which it judges how deep the hole is; it never looks at the bone. The same inputs give the same
-/// intents.
+/// The hand's intent, tick by tick. It feels its own springs (target against device) and what the device
+/// gives it, by which it knows when the shaft meets the wall, and sees the simulated tool, by which it judges
+/// how deep the hole is; it never looks at the bone. The same inputs give the same intents.
 class MillingScript {
  public:
   MillingScript(const ScriptSettings& settings, const HandSettings& hand, const MillingTool& tool,
@@ -86,12 +93,14 @@ class MillingScript {
   /// and not judged.
   const ScriptShortfall& shortfall() const { return shortfall_; }
   /// The intent at `time_s`, `dt_s` after the last one. `X_WD` is where the device is, `X_WT` where the
-  /// simulated tool is shown. Safe in the haptic tick.
-  const ScriptIntent& step(double time_s, double dt_s, const Pose& X_WD, const Pose& X_WT);
+  /// simulated tool is shown, `felt` the last wrench on the hand. Safe in the haptic tick.
+  const ScriptIntent& step(double time_s, double dt_s, const Pose& X_WD, const Pose& X_WT,
+                           const Wrench& felt);
 
  private:
   bool has_leant() const { return leant_s_ >= settings_.leant_share * settings_.milling_s; }
   bool feels_what_it_holds(const Pose& X_WD) const;
+  void feel(double dt_s, const Pose& X_WD, const Wrench& felt);
   void advance_stage(double now_s, double dt_s, const Pose& X_WD, const Pose& X_WT);
   void begin(ScriptStage stage, double now_s);
   double longest_milling_s() const;
@@ -99,7 +108,7 @@ class MillingScript {
   bool is_settled(double now_s, const Pose& X_WD) const;
   double shown_depth_mm(const Pose& X_WT) const;
   double felt_push_share(const Pose& X_WD) const;
-  double felt_torque_share(const Pose& X_WD) const;
+  double leant_by_rad(const Pose& X_WD) const;
   void push(double share, double slowest_mm_s, double fastest_mm_s, double dt_s, const Pose& X_WD);
   void push_sideways(double share, double dt_s, const Pose& X_WD);
   void lean(double share, double dt_s, const Pose& X_WD);
@@ -115,6 +124,11 @@ class MillingScript {
   double along_mm_ = 0;
   double sideways_mm_ = 0;
   double lean_rad_ = 0;
+  // How far the device had leant when the shaft met the wall that it is at, and for how long it, and the
+  // whole tool, have been free.
+  std::optional<double> wall_rad_;
+  double shaft_free_s_ = 0;
+  double free_s_ = 0;
   // Since when the present stage, and how long in all the shaft has leant on something.
   double stage_began_s_ = 0;
   double leant_s_ = 0;

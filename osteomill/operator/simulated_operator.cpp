@@ -8,6 +8,8 @@ namespace osteomill {
 namespace {
 
 constexpr double kMaxAdvance_s = 1.0;
+// Of the seed that makes a hand's turning another random signal than its displacement.
+constexpr std::uint64_t kTurning = 0x9e3779b97f4a7c15;
 
 // The bound of semi-implicit Euler (simulated_handle.h), with a fourth of it left for the wall.
 void require_integrable(const HandleSettings& handle, const HandSettings& hand) {
@@ -28,7 +30,8 @@ void require_integrable(const HandleSettings& handle, const HandSettings& hand) 
 SimulatedOperator::SimulatedOperator(const OperatorSettings& settings, const MillingTool& tool,
                                      const MillingEntry& entry)
     : hand_(settings.hand),
-      tremor_(settings.seed, settings.hand.tremor_mm),
+      tremor_mm_(settings.seed, settings.hand.tremor_mm),
+      tremor_rad_(settings.seed ^ kTurning, settings.hand.tremor_rad),
       script_(settings.script, settings.hand, tool, entry),
       handle_(settings.handle, script_.intent().X_W_target) {
   require_integrable(settings.handle, settings.hand);
@@ -37,7 +40,8 @@ SimulatedOperator::SimulatedOperator(const OperatorSettings& settings, const Mil
 }
 
 Pose SimulatedOperator::trembling(const Pose& X_W_intended) const {
-  return {X_W_intended.position_mm + tremor_.at(time_s()), X_W_intended.orientation};
+  const Quat turn = quaternion_from_rotation_vector(tremor_rad_.at(time_s()));
+  return {X_W_intended.position_mm + tremor_mm_.at(time_s()), (turn * X_W_intended.orientation).normalized()};
 }
 
 void SimulatedOperator::advance(double dt_s) {
@@ -54,7 +58,7 @@ void SimulatedOperator::advance(double dt_s) {
   substeps_ += count;
   const double passed_s = static_cast<double>(count) * substep_s;
   const Pose from = X_W_target_;
-  const Pose to = trembling(script_.step(time_s(), passed_s, handle_.pose(), X_WT_seen_).X_W_target);
+  const Pose to = trembling(script_.step(time_s(), passed_s, handle_.pose(), X_WT_seen_, felt_).X_W_target);
   const Vec3 turn_rad = rotation_vector(to.orientation * from.orientation.conjugate());
   const Twist speed{(to.position_mm - from.position_mm) / passed_s, turn_rad / passed_s};
   for (std::int64_t n = 0; n < count; ++n) {

@@ -30,7 +30,10 @@ class SimulatedOperator final : public Device {
 
   /// As the encoder says.
   Pose read_pose() override { return handle_.read(); }
-  void write_wrench(const Wrench& wrench) override { handle_.command(wrench); }
+  void write_wrench(const Wrench& wrench) override {
+    felt_ = wrench;
+    handle_.command(wrench);
+  }
   bool spindle_asked() const override { return milling(); }
   void tick_done(const Pose& X_WT, double dt_s) override {
     see(X_WT);
@@ -61,10 +64,12 @@ class SimulatedOperator final : public Device {
   Pose trembling(const Pose& X_W_intended) const;
 
   HandSettings hand_;
-  Tremor tremor_;
+  Tremor tremor_mm_;
+  Tremor tremor_rad_;
   MillingScript script_;
   SimulatedHandle handle_;
   Pose X_WT_seen_;
+  Wrench felt_;
   Pose X_W_target_;
   Wrench hand_wrench_;
   std::int64_t substeps_ = 0;

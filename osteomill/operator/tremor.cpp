@@ -33,8 +33,8 @@ double sine_of_turns(double turns) {
 
 }  // namespace
 
-Tremor::Tremor(std::uint64_t seed, double rms_mm) {
-  require_not_negative(rms_mm, "tremor: its root mean square (mm)");
+Tremor::Tremor(std::uint64_t seed, double rms) {
+  require_not_negative(rms, "tremor: its root mean square");
   SeededRandom random(seed);
   for (auto& sines : axes_) {
     std::size_t next = 0;
@@ -42,12 +42,12 @@ Tremor::Tremor(std::uint64_t seed, double rms_mm) {
       // One sine in each equal part of the band, somewhere in it: no two periods fit, so that nothing
       // repeats.
       const double part_hz = (band.highest_hz - band.lowest_hz) / kSinesPerBand;
-      const double amplitude_mm = rms_mm * std::sqrt(2.0 * band.share_of_power / kSinesPerBand);
+      const double amplitude = rms * std::sqrt(2.0 * band.share_of_power / kSinesPerBand);
       for (int n = 0; n < kSinesPerBand; ++n) {
         const double lowest_hz = band.lowest_hz + part_hz * n;
         const double frequency_hz = random.uniform(lowest_hz, lowest_hz + part_hz);
         const double phase_turns = random.uniform(0.0, 1.0);
-        sines[next++] = {amplitude_mm, frequency_hz, phase_turns};
+        sines[next++] = {amplitude, frequency_hz, phase_turns};
       }
     }
   }
@@ -58,7 +58,7 @@ Vec3 Tremor::at(double time_s) const {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     double sum = 0;
     for (const Sine& sine : axes_[axis]) {
-      sum += sine.amplitude_mm * sine_of_turns(sine.frequency_hz * time_s + sine.phase_turns);
+      sum += sine.amplitude * sine_of_turns(sine.frequency_hz * time_s + sine.phase_turns);
     }
     displacement[static_cast<Eigen::Index>(axis)] = sum;
   }

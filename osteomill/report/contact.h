@@ -34,6 +34,8 @@ struct ContactShares {
   /// When the last contact ended, from the first tick on, where the recording goes on for a second or more
   /// without any; 0 where there was none at all.
   std::optional<double> lost_after_s;
+  /// It was lost with the spindle on, now or, where nothing touched at all, before the recording.
+  bool lost_while_milling = false;
 };
 ContactShares contact_shares(std::span<const TickRecord> records);
 
@@ -42,7 +44,8 @@ inline bool is_enough_contact(double share) {
   return share >= 0.1;
 }
 
-/// Why something that is felt could not be measured: "never touched", "lost contact after 3.2 s", "touched
+/// Why something that is felt could not be measured: "never touched", "lost while milling",
+/// "lost while milling, after 3.2 s", "lost contact after 3.2 s", "touched
 /// for 4 % of the time", "the shaft touched for 4 % of the time" or "felt a force for 4 % of the time".
 std::string contact_words(const ContactShares& contact);
 

@@ -11,6 +11,7 @@
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/files/input_error.h"
 #include "osteomill/report/high_pass.h"
+#include "osteomill/report/multiple_correlation.h"
 
 namespace osteomill {
 
@@ -33,6 +34,37 @@ double path_mm(std::span<const TickRecord> records) {
     last = &record;
   }
   return path;
+}
+
+ShaftTurns shaft_turns(std::span<const TickRecord> records, const std::vector<bool>& touches,
+                       double rate_hz) {
+  constexpr double kWithin_s = 0.05;
+  const auto half = static_cast<std::size_t>(std::max(1.0, std::round(kWithin_s / 2 * rate_hz)));
+  const auto turn_deg = [&](std::size_t n) {
+    const TickRecord& before = records[n - std::min(n, half)];
+    const TickRecord& after = records[std::min(n + half, records.size() - 1)];
+    return 180 / std::numbers::pi * angle_rad(shaft_direction(before.X_WT), shaft_direction(after.X_WT));
+  };
+  ShaftTurns turns;
+  double step_max = 0;
+  for (std::size_t n = 1; n < records.size(); ++n) {
+    if (!touches[n] && !touches[n - 1]) continue;
+    const double turn = turn_deg(n);
+    turns.max_deg = std::max(turns.max_deg, turn);
+    const double step = (records[n].wrench.torque_Nmm - records[n - 1].wrench.torque_Nmm).norm();
+    if (step <= step_max) continue;
+    step_max = step;
+    turns.at_torque_step_deg = turn;
+  }
+  return turns;
+}
+
+double torque_following_force(std::span<const Vec3> torque_Nmm, std::span<const Vec3> force_N,
+                              const std::vector<bool>& shaft_touches, double rate_hz) {
+  constexpr double kWithin_s = 0.01;
+  const auto reach = static_cast<std::size_t>(std::max(2.0, std::round(kWithin_s * rate_hz)));
+  return multiple_correlation(high_pass(torque_Nmm, rate_hz, kBuzzAbove_hz),
+                              high_pass(force_N, rate_hz, kBuzzAbove_hz), reach, shaft_touches);
 }
 
 // But for the device's pose: it may have given none.
@@ -114,13 +146,17 @@ DirectionMetrics direction_metrics(std::span<const Vec3> directions) {
 RunMetrics run_metrics(const Recording& recording) {
   require_usable(recording);
   std::vector<Vec3> force_N, torque_Nmm, shaft_W;
-  std::vector<bool> touches;
+  std::vector<bool> touches, shaft_touches;
   std::vector<double> step_us, cpu_us;
+  double contacts = 0;
   HeldRate held(1e6 * recording.description.tick_period_s);
   for (const TickRecord& record : recording.records) {
     force_N.push_back(record.wrench.force_N);
     torque_Nmm.push_back(record.wrench.torque_Nmm);
-    touches.push_back(contact_of(record).any());
+    const Contact contact = contact_of(record);
+    touches.push_back(contact.any());
+    shaft_touches.push_back(contact.shaft);
+    if (touches.back()) contacts += record.contacts;
     if (touches.back()) shaft_W.push_back(shaft_direction(record.X_WT));
     step_us.push_back(record.compute_us);
     cpu_us.push_back(record.tick_cpu_us);
@@ -139,6 +175,9 @@ RunMetrics run_metrics(const Recording& recording) {
   if (is_enough_contact(contact.force)) metrics.force_N = vector_metrics(force_N, rate_hz, touches);
   if (is_enough_contact(contact.torque)) metrics.torque_Nmm = vector_metrics(torque_Nmm, rate_hz, touches);
   if (is_enough_contact(contact.shaft)) metrics.shaft = direction_metrics(shaft_W);
+  metrics.turns = shaft_turns(recording.records, touches, rate_hz);
+  metrics.torque_follows_force = torque_following_force(torque_Nmm, force_N, shaft_touches, rate_hz);
+  metrics.contacts_mean = shaft_W.empty() ? 0 : contacts / static_cast<double>(shaft_W.size());
   metrics.put_back_mm3 = put_back_mm3(recording.records);
   metrics.removed_mm3 =
       recording.records.back().removed_mm3 - recording.records.front().removed_mm3 + metrics.put_back_mm3;
@@ -151,7 +190,8 @@ std::string summary_columns() {
          "force_mean_N,force_max_N,force_hp_rms_N,force_step_max_N,"
          "torque_mean_Nmm,torque_max_Nmm,torque_hp_rms_Nmm,torque_step_max_Nmm,"
          "shaft_spread_deg,shaft_excursion_deg,removed_mm3,"
-         "contact_share,burr_contact_share,shaft_contact_share,cpu_us_median,cpu_us_p99,cpu_us_max";
+         "contact_share,burr_contact_share,shaft_contact_share,cpu_us_median,cpu_us_p99,cpu_us_max,"
+         "turn_50ms_max_deg,turn_at_torque_step_deg,torque_follows_force,contacts_mean,lost_after_s";
 }
 
 std::string summary_fields(const SummaryRow& row) {
@@ -168,7 +208,11 @@ std::string summary_fields(const SummaryRow& row) {
     add(value);
   }
   const Distribution cpu = m.cpu_us.value_or(Distribution{kUnknown, kUnknown, kUnknown});
-  for (const double value : {cpu.median, cpu.p99, cpu.max}) add(value);
+  for (const double value :
+       {cpu.median, cpu.p99, cpu.max, m.turns.max_deg, m.turns.at_torque_step_deg, m.torque_follows_force,
+        m.contacts_mean, m.contact.lost_after_s.value_or(kUnknown)}) {
+    add(value);
+  }
   return fields;
 }
 

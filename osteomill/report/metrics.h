@@ -41,6 +41,12 @@ struct DirectionMetrics {
 };
 DirectionMetrics direction_metrics(std::span<const Vec3> directions);
 
+/// How far the shaft turned within 50 ms, in degrees: at most, and about the greatest step of the torque.
+struct ShaftTurns {
+  double max_deg = 0;
+  double at_torque_step_deg = 0;
+};
+
 /// All figures of one recording: the columns of summary.csv.
 struct RunMetrics {
   std::size_t steps = 0;
@@ -57,6 +63,12 @@ struct RunMetrics {
   /// Of the simulated tool's shaft while in contact; not a number where the shaft did not touch for long
   /// enough.
   DirectionMetrics shaft;
+  ShaftTurns turns;
+  /// How much of the torque above 20 Hz follows the force above 20 Hz of the 10 ms about it
+  /// (multiple_correlation.h), while the shaft touches; not a number where that is too short to say.
+  double torque_follows_force = 0;
+  /// How many sample points touched, on the average of the ticks in contact.
+  double contacts_mean = 0;
   /// By milling, after the first tick.
   double removed_mm3 = 0;
   /// Of cuts that were taken back.

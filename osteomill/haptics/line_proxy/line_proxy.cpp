@@ -141,7 +141,7 @@ void LineProxy::follow_with_tip_proxy(const Vec3& tip_W) {
   }
   if (!memory_.tip_proxy_W) memory_.tip_proxy_W = first_tip_proxy(tip_W);
   if (!memory_.tip_proxy_W) return;
-  memory_.tip_proxy_W = move_point_proxy(volume, *memory_.tip_proxy_W, tip_W, normal_);
+  memory_.tip_proxy_W = move_point_proxy(volume, *memory_.tip_proxy_W, tip_W, normal_, settings_.friction);
   if (*memory_.tip_proxy_W == tip_W) memory_.tip_proxy_W.reset();
 }
 
@@ -175,7 +175,7 @@ std::optional<Vec3> LineProxy::next_intersection(const Pose& X_WL) const {
   const Volume& volume = *scene_.volume;
   const ShaftProbe probe = densest_point(volume, shaft_vertices(), X_WL, *memory_.intersection_W);
   if (!(probe.density > volume.isovalue())) return std::nullopt;
-  return move_point_proxy(volume, *memory_.intersection_W, probe.point_W, normal_);
+  return move_point_proxy(volume, *memory_.intersection_W, probe.point_W, normal_, settings_.friction);
 }
 
 void LineProxy::turn_reaction(const Pose& X_WL) {

@@ -25,8 +25,14 @@ const std::vector<Field>& fields() {
            "Vertices on the tool's centreline, the burr's centre included", "vertices"},
           [](Settings & s) -> auto& { return s.vertices; }),
       setting_field<Settings>(
-          {"stiffness", "N/mm", SettingRange::positive(), 2, 2, "k of (6) and (10)", "stiffness"},
+          {"stiffness", "N/mm", SettingRange::positive(), 5, 2, "k of (6) and (10)", "stiffness"},
           [](Settings & s) -> auto& { return s.stiffness_N_per_mm; }),
+      setting_field<Settings>(
+          {"friction", "", SettingRange::not_negative(), 0, 0,
+           "Coefficient of the cone in which the proxies of the tip and of the shaft stay; without effect "
+           "with "
+           "hold-line"},
+          [](Settings & s) -> auto& { return s.friction; }),
       setting_field<Settings>(
           {"smoothed-normals", "", SettingRange::on_or_off(), 0, 1,
            "Normals are the sum of eight smoothed gradients about a point; off: of central differences "

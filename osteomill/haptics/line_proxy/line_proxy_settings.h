@@ -9,6 +9,7 @@ namespace osteomill::line_proxy {
 struct Settings {
   int vertices = 0;
   double stiffness_N_per_mm = 0;
+  double friction = 0;
   bool smoothed_normals = false;
   bool hold_line = false;
   double turning_Nmm_per_rad = 0;

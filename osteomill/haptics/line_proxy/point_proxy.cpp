@@ -45,11 +45,6 @@ Vec3 slid(const Volume& volume, const Vec3& proxy_W, const Vec3& tangent, const 
   return bisect_crossing(volume, is_bone_at(volume, above) ? proxy_W : above, aside);
 }
 
-Vec3 shortened(const Vec3& vector, double limit) {
-  const double length = vector.norm();
-  return length <= limit ? vector : Vec3(vector * (limit / length));
-}
-
 // Straight toward the probe until bone is in the way.
 Vec3 marched(const Volume& volume, const Vec3& proxy_W, const Vec3& probe_W) {
   const Vec3 way = probe_W - proxy_W;
@@ -62,8 +57,8 @@ Vec3 marched(const Volume& volume, const Vec3& proxy_W, const Vec3& probe_W) {
 
 }  // namespace
 
-Vec3 move_point_proxy(const Volume& volume, const Vec3& proxy_W, const Vec3& probe_W,
-                      const NormalRule& rule) {
+Vec3 move_point_proxy(const Volume& volume, const Vec3& proxy_W, const Vec3& probe_W, const NormalRule& rule,
+                      double friction) {
   Vec3 proxy = proxy_W;
   if (is_bone_at(volume, proxy)) {
     const auto out = raised_out(volume, proxy, rule);
@@ -77,9 +72,11 @@ Vec3 move_point_proxy(const Volume& volume, const Vec3& proxy_W, const Vec3& pro
     if (!normal) return proxy;
     const Vec3 to_probe = probe_W - proxy;
     const Vec3 aside = to_probe - to_probe.dot(*normal) * *normal;
-    if (aside.norm() < kAtRest_mm) return proxy;
+    // On the cone of friction: its edge is left behind, its inside holds.
+    const double slip_mm = aside.norm() - friction * std::max(0.0, -to_probe.dot(*normal));
+    if (slip_mm < kAtRest_mm) return proxy;
     // A slide of more than a voxel could step over a wall or a crack.
-    proxy = slid(volume, proxy, shortened(aside, voxel_mm(volume)), *normal);
+    proxy = slid(volume, proxy, std::min(slip_mm, voxel_mm(volume)) / aside.norm() * aside, *normal);
   }
   return proxy;
 }

@@ -11,10 +11,11 @@ namespace osteomill::line_proxy {
 /// - marches straight toward the probe until bone is in the way, also where milling has taken the bone from
 /// under it;
 /// - slides in the tangent plane to the point nearest to the probe, and comes back to the isosurface along
-/// the normal. It rests where the line to the probe is the surface's normal. The answer is the probe itself
+/// the normal. It rests where the line to the probe is within the cone of friction about the surface's normal
+/// (Harwin and Melder 2002): `friction` is the coefficient, 0 for none. The answer is the probe itself
 /// where the way to it is free. A proxy that starts in bone is first brought out along the normal; where that
 /// fails it stays. Safe in the haptic tick.
 Vec3 move_point_proxy(const Volume& volume, const Vec3& proxy_W, const Vec3& probe_W,
-                      const NormalRule& normal);
+                      const NormalRule& normal, double friction);
 
 }  // namespace osteomill::line_proxy

@@ -18,6 +18,7 @@ using testing_support::plane;
 using testing_support::shape_volume;
 
 const NormalRule kFree{};
+constexpr double kNoFriction = 0;
 
 class PlaneTest : public ::testing::Test {
  protected:
@@ -25,26 +26,26 @@ class PlaneTest : public ::testing::Test {
 };
 
 TEST_F(PlaneTest, AFreeWayLeadsToTheProbe) {
-  EXPECT_EQ(move_point_proxy(bone_, {0, 0, 2}, {1, 1, 0.5}, kFree), Vec3(1, 1, 0.5));
+  EXPECT_EQ(move_point_proxy(bone_, {0, 0, 2}, {1, 1, 0.5}, kFree, kNoFriction), Vec3(1, 1, 0.5));
 }
 
 TEST_F(PlaneTest, TheProxyStopsAtTheFootOfTheProbe) {
-  const Vec3 proxy = move_point_proxy(bone_, {0, 0, 2}, {0.8, -0.3, -1.5}, kFree);
+  const Vec3 proxy = move_point_proxy(bone_, {0, 0, 2}, {0.8, -0.3, -1.5}, kFree, kNoFriction);
   EXPECT_LT((proxy - Vec3(0.8, -0.3, 0)).norm(), 1e-3);
 }
 
 TEST_F(PlaneTest, TheProxyFollowsTheProbeOutAgain) {
-  const Vec3 proxy = move_point_proxy(bone_, {0, 0, 2}, {0.8, -0.3, -1.5}, kFree);
-  EXPECT_EQ(move_point_proxy(bone_, proxy, {0.8, -0.3, 0.1}, kFree), Vec3(0.8, -0.3, 0.1));
+  const Vec3 proxy = move_point_proxy(bone_, {0, 0, 2}, {0.8, -0.3, -1.5}, kFree, kNoFriction);
+  EXPECT_EQ(move_point_proxy(bone_, proxy, {0.8, -0.3, 0.1}, kFree, kNoFriction), Vec3(0.8, -0.3, 0.1));
 }
 
 TEST_F(PlaneTest, AProxyLeftInBoneIsBroughtOutAlongTheNormal) {
-  const Vec3 proxy = move_point_proxy(bone_, {0, 0, -0.1}, {0, 0, -1}, kFree);
+  const Vec3 proxy = move_point_proxy(bone_, {0, 0, -0.1}, {0, 0, -1}, kFree, kNoFriction);
   EXPECT_LT(proxy.norm(), 1e-3);
 }
 
 TEST_F(PlaneTest, PointsFarOutsideTheGridAreNotWalkedTo) {
-  EXPECT_EQ(move_point_proxy(bone_, {1e9, 0, 1e9}, {1e9, 5, 1e9}, kFree), Vec3(1e9, 5, 1e9));
+  EXPECT_EQ(move_point_proxy(bone_, {1e9, 0, 1e9}, {1e9, 5, 1e9}, kFree, kNoFriction), Vec3(1e9, 5, 1e9));
   const auto crossing = crossing_in_grid(bone_, {0, 0, 1e9}, {0, 0, -1e9});
   ASSERT_TRUE(crossing);
   EXPECT_NEAR(crossing->z(), 0.0, 1e-3);
@@ -63,7 +64,7 @@ TEST(PointProxy, GoesRoundABallToTheSideOfTheProbe) {
   for (int n = 0; n <= 180; ++n) {
     const double angle = n * std::numbers::pi / 180;
     const Vec3 out(std::sin(angle), 0, std::cos(angle));
-    proxy = move_point_proxy(bone, proxy, 3.0 * out, kFree);
+    proxy = move_point_proxy(bone, proxy, 3.0 * out, kFree, kNoFriction);
     ASSERT_LT((proxy - 4.0 * out).norm(), 0.06) << n;
     ASSERT_FALSE(is_bone_at(bone, proxy)) << n;
   }
@@ -75,7 +76,7 @@ TEST(PointProxy, RestsInAGroove) {
     return std::min((p.z() - p.x()), (p.z() + p.x())) * std::numbers::sqrt2 / 2;
   });
   Vec3 proxy(1.0, 0, 2.0);
-  for (int n = 0; n < 5; ++n) proxy = move_point_proxy(bone, proxy, {0.2, 0.4, -1.5}, kFree);
+  for (int n = 0; n < 5; ++n) proxy = move_point_proxy(bone, proxy, {0.2, 0.4, -1.5}, kFree, kNoFriction);
   EXPECT_LT(std::abs(proxy.x()), 0.25);
   EXPECT_NEAR(proxy.y(), 0.4, 0.05);
   EXPECT_LT(std::abs(proxy.z()), 0.25);
@@ -85,9 +86,9 @@ TEST(PointProxy, ASlideOverAnEdgeComesFree) {
   // Bone below z = 0 and left of x = 0; the probe leaves through the side.
   const Volume bone =
       shape_volume(centred_cube(48, 0.25), [](const Vec3& p) { return std::max(p.z(), p.x()); });
-  Vec3 proxy = move_point_proxy(bone, {-1, 0, 1}, {-1, 0, -0.5}, kFree);
+  Vec3 proxy = move_point_proxy(bone, {-1, 0, 1}, {-1, 0, -0.5}, kFree, kNoFriction);
   EXPECT_NEAR(proxy.z(), 0.0, 1e-3);
-  for (int n = 0; n < 5; ++n) proxy = move_point_proxy(bone, proxy, {0.5, 0, -0.5}, kFree);
+  for (int n = 0; n < 5; ++n) proxy = move_point_proxy(bone, proxy, {0.5, 0, -0.5}, kFree, kNoFriction);
   EXPECT_EQ(proxy, Vec3(0.5, 0, -0.5));
 }
 

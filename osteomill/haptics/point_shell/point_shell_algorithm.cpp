@@ -38,7 +38,7 @@ bool is_at(const Pose& a, const Pose& b) {
 
 PointShellAlgorithm::PointShellAlgorithm(const Settings& settings)
     : settings_(settings),
-      coupling_{settings.translational_stiffness_N_per_mm, settings.torsional_stiffness_Nmm_per_rad} {
+      coupling_{settings.translational_stiffness_N_per_mm, settings.torsional_stiffness_Nmm_per_rad, 0} {
   require_valid(settings);
 }
 
@@ -46,6 +46,7 @@ void PointShellAlgorithm::prepare(const Scene& scene) {
   if (scene.volume == nullptr) throw std::invalid_argument("point-shell: the scene has no volume");
   require_valid(scene.tool);
   volume_ = scene.volume;
+  coupling_.damping_ticks = settings_.damping_time_s / scene.tick_period_s;
   centreline_T_ = centreline_vertices(scene.tool, kCentrelinePoints);
   penalty_.stiffness_N_per_mm3 = contact_stiffness_N_per_mm3(settings_, scene.tool);
   if (settings_.surface_shell) {
@@ -67,6 +68,7 @@ void PointShellAlgorithm::reset() {
   in_contact_ = false;
   held_back_ = false;
   carried_ = false;
+  stretch_before_ = {};
 }
 
 int PointShellAlgorithm::sample_point_count() const {
@@ -149,7 +151,7 @@ HapticStep PointShellAlgorithm::balanced(const Pose& X_WD, double dt_s) {
     if (contacts.touching == 0) {
       X_WT_ = towards(start, X_WD);
     } else {
-      const ToolMove move = balancing_move(coupling_, X_WT_, X_WD, contacts.total());
+      const ToolMove move = balancing_move(coupling_, X_WT_, X_WD, stretch_before_, contacts.total());
       X_WT_ = towards(start, moved(X_WT_, move));
     }
     X_WT_ = let_go(start, X_WT_, bound);
@@ -163,7 +165,8 @@ HapticStep PointShellAlgorithm::balanced(const Pose& X_WD, double dt_s) {
   held_back_ = in_contact_ || (held_back_ && !is_at(X_WT_, X_WD));
   result.X_WT = X_WT_;
   result.contacts = contacts.touching;
-  if (held_back_) result.wrench = wrench_on_hand(coupling_, X_WT_, X_WD);
+  if (held_back_) result.wrench = wrench_on_hand(coupling_, X_WT_, X_WD, stretch_before_);
+  stretch_before_ = move_between(X_WD, X_WT_);
   return result;
 }
 

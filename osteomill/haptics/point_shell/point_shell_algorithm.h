@@ -60,6 +60,7 @@ class PointShellAlgorithm final : public HapticAlgorithm {
   std::vector<Vec3> centreline_T_;
   Pose X_WT_;
   Pose X_WD_before_;
+  ToolMove stretch_before_;
 };
 
 }  // namespace osteomill::point_shell

@@ -21,7 +21,7 @@ const std::vector<Field>& fields() {
   // Name, unit, range, value in paper, in steady, meaning, option.
   static const std::vector<Field> all{
       setting_field<Settings>(
-          {"scale", "", SettingRange::count(1, VoxelShell::kMaxScale), 1, 1,
+          {"scale", "", SettingRange::count(1, VoxelShell::kMaxScale), 3, 1,
            "Coarseness: the voxels whose centres are points are this many of the scan's wide along each "
            "axis; "
            "with surface-shell the points lie this many times 0.13 mm apart, or as the scan's voxels do",
@@ -33,13 +33,17 @@ const std::vector<Field>& fields() {
            "densities as they fall; off: voxel centres inside the bone, all alike"},
           [](Settings & s) -> auto& { return s.surface_shell; }),
       setting_field<Settings>(
-          {"translational-stiffness", "N/mm", SettingRange::positive(), 2, 2,
+          {"translational-stiffness", "N/mm", SettingRange::positive(), 5, 2,
            "Virtual coupling between device and simulated tool", "stiffness"},
           [](Settings & s) -> auto& { return s.translational_stiffness_N_per_mm; }),
       setting_field<Settings>(
-          {"torsional-stiffness", "N mm/rad", SettingRange::positive(), 1000, 1000, "The same about rotation",
+          {"torsional-stiffness", "N mm/rad", SettingRange::positive(), 2500, 1000, "The same about rotation",
            "torsional-stiffness"},
           [](Settings & s) -> auto& { return s.torsional_stiffness_Nmm_per_rad; }),
+      setting_field<Settings>(
+          {"damping-time", "s", SettingRange::not_negative(), 0.001, 0,
+           "The coupling's dampers are its springs times this"},
+          [](Settings & s) -> auto& { return s.damping_time_s; }),
       setting_field<Settings>(
           {"greatest-depth", "mm", SettingRange::not_negative(), 0, 0.2,
            "Under 20 N the burr sinks no deeper into a plane than this; 0: it is only not pulled through"},

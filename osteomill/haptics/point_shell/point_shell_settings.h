@@ -14,6 +14,7 @@ struct Settings {
   bool surface_shell = false;
   double translational_stiffness_N_per_mm = 0;
   double torsional_stiffness_Nmm_per_rad = 0;
+  double damping_time_s = 0;
   double max_depth_mm = 0;
   bool guarded_move = false;
   /// No burr may be pulled through bone by this force: the greatest that a device is sent by default.

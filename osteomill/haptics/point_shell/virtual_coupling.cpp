@@ -14,18 +14,22 @@ ToolMove limited(const ToolMove& move, double max_mm, double max_rad) {
   return {factor * move.translation_mm, factor * move.rotation_rad};
 }
 
-Wrench wrench_on_hand(const VirtualCoupling& coupling, const Pose& X_WT, const Pose& X_WD) {
+Wrench wrench_on_hand(const VirtualCoupling& coupling, const Pose& X_WT, const Pose& X_WD,
+                      const ToolMove& stretch_before) {
   const ToolMove stretch = move_between(X_WD, X_WT);
-  return {coupling.translational_N_per_mm * stretch.translation_mm,
-          coupling.torsional_Nmm_per_rad * stretch.rotation_rad};
+  const auto damped = [&](const Vec3& now, const Vec3& before) -> Vec3 {
+    return now + coupling.damping_ticks * (now - before);
+  };
+  return {coupling.translational_N_per_mm * damped(stretch.translation_mm, stretch_before.translation_mm),
+          coupling.torsional_Nmm_per_rad * damped(stretch.rotation_rad, stretch_before.rotation_rad)};
 }
 
 ToolMove balancing_move(const VirtualCoupling& coupling, const Pose& X_WT, const Pose& X_WD,
-                        const ContactSum& contacts) {
+                        const ToolMove& stretch_before, const ContactSum& contacts) {
   using Vector6 = Eigen::Matrix<double, 6, 1>;
   using Matrix6 = Eigen::Matrix<double, 6, 6>;
   // F_net and T_net at X_WT.
-  const Wrench pull = wrench_on_hand(coupling, X_WT, X_WD);
+  const Wrench pull = wrench_on_hand(coupling, X_WT, X_WD, stretch_before);
   Vector6 net;
   net << contacts.force_N - pull.force_N, contacts.torque_Nmm - pull.torque_Nmm;
   // Minus their derivatives. The coupling's torque is linear in the rotation vector between tool and device;
@@ -33,8 +37,9 @@ ToolMove balancing_move(const VirtualCoupling& coupling, const Pose& X_WT, const
   // device).
   Matrix6 stiffness;
   stiffness << contacts.K_ff, contacts.K_ft, contacts.K_ft.transpose(), contacts.K_tt;
-  stiffness.topLeftCorner<3, 3>().diagonal().array() += coupling.translational_N_per_mm;
-  stiffness.bottomRightCorner<3, 3>().diagonal().array() += coupling.torsional_Nmm_per_rad;
+  const double damped = 1 + coupling.damping_ticks;
+  stiffness.topLeftCorner<3, 3>().diagonal().array() += damped * coupling.translational_N_per_mm;
+  stiffness.bottomRightCorner<3, 3>().diagonal().array() += damped * coupling.torsional_Nmm_per_rad;
   // Symmetric and positive definite: the contacts add squares only.
   const Vector6 move = stiffness.ldlt().solve(net);
   return {move.head<3>(), move.tail<3>()};

@@ -10,7 +10,7 @@ constexpr VirtualCoupling kCoupling{2.0, 1000.0};
 TEST(VirtualCoupling, WithoutContactTheMoveLeadsToTheDevice) {
   const Pose X_WT{{1, 2, 3}, quaternion_from_rotation_vector({0.1, 0.2, 0.3})};
   const Pose X_WD{{1.5, 1, 3.2}, quaternion_from_rotation_vector({0.3, -0.4, 0.3})};
-  const Pose after = moved(X_WT, balancing_move(kCoupling, X_WT, X_WD, {}));
+  const Pose after = moved(X_WT, balancing_move(kCoupling, X_WT, X_WD, {}, {}));
   EXPECT_LT((after.position_mm - X_WD.position_mm).norm(), 1e-12);
   EXPECT_LT(rotation_vector(after.orientation * X_WD.orientation.conjugate()).norm(), 1e-12);
 }
@@ -22,13 +22,13 @@ TEST(VirtualCoupling, OnePointOnTheAxisIsTwoSpringsInSeries) {
   constexpr double kPoint = 8.0, kDepth = 0.1;
   ContactSum contacts;
   contacts.add(kPoint * kDepth, kPoint, {0, 0, -1}, {0, 0, -1.4});
-  const ToolMove move = balancing_move(kCoupling, X_WT, X_WD, contacts);
+  const ToolMove move = balancing_move(kCoupling, X_WT, X_WD, {}, contacts);
   // The point is free of load 0.1 above: the device is 0.8 below that, and pushes with 2 * 8 / (2 + 8) * 0.8
   // N.
   constexpr double kForce = 2.0 * 8.0 / 10.0 * 0.8;
   EXPECT_NEAR(move.translation_mm.z(), -0.7 + kForce / 2.0, 1e-12);
   EXPECT_LT(move.rotation_rad.norm(), 1e-15);
-  const Wrench wrench = wrench_on_hand(kCoupling, moved(X_WT, move), X_WD);
+  const Wrench wrench = wrench_on_hand(kCoupling, moved(X_WT, move), X_WD, {});
   EXPECT_NEAR(wrench.force_N.z(), kForce, 1e-12);
   EXPECT_LT(wrench.torque_Nmm.norm(), 1e-12);
 }
@@ -38,10 +38,10 @@ TEST(VirtualCoupling, OnePointAtALeverSharesBetweenForceAndTorque) {
   constexpr double kPoint = 50.0, kDepth = 0.02, kLever = 12.0;
   ContactSum contacts;
   contacts.add(kPoint * kDepth, kPoint, {-1, 0, 0}, {-1, 0, kLever});
-  const ToolMove move = balancing_move(kCoupling, {}, {}, contacts);
+  const ToolMove move = balancing_move(kCoupling, {}, {}, {}, contacts);
   const double compliance = 1 / 2.0 + kLever * kLever / 1000.0 + 1 / kPoint;
   const double force = kDepth / compliance;
-  const Wrench wrench = wrench_on_hand(kCoupling, moved({}, move), {});
+  const Wrench wrench = wrench_on_hand(kCoupling, moved({}, move), {}, {});
   EXPECT_NEAR(wrench.force_N.x(), force, 1e-12);
   EXPECT_NEAR(wrench.torque_Nmm.y(), kLever * force, 1e-9);
 }
