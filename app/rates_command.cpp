@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -32,10 +33,15 @@ void run_rates(const RatesOptions& options) {
   const TrialSettings settings = trial_settings(options.trial);
   const MillingEntry entry = place_entry(bone.volume, options.trial);
   create_folder(options.out);
-  const std::vector<RateRow> rows = measure_rates(bone.volume, estimate_densities(bone.volume), entry,
-                                                  options.algorithms, settings, show_progress);
+  MeasuredRates measured{settings.haptics.mode,
+                         measure_rates(bone.volume, estimate_densities(bone.volume), entry,
+                                       options.algorithms, settings, show_progress),
+                         {}};
   end_progress();
-  fmt::print("{}\n", write_rates_report(rows, options.out).string());
+  const bool has_vertices = std::any_of(options.algorithms.begin(), options.algorithms.end(),
+                                        [](const auto& one) { return one.id == "surface-points"; });
+  if (has_vertices) measured.vertices = search_vertices();
+  fmt::print("{}\n", write_rates_report(measured, options.out).string());
 }
 
 }  // namespace

@@ -93,7 +93,9 @@ void draw_help(ViewState& view, const PixelSize& size, float top_px) {
   ImGui::PushTextWrapPos(0);
   ImGui::TextUnformatted(
       "Grey and gold: the tool as bone lets it be. Blue: your hand; the further it sinks in, the harder you "
-      "press. Green: the force on it, amber: the torque, red: where it acts.");
+      "press. Green: the force on it, amber: the torque, red: where it acts; with 1 line-proxy the point at "
+      "which "
+      "bone holds the shaft, if it does.");
   // So that all of it is in sight in a window of the usual size.
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {ui::px(8), ui::px(1)});
   for (const auto& [what, how] : kControls) {

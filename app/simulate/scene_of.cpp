@@ -14,7 +14,8 @@ constexpr double kApart_rad = 0.01;
 }  // namespace
 
 ViewScene scene_of(const ViewState& view, Simulation& simulation) {
-  const TickRecord& record = simulation.milling.state().record;
+  const LiveState& state = simulation.milling.state();
+  const TickRecord& record = state.record;
   ViewScene scene;
   scene.camera = view.camera;
   scene.bounds = view.box.bounds();
@@ -24,7 +25,10 @@ ViewScene scene_of(const ViewState& view, Simulation& simulation) {
   const double apart_mm = (record.X_WD.position_mm - record.X_WT.position_mm).norm();
   const double apart_rad = record.X_WD.orientation.angularDistance(record.X_WT.orientation);
   if (view.ghost && (apart_mm > kApart_mm || apart_rad > kApart_rad)) scene.X_WD = record.X_WD;
-  if (view.arrows) scene.wrench = record.wrench;
+  if (view.arrows) {
+    scene.wrench = record.wrench;
+    scene.intersection_W = state.intersection_W;
+  }
   scene.show_labels = view.labels;
   scene.isovalue = simulation.milling.isovalue();
   scene.reference_density = simulation.milling.densities().reference;

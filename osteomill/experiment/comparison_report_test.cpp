@@ -23,8 +23,8 @@ using namespace testing_support;
 std::vector<RateRow> sample_rates() {
   const auto row = [](std::string_view algorithm, const char* resolution, int points, double us,
                       double paper_hz) {
-    return RateRow{algorithm_named(algorithm).id, resolution, points,  us, 1.7 * us,
-                   std::min(1000.0, 1e6 / us),    1e6 / us,   paper_hz};
+    return RateRow{algorithm_named(algorithm).id, resolution, points,   us, 1.7 * us,
+                   std::min(1000.0, 1e6 / us),    1e6 / us,   paper_hz, 999};
   };
   return {
       row("line-proxy", "50 vertices", 51, 2.1, 984),    row("line-proxy", "100 vertices", 101, 4, 964),
@@ -197,30 +197,52 @@ TEST_F(ReportTest, AFolderThatCannotBeMadeIsNamed) {
 }
 
 TEST_F(ReportTest, RatesStandBesideThePapers) {
-  const fs::path page = write_rates_report(sample_rates(), out_);
+  MeasuredRates measured{Mode::paper, sample_rates(), {}};
+  measured.rows.front().paced_rate_hz = 940;
+  const fs::path page = write_rates_report(measured, out_);
   EXPECT_EQ(page, out_ / "rates.html");
   EXPECT_EQ(names_in(out_), (std::vector<std::string>{"figures", "rates.csv", "rates.html"}));
   EXPECT_EQ(names_in(out_ / "figures"), (std::vector<std::string>{"rates.png", "rates.svg"}));
   const std::string csv = bytes_of(out_ / "rates.csv");
   EXPECT_TRUE(csv.starts_with(
-      "algorithm,resolution,points,step_us_median,step_us_p99,rate_hz,steps_per_s,paper_rate_hz\nline-"
-      "proxy,50 vertices,51,2.1,"));
-  EXPECT_NE(csv.find("\npoint-shell,scale 4,4700,3.2,5.44,1000,312500,\n"), std::string::npos) << csv;
+      "algorithm,resolution,points,step_us_median,step_us_p99,rate_hz,steps_per_s,paper_rate_hz,"
+      "paced_rate_hz,mode\nline-proxy,50 vertices,51,2.1,"));
+  EXPECT_NE(csv.find("\npoint-shell,scale 4,4700,3.2,5.44,1000,312500,,999,paper\n"), std::string::npos)
+      << csv;
   const std::string html = bytes_of(page);
-  EXPECT_NE(html.find("14 of the 14 resolutions hold 950 Hz"), std::string::npos);
+  EXPECT_NE(html.find("Measured in the mode paper"), std::string::npos);
+  EXPECT_EQ(html.find("least number of vertices"), std::string::npos);
+  EXPECT_NE(html.find("14 of the 14 resolutions hold 950 Hz or more in a loop of 1000 Hz here by their CPU "
+                      "time, and 13 "),
+            std::string::npos);
   EXPECT_NE(html.find("51 to 484 times as many steps"), std::string::npos);
   EXPECT_NE(html.find("a tick that is done early waits for its millisecond"), std::string::npos);
   EXPECT_EQ(html.find("http"), std::string::npos);
 }
 
 TEST_F(ReportTest, RatesOfAnyNameAndWithoutThePapersAreDrawn) {
-  std::vector<RateRow> rows{
-      {algorithm_named("point-shell").id, "it's \"coarse\", `x`", 10, 5, 6, 1000, 2e5, 0}};
-  write_rates_report(rows, out_);
+  MeasuredRates measured{
+      Mode::steady,
+      {{algorithm_named("point-shell").id, "it's \"coarse\", `x`", 10, 5, 6, 1000, 2e5, 0, 999}},
+      {}};
+  const fs::path page = write_rates_report(measured, out_);
+  EXPECT_NE(bytes_of(page).find("Measured in the mode steady"), std::string::npos);
   EXPECT_NE(bytes_of(out_ / "rates.csv").find("\"it's \"\"coarse\"\", `x`\",10"), std::string::npos);
   EXPECT_THROW(write_rates_report({}, out_), InputError);
-  rows[0].rate_hz = 0;
-  EXPECT_THROW(write_rates_report(rows, out_), InputError);
+  measured.rows[0].paced_rate_hz = 0;
+  EXPECT_THROW(write_rates_report(measured, out_), InputError);
+}
+
+TEST_F(ReportTest, TheLeastVerticesStandBesideThePapers) {
+  MeasuredRates measured{Mode::paper, sample_rates(), {}};
+  for (const int count : {12, 24, 32})
+    measured.vertices.push_back({"sphere", count, 2, 5, 0.1, 0.15, count > 12});
+  measured.vertices.push_back({"circle", 8, 2, 50, 0.1, 0.15, false});
+  const std::string html = bytes_of(write_rates_report(measured, out_));
+  EXPECT_NE(
+      html.find("24 on the sphere (24 in the paper), none of those tried on the circle (8 in the paper)"),
+      std::string::npos);
+  EXPECT_NE(bytes_of(out_ / "vertices.csv").find("\nsphere,24,2,5,0.1,0.15,1\n"), std::string::npos);
 }
 
 }  // namespace

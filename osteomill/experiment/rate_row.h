@@ -21,6 +21,8 @@ struct RateRow {
   double steps_per_s = 0;
   /// What the paper has for this resolution, capped by its 1000 Hz loop.
   double paper_rate_hz = 0;
+  /// Ticks done a second of the wall clock in a loop that was really held to 1000 Hz: the paper's measure.
+  double paced_rate_hz = 0;
 };
 
 }  // namespace osteomill

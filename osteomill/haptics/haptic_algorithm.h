@@ -31,6 +31,9 @@ struct HapticStep {
   /// The force with which the burr (not the shaft) presses on the bone, in W; zero where something else holds
   /// the tool. Milling is paid with it and cuts where it points.
   Vec3 burr_force_W_N = Vec3::Zero();
+  /// Where, in W, bone holds the tool's shaft, of an algorithm that knows one such point: of line-proxy the
+  /// paper's intersection point (IP). To be drawn; nothing is computed from it.
+  std::optional<Vec3> intersection_W;
   /// How many sample points (vertices, or points of the shell) touch.
   int contacts = 0;
 };

@@ -211,7 +211,7 @@ TickRecord LiveSession::tick(double time_s, double dt_s) {
   TickRecord record = step(time_s, dt_s, spindle_on && !bone_held_);
   record.session = session_number_;
   if (listener_) (*listener_)(record, session_->volume(), session_->last_change());
-  state_.write({record, spindle_on, paused_});
+  state_.write({record, spindle_on, paused_, session_->intersection_W()});
   if (placed) placing_.store(false, std::memory_order_release);
   queues_->records.try_push(record);
   return record;

@@ -25,6 +25,8 @@ struct LiveState {
   TickRecord record;
   bool spindle_on = false;
   bool paused = false;
+  /// MillingSession::intersection_W.
+  std::optional<Vec3> intersection_W = {};
 };
 
 /// A milling session in real time: a thread of its own ticks it at 1 kHz, with real-time scheduling where the

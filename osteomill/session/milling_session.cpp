@@ -82,6 +82,7 @@ TickRecord MillingSession::tick(Device& device, double time_s, double dt_s, bool
   record.cutting_torque_W_Nmm = cutting_torque_W_Nmm;
   record.energy_given_Nmm = guard_.energy_given_Nmm();
   record.contacts = step.contacts;
+  intersection_W_ = step.intersection_W;
   record.burr_force_W_N = step.burr_force_W_N;
   record.removed_mm3 = removed_mm3_;
   record.bone_hash = volume_->change_hash();
@@ -129,6 +130,7 @@ TickRecord MillingSession::idle_tick(Device& device, double time_s, double dt_s)
   device.write_wrench(record.wrench);
   reaction_.reset();
   last_change_ = {};
+  intersection_W_.reset();
   return record;
 }
 

@@ -67,6 +67,8 @@ class MillingSession {
 
   /// What the last tick changed of the volume.
   const VolumeChange& last_change() const { return last_change_; }
+  /// HapticStep's of the last tick, to be drawn.
+  const std::optional<Vec3>& intersection_W() const { return intersection_W_; }
   double removed_mm3() const { return removed_mm3_; }
   /// Goes on counting from what was removed of this bone before.
   void count_removed_from(double removed_mm3) { removed_mm3_ = removed_mm3; }
@@ -99,6 +101,7 @@ class MillingSession {
   WrenchGuard guard_;
   double removed_mm3_ = 0;
   VolumeChange last_change_;
+  std::optional<Vec3> intersection_W_;
   // Nothing before the first tick.
   std::optional<Pose> last_X_WT_;
   bool let_go_asked_ = false;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+#include <utility>
 
 namespace osteomill {
 
@@ -42,14 +43,54 @@ std::array<Vec3, kSphereVertices> sphere_vertices(const MillingTool& tool) {
   return vertices;
 }
 
+std::vector<Vec3> spiral_directions(int count) {
+  const double golden_rad = std::numbers::pi * (3 - std::sqrt(5.0));
+  std::vector<Vec3> directions;
+  for (int n = 0; n < count; ++n) {
+    const double z = 1 - (2.0 * n + 1) / count;
+    const double across = std::sqrt(1 - z * z);
+    directions.emplace_back(across * std::cos(golden_rad * n), across * std::sin(golden_rad * n), z);
+  }
+  return directions;
+}
+
+std::vector<Vec3> sphere_vertices(const MillingTool& tool, int count) {
+  if (count < 1) throw std::invalid_argument("the sphere needs at least 1 vertex");
+  if (count == kSphereVertices) {
+    const auto snub_cube = sphere_vertices(tool);
+    return {snub_cube.begin(), snub_cube.end()};
+  }
+  std::vector<Vec3> vertices = spiral_directions(count);
+  // By then hardly anything moves, whatever the count: the push on a place that is off grows with the power
+  // 3/2 of it.
+  constexpr int kRounds = 200;
+  const double step = 2 / std::pow(count, 1.5);
+  std::vector<Vec3> pushes(vertices.size());
+  for (int round = 0; round < kRounds; ++round) {
+    std::fill(pushes.begin(), pushes.end(), Vec3::Zero());
+    for (std::size_t a = 0; a < vertices.size(); ++a) {
+      for (std::size_t b = 0; b < a; ++b) {
+        const Vec3 apart = vertices[a] - vertices[b];
+        const Vec3 push = apart / (apart.squaredNorm() * apart.norm());
+        pushes[a] += push;
+        pushes[b] -= push;
+      }
+    }
+    for (std::size_t n = 0; n < vertices.size(); ++n)
+      vertices[n] = (vertices[n] + step * pushes[n]).normalized();
+  }
+  for (Vec3& vertex : vertices) vertex *= tool.burr_radius_mm;
+  return vertices;
+}
+
 double shaft_start_mm(const MillingTool& tool) {
   const double leaves_burr = std::sqrt(
       std::max(0.0, tool.burr_radius_mm * tool.burr_radius_mm - tool.shaft_radius_mm * tool.shaft_radius_mm));
   return std::min(leaves_burr, tool.shaft_length_mm);
 }
 
-std::vector<ShaftSlice> slice_vertices(const MillingTool& tool, int slices) {
-  if (slices < 1) throw std::invalid_argument("the shaft needs at least 1 slice");
+std::vector<ShaftSlice> slice_vertices(const MillingTool& tool, int slices, int vertices) {
+  if (slices < 1 || vertices < 1) throw std::invalid_argument("the shaft needs at least 1 slice of 1 vertex");
   const double start = shaft_start_mm(tool);
   const double length = tool.shaft_length_mm - start;
   std::vector<ShaftSlice> result;
@@ -58,12 +99,12 @@ std::vector<ShaftSlice> slice_vertices(const MillingTool& tool, int slices) {
   for (int s = 0; s < slices; ++s) {
     ShaftSlice slice;
     slice.centre_T = Vec3(0, 0, start + length * (s + 0.5) / slices);
-    for (int n = 0; n < kSliceVertices; ++n) {
-      const double angle = 2 * std::numbers::pi * n / kSliceVertices;
-      slice.vertices_T[static_cast<std::size_t>(n)] =
-          slice.centre_T + tool.shaft_radius_mm * Vec3(std::cos(angle), std::sin(angle), 0);
+    for (int n = 0; n < vertices; ++n) {
+      const double angle = 2 * std::numbers::pi * n / vertices;
+      slice.vertices_T.emplace_back(slice.centre_T +
+                                    tool.shaft_radius_mm * Vec3(std::cos(angle), std::sin(angle), 0));
     }
-    result.push_back(slice);
+    result.push_back(std::move(slice));
   }
   return result;
 }

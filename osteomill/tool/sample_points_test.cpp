@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -26,17 +27,45 @@ TEST(CentrelineVertices, RunFromTheBurrsCentreToTheShaftsEnd) {
   EXPECT_THROW(centreline_vertices(kTool, 0), std::invalid_argument);
 }
 
-TEST(SphereVertices, AreSpreadAsWidelyAs24PointsCanBe) {
-  const auto vertices = sphere_vertices(kTool);
-  for (const Vec3& vertex : vertices) EXPECT_NEAR(vertex.norm(), 1.5, 1e-12);
+double min_angle_deg(const std::vector<Vec3>& vertices) {
   double min_deg = 180;
   for (std::size_t a = 0; a < vertices.size(); ++a) {
     for (std::size_t b = 0; b < a; ++b) {
-      const double cosine = vertices[a].dot(vertices[b]) / (1.5 * 1.5);
+      const double cosine = vertices[a].normalized().dot(vertices[b].normalized());
       min_deg = std::min(min_deg, std::acos(std::clamp(cosine, -1.0, 1.0)) * 180 / std::numbers::pi);
     }
   }
-  EXPECT_NEAR(min_deg, 43.6908, 1e-4);  // the published answer of Tammes' problem for 24
+  return min_deg;
+}
+
+TEST(SphereVertices, AreSpreadAsWidelyAs24PointsCanBe) {
+  const auto vertices = sphere_vertices(kTool, 24);
+  for (const Vec3& vertex : vertices) EXPECT_NEAR(vertex.norm(), 1.5, 1e-12);
+  EXPECT_NEAR(min_angle_deg(vertices), 43.6908, 1e-4);  // the published answer of Tammes' problem for 24
+  const auto snub_cube = sphere_vertices(kTool);
+  EXPECT_TRUE(std::equal(vertices.begin(), vertices.end(), snub_cube.begin(), snub_cube.end()));
+}
+
+// The platonic solids of triangles are known to be the answers for their numbers (Thomson's problem).
+TEST(SphereVertices, OfOtherNumbersSpreadOut) {
+  EXPECT_NEAR(min_angle_deg(sphere_vertices(kTool, 4)), 109.4712, 0.01);
+  EXPECT_NEAR(min_angle_deg(sphere_vertices(kTool, 6)), 90, 0.1);
+  EXPECT_NEAR(min_angle_deg(sphere_vertices(kTool, 12)), 63.4349, 0.5);
+  for (const int count : {5, 8, 16, 20, 23, 32, 48, 96, 200}) {
+    const auto vertices = sphere_vertices(kTool, count);
+    ASSERT_EQ(vertices.size(), static_cast<std::size_t>(count));
+    Vec3 sum = Vec3::Zero();
+    for (const Vec3& vertex : vertices) {
+      EXPECT_NEAR(vertex.norm(), 1.5, 1e-12);
+      sum += vertex;
+    }
+    EXPECT_LT(sum.norm() / count, 0.005) << count;
+    // Of the angle that nobody can exceed (Fejes Toth).
+    const double area = std::numbers::pi / 6 * count / (count - 2);
+    const double most_deg = std::acos(0.5 * (1 / std::pow(std::sin(area), 2) - 2)) * 180 / std::numbers::pi;
+    EXPECT_GT(min_angle_deg(vertices), 0.85 * most_deg) << count;
+  }
+  EXPECT_THROW(sphere_vertices(kTool, 0), std::invalid_argument);
 }
 
 // Balanced: no direction is favoured to first or second order.
@@ -63,6 +92,15 @@ TEST(SliceVertices, LieOnTheFreeShaft) {
     }
     EXPECT_LT((sum / kSliceVertices - slice.centre_T).norm(), 1e-12);
   }
+}
+
+TEST(SliceVertices, AreAsManyAsAsked) {
+  const ShaftSlice slice = slice_vertices(kTool, 20, 5).front();
+  ASSERT_EQ(slice.vertices_T.size(), 5u);
+  const double side_mm = (slice.vertices_T[1] - slice.vertices_T[0]).norm();
+  EXPECT_NEAR(side_mm, 2 * std::sin(std::numbers::pi / 5), 1e-12);
+  EXPECT_NEAR((slice.vertices_T[0] - slice.vertices_T[4]).norm(), side_mm, 1e-12);
+  EXPECT_THROW(slice_vertices(kTool, 20, 0), std::invalid_argument);
 }
 
 TEST(SliceVertices, EachStandsForAnEqualLength) {

@@ -28,4 +28,9 @@ std::optional<Vec3> point_of_action(const MillingTool& tool, const Pose& X_WT, c
   return Vec3(X_WT.position_mm - tool.burr_radius_mm * along);
 }
 
+std::optional<Vec3> red_point_W(const ViewScene& scene) {
+  if (scene.intersection_W || !scene.X_WT) return scene.intersection_W;
+  return point_of_action(scene.tool, *scene.X_WT, scene.wrench);
+}
+
 }  // namespace osteomill

@@ -29,8 +29,10 @@ struct ViewScene {
   /// given.
   std::optional<Pose> X_WT;
   std::optional<Pose> X_WD;
-  /// As it acts on the hand, drawn as arrows from the simulated burr, with the contact's point of action.
+  /// As it acts on the hand, drawn as arrows from the simulated burr.
   Wrench wrench;
+  /// HapticStep's, where the algorithm has one.
+  std::optional<Vec3> intersection_W;
   std::array<std::optional<ClipPlane>, kMaxClipPlanes> cuts;
   /// Bone that has a label is shown in the label's colour.
   bool show_labels = true;
@@ -50,5 +52,9 @@ inline constexpr double kArrow_mm_per_Nmm = 0.4;
 /// line along the force that is nearest to the wrench's torque, where it enters the tool. Nothing for hardly
 /// any force, and the burr's surface against the force where the line misses the tool.
 std::optional<Vec3> point_of_action(const MillingTool& tool, const Pose& X_WT, const Wrench& wrench);
+
+/// Where the red point is drawn: at the algorithm's intersection point, as in figure 4 of the paper; where it
+/// has none, at the wrench's point of action on the simulated tool, if there is one.
+std::optional<Vec3> red_point_W(const ViewScene& scene);
 
 }  // namespace osteomill

@@ -14,7 +14,7 @@ constexpr Colour kBurr{0.80f, 0.72f, 0.50f, 1};
 constexpr Colour kShaft{0.66f, 0.69f, 0.73f, 1};
 constexpr Colour kGhost{0.45f, 0.75f, 1.0f, 0.30f};
 constexpr Colour kGhostInBone{0.45f, 0.75f, 1.0f, 0.16f};
-constexpr Colour kContact{0.92f, 0.10f, 0.08f, 1};
+constexpr Colour kRedPoint{0.92f, 0.10f, 0.08f, 1};
 constexpr Colour kForce{0.15f, 0.80f, 0.25f, 1};
 constexpr Colour kTorque{0.98f, 0.72f, 0.10f, 1};
 constexpr double kArrowRadius_mm = 0.22;
@@ -65,8 +65,8 @@ struct SceneRenderer::Impl {
   // Over everything, since a contact lies where tool and bone hide it.
   void draw_wrench(const ViewScene& scene) const {
     glClear(GL_DEPTH_BUFFER_BIT);
-    if (const auto contact = point_of_action(scene.tool, *scene.X_WT, scene.wrench)) {
-      shapes.sphere(*contact, 0.22 * scene.tool.burr_radius_mm, kContact);
+    if (const auto point_W = red_point_W(scene)) {
+      shapes.sphere(*point_W, 0.22 * scene.tool.burr_radius_mm, kRedPoint);
     }
     const Vec3 burr_W = scene.X_WT->position_mm;
     shapes.arrow(burr_W, kArrow_mm_per_N * scene.wrench.force_N, kArrowRadius_mm, kForce);

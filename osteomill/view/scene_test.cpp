@@ -42,6 +42,16 @@ TEST(PointOfAction, AForceThatMissesTheToolIsPutOnTheBurr) {
   EXPECT_NEAR((*found - kX_WT.position_mm).norm(), kTool.burr_radius_mm, 1e-9);
 }
 
+TEST(RedPoint, IsTheIntersectionPointWhereThereIsOne) {
+  ViewScene scene;
+  EXPECT_FALSE(red_point_W(scene));
+  scene.X_WT = kX_WT;
+  scene.wrench = {{0, 0, 2}, {5, 0, 0}};
+  EXPECT_EQ(red_point_W(scene), point_of_action(scene.tool, kX_WT, scene.wrench));
+  scene.intersection_W = Vec3(4, -1, 7);
+  EXPECT_EQ(red_point_W(scene), scene.intersection_W);
+}
+
 TEST(Annotations, TheScaleBarMeasuresTheFocus) {
   const PixelSize size{1000, 700};
   const Camera camera = camera_on({Vec3(1, 2, 3), 20}, Vec3::UnitY(), Vec3::UnitZ());

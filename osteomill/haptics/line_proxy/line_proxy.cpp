@@ -82,6 +82,7 @@ HapticStep LineProxy::step(const Pose& X_WD, double dt_s) {
                                                              {X_WF.position_mm, X_WD.orientation}))
                               : 0);
   forget_what_is_not_finite();
+  result.intersection_W = memory_.intersection_W;
   Pose touching = touching_tool(X_WD, X_WF.position_mm);
   if (settings_.show_outside) keep_outside(touching, dt_s);
   result.X_WT = settings_.show_outside ? gliding_tool(X_WD, touching, dt_s) : touching;

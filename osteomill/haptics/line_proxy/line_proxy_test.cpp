@@ -198,6 +198,21 @@ TEST_P(LineProxyTest, TheShaftMeetsAnEdgeAtTheEdge) {
   EXPECT_NEAR(algorithm.intersection_W()->z(), 4.0, 0.35);
 }
 
+// The far half of the shaft, lowered flat on the bone below z = 0.
+TEST_P(LineProxyTest, AStepTellsTheIntersectionPoint) {
+  const Volume bone =
+      shape_volume(centred_cube(64, 0.25), [](const Vec3& p) { return std::max(p.z(), p.x()); });
+  LineProxy algorithm = prepared(GetParam(), bone);
+  const Pose above = standing({10, 0.1, 1}, {-1, 0, 0});
+  EXPECT_FALSE(algorithm.step(above, kTick_s).intersection_W);
+  const HapticStep step = push(algorithm, above, {10, 0.1, -0.3}, 300);
+  ASSERT_TRUE(step.intersection_W);
+  EXPECT_EQ(*step.intersection_W, *algorithm.intersection_W());
+  EXPECT_LT(step.intersection_W->x(), 0.2);
+  EXPECT_NEAR(step.intersection_W->y(), 0.1, 0.05);
+  EXPECT_NEAR(step.intersection_W->z(), 0, 0.05);
+}
+
 TEST_P(LineProxyTest, TheShaftOnAnEdgeTurnsTheHandAway) {
   const Volume bone = block_with_edge();
   LineProxy algorithm = prepared(GetParam(), bone);

@@ -43,9 +43,8 @@ void SurfacePoints::prepare(const Scene& scene) {
   require_valid(scene.tool);
   volume_ = scene.volume;
   tool_ = scene.tool;
-  const auto on_sphere = sphere_vertices(tool_);
   sphere_ = Fan{};
-  sphere_.arms_T.assign(on_sphere.begin(), on_sphere.end());
+  sphere_.arms_T = sphere_vertices(tool_, settings_.sphere_vertices);
   sphere_.longest_arm_mm = tool_.burr_radius_mm;
   prepare_shaft();
   const double bite_mm = std::min(kBite_voxels * volume_->geometry().spacing_mm.minCoeff(), kMaxBite_mm);
@@ -60,7 +59,7 @@ int SurfacePoints::rings() const {
 void SurfacePoints::prepare_shaft() {
   rings_.clear();
   end_.reset();
-  for (const ShaftSlice& ring : slice_vertices(tool_, rings())) {
+  for (const ShaftSlice& ring : slice_vertices(tool_, rings(), settings_.circle_vertices)) {
     Fan fan;
     fan.is_ring = true;
     fan.longest_arm_mm = tool_.shaft_radius_mm;

@@ -6,6 +6,7 @@
 #include "osteomill/haptics/setting_fields.h"
 #include "osteomill/haptics/surface_points/surface_points.h"
 #include "osteomill/haptics/surface_points/surface_points_settings.h"
+#include "osteomill/tool/sample_points.h"
 
 namespace osteomill::surface_points {
 
@@ -27,9 +28,16 @@ const std::vector<Field>& fields() {
            "k of (14): the spring of a sphere, or of a slice, all of whose vertices collide", "stiffness"},
           [](Settings & s) -> auto& { return s.stiffness_N_per_mm; }),
       setting_field<Settings>(
-          {"slices", "", SettingRange::count(1, 1000), 20, 20,
-           "Circles along the free shaft, eight vertices each", "slices"},
+          {"slices", "", SettingRange::count(1, 1000), 20, 20, "Circles along the free shaft", "slices"},
           [](Settings & s) -> auto& { return s.slices; }),
+      setting_field<Settings>(
+          {"sphere-vertices", "", SettingRange::count(4, 500), kSphereVertices, kSphereVertices,
+           "Vertices on the burr's sphere: 24 as a snub cube, another number as equal charges spread"},
+          [](Settings & s) -> auto& { return s.sphere_vertices; }),
+      setting_field<Settings>(
+          {"circle-vertices", "", SettingRange::count(3, 100), kSliceVertices, kSliceVertices,
+           "Vertices on each circle of the shaft"},
+          [](Settings & s) -> auto& { return s.circle_vertices; }),
       setting_field<Settings>(
           {"spring-reach", "", SettingRange::count(0, 2), 1, 2,
            "a_i of (15): 0 as printed, the fraction measured from the centre; 1 to where linear densities "

@@ -14,6 +14,8 @@ enum class Reach : unsigned char { as_printed, to_surface, to_first_bone };
 struct Settings {
   double stiffness_N_per_mm = 0;
   int slices = 0;
+  int sphere_vertices = 0;
+  int circle_vertices = 0;
   Reach reach = Reach::to_surface;
   bool hold_tool = false;
   bool shaft_force = false;

@@ -71,24 +71,28 @@ TEST(SurfacePointsPaper, Equation15ReachesFromTheVertexToTheSurface) {
 
 TEST(SurfacePointsPaper, Equations14And16SumTheSphersVertices) {
   const Volume volume = linear_plane();
-  auto algorithm = prepared(volume, paper());
-  const double height = 0.7;
-  const Pose X{{0.3, -0.4, height}, quaternion_from_rotation_vector({0.2, 0.3, 0.5})};
-  Vec3 expected = Vec3::Zero();
-  int colliding = 0;
-  for (const Vec3& vertex : sphere_vertices(kTool)) {
-    const Vec3 arm = X.orientation * vertex;
-    const double depth = -(height + arm.z());
-    if (depth <= 0) continue;
-    ++colliding;
-    expected += 20.0 / 24 * (depth / (depth + height)) * -arm;
+  for (const int vertices : {24, 17, 96}) {
+    Settings settings = paper();
+    settings.sphere_vertices = vertices;
+    auto algorithm = prepared(volume, settings);
+    const double height = 0.7;
+    const Pose X{{0.3, -0.4, height}, quaternion_from_rotation_vector({0.2, 0.3, 0.5})};
+    Vec3 expected = Vec3::Zero();
+    int colliding = 0;
+    for (const Vec3& vertex : sphere_vertices(kTool, vertices)) {
+      const Vec3 arm = X.orientation * vertex;
+      const double depth = -(height + arm.z());
+      if (depth <= 0) continue;
+      ++colliding;
+      expected += 20.0 / vertices * (depth / (depth + height)) * -arm;
+    }
+    const HapticStep step = algorithm.step(X, kDt);
+    EXPECT_LT((step.wrench.force_N - expected).norm(), 1e-4);
+    EXPECT_LT((step.burr_force_W_N + expected).norm(), 1e-4);
+    EXPECT_EQ(step.contacts, colliding);
+    EXPECT_GT(colliding, 2);
+    EXPECT_EQ(step.wrench.torque_Nmm, Vec3::Zero());
   }
-  const HapticStep step = algorithm.step(X, kDt);
-  EXPECT_LT((step.wrench.force_N - expected).norm(), 1e-4);
-  EXPECT_LT((step.burr_force_W_N + expected).norm(), 1e-4);
-  EXPECT_EQ(step.contacts, colliding);
-  EXPECT_GT(colliding, 3);
-  EXPECT_EQ(step.wrench.torque_Nmm, Vec3::Zero());
 }
 
 // The tool lies flat above the plane, x of W along the shaft.
@@ -98,22 +102,40 @@ Pose lying(double height) {
 
 TEST(SurfacePointsPaper, Equations18To21MakeTheSlicesTorque) {
   const Volume volume = linear_plane();
-  auto algorithm = prepared(volume, paper());
-  const Pose X = lying(0.8);
-  Vec3 expected = Vec3::Zero();
-  for (const ShaftSlice& slice : slice_vertices(kTool, 20)) {
-    Vec3 force = Vec3::Zero();
-    if ((X * slice.centre_T).x() > 5) continue;  // beyond the bone
-    for (const Vec3& vertex : slice.vertices_T) {
-      const Vec3 arm = X.orientation * (vertex - slice.centre_T);
-      const double depth = -(0.8 + arm.z());
-      if (depth > 0) force += 20.0 / 8 * (depth / (depth + 0.8)) * -arm;
+  for (const int vertices : {8, 13}) {
+    Settings settings = paper();
+    settings.circle_vertices = vertices;
+    auto algorithm = prepared(volume, settings);
+    const Pose X = lying(0.8);
+    Vec3 expected = Vec3::Zero();
+    for (const ShaftSlice& slice : slice_vertices(kTool, 20, vertices)) {
+      Vec3 force = Vec3::Zero();
+      if ((X * slice.centre_T).x() > 5) continue;  // beyond the bone
+      for (const Vec3& vertex : slice.vertices_T) {
+        const Vec3 arm = X.orientation * (vertex - slice.centre_T);
+        const double depth = -(0.8 + arm.z());
+        if (depth > 0) force += 20.0 / vertices * (depth / (depth + 0.8)) * -arm;
+      }
+      expected += 1.0 / 20 * (X.orientation * slice.centre_T).cross(force);
     }
-    expected += 1.0 / 20 * (X.orientation * slice.centre_T).cross(force);
+    const HapticStep step = algorithm.step(X, kDt);
+    EXPECT_GT(expected.norm(), 0.5);
+    EXPECT_LT((step.wrench.torque_Nmm - expected).norm(), 1e-3 * expected.norm());
   }
-  const HapticStep step = algorithm.step(X, kDt);
-  EXPECT_GT(expected.norm(), 0.5);
-  EXPECT_LT((step.wrench.torque_Nmm - expected).norm(), 1e-3 * expected.norm());
+}
+
+TEST(SurfacePoints, HasTheVerticesThatItIsSetTo) {
+  const Volume volume = linear_plane();
+  for (const Mode mode : {Mode::paper, Mode::steady}) {
+    Settings settings = Settings::defaults(mode);
+    const int before = prepared(volume, settings).sample_point_count();
+    settings.sphere_vertices = 30;
+    EXPECT_EQ(prepared(volume, settings).sample_point_count(), before + 6);
+    settings.circle_vertices = 3;
+    EXPECT_LT(prepared(volume, settings).sample_point_count(), before / 2);
+    settings.sphere_vertices = 3;
+    EXPECT_THROW(SurfacePoints{settings}, std::invalid_argument);
+  }
 }
 
 TEST(SurfacePointsPaper, TheShaftAloneSendsATorqueAndNoForce) {

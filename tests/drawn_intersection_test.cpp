@@ -1,0 +1,63 @@
+// The whole way of line-proxy's intersection point, from the bone by the session to the picture.
+#include <memory>
+#include <utility>
+
+#include "tests/shapes.h"
+#include <gtest/gtest.h>
+
+#include "osteomill/device/posed_device.h"
+#include "osteomill/haptics/algorithms.h"
+#include "osteomill/session/milling_session.h"
+#include "osteomill/view/offscreen_context.h"
+#include "osteomill/view/scene_renderer.h"
+#include "osteomill/volume/densities.h"
+
+namespace osteomill {
+namespace {
+
+// Bone below z = 0, whose edge lies along y; the shaft comes down on it, with the tip beyond.
+ViewScene shaft_on_a_plane(Mode mode) {
+  Volume bone = testing_support::shape_volume(testing_support::centred_cube(64, 0.25),
+                                              [](const Vec3& p) { return std::max(p.z(), p.x()); });
+  const BoneDensities densities = estimate_densities(bone);
+  MillingSession session(std::move(bone), MillingTool{}, make_algorithm("line-proxy", {.mode = mode}),
+                         densities, MillingSettings{}, WrenchLimits{});
+  PosedDevice device;
+  ViewScene scene;
+  for (int n = 0; n < 600; ++n) {
+    device.put({{10, 0.1, std::max(-0.3, 1 - 0.005 * n)}, smallest_rotation(Vec3::UnitZ(), -Vec3::UnitX())});
+    scene.X_WT = session.tick(device, n * 1e-3, 1e-3, false).X_WT;
+  }
+  scene.intersection_W = session.intersection_W();
+  EXPECT_TRUE(session.idle_tick(device, 1, 1e-3).paused);
+  EXPECT_FALSE(session.intersection_W());
+  return scene;
+}
+
+TEST(DrawnIntersection, ThePictureIsRedWhereTheShaftMeetsThePlane) {
+  const OffscreenContext context;
+  constexpr PixelSize kSize{640, 480};
+  for (const Mode mode : {Mode::paper, Mode::steady}) {
+    ViewScene scene = shaft_on_a_plane(mode);
+    ASSERT_TRUE(scene.intersection_W);
+    const Vec3 point_W = *scene.intersection_W;
+    EXPECT_NEAR(point_W.z(), 0, 0.1);
+    const GridGeometry geometry = testing_support::centred_cube(8, 1);
+    SceneRenderer renderer(SurfaceBricks(geometry.dims), geometry);
+    scene.bounds = {Vec3::Zero(), 20};
+    scene.camera = camera_on(scene.bounds, {0.1, -1, 0.2}, Vec3::UnitZ());
+    const auto is_red = [&] {
+      renderer.draw(scene, kSize);
+      const Eigen::Vector2d place = pixel_of(scene.camera, kSize, point_W);
+      const Image picture = renderer.picture();
+      const unsigned char* rgb = picture.pixel(static_cast<int>(place.x()), static_cast<int>(place.y()));
+      return rgb[0] > 100 && rgb[1] < 60 && rgb[2] < 60;
+    };
+    EXPECT_TRUE(is_red());
+    scene.intersection_W.reset();
+    EXPECT_FALSE(is_red());
+  }
+}
+
+}  // namespace
+}  // namespace osteomill
