@@ -23,6 +23,10 @@ inline StudyRow row(std::uint64_t seed, std::string_view algorithm, Mode mode, s
   row.summary.metrics.contact = {1, 1, 1, 1, 1, {}};
   row.summary.metrics.force_N.mean = 2;
   row.summary.metrics.force_N.hp_rms = values.force_hp;
+  row.summary.metrics.torque_Nmm.mean = 10;
+  row.summary.metrics.turns = {0.5, 0.1};
+  row.summary.metrics.torque_follows_force = 0.7;
+  row.summary.metrics.contacts_mean = 15;
   row.summary.metrics.torque_Nmm.hp_rms = values.torque_hp;
   return row;
 }

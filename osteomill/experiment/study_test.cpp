@@ -93,8 +93,8 @@ TEST(Study, FindingsAreCountedHandByHand) {
     if (r.seed == 4 && r.summary.algorithm == "surface-points") r.summary.metrics.force_N.hp_rms = 0.01;
   }
   const auto findings = check_study_findings(Study(rows), Mode::paper);
-  ASSERT_EQ(findings.size(), 10u);
-  EXPECT_TRUE(findings[1].of_medians.paper_says.starts_with("Force while milling"));
+  ASSERT_EQ(findings.size(), 9u);
+  EXPECT_TRUE(findings[1].of_medians.paper_says.starts_with("force: 1 and 3"));
   EXPECT_EQ(findings[1].of_medians.verdict, Verdict::agrees);
   EXPECT_EQ(findings[1].agreeing, 4u);
   EXPECT_EQ(findings[1].tested, 5u);
@@ -103,6 +103,28 @@ TEST(Study, FindingsAreCountedHandByHand) {
   EXPECT_EQ(findings[0].agreeing, 5u);
   EXPECT_TRUE(check_study_findings(Study(sample_rows(1)), Mode::steady)[1].of_medians.verdict ==
               Verdict::does_not_agree);
+}
+
+// 2's hands in other grips are no rows of the study, and decide one finding.
+TEST(Study, OtherGripsAreKeptApartForTheFindingOnThem) {
+  std::vector<StudyRow> rows = sample_rows(3);
+  const std::size_t all = rows.size();
+  EXPECT_EQ(check_study_findings(Study(rows), Mode::paper)[2].of_medians.verdict, Verdict::not_recorded);
+  for (const double grip : {2.0, 0.5}) {
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+      // In the third hand a firm grip changes nothing.
+      rows.push_back(testing_support::row(seed, "surface-points", Mode::paper, kHolding,
+                                          {seed == 3 && grip == 2 ? 1.03 : 1.2 / grip, 2}));
+      rows.back().grip = grip;
+    }
+  }
+  const Study study(rows);
+  EXPECT_EQ(study.rows().size(), all);
+  const StudyFinding finding = check_study_findings(study, Mode::paper)[2];
+  EXPECT_EQ(finding.of_medians.measured, "2.4, 1.02, 0.6 N");
+  EXPECT_EQ(finding.of_medians.verdict, Verdict::agrees);
+  EXPECT_EQ(finding.agreeing, 3u) << "in the third it falls by then";
+  EXPECT_EQ(finding.tested, 3u);
 }
 
 TEST(Study, TheSectionSaysWhatSoFewHandsCanShow) {

@@ -22,11 +22,11 @@ double setting(std::string_view algorithm, const HapticSettings& settings, const
 TEST(MakeAlgorithm, DefaultsAreThePapers) {
   const HapticSettings paper{.mode = Mode::paper};
   EXPECT_EQ(setting("line-proxy", paper, "vertices"), 51);
-  EXPECT_EQ(setting("line-proxy", paper, "stiffness"), 2);
+  EXPECT_EQ(setting("line-proxy", paper, "stiffness"), 5);
   EXPECT_EQ(setting("surface-points", paper, "slices"), 20);
   EXPECT_EQ(setting("surface-points", paper, "stiffness"), 20);
-  EXPECT_EQ(setting("point-shell", paper, "scale"), 1);
-  EXPECT_EQ(setting("point-shell", paper, "translational-stiffness"), 2);
+  EXPECT_EQ(setting("point-shell", paper, "scale"), 3);
+  EXPECT_EQ(setting("point-shell", paper, "translational-stiffness"), 5);
   EXPECT_EQ(setting("point-shell", paper, "surface-shell"), 0);
   EXPECT_EQ(setting("point-shell", {.mode = Mode::steady}, "surface-shell"), 1);
 }
@@ -106,7 +106,7 @@ TEST(MakeAlgorithm, EachCountsItsSamplePoints) {
   const Volume bone = testing_support::shape_volume(testing_support::centred_cube(24, 0.25),
                                                     testing_support::ball(Vec3::Zero(), 2.0));
   const auto count = [&](std::string_view algorithm) {
-    const auto made = make_algorithm(algorithm, {.mode = Mode::paper});
+    const auto made = make_algorithm(algorithm, {Mode::paper, {{"", "shell-scale", 1}}});
     made->prepare({&bone, MillingTool{}});
     return made->sample_point_count();
   };

@@ -124,11 +124,12 @@ bool MillingScript::feels_what_it_holds(const Pose& X_WD) const {
 void MillingScript::begin(ScriptStage stage, double now_s) {
   intent_.stage = stage;
   stage_began_s_ = now_s - kRounding_s;
+  free_s_ = 0;
 }
 
 void MillingScript::advance_stage(double now_s, double dt_s, const Pose& X_WD, const Pose& X_WT) {
   const bool is_milling = intent_.stage < ScriptStage::settle;
-  shortfall_.lost |= settings_.until_leant && intent_.stage == ScriptStage::lean && free_s_ >= kLost_s;
+  shortfall_.lost |= intent_.stage == ScriptStage::lean && free_s_ >= kLost_s;
   if (is_milling && is_milled(now_s)) {
     shortfall_.shallow |= intent_.stage < ScriptStage::lean;
     shortfall_.hardly_leant = settings_.until_leant && !shortfall_.lost && !has_leant();
@@ -187,10 +188,7 @@ Pose MillingScript::target() const {
           (quaternion_from_rotation_vector(lean_rad_ * lean_axis_W_) * upright_).normalized()};
 }
 
-const ScriptIntent& MillingScript::step(double time_s, double dt_s, const Pose& X_WD, const Pose& X_WT,
-                                        const Wrench& felt) {
-  feel(dt_s, X_WD, felt);
-  advance_stage(time_s + kRounding_s, dt_s, X_WD, X_WT);
+void MillingScript::move(double dt_s, const Pose& X_WD) {
   const double feed_mm_s = settings_.feed_mm_s;
   switch (intent_.stage) {
     case ScriptStage::approach:
@@ -205,7 +203,6 @@ const ScriptIntent& MillingScript::step(double time_s, double dt_s, const Pose& 
       lean(settings_.lean_torque_share, dt_s, X_WD);
       break;
     case ScriptStage::settle:
-      if (shortfall_.lost) break;  // the hand stays where it is
       push(settings_.hold_push_share, -feed_mm_s, feed_mm_s, dt_s, X_WD);
       push_sideways(settings_.hold_side_share, dt_s, X_WD);
       lean(settings_.hold_torque_share, dt_s, X_WD);
@@ -214,6 +211,14 @@ const ScriptIntent& MillingScript::step(double time_s, double dt_s, const Pose& 
     case ScriptStage::done:
       break;
   }
+}
+
+const ScriptIntent& MillingScript::step(double time_s, double dt_s, const Pose& X_WD, const Pose& X_WT,
+                                        const Wrench& felt) {
+  feel(dt_s, X_WD, felt);
+  advance_stage(time_s + kRounding_s, dt_s, X_WD, X_WT);
+  // A hand whose tool is lost stays where it is.
+  if (!shortfall_.lost) move(dt_s, X_WD);
   intent_.milling = intent_.stage < ScriptStage::settle;
   intent_.X_W_target = target();
   return intent_;

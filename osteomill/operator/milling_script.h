@@ -109,6 +109,7 @@ class MillingScript {
   double shown_depth_mm(const Pose& X_WT) const;
   double felt_push_share(const Pose& X_WD) const;
   double leant_by_rad(const Pose& X_WD) const;
+  void move(double dt_s, const Pose& X_WD);
   void push(double share, double slowest_mm_s, double fastest_mm_s, double dt_s, const Pose& X_WD);
   void push_sideways(double share, double dt_s, const Pose& X_WD);
   void lean(double share, double dt_s, const Pose& X_WD);
@@ -124,8 +125,8 @@ class MillingScript {
   double along_mm_ = 0;
   double sideways_mm_ = 0;
   double lean_rad_ = 0;
-  // How far the device had leant when the shaft met the wall that it is at, and for how long it, and the
-  // whole tool, have been free.
+  // How far the device had leant when the shaft met the wall that it is at; for how long it has been free,
+  // and in the present stage the whole tool.
   std::optional<double> wall_rad_;
   double shaft_free_s_ = 0;
   double free_s_ = 0;

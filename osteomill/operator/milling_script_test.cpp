@@ -45,7 +45,7 @@ struct Sample {
 
 OperatorSettings without_tremor() {
   OperatorSettings settings;
-  settings.hand.tremor_mm = 0;
+  settings.hand.tremor_mm = settings.hand.tremor_rad = 0;
   return settings;
 }
 
@@ -120,7 +120,11 @@ TEST(MillingScript, FeedsWithNineTenthsOfThePushUntilTheHoleIsThreeMillimetresDe
   }
 }
 
-TEST(MillingScript, LeansAtItsRateUntilTheTorqueIsThereAndKeepsItWithTheSpindleOn) {
+// The wall gives way by 1 / 1000 rad a N mm, the hand by 1 / 500: of the hand's twist, from where the shaft
+// met the wall, two thirds are its own.
+constexpr double kLeansWith_Nmm = 0.8 * 15 * 1000 / (1000 + 500);
+
+TEST(MillingScript, LeansAtItsRateUntilTheShaftMeetsTheWallAndPressesOnItWithTheSpindleOn) {
   const MillingEntry entry = on_a_ball();
   const auto samples = run(without_tremor(), entry, yielding_hole(entry));
   const double from_s = samples[first_of(samples, ScriptStage::lean)].time_s;
@@ -130,7 +134,7 @@ TEST(MillingScript, LeansAtItsRateUntilTheTorqueIsThereAndKeepsItWithTheSpindleO
   EXPECT_NEAR(mean_between(samples, from_s + 1.0, from_s + 1.001, lean), 0.14, 0.01);
   const auto torque = [](const Sample& s) { return s.hand.torque_Nmm.norm(); };
   const auto along = [&](const Sample& s) { return s.hand.force_N.dot(entry.direction_W); };
-  EXPECT_NEAR(mean_between(samples, 16, 20, torque), 0.8 * 15, 0.3);
+  EXPECT_NEAR(mean_between(samples, 16, 20, torque), kLeansWith_Nmm, 0.3);
   EXPECT_NEAR(mean_between(samples, 16, 20, along), 0.6 * 1.5, 0.05);
   EXPECT_TRUE(samples[19999].milling);
   EXPECT_EQ(samples[19999].stage, ScriptStage::lean);
@@ -153,8 +157,64 @@ TEST(MillingScript, HoldsStillWithTheSpindleOffAndTheShaftAgainstTheRim) {
   }
   const auto torque = [](const Sample& s) { return s.hand.torque_Nmm.norm(); };
   const auto along = [&](const Sample& s) { return s.hand.force_N.dot(entry.direction_W); };
-  EXPECT_NEAR(mean_between(samples, 22, 40, torque), 0.8 * 15, 0.3);
+  EXPECT_NEAR(mean_between(samples, 22, 40, torque), kLeansWith_Nmm, 0.3);
   EXPECT_NEAR(mean_between(samples, 22, 40, along), 0.5 * 1.5, 0.05);
+}
+
+// A wall that gives way is not leant into until it has the torque: not further than a firm one.
+TEST(MillingScript, AWallThatGivesWayIsNotSunkInto) {
+  OperatorSettings settings = without_tremor();
+  settings.script.milling_s = 8;
+  settings.script.holding_s = 4;
+  const auto leant_rad = [&](double wall_Nmm_per_rad) {
+    constexpr double kWall_rad = 0.1;
+    SimulatedOperator person(settings, kTool, {});
+    double most_rad = 0;
+    while (!person.finished()) {
+      const Pose device = person.read_pose();
+      const Vec3 turn =
+          rotation_vector(device.orientation * pose_above({}, kTool, 0).orientation.conjugate());
+      const double beyond_rad = std::max(0.0, turn.norm() - kWall_rad);
+      // Bone below, in which the hole is deep enough from the start.
+      person.write_wrench(
+          {{0, 0, std::max(0.0, 2 * (kTool.burr_radius_mm - 4 - device.position_mm.z()))},
+           beyond_rad > 0 ? Vec3(-wall_Nmm_per_rad * beyond_rad * turn.normalized()) : Vec3(Vec3::Zero())});
+      person.see(device);
+      most_rad = std::max(most_rad, turn.norm() - kWall_rad);
+      person.advance(kTick_s);
+    }
+    return most_rad;
+  };
+  const double twist_rad = 0.8 * 15 / 500;
+  EXPECT_LT(leant_rad(5000), 0.3 * twist_rad);
+  EXPECT_LT(leant_rad(50), 1.2 * twist_rad);
+}
+
+// The floor goes from under the tool while it leans, as where it leaves the tooth at its side.
+TEST(MillingScript, AToolThatLeavesTheBoneWhileItLeansIsLostAndTheHandStays) {
+  OperatorSettings settings = without_tremor();
+  settings.script.milling_s = 8;
+  settings.script.holding_s = 4;
+  settings.script.until_leant = true;
+  SimulatedOperator person(settings, kTool, {});
+  double lean_s = 0;
+  Vec3 last_touched_W = Vec3::Zero();
+  while (!person.finished()) {
+    const Pose device = person.read_pose();
+    if (person.stage() < ScriptStage::lean) lean_s = person.time_s();
+    const bool gone = person.time_s() > lean_s + 0.5;
+    const double floor_N = gone ? 0 : 2 * (kTool.burr_radius_mm - 4 - device.position_mm.z());
+    person.write_wrench({{0, 0, std::max(0.0, floor_N)}, Vec3::Zero()});
+    if (floor_N > 0) last_touched_W = device.position_mm;
+    person.see(device);
+    person.advance(kTick_s);
+  }
+  EXPECT_TRUE(person.shortfall().lost);
+  EXPECT_FALSE(person.shortfall().hardly_leant || person.shortfall().unsettled)
+      << "that it was lost says all";
+  EXPECT_NEAR(person.time_s(), lean_s + 0.5 + 1 + 4, 0.1) << "it is not milled on for";
+  EXPECT_LT((person.read_pose().position_mm - last_touched_W).norm(), 6);
+  EXPECT_GT(person.read_pose().position_mm.z(), last_touched_W.z() - 3);
 }
 
 // The first algorithm meets the bone with the device's centre, 1.5 mm deeper than the burr that is shown, and
@@ -238,8 +298,11 @@ TEST(MillingScript, TurningEverythingTurnsTheIntent) {
     const Pose device{target.position_mm - Vec3(0.3, 0.1, 0.2),
                       quaternion_from_rotation_vector({0.002, 0.003, 0}) * target.orientation};
     const Pose device_turned = turn * device;
-    one.step(n * kTick_s, kTick_s, device, device);
-    two.step(n * kTick_s, kTick_s, device_turned, device_turned);
+    // From a while on the shaft is at a wall.
+    const Wrench felt{{0, 0, 1}, n < 13000 ? Vec3::Zero() : Vec3(2, -1, 0.5)};
+    const Wrench felt_turned{turn.orientation * felt.force_N, turn.orientation * felt.torque_Nmm};
+    one.step(n * kTick_s, kTick_s, device, device, felt);
+    two.step(n * kTick_s, kTick_s, device_turned, device_turned, felt_turned);
     const Pose expected = turn * one.intent().X_W_target;
     ASSERT_LT((expected.position_mm - two.intent().X_W_target.position_mm).norm(), 1e-8);
     ASSERT_LT((shaft_direction(expected) - shaft_direction(two.intent().X_W_target)).norm(), 1e-8);

@@ -209,6 +209,10 @@ TEST(SummaryCsv, HasItsColumnsInOrder) {
   m.contact.any = 0.75;
   m.contact.burr = 0.5;
   m.contact.shaft = 0.25;
+  m.contact.lost_after_s = 21;
+  m.turns = {17, 18};
+  m.torque_follows_force = 0.19;
+  m.contacts_mean = 20;
   write_summary_csv(path,
                     std::vector<SummaryRow>{{algorithm_named("point-shell").id, Mode::paper, "holding", m}});
   std::ifstream in(path);
@@ -220,8 +224,11 @@ TEST(SummaryCsv, HasItsColumnsInOrder) {
       "algorithm,mode,phase,steps,step_us_median,step_us_p99,step_us_max,rate_hz,force_mean_N,force_max_N,"
       "force_hp_rms_N,force_step_max_N,torque_mean_Nmm,torque_max_Nmm,torque_hp_rms_Nmm,torque_step_max_Nmm,"
       "shaft_spread_deg,shaft_excursion_deg,removed_mm3,contact_share,burr_contact_share,shaft_contact_share,"
-      "cpu_us_median,cpu_us_p99,cpu_us_max");
-  EXPECT_EQ(row, "point-shell,paper,holding,1,2,3,4,5,6,7,8,9,10,11,12,13,14,15.5,16,0.75,0.5,0.25,,,");
+      "cpu_us_median,cpu_us_p99,cpu_us_max,"
+      "turn_50ms_max_deg,turn_at_torque_step_deg,torque_follows_force,contacts_mean,lost_after_s");
+  EXPECT_EQ(
+      row,
+      "point-shell,paper,holding,1,2,3,4,5,6,7,8,9,10,11,12,13,14,15.5,16,0.75,0.5,0.25,,,,17,18,0.19,20,21");
   std::filesystem::remove(path);
 }
 

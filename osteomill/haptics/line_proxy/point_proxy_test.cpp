@@ -92,5 +92,18 @@ TEST(PointProxy, ASlideOverAnEdgeComesFree) {
   EXPECT_EQ(proxy, Vec3(0.5, 0, -0.5));
 }
 
+// On a plane, with the probe a depth below and pulled aside: nothing moves within the cone, and beyond it the
+// proxy stays behind by the cone's width at that depth.
+TEST_F(PlaneTest, StaysWithinTheConeOfFriction) {
+  constexpr double kFriction = 0.2, kDepth = 1.5;
+  const Vec3 rest = move_point_proxy(bone_, {0, 0, 2}, {0, 0, -kDepth}, kFree, kFriction);
+  EXPECT_LT(rest.norm(), 1e-4);
+  const Vec3 held = move_point_proxy(bone_, rest, {0.9 * kFriction * kDepth, 0, -kDepth}, kFree, kFriction);
+  EXPECT_LT((held - rest).norm(), 1e-4);
+  const Vec3 slid = move_point_proxy(bone_, rest, {1, 0, -kDepth}, kFree, kFriction);
+  EXPECT_NEAR(slid.x(), 1 - kFriction * kDepth, 1e-3);
+  EXPECT_NEAR(slid.z(), 0, 1e-4);
+}
+
 }  // namespace
 }  // namespace osteomill::line_proxy

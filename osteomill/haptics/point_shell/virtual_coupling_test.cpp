@@ -46,6 +46,22 @@ TEST(VirtualCoupling, OnePointAtALeverSharesBetweenForceAndTorque) {
   EXPECT_NEAR(wrench.torque_Nmm.y(), kLever * force, 1e-9);
 }
 
+// A spring of 2 N/mm and a damper of 3 ticks of it: at a stretch of 0.5 mm that grew by 0.1 in the tick they
+// give 2 (0.5 + 3 * 0.1) N; and what the move balances counts the damper for itself too.
+TEST(VirtualCoupling, TheDamperCountsTheStretchAsIfItWentOn) {
+  constexpr VirtualCoupling kDamped{2.0, 1000.0, 3};
+  const ToolMove before{{0, 0, 0.4}, {0.01, 0, 0}};
+  const Pose X_WT{{0, 0, 0.5}, quaternion_from_rotation_vector({0.02, 0, 0})};
+  const Wrench wrench = wrench_on_hand(kDamped, X_WT, {}, before);
+  EXPECT_NEAR(wrench.force_N.z(), 2 * 0.8, 1e-12);
+  EXPECT_NEAR(wrench.torque_Nmm.x(), 1000 * 0.05, 1e-9);
+  ContactSum contacts;
+  contacts.add(4 * 0.3, 4, {0, 0, -1}, {0, 0, 0});
+  const Pose after = moved(X_WT, balancing_move(kDamped, X_WT, {}, before, contacts));
+  const double pushed_N = 4 * (0.3 - (after.position_mm.z() - 0.5));
+  EXPECT_NEAR(wrench_on_hand(kDamped, after, {}, before).force_N.z(), pushed_N, 1e-9);
+}
+
 TEST(VirtualCoupling, AMoveIsCutShortByOneFactor) {
   const ToolMove move{{3, 0, 4}, {0, 0.1, 0}};
   const ToolMove by_length = limited(move, 0.5, 0.05);
