@@ -9,7 +9,7 @@
 
 #include <igtlImageMessage.h>
 
-#include "osteomill/device/openigtlink/tcp_stream.h"
+#include "osteomill/device/socket.h"
 #include "osteomill/files/input_error.h"
 
 namespace osteomill {
@@ -72,10 +72,10 @@ VoxelBox milled_box(const BoneFollower& bone, const VoxelBox& all) {
   return box.intersected(all);
 }
 
-void send(TcpStream& stream, const igtl::ImageMessage::Pointer& message) {
-  stream.send({static_cast<const unsigned char*>(message->GetPackPointer()),
-               static_cast<std::size_t>(message->GetPackSize())},
-              kSendWithin);
+void send(Socket& stream, const igtl::ImageMessage::Pointer& message) {
+  stream.send_all({static_cast<const unsigned char*>(message->GetPackPointer()),
+                   static_cast<std::size_t>(message->GetPackSize())},
+                  kSendWithin);
 }
 
 }  // namespace
@@ -86,7 +86,7 @@ BoneSender::BoneSender(const BoneFollower& bone, const std::string& address) : b
   bone.read([&](const Volume& now) { voxels = now.geometry().voxel_count(); });
   if (voxels > std::numeric_limits<int>::max() / sizeof(float))
     throw InputError(name, "the scan is larger than an OpenIGTLink image may be, 2 GiB");
-  auto stream = std::make_unique<TcpStream>(name, host_and_port("--send-bone", address));
+  auto stream = std::make_unique<Socket>(name, host_and_port("--send-bone", address), Socket::Kind::stream);
   thread_ = std::thread([this, stream = std::move(stream)] { run(*stream); });
 }
 
@@ -99,19 +99,19 @@ BoneSender::~BoneSender() {
   thread_.join();
 }
 
-void BoneSender::run(TcpStream& stream) {
+void BoneSender::run(Socket& stream) {
   VoxelBox all;
   bone_.read([&](const Volume& now) { all = now.geometry().all_voxels(); });
   std::uint64_t sent_version = bone_.version();
   send(stream, message_of(bone_, all));
+  std::vector<unsigned char> unread(1 << 16);
   for (bool is_last = false; stream.is_open() && !is_last;) {
     {
       std::unique_lock lock(mutex_);
       is_last = end_.wait_for(lock, kBetweenMessages, [&] { return ends_; });
     }
     // What the receiver says is not wanted, but would stop it from saying more.
-    std::vector<unsigned char> unread;
-    stream.receive(unread, 1 << 16, 0ms);
+    stream.receive(unread);
     const std::uint64_t version = bone_.version();
     if (version == std::exchange(sent_version, version)) continue;
     if (const VoxelBox box = milled_box(bone_, all); !box.empty()) send(stream, message_of(bone_, box));

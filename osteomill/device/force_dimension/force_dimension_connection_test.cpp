@@ -6,10 +6,10 @@
 #include <numbers>
 #include <string>
 
+#include "tests/support/dhd_stand_in.h"
 #include <dlfcn.h>
 #include <gtest/gtest.h>
 
-#include "osteomill/device/force_dimension/dhd_stand_in.h"
 #include "osteomill/files/input_error.h"
 
 namespace osteomill {

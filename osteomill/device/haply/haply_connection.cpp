@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "osteomill/device/haply/web_socket.h"
-#include "osteomill/device/host_and_port.h"
+#include "osteomill/device/socket.h"
 #include "osteomill/files/input_error.h"
 
 namespace osteomill {

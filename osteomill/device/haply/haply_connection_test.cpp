@@ -5,9 +5,9 @@
 #include <string>
 #include <thread>
 
+#include "tests/support/haply_stand_in.h"
 #include <gtest/gtest.h>
 
-#include "osteomill/device/haply/haply_stand_in.h"
 #include "osteomill/files/input_error.h"
 
 namespace osteomill {

@@ -6,10 +6,10 @@
 #include <string>
 #include <thread>
 
+#include "tests/support/hd_stand_in.h"
 #include <dlfcn.h>
 #include <gtest/gtest.h>
 
-#include "osteomill/device/touch/hd_stand_in.h"
 #include "osteomill/files/input_error.h"
 
 namespace osteomill {

@@ -1,12 +1,12 @@
 // Stands in for libdhd where there is no device: the functions that osteomill uses, by the maker's names.
 
-#include "osteomill/device/force_dimension/dhd_stand_in.h"
+#include "tests/support/dhd_stand_in.h"
 
 #include <algorithm>
 #include <cmath>
 #include <string_view>
 
-#include "osteomill/device/stand_in.h"
+#include "tests/support/stand_in.h"
 
 namespace {
 

@@ -1,6 +1,6 @@
 // Stands in for libHD where there is no device: the functions that osteomill uses, by the maker's names.
 
-#include "osteomill/device/touch/hd_stand_in.h"
+#include "tests/support/hd_stand_in.h"
 
 #include <algorithm>
 #include <chrono>
@@ -8,7 +8,7 @@
 #include <string_view>
 #include <thread>
 
-#include "osteomill/device/stand_in.h"
+#include "tests/support/stand_in.h"
 
 namespace {
 

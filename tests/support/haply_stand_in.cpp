@@ -1,6 +1,6 @@
 // Haply's service where there is none: haply_stand_in PORT
 
-#include "osteomill/device/haply/haply_stand_in.h"
+#include "tests/support/haply_stand_in.h"
 
 #include <cstdlib>
 

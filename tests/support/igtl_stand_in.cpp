@@ -1,6 +1,6 @@
-// A tracker or 3D Slicer where there is none: igtl_stand_in PORT
+// 3D Slicer where there is none: igtl_stand_in PORT
 
-#include "osteomill/device/openigtlink/igtl_stand_in.h"
+#include "tests/support/igtl_stand_in.h"
 
 #include <cstdlib>
 

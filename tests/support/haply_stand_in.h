@@ -13,10 +13,9 @@
 #include <utility>
 #include <vector>
 
+#include "tests/support/stand_in.h"
 #include <libwebsockets.h>
 #include <nlohmann/json.hpp>
-
-#include "osteomill/device/stand_in.h"
 
 namespace osteomill::testing_support {
 
