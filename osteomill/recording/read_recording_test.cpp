@@ -4,6 +4,7 @@
 #include <functional>
 #include <iterator>
 
+#include "tests/support/recording_samples.h"
 #include <gtest/gtest.h>
 #include <hdf5.h>
 
@@ -11,7 +12,6 @@
 #include "osteomill/recording/hdf5_attributes.h"
 #include "osteomill/recording/recorder.h"
 #include "osteomill/recording/recording_checksum.h"
-#include "osteomill/recording/recording_samples.h"
 
 namespace osteomill {
 namespace {

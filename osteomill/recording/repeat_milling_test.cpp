@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "tests/shapes.h"
+#include "tests/support/recording_samples.h"
 #include <gtest/gtest.h>
 
 #include "osteomill/device/posed_device.h"
@@ -10,7 +11,6 @@
 #include "osteomill/haptics/algorithms.h"
 #include "osteomill/recording/read_recording.h"
 #include "osteomill/recording/recorder.h"
-#include "osteomill/recording/recording_samples.h"
 #include "osteomill/recording/session_settings.h"
 #include "osteomill/session/milling_session.h"
 

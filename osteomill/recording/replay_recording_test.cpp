@@ -5,6 +5,7 @@
 #include <set>
 
 #include "tests/shapes.h"
+#include "tests/support/recording_samples.h"
 #include <gtest/gtest.h>
 
 #include "osteomill/device/posed_device.h"
@@ -12,7 +13,6 @@
 #include "osteomill/recording/describe_run.h"
 #include "osteomill/recording/read_recording.h"
 #include "osteomill/recording/recorder.h"
-#include "osteomill/recording/recording_samples.h"
 #include "osteomill/volume/density_hash.h"
 
 namespace osteomill {
