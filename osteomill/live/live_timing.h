@@ -41,7 +41,6 @@ struct TimingSummary {
 /// Counts ticks' times. One thread adds, safely in the haptic tick; any thread reads meanwhile.
 class LiveTiming {
  public:
-  explicit LiveTiming(double tick_s = 1e-3) : held_(1e6 * tick_s) {}
   void add(const TickTimes& times, const TickRecord& record);
   TimingSummary summary() const;
 

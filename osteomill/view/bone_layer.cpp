@@ -206,10 +206,6 @@ BoneLayer::BoneLayer(const SurfaceBricks& layout, const GridGeometry& geometry,
     bricks_[n].bounds = bounding_sphere(geometry, layout.cells(n));
 }
 
-void BoneLayer::clear() {
-  for (std::size_t n = 0; n < bricks_.size(); ++n) set_brick(n, {}, {});
-}
-
 void BoneLayer::set_brick(std::size_t number, const BrickMesh& mesh, const BrickLevels& levels) {
   Brick& brick = bricks_[number];
   brick.levels = levels.levels;

@@ -28,10 +28,6 @@ class BlockRanges {
   const std::array<int, 3>& dims() const { return dims_; }
   /// Brick coordinates from 0.
   const Range& at(int bi, int bj, int bk) const { return ranges_[index(bi, bj, bk)]; }
-  /// The brick whose cells begin at or below this voxel's coordinates, which must be in the grid.
-  const Range& around(const VoxelIndex& v) const {
-    return at(v.i / kBrickVoxels, v.j / kBrickVoxels, v.k / kBrickVoxels);
-  }
 
   /// Differs from what it was before where any of these voxels, all in the grid, was taken in anew since.
   /// Safe in the haptic tick.

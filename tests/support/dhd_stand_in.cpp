@@ -84,15 +84,6 @@ int dhdGetPositionAndOrientationFrame(double* x, double* y, double* z, double fr
   const int failed = result_of("dhdGetPositionAndOrientationFrame");
   return failed < 0 ? failed : g_state.pose_result;
 }
-int dhdGetLinearVelocity(double* x, double* y, double* z, char) {
-  *x = g_state.velocity_m_s[0], *y = g_state.velocity_m_s[1], *z = g_state.velocity_m_s[2];
-  return result_of("dhdGetLinearVelocity");
-}
-int dhdGetAngularVelocityRad(double* x, double* y, double* z, char) {
-  const auto& w = g_state.angular_velocity_rad_s;
-  *x = w[0], *y = w[1], *z = w[2];
-  return result_of("dhdGetAngularVelocityRad");
-}
 unsigned dhdGetButtonMask(char) {
   return g_state.buttons;
 }

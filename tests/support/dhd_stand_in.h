@@ -17,8 +17,6 @@ struct DhdStandIn {
   bool is_held = false;
   std::array<double, 3> position_m{};
   double frame[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  std::array<double, 3> velocity_m_s{};
-  std::array<double, 3> angular_velocity_rad_s{};
   unsigned buttons = 0;
 
   int opened = -1;

@@ -65,11 +65,7 @@ void hdEndFrame(unsigned) {
   g_most_N = std::max(g_most_N, std::hypot(g_state.force[0], g_state.force[1], g_state.force[2]));
 }
 void hdGetDoublev(unsigned parameter, double* values) {
-  const auto give = [values](const auto& these) { std::copy(these.begin(), these.end(), values); };
-  if (parameter == 0x2051) give(g_state.velocity_mm_s);
-  if (parameter == 0x2052) give(g_state.transform);
-  if (parameter == 0x2053) give(g_state.angular_velocity_rad_s);
-  if (parameter == 0x2551) give(std::array{-80.0, -60.0, -35.0, 80.0, 60.0, 35.0});
+  if (parameter == 0x2052) std::copy(g_state.transform.begin(), g_state.transform.end(), values);
   if (parameter == 0x2603) *values = 3.3;
   if (parameter == 0x2622) *values = 188;
 }

@@ -12,8 +12,6 @@ struct HdStandIn {
   bool is_held = false;
   /// Columns; mm.
   std::array<double, 16> transform{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-  std::array<double, 3> velocity_mm_s{};
-  std::array<double, 3> angular_velocity_rad_s{};
   int buttons = 0;
 
   /// Said by hdGetError after each frame.

@@ -147,11 +147,9 @@ class HaplyConnection final : public Connection {
     const Json* const state = member(device, "state");
     DeviceInput now;
     if (!take(member(state, "cursor_position"), now.X_DH.position_mm) ||
-        !take(member(state, "cursor_velocity"), now.velocity_D_mm_s) ||
         (has_grip_ && !take_grip(grip_of(message), now)))
       return false;
     now.X_DH.position_mm *= kMmPerM;
-    now.velocity_D_mm_s *= kMmPerM;
     input = now;
     return true;
   }

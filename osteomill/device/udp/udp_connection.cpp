@@ -85,12 +85,9 @@ DeviceCapabilities capabilities_of(const Answer& answer, const std::string& devi
                     answer.sensed, answer.driven));
   can.sensed = static_cast<int>(answer.sensed);
   can.driven = static_cast<int>(answer.driven);
-  can.workspace_D_mm = vector_of(answer.workspace_mm);
   can.limits = {answer.max_force_N, answer.max_torque_Nmm};
-  can.rate_Hz = answer.rate_Hz;
-  if (!can.workspace_D_mm.allFinite() || !is_limit(can.limits.force_N) || !is_limit(can.limits.torque_Nmm) ||
-      !is_limit(can.rate_Hz))
-    throw InputError(device, "the device says a workspace, limits or a rate that are not numbers from 0");
+  if (!is_limit(can.limits.force_N) || !is_limit(can.limits.torque_Nmm))
+    throw InputError(device, "the device says limits that are not numbers from 0");
   return can;
 }
 
@@ -159,8 +156,6 @@ class UdpConnection final : public Connection {
     input.X_DH.position_mm = vector_of(state.position_mm);
     const auto& [w, x, y, z] = state.orientation_wxyz;
     input.X_DH.orientation = partner_.capabilities.sensed == 6 ? Quat(w, x, y, z) : Quat::Identity();
-    input.velocity_D_mm_s = vector_of(state.velocity_mm_s);
-    input.angular_velocity_D_rad_s = vector_of(state.angular_velocity_rad_s);
     input.buttons = state.buttons;
   }
 
