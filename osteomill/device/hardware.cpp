@@ -3,11 +3,6 @@
 #include <algorithm>
 #include <array>
 
-#include "osteomill/device/force_dimension/force_dimension_connection.h"
-#include "osteomill/device/haply/haply_connection.h"
-#include "osteomill/device/touch/touch_connection.h"
-#include "osteomill/device/udp/udp_connection.h"
-
 namespace osteomill {
 
 namespace {

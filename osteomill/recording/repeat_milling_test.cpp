@@ -6,7 +6,7 @@
 #include "tests/support/recording_samples.h"
 #include <gtest/gtest.h>
 
-#include "osteomill/device/posed_device.h"
+#include "osteomill/device/device.h"
 #include "osteomill/files/input_error.h"
 #include "osteomill/haptics/algorithms.h"
 #include "osteomill/recording/read_recording.h"

@@ -6,12 +6,12 @@
 
 #include <fmt/format.h>
 
-#include "osteomill/device/posed_device.h"
+#include "osteomill/device/device.h"
 #include "osteomill/files/input_error.h"
 #include "osteomill/recording/record_columns.h"
 #include "osteomill/recording/session_settings.h"
 #include "osteomill/session/milling_setup.h"
-#include "osteomill/volume/density_hash.h"
+#include "osteomill/volume/density_grid.h"
 
 namespace osteomill {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "osteomill/numbers/row_major.h"
-#include "osteomill/tool/tool_distance.h"
+#include "osteomill/tool/milling_tool.h"
 
 namespace osteomill {
 

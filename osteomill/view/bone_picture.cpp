@@ -14,7 +14,6 @@
 #include "osteomill/view/cavity_pass.h"
 #include "osteomill/view/depth_tiles.h"
 #include "osteomill/view/frame_target.h"
-#include "osteomill/view/image_annotations.h"
 #include "osteomill/view/offscreen_context.h"
 #include "osteomill/volume/sampling.h"
 

@@ -8,9 +8,9 @@
 #include "tests/shapes.h"
 #include <gtest/gtest.h>
 
-#include "osteomill/image/png.h"
+#include "osteomill/image/image.h"
 #include "osteomill/surface/surface_mesh.h"
-#include "osteomill/view/drawing_pace.h"
+#include "osteomill/view/bone_ground.h"
 #include "osteomill/view/offscreen_context.h"
 
 namespace osteomill {

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "osteomill/numbers/work_progress.h"
-#include "osteomill/volume/density_hash.h"
+#include "osteomill/volume/density_grid.h"
 
 namespace osteomill {
 

@@ -5,7 +5,6 @@
 
 #include "osteomill/volume/block_ranges.h"
 #include "osteomill/volume/density_grid.h"
-#include "osteomill/volume/density_hash.h"
 #include "osteomill/volume/label_map.h"
 
 namespace osteomill {

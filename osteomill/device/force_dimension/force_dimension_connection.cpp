@@ -1,5 +1,3 @@
-#include "osteomill/device/force_dimension/force_dimension_connection.h"
-
 #include <array>
 #include <charconv>
 #include <chrono>
@@ -8,6 +6,7 @@
 
 #include <fmt/core.h>
 
+#include "osteomill/device/hardware.h"
 #include "osteomill/device/vendor_library.h"
 #include "osteomill/files/input_error.h"
 

@@ -1,5 +1,3 @@
-#include "osteomill/device/force_dimension/force_dimension_connection.h"
-
 #include <algorithm>
 #include <array>
 #include <cstdlib>
@@ -10,6 +8,7 @@
 #include <dlfcn.h>
 #include <gtest/gtest.h>
 
+#include "osteomill/device/hardware.h"
 #include "osteomill/files/input_error.h"
 
 namespace osteomill {

@@ -1,5 +1,3 @@
-#include "osteomill/device/haply/haply_connection.h"
-
 #include <chrono>
 #include <optional>
 #include <thread>
@@ -8,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "osteomill/device/haply/web_socket.h"
+#include "osteomill/device/hardware.h"
 #include "osteomill/device/socket.h"
 #include "osteomill/files/input_error.h"
 
@@ -19,6 +18,7 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 using Json = nlohmann::json;
 
+constexpr const char* kUsualAddress = "127.0.0.1:10001";
 // The service speaks of m.
 constexpr double kMmPerM = 1000;
 // The first text names every device with its settings; later ones are a few kB.
@@ -166,7 +166,7 @@ class HaplyConnection final : public Connection {
 };
 
 HostAndPort place_of(const std::string& address) {
-  return host_and_port("haply", address.empty() ? kHaplyAddress : address);
+  return host_and_port("haply", address.empty() ? kUsualAddress : address);
 }
 
 }  // namespace

@@ -1,5 +1,3 @@
-#include "osteomill/device/haply/haply_connection.h"
-
 #include <chrono>
 #include <numbers>
 #include <string>
@@ -8,6 +6,7 @@
 #include "tests/support/haply_stand_in.h"
 #include <gtest/gtest.h>
 
+#include "osteomill/device/hardware.h"
 #include "osteomill/files/input_error.h"
 
 namespace osteomill {

@@ -1,5 +1,3 @@
-#include "osteomill/device/touch/touch_connection.h"
-
 #include <array>
 #include <atomic>
 #include <chrono>
@@ -9,6 +7,7 @@
 
 #include <fmt/core.h>
 
+#include "osteomill/device/hardware.h"
 #include "osteomill/device/latest_value.h"
 #include "osteomill/device/vendor_library.h"
 #include "osteomill/files/input_error.h"

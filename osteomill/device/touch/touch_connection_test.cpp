@@ -1,5 +1,3 @@
-#include "osteomill/device/touch/touch_connection.h"
-
 #include <chrono>
 #include <cstdlib>
 #include <numbers>
@@ -10,6 +8,7 @@
 #include <dlfcn.h>
 #include <gtest/gtest.h>
 
+#include "osteomill/device/hardware.h"
 #include "osteomill/files/input_error.h"
 
 namespace osteomill {

@@ -1,5 +1,3 @@
-#include "osteomill/device/udp/udp_connection.h"
-
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -9,6 +7,7 @@
 
 #include <fmt/core.h>
 
+#include "osteomill/device/hardware.h"
 #include "osteomill/device/socket.h"
 #include "osteomill/device/udp/udp_datagrams.h"
 #include "osteomill/files/input_error.h"
@@ -21,6 +20,7 @@ using namespace udp;
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
+constexpr const char* kUsualAddress = "127.0.0.1:47117";
 constexpr auto kWait = 2ms;
 constexpr int kQuestions = 10;
 constexpr auto kWaitForAnswer = 50ms;
@@ -166,7 +166,7 @@ class UdpConnection final : public Connection {
 };
 
 std::string or_default(const std::string& address) {
-  return address.empty() ? kUdpAddress : address;
+  return address.empty() ? kUsualAddress : address;
 }
 
 }  // namespace

@@ -1,5 +1,3 @@
-#include "osteomill/device/udp/udp_connection.h"
-
 #include <algorithm>
 #include <chrono>
 #include <cstring>
@@ -13,6 +11,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "osteomill/device/hardware.h"
 #include "osteomill/device/udp/udp_datagrams.h"
 #include "osteomill/files/input_error.h"
 

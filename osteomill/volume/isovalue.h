@@ -1,6 +1,9 @@
 #pragma once
 
+#include <array>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "osteomill/volume/density_grid.h"
 
@@ -29,5 +32,31 @@ inline constexpr double kBone_HU = 260;
 /// and greatest density; where all are equal, that density. Looks at some four million voxels at the most.
 /// Not for the tick.
 SuggestedIsovalue suggest_isovalue(const DensityGrid& grid, bool in_hounsfield_units = false);
+
+/// Where a grid holds labels in the place of densities (few whole numbers, most of which
+/// occur in pieces rather than strewn): the isovalue between the two lowest, at which all that is labelled is
+/// bone. Nothing for a grid of densities. At most a pass over the voxels.
+std::optional<double> isovalue_of_labels(const DensityGrid& grid);
+
+/// A grid of labels as one of densities, since labels are no quantities: those above the isovalue are all as
+/// dense as each other, half above it, and the others half below.
+DensityGrid bone_of_labels(const DensityGrid& labels, double isovalue);
+
+/// Whether there are both bone and something else by this isovalue.
+bool is_within(const DensityGrid& grid, double isovalue);
+
+/// What a user of this isovalue should know, a sentence each: that it lies outside the grid's densities, so
+/// that there is no bone or nothing else; or that bone touches the border of the volume, where it is cut off
+/// and its inside lies open. One pass over the voxels.
+std::vector<std::string> isovalue_warnings(const DensityGrid& grid, double isovalue);
+
+/// How often densities occur, for the isovalue to be chosen by: logarithms of counts, over all densities but
+/// the rarest at both ends.
+struct DensityHistogram {
+  float min = 0;
+  float max = 1;
+  std::array<float, 128> log_counts{};
+};
+DensityHistogram histogram_of(const DensityGrid& grid);
 
 }  // namespace osteomill

@@ -1,4 +1,4 @@
-#include "osteomill/volume/suggest_isovalue.h"
+#include "osteomill/volume/isovalue.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,17 +1,18 @@
-#include "osteomill/volume/suggest_isovalue.h"
+#include "osteomill/volume/isovalue.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <map>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "osteomill/numbers/work_progress.h"
-#include "osteomill/volume/label_scan.h"
 
 namespace osteomill {
 
@@ -141,6 +142,54 @@ std::span<const Sample> without_lowest(std::span<const Sample> samples) {
   return {others, samples.end()};
 }
 
+// Calls `use` with every density in turn, along i fastest; it returns whether to go on.
+template <typename Use>
+void for_each_density(const DensityGrid& grid, const Use& use) {
+  const auto& dims = grid.geometry().dims;
+  for (int k = 0; k < dims[2]; ++k) {
+    WorkProgress::done(0);
+    for (int j = 0; j < dims[1]; ++j) {
+      for (int i = 0; i < dims[0]; ++i) {
+        if (!use(grid[{i, j, k}])) return;
+      }
+    }
+  }
+}
+
+// Single voxels of noise are no bone.
+constexpr double kTouchingShare = 1e-3;
+
+struct Range {
+  double min;
+  double max;
+  bool holds(double isovalue) const { return isovalue < max && isovalue >= min; }
+};
+
+Range range_of(const CopyOnWriteFloats& densities) {
+  constexpr std::size_t kAtOnce = 1 << 22;
+  float min = densities.front(), max = min;
+  for (std::size_t first = 0; first < densities.size(); first += kAtOnce) {
+    const std::size_t last = std::min(first + kAtOnce, densities.size());
+    const auto [low, high] = std::minmax_element(densities.begin() + first, densities.begin() + last);
+    min = std::min(min, *low);
+    max = std::max(max, *high);
+    WorkProgress::done(first, 2 * densities.size());
+  }
+  return {static_cast<double>(min), static_cast<double>(max)};
+}
+
+bool touches(const DensityGrid& grid, double isovalue, std::size_t axis, int place) {
+  const auto& dims = grid.geometry().dims;
+  const std::size_t across = (axis + 1) % 3, up = (axis + 2) % 3;
+  long bone = 0;
+  std::array<int, 3> v{};
+  v[axis] = place;
+  for (v[across] = 0; v[across] < dims[across]; ++v[across])
+    for (v[up] = 0; v[up] < dims[up]; ++v[up])
+      bone += static_cast<double>(grid[{v[0], v[1], v[2]}]) > isovalue;
+  return static_cast<double>(bone) > kTouchingShare * dims[across] * dims[up];
+}
+
 }  // namespace
 
 SuggestedIsovalue suggest_isovalue(const DensityGrid& grid, bool in_hounsfield_units) {
@@ -171,6 +220,91 @@ SuggestedIsovalue suggest_isovalue(const DensityGrid& grid, bool in_hounsfield_u
   return {halfway,
           fmt::format("halfway between the commonest densities, {:.4g} around the bone and {:.4g} in it",
                       found.around, found.bone)};
+}
+
+std::optional<double> isovalue_of_labels(const DensityGrid& grid) {
+  constexpr std::size_t kMaxLabels = 256;
+  struct Count {
+    std::size_t voxels = 0;
+    std::size_t like_the_one_before = 0;
+  };
+  std::map<float, Count> counts;
+  Count* count = nullptr;
+  float last = 0;
+  bool labels = true;
+  for_each_density(grid, [&](float density) {
+    const bool alike = count != nullptr && density == last;
+    if (!alike) {
+      labels = density == std::floor(density);
+      count = &counts[density];
+      labels = labels && counts.size() <= kMaxLabels;
+    }
+    last = density;
+    ++count->voxels;
+    count->like_the_one_before += alike ? 1 : 0;
+    return labels;
+  });
+  if (!labels || counts.size() < 2) return std::nullopt;
+  // Structures are pieces, unlike the shades of a soft edge or noise.
+  const auto pieces = std::count_if(std::next(counts.begin()), counts.end(), [](const auto& entry) {
+    return 2 * entry.second.like_the_one_before >= entry.second.voxels;
+  });
+  if (2 * static_cast<std::size_t>(pieces) < counts.size() - 1) return std::nullopt;
+  return 0.5 *
+         (static_cast<double>(counts.begin()->first) + static_cast<double>(std::next(counts.begin())->first));
+}
+
+DensityGrid bone_of_labels(const DensityGrid& labels, double isovalue) {
+  std::vector<float> densities;
+  densities.reserve(labels.geometry().voxel_count());
+  const auto bone = static_cast<float>(isovalue + 0.5), other = static_cast<float>(isovalue - 0.5);
+  for_each_density(labels, [&](float label) {
+    densities.push_back(static_cast<double>(label) > isovalue ? bone : other);
+    return true;
+  });
+  return DensityGrid(labels.geometry(), std::move(densities));
+}
+
+bool is_within(const DensityGrid& grid, double isovalue) {
+  return range_of(grid.densities()).holds(isovalue);
+}
+
+std::vector<std::string> isovalue_warnings(const DensityGrid& grid, double isovalue) {
+  if (const Range range = range_of(grid.densities()); !range.holds(isovalue)) {
+    return {fmt::format("the isovalue {:g} lies outside its values, {:g} to {:g}: {}", isovalue, range.min,
+                        range.max, isovalue < range.min ? "all of it is bone" : "there is no bone")};
+  }
+  std::string faces;
+  int count = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (const int place : {0, grid.geometry().dims[axis] - 1}) {
+      if (!touches(grid, isovalue, axis, place)) continue;
+      faces += fmt::format("{}{} {}", count++ == 0 ? "" : ", ", place == 0 ? "first" : "last", "ijk"[axis]);
+    }
+  }
+  if (count == 0) return {};
+  return {fmt::format("bone touches the border of the volume ({}) and is cut off there", faces)};
+}
+
+DensityHistogram histogram_of(const DensityGrid& grid) {
+  // An odd number, so that not all come from the same columns.
+  constexpr std::size_t kEnough = 1'000'000;
+  const std::size_t every = std::max<std::size_t>(7, grid.densities().size() / kEnough | 1);
+  std::vector<float> sample;
+  for (std::size_t n = 0; n < grid.densities().size(); n += every) sample.push_back(grid.densities()[n]);
+  std::sort(sample.begin(), sample.end());
+  const std::size_t rare = sample.size() / 2000;
+  DensityHistogram histogram;
+  histogram.min = sample[rare];
+  histogram.max = std::max(sample[sample.size() - 1 - rare], histogram.min + 1);
+  const float width = (histogram.max - histogram.min) / static_cast<float>(histogram.log_counts.size());
+  for (const float density : sample) {
+    const auto bin = static_cast<std::ptrdiff_t>((density - histogram.min) / width);
+    if (bin >= 0 && bin < std::ssize(histogram.log_counts))
+      histogram.log_counts[static_cast<std::size_t>(bin)] += 1;
+  }
+  for (float& count : histogram.log_counts) count = std::log1p(count);
+  return histogram;
 }
 
 }  // namespace osteomill

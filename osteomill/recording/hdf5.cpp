@@ -1,4 +1,4 @@
-#include "osteomill/recording/hdf5_attributes.h"
+#include "osteomill/recording/hdf5.h"
 
 #include <stdexcept>
 
@@ -8,9 +8,21 @@ namespace osteomill {
 
 namespace {
 
+std::mutex& hdf5_mutex() {
+  static std::mutex mutex;
+  return mutex;
+}
+
 constexpr std::size_t kMaxText = 60000;
 
 }  // namespace
+
+Hdf5Lock::Hdf5Lock() : lock_(hdf5_mutex()) {
+  // All that is open is closed by its handle. What the library would do at exit crashes on a file that a full
+  // disk left half-written. Before any other call, or it has no effect.
+  [[maybe_unused]] static const herr_t asked = H5dont_atexit();
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
 
 void AttributeWriter::write(const std::string& name, hid_t file_type, hid_t memory_type, hsize_t count,
                             const void* data) const {
