@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "osteomill/ct/dicom_slice.h"
+#include "osteomill/ct/dicom_file.h"
 
 namespace osteomill {
 

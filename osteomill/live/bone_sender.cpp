@@ -47,17 +47,13 @@ igtl::ImageMessage::Pointer message_of(const BoneFollower& bone, const VoxelBox&
                         static_cast<float>(grid.spacing_mm.z()));
     message->SetScalarType(igtl::ImageMessage::TYPE_FLOAT32);
     message->SetEndian(igtl::ImageMessage::ENDIAN_LITTLE);
-    message->SetSubVolume(box.last.i - box.first.i + 1, box.last.j - box.first.j + 1,
-                          box.last.k - box.first.k + 1, box.first.i, box.first.j, box.first.k);
+    const auto [wide, high, deep] = box.dims();
+    message->SetSubVolume(wide, high, deep, box.first.i, box.first.j, box.first.k);
     igtl::Matrix4x4 matrix;
     message->SetMatrix(set_place(grid, matrix));
     message->AllocateScalars();
     auto* density = static_cast<float*>(message->GetScalarPointer());
-    for (int k = box.first.k; k <= box.last.k; ++k) {
-      for (int j = box.first.j; j <= box.last.j; ++j) {
-        for (int i = box.first.i; i <= box.last.i; ++i) *density++ = now.grid()[VoxelIndex{i, j, k}];
-      }
-    }
+    for_each(box, [&](const VoxelIndex& v) { *density++ = now.grid()[v]; });
   });
   message->Pack();
   return message;

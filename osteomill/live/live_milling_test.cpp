@@ -16,7 +16,6 @@
 #include "osteomill/operator/milling_entry.h"
 #include "osteomill/operator/virtual_hand.h"
 #include "osteomill/recording/read_recording.h"
-#include "osteomill/recording/repeat_milling.h"
 #include "osteomill/recording/replay_recording.h"
 #include "osteomill/surface/surface_mesh.h"
 

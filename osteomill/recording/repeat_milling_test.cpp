@@ -1,5 +1,3 @@
-#include "osteomill/recording/repeat_milling.h"
-
 #include <algorithm>
 
 #include "tests/shapes.h"
@@ -11,6 +9,7 @@
 #include "osteomill/haptics/algorithms.h"
 #include "osteomill/recording/read_recording.h"
 #include "osteomill/recording/recorder.h"
+#include "osteomill/recording/replay_recording.h"
 #include "osteomill/recording/session_settings.h"
 #include "osteomill/session/milling_session.h"
 

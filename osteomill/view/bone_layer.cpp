@@ -7,7 +7,6 @@
 #include <string>
 #include <utility>
 
-#include "osteomill/surface/vertex_label.h"
 #include "osteomill/view/shaders.h"
 
 namespace osteomill {
@@ -83,7 +82,7 @@ std::vector<MeshVertex> with_smooth_densities(const BrickMesh& mesh, const std::
 using LabelColour = std::array<std::uint8_t, 4>;
 
 LabelColour label_colour_below(const LabelMap& labels, const MeshVertex& vertex) {
-  const LabelMap::Place place = label_below(labels, vertex);
+  const LabelMap::Place place = labels.under_surface(vec3_of(vertex.position_mm), vec3_of(vertex.normal));
   if (place == 0) return {};
   const auto& [red, green, blue] = labels.label(place).colour;
   return {red, green, blue, 255};

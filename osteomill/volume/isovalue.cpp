@@ -145,14 +145,10 @@ std::span<const Sample> without_lowest(std::span<const Sample> samples) {
 // Calls `use` with every density in turn, along i fastest; it returns whether to go on.
 template <typename Use>
 void for_each_density(const DensityGrid& grid, const Use& use) {
-  const auto& dims = grid.geometry().dims;
-  for (int k = 0; k < dims[2]; ++k) {
-    WorkProgress::done(0);
-    for (int j = 0; j < dims[1]; ++j) {
-      for (int i = 0; i < dims[0]; ++i) {
-        if (!use(grid[{i, j, k}])) return;
-      }
-    }
+  std::size_t n = 0;
+  for (const float density : grid.densities()) {
+    if (n++ % (1 << 20) == 0) WorkProgress::done(0);
+    if (!use(density)) return;
   }
 }
 
