@@ -26,7 +26,7 @@
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/recording/read_recording.h"
 #include "osteomill/session/milling_setup.h"
-#include "osteomill/volume/density_hash.h"
+#include "osteomill/volume/density_grid.h"
 
 namespace osteomill::app {
 

@@ -8,7 +8,7 @@
 #include <fmt/core.h>
 
 #include "osteomill/device/hardware.h"
-#include "osteomill/device/workspace_file.h"
+#include "osteomill/device/workspace.h"
 
 namespace osteomill::app {
 

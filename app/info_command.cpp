@@ -10,7 +10,7 @@
 
 #include "osteomill/ct/scan_summary.h"
 #include "osteomill/operator/milling_entry.h"
-#include "osteomill/volume/isovalue_warnings.h"
+#include "osteomill/volume/isovalue.h"
 
 namespace osteomill::app {
 

@@ -7,7 +7,7 @@
 
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/recording/read_recording.h"
-#include "osteomill/recording/repeat_milling.h"
+#include "osteomill/recording/replay_recording.h"
 
 namespace osteomill::app {
 

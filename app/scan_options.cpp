@@ -11,8 +11,7 @@
 #include "osteomill/files/input_error.h"
 #include "osteomill/numbers/work_progress.h"
 #include "osteomill/volume/builtin_tooth.h"
-#include "osteomill/volume/isovalue_warnings.h"
-#include "osteomill/volume/label_scan.h"
+#include "osteomill/volume/isovalue.h"
 
 namespace osteomill::app {
 

@@ -8,7 +8,7 @@
 
 #include "osteomill/ct/read_labels.h"
 #include "osteomill/ct/read_scan.h"
-#include "osteomill/volume/suggest_isovalue.h"
+#include "osteomill/volume/isovalue.h"
 #include "osteomill/volume/volume.h"
 
 namespace osteomill::app {

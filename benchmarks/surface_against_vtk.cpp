@@ -25,7 +25,6 @@
 #include "osteomill/surface/surface_upkeep.h"
 #include "osteomill/volume/builtin_tooth.h"
 #include "osteomill/volume/densities.h"
-#include "osteomill/volume/isosurface.h"
 #include "osteomill/volume/sampling.h"
 
 namespace {

@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <memory>
 
-#include <osteomill/device/posed_device.h>
+#include <osteomill/device/device.h>
 #include <osteomill/operator/milling_entry.h>
 #include <osteomill/recording/describe_run.h>
 #include <osteomill/recording/read_recording.h>
@@ -12,7 +12,7 @@
 #include <osteomill/recording/replay_recording.h>
 #include <osteomill/session/milling_setup.h>
 #include <osteomill/volume/builtin_tooth.h>
-#include <osteomill/volume/density_hash.h>
+#include <osteomill/volume/density_grid.h>
 
 int main(int argc, char** argv) {
   const char* path = argc > 1 ? argv[1] : "session.h5";

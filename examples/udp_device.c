@@ -33,11 +33,11 @@ struct answer {
   struct head head;
   char name[64];
   uint32_t sensed, driven;
-  double workspace_mm[3], max_force_N, max_torque_Nmm, rate_Hz;
+  double max_force_N, max_torque_Nmm;
 };
 struct state {
   struct head head;
-  double position_mm[3], orientation_wxyz[4], velocity_mm_s[3], angular_velocity_rad_s[3];
+  double position_mm[3], orientation_wxyz[4];
   uint32_t buttons, reserved;
 };
 struct wrench {
@@ -72,7 +72,6 @@ static struct head head_of(uint16_t kind, uint32_t sequence) {
 static void read_handle(double time_s, struct state *state) {
   const double pi = 3.14159265358979;
   state->position_mm[1] = 2 * cos(0.5 * pi * time_s) - 2;
-  state->velocity_mm_s[1] = -pi * sin(0.5 * pi * time_s);
   state->orientation_wxyz[0] = 1;
   state->buttons = 1; /* 1: spindle, 2: clutch */
 }
@@ -115,9 +114,8 @@ int main(int count, char **words) {
   signal(SIGINT, end);
   signal(SIGTERM, end);
 
-  struct answer answer = {.sensed = 6, .driven = 6, .max_force_N = 10, .max_torque_Nmm = 200, .rate_Hz = 1000};
+  struct answer answer = {.sensed = 6, .driven = 6, .max_force_N = 10, .max_torque_Nmm = 200};
   strcpy(answer.name, "example device");
-  for (int n = 0; n < 3; ++n) answer.workspace_mm[n] = 100;
 
   struct sockaddr_in partner = {0};
   struct wrench asked = {0};

@@ -9,8 +9,8 @@ import sys
 import time
 
 HEAD = struct.Struct("<4sHHII")
-ANSWER = struct.Struct("<64sII3dddd")
-STATE = struct.Struct("<3d4d3d3dII")
+ANSWER = struct.Struct("<64sIIdd")
+STATE = struct.Struct("<3d4dII")
 WRENCH = struct.Struct("<3d3d")
 QUESTION_KIND, ANSWER_KIND, STATE_KIND, WRENCH_KIND = 1, 2, 3, 4
 
@@ -22,10 +22,9 @@ TORQUE_RATE_NMM_S = 1e5
 
 
 def read_handle(time_s):
-    """Yours: position in mm (x to the operator's right, y up, z towards them), orientation, velocities, buttons."""
+    """Yours: position in mm (x to the operator's right, y up, z towards them), orientation, buttons."""
     y_mm = 2 * math.cos(0.5 * math.pi * time_s) - 2
-    velocity_mm_s = -math.pi * math.sin(0.5 * math.pi * time_s)
-    return (0, y_mm, 0), (1, 0, 0, 0), (0, velocity_mm_s, 0), (0, 0, 0), 1
+    return (0, y_mm, 0), (1, 0, 0, 0), 1
 
 
 def drive_motors(force_N, torque_Nmm):
@@ -48,7 +47,7 @@ def main():
     to_all = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     to_all.bind(("127.0.0.1", port))
     name = b"example device in Python"
-    answer = ANSWER.pack(name, 6, 6, 100, 100, 100, 10, 200, 1000)
+    answer = ANSWER.pack(name, 6, 6, 10, 200)
     partner, newest, asked = None, 0, ((0, 0, 0), (0, 0, 0))
     sent_N, sent_Nmm, states = [0] * 3, [0] * 3, 0
     heard_s = started_s = -math.inf
@@ -85,8 +84,8 @@ def main():
         drive_motors(sent_N, sent_Nmm)
         if time.monotonic() - heard_s < CONVERSATION_S:
             states += 1
-            position, orientation, velocity, angular, buttons = read_handle(next_s - started_s)
-            state = STATE.pack(*position, *orientation, *velocity, *angular, buttons, 0)
+            position, orientation, buttons = read_handle(next_s - started_s)
+            state = STATE.pack(*position, *orientation, buttons, 0)
             to_all.sendto(head(STATE_KIND, states) + state, partner)
         next_s += PERIOD_S
 

@@ -1,6 +1,5 @@
 #include "fuzz/targets.h"
-
-#include "osteomill/ct/made_up_dicom.h"
+#include "tests/support/made_up_dicom.h"
 
 namespace osteomill::fuzzing {
 

@@ -11,7 +11,7 @@
 #include "osteomill/ct/scan_summary.h"
 #include "osteomill/files/input_error.h"
 #include "osteomill/files/temporary_folder.h"
-#include "osteomill/volume/isovalue_warnings.h"
+#include "osteomill/volume/isovalue.h"
 
 namespace osteomill::fuzzing {
 

@@ -42,6 +42,8 @@ for room in app verification examples; do
 done
 expect_taken benchmarks/x.cpp osteomill/volume/inside.h
 expect_taken app/x_test.cpp osteomill/volume/inside.h
+expect_taken tests/support/x.h osteomill/volume/inside.h
+expect_refused tests/x.h osteomill/volume/inside.h HEADERS
 
 expect_refused osteomill/geometry/x.h app/main.h
 expect_refused osteomill/geometry/x.cpp tests/shapes.h

@@ -1,9 +1,9 @@
 // Surfaces of scans from files.
 #include "tests/shared_data.h"
+#include "tests/support/mesh_checks.h"
 #include <gtest/gtest.h>
 
 #include "osteomill/ct/read_scan.h"
-#include "osteomill/surface/mesh_checks.h"
 
 namespace osteomill {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "osteomill/ct/read_scan.h"
 #include "osteomill/experiment/milling_trial.h"
-#include "osteomill/milling/cutting_power.h"
+#include "osteomill/milling/burr_mill.h"
 #include "osteomill/report/metrics.h"
 
 namespace osteomill {

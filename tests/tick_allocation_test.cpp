@@ -12,7 +12,7 @@
 #include "tests/shapes.h"
 #include <gtest/gtest.h>
 
-#include "osteomill/device/posed_device.h"
+#include "osteomill/device/device.h"
 #include "osteomill/haptics/algorithms.h"
 #include "osteomill/live/bone_follower.h"
 #include "osteomill/live/live_session.h"

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <map>
 
+#include "osteomill/tool/milling_tool.h"
 #include "osteomill/tool/sample_points.h"
-#include "osteomill/tool/tool_distance.h"
 #include "osteomill/volume/sampling.h"
 
 namespace osteomill::verification {

@@ -18,7 +18,7 @@
 #include "osteomill/recording/read_recording.h"
 #include "osteomill/recording/recorder.h"
 #include "osteomill/recording/replay_recording.h"
-#include "osteomill/volume/density_hash.h"
+#include "osteomill/volume/density_grid.h"
 
 namespace osteomill::verification {
 

@@ -7,7 +7,7 @@
 #include <fmt/core.h>
 
 #include "osteomill/operator/free_pose.h"
-#include "osteomill/volume/isosurface.h"
+#include "osteomill/volume/sampling.h"
 
 namespace osteomill::app {
 

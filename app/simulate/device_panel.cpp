@@ -4,7 +4,7 @@
 #include "app/simulate/widgets.h"
 #include <imgui.h>
 
-#include "osteomill/device/workspace_file.h"
+#include "osteomill/device/workspace.h"
 
 namespace osteomill::app {
 

@@ -16,7 +16,7 @@
 #include "osteomill/ct/write_nrrd.h"
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/files/input_error.h"
-#include "osteomill/image/png.h"
+#include "osteomill/image/image.h"
 #include "osteomill/recording/read_recording.h"
 #include "osteomill/report/write_report.h"
 #include "osteomill/surface/mesh_file.h"

@@ -11,7 +11,7 @@
 #include <imgui.h>
 
 #include "osteomill/operator/entry_places.h"
-#include "osteomill/tool/tool_distance.h"
+#include "osteomill/tool/milling_tool.h"
 
 namespace osteomill::app {
 

@@ -7,7 +7,7 @@
 
 #include "osteomill/files/input_error.h"
 #include "osteomill/numbers/work_progress.h"
-#include "osteomill/volume/density_hash.h"
+#include "osteomill/volume/density_grid.h"
 
 namespace osteomill::app {
 

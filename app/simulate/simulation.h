@@ -18,7 +18,7 @@
 #include "osteomill/operator/virtual_hand.h"
 #include "osteomill/session/label_count.h"
 #include "osteomill/view/clip_face.h"
-#include "osteomill/volume/density_histogram.h"
+#include "osteomill/volume/isovalue.h"
 
 namespace osteomill::app {
 

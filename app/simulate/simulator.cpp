@@ -31,10 +31,10 @@
 
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/files/input_error.h"
-#include "osteomill/image/png.h"
+#include "osteomill/image/image.h"
 #include "osteomill/live/bone_sender.h"
 #include "osteomill/sound/sound_stream.h"
-#include "osteomill/view/image_annotations.h"
+#include "osteomill/view/annotations.h"
 #include "osteomill/view/scene_renderer.h"
 
 namespace osteomill::app {

@@ -13,7 +13,7 @@
 #include <imgui.h>
 
 #include "osteomill/files/input_error.h"
-#include "osteomill/image/png.h"
+#include "osteomill/image/image.h"
 
 namespace osteomill::app {
 

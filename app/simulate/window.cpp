@@ -12,7 +12,7 @@
 #include <imgui.h>
 
 #include "osteomill/files/input_error.h"
-#include "osteomill/view/image_annotations.h"
+#include "osteomill/view/annotations.h"
 #include "osteomill/view/scene_renderer.h"
 
 namespace osteomill::app {

@@ -2,7 +2,7 @@
 
 #include <functional>
 
-#include "osteomill/ct/dicom_slice.h"
+#include "osteomill/ct/dicom_file.h"
 
 namespace osteomill {
 

@@ -7,12 +7,10 @@
 
 #include "osteomill/ct/dicom_data.h"
 #include "osteomill/ct/dicom_file.h"
-#include "osteomill/ct/dicom_folder.h"
 #include "osteomill/ct/dicom_pixels.h"
 #include "osteomill/ct/dicom_series.h"
-#include "osteomill/ct/even_slices.h"
-#include "osteomill/ct/gantry_tilt.h"
 #include "osteomill/ct/plausible_scan.h"
+#include "osteomill/ct/resample_stack.h"
 #include "osteomill/ct/slice_stack.h"
 #include "osteomill/files/input_error.h"
 #include "osteomill/numbers/work_progress.h"

@@ -1,8 +1,8 @@
 #include <array>
 #include <cstdint>
 
-#include "osteomill/ct/folder_test.h"
-#include "osteomill/ct/made_up_dicom.h"
+#include "tests/support/folder_test.h"
+#include "tests/support/made_up_dicom.h"
 
 namespace osteomill {
 namespace {

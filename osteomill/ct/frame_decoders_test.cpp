@@ -3,9 +3,8 @@
 #include <cstdint>
 #include <cstring>
 
+#include "tests/support/made_up_dicom.h"
 #include <gtest/gtest.h>
-
-#include "osteomill/ct/made_up_dicom.h"
 
 namespace osteomill {
 namespace {

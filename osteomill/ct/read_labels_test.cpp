@@ -1,6 +1,7 @@
 #include "osteomill/ct/read_labels.h"
 
-#include "osteomill/ct/folder_test.h"
+#include "tests/support/folder_test.h"
+
 #include "osteomill/ct/label_table.h"
 
 namespace osteomill {

@@ -8,7 +8,7 @@
 
 #include "osteomill/ct/read_scan.h"
 #include "osteomill/files/input_error.h"
-#include "osteomill/volume/suggest_isovalue.h"
+#include "osteomill/volume/isovalue.h"
 
 namespace osteomill {
 namespace {

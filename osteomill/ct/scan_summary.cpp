@@ -55,18 +55,13 @@ std::vector<LabelSummary> summarise_labels(const Volume& bone) {
   const std::shared_ptr<const LabelMap>& map = bone.labels();
   if (!map) return summaries;
   for (const Label& label : map->labels()) summaries.push_back({label});
-  const VoxelBox& box = map->box();
-  for (int k = box.first.k; k <= box.last.k; ++k) {
-    for (int j = box.first.j; j <= box.last.j; ++j) {
-      for (int i = box.first.i; i <= box.last.i; ++i) {
-        const LabelMap::Place place = map->at({i, j, k});
-        if (place == 0) continue;
-        LabelSummary& summary = summaries[place - 1u];
-        ++summary.voxels;
-        summary.bone_voxels += bone.is_bone({i, j, k}) ? 1 : 0;
-      }
-    }
-  }
+  for_each(map->box(), [&](const VoxelIndex& v) {
+    const LabelMap::Place place = map->at(v);
+    if (place == 0) return;
+    LabelSummary& summary = summaries[place - 1u];
+    ++summary.voxels;
+    summary.bone_voxels += bone.is_bone(v) ? 1 : 0;
+  });
   const double voxel_mm3 = bone.geometry().voxel_volume_mm3();
   for (LabelSummary& summary : summaries)
     summary.volume_mm3 = static_cast<double>(summary.voxels) * voxel_mm3;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "osteomill/ct/read_scan.h"
-#include "osteomill/volume/suggest_isovalue.h"
+#include "osteomill/volume/isovalue.h"
 #include "osteomill/volume/volume.h"
 
 namespace osteomill {

@@ -5,8 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "osteomill/ct/even_slices.h"
-#include "osteomill/ct/gantry_tilt.h"
+#include "osteomill/ct/resample_stack.h"
 #include "osteomill/files/input_error.h"
 
 namespace osteomill {

@@ -2,10 +2,9 @@
 #include <cstring>
 #include <limits>
 
+#include "tests/support/folder_test.h"
 #include <sys/stat.h>
 #include <zlib.h>
-
-#include "osteomill/ct/folder_test.h"
 
 namespace osteomill {
 namespace {

@@ -4,9 +4,8 @@
 #include <string>
 
 #include "tests/shared_data.h"
+#include "tests/support/folder_test.h"
 #include <Eigen/Geometry>
-
-#include "osteomill/ct/folder_test.h"
 
 namespace osteomill {
 namespace {

@@ -1,6 +1,5 @@
+#include "tests/support/folder_test.h"
 #include <minizip/zip.h>
-
-#include "osteomill/ct/folder_test.h"
 
 namespace osteomill {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "osteomill/device/real_time.h"
 #include "osteomill/files/input_error.h"
-#include "osteomill/geometry/wrench_rates.h"
+#include "osteomill/geometry/wrench.h"
 
 namespace osteomill {
 

@@ -17,19 +17,13 @@ struct DeviceCapabilities {
   /// How the base D stands before the operator, placed as its maker means it to be: from D into the
   /// operator's view V (x to the right, y up, z towards the operator).
   Quat R_VD = Quat::Identity();
-  /// Size of the box that its handle reaches, along the axes of its base D. 0 where unknown.
-  Vec3 workspace_D_mm = Vec3::Zero();
   /// The most that its motors give.
   WrenchLimits limits;
-  /// How often it wants to be written to, at least.
-  double rate_Hz = 1000;
 };
 
 /// What a device said at one time, in its base frame D. An orientation that it does not sense is identity.
 struct DeviceInput {
   Pose X_DH;
-  Vec3 velocity_D_mm_s = Vec3::Zero();
-  Vec3 angular_velocity_D_rad_s = Vec3::Zero();
   /// A bit each; the first asks for the spindle.
   unsigned buttons = 0;
 };

@@ -3,12 +3,6 @@
 #include <algorithm>
 #include <array>
 
-#include "osteomill/device/force_dimension/force_dimension_connection.h"
-#include "osteomill/device/haply/haply_connection.h"
-#include "osteomill/device/openigtlink/openigtlink_connection.h"
-#include "osteomill/device/touch/touch_connection.h"
-#include "osteomill/device/udp/udp_connection.h"
-
 namespace osteomill {
 
 namespace {
@@ -19,8 +13,6 @@ constexpr std::array kKinds{
     HardwareKind{"haply", "HOST:PORT", "Haply Inverse3, by the maker's service", &find_haply, &open_haply},
     HardwareKind{"hd", "NAME", "3D Systems Touch and Phantom, by the maker's libHD", &find_touch,
                  &open_touch},
-    HardwareKind{"openigtlink", "HOST:PORT", "a tracker or robot that serves OpenIGTLink (PLUS, 3D Slicer)",
-                 &find_openigtlink, &open_openigtlink},
     HardwareKind{"udp", "HOST:PORT", "a laboratory's own device, by datagrams (docs/udp-device.md)",
                  &find_udp, &open_udp},
 };

@@ -8,7 +8,6 @@
 
 #include <gtest/gtest.h>
 
-#include "osteomill/device/workspace_file.h"
 #include "osteomill/files/input_error.h"
 
 namespace osteomill {

@@ -4,7 +4,7 @@
 
 #include <fmt/core.h>
 
-#include "osteomill/image/png.h"
+#include "osteomill/image/image.h"
 #include "osteomill/view/bone_picture.h"
 
 namespace osteomill {

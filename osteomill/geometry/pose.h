@@ -42,4 +42,11 @@ inline Vec3 shaft_direction(const Pose& X_WT) {
 /// True where every number of the pose is finite.
 bool is_finite(const Pose& pose);
 
+/// The velocity of a frame: of its origin in mm/s, and its angular velocity in rad/s, both in the outer
+/// frame.
+struct Twist {
+  Vec3 linear_mm_s = Vec3::Zero();
+  Vec3 angular_rad_s = Vec3::Zero();
+};
+
 }  // namespace osteomill

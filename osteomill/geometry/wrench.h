@@ -1,5 +1,7 @@
 #pragma once
 
+#include <limits>
+
 #include "osteomill/geometry/pose.h"
 
 namespace osteomill {
@@ -42,5 +44,21 @@ struct SafeWrench {
 /// The wrench that may be sent: force and torque shortened to the limits without turning them, or zero where
 /// any component is not finite. Safe in the haptic tick.
 SafeWrench make_safe(const Wrench& wrench, const WrenchLimits& limits);
+
+/// How fast force and torque may change, as vectors; any, where not set.
+struct WrenchRates {
+  static constexpr double kAny = std::numeric_limits<double>::infinity();
+  double force_N_s = kAny;
+  double torque_Nmm_s = kAny;
+};
+
+/// For a person's hand: 20 N and 500 N mm are gone within 5 ms.
+inline constexpr WrenchRates kRatesForAHand{4000, 1e5};
+
+/// `to`, or as far towards it from `from` as may be in `dt_s`. Safe in the haptic tick.
+Wrench approach(const Wrench& from, const Wrench& to, const WrenchRates& rates, double dt_s);
+
+/// True where nothing at all is sent.
+bool is_zero(const Wrench& wrench);
 
 }  // namespace osteomill

@@ -1,5 +1,12 @@
 #include "osteomill/image/image.h"
 
+#include <stdexcept>
+#include <string>
+
+#include <png.h>
+
+#include "osteomill/files/atomic_file.h"
+
 namespace osteomill {
 
 Image averaged_down(const Image& image, int factor) {
@@ -17,6 +24,51 @@ Image averaged_down(const Image& image, int factor) {
     }
   }
   return small;
+}
+
+std::vector<unsigned char> encode_png(const Image& image) {
+  if (image.width <= 0 || image.height <= 0 ||
+      image.rgb.size() !=
+          3 * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height)) {
+    throw std::invalid_argument("encode_png: the image's sizes do not agree");
+  }
+  png_image header{};
+  header.version = PNG_IMAGE_VERSION;
+  header.width = static_cast<png_uint_32>(image.width);
+  header.height = static_cast<png_uint_32>(image.height);
+  header.format = PNG_FORMAT_RGB;
+  std::vector<unsigned char> bytes(PNG_IMAGE_PNG_SIZE_MAX(header));
+  png_alloc_size_t size = bytes.size();
+  if (!png_image_write_to_memory(&header, bytes.data(), &size, 0, image.rgb.data(), 0, nullptr)) {
+    throw std::runtime_error(std::string("encode_png: ") + header.message);
+  }
+  bytes.resize(size);
+  return bytes;
+}
+
+std::optional<Image> decode_png(std::span<const unsigned char> png) {
+  constexpr png_uint_32 kMaxSide = 4096;
+  png_image header{};
+  header.version = PNG_IMAGE_VERSION;
+  if (png_image_begin_read_from_memory(&header, png.data(), png.size()) == 0) return std::nullopt;
+  if (header.width > kMaxSide || header.height > kMaxSide) {
+    png_image_free(&header);
+    return std::nullopt;
+  }
+  header.format = PNG_FORMAT_RGB;
+  Image image{static_cast<int>(header.width), static_cast<int>(header.height),
+              std::vector<unsigned char>(PNG_IMAGE_SIZE(header))};
+  const png_color white{255, 255, 255};
+  // Frees the header whether it succeeds or not.
+  if (png_image_finish_read(&header, &white, image.rgb.data(), 0, nullptr) == 0) return std::nullopt;
+  return image;
+}
+
+void write_png(const std::filesystem::path& path, const Image& image) {
+  const std::vector<unsigned char> bytes = encode_png(image);
+  write_text_atomically(path, [&](std::ostream& out) {
+    out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  });
 }
 
 }  // namespace osteomill

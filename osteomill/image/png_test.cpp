@@ -1,5 +1,3 @@
-#include "osteomill/image/png.h"
-
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -9,6 +7,7 @@
 #include <png.h>
 
 #include "osteomill/files/input_error.h"
+#include "osteomill/image/image.h"
 
 namespace osteomill {
 namespace {

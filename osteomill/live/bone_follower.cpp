@@ -272,15 +272,11 @@ std::vector<double> BoneFollower::drops_by_label() const {
   std::vector<double> drops(bone.labels()->labels().size() + 1);
   for (const auto& [place, first] : impl_->history.first()) {
     const float* before = first.densities.data();
-    for (int k = 0; k < DensityBlock::kVoxels; ++k) {
-      for (int j = 0; j < DensityBlock::kVoxels; ++j) {
-        for (int i = 0; i < DensityBlock::kVoxels; ++i, ++before) {
-          const VoxelIndex v{first.first.i + i, first.first.j + j, first.first.k + k};
-          const LabelMap::Place label = bone.labels()->at(v);
-          if (label != 0) drops[label] += static_cast<double>(*before) - static_cast<double>(bone.grid()[v]);
-        }
-      }
-    }
+    for_each({first.first, first.last()}, [&](const VoxelIndex& v) {
+      const LabelMap::Place label = bone.labels()->at(v);
+      if (label != 0) drops[label] += static_cast<double>(*before) - static_cast<double>(bone.grid()[v]);
+      ++before;
+    });
   }
   return drops;
 }

@@ -10,11 +10,11 @@
 #include <utility>
 
 #include "tests/shapes.h"
+#include "tests/support/mesh_checks.h"
 #include <gtest/gtest.h>
 
 #include "osteomill/live/density_handover.h"
 #include "osteomill/milling/burr_mill.h"
-#include "osteomill/surface/mesh_checks.h"
 #include "osteomill/surface/surface_mesh.h"
 
 namespace osteomill {

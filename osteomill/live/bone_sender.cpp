@@ -9,7 +9,7 @@
 
 #include <igtlImageMessage.h>
 
-#include "osteomill/device/openigtlink/tcp_stream.h"
+#include "osteomill/device/socket.h"
 #include "osteomill/files/input_error.h"
 
 namespace osteomill {
@@ -47,17 +47,13 @@ igtl::ImageMessage::Pointer message_of(const BoneFollower& bone, const VoxelBox&
                         static_cast<float>(grid.spacing_mm.z()));
     message->SetScalarType(igtl::ImageMessage::TYPE_FLOAT32);
     message->SetEndian(igtl::ImageMessage::ENDIAN_LITTLE);
-    message->SetSubVolume(box.last.i - box.first.i + 1, box.last.j - box.first.j + 1,
-                          box.last.k - box.first.k + 1, box.first.i, box.first.j, box.first.k);
+    const auto [wide, high, deep] = box.dims();
+    message->SetSubVolume(wide, high, deep, box.first.i, box.first.j, box.first.k);
     igtl::Matrix4x4 matrix;
     message->SetMatrix(set_place(grid, matrix));
     message->AllocateScalars();
     auto* density = static_cast<float*>(message->GetScalarPointer());
-    for (int k = box.first.k; k <= box.last.k; ++k) {
-      for (int j = box.first.j; j <= box.last.j; ++j) {
-        for (int i = box.first.i; i <= box.last.i; ++i) *density++ = now.grid()[VoxelIndex{i, j, k}];
-      }
-    }
+    for_each(box, [&](const VoxelIndex& v) { *density++ = now.grid()[v]; });
   });
   message->Pack();
   return message;
@@ -72,10 +68,10 @@ VoxelBox milled_box(const BoneFollower& bone, const VoxelBox& all) {
   return box.intersected(all);
 }
 
-void send(TcpStream& stream, const igtl::ImageMessage::Pointer& message) {
-  stream.send({static_cast<const unsigned char*>(message->GetPackPointer()),
-               static_cast<std::size_t>(message->GetPackSize())},
-              kSendWithin);
+void send(Socket& stream, const igtl::ImageMessage::Pointer& message) {
+  stream.send_all({static_cast<const unsigned char*>(message->GetPackPointer()),
+                   static_cast<std::size_t>(message->GetPackSize())},
+                  kSendWithin);
 }
 
 }  // namespace
@@ -86,7 +82,7 @@ BoneSender::BoneSender(const BoneFollower& bone, const std::string& address) : b
   bone.read([&](const Volume& now) { voxels = now.geometry().voxel_count(); });
   if (voxels > std::numeric_limits<int>::max() / sizeof(float))
     throw InputError(name, "the scan is larger than an OpenIGTLink image may be, 2 GiB");
-  auto stream = std::make_unique<TcpStream>(name, host_and_port("--send-bone", address));
+  auto stream = std::make_unique<Socket>(name, host_and_port("--send-bone", address), Socket::Kind::stream);
   thread_ = std::thread([this, stream = std::move(stream)] { run(*stream); });
 }
 
@@ -99,19 +95,19 @@ BoneSender::~BoneSender() {
   thread_.join();
 }
 
-void BoneSender::run(TcpStream& stream) {
+void BoneSender::run(Socket& stream) {
   VoxelBox all;
   bone_.read([&](const Volume& now) { all = now.geometry().all_voxels(); });
   std::uint64_t sent_version = bone_.version();
   send(stream, message_of(bone_, all));
+  std::vector<unsigned char> unread(1 << 16);
   for (bool is_last = false; stream.is_open() && !is_last;) {
     {
       std::unique_lock lock(mutex_);
       is_last = end_.wait_for(lock, kBetweenMessages, [&] { return ends_; });
     }
     // What the receiver says is not wanted, but would stop it from saying more.
-    std::vector<unsigned char> unread;
-    stream.receive(unread, 1 << 16, 0ms);
+    stream.receive(unread);
     const std::uint64_t version = bone_.version();
     if (version == std::exchange(sent_version, version)) continue;
     if (const VoxelBox box = milled_box(bone_, all); !box.empty()) send(stream, message_of(bone_, box));

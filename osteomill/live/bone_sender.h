@@ -11,7 +11,7 @@
 
 namespace osteomill {
 
-class TcpStream;
+class Socket;
 
 /// Sends the bone as it is milled to whoever takes OpenIGTLink (3D Slicer, PLUS): IMAGE messages called
 /// OsteomillBone, at the beginning all of it, then at most twice a second, where it has changed, the box of
@@ -32,7 +32,7 @@ class BoneSender {
   bool is_connected() const { return is_connected_.load(std::memory_order_relaxed); }
 
  private:
-  void run(TcpStream& stream);
+  void run(Socket& stream);
 
   const BoneFollower& bone_;
   std::atomic<bool> is_connected_{true};

@@ -5,9 +5,9 @@
 #include <thread>
 
 #include "tests/shapes.h"
+#include "tests/support/igtl_stand_in.h"
 #include <gtest/gtest.h>
 
-#include "osteomill/device/openigtlink/igtl_stand_in.h"
 #include "osteomill/files/input_error.h"
 #include "osteomill/milling/burr_mill.h"
 
@@ -46,9 +46,7 @@ class SendBone : public ::testing::Test {
   SendBone()
       : bone_(std::make_shared<Volume>(testing_support::shape_volume(
             turned_grid(), testing_support::ball(turned_grid().world_from_voxel(Vec3(15, 15, 15)), 4)))),
-        follower_(bone_) {
-    server_.is_mute = true;
-  }
+        follower_(bone_) {}
   void mill() {
     BurrMill mill(bone_->geometry(), 1.0, {0.0, 1000.0}, {});
     const Vec3 centre_W = bone_->geometry().world_from_voxel(Vec3(15, 15, 28));

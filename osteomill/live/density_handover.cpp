@@ -13,15 +13,10 @@ constexpr int kSide = DensityBlock::kVoxels;
 }  // namespace
 
 DensityHandover::DensityHandover(const GridGeometry& geometry, std::size_t capacity)
-    : on_their_way_(std::make_unique<SpscQueue<DensityBlock>>(std::max<std::size_t>(capacity, 1))) {
-  std::size_t count = 1;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    brick_dims_[axis] = (geometry.dims[axis] + kSide - 1) / kSide;
-    count *= static_cast<std::size_t>(brick_dims_[axis]);
-  }
-  marked_.assign(count, 0);
-  order_.assign(count, 0);
-}
+    : brick_dims_(geometry.all_voxels().bricks(kSide).dims()),
+      marked_(cell_count(brick_dims_)),
+      order_(cell_count(brick_dims_)),
+      on_their_way_(std::make_unique<SpscQueue<DensityBlock>>(std::max<std::size_t>(capacity, 1))) {}
 
 DensityHandover::~DensityHandover() = default;
 
@@ -29,17 +24,13 @@ void DensityHandover::mark(const VolumeChange& change) noexcept {
   const VoxelBox& box = change.voxels;
   if (box.empty()) return;
   std::size_t waiting = waiting_.load(std::memory_order_relaxed);
-  for (int bk = box.first.k / kSide; bk <= box.last.k / kSide; ++bk) {
-    for (int bj = box.first.j / kSide; bj <= box.last.j / kSide; ++bj) {
-      for (int bi = box.first.i / kSide; bi <= box.last.i / kSide; ++bi) {
-        const auto number = static_cast<std::uint32_t>(bi + brick_dims_[0] * (bj + brick_dims_[1] * bk));
-        if (marked_[number]) continue;
-        marked_[number] = 1;
-        order_[(next_ + waiting) % order_.size()] = number;
-        ++waiting;
-      }
-    }
-  }
+  for_each(box.bricks(kSide), [&](const VoxelIndex& brick) {
+    const auto number = static_cast<std::uint32_t>(row_major(brick_dims_, brick.i, brick.j, brick.k));
+    if (marked_[number]) return;
+    marked_[number] = 1;
+    order_[(next_ + waiting) % order_.size()] = number;
+    ++waiting;
+  });
   waiting_.store(waiting, std::memory_order_release);
 }
 
@@ -56,9 +47,8 @@ void DensityHandover::send(const Volume& volume, std::size_t max) noexcept {
 }
 
 VoxelIndex DensityHandover::first_voxel(std::uint32_t number) const noexcept {
-  const int plain = static_cast<int>(number);
-  return {plain % brick_dims_[0] * kSide, plain / brick_dims_[0] % brick_dims_[1] * kSide,
-          plain / brick_dims_[0] / brick_dims_[1] * kSide};
+  const auto [bi, bj, bk] = cell_at(brick_dims_, number);
+  return VoxelBox::of_brick({bi, bj, bk}, kSide).first;
 }
 
 DensityBlock* DensityHandover::front() noexcept {

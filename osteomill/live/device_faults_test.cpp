@@ -11,7 +11,7 @@
 #include "tests/shapes.h"
 #include <gtest/gtest.h>
 
-#include "osteomill/geometry/wrench_rates.h"
+#include "osteomill/geometry/wrench.h"
 #include "osteomill/haptics/algorithms.h"
 #include "osteomill/session/milling_session.h"
 

@@ -8,7 +8,7 @@
 #include "osteomill/numbers/work_progress.h"
 #include "osteomill/recording/describe_run.h"
 #include "osteomill/recording/recording.h"
-#include "osteomill/volume/density_hash.h"
+#include "osteomill/volume/density_grid.h"
 
 namespace osteomill {
 

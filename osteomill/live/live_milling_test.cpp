@@ -10,13 +10,12 @@
 #include <vector>
 
 #include "tests/shapes.h"
+#include "tests/support/recording_samples.h"
 #include <gtest/gtest.h>
 
 #include "osteomill/operator/milling_entry.h"
 #include "osteomill/operator/virtual_hand.h"
 #include "osteomill/recording/read_recording.h"
-#include "osteomill/recording/recording_samples.h"
-#include "osteomill/recording/repeat_milling.h"
 #include "osteomill/recording/replay_recording.h"
 #include "osteomill/surface/surface_mesh.h"
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <utility>
 
 #include "osteomill/device/real_time.h"
@@ -30,13 +29,11 @@ struct LiveSession::Queues {
   SpscQueue<TickRecord> records{4096};
 };
 
-LiveSession::LiveSession(std::unique_ptr<MillingSession> session, Device& device, double tick_s)
+LiveSession::LiveSession(std::unique_ptr<MillingSession> session, Device& device)
     : device_(device),
-      tick_s_(tick_s),
       crash_stop_(device),
       session_(std::move(session)),
-      queues_(std::make_unique<Queues>()),
-      timing_(tick_s) {
+      queues_(std::make_unique<Queues>()) {
   session_->guard().protect_a_hand();
 }
 
@@ -135,19 +132,20 @@ void LiveSession::run() noexcept {
 }
 
 void LiveSession::tick_until_stopped() {
-  const auto period_ns = static_cast<Nanoseconds>(std::llround(1e9 * tick_s_));
-  NextDeadline next{monotonic_now_ns() + period_ns, 1};
+  constexpr double kTick_s = 1e-3;
+  constexpr Nanoseconds kTick_ns = 1'000'000;
+  NextDeadline next{monotonic_now_ns() + kTick_ns, 1};
   while (!stopping_.load(std::memory_order_acquire) && !crash_stop_.asked()) {
     TickTimes times{next.deadline_ns, 0, 0, next.periods};
     times.woke_ns = wait_until(next.deadline_ns);
     take_commands();
-    const double passed_s = next.periods * tick_s_;
+    const double passed_s = next.periods * kTick_s;
     const TickRecord record = tick(time_s_, std::min(passed_s, kMaxTick_s));
     times.done_ns = monotonic_now_ns();
     timing_.add(times, record);
-    next = next_deadline(next.deadline_ns, times.done_ns, period_ns);
-    time_s_ += next.periods * tick_s_;
-    device_.tick_done(record.X_WT, next.periods * tick_s_);
+    next = next_deadline(next.deadline_ns, times.done_ns, kTick_ns);
+    time_s_ += next.periods * kTick_s;
+    device_.tick_done(record.X_WT, next.periods * kTick_s);
   }
 }
 

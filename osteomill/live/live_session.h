@@ -40,7 +40,7 @@ class LiveSession {
   using CommandNumber = std::uint64_t;
 
   /// `device` outlives this object. Does not start yet.
-  LiveSession(std::unique_ptr<MillingSession> session, Device& device, double tick_s = 1e-3);
+  LiveSession(std::unique_ptr<MillingSession> session, Device& device);
   ~LiveSession();
   LiveSession(const LiveSession&) = delete;
   LiveSession& operator=(const LiveSession&) = delete;
@@ -122,7 +122,6 @@ class LiveSession {
   TickRecord step(double time_s, double dt_s, bool mills);
 
   Device& device_;
-  double tick_s_;
   CrashStop crash_stop_;
   std::thread thread_;
   std::atomic<bool> running_{false};

@@ -1,18 +1,96 @@
 #include "osteomill/live/live_timing.h"
 
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <limits>
+#include <type_traits>
+
 namespace osteomill {
 
 namespace {
 
-constexpr double kUsPerNs = 1e-3;
 constexpr Nanoseconds kNsPerS = 1'000'000'000;
+constexpr Nanoseconds kSpin_ns = 100'000;
 constexpr Nanoseconds kLate_ns = 1'000'000;
+constexpr double kUsPerNs = 1e-3;
 
-void add_to(std::atomic<std::uint64_t>& counter, std::uint64_t count) {
+// One thread alone adds, so that no locked instruction is needed.
+template <typename T>
+void add_to(std::atomic<T>& counter, std::type_identity_t<T> count) {
   counter.store(counter.load(std::memory_order_relaxed) + count, std::memory_order_relaxed);
 }
 
 }  // namespace
+
+Nanoseconds monotonic_now_ns() {
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return kNsPerS * now.tv_sec + now.tv_nsec;
+}
+
+NextDeadline next_deadline(Nanoseconds deadline_ns, Nanoseconds now_ns, Nanoseconds period_ns) {
+  const Nanoseconds passed = (now_ns - deadline_ns) / period_ns;
+  const int periods = passed < 2 ? 1 : static_cast<int>(passed);
+  return {deadline_ns + periods * period_ns, periods};
+}
+
+Nanoseconds wait_until(Nanoseconds deadline_ns) {
+  const Nanoseconds wake_ns = deadline_ns - kSpin_ns;
+  if (monotonic_now_ns() < wake_ns) {
+    const timespec wake{wake_ns / kNsPerS, wake_ns % kNsPerS};
+    // A signal ends the sleep early; what is left is slept on.
+    while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &wake, nullptr) != 0) {
+    }
+  }
+  Nanoseconds now_ns = monotonic_now_ns();
+  while (now_ns < deadline_ns) now_ns = monotonic_now_ns();
+  return now_ns;
+}
+
+void TimeHistogram::add(double time_us) {
+  add_to(bins_[bin_of(time_us)], 1);
+  add_to(count_, 1);
+  if (time_us > max_us_.load(std::memory_order_relaxed)) {
+    max_us_.store(time_us, std::memory_order_relaxed);
+  }
+}
+
+std::size_t TimeHistogram::bin_of(double time_us) {
+  if (!(time_us > 0)) return 0;
+  if (time_us < 1e3) return static_cast<std::size_t>(time_us);
+  if (time_us < 1e4) return kFineBins + static_cast<std::size_t>((time_us - 1e3) / 10);
+  return kBins - 1;
+}
+
+double TimeHistogram::upper_end_us(std::size_t bin) {
+  if (bin < kFineBins) return static_cast<double>(bin + 1);
+  if (bin + 1 < kBins) return 1e3 + 10 * static_cast<double>(bin - kFineBins + 1);
+  return std::numeric_limits<double>::infinity();
+}
+
+TimePercentiles TimeHistogram::percentiles() const {
+  std::array<std::uint32_t, kBins> counts;
+  std::uint64_t total = 0;
+  for (std::size_t n = 0; n < kBins; ++n) total += counts[n] = bins_[n].load(std::memory_order_relaxed);
+  TimePercentiles found;
+  if (total == 0) return found;
+  found.max_us = max_us_.load(std::memory_order_relaxed);
+  const auto of_rank = [&](std::uint64_t rank) {
+    std::uint64_t passed = 0;
+    std::size_t bin = 0;
+    while (bin + 1 < kBins && (passed += counts[bin]) < rank) ++bin;
+    return std::min(upper_end_us(bin), found.max_us);
+  };
+  const auto at_share = [&](double share) {
+    const auto [lower, upper] = percentile_ranks(share, total);
+    return 0.5 * (of_rank(lower) + of_rank(upper));
+  };
+  found.p50_us = at_share(0.5);
+  found.p99_us = at_share(0.99);
+  found.p999_us = at_share(0.999);
+  return found;
+}
 
 void LiveTiming::add(const TickTimes& times, const TickRecord& record) {
   const Nanoseconds lateness_ns = times.woke_ns - times.deadline_ns;

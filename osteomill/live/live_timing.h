@@ -1,14 +1,66 @@
 #pragma once
 
+#include <array>
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 
-#include "osteomill/live/tick_clock.h"
-#include "osteomill/live/time_histogram.h"
 #include "osteomill/numbers/distribution.h"
 #include "osteomill/session/tick_record.h"
 
 namespace osteomill {
+
+/// Nanoseconds of the system's monotonic clock.
+using Nanoseconds = std::int64_t;
+
+Nanoseconds monotonic_now_ns();
+
+/// The deadline after one that was met, or not: `periods` after it.
+struct NextDeadline {
+  Nanoseconds deadline_ns;
+  int periods;
+};
+
+/// The next deadline of a loop of `period_ns`, at `now_ns` when the tick of `deadline_ns` is done: one period
+/// on, or, where that lies a whole period or more in the past, the last one that has passed. Ticks that were
+/// missed are not made up for: they would come in a burst, faster than any device takes them.
+NextDeadline next_deadline(Nanoseconds deadline_ns, Nanoseconds now_ns, Nanoseconds period_ns);
+
+/// Sleeps until 100 us before the deadline (clock_nanosleep to an absolute time), then looks at the clock
+/// until it has come: waking from sleep is what is late. Returns the time at which it returns.
+Nanoseconds wait_until(Nanoseconds deadline_ns);
+
+/// Percentiles (numbers/distribution.h) of a histogram of times, microseconds. A time counts as the upper end
+/// of the bin it falls into (1 us wide up to 1 ms, 10 us up to 10 ms), or as the greatest time, where that is
+/// less. All zero where none was counted.
+struct TimePercentiles {
+  double p50_us = 0;
+  double p99_us = 0;
+  double p999_us = 0;
+  double max_us = 0;
+};
+
+/// Counts times. One thread adds, safely in the haptic tick; any thread reads meanwhile, and may see some of
+/// the newest not yet.
+class TimeHistogram {
+ public:
+  /// Times below zero count as zero.
+  void add(double time_us);
+  TimePercentiles percentiles() const;
+  std::uint64_t count() const { return count_.load(std::memory_order_relaxed); }
+
+ private:
+  static constexpr std::size_t kFineBins = 1000;
+  static constexpr std::size_t kCoarseBins = 900;
+  static constexpr std::size_t kBins = kFineBins + kCoarseBins + 1;
+
+  static std::size_t bin_of(double time_us);
+  static double upper_end_us(std::size_t bin);
+
+  std::array<std::atomic<std::uint32_t>, kBins> bins_{};
+  std::atomic<std::uint64_t> count_{0};
+  std::atomic<double> max_us_{0};
+};
 
 /// When one tick was due, when its thread woke for it, and when it was done.
 struct TickTimes {
@@ -41,7 +93,6 @@ struct TimingSummary {
 /// Counts ticks' times. One thread adds, safely in the haptic tick; any thread reads meanwhile.
 class LiveTiming {
  public:
-  explicit LiveTiming(double tick_s = 1e-3) : held_(1e6 * tick_s) {}
   void add(const TickTimes& times, const TickRecord& record);
   TimingSummary summary() const;
 

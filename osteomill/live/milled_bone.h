@@ -26,7 +26,7 @@ struct MilledBone {
   double isovalue = 0;
   double removed_mm3 = 0;
   std::array<int, 3> dims{};
-  /// Of the scan's densities as they were read (fingerprint_of, density_hash.h).
+  /// Of the scan's densities as they were read (fingerprint_of, density_grid.h).
   std::uint64_t fingerprint = 0;
   /// Every brick that was ever milled, as it is now.
   std::vector<DensityBlock> bricks;

@@ -10,7 +10,7 @@
 
 #include "osteomill/files/input_error.h"
 #include "osteomill/files/temporary_folder.h"
-#include "osteomill/volume/density_hash.h"
+#include "osteomill/volume/density_grid.h"
 
 namespace osteomill {
 namespace {

@@ -1,6 +1,6 @@
-#include "osteomill/live/time_histogram.h"
-
 #include <gtest/gtest.h>
+
+#include "osteomill/live/live_timing.h"
 
 namespace osteomill {
 namespace {

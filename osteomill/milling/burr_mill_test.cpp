@@ -8,7 +8,6 @@
 #include <gtest/gtest.h>
 
 #include "osteomill/tool/burr_presses.h"
-#include "osteomill/volume/isosurface.h"
 #include "osteomill/volume/sampling.h"
 
 namespace osteomill {

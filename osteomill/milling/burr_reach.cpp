@@ -41,18 +41,16 @@ BurrReach::BurrReach(const GridGeometry& geometry, double max_radius_mm, float f
                      std::size_t max_pieces)
     : geometry_(geometry),
       max_pieces_(std::min(max_pieces, max_pieces_in_ball(geometry, max_radius_mm))),
-      floor_density_(floor_density) {
+      floor_density_(floor_density),
+      brick_dims_(geometry.all_voxels().bricks(kSide).dims()) {
   max_voxels_ =
       std::min(max_voxels_in_ball(geometry, max_radius_mm), static_cast<std::size_t>(kSide) * max_pieces_);
-  std::size_t bricks = 1;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    brick_dims_[axis] = (geometry.dims[axis] + kSide - 1) / kSide;
-    bricks *= static_cast<std::size_t>(brick_dims_[axis]);
     squares_[axis].of_voxel_mm2.resize(static_cast<std::size_t>(kSide * brick_dims_[axis]));
     squares_[axis].of_brick_mm2.resize(static_cast<std::size_t>(brick_dims_[axis]));
   }
-  known_.resize(bricks);
-  bits_.resize(bricks);
+  known_.resize(cell_count(brick_dims_));
+  bits_.resize(cell_count(brick_dims_));
   words_of_line_ = (static_cast<std::size_t>(brick_dims_[0]) + kWordBits - 1) / kWordBits;
   held_.resize(words_of_line_ * brick_line(0, brick_dims_[2]));
   pieces_.reserve(max_pieces_);

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "osteomill/milling/burr_mill.h"
-#include "osteomill/volume/isosurface.h"
+#include "osteomill/volume/sampling.h"
 
 namespace osteomill {
 namespace {

@@ -4,7 +4,6 @@
 #include <span>
 
 #include "osteomill/milling/burr_reach.h"
-#include "osteomill/milling/cut_profile.h"
 #include "osteomill/milling/cut_voxels.h"
 
 namespace osteomill {

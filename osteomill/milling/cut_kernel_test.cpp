@@ -8,7 +8,7 @@
 #include "tests/instruction_sets.h"
 #include <gtest/gtest.h>
 
-#include "osteomill/milling/burr_advance.h"
+#include "osteomill/milling/cut_voxels.h"
 
 namespace osteomill {
 namespace {

@@ -1,14 +1,38 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <vector>
 
 #include "osteomill/geometry/pose.h"
 #include "osteomill/milling/burr_reach.h"
-#include "osteomill/milling/cut_profile.h"
 
 namespace osteomill {
+
+/// The density that cutting leaves `t` voxels outside a cut surface (inside it where negative), counted along
+/// the surface's normal: the isovalue on it, the surroundings one voxel inside, as much above the isovalue
+/// one voxel outside, and from there on so steep that bone soon stays as it is. It does not depend on what
+/// was there, so cutting to the same surface again changes nothing. docs/algorithms.md.
+struct CutProfile {
+  float surroundings = 0;
+  float isovalue = 0.5f;
+  float per_voxel = 0.5f;
+  float beyond_per_voxel = 4;
+
+  /// How far outside the surface bone is lowered, if it is not more than three times as dense as the
+  /// reference.
+  static constexpr double kReach_voxels = 1.55;
+
+  /// The isovalue and the reference are above the surroundings.
+  static CutProfile between(double surroundings, double isovalue, double reference) {
+    return {static_cast<float>(surroundings), static_cast<float>(isovalue),
+            static_cast<float>(isovalue - surroundings), static_cast<float>(4 * (reference - surroundings))};
+  }
+  float density(float t) const {
+    return std::max(surroundings, isovalue + per_voxel * t + beyond_per_voxel * std::max(0.0f, t - 1));
+  }
+};
 
 /// The burr's ball as it cuts, in the grid's axes, mm from the first voxel's centre.
 struct CuttingBall {
@@ -81,5 +105,18 @@ class CutVoxels {
   // Along each axis: how far each plane of voxels lies from the ball's centre.
   std::array<std::vector<float>, 3> from_centre_mm_;
 };
+
+/// How far ahead of its centre a ball cuts, and which part of each drop is made.
+struct BurrAdvance {
+  double ahead_mm = 0;
+  CutVoxels::Shares shares;
+};
+
+/// The ball's place between `min_ahead_mm` and `max_ahead_mm` where cutting to its surface takes just the
+/// `budget` (a sum of densities, above 0); searched from `start_ahead_mm`. Bone that the trailing half
+/// overlaps is paid first, with at most half the budget. Where even the least place takes more, part of each
+/// drop is made; never is more spent than the budget, but for how floats round. Safe in the haptic tick.
+BurrAdvance advance_within(double budget, const CutVoxels& voxels, double start_ahead_mm, double min_ahead_mm,
+                           double max_ahead_mm);
 
 }  // namespace osteomill

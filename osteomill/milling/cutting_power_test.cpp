@@ -1,8 +1,8 @@
-#include "osteomill/milling/cutting_power.h"
-
 #include <stdexcept>
 
 #include <gtest/gtest.h>
+
+#include "osteomill/milling/burr_mill.h"
 
 namespace osteomill {
 namespace {

@@ -6,7 +6,7 @@
 #include "tests/shapes.h"
 #include <gtest/gtest.h>
 
-#include "osteomill/milling/cutting_power.h"
+#include "osteomill/milling/burr_mill.h"
 
 namespace osteomill {
 namespace {

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <vector>
 
-#include "osteomill/volume/isosurface.h"
+#include "osteomill/volume/sampling.h"
 
 namespace osteomill {
 

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "osteomill/haptics/algorithms.h"
-#include "osteomill/tool/tool_distance.h"
+#include "osteomill/tool/milling_tool.h"
 
 namespace osteomill {
 namespace {

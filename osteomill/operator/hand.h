@@ -3,7 +3,6 @@
 #include <cstdint>
 
 #include "osteomill/geometry/pose.h"
-#include "osteomill/geometry/twist.h"
 #include "osteomill/geometry/wrench.h"
 
 namespace osteomill {

@@ -8,7 +8,7 @@
 #include "osteomill/files/input_error.h"
 #include "osteomill/numbers/work_progress.h"
 #include "osteomill/operator/entry_places.h"
-#include "osteomill/volume/isosurface.h"
+#include "osteomill/volume/sampling.h"
 
 namespace osteomill {
 

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "osteomill/files/input_error.h"
-#include "osteomill/volume/isovalue_warnings.h"
+#include "osteomill/volume/isovalue.h"
 
 namespace osteomill {
 namespace {

@@ -11,7 +11,7 @@
 #include "osteomill/files/input_error.h"
 #include "osteomill/haptics/algorithms.h"
 #include "osteomill/numbers/positive.h"
-#include "osteomill/recording/hdf5_attributes.h"
+#include "osteomill/recording/hdf5.h"
 
 namespace osteomill {
 

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "osteomill/recording/hdf5_handle.h"
+#include "osteomill/recording/hdf5.h"
 #include "osteomill/recording/run_description.h"
 
 namespace osteomill {

@@ -14,7 +14,7 @@
 
 #include "osteomill/files/input_error.h"
 #include "osteomill/recording/description_attributes.h"
-#include "osteomill/recording/hdf5_attributes.h"
+#include "osteomill/recording/hdf5.h"
 #include "osteomill/recording/record_columns.h"
 #include "osteomill/recording/recording_checksum.h"
 #include "osteomill/recording/recording_file.h"

@@ -4,14 +4,14 @@
 #include <functional>
 #include <iterator>
 
+#include "tests/support/recording_samples.h"
 #include <gtest/gtest.h>
 #include <hdf5.h>
 
 #include "osteomill/files/input_error.h"
-#include "osteomill/recording/hdf5_attributes.h"
+#include "osteomill/recording/hdf5.h"
 #include "osteomill/recording/recorder.h"
 #include "osteomill/recording/recording_checksum.h"
-#include "osteomill/recording/recording_samples.h"
 
 namespace osteomill {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "osteomill/recording/recording.h"
 #include "osteomill/recording/run_description.h"
-#include "osteomill/recording/session_start.h"
 #include "osteomill/session/tick_record.h"
 
 namespace osteomill {

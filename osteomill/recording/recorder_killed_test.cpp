@@ -4,6 +4,7 @@
 #include <new>
 #include <thread>
 
+#include "tests/support/recording_samples.h"
 #include <gtest/gtest.h>
 #include <sys/mman.h>
 #include <sys/wait.h>
@@ -11,7 +12,6 @@
 
 #include "osteomill/recording/read_recording.h"
 #include "osteomill/recording/recorder.h"
-#include "osteomill/recording/recording_samples.h"
 
 namespace osteomill {
 namespace {

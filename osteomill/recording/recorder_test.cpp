@@ -6,6 +6,7 @@
 #include <limits>
 #include <thread>
 
+#include "tests/support/recording_samples.h"
 #include <gtest/gtest.h>
 #include <malloc.h>
 #include <sys/resource.h>
@@ -15,7 +16,6 @@
 #include "osteomill/files/input_error.h"
 #include "osteomill/recording/read_recording.h"
 #include "osteomill/recording/recording_file.h"
-#include "osteomill/recording/recording_samples.h"
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define OSTEOMILL_COUNTS_ALLOCATIONS 0

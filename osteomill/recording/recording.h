@@ -7,10 +7,24 @@
 #include <vector>
 
 #include "osteomill/recording/run_description.h"
-#include "osteomill/recording/session_start.h"
+#include "osteomill/session/milling_session.h"
 #include "osteomill/session/tick_record.h"
+#include "osteomill/volume/density_block.h"
 
 namespace osteomill {
+
+/// What a session begins from, where that is not a scan that nobody has touched: with the inputs of its ticks
+/// all that it takes to run them again.
+struct SessionStart {
+  RunDescription run;
+  TakenOver taken_over;
+  double removed_mm3 = 0;
+  /// Every brick in which the bone may differ from the scan, as it is at the beginning.
+  std::vector<DensityBlock> bricks;
+  /// Not empty: it began in the recording of this name in the same folder, which ends where this one begins;
+  /// the rest means nothing then.
+  std::string goes_on_from;
+};
 
 /// A picture that belongs to a recording, as the bytes of a PNG file.
 struct RunPicture {

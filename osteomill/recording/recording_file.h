@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "osteomill/recording/hdf5_handle.h"
+#include "osteomill/recording/hdf5.h"
 #include "osteomill/recording/recording.h"
 
 namespace osteomill {

@@ -1,16 +1,15 @@
-#include "osteomill/recording/repeat_milling.h"
-
 #include <algorithm>
 
 #include "tests/shapes.h"
+#include "tests/support/recording_samples.h"
 #include <gtest/gtest.h>
 
-#include "osteomill/device/posed_device.h"
+#include "osteomill/device/device.h"
 #include "osteomill/files/input_error.h"
 #include "osteomill/haptics/algorithms.h"
 #include "osteomill/recording/read_recording.h"
 #include "osteomill/recording/recorder.h"
-#include "osteomill/recording/recording_samples.h"
+#include "osteomill/recording/replay_recording.h"
 #include "osteomill/recording/session_settings.h"
 #include "osteomill/session/milling_session.h"
 

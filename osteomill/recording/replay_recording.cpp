@@ -1,17 +1,20 @@
 #include "osteomill/recording/replay_recording.h"
 
+#include <algorithm>
 #include <bit>
 #include <stdexcept>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "osteomill/device/posed_device.h"
+#include "osteomill/device/device.h"
 #include "osteomill/files/input_error.h"
+#include "osteomill/milling/burr_mill.h"
+#include "osteomill/milling/cutting_reaction.h"
 #include "osteomill/recording/record_columns.h"
 #include "osteomill/recording/session_settings.h"
 #include "osteomill/session/milling_setup.h"
-#include "osteomill/volume/density_hash.h"
+#include "osteomill/volume/density_grid.h"
 
 namespace osteomill {
 
@@ -36,11 +39,10 @@ void require_replayable(const Recording& recording) {
     refuse(recording, "goes on from " + recording.sessions.front().start.goes_on_from);
 }
 
-std::shared_ptr<Volume> bone_at(const Volume& scan, const SessionStart& start) {
-  auto bone = std::make_shared<Volume>(scan);
-  bone->set_isovalue(start.run.isovalue);
-  for (DensityBlock brick : start.bricks) swap_densities(*bone, brick);
-  return bone;
+// From the scan.
+void begin_at(const SessionStart& start, Volume& bone) {
+  bone.set_isovalue(start.run.isovalue);
+  for (DensityBlock brick : start.bricks) swap_densities(bone, brick);
 }
 
 std::unique_ptr<MillingSession> session_at(const Volume& scan, const SessionStart& start,
@@ -51,8 +53,10 @@ std::unique_ptr<MillingSession> session_at(const Volume& scan, const SessionStar
   const SessionSettings settings = session_settings(run, recording.path);
   try {
     require_workable(run.tool, scan.geometry());
+    auto bone = std::make_shared<Volume>(scan);
+    begin_at(start, *bone);
     auto session = std::make_unique<MillingSession>(
-        bone_at(scan, start), run.tool, make_algorithm(*algorithm, haptic_settings(run)), settings.densities,
+        std::move(bone), run.tool, make_algorithm(*algorithm, haptic_settings(run)), settings.densities,
         settings.milling, settings.guard.limits, run.tick_period_s);
     session->set_vibration(settings.vibration);
     session->guard() = WrenchGuard(settings.guard);
@@ -86,6 +90,52 @@ std::optional<std::string> difference_of(const TickRecord& recorded, const TickR
     return fmt::format("{} is {} where {} was recorded (by {:.3g})", column.name, again, then, again - then);
   }
   return std::nullopt;
+}
+
+BurrMill make_mill(const Recording& recording, const RunDescription& run, const SessionSettings& settings,
+                   const GridGeometry& geometry) {
+  try {
+    return BurrMill(geometry, run.tool.burr_radius_mm, settings.densities, settings.milling);
+  } catch (const std::invalid_argument& error) {
+    refuse(recording, fmt::format("cannot be repeated: {}", error.what()));
+  }
+}
+
+void require_same_removal(const Recording& recording, std::size_t tick, double removed_mm3) {
+  const double recorded_mm3 = recording.records[tick].removed_mm3;
+  if (removed_mm3 == recorded_mm3) return;
+  if (tick == 0) {
+    refuse(recording, fmt::format("goes on from other milling: {:.6g} mm^3 had been removed when it began",
+                                  recorded_mm3));
+  }
+  refuse(recording, fmt::format("was made with another scan ({}) or version ({}): at tick {} it had removed "
+                                "{:.9g} mm^3, where this one loses {:.9g}",
+                                recording.description.scan_name, recording.description.program_version, tick,
+                                recorded_mm3, removed_mm3));
+}
+
+// Of version 2, whose recordings hold one session and begin with the scan.
+std::vector<RecordedSession> sessions_of(const Recording& recording) {
+  if (!recording.sessions.empty()) return recording.sessions;
+  return {{0, {recording.description, {}, 0, {}, ""}}};
+}
+
+void repeat_session(Volume& volume, const Recording& recording, const RecordedSession& session,
+                    std::size_t end) {
+  const SessionStart& start = session.start;
+  const SessionSettings settings = session_settings(start.run, recording.path);
+  BurrMill mill = make_mill(recording, start.run, settings, volume.geometry());
+  begin_at(start, volume);
+  double removed_mm3 = start.removed_mm3;
+  for (std::size_t tick = session.first; tick < end; ++tick) {
+    const TickRecord& record = recording.records[tick];
+    if (!record.paused) {
+      const Vec3 paying_W_N =
+          paying_force_W_N(settings.milling, record.X_WT, record.burr_force_W_N, record.spindle_on);
+      removed_mm3 += mill.step(volume, record.X_WT.position_mm, paying_W_N, record.dt_s).removed_mm3;
+    }
+    require_same_removal(recording, tick, removed_mm3);
+  }
 }
 
 }  // namespace
@@ -145,6 +195,23 @@ Verification verify_recording(const Volume& scan, const Recording& recording,
   };
   replay_recording(scan, recording, replay);
   return verified;
+}
+
+void repeat_milling(Volume& volume, const Recording& recording) {
+  require_made_with(recording, volume);
+  if (recording.dropped > 0) {
+    refuse(recording, fmt::format("lost {} ticks, so its milling cannot be repeated", recording.dropped));
+  }
+  const Volume scan = volume;
+  const std::vector<RecordedSession> sessions = sessions_of(recording);
+  if (const std::string& before = sessions.front().start.goes_on_from; !before.empty())
+    refuse(recording, "goes on from other milling, that of " + before);
+  for (std::size_t n = 0; n < sessions.size(); ++n) {
+    if (n > 0) volume = scan;
+    repeat_session(volume, recording, sessions[n],
+                   n + 1 < sessions.size() ? sessions[n + 1].first : recording.records.size());
+  }
+  volume.set_isovalue(scan.isovalue());
 }
 
 }  // namespace osteomill

@@ -5,15 +5,15 @@
 #include <set>
 
 #include "tests/shapes.h"
+#include "tests/support/recording_samples.h"
 #include <gtest/gtest.h>
 
-#include "osteomill/device/posed_device.h"
+#include "osteomill/device/device.h"
 #include "osteomill/files/input_error.h"
 #include "osteomill/recording/describe_run.h"
 #include "osteomill/recording/read_recording.h"
 #include "osteomill/recording/recorder.h"
-#include "osteomill/recording/recording_samples.h"
-#include "osteomill/volume/density_hash.h"
+#include "osteomill/volume/density_grid.h"
 
 namespace osteomill {
 namespace {

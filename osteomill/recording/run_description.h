@@ -49,7 +49,7 @@ struct RunDescription {
   /// Where the grid lies (GridGeometry).
   Vec3 origin_mm = Vec3::Zero();
   Mat3 direction = Mat3::Identity();
-  /// Of the densities as they were read, and of the label map (density_hash.h); 0 where nobody said, or there
+  /// Of the densities as they were read, and of the label map (density_grid.h); 0 where nobody said, or there
   /// is none.
   std::uint64_t scan_hash = 0;
   std::uint64_t label_map_hash = 0;

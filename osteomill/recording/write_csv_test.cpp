@@ -5,10 +5,10 @@
 #include <locale>
 #include <sstream>
 
+#include "tests/support/recording_samples.h"
 #include <gtest/gtest.h>
 
 #include "osteomill/files/input_error.h"
-#include "osteomill/recording/recording_samples.h"
 
 namespace osteomill {
 namespace {

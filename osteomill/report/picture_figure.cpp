@@ -7,7 +7,7 @@
 
 #include "osteomill/files/input_error.h"
 #include "osteomill/files/temporary_folder.h"
-#include "osteomill/image/png.h"
+#include "osteomill/image/image.h"
 #include "osteomill/report/gnuplot.h"
 
 namespace osteomill {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "osteomill/image/png.h"
+#include "osteomill/image/image.h"
 
 namespace osteomill::testing_support {
 

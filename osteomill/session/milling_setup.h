@@ -6,7 +6,6 @@
 #include "osteomill/geometry/wrench.h"
 #include "osteomill/haptics/algorithms.h"
 #include "osteomill/milling/burr_mill.h"
-#include "osteomill/milling/cutting_power.h"
 #include "osteomill/session/milling_session.h"
 #include "osteomill/tool/milling_tool.h"
 

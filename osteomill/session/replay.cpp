@@ -1,6 +1,6 @@
 #include "osteomill/session/replay.h"
 
-#include "osteomill/device/posed_device.h"
+#include "osteomill/device/device.h"
 
 namespace osteomill {
 

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "osteomill/geometry/wrench_rates.h"
+#include "osteomill/geometry/wrench.h"
 #include "osteomill/session/passivity_observer.h"
 
 namespace osteomill {

@@ -125,10 +125,6 @@ SoundPlayer::~SoundPlayer() {
   if (impl_->device != nullptr) alcCloseDevice(impl_->device);
 }
 
-bool SoundPlayer::audible() const {
-  return impl_->thread.joinable();
-}
-
 void SoundPlayer::set(const SpindleState& state) {
   impl_->speed_rpm.store(state.speed_rpm, std::memory_order_relaxed);
   impl_->load.store(state.load, std::memory_order_relaxed);

@@ -33,8 +33,6 @@ class SoundPlayer {
   SoundPlayer(const SoundPlayer&) = delete;
   SoundPlayer& operator=(const SoundPlayer&) = delete;
 
-  /// Whether there is a device.
-  bool audible() const;
   /// From one thread; never waits.
   void set(const SpindleState& state);
 

@@ -116,8 +116,7 @@ TEST(SoundStream, PitchFollowsSpeedAllTheWayThroughOpenAl) {
 
 TEST(SoundPlayer, WithoutADeviceNothingIsWrong) {
   SoundPlayer player;
-  player.set({40000, 0.5});
-  SUCCEED() << player.audible();
+  EXPECT_NO_THROW(player.set({40000, 0.5}));
 }
 
 }  // namespace

@@ -3,9 +3,9 @@
 #include <map>
 
 #include "tests/shapes.h"
+#include "tests/support/mesh_checks.h"
 #include <gtest/gtest.h>
 
-#include "osteomill/surface/mesh_checks.h"
 #include "osteomill/surface/surface_mesh.h"
 
 namespace osteomill {

@@ -5,6 +5,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "osteomill/geometry/pose.h"
+
 namespace osteomill {
 
 /// One corner of the isosurface's triangles, laid out so that it can be handed to a graphics card as it is.
@@ -19,6 +21,10 @@ struct MeshVertex {
   friend bool operator==(const MeshVertex&, const MeshVertex&) = default;
 };
 static_assert(sizeof(MeshVertex) == 28 && std::is_trivially_copyable_v<MeshVertex>);
+
+inline Vec3 vec3_of(const std::array<float, 3>& numbers) {
+  return {static_cast<double>(numbers[0]), static_cast<double>(numbers[1]), static_cast<double>(numbers[2])};
+}
 
 /// A piece of the isosurface as indexed triangles: three indices each, anticlockwise seen from outside the
 /// bone. Vertices are shared within a piece; where pieces meet, both have the same vertices, bit for bit.

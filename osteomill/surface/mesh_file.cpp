@@ -11,7 +11,6 @@
 
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/files/input_error.h"
-#include "osteomill/surface/vertex_label.h"
 
 namespace osteomill {
 
@@ -87,7 +86,7 @@ void write_stl(Output& out, const BrickMesh& mesh) {
 const Label kUnlabelled{0, "", {222, 194, 148}, false};
 
 const Label& label_of(const LabelMap& labels, const MeshVertex& vertex) {
-  const LabelMap::Place place = label_below(labels, vertex);
+  const LabelMap::Place place = labels.under_surface(vec3_of(vertex.position_mm), vec3_of(vertex.normal));
   return place == 0 ? kUnlabelled : labels.label(place);
 }
 

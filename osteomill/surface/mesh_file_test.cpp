@@ -9,11 +9,11 @@
 #include <string>
 
 #include "tests/shapes.h"
+#include "tests/support/mesh_checks.h"
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include "osteomill/files/input_error.h"
-#include "osteomill/surface/mesh_checks.h"
 
 namespace osteomill {
 namespace {

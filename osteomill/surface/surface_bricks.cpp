@@ -4,11 +4,8 @@
 
 namespace osteomill {
 
-SurfaceBricks::SurfaceBricks(const std::array<int, 3>& voxel_dims) : voxel_dims_(voxel_dims) {
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    dims_[axis] = (voxel_dims[axis] + kBrickCells - 1) / kBrickCells;
-  }
-}
+SurfaceBricks::SurfaceBricks(const std::array<int, 3>& voxel_dims)
+    : voxel_dims_(voxel_dims), dims_(GridGeometry{voxel_dims}.all_voxels().bricks(kBrickCells).dims()) {}
 
 std::array<int, 3> SurfaceBricks::coordinates(std::size_t brick) const {
   return cell_at(dims_, brick);

@@ -7,10 +7,10 @@
 #include <set>
 
 #include "tests/shapes.h"
+#include "tests/support/mesh_checks.h"
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-#include "osteomill/surface/mesh_checks.h"
 #include "osteomill/volume/builtin_tooth.h"
 
 namespace osteomill {

@@ -19,16 +19,11 @@ void SurfaceUpkeep::mark_all() {
 }
 
 void SurfaceUpkeep::mark(const VoxelBox& voxels) {
-  const VoxelBox bricks = layout_.touched_by(voxels);
-  for (int bk = bricks.first.k; bk <= bricks.last.k; ++bk) {
-    for (int bj = bricks.first.j; bj <= bricks.last.j; ++bj) {
-      for (int bi = bricks.first.i; bi <= bricks.last.i; ++bi) {
-        const std::size_t number = layout_.index(bi, bj, bk);
-        if (!marked_[number]) to_mesh_.push_back(number);
-        marked_[number] = 1;
-      }
-    }
-  }
+  for_each(layout_.touched_by(voxels), [&](const VoxelIndex& brick) {
+    const std::size_t number = layout_.index(brick.i, brick.j, brick.k);
+    if (!marked_[number]) to_mesh_.push_back(number);
+    marked_[number] = 1;
+  });
 }
 
 std::vector<ChangedBrick> SurfaceUpkeep::remesh(const DensityView& view) {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "osteomill/volume/isosurface.h"
+#include "osteomill/volume/sampling.h"
 
 namespace osteomill {
 

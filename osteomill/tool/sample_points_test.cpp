@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "osteomill/tool/tool_distance.h"
+#include "osteomill/tool/milling_tool.h"
 
 namespace osteomill {
 namespace {

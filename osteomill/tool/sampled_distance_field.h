@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "osteomill/numbers/row_major.h"
-#include "osteomill/tool/tool_distance.h"
+#include "osteomill/tool/milling_tool.h"
 
 namespace osteomill {
 
@@ -23,7 +23,6 @@ class SampledDistanceField {
   /// million nodes.
   static double suitable_spacing_mm(const MillingTool& tool);
 
-  double spacing_mm() const { return spacing_mm_; }
   /// The box in T on which the field is known.
   const ToolBox& box() const { return box_; }
 

@@ -1,8 +1,8 @@
-#include "osteomill/tool/tool_distance.h"
-
 #include <stdexcept>
 
 #include <gtest/gtest.h>
+
+#include "osteomill/tool/milling_tool.h"
 
 namespace osteomill {
 namespace {

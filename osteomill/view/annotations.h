@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "osteomill/image/image.h"
 #include "osteomill/view/camera.h"
 
 namespace osteomill {
@@ -27,5 +28,20 @@ Annotation scale_bar_annotation(const Camera& camera, const PixelSize& size);
 /// The patient's directions (L R A P S I, of W's LPS axes) about a point in the lower right corner, each
 /// where its direction points; those that point almost at the viewer, or away, are left out.
 std::vector<Annotation> orientation_letters(const Camera& camera, const PixelSize& size);
+
+/// The font of all that is written; where this file is missing, the one that comes with Dear ImGui is used.
+inline constexpr const char* kFontFile = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
+inline constexpr float kFontSize_px = 14;
+
+/// Grey levels of what is drawn and of the edge around it, which keeps it readable before anything.
+struct Ink {
+  unsigned char level;
+  unsigned char edge;
+};
+inline constexpr Ink kInkOnLight{40, 255};
+inline constexpr Ink kInkOnDark{236, 0};
+
+/// Draws an annotation into an image, all its lengths times `scale`. Any thread.
+void draw_annotation(Image& image, const Annotation& annotation, const Ink& ink, double scale = 1);
 
 }  // namespace osteomill

@@ -67,11 +67,6 @@ BoneGround::BoneGround(const SurfaceBricks& layout, const GridGeometry& geometry
       background_(gl::make_program(shaders::kScreenVertex, shaders::kBackgroundFragment)),
       nothing_(gl::make_vertex_array()) {}
 
-void BoneGround::clear() {
-  bone_.clear();
-  scene_.reset();
-}
-
 void BoneGround::set_brick(std::size_t brick, const BrickMesh& mesh, const BrickLevels& levels) {
   bone_.set_brick(brick, mesh, levels);
   changed_.insert(brick);

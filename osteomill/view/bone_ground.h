@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <memory>
@@ -10,11 +11,33 @@
 #include "osteomill/view/bone_layer.h"
 #include "osteomill/view/cavity_pass.h"
 #include "osteomill/view/clip_faces.h"
-#include "osteomill/view/drawing_pace.h"
 #include "osteomill/view/frame_target.h"
 #include "osteomill/volume/label_map.h"
 
 namespace osteomill {
+
+/// How many triangles may be drawn for one picture so that pictures follow each other quickly, from how long
+/// those before took. No clock of its own.
+class DrawingPace {
+ public:
+  /// Leaves room in a thirtieth of a second for the tool, the panels and showing it all.
+  static constexpr double kBone_s = 0.018;
+  static constexpr std::size_t kFewest = 20'000;
+
+  std::size_t triangles() const {
+    return std::max(kFewest, static_cast<std::size_t>(kBone_s / s_per_triangle_));
+  }
+  /// So many took so long. Pictures of a few say nothing of what many take.
+  void drew(std::size_t triangles, double passed_s) {
+    const double here = passed_s / static_cast<double>(std::max(triangles, kFewest));
+    // One that others of the machine held up counts little.
+    s_per_triangle_ += kWeight * (std::min(here, 2 * s_per_triangle_) - s_per_triangle_);
+  }
+
+ private:
+  static constexpr double kWeight = 0.3;
+  double s_per_triangle_ = kBone_s / 150'000;
+};
 
 /// The bone with all that stands still beside it, in a picture of its own, however many triangles it has:
 /// while the view moves with as many as there is time for; where it rests in full detail, brick by brick in a
@@ -25,7 +48,6 @@ class BoneGround {
   BoneGround(const SurfaceBricks& layout, const GridGeometry& geometry,
              std::shared_ptr<const LabelMap> labels);
 
-  void clear();
   void set_brick(std::size_t brick, const BrickMesh& mesh, const BrickLevels& levels);
   void set_clip_face(std::size_t cut, const ClipFace& face);
   std::size_t triangle_count() const { return bone_.triangle_count(); }

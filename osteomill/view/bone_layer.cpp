@@ -7,7 +7,6 @@
 #include <string>
 #include <utility>
 
-#include "osteomill/surface/vertex_label.h"
 #include "osteomill/view/shaders.h"
 
 namespace osteomill {
@@ -83,7 +82,7 @@ std::vector<MeshVertex> with_smooth_densities(const BrickMesh& mesh, const std::
 using LabelColour = std::array<std::uint8_t, 4>;
 
 LabelColour label_colour_below(const LabelMap& labels, const MeshVertex& vertex) {
-  const LabelMap::Place place = label_below(labels, vertex);
+  const LabelMap::Place place = labels.under_surface(vec3_of(vertex.position_mm), vec3_of(vertex.normal));
   if (place == 0) return {};
   const auto& [red, green, blue] = labels.label(place).colour;
   return {red, green, blue, 255};
@@ -204,10 +203,6 @@ BoneLayer::BoneLayer(const SurfaceBricks& layout, const GridGeometry& geometry,
       drawn_level_(layout.count(), -1) {
   for (std::size_t n = 0; n < bricks_.size(); ++n)
     bricks_[n].bounds = bounding_sphere(geometry, layout.cells(n));
-}
-
-void BoneLayer::clear() {
-  for (std::size_t n = 0; n < bricks_.size(); ++n) set_brick(n, {}, {});
 }
 
 void BoneLayer::set_brick(std::size_t number, const BrickMesh& mesh, const BrickLevels& levels) {

@@ -66,7 +66,6 @@ class BoneLayer {
   BoneLayer(const SurfaceBricks& layout, const GridGeometry& geometry,
             std::shared_ptr<const LabelMap> labels = nullptr);
 
-  void clear();
   void set_brick(std::size_t brick, const BrickMesh& mesh, const BrickLevels& levels);
 
   /// Only bricks that the camera may see, the nearest first.

@@ -14,7 +14,6 @@
 #include "osteomill/view/cavity_pass.h"
 #include "osteomill/view/depth_tiles.h"
 #include "osteomill/view/frame_target.h"
-#include "osteomill/view/image_annotations.h"
 #include "osteomill/view/offscreen_context.h"
 #include "osteomill/volume/sampling.h"
 
@@ -48,7 +47,6 @@ struct Extent {
 Extent extent_of_bone(const Volume& bone, const Camera& camera) {
   const Mat3 axes = camera.orientation.toRotationMatrix();
   const GridGeometry& geometry = bone.geometry();
-  const BlockRanges& bricks = bone.bricks();
   Eigen::AlignedBox3d box;
   const auto take_in = [&](const VoxelBox& voxels) {
     for (const int i : {voxels.first.i, voxels.last.i})
@@ -56,17 +54,10 @@ Extent extent_of_bone(const Volume& bone, const Camera& camera) {
         for (const int k : {voxels.first.k, voxels.last.k})
           box.extend(axes.transpose() * geometry.world_from_voxel(VoxelIndex{i, j, k}));
   };
-  for (int bk = 0; bk < bricks.dims()[2]; ++bk) {
-    for (int bj = 0; bj < bricks.dims()[1]; ++bj) {
-      for (int bi = 0; bi < bricks.dims()[0]; ++bi) {
-        if (static_cast<double>(bricks.at(bi, bj, bk).max) <= bone.isovalue()) continue;
-        constexpr int kSide = BlockRanges::kBrickVoxels;
-        const VoxelIndex first{bi * kSide, bj * kSide, bk * kSide};
-        take_in(VoxelBox{first, {first.i + kSide, first.j + kSide, first.k + kSide}}.intersected(
-            geometry.all_voxels()));
-      }
-    }
-  }
+  for_each(geometry.all_voxels().bricks(BlockRanges::kBrickVoxels), [&](const VoxelIndex& brick) {
+    if (static_cast<double>(bone.bricks().at(brick).max) > bone.isovalue())
+      take_in(BlockRanges::counted(brick, geometry));
+  });
   if (box.isEmpty()) take_in(geometry.all_voxels());
   return {axes * box.center(), std::max(box.sizes().head<2>().maxCoeff(), 1e-3)};
 }

@@ -1,8 +1,8 @@
-#include "osteomill/view/image_annotations.h"
-
 #include <algorithm>
 
 #include <gtest/gtest.h>
+
+#include "osteomill/view/annotations.h"
 
 namespace osteomill {
 namespace {

@@ -1,6 +1,6 @@
 #include "osteomill/view/scene.h"
 
-#include "osteomill/tool/tool_distance.h"
+#include "osteomill/tool/milling_tool.h"
 
 namespace osteomill {
 

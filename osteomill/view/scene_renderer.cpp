@@ -84,14 +84,6 @@ SceneRenderer::SceneRenderer(const SurfaceBricks& layout, const GridGeometry& ge
 
 SceneRenderer::~SceneRenderer() = default;
 
-void SceneRenderer::clear() {
-  impl_->ground.clear();
-}
-
-void SceneRenderer::set_brick(std::size_t brick, const BrickMesh& mesh) {
-  impl_->ground.set_brick(brick, mesh, full_detail(mesh));
-}
-
 void SceneRenderer::set_brick(std::size_t brick, const BrickMesh& mesh, const BrickLevels& levels) {
   impl_->ground.set_brick(brick, mesh, levels);
 }

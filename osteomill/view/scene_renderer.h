@@ -26,11 +26,7 @@ class SceneRenderer {
   SceneRenderer(const SceneRenderer&) = delete;
   SceneRenderer& operator=(const SceneRenderer&) = delete;
 
-  /// Forgets the bone.
-  void clear();
-  /// A brick's triangles as they are now; none removes it.
-  void set_brick(std::size_t brick, const BrickMesh& mesh);
-  /// The same, where there are fewer triangles to draw it with while the view moves.
+  /// A brick's triangles as they are now, and fewer to draw it with while the view moves; none remove it.
   void set_brick(std::size_t brick, const BrickMesh& mesh, const BrickLevels& levels);
   /// What the scene's cut of this number lays open. Drawn as far as the other cuts leave it.
   void set_clip_face(std::size_t cut, const ClipFace& face);

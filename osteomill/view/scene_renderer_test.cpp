@@ -8,9 +8,9 @@
 #include "tests/shapes.h"
 #include <gtest/gtest.h>
 
-#include "osteomill/image/png.h"
+#include "osteomill/image/image.h"
 #include "osteomill/surface/surface_mesh.h"
-#include "osteomill/view/drawing_pace.h"
+#include "osteomill/view/bone_ground.h"
 #include "osteomill/view/offscreen_context.h"
 
 namespace osteomill {
@@ -37,12 +37,14 @@ class SceneRendererTest : public ::testing::Test {
   SceneRendererTest() {
     const SurfaceMesh mesh = mesh_surface(DensityView(bone_));
     renderer_ = std::make_unique<SceneRenderer>(mesh.layout, bone_.geometry());
-    for (std::size_t n = 0; n < mesh.bricks.size(); ++n) renderer_->set_brick(n, mesh.bricks[n]);
+    for (std::size_t n = 0; n < mesh.bricks.size(); ++n) set_brick(n, mesh.bricks[n]);
     scene_.bounds = {Vec3::Zero(), 7};
     scene_.camera = camera_on(scene_.bounds, {0.3, 1, -0.9}, Vec3::UnitZ());
     scene_.isovalue = bone_.isovalue();
     scene_.reference_density = 900;
   }
+
+  void set_brick(std::size_t n, const BrickMesh& mesh) { renderer_->set_brick(n, mesh, full_detail(mesh)); }
 
   // Holds the picture against the one kept under this test's name. With OSTEOMILL_KEEP_PICTURES it is kept
   // anew.
@@ -133,7 +135,7 @@ TEST_F(SceneRendererTest, MilledBricksAreSeenWhileTheViewStandsStill) {
   for (int n = 0; n < 10; ++n) renderer_->draw(scene_, kSize);
   const double all = covered(renderer_->picture());
   const std::size_t bricks = SurfaceBricks(bone_.geometry().dims).count();
-  for (std::size_t n = 0; n < bricks; ++n) renderer_->set_brick(n, {});
+  for (std::size_t n = 0; n < bricks; ++n) set_brick(n, {});
   EXPECT_LT(covered(picture()), 0.1 * all);
 }
 
@@ -153,7 +155,7 @@ TEST_F(SceneRendererTest, APictureDrawnPieceByPieceIsTheOneDrawnAtOnce) {
   const SurfaceMesh mesh = mesh_surface(DensityView(milled));
   const SurfaceMesh old = mesh_surface(DensityView(bone_));
   for (std::size_t n = 0; n < mesh.bricks.size(); ++n) {
-    if (mesh.bricks[n] != old.bricks[n]) renderer_->set_brick(n, mesh.bricks[n]);
+    if (mesh.bricks[n] != old.bricks[n]) set_brick(n, mesh.bricks[n]);
   }
   EXPECT_FALSE(renderer_->settled());
   for (int n = 0; n < 10; ++n) renderer_->draw(scene_, kSize);
@@ -215,7 +217,7 @@ TEST(DrawingPace, OnePictureThatWasHeldUpCountsLittle) {
 TEST_F(SceneRendererTest, ABrickTakenAwayIsGone) {
   const double all = covered(picture());
   EXPECT_GT(renderer_->triangle_count(), 1000u);
-  renderer_->clear();
+  for (std::size_t n = 0; n < SurfaceBricks(bone_.geometry().dims).count(); ++n) set_brick(n, {});
   EXPECT_EQ(renderer_->triangle_count(), 0u);
   EXPECT_LT(covered(picture()), 0.1 * all);
 }
@@ -235,7 +237,7 @@ TEST_F(SceneRendererTest, BoneHasTheColoursOfItsLabels) {
                                        std::vector<LabelMap::Place>(geometry.voxel_count(), 1));
   const SurfaceMesh mesh = mesh_surface(DensityView(bone_));
   renderer_ = std::make_unique<SceneRenderer>(mesh.layout, geometry, labels);
-  for (std::size_t n = 0; n < mesh.bricks.size(); ++n) renderer_->set_brick(n, mesh.bricks[n]);
+  for (std::size_t n = 0; n < mesh.bricks.size(); ++n) set_brick(n, mesh.bricks[n]);
   EXPECT_LT(redness(picture()), without - 20);
   scene_.show_labels = false;
   EXPECT_NEAR(redness(picture()), without, 0.01);

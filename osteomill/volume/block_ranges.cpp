@@ -2,46 +2,50 @@
 
 #include <algorithm>
 
-#include "osteomill/numbers/row_major.h"
 #include "osteomill/numbers/work_progress.h"
 
 namespace osteomill {
 
 namespace {
 
-// The bricks whose range counts voxel coordinate `v`: its own, and the one below where `v` is the layer
+// The first brick whose range counts voxel coordinate `v`: its own, or the one below where `v` is the layer
 // between.
-struct BrickSpan {
-  int first;
-  int last;
-};
-
-BrickSpan bricks_counting(int v) {
+int first_counting(int v) {
   const int own = v / BlockRanges::kBrickVoxels;
-  return {v % BlockRanges::kBrickVoxels == 0 && own > 0 ? own - 1 : own, own};
+  return v % BlockRanges::kBrickVoxels == 0 && own > 0 ? own - 1 : own;
+}
+
+VoxelBox bricks_counting(const VoxelBox& voxels) {
+  return {{first_counting(voxels.first.i), first_counting(voxels.first.j), first_counting(voxels.first.k)},
+          voxels.bricks(BlockRanges::kBrickVoxels).last};
+}
+
+void take_in(BlockRanges::Range& range, float lower_density) {
+  range.min = std::min(range.min, lower_density);
+  ++range.changes;
 }
 
 }  // namespace
 
-BlockRanges::BlockRanges(const DensityGrid& grid) {
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    dims_[axis] = (grid.geometry().dims[axis] + kBrickVoxels - 1) / kBrickVoxels;
-  }
+BlockRanges::BlockRanges(const DensityGrid& grid)
+    : dims_(grid.geometry().all_voxels().bricks(kBrickVoxels).dims()) {
   ranges_.resize(cell_count(dims_));
-  for (int bk = 0; bk < dims_[2]; ++bk) {
-    for (int bj = 0; bj < dims_[1]; ++bj) {
-      for (int bi = 0; bi < dims_[0]; ++bi) ranges_[index(bi, bj, bk)] = range_of(grid, bi, bj, bk);
-    }
-    WorkProgress::done(static_cast<std::size_t>(bk), static_cast<std::size_t>(dims_[2]));
-  }
+  for_each(grid.geometry().all_voxels().bricks(kBrickVoxels), [&](const VoxelIndex& brick) {
+    range(brick) = range_of(grid, brick);
+    if (brick.i == 0 && brick.j == 0)
+      WorkProgress::done(static_cast<std::size_t>(brick.k), static_cast<std::size_t>(dims_[2]));
+  });
 }
 
-BlockRanges::Range BlockRanges::range_of(const DensityGrid& grid, int bi, int bj, int bk) {
-  const VoxelIndex first{bi * kBrickVoxels, bj * kBrickVoxels, bk * kBrickVoxels};
-  const VoxelBox box =
-      VoxelBox{first, {first.i + kBrickVoxels, first.j + kBrickVoxels, first.k + kBrickVoxels}}.intersected(
-          grid.geometry().all_voxels());
-  Range range{grid[first], grid[first]};
+VoxelBox BlockRanges::counted(const VoxelIndex& brick, const GridGeometry& geometry) {
+  const auto& [i, j, k] = VoxelBox::of_brick(brick, kBrickVoxels).last;
+  return VoxelBox{VoxelBox::of_brick(brick, kBrickVoxels).first, {i + 1, j + 1, k + 1}}.intersected(
+      geometry.all_voxels());
+}
+
+BlockRanges::Range BlockRanges::range_of(const DensityGrid& grid, const VoxelIndex& brick) {
+  const VoxelBox box = counted(brick, grid.geometry());
+  Range range{grid[box.first], grid[box.first]};
   for (int k = box.first.k; k <= box.last.k; ++k) {
     for (int j = box.first.j; j <= box.last.j; ++j) {
       const float* row = grid.densities().data() + grid.linear_index({box.first.i, j, k});
@@ -54,37 +58,24 @@ BlockRanges::Range BlockRanges::range_of(const DensityGrid& grid, int bi, int bj
 }
 
 std::uint32_t BlockRanges::changes_in(const VoxelBox& voxels) const {
-  constexpr int n = kBrickVoxels;
   std::uint32_t changes = 0;
-  for (int bk = voxels.first.k / n; bk <= voxels.last.k / n; ++bk) {
-    for (int bj = voxels.first.j / n; bj <= voxels.last.j / n; ++bj) {
-      for (int bi = voxels.first.i / n; bi <= voxels.last.i / n; ++bi) changes += at(bi, bj, bk).changes;
-    }
-  }
+  for_each(voxels.bricks(kBrickVoxels), [&](const VoxelIndex& brick) { changes += at(brick).changes; });
   return changes;
 }
 
-void BlockRanges::lower_brick(int bi, int bj, int bk, float density) {
-  Range& range = ranges_[index(bi, bj, bk)];
-  range.min = std::min(range.min, density);
-  ++range.changes;
+void BlockRanges::lower_bricks(const VoxelBox& bricks, float density) {
+  for_each(bricks, [&](const VoxelIndex& brick) { take_in(range(brick), density); });
 }
 
 void BlockRanges::lower(const VoxelIndex& v, float density) {
-  const BrickSpan spans[3] = {bricks_counting(v.i), bricks_counting(v.j), bricks_counting(v.k)};
-  for (int bk = spans[2].first; bk <= spans[2].last; ++bk) {
-    for (int bj = spans[1].first; bj <= spans[1].last; ++bj) {
-      for (int bi = spans[0].first; bi <= spans[0].last; ++bi) lower_brick(bi, bj, bk, density);
-    }
-  }
+  lower_bricks(bricks_counting({v, v}), density);
 }
 
 void BlockRanges::lower_row(int j, int k, const int* columns, const float* densities, std::size_t count) {
-  const BrickSpan js = bricks_counting(j);
-  const BrickSpan ks = bricks_counting(k);
-  const auto lower_column = [&](int bi, float density) {
-    for (int bk = ks.first; bk <= ks.last; ++bk) {
-      for (int bj = js.first; bj <= js.last; ++bj) lower_brick(bi, bj, bk, density);
+  const auto [first, last] = bricks_counting({{0, j, k}, {0, j, k}});
+  const auto lower_column = [first = first, last = last, this](int bi, float density) {
+    for (int bk = first.k; bk <= last.k; ++bk) {
+      for (int bj = first.j; bj <= last.j; ++bj) take_in(range({bi, bj, bk}), density);
     }
   };
   for (std::size_t n = 0; n < count;) {
@@ -99,16 +90,11 @@ void BlockRanges::lower_row(int j, int k, const int* columns, const float* densi
 void BlockRanges::refresh(const DensityGrid& grid, const VoxelBox& box) {
   const VoxelBox inside = box.intersected(grid.geometry().all_voxels());
   if (inside.empty()) return;
-  for (int bk = bricks_counting(inside.first.k).first; bk <= inside.last.k / kBrickVoxels; ++bk) {
-    for (int bj = bricks_counting(inside.first.j).first; bj <= inside.last.j / kBrickVoxels; ++bj) {
-      for (int bi = bricks_counting(inside.first.i).first; bi <= inside.last.i / kBrickVoxels; ++bi) {
-        Range& range = ranges_[index(bi, bj, bk)];
-        const std::uint32_t changes = range.changes + 1;
-        range = range_of(grid, bi, bj, bk);
-        range.changes = changes;
-      }
-    }
-  }
+  for_each(bricks_counting(inside), [&](const VoxelIndex& brick) {
+    const std::uint32_t changes = range(brick).changes + 1;
+    range(brick) = range_of(grid, brick);
+    range(brick).changes = changes;
+  });
 }
 
 }  // namespace osteomill

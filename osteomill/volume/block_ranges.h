@@ -26,12 +26,11 @@ class BlockRanges {
   explicit BlockRanges(const DensityGrid& grid);
 
   const std::array<int, 3>& dims() const { return dims_; }
+  /// The voxels that a brick counts, as far as they lie in the grid.
+  static VoxelBox counted(const VoxelIndex& brick, const GridGeometry& geometry);
   /// Brick coordinates from 0.
-  const Range& at(int bi, int bj, int bk) const { return ranges_[index(bi, bj, bk)]; }
-  /// The brick whose cells begin at or below this voxel's coordinates, which must be in the grid.
-  const Range& around(const VoxelIndex& v) const {
-    return at(v.i / kBrickVoxels, v.j / kBrickVoxels, v.k / kBrickVoxels);
-  }
+  const Range& at(int bi, int bj, int bk) const { return ranges_[row_major(dims_, bi, bj, bk)]; }
+  const Range& at(const VoxelIndex& brick) const { return at(brick.i, brick.j, brick.k); }
 
   /// Differs from what it was before where any of these voxels, all in the grid, was taken in anew since.
   /// Safe in the haptic tick.
@@ -45,9 +44,9 @@ class BlockRanges {
   void refresh(const DensityGrid& grid, const VoxelBox& box);
 
  private:
-  std::size_t index(int bi, int bj, int bk) const { return row_major(dims_, bi, bj, bk); }
-  void lower_brick(int bi, int bj, int bk, float density);
-  static Range range_of(const DensityGrid& grid, int bi, int bj, int bk);
+  Range& range(const VoxelIndex& brick) { return ranges_[row_major(dims_, brick.i, brick.j, brick.k)]; }
+  void lower_bricks(const VoxelBox& bricks, float density);
+  static Range range_of(const DensityGrid& grid, const VoxelIndex& brick);
 
   std::array<int, 3> dims_{0, 0, 0};
   std::vector<Range> ranges_;

@@ -243,15 +243,10 @@ void fill_block(const GridGeometry& geometry, const VoxelBox& block, std::vector
   const Vec3 middle = 0.5 * (first + last);
   const double reach_mm = 0.5 * (last - first).norm() + kEdge_mm;
   if (tooth(middle.x(), middle.y(), middle.z()) > kSteepest * reach_mm) return;
-  for (int k = block.first.k; k <= block.last.k; ++k) {
-    for (int j = block.first.j; j <= block.last.j; ++j) {
-      const std::size_t row = row_major(geometry.dims, 0, j, k);
-      for (int i = block.first.i; i <= block.last.i; ++i) {
-        const Vec3 p = geometry.world_from_voxel(VoxelIndex{i, j, k});
-        densities[row + static_cast<std::size_t>(i)] = static_cast<float>(density(p.x(), p.y(), p.z()));
-      }
-    }
-  }
+  for_each(block, [&](const VoxelIndex& v) {
+    const Vec3 p = geometry.world_from_voxel(v);
+    densities[row_major(geometry.dims, v.i, v.j, v.k)] = static_cast<float>(density(p.x(), p.y(), p.z()));
+  });
 }
 
 }  // namespace
@@ -262,16 +257,10 @@ DensityGrid builtin_tooth(double refinement) {
   }
   const GridGeometry geometry = tooth_geometry(refinement);
   std::vector<float> densities(geometry.voxel_count(), static_cast<float>(kSurroundings));
-  for (int k = 0; k < geometry.dims[2]; k += kBlock) {
-    for (int j = 0; j < geometry.dims[1]; j += kBlock) {
-      for (int i = 0; i < geometry.dims[0]; i += kBlock) {
-        const VoxelBox block =
-            VoxelBox{{i, j, k}, {i + kBlock - 1, j + kBlock - 1, k + kBlock - 1}}.intersected(
-                geometry.all_voxels());
-        fill_block(geometry, block, densities);
-      }
-    }
-  }
+  const VoxelBox all = geometry.all_voxels();
+  for_each(all.bricks(kBlock), [&](const VoxelIndex& block) {
+    fill_block(geometry, VoxelBox::of_brick(block, kBlock).intersected(all), densities);
+  });
   return DensityGrid(geometry, std::move(densities));
 }
 

@@ -57,23 +57,16 @@ std::optional<double> median(const ForEach& for_each) {
 template <typename Visit>
 void for_each_bone_voxel(const Volume& volume, const Visit& visit) {
   constexpr int kSide = BlockRanges::kBrickVoxels;
-  const BlockRanges& bricks = volume.bricks();
-  for (int bk = 0; bk < bricks.dims()[2]; ++bk) {
-    WorkProgress::done(static_cast<std::size_t>(bk), static_cast<std::size_t>(bricks.dims()[2]));
-    for (int bj = 0; bj < bricks.dims()[1]; ++bj) {
-      for (int bi = 0; bi < bricks.dims()[0]; ++bi) {
-        if (static_cast<double>(bricks.at(bi, bj, bk).max) <= volume.isovalue()) continue;
-        const VoxelIndex first{bi * kSide, bj * kSide, bk * kSide};
-        const VoxelBox box =
-            VoxelBox{first, {first.i + kSide - 1, first.j + kSide - 1, first.k + kSide - 1}}.intersected(
-                volume.geometry().all_voxels());
-        for (int k = box.first.k; k <= box.last.k; ++k)
-          for (int j = box.first.j; j <= box.last.j; ++j)
-            for (int i = box.first.i; i <= box.last.i; ++i)
-              if (volume.is_bone({i, j, k})) visit(VoxelIndex{i, j, k});
-      }
-    }
-  }
+  const VoxelBox all = volume.geometry().all_voxels();
+  for_each(all.bricks(kSide), [&](const VoxelIndex& brick) {
+    if (brick.i == 0 && brick.j == 0)
+      WorkProgress::done(static_cast<std::size_t>(brick.k),
+                         static_cast<std::size_t>(volume.bricks().dims()[2]));
+    if (static_cast<double>(volume.bricks().at(brick).max) <= volume.isovalue()) return;
+    for_each(VoxelBox::of_brick(brick, kSide).intersected(all), [&](const VoxelIndex& v) {
+      if (volume.is_bone(v)) visit(v);
+    });
+  });
 }
 
 // The density some steps out of the bone along an axis, where all voxels on the way are in the grid and not

@@ -6,64 +6,53 @@ namespace osteomill {
 
 namespace {
 
-VoxelIndex sides_within(const GridGeometry& geometry, const VoxelIndex& first) {
-  constexpr int kSide = DensityBlock::kVoxels;
-  return {std::min(kSide, geometry.dims[0] - first.i), std::min(kSide, geometry.dims[1] - first.j),
-          std::min(kSide, geometry.dims[2] - first.k)};
+VoxelBox voxels_in_grid(const DensityBlock& block, const GridGeometry& geometry) {
+  return VoxelBox{block.first, block.last()}.intersected(geometry.all_voxels());
 }
 
-std::size_t row_place(int j, int k) {
-  return static_cast<std::size_t>(DensityBlock::kVoxels * (j + DensityBlock::kVoxels * k));
+std::size_t place_in(const DensityBlock& block, const VoxelIndex& v) {
+  constexpr int kSide = DensityBlock::kVoxels;
+  return row_major({kSide, kSide, kSide}, v.i - block.first.i, v.j - block.first.j, v.k - block.first.k);
 }
 
 }  // namespace
 
 DensityBlock::DensityBlock(const DensityGrid& grid, const VoxelIndex& first_) noexcept : first(first_) {
-  const VoxelIndex sides = sides_within(grid.geometry(), first);
-  if (sides != VoxelIndex{kVoxels, kVoxels, kVoxels}) densities.fill(0);
-  for (int k = 0; k < sides.k; ++k) {
-    for (int j = 0; j < sides.j; ++j) {
-      const float* row = grid.densities().data() + grid.linear_index({first.i, first.j + j, first.k + k});
-      std::copy_n(row, sides.i, &densities[row_place(j, k)]);
+  const VoxelBox inside = voxels_in_grid(*this, grid.geometry());
+  if (inside.last != last()) densities.fill(0);
+  for (int k = first.k; k <= inside.last.k; ++k) {
+    for (int j = first.j; j <= inside.last.j; ++j) {
+      const VoxelIndex row{first.i, j, k};
+      std::copy_n(grid.densities().data() + grid.linear_index(row), inside.last.i - first.i + 1,
+                  &densities[place_in(*this, row)]);
     }
   }
 }
 
 VoxelBox swap_densities(Volume& bone, DensityBlock& brick) {
-  const VoxelIndex& first = brick.first;
-  const VoxelIndex sides = sides_within(bone.geometry(), first);
   VoxelBox changed;
   VoxelBox risen;
-  for (int k = 0; k < sides.k; ++k) {
-    for (int j = 0; j < sides.j; ++j) {
-      float* row = &brick.densities[row_place(j, k)];
-      for (int i = 0; i < sides.i; ++i) {
-        const VoxelIndex voxel{first.i + i, first.j + j, first.k + k};
-        const float before = bone.grid()[voxel];
-        if (before == row[i]) continue;
-        changed.include(voxel);
-        if (row[i] > before) risen.include(voxel);
-        bone.set_density(voxel, row[i]);
-        row[i] = before;
-      }
-    }
-  }
+  for_each(voxels_in_grid(brick, bone.geometry()), [&](const VoxelIndex& v) {
+    float& kept = brick.densities[place_in(brick, v)];
+    const float before = bone.grid()[v];
+    if (before == kept) return;
+    changed.include(v);
+    if (kept > before) risen.include(v);
+    bone.set_density(v, kept);
+    kept = before;
+  });
   bone.refresh_bricks(risen);
   return changed;
 }
 
 std::vector<DensityBlock> differing_blocks(const DensityGrid& bone, const DensityGrid& scan) {
   constexpr int kSide = DensityBlock::kVoxels;
-  const std::array<int, 3>& dims = scan.geometry().dims;
   std::vector<DensityBlock> blocks;
-  for (int k = 0; k < dims[2]; k += kSide) {
-    for (int j = 0; j < dims[1]; j += kSide) {
-      for (int i = 0; i < dims[0]; i += kSide) {
-        const DensityBlock block(bone, {i, j, k});
-        if (block.densities != DensityBlock(scan, {i, j, k}).densities) blocks.push_back(block);
-      }
-    }
-  }
+  for_each(scan.geometry().all_voxels().bricks(kSide), [&](const VoxelIndex& brick) {
+    const VoxelIndex first = VoxelBox::of_brick(brick, kSide).first;
+    const DensityBlock block(bone, first);
+    if (block.densities != DensityBlock(scan, first).densities) blocks.push_back(block);
+  });
   return blocks;
 }
 

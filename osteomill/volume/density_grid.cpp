@@ -58,4 +58,10 @@ void DensityGrid::prepare_about(const VoxelBox& changed) {
   }
 }
 
+std::uint64_t fingerprint_of(const DensityGrid& grid) {
+  WordHash hash;
+  for (const float density : grid.densities()) hash.add(std::bit_cast<std::uint32_t>(density));
+  return hash.value();
+}
+
 }  // namespace osteomill

@@ -1,11 +1,10 @@
-#include "osteomill/volume/density_hash.h"
-
 #include <random>
 
 #include "tests/shapes.h"
 #include <gtest/gtest.h>
 
 #include "osteomill/volume/density_block.h"
+#include "osteomill/volume/density_grid.h"
 #include "osteomill/volume/label_map.h"
 #include "osteomill/volume/volume.h"
 

@@ -1,9 +1,9 @@
-#include "osteomill/volume/density_histogram.h"
-
 #include <cmath>
 #include <vector>
 
 #include <gtest/gtest.h>
+
+#include "osteomill/volume/isovalue.h"
 
 namespace osteomill {
 namespace {

@@ -49,7 +49,32 @@ struct VoxelBox {
              std::max(first.k, other.first.k)},
             {std::min(last.i, other.last.i), std::min(last.j, other.last.j), std::min(last.k, other.last.k)}};
   }
+  /// How many voxels it has along each axis, where it is not empty.
+  std::array<int, 3> dims() const {
+    return {last.i - first.i + 1, last.j - first.j + 1, last.k - first.k + 1};
+  }
+  /// The bricks of `side` voxels in which it lies, by their coordinates, counted from voxel 0. The box has no
+  /// coordinates below 0.
+  VoxelBox bricks(int side) const {
+    if (empty()) return {};
+    return {{first.i / side, first.j / side, first.k / side}, {last.i / side, last.j / side, last.k / side}};
+  }
+  /// The voxels of one of those bricks.
+  static VoxelBox of_brick(const VoxelIndex& brick, int side) {
+    const VoxelIndex first{brick.i * side, brick.j * side, brick.k * side};
+    return {first, {first.i + side - 1, first.j + side - 1, first.k + side - 1}};
+  }
 };
+
+/// Calls `use` with every voxel (or brick) of the box, along i fastest.
+template <typename Use>
+void for_each(const VoxelBox& box, const Use& use) {
+  for (int k = box.first.k; k <= box.last.k; ++k) {
+    for (int j = box.first.j; j <= box.last.j; ++j) {
+      for (int i = box.first.i; i <= box.last.i; ++i) use(VoxelIndex{i, j, k});
+    }
+  }
+}
 
 /// Where a grid of voxels lies in the world frame W (the scan's patient axes, mm).
 /// Voxel coordinates are continuous: the centre of voxel (i, j, k) has the coordinates (i, j, k).

@@ -1,7 +1,7 @@
-#include "osteomill/volume/isosurface.h"
-
 #include "tests/shapes.h"
 #include <gtest/gtest.h>
+
+#include "osteomill/volume/sampling.h"
 
 namespace osteomill {
 namespace {

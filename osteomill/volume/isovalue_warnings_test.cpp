@@ -1,8 +1,7 @@
-#include "osteomill/volume/isovalue_warnings.h"
-
 #include "tests/shapes.h"
 #include <gtest/gtest.h>
 
+#include "osteomill/volume/isovalue.h"
 #include "osteomill/volume/volume.h"
 
 namespace osteomill {

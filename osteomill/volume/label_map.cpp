@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "osteomill/numbers/work_progress.h"
-#include "osteomill/volume/density_hash.h"
+#include "osteomill/volume/density_grid.h"
 
 namespace osteomill {
 
@@ -83,7 +83,7 @@ LabelMap::LabelMap(std::vector<Label> labels, const GridGeometry& scan, const Gr
     if (label(place).no_go) no_go_box_.include(v);
   });
   if (box_.empty()) return;
-  dims_ = {box_.last.i - box_.first.i + 1, box_.last.j - box_.first.j + 1, box_.last.k - box_.first.k + 1};
+  dims_ = box_.dims();
   places_.reserve(cell_count(dims_));
   for_each_voxel(box_, [&](const VoxelIndex& v) { places_.push_back(at_nearest(v)); });
   WordHash hash;
@@ -102,6 +102,15 @@ std::vector<std::size_t> LabelMap::voxel_counts() const {
 
 LabelMap::Place LabelMap::nearest_to(const Vec3& point_W) const {
   return at(nearest_voxel(scan_, point_W));
+}
+
+LabelMap::Place LabelMap::under_surface(const Vec3& point_W, const Vec3& normal_W) const {
+  const double voxel_mm = scan_.spacing_mm.maxCoeff();
+  for (const double voxels : {0.5, 0.0, 1.0, 1.5}) {
+    const Place place = nearest_to(point_W - voxels * voxel_mm * normal_W);
+    if (place != 0) return place;
+  }
+  return 0;
 }
 
 }  // namespace osteomill

@@ -8,7 +8,7 @@
 #include "tests/shapes.h"
 #include <gtest/gtest.h>
 
-#include "osteomill/volume/label_scan.h"
+#include "osteomill/volume/isovalue.h"
 
 namespace osteomill {
 namespace {

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <optional>
+
 #include "osteomill/volume/density_grid.h"
+#include "osteomill/volume/volume.h"
 
 namespace osteomill {
 
@@ -16,12 +19,30 @@ enum class GradientKernel : unsigned char {
   /// Central differences of neighbouring voxels, interpolated trilinearly.
   central,
   /// Each difference averaged over its 3 x 3 neighbours with weights 3, 10, 3 (Scharr), which turns less with
-  /// the
-  /// grid: about a tenth of the error in direction on an edge two voxels wide.
+  /// the grid: about a tenth of the error in direction on an edge two voxels wide.
   smoothed,
 };
 
 /// Gradient of the density in W (density per mm). Safe in the haptic tick.
 Vec3 density_gradient(const DensityGrid& grid, const Vec3& point_W, GradientKernel kernel);
+
+/// Whether there is bone at a point: density > isovalue. Safe in the haptic tick.
+inline bool is_bone_at(const Volume& volume, const Vec3& point_W) {
+  return density_at(volume.grid(), point_W) > volume.isovalue();
+}
+
+/// The unit vector out of the bone at a point (against the gradient), or nothing where the density is flat.
+/// Safe in the haptic tick.
+std::optional<Vec3> outward_normal(const Volume& volume, const Vec3& point_W, GradientKernel kernel);
+
+/// Halves the segment from a point outside the bone to one inside it down to `tolerance_mm`; the answer is
+/// the end that is not in bone. Which crossing, where there are several, is not said. Safe in the haptic
+/// tick.
+Vec3 bisect_crossing(const Volume& volume, Vec3 outside_W, Vec3 inside_W, double tolerance_mm = 1e-6);
+
+/// The first point, walking from `from_W` to `to_W` in steps of at most half a voxel, at which the density
+/// rises past the isovalue; nothing where it never does. A start inside the bone is its own answer. Safe in
+/// the haptic tick; time grows with the length.
+std::optional<Vec3> first_crossing(const Volume& volume, const Vec3& from_W, const Vec3& to_W);
 
 }  // namespace osteomill

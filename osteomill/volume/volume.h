@@ -1,11 +1,13 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <memory>
+#include <stdexcept>
+#include <utility>
 
 #include "osteomill/volume/block_ranges.h"
 #include "osteomill/volume/density_grid.h"
-#include "osteomill/volume/density_hash.h"
 #include "osteomill/volume/label_map.h"
 
 namespace osteomill {
@@ -16,7 +18,9 @@ namespace osteomill {
 class Volume {
  public:
   /// Throws std::invalid_argument where the isovalue is not finite.
-  Volume(DensityGrid grid, double isovalue);
+  Volume(DensityGrid grid, double isovalue) : grid_(std::move(grid)), bricks_(grid_) {
+    set_isovalue(isovalue);
+  }
 
   const DensityGrid& grid() const { return grid_; }
   const GridGeometry& geometry() const { return grid_.geometry(); }
@@ -53,7 +57,10 @@ class Volume {
   std::uint64_t change_hash() const { return change_hash_; }
   /// Bone is where the density is greater from now on. Throws std::invalid_argument where it is not finite.
   /// Not for the tick, nor while anyone works on this bone.
-  void set_isovalue(double isovalue);
+  void set_isovalue(double isovalue) {
+    if (!std::isfinite(isovalue)) throw std::invalid_argument("Volume: the isovalue is not finite");
+    isovalue_ = isovalue;
+  }
   /// Makes the brick ranges around a changed box exact again; not for the tick.
   void refresh_bricks(const VoxelBox& box) { bricks_.refresh(grid_, box); }
 

@@ -13,10 +13,9 @@ trap end EXIT
 cd "$folder"
 export XDG_CONFIG_HOME=$folder/config XDG_STATE_HOME=$folder/state OSTEOMILL_STAND_IN_LOG=$folder/hand
 fail() { echo "FAILED: $1"; grep -v 'place of' said || true; cat errors hand; exit 1; }
-port=$((20000 + $$ % 20000)) igtl_port=$((20001 + $$ % 20000)) slicer_port=$((20002 + $$ % 20000))
+port=$((20000 + $$ % 20000)) slicer_port=$((20001 + $$ % 20000))
 "$haply_service" "$port" & servers="$servers $!"
-"$igtl_server" "$igtl_port" & servers="$servers $!"
-env -u OSTEOMILL_STAND_IN_LOG "$igtl_server" "$slicer_port" & servers="$servers $!"
+"$igtl_server" "$slicer_port" & servers="$servers $!"
 bash "$here/../window/ball.sh" >ball.nrrd
 
 # What the hand got in a session that is over: something was felt, and zero at the end.
@@ -48,6 +47,4 @@ mills() {  # DEVICE NAME DOWN AWAY OPTIONS...: how the device is turned so that 
 }
 mills dhd "Force Dimension sigma.7 4711" "90 0 0" "0 180 0"
 mills hd "3D Systems Touch 0815" "0 0 -90" "0 90 0"
-mills "haply:127.0.0.1:$port" "Haply Inverse3 049D" "0 0 -90" "0 90 0"
-mills "openigtlink:127.0.0.1:$igtl_port" "OpenIGTLink 127.0.0.1:$igtl_port" "0 0 -90" "0 90 0" \
-  --send-bone "127.0.0.1:$slicer_port"
+mills "haply:127.0.0.1:$port" "Haply Inverse3 049D" "0 0 -90" "0 90 0" --send-bone "127.0.0.1:$slicer_port"

@@ -1,5 +1,3 @@
-#include "osteomill/device/force_dimension/force_dimension_connection.h"
-
 #include <array>
 #include <charconv>
 #include <chrono>
@@ -8,6 +6,7 @@
 
 #include <fmt/core.h>
 
+#include "osteomill/device/hardware.h"
 #include "osteomill/device/vendor_library.h"
 #include "osteomill/files/input_error.h"
 
@@ -44,8 +43,6 @@ struct Dhd {
         set_max_force(library.function<int(double, char)>("dhdSetMaxForce")),
         pose(library.function<int(double*, double*, double*, double (*)[3], char)>(
             "dhdGetPositionAndOrientationFrame")),
-        linear_velocity(library.function<int(double*, double*, double*, char)>("dhdGetLinearVelocity")),
-        angular_velocity(library.function<int(double*, double*, double*, char)>("dhdGetAngularVelocityRad")),
         button_mask(library.function<unsigned(char)>("dhdGetButtonMask")),
         set_wrench(library.function<int(double, double, double, double, double, double, double, char)>(
             "dhdSetForceAndTorqueAndGripperForce")) {}
@@ -64,8 +61,6 @@ struct Dhd {
   int (*enable_force)(unsigned char, char);
   int (*set_max_force)(double, char);
   int (*pose)(double*, double*, double*, double (*)[3], char);
-  int (*linear_velocity)(double*, double*, double*, char);
-  int (*angular_velocity)(double*, double*, double*, char);
   unsigned (*button_mask)(char);
   int (*set_wrench)(double, double, double, double, double, double, double, char);
 };
@@ -74,20 +69,19 @@ struct Dhd {
 struct Model {
   int first_type, last_type;
   WrenchLimits limits;
-  Vec3 workspace_D_mm;
 };
 
 Model model_of(int system_type) {
   const std::array models{
-      Model{32, 37, {12, 0}, {110, 160, 160}},     // omega.3, .6 and .7
-      Model{60, 60, {8, 0}, {100, 100, 100}},      // Falcon
-      Model{63, 64, {20, 200}, {260, 400, 400}},   // delta.3 and .6
-      Model{104, 107, {20, 400}, {130, 190, 190}}  // sigma.7
+      Model{32, 37, {12, 0}},     // omega.3, .6 and .7
+      Model{60, 60, {8, 0}},      // Falcon
+      Model{63, 64, {20, 200}},   // delta.3 and .6
+      Model{104, 107, {20, 400}}  // sigma.7
   };
   for (const Model& model : models) {
     if (model.first_type <= system_type && system_type <= model.last_type) return model;
   }
-  return {0, 0, {8, 100}, Vec3::Zero()};
+  return {0, 0, {8, 100}};
 }
 
 struct Library {
@@ -131,7 +125,6 @@ class ForceDimensionConnection final : public Connection {
     capabilities_.sensed = dhd_.has_wrist(id_) ? 6 : 3;
     capabilities_.driven = dhd_.has_active_wrist(id_) ? 6 : 3;
     capabilities_.R_VD = Mat3{{0, 1, 0}, {0, 0, 1}, {1, 0, 0}};
-    capabilities_.workspace_D_mm = model.workspace_D_mm;
     capabilities_.limits = model.limits;
     if (dhd_.set_brakes(0, id_) < 0 || dhd_.enable_force(1, id_) < 0 ||
         dhd_.set_max_force(model.limits.force_N, id_) < 0) {
@@ -161,20 +154,11 @@ class ForceDimensionConnection final : public Connection {
       result = dhd_.pose(&position_m.x(), &position_m.y(), &position_m.z(), frame, id_);
     }
     if (result != 0) return result < 0 ? ConnectionStatus::lost : ConnectionStatus::silent;
-    Vec3 velocity_m_s, angular_velocity_rad_s = Vec3::Zero();
-    if (dhd_.linear_velocity(&velocity_m_s.x(), &velocity_m_s.y(), &velocity_m_s.z(), id_) < 0)
-      return ConnectionStatus::lost;
     input.X_DH = {kMmPerM * position_m, Quat::Identity()};
     if (capabilities_.sensed == 6) {
       const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> R_DH(&frame[0][0]);
       input.X_DH.orientation = Quat(Mat3(R_DH)).normalized();
-      // Devices whose wrist has no motors may not know it.
-      Vec3 turning_rad_s;
-      if (dhd_.angular_velocity(&turning_rad_s.x(), &turning_rad_s.y(), &turning_rad_s.z(), id_) >= 0)
-        angular_velocity_rad_s = turning_rad_s;
     }
-    input.velocity_D_mm_s = kMmPerM * velocity_m_s;
-    input.angular_velocity_D_rad_s = angular_velocity_rad_s;
     input.buttons = dhd_.button_mask(id_);
     return ConnectionStatus::fresh;
   }

@@ -1,5 +1,3 @@
-#include "osteomill/device/haply/haply_connection.h"
-
 #include <chrono>
 #include <optional>
 #include <thread>
@@ -8,7 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "osteomill/device/haply/web_socket.h"
-#include "osteomill/device/host_and_port.h"
+#include "osteomill/device/hardware.h"
+#include "osteomill/device/socket.h"
 #include "osteomill/files/input_error.h"
 
 namespace osteomill {
@@ -19,6 +18,7 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 using Json = nlohmann::json;
 
+constexpr const char* kUsualAddress = "127.0.0.1:10001";
 // The service speaks of m.
 constexpr double kMmPerM = 1000;
 // The first text names every device with its settings; later ones are a few kB.
@@ -147,11 +147,9 @@ class HaplyConnection final : public Connection {
     const Json* const state = member(device, "state");
     DeviceInput now;
     if (!take(member(state, "cursor_position"), now.X_DH.position_mm) ||
-        !take(member(state, "cursor_velocity"), now.velocity_D_mm_s) ||
         (has_grip_ && !take_grip(grip_of(message), now)))
       return false;
     now.X_DH.position_mm *= kMmPerM;
-    now.velocity_D_mm_s *= kMmPerM;
     input = now;
     return true;
   }
@@ -168,7 +166,7 @@ class HaplyConnection final : public Connection {
 };
 
 HostAndPort place_of(const std::string& address) {
-  return host_and_port("haply", address.empty() ? kHaplyAddress : address);
+  return host_and_port("haply", address.empty() ? kUsualAddress : address);
 }
 
 }  // namespace

@@ -1,5 +1,3 @@
-#include "osteomill/device/touch/touch_connection.h"
-
 #include <array>
 #include <atomic>
 #include <chrono>
@@ -9,6 +7,7 @@
 
 #include <fmt/core.h>
 
+#include "osteomill/device/hardware.h"
 #include "osteomill/device/latest_value.h"
 #include "osteomill/device/vendor_library.h"
 #include "osteomill/files/input_error.h"
@@ -23,12 +22,9 @@ using Clock = std::chrono::steady_clock;
 // Of libHD 3, as its reference gives them: what is asked for and set, and what a frame's function returns.
 enum Parameter : unsigned {
   kCurrentButtons = 0x2000,
-  kCurrentVelocity = 0x2051,
   kCurrentTransform = 0x2052,
-  kCurrentAngularVelocity = 0x2053,
   kDeviceModelType = 0x2501,
   kDeviceSerialNumber = 0x2504,
-  kUsableWorkspace = 0x2551,
   kInputDof = 0x2553,
   kOutputDof = 0x2554,
   kNominalMaxForce = 0x2603,
@@ -171,10 +167,6 @@ class TouchConnection final : public Connection {
     hd_.get_integers(kOutputDof, &output_dof);
     capabilities_.sensed = input_dof >= 6 ? 6 : 3;
     capabilities_.driven = output_dof >= 6 ? 6 : 3;
-    std::array<double, 6> corners_mm{};
-    hd_.get_doubles(kUsableWorkspace, corners_mm.data());
-    for (int axis = 0; axis < 3; ++axis)
-      capabilities_.workspace_D_mm[axis] = corners_mm[axis + 3] - corners_mm[axis];
     double force_N = 0, torque_Nmm = 0;
     hd_.get_doubles(kNominalMaxForce, &force_N);
     if (capabilities_.driven == 6) hd_.get_doubles(kNominalMaxTorque, &torque_Nmm);
@@ -190,11 +182,8 @@ class TouchConnection final : public Connection {
     hd_.get_doubles(kCurrentTransform, transform.data());
     const Eigen::Map<const Eigen::Matrix4d> X_DH(transform.data());
     input.X_DH.position_mm = X_DH.topRightCorner<3, 1>();
-    hd_.get_doubles(kCurrentVelocity, input.velocity_D_mm_s.data());
-    if (capabilities_.sensed == 6) {
+    if (capabilities_.sensed == 6)
       input.X_DH.orientation = Quat(Mat3(X_DH.topLeftCorner<3, 3>())).normalized();
-      hd_.get_doubles(kCurrentAngularVelocity, input.angular_velocity_D_rad_s.data());
-    }
     int buttons = 0;
     hd_.get_integers(kCurrentButtons, &buttons);
     input.buttons = static_cast<unsigned>(buttons);

@@ -29,24 +29,20 @@ struct Answer {
   std::array<char, 64> name{};
   std::uint32_t sensed = 0;
   std::uint32_t driven = 0;
-  std::array<double, 3> workspace_mm{};
   double max_force_N = 0;
   double max_torque_Nmm = 0;
-  double rate_Hz = 0;
 };
-static_assert(sizeof(Answer) == 136);
+static_assert(sizeof(Answer) == 104);
 
 struct State {
   static constexpr Kind kKind = Kind::state;
   Head head;
   std::array<double, 3> position_mm{};
   std::array<double, 4> orientation_wxyz{};
-  std::array<double, 3> velocity_mm_s{};
-  std::array<double, 3> angular_velocity_rad_s{};
   std::uint32_t buttons = 0;
   std::uint32_t reserved = 0;
 };
-static_assert(sizeof(State) == 128);
+static_assert(sizeof(State) == 80);
 
 struct SentWrench {
   static constexpr Kind kKind = Kind::wrench;

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "osteomill/numbers/work_progress.h"
-#include "osteomill/tool/tool_distance.h"
+#include "osteomill/tool/milling_tool.h"
 
 namespace osteomill {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "osteomill/volume/isosurface.h"
+#include "osteomill/volume/sampling.h"
 
 namespace osteomill::line_proxy {
 

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "osteomill/volume/isosurface.h"
+#include "osteomill/volume/sampling.h"
 
 /// Marching from and to bone. Safe in the haptic tick, for any finite points: the time is bounded by the size
 /// of the grid, not by how far apart the points are.

@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <optional>
 
-#include "osteomill/volume/isosurface.h"
 #include "osteomill/volume/sampling.h"
 
 namespace osteomill::line_proxy {

@@ -2,7 +2,7 @@
 
 #include <numbers>
 
-#include "osteomill/volume/isosurface.h"
+#include "osteomill/volume/sampling.h"
 
 namespace osteomill::line_proxy {
 

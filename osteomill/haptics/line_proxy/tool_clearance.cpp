@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "osteomill/haptics/line_proxy/bone_march.h"
-#include "osteomill/volume/isosurface.h"
+#include "osteomill/volume/sampling.h"
 
 namespace osteomill::line_proxy {
 

@@ -6,7 +6,7 @@
 #include "tests/shapes.h"
 #include <gtest/gtest.h>
 
-#include "osteomill/volume/isosurface.h"
+#include "osteomill/volume/sampling.h"
 
 namespace osteomill::surface_points {
 namespace {

@@ -1,0 +1,110 @@
+#include "osteomill/device/socket.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <system_error>
+
+#include <fmt/core.h>
+#include <netdb.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "osteomill/files/input_error.h"
+
+namespace osteomill {
+
+namespace {
+
+constexpr std::chrono::milliseconds kConnectWithin{400};
+
+bool would_wait() {
+  return errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR || errno == ENOBUFS;
+}
+
+}  // namespace
+
+HostAndPort host_and_port(std::string_view device, const std::string& address) {
+  const std::size_t colon = address.rfind(':');
+  HostAndPort at;
+  if (colon != std::string::npos && colon > 0) {
+    at.host = address.substr(0, colon);
+    const char* const end = address.data() + address.size();
+    const auto [stopped, error] = std::from_chars(address.data() + colon + 1, end, at.port);
+    if (error == std::errc() && stopped == end && at.port > 0 && at.port <= 65535) return at;
+  }
+  throw InputError(fmt::format("{}:{}", device, address), "is not of the form HOST:PORT");
+}
+
+Socket::Socket(const std::string& device, const HostAndPort& at, Kind kind) : kind_(kind) {
+  addrinfo hints{};
+  hints.ai_socktype = kind == Kind::stream ? SOCK_STREAM : SOCK_DGRAM;
+  hints.ai_flags = AI_NUMERICSERV;
+  addrinfo* found = nullptr;
+  if (const int error = getaddrinfo(at.host.c_str(), std::to_string(at.port).c_str(), &hints, &found);
+      error != 0)
+    throw InputError(device, gai_strerror(error));
+  int reason = ETIMEDOUT;
+  for (const addrinfo* to = found; to != nullptr && socket_ < 0; to = to->ai_next) {
+    socket_ = ::socket(to->ai_family, to->ai_socktype | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+    if (socket_ < 0) continue;
+    // Datagrams too, so that nobody else is heard.
+    reason = ::connect(socket_, to->ai_addr, to->ai_addrlen) == 0 ? 0 : errno;
+    if (reason == EINPROGRESS) {
+      socklen_t size = sizeof(reason);
+      reason = ETIMEDOUT;
+      if (wait_for(POLLOUT, kConnectWithin)) ::getsockopt(socket_, SOL_SOCKET, SO_ERROR, &reason, &size);
+    }
+    if (reason != 0) close();
+  }
+  freeaddrinfo(found);
+  if (socket_ < 0) throw InputError(device, std::strerror(reason));
+  const int at_once = 1;
+  if (kind == Kind::stream) ::setsockopt(socket_, IPPROTO_TCP, TCP_NODELAY, &at_once, sizeof(at_once));
+}
+
+Socket::~Socket() {
+  close();
+}
+
+bool Socket::wait_to_receive(std::chrono::milliseconds wait) const {
+  return wait_for(POLLIN, wait);
+}
+
+std::optional<std::size_t> Socket::receive(std::span<unsigned char> bytes) {
+  const ssize_t length = ::recv(socket_, bytes.data(), bytes.size(), 0);
+  const bool is_over = length == 0 && kind_ == Kind::stream;
+  if (length >= 0 && !is_over) return static_cast<std::size_t>(length);
+  if (is_over || !would_wait()) close();
+  return std::nullopt;
+}
+
+std::size_t Socket::send(std::span<const unsigned char> bytes) {
+  const ssize_t length = ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+  if (length < 0 && !would_wait()) close();
+  return static_cast<std::size_t>(std::max<ssize_t>(length, 0));
+}
+
+void Socket::send_all(std::span<const unsigned char> bytes, std::chrono::milliseconds wait) {
+  const auto end = std::chrono::steady_clock::now() + wait;
+  for (bytes = bytes.subspan(send(bytes)); is_open() && !bytes.empty(); bytes = bytes.subspan(send(bytes))) {
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(end - std::chrono::steady_clock::now());
+    if (left.count() <= 0 || !wait_for(POLLOUT, left)) close();
+  }
+}
+
+bool Socket::wait_for(short events, std::chrono::milliseconds wait) const {
+  pollfd wanted{socket_, events, 0};
+  return ::poll(&wanted, 1, static_cast<int>(wait.count())) > 0;
+}
+
+void Socket::close() {
+  if (socket_ >= 0) ::close(socket_);
+  socket_ = -1;
+}
+
+}  // namespace osteomill

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace osteomill {
+
+struct HostAndPort {
+  std::string host;
+  int port = 0;
+};
+
+/// Of "HOST:PORT". Throws InputError naming `device` and the address where it is not of that form.
+HostAndPort host_and_port(std::string_view device, const std::string& address);
+
+/// A client's end of a connection that never waits longer than it is told to. For one thread at a time.
+class Socket {
+ public:
+  enum class Kind : unsigned char { stream, datagrams };
+
+  /// Throws InputError about `device` where it cannot be had; a stream, where nothing answers within 400 ms.
+  Socket(const std::string& device, const HostAndPort& at, Kind kind);
+  ~Socket();
+  Socket(const Socket&) = delete;
+  Socket& operator=(const Socket&) = delete;
+
+  /// False from when the other side is found to be gone.
+  bool is_open() const { return socket_ >= 0; }
+  /// True when something has come, or comes within `wait`.
+  bool wait_to_receive(std::chrono::milliseconds wait) const;
+  /// How much of `bytes` was filled with what has come (of a datagram its beginning); nothing where none has.
+  std::optional<std::size_t> receive(std::span<unsigned char> bytes);
+  /// How many of these go out at once: a datagram as a whole or not at all.
+  std::size_t send(std::span<const unsigned char> bytes);
+  /// Sends all of it; what does not go out within `wait` ends the connection, since half a message is none.
+  void send_all(std::span<const unsigned char> bytes, std::chrono::milliseconds wait);
+
+ private:
+  bool wait_for(short events, std::chrono::milliseconds wait) const;
+  void close();
+
+  Kind kind_;
+  int socket_ = -1;
+};
+
+}  // namespace osteomill

@@ -1,0 +1,112 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <mutex>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <hdf5.h>
+
+#include "osteomill/geometry/pose.h"
+
+namespace osteomill {
+
+/// Held by whoever calls HDF5: the library keeps state of its own and is not safe in two threads at once.
+/// Switches off the library's printing of errors, which are thrown as InputError instead.
+class Hdf5Lock {
+ public:
+  Hdf5Lock();
+
+ private:
+  std::lock_guard<std::mutex> lock_;
+};
+
+/// An identifier of HDF5's that is closed when it goes. To be destroyed under Hdf5Lock.
+class Hdf5Handle {
+ public:
+  using Closer = herr_t (*)(hid_t);
+
+  Hdf5Handle() = default;
+  Hdf5Handle(hid_t id, Closer closer) : id_(id), closer_(closer) {}
+  ~Hdf5Handle() { close(); }
+  Hdf5Handle(Hdf5Handle&& other) noexcept
+      : id_(std::exchange(other.id_, H5I_INVALID_HID)), closer_(other.closer_) {}
+  Hdf5Handle& operator=(Hdf5Handle&& other) noexcept {
+    if (this != &other) {
+      close();
+      id_ = std::exchange(other.id_, H5I_INVALID_HID);
+      closer_ = other.closer_;
+    }
+    return *this;
+  }
+  Hdf5Handle(const Hdf5Handle&) = delete;
+  Hdf5Handle& operator=(const Hdf5Handle&) = delete;
+
+  hid_t get() const { return id_; }
+  bool valid() const { return id_ >= 0; }
+  /// False where HDF5 could not close it in order.
+  bool close() {
+    const hid_t id = std::exchange(id_, H5I_INVALID_HID);
+    return id < 0 || closer_(id) >= 0;
+  }
+
+ private:
+  hid_t id_ = H5I_INVALID_HID;
+  Closer closer_ = nullptr;
+};
+
+/// Writes attributes of one object. Every failure is an InputError that names the file. Under Hdf5Lock.
+class AttributeWriter {
+ public:
+  AttributeWriter(std::filesystem::path file, hid_t object) : file_(std::move(file)), object_(object) {}
+
+  /// Throws std::invalid_argument for a text of more than 60000 bytes, which HDF5 would not store.
+  void text(const std::string& name, const std::string& value) const;
+  void real(const std::string& name, double value) const;
+  void unsigned_integer(const std::string& name, std::uint64_t value) const;
+  void reals(const std::string& name, std::span<const double> values) const;
+  void vector(const std::string& name, const Vec3& value) const { reals(name, {value.data(), 3}); }
+  void integers(const std::string& name, const std::array<int, 3>& values) const;
+  /// Writes over the value of an attribute that is there.
+  void replace_unsigned_integer(const std::string& name, std::uint64_t value) const;
+
+ private:
+  void write(const std::string& name, hid_t file_type, hid_t memory_type, hsize_t count,
+             const void* data) const;
+
+  std::filesystem::path file_;
+  hid_t object_;
+};
+
+/// Reads attributes of one object. One that is missing, of another type or length is an InputError that names
+/// the file and the attribute. Under Hdf5Lock.
+class AttributeReader {
+ public:
+  AttributeReader(std::filesystem::path file, hid_t object) : file_(std::move(file)), object_(object) {}
+
+  std::string text(const std::string& name) const;
+  double real(const std::string& name) const;
+  std::uint64_t unsigned_integer(const std::string& name) const;
+  /// As many as there is room for.
+  void reals(const std::string& name, std::span<double> values) const;
+  Vec3 vector(const std::string& name) const;
+  std::array<int, 3> integers(const std::string& name) const;
+  bool has(const std::string& name) const;
+  bool is_text(const std::string& name) const;
+  /// In the order in which they were written.
+  std::vector<std::string> names() const;
+
+ private:
+  Hdf5Handle open(const std::string& name) const;
+  void read(const std::string& name, H5T_class_t type_class, hid_t memory_type, hssize_t count,
+            void* data) const;
+
+  std::filesystem::path file_;
+  hid_t object_;
+};
+
+}  // namespace osteomill

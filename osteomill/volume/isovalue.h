@@ -1,0 +1,62 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "osteomill/volume/density_grid.h"
+
+namespace osteomill {
+
+/// An isovalue, and in half a sentence where it came from, for people to read.
+struct SuggestedIsovalue {
+  double value = 0;
+  std::string how;
+};
+
+/// From where bone is counted in Hounsfield units: between the 226 HU of InVesalius and Mimics and the 300 HU
+/// that are usual for compact bone.
+inline constexpr double kBone_HU = 260;
+
+/// The isovalue that bounds the bone, by what the densities are:
+/// - a map of labels (few whole numbers, most of which occur in pieces): between the two lowest, so
+///   that whatever is labelled is bone;
+/// - a scan of a body, which has its two commonest densities, air and soft tissue, 1000 apart: 260 HU, and
+///   where the file does not say that it is in Hounsfield units, 260 above water, which lies 40 below soft
+///   tissue;
+/// - else halfway between the commonest density of the bone and of what is around it (half-maximum height;
+///   Spoor et al. 1993), but in Hounsfield units never under 260.
+/// Commonest is counted where densities hardly change from voxel to voxel, so not in blurred edges (Panda and
+/// Rosenfeld 1978), on either side of the threshold of Otsu 1979. Always strictly between the grid's least
+/// and greatest density; where all are equal, that density. Looks at some four million voxels at the most.
+/// Not for the tick.
+SuggestedIsovalue suggest_isovalue(const DensityGrid& grid, bool in_hounsfield_units = false);
+
+/// Where a grid holds labels in the place of densities (few whole numbers, most of which
+/// occur in pieces rather than strewn): the isovalue between the two lowest, at which all that is labelled is
+/// bone. Nothing for a grid of densities. At most a pass over the voxels.
+std::optional<double> isovalue_of_labels(const DensityGrid& grid);
+
+/// A grid of labels as one of densities, since labels are no quantities: those above the isovalue are all as
+/// dense as each other, half above it, and the others half below.
+DensityGrid bone_of_labels(const DensityGrid& labels, double isovalue);
+
+/// Whether there are both bone and something else by this isovalue.
+bool is_within(const DensityGrid& grid, double isovalue);
+
+/// What a user of this isovalue should know, a sentence each: that it lies outside the grid's densities, so
+/// that there is no bone or nothing else; or that bone touches the border of the volume, where it is cut off
+/// and its inside lies open. One pass over the voxels.
+std::vector<std::string> isovalue_warnings(const DensityGrid& grid, double isovalue);
+
+/// How often densities occur, for the isovalue to be chosen by: logarithms of counts, over all densities but
+/// the rarest at both ends.
+struct DensityHistogram {
+  float min = 0;
+  float max = 1;
+  std::array<float, 128> log_counts{};
+};
+DensityHistogram histogram_of(const DensityGrid& grid);
+
+}  // namespace osteomill

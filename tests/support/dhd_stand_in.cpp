@@ -1,0 +1,98 @@
+// Stands in for libdhd where there is no device: the functions that osteomill uses, by the maker's names.
+
+#include "tests/support/dhd_stand_in.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+#include "tests/support/stand_in.h"
+
+namespace {
+
+DhdStandIn g_state;
+double g_most_N = 0;
+
+int result_of(std::string_view function) {
+  return g_state.fails_in == function ? -1 : 0;
+}
+
+}  // namespace
+
+extern "C" {
+
+DhdStandIn* dhd_stand_in() {
+  return &g_state;
+}
+
+int dhdGetDeviceCount() {
+  return g_state.devices;
+}
+int dhdOpenID(char id) {
+  if (result_of("dhdOpenID") < 0) return -1;
+  g_state.opened = id;
+  g_state.is_stopped = false;
+  return id;
+}
+int dhdClose(char) {
+  g_state.opened = -1;
+  osteomill::testing_support::log_of_stand_in("closed, sent", g_state.times_sent, "most", g_most_N, "last",
+                                              g_state.sent[0], g_state.sent[1], g_state.sent[2]);
+  return 0;
+}
+int dhdStop(char) {
+  g_state.is_stopped = true;
+  return 0;
+}
+const char* dhdErrorGetLastStr() {
+  return "the stand-in fails";
+}
+const char* dhdGetSystemName(char) {
+  return "sigma.7";
+}
+int dhdGetSystemType(char) {
+  return g_state.system_type;
+}
+int dhdGetSerialNumber(unsigned short* number, char) {
+  *number = 4711;
+  return 0;
+}
+bool dhdHasWrist(char) {
+  return g_state.has_wrist;
+}
+bool dhdHasActiveWrist(char) {
+  return g_state.has_active_wrist;
+}
+int dhdSetBrakes(int on, char) {
+  g_state.has_brakes = on != 0;
+  return 0;
+}
+int dhdEnableForce(unsigned char on, char) {
+  g_state.has_force = on != 0;
+  return result_of("dhdEnableForce");
+}
+int dhdSetMaxForce(double force_N, char) {
+  g_state.max_force_N = force_N;
+  return 0;
+}
+int dhdGetPositionAndOrientationFrame(double* x, double* y, double* z, double frame[3][3], char) {
+  const auto& p = g_state.position_m;
+  *x = g_state.is_held ? p[0] : 1e-3 * osteomill::testing_support::swept_mm();
+  *y = p[1];
+  *z = p[2];
+  std::copy_n(&g_state.frame[0][0], 9, &frame[0][0]);
+  const int failed = result_of("dhdGetPositionAndOrientationFrame");
+  return failed < 0 ? failed : g_state.pose_result;
+}
+unsigned dhdGetButtonMask(char) {
+  return g_state.buttons;
+}
+int dhdSetForceAndTorqueAndGripperForce(double fx, double fy, double fz, double tx, double ty, double tz,
+                                        double gripper, char) {
+  g_state.sent = {fx, fy, fz, tx, ty, tz, gripper};
+  ++g_state.times_sent;
+  g_most_N = std::max(g_most_N, std::hypot(fx, fy, fz));
+  return result_of("dhdSetForceAndTorqueAndGripperForce");
+}
+
+}  // extern "C"

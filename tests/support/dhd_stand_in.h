@@ -1,0 +1,30 @@
+#pragma once
+
+#include <array>
+#include <string>
+
+/// What the stand-in for libdhd says, and what it was told. A test has it by dlsym("dhd_stand_in").
+struct DhdStandIn {
+  int devices = 1;
+  bool has_wrist = true;
+  bool has_active_wrist = true;
+  int system_type = 104;
+  /// Where it fails: a function's name.
+  std::string fails_in;
+  /// 0, or 1 where the pose is no new one.
+  int pose_result = 0;
+  /// The handle sweeps where these are not set.
+  bool is_held = false;
+  std::array<double, 3> position_m{};
+  double frame[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  unsigned buttons = 0;
+
+  int opened = -1;
+  bool is_stopped = false;
+  bool has_force = false;
+  bool has_brakes = true;
+  double max_force_N = 0;
+  /// Force (N), torque (N m), force of the gripper (N).
+  std::array<double, 7> sent{};
+  int times_sent = 0;
+};

@@ -1,0 +1,13 @@
+// Haply's service where there is none: haply_stand_in PORT
+
+#include "tests/support/haply_stand_in.h"
+
+#include <cstdlib>
+
+#include <unistd.h>
+
+int main(int count, char** words) {
+  const osteomill::testing_support::HaplyStandIn service(count > 1 ? std::atoi(words[1]) : 0);
+  if (service.port() == 0) return 1;
+  pause();
+}

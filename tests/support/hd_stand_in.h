@@ -1,0 +1,28 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+
+/// What the stand-in for libHD says, and what it was told; its scheduler calls 1000 times a second. A test
+/// has it by dlsym("hd_stand_in"), and changes plain members only while no scheduler runs.
+struct HdStandIn {
+  bool is_there = true;
+  int output_dof = 3;
+  /// The handle sweeps where this is not set.
+  bool is_held = false;
+  /// Columns; mm.
+  std::array<double, 16> transform{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+  int buttons = 0;
+
+  /// Said by hdGetError after each frame.
+  std::atomic<unsigned> error{0};
+  /// The scheduler runs but no longer calls.
+  std::atomic<bool> hangs{false};
+
+  std::atomic<bool> is_open{false};
+  std::atomic<bool> has_force{false};
+  /// As hdSetDoublev had them last.
+  std::array<std::atomic<double>, 3> force{};
+  std::array<std::atomic<double>, 3> torque{};
+  std::atomic<int> frames{0};
+};

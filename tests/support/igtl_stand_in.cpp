@@ -1,0 +1,12 @@
+// 3D Slicer where there is none: igtl_stand_in PORT
+
+#include "tests/support/igtl_stand_in.h"
+
+#include <cstdlib>
+
+#include <unistd.h>
+
+int main(int count, char** words) {
+  const osteomill::testing_support::IgtlStandIn server(count > 1 ? std::atoi(words[1]) : 0);
+  pause();
+}

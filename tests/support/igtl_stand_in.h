@@ -1,0 +1,111 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <igtlImageMessage.h>
+#include <igtlMessageHeader.h>
+#include <igtlServerSocket.h>
+
+namespace osteomill::testing_support {
+
+/// Stands in for 3D Slicer: an OpenIGTLink server made of the library's own sockets, which keeps the image
+/// that it is sent.
+class IgtlStandIn {
+ public:
+  explicit IgtlStandIn(int port = 0) {
+    server_ = igtl::ServerSocket::New();
+    server_->CreateServer(port);
+    port_ = server_->GetServerPort();
+    thread_ = std::thread([this] { serve(); });
+  }
+  ~IgtlStandIn() {
+    ends_ = true;
+    thread_.join();
+    server_->CloseSocket();
+  }
+  IgtlStandIn(const IgtlStandIn&) = delete;
+  IgtlStandIn& operator=(const IgtlStandIn&) = delete;
+
+  std::string address() const { return "127.0.0.1:" + std::to_string(port_); }
+  std::atomic<bool> closes{false};
+
+  /// An image as it has been put together of the IMAGE messages that came.
+  struct Image {
+    int messages = 0;
+    /// How many values the last message had.
+    std::size_t last_values = 0;
+    std::array<int, 3> dims{};
+    std::array<float, 3> spacing_mm{};
+    igtl::Matrix4x4 matrix{};
+    std::vector<float> values;
+  };
+  Image image() const {
+    const std::lock_guard lock(mutex_);
+    return image_;
+  }
+
+ private:
+  void serve() {
+    while (!ends_) {
+      const auto client = server_->WaitForConnection(20);
+      if (client.IsNull()) continue;
+      closes = false;
+      client->SetReceiveTimeout(20);
+      while (!ends_ && !closes && client->GetConnected() && listen(*client)) {
+      }
+      client->CloseSocket();
+    }
+  }
+
+  // False where the other side is gone.
+  bool listen(igtl::Socket& client) {
+    const auto header = igtl::MessageHeader::New();
+    header->InitPack();
+    const int length = client.Receive(header->GetPackPointer(), header->GetPackSize());
+    if (length <= 0) return length < 0;
+    header->Unpack();
+    return take_image(client, header);
+  }
+
+  bool take_image(igtl::Socket& client, const igtl::MessageHeader::Pointer& header) {
+    const auto message = igtl::ImageMessage::New();
+    message->SetMessageHeader(header);
+    message->AllocatePack();
+    client.SetReceiveTimeout(2000);
+    client.Receive(message->GetPackBodyPointer(), message->GetPackBodySize());
+    client.SetReceiveTimeout(20);
+    if ((message->Unpack(1) & igtl::MessageHeader::UNPACK_BODY) == 0) return false;
+    const std::lock_guard lock(mutex_);
+    message->GetDimensions(image_.dims.data());
+    message->GetSpacing(image_.spacing_mm.data());
+    message->GetMatrix(image_.matrix);
+    int dims[3], first[3];
+    message->GetSubVolume(dims, first);
+    image_.values.resize(static_cast<std::size_t>(image_.dims[0]) * image_.dims[1] * image_.dims[2], NAN);
+    image_.last_values = static_cast<std::size_t>(dims[0]) * dims[1] * dims[2];
+    ++image_.messages;
+    const auto* value = static_cast<const float*>(message->GetScalarPointer());
+    for (int k = first[2]; k < first[2] + dims[2]; ++k) {
+      for (int j = first[1]; j < first[1] + dims[1]; ++j) {
+        for (int i = first[0]; i < first[0] + dims[0]; ++i)
+          image_.values[(static_cast<std::size_t>(k) * image_.dims[1] + j) * image_.dims[0] + i] = *value++;
+      }
+    }
+    return true;
+  }
+
+  igtl::ServerSocket::Pointer server_;
+  int port_ = 0;
+  std::atomic<bool> ends_{false};
+  mutable std::mutex mutex_;
+  Image image_;
+  std::thread thread_;
+};
+
+}  // namespace osteomill::testing_support
