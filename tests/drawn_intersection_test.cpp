@@ -5,7 +5,7 @@
 #include "tests/shapes.h"
 #include <gtest/gtest.h>
 
-#include "osteomill/device/posed_device.h"
+#include "osteomill/device/device.h"
 #include "osteomill/haptics/algorithms.h"
 #include "osteomill/session/milling_session.h"
 #include "osteomill/view/offscreen_context.h"

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "osteomill/live/tick_clock.h"
+#include "osteomill/live/live_timing.h"
 #include "osteomill/numbers/distribution.h"
 
 namespace osteomill {
