@@ -202,7 +202,7 @@ TEST(MillingScript, AToolThatLeavesTheBoneWhileItLeansIsLostAndTheHandStays) {
   while (!person.finished()) {
     const Pose device = person.read_pose();
     if (person.stage() < ScriptStage::lean) lean_s = person.time_s();
-    const bool gone = person.time_s() > lean_s + 0.5;
+    const bool gone = person.time_s() > lean_s + 1;
     const double floor_N = gone ? 0 : 2 * (kTool.burr_radius_mm - 4 - device.position_mm.z());
     person.write_wrench({{0, 0, std::max(0.0, floor_N)}, Vec3::Zero()});
     if (floor_N > 0) last_touched_W = device.position_mm;
@@ -212,9 +212,9 @@ TEST(MillingScript, AToolThatLeavesTheBoneWhileItLeansIsLostAndTheHandStays) {
   EXPECT_TRUE(person.shortfall().lost);
   EXPECT_FALSE(person.shortfall().hardly_leant || person.shortfall().unsettled)
       << "that it was lost says all";
-  EXPECT_NEAR(person.time_s(), lean_s + 0.5 + 1 + 4, 0.1) << "it is not milled on for";
-  EXPECT_LT((person.read_pose().position_mm - last_touched_W).norm(), 6);
-  EXPECT_GT(person.read_pose().position_mm.z(), last_touched_W.z() - 3);
+  EXPECT_NEAR(person.time_s(), lean_s + 1 + 1 + 4, 0.1) << "it is not milled on for";
+  // A second at the speed at which it feeds, and the spring that nothing stretches any more.
+  EXPECT_GT(person.read_pose().position_mm.z(), last_touched_W.z() - 2 * 1.01 - 1.5 / 0.5);
 }
 
 // The first algorithm meets the bone with the device's centre, 1.5 mm deeper than the burr that is shown, and
