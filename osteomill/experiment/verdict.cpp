@@ -106,7 +106,7 @@ std::string findings_sentence(const Study& study) {
     untested += !is_tested(f.of_medians.verdict);
     if (f.of_medians.verdict != Verdict::does_not_agree) continue;
     const std::string in = too_few(study) ? "" : fmt::format(" ({} of {} hands)", f.agreeing, f.tested);
-    against.push_back(fmt::format("“{}”{}", f.of_medians.paper_says, in));
+    against.push_back(f.of_medians.paper_says + in);
   }
   const std::string where = too_few(study)
                                 ? "are as in " + hands(study.seeds().size()) + " here"

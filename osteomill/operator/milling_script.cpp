@@ -179,7 +179,8 @@ void MillingScript::lean(double share, double dt_s, const Pose& X_WD) {
       lean_axis_W_.dot(rotation_vector(target().orientation * X_WD.orientation.conjugate()));
   const double rate_rad_s = settings_.torque_correction_per_s * (wanted_rad - felt_rad);
   lean_rad_ += dt_s * std::clamp(rate_rad_s, -settings_.lean_rad_s, settings_.lean_rad_s);
-  const double limit_rad = wall_rad_ ? *wall_rad_ + wanted_rad : settings_.lean_limit_rad;
+  const double limit_rad =
+      settings_.until_leant && wall_rad_ ? *wall_rad_ + wanted_rad : settings_.lean_limit_rad;
   lean_rad_ = std::clamp(lean_rad_, 0.0, std::clamp(limit_rad, 0.0, settings_.lean_limit_rad));
 }
 

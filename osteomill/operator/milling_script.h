@@ -29,8 +29,8 @@ struct ScriptSettings {
   /// ... or when this share of the (longest) milling is over.
   double latest_lean_share = 0.6;
   double lean_rad_s = 0.14;  // 8 degrees a second
-  /// It leans until the shaft meets the wall, and from there by what its spring takes for this torque: no
-  /// further, where the wall gives way.
+  /// It leans with this torque; with `until_leant` until the shaft meets the wall, and from there by what its
+  /// spring takes for the torque: no further, where the wall gives way.
   double lean_torque_share = 0.8;
   double lean_push_share = 0.6;
   /// Sideways, towards the rim that is leant against. Leaning by torque alone would press the burr into the
