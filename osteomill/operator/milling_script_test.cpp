@@ -120,11 +120,7 @@ TEST(MillingScript, FeedsWithNineTenthsOfThePushUntilTheHoleIsThreeMillimetresDe
   }
 }
 
-// The wall gives way by 1 / 1000 rad a N mm, the hand by 1 / 500: of the hand's twist, from where the shaft
-// met the wall, two thirds are its own.
-constexpr double kLeansWith_Nmm = 0.8 * 15 * 1000 / (1000 + 500);
-
-TEST(MillingScript, LeansAtItsRateUntilTheShaftMeetsTheWallAndPressesOnItWithTheSpindleOn) {
+TEST(MillingScript, LeansAtItsRateUntilTheTorqueIsThereAndKeepsItWithTheSpindleOn) {
   const MillingEntry entry = on_a_ball();
   const auto samples = run(without_tremor(), entry, yielding_hole(entry));
   const double from_s = samples[first_of(samples, ScriptStage::lean)].time_s;
@@ -134,7 +130,7 @@ TEST(MillingScript, LeansAtItsRateUntilTheShaftMeetsTheWallAndPressesOnItWithThe
   EXPECT_NEAR(mean_between(samples, from_s + 1.0, from_s + 1.001, lean), 0.14, 0.01);
   const auto torque = [](const Sample& s) { return s.hand.torque_Nmm.norm(); };
   const auto along = [&](const Sample& s) { return s.hand.force_N.dot(entry.direction_W); };
-  EXPECT_NEAR(mean_between(samples, 16, 20, torque), kLeansWith_Nmm, 0.3);
+  EXPECT_NEAR(mean_between(samples, 16, 20, torque), 0.8 * 15, 0.3);
   EXPECT_NEAR(mean_between(samples, 16, 20, along), 0.6 * 1.5, 0.05);
   EXPECT_TRUE(samples[19999].milling);
   EXPECT_EQ(samples[19999].stage, ScriptStage::lean);
@@ -157,7 +153,7 @@ TEST(MillingScript, HoldsStillWithTheSpindleOffAndTheShaftAgainstTheRim) {
   }
   const auto torque = [](const Sample& s) { return s.hand.torque_Nmm.norm(); };
   const auto along = [&](const Sample& s) { return s.hand.force_N.dot(entry.direction_W); };
-  EXPECT_NEAR(mean_between(samples, 22, 40, torque), kLeansWith_Nmm, 0.3);
+  EXPECT_NEAR(mean_between(samples, 22, 40, torque), 0.8 * 15, 0.3);
   EXPECT_NEAR(mean_between(samples, 22, 40, along), 0.5 * 1.5, 0.05);
 }
 
@@ -166,6 +162,7 @@ TEST(MillingScript, AWallThatGivesWayIsNotSunkInto) {
   OperatorSettings settings = without_tremor();
   settings.script.milling_s = 8;
   settings.script.holding_s = 4;
+  settings.script.until_leant = true;
   const auto leant_rad = [&](double wall_Nmm_per_rad) {
     constexpr double kWall_rad = 0.1;
     SimulatedOperator person(settings, kTool, {});
