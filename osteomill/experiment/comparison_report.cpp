@@ -65,8 +65,7 @@ std::string findings_section(const Study& study) {
 }
 
 std::string paper_rate(const MeasuredRun& run) {
-  const RunDescription& d = run.recording->description;
-  const auto rate_hz = paper_mean_rate_hz(d.algorithm.name, d.segment);
+  const auto rate_hz = paper_mean_rate_hz(run.algorithm.name, run.segment);
   return rate_hz ? fmt::format("{:.0f}", *rate_hz) : "";
 }
 
@@ -111,10 +110,7 @@ std::string opening(const Study& study, const std::vector<Recording>& recordings
 Study study_of(const std::vector<RunGroup>& groups) {
   std::vector<StudyRow> rows;
   for (const RunGroup& group : groups) {
-    for (const MeasuredRun& run : group.runs) {
-      const RunDescription& d = run.recording->description;
-      rows.push_back({0, {}, {d.algorithm, d.mode, d.segment, run.metrics}});
-    }
+    for (const MeasuredRun& run : group.runs) rows.push_back({0, {}, run});
   }
   return Study(std::move(rows));
 }

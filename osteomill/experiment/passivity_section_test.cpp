@@ -111,8 +111,9 @@ TEST_F(PassivitySectionTest, TheReportOfAStudyHasItsFilesFiguresAndWords) {
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
     for (const Recording& run : runs) {
       const RunDescription& d = run.description;
-      SummaryRow row{d.algorithm, d.mode, d.segment, run_metrics(run)};
-      row.metrics.force_N.hp_rms *= 1 + 0.01 * static_cast<double>(seed);
+      MeasuredRun row{d.algorithm, d.mode, d.segment, run_metrics(run)};
+      for (double* unrest : {&row.metrics.force_N.hp_rms, &row.metrics.force_N.hp_share})
+        *unrest *= 1 + 0.01 * static_cast<double>(seed);
       trials.push_back({seed, random_hand(seed), row});
     }
   }

@@ -23,11 +23,11 @@ constexpr double kModeShift = 0.2;
 constexpr double kScatter = 0.2;
 constexpr double kBarHalf = 0.15;
 
-std::vector<double> all_values(const Study& study, std::string_view phase, const KeyMetric& metric) {
+std::vector<double> all_values(const Study& study, std::string_view phase, const Metric& metric) {
   std::vector<double> all;
   for (const Mode mode : study.modes()) {
     for (const AlgorithmId& algorithm : study.algorithms()) {
-      const auto values = study.values(algorithm, mode, phase, metric);
+      const auto values = study.values({algorithm, mode}, phase, metric);
       all.insert(all.end(), values.begin(), values.end());
     }
   }
@@ -70,7 +70,7 @@ std::string tics(const Study& study) {
                      list);
 }
 
-std::string panel(const Study& study, std::string_view phase, const KeyMetric& metric, std::size_t number,
+std::string panel(const Study& study, std::string_view phase, const Metric& metric, std::size_t number,
                   const TemporaryFolder& work) {
   std::string plot;
   for (const Mode mode : study.modes()) {
@@ -79,7 +79,7 @@ std::string panel(const Study& study, std::string_view phase, const KeyMetric& m
     for (const AlgorithmId& algorithm : study.algorithms()) {
       const std::string file = fmt::format("study-{}-{}-{}.dat", number, name_of(mode), name_of(algorithm));
       const double x = static_cast<double>(place++) + shift;
-      const std::vector<double> values = study.values(algorithm, mode, phase, metric);
+      const std::vector<double> values = study.values({algorithm, mode}, phase, metric);
       if (values.empty()) continue;
       write_figure_data(work / file, dots_and_bars(values, x));
       plot += fmt::format(
@@ -93,7 +93,7 @@ std::string panel(const Study& study, std::string_view phase, const KeyMetric& m
 }
 
 // The title stands over the whole panel: some are wider than its axes.
-std::string frame(const KeyMetric& metric, std::size_t number, double height_px) {
+std::string frame(const Metric& metric, std::size_t number, double height_px) {
   const double left_px = 76, right_px = 10, above_px = 34, below_px = 36, title_px = 16;
   const double wide = kWidth_px / kColumns;
   const double left = static_cast<double>(number % kColumns) * wide;
@@ -102,8 +102,8 @@ std::string frame(const KeyMetric& metric, std::size_t number, double height_px)
       "set lmargin at screen {:.4f}\nset rmargin at screen {:.4f}\nset tmargin at screen {:.4f}\nset bmargin "
       "at screen {:.4f}\nset label 2 '{}' at screen {:.4f},screen {:.4f} center\n",
       (left + left_px) / kWidth_px, (left + wide - right_px) / kWidth_px, (top - above_px) / height_px,
-      (top - kPanelHeight_px + below_px) / height_px, label_of(metric), (left + 0.55 * wide) / kWidth_px,
-      (top - title_px) / height_px);
+      (top - kPanelHeight_px + below_px) / height_px, with_unit(metric.name, metric),
+      (left + 0.55 * wide) / kWidth_px, (top - title_px) / height_px);
 }
 
 std::string legend(const Study& study, std::string_view phase, double height_px) {
@@ -133,7 +133,7 @@ std::string legend(const Study& study, std::string_view phase, double height_px)
 
 Figure draw_study_figure(const Study& study, std::string_view phase, const std::filesystem::path& folder) {
   const TemporaryFolder work;
-  std::vector<KeyMetric> metrics = study.metrics_of(phase);
+  std::vector<Metric> metrics = study.metrics_of(phase);
   if (metrics.size() > kMaxPanels) metrics.resize(kMaxPanels);
   const std::size_t rows = (metrics.size() + kColumns - 1) / kColumns;
   const double height_px = kTop_px + static_cast<double>(std::max<std::size_t>(rows, 1)) * kPanelHeight_px;

@@ -30,9 +30,9 @@ std::string pair_text(const AlgorithmPair& pair) {
 
 // "0.02 [0.01, 0.03]", with the hands where it could not be measured in all; else why not in any.
 std::string values_text(const Study& study, const Study::Tried& tried, std::string_view phase,
-                        const KeyMetric& metric) {
+                        const Metric& metric) {
   if (!study.was_tried(tried)) return "–";
-  const std::vector<double> values = study.values(tried.algorithm, tried.mode, phase, metric);
+  const std::vector<double> values = study.values(tried, phase, metric);
   if (values.empty()) return contact_words(study.contact(tried, phase));
   const std::string text = interval_text(median_interval(values));
   return values.size() == study.seeds().size()
@@ -44,8 +44,8 @@ std::string algorithms_table(const Study& study, Mode mode, std::string_view pha
   HtmlTable table{{"Median over the hands [interval]"}, {}, true};
   for (const AlgorithmId& algorithm : study.algorithms()) table.header.emplace_back(algorithm.label);
   if (study.algorithms().size() > 1) table.header.emplace_back("Differences");
-  for (const KeyMetric& metric : study.metrics_of(phase)) {
-    table.rows.push_back({html_escaped(label_of(metric))});
+  for (const Metric& metric : study.metrics_of(phase)) {
+    table.rows.push_back({html_escaped(with_unit(metric.name, metric))});
     for (const AlgorithmId& algorithm : study.algorithms()) {
       table.rows.back().push_back(values_text(study, {algorithm, mode}, phase, metric));
     }
@@ -69,8 +69,8 @@ std::string change_text(const ModeChange& change) {
 std::string changes_table(const Study& study, std::string_view phase) {
   HtmlTable table{{"steady / paper, median over the hands [interval]"}, {}, true};
   for (const AlgorithmId& algorithm : study.algorithms()) table.header.emplace_back(algorithm.label);
-  for (const KeyMetric& metric : study.metrics_of(phase)) {
-    table.rows.push_back({html_escaped(label_of(metric))});
+  for (const Metric& metric : study.metrics_of(phase)) {
+    table.rows.push_back({html_escaped(with_unit(metric.name, metric))});
     const std::vector<ModeChange> changes = compare_modes(study, phase, metric);
     for (const AlgorithmId& algorithm : study.algorithms()) {
       const auto change = std::find_if(changes.begin(), changes.end(),

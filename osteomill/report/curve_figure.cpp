@@ -22,8 +22,7 @@ struct Curve {
 };
 
 std::string data_file(const CurveColumn& column, const MeasuredRun& run) {
-  const RunDescription& d = run.recording->description;
-  return fmt::format("{}-{}-{}.dat", column.name, d.segment, name_of(d.algorithm));
+  return fmt::format("{}-{}-{}.dat", column.name, run.segment, name_of(run.algorithm));
 }
 
 Curve write_curve(const CurveColumn& column, const MeasuredRun& run, std::size_t bins,
@@ -32,7 +31,7 @@ Curve write_curve(const CurveColumn& column, const MeasuredRun& run, std::size_t
   std::vector<double> values;
   values.reserve(records.size());
   for (const TickRecord& record : records) values.push_back(column.value(record));
-  Curve curve{run.recording->description.algorithm, data_file(column, run)};
+  Curve curve{run.algorithm, data_file(column, run)};
   for (std::size_t n = 1; n < values.size(); ++n) curve.restlessness += std::abs(values[n] - values[n - 1]);
   std::string data;
   for (const std::size_t n : thin_out_curve(values, bins)) {

@@ -21,8 +21,7 @@ LabelCount count_of(const Recording& recording) {
 }
 
 std::string run_name(const MeasuredRun& run) {
-  const RunDescription& d = run.recording->description;
-  return d.segment.empty() ? d.algorithm.label : d.algorithm.label + ", " + d.segment;
+  return run.segment.empty() ? run.algorithm.label : run.algorithm.label + ", " + run.segment;
 }
 
 std::string name_with_colour(const Label& label) {

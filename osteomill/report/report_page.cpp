@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include <fmt/format.h>
 
 #include "osteomill/report/html.h"
 #include "osteomill/report/label_section.h"
+#include "osteomill/report/metric_table.h"
 #include "osteomill/report/settings_table.h"
 
 namespace osteomill {
@@ -67,79 +67,44 @@ std::string what_was_run(const std::vector<const Recording*>& recordings) {
          html_paragraph("What is reported is what was sent to the hand at every tick.");
 }
 
-MetricLine real_line(const char* label, const std::function<double(const RunMetrics&)>& value) {
-  return {label, [value](const MeasuredRun& run) {
-            const double number = value(run.metrics);
-            return std::isnan(number) ? contact_words(run.metrics.contact) : fmt::format("{:.4g}", number);
-          }};
-}
-
-MetricLine cpu_line(const char* label, double (*value)(const Distribution&)) {
-  return {label, [value](const MeasuredRun& run) {
-            const auto& cpu_us = run.metrics.cpu_us;
-            return cpu_us ? fmt::format("{:.4g}", value(*cpu_us)) : "not measured";
-          }};
-}
-
-using M = RunMetrics;
-
 // What a reader wants to know at once: figures and the metrics beside them.
 struct Topic {
   const char* title;
   std::vector<const char*> figures;
-  std::vector<MetricLine> lines;
+  std::vector<MetricTable> tables;
 };
 
-std::vector<Topic> felt_topics() {
-  return {
-      {"Force",
-       {"force"},
-       {real_line("Force while in contact, mean (N)", [](const M& m) { return m.force_N.mean; }),
-        real_line("… greatest (N)", [](const M& m) { return m.force_N.max; }),
-        real_line("… above 20 Hz, rms (N)", [](const M& m) { return m.force_N.hp_rms; }),
-        real_line("… greatest change in a tick (N)", [](const M& m) { return m.force_N.step_max; })}},
-      {"Torque",
-       {"torque"},
-       {real_line("Torque while in contact, mean (N mm)", [](const M& m) { return m.torque_Nmm.mean; }),
-        real_line("… greatest (N mm)", [](const M& m) { return m.torque_Nmm.max; }),
-        real_line("… above 20 Hz, rms (N mm)", [](const M& m) { return m.torque_Nmm.hp_rms; }),
-        real_line("… greatest change in a tick (N mm)", [](const M& m) { return m.torque_Nmm.step_max; })}},
-      {"Shaft",
-       {"shaft"},
-       {real_line("Shaft direction, spread (degrees)", [](const M& m) { return m.shaft.spread_deg; }),
-        real_line("… greatest excursion (degrees)", [](const M& m) { return m.shaft.excursion_deg; })}},
-      {"Path and bone removed",
-       {"removed", "path"},
-       {real_line("Bone removed (mm³)", [](const M& m) { return m.removed_mm3; }),
-        real_line("Path of the burr's centre (mm)", [](const M& m) { return m.path_mm; }),
-        real_line("In contact, share of the time", [](const M& m) { return m.contact.any; }),
-        real_line("… with the burr", [](const M& m) { return m.contact.burr; }),
-        real_line("… with the shaft", [](const M& m) { return m.contact.shaft; })}}};
+const std::vector<Topic>& felt_topics() {
+  static const std::vector<Topic> topics{{"Force", {"force"}, {MetricTable::force}},
+                                         {"Torque", {"torque"}, {MetricTable::torque}},
+                                         {"Shaft", {"shaft"}, {MetricTable::shaft}},
+                                         {"Path and bone removed", {"removed", "path"}, {MetricTable::path}}};
+  return topics;
 }
 
-Topic times(const std::vector<MetricLine>& further) {
-  Topic topic{"How long the ticks took",
-              {"rate"},
-              {{"Ticks", [](const MeasuredRun& run) { return fmt::format("{}", run.metrics.steps); }},
-               real_line("Compute time of a step, median (µs)", [](const M& m) { return m.step_us.median; }),
-               real_line("… 99th percentile (µs)", [](const M& m) { return m.step_us.p99; }),
-               real_line("… greatest (µs)", [](const M& m) { return m.step_us.max; }),
-               cpu_line("Work of a whole tick, CPU time, median (µs)",
-                        [](const Distribution& d) { return d.median; }),
-               cpu_line("… 99th percentile (µs)", [](const Distribution& d) { return d.p99; }),
-               cpu_line("… greatest (µs)", [](const Distribution& d) { return d.max; }),
-               {"Haptic rate that a 1 kHz loop would hold (Hz)",
-                [](const MeasuredRun& run) { return fmt::format("{:.1f}", run.metrics.rate_hz); }}}};
-  topic.lines.insert(topic.lines.end(), further.begin(), further.end());
-  return topic;
+std::string cell(const Metric& metric, const MeasuredRun& run) {
+  const double value = metric(run.metrics);
+  if (!std::isnan(value)) return fmt::format(fmt::runtime(metric.format), value);
+  return metric.table == MetricTable::times ? "not measured" : contact_words(run.metrics.contact);
+}
+
+std::vector<MetricLine> lines_of(const Topic& topic) {
+  std::vector<MetricLine> lines;
+  for (const MetricTable table : topic.tables) {
+    for (const Metric& metric : all_metrics()) {
+      if (metric.table != table) continue;
+      lines.push_back(
+          {with_unit(metric.label, metric), [&metric](const MeasuredRun& run) { return cell(metric, run); }});
+    }
+  }
+  return lines;
 }
 
 std::string metrics_table(const RunGroup& group, const std::vector<MetricLine>& lines) {
   HtmlTable table{{""}, {}, true};
   for (const MeasuredRun& run : group.runs) {
-    const RunDescription& d = run.recording->description;
-    const std::string segment = d.segment.empty() ? "" : html_escaped(d.segment) + "<br>";
-    table.header.push_back(segment + html_escaped(d.algorithm.label));
+    const std::string segment = run.segment.empty() ? "" : html_escaped(run.segment) + "<br>";
+    table.header.push_back(segment + html_escaped(run.algorithm.label));
   }
   for (const MetricLine& line : lines) {
     table.rows.push_back({line.label});
@@ -152,7 +117,10 @@ std::string mode_heading(const DrawnGroup& drawn, const std::vector<DrawnGroup>&
   return groups.size() > 1 ? fmt::format("<h3>Mode {}</h3>\n", name_of(drawn.group.mode)) : "";
 }
 
-std::string topic_section(const Topic& topic, const std::vector<DrawnGroup>& groups) {
+std::string topic_section(const Topic& topic, const std::vector<DrawnGroup>& groups,
+                          const std::vector<MetricLine>& further = {}) {
+  std::vector<MetricLine> lines = lines_of(topic);
+  lines.insert(lines.end(), further.begin(), further.end());
   std::string html = fmt::format("<h2>{}</h2>\n", topic.title);
   for (const DrawnGroup& drawn : groups) {
     html += mode_heading(drawn, groups);
@@ -160,7 +128,7 @@ std::string topic_section(const Topic& topic, const std::vector<DrawnGroup>& gro
       const CaptionedFigure& figure = drawn.figures.at(name);
       html += html_figure(figure.files.svg, figure.caption);
     }
-    html += metrics_table(drawn.group, topic.lines);
+    html += metrics_table(drawn.group, lines);
   }
   return html;
 }
@@ -210,7 +178,6 @@ double spindle_s(const Recording& recording) {
 
 // What a session was, to whoever held the tool.
 std::string session_in_words(const MeasuredRun& run) {
-  const RunDescription& d = run.recording->description;
   const RunMetrics& m = run.metrics;
   const auto& records = run.recording->records;
   const std::string put_back =
@@ -218,7 +185,7 @@ std::string session_in_words(const MeasuredRun& run) {
   const std::string text = fmt::format(
       "{}{}: {:.1f} s, of which the spindle ran for {:.1f} s. The burr went {:.0f} mm, and {:.1f} mm³ of "
       "bone were removed{}. ",
-      d.algorithm.label, d.segment.empty() ? "" : ", " + d.segment,
+      run.algorithm.label, run.segment.empty() ? "" : ", " + run.segment,
       records.back().time_s - records.front().time_s, spindle_s(*run.recording), m.path_mm, m.removed_mm3,
       put_back);
   if (!is_enough_contact(m.contact.any)) {
@@ -283,7 +250,8 @@ std::string report_page(const std::vector<DrawnGroup>& groups, const PageText& t
   body += pictures_section(groups);
   for (const Topic& topic : felt_topics()) body += topic_section(topic, groups);
   body += labels_section(groups);
-  body += text.sections + topic_section(times(text.further_times), groups);
+  const Topic times{"How long the ticks took", {"rate"}, {MetricTable::times, MetricTable::rate}};
+  body += text.sections + topic_section(times, groups, text.further_times);
   body += "<h2>What was run</h2>\n" + what_was_run(recordings);
   body += "<h2>Settings</h2>\n" + html_table(settings_table(recordings)) + how_to_repeat(recordings);
   return html_page(text.title, body);

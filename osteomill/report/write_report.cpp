@@ -5,7 +5,7 @@
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/report/curve_figure.h"
 #include "osteomill/report/label_section.h"
-#include "osteomill/report/metrics.h"
+#include "osteomill/report/metric_table.h"
 #include "osteomill/report/picture_figure.h"
 #include "osteomill/report/shaft_figure.h"
 
@@ -45,15 +45,13 @@ DrawnGroup draw(const RunGroup& group, const fs::path& folder, const PageText& t
   return drawn;
 }
 
-std::vector<SummaryRow> summary_rows(const std::vector<RunGroup>& groups) {
-  std::vector<SummaryRow> rows;
-  for (const RunGroup& group : groups) {
-    for (const MeasuredRun& run : group.runs) {
-      const RunDescription& d = run.recording->description;
-      rows.push_back({d.algorithm, d.mode, d.segment, run.metrics});
+void write_summary_csv(const fs::path& path, const std::vector<RunGroup>& groups) {
+  write_text_atomically(path, [&](std::ostream& out) {
+    out << summary_columns() << '\n';
+    for (const RunGroup& group : groups) {
+      for (const MeasuredRun& run : group.runs) out << summary_fields(run) << '\n';
     }
-  }
-  return rows;
+  });
 }
 
 }  // namespace
@@ -61,7 +59,7 @@ std::vector<SummaryRow> summary_rows(const std::vector<RunGroup>& groups) {
 fs::path write_report(const std::vector<RunGroup>& groups, const fs::path& out_dir, const PageText& text) {
   create_folder(out_dir / "figures");
   // First, so that the numbers are there even where no figure can be drawn.
-  write_summary_csv(out_dir / "summary.csv", summary_rows(groups));
+  write_summary_csv(out_dir / "summary.csv", groups);
   std::vector<DrawnGroup> drawn;
   for (const RunGroup& group : groups) drawn.push_back(draw(group, out_dir / "figures", text));
   const fs::path page = out_dir / "report.html";
