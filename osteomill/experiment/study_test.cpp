@@ -128,13 +128,13 @@ TEST(Study, OtherGripsAreKeptApartForTheFindingOnThem) {
 }
 
 TEST(Study, TheSectionSaysWhatSoFewHandsCanShow) {
-  const std::string three = study_section(Study(sample_rows(3)), {});
+  const std::string three = html(study_section(Study(sample_rows(3)), {}));
   EXPECT_NE(three.find("3 hands can give is 0.25, after the correction 0.75, so that no difference"),
             std::string::npos);
   EXPECT_NE(three.find("the range of all values: 3 hands are too few"), std::string::npos);
   EXPECT_NE(three.find("100 to 300 N/m"), std::string::npos);
   EXPECT_EQ(three.find("<b>2 &gt; 1</b>"), std::string::npos);
-  const std::string ten = study_section(Study(sample_rows(10)), {});
+  const std::string ten = html(study_section(Study(sample_rows(10)), {}));
   EXPECT_NE(ten.find("covers the median with 97.9 %"), std::string::npos);
   EXPECT_NE(ten.find("<b>2 &gt; 1</b>"), std::string::npos);
   EXPECT_NE(ten.find("What steady changes"), std::string::npos);
@@ -147,13 +147,13 @@ TEST(Study, AColumnIsOfItsAlgorithm) {
   std::vector<StudyRow> rows = sample_rows(7);
   std::erase_if(
       rows, [](const StudyRow& r) { return r.run.algorithm == "line-proxy" && r.run.mode == Mode::paper; });
-  const std::string html = study_section(Study(rows), {});
-  EXPECT_EQ(html.find("lost contact"), std::string::npos);
-  const std::size_t table = html.find("What steady changes: Milling");
+  const std::string page = html(study_section(Study(rows), {}));
+  EXPECT_EQ(page.find("lost contact"), std::string::npos);
+  const std::size_t table = page.find("What steady changes: Milling");
   ASSERT_NE(table, std::string::npos);
-  const std::size_t row = html.find("force above 20 Hz, rms", table);
-  const std::size_t none = html.find("–", row), change = html.find("× 0.1 ", row);
-  ASSERT_NE(change, std::string::npos) << html.substr(table, 2000);
+  const std::size_t row = page.find("force above 20 Hz, rms", table);
+  const std::size_t none = page.find("–", row), change = page.find("× 0.1 ", row);
+  ASSERT_NE(change, std::string::npos) << page.substr(table, 2000);
   EXPECT_LT(none, change) << "1, without a pair, stands before 2";
 }
 

@@ -12,8 +12,6 @@ namespace osteomill {
 
 namespace {
 
-constexpr double kFigureWidth_px = 1150;
-
 struct Curve {
   AlgorithmId algorithm;
   std::string file;
@@ -62,7 +60,7 @@ std::string panel_title(std::string segment) {
 std::string legend(const RunGroup& group, double height_px) {
   constexpr double kEntry_px = 220, kLine_px = 40, kTop_px = 26;
   const auto algorithms = group.algorithms();
-  double x = 0.5 * (kFigureWidth_px - kEntry_px * static_cast<double>(algorithms.size()));
+  double x = 0.5 * (PanelGrid::kWidth_px - kEntry_px * static_cast<double>(algorithms.size()));
   const double y = 1 - kTop_px / height_px;
   std::string script;
   int tag = 101;
@@ -71,8 +69,8 @@ std::string legend(const RunGroup& group, double height_px) {
         "set arrow {0} from screen {1:.4f},screen {2:.4f} to screen {3:.4f},screen {2:.4f} nohead lw 4 lc "
         "rgb '{4}'\n"
         "set label {0} '{5}' at screen {6:.4f},screen {2:.4f} left noenhanced\n",
-        tag++, x / kFigureWidth_px, y, (x + kLine_px) / kFigureWidth_px, algorithm.colour, algorithm.label,
-        (x + kLine_px + 10) / kFigureWidth_px);
+        tag++, x / PanelGrid::kWidth_px, y, (x + kLine_px) / PanelGrid::kWidth_px, algorithm.colour,
+        algorithm.label, (x + kLine_px + 10) / PanelGrid::kWidth_px);
     x += kEntry_px;
   }
   return script;
@@ -84,23 +82,8 @@ std::string dashed_line(double y) {
       "set arrow 1 from graph 0,first {0} to graph 1,first {0} nohead dt 2 lw 1.5 lc rgb '#555555' front", y);
 }
 
-struct Place {
-  double left, right, bottom, top;
-};
-
-Place panel_place(std::size_t column, std::size_t columns, std::size_t row, std::size_t rows,
-                  double height_px) {
-  const double left_px = 112, right_px = 26, top_px = 100, bottom_px = 80, between_px = 88;
-  const double wide = kFigureWidth_px / static_cast<double>(columns);
-  const double high = (height_px - top_px - bottom_px + between_px) / static_cast<double>(rows);
-  const double top = height_px - top_px - static_cast<double>(row) * high;
-  const double left = static_cast<double>(column) * wide;
-  return {(left + left_px) / kFigureWidth_px, (left + wide - right_px) / kFigureWidth_px,
-          (top - high + between_px) / height_px, top / height_px};
-}
-
 std::string panel(const RunGroup& group, const CurveColumn& column, const std::string& segment,
-                  const Place& place, bool lowest, std::size_t bins, const TemporaryFolder& work) {
+                  const std::string& margins, bool lowest, std::size_t bins, const TemporaryFolder& work) {
   std::vector<Curve> curves;
   for (const AlgorithmId& algorithm : group.algorithms()) {
     if (const MeasuredRun* run = group.find(algorithm.name, segment)) {
@@ -109,11 +92,9 @@ std::string panel(const RunGroup& group, const CurveColumn& column, const std::s
   }
   std::stable_sort(curves.begin(), curves.end(),
                    [](const Curve& a, const Curve& b) { return a.restlessness > b.restlessness; });
-  std::string script = fmt::format(
-      "set lmargin at screen {:.4f}\nset rmargin at screen {:.4f}\nset bmargin at screen {:.4f}\n"
-      "set tmargin at screen {:.4f}\nset title '{}' offset 0,-0.4\nset ylabel '{}'\n{}\n{}\n",
-      place.left, place.right, place.bottom, place.top, panel_title(segment), column.label,
-      lowest ? "set xlabel 'Time (s)'" : "unset xlabel", column.setup);
+  std::string script =
+      fmt::format("{}set title '{}' offset 0,-0.4\nset ylabel '{}'\n{}\n{}\n", margins, panel_title(segment),
+                  column.label, lowest ? "set xlabel 'Time (s)'" : "unset xlabel", column.setup);
   std::string plot;
   for (const Curve& curve : curves) {
     plot += fmt::format("{}'{}' with lines lw 1.2 lc rgb '{}' notitle", plot.empty() ? "plot " : ", ",
@@ -122,12 +103,14 @@ std::string panel(const RunGroup& group, const CurveColumn& column, const std::s
   return script + plot;
 }
 
-std::string dashed_legend(const CurveColumn& column, const Place& place, double height_px) {
+std::string dashed_legend(const CurveColumn& column, const PanelGrid& grid, const PanelCell& cell) {
   constexpr double kTop_px = 54;
   if (column.dashed.empty()) return "";
   return fmt::format(
       "set label 1 '- - -  {}' at screen {:.4f},screen {:.4f} center noenhanced tc rgb '#444444'\n",
-      column.dashed, 0.5 * (place.left + place.right), 1 - kTop_px / height_px);
+      column.dashed,
+      (cell.left_px + 0.5 * (grid.left_px + cell.wide_px - grid.right_px)) / PanelGrid::kWidth_px,
+      1 - kTop_px / grid.height_px);
 }
 
 double rate_of(const TickRecord& record) {
@@ -161,19 +144,18 @@ Figure draw_curves(const RunGroup& group, const std::string& name, const std::ve
                    const std::filesystem::path& folder) {
   const TemporaryFolder work;
   const std::vector<std::string> segments = group.segments();
-  FigureScript script{name, static_cast<int>(kFigureWidth_px), segments.size() > 1 ? 800 : 480, ""};
-  script.body = fmt::format(
-      "set multiplot\nset border 3 lc rgb '#444444'\nset tics nomirror out scale 0.6\n"
-      "set grid lc rgb '#dddddd' lt 1 lw 0.7\nset xrange [0:{:.6g}]\n"
-      "unset key\n",
-      last_time_s(group));
+  const PanelGrid grid{
+      segments.size() > 1 ? 800.0 : 480.0, columns.size(), segments.size(), 92, 0, 112, 26, 8, 80};
+  FigureScript script{name, static_cast<int>(PanelGrid::kWidth_px), static_cast<int>(grid.height_px), ""};
+  script.body = begin_panels("") + fmt::format("set xrange [0:{:.6g}]\n", last_time_s(group));
   const std::size_t bins = 1000 / columns.size();
-  script.body += legend(group, script.height_px);
+  script.body += legend(group, grid.height_px);
   for (std::size_t c = 0; c < columns.size(); ++c) {
     for (std::size_t row = 0; row < segments.size(); ++row) {
-      const Place place = panel_place(c, columns.size(), row, segments.size(), script.height_px);
-      if (row == 0) script.body += dashed_legend(columns[c], place, script.height_px);
-      script.body += panel(group, columns[c], segments[row], place, row + 1 == segments.size(), bins, work);
+      const PanelCell cell = panel_cell(grid, c, row);
+      if (row == 0) script.body += dashed_legend(columns[c], grid, cell);
+      script.body += panel(group, columns[c], segments[row], panel_margins(grid, cell),
+                           row + 1 == segments.size(), bins, work);
       // Panels drawn later would print the legend again, on top of itself.
       script.body += "\nunset label\nunset arrow\n";
     }

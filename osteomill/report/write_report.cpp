@@ -17,29 +17,30 @@ namespace {
 
 DrawnGroup draw(const RunGroup& group, const fs::path& folder, const PageText& text) {
   DrawnGroup drawn{group, {}};
-  const auto add = [&](const std::string& name, const Figure& figure, std::string caption) {
+  const auto add = [&](const std::string& name, const fs::path& file, std::string caption) {
     const auto note = text.caption_notes.find(name);
     if (note != text.caption_notes.end()) caption += " " + note->second;
-    drawn.figures[name] = {figure, std::move(caption)};
+    drawn.figures[name] = {file, std::move(caption)};
   };
   if (const auto bone = draw_picture_figure(group, folder)) {
-    add("bone", *bone, "The bone before, and after each algorithm's run.");
+    // Smaller as PNG; curves and clouds stay sharp as SVG.
+    add("bone", bone->png, "The bone before, and after each algorithm's run.");
   }
-  add("force", draw_force_figure(group, folder),
+  add("force", draw_force_figure(group, folder).svg,
       "Magnitude of the force sent to the hand. Each pixel's least and greatest are drawn, so no spike is "
       "lost.");
-  add("torque", draw_torque_figure(group, folder),
+  add("torque", draw_torque_figure(group, folder).svg,
       "Magnitude of the torque sent to the hand, about the burr's centre.");
-  add("shaft", draw_shaft_figure(group, folder),
+  add("shaft", draw_shaft_figure(group, folder).svg,
       "Where the simulated tool's shaft points: a point on the unit sphere a tick, coloured by time. The "
       "panels of a row have the same ranges; a compact cloud is a steady shaft.");
-  add("removed", draw_removed_figure(group, folder),
+  add("removed", draw_removed_figure(group, folder).svg,
       "Bone removed since the milling began, in mm³ of bone of the reference density.");
-  add("path", draw_path_figure(group, folder), "Where the burr's centre was, along the scan's axes.");
+  add("path", draw_path_figure(group, folder).svg, "Where the burr's centre was, along the scan's axes.");
   if (const auto labels = draw_label_figure(group, folder)) {
-    add("labels", *labels, "What was removed of each label over time, in the labels' colours.");
+    add("labels", labels->svg, "What was removed of each label over time, in the labels' colours.");
   }
-  add("rate", draw_rate_figure(group, folder),
+  add("rate", draw_rate_figure(group, folder).svg,
       "Haptic rate that the loop would hold, tick by tick (left), and the time that a tick's algorithm and "
       "milling took (right).");
   return drawn;
