@@ -1,16 +1,29 @@
-#include "osteomill/report/curve_figure.h"
-
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include <fmt/format.h>
 
 #include "osteomill/files/temporary_folder.h"
+#include "osteomill/report/run_figures.h"
 #include "osteomill/report/thin_out.h"
 
 namespace osteomill {
 
 namespace {
+
+// A column of panels, one a phase (milling on top), with a curve over time for each algorithm.
+struct CurveColumn {
+  // Of its data files.
+  std::string name;
+  // Of the y axis, with its unit.
+  std::string label;
+  std::function<double(const TickRecord&)> value;
+  // gnuplot commands for its panels alone (scale, range, lines).
+  std::string setup;
+  // What its dashed line stands for, said above its panels; empty for none.
+  std::string dashed;
+};
 
 struct Curve {
   AlgorithmId algorithm;
@@ -138,8 +151,8 @@ std::string figure_name(const char* stem, const RunGroup& group) {
   return fmt::format("{}_{}", stem, name_of(group.mode));
 }
 
-}  // namespace
-
+// Draws the columns side by side, the algorithms' names above them all. Curves are thinned out to the least
+// and greatest of each pixel's worth, and the restless ones are drawn first so that they hide no other.
 Figure draw_curves(const RunGroup& group, const std::string& name, const std::vector<CurveColumn>& columns,
                    const std::filesystem::path& folder) {
   const TemporaryFolder work;
@@ -164,6 +177,8 @@ Figure draw_curves(const RunGroup& group, const std::string& name, const std::ve
   script.body += "unset multiplot\n";
   return draw_figure(script, work, folder);
 }
+
+}  // namespace
 
 Figure draw_rate_figure(const RunGroup& group, const std::filesystem::path& folder) {
   const double max = max_tick_us(group);

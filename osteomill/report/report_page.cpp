@@ -70,13 +70,11 @@ struct Topic {
   std::vector<MetricTable> tables;
 };
 
-const std::vector<Topic>& felt_topics() {
-  static const std::vector<Topic> topics{{"Force", {"force"}, {MetricTable::force}},
-                                         {"Torque", {"torque"}, {MetricTable::torque}},
-                                         {"Shaft", {"shaft"}, {MetricTable::shaft}},
-                                         {"Path and bone removed", {"removed", "path"}, {MetricTable::path}}};
-  return topics;
-}
+const Topic kFelt[] = {{"Force", {"force"}, {MetricTable::force}},
+                       {"Torque", {"torque"}, {MetricTable::torque}},
+                       {"Shaft", {"shaft"}, {MetricTable::shaft}},
+                       {"Path and bone removed", {"removed", "path"}, {MetricTable::path}}};
+const Topic kTimes{"How long the ticks took", {"rate"}, {MetricTable::times, MetricTable::rate}};
 
 std::string cell(const Metric& metric, const MeasuredRun& run) {
   const double value = metric(run.metrics);
@@ -244,12 +242,10 @@ std::string report_page(const std::vector<DrawnGroup>& groups, const PageText& t
     sections.insert(sections.end(), more.begin(), more.end());
   };
   add(pictures_section(groups));
-  for (const Topic& topic : felt_topics()) sections.push_back(topic_section(topic, groups));
+  for (const Topic& topic : kFelt) sections.push_back(topic_section(topic, groups));
   sections.push_back(labels_section(groups));
   add(text.sections);
-  sections.push_back(
-      topic_section({"How long the ticks took", {"rate"}, {MetricTable::times, MetricTable::rate}}, groups,
-                    text.further_times));
+  sections.push_back(topic_section(kTimes, groups, text.further_times));
   add({what_was_run(recordings),
        {.title = "Settings", .tables = {settings_table(recordings)}},
        how_to_repeat(recordings)});

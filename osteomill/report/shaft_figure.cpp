@@ -1,11 +1,10 @@
-#include "osteomill/report/shaft_figure.h"
-
 #include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
 
 #include "osteomill/files/temporary_folder.h"
+#include "osteomill/report/run_figures.h"
 #include "osteomill/report/thin_out.h"
 
 namespace osteomill {

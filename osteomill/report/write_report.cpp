@@ -3,11 +3,9 @@
 #include <ostream>
 
 #include "osteomill/files/atomic_file.h"
-#include "osteomill/report/curve_figure.h"
 #include "osteomill/report/label_section.h"
 #include "osteomill/report/metric_table.h"
-#include "osteomill/report/picture_figure.h"
-#include "osteomill/report/shaft_figure.h"
+#include "osteomill/report/run_figures.h"
 
 namespace osteomill {
 
