@@ -9,7 +9,7 @@
 
 #include "osteomill/haptics/algorithms.h"
 #include "osteomill/haptics/point_shell/brick_contacts.h"
-#include "osteomill/haptics/point_shell/point_shell_settings.h"
+#include "osteomill/haptics/point_shell/point_shell_description.h"
 
 namespace osteomill::benchmarks {
 

@@ -4,7 +4,7 @@
 #include "verification/sections.h"
 #include <fmt/core.h>
 
-#include "osteomill/haptics/point_shell/point_shell_settings.h"
+#include "osteomill/haptics/point_shell/point_shell_description.h"
 
 namespace osteomill::verification {
 

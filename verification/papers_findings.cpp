@@ -123,8 +123,8 @@ std::vector<Choice> choices() {
 
 double median_of(const Study& study, std::size_t algorithm, std::string_view phase,
                  double (*value)(const RunMetrics&)) {
-  return distribution_of(study.values(algorithm_named(kPapersAlgorithms[algorithm - 1]).id, Mode::paper,
-                                      phase, {"", "", value}))
+  return distribution_of(
+             study.values({algorithm_named(kPapersAlgorithms[algorithm - 1]).id, Mode::paper}, phase, value))
       .median;
 }
 
@@ -156,7 +156,7 @@ void add_choices(Section& section, const Volume& bone, const std::string& name, 
   for (const Choice& choice : choices()) {
     std::vector<StudyRow> rows = rows_on(bone, kChosenWith, phase_s, choice.algorithms, choice.change);
     for (const StudyRow& row : as_it_is) {
-      const auto is_it = [&](std::size_t n) { return row.summary.algorithm == kPapersAlgorithms[n - 1]; };
+      const auto is_it = [&](std::size_t n) { return row.run.algorithm == kPapersAlgorithms[n - 1]; };
       if (std::none_of(choice.algorithms.begin(), choice.algorithms.end(), is_it)) rows.push_back(row);
     }
     add_choice(section, fmt::format("{}, {}", name, choice.what), std::move(rows));

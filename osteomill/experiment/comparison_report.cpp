@@ -7,17 +7,14 @@
 #include <fmt/format.h>
 
 #include "osteomill/experiment/paper.h"
-#include "osteomill/experiment/passivity_figure.h"
 #include "osteomill/experiment/passivity_section.h"
 #include "osteomill/experiment/phase_metrics.h"
 #include "osteomill/experiment/signed_rank.h"
-#include "osteomill/experiment/study_figure.h"
 #include "osteomill/experiment/study_findings.h"
 #include "osteomill/experiment/study_section.h"
 #include "osteomill/experiment/trial_plan.h"
 #include "osteomill/experiment/verdict.h"
 #include "osteomill/files/atomic_file.h"
-#include "osteomill/report/html.h"
 #include "osteomill/report/write_report.h"
 
 namespace osteomill {
@@ -30,7 +27,7 @@ const char* css_of(Verdict verdict) {
   return verdict == Verdict::agrees ? "agrees" : verdict == Verdict::does_not_agree ? "differs" : "none";
 }
 
-std::string findings_table(const Study& study, Mode mode) {
+HtmlTable findings_table(const Study& study, Mode mode) {
   const bool one = study.seeds().size() == 1;
   HtmlTable table{{"The paper found", one ? "Measured here" : "Medians over the hands",
                    one ? "In this hand" : "Verdict", "Rule"},
@@ -49,24 +46,26 @@ std::string findings_table(const Study& study, Mode mode) {
     row.push_back("agrees where " + html_escaped(f.of_medians.rule));
     table.rows.push_back(std::move(row));
   }
-  return html_table(table);
+  return table;
 }
 
-std::string findings_section(const Study& study) {
-  std::string html = "<h2>The paper's findings</h2>\n";
-  html += html_paragraph(
-      "What section 8.2 of the paper says it found, each held against what was measured by a rule of this "
-      "project. Mode paper has the algorithms as the paper has them; steady has this project's named "
-      "improvements, so what the paper found wrong with one of them need not be wrong there.");
+PageSection findings_section(const Study& study) {
+  PageSection section{
+      .title = "The paper's findings",
+      .paragraphs = {
+          "What section 8.2 of the paper says it found, each held against what was measured by a rule of "
+          "this "
+          "project. Mode paper has the algorithms as the paper has them; steady has this project's named "
+          "improvements, so what the paper found wrong with one of them need not be wrong there."}};
   for (const Mode mode : study.modes()) {
-    html += fmt::format("<h3>Mode {}</h3>\n", name_of(mode)) + findings_table(study, mode);
+    section.parts.push_back(
+        {.title = fmt::format("Mode {}", name_of(mode)), .tables = {findings_table(study, mode)}});
   }
-  return html;
+  return section;
 }
 
 std::string paper_rate(const MeasuredRun& run) {
-  const RunDescription& d = run.recording->description;
-  const auto rate_hz = paper_mean_rate_hz(d.algorithm.name, d.segment);
+  const auto rate_hz = paper_mean_rate_hz(run.algorithm.name, run.segment);
   return rate_hz ? fmt::format("{:.0f}", *rate_hz) : "";
 }
 
@@ -96,34 +95,28 @@ std::string about_stiffness(const std::vector<Recording>& recordings) {
 }
 
 // What was compared, whether that can show anything, and what it shows.
-std::string opening(const Study& study, const std::vector<Recording>& recordings) {
-  std::string html = html_paragraph(what_was_compared(study, recordings.front().description.scan_name) + " " +
-                                    about_stiffness(recordings));
-  if (const std::string few = too_few_hands(study); !few.empty()) {
-    html = "<p class=\"notice\">" + html_escaped(few) + "</p>\n" + html;
-  }
-  html += "<ul>\n";
-  for (const std::string& sentence : verdict(study)) html += "<li>" + html_escaped(sentence) + "</li>\n";
-  return html + "</ul>\n";
+PageSection opening(const Study& study, const std::vector<Recording>& recordings) {
+  PageSection section{.paragraphs = {what_was_compared(study, recordings.front().description.scan_name) +
+                                     " " + about_stiffness(recordings)},
+                      .points = verdict(study)};
+  if (std::string few = too_few_hands(study); !few.empty()) section.notices = {std::move(few)};
+  return section;
 }
 
 // Of what was recorded, as the first and only seed.
 Study study_of(const std::vector<RunGroup>& groups) {
   std::vector<StudyRow> rows;
   for (const RunGroup& group : groups) {
-    for (const MeasuredRun& run : group.runs) {
-      const RunDescription& d = run.recording->description;
-      rows.push_back({0, {}, {d.algorithm, d.mode, d.segment, run.metrics}});
-    }
+    for (const MeasuredRun& run : group.runs) rows.push_back({0, {}, run});
   }
   return Study(std::move(rows));
 }
 
-std::string hands_section(const Study& study, const fs::path& out_dir) {
+PageSection hands_section(const Study& study, const fs::path& out_dir) {
   std::vector<CaptionedFigure> figures;
   for (const std::string_view phase : study.phases()) {
     figures.push_back(
-        {draw_study_figure(study, phase, out_dir / "figures"),
+        {draw_study_figure(study, phase, out_dir / "figures").svg,
          "Every hand of the study, by algorithm and mode; logarithmic where values lie far apart."});
   }
   return study_section(study, figures);
@@ -147,15 +140,15 @@ fs::path write_comparison_report(const std::vector<Recording>& recordings, const
   PageText text;
   text.title = "6-DOF haptic algorithms compared while milling bone";
   text.opening = opening(study, recordings);
-  text.sections = findings_section(study);
+  text.sections = {findings_section(study)};
   if (study.seeds().size() > 1) {
     write_study_csv(out_dir / "study.csv", study);
-    text.sections += hands_section(study, out_dir);
+    text.sections.push_back(hands_section(study, out_dir));
   }
   if (!extras.stability.empty()) {
     write_passivity_csv(out_dir / "stability.csv", extras.stability);
-    text.sections +=
-        passivity_section(extras.stability, draw_passivity_figure(extras.stability, out_dir / "figures"));
+    text.sections.push_back(
+        passivity_section(extras.stability, draw_passivity_figure(extras.stability, out_dir / "figures")));
   }
   text.further_times = {{"Haptic rate in the paper, mean, on a Pentium 4 (Hz)", paper_rate}};
   text.caption_notes = {{"rate", "The paper's figure 6."},

@@ -79,13 +79,13 @@ Finding rate_finding(const RunGroup& group) {
     return a.metrics.rate_hz < b.metrics.rate_hz;
   };
   const MeasuredRun& slowest = *std::min_element(group.runs.begin(), group.runs.end(), slower);
-  const RunDescription& d = slowest.recording->description;
   return {"“all the algorithms fulfill the real-time requirements”",
           fmt::format(
               "the rate that a 1 kHz loop would hold with the CPU time of its ticks is {:.0f} Hz or more in "
               "every recording",
               kMinRate_hz),
-          fmt::format("lowest {:.1f} Hz ({}, {})", slowest.metrics.rate_hz, name_of(d.algorithm), d.segment),
+          fmt::format("lowest {:.1f} Hz ({}, {})", slowest.metrics.rate_hz, name_of(slowest.algorithm),
+                      slowest.segment),
           slowest.metrics.rate_hz >= kMinRate_hz ? Verdict::agrees : Verdict::does_not_agree, true};
 }
 

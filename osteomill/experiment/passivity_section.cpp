@@ -1,6 +1,7 @@
 #include "osteomill/experiment/passivity_section.h"
 
 #include <algorithm>
+#include <cmath>
 #include <ostream>
 #include <string_view>
 #include <vector>
@@ -8,8 +9,7 @@
 #include <fmt/format.h>
 
 #include "osteomill/files/atomic_file.h"
-#include "osteomill/report/html.h"
-#include "osteomill/report/run_groups.h"
+#include "osteomill/files/temporary_folder.h"
 
 namespace osteomill {
 
@@ -45,7 +45,7 @@ std::vector<AlgorithmId> algorithms_of(std::span<const PassivityRow> rows, Mode 
 }
 
 // A line a device, in the order of the first algorithm's rows.
-std::string mode_table(std::span<const PassivityRow> rows, Mode mode) {
+HtmlTable mode_table(std::span<const PassivityRow> rows, Mode mode) {
   const auto algorithms = algorithms_of(rows, mode);
   HtmlTable table{{"Device: damping, delay", "2 b / (T + 2 τ)"}, {}, true};
   for (const AlgorithmId& algorithm : algorithms) table.header.emplace_back(algorithm.label);
@@ -63,7 +63,7 @@ std::string mode_table(std::span<const PassivityRow> rows, Mode mode) {
       table.rows.back().push_back(row == rows.end() ? "–" : cell(*row));
     }
   }
-  return html_table(table);
+  return table;
 }
 
 // "1 line-proxy 0.98 to 1.05"
@@ -114,19 +114,138 @@ constexpr const char* kCaption =
     "setting. "
     "Points stand a little aside of each other.";
 
+double damping_Ns_per_m(const PassivityRow& row) {
+  return 1e3 * row.setup.damping_Ns_per_mm;
+}
+
+struct Axes {
+  std::vector<Mode> modes;
+  std::vector<double> delays_s;
+  std::vector<AlgorithmId> algorithms;
+  std::vector<double> dampings_Ns_per_m;
+  double min_N_per_mm = 1;
+  double max_N_per_mm = 1;
+};
+
+template <typename T>
+void add_once(std::vector<T>& all, const T& value) {
+  if (std::find(all.begin(), all.end(), value) == all.end()) all.push_back(value);
+}
+
+Axes axes_of(std::span<const PassivityRow> rows) {
+  Axes axes;
+  for (const PassivityRow& row : rows) {
+    add_once(axes.modes, row.setup.mode);
+    add_once(axes.delays_s, row.setup.delay_s);
+    add_once(axes.algorithms, row.setup.algorithm.id);
+    add_once(axes.dampings_Ns_per_m, damping_Ns_per_m(row));
+    for (const double stiffness : {row.rule_N_per_mm, row.limit.felt_N_per_mm}) {
+      if (!(stiffness > 0)) continue;
+      axes.min_N_per_mm = std::min(axes.min_N_per_mm, stiffness);
+      axes.max_N_per_mm = std::max(axes.max_N_per_mm, stiffness);
+    }
+  }
+  std::sort(axes.dampings_Ns_per_m.begin(), axes.dampings_Ns_per_m.end());
+  return axes;
+}
+
+// Damping, felt stiffness or '?' where none was passive, the same where even the stiffest was, damping, rule.
+// Each algorithm a little aside, since several follow the rule.
+std::string curve_data(std::span<const PassivityRow> rows, const AlgorithmId& algorithm, double aside,
+                       Mode mode, double delay_s) {
+  std::string data;
+  for (const PassivityRow& row : rows) {
+    const PassivityCase& setup = row.setup;
+    if (setup.algorithm.id != algorithm || setup.mode != mode || setup.delay_s != delay_s) continue;
+    const std::string felt = fmt::format("{:.6g}", row.limit.felt_N_per_mm);
+    data += fmt::format("{:.6g} {} {} {:.6g} {:.6g}\n", aside * damping_Ns_per_m(row),
+                        row.limit.kind == StiffnessLimit::Kind::below_all ? "?" : felt,
+                        row.limit.kind == StiffnessLimit::Kind::above_all ? felt : "?", damping_Ns_per_m(row),
+                        row.rule_N_per_mm);
+  }
+  return data;
+}
+
+std::string panel(std::span<const PassivityRow> rows, std::size_t column, std::size_t row, const Axes& axes,
+                  const TemporaryFolder& work) {
+  std::string curves, rule;
+  for (std::size_t n = 0; n < axes.algorithms.size(); ++n) {
+    const AlgorithmId& algorithm = axes.algorithms[n];
+    const double aside = std::pow(1.05, static_cast<double>(n) - 1);
+    const std::string file = fmt::format("stability-{}-{}-{}.dat", name_of(algorithm), row, column);
+    write_figure_data(work / file,
+                      curve_data(rows, algorithm, aside, axes.modes[row], axes.delays_s[column]));
+    // The same for every algorithm.
+    rule = fmt::format(", '{}' using 4:5 with lines dt 2 lw 2 lc rgb '#8a8a8a' notitle", file);
+    curves += fmt::format(
+        "{2}'{0}' using 1:2 with linespoints pt 7 ps 0.9 lw 1.6 lc rgb '{1}' notitle, '{0}' using 1:3 with "
+        "points "
+        "pt 9 ps 1.9 lc rgb '{1}' notitle",
+        file, algorithm.colour, curves.empty() ? "plot " : ", ");
+  }
+  return curves + rule + "\n";
+}
+
+std::string common(const Axes& axes, const PanelGrid& grid) {
+  std::string tics;
+  for (const double damping : axes.dampings_Ns_per_m)
+    tics += fmt::format("{}{:.4g}", tics.empty() ? "" : ",", damping);
+  std::vector<LegendEntry> names;
+  for (const AlgorithmId& algorithm : axes.algorithms)
+    names.push_back({fmt::format("● {}", algorithm.label), algorithm.colour, 200});
+  names.push_back({"- - -  2 b / (T + 2 τ), an ideal wall", "#444444", 300});
+  return begin_panels("y") +
+         fmt::format(
+             "set datafile missing '?'\nset logscale xy\nset xrange [{:.4g}:{:.4g}]\nset yrange "
+             "[{:.4g}:{:.4g}]\nset xtics ({})\nset format y '%g'\nset ylabel 'Felt at the limit (N/mm)'\n"
+             "set xlabel 'Damping of the device (N s/m)'\n",
+             axes.dampings_Ns_per_m.front() / 1.3, 1.3 * axes.dampings_Ns_per_m.back(),
+             std::pow(10.0, std::floor(std::log10(axes.min_N_per_mm))),
+             std::pow(10.0, std::ceil(std::log10(axes.max_N_per_mm))), tics) +
+         legend_row(grid, names);
+}
+
 }  // namespace
 
-std::string passivity_section(std::span<const PassivityRow> rows, const Figure& figure) {
-  std::string html = "<h2>Stability against a flat wall</h2>\n<p>" + html_escaped(kWhatWasDone) + "</p>\n" +
-                     html_figure(figure.svg, kCaption);
+Figure draw_passivity_figure(std::span<const PassivityRow> rows, const std::filesystem::path& folder) {
+  const TemporaryFolder work;
+  const Axes axes = axes_of(rows);
+  PanelGrid grid{.columns = axes.delays_s.size(),
+                 .rows = axes.modes.size(),
+                 .head_px = 50,
+                 .left_px = 84,
+                 .right_px = 16,
+                 .above_px = 44,
+                 .below_px = 58};
+  grid.height_px = grid.head_px + 330 * static_cast<double>(grid.rows);
+  FigureScript script{"stability", static_cast<int>(PanelGrid::kWidth_px), static_cast<int>(grid.height_px),
+                      ""};
+  script.body = common(axes, grid);
+  for (std::size_t row = 0; row < grid.rows; ++row) {
+    for (std::size_t column = 0; column < grid.columns; ++column) {
+      script.body += panel_margins(grid, panel_cell(grid, column, row)) +
+                     fmt::format("set title '{}, delay {:.3g} ms' offset 0,-0.4\n", name_of(axes.modes[row]),
+                                 1e3 * axes.delays_s[column]) +
+                     panel(rows, column, row, axes, work) + "unset label\n";
+    }
+  }
+  script.body += "unset multiplot\n";
+  return draw_figure(script, work, folder);
+}
+
+PageSection passivity_section(std::span<const PassivityRow> rows, const Figure& figure) {
+  PageSection section{.title = "Stability against a flat wall",
+                      .paragraphs = {kWhatWasDone},
+                      .figures = {{figure.svg, kCaption}}};
   for (const Mode mode : {Mode::paper, Mode::steady}) {
     if (algorithms_of(rows, mode).empty()) continue;
-    html += fmt::format(
-        "<h3>Greatest passive stiffness in N/mm, mode {}: setting → felt (against the rule)</h3>\n",
-        name_of(mode));
-    html += "<p>" + html_escaped(in_words(rows, mode)) + "</p>\n" + mode_table(rows, mode);
+    section.parts.push_back(
+        {.title = fmt::format(
+             "Greatest passive stiffness in N/mm, mode {}: setting → felt (against the rule)", name_of(mode)),
+         .paragraphs = {in_words(rows, mode)},
+         .tables = {mode_table(rows, mode)}});
   }
-  return html;
+  return section;
 }
 
 void write_passivity_csv(const std::filesystem::path& path, std::span<const PassivityRow> rows) {

@@ -2,16 +2,20 @@
 
 #include <filesystem>
 #include <span>
-#include <string>
 
 #include "osteomill/experiment/measure_passivity.h"
 #include "osteomill/report/figure.h"
+#include "osteomill/report/html.h"
 
 namespace osteomill {
 
+/// The stiffness felt at the limit over the device's damping, a panel for each delay and mode, with the rule
+/// of the ideal wall.
+Figure draw_passivity_figure(std::span<const PassivityRow> rows, const std::filesystem::path& folder);
+
 /// The report's section on stability against a flat wall: what was measured and how, in words, with the
-/// figure and a table. HTML. Throws InputError where the figure cannot be read.
-std::string passivity_section(std::span<const PassivityRow> rows, const Figure& figure);
+/// figure and a table.
+PageSection passivity_section(std::span<const PassivityRow> rows, const Figure& figure);
 
 /// Writes stability.csv, whole or not at all. Throws InputError where it cannot be written.
 void write_passivity_csv(const std::filesystem::path& path, std::span<const PassivityRow> rows);

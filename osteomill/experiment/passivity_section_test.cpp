@@ -8,7 +8,6 @@
 
 #include "osteomill/experiment/comparison_report.h"
 #include "osteomill/experiment/paper.h"
-#include "osteomill/experiment/passivity_figure.h"
 #include "osteomill/haptics/algorithms.h"
 #include "osteomill/report/report_samples.h"
 
@@ -57,16 +56,16 @@ class PassivitySectionTest : public ::testing::Test {
 TEST_F(PassivitySectionTest, AColumnIsOfItsAlgorithmInWhateverOrderTheyWereMeasured) {
   auto rows = sample_rows({Mode::steady});
   const Figure figure = draw_passivity_figure(rows, out_);
-  const std::string html = passivity_section(rows, figure);
+  const std::string page = html(passivity_section(rows, figure));
   std::stable_sort(rows.begin(), rows.end(), [](const PassivityRow& a, const PassivityRow& b) {
     return a.setup.algorithm.id.label > b.setup.algorithm.id.label;
   });
-  const std::string reversed = passivity_section(rows, figure);
-  const auto first_row = [](const std::string& page) {
-    const std::size_t begin = page.find("N s/m", page.find("<table"));
-    return page.substr(begin, page.find("</tr>", begin) - begin);
+  const std::string reversed = html(passivity_section(rows, figure));
+  const auto first_row = [](const std::string& text) {
+    const std::size_t begin = text.find("N s/m", text.find("<table"));
+    return text.substr(begin, text.find("</tr>", begin) - begin);
   };
-  EXPECT_NE(reversed.find(first_row(html)), std::string::npos) << first_row(html) << " not in " << reversed;
+  EXPECT_NE(reversed.find(first_row(page)), std::string::npos) << first_row(page) << " not in " << reversed;
 }
 
 TEST_F(PassivitySectionTest, TheTableHasEveryDeviceOnce) {
@@ -85,14 +84,14 @@ TEST_F(PassivitySectionTest, TheTableHasEveryDeviceOnce) {
 
 TEST_F(PassivitySectionTest, TheWordsGiveTheRangeAgainstTheRule) {
   const auto rows = sample_rows({Mode::steady});
-  const std::string html = passivity_section(rows, draw_passivity_figure(rows, out_));
+  const std::string page = html(passivity_section(rows, draw_passivity_figure(rows, out_)));
   EXPECT_NE(
-      html.find("1 line-proxy 1.00 to 1.00; 2 surface-points 0.50 to 0.50, and passive at no stiffness on 3 "
+      page.find("1 line-proxy 1.00 to 1.00; 2 surface-points 0.50 to 0.50, and passive at no stiffness on 3 "
                 "of 12 devices; 3 point-shell"),
       std::string::npos);
-  EXPECT_NE(html.find("none passive"), std::string::npos);
-  EXPECT_NE(html.find("over 200 → 9"), std::string::npos);
-  EXPECT_EQ(html.find("mode paper"), std::string::npos);
+  EXPECT_NE(page.find("none passive"), std::string::npos);
+  EXPECT_NE(page.find("over 200 → 9"), std::string::npos);
+  EXPECT_EQ(page.find("mode paper"), std::string::npos);
   EXPECT_TRUE(bytes_of(out_ / "stability.svg").ends_with("</svg>\n\n"));
 }
 
@@ -100,8 +99,8 @@ TEST_F(PassivitySectionTest, OneAlgorithmThatIsNeverPassiveIsDrawnToo) {
   std::vector<PassivityRow> rows = sample_rows({Mode::paper});
   std::erase_if(rows, [](const PassivityRow& row) { return row.setup.algorithm.id != "line-proxy"; });
   for (PassivityRow& row : rows) row.limit = {};
-  const std::string html = passivity_section(rows, draw_passivity_figure(rows, out_));
-  EXPECT_NE(html.find("1 line-proxy passive on no device"), std::string::npos);
+  const std::string page = html(passivity_section(rows, draw_passivity_figure(rows, out_)));
+  EXPECT_NE(page.find("1 line-proxy passive on no device"), std::string::npos);
 }
 
 TEST_F(PassivitySectionTest, TheReportOfAStudyHasItsFilesFiguresAndWords) {
@@ -111,8 +110,9 @@ TEST_F(PassivitySectionTest, TheReportOfAStudyHasItsFilesFiguresAndWords) {
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
     for (const Recording& run : runs) {
       const RunDescription& d = run.description;
-      SummaryRow row{d.algorithm, d.mode, d.segment, run_metrics(run)};
-      row.metrics.force_N.hp_rms *= 1 + 0.01 * static_cast<double>(seed);
+      MeasuredRun row{d.algorithm, d.mode, d.segment, run_metrics(run)};
+      for (double* unrest : {&row.metrics.force_N.hp_rms, &row.metrics.force_N.hp_share})
+        *unrest *= 1 + 0.01 * static_cast<double>(seed);
       trials.push_back({seed, random_hand(seed), row});
     }
   }

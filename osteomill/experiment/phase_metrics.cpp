@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <optional>
 #include <variant>
 
 #include "osteomill/experiment/paper.h"
@@ -45,12 +45,11 @@ RunMetrics phase_metrics(const Recording& recording) {
   RunMetrics metrics = metrics_of_time_held(recording);
   // The spindle is off while holding: what does not touch at all was lost before.
   metrics.contact.lost_while_milling |= recording.description.segment == kHolding && metrics.contact.any == 0;
-  if (metrics.contact.lost_after_s) {
-    constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-    metrics.force_N = metrics.torque_Nmm = {kUnknown, kUnknown, kUnknown, kUnknown};
-    metrics.shaft = {kUnknown, kUnknown};
-    metrics.turns = {kUnknown, kUnknown};
-    metrics.torque_follows_force = kUnknown;
+  if (metrics.contact.is_lost()) {
+    metrics.force_N = metrics.torque_Nmm = kNotFelt;
+    metrics.shaft = {kNotMeasured, kNotMeasured};
+    metrics.turns = {kNotMeasured, kNotMeasured};
+    metrics.torque_follows_force = kNotMeasured;
   }
   return metrics;
 }

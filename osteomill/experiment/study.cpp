@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <ostream>
 #include <stdexcept>
@@ -23,30 +24,16 @@ constexpr double kMmPerM = 1000;
 
 using M = RunMetrics;
 
-constexpr std::array<KeyMetric, 10> kKeyMetrics{{
-    {"force above 20 Hz, rms", "N", [](const M& m) { return m.force_N.hp_rms; }, true},
-    {"force above 20 Hz / mean force", "",
-     [](const M& m) { return m.force_N.mean == 0 ? 0.0 : m.force_N.hp_rms / m.force_N.mean; }},
-    {"greatest force step", "N", [](const M& m) { return m.force_N.step_max; }, true},
-    {"torque above 20 Hz, rms", "N mm", [](const M& m) { return m.torque_Nmm.hp_rms; }, true},
-    {"greatest torque step", "N mm", [](const M& m) { return m.torque_Nmm.step_max; }, true},
-    {"mean torque", "N mm", [](const M& m) { return m.torque_Nmm.mean; }},
-    {"spread of the shaft", "degrees", [](const M& m) { return m.shaft.spread_deg; }, true},
-    {"bone removed", "mm³", [](const M& m) { return m.removed_mm3; }},
-    {"step time, median", "µs", [](const M& m) { return m.step_us.median; }, true},
-    {"step time, 99th percentile", "µs", [](const M& m) { return m.step_us.p99; }},
-}};
-
 // Phase before algorithm, as in summary.csv.
-auto place(const SummaryRow& row) {
-  return std::tuple(row.mode, phase_number(row.segment), row.algorithm);
+auto place(const MeasuredRun& run) {
+  return std::tuple(run.mode, phase_number(run.segment), run.algorithm);
 }
 
 template <typename Values, typename Matches>
 auto present(const Values& all, std::span<const StudyRow> rows, const Matches& matches) {
   std::vector<typename Values::value_type> found;
   for (const auto& value : all) {
-    const auto has_it = [&](const StudyRow& row) { return matches(row.summary, value); };
+    const auto has_it = [&](const StudyRow& row) { return matches(row.run, value); };
     if (std::any_of(rows.begin(), rows.end(), has_it)) found.push_back(value);
   }
   return found;
@@ -54,12 +41,13 @@ auto present(const Values& all, std::span<const StudyRow> rows, const Matches& m
 
 }  // namespace
 
-std::span<const KeyMetric> key_metrics() {
-  return kKeyMetrics;
-}
-
-std::string label_of(const KeyMetric& metric) {
-  return *metric.unit == '\0' ? metric.name : fmt::format("{} ({})", metric.name, metric.unit);
+std::vector<Metric> key_metrics() {
+  std::vector<Metric> compared;
+  std::copy_if(all_metrics().begin(), all_metrics().end(), std::back_inserter(compared),
+               [](const Metric& metric) { return metric.compared > 0; });
+  std::sort(compared.begin(), compared.end(),
+            [](const Metric& a, const Metric& b) { return a.compared < b.compared; });
+  return compared;
 }
 
 std::string short_label(const AlgorithmId& algorithm) {
@@ -77,14 +65,14 @@ Study::Study(std::vector<StudyRow> rows) : rows_(std::move(rows)) {
     if (order.emplace(row.seed, seeds_.size()).second) seeds_.push_back(row.seed);
   }
   std::stable_sort(rows_.begin(), rows_.end(), [&](const StudyRow& a, const StudyRow& b) {
-    return std::tuple(order.at(a.seed), place(a.summary)) < std::tuple(order.at(b.seed), place(b.summary));
+    return std::tuple(order.at(a.seed), place(a.run)) < std::tuple(order.at(b.seed), place(b.run));
   });
   const std::size_t each = rows_.size() / seeds_.size();
   for (std::size_t n = 0; n < rows_.size(); ++n) {
     const StudyRow& row = rows_[n];
-    const bool again = n % each != 0 && place(row.summary) == place(rows_[n - 1].summary);
+    const bool again = n % each != 0 && place(row.run) == place(rows_[n - 1].run);
     if (again || row.seed != seeds_[std::min(n / each, seeds_.size() - 1)] ||
-        place(row.summary) != place(rows_[n % each].summary)) {
+        place(row.run) != place(rows_[n % each].run)) {
       throw std::invalid_argument(fmt::format("study: seed {} was not tried as the others were", row.seed));
     }
   }
@@ -97,18 +85,18 @@ std::span<const StudyRow> Study::rows_of_seed(std::size_t n) const {
 
 std::vector<AlgorithmId> Study::algorithms() const {
   std::vector<AlgorithmId> tried;
-  for (const StudyRow& row : rows_) tried.push_back(row.summary.algorithm);
+  for (const StudyRow& row : rows_) tried.push_back(row.run.algorithm);
   return each_once(std::move(tried));
 }
 
 std::vector<Mode> Study::modes() const {
   return present(std::array{Mode::paper, Mode::steady}, rows_,
-                 [](const SummaryRow& r, Mode mode) { return r.mode == mode; });
+                 [](const MeasuredRun& r, Mode mode) { return r.mode == mode; });
 }
 
 std::vector<std::string_view> Study::phases() const {
   return present(kPhases, rows_,
-                 [](const SummaryRow& r, std::string_view phase) { return r.segment == phase; });
+                 [](const MeasuredRun& r, std::string_view phase) { return r.segment == phase; });
 }
 
 std::size_t Study::seeds_needed() const {
@@ -119,44 +107,42 @@ std::size_t Study::seeds_needed() const {
   return seeds;
 }
 
-std::vector<KeyMetric> Study::metrics_of(std::string_view phase) const {
-  std::vector<KeyMetric> metrics;
-  for (const KeyMetric& metric : kKeyMetrics) {
-    const auto has_some = [&](const StudyRow& row) {
-      const double value = metric.value(row.summary.metrics);
-      return row.summary.segment == phase && value != 0 && !std::isnan(value);
-    };
-    if (std::any_of(rows_.begin(), rows_.end(), has_some)) metrics.push_back(metric);
-  }
+std::vector<Metric> Study::metrics_of(std::string_view phase) const {
+  std::vector<Metric> metrics = key_metrics();
+  std::erase_if(metrics, [&](const Metric& metric) {
+    return std::none_of(rows_.begin(), rows_.end(), [&](const StudyRow& row) {
+      const double value = metric(row.run.metrics);
+      return row.run.segment == phase && value != 0 && !std::isnan(value);
+    });
+  });
   return metrics;
 }
 
 bool Study::was_tried(const Tried& tried) const {
   return std::any_of(rows_.begin(), rows_.end(), [&](const StudyRow& row) {
-    return row.summary.mode == tried.mode && row.summary.algorithm == tried.algorithm;
+    return row.run.mode == tried.mode && row.run.algorithm == tried.algorithm;
   });
 }
 
 std::vector<double> Study::all_values(const Tried& tried, std::string_view phase,
-                                      const KeyMetric& metric) const {
+                                      const RunFigure& figure) const {
   std::vector<double> values;
   for (const StudyRow& row : rows_) {
-    if (place(row.summary) == std::tuple(tried.mode, phase_number(phase), tried.algorithm))
-      values.push_back(metric.value(row.summary.metrics));
+    if (place(row.run) == std::tuple(tried.mode, phase_number(phase), tried.algorithm))
+      values.push_back(figure(row.run.metrics));
   }
   return values;
 }
 
-std::vector<double> Study::values(const AlgorithmId& algorithm, Mode mode, std::string_view phase,
-                                  const KeyMetric& metric) const {
-  std::vector<double> values = all_values({algorithm, mode}, phase, metric);
+std::vector<double> Study::values(const Tried& tried, std::string_view phase, const RunFigure& figure) const {
+  std::vector<double> values = all_values(tried, phase, figure);
   std::erase_if(values, [](double value) { return std::isnan(value); });
   return values;
 }
 
 ContactShares Study::contact(const Tried& tried, std::string_view phase) const {
-  const auto median = [&](double (*value)(const M&)) {
-    return distribution_of(values(tried.algorithm, tried.mode, phase, {"", "", value})).median;
+  const auto median = [&](const RunFigure& figure) {
+    return distribution_of(values(tried, phase, figure)).median;
   };
   ContactShares shares;
   shares.any = median([](const M& m) { return m.contact.any; });
@@ -164,22 +150,20 @@ ContactShares Study::contact(const Tried& tried, std::string_view phase) const {
   shares.shaft = median([](const M& m) { return m.contact.shaft; });
   shares.force = median([](const M& m) { return m.contact.force; });
   shares.torque = median([](const M& m) { return m.contact.torque; });
-  const auto lost_after_s = [](const M& m) { return m.contact.lost_after_s.value_or(std::nan("")); };
-  const std::vector<double> lost = values(tried.algorithm, tried.mode, phase, {"", "", lost_after_s});
+  const std::vector<double> lost = values(tried, phase, [](const M& m) { return m.contact.lost_after_s; });
   if (!lost.empty() && !are_most(seeds_.size() - lost.size()))
     shares.lost_after_s = distribution_of(lost).median;
-  const auto while_milling = [](const M& m) { return m.contact.lost_while_milling ? 1.0 : 0.0; };
   shares.lost_while_milling =
-      distribution_of(values(tried.algorithm, tried.mode, phase, {"", "", while_milling})).median > 0.5;
+      median([](const M& m) { return m.contact.lost_while_milling ? 1.0 : 0.0; }) > 0.5;
   return shares;
 }
 
 std::pair<std::vector<double>, std::vector<double>> Study::paired_values(const Tried& first,
                                                                          const Tried& second,
                                                                          std::string_view phase,
-                                                                         const KeyMetric& metric) const {
-  const std::vector<double> all_first = all_values(first, phase, metric);
-  const std::vector<double> all_second = all_values(second, phase, metric);
+                                                                         const RunFigure& figure) const {
+  const std::vector<double> all_first = all_values(first, phase, figure);
+  const std::vector<double> all_second = all_values(second, phase, figure);
   std::pair<std::vector<double>, std::vector<double>> pairs;
   for (std::size_t n = 0; n < std::min(all_first.size(), all_second.size()); ++n) {
     if (std::isnan(all_first[n]) || std::isnan(all_second[n])) continue;
@@ -194,7 +178,7 @@ void write_study_csv(const std::filesystem::path& path, const Study& study) {
     out << "seed,hand_stiffness_N_per_m,hand_damping_Ns_per_m," << summary_columns() << '\n';
     for (const StudyRow& row : study.rows()) {
       out << fmt::format("{},{},{},{}\n", row.seed, kMmPerM * row.hand.stiffness_N_per_mm,
-                         kMmPerM * row.hand.damping_Ns_per_mm, summary_fields(row.summary));
+                         kMmPerM * row.hand.damping_Ns_per_mm, summary_fields(row.run));
     }
   });
 }

@@ -2,12 +2,14 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "osteomill/operator/hand.h"
-#include "osteomill/report/metrics.h"
+#include "osteomill/report/metric_table.h"
 
 namespace osteomill {
 
@@ -15,26 +17,18 @@ namespace osteomill {
 struct StudyRow {
   std::uint64_t seed = 0;
   HandSettings hand;
-  SummaryRow summary;
+  /// Its recording is not kept.
+  MeasuredRun run;
   /// Of trials beside the study's, in other grips of its hands (TrialPlan::grip).
   double grip = 1;
 };
 
-/// A figure of merit that a study compares.
-struct KeyMetric {
-  const char* name;
-  /// Empty for a pure number.
-  const char* unit;
-  double (*value)(const RunMetrics&);
-  /// Of unrest in the hand, and of time.
-  bool less_is_better = false;
-};
+/// Force, torque, shaft, bone removed and compute time, in the order in which people should read them
+/// (Metric::compared).
+std::vector<Metric> key_metrics();
 
-/// Force, torque, shaft, bone removed and compute time, in the order in which people should read them.
-std::span<const KeyMetric> key_metrics();
-
-/// "force above 20 Hz, rms (N)".
-std::string label_of(const KeyMetric& metric);
+/// What a row is compared by: a Metric, or anything else that follows from a run's figures.
+using RunFigure = std::function<double(const RunMetrics&)>;
 
 /// The first word of an algorithm's label, for narrow places: "1" of "1 line-proxy".
 std::string short_label(const AlgorithmId& algorithm);
@@ -63,7 +57,7 @@ class Study {
   std::size_t seeds_needed() const;
 
   /// The key metrics but those that are zero throughout a phase (bone removed while holding).
-  std::vector<KeyMetric> metrics_of(std::string_view phase) const;
+  std::vector<Metric> metrics_of(std::string_view phase) const;
 
   /// What is compared: an algorithm in a mode.
   struct Tried {
@@ -71,10 +65,9 @@ class Study {
     Mode mode;
   };
   bool was_tried(const Tried& tried) const;
-  /// The metric's values, one a seed in the order of `seeds`, but for those without enough contact to measure
+  /// The figure's values, one a seed in the order of `seeds`, but for those without enough contact to measure
   /// it; none where that was not tried.
-  std::vector<double> values(const AlgorithmId& algorithm, Mode mode, std::string_view phase,
-                             const KeyMetric& metric) const;
+  std::vector<double> values(const Tried& tried, std::string_view phase, const RunFigure& figure) const;
   /// For how much of the phase the tool touched: medians of the seeds. `lost_after_s` is that of those which
   /// lost contact, where they are no fewer than half.
   ContactShares contact(const Tried& tried, std::string_view phase) const;
@@ -83,11 +76,11 @@ class Study {
   /// The values of two, of the seeds in which both could be measured.
   std::pair<std::vector<double>, std::vector<double>> paired_values(const Tried& first, const Tried& second,
                                                                     std::string_view phase,
-                                                                    const KeyMetric& metric) const;
+                                                                    const RunFigure& figure) const;
 
  private:
   // One a seed; not a number where it could not be measured.
-  std::vector<double> all_values(const Tried& tried, std::string_view phase, const KeyMetric& metric) const;
+  std::vector<double> all_values(const Tried& tried, std::string_view phase, const RunFigure& figure) const;
 
   std::vector<StudyRow> rows_;
   std::vector<StudyRow> other_grips_;

@@ -23,13 +23,13 @@ void correct(std::vector<Comparison>& comparisons) {
 }  // namespace
 
 std::vector<AlgorithmPair> compare_algorithms(const Study& study, Mode mode, std::string_view phase,
-                                              const KeyMetric& metric) {
+                                              const RunFigure& figure) {
   const std::vector<AlgorithmId> algorithms = study.algorithms();
   std::vector<AlgorithmPair> pairs;
   for (std::size_t a = 0; a < algorithms.size(); ++a) {
     for (std::size_t b = a + 1; b < algorithms.size(); ++b) {
       const auto [first, second] =
-          study.paired_values({algorithms[a], mode}, {algorithms[b], mode}, phase, metric);
+          study.paired_values({algorithms[a], mode}, {algorithms[b], mode}, phase, figure);
       if (first.empty() || second.empty()) continue;
       const SignedRank test = paired_test(first, second);
       pairs.push_back({algorithms[a], algorithms[b],
@@ -40,11 +40,11 @@ std::vector<AlgorithmPair> compare_algorithms(const Study& study, Mode mode, std
   return pairs;
 }
 
-std::vector<ModeChange> compare_modes(const Study& study, std::string_view phase, const KeyMetric& metric) {
+std::vector<ModeChange> compare_modes(const Study& study, std::string_view phase, const RunFigure& figure) {
   std::vector<ModeChange> changes;
   for (const AlgorithmId& algorithm : study.algorithms()) {
     const auto [paper, steady] =
-        study.paired_values({algorithm, Mode::paper}, {algorithm, Mode::steady}, phase, metric);
+        study.paired_values({algorithm, Mode::paper}, {algorithm, Mode::steady}, phase, figure);
     if (paper.empty() || steady.empty()) continue;
     std::vector<double> ratios;
     for (std::size_t n = 0; n < paper.size(); ++n) {

@@ -19,9 +19,9 @@ struct AlgorithmPair {
 
 /// Every pair of the algorithms that were tried.
 std::vector<AlgorithmPair> compare_algorithms(const Study& study, Mode mode, std::string_view phase,
-                                              const KeyMetric& metric);
+                                              const RunFigure& figure);
 
-/// What `steady` makes of one algorithm's metric, paired with `paper` seed by seed.
+/// What `steady` makes of one algorithm's figure, paired with `paper` seed by seed.
 struct ModeChange {
   AlgorithmId algorithm;
   MedianInterval paper;
@@ -36,6 +36,6 @@ struct ModeChange {
 };
 
 /// For each algorithm that was tried in both modes; empty where there are not both.
-std::vector<ModeChange> compare_modes(const Study& study, std::string_view phase, const KeyMetric& metric);
+std::vector<ModeChange> compare_modes(const Study& study, std::string_view phase, const RunFigure& figure);
 
 }  // namespace osteomill

@@ -1,7 +1,6 @@
 #include "osteomill/experiment/study_findings.h"
 
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include "osteomill/experiment/paper.h"
@@ -22,29 +21,15 @@ double chance_of_at_least(std::size_t k, std::size_t n) {
 }
 
 // Not a number where no more than half of the seeds could be measured.
-double median_of(const Study& study, const SummaryRow& row, double (*value)(const RunMetrics&)) {
-  const std::vector<double> values = study.values(row.algorithm, row.mode, row.segment, {"", "", value});
-  return study.are_most(values.size()) ? distribution_of(values).median
-                                       : std::numeric_limits<double>::quiet_NaN();
-}
-
-// Every metric that a finding looks at.
-RunMetrics medians_of(const Study& study, const SummaryRow& row) {
-  RunMetrics m;
-  m.contact = study.contact({row.algorithm, row.mode}, row.segment);
-  m.rate_hz = median_of(study, row, [](const RunMetrics& r) { return r.rate_hz; });
-  m.force_N.mean = median_of(study, row, [](const RunMetrics& r) { return r.force_N.mean; });
-  m.force_N.hp_rms = median_of(study, row, [](const RunMetrics& r) { return r.force_N.hp_rms; });
-  m.torque_Nmm.mean = median_of(study, row, [](const RunMetrics& r) { return r.torque_Nmm.mean; });
-  m.torque_Nmm.hp_rms = median_of(study, row, [](const RunMetrics& r) { return r.torque_Nmm.hp_rms; });
-  m.torque_Nmm.step_max = median_of(study, row, [](const RunMetrics& r) { return r.torque_Nmm.step_max; });
-  m.shaft.spread_deg = median_of(study, row, [](const RunMetrics& r) { return r.shaft.spread_deg; });
-  m.turns.max_deg = median_of(study, row, [](const RunMetrics& r) { return r.turns.max_deg; });
-  m.turns.at_torque_step_deg =
-      median_of(study, row, [](const RunMetrics& r) { return r.turns.at_torque_step_deg; });
-  m.torque_follows_force = median_of(study, row, [](const RunMetrics& r) { return r.torque_follows_force; });
-  m.contacts_mean = median_of(study, row, [](const RunMetrics& r) { return r.contacts_mean; });
-  return m;
+RunMetrics medians_of(const Study& study, const MeasuredRun& run) {
+  const Study::Tried tried{run.algorithm, run.mode};
+  RunMetrics medians;
+  for (const Metric& metric : all_metrics()) {
+    const std::vector<double> values = study.values(tried, run.segment, metric);
+    metric.place(medians) = study.are_most(values.size()) ? distribution_of(values).median : kNotMeasured;
+  }
+  medians.contact = study.contact(tried, run.segment);
+  return medians;
 }
 
 // Algorithm 2's force above 20 Hz while it is held, in a grip: of one seed, or of all.
@@ -53,10 +38,10 @@ std::vector<double> grip_forces(const Study& study, Mode mode, double grip,
   std::vector<double> forces;
   for (const auto* rows : {&study.rows(), &study.rows_of_other_grips()}) {
     for (const StudyRow& row : *rows) {
-      const SummaryRow& s = row.summary;
-      if (row.grip == grip && s.mode == mode && s.segment == kHolding &&
-          s.algorithm == kPapersAlgorithms[1] && (!seed || row.seed == *seed)) {
-        forces.push_back(s.metrics.force_N.hp_rms);
+      const MeasuredRun& run = row.run;
+      if (row.grip == grip && run.mode == mode && run.segment == kHolding &&
+          run.algorithm == kPapersAlgorithms[1] && (!seed || row.seed == *seed)) {
+        forces.push_back(run.metrics.force_N.hp_rms);
       }
     }
   }
@@ -71,46 +56,31 @@ GripForces medians_of_grips(const Study& study, Mode mode, std::optional<std::ui
     if (forces.empty()) return {};
     const std::size_t tried = forces.size();
     std::erase_if(forces, [](double force) { return std::isnan(force); });
-    medians.push_back(2 * forces.size() > tried ? distribution_of(forces).median
-                                                : std::numeric_limits<double>::quiet_NaN());
+    medians.push_back(2 * forces.size() > tried ? distribution_of(forces).median : kNotMeasured);
   }
   return medians;
 }
 
-// Findings ask a recording for its description alone.
-std::vector<Finding> findings_of(const std::vector<SummaryRow>& rows, Mode mode, const GripForces& grips) {
-  std::vector<Recording> recordings(rows.size());
+RunGroup runs_of(std::span<const StudyRow> rows, Mode mode) {
   RunGroup group{mode, {}};
-  for (std::size_t n = 0; n < rows.size(); ++n) {
-    RunDescription& d = recordings[n].description;
-    d.algorithm = rows[n].algorithm;
-    d.mode = rows[n].mode;
-    d.segment = rows[n].segment;
-    group.runs.push_back({&recordings[n], rows[n].metrics});
-  }
-  return check_findings(group, grips);
-}
-
-std::vector<SummaryRow> summaries(std::span<const StudyRow> rows, Mode mode) {
-  std::vector<SummaryRow> of_mode;
   for (const StudyRow& row : rows) {
-    if (row.summary.mode == mode) of_mode.push_back(row.summary);
+    if (row.run.mode == mode) group.runs.push_back(row.run);
   }
-  return of_mode;
+  return group;
 }
 
 }  // namespace
 
 std::vector<StudyFinding> check_study_findings(const Study& study, Mode mode) {
-  std::vector<SummaryRow> medians = summaries(study.rows_of_seed(0), mode);
-  if (medians.empty()) return {};
-  for (SummaryRow& row : medians) row.metrics = medians_of(study, row);
+  RunGroup medians = runs_of(study.rows_of_seed(0), mode);
+  if (medians.runs.empty()) return {};
+  for (MeasuredRun& run : medians.runs) run.metrics = medians_of(study, run);
   std::vector<StudyFinding> findings;
-  for (Finding& finding : findings_of(medians, mode, medians_of_grips(study, mode, {})))
+  for (Finding& finding : check_findings(medians, medians_of_grips(study, mode, {})))
     findings.push_back({std::move(finding)});
   for (std::size_t seed = 0; seed < study.seeds().size(); ++seed) {
-    const std::vector<Finding> once = findings_of(summaries(study.rows_of_seed(seed), mode), mode,
-                                                  medians_of_grips(study, mode, study.seeds()[seed]));
+    const std::vector<Finding> once = check_findings(runs_of(study.rows_of_seed(seed), mode),
+                                                     medians_of_grips(study, mode, study.seeds()[seed]));
     for (std::size_t n = 0; n < once.size(); ++n) {
       findings[n].agreeing += once[n].verdict == Verdict::agrees;
       findings[n].tested += is_tested(once[n].verdict);

@@ -19,15 +19,16 @@ inline StudyRow row(std::uint64_t seed, std::string_view algorithm, Mode mode, s
                     const Values& values) {
   StudyRow row{seed, {}, {algorithm_named(algorithm).id, mode, std::string(phase), {}}};
   row.hand.stiffness_N_per_mm = 0.1 * static_cast<double>(seed);
-  row.summary.metrics.rate_hz = 1000;
-  row.summary.metrics.contact = {1, 1, 1, 1, 1, {}};
-  row.summary.metrics.force_N.mean = 2;
-  row.summary.metrics.force_N.hp_rms = values.force_hp;
-  row.summary.metrics.torque_Nmm.mean = 10;
-  row.summary.metrics.turns = {0.5, 0.1};
-  row.summary.metrics.torque_follows_force = 0.7;
-  row.summary.metrics.contacts_mean = 15;
-  row.summary.metrics.torque_Nmm.hp_rms = values.torque_hp;
+  row.run.metrics.rate_hz = 1000;
+  row.run.metrics.contact = {1, 1, 1, 1, 1};
+  row.run.metrics.force_N.mean = 2;
+  row.run.metrics.force_N.hp_rms = values.force_hp;
+  row.run.metrics.force_N.hp_share = values.force_hp / 2;
+  row.run.metrics.torque_Nmm.mean = 10;
+  row.run.metrics.turns = {0.5, 0.1};
+  row.run.metrics.torque_follows_force = 0.7;
+  row.run.metrics.contacts_mean = 15;
+  row.run.metrics.torque_Nmm.hp_rms = values.torque_hp;
   return row;
 }
 

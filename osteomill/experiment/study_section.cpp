@@ -1,17 +1,114 @@
 #include "osteomill/experiment/study_section.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
 #include "osteomill/experiment/paper.h"
 #include "osteomill/experiment/signed_rank.h"
 #include "osteomill/experiment/study_comparison.h"
-#include "osteomill/report/html.h"
+#include "osteomill/files/temporary_folder.h"
 
 namespace osteomill {
 
 namespace {
+
+constexpr std::size_t kColumns = 4;
+constexpr std::size_t kMaxPanels = 8;
+// In units of the distance between two algorithms.
+constexpr double kModeShift = 0.2;
+constexpr double kScatter = 0.2;
+constexpr double kBarHalf = 0.15;
+
+std::vector<double> all_values(const Study& study, std::string_view phase, const Metric& metric) {
+  std::vector<double> all;
+  for (const Mode mode : study.modes()) {
+    for (const AlgorithmId& algorithm : study.algorithms()) {
+      const auto values = study.values({algorithm, mode}, phase, metric);
+      all.insert(all.end(), values.begin(), values.end());
+    }
+  }
+  return all;
+}
+
+// Whole decades where the values spread, so that at least two tics have a number.
+std::string range_for(const std::vector<double>& values) {
+  if (values.empty()) return "unset logscale y\nset yrange [0:1]\n";
+  const auto [min, max] = std::minmax_element(values.begin(), values.end());
+  if (*min > 0 && *max > 4 * *min) {
+    return fmt::format("set logscale y\nset yrange [{:.6g}:{:.6g}]\n",
+                       std::pow(10.0, std::floor(std::log10(*min) + 1e-9)),
+                       std::pow(10.0, std::ceil(std::log10(*max) - 1e-9)));
+  }
+  return fmt::format("unset logscale y\nset yrange [0:{:.6g}]\n", *max > 0 ? 1.15 * *max : 1.0);
+}
+
+// Two blocks: the dots, and the bars at the medians.
+std::string dots_and_bars(const std::vector<double>& values, double x) {
+  std::string dots, bars;
+  const double last = std::max<double>(1, static_cast<double>(values.size()) - 1);
+  for (std::size_t n = 0; n < values.size(); ++n) {
+    const double across = kScatter * (static_cast<double>(n) / last - 0.5);
+    dots += fmt::format("{:.4f} {:.6g}\n", values.size() > 1 ? x + across : x, values[n]);
+  }
+  const double median = distribution_of(values).median;
+  bars = fmt::format("{:.4f} {:.6g}\n{:.4f} {:.6g}\n", x - kBarHalf, median, x + kBarHalf, median);
+  return dots + "\n\n" + bars;
+}
+
+std::string tics(const Study& study) {
+  std::string list;
+  int place = 0;
+  for (const AlgorithmId& algorithm : study.algorithms()) {
+    list += fmt::format("{}'{}' {}", place == 0 ? "" : ", ", short_label(algorithm), place);
+    ++place;
+  }
+  return fmt::format("set xrange [-0.5:{}]\nset xtics scale 0 ({})\n", static_cast<double>(place) - 0.5,
+                     list);
+}
+
+std::string panel(const Study& study, std::string_view phase, const Metric& metric, std::size_t number,
+                  const TemporaryFolder& work) {
+  std::string plot;
+  for (const Mode mode : study.modes()) {
+    const double shift = study.modes().size() < 2 ? 0.0 : mode == Mode::paper ? -kModeShift : kModeShift;
+    int place = 0;
+    for (const AlgorithmId& algorithm : study.algorithms()) {
+      const std::string file = fmt::format("study-{}-{}-{}.dat", number, name_of(mode), name_of(algorithm));
+      const double x = static_cast<double>(place++) + shift;
+      const std::vector<double> values = study.values({algorithm, mode}, phase, metric);
+      if (values.empty()) continue;
+      write_figure_data(work / file, dots_and_bars(values, x));
+      plot += fmt::format(
+          "{0}'{1}' index 1 with lines lw 2.5 lc rgb '{2}' notitle, '{1}' index 0 with points pt {3} ps 0.8 "
+          "lw "
+          "1.3 lc rgb '{2}' notitle",
+          plot.empty() ? "plot " : ", ", file, algorithm.colour, mode == Mode::paper ? 6 : 7);
+    }
+  }
+  return range_for(all_values(study, phase, metric)) + plot + "\n";
+}
+
+// The title stands over the whole panel: some are wider than its axes.
+std::string title(const Metric& metric, const PanelGrid& grid, const PanelCell& cell) {
+  constexpr double kTitle_px = 16;
+  return fmt::format("set label 2 '{}' at screen {:.4f},screen {:.4f} center\n",
+                     with_unit(metric.name, metric),
+                     (cell.left_px + 0.55 * cell.wide_px) / PanelGrid::kWidth_px,
+                     (cell.top_px - kTitle_px) / grid.height_px);
+}
+
+std::vector<LegendEntry> legend(const Study& study, std::string_view phase) {
+  constexpr std::string_view kInk = "#111111";
+  std::vector<LegendEntry> entries{{phase == kMilling ? "Milling:" : "Holding still:", kInk, 105}};
+  for (const AlgorithmId& algorithm : study.algorithms())
+    entries.push_back({algorithm.label, algorithm.colour, 135});
+  for (const Mode mode : study.modes())
+    entries.push_back({fmt::format("{} {}", mode == Mode::paper ? "○" : "●", name_of(mode)), kInk, 85});
+  entries.push_back({"a dot for each hand, a bar at the median", kInk, 310});
+  return entries;
+}
 
 std::string interval_text(const MedianInterval& interval) {
   return fmt::format("{:.3g} [{:.3g}, {:.3g}]", interval.median, interval.low, interval.high);
@@ -30,9 +127,9 @@ std::string pair_text(const AlgorithmPair& pair) {
 
 // "0.02 [0.01, 0.03]", with the hands where it could not be measured in all; else why not in any.
 std::string values_text(const Study& study, const Study::Tried& tried, std::string_view phase,
-                        const KeyMetric& metric) {
+                        const Metric& metric) {
   if (!study.was_tried(tried)) return "–";
-  const std::vector<double> values = study.values(tried.algorithm, tried.mode, phase, metric);
+  const std::vector<double> values = study.values(tried, phase, metric);
   if (values.empty()) return contact_words(study.contact(tried, phase));
   const std::string text = interval_text(median_interval(values));
   return values.size() == study.seeds().size()
@@ -40,12 +137,12 @@ std::string values_text(const Study& study, const Study::Tried& tried, std::stri
              : fmt::format("{} in {} of {} hands", text, values.size(), study.seeds().size());
 }
 
-std::string algorithms_table(const Study& study, Mode mode, std::string_view phase) {
+HtmlTable algorithms_table(const Study& study, Mode mode, std::string_view phase) {
   HtmlTable table{{"Median over the hands [interval]"}, {}, true};
   for (const AlgorithmId& algorithm : study.algorithms()) table.header.emplace_back(algorithm.label);
   if (study.algorithms().size() > 1) table.header.emplace_back("Differences");
-  for (const KeyMetric& metric : study.metrics_of(phase)) {
-    table.rows.push_back({html_escaped(label_of(metric))});
+  for (const Metric& metric : study.metrics_of(phase)) {
+    table.rows.push_back({html_escaped(with_unit(metric.name, metric))});
     for (const AlgorithmId& algorithm : study.algorithms()) {
       table.rows.back().push_back(values_text(study, {algorithm, mode}, phase, metric));
     }
@@ -55,7 +152,7 @@ std::string algorithms_table(const Study& study, Mode mode, std::string_view pha
     }
     if (study.algorithms().size() > 1) table.rows.back().push_back(pairs);
   }
-  return html_table(table);
+  return table;
 }
 
 std::string change_text(const ModeChange& change) {
@@ -66,11 +163,11 @@ std::string change_text(const ModeChange& change) {
       change.p <= kSignificance ? "<b>" + p + "</b>" : "<span class=\"none\">" + p + "</span>");
 }
 
-std::string changes_table(const Study& study, std::string_view phase) {
+HtmlTable changes_table(const Study& study, std::string_view phase) {
   HtmlTable table{{"steady / paper, median over the hands [interval]"}, {}, true};
   for (const AlgorithmId& algorithm : study.algorithms()) table.header.emplace_back(algorithm.label);
-  for (const KeyMetric& metric : study.metrics_of(phase)) {
-    table.rows.push_back({html_escaped(label_of(metric))});
+  for (const Metric& metric : study.metrics_of(phase)) {
+    table.rows.push_back({html_escaped(with_unit(metric.name, metric))});
     const std::vector<ModeChange> changes = compare_modes(study, phase, metric);
     for (const AlgorithmId& algorithm : study.algorithms()) {
       const auto change = std::find_if(changes.begin(), changes.end(),
@@ -78,11 +175,11 @@ std::string changes_table(const Study& study, std::string_view phase) {
       table.rows.back().push_back(change == changes.end() ? "–" : change_text(*change));
     }
   }
-  return html_table(table);
+  return table;
 }
 
 // What the numbers are, and how far they can be trusted.
-std::string how_to_read(const Study& study) {
+std::vector<std::string> how_to_read(const Study& study) {
   const std::size_t n = study.seeds().size();
   std::vector<double> stiffness, damping;
   for (const StudyRow& row : study.rows()) {
@@ -94,14 +191,14 @@ std::string how_to_read(const Study& study) {
   const MedianInterval interval = median_interval(std::vector<double>(n, 0.0));
   const std::size_t pairs = study.algorithms().size() * (study.algorithms().size() - 1) / 2;
   const double min_corrected = std::min(1.0, static_cast<double>(std::max<std::size_t>(pairs, 1)) * min_p(n));
-  std::string html = html_paragraph(fmt::format(
+  std::vector<std::string> paragraphs{fmt::format(
       "The same trial in {} hands: each seed (the first is {}) has a tremor and a hand of its own, drawn "
       "evenly from the published ranges; here {:.0f} to {:.0f} N/m and {:.2g} to {:.2g} N s/m. study.csv has "
       "every trial. Recordings are kept of seed {} alone, which is the one that the figures of force, "
       "torque, "
       "shaft and path show; of the others only these figures of merit.",
-      n, study.seeds().front(), *softest, *stiffest, *min, *max, study.seeds().front()));
-  html += html_paragraph(
+      n, study.seeds().front(), *softest, *stiffest, *min, *max, study.seeds().front())};
+  paragraphs.push_back(
       interval.is_range
           ? fmt::format(
                 "In brackets stands the range of all values: {} hands are too few for a 95 % interval "
@@ -111,17 +208,18 @@ std::string how_to_read(const Study& study) {
                 "In brackets stands a confidence interval of the median between two order statistics, "
                 "by the binomial distribution; it covers the median with {:.3g} %.",
                 100 * interval.coverage));
-  html += html_paragraph(fmt::format(
+  paragraphs.push_back(fmt::format(
       "Differences are tested hand by hand with Wilcoxon's signed-rank test, exact and two-sided, corrected "
       "after Holm over what is compared in one row (not over the rows); bold ones are significant (p at most "
       "{}). The least p "
       "that {} hands can give is {:.2g}, after the correction {:.2g}{}.",
       kSignificance, n, min_p(n), min_corrected,
       min_corrected > kSignificance ? ", so that no difference can be significant here" : ""));
-  return html + html_paragraph(
-                    "Step times are the machine's: those of the first seed were taken with nothing else of "
-                    "this program running, the others with a trial beside on each further core, so compare "
-                    "them with care. Everything else comes out the same on any machine.");
+  paragraphs.emplace_back(
+      "Step times are the machine's: those of the first seed were taken with nothing else of "
+      "this program running, the others with a trial beside on each further core, so compare "
+      "them with care. Everything else comes out the same on any machine.");
+  return paragraphs;
 }
 
 std::string phase_title(std::string_view phase) {
@@ -130,21 +228,47 @@ std::string phase_title(std::string_view phase) {
 
 }  // namespace
 
-std::string study_section(const Study& study, const std::vector<CaptionedFigure>& figures) {
-  std::string html = fmt::format("<h2>Study over {} hands</h2>\n", study.seeds().size()) + how_to_read(study);
-  for (const CaptionedFigure& figure : figures) html += html_figure(figure.files.svg, figure.caption);
+Figure draw_study_figure(const Study& study, std::string_view phase, const std::filesystem::path& folder) {
+  const TemporaryFolder work;
+  std::vector<Metric> metrics = study.metrics_of(phase);
+  if (metrics.size() > kMaxPanels) metrics.resize(kMaxPanels);
+  PanelGrid grid{.columns = kColumns,
+                 .rows = std::max<std::size_t>((metrics.size() + kColumns - 1) / kColumns, 1),
+                 .head_px = 52,
+                 .left_px = 76,
+                 .right_px = 10,
+                 .above_px = 34,
+                 .below_px = 36};
+  grid.height_px = grid.head_px + 280 * static_cast<double>(grid.rows);
+  FigureScript script{fmt::format("study_{}", phase), static_cast<int>(PanelGrid::kWidth_px),
+                      static_cast<int>(grid.height_px), ""};
+  script.body =
+      begin_panels("y") + "set format y '%g'\n" + tics(study) + legend_row(grid, legend(study, phase));
+  for (std::size_t n = 0; n < metrics.size(); ++n) {
+    const PanelCell cell = panel_cell(grid, n % kColumns, n / kColumns);
+    script.body += panel_margins(grid, cell) + title(metrics[n], grid, cell) +
+                   panel(study, phase, metrics[n], n, work) + "unset label\n";
+  }
+  script.body += "unset multiplot\n";
+  return draw_figure(script, work, folder);
+}
+
+PageSection study_section(const Study& study, const std::vector<CaptionedFigure>& figures) {
+  PageSection section{.title = fmt::format("Study over {} hands", study.seeds().size()),
+                      .paragraphs = how_to_read(study),
+                      .figures = figures};
   for (const Mode mode : study.modes()) {
     for (const std::string_view phase : study.phases()) {
-      html += fmt::format("<h3>{}, mode {}</h3>\n", phase_title(phase), name_of(mode));
-      html += algorithms_table(study, mode, phase);
+      section.parts.push_back({.title = fmt::format("{}, mode {}", phase_title(phase), name_of(mode)),
+                               .tables = {algorithms_table(study, mode, phase)}});
     }
   }
-  if (study.modes().size() < 2) return html;
+  if (study.modes().size() < 2) return section;
   for (const std::string_view phase : study.phases()) {
-    html += fmt::format("<h3>What steady changes: {}</h3>\n", phase_title(phase));
-    html += changes_table(study, phase);
+    section.parts.push_back({.title = fmt::format("What steady changes: {}", phase_title(phase)),
+                             .tables = {changes_table(study, phase)}});
   }
-  return html;
+  return section;
 }
 
 }  // namespace osteomill

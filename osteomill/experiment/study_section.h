@@ -1,16 +1,21 @@
 #pragma once
 
-#include <string>
+#include <filesystem>
+#include <string_view>
 #include <vector>
 
 #include "osteomill/experiment/study.h"
-#include "osteomill/report/report_page.h"
+#include "osteomill/report/figure.h"
+#include "osteomill/report/html.h"
 
 namespace osteomill {
 
+/// A dot for every seed, by algorithm and mode, with a bar at their median: a panel for each key metric that
+/// is not zero throughout, at most eight.
+Figure draw_study_figure(const Study& study, std::string_view phase, const std::filesystem::path& folder);
+
 /// The report's section on a study: medians with their intervals, which differences between algorithms are
-/// significant, whether the paper's findings hold over the seeds, and what `steady` changes. HTML. Throws
-/// InputError where a figure cannot be read.
-std::string study_section(const Study& study, const std::vector<CaptionedFigure>& figures);
+/// significant, whether the paper's findings hold over the seeds, and what `steady` changes.
+PageSection study_section(const Study& study, const std::vector<CaptionedFigure>& figures);
 
 }  // namespace osteomill

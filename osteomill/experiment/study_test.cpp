@@ -19,7 +19,7 @@ namespace {
 
 using testing_support::sample_rows;
 
-const KeyMetric& force_hp() {
+Metric force_hp() {
   return key_metrics()[0];
 }
 
@@ -30,11 +30,11 @@ TEST(Study, RowsAreOrderedBySeedAndThenAsInTheSummary) {
   EXPECT_EQ(study.seeds(), (std::vector<std::uint64_t>{7, 3}));
   EXPECT_EQ(study.rows().size(), 24u);
   EXPECT_EQ(study.rows()[0].seed, 7u);
-  EXPECT_EQ(study.rows()[0].summary.mode, Mode::paper);
-  EXPECT_EQ(study.rows()[0].summary.segment, kMilling);
-  EXPECT_EQ(study.rows()[1].summary.algorithm, "surface-points");
+  EXPECT_EQ(study.rows()[0].run.mode, Mode::paper);
+  EXPECT_EQ(study.rows()[0].run.segment, kMilling);
+  EXPECT_EQ(study.rows()[1].run.algorithm, "surface-points");
   EXPECT_EQ(study.rows_of_seed(1).front().seed, 3u);
-  EXPECT_EQ(study.values(algorithm_named("surface-points").id, Mode::paper, kHolding, force_hp()),
+  EXPECT_EQ(study.values({algorithm_named("surface-points").id, Mode::paper}, kHolding, force_hp()),
             (std::vector<double>{1.01, 1.02}));
   EXPECT_EQ(study.algorithms().size(), 3u);
   EXPECT_EQ(study.modes(), (std::vector<Mode>{Mode::paper, Mode::steady}));
@@ -90,7 +90,7 @@ TEST(Study, FindingsAreCountedHandByHand) {
   std::vector<StudyRow> rows = sample_rows(5);
   for (StudyRow& r : rows) {
     // Seed 4 alone does not buzz.
-    if (r.seed == 4 && r.summary.algorithm == "surface-points") r.summary.metrics.force_N.hp_rms = 0.01;
+    if (r.seed == 4 && r.run.algorithm == "surface-points") r.run.metrics.force_N.hp_rms = 0.01;
   }
   const auto findings = check_study_findings(Study(rows), Mode::paper);
   ASSERT_EQ(findings.size(), 9u);
@@ -128,13 +128,13 @@ TEST(Study, OtherGripsAreKeptApartForTheFindingOnThem) {
 }
 
 TEST(Study, TheSectionSaysWhatSoFewHandsCanShow) {
-  const std::string three = study_section(Study(sample_rows(3)), {});
+  const std::string three = html(study_section(Study(sample_rows(3)), {}));
   EXPECT_NE(three.find("3 hands can give is 0.25, after the correction 0.75, so that no difference"),
             std::string::npos);
   EXPECT_NE(three.find("the range of all values: 3 hands are too few"), std::string::npos);
   EXPECT_NE(three.find("100 to 300 N/m"), std::string::npos);
   EXPECT_EQ(three.find("<b>2 &gt; 1</b>"), std::string::npos);
-  const std::string ten = study_section(Study(sample_rows(10)), {});
+  const std::string ten = html(study_section(Study(sample_rows(10)), {}));
   EXPECT_NE(ten.find("covers the median with 97.9 %"), std::string::npos);
   EXPECT_NE(ten.find("<b>2 &gt; 1</b>"), std::string::npos);
   EXPECT_NE(ten.find("What steady changes"), std::string::npos);
@@ -145,16 +145,15 @@ TEST(Study, TheSectionSaysWhatSoFewHandsCanShow) {
 // 4 has no `paper`: its column stands empty, and the others stay under their names.
 TEST(Study, AColumnIsOfItsAlgorithm) {
   std::vector<StudyRow> rows = sample_rows(7);
-  std::erase_if(rows, [](const StudyRow& r) {
-    return r.summary.algorithm == "line-proxy" && r.summary.mode == Mode::paper;
-  });
-  const std::string html = study_section(Study(rows), {});
-  EXPECT_EQ(html.find("lost contact"), std::string::npos);
-  const std::size_t table = html.find("What steady changes: Milling");
+  std::erase_if(
+      rows, [](const StudyRow& r) { return r.run.algorithm == "line-proxy" && r.run.mode == Mode::paper; });
+  const std::string page = html(study_section(Study(rows), {}));
+  EXPECT_EQ(page.find("lost contact"), std::string::npos);
+  const std::size_t table = page.find("What steady changes: Milling");
   ASSERT_NE(table, std::string::npos);
-  const std::size_t row = html.find("force above 20 Hz, rms", table);
-  const std::size_t none = html.find("–", row), change = html.find("× 0.1 ", row);
-  ASSERT_NE(change, std::string::npos) << html.substr(table, 2000);
+  const std::size_t row = page.find("force above 20 Hz, rms", table);
+  const std::size_t none = page.find("–", row), change = page.find("× 0.1 ", row);
+  ASSERT_NE(change, std::string::npos) << page.substr(table, 2000);
   EXPECT_LT(none, change) << "1, without a pair, stands before 2";
 }
 
@@ -162,9 +161,9 @@ TEST(Study, AsManySeedsAreNeededAsCanShowADifference) {
   std::vector<StudyRow> rows = sample_rows(1);
   EXPECT_EQ(Study(rows).seeds_needed(), 7u) << "three pairs, 3 * 2^-6 <= 0.05";
   for (const StudyRow& r : sample_rows(1)) {
-    if (r.summary.algorithm == "line-proxy") {
+    if (r.run.algorithm == "line-proxy") {
       rows.push_back(r);
-      rows.back().summary.algorithm = algorithm_named("barrier-shell").id;
+      rows.back().run.algorithm = algorithm_named("barrier-shell").id;
     }
   }
   EXPECT_EQ(Study(rows).seeds_needed(), 8u) << "six pairs";

@@ -17,9 +17,9 @@ namespace {
 
 constexpr std::size_t kChangesTold = 4;
 
-const KeyMetric& metric_named(std::string_view name) {
-  const auto all = key_metrics();
-  return *std::find_if(all.begin(), all.end(), [&](const KeyMetric& metric) { return metric.name == name; });
+const Metric& metric_in(std::string_view column) {
+  const auto all = all_metrics();
+  return *std::find_if(all.begin(), all.end(), [&](const Metric& metric) { return metric.column == column; });
 }
 
 bool too_few(const Study& study) {
@@ -43,7 +43,7 @@ std::string joined(const std::vector<std::string>& parts) {
 }
 
 // "; least with 3 point-shell, significantly against 1 and 2, not against 4", or that none is.
-std::string least_words(const Study& study, Mode mode, std::string_view phase, const KeyMetric& metric,
+std::string least_words(const Study& study, Mode mode, std::string_view phase, const Metric& metric,
                         const AlgorithmId& least) {
   std::vector<std::string> clear, unclear;
   for (const AlgorithmPair& pair : compare_algorithms(study, mode, phase, metric)) {
@@ -59,13 +59,13 @@ std::string least_words(const Study& study, Mode mode, std::string_view phase, c
 
 // "0.02 N (1 line-proxy), lost contact after 3.2 s (2 surface-points) and 0.01 N (3 point-shell, in 7 of 8
 // hands)", and who has least.
-std::string values_words(const Study& study, Mode mode, std::string_view phase, const KeyMetric& metric) {
+std::string values_words(const Study& study, Mode mode, std::string_view phase, const Metric& metric) {
   std::vector<std::string> values;
   std::optional<AlgorithmId> least;
   double min = 0;
   for (const AlgorithmId& algorithm : study.algorithms()) {
     if (!study.was_tried({algorithm, mode})) continue;
-    const std::vector<double> of_seeds = study.values(algorithm, mode, phase, metric);
+    const std::vector<double> of_seeds = study.values({algorithm, mode}, phase, metric);
     if (of_seeds.empty()) {
       values.push_back(
           fmt::format("{} ({})", contact_words(study.contact({algorithm, mode}, phase)), algorithm.label));
@@ -83,7 +83,7 @@ std::string values_words(const Study& study, Mode mode, std::string_view phase, 
 }
 
 // "Force above 20 Hz, rms, while milling, median of the hands: paper 0.02 N (1 line-proxy) ...; steady ..."
-std::string values_sentence(const Study& study, std::string_view phase, const KeyMetric& metric) {
+std::string values_sentence(const Study& study, std::string_view phase, const Metric& metric) {
   std::string text = fmt::format("{}, {}{}: ", metric.name, during(phase),
                                  study.seeds().size() > 1 ? ", median of the hands" : "");
   text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
@@ -140,7 +140,7 @@ std::string changes_words(std::vector<Change> changes, std::size_t most_told) {
 std::string changes_sentence(const Study& study) {
   std::vector<Change> worse, better, all;
   for (const std::string_view phase : study.phases()) {
-    for (const KeyMetric& metric : key_metrics()) {
+    for (const Metric& metric : key_metrics()) {
       if (!metric.less_is_better) continue;
       for (const ModeChange& change : compare_modes(study, phase, metric)) {
         const double ratio = change.ratio.median;
@@ -165,8 +165,8 @@ std::string not_leaning(const Study& study) {
   std::vector<std::string> who;
   for (const AlgorithmId& algorithm : study.algorithms()) {
     for (const Mode mode : study.modes()) {
-      const std::vector<double> shares = study.values(
-          algorithm, mode, kHolding, {"", "", [](const RunMetrics& m) { return m.contact.shaft; }});
+      const std::vector<double> shares =
+          study.values({algorithm, mode}, kHolding, [](const RunMetrics& m) { return m.contact.shaft; });
       const auto few =
           std::count_if(shares.begin(), shares.end(), [](double share) { return share < kLeans; });
       if (few == 0) continue;
@@ -207,19 +207,19 @@ std::string too_few_hands(const Study& study) {
 
 std::vector<std::string> verdict(const Study& study) {
   std::vector<std::string> sentences;
-  const auto tell = [&](std::string_view phase, const char* metric) {
+  const auto tell = [&](std::string_view phase, const char* column) {
     const auto phases = study.phases();
     if (std::find(phases.begin(), phases.end(), phase) != phases.end())
-      sentences.push_back(values_sentence(study, phase, metric_named(metric)));
+      sentences.push_back(values_sentence(study, phase, metric_in(column)));
   };
-  tell(kMilling, "force above 20 Hz, rms");
-  tell(kMilling, "torque above 20 Hz, rms");
-  tell(kHolding, "spread of the shaft");
+  tell(kMilling, "force_hp_rms_N");
+  tell(kMilling, "torque_hp_rms_Nmm");
+  tell(kHolding, "shaft_spread_deg");
   sentences.push_back(findings_sentence(study));
   if (study.modes().size() > 1) {
     sentences.push_back(changes_sentence(study));
   } else {
-    tell(kMilling, "bone removed");
+    tell(kMilling, "removed_mm3");
   }
   return sentences;
 }

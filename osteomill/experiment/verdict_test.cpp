@@ -23,7 +23,7 @@ void expect_says(const std::string& text, const std::string& what) {
 }
 
 void lose(StudyRow& row) {
-  RunMetrics& m = row.summary.metrics;
+  RunMetrics& m = row.run.metrics;
   m.force_N.hp_rms = m.torque_Nmm.hp_rms = std::numeric_limits<double>::quiet_NaN();
   m.contact.lost_after_s = 3.2;
 }
@@ -46,9 +46,8 @@ TEST(Verdict, IsFiveSentencesWithTheirNumbers) {
 TEST(Verdict, WhatSteadyMakesWorseIsSaid) {
   std::vector<StudyRow> rows = sample_rows(8);
   for (StudyRow& r : rows) {
-    if (r.summary.algorithm == "point-shell" && r.summary.mode == Mode::steady &&
-        r.summary.segment == kMilling)
-      r.summary.metrics.torque_Nmm.hp_rms *= 1.6;
+    if (r.run.algorithm == "point-shell" && r.run.mode == Mode::steady && r.run.segment == kMilling)
+      r.run.metrics.torque_Nmm.hp_rms *= 1.6;
   }
   expect_says(
       verdict_of(rows),
@@ -72,7 +71,7 @@ TEST(Verdict, WhereSomeHandsLostContactTheMedianSaysOfHowMany) {
   for (const std::uint64_t lost : {3u, 4u}) {
     std::vector<StudyRow> rows = sample_rows(8);
     for (StudyRow& r : rows) {
-      if (r.summary.algorithm == "line-proxy" && r.seed <= lost) lose(r);
+      if (r.run.algorithm == "line-proxy" && r.seed <= lost) lose(r);
     }
     const std::string text = verdict_of(rows);
     expect_says(text, fmt::format("(1 line-proxy, in {} of 8 hands)", 8 - lost));
@@ -83,10 +82,9 @@ TEST(Verdict, WhereSomeHandsLostContactTheMedianSaysOfHowMany) {
 
 TEST(Verdict, WhereNothingIsSignificantNobodyIsLeast) {
   std::vector<StudyRow> rows = sample_rows(8);
-  std::erase_if(rows, [](const StudyRow& r) { return r.summary.algorithm == "surface-points"; });
+  std::erase_if(rows, [](const StudyRow& r) { return r.run.algorithm == "surface-points"; });
   for (StudyRow& r : rows) {
-    r.summary.metrics.force_N.hp_rms =
-        r.seed % 2 == (r.summary.algorithm == "line-proxy" ? 0u : 1u) ? 0.1 : 0.2;
+    r.run.metrics.force_N.hp_rms = r.seed % 2 == (r.run.algorithm == "line-proxy" ? 0u : 1u) ? 0.1 : 0.2;
   }
   expect_says(verdict_of(rows), "; no difference between the least and another is significant");
 }
@@ -94,19 +92,19 @@ TEST(Verdict, WhereNothingIsSignificantNobodyIsLeast) {
 TEST(Verdict, WhoseShaftDidNotLeanIsNamed) {
   std::vector<StudyRow> rows = sample_rows(8);
   for (StudyRow& r : rows) {
-    r.summary.metrics.contact.shaft =
-        r.summary.algorithm == "line-proxy" && r.summary.mode == Mode::paper && r.seed < 4 ? 0.2 : 1;
+    r.run.metrics.contact.shaft =
+        r.run.algorithm == "line-proxy" && r.run.mode == Mode::paper && r.seed < 4 ? 0.2 : 1;
   }
   const std::string text = what_was_compared(Study(rows), "ball");
   expect_says(text, "less than half of that time with 1 line-proxy in paper (3 of 8 hands).");
-  for (StudyRow& r : rows) r.summary.metrics.contact.shaft = 1;
+  for (StudyRow& r : rows) r.run.metrics.contact.shaft = 1;
   EXPECT_EQ(what_was_compared(Study(rows), "ball").find("less than half"), std::string::npos);
 }
 
 TEST(Verdict, WhoLostContactIsNamedAndNeverTheLeast) {
   std::vector<StudyRow> rows = sample_rows(8);
   for (StudyRow& r : rows) {
-    if (r.summary.algorithm == "point-shell") lose(r);
+    if (r.run.algorithm == "point-shell") lose(r);
   }
   const std::string text = verdict_of(rows);
   expect_says(text,
@@ -117,9 +115,8 @@ TEST(Verdict, WhoLostContactIsNamedAndNeverTheLeast) {
 
 TEST(Verdict, OneModeAndOneAlgorithmHaveNothingToBeComparedWith) {
   std::vector<StudyRow> rows = sample_rows(8);
-  std::erase_if(rows, [](const StudyRow& r) {
-    return r.summary.mode == Mode::steady || r.summary.algorithm != "line-proxy";
-  });
+  std::erase_if(
+      rows, [](const StudyRow& r) { return r.run.mode == Mode::steady || r.run.algorithm != "line-proxy"; });
   const std::string text = verdict_of(rows);
   EXPECT_EQ(text.find("least"), std::string::npos) << text;
   EXPECT_EQ(text.find("steady"), std::string::npos) << text;

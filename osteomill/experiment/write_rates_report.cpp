@@ -3,17 +3,19 @@
 #include <algorithm>
 #include <cmath>
 #include <ostream>
+#include <span>
 #include <string_view>
 
 #include <fmt/format.h>
 
-#include "osteomill/experiment/rates_figure.h"
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/files/input_error.h"
+#include "osteomill/files/temporary_folder.h"
 #include "osteomill/numbers/positive.h"
+#include "osteomill/report/figure.h"
+#include "osteomill/report/gnuplot.h"
 #include "osteomill/report/html.h"
 #include "osteomill/report/metrics.h"
-#include "osteomill/report/report_page.h"
 #include "osteomill/tool/sample_points.h"
 
 namespace osteomill {
@@ -21,6 +23,91 @@ namespace osteomill {
 namespace fs = std::filesystem;
 
 namespace {
+
+std::vector<RateRow> rows_of(std::span<const RateRow> rows, const AlgorithmId& algorithm) {
+  std::vector<RateRow> of;
+  for (const RateRow& row : rows) {
+    if (row.algorithm == algorithm) of.push_back(row);
+  }
+  return of;
+}
+
+// Whole decades about all rates, so that all panels share one scale.
+std::string rate_range(std::span<const RateRow> rows) {
+  double min = 1000, max = 1000;
+  for (const RateRow& row : rows) {
+    min = std::min(min, row.steps_per_s);
+    max = std::max(max, row.steps_per_s);
+    if (row.paper_rate_hz > 0) min = std::min(min, row.paper_rate_hz);
+  }
+  min = std::max(min, 1e-3);
+  return fmt::format("set yrange [{:.4g}:{:.4g}]\n", std::pow(10.0, std::floor(std::log10(min) - 0.05)),
+                     std::pow(10.0, std::ceil(std::log10(max) + 0.05)));
+}
+
+std::string tics(const std::vector<RateRow>& rows) {
+  std::string list;
+  for (std::size_t n = 0; n < rows.size(); ++n) {
+    list += fmt::format("{}{} {}", n == 0 ? "" : ", ", gnuplot_quoted(rows[n].resolution), n);
+  }
+  return fmt::format("set xtics noenhanced rotate by 35 right ({})\n", list);
+}
+
+std::string panel(const std::vector<RateRow>& rows, std::size_t column, const TemporaryFolder& work) {
+  const AlgorithmId& algorithm = rows.front().algorithm;
+  const std::string file = fmt::format("rates-{}.dat", name_of(algorithm));
+  std::string data;
+  bool in_paper = false;
+  for (std::size_t n = 0; n < rows.size(); ++n) {
+    const bool known = rows[n].paper_rate_hz > 0;
+    in_paper = in_paper || known;
+    data += fmt::format("{} {:.6g} {}\n", n, rows[n].steps_per_s,
+                        known ? fmt::format("{:.6g}", rows[n].paper_rate_hz) : "?");
+  }
+  write_figure_data(work / file, data);
+  std::string script =
+      fmt::format("set title '{}' offset 0,-0.4\nset xrange [-0.5:{}]\n{}{}", algorithm.label,
+                  static_cast<double>(rows.size()) - 0.5, tics(rows),
+                  column == 0 ? "set ylabel 'Steps a second (Hz)'\n" : "unset ylabel\nset format y ''\n");
+  script += "plot 1000 with lines dt 2 lw 1.5 lc rgb '#555555' notitle, ";
+  if (in_paper) {
+    script +=
+        fmt::format("'{}' using 1:3 with linespoints pt 6 ps 1.2 lw 1.5 lc rgb '#8a8a8a' notitle, ", file);
+  }
+  return script + fmt::format("'{}' using 1:2 with linespoints pt 7 ps 1.1 lw 2 lc rgb '{}' notitle\n", file,
+                              algorithm.colour);
+}
+
+// Rate against resolution, a panel for each algorithm, measured and from the paper, with the 1000 Hz that a
+// haptic loop needs.
+Figure draw_rates_figure(std::span<const RateRow> rows, const std::filesystem::path& folder) {
+  const TemporaryFolder work;
+  std::vector<std::vector<RateRow>> panels;
+  std::vector<AlgorithmId> algorithms;
+  for (const RateRow& row : rows) algorithms.push_back(row.algorithm);
+  for (const AlgorithmId& algorithm : each_once(std::move(algorithms))) {
+    panels.push_back(rows_of(rows, algorithm));
+  }
+  const PanelGrid grid{.height_px = 520,
+                       .columns = panels.size(),
+                       .indent_px = 116,
+                       .right_px = 30,
+                       .above_px = 84,
+                       .below_px = 110};
+  FigureScript script{"rates", static_cast<int>(PanelGrid::kWidth_px), static_cast<int>(grid.height_px), ""};
+  script.body = begin_panels("y") + "set datafile missing '?'\nset logscale y\nset format y '%.0s %c'\n" +
+                rate_range(rows) +
+                fmt::format(
+                    "set label 1 '● measured here    {{/:Normal ○}} the paper, on a Pentium 4    - - -  "
+                    "1000 Hz, what a haptic loop needs' at screen 0.5,screen {:.4f} center\n",
+                    1 - 26 / grid.height_px);
+  for (std::size_t n = 0; n < panels.size(); ++n) {
+    script.body +=
+        panel_margins(grid, panel_cell(grid, n, 0)) + panel(panels[n], n, work) + "unset label 1\n";
+  }
+  script.body += "unset multiplot\n";
+  return draw_figure(script, work, folder);
+}
 
 void require_usable(const std::vector<RateRow>& rows) {
   if (rows.empty()) throw InputError("rates", "there are no rates to report on");
@@ -140,8 +227,7 @@ std::string least_words(const std::vector<VertexSearchRow>& rows, const std::str
                      least > 0 ? fmt::format("{}", least) : "none of those tried", part, papers);
 }
 
-std::string vertices_section(const std::vector<VertexSearchRow>& rows) {
-  if (rows.empty()) return "";
+PageSection vertices_section(const std::vector<VertexSearchRow>& rows) {
   HtmlTable table{{"Part", "Vertices", "Force off the normal, median (°)", "Worst (°)",
                    "Size off its mean, worst (%)", "Deepest unseen (% of the radius)", "Suffices"},
                   {},
@@ -154,21 +240,21 @@ std::string vertices_section(const std::vector<VertexSearchRow>& rows) {
          fmt::format("{:.1f}", 100 * r.unseen_worst),
          least ? "<b>yes, the least</b>" : (r.suffices ? "yes" : "no")});
   }
-  return "<h2>The least number of vertices that suffices for surface-points</h2>\n" +
-         html_paragraph(fmt::format(
-             "By this search: {}, {}. The paper says that its tests found its numbers to be needed for "
-             "correct collision detection and force, not by what measure; the measure here is our own. The "
-             "algorithm itself, in the mode paper, presses its sphere, or one circle of its shaft, on a "
-             "flat wall by half the radius with a thousand sides of it in turn, in bone whose density is "
-             "linear, so that nothing but the number of vertices counts. A number suffices where, with "
-             "every side, the force is at most {:g}° off the wall's normal, its size at most {:g} % off "
-             "the mean, and a vertex meets the bone before the part is {:g} % of its radius deep; the "
-             "least is the one from which on all that were tried suffice. These tolerances are round "
-             "numbers; others give other answers, which the table lets you see.",
-             least_words(rows, "sphere", kSphereVertices), least_words(rows, "circle", kSliceVertices),
-             VertexSearchRow::kMaxDirection_deg, 100 * VertexSearchRow::kMaxSizeOff,
-             100 * VertexSearchRow::kMaxUnseen)) +
-         html_table(table);
+  return {.title = "The least number of vertices that suffices for surface-points",
+          .paragraphs = {fmt::format(
+              "By this search: {}, {}. The paper says that its tests found its numbers to be needed for "
+              "correct collision detection and force, not by what measure; the measure here is our own. The "
+              "algorithm itself, in the mode paper, presses its sphere, or one circle of its shaft, on a "
+              "flat wall by half the radius with a thousand sides of it in turn, in bone whose density is "
+              "linear, so that nothing but the number of vertices counts. A number suffices where, with "
+              "every side, the force is at most {:g}° off the wall's normal, its size at most {:g} % off "
+              "the mean, and a vertex meets the bone before the part is {:g} % of its radius deep; the "
+              "least is the one from which on all that were tried suffice. These tolerances are round "
+              "numbers; others give other answers, which the table lets you see.",
+              least_words(rows, "sphere", kSphereVertices), least_words(rows, "circle", kSliceVertices),
+              VertexSearchRow::kMaxDirection_deg, 100 * VertexSearchRow::kMaxSizeOff,
+              100 * VertexSearchRow::kMaxUnseen)},
+          .tables = {table}};
 }
 
 }  // namespace
@@ -180,16 +266,17 @@ fs::path write_rates_report(const MeasuredRates& measured, const fs::path& out_d
   const Figure figure = draw_rates_figure(rows, out_dir / "figures");
   write_rates_csv(out_dir / "rates.csv", measured);
   if (!measured.vertices.empty()) write_vertices_csv(out_dir / "vertices.csv", measured.vertices);
-  std::string body = html_paragraph(mode_words(measured.mode) + plain_words(rows)) +
-                     html_paragraph(std::string(kWhatRatesMean));
-  body += html_figure(figure.svg,
-                      fmt::format("Steps a second in {} against resolution, on a logarithmic scale. The "
-                                  "paper's section 8.1.",
-                                  name_of(measured.mode)));
-  body += html_table(rates_table(rows)) + vertices_section(measured.vertices);
+  std::vector<PageSection> sections{
+      {.paragraphs = {mode_words(measured.mode) + plain_words(rows), std::string(kWhatRatesMean)},
+       .figures = {{figure.svg,
+                    fmt::format("Steps a second in {} against resolution, on a logarithmic scale. The "
+                                "paper's section 8.1.",
+                                name_of(measured.mode))}},
+       .tables = {rates_table(rows)}}};
+  if (!measured.vertices.empty()) sections.push_back(vertices_section(measured.vertices));
   const fs::path page = out_dir / "rates.html";
-  write_text_atomically(page,
-                        [&](std::ostream& out) { out << html_page("Haptic rate against resolution", body); });
+  write_text_atomically(
+      page, [&](std::ostream& out) { out << html_page("Haptic rate against resolution", sections); });
   return page;
 }
 

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "osteomill/experiment/rate_row.h"
+#include "osteomill/experiment/measure_rates.h"
 #include "osteomill/experiment/vertex_search.h"
 #include "osteomill/haptics/mode.h"
 

@@ -36,7 +36,7 @@ ContactShares contact_shares(std::span<const TickRecord> records) {
     if (contact.any()) last_s = record.time_s;
   }
   if (shares.any == 0 || records.back().time_s - last_s >= kLost_s) shares.lost_after_s = last_s - began_s;
-  shares.lost_while_milling = shares.any > 0 && shares.lost_after_s && records.back().spindle_on;
+  shares.lost_while_milling = shares.any > 0 && shares.is_lost() && records.back().spindle_on;
   for (double* share : {&shares.any, &shares.burr, &shares.shaft, &shares.force, &shares.torque}) {
     *share /= static_cast<double>(records.size());
   }
@@ -48,9 +48,9 @@ std::string contact_words(const ContactShares& contact) {
     return fmt::format("for {:.0f} % of the time", 100 * share);
   };
   if (contact.any == 0) return contact.lost_while_milling ? "lost while milling" : "never touched";
-  if (contact.lost_after_s && contact.lost_while_milling)
-    return fmt::format("lost while milling, after {:.1f} s", *contact.lost_after_s);
-  if (contact.lost_after_s) return fmt::format("lost contact after {:.1f} s", *contact.lost_after_s);
+  if (contact.is_lost() && contact.lost_while_milling)
+    return fmt::format("lost while milling, after {:.1f} s", contact.lost_after_s);
+  if (contact.is_lost()) return fmt::format("lost contact after {:.1f} s", contact.lost_after_s);
   if (!is_enough_contact(contact.any)) return "touched " + share_of_time(contact.any);
   if (!is_enough_contact(contact.shaft)) return "the shaft touched " + share_of_time(contact.shaft);
   return "felt a force " + share_of_time(contact.force);

@@ -1,6 +1,7 @@
 #pragma once
 
-#include <optional>
+#include <cmath>
+#include <limits>
 #include <span>
 #include <string>
 
@@ -32,10 +33,12 @@ struct ContactShares {
   double force = 0;
   double torque = 0;
   /// When the last contact ended, from the first tick on, where the recording goes on for a second or more
-  /// without any; 0 where there was none at all.
-  std::optional<double> lost_after_s;
+  /// without any, and else not a number; 0 where there was none at all.
+  double lost_after_s = std::numeric_limits<double>::quiet_NaN();
   /// It was lost with the spindle on, now or, where nothing touched at all, before the recording.
   bool lost_while_milling = false;
+
+  bool is_lost() const { return !std::isnan(lost_after_s); }
 };
 ContactShares contact_shares(std::span<const TickRecord> records);
 

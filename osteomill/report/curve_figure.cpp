@@ -1,18 +1,29 @@
-#include "osteomill/report/curve_figure.h"
-
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include <fmt/format.h>
 
 #include "osteomill/files/temporary_folder.h"
+#include "osteomill/report/run_figures.h"
 #include "osteomill/report/thin_out.h"
 
 namespace osteomill {
 
 namespace {
 
-constexpr double kFigureWidth_px = 1150;
+// A column of panels, one a phase (milling on top), with a curve over time for each algorithm.
+struct CurveColumn {
+  // Of its data files.
+  std::string name;
+  // Of the y axis, with its unit.
+  std::string label;
+  std::function<double(const TickRecord&)> value;
+  // gnuplot commands for its panels alone (scale, range, lines).
+  std::string setup;
+  // What its dashed line stands for, said above its panels; empty for none.
+  std::string dashed;
+};
 
 struct Curve {
   AlgorithmId algorithm;
@@ -22,8 +33,7 @@ struct Curve {
 };
 
 std::string data_file(const CurveColumn& column, const MeasuredRun& run) {
-  const RunDescription& d = run.recording->description;
-  return fmt::format("{}-{}-{}.dat", column.name, d.segment, name_of(d.algorithm));
+  return fmt::format("{}-{}-{}.dat", column.name, run.segment, name_of(run.algorithm));
 }
 
 Curve write_curve(const CurveColumn& column, const MeasuredRun& run, std::size_t bins,
@@ -32,7 +42,7 @@ Curve write_curve(const CurveColumn& column, const MeasuredRun& run, std::size_t
   std::vector<double> values;
   values.reserve(records.size());
   for (const TickRecord& record : records) values.push_back(column.value(record));
-  Curve curve{run.recording->description.algorithm, data_file(column, run)};
+  Curve curve{run.algorithm, data_file(column, run)};
   for (std::size_t n = 1; n < values.size(); ++n) curve.restlessness += std::abs(values[n] - values[n - 1]);
   std::string data;
   for (const std::size_t n : thin_out_curve(values, bins)) {
@@ -63,7 +73,7 @@ std::string panel_title(std::string segment) {
 std::string legend(const RunGroup& group, double height_px) {
   constexpr double kEntry_px = 220, kLine_px = 40, kTop_px = 26;
   const auto algorithms = group.algorithms();
-  double x = 0.5 * (kFigureWidth_px - kEntry_px * static_cast<double>(algorithms.size()));
+  double x = 0.5 * (PanelGrid::kWidth_px - kEntry_px * static_cast<double>(algorithms.size()));
   const double y = 1 - kTop_px / height_px;
   std::string script;
   int tag = 101;
@@ -72,8 +82,8 @@ std::string legend(const RunGroup& group, double height_px) {
         "set arrow {0} from screen {1:.4f},screen {2:.4f} to screen {3:.4f},screen {2:.4f} nohead lw 4 lc "
         "rgb '{4}'\n"
         "set label {0} '{5}' at screen {6:.4f},screen {2:.4f} left noenhanced\n",
-        tag++, x / kFigureWidth_px, y, (x + kLine_px) / kFigureWidth_px, algorithm.colour, algorithm.label,
-        (x + kLine_px + 10) / kFigureWidth_px);
+        tag++, x / PanelGrid::kWidth_px, y, (x + kLine_px) / PanelGrid::kWidth_px, algorithm.colour,
+        algorithm.label, (x + kLine_px + 10) / PanelGrid::kWidth_px);
     x += kEntry_px;
   }
   return script;
@@ -85,23 +95,8 @@ std::string dashed_line(double y) {
       "set arrow 1 from graph 0,first {0} to graph 1,first {0} nohead dt 2 lw 1.5 lc rgb '#555555' front", y);
 }
 
-struct Place {
-  double left, right, bottom, top;
-};
-
-Place panel_place(std::size_t column, std::size_t columns, std::size_t row, std::size_t rows,
-                  double height_px) {
-  const double left_px = 112, right_px = 26, top_px = 100, bottom_px = 80, between_px = 88;
-  const double wide = kFigureWidth_px / static_cast<double>(columns);
-  const double high = (height_px - top_px - bottom_px + between_px) / static_cast<double>(rows);
-  const double top = height_px - top_px - static_cast<double>(row) * high;
-  const double left = static_cast<double>(column) * wide;
-  return {(left + left_px) / kFigureWidth_px, (left + wide - right_px) / kFigureWidth_px,
-          (top - high + between_px) / height_px, top / height_px};
-}
-
 std::string panel(const RunGroup& group, const CurveColumn& column, const std::string& segment,
-                  const Place& place, bool lowest, std::size_t bins, const TemporaryFolder& work) {
+                  const std::string& margins, bool lowest, std::size_t bins, const TemporaryFolder& work) {
   std::vector<Curve> curves;
   for (const AlgorithmId& algorithm : group.algorithms()) {
     if (const MeasuredRun* run = group.find(algorithm.name, segment)) {
@@ -110,11 +105,9 @@ std::string panel(const RunGroup& group, const CurveColumn& column, const std::s
   }
   std::stable_sort(curves.begin(), curves.end(),
                    [](const Curve& a, const Curve& b) { return a.restlessness > b.restlessness; });
-  std::string script = fmt::format(
-      "set lmargin at screen {:.4f}\nset rmargin at screen {:.4f}\nset bmargin at screen {:.4f}\n"
-      "set tmargin at screen {:.4f}\nset title '{}' offset 0,-0.4\nset ylabel '{}'\n{}\n{}\n",
-      place.left, place.right, place.bottom, place.top, panel_title(segment), column.label,
-      lowest ? "set xlabel 'Time (s)'" : "unset xlabel", column.setup);
+  std::string script =
+      fmt::format("{}set title '{}' offset 0,-0.4\nset ylabel '{}'\n{}\n{}\n", margins, panel_title(segment),
+                  column.label, lowest ? "set xlabel 'Time (s)'" : "unset xlabel", column.setup);
   std::string plot;
   for (const Curve& curve : curves) {
     plot += fmt::format("{}'{}' with lines lw 1.2 lc rgb '{}' notitle", plot.empty() ? "plot " : ", ",
@@ -123,12 +116,14 @@ std::string panel(const RunGroup& group, const CurveColumn& column, const std::s
   return script + plot;
 }
 
-std::string dashed_legend(const CurveColumn& column, const Place& place, double height_px) {
+std::string dashed_legend(const CurveColumn& column, const PanelGrid& grid, const PanelCell& cell) {
   constexpr double kTop_px = 54;
   if (column.dashed.empty()) return "";
   return fmt::format(
       "set label 1 '- - -  {}' at screen {:.4f},screen {:.4f} center noenhanced tc rgb '#444444'\n",
-      column.dashed, 0.5 * (place.left + place.right), 1 - kTop_px / height_px);
+      column.dashed,
+      (cell.left_px + 0.5 * (grid.left_px + cell.wide_px - grid.right_px)) / PanelGrid::kWidth_px,
+      1 - kTop_px / grid.height_px);
 }
 
 double rate_of(const TickRecord& record) {
@@ -156,25 +151,24 @@ std::string figure_name(const char* stem, const RunGroup& group) {
   return fmt::format("{}_{}", stem, name_of(group.mode));
 }
 
-}  // namespace
-
+// Draws the columns side by side, the algorithms' names above them all. Curves are thinned out to the least
+// and greatest of each pixel's worth, and the restless ones are drawn first so that they hide no other.
 Figure draw_curves(const RunGroup& group, const std::string& name, const std::vector<CurveColumn>& columns,
                    const std::filesystem::path& folder) {
   const TemporaryFolder work;
   const std::vector<std::string> segments = group.segments();
-  FigureScript script{name, static_cast<int>(kFigureWidth_px), segments.size() > 1 ? 800 : 480, ""};
-  script.body = fmt::format(
-      "set multiplot\nset border 3 lc rgb '#444444'\nset tics nomirror out scale 0.6\n"
-      "set grid lc rgb '#dddddd' lt 1 lw 0.7\nset xrange [0:{:.6g}]\n"
-      "unset key\n",
-      last_time_s(group));
+  const PanelGrid grid{
+      segments.size() > 1 ? 800.0 : 480.0, columns.size(), segments.size(), 92, 0, 112, 26, 8, 80};
+  FigureScript script{name, static_cast<int>(PanelGrid::kWidth_px), static_cast<int>(grid.height_px), ""};
+  script.body = begin_panels("") + fmt::format("set xrange [0:{:.6g}]\n", last_time_s(group));
   const std::size_t bins = 1000 / columns.size();
-  script.body += legend(group, script.height_px);
+  script.body += legend(group, grid.height_px);
   for (std::size_t c = 0; c < columns.size(); ++c) {
     for (std::size_t row = 0; row < segments.size(); ++row) {
-      const Place place = panel_place(c, columns.size(), row, segments.size(), script.height_px);
-      if (row == 0) script.body += dashed_legend(columns[c], place, script.height_px);
-      script.body += panel(group, columns[c], segments[row], place, row + 1 == segments.size(), bins, work);
+      const PanelCell cell = panel_cell(grid, c, row);
+      if (row == 0) script.body += dashed_legend(columns[c], grid, cell);
+      script.body += panel(group, columns[c], segments[row], panel_margins(grid, cell),
+                           row + 1 == segments.size(), bins, work);
       // Panels drawn later would print the legend again, on top of itself.
       script.body += "\nunset label\nunset arrow\n";
     }
@@ -183,6 +177,8 @@ Figure draw_curves(const RunGroup& group, const std::string& name, const std::ve
   script.body += "unset multiplot\n";
   return draw_figure(script, work, folder);
 }
+
+}  // namespace
 
 Figure draw_rate_figure(const RunGroup& group, const std::filesystem::path& folder) {
   const double max = max_tick_us(group);

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "osteomill/files/temporary_folder.h"
 
@@ -23,6 +25,36 @@ struct Figure {
   std::filesystem::path svg;
   std::filesystem::path png;
 };
+
+/// Panels of one size in rows and columns, below what stands at the figure's head. In pixels.
+struct PanelGrid {
+  double height_px = 0;
+  std::size_t columns = 1;
+  std::size_t rows = 1;
+  double head_px = 0;
+  /// On the left of all columns.
+  double indent_px = 0;
+  /// From a cell's edges to the panel's axes.
+  double left_px = 0, right_px = 0, above_px = 0, below_px = 0;
+  static constexpr double kWidth_px = 1150;
+};
+
+/// One panel's room: its upper left corner, from the figure's lower left, and its size.
+struct PanelCell {
+  double left_px, top_px, wide_px, high_px;
+};
+PanelCell panel_cell(const PanelGrid& grid, std::size_t column, std::size_t row);
+
+/// gnuplot commands: axes and grid lines ("y", or empty for both) of all panels; where one's axes stand; and
+/// a row of names across the figure's head, each in its colour and so wide.
+std::string begin_panels(std::string_view grid_lines);
+std::string panel_margins(const PanelGrid& grid, const PanelCell& cell);
+struct LegendEntry {
+  std::string text;
+  std::string_view colour;
+  double wide_px;
+};
+std::string legend_row(const PanelGrid& grid, const std::vector<LegendEntry>& entries);
 
 /// Runs gnuplot in `work`, where the figure's data lie, and puts NAME.svg and NAME.png into `folder`, each
 /// whole or not at all. Throws InputError where gnuplot or writing fails.

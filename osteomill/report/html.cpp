@@ -45,6 +45,25 @@ std::string table_row(const std::vector<std::string>& cells, bool header) {
   return row + "</tr>\n";
 }
 
+// As an image and not as elements of the page: the figures' SVGs use the same identifiers.
+std::string html_figure(const CaptionedFigure& figure) {
+  const char* type = figure.file.extension() == ".svg" ? "svg+xml" : "png";
+  return fmt::format(
+      "<figure><img alt=\"{0}\" src=\"data:image/{1};base64,{2}\"><figcaption>{0}</figcaption></figure>\n",
+      html_escaped(figure.caption), type, base64(bytes_of(figure.file)));
+}
+
+std::string html_table(const HtmlTable& table) {
+  std::string html = table.numbers ? "<div class=\"wide numbers\">" : "<div class=\"wide\">";
+  html += "<table>\n<thead>" + table_row(table.header, true) + "</thead>\n<tbody>\n";
+  for (const auto& row : table.rows) html += table_row(row, false);
+  return html + "</tbody></table></div>\n";
+}
+
+std::string in_tag(std::string_view tag, const std::string& text) {
+  return fmt::format("<{}>{}</{}>\n", tag, html_escaped(text), tag.substr(0, tag.find(' ')));
+}
+
 }  // namespace
 
 std::string html_escaped(std::string_view text) {
@@ -87,23 +106,26 @@ std::string base64(std::string_view bytes) {
   return text;
 }
 
-// As an image and not as elements of the page: the figures' SVGs use the same identifiers.
-std::string html_figure(const std::filesystem::path& file, const std::string& caption) {
-  const char* type = file.extension() == ".svg" ? "svg+xml" : "png";
-  const std::string text = html_escaped(caption);
-  return fmt::format(
-      "<figure><img alt=\"{0}\" src=\"data:image/{1};base64,{2}\"><figcaption>{0}</figcaption></figure>\n",
-      text, type, base64(bytes_of(file)));
+std::string html(const PageSection& section, int level) {
+  std::string html;
+  if (!section.title.empty()) html += fmt::format("<h{0}>{1}</h{0}>\n", level, html_escaped(section.title));
+  for (const std::string& text : section.notices) html += in_tag("p class=\"notice\"", text);
+  for (const std::string& text : section.paragraphs) html += text.empty() ? "" : in_tag("p", text);
+  if (!section.points.empty()) html += "<ul>\n";
+  for (const std::string& text : section.points) html += in_tag("li", text);
+  if (!section.points.empty()) html += "</ul>\n";
+  for (const CaptionedFigure& figure : section.figures) html += html_figure(figure);
+  for (const HtmlTable& table : section.tables) html += html_table(table);
+  if (!section.commands.empty()) html += "<pre>";
+  for (const std::string& command : section.commands) html += html_escaped(command) + "\n";
+  if (!section.commands.empty()) html += "</pre>\n";
+  for (const PageSection& part : section.parts) html += osteomill::html(part, level + 1);
+  return html;
 }
 
-std::string html_table(const HtmlTable& table) {
-  std::string html = table.numbers ? "<div class=\"wide numbers\">" : "<div class=\"wide\">";
-  html += "<table>\n<thead>" + table_row(table.header, true) + "</thead>\n<tbody>\n";
-  for (const auto& row : table.rows) html += table_row(row, false);
-  return html + "</tbody></table></div>\n";
-}
-
-std::string html_page(const std::string& title, const std::string& body) {
+std::string html_page(const std::string& title, const std::vector<PageSection>& sections) {
+  std::string body;
+  for (const PageSection& section : sections) body += html(section);
   return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{0}</title>\n"

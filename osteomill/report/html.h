@@ -12,9 +12,11 @@ std::string html_escaped(std::string_view text);
 
 std::string base64(std::string_view bytes);
 
-/// <figure> with the picture itself in the page, not a link; `file` is an SVG or PNG. Throws InputError where
-/// it cannot be read. `caption` is plain text.
-std::string html_figure(const std::filesystem::path& file, const std::string& caption);
+/// An SVG or PNG, which stands in the page itself, not as a link.
+struct CaptionedFigure {
+  std::filesystem::path file;
+  std::string caption;
+};
 
 /// A table; cells are HTML. The first column's cells are headings.
 struct HtmlTable {
@@ -23,9 +25,27 @@ struct HtmlTable {
   /// Cells are numbers, to be aligned on the right.
   bool numbers = false;
 };
-std::string html_table(const HtmlTable& table);
 
-/// A whole page with its own style sheet, which loads nothing from anywhere.
-std::string html_page(const std::string& title, const std::string& body);
+/// A part of a page, shown in the order of its fields; what is empty is not shown. All but the cells of
+/// tables is plain text.
+struct PageSection {
+  std::string title;
+  /// What a reader must know before believing the rest.
+  std::vector<std::string> notices;
+  std::vector<std::string> paragraphs;
+  /// A list.
+  std::vector<std::string> points;
+  std::vector<CaptionedFigure> figures;
+  std::vector<HtmlTable> tables;
+  std::vector<std::string> commands;
+  /// With titles a level lower.
+  std::vector<PageSection> parts;
+};
+
+/// A section whose title is of this level (<h2>). Throws InputError where a figure cannot be read.
+std::string html(const PageSection& section, int level = 2);
+
+/// A whole page with its own style sheet, which loads nothing from anywhere. Throws as `html` does.
+std::string html_page(const std::string& title, const std::vector<PageSection>& sections);
 
 }  // namespace osteomill

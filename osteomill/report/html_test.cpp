@@ -23,7 +23,7 @@ TEST(Html, TextIsEscaped) {
 }
 
 TEST(Html, AFigureThatIsMissingIsNamed) {
-  EXPECT_THROW(html_figure("/no/such/figure.svg", "x"), InputError);
+  EXPECT_THROW(html({.figures = {{"/no/such/figure.svg", "x"}}}), InputError);
 }
 
 }  // namespace

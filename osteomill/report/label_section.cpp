@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include "osteomill/report/gnuplot.h"
-#include "osteomill/report/html.h"
 #include "osteomill/session/label_count.h"
 
 namespace osteomill {
@@ -21,8 +20,7 @@ LabelCount count_of(const Recording& recording) {
 }
 
 std::string run_name(const MeasuredRun& run) {
-  const RunDescription& d = run.recording->description;
-  return d.segment.empty() ? d.algorithm.label : d.algorithm.label + ", " + d.segment;
+  return run.segment.empty() ? run.algorithm.label : run.algorithm.label + ", " + run.segment;
 }
 
 std::string name_with_colour(const Label& label) {
@@ -92,7 +90,7 @@ std::string panel(const MeasuredRun& run, std::size_t number, const TemporaryFol
 
 }  // namespace
 
-std::string label_section(const RunGroup& group) {
+std::optional<PageSection> label_section(const RunGroup& group) {
   HtmlTable table{{"Run", "Label", "Removed (mm³)", "of the run's bone (%)", "First at (s)", "Last at (s)",
                    "In it for (s)", "Force of the burr, mean (N)", "… greatest (N)"},
                   {},
@@ -102,14 +100,14 @@ std::string label_section(const RunGroup& group) {
     any = any || !run.recording->description.labels.empty();
     add_rows(run, table);
   }
-  if (!any) return "";
-  const std::string head = "<h3>Labels</h3>\n";
-  if (table.rows.empty()) return head + "<p>The burr cut nothing that has a label.</p>\n";
-  return head +
-         "<p>What was cut of each structure of the label map; a no-go label counts as soon as the turning "
-         "burr "
-         "touches it.</p>\n" +
-         html_table(table);
+  if (!any) return std::nullopt;
+  if (table.rows.empty())
+    return PageSection{.title = "Labels", .paragraphs = {"The burr cut nothing that has a label."}};
+  return PageSection{
+      .title = "Labels",
+      .paragraphs = {"What was cut of each structure of the label map; a no-go label counts as "
+                     "soon as the turning burr touches it."},
+      .tables = {table}};
 }
 
 std::optional<Figure> draw_label_figure(const RunGroup& group, const std::filesystem::path& folder) {

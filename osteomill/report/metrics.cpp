@@ -2,13 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
-#include <ostream>
 
 #include <fmt/format.h>
 
-#include "osteomill/files/atomic_file.h"
 #include "osteomill/files/input_error.h"
 #include "osteomill/report/high_pass.h"
 #include "osteomill/report/multiple_correlation.h"
@@ -16,8 +13,6 @@
 namespace osteomill {
 
 namespace {
-
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 // The angle of two unit vectors; an arc cosine would lose the small ones.
 double angle_rad(const Vec3& a, const Vec3& b) {
@@ -124,6 +119,7 @@ VectorMetrics vector_metrics(std::span<const Vec3> samples, double rate_hz,
   if (count == 0) return metrics;
   metrics.mean /= static_cast<double>(count);
   metrics.hp_rms = std::sqrt(squares / static_cast<double>(count));
+  metrics.hp_share = metrics.mean == 0 ? 0 : metrics.hp_rms / metrics.mean;
   return metrics;
 }
 
@@ -164,13 +160,13 @@ RunMetrics run_metrics(const Recording& recording) {
   }
   const double rate_hz = 1.0 / recording.description.tick_period_s;
   RunMetrics metrics;
-  metrics.steps = recording.records.size();
+  metrics.steps = static_cast<double>(recording.records.size());
   metrics.step_us = distribution_of(step_us);
   if (const Distribution cpu = distribution_of(cpu_us); cpu.max > 0) metrics.cpu_us = cpu;
   metrics.rate_hz = held.rate_hz();
   metrics.contact = contact_shares(recording.records);
-  metrics.force_N = metrics.torque_Nmm = {kUnknown, kUnknown, kUnknown, kUnknown};
-  metrics.shaft = {kUnknown, kUnknown};
+  metrics.force_N = metrics.torque_Nmm = kNotFelt;
+  metrics.shaft = {kNotMeasured, kNotMeasured};
   const ContactShares& contact = metrics.contact;
   if (is_enough_contact(contact.force)) metrics.force_N = vector_metrics(force_N, rate_hz, touches);
   if (is_enough_contact(contact.torque)) metrics.torque_Nmm = vector_metrics(torque_Nmm, rate_hz, touches);
@@ -183,44 +179,6 @@ RunMetrics run_metrics(const Recording& recording) {
       recording.records.back().removed_mm3 - recording.records.front().removed_mm3 + metrics.put_back_mm3;
   metrics.path_mm = path_mm(recording.records);
   return metrics;
-}
-
-std::string summary_columns() {
-  return "algorithm,mode,phase,steps,step_us_median,step_us_p99,step_us_max,rate_hz,"
-         "force_mean_N,force_max_N,force_hp_rms_N,force_step_max_N,"
-         "torque_mean_Nmm,torque_max_Nmm,torque_hp_rms_Nmm,torque_step_max_Nmm,"
-         "shaft_spread_deg,shaft_excursion_deg,removed_mm3,"
-         "contact_share,burr_contact_share,shaft_contact_share,cpu_us_median,cpu_us_p99,cpu_us_max,"
-         "turn_50ms_max_deg,turn_at_torque_step_deg,torque_follows_force,contacts_mean,lost_after_s";
-}
-
-std::string summary_fields(const SummaryRow& row) {
-  const RunMetrics& m = row.metrics;
-  std::string fields =
-      fmt::format("{},{},{},{},{},{},{},{}", name_of(row.algorithm), name_of(row.mode), row.segment, m.steps,
-                  m.step_us.median, m.step_us.p99, m.step_us.max, m.rate_hz);
-  const auto add = [&](double value) { fields += std::isnan(value) ? "," : fmt::format(",{}", value); };
-  for (const VectorMetrics& v : {m.force_N, m.torque_Nmm}) {
-    for (const double value : {v.mean, v.max, v.hp_rms, v.step_max}) add(value);
-  }
-  for (const double value : {m.shaft.spread_deg, m.shaft.excursion_deg, m.removed_mm3, m.contact.any,
-                             m.contact.burr, m.contact.shaft}) {
-    add(value);
-  }
-  const Distribution cpu = m.cpu_us.value_or(Distribution{kUnknown, kUnknown, kUnknown});
-  for (const double value :
-       {cpu.median, cpu.p99, cpu.max, m.turns.max_deg, m.turns.at_torque_step_deg, m.torque_follows_force,
-        m.contacts_mean, m.contact.lost_after_s.value_or(kUnknown)}) {
-    add(value);
-  }
-  return fields;
-}
-
-void write_summary_csv(const std::filesystem::path& path, std::span<const SummaryRow> rows) {
-  write_text_atomically(path, [&](std::ostream& out) {
-    out << summary_columns() << '\n';
-    for (const SummaryRow& row : rows) out << summary_fields(row) << '\n';
-  });
 }
 
 }  // namespace osteomill

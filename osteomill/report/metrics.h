@@ -1,8 +1,6 @@
 #pragma once
 
-#include <cstddef>
-#include <filesystem>
-#include <optional>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -18,6 +16,9 @@ inline constexpr double kMinRate_hz = 950.0;
 /// Where a hand stops following and starts to feel a buzz: "above 20 Hz" in all that is reported.
 inline constexpr double kBuzzAbove_hz = 20.0;
 
+/// In the place of a figure that could not be measured: not a number.
+inline constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
+
 /// How a vector over time behaves: force (N) or torque (N mm).
 struct VectorMetrics {
   /// Mean and greatest magnitude over all ticks.
@@ -27,7 +28,10 @@ struct VectorMetrics {
   double hp_rms = 0;
   /// The greatest magnitude of the difference between two ticks that follow each other.
   double step_max = 0;
+  /// `hp_rms` against the mean; 0 where that is zero.
+  double hp_share = 0;
 };
+inline constexpr VectorMetrics kNotFelt{kNotMeasured, kNotMeasured, kNotMeasured, kNotMeasured, kNotMeasured};
 /// Over the ticks that are `counted` (empty: all); a step counts where one of its two ticks does. Zeros for
 /// none.
 VectorMetrics vector_metrics(std::span<const Vec3> samples, double rate_hz,
@@ -47,13 +51,13 @@ struct ShaftTurns {
   double at_torque_step_deg = 0;
 };
 
-/// All figures of one recording: the columns of summary.csv.
+/// All figures of one recording (metric_table.h says where each is shown).
 struct RunMetrics {
-  std::size_t steps = 0;
+  double steps = 0;
   /// Of the algorithm's step alone, by the clock (`compute_us`).
   Distribution step_us;
-  /// Of the whole tick, the thread's own CPU time; nothing where it was not measured.
-  std::optional<Distribution> cpu_us;
+  /// Of the whole tick, the thread's own CPU time.
+  Distribution cpu_us{kNotMeasured, kNotMeasured, kNotMeasured};
   /// HeldRate over the ticks' whole work (TickRecord::busy_us), for the recording's tick.
   double rate_hz = 0;
   ContactShares contact;
@@ -82,18 +86,14 @@ struct RunMetrics {
 /// number is not finite, or its ticks are too far apart to say anything about 20 Hz.
 RunMetrics run_metrics(const Recording& recording);
 
-struct SummaryRow {
+/// What was run, and its figures.
+struct MeasuredRun {
   AlgorithmId algorithm;
   Mode mode;
   std::string segment;
   RunMetrics metrics;
+  /// Null where it was not kept.
+  const Recording* recording = nullptr;
 };
-
-/// The head of summary.csv, and a row of it, without line ends.
-std::string summary_columns();
-std::string summary_fields(const SummaryRow& row);
-
-/// Writes summary.csv, whole or not at all. Throws InputError where it cannot be written.
-void write_summary_csv(const std::filesystem::path& path, std::span<const SummaryRow> rows);
 
 }  // namespace osteomill

@@ -1,5 +1,3 @@
-#include "osteomill/report/picture_figure.h"
-
 #include <algorithm>
 #include <vector>
 
@@ -9,6 +7,7 @@
 #include "osteomill/files/temporary_folder.h"
 #include "osteomill/image/image.h"
 #include "osteomill/report/gnuplot.h"
+#include "osteomill/report/run_figures.h"
 
 namespace osteomill {
 

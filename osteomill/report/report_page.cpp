@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include <fmt/format.h>
 
-#include "osteomill/report/html.h"
 #include "osteomill/report/label_section.h"
+#include "osteomill/report/metric_table.h"
 #include "osteomill/report/settings_table.h"
 
 namespace osteomill {
@@ -22,184 +21,149 @@ std::vector<const Recording*> all_recordings(const std::vector<DrawnGroup>& grou
   return recordings;
 }
 
-std::string notice(const std::string& text) {
-  return "<p class=\"notice\">" + html_escaped(text) + "</p>\n";
-}
-
-// What a reader must know before believing the rest.
-std::string notices(const std::vector<const Recording*>& recordings) {
-  std::string html;
+PageSection notices(const std::vector<const Recording*>& recordings) {
+  PageSection section;
   const RunDescription& first = recordings.front()->description;
   for (const Recording* recording : recordings) {
     const RunDescription& d = recording->description;
     const std::string name = recording->path.filename().string();
     if (!recording->complete) {
-      html += notice(name + " is unfinished: the program ended before it closed the recording.");
+      section.notices.push_back(name + " is unfinished: the program ended before it closed the recording.");
     }
     if (recording->dropped > 0) {
-      html += notice(fmt::format("{} lacks {} ticks for which there was no room while recording.", name,
-                                 recording->dropped));
+      section.notices.push_back(fmt::format("{} lacks {} ticks for which there was no room while recording.",
+                                            name, recording->dropped));
     }
     if (d.scan_name != first.scan_name || d.dims != first.dims || d.isovalue != first.isovalue) {
-      html += notice(name + " is of another scan or isovalue than " +
-                     recordings.front()->path.filename().string() + "; compare them with care.");
+      section.notices.push_back(name + " is of another scan or isovalue than " +
+                                recordings.front()->path.filename().string() + "; compare them with care.");
     }
   }
-  return html;
+  return section;
 }
 
-std::string what_was_run(const std::vector<const Recording*>& recordings) {
+PageSection what_was_run(const std::vector<const Recording*>& recordings) {
   const RunDescription& d = recordings.front()->description;
   double seconds = 0;
   for (const Recording* recording : recordings) {
     seconds = std::max(seconds, recording->records.back().time_s - recording->records.front().time_s);
   }
-  return html_paragraph(fmt::format(
-             "Scan: {}, {} × {} × {} voxels of {:.4g} × {:.4g} × {:.4g} mm, bone above "
-             "{:.6g}. Tool: a burr of {:.4g} mm "
-             "radius on a shaft of {:.4g} mm radius and {:.4g} mm length. {} {} of up to "
-             "{:.4g} s at {:.6g} ticks a "
-             "second, seed {}. osteomill {}.",
-             d.scan_name, d.dims[0], d.dims[1], d.dims[2], d.spacing_mm.x(), d.spacing_mm.y(),
-             d.spacing_mm.z(), d.isovalue, d.tool.burr_radius_mm, d.tool.shaft_radius_mm,
-             d.tool.shaft_length_mm, recordings.size(), recordings.size() == 1 ? "recording" : "recordings",
-             seconds, 1 / d.tick_period_s, d.seed, d.program_version)) +
-         html_paragraph("What is reported is what was sent to the hand at every tick.");
+  return {
+      .title = "What was run",
+      .paragraphs = {fmt::format("Scan: {}, {} × {} × {} voxels of {:.4g} × {:.4g} × {:.4g} mm, bone above "
+                                 "{:.6g}. Tool: a burr of {:.4g} mm "
+                                 "radius on a shaft of {:.4g} mm radius and {:.4g} mm length. {} {} of up to "
+                                 "{:.4g} s at {:.6g} ticks a "
+                                 "second, seed {}. osteomill {}.",
+                                 d.scan_name, d.dims[0], d.dims[1], d.dims[2], d.spacing_mm.x(),
+                                 d.spacing_mm.y(), d.spacing_mm.z(), d.isovalue, d.tool.burr_radius_mm,
+                                 d.tool.shaft_radius_mm, d.tool.shaft_length_mm, recordings.size(),
+                                 recordings.size() == 1 ? "recording" : "recordings", seconds,
+                                 1 / d.tick_period_s, d.seed, d.program_version),
+                     "What is reported is what was sent to the hand at every tick."}};
 }
-
-MetricLine real_line(const char* label, const std::function<double(const RunMetrics&)>& value) {
-  return {label, [value](const MeasuredRun& run) {
-            const double number = value(run.metrics);
-            return std::isnan(number) ? contact_words(run.metrics.contact) : fmt::format("{:.4g}", number);
-          }};
-}
-
-MetricLine cpu_line(const char* label, double (*value)(const Distribution&)) {
-  return {label, [value](const MeasuredRun& run) {
-            const auto& cpu_us = run.metrics.cpu_us;
-            return cpu_us ? fmt::format("{:.4g}", value(*cpu_us)) : "not measured";
-          }};
-}
-
-using M = RunMetrics;
 
 // What a reader wants to know at once: figures and the metrics beside them.
 struct Topic {
   const char* title;
   std::vector<const char*> figures;
-  std::vector<MetricLine> lines;
+  std::vector<MetricTable> tables;
 };
 
-std::vector<Topic> felt_topics() {
-  return {
-      {"Force",
-       {"force"},
-       {real_line("Force while in contact, mean (N)", [](const M& m) { return m.force_N.mean; }),
-        real_line("… greatest (N)", [](const M& m) { return m.force_N.max; }),
-        real_line("… above 20 Hz, rms (N)", [](const M& m) { return m.force_N.hp_rms; }),
-        real_line("… greatest change in a tick (N)", [](const M& m) { return m.force_N.step_max; })}},
-      {"Torque",
-       {"torque"},
-       {real_line("Torque while in contact, mean (N mm)", [](const M& m) { return m.torque_Nmm.mean; }),
-        real_line("… greatest (N mm)", [](const M& m) { return m.torque_Nmm.max; }),
-        real_line("… above 20 Hz, rms (N mm)", [](const M& m) { return m.torque_Nmm.hp_rms; }),
-        real_line("… greatest change in a tick (N mm)", [](const M& m) { return m.torque_Nmm.step_max; })}},
-      {"Shaft",
-       {"shaft"},
-       {real_line("Shaft direction, spread (degrees)", [](const M& m) { return m.shaft.spread_deg; }),
-        real_line("… greatest excursion (degrees)", [](const M& m) { return m.shaft.excursion_deg; })}},
-      {"Path and bone removed",
-       {"removed", "path"},
-       {real_line("Bone removed (mm³)", [](const M& m) { return m.removed_mm3; }),
-        real_line("Path of the burr's centre (mm)", [](const M& m) { return m.path_mm; }),
-        real_line("In contact, share of the time", [](const M& m) { return m.contact.any; }),
-        real_line("… with the burr", [](const M& m) { return m.contact.burr; }),
-        real_line("… with the shaft", [](const M& m) { return m.contact.shaft; })}}};
+const Topic kFelt[] = {{"Force", {"force"}, {MetricTable::force}},
+                       {"Torque", {"torque"}, {MetricTable::torque}},
+                       {"Shaft", {"shaft"}, {MetricTable::shaft}},
+                       {"Path and bone removed", {"removed", "path"}, {MetricTable::path}}};
+const Topic kTimes{"How long the ticks took", {"rate"}, {MetricTable::times, MetricTable::rate}};
+
+std::string cell(const Metric& metric, const MeasuredRun& run) {
+  const double value = metric(run.metrics);
+  if (!std::isnan(value)) return fmt::format(fmt::runtime(metric.format), value);
+  return metric.table == MetricTable::times ? "not measured" : contact_words(run.metrics.contact);
 }
 
-Topic times(const std::vector<MetricLine>& further) {
-  Topic topic{"How long the ticks took",
-              {"rate"},
-              {{"Ticks", [](const MeasuredRun& run) { return fmt::format("{}", run.metrics.steps); }},
-               real_line("Compute time of a step, median (µs)", [](const M& m) { return m.step_us.median; }),
-               real_line("… 99th percentile (µs)", [](const M& m) { return m.step_us.p99; }),
-               real_line("… greatest (µs)", [](const M& m) { return m.step_us.max; }),
-               cpu_line("Work of a whole tick, CPU time, median (µs)",
-                        [](const Distribution& d) { return d.median; }),
-               cpu_line("… 99th percentile (µs)", [](const Distribution& d) { return d.p99; }),
-               cpu_line("… greatest (µs)", [](const Distribution& d) { return d.max; }),
-               {"Haptic rate that a 1 kHz loop would hold (Hz)",
-                [](const MeasuredRun& run) { return fmt::format("{:.1f}", run.metrics.rate_hz); }}}};
-  topic.lines.insert(topic.lines.end(), further.begin(), further.end());
-  return topic;
+std::vector<MetricLine> lines_of(const Topic& topic) {
+  std::vector<MetricLine> lines;
+  for (const MetricTable table : topic.tables) {
+    for (const Metric& metric : all_metrics()) {
+      if (metric.table != table) continue;
+      lines.push_back(
+          {with_unit(metric.label, metric), [&metric](const MeasuredRun& run) { return cell(metric, run); }});
+    }
+  }
+  return lines;
 }
 
-std::string metrics_table(const RunGroup& group, const std::vector<MetricLine>& lines) {
+HtmlTable metrics_table(const RunGroup& group, const std::vector<MetricLine>& lines) {
   HtmlTable table{{""}, {}, true};
   for (const MeasuredRun& run : group.runs) {
-    const RunDescription& d = run.recording->description;
-    const std::string segment = d.segment.empty() ? "" : html_escaped(d.segment) + "<br>";
-    table.header.push_back(segment + html_escaped(d.algorithm.label));
+    const std::string segment = run.segment.empty() ? "" : html_escaped(run.segment) + "<br>";
+    table.header.push_back(segment + html_escaped(run.algorithm.label));
   }
   for (const MetricLine& line : lines) {
     table.rows.push_back({line.label});
     for (const MeasuredRun& run : group.runs) table.rows.back().push_back(line.cell(run));
   }
-  return html_table(table);
+  return table;
 }
 
-std::string mode_heading(const DrawnGroup& drawn, const std::vector<DrawnGroup>& groups) {
-  return groups.size() > 1 ? fmt::format("<h3>Mode {}</h3>\n", name_of(drawn.group.mode)) : "";
+// A part for a mode, whose title says which where there are several.
+PageSection mode_part(const DrawnGroup& drawn, const std::vector<DrawnGroup>& groups) {
+  return {.title = groups.size() > 1 ? fmt::format("Mode {}", name_of(drawn.group.mode)) : ""};
 }
 
-std::string topic_section(const Topic& topic, const std::vector<DrawnGroup>& groups) {
-  std::string html = fmt::format("<h2>{}</h2>\n", topic.title);
+PageSection topic_section(const Topic& topic, const std::vector<DrawnGroup>& groups,
+                          const std::vector<MetricLine>& further = {}) {
+  std::vector<MetricLine> lines = lines_of(topic);
+  lines.insert(lines.end(), further.begin(), further.end());
+  PageSection section{.title = topic.title};
   for (const DrawnGroup& drawn : groups) {
-    html += mode_heading(drawn, groups);
-    for (const char* name : topic.figures) {
-      const CaptionedFigure& figure = drawn.figures.at(name);
-      html += html_figure(figure.files.svg, figure.caption);
-    }
-    html += metrics_table(drawn.group, topic.lines);
+    PageSection part = mode_part(drawn, groups);
+    for (const char* name : topic.figures) part.figures.push_back(drawn.figures.at(name));
+    part.tables = {metrics_table(drawn.group, lines)};
+    section.parts.push_back(std::move(part));
   }
-  return html;
+  return section;
 }
 
-// In the place of the pictures.
-std::string missing_pictures(const RunGroup& group) {
-  for (const MeasuredRun& run : group.runs) {
-    for (const RunSetting& setting : run.recording->description.settings) {
-      if (setting.key != kPicturesKey) continue;
-      return notice("No pictures of the bone: OpenGL could not be had when this was recorded.");
-    }
-  }
-  return "";
+bool has_setting(const RunGroup& group, std::string_view key) {
+  return std::any_of(group.runs.begin(), group.runs.end(), [&](const MeasuredRun& run) {
+    const auto& settings = run.recording->description.settings;
+    return std::any_of(settings.begin(), settings.end(),
+                       [&](const RunSetting& setting) { return setting.key == key; });
+  });
 }
 
-// Pictures of the bone are smaller as PNG; curves and clouds stay sharp as SVG.
-std::string pictures_section(const std::vector<DrawnGroup>& groups) {
-  std::string html;
+std::vector<PageSection> pictures_section(const std::vector<DrawnGroup>& groups) {
+  PageSection section{.title = "The bone before and after"};
   for (const DrawnGroup& drawn : groups) {
-    const auto bone = drawn.figures.find("bone");
-    const std::string shown = bone == drawn.figures.end()
-                                  ? missing_pictures(drawn.group)
-                                  : html_figure(bone->second.files.png, bone->second.caption);
-    if (!shown.empty()) html += mode_heading(drawn, groups) + shown;
+    PageSection part = mode_part(drawn, groups);
+    if (const auto bone = drawn.figures.find("bone"); bone != drawn.figures.end()) {
+      part.figures = {bone->second};
+    } else if (has_setting(drawn.group, kPicturesKey)) {
+      part.notices = {"No pictures of the bone: OpenGL could not be had when this was recorded."};
+    } else {
+      continue;
+    }
+    section.parts.push_back(std::move(part));
   }
-  return html.empty() ? "" : "<h2>The bone before and after</h2>\n" + html;
+  if (section.parts.empty()) return {};
+  return {section};
 }
 
 // Of a scan with labels.
-std::string labels_section(const std::vector<DrawnGroup>& groups) {
-  std::string html;
+PageSection labels_section(const std::vector<DrawnGroup>& groups) {
+  PageSection section;
   for (const DrawnGroup& drawn : groups) {
-    const std::string text = label_section(drawn.group);
-    if (text.empty()) continue;
-    html += mode_heading(drawn, groups) + text;
-    const auto figure = drawn.figures.find("labels");
-    if (figure != drawn.figures.end()) html += html_figure(figure->second.files.svg, figure->second.caption);
+    std::optional<PageSection> labels = label_section(drawn.group);
+    if (!labels) continue;
+    // Below the table.
+    if (const auto figure = drawn.figures.find("labels"); figure != drawn.figures.end())
+      labels->parts = {{.figures = {figure->second}}};
+    section.parts.push_back(mode_part(drawn, groups));
+    section.parts.push_back(std::move(*labels));
   }
-  return html;
+  return section;
 }
 
 double spindle_s(const Recording& recording) {
@@ -210,7 +174,6 @@ double spindle_s(const Recording& recording) {
 
 // What a session was, to whoever held the tool.
 std::string session_in_words(const MeasuredRun& run) {
-  const RunDescription& d = run.recording->description;
   const RunMetrics& m = run.metrics;
   const auto& records = run.recording->records;
   const std::string put_back =
@@ -218,7 +181,7 @@ std::string session_in_words(const MeasuredRun& run) {
   const std::string text = fmt::format(
       "{}{}: {:.1f} s, of which the spindle ran for {:.1f} s. The burr went {:.0f} mm, and {:.1f} mm³ of "
       "bone were removed{}. ",
-      d.algorithm.label, d.segment.empty() ? "" : ", " + d.segment,
+      run.algorithm.label, run.segment.empty() ? "" : ", " + run.segment,
       records.back().time_s - records.front().time_s, spindle_s(*run.recording), m.path_mm, m.removed_mm3,
       put_back);
   if (!is_enough_contact(m.contact.any)) {
@@ -242,15 +205,15 @@ std::string session_in_words(const MeasuredRun& run) {
              fmt::join(greatest, " and "));
 }
 
-std::string sessions_in_words(const std::vector<DrawnGroup>& groups) {
-  std::string html;
+PageSection sessions_in_words(const std::vector<DrawnGroup>& groups) {
+  PageSection section;
   for (const DrawnGroup& drawn : groups) {
-    for (const MeasuredRun& run : drawn.group.runs) html += html_paragraph(session_in_words(run));
+    for (const MeasuredRun& run : drawn.group.runs) section.paragraphs.push_back(session_in_words(run));
   }
-  return html;
+  return section;
 }
 
-std::string how_to_repeat(const std::vector<const Recording*>& recordings) {
+PageSection how_to_repeat(const std::vector<const Recording*>& recordings) {
   std::vector<std::string> commands;
   for (const Recording* recording : recordings) {
     for (const RunSetting& setting : recording->description.settings) {
@@ -260,33 +223,33 @@ std::string how_to_repeat(const std::vector<const Recording*>& recordings) {
         commands.push_back(*command);
     }
   }
-  std::string html = "<h2>How to repeat this</h2>\n";
-  if (commands.empty())
-    return html + html_paragraph("With the settings above; the recordings name no command.");
-  html += html_paragraph(
-      "With the same seed, forces, poses and removed bone come out the same; compute times are those "
-      "of the machine.");
-  html += "<pre>";
-  for (const std::string& command : commands) html += html_escaped(command) + "\n";
-  return html + "</pre>\n";
+  return {
+      .title = "How to repeat this",
+      .paragraphs = {commands.empty()
+                         ? "With the settings above; the recordings name no command."
+                         : "With the same seed, forces, poses and removed bone come out the same; compute "
+                           "times are those of the machine."},
+      .commands = commands};
 }
 
 }  // namespace
 
-std::string html_paragraph(const std::string& text) {
-  return text.empty() ? "" : "<p>" + html_escaped(text) + "</p>\n";
-}
-
 std::string report_page(const std::vector<DrawnGroup>& groups, const PageText& text) {
   const std::vector<const Recording*> recordings = all_recordings(groups);
-  std::string body = notices(recordings) + (text.opening.empty() ? sessions_in_words(groups) : text.opening);
-  body += pictures_section(groups);
-  for (const Topic& topic : felt_topics()) body += topic_section(topic, groups);
-  body += labels_section(groups);
-  body += text.sections + topic_section(times(text.further_times), groups);
-  body += "<h2>What was run</h2>\n" + what_was_run(recordings);
-  body += "<h2>Settings</h2>\n" + html_table(settings_table(recordings)) + how_to_repeat(recordings);
-  return html_page(text.title, body);
+  std::vector<PageSection> sections{notices(recordings),
+                                    text.opening ? *text.opening : sessions_in_words(groups)};
+  const auto add = [&](const std::vector<PageSection>& more) {
+    sections.insert(sections.end(), more.begin(), more.end());
+  };
+  add(pictures_section(groups));
+  for (const Topic& topic : kFelt) sections.push_back(topic_section(topic, groups));
+  sections.push_back(labels_section(groups));
+  add(text.sections);
+  sections.push_back(topic_section(kTimes, groups, text.further_times));
+  add({what_was_run(recordings),
+       {.title = "Settings", .tables = {settings_table(recordings)}},
+       how_to_repeat(recordings)});
+  return html_page(text.title, sections);
 }
 
 }  // namespace osteomill

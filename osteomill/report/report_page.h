@@ -2,10 +2,11 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "osteomill/report/figure.h"
+#include "osteomill/report/html.h"
 #include "osteomill/report/run_groups.h"
 
 namespace osteomill {
@@ -19,20 +20,15 @@ struct MetricLine {
 /// What whoever made the recordings has to say of them; all of it may be empty. A plain session has nothing.
 struct PageText {
   std::string title = "What was milled, and what the hand felt";
-  /// HTML at the page's top, what a reader came for. Where it is empty the page says there of each run how
-  /// long it took, how far the burr went, what was removed and what was felt.
-  std::string opening;
-  /// HTML between what was felt and what was set.
-  std::string sections;
+  /// At the page's top, what a reader came for. Without it the page says there of each run how long it took,
+  /// how far the burr went, what was removed and what was felt.
+  std::optional<PageSection> opening;
+  /// Between what was felt and what was set.
+  std::vector<PageSection> sections;
   /// Below the times that any session has.
   std::vector<MetricLine> further_times;
   /// More to say below a figure, by the figure's name without the mode ("force").
   std::map<std::string, std::string> caption_notes;
-};
-
-struct CaptionedFigure {
-  Figure files;
-  std::string caption;
 };
 
 /// A mode's runs and the figures drawn from them, by what they show ("force").
@@ -40,9 +36,6 @@ struct DrawnGroup {
   RunGroup group;
   std::map<std::string, CaptionedFigure> figures;
 };
-
-/// A paragraph of plain text, as HTML.
-std::string html_paragraph(const std::string& text);
 
 /// The page report.html, what matters most first: the opening, the bone before and after, force, torque,
 /// shaft and path, each with its figures and metrics, then what `text` adds, times, settings, and how to

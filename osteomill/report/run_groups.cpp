@@ -13,8 +13,7 @@ namespace osteomill {
 
 const MeasuredRun* RunGroup::find(std::string_view algorithm, std::string_view segment) const {
   for (const MeasuredRun& run : runs) {
-    const RunDescription& description = run.recording->description;
-    if (description.algorithm == algorithm && description.segment == segment) return &run;
+    if (run.algorithm == algorithm && run.segment == segment) return &run;
   }
   return nullptr;
 }
@@ -22,15 +21,14 @@ const MeasuredRun* RunGroup::find(std::string_view algorithm, std::string_view s
 std::vector<std::string> RunGroup::segments() const {
   std::vector<std::string> present;
   for (const MeasuredRun& run : runs) {
-    const std::string& segment = run.recording->description.segment;
-    if (present.empty() || present.back() != segment) present.push_back(segment);
+    if (present.empty() || present.back() != run.segment) present.push_back(run.segment);
   }
   return present;
 }
 
 std::vector<AlgorithmId> RunGroup::algorithms() const {
   std::vector<AlgorithmId> present;
-  for (const MeasuredRun& run : runs) present.push_back(run.recording->description.algorithm);
+  for (const MeasuredRun& run : runs) present.push_back(run.algorithm);
   return each_once(std::move(present));
 }
 
@@ -67,11 +65,10 @@ std::vector<RunGroup> group_runs(const std::vector<Recording>& recordings,
             fmt::format("is {}, {}, {} as {} is; a report has room for one of them", name_of(d.algorithm),
                         name_of(d.mode), d.segment, twin->recording->path.string()));
       }
-      group.runs.push_back({&recording, measure(recording)});
+      group.runs.push_back({d.algorithm, mode, d.segment, measure(recording), &recording});
     }
     const auto order = [&](const MeasuredRun& run) {
-      const RunDescription& d = run.recording->description;
-      return std::tuple(began_s.at(d.segment), d.segment, d.algorithm);
+      return std::tuple(began_s.at(run.segment), run.segment, run.algorithm);
     };
     std::sort(group.runs.begin(), group.runs.end(),
               [&](const MeasuredRun& a, const MeasuredRun& b) { return order(a) < order(b); });

@@ -4,16 +4,9 @@
 #include <string_view>
 #include <vector>
 
-#include "osteomill/recording/recording.h"
 #include "osteomill/report/metrics.h"
 
 namespace osteomill {
-
-/// A recording with its figures.
-struct MeasuredRun {
-  const Recording* recording;
-  RunMetrics metrics;
-};
 
 /// The runs of one mode, which belong into the same figures; by segment, then by
 /// algorithm.

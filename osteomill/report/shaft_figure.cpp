@@ -1,11 +1,10 @@
-#include "osteomill/report/shaft_figure.h"
-
 #include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
 
 #include "osteomill/files/temporary_folder.h"
+#include "osteomill/report/run_figures.h"
 #include "osteomill/report/thin_out.h"
 
 namespace osteomill {
@@ -24,7 +23,7 @@ std::vector<Vec3> directions_of(const MeasuredRun& run) {
 std::vector<const MeasuredRun*> runs_of(const RunGroup& group, const std::string& segment) {
   std::vector<const MeasuredRun*> runs;
   for (const MeasuredRun& run : group.runs) {
-    if (run.recording->description.segment == segment) runs.push_back(&run);
+    if (run.segment == segment) runs.push_back(&run);
   }
   return runs;
 }
@@ -95,8 +94,7 @@ std::string degrees_text(double degrees) {
 
 std::string panel(const MeasuredRun& run, const Cube& cube, double column, double row, const Layout& layout,
                   const TemporaryFolder& work) {
-  const RunDescription& d = run.recording->description;
-  const std::string file = fmt::format("shaft-{}-{}.dat", d.segment, name_of(d.algorithm));
+  const std::string file = fmt::format("shaft-{}-{}.dat", run.segment, name_of(run.algorithm));
   write_cloud(run, cube.centre, work / file);
   const double bar = 105 / layout.width_px;
   const double wide = (1 - bar) / layout.columns;
@@ -108,7 +106,7 @@ std::string panel(const MeasuredRun& run, const Cube& cube, double column, doubl
       "splot '{}' using 1:2:3:4 with points pt 7 ps 0.38 lc palette notitle\n"
       "unset colorbox\n",
       column * wide + 26 / layout.width_px, 1 - (row + 1) * high, wide, high - 46 / layout.height_px,
-      d.algorithm.label, d.segment, degrees_text(run.metrics.shaft.spread_deg),
+      run.algorithm.label, run.segment, degrees_text(run.metrics.shaft.spread_deg),
       degrees_text(run.metrics.shaft.excursion_deg), (column + 0.5) * wide,
       1 - row * high - 24 / layout.height_px, file);
 }

@@ -3,11 +3,9 @@
 #include <ostream>
 
 #include "osteomill/files/atomic_file.h"
-#include "osteomill/report/curve_figure.h"
 #include "osteomill/report/label_section.h"
-#include "osteomill/report/metrics.h"
-#include "osteomill/report/picture_figure.h"
-#include "osteomill/report/shaft_figure.h"
+#include "osteomill/report/metric_table.h"
+#include "osteomill/report/run_figures.h"
 
 namespace osteomill {
 
@@ -17,43 +15,42 @@ namespace {
 
 DrawnGroup draw(const RunGroup& group, const fs::path& folder, const PageText& text) {
   DrawnGroup drawn{group, {}};
-  const auto add = [&](const std::string& name, const Figure& figure, std::string caption) {
+  const auto add = [&](const std::string& name, const fs::path& file, std::string caption) {
     const auto note = text.caption_notes.find(name);
     if (note != text.caption_notes.end()) caption += " " + note->second;
-    drawn.figures[name] = {figure, std::move(caption)};
+    drawn.figures[name] = {file, std::move(caption)};
   };
   if (const auto bone = draw_picture_figure(group, folder)) {
-    add("bone", *bone, "The bone before, and after each algorithm's run.");
+    // Smaller as PNG; curves and clouds stay sharp as SVG.
+    add("bone", bone->png, "The bone before, and after each algorithm's run.");
   }
-  add("force", draw_force_figure(group, folder),
+  add("force", draw_force_figure(group, folder).svg,
       "Magnitude of the force sent to the hand. Each pixel's least and greatest are drawn, so no spike is "
       "lost.");
-  add("torque", draw_torque_figure(group, folder),
+  add("torque", draw_torque_figure(group, folder).svg,
       "Magnitude of the torque sent to the hand, about the burr's centre.");
-  add("shaft", draw_shaft_figure(group, folder),
+  add("shaft", draw_shaft_figure(group, folder).svg,
       "Where the simulated tool's shaft points: a point on the unit sphere a tick, coloured by time. The "
       "panels of a row have the same ranges; a compact cloud is a steady shaft.");
-  add("removed", draw_removed_figure(group, folder),
+  add("removed", draw_removed_figure(group, folder).svg,
       "Bone removed since the milling began, in mm³ of bone of the reference density.");
-  add("path", draw_path_figure(group, folder), "Where the burr's centre was, along the scan's axes.");
+  add("path", draw_path_figure(group, folder).svg, "Where the burr's centre was, along the scan's axes.");
   if (const auto labels = draw_label_figure(group, folder)) {
-    add("labels", *labels, "What was removed of each label over time, in the labels' colours.");
+    add("labels", labels->svg, "What was removed of each label over time, in the labels' colours.");
   }
-  add("rate", draw_rate_figure(group, folder),
+  add("rate", draw_rate_figure(group, folder).svg,
       "Haptic rate that the loop would hold, tick by tick (left), and the time that a tick's algorithm and "
       "milling took (right).");
   return drawn;
 }
 
-std::vector<SummaryRow> summary_rows(const std::vector<RunGroup>& groups) {
-  std::vector<SummaryRow> rows;
-  for (const RunGroup& group : groups) {
-    for (const MeasuredRun& run : group.runs) {
-      const RunDescription& d = run.recording->description;
-      rows.push_back({d.algorithm, d.mode, d.segment, run.metrics});
+void write_summary_csv(const fs::path& path, const std::vector<RunGroup>& groups) {
+  write_text_atomically(path, [&](std::ostream& out) {
+    out << summary_columns() << '\n';
+    for (const RunGroup& group : groups) {
+      for (const MeasuredRun& run : group.runs) out << summary_fields(run) << '\n';
     }
-  }
-  return rows;
+  });
 }
 
 }  // namespace
@@ -61,7 +58,7 @@ std::vector<SummaryRow> summary_rows(const std::vector<RunGroup>& groups) {
 fs::path write_report(const std::vector<RunGroup>& groups, const fs::path& out_dir, const PageText& text) {
   create_folder(out_dir / "figures");
   // First, so that the numbers are there even where no figure can be drawn.
-  write_summary_csv(out_dir / "summary.csv", summary_rows(groups));
+  write_summary_csv(out_dir / "summary.csv", groups);
   std::vector<DrawnGroup> drawn;
   for (const RunGroup& group : groups) drawn.push_back(draw(group, out_dir / "figures", text));
   const fs::path page = out_dir / "report.html";

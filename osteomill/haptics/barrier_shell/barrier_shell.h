@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "osteomill/haptics/barrier_shell/barrier_shell_counts.h"
-#include "osteomill/haptics/barrier_shell/barrier_shell_settings.h"
+#include "osteomill/haptics/barrier_shell/barrier_shell_description.h"
 #include "osteomill/haptics/barrier_shell/coupling.h"
 #include "osteomill/haptics/barrier_shell/near_bone.h"
 #include "osteomill/haptics/bone_points/bone_bricks.h"

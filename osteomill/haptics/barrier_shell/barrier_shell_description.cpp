@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "osteomill/haptics/barrier_shell/barrier_shell.h"
-#include "osteomill/haptics/barrier_shell/barrier_shell_settings.h"
 #include "osteomill/haptics/setting_fields.h"
 #include "osteomill/haptics/tool_move.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "osteomill/haptics/line_proxy/bone_march.h"
+#include "osteomill/haptics/line_proxy/bone_surface.h"
 #include "osteomill/haptics/line_proxy/equations.h"
 #include "osteomill/haptics/line_proxy/point_proxy.h"
 #include "osteomill/haptics/line_proxy/shaft_probe.h"

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "osteomill/haptics/haptic_algorithm.h"
+#include "osteomill/haptics/line_proxy/bone_surface.h"
 #include "osteomill/haptics/line_proxy/held_line.h"
-#include "osteomill/haptics/line_proxy/line_proxy_settings.h"
-#include "osteomill/haptics/line_proxy/surface_normal.h"
+#include "osteomill/haptics/line_proxy/line_proxy_description.h"
 #include "osteomill/tool/burr_presses.h"
 
 namespace osteomill::line_proxy {

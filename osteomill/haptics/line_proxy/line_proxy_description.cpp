@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "osteomill/haptics/line_proxy/line_proxy.h"
-#include "osteomill/haptics/line_proxy/line_proxy_settings.h"
 #include "osteomill/haptics/setting_fields.h"
 
 namespace osteomill::line_proxy {

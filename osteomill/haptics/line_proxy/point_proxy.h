@@ -1,6 +1,6 @@
 #pragma once
 
-#include "osteomill/haptics/line_proxy/surface_normal.h"
+#include "osteomill/haptics/line_proxy/bone_surface.h"
 #include "osteomill/volume/volume.h"
 
 namespace osteomill::line_proxy {

@@ -7,7 +7,7 @@
 #include "tests/shapes.h"
 #include <gtest/gtest.h>
 
-#include "osteomill/haptics/line_proxy/bone_march.h"
+#include "osteomill/haptics/line_proxy/bone_surface.h"
 
 namespace osteomill::line_proxy {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstddef>
 
 #include "osteomill/geometry/pose.h"
-#include "osteomill/haptics/line_proxy/surface_normal.h"
+#include "osteomill/haptics/line_proxy/bone_surface.h"
 #include "osteomill/volume/volume.h"
 
 namespace osteomill::line_proxy {

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <optional>
 
-#include "osteomill/haptics/line_proxy/bone_march.h"
+#include "osteomill/haptics/line_proxy/bone_surface.h"
 #include "osteomill/volume/sampling.h"
 
 namespace osteomill::line_proxy {

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "osteomill/haptics/line_proxy/surface_normal.h"
+#include "osteomill/haptics/line_proxy/bone_surface.h"
 #include "osteomill/tool/milling_tool.h"
 #include "osteomill/volume/volume.h"
 

@@ -5,7 +5,7 @@
 #include "osteomill/haptics/bone_points/bone_bricks.h"
 #include "osteomill/haptics/haptic_algorithm.h"
 #include "osteomill/haptics/point_shell/penalty.h"
-#include "osteomill/haptics/point_shell/point_shell_settings.h"
+#include "osteomill/haptics/point_shell/point_shell_description.h"
 #include "osteomill/haptics/point_shell/tool_signed_distance.h"
 #include "osteomill/haptics/point_shell/virtual_coupling.h"
 #include "osteomill/haptics/point_shell/voxel_shell.h"

@@ -5,7 +5,6 @@
 
 #include "osteomill/haptics/setting_fields.h"
 #include "osteomill/haptics/surface_points/surface_points.h"
-#include "osteomill/haptics/surface_points/surface_points_settings.h"
 #include "osteomill/tool/sample_points.h"
 
 namespace osteomill::surface_points {

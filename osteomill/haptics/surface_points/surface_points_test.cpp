@@ -7,7 +7,6 @@
 #include "tests/shapes.h"
 #include <gtest/gtest.h>
 
-#include "osteomill/haptics/surface_points/vertex_spring.h"
 #include "osteomill/tool/sample_points.h"
 
 namespace osteomill::surface_points {

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <optional>
+
+#include "osteomill/volume/sampling.h"
+#include "osteomill/volume/volume.h"
+
+/// Where the bone's surface is, and which way it faces. Safe in the haptic tick, for any finite points: the
+/// time is bounded by the size of the grid, not by how far apart the points are.
+namespace osteomill::line_proxy {
+
+/// As osteomill::first_crossing, but walks only the part of the segment that lies in the grid.
+std::optional<Vec3> crossing_in_grid(const Volume& volume, const Vec3& from_W, const Vec3& to_W);
+
+/// The point just outside the bone nearest to `point_W`, among 26 directions and up to `reach_mm`; `point_W`
+/// itself where it is not in bone.
+std::optional<Vec3> nearest_exit(const Volume& volume, const Vec3& point_W, double reach_mm);
+
+/// How the normal of the isosurface is found.
+struct NormalRule {
+  GradientKernel kernel = GradientKernel::smoothed;
+  /// 0 takes the gradient at the point alone; otherwise the sum of eight, at the corners of a cube this far
+  /// (in voxels) from it, which quarters the turning of the normal with the grid.
+  double spread_voxels = 1.25;
+};
+
+/// The unit vector out of the bone at a point, or nothing where the density is flat.
+std::optional<Vec3> surface_normal(const Volume& volume, const Vec3& point_W, const NormalRule& rule);
+
+}  // namespace osteomill::line_proxy
