@@ -158,9 +158,9 @@ void add_milling_options(CLI::App& command, MillingOptions& options) {
                    fmt::format("The hand feels the burr pull along its rim, whose pole cuts less{}",
                                setup.cutting_reaction ? " (on unless turned off)" : ""));
   command.option_defaults()->group("Limits of the device");
-  add_positive(command, "--force-limit", setup.limits.force_N, "N", "The most it is asked for");
-  add_positive(command, "--torque-limit", setup.limits.torque_Nmm, "N.mm", "The most it is asked for");
-  command.add_flag("--passivity-controller,!--no-passivity-controller", setup.passivity_controller,
+  add_positive(command, "--force-limit", setup.guard.limits.force_N, "N", "The most it is asked for");
+  add_positive(command, "--torque-limit", setup.guard.limits.torque_Nmm, "N.mm", "The most it is asked for");
+  command.add_flag("--passivity-controller,!--no-passivity-controller", setup.guard.passivity_controller,
                    "Dampens a contact that has given the hand more energy than it took");
   command.option_defaults()->group("Options");
   command.add_option("--seed", options.seed, "Of the hand's tremor, and of the hands that --seeds draws")

@@ -45,6 +45,7 @@ struct ReplayOptions {
   bool other_force_limit = false;
   bool other_torque_limit = false;
   bool other_reaction = false;
+  bool other_passivity = false;
 };
 
 // The log, and what is to be told of ticks.
@@ -86,10 +87,9 @@ void replay_trajectory(ReplayOptions options) {
   require_workable(options.milling.setup.tool, bone.volume.geometry());
   const BoneDensities densities = estimate_densities(bone.volume);
   options.milling.setup.algorithm = options.algorithm.front();
-  const auto session =
-      make_session(std::make_shared<Volume>(std::move(bone.volume)), densities, options.milling.setup);
-  Log log(options, trajectory.size(), session->volume());
-  replay(*session, trajectory, [&](const TickRecord& record) { log.add(record); });
+  MillingSession session(std::make_shared<Volume>(std::move(bone.volume)), densities, options.milling.setup);
+  Log log(options, trajectory.size(), session.volume());
+  replay(session, trajectory, [&](const TickRecord& record) { log.add(record); });
   log.write();
 }
 
@@ -139,18 +139,20 @@ RunDescription run_as(const ReplayOptions& options, RunDescription run) {
   const AlgorithmDescription* algorithm =
       options.other_algorithm ? &options.algorithm.front() : find_algorithm(run.algorithm.name);
   if (algorithm == nullptr) return run;
-  const HapticSettings said = settings_for(*algorithm, options.milling.setup.haptics);
-  HapticSettings haptics{options.other_mode ? said.mode : run.mode};
-  // Settings of another algorithm, or of another mode, mean nothing here.
-  if (run.algorithm == algorithm->id && haptics.mode == run.mode) haptics = haptic_settings(run);
-  haptics.named.insert(haptics.named.end(), said.named.begin(), said.named.end());
-  set_algorithm(run, *algorithm, haptics, 0);
+  const MillingSetup& given = options.milling.setup;
+  const HapticSettings said = settings_for(*algorithm, given.haptics);
   SessionSettings session = session_settings(run, options.input);
-  const MillingSetup& setup = options.milling.setup;
-  if (options.other_force_limit) session.guard.limits.force_N = setup.limits.force_N;
-  if (options.other_torque_limit) session.guard.limits.torque_Nmm = setup.limits.torque_Nmm;
-  if (options.other_reaction) session.milling.reaction_share = milling_settings(setup).reaction_share;
-  set_session_settings(run, session);
+  MillingSetup& setup = session.setup;
+  setup.algorithm = *algorithm;
+  const Mode mode = options.other_mode ? said.mode : run.mode;
+  // Settings of another algorithm, or of another mode, mean nothing here.
+  if (!(run.algorithm == algorithm->id) || mode != run.mode) setup.haptics = {mode};
+  setup.haptics.named.insert(setup.haptics.named.end(), said.named.begin(), said.named.end());
+  if (options.other_force_limit) setup.guard.limits.force_N = given.guard.limits.force_N;
+  if (options.other_torque_limit) setup.guard.limits.torque_Nmm = given.guard.limits.torque_Nmm;
+  if (options.other_reaction) setup.cutting_reaction = given.cutting_reaction;
+  if (options.other_passivity) setup.guard.passivity_controller = given.guard.passivity_controller;
+  set_session_settings(run, session, 0);
   return run;
 }
 
@@ -163,10 +165,11 @@ void replay_another_way(const ReplayOptions& options, const std::string& command
   replay.as = [&](const RunDescription& run) { return run_as(options, run); };
   replay.begun = [&](SessionStart start, const MillingSession& session) {
     if (options.record.empty()) return;
-    for (RunSetting& setting : start.run.settings)
+    for (RunSetting& setting : start.run.settings) {
       if (setting.key == kCommandLineKey) setting.value = command_line;
-    set_algorithm(start.run, algorithm_named(start.run.algorithm.name), haptic_settings(start.run),
-                  session.algorithm().sample_point_count());
+      if (setting.key == kSamplePointsKey)
+        setting.value = static_cast<double>(session.algorithm().sample_point_count());
+    }
     if (!recorder)
       recorder.emplace(options.record, start.run, Recorder::kUsualCapacity, Recorder::Begins::when_told);
     recorder->begin_session(session_number++, std::move(start));
@@ -210,6 +213,7 @@ void take_what_was_given(const CLI::App& command, ReplayOptions& options) {
   options.other_force_limit = given("--force-limit");
   options.other_torque_limit = given("--torque-limit");
   options.other_reaction = given("--cutting-reaction");
+  options.other_passivity = given("--passivity-controller");
   if (!is_hdf5(options.input)) return;
   for (const char* option : {"--iso", "--burr-radius", "--shaft-radius", "--shaft-length", "--spindle-speed",
                              "--cutting-energy", "--removal-rate", "--seed"}) {
