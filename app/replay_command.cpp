@@ -39,13 +39,10 @@ struct ReplayOptions {
   std::string out;
   std::string record;
   bool verify = false;
-  // What was given, of a recording's own.
-  bool other_algorithm = false;
-  bool other_mode = false;
-  bool other_force_limit = false;
-  bool other_torque_limit = false;
-  bool other_reaction = false;
-  bool other_passivity = false;
+  // In which the options stand.
+  const CLI::App* command = nullptr;
+
+  bool given(const char* option) const { return command->count(option) > 0; }
 };
 
 // The log, and what is to be told of ticks.
@@ -137,21 +134,18 @@ HapticSettings settings_for(const AlgorithmDescription& algorithm, const HapticS
 
 RunDescription run_as(const ReplayOptions& options, RunDescription run) {
   const AlgorithmDescription* algorithm =
-      options.other_algorithm ? &options.algorithm.front() : find_algorithm(run.algorithm.name);
+      options.given("--algorithm") ? &options.algorithm.front() : find_algorithm(run.algorithm.name);
   if (algorithm == nullptr) return run;
   const MillingSetup& given = options.milling.setup;
   const HapticSettings said = settings_for(*algorithm, given.haptics);
   SessionSettings session = session_settings(run, options.input);
   MillingSetup& setup = session.setup;
   setup.algorithm = *algorithm;
-  const Mode mode = options.other_mode ? said.mode : run.mode;
+  const Mode mode = options.given("--mode") ? said.mode : run.mode;
   // Settings of another algorithm, or of another mode, mean nothing here.
   if (!(run.algorithm == algorithm->id) || mode != run.mode) setup.haptics = {mode};
   setup.haptics.named.insert(setup.haptics.named.end(), said.named.begin(), said.named.end());
-  if (options.other_force_limit) setup.guard.limits.force_N = given.guard.limits.force_N;
-  if (options.other_torque_limit) setup.guard.limits.torque_Nmm = given.guard.limits.torque_Nmm;
-  if (options.other_reaction) setup.cutting_reaction = given.cutting_reaction;
-  if (options.other_passivity) setup.guard.passivity_controller = given.guard.passivity_controller;
+  take_what_was_said(*options.command, given, setup);
   set_session_settings(run, session, 0);
   return run;
 }
@@ -205,20 +199,17 @@ void run_replay(const ReplayOptions& options, const std::string& command_line) {
     replay_another_way(options, command_line, scan, recording);
 }
 
-// A recording is of one scan, milled with one tool; only what turns motion into a wrench can be another.
-void take_what_was_given(const CLI::App& command, ReplayOptions& options) {
-  const auto given = [&](const char* option) { return command.count(option) > 0; };
-  options.other_algorithm = given("--algorithm");
-  options.other_mode = given("--mode");
-  options.other_force_limit = given("--force-limit");
-  options.other_torque_limit = given("--torque-limit");
-  options.other_reaction = given("--cutting-reaction");
-  options.other_passivity = given("--passivity-controller");
-  if (!is_hdf5(options.input)) return;
-  for (const char* option : {"--iso", "--burr-radius", "--shaft-radius", "--shaft-length", "--spindle-speed",
-                             "--cutting-energy", "--removal-rate", "--seed"}) {
-    if (given(option)) throw CLI::ValidationError(option, "is the recording's own, and cannot be given");
+// Only what turns motion into a wrench can be another.
+void refuse_what_is_recorded(const ReplayOptions& options) {
+  const auto refuse = [&](const char* option) {
+    if (options.given(option))
+      throw CLI::ValidationError(option, "is the recording's own, and cannot be given");
+  };
+  refuse("--iso");
+  for (const MillingOption& option : milling_options()) {
+    if (option.of_the_recording) refuse(option.name);
   }
+  refuse("--seed");
 }
 
 }  // namespace
@@ -227,6 +218,7 @@ void add_replay_command(CLI::App& program, const std::string& command_line) {
   auto options = std::make_shared<ReplayOptions>();
   CLI::App* command = program.add_subcommand(
       "replay", "Drive one algorithm along a trajectory, or run a recording again, and log every tick");
+  options->command = command;
   command->group("Recordings");
   command
       ->add_option("input", options->input, "A recording, or CSV: time_s,x_mm,y_mm,z_mm,qw,qx,qy,qz,milling")
@@ -246,7 +238,7 @@ void add_replay_command(CLI::App& program, const std::string& command_line) {
   add_quiet_option(*command);
   command->callback([=] {
     apply_config_file(*command);
-    take_what_was_given(*command, *options);
+    if (is_hdf5(options->input)) refuse_what_is_recorded(*options);
     run_replay(*options, command_line);
   });
 }
