@@ -88,7 +88,7 @@ class Holder {
   Device& take_tool(const TrialOptions& trial, MillingSetup& setup, const MillingEntry& entry) {
     const Pose X_WT = pose_above(entry, setup.tool, kHeldAbove_mm);
     if (hardware_) {
-      setup.limits = hardware_->limits_W(setup.limits);
+      setup.guard.limits = hardware_->limits_W(setup.guard.limits);
       hardware_->put_at(X_WT);
       return *hardware_;
     }

@@ -5,6 +5,8 @@
 #include <functional>
 #include <limits>
 #include <stdexcept>
+#include <string>
+#include <string_view>
 
 #include "app/config_file.h"
 #include "app/nearest_word.h"
@@ -137,37 +139,79 @@ void add_shared_settings(CLI::App& command, HapticSettings& haptics) {
   }
 }
 
+#define OSTEOMILL_PLACE(type, field) [](MillingSetup& setup) -> type& { return setup.field; }
+
+const MillingOption kOptions[] = {
+    {"--burr-radius", "Tool", "mm", "Of the burr's sphere", OSTEOMILL_PLACE(double, tool.burr_radius_mm),
+     true},
+    {"--shaft-radius", "Tool", "mm", "Of the shaft", OSTEOMILL_PLACE(double, tool.shaft_radius_mm), true},
+    {"--shaft-length", "Tool", "mm", "From the burr's centre", OSTEOMILL_PLACE(double, tool.shaft_length_mm),
+     true},
+    {"--spindle-speed", "Cutting", "rpm", "Of the burr", OSTEOMILL_PLACE(double, cutting.spindle_speed_rpm),
+     true},
+    {"--cutting-energy", "Cutting", "N.mm/mm^3", "The work that removes bone of the reference density",
+     OSTEOMILL_PLACE(double, cutting.specific_energy_Nmm_per_mm3), true},
+    {"--removal-rate", "Cutting", "mm^3/(N.s)",
+     "kappa; else it follows from burr, spindle speed and cutting energy",
+     OSTEOMILL_PLACE(std::optional<double>, removal_rate_mm3_per_Ns), true},
+    {"--cutting-reaction", "Cutting", "", "The hand feels the burr pull along its rim, whose pole cuts less",
+     OSTEOMILL_PLACE(bool, cutting_reaction), false},
+    {"--force-limit", "Limits of the device", "N", "The most it is asked for",
+     OSTEOMILL_PLACE(double, guard.limits.force_N), false},
+    {"--torque-limit", "Limits of the device", "N.mm", "The most it is asked for",
+     OSTEOMILL_PLACE(double, guard.limits.torque_Nmm), false},
+    {"--passivity-controller", "Limits of the device", "",
+     "Dampens a contact that has given the hand more energy than it took",
+     OSTEOMILL_PLACE(bool, guard.passivity_controller), false},
+};
+
+#undef OSTEOMILL_PLACE
+
+template <typename Number>
+void add_option(CLI::App& command, const MillingOption& option, Number& value) {
+  add_positive(command, option.name, value, option.unit, option.meaning);
+}
+void add_option(CLI::App& command, const MillingOption& option, bool& on) {
+  const std::string name = option.name;
+  command.add_flag(name + ",!--no-" + name.substr(2), on,
+                   option.meaning + std::string(on ? " (on unless turned off)" : ""));
+}
+
+void add_options(CLI::App& command, MillingSetup& setup, std::string_view group) {
+  command.option_defaults()->group(std::string(group));
+  for (const MillingOption& option : kOptions) {
+    if (option.group != group) continue;
+    std::visit([&](auto place) { add_option(command, option, place(setup)); }, option.place);
+  }
+}
+
 }  // namespace
 
 void add_milling_options(CLI::App& command, MillingOptions& options) {
   MillingSetup& setup = options.setup;
-  command.option_defaults()->group("Tool");
-  add_positive(command, "--burr-radius", setup.tool.burr_radius_mm, "mm", "Of the burr's sphere");
-  add_positive(command, "--shaft-radius", setup.tool.shaft_radius_mm, "mm", "Of the shaft");
-  add_positive(command, "--shaft-length", setup.tool.shaft_length_mm, "mm", "From the burr's centre");
+  add_options(command, setup, "Tool");
   command.option_defaults()->group("Settings of the algorithms");
   add_shared_settings(command, setup.haptics);
   add_named_settings(command, setup.haptics);
-  command.option_defaults()->group("Cutting");
-  add_positive(command, "--spindle-speed", setup.cutting.spindle_speed_rpm, "rpm", "Of the burr");
-  add_positive(command, "--cutting-energy", setup.cutting.specific_energy_Nmm_per_mm3, "N.mm/mm^3",
-               "The work that removes bone of the reference density");
-  add_positive(command, "--removal-rate", setup.removal_rate_mm3_per_Ns, "mm^3/(N.s)",
-               "kappa; else it follows from burr, spindle speed and cutting energy");
-  command.add_flag("--cutting-reaction,!--no-cutting-reaction", setup.cutting_reaction,
-                   fmt::format("The hand feels the burr pull along its rim, whose pole cuts less{}",
-                               setup.cutting_reaction ? " (on unless turned off)" : ""));
-  command.option_defaults()->group("Limits of the device");
-  add_positive(command, "--force-limit", setup.limits.force_N, "N", "The most it is asked for");
-  add_positive(command, "--torque-limit", setup.limits.torque_Nmm, "N.mm", "The most it is asked for");
-  command.add_flag("--passivity-controller,!--no-passivity-controller", setup.passivity_controller,
-                   "Dampens a contact that has given the hand more energy than it took");
+  add_options(command, setup, "Cutting");
+  add_options(command, setup, "Limits of the device");
   command.option_defaults()->group("Options");
   command.add_option("--seed", options.seed, "Of the hand's tremor, and of the hands that --seeds draws")
       ->check(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
       ->type_name("NUMBER")
       ->capture_default_str();
   add_config_option(command);
+}
+
+std::span<const MillingOption> milling_options() {
+  return kOptions;
+}
+
+void take_what_was_said(const CLI::App& command, MillingSetup given, MillingSetup& setup) {
+  for (const MillingOption& option : kOptions) {
+    if (command.count(option.name) > 0)
+      std::visit([&](auto place) { place(setup) = place(given); }, option.place);
+  }
 }
 
 void add_algorithm_option(CLI::App& command, std::vector<AlgorithmDescription>& algorithms) {

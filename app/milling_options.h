@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
+#include <optional>
+#include <span>
+#include <variant>
 #include <vector>
 
 #include <CLI/App.hpp>
@@ -16,6 +18,25 @@ struct MillingOptions {
   MillingSetup setup;
   std::uint64_t seed = 1;
 };
+
+/// An option of a MillingSetup: all that the command line, files for --config and replays know of it.
+struct MillingOption {
+  /// With its dashes; a switch is also turned off by --no-NAME.
+  const char* name;
+  const char* group;
+  /// Empty for a switch; all others take positive numbers.
+  const char* unit;
+  const char* meaning;
+  std::variant<double& (*)(MillingSetup&), std::optional<double>& (*)(MillingSetup&),
+               bool& (*)(MillingSetup&)>
+      place;
+  /// A recording is of one scan, milled with one tool: this is its own, and a replay of it takes no other.
+  bool of_the_recording;
+};
+std::span<const MillingOption> milling_options();
+
+/// Puts those of `given` that were said to the command in their places in `setup`.
+void take_what_was_said(const CLI::App& command, MillingSetup given, MillingSetup& setup);
 
 /// Adds --mode for a command that works in one mode, or in one or both.
 void add_mode_option(CLI::App& command, Mode& mode);

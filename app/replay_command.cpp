@@ -39,12 +39,10 @@ struct ReplayOptions {
   std::string out;
   std::string record;
   bool verify = false;
-  // What was given, of a recording's own.
-  bool other_algorithm = false;
-  bool other_mode = false;
-  bool other_force_limit = false;
-  bool other_torque_limit = false;
-  bool other_reaction = false;
+  // In which the options stand.
+  const CLI::App* command = nullptr;
+
+  bool given(const char* option) const { return command->count(option) > 0; }
 };
 
 // The log, and what is to be told of ticks.
@@ -86,10 +84,9 @@ void replay_trajectory(ReplayOptions options) {
   require_workable(options.milling.setup.tool, bone.volume.geometry());
   const BoneDensities densities = estimate_densities(bone.volume);
   options.milling.setup.algorithm = options.algorithm.front();
-  const auto session =
-      make_session(std::make_shared<Volume>(std::move(bone.volume)), densities, options.milling.setup);
-  Log log(options, trajectory.size(), session->volume());
-  replay(*session, trajectory, [&](const TickRecord& record) { log.add(record); });
+  MillingSession session(std::make_shared<Volume>(std::move(bone.volume)), densities, options.milling.setup);
+  Log log(options, trajectory.size(), session.volume());
+  replay(session, trajectory, [&](const TickRecord& record) { log.add(record); });
   log.write();
 }
 
@@ -137,20 +134,19 @@ HapticSettings settings_for(const AlgorithmDescription& algorithm, const HapticS
 
 RunDescription run_as(const ReplayOptions& options, RunDescription run) {
   const AlgorithmDescription* algorithm =
-      options.other_algorithm ? &options.algorithm.front() : find_algorithm(run.algorithm.name);
+      options.given("--algorithm") ? &options.algorithm.front() : find_algorithm(run.algorithm.name);
   if (algorithm == nullptr) return run;
-  const HapticSettings said = settings_for(*algorithm, options.milling.setup.haptics);
-  HapticSettings haptics{options.other_mode ? said.mode : run.mode};
-  // Settings of another algorithm, or of another mode, mean nothing here.
-  if (run.algorithm == algorithm->id && haptics.mode == run.mode) haptics = haptic_settings(run);
-  haptics.named.insert(haptics.named.end(), said.named.begin(), said.named.end());
-  set_algorithm(run, *algorithm, haptics, 0);
+  const MillingSetup& given = options.milling.setup;
+  const HapticSettings said = settings_for(*algorithm, given.haptics);
   SessionSettings session = session_settings(run, options.input);
-  const MillingSetup& setup = options.milling.setup;
-  if (options.other_force_limit) session.guard.limits.force_N = setup.limits.force_N;
-  if (options.other_torque_limit) session.guard.limits.torque_Nmm = setup.limits.torque_Nmm;
-  if (options.other_reaction) session.milling.reaction_share = milling_settings(setup).reaction_share;
-  set_session_settings(run, session);
+  MillingSetup& setup = session.setup;
+  setup.algorithm = *algorithm;
+  const Mode mode = options.given("--mode") ? said.mode : run.mode;
+  // Settings of another algorithm, or of another mode, mean nothing here.
+  if (!(run.algorithm == algorithm->id) || mode != run.mode) setup.haptics = {mode};
+  setup.haptics.named.insert(setup.haptics.named.end(), said.named.begin(), said.named.end());
+  take_what_was_said(*options.command, given, setup);
+  set_session_settings(run, session, 0);
   return run;
 }
 
@@ -163,10 +159,11 @@ void replay_another_way(const ReplayOptions& options, const std::string& command
   replay.as = [&](const RunDescription& run) { return run_as(options, run); };
   replay.begun = [&](SessionStart start, const MillingSession& session) {
     if (options.record.empty()) return;
-    for (RunSetting& setting : start.run.settings)
+    for (RunSetting& setting : start.run.settings) {
       if (setting.key == kCommandLineKey) setting.value = command_line;
-    set_algorithm(start.run, algorithm_named(start.run.algorithm.name), haptic_settings(start.run),
-                  session.algorithm().sample_point_count());
+      if (setting.key == kSamplePointsKey)
+        setting.value = static_cast<double>(session.algorithm().sample_point_count());
+    }
     if (!recorder)
       recorder.emplace(options.record, start.run, Recorder::kUsualCapacity, Recorder::Begins::when_told);
     recorder->begin_session(session_number++, std::move(start));
@@ -202,19 +199,17 @@ void run_replay(const ReplayOptions& options, const std::string& command_line) {
     replay_another_way(options, command_line, scan, recording);
 }
 
-// A recording is of one scan, milled with one tool; only what turns motion into a wrench can be another.
-void take_what_was_given(const CLI::App& command, ReplayOptions& options) {
-  const auto given = [&](const char* option) { return command.count(option) > 0; };
-  options.other_algorithm = given("--algorithm");
-  options.other_mode = given("--mode");
-  options.other_force_limit = given("--force-limit");
-  options.other_torque_limit = given("--torque-limit");
-  options.other_reaction = given("--cutting-reaction");
-  if (!is_hdf5(options.input)) return;
-  for (const char* option : {"--iso", "--burr-radius", "--shaft-radius", "--shaft-length", "--spindle-speed",
-                             "--cutting-energy", "--removal-rate", "--seed"}) {
-    if (given(option)) throw CLI::ValidationError(option, "is the recording's own, and cannot be given");
+// Only what turns motion into a wrench can be another.
+void refuse_what_is_recorded(const ReplayOptions& options) {
+  const auto refuse = [&](const char* option) {
+    if (options.given(option))
+      throw CLI::ValidationError(option, "is the recording's own, and cannot be given");
+  };
+  refuse("--iso");
+  for (const MillingOption& option : milling_options()) {
+    if (option.of_the_recording) refuse(option.name);
   }
+  refuse("--seed");
 }
 
 }  // namespace
@@ -223,6 +218,7 @@ void add_replay_command(CLI::App& program, const std::string& command_line) {
   auto options = std::make_shared<ReplayOptions>();
   CLI::App* command = program.add_subcommand(
       "replay", "Drive one algorithm along a trajectory, or run a recording again, and log every tick");
+  options->command = command;
   command->group("Recordings");
   command
       ->add_option("input", options->input, "A recording, or CSV: time_s,x_mm,y_mm,z_mm,qw,qx,qy,qz,milling")
@@ -242,7 +238,7 @@ void add_replay_command(CLI::App& program, const std::string& command_line) {
   add_quiet_option(*command);
   command->callback([=] {
     apply_config_file(*command);
-    take_what_was_given(*command, *options);
+    if (is_hdf5(options->input)) refuse_what_is_recorded(*options);
     run_replay(*options, command_line);
   });
 }

@@ -56,14 +56,8 @@ void add_trial_options(CLI::App& command, TrialOptions& options) {
 }
 
 TrialSettings trial_settings(const TrialOptions& options) {
-  TrialSettings trial;
-  const MillingSetup& setup = options.milling.setup;
-  trial.tool = setup.tool;
-  trial.haptics = setup.haptics;
-  trial.milling = milling_settings(setup);
-  trial.limits = setup.limits;
-  trial.hand_and_device = options.hand;
-  trial.hand_and_device.handle.limits = setup.limits;
+  TrialSettings trial{options.milling.setup, options.hand};
+  trial.hand_and_device.handle.limits = trial.guard.limits;
   trial.hand_and_device.seed = options.milling.seed;
   return trial;
 }

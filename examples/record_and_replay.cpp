@@ -10,7 +10,6 @@
 #include <osteomill/recording/read_recording.h>
 #include <osteomill/recording/recorder.h>
 #include <osteomill/recording/replay_recording.h>
-#include <osteomill/session/milling_setup.h>
 #include <osteomill/volume/builtin_tooth.h>
 #include <osteomill/volume/density_grid.h>
 
@@ -20,28 +19,24 @@ int main(int argc, char** argv) {
   const osteomill::BoneDensities densities = estimate_densities(scan);
   osteomill::MillingSetup setup;
   setup.algorithm = osteomill::algorithm_named("point-shell");
-  const auto session = make_session(std::make_shared<osteomill::Volume>(scan), densities, setup);
+  osteomill::MillingSession session(std::make_shared<osteomill::Volume>(scan), densities, setup);
 
-  const osteomill::RunFacts facts{
-      .scan_name = "built-in tooth",
-      .scan_hash = fingerprint_of(scan.grid()),
-      .geometry = scan.geometry(),
-      .isovalue = scan.isovalue(),
-      .tool = setup.tool,
-      .haptics = setup.haptics,
-      .session = {densities, milling_settings(setup), {}, session->guard().settings()}};
-  osteomill::Recorder recorder(
-      path, describe_run(facts, setup.algorithm, session->algorithm().sample_point_count()));
+  const osteomill::RunFacts facts{.scan_name = "built-in tooth",
+                                  .scan_hash = fingerprint_of(scan.grid()),
+                                  .geometry = scan.geometry(),
+                                  .isovalue = scan.isovalue(),
+                                  .session = {setup, densities}};
+  osteomill::Recorder recorder(path, describe_run(facts, session.algorithm().sample_point_count()));
   const osteomill::MillingEntry entry = place_entry(scan, setup.tool);
   osteomill::PosedDevice device;
   for (int n = 0; n < 2000; ++n) {
     device.put(pose_above(entry, setup.tool, 0.5 - 0.001 * n));
-    recorder.push_waiting(session->tick(device, 1e-3 * n, 1e-3, n > 500));
+    recorder.push_waiting(session.tick(device, 1e-3 * n, 1e-3, n > 500));
   }
   recorder.close();
 
   const osteomill::Verification verified = verify_recording(scan, osteomill::read_recording(path));
-  std::printf("%.2f mm^3 removed; %zu ticks the same\n", session->removed_mm3(), verified.ticks);
+  std::printf("%.2f mm^3 removed; %zu ticks the same\n", session.removed_mm3(), verified.ticks);
   if (verified.difference) std::printf("%s\n", verified.difference->what.c_str());
-  return verified.difference || !(session->removed_mm3() > 0) ? 1 : 0;
+  return verified.difference || !(session.removed_mm3() > 0) ? 1 : 0;
 }

@@ -20,8 +20,8 @@ ViewScene shaft_on_a_plane(Mode mode) {
   Volume bone = testing_support::shape_volume(testing_support::centred_cube(64, 0.25),
                                               [](const Vec3& p) { return std::max(p.z(), p.x()); });
   const BoneDensities densities = estimate_densities(bone);
-  MillingSession session(std::move(bone), MillingTool{}, make_algorithm("line-proxy", {.mode = mode}),
-                         densities, MillingSettings{}, WrenchLimits{});
+  MillingSession session(std::make_shared<Volume>(std::move(bone)), densities,
+                         {.algorithm = algorithm_named("line-proxy"), .haptics = {mode}});
   PosedDevice device;
   ViewScene scene;
   for (int n = 0; n < 600; ++n) {

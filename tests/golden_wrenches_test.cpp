@@ -43,9 +43,8 @@ TEST_P(GoldenWrenches, AreTheSameBitsAtAnyOptimisation) {
                                                 testing_support::ball(Vec3::Zero(), kBallRadius_mm));
   const MillingTool tool;
   const BoneDensities densities = estimate_densities(volume);
-  MillingSession session(std::move(volume), tool,
-                         make_algorithm(GetParam().algorithm, {.mode = GetParam().mode}), densities,
-                         MillingSettings{}, WrenchLimits{});
+  MillingSession session(std::make_shared<Volume>(std::move(volume)), densities,
+                         {.algorithm = algorithm_named(GetParam().algorithm), .haptics = {GetParam().mode}});
   PosedDevice device;
   std::uint64_t hash = 0xcbf29ce484222325;
   for (int n = 0; n < kTicks; ++n) {

@@ -33,7 +33,6 @@ struct Milling {
 Milling mill(std::string_view algorithm, double push_N, std::uint64_t seed, double tick_s) {
   TrialSettings settings;
   settings.tick_s = tick_s;
-  settings.milling.removal_rate_mm3_per_Ns = removal_rate_mm3_per_Ns({}, settings.tool.burr_radius_mm);
   settings.hand_and_device.hand.push_N = push_N;
   settings.hand_and_device.seed = seed;
   settings.hand_and_device.script.holding_s = 0;

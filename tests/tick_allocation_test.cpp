@@ -60,9 +60,8 @@ TEST_P(TickAllocation, NoTickAllocates) {
   volume.set_labels(labels_of(volume.geometry()));
   const MillingTool tool;
   const BoneDensities densities = estimate_densities(volume);
-  MillingSession session(std::move(volume), tool,
-                         make_algorithm(GetParam().algorithm, {.mode = GetParam().mode}), densities,
-                         MillingSettings{}, WrenchLimits{});
+  MillingSession session(std::make_shared<Volume>(std::move(volume)), densities,
+                         {.algorithm = algorithm_named(GetParam().algorithm), .haptics = {GetParam().mode}});
   PosedDevice device;
   constexpr int kTicks = 3000;
   int touching = 0;
@@ -116,10 +115,9 @@ TEST(TickAllocation, NoTickOfALiveSessionAllocates) {
   const auto bone = std::make_shared<Volume>(testing_support::shape_volume(
       testing_support::centred_cube(64, 0.25), testing_support::ball(Vec3::Zero(), kBallRadius_mm)));
   const MillingTool tool;
-  auto session =
-      std::make_unique<MillingSession>(bone, tool, make_algorithm("point-shell", {}),
-                                       estimate_densities(*bone), MillingSettings{}, WrenchLimits{});
-  session->set_vibration({.on = true});
+  auto session = std::make_unique<MillingSession>(
+      bone, estimate_densities(*bone),
+      MillingSetup{.algorithm = algorithm_named("point-shell"), .vibration = {.on = true}});
   PosedDevice device;
   device.put({{0, 0, kBallRadius_mm + tool.burr_radius_mm - 0.3}, Quat::Identity()});
   BoneFollower follower(bone);

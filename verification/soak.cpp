@@ -61,11 +61,11 @@ class Soak {
   Soak(const Volume& scan, const std::filesystem::path& path)
       : scan_(scan),
         scan_hash_(fingerprint_of(scan.grid())),
-        densities_(estimate_densities(scan)),
-        entry_(place_entry(scan, tool_)),
+        settings_{.densities = estimate_densities(scan)},
+        entry_(place_entry(scan, settings_.setup.tool)),
         bone_(std::make_shared<Volume>(scan)) {
-    settings_.densities = densities_;
-    settings_.guard = GuardSettings::for_a_hand({});
+    settings_.setup.tick_s = kTick_s;
+    settings_.setup.guard = settings_.setup.guard.for_a_hand();
     begin("line-proxy", {}, 0);
     recorder_ = std::make_unique<Recorder>(path, description());
   }
@@ -78,7 +78,7 @@ class Soak {
     person.hand = random_hand(seed);
     person.script.milling_s = 0.6 * kCycle_s;
     person.script.holding_s = 0.4 * kCycle_s;
-    SimulatedOperator hand(person, tool_, entry_);
+    SimulatedOperator hand(person, settings_.setup.tool, entry_);
     const Volume before = *bone_;
     const double removed_before_mm3 = session_->removed_mm3();
     session_->place();
@@ -114,9 +114,8 @@ class Soak {
  private:
   void begin(const std::string& algorithm, const TakenOver& before, double removed_mm3) {
     algorithm_ = algorithm;
-    session_ = std::make_unique<MillingSession>(bone_, tool_, make_algorithm(algorithm, {}), densities_,
-                                                settings_.milling, settings_.guard.limits, kTick_s);
-    session_->guard().protect_a_hand();
+    settings_.setup.algorithm = algorithm_named(algorithm);
+    session_ = std::make_unique<MillingSession>(bone_, settings_.densities, settings_.setup);
     session_->count_removed_from(removed_mm3);
     session_->take_over(before);
   }
@@ -134,18 +133,14 @@ class Soak {
                          .scan_hash = scan_hash_,
                          .geometry = scan_.geometry(),
                          .isovalue = scan_.isovalue(),
-                         .tool = tool_,
-                         .session = settings_,
-                         .tick_s = kTick_s},
-                        algorithm_named(algorithm_), session_->algorithm().sample_point_count());
+                         .session = settings_},
+                        session_->algorithm().sample_point_count());
   }
 
   const Volume& scan_;
   std::uint64_t scan_hash_;
-  MillingTool tool_;
-  BoneDensities densities_;
-  MillingEntry entry_;
   SessionSettings settings_;
+  MillingEntry entry_;
   std::shared_ptr<Volume> bone_;
   std::string algorithm_;
   std::unique_ptr<MillingSession> session_;

@@ -81,7 +81,6 @@ Milled mill(std::string_view algorithm, const Hole& hole, double seconds) {
   TrialSettings settings;
   settings.tool.burr_radius_mm = hole.burr_radius_mm;
   settings.tool.shaft_radius_mm = std::min(settings.tool.shaft_radius_mm, 0.7 * hole.burr_radius_mm);
-  settings.milling.removal_rate_mm3_per_Ns = removal_rate_mm3_per_Ns({}, hole.burr_radius_mm);
   settings.hand_and_device.hand.push_N = hole.push_N;
   settings.hand_and_device.script.milling_s = seconds * hole.time;
   MillingTrial trial(bone, estimate_densities(bone), place_entry(bone, settings.tool),
@@ -91,7 +90,7 @@ Milled mill(std::string_view algorithm, const Hole& hole, double seconds) {
   for (MillingTrial::Tick tick = trial.tick(); tick.milling_phase; tick = trial.tick()) {
     const double force_N = tick.record.burr_force_W_N.norm();
     if (force_N > 0) path_W.push_back(tick.record.X_WT.position_mm);
-    paid_for_mm3 += settings.milling.removal_rate_mm3_per_Ns * force_N * settings.tick_s;
+    paid_for_mm3 += milling_settings(settings).removal_rate_mm3_per_Ns * force_N * settings.tick_s;
     removed_mm3 = tick.record.removed_mm3;
   }
   if (path_W.empty()) return {};

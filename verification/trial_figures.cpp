@@ -14,9 +14,7 @@ TrialSettings settings_of(const TrialVariant& variant) {
   TrialSettings settings;
   settings.tick_s = variant.tick_s;
   settings.tool = variant.tool;
-  settings.milling.removal_rate_mm3_per_Ns =
-      removal_rate_mm3_per_Ns(CuttingSettings{}, variant.tool.burr_radius_mm);
-  if (variant.cutting_reaction) settings.milling.reaction_share = CuttingSettings{}.tangential_share;
+  settings.cutting_reaction = variant.cutting_reaction;
   settings.haptics.named = variant.named;
   OperatorSettings& operator_settings = settings.hand_and_device;
   operator_settings.seed = variant.seed;
@@ -36,6 +34,7 @@ TrialFigures milling_figures(const Volume& bone, const TrialVariant& variant) {
   const TrialSettings settings = settings_of(variant);
   MillingTrial trial(bone, estimate_densities(bone), place_entry(bone, settings.tool),
                      algorithm_named(variant.algorithm), settings);
+  const MillingSettings milling = milling_settings(settings);
   Recording recording;
   recording.description.tick_period_s = variant.tick_s;
   std::vector<double> milling_us;
@@ -43,9 +42,9 @@ TrialFigures milling_figures(const Volume& bone, const TrialVariant& variant) {
   for (MillingTrial::Tick tick = trial.tick(); tick.milling_phase; tick = trial.tick()) {
     recording.records.push_back(tick.record);
     milling_us.push_back(tick.record.milling_us);
-    const Vec3 paying_N = paying_force_W_N(settings.milling, tick.record.X_WT, tick.record.burr_force_W_N,
-                                           tick.record.spindle_on);
-    paid_for_mm3 += settings.milling.removal_rate_mm3_per_Ns * paying_N.norm() * variant.tick_s;
+    const Vec3 paying_N =
+        paying_force_W_N(milling, tick.record.X_WT, tick.record.burr_force_W_N, tick.record.spindle_on);
+    paid_for_mm3 += milling.removal_rate_mm3_per_Ns * paying_N.norm() * variant.tick_s;
   }
   TrialFigures figures;
   figures.metrics = run_metrics(recording);

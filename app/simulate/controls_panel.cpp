@@ -90,7 +90,7 @@ void draw_tool(MillingSetup& wanted, bool& sound, bool& changed) {
   changed = settle("burr radius", wanted.tool.burr_radius_mm, 0.5f, 4.0f, "%.1f mm") || changed;
   changed = settle("shaft radius", wanted.tool.shaft_radius_mm, 0.3f, 3.0f, "%.1f mm") || changed;
   changed = settle("spindle", wanted.cutting.spindle_speed_rpm, 5000, 120000, "%.0f rpm") || changed;
-  changed = ui::checkbox("vibration", &wanted.vibration) || changed;
+  changed = ui::checkbox("vibration", &wanted.vibration.on) || changed;
   ui::hint("The hand feels the burr cut");
   ImGui::SameLine();
   changed = ui::checkbox("burr pulls", &wanted.cutting_reaction) || changed;

@@ -20,7 +20,7 @@ struct SimulateOptions {
 void run_simulate(SimulateOptions options) {
   options.simulator.setup = options.milling.setup;
   options.simulator.setup.algorithm = options.algorithm.front();
-  options.simulator.setup.vibration = true;
+  options.simulator.setup.vibration.on = true;
   run_simulator(options.simulator);
 }
 

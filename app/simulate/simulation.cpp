@@ -17,7 +17,7 @@ constexpr std::size_t kHistory = 5000;
 
 HandleSettings handle_settings(const MillingSetup& setup) {
   HandleSettings handle;
-  handle.limits = setup.limits;
+  handle.limits = setup.guard.limits;
   return handle;
 }
 

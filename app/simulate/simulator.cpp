@@ -79,7 +79,7 @@ class Simulator {
         files_(options.folder, [this](const Camera& camera) { return picture(camera); }) {
     if (options.device.is(kSpaceMouse) && !space_mouse_.present())
       throw InputError("--device spacemouse", kNoSpaceMouse);
-    if (hardware_) options_.setup.limits = hardware_->limits_W(options_.setup.limits);
+    if (hardware_) options_.setup.guard.limits = hardware_->limits_W(options_.setup.guard.limits);
     if (!options.script.empty()) script_.emplace(options.script);
     view_.help = !options.no_help;
   }

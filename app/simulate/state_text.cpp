@@ -57,7 +57,7 @@ void add_setup(Lines& lines, const MillingSetup& setup) {
   lines.add("burr_mm", fmt::format("{:.2f}", setup.tool.burr_radius_mm));
   lines.add("shaft_mm", fmt::format("{:.2f}", setup.tool.shaft_radius_mm));
   lines.add("rpm", fmt::format("{:.0f}", setup.cutting.spindle_speed_rpm));
-  lines.add("vibration", setup.vibration);
+  lines.add("vibration", setup.vibration.on);
   lines.add("cutting_reaction", setup.cutting_reaction);
 }
 

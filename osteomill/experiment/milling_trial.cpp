@@ -15,10 +15,15 @@ double thread_cpu_us() {
 
 }  // namespace
 
+MillingSetup setup_of(const TrialSettings& settings, const AlgorithmDescription& algorithm) {
+  MillingSetup setup = settings;
+  setup.algorithm = algorithm;
+  return setup;
+}
+
 MillingTrial::MillingTrial(const Volume& bone, const BoneDensities& densities, const MillingEntry& entry,
                            const AlgorithmDescription& algorithm, const TrialSettings& settings)
-    : session_(bone, settings.tool, make_algorithm(algorithm, settings.haptics), densities, settings.milling,
-               settings.limits, settings.tick_s),
+    : session_(std::make_shared<Volume>(bone), densities, setup_of(settings, algorithm)),
       operator_(settings.hand_and_device, settings.tool, entry),
       tick_s_(settings.tick_s),
       spindle_(settings.spindle) {}

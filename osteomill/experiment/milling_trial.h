@@ -2,23 +2,20 @@
 
 #include <vector>
 
-#include "osteomill/haptics/algorithms.h"
 #include "osteomill/operator/simulated_operator.h"
 #include "osteomill/session/milling_session.h"
 
 namespace osteomill {
 
-/// All that a trial depends on but the bone, the entry and the algorithm.
-struct TrialSettings {
-  MillingTool tool;
-  HapticSettings haptics;
-  MillingSettings milling;
-  WrenchLimits limits;
+/// All that a trial depends on but the bone, the entry and the algorithm, which is none that stands here.
+struct TrialSettings : MillingSetup {
   OperatorSettings hand_and_device;
-  double tick_s = 1e-3;
   /// False lets the hand go through its motions without removing bone, as section 8.1 measures rates.
   bool spindle = true;
 };
+
+/// As what the trial of an algorithm mills.
+MillingSetup setup_of(const TrialSettings& settings, const AlgorithmDescription& algorithm);
 
 /// One algorithm in the test of section 8.2, in simulated time: a simulated hand mills a hole, leans the
 /// shaft on its edge, and then stands in it with the spindle off. The same settings give the same records on

@@ -18,7 +18,7 @@ class MillingTrialTest : public ::testing::TestWithParam<std::string> {
         densities_(estimate_densities(bone_)),
         entry_(place_entry(bone_, settings_.tool)) {
     settings_.haptics.mode = Mode::steady;
-    settings_.milling.removal_rate_mm3_per_Ns = 10;
+    settings_.removal_rate_mm3_per_Ns = 10;
     settings_.hand_and_device.script.milling_s = 6;
     settings_.hand_and_device.script.holding_s = 1;
   }
@@ -90,8 +90,7 @@ TEST_P(MillingTrialTest, TakesWhatTheForceHasPaidFor) {
   const Run run = this->run(1);
   double pressed_mm3 = 0;
   for (const TickRecord& record : run.milling) {
-    pressed_mm3 +=
-        settings_.milling.removal_rate_mm3_per_Ns * record.burr_force_W_N.norm() * settings_.tick_s;
+    pressed_mm3 += *settings_.removal_rate_mm3_per_Ns * record.burr_force_W_N.norm() * settings_.tick_s;
   }
   EXPECT_NEAR(run.milling.back().removed_mm3 / pressed_mm3, 1.0, 0.02);
 }

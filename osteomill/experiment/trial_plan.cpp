@@ -55,14 +55,11 @@ RunDescription describe_trial(const TrialPlan& plan, const AlgorithmDescription&
                                      .scan_hash = plan.scan_hash,
                                      .geometry = plan.bone.geometry(),
                                      .isovalue = plan.bone.isovalue(),
-                                     .tool = trial.tool,
-                                     .haptics = trial.haptics,
-                                     .session = {plan.densities, trial.milling, {}, {trial.limits}},
+                                     .session = {setup_of(trial, algorithm), plan.densities},
                                      .seed = person.seed,
-                                     .tick_s = trial.tick_s,
                                      .command_line = plan.command_line,
                                      .labels = plan.bone.labels()},
-                                    algorithm, sample_points);
+                                    sample_points);
   run.segment = phase;
   add_hand(run.settings, person.hand);
   add_device(run.settings, person.handle);

@@ -48,8 +48,8 @@ class SharedDevice : public Device {
                                                     testing_support::plane(Vec3::Zero(), Vec3::UnitZ()));
   SharedDevice device(sent, device_crashes);
   LiveSession live(
-      std::make_unique<MillingSession>(bone, MillingTool{}, make_algorithm("point-shell", {}),
-                                       BoneDensities{0, 1000}, MillingSettings{}, WrenchLimits{}),
+      std::make_unique<MillingSession>(std::make_shared<Volume>(bone), BoneDensities{0, 1000},
+                                       MillingSetup{.algorithm = algorithm_named("point-shell")}),
       device);
   live.start();
   for (int n = 0; n < 2000 && sent->max_N < kPressed_N; ++n) std::this_thread::sleep_for(5ms);

@@ -29,7 +29,6 @@ constexpr int kTicksToZero = 5;
 class DeviceFaults : public ::testing::TestWithParam<std::string> {
  protected:
   DeviceFaults() {
-    session_.guard().protect_a_hand();
     device_.put_at({{0, 0, 3}, Quat::Identity()});
     // Down onto the bone below z = 0, and into it; some feel the burr there, some the middle of it.
     for (int n = 0; n < 600 && (n == 0 || felt_N() < 2); ++n) {
@@ -90,13 +89,11 @@ class DeviceFaults : public ::testing::TestWithParam<std::string> {
 
   testing_support::ScriptedDevice hardware_;
   ConnectedDevice device_{hardware_.way(), hardware_.settings()};
-  MillingSession session_{testing_support::shape_volume(testing_support::centred_cube(60, 0.25),
-                                                        testing_support::plane(Vec3::Zero(), Vec3::UnitZ())),
-                          MillingTool{},
-                          make_algorithm(GetParam(), HapticSettings{}),
-                          BoneDensities{0, 1000},
-                          MillingSettings{},
-                          WrenchLimits{}};
+  MillingSession session_{
+      std::make_shared<Volume>(testing_support::shape_volume(
+          testing_support::centred_cube(60, 0.25), testing_support::plane(Vec3::Zero(), Vec3::UnitZ()))),
+      {0, 1000},
+      {.algorithm = algorithm_named(GetParam()), .guard = GuardSettings{}.for_a_hand()}};
   TickRecord record_;
   bool hangs_ = false;
 };

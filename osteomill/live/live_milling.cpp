@@ -21,13 +21,10 @@ void add_picture(Recorder& recorder, std::string_view name, const LiveMilling::T
   if (auto png = take(); !png.empty()) recorder.add_picture(std::string(name), std::move(png));
 }
 
-// As live sessions are made (make_session, LiveSession).
-SessionSettings settings_of(const MillingSetup& setup, const BoneDensities& densities) {
-  SessionSettings settings{densities, milling_settings(setup), {}, GuardSettings::for_a_hand(setup.limits)};
-  settings.vibration.on = setup.vibration;
-  settings.vibration.spindle_speed_rpm = setup.cutting.spindle_speed_rpm;
-  settings.guard.passivity_controller = setup.passivity_controller;
-  return settings;
+// As LiveSession has them.
+SessionSettings settings_of(MillingSetup setup, const BoneDensities& densities) {
+  setup.guard = setup.guard.for_a_hand();
+  return {std::move(setup), densities};
 }
 
 }  // namespace
@@ -47,7 +44,7 @@ PreparedMilling prepare_milling(std::shared_ptr<Volume> bone, const MillingSetup
   }
   follower->begin_with(before.bricks);
   const WorkProgress::Part preparing(1);
-  auto session = make_session(std::move(bone), densities, setup);
+  auto session = std::make_unique<MillingSession>(std::move(bone), densities, setup);
   session->count_removed_from(before.removed_mm3);
   return {setup, densities, scan_hash, std::move(follower), std::move(session)};
 }
@@ -97,8 +94,8 @@ void LiveMilling::change(const MillingSetup& setup) {
   preparation_ = std::async(std::launch::async, [this, setup, bone = live_.session().shared_volume(),
                                                  removed_mm3 = live_.session().removed_mm3()] {
     catch_up();
-    Prepared prepared{make_session(bone, densities_, setup), setup, densities_, removed_mm3,
-                      follower_->touched_bricks()};
+    Prepared prepared{std::make_unique<MillingSession>(bone, densities_, setup), setup, densities_,
+                      removed_mm3, follower_->touched_bricks()};
     prepared.session->count_removed_from(removed_mm3);
     return prepared;
   });
@@ -125,7 +122,7 @@ void LiveMilling::rebuild(MakeBone make_bone) {
     const BoneFollower::NextBone next = make_bone();
     try {
       const BoneDensities densities = next.densities.value_or(densities_);
-      Prepared prepared{make_session(next.bone, densities, setup),
+      Prepared prepared{std::make_unique<MillingSession>(next.bone, densities, setup),
                         setup,
                         densities,
                         next.removed_mm3,
@@ -183,12 +180,10 @@ RunDescription LiveMilling::describe(const std::string& scan_name, const std::st
                        .scan_hash = scan_hash_,
                        .geometry = geometry_,
                        .isovalue = isovalue_,
-                       .tool = setup_.tool,
-                       .haptics = setup_.haptics,
                        .session = settings_of(setup_, densities_),
                        .command_line = command_line,
                        .labels = live_.session().volume().labels()};
-  return describe_run(facts, setup_.algorithm, sample_points_);
+  return describe_run(facts, sample_points_);
 }
 
 void LiveMilling::start_recording(const std::filesystem::path& path, const RunDescription& description,
@@ -211,10 +206,8 @@ void LiveMilling::start_recording(const std::filesystem::path& path, const RunDe
 void LiveMilling::tell_recorder(const TakenOver& taken_over, double removed_mm3,
                                 std::vector<DensityBlock> bricks) {
   RunDescription run = recorded_;
-  run.tool = setup_.tool;
   run.isovalue = isovalue_;
-  set_algorithm(run, setup_.algorithm, setup_.haptics, sample_points_);
-  set_session_settings(run, settings_of(setup_, densities_));
+  set_session_settings(run, settings_of(setup_, densities_), sample_points_);
   recorder_->begin_session(session_number_, {std::move(run), taken_over, removed_mm3, std::move(bricks), ""});
 }
 

@@ -295,8 +295,9 @@ TEST_F(LiveMillingTest, ARecordingGoesOnOverWhateverIsDone) {
   milling_.finish_preparing();
   mill(0.1);
   setup_.algorithm = algorithm_named("surface-points");
-  setup_.vibration = setup_.cutting_reaction = true;
-  setup_.limits.force_N = 2;
+  setup_.vibration.on = setup_.cutting_reaction = true;
+  setup_.guard.passivity_controller = true;
+  setup_.guard.limits.force_N = 2;
   milling_.change(setup_);
   milling_.finish_preparing();
   mill(0.1);

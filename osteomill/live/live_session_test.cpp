@@ -43,8 +43,8 @@ Volume half_space() {
 }
 
 std::unique_ptr<MillingSession> session_on(std::shared_ptr<Volume> bone, std::string_view algorithm) {
-  return std::make_unique<MillingSession>(std::move(bone), MillingTool{}, make_algorithm(algorithm, {}),
-                                          BoneDensities{0, 1000}, MillingSettings{}, WrenchLimits{});
+  return std::make_unique<MillingSession>(std::move(bone), BoneDensities{0, 1000},
+                                          MillingSetup{.algorithm = algorithm_named(algorithm)});
 }
 
 class LiveSessionTest : public ::testing::Test {

@@ -45,7 +45,7 @@ Origin made_here_and_now() {
 
 }  // namespace
 
-RunDescription describe_run(const RunFacts& facts, const AlgorithmDescription& algorithm, int sample_points) {
+RunDescription describe_run(const RunFacts& facts, int sample_points) {
   RunDescription run;
   run.program_version = OSTEOMILL_VERSION;
   run.made = made_here_and_now();
@@ -56,16 +56,13 @@ RunDescription describe_run(const RunFacts& facts, const AlgorithmDescription& a
   run.direction = facts.geometry.direction;
   run.scan_hash = facts.scan_hash;
   run.isovalue = facts.isovalue;
-  run.tool = facts.tool;
   run.seed = facts.seed;
-  run.tick_period_s = facts.tick_s;
   if (facts.labels) {
     run.labels = facts.labels->labels();
     run.label_map_hash = facts.labels->fingerprint();
   }
   run.settings.push_back({std::string(kCommandLineKey), facts.command_line, ""});
-  set_algorithm(run, algorithm, facts.haptics, sample_points);
-  set_session_settings(run, facts.session);
+  set_session_settings(run, facts.session, sample_points);
   return run;
 }
 

@@ -4,7 +4,6 @@
 #include <memory>
 #include <string>
 
-#include "osteomill/haptics/haptic_settings.h"
 #include "osteomill/recording/run_description.h"
 #include "osteomill/recording/session_settings.h"
 #include "osteomill/volume/grid_geometry.h"
@@ -19,11 +18,8 @@ struct RunFacts {
   std::uint64_t scan_hash = 0;
   GridGeometry geometry;
   double isovalue = 0;
-  MillingTool tool;
-  HapticSettings haptics;
   SessionSettings session;
   std::uint64_t seed = 0;
-  double tick_s = 1e-3;
   /// How the program was called; may be empty.
   std::string command_line;
   /// Null where the bone has none.
@@ -32,6 +28,6 @@ struct RunFacts {
 
 /// All that a recording says of such a session: program, scan, tool, every setting with its unit.
 /// `sample_points` is how many the algorithm works with as it stands.
-RunDescription describe_run(const RunFacts& facts, const AlgorithmDescription& algorithm, int sample_points);
+RunDescription describe_run(const RunFacts& facts, int sample_points);
 
 }  // namespace osteomill

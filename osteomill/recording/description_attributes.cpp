@@ -4,8 +4,10 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 #include <set>
 #include <stdexcept>
+#include <type_traits>
 #include <utility>
 
 #include "osteomill/files/input_error.h"
@@ -22,12 +24,9 @@ namespace {
 constexpr const char* kSettingsGroup = "settings";
 constexpr const char* kLabelsGroup = "labels";
 constexpr std::string_view kUnitSuffix = ".unit";
-constexpr std::array kAxes{"axis_i", "axis_j", "axis_k"};
-constexpr std::array kOriginAttributes{
-    std::pair{"date_utc", &Origin::date_utc}, std::pair{"host", &Origin::host},
-    std::pair{"system", &Origin::system},     std::pair{"processor", &Origin::processor},
-    std::pair{"compiler", &Origin::compiler}, std::pair{"build", &Origin::build},
-};
+// With which others came: in version 3, and where algorithms' labels are kept.
+constexpr const char* kSince3 = "scan_hash";
+constexpr const char* kLabel = "algorithm_label";
 constexpr std::string_view kUnknownColour = "#888888";
 
 void require_usable_keys(const std::vector<RunSetting>& settings) {
@@ -119,29 +118,50 @@ std::vector<Label> read_labels(const fs::path& path, hid_t file) {
   return labels;
 }
 
-// Recordings from before algorithms' labels were kept hold the project's own algorithms only; of others the
-// name serves.
-AlgorithmId read_algorithm(const fs::path& path, const AttributeReader& read) {
-  AlgorithmId algorithm{read.text("algorithm"), "", ""};
-  if (read.has("algorithm_label")) {
-    algorithm.label = read.text("algorithm_label");
-    algorithm.colour = read.text("algorithm_colour");
-  } else if (const AlgorithmDescription* known = find_algorithm(algorithm.name)) {
-    algorithm = known->id;
-  } else {
-    algorithm.label = algorithm.name;
-    algorithm.colour = kUnknownColour;
-  }
-  if (!is_usable(algorithm)) {
-    throw InputError(path.string(), "its algorithm has a name, label or colour that cannot be used");
-  }
-  return algorithm;
+// What a description says by attributes, each with its name and place, in the order in which they are
+// written; behind them, of those that came later, the one with which they came.
+template <typename Run, typename Visit>
+void visit_attributes(Run& run, const Visit& visit) {
+  visit("program_version", run.program_version);
+  visit("date_utc", run.made.date_utc, kSince3);
+  visit("host", run.made.host, kSince3);
+  visit("system", run.made.system, kSince3);
+  visit("processor", run.made.processor, kSince3);
+  visit("compiler", run.made.compiler, kSince3);
+  visit("build", run.made.build, kSince3);
+  visit("scan_name", run.scan_name);
+  visit("dims", run.dims);
+  visit("spacing_mm", run.spacing_mm);
+  visit("origin_mm", run.origin_mm, kSince3);
+  visit("axis_i", run.direction.col(0), kSince3);
+  visit("axis_j", run.direction.col(1), kSince3);
+  visit("axis_k", run.direction.col(2), kSince3);
+  visit("scan_hash", run.scan_hash, kSince3);
+  visit("label_map_hash", run.label_map_hash, kSince3);
+  visit("isovalue", run.isovalue);
+  visit("burr_radius_mm", run.tool.burr_radius_mm);
+  visit("shaft_radius_mm", run.tool.shaft_radius_mm);
+  visit("shaft_length_mm", run.tool.shaft_length_mm);
+  visit("algorithm", run.algorithm.name);
+  visit("algorithm_label", run.algorithm.label, kLabel);
+  visit("algorithm_colour", run.algorithm.colour, kLabel);
+  visit("mode", run.mode);
+  visit("phase", run.segment);
+  visit("seed", run.seed);
+  visit("tick_period_s", run.tick_period_s);
 }
 
-template <typename Value>
-Value require_known(const fs::path& path, std::optional<Value> value, const std::string& name) {
-  if (!value) throw InputError(path.string(), "'" + name + "' is not known here");
-  return *value;
+// Recordings from before algorithms' labels were kept hold the project's own algorithms only; of others the
+// name serves.
+AlgorithmId by_its_name(const std::string& name) {
+  const AlgorithmDescription* known = find_algorithm(name);
+  return known != nullptr ? known->id : AlgorithmId{name, name, std::string(kUnknownColour)};
+}
+
+Mode require_mode(const fs::path& path, const std::string& name) {
+  const std::optional<Mode> mode = mode_named(name);
+  if (!mode) throw InputError(path.string(), "'mode " + name + "' is not known here");
+  return *mode;
 }
 
 }  // namespace
@@ -153,65 +173,56 @@ void write_description(const fs::path& path, hid_t file, const RunDescription& d
                                 "': an algorithm or a segment that cannot be recorded by that name");
   }
   const AttributeWriter write(path, file);
-  write.text("program_version", description.program_version);
-  for (const auto& [name, member] : kOriginAttributes) write.text(name, description.made.*member);
-  write.text("scan_name", description.scan_name);
-  write.integers("dims", description.dims);
-  write.vector("spacing_mm", description.spacing_mm);
-  write.vector("origin_mm", description.origin_mm);
-  for (Eigen::Index axis = 0; axis < 3; ++axis)
-    write.vector(kAxes[static_cast<std::size_t>(axis)], Vec3(description.direction.col(axis)));
-  write.unsigned_integer("scan_hash", description.scan_hash);
-  write.unsigned_integer("label_map_hash", description.label_map_hash);
-  write.real("isovalue", description.isovalue);
-  write.real("burr_radius_mm", description.tool.burr_radius_mm);
-  write.real("shaft_radius_mm", description.tool.shaft_radius_mm);
-  write.real("shaft_length_mm", description.tool.shaft_length_mm);
-  write.text("algorithm", description.algorithm.name);
-  write.text("algorithm_label", description.algorithm.label);
-  write.text("algorithm_colour", description.algorithm.colour);
-  write.text("mode", std::string(name_of(description.mode)));
-  write.text("phase", description.segment);
-  write.unsigned_integer("seed", description.seed);
-  write.real("tick_period_s", description.tick_period_s);
+  visit_attributes(description, [&](const char* name, const auto& value, const char* /*with*/ = nullptr) {
+    using Value = std::decay_t<decltype(value)>;
+    if constexpr (std::is_same_v<Value, std::string>) {
+      write.text(name, value);
+    } else if constexpr (std::is_same_v<Value, double>) {
+      write.real(name, value);
+    } else if constexpr (std::is_same_v<Value, std::uint64_t>) {
+      write.unsigned_integer(name, value);
+    } else if constexpr (std::is_same_v<Value, std::array<int, 3>>) {
+      write.integers(name, value);
+    } else if constexpr (std::is_same_v<Value, Mode>) {
+      write.text(name, std::string(name_of(value)));
+    } else {
+      write.vector(name, value);
+    }
+  });
   write_settings(path, file, description.settings);
   write_labels(path, file, description.labels);
 }
 
 RunDescription read_description(const fs::path& path, hid_t file) {
   const AttributeReader read(path, file);
-  RunDescription description;
-  description.program_version = read.text("program_version");
-  description.scan_name = read.text("scan_name");
-  description.dims = read.integers("dims");
-  description.spacing_mm = read.vector("spacing_mm");
-  // Version 2 has none of these.
-  if (read.has("scan_hash")) {
-    for (const auto& [name, member] : kOriginAttributes) description.made.*member = read.text(name);
-    description.origin_mm = read.vector("origin_mm");
-    for (Eigen::Index axis = 0; axis < 3; ++axis)
-      description.direction.col(axis) = read.vector(kAxes[static_cast<std::size_t>(axis)]);
-    description.scan_hash = read.unsigned_integer("scan_hash");
-    description.label_map_hash = read.unsigned_integer("label_map_hash");
-  }
-  description.isovalue = read.real("isovalue");
-  description.tool = {read.real("burr_radius_mm"), read.real("shaft_radius_mm"),
-                      read.real("shaft_length_mm")};
-  description.algorithm = read_algorithm(path, read);
-  description.segment = read.text("phase");
-  if (!is_plain_name(description.segment)) {
+  RunDescription run;
+  visit_attributes(run, [&](const char* name, auto&& value, const char* with = nullptr) {
+    using Value = std::decay_t<decltype(value)>;
+    if (with != nullptr && !read.has(with)) return;
+    if constexpr (std::is_same_v<Value, std::string>) {
+      value = read.text(name);
+    } else if constexpr (std::is_same_v<Value, double>) {
+      value = read.real(name);
+    } else if constexpr (std::is_same_v<Value, std::uint64_t>) {
+      value = read.unsigned_integer(name);
+    } else if constexpr (std::is_same_v<Value, std::array<int, 3>>) {
+      value = read.integers(name);
+    } else if constexpr (std::is_same_v<Value, Mode>) {
+      value = require_mode(path, read.text(name));
+    } else {
+      value = read.vector(name);
+    }
+  });
+  if (!read.has(kLabel)) run.algorithm = by_its_name(run.algorithm.name);
+  if (!is_usable(run.algorithm))
+    throw InputError(path.string(), "its algorithm has a name, label or colour that cannot be used");
+  if (!is_plain_name(run.segment))
     throw InputError(path.string(), "the attribute 'phase' is not a plain name");
-  }
-  const std::string mode = read.text("mode");
-  description.mode = require_known(path, mode_named(mode), "mode " + mode);
-  description.seed = read.unsigned_integer("seed");
-  description.tick_period_s = read.real("tick_period_s");
-  if (!is_positive(description.tick_period_s)) {
+  if (!is_positive(run.tick_period_s))
     throw InputError(path.string(), "the attribute 'tick_period_s' is not a positive number");
-  }
-  description.settings = read_settings(path, file);
-  description.labels = read_labels(path, file);
-  return description;
+  run.settings = read_settings(path, file);
+  run.labels = read_labels(path, file);
+  return run;
 }
 
 }  // namespace osteomill

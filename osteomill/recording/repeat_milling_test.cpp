@@ -19,7 +19,8 @@ namespace {
 using testing_support::TestFolder;
 
 constexpr BoneDensities kDensities{0, 1000};
-const MillingSettings kMilling{3.0, 0.3};
+const MillingSetup kSetup{
+    .algorithm = algorithm_named("point-shell"), .removal_rate_mm3_per_Ns = 3.0, .cutting_reaction = true};
 
 Volume fresh_bone(double radius_mm = 5) {
   return testing_support::shape_volume(testing_support::centred_cube(60, 0.25),
@@ -32,8 +33,7 @@ RunDescription description_of(const Volume& bone) {
   run.spacing_mm = bone.geometry().spacing_mm;
   run.isovalue = bone.isovalue();
   run.tool = {};
-  run.settings.clear();
-  set_session_settings(run, {kDensities, kMilling, {}, {}});
+  set_session_settings(run, {kSetup, kDensities}, 0);
   return run;
 }
 
@@ -44,7 +44,7 @@ struct Milled {
 
 // Presses down with the spindle on and off in turns, in ticks of two lengths, and records it to a file.
 Milled mill_and_record(const TestFolder& folder) {
-  MillingSession session(fresh_bone(), {}, make_algorithm("point-shell", {}), kDensities, kMilling, {});
+  MillingSession session(std::make_shared<Volume>(fresh_bone()), kDensities, kSetup);
   Recorder recorder(folder / "run.h5", description_of(session.volume()));
   PosedDevice device;
   double time_s = 0;
@@ -97,10 +97,14 @@ TEST(RepeatMilling, RefusesWhatItCannotRepeat) {
   other.records.erase(other.records.begin(), other.records.begin() + 800);
   EXPECT_NE(refusal(fresh_bone(), other).find("goes on from other milling"), std::string::npos);
   other = recording;
-  other.sessions[0].start.run.settings.erase(other.sessions[0].start.run.settings.begin());
+  const auto removal_rate = [](RunDescription& run) {
+    return std::ranges::find(run.settings, "milling.removal_rate", &RunSetting::key);
+  };
+  RunDescription& lacking = other.sessions[0].start.run;
+  lacking.settings.erase(removal_rate(lacking));
   EXPECT_NE(refusal(fresh_bone(), other).find("'milling.removal_rate'"), std::string::npos);
   other = recording;
-  other.sessions[0].start.run.settings[0].value = -1.0;
+  removal_rate(other.sessions[0].start.run)->value = -1.0;
   EXPECT_NE(refusal(fresh_bone(), other).find("cannot be repeated"), std::string::npos);
   EXPECT_EQ(refusal(fresh_bone(), recording), "");
 }

@@ -13,7 +13,6 @@
 #include "osteomill/milling/cutting_reaction.h"
 #include "osteomill/recording/record_columns.h"
 #include "osteomill/recording/session_settings.h"
-#include "osteomill/session/milling_setup.h"
 #include "osteomill/volume/density_grid.h"
 
 namespace osteomill {
@@ -50,16 +49,12 @@ std::unique_ptr<MillingSession> session_at(const Volume& scan, const SessionStar
   const RunDescription& run = start.run;
   const AlgorithmDescription* algorithm = replay.find(run.algorithm.name);
   if (algorithm == nullptr) refuse(recording, "its algorithm " + run.algorithm.name + " is not known here");
-  const SessionSettings settings = session_settings(run, recording.path);
+  auto [setup, densities] = session_settings(run, recording.path);
+  setup.algorithm = *algorithm;
   try {
-    require_workable(run.tool, scan.geometry());
     auto bone = std::make_shared<Volume>(scan);
     begin_at(start, *bone);
-    auto session = std::make_unique<MillingSession>(
-        std::move(bone), run.tool, make_algorithm(*algorithm, haptic_settings(run)), settings.densities,
-        settings.milling, settings.guard.limits, run.tick_period_s);
-    session->set_vibration(settings.vibration);
-    session->guard() = WrenchGuard(settings.guard);
+    auto session = std::make_unique<MillingSession>(std::move(bone), densities, setup);
     session->count_removed_from(start.removed_mm3);
     session->take_over(start.taken_over);
     return session;
@@ -92,10 +87,10 @@ std::optional<std::string> difference_of(const TickRecord& recorded, const TickR
   return std::nullopt;
 }
 
-BurrMill make_mill(const Recording& recording, const RunDescription& run, const SessionSettings& settings,
-                   const GridGeometry& geometry) {
+BurrMill make_mill(const Recording& recording, const SessionSettings& session, const GridGeometry& geometry) {
   try {
-    return BurrMill(geometry, run.tool.burr_radius_mm, settings.densities, settings.milling);
+    return BurrMill(geometry, session.setup.tool.burr_radius_mm, session.densities,
+                    milling_settings(session.setup));
   } catch (const std::invalid_argument& error) {
     refuse(recording, fmt::format("cannot be repeated: {}", error.what()));
   }
@@ -124,14 +119,15 @@ void repeat_session(Volume& volume, const Recording& recording, const RecordedSe
                     std::size_t end) {
   const SessionStart& start = session.start;
   const SessionSettings settings = session_settings(start.run, recording.path);
-  BurrMill mill = make_mill(recording, start.run, settings, volume.geometry());
+  const MillingSettings milling = milling_settings(settings.setup);
+  BurrMill mill = make_mill(recording, settings, volume.geometry());
   begin_at(start, volume);
   double removed_mm3 = start.removed_mm3;
   for (std::size_t tick = session.first; tick < end; ++tick) {
     const TickRecord& record = recording.records[tick];
     if (!record.paused) {
       const Vec3 paying_W_N =
-          paying_force_W_N(settings.milling, record.X_WT, record.burr_force_W_N, record.spindle_on);
+          paying_force_W_N(milling, record.X_WT, record.burr_force_W_N, record.spindle_on);
       removed_mm3 += mill.step(volume, record.X_WT.position_mm, paying_W_N, record.dt_s).removed_mm3;
     }
     require_same_removal(recording, tick, removed_mm3);

@@ -28,10 +28,15 @@ Volume fresh_bone(double radius_mm = 5) {
 }
 
 // Of all settings that a session has, none at its default.
-SessionSettings settings_of_all() {
-  SessionSettings settings{{0, 1000}, {3.0, 0.3}, {true, 30000, 0.1, 0.4}, {}};
-  settings.guard = GuardSettings::for_a_hand({8, 300});
-  return settings;
+SessionSettings settings_of_all(const AlgorithmDescription& algorithm, Mode mode) {
+  return {{.algorithm = algorithm,
+           .haptics = {mode},
+           .cutting = {.spindle_speed_rpm = 30000, .tangential_share = 0.2},
+           .removal_rate_mm3_per_Ns = 3.0,
+           .cutting_reaction = true,
+           .vibration = {true, 0.1, 0.4},
+           .guard = GuardSettings{.limits = {8, 300}, .passivity_controller = true}.for_a_hand()},
+          {0, 1000}};
 }
 
 RunDescription description_of(const Volume& scan, const AlgorithmDescription& algorithm, Mode mode,
@@ -40,20 +45,14 @@ RunDescription description_of(const Volume& scan, const AlgorithmDescription& al
                        .scan_hash = fingerprint_of(scan.grid()),
                        .geometry = scan.geometry(),
                        .isovalue = isovalue,
-                       .haptics = {mode},
-                       .session = settings_of_all()},
-                      algorithm, 0);
+                       .session = settings_of_all(algorithm, mode)},
+                      0);
 }
 
 std::unique_ptr<MillingSession> make(std::shared_ptr<Volume> bone, const AlgorithmDescription& algorithm,
                                      Mode mode) {
-  const SessionSettings settings = settings_of_all();
-  auto session =
-      std::make_unique<MillingSession>(std::move(bone), MillingTool{}, make_algorithm(algorithm, {mode}),
-                                       settings.densities, settings.milling, settings.guard.limits);
-  session->set_vibration(settings.vibration);
-  session->guard().protect_a_hand();
-  return session;
+  const auto [setup, densities] = settings_of_all(algorithm, mode);
+  return std::make_unique<MillingSession>(std::move(bone), densities, setup);
 }
 
 // What a hand does to a ball of bone: presses and slides, rests, jumps, vanishes, is placed elsewhere.
@@ -254,7 +253,7 @@ TEST_F(OneRecording, TheSameMotionGoesThroughAnotherAlgorithm) {
   const Recording recording = read_recording(folder_ / "a.h5");
   Replay replay;
   replay.as = [](RunDescription run) {
-    set_algorithm(run, algorithm_named("line-proxy"), {Mode::steady}, 0);
+    set_session_settings(run, settings_of_all(algorithm_named("line-proxy"), Mode::steady), 0);
     return run;
   };
   bool begun = false;

@@ -11,7 +11,6 @@ namespace osteomill {
 namespace {
 
 constexpr std::string_view kAlgorithmPrefix = "algorithm.";
-constexpr const char* kSamplePointsKey = "sample_points";
 
 struct Entry {
   const char* key;
@@ -31,30 +30,66 @@ struct Entry {
       [](SessionSettings& s, double value) { s.field = value != 0; }
 
 constexpr std::array kEntries{
-    Entry{"milling.removal_rate", "mm^3/(N s)", OSTEOMILL_SETTING(milling.removal_rate_mm3_per_Ns)},
-    Entry{"milling.reaction_share", "", OSTEOMILL_SETTING(milling.reaction_share), true},
+    Entry{"milling.removal_rate", "mm^3/(N s)",
+          [](const SessionSettings& s) { return milling_settings(s.setup).removal_rate_mm3_per_Ns; },
+          [](SessionSettings& s, double value) { s.setup.removal_rate_mm3_per_Ns = value; }},
+    Entry{"milling.reaction_share", "",
+          [](const SessionSettings& s) { return milling_settings(s.setup).reaction_share; },
+          [](SessionSettings& s, double value) {
+            s.setup.cutting_reaction = value != 0;
+            if (value != 0) s.setup.cutting.tangential_share = value;
+          },
+          true},
     Entry{"milling.surroundings_density", "", OSTEOMILL_SETTING(densities.surroundings)},
     Entry{"milling.reference_density", "", OSTEOMILL_SETTING(densities.reference)},
-    Entry{"limit.force", "N", OSTEOMILL_SETTING(guard.limits.force_N)},
-    Entry{"limit.torque", "N mm", OSTEOMILL_SETTING(guard.limits.torque_Nmm)},
-    Entry{"vibration", "", OSTEOMILL_SWITCH(vibration.on), true},
-    Entry{"vibration.spindle_speed", "rpm", OSTEOMILL_SETTING(vibration.spindle_speed_rpm), true},
-    Entry{"vibration.force_share", "", OSTEOMILL_SETTING(vibration.force_share), true},
-    Entry{"vibration.max_force", "N", OSTEOMILL_SETTING(vibration.max_N), true},
-    Entry{"guard.max_force_rate", "N/s", OSTEOMILL_SETTING(guard.rates.force_N_s), true},
-    Entry{"guard.max_torque_rate", "N mm/s", OSTEOMILL_SETTING(guard.rates.torque_Nmm_s), true},
-    Entry{"guard.blend", "s", OSTEOMILL_SETTING(guard.blend_s), true},
-    Entry{"guard.max_move", "mm", OSTEOMILL_SETTING(guard.max_move_mm), true},
-    Entry{"guard.max_tick", "s", OSTEOMILL_SETTING(guard.max_tick_s), true},
-    Entry{"passivity_controller", "", OSTEOMILL_SWITCH(guard.passivity_controller), true},
+    Entry{"limit.force", "N", OSTEOMILL_SETTING(setup.guard.limits.force_N)},
+    Entry{"limit.torque", "N mm", OSTEOMILL_SETTING(setup.guard.limits.torque_Nmm)},
+    Entry{"vibration", "", OSTEOMILL_SWITCH(setup.vibration.on), true},
+    Entry{"vibration.spindle_speed", "rpm", OSTEOMILL_SETTING(setup.cutting.spindle_speed_rpm), true},
+    Entry{"vibration.force_share", "", OSTEOMILL_SETTING(setup.vibration.force_share), true},
+    Entry{"vibration.max_force", "N", OSTEOMILL_SETTING(setup.vibration.max_N), true},
+    Entry{"guard.max_force_rate", "N/s", OSTEOMILL_SETTING(setup.guard.rates.force_N_s), true},
+    Entry{"guard.max_torque_rate", "N mm/s", OSTEOMILL_SETTING(setup.guard.rates.torque_Nmm_s), true},
+    Entry{"guard.blend", "s", OSTEOMILL_SETTING(setup.guard.blend_s), true},
+    Entry{"guard.max_move", "mm", OSTEOMILL_SETTING(setup.guard.max_move_mm), true},
+    Entry{"guard.max_tick", "s", OSTEOMILL_SETTING(setup.guard.max_tick_s), true},
+    Entry{"passivity_controller", "", OSTEOMILL_SWITCH(setup.guard.passivity_controller), true},
 };
 
 #undef OSTEOMILL_SWITCH
 #undef OSTEOMILL_SETTING
 
+HapticSettings haptic_settings(const RunDescription& run) {
+  HapticSettings haptics{run.mode};
+  for (const RunSetting& setting : run.settings) {
+    const double* number = std::get_if<double>(&setting.value);
+    if (number != nullptr && setting.key.starts_with(kAlgorithmPrefix))
+      haptics.named.push_back({run.algorithm.name, setting.key.substr(kAlgorithmPrefix.size()), *number});
+  }
+  return haptics;
+}
+
+void set_algorithm(RunDescription& run, const MillingSetup& setup, int sample_points) {
+  run.algorithm = setup.algorithm.id;
+  run.mode = setup.haptics.mode;
+  const auto is_of_algorithm = [](const RunSetting& setting) {
+    return setting.key == kSamplePointsKey || setting.key.starts_with(kAlgorithmPrefix);
+  };
+  // In the place of those of the algorithm before.
+  const auto place = std::ranges::find_if(run.settings, is_of_algorithm) - run.settings.begin();
+  std::erase_if(run.settings, is_of_algorithm);
+  std::vector<RunSetting> settings{{std::string(kSamplePointsKey), static_cast<double>(sample_points), ""}};
+  for (const SettingValue& value : setting_values(setup.algorithm, setup.haptics))
+    settings.push_back({std::string(kAlgorithmPrefix) + value.name, value.value, value.unit});
+  run.settings.insert(run.settings.begin() + place, settings.begin(), settings.end());
+}
+
 }  // namespace
 
-void set_session_settings(RunDescription& run, const SessionSettings& session) {
+void set_session_settings(RunDescription& run, const SessionSettings& session, int sample_points) {
+  run.tool = session.setup.tool;
+  run.tick_period_s = session.setup.tick_s;
+  set_algorithm(run, session.setup, sample_points);
   for (const Entry& entry : kEntries) {
     const auto there = std::ranges::find(run.settings, entry.key, &RunSetting::key);
     if (there == run.settings.end()) {
@@ -67,6 +102,9 @@ void set_session_settings(RunDescription& run, const SessionSettings& session) {
 
 SessionSettings session_settings(const RunDescription& run, const std::filesystem::path& path) {
   SessionSettings session;
+  session.setup.tool = run.tool;
+  session.setup.haptics = haptic_settings(run);
+  session.setup.tick_s = run.tick_period_s;
   for (const Entry& entry : kEntries) {
     const auto found = std::ranges::find(run.settings, entry.key, &RunSetting::key);
     const double* number = found == run.settings.end() ? nullptr : std::get_if<double>(&found->value);
@@ -78,32 +116,6 @@ SessionSettings session_settings(const RunDescription& run, const std::filesyste
     }
   }
   return session;
-}
-
-HapticSettings haptic_settings(const RunDescription& run) {
-  HapticSettings haptics{run.mode};
-  for (const RunSetting& setting : run.settings) {
-    const double* number = std::get_if<double>(&setting.value);
-    if (number != nullptr && setting.key.starts_with(kAlgorithmPrefix))
-      haptics.named.push_back({run.algorithm.name, setting.key.substr(kAlgorithmPrefix.size()), *number});
-  }
-  return haptics;
-}
-
-void set_algorithm(RunDescription& run, const AlgorithmDescription& algorithm, const HapticSettings& haptics,
-                   int sample_points) {
-  run.algorithm = algorithm.id;
-  run.mode = haptics.mode;
-  const auto is_of_algorithm = [](const RunSetting& setting) {
-    return setting.key == kSamplePointsKey || setting.key.starts_with(kAlgorithmPrefix);
-  };
-  // In the place of those of the algorithm before.
-  const auto place = std::ranges::find_if(run.settings, is_of_algorithm) - run.settings.begin();
-  std::erase_if(run.settings, is_of_algorithm);
-  std::vector<RunSetting> settings{{kSamplePointsKey, static_cast<double>(sample_points), ""}};
-  for (const SettingValue& value : setting_values(algorithm, haptics))
-    settings.push_back({std::string(kAlgorithmPrefix) + value.name, value.value, value.unit});
-  run.settings.insert(run.settings.begin() + place, settings.begin(), settings.end());
 }
 
 }  // namespace osteomill

@@ -18,6 +18,12 @@ double microseconds_since(Clock::time_point start) {
 
 const Wrench kNotFinite{Vec3::Constant(std::numeric_limits<double>::quiet_NaN()), Vec3::Zero()};
 
+// The bone, where the tool can work in it.
+std::shared_ptr<Volume> workable(const MillingTool& tool, std::shared_ptr<Volume> bone) {
+  require_workable(tool, bone->geometry());
+  return bone;
+}
+
 // Of a force, as far as what is sent has its direction: the bone that goes is paid with what the hand gives.
 double share_sent(const Vec3& asked, const Vec3& sent) {
   return sent == asked || asked.isZero(0) ? 1 : std::clamp(sent.dot(asked) / asked.squaredNorm(), 0.0, 1.0);
@@ -25,25 +31,17 @@ double share_sent(const Vec3& asked, const Vec3& sent) {
 
 }  // namespace
 
-MillingSession::MillingSession(Volume volume, const MillingTool& tool,
-                               std::unique_ptr<HapticAlgorithm> algorithm, const BoneDensities& densities,
-                               const MillingSettings& milling, const WrenchLimits& limits,
-                               double tick_period_s)
-    : MillingSession(std::make_shared<Volume>(std::move(volume)), tool, std::move(algorithm), densities,
-                     milling, limits, tick_period_s) {}
-
-MillingSession::MillingSession(std::shared_ptr<Volume> volume, const MillingTool& tool,
-                               std::unique_ptr<HapticAlgorithm> algorithm, const BoneDensities& densities,
-                               const MillingSettings& milling, const WrenchLimits& limits,
-                               double tick_period_s)
-    : volume_(std::move(volume)),
-      algorithm_(std::move(algorithm)),
-      milling_(milling),
-      mill_(volume_->geometry(), tool.burr_radius_mm, densities, milling),
-      reaction_(milling, tool.burr_radius_mm),
-      no_go_(volume_->labels(), tool.burr_radius_mm),
-      guard_(GuardSettings{limits}) {
-  algorithm_->prepare({volume_.get(), tool, tick_period_s});
+MillingSession::MillingSession(std::shared_ptr<Volume> bone, const BoneDensities& densities,
+                               const MillingSetup& setup)
+    : volume_(workable(setup.tool, std::move(bone))),
+      algorithm_(make_algorithm(setup.algorithm, setup.haptics)),
+      milling_(milling_settings(setup)),
+      mill_(volume_->geometry(), setup.tool.burr_radius_mm, densities, milling_),
+      reaction_(milling_, setup.tool.burr_radius_mm),
+      no_go_(volume_->labels(), setup.tool.burr_radius_mm),
+      vibration_(setup.vibration, setup.cutting.spindle_speed_rpm),
+      guard_(setup.guard) {
+  algorithm_->prepare({volume_.get(), setup.tool, setup.tick_s});
 }
 
 TickRecord MillingSession::begin_record(Device& device, double time_s, double dt_s) {

@@ -8,9 +8,8 @@
 #include "osteomill/milling/burr_mill.h"
 #include "osteomill/milling/cutting_reaction.h"
 #include "osteomill/milling/no_go_watch.h"
+#include "osteomill/session/milling_setup.h"
 #include "osteomill/session/tick_record.h"
-#include "osteomill/session/vibration.h"
-#include "osteomill/session/wrench_guard.h"
 
 namespace osteomill {
 
@@ -25,15 +24,10 @@ struct TakenOver {
 /// The wrench goes out before bone is removed, so that milling cannot delay the hand.
 class MillingSession {
  public:
-  /// Takes the bone over and prepares the algorithm for ticks of nominally `tick_period_s`; may allocate.
-  /// Throws std::invalid_argument as `prepare` does.
-  MillingSession(Volume volume, const MillingTool& tool, std::unique_ptr<HapticAlgorithm> algorithm,
-                 const BoneDensities& densities, const MillingSettings& milling, const WrenchLimits& limits,
-                 double tick_period_s = 1e-3);
-  /// The same on a bone that another session has milled, which takes no further tick while this one lives.
-  MillingSession(std::shared_ptr<Volume> volume, const MillingTool& tool,
-                 std::unique_ptr<HapticAlgorithm> algorithm, const BoneDensities& densities,
-                 const MillingSettings& milling, const WrenchLimits& limits, double tick_period_s = 1e-3);
+  /// Ready to tick; takes as long as the algorithm's preparation. A session that has milled the same bone
+  /// takes no further tick while this one lives. Throws std::invalid_argument where a setting is out of range
+  /// or the tool cannot work (`require_workable`).
+  MillingSession(std::shared_ptr<Volume> bone, const BoneDensities& densities, const MillingSetup& setup);
 
   /// One haptic tick of `dt_s`, begun at `time_s`; bone is removed where `spindle_on`, as much as the force
   /// that is sent pays for. A wrench that is not finite, or a device pose that is not, sends zero and is
@@ -44,13 +38,10 @@ class MillingSession {
   /// (Volume::prepare_about). Where nobody calls it, ticks that mill new bone take microseconds longer.
   void prepare_next_ticks() { volume_->prepare_about(last_change_.voxels); }
 
-  /// Off until set; before the first tick.
-  void set_vibration(const VibrationSettings& settings) { vibration_ = Vibration(settings); }
-
   /// A tick of a pause: zero is sent, nothing is computed, and contacts are kept. As safe as `tick`.
   TickRecord idle_tick(Device& device, double time_s, double dt_s);
 
-  /// What stands between the algorithm and the hand; only the limits until set. As safe as `tick`.
+  /// What stands between the algorithm and the hand. As safe as `tick`.
   WrenchGuard& guard() { return guard_; }
 
   /// Before the first tick: begins where another session is left, whose wrench the hand feels. As safe as

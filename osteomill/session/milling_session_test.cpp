@@ -58,14 +58,17 @@ class MillingSessionTest : public ::testing::Test {
   MillingSessionTest() {
     Volume bone = testing_support::shape_volume(testing_support::centred_cube(40, 0.25),
                                                 testing_support::plane(Vec3::Zero(), Vec3::UnitZ()));
-    start(std::move(bone), MillingSettings{}, WrenchLimits{20, 500});
+    start(std::move(bone));
     device_.put({{0, 0, 1.0}, Quat::Identity()});
   }
-  void start(Volume bone, const MillingSettings& milling, const WrenchLimits& limits) {
-    auto algorithm = std::make_unique<ScriptedAlgorithm>();
-    algorithm_ = algorithm.get();
-    session_ = std::make_unique<MillingSession>(std::move(bone), MillingTool{}, std::move(algorithm),
-                                                BoneDensities{0, 1000}, milling, limits);
+  void start(Volume bone, MillingSetup setup = {}) {
+    setup.algorithm = {.id = {"scripted", "scripted", "#000000"}, .make = [this](auto) {
+                         auto algorithm = std::make_unique<ScriptedAlgorithm>();
+                         algorithm_ = algorithm.get();
+                         return algorithm;
+                       }};
+    session_ = std::make_unique<MillingSession>(std::make_shared<Volume>(std::move(bone)),
+                                                BoneDensities{0, 1000}, setup);
   }
   TickRecord tick(bool spindle_on = true) {
     return session_->tick(device_, time_s_ += 1e-3, 1e-3, spindle_on);
@@ -94,9 +97,7 @@ TEST_F(MillingSessionTest, TooMuchIsClampedAndSaid) {
 
 // The burr lies on its side, the hand to the right, and presses down: it is held back along the bone.
 TEST_F(MillingSessionTest, CuttingPullsAtTheHandWithinTheDevicesLimits) {
-  MillingSettings milling;
-  milling.reaction_share = 0.3;
-  start(session_->volume(), milling, {0.25, 500});
+  start(session_->volume(), {.cutting_reaction = true, .guard = {{0.25, 500}}});
   const Pose lying{{0, 0, 1.45}, Quat::FromTwoVectors(Vec3::UnitZ(), Vec3::UnitX())};
   device_.put(lying);
   algorithm_->next.X_WT = lying;
@@ -127,7 +128,7 @@ TEST_F(MillingSessionTest, ASpindleThatStandsStillForgetsWhatItWasPressedFor) {
   const double before_mm3 = session_->removed_mm3();
   const Volume bone = session_->volume();
   const double again_mm3 = tick().removed_mm3 - before_mm3;
-  start(bone, MillingSettings{}, WrenchLimits{20, 500});
+  start(bone);
   algorithm_->next.burr_force_W_N = {0, 0, -5};
   EXPECT_EQ(again_mm3, tick().removed_mm3);
 }

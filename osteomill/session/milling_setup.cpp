@@ -1,11 +1,8 @@
 #include "osteomill/session/milling_setup.h"
 
 #include <stdexcept>
-#include <utility>
 
 #include <fmt/core.h>
-
-#include "osteomill/haptics/algorithms.h"
 
 namespace osteomill {
 
@@ -39,24 +36,11 @@ void require_workable(const MillingTool& tool, const GridGeometry& scan) {
 
 MillingSettings milling_settings(const MillingSetup& setup) {
   MillingSettings milling;
-  milling.removal_rate_mm3_per_Ns = setup.removal_rate_mm3_per_Ns.value_or(
-      removal_rate_mm3_per_Ns(setup.cutting, setup.tool.burr_radius_mm));
+  milling.removal_rate_mm3_per_Ns = setup.removal_rate_mm3_per_Ns
+                                        ? *setup.removal_rate_mm3_per_Ns
+                                        : removal_rate_mm3_per_Ns(setup.cutting, setup.tool.burr_radius_mm);
   if (setup.cutting_reaction) milling.reaction_share = setup.cutting.tangential_share;
   return milling;
-}
-
-std::unique_ptr<MillingSession> make_session(std::shared_ptr<Volume> bone, const BoneDensities& densities,
-                                             const MillingSetup& setup) {
-  require_workable(setup.tool, bone->geometry());
-  auto session = std::make_unique<MillingSession>(std::move(bone), setup.tool,
-                                                  make_algorithm(setup.algorithm, setup.haptics), densities,
-                                                  milling_settings(setup), setup.limits);
-  VibrationSettings vibration;
-  vibration.on = setup.vibration;
-  vibration.spindle_speed_rpm = setup.cutting.spindle_speed_rpm;
-  session->set_vibration(vibration);
-  session->guard().control_passivity(setup.passivity_controller);
-  return session;
 }
 
 }  // namespace osteomill

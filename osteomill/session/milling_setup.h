@@ -1,12 +1,11 @@
 #pragma once
 
-#include <memory>
 #include <optional>
 
-#include "osteomill/geometry/wrench.h"
 #include "osteomill/haptics/algorithms.h"
 #include "osteomill/milling/burr_mill.h"
-#include "osteomill/session/milling_session.h"
+#include "osteomill/session/vibration.h"
+#include "osteomill/session/wrench_guard.h"
 #include "osteomill/tool/milling_tool.h"
 
 namespace osteomill {
@@ -19,13 +18,13 @@ struct MillingSetup {
   CuttingSettings cutting;
   /// Not given: follows from `cutting` and the burr.
   std::optional<double> removal_rate_mm3_per_Ns;
-  WrenchLimits limits;
-  /// Damping where the hand has been given more energy than it gave (WrenchGuard).
-  bool passivity_controller = false;
-  /// The hand feels the burr cut.
-  bool vibration = false;
   /// The hand feels how cutting holds the burr back along its speed (CuttingReaction).
   bool cutting_reaction = false;
+  /// The hand feels the burr cut.
+  VibrationSettings vibration;
+  GuardSettings guard;
+  /// How long a tick nominally is.
+  double tick_s = 1e-3;
 };
 
 /// Throws std::invalid_argument, with one line that says why, where a tool cannot work in a scan with this
@@ -34,11 +33,7 @@ struct MillingSetup {
 /// feel. At once, before anything is prepared.
 void require_workable(const MillingTool& tool, const GridGeometry& scan);
 
+/// What a burr mills by under this setup. Throws std::invalid_argument where a setting is out of range.
 MillingSettings milling_settings(const MillingSetup& setup);
-
-/// A session ready to tick; takes as long as the algorithm's preparation. Throws std::invalid_argument where
-/// a setting is out of range or the tool cannot work (`require_workable`).
-std::unique_ptr<MillingSession> make_session(std::shared_ptr<Volume> bone, const BoneDensities& densities,
-                                             const MillingSetup& setup);
 
 }  // namespace osteomill

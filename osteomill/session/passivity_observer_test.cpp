@@ -20,7 +20,6 @@ constexpr int kSubsteps = 200;
 struct Wall {
   double stiffness_N_per_mm = 20;
   double press_N = 0;
-  bool is_controlled = false;
 
   WrenchGuard guard{};
   SimulatedHandle handle{exact(), {{0, 0, 1}, Quat::Identity()}};
@@ -36,7 +35,6 @@ struct Wall {
   }
 
   void run(int ticks) {
-    guard.control_passivity(is_controlled);
     for (int n = 0; n < ticks; ++n) {
       const double depth_mm = std::max(0.0, -handle.read().position_mm.z());
       handle.command(
@@ -76,7 +74,7 @@ TEST(PassivityObserver, AStiffWallIsActiveWithoutTheControllerAndPassiveWithIt) 
   active.run(4000);
   Wall controlled;
   controlled.press_N = 2;
-  controlled.is_controlled = true;
+  controlled.guard = WrenchGuard({.passivity_controller = true});
   controlled.run(4000);
   EXPECT_GT(active.most_given_Nmm, 100);
   EXPECT_GT(active.deepest_mm, 10);
@@ -86,8 +84,7 @@ TEST(PassivityObserver, AStiffWallIsActiveWithoutTheControllerAndPassiveWithIt) 
 }
 
 TEST(PassivityObserver, InFreeSpaceNothingIsFelt) {
-  WrenchGuard guard;
-  guard.control_passivity(true);
+  WrenchGuard guard({.passivity_controller = true});
   Pose X_WD;
   // Pushed 1 mm along the force: 3 N mm too many.
   guard.pass({{3, 0, 0}, Vec3::Zero()}, X_WD, kTick_s);

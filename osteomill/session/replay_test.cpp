@@ -19,8 +19,8 @@ std::vector<TrajectoryPoint> down_onto_the_plane(bool milling) {
 std::vector<TickRecord> replayed(bool milling) {
   Volume bone = testing_support::shape_volume(testing_support::centred_cube(40, 0.25),
                                               testing_support::plane(Vec3::Zero(), Vec3::UnitZ()));
-  MillingSession session(std::move(bone), MillingTool{}, make_algorithm("point-shell", {.mode = Mode::paper}),
-                         BoneDensities{0, 1000}, MillingSettings{}, WrenchLimits{});
+  MillingSession session(std::make_shared<Volume>(std::move(bone)), {0, 1000},
+                         {.algorithm = algorithm_named("point-shell"), .haptics = {Mode::paper}});
   std::vector<TickRecord> log;
   replay(session, down_onto_the_plane(milling), [&](const TickRecord& record) { log.push_back(record); });
   return log;

@@ -12,14 +12,14 @@ constexpr double kMax_hz = 250;
 
 }  // namespace
 
-double vibration_hz(const VibrationSettings& settings) {
-  const double turns_per_s = settings.spindle_speed_rpm / 60;
+double vibration_hz(double spindle_speed_rpm) {
+  const double turns_per_s = spindle_speed_rpm / 60;
   return turns_per_s / std::max(1.0, std::ceil(turns_per_s / kMax_hz));
 }
 
 Vec3 Vibration::force_N(const Pose& X_WT, double burr_force_N, double dt_s) {
   if (!settings_.on || !(burr_force_N > 0) || !std::isfinite(burr_force_N)) return Vec3::Zero();
-  turns_ += vibration_hz(settings_) * dt_s;
+  turns_ += hz_ * dt_s;
   turns_ -= std::floor(turns_);
   const double amplitude_N = std::min(settings_.force_share * burr_force_N, settings_.max_N);
   const double angle = 2 * std::numbers::pi * turns_;

@@ -22,14 +22,8 @@ Wrench operator+(const Wrench& a, const Wrench& b) {
 
 }  // namespace
 
-GuardSettings GuardSettings::for_a_hand(const WrenchLimits& limits) {
-  return {limits, kRatesForAHand, 0.1, 5, 0.005};
-}
-
-void WrenchGuard::protect_a_hand() {
-  const bool passivity_controller = settings_.passivity_controller;
-  settings_ = GuardSettings::for_a_hand(settings_.limits);
-  settings_.passivity_controller = passivity_controller;
+GuardSettings GuardSettings::for_a_hand() const {
+  return {limits, kRatesForAHand, 0.1, 5, 0.005, passivity_controller};
 }
 
 void WrenchGuard::begin_anew() {

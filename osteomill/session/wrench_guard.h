@@ -21,9 +21,9 @@ struct GuardSettings {
   /// A damper is felt on contact while the hand has been given more energy than it gave (PassivityObserver).
   bool passivity_controller = false;
 
-  /// For a person's hand: kRatesForAHand, a blend of 0.1 s, moves of up to 5 mm and ticks of up to 5 ms. The
-  /// default only shortens to the limits, for hands that are simulated.
-  static GuardSettings for_a_hand(const WrenchLimits& limits);
+  /// The same for a person's hand: kRatesForAHand, a blend of 0.1 s, moves of up to 5 mm and ticks of up to
+  /// 5 ms. The default only shortens to the limits, for hands that are simulated.
+  GuardSettings for_a_hand() const;
 };
 
 /// Stands between an algorithm and a hand: what is sent is within the limits, changes no faster than it may,
@@ -35,9 +35,8 @@ class WrenchGuard {
   WrenchGuard() : WrenchGuard(GuardSettings{}) {}
   explicit WrenchGuard(const GuardSettings& settings) : settings_(settings) {}
 
-  /// From now on for a person's hand, within the limits that were set.
-  void protect_a_hand();
-  void control_passivity(bool on) { settings_.passivity_controller = on; }
+  /// From now on for a person's hand (GuardSettings::for_a_hand).
+  void protect_a_hand() { settings_ = settings_.for_a_hand(); }
   /// Given to the hand less what it gave, in N mm, up to the last pose.
   double energy_given_Nmm() const { return observer_.energy_given_Nmm(); }
   /// From now what is asked for comes up slowly, from what was last sent.

@@ -26,7 +26,7 @@ Wrench down(double force_N) {
 }
 
 WrenchGuard for_a_hand() {
-  return WrenchGuard(GuardSettings::for_a_hand({}));
+  return WrenchGuard(GuardSettings{}.for_a_hand());
 }
 
 // A hand that has felt nothing, and then this for long enough.
@@ -127,7 +127,7 @@ TEST(WrenchGuard, AfterAPauseItComesUpSlowly) {
 }
 
 TEST(WrenchGuard, AnotherAlgorithmGoesOnFromWhatWasSent) {
-  WrenchGuard after(GuardSettings::for_a_hand({10, 500}));
+  WrenchGuard after(GuardSettings{{10, 500}}.for_a_hand());
   after.begin_from(holding(2).sent());
   double before_N = 2;
   for (int n = 0; n < 200; ++n) {
@@ -157,13 +157,11 @@ class GuardedSession : public ::testing::TestWithParam<std::string> {
   GuardedSession() : session_(make(GetParam())) { put(3); }
 
   std::unique_ptr<MillingSession> make(const std::string& algorithm) {
-    auto session = std::make_unique<MillingSession>(
-        testing_support::shape_volume(testing_support::centred_cube(60, 0.25),
-                                      testing_support::plane(Vec3::Zero(), Vec3::UnitZ())),
-        MillingTool{}, make_algorithm(algorithm, HapticSettings{}), BoneDensities{0, 1000}, MillingSettings{},
-        WrenchLimits{});
-    session->guard().protect_a_hand();
-    return session;
+    return std::make_unique<MillingSession>(
+        std::make_shared<Volume>(testing_support::shape_volume(
+            testing_support::centred_cube(60, 0.25), testing_support::plane(Vec3::Zero(), Vec3::UnitZ()))),
+        BoneDensities{0, 1000},
+        MillingSetup{.algorithm = algorithm_named(algorithm), .guard = GuardSettings{}.for_a_hand()});
   }
   void put(double height_mm) { device_.put({{0, 0, height_mm}, Quat::Identity()}); }
   void tick(int count) {

@@ -13,7 +13,7 @@ cd "$folder"
 fault() { echo "FAILED: $1"; exit 1; }
 same() { "$osteomill" replay "$@" --verify --quiet >said.txt 2>said.err || fault "$1: $(cat said.err)"; grep -q "^same: " said.txt || fault "$1"; }
 
-"$osteomill" compare --seconds 1 --no-stability --quiet --cutting-reaction --force-limit 2 --out c >/dev/null
+"$osteomill" compare --seconds 1 --no-stability --quiet --cutting-reaction --passivity-controller --force-limit 2 --out c >/dev/null
 for recording in c/*.h5; do same "$recording"; done
 [ "$(ls c/*.h5 | wc -l)" -eq 8 ] || fault "there should be eight recordings"
 

@@ -1,0 +1,89 @@
+#include "app/milling_options.h"
+
+#include "app/trial_options.h"
+#include "tests/shapes.h"
+#include <CLI/CLI.hpp>
+#include <gtest/gtest.h>
+
+#include "osteomill/experiment/trial_plan.h"
+#include "osteomill/recording/session_settings.h"
+
+namespace osteomill::app {
+namespace {
+
+// Anything but what the option is where nothing is said.
+std::vector<std::string> words_for(const CLI::Option& option) {
+  const std::string name = option.get_name();
+  if (option.get_expected_max() == 0) return {name};
+  if (name == "--direction") return {name, "0.1,0,-1"};
+  if (option.get_type_name() == "X,Y,Z") return {name, "0.5,0,20"};
+  if (option.get_type_name() == "SETTING") return {name, "line-proxy.friction=0.05"};
+  return {name, name == "--push" ? "2.5" : "3"};
+}
+
+void parse(CLI::App& command, std::vector<std::string> words) {
+  std::ranges::reverse(words);
+  command.parse(std::move(words));
+}
+
+// What recordings of all algorithms say of their runs.
+std::vector<RunSetting> recorded(const std::vector<std::string>& words) {
+  CLI::App command;
+  TrialOptions options;
+  add_trial_options(command, options);
+  parse(command, words);
+  const Volume bone = testing_support::shape_volume(testing_support::centred_cube(60, 0.25),
+                                                    testing_support::ball(Vec3::Zero(), 5));
+  const TrialPlan plan{bone, "", {0, 1000}, place_entry(bone, options), trial_settings(options), ""};
+  std::vector<RunSetting> all;
+  for (const AlgorithmDescription& algorithm : all_algorithms()) {
+    const RunDescription run = describe_trial(plan, algorithm, 0, "milling");
+    all.insert(all.end(), run.settings.begin(), run.settings.end());
+    all.push_back({"burr", run.tool.burr_radius_mm, "mm"});
+    all.push_back({"shaft", run.tool.shaft_radius_mm, "mm"});
+    all.push_back({"length", run.tool.shaft_length_mm, "mm"});
+    all.push_back({"seed", static_cast<double>(run.seed), ""});
+  }
+  return all;
+}
+
+TEST(MillingOptions, WhateverIsSaidOfATrialStandsInItsRecordings) {
+  CLI::App command;
+  TrialOptions options;
+  add_trial_options(command, options);
+  const std::vector<RunSetting> usual = recorded({});
+  std::size_t walked = 0;
+  for (const CLI::Option* option : command.get_options()) {
+    if (option->get_name() == "--help" || option->get_name() == "--config") continue;
+    EXPECT_NE(recorded(words_for(*option)), usual) << option->get_name();
+    ++walked;
+  }
+  EXPECT_GT(walked, 25u);
+}
+
+TEST(MillingOptions, WhatIsSaidToAReplayIsTakenOverAndNothingElse) {
+  const auto settings_after = [](const std::vector<std::string>& words) {
+    CLI::App command;
+    MillingOptions options;
+    add_milling_options(command, options);
+    parse(command, words);
+    MillingSetup setup;
+    setup.tool.burr_radius_mm = 1.25;
+    take_what_was_said(command, options.setup, setup);
+    RunDescription run;
+    set_session_settings(run, {setup, {0, 1000}}, 0);
+    EXPECT_EQ(run.tool.burr_radius_mm, 1.25);
+    return run.settings;
+  };
+  const std::vector<RunSetting> usual = settings_after({});
+  CLI::App command;
+  MillingOptions options;
+  add_milling_options(command, options);
+  for (const MillingOption& option : milling_options()) {
+    if (option.of_the_recording) continue;
+    EXPECT_NE(settings_after(words_for(*command.get_option(option.name))), usual) << option.name;
+  }
+}
+
+}  // namespace
+}  // namespace osteomill::app
