@@ -26,8 +26,8 @@ LineProxy prepared(const Settings& settings, const Volume& volume) {
   return algorithm;
 }
 
-// With smoothed normals in both modes: with plain ones the force on a plane leans. And with one stiffness, for
-// which the numbers here are.
+// With smoothed normals in both modes: with plain ones the force on a plane leans. And with one stiffness,
+// for which the numbers here are.
 Settings smoothed(Mode mode) {
   Settings settings = Settings::defaults(mode);
   settings.smoothed_normals = true;
