@@ -49,7 +49,7 @@ RunMetrics phase_metrics(const Recording& recording) {
     metrics.force_N = metrics.torque_Nmm = kNotFelt;
     metrics.shaft = {kNotMeasured, kNotMeasured};
     metrics.turns = {kNotMeasured, kNotMeasured};
-    metrics.torque_follows_force = kNotMeasured;
+    metrics.torque_follows_force = metrics.contacts_mean = kNotMeasured;
   }
   return metrics;
 }

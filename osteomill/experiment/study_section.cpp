@@ -194,7 +194,8 @@ std::vector<std::string> how_to_read(const Study& study) {
   std::vector<std::string> paragraphs{fmt::format(
       "The same trial in {} hands: each seed (the first is {}) has a tremor and a hand of its own, drawn "
       "evenly from the published ranges; here {:.0f} to {:.0f} N/m and {:.2g} to {:.2g} N s/m. study.csv has "
-      "every trial. Recordings are kept of seed {} alone, which is the one that the figures of force, "
+      "every trial but those in other grips. Recordings are kept of seed {} alone, which is the one that the "
+      "figures of force, "
       "torque, "
       "shaft and path show; of the others only these figures of merit.",
       n, study.seeds().front(), *softest, *stiffest, *min, *max, study.seeds().front())};

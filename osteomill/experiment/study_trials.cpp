@@ -76,6 +76,7 @@ TrialPlan with_seed(const TrialPlan& plan, std::uint64_t seed) {
   person.hand.push_N = asked_for.push_N;
   person.hand.push_lever_mm = asked_for.push_lever_mm;
   person.hand.tremor_mm = asked_for.tremor_mm;
+  person.hand.tremor_rad = asked_for.tremor_rad;
   return other;
 }
 

@@ -78,8 +78,7 @@ std::string shortfall_words(const ScriptShortfall& shortfall, const ScriptSettin
     parts.push_back(fmt::format("the shaft leant on the bone for less than {:g} s",
                                 script.leant_share * script.milling_s));
   }
-  if (shortfall.lost)
-    parts.emplace_back("the tool was lost while milling: it left the bone as the hand leant");
+  if (shortfall.lost) parts.emplace_back("the tool was lost: it left the bone as the hand leant");
   if (shortfall.unsettled) parts.emplace_back("the hand did not come to feel what it wanted to hold");
   return fmt::format("{}", fmt::join(parts, "; "));
 }

@@ -92,7 +92,9 @@ double MillingScript::leant_by_rad(const Pose& X_WD) const {
 void MillingScript::feel(double dt_s, const Pose& X_WD, const Wrench& felt) {
   const bool shaft_touches = felt.torque_Nmm.norm() >= kFelt_Nmm;
   shaft_free_s_ = shaft_touches ? 0 : shaft_free_s_ + dt_s;
-  free_s_ = shaft_touches || felt.force_N.norm() >= kFelt_N ? 0 : free_s_ + dt_s;
+  const bool touches = shaft_touches || felt.force_N.norm() >= kFelt_N;
+  has_touched_ |= touches;
+  free_s_ = touches ? 0 : free_s_ + dt_s;
   if (shaft_touches && !wall_rad_) wall_rad_ = leant_by_rad(X_WD);
   if (shaft_free_s_ >= kWallGone_s) wall_rad_.reset();
 }
@@ -124,12 +126,12 @@ bool MillingScript::feels_what_it_holds(const Pose& X_WD) const {
 void MillingScript::begin(ScriptStage stage, double now_s) {
   intent_.stage = stage;
   stage_began_s_ = now_s - kRounding_s;
-  free_s_ = 0;
 }
 
 void MillingScript::advance_stage(double now_s, double dt_s, const Pose& X_WD, const Pose& X_WT) {
   const bool is_milling = intent_.stage < ScriptStage::settle;
-  shortfall_.lost |= intent_.stage == ScriptStage::lean && free_s_ >= kLost_s;
+  const bool is_leaning = intent_.stage == ScriptStage::lean || intent_.stage == ScriptStage::settle;
+  shortfall_.lost |= is_leaning && has_touched_ && free_s_ >= kLost_s;
   if (is_milling && is_milled(now_s)) {
     shortfall_.shallow |= intent_.stage < ScriptStage::lean;
     shortfall_.hardly_leant = settings_.until_leant && !shortfall_.lost && !has_leant();

@@ -62,7 +62,7 @@ struct ScriptShortfall {
   bool shallow = false;
   /// The shaft leant on bone for less than it was to.
   bool hardly_leant = false;
-  /// The tool left the bone while it leant, and found none any more.
+  /// The tool left the bone while it leant, or as it settled, and found none any more.
   bool lost = false;
   /// The hand did not come to feel the push that it wanted to hold, with the shaft against the wall.
   bool unsettled = false;
@@ -125,11 +125,12 @@ class MillingScript {
   double along_mm_ = 0;
   double sideways_mm_ = 0;
   double lean_rad_ = 0;
-  // How far the device had leant when the shaft met the wall that it is at; for how long it has been free,
-  // and in the present stage the whole tool.
+  // How far the device had leant when the shaft met the wall that it is at; for how long it, and the whole
+  // tool, have been free.
   std::optional<double> wall_rad_;
   double shaft_free_s_ = 0;
   double free_s_ = 0;
+  bool has_touched_ = false;
   // Since when the present stage, and how long in all the shaft has leant on something.
   double stage_began_s_ = 0;
   double leant_s_ = 0;

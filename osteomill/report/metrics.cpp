@@ -173,7 +173,12 @@ RunMetrics run_metrics(const Recording& recording) {
   if (is_enough_contact(contact.shaft)) metrics.shaft = direction_metrics(shaft_W);
   metrics.turns = shaft_turns(recording.records, touches, rate_hz);
   metrics.torque_follows_force = torque_following_force(torque_Nmm, force_N, shaft_touches, rate_hz);
-  metrics.contacts_mean = shaft_W.empty() ? 0 : contacts / static_cast<double>(shaft_W.size());
+  if (is_enough_contact(contact.any)) {
+    metrics.contacts_mean = contacts / static_cast<double>(shaft_W.size());
+  } else {
+    metrics.contacts_mean = kNotMeasured;
+    metrics.turns = {kNotMeasured, kNotMeasured};
+  }
   metrics.put_back_mm3 = put_back_mm3(recording.records);
   metrics.removed_mm3 =
       recording.records.back().removed_mm3 - recording.records.front().removed_mm3 + metrics.put_back_mm3;

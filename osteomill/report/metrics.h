@@ -71,7 +71,8 @@ struct RunMetrics {
   /// How much of the torque above 20 Hz follows the force above 20 Hz of the 10 ms about it
   /// (multiple_correlation.h), while the shaft touches; not a number where that is too short to say.
   double torque_follows_force = 0;
-  /// How many sample points touched, on the average of the ticks in contact.
+  /// How many sample points touched, on the average of the ticks in contact; not a number, as the turns,
+  /// where those are too few.
   double contacts_mean = 0;
   /// By milling, after the first tick.
   double removed_mm3 = 0;
