@@ -27,7 +27,7 @@ Scan read_behind(VolumeHeader header, const std::string& subject, const char* fo
                             header.warnings);
   }
   const WorkProgress::Part checking(1);
-  check_finite(subject, densities);
+  check_densities(subject, densities);
   return {DensityGrid(header.geometry, std::move(densities)), subject, format, std::move(header.warnings)};
 }
 
