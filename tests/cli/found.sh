@@ -40,6 +40,12 @@ told 1 "nrrd_ascii_long_token.nrrd: " "$osteomill" info "$found/nrrd_ascii_long_
 told 1 "spacing_1e-6.mha: has voxels 1e-06 mm apart" "$osteomill" info "$found/spacing_1e-6.mha"
 told 1 "spacing_1e-6.mha: has voxels" "$osteomill" compare "$found/spacing_1e-6.mha" --iso 668 --out out
 told 1 "spacing_1e308.mha: has voxels 1e\\+308 mm apart" "$osteomill" info "$found/spacing_1e308.mha"
+told 1 "direction_1e200.mha: has a TransformMatrix whose columns" "$osteomill" info "$found/direction_1e200.mha"
+# Voxels much longer than wide are no more work than cubes.
+for spacing in "100 0.001 100" "1.2 0.001 1.7" "0.01 0.01 1"; do
+  sed "s/^ElementSpacing = .*/ElementSpacing = $spacing/" "$found/spacing_100_0.001.mha" >long.mha
+  timeout 5 "$osteomill" info long.mha >out.txt 2>err.txt || fault "voxels of $spacing mm: $(cat err.txt)"
+done
 told 1 "deep.toml: line 1: has a name of over 1000 parts" "$osteomill" compare --config "$found/deep.toml" --out out
 cp "$found/p.csv" p.csv
 told 1 "p.csv: is what is read" "$osteomill" replay p.csv --algorithm point-shell --out p.csv
