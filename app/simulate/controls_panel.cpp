@@ -8,6 +8,7 @@
 #include "app/simulate/panels.h"
 #include "app/simulate/state_text.h"
 #include "app/simulate/widgets.h"
+#include <fmt/core.h>
 #include <imgui.h>
 
 namespace osteomill::app {
@@ -122,6 +123,21 @@ void draw_session(ViewState& view, LiveMilling& milling, bool by_pointer) {
   ImGui::TextDisabled(cuts == 1 ? "%d cut" : "%d cuts", cuts);
 }
 
+// Of several: which of them bounds bone nobody but the user knows.
+void draw_boundaries(Simulation& simulation) {
+  if (simulation.boundaries.size() < 2) return;
+  constexpr int kInARow = 4;
+  int shown = 0;
+  for (const Boundary& boundary : simulation.boundaries) {
+    const std::string label = fmt::format("{:.4g}", boundary.density);
+    if (shown++ % kInARow != 0) ImGui::SameLine();
+    if (ui::button(label.c_str(), !simulation.milling.preparing()))
+      simulation.milling.change_isovalue(boundary.density);
+    ui::hint(fmt::format("A boundary of the scan: {:.4g} below, {:.4g} above", boundary.below, boundary.above)
+                 .c_str());
+  }
+}
+
 void draw_isovalue(ViewState& view, Simulation& simulation) {
   if (!ui::header("Bone", true)) return;
   const DensityHistogram& histogram = simulation.histogram;
@@ -146,6 +162,7 @@ void draw_isovalue(ViewState& view, Simulation& simulation) {
   ui::hint("Bone is where the scan is denser. Drag, or click with Ctrl to type a number");
   ImGui::EndDisabled();
   if (!moved && !milling.preparing()) view.isovalue.reset();
+  draw_boundaries(simulation);
   ImGui::TextWrapped("%s", isovalue_text(simulation).c_str());
 }
 

@@ -206,7 +206,8 @@ VolumeHeader read_nifti_header(const fs::path& path) {
   voxels.big_endian = header.is_big_endian();
   voxels.skip = static_cast<std::uint64_t>(offset) - kHeaderBytes;
   set_scaling(subject, header, voxels, warnings);
-  return {geometry, std::move(voxels), std::move(warnings)};
+  constexpr int kIntentLabel = 1002;
+  return {geometry, std::move(voxels), std::move(warnings), {}, header.whole(68) == kIntentLabel};
 }
 
 }  // namespace osteomill
