@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include <Eigen/Cholesky>
+
 namespace osteomill {
 
 namespace {
@@ -14,7 +16,11 @@ using Index = std::uint32_t;
 class Coarsening {
  public:
   Coarsening(const BrickMesh& mesh, const GridGeometry& geometry, const VoxelBox& cells)
-      : mesh_(mesh), cluster_(mesh.vertices.size()), parent_(cluster_.size()), triangles_(mesh.indices) {
+      : mesh_(mesh),
+        min_spacing_mm_(geometry.spacing_mm.minCoeff()),
+        cluster_(mesh.vertices.size()),
+        parent_(cluster_.size()),
+        triangles_(mesh.indices) {
     constexpr double kOnFace_voxels = 1e-3;
     const Vec3 first(cells.first.i, cells.first.j, cells.first.k);
     const Vec3 last(cells.last.i + 1, cells.last.j + 1, cells.last.k + 1);
@@ -50,7 +56,7 @@ class Coarsening {
 
   // Adds the level's vertices and triangles.
   void add_level(BrickLevels& result, std::size_t level) {
-    add_means(result.vertices);
+    add_means(result.vertices, static_cast<double>(1 << level) * min_spacing_mm_);
     result.levels[level] = {result.indices.size(), triangles_.size()};
     for (const Index corner : triangles_) result.indices.push_back(mean_[corner]);
   }
@@ -71,13 +77,47 @@ class Coarsening {
     return true;
   }
 
-  // The mean of each cluster as a vertex of its own; one that is alone stays the mesh's own.
-  void add_means(std::vector<MeshVertex>& means) {
+  // The planes of a cluster's triangles, by their area, as the least squares of a point's distances to them.
+  struct Planes {
+    Mat3 normals = Mat3::Zero();
+    Vec3 offsets = Vec3::Zero();
+
+    // The point nearest to all of them, near another which says what they leave open: the mean of a sharp
+    // edge's vertices lies below it.
+    Vec3 meeting_near(const Vec3& point_W, double reach_mm) const {
+      constexpr double kHeld = 0.004;
+      const Mat3 held = normals + kHeld * normals.trace() * Mat3::Identity();
+      const Vec3 way = held.ldlt().solve(offsets - normals * point_W);
+      return way.norm() <= reach_mm ? Vec3(point_W + way) : point_W;
+    }
+  };
+
+  std::vector<Planes> planes() const {
+    std::vector<Planes> result(cluster_.size());
+    for (std::size_t n = 0; n < mesh_.indices.size(); n += 3) {
+      const Index* corners = &mesh_.indices[n];
+      const auto place = [&](int corner) { return vec3_of(mesh_.vertices[corners[corner]].position_mm); };
+      const Vec3 twice_area = (place(1) - place(0)).cross(place(2) - place(0));
+      const double area = twice_area.norm();
+      if (!(area > 0)) continue;
+      for (int corner = 0; corner < 3; ++corner) {
+        Planes& of = result[cluster_[corners[corner]]];
+        of.normals += twice_area * twice_area.transpose() / area;
+        of.offsets += twice_area.dot(place(0)) / area * twice_area;
+      }
+    }
+    return result;
+  }
+
+  // One vertex for each cluster, where its planes meet (Lindstrom 2000), with the mean of its normals and
+  // densities; one that is alone stays the mesh's own.
+  void add_means(std::vector<MeshVertex>& means, double reach_mm) {
     struct Sum {
       std::array<double, 7> of{};
       int count = 0;
     };
     std::vector<Sum> sums(cluster_.size());
+    const std::vector<Planes> planes_of = planes();
     for (Index vertex = 0; vertex < sums.size(); ++vertex) {
       Sum& sum = sums[cluster_[vertex]];
       const MeshVertex& v = mesh_.vertices[vertex];
@@ -96,8 +136,10 @@ class Coarsening {
       place[vertex] = static_cast<Index>(mesh_.vertices.size() + means.size());
       MeshVertex mean = mesh_.vertices[vertex];
       const double length = std::hypot(sum.of[3], sum.of[4], sum.of[5]);
+      const Vec3 middle = Vec3(sum.of[0], sum.of[1], sum.of[2]) / sum.count;
+      const Vec3 place_W = planes_of[vertex].meeting_near(middle, reach_mm);
       for (std::size_t n = 0; n < 3; ++n) {
-        mean.position_mm[n] = static_cast<float>(sum.of[n] / sum.count);
+        mean.position_mm[n] = static_cast<float>(place_W[static_cast<Eigen::Index>(n)]);
         if (length > 1e-3) mean.normal[n] = static_cast<float>(sum.of[3 + n] / length);
       }
       mean.density = static_cast<float>(sum.of[6] / sum.count);
@@ -109,6 +151,7 @@ class Coarsening {
   }
 
   const BrickMesh& mesh_;
+  double min_spacing_mm_;
   std::vector<Vec3> voxels_;
   std::vector<bool> on_border_;
   std::vector<Index> cluster_;  // by vertex: one that stands for all that are together

@@ -92,6 +92,24 @@ TEST_F(BrickLevelsTest, BricksOfAnyLevelsMeetWithoutAGap) {
   EXPECT_EQ(open_edges(balance), 0u);
 }
 
+// The rim of a plate does not shrink between the bricks' borders.
+TEST(BrickLevels, SharpEdgesStayWhereTheyAre) {
+  constexpr double kHalf_mm = 7.3, kVoxel_mm = 0.3;
+  const Volume plate = shape_volume(centred_cube(60, kVoxel_mm), [&](const Vec3& p) {
+    return std::max(p.head<2>().cwiseAbs().maxCoeff() - kHalf_mm, std::abs(p.z()) - 1);
+  });
+  const SurfaceMesh mesh = mesh_surface(DensityView(plate));
+  for (std::size_t n = 0; n < mesh.bricks.size(); ++n) {
+    const BrickLevels levels = levels_of(mesh.bricks[n], plate.geometry(), mesh.layout.cells(n));
+    for (const MeshVertex& vertex : levels.vertices) {
+      const Vec3 p = position_of(vertex);
+      if (std::abs(p.y()) > 6 || std::abs(p.x()) < kHalf_mm - 4 * kVoxel_mm || std::abs(p.z()) > 0.3)
+        continue;
+      EXPECT_NEAR(std::abs(p.x()), kHalf_mm, 0.75 * kVoxel_mm) << p.transpose();
+    }
+  }
+}
+
 // What is drawn stays within a cell's diagonal of what is there.
 TEST_F(BrickLevelsTest, NoLevelLeavesTheSurface) {
   for (std::size_t level = 1; level < BrickLevels::kCount; ++level) {
