@@ -123,14 +123,16 @@ void draw_session(ViewState& view, LiveMilling& milling, bool by_pointer) {
   ImGui::TextDisabled(cuts == 1 ? "%d cut" : "%d cuts", cuts);
 }
 
-// Of several: which of them bounds bone nobody but the user knows.
+// Of several: which of them bounds bone nobody but the user knows. Beside the histogram, and below it where
+// there is no room.
 void draw_boundaries(Simulation& simulation) {
   if (simulation.boundaries.size() < 2) return;
-  constexpr int kInARow = 4;
-  int shown = 0;
+  const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
+  const ImGuiStyle& style = ImGui::GetStyle();
   for (const Boundary& boundary : simulation.boundaries) {
     const std::string label = fmt::format("{:.4g}", boundary.density);
-    if (shown++ % kInARow != 0) ImGui::SameLine();
+    const float width = ImGui::CalcTextSize(label.c_str()).x + 2 * style.FramePadding.x;
+    if (ImGui::GetItemRectMax().x + style.ItemSpacing.x + width <= right) ImGui::SameLine();
     if (ui::button(label.c_str(), !simulation.milling.preparing()))
       simulation.milling.change_isovalue(boundary.density);
     ui::hint(fmt::format("A boundary of the scan: {:.4g} below, {:.4g} above", boundary.below, boundary.above)
@@ -150,6 +152,7 @@ void draw_isovalue(ViewState& view, Simulation& simulation) {
   const float share = (isovalue - histogram.min) / (histogram.max - histogram.min);
   const float x = place.x + std::clamp(share, 0.0f, 1.0f) * size.x;
   ImGui::GetWindowDrawList()->AddLine({x, place.y}, {x, place.y + size.y}, IM_COL32(255, 180, 60, 255), 2);
+  draw_boundaries(simulation);
   ImGui::BeginDisabled(milling.preparing());
   const std::string format = "%.4g" + simulation.unit;
   if (ui::slider("isovalue", &isovalue, histogram.min, histogram.max, format.c_str(),
@@ -162,7 +165,6 @@ void draw_isovalue(ViewState& view, Simulation& simulation) {
   ui::hint("Bone is where the scan is denser. Drag, or click with Ctrl to type a number");
   ImGui::EndDisabled();
   if (!moved && !milling.preparing()) view.isovalue.reset();
-  draw_boundaries(simulation);
   ImGui::TextWrapped("%s", isovalue_text(simulation).c_str());
 }
 

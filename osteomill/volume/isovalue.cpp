@@ -215,7 +215,7 @@ SuggestedIsovalue suggest_isovalue(const DensityGrid& grid, bool in_hounsfield_u
     if (boundary.below < suggested.value && suggested.value < boundary.above) continue;
     others += fmt::format("{}{:.4g}", others.empty() ? "" : " and ", boundary.density);
   }
-  if (!others.empty()) suggested.how += fmt::format("; a guess, since another boundary lies at {}", others);
+  if (!others.empty()) suggested.how += fmt::format("; a guess, with other boundaries at {}", others);
   return suggested;
 }
 

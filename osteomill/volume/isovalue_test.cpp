@@ -82,7 +82,7 @@ TEST(SuggestIsovalue, IsSaidToBeAGuessWhereThereIsAnotherBoundary) {
   const Volume outer = shape_volume(centred_cube(40, 0.25), ball(Vec3::Zero(), 4));
   const Volume inner = shape_volume(centred_cube(40, 0.25), ball(Vec3::Zero(), 2.5));
   const auto is_guess = [](const DensityGrid& grid) {
-    return suggest_isovalue(grid).how.find("; a guess, since another boundary lies at ") != std::string::npos;
+    return suggest_isovalue(grid).how.find("; a guess, with other boundaries at ") != std::string::npos;
   };
   EXPECT_FALSE(is_guess(outer.grid()));
   std::vector<float> both(outer.grid().densities().begin(), outer.grid().densities().end());
