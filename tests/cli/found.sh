@@ -73,7 +73,8 @@ for shape in "plane 0" "edge 0.5" "ball 0.25"; do
     "$osteomill" replay press.csv lifted.nrrd --iso 1000.5 --algorithm $algorithm --quiet --out lifted.csv >out.txt
     awk -F, 'NR == 1 { for (n = 1; n <= NF; ++n) if ($n == "force_z_N") z = n } $z > 0.1 { felt = 1 } END { exit !(z && felt) }' few.csv ||
       fault "$algorithm feels nothing of the $shape"
-    cmp few.csv lifted.csv || fault "$shape of few values is felt otherwise by $algorithm"
+    # All but how long each step took.
+    cmp <(cut -d, -f-23 few.csv) <(cut -d, -f-23 lifted.csv) || fault "$shape of few values is felt otherwise by $algorithm"
   done
 done
 
