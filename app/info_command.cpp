@@ -31,9 +31,9 @@ void run_info(const InfoOptions& options) {
   };
   add(isovalue_warnings(scan.grid, isovalue));
   if (is_within(scan.grid, isovalue)) {
-    LabelsRead labels = labels_of(options.scan, scan.grid);
+    LabelsRead labels = labels_of(options.scan, scan);
     add(labels.warnings);
-    Volume bone = bone_of(std::move(scan.grid), isovalue);
+    Volume bone = bone_of(std::move(scan), isovalue);
     bone.set_labels(std::move(labels.map));
     summary.labels = summarise_labels(bone);
     add(entry_warnings(bone, MillingTool{}, place_entry(bone, MillingTool{})));

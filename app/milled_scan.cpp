@@ -29,6 +29,7 @@ LoadedBone load_milled_bone(const MilledScanOptions& options) {
   const Recording recording = read_with_what_came_before(options.recording);
   ScanOptions scan = options.scan;
   if (!scan.isovalue) scan.isovalue = recording.description.isovalue;
+  scan.made_into = recording.description.scan_hash;
   LoadedBone bone = read_bone(scan);
   repeat_milling(bone.volume, recording);
   for (const std::string& warning : bone.warnings) warn(warning);
@@ -36,13 +37,8 @@ LoadedBone load_milled_bone(const MilledScanOptions& options) {
 }
 
 DensityGrid load_milled_densities(const MilledScanOptions& options) {
+  if (!options.recording.empty()) return load_milled_bone(options).volume.grid();
   Scan scan = open_scan(options.scan);
-  if (!options.recording.empty()) {
-    const Recording recording = read_with_what_came_before(options.recording);
-    Volume volume = bone_of(std::move(scan.grid), recording.description.isovalue);
-    repeat_milling(volume, recording);
-    scan.grid = volume.grid();
-  }
   for (const std::string& warning : scan.warnings) warn(scan.name + ": " + warning);
   return std::move(scan.grid);
 }

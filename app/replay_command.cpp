@@ -96,6 +96,7 @@ Volume scan_of(const ReplayOptions& options, const Recording& recording) {
   if (scan.scan.empty() && recording.description.scan_name != open_scan({}).name)
     scan.scan = recording.description.scan_name;
   scan.isovalue = recording.description.isovalue;
+  scan.made_into = recording.description.scan_hash;
   LoadedBone bone = read_bone(scan);
   require_made_with(recording, bone.volume);
   const auto& labels = bone.volume.labels();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "app/nearest_word.h"
 #include "app/positive_number.h"
 #include "app/progress.h"
 #include <fmt/core.h>
@@ -12,6 +13,7 @@
 #include "osteomill/numbers/work_progress.h"
 #include "osteomill/volume/builtin_tooth.h"
 #include "osteomill/volume/isovalue.h"
+#include "osteomill/volume/label_scan.h"
 
 namespace osteomill::app {
 
@@ -36,6 +38,13 @@ void add_scan_source(CLI::App& command, ScanOptions& options) {
           "of its UID; else the largest CT")
       ->check(not_empty())
       ->type_name("SERIES");
+  command
+      .add_option_function<std::string>(
+          "--as", [&options](const std::string& kind) { options.as_labels = kind == "labels"; },
+          "Take its values for densities, or for labels, all of which are bone; else as it says or looks, "
+          "and with --iso for densities")
+      ->check(one_of("kind", {"scan", "labels"}))
+      ->type_name("scan|labels");
   command
       .add_option_function<double>(
           "--max-memory",
@@ -62,13 +71,38 @@ void add_scan_options(CLI::App& command, ScanOptions& options) {
       ->type_name("LABEL,...");
 }
 
+namespace {
+
+bool holds_labels(const ScanOptions& options, const Scan& scan) {
+  if (options.as_labels) return *options.as_labels;
+  if (options.made_into != 0 && options.isovalue) {
+    return fingerprint_of(scan.grid) != options.made_into &&
+           fingerprint_of(bone_of_labels(scan.grid, *options.isovalue)) == options.made_into;
+  }
+  return !options.isovalue && (scan.is_labels || looks_like_labels(scan.grid));
+}
+
+}  // namespace
+
 Scan open_scan(const ScanOptions& options) {
-  if (!options.scan.empty()) return read_scan(options.scan, options.read);
-  return {builtin_tooth(), "built-in tooth", "made up", {}};
+  if (options.scan.empty()) return {builtin_tooth(), "built-in tooth", "made up", {}};
+  Scan scan = read_scan(options.scan, options.read);
+  const bool said = scan.is_labels || options.as_labels || options.made_into != 0;
+  scan.is_labels = holds_labels(options, scan);
+  if (scan.is_labels) {
+    scan.warnings.insert(
+        scan.warnings.begin(),
+        fmt::format("{} a label map: what it labels is taken for bone of one density{}",
+                    said ? "is" : "looks like", said ? "" : "; --as scan takes its values for densities"));
+  }
+  return scan;
 }
 
 SuggestedIsovalue suggested_isovalue(const ScanOptions& options, const Scan& scan) {
-  if (options.scan.empty()) return {kBuiltinToothIsovalue, "halfway between air and the tooth's dentine"};
+  if (options.scan.empty()) {
+    return {kBuiltinToothIsovalue, "halfway between air and the tooth's dentine", boundaries_in(scan.grid)};
+  }
+  if (scan.is_labels) return {isovalue_of_labels(scan.grid), "below all that is labelled"};
   return suggest_isovalue(scan.grid, scan.in_hounsfield_units);
 }
 
@@ -77,27 +111,20 @@ SuggestedIsovalue chosen_isovalue(const ScanOptions& options, const Scan& scan) 
   return suggested_isovalue(options, scan);
 }
 
-Volume bone_of(DensityGrid grid, double isovalue) {
-  if (isovalue_of_labels(grid)) grid = bone_of_labels(grid, isovalue);
-  return Volume(std::move(grid), isovalue);
+Volume bone_of(Scan scan, double isovalue) {
+  return Volume(scan.is_labels ? bone_of_labels(scan.grid, isovalue) : std::move(scan.grid), isovalue);
 }
 
-LabelsRead labels_of(const ScanOptions& options, const DensityGrid& grid) {
+LabelsRead labels_of(const ScanOptions& options, const Scan& scan) {
   LabelFiles files = options.labels;
-  const bool own = files.map.empty() && is_label_file(options.scan) && isovalue_of_labels(grid);
-  if (own) files.map = options.scan;
+  if (files.map.empty() && scan.is_labels && is_label_file(options.scan)) files.map = options.scan;
   if (files.map.empty()) {
     if (!files.table.empty() || !files.no_go.empty())
       throw InputError(options.scan.empty() ? "the built-in tooth" : options.scan,
                        "has no labels; --labels gives them");
     return {};
   }
-  LabelsRead read = read_labels(files, grid.geometry(), options.read.max_memory_bytes);
-  if (own) {
-    read.warnings.push_back(files.map.string() +
-                            ": is a label map, not a scan: what it labels is taken for bone of one density");
-  }
-  return read;
+  return read_labels(files, scan.grid.geometry(), options.read.max_memory_bytes);
 }
 
 LoadedBone read_bone(const ScanOptions& options) {
@@ -116,11 +143,14 @@ LoadedBone read_bone(const ScanOptions& options) {
   if (!is_within(scan.grid, isovalue.value)) throw InputError(scan.name, of_isovalue.front());
   warnings.insert(warnings.end(), of_isovalue.begin(), of_isovalue.end());
   for (std::string& warning : warnings) warning = scan.name + ": " + warning;
-  LabelsRead labels = labels_of(options, scan.grid);
+  LabelsRead labels = labels_of(options, scan);
   warnings.insert(warnings.end(), labels.warnings.begin(), labels.warnings.end());
-  Volume bone = bone_of(std::move(scan.grid), isovalue.value);
+  std::string name = scan.name;
+  const bool in_hounsfield_units = scan.in_hounsfield_units;
+  Volume bone = bone_of(std::move(scan), isovalue.value);
   bone.set_labels(std::move(labels.map));
-  return {std::move(bone), scan.name, std::move(isovalue.how), std::move(warnings), scan.in_hounsfield_units};
+  return {std::move(bone), std::move(name), std::move(isovalue.how), std::move(warnings),
+          in_hounsfield_units};
 }
 
 LoadedBone load_bone(const ScanOptions& options) {

@@ -22,6 +22,11 @@ struct ScanOptions {
   ReadOptions read;
   /// Of a label map beside the scan; without one none, but where the scan is itself a label map.
   LabelFiles labels{};
+  /// Whether the scan holds labels in the place of densities. Not given: as it says or looks, and with an
+  /// isovalue given it does not.
+  std::optional<bool> as_labels{};
+  /// The bone that was made of it before (fingerprint_of; 0: none), which tells what it was taken for then.
+  std::uint64_t made_into = 0;
 };
 
 /// What SCAN may be, for help.
@@ -29,7 +34,7 @@ inline constexpr const char* kScanText =
     "DICOM folder or file, NRRD, MetaImage, NIfTI, or one of them in a zip file; without one, the built-in "
     "tooth";
 
-/// Adds SCAN and what it takes to read it: --series, --max-memory.
+/// Adds SCAN and what it takes to read it: --series, --as, --max-memory.
 void add_scan_source(CLI::App& command, ScanOptions& options);
 
 /// Adds where its labels are: --labels, --label-table.
@@ -38,7 +43,8 @@ void add_label_options(CLI::App& command, LabelFiles& labels);
 /// All of these, --iso and --no-go.
 void add_scan_options(CLI::App& command, ScanOptions& options);
 
-/// The scan, or the built-in tooth; the scan's warnings are its own. Throws InputError as `read_scan` does.
+/// The scan, or the built-in tooth; the scan's warnings are its own, that it is taken for labels the first of
+/// them. Throws InputError as `read_scan` does.
 Scan open_scan(const ScanOptions& options);
 
 /// The isovalue that the user leaves us to choose for this scan.
@@ -47,13 +53,13 @@ SuggestedIsovalue suggested_isovalue(const ScanOptions& options, const Scan& sca
 /// The isovalue in use: the user's, or else the suggested one.
 SuggestedIsovalue chosen_isovalue(const ScanOptions& options, const Scan& scan);
 
-/// The bone of a scan: its densities with the isovalue, or, of a scan that is itself a label map, whatever is
-/// labelled above the isovalue, all of one density.
-Volume bone_of(DensityGrid grid, double isovalue);
+/// The bone of a scan: its densities with the isovalue, or, of one that holds labels, whatever is labelled
+/// above the isovalue, all of one density.
+Volume bone_of(Scan scan, double isovalue);
 
 /// The labels of a scan, if it has any: those that were asked for, or its own. Their warnings name the file.
 /// Throws InputError as `read_labels` does.
-LabelsRead labels_of(const ScanOptions& options, const DensityGrid& grid);
+LabelsRead labels_of(const ScanOptions& options, const Scan& scan);
 
 /// A bone ready to be milled, with its labels.
 struct LoadedBone {

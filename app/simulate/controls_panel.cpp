@@ -8,6 +8,7 @@
 #include "app/simulate/panels.h"
 #include "app/simulate/state_text.h"
 #include "app/simulate/widgets.h"
+#include <fmt/core.h>
 #include <imgui.h>
 
 namespace osteomill::app {
@@ -122,6 +123,23 @@ void draw_session(ViewState& view, LiveMilling& milling, bool by_pointer) {
   ImGui::TextDisabled(cuts == 1 ? "%d cut" : "%d cuts", cuts);
 }
 
+// Of several: which of them bounds bone nobody but the user knows. Beside the histogram, and below it where
+// there is no room.
+void draw_boundaries(Simulation& simulation) {
+  if (simulation.boundaries.size() < 2) return;
+  const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
+  const ImGuiStyle& style = ImGui::GetStyle();
+  for (const Boundary& boundary : simulation.boundaries) {
+    const std::string label = fmt::format("{:.4g}", boundary.density);
+    const float width = ImGui::CalcTextSize(label.c_str()).x + 2 * style.FramePadding.x;
+    if (ImGui::GetItemRectMax().x + style.ItemSpacing.x + width <= right) ImGui::SameLine();
+    if (ui::button(label.c_str(), !simulation.milling.preparing()))
+      simulation.milling.change_isovalue(boundary.density);
+    ui::hint(fmt::format("A boundary of the scan: {:.4g} below, {:.4g} above", boundary.below, boundary.above)
+                 .c_str());
+  }
+}
+
 void draw_isovalue(ViewState& view, Simulation& simulation) {
   if (!ui::header("Bone", true)) return;
   const DensityHistogram& histogram = simulation.histogram;
@@ -134,6 +152,7 @@ void draw_isovalue(ViewState& view, Simulation& simulation) {
   const float share = (isovalue - histogram.min) / (histogram.max - histogram.min);
   const float x = place.x + std::clamp(share, 0.0f, 1.0f) * size.x;
   ImGui::GetWindowDrawList()->AddLine({x, place.y}, {x, place.y + size.y}, IM_COL32(255, 180, 60, 255), 2);
+  draw_boundaries(simulation);
   ImGui::BeginDisabled(milling.preparing());
   const std::string format = "%.4g" + simulation.unit;
   if (ui::slider("isovalue", &isovalue, histogram.min, histogram.max, format.c_str(),

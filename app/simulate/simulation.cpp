@@ -65,6 +65,7 @@ OpenedScan open_for_milling(const ScanOptions& scan, const MillingSetup& setup,
   if (const std::string fault = tool_fault(setup.tool, box); !fault.empty())
     throw InputError(loaded.name, fault);
   const DensityHistogram histogram = histogram_of(bone->grid());
+  std::vector<Boundary> boundaries = boundaries_in(bone->grid());
   const WorkProgress::Part preparing(1);
   PreparedMilling prepared = prepare_milling(bone, setup, before);
   const WindowLevel grey_window = window_level_of(bone->grid(), prepared.densities.surroundings);
@@ -74,6 +75,7 @@ OpenedScan open_for_milling(const ScanOptions& scan, const MillingSetup& setup,
           loaded.in_hounsfield_units ? " HU" : "",
           box,
           histogram,
+          std::move(boundaries),
           grey_window,
           labels,
           std::move(prepared)};
@@ -87,6 +89,7 @@ Simulation::Simulation(OpenedScan opened, const Pose& X_WT, const Holder& holder
       isovalue_from(std::move(opened.isovalue_from)),
       unit(std::move(opened.unit)),
       histogram(opened.histogram),
+      boundaries(std::move(opened.boundaries)),
       grey_window(opened.grey_window),
       holder(holder_),
       hand(handle_settings(opened.milling.setup), pointing_hand(), X_WT),

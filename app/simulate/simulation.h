@@ -32,6 +32,7 @@ struct OpenedScan {
   std::string unit;
   BoneBox box;
   DensityHistogram histogram;
+  std::vector<Boundary> boundaries;
   WindowLevel grey_window;
   std::shared_ptr<const LabelMap> labels;
   PreparedMilling milling;
@@ -71,6 +72,7 @@ struct Simulation {
   std::string isovalue_from;
   std::string unit;
   DensityHistogram histogram;
+  std::vector<Boundary> boundaries;
   WindowLevel grey_window;
   Holder holder;
   /// Pulled where the pointer is, where it is a pointer that moves the tool.

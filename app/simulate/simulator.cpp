@@ -165,7 +165,9 @@ class Simulator {
       ScanOptions scan{left.scan,
                        left.isovalue,
                        {.series = left.series, .max_memory_bytes = options_.scan.read.max_memory_bytes},
-                       {left.labels, left.label_table, left.no_go}};
+                       {left.labels, left.label_table, left.no_go},
+                       std::nullopt,
+                       left.fingerprint};
       // Those that are asked for now.
       std::error_code other;
       if (!options_.scan.labels.map.empty() &&

@@ -96,7 +96,7 @@ Scan build_scan(const std::string& subject, DicomSeries series, std::vector<std:
     densities = read_densities(series, stack, slices);
   }
   const WorkProgress::Part checking(1);
-  check_finite(subject, densities);
+  check_densities(subject, densities);
   even_out_slices(stack, densities);
   correct_gantry_tilt(subject, stack, densities);
   warnings.insert(warnings.end(), stack.warnings.begin(), stack.warnings.end());

@@ -89,6 +89,8 @@ GridGeometry geometry_of(const std::string& subject, const Fields& fields,
     if (values.size() != 9)
       throw InputError(subject, fmt::format("has a {} that is not nine numbers", matrix));
     axes = Eigen::Map<const Mat3>(values.data());
+    if (((axes.colwise().norm().array() - 1).abs() < 0.01).count() != 3)
+      throw InputError(subject, fmt::format("has a {} whose columns are not of length 1", matrix));
   }
   const std::string origin = fields.first_of({"Offset", "Position", "Origin"});
   return checked_geometry(

@@ -126,8 +126,9 @@ Placement by_sform(const Bytes& header) {
   return placement;
 }
 
-Placement by_qform(const Bytes& header, const Vec3& spacing) {
+Placement by_qform(const std::string& subject, const Bytes& header, const Vec3& spacing) {
   const Vec3 bcd(header.number(256), header.number(260), header.number(264));
+  if (!(bcd.norm() < 1.01)) throw InputError(subject, "has a qform that is no rotation");
   const Quat rotation(std::sqrt(std::max(0.0, 1 - bcd.squaredNorm())), bcd.x(), bcd.y(), bcd.z());
   const double qfac = header.number(76) < 0 ? -1 : 1;
   return {rotation.normalized().toRotationMatrix() *
@@ -135,9 +136,10 @@ Placement by_qform(const Bytes& header, const Vec3& spacing) {
           Vec3(header.number(268), header.number(272), header.number(276))};
 }
 
-Placement placement_of(const Bytes& header, const Vec3& spacing, std::vector<std::string>& warnings) {
+Placement placement_of(const std::string& subject, const Bytes& header, const Vec3& spacing,
+                       std::vector<std::string>& warnings) {
   if (header.whole(254) > 0) return by_sform(header);
-  if (header.whole(252) > 0) return by_qform(header, spacing);
+  if (header.whole(252) > 0) return by_qform(subject, header, spacing);
   warnings.push_back("does not say how it lies in the patient; its axes were taken for RAS");
   return {spacing.asDiagonal(), Vec3::Zero()};
 }
@@ -150,7 +152,7 @@ void check_agreement(const std::string& subject, const Bytes& header, const Plac
     throw InputError(subject, "contradicts itself: its sform and its pixdim give different voxel sizes");
   }
   if (header.whole(254) > 0 && header.whole(252) > 0) {
-    const Placement other = by_qform(header, spacing);
+    const Placement other = by_qform(subject, header, spacing);
     if ((other.steps - placement.steps).cwiseAbs().maxCoeff() > 0.01 * spacing.minCoeff()) {
       warnings.push_back("its sform and its qform turn it differently; the sform was taken");
     }
@@ -162,7 +164,7 @@ GridGeometry geometry_of(const std::string& subject, const Bytes& header,
   const std::vector<double> sizes = sizes_of(subject, header);
   const std::vector<double> spacing{header.number(80), header.number(84), header.number(88)};
   const double unit_mm = unit_of(subject, header);
-  const Placement placement = placement_of(header, Vec3(spacing.data()), warnings);
+  const Placement placement = placement_of(subject, header, Vec3(spacing.data()), warnings);
   const Vec3& origin = placement.origin;
   checked_point(subject, "place", {origin.x(), origin.y(), origin.z()});
   const Vec3 lps_from_ras(-1, -1, 1);
@@ -204,7 +206,8 @@ VolumeHeader read_nifti_header(const fs::path& path) {
   voxels.big_endian = header.is_big_endian();
   voxels.skip = static_cast<std::uint64_t>(offset) - kHeaderBytes;
   set_scaling(subject, header, voxels, warnings);
-  return {geometry, std::move(voxels), std::move(warnings)};
+  constexpr int kIntentLabel = 1002;
+  return {geometry, std::move(voxels), std::move(warnings), {}, header.whole(68) == kIntentLabel};
 }
 
 }  // namespace osteomill

@@ -293,7 +293,7 @@ VolumeHeader read_nrrd_header(const fs::path& path) {
   const GridGeometry geometry = geometry_of(subject, fields, warnings);
   std::ifstream data = open_data(subject, path, fields, std::move(in));
   return {geometry, voxels_of(subject, fields, std::move(data), geometry.voxel_count()), std::move(warnings),
-          fields.key_values};
+          fields.key_values, fields.key_values.contains("Segment0_ID")};
 }
 
 }  // namespace osteomill

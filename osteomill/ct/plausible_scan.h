@@ -44,20 +44,22 @@ inline void check_memory(const std::string& subject, std::uint64_t voxels, std::
   }
 }
 
-/// Throws InputError naming `subject` where a density is not a finite number: nothing sensible can be milled
-/// there.
-inline void check_finite(const std::string& subject, const std::vector<float>& densities) {
+/// Throws InputError naming `subject` where a density is no finite number or beyond what any scanner writes:
+/// nothing sensible can be milled there, and gradients would overflow.
+inline void check_densities(const std::string& subject, const std::vector<float>& densities) {
   constexpr std::size_t kAtOnce = 1 << 22;
+  constexpr float kMost = 1e10f;
   std::ptrdiff_t count = 0;
   for (std::size_t first = 0; first < densities.size(); first += kAtOnce) {
     const std::size_t last = std::min(first + kAtOnce, densities.size());
     count += std::count_if(densities.begin() + static_cast<std::ptrdiff_t>(first),
                            densities.begin() + static_cast<std::ptrdiff_t>(last),
-                           [](float v) { return !std::isfinite(v); });
+                           [](float v) { return !(std::abs(v) <= kMost); });
     WorkProgress::done(last, densities.size());
   }
   if (count > 0) {
-    throw InputError(subject, std::to_string(count) + " voxels hold no finite number (NaN or infinity)");
+    throw InputError(subject, fmt::format("{} voxels hold no density: NaN, infinity or beyond {:g}", count,
+                                          static_cast<double>(kMost)));
   }
 }
 

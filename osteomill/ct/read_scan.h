@@ -26,6 +26,8 @@ struct Scan {
   /// Where there are several DICOM series, a line on each in the order of their numbers: modality,
   /// description, size, spacing, where it lies, UID.
   std::vector<std::string> series = {};
+  /// Where the file says that its values are labels, by its name (.seg.nrrd) or in its header.
+  bool is_labels = false;
 };
 
 /// What to read, and how much of the machine that may take.

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <numeric>
 
@@ -8,7 +9,9 @@
 
 #include "osteomill/ct/read_scan.h"
 #include "osteomill/files/input_error.h"
+#include "osteomill/volume/boundaries.h"
 #include "osteomill/volume/isovalue.h"
+#include "osteomill/volume/label_scan.h"
 
 namespace osteomill {
 namespace {
@@ -172,14 +175,60 @@ struct KnownIsovalue {
 };
 class RealScanIsovalue : public ::testing::TestWithParam<KnownIsovalue> {};
 
-// What those who know each scan count bone from. A label map's is anything between nothing and its first
-// label.
+// Whether an isovalue lies on one of the boundaries between what a grid is made of.
+bool is_on_boundary(const DensityGrid& grid, double isovalue) {
+  const std::vector<Boundary> boundaries = boundaries_in(grid);
+  return std::any_of(boundaries.begin(), boundaries.end(), [&](const Boundary& boundary) {
+    return boundary.below < isovalue && isovalue < boundary.above;
+  });
+}
+
+// What those who know each scan count bone from.
 TEST_P(RealScanIsovalue, SuggestedIsBone) {
   const auto& [path, known] = GetParam();
   OSTEOMILL_NEEDS_SHARED(path);
   const Scan scan = read_scan(shared_data() / path);
   const SuggestedIsovalue suggested = suggest_isovalue(scan.grid, scan.in_hounsfield_units);
   EXPECT_NEAR(suggested.value, known, 0.15 * known) << suggested.how;
+  EXPECT_TRUE(is_on_boundary(scan.grid, known));
+  EXPECT_FALSE(looks_like_labels(scan.grid));
+}
+
+// As programs save pictures: the whole range of densities, or what a window shows of it.
+TEST(ReadRealScan, InEightBitsBonesBoundaryIsFoundStill) {
+  struct Window {
+    const char* scan;
+    double known;
+    double black;
+    double white;
+  };
+  for (const auto& [path, known, black, white] :
+       {Window{"cranium/cranium_256x256x108_i16.nrrd", 300, -1024, 2986},
+        Window{"cranium/cranium_256x256x108_i16.nrrd", 300, -1000, 1500},
+        Window{"head_quarter/headsq_quarter.mhd", 1150, 0, 3926},
+        Window{"head_quarter/headsq_quarter.mhd", 1150, 0, 2500}}) {
+    OSTEOMILL_NEEDS_SHARED(path);
+    const Scan scan = read_scan(shared_data() / path);
+    const auto shade = [&](double density) {
+      return std::clamp((density - black) / (white - black), 0.0, 1.0) * 255;
+    };
+    std::vector<float> shades;
+    for (const float density : scan.grid.densities())
+      shades.push_back(static_cast<float>(std::round(shade(static_cast<double>(density)))));
+    const DensityGrid eight_bits(scan.grid.geometry(), std::move(shades));
+    EXPECT_TRUE(is_on_boundary(eight_bits, shade(known))) << path;
+    EXPECT_FALSE(looks_like_labels(eight_bits)) << path;
+  }
+}
+
+TEST(ReadRealScan, LabelMapsLookLikeLabels) {
+  for (const char* path : {"jaw_labels/jaw_360x360x330_labels.nrrd", "temporal_bone/ear3_256_labels.nrrd",
+                           "temporal_bone/RT138_256_labels.nrrd"}) {
+    OSTEOMILL_NEEDS_SHARED(path);
+    const DensityGrid labels = read_scan(shared_data() / path).grid;
+    EXPECT_TRUE(looks_like_labels(labels)) << path;
+    EXPECT_EQ(isovalue_of_labels(labels), 0.5) << path;
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(ReadRealScan, RealScanIsovalue,
@@ -193,10 +242,7 @@ INSTANTIATE_TEST_SUITE_P(ReadRealScan, RealScanIsovalue,
                                            KnownIsovalue{"head_quarter/headsq_quarter.mhd", 1150},
                                            KnownIsovalue{"head_tilt_dicom/series", 250},
                                            KnownIsovalue{"trabecular/lhdl_3155_D_4_bc_200x200x200_u8.nrrd",
-                                                         100},
-                                           KnownIsovalue{"jaw_labels/jaw_360x360x330_labels.nrrd", 0.5},
-                                           KnownIsovalue{"temporal_bone/ear3_256_labels.nrrd", 0.5},
-                                           KnownIsovalue{"temporal_bone/RT138_256_labels.nrrd", 0.5}));
+                                                         100}));
 
 INSTANTIATE_TEST_SUITE_P(ReadRealScan, RealScanFacts,
                          ::testing::Values("tooth", "tooth_dicom", "cranium", "head_quarter", "jaw_labels",

@@ -80,6 +80,9 @@ std::string to_json(const ScanSummary& summary) {
                               {"suggested_how", summary.suggested_iso.how},
                               {"voxels_above_iso", summary.voxels_above_iso},
                               {"warnings", summary.warnings}};
+  json["boundaries"] = nlohmann::ordered_json::array();
+  for (const Boundary& of : summary.suggested_iso.boundaries)
+    json["boundaries"].push_back({{"density", of.density}, {"below", of.below}, {"above", of.above}});
   if (!summary.series.empty()) json["series"] = summary.series;
   for (const LabelSummary& of : summary.labels) {
     json["labels"].push_back({{"value", of.label.value},
@@ -113,6 +116,9 @@ std::string to_text(const ScanSummary& summary) {
                       summary.value_mean);
   text += fmt::format("isovalue    {:.6g} suggested, {}\n", summary.suggested_iso.value,
                       summary.suggested_iso.how);
+  for (const Boundary& of : summary.suggested_iso.boundaries)
+    text += fmt::format("boundary    {:.4g}, with {:.4g} below and {:.4g} above\n", of.density, of.below,
+                        of.above);
   text += fmt::format("bone        {} voxels above {:.6g}\n", summary.voxels_above_iso, summary.isovalue);
   for (const std::string& series : summary.series) text += fmt::format("series      {}\n", series);
   for (const LabelSummary& of : summary.labels) {

@@ -52,9 +52,9 @@ ScanSummary summarise(const Scan& scan, SuggestedIsovalue suggested_iso, double 
 std::vector<LabelSummary> summarise_labels(const Volume& bone);
 
 /// A JSON object with the keys dims, spacing_mm, origin_mm, direction, value_min, value_max, value_mean,
-/// suggested_iso, suggested_how, voxels_above_iso, warnings, series where there are several, labels
-/// where there are any, and a line feed
-/// at its end. Bytes of a warning that are not UTF-8 are replaced.
+/// suggested_iso, suggested_how, voxels_above_iso, warnings, boundaries, series where there are several,
+/// labels where there are any, and a line feed at its end. Bytes of a warning that are not UTF-8 are
+/// replaced.
 std::string to_json(const ScanSummary& summary);
 
 /// The same for people, a line each.

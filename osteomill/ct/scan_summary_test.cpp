@@ -19,7 +19,8 @@ Scan some_scan() {
 }
 
 TEST(ScanSummary, JsonHasTheContractsKeys) {
-  const nlohmann::json json = nlohmann::json::parse(to_json(summarise(some_scan(), {10.0, "halfway"}, 20.0)));
+  const nlohmann::json json =
+      nlohmann::json::parse(to_json(summarise(some_scan(), {10.0, "halfway", {{12, 3, 25}}}, 20.0)));
   EXPECT_EQ(json["dims"], nlohmann::json({3, 1, 2}));
   EXPECT_EQ(json["spacing_mm"], nlohmann::json({0.5, 0.25, 2.0}));
   EXPECT_EQ(json["origin_mm"], nlohmann::json({-1.0, 2.0, 3.0}));
@@ -31,14 +32,15 @@ TEST(ScanSummary, JsonHasTheContractsKeys) {
   EXPECT_EQ(json["suggested_how"], "halfway");
   EXPECT_EQ(json["voxels_above_iso"], 2);
   EXPECT_EQ(json["warnings"].size(), 1U);
-  EXPECT_EQ(json.size(), 11U);
+  EXPECT_EQ(json["boundaries"], nlohmann::json::parse(R"([{"density": 12, "below": 3, "above": 25}])"));
+  EXPECT_EQ(json.size(), 12U);
 }
 
 TEST(ScanSummary, TextSaysTheSame) {
-  const std::string text = to_text(summarise(some_scan(), {10.0, "halfway"}, 20.0));
+  const std::string text = to_text(summarise(some_scan(), {10.0, "halfway", {{12, 3, 25}}}, 20.0));
   for (const char* part :
        {"some.nrrd (NRRD)", "3 x 1 x 2", "0.5 x 0.25 x 2 mm", "-5 to 35, mean 15", "10 suggested, halfway",
-        "2 voxels above 20", "warning: one", "j runs along 0, 0, 1"}) {
+        "12, with 3 below and 25 above", "2 voxels above 20", "warning: one", "j runs along 0, 0, 1"}) {
     EXPECT_NE(text.find(part), std::string::npos) << part << " in\n" << text;
   }
 }

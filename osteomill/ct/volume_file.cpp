@@ -27,8 +27,10 @@ Scan read_behind(VolumeHeader header, const std::string& subject, const char* fo
                             header.warnings);
   }
   const WorkProgress::Part checking(1);
-  check_finite(subject, densities);
-  return {DensityGrid(header.geometry, std::move(densities)), subject, format, std::move(header.warnings)};
+  check_densities(subject, densities);
+  Scan scan{DensityGrid(header.geometry, std::move(densities)), subject, format, std::move(header.warnings)};
+  scan.is_labels = header.is_labels || subject.find(".seg.") != std::string::npos;
+  return scan;
 }
 
 }  // namespace

@@ -327,10 +327,20 @@ TEST_F(VolumeFile, AxesThatAreNotOrthogonalAreRefused) {
   const std::string sheared = "encoding: raw\nspace: LPS\nspace directions: (1,0,0) (0.2,1,0) (0,0,1)\n";
   EXPECT_TRUE(contains(refusal(write("a.nrrd", nrrd(sheared, voxels<std::int16_t>()))), "right angles"));
   EXPECT_TRUE(contains(
-      refusal(write("a.mha", mha("TransformMatrix = 1 0 0 0.2 1 0 0 0 1\n", voxels<std::int16_t>()))),
+      refusal(write("a.mha", mha("TransformMatrix = 1 0 0 0.6 0.8 0 0 0 1\n", voxels<std::int16_t>()))),
       "right angles"));
   EXPECT_TRUE(contains(refusal(write("a.nii", Nifti().set<float>(280, 1.0F).with(voxels<std::int16_t>()))),
                        "right angles"));
+}
+
+TEST_F(VolumeFile, DirectionsThatAreNoUnitVectorsAreRefused) {
+  for (const char* length : {"0", "1e-200", "0.5", "2", "1e200", "1e308", "nan"}) {
+    const std::string field = std::string("TransformMatrix = ") + length + " 0 0 0 1 0 0 0 1\n";
+    EXPECT_TRUE(contains(refusal(write("a.mha", mha(field, voxels<std::int16_t>()))), "not of length 1"))
+        << length;
+  }
+  const auto by_qform = Nifti().set<std::int16_t>(252, 1).set<std::int16_t>(254, 0).set<float>(256, 1e30F);
+  EXPECT_TRUE(contains(refusal(write("a.nii", by_qform.with(voxels<std::int16_t>()))), "no rotation"));
 }
 
 TEST_F(VolumeFile, SpacingsThatAreNoDistanceAreRefused) {
@@ -367,13 +377,14 @@ TEST_F(VolumeFile, PlacesThatNoBoneCanHaveAreRefused) {
                        "mm apart"));
 }
 
-TEST_F(VolumeFile, VoxelsThatAreNotFiniteAreRefused) {
-  for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+TEST_F(VolumeFile, VoxelsThatHoldNoDensityAreRefused) {
+  for (const float bad :
+       {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), -1e30f}) {
     std::string data = voxels<float>();
     std::memcpy(data.data() + 4 * 7, &bad, 4);
     std::string bytes = nrrd("encoding: raw\n" + kPlaced, data);
     bytes.replace(bytes.find("short"), 5, "float");
-    EXPECT_TRUE(contains(refusal(write("a.nrrd", bytes)), "1 voxels hold no finite number"));
+    EXPECT_TRUE(contains(refusal(write("a.nrrd", bytes)), "1 voxels hold no density"));
   }
 }
 

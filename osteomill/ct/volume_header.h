@@ -19,6 +19,8 @@ struct VolumeHeader {
   std::vector<std::string> warnings;
   /// What NRRD calls key/value pairs, in which programs keep what the format has no field for.
   std::map<std::string, std::string> key_values{};
+  /// Where the header says so; it need not.
+  bool is_labels = false;
 };
 
 /// These read the header of one file each and check it: sizes and spacings are numbers above zero, the axes

@@ -1,11 +1,14 @@
 #include "osteomill/experiment/entry_pictures.h"
 
+#include <algorithm>
+#include <array>
 #include <stdexcept>
 
 #include <fmt/core.h>
 
 #include "osteomill/image/image.h"
 #include "osteomill/view/bone_picture.h"
+#include "osteomill/volume/sampling.h"
 
 namespace osteomill {
 
@@ -24,9 +27,32 @@ std::optional<std::vector<unsigned char>> picture(const Volume& bone, double ref
 
 }  // namespace
 
+double share_seen(const Volume& before, const Volume& milled, const Camera& camera) {
+  constexpr std::array kBeside{VoxelIndex{-1, 0, 0}, VoxelIndex{1, 0, 0},  VoxelIndex{0, -1, 0},
+                               VoxelIndex{0, 1, 0},  VoxelIndex{0, 0, -1}, VoxelIndex{0, 0, 1}};
+  constexpr int kBrick = BlockRanges::kBrickVoxels;
+  const GridGeometry& geometry = before.geometry();
+  double seen = 0, all = 0;
+  for_each(geometry.all_voxels().bricks(kBrick), [&](const VoxelIndex& brick) {
+    if (before.bricks().at(brick).changes == milled.bricks().at(brick).changes) return;
+    for_each(VoxelBox::of_brick(brick, kBrick).intersected(geometry.all_voxels()), [&](const VoxelIndex& v) {
+      if (!before.is_bone(v) || milled.is_bone(v)) return;
+      const bool at_surface = std::any_of(kBeside.begin(), kBeside.end(), [&](const VoxelIndex& by) {
+        return milled.is_bone_or_outside({v.i + by.i, v.j + by.j, v.k + by.k});
+      });
+      if (!at_surface) return;
+      all += 1;
+      seen += first_crossing(milled, geometry.world_from_voxel(v), camera.eye_W()) ? 0 : 1;
+    });
+  });
+  return all > 0 ? seen / all : 1;
+}
+
 EntryPictures::EntryPictures(const Volume& before, double reference_density, const MillingEntry& entry,
                              const RunEvents& events, bool of_patient)
-    : reference_density_(reference_density),
+    : bone_(before),
+      entry_(entry),
+      reference_density_(reference_density),
       of_patient_(of_patient),
       camera_(camera_above(before, entry.point_W, entry.direction_W, entry.lateral_W)),
       before_(picture(before, reference_density, camera_, of_patient, events)) {}
@@ -35,6 +61,13 @@ std::optional<std::vector<unsigned char>> EntryPictures::of(const Volume& milled
                                                             const RunEvents& events) const {
   if (!before_) return std::nullopt;
   return picture(milled, reference_density_, camera_, of_patient_, events);
+}
+
+std::optional<std::vector<unsigned char>> EntryPictures::along(const Volume& milled,
+                                                               const RunEvents& events) const {
+  if (!before_ || share_seen(bone_, milled, camera_) >= 0.5) return std::nullopt;
+  const Camera camera = camera_along(bone_, entry_.point_W, entry_.direction_W, entry_.lateral_W);
+  return picture(milled, reference_density_, camera, of_patient_, events);
 }
 
 }  // namespace osteomill

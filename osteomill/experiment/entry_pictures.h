@@ -10,6 +10,10 @@
 
 namespace osteomill {
 
+/// How much of the surface that milling left, by the voxels along it, the camera sees: 1 where nothing was
+/// milled. `milled` was the bone before and was only milled since. Not for the tick.
+double share_seen(const Volume& before, const Volume& milled, const Camera& camera);
+
 /// PNGs of a bone from obliquely above an entry, before milling and after it, all from the same view, those
 /// of a patient with the letters of the patient's directions. Where OpenGL cannot be had there are none, and
 /// a warning says so.
@@ -21,8 +25,13 @@ class EntryPictures {
   const std::optional<std::vector<unsigned char>>& before() const { return before_; }
   /// Nothing where there was none before either, or OpenGL failed since.
   std::optional<std::vector<unsigned char>> of(const Volume& milled, const RunEvents& events) const;
+  /// The same straight along the entry, where fewer than half of what milling left of the surface is seen in
+  /// the other, as behind a ridge.
+  std::optional<std::vector<unsigned char>> along(const Volume& milled, const RunEvents& events) const;
 
  private:
+  Volume bone_;
+  MillingEntry entry_;
   double reference_density_;
   bool of_patient_;
   Camera camera_;

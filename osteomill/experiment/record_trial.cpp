@@ -34,6 +34,9 @@ void add_pictures(Recorder& recorder, const EntryPictures& pictures, const Volum
   if (auto after = pictures.of(milled, events)) {
     recorder.add_picture(std::string(kPictureAfter), *std::move(after));
   }
+  if (auto along = pictures.along(milled, events)) {
+    recorder.add_picture(std::string(kPictureAlong), *std::move(along));
+  }
 }
 
 }  // namespace

@@ -81,14 +81,14 @@ std::optional<Vec3> surface_along(const Volume& volume, const Vec3& from_W, cons
   const BoundingBall ball = ball_around(volume.geometry());
   const double middle_mm = direction_W.dot(ball.centre_W - from_W);
   if (!is_bone_at(volume, from_W)) {
-    // Only the part of the line near the grid is walked, however far away it begins.
-    const double first_mm = std::max(0.0, middle_mm - ball.radius_mm);
     const double last_mm = middle_mm + ball.radius_mm;
-    if (!(last_mm > first_mm)) return std::nullopt;
-    return first_crossing(volume, from_W + first_mm * direction_W, from_W + last_mm * direction_W);
+    if (!(last_mm > 0)) return std::nullopt;
+    return first_crossing(volume, from_W, from_W + last_mm * direction_W);
   }
   // Back out of the bone in steps that miss no gap of a voxel; beyond the ball there is none.
-  const double step_mm = 0.5 * volume.geometry().spacing_mm.minCoeff();
+  const GridGeometry& geometry = volume.geometry();
+  const double step_mm =
+      0.5 / (geometry.direction.transpose() * direction_W).cwiseQuotient(geometry.spacing_mm).norm();
   Vec3 inside_W = from_W;
   for (double way_mm = 0; way_mm < 2 * ball.radius_mm + step_mm; way_mm += step_mm) {
     const Vec3 next_W = inside_W - step_mm * direction_W;

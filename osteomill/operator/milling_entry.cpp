@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include <fmt/format.h>
+
 #include "osteomill/files/input_error.h"
 #include "osteomill/numbers/work_progress.h"
 #include "osteomill/operator/entry_places.h"
@@ -161,10 +163,20 @@ MillingEntry default_entry(const Volume& volume, const MillingTool& tool, const 
 
 std::vector<std::string> entry_warnings(const Volume& volume, const MillingTool& tool,
                                         const MillingEntry& entry) {
-  if (is_on_cut_edge(volume.geometry(), entry.point_W))
-    return {"the tool enters where the border of the volume cuts the bone off"};
-  if (!can_stay(volume, tool, entry)) return {"where the tool enters it does not stay in bone for long"};
-  return {};
+  std::vector<std::string> warnings;
+  const double apart_mm = volume.geometry().spacing_mm.maxCoeff();
+  if (apart_mm > tool.burr_radius_mm) {
+    warnings.push_back(fmt::format(
+        "the scan's voxels lie up to {:.3g} mm apart, more than the burr's radius of {:.3g} mm: what is "
+        "milled is hardly seen or felt as it was",
+        apart_mm, tool.burr_radius_mm));
+  }
+  if (is_on_cut_edge(volume.geometry(), entry.point_W)) {
+    warnings.emplace_back("the tool enters where the border of the volume cuts the bone off");
+  } else if (!can_stay(volume, tool, entry)) {
+    warnings.emplace_back("where the tool enters it does not stay in bone for long");
+  }
+  return warnings;
 }
 
 Pose pose_above(const MillingEntry& entry, const MillingTool& tool, double above_mm) {

@@ -170,6 +170,18 @@ TEST(PlaceEntry, AThinEdgeIsNotWhereAToolStays) {
   EXPECT_TRUE(entry_warnings(volume, kTool, entry).empty());
 }
 
+TEST(PlaceEntry, SlicesThatAreThickerThanTheBurrsRadiusAreSaid) {
+  GridGeometry geometry = centred_cube(40, 0.5);
+  geometry.spacing_mm.z() = 3;
+  geometry.origin_mm.z() = -58.5;
+  const Volume volume = shape_volume(geometry, plane(Vec3::Zero(), Vec3::UnitZ()));
+  MillingTool tool = kTool;
+  for (const double radius_mm : {2.9, 3.1}) {
+    tool.burr_radius_mm = radius_mm;
+    EXPECT_EQ(entry_warnings(volume, tool, place_entry(volume, tool)).size(), radius_mm < 3 ? 1u : 0u);
+  }
+}
+
 TEST(PlaceEntry, WhereNoPlaceIsGoodTheTopIsTakenAndSaid) {
   // A lattice of thin rods.
   const auto rods = [](const Vec3& p) {

@@ -53,7 +53,7 @@ std::vector<Recording> in_stretches(Recording recording) {
     stretches.push_back(std::move(stretch));
   }
   for (const RunPicture& picture : recording.pictures) {
-    Recording& shown = picture.name == kPictureAfter ? stretches.back() : stretches.front();
+    Recording& shown = picture.name == kPictureBefore ? stretches.front() : stretches.back();
     shown.pictures.push_back(picture);
   }
   return stretches;

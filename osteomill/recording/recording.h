@@ -32,9 +32,11 @@ struct RunPicture {
   std::vector<unsigned char> png;
 };
 
-/// The names of the pictures that reports lay side by side: the bone before the run and after it.
+/// The names of the pictures that reports lay side by side: the bone before the run and after it, and after
+/// it seen along the entry where the other view does not show what was removed.
 inline constexpr std::string_view kPictureBefore = "before";
 inline constexpr std::string_view kPictureAfter = "after";
+inline constexpr std::string_view kPictureAlong = "along";
 
 /// The key of the further setting of a run that has no pictures because OpenGL could not be had.
 inline constexpr std::string_view kPicturesKey = "pictures";

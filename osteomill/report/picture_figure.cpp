@@ -60,6 +60,8 @@ std::vector<Panel> panels_of(const RunGroup& group) {
           {whole ? fmt::format("After {} ({:.1f} mm³ removed)", algorithm.label, run->metrics.removed_mm3)
                  : std::string("At the end"),
            run->recording, after});
+      if (const RunPicture* along = picture_named(*run->recording, kPictureAlong))
+        panels.push_back({fmt::format("{}, seen along the entry", algorithm.label), run->recording, along});
       break;
     }
   }

@@ -1,9 +1,10 @@
 #include "osteomill/surface/brick_levels.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <numeric>
+
+#include <Eigen/Cholesky>
 
 namespace osteomill {
 
@@ -11,51 +12,35 @@ namespace {
 
 using Index = std::uint32_t;
 
-struct Edge {
-  Index from;
-  Index to;
-  friend auto operator<=>(const Edge&, const Edge&) = default;
-};
-
 // Takes the vertices of one brick together, level by level.
 class Coarsening {
  public:
   Coarsening(const BrickMesh& mesh, const GridGeometry& geometry, const VoxelBox& cells)
-      : mesh_(mesh), cluster_(mesh.vertices.size()), parent_(cluster_.size()), triangles_(mesh.indices) {
+      : mesh_(mesh),
+        min_spacing_mm_(geometry.spacing_mm.minCoeff()),
+        cluster_(mesh.vertices.size()),
+        parent_(cluster_.size()),
+        triangles_(mesh.indices) {
+    constexpr double kOnFace_voxels = 1e-3;
     const Vec3 first(cells.first.i, cells.first.j, cells.first.k);
     const Vec3 last(cells.last.i + 1, cells.last.j + 1, cells.last.k + 1);
-    voxels_.reserve(cluster_.size());
-    faces_.reserve(cluster_.size());
     for (const MeshVertex& vertex : mesh.vertices) {
-      const auto& p = vertex.position_mm;
-      const Vec3 voxel = geometry.voxel_from_world({p[0], p[1], p[2]});
-      unsigned faces = 0;
-      for (int axis = 0; axis < 3; ++axis) {
-        if (std::abs(voxel[axis] - first[axis]) < kOnFace_voxels) faces |= 1u << (2 * axis);
-        if (std::abs(voxel[axis] - last[axis]) < kOnFace_voxels) faces |= 2u << (2 * axis);
-      }
+      const Vec3 voxel = geometry.voxel_from_world(vec3_of(vertex.position_mm));
       voxels_.push_back(voxel);
-      faces_.push_back(faces);
+      on_border_.push_back((voxel - first).minCoeff() < kOnFace_voxels ||
+                           (last - voxel).minCoeff() < kOnFace_voxels);
     }
     std::iota(cluster_.begin(), cluster_.end(), Index{0});
-    order_ = cluster_;
-    std::sort(order_.begin(), order_.end(),
-              [&](Index a, Index b) { return mesh.vertices[a].position_mm < mesh.vertices[b].position_mm; });
-    border_ = border_edges();
   }
 
   // Cells of `size` voxels.
   void take_together(int size) {
     std::iota(parent_.begin(), parent_.end(), Index{0});
-    const auto join = [&](const Edge& edge) {
-      if (same_cell(edge.from, edge.to, size)) parent_[root(edge.from)] = root(edge.to);
-    };
-    for_edges([&](const Edge& edge) {
-      if (faces_[edge.from] == 0 && faces_[edge.to] == 0) join(edge);
-    });
-    // The border's own edges alone say what belongs together on it: both bricks have the same.
-    for (const Edge& edge : border_edges()) {
-      if (faces_[edge.from] == faces_[edge.to] && std::has_single_bit(faces_[edge.from])) join(edge);
+    for (std::size_t n = 0; n < triangles_.size(); n += 3) {
+      for (std::size_t corner = 0; corner < 3; ++corner) {
+        const Index from = triangles_[n + corner], to = triangles_[n + (corner + 1) % 3];
+        if (!on_border_[from] && !on_border_[to] && same_cell(from, to, size)) parent_[root(from)] = root(to);
+      }
     }
     for (Index& cluster : cluster_) cluster = root(cluster);
     std::size_t left = 0;
@@ -69,46 +54,14 @@ class Coarsening {
     triangles_.resize(left);
   }
 
-  // Adds the level's vertices, triangles and seams.
+  // Adds the level's vertices and triangles.
   void add_level(BrickLevels& result, std::size_t level) {
-    add_means(result.vertices);
-    const auto begin = [&](BrickLevels::Range& range) { range.first = result.indices.size(); };
-    const auto end = [&](BrickLevels::Range& range) { range.count = result.indices.size() - range.first; };
-    begin(result.levels[level]);
+    add_means(result.vertices, static_cast<double>(1 << level) * min_spacing_mm_);
+    result.levels[level] = {result.indices.size(), triangles_.size()};
     for (const Index corner : triangles_) result.indices.push_back(mean_[corner]);
-    end(result.levels[level]);
-    for (std::size_t face = 0; face < BrickLevels::kFaces; ++face) {
-      begin(result.seams[level][face]);
-      add_seam(face, result.indices);
-      end(result.seams[level][face]);
-    }
   }
 
  private:
-  static constexpr double kOnFace_voxels = 1e-3;
-
-  template <typename Use>
-  void for_edges(const Use& use) const {
-    for (std::size_t n = 0; n < triangles_.size(); n += 3) {
-      for (std::size_t corner = 0; corner < 3; ++corner)
-        use(Edge{triangles_[n + corner], triangles_[n + (corner + 1) % 3]});
-    }
-  }
-
-  // Those in a face of the brick that no other triangle of the brick has.
-  std::vector<Edge> border_edges() const {
-    std::vector<Edge> edges;
-    for_edges([&](const Edge& edge) {
-      if ((faces_[edge.from] & faces_[edge.to]) != 0) edges.push_back(edge);
-    });
-    std::sort(edges.begin(), edges.end());
-    std::vector<Edge> alone;
-    for (const Edge& edge : edges) {
-      if (!std::binary_search(edges.begin(), edges.end(), Edge{edge.to, edge.from})) alone.push_back(edge);
-    }
-    return alone;
-  }
-
   Index root(Index vertex) {
     while (parent_[vertex] != vertex) vertex = parent_[vertex] = parent_[parent_[vertex]];
     return vertex;
@@ -119,21 +72,53 @@ class Coarsening {
 
   bool same_cell(Index a, Index b, int size) const {
     for (int axis = 0; axis < 3; ++axis) {
-      if ((faces_[a] >> (2 * axis) & 3u) != 0) continue;
       if (cell_of(voxels_[a][axis], size) != cell_of(voxels_[b][axis], size)) return false;
     }
     return true;
   }
 
-  // The mean of each cluster as a vertex of its own; one that is alone stays the mesh's own. Added up in an
-  // order that is the same in all bricks that share the vertices.
-  void add_means(std::vector<MeshVertex>& means) {
+  // The planes of a cluster's triangles, by their area, as the least squares of a point's distances to them.
+  struct Planes {
+    Mat3 normals = Mat3::Zero();
+    Vec3 offsets = Vec3::Zero();
+
+    // The point nearest to all of them, near another which says what they leave open: the mean of a sharp
+    // edge's vertices lies below it.
+    Vec3 meeting_near(const Vec3& point_W, double reach_mm) const {
+      constexpr double kHeld = 0.004;
+      const Mat3 held = normals + kHeld * normals.trace() * Mat3::Identity();
+      const Vec3 way = held.ldlt().solve(offsets - normals * point_W);
+      return way.norm() <= reach_mm ? Vec3(point_W + way) : point_W;
+    }
+  };
+
+  std::vector<Planes> planes() const {
+    std::vector<Planes> result(cluster_.size());
+    for (std::size_t n = 0; n < mesh_.indices.size(); n += 3) {
+      const Index* corners = &mesh_.indices[n];
+      const auto place = [&](int corner) { return vec3_of(mesh_.vertices[corners[corner]].position_mm); };
+      const Vec3 twice_area = (place(1) - place(0)).cross(place(2) - place(0));
+      const double area = twice_area.norm();
+      if (!(area > 0)) continue;
+      for (int corner = 0; corner < 3; ++corner) {
+        Planes& of = result[cluster_[corners[corner]]];
+        of.normals += twice_area * twice_area.transpose() / area;
+        of.offsets += twice_area.dot(place(0)) / area * twice_area;
+      }
+    }
+    return result;
+  }
+
+  // One vertex for each cluster, where its planes meet (Lindstrom 2000), with the mean of its normals and
+  // densities; one that is alone stays the mesh's own.
+  void add_means(std::vector<MeshVertex>& means, double reach_mm) {
     struct Sum {
       std::array<double, 7> of{};
       int count = 0;
     };
     std::vector<Sum> sums(cluster_.size());
-    for (const Index vertex : order_) {
+    const std::vector<Planes> planes_of = planes();
+    for (Index vertex = 0; vertex < sums.size(); ++vertex) {
       Sum& sum = sums[cluster_[vertex]];
       const MeshVertex& v = mesh_.vertices[vertex];
       for (std::size_t n = 0; n < 3; ++n) {
@@ -151,8 +136,10 @@ class Coarsening {
       place[vertex] = static_cast<Index>(mesh_.vertices.size() + means.size());
       MeshVertex mean = mesh_.vertices[vertex];
       const double length = std::hypot(sum.of[3], sum.of[4], sum.of[5]);
+      const Vec3 middle = Vec3(sum.of[0], sum.of[1], sum.of[2]) / sum.count;
+      const Vec3 place_W = planes_of[vertex].meeting_near(middle, reach_mm);
       for (std::size_t n = 0; n < 3; ++n) {
-        mean.position_mm[n] = static_cast<float>(sum.of[n] / sum.count);
+        mean.position_mm[n] = static_cast<float>(place_W[static_cast<Eigen::Index>(n)]);
         if (length > 1e-3) mean.normal[n] = static_cast<float>(sum.of[3 + n] / length);
       }
       mean.density = static_cast<float>(sum.of[6] / sum.count);
@@ -163,26 +150,14 @@ class Coarsening {
     }
   }
 
-  void add_seam(std::size_t face, std::vector<Index>& indices) const {
-    const auto add = [&](Index a, Index b, Index c) {
-      if (a != b && b != c && c != a) indices.insert(indices.end(), {a, b, c, a, c, b});
-    };
-    for (const Edge& edge : border_) {
-      if ((faces_[edge.from] & faces_[edge.to] & 1u << face) == 0) continue;
-      add(edge.from, edge.to, mean_[edge.to]);
-      add(edge.from, mean_[edge.to], mean_[edge.from]);
-    }
-  }
-
   const BrickMesh& mesh_;
+  double min_spacing_mm_;
   std::vector<Vec3> voxels_;
-  std::vector<unsigned> faces_;  // a bit for each face of the brick on which the vertex lies
-  std::vector<Index> order_;
+  std::vector<bool> on_border_;
   std::vector<Index> cluster_;  // by vertex: one that stands for all that are together
   std::vector<Index> parent_;   // of what is taken together in this step
   std::vector<Index> mean_;     // by vertex: where the mean of its cluster is
   std::vector<Index> triangles_;
-  std::vector<Edge> border_;
 };
 
 }  // namespace

@@ -13,11 +13,10 @@ namespace osteomill {
 /// A brick's surface with fewer and fewer triangles, for drawing it from afar or while it moves. Level 0 is
 /// the brick's mesh itself; level n has about one vertex for every 2^n x 2^n x 2^n cells, the mean of the
 /// mesh's own there (vertex clustering after Rossignac and Borrel 1993, within a cell only what is connected,
-/// so that the two sides of a thin wall stay two). What is left of the border to another brick depends on
-/// that border alone: bricks of the same level meet without a gap.
+/// so that the two sides of a thin wall stay two). Vertices on the brick's border stay as they are: bricks of
+/// any levels meet without a gap.
 struct BrickLevels {
   static constexpr std::size_t kCount = 4;
-  static constexpr std::size_t kFaces = 6;
   struct Range {
     std::size_t first = 0;
     std::size_t count = 0;
@@ -28,10 +27,6 @@ struct BrickLevels {
   std::vector<std::uint32_t> indices;
   /// Which indices a level has; all have the mesh's own in `full_detail`.
   std::array<Range, kCount> levels{};
-  /// By level and face of the brick (lower and upper i, j, k): what fills the gap, in the face's plane,
-  /// between the level's border and the mesh's own, for where the neighbour has another level. Each triangle
-  /// twice, once for each side.
-  std::array<std::array<Range, kFaces>, kCount> seams{};
 };
 
 /// `cells` are the brick's, as SurfaceBricks names them. Not for the tick; any thread.

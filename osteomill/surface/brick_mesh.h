@@ -15,8 +15,8 @@ struct MeshVertex {
   std::array<float, 3> position_mm;
   /// In W, of unit length, out of the bone.
   std::array<float, 3> normal;
-  /// Of the bone just under the surface, to colour it by: the greater density of the two voxels that follow
-  /// the vertex into the bone along the grid line on which it lies.
+  /// Of the bone just under the surface, to colour it by: the greater of those half a voxel and a voxel below
+  /// it, where fewer of a scan's voxels are half air.
   float density;
   friend bool operator==(const MeshVertex&, const MeshVertex&) = default;
 };

@@ -181,12 +181,37 @@ void BrickMesher::add_vertex(int i, int j, int k) {
                               static_cast<double>(corner_.k + k)};
   voxel[axis] += static_cast<double>(share);
   const Triple slope = slope_between(at, at + kAlong, share);
-  const float under = bone_first ? std::max(at[0], at[-kAlong]) : std::max(at[kAlong], at[2 * kAlong]);
-
   const int edge = axis * kBlockVoxels + place;
   edge_vertex_[static_cast<std::size_t>(edge)] = static_cast<std::uint16_t>(vertices_.size());
   vertex_edge_.push_back(static_cast<std::uint32_t>(edge));
-  vertices_.push_back({position_at(voxel), normal_against(slope, axis, bone_first), under});
+  std::array<float, 3> in_block{static_cast<float>(i), static_cast<float>(j), static_cast<float>(k)};
+  in_block[axis] += share;
+  const float bone = bone_first ? at[0] : at[kAlong];
+  vertices_.push_back(
+      {position_at(voxel), normal_against(slope, axis, bone_first), density_below(in_block, slope, bone)});
+}
+
+// At a point of the block, half a voxel and a voxel along the slope; `flat` where there is none.
+float BrickMesher::density_below(const Triple& point, const Triple& slope, float flat) const {
+  const float steepness = std::sqrt(slope[0] * slope[0] + slope[1] * slope[1] + slope[2] * slope[2]);
+  if (!(steepness > 0 && std::isfinite(steepness))) return flat;
+  float greatest = threshold_;
+  // A whole voxel would lead into the layer after the last that was loaded.
+  for (const float voxels : {0.5f, 0.999f}) {
+    std::array<float, 3> fraction;
+    const float* corner = block_.data();
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const float here = point[axis] + voxels * slope[axis] / steepness;
+      const int cell = static_cast<int>(here);
+      corner += cell * kStride[axis];
+      fraction[axis] = here - static_cast<float>(cell);
+    }
+    const auto along = [](float a, float b, float share) { return a + share * (b - a); };
+    const auto row = [&](const float* at) { return along(at[0], at[1], fraction[0]); };
+    const auto layer = [&](const float* at) { return along(row(at), row(at + kStride[1]), fraction[1]); };
+    greatest = std::max(greatest, along(layer(corner), layer(corner + kStride[2]), fraction[2]));
+  }
+  return greatest;
 }
 
 // Central differences at two voxels, in density per two voxels, interpolated.

@@ -47,6 +47,7 @@ class BrickMesher {
   void add_row_vertices(int j, int k, std::uint32_t crossed);
   template <int axis>
   void add_vertex(int i, int j, int k);
+  float density_below(const Triple& point, const Triple& slope, float flat) const;
   static Triple slope_between(const float* from, const float* to, float share);
   Triple position_at(const std::array<double, 3>& voxel) const;
   Triple normal_against(const Triple& slope, std::size_t axis, bool bone_first) const;

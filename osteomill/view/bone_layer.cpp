@@ -39,45 +39,6 @@ bool may_be_seen(const std::array<Eigen::Vector4d, 6>& planes, const Sphere& sph
   });
 }
 
-// Where bricks meet both have the same vertices, which must stay the same for no seam to be seen.
-std::vector<bool> on_border(const BrickMesh& mesh, const GridGeometry& geometry, const VoxelBox& cells) {
-  constexpr double kNear_voxels = 1e-3;
-  const Vec3 first(cells.first.i, cells.first.j, cells.first.k);
-  const Vec3 last(cells.last.i + 1, cells.last.j + 1, cells.last.k + 1);
-  std::vector<bool> border;
-  border.reserve(mesh.vertices.size());
-  for (const MeshVertex& vertex : mesh.vertices) {
-    const Vec3 point_W(vertex.position_mm[0], vertex.position_mm[1], vertex.position_mm[2]);
-    const Vec3 voxel = geometry.voxel_from_world(point_W);
-    border.push_back((voxel - first).minCoeff() < kNear_voxels || (last - voxel).minCoeff() < kNear_voxels);
-  }
-  return border;
-}
-
-// Densities averaged over neighbouring vertices: which voxels a vertex looks at depends on where the grid's
-// lines meet the surface, and that would be seen as a pattern.
-std::vector<MeshVertex> with_smooth_densities(const BrickMesh& mesh, const std::vector<bool>& fixed) {
-  constexpr int kPasses = 3;
-  std::vector<MeshVertex> vertices = mesh.vertices;
-  std::vector<std::array<float, 2>> sums(vertices.size());
-  for (int pass = 0; pass < kPasses; ++pass) {
-    for (std::size_t n = 0; n < vertices.size(); ++n) sums[n] = {vertices[n].density, 1};
-    for (std::size_t n = 0; n < mesh.indices.size(); n += 3) {
-      const std::uint32_t* corners = &mesh.indices[n];
-      const float sum =
-          vertices[corners[0]].density + vertices[corners[1]].density + vertices[corners[2]].density;
-      for (int corner = 0; corner < 3; ++corner) {
-        sums[corners[corner]][0] += sum;
-        sums[corners[corner]][1] += 3;
-      }
-    }
-    for (std::size_t n = 0; n < vertices.size(); ++n) {
-      if (!fixed[n]) vertices[n].density = sums[n][0] / sums[n][1];
-    }
-  }
-  return vertices;
-}
-
 // The label's colour, of which the fourth channel says whether there is one.
 using LabelColour = std::array<std::uint8_t, 4>;
 
@@ -196,11 +157,9 @@ BoneLayer::BoneLayer(const SurfaceBricks& layout, const GridGeometry& geometry,
                      std::shared_ptr<const LabelMap> labels)
     : whole_(bone_program("")),
       cut_(bone_program("#define CUT\n")),
-      layout_(layout),
       geometry_(geometry),
       labels_(std::move(labels)),
-      bricks_(layout.count()),
-      drawn_level_(layout.count(), -1) {
+      bricks_(layout.count()) {
   for (std::size_t n = 0; n < bricks_.size(); ++n)
     bricks_[n].bounds = bounding_sphere(geometry, layout.cells(n));
 }
@@ -208,7 +167,6 @@ BoneLayer::BoneLayer(const SurfaceBricks& layout, const GridGeometry& geometry,
 void BoneLayer::set_brick(std::size_t number, const BrickMesh& mesh, const BrickLevels& levels) {
   Brick& brick = bricks_[number];
   brick.levels = levels.levels;
-  brick.seams = levels.seams;
   if (mesh.empty()) {
     brick.vertex_array = {};
     brick.vertices = {};
@@ -223,8 +181,7 @@ void BoneLayer::set_brick(std::size_t number, const BrickMesh& mesh, const Brick
   const Facing facing = facing_of(mesh);
   brick.facing_W = facing.axis_W;
   brick.facing_spread_rad = facing.spread_rad;
-  std::vector<MeshVertex> vertices =
-      with_smooth_densities(mesh, on_border(mesh, geometry_, layout_.cells(number)));
+  std::vector<MeshVertex> vertices = mesh.vertices;
   vertices.insert(vertices.end(), levels.vertices.begin(), levels.vertices.end());
   glBindVertexArray(brick.vertex_array.get());
   glBindBuffer(GL_ARRAY_BUFFER, brick.vertices.get());
@@ -311,29 +268,6 @@ std::size_t BoneLayer::triangle_count(std::span<const SeenBrick> bricks) const {
   return count;
 }
 
-namespace {
-
-void draw_range(const BrickLevels::Range& range) {
-  if (range.count == 0) return;
-  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(range.count), GL_UNSIGNED_SHORT,
-                 reinterpret_cast<const void*>(range.first * sizeof(GLushort)));
-}
-
-}  // namespace
-
-// Towards neighbours of another level.
-void BoneLayer::draw_seams(std::size_t number, std::size_t level) const {
-  const std::array<int, 3> at = layout_.coordinates(number);
-  for (std::size_t face = 0; face < BrickLevels::kFaces; ++face) {
-    std::array<int, 3> other = at;
-    const std::size_t axis = face / 2;
-    other[axis] += face % 2 == 0 ? -1 : 1;
-    if (other[axis] < 0 || other[axis] >= layout_.dims()[axis]) continue;
-    const int beside = drawn_level_[layout_.index(other[0], other[1], other[2])];
-    if (beside >= 0 && beside != static_cast<int>(level)) draw_range(bricks_[number].seams[level][face]);
-  }
-}
-
 void BoneLayer::draw(const ViewScene& scene, const Projection& projection, const CavityPass& cavities,
                      std::span<const SeenBrick> bricks) const {
   const bool cut = is_cut(scene);
@@ -346,13 +280,12 @@ void BoneLayer::draw(const ViewScene& scene, const Projection& projection, const
   if (!cut) glEnable(GL_CULL_FACE);
   // Of vertices without labels.
   glVertexAttrib4f(3, 0, 0, 0, 0);
-  for (const SeenBrick& seen : bricks) drawn_level_[seen.brick] = static_cast<std::int8_t>(seen.level);
   for (const SeenBrick& seen : bricks) {
     glBindVertexArray(bricks_[seen.brick].vertex_array.get());
-    draw_range(bricks_[seen.brick].levels[seen.level]);
-    if (seen.level > 0) draw_seams(seen.brick, seen.level);
+    const BrickLevels::Range& range = bricks_[seen.brick].levels[seen.level];
+    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(range.count), GL_UNSIGNED_SHORT,
+                   reinterpret_cast<const void*>(range.first * sizeof(GLushort)));
   }
-  for (const SeenBrick& seen : bricks) drawn_level_[seen.brick] = -1;
   glDisable(GL_CULL_FACE);
   end_cuts();
 }

@@ -74,8 +74,7 @@ class BoneLayer {
   /// The same bricks in another detail.
   void choose_levels(std::span<SeenBrick> bricks, const Detail& detail) const;
   std::size_t triangle_count(std::span<const SeenBrick> bricks) const;
-  /// Back faces only where the scene is cut open. Bricks of different levels meet without a gap where they
-  /// are drawn together.
+  /// Back faces only where the scene is cut open.
   void draw(const ViewScene& scene, const Projection& projection, const CavityPass& cavities,
             std::span<const SeenBrick> bricks) const;
   /// In full detail.
@@ -90,7 +89,6 @@ class BoneLayer {
     /// Of the vertices; none where there are no labels.
     gl::Buffer label_colours;
     std::array<BrickLevels::Range, BrickLevels::kCount> levels{};
-    std::array<std::array<BrickLevels::Range, BrickLevels::kFaces>, BrickLevels::kCount> seams{};
     Sphere bounds;
     /// The triangles' normals all lie within this half angle about this axis.
     Vec3 facing_W = Vec3::UnitZ();
@@ -99,17 +97,13 @@ class BoneLayer {
     bool turned_away(const Vec3& eye_W) const;
   };
   void set_label_colours(Brick& brick, const std::vector<MeshVertex>& vertices);
-  void draw_seams(std::size_t brick, std::size_t level) const;
 
   // Clipping costs time at every vertex.
   gl::Program whole_;
   gl::Program cut_;
-  SurfaceBricks layout_;
   GridGeometry geometry_;
   std::shared_ptr<const LabelMap> labels_;
   std::vector<Brick> bricks_;
-  // By brick: the level at which it is being drawn, or -1.
-  mutable std::vector<std::int8_t> drawn_level_;
 };
 
 }  // namespace osteomill

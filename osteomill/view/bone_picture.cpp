@@ -166,10 +166,10 @@ class BonePainter {
 
 }  // namespace
 
-Camera camera_above(const Volume& bone, const Vec3& entry_W, const Vec3& into_W, const Vec3& lateral_W) {
-  // Steep enough to look into a hole of its own width.
-  const Vec3 direction_W = 0.8 * into_W + 0.5 * into_W.cross(lateral_W) + 0.25 * lateral_W;
-  Camera camera = camera_on({entry_W, 1}, direction_W, -into_W);
+namespace {
+
+Camera camera_at(const Volume& bone, const Vec3& entry_W, const Vec3& direction_W, const Vec3& up_W) {
+  Camera camera = camera_on({entry_W, 1}, direction_W, up_W);
   double height_mm = std::max(kAroundEntry_mm, kAroundEntry_voxels * bone.geometry().spacing_mm.maxCoeff());
   const Extent extent = extent_of_bone(bone, camera);
   if (extent.size_mm < kMaxWhole_mm) {
@@ -179,6 +179,17 @@ Camera camera_above(const Volume& bone, const Vec3& entry_W, const Vec3& into_W,
   camera.field_of_view_rad = kFieldOfView_rad;
   camera.distance_mm = 0.5 * height_mm / std::tan(0.5 * kFieldOfView_rad);
   return camera;
+}
+
+}  // namespace
+
+Camera camera_above(const Volume& bone, const Vec3& entry_W, const Vec3& into_W, const Vec3& lateral_W) {
+  // Steep enough to look into a hole of its own width.
+  return camera_at(bone, entry_W, 0.8 * into_W + 0.5 * into_W.cross(lateral_W) + 0.25 * lateral_W, -into_W);
+}
+
+Camera camera_along(const Volume& bone, const Vec3& entry_W, const Vec3& into_W, const Vec3& lateral_W) {
+  return camera_at(bone, entry_W, into_W, lateral_W);
 }
 
 Image bone_picture(const Volume& bone, double reference_density, const Camera& camera, const PixelSize& size,

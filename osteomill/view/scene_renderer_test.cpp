@@ -187,7 +187,6 @@ TEST_F(SceneRendererTest, CoarserLevelsAreHardlyTold) {
   for (std::size_t n = 0; n < mesh.bricks.size(); ++n) {
     BrickLevels levels = levels_of(mesh.bricks[n], bone_.geometry(), mesh.layout.cells(n));
     levels.levels[0] = levels.levels[1 + n % 3];
-    levels.seams[0] = levels.seams[1 + n % 3];
     renderer_->set_brick(n, mesh.bricks[n], levels);
   }
   const Image fewer = picture();

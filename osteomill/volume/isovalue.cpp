@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
-#include <map>
 #include <optional>
 #include <span>
 #include <utility>
@@ -142,16 +141,6 @@ std::span<const Sample> without_lowest(std::span<const Sample> samples) {
   return {others, samples.end()};
 }
 
-// Calls `use` with every density in turn, along i fastest; it returns whether to go on.
-template <typename Use>
-void for_each_density(const DensityGrid& grid, const Use& use) {
-  std::size_t n = 0;
-  for (const float density : grid.densities()) {
-    if (n++ % (1 << 20) == 0) WorkProgress::done(0);
-    if (!use(density)) return;
-  }
-}
-
 // Single voxels of noise are no bone.
 constexpr double kTouchingShare = 1e-3;
 
@@ -188,14 +177,13 @@ bool touches(const DensityGrid& grid, double isovalue, std::size_t axis, int pla
 
 }  // namespace
 
-SuggestedIsovalue suggest_isovalue(const DensityGrid& grid, bool in_hounsfield_units) {
+namespace {
+
+SuggestedIsovalue isovalue_of_bone(const DensityGrid& grid, bool in_hounsfield_units) {
   const std::vector<Sample> all = samples_of(grid);
   const std::span<const Sample> samples = all;
   if (!(samples.back().density > samples.front().density)) {
     return {samples.front().density, "the only density there is"};
-  }
-  if (const auto below = isovalue_of_labels(grid)) {
-    return {*below, "a map of labels: all that is labelled"};
   }
   Materials found = materials_of(samples, in_hounsfield_units);
   const std::span<const Sample> unpadded = without_lowest(samples);
@@ -213,52 +201,22 @@ SuggestedIsovalue suggest_isovalue(const DensityGrid& grid, bool in_hounsfield_u
             fmt::format("{:g} above water: air and soft tissue are as far apart as in Hounsfield units",
                         kBone_HU)};
   }
-  return {halfway,
-          fmt::format("halfway between the commonest densities, {:.4g} around the bone and {:.4g} in it",
-                      found.around, found.bone)};
+  return {halfway, fmt::format("halfway between the commonest densities, {:.4g} below and {:.4g} above",
+                               found.around, found.bone)};
 }
 
-std::optional<double> isovalue_of_labels(const DensityGrid& grid) {
-  constexpr std::size_t kMaxLabels = 256;
-  struct Count {
-    std::size_t voxels = 0;
-    std::size_t like_the_one_before = 0;
-  };
-  std::map<float, Count> counts;
-  Count* count = nullptr;
-  float last = 0;
-  bool labels = true;
-  for_each_density(grid, [&](float density) {
-    const bool alike = count != nullptr && density == last;
-    if (!alike) {
-      labels = density == std::floor(density);
-      count = &counts[density];
-      labels = labels && counts.size() <= kMaxLabels;
-    }
-    last = density;
-    ++count->voxels;
-    count->like_the_one_before += alike ? 1 : 0;
-    return labels;
-  });
-  if (!labels || counts.size() < 2) return std::nullopt;
-  // Structures are pieces, unlike the shades of a soft edge or noise.
-  const auto pieces = std::count_if(std::next(counts.begin()), counts.end(), [](const auto& entry) {
-    return 2 * entry.second.like_the_one_before >= entry.second.voxels;
-  });
-  if (2 * static_cast<std::size_t>(pieces) < counts.size() - 1) return std::nullopt;
-  return 0.5 *
-         (static_cast<double>(counts.begin()->first) + static_cast<double>(std::next(counts.begin())->first));
-}
+}  // namespace
 
-DensityGrid bone_of_labels(const DensityGrid& labels, double isovalue) {
-  std::vector<float> densities;
-  densities.reserve(labels.geometry().voxel_count());
-  const auto bone = static_cast<float>(isovalue + 0.5), other = static_cast<float>(isovalue - 0.5);
-  for_each_density(labels, [&](float label) {
-    densities.push_back(static_cast<double>(label) > isovalue ? bone : other);
-    return true;
-  });
-  return DensityGrid(labels.geometry(), std::move(densities));
+SuggestedIsovalue suggest_isovalue(const DensityGrid& grid, bool in_hounsfield_units) {
+  SuggestedIsovalue suggested = isovalue_of_bone(grid, in_hounsfield_units);
+  suggested.boundaries = boundaries_in(grid);
+  std::string others;
+  for (const Boundary& boundary : suggested.boundaries) {
+    if (boundary.below < suggested.value && suggested.value < boundary.above) continue;
+    others += fmt::format("{}{:.4g}", others.empty() ? "" : " and ", boundary.density);
+  }
+  if (!others.empty()) suggested.how += fmt::format("; a guess, with other boundaries at {}", others);
+  return suggested;
 }
 
 bool is_within(const DensityGrid& grid, double isovalue) {

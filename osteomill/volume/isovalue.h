@@ -1,10 +1,10 @@
 #pragma once
 
 #include <array>
-#include <optional>
 #include <string>
 #include <vector>
 
+#include "osteomill/volume/boundaries.h"
 #include "osteomill/volume/density_grid.h"
 
 namespace osteomill {
@@ -13,6 +13,8 @@ namespace osteomill {
 struct SuggestedIsovalue {
   double value = 0;
   std::string how;
+  /// Of the scan; that the isovalue is a guess among them stands in `how`.
+  std::vector<Boundary> boundaries{};
 };
 
 /// From where bone is counted in Hounsfield units: between the 226 HU of InVesalius and Mimics and the 300 HU
@@ -20,27 +22,17 @@ struct SuggestedIsovalue {
 inline constexpr double kBone_HU = 260;
 
 /// The isovalue that bounds the bone, by what the densities are:
-/// - a map of labels (few whole numbers, most of which occur in pieces): between the two lowest, so
-///   that whatever is labelled is bone;
 /// - a scan of a body, which has its two commonest densities, air and soft tissue, 1000 apart: 260 HU, and
 ///   where the file does not say that it is in Hounsfield units, 260 above water, which lies 40 below soft
 ///   tissue;
 /// - else halfway between the commonest density of the bone and of what is around it (half-maximum height;
 ///   Spoor et al. 1993), but in Hounsfield units never under 260.
 /// Commonest is counted where densities hardly change from voxel to voxel, so not in blurred edges (Panda and
-/// Rosenfeld 1978), on either side of the threshold of Otsu 1979. Always strictly between the grid's least
+/// Rosenfeld 1978), on either side of the threshold of Otsu 1979. A guess, and said to be one, where the scan
+/// has another boundary than the one on which it lies. Always strictly between the grid's least
 /// and greatest density; where all are equal, that density. Looks at some four million voxels at the most.
 /// Not for the tick.
 SuggestedIsovalue suggest_isovalue(const DensityGrid& grid, bool in_hounsfield_units = false);
-
-/// Where a grid holds labels in the place of densities (few whole numbers, most of which
-/// occur in pieces rather than strewn): the isovalue between the two lowest, at which all that is labelled is
-/// bone. Nothing for a grid of densities. At most a pass over the voxels.
-std::optional<double> isovalue_of_labels(const DensityGrid& grid);
-
-/// A grid of labels as one of densities, since labels are no quantities: those above the isovalue are all as
-/// dense as each other, half above it, and the others half below.
-DensityGrid bone_of_labels(const DensityGrid& labels, double isovalue);
 
 /// Whether there are both bone and something else by this isovalue.
 bool is_within(const DensityGrid& grid, double isovalue);

@@ -8,8 +8,6 @@
 #include "tests/shapes.h"
 #include <gtest/gtest.h>
 
-#include "osteomill/volume/isovalue.h"
-
 namespace osteomill {
 namespace {
 
@@ -114,51 +112,6 @@ TEST(LabelMap, RefusesPlacesThatAreNoLabels) {
   EXPECT_THROW(LabelMap(three_labels(), scan, scan, {0, 1}), std::invalid_argument);
   EXPECT_THROW(LabelMap(std::vector<Label>(256), scan, scan, std::vector<LabelMap::Place>(8)),
                std::invalid_argument);
-}
-
-TEST(LabelScan, LabelsBecomeBoneOfOneDensity) {
-  const GridGeometry geometry = centred_cube(4, 1);
-  std::vector<float> labels(64, 0.0f);
-  std::fill(labels.begin() + 16, labels.begin() + 32, 1.0f);
-  std::fill(labels.begin() + 32, labels.begin() + 40, 16.0f);
-  const DensityGrid grid(geometry, labels);
-  const auto isovalue = isovalue_of_labels(grid);
-  ASSERT_TRUE(isovalue);
-  EXPECT_EQ(*isovalue, 0.5);
-  const DensityGrid bone = bone_of_labels(grid, *isovalue);
-  std::size_t n = 0;
-  for (int k = 0; k < 4; ++k) {
-    for (int j = 0; j < 4; ++j) {
-      for (int i = 0; i < 4; ++i) EXPECT_EQ((bone[{i, j, k}]), labels[n++] > 0 ? 1.0f : 0.0f);
-    }
-  }
-}
-
-TEST(LabelScan, DensitiesAreNoLabels) {
-  const GridGeometry geometry = centred_cube(10, 1);
-  std::vector<float> densities(1000);
-  std::iota(densities.begin(), densities.end(), -300.0f);
-  EXPECT_FALSE(isovalue_of_labels(DensityGrid(geometry, densities)));
-  // A few whole numbers, but as noise.
-  for (std::size_t n = 0; n < densities.size(); ++n) densities[n] = static_cast<float>((n * 7919) % 5);
-  EXPECT_FALSE(isovalue_of_labels(DensityGrid(geometry, densities)));
-  // A ball with a soft edge, whose shades are whole numbers.
-  std::size_t n = 0;
-  const GridGeometry soft = centred_cube(32, 0.5);
-  std::vector<float> ball(soft.voxel_count());
-  for (int k = 0; k < 32; ++k) {
-    for (int j = 0; j < 32; ++j) {
-      for (int i = 0; i < 32; ++i) {
-        const double share = 5.5 - soft.world_from_voxel(VoxelIndex{i, j, k}).norm();
-        ball[n++] = static_cast<float>(std::floor(1500 * std::clamp(share, 0.0, 1.0)));
-      }
-    }
-  }
-  EXPECT_FALSE(isovalue_of_labels(DensityGrid(soft, ball)));
-  std::fill(densities.begin(), densities.end(), 3.0f);
-  EXPECT_FALSE(isovalue_of_labels(DensityGrid(geometry, densities)));
-  densities[5] = 0.5f;
-  EXPECT_FALSE(isovalue_of_labels(DensityGrid(geometry, densities)));
 }
 
 }  // namespace

@@ -95,6 +95,30 @@ Block voxels_around(const DensityGrid& grid, const VoxelIndex& cell) {
 
 constexpr double kFlatGradient = 1e-9;  // density per mm
 
+struct Span {
+  double first = 0.0;
+  double last = 1.0;
+};
+
+// The part of a line of voxel coordinates, as fractions of `way`, in the grid and the one voxel around it
+// where densities still fall. It ends before it begins where there is none.
+Span span_in_grid(const GridGeometry& geometry, const Vec3& from, const Vec3& way) {
+  Span span;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double min = -1.0;
+    const double max = geometry.dims[static_cast<std::size_t>(axis)];
+    if (way[axis] == 0.0) {
+      if (from[axis] < min || from[axis] > max) return {1.0, 0.0};
+      continue;
+    }
+    const double a = (min - from[axis]) / way[axis];
+    const double b = (max - from[axis]) / way[axis];
+    span.first = std::max(span.first, std::min(a, b));
+    span.last = std::min(span.last, std::max(a, b));
+  }
+  return span;
+}
+
 }  // namespace
 
 double density_at_voxel(const DensityGrid& grid, const Vec3& voxel) {
@@ -169,11 +193,19 @@ Vec3 bisect_crossing(const Volume& volume, Vec3 outside_W, Vec3 inside_W, double
 
 std::optional<Vec3> first_crossing(const Volume& volume, const Vec3& from_W, const Vec3& to_W) {
   if (is_bone_at(volume, from_W)) return from_W;
-  const double step_mm = 0.5 * volume.geometry().spacing_mm.minCoeff();
-  const int steps = std::max(1, static_cast<int>(std::ceil((to_W - from_W).norm() / step_mm)));
-  Vec3 before = from_W;
-  for (int n = 1; n <= steps; ++n) {
-    const Vec3 here = from_W + (static_cast<double>(n) / steps) * (to_W - from_W);
+  const GridGeometry& geometry = volume.geometry();
+  const Vec3 way = (geometry.direction.transpose() * (to_W - from_W)).cwiseQuotient(geometry.spacing_mm);
+  const Span span = span_in_grid(geometry, geometry.voxel_from_world(from_W), way);
+  if (!(span.first <= span.last)) return std::nullopt;
+  const double steps = std::max(1.0, std::ceil(2 * way.norm()));
+  const auto at = [&](double n) { return Vec3(from_W + (n / steps) * (to_W - from_W)); };
+  const double first = std::max(1.0, std::floor(span.first * steps));
+  const double last = std::min(steps, std::ceil(span.last * steps));
+  // Of points so far off that their coordinates are not exact there would be any number.
+  const int most = 4 + 2 * (geometry.dims[0] + geometry.dims[1] + geometry.dims[2] + 3);
+  Vec3 before = at(first - 1);
+  for (int n = 0; n < most && first + n <= last; ++n) {
+    const Vec3 here = at(first + n);
     if (is_bone_at(volume, here)) return bisect_crossing(volume, before, here);
     before = here;
   }

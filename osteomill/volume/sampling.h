@@ -40,9 +40,9 @@ std::optional<Vec3> outward_normal(const Volume& volume, const Vec3& point_W, Gr
 /// tick.
 Vec3 bisect_crossing(const Volume& volume, Vec3 outside_W, Vec3 inside_W, double tolerance_mm = 1e-6);
 
-/// The first point, walking from `from_W` to `to_W` in steps of at most half a voxel, at which the density
-/// rises past the isovalue; nothing where it never does. A start inside the bone is its own answer. Safe in
-/// the haptic tick; time grows with the length.
+/// The first point, walking from `from_W` to `to_W` in steps of at most half a voxel, whatever a voxel's
+/// shape, at which the density rises past the isovalue; nothing where it never does. A start inside the bone
+/// is its own answer. Safe in the haptic tick, for any finite points: only what lies in the grid is walked.
 std::optional<Vec3> first_crossing(const Volume& volume, const Vec3& from_W, const Vec3& to_W);
 
 }  // namespace osteomill

@@ -40,10 +40,50 @@ told 1 "nrrd_ascii_long_token.nrrd: " "$osteomill" info "$found/nrrd_ascii_long_
 told 1 "spacing_1e-6.mha: has voxels 1e-06 mm apart" "$osteomill" info "$found/spacing_1e-6.mha"
 told 1 "spacing_1e-6.mha: has voxels" "$osteomill" compare "$found/spacing_1e-6.mha" --iso 668 --out out
 told 1 "spacing_1e308.mha: has voxels 1e\\+308 mm apart" "$osteomill" info "$found/spacing_1e308.mha"
+told 1 "direction_1e200.mha: has a TransformMatrix whose columns" "$osteomill" info "$found/direction_1e200.mha"
+# Voxels much longer than wide are no more work than cubes.
+for spacing in "100 0.001 100" "1.2 0.001 1.7" "0.01 0.01 1"; do
+  sed "s/^ElementSpacing = .*/ElementSpacing = $spacing/" "$found/spacing_100_0.001.mha" >long.mha
+  timeout 5 "$osteomill" info long.mha >out.txt 2>err.txt || fault "voxels of $spacing mm: $(cat err.txt)"
+done
 told 1 "deep.toml: line 1: has a name of over 1000 parts" "$osteomill" compare --config "$found/deep.toml" --out out
 cp "$found/p.csv" p.csv
 told 1 "p.csv: is what is read" "$osteomill" replay p.csv --algorithm point-shell --out p.csv
 cmp p.csv "$found/p.csv" || fault "p.csv was written over"
+
+# Few values are no labels: they are felt where the same densities are that nobody could take for labels.
+read_as "$found/few_values_phantom.nrrd" "^isovalue +[0-9]+ suggested" "^bone +112979 voxels"
+grep -q "label" out.txt && fault "a phantom is taken for labels"
+# SHAPE OFFSET LIFT: air, one shade and bone by a signed distance in voxels, all values lifted.
+few_values() {
+  printf 'NRRD0004\ntype: float\ndimension: 3\nsizes: 24 24 24\nspacings: 0.5 0.5 0.5\nencoding: ascii\n\n'
+  awk -v shape="$1" -v offset="$2" -v lift="$3" 'function max(a, b) { return a > b ? a : b }
+    BEGIN { for (k = 0; k < 24; ++k) for (j = 0; j < 24; ++j) for (i = 0; i < 24; ++i) {
+      x = i - 11; y = j - 11; z = k - 11 - offset
+      d = shape == "plane" ? (y + z) / sqrt(2) : shape == "edge" ? max(z, x + z) : sqrt(x * x + y * y + (z + 6) ^ 2) - 6
+      print lift + 1000 * (d < -0.4 ? 2 : d > 0.4 ? 0 : 1)
+    } }'
+}
+printf 'time_s,x_mm,y_mm,z_mm,qw,qx,qy,qz,milling\n0,5.6,5.6,10,1,0,0,0,0\n0.2,5.6,5.6,6.2,1,0,0,0,0\n' >press.csv
+for shape in "plane 0" "edge 0.5" "ball 0.25"; do
+  few_values $shape 0 >few.nrrd
+  few_values $shape 0.5 >lifted.nrrd
+  for algorithm in line-proxy surface-points point-shell barrier-shell; do
+    "$osteomill" replay press.csv few.nrrd --iso 1000 --algorithm $algorithm --quiet --out few.csv >out.txt
+    "$osteomill" replay press.csv lifted.nrrd --iso 1000.5 --algorithm $algorithm --quiet --out lifted.csv >out.txt
+    awk -F, 'NR == 1 { for (n = 1; n <= NF; ++n) if ($n == "force_z_N") z = n } $z > 0.1 { felt = 1 } END { exit !(z && felt) }' few.csv ||
+      fault "$algorithm feels nothing of the $shape"
+    # All but how long each step took.
+    cmp <(cut -d, -f-23 few.csv) <(cut -d, -f-23 lifted.csv) || fault "$shape of few values is felt otherwise by $algorithm"
+  done
+done
+
+# Labels by their look, and as they are said to be.
+few_values ball 0 0 | sed 's/1000/0/; s/2000/7/' >mask.nrrd
+read_as mask.nrrd "^isovalue +3.5 suggested" "^warning: looks like a label map: .*--as scan"
+"$osteomill" info mask.nrrd --as scan | grep -q "label" && fault "--as scan does not decide"
+"$osteomill" info few.nrrd --as labels | grep -q "^warning: is a label map" || fault "--as labels does not decide"
+"$osteomill" info mask.nrrd --iso 3 | grep -q "label" && fault "a scan with --iso is taken for labels"
 
 # Values and names that a header gives at length, and blanks at a line's end.
 head_of() { printf 'NRRD0004\ntype: short\ndimension: 3\nsizes: 2 2 2\nspacings: 1 1 1\nencoding: ascii\n'; }

@@ -307,6 +307,30 @@ xvfb-run -a timeout 60 "$osteomill" simulate ball.nrrd --burr-radius 50 >said 2>
   fault "a burr of 50 mm ends with $code and $(cat errors)"
 [ -z "$(value still-there scan)" ] || fault "it did not close without a report"
 
+# --- A scan with several boundaries -------------------------------------------------------------------------------
+# Air, something soft, and bone in it.
+{
+  printf 'NRRD0004\ntype: short\ndimension: 3\nsizes: 32 32 32\nspacings: 0.5 0.5 0.5\nencoding: ascii\n\n'
+  awk 'function within(mm) { return mm < 0 ? 0 : mm > 1 ? 1 : mm }
+    BEGIN { for (k = 0; k < 32; ++k) for (j = 0; j < 32; ++j) for (i = 0; i < 32; ++i) {
+      from = 0.5 * sqrt((i - 15.5)^2 + (j - 15.5)^2 + (k - 15.5)^2)
+      print int(600 * within(6.5 - from) + 900 * within(4.5 - from))
+    } }'
+} >skin.nrrd
+mapfile -t boundaries < <("$osteomill" info skin.nrrd | sed -n 's/^boundary *\([^,]*\),.*/\1/p')
+[ ${#boundaries[@]} -eq 2 ] || fault "skin and bone have ${#boundaries[@]} boundaries"
+window skin.nrrd --no-help <<END
+wait 0.2 ;; state both
+click ${boundaries[1]} ;; settle ;; wait 0.2 ;; state bone
+click ${boundaries[0]} ;; settle ;; wait 0.2 ;; state skin
+close
+END
+value both isovalue_from | grep -q "; a guess, with other boundaries at " || fault "nobody is told that the isovalue is a guess"
+for n in 0 1; do
+  awk -v is="$(value "$([ $n = 0 ] && echo skin || echo bone)" isovalue)" -v as="${boundaries[$n]}" \
+    'BEGIN { exit !((is - as) ^ 2 < 1) }' || fault "the button ${boundaries[$n]} does not set the isovalue"
+done
+
 # --- Labels -------------------------------------------------------------------------------------------------------
 # The ball's left half is one label, its right half another.
 {

@@ -1,53 +1,9 @@
 #include "osteomill/haptics/line_proxy/bone_surface.h"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "osteomill/volume/sampling.h"
-
 namespace osteomill::line_proxy {
-
-namespace {
-
-struct Span {
-  double first = 0.0;
-  double last = 1.0;
-};
-
-// The part of the segment, as fractions of it, in the grid and the one voxel around it where densities still
-// fall.
-std::optional<Span> span_in_grid(const GridGeometry& geometry, const Vec3& from_W, const Vec3& to_W) {
-  const Vec3 from = geometry.voxel_from_world(from_W);
-  const Vec3 way = geometry.voxel_from_world(to_W) - from;
-  Span span;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double min = -1.0;
-    const double max = geometry.dims[static_cast<std::size_t>(axis)];
-    if (way[axis] == 0.0) {
-      if (from[axis] < min || from[axis] > max) return std::nullopt;
-      continue;
-    }
-    const double a = (min - from[axis]) / way[axis];
-    const double b = (max - from[axis]) / way[axis];
-    span.first = std::max(span.first, std::min(a, b));
-    span.last = std::min(span.last, std::max(a, b));
-  }
-  if (!(span.first <= span.last)) return std::nullopt;
-  return span;
-}
-
-}  // namespace
-
-std::optional<Vec3> crossing_in_grid(const Volume& volume, const Vec3& from_W, const Vec3& to_W) {
-  const auto span = span_in_grid(volume.geometry(), from_W, to_W);
-  if (!span) return std::nullopt;
-  const Vec3 way = to_W - from_W;
-  // Unclipped ends are passed on as they are: a start on the surface must not move by a rounding error.
-  const Vec3 first = span->first > 0.0 ? Vec3(from_W + span->first * way) : from_W;
-  const Vec3 last = span->last < 1.0 ? Vec3(from_W + span->last * way) : to_W;
-  return first_crossing(volume, first, last);
-}
 
 std::optional<Vec3> nearest_exit(const Volume& volume, const Vec3& point_W, double reach_mm) {
   if (!is_bone_at(volume, point_W)) return point_W;

@@ -5,12 +5,8 @@
 #include "osteomill/volume/sampling.h"
 #include "osteomill/volume/volume.h"
 
-/// Where the bone's surface is, and which way it faces. Safe in the haptic tick, for any finite points: the
-/// time is bounded by the size of the grid, not by how far apart the points are.
+/// Where the bone's surface is, and which way it faces. Safe in the haptic tick, for any finite points.
 namespace osteomill::line_proxy {
-
-/// As osteomill::first_crossing, but walks only the part of the segment that lies in the grid.
-std::optional<Vec3> crossing_in_grid(const Volume& volume, const Vec3& from_W, const Vec3& to_W);
 
 /// The point just outside the bone nearest to `point_W`, among 26 directions and up to `reach_mm`; `point_W`
 /// itself where it is not in bone.

@@ -149,7 +149,7 @@ void LineProxy::follow_with_tip_proxy(const Vec3& tip_W) {
 std::optional<Vec3> LineProxy::first_tip_proxy(const Vec3& tip_W) const {
   const Volume& volume = *scene_.volume;
   if (memory_.device_tip_W && !is_bone_at(volume, *memory_.device_tip_W)) {
-    return crossing_in_grid(volume, *memory_.device_tip_W, tip_W);
+    return first_crossing(volume, *memory_.device_tip_W, tip_W);
   }
   return nearest_exit(volume, tip_W, kExitReach_mm);
 }

@@ -52,7 +52,7 @@ Vec3 marched(const Volume& volume, const Vec3& proxy_W, const Vec3& probe_W) {
   if (distance == 0.0) return probe_W;
   if (distance > kTouching_mm && is_bone_at(volume, proxy_W + (kTouching_mm / distance) * way))
     return proxy_W;
-  return crossing_in_grid(volume, proxy_W, probe_W).value_or(probe_W);
+  return first_crossing(volume, proxy_W, probe_W).value_or(probe_W);
 }
 
 }  // namespace

@@ -46,7 +46,7 @@ TEST_F(PlaneTest, AProxyLeftInBoneIsBroughtOutAlongTheNormal) {
 
 TEST_F(PlaneTest, PointsFarOutsideTheGridAreNotWalkedTo) {
   EXPECT_EQ(move_point_proxy(bone_, {1e9, 0, 1e9}, {1e9, 5, 1e9}, kFree, kNoFriction), Vec3(1e9, 5, 1e9));
-  const auto crossing = crossing_in_grid(bone_, {0, 0, 1e9}, {0, 0, -1e9});
+  const auto crossing = first_crossing(bone_, {0, 0, 1e9}, {0, 0, -1e9});
   ASSERT_TRUE(crossing);
   EXPECT_NEAR(crossing->z(), 0.0, 1e-3);
 }
