@@ -44,7 +44,7 @@ void draw_scan(ViewState& view, const std::string& name) {
   ImGui::TextUnformatted(end_that_fits(name).c_str());
   ui::hint(name.c_str());
   const bool entered = ui::text_field("scan", view.scan_path.data(), view.scan_path.size());
-  ui::hint("A DICOM folder, NRRD, MetaImage or NIfTI file; or drop it onto the window");
+  ui::hint("Path of a DICOM folder or of a NRRD, MetaImage or NIfTI file; or drop it onto the window");
   ImGui::SameLine();
   const bool pressed = ui::button("Open");
   if ((entered || pressed) && view.scan_path[0] != 0) view.scan_asked = view.scan_path.data();
@@ -92,17 +92,18 @@ void draw_tool(MillingSetup& wanted, bool& sound, bool& changed) {
   changed = settle("shaft radius", wanted.tool.shaft_radius_mm, 0.3f, 3.0f, "%.1f mm") || changed;
   changed = settle("spindle", wanted.cutting.spindle_speed_rpm, 5000, 120000, "%.0f rpm") || changed;
   changed = ui::checkbox("vibration", &wanted.vibration.on) || changed;
-  ui::hint("The hand feels the burr cut");
+  ui::hint("You feel the burr's teeth in the hand");
   ImGui::SameLine();
   changed = ui::checkbox("burr pulls", &wanted.cutting_reaction) || changed;
-  ui::hint("Cutting holds the burr back along its rim: it walks off sideways and turns the handle");
+  ui::hint("Cutting pulls the burr sideways, as it turns, and twists the handle");
   ImGui::SameLine();
   ui::checkbox("sound", &sound);
 }
 
 void draw_session(ViewState& view, LiveMilling& milling, bool by_pointer) {
   if (!ui::header("Milling", true)) return;
-  bool spindle = milling.spindle_asked();
+  // A device's own button turns it on as well.
+  bool spindle = milling.spindle_asked() || milling.state().spindle_on;
   if (ui::checkbox("spindle on", &spindle)) milling.set_spindle(spindle);
   ImGui::SameLine();
   bool paused = milling.state().paused;
@@ -115,7 +116,8 @@ void draw_session(ViewState& view, LiveMilling& milling, bool by_pointer) {
   }
   const bool free = !milling.preparing();
   if (ui::button("Undo cut", free && milling.cuts() > 0)) milling.undo();
-  ui::hint("Takes the last cut back; cuts of up to 256 MB are kept");
+  ui::hint(
+      "Puts back what was milled since the spindle was last switched on (up to 256 MB of cuts are kept)");
   ImGui::SameLine();
   if (ui::button("Reset bone", free && milling.touched())) view.reset_asked = true;
   ImGui::SameLine();
@@ -162,10 +164,13 @@ void draw_isovalue(ViewState& view, Simulation& simulation) {
   }
   const bool moved = ImGui::IsItemActive();
   if (ui::released() && view.isovalue) milling.change_isovalue(static_cast<double>(*view.isovalue));
-  ui::hint("Bone is where the scan is denser. Drag, or click with Ctrl to type a number");
+  ui::hint("What is denser than this is bone. Drag, or hold Ctrl and click to type a number");
   ImGui::EndDisabled();
   if (!moved && !milling.preparing()) view.isovalue.reset();
   ImGui::TextWrapped("%s", isovalue_text(simulation).c_str());
+  ImGui::PushStyleColor(ImGuiCol_Text, ui::kWarning);
+  for (const std::string& warning : simulation.warnings) ImGui::TextWrapped("%s", warning.c_str());
+  ImGui::PopStyleColor();
 }
 
 void draw_cuts(ViewState& view, Simulation& simulation) {
@@ -199,12 +204,14 @@ void draw_view(ViewState& view, const Vec3& tool_W, const PixelSize& size) {
     ImGui::SameLine();
   }
   if (ui::button("Whole")) view.camera = with_whole(view.camera, view.box, size);
-  ui::hint("All of the bone, as it is turned now");
+  ui::hint("Shows all of the bone from the same side");
   if (ui::button("Find tool")) view.camera.focus_W = tool_W;
-  ui::hint("The burr into the middle");
+  ui::hint("Moves the view so that the burr is in its middle");
   ImGui::SameLine();
   if (ui::button("Bring it here (B)##bring")) view.bring_asked = true;
-  ui::hint("The tool before the bone in the middle of the view; with the key, under the pointer");
+  ui::hint(
+      "Brings the tool to just before the bone in the middle of the view; the key B, to just before the "
+      "bone under the pointer");
   ui::checkbox("ghost", &view.ghost);
   ImGui::SameLine();
   ui::checkbox("arrows", &view.arrows);
@@ -242,7 +249,7 @@ void draw_controls(ViewState& view, Simulation& simulation, FilesPanel& files, c
   if (view.wanted_is_new && !simulation.milling.preparing()) {
     view.wanted_is_new = false;
     if (const std::string fault = tool_fault(view.wanted.tool, view.box); !fault.empty()) {
-      view.complaint = fault;
+      view.dialogues.complain(fault);
       view.wanted = simulation.milling.setup();
     } else {
       simulation.milling.change(view.wanted);

@@ -91,6 +91,16 @@ void begin_cut_at(const ViewState& view, ViewState::Cut& cut, const Vec3& tool_W
   cut.other_side = place_mm > most_mm - kLeast * (most_mm - least_mm);
 }
 
+Eigen::Vector2d pointer_moved_px() {
+  const ImVec2 moved = ImGui::GetIO().MouseDelta;
+  return {static_cast<double>(moved.x), static_cast<double>(moved.y)};
+}
+
+Eigen::Vector2d pointer_dragged_px() {
+  const bool just_pressed = ImGui::IsMouseClicked(0) || ImGui::IsMouseClicked(1) || ImGui::IsMouseClicked(2);
+  return just_pressed ? Eigen::Vector2d::Zero() : pointer_moved_px();
+}
+
 bool drag_cut(ViewState& view, const PixelSize& size) {
   const ImGuiIO& io = ImGui::GetIO();
   if (ImGui::IsMouseClicked(0) && io.KeyCtrl && !io.WantCaptureMouse) {
@@ -108,8 +118,7 @@ bool drag_cut(ViewState& view, const PixelSize& size) {
       pixel_of(view.camera, size, anchor_W + cut.normal_W) - pixel_of(view.camera, size, anchor_W);
   const double full = 1 / mm_per_pixel(view.camera, size, depth_of(view.camera, anchor_W));
   if (seen.norm() < 0.2 * full) seen = Eigen::Vector2d(0, -full);
-  const Eigen::Vector2d moved(static_cast<double>(io.MouseDelta.x), static_cast<double>(io.MouseDelta.y));
-  cut.offset_mm += static_cast<float>(moved.dot(seen) / seen.squaredNorm());
+  cut.offset_mm += static_cast<float>(pointer_dragged_px().dot(seen) / seen.squaredNorm());
   return true;
 }
 

@@ -36,6 +36,11 @@ void reset_cuts(ViewState& view);
 /// side that leaves bone to be seen.
 void begin_cut_at(const ViewState& view, ViewState::Cut& cut, const Vec3& tool_W);
 
+/// What the pointer has moved since the picture before; and by how much it drags what a button holds: nothing
+/// in the picture in which the button went down, before which it may have come a long way.
+Eigen::Vector2d pointer_moved_px();
+Eigen::Vector2d pointer_dragged_px();
+
 /// Ctrl with the left button drags the cut under the pointer along its normal; true while it does.
 bool drag_cut(ViewState& view, const PixelSize& size);
 

@@ -16,8 +16,9 @@ void keep_turn(ViewState& view, ConnectedDevice& device, const Vec3& up_D_mm) {
   const DeviceCapabilities& can = device.capabilities();
   const auto turn_deg = turn_by_moves_deg(can, view.calibration.right_D_mm, up_D_mm);
   if (!turn_deg) {
-    view.complaint =
-        "The two moves were shorter than 10 mm, or not across each other. The device stays as it was.";
+    view.dialogues.complain(
+        "The two moves were shorter than 10 mm, or both went the same way. What is known of the device stays "
+        "as it was.");
     return;
   }
   WorkspaceSettings settings = device.workspace();
@@ -26,30 +27,32 @@ void keep_turn(ViewState& view, ConnectedDevice& device, const Vec3& up_D_mm) {
   const std::filesystem::path path = workspace_path(can.name);
   try {
     if (!path.empty()) keep_workspace(path, can.name, settings);
-    view.message = "How the device stands is kept in " + path.string();
+    view.message = "How the device stands before you is kept in " + path.string();
   } catch (const std::exception& error) {
-    view.complaint = error.what();
+    view.dialogues.complain(error.what());
   }
 }
 
 void draw_calibration(ViewState& view, ConnectedDevice& device, const Vec3& handle_D_mm) {
   ViewState::Calibration& calibration = view.calibration;
-  switch (calibration.step) {
-    case Step::none:
-      if (!ui::button("Calibrate")) return;
-      calibration = {Step::right, handle_D_mm, Vec3::Zero()};
-      return;
-    case Step::right:
-      ImGui::TextUnformatted("Move your hand to the right, then");
-      if (!ui::button("That was right")) return;
-      calibration = {Step::up, handle_D_mm, handle_D_mm - calibration.from_D_mm};
-      return;
-    case Step::up:
-      ImGui::TextUnformatted("Move it up, then");
-      if (!ui::button("That was up")) return;
-      keep_turn(view, device, handle_D_mm - calibration.from_D_mm);
-      calibration = {};
-      return;
+  if (calibration.step == Step::none) {
+    ImGui::SameLine();
+    if (ui::button("Calibrate")) calibration = {Step::right, handle_D_mm, Vec3::Zero()};
+    ui::hint("Two moves of your hand tell how the device stands before you; the tool stays meanwhile");
+    return;
+  }
+  const bool to_the_right = calibration.step == Step::right;
+  ImGui::TextWrapped("%s", to_the_right ? "Move your hand some centimetres to the right, then press"
+                                        : "Now move it some centimetres up, then press");
+  const bool moved = ui::button(to_the_right ? "That was right" : "That was up");
+  ImGui::SameLine();
+  if (ui::button("Cancel##calibration")) {
+    calibration = {};
+  } else if (moved && to_the_right) {
+    calibration = {Step::up, handle_D_mm, handle_D_mm - calibration.from_D_mm};
+  } else if (moved) {
+    keep_turn(view, device, handle_D_mm - calibration.from_D_mm);
+    calibration = {};
   }
 }
 
@@ -64,9 +67,7 @@ void draw_device(ViewState& view, ConnectedDevice& device) {
     ImGui::TextColored(ui::kWarning, "It %s", complaint.c_str());
   ImGui::PopTextWrapPos();
   ImGui::TextDisabled("%.0f poses/s", report.inputs_per_s);
-  ImGui::SameLine();
   draw_calibration(view, device, report.handle_D_mm);
-  ui::hint("Two moves of the hand tell how the device stands; the tool stays meanwhile");
 }
 
 }  // namespace osteomill::app

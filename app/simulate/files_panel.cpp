@@ -28,12 +28,12 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Throws nothing that a dialogue could not tell.
+// What it throws is told.
 void attempt(ViewState& view, const std::function<void()>& work) {
   try {
     work();
   } catch (const std::exception& error) {
-    view.complaint = error.what();
+    view.dialogues.complain(error.what());
   }
 }
 
@@ -89,9 +89,10 @@ void FilesPanel::close(ViewState& view, Simulation& simulation) {
 }
 
 void FilesPanel::make_report() {
+  written_ = false;
   work_ = std::async(std::launch::async, [recording = last_recording_, folder = name("report")] {
     const fs::path page = write_report(in_stretches(read_recording(recording)), folder);
-    return Done{"Report in " + page.string(), page};
+    return Done{"Report in " + page.string(), page, recording};
   });
 }
 
@@ -101,6 +102,7 @@ void FilesPanel::end_with_report(ViewState& view, Simulation& simulation) {
 }
 
 void FilesPanel::save_scan(ViewState& view, Simulation& simulation) {
+  written_ = false;
   attempt(view, [&] {
     create_folder(folder_);
     DensityGrid grid;
@@ -111,7 +113,7 @@ void FilesPanel::save_scan(ViewState& view, Simulation& simulation) {
     });
     work_ = std::async(std::launch::async, [path = name("milled.nrrd"), grid = std::move(grid)] {
       write_nrrd(path, grid);
-      return Done{"Saved " + path.string(), path};
+      return Done{"Saved " + path.string(), path, {}};
     });
     saving_version_ = version;
   });
@@ -124,6 +126,11 @@ void FilesPanel::take_result(ViewState& view, Simulation& simulation) {
     Done done = work_.get();
     view.message = std::move(done.said);
     view.result = std::move(done.result);
+    written_ = true;
+    if (!done.recording.empty()) {
+      view.report = view.result;
+      reported_ = done.recording;
+    }
     if (version) simulation.autosave.saved(*version);
   });
 }
@@ -133,11 +140,12 @@ std::optional<double> FilesPanel::recording_s(const Simulation& simulation) cons
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - recording_since_).count();
 }
 
-float FilesPanel::draw_said(ViewState& view, const Simulation& simulation, const PixelSize& size,
-                            float top_px) {
+float FilesPanel::draw_said(ViewState& view, const Simulation& simulation, const PixelSize& size) {
   const bool preparing = simulation.milling.preparing();
-  if (view.message.empty() && !busy() && !preparing) return top_px;
-  ImGui::SetNextWindowPos({static_cast<float>(size.width) - ui::px(ui::kRightWidth_px + 8), top_px});
+  const float bottom_px = static_cast<float>(size.height) - ui::px(8);
+  if (view.message.empty() && !busy() && !preparing) return bottom_px;
+  ImGui::SetNextWindowPos({static_cast<float>(size.width) - ui::px(ui::kRightWidth_px + 8), bottom_px},
+                          ImGuiCond_Always, {0, 1});
   ImGui::SetNextWindowSize({ui::px(ui::kRightWidth_px), 0});
   ImGui::Begin("##said", nullptr,
                ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
@@ -147,24 +155,25 @@ float FilesPanel::draw_said(ViewState& view, const Simulation& simulation, const
   if (busy()) ImGui::TextColored(going_on, "writing ...");
   if (!view.message.empty()) {
     ImGui::TextWrapped("%s", view.message.c_str());
-    if (view.result.extension() == ".html") {
-      if (ui::button("Open report")) attempt(view, [&] { open_outside(view.result); });
+    if (!view.report.empty()) {
+      if (ui::button("Open report")) attempt(view, [&] { open_outside(view.report); });
       ImGui::SameLine();
     }
     if (!view.result.empty()) {
       if (ui::button("Open folder"))
         attempt(view, [&] { open_outside(fs::absolute(view.result).parent_path()); });
-      ui::hint("The folder of what was saved last");
+      ui::hint("The folder that holds it");
       ImGui::SameLine();
     }
     if (ui::button("Hide")) {
       view.message.clear();
       view.result.clear();
+      view.report.clear();
     }
   }
-  const float below_px = ImGui::GetWindowPos().y + ImGui::GetWindowSize().y + ui::px(8);
+  const float top_px = ImGui::GetWindowPos().y - ui::px(8);
   ImGui::End();
-  return below_px;
+  return top_px;
 }
 
 void FilesPanel::draw(ViewState& view, Simulation& simulation) {
@@ -180,7 +189,7 @@ void FilesPanel::draw(ViewState& view, Simulation& simulation) {
   ImGui::SameLine();
   const bool free = !busy();
   if (ui::button("Report", free && !last_recording_.empty())) make_report();
-  ui::hint("Figures and tables of the last recording");
+  ui::hint("Writes a page of figures and tables about the last recording");
   if (ui::button("Save scan", free)) save_scan(view, simulation);
   ImGui::SameLine();
   if (ui::button("Save surface", free)) {
@@ -191,7 +200,7 @@ void FilesPanel::draw(ViewState& view, Simulation& simulation) {
       work_ = std::async(std::launch::async,
                          [path = name("surface.ply"), mesh = std::move(mesh), labels = simulation.labels] {
                            write_mesh(path, mesh, labels.get());
-                           return Done{"Saved " + path.string(), path};
+                           return Done{"Saved " + path.string(), path, {}};
                          });
     });
   }

@@ -25,17 +25,19 @@ class FilesPanel {
       : folder_(std::move(folder)), take_picture_(std::move(take_picture)) {}
 
   void draw(ViewState& view, Simulation& simulation);
-  /// On the right from `top_px` down: what is going on, what was done last, and buttons that open what came
-  /// of it. Returns where it ends.
-  float draw_said(ViewState& view, const Simulation& simulation, const PixelSize& size, float top_px);
+  /// At the bottom of the right column, where it is always in sight: what is going on, what was done last,
+  /// and buttons that open what came of it. Returns where what stands above has to end.
+  float draw_said(ViewState& view, const Simulation& simulation, const PixelSize& size);
   /// Ends a recording that still goes on.
   void close(ViewState& view, Simulation& simulation);
   /// The same, where nothing more is to be closed.
   void end_recording(ViewState& view, Simulation& simulation);
   bool busy() const { return work_.valid(); }
-  /// Whether anything was recorded since the window opened.
-  bool recorded(const Simulation& simulation) const {
-    return simulation.milling.recording() || !last_recording_.empty();
+  /// Whether what was begun to be written last is there.
+  bool written() const { return written_; }
+  /// Whether there is a recording without a report.
+  bool unreported(const Simulation& simulation) const {
+    return simulation.milling.recording() || last_recording_ != reported_;
   }
   /// Ends a recording that goes on and begins the report of the last one. Not while busy.
   void end_with_report(ViewState& view, Simulation& simulation);
@@ -56,9 +58,14 @@ class FilesPanel {
   std::filesystem::path folder_;
   TakePicture take_picture_;
   std::filesystem::path last_recording_;
+  // The last one of which there is a report.
+  std::filesystem::path reported_;
+  bool written_ = false;
   struct Done {
     std::string said;
     std::filesystem::path result;
+    /// Where it is a report, of what.
+    std::filesystem::path recording;
   };
   std::chrono::steady_clock::time_point recording_since_;
   std::future<Done> work_;

@@ -1,8 +1,9 @@
 #include "app/simulate/overlay.h"
 
+#include <algorithm>
 #include <cmath>
 
-#include "app/simulate/dialogues.h"
+#include "app/simulate/panels.h"
 #include "app/simulate/widgets.h"
 #include <GLFW/glfw3.h>
 #include <fmt/core.h>
@@ -16,18 +17,22 @@ namespace {
 
 constexpr const char* kControls[][2] = {
     {"Turn, pan, zoom the view", "left drag, middle (or Shift+left) drag, right drag or wheel"},
-    {"Take the tool in hand, and let go", "T (or drag the tool itself)"},
-    {"Bring it before the bone", "B: under the pointer"},
+    {"Take the tool in hand, let it go", "T (or drag the tool itself)"},
+    {"Bring it to the bone under the pointer", "B"},
     {"Move it", "mouse, or arrow keys"},
     {"Press it in, pull it back", "wheel, or Page Up and Page Down"},
-    {"Turn it", "Shift with mouse or arrow keys"},
-    {"Mill", "left button while the tool is in hand, or Space on and off"},
-    {"Move a cut", "Ctrl with left drag on it, or its slider"},
+    {"Turn it", "Shift and mouse, or Shift and arrow keys"},
+    {"Mill", "left button while the tool is in hand; Space switches the spindle on and off"},
+    {"Move a cut", "Ctrl and left drag on it, or its slider"},
     {"Pause, take back the last cut", "P, Ctrl+Z"},
     {"Full screen, this page", "F11, F1"},
-    {"With a SpaceMouse", "push and twist it; a button turns the spindle on and off"},
-    {"With a haptic device", "its first button mills; hold C or its second to move the hand alone"},
+    {"With a SpaceMouse", "push and twist it; a button switches the spindle on and off"},
+    {"With a haptic device",
+     "its first button mills; while you hold C or its second, your hand moves and the tool stays"},
 };
+
+// One for all dialogues, whatever stands above it: two at once would hide each other.
+constexpr const char* kPopup = "###dialogue";
 
 ImVec2 at(const Eigen::Vector2d& place) {
   return {static_cast<float>(place.x()), static_cast<float>(place.y())};
@@ -75,27 +80,31 @@ void draw_annotations(const ViewState& view, const PixelSize& size, bool patient
                         static_cast<int>(static_cast<float>(size.height) / ui::px(1))};
   draw(list, scale_bar_annotation(view.camera, usual));
   if (!patient) return;
-  for (const Annotation& letter : orientation_letters(view.camera, usual)) draw(list, letter);
+  // Beside the right column, which may reach down to the corner.
+  const int column = static_cast<int>(ui::kRightWidth_px) + 8;
+  for (const Annotation& letter : orientation_letters(view.camera, {usual.width - column, usual.height}))
+    draw(list, letter);
 }
 
-void draw_help(ViewState& view, const PixelSize& size, float top_px) {
+void draw_help(ViewState& view, const PixelSize& size, const Room& room) {
   if (!view.help) return;
   // Beside the bone and the tool, which it explains.
   const float width = ui::px(ui::kRightWidth_px);
   const auto width_px = static_cast<float>(size.width);
-  ImGui::SetNextWindowPos({width_px - width - ui::px(8), top_px});
+  ImGui::SetNextWindowPos({width_px - width - ui::px(8), room.top_px});
   ImGui::SetNextWindowSizeConstraints({width, 0},
-                                      {width, static_cast<float>(size.height) - top_px - ui::px(8)});
+                                      {width, std::max(room.bottom_px - room.top_px, ui::px(60))});
   ImGui::Begin("How to mill", nullptr,
                ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_NoFocusOnAppearing);
   if (ui::button("Start milling")) view.help = false;
   ImGui::PushTextWrapPos(0);
   ImGui::TextUnformatted(
-      "Grey and gold: the tool as bone lets it be. Blue: your hand; the further it sinks in, the harder you "
-      "press. Green: the force on it, amber: the torque, red: where it acts; with 1 line-proxy the point at "
-      "which "
-      "bone holds the shaft, if it does.");
+      "Gold and grey: the tool, which bone stops. Blue: your hand; the deeper it is in the bone, the harder "
+      "you "
+      "press. The green arrow is the force on your hand, the amber one the torque; the red point is where "
+      "they "
+      "act (with 1 line-proxy, where bone holds the shaft, if it does).");
   // So that all of it is in sight in a window of the usual size.
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {ui::px(8), ui::px(1)});
   for (const auto& [what, how] : kControls) {
@@ -131,6 +140,31 @@ void draw_recording(double recording_s, const PixelSize& size) {
   list.AddText(place, IM_COL32(255, 255, 255, 255), text.c_str());
 }
 
+bool dialogue_open() {
+  return ImGui::IsPopupOpen(kPopup);
+}
+
+void draw_dialogue(DialogueQueue& dialogues) {
+  const Dialogue* const shown = dialogues.shown();
+  if (shown != nullptr && !dialogue_open()) ImGui::OpenPopup(kPopup);
+  const ImVec2 middle = ImGui::GetMainViewport()->GetCenter();
+  ImGui::SetNextWindowPos(middle, ImGuiCond_Always, {0.5f, 0.5f});
+  const std::string title = (shown != nullptr ? shown->title : "") + kPopup;
+  if (!ImGui::BeginPopupModal(title.c_str(), nullptr, ImGuiWindowFlags_AlwaysAutoResize)) return;
+  if (shown == nullptr) {
+    ImGui::CloseCurrentPopup();
+  } else {
+    ImGui::PushTextWrapPos(34 * ImGui::GetFontSize());
+    ImGui::TextUnformatted(shown->text.c_str());
+    ImGui::PopTextWrapPos();
+    ImGui::Spacing();
+    std::vector<std::string> labels;
+    for (const Dialogue::Choice& choice : shown->choices) labels.push_back(choice.label);
+    if (const auto chosen = ui::choice(labels)) dialogues.choose(*chosen);
+  }
+  ImGui::EndPopup();
+}
+
 bool draw_loading(const std::string& what, double share_done, double passed_s, const PixelSize& size,
                   bool above) {
   if (above) {
@@ -142,7 +176,8 @@ bool draw_loading(const std::string& what, double share_done, double passed_s, c
   ImGui::ProgressBar(static_cast<float>(share_done), {ui::px(360), 0});
   ImGui::Text("%.0f s", passed_s);
   ImGui::SameLine();
-  const bool given_up = ui::button("Cancel") || ImGui::IsKeyPressed(GLFW_KEY_ESCAPE, false);
+  const bool given_up =
+      ui::button("Cancel") || (!dialogue_open() && ImGui::IsKeyPressed(GLFW_KEY_ESCAPE, false));
   ImGui::End();
   return given_up;
 }

@@ -9,14 +9,24 @@ namespace osteomill::app {
 /// The column on the left: everything that can be set.
 void draw_controls(ViewState& view, Simulation& simulation, FilesPanel& files, const PixelSize& size);
 
-/// The column on the right: everything that is measured. Returns where the next thing below has room.
+/// What is left of the right column, pixels from the top.
+struct Room {
+  float top_px;
+  float bottom_px;
+};
+
+/// The right column: everything that is measured. Returns where the next thing below has room.
 float draw_readings(ViewState& view, Simulation& simulation, double pictures_per_s, const PixelSize& size);
 
 /// Part of it where hardware holds the tool: how the device is, and how it stands before the operator.
 void draw_device(ViewState& view, ConnectedDevice& device);
 
-/// Below it, where the bone has labels: a legend, and how much of each was removed.
-float draw_labels(ViewState& view, const Simulation& simulation, const PixelSize& size, float top_px);
+/// Below it, where the bone has labels: a legend, and how much of each was removed; what has no room is
+/// scrolled to.
+float draw_labels(ViewState& view, const Simulation& simulation, const PixelSize& size, const Room& room);
+
+/// Below all of that, until it is sent away: how everything is done.
+void draw_help(ViewState& view, const PixelSize& size, const Room& room);
 
 /// While the burr touches a no-go label and some seconds after: a red line across the top that says so.
 void draw_no_go(Simulation& simulation, const PixelSize& size);

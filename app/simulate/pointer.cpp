@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "app/simulate/cuts.h"
-#include "app/simulate/dialogues.h"
+#include "app/simulate/overlay.h"
 #include "app/simulate/tool_control.h"
 #include <GLFW/glfw3.h>
 #include <imgui.h>
@@ -47,8 +47,9 @@ bool on_tool(const ViewState& view, const Pose& X_WT, const MillingTool& tool, c
 
 void move_camera(ViewState& view, const PixelSize& size, bool left_is_tool) {
   const ImGuiIO& io = ImGui::GetIO();
-  const double right_px = static_cast<double>(io.MouseDelta.x);
-  const double down_px = static_cast<double>(io.MouseDelta.y);
+  const Eigen::Vector2d dragged_px = pointer_dragged_px();
+  const double right_px = dragged_px.x();
+  const double down_px = dragged_px.y();
   const bool left = io.MouseDown[0] && !left_is_tool;
   if (io.MouseDown[2] || (left && io.KeyShift)) {
     pan(view.camera, size, right_px, down_px);
@@ -143,7 +144,7 @@ void take_input(ViewState& view, Simulation& simulation, SpaceMouse& space_mouse
   if (input.space_mouse.presses % 2 == 1) milling.set_spindle(!milling.spindle_asked());
   input.touching = state.record.wrench.force_N.norm() > kTouching_N;
   if (on_picture && (view.holding_tool || view.dragging_tool) && !io.MouseDown[1] && !io.MouseDown[2]) {
-    input.moved_px = {static_cast<double>(io.MouseDelta.x), static_cast<double>(io.MouseDelta.y)};
+    input.moved_px = view.holding_tool ? pointer_moved_px() : pointer_dragged_px();
   }
   if (on_picture && view.holding_tool) input.wheel = static_cast<double>(io.MouseWheel);
   pull_tool(view, simulation, input, size);

@@ -135,6 +135,22 @@ void Simulation::update() {
   milling.update();
   autosave.update(milling);
   count_labels();
+  look_for_warnings();
+}
+
+// Goes through every voxel.
+void Simulation::look_for_warnings() {
+  using namespace std::chrono_literals;
+  if (warnings_to_come_.valid()) {
+    if (warnings_to_come_.wait_for(0s) == std::future_status::ready) warnings = warnings_to_come_.get();
+  } else if (const double isovalue = milling.isovalue(); isovalue != isovalue_looked_at_) {
+    isovalue_looked_at_ = isovalue;
+    warnings_to_come_ = std::async(std::launch::async, [this, isovalue] {
+      std::vector<std::string> found;
+      milling.read_bone([&](const Volume& bone) { found = isovalue_warnings(bone.grid(), isovalue); });
+      return found;
+    });
+  }
 }
 
 // Goes through all that was ever milled, so not at every picture.

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <deque>
 #include <filesystem>
+#include <future>
 #include <memory>
 #include <optional>
 #include <string>
@@ -71,6 +72,8 @@ struct Simulation {
   double first_isovalue;
   std::string isovalue_from;
   std::string unit;
+  /// What a user of the isovalue should know (isovalue_warnings).
+  std::vector<std::string> warnings;
   DensityHistogram histogram;
   std::vector<Boundary> boundaries;
   WindowLevel grey_window;
@@ -95,7 +98,10 @@ struct Simulation {
  private:
   Device& take_tool(const MillingSetup& setup, const Volume& bone, const Pose& X_WT);
   void count_labels();
+  void look_for_warnings();
 
+  std::optional<double> isovalue_looked_at_;
+  std::future<std::vector<std::string>> warnings_to_come_;
   std::uint64_t counted_version_ = 0;
   std::chrono::steady_clock::time_point counted_;
 };

@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "app/simulate/cuts.h"
-#include "app/simulate/dialogues.h"
 #include "app/simulate/files_panel.h"
 #include "app/simulate/first_time.h"
 #include "app/simulate/opening.h"
@@ -87,16 +86,19 @@ class Simulator {
   void run() {
     // What a program left that ended without asking comes before the scan that was named.
     left_ = last_left_milling();
-    if (!left_) begin_opening(options_.scan);
+    if (left_) {
+      ask_about_left_milling();
+    } else {
+      begin_opening(options_.scan);
+    }
     while (!over()) {
       begin();
       if (simulation_) {
         work();
-      } else if (left_) {
-        decide_on_left_milling();
-      } else {
+      } else if (opening()) {
         wait_for_scan();
       }
+      draw_dialogue(view_.dialogues);
       finish();
     }
     if (script_) script_->end();
@@ -104,7 +106,8 @@ class Simulator {
       files_.close(view_, *simulation_);
       simulation_->autosave.discard();
     }
-    if (!view_.complaint.empty()) fmt::print(stderr, "osteomill: {}\n", view_.complaint);
+    for (const std::string& complaint : view_.dialogues.complaints())
+      fmt::print(stderr, "osteomill: {}\n", complaint);
     if (reported_) {
       fmt::print("{}\n{}\n", files_.last_recording().string(), view_.message);
     } else if (!files_.last_recording().empty()) {
@@ -113,42 +116,61 @@ class Simulator {
   }
 
  private:
+  bool unsaved() const { return simulation_ && simulation_->autosave.unsaved(simulation_->milling); }
+
   // Does it at once where nothing is lost by it.
-  void ask_before(const char* what, const UnsavedQuestion::Action& go_on,
-                  const UnsavedQuestion::Action& stay = {}) {
-    if (question_.asking()) return;
-    if (simulation_ && simulation_->autosave.unsaved(simulation_->milling)) {
-      question_.ask(what, go_on, stay);
-    } else {
-      go_on();
-    }
+  void ask_before(const char* what, const Dialogue::Action& go_on, const Dialogue::Action& stay = {}) {
+    if (!unsaved()) return go_on();
+    simulation_->milling.set_spindle(false);
+    const auto save = [this, go_on, stay] {
+      write(
+          "Saving ...", [this] { files_.save_scan(view_, *simulation_); }, go_on, stay);
+    };
+    view_.dialogues.add(unsaved_question(
+        what, [this] { return !unsaved(); }, save, go_on, stay));
+  }
+
+  void once_written(const char* doing, const Dialogue::Action& then) {
+    if (!files_.busy()) return then();
+    view_.dialogues.add({"osteomill", doing, {}, [this] { return !files_.busy(); }, then});
+  }
+
+  // Begins it when nothing else is being written. Whoever is to read why it was not written stays.
+  void write(const char* doing, const Dialogue::Action& begin, const Dialogue::Action& then,
+             const Dialogue::Action& stay) {
+    once_written(doing, [=, this] {
+      begin();
+      once_written(doing, [=, this] {
+        const Dialogue::Action& next = files_.written() ? then : stay;
+        if (next) next();
+      });
+    });
   }
 
   void close() {
-    const bool recorded = simulation_ && files_.recorded(*simulation_);
-    view_.closing = recorded ? Closing::asking : Closing::now;
+    if (!simulation_ || !files_.unreported(*simulation_)) {
+      closing_ = true;
+      return;
+    }
+    const auto reported = [this] { closing_ = reported_ = true; };
+    const auto report = [this, reported] {
+      write("Writing the report ...", [this] { files_.end_with_report(view_, *simulation_); }, reported, {});
+    };
+    view_.dialogues.add(report_question(report, [this] { closing_ = true; }));
   }
 
   bool over() {
-    if (window_.take_close_asked() && view_.closing == Closing::no) {
-      ask_before("Closing the window", [this] { close(); });
-    }
-    if (view_.closing == Closing::report_asked && !files_.busy()) {
-      files_.end_with_report(view_, *simulation_);
-      view_.closing = Closing::reporting;
-    } else if (view_.closing == Closing::reporting) {
-      files_.take_result(view_, *simulation_);
-      reported_ = !files_.busy() && view_.complaint.empty();
-      // Whoever is to read why there is no report stays.
-      if (!files_.busy()) view_.closing = reported_ ? Closing::now : Closing::no;
-    }
-    return view_.closing == Closing::now || (script_ && script_->closed());
+    if (window_.take_close_asked()) ask_before("Closing the window", [this] { close(); });
+    view_.dialogues.proceed();
+    return closing_ || (script_ && script_->closed());
   }
 
   void begin() {
     window_.begin_frame();
     const bool settled = simulation_ && to_draw_.empty() && !simulation_->milling.preparing() &&
-                         !view_.wanted_is_new && !files_.busy() && (!opening() || question_.asking());
+                         !simulation_->milling.placing() && !view_.X_W_brought &&
+                         !view_.wanted_is_new && !files_.busy() &&
+                         (!opening() || view_.dialogues.shown() != nullptr);
     if (script_ && (simulation_ || left_ || script_->at_once())) {
       script_->feed(seconds_since(last_picture_), settled, window_);
     }
@@ -156,27 +178,33 @@ class Simulator {
     ImGui::NewFrame();
   }
 
-  void decide_on_left_milling() {
-    const auto answer = draw_left_milling(left_->facts);
-    if (!answer) return;
-    if (*answer == LeftAnswer::remove) left_->file.clear();
-    if (*answer == LeftAnswer::open) {
-      const MilledBone& left = left_->facts;
-      ScanOptions scan{left.scan,
-                       left.isovalue,
-                       {.series = left.series, .max_memory_bytes = options_.scan.read.max_memory_bytes},
-                       {left.labels, left.label_table, left.no_go},
-                       std::nullopt,
-                       left.fingerprint};
-      // Those that are asked for now.
-      std::error_code other;
-      if (!options_.scan.labels.map.empty() &&
-          std::filesystem::equivalent(left.scan, options_.scan.scan, other))
-        scan.labels = options_.scan.labels;
-      begin_opening(scan, std::move(left_->file));
-    } else {
+  void ask_about_left_milling() {
+    const auto start = [this] {
+      left_.reset();
       begin_opening(options_.scan);
-    }
+    };
+    const auto remove = [this, start] {
+      left_->file.clear();
+      start();
+    };
+    view_.dialogues.add(left_milling_question(
+        left_->facts, [this] { open_left_milling(); }, remove, start));
+  }
+
+  void open_left_milling() {
+    const MilledBone& left = left_->facts;
+    ScanOptions scan{left.scan,
+                     left.isovalue,
+                     {.series = left.series, .max_memory_bytes = options_.scan.read.max_memory_bytes},
+                     {left.labels, left.label_table, left.no_go},
+                     std::nullopt,
+                     left.fingerprint};
+    // Those that are asked for now.
+    std::error_code other;
+    if (!options_.scan.labels.map.empty() &&
+        std::filesystem::equivalent(left.scan, options_.scan.scan, other))
+      scan.labels = options_.scan.labels;
+    begin_opening(scan, std::move(left_->file));
     left_.reset();
   }
 
@@ -205,7 +233,7 @@ class Simulator {
     opened_milled_.reset();
     view_.message = "Opening " + what + " was given up";
     // There is nothing to be shown.
-    if (!simulation_) view_.closing = Closing::now;
+    if (!simulation_) closing_ = true;
   }
 
   ScanOptions another(const std::string& scan) const {
@@ -217,20 +245,19 @@ class Simulator {
     std::vector<std::string> asked = window_.take_dropped();
     if (!view_.scan_asked.empty()) asked.push_back(std::exchange(view_.scan_asked, {}));
     if (asked.size() > 1) {
-      view_.complaint = "One scan at a time: a file, or the folder of a series";
-    } else if (!asked.empty() && !question_.asking()) {
+      view_.dialogues.complain("One scan at a time: a file, or the folder of a series");
+    } else if (!asked.empty() && !opened_) {
       begin_opening(another(asked.front()));
     }
-    if (opening_.valid() && opening_.wait_for(0s) == std::future_status::ready) {
-      try {
-        opened_ = opening_.get();
-      } catch (const std::exception& error) {
-        view_.complaint = error.what();
-      }
+    if (!opening_.valid() || opening_.wait_for(0s) != std::future_status::ready) return;
+    try {
+      opened_ = opening_.get();
+    } catch (const std::exception& error) {
+      view_.dialogues.complain(error.what());
+      return;
     }
-    if (!opened_ || files_.busy()) return;
-    ask_before(
-        "Opening another scan", [this] { take_scan(); }, [this] { opened_.reset(); });
+    const auto take = [this] { once_written("Writing ...", [this] { take_scan(); }); };
+    ask_before("Opening another scan", take, [this] { opened_.reset(); });
   }
 
   void take_scan() {
@@ -272,7 +299,7 @@ class Simulator {
     try {
       sender_.emplace(simulation_->milling.follower(), options_.send_bone);
     } catch (const InputError& error) {
-      view_.complaint = error.what();
+      view_.dialogues.complain(error.what());
     }
   }
 
@@ -303,7 +330,7 @@ class Simulator {
     } catch (const std::exception& error) {
       if (!opened_milled_) throw;
       // It stays for another start, when its scan may be there again.
-      view_.complaint = error.what();
+      view_.dialogues.complain(error.what());
       begin_opening(options_.scan);
       return;
     }
@@ -313,7 +340,6 @@ class Simulator {
   void work() {
     const PixelSize size = window_.size();
     if (size.width < 1 || size.height < 1) return;
-    question_.proceed(view_, *simulation_, files_);
     open_another();
     if (std::exchange(view_.reset_asked, false)) {
       ask_before("Resetting the bone", [this] { simulation_->milling.reset(); });
@@ -323,7 +349,7 @@ class Simulator {
       simulation_->update();
       if (prepared && !simulation_->milling.preparing()) free_tool(view_, *simulation_, size);
     } catch (const std::exception& error) {
-      view_.complaint = error.what();
+      view_.dialogues.complain(error.what());
       view_.wanted = simulation_->milling.setup();
     }
     if (view_.message.empty()) view_.message = simulation_->autosave.take_complaint();
@@ -335,16 +361,13 @@ class Simulator {
     if (std::exchange(view_.picture_asked, false)) save_picture();
     draw_annotations(view_, size, !options_.scan.scan.empty());
     draw_controls(view_, *simulation_, files_, size);
-    float below_px = draw_readings(view_, *simulation_, rate_.per_s(), size);
-    below_px = draw_labels(view_, *simulation_, size, below_px);
-    below_px = files_.draw_said(view_, *simulation_, size, below_px);
+    const float bottom_px = files_.draw_said(view_, *simulation_, size);
+    float top_px = draw_readings(view_, *simulation_, rate_.per_s(), size);
+    top_px = draw_labels(view_, *simulation_, size, {top_px, bottom_px});
+    draw_help(view_, size, {top_px, bottom_px});
     if (opening_.valid()) draw_opening();
-    draw_help(view_, size, below_px);
     if (const auto recording_s = files_.recording_s(*simulation_)) draw_recording(*recording_s, size);
     draw_no_go(*simulation_, size);
-    draw_complaint(view_);
-    question_.draw();
-    draw_closing(view_);
     set_sound();
   }
 
@@ -397,7 +420,7 @@ class Simulator {
       view_.message = "Saved " + path.string();
       view_.result = path;
     } catch (const std::exception& error) {
-      view_.complaint = error.what();
+      view_.dialogues.complain(error.what());
     }
   }
 
@@ -435,11 +458,11 @@ class Simulator {
     const double cpu_s = static_cast<double>(std::clock() - said_cpu_) / CLOCKS_PER_SEC;
     fmt::print(
         "{}: {:.1f} pictures/s ({:.0f} ms of all processors each), {} triangles, {:.1f} Hz, {} late, step "
-        "p99 {:.0f} us, force {:.2f} N, removed {:.3f} mm^3, {} cuts, scan {}\n",
+        "p99 {:.0f} us, force {:.2f} N, removed {:.3f} mm³, {} cuts, scan {}\n",
         text, rate_.per_s(), 1e3 * cpu_s / std::max(pictures_since_said_, 1), renderer_->triangle_count(),
         timing.ticks_per_s, timing.late_ticks, timing.step.p99_us, record.wrench.force_N.norm(),
         record.removed_mm3, simulation_->milling.cuts(), simulation_->scan_name);
-    if (!view_.complaint.empty()) fmt::print("dialogue: {}\n", view_.complaint);
+    for (const std::string& complaint : view_.dialogues.complaints()) fmt::print("dialogue: {}\n", complaint);
     std::fflush(stdout);
     said_cpu_ = std::clock();
     pictures_since_said_ = 0;
@@ -455,13 +478,13 @@ class Simulator {
   // Read, and waiting for an answer to what becomes of the one that is milled.
   std::optional<OpenedScan> opened_;
   std::optional<AutosaveFile> opened_milled_;
-  UnsavedQuestion question_;
   ScanOptions opened_scan_;
   Clock::time_point opening_since_;
   int changes_before_ = 0;
   std::unique_ptr<SceneRenderer> renderer_;
   // Of the surface, in the order in which they changed.
   std::deque<ChangedBrick> to_draw_;
+  bool closing_ = false;
   bool reported_ = false;
   ViewState view_;
   FilesPanel files_;

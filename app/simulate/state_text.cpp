@@ -113,6 +113,7 @@ std::string state_text(const std::string& name, const ViewState& view, Simulatio
   lines.add("heard_rpm", fmt::format("{:.0f}", heard.speed_rpm));
   lines.add("isovalue", fmt::format("{:.6g}", milling.isovalue()));
   lines.add("isovalue_from", isovalue_text(simulation));
+  lines.add("warnings", simulation.warnings.empty() ? "" : simulation.warnings.front());
   lines.add("removed_mm3", fmt::format("{:.3f}", state.record.removed_mm3));
   lines.add("cuts", milling.cuts());
   for (std::size_t n = 0; n < simulation.label_count.labels().size(); ++n) {
@@ -132,7 +133,7 @@ std::string state_text(const std::string& name, const ViewState& view, Simulatio
   lines.add("scan", simulation.scan_name);
   lines.add("help", view.help);
   lines.add("message", view.message);
-  lines.add("dialogue", view.complaint);
+  lines.add("dialogue", view.dialogues.shown() != nullptr ? view.dialogues.shown()->text : "");
   add_controls(lines);
   lines.add("ui_scale", fmt::format("{:.2f}", static_cast<double>(ui::px(1))));
   lines.add("size", fmt::format("{} x {}", size.width, size.height));

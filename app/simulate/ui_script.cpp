@@ -19,8 +19,9 @@ namespace osteomill::app {
 
 namespace {
 
-// Pictures: on its place, down, moved, up.
-constexpr int kClickPictures = 12;
+// Pictures: on its place, down, up; and moved in between, nearer to the end each time.
+constexpr int kClickPictures = 6;
+constexpr int kDragPictures = 12;
 
 const std::map<std::string, std::size_t> kWords{
     {"at-once", 0},    {"resize", 2},   {"wait", 1}, {"settle", 0}, {"glide", 3}, {"press", 1},
@@ -161,10 +162,11 @@ void UiScript::feed(double passed_s, bool settled, Window& window) {
     if (!begun_) begin(action, window);
     double share = time_left_s_ > passed_s ? passed_s / time_left_s_ : 1.0;
     if (click_picture_ > 0) {
-      pressed = click_picture_ > 2 && click_picture_ < kClickPictures - 2;
+      const int pictures = action.name == "drag" ? kDragPictures : kClickPictures;
+      pressed = click_picture_ > 2 && click_picture_ < pictures - 2;
       // Where it was pressed first, and from there.
       share = pressed && click_picture_ > 3 ? 0.5 : 0.0;
-      if (click_picture_++ < kClickPictures) time_left_s_ = 2 * passed_s;
+      if (click_picture_++ < pictures) time_left_s_ = 2 * passed_s;
     }
     x_ += static_cast<float>(share) * (to_x_ - x_);
     y_ += static_cast<float>(share) * (to_y_ - y_);

@@ -14,7 +14,7 @@ namespace osteomill::app {
 /// that the whole window can be tested:
 ///     at-once                         as the first line: begins while the first scan is still being opened
 ///     wait SECONDS
-///     settle                          until nothing is being prepared
+///     settle                          until nothing is being prepared, written or brought to its place
 ///     glide X Y SECONDS               moves the pointer there
 ///     press NAME, release NAME        the button left, middle or right, or a key
 ///     wheel STEPS SECONDS             turns it step by step

@@ -6,14 +6,12 @@
 #include <string>
 
 #include "app/simulate/bone_view.h"
+#include "app/simulate/dialogues.h"
 
 #include "osteomill/session/milling_setup.h"
 #include "osteomill/view/scene.h"
 
 namespace osteomill::app {
-
-/// How far it is with closing the window. A report that is asked for begins when nothing else is written.
-enum class Closing { no, asking, report_asked, reporting, now };
 
 /// What the window shows and how, beside the simulation itself.
 struct ViewState {
@@ -56,12 +54,12 @@ struct ViewState {
   bool reset_asked = false;
   bool full_screen_asked = false;
   bool picture_asked = false;
-  Closing closing = Closing::no;
-  /// A dialogue that waits to be read.
-  std::string complaint;
+  DialogueQueue dialogues;
   /// What was done last, and the file or folder that came of it, if any did.
   std::string message;
   std::filesystem::path result;
+  /// The page of the report that was made last.
+  std::filesystem::path report;
 
   /// The three planes across the patient and a free one, with their places along their normals.
   struct Cut {

@@ -79,25 +79,29 @@ bool released() {
   return ImGui::IsItemDeactivatedAfterEdit();
 }
 
-std::optional<std::size_t> choice(std::initializer_list<const char*> labels) {
+std::optional<std::size_t> choice(const std::vector<std::string>& labels) {
   std::optional<std::size_t> chosen;
-  std::size_t n = 0;
-  for (const char* label : labels) {
+  for (std::size_t n = 0; n < labels.size(); ++n) {
     if (n > 0) ImGui::SameLine();
-    if (button(label)) chosen = n;
-    ++n;
+    if (button(labels[n].c_str())) chosen = n;
   }
+  if (labels.empty()) return chosen;
   // The key that led to the dialogue may still be going down.
   if (ImGui::IsWindowAppearing()) return chosen;
   const auto pressed = [](int key) { return ImGui::IsKeyPressed(key, false); };
   if (pressed(GLFW_KEY_ENTER) || pressed(GLFW_KEY_KP_ENTER)) chosen = 0;
   if (pressed(GLFW_KEY_ESCAPE)) chosen = labels.size() - 1;
-  if (chosen) worked().insert(labels.begin()[*chosen]);
+  if (chosen) worked().insert(labels[*chosen]);
   return chosen;
 }
 
 void hint(const char* text) {
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", text);
+  if (!ImGui::IsItemHovered()) return;
+  ImGui::BeginTooltip();
+  ImGui::PushTextWrapPos(25 * ImGui::GetFontSize());
+  ImGui::TextUnformatted(text);
+  ImGui::PopTextWrapPos();
+  ImGui::EndTooltip();
 }
 
 }  // namespace osteomill::app::ui

@@ -1,11 +1,11 @@
 #pragma once
 
 #include <cstddef>
-#include <initializer_list>
 #include <map>
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include <imgui.h>
 
@@ -41,7 +41,7 @@ bool header(const char* label, bool open);
 /// True when a change of the slider drawn last is over.
 bool released();
 /// A dialogue's buttons in a row, by number the one that was chosen: Enter is the first, Esc the last.
-std::optional<std::size_t> choice(std::initializer_list<const char*> labels);
+std::optional<std::size_t> choice(const std::vector<std::string>& labels);
 /// Explains the widget drawn last where the pointer rests on it.
 void hint(const char* text);
 

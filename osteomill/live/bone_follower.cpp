@@ -4,6 +4,7 @@
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
+#include <limits>
 #include <mutex>
 #include <optional>
 #include <shared_mutex>
@@ -191,6 +192,8 @@ struct BoneFollower::Impl {
   std::vector<DensityBlock> differing;
   std::optional<CutHistory::Taken> taken;
   double isovalue_before = 0;
+  // The most that a voxel milled empty may have kept.
+  float emptied = std::numeric_limits<float>::lowest();
 
   std::mutex mutex;
   std::condition_variable woken;
@@ -298,7 +301,7 @@ BoneFollower::NextBone BoneFollower::as_at_the_beginning() {
   return impl_->without(impl_->history.take_all());
 }
 
-BoneFollower::NextBone BoneFollower::with_isovalue(double isovalue, double removed_mm3) {
+BoneFollower::NextBone BoneFollower::with_isovalue(double isovalue, double surroundings, double removed_mm3) {
   Volume& copy = *impl_->copy;
   {
     const std::lock_guard lock(impl_->bone_mutex);
@@ -309,7 +312,9 @@ BoneFollower::NextBone BoneFollower::with_isovalue(double isovalue, double remov
   // Goes through every voxel, while others read.
   const BoneDensities densities = estimate_densities(copy);
   const std::lock_guard lock(impl_->bone_mutex);
-  impl_->differing = impl_->history.keep_emptied(copy.grid(), impl_->isovalue_before, isovalue,
+  // Also at an isovalue before this one.
+  impl_->emptied = std::max(impl_->emptied, static_cast<float>(surroundings));
+  impl_->differing = impl_->history.keep_emptied(copy.grid(), impl_->emptied, isovalue,
                                                  static_cast<float>(densities.surroundings));
   impl_->put_differing();
   return {impl_->copy, removed_mm3, densities};

@@ -79,12 +79,13 @@ class BoneFollower {
     std::optional<BoneDensities> densities;
   };
   /// With the last cut taken back, as it was at the beginning, or with another isovalue
-  /// (std::invalid_argument where it is not finite), at which what milling had emptied stays empty. All three
+  /// (std::invalid_argument where it is not finite), at which what milling had emptied stays empty:
+  /// `surroundings` is what it has been cut down to. All three
   /// while the bone is held and the copy is caught up, and until `swap` or `give_up` nobody writes into
   /// either. Cuts and surface show it at once.
   NextBone without_last_cut();
   NextBone as_at_the_beginning();
-  NextBone with_isovalue(double isovalue, double removed_mm3);
+  NextBone with_isovalue(double isovalue, double surroundings, double removed_mm3);
   /// The copy has become the bone. What was the bone, which no tick uses any more, becomes the copy, so that
   /// there are never more than the two.
   void swap();

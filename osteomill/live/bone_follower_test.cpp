@@ -234,7 +234,7 @@ TEST_F(BoneFollowerTest, WhatIsGivenUpIsAsItWas) {
     EXPECT_EQ(follower_.cuts(), 1u);
     EXPECT_TRUE(follower_.touched());
   }
-  follower_.with_isovalue(300, 0);
+  follower_.with_isovalue(300, 0, 0);
   follower_.give_up();
   EXPECT_EQ(follower_.cuts(), 1u);
   EXPECT_TRUE(settles(follower_, collected_, *bone_, 500));
@@ -244,12 +244,12 @@ TEST_F(BoneFollowerTest, AnotherIsovalueIsThatOfBothCopies) {
   mill(300);
   catch_up();
   const CopyOnWriteFloats milled = now();
-  swap(follower_.with_isovalue(700, 1.5));
+  swap(follower_.with_isovalue(700, 0, 1.5));
   EXPECT_EQ(bone_->isovalue(), 700);
   EXPECT_EQ(now(), milled);
   follower_.read([&](const Volume& copy) { EXPECT_EQ(copy.isovalue(), 700); });
   EXPECT_TRUE(settles(follower_, collected_, *bone_, 700));
-  EXPECT_THROW(follower_.with_isovalue(std::nan(""), 0), std::invalid_argument);
+  EXPECT_THROW(follower_.with_isovalue(std::nan(""), 0, 0), std::invalid_argument);
 }
 
 // Ticks at full speed on one thread, drawing on another, the surface on its own; also with the thread

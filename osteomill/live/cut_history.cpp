@@ -12,13 +12,13 @@ std::uint64_t place_of(const VoxelIndex& first) {
 }
 
 // Whether any voxel was.
-bool lower_emptied(DensityBlock& brick, const DensityBlock& first, double isovalue_before, double isovalue,
+bool lower_emptied(DensityBlock& brick, const DensityBlock& first, float emptied, double isovalue,
                    float floor) {
   bool lowered = false;
   for (std::size_t n = 0; n < brick.densities.size(); ++n) {
     float& density = brick.densities[n];
-    const bool emptied = density < first.densities[n] && static_cast<double>(density) <= isovalue_before;
-    if (!emptied || static_cast<double>(density) <= isovalue) continue;
+    if (density >= first.densities[n] || density > emptied || static_cast<double>(density) <= isovalue)
+      continue;
     density = floor;
     lowered = true;
   }
@@ -39,6 +39,7 @@ void CutHistory::forget_oldest() {
   while (bricks_in_cuts_ > max_bricks_ && cuts_.size() > 1) {
     bricks_in_cuts_ -= cuts_.front().before.size();
     cuts_.pop_front();
+    forgotten_ = true;
   }
 }
 
@@ -53,26 +54,29 @@ std::size_t CutHistory::cuts() const {
 
 CutHistory::Taken CutHistory::take_last() {
   if (cuts_.back().before.empty() && cuts_.size() > 1) cuts_.pop_back();
+  // With the first of all cuts nothing is milled any more.
+  if (cuts_.size() == 1 && !forgotten_) return take_all();
   bricks_in_cuts_ -= cuts_.back().before.size();
   return {std::exchange(cuts_.back().before, {}), cuts_.back().removed_before_mm3, {}};
 }
 
 CutHistory::Taken CutHistory::take_all() {
   bricks_in_cuts_ = 0;
-  return {std::exchange(first_, {}), 0, std::exchange(cuts_, std::deque<Cut>(1))};
+  return {std::exchange(first_, {}), 0, std::exchange(cuts_, std::deque<Cut>(1)),
+          std::exchange(forgotten_, false)};
 }
 
-std::vector<DensityBlock> CutHistory::keep_emptied(const DensityGrid& grid, double isovalue_before,
-                                                   double isovalue, float floor) {
+std::vector<DensityBlock> CutHistory::keep_emptied(const DensityGrid& grid, float emptied, double isovalue,
+                                                   float floor) {
   for (Cut& cut : cuts_) {
     for (auto& [place, brick] : cut.before) {
-      lower_emptied(brick, first_.at(place), isovalue_before, isovalue, floor);
+      lower_emptied(brick, first_.at(place), emptied, isovalue, floor);
     }
   }
   std::vector<DensityBlock> differing;
   for (const auto& [place, first] : first_) {
     DensityBlock now(grid, first.first);
-    if (lower_emptied(now, first, isovalue_before, isovalue, floor)) differing.push_back(now);
+    if (lower_emptied(now, first, emptied, isovalue, floor)) differing.push_back(now);
   }
   return differing;
 }
@@ -85,6 +89,7 @@ void CutHistory::put_back(Taken taken) {
   }
   first_ = std::move(taken.bricks);
   cuts_ = std::move(taken.cuts);
+  forgotten_ = taken.forgotten;
   for (const Cut& cut : cuts_) bricks_in_cuts_ += cut.before.size();
 }
 

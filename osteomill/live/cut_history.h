@@ -29,6 +29,8 @@ class CutHistory {
     double removed_mm3 = 0;
     /// All of a history that was taken at once.
     std::deque<Cut> cuts;
+    /// Whether there had been older ones.
+    bool forgotten = false;
   };
 
   explicit CutHistory(std::size_t undo_bytes) : max_bricks_(undo_bytes / sizeof(DensityBlock)), cuts_(1) {}
@@ -45,17 +47,17 @@ class CutHistory {
   /// Every brick that was touched, as it was at the beginning.
   const Bricks& first() const { return first_; }
 
-  /// The last cut; without bricks where there is none.
+  /// The last cut; without bricks where there is none. With the first of all cuts, all.
   Taken take_last();
   /// All since the beginning, beyond which cuts cannot be taken back.
   Taken take_all();
   /// As it was before `taken` was taken, nothing having been kept since.
   void put_back(Taken taken);
 
-  /// Another isovalue, at which voxels that milling had emptied might count as bone again: they go down to
-  /// `floor`, in all that can be taken back and in the bricks returned, which are those of `grid` that
-  /// differ.
-  std::vector<DensityBlock> keep_emptied(const DensityGrid& grid, double isovalue_before, double isovalue,
+  /// Another isovalue, at which voxels that milling had cut down to `emptied` or below would count as bone:
+  /// they go down to `floor`, in all that can be taken back and in the bricks returned, which are those of
+  /// `grid` that differ. Voxels that are cut in part stay as they are, and with them the cut's surface.
+  std::vector<DensityBlock> keep_emptied(const DensityGrid& grid, float emptied, double isovalue,
                                          float floor);
 
  private:
@@ -65,6 +67,7 @@ class CutHistory {
   Bricks first_;
   std::deque<Cut> cuts_;
   std::size_t bricks_in_cuts_ = 0;
+  bool forgotten_ = false;
 };
 
 }  // namespace osteomill

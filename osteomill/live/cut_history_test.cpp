@@ -97,17 +97,32 @@ TEST_F(CutHistoryTest, ForgetsTheOldestCutsBeyondItsMemory) {
   EXPECT_EQ(now(), before_);
 }
 
-// Inside bone of 1000: emptied to 400 and 0, lowered to 700; and outside, where nothing was milled.
-TEST_F(CutHistoryTest, WhatWasEmptiedStaysEmptyAtALowerIsovalue) {
+TEST_F(CutHistoryTest, NothingIsTouchedOnceTheOnlyCutIsTakenBack) {
+  mill({3, 4, 5});
+  auto taken = history_.take_last();
+  EXPECT_FALSE(history_.touched());
+  history_.put_back(std::move(taken));
+  EXPECT_TRUE(history_.touched());
+  EXPECT_EQ(history_.cuts(), 1u);
+  undo();
+  EXPECT_EQ(now(), before_);
+}
+
+// Inside bone of 1000: emptied to 300 and 0, cut in part to 400 and 700; and outside, where nothing was
+// milled.
+TEST_F(CutHistoryTest, WhatWasEmptiedStaysEmptyAtALowerIsovalueAndWhatWasCutInPartStaysAsItWas) {
   const auto mill_to = [&](const VoxelIndex& voxel, float density) {
     while (bone_.grid()[voxel] > density) mill(voxel);
   };
-  mill_to({3, 4, 2}, 400);
+  mill_to({3, 4, 2}, 300);
   history_.begin_cut(1);
   mill_to({3, 4, 3}, 0);
   mill_to({3, 4, 4}, 700);
+  mill_to({3, 4, 5}, 400);
   const CopyOnWriteFloats milled = now();
-  std::vector<DensityBlock> differing = history_.keep_emptied(bone_.grid(), 500, 50, -30);
+  EXPECT_TRUE(history_.keep_emptied(bone_.grid(), 300, 990, 300).empty());
+  EXPECT_TRUE(history_.keep_emptied(bone_.grid(), 300, 350, 300).empty());
+  std::vector<DensityBlock> differing = history_.keep_emptied(bone_.grid(), 300, 50, -30);
   ASSERT_EQ(differing.size(), 1u);
   swap_densities(bone_, differing.front());
   CopyOnWriteFloats expected = milled;

@@ -102,7 +102,9 @@ void LiveMilling::change(const MillingSetup& setup) {
 }
 
 void LiveMilling::change_isovalue(double isovalue) {
-  rebuild([this, isovalue] { return follower_->with_isovalue(isovalue, live_.session().removed_mm3()); });
+  rebuild([this, isovalue, surroundings = densities_.surroundings] {
+    return follower_->with_isovalue(isovalue, surroundings, live_.session().removed_mm3());
+  });
 }
 
 void LiveMilling::undo() {

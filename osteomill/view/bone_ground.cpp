@@ -18,6 +18,15 @@ using Clock = std::chrono::steady_clock;
 // Reading the depths makes a processor that draws wait for itself, and what is blurred changes little.
 constexpr unsigned kPicturesPerBlur = 4;
 constexpr double kCoarsest_px = 64;
+constexpr int kWidestPixels = 4;
+
+bool same_size(const PixelSize& a, const PixelSize& b) {
+  return a.width == b.width && a.height == b.height;
+}
+
+std::size_t pixels_of(const PixelSize& size) {
+  return static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height);
+}
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -79,28 +88,43 @@ void BoneGround::set_clip_face(std::size_t cut, const ClipFace& face) {
 }
 
 void BoneGround::fit(const PixelSize& size) {
-  if (shown_ && shown_->size().width == size.width && shown_->size().height == size.height) return;
-  shown_.emplace(size);
-  next_.emplace(size);
+  if (resting_ && same_size(resting_->size(), size)) return;
+  resting_.emplace(size);
   cavities_.emplace(size);
   drawn_ = 0;
   scene_.reset();
 }
 
-void BoneGround::draw(const ViewScene& scene, const Projection& projection) {
-  fit(projection.size);
+void BoneGround::draw(const ViewScene& scene, const PixelSize& size) {
+  fit(size);
   const bool same = scene_ && same_view(*scene_, scene);
-  if (same && draw_changed(scene, projection)) {
-    if (!settled_) refine(scene, projection);
+  if (same && draw_changed(scene, projection_of(scene, shown_->size()))) {
+    if (!settled_) refine(scene, projection_of(scene, size));
   } else {
-    draw_at_once(scene, projection);
+    draw_at_once(scene, size_in_time(size));
   }
   scene_ = scene;
   ++drawn_;
 }
 
-void BoneGround::draw_at_once(const ViewScene& scene, const Projection& projection) {
+// The most pixels that there is time for, as with triangles.
+PixelSize BoneGround::size_in_time(const PixelSize& size) {
+  const auto coarse = [&](int n) { return PixelSize{(size.width + n - 1) / n, (size.height + n - 1) / n}; };
+  const auto allowed = static_cast<double>(pace_.pixels());
+  int n = 1;
+  for (; n < kWidestPixels && pixels_of(coarse(n + 1)) >= DrawingPace::kFewestPixels; ++n) {
+    const auto count = static_cast<double>(pixels_of(coarse(n)));
+    if (count <= (n < coarseness_ ? 0.75 : 1.0) * allowed) break;
+  }
+  coarseness_ = n;
+  return coarse(n);
+}
+
+void BoneGround::draw_at_once(const ViewScene& scene, const PixelSize& size) {
   const auto start = Clock::now();
+  if (!moving_ || !same_size(moving_->size(), size)) moving_.emplace(size);
+  shown_ = &*moving_;
+  const Projection projection = projection_of(scene, size);
   const std::vector<SeenBrick> seen = seen_in_time(scene, projection);
   clear_depths(*shown_);
   bone_.draw(scene, projection, *cavities_, seen);
@@ -108,7 +132,9 @@ void BoneGround::draw_at_once(const ViewScene& scene, const Projection& projecti
   if (drawn_ % kPicturesPerBlur == 0) look_for_cavities(projection);
   // Else it would not be known how long it took.
   glFinish();
-  pace_.drew(bone_.triangle_count(seen), seconds_since(start));
+  const double passed_s = seconds_since(start);
+  pace_.drew(bone_.triangle_count(seen), passed_s);
+  pace_.drew_pixels(pixels_of(size), passed_s);
   settled_ = refining_ = false;
   changed_.clear();
   to_shade_.clear();
@@ -137,17 +163,17 @@ void BoneGround::begin_refining(const ViewScene& scene, const Projection& projec
   refined_ = 0;
   refining_ = true;
   changed_since_.clear();
-  clear_depths(*next_);
+  clear_depths(*resting_);
 }
 
 // The nearest first, as many as there is time for.
 void BoneGround::refine(const ViewScene& scene, const Projection& projection) {
   if (!refining_) begin_refining(scene, projection);
   const auto start = Clock::now();
-  next_->bind();
+  resting_->bind();
   glEnable(GL_DEPTH_TEST);
   std::optional<DepthTiles> before;
-  if (refined_ > 0) before.emplace(*next_, projection, scene.camera);
+  if (refined_ > 0) before.emplace(*resting_, projection, scene.camera);
   std::vector<SeenBrick> slice;
   std::size_t triangles = 0;
   for (; refined_ < to_refine_.size() && triangles < pace_.triangles(); ++refined_) {
@@ -156,11 +182,11 @@ void BoneGround::refine(const ViewScene& scene, const Projection& projection) {
     slice.push_back(seen);
     triangles += bone_.triangle_count({&seen, 1});
   }
-  next_->bind();
+  resting_->bind();
   bone_.draw(scene, projection, *cavities_, slice);
   if (refined_ == to_refine_.size()) {
     draw_around(scene, projection);
-    std::swap(shown_, next_);
+    shown_ = &*resting_;
     settled_ = true;
     refining_ = false;
     changed_ = std::exchange(changed_since_, {});
@@ -204,7 +230,7 @@ BoneGround::Rectangle BoneGround::changed_part(const std::set<std::size_t>& bric
   Eigen::AlignedBox2d box;
   for (const std::size_t brick : bricks) box.extend(drawn_within(scene, projection, bone_.bounds(brick)));
   // What is milled away darkens and lightens what is around it.
-  const double more_px = cavities_->reach_px();
+  const double more_px = cavities_->reach_px(projection.size);
   const Eigen::Array2d all(projection.size.width, projection.size.height);
   const Eigen::Array2d first = (box.min().array() - more_px).floor().max(0.0).min(all);
   const Eigen::Array2d last = (box.max().array() + more_px).ceil().min(all).max(first);

@@ -16,33 +16,42 @@
 
 namespace osteomill {
 
-/// How many triangles may be drawn for one picture so that pictures follow each other quickly, from how long
-/// those before took. No clock of its own.
+/// How many triangles and pixels may be drawn for one picture so that pictures follow each other quickly,
+/// from how long those before took. No clock of its own.
 class DrawingPace {
  public:
   /// Leaves room in a thirtieth of a second for the tool, the panels and showing it all.
   static constexpr double kBone_s = 0.018;
   static constexpr std::size_t kFewest = 20'000;
+  static constexpr std::size_t kFewestPixels = 500'000;
 
-  std::size_t triangles() const {
-    return std::max(kFewest, static_cast<std::size_t>(kBone_s / s_per_triangle_));
-  }
+  std::size_t triangles() const { return within(kFewest, s_per_triangle_); }
+  std::size_t pixels() const { return within(kFewestPixels, s_per_pixel_); }
   /// So many took so long. Pictures of a few say nothing of what many take.
-  void drew(std::size_t triangles, double passed_s) {
-    const double here = passed_s / static_cast<double>(std::max(triangles, kFewest));
-    // One that others of the machine held up counts little.
-    s_per_triangle_ += kWeight * (std::min(here, 2 * s_per_triangle_) - s_per_triangle_);
+  void drew(std::size_t triangles, double passed_s) { learn(s_per_triangle_, triangles, kFewest, passed_s); }
+  void drew_pixels(std::size_t pixels, double passed_s) {
+    learn(s_per_pixel_, pixels, kFewestPixels, passed_s);
   }
 
  private:
-  static constexpr double kWeight = 0.3;
+  static std::size_t within(std::size_t fewest, double s_each) {
+    return std::max(fewest, static_cast<std::size_t>(kBone_s / s_each));
+  }
+  static void learn(double& s_each, std::size_t count, std::size_t fewest, double passed_s) {
+    constexpr double kWeight = 0.3;
+    const double here = passed_s / static_cast<double>(std::max(count, fewest));
+    // One that others of the machine held up counts little.
+    s_each += kWeight * (std::min(here, 2 * s_each) - s_each);
+  }
+
   double s_per_triangle_ = kBone_s / 150'000;
+  double s_per_pixel_ = kBone_s / 2'000'000;
 };
 
 /// The bone with all that stands still beside it, in a picture of its own, however many triangles it has:
-/// while the view moves with as many as there is time for; where it rests in full detail, brick by brick in a
-/// second picture that takes the first one's place when it is done; and where bone is milled only the part of
-/// the picture in which it changed.
+/// while the view moves with as many triangles and pixels as there is time for; where it rests in full
+/// detail, brick by brick in a second picture that takes the first one's place when it is done; and where
+/// bone is milled only the part of the picture in which it changed.
 class BoneGround {
  public:
   BoneGround(const SurfaceBricks& layout, const GridGeometry& geometry,
@@ -52,8 +61,8 @@ class BoneGround {
   void set_clip_face(std::size_t cut, const ClipFace& face);
   std::size_t triangle_count() const { return bone_.triangle_count(); }
 
-  /// One picture's work.
-  void draw(const ViewScene& scene, const Projection& projection);
+  /// One picture's work; `size` is that of the picture where the view rests.
+  void draw(const ViewScene& scene, const PixelSize& size);
   const FrameTarget& picture() const { return *shown_; }
   /// Nothing is left to be drawn while neither view nor bone changes.
   bool settled() const { return settled_ && changed_.empty() && to_shade_.empty(); }
@@ -64,7 +73,8 @@ class BoneGround {
   };
 
   void fit(const PixelSize& size);
-  void draw_at_once(const ViewScene& scene, const Projection& projection);
+  PixelSize size_in_time(const PixelSize& size);
+  void draw_at_once(const ViewScene& scene, const PixelSize& size);
   void begin_refining(const ViewScene& scene, const Projection& projection);
   void refine(const ViewScene& scene, const Projection& projection);
   bool draw_changed(const ViewScene& scene, const Projection& projection);
@@ -78,9 +88,13 @@ class BoneGround {
   ClipFaces cut_faces_;
   gl::Program background_;
   gl::VertexArray nothing_;
-  std::optional<FrameTarget> shown_;
+  std::optional<FrameTarget> moving_;
   // Where full detail is drawn.
-  std::optional<FrameTarget> next_;
+  std::optional<FrameTarget> resting_;
+  // That of the two which is to be seen.
+  const FrameTarget* shown_ = nullptr;
+  // A moving picture's pixels are so many times as wide.
+  int coarseness_ = 1;
   std::optional<CavityPass> cavities_;
   std::optional<ViewScene> scene_;
   DrawingPace pace_;

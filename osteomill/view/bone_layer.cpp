@@ -273,7 +273,7 @@ void BoneLayer::draw(const ViewScene& scene, const Projection& projection, const
   const bool cut = is_cut(scene);
   const GLuint program = (cut ? cut_ : whole_).get();
   glUseProgram(program);
-  set_uniforms(program, scene, projection, cavities.reach_px());
+  set_uniforms(program, scene, projection, cavities.reach_px(projection.size));
   if (cut) begin_cuts(program, scene);
   glActiveTexture(GL_TEXTURE0);
   glBindTexture(GL_TEXTURE_2D, cavities.blurred_depths());

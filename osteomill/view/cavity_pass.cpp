@@ -31,7 +31,7 @@ gl::Framebuffer framebuffer_on(const gl::Texture& texture) {
 }  // namespace
 
 CavityPass::CavityPass(const PixelSize& size, int reach_px)
-    : reach_px_(reach_px),
+    : reach_of_height_(static_cast<double>(reach_px) / size.height),
       size_{shrunk(size.width, reach_px), shrunk(size.height, reach_px)},
       small_(small_texture(size_, GL_NEAREST)),
       half_blurred_(small_texture(size_, GL_NEAREST)),

@@ -15,12 +15,13 @@ class CavityPass {
   void blur(GLuint depths, double near_mm, double far_mm) const;
   /// Depths in mm times a weight, and the weight.
   GLuint blurred_depths() const { return blurred_.get(); }
-  double reach_px() const { return reach_px_; }
+  /// In a picture of the same view of this size.
+  double reach_px(const PixelSize& picture) const { return reach_of_height_ * picture.height; }
 
  private:
   void draw(const gl::Framebuffer& target, GLuint source) const;
 
-  double reach_px_;
+  double reach_of_height_;
   PixelSize size_;
   gl::Texture small_;
   gl::Texture half_blurred_;

@@ -76,6 +76,7 @@ struct SceneRenderer::Impl {
   BoneGround ground;
   SolidShapes shapes;
   std::optional<FrameTarget> target;
+  PixelSize asked_size;
 };
 
 SceneRenderer::SceneRenderer(const SurfaceBricks& layout, const GridGeometry& geometry,
@@ -94,9 +95,11 @@ void SceneRenderer::set_clip_face(std::size_t cut, const ClipFace& face) {
 
 void SceneRenderer::draw(const ViewScene& scene, const PixelSize& size) {
   Impl& own = *impl_;
-  own.fit(size);
-  const Projection projection = projection_of(scene, size);
-  own.ground.draw(scene, projection);
+  own.asked_size = size;
+  own.ground.draw(scene, size);
+  const PixelSize drawn = own.ground.picture().size();
+  own.fit(drawn);
+  const Projection projection = projection_of(scene, drawn);
   own.copy_ground();
   own.shapes.begin(projection);
   if (scene.X_WT) draw_tool(own.shapes, scene.tool, *scene.X_WT, kBurr, kShaft);
@@ -109,11 +112,12 @@ Image SceneRenderer::picture() const {
 }
 
 void SceneRenderer::copy_to_window() const {
-  const PixelSize size = impl_->target->size();
+  const PixelSize& from = impl_->target->size();
+  const PixelSize& to = impl_->asked_size;
   glBindFramebuffer(GL_READ_FRAMEBUFFER, impl_->target->framebuffer());
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
-  glBlitFramebuffer(0, 0, size.width, size.height, 0, 0, size.width, size.height, GL_COLOR_BUFFER_BIT,
-                    GL_NEAREST);
+  glBlitFramebuffer(0, 0, from.width, from.height, 0, 0, to.width, to.height, GL_COLOR_BUFFER_BIT,
+                    from.width == to.width ? GL_NEAREST : GL_LINEAR);
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
 }
 

@@ -31,8 +31,9 @@ class SceneRenderer {
   /// What the scene's cut of this number lays open. Drawn as far as the other cuts leave it.
   void set_clip_face(std::size_t cut, const ClipFace& face);
 
-  /// Draws into a picture of its own, in a time that hardly depends on how many triangles there are: while
-  /// the view moves the bone has as many as there is time for, and full detail some pictures after it rests.
+  /// Draws into a picture of its own, in a time that hardly depends on how many triangles and pixels there
+  /// are: while the view moves it has as many as there is time for, and full detail and `size` some pictures
+  /// after it rests.
   /// What lies deep is darkened after a picture drawn before, so that a still picture is drawn twice at
   /// least.
   void draw(const ViewScene& scene, const PixelSize& size);
@@ -40,7 +41,7 @@ class SceneRenderer {
   bool settled() const;
   /// The picture drawn last.
   Image picture() const;
-  /// Copies it into the window's framebuffer, which has its size.
+  /// Copies it into the window's framebuffer, which has the size that was asked for.
   void copy_to_window() const;
 
   std::size_t triangle_count() const;

@@ -213,6 +213,31 @@ TEST(DrawingPace, OnePictureThatWasHeldUpCountsLittle) {
   EXPECT_GT(pace.triangles(), first / 2);
 }
 
+TEST(DrawingPace, HasFewerPixelsWhereTheyTakeLong) {
+  DrawingPace pace;
+  EXPECT_GT(pace.pixels(), 1'500'000u);
+  for (int n = 0; n < 20; ++n) pace.drew_pixels(1'000'000, 0.1);
+  EXPECT_EQ(pace.pixels(), DrawingPace::kFewestPixels);
+  for (int n = 0; n < 20; ++n) pace.drew_pixels(8'000'000, 0.01);
+  EXPECT_GT(pace.pixels(), 8'000'000u);
+}
+
+// The first picture comes at the pace that is supposed before any is known.
+TEST_F(SceneRendererTest, ALargePictureThatMovesHasFewerPixelsThanOnceItRests) {
+  constexpr PixelSize kLarge{1920, 1080};
+  renderer_->draw(scene_, kLarge);
+  const Image moving = renderer_->picture();
+  EXPECT_EQ(moving.width, 960);
+  EXPECT_EQ(moving.height, 540);
+  do {
+    renderer_->draw(scene_, kLarge);
+  } while (!renderer_->settled());
+  const Image rested = renderer_->picture();
+  EXPECT_EQ(rested.width, 1920);
+  EXPECT_EQ(rested.height, 1080);
+  EXPECT_NEAR(covered(moving), covered(rested), 0.005);
+}
+
 TEST_F(SceneRendererTest, ABrickTakenAwayIsGone) {
   const double all = covered(picture());
   EXPECT_GT(renderer_->triangle_count(), 1000u);

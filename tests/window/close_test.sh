@@ -3,17 +3,19 @@
 #   close_test.sh OSTEOMILL
 set -euo pipefail
 osteomill=$1
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 command -v xvfb-run >/dev/null || { echo "SKIPPED: needs xvfb-run"; exit 77; }
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
 export XDG_STATE_HOME=$folder/state
+bash "$here/ball.sh" >ball.nrrd
 fail() { echo "FAILED: $1"; cat said errors; exit 1; }
 # Works the window by the lines given; what a click does not find ends the program with an error.
 window() {
   printf '%s\n' "wait 0.3" "$@" >actions
   rm -rf out
-  xvfb-run -a -s "-screen 0 1280x800x24" timeout 100 "$osteomill" simulate --no-help --out out --script actions \
+  xvfb-run -a -s "-screen 0 1280x800x24" timeout 100 "$osteomill" simulate ball.nrrd --no-help --out out --script actions \
     >said 2>errors
 }
 record=("click Record" "wait 0.5" "click Stop recording" "wait 0.2")
@@ -38,7 +40,7 @@ grep -q "^Report in out/" said || fail "the report is not named"
 window "${record[@]}" close || fail "exit code $? of a script's close"
 printf '%s\n' "wait 0.3" "${record[@]}" quit "wait 0.3" "say asked" "wait 90" >actions
 xvfb-run -a -s "-screen 0 1280x800x24" timeout 100 bash -c '
-  "$1" simulate --no-help --out out --script actions >said 2>errors & program=$!
+  "$1" simulate ball.nrrd --no-help --out out --script actions >said 2>errors & program=$!
   until grep -q asked said || ! kill -0 "$program"; do sleep 0.2; done
   kill -TERM "$program"; wait "$program"' - "$osteomill" && code=0 || code=$?
 [ "$code" -eq 143 ] || fail "SIGTERM while asking ended with $code"

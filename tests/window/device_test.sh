@@ -29,6 +29,11 @@ wait 0.5
 state clutched_on
 release c
 click Calibrate
+wait 0.2
+screenshot calibrating.png
+click Cancel
+wait 0.2
+click Calibrate
 wait 0.4
 click That was right
 wait 0.4

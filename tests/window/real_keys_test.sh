@@ -16,7 +16,7 @@ fail() { echo "FAILED: $1"; cat said errors; exit 1; }
 "$here/ball.sh" >ball.nrrd
 
 # The script of the window stands still at each `await` until the display's events have been sent.
-moments=(taps paused chord tapped-thrice clicked dragged wheeled brought)
+moments=(taps paused chord tapped-thrice clicked flicked dragged wheeled brought)
 {
   printf '%s\n' "wait 0.3" "state start"
   for moment in "${moments[@]}"; do printf '%s\n' "say $moment" "await $moment" "state $moment"; done
@@ -41,6 +41,8 @@ send chord key --delay 0 t key --delay 0 ctrl+p
 # GLFW takes two presses of a key within a millisecond for one.
 send tapped-thrice key --delay 0 p sleep 0.003 key --delay 0 p sleep 0.003 key --delay 0 p
 send clicked mousemove --window "$window" $(sed -n 's/^start\.place of pause=//p' said) click 1
+# The way to where a button is pressed drags nothing.
+send flicked mousemove --window "$window" 640 700 sleep 0.3 mousemove --window "$window" 940 600 mousedown 1 sleep 0.3 mouseup 1
 send dragged mousemove --window "$window" 640 700 mousedown 1 sleep 0.7 mousemove --window "$window" 670 710 sleep 0.7 mousemove --window "$window" 700 720 sleep 0.7 mouseup 1
 send wheeled click 4 click 4
 send brought mousemove --window "$window" 640 400 key --delay 0 b
@@ -55,6 +57,7 @@ is taps paused false; is paused paused true
 is chord in_hand false; is chord paused false
 is tapped-thrice paused true
 is clicked paused false
+is flicked towards_viewer "$(value clicked towards_viewer)"
 [ "$(value clicked towards_viewer)" != "$(value dragged towards_viewer)" ] || fail "a drag does not turn the view"
 [ "$(value clicked distance_mm)" = "$(value dragged distance_mm)" ] || fail "a drag of the left button zooms"
 [ "$(value dragged distance_mm)" != "$(value wheeled distance_mm)" ] || fail "the wheel does not zoom"

@@ -32,6 +32,8 @@ wait 0.2 ;; state untouched ;; $mill ;; state milled
 key space ;; wait 0.2 ;; state turning ;; quit ;; wait 0.2 ;; state asking ;; screenshot unsaved-1-asking.png
 key t ;; key space ;; key p ;; wait 0.1 ;; state keys
 key escape ;; wait 0.2 ;; state stayed
+click scan ;; type no-such-scan ;; key enter ;; settle ;; wait 0.2 ;; state complaint ;; quit ;; wait 0.2 ;; key enter ;; wait 0.2
+state after-it ;; click Cancel ;; wait 0.2
 click Reset bone ;; wait 0.2 ;; state reset-asking ;; click Cancel ;; wait 0.2 ;; state not-reset
 open other.nrrd ;; settle ;; wait 0.2 ;; state open-asking ;; click Cancel ;; wait 0.2 ;; state not-opened
 open other.nrrd ;; settle ;; wait 0.2 ;; click Discard ;; settle ;; wait 0.3 ;; state opened
@@ -42,6 +44,7 @@ END
 is untouched unsaved false; is milled unsaved true; is milled removed_mm3 "$(value milled removed_mm3)"
 is turning spindle true; is asking spindle false; shows asking Save; shows asking Discard; hides stayed Discard
 is keys in_hand false; is keys spindle false; is keys paused false
+shows complaint Close; hides complaint Discard; shows after-it Discard; hides after-it Close
 shows reset-asking Discard; hides not-reset Discard; is not-reset cuts "$(value stayed cuts)"
 shows open-asking Discard; is not-opened scan ball.nrrd; is not-opened unsaved true
 is opened scan other.nrrd; is opened unsaved false
@@ -79,9 +82,9 @@ click Nothing of that name
 END
 removed=$(sed -n 's/^killed\.removed_mm3=//p' said-killed)
 awk -v kept="$(value restored removed_mm3)" -v all="$removed" 'BEGIN { exit !(kept > 0 && kept <= all) }' ||
-  fail "of $removed mm^3, $(value restored removed_mm3) are kept"
+  fail "of $removed mm³, $(value restored removed_mm3) are kept"
 is restored unsaved true; is restored cuts 1; is restored isovalue "$(sed -n 's/^killed\.isovalue=//p' said-killed)"
-is undone removed_mm3 0.000
+is undone removed_mm3 0.000; is undone unsaved false
 # That ended with a fault; its bone is no longer there, so the start goes on with the one that is named.
 mv ball.nrrd moved.nrrd
 cp other.nrrd ball.nrrd

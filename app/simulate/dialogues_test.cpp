@@ -1,0 +1,99 @@
+#include "app/simulate/dialogues.h"
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+namespace osteomill::app {
+namespace {
+
+// Every dialogue of the window, by what it takes to be done with it: the button of this number.
+std::vector<Dialogue> dialogues_of_the_window(int& acted) {
+  const auto act = [&acted] { ++acted; };
+  const auto never = [] { return false; };
+  DialogueQueue complaints;
+  complaints.complain("no-such-scan: cannot be read");
+  return {*complaints.shown(),
+          unsaved_question("Closing the window", never, act, act, act),
+          unsaved_question("Resetting the bone", never, act, act, act),
+          report_question(act, act),
+          left_milling_question({}, act, act, act),
+          {"Save the milled bone?", "Saving ...", {}, [] { return true; }, act}};
+}
+
+TEST(DialogueQueue, OfEveryPairOneIsSeenAfterTheOtherAndBothCanBeAnswered) {
+  int acted = 0;
+  const std::vector<Dialogue> all = dialogues_of_the_window(acted);
+  for (const Dialogue& first : all) {
+    for (const Dialogue& second : all) {
+      if (first.text == second.text) continue;
+      for (std::size_t choice = 0; choice < 3; ++choice) {
+        DialogueQueue queue;
+        queue.add(first);
+        queue.add(second);
+        for (const Dialogue* expected : {&first, &second}) {
+          ASSERT_NE(queue.shown(), nullptr);
+          EXPECT_EQ(queue.shown()->text, expected->text);
+          const auto buttons = expected->choices.size();
+          const bool acts =
+              buttons == 0 || expected->choices[std::min(choice, buttons - 1)].action != nullptr;
+          const int before = acted;
+          if (buttons > 0) queue.choose(std::min(choice, buttons - 1));
+          queue.proceed();
+          EXPECT_EQ(acted, before + (acts ? 1 : 0));
+        }
+        EXPECT_EQ(queue.shown(), nullptr);
+      }
+    }
+  }
+}
+
+TEST(DialogueQueue, WithoutAnAnswerItStays) {
+  DialogueQueue queue;
+  queue.complain("no-such-scan: cannot be read");
+  queue.proceed();
+  EXPECT_EQ(queue.complaints(), std::vector<std::string>{"no-such-scan: cannot be read"});
+  queue.choose(0);
+  queue.proceed();
+  EXPECT_TRUE(queue.complaints().empty());
+}
+
+TEST(DialogueQueue, TheSameIsSaidOnce) {
+  DialogueQueue queue;
+  queue.complain("a");
+  queue.complain("b");
+  queue.complain("a");
+  EXPECT_EQ(queue.complaints(), (std::vector<std::string>{"a", "b"}));
+}
+
+TEST(DialogueQueue, WhatIsSettledMeanwhileIsNotAskedAnyMore) {
+  bool saved = false;
+  int went_on = 0;
+  DialogueQueue queue;
+  const auto ask = [&](const char* what) {
+    queue.add(unsaved_question(
+        what, [&] { return saved; }, [&] { saved = true; }, [&] { ++went_on; }, {}));
+  };
+  ask("Resetting the bone");
+  ask("Closing the window");
+  queue.proceed();
+  EXPECT_EQ(went_on, 0);
+  queue.choose(0);
+  queue.proceed();
+  queue.proceed();
+  EXPECT_EQ(queue.shown(), nullptr);
+  EXPECT_EQ(went_on, 1);
+}
+
+// An action may ask on: what it asks comes after what waits already.
+TEST(DialogueQueue, AnActionMayAddAnother) {
+  DialogueQueue queue;
+  queue.add(report_question([&] { queue.complain("disk full"); }, {}));
+  queue.complain("before");
+  queue.choose(0);
+  queue.proceed();
+  EXPECT_EQ(queue.complaints(), (std::vector<std::string>{"before", "disk full"}));
+}
+
+}  // namespace
+}  // namespace osteomill::app
