@@ -166,7 +166,7 @@ void run_compare(const CompareOptions& options, const std::string& command_line)
   const std::vector<StudyRow> others = try_other_hands(options, trials);
   rows.insert(rows.end(), others.begin(), others.end());
   extras.study.emplace(std::move(rows));
-  if (!options.no_stability) extras.stability = press_on_walls(options, plans.front().settings);
+  if (!options.no_stability) extras.passivity = press_on_walls(options, plans.front().settings);
   fmt::print("{}\n", write_comparison_report(recordings, options.out, extras).string());
 }
 

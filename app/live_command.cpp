@@ -206,8 +206,8 @@ void run_live(LiveOptions options, const std::string& command_line) {
   if (sender && !sender->is_connected()) warn("--send-bone " + options.send_bone + ": the receiver has gone");
   if (const auto said = seen.faults.sentence()) warn(setup.algorithm.id.name + ": " + *said);
   print_timing(milling.timing());
-  fmt::print("removed      {:.2f} mm^3, {} bricks of the surface meshed\n",
-             milling.state().record.removed_mm3, seen.bricks);
+  fmt::print("removed      {:.2f} mm³, {} bricks of the surface meshed\n", milling.state().record.removed_mm3,
+             seen.bricks);
   holder.print();
   for (const std::string& line : label_lines(seen.labels)) fmt::print("label        {}\n", line);
 }

@@ -76,7 +76,7 @@ struct LoadedBone {
 /// Throws InputError where the scan or the isovalue is at fault.
 LoadedBone read_bone(const ScanOptions& options);
 
-/// The same, and its warnings go to standard error, one line each.
+/// Reads the bone as `read_bone` does and prints its warnings to standard error, one line each.
 LoadedBone load_bone(const ScanOptions& options);
 
 }  // namespace osteomill::app

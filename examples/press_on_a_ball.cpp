@@ -1,4 +1,4 @@
-// The library without the program: a ball of bone, a tool pushed into it, and the wrench of all three
+// The library without the program: a ball of bone, a tool pushed into it, and the wrench of each of the four
 // algorithms.
 
 #include <algorithm>

@@ -110,7 +110,7 @@ void add_row(Section& section, const std::string& bone, const std::string& algor
   const auto alike = [](const VectorMetrics& a, const VectorMetrics& b) {
     return std::abs(a.mean / b.mean - 1) <= kForceWithin;
   };
-  const double tick_us = std::max(fine.milling.cpu_us.max, fine.holding.cpu_us.max);
+  const double tick_us = std::max(fine.milling.tick_us.max, fine.holding.tick_us.max);
   const bool swift = algorithm != "point-shell" ||
                      (fine.milling.step_us.p99 <= kMaxStep_us && fine.milling_us.p99 <= kMaxMilling_us);
   section.add({fmt::format("{}, {}", bone, algorithm),

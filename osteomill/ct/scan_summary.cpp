@@ -114,8 +114,11 @@ std::string to_text(const ScanSummary& summary) {
   }
   text += fmt::format("values      {:.6g} to {:.6g}, mean {:.6g}\n", summary.value_min, summary.value_max,
                       summary.value_mean);
-  text += fmt::format("isovalue    {:.6g} suggested, {}\n", summary.suggested_iso.value,
-                      summary.suggested_iso.how);
+  const std::string suggested =
+      fmt::format("{:.6g} suggested, {}", summary.suggested_iso.value, summary.suggested_iso.how);
+  const bool given = summary.isovalue != summary.suggested_iso.value;
+  text += given ? fmt::format("isovalue    {:.6g} given ({})\n", summary.isovalue, suggested)
+                : fmt::format("isovalue    {}\n", suggested);
   for (const Boundary& of : summary.suggested_iso.boundaries)
     text += fmt::format("boundary    {:.4g}, with {:.4g} below and {:.4g} above\n", of.density, of.below,
                         of.above);
@@ -123,7 +126,7 @@ std::string to_text(const ScanSummary& summary) {
   for (const std::string& series : summary.series) text += fmt::format("series      {}\n", series);
   for (const LabelSummary& of : summary.labels) {
     text += fmt::format(
-        "label       {} {}, {}: {} voxels, {:.5g} mm^3, {:.0f} % bone{}\n", of.label.value, of.label.name,
+        "label       {} {}, {}: {} voxels, {:.5g} mm³, {:.0f} % bone{}\n", of.label.value, of.label.name,
         hex_colour(of.label), of.voxels, of.volume_mm3,
         of.voxels > 0 ? 100.0 * static_cast<double>(of.bone_voxels) / static_cast<double>(of.voxels) : 0.0,
         of.label.no_go ? ", no-go" : "");

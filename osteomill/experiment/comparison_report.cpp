@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <optional>
-#include <variant>
 
 #include <fmt/format.h>
 
+#include "osteomill/experiment/conclusions.h"
 #include "osteomill/experiment/paper.h"
 #include "osteomill/experiment/passivity_section.h"
 #include "osteomill/experiment/phase_metrics.h"
@@ -13,7 +13,6 @@
 #include "osteomill/experiment/study_findings.h"
 #include "osteomill/experiment/study_section.h"
 #include "osteomill/experiment/trial_plan.h"
-#include "osteomill/experiment/verdict.h"
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/report/write_report.h"
 
@@ -22,6 +21,8 @@ namespace osteomill {
 namespace fs = std::filesystem;
 
 namespace {
+
+constexpr const char* kStudyCsv = "study.csv";
 
 const char* css_of(Verdict verdict) {
   return verdict == Verdict::agrees ? "agrees" : verdict == Verdict::does_not_agree ? "differs" : "none";
@@ -32,10 +33,9 @@ HtmlTable findings_table(const Study& study, Mode mode) {
   HtmlTable table{{"The paper found", one ? "Measured here" : "Medians over the hands",
                    one ? "In this hand" : "Verdict", "Rule"},
                   {}};
-  if (!one)
-    table.header.insert(table.header.end() - 1, {"In how many hands", "Sign test, in more than half"});
+  if (!one) table.header.insert(table.header.end() - 1, {"In how many hands", "Sign test"});
   for (const StudyFinding& f : check_study_findings(study, mode)) {
-    const Verdict verdict = f.of_medians.verdict;
+    const Verdict verdict = f.verdict;
     std::vector<std::string> row{
         html_escaped(f.of_medians.paper_says), html_escaped(f.of_medians.measured),
         fmt::format("<span class=\"{}\">{}</span>", css_of(verdict), name_of(verdict))};
@@ -57,6 +57,12 @@ PageSection findings_section(const Study& study) {
           "this "
           "project. Mode paper has the algorithms as the paper has them; steady has this project's named "
           "improvements, so what the paper found wrong with one of them need not be wrong there."}};
+  if (study.seeds().size() > 1) {
+    section.paragraphs.push_back(
+        "Several hands agree with the paper, or do not, where all of them do, or so many more than half that "
+        "tossing a coin would give as many in one of twenty tries at most; else it is not settled. p is the "
+        "chance that as many or more would agree by the toss.");
+  }
   for (const Mode mode : study.modes()) {
     section.parts.push_back(
         {.title = fmt::format("Mode {}", name_of(mode)), .tables = {findings_table(study, mode)}});
@@ -65,24 +71,19 @@ PageSection findings_section(const Study& study) {
 }
 
 std::string paper_rate(const MeasuredRun& run) {
-  const auto rate_hz = paper_mean_rate_hz(run.algorithm.name, run.segment);
+  const auto rate_hz = paper_mean_rate_hz(run.algorithm.name, run.phase);
   return rate_hz ? fmt::format("{:.0f}", *rate_hz) : "";
 }
 
-std::optional<double> matched_N_per_mm(const Recording& recording) {
-  for (const RunSetting& setting : recording.description.settings) {
-    if (setting.key != kMatchedStiffnessKey) continue;
-    if (const double* felt_N_per_mm = std::get_if<double>(&setting.value)) return *felt_N_per_mm;
-  }
-  return std::nullopt;
-}
-
 std::string about_stiffness(const std::vector<Recording>& recordings) {
-  const std::optional<double> felt_N_per_mm = matched_N_per_mm(recordings.front());
-  const bool is_matched =
-      felt_N_per_mm && std::all_of(recordings.begin(), recordings.end(), [&](const Recording& recording) {
-        return matched_N_per_mm(recording) == felt_N_per_mm;
-      });
+  const auto matched = [](const Recording& recording) {
+    return find_setting<double>(recording.description, kMatchedStiffnessKey);
+  };
+  const double* felt_N_per_mm = matched(recordings.front());
+  const bool is_matched = felt_N_per_mm != nullptr &&
+                          std::all_of(recordings.begin(), recordings.end(), [&](const Recording& one) {
+                            return matched(one) != nullptr && *matched(one) == *felt_N_per_mm;
+                          });
   if (is_matched) {
     return fmt::format(
         "Stiffness is matched: each algorithm's was chosen so that a flat wall is felt as {:.3g} N/mm (the "
@@ -98,17 +99,22 @@ std::string about_stiffness(const std::vector<Recording>& recordings) {
 PageSection opening(const Study& study, const std::vector<Recording>& recordings) {
   PageSection section{.paragraphs = {what_was_compared(study, recordings.front().description.scan_name) +
                                      " " + about_stiffness(recordings)},
-                      .points = verdict(study)};
+                      .points = conclusions(study)};
   if (std::string few = too_few_hands(study); !few.empty()) section.notices = {std::move(few)};
   return section;
 }
 
-// Of what was recorded, as the first and only seed.
+// Of what was recorded, as one seed, with what a study.csv beside the recordings has of others.
 Study study_of(const std::vector<RunGroup>& groups) {
   std::vector<StudyRow> rows;
   for (const RunGroup& group : groups) {
-    for (const MeasuredRun& run : group.runs) rows.push_back({0, {}, run});
+    for (const MeasuredRun& run : group.runs) rows.push_back({run.recording->description.seed, {}, run});
   }
+  const fs::path folder = rows.front().run.recording->path.parent_path();
+  std::optional<Study> whole = read_study_csv(folder / kStudyCsv, rows);
+  if (whole) return *std::move(whole);
+  // A report is of one bone in one hand, whatever their seeds.
+  for (StudyRow& row : rows) row.seed = rows.front().seed;
   return Study(std::move(rows));
 }
 
@@ -126,9 +132,7 @@ PageSection hands_section(const Study& study, const fs::path& out_dir) {
 
 bool are_of_comparison(const std::vector<Recording>& recordings) {
   return std::all_of(recordings.begin(), recordings.end(), [](const Recording& recording) {
-    const auto& settings = recording.description.settings;
-    return std::any_of(settings.begin(), settings.end(),
-                       [](const RunSetting& setting) { return setting.key == kScriptEntryKey; });
+    return find_setting<std::string>(recording.description, kScriptEntryKey) != nullptr;
   });
 }
 
@@ -141,17 +145,16 @@ fs::path write_comparison_report(const std::vector<Recording>& recordings, const
   text.title = "6-DOF haptic algorithms compared while milling bone";
   text.opening = opening(study, recordings);
   text.sections = {findings_section(study)};
-  if (study.seeds().size() > 1) {
-    write_study_csv(out_dir / "study.csv", study);
-    text.sections.push_back(hands_section(study, out_dir));
-  }
-  if (!extras.stability.empty()) {
-    write_passivity_csv(out_dir / "stability.csv", extras.stability);
+  if (study.rows().size() + study.rows_of_other_grips().size() > recordings.size())
+    write_study_csv(out_dir / kStudyCsv, study);
+  if (study.seeds().size() > 1) text.sections.push_back(hands_section(study, out_dir));
+  if (!extras.passivity.empty()) {
+    write_passivity_csv(out_dir / "stability.csv", extras.passivity);
     text.sections.push_back(
-        passivity_section(extras.stability, draw_passivity_figure(extras.stability, out_dir / "figures")));
+        passivity_section(extras.passivity, draw_passivity_figure(extras.passivity, out_dir / "figures")));
   }
   text.further_times = {{"Haptic rate in the paper, mean, on a Pentium 4 (Hz)", paper_rate}};
-  text.caption_notes = {{"rate", "The paper's figure 6."},
+  text.caption_notes = {{"rate", "The paper's figure 6 shows the rate that follows from it."},
                         {"force", "The paper's figure 7."},
                         {"torque", "The paper's figure 8."},
                         {"shaft", "The paper's figure 9."}};

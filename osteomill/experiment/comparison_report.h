@@ -12,9 +12,10 @@ namespace osteomill {
 
 /// What was measured beside the recordings.
 struct ReportExtras {
-  /// The recordings are then those of its first seed. Of one seed alone it adds its other grips.
+  /// The recordings are then those of its first seed. Of one seed alone it adds its other grips. Where there
+  /// is none, it is read from the study.csv beside the recordings, if that is of them.
   std::optional<Study> study;
-  std::vector<PassivityRow> stability;
+  std::vector<PassivityRow> passivity;
 };
 
 /// Whether these are recordings of the test of section 8.2, and not of anything else that was milled.

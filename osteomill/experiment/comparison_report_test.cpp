@@ -101,14 +101,13 @@ TEST_F(ReportTest, AFullComparisonIsOnePageThatLoadsNothing) {
 // Of a person at the window it tells what that one did, and nothing of a trial that was none.
 TEST_F(ReportTest, ASessionSpeaksOfItself) {
   Recording run = sample_run("point-shell", "milling");
-  run.description.segment = "";
+  run.description.phase = "";
   for (TickRecord& record : run.records) record.spindle_on = record.time_s < 5, record.dt_s = 0.001;
   const std::string html = bytes_of(write_report({run}, out_));
   EXPECT_NE(html.find("<p>3 point-shell: 20.0 s, of which the spindle ran for 5.0 s. The burr went "),
             std::string::npos);
   EXPECT_NE(html.find("mm³ of bone were removed. The tool touched for "), std::string::npos);
-  for (const char* of_a_trial :
-       {"simulated hand", "paper", "hand tried", "nothing is claimed", "Milling<br>"}) {
+  for (const char* of_a_trial : {"simulated hand", "paper", "hand tried", "too few to say", "Milling<br>"}) {
     EXPECT_EQ(html.find(of_a_trial), std::string::npos) << of_a_trial;
   }
   EXPECT_LT(html.find("The bone before and after"), html.find(">Force<"));
@@ -116,7 +115,7 @@ TEST_F(ReportTest, ASessionSpeaksOfItself) {
 
 TEST_F(ReportTest, ACutThatWasTakenBackIsNoBoneRemovedBelowNothing) {
   Recording run = sample_run("point-shell", "milling");
-  run.description.segment = "";
+  run.description.phase = "";
   run.records.back().removed_mm3 = run.records.front().removed_mm3;
   const double most_mm3 = run.records[run.records.size() - 2].removed_mm3;
   ASSERT_GT(most_mm3, 1);

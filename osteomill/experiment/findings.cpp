@@ -60,13 +60,20 @@ Finding finding_on(const RunGroup& group, std::string paper_says, std::string ru
   Finding finding{std::move(paper_says), std::move(rule), "needs other recordings", Verdict::not_recorded};
   std::vector<double> values;
   fmt::dynamic_format_arg_store<fmt::format_context> texts;
+  std::vector<std::string> not_reached;
   for (const Needed& one : needed) {
     const MeasuredRun* run = group.find(kPapersAlgorithms[one.algorithm - 1], one.phase);
     if (run == nullptr) return finding;
     values.push_back(one.value(run->metrics));
     texts.push_back(value_text(*run, values.back()));
+    const std::string missed = fmt::format("{}, {}: {}", run->algorithm.label, run->phase, run->not_reached);
+    if (!run->not_reached.empty() &&
+        std::find(not_reached.begin(), not_reached.end(), missed) == not_reached.end())
+      not_reached.push_back(missed);
   }
   finding.measured = fmt::vformat(words, texts);
+  if (!not_reached.empty())
+    finding.measured += fmt::format(" (not reached: {})", fmt::join(not_reached, "; "));
   const bool known = std::none_of(values.begin(), values.end(), [](double v) { return std::isnan(v); });
   finding.verdict = !known          ? Verdict::lost_contact
                     : holds(values) ? Verdict::agrees
@@ -85,7 +92,7 @@ Finding rate_finding(const RunGroup& group) {
               "every recording",
               kMinRate_hz),
           fmt::format("lowest {:.1f} Hz ({}, {})", slowest.metrics.rate_hz, name_of(slowest.algorithm),
-                      slowest.segment),
+                      slowest.phase),
           slowest.metrics.rate_hz >= kMinRate_hz ? Verdict::agrees : Verdict::does_not_agree, true};
 }
 
@@ -208,6 +215,8 @@ std::string_view name_of(Verdict verdict) {
       return "agrees";
     case Verdict::does_not_agree:
       return "does not agree";
+    case Verdict::not_settled:
+      return "not settled";
     case Verdict::not_recorded:
       return "not recorded";
     case Verdict::lost_contact:

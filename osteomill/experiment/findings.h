@@ -8,12 +8,12 @@
 
 namespace osteomill {
 
-enum class Verdict : unsigned char { agrees, does_not_agree, not_recorded, lost_contact };
+enum class Verdict : unsigned char { agrees, does_not_agree, not_settled, not_recorded, lost_contact };
 
-/// "agrees", "does not agree", "not recorded", "lost contact".
+/// "agrees", "does not agree", "not settled", "not recorded", "lost contact".
 std::string_view name_of(Verdict verdict);
 inline bool is_tested(Verdict verdict) {
-  return verdict == Verdict::agrees || verdict == Verdict::does_not_agree;
+  return verdict <= Verdict::not_settled;
 }
 
 /// One thing that the paper says it found, held against the recordings by a rule that is stated.
@@ -21,7 +21,7 @@ struct Finding {
   /// In its own words, restored where its text has gaps.
   std::string paper_says;
   std::string rule;
-  /// The numbers that the rule was applied to.
+  /// The numbers that the rule was applied to, and what the runs that they are of did not reach.
   std::string measured;
   Verdict verdict = Verdict::not_recorded;
   /// It rests on compute times, which are the machine's and not the algorithms' alone.

@@ -17,7 +17,7 @@ Recording short_run(std::string_view algorithm, std::string_view phase) {
   Recording recording;
   recording.path = std::string(algorithm) + ".h5";
   recording.description.algorithm = algorithm_named(algorithm).id;
-  recording.description.segment = phase;
+  recording.description.phase = phase;
   recording.records.resize(2);
   recording.records[0].time_s = phase == kHolding ? 20 : 0;
   recording.records[1].time_s = recording.records[0].time_s + 0.001;

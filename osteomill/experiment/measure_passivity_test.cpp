@@ -65,7 +65,7 @@ double exact_limit_N_per_mm(const WallPress& press) {
   return press.damping_Ns_per_mm * low / std::sin(low) / late_s;
 }
 
-TEST(Stability, AnIdealSpringKeepsToTheRule) {
+TEST(Passivity, AnIdealSpringKeepsToTheRule) {
   for (const PassivityCase& setup : passivity_cases({algorithm_named("line-proxy")}, {Mode::steady})) {
     const WallPress press = device(setup.damping_Ns_per_mm, setup.delay_s);
     const StiffnessLimit limit = ideal_limit(press);
@@ -79,11 +79,11 @@ TEST(Stability, AnIdealSpringKeepsToTheRule) {
   }
 }
 
-TEST(Stability, ADeviceWithoutDampingKeepsNothingPassive) {
+TEST(Passivity, ADeviceWithoutDampingKeepsNothingPassive) {
   EXPECT_EQ(ideal_limit(device(0, 0.3e-3)).kind, StiffnessLimit::Kind::below_all);
 }
 
-TEST(Stability, AWallThatGivesWayIsNotCalledPassive) {
+TEST(Passivity, AWallThatGivesWayIsNotCalledPassive) {
   // 5 mm would carry the force.
   IdealWall soft(0.1);
   EXPECT_EQ(press_on_wall(soft, kRadius_mm, device(0.005, 0)).motion, WallMotion::gives_way);
@@ -91,14 +91,14 @@ TEST(Stability, AWallThatGivesWayIsNotCalledPassive) {
   EXPECT_EQ(press_on_wall(none, kRadius_mm, device(0.005, 0)).motion, WallMotion::gives_way);
 }
 
-TEST(Stability, ADeviceTooWeakToHoldTheWallIsNotCalledPassive) {
+TEST(Passivity, ADeviceTooWeakToHoldTheWallIsNotCalledPassive) {
   WallPress press = device(0.005, 0.3e-3);
   press.handle.limits.force_N = 0.3;
   IdealWall wall(1);
   EXPECT_EQ(press_on_wall(wall, kRadius_mm, press).motion, WallMotion::goes_on);
 }
 
-TEST(Stability, AnOverdampedDeviceThatCreepsToRestIsPassive) {
+TEST(Passivity, AnOverdampedDeviceThatCreepsToRestIsPassive) {
   IdealWall wall(0.5);
   EXPECT_EQ(press_on_wall(wall, kRadius_mm, device(0.1, 0)).motion, WallMotion::dies_out);
 }
@@ -118,12 +118,12 @@ class Relay final : public HapticAlgorithm {
   int sample_point_count() const override { return 1; }
 };
 
-TEST(Stability, WhatNeitherGrowsNorDiesIsNotCalledPassive) {
+TEST(Passivity, WhatNeitherGrowsNorDiesIsNotCalledPassive) {
   Relay relay;
   EXPECT_EQ(press_on_wall(relay, kRadius_mm, device(0.002, 2e-3)).motion, WallMotion::goes_on);
 }
 
-TEST(Stability, AForceThatIsNotFiniteIsNotCalledPassive) {
+TEST(Passivity, AForceThatIsNotFiniteIsNotCalledPassive) {
   class Broken final : public HapticAlgorithm {
    public:
     void prepare(const Scene& /*scene*/) override {}
@@ -146,7 +146,7 @@ TEST(Stability, AForceThatIsNotFiniteIsNotCalledPassive) {
   EXPECT_NE(press_on_wall(broken, kRadius_mm, device(0.005, 0)).motion, WallMotion::dies_out);
 }
 
-TEST(Stability, TheSearchSaysWhereItEnds) {
+TEST(Passivity, TheSearchSaysWhereItEnds) {
   const auto limit_at = [](double true_limit, double softest, double start) {
     return seek_stiffness_limit(
         [=](double k) {
@@ -172,7 +172,7 @@ TEST(Stability, TheSearchSaysWhereItEnds) {
   EXPECT_EQ(limit_at(1, 1, 5).kind, StiffnessLimit::Kind::below_all);
 }
 
-TEST(Stability, TheWallIsWhereTheHandleIsPressed) {
+TEST(Passivity, TheWallIsWhereTheHandleIsPressed) {
   const MillingTool tool;
   const Volume wall = flat_wall(tool);
   for (const Mode mode : {Mode::paper, Mode::steady}) {

@@ -96,12 +96,20 @@ std::vector<RateRow> measure_rates(const Volume& bone, const BoneDensities& dens
     trial_settings.haptics.named.push_back(
         {algorithm->id.name, algorithm->resolution_setting, resolution.value});
     MillingTrial trial(bone, densities, entry, *algorithm, trial_settings);
+    const auto same_points = [&](const RateRow& row) {
+      return row.algorithm == algorithm->id && row.points == trial.algorithm().sample_point_count();
+    };
+    if (const auto twin = std::find_if(rows.begin(), rows.end(), same_points); twin != rows.end()) {
+      twin->resolution += " and " + text_of(*algorithm, resolution);
+      continue;
+    }
     const Times times = times_of(trial);
     MillingTrial again(bone, densities, entry, *algorithm, trial_settings);
     const Distribution step_us = distribution_of(times.step_us);
     rows.push_back({algorithm->id, text_of(*algorithm, resolution), trial.algorithm().sample_point_count(),
                     step_us.median, step_us.p99, times.held.rate_hz(), 1e6 / step_us.median,
-                    resolution.paper_rate_hz, paced_rate_hz(again, times.ticks_before, settings.tick_s)});
+                    settings.haptics.mode == Mode::paper ? resolution.paper_rate_hz : 0,
+                    paced_rate_hz(again, times.ticks_before, settings.tick_s)});
   }
   return rows;
 }

@@ -76,7 +76,7 @@ TEST(OwnAlgorithm, IsRunRecordedAndReportedBesideThePapers) {
   }
   ASSERT_EQ(recordings.size(), 4u);
   EXPECT_EQ(recordings[0].description.algorithm.label, "9 cushion");
-  EXPECT_EQ(recordings[0].description.segment, kMilling);
+  EXPECT_EQ(recordings[0].description.phase, kMilling);
   double max_force_N = 0;
   for (const TickRecord& tick : recordings[0].records)
     max_force_N = std::max(max_force_N, tick.wrench.force_N.z());

@@ -13,8 +13,8 @@ std::size_t place_in(const std::array<std::string_view, N>& names, std::string_v
 
 }  // namespace
 
-std::size_t phase_number(std::string_view segment) {
-  return place_in(kPhases, segment);
+std::size_t phase_number(std::string_view phase) {
+  return place_in(kPhases, phase);
 }
 
 std::optional<double> paper_mean_rate_hz(std::string_view algorithm, std::string_view phase) {

@@ -7,19 +7,19 @@
 
 namespace osteomill {
 
-/// The two parts of the test of section 8.2, as the segments of its recordings are named, in their order.
+/// The two parts of the test of section 8.2, as the phases of its recordings are named, in their order.
 inline constexpr std::string_view kMilling = "milling";
 inline constexpr std::string_view kHolding = "holding";
 inline constexpr std::array<std::string_view, 2> kPhases{kMilling, kHolding};
 
-/// The place of a phase in that order; of any other segment the one after the last.
-std::size_t phase_number(std::string_view segment);
+/// The place of a phase in that order; of any other phase the one after the last.
+std::size_t phase_number(std::string_view phase);
 
 /// The algorithms that the paper compares, in its order.
 inline constexpr std::array<std::string_view, 3> kPapersAlgorithms{"line-proxy", "surface-points",
                                                                    "point-shell"};
 
-/// The paper's mean haptic rate, figure 6; nothing for an algorithm or a segment that is not in the paper.
+/// The paper's mean haptic rate, figure 6; nothing for an algorithm or a phase that is not in the paper.
 std::optional<double> paper_mean_rate_hz(std::string_view algorithm, std::string_view phase);
 
 }  // namespace osteomill

@@ -234,7 +234,7 @@ Figure draw_passivity_figure(std::span<const PassivityRow> rows, const std::file
 }
 
 PageSection passivity_section(std::span<const PassivityRow> rows, const Figure& figure) {
-  PageSection section{.title = "Stability against a flat wall",
+  PageSection section{.title = "Passivity against a flat wall",
                       .paragraphs = {kWhatWasDone},
                       .figures = {{figure.svg, kCaption}}};
   for (const Mode mode : {Mode::paper, Mode::steady}) {

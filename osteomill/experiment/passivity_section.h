@@ -13,7 +13,7 @@ namespace osteomill {
 /// of the ideal wall.
 Figure draw_passivity_figure(std::span<const PassivityRow> rows, const std::filesystem::path& folder);
 
-/// The report's section on stability against a flat wall: what was measured and how, in words, with the
+/// The report's section on passivity against a flat wall: what was measured and how, in words, with the
 /// figure and a table.
 PageSection passivity_section(std::span<const PassivityRow> rows, const Figure& figure);
 

@@ -110,14 +110,14 @@ TEST_F(PassivitySectionTest, TheReportOfAStudyHasItsFilesFiguresAndWords) {
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
     for (const Recording& run : runs) {
       const RunDescription& d = run.description;
-      MeasuredRun row{d.algorithm, d.mode, d.segment, run_metrics(run)};
+      MeasuredRun row{d.algorithm, d.mode, d.phase, run_metrics(run)};
       for (double* unrest : {&row.metrics.force_N.hp_rms, &row.metrics.force_N.hp_share})
         *unrest *= 1 + 0.01 * static_cast<double>(seed);
       trials.push_back({seed, random_hand(seed), row});
     }
   }
   extras.study.emplace(trials);
-  extras.stability = sample_rows({Mode::steady});
+  extras.passivity = sample_rows({Mode::steady});
   const std::string html = bytes_of(write_comparison_report(runs, out_, extras));
   for (const char* file : {"study.csv", "stability.csv", "summary.csv", "figures/study_milling.svg",
                            "figures/study_holding.png", "figures/stability.svg"}) {
@@ -126,7 +126,7 @@ TEST_F(PassivitySectionTest, TheReportOfAStudyHasItsFilesFiguresAndWords) {
   std::size_t place = 0;
   for (const char* next :
        {"8 simulated hands", "<li>Force above 20 Hz", "The bone before and after", ">Force<", ">Torque<",
-        ">Shaft<", "The paper's findings", "Study over 8 hands", "Stability against a flat wall",
+        ">Shaft<", "The paper's findings", "Study over 8 hands", "Passivity against a flat wall",
         "How long the ticks took", "What was run", ">Settings<"}) {
     const std::size_t found = html.find(next, place);
     ASSERT_NE(found, std::string::npos) << next;

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
-#include <variant>
 
 #include "osteomill/experiment/paper.h"
 #include "osteomill/experiment/trial_plan.h"
@@ -11,15 +9,6 @@
 namespace osteomill {
 
 namespace {
-
-// How long the holding was to last; nothing of a recording that does not say so.
-std::optional<double> held_for_s(const RunDescription& run) {
-  for (const RunSetting& setting : run.settings) {
-    if (setting.key != kScriptHoldingKey) continue;
-    if (const double* seconds = std::get_if<double>(&setting.value)) return *seconds;
-  }
-  return std::nullopt;
-}
 
 Recording last_of(const Recording& recording, double seconds) {
   const auto ticks =
@@ -34,9 +23,13 @@ Recording last_of(const Recording& recording, double seconds) {
 }
 
 RunMetrics metrics_of_time_held(const Recording& recording) {
-  const std::optional<double> seconds = held_for_s(recording.description);
-  if (recording.description.segment != kHolding || !seconds || !(*seconds > 0)) return run_metrics(recording);
-  return run_metrics(last_of(recording, *seconds));
+  const double* seconds = find_setting<double>(recording.description, kScriptHoldingKey);
+  if (recording.description.phase != kHolding || seconds == nullptr || !(*seconds > 0))
+    return run_metrics(recording);
+  const Recording counted = last_of(recording, *seconds);
+  RunMetrics metrics = run_metrics(counted);
+  metrics.counted_from_s = counted.records.front().time_s - recording.records.front().time_s;
+  return metrics;
 }
 
 }  // namespace
@@ -44,7 +37,7 @@ RunMetrics metrics_of_time_held(const Recording& recording) {
 RunMetrics phase_metrics(const Recording& recording) {
   RunMetrics metrics = metrics_of_time_held(recording);
   // The spindle is off while holding: what does not touch at all was lost before.
-  metrics.contact.lost_while_milling |= recording.description.segment == kHolding && metrics.contact.any == 0;
+  metrics.contact.lost_while_milling |= recording.description.phase == kHolding && metrics.contact.any == 0;
   if (metrics.contact.is_lost()) {
     metrics.force_N = metrics.torque_Nmm = kNotFelt;
     metrics.shaft = {kNotMeasured, kNotMeasured};

@@ -15,7 +15,7 @@ Recording late_holding() {
   Recording recording;
   recording.path = "some/holding.h5";
   recording.description.tick_period_s = 1e-3;
-  recording.description.segment = kHolding;
+  recording.description.phase = kHolding;
   recording.description.settings.push_back({std::string(kScriptHoldingKey), 2.0, "s"});
   for (int n = 0; n < 3000; ++n) {
     TickRecord record;
@@ -31,9 +31,11 @@ TEST(PhaseMetrics, AHoldingIsMeasuredForAsLongAsItWasToLast) {
   const Recording holding = late_holding();
   EXPECT_EQ(phase_metrics(holding).steps, 2000u);
   EXPECT_DOUBLE_EQ(phase_metrics(holding).force_N.max, 1);
+  EXPECT_DOUBLE_EQ(phase_metrics(holding).counted_from_s, 1);
   Recording milling = holding;
-  milling.description.segment = kMilling;
+  milling.description.phase = kMilling;
   EXPECT_EQ(phase_metrics(milling).steps, 3000u);
+  EXPECT_EQ(phase_metrics(milling).counted_from_s, 0);
   Recording unknown = holding;
   unknown.description.settings.clear();
   EXPECT_EQ(phase_metrics(unknown).steps, 3000u);

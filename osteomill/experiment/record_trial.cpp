@@ -81,10 +81,15 @@ std::vector<fs::path> record_trial(const TrialPlan& plan, const AlgorithmDescrip
     }
   }
   add_pictures(milling, pictures, trial.volume(), events);
-  milling.close();
-  holding.close();
-  if (const std::string said = shortfall_words(trial.shortfall(), script); !said.empty())
-    events.warn(fmt::format("{}, {}: {}", algorithm.id.name, name_of(plan.settings.haptics.mode), said));
+  std::string not_reached;
+  for (std::size_t n = 0; n < kPhases.size(); ++n) {
+    not_reached = shortfall_words(trial.shortfall(), script, kPhases[n]);
+    if (!not_reached.empty()) recorders[n]->add_setting({std::string(kNotReachedKey), not_reached, ""});
+    recorders[n]->close();
+  }
+  if (!not_reached.empty())
+    events.warn(
+        fmt::format("{}, {}: {}", algorithm.id.name, name_of(plan.settings.haptics.mode), not_reached));
   if (const auto said = faults.sentence()) events.warn(fmt::format("{}: {}", algorithm.id.name, *said));
   return paths;
 }

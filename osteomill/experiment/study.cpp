@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
+#include <fstream>
 #include <iterator>
+#include <limits>
 #include <map>
 #include <ostream>
 #include <stdexcept>
@@ -21,12 +24,14 @@ namespace osteomill {
 namespace {
 
 constexpr double kMmPerM = 1000;
+const std::string kHandColumns = "seed,hand_stiffness_N_per_m,hand_damping_Ns_per_m,hand_grip,";
+constexpr std::size_t kHandFields = 4, kNamedFields = 3;
 
 using M = RunMetrics;
 
 // Phase before algorithm, as in summary.csv.
 auto place(const MeasuredRun& run) {
-  return std::tuple(run.mode, phase_number(run.segment), run.algorithm);
+  return std::tuple(run.mode, phase_number(run.phase), run.algorithm);
 }
 
 template <typename Values, typename Matches>
@@ -37,6 +42,71 @@ auto present(const Values& all, std::span<const StudyRow> rows, const Matches& m
     if (std::any_of(rows.begin(), rows.end(), has_it)) found.push_back(value);
   }
   return found;
+}
+
+std::vector<std::string> fields_of(const std::string& line) {
+  std::vector<std::string> fields{""};
+  for (const char c : line) {
+    if (c == ',') {
+      fields.emplace_back();
+    } else {
+      fields.back() += c;
+    }
+  }
+  return fields;
+}
+
+// Not a number where the field is empty, or is none.
+template <typename Number>
+Number number_in(const std::string& field) {
+  Number number = 0;
+  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), number);
+  const bool whole = error == std::errc() && end == field.data() + field.size();
+  return whole ? number : std::numeric_limits<Number>::quiet_NaN();
+}
+
+// What has no column follows from the others: in these trials the spindle turns throughout the milling, and
+// not while holding.
+void complete(MeasuredRun& run) {
+  RunMetrics& m = run.metrics;
+  for (VectorMetrics* felt : {&m.force_N, &m.torque_Nmm})
+    felt->hp_share = felt->mean == 0 ? 0 : felt->hp_rms / felt->mean;
+  m.contact.force = m.contact.torque = m.contact.any;
+  m.contact.lost_while_milling = m.contact.is_lost() && (run.phase == kMilling) == (m.contact.any > 0);
+}
+
+// Nothing where it is not of an algorithm, mode and phase of these rows, whose number of columns it has.
+std::optional<StudyRow> read_row(const std::string& line, const std::vector<StudyRow>& rows) {
+  const std::vector<std::string> fields = fields_of(line);
+  if (fields.size() != fields_of(kHandColumns + summary_columns()).size()) return std::nullopt;
+  const auto of_it = std::find_if(rows.begin(), rows.end(), [&](const StudyRow& row) {
+    return fields[kHandFields] == row.run.algorithm.name &&
+           fields[kHandFields + 1] == name_of(row.run.mode) && fields[kHandFields + 2] == row.run.phase;
+  });
+  if (of_it == rows.end()) return std::nullopt;
+  StudyRow row = *of_it;
+  row.seed = number_in<std::uint64_t>(fields[0]);
+  row.hand.stiffness_N_per_mm = number_in<double>(fields[1]) / kMmPerM;
+  row.hand.damping_Ns_per_mm = number_in<double>(fields[2]) / kMmPerM;
+  row.grip = number_in<double>(fields[3]);
+  row.run.recording = nullptr;
+  row.run.not_reached = fields.back();
+  std::size_t n = kHandFields + kNamedFields;
+  for (const Metric& metric : all_metrics()) {
+    if (*metric.column != '\0') metric.place(row.run.metrics) = number_in<double>(fields[n++]);
+  }
+  complete(row.run);
+  return row;
+}
+
+// But for times, which are the machine's.
+bool same_figures(const MeasuredRun& a, const MeasuredRun& b) {
+  return std::all_of(all_metrics().begin(), all_metrics().end(), [&](const Metric& metric) {
+    const double first = metric(a.metrics), second = metric(b.metrics);
+    return metric.table == MetricTable::none || metric.table == MetricTable::times ||
+           metric.table == MetricTable::rate || *metric.column == '\0' || first == second ||
+           (std::isnan(first) && std::isnan(second));
+  });
 }
 
 }  // namespace
@@ -96,7 +166,7 @@ std::vector<Mode> Study::modes() const {
 
 std::vector<std::string_view> Study::phases() const {
   return present(kPhases, rows_,
-                 [](const MeasuredRun& r, std::string_view phase) { return r.segment == phase; });
+                 [](const MeasuredRun& r, std::string_view phase) { return r.phase == phase; });
 }
 
 std::size_t Study::seeds_needed() const {
@@ -112,7 +182,7 @@ std::vector<Metric> Study::metrics_of(std::string_view phase) const {
   std::erase_if(metrics, [&](const Metric& metric) {
     return std::none_of(rows_.begin(), rows_.end(), [&](const StudyRow& row) {
       const double value = metric(row.run.metrics);
-      return row.run.segment == phase && value != 0 && !std::isnan(value);
+      return row.run.phase == phase && value != 0 && !std::isnan(value);
     });
   });
   return metrics;
@@ -158,6 +228,21 @@ ContactShares Study::contact(const Tried& tried, std::string_view phase) const {
   return shares;
 }
 
+std::string Study::not_reached(const Tried& tried, std::string_view phase) const {
+  std::map<std::string, std::size_t> hands;
+  for (const StudyRow& row : rows_) {
+    if (!row.run.not_reached.empty() &&
+        place(row.run) == std::tuple(tried.mode, phase_number(phase), tried.algorithm))
+      ++hands[row.run.not_reached];
+  }
+  std::string text;
+  for (const auto& [words, count] : hands) {
+    if (!text.empty()) text += "; ";
+    text += seeds_.size() == 1 ? words : fmt::format("{} ({} of {} hands)", words, count, seeds_.size());
+  }
+  return text;
+}
+
 std::pair<std::vector<double>, std::vector<double>> Study::paired_values(const Tried& first,
                                                                          const Tried& second,
                                                                          std::string_view phase,
@@ -175,12 +260,33 @@ std::pair<std::vector<double>, std::vector<double>> Study::paired_values(const T
 
 void write_study_csv(const std::filesystem::path& path, const Study& study) {
   write_text_atomically(path, [&](std::ostream& out) {
-    out << "seed,hand_stiffness_N_per_m,hand_damping_Ns_per_m," << summary_columns() << '\n';
-    for (const StudyRow& row : study.rows()) {
-      out << fmt::format("{},{},{},{}\n", row.seed, kMmPerM * row.hand.stiffness_N_per_mm,
-                         kMmPerM * row.hand.damping_Ns_per_mm, summary_fields(row.run));
+    out << kHandColumns << summary_columns() << '\n';
+    for (const auto* rows : {&study.rows(), &study.rows_of_other_grips()}) {
+      for (const StudyRow& row : *rows) {
+        out << fmt::format("{},{},{},{},{}\n", row.seed, kMmPerM * row.hand.stiffness_N_per_mm,
+                           kMmPerM * row.hand.damping_Ns_per_mm, row.grip, summary_fields(row.run));
+      }
     }
   });
+}
+
+std::optional<Study> read_study_csv(const std::filesystem::path& path, const std::vector<StudyRow>& rows) {
+  std::ifstream in(path);
+  std::string line;
+  if (!std::getline(in, line) || line != kHandColumns + summary_columns()) return std::nullopt;
+  std::vector<StudyRow> all;
+  std::size_t found = 0;
+  while (std::getline(in, line)) {
+    std::optional<StudyRow> row = read_row(line, rows);
+    if (!row) continue;
+    found += row->grip == 1 && std::any_of(rows.begin(), rows.end(), [&](const StudyRow& one) {
+               return one.seed == row->seed && place(one.run) == place(row->run) &&
+                      same_figures(one.run, row->run);
+             });
+    all.push_back(*std::move(row));
+  }
+  if (found != rows.size()) return std::nullopt;
+  return Study(std::move(all));
 }
 
 }  // namespace osteomill

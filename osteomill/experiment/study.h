@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -71,6 +72,9 @@ class Study {
   /// For how much of the phase the tool touched: medians of the seeds. `lost_after_s` is that of those which
   /// lost contact, where they are no fewer than half.
   ContactShares contact(const Tried& tried, std::string_view phase) const;
+  /// What of its plan was not reached (MeasuredRun::not_reached), and in how many hands where there are
+  /// several; empty for nothing.
+  std::string not_reached(const Tried& tried, std::string_view phase) const;
   /// Whether so many seeds are enough to speak of them all: more than half.
   bool are_most(std::size_t seeds) const { return 2 * seeds > seeds_.size(); }
   /// The values of two, of the seeds in which both could be measured.
@@ -87,8 +91,12 @@ class Study {
   std::vector<std::uint64_t> seeds_;
 };
 
-/// Writes study.csv: seed, the hand's stiffness (N/m) and damping (N s/m), and the columns of summary.csv.
-/// Whole or not at all. Throws InputError where it cannot be written.
+/// Writes study.csv: seed, the hand's stiffness (N/m) and damping (N s/m), its grip, and the columns of
+/// summary.csv; rows of other grips last. Whole or not at all. Throws InputError where it cannot be written.
 void write_study_csv(const std::filesystem::path& path, const Study& study);
+
+/// The study of these rows, of one seed, with the other hands and grips that `path` has of it: nothing where
+/// there is no such file, or where it is not of these rows' figures.
+std::optional<Study> read_study_csv(const std::filesystem::path& path, const std::vector<StudyRow>& rows);
 
 }  // namespace osteomill

@@ -51,8 +51,8 @@ std::vector<ModeChange> compare_modes(const Study& study, std::string_view phase
       if (paper[n] != 0) ratios.push_back(steady[n] / paper[n]);
     }
     const SignedRank test = paired_test(steady, paper);
-    changes.push_back({algorithm, median_interval(paper), median_interval(steady), median_interval(ratios),
-                       ratios.size(), test.negative > test.positive, test.p});
+    changes.push_back({algorithm, paper.size(), median_interval(paper), median_interval(steady),
+                       median_interval(ratios), ratios.size(), test.negative > test.positive, test.p});
   }
   correct(changes);
   return changes;

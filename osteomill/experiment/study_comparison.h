@@ -24,6 +24,8 @@ std::vector<AlgorithmPair> compare_algorithms(const Study& study, Mode mode, std
 /// What `steady` makes of one algorithm's figure, paired with `paper` seed by seed.
 struct ModeChange {
   AlgorithmId algorithm;
+  /// In which it could be measured in both modes; all that follows is of these.
+  std::size_t hands = 0;
   MedianInterval paper;
   MedianInterval steady;
   /// Of steady / paper, over the seeds whose value in `paper` is not zero; `ratios` counts them.

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "osteomill/experiment/paper.h"
+#include "osteomill/experiment/signed_rank.h"
 
 namespace osteomill {
 
@@ -20,15 +21,25 @@ double chance_of_at_least(std::size_t k, std::size_t n) {
   return std::max(0.0, 1 - below);
 }
 
+Verdict verdict_of(const StudyFinding& finding, const Study& study) {
+  const auto shows = [&](std::size_t hands) {
+    return hands == finding.tested || chance_of_at_least(hands, finding.tested) <= kSignificance;
+  };
+  if (!is_tested(finding.of_medians.verdict)) return finding.of_medians.verdict;
+  if (!study.are_most(finding.tested)) return Verdict::lost_contact;
+  if (shows(finding.agreeing)) return Verdict::agrees;
+  return shows(finding.tested - finding.agreeing) ? Verdict::does_not_agree : Verdict::not_settled;
+}
+
 // Not a number where no more than half of the seeds could be measured.
 RunMetrics medians_of(const Study& study, const MeasuredRun& run) {
   const Study::Tried tried{run.algorithm, run.mode};
   RunMetrics medians;
   for (const Metric& metric : all_metrics()) {
-    const std::vector<double> values = study.values(tried, run.segment, metric);
+    const std::vector<double> values = study.values(tried, run.phase, metric);
     metric.place(medians) = study.are_most(values.size()) ? distribution_of(values).median : kNotMeasured;
   }
-  medians.contact = study.contact(tried, run.segment);
+  medians.contact = study.contact(tried, run.phase);
   return medians;
 }
 
@@ -39,7 +50,7 @@ std::vector<double> grip_forces(const Study& study, Mode mode, double grip,
   for (const auto* rows : {&study.rows(), &study.rows_of_other_grips()}) {
     for (const StudyRow& row : *rows) {
       const MeasuredRun& run = row.run;
-      if (row.grip == grip && run.mode == mode && run.segment == kHolding &&
+      if (row.grip == grip && run.mode == mode && run.phase == kHolding &&
           run.algorithm == kPapersAlgorithms[1] && (!seed || row.seed == *seed)) {
         forces.push_back(run.metrics.force_N.hp_rms);
       }
@@ -74,7 +85,10 @@ RunGroup runs_of(std::span<const StudyRow> rows, Mode mode) {
 std::vector<StudyFinding> check_study_findings(const Study& study, Mode mode) {
   RunGroup medians = runs_of(study.rows_of_seed(0), mode);
   if (medians.runs.empty()) return {};
-  for (MeasuredRun& run : medians.runs) run.metrics = medians_of(study, run);
+  for (MeasuredRun& run : medians.runs) {
+    run.metrics = medians_of(study, run);
+    run.not_reached = study.not_reached({run.algorithm, run.mode}, run.phase);
+  }
   std::vector<StudyFinding> findings;
   for (Finding& finding : check_findings(medians, medians_of_grips(study, mode, {})))
     findings.push_back({std::move(finding)});
@@ -86,7 +100,10 @@ std::vector<StudyFinding> check_study_findings(const Study& study, Mode mode) {
       findings[n].tested += is_tested(once[n].verdict);
     }
   }
-  for (StudyFinding& finding : findings) finding.p = chance_of_at_least(finding.agreeing, finding.tested);
+  for (StudyFinding& finding : findings) {
+    finding.p = chance_of_at_least(finding.agreeing, finding.tested);
+    finding.verdict = verdict_of(finding, study);
+  }
   return findings;
 }
 

@@ -141,6 +141,11 @@ HtmlTable algorithms_table(const Study& study, Mode mode, std::string_view phase
   HtmlTable table{{"Median over the hands [interval]"}, {}, true};
   for (const AlgorithmId& algorithm : study.algorithms()) table.header.emplace_back(algorithm.label);
   if (study.algorithms().size() > 1) table.header.emplace_back("Differences");
+  std::vector<std::string> not_reached{"not reached"};
+  for (const AlgorithmId& algorithm : study.algorithms())
+    not_reached.push_back(html_escaped(study.not_reached({algorithm, mode}, phase)));
+  if (std::any_of(not_reached.begin() + 1, not_reached.end(), [](const auto& text) { return !text.empty(); }))
+    table.rows.push_back(std::move(not_reached));
   for (const Metric& metric : study.metrics_of(phase)) {
     table.rows.push_back({html_escaped(with_unit(metric.name, metric))});
     for (const AlgorithmId& algorithm : study.algorithms()) {
@@ -155,10 +160,11 @@ HtmlTable algorithms_table(const Study& study, Mode mode, std::string_view phase
   return table;
 }
 
-std::string change_text(const ModeChange& change) {
+std::string change_text(const ModeChange& change, std::size_t all_hands) {
   const std::string p = html_escaped(p_text(change.p));
   return fmt::format(
-      "{:.3g} → {:.3g}<br>× {}<br>{}", change.paper.median, change.steady.median,
+      "{:.3g} → {:.3g}{}<br>× {}<br>{}", change.paper.median, change.steady.median,
+      change.hands < all_hands ? fmt::format(" in {} of {} hands", change.hands, all_hands) : "",
       change.ratios > 0 ? interval_text(change.ratio) : "–",
       change.p <= kSignificance ? "<b>" + p + "</b>" : "<span class=\"none\">" + p + "</span>");
 }
@@ -172,7 +178,7 @@ HtmlTable changes_table(const Study& study, std::string_view phase) {
     for (const AlgorithmId& algorithm : study.algorithms()) {
       const auto change = std::find_if(changes.begin(), changes.end(),
                                        [&](const ModeChange& of) { return of.algorithm == algorithm; });
-      table.rows.back().push_back(change == changes.end() ? "–" : change_text(*change));
+      table.rows.back().push_back(change == changes.end() ? "–" : change_text(*change, study.seeds().size()));
     }
   }
   return table;
@@ -194,8 +200,7 @@ std::vector<std::string> how_to_read(const Study& study) {
   std::vector<std::string> paragraphs{fmt::format(
       "The same trial in {} hands: each seed (the first is {}) has a tremor and a hand of its own, drawn "
       "evenly from the published ranges; here {:.0f} to {:.0f} N/m and {:.2g} to {:.2g} N s/m. study.csv has "
-      "every trial but those in other grips. Recordings are kept of seed {} alone, which is the one that the "
-      "figures of force, "
+      "every trial. Recordings are kept of seed {} alone, which is the one that the figures of force, "
       "torque, "
       "shaft and path show; of the others only these figures of merit.",
       n, study.seeds().front(), *softest, *stiffest, *min, *max, study.seeds().front())};
@@ -217,9 +222,9 @@ std::vector<std::string> how_to_read(const Study& study) {
       kSignificance, n, min_p(n), min_corrected,
       min_corrected > kSignificance ? ", so that no difference can be significant here" : ""));
   paragraphs.emplace_back(
-      "Step times are the machine's: those of the first seed were taken with nothing else of "
-      "this program running, the others with a trial beside on each further core, so compare "
-      "them with care. Everything else comes out the same on any machine.");
+      "Compute times are the machine's: those of the first seed were taken with nothing else of this program "
+      "running, the others with a trial beside on each further core. Everything else comes out the same on "
+      "any machine.");
   return paragraphs;
 }
 

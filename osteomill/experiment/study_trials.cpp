@@ -8,6 +8,7 @@
 #include "osteomill/experiment/paper.h"
 #include "osteomill/experiment/parallel.h"
 #include "osteomill/experiment/phase_metrics.h"
+#include "osteomill/report/run_groups.h"
 #include "osteomill/session/fault_count.h"
 
 namespace osteomill {
@@ -17,7 +18,6 @@ namespace {
 struct PhasesOfTrial {
   std::array<Recording, kPhases.size()> phases;
   FaultCount faults;
-  ScriptShortfall shortfall;
 };
 
 // What of a trial people should see.
@@ -41,18 +41,22 @@ PhasesOfTrial run(const StudyTrial& planned) {
     result.phases[tick.milling_phase ? 0 : 1].records.push_back(tick.record);
     result.faults.add(tick.record);
   }
-  result.shortfall = trial.shortfall();
+  for (Recording& recording : result.phases) {
+    std::string said =
+        shortfall_words(trial.shortfall(), plan.settings.hand_and_device.script, recording.description.phase);
+    if (!said.empty())
+      recording.description.settings.push_back({std::string(kNotReachedKey), std::move(said), ""});
+  }
   return result;
 }
 
 }  // namespace
 
 StudyRow row_of(const TrialPlan& plan, const Recording& recording) {
-  const RunDescription& d = recording.description;
-  return {d.seed,
-          plan.settings.hand_and_device.hand,
-          {d.algorithm, d.mode, d.segment, phase_metrics(recording)},
-          plan.grip};
+  StudyRow row{recording.description.seed, plan.settings.hand_and_device.hand,
+               measured_run(recording, phase_metrics(recording)), plan.grip};
+  row.run.recording = nullptr;
+  return row;
 }
 
 std::vector<StudyTrial> trials_in_other_grips(const TrialPlan& plan) {
@@ -87,8 +91,7 @@ std::vector<StudyRow> run_study_trials(const std::vector<StudyTrial>& trials, st
   const auto task = [&](std::size_t n) {
     const PhasesOfTrial trial = run(trials[n]);
     for (const Recording& recording : trial.phases) rows[n].push_back(row_of(trials[n].plan, recording));
-    said[n] = {trial.faults.sentence(),
-               shortfall_words(trial.shortfall, trials[n].plan.settings.hand_and_device.script)};
+    said[n] = {trial.faults.sentence(), rows[n].back().run.not_reached};
   };
   run_in_parallel(trials.size(), threads, task, [&](std::size_t done) {
     events.tell_progress("study", static_cast<double>(done) / static_cast<double>(trials.size()));

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "osteomill/experiment/paper.h"
 #include "osteomill/recording/describe_run.h"
 
 namespace osteomill {
@@ -60,7 +61,7 @@ RunDescription describe_trial(const TrialPlan& plan, const AlgorithmDescription&
                                      .command_line = plan.command_line,
                                      .labels = plan.bone.labels()},
                                     sample_points);
-  run.segment = phase;
+  run.phase = phase;
   add_hand(run.settings, person.hand);
   add_device(run.settings, person.handle);
   add_script(run.settings, person.script, plan.entry);
@@ -70,7 +71,8 @@ RunDescription describe_trial(const TrialPlan& plan, const AlgorithmDescription&
   return run;
 }
 
-std::string shortfall_words(const ScriptShortfall& shortfall, const ScriptSettings& script) {
+std::string shortfall_words(const ScriptShortfall& shortfall, const ScriptSettings& script,
+                            std::string_view phase) {
   std::vector<std::string> parts;
   if (shortfall.shallow)
     parts.push_back(fmt::format("the hole stayed shallower than {:g} mm", script.depth_mm));
@@ -79,7 +81,8 @@ std::string shortfall_words(const ScriptShortfall& shortfall, const ScriptSettin
                                 script.leant_share * script.milling_s));
   }
   if (shortfall.lost) parts.emplace_back("the tool was lost: it left the bone as the hand leant");
-  if (shortfall.unsettled) parts.emplace_back("the hand did not come to feel what it wanted to hold");
+  if (shortfall.unsettled && phase == kHolding)
+    parts.emplace_back("the hand did not come to feel what it wanted to hold");
   return fmt::format("{}", fmt::join(parts, "; "));
 }
 

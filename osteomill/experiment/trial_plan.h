@@ -44,7 +44,9 @@ inline constexpr std::string_view kMatchedStiffnessKey = "matched.felt_stiffness
 RunDescription describe_trial(const TrialPlan& plan, const AlgorithmDescription& algorithm, int sample_points,
                               std::string_view phase);
 
-/// "the hole stayed shallower than 3 mm; the shaft leant on the bone for less than 3 s"; empty for none.
-std::string shortfall_words(const ScriptShortfall& shortfall, const ScriptSettings& script);
+/// "the hole stayed shallower than 3 mm; the shaft leant on the bone for less than 3 s": what of the plan was
+/// not reached up to the end of this phase. Empty for nothing.
+std::string shortfall_words(const ScriptShortfall& shortfall, const ScriptSettings& script,
+                            std::string_view phase);
 
 }  // namespace osteomill

@@ -48,17 +48,19 @@ Hdf5Handle create_ordered_group(const fs::path& path, hid_t file, const char* na
   return group;
 }
 
+void write_setting(const AttributeWriter& write, const RunSetting& setting) {
+  if (const double* number = std::get_if<double>(&setting.value)) {
+    write.real(setting.key, *number);
+  } else {
+    write.text(setting.key, std::get<std::string>(setting.value));
+  }
+  if (!setting.unit.empty()) write.text(setting.key + std::string(kUnitSuffix), setting.unit);
+}
+
 void write_settings(const fs::path& path, hid_t file, const std::vector<RunSetting>& settings) {
   const Hdf5Handle group = create_ordered_group(path, file, kSettingsGroup);
   const AttributeWriter write(path, group.get());
-  for (const RunSetting& setting : settings) {
-    if (const double* number = std::get_if<double>(&setting.value)) {
-      write.real(setting.key, *number);
-    } else {
-      write.text(setting.key, std::get<std::string>(setting.value));
-    }
-    if (!setting.unit.empty()) write.text(setting.key + std::string(kUnitSuffix), setting.unit);
-  }
+  for (const RunSetting& setting : settings) write_setting(write, setting);
 }
 
 std::vector<RunSetting> read_settings(const fs::path& path, hid_t file) {
@@ -146,7 +148,7 @@ void visit_attributes(Run& run, const Visit& visit) {
   visit("algorithm_label", run.algorithm.label, kLabel);
   visit("algorithm_colour", run.algorithm.colour, kLabel);
   visit("mode", run.mode);
-  visit("phase", run.segment);
+  visit("phase", run.phase);
   visit("seed", run.seed);
   visit("tick_period_s", run.tick_period_s);
 }
@@ -168,9 +170,9 @@ Mode require_mode(const fs::path& path, const std::string& name) {
 
 void write_description(const fs::path& path, hid_t file, const RunDescription& description) {
   require_usable_keys(description.settings);
-  if (!is_usable(description.algorithm) || !is_plain_name(description.segment)) {
-    throw std::invalid_argument("'" + description.algorithm.name + "', '" + description.segment +
-                                "': an algorithm or a segment that cannot be recorded by that name");
+  if (!is_usable(description.algorithm) || !is_plain_name(description.phase)) {
+    throw std::invalid_argument("'" + description.algorithm.name + "', '" + description.phase +
+                                "': an algorithm or a phase that cannot be recorded by that name");
   }
   const AttributeWriter write(path, file);
   visit_attributes(description, [&](const char* name, const auto& value, const char* /*with*/ = nullptr) {
@@ -191,6 +193,12 @@ void write_description(const fs::path& path, hid_t file, const RunDescription& d
   });
   write_settings(path, file, description.settings);
   write_labels(path, file, description.labels);
+}
+
+void add_setting(const fs::path& path, hid_t file, const RunSetting& setting) {
+  const Hdf5Handle group(H5Gopen2(file, kSettingsGroup, H5P_DEFAULT), H5Gclose);
+  if (!group.valid()) throw InputError(path.string(), "has no group of settings");
+  write_setting(AttributeWriter(path, group.get()), setting);
 }
 
 RunDescription read_description(const fs::path& path, hid_t file) {
@@ -216,8 +224,7 @@ RunDescription read_description(const fs::path& path, hid_t file) {
   if (!read.has(kLabel)) run.algorithm = by_its_name(run.algorithm.name);
   if (!is_usable(run.algorithm))
     throw InputError(path.string(), "its algorithm has a name, label or colour that cannot be used");
-  if (!is_plain_name(run.segment))
-    throw InputError(path.string(), "the attribute 'phase' is not a plain name");
+  if (!is_plain_name(run.phase)) throw InputError(path.string(), "the attribute 'phase' is not a plain name");
   if (!is_positive(run.tick_period_s))
     throw InputError(path.string(), "the attribute 'tick_period_s' is not a positive number");
   run.settings = read_settings(path, file);

@@ -13,6 +13,8 @@ namespace osteomill {
 /// InputErrors that name the file; under Hdf5Lock. Throws std::invalid_argument for a key that is empty,
 /// stands twice or ends in ".unit".
 void write_description(const std::filesystem::path& path, hid_t file, const RunDescription& description);
+/// One more setting, of a new key.
+void add_setting(const std::filesystem::path& path, hid_t file, const RunSetting& setting);
 RunDescription read_description(const std::filesystem::path& path, hid_t file);
 
 }  // namespace osteomill

@@ -138,6 +138,7 @@ struct Recorder::Impl {
   std::mutex starts_mutex;
   std::deque<std::pair<std::uint32_t, SessionStart>> starts;
   std::vector<RunPicture> pictures;
+  std::vector<RunSetting> settings;
   std::atomic<std::uint64_t> dropped{0};
   std::atomic<bool> stopping{false};
   std::atomic<bool> failed{false};
@@ -187,12 +188,17 @@ void Recorder::add_picture(const std::string& name, std::vector<unsigned char> p
   impl_->pictures.push_back({name, std::move(png)});
 }
 
+void Recorder::add_setting(RunSetting setting) {
+  impl_->settings.push_back(std::move(setting));
+}
+
 void Recorder::close() {
   if (impl_->closed) throw std::logic_error("a recorder is closed once");
   impl_->closed = true;
   impl_->stop();
   if (failed()) std::rethrow_exception(impl_->failure);
   for (const RunPicture& picture : impl_->pictures) impl_->file.add_picture(picture.name, picture.png);
+  for (const RunSetting& setting : impl_->settings) impl_->file.add_setting(setting);
   impl_->file.finish(dropped());
   std::error_code error;
   fs::rename(unfinished_recording_path(impl_->path), impl_->path, error);

@@ -62,8 +62,12 @@ class Recorder {
   /// letters, digits, '-' and '_' (else std::invalid_argument).
   void add_picture(const std::string& name, std::vector<unsigned char> png);
 
-  /// Writes what is left, the pictures, and gives the file its name. Throws InputError where any of it fails,
-  /// or writing failed before. To be called once.
+  /// Something of the run that is known only at its end, under a key that the description does not have; to
+  /// be stored at closing.
+  void add_setting(RunSetting setting);
+
+  /// Writes what is left, the pictures and settings, and gives the file its name. Throws InputError where any
+  /// of it fails, or writing failed before. To be called once.
   void close();
 
  private:

@@ -61,7 +61,7 @@ void expect_same(const RunDescription& a, const RunDescription& b) {
   EXPECT_EQ(a.tool.shaft_length_mm, b.tool.shaft_length_mm);
   EXPECT_EQ(a.algorithm, b.algorithm);
   EXPECT_EQ(a.mode, b.mode);
-  EXPECT_EQ(a.segment, b.segment);
+  EXPECT_EQ(a.phase, b.phase);
   EXPECT_EQ(a.seed, b.seed);
   EXPECT_EQ(a.tick_period_s, b.tick_period_s);
   EXPECT_EQ(a.settings, b.settings);
@@ -98,13 +98,16 @@ TEST(Recorder, WhatIsRecordedReadsBackBitForBit) {
     recorder.push_waiting(odd);
     recorder.add_picture("before", png);
     recorder.add_picture("after", {1});
+    recorder.add_setting({std::string(kNotReachedKey), "its end", ""});
     EXPECT_FALSE(fs::exists(folder / "run.h5")) << "the final name is for what is whole";
     recorder.close();
   }
   EXPECT_FALSE(fs::exists(unfinished_recording_path(folder / "run.h5")));
-  const Recording read = read_recording(folder / "run.h5");
+  Recording read = read_recording(folder / "run.h5");
   EXPECT_TRUE(read.complete);
   EXPECT_EQ(read.dropped, 0u);
+  EXPECT_EQ(read.description.settings.back(), (RunSetting{std::string(kNotReachedKey), "its end", ""}));
+  read.description.settings.pop_back();
   expect_same(read.description, sample_description());
   ASSERT_EQ(read.records.size(), kTicks + 1u);
   for (int tick = 0; tick < kTicks; ++tick) {

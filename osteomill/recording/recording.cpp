@@ -45,7 +45,7 @@ std::vector<Recording> in_stretches(Recording recording) {
     const std::size_t end = last ? recording.records.size() : sessions[first[n + 1]].first;
     if (begin.first == end) continue;
     Recording stretch{.path = recording.path, .description = begin.start.run};
-    stretch.description.segment = "part " + std::to_string(n + 1);
+    stretch.description.phase = "part " + std::to_string(n + 1);
     stretch.records.assign(recording.records.begin() + static_cast<std::ptrdiff_t>(begin.first),
                            recording.records.begin() + static_cast<std::ptrdiff_t>(end));
     stretch.complete = recording.complete;

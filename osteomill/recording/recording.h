@@ -76,7 +76,7 @@ struct Recording {
 };
 
 /// One recording for each stretch in which algorithm, tool and settings stayed as they were (what was taken
-/// back ends none), for whoever measures them: where there are several, by their numbers as segments.
+/// back ends none), for whoever measures them: where there are several, by their numbers as phases.
 std::vector<Recording> in_stretches(Recording recording);
 
 }  // namespace osteomill

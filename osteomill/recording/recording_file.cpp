@@ -368,6 +368,11 @@ void RecordingFile::add_picture(const std::string& name, std::span<const unsigne
           "a picture cannot be written (is the disk full?)");
 }
 
+void RecordingFile::add_setting(const RunSetting& setting) {
+  const Hdf5Lock lock;
+  osteomill::add_setting(path_, file_.get(), setting);
+}
+
 void RecordingFile::finish(std::uint64_t dropped) {
   const Hdf5Lock lock;
   if (rows_ > 0 && rows_ % kHashRows != 0) append_hash(last_);

@@ -40,6 +40,7 @@ class RecordingFile {
   /// What was appended so far survives the end of this program, however it ends.
   void flush(std::uint64_t dropped);
   void add_picture(const std::string& name, std::span<const unsigned char> png);
+  void add_setting(const RunSetting& setting);
   /// Marks the recording complete, closes the file and writes its checksum.
   void finish(std::uint64_t dropped);
 

@@ -25,6 +25,10 @@ struct RunSetting {
 /// The key of the further setting that holds the command by which the run can be repeated (reports show it).
 inline constexpr std::string_view kCommandLineKey = "command_line";
 
+/// And of the one that says what of its plan a run did not reach, in words; a recording that reached all has
+/// none.
+inline constexpr std::string_view kNotReachedKey = "not_reached";
+
 /// Where and when a recording was made. Nothing of it is of a patient.
 struct Origin {
   /// "2026-11-22T13:45:00Z".
@@ -59,7 +63,7 @@ struct RunDescription {
   AlgorithmId algorithm;
   Mode mode = Mode::steady;
   /// Which part of a longer run this is, in the words of whoever recorded it; empty where it is the whole.
-  std::string segment;
+  std::string phase;
   std::uint64_t seed = 0;
   double tick_period_s = 0.001;
   /// Everything else that was set, in the order in which people should read it; every key once.
@@ -67,5 +71,14 @@ struct RunDescription {
   /// Of the bone's label map, by their places in it; empty where it has none. Every value once.
   std::vector<Label> labels;
 };
+
+/// The value of a further setting; null where there is none of this key, or of another type.
+template <typename Value>
+const Value* find_setting(const RunDescription& run, std::string_view key) {
+  for (const RunSetting& setting : run.settings) {
+    if (setting.key == key) return std::get_if<Value>(&setting.value);
+  }
+  return nullptr;
+}
 
 }  // namespace osteomill

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -12,17 +13,15 @@ namespace osteomill {
 
 namespace {
 
-// A column of panels, one a phase (milling on top), with a curve over time for each algorithm.
-struct CurveColumn {
+// What panels show over time.
+struct Shown {
   // Of its data files.
   std::string name;
   // Of the y axis, with its unit.
   std::string label;
   std::function<double(const TickRecord&)> value;
-  // gnuplot commands for its panels alone (scale, range, lines).
+  // gnuplot commands for its panels alone (scale, range, lines); without any, the range of all runs.
   std::string setup;
-  // What its dashed line stands for, said above its panels; empty for none.
-  std::string dashed;
 };
 
 struct Curve {
@@ -32,40 +31,69 @@ struct Curve {
   double restlessness = 0;
 };
 
-std::string data_file(const CurveColumn& column, const MeasuredRun& run) {
-  return fmt::format("{}-{}-{}.dat", column.name, run.segment, name_of(run.algorithm));
+// From 0, where the tables begin to count; what was before that is negative.
+double time_s(const MeasuredRun& run, const TickRecord& record) {
+  return record.time_s - run.recording->records.front().time_s - run.metrics.counted_from_s;
 }
 
-Curve write_curve(const CurveColumn& column, const MeasuredRun& run, std::size_t bins,
-                  const TemporaryFolder& work) {
+std::string data_file(const Shown& shown, const MeasuredRun& run) {
+  return fmt::format("{}-{}-{}.dat", shown.name, run.phase, name_of(run.algorithm));
+}
+
+Curve write_curve(const Shown& shown, const MeasuredRun& run, std::size_t bins, const TemporaryFolder& work) {
   const std::vector<TickRecord>& records = run.recording->records;
   std::vector<double> values;
   values.reserve(records.size());
-  for (const TickRecord& record : records) values.push_back(column.value(record));
-  Curve curve{run.algorithm, data_file(column, run)};
+  for (const TickRecord& record : records) values.push_back(shown.value(record));
+  Curve curve{run.algorithm, data_file(shown, run)};
   for (std::size_t n = 1; n < values.size(); ++n) curve.restlessness += std::abs(values[n] - values[n - 1]);
   std::string data;
   for (const std::size_t n : thin_out_curve(values, bins)) {
-    data += fmt::format("{:.4f} {:.5g}\n", records[n].time_s - records.front().time_s, values[n]);
+    data += fmt::format("{:.4f} {:.5g}\n", time_s(run, records[n]), values[n]);
   }
   write_figure_data(work / curve.file, data);
   return curve;
 }
 
-double last_time_s(const RunGroup& group) {
-  double last = 0;
-  for (const MeasuredRun& run : group.runs) {
-    const auto& records = run.recording->records;
-    last = std::max(
-        last, records.back().time_s - records.front().time_s + run.recording->description.tick_period_s);
+std::string time_range(const std::vector<const MeasuredRun*>& runs) {
+  double first = 0, last = 0;
+  for (const MeasuredRun* run : runs) {
+    first = std::min(first, -run->metrics.counted_from_s);
+    last = std::max(last,
+                    time_s(*run, run->recording->records.back()) + run->recording->description.tick_period_s);
   }
-  return last;
+  return fmt::format(
+      "set xrange [{:.6g}:{:.6g}]\nset object 1 rectangle from {:.6g},graph 0 to 0,graph 1 behind fc rgb "
+      "'#ececec' fs solid noborder\n",
+      first, last, first);
 }
 
-std::string panel_title(std::string segment) {
-  if (segment.empty()) return "Whole session";
-  segment[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(segment[0])));
-  return segment;
+// Of what the tables count, shared by the panels of a row; from 0 where the least is not far above it.
+std::string value_range(const std::vector<const MeasuredRun*>& runs, const Shown& shown) {
+  double min = std::numeric_limits<double>::infinity(), max = 0;
+  for (const MeasuredRun* run : runs) {
+    for (const TickRecord& record : run->recording->records) {
+      if (time_s(*run, record) < 0) continue;
+      min = std::min(min, shown.value(record));
+      max = std::max(max, shown.value(record));
+    }
+  }
+  const double above = 0.06 * (max - (min < max / 2 ? 0 : min));
+  return fmt::format("set yrange [{:.6g}:{:.6g}]", min < max / 2 ? 0 : min - above,
+                     max > 0 ? max + std::max(above, 1e-6 * max) : 1.0);
+}
+
+std::vector<const MeasuredRun*> runs_of(const RunGroup& group, const std::string& phase) {
+  std::vector<const MeasuredRun*> runs;
+  for (const MeasuredRun& run : group.runs) {
+    if (run.phase == phase) runs.push_back(&run);
+  }
+  return runs;
+}
+
+std::string capitalised(std::string phase) {
+  if (!phase.empty()) phase[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(phase[0])));
+  return phase;
 }
 
 // Drawn by hand at the figure's top: gnuplot's own is fitted to one panel, and is broken into rows where that
@@ -95,84 +123,91 @@ std::string dashed_line(double y) {
       "set arrow 1 from graph 0,first {0} to graph 1,first {0} nohead dt 2 lw 1.5 lc rgb '#555555' front", y);
 }
 
-std::string panel(const RunGroup& group, const CurveColumn& column, const std::string& segment,
-                  const std::string& margins, bool lowest, std::size_t bins, const TemporaryFolder& work) {
+// The restless curves are drawn first so that they hide no other.
+std::string panel(const std::vector<const MeasuredRun*>& runs, const Shown& shown, std::size_t bins,
+                  const TemporaryFolder& work) {
   std::vector<Curve> curves;
-  for (const AlgorithmId& algorithm : group.algorithms()) {
-    if (const MeasuredRun* run = group.find(algorithm.name, segment)) {
-      curves.push_back(write_curve(column, *run, bins, work));
-    }
-  }
+  for (const MeasuredRun* run : runs) curves.push_back(write_curve(shown, *run, bins, work));
   std::stable_sort(curves.begin(), curves.end(),
                    [](const Curve& a, const Curve& b) { return a.restlessness > b.restlessness; });
-  std::string script =
-      fmt::format("{}set title '{}' offset 0,-0.4\nset ylabel '{}'\n{}\n{}\n", margins, panel_title(segment),
-                  column.label, lowest ? "set xlabel 'Time (s)'" : "unset xlabel", column.setup);
   std::string plot;
   for (const Curve& curve : curves) {
     plot += fmt::format("{}'{}' with lines lw 1.2 lc rgb '{}' notitle", plot.empty() ? "plot " : ", ",
                         curve.file, curve.algorithm.colour);
   }
-  return script + plot;
-}
-
-std::string dashed_legend(const CurveColumn& column, const PanelGrid& grid, const PanelCell& cell) {
-  constexpr double kTop_px = 54;
-  if (column.dashed.empty()) return "";
-  return fmt::format(
-      "set label 1 '- - -  {}' at screen {:.4f},screen {:.4f} center noenhanced tc rgb '#444444'\n",
-      column.dashed,
-      (cell.left_px + 0.5 * (grid.left_px + cell.wide_px - grid.right_px)) / PanelGrid::kWidth_px,
-      1 - kTop_px / grid.height_px);
-}
-
-double rate_of(const TickRecord& record) {
-  return 1e6 / std::max(1000.0, record.busy_us());
-}
-
-double max_tick_us(const RunGroup& group) {
-  double max = 0;
-  for (const MeasuredRun& run : group.runs) {
-    for (const TickRecord& record : run.recording->records) max = std::max(max, record.busy_us());
-  }
-  return max;
-}
-
-// Shared by the panels of a column, so that the segments can be compared.
-std::string common_range(const RunGroup& group, const std::function<double(const TickRecord&)>& value) {
-  double max = 0;
-  for (const MeasuredRun& run : group.runs) {
-    for (const TickRecord& record : run.recording->records) max = std::max(max, value(record));
-  }
-  return fmt::format("set yrange [0:{:.6g}]", max > 0 ? 1.06 * max : 1.0);
+  // Panels drawn later would print the legend again, on top of itself.
+  return plot + "\nunset label\nunset arrow\nunset object\n";
 }
 
 std::string figure_name(const char* stem, const RunGroup& group) {
   return fmt::format("{}_{}", stem, name_of(group.mode));
 }
 
-// Draws the columns side by side, the algorithms' names above them all. Curves are thinned out to the least
-// and greatest of each pixel's worth, and the restless ones are drawn first so that they hide no other.
-Figure draw_curves(const RunGroup& group, const std::string& name, const std::vector<CurveColumn>& columns,
-                   const std::filesystem::path& folder) {
+// Curves are thinned out to the least and greatest of each pixel's worth.
+constexpr std::size_t kBins = 1000;
+
+// All algorithms in one panel, the columns side by side, a row for each phase.
+Figure draw_together(const RunGroup& group, const std::string& name, const std::vector<Shown>& columns,
+                     const std::filesystem::path& folder) {
   const TemporaryFolder work;
-  const std::vector<std::string> segments = group.segments();
+  const std::vector<std::string> phases = group.phases();
   const PanelGrid grid{
-      segments.size() > 1 ? 800.0 : 480.0, columns.size(), segments.size(), 92, 0, 112, 26, 8, 80};
+      phases.size() > 1 ? 760.0 : 440.0, columns.size(), phases.size(), 52, 0, 112, 26, 28, 60};
   FigureScript script{name, static_cast<int>(PanelGrid::kWidth_px), static_cast<int>(grid.height_px), ""};
-  script.body = begin_panels("") + fmt::format("set xrange [0:{:.6g}]\n", last_time_s(group));
-  const std::size_t bins = 1000 / columns.size();
-  script.body += legend(group, grid.height_px);
-  for (std::size_t c = 0; c < columns.size(); ++c) {
-    for (std::size_t row = 0; row < segments.size(); ++row) {
-      const PanelCell cell = panel_cell(grid, c, row);
-      if (row == 0) script.body += dashed_legend(columns[c], grid, cell);
-      script.body += panel(group, columns[c], segments[row], panel_margins(grid, cell),
-                           row + 1 == segments.size(), bins, work);
-      // Panels drawn later would print the legend again, on top of itself.
-      script.body += "\nunset label\nunset arrow\n";
+  script.body = begin_panels("") + legend(group, grid.height_px);
+  for (std::size_t row = 0; row < phases.size(); ++row) {
+    const auto runs = runs_of(group, phases[row]);
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      script.body += fmt::format("{}{}{}\nset title '{}' offset 0,-0.4\nset ylabel '{}'\n{}\n",
+                                 panel_margins(grid, panel_cell(grid, c, row)), time_range(runs),
+                                 columns[c].setup, capitalised(phases[row]), columns[c].label,
+                                 row + 1 == phases.size() ? "set xlabel 'Time (s)'" : "unset xlabel");
+      script.body += panel(runs, columns[c], kBins / columns.size(), work);
     }
-    script.body += "unset logscale\nset format y\n";
+  }
+  script.body += "unset multiplot\n";
+  return draw_figure(script, work, folder);
+}
+
+// A panel for each algorithm, side by side at one scale, a row for each phase: curves that lie on each
+// other would show nothing.
+Figure draw_apart(const RunGroup& group, const std::string& name, const Shown& shown,
+                  const std::string& dashed, const std::filesystem::path& folder) {
+  const TemporaryFolder work;
+  const std::vector<std::string> phases = group.phases();
+  const std::vector<AlgorithmId> algorithms = group.algorithms();
+  const PanelGrid grid{.height_px = phases.size() > 1 ? 680.0 : 400.0,
+                       .columns = algorithms.size(),
+                       .rows = phases.size(),
+                       .head_px = dashed.empty() ? 6.0 : 34.0,
+                       .indent_px = 84,
+                       .left_px = 12,
+                       .right_px = 12,
+                       .above_px = 32,
+                       .below_px = 72};
+  FigureScript script{name, static_cast<int>(PanelGrid::kWidth_px), static_cast<int>(grid.height_px), ""};
+  script.body = begin_panels("");
+  if (!dashed.empty())
+    script.body +=
+        fmt::format("set label 1 '- - -  {}' at screen 0.5,screen {:.4f} center tc rgb '#444444'\n", dashed,
+                    1 - 20 / grid.height_px);
+  for (std::size_t row = 0; row < phases.size(); ++row) {
+    const auto runs = runs_of(group, phases[row]);
+    script.body += fmt::format("{}{}\nset xlabel 'Time (s)'\n", time_range(runs),
+                               shown.setup.empty() ? value_range(runs, shown) : shown.setup);
+    for (std::size_t c = 0; c < algorithms.size(); ++c) {
+      const MeasuredRun* run = group.find(algorithms[c].name, phases[row]);
+      if (run == nullptr) continue;
+      script.body += fmt::format(
+          "{}{}set title '{}' offset 0,-0.4 tc rgb '{}' noenhanced\n{}\n",
+          panel_margins(grid, panel_cell(grid, c, row)), time_range(runs), algorithms[c].label,
+          algorithms[c].colour,
+          c == 0 ? fmt::format("set ylabel '{}{}'\nset format y '%g'",
+                               phases[row].empty() ? "" : capitalised(phases[row]) + ":  ", shown.label)
+                 : "unset ylabel\nset format y ''");
+      script.body += panel({run}, shown, kBins / algorithms.size(), work);
+      if (!shown.setup.empty()) script.body += shown.setup + "\n";
+    }
   }
   script.body += "unset multiplot\n";
   return draw_figure(script, work, folder);
@@ -181,49 +216,45 @@ Figure draw_curves(const RunGroup& group, const std::string& name, const std::ve
 }  // namespace
 
 Figure draw_rate_figure(const RunGroup& group, const std::filesystem::path& folder) {
-  const double max = max_tick_us(group);
-  const double lowest_rate_hz = 1e6 / std::max(1000.0, max);
-  const CurveColumn rate{
-      "rate", "Haptic rate (Hz)", rate_of,
-      fmt::format("set yrange [{:.6g}:1020]\n{}", std::min(900.0, 100.0 * std::floor(lowest_rate_hz / 100.0)),
-                  dashed_line(kMinRate_hz)),
-      "950 Hz, the least acceptable"};
-  const CurveColumn compute{"compute", "Compute time of a tick (µs)",
-                            [](const TickRecord& r) { return std::max(0.1, r.busy_us()); },
-                            fmt::format("set logscale y\nset yrange [*:{:.6g}]\nset format y '%g'\n{}",
-                                        std::max(3000.0, 1.5 * max), dashed_line(1000)),
-                            "1 ms, a tick at 1000 Hz"};
-  return draw_curves(group, figure_name("fig6_rate", group), {rate, compute}, folder);
+  double max = 2000;
+  for (const MeasuredRun& run : group.runs) max = std::max(max, run.metrics.tick_us.max);
+  const Shown compute{"compute", "compute time of a tick (µs)",
+                      [](const TickRecord& r) { return std::max(0.1, r.busy_us()); },
+                      fmt::format("set logscale y\nset yrange [1:{:.6g}]\n{}", 1.5 * max, dashed_line(1000))};
+  return draw_apart(group, figure_name("fig6_rate", group), compute, "1 ms, a tick at 1000 Hz", folder);
 }
 
 Figure draw_force_figure(const RunGroup& group, const std::filesystem::path& folder) {
   const auto magnitude = [](const TickRecord& r) { return r.wrench.force_N.norm(); };
-  return draw_curves(group, figure_name("fig7_force", group),
-                     {{"force", "Force (N)", magnitude, common_range(group, magnitude), ""}}, folder);
+  return draw_apart(group, figure_name("fig7_force", group), {"force", "force (N)", magnitude, ""}, "",
+                    folder);
 }
 
 Figure draw_torque_figure(const RunGroup& group, const std::filesystem::path& folder) {
   const auto magnitude = [](const TickRecord& r) { return r.wrench.torque_Nmm.norm(); };
-  return draw_curves(group, figure_name("fig8_torque", group),
-                     {{"torque", "Torque (N mm)", magnitude, common_range(group, magnitude), ""}}, folder);
+  return draw_apart(group, figure_name("fig8_torque", group), {"torque", "torque (N mm)", magnitude, ""}, "",
+                    folder);
 }
 
 Figure draw_removed_figure(const RunGroup& group, const std::filesystem::path& folder) {
-  const auto removed_mm3 = [](const TickRecord& r) { return r.removed_mm3; };
-  return draw_curves(group, figure_name("removed", group),
-                     {{"removed", "Bone removed (mm³)", removed_mm3, common_range(group, removed_mm3), ""}},
-                     folder);
+  // Where nothing was removed the curve says nothing.
+  RunGroup milled = group;
+  std::erase_if(milled.runs, [](const MeasuredRun& run) { return run.metrics.removed_mm3 == 0; });
+  if (milled.runs.empty()) milled = group;
+  return draw_together(milled, figure_name("removed", group),
+                       {{"removed", "Bone removed (mm³)", [](const TickRecord& r) { return r.removed_mm3; },
+                         "set yrange [0:*]"}},
+                       folder);
 }
 
 Figure draw_path_figure(const RunGroup& group, const std::filesystem::path& folder) {
   constexpr const char* kAxes[] = {"x", "y", "z"};
-  std::vector<CurveColumn> columns;
+  std::vector<Shown> columns;
   for (int axis = 0; axis < 3; ++axis) {
     columns.push_back({fmt::format("path_{}", kAxes[axis]), fmt::format("Burr along {} (mm)", kAxes[axis]),
-                       [axis](const TickRecord& r) { return r.X_WT.position_mm[axis]; }, "set yrange [*:*]",
-                       ""});
+                       [axis](const TickRecord& r) { return r.X_WT.position_mm[axis]; }, "set yrange [*:*]"});
   }
-  return draw_curves(group, figure_name("path", group), columns, folder);
+  return draw_together(group, figure_name("path", group), columns, folder);
 }
 
 }  // namespace osteomill

@@ -20,7 +20,8 @@ h3 { font-size: 1.08em; margin-top: 1.6em; }
 table { border-collapse: collapse; margin: 0.8em 0; font-size: 14px; }
 th, td { padding: 0.3em 0.7em; border-bottom: 1px solid #ddd; text-align: left; vertical-align: top; }
 thead th { border-bottom: 2px solid #888; } tbody th { font-weight: normal; }
-.numbers td, .numbers thead th + th { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
+.numbers td, .numbers thead th + th { text-align: right; font-variant-numeric: tabular-nums; }
+.numbers td { white-space: nowrap; }
 .agrees { color: #146c2e; font-weight: 600; white-space: nowrap; }
 .differs { color: #a4101f; font-weight: 600; white-space: nowrap; }
 .none { color: #666; white-space: nowrap; }

@@ -20,7 +20,7 @@ LabelCount count_of(const Recording& recording) {
 }
 
 std::string run_name(const MeasuredRun& run) {
-  return run.segment.empty() ? run.algorithm.label : run.algorithm.label + ", " + run.segment;
+  return run.phase.empty() ? run.algorithm.label : run.algorithm.label + ", " + run.phase;
 }
 
 std::string name_with_colour(const Label& label) {

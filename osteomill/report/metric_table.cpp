@@ -13,11 +13,9 @@ using T = MetricTable;
 
 constexpr Metric kMetrics[] = {
     {"steps", "", [](M& m) -> double& { return m.steps; }, T::times, "Ticks", "{:.0f}"},
-    {"step_us_median", "µs", [](M& m) -> double& { return m.step_us.median; }, T::times,
-     "Compute time of a step, median", "{:.4g}", 9, "step time, median", true},
-    {"step_us_p99", "µs", [](M& m) -> double& { return m.step_us.p99; }, T::times, "… 99th percentile",
-     "{:.4g}", 10, "step time, 99th percentile"},
-    {"step_us_max", "µs", [](M& m) -> double& { return m.step_us.max; }, T::times, "… greatest"},
+    {"step_us_median", "µs", [](M& m) -> double& { return m.step_us.median; }},
+    {"step_us_p99", "µs", [](M& m) -> double& { return m.step_us.p99; }},
+    {"step_us_max", "µs", [](M& m) -> double& { return m.step_us.max; }},
     {"rate_hz", "Hz", [](M& m) -> double& { return m.rate_hz; }, T::rate,
      "Haptic rate that a 1 kHz loop would hold", "{:.1f}"},
     {"force_mean_N", "N", [](M& m) -> double& { return m.force_N.mean; }, T::force,
@@ -47,10 +45,11 @@ constexpr Metric kMetrics[] = {
      "In contact, share of the time"},
     {"burr_contact_share", "", [](M& m) -> double& { return m.contact.burr; }, T::path, "… with the burr"},
     {"shaft_contact_share", "", [](M& m) -> double& { return m.contact.shaft; }, T::path, "… with the shaft"},
-    {"cpu_us_median", "µs", [](M& m) -> double& { return m.cpu_us.median; }, T::times,
-     "Work of a whole tick, CPU time, median"},
-    {"cpu_us_p99", "µs", [](M& m) -> double& { return m.cpu_us.p99; }, T::times, "… 99th percentile"},
-    {"cpu_us_max", "µs", [](M& m) -> double& { return m.cpu_us.max; }, T::times, "… greatest"},
+    {"tick_us_median", "µs", [](M& m) -> double& { return m.tick_us.median; }, T::times,
+     "Compute time of a tick, median", "{:.4g}", 9, "compute time of a tick, median", true},
+    {"tick_us_p99", "µs", [](M& m) -> double& { return m.tick_us.p99; }, T::times, "… 99th percentile",
+     "{:.4g}", 10, "compute time of a tick, 99th percentile"},
+    {"tick_us_max", "µs", [](M& m) -> double& { return m.tick_us.max; }, T::times, "… greatest"},
     {"turn_50ms_max_deg", "degrees", [](M& m) -> double& { return m.turns.max_deg; }},
     {"turn_at_torque_step_deg", "degrees", [](M& m) -> double& { return m.turns.at_torque_step_deg; }},
     {"torque_follows_force", "", [](M& m) -> double& { return m.torque_follows_force; }},
@@ -73,17 +72,17 @@ std::string summary_columns() {
   for (const Metric& metric : kMetrics) {
     if (*metric.column != '\0') columns += fmt::format(",{}", metric.column);
   }
-  return columns;
+  return columns + ",not_reached";
 }
 
 std::string summary_fields(const MeasuredRun& run) {
-  std::string fields = fmt::format("{},{},{}", name_of(run.algorithm), name_of(run.mode), run.segment);
+  std::string fields = fmt::format("{},{},{}", name_of(run.algorithm), name_of(run.mode), run.phase);
   for (const Metric& metric : kMetrics) {
     if (*metric.column == '\0') continue;
     const double value = metric(run.metrics);
     fields += std::isnan(value) ? "," : fmt::format(",{}", value);
   }
-  return fields;
+  return fields + "," + run.not_reached;
 }
 
 }  // namespace osteomill

@@ -143,7 +143,7 @@ RunMetrics run_metrics(const Recording& recording) {
   require_usable(recording);
   std::vector<Vec3> force_N, torque_Nmm, shaft_W;
   std::vector<bool> touches, shaft_touches;
-  std::vector<double> step_us, cpu_us;
+  std::vector<double> step_us, tick_us;
   double contacts = 0;
   HeldRate held(1e6 * recording.description.tick_period_s);
   for (const TickRecord& record : recording.records) {
@@ -155,14 +155,14 @@ RunMetrics run_metrics(const Recording& recording) {
     if (touches.back()) contacts += record.contacts;
     if (touches.back()) shaft_W.push_back(shaft_direction(record.X_WT));
     step_us.push_back(record.compute_us);
-    cpu_us.push_back(record.tick_cpu_us);
+    tick_us.push_back(record.busy_us());
     held.add(record.busy_us());
   }
   const double rate_hz = 1.0 / recording.description.tick_period_s;
   RunMetrics metrics;
   metrics.steps = static_cast<double>(recording.records.size());
   metrics.step_us = distribution_of(step_us);
-  if (const Distribution cpu = distribution_of(cpu_us); cpu.max > 0) metrics.cpu_us = cpu;
+  metrics.tick_us = distribution_of(tick_us);
   metrics.rate_hz = held.rate_hz();
   metrics.contact = contact_shares(recording.records);
   metrics.force_N = metrics.torque_Nmm = kNotFelt;

@@ -54,10 +54,12 @@ struct ShaftTurns {
 /// All figures of one recording (metric_table.h says where each is shown).
 struct RunMetrics {
   double steps = 0;
+  /// From when on, after the recording's first tick, its ticks are counted.
+  double counted_from_s = 0;
   /// Of the algorithm's step alone, by the clock (`compute_us`).
   Distribution step_us;
-  /// Of the whole tick, the thread's own CPU time.
-  Distribution cpu_us{kNotMeasured, kNotMeasured, kNotMeasured};
+  /// Of the tick's whole work (TickRecord::busy_us).
+  Distribution tick_us;
   /// HeldRate over the ticks' whole work (TickRecord::busy_us), for the recording's tick.
   double rate_hz = 0;
   ContactShares contact;
@@ -91,10 +93,12 @@ RunMetrics run_metrics(const Recording& recording);
 struct MeasuredRun {
   AlgorithmId algorithm;
   Mode mode;
-  std::string segment;
+  std::string phase;
   RunMetrics metrics;
   /// Null where it was not kept.
   const Recording* recording = nullptr;
+  /// What of its plan it did not reach (kNotReachedKey); empty for nothing.
+  std::string not_reached = {};
 };
 
 }  // namespace osteomill

@@ -40,7 +40,7 @@ const RunPicture* picture_named(const Recording& recording, std::string_view nam
   return nullptr;
 }
 
-// Of several segments the first that has a picture is the one to take.
+// Of several phases the first that has a picture is the one to take.
 std::vector<Panel> panels_of(const RunGroup& group) {
   std::vector<Panel> panels;
   for (const MeasuredRun& run : group.runs) {
@@ -50,8 +50,8 @@ std::vector<Panel> panels_of(const RunGroup& group) {
     }
   }
   for (const AlgorithmId& algorithm : group.algorithms()) {
-    for (const std::string& segment : group.segments()) {
-      const MeasuredRun* run = group.find(algorithm.name, segment);
+    for (const std::string& phase : group.phases()) {
+      const MeasuredRun* run = group.find(algorithm.name, phase);
       const RunPicture* after = run ? picture_named(*run->recording, kPictureAfter) : nullptr;
       if (after == nullptr) continue;
       // The last part of several: cuts may have been taken back since the picture before.

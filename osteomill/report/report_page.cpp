@@ -78,8 +78,8 @@ const Topic kTimes{"How long the ticks took", {"rate"}, {MetricTable::times, Met
 
 std::string cell(const Metric& metric, const MeasuredRun& run) {
   const double value = metric(run.metrics);
-  if (!std::isnan(value)) return fmt::format(fmt::runtime(metric.format), value);
-  return metric.table == MetricTable::times ? "not measured" : contact_words(run.metrics.contact);
+  return std::isnan(value) ? contact_words(run.metrics.contact)
+                           : fmt::format(fmt::runtime(metric.format), value);
 }
 
 std::vector<MetricLine> lines_of(const Topic& topic) {
@@ -95,11 +95,15 @@ std::vector<MetricLine> lines_of(const Topic& topic) {
 }
 
 HtmlTable metrics_table(const RunGroup& group, const std::vector<MetricLine>& lines) {
-  HtmlTable table{{""}, {}, true};
+  HtmlTable table{{""}, {{"Not reached"}}, true};
   for (const MeasuredRun& run : group.runs) {
-    const std::string segment = run.segment.empty() ? "" : html_escaped(run.segment) + "<br>";
-    table.header.push_back(segment + html_escaped(run.algorithm.label));
+    const std::string phase = run.phase.empty() ? "" : html_escaped(run.phase) + "<br>";
+    table.header.push_back(phase + html_escaped(run.algorithm.label));
+    table.rows.front().push_back(html_escaped(run.not_reached));
   }
+  // What was not reached stands before all that is compared.
+  const auto reached = [](const MeasuredRun& run) { return run.not_reached.empty(); };
+  if (std::all_of(group.runs.begin(), group.runs.end(), reached)) table.rows.clear();
   for (const MetricLine& line : lines) {
     table.rows.push_back({line.label});
     for (const MeasuredRun& run : group.runs) table.rows.back().push_back(line.cell(run));
@@ -128,9 +132,7 @@ PageSection topic_section(const Topic& topic, const std::vector<DrawnGroup>& gro
 
 bool has_setting(const RunGroup& group, std::string_view key) {
   return std::any_of(group.runs.begin(), group.runs.end(), [&](const MeasuredRun& run) {
-    const auto& settings = run.recording->description.settings;
-    return std::any_of(settings.begin(), settings.end(),
-                       [&](const RunSetting& setting) { return setting.key == key; });
+    return find_setting<std::string>(run.recording->description, key) != nullptr;
   });
 }
 
@@ -181,7 +183,7 @@ std::string session_in_words(const MeasuredRun& run) {
   const std::string text = fmt::format(
       "{}{}: {:.1f} s, of which the spindle ran for {:.1f} s. The burr went {:.0f} mm, and {:.1f} mm³ of "
       "bone were removed{}. ",
-      run.algorithm.label, run.segment.empty() ? "" : ", " + run.segment,
+      run.algorithm.label, run.phase.empty() ? "" : ", " + run.phase,
       records.back().time_s - records.front().time_s, spindle_s(*run.recording), m.path_mm, m.removed_mm3,
       put_back);
   if (!is_enough_contact(m.contact.any)) {
@@ -216,12 +218,9 @@ PageSection sessions_in_words(const std::vector<DrawnGroup>& groups) {
 PageSection how_to_repeat(const std::vector<const Recording*>& recordings) {
   std::vector<std::string> commands;
   for (const Recording* recording : recordings) {
-    for (const RunSetting& setting : recording->description.settings) {
-      const std::string* command = std::get_if<std::string>(&setting.value);
-      if (setting.key != kCommandLineKey || command == nullptr || command->empty()) continue;
-      if (std::find(commands.begin(), commands.end(), *command) == commands.end())
-        commands.push_back(*command);
-    }
+    const std::string* command = find_setting<std::string>(recording->description, kCommandLineKey);
+    if (command == nullptr || command->empty()) continue;
+    if (std::find(commands.begin(), commands.end(), *command) == commands.end()) commands.push_back(*command);
   }
   return {
       .title = "How to repeat this",

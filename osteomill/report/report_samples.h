@@ -32,7 +32,7 @@ inline Recording sample_run(std::string_view algorithm, std::string_view phase, 
   d.isovalue = 1200;
   d.algorithm = algorithm_named(algorithm).id;
   d.mode = mode;
-  d.segment = phase;
+  d.phase = phase;
   d.seed = 1;
   d.settings = {{"stiffness", a == 1 ? 20.0 : 2.0, "N/mm"},
                 {"push", 1.5, "N"},

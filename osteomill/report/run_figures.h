@@ -14,18 +14,20 @@ namespace osteomill {
 /// recording, where a picture is not a whole PNG of sensible size.
 std::optional<Figure> draw_picture_figure(const RunGroup& group, const std::filesystem::path& folder);
 
-/// The paper's figures 6 (haptic rate and compute time), 7 (force magnitude) and 8 (torque magnitude).
+/// The paper's figures 6 (of whose rate it draws the compute time), 7 (force magnitude) and 8 (torque
+/// magnitude), a panel for each phase and algorithm. Time is 0 where the tables begin to count
+/// (counted_from_s); what was before is shaded.
 Figure draw_rate_figure(const RunGroup& group, const std::filesystem::path& folder);
 Figure draw_force_figure(const RunGroup& group, const std::filesystem::path& folder);
 Figure draw_torque_figure(const RunGroup& group, const std::filesystem::path& folder);
 
-/// Bone removed since the start, and the burr's centre along each axis of W.
+/// Bone removed since the start, in the phases in which some was, and the burr's centre along each axis of
+/// W.
 Figure draw_removed_figure(const RunGroup& group, const std::filesystem::path& folder);
 Figure draw_path_figure(const RunGroup& group, const std::filesystem::path& folder);
 
-/// The paper's figure 9: where the simulated tool's shaft points, as points on the unit sphere coloured by
-/// time, a panel for each phase and algorithm. The panels of a phase have the same ranges, all three axes the
-/// same scale.
+/// The paper's figure 9: where the simulated tool's shaft points while it touches, in degrees across its mean
+/// direction, coloured by time; a panel for each phase and algorithm, each with a scale of its own.
 Figure draw_shaft_figure(const RunGroup& group, const std::filesystem::path& folder);
 
 }  // namespace osteomill

@@ -11,17 +11,23 @@
 
 namespace osteomill {
 
-const MeasuredRun* RunGroup::find(std::string_view algorithm, std::string_view segment) const {
+MeasuredRun measured_run(const Recording& recording, const RunMetrics& metrics) {
+  const RunDescription& d = recording.description;
+  const std::string* not_reached = find_setting<std::string>(d, kNotReachedKey);
+  return {d.algorithm, d.mode, d.phase, metrics, &recording, not_reached == nullptr ? "" : *not_reached};
+}
+
+const MeasuredRun* RunGroup::find(std::string_view algorithm, std::string_view phase) const {
   for (const MeasuredRun& run : runs) {
-    if (run.algorithm == algorithm && run.segment == segment) return &run;
+    if (run.algorithm == algorithm && run.phase == phase) return &run;
   }
   return nullptr;
 }
 
-std::vector<std::string> RunGroup::segments() const {
+std::vector<std::string> RunGroup::phases() const {
   std::vector<std::string> present;
   for (const MeasuredRun& run : runs) {
-    if (present.empty() || present.back() != run.segment) present.push_back(run.segment);
+    if (present.empty() || present.back() != run.phase) present.push_back(run.phase);
   }
   return present;
 }
@@ -41,7 +47,7 @@ std::map<std::string, double> beginnings(const std::vector<Recording>& recording
   for (const Recording& recording : recordings) {
     if (recording.records.empty()) continue;
     const double time_s = recording.records.front().time_s;
-    const auto [place, is_new] = began_s.try_emplace(recording.description.segment, time_s);
+    const auto [place, is_new] = began_s.try_emplace(recording.description.phase, time_s);
     if (!is_new) place->second = std::min(place->second, time_s);
   }
   return began_s;
@@ -59,16 +65,16 @@ std::vector<RunGroup> group_runs(const std::vector<Recording>& recordings,
     for (const Recording& recording : recordings) {
       const RunDescription& d = recording.description;
       if (d.mode != mode) continue;
-      if (const MeasuredRun* twin = group.find(d.algorithm.name, d.segment)) {
+      if (const MeasuredRun* twin = group.find(d.algorithm.name, d.phase)) {
         throw InputError(
             recording.path.string(),
             fmt::format("is {}, {}, {} as {} is; a report has room for one of them", name_of(d.algorithm),
-                        name_of(d.mode), d.segment, twin->recording->path.string()));
+                        name_of(d.mode), d.phase, twin->recording->path.string()));
       }
-      group.runs.push_back({d.algorithm, mode, d.segment, measure(recording), &recording});
+      group.runs.push_back(measured_run(recording, measure(recording)));
     }
     const auto order = [&](const MeasuredRun& run) {
-      return std::tuple(began_s.at(run.segment), run.segment, run.algorithm);
+      return std::tuple(began_s.at(run.phase), run.phase, run.algorithm);
     };
     std::sort(group.runs.begin(), group.runs.end(),
               [&](const MeasuredRun& a, const MeasuredRun& b) { return order(a) < order(b); });

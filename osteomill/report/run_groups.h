@@ -8,21 +8,24 @@
 
 namespace osteomill {
 
-/// The runs of one mode, which belong into the same figures; by segment, then by
+/// What a recording says of its run, with these figures of it; it points to the recording.
+MeasuredRun measured_run(const Recording& recording, const RunMetrics& metrics);
+
+/// The runs of one mode, which belong into the same figures; by phase, then by
 /// algorithm.
 struct RunGroup {
   Mode mode;
   std::vector<MeasuredRun> runs;
 
   /// Null where there is no such run.
-  const MeasuredRun* find(std::string_view algorithm, std::string_view segment) const;
-  /// Those that have a run: segments in the order in which they began, algorithms in that of their labels.
-  std::vector<std::string> segments() const;
+  const MeasuredRun* find(std::string_view algorithm, std::string_view phase) const;
+  /// Those that have a run: phases in the order in which they began, algorithms in that of their labels.
+  std::vector<std::string> phases() const;
   std::vector<AlgorithmId> algorithms() const;
 };
 
 /// Measures and groups recordings; the groups point into `recordings`. Throws InputError where there are
-/// none, where two are of the same algorithm, mode and segment, or where one cannot be measured
+/// none, where two are of the same algorithm, mode and phase, or where one cannot be measured
 /// (run_metrics).
 std::vector<RunGroup> group_runs(const std::vector<Recording>& recordings,
                                  RunMetrics (*measure)(const Recording&) = run_metrics);

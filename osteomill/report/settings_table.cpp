@@ -30,9 +30,17 @@ std::vector<RunSetting> all_settings(const RunDescription& d) {
       {"seed", fmt::format("{}", d.seed), ""},
       {"tick_period", d.tick_period_s, "s"}};
   for (const RunSetting& setting : d.settings) {
-    if (setting.key != kCommandLineKey) settings.push_back(setting);
+    if (setting.key != kCommandLineKey && setting.key != kNotReachedKey) settings.push_back(setting);
   }
   return settings;
+}
+
+// Attributes of recordings are ASCII.
+std::string raised(std::string unit) {
+  for (const auto& [power, digit] : {std::pair("^2", "²"), std::pair("^3", "³")}) {
+    if (const auto at = unit.find(power); at != std::string::npos) unit.replace(at, 2, digit);
+  }
+  return unit;
 }
 
 struct SettingLine {
@@ -73,7 +81,7 @@ std::string value_of(const SettingLine& line, const std::vector<const Recording*
     if (!is_new && entry->second != line.values[n]) algorithm_decides = false;
     if (line.values[n]) {
       each += fmt::format("{}{}, {}, {}: {}", each.empty() ? "" : "; ", name_of(d.algorithm), name_of(d.mode),
-                          d.segment, *line.values[n]);
+                          d.phase, *line.values[n]);
     }
   }
   if (!algorithm_decides) return each;
@@ -90,7 +98,7 @@ HtmlTable settings_table(const std::vector<const Recording*>& recordings) {
   HtmlTable table{{"Setting", "Value", "Unit"}, {}};
   for (const SettingLine& line : collect(recordings)) {
     table.rows.push_back(
-        {html_escaped(line.key), html_escaped(value_of(line, recordings)), html_escaped(line.unit)});
+        {html_escaped(line.key), html_escaped(value_of(line, recordings)), html_escaped(raised(line.unit))});
   }
   return table;
 }

@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <fmt/format.h>
 
 #include "osteomill/files/temporary_folder.h"
+#include "osteomill/report/contact.h"
 #include "osteomill/report/run_figures.h"
 #include "osteomill/report/thin_out.h"
 
@@ -14,36 +16,53 @@ namespace {
 // Points a panel; an SVG takes about 90 bytes for each.
 constexpr std::size_t kBins = 700;
 
-std::vector<Vec3> directions_of(const MeasuredRun& run) {
+struct Cloud {
+  // Of the counted ticks in which the tool touched, or of all where it hardly did.
   std::vector<Vec3> directions;
-  for (const TickRecord& record : run.recording->records) directions.push_back(shaft_direction(record.X_WT));
-  return directions;
+  std::vector<double> times_s;
+  Vec3 mean = Vec3::Zero();
+};
+
+Cloud cloud_of(const MeasuredRun& run) {
+  Cloud cloud;
+  const std::vector<TickRecord>& records = run.recording->records;
+  const bool touched = !std::isnan(run.metrics.shaft.spread_deg);
+  for (const TickRecord& record : records) {
+    const double time_s = record.time_s - records.front().time_s - run.metrics.counted_from_s;
+    if (time_s < 0 || (touched && !contact_of(record).any())) continue;
+    cloud.directions.push_back(shaft_direction(record.X_WT));
+    cloud.times_s.push_back(time_s);
+    cloud.mean += cloud.directions.back();
+  }
+  cloud.mean.normalize();
+  return cloud;
 }
 
-std::vector<const MeasuredRun*> runs_of(const RunGroup& group, const std::string& segment) {
+std::vector<const MeasuredRun*> runs_of(const RunGroup& group, const std::string& phase) {
   std::vector<const MeasuredRun*> runs;
   for (const MeasuredRun& run : group.runs) {
-    if (run.segment == segment) runs.push_back(&run);
+    if (run.phase == phase) runs.push_back(&run);
   }
   return runs;
 }
 
-// A cube about all directions of a segment.
-struct Cube {
-  Vec3 centre = Vec3::Zero();
-  double half = 0;
+// Across the mean shaft: along the two axes of W to which it is nearest to a right angle.
+struct Across {
+  Vec3 right, up;
+  char right_name, up_name;
 };
 
-Cube cube_about(const std::vector<const MeasuredRun*>& runs) {
-  Vec3 min = Vec3::Constant(2);
-  Vec3 max = Vec3::Constant(-2);
-  for (const MeasuredRun* run : runs) {
-    for (const Vec3& direction : directions_of(*run)) {
-      min = min.cwiseMin(direction);
-      max = max.cwiseMax(direction);
-    }
+Across across(const Vec3& mean) {
+  int least = 0, most = 0;
+  for (int axis = 1; axis < 3; ++axis) {
+    if (std::abs(mean[axis]) > std::abs(mean[most])) most = axis;
   }
-  return {0.5 * (min + max), std::max(1e-4, 0.54 * (max - min).maxCoeff())};
+  least = most == 0 ? 1 : 0;
+  const int other = 3 - most - least;
+  const Vec3 right = (Vec3::Unit(least) - mean[least] * mean).normalized();
+  Vec3 up = mean.cross(right);
+  if (up[other] < 0) up = -up;
+  return {right, up, "xyz"[least], "xyz"[other]};
 }
 
 // About two steps to an axis, of 1, 2 or 5 times a power of ten.
@@ -53,95 +72,89 @@ double tic_step(double half) {
   return power * (ratio < 2 ? 1 : ratio < 5 ? 2 : 5);
 }
 
-std::string axes(const Cube& cube) {
-  const double step = tic_step(cube.half);
-  const int decimals = std::max(0, static_cast<int>(std::ceil(-std::log10(step) - 1e-9)));
-  std::string script;
-  for (int axis = 0; axis < 3; ++axis) {
-    const char name = "xyz"[axis];
-    script += fmt::format(
-        "set {0}range [{1:.8g}:{2:.8g}]\nset {0}tics {3:.8g} format '%.{4}f' offset {5} tc rgb '#444444'\n",
-        name, cube.centre[axis] - cube.half, cube.centre[axis] + cube.half, step, decimals,
-        axis == 0   ? "-0.6,-0.3"
-        : axis == 1 ? "0.9,-0.3"
-                    : "0.4,0");
-  }
-  return script;
-}
-
-void write_cloud(const MeasuredRun& run, const Vec3& centre, const std::filesystem::path& path) {
-  const std::vector<TickRecord>& records = run.recording->records;
-  const std::vector<Vec3> directions = directions_of(run);
+// Writes the cloud in degrees from its mean, and returns how far it reaches.
+double write_cloud(const Cloud& cloud, const Across& axes, const std::filesystem::path& path) {
   std::string data;
-  for (const std::size_t n : thin_out_cloud(directions, centre, kBins)) {
-    const Vec3& d = directions[n];
-    data += fmt::format("{:.6f} {:.6f} {:.6f} {:.3f}\n", d.x(), d.y(), d.z(),
-                        records[n].time_s - records.front().time_s);
+  double reach_deg = 0.001;
+  for (const std::size_t n : thin_out_cloud(cloud.directions, cloud.mean, kBins)) {
+    const Vec3& d = cloud.directions[n];
+    const Vec3 aside = d - d.dot(cloud.mean) * cloud.mean;
+    const double degrees = 180 / std::numbers::pi * std::atan2(aside.norm(), d.dot(cloud.mean));
+    const double scale = aside.norm() > 0 ? degrees / aside.norm() : 0;
+    reach_deg = std::max(reach_deg, degrees);
+    data += fmt::format("{:.6f} {:.6f} {:.3f}\n", scale * aside.dot(axes.right), scale * aside.dot(axes.up),
+                        cloud.times_s[n]);
   }
   write_figure_data(path, data);
+  return reach_deg;
 }
-
-struct Layout {
-  double columns;
-  double rows;
-  double width_px;
-  double height_px;
-};
 
 std::string degrees_text(double degrees) {
   return fmt::format("{:.{}f}", degrees, degrees < 1 ? 2 : 1);
 }
 
-std::string panel(const MeasuredRun& run, const Cube& cube, double column, double row, const Layout& layout,
+std::string words(const MeasuredRun& run) {
+  const DirectionMetrics& shaft = run.metrics.shaft;
+  return std::isnan(shaft.spread_deg)
+             ? contact_words(run.metrics.contact)
+             : fmt::format("spread {}°, excursion {}°", degrees_text(shaft.spread_deg),
+                           degrees_text(shaft.excursion_deg));
+}
+
+std::string panel(const MeasuredRun& run, const PanelGrid& grid, const PanelCell& cell,
                   const TemporaryFolder& work) {
-  const std::string file = fmt::format("shaft-{}-{}.dat", run.segment, name_of(run.algorithm));
-  write_cloud(run, cube.centre, work / file);
-  const double bar = 105 / layout.width_px;
-  const double wide = (1 - bar) / layout.columns;
-  const double high = 1 / layout.rows;
+  const std::string file = fmt::format("shaft-{}-{}.dat", run.phase, name_of(run.algorithm));
+  const Cloud cloud = cloud_of(run);
+  const Across axes = across(cloud.mean);
+  const double half_deg = 1.05 * write_cloud(cloud, axes, work / file);
   return fmt::format(
-      "set origin {:.4f},{:.4f}\nset size {:.4f},{:.4f}\n"
-      "set label 1 \"{{/:Bold {}}}, {}\\nspread {}°, excursion {}°\" at screen {:.4f},screen {:.4f} "
-      "center\n"
-      "splot '{}' using 1:2:3:4 with points pt 7 ps 0.38 lc palette notitle\n"
-      "unset colorbox\n",
-      column * wide + 26 / layout.width_px, 1 - (row + 1) * high, wide, high - 46 / layout.height_px,
-      run.algorithm.label, run.segment, degrees_text(run.metrics.shaft.spread_deg),
-      degrees_text(run.metrics.shaft.excursion_deg), (column + 0.5) * wide,
-      1 - row * high - 24 / layout.height_px, file);
+      "{}set title \"{{/:Bold {}}}, {}\\n{}\" offset 0,-0.3\n"
+      "set xrange [{:.6g}:{:.6g}]\nset yrange [{:.6g}:{:.6g}]\nset xtics {:.6g}\nset ytics {:.6g}\n"
+      "set xlabel 'Towards {} (°)' offset 0,0.4\nset ylabel 'Towards {} (°)' offset 1,0\n"
+      "plot '{}' using 1:2:3 with points pt 7 ps 0.38 lc palette notitle\nunset colorbox\n",
+      panel_margins(grid, cell), run.algorithm.label, run.phase, words(run), -half_deg, half_deg, -half_deg,
+      half_deg, tic_step(half_deg), tic_step(half_deg), axes.right_name, axes.up_name, file);
 }
 
 }  // namespace
 
 Figure draw_shaft_figure(const RunGroup& group, const std::filesystem::path& folder) {
   const TemporaryFolder work;
-  const std::vector<std::string> segments = group.segments();
+  const std::vector<std::string> phases = group.phases();
   std::size_t columns = 1;
   double last_s = 0;
-  for (const std::string& segment : segments) columns = std::max(columns, runs_of(group, segment).size());
+  for (const std::string& phase : phases) columns = std::max(columns, runs_of(group, phase).size());
   for (const MeasuredRun& run : group.runs) {
-    last_s = std::max(last_s, run.recording->records.back().time_s - run.recording->records.front().time_s);
+    last_s = std::max(last_s, run.recording->records.back().time_s - run.recording->records.front().time_s -
+                                  run.metrics.counted_from_s);
   }
+  // Square panels, and the colours' scale on the right.
+  constexpr double kLeft_px = 66, kRight_px = 12, kAbove_px = 60, kBelow_px = 64, kBar_px = 90;
+  const double wide_px = std::min(380.0, (PanelGrid::kWidth_px - kBar_px) / static_cast<double>(columns));
+  const PanelGrid grid{.height_px = static_cast<double>(phases.size()) *
+                                    (wide_px - kLeft_px - kRight_px + kAbove_px + kBelow_px),
+                       .columns = columns,
+                       .rows = phases.size(),
+                       .left_px = kLeft_px,
+                       .right_px = kRight_px,
+                       .above_px = kAbove_px,
+                       .below_px = kBelow_px};
   FigureScript script{fmt::format("fig9_shaft_{}", name_of(group.mode)),
-                      static_cast<int>(385 * columns + 105), static_cast<int>(425 * segments.size()), ""};
-  const Layout layout{static_cast<double>(columns), static_cast<double>(segments.size()),
-                      static_cast<double>(script.width_px), static_cast<double>(script.height_px)};
-  script.body = fmt::format(
-      "set multiplot\nset palette defined (0 '#440154', 0.27 '#3b528b', 0.54 '#21918c', 0.8 '#5ec962', 1 "
-      "'#c2df23')\nset cbrange [0:{:.6g}]\nset cblabel 'Time (s)'\nset cbtics tc rgb '#444444'\n"
-      "set colorbox vertical user origin screen {:.4f},screen 0.2 size screen {:.4f},screen 0.6\n"
-      "set view 58,38,1.14,1.0\nset view equal xyz\nset xyplane relative 0\nset border 4095 lc rgb '#999999' "
-      "lw 0.6\n"
-      "set grid x y z lc rgb '#dddddd' lt 1 lw 0.6\nset label 11 'x' at graph 0.5,-0.42,0 center\nset label "
-      "12 'y' at graph 1.46,0.5,0 center\n"
-      "set label 13 'z' at graph 0,0,1.09 center offset 0,0.7\n",
-      last_s, 1 - 92 / layout.width_px, 16 / layout.width_px);
-  for (std::size_t row = 0; row < segments.size(); ++row) {
-    const auto runs = runs_of(group, segments[row]);
-    const Cube cube = cube_about(runs);
-    script.body += axes(cube);
+                      static_cast<int>(PanelGrid::kWidth_px), static_cast<int>(grid.height_px), ""};
+  script.body =
+      begin_panels("") +
+      fmt::format(
+          "set palette defined (0 '#440154', 0.27 '#3b528b', 0.54 '#21918c', 0.8 '#5ec962', 1 "
+          "'#c2df23')\nset cbrange [0:{:.6g}]\nset cblabel 'Time (s)'\n"
+          "set colorbox vertical user origin screen {:.4f},screen 0.2 size screen {:.4f},screen 0.6\n",
+          last_s, 1 - (kBar_px - 16) / PanelGrid::kWidth_px, 16 / PanelGrid::kWidth_px);
+  for (std::size_t row = 0; row < phases.size(); ++row) {
+    const auto runs = runs_of(group, phases[row]);
     for (std::size_t c = 0; c < runs.size(); ++c) {
-      script.body += panel(*runs[c], cube, static_cast<double>(c), static_cast<double>(row), layout, work);
+      PanelCell cell = panel_cell(grid, c, row);
+      cell.left_px = static_cast<double>(c) * wide_px;
+      cell.wide_px = wide_px;
+      script.body += panel(*runs[c], grid, cell, work);
     }
   }
   script.body += "unset multiplot\n";

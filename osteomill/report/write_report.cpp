@@ -25,13 +25,13 @@ DrawnGroup draw(const RunGroup& group, const fs::path& folder, const PageText& t
     add("bone", bone->png, "The bone before, and after each algorithm's run.");
   }
   add("force", draw_force_figure(group, folder).svg,
-      "Magnitude of the force sent to the hand. Each pixel's least and greatest are drawn, so no spike is "
-      "lost.");
+      "Magnitude of the force sent to the hand. The panels of a row have one scale. Each pixel's least and "
+      "greatest are drawn, so no spike is lost. What is shaded, before 0 s, is not counted in the tables.");
   add("torque", draw_torque_figure(group, folder).svg,
       "Magnitude of the torque sent to the hand, about the burr's centre.");
   add("shaft", draw_shaft_figure(group, folder).svg,
-      "Where the simulated tool's shaft points: a point on the unit sphere a tick, coloured by time. The "
-      "panels of a row have the same ranges; a compact cloud is a steady shaft.");
+      "Where the simulated tool's shaft points while it touches, in degrees from its mean direction and "
+      "coloured by time. Each panel has a scale of its own.");
   add("removed", draw_removed_figure(group, folder).svg,
       "Bone removed since the milling began, in mm³ of bone of the reference density.");
   add("path", draw_path_figure(group, folder).svg, "Where the burr's centre was, along the scan's axes.");
@@ -39,8 +39,8 @@ DrawnGroup draw(const RunGroup& group, const fs::path& folder, const PageText& t
     add("labels", labels->svg, "What was removed of each label over time, in the labels' colours.");
   }
   add("rate", draw_rate_figure(group, folder).svg,
-      "Haptic rate that the loop would hold, tick by tick (left), and the time that a tick's algorithm and "
-      "milling took (right).");
+      "Compute time of each tick, the algorithm's and the milling's: CPU time where the trial ran in "
+      "simulated time, else by the clock. A loop at 1000 Hz is late where it goes above the dashed line.");
   return drawn;
 }
 

@@ -48,7 +48,7 @@ std::vector<std::string> label_lines(const LabelCount& count) {
     const LabelCount::Entry& entry = count.entries()[n];
     if (entry.contacts == 0) continue;
     lines.push_back(fmt::format(
-        "{} {}: {:.2f} mm^3 removed, first at {:.3f} s, {:.2f} s in all, force {:.2f} N mean, {:.2f} N max{}",
+        "{} {}: {:.2f} mm³ removed, first at {:.3f} s, {:.2f} s in all, force {:.2f} N mean, {:.2f} N max{}",
         label.value, label.name, entry.removed_mm3, entry.first_s, entry.time_s, entry.force_mean_N,
         entry.force_max_N, label.no_go ? " (no-go)" : ""));
   }

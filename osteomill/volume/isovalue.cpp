@@ -197,9 +197,10 @@ SuggestedIsovalue isovalue_of_bone(const DensityGrid& grid, bool in_hounsfield_u
     return {kBone_HU, "where bone begins in Hounsfield units"};
   }
   if (found.water) {
-    return {*found.water + kBone_HU,
-            fmt::format("{:g} above water: air and soft tissue are as far apart as in Hounsfield units",
-                        kBone_HU)};
+    return {
+        *found.water + kBone_HU,
+        fmt::format("{:g} above water; the densities are spaced as Hounsfield units are, with another zero",
+                    kBone_HU)};
   }
   return {halfway, fmt::format("halfway between the commonest densities, {:.4g} below and {:.4g} above",
                                found.around, found.bone)};

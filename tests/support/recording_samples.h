@@ -46,7 +46,7 @@ inline RunDescription sample_description() {
   d.tool = {1.25, 0.75, 24};
   d.algorithm = algorithm_named("point-shell").id;
   d.mode = Mode::paper;
-  d.segment = "holding";
+  d.phase = "holding";
   d.seed = 0xfedcba9876543210u;
   d.tick_period_s = 0.001;
   d.settings = {{"stiffness", 2.5, "N/mm"},

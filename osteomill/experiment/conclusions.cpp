@@ -1,4 +1,4 @@
-#include "osteomill/experiment/verdict.h"
+#include "osteomill/experiment/conclusions.h"
 
 #include <algorithm>
 #include <cmath>
@@ -95,25 +95,32 @@ std::string values_sentence(const Study& study, std::string_view phase, const Me
   return fmt::format("{}{}.", text, fmt::join(modes, "; "));
 }
 
+// "…: 4 agree in 10 hands, 2 do not (…), 1 is not settled (… in 5 of 10), 1 could not be tested."
 std::string findings_sentence(const Study& study) {
   const Mode mode = study.modes().front();
+  const bool one = study.seeds().size() == 1;
   std::size_t total = 0, agreeing = 0, untested = 0;
-  std::vector<std::string> against;
+  std::vector<std::string> against, open;
   for (const StudyFinding& f : check_study_findings(study, mode)) {
     if (f.of_medians.of_the_machine) continue;
     ++total;
-    agreeing += f.of_medians.verdict == Verdict::agrees;
-    untested += !is_tested(f.of_medians.verdict);
-    if (f.of_medians.verdict != Verdict::does_not_agree) continue;
-    const std::string in = too_few(study) ? "" : fmt::format(" ({} of {} hands)", f.agreeing, f.tested);
-    against.push_back(f.of_medians.paper_says + in);
+    agreeing += f.verdict == Verdict::agrees;
+    untested += !is_tested(f.verdict);
+    const std::string says =
+        f.of_medians.paper_says + (one ? "" : fmt::format(", in {} of {}", f.agreeing, f.tested));
+    if (f.verdict == Verdict::does_not_agree) against.push_back(says);
+    if (f.verdict == Verdict::not_settled) open.push_back(says);
   }
-  const std::string where = too_few(study)
-                                ? "are as in " + hands(study.seeds().size()) + " here"
-                                : fmt::format("hold in the medians of {}", hands(study.seeds().size()));
-  return fmt::format("Of the paper's {} findings on force, torque and shaft {} {}, mode {}{}{}.", total,
-                     agreeing, where, name_of(mode), against.empty() ? "" : "; not so " + joined(against),
-                     untested == 0 ? "" : fmt::format("; {} could not be tested", untested));
+  std::string text =
+      fmt::format("Of the paper's {} findings on force, torque and shaft, tried in {} mode: {} agree in {}",
+                  total, name_of(mode), agreeing, hands(study.seeds().size()));
+  const auto add = [&](const std::vector<std::string>& which, const char* verb) {
+    if (!which.empty()) text += fmt::format(", {} {} ({})", which.size(), verb, fmt::join(which, "; "));
+  };
+  add(against, "do not");
+  add(open, "are not settled");
+  if (untested > 0) text += fmt::format(", {} could not be tested", untested);
+  return text + ".";
 }
 
 struct Change {
@@ -131,7 +138,7 @@ std::string changes_words(std::vector<Change> changes, std::size_t most_told) {
     if (told.size() == most_told) break;
     told.push_back(fmt::format("{} (× {:.2g})", change.what, change.ratio));
   }
-  if (changes.size() > told.size()) told.push_back(fmt::format("{} more", changes.size() - told.size()));
+  if (changes.size() > told.size()) told.push_back(fmt::format("{} others", changes.size() - told.size()));
   return told.empty() ? "nothing" : joined(told);
 }
 
@@ -152,11 +159,23 @@ std::string changes_sentence(const Study& study) {
     }
   }
   if (too_few(study)) {
-    return fmt::format("Of {}, what is most unlike in steady and in paper: {}.", hands(study.seeds().size()),
+    return fmt::format("What steady changes most against paper, in {}: {}.", hands(study.seeds().size()),
                        changes_words(std::move(all), kChangesTold));
   }
   return fmt::format("Against paper, steady makes significantly worse: {}; and better: {}.",
                      changes_words(worse, worse.size()), changes_words(std::move(better), kChangesTold));
+}
+
+// Who did not come to do all of it.
+std::string not_reached(const Study& study) {
+  std::vector<std::string> who;
+  for (const AlgorithmId& algorithm : study.algorithms()) {
+    for (const Mode mode : study.modes()) {
+      const std::string words = study.not_reached({algorithm, mode}, kHolding);
+      if (!words.empty()) who.push_back(fmt::format("{} in {}: {}", algorithm.label, name_of(mode), words));
+    }
+  }
+  return who.empty() ? "" : fmt::format(" Not all of it was reached. {}.", fmt::join(who, ". "));
 }
 
 // In whose holding the shaft did not do what it was to.
@@ -194,18 +213,18 @@ std::string what_was_compared(const Study& study, std::string_view scan_name) {
       joined(algorithms), joined(modes), scan_name,
       study.seeds().size() == 1 ? "one simulated hand"
                                 : fmt::format("{} simulated hands", study.seeds().size()),
-      not_leaning(study));
+      not_leaning(study) + not_reached(study));
 }
 
 std::string too_few_hands(const Study& study) {
   if (!too_few(study)) return "";
   return fmt::format(
-      "This is {}, and nothing is claimed of which algorithm is the better: {} are the fewest that can show "
-      "a difference (--seeds {}). The numbers are those of this trial.",
+      "Only {} tried this, too few to say which algorithm is the better: a difference shows in {} or more "
+      "(--seeds {}). The numbers are those of this trial.",
       hands(study.seeds().size()), study.seeds_needed(), study.seeds_needed());
 }
 
-std::vector<std::string> verdict(const Study& study) {
+std::vector<std::string> conclusions(const Study& study) {
   std::vector<std::string> sentences;
   const auto tell = [&](std::string_view phase, const char* column) {
     const auto phases = study.phases();

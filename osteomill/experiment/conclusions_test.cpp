@@ -1,20 +1,22 @@
-#include "osteomill/experiment/verdict.h"
+#include "osteomill/experiment/conclusions.h"
 
 #include <limits>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "osteomill/experiment/study_findings.h"
 #include "osteomill/experiment/study_samples.h"
+#include "osteomill/experiment/study_section.h"
 
 namespace osteomill {
 namespace {
 
 using testing_support::sample_rows;
 
-std::string verdict_of(const std::vector<StudyRow>& rows) {
+std::string conclusions_of(const std::vector<StudyRow>& rows) {
   std::string text;
-  for (const std::string& sentence : verdict(Study(rows))) text += sentence + "\n";
+  for (const std::string& sentence : conclusions(Study(rows))) text += sentence + "\n";
   return text;
 }
 
@@ -28,14 +30,14 @@ void lose(StudyRow& row) {
   m.contact.lost_after_s = 3.2;
 }
 
-TEST(Verdict, IsFiveSentencesWithTheirNumbers) {
-  const std::string text = verdict_of(sample_rows(8));
+TEST(Conclusions, IsFiveSentencesWithTheirNumbers) {
+  const std::string text = conclusions_of(sample_rows(8));
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 5);
   expect_says(text,
               "Force above 20 Hz, rms, while milling, median of the hands: in paper 0.104 N (1 line-proxy), "
               "1.04 N (2 surface-points) and 0.104 N (3 point-shell); least with");
   expect_says(text, "least with 3 point-shell, significantly against 1 and 2");
-  expect_says(text, "4 hold in the medians of 8 hands, mode paper; not so");
+  expect_says(text, "tried in paper mode: 4 agree in 8 hands, 3 do not (");
   expect_says(
       text,
       "Against paper, steady makes significantly worse: nothing; and better: force above 20 Hz, rms of 2 "
@@ -43,53 +45,52 @@ TEST(Verdict, IsFiveSentencesWithTheirNumbers) {
   EXPECT_TRUE(too_few_hands(Study(sample_rows(8))).empty());
 }
 
-TEST(Verdict, WhatSteadyMakesWorseIsSaid) {
+TEST(Conclusions, WhatSteadyMakesWorseIsSaid) {
   std::vector<StudyRow> rows = sample_rows(8);
   for (StudyRow& r : rows) {
-    if (r.run.algorithm == "point-shell" && r.run.mode == Mode::steady && r.run.segment == kMilling)
+    if (r.run.algorithm == "point-shell" && r.run.mode == Mode::steady && r.run.phase == kMilling)
       r.run.metrics.torque_Nmm.hp_rms *= 1.6;
   }
   expect_says(
-      verdict_of(rows),
+      conclusions_of(rows),
       "steady makes significantly worse: torque above 20 Hz, rms of 3 while milling (× 1.6); and better: ");
 }
 
-TEST(Verdict, WithTooFewHandsNothingIsClaimed) {
+TEST(Conclusions, WithTooFewHandsNothingIsClaimed) {
   const Study one{sample_rows(1)};
   EXPECT_TRUE(too_few_hands(one).starts_with(
-      "This is one hand, and nothing is claimed of which algorithm is the better: 7 are the fewest"));
-  const std::string text = verdict_of(sample_rows(6));
-  for (const char* claim : {"least", "significant", "hold in the medians"}) {
+      "Only one hand tried this, too few to say which algorithm is the better: a difference shows in 7 "));
+  const std::string text = conclusions_of(sample_rows(6));
+  for (const char* claim : {"least", "significant"}) {
     EXPECT_EQ(text.find(claim), std::string::npos) << claim << " in " << text;
   }
-  expect_says(text, "are as in 6 hands here");
-  expect_says(text, "Of 6 hands, what is most unlike in steady and in paper: force above 20 Hz");
+  expect_says(text, "What steady changes most against paper, in 6 hands: force above 20 Hz");
   for (const char* claim : {"better", "worse"}) EXPECT_EQ(text.find(claim), std::string::npos) << text;
 }
 
-TEST(Verdict, WhereSomeHandsLostContactTheMedianSaysOfHowMany) {
+TEST(Conclusions, WhereSomeHandsLostContactTheMedianSaysOfHowMany) {
   for (const std::uint64_t lost : {3u, 4u}) {
     std::vector<StudyRow> rows = sample_rows(8);
     for (StudyRow& r : rows) {
       if (r.run.algorithm == "line-proxy" && r.seed <= lost) lose(r);
     }
-    const std::string text = verdict_of(rows);
+    const std::string text = conclusions_of(rows);
     expect_says(text, fmt::format("(1 line-proxy, in {} of 8 hands)", 8 - lost));
     // Half of the hands do not speak for all; and no other grips were tried.
-    expect_says(text, lost == 4 ? "; 3 could not be tested" : "; 1 could not be tested");
+    expect_says(text, lost == 4 ? ", 3 could not be tested" : ", 1 could not be tested");
   }
 }
 
-TEST(Verdict, WhereNothingIsSignificantNobodyIsLeast) {
+TEST(Conclusions, WhereNothingIsSignificantNobodyIsLeast) {
   std::vector<StudyRow> rows = sample_rows(8);
   std::erase_if(rows, [](const StudyRow& r) { return r.run.algorithm == "surface-points"; });
   for (StudyRow& r : rows) {
     r.run.metrics.force_N.hp_rms = r.seed % 2 == (r.run.algorithm == "line-proxy" ? 0u : 1u) ? 0.1 : 0.2;
   }
-  expect_says(verdict_of(rows), "; no difference between the least and another is significant");
+  expect_says(conclusions_of(rows), "; no difference between the least and another is significant");
 }
 
-TEST(Verdict, WhoseShaftDidNotLeanIsNamed) {
+TEST(Conclusions, WhoseShaftDidNotLeanIsNamed) {
   std::vector<StudyRow> rows = sample_rows(8);
   for (StudyRow& r : rows) {
     r.run.metrics.contact.shaft =
@@ -101,23 +102,38 @@ TEST(Verdict, WhoseShaftDidNotLeanIsNamed) {
   EXPECT_EQ(what_was_compared(Study(rows), "ball").find("less than half"), std::string::npos);
 }
 
-TEST(Verdict, WhoLostContactIsNamedAndNeverTheLeast) {
+TEST(Conclusions, WhatWasNotReachedIsSaidWithTheHandsInWhichItWasNot) {
+  std::vector<StudyRow> rows = sample_rows(8);
+  for (StudyRow& r : rows) {
+    if (r.run.algorithm == "surface-points" && r.run.mode == Mode::paper && r.run.phase == kHolding &&
+        r.seed < 4)
+      r.run.not_reached = "the tool was lost";
+  }
+  const Study study(rows);
+  expect_says(what_was_compared(study, "ball"),
+              "Not all of it was reached. 2 surface-points in paper: the tool was lost (3 of 8 hands).");
+  expect_says(html(study_section(study, {})), "the tool was lost (3 of 8 hands)</td>");
+  expect_says(check_study_findings(study, Mode::paper)[1].of_medians.measured,
+              "(not reached: 2 surface-points, holding: the tool was lost (3 of 8 hands))");
+}
+
+TEST(Conclusions, WhoLostContactIsNamedAndNeverTheLeast) {
   std::vector<StudyRow> rows = sample_rows(8);
   for (StudyRow& r : rows) {
     if (r.run.algorithm == "point-shell") lose(r);
   }
-  const std::string text = verdict_of(rows);
+  const std::string text = conclusions_of(rows);
   expect_says(text,
               "lost contact after 3.2 s (3 point-shell); least with 1 line-proxy, significantly against 2");
   expect_says(text, "could not be tested");
   EXPECT_EQ(text.find("nan"), std::string::npos) << text;
 }
 
-TEST(Verdict, OneModeAndOneAlgorithmHaveNothingToBeComparedWith) {
+TEST(Conclusions, OneModeAndOneAlgorithmHaveNothingToBeComparedWith) {
   std::vector<StudyRow> rows = sample_rows(8);
   std::erase_if(
       rows, [](const StudyRow& r) { return r.run.mode == Mode::steady || r.run.algorithm != "line-proxy"; });
-  const std::string text = verdict_of(rows);
+  const std::string text = conclusions_of(rows);
   EXPECT_EQ(text.find("least"), std::string::npos) << text;
   EXPECT_EQ(text.find("steady"), std::string::npos) << text;
   expect_says(text, "Bone removed, while milling, median of the hands: 0 mm³ (1 line-proxy).");

@@ -18,6 +18,6 @@ std::string too_few_hands(const Study& study);
 /// torque while milling, the shaft while holding, the paper's findings, and what `steady` makes better and
 /// worse, or, where there is one mode, how much bone went. With too few hands the numbers alone: none is
 /// called the least.
-std::vector<std::string> verdict(const Study& study);
+std::vector<std::string> conclusions(const Study& study);
 
 }  // namespace osteomill
