@@ -10,6 +10,13 @@ namespace osteomill::surface_points {
 namespace {
 
 constexpr double kLeastLook_mm = 0.045;
+constexpr double kTolerance_mm = 1e-4;
+
+// A straight way through the grid in continuous voxel coordinates: `origin + t_mm * way`.
+struct VoxelRay {
+  Vec3 origin;
+  Vec3 way;
+};
 
 struct Sample {
   double at_mm;
@@ -21,14 +28,13 @@ double above_isovalue(const Volume& volume, const VoxelRay& ray, double at_mm) {
 }
 
 // Regula falsi with the Illinois halving, which keeps one end from standing still.
-double close_in(const Volume& volume, const VoxelRay& ray, Sample outside, Sample inside,
-                double tolerance_mm) {
-  for (int n = 0; n < 8 && inside.at_mm - outside.at_mm > tolerance_mm; ++n) {
+double close_in(const Volume& volume, const VoxelRay& ray, Sample outside, Sample inside) {
+  for (int n = 0; n < 8 && inside.at_mm - outside.at_mm > kTolerance_mm; ++n) {
     // A density that is the isovalue's itself says nothing of how far the crossing is.
     const double fraction = outside.above < 0 ? outside.above / (outside.above - inside.above) : 0.5;
     const double at_mm = outside.at_mm + fraction * (inside.at_mm - outside.at_mm);
     const double above = above_isovalue(volume, ray, at_mm);
-    if (std::min(inside.at_mm - at_mm, at_mm - outside.at_mm) < tolerance_mm) return at_mm;
+    if (std::min(inside.at_mm - at_mm, at_mm - outside.at_mm) < kTolerance_mm) return at_mm;
     if (above > 0) {
       inside = {at_mm, above};
       outside.above *= 0.5;
@@ -40,10 +46,8 @@ double close_in(const Volume& volume, const VoxelRay& ray, Sample outside, Sampl
   return outside.at_mm;
 }
 
-}  // namespace
-
-std::optional<double> first_bone(const Volume& volume, const VoxelRay& ray, double from_mm, double to_mm,
-                                 double tolerance_mm) {
+// Where, in [from_mm, to_mm], bone is first met along the ray; nothing where `from_mm` is in bone.
+std::optional<double> first_bone(const Volume& volume, const VoxelRay& ray, double from_mm, double to_mm) {
   Sample before{from_mm, above_isovalue(volume, ray, from_mm)};
   if (before.above > 0) return std::nullopt;
   const double looks_mm = std::max(0.5 / ray.way.norm(), kLeastLook_mm);
@@ -51,21 +55,22 @@ std::optional<double> first_bone(const Volume& volume, const VoxelRay& ray, doub
   for (int n = 1; n <= looks; ++n) {
     const double at_mm = from_mm + n * (to_mm - from_mm) / looks;
     const Sample here{at_mm, above_isovalue(volume, ray, at_mm)};
-    if (here.above > 0) return close_in(volume, ray, before, here, tolerance_mm);
+    if (here.above > 0) return close_in(volume, ray, before, here);
     before = here;
   }
   return std::nullopt;
 }
 
+}  // namespace
+
 std::optional<double> share_to_bone(const Volume& volume, const Vec3& from_W, const Vec3& to_W,
                                     double known_free_mm) {
-  constexpr double kTolerance_mm = 1e-4;
   const double way_mm = (to_W - from_W).norm();
   if (way_mm == 0) return std::nullopt;
   const Vec3 from = volume.geometry().voxel_from_world(from_W);
   const VoxelRay ray{from, (volume.geometry().voxel_from_world(to_W) - from) / way_mm};
   const auto share = [&](double begin_mm, double end_mm) {
-    std::optional<double> met = first_bone(volume, ray, begin_mm, end_mm, kTolerance_mm);
+    std::optional<double> met = first_bone(volume, ray, begin_mm, end_mm);
     if (met) *met /= way_mm;
     return met;
   };

@@ -1,12 +1,12 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "osteomill/haptics/haptic_algorithm.h"
-#include "osteomill/haptics/surface_points/held_tool.h"
 #include "osteomill/haptics/surface_points/surface_points_description.h"
-#include "osteomill/tool/burr_presses.h"
+#include "osteomill/haptics/tool_move.h"
 
 namespace osteomill::surface_points {
 
@@ -24,60 +24,54 @@ class SurfacePoints final : public HapticAlgorithm {
 
   void prepare(const Scene& scene) override;
   HapticStep step(const Pose& X_WD, double dt_s) override;
-  void volume_changed(const VolumeChange&) override {}
+  void volume_changed(const VolumeChange& change) override;
   void reset() override;
   int sample_point_count() const override;
 
  private:
-  // The vertices that share a centre: the sphere, a circle of the shaft, or the shaft's end.
+  // The vertices that share a centre: the sphere, or a slice of the shaft.
   struct Fan {
-    bool is_ring = false;
+    bool is_slice = false;
     Vec3 centre_T = Vec3::Zero();
-    // From the centre to each vertex.
+    double radius_mm = 0;
+    // From the centre to each vertex, and how far it is pushed back by now where the tool is held.
     std::vector<Vec3> arms_T;
-    double longest_arm_mm = 0;
+    std::vector<double> depths_mm;
     // Of this step or, where the centre is in bone, of the last step when it was not: (17), (19).
     Vec3 force_W_N = Vec3::Zero();
-    // From the device's centre back to where bone stopped the held tool's way to it.
-    Vec3 held_back_W_mm = Vec3::Zero();
-    int contacts = 0;
-    std::size_t deepest_arm = 0;
-    double deepest_mm = 0;
-    // From the centre along the shaft to where it is pushed.
-    double pushed_at_mm = 0;
-  };
-  struct ShaftSum {
-    Wrench mean;
     int contacts = 0;
   };
-  void prepare_shaft();
-  int rings() const;
-  double beyond_N_per_mm() const;
-  ShaftSum shaft_sum(const Pose& X_WD, const Pose& X_WH);
-  void add_end(const Pose& X_WD, const Pose& X_WH, ShaftSum& sum);
-  void update(Fan& fan, const Pose& X_WD, const Pose& X_WH) const;
-  double free_about_held_mm(const Fan& fan) const;
-  std::optional<Vec3> held_centre(const Fan& fan, const Pose& X_WD, const Pose& X_WH) const;
+  // Where the vertices stand.
+  struct Stand {
+    Pose X_WV;
+    // The tool that bone holds, and the share of its coupling that is felt beside the vertices' springs.
+    HapticStep held;
+    double coupled = 0;
+    // How far the vertices went since the tick before, and how far their springs may give way beside that.
+    ToolMove move;
+    double give_mm = 0;
+  };
+  Stand stand(const Pose& X_WD, double dt_s);
+  void update(Fan& fan, const Stand& at) const;
+  Vec3 sum_of_reaches(Fan& fan, const Stand& at, const Vec3& centre_W, bool inside) const;
   Vec3 reach_of(const Vec3& vertex_W, const Vec3& centre_W, double free_mm) const;
-  Vec3 sum_of_reaches(Fan& fan, const Quat& orientation, const Vec3& centre_W, double free_mm) const;
-  double pushed_at_mm(const Fan& ring, const Quat& orientation, const Vec3& centre_W, double free_mm) const;
   bool in_bone(const Vec3& point_W) const;
   Vec3 soften(const Vec3& force_N) const;
-  Vec3 damped(const Vec3& force_N, const Vec3& overlap_W_mm, double dt_s);
+  double damping(const Vec3& force_N, const Vec3& overlap_W_mm, double dt_s);
 
   Settings settings_;
   const Volume* volume_ = nullptr;
   MillingTool tool_;
-  HeldTool held_tool_;
-  PressingBurr burr_;
+  // Nothing where the tool is not held.
+  std::unique_ptr<HapticAlgorithm> held_tool_;
+  // How far within the held tool's surface bone may lie.
+  double inset_mm_ = 0;
+  std::optional<Pose> X_WV_before_;
   // From the held tool's burr to the device's, and its filtered rate.
   Vec3 last_overlap_W_mm_ = Vec3::Zero();
   Vec3 overlap_rate_W_mm_s_ = Vec3::Zero();
   Fan sphere_;
-  std::vector<Fan> rings_;
-  double ring_spacing_mm_ = 0;
-  // Nothing where the shaft is not felt as force.
-  std::optional<Fan> end_;
+  std::vector<Fan> slices_;
 };
 
 /// Where the spring of (15) from a colliding vertex (density above the isovalue) to a free point (density at

@@ -44,12 +44,12 @@ const std::vector<Field>& fields() {
           [](Settings & s) -> auto& { return s.reach; }),
       setting_field<Settings>(
           {"hold-tool", "", SettingRange::on_or_off(), 0, 1,
-           "In place of (17) and (19): a simulated tool follows the device as far as the bone lets it, "
-           "damped, and is what is drawn and what cuts"},
+           "In place of (17) and (19): a simulated tool follows the device as far as the bone lets it, is "
+           "felt by a damped spring beside the vertices', and is what is drawn and what cuts"},
           [](Settings & s) -> auto& { return s.hold_tool; }),
       setting_field<Settings>(
           {"shaft-force", "", SettingRange::on_or_off(), 0, 1,
-           "The shaft is felt as force too, an edge between two slices and its flat end among it"},
+           "The slices' forces are felt too, not their torque alone"},
           [](Settings & s) -> auto& { return s.shaft_force; }),
       setting_field<Settings>(
           {"greatest-stiffness", "N/mm", SettingRange::limit(), kInfinity, 3,

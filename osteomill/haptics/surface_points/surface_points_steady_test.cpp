@@ -50,11 +50,12 @@ double integral_force_N(double k, double depth_mm) {
   return 0.5 * k * (0.5 * r * (1 - c0 * c0) - (r - depth_mm) * (1 - c0));
 }
 
-TEST(SurfacePointsSteady, OnAPlaneTheForceIsTheIntegralOverTheSphere) {
+TEST(SurfacePointsSteady, OnAPlaneTheSpringsForceIsTheIntegralOverTheSphere) {
   const Vec3 normal = Vec3(0.3, 0.2, 1).normalized();
   const Volume volume = slope(normal);
   Settings settings = steady();
   settings.max_stiffness_N_per_mm = 1e9;
+  settings.hold_tool = false;
   auto algorithm = prepared(volume, settings);
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> unit(-0.5, 0.5);
@@ -94,30 +95,28 @@ TEST(SurfacePointsSteady, TheContactIsNeverStifferThanAllowed) {
   EXPECT_GT(before, 5.0);
 }
 
-TEST(SurfacePointsSteady, TheShaftsEndPressesAsABodyOfItsOwn) {
+TEST(SurfacePointsSteady, TheShaftsEndIsFelt) {
   const Volume volume = slope(Vec3::UnitZ());
   auto algorithm = prepared(volume, steady());
   const Quat end_down = smallest_rotation(Vec3::UnitZ(), -Vec3::UnitZ());
   const HapticStep step =
       walk(algorithm, {0, 0, kTool.shaft_length_mm + 1}, {0, 0, kTool.shaft_length_mm - 1}, end_down);
-  EXPECT_GT(step.wrench.force_N.z(), 2.0);
-  EXPECT_LT(step.wrench.force_N.z(), 4.0);
-  EXPECT_LT(step.wrench.torque_Nmm.norm(), 0.02 * kTool.shaft_length_mm * step.wrench.force_N.norm());
+  EXPECT_GT(step.wrench.force_N.z(), 0.4);
+  EXPECT_LT(step.wrench.torque_Nmm.norm(), 0.03 * kTool.shaft_length_mm * step.wrench.force_N.norm());
 }
 
 TEST(SurfacePointsSteady, FreeSpaceIsExactlyZero) {
   const Volume volume = slope(Vec3::UnitZ());
   auto algorithm = prepared(volume, steady());
-  std::mt19937_64 random(4);
-  std::uniform_real_distribution<double> unit(-1, 1);
-  for (int n = 0; n < 300; ++n) {
-    const Pose X{{3 * unit(random), 3 * unit(random), 3.0 + unit(random)},
-                 quaternion_from_rotation_vector({0.8 * unit(random), 0.8 * unit(random), unit(random)})};
+  for (int n = 0; n < 600; ++n) {
+    const double t = 0.01 * n;
+    const Pose X{{3 * std::sin(2 * t), 3 * std::cos(t), 2.6 + std::sin(3 * t)},
+                 quaternion_from_rotation_vector({0.8 * std::sin(t), 0.8 * std::cos(2 * t), t})};
     const HapticStep step = algorithm.step(X, kDt);
-    EXPECT_EQ(step.wrench.force_N, Vec3::Zero());
-    EXPECT_EQ(step.wrench.torque_Nmm, Vec3::Zero());
-    EXPECT_EQ(step.burr_force_W_N, Vec3::Zero());
-    EXPECT_EQ(step.contacts, 0);
+    EXPECT_EQ(step.wrench.force_N, Vec3::Zero()) << n;
+    EXPECT_EQ(step.wrench.torque_Nmm, Vec3::Zero()) << n;
+    EXPECT_EQ(step.burr_force_W_N, Vec3::Zero()) << n;
+    EXPECT_EQ(step.contacts, 0) << n;
   }
 }
 
