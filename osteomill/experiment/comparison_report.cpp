@@ -136,26 +136,30 @@ fs::path write_comparison_report(const std::vector<Recording>& recordings, const
                                  const ReportExtras& extras) {
   const std::vector<RunGroup> groups = group_runs(recordings, phase_metrics);
   const Study study = extras.study ? *extras.study : study_of(groups);
-  create_folder(out_dir / "figures");
-  PageText text;
-  text.title = "6-DOF haptic algorithms compared while milling bone";
-  text.opening = opening(study, recordings);
-  text.sections = {findings_section(study)};
-  if (study.seeds().size() > 1) {
-    write_study_csv(out_dir / "study.csv", study);
-    text.sections.push_back(hands_section(study, out_dir));
-  }
-  if (!extras.stability.empty()) {
-    write_passivity_csv(out_dir / "stability.csv", extras.stability);
-    text.sections.push_back(
-        passivity_section(extras.stability, draw_passivity_figure(extras.stability, out_dir / "figures")));
-  }
-  text.further_times = {{"Haptic rate in the paper, mean, on a Pentium 4 (Hz)", paper_rate}};
-  text.caption_notes = {{"rate", "The paper's figure 6."},
-                        {"force", "The paper's figure 7."},
-                        {"torque", "The paper's figure 8."},
-                        {"shaft", "The paper's figure 9."}};
-  return write_report(groups, out_dir, text);
+  // Measured beside the recordings and kept nowhere else: they stay where no figure can be drawn.
+  const bool has_hands = study.seeds().size() > 1;
+  if (has_hands || !extras.stability.empty()) create_folder(out_dir);
+  if (has_hands) write_study_csv(out_dir / "study.csv", study);
+  if (!extras.stability.empty()) write_passivity_csv(out_dir / "stability.csv", extras.stability);
+  write_folder_atomically(out_dir, [&](const fs::path& beside) {
+    create_folder(beside / "figures");
+    PageText text;
+    text.title = "6-DOF haptic algorithms compared while milling bone";
+    text.opening = opening(study, recordings);
+    text.sections = {findings_section(study)};
+    if (has_hands) text.sections.push_back(hands_section(study, beside));
+    if (!extras.stability.empty()) {
+      text.sections.push_back(
+          passivity_section(extras.stability, draw_passivity_figure(extras.stability, beside / "figures")));
+    }
+    text.further_times = {{"Haptic rate in the paper, mean, on a Pentium 4 (Hz)", paper_rate}};
+    text.caption_notes = {{"rate", "The paper's figure 6."},
+                          {"force", "The paper's figure 7."},
+                          {"torque", "The paper's figure 8."},
+                          {"shaft", "The paper's figure 9."}};
+    write_report(groups, beside, text);
+  });
+  return out_dir / "report.html";
 }
 
 }  // namespace osteomill

@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include "osteomill/files/input_error.h"
+#include "osteomill/files/input_files.h"
 #include "osteomill/recording/description_attributes.h"
 #include "osteomill/recording/hdf5.h"
 #include "osteomill/recording/record_columns.h"
@@ -386,6 +387,7 @@ Recording read_recording(const fs::path& path) {
   std::error_code error;
   if (!fs::exists(path, error)) throw InputError(path.string(), "no such file");
   if (!fs::is_regular_file(path, error)) throw InputError(path.string(), "is not a file");
+  note_input(path);
   const Checksum checksum = check_checksum(path);
   if (checksum == Checksum::broken) {
     throw InputError(path.string(), "is damaged or cut short: its checksum is not that of its content");
