@@ -11,6 +11,7 @@
 #include <toml++/toml.h>
 
 #include "osteomill/files/input_error.h"
+#include "osteomill/files/input_files.h"
 #include "osteomill/haptics/algorithms.h"
 
 namespace osteomill::app {
@@ -71,6 +72,7 @@ std::vector<std::string> keys_of(const CLI::App& command) {
 
 toml::table parse(const std::string& file) {
   if (!std::filesystem::is_regular_file(file)) throw InputError(file, "no such file");
+  note_input(file);
   require_short_names(file);
   try {
     return toml::parse_file(file);

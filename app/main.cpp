@@ -12,6 +12,7 @@
 #include <fmt/core.h>
 
 #include "osteomill/files/input_error.h"
+#include "osteomill/files/input_files.h"
 
 namespace {
 
@@ -27,6 +28,7 @@ int complain(const char* reason, int code) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  const osteomill::KeepInputs keep_inputs;
   CLI::App program("6-DOF haptic bone milling: haptic algorithms on a CT scan, measured", "osteomill");
   program.set_version_flag("--version", OSTEOMILL_VERSION);
   program.formatter(std::make_shared<osteomill::app::HelpText>());

@@ -19,7 +19,6 @@ void run_mesh(const MilledScanOptions& options) {
   const std::string& out = options.out;
   // Before the scan is read.
   const MeshFormat format = mesh_format_of(out);
-  require_other_output(options);
   const LoadedBone bone = load_milled_bone(options);
   const BrickMesh mesh = mesh_in_one_piece(DensityView(bone.volume));
   if (mesh.empty()) throw InputError(bone.name, "no bone is left to be meshed");

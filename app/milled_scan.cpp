@@ -5,7 +5,6 @@
 #include "app/positive_number.h"
 #include "app/progress.h"
 
-#include "osteomill/files/atomic_file.h"
 #include "osteomill/recording/read_recording.h"
 #include "osteomill/recording/replay_recording.h"
 
@@ -18,10 +17,6 @@ void add_milled_scan_options(CLI::App& command, MilledScanOptions& options, cons
       .add_option("--after", options.recording,
                   "A recording (HDF5) made with this scan: the bone as milled at its end")
       ->type_name("FILE");
-}
-
-void require_other_output(const MilledScanOptions& options) {
-  require_no_input(options.out, {options.scan.scan, options.recording});
 }
 
 LoadedBone load_milled_bone(const MilledScanOptions& options) {

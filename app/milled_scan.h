@@ -18,9 +18,6 @@ struct MilledScanOptions {
 /// Adds SCAN, --out and --after to a command. `out_text` says what --out may be.
 void add_milled_scan_options(CLI::App& command, MilledScanOptions& options, const std::string& out_text);
 
-/// Throws InputError where the file to write is one that is read.
-void require_other_output(const MilledScanOptions& options);
-
 /// The bone, milled as the recording did where there is one. The isovalue is the one given, else
 /// the recording's, else a suggested one. Throws InputError where the scan, the isovalue or the recording is
 /// at fault.

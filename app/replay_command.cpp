@@ -50,6 +50,8 @@ class Log {
  public:
   Log(const ReplayOptions& options, std::size_t ticks, const Volume& bone)
       : options_(options), ticks_(ticks) {
+    // Not only when all is done.
+    if (!options.out.empty()) output_path(options.out);
     if (bone.labels()) labels_ = LabelCount(bone.labels()->labels());
     log_.reserve(ticks);
   }
@@ -183,8 +185,6 @@ void replay_another_way(const ReplayOptions& options, const std::string& command
 }
 
 void run_replay(const ReplayOptions& options, const std::string& command_line) {
-  for (const std::string& out : {options.out, options.record})
-    require_no_input(out, {options.input, options.scan.scan});
   if (!is_hdf5(options.input)) {
     if (options.verify || !options.record.empty())
       throw InputError(options.input, "is no recording, so there is nothing to verify or to record anew");

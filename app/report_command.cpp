@@ -24,24 +24,30 @@ struct ReportOptions {
   bool csv = false;
 };
 
-void run_report(const ReportOptions& options) {
+void write_into(const std::filesystem::path& folder, const ReportOptions& options) {
   std::vector<Recording> recordings;
-  if (options.csv) create_folder(options.out);
   for (const std::string& path : options.recordings) {
     show_progress("reading",
                   static_cast<double>(recordings.size()) / static_cast<double>(options.recordings.size()));
     Recording recording = read_recording(path);
     if (options.csv) {
       const std::filesystem::path name = recording.path.filename().replace_extension(".csv");
-      write_csv(std::filesystem::path(options.out) / name, recording.records);
+      write_csv(folder / name, recording.records);
     }
     for (Recording& stretch : in_stretches(std::move(recording))) recordings.push_back(std::move(stretch));
   }
   end_progress();
-  const bool comparison = are_of_comparison(recordings);
-  fmt::print("{}\n", (comparison ? write_comparison_report(recordings, options.out)
-                                 : write_report(recordings, options.out))
-                         .string());
+  if (are_of_comparison(recordings)) {
+    write_comparison_report(recordings, folder);
+  } else {
+    write_report(recordings, folder);
+  }
+}
+
+void run_report(const ReportOptions& options) {
+  const std::filesystem::path folder = options.out;
+  write_folder_atomically(folder, [&](const std::filesystem::path& beside) { write_into(beside, options); });
+  fmt::print("{}\n", (folder / "report.html").string());
 }
 
 }  // namespace

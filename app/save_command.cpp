@@ -17,7 +17,6 @@ void run_save(const MilledScanOptions& options) {
   if (std::filesystem::path(options.out).extension() != ".nrrd") {
     throw InputError(options.out, "a scan is saved as .nrrd");
   }
-  require_other_output(options);
   write_nrrd(options.out, load_milled_densities(options));
   fmt::print("{}\n", options.out);
 }

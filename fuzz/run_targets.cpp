@@ -75,6 +75,7 @@ std::vector<std::string> milled_bone_seeds(const fs::path& folder) {
 std::string unfinished_recording(const fs::path& file) {
   RunDescription description;
   description.scan_name = "made up";
+  description.dims = {8, 8, 8};
   description.algorithm = algorithm_named("point-shell").id;
   description.settings = {{"stiffness", 2.5, "N/mm"}, {"command_line", std::string("osteomill"), ""}};
   description.labels = {{3, "nerve", {255, 0, 0}, true}};

@@ -6,6 +6,7 @@
 #include <zlib.h>
 
 #include "osteomill/files/input_error.h"
+#include "osteomill/files/input_files.h"
 
 namespace osteomill {
 
@@ -120,6 +121,7 @@ std::ifstream open_regular_file(const std::string& subject, const fs::path& file
   if (!fs::is_regular_file(file, error)) throw InputError(subject, name + "is no regular file");
   std::ifstream in(file, std::ios::binary);
   if (!in) throw InputError(subject, name + "cannot be read");
+  note_input(file);
   return in;
 }
 

@@ -70,7 +70,8 @@ void set_up_dcmtk() {
 
 // Behind a preamble and "DICM" comes an element. Old files have neither, and begin with one of group 2 or 8.
 bool looks_like_dicom(const fs::path& path) {
-  std::ifstream in = open_regular_file(path.string(), path);
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw InputError(path.string(), "cannot be read");
   std::string head(140, '\0');
   in.read(head.data(), static_cast<std::streamsize>(head.size()));
   head.resize(static_cast<std::size_t>(in.gcount()));

@@ -10,6 +10,7 @@
 #include <minizip/unzip.h>
 
 #include "osteomill/files/input_error.h"
+#include "osteomill/files/input_files.h"
 #include "osteomill/numbers/work_progress.h"
 
 namespace osteomill {
@@ -106,6 +107,7 @@ bool is_zip(const fs::path& file) {
 }
 
 void unpack_zip(const fs::path& archive, const fs::path& folder, std::uint64_t max_bytes) {
+  note_input(archive);
   try {
     ZipReader(archive, max_bytes).unpack_into(folder);
   } catch (const fs::filesystem_error& error) {

@@ -12,6 +12,7 @@
 #include <fmt/core.h>
 
 #include "osteomill/files/input_error.h"
+#include "osteomill/files/input_files.h"
 
 namespace osteomill {
 
@@ -51,6 +52,7 @@ class TrajectoryReader {
   explicit TrajectoryReader(const std::filesystem::path& path) : name_(path.string()), file_(path) {
     if (!std::filesystem::exists(path)) throw InputError(name_, "no such file");
     if (!file_ || std::filesystem::is_directory(path)) throw InputError(name_, "cannot be read");
+    note_input(path);
   }
 
   std::vector<TrajectoryPoint> read() {

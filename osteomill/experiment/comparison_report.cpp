@@ -140,25 +140,31 @@ fs::path write_comparison_report(const std::vector<Recording>& recordings, const
                                  const ReportExtras& extras) {
   const std::vector<RunGroup> groups = group_runs(recordings, phase_metrics);
   const Study study = extras.study ? *extras.study : study_of(groups);
-  create_folder(out_dir / "figures");
-  PageText text;
-  text.title = "6-DOF haptic algorithms compared while milling bone";
-  text.opening = opening(study, recordings);
-  text.sections = {findings_section(study)};
-  if (study.rows().size() + study.rows_of_other_grips().size() > recordings.size())
-    write_study_csv(out_dir / kStudyCsv, study);
-  if (study.seeds().size() > 1) text.sections.push_back(hands_section(study, out_dir));
-  if (!extras.passivity.empty()) {
-    write_passivity_csv(out_dir / "stability.csv", extras.passivity);
-    text.sections.push_back(
-        passivity_section(extras.passivity, draw_passivity_figure(extras.passivity, out_dir / "figures")));
-  }
-  text.further_times = {{"Haptic rate in the paper, mean, on a Pentium 4 (Hz)", paper_rate}};
-  text.caption_notes = {{"rate", "The paper's figure 6 shows the rate that follows from it."},
-                        {"force", "The paper's figure 7."},
-                        {"torque", "The paper's figure 8."},
-                        {"shaft", "The paper's figure 9."}};
-  return write_report(groups, out_dir, text);
+  // Measured beside the recordings and kept nowhere else: they stay where no figure can be drawn.
+  const bool has_hands = study.seeds().size() > 1;
+  const bool has_further_rows = study.rows().size() + study.rows_of_other_grips().size() > recordings.size();
+  if (has_further_rows || !extras.passivity.empty()) create_folder(out_dir);
+  if (has_further_rows) write_study_csv(out_dir / kStudyCsv, study);
+  if (!extras.passivity.empty()) write_passivity_csv(out_dir / "stability.csv", extras.passivity);
+  write_folder_atomically(out_dir, [&](const fs::path& beside) {
+    create_folder(beside / "figures");
+    PageText text;
+    text.title = "6-DOF haptic algorithms compared while milling bone";
+    text.opening = opening(study, recordings);
+    text.sections = {findings_section(study)};
+    if (has_hands) text.sections.push_back(hands_section(study, beside));
+    if (!extras.passivity.empty()) {
+      text.sections.push_back(
+          passivity_section(extras.passivity, draw_passivity_figure(extras.passivity, beside / "figures")));
+    }
+    text.further_times = {{"Haptic rate in the paper, mean, on a Pentium 4 (Hz)", paper_rate}};
+    text.caption_notes = {{"rate", "The paper's figure 6 shows the rate that follows from it."},
+                          {"force", "The paper's figure 7."},
+                          {"torque", "The paper's figure 8."},
+                          {"shaft", "The paper's figure 9."}};
+    write_report(groups, beside, text);
+  });
+  return out_dir / "report.html";
 }
 
 }  // namespace osteomill

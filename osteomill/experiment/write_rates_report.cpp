@@ -270,22 +270,26 @@ PageSection vertices_section(const std::vector<VertexSearchRow>& rows) {
 fs::path write_rates_report(const MeasuredRates& measured, const fs::path& out_dir) {
   const std::vector<RateRow>& rows = measured.rows;
   require_usable(rows);
-  create_folder(out_dir / "figures");
-  const Figure figure = draw_rates_figure(rows, out_dir / "figures");
+  create_folder(out_dir);
+  // The measurements, which stay where no figure can be drawn.
   write_rates_csv(out_dir / "rates.csv", measured);
   if (!measured.vertices.empty()) write_vertices_csv(out_dir / "vertices.csv", measured.vertices);
-  std::vector<PageSection> sections{
-      {.paragraphs = {mode_words(measured.mode) + plain_words(rows), std::string(kWhatRatesMean)},
-       .figures = {{figure.svg,
-                    fmt::format("Steps a second in {} against resolution, on a logarithmic scale. The "
-                                "paper's section 8.1.",
-                                name_of(measured.mode))}},
-       .tables = {rates_table(rows)}}};
-  if (!measured.vertices.empty()) sections.push_back(vertices_section(measured.vertices));
-  const fs::path page = out_dir / "rates.html";
-  write_text_atomically(
-      page, [&](std::ostream& out) { out << html_page("Haptic rate against resolution", sections); });
-  return page;
+  write_folder_atomically(out_dir, [&](const fs::path& beside) {
+    create_folder(beside / "figures");
+    const Figure figure = draw_rates_figure(rows, beside / "figures");
+    std::vector<PageSection> sections{
+        {.paragraphs = {mode_words(measured.mode) + plain_words(rows), std::string(kWhatRatesMean)},
+         .figures = {{figure.svg,
+                      fmt::format("Steps a second in {} against resolution, on a logarithmic scale. The "
+                                  "paper's section 8.1.",
+                                  name_of(measured.mode))}},
+         .tables = {rates_table(rows)}}};
+    if (!measured.vertices.empty()) sections.push_back(vertices_section(measured.vertices));
+    write_text_atomically(beside / "rates.html", [&](std::ostream& out) {
+      out << html_page("Haptic rate against resolution", sections);
+    });
+  });
+  return out_dir / "rates.html";
 }
 
 }  // namespace osteomill

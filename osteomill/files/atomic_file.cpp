@@ -1,12 +1,18 @@
 #include "osteomill/files/atomic_file.h"
 
+#include <cerrno>
+#include <cstdio>
 #include <fstream>
+#include <memory>
 #include <string>
 #include <system_error>
+#include <vector>
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include "osteomill/files/input_error.h"
+#include "osteomill/files/input_files.h"
 #include "osteomill/files/temporary_folder.h"
 
 namespace osteomill {
@@ -22,21 +28,59 @@ fs::path name_beside(const fs::path& path) {
   return path.parent_path() / name;
 }
 
+bool is_device_or_pipe(const fs::path& path) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
+}
+
 void write_into(const fs::path& path, const std::function<void(const fs::path&)>& write) {
+  // Whoever opens a FIFO otherwise waits until somebody reads.
+  const int descriptor = ::open(path.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
+  if (descriptor < 0)
+    throw InputError(path.string(),
+                     errno == ENXIO ? "is a pipe that nobody reads" : "cannot be opened for writing");
+  ::fcntl(descriptor, F_SETFL, 0);
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> out(::fdopen(descriptor, "wb"), std::fclose);
   const TemporaryFolder folder;
   const fs::path whole = folder / ("whole" + path.extension().string());
   write(whole);
-  std::ofstream out(path, std::ios::binary);
-  out << std::ifstream(whole, std::ios::binary).rdbuf();
-  out.close();
-  if (!out) throw InputError(path.string(), "cannot be written to its end");
+  std::ifstream in(whole, std::ios::binary);
+  std::vector<char> block(1 << 16);
+  bool well = true;
+  while (well && in) {
+    in.read(block.data(), static_cast<std::streamsize>(block.size()));
+    const auto count = static_cast<std::size_t>(in.gcount());
+    well = std::fwrite(block.data(), 1, count, out.get()) == count;
+  }
+  if (!well || std::fflush(out.get()) != 0) throw InputError(path.string(), "cannot be written to its end");
+}
+
+void rename_to(const fs::path& from, const fs::path& target, const fs::path& path) {
+  std::error_code error;
+  fs::rename(from, target, error);
+  if (!error) return;
+  const std::string reason = "cannot be written: " + error.message();
+  fs::remove(from, error);
+  throw InputError(path.string(), reason);
+}
+
+std::vector<fs::path> files_in(const fs::path& folder) {
+  std::vector<fs::path> files;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))
+    if (!entry.is_directory()) files.push_back(entry.path().lexically_relative(folder));
+  return files;
 }
 
 }  // namespace
 
-fs::path behind_links(const fs::path& path) {
+fs::path output_path(const fs::path& path) {
   constexpr int kMostLinks = 40;
   std::error_code error;
+  if (is_input(path)) throw InputError(path.string(), "is what is read; name another file to write");
+  if (fs::is_directory(path, error)) throw InputError(path.string(), "cannot be written: it is a folder");
+  // What the system itself calls a link to a pipe (/dev/stdout) has no other name.
+  if (is_device_or_pipe(path)) return path;
   fs::path target = path;
   for (int n = 0; fs::is_symlink(fs::symlink_status(target, error)); ++n) {
     if (n == kMostLinks) throw InputError(path.string(), "is a link that leads to itself");
@@ -46,24 +90,17 @@ fs::path behind_links(const fs::path& path) {
 }
 
 void write_file_atomically(const fs::path& path, const std::function<void(const fs::path&)>& write) {
-  std::error_code error;
-  const fs::path target = behind_links(path);
-  const fs::file_status status = fs::status(target, error);
-  if (fs::is_directory(status)) throw InputError(path.string(), "cannot be written: it is a folder");
-  if (fs::exists(status) && !fs::is_regular_file(status)) return write_into(path, write);
+  const fs::path target = output_path(path);
+  if (is_device_or_pipe(target)) return write_into(path, write);
   const fs::path beside = name_beside(target);
   try {
     write(beside);
   } catch (...) {
-    fs::remove(beside, error);
+    std::error_code ignored;
+    fs::remove(beside, ignored);
     throw;
   }
-  fs::rename(beside, target, error);
-  if (error) {
-    const std::string reason = "cannot be written: " + error.message();
-    fs::remove(beside, error);
-    throw InputError(path.string(), reason);
-  }
+  rename_to(beside, target, path);
 }
 
 void write_text_atomically(const fs::path& path, const std::function<void(std::ostream&)>& write) {
@@ -76,21 +113,32 @@ void write_text_atomically(const fs::path& path, const std::function<void(std::o
   });
 }
 
+void write_folder_atomically(const fs::path& folder, const std::function<void(const fs::path&)>& write) {
+  std::error_code ignored;
+  const bool was_there = fs::exists(folder, ignored);
+  const fs::path beside = name_beside(folder / "files");
+  create_folder(folder);
+  try {
+    create_folder(beside);
+    write(beside);
+    const std::vector<fs::path> files = files_in(beside);
+    for (const fs::path& file : files) output_path(folder / file);
+    for (const fs::path& file : files) {
+      create_folder((folder / file).parent_path());
+      rename_to(beside / file, output_path(folder / file), folder / file);
+    }
+    fs::remove_all(beside, ignored);
+  } catch (...) {
+    fs::remove_all(beside, ignored);
+    if (!was_there) fs::remove(folder, ignored);
+    throw;
+  }
+}
+
 void create_folder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) throw InputError(folder.string(), "cannot be created: " + error.message());
-}
-
-void require_no_input(const fs::path& out, const std::vector<fs::path>& inputs) {
-  std::error_code ignored;
-  if (!fs::exists(out, ignored)) return;
-  for (const fs::path& input : inputs) {
-    if (input.empty()) continue;
-    const bool same = fs::equivalent(out, input, ignored) ||
-                      fs::equivalent(fs::absolute(out, ignored).parent_path(), input, ignored);
-    if (same) throw InputError(out.string(), "is what is read; name another file to write");
-  }
 }
 
 }  // namespace osteomill

@@ -4,15 +4,20 @@
 #include <functional>
 #include <ostream>
 #include <string_view>
-#include <vector>
 
 namespace osteomill {
+
+/// Where a file called `path` is to be written: where it leads as a symbolic link, else itself. Every file
+/// that is written goes through this first. Throws InputError where that would write over an input
+/// (input_files.h), or it is a folder.
+std::filesystem::path output_path(const std::filesystem::path& path);
 
 /// Calls `write` with the name of a file beside `path`, then renames that file to `path`, so that nobody ever
 /// sees it half-written. Whatever `write` throws is passed on and the file beside is removed. A symbolic link
 /// stays: what it leads to is written. What exists and is no regular file (a device, a FIFO) is not replaced
 /// either: when all is written, the bytes go into it.
-/// Throws InputError naming `path` where the file cannot be created, renamed or copied.
+/// Throws InputError naming `path` where the file cannot be created, renamed or copied, or is a FIFO that
+/// nobody reads.
 void write_file_atomically(const std::filesystem::path& path,
                            const std::function<void(const std::filesystem::path& beside)>& write);
 
@@ -20,14 +25,13 @@ void write_file_atomically(const std::filesystem::path& path,
 void write_text_atomically(const std::filesystem::path& path,
                            const std::function<void(std::ostream&)>& write);
 
-/// Where a file called `path` is to be written: where it leads as a symbolic link, else itself.
-std::filesystem::path behind_links(const std::filesystem::path& path);
+/// The same for files that belong together: calls `write` with an empty folder, then moves all that is in it
+/// into `folder`, over files of the same names. What `write` throws is passed on, and none is left of its
+/// files, nor `folder` where it was not there before. Throws InputError where one of them cannot be written.
+void write_folder_atomically(const std::filesystem::path& folder,
+                             const std::function<void(const std::filesystem::path& beside)>& write);
 
 /// Creates `folder` and its parents. Throws InputError naming it where that is impossible.
 void create_folder(const std::filesystem::path& folder);
-
-/// Throws InputError, naming `out`, where writing it would replace one of these inputs, or a file in one of
-/// them that is a folder. Empty inputs mean nothing.
-void require_no_input(const std::filesystem::path& out, const std::vector<std::filesystem::path>& inputs);
 
 }  // namespace osteomill

@@ -1,13 +1,16 @@
 #include "osteomill/files/atomic_file.h"
 
+#include <array>
 #include <fstream>
 #include <sstream>
-#include <thread>
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "osteomill/files/input_error.h"
+#include "osteomill/files/input_files.h"
 
 namespace osteomill {
 namespace {
@@ -67,11 +70,12 @@ TEST_F(AtomicFileTest, ALinkStaysAndWhatItLeadsToIsWritten) {
 TEST_F(AtomicFileTest, WhatIsNoFileIsWrittenInto) {
   const fs::path pipe = folder_ / "pipe.csv";
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
-  std::string read;
-  std::thread reader([&] { read = content(pipe); });
+  const int reader = ::open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
   write_text_atomically(pipe, [](std::ostream& out) { out << "1,2\n"; });
-  reader.join();
-  EXPECT_EQ(read, "1,2\n");
+  std::array<char, 9> read{};
+  EXPECT_EQ(::read(reader, read.data(), read.size()), 4);
+  ::close(reader);
+  EXPECT_STREQ(read.data(), "1,2\n");
   EXPECT_TRUE(fs::is_fifo(pipe));
   EXPECT_EQ(file_count(), 1);
 }
@@ -89,16 +93,64 @@ TEST_F(AtomicFileTest, AFolderThatIsMissingIsNamed) {
   }
 }
 
-TEST_F(AtomicFileTest, WhatIsReadIsNotToBeWritten) {
+TEST_F(AtomicFileTest, APipeThatNobodyReadsIsRefused) {
+  const fs::path pipe = folder_ / "pipe.csv";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_THROW(write_text_atomically(pipe, [](std::ostream&) { FAIL(); }), InputError);
+}
+
+TEST_F(AtomicFileTest, WhatIsReadIsNotWrittenOverByAnyOfItsNames) {
   const fs::path scan = folder_ / "scan.nrrd";
   std::ofstream(scan) << "mine";
   fs::create_symlink(scan, folder_ / "link.nrrd");
-  EXPECT_THROW(require_no_input(scan, {"", scan}), InputError);
-  EXPECT_THROW(require_no_input(folder_ / "link.nrrd", {scan}), InputError);
-  // A slice of a folder that is read.
-  EXPECT_THROW(require_no_input(scan, {folder_}), InputError);
-  EXPECT_NO_THROW(require_no_input(folder_ / "new.nrrd", {scan, folder_}));
-  EXPECT_NO_THROW(require_no_input(scan, {"", folder_ / "none"}));
+  fs::create_hard_link(scan, folder_ / "other.nrrd");
+  note_input(scan);
+  EXPECT_EQ(output_path(scan), scan);
+  const KeepInputs keep_inputs;
+  EXPECT_EQ(output_path(scan), scan);
+  note_input(folder_ / "link.nrrd");
+  for (const char* name : {"scan.nrrd", "link.nrrd", "other.nrrd"})
+    EXPECT_THROW(output_path(folder_ / name), InputError) << name;
+  EXPECT_THROW(write_folder_atomically(
+                   folder_, [](const fs::path& beside) { std::ofstream(beside / "other.nrrd") << "new"; }),
+               InputError);
+  EXPECT_EQ(content(scan), "mine");
+  EXPECT_NO_THROW(output_path(folder_ / "new.nrrd"));
+  // Whatever then has its name, or its inode, is another file.
+  fs::remove(scan);
+  EXPECT_NO_THROW(output_path(folder_ / "other.nrrd"));
+}
+
+TEST_F(AtomicFileTest, FilesThatBelongTogetherAppearTogether) {
+  std::ofstream(folder_ / "kept.csv") << "kept";
+  std::ofstream(folder_ / "a.csv") << "old";
+  write_folder_atomically(folder_, [&](const fs::path& beside) {
+    create_folder(beside / "figures");
+    std::ofstream(beside / "figures" / "b.svg") << "b";
+    std::ofstream(beside / "a.csv") << "new";
+    EXPECT_EQ(content(folder_ / "a.csv"), "old");
+  });
+  EXPECT_EQ(content(folder_ / "a.csv"), "new");
+  EXPECT_EQ(content(folder_ / "figures" / "b.svg"), "b");
+  EXPECT_EQ(file_count(), 3);
+}
+
+TEST_F(AtomicFileTest, OfFilesThatBelongTogetherNoneIsLeftWhereOneFails) {
+  const auto fail = [](const fs::path& beside) {
+    std::ofstream(beside / "a.csv") << "half";
+    throw InputError("b.csv", "cannot be written");
+  };
+  EXPECT_THROW(write_folder_atomically(folder_ / "new", fail), InputError);
+  EXPECT_EQ(file_count(), 0);
+  // Nor where it turns out only as they are moved.
+  fs::create_directories(folder_ / "b.csv");
+  EXPECT_THROW(write_folder_atomically(folder_,
+                                       [](const fs::path& beside) {
+                                         std::ofstream(beside / "a.csv") << "whole";
+                                         std::ofstream(beside / "b.csv") << "whole";
+                                       }),
+               InputError);
+  EXPECT_EQ(file_count(), 1);
 }
 
 }  // namespace

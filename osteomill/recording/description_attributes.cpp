@@ -1,5 +1,6 @@
 #include "osteomill/recording/description_attributes.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -74,7 +75,7 @@ std::vector<RunSetting> read_settings(const fs::path& path, hid_t file) {
     if (read.is_text(name)) {
       setting.value = read.text(name);
     } else {
-      setting.value = read.real(name);
+      setting.value = read.real_or_infinite(name);
     }
     const std::string unit = name + std::string(kUnitSuffix);
     if (read.has(unit)) setting.unit = read.text(unit);
@@ -160,6 +161,23 @@ AlgorithmId by_its_name(const std::string& name) {
   return known != nullptr ? known->id : AlgorithmId{name, name, std::string(kUnknownColour)};
 }
 
+// A scan that can be, milled with a tool that can be.
+void require_sound(const fs::path& path, const RunDescription& run) {
+  constexpr double kMaxVoxels = 1e12;
+  const auto refuse = [&](const std::string& reason) { throw InputError(path.string(), reason); };
+  if (!is_positive(run.tick_period_s)) refuse("the attribute 'tick_period_s' is not a positive number");
+  double voxels = 1;
+  for (const int count : run.dims) voxels *= std::max(0, count);
+  if (!(voxels >= 1 && voxels <= kMaxVoxels)) refuse("the attribute 'dims' is no size of a scan");
+  if (!(run.spacing_mm.minCoeff() > 0)) refuse("the attribute 'spacing_mm' is not three positive numbers");
+  if (!run.direction.isUnitary(1e-3)) refuse("its axes are not unit vectors at right angles");
+  try {
+    require_valid(run.tool);
+  } catch (const std::invalid_argument& error) {
+    refuse(error.what());
+  }
+}
+
 Mode require_mode(const fs::path& path, const std::string& name) {
   const std::optional<Mode> mode = mode_named(name);
   if (!mode) throw InputError(path.string(), "'mode " + name + "' is not known here");
@@ -224,9 +242,9 @@ RunDescription read_description(const fs::path& path, hid_t file) {
   if (!read.has(kLabel)) run.algorithm = by_its_name(run.algorithm.name);
   if (!is_usable(run.algorithm))
     throw InputError(path.string(), "its algorithm has a name, label or colour that cannot be used");
-  if (!is_plain_name(run.phase)) throw InputError(path.string(), "the attribute 'phase' is not a plain name");
-  if (!is_positive(run.tick_period_s))
-    throw InputError(path.string(), "the attribute 'tick_period_s' is not a positive number");
+  if (!is_plain_name(run.phase))
+    throw InputError(path.string(), "the attribute 'phase' is not a plain name");
+  require_sound(path, run);
   run.settings = read_settings(path, file);
   run.labels = read_labels(path, file);
   return run;

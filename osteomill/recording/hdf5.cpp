@@ -1,5 +1,7 @@
 #include "osteomill/recording/hdf5.h"
 
+#include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "osteomill/files/input_error.h"
@@ -104,7 +106,14 @@ std::string AttributeReader::text(const std::string& name) const {
 
 double AttributeReader::real(const std::string& name) const {
   double value = 0;
+  reals(name, {&value, 1});
+  return value;
+}
+
+double AttributeReader::real_or_infinite(const std::string& name) const {
+  double value = 0;
   read(name, H5T_FLOAT, H5T_NATIVE_DOUBLE, 1, &value);
+  if (std::isnan(value)) throw InputError(file_.string(), "the attribute '" + name + "' is not a number");
   return value;
 }
 
@@ -116,6 +125,8 @@ std::uint64_t AttributeReader::unsigned_integer(const std::string& name) const {
 
 void AttributeReader::reals(const std::string& name, std::span<double> values) const {
   read(name, H5T_FLOAT, H5T_NATIVE_DOUBLE, std::ssize(values), values.data());
+  if (!std::ranges::all_of(values, [](double value) { return std::isfinite(value); }))
+    throw InputError(file_.string(), "the attribute '" + name + "' is not finite");
 }
 
 Vec3 AttributeReader::vector(const std::string& name) const {

@@ -89,7 +89,10 @@ class AttributeReader {
   AttributeReader(std::filesystem::path file, hid_t object) : file_(std::move(file)), object_(object) {}
 
   std::string text(const std::string& name) const;
+  /// Finite, as all that `reals` and `vector` read.
   double real(const std::string& name) const;
+  /// Any but NaN.
+  double real_or_infinite(const std::string& name) const;
   std::uint64_t unsigned_integer(const std::string& name) const;
   /// As many as there is room for.
   void reals(const std::string& name, std::span<double> values) const;

@@ -9,10 +9,12 @@
 #include <tuple>
 #include <vector>
 
+#include <fmt/format.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include "osteomill/files/input_error.h"
+#include "osteomill/files/input_files.h"
 #include "osteomill/recording/description_attributes.h"
 #include "osteomill/recording/hdf5.h"
 #include "osteomill/recording/record_columns.h"
@@ -111,9 +113,12 @@ std::size_t row_count(const OpenRecording& recording, const std::vector<OpenColu
 void require_in_range(const OpenRecording& recording, const RecordColumn& column, double value) {
   const double max = column.type == ColumnType::small_integer ? static_cast<double>(WrenchFault::eased)
                                                               : std::numeric_limits<int>::max();
-  if (column.type != ColumnType::real && !(value >= 0 && value <= max && value == std::floor(value))) {
-    refuse(recording, std::string("the column '") + column.name + "' holds " + std::to_string(value));
-  }
+  // What is not finite is a pose that the device did not give; greater numbers overflow in sums of squares.
+  constexpr double kMaxReal = 1e12;
+  const bool sound = column.type == ColumnType::real
+                         ? !std::isfinite(value) || std::abs(value) <= kMaxReal
+                         : value >= 0 && value <= max && value == std::floor(value);
+  if (!sound) refuse(recording, fmt::format("the column '{}' holds {:g}", column.name, value));
 }
 
 template <typename Value>
@@ -340,8 +345,55 @@ std::vector<RunPicture> read_pictures(const OpenRecording& recording) {
   return pictures;
 }
 
+// HDF5 would follow links into other files, look for values there, and load plug-ins that a file asks for.
+bool holds_its_own_values(hid_t dataset) {
+  const Hdf5Handle layout(H5Dget_create_plist(dataset), H5Pclose);
+  bool own = H5Pget_external_count(layout.get()) == 0 && H5Pget_layout(layout.get()) != H5D_VIRTUAL;
+  for (int n = 0; own && n < H5Pget_nfilters(layout.get()); ++n) {
+    unsigned flags = 0, config = 0;
+    std::size_t values = 0;
+    const H5Z_filter_t filter =
+        H5Pget_filter2(layout.get(), static_cast<unsigned>(n), &flags, &values, nullptr, 0, nullptr, &config);
+    own = filter >= 0 && filter < H5Z_FILTER_RESERVED;
+  }
+  return own;
+}
+
+// Groups may hold each other, so neither depth nor number ends by itself.
+struct LinkSearch {
+  int depth = 4;
+  int links = 100000;
+  std::string refused;
+
+  bool all_lead_within(hid_t group) {
+    if (depth == 0) return false;
+    --depth;
+    const herr_t ended = H5Literate(group, H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, look, this);
+    ++depth;
+    return ended == 0;
+  }
+  static herr_t look(hid_t group, const char* name, const H5L_info_t* link, void* search) {
+    auto& self = *static_cast<LinkSearch*>(search);
+    bool within = link->type == H5L_TYPE_HARD && --self.links > 0;
+    if (within) {
+      const Hdf5Handle object(H5Oopen(group, name, H5P_DEFAULT), H5Oclose);
+      within = H5Iget_type(object.get()) == H5I_DATASET ? holds_its_own_values(object.get())
+                                                        : self.all_lead_within(object.get());
+    }
+    if (!within && self.refused.empty()) self.refused = name;
+    return within ? 0 : 1;
+  }
+};
+
+void require_nothing_elsewhere(const OpenRecording& recording) {
+  LinkSearch search;
+  if (!search.all_lead_within(recording.file.get()))
+    refuse(recording, "'" + search.refused + "' leads elsewhere, or needs a filter that is not HDF5's own");
+}
+
 Recording read_open_file(const fs::path& path) {
   const OpenRecording open = open_recording(path);
+  require_nothing_elsewhere(open);
   const AttributeReader root(path, open.file.get());
   require_our_version(open, root);
   Recording recording;
@@ -386,6 +438,7 @@ Recording read_recording(const fs::path& path) {
   std::error_code error;
   if (!fs::exists(path, error)) throw InputError(path.string(), "no such file");
   if (!fs::is_regular_file(path, error)) throw InputError(path.string(), "is not a file");
+  note_input(path);
   const Checksum checksum = check_checksum(path);
   if (checksum == Checksum::broken) {
     throw InputError(path.string(), "is damaged or cut short: its checksum is not that of its content");

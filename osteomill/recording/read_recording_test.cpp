@@ -3,6 +3,7 @@
 #include <fstream>
 #include <functional>
 #include <iterator>
+#include <limits>
 
 #include "tests/support/recording_samples.h"
 #include <gtest/gtest.h>
@@ -159,6 +160,87 @@ TEST_F(ChangedRecording, OneFromBeforeLabelsWereKeptIsShownAsTheOthers) {
   const AlgorithmId read = read_recording(path_).description.algorithm;
   EXPECT_EQ(read.label, known.label);
   EXPECT_EQ(read.colour, known.colour);
+}
+
+TEST_F(ChangedRecording, ADescriptionOfWhatCannotBeIsRefused) {
+  const auto reals = [this](const char* name, std::vector<double> values, const std::string& reason) {
+    const std::string sound = bytes_of(path_);
+    change([&](hid_t file) {
+      H5Adelete(file, name);
+      AttributeWriter(path_, file).reals(name, values);
+    });
+    expect_refused(path_, reason);
+    write_bytes(path_, sound);
+  };
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  reals("isovalue", {kNan}, "'isovalue' is not finite");
+  reals("origin_mm", {0, kInfinity, 0}, "'origin_mm' is not finite");
+  reals("spacing_mm", {1, kNan, 1}, "'spacing_mm' is not finite");
+  reals("spacing_mm", {1, 0, 1}, "'spacing_mm' is not three positive numbers");
+  reals("axis_j", {1, 0, 0}, "axes are not unit vectors at right angles");
+  reals("burr_radius_mm", {-1}, "the burr's radius (mm) must be a positive number");
+  reals("tick_period_s", {0}, "'tick_period_s' is not a positive number");
+  change([this](hid_t file) {
+    H5Adelete(file, "dims");
+    AttributeWriter(path_, file).integers("dims", {16, 0, 16});
+  });
+  expect_refused(path_, "'dims' is no size of a scan");
+}
+
+TEST_F(ChangedRecording, AForceThatNobodyHasIsRefused) {
+  change([](hid_t file) {
+    const hid_t dataset = H5Dopen2(file, "columns/force_x_N", H5P_DEFAULT);
+    const std::vector<double> values(1500, 1e300);
+    H5Dwrite(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
+    H5Dclose(dataset);
+  });
+  expect_refused(path_, "'force_x_N' holds 1e+300");
+}
+
+TEST_F(ChangedRecording, NothingIsReadFromAnotherFile) {
+  const auto put = [this](const char* name, const std::function<void(hid_t file)>& how) {
+    const std::string sound = bytes_of(path_);
+    change([&](hid_t file) {
+      H5Ldelete(file, name, H5P_DEFAULT);
+      how(file);
+    });
+    expect_refused(path_, "leads elsewhere");
+    write_bytes(path_, sound);
+  };
+  const fs::path other = folder_ / "other.h5";
+  write_sample(other, 1500);
+  put("columns/time_s", [&](hid_t file) {
+    H5Lcreate_external(other.c_str(), "columns/time_s", file, "columns/time_s", H5P_DEFAULT, H5P_DEFAULT);
+  });
+  put("columns", [&](hid_t file) {
+    H5Lcreate_external(other.c_str(), "columns", file, "columns", H5P_DEFAULT, H5P_DEFAULT);
+  });
+  put("pictures", [](hid_t file) { H5Lcreate_hard(file, "/", file, "pictures", H5P_DEFAULT, H5P_DEFAULT); });
+  const auto dataset = [&](const std::function<void(hid_t layout)>& lay_out) {
+    put("columns/time_s", [&](hid_t file) {
+      const hsize_t rows = 1500;
+      const Hdf5Handle space(H5Screate_simple(1, &rows, nullptr), H5Sclose);
+      const Hdf5Handle layout(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+      lay_out(layout.get());
+      const Hdf5Handle made(H5Dcreate2(file, "columns/time_s", H5T_IEEE_F64LE, space.get(), H5P_DEFAULT,
+                                       layout.get(), H5P_DEFAULT),
+                            H5Dclose);
+      ASSERT_TRUE(made.valid());
+    });
+  };
+  dataset([&](hid_t layout) { H5Pset_external(layout, other.c_str(), 0, H5F_UNLIMITED); });
+  dataset([&](hid_t layout) {
+    const hsize_t rows = 1500;
+    const Hdf5Handle space(H5Screate_simple(1, &rows, nullptr), H5Sclose);
+    H5Pset_virtual(layout, space.get(), other.c_str(), "columns/time_s", space.get());
+  });
+  dataset([](hid_t layout) {
+    constexpr H5Z_filter_t kOfTheirOwn = 40000;
+    const hsize_t rows = 1500;
+    H5Pset_chunk(layout, 1, &rows);
+    H5Pset_filter(layout, kOfTheirOwn, H5Z_FLAG_OPTIONAL, 0, nullptr);
+  });
 }
 
 TEST_F(ChangedRecording, AColourThatIsNoneIsRefused) {

@@ -40,7 +40,7 @@ bool is_plain_name(const std::string& name) {
 
 // HDF5 writes here and there in a file, which then takes the place of what was there.
 fs::path file_behind(const fs::path& path) {
-  const fs::path file = behind_links(path);
+  const fs::path file = output_path(path);
   std::error_code error;
   const fs::file_status status = fs::status(file, error);
   if (fs::exists(status) && !fs::is_regular_file(status))
@@ -54,7 +54,9 @@ struct Recorder::Impl {
   using Clock = std::chrono::steady_clock;
 
   Impl(const fs::path& path_, const RunDescription& description, std::size_t capacity, Begins begins)
-      : path(file_behind(path_)), file(unfinished_recording_path(path), description), queue(capacity) {
+      : path(file_behind(path_)),
+        file(file_behind(unfinished_recording_path(path)), description),
+        queue(capacity) {
     if (begins == Begins::with_the_recording) {
       file.begin_session({}, 0);
       session = 0;

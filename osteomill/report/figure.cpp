@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include "osteomill/files/atomic_file.h"
 #include "osteomill/files/input_error.h"
 #include "osteomill/files/temporary_folder.h"
 #include "osteomill/report/gnuplot.h"
@@ -15,12 +14,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-void move_whole(const fs::path& from, const fs::path& to) {
-  write_file_atomically(to, [&](const fs::path& beside) {
-    std::error_code error;
-    fs::copy_file(from, beside, fs::copy_options::overwrite_existing, error);
-    if (error) throw InputError(to.string(), "cannot be written: " + error.message());
-  });
+void copy_to(const fs::path& from, const fs::path& to) {
+  std::error_code error;
+  fs::copy_file(from, to, fs::copy_options::overwrite_existing, error);
+  if (error) throw InputError(to.string(), "cannot be written: " + error.message());
 }
 
 }  // namespace
@@ -75,8 +72,8 @@ Figure draw_figure(const FigureScript& script, const TemporaryFolder& work, cons
                           "set output '{1}.png'\n{2}\nunset output\n",
                           size, script.name, script.body));
   const Figure figure{folder / (script.name + ".svg"), folder / (script.name + ".png")};
-  move_whole(work / (script.name + ".svg"), figure.svg);
-  move_whole(work / (script.name + ".png"), figure.png);
+  copy_to(work / (script.name + ".svg"), figure.svg);
+  copy_to(work / (script.name + ".png"), figure.png);
   return figure;
 }
 

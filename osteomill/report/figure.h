@@ -56,8 +56,8 @@ struct LegendEntry {
 };
 std::string legend_row(const PanelGrid& grid, const std::vector<LegendEntry>& entries);
 
-/// Runs gnuplot in `work`, where the figure's data lie, and puts NAME.svg and NAME.png into `folder`, each
-/// whole or not at all. Throws InputError where gnuplot or writing fails.
+/// Runs gnuplot in `work`, where the figure's data lie, and puts NAME.svg and NAME.png into `folder`. Throws
+/// InputError where gnuplot or writing fails.
 Figure draw_figure(const FigureScript& script, const TemporaryFolder& work,
                    const std::filesystem::path& folder);
 

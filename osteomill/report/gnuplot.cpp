@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "osteomill/files/input_error.h"
+#include "osteomill/report/valid_utf8.h"
 
 extern char** environ;
 
@@ -24,7 +25,7 @@ constexpr const char* kLog = "gnuplot.log";
 
 void write_script(const fs::path& path, const std::string& script) {
   std::ofstream out(path, std::ios::binary);
-  out << script;
+  out << valid_utf8(script);
   out.close();
   if (!out) throw InputError(path.string(), "cannot be written (is the disk full?)");
 }

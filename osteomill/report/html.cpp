@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "osteomill/files/input_error.h"
+#include "osteomill/report/valid_utf8.h"
 
 namespace osteomill {
 
@@ -127,11 +128,11 @@ std::string html(const PageSection& section, int level) {
 std::string html_page(const std::string& title, const std::vector<PageSection>& sections) {
   std::string body;
   for (const PageSection& section : sections) body += html(section);
-  return fmt::format(
+  return valid_utf8(fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{0}</title>\n"
       "<style>{1}</style></head>\n<body>\n<h1>{0}</h1>\n{2}</body></html>\n",
-      html_escaped(title), kStyle, body);
+      html_escaped(title), kStyle, body));
 }
 
 }  // namespace osteomill

@@ -56,14 +56,15 @@ void write_summary_csv(const fs::path& path, const std::vector<RunGroup>& groups
 }  // namespace
 
 fs::path write_report(const std::vector<RunGroup>& groups, const fs::path& out_dir, const PageText& text) {
-  create_folder(out_dir / "figures");
-  // First, so that the numbers are there even where no figure can be drawn.
-  write_summary_csv(out_dir / "summary.csv", groups);
-  std::vector<DrawnGroup> drawn;
-  for (const RunGroup& group : groups) drawn.push_back(draw(group, out_dir / "figures", text));
-  const fs::path page = out_dir / "report.html";
-  write_text_atomically(page, [&](std::ostream& out) { out << report_page(drawn, text); });
-  return page;
+  write_folder_atomically(out_dir, [&](const fs::path& beside) {
+    create_folder(beside / "figures");
+    write_summary_csv(beside / "summary.csv", groups);
+    std::vector<DrawnGroup> drawn;
+    for (const RunGroup& group : groups) drawn.push_back(draw(group, beside / "figures", text));
+    write_text_atomically(beside / "report.html",
+                          [&](std::ostream& out) { out << report_page(drawn, text); });
+  });
+  return out_dir / "report.html";
 }
 
 fs::path write_report(const std::vector<Recording>& recordings, const fs::path& out_dir) {

@@ -9,8 +9,8 @@
 namespace osteomill {
 
 /// Writes `out_dir`/report.html, summary.csv and figures/ (each figure as SVG and PNG) of runs that were
-/// measured (group_runs); returns the path of report.html. Files appear whole, the page last. Throws
-/// InputError where gnuplot is missing or fails, or a file cannot be written.
+/// measured (group_runs); returns the path of report.html. All appear together or none. Throws InputError
+/// where gnuplot is missing or fails, or a file cannot be written.
 std::filesystem::path write_report(const std::vector<RunGroup>& groups, const std::filesystem::path& out_dir,
                                    const PageText& text = {});
 

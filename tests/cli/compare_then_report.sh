@@ -25,6 +25,11 @@ grep -q "http://\|https://" <(sed 's|http://www.w3.org/[^"]*||g' a/report.html) 
 [ "$(wc -l <b/point-shell-holding.csv)" -eq 1001 ] || fault "the CSV should have a head and a row a tick"
 cmp a/summary.csv b/summary.csv || fault "the report made again says something else"
 
+code=0
+PATH=/nowhere "$osteomill" report a/*.h5 --csv --quiet --out g 2>g.err || code=$?
+[ $code -eq 1 ] && grep -q "^osteomill: gnuplot: is not installed" g.err || fault "without gnuplot: $code, $(cat g.err)"
+[ ! -e g ] || fault "a report that failed left $(find g)"
+
 grep -q "No pictures of the bone" a/report.html && fault "pictures are missing"
 __EGL_VENDOR_LIBRARY_FILENAMES=/dev/null "$osteomill" compare --seconds 1 --no-stability --out e >e.out 2>e.err
 [ "$(grep -c "no pictures of the bone are recorded: no OpenGL" e.err)" -eq 1 ] ||
