@@ -109,7 +109,7 @@ class Coarsening {
     return result;
   }
 
-  // One vertex for each cluster, where its planes meet (Lindstrom 2000), with the mean of its normals and
+  // One vertex for each cluster, where its planes meet, with the mean of its normals and
   // densities; one that is alone stays the mesh's own.
   void add_means(std::vector<MeshVertex>& means, double reach_mm) {
     struct Sum {

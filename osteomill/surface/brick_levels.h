@@ -11,10 +11,10 @@
 namespace osteomill {
 
 /// A brick's surface with fewer and fewer triangles, for drawing it from afar or while it moves. Level 0 is
-/// the brick's mesh itself; level n has about one vertex for every 2^n x 2^n x 2^n cells, the mean of the
-/// mesh's own there (vertex clustering after Rossignac and Borrel 1993, within a cell only what is connected,
-/// so that the two sides of a thin wall stay two). Vertices on the brick's border stay as they are: bricks of
-/// any levels meet without a gap.
+/// the brick's mesh itself; level n has about one vertex for every 2^n x 2^n x 2^n cells, where the planes of
+/// the mesh's triangles there meet, near the mean of its vertices (Lindstrom 2000; vertex clustering after
+/// Rossignac and Borrel 1993, within a cell only what is connected, so that the two sides of a thin wall stay
+/// two). Vertices on the brick's border stay as they are: bricks of any levels meet without a gap.
 struct BrickLevels {
   static constexpr std::size_t kCount = 4;
   struct Range {
