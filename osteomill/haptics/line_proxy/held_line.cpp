@@ -25,7 +25,7 @@ constexpr double kMaxSlope = 0.25;
 // What two looks along the line may miss between them: without that a line on a rim sticks for a tick or two,
 // in a turned scan and not in the straight one.
 constexpr double kBetweenLooks_mm = 0.01;
-// How much higher in all than it was a line may climb.
+// How much higher in all than it was a line may climb (HeldLine.InARoughHole...).
 constexpr double kRoughness_voxels = 0.15;
 // As deep as a stride can have taken a point, and as far as its way out may be longer for that.
 constexpr double kReachBeyond_voxels = 2;

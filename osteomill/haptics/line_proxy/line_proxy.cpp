@@ -192,7 +192,7 @@ Pose LineProxy::touching_tool(const Pose& X_WD, const Vec3& tool_tip_W) const {
 }
 
 // Where the tip rests (12), and one move a tick out of where the tool's radii reach into bone, given back
-// little by little.
+// little by little. Without that move the drawn tool of a third of all pushes ends in bone.
 Pose LineProxy::tool_outside(const Pose& X_WF, double dt_s) {
   constexpr double kReturnTime_s = 0.02;
   Vec3& shift_W = memory_.tool_shift_W;
