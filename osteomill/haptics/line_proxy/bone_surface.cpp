@@ -27,6 +27,18 @@ std::optional<Vec3> nearest_exit(const Volume& volume, const Vec3& point_W, doub
   return exit;
 }
 
+std::optional<double> depth_along(const Volume& volume, const Vec3& point_W, const Vec3& out_W,
+                                  double reach_mm) {
+  const double step_mm = 0.5 * volume.geometry().spacing_mm.minCoeff();
+  Vec3 inside_W = point_W;
+  for (double way_mm = step_mm; way_mm < reach_mm + step_mm; way_mm += step_mm) {
+    const Vec3 here_W = point_W + way_mm * out_W;
+    if (!is_bone_at(volume, here_W)) return out_W.dot(bisect_crossing(volume, here_W, inside_W) - point_W);
+    inside_W = here_W;
+  }
+  return std::nullopt;
+}
+
 std::optional<Vec3> surface_normal(const Volume& volume, const Vec3& point_W, const NormalRule& rule) {
   if (!(rule.spread_voxels > 0.0)) return outward_normal(volume, point_W, rule.kernel);
   const GridGeometry& geometry = volume.geometry();

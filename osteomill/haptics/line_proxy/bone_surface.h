@@ -12,6 +12,11 @@ namespace osteomill::line_proxy {
 /// itself where it is not in bone.
 std::optional<Vec3> nearest_exit(const Volume& volume, const Vec3& point_W, double reach_mm);
 
+/// How far from a point in bone along the unit vector `out_W` the bone ends; nothing beyond `reach_mm`, or
+/// where that vector is zero.
+std::optional<double> depth_along(const Volume& volume, const Vec3& point_W, const Vec3& out_W,
+                                  double reach_mm);
+
 /// How the normal of the isosurface is found.
 struct NormalRule {
   GradientKernel kernel = GradientKernel::smoothed;

@@ -19,48 +19,23 @@ constexpr double kSoftness = 1e-5;
 // The line is kept so far off the bone, and a move that would still end in it is halved so often at most.
 constexpr double kSkin_mm = 2e-5;
 constexpr int kHalvings = 6;
-// How steeply a stride may climb on what it meets, and how much higher in all than it was.
+// How steeply a stride may climb on what it meets: without that the force of a thin tool steps by half as
+// much again, as where milling breaks through.
 constexpr double kMaxSlope = 0.25;
+// What two looks along the line may miss between them: without that a line on a rim sticks for a tick or two,
+// in a turned scan and not in the straight one.
+constexpr double kBetweenLooks_mm = 0.01;
+// How much higher in all than it was a line may climb (HeldLine.InARoughHole...).
 constexpr double kRoughness_voxels = 0.15;
-// Contacts are told apart, and means taken, within so much of their depth.
-constexpr double kSoftContact_voxels = 2.0;
-constexpr double kMaxSoftContact_mm = 0.5;
-
-// From a point in bone out along a direction to the isosurface.
-std::optional<Vec3> way_out_along(const Volume& volume, const Vec3& point_W, const Vec3& out_W,
-                                  double reach_mm) {
-  const double step_mm = 0.25 * volume.geometry().spacing_mm.minCoeff();
-  Vec3 inside_W = point_W;
-  for (double way_mm = step_mm; way_mm < reach_mm + step_mm; way_mm += step_mm) {
-    const Vec3 here_W = point_W + way_mm * out_W;
-    if (!is_bone_at(volume, here_W)) return bisect_crossing(volume, here_W, inside_W);
-    inside_W = here_W;
-  }
-  return std::nullopt;
-}
-
-// Where the bone lets the line leap, it goes beyond the device's own movement at these speeds.
-constexpr double kLeap_mm_s = 30;
-constexpr double kLeap_rad_s = 0.05;
-// Of the turn by which a move of the device would be made at the far end.
-constexpr double kTurnByMove = 0.25;
-// How much of the way to where the energy is least is gone at once: with all of it, a line between two walls
-// would be thrown from one to the other.
+// As deep as a stride can have taken a point, and as far as its way out may be longer for that.
+constexpr double kReachBeyond_voxels = 2;
+// How much of the way to where the energy is least is gone at once. With all of it the force steps by more
+// than twice as much on a ball with an edge of one voxel.
 constexpr double kRelaxation = 0.5;
-constexpr double kLeast = 1e-12;
-constexpr double kAnyLeap = 1e9;
 constexpr double kGivenWay_mm = 0.1;
-// A slow machine's tick counts as this long.
-constexpr double kMaxTick_s = 5e-3;
 
-ToolMove operator+(const ToolMove& a, const ToolMove& b) {
-  return {a.translation_mm + b.translation_mm, a.rotation_rad + b.rotation_rad};
-}
 ToolMove operator*(double share, const ToolMove& move) {
   return {share * move.translation_mm, share * move.rotation_rad};
-}
-ToolMove operator-(const ToolMove& a, const ToolMove& b) {
-  return a + -1.0 * b;
 }
 
 bool is_at(const Pose& a, const Pose& b) {
@@ -80,8 +55,7 @@ void HeldLine::prepare(const Volume& volume, const ShaftSpan& span, const Normal
 }
 
 void HeldLine::reset() {
-  placed_ = false;
-  carried_ = false;
+  carried_ = true;
   held_back_ = false;
   climbed_mm2_ = 0;
   limit_count_ = 0;
@@ -106,9 +80,8 @@ bool HeldLine::add_limit(const Vec3& out_W, double depth_mm, const ToolMove& at,
   double climb_mm = depth_mm + kSkin_mm + out_W.dot(way_W);
   // The line stands outside the bone, so it cannot have gone in deeper than it went: what says so leads the
   // wrong way out.
-  const double way_mm = way_W.norm();
-  if (climb_mm > kSkin_mm + kMaxSlope * way_mm && way_mm > 0) {
-    along_W = -way_W / way_mm;
+  if (climb_mm > kBetweenLooks_mm + kMaxSlope * way_W.norm()) {
+    along_W = -way_W.normalized();
     climb_mm = 0;
   }
   const Vec3 about_W = arm_W.cross(along_W);
@@ -119,27 +92,25 @@ bool HeldLine::add_limit(const Vec3& out_W, double depth_mm, const ToolMove& at,
 
 // `X_WL` is where the line would be after the move `at`.
 bool HeldLine::add_tip_limit(const Pose& X_WL, const ToolMove& at) {
-  const Volume& volume = *volume_;
   const Vec3& from_W = X_WL_.position_mm;
   const Vec3& to_W = X_WL.position_mm;
-  const bool begins_in_bone = is_bone_at(volume, from_W);
-  const std::optional<Vec3> met_W = begins_in_bone ? std::nullopt : first_crossing(volume, from_W, to_W);
-  if (!met_W && !is_bone_at(volume, to_W)) return false;
-  const Vec3 back_W = (from_W - to_W).normalized();
-  const Vec3 normal_W = surface_normal(volume, met_W.value_or(to_W), normal_).value_or(back_W);
-  const double reach_mm = kStride_mm + 2 * volume.geometry().spacing_mm.maxCoeff();
-  const Vec3 surface_W =
-      is_bone_at(volume, to_W)
-          ? way_out_along(volume, to_W, normal_W, reach_mm).value_or(met_W.value_or(from_W))
-          : *met_W;
-  const Vec3 out_W = surface_normal(volume, surface_W, normal_).value_or(normal_W);
+  const auto met_W = first_crossing(*volume_, from_W, to_W);
+  if (!met_W) return false;
+  const Vec3 normal_W = surface_normal(*volume_, *met_W, normal_).value_or((from_W - to_W).normalized());
+  // At the end of the way: with the plane where the tip met the bone it sticks, as on a ball.
+  const auto depth_mm =
+      is_bone_at(*volume_, to_W) ? depth_along(*volume_, to_W, normal_W, reach_mm()) : std::nullopt;
+  const Vec3 surface_W = depth_mm ? Vec3(to_W + *depth_mm * normal_W) : *met_W;
+  const Vec3 out_W = surface_normal(*volume_, surface_W, normal_).value_or(normal_W);
   return add_limit(out_W, out_W.dot(surface_W - to_W), at, true, Vec3::Zero());
 }
 
+double HeldLine::reach_mm() const {
+  return kStride_mm + kReachBeyond_voxels * volume_->geometry().spacing_mm.maxCoeff();
+}
+
 bool HeldLine::add_shaft_limits(const Pose& X_WL, const ToolMove& at) {
-  const double soft_mm =
-      std::min(kMaxSoftContact_mm, kSoftContact_voxels * volume_->geometry().spacing_mm.minCoeff());
-  const ShaftContacts contacts = shaft_contacts(*volume_, span_, X_WL, X_WL_, normal_, soft_mm);
+  const ShaftContacts contacts = shaft_contacts(*volume_, span_, X_WL, normal_, reach_mm());
   const Vec3 axis_W = shaft_direction(X_WL);
   bool overlaps = false;
   for (std::size_t n = 0; n < contacts.count; ++n) {
@@ -173,16 +144,16 @@ ToolMove HeldLine::allowed(const ToolMove& wanted) {
 }
 
 // As much of a move as a stride may be.
-ToolMove HeldLine::stride(const ToolMove& move, double longest_mm) const {
-  return longest_mm / std::max(longest_mm, travel_mm(move)) * move;
+ToolMove HeldLine::stride(const ToolMove& move) const {
+  return kStride_mm / std::max(kStride_mm, travel_mm(move)) * move;
 }
 
 // What bone leaves of a move, as far as it shows from where a stride would take the line.
-ToolMove HeldLine::look_along(const ToolMove& wanted, double longest_mm) {
+ToolMove HeldLine::look_along(const ToolMove& wanted) {
   limit_count_ = 0;
   ToolMove move = wanted;
   for (int look = 0; look <= kLooks; ++look) {
-    const ToolMove near = stride(move, longest_mm);
+    const ToolMove near = stride(move);
     const Pose X_WL = moved(X_WL_, near);
     const bool tip = add_tip_limit(X_WL, near);
     const bool shaft = add_shaft_limits(X_WL, near);
@@ -212,32 +183,21 @@ bool HeldLine::go(const ToolMove& move, const Pose& X_WD) {
   return true;
 }
 
-// Not further from the device's own move than may be; where going along with the device is itself a leap, the
-// turn, and with it the torque, comes over a few ticks.
-ToolMove HeldLine::held_to(const Leap& most, const ToolMove& device, ToolMove move) {
-  const double share = most.allows(move - device);
-  if (share == 1) return move;
-  const ToolMove with_device = allowed(device);
-  move = with_device + share * (move - with_device);
-  const Vec3 turned = move.rotation_rad - device.rotation_rad;
-  move.rotation_rad = device.rotation_rad + most.turn_rad / std::max(most.turn_rad, turned.norm()) * turned;
-  return move;
-}
-
 // With the device as it moves, and on towards where the springs' energy is least.
-void HeldLine::slide(const ToolMove& device, const Pose& X_WD, const Leap& most) {
-  const ToolMove whole = move_between(X_WL_, X_WD);
-  const ToolMove wanted = device + kRelaxation * (whole - device);
-  const double longest_mm =
-      std::min(kStride_mm, travel_mm(device) + most.move_mm + most.turn_rad * span_.end_mm);
-  const ToolMove left = look_along(wanted, longest_mm);
-  const bool may_land =
-      limit_count_ == 0 && travel_mm(whole) <= kStride_mm && most.allows(whole - device) == 1;
-  if (may_land && !is_in_bone(X_WD)) {
+void HeldLine::slide(const Pose& X_WD_before, const Pose& X_WD, double dt_s) {
+  const ToolMove device = move_between(X_WD_before, X_WD), whole = move_between(X_WL_, X_WD);
+  const MoveBound bound = move_bound(X_WL_, X_WD_before, X_WD, std::sqrt(turn_weight_mm2_), Release{}, dt_s);
+  // A line that is not held goes to the device as it may.
+  const auto share = [&](const ToolMove& move) { return held_back_ ? share_within(bound, move) : 1; };
+  const ToolMove left =
+      look_along({device.translation_mm + kRelaxation * (whole.translation_mm - device.translation_mm),
+                  device.rotation_rad + kRelaxation * (whole.rotation_rad - device.rotation_rad)});
+  if (limit_count_ == 0 && travel_mm(whole) <= kStride_mm && share(whole) == 1 && !is_in_bone(X_WD)) {
     X_WL_ = X_WD;
     return;
   }
-  ToolMove move = stride(held_to(most, device, left), longest_mm);
+  ToolMove move = stride(left);
+  move = share(move) * move;
   for (int n = 0; n <= kHalvings && !go(move, X_WD); ++n) move = 0.5 * move;
 }
 
@@ -264,38 +224,20 @@ void HeldLine::take_pushes() {
   if (push > 0) shaft_push_ = ShaftPush{springs_.tip_N_per_mm / kRelaxation * force, moment / push};
 }
 
-double HeldLine::Leap::allows(const ToolMove& leap) const {
-  return std::min(move_mm / std::max(move_mm, leap.translation_mm.norm()),
-                  turn_rad / std::max(turn_rad, leap.rotation_rad.norm()));
-}
-
-// As much as the device moves may be gone the other way: a line that went along with a device that draws back
-// would give the hand more than it put in. A line that is not held goes to the device as it may.
-HeldLine::Leap HeldLine::leap_in_a_stride(const ToolMove& device, double dt_s, double part) const {
-  if (!held_back_) return {kAnyLeap, kAnyLeap};
-  const double tick_s = std::clamp(dt_s, 0.0, kMaxTick_s);
-  const double device_mm = device.translation_mm.norm();
-  return {
-      part * (device_mm + kLeap_mm_s * tick_s) + kLeast,
-      part * (device.rotation_rad.norm() + kTurnByMove * device_mm / span_.end_mm + kLeap_rad_s * tick_s) +
-          kLeast};
-}
-
 void HeldLine::follow(const Pose& X_WD, double dt_s) {
-  if (!placed_) X_WL_ = X_WD_before_ = X_WD;
-  if (!placed_ || carried_) {
+  if (carried_) {
     X_WL_ = X_WD;
-    carried_ = is_in_bone(X_WL_);
-    placed_ = true;
-  }
-  if (!carried_) {
+    carried_ = is_in_bone(X_WD);
+  } else {
     const ToolMove device = move_between(X_WD_before_, X_WD);
     const double way_mm = travel_mm(held_back_ ? device : move_between(X_WL_, X_WD));
     const int strides = std::clamp(static_cast<int>(std::ceil(way_mm / kStride_mm)), 1, kStrides);
     const double part = 1.0 / strides;
-    const Leap most = leap_in_a_stride(device, dt_s, part);
+    Pose before = X_WD_before_;
     for (int n = 1; n <= strides && !is_at(X_WL_, X_WD); ++n) {
-      slide(part * device, moved(X_WD, -(1 - n * part) * device), most);
+      const Pose next = n == strides ? X_WD : moved(X_WD_before_, n * part * device);
+      slide(before, next, part * dt_s);
+      before = next;
     }
     held_back_ = tip_rests_ || shaft_push_ || (held_back_ && !is_at(X_WL_, X_WD));
   }

@@ -19,7 +19,7 @@ struct LineSprings {
 /// energy is least among the poses that the bone leaves it. It moves by strides and looks where each would
 /// end: what it meets there, as the planes of tip and shaft, limits the stride, and it looks again. It ends
 /// outside bone, and does not stretch the springs but by what it takes to climb over the voxels' roughness.
-/// Where the bone lets it leap, it goes at a limited speed beside the device's own.
+/// Where the bone lets it leap, it goes at a limited speed beside the device's own (`move_bound`).
 ///
 /// A line that begins in bone goes with the device, and is not held, until it is outside.
 class HeldLine {
@@ -62,24 +62,16 @@ class HeldLine {
   static constexpr std::size_t kLimits = (kLooks + 1) * (ShaftContacts::kMax + 1);
 
   double travel_mm(const ToolMove& move) const;
+  double reach_mm() const;
   bool add_tip_limit(const Pose& X_WL, const ToolMove& at);
   bool add_shaft_limits(const Pose& X_WL, const ToolMove& at);
   bool add_limit(const Vec3& out_W, double depth_mm, const ToolMove& at, bool is_tip, const Vec3& arm_W);
   ToolMove allowed(const ToolMove& wanted);
-  ToolMove stride(const ToolMove& move, double longest_mm) const;
-  ToolMove look_along(const ToolMove& wanted, double longest_mm);
-  // How far the line may go beyond the device's own movement.
-  struct Leap {
-    double move_mm;
-    double turn_rad;
-    // What share of a leap that is.
-    double allows(const ToolMove& leap) const;
-  };
-  Leap leap_in_a_stride(const ToolMove& device, double dt_s, double part) const;
-  ToolMove held_to(const Leap& most, const ToolMove& device, ToolMove move);
+  ToolMove stride(const ToolMove& move) const;
+  ToolMove look_along(const ToolMove& wanted);
   double energy_mm2(const Pose& X_WL, const Pose& X_WD) const;
   bool go(const ToolMove& move, const Pose& X_WD);
-  void slide(const ToolMove& device, const Pose& X_WD, const Leap& most);
+  void slide(const Pose& X_WD_before, const Pose& X_WD, double dt_s);
   void take_pushes();
   bool is_in_bone(const Pose& X_WL) const;
 
@@ -90,8 +82,7 @@ class HeldLine {
   // What a turn costs against a shift: mm^2.
   double turn_weight_mm2_ = 1;
 
-  bool placed_ = false;
-  bool carried_ = false;
+  bool carried_ = true;
   bool held_back_ = false;
   double climbed_mm2_ = 0;
   Pose X_WL_;

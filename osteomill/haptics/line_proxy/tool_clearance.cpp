@@ -6,13 +6,13 @@
 #include <optional>
 
 #include "osteomill/haptics/line_proxy/bone_surface.h"
+#include "osteomill/tool/sample_points.h"
 #include "osteomill/volume/sampling.h"
 
 namespace osteomill::line_proxy {
 
 namespace {
 
-constexpr double kTolerance_mm = 1e-3;
 // A deeper place is looked for only where it is this much deeper.
 constexpr double kWorthIt_mm = 0.02;
 constexpr double kSliceSpacing_mm = 1.0;
@@ -28,42 +28,21 @@ struct Overlap {
 
 // Bone between a point of the tool's surface and the middle, where it reaches deeper than what is known.
 void look(const Volume& volume, const Vec3& middle_W, const Vec3& radius_W, std::optional<Overlap>& deepest) {
-  if (!is_bone_at(volume, middle_W + radius_W)) return;
   const double radius_mm = radius_W.norm();
-  if (deepest) {
-    const double min_mm = deepest->depth_mm + kWorthIt_mm;
-    if (!(min_mm < radius_mm) || !is_bone_at(volume, middle_W + (1.0 - min_mm / radius_mm) * radius_W))
-      return;
+  const double min_mm = deepest ? std::min(radius_mm, deepest->depth_mm + kWorthIt_mm) : 0;
+  if (!is_bone_at(volume, middle_W + radius_W) ||
+      !is_bone_at(volume, middle_W + (1 - min_mm / radius_mm) * radius_W) || is_bone_at(volume, middle_W)) {
+    return;
   }
-  const double step_mm = 0.5 * volume.geometry().spacing_mm.minCoeff();
-  Vec3 free_W = middle_W;
-  Vec3 inside_W = middle_W + radius_W;
-  for (double reach_mm = step_mm; reach_mm < radius_mm; reach_mm += step_mm) {
-    const Vec3 here_W = middle_W + reach_mm / radius_mm * radius_W;
-    if (is_bone_at(volume, here_W)) {
-      inside_W = here_W;
-      break;
-    }
-    free_W = here_W;
+  if (const auto surface_W = first_crossing(volume, middle_W, middle_W + radius_W)) {
+    deepest = Overlap{middle_W, *surface_W, radius_mm, radius_mm - (*surface_W - middle_W).norm()};
   }
-  if (is_bone_at(volume, free_W)) return;  // the middle itself
-  const Vec3 surface_W = bisect_crossing(volume, free_W, inside_W, kTolerance_mm);
-  const double depth_mm = radius_mm - (surface_W - middle_W).norm();
-  deepest = Overlap{middle_W, surface_W, radius_mm, depth_mm};
-}
-
-constexpr int kBurrDirections = 26;
-
-// Towards the corners, edges and faces of a cube about the burr, in T.
-Vec3 burr_direction(int n) {
-  const int cell = n < kBurrDirections / 2 ? n : n + 1;  // the middle one is no direction
-  return Vec3(cell % 3 - 1, cell / 3 % 3 - 1, cell / 9 - 1).normalized();
 }
 
 std::optional<Overlap> deepest_overlap(const Volume& volume, const MillingTool& tool, const Pose& X_WT) {
   std::optional<Overlap> deepest;
-  for (int n = 0; n < kBurrDirections; ++n) {
-    look(volume, X_WT.position_mm, tool.burr_radius_mm * (X_WT.orientation * burr_direction(n)), deepest);
+  for (const Vec3& point_T : sphere_vertices(tool)) {
+    look(volume, X_WT.position_mm, X_WT.orientation * point_T, deepest);
   }
   const int slices = std::max(1, static_cast<int>(tool.shaft_length_mm / kSliceSpacing_mm));
   for (int slice = 1; slice <= slices; ++slice) {
