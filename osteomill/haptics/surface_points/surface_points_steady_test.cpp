@@ -248,25 +248,6 @@ TEST(SurfacePointsSteady, AHandThatPressesIsCalm) {
   }
 }
 
-// The springs have no potential: without damping across the force it would circle.
-TEST(SurfacePointsSteady, ABurrPressedIntoAPitDoesNotCircle) {
-  const Volume volume = shape_volume(centred_cube(64, 0.25), [](const Vec3& p) {
-    return std::max(p.z(), 2.0 - (p - Vec3(0, 0, 0.5)).norm());
-  });
-  auto algorithm = prepared(volume, steady());
-  HandAndHandle handle;
-  handle.position_mm = {0, 0, 2};
-  double squares = 0;
-  Vec3 slow = Vec3::Zero();
-  for (int n = 0; n < 4000; ++n) {
-    const HapticStep step = algorithm.step({handle.read(), Quat::Identity()}, kDt);
-    slow += 0.1 * (step.wrench.force_N - slow);
-    if (n >= 3000) squares += (step.wrench.force_N - slow).squaredNorm();
-    handle.advance(step.wrench.force_N, {0.3, 0.1, -20}, Vec3::Zero());
-  }
-  EXPECT_LT(std::sqrt(squares / 1000), 0.03);
-}
-
 // Pushes of 2 to 10 N at 20 to 300 mm/s, from any side and with the tool at any angle, onto a wall 1 mm thick
 // and onto one that is thinner than how far the tool sees.
 class ThinWall : public ::testing::TestWithParam<double> {};
