@@ -242,8 +242,7 @@ RunDescription read_description(const fs::path& path, hid_t file) {
   if (!read.has(kLabel)) run.algorithm = by_its_name(run.algorithm.name);
   if (!is_usable(run.algorithm))
     throw InputError(path.string(), "its algorithm has a name, label or colour that cannot be used");
-  if (!is_plain_name(run.phase))
-    throw InputError(path.string(), "the attribute 'phase' is not a plain name");
+  if (!is_plain_name(run.phase)) throw InputError(path.string(), "the attribute 'phase' is not a plain name");
   require_sound(path, run);
   run.settings = read_settings(path, file);
   run.labels = read_labels(path, file);

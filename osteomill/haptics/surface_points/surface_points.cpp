@@ -150,14 +150,12 @@ Vec3 SurfacePoints::soften(const Vec3& force_N) const {
   return (force_at_slope + slope * depth_beyond) / force * force_N;
 }
 
-double SurfacePoints::damping(const Vec3& force_N, const Vec3& overlap_W_mm, double dt_s) {
+Vec3 SurfacePoints::damping_N(double force_N, const Vec3& overlap_W_mm, double dt_s) {
   const Vec3 rate = dt_s > 0 ? Vec3((overlap_W_mm - last_overlap_W_mm_) / dt_s) : Vec3(Vec3::Zero());
   last_overlap_W_mm_ = overlap_W_mm;
   overlap_rate_W_mm_s_ += dt_s / (dt_s + kRateFilter_s) * (rate - overlap_rate_W_mm_s_);
-  const double force = force_N.norm();
-  if (force == 0) return 1;
-  const double sinking_mm_s = -overlap_rate_W_mm_s_.dot(force_N) / force;
-  return std::clamp(1 + kContactDamping_s_per_mm * sinking_mm_s, 0.0, 2.0);
+  const Vec3 share = kContactDamping_s_per_mm * overlap_rate_W_mm_s_;
+  return -force_N / std::max(1.0, share.norm()) * share;
 }
 
 // The vertices go with the device, but no farther ahead of the held tool than their centres stay in what it
@@ -204,8 +202,8 @@ HapticStep SurfacePoints::step(const Pose& X_WD, double dt_s) {
   if (held_tool_) {
     result.wrench.force_N += at.coupled * at.held.wrench.force_N;
     result.wrench.torque_Nmm += at.coupled * at.held.wrench.torque_Nmm;
-    const double damped = damping(result.wrench.force_N, X_WD.position_mm - result.X_WT.position_mm, dt_s);
-    result.wrench.force_N *= damped;
+    result.wrench.force_N +=
+        damping_N(result.wrench.force_N.norm(), X_WD.position_mm - result.X_WT.position_mm, dt_s);
     // Of what the hand gives, a wall or the shaft may hold a part: the held tool tells what the burr presses
     // on.
     const double felt = result.wrench.force_N.norm() / at.held.wrench.force_N.norm();

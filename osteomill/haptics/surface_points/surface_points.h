@@ -57,7 +57,7 @@ class SurfacePoints final : public HapticAlgorithm {
   Vec3 reach_of(const Vec3& vertex_W, const Vec3& centre_W, double free_mm) const;
   bool in_bone(const Vec3& point_W) const;
   Vec3 soften(const Vec3& force_N) const;
-  double damping(const Vec3& force_N, const Vec3& overlap_W_mm, double dt_s);
+  Vec3 damping_N(double force_N, const Vec3& overlap_W_mm, double dt_s);
 
   Settings settings_;
   const Volume* volume_ = nullptr;

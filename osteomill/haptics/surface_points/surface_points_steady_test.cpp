@@ -282,6 +282,33 @@ TEST_P(ThinWall, NoPushGoesThrough) {
   }
 }
 
+// All of the bone at once.
+TEST(SurfacePointsSteady, WhereBoneGivesWayTheForceFadesAndDoesNotStep) {
+  Volume volume = slope(Vec3::UnitZ());
+  auto algorithm = prepared(volume, steady());
+  const Pose X{{0, 0, 0.9}, Quat::Identity()};
+  Vec3 before = walk(algorithm, {0, 0, 2}, X.position_mm, X.orientation).wrench.force_N;
+  EXPECT_GT(before.z(), 1.0);
+  VolumeChange change;
+  const auto [columns, rows, layers] = volume.geometry().dims;
+  for (int k = 0; k < layers; ++k) {
+    for (int j = 0; j < rows; ++j) {
+      for (int i = 0; i < columns; ++i) volume.lower_density({i, j, k}, volume.grid()[{0, 0, layers - 1}]);
+    }
+  }
+  change.voxels.include({0, 0, 0});
+  change.voxels.include({columns - 1, rows - 1, layers - 1});
+  algorithm.volume_changed(change);
+  double largest = 0;
+  for (int n = 0; n < 500; ++n) {
+    const Vec3 force = algorithm.step(X, kDt).wrench.force_N;
+    largest = std::max(largest, (force - before).norm());
+    before = force;
+  }
+  EXPECT_LT(largest, 0.2);
+  EXPECT_EQ(before, Vec3::Zero());
+}
+
 TEST(SurfacePointsSteady, NothingIsFeltWhereItStartsInside) {
   const Volume volume = slope(Vec3::UnitZ());
   auto algorithm = prepared(volume, steady());
