@@ -243,7 +243,7 @@ void BarrierShell::watch_energy(const State& state) {
 }
 
 // Nothing near, nothing held back, and free space all the way.
-bool BarrierShell::may_fly(const Pose& X_WD, const MoveBound& bound) const {
+bool BarrierShell::may_fly(const Pose& X_WD, const MoveBound& bound) {
   const ToolMove move = move_between(X_WT_, X_WD);
   const Room way = room_of(move);
   return near_.is_empty() && share_within(bound, move) >= 1 && way.move_mm <= kFarthestFlight.move_mm &&

@@ -50,15 +50,12 @@ void NearBone::gather(BoneBricks& bricks, const Cores& cores, const Barrier& bar
   const ToolFromGrid X_TG(lattice, X_WT);
   const Meeting meets = meeting(cores, barrier, room);
   const Reach reach{meets.reach_mm, room.turn_rad};
-  const auto is_node_clear = [&](int level, int i, int j, int k) {
-    const Vec3 middle_T = X_TG * bricks.node_middle_G(level, i, j, k);
-    const double radius = bricks.node_radius_mm(level);
-    return !meets.ball(middle_T, radius) && !meets.cylinder(middle_T, radius);
+  const auto meets_node = [&](const Vec3& middle_G, double radius_mm) {
+    const Vec3 middle_T = X_TG * middle_G;
+    return meets.ball(middle_T, radius_mm) || meets.cylinder(middle_T, radius_mm);
   };
-  bricks.octree().visit(is_node_clear, [&](int i, int j, int k) {
-    const std::uint32_t slot = bricks.slot_of({i, j, k});
-    if (slot == BoneBricks::kNoPoints) return;
-    const Vec3 origin_T = X_TG * lattice.brick_origin_G({i, j, k});
+  bricks.visit(meets_node, [&](const VoxelIndex& brick_index, std::uint32_t slot) {
+    const Vec3 origin_T = X_TG * lattice.brick_origin_G(brick_index);
     const Frame frame = frame_of(X_TG.turn, origin_T);
     const auto each = [&](const BrickPoints& points, auto&& meets_core, auto&& gather_points,
                           NearPoints& near) {
@@ -89,19 +86,14 @@ double NearBone::certified(const MoveT& move, const Barrier& barrier) const {
       std::max(max_use_by_ball(ball_, move, barrier), max_use_by_cylinder(cylinder_, move, barrier)));
 }
 
-bool is_clear(const BoneBricks& bricks, const Cores& cores, const Barrier& barrier, const Pose& X_WT,
+bool is_clear(BoneBricks& bricks, const Cores& cores, const Barrier& barrier, const Pose& X_WT,
               const Room& room) {
   const ToolFromGrid X_TG(bricks.lattice(), X_WT);
   const Meeting meets = meeting(cores, barrier, room);
-  bool clear = true;
-  const auto is_node_clear = [&](int level, int i, int j, int k) {
-    if (!clear) return true;
-    const Vec3 middle_T = X_TG * bricks.node_middle_G(level, i, j, k);
-    const double radius = bricks.node_radius_mm(level);
-    return !meets.ball(middle_T, radius) && !meets.cylinder(middle_T, radius);
-  };
-  bricks.octree().visit(is_node_clear, [&](int, int, int) { clear = false; });
-  return clear;
+  return !bricks.may_hold_points([&](const Vec3& middle_G, double radius_mm) {
+    const Vec3 middle_T = X_TG * middle_G;
+    return meets.ball(middle_T, radius_mm) || meets.cylinder(middle_T, radius_mm);
+  });
 }
 
 }  // namespace osteomill::barrier_shell

@@ -43,7 +43,7 @@ class NearBone {
 
 /// Whether no bone can be within the room of the tool at `X_WT`; makes no bricks, and may say no where it is
 /// so.
-bool is_clear(const BoneBricks& bricks, const Cores& cores, const Barrier& barrier, const Pose& X_WT,
+bool is_clear(BoneBricks& bricks, const Cores& cores, const Barrier& barrier, const Pose& X_WT,
               const Room& room);
 
 }  // namespace osteomill::barrier_shell

@@ -101,16 +101,13 @@ ToolContacts contacts_by_bricks(BoneBricks& bricks, const MillingTool& milling_t
   KernelFrame frame = kernel_frame(X_TG.turn);
   KernelSums sums;
   ToolContacts contacts;
-  const auto is_node_clear = [&](int level, int i, int j, int k) {
-    return is_clear(milling_tool, X_TG * bricks.node_middle_G(level, i, j, k),
-                    bricks.node_radius_mm(level) + beyond_mm);
+  const auto meets_node = [&](const Vec3& middle_G, double radius_mm) {
+    return !is_clear(milling_tool, X_TG * middle_G, radius_mm + beyond_mm);
   };
-  bricks.octree().visit(is_node_clear, [&](int bi, int bj, int bk) {
-    const std::uint32_t slot = bricks.slot_of({bi, bj, bk});
-    if (slot == BoneBricks::kNoPoints) return;
+  bricks.visit(meets_node, [&](const VoxelIndex& brick_index, std::uint32_t slot) {
     const BrickPoints::Brick& brick = points.brick(slot);
     const double radius_mm = static_cast<double>(brick.bound.radius_mm);
-    const Vec3 origin_T = X_TG * bricks.lattice().brick_origin_G({bi, bj, bk});
+    const Vec3 origin_T = X_TG * bricks.lattice().brick_origin_G(brick_index);
     const Vec3 centre_T = origin_T + X_TG.turn * brick.bound.centre();
     if (is_clear(milling_tool, centre_T, radius_mm + beyond_mm)) return;
     for (int axis = 0; axis < 3; ++axis) frame.origin_mm[axis] = origin_T[axis];

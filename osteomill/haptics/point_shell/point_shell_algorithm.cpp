@@ -72,7 +72,7 @@ void PointShellAlgorithm::reset() {
 }
 
 int PointShellAlgorithm::sample_point_count() const {
-  return static_cast<int>(settings_.surface_shell ? surface_.octree().total() : voxels_.point_count());
+  return static_cast<int>(settings_.surface_shell ? surface_.fine().total() : voxels_.point_count());
 }
 
 void PointShellAlgorithm::volume_changed(const VolumeChange& change) {
