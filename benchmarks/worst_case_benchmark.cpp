@@ -62,7 +62,7 @@ void sleeved_contacts(benchmark::State& state, double spacing_mm) {
     looks.report(state);
   }
   state.counters["contacts"] = touching;
-  state.counters["sample_points"] = bricks.fine().total();
+  state.counters["sample_points"] = static_cast<double>(bricks.fine().total());
 }
 
 const bool kAdded = [] {
