@@ -5,8 +5,8 @@
 #include "osteomill/haptics/barrier_shell/barrier_shell_counts.h"
 #include "osteomill/haptics/barrier_shell/barrier_shell_description.h"
 #include "osteomill/haptics/barrier_shell/coupling.h"
-#include "osteomill/haptics/barrier_shell/near_bone.h"
 #include "osteomill/haptics/bone_points/bone_bricks.h"
+#include "osteomill/haptics/bone_points/near_bone.h"
 #include "osteomill/haptics/haptic_algorithm.h"
 #include "osteomill/haptics/tool_move.h"
 

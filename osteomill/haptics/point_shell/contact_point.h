@@ -3,9 +3,9 @@
 #include <optional>
 
 #include "osteomill/haptics/bone_points/brick_points.h"
+#include "osteomill/haptics/bone_points/penalty.h"
 #include "osteomill/haptics/bone_points/tool_from_grid.h"
 #include "osteomill/haptics/point_shell/contact_sum.h"
-#include "osteomill/haptics/point_shell/penalty.h"
 #include "osteomill/haptics/point_shell/tool_signed_distance.h"
 
 namespace osteomill::point_shell {

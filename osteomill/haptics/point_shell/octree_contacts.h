@@ -1,7 +1,7 @@
 #pragma once
 
+#include "osteomill/haptics/bone_points/penalty.h"
 #include "osteomill/haptics/point_shell/contact_sum.h"
-#include "osteomill/haptics/point_shell/penalty.h"
 #include "osteomill/haptics/point_shell/tool_signed_distance.h"
 #include "osteomill/haptics/point_shell/voxel_shell.h"
 

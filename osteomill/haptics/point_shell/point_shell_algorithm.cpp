@@ -13,6 +13,7 @@ namespace osteomill::point_shell {
 
 namespace {
 
+constexpr std::size_t kNearPoints = 65536;
 // Newton steps a tick; the second only where the first moved the tool by more than this.
 constexpr int kSteps = 2;
 constexpr double kSettled_mm = 0.005;
@@ -51,6 +52,7 @@ void PointShellAlgorithm::prepare(const Scene& scene) {
   penalty_.stiffness_N_per_mm3 = contact_stiffness_N_per_mm3(settings_, scene.tool);
   if (settings_.surface_shell) {
     surface_ = BoneBricks(*scene.volume, settings_.scale * BoneBricks::kSpacing_mm, BoneBricks::Points::fine);
+    near_ = NearBone(kNearPoints, NearBone::PointsMeet::the_nearest_part);
     // Seen from a corner the surface in a cell is at most about twice a cell's side.
     penalty_.max_patch_mm2 = 2 * surface_.lattice().cell_area_mm2();
     tool_ = ToolSignedDistance(scene.tool);
@@ -85,7 +87,7 @@ void PointShellAlgorithm::volume_changed(const VolumeChange& change) {
 }
 
 ToolContacts PointShellAlgorithm::contacts_at(const Pose& X_WT) {
-  return settings_.surface_shell ? contacts_by_bricks(surface_, tool_.tool(), X_WT, penalty_)
+  return settings_.surface_shell ? contacts_by_bricks(surface_, near_, tool_.tool(), X_WT, penalty_)
                                  : contacts_by_octree(voxels_, tool_, X_WT, penalty_);
 }
 

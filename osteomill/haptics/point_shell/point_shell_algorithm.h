@@ -2,9 +2,9 @@
 
 #include <vector>
 
-#include "osteomill/haptics/bone_points/bone_bricks.h"
+#include "osteomill/haptics/bone_points/near_bone.h"
+#include "osteomill/haptics/bone_points/penalty.h"
 #include "osteomill/haptics/haptic_algorithm.h"
-#include "osteomill/haptics/point_shell/penalty.h"
 #include "osteomill/haptics/point_shell/point_shell_description.h"
 #include "osteomill/haptics/point_shell/tool_signed_distance.h"
 #include "osteomill/haptics/point_shell/virtual_coupling.h"
@@ -47,6 +47,7 @@ class PointShellAlgorithm final : public HapticAlgorithm {
   // The bone, one or the other.
   VoxelShell voxels_;
   BoneBricks surface_;
+  NearBone near_;
   Penalty penalty_;
 
   bool refreshed_this_tick_ = false;
