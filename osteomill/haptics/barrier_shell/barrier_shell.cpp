@@ -170,7 +170,6 @@ void BarrierShell::reset() {
 
 void BarrierShell::volume_changed(const VolumeChange& change) {
   bricks_.refresh(change.voxels);
-  refreshed_this_tick_ = true;
 }
 
 Cores BarrierShell::cores() const {
@@ -362,9 +361,7 @@ HapticStep BarrierShell::report(const State& state, const Pose& X_WD, double dt_
 }
 
 HapticStep BarrierShell::step(const Pose& X_WD, double dt_s) {
-  if (!refreshed_this_tick_ && !bricks_.is_up_to_date()) bricks_.refresh({});
-  refreshed_this_tick_ = false;
-  bricks_.make_room(tool_, X_WT_);
+  bricks_.begin_tick(tool_, X_WT_);
   ++counts_.ticks;
   if (!has_pose_) begin(X_WD);
   if (carried_) {

@@ -59,7 +59,6 @@ class BarrierShell final : public HapticAlgorithm {
   std::vector<Vec3> centreline_T_;
   BoneBricks bricks_;
   NearBone near_;
-  bool refreshed_this_tick_ = false;
 
   bool has_pose_ = false;
   Pose X_WT_;

@@ -112,6 +112,7 @@ int BoneBricks::make(const VoxelIndex& brick, std::uint32_t& place) {
 }
 
 void BoneBricks::refresh(const VoxelBox& voxels, int budget) {
+  refreshed_ = true;
   sweep_.wait_for(voxels);
   int spent = 0;
   while (spent < budget && (sweep_.is_walking() || start_sweep())) {

@@ -114,6 +114,13 @@ class BoneBricks {
   bool is_up_to_date() const { return sweep_.is_idle(); }
   /// Makes room if little is left, by forgetting what is not near the tool.
   void make_room(const MillingTool& tool, const Pose& X_WT);
+  /// What a tick begins with: that, and what still waits to be brought up to date, where nothing fell since
+  /// the tick before.
+  void begin_tick(const MillingTool& tool, const Pose& X_WT) {
+    if (!refreshed_ && !is_up_to_date()) refresh({});
+    refreshed_ = false;
+    make_room(tool, X_WT);
+  }
   /// Points that found no room as bricks that had some grew.
   std::uint64_t dropped() const { return fine_.dropped() + coarse_.dropped(); }
 
@@ -179,6 +186,7 @@ class BoneBricks {
   std::size_t next_to_forget_ = 0;
   std::size_t next_node_to_forget_ = 0;
   BrickSweep sweep_;
+  bool refreshed_ = false;
   std::unique_ptr<SurfaceLattice::BrickSurface> found_;
 };
 

@@ -77,10 +77,11 @@ void NearBone::gather(BoneBricks& bricks, const Cores& cores, double reach_mm, c
   close_gathering(cylinder_);
 }
 
-Frame NearBone::moved_since_gathering(const Pose& X_WT) const {
+NearBone::Energy NearBone::energy(const Cores& cores, const PushLaw& law, const Pose& X_WT) {
   const Mat3 R_TW = X_WT.orientation.conjugate().toRotationMatrix();
-  return frame_of(R_TW * X_WT_gathered_.orientation.toRotationMatrix(),
-                  R_TW * (X_WT_gathered_.position_mm - X_WT.position_mm));
+  const Frame moved = frame_of(R_TW * X_WT_gathered_.orientation.toRotationMatrix(),
+                               R_TW * (X_WT_gathered_.position_mm - X_WT.position_mm));
+  return {ball_energy(ball_, moved, cores, law), cylinder_energy(cylinder_, moved, cores, law)};
 }
 
 double NearBone::max_use(const MoveT& move, const Barrier& barrier) const {

@@ -36,19 +36,13 @@ class NearBone {
     EnergySum ball;
     EnergySum cylinder;
   };
-  /// By a barrier, or a penalty, at a pose within the room of the last gathering.
-  template <typename Law>
-  Energy energy(const Cores& cores, const Law& law, const Pose& X_WT) {
-    const Frame moved = moved_since_gathering(X_WT);
-    return {ball_energy(ball_, moved, cores, law), cylinder_energy(cylinder_, moved, cores, law)};
-  }
+  /// At a pose within the room of the last gathering.
+  Energy energy(const Cores& cores, const PushLaw& law, const Pose& X_WT);
   /// The greatest share of any point's distance that a move from the pose of the last `energy` by a barrier
   /// may use up.
   double max_use(const MoveT& move, const Barrier& barrier) const;
 
  private:
-  Frame moved_since_gathering(const Pose& X_WT) const;
-
   PointsMeet meet_;
   Pose X_WT_gathered_;
   NearPoints ball_;

@@ -334,29 +334,28 @@ HWY_INLINE void sum_side_by(const Law& law, NearPoints& near, const Frame& moved
   lanes.touching += static_cast<int>(touching);
 }
 
-BarrierLaw law_of(const Barrier& barrier) {
-  return {static_cast<float>(barrier.width_mm), static_cast<float>(barrier.pressure_N_per_mm2)};
-}
-PenaltyLaw law_of(const Penalty& penalty, float curvature) {
-  return {static_cast<float>(penalty.stiffness_N_per_mm3), static_cast<float>(penalty.max_patch_mm2),
-          static_cast<float>(penalty.reach_mm()), curvature};
+// Calls `sum` with the law as the kernels read it; `curvature` is the sum of the part's principal curvatures.
+template <typename Sum>
+HWY_INLINE void with_law(const PushLaw& law, float curvature, const Sum& sum) {
+  if (const auto* barrier = std::get_if<Barrier>(&law)) {
+    sum(BarrierLaw{static_cast<float>(barrier->width_mm), static_cast<float>(barrier->pressure_N_per_mm2)});
+  } else if (const auto* penalty = std::get_if<Penalty>(&law)) {
+    sum(PenaltyLaw{static_cast<float>(penalty->stiffness_N_per_mm3),
+                   static_cast<float>(penalty->max_patch_mm2), static_cast<float>(penalty->reach_mm()),
+                   curvature});
+  }
 }
 
-void SumBallByBarrier(NearPoints& near, const Frame& moved, const KernelShape& shape, const Barrier& law,
-                      BallLanes& lanes) {
-  sum_ball_by(law_of(law), near, moved, shape, lanes);
+void SumBall(NearPoints& near, const Frame& moved, const KernelShape& shape, const PushLaw& law,
+             BallLanes& lanes) {
+  with_law(law, 2 / shape.ball_radius,
+           [&](const auto& by) HWY_ATTR { sum_ball_by(by, near, moved, shape, lanes); });
 }
-void SumBallByPenalty(NearPoints& near, const Frame& moved, const KernelShape& shape, const Penalty& law,
-                      BallLanes& lanes) {
-  sum_ball_by(law_of(law, 2 / shape.ball_radius), near, moved, shape, lanes);
-}
-void SumSideByBarrier(NearPoints& near, const Frame& moved, const KernelShape& shape, const Barrier& law,
-                      SideLanes& lanes) {
-  sum_side_by(law_of(law), near, moved, shape, lanes);
-}
-void SumSideByPenalty(NearPoints& near, const Frame& moved, const KernelShape& shape, const Penalty& law,
-                      SideLanes& lanes) {
-  sum_side_by(law_of(law, 1 / shape.cylinder_radius), near, moved, shape, lanes);
+
+void SumSide(NearPoints& near, const Frame& moved, const KernelShape& shape, const PushLaw& law,
+             SideLanes& lanes) {
+  with_law(law, 1 / shape.cylinder_radius,
+           [&](const auto& by) HWY_ATTR { sum_side_by(by, near, moved, shape, lanes); });
 }
 
 // `use` of every group of points.
@@ -399,10 +398,8 @@ namespace osteomill {
 
 HWY_EXPORT(GatherNearBall);
 HWY_EXPORT(GatherNearCylinder);
-HWY_EXPORT(SumBallByBarrier);
-HWY_EXPORT(SumBallByPenalty);
-HWY_EXPORT(SumSideByBarrier);
-HWY_EXPORT(SumSideByPenalty);
+HWY_EXPORT(SumBall);
+HWY_EXPORT(SumSide);
 HWY_EXPORT(GreatestUseByBall);
 HWY_EXPORT(GreatestUseByCylinder);
 
@@ -429,21 +426,14 @@ void gather_near_cylinder(const BrickPoints& points, std::uint32_t first_chunk, 
    static_cast<float>(reach.per_lever), reach.nearest_alone, near);
 }
 
-void sum_ball(NearPoints& near, const Frame& moved, const Cores& cores, const Barrier& law,
+void sum_ball(NearPoints& near, const Frame& moved, const Cores& cores, const PushLaw& law,
               BallLanes& lanes) {
-  HWY_DYNAMIC_DISPATCH(SumBallByBarrier)(near, moved, kernel_shape(cores), law, lanes);
+  HWY_DYNAMIC_DISPATCH(SumBall)(near, moved, kernel_shape(cores), law, lanes);
 }
-void sum_ball(NearPoints& near, const Frame& moved, const Cores& cores, const Penalty& law,
-              BallLanes& lanes) {
-  HWY_DYNAMIC_DISPATCH(SumBallByPenalty)(near, moved, kernel_shape(cores), law, lanes);
-}
-void sum_side(NearPoints& near, const Frame& moved, const Cores& cores, const Barrier& law,
+
+void sum_side(NearPoints& near, const Frame& moved, const Cores& cores, const PushLaw& law,
               SideLanes& lanes) {
-  HWY_DYNAMIC_DISPATCH(SumSideByBarrier)(near, moved, kernel_shape(cores), law, lanes);
-}
-void sum_side(NearPoints& near, const Frame& moved, const Cores& cores, const Penalty& law,
-              SideLanes& lanes) {
-  HWY_DYNAMIC_DISPATCH(SumSideByPenalty)(near, moved, kernel_shape(cores), law, lanes);
+  HWY_DYNAMIC_DISPATCH(SumSide)(near, moved, kernel_shape(cores), law, lanes);
 }
 
 double max_use_by_ball(const NearPoints& near, const MoveT& move, double min_distance_mm) {

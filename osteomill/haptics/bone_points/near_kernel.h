@@ -1,11 +1,7 @@
 #pragma once
 
-#include "osteomill/haptics/bone_points/barrier.h"
 #include "osteomill/haptics/bone_points/brick_points.h"
-#include "osteomill/haptics/bone_points/cores.h"
-#include "osteomill/haptics/bone_points/energy_sum.h"
 #include "osteomill/haptics/bone_points/near_points.h"
-#include "osteomill/haptics/bone_points/penalty.h"
 
 namespace osteomill {
 
@@ -50,12 +46,10 @@ struct SideLanes {
   int touching = 0;
 };
 
-/// By a barrier, or a penalty, of points gathered by a tool whose frame then is `moved` seen from now.
-void sum_ball(NearPoints& near, const Frame& moved, const Cores& cores, const Barrier& law, BallLanes& lanes);
-void sum_ball(NearPoints& near, const Frame& moved, const Cores& cores, const Penalty& law, BallLanes& lanes);
+/// Of points gathered by a tool whose frame then is `moved` seen from now.
+void sum_ball(NearPoints& near, const Frame& moved, const Cores& cores, const PushLaw& law, BallLanes& lanes);
 /// Points at the ends are listed in `near.at_end` and left out.
-void sum_side(NearPoints& near, const Frame& moved, const Cores& cores, const Barrier& law, SideLanes& lanes);
-void sum_side(NearPoints& near, const Frame& moved, const Cores& cores, const Penalty& law, SideLanes& lanes);
+void sum_side(NearPoints& near, const Frame& moved, const Cores& cores, const PushLaw& law, SideLanes& lanes);
 
 /// The greatest `distance_used / distance` of a move, at the distances of the last sum by a barrier, of which
 /// none counts as less than `min_distance_mm`; at least 0.

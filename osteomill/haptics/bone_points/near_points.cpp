@@ -90,51 +90,20 @@ EnergySum ball_sum(const BallLanes& lanes) {
 }
 
 // What a point at an end of the cylinder pushes with.
-Barrier::Value push_at_end(const Barrier& law, const NearPoints& near, std::size_t n, const Frame&,
-                           const Cores&, const CoreDistance& distance) {
-  return static_cast<double>(near.area[n]) * law.at(distance.distance_mm);
-}
-Barrier::Value push_at_end(const Penalty& law, const NearPoints& near, std::size_t n, const Frame& moved,
+Barrier::Value push_at_end(const PushLaw& law, const NearPoints& near, std::size_t n, const Frame& moved,
                            const Cores& cores, const CoreDistance& distance) {
-  const Vec3 gathered = place(near.normal_x, near.normal_y, near.normal_z, n);
+  const double area_mm2 = static_cast<double>(near.area[n]);
+  if (const auto* barrier = std::get_if<Barrier>(&law)) return area_mm2 * barrier->at(distance.distance_mm);
+  const Vec3 normal = place(near.normal_x, near.normal_y, near.normal_z, n);
   double cosine = 0;
   for (int row = 0; row < 3; ++row) {
-    const auto& turn = moved.turn[row];
-    cosine += distance.outward_T[row] *
-              Vec3(static_cast<double>(turn[0]), static_cast<double>(turn[1]), static_cast<double>(turn[2]))
-                  .dot(gathered);
+    for (int column = 0; column < 3; ++column) {
+      cosine += distance.outward_T[row] * static_cast<double>(moved.turn[row][column]) * normal[column];
+    }
   }
-  const Penalty::Push push = law.push(-distance.distance_mm, static_cast<double>(near.area[n]), cosine,
-                                      1 / cores.cylinder_radius_mm);
+  const Penalty::Push push =
+      std::get_if<Penalty>(&law)->push(-distance.distance_mm, area_mm2, cosine, 1 / cores.cylinder_radius_mm);
   return {0, push.force_N, push.stiffness_N_per_mm};
-}
-
-template <typename Law>
-EnergySum ball_energy_by(const Law& law, NearPoints& near, const Frame& moved, const Cores& cores) {
-  BallLanes lanes;
-  std::fill(std::begin(lanes.nearest), std::end(lanes.nearest), PointChunk::kFarAway_mm);
-  sum_ball(near, moved, cores, law, lanes);
-  return ball_sum(lanes);
-}
-
-template <typename Law>
-EnergySum cylinder_energy_by(const Law& law, NearPoints& near, const Frame& moved, const Cores& cores) {
-  SideLanes lanes;
-  std::fill(std::begin(lanes.nearest), std::end(lanes.nearest), PointChunk::kFarAway_mm);
-  sum_side(near, moved, cores, law, lanes);
-  EnergySum sum = side_sum(lanes);
-  // Their order must not depend on the width of the registers.
-  std::sort(near.at_end.begin(), near.at_end.end());
-  for (const std::uint32_t n : near.at_end) {
-    const Vec3 point_T = place(near.x, near.y, near.z, n);
-    const CoreDistance distance = distance_to_cylinder(cores, point_T);
-    sum.add_point(push_at_end(law, near, n, moved, cores, distance), point_T, distance);
-    near.distance[n] = static_cast<float>(distance.distance_mm);
-    near.out_x[n] = static_cast<float>(distance.outward_T.x());
-    near.out_y[n] = static_cast<float>(distance.outward_T.y());
-    near.out_z[n] = static_cast<float>(distance.outward_T.z());
-  }
-  return sum;
 }
 
 }  // namespace
@@ -169,17 +138,30 @@ void close_gathering(NearPoints& near) {
   }
 }
 
-EnergySum ball_energy(NearPoints& near, const Frame& moved, const Cores& cores, const Barrier& law) {
-  return ball_energy_by(law, near, moved, cores);
+EnergySum ball_energy(NearPoints& near, const Frame& moved, const Cores& cores, const PushLaw& law) {
+  BallLanes lanes;
+  std::fill(std::begin(lanes.nearest), std::end(lanes.nearest), PointChunk::kFarAway_mm);
+  sum_ball(near, moved, cores, law, lanes);
+  return ball_sum(lanes);
 }
-EnergySum ball_energy(NearPoints& near, const Frame& moved, const Cores& cores, const Penalty& law) {
-  return ball_energy_by(law, near, moved, cores);
-}
-EnergySum cylinder_energy(NearPoints& near, const Frame& moved, const Cores& cores, const Barrier& law) {
-  return cylinder_energy_by(law, near, moved, cores);
-}
-EnergySum cylinder_energy(NearPoints& near, const Frame& moved, const Cores& cores, const Penalty& law) {
-  return cylinder_energy_by(law, near, moved, cores);
+
+EnergySum cylinder_energy(NearPoints& near, const Frame& moved, const Cores& cores, const PushLaw& law) {
+  SideLanes lanes;
+  std::fill(std::begin(lanes.nearest), std::end(lanes.nearest), PointChunk::kFarAway_mm);
+  sum_side(near, moved, cores, law, lanes);
+  EnergySum sum = side_sum(lanes);
+  // Their order must not depend on the width of the registers.
+  std::sort(near.at_end.begin(), near.at_end.end());
+  for (const std::uint32_t n : near.at_end) {
+    const Vec3 point_T = place(near.x, near.y, near.z, n);
+    const CoreDistance distance = distance_to_cylinder(cores, point_T);
+    sum.add_point(push_at_end(law, near, n, moved, cores, distance), point_T, distance);
+    near.distance[n] = static_cast<float>(distance.distance_mm);
+    near.out_x[n] = static_cast<float>(distance.outward_T.x());
+    near.out_y[n] = static_cast<float>(distance.outward_T.y());
+    near.out_z[n] = static_cast<float>(distance.outward_T.z());
+  }
+  return sum;
 }
 
 }  // namespace osteomill

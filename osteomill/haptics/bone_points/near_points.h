@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <variant>
 #include <vector>
 
 #include "osteomill/haptics/bone_points/cores.h"
@@ -41,12 +42,13 @@ Frame frame_of(const Mat3& turn, const Vec3& origin_mm);
 /// After the last brick.
 void close_gathering(NearPoints& near);
 
-/// What the points push with, by a law, and its derivatives by a move of a tool that has moved since the
-/// gathering, so that its frame then is `moved` seen from now. The same bits whatever the width of the
-/// machine's registers. Safe in the haptic tick.
-EnergySum ball_energy(NearPoints& near, const Frame& moved, const Cores& cores, const Barrier& law);
-EnergySum ball_energy(NearPoints& near, const Frame& moved, const Cores& cores, const Penalty& law);
-EnergySum cylinder_energy(NearPoints& near, const Frame& moved, const Cores& cores, const Barrier& law);
-EnergySum cylinder_energy(NearPoints& near, const Frame& moved, const Cores& cores, const Penalty& law);
+/// How points push: by a barrier, or each by its penalty.
+using PushLaw = std::variant<Barrier, Penalty>;
+
+/// What the points push with and its derivatives by a move of a tool that has moved since the gathering, so
+/// that its frame then is `moved` seen from now. The same bits whatever the width of the machine's registers.
+/// Safe in the haptic tick.
+EnergySum ball_energy(NearPoints& near, const Frame& moved, const Cores& cores, const PushLaw& law);
+EnergySum cylinder_energy(NearPoints& near, const Frame& moved, const Cores& cores, const PushLaw& law);
 
 }  // namespace osteomill

@@ -5,10 +5,9 @@
 
 namespace osteomill::point_shell {
 
-/// The points of the isosurface that push the tool at `X_WT`, summed in W's axes, as each by itself does
-/// (contact_point.h), to the rounding of single precision; what is nearest to the burr's sphere is the
-/// burr's. `near` is of points that meet the nearest part. Makes the bricks that the tool comes near. Safe in
-/// the haptic tick.
+/// The points of the isosurface that push the tool at `X_WT`, each by its penalty, summed in single precision
+/// (Eriksson 2012, 6.3), in W's axes; what is nearest to the burr's sphere is the burr's. `near` is of points
+/// that meet the nearest part. Makes the bricks that the tool comes near. Safe in the haptic tick.
 ToolContacts contacts_by_bricks(BoneBricks& bricks, NearBone& near, const MillingTool& tool, const Pose& X_WT,
                                 const Penalty& penalty);
 

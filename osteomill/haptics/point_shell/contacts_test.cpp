@@ -9,8 +9,8 @@
 
 #include "osteomill/haptics/bone_points/every_point.h"
 #include "osteomill/haptics/bone_points/near_kernel.h"
+#include "osteomill/haptics/bone_points/tool_from_grid.h"
 #include "osteomill/haptics/point_shell/brick_contacts.h"
-#include "osteomill/haptics/point_shell/contact_point.h"
 #include "osteomill/haptics/point_shell/octree_contacts.h"
 #include "osteomill/haptics/point_shell/virtual_coupling.h"
 
@@ -28,7 +28,8 @@ using testing_support::uniform;
 
 const MillingTool kTool{1.5, 1.0, 25.0};
 
-constexpr Penalty kOfPoints{20, 0};
+constexpr double kStiffness_N_per_mm3 = 20;
+constexpr Penalty kOfPoints{kStiffness_N_per_mm3, 0};
 // Patches of two cells' areas at most, as the algorithm has it.
 Penalty of_patches(const BoneBricks& bricks) {
   return {20, 2 * bricks.lattice().cell_area_mm2()};
@@ -44,13 +45,9 @@ BoneBricks fine_bricks(const Volume& volume, double spacing_mm = BoneBricks::kSp
   return BoneBricks(volume, spacing_mm, BoneBricks::Points::fine);
 }
 
-SampledDistanceField fine_field() {
-  return SampledDistanceField(kTool, SampledDistanceField::suitable_spacing_mm(kTool));
-}
-
 // The slow plain answers: every point of the shell.
 ToolContacts contacts_by_brute_force(const VoxelShell& shell, const ToolSignedDistance& tool,
-                                     const Pose& X_WT, const Penalty& penalty) {
+                                     const Pose& X_WT) {
   ToolContacts contacts;
   const Mat3 R_WT = X_WT.orientation.toRotationMatrix();
   shell.for_each_point([&](const Vec3& point_W, double area) {
@@ -58,7 +55,7 @@ ToolContacts contacts_by_brute_force(const VoxelShell& shell, const ToolSignedDi
     const auto distance = tool.distance(point_T);
     if (!distance || !(distance->distance_mm < 0)) return;
     ++contacts.touching;
-    const double k = penalty.stiffness_N_per_mm3 * area;
+    const double k = kStiffness_N_per_mm3 * area;
     (tool.is_burr(point_T) ? contacts.burr : contacts.shaft)
         .add(-k * distance->distance_mm, k, R_WT * distance->outward_T, point_W - X_WT.position_mm);
   });
@@ -139,23 +136,20 @@ GridGeometry turned_cube(int voxels, double spacing_mm) {
 TEST(OctreeContacts, FindsWhatLookingAtEveryPointFinds) {
   std::mt19937 bits(5);
   const Volume volume = shape_volume(turned_cube(60, 0.2), ball({0.3, 0.1, 0}, 5));
-  const ToolSignedDistance sampled(kTool, fine_field());
-  const ToolSignedDistance closed(kTool);
+  const ToolSignedDistance tool(kTool);
   for (const int scale : {1, 3}) {
     const VoxelShell shell(volume, scale);
     int touched = 0;
     for (int n = 0; n < 150; ++n) {
       const Pose X_WT = random_pose(bits, 7);
-      for (const ToolSignedDistance* tool : {&sampled, &closed}) {
-        const ToolContacts by_octree = contacts_by_octree(shell, *tool, X_WT, kOfPoints);
-        const ToolContacts by_all = contacts_by_brute_force(shell, *tool, X_WT, kOfPoints);
-        EXPECT_EQ(by_octree.touching, by_all.touching);
-        expect_near(by_octree.burr, by_all.burr, 1e-9);
-        expect_near(by_octree.shaft, by_all.shaft, 1e-9);
-        touched += by_all.touching > 0 ? 1 : 0;
-      }
+      const ToolContacts by_octree = contacts_by_octree(shell, tool, X_WT, kStiffness_N_per_mm3);
+      const ToolContacts by_all = contacts_by_brute_force(shell, tool, X_WT);
+      EXPECT_EQ(by_octree.touching, by_all.touching);
+      expect_near(by_octree.burr, by_all.burr, 1e-9);
+      expect_near(by_octree.shaft, by_all.shaft, 1e-9);
+      touched += by_all.touching > 0 ? 1 : 0;
     }
-    EXPECT_GT(touched, 100);
+    EXPECT_GT(touched, 50);
   }
 }
 
@@ -239,8 +233,9 @@ auto surface_points_apart(double spacing_mm) {
 
 auto voxel_centres(int scale) {
   return [scale](const Volume& volume) {
-    return [shell = VoxelShell(volume, scale), tool = ToolSignedDistance(kTool, fine_field())](
-               const Pose& X_WT) { return contacts_by_octree(shell, tool, X_WT, kOfPoints); };
+    return [shell = VoxelShell(volume, scale), tool = ToolSignedDistance(kTool)](const Pose& X_WT) {
+      return contacts_by_octree(shell, tool, X_WT, kStiffness_N_per_mm3);
+    };
   };
 }
 
@@ -327,11 +322,11 @@ TEST(BallContact, PaperIsSofterButPushesOutwards) {
   std::mt19937 bits(10);
   const Volume volume = shape_volume(centred_cube(72, 0.125), ball({0, 0, 0}, 4));
   const VoxelShell shell(volume, 1);
-  const ToolSignedDistance tool(kTool, fine_field());
+  const ToolSignedDistance tool(kTool);
   for (int n = 0; n < 100; ++n) {
     const Vec3 direction = random_vector(bits).normalized();
     const Pose X_WT{5.1 * direction, smallest_rotation(Vec3::UnitZ(), direction)};
-    const ContactSum sum = contacts_by_octree(shell, tool, X_WT, kOfPoints).total();
+    const ContactSum sum = contacts_by_octree(shell, tool, X_WT, kStiffness_N_per_mm3).total();
     const double ratio = sum.force_N.dot(direction) / (20 * ball_force(4, 1.5, 5.1));
     EXPECT_GT(ratio, 0.4);
     EXPECT_LT(ratio, 0.95);
@@ -342,7 +337,6 @@ TEST(BallContact, PaperIsSofterButPushesOutwards) {
 // One point, by itself: the derivative of its depth in the tool is n . dx + (r x n) . dw.
 TEST(ContactSum, ADerivativeRowIsTheDepthsOwn) {
   std::mt19937 bits(21);
-  const ToolSignedDistance sampled(kTool, fine_field());
   int tested = 0;
   for (int n = 0; n < 300; ++n) {
     const Pose X_WT = random_pose(bits, 3);
