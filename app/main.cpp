@@ -6,6 +6,7 @@
 #include "app/command_line.h"
 #include "app/commands.h"
 #include "app/help_text.h"
+#include "app/memory_limit.h"
 #include "app/nearest_word.h"
 #include "app/progress.h"
 #include <CLI/CLI.hpp>
@@ -13,6 +14,7 @@
 
 #include "osteomill/files/input_error.h"
 #include "osteomill/files/input_files.h"
+#include "osteomill/numbers/work_progress.h"
 
 namespace {
 
@@ -34,6 +36,7 @@ int main(int argc, char** argv) {
   program.formatter(std::make_shared<osteomill::app::HelpText>());
   program.get_formatter()->label("SUBCOMMAND", "COMMAND");
   osteomill::app::add_commands(program, osteomill::app::command_line_of(argc, argv));
+  const osteomill::WorkProgress watched([](double) { osteomill::app::check_memory_taken(); });
   try {
     osteomill::app::require_known_words(program, argc, argv);
     program.parse(argc, argv);
@@ -52,7 +55,7 @@ int main(int argc, char** argv) {
   } catch (const std::invalid_argument& error) {
     return complain(error.what(), kWrongUsage);
   } catch (const std::bad_alloc&) {
-    return complain("not enough memory", kInputAtFault);
+    return complain(osteomill::app::out_of_memory_text().c_str(), kInputAtFault);
   } catch (const std::exception& error) {
     return complain(error.what(), kInputAtFault);
   }

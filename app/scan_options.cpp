@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "app/memory_limit.h"
 #include "app/nearest_word.h"
 #include "app/positive_number.h"
 #include "app/progress.h"
@@ -51,7 +52,7 @@ void add_scan_source(CLI::App& command, ScanOptions& options) {
           [&bytes = options.read.max_memory_bytes](double gigabytes) {
             bytes = static_cast<std::uint64_t>(gigabytes * 1e9);
           },
-          "Refuse a scan whose voxels, or whose unpacked files, take more; else what the machine has")
+          "Refuse a scan that takes more, with all that is made of it or unpacked; else what the machine has")
       ->check(CLI::Range(1e-3, 1e6))
       ->type_name("GB");
 }
@@ -128,6 +129,7 @@ LabelsRead labels_of(const ScanOptions& options, const Scan& scan) {
 }
 
 LoadedBone read_bone(const ScanOptions& options) {
+  limit_memory(options.scan.empty() ? "the built-in tooth" : options.scan, options.read.max_memory_bytes);
   Scan scan = [&] {
     const WorkProgress::Part reading(0.75);
     return open_scan(options);

@@ -51,18 +51,20 @@ void sleeved_contacts(benchmark::State& state, double spacing_mm) {
   const Pose pose = pose_in_sleeve(block, tool);
   BoneBricks bricks(block, BoneBricks::kSpacing_mm, BoneBricks::Points::fine);
   const point_shell::Settings settings = point_shell::Settings::defaults(Mode::steady);
-  const point_shell::Penalty penalty{contact_stiffness_N_per_mm3(settings, tool),
-                                     2 * bricks.lattice().cell_area_mm2()};
+  NearBone near(65536, NearBone::PointsMeet::the_nearest_part);
+  const Penalty penalty{contact_stiffness_N_per_mm3(settings, tool), 2 * bricks.lattice().cell_area_mm2()};
   int touching = 0;
   for ([[maybe_unused]] auto _ : state) {
     TickTimes looks;
     for (int n = 0; n < kTicks; ++n) {
-      looks.time([&] { touching = contacts_by_bricks(bricks, tool, stirred(pose, n), penalty).touching; });
+      looks.time([&] {
+        touching = point_shell::contacts_by_bricks(bricks, near, tool, stirred(pose, n), penalty).touching;
+      });
     }
     looks.report(state);
   }
   state.counters["contacts"] = touching;
-  state.counters["sample_points"] = bricks.octree().total();
+  state.counters["sample_points"] = static_cast<double>(bricks.fine().total());
 }
 
 const bool kAdded = [] {

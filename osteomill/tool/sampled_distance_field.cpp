@@ -15,9 +15,9 @@ constexpr double kMaxNodes = 16e6;
 constexpr double kSuitableNodes = 2e6;
 
 // How many cells the box with its margin has along each axis, as a double: it may be beyond int's range.
-Vec3 cells_of(const ToolBox& tool_box, double spacing_mm, double margin_mm) {
+Vec3 cells_of(const ToolBox& tool_box, double spacing_mm) {
   const Vec3 size_mm = tool_box.max_mm - tool_box.min_mm;
-  return (size_mm / spacing_mm).array().ceil() + 2 * (kMarginNodes + std::ceil(margin_mm / spacing_mm));
+  return (size_mm / spacing_mm).array().ceil() + 2 * kMarginNodes;
 }
 
 }  // namespace
@@ -25,17 +25,16 @@ Vec3 cells_of(const ToolBox& tool_box, double spacing_mm, double margin_mm) {
 double SampledDistanceField::suitable_spacing_mm(const MillingTool& tool) {
   require_valid(tool);
   double spacing_mm = std::min(tool.burr_radius_mm, tool.shaft_radius_mm) / 25;
-  while (cells_of(bounding_box(tool), spacing_mm, 0).prod() > kSuitableNodes) spacing_mm *= 1.05;
+  while (cells_of(bounding_box(tool), spacing_mm).prod() > kSuitableNodes) spacing_mm *= 1.05;
   return spacing_mm;
 }
 
-SampledDistanceField::SampledDistanceField(const MillingTool& tool, double spacing_mm, double margin_mm)
+SampledDistanceField::SampledDistanceField(const MillingTool& tool, double spacing_mm)
     : spacing_mm_(spacing_mm) {
   require_valid(tool);
   require_positive(spacing_mm, "the distance field's spacing (mm)");
-  require_not_negative(margin_mm, "the distance field's margin (mm)");
   const ToolBox tool_box = bounding_box(tool);
-  const Vec3 cells = cells_of(tool_box, spacing_mm, margin_mm);
+  const Vec3 cells = cells_of(tool_box, spacing_mm);
   if (!((cells + Vec3::Ones()).prod() <= kMaxNodes)) {
     throw std::invalid_argument("the distance field's spacing is too fine for this tool");
   }

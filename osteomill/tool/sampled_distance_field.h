@@ -14,10 +14,10 @@ namespace osteomill {
 /// and a margin, and read by trilinear interpolation (Barbic and James 2008; "SPO" in Eriksson 2012, 6.1).
 class SampledDistanceField {
  public:
-  /// Fills the grid from `tool_distance`; allocates 16 bytes a node. The grid reaches `margin_mm` (at least
-  /// 0) and two more nodes beyond the tool's bounding box. Throws std::invalid_argument where an argument is
-  /// out of range, or the grid would have more than 16 million nodes.
-  SampledDistanceField(const MillingTool& tool, double spacing_mm, double margin_mm = 0);
+  /// Fills the grid from `tool_distance`; allocates 16 bytes a node. The grid reaches two nodes beyond the
+  /// tool's bounding box. Throws std::invalid_argument where an argument is out of range, or the grid would
+  /// have more than 16 million nodes.
+  SampledDistanceField(const MillingTool& tool, double spacing_mm);
 
   /// A spacing that suits the (valid) tool: a 25th of its smaller radius, or more where that took over 2
   /// million nodes.

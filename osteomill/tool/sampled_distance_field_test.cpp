@@ -74,8 +74,6 @@ TEST(SampledDistanceField, NodesAreExactAndTheToolLiesInside) {
   const ToolBox tool = bounding_box(kTool);
   EXPECT_TRUE((field.box().min_mm.array() < tool.min_mm.array() - 0.4).all());
   EXPECT_TRUE((field.box().max_mm.array() > tool.max_mm.array() + 0.4).all());
-  EXPECT_TRUE(
-      (SampledDistanceField(kTool, 0.25, 1.1).box().min_mm.array() < tool.min_mm.array() - 1.5).all());
   EXPECT_FALSE(field.at({0, 0, 40}));
   EXPECT_FALSE(field.at({std::nan(""), 0, 0}));
 }
@@ -84,7 +82,6 @@ TEST(SampledDistanceField, ASpacingOutOfRangeIsRefused) {
   EXPECT_THROW(SampledDistanceField(kTool, 0), std::invalid_argument);
   EXPECT_THROW(SampledDistanceField(kTool, std::nan("")), std::invalid_argument);
   EXPECT_THROW(SampledDistanceField(kTool, 1e-4), std::invalid_argument);
-  EXPECT_THROW(SampledDistanceField(kTool, 0.1, -1), std::invalid_argument);
   EXPECT_THROW(SampledDistanceField({0, 1, 25}, 0.1), std::invalid_argument);
 }
 

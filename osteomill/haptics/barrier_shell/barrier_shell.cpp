@@ -6,6 +6,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "osteomill/haptics/barrier_shell/certificate.h"
 #include "osteomill/haptics/tool_move.h"
 #include "osteomill/tool/sample_points.h"
 #include "osteomill/volume/sampling.h"
@@ -169,7 +170,6 @@ void BarrierShell::reset() {
 
 void BarrierShell::volume_changed(const VolumeChange& change) {
   bricks_.refresh(change.voxels);
-  refreshed_this_tick_ = true;
 }
 
 Cores BarrierShell::cores() const {
@@ -218,7 +218,7 @@ void BarrierShell::grow_cores(double nearest_mm, double dt_s) {
 
 void BarrierShell::gather(const Pose& X_WT, const Room& room) {
   room_ = room_left_ = room;
-  near_.gather(bricks_, cores(), barrier_, X_WT, room);
+  near_.gather(bricks_, cores(), barrier_.width_mm, X_WT, room);
 }
 
 BarrierShell::State BarrierShell::evaluated(const Pose& X_WT, const Pose& X_WD) {
@@ -243,11 +243,12 @@ void BarrierShell::watch_energy(const State& state) {
 }
 
 // Nothing near, nothing held back, and free space all the way.
-bool BarrierShell::may_fly(const Pose& X_WD, const MoveBound& bound) const {
+bool BarrierShell::may_fly(const Pose& X_WD, const MoveBound& bound) {
   const ToolMove move = move_between(X_WT_, X_WD);
   const Room way = room_of(move);
   return near_.is_empty() && share_within(bound, move) >= 1 && way.move_mm <= kFarthestFlight.move_mm &&
-         way.turn_rad <= kFarthestFlight.turn_rad && is_clear(bricks_, cores(), barrier_, X_WT_, way);
+         way.turn_rad <= kFarthestFlight.turn_rad &&
+         is_clear(bricks_, cores(), barrier_.width_mm, X_WT_, way);
 }
 
 void BarrierShell::gather_for_next_move() {
@@ -288,7 +289,8 @@ BarrierShell::Step BarrierShell::next_step(const State& best, const MoveBound& b
   if (near_.overflowed()) return {Vector6::Zero(), true};
   const double with_room = share_with_room(wanted);
   step.move_T *= with_room;
-  const double certified = near_.certified({step.move_T.head<3>(), step.move_T.tail<3>()}, barrier_);
+  const double certified =
+      certified_share(near_.max_use({step.move_T.head<3>(), step.move_T.tail<3>()}, barrier_));
   step.move_T *= certified;
   step.reaches_device = best.sum.touching == 0 && !newton.is_damped && with_room >= 1 && certified >= 1;
   return step;
@@ -359,9 +361,7 @@ HapticStep BarrierShell::report(const State& state, const Pose& X_WD, double dt_
 }
 
 HapticStep BarrierShell::step(const Pose& X_WD, double dt_s) {
-  if (!refreshed_this_tick_ && !bricks_.is_up_to_date()) bricks_.refresh({});
-  refreshed_this_tick_ = false;
-  bricks_.make_room(tool_, X_WT_);
+  bricks_.begin_tick(tool_, X_WT_);
   ++counts_.ticks;
   if (!has_pose_) begin(X_WD);
   if (carried_) {

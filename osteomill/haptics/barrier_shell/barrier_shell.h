@@ -5,8 +5,8 @@
 #include "osteomill/haptics/barrier_shell/barrier_shell_counts.h"
 #include "osteomill/haptics/barrier_shell/barrier_shell_description.h"
 #include "osteomill/haptics/barrier_shell/coupling.h"
-#include "osteomill/haptics/barrier_shell/near_bone.h"
 #include "osteomill/haptics/bone_points/bone_bricks.h"
+#include "osteomill/haptics/bone_points/near_bone.h"
 #include "osteomill/haptics/haptic_algorithm.h"
 #include "osteomill/haptics/tool_move.h"
 
@@ -28,8 +28,7 @@ class BarrierShell final : public HapticAlgorithm {
   HapticStep step(const Pose& X_WD, double dt_s) override;
   void volume_changed(const VolumeChange& change) override;
   void reset() override;
-  /// Of the bricks that have been made, and one for each that has not but may have some.
-  int sample_point_count() const override { return static_cast<int>(bricks_.octree().total()); }
+  int sample_point_count() const override { return static_cast<int>(bricks_.fine().total()); }
 
   const Counts& counts() const { return counts_; }
 
@@ -44,7 +43,7 @@ class BarrierShell final : public HapticAlgorithm {
   State evaluated(const Pose& X_WT, const Pose& X_WD);
   void gather(const Pose& X_WT, const Room& room);
   void gather_for_next_move();
-  bool may_fly(const Pose& X_WD, const MoveBound& bound) const;
+  bool may_fly(const Pose& X_WD, const MoveBound& bound);
   double share_with_room(const Room& step) const;
   Step next_step(const State& best, const MoveBound& bound);
   static Pose after(const State& best, const Step& step, const Pose& X_WD);
@@ -60,7 +59,6 @@ class BarrierShell final : public HapticAlgorithm {
   std::vector<Vec3> centreline_T_;
   BoneBricks bricks_;
   NearBone near_;
-  bool refreshed_this_tick_ = false;
 
   bool has_pose_ = false;
   Pose X_WT_;

@@ -1,14 +1,8 @@
 #pragma once
 
-#include "osteomill/haptics/barrier_shell/cores.h"
+#include "osteomill/haptics/bone_points/energy_sum.h"
 
 namespace osteomill::barrier_shell {
-
-/// A move of the tool in T's axes: x(t) = x + R t delta, R(t) = R exp(t omega), t from 0 to 1.
-struct MoveT {
-  Vec3 delta_mm;
-  Vec3 omega_rad;
-};
 
 /// How much of a core's distance to a point the whole move may use up, at most; the share t of it no more
 /// than t of that. The distance to a convex body is convex along a straight line, so it falls no faster than

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "osteomill/geometry/wrench.h"
-#include "osteomill/haptics/barrier_shell/energy_sum.h"
+#include "osteomill/haptics/bone_points/energy_sum.h"
 
 namespace osteomill::barrier_shell {
 

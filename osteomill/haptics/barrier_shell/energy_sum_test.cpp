@@ -1,4 +1,4 @@
-#include "osteomill/haptics/barrier_shell/energy_sum.h"
+#include "osteomill/haptics/bone_points/energy_sum.h"
 
 #include <cmath>
 #include <random>
@@ -73,7 +73,8 @@ TEST(EnergySum, DerivativesOfEveryPartOfBothCoresAreThoseOfTheEnergy) {
       if (!is_ball && beyond && !beside && rho > cores.cylinder_radius_mm - 0.01) continue;
       (is_ball ? ball : !beyond ? side : beside ? rim : end) += 1;
       EnergySum sum;
-      sum.add_point(kBarrier, point_T, distance_to(cores, point_T), 0.02);
+      const CoreDistance distance = distance_to(cores, point_T);
+      sum.add_point(0.02 * kBarrier.at(distance.distance_mm), point_T, distance);
       expect_derivatives(
           X_WT, sum,
           [&](const Pose& X) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "osteomill/numbers/work_progress.h"
 #include "osteomill/tool/milling_tool.h"
 
 namespace osteomill {
@@ -16,6 +15,10 @@ constexpr std::size_t kCoarseChunks = 16384;
 // Kept free for what one tick makes.
 constexpr std::size_t kSpareSlots = 2048;
 constexpr std::size_t kSpareChunks = 4096;
+// Of the octree, and how many are looked at a tick for one to forget.
+constexpr std::size_t kNodes = 32768;
+constexpr std::size_t kSpareNodes = 4096;
+constexpr int kNodesLookedAt = 512;
 // Bricks nearer than this to the tool are not forgotten.
 constexpr double kKept_mm = 2;
 
@@ -28,79 +31,92 @@ constexpr int kDensitiesLookedAt = 60;
 BoneBricks::BoneBricks(const Volume& volume, double spacing_mm, Points points)
     : lattice_(volume, spacing_mm),
       kinds_(points),
-      octree_(lattice_.brick_dims()),
+      nodes_(kNodes),
       fine_(kSlots, kFineChunks),
       coarse_(kSlots, points == Points::fine ? 0 : kCoarseChunks),
       brick_of_slot_(kSlots),
       changes_(kSlots),
       found_(std::make_unique<SurfaceLattice::BrickSurface>()) {
+  brick_radius_mm_ = 0.5 * lattice_.brick_nodes() * lattice_.step_mm().norm();
   const auto& dims = lattice_.brick_dims();
-  slots_.resize(cell_count(dims), kNoPoints);
-  for (int k = 0; k < dims[2]; ++k) {
-    WorkProgress::done(static_cast<std::size_t>(k), static_cast<std::size_t>(dims[2]));
-    for (int j = 0; j < dims[1]; ++j) {
-      for (int i = 0; i < dims[0]; ++i) {
-        if (!lattice_.may_hold_surface({i, j, k})) continue;
-        slots_[index_of({i, j, k})] = kUnmade;
-        octree_.add(i, j, k, 1);
-      }
-    }
-  }
-  const double brick_mm = (lattice_.brick_nodes() * lattice_.step_mm()).norm();
-  for (int level = 0; level < octree_.level_count(); ++level) {
-    node_radii_mm_.push_back(0.5 * brick_mm * static_cast<double>(1 << level));
-  }
+  while (1 << levels_ < *std::max_element(dims.begin(), dims.end())) ++levels_;
   for (std::size_t n = kSlots; n-- > 0;) free_slots_.push_back(static_cast<std::uint32_t>(n));
+  for (std::size_t n = kNodes; n-- > kRoot + 1;) free_nodes_.push_back(static_cast<std::uint32_t>(n));
+  nodes_[kRoot].places.fill(kUnseen);
 }
 
-Vec3 BoneBricks::node_middle_G(int level, int i, int j, int k) const {
+Vec3 BoneBricks::middle_G(int level, const VoxelIndex& node) const {
   const double half = 0.5 * lattice_.brick_nodes() * static_cast<double>(1 << level);
-  return lattice_.step_mm().cwiseProduct(half * Vec3(2 * i + 1, 2 * j + 1, 2 * k + 1) - Vec3::Ones());
+  return lattice_.step_mm().cwiseProduct(half * Vec3(2 * node.i + 1, 2 * node.j + 1, 2 * node.k + 1) -
+                                         Vec3::Ones());
 }
 
-std::uint32_t BoneBricks::slot_of(const VoxelIndex& brick) {
-  const std::uint32_t& slot = slots_[index_of(brick)];
-  if (slot == kUnmade && has_room()) make(brick);
-  return slot == kEmptied || slot == kUnmade ? kNoPoints : slot;
+// Whether it may hold surface; then a node has one in its place, and a brick stays unseen until it is made.
+bool BoneBricks::look(int level, const VoxelIndex& node, std::uint32_t& place) {
+  const SurfaceLattice::Found found = lattice_.found_in(level, node);
+  if (found != SurfaceLattice::Found::surface) {
+    place = found == SurfaceLattice::Found::no_bone ? kNoBone : kBoneAlone;
+    return false;
+  }
+  if (level == 0) return true;
+  if (free_nodes_.empty()) return false;
+  const std::uint32_t index = free_nodes_.back();
+  free_nodes_.pop_back();
+  nodes_[index].places.fill(kUnseen);
+  nodes_[index].place = &place;
+  place = index;
+  return true;
+}
+
+// The brick's place or, where there is none, that of the least node it lies in.
+BoneBricks::Found BoneBricks::find(const VoxelIndex& brick) {
+  int level = levels_ - 1;
+  const auto below = [&](std::uint32_t node) {
+    const int n = (brick.i >> level & 1) + 2 * (brick.j >> level & 1) + 4 * (brick.k >> level & 1);
+    return &nodes_[node].places[static_cast<std::size_t>(n)];
+  };
+  std::uint32_t* place = below(kRoot);
+  while (level > 0 && is_index(*place)) {
+    --level;
+    place = below(*place);
+  }
+  return {level, place};
 }
 
 // Makes a brick, or makes it anew; returns what it cost.
-int BoneBricks::make(const VoxelIndex& brick) {
-  std::uint32_t& slot = slots_[index_of(brick)];
+int BoneBricks::make(const VoxelIndex& brick, std::uint32_t& place) {
   const std::uint32_t changes = lattice_.changes_of(brick);
   lattice_.find_surface(brick, *found_);
-  const std::int32_t before = slot == kUnmade     ? 1
-                              : slot == kNoPoints ? 0
-                                                  : static_cast<std::int32_t>(fine_.brick(slot).count);
-  if (slot == kUnmade) slot = kNoPoints;
-  if (slot == kNoPoints && found_->fine_count > 0) {
-    slot = free_slots_.back();
-    free_slots_.pop_back();
-    brick_of_slot_[slot] = brick;
+  if (!is_index(place)) {
+    place = kBoneAlone;
+    if (found_->fine_count > 0) {
+      place = free_slots_.back();
+      free_slots_.pop_back();
+      brick_of_slot_[place] = brick;
+    }
   }
-  std::int32_t after = 0;
-  if (slot != kNoPoints) {
-    changes_[slot] = changes;
-    after = static_cast<std::int32_t>(fine_.replace(slot, {found_->fine.data(), found_->fine_count}));
+  if (is_index(place)) {
+    changes_[place] = changes;
+    const std::uint32_t stored = fine_.replace(place, {found_->fine.data(), found_->fine_count});
     if (kinds_ == Points::fine_and_coarse) {
       SurfaceLattice::merge_flat_cells(*found_);
-      coarse_.replace(slot, {found_->coarse.data(), found_->coarse_count});
+      coarse_.replace(place, {found_->coarse.data(), found_->coarse_count});
     }
-    if (after == 0) {
-      free_slots_.push_back(slot);
-      slot = kNoPoints;
+    if (stored == 0) {
+      free_slots_.push_back(place);
+      place = kBoneAlone;
     }
   }
-  if (!found_->has_bone) slot = kEmptied;
-  octree_.add(brick.i, brick.j, brick.k, after - before);
+  if (!found_->has_bone) place = kNoBone;
   return lattice_.densities_of_brick() / kDensitiesLookedAt + static_cast<int>(found_->fine_count);
 }
 
 void BoneBricks::refresh(const VoxelBox& voxels, int budget) {
+  refreshed_ = true;
   sweep_.wait_for(voxels);
   int spent = 0;
   while (spent < budget && (sweep_.is_walking() || start_sweep())) {
-    spent += visit(sweep_.brick());
+    spent += refresh_brick(sweep_.brick());
     sweep_.advance();
   }
 }
@@ -114,15 +130,16 @@ bool BoneBricks::start_sweep() {
 
 // Bricks that had no surface come first: where it has moved into them it is found there before it is taken
 // from where it was.
-int BoneBricks::visit(const VoxelIndex& brick) {
-  const std::uint32_t slot = slots_[index_of(brick)];
-  if (slot == kUnmade || slot == kEmptied) return kPassedOverCost;
-  if ((slot == kNoPoints) != sweep_.is_first_pass()) return kPassedOverCost;
-  if (slot != kNoPoints) return changes_[slot] != lattice_.changes_of(brick) ? make(brick) : kPassedOverCost;
-  if (!lattice_.may_hold_surface(brick)) return kPassedOverCost;
-  if (has_room()) return make(brick);
-  slots_[index_of(brick)] = kUnmade;
-  octree_.add(brick.i, brick.j, brick.k, 1);
+int BoneBricks::refresh_brick(const VoxelIndex& brick) {
+  const auto [level, place] = find(brick);
+  if (*place == kUnseen || *place == kNoBone) return kPassedOverCost;
+  if ((*place == kBoneAlone) != sweep_.is_first_pass()) return kPassedOverCost;
+  if (*place != kBoneAlone) {
+    return changes_[*place] != lattice_.changes_of(brick) ? make(brick, *place) : kPassedOverCost;
+  }
+  if (lattice_.found_in(0, brick) != SurfaceLattice::Found::surface) return kPassedOverCost;
+  if (level == 0 && has_room()) return make(brick, *place);
+  *place = kUnseen;
   return kPassedOverCost;
 }
 
@@ -140,6 +157,10 @@ void BoneBricks::make_room(const MillingTool& tool, const Pose& X_WT) {
     next_to_forget_ = (next_to_forget_ + 1) % brick_of_slot_.size();
     if (fine_.brick(slot).count != 0 && !is_near(tool, X_TW, brick_of_slot_[slot])) forget(slot);
   }
+  for (int n = 0; n < kNodesLookedAt && free_nodes_.size() < kSpareNodes; ++n) {
+    forget_node(nodes_[next_node_to_forget_]);
+    next_node_to_forget_ = (next_node_to_forget_ + 1) % kNodes;
+  }
 }
 
 bool BoneBricks::is_short_of_room() const {
@@ -148,17 +169,23 @@ bool BoneBricks::is_short_of_room() const {
 }
 
 bool BoneBricks::is_near(const MillingTool& tool, const Pose& X_TW, const VoxelIndex& b) const {
-  const Vec3 middle_W = lattice_.origin_W() + lattice_.direction() * node_middle_G(0, b.i, b.j, b.k);
-  return tool_distance(tool, X_TW * middle_W).distance_mm < node_radius_mm(0) + kKept_mm;
+  const Vec3 middle_W = lattice_.origin_W() + lattice_.direction() * middle_G(0, b);
+  return tool_distance(tool, X_TW * middle_W).distance_mm < radius_mm(0) + kKept_mm;
 }
 
 void BoneBricks::forget(std::uint32_t slot) {
-  const VoxelIndex& brick = brick_of_slot_[slot];
-  octree_.add(brick.i, brick.j, brick.k, 1 - static_cast<std::int32_t>(fine_.brick(slot).count));
+  *find(brick_of_slot_[slot]).place = kUnseen;
   fine_.replace(slot, {});
   if (kinds_ == Points::fine_and_coarse) coarse_.replace(slot, {});
-  slots_[index_of(brick)] = kUnmade;
   free_slots_.push_back(slot);
+}
+
+// Where nothing below it was made; near the tool it is soon there again.
+void BoneBricks::forget_node(Node& node) {
+  if (node.place == nullptr || std::any_of(node.places.begin(), node.places.end(), is_index)) return;
+  free_nodes_.push_back(*node.place);
+  *node.place = kUnseen;
+  node.place = nullptr;
 }
 
 }  // namespace osteomill

@@ -1,13 +1,13 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <vector>
 
 #include "osteomill/geometry/pose.h"
-#include "osteomill/haptics/bone_points/count_pyramid.h"
 #include "osteomill/haptics/bone_points/surface_lattice.h"
-#include "osteomill/numbers/row_major.h"
 #include "osteomill/tool/milling_tool.h"
 
 namespace osteomill {
@@ -60,10 +60,10 @@ class BrickSweep {
   bool first_pass_ = false;
 };
 
-/// The bone's surface as points in bricks, made when the tool comes near and forgotten when room runs out, so
-/// that neither time nor, but for 9 bytes a brick, memory grows with the scan. Milling takes densities away
-/// only, so a brick that has not been brought up to date shows more bone than there is. Building allocates;
-/// all else is safe in the haptic tick.
+/// The bone's surface as points in bricks under an octree. Bricks are made when the tool comes near and
+/// forgotten when room runs out, and so are the octree's nodes: neither time nor memory grows with the scan.
+/// Milling takes densities away only, so a brick that has not been brought up to date shows more bone than
+/// there is. Building allocates; all else is safe in the haptic tick.
 class BoneBricks {
  public:
   enum class Points {
@@ -83,17 +83,28 @@ class BoneBricks {
   const SurfaceLattice& lattice() const { return lattice_; }
   const BrickPoints& fine() const { return fine_; }
   const BrickPoints& coarse() const { return coarse_; }
-  /// Counts points of the bricks that were made, and one of each other that may have some.
-  const CountPyramid& octree() const { return octree_; }
-  /// A box that holds all points of a node of the octree, in the grid's frame: its middle, and the radius of
-  /// the sphere about it.
-  Vec3 node_middle_G(int level, int i, int j, int k) const;
-  double node_radius_mm(int level) const { return node_radii_mm_[static_cast<std::size_t>(level)]; }
 
-  static constexpr std::uint32_t kNoPoints = 0xffffffffu;
-  /// The slot of the brick in `fine` and `coarse`, which is made if it was not; `kNoPoints` where it has
-  /// none, or where there is no room to make it.
-  std::uint32_t slot_of(const VoxelIndex& brick);
+  /// Calls `use(brick, slot)` for the bricks with points in the octree's nodes of which `meets(middle_G,
+  /// radius_mm)` says yes, where no node above was rejected; the sphere is about the node, in the grid's
+  /// frame. The order is fixed. Makes the bricks that were not, as far as there is room. Their points are
+  /// those of `slot` in `fine` and `coarse`.
+  template <typename Meets, typename Use>
+  void visit(const Meets& meets, const Use& use) {
+    walk(levels_, {}, kRoot, meets, [&](const VoxelIndex& brick, std::uint32_t& place) {
+      if (place == kUnseen && has_room()) make(brick, place);
+      if (is_index(place)) use(brick, place);
+    });
+  }
+  /// Whether there may be points where `meets` says yes. Makes no bricks.
+  template <typename Meets>
+  bool may_hold_points(const Meets& meets) {
+    bool may = false;
+    const auto if_not_yet = [&](const Vec3& middle_G, double radius_mm) {
+      return !may && meets(middle_G, radius_mm);
+    };
+    walk(levels_, {}, kRoot, if_not_yet, [&](const VoxelIndex&, std::uint32_t&) { may = true; });
+    return may;
+  }
 
   /// About how many points are brought up to date a tick.
   static constexpr int kRefreshedPerTick = 700;
@@ -101,30 +112,71 @@ class BoneBricks {
   /// find them.
   void refresh(const VoxelBox& voxels, int budget = kRefreshedPerTick);
   bool is_up_to_date() const { return sweep_.is_idle(); }
-  /// Makes room if little is left, by forgetting bricks that are not near the tool.
+  /// Makes room if little is left, by forgetting what is not near the tool.
   void make_room(const MillingTool& tool, const Pose& X_WT);
+  /// What a tick begins with: that, and what still waits to be brought up to date, where nothing fell since
+  /// the tick before.
+  void begin_tick(const MillingTool& tool, const Pose& X_WT) {
+    if (!refreshed_ && !is_up_to_date()) refresh({});
+    refreshed_ = false;
+    make_room(tool, X_WT);
+  }
   /// Points that found no room as bricks that had some grew.
   std::uint64_t dropped() const { return fine_.dropped() + coarse_.dropped(); }
 
  private:
-  static constexpr std::uint32_t kUnmade = 0xfffffffeu;
-  // Without points, and without bone: it will have none.
-  static constexpr std::uint32_t kEmptied = 0xfffffffdu;
+  // What a place of the octree holds: the index of a node or, of a brick, of its slot; or what else is known.
+  static constexpr std::uint32_t kUnseen = 0xffffffffu;
+  static constexpr std::uint32_t kNoBone = 0xfffffffeu;
+  static constexpr std::uint32_t kBoneAlone = 0xfffffffdu;
+  static bool is_index(std::uint32_t place) { return place < kBoneAlone; }
+  static constexpr std::uint32_t kRoot = 0;
+  struct Node {
+    std::array<std::uint32_t, 8> places;
+    // Null of the root, and where the node is free.
+    std::uint32_t* place = nullptr;
+  };
 
-  std::size_t index_of(const VoxelIndex& b) const { return row_major(octree_.dims(0), b.i, b.j, b.k); }
-  int make(const VoxelIndex& brick);
-  int visit(const VoxelIndex& brick);
+  template <typename Meets, typename Leaf>
+  void walk(int level, const VoxelIndex& node, std::uint32_t index, const Meets& meets, const Leaf& leaf) {
+    --level;
+    for (int n = 0; n < 8; ++n) {
+      const VoxelIndex below{2 * node.i + n % 2, 2 * node.j + n / 2 % 2, 2 * node.k + n / 4};
+      std::uint32_t& place = nodes_[index].places[static_cast<std::size_t>(n)];
+      if (place == kNoBone || place == kBoneAlone || !meets(middle_G(level, below), radius_mm(level)))
+        continue;
+      if (place == kUnseen && !look(level, below, place)) continue;
+      if (level == 0) {
+        leaf(below, place);
+      } else {
+        walk(level, below, place, meets, leaf);
+      }
+    }
+  }
+  Vec3 middle_G(int level, const VoxelIndex& node) const;
+  double radius_mm(int level) const { return brick_radius_mm_ * static_cast<double>(1 << level); }
+  bool look(int level, const VoxelIndex& node, std::uint32_t& place);
+  struct Found {
+    int level;
+    std::uint32_t* place;
+  };
+  Found find(const VoxelIndex& brick);
+  int make(const VoxelIndex& brick, std::uint32_t& place);
+  int refresh_brick(const VoxelIndex& brick);
   bool start_sweep();
   bool is_short_of_room() const;
   bool has_room() const;
   bool is_near(const MillingTool& tool, const Pose& X_TW, const VoxelIndex& brick) const;
   void forget(std::uint32_t slot);
+  void forget_node(Node& node);
 
   SurfaceLattice lattice_;
   Points kinds_ = Points::fine;
-  CountPyramid octree_;
-  std::vector<double> node_radii_mm_;
-  std::vector<std::uint32_t> slots_;
+  double brick_radius_mm_ = 0;
+  // Of the octree, bricks not counted.
+  int levels_ = 1;
+  std::vector<Node> nodes_;
+  std::vector<std::uint32_t> free_nodes_;
   BrickPoints fine_;
   BrickPoints coarse_;
   std::vector<std::uint32_t> free_slots_;
@@ -132,7 +184,9 @@ class BoneBricks {
   std::vector<VoxelIndex> brick_of_slot_;
   std::vector<std::uint32_t> changes_;
   std::size_t next_to_forget_ = 0;
+  std::size_t next_node_to_forget_ = 0;
   BrickSweep sweep_;
+  bool refreshed_ = false;
   std::unique_ptr<SurfaceLattice::BrickSurface> found_;
 };
 

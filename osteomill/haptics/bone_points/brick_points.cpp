@@ -90,6 +90,7 @@ std::uint32_t BrickPoints::replace(std::size_t brick_index, std::span<const Shel
     }
   }
   dropped_ += points.size() - stored;
+  total_ += stored - brick.count;
   brick.count = static_cast<std::uint32_t>(stored);
   brick.bound = bound_of(points.first(stored));
   return brick.count;

@@ -88,6 +88,8 @@ class BrickPoints {
   const PointChunk& chunk(std::uint32_t index) const { return chunks_[index]; }
   std::uint32_t next_chunk(std::uint32_t index) const { return next_[index]; }
   std::size_t free_chunks() const { return free_chunks_; }
+  /// Of all bricks.
+  std::size_t total() const { return total_; }
   /// Points that found no room since the start.
   std::uint64_t dropped() const { return dropped_; }
 
@@ -113,6 +115,7 @@ class BrickPoints {
   std::vector<Brick> bricks_;
   std::uint32_t first_free_ = kNoChunk;
   std::size_t free_chunks_ = 0;
+  std::size_t total_ = 0;
   std::uint64_t dropped_ = 0;
 };
 

@@ -15,6 +15,26 @@ constexpr float kFlat = 0.98f;
 // Of the area: crossings whose normals are against one another.
 constexpr float kNoNormal = 1e-6f;
 
+// Voxels that are looked at one by one, where ranges of them are too wide to tell; and ranges, of a large
+// box.
+constexpr std::size_t kMostVoxels = 6 * 6 * 6;
+constexpr std::size_t kMostRanges = 5 * 5 * 5;
+
+// What was seen of some densities.
+struct Seen {
+  bool any_bone = false;
+  bool all_bone = true;
+
+  void add(bool any, bool all) {
+    any_bone |= any;
+    all_bone &= all;
+  }
+  SurfaceLattice::Found found() const {
+    if (!any_bone) return SurfaceLattice::Found::no_bone;
+    return all_bone ? SurfaceLattice::Found::bone_alone : SurfaceLattice::Found::surface;
+  }
+};
+
 int divide_down(int value, int divisor) {
   const int quotient = value / divisor;
   return value % divisor < 0 ? quotient - 1 : quotient;
@@ -54,16 +74,19 @@ SurfaceLattice::SurfaceLattice(const Volume& volume, double spacing_mm) : volume
   const GridGeometry& geometry = volume.geometry();
   const double voxel_mm = geometry.spacing_mm.maxCoeff();
   constexpr double kRounding = 1e-9;
-  steps_per_voxel_ = std::max(1, static_cast<int>(std::ceil(voxel_mm / spacing_mm - kRounding)));
   // A brick of 16 nodes holds two cells of eight a side.
   while (group_ < 8 && 2 * group_ * voxel_mm <= spacing_mm * (1 + kRounding)) group_ *= 2;
   line_step_ = std::max(1, group_ / 2);
   on_lines_ = 0;
   for (int n = 0; n < 32; n += line_step_) on_lines_ |= 1u << n;
   brick_nodes_ = group_ == 1 ? 8 : kMaxBrickNodes;
-  step_mm_ = geometry.spacing_mm / steps_per_voxel_;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const int nodes = (geometry.dims[axis] - 1) * steps_per_voxel_ + 1;
+    double& step_mm = step_mm_[static_cast<Eigen::Index>(axis)];
+    step_mm = geometry.spacing_mm[static_cast<Eigen::Index>(axis)];
+    int& steps = steps_per_voxel_[axis];
+    steps = std::max(1, static_cast<int>(std::ceil(step_mm / spacing_mm - kRounding)));
+    step_mm /= steps;
+    const int nodes = (geometry.dims[axis] - 1) * steps + 1;
     brick_dims_[axis] = (nodes + brick_nodes_) / brick_nodes_;
   }
   isovalue_ = largest_float_up_to(volume.isovalue());
@@ -84,61 +107,58 @@ float SurfaceLattice::density(const VoxelIndex& voxel) const {
   return volume_->grid().contains(voxel) ? volume_->grid()[voxel] : outside_;
 }
 
-// The voxels on which the nodes at the ends of a brick's edges depend, or those of so many nodes more on
+// The voxels on which the nodes at the ends of these bricks' edges depend, or those of so many nodes more on
 // every side; beyond the grid too.
-VoxelBox SurfaceLattice::voxels_of(const VoxelIndex& brick, int more_nodes) const {
-  const int n = brick_nodes_, s = steps_per_voxel_;
-  const auto first = [&](int b) { return divide_down(n * b - 1 - more_nodes, s); };
-  const auto last = [&](int b) { return divide_down(n * b + n - 2 + more_nodes, s) + 1; };
-  return {{first(brick.i), first(brick.j), first(brick.k)}, {last(brick.i), last(brick.j), last(brick.k)}};
+VoxelBox SurfaceLattice::voxels_of(int level, const VoxelIndex& node, int more_nodes) const {
+  const int n = brick_nodes_ << level;
+  const auto& s = steps_per_voxel_;
+  const auto first = [&](int b, std::size_t axis) { return divide_down(n * b - 1 - more_nodes, s[axis]); };
+  const auto last = [&](int b, std::size_t axis) {
+    return divide_down(n * b + n - 2 + more_nodes, s[axis]) + 1;
+  };
+  return {{first(node.i, 0), first(node.j, 1), first(node.k, 2)},
+          {last(node.i, 0), last(node.j, 1), last(node.k, 2)}};
 }
 
 // The weights of crossings depend on one more node all round.
 std::uint32_t SurfaceLattice::changes_of(const VoxelIndex& brick) const {
-  return volume_->bricks().changes_in(voxels_of(brick, 1).intersected(volume_->geometry().all_voxels()));
+  return volume_->bricks().changes_in(voxels_of(0, brick, 1).intersected(volume_->geometry().all_voxels()));
 }
 
-bool SurfaceLattice::may_hold_surface(const VoxelIndex& brick) const {
-  constexpr int kRange = BlockRanges::kBrickVoxels;
-  const VoxelBox voxels = voxels_of(brick, 0);
+SurfaceLattice::Found SurfaceLattice::found_in(int level, const VoxelIndex& node) const {
+  const VoxelBox voxels = voxels_of(level, node, 0);
   const VoxelBox inside = voxels.intersected(volume_->geometry().all_voxels());
-  const BlockRanges& ranges = volume_->bricks();
-  bool any_bone = false, all_bone = inside == voxels;
-  for (int k = inside.first.k / kRange; k <= inside.last.k / kRange; ++k) {
-    for (int j = inside.first.j / kRange; j <= inside.last.j / kRange; ++j) {
-      for (int i = inside.first.i / kRange; i <= inside.last.i / kRange; ++i) {
-        any_bone |= ranges.at(i, j, k).max > isovalue_;
-        all_bone &= ranges.at(i, j, k).min > isovalue_;
-      }
-    }
-  }
-  if (!any_bone || all_bone) return false;
-  if (steps_per_voxel_ == 1) return true;
-  // A brick within a few voxels of a coarse scan: look at them.
-  any_bone = false;
-  all_bone = inside == voxels;
-  for (int k = inside.first.k; k <= inside.last.k; ++k) {
-    for (int j = inside.first.j; j <= inside.last.j; ++j) {
-      for (int i = inside.first.i; i <= inside.last.i; ++i) {
-        const bool bone = volume_->grid()[{i, j, k}] > isovalue_;
-        any_bone |= bone;
-        all_bone &= bone;
-      }
-    }
-  }
-  return any_bone && !all_bone;
+  if (inside.empty()) return Found::no_bone;
+  const Seen none{false, inside == voxels};
+  const VoxelBox ranges = inside.bricks(BlockRanges::kBrickVoxels);
+  if (cell_count(ranges.dims()) > kMostRanges) return Found::surface;
+  Seen seen = none;
+  for_each(ranges, [&](const VoxelIndex& at) {
+    const BlockRanges::Range& range = volume_->bricks().at(at);
+    seen.add(range.max > isovalue_, range.min > isovalue_);
+  });
+  if (seen.found() != Found::surface || cell_count(inside.dims()) > kMostVoxels) return seen.found();
+  seen = none;
+  for_each(inside, [&](const VoxelIndex& at) {
+    const bool bone = volume_->grid()[at] > isovalue_;
+    seen.add(bone, bone);
+  });
+  return seen.found();
 }
 
 VoxelBox SurfaceLattice::bricks_touched_by(const VoxelBox& voxels) const {
   if (voxels.empty()) return voxels;
-  const int n = brick_nodes_, s = steps_per_voxel_;
+  const int n = brick_nodes_;
+  const auto& s = steps_per_voxel_;
   // A node reads voxels less than one away; a crossing's weight nodes from one below its lower one to two
   // above; and a brick's first lower node is one below its own.
-  const auto first = [&](int v) { return std::max(0, divide_down((v - 1) * s + 1 - 2 + 1, n)); };
-  const auto last = [&](int v, std::size_t axis) {
-    return std::min(brick_dims_[axis] - 1, divide_down((v + 1) * s - 1 + 1 + 1, n));
+  const auto first = [&](int v, std::size_t axis) {
+    return std::max(0, divide_down((v - 1) * s[axis] + 1 - 2 + 1, n));
   };
-  return {{first(voxels.first.i), first(voxels.first.j), first(voxels.first.k)},
+  const auto last = [&](int v, std::size_t axis) {
+    return std::min(brick_dims_[axis] - 1, divide_down((v + 1) * s[axis] - 1 + 1 + 1, n));
+  };
+  return {{first(voxels.first.i, 0), first(voxels.first.j, 1), first(voxels.first.k, 2)},
           {last(voxels.last.i, 0), last(voxels.last.j, 1), last(voxels.last.k, 2)}};
 }
 
@@ -152,13 +172,14 @@ SurfaceLattice::Nodes SurfaceLattice::nodes_of(const VoxelIndex& brick, Block& b
   const bool inside =
       grid.contains(first) &&
       grid.contains({first.i + last + static_cast<int>(CrossingRow::kNodes), first.j + last, first.k + last});
-  if (steps_per_voxel_ == 1 && inside) {
+  const bool at_voxels = steps_per_voxel_ == std::array{1, 1, 1};
+  if (at_voxels && inside) {
     const auto& dims = grid.geometry().dims;
     const std::ptrdiff_t row = dims[0];
     return {grid.densities().data() + grid.linear_index({first.i + 1, first.j + 1, first.k + 1}),
             {1, row, row * dims[1]}};
   }
-  if (steps_per_voxel_ == 1) {
+  if (at_voxels) {
     copy_voxels(first, block);
   } else {
     interpolate_voxels(first, block);
@@ -179,10 +200,9 @@ void SurfaceLattice::copy_voxels(const VoxelIndex& first, Block& block) const {
 // Trilinear, one axis after the other. Every voxel has a weight of at least zero, so that a node's density
 // falls with its voxels'.
 void SurfaceLattice::interpolate_voxels(const VoxelIndex& first, Block& block) const {
-  const int count = brick_nodes_ + 3, s = steps_per_voxel_;
-  const auto voxel = [&](int node) { return divide_down(node, s); };
-  const VoxelIndex from{voxel(first.i), voxel(first.j), voxel(first.k)};
-  const float per_step = 1.0f / static_cast<float>(s);
+  const int count = brick_nodes_ + 3;
+  const auto& s = steps_per_voxel_;
+  const VoxelIndex from{divide_down(first.i, s[0]), divide_down(first.j, s[1]), divide_down(first.k, s[2])};
   struct Place {
     std::size_t cell;
     float fraction;
@@ -190,10 +210,12 @@ void SurfaceLattice::interpolate_voxels(const VoxelIndex& first, Block& block) c
   std::array<std::array<Place, kMaxBlockNodes>, 3> places;
   const std::array<int, 3> nodes{first.i, first.j, first.k}, voxels{from.i, from.j, from.k};
   for (std::size_t axis = 0; axis < 3; ++axis) {
+    const float per_step = 1.0f / static_cast<float>(s[axis]);
     for (int n = 0; n < count; ++n) {
-      const int cell = voxel(nodes[axis] + n);
-      places[axis][static_cast<std::size_t>(n)] = {static_cast<std::size_t>(cell - voxels[axis]),
-                                                   per_step * static_cast<float>(nodes[axis] + n - s * cell)};
+      const int cell = divide_down(nodes[axis] + n, s[axis]);
+      places[axis][static_cast<std::size_t>(n)] = {
+          static_cast<std::size_t>(cell - voxels[axis]),
+          per_step * static_cast<float>(nodes[axis] + n - s[axis] * cell)};
     }
   }
   const std::size_t n = static_cast<std::size_t>(count);
@@ -239,7 +261,7 @@ void SurfaceLattice::find_surface(const VoxelIndex& brick, BrickSurface& surface
   const Nodes nodes = nodes_of(brick, block);
   Rows rows{};
   const Found found = find_bone(nodes, rows);
-  surface.has_bone = found != Found::nothing;
+  surface.has_bone = found != Found::no_bone;
   if (found == Found::surface) mean_crossings(nodes, rows, surface);
 }
 
@@ -259,7 +281,7 @@ SurfaceLattice::Found SurfaceLattice::find_bone(const Nodes& nodes, Rows& rows) 
     }
   }
   const std::uint32_t whole = (2u << brick_nodes_) - 1;
-  if (any == 0) return Found::nothing;
+  if (any == 0) return Found::no_bone;
   return (all & whole) == whole ? Found::bone_alone : Found::surface;
 }
 

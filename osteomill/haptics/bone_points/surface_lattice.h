@@ -10,8 +10,8 @@
 namespace osteomill {
 
 /// Where the isosurface crosses the edges of a lattice, as area-weighted points, brick by brick. Lattice
-/// nodes are the voxels' centres or, in a coarse scan, a whole number of steps between two of them, so that
-/// they lie at most the wanted spacing apart. Every crossing stands for A_a |n_a| of surface (A_a the face of
+/// nodes are the voxels' centres or, along an axis on which those lie farther apart than wanted, a whole
+/// number of steps between two of them. Every crossing stands for A_a |n_a| of surface (A_a the face of
 /// a cell across edges along a, n the surface's unit normal): three regular lattices, whose sum is a
 /// quadrature of the surface whatever its slope. A point is the weighted mean of the crossings in a cell: of
 /// one node, or, in a fine scan, of 2^n nodes a side, of whose lines those are looked at that lie half the
@@ -40,8 +40,11 @@ class SurfaceLattice {
   const Vec3& origin_W() const { return volume_->geometry().origin_mm; }
   const Mat3& direction() const { return volume_->geometry().direction; }
 
-  /// May say yes where there is none.
-  bool may_hold_surface(const VoxelIndex& brick) const;
+  /// Where there is no bone there never will be; bone alone becomes surface as densities fall.
+  enum class Found { no_bone, bone_alone, surface };
+  /// What there is in a node of an octree over the bricks: 2^level of them a side, the first at 2^level times
+  /// `node`. May say `surface` where there is none.
+  Found found_in(int level, const VoxelIndex& node) const;
   /// Of the densities that a brick's points are made from: differs from what it was before where any fell
   /// since.
   std::uint32_t changes_of(const VoxelIndex& brick) const;
@@ -79,7 +82,7 @@ class SurfaceLattice {
   static std::size_t row_index(int j, int k) {
     return static_cast<std::size_t>(j + k * (kMaxBrickNodes + 1));
   }
-  VoxelBox voxels_of(const VoxelIndex& brick, int more_nodes) const;
+  VoxelBox voxels_of(int level, const VoxelIndex& node, int more_nodes) const;
   // Densities at the nodes of a brick and about them, wherever they stand.
   struct Nodes {
     const float* first;
@@ -90,7 +93,6 @@ class SurfaceLattice {
   void copy_voxels(const VoxelIndex& first, Block& block) const;
   void interpolate_voxels(const VoxelIndex& first, Block& block) const;
   float density(const VoxelIndex& voxel) const;
-  enum class Found { nothing, bone_alone, surface };
   Found find_bone(const Nodes& nodes, Rows& rows) const;
   using CrossedEdges = std::array<std::uint32_t, 3>;
   CrossedEdges crossed_edges(const Rows& rows, int j, int k) const;
@@ -100,7 +102,7 @@ class SurfaceLattice {
   ShellPoint mean_of_cell(const CellSums& sums, int cell_i) const;
 
   const Volume* volume_ = nullptr;
-  int steps_per_voxel_ = 1;
+  std::array<int, 3> steps_per_voxel_{1, 1, 1};
   // Nodes of a cell, and from one line that is looked at to the next, along each axis.
   int group_ = 1;
   int line_step_ = 1;

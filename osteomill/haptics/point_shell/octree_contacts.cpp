@@ -1,6 +1,6 @@
 #include "osteomill/haptics/point_shell/octree_contacts.h"
 
-#include "osteomill/haptics/point_shell/contact_point.h"
+#include "osteomill/haptics/bone_points/tool_from_grid.h"
 
 namespace osteomill::point_shell {
 
@@ -21,19 +21,24 @@ bool is_apart(const ToolBox& tool_box, const VoxelShell::NodeBox& node, const To
 }  // namespace
 
 ToolContacts contacts_by_octree(const VoxelShell& shell, const ToolSignedDistance& tool, const Pose& X_WT,
-                                const Penalty& penalty) {
+                                double stiffness_N_per_mm3) {
   const ToolFromGrid X_TG(shell, X_WT);
   ToolContacts contacts;
-  const Vec3 reach_mm = Vec3::Constant(penalty.reach_mm());
-  const ToolBox box{tool.box().min_mm - reach_mm, tool.box().max_mm + reach_mm};
-  shell.octree().visit(
-      [&](int level, int i, int j, int k) { return is_apart(box, shell.node_box(level, i, j, k), X_TG); },
-      [&](int bi, int bj, int bk) {
-        const Vec3 origin_T = X_TG * shell.brick_origin_G(bi, bj, bk);
-        shell.points().for_each_of(shell.brick_index(bi, bj, bk), [&](const ShellPoint& point) {
-          touch_point(point, origin_T + X_TG.turn * point.position_mm(), X_TG, tool, penalty, contacts);
-        });
-      });
+  shell.octree().visit([&](int level, int i, int j,
+                           int k) { return is_apart(tool.box(), shell.node_box(level, i, j, k), X_TG); },
+                       [&](int bi, int bj, int bk) {
+                         const Vec3 origin_T = X_TG * shell.brick_origin_G(bi, bj, bk);
+                         shell.points().for_each_of(
+                             shell.brick_index(bi, bj, bk), [&](const ShellPoint& point) {
+                               const Vec3 point_T = origin_T + X_TG.turn * point.position_mm();
+                               const std::optional<ToolDistance> distance = tool.distance(point_T);
+                               if (!distance || !(distance->distance_mm < 0)) return;
+                               const double k = stiffness_N_per_mm3 * static_cast<double>(point.area_mm2);
+                               ContactSum& part = tool.is_burr(point_T) ? contacts.burr : contacts.shaft;
+                               part.add(-k * distance->distance_mm, k, distance->outward_T, point_T);
+                               ++contacts.touching;
+                             });
+                       });
   const Mat3 R_WT = X_WT.orientation.toRotationMatrix();
   return {contacts.burr.in_outer(R_WT), contacts.shaft.in_outer(R_WT), contacts.touching};
 }

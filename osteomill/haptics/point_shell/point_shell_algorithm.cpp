@@ -13,6 +13,7 @@ namespace osteomill::point_shell {
 
 namespace {
 
+constexpr std::size_t kNearPoints = 65536;
 // Newton steps a tick; the second only where the first moved the tool by more than this.
 constexpr int kSteps = 2;
 constexpr double kSettled_mm = 0.005;
@@ -46,19 +47,19 @@ void PointShellAlgorithm::prepare(const Scene& scene) {
   if (scene.volume == nullptr) throw std::invalid_argument("point-shell: the scene has no volume");
   require_valid(scene.tool);
   volume_ = scene.volume;
+  milling_tool_ = scene.tool;
   coupling_.damping_ticks = settings_.damping_time_s / scene.tick_period_s;
   centreline_T_ = centreline_vertices(scene.tool, kCentrelinePoints);
   penalty_.stiffness_N_per_mm3 = contact_stiffness_N_per_mm3(settings_, scene.tool);
   if (settings_.surface_shell) {
     surface_ = BoneBricks(*scene.volume, settings_.scale * BoneBricks::kSpacing_mm, BoneBricks::Points::fine);
+    near_ = NearBone(kNearPoints, NearBone::PointsMeet::the_nearest_part);
     // Seen from a corner the surface in a cell is at most about twice a cell's side.
     penalty_.max_patch_mm2 = 2 * surface_.lattice().cell_area_mm2();
-    tool_ = ToolSignedDistance(scene.tool);
   } else {
     voxels_ = VoxelShell(*scene.volume, settings_.scale);
     penalty_.max_patch_mm2 = 0;
-    const double spacing_mm = SampledDistanceField::suitable_spacing_mm(scene.tool);
-    tool_ = ToolSignedDistance(scene.tool, SampledDistanceField(scene.tool, spacing_mm, penalty_.reach_mm()));
+    tool_ = ToolSignedDistance(scene.tool);
   }
   reset();
 }
@@ -72,7 +73,7 @@ void PointShellAlgorithm::reset() {
 }
 
 int PointShellAlgorithm::sample_point_count() const {
-  return static_cast<int>(settings_.surface_shell ? surface_.octree().total() : voxels_.point_count());
+  return static_cast<int>(settings_.surface_shell ? surface_.fine().total() : voxels_.point_count());
 }
 
 void PointShellAlgorithm::volume_changed(const VolumeChange& change) {
@@ -81,12 +82,11 @@ void PointShellAlgorithm::volume_changed(const VolumeChange& change) {
   } else {
     voxels_.refresh(change.voxels);
   }
-  refreshed_this_tick_ = true;
 }
 
 ToolContacts PointShellAlgorithm::contacts_at(const Pose& X_WT) {
-  return settings_.surface_shell ? contacts_by_bricks(surface_, tool_.tool(), X_WT, penalty_)
-                                 : contacts_by_octree(voxels_, tool_, X_WT, penalty_);
+  return settings_.surface_shell ? contacts_by_bricks(surface_, near_, milling_tool_, X_WT, penalty_)
+                                 : contacts_by_octree(voxels_, tool_, X_WT, penalty_.stiffness_N_per_mm3);
 }
 
 // The target itself, to the last bit, where the tick's limits let the tool reach it.
@@ -116,11 +116,7 @@ bool PointShellAlgorithm::is_inside_bone(const Pose& X_WT) const {
 }
 
 HapticStep PointShellAlgorithm::step(const Pose& X_WD, double dt_s) {
-  if (settings_.surface_shell) {
-    if (!refreshed_this_tick_ && !surface_.is_up_to_date()) surface_.refresh({});
-    surface_.make_room(tool_.tool(), X_WT_);
-  }
-  refreshed_this_tick_ = false;
+  if (settings_.surface_shell) surface_.begin_tick(milling_tool_, X_WT_);
   const bool begins = !has_pose_;
   if (begins) X_WT_ = X_WD_before_ = X_WD;
   has_pose_ = true;

@@ -2,9 +2,9 @@
 
 #include <vector>
 
-#include "osteomill/haptics/bone_points/bone_bricks.h"
+#include "osteomill/haptics/bone_points/near_bone.h"
+#include "osteomill/haptics/bone_points/penalty.h"
 #include "osteomill/haptics/haptic_algorithm.h"
-#include "osteomill/haptics/point_shell/penalty.h"
 #include "osteomill/haptics/point_shell/point_shell_description.h"
 #include "osteomill/haptics/point_shell/tool_signed_distance.h"
 #include "osteomill/haptics/point_shell/virtual_coupling.h"
@@ -19,8 +19,8 @@ namespace osteomill::point_shell {
 /// lets what was felt fade first.
 ///
 /// `X_WT` of a step is the simulated tool; `burr_force_W_N` the contact force of the points that touch the
-/// tool below the height at which its shaft comes out of the burr's sphere; `contacts` counts the points that
-/// touch.
+/// burr (paper: the tool below the height at which its shaft comes out of the burr's sphere); `contacts`
+/// counts the points that touch.
 class PointShellAlgorithm final : public HapticAlgorithm {
  public:
   /// Throws std::invalid_argument where a setting is out of range.
@@ -43,13 +43,14 @@ class PointShellAlgorithm final : public HapticAlgorithm {
 
   Settings settings_;
   VirtualCoupling coupling_;
-  ToolSignedDistance tool_;
-  // The bone, one or the other.
+  MillingTool milling_tool_;
+  // The bone, one or the other, and what meets it.
   VoxelShell voxels_;
+  ToolSignedDistance tool_;
   BoneBricks surface_;
+  NearBone near_;
   Penalty penalty_;
 
-  bool refreshed_this_tick_ = false;
   bool has_pose_ = false;
   bool in_contact_ = false;
   // In contact, or on the way back to the device from it.

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "osteomill/haptics/bone_points/brick_points.h"
-#include "osteomill/haptics/bone_points/count_pyramid.h"
 #include "osteomill/haptics/point_shell/bone_bits.h"
+#include "osteomill/haptics/point_shell/count_pyramid.h"
 #include "osteomill/numbers/row_major.h"
 #include "osteomill/volume/volume.h"
 

@@ -1,8 +1,8 @@
-#include "osteomill/haptics/barrier_shell/energy_sum.h"
+#include "osteomill/haptics/bone_points/energy_sum.h"
 
 #include <Eigen/Geometry>
 
-namespace osteomill::barrier_shell {
+namespace osteomill {
 
 namespace {
 
@@ -27,21 +27,19 @@ EnergySum& EnergySum::operator+=(const EnergySum& other) {
 // Seen from the tool the point moves as exp(-t omega) (r - t delta): by v = -(delta + omega x r) at first,
 // and with the acceleration omega x (omega x r) + 2 omega x delta. So d' = n.v and d'' = v.C v + n.a, with n
 // and C the distance's derivatives; and E' = -p d', E'' = psi'' d'^2 - p d''.
-void EnergySum::add_point(const Barrier& barrier, const Vec3& point_T, const CoreDistance& distance,
-                          double area_mm2) {
+void EnergySum::add_point(const Barrier::Value& push, const Vec3& point_T, const CoreDistance& distance) {
   nearest_mm = std::min(nearest_mm, distance.distance_mm);
-  const Barrier::Value value = barrier.at(distance.distance_mm);
-  if (!(value.energy > 0)) return;
+  const double p = push.pressure;
+  if (!(p > 0)) return;
   ++touching;
   const Vec3& n = distance.outward_T;
-  const double p = area_mm2 * value.pressure;
   Vector6 along;
   along << n, point_T.cross(n);
   Eigen::Matrix<double, 3, 6> motion;  // minus v, of delta and omega
   motion << Mat3::Identity(), -cross(point_T);
-  energy_Nmm += area_mm2 * value.energy;
+  energy_Nmm += push.energy;
   gradient += p * along;
-  convex += area_mm2 * value.stiffness * along * along.transpose();
+  convex += push.stiffness * along * along.transpose();
   rest -= p * motion.transpose() * distance.curvature_per_mm * motion;
   const Mat3 symmetric = 0.5 * (n * point_T.transpose() + point_T * n.transpose());
   rest.bottomRightCorner<3, 3>() -= p * (symmetric - n.dot(point_T) * Mat3::Identity());
@@ -49,4 +47,4 @@ void EnergySum::add_point(const Barrier& barrier, const Vec3& point_T, const Cor
   rest.bottomLeftCorner<3, 3>() += p * cross(n);
 }
 
-}  // namespace osteomill::barrier_shell
+}  // namespace osteomill

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace osteomill::barrier_shell {
+namespace osteomill {
 
 /// The energy of bone near a core, per area of its surface: psi(d) = w p0 / 3 x^3 / (1 - x) with x = 1 - d /
 /// w for distances d < w, else zero. Soft at first touch and infinite at the core, twice continuously
@@ -21,6 +21,9 @@ struct Barrier {
     double pressure = 0;
     double stiffness = 0;
   };
+  friend Value operator*(double area_mm2, const Value& v) {
+    return {area_mm2 * v.energy, area_mm2 * v.pressure, area_mm2 * v.stiffness};
+  }
   Value at(double distance_mm) const {
     const double share = std::max(distance_mm / width_mm, kNearestShare);
     if (!(share < 1)) return {};
@@ -31,4 +34,4 @@ struct Barrier {
   }
 };
 
-}  // namespace osteomill::barrier_shell
+}  // namespace osteomill

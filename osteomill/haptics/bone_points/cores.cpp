@@ -1,9 +1,9 @@
-#include "osteomill/haptics/barrier_shell/cores.h"
+#include "osteomill/haptics/bone_points/cores.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace osteomill::barrier_shell {
+namespace osteomill {
 
 namespace {
 
@@ -54,4 +54,4 @@ CoreDistance distance_to_cylinder(const Cores& cores, const Vec3& point_T) {
   return {distance, cosine * radial + sine * end, cosine * side_curvature + outer(across) / distance};
 }
 
-}  // namespace osteomill::barrier_shell
+}  // namespace osteomill

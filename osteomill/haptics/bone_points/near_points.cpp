@@ -1,18 +1,13 @@
-#include "osteomill/haptics/barrier_shell/near_points.h"
+#include "osteomill/haptics/bone_points/near_points.h"
 
 #include <algorithm>
 
-#include "osteomill/haptics/barrier_shell/near_kernel.h"
+#include "osteomill/haptics/bone_points/brick_points.h"
+#include "osteomill/haptics/bone_points/near_kernel.h"
 
-namespace osteomill::barrier_shell {
+namespace osteomill {
 
 namespace {
-
-KernelShape kernel_shape(const Cores& cores, const Barrier& barrier) {
-  return {static_cast<float>(cores.ball_radius_mm), static_cast<float>(cores.cylinder_radius_mm),
-          static_cast<float>(cores.cylinder_length_mm), static_cast<float>(barrier.width_mm),
-          static_cast<float>(barrier.pressure_N_per_mm2)};
-}
 
 using Lanes = float[NearPoints::kLanes];
 
@@ -35,10 +30,10 @@ EnergySum side_sum(const SideLanes& lanes) {
   double s[SideLanes::kSums];
   for (int n = 0; n < SideLanes::kSums; ++n) s[n] = lane_sum(lanes.sums[n]);
   EnergySum sum;
-  sum.energy_Nmm = s[0];
-  sum.gradient << s[1], s[2], 0, -s[4], s[3], 0;
+  sum.energy_Nmm = s[13];
+  sum.gradient << s[0], s[1], 0, -s[3], s[2], 0;
   // m n n^T and q (I - e_z e_z^T), times 1, z and z^2.
-  const double m[3][3] = {{s[5], s[6], s[7]}, {s[8], s[9], s[10]}, {s[11], s[12], s[13]}};
+  const double m[3][3] = {{s[4], s[5], s[6]}, {s[7], s[8], s[9]}, {s[10], s[11], s[12]}};
   const double* q = &s[14];
   // In the order of delta_x, delta_y, omega_x, omega_y: the point's move is (dx + z wy - .., dy - z wx + ..).
   const int at[4] = {0, 1, 4, 3};
@@ -52,7 +47,7 @@ EnergySum side_sum(const SideLanes& lanes) {
     }
   }
   // What turns the side's tangent about the axis: r x t = (-z u, -z v, rho), t = (-v, u, 0).
-  const double pu = s[1], pv = s[2], pzu = s[3], pzv = s[4];
+  const double pu = s[0], pv = s[1], pzu = s[2], pzv = s[3];
   const double rho_uu = s[17], rho_uv = s[18], rho_vv = s[19], rho = rho_uu + rho_vv;
   const auto add = [&](int row, int column, double value) {
     sum.rest(row, column) += value;
@@ -85,23 +80,43 @@ EnergySum ball_sum(const BallLanes& lanes) {
   double s[BallLanes::kSums];
   for (int n = 0; n < BallLanes::kSums; ++n) s[n] = lane_sum(lanes.sums[n]);
   EnergySum sum;
-  sum.energy_Nmm = s[0];
-  sum.gradient.head<3>() << s[1], s[2], s[3];
-  sum.convex.topLeftCorner<3, 3>() << s[4], s[5], s[6], s[5], s[7], s[8], s[6], s[8], s[9];
+  sum.energy_Nmm = s[9];
+  sum.gradient.head<3>() << s[0], s[1], s[2];
+  sum.convex.topLeftCorner<3, 3>() << s[3], s[4], s[5], s[4], s[6], s[7], s[5], s[7], s[8];
   sum.rest.topLeftCorner<3, 3>().diagonal().setConstant(-s[10]);
   sum.touching = lanes.touching;
   sum.nearest_mm = lane_min(lanes.nearest);
   return sum;
 }
 
+// What a point at an end of the cylinder pushes with.
+Barrier::Value push_at_end(const PushLaw& law, const NearPoints& near, std::size_t n, const Frame& moved,
+                           const Cores& cores, const CoreDistance& distance) {
+  const double area_mm2 = static_cast<double>(near.area[n]);
+  if (const auto* barrier = std::get_if<Barrier>(&law)) return area_mm2 * barrier->at(distance.distance_mm);
+  const Vec3 normal = place(near.normal_x, near.normal_y, near.normal_z, n);
+  double cosine = 0;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) {
+      cosine += distance.outward_T[row] * static_cast<double>(moved.turn[row][column]) * normal[column];
+    }
+  }
+  const Penalty::Push push =
+      std::get_if<Penalty>(&law)->push(-distance.distance_mm, area_mm2, cosine, 1 / cores.cylinder_radius_mm);
+  return {0, push.force_N, push.stiffness_N_per_mm};
+}
+
 }  // namespace
 
-NearPoints::NearPoints(std::size_t capacity) : capacity_(capacity) {
+NearPoints::NearPoints(std::size_t capacity, bool with_normals) {
   for (std::vector<float>* row :
        {&gathered_x, &gathered_y, &gathered_z, &area, &x, &y, &z, &distance, &out_x, &out_y, &out_z}) {
     row->resize(capacity);
   }
-  beyond_end.reserve(capacity);
+  if (with_normals) {
+    for (std::vector<float>* row : {&normal_x, &normal_y, &normal_z}) row->resize(capacity);
+  }
+  at_end.reserve(capacity);
 }
 
 Frame frame_of(const Mat3& turn, const Vec3& origin_mm) {
@@ -123,24 +138,24 @@ void close_gathering(NearPoints& near) {
   }
 }
 
-EnergySum ball_energy(NearPoints& near, const Frame& moved, const Cores& cores, const Barrier& barrier) {
+EnergySum ball_energy(NearPoints& near, const Frame& moved, const Cores& cores, const PushLaw& law) {
   BallLanes lanes;
   std::fill(std::begin(lanes.nearest), std::end(lanes.nearest), PointChunk::kFarAway_mm);
-  sum_ball(near, moved, kernel_shape(cores, barrier), lanes);
+  sum_ball(near, moved, cores, law, lanes);
   return ball_sum(lanes);
 }
 
-EnergySum cylinder_energy(NearPoints& near, const Frame& moved, const Cores& cores, const Barrier& barrier) {
+EnergySum cylinder_energy(NearPoints& near, const Frame& moved, const Cores& cores, const PushLaw& law) {
   SideLanes lanes;
   std::fill(std::begin(lanes.nearest), std::end(lanes.nearest), PointChunk::kFarAway_mm);
-  sum_side(near, moved, kernel_shape(cores, barrier), lanes);
+  sum_side(near, moved, cores, law, lanes);
   EnergySum sum = side_sum(lanes);
   // Their order must not depend on the width of the registers.
-  std::sort(near.beyond_end.begin(), near.beyond_end.end());
-  for (const std::uint32_t n : near.beyond_end) {
+  std::sort(near.at_end.begin(), near.at_end.end());
+  for (const std::uint32_t n : near.at_end) {
     const Vec3 point_T = place(near.x, near.y, near.z, n);
     const CoreDistance distance = distance_to_cylinder(cores, point_T);
-    sum.add_point(barrier, point_T, distance, static_cast<double>(near.area[n]));
+    sum.add_point(push_at_end(law, near, n, moved, cores, distance), point_T, distance);
     near.distance[n] = static_cast<float>(distance.distance_mm);
     near.out_x[n] = static_cast<float>(distance.outward_T.x());
     near.out_y[n] = static_cast<float>(distance.outward_T.y());
@@ -149,4 +164,4 @@ EnergySum cylinder_energy(NearPoints& near, const Frame& moved, const Cores& cor
   return sum;
 }
 
-}  // namespace osteomill::barrier_shell
+}  // namespace osteomill

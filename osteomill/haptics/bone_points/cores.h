@@ -2,7 +2,7 @@
 
 #include "osteomill/tool/milling_tool.h"
 
-namespace osteomill::barrier_shell {
+namespace osteomill {
 
 /// How far within the tool's surface its cores lie: the rounding, but at most half of its least radius.
 double inset_within(const MillingTool& tool, double rounding_mm);
@@ -32,4 +32,4 @@ struct CoreDistance {
 CoreDistance distance_to_ball(const Cores& cores, const Vec3& point_T);
 CoreDistance distance_to_cylinder(const Cores& cores, const Vec3& point_T);
 
-}  // namespace osteomill::barrier_shell
+}  // namespace osteomill

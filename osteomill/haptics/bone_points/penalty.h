@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace osteomill::point_shell {
+namespace osteomill {
 
 /// How a point of the shell pushes.
 struct Penalty {
@@ -41,4 +41,4 @@ struct Penalty {
   }
 };
 
-}  // namespace osteomill::point_shell
+}  // namespace osteomill

@@ -1,4 +1,4 @@
-#include "osteomill/haptics/bone_points/count_pyramid.h"
+#include "osteomill/haptics/point_shell/count_pyramid.h"
 
 #include <utility>
 

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace osteomill::app {
+
+/// From now on the scan of this name, with all that this thread makes of it, may take so many bytes.
+void limit_memory(const std::string& scan, std::uint64_t bytes);
+
+/// Throws InputError, naming scan and amounts, where more is taken. Cheap, to be called often, as by a
+/// listener of WorkProgress.
+void check_memory_taken();
+
+/// What to say where memory ran out before that: one line.
+std::string out_of_memory_text();
+
+}  // namespace osteomill::app

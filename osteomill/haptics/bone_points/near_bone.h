@@ -1,0 +1,56 @@
+#pragma once
+
+#include "osteomill/haptics/bone_points/bone_bricks.h"
+#include "osteomill/haptics/bone_points/near_points.h"
+
+namespace osteomill {
+
+/// How far the tool may move before points have to be gathered again.
+struct Room {
+  double move_mm = 0;
+  double turn_rad = 0;
+};
+
+/// The bone near a tool's ball and cylinder: gathered once and then good for every pose that the room allows.
+/// Safe in the haptic tick.
+class NearBone {
+ public:
+  enum class PointsMeet {
+    /// Either part; the cylinder meets the bricks' coarse points.
+    both_parts,
+    /// The part that they are nearest to, with their normals.
+    the_nearest_part
+  };
+
+  /// Room for `capacity` points at each part.
+  explicit NearBone(std::size_t capacity = 0, PointsMeet meet = PointsMeet::both_parts);
+
+  /// Gathers the points that may come within `reach_mm` of a part at `X_WT` or anywhere within the room.
+  /// Makes bricks.
+  void gather(BoneBricks& bricks, const Cores& cores, double reach_mm, const Pose& X_WT, const Room& room);
+  /// Whether a point was left out for want of room: the tool must not move.
+  bool overflowed() const { return ball_.overflowed || cylinder_.overflowed; }
+  bool is_empty() const { return ball_.count == 0 && cylinder_.count == 0; }
+
+  struct Energy {
+    EnergySum ball;
+    EnergySum cylinder;
+  };
+  /// At a pose within the room of the last gathering.
+  Energy energy(const Cores& cores, const PushLaw& law, const Pose& X_WT);
+  /// The greatest share of any point's distance that a move from the pose of the last `energy` by a barrier
+  /// may use up.
+  double max_use(const MoveT& move, const Barrier& barrier) const;
+
+ private:
+  PointsMeet meet_;
+  Pose X_WT_gathered_;
+  NearPoints ball_;
+  NearPoints cylinder_;
+};
+
+/// Whether no bone can be within `reach_mm` of the tool at `X_WT` or anywhere within the room; makes no
+/// bricks, and may say no where it is so.
+bool is_clear(BoneBricks& bricks, const Cores& cores, double reach_mm, const Pose& X_WT, const Room& room);
+
+}  // namespace osteomill

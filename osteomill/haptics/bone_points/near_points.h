@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <variant>
+#include <vector>
+
+#include "osteomill/haptics/bone_points/cores.h"
+#include "osteomill/haptics/bone_points/energy_sum.h"
+#include "osteomill/haptics/bone_points/penalty.h"
+
+namespace osteomill {
+
+/// The points near one part of the tool, each coordinate in a row of its own: places in T when they were
+/// gathered, the surface each stands for and, where the law asks for it, its normal, also in T then; and, as
+/// of the last sum by a barrier, place, distance to the part and direction out of it.
+struct NearPoints {
+  /// Sums run in so many lanes whatever the width of the machine's registers, and so have the same bits.
+  static constexpr std::size_t kLanes = 16;
+
+  explicit NearPoints(std::size_t capacity = 0, bool with_normals = false);
+  std::size_t capacity() const { return area.size(); }
+  bool has_normals() const { return !normal_x.empty(); }
+
+  std::size_t count = 0;
+  /// Whether points found no room.
+  bool overflowed = false;
+  std::vector<float> gathered_x, gathered_y, gathered_z, area;
+  std::vector<float> normal_x, normal_y, normal_z;
+  std::vector<float> x, y, z, distance, out_x, out_y, out_z;
+  /// Of the points near the cylinder those that are nearest to its ends.
+  std::vector<std::uint32_t> at_end;
+};
+
+/// A frame seen from another: `origin + turn p`.
+struct Frame {
+  float turn[3][3];
+  float origin[3];
+};
+Frame frame_of(const Mat3& turn, const Vec3& origin_mm);
+
+/// After the last brick.
+void close_gathering(NearPoints& near);
+
+/// How points push: by a barrier, or each by its penalty.
+using PushLaw = std::variant<Barrier, Penalty>;
+
+/// What the points push with and its derivatives by a move of a tool that has moved since the gathering, so
+/// that its frame then is `moved` seen from now. The same bits whatever the width of the machine's registers.
+/// Safe in the haptic tick.
+EnergySum ball_energy(NearPoints& near, const Frame& moved, const Cores& cores, const PushLaw& law);
+EnergySum cylinder_energy(NearPoints& near, const Frame& moved, const Cores& cores, const PushLaw& law);
+
+}  // namespace osteomill
