@@ -219,6 +219,16 @@ TEST(Recorder, WithoutCloseAnUnfinishedRecordingIsLeft) {
   EXPECT_EQ(read.records.size(), 100u);
 }
 
+TEST(Recorder, OfARunThatCanBeRunAgainNothingIsLeftWithoutClose) {
+  const TestFolder folder;
+  {
+    Recorder recorder(folder / "run.h5", sample_description(), Recorder::kUsualCapacity,
+                      Recorder::Begins::with_the_recording, Recorder::Unfinished::removed);
+    recorder.push_waiting(sample_record(0));
+  }
+  EXPECT_TRUE(fs::is_empty(folder.path()));
+}
+
 TEST(Recorder, AFolderThatIsMissingIsNamed) {
   const TestFolder folder;
   try {
