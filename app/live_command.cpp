@@ -1,4 +1,5 @@
 #include <chrono>
+#include <cstdlib>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,6 +12,7 @@
 #include "app/progress.h"
 #include "app/scan_options.h"
 #include "app/trial_options.h"
+#include <CLI/Error.hpp>
 #include <fmt/core.h>
 
 #include "osteomill/device/space_mouse.h"
@@ -62,14 +64,16 @@ struct Seen {
   FaultCount faults;
   LabelCount labels;
   std::size_t bricks = 0;
+  bool recording_failed = false;
 };
 
 // A full disk ends the recording, not the session.
-void end_recording(LiveMilling& milling) {
+void end_recording(LiveMilling& milling, Seen& seen) {
   try {
     milling.stop_recording();
   } catch (const InputError& error) {
-    warn(error.what());
+    warn_though_quiet(error.what());
+    seen.recording_failed = true;
   }
 }
 
@@ -152,10 +156,11 @@ Seen run_for(LiveMilling& milling, double seconds, const std::shared_ptr<const L
   const auto take = [&] {
     while (const auto record = milling.next_record()) {
       seen.faults.add(*record);
-      if (const Label* touched = seen.labels.add(*record)) warn_of_no_go(no_go_warning(*touched, *record));
+      if (const Label* touched = seen.labels.add(*record))
+        warn_though_quiet(no_go_warning(*touched, *record));
     }
     seen.bricks += milling.take_changed_bricks().size();
-    if (milling.recording_failed()) end_recording(milling);
+    if (milling.recording_failed()) end_recording(milling, seen);
   };
   while (passed_s < seconds && milling.running()) {
     std::this_thread::sleep_for(std::chrono::duration<double>(kEvery_s));
@@ -201,8 +206,8 @@ void run_live(LiveOptions options, const std::string& command_line) {
   }
   milling.start();
   if (!milling.refused_real_time().empty()) warn(milling.refused_real_time());
-  const Seen seen = run_for(milling, options.seconds, labels, holder);
-  if (milling.recording()) end_recording(milling);
+  Seen seen = run_for(milling, options.seconds, labels, holder);
+  if (milling.recording()) end_recording(milling, seen);
   if (sender && !sender->is_connected()) warn("--send-bone " + options.send_bone + ": the receiver has gone");
   if (const auto said = seen.faults.sentence()) warn(setup.algorithm.id.name + ": " + *said);
   print_timing(milling.timing());
@@ -210,6 +215,7 @@ void run_live(LiveOptions options, const std::string& command_line) {
              seen.bricks);
   holder.print();
   for (const std::string& line : label_lines(seen.labels)) fmt::print("label        {}\n", line);
+  if (seen.recording_failed) throw CLI::RuntimeError(EXIT_FAILURE);
 }
 
 }  // namespace

@@ -1,7 +1,9 @@
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <memory>
 #include <stdexcept>
+#include <system_error>
 
 #include "app/command_line.h"
 #include "app/commands.h"
@@ -11,6 +13,7 @@
 #include "app/progress.h"
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
+#include <sys/resource.h>
 
 #include "osteomill/files/input_error.h"
 #include "osteomill/files/input_files.h"
@@ -30,7 +33,15 @@ int complain(const char* reason, int code) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  constexpr rlim_t kLeastStackBytes = 256 * 1024;
   const osteomill::KeepInputs keep_inputs;
+  // A file as long as a limit allows is then one that cannot be written, as on a full disk.
+  std::signal(SIGXFSZ, SIG_IGN);
+  rlimit stack{};
+  if (::getrlimit(RLIMIT_STACK, &stack) == 0 && stack.rlim_cur < kLeastStackBytes) {
+    return complain("the stack is limited to less than 256 KB (ulimit -s), which is not enough",
+                    kInputAtFault);
+  }
   CLI::App program("6-DOF haptic bone milling: haptic algorithms on a CT scan, measured", "osteomill");
   program.set_version_flag("--version", OSTEOMILL_VERSION);
   program.formatter(std::make_shared<osteomill::app::HelpText>());
@@ -48,6 +59,8 @@ int main(int argc, char** argv) {
     return program.exit(help);
   } catch (const CLI::CallForVersion& version) {
     return program.exit(version);
+  } catch (const CLI::RuntimeError& said) {
+    return said.get_exit_code();
   } catch (const CLI::ParseError& error) {
     return complain(error.what(), kWrongUsage);
   } catch (const osteomill::InputError& error) {
@@ -56,6 +69,9 @@ int main(int argc, char** argv) {
     return complain(error.what(), kWrongUsage);
   } catch (const std::bad_alloc&) {
     return complain(osteomill::app::out_of_memory_text().c_str(), kInputAtFault);
+  } catch (const std::system_error& error) {
+    const bool no_thread = error.code() == std::errc::resource_unavailable_try_again;
+    return complain(no_thread ? "no more threads can be started (ulimit -u)" : error.what(), kInputAtFault);
   } catch (const std::exception& error) {
     return complain(error.what(), kInputAtFault);
   }

@@ -74,16 +74,16 @@ void end_progress() {
 }
 
 void warn(std::string_view line) {
-  if (!quiet) warn_of_no_go(line);
+  if (!quiet) warn_though_quiet(line);
 }
 
-void warn_of_no_go(std::string_view line) {
+void warn_though_quiet(std::string_view line) {
   if (on_terminal()) fmt::print(stderr, "\r\033[K");
   fmt::print(stderr, "osteomill: warning: {}\n", in_one_line(line));
 }
 
 RunEvents events_on_terminal() {
-  return {show_progress, warn, warn_of_no_go};
+  return {show_progress, warn, warn_though_quiet};
 }
 
 }  // namespace osteomill::app

@@ -21,9 +21,9 @@ void end_progress();
 /// One line on standard error that names what it is about and does not forbid going on.
 void warn(std::string_view line);
 
-/// The same of a burr that has come into a no-go structure: --quiet does not silence what was asked for with
-/// --no-go.
-void warn_of_no_go(std::string_view line);
+/// The same of what was asked for, which --quiet does not silence: a burr that has come into a no-go
+/// structure, a recording that cannot go on.
+void warn_though_quiet(std::string_view line);
 
 /// Progress and warnings as above.
 RunEvents events_on_terminal();

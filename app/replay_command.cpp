@@ -59,7 +59,7 @@ class Log {
   void add(const TickRecord& record) {
     log_.push_back(record);
     faults_.add(record);
-    if (const Label* touched = labels_.add(record)) warn_of_no_go(no_go_warning(*touched, record));
+    if (const Label* touched = labels_.add(record)) warn_though_quiet(no_go_warning(*touched, record));
     if (log_.size() % 1000 == 0)
       show_progress("replay", static_cast<double>(log_.size()) / static_cast<double>(ticks_));
   }
@@ -168,7 +168,8 @@ void replay_another_way(const ReplayOptions& options, const std::string& command
         setting.value = static_cast<double>(session.algorithm().sample_point_count());
     }
     if (!recorder)
-      recorder.emplace(options.record, start.run, Recorder::kUsualCapacity, Recorder::Begins::when_told);
+      recorder.emplace(options.record, start.run, Recorder::kUsualCapacity, Recorder::Begins::when_told,
+                       Recorder::Unfinished::removed);
     recorder->begin_session(session_number++, std::move(start));
   };
   replay.tick = [&](const TickRecord&, const TickRecord& now) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <exception>
+#include <system_error>
 
 #include <dcmtk/config/osconfig.h>
 #include <dcmtk/dcmdata/dcistrmf.h>
@@ -13,6 +14,7 @@
 #include <dcmtk/oflog/appender.h>
 #include <dcmtk/oflog/oflog.h>
 #include <dcmtk/oflog/spi/logevent.h>
+#include <fmt/format.h>
 #include <pthread.h>
 
 #include "osteomill/ct/byte_source.h"
@@ -34,6 +36,8 @@ constexpr std::size_t kStackBytes = kMaxItems * 4096;
 constexpr std::uint64_t kMaxInflation = 100;
 // Longer values stay in the file. None that is wanted is longer.
 constexpr Uint32 kMaxValueBytes = 1024;
+// What a file holds beside its pixels.
+constexpr std::uint64_t kMaxHeadBytes = 1 << 26;
 
 thread_local bool jpeg_complained = false;
 
@@ -134,9 +138,14 @@ bool JpegComplaints::any() const {
   return jpeg_complained;
 }
 
-std::optional<DicomData> load_dicom(const fs::path& path) {
+std::optional<DicomData> load_dicom(const fs::path& path, std::uint64_t max_bytes) {
   set_up_dcmtk();
   if (!looks_like_dicom(path)) return std::nullopt;
+  if (const std::uintmax_t bytes = fs::file_size(path); bytes > max_bytes + kMaxHeadBytes) {
+    throw InputError(path.string(),
+                     fmt::format("is {:.3g} GB long, over the {:.3g} GB that its voxels may take",
+                                 static_cast<double>(bytes) * 1e-9, static_cast<double>(max_bytes) * 1e-9));
+  }
   check_bounds(path);
   DicomData data{std::make_shared<DcmFileFormat>()};
   data.damaged = data.file->loadFile(path.c_str(), EXS_Unknown, EGL_noChange, kMaxValueBytes).bad();
@@ -165,7 +174,7 @@ void with_dicom_stack(const std::function<void()>& work) {
   pthread_t thread{};
   const int failed = ::pthread_create(&thread, &attributes, run, &job);
   ::pthread_attr_destroy(&attributes);
-  if (failed != 0) throw std::bad_alloc();
+  if (failed != 0) throw std::system_error(failed, std::generic_category());
   ::pthread_join(thread, nullptr);
   if (job.thrown) std::rethrow_exception(job.thrown);
 }

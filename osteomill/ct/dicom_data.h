@@ -18,8 +18,9 @@ struct DicomData {
 };
 
 /// Nothing where the file is not DICOM at all. Throws InputError naming the file where it cannot be opened,
-/// or is built to take more memory or deeper recursion than any scan. Only within `with_dicom_stack`.
-std::optional<DicomData> load_dicom(const std::filesystem::path& path);
+/// is longer than `max_bytes` by far, which its densities would be too, or is built to take more memory or
+/// deeper recursion than any scan. Only within `with_dicom_stack`.
+std::optional<DicomData> load_dicom(const std::filesystem::path& path, std::uint64_t max_bytes);
 
 /// Runs `work` on a thread of its own, waits for it, and hands on what it throws. DCMTK goes down into
 /// sequences, and clears them away again, by recursion; its stack here is enough for any file that

@@ -269,12 +269,12 @@ std::vector<DcmPixelItem*> pixel_items_of(DcmDataset& data) {
   return items;
 }
 
-std::optional<DicomHeader> read_dicom_header(const fs::path& path) {
+std::optional<DicomHeader> read_dicom_header(const fs::path& path, std::uint64_t max_bytes) {
   DicomHeader header;
   header.file = path;
   header.lost = true;
   try {
-    std::optional<DicomData> loaded = load_dicom(path);
+    std::optional<DicomData> loaded = load_dicom(path, max_bytes);
     if (!loaded) return std::nullopt;
     header.data = std::move(loaded->file);
     DcmDataset& data = *header.data->getDataset();

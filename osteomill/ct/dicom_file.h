@@ -72,7 +72,7 @@ struct DicomHeader {
 
 /// Reads what comes before the pixels; nothing where the file is not DICOM. A file that cannot be read or is
 /// damaged comes with a fault. Only within `with_dicom_stack`.
-std::optional<DicomHeader> read_dicom_header(const std::filesystem::path& path);
+std::optional<DicomHeader> read_dicom_header(const std::filesystem::path& path, std::uint64_t max_bytes);
 
 /// The items of compressed pixels: the table of offsets, and the fragments in order. None where they are not
 /// compressed.

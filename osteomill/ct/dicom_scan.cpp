@@ -138,7 +138,7 @@ std::optional<Scan> read_folder(const fs::path& folder, const ReadOptions& optio
   DicomImages images;
   {
     const WorkProgress::Part looking(0.3);
-    images = images_in_folder(folder, true);
+    images = images_in_folder(folder, true, options.max_memory_bytes);
   }
   const WorkProgress::Part reading(1);
   if (images.headers.empty()) return std::nullopt;
@@ -146,7 +146,7 @@ std::optional<Scan> read_folder(const fs::path& folder, const ReadOptions& optio
 }
 
 // The others of its series are beside it.
-DicomImages series_of(DicomHeader header) {
+DicomImages series_of(DicomHeader header, std::uint64_t max_bytes) {
   const fs::path file = header.file;
   const std::string uid = header.series_uid;
   const bool alone = header.frames > 1 || uid.empty();
@@ -154,7 +154,7 @@ DicomImages series_of(DicomHeader header) {
   images.headers.push_back(std::move(header));
   if (alone) return images;
   const fs::path folder = file.parent_path().empty() ? fs::path(".") : file.parent_path();
-  for (DicomHeader& other : images_in_folder(folder, false).headers) {
+  for (DicomHeader& other : images_in_folder(folder, false, max_bytes).headers) {
     if (!other.lost && other.series_uid == uid && !other.is_localizer &&
         other.file.filename() != file.filename())
       images.headers.push_back(std::move(other));
@@ -166,13 +166,14 @@ DicomImages series_of(DicomHeader header) {
 
 std::optional<Scan> read_file(const fs::path& file, const ReadOptions& options) {
   const std::string subject = file.string();
-  std::optional<DicomHeader> header = read_dicom_header(file);
+  std::optional<DicomHeader> header = read_dicom_header(file, options.max_memory_bytes);
   if (!header) return std::nullopt;
   if (header->fault) throw *header->fault;
-  if (header->is_directory()) return read_images(subject, images_of_directory(*header), options);
+  if (header->is_directory())
+    return read_images(subject, images_of_directory(*header, options.max_memory_bytes), options);
   if (!header->is_image()) throw InputError(subject, "is DICOM, but not an image");
   if (header->is_localizer) throw InputError(subject, "is a localizer, not a slice of a scan");
-  return read_images(subject, series_of(std::move(*header)), options);
+  return read_images(subject, series_of(std::move(*header), options.max_memory_bytes), options);
 }
 
 }  // namespace

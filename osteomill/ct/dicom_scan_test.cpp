@@ -309,6 +309,14 @@ TEST_F(DicomSeries, MoreMemoryThanAllowedIsRefusedBeforeItIsTaken) {
   } catch (const InputError& error) {
     EXPECT_TRUE(contains(error.what(), "for its voxels, over the")) << error.what();
   }
+  // Nor is a file read that is longer than that.
+  fs::resize_file(folder_ / "f7", 10'000'000'000);
+  try {
+    read_scan(folder_, {.series = "", .max_memory_bytes = 1'000'000'000});
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_TRUE(contains(error.what(), "f7: is 10 GB long, over the 1 GB")) << error.what();
+  }
 }
 
 TEST_F(DicomSeries, TwoImagesAtOnePlaceAreRefusedAndACopyIsNot) {

@@ -35,11 +35,11 @@ std::vector<fs::path> files_in(const fs::path& folder) {
   return files;
 }
 
-DicomImages images_of(const std::vector<fs::path>& files) {
+DicomImages images_of(const std::vector<fs::path>& files, std::uint64_t max_bytes) {
   DicomImages images;
   for (const fs::path& file : files) {
     WorkProgress::done(images.headers.size() + images.other_files, files.size());
-    std::optional<DicomHeader> header = read_dicom_header(file);
+    std::optional<DicomHeader> header = read_dicom_header(file, max_bytes);
     if (header && (header->is_image() || header->lost)) {
       images.headers.push_back(std::move(*header));
     } else {
@@ -90,12 +90,13 @@ std::optional<std::size_t> number_of(const std::string& text) {
 
 }  // namespace
 
-DicomImages images_in_folder(const fs::path& folder, bool nested) {
-  return images_of(nested ? files_in<fs::recursive_directory_iterator>(folder)
-                          : files_in<fs::directory_iterator>(folder));
+DicomImages images_in_folder(const fs::path& folder, bool nested, std::uint64_t max_bytes) {
+  return images_of(
+      nested ? files_in<fs::recursive_directory_iterator>(folder) : files_in<fs::directory_iterator>(folder),
+      max_bytes);
 }
 
-DicomImages images_of_directory(const DicomHeader& dicomdir) {
+DicomImages images_of_directory(const DicomHeader& dicomdir, std::uint64_t max_bytes) {
   const std::string subject = dicomdir.file.string();
   std::vector<fs::path> files;
   for (const fs::path& name : dicomdir.listed_files) {
@@ -105,7 +106,7 @@ DicomImages images_of_directory(const DicomHeader& dicomdir) {
   }
   std::sort(files.begin(), files.end());
   files.erase(std::unique(files.begin(), files.end()), files.end());
-  return images_of(files);
+  return images_of(files, max_bytes);
 }
 
 bool DicomSeries::is_ct() const {

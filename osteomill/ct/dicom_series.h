@@ -17,11 +17,11 @@ struct DicomImages {
 
 /// Of all files of `folder`, `nested`: and of the folders in it. Throws InputError naming it where it cannot
 /// be read or holds too many files. Only within `with_dicom_stack`.
-DicomImages images_in_folder(const std::filesystem::path& folder, bool nested);
+DicomImages images_in_folder(const std::filesystem::path& folder, bool nested, std::uint64_t max_bytes);
 
 /// Of the files that a DICOMDIR names, which lie beside and below it. Throws InputError naming it where it
 /// names one that is not there. Only within `with_dicom_stack`.
-DicomImages images_of_directory(const DicomHeader& dicomdir);
+DicomImages images_of_directory(const DicomHeader& dicomdir, std::uint64_t max_bytes);
 
 /// One series: pictures that were taken together, in the order of their files.
 struct DicomSeries {

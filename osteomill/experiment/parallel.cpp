@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -35,7 +36,11 @@ void run_in_parallel(std::size_t count, std::size_t threads, const std::function
     }
   };
   std::vector<std::jthread> others;
-  for (std::size_t n = 1; n < std::min(threads, count); ++n) others.emplace_back(work);
+  try {
+    for (std::size_t n = 1; n < std::min(threads, count); ++n) others.emplace_back(work);
+  } catch (const std::system_error&) {
+    // Fewer do as well.
+  }
   work();
   others.clear();
   if (fault) std::rethrow_exception(fault);

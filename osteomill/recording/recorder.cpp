@@ -8,6 +8,7 @@
 #include <mutex>
 #include <optional>
 #include <stdexcept>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -53,8 +54,10 @@ fs::path file_behind(const fs::path& path) {
 struct Recorder::Impl {
   using Clock = std::chrono::steady_clock;
 
-  Impl(const fs::path& path_, const RunDescription& description, std::size_t capacity, Begins begins)
-      : path(file_behind(path_)),
+  Impl(const fs::path& path_, const RunDescription& description, std::size_t capacity, Begins begins,
+       Unfinished unfinished_)
+      : unfinished(unfinished_),
+        path(file_behind(path_)),
         file(file_behind(unfinished_recording_path(path)), description),
         queue(capacity) {
     if (begins == Begins::with_the_recording) {
@@ -62,9 +65,22 @@ struct Recorder::Impl {
       session = 0;
     }
     rows.reserve(kRowsAtOnce);
-    writer = std::thread([this] { write_until_stopped(); });
+    try {
+      writer = std::thread([this] { write_until_stopped(); });
+    } catch (const std::system_error&) {
+      remove();
+      throw InputError(path.string(), "cannot be recorded: no thread can be started for it (ulimit -u)");
+    }
   }
-  ~Impl() { stop(); }
+  ~Impl() {
+    stop();
+    if (unfinished == Unfinished::removed || file.rows() == 0) remove();
+  }
+
+  void remove() const noexcept {
+    std::error_code ignored;
+    fs::remove(unfinished_recording_path(path), ignored);
+  }
 
   void stop() {
     stopping.store(true, std::memory_order_release);
@@ -130,6 +146,7 @@ struct Recorder::Impl {
     waiting_since = Clock::now();
   }
 
+  Unfinished unfinished;
   fs::path path;
   RecordingFile file;
   SpscQueue<TickRecord> queue;
@@ -151,8 +168,8 @@ struct Recorder::Impl {
 };
 
 Recorder::Recorder(const fs::path& path, const RunDescription& description, std::size_t capacity,
-                   Begins begins)
-    : impl_(std::make_unique<Impl>(path, description, capacity, begins)) {}
+                   Begins begins, Unfinished unfinished)
+    : impl_(std::make_unique<Impl>(path, description, capacity, begins, unfinished)) {}
 
 Recorder::~Recorder() = default;
 

@@ -33,11 +33,16 @@ class Recorder {
   /// `begin_session` says what they began from.
   enum class Begins : unsigned char { with_the_recording, when_told };
 
+  /// What becomes of a recording that is destroyed without `close`: of a run that can be run again nothing is
+  /// worth keeping, nor of any before its first record.
+  enum class Unfinished : unsigned char { left, removed };
+
   /// The queue holds `capacity` records (16 s at 1000 Hz) or a few more. Throws InputError, naming the file,
   /// where it cannot be created, and std::invalid_argument where the description cannot be stored
   /// (description_attributes.h).
   Recorder(const std::filesystem::path& path, const RunDescription& description,
-           std::size_t capacity = kUsualCapacity, Begins begins = Begins::with_the_recording);
+           std::size_t capacity = kUsualCapacity, Begins begins = Begins::with_the_recording,
+           Unfinished unfinished = Unfinished::left);
   ~Recorder();
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;

@@ -1,6 +1,7 @@
 #include "osteomill/report/gnuplot.h"
 
 #include <cerrno>
+#include <csignal>
 #include <cstring>
 #include <fstream>
 
@@ -48,13 +49,25 @@ class ChildSetup {
     ::posix_spawn_file_actions_addopen(&actions_, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
     ::posix_spawn_file_actions_addopen(&actions_, STDOUT_FILENO, kLog, O_WRONLY | O_CREAT | O_TRUNC, 0600);
     ::posix_spawn_file_actions_adddup2(&actions_, STDOUT_FILENO, STDERR_FILENO);
+    // gnuplot does not look at what could not be written; a limit to its files ends it.
+    ::posix_spawnattr_init(&attributes_);
+    ::posix_spawnattr_setflags(&attributes_, POSIX_SPAWN_SETSIGDEF);
+    sigset_t signals;
+    ::sigemptyset(&signals);
+    ::sigaddset(&signals, SIGXFSZ);
+    ::posix_spawnattr_setsigdefault(&attributes_, &signals);
   }
-  ~ChildSetup() { ::posix_spawn_file_actions_destroy(&actions_); }
+  ~ChildSetup() {
+    ::posix_spawn_file_actions_destroy(&actions_);
+    ::posix_spawnattr_destroy(&attributes_);
+  }
   ChildSetup(const ChildSetup&) = delete;
   ChildSetup& operator=(const ChildSetup&) = delete;
-  const posix_spawn_file_actions_t* get() const { return &actions_; }
+  const posix_spawn_file_actions_t* actions() const { return &actions_; }
+  const posix_spawnattr_t* attributes() const { return &attributes_; }
 
  private:
+  posix_spawnattr_t attributes_;
   posix_spawn_file_actions_t actions_;
 };
 
@@ -75,7 +88,8 @@ void run_gnuplot(const fs::path& folder, const std::string& script, const std::s
   std::string name = program, defaults = "-d", file = kScript;
   char* const arguments[] = {name.data(), defaults.data(), file.data(), nullptr};
   pid_t child = 0;
-  const int failed = ::posix_spawnp(&child, program.c_str(), setup.get(), nullptr, arguments, environ);
+  const int failed =
+      ::posix_spawnp(&child, program.c_str(), setup.actions(), setup.attributes(), arguments, environ);
   if (failed == ENOENT) {
     throw InputError(program,
                      "is not installed, and without it no figures can be drawn (package gnuplot-nox)");

@@ -1,8 +1,12 @@
 #include "osteomill/view/offscreen_context.h"
 
+#include <latch>
 #include <mutex>
 #include <stdexcept>
 #include <string>
+#include <system_error>
+#include <thread>
+#include <vector>
 
 #include <dlfcn.h>
 #include <epoxy/egl.h>
@@ -18,6 +22,21 @@ void require(bool good, const char* what) {
 // epoxy ends the program where it finds no library to look its functions up in.
 bool can_be_loaded(const char* library) {
   return dlopen(library, RTLD_LAZY | RTLD_LOCAL) != nullptr;
+}
+
+// Mesa draws with threads of its own, about one a core, and waits for ever for one that could not be started.
+bool can_start_threads() {
+  std::latch all_are_there(1);
+  std::vector<std::jthread> threads;
+  bool started = true;
+  try {
+    const std::size_t wanted = std::thread::hardware_concurrency() + 4;
+    while (threads.size() < wanted) threads.emplace_back([&] { all_are_there.wait(); });
+  } catch (const std::system_error&) {
+    started = false;
+  }
+  all_are_there.count_down();
+  return started;
 }
 
 // EGL gives all threads the same display, and ending it ends the contexts of all: the last to go does it.
@@ -58,6 +77,7 @@ struct OffscreenContext::Impl {
 OffscreenContext::OffscreenContext() : impl_(std::make_unique<Impl>()) {
   require(can_be_loaded("libEGL.so.1"), "libEGL.so.1 is missing");
   require(can_be_loaded("libOpenGL.so.0") || can_be_loaded("libGL.so.1"), "libOpenGL.so.0 is missing");
+  require(can_start_threads(), "no threads can be started for it (ulimit -u)");
   require(epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_MESA_platform_surfaceless"),
           "EGL knows no surfaceless platform");
   impl_->display = begin_display();

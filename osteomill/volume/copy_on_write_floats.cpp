@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <cstring>
 #include <new>
+#include <system_error>
 #include <utility>
 
 #include <sys/mman.h>
@@ -22,11 +23,17 @@ std::size_t mapped_bytes(std::size_t floats) {
   return (floats * sizeof(float) + kReadBehind + kPageBytes - 1) / kPageBytes * kPageBytes;
 }
 
+[[noreturn]] void say_why_not() {
+  if (errno != EFBIG) throw std::bad_alloc();
+  throw std::system_error(errno, std::generic_category(),
+                          "densities lie in a file in memory, which a limit forbids (ulimit -f)");
+}
+
 void write_all(int file, const char* bytes, std::size_t count, std::size_t at) {
   while (count > 0) {
     const ssize_t written = pwrite(file, bytes, count, static_cast<off_t>(at));
     if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) throw std::bad_alloc();
+    if (written <= 0) say_why_not();
     bytes += written;
     at += static_cast<std::size_t>(written);
     count -= static_cast<std::size_t>(written);
@@ -62,7 +69,7 @@ class CopyOnWriteFloats::Original {
 
  private:
   void fill(std::vector<float>& values) const {
-    if (ftruncate(file_, static_cast<off_t>(mapped_bytes(values.size()))) != 0) throw std::bad_alloc();
+    if (ftruncate(file_, static_cast<off_t>(mapped_bytes(values.size()))) != 0) say_why_not();
     constexpr std::size_t kAtOnce = 1 << 22;
     for (std::size_t n = 0; n < values.size(); n += kAtOnce) {
       const std::size_t count = std::min(kAtOnce, values.size() - n);

@@ -55,12 +55,13 @@ done
 # A disk of 2 MB, where the machine allows one: else files of no more.
 mkdir small
 if mount -t tmpfs -o size=2m none small 2>/dev/null; then mounted=yes; fi
-limited() { if [ -n "$mounted" ]; then "$@"; else (trap '' XFSZ; ulimit -f 2048; exec "$@"); fi; }
+limited() { if [ -n "$mounted" ]; then "$@"; else (ulimit -f 2048; exec "$@"); fi; }
 code=0
 limited "$osteomill" compare --seconds 10 --algorithm line-proxy --no-stability --quiet --out small/c >said.txt 2>said.err || code=$?
 [ $code -eq 1 ] && [ "$(wc -l <said.err)" -eq 1 ] && grep -q "is the disk full?" said.err || fault "compare on a full disk ended with $code: $(cat said.err)"
-same small/c/line-proxy-milling.part.h5
-rm -rf small/*
-limited "$osteomill" live --seconds 12 --algorithm line-proxy --record small/live.h5 --seed 2 >said.txt 2>said.err || fault "live ended with its recording: $(cat said.err)"
+[ -z "$(find small -type f)" ] || fault "compare left $(find small -type f)"
+code=0
+limited "$osteomill" live --seconds 12 --algorithm line-proxy --record small/live.h5 --quiet >said.txt 2>said.err || code=$?
+[ $code -eq 1 ] && [ "$(wc -l <said.err)" -eq 1 ] || fault "live on a full disk ended with $code: $(cat said.err)"
 grep -q "small/live.part.h5: .*is the disk full?" said.err || fault "live said nothing of the full disk: $(cat said.err)"
 grep -q "^removed " said.txt || fault "live did not go on"

@@ -13,7 +13,12 @@ cd "$folder"
 export XDG_CONFIG_HOME=$folder/config
 port=$((20000 + $$ % 20000))
 fail() { echo "FAILED: $1"; tail -n 3 hand said errors 2>/dev/null || true; exit 1; }
-begin_device() { "$udp_device" "$port" hand & device=$!; }
+# It writes from when it listens, and is looked for once.
+begin_device() {
+  rm -f hand
+  "$udp_device" "$port" hand & device=$!
+  until_true 20 "listening" test -s hand
+}
 begin_milling() { "$osteomill" live --device "udp:127.0.0.1:$port" --seconds "$1" >said 2>errors & program=$!; }
 until_true() {  # SECONDS WHAT COMMAND...
   for _ in $(seq $((10 * $1))); do
@@ -66,13 +71,13 @@ wait $device || true
 judge 1 "osteomill ended"
 
 # The device is killed: osteomill says so, and goes on when it is there again.
-press 8
+press 12
 kill -9 $device
 wait $device 2>/dev/null || true
-until_true 5 "missed" grep -qE "example device: has (been gone|given no pose) for" errors
+until_true 10 "missed" grep -qE "example device: has (been gone|given no pose) for" errors
 judge 0 "the device killed"
 begin_device
-until_true 5 "there again" grep -q "example device: gives poses again" errors
+until_true 10 "there again" grep -q "example device: gives poses again" errors
 wait $program || fail "osteomill ended with $?"
 grep -qE "^device +example device: .* poses/s, [1-9]" said || fail "what was wrong is not counted"
 sleep 0.3

@@ -14,8 +14,9 @@ cd "$folder"
 export XDG_CONFIG_HOME=$folder/config XDG_STATE_HOME=$folder/state OSTEOMILL_STAND_IN_LOG=$folder/hand
 fail() { echo "FAILED: $1"; grep -v 'place of' said || true; cat errors hand; exit 1; }
 port=$((20000 + $$ % 20000)) slicer_port=$((20001 + $$ % 20000))
-"$haply_service" "$port" & servers="$servers $!"
-"$igtl_server" "$slicer_port" & servers="$servers $!"
+"$haply_service" "$port" >listens & servers="$servers $!"
+"$igtl_server" "$slicer_port" >listens_too & servers="$servers $!"
+for _ in $(seq 200); do [ ! -s listens ] || [ ! -s listens_too ] || break; sleep 0.1; done
 bash "$here/../window/ball.sh" >ball.nrrd
 
 # What the hand got in a session that is over: something was felt, and zero at the end.

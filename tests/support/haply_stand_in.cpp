@@ -2,6 +2,7 @@
 
 #include "tests/support/haply_stand_in.h"
 
+#include <cstdio>
 #include <cstdlib>
 
 #include <unistd.h>
@@ -9,5 +10,7 @@
 int main(int count, char** words) {
   const osteomill::testing_support::HaplyStandIn service(count > 1 ? std::atoi(words[1]) : 0);
   if (service.port() == 0) return 1;
+  std::puts("listens");
+  std::fflush(stdout);
   pause();
 }

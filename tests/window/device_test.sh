@@ -14,8 +14,9 @@ export XDG_CONFIG_HOME=$folder/config XDG_STATE_HOME=$folder/state
 fail() { echo "FAILED: $1"; cat errors; grep -E "device|dialogue|force|tool_W" said || true; exit 1; }
 value() { grep "^$1=" said | cut -d= -f2- || true; }  # STATE.KEY
 port=$((20000 + $$ % 20000))
-"$udp_device" "$port" &
+"$udp_device" "$port" hand &
 device=$!
+for _ in $(seq 200); do [ ! -s hand ] || break; sleep 0.1; done
 cat >actions <<'E2'
 settle
 wait 2
