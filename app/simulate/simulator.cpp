@@ -168,9 +168,8 @@ class Simulator {
   void begin() {
     window_.begin_frame();
     const bool settled = simulation_ && to_draw_.empty() && !simulation_->milling.preparing() &&
-                         !simulation_->milling.placing() && !view_.X_W_brought &&
-                         !view_.wanted_is_new && !files_.busy() &&
-                         (!opening() || view_.dialogues.shown() != nullptr);
+                         !simulation_->milling.placing() && !view_.X_W_brought && !view_.wanted_is_new &&
+                         !files_.busy() && (!opening() || view_.dialogues.shown() != nullptr);
     if (script_ && (simulation_ || left_ || script_->at_once())) {
       script_->feed(seconds_since(last_picture_), settled, window_);
     }
