@@ -84,6 +84,8 @@ void draw_faults(const std::deque<TickRecord>& history) {
     switch (record.fault) {
       case WrenchFault::none:
       case WrenchFault::eased:
+      // The hand moves without the tool, or the device says itself that it gives no pose.
+      case WrenchFault::pose_not_finite:
         break;
       case WrenchFault::force_clamped:
       case WrenchFault::torque_clamped:
@@ -91,7 +93,6 @@ void draw_faults(const std::deque<TickRecord>& history) {
         ++limited;
         break;
       case WrenchFault::not_finite:
-      case WrenchFault::pose_not_finite:
         ++unknown;
         break;
       case WrenchFault::pose_jumped:
