@@ -155,7 +155,10 @@ void Autosave::update(LiveMilling& milling) {
   if (work_.valid() && work_.wait_for(0s) == std::future_status::ready) take_result();
   if (work_.valid()) return;
   if (!unsaved(milling)) {
-    if (std::exchange(kept_, false)) file_->clear();
+    if (std::exchange(kept_, false)) {
+      file_->clear();
+      next_ = {};
+    }
     return;
   }
   const std::uint64_t version = milling.bone_version();

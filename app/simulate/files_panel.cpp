@@ -177,7 +177,6 @@ float FilesPanel::draw_said(ViewState& view, const Simulation& simulation, const
 }
 
 void FilesPanel::draw(ViewState& view, Simulation& simulation) {
-  take_result(view, simulation);
   // A full disk: what was milled so far stays, under the name of what is unfinished.
   if (simulation.milling.recording_failed()) {
     attempt(view, [&] { simulation.milling.stop_recording(); });

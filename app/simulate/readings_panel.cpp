@@ -55,11 +55,15 @@ void plot(const char* name, const char* unit, const std::deque<TickRecord>& hist
   ui::hint("Now, and the greatest of the last 5 s");
   const ImVec2 place = ImGui::GetCursorScreenPos();
   const float width_px = ImGui::GetContentRegionAvail().x;
-  ImGui::PushStyleColor(ImGuiCol_PlotLines, colour);
-  ImGui::PlotLines((std::string("##") + name).c_str(), points.data(), static_cast<int>(points.size()), 0,
-                   nullptr, 0, static_cast<float>(scale), {width_px, height_px});
-  ImGui::PopStyleColor();
+  ImGui::Dummy({width_px, height_px});
   ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddRectFilled(place, {place.x + width_px, place.y + height_px}, ImGui::GetColorU32(ImGuiCol_FrameBg));
+  std::vector<ImVec2> line;
+  for (std::size_t n = 0; n < points.size(); ++n) {
+    line.emplace_back(place.x + width_px * static_cast<float>(n) / (kPlotPoints - 1),
+                      place.y + height_px * (1 - points[n] / static_cast<float>(scale)));
+  }
+  list.AddPolyline(line.data(), static_cast<int>(line.size()), ImGui::GetColorU32(colour), 0, 1);
   const ImU32 grey = ImGui::GetColorU32(ImGuiCol_Text, 0.65f);
   const float small_px = 0.85f * ImGui::GetFontSize();
   const auto write = [&](const std::string& text, float right, float down) {
@@ -80,6 +84,8 @@ void draw_faults(const std::deque<TickRecord>& history) {
     switch (record.fault) {
       case WrenchFault::none:
       case WrenchFault::eased:
+      // The hand moves without the tool, or the device says itself that it gives no pose.
+      case WrenchFault::pose_not_finite:
         break;
       case WrenchFault::force_clamped:
       case WrenchFault::torque_clamped:
@@ -87,7 +93,6 @@ void draw_faults(const std::deque<TickRecord>& history) {
         ++limited;
         break;
       case WrenchFault::not_finite:
-      case WrenchFault::pose_not_finite:
         ++unknown;
         break;
       case WrenchFault::pose_jumped:

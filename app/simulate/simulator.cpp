@@ -161,6 +161,8 @@ class Simulator {
 
   bool over() {
     if (window_.take_close_asked()) ask_before("Closing the window", [this] { close(); });
+    // Also of a window that is too small to be drawn.
+    if (simulation_) files_.take_result(view_, *simulation_);
     view_.dialogues.proceed();
     return closing_ || (script_ && script_->closed());
   }

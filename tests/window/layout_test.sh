@@ -33,6 +33,23 @@ is small size "1024 x 600"; is small ui_scale 1.00
 compgen -G "out/*-picture.png" >/dev/null || fail "what lies below cannot be reached"
 value saved message | grep -q "^Saved out/" || fail "the picture is not named"
 
+# Large text, many labels and help: what tells a result, and what sends help away, is in sight and apart.
+{
+  printf 'NRRD0004\ntype: uchar\ndimension: 3\nsizes: 32 32 32\nspacings: 0.5 0.5 0.5\nencoding: ascii\n\n'
+  awk 'BEGIN { for (v = 0; v < 32768; ++v) print int(v / 2048) + 1 }'
+} >labels.nrrd
+window 1024x600 --ui-scale 2 --labels labels.nrrd <<'END'
+wait 0.3 ;; key f1 ;; glide 100 300 0 ;; wheel -60 0.5 ;; wait 0.2 ;; click Save picture ;; wait 0.3
+state crowded ;; screenshot layout-crowded.png ;; key escape ;; wait 0.2 ;; state uncrowded
+close
+END
+for label in "Start milling" "Open folder" Hide; do
+  value crowded "place of $label" | awk '{ exit !(NF == 2 && $1 < 1024 && $2 < 600) }' || fail "'$label' is not in the window"
+done
+[ $(($(value crowded "place of Open folder" | cut -d' ' -f2) - $(value crowded "place of Start milling" | cut -d' ' -f2))) -gt 100 ] ||
+  fail "help and what was saved cover each other"
+value uncrowded shown | grep -qF "[label colours]" || fail "the labels do not come back after help"
+
 window 1920x1080 --ui-scale 2 <<'END'
 wait 0.3 ;; state twice ;; screenshot layout-twice.png
 resize 1024 600 ;; wait 0.3 ;; state little-room ;; screenshot layout-little-room.png
