@@ -171,11 +171,12 @@ std::string not_reached(const Study& study) {
   std::vector<std::string> who;
   for (const AlgorithmId& algorithm : study.algorithms()) {
     for (const Mode mode : study.modes()) {
-      const std::string words = study.not_reached({algorithm, mode}, kHolding);
-      if (!words.empty()) who.push_back(fmt::format("{} in {}: {}", algorithm.label, name_of(mode), words));
+      if (!study.not_reached({algorithm, mode}, kHolding).empty())
+        who.push_back(fmt::format("{} in {}", algorithm.label, name_of(mode)));
     }
   }
-  return who.empty() ? "" : fmt::format(" Not all of it was reached. {}.", fmt::join(who, ". "));
+  return who.empty() ? ""
+                     : fmt::format(" Not all of that was reached with {}: the tables say what.", joined(who));
 }
 
 // In whose holding the shaft did not do what it was to.

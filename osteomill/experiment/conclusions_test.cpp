@@ -111,10 +111,10 @@ TEST(Conclusions, WhatWasNotReachedIsSaidWithTheHandsInWhichItWasNot) {
   }
   const Study study(rows);
   expect_says(what_was_compared(study, "ball"),
-              "Not all of it was reached. 2 surface-points in paper: the tool was lost (3 of 8 hands).");
-  expect_says(html(study_section(study, {})), "the tool was lost (3 of 8 hands)</td>");
+              "Not all of that was reached with 2 surface-points in paper: the tables say what.");
+  expect_says(html(study_section(study, {})), "the tool was lost (3 of 8 hands)</span></td>");
   expect_says(check_study_findings(study, Mode::paper)[1].of_medians.measured,
-              "(not reached: 2 surface-points, holding: the tool was lost (3 of 8 hands))");
+              "(not all reached: 2 surface-points, holding)");
 }
 
 TEST(Conclusions, WhoLostContactIsNamedAndNeverTheLeast) {

@@ -66,14 +66,14 @@ Finding finding_on(const RunGroup& group, std::string paper_says, std::string ru
     if (run == nullptr) return finding;
     values.push_back(one.value(run->metrics));
     texts.push_back(value_text(*run, values.back()));
-    const std::string missed = fmt::format("{}, {}: {}", run->algorithm.label, run->phase, run->not_reached);
+    const std::string missed = fmt::format("{}, {}", run->algorithm.label, run->phase);
     if (!run->not_reached.empty() &&
         std::find(not_reached.begin(), not_reached.end(), missed) == not_reached.end())
       not_reached.push_back(missed);
   }
   finding.measured = fmt::vformat(words, texts);
   if (!not_reached.empty())
-    finding.measured += fmt::format(" (not reached: {})", fmt::join(not_reached, "; "));
+    finding.measured += fmt::format(" (not all reached: {})", fmt::join(not_reached, "; "));
   const bool known = std::none_of(values.begin(), values.end(), [](double v) { return std::isnan(v); });
   finding.verdict = !known          ? Verdict::lost_contact
                     : holds(values) ? Verdict::agrees

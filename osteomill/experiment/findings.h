@@ -21,7 +21,7 @@ struct Finding {
   /// In its own words, restored where its text has gaps.
   std::string paper_says;
   std::string rule;
-  /// The numbers that the rule was applied to, and what the runs that they are of did not reach.
+  /// The numbers that the rule was applied to, and which of their runs did not reach all of their plan.
   std::string measured;
   Verdict verdict = Verdict::not_recorded;
   /// It rests on compute times, which are the machine's and not the algorithms' alone.

@@ -142,10 +142,13 @@ HtmlTable algorithms_table(const Study& study, Mode mode, std::string_view phase
   for (const AlgorithmId& algorithm : study.algorithms()) table.header.emplace_back(algorithm.label);
   if (study.algorithms().size() > 1) table.header.emplace_back("Differences");
   std::vector<std::string> not_reached{"not reached"};
-  for (const AlgorithmId& algorithm : study.algorithms())
-    not_reached.push_back(html_escaped(study.not_reached({algorithm, mode}, phase)));
-  if (std::any_of(not_reached.begin() + 1, not_reached.end(), [](const auto& text) { return !text.empty(); }))
-    table.rows.push_back(std::move(not_reached));
+  bool any = false;
+  for (const AlgorithmId& algorithm : study.algorithms()) {
+    const std::string words = study.not_reached({algorithm, mode}, phase);
+    any = any || !words.empty();
+    not_reached.push_back("<span class=\"words\">" + html_escaped(words) + "</span>");
+  }
+  if (any) table.rows.push_back(std::move(not_reached));
   for (const Metric& metric : study.metrics_of(phase)) {
     table.rows.push_back({html_escaped(with_unit(metric.name, metric))});
     for (const AlgorithmId& algorithm : study.algorithms()) {

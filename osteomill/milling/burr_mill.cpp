@@ -106,7 +106,7 @@ MillingStep BurrMill::step(Volume& volume, const Vec3& burr_centre_W, const Vec3
   const BurrAdvance advance =
       advance_within(budget_mm3 / mm3_per_density_, voxels_, ahead_mm_, min_ahead_mm_, max_ahead_mm);
   ahead_mm_ = advance.ahead_mm;
-  const MillingStep done = lower_found(volume, voxels_.lower(ahead_mm_, advance.shares));
+  const MillingStep done = lower_found(volume, voxels_.find_lowered(ahead_mm_, advance.shares));
   // Below zero by a rounding error where floats were rounded in the burr's favour; the next step pays for it.
   carry_mm3_ = std::min(budget_mm3 - done.removed_mm3, kPressingKept_s * rate_mm3_s);
   return done;

@@ -43,7 +43,7 @@ class BurrReach {
   /// Those of a piece that hold nothing any more are not found again.
   void forget_voxels(const Piece& piece, unsigned gone);
   /// Has the next `find` look at every voxel.
-  void forget() { known_volume_ = nullptr; }
+  void look_again() { known_volume_ = nullptr; }
   float floor_density() const { return floor_density_; }
   /// The most that can be found at once.
   std::size_t max_voxels() const { return max_voxels_; }

@@ -159,7 +159,7 @@ TEST(BurrReach, HasRoomForABallFullOfBoneAtAnyShift) {
     const std::size_t room = reach.pieces().capacity();
     std::size_t found = 0;
     for (int n = 0; n < 200; ++n) {
-      reach.forget();
+      reach.look_again();
       reach.find(volume, in_grid(Vec3(15 + 0.01 * n, 12 + 0.013 * n, 10 - 0.017 * n), geometry), radius_mm);
       found = 0;
       for_each_found(reach, [&](const VoxelIndex&) { ++found; });
@@ -199,7 +199,7 @@ TEST(BurrReach, LooksAtAllAgainInAnotherVolumeOrAfterForgetting) {
   reach.find(full, centre_mm, 1.0);
   EXPECT_EQ(reach.pieces().size(), 0u);
   full = another;
-  reach.forget();
+  reach.look_again();
   reach.find(full, centre_mm, 1.0);
   EXPECT_EQ(reach.pieces().size(), all);
 }

@@ -198,7 +198,7 @@ TEST(BurrSweep, CuttingAgainChangesNothing) {
   const auto cut = [&] {
     reach.find(volume, ball.centre_mm, 2.2);
     voxels.gather(volume.grid(), reach, ball, profile, 0.1);
-    const double dropped = voxels.lower(0.1, {});
+    const double dropped = voxels.find_lowered(0.1, {});
     for (const CutVoxels::Row& row : voxels.rows()) {
       volume.lower_row(row.j, row.k, voxels.columns() + row.begin, voxels.after() + row.begin,
                        row.end - row.begin);

@@ -92,7 +92,7 @@ TEST(CutKernel, EverySetOfInstructionsGivesTheSameBits) {
     Gathered g = gathered(bone, 0.2);
     const CutVoxels::Cost cost = g.voxels.cost(0.11);
     std::vector<double> numbers{cost.leading, cost.slope_per_mm, cost.trailing,
-                                g.voxels.lower(0.11, {0.7, 0.4})};
+                                g.voxels.find_lowered(0.11, {0.7, 0.4})};
     for (const CutVoxels::Row& row : g.voxels.rows()) {
       for (std::size_t n = row.begin; n < row.end; ++n) {
         numbers.push_back(g.voxels.columns()[n]);
@@ -113,18 +113,18 @@ TEST(BurrAdvance, SpendsTheBudgetAndNoMore) {
     for (const double start_mm : {-1.0, 0.0, 0.1}) {
       const double budget = share * (all.leading + all.trailing);
       const BurrAdvance advance = advance_within(budget, g.voxels, start_mm, -1, 0.2);
-      const double spent = g.voxels.lower(advance.ahead_mm, advance.shares);
+      const double spent = g.voxels.find_lowered(advance.ahead_mm, advance.shares);
       EXPECT_LE(spent, budget * (1 + 1e-5)) << share;
       EXPECT_GE(spent, 0.985 * budget) << share;
     }
   }
   for (const double budget : {0.0, -1e-9}) {
     const BurrAdvance none = advance_within(budget, g.voxels, 0, -1, 0.2);
-    EXPECT_LE(g.voxels.lower(none.ahead_mm, none.shares), 1e-3) << budget << ", but for how floats round";
+    EXPECT_LE(g.voxels.find_lowered(none.ahead_mm, none.shares), 1e-3) << budget << ", but for how floats round";
   }
   const BurrAdvance more = advance_within(3 * (all.leading + all.trailing), g.voxels, 0, -1, 0.2);
   EXPECT_EQ(more.ahead_mm, 0.2) << "all that is in reach";
-  EXPECT_NEAR(g.voxels.lower(more.ahead_mm, more.shares), all.leading + all.trailing, 1);
+  EXPECT_NEAR(g.voxels.find_lowered(more.ahead_mm, more.shares), all.leading + all.trailing, 1);
 }
 
 }  // namespace

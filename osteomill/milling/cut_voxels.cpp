@@ -134,7 +134,7 @@ CutVoxels::Cost CutVoxels::cost(double ahead_mm) const {
   return cost;
 }
 
-double CutVoxels::lower(double ahead_mm, const Shares& shares) {
+double CutVoxels::find_lowered(double ahead_mm, const Shares& shares) {
   lower_densities(lists_, radius_mm_, profile_, static_cast<float>(ahead_mm),
                   static_cast<float>(shares.leading), static_cast<float>(shares.trailing));
   double dropped = 0;

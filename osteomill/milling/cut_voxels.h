@@ -80,7 +80,7 @@ class CutVoxels {
     double trailing = 1;
   };
   /// Fills `after()`; returns the sum of the drops, exact for the floats that they are.
-  double lower(double ahead_mm, const Shares& shares);
+  double find_lowered(double ahead_mm, const Shares& shares);
 
   /// A row's voxels are [begin, end) of the lists below.
   struct Row {

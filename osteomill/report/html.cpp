@@ -23,6 +23,7 @@ th, td { padding: 0.3em 0.7em; border-bottom: 1px solid #ddd; text-align: left; 
 thead th { border-bottom: 2px solid #888; } tbody th { font-weight: normal; }
 .numbers td, .numbers thead th + th { text-align: right; font-variant-numeric: tabular-nums; }
 .numbers td { white-space: nowrap; }
+.words { white-space: normal; display: inline-block; min-width: 8em; text-align: left; }
 .agrees { color: #146c2e; font-weight: 600; white-space: nowrap; }
 .differs { color: #a4101f; font-weight: 600; white-space: nowrap; }
 .none { color: #666; white-space: nowrap; }

@@ -99,7 +99,7 @@ HtmlTable metrics_table(const RunGroup& group, const std::vector<MetricLine>& li
   for (const MeasuredRun& run : group.runs) {
     const std::string phase = run.phase.empty() ? "" : html_escaped(run.phase) + "<br>";
     table.header.push_back(phase + html_escaped(run.algorithm.label));
-    table.rows.front().push_back(html_escaped(run.not_reached));
+    table.rows.front().push_back("<span class=\"words\">" + html_escaped(run.not_reached) + "</span>");
   }
   // What was not reached stands before all that is compared.
   const auto reached = [](const MeasuredRun& run) { return run.not_reached.empty(); };
