@@ -120,7 +120,8 @@ TEST(BurrAdvance, SpendsTheBudgetAndNoMore) {
   }
   for (const double budget : {0.0, -1e-9}) {
     const BurrAdvance none = advance_within(budget, g.voxels, 0, -1, 0.2);
-    EXPECT_LE(g.voxels.find_lowered(none.ahead_mm, none.shares), 1e-3) << budget << ", but for how floats round";
+    EXPECT_LE(g.voxels.find_lowered(none.ahead_mm, none.shares), 1e-3)
+        << budget << ", but for how floats round";
   }
   const BurrAdvance more = advance_within(3 * (all.leading + all.trailing), g.voxels, 0, -1, 0.2);
   EXPECT_EQ(more.ahead_mm, 0.2) << "all that is in reach";
