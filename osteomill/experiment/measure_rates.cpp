@@ -96,6 +96,8 @@ std::vector<RateRow> measure_rates(const Volume& bone, const BoneDensities& dens
     trial_settings.haptics.named.push_back(
         {algorithm->id.name, algorithm->resolution_setting, resolution.value});
     MillingTrial trial(bone, densities, entry, *algorithm, trial_settings);
+    const Times times = times_of(trial);
+    // Known only once points were needed.
     const auto same_points = [&](const RateRow& row) {
       return row.algorithm == algorithm->id && row.points == trial.algorithm().sample_point_count();
     };
@@ -103,7 +105,6 @@ std::vector<RateRow> measure_rates(const Volume& bone, const BoneDensities& dens
       twin->resolution += " and " + text_of(*algorithm, resolution);
       continue;
     }
-    const Times times = times_of(trial);
     MillingTrial again(bone, densities, entry, *algorithm, trial_settings);
     const Distribution step_us = distribution_of(times.step_us);
     rows.push_back({algorithm->id, text_of(*algorithm, resolution), trial.algorithm().sample_point_count(),

@@ -34,7 +34,8 @@ struct RateRow {
 /// 0.13 and 0.10 mm apart. For each, the simulated hand presses and leans on the bone without removing any
 /// (`settings` but for the spindle and the resolution), and the steps in contact are timed; all of them where
 /// none touches. Then the hand does the same in real time, held to the tick by the wall clock: from the first
-/// contact on for 2 s, or to its end. `progress` hears what comes next and how much is done.
+/// contact on for 2 s, or to its end. A resolution with as many points as one before is named in that one's
+/// row. `progress` hears what comes next and how much is done.
 std::vector<RateRow> measure_rates(const Volume& bone, const BoneDensities& densities,
                                    const MillingEntry& entry,
                                    const std::vector<AlgorithmDescription>& algorithms,
