@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "osteomill/haptics/barrier_shell/barrier_shell.h"
+#include "osteomill/haptics/bone_points/cores.h"
 #include "osteomill/haptics/surface_points/bone_nearby.h"
 #include "osteomill/haptics/surface_points/ray_crossing.h"
 #include "osteomill/tool/sample_points.h"
@@ -56,7 +57,7 @@ void SurfacePoints::prepare(const Scene& scene) {
     held.translational_stiffness_N_per_mm = stiffness;
     held_tool_ = std::make_unique<barrier_shell::BarrierShell>(held);
     held_tool_->prepare(scene);
-    inset_mm_ = barrier_shell::inset_within(tool_, held.rounding_mm) + kBetweenPoints_mm;
+    inset_mm_ = inset_within(tool_, held.rounding_mm) + kBetweenPoints_mm;
   }
   reset();
 }
