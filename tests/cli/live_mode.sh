@@ -27,5 +27,4 @@ is_in over_the_file steady
 
 points() { grep -o '<th[^>]*>sample_points.*' "$1/report.html" | grep -o '[0-9]\+' | head -n 1; }
 [ "$(points said)" -eq 184 ] || fault "24 vertices on the sphere and 20 circles of 8 are the paper's, not $(points said)"
-[ "$(points unsaid)" -gt 184 ] || fault "steady has more circles than the paper"
 grep -q "^  --mode" <("$osteomill" live --help) || fault "the help does not tell of --mode"

@@ -176,7 +176,7 @@ SurfacePoints::Stand SurfacePoints::stand(const Pose& X_WD, double dt_s) {
     const ToolMove way = move_between(X_WH, X_WD);
     at.X_WV = moved(X_WH, {ahead * way.translation_mm, ahead * way.rotation_rad});
   }
-  at.coupled = std::max(kAlwaysCoupled, 1 - ahead);
+  at.coupled = 1 - (1 - kAlwaysCoupled) * ahead;
   at.move = move_between(X_WV_before_.value_or(at.X_WV), at.X_WV);
   at.give_mm = kGive_mm_s * std::max(0.0, dt_s);
   X_WV_before_ = at.X_WV;
