@@ -3,6 +3,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "tests/support/report_samples.h"
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 
@@ -10,7 +11,6 @@
 #include "osteomill/experiment/write_rates_report.h"
 #include "osteomill/files/input_error.h"
 #include "osteomill/haptics/algorithms.h"
-#include "osteomill/report/report_samples.h"
 #include "osteomill/report/write_report.h"
 
 namespace osteomill {

@@ -2,11 +2,11 @@
 
 #include <limits>
 
+#include "tests/support/study_samples.h"
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "osteomill/experiment/study_findings.h"
-#include "osteomill/experiment/study_samples.h"
 #include "osteomill/experiment/study_section.h"
 
 namespace osteomill {

@@ -4,12 +4,12 @@
 #include <fstream>
 #include <iterator>
 
+#include "tests/support/report_samples.h"
 #include <gtest/gtest.h>
 
 #include "osteomill/experiment/comparison_report.h"
 #include "osteomill/experiment/paper.h"
 #include "osteomill/haptics/algorithms.h"
-#include "osteomill/report/report_samples.h"
 
 namespace osteomill {
 namespace {

@@ -6,13 +6,13 @@
 #include <optional>
 #include <stdexcept>
 
+#include "tests/support/study_samples.h"
 #include <gtest/gtest.h>
 
 #include "osteomill/experiment/paper.h"
 #include "osteomill/experiment/signed_rank.h"
 #include "osteomill/experiment/study_comparison.h"
 #include "osteomill/experiment/study_findings.h"
-#include "osteomill/experiment/study_samples.h"
 #include "osteomill/experiment/study_section.h"
 #include "osteomill/files/temporary_folder.h"
 #include "osteomill/haptics/algorithms.h"

@@ -100,11 +100,11 @@ void require_same_removal(const Recording& recording, std::size_t tick, double r
   const double recorded_mm3 = recording.records[tick].removed_mm3;
   if (removed_mm3 == recorded_mm3) return;
   if (tick == 0) {
-    refuse(recording, fmt::format("goes on from other milling: {:.6g} mm^3 had been removed when it began",
+    refuse(recording, fmt::format("goes on from other milling: {:.6g} mm³ had been removed when it began",
                                   recorded_mm3));
   }
   refuse(recording, fmt::format("was made with another scan ({}) or version ({}): at tick {} it had removed "
-                                "{:.9g} mm^3, where this one loses {:.9g}",
+                                "{:.9g} mm³, where this one loses {:.9g}",
                                 recording.description.scan_name, recording.description.program_version, tick,
                                 recorded_mm3, removed_mm3));
 }

@@ -2,10 +2,10 @@
 
 #include <filesystem>
 
+#include "tests/support/report_samples.h"
 #include <gtest/gtest.h>
 
 #include "osteomill/files/temporary_folder.h"
-#include "osteomill/report/report_samples.h"
 
 namespace osteomill {
 namespace {

@@ -1,8 +1,7 @@
 #include "osteomill/report/settings_table.h"
 
+#include "tests/support/report_samples.h"
 #include <gtest/gtest.h>
-
-#include "osteomill/report/report_samples.h"
 
 namespace osteomill {
 namespace {

@@ -7,9 +7,8 @@
 
 #include "tests/random.h"
 #include "tests/shapes.h"
+#include "tests/support/every_point.h"
 #include <gtest/gtest.h>
-
-#include "osteomill/haptics/bone_points/every_point.h"
 
 namespace osteomill {
 namespace {

@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "tests/shapes.h"
+#include "tests/support/every_point.h"
 #include <gtest/gtest.h>
 
 #include "osteomill/haptics/bone_points/bone_bricks.h"
-#include "osteomill/haptics/bone_points/every_point.h"
 
 namespace osteomill {
 namespace {

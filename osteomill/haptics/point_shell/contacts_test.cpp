@@ -5,9 +5,9 @@
 #include "tests/instruction_sets.h"
 #include "tests/random.h"
 #include "tests/shapes.h"
+#include "tests/support/every_point.h"
 #include <gtest/gtest.h>
 
-#include "osteomill/haptics/bone_points/every_point.h"
 #include "osteomill/haptics/bone_points/near_kernel.h"
 #include "osteomill/haptics/bone_points/tool_from_grid.h"
 #include "osteomill/haptics/point_shell/brick_contacts.h"

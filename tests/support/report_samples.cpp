@@ -1,4 +1,4 @@
-#include "osteomill/report/report_samples.h"
+#include "tests/support/report_samples.h"
 
 #include <algorithm>
 
