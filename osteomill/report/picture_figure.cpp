@@ -42,7 +42,7 @@ const RunPicture* picture_named(const Recording& recording, std::string_view nam
 
 // Of several phases the first that has a picture is the one to take.
 std::vector<Panel> panels_of(const RunGroup& group) {
-  std::vector<Panel> panels;
+  std::vector<Panel> panels, along_the_entry;
   for (const MeasuredRun& run : group.runs) {
     if (const RunPicture* before = picture_named(*run.recording, kPictureBefore)) {
       panels.push_back({"Before", run.recording, before});
@@ -61,10 +61,12 @@ std::vector<Panel> panels_of(const RunGroup& group) {
                  : std::string("At the end"),
            run->recording, after});
       if (const RunPicture* along = picture_named(*run->recording, kPictureAlong))
-        panels.push_back({fmt::format("{}, seen along the entry", algorithm.label), run->recording, along});
+        along_the_entry.push_back(
+            {fmt::format("{}, seen along the entry", algorithm.label), run->recording, along});
       break;
     }
   }
+  panels.insert(panels.end(), along_the_entry.begin(), along_the_entry.end());
   return panels;
 }
 
