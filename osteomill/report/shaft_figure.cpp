@@ -129,7 +129,7 @@ Figure draw_shaft_figure(const RunGroup& group, const std::filesystem::path& fol
                                   run.metrics.counted_from_s);
   }
   // Square panels, and the colours' scale on the right.
-  constexpr double kLeft_px = 84, kRight_px = 12, kAbove_px = 60, kBelow_px = 64, kBar_px = 112;
+  constexpr double kLeft_px = 84, kRight_px = 12, kAbove_px = 60, kBelow_px = 64, kBar_px = 128;
   const double wide_px = std::min(380.0, (PanelGrid::kWidth_px - kBar_px) / static_cast<double>(columns));
   const PanelGrid grid{.height_px = static_cast<double>(phases.size()) *
                                     (wide_px - kLeft_px - kRight_px + kAbove_px + kBelow_px),

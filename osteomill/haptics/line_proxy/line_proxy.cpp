@@ -28,6 +28,20 @@ constexpr WalkSteps kWalk{10, 10};
 constexpr double kMeantFor_s = 1e-3;
 // The line is looked at this often between two of its vertices.
 constexpr int kLooksPerVertex = 4;
+// The drawn tool that is kept outside goes over between touching and free at these speeds, beyond the
+// device's own movement. It is what cuts: standing as the line does, in place of (13), it left three times as
+// much bone within what it had swept, and its hole changed with the voxels by a sixth.
+constexpr double kGlide_mm_s = 100;
+constexpr double kGlide_rad_s = 20;
+// From the tip to so many shaft radii the drawn shaft turns from the device's direction to that of (13).
+constexpr double kDrawnFade_radii = 4;
+
+Vec3 moved_toward(const Vec3& from, const Vec3& to, double limit) {
+  const Vec3 way = to - from;
+  const double distance = way.norm();
+  return distance <= limit ? to : Vec3(from + limit / distance * way);
+}
+
 }  // namespace
 
 LineProxy::LineProxy(const Settings& settings) : settings_(settings) {
@@ -60,6 +74,7 @@ HapticStep LineProxy::step(const Pose& X_WD, double dt_s) {
   } else {
     follow_as_printed(X_WD, result);
   }
+  memory_.device_before_W = memory_.device_tip_W;
   memory_.device_tip_W = X_WD.position_mm;
   const Pose& X_WF = *result.X_WF;
   result.contacts =
@@ -69,7 +84,9 @@ HapticStep LineProxy::step(const Pose& X_WD, double dt_s) {
                               : 0);
   forget_what_is_not_finite();
   result.intersection_W = memory_.intersection_W;
-  result.X_WT = settings_.show_outside ? tool_outside(X_WF, dt_s) : touching_tool(X_WD, X_WF.position_mm);
+  Pose touching = touching_tool(X_WD, X_WF.position_mm);
+  if (settings_.show_outside) keep_outside(touching, dt_s);
+  result.X_WT = settings_.show_outside ? gliding_tool(X_WD, touching, dt_s) : touching;
   // A burr that the shaft, or a wall beside it, keeps off the bone does not press on it.
   if (settings_.show_outside && !memory_.burr.presses(*scene_.volume, scene_.tool.burr_radius_mm,
                                                       result.X_WT.position_mm, result.burr_force_W_N, dt_s)) {
@@ -172,6 +189,12 @@ void LineProxy::turn_reaction(const Pose& X_WL) {
   memory_.reaction_N = reaction_force(settings_.stiffness_N_per_mm, g);                             // eq. 10
 }
 
+// How much of the way the drawn shaft turns; in full where the tool is not kept outside.
+double LineProxy::drawn_share(double arm_mm) const {
+  const double full_mm = settings_.show_outside ? kDrawnFade_radii * scene_.tool.shaft_radius_mm : 0;
+  return arm_mm < full_mm ? arm_mm / full_mm : 1.0;
+}
+
 // The tool moved out of the bone by its radii.
 Pose LineProxy::touching_tool(const Pose& X_WD, const Vec3& tool_tip_W) const {
   const Volume& volume = *scene_.volume;
@@ -185,27 +208,37 @@ Pose LineProxy::touching_tool(const Pose& X_WD, const Vec3& tool_tip_W) const {
   if (!u) return X_WT;
   const Vec3 offset_W = offset_point(*memory_.intersection_W, *u, scene_.tool.shaft_radius_mm);  // eq. 12
   const Vec3 shaft_W = drawn_shaft(offset_W, X_WT.position_mm);                                  // eq. 13
-  if (!(shaft_W.norm() > 0)) return X_WT;
-  const Quat turn = smallest_rotation(shaft_direction(X_WD), shaft_W.normalized());
-  X_WT.orientation = (turn * X_WD.orientation).normalized();
+  const double share = drawn_share(memory_.arm_W.norm());
+  const Vec3 direction = shaft_direction(X_WD);
+  const Vec3 drawn = (1.0 - share) * direction + share * shaft_W.normalized();
+  if (!(drawn.norm() > 1e-6)) return X_WT;
+  X_WT.orientation = (smallest_rotation(direction, drawn) * X_WD.orientation).normalized();
   return X_WT;
 }
 
-// Where the tip rests (12), and one move a tick out of where the tool's radii reach into bone, given back
-// little by little. Without that move the drawn tool of a third of all pushes ends in bone.
-Pose LineProxy::tool_outside(const Pose& X_WF, double dt_s) {
+// One move a tick, kept from tick to tick and given back little by little. Without it the drawn tool of a
+// third of all pushes ends in bone.
+void LineProxy::keep_outside(Pose& X_WT, double dt_s) {
   constexpr double kReturnTime_s = 0.02;
-  Vec3& shift_W = memory_.tool_shift_W;
-  const auto u =
-      memory_.tip_proxy_W ? surface_normal(*scene_.volume, X_WF.position_mm, normal_) : std::nullopt;
-  const Vec3 resting_W = u ? Vec3(scene_.tool.burr_radius_mm * *u) : Vec3::Zero();
-  shift_W += std::min(1.0, dt_s / kReturnTime_s) * (resting_W - shift_W);
-  Pose X_WT{X_WF.position_mm + shift_W, X_WF.orientation};
-  if (const auto move = clearing_move(*scene_.volume, scene_.tool, X_WT, normal_)) {
-    shift_W += *move;
-    X_WT.position_mm += *move;
-  }
-  return X_WT;
+  Vec3& clearance_W = memory_.clearance_W;
+  clearance_W *= std::max(0.0, 1.0 - dt_s / kReturnTime_s);
+  X_WT.position_mm += clearance_W;
+  const auto move = clearing_move(*scene_.volume, scene_.tool, X_WT, normal_);
+  if (!move) return;
+  clearance_W += *move;
+  X_WT.position_mm += *move;
+}
+
+Pose LineProxy::gliding_tool(const Pose& X_WD, const Pose& touching, double dt_s) {
+  const double device_move_mm =
+      memory_.device_before_W ? (X_WD.position_mm - *memory_.device_before_W).norm() : 0.0;
+  memory_.tool_shift_W = moved_toward(memory_.tool_shift_W, touching.position_mm - X_WD.position_mm,
+                                      kGlide_mm_s * dt_s + device_move_mm);
+  memory_.tool_turn_W =
+      moved_toward(memory_.tool_turn_W, rotation_vector(touching.orientation * X_WD.orientation.conjugate()),
+                   kGlide_rad_s * dt_s);
+  return {X_WD.position_mm + memory_.tool_shift_W,
+          (quaternion_from_rotation_vector(memory_.tool_turn_W) * X_WD.orientation).normalized()};
 }
 
 // As printed, eq. 1 can divide by nothing. What comes of it is seen by who sends the wrench; it must not

@@ -35,6 +35,7 @@ class LineProxy final : public HapticAlgorithm {
  private:
   // What one tick leaves to the next.
   struct Memory {
+    std::optional<Vec3> device_before_W;
     std::optional<Vec3> device_tip_W;
     std::optional<Vec3> tip_proxy_W;
     // The centreline, laid at the tip's proxy where there is one.
@@ -43,7 +44,10 @@ class LineProxy final : public HapticAlgorithm {
     Vec3 arm_W = Vec3::Zero();
     Vec3 reaction_N = Vec3::Zero();
     // How far the simulated tool is kept from where the centreline would have it.
+    Vec3 clearance_W = Vec3::Zero();
+    // The simulated tool against the device: moved by, turned by (a rotation vector in W).
     Vec3 tool_shift_W = Vec3::Zero();
+    Vec3 tool_turn_W = Vec3::Zero();
     PressingBurr burr;
   };
 
@@ -56,8 +60,10 @@ class LineProxy final : public HapticAlgorithm {
   std::optional<Vec3> first_intersection(const Pose& X_WL) const;
   std::optional<Vec3> next_intersection(const Pose& X_WL) const;
   void turn_reaction(const Pose& X_WL);
+  double drawn_share(double arm_mm) const;
   Pose touching_tool(const Pose& X_WD, const Vec3& tool_tip_W) const;
-  Pose tool_outside(const Pose& X_WF, double dt_s);
+  void keep_outside(Pose& X_WT, double dt_s);
+  Pose gliding_tool(const Pose& X_WD, const Pose& touching, double dt_s);
   void forget_what_is_not_finite();
 
   Settings settings_;
