@@ -16,6 +16,8 @@ void SurfaceUpkeep::mark_all() {
   marked_.assign(layout_.count(), 1);
   to_mesh_.resize(layout_.count());
   std::iota(to_mesh_.begin(), to_mesh_.end(), std::size_t{0});
+  calls_left_.assign(layout_.count(), 0);
+  changing_.clear();
 }
 
 void SurfaceUpkeep::mark(const VoxelBox& voxels) {
@@ -23,10 +25,17 @@ void SurfaceUpkeep::mark(const VoxelBox& voxels) {
     const std::size_t number = layout_.index(brick.i, brick.j, brick.k);
     if (!marked_[number]) to_mesh_.push_back(number);
     marked_[number] = 1;
+    if (calls_left_[number] == 0) changing_.push_back(number);
+    calls_left_[number] = kCallsAtRest;
   });
 }
 
 std::vector<ChangedBrick> SurfaceUpkeep::remesh(const DensityView& view) {
+  std::erase_if(changing_, [&](std::size_t brick) {
+    if (--calls_left_[brick] > 0) return false;
+    to_mesh_.push_back(brick);
+    return true;
+  });
   std::vector<ChangedBrick> changed;
   BrickMesher mesher(view);
   for (std::size_t n = 0; n < to_mesh_.size(); ++n) {
@@ -38,7 +47,9 @@ std::vector<ChangedBrick> SurfaceUpkeep::remesh(const DensityView& view) {
     has_mesh_[brick] = !mesher.indices().empty();
     if (!had_mesh && !has_mesh_[brick]) continue;
     BrickMesh mesh = mesher.copy();
-    BrickLevels levels = levels_of(mesh, view.grid.geometry(), layout_.cells(brick));
+    BrickLevels levels = calls_left_[brick] > 0
+                             ? full_detail(mesh)
+                             : levels_of(mesh, view.grid.geometry(), layout_.cells(brick));
     changed.push_back({brick, std::move(mesh), std::move(levels)});
   }
   to_mesh_.clear();

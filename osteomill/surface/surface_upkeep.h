@@ -15,7 +15,7 @@ namespace osteomill {
 struct ChangedBrick {
   std::size_t brick;
   BrickMesh mesh;
-  /// The mesh with fewer triangles, for drawing it.
+  /// The mesh with fewer triangles, for drawing it; the mesh alone while it is being milled.
   BrickLevels levels;
 };
 
@@ -23,6 +23,10 @@ struct ChangedBrick {
 /// thread.
 class SurfaceUpkeep {
  public:
+  /// Levels take five times as long as the mesh, and where bone is milled the mesh is what is looked at: they
+  /// are made of a brick that so many calls of `remesh` have found unmarked.
+  static constexpr std::uint8_t kCallsAtRest = 10;
+
   /// At first every brick has to be meshed.
   explicit SurfaceUpkeep(const SurfaceBricks& layout);
 
@@ -31,14 +35,17 @@ class SurfaceUpkeep {
   void mark(const VoxelBox& voxels);
   /// As after another isovalue.
   void mark_all();
-  /// Meshes the bricks marked, and returns those that have triangles or had some before.
+  /// Meshes the bricks marked, and returns those that have triangles or had some before; bricks that rest,
+  /// once more with their levels.
   std::vector<ChangedBrick> remesh(const DensityView& view);
 
  private:
   SurfaceBricks layout_;
-  std::vector<std::uint8_t> marked_;    // by brick: has to be meshed
-  std::vector<std::size_t> to_mesh_;    // those marked
-  std::vector<std::uint8_t> has_mesh_;  // by brick: has triangles
+  std::vector<std::uint8_t> marked_;      // by brick: has to be meshed
+  std::vector<std::size_t> to_mesh_;      // those marked
+  std::vector<std::uint8_t> calls_left_;  // by brick: until it rests; 0 where it does
+  std::vector<std::size_t> changing_;     // those that do not rest
+  std::vector<std::uint8_t> has_mesh_;    // by brick: has triangles
 };
 
 }  // namespace osteomill

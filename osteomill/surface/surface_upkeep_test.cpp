@@ -1,5 +1,7 @@
 #include "osteomill/surface/surface_upkeep.h"
 
+#include <algorithm>
+
 #include "tests/shapes.h"
 #include <gtest/gtest.h>
 
@@ -38,7 +40,32 @@ TEST(SurfaceUpkeep, KeptUpIsTheSurfaceMadeFromScratch) {
     EXPECT_LT(meshed, 20u);
     EXPECT_EQ(kept.bricks, mesh_surface(DensityView(volume)).bricks);
   }
-  EXPECT_EQ(take(), 0u);
+}
+
+TEST(SurfaceUpkeep, ABrickThatIsMilledHasItsMeshAloneAndItsLevelsOnceItRests) {
+  Volume volume = shape_volume(centred_cube(51, 0.25), ball(Vec3::Zero(), 5.0));
+  SurfaceUpkeep upkeep{SurfaceBricks(volume.geometry().dims)};
+  const auto has_levels = [](const ChangedBrick& changed) {
+    return changed.levels.levels.back().count < changed.mesh.indices.size();
+  };
+  const std::vector<ChangedBrick> first = upkeep.remesh(DensityView(volume));
+  EXPECT_TRUE(std::all_of(first.begin(), first.end(), has_levels));
+  const VoxelBox row{{12, 25, 45}, {20, 25, 45}};
+  for (int i = row.first.i; i <= row.last.i; ++i) volume.set_density({i, 25, 45}, 0);
+  volume.refresh_bricks(row);
+  std::size_t milled = 0;
+  for (int n = 0; n < 2 * SurfaceUpkeep::kCallsAtRest; ++n) {
+    upkeep.mark(row);
+    const std::vector<ChangedBrick> changed = upkeep.remesh(DensityView(volume));
+    milled = changed.size();
+    EXPECT_GT(milled, 0u);
+    EXPECT_TRUE(std::none_of(changed.begin(), changed.end(), has_levels));
+  }
+  for (int n = 2; n < SurfaceUpkeep::kCallsAtRest; ++n) EXPECT_TRUE(upkeep.remesh(DensityView(volume)).empty());
+  const std::vector<ChangedBrick> at_rest = upkeep.remesh(DensityView(volume));
+  EXPECT_EQ(at_rest.size(), milled);
+  EXPECT_TRUE(std::all_of(at_rest.begin(), at_rest.end(), has_levels));
+  EXPECT_TRUE(upkeep.remesh(DensityView(volume)).empty());
 }
 
 TEST(SurfaceUpkeep, SaysWhichBricksLostTheirTriangles) {

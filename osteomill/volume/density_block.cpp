@@ -1,6 +1,8 @@
 #include "osteomill/volume/density_block.h"
 
 #include <algorithm>
+#include <array>
+#include <utility>
 
 namespace osteomill {
 
@@ -30,17 +32,26 @@ DensityBlock::DensityBlock(const DensityGrid& grid, const VoxelIndex& first_) no
 }
 
 VoxelBox swap_densities(Volume& bone, DensityBlock& brick) {
+  const VoxelBox inside = voxels_in_grid(brick, bone.geometry());
   VoxelBox changed;
   VoxelBox risen;
-  for_each(voxels_in_grid(brick, bone.geometry()), [&](const VoxelIndex& v) {
-    float& kept = brick.densities[place_in(brick, v)];
-    const float before = bone.grid()[v];
-    if (before == kept) return;
-    changed.include(v);
-    if (kept > before) risen.include(v);
-    bone.set_density(v, kept);
-    kept = before;
-  });
+  std::array<int, DensityBlock::kVoxels> columns;
+  std::array<float, DensityBlock::kVoxels> densities;
+  for (int k = inside.first.k; k <= inside.last.k; ++k) {
+    for (int j = inside.first.j; j <= inside.last.j; ++j) {
+      float* kept = &brick.densities[place_in(brick, {inside.first.i, j, k})];
+      const float* before = bone.grid().densities().data() + bone.grid().linear_index({inside.first.i, j, k});
+      std::size_t count = 0;
+      for (int i = inside.first.i; i <= inside.last.i; ++i, ++kept, ++before) {
+        if (*before == *kept) continue;
+        changed.include({i, j, k});
+        if (*kept > *before) risen.include({i, j, k});
+        columns[count] = i;
+        densities[count++] = std::exchange(*kept, *before);
+      }
+      if (count > 0) bone.lower_row(j, k, columns.data(), densities.data(), count);
+    }
+  }
   bone.refresh_bricks(risen);
   return changed;
 }

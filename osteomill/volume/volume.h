@@ -39,7 +39,7 @@ class Volume {
   /// Lowers one voxel's density (milling never raises it). Safe in the haptic tick.
   void lower_density(const VoxelIndex& v, float density) { set_density(v, density); }
   /// Lowers `count` voxels of one row, whose columns ascend. Safe in the haptic tick, and faster than one by
-  /// one.
+  /// one. Not in the tick they may rise too, if `refresh_bricks` follows as after `set_density`.
   void lower_row(int j, int k, const int* columns, const float* densities, std::size_t count) {
     for (std::size_t n = 0; n < count; ++n) set_hashed({columns[n], j, k}, densities[n]);
     bricks_.lower_row(j, k, columns, densities, count);
