@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <utility>
 
 namespace osteomill {
@@ -41,6 +42,8 @@ VoxelBox swap_densities(Volume& bone, DensityBlock& brick) {
     for (int j = inside.first.j; j <= inside.last.j; ++j) {
       float* kept = &brick.densities[place_in(brick, {inside.first.i, j, k})];
       const float* before = bone.grid().densities().data() + bone.grid().linear_index({inside.first.i, j, k});
+      const auto length = static_cast<std::size_t>(inside.last.i - inside.first.i + 1);
+      if (std::memcmp(kept, before, length * sizeof(float)) == 0) continue;
       std::size_t count = 0;
       for (int i = inside.first.i; i <= inside.last.i; ++i, ++kept, ++before) {
         if (*before == *kept) continue;
