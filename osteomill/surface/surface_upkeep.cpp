@@ -47,9 +47,8 @@ std::vector<ChangedBrick> SurfaceUpkeep::remesh(const DensityView& view) {
     has_mesh_[brick] = !mesher.indices().empty();
     if (!had_mesh && !has_mesh_[brick]) continue;
     BrickMesh mesh = mesher.copy();
-    BrickLevels levels = calls_left_[brick] > 0
-                             ? full_detail(mesh)
-                             : levels_of(mesh, view.grid.geometry(), layout_.cells(brick));
+    BrickLevels levels = calls_left_[brick] > 0 ? full_detail(mesh)
+                                                : levels_of(mesh, view.grid.geometry(), layout_.cells(brick));
     changed.push_back({brick, std::move(mesh), std::move(levels)});
   }
   to_mesh_.clear();

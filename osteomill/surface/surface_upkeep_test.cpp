@@ -61,7 +61,8 @@ TEST(SurfaceUpkeep, ABrickThatIsMilledHasItsMeshAloneAndItsLevelsOnceItRests) {
     EXPECT_GT(milled, 0u);
     EXPECT_TRUE(std::none_of(changed.begin(), changed.end(), has_levels));
   }
-  for (int n = 2; n < SurfaceUpkeep::kCallsAtRest; ++n) EXPECT_TRUE(upkeep.remesh(DensityView(volume)).empty());
+  for (int n = 2; n < SurfaceUpkeep::kCallsAtRest; ++n)
+    EXPECT_TRUE(upkeep.remesh(DensityView(volume)).empty());
   const std::vector<ChangedBrick> at_rest = upkeep.remesh(DensityView(volume));
   EXPECT_EQ(at_rest.size(), milled);
   EXPECT_TRUE(std::all_of(at_rest.begin(), at_rest.end(), has_levels));

@@ -9,7 +9,8 @@ namespace osteomill {
 
 FrameTarget::FrameTarget(const PixelSize& size)
     : size_(size),
-      colours_(gl::make_texture(GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, size.width, size.height, GL_NEAREST)),
+      // In the order of a window's own, so that nothing is turned over on the way there.
+      colours_(gl::make_texture(GL_RGBA8, GL_BGRA, GL_UNSIGNED_BYTE, size.width, size.height, GL_NEAREST)),
       depths_(gl::make_texture(GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT, size.width,
                                size.height, GL_NEAREST)),
       framebuffer_(gl::make_framebuffer()) {

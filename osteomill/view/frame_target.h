@@ -16,6 +16,7 @@ class FrameTarget {
   const PixelSize& size() const { return size_; }
   void bind() const;
   GLuint framebuffer() const { return framebuffer_.get(); }
+  GLuint colours() const { return colours_.get(); }
   GLuint depths() const { return depths_.get(); }
   Image read() const;
   /// 0 to 1, row by row from the bottom.

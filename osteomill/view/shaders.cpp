@@ -152,6 +152,13 @@ void main() {
 }
 )";
 
+const std::string_view kPictureFragment = R"(#version 330 core
+in vec2 place;
+uniform sampler2D picture;
+out vec4 colour;
+void main() { colour = texture(picture, place); }
+)";
+
 const std::string_view kCutVertex = R"(#version 330 core
 layout(location = 0) in vec3 position_W;
 layout(location = 1) in vec2 place_on_cut;

@@ -13,6 +13,7 @@ extern const std::string_view kScreenVertex;
 extern const std::string_view kDepthFragment;
 extern const std::string_view kBlurFragment;
 extern const std::string_view kBackgroundFragment;
+extern const std::string_view kPictureFragment;
 extern const std::string_view kCutVertex;
 extern const std::string_view kCutFragment;
 
