@@ -15,7 +15,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Reading the depths makes a processor that draws wait for itself, and what is blurred changes little.
+// Where the view rests: reading the depths makes a processor that draws wait for itself, and milling changes
+// them little.
 constexpr unsigned kPicturesPerBlur = 4;
 constexpr double kCoarsest_px = 64;
 constexpr int kWidestPixels = 4;
@@ -129,7 +130,7 @@ void BoneGround::draw_at_once(const ViewScene& scene, const PixelSize& size) {
   clear_depths(*shown_);
   bone_.draw(scene, projection, *cavities_, seen);
   draw_around(scene, projection);
-  if (drawn_ % kPicturesPerBlur == 0) look_for_cavities(projection);
+  look_for_cavities(projection);
   // Else it would not be known how long it took.
   glFinish();
   const double passed_s = seconds_since(start);

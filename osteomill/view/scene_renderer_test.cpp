@@ -238,6 +238,23 @@ TEST_F(SceneRendererTest, ALargePictureThatMovesHasFewerPixelsThanOnceItRests) {
   EXPECT_NEAR(covered(moving), covered(rested), 0.005);
 }
 
+TEST_F(SceneRendererTest, AMovingViewIsShadedAfterThePictureBeforeAndNoneLongGone) {
+  const double last_mm = scene_.camera.distance_mm;
+  for (const double times : {0.5, 0.5, 0.998, 1.0}) {
+    scene_.camera.distance_mm = times * last_mm;
+    renderer_->draw(scene_, kSize);
+  }
+  const Image moving = renderer_->picture();
+  do {
+    renderer_->draw(scene_, kSize);
+  } while (!renderer_->settled());
+  const Image rested = renderer_->picture();
+  double sum = 0;
+  for (std::size_t n = 0; n < moving.rgb.size(); ++n)
+    sum += std::abs(int(moving.rgb[n]) - int(rested.rgb[n]));
+  EXPECT_LT(sum / static_cast<double>(moving.rgb.size()), 2 * kMeanShades);
+}
+
 TEST_F(SceneRendererTest, ABrickTakenAwayIsGone) {
   const double all = covered(picture());
   EXPECT_GT(renderer_->triangle_count(), 1000u);
