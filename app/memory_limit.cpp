@@ -5,6 +5,7 @@
 #include <fstream>
 #include <initializer_list>
 #include <limits>
+#include <mutex>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -15,8 +16,19 @@ namespace osteomill::app {
 
 namespace {
 
-thread_local std::string limited_scan;
-thread_local std::uint64_t limit_bytes = std::numeric_limits<std::uint64_t>::max();
+struct Limit {
+  std::string scan;
+  std::uint64_t bytes = std::numeric_limits<std::uint64_t>::max();
+  std::uint64_t taken_before = 0;
+};
+
+std::mutex mutex;
+Limit limit;
+
+Limit limit_now() {
+  const std::lock_guard lock(mutex);
+  return limit;
+}
 
 // Of a file of /proc: what stands behind these words, all in kB.
 std::uint64_t bytes_in(const char* path, std::initializer_list<std::string_view> words) {
@@ -29,6 +41,11 @@ std::uint64_t bytes_in(const char* path, std::initializer_list<std::string_view>
   return bytes;
 }
 
+// A page that two copies of the bone share counts once; the program's own files do not.
+std::uint64_t memory_taken() {
+  return bytes_in("/proc/self/smaps_rollup", {"Pss_Anon:", "Pss_Shmem:"});
+}
+
 double gigabytes(std::uint64_t bytes) {
   return 1e-9 * static_cast<double>(bytes);
 }
@@ -36,29 +53,29 @@ double gigabytes(std::uint64_t bytes) {
 }  // namespace
 
 void limit_memory(const std::string& scan, std::uint64_t bytes) {
-  limited_scan = scan;
-  limit_bytes = bytes;
+  const std::lock_guard lock(mutex);
+  limit = {scan, bytes, memory_taken()};
 }
 
 void check_memory_taken() {
   constexpr std::chrono::milliseconds kEvery{100};
   thread_local std::chrono::steady_clock::time_point next;
-  const auto now = std::chrono::steady_clock::now();
-  if (limited_scan.empty() || now < next) return;
-  // A page that two copies of the bone share counts once; the program's own files do not.
-  const std::uint64_t taken = bytes_in("/proc/self/smaps_rollup", {"Pss_Anon:", "Pss_Shmem:"});
+  if (std::chrono::steady_clock::now() < next) return;
+  const Limit allowed = limit_now();
+  const std::uint64_t taken = memory_taken();
   next = std::chrono::steady_clock::now() + kEvery;
-  if (taken <= limit_bytes) return;
+  if (allowed.scan.empty() || taken <= allowed.taken_before + allowed.bytes) return;
   throw InputError(
-      limited_scan,
+      allowed.scan,
       fmt::format("takes {:.3g} GB with what is made of it so far, over the {:.3g} GB that it may take",
-                  gigabytes(taken), gigabytes(limit_bytes)));
+                  gigabytes(taken - allowed.taken_before), gigabytes(allowed.bytes)));
 }
 
 std::string out_of_memory_text() {
   const std::string reason = fmt::format("not enough memory: {:.3g} GB were taken when more was asked for",
                                          gigabytes(bytes_in("/proc/self/status", {"VmHWM:"})));
-  return limited_scan.empty() ? reason : limited_scan + ": " + reason;
+  const std::string scan = limit_now().scan;
+  return scan.empty() ? reason : scan + ": " + reason;
 }
 
 }  // namespace osteomill::app

@@ -5,7 +5,8 @@
 
 namespace osteomill::app {
 
-/// From now on the scan of this name, with all that this thread makes of it, may take so many bytes.
+/// From now on the scan of this name, with all that is made of it, may take so many bytes more than are taken
+/// now. Any thread, as all of these.
 void limit_memory(const std::string& scan, std::uint64_t bytes);
 
 /// Throws InputError, naming scan and amounts, where more is taken. Cheap, to be called often, as by a

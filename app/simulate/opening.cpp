@@ -1,5 +1,6 @@
 #include "app/simulate/opening.h"
 
+#include "app/memory_limit.h"
 #include <malloc.h>
 
 #include "osteomill/numbers/work_progress.h"
@@ -20,6 +21,7 @@ void Opening::begin(std::function<OpenedScan()> open) {
       const WorkProgress progress([&](double share) {
         work->share_done = share;
         if (work->stopped) throw WorkStopped();
+        check_memory_taken();
       });
       return open();
     } catch (const WorkStopped&) {

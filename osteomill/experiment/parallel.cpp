@@ -7,6 +7,8 @@
 #include <thread>
 #include <vector>
 
+#include "osteomill/numbers/work_progress.h"
+
 namespace osteomill {
 
 std::size_t core_count() {
@@ -35,9 +37,14 @@ void run_in_parallel(std::size_t count, std::size_t threads, const std::function
       if (!fault) done(++finished);
     }
   };
+  const WorkProgress::OfOtherThread progress;
+  const auto work_beside = [&] {
+    const WorkProgress::OfOtherThread::Here here(progress);
+    work();
+  };
   std::vector<std::jthread> others;
   try {
-    for (std::size_t n = 1; n < std::min(threads, count); ++n) others.emplace_back(work);
+    for (std::size_t n = 1; n < std::min(threads, count); ++n) others.emplace_back(work_beside);
   } catch (const std::system_error&) {
     // Fewer do as well.
   }
