@@ -67,11 +67,11 @@ LiveMilling::~LiveMilling() {
 }
 
 void LiveMilling::listen() {
-  live_.wait_for(live_.listen([follower = follower_.get(), recorder = recorder_.get(), from = recorded_from_](
-                                  const TickRecord& record, const Volume& bone, const VolumeChange& change) {
+  live_.listen([follower = follower_.get(), recorder = recorder_.get(), from = recorded_from_](
+                   const TickRecord& record, const Volume& bone, const VolumeChange& change) {
     follower->bone_changed(bone, change);
     if (recorder != nullptr && record.session >= from) recorder->push(record);
-  }));
+  });
 }
 
 void LiveMilling::update() {
@@ -90,7 +90,7 @@ void LiveMilling::set_spindle(bool on) {
 
 void LiveMilling::change(const MillingSetup& setup) {
   if (preparing()) return;
-  live_.wait_for(live_.hold_bone(true));
+  live_.hold_bone(true);
   preparation_ = std::async(std::launch::async, [this, setup, bone = live_.session().shared_volume(),
                                                  removed_mm3 = live_.session().removed_mm3()] {
     catch_up();
@@ -118,7 +118,7 @@ void LiveMilling::reset() {
 // The follower's copy becomes the bone, since it can be written while the bone is felt.
 void LiveMilling::rebuild(MakeBone make_bone) {
   if (preparing()) return;
-  live_.wait_for(live_.hold_bone(true));
+  live_.hold_bone(true);
   preparation_ = std::async(std::launch::async, [this, make_bone = std::move(make_bone), setup = setup_] {
     catch_up();
     const BoneFollower::NextBone next = make_bone();
@@ -158,7 +158,7 @@ void LiveMilling::take_over() {
     setup_ = prepared.setup;
     sample_points_ = prepared.session->algorithm().sample_point_count();
     densities_ = prepared.densities;
-    live_.wait_for(live_.replace(std::move(prepared.session)));
+    live_.replace(std::move(prepared.session));
     ++session_number_;
     if (prepared.other_bone) follower_->swap();
     if (recorder_) tell_recorder(live_.taken_over(), prepared.removed_mm3, std::move(prepared.bricks));
