@@ -20,8 +20,6 @@ struct RecordColumn {
   bool in_log;
   double (*get)(const TickRecord&);
   void (*set)(TickRecord&, double);
-  /// A recording may lack it: it came later than the others.
-  bool may_lack = false;
 };
 
 /// All columns, those of the CSV log in its order.

@@ -60,8 +60,7 @@ struct Recording {
   std::filesystem::path path;
   /// Of the first session.
   RunDescription description;
-  /// In turn, from the first record on; none in a recording of version 2. Read records carry the session's
-  /// place here as TickRecord::session.
+  /// In turn, from the first record on. Read records carry the session's place here as TickRecord::session.
   std::vector<RecordedSession> sessions;
   /// Every hundredth record's, and the last one's.
   std::vector<BoneHash> bone_hashes;

@@ -17,8 +17,6 @@ struct Entry {
   const char* unit;
   double (*get)(const SessionSettings&);
   void (*set)(SessionSettings&, double);
-  // It came later than the others.
-  bool may_lack = false;
 };
 
 #define OSTEOMILL_SETTING(field)                              \
@@ -38,22 +36,21 @@ constexpr std::array kEntries{
           [](SessionSettings& s, double value) {
             s.setup.cutting_reaction = value != 0;
             if (value != 0) s.setup.cutting.tangential_share = value;
-          },
-          true},
+          }},
     Entry{"milling.surroundings_density", "", OSTEOMILL_SETTING(densities.surroundings)},
     Entry{"milling.reference_density", "", OSTEOMILL_SETTING(densities.reference)},
     Entry{"limit.force", "N", OSTEOMILL_SETTING(setup.guard.limits.force_N)},
     Entry{"limit.torque", "N mm", OSTEOMILL_SETTING(setup.guard.limits.torque_Nmm)},
-    Entry{"vibration", "", OSTEOMILL_SWITCH(setup.vibration.on), true},
-    Entry{"vibration.spindle_speed", "rpm", OSTEOMILL_SETTING(setup.cutting.spindle_speed_rpm), true},
-    Entry{"vibration.force_share", "", OSTEOMILL_SETTING(setup.vibration.force_share), true},
-    Entry{"vibration.max_force", "N", OSTEOMILL_SETTING(setup.vibration.max_N), true},
-    Entry{"guard.max_force_rate", "N/s", OSTEOMILL_SETTING(setup.guard.rates.force_N_s), true},
-    Entry{"guard.max_torque_rate", "N mm/s", OSTEOMILL_SETTING(setup.guard.rates.torque_Nmm_s), true},
-    Entry{"guard.blend", "s", OSTEOMILL_SETTING(setup.guard.blend_s), true},
-    Entry{"guard.max_move", "mm", OSTEOMILL_SETTING(setup.guard.max_move_mm), true},
-    Entry{"guard.max_tick", "s", OSTEOMILL_SETTING(setup.guard.max_tick_s), true},
-    Entry{"passivity_controller", "", OSTEOMILL_SWITCH(setup.guard.passivity_controller), true},
+    Entry{"vibration", "", OSTEOMILL_SWITCH(setup.vibration.on)},
+    Entry{"vibration.spindle_speed", "rpm", OSTEOMILL_SETTING(setup.cutting.spindle_speed_rpm)},
+    Entry{"vibration.force_share", "", OSTEOMILL_SETTING(setup.vibration.force_share)},
+    Entry{"vibration.max_force", "N", OSTEOMILL_SETTING(setup.vibration.max_N)},
+    Entry{"guard.max_force_rate", "N/s", OSTEOMILL_SETTING(setup.guard.rates.force_N_s)},
+    Entry{"guard.max_torque_rate", "N mm/s", OSTEOMILL_SETTING(setup.guard.rates.torque_Nmm_s)},
+    Entry{"guard.blend", "s", OSTEOMILL_SETTING(setup.guard.blend_s)},
+    Entry{"guard.max_move", "mm", OSTEOMILL_SETTING(setup.guard.max_move_mm)},
+    Entry{"guard.max_tick", "s", OSTEOMILL_SETTING(setup.guard.max_tick_s)},
+    Entry{"passivity_controller", "", OSTEOMILL_SWITCH(setup.guard.passivity_controller)},
 };
 
 #undef OSTEOMILL_SWITCH
@@ -106,14 +103,12 @@ SessionSettings session_settings(const RunDescription& run, const std::filesyste
   session.setup.haptics = haptic_settings(run);
   session.setup.tick_s = run.tick_period_s;
   for (const Entry& entry : kEntries) {
-    const auto found = std::ranges::find(run.settings, entry.key, &RunSetting::key);
-    const double* number = found == run.settings.end() ? nullptr : std::get_if<double>(&found->value);
-    if (number != nullptr) {
-      entry.set(session, *number);
-    } else if (!entry.may_lack) {
+    const double* number = find_setting<double>(run, entry.key);
+    if (number == nullptr) {
       throw InputError(path.string(),
                        std::string("has no setting '") + entry.key + "', so its milling cannot be repeated");
     }
+    entry.set(session, *number);
   }
   return session;
 }

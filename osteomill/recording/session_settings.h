@@ -22,8 +22,7 @@ struct SessionSettings {
 void set_session_settings(RunDescription& run, const SessionSettings& session, int sample_points);
 
 /// Read back, but for the algorithm: the run has its name, and whoever runs it knows which is meant. Throws
-/// InputError, naming the recording's `path`, where a setting is missing that every recording has had; others
-/// are then as in sessions of that time.
+/// InputError, naming the recording's `path`, where a setting is missing.
 SessionSettings session_settings(const RunDescription& run, const std::filesystem::path& path);
 
 }  // namespace osteomill
