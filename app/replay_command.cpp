@@ -95,7 +95,7 @@ void replay_trajectory(ReplayOptions options) {
 // As it was read when the recording was made: the scan that is named, or else the one that it names.
 Volume scan_of(const ReplayOptions& options, const Recording& recording) {
   ScanOptions scan = options.scan;
-  if (scan.scan.empty() && recording.description.scan_name != open_scan({}).name)
+  if (scan.scan.empty() && recording.description.scan_name != kBuiltinTooth)
     scan.scan = recording.description.scan_name;
   scan.isovalue = recording.description.isovalue;
   scan.made_into = recording.description.scan_hash;

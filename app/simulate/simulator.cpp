@@ -189,41 +189,39 @@ class Simulator {
       start();
     };
     view_.dialogues.add(left_milling_question(
-        left_->facts, [this] { open_left_milling(); }, remove, start));
+        left_->start, [this] { open_left_milling(); }, remove, start));
   }
 
   void open_left_milling() {
-    const MilledBone& left = left_->facts;
-    ScanOptions scan{left.scan,
-                     left.isovalue,
-                     {.series = left.series, .max_memory_bytes = options_.scan.read.max_memory_bytes},
-                     {left.labels, left.label_table, left.no_go},
-                     std::nullopt,
-                     left.fingerprint};
+    ScanOptions scan = scan_of(left_->start);
+    scan.read.max_memory_bytes = options_.scan.read.max_memory_bytes;
     // Those that are asked for now.
     std::error_code other;
     if (!options_.scan.labels.map.empty() &&
-        std::filesystem::equivalent(left.scan, options_.scan.scan, other))
+        std::filesystem::equivalent(scan.scan, options_.scan.scan, other))
       scan.labels = options_.scan.labels;
-    begin_opening(scan, std::move(left_->file));
-    left_.reset();
+    opened_milled_ = std::move(left_->file);
+    open(scan, std::exchange(left_, std::nullopt)->start);
   }
 
   bool opening() const { return opening_.valid() || opened_; }
 
-  void begin_opening(const ScanOptions& scan, std::optional<AutosaveFile> milled = std::nullopt) {
+  void begin_opening(const ScanOptions& scan) {
+    opened_milled_.reset();
+    open(scan, {});
+  }
+
+  void open(const ScanOptions& scan, SessionStart milled) {
     opened_scan_ = scan;
-    opened_milled_ = std::move(milled);
     opening_since_ = Clock::now();
     changes_before_ = view_.changes;
     const MillingSetup setup = simulation_ ? view_.wanted : options_.setup;
-    opening_.begin([scan, setup, milled = opened_milled_ ? opened_milled_->path() : std::filesystem::path()] {
-      return open_for_milling(scan, setup, milled);
-    });
+    opening_.begin(
+        [scan, setup, milled = std::move(milled)] { return open_for_milling(scan, setup, milled); });
   }
 
   void draw_opening() {
-    const std::string what = opened_scan_.scan.empty() ? "built-in tooth" : opened_scan_.scan;
+    const std::string what = opened_scan_.scan.empty() ? kBuiltinTooth : opened_scan_.scan;
     const bool given_up = draw_loading(what, opening_.share_done(), seconds_since(opening_since_),
                                        window_.size(), simulation_ != nullptr);
     if (given_up) give_up_opening(what);
@@ -269,8 +267,9 @@ class Simulator {
       simulation_->autosave.discard();
       view_.wanted_is_new = view_.changes != changes_before_;
       options_.command_line += " # then opened in the window: " + opened.name;
-      view_.message = fmt::format("Opened {}: isovalue {:.4g}{}, {}", opened.name, opened.as_scanned.isovalue,
-                                  opened.unit, opened.isovalue_from);
+      view_.message =
+          fmt::format("Opened {}: isovalue {:.4g}{}, {}", opened.name,
+                      opened.milling.session->volume().isovalue(), opened.unit, opened.isovalue_from);
       view_.result.clear();
       sender_.reset();
       simulation_.reset();

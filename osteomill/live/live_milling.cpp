@@ -5,6 +5,7 @@
 #include <thread>
 #include <utility>
 
+#include "osteomill/files/input_error.h"
 #include "osteomill/numbers/work_progress.h"
 #include "osteomill/recording/describe_run.h"
 #include "osteomill/recording/recording.h"
@@ -30,10 +31,15 @@ SessionSettings settings_of(MillingSetup setup, const BoneDensities& densities) 
 }  // namespace
 
 PreparedMilling prepare_milling(std::shared_ptr<Volume> bone, const MillingSetup& setup,
-                                const MilledBefore& before) {
+                                const SessionStart& before) {
   BoneDensities densities;
   std::unique_ptr<BoneFollower> follower;
   const std::uint64_t scan_hash = fingerprint_of(bone->grid());
+  if (!before.bricks.empty() &&
+      (before.run.dims != bone->geometry().dims || before.run.scan_hash != scan_hash)) {
+    throw InputError(before.run.scan_name,
+                     "has changed since it was milled, so what was milled cannot be put into it");
+  }
   {
     const WorkProgress::Part looking(0.2);
     densities = estimate_densities(*bone);

@@ -26,16 +26,11 @@ struct PreparedMilling {
   std::unique_ptr<MillingSession> session;
 };
 
-/// What was milled of a bone at another time.
-struct MilledBefore {
-  std::vector<DensityBlock> bricks;
-  double removed_mm3 = 0;
-};
-
-/// In any thread, also while another bone is milled. `bone` as scanned; what was milled of it before can be
-/// taken back as one cut. Throws std::invalid_argument for settings out of range.
+/// In any thread, also while another bone is milled. `bone` as scanned; what was milled of it `before`, if
+/// anything was, can be taken back as one cut. Throws std::invalid_argument for settings out of range, and
+/// InputError, naming the scan, where another was milled before.
 PreparedMilling prepare_milling(std::shared_ptr<Volume> bone, const MillingSetup& setup,
-                                const MilledBefore& before = {});
+                                const SessionStart& before = {});
 
 /// A bone that is milled in real time with a device, and all that can be done to it meanwhile. For one
 /// thread, beside the haptic one that this runs; one at a time. Whatever takes long (another algorithm or

@@ -224,6 +224,14 @@ void Recorder::close() {
   if (error) throw InputError(impl_->path.string(), "cannot be written: " + error.message());
 }
 
+void write_start(const fs::path& path, const SessionStart& start) {
+  write_file_atomically(path, [&](const fs::path& beside) {
+    RecordingFile file(beside, start.run);
+    file.begin_session(start, 0);
+    file.finish(0);
+  });
+}
+
 fs::path unfinished_recording_path(const fs::path& path) {
   return path.parent_path() / (path.stem().string() + ".part" + path.extension().string());
 }

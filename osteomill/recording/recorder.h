@@ -80,6 +80,10 @@ class Recorder {
   std::unique_ptr<Impl> impl_;
 };
 
+/// Writes a recording of no ticks: what a session may go on from. Appears whole or not at all; throws
+/// InputError where it cannot be written.
+void write_start(const std::filesystem::path& path, const SessionStart& start);
+
 /// The name under which a recording that is to become `path` is written.
 std::filesystem::path unfinished_recording_path(const std::filesystem::path& path);
 
