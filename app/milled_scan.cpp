@@ -5,7 +5,7 @@
 #include "app/positive_number.h"
 #include "app/progress.h"
 
-#include "osteomill/recording/read_recording.h"
+#include "osteomill/recording/recording.h"
 #include "osteomill/recording/replay_recording.h"
 
 namespace osteomill::app {

@@ -8,8 +8,7 @@
 
 #include "osteomill/device/trajectory.h"
 #include "osteomill/haptics/algorithms.h"
-#include "osteomill/recording/read_recording.h"
-#include "osteomill/recording/recording_checksum.h"
+#include "osteomill/recording/recording.h"
 #include "osteomill/recording/recording_file.h"
 
 namespace osteomill::fuzzing {

@@ -15,8 +15,8 @@
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/files/input_error.h"
 #include "osteomill/files/user_folders.h"
-#include "osteomill/recording/read_recording.h"
 #include "osteomill/recording/recorder.h"
+#include "osteomill/recording/recording.h"
 
 namespace osteomill::app {
 

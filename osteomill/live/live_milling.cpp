@@ -60,8 +60,6 @@ LiveMilling::LiveMilling(PreparedMilling prepared, Device& device)
       sample_points_(prepared.session->algorithm().sample_point_count()),
       densities_(prepared.densities),
       scan_hash_(prepared.scan_hash),
-      geometry_(prepared.session->volume().geometry()),
-      isovalue_(prepared.session->volume().isovalue()),
       follower_(std::move(prepared.follower)),
       live_(std::move(prepared.session), device) {
   listen();
@@ -100,8 +98,7 @@ void LiveMilling::change(const MillingSetup& setup) {
   preparation_ = std::async(std::launch::async, [this, setup, bone = live_.session().shared_volume(),
                                                  removed_mm3 = live_.session().removed_mm3()] {
     catch_up();
-    Prepared prepared{std::make_unique<MillingSession>(bone, densities_, setup), setup, densities_,
-                      removed_mm3, follower_->touched_bricks()};
+    Prepared prepared{std::make_unique<MillingSession>(bone, densities_, setup), setup, densities_};
     prepared.session->count_removed_from(removed_mm3);
     return prepared;
   });
@@ -130,11 +127,7 @@ void LiveMilling::rebuild(MakeBone make_bone) {
     const BoneFollower::NextBone next = make_bone();
     try {
       const BoneDensities densities = next.densities.value_or(densities_);
-      Prepared prepared{std::make_unique<MillingSession>(next.bone, densities, setup),
-                        setup,
-                        densities,
-                        next.removed_mm3,
-                        follower_->touched_bricks(),
+      Prepared prepared{std::make_unique<MillingSession>(next.bone, densities, setup), setup, densities,
                         true};
       prepared.session->count_removed_from(next.removed_mm3);
       return prepared;
@@ -160,14 +153,13 @@ void LiveMilling::take_over() {
   std::exception_ptr failure;
   try {
     Prepared prepared = preparation_.get();
-    isovalue_ = prepared.session->volume().isovalue();
     setup_ = prepared.setup;
     sample_points_ = prepared.session->algorithm().sample_point_count();
     densities_ = prepared.densities;
     live_.replace(std::move(prepared.session));
     ++session_number_;
     if (prepared.other_bone) follower_->swap();
-    if (recorder_) tell_recorder(live_.taken_over(), prepared.removed_mm3, std::move(prepared.bricks));
+    if (recorder_) tell_recorder(live_.taken_over());
   } catch (...) {
     failure = std::current_exception();
   }
@@ -178,7 +170,7 @@ void LiveMilling::take_over() {
 std::vector<double> LiveMilling::removed_by_label() const {
   std::vector<double> removed_mm3 = follower_->drops_by_label();
   for (double& drop : removed_mm3) {
-    drop *= geometry_.voxel_volume_mm3() / (densities_.reference - densities_.surroundings);
+    drop *= geometry().voxel_volume_mm3() / (densities_.reference - densities_.surroundings);
   }
   return removed_mm3;
 }
@@ -186,11 +178,9 @@ std::vector<double> LiveMilling::removed_by_label() const {
 RunDescription LiveMilling::describe(const std::string& scan_name, const std::string& command_line) const {
   const RunFacts facts{.scan_name = scan_name,
                        .scan_hash = scan_hash_,
-                       .geometry = geometry_,
-                       .isovalue = isovalue_,
+                       .bone = live_.session().volume(),
                        .session = settings_of(setup_, densities_),
-                       .command_line = command_line,
-                       .labels = live_.session().volume().labels()};
+                       .command_line = command_line};
   return describe_run(facts, sample_points_);
 }
 
@@ -206,17 +196,18 @@ void LiveMilling::start_recording(const std::filesystem::path& path, const RunDe
   recorded_ = description;
   const bool untouched = !live_.running() && live_.timing().ticks == 0;
   recorded_from_ = untouched ? session_number_ : session_number_ + 1;
-  if (untouched) tell_recorder({}, live_.session().removed_mm3(), follower_->touched_bricks());
+  if (untouched) tell_recorder({});
   listen();
   if (!untouched) change(setup_);
 }
 
-void LiveMilling::tell_recorder(const TakenOver& taken_over, double removed_mm3,
-                                std::vector<DensityBlock> bricks) {
+// While nothing is milled.
+void LiveMilling::tell_recorder(const TakenOver& taken_over) {
   RunDescription run = recorded_;
-  run.isovalue = isovalue_;
+  run.isovalue = isovalue();
   set_session_settings(run, settings_of(setup_, densities_), sample_points_);
-  recorder_->begin_session(session_number_, {std::move(run), taken_over, removed_mm3, std::move(bricks), ""});
+  recorder_->begin_session(session_number_, {std::move(run), taken_over, live_.session().removed_mm3(),
+                                             follower_->touched_bricks(), ""});
 }
 
 std::filesystem::path LiveMilling::stop_recording() {

@@ -103,8 +103,8 @@ class LiveMilling {
 
   const MillingSetup& setup() const { return setup_; }
   const BoneDensities& densities() const { return densities_; }
-  const GridGeometry& geometry() const { return geometry_; }
-  double isovalue() const { return isovalue_; }
+  const GridGeometry& geometry() const { return live_.session().volume().geometry(); }
+  double isovalue() const { return live_.session().volume().isovalue(); }
 
   /// The isosurface's bricks, what changed of it since the last call, and how it would look at another
   /// isovalue (BoneFollower).
@@ -122,8 +122,6 @@ class LiveMilling {
     std::unique_ptr<MillingSession> session;
     MillingSetup setup;
     BoneDensities densities;
-    double removed_mm3 = 0;
-    std::vector<DensityBlock> bricks;
     bool other_bone = false;
   };
   using MakeBone = std::function<BoneFollower::NextBone()>;
@@ -132,15 +130,13 @@ class LiveMilling {
   void rebuild(MakeBone make_bone);
   void catch_up();
   void take_over();
-  void tell_recorder(const TakenOver& taken_over, double removed_mm3, std::vector<DensityBlock> bricks);
+  void tell_recorder(const TakenOver& taken_over);
 
   MillingSetup setup_;
   // As prepared: the haptic thread's algorithm changes them.
   int sample_points_;
   BoneDensities densities_;
   std::uint64_t scan_hash_;
-  GridGeometry geometry_;
-  double isovalue_;
   std::unique_ptr<BoneFollower> follower_;
   std::unique_ptr<Recorder> recorder_;
   std::filesystem::path recorder_path_;

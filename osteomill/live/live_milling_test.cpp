@@ -16,7 +16,7 @@
 #include "osteomill/files/input_error.h"
 #include "osteomill/operator/milling_entry.h"
 #include "osteomill/operator/virtual_hand.h"
-#include "osteomill/recording/read_recording.h"
+#include "osteomill/recording/recording.h"
 #include "osteomill/recording/replay_recording.h"
 #include "osteomill/surface/surface_mesh.h"
 

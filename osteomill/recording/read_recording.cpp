@@ -1,5 +1,3 @@
-#include "osteomill/recording/read_recording.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,7 +16,7 @@
 #include "osteomill/recording/description_attributes.h"
 #include "osteomill/recording/hdf5.h"
 #include "osteomill/recording/record_columns.h"
-#include "osteomill/recording/recording_checksum.h"
+#include "osteomill/recording/recording.h"
 #include "osteomill/recording/recording_file.h"
 
 namespace osteomill {

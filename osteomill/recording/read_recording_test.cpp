@@ -1,5 +1,3 @@
-#include "osteomill/recording/read_recording.h"
-
 #include <fstream>
 #include <functional>
 #include <iterator>
@@ -12,7 +10,8 @@
 #include "osteomill/files/input_error.h"
 #include "osteomill/recording/hdf5.h"
 #include "osteomill/recording/recorder.h"
-#include "osteomill/recording/recording_checksum.h"
+#include "osteomill/recording/recording.h"
+#include "osteomill/recording/recording_file.h"
 
 namespace osteomill {
 namespace {

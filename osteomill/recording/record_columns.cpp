@@ -1,6 +1,12 @@
 #include "osteomill/recording/record_columns.h"
 
 #include <array>
+#include <iterator>
+#include <ostream>
+
+#include <fmt/format.h>
+
+#include "osteomill/files/atomic_file.h"
 
 namespace osteomill {
 
@@ -90,10 +96,35 @@ constexpr std::array kColumns{
 #undef OSTEOMILL_FLAG
 #undef OSTEOMILL_FIELD
 
+// A line of the log: of each column what `write` appends.
+template <typename Write>
+void append_line(fmt::memory_buffer& text, const Write& write) {
+  const char* separator = "";
+  for (const RecordColumn& column : record_columns()) {
+    if (!column.in_log) continue;
+    fmt::format_to(std::back_inserter(text), "{}{}", separator, write(column));
+    separator = ",";
+  }
+  text.push_back('\n');
+}
+
 }  // namespace
 
 std::span<const RecordColumn> record_columns() {
   return kColumns;
+}
+
+void write_csv(const std::filesystem::path& path, std::span<const TickRecord> records) {
+  write_text_atomically(path, [&](std::ostream& out) {
+    fmt::memory_buffer text;
+    append_line(text, [](const RecordColumn& column) { return column.name; });
+    for (const TickRecord& record : records) {
+      append_line(text, [&](const RecordColumn& column) { return column.get(record); });
+      out.write(text.data(), static_cast<std::streamsize>(text.size()));
+      text.clear();
+    }
+    out.write(text.data(), static_cast<std::streamsize>(text.size()));
+  });
 }
 
 }  // namespace osteomill

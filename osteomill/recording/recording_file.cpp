@@ -2,16 +2,19 @@
 
 #include <array>
 #include <cerrno>
+#include <fstream>
+#include <string_view>
 #include <tuple>
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <unistd.h>
+#include <zlib.h>
 
 #include "osteomill/files/input_error.h"
 #include "osteomill/recording/description_attributes.h"
 #include "osteomill/recording/hdf5.h"
 #include "osteomill/recording/record_columns.h"
-#include "osteomill/recording/recording_checksum.h"
 
 namespace osteomill {
 
@@ -65,6 +68,22 @@ bool keep_metadata_until_flush(hid_t file) {
   config.flash_incr_mode = H5C_flash_incr__off;
   config.decr_mode = H5C_decr__off;
   return H5Fset_mdc_config(file, &config) >= 0;
+}
+
+constexpr std::string_view kStart = "osteomill recording; HDF5 follows after 512 bytes, their crc32: ";
+
+// From where the stream stands to the end of the file.
+unsigned long crc32_of_rest(std::istream& in) {
+  std::vector<char> buffer(1 << 20);
+  unsigned long crc = ::crc32(0, nullptr, 0);
+  while (in.read(buffer.data(), static_cast<std::streamsize>(buffer.size())), in.gcount() > 0) {
+    crc = ::crc32(crc, reinterpret_cast<const Bytef*>(buffer.data()), static_cast<uInt>(in.gcount()));
+  }
+  return crc;
+}
+
+std::string seal_line(unsigned long crc) {
+  return fmt::format("{}{:08x}\n", kStart, crc);
 }
 
 }  // namespace
@@ -363,6 +382,26 @@ void RecordingFile::finish(std::uint64_t dropped) {
   write.replace("complete", 1);
   require(close(), "cannot be written to its end (is the disk full?)");
   write_checksum(path_);
+}
+
+void write_checksum(const fs::path& path) {
+  std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
+  file.seekg(kUserBlockBytes);
+  const std::string line = seal_line(crc32_of_rest(file));
+  file.clear();
+  file.seekp(0);
+  file << line;
+  file.close();
+  if (!file) throw InputError(path.string(), "cannot be written to its end (is the disk full?)");
+}
+
+Checksum check_checksum(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw InputError(path.string(), "cannot be read");
+  std::string block(kUserBlockBytes, '\0');
+  if (!in.read(block.data(), kUserBlockBytes) || !block.starts_with(kStart)) return Checksum::none;
+  const std::string line = seal_line(crc32_of_rest(in));
+  return block.starts_with(line) ? Checksum::intact : Checksum::broken;
 }
 
 }  // namespace osteomill
