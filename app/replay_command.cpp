@@ -21,10 +21,9 @@
 #include "osteomill/recording/recorder.h"
 #include "osteomill/recording/recording.h"
 #include "osteomill/recording/replay_recording.h"
-#include "osteomill/session/fault_count.h"
-#include "osteomill/session/label_count.h"
+#include "osteomill/session/milling_session.h"
 #include "osteomill/session/milling_setup.h"
-#include "osteomill/session/replay.h"
+#include "osteomill/session/tick_counts.h"
 #include "osteomill/volume/densities.h"
 
 namespace osteomill::app {
@@ -49,10 +48,9 @@ struct ReplayOptions {
 class Log {
  public:
   Log(const ReplayOptions& options, std::size_t ticks, const Volume& bone)
-      : options_(options), ticks_(ticks) {
+      : options_(options), ticks_(ticks), labels_(bone.labels()) {
     // Not only when all is done.
     if (!options.out.empty()) output_path(options.out);
-    if (bone.labels()) labels_ = LabelCount(bone.labels()->labels());
     log_.reserve(ticks);
   }
 

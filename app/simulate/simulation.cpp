@@ -69,8 +69,8 @@ Simulation::Simulation(OpenedScan opened, const Pose& X_WT, const Holder& holder
       device(take_tool(opened.milling.setup, opened.milling.session->volume(), X_WT)),
       milling(std::move(opened.milling), device),
       autosave(std::move(opened.scan), std::move(autosave_file)),
-      labels(std::move(opened.labels)) {
-  if (labels) label_count = LabelCount(labels->labels());
+      labels(std::move(opened.labels)),
+      label_count(labels) {
   milling.start();
   // What is drawn and pulled begins at the tool, so its first tick is waited for.
   while (history.empty() && milling.running()) {

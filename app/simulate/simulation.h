@@ -17,7 +17,7 @@
 #include "osteomill/live/live_milling.h"
 #include "osteomill/operator/simulated_operator.h"
 #include "osteomill/operator/virtual_hand.h"
-#include "osteomill/session/label_count.h"
+#include "osteomill/session/tick_counts.h"
 #include "osteomill/view/clip_face.h"
 #include "osteomill/volume/isovalue.h"
 

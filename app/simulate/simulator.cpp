@@ -32,7 +32,7 @@
 #include "osteomill/files/input_error.h"
 #include "osteomill/image/image.h"
 #include "osteomill/live/bone_sender.h"
-#include "osteomill/sound/sound_stream.h"
+#include "osteomill/sound/spindle_sound.h"
 #include "osteomill/view/annotations.h"
 #include "osteomill/view/scene_renderer.h"
 

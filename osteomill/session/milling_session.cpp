@@ -29,6 +29,14 @@ double share_sent(const Vec3& asked, const Vec3& sent) {
   return sent == asked || asked.isZero(0) ? 1 : std::clamp(sent.dot(asked) / asked.squaredNorm(), 0.0, 1.0);
 }
 
+constexpr double kLoneTick_s = 1e-3;
+
+double tick_length_s(const std::vector<TrajectoryPoint>& trajectory, std::size_t n) {
+  if (trajectory.size() < 2) return kLoneTick_s;
+  const std::size_t end = n == 0 ? 1 : n;
+  return trajectory[end].time_s - trajectory[end - 1].time_s;
+}
+
 }  // namespace
 
 MillingSession::MillingSession(std::shared_ptr<Volume> bone, const BoneDensities& densities,
@@ -168,6 +176,16 @@ void MillingSession::mill(const HapticStep& step, bool spindle_on, double dt_s) 
   // Nothing is written where nothing is milled: then another thread may read it (LiveSession::hold_bone).
   if (cut.removed_mm3 > 0) removed_mm3_ += cut.removed_mm3;
   if (!cut.change.voxels.empty()) algorithm_->volume_changed(cut.change);
+}
+
+void replay(MillingSession& session, const std::vector<TrajectoryPoint>& trajectory,
+            const std::function<void(const TickRecord&)>& record) {
+  PosedDevice device;
+  for (std::size_t n = 0; n < trajectory.size(); ++n) {
+    const TrajectoryPoint& point = trajectory[n];
+    device.put(point.X_WD);
+    record(session.tick(device, point.time_s, tick_length_s(trajectory, n), point.milling));
+  }
 }
 
 }  // namespace osteomill

@@ -1,9 +1,12 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "osteomill/device/device.h"
+#include "osteomill/device/trajectory.h"
 #include "osteomill/haptics/haptic_algorithm.h"
 #include "osteomill/milling/burr_mill.h"
 #include "osteomill/milling/cutting_reaction.h"
@@ -98,5 +101,10 @@ class MillingSession {
   bool let_go_asked_ = false;
   bool place_asked_ = false;
 };
+
+/// Runs the session along the trajectory, a tick a row, each as long as the time since the row before (the
+/// first as long as the second, or 1 ms where it is alone); calls `record` after each tick.
+void replay(MillingSession& session, const std::vector<TrajectoryPoint>& trajectory,
+            const std::function<void(const TickRecord&)>& record);
 
 }  // namespace osteomill
