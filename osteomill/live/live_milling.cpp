@@ -156,10 +156,9 @@ void LiveMilling::take_over() {
     setup_ = prepared.setup;
     sample_points_ = prepared.session->algorithm().sample_point_count();
     densities_ = prepared.densities;
-    live_.replace(std::move(prepared.session));
-    ++session_number_;
+    const TakenOver left = live_.replace(std::move(prepared.session));
     if (prepared.other_bone) follower_->swap();
-    if (recorder_) tell_recorder(live_.taken_over());
+    if (recorder_) tell_recorder(left);
   } catch (...) {
     failure = std::current_exception();
   }
@@ -195,7 +194,7 @@ void LiveMilling::start_recording(const std::filesystem::path& path, const RunDe
   take_picture_ = std::move(picture);
   recorded_ = description;
   const bool untouched = !live_.running() && live_.timing().ticks == 0;
-  recorded_from_ = untouched ? session_number_ : session_number_ + 1;
+  recorded_from_ = untouched ? live_.session_number() : live_.session_number() + 1;
   if (untouched) tell_recorder({});
   listen();
   if (!untouched) change(setup_);
@@ -206,13 +205,13 @@ void LiveMilling::tell_recorder(const TakenOver& taken_over) {
   RunDescription run = recorded_;
   run.isovalue = isovalue();
   set_session_settings(run, settings_of(setup_, densities_), sample_points_);
-  recorder_->begin_session(session_number_, {std::move(run), taken_over, live_.session().removed_mm3(),
-                                             follower_->touched_bricks(), ""});
+  recorder_->begin_session(live_.session_number(), {std::move(run), taken_over, live_.session().removed_mm3(),
+                                                    follower_->touched_bricks(), ""});
 }
 
 std::filesystem::path LiveMilling::stop_recording() {
   // One that was stopped before it could begin still begins.
-  if (session_number_ < recorded_from_) finish_preparing();
+  if (live_.session_number() < recorded_from_) finish_preparing();
   const std::unique_ptr<Recorder> recorder = std::move(recorder_);
   listen();
   add_picture(*recorder, kPictureAfter, std::exchange(take_picture_, {}));

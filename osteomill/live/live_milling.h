@@ -143,9 +143,8 @@ class LiveMilling {
   TakePicture take_picture_;
   // What the recording says of its first session.
   RunDescription recorded_;
-  // The first session that is recorded, and the last that was made.
+  // The first session that is recorded.
   std::uint32_t recorded_from_ = 0;
-  std::uint32_t session_number_ = 0;
   LiveSession live_;
   std::future<Prepared> preparation_;
   bool spindle_ = false;

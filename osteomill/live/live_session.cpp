@@ -78,15 +78,17 @@ void LiveSession::hold_bone(bool held) {
   between_ticks([&] { bone_held_ = held; });
 }
 
-void LiveSession::replace(std::unique_ptr<MillingSession> session) {
+TakenOver LiveSession::replace(std::unique_ptr<MillingSession> session) {
+  TakenOver left;
   between_ticks([&] {
     std::swap(session_, session);
-    taken_over_ = session->left();
+    left = session->left();
     session_->guard().protect_a_hand();
-    session_->take_over(taken_over_);
+    session_->take_over(left);
     if (letting_go_) session_->let_go();
     ++session_number_;
   });
+  return left;
 }
 
 void LiveSession::place(const Pose& X_WD) {
@@ -153,17 +155,14 @@ bool LiveSession::place_when_at_rest() {
 TickRecord LiveSession::tick(double time_s, double dt_s) {
   const bool placed = place_when_at_rest();
   const bool spindle_on = !paused_ && !letting_go_ && (spindle_ || device_.spindle_asked());
-  TickRecord record = step(time_s, dt_s, spindle_on && !bone_held_);
+  TickRecord record = paused_ ? session_->idle_tick(device_, time_s, dt_s)
+                              : session_->tick(device_, time_s, dt_s, spindle_on && !bone_held_);
   record.session = session_number_;
   if (listener_) listener_(record, session_->volume(), session_->last_change());
   state_.write({record, spindle_on, paused_, session_->intersection_W()});
   if (placed) placing_.store(false, std::memory_order_release);
   records_.try_push(record);
   return record;
-}
-
-TickRecord LiveSession::step(double time_s, double dt_s, bool mills) {
-  return paused_ ? session_->idle_tick(device_, time_s, dt_s) : session_->tick(device_, time_s, dt_s, mills);
 }
 
 }  // namespace osteomill

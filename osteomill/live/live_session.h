@@ -53,8 +53,8 @@ class LiveSession {
   void set_paused(bool paused);
   /// While held nothing is milled, though everything is felt: the volume may then be read from other threads.
   void hold_bone(bool held);
-  /// Another algorithm, tool, setting or bone, prepared beforehand.
-  void replace(std::unique_ptr<MillingSession> session);
+  /// Another algorithm, tool, setting or bone, prepared beforehand. Returns what it begins from.
+  TakenOver replace(std::unique_ptr<MillingSession> session);
   /// The tool to a pose free of bone, however far away. The wrench fades in a hundred ticks, in which nothing
   /// is milled, so that the hand feels no step; then the device is put there (Device::put_at), and the
   /// algorithm begins anew. One at a time: nothing while `placing`.
@@ -62,8 +62,6 @@ class LiveSession {
   bool placing() const { return placing_.load(std::memory_order_acquire); }
   /// In place of the listener before. May be empty.
   void listen(TickListener listener);
-  /// What the session of the last `replace` began from.
-  const TakenOver& taken_over() const { return taken_over_; }
 
   /// Of the last tick.
   const LiveState& state() { return state_.read(); }
@@ -76,8 +74,10 @@ class LiveSession {
   const std::string& refused_real_time() const { return refused_real_time_; }
   bool running() const { return running_.load(std::memory_order_acquire); }
 
-  /// The session now in use. Its volume only while held, or while not running.
+  /// The session now in use, and how many were replaced before it. Its volume's densities only while held, or
+  /// while not running.
   const MillingSession& session() const { return *session_; }
+  std::uint32_t session_number() const { return session_number_; }
 
  private:
   void between_ticks(const std::function<void()>& command);
@@ -86,7 +86,6 @@ class LiveSession {
   void tick_until_stopped();
   bool place_when_at_rest();
   TickRecord tick(double time_s, double dt_s);
-  TickRecord step(double time_s, double dt_s, bool mills);
 
   Device& device_;
   CrashStop crash_stop_;
@@ -103,7 +102,6 @@ class LiveSession {
   bool bone_held_ = false;
   double time_s_ = 0;
   std::uint32_t session_number_ = 0;
-  TakenOver taken_over_;
   Pose X_WD_place_;
   bool letting_go_ = false;
   std::atomic<bool> placing_{false};

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "osteomill/haptics/algorithms.h"
-#include "osteomill/operator/entry_places.h"
+#include "osteomill/operator/milling_entry.h"
 #include "osteomill/tool/milling_tool.h"
 
 namespace osteomill {

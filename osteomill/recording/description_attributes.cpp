@@ -1,5 +1,3 @@
-#include "osteomill/recording/description_attributes.h"
-
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -14,7 +12,7 @@
 #include "osteomill/files/input_error.h"
 #include "osteomill/haptics/algorithms.h"
 #include "osteomill/numbers/positive.h"
-#include "osteomill/recording/hdf5.h"
+#include "osteomill/recording/recording_file.h"
 
 namespace osteomill {
 

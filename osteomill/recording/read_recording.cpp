@@ -13,7 +13,6 @@
 
 #include "osteomill/files/input_error.h"
 #include "osteomill/files/input_files.h"
-#include "osteomill/recording/description_attributes.h"
 #include "osteomill/recording/hdf5.h"
 #include "osteomill/recording/record_columns.h"
 #include "osteomill/recording/recording.h"

@@ -39,7 +39,7 @@ class Recorder {
 
   /// The queue holds `capacity` records (16 s at 1000 Hz) or a few more. Throws InputError, naming the file,
   /// where it cannot be created, and std::invalid_argument where the description cannot be stored
-  /// (description_attributes.h).
+  /// (write_description).
   Recorder(const std::filesystem::path& path, const RunDescription& description,
            std::size_t capacity = kUsualCapacity, Begins begins = Begins::with_the_recording,
            Unfinished unfinished = Unfinished::left);

@@ -12,7 +12,6 @@
 #include <zlib.h>
 
 #include "osteomill/files/input_error.h"
-#include "osteomill/recording/description_attributes.h"
 #include "osteomill/recording/hdf5.h"
 #include "osteomill/recording/record_columns.h"
 

@@ -86,7 +86,6 @@ class WrenchGuard {
   const Wrench& sent() const { return sent_; }
   /// Zero was sent last.
   bool is_at_rest() const;
-  const GuardSettings& settings() const { return settings_; }
 
   /// What to send for a wrench in a tick of `dt_s`, with the reason where that is not what was asked for. One
   /// that is not finite is zero, and what follows begins anew.
