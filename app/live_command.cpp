@@ -187,7 +187,7 @@ void run_live(LiveOptions options, const std::string& command_line) {
   const MillingEntry entry = place_entry(*bone, options.trial);
   Device& device = holder.take_tool(options.trial, setup, entry);
   PreparedMilling prepared = prepare_milling(bone, setup);
-  const BoneDensities densities = prepared.densities;
+  const BoneDensities densities = prepared.session->densities();
   LiveMilling milling(std::move(prepared), device);
   if (options.spindle) milling.set_spindle(true);
   std::optional<BoneSender> sender;

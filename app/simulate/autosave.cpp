@@ -14,7 +14,6 @@
 
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/files/input_error.h"
-#include "osteomill/files/user_folders.h"
 #include "osteomill/recording/recorder.h"
 #include "osteomill/recording/recording.h"
 
@@ -127,21 +126,12 @@ std::optional<LeftMilling> last_left_milling() {
   return std::nullopt;
 }
 
-AutosaveFile::~AutosaveFile() {
-  if (lock_ < 0) return;
-  std::error_code ignored;
-  if (!fs::exists(path_, ignored)) fs::remove(lock_of(path_), ignored);
-  ::close(lock_);
-}
-
-AutosaveFile::AutosaveFile(AutosaveFile&& other) noexcept
-    : path_(std::move(other.path_)), lock_(std::exchange(other.lock_, -1)) {}
-
-AutosaveFile& AutosaveFile::operator=(AutosaveFile&& other) noexcept {
-  std::swap(path_, other.path_);
-  std::swap(lock_, other.lock_);
-  return *this;
-}
+AutosaveFile::AutosaveFile(fs::path path, int lock)
+    : path_(std::move(path)), lock_(nullptr, [path = path_, lock](void*) {
+        std::error_code ignored;
+        if (!fs::exists(path, ignored)) fs::remove(lock_of(path), ignored);
+        ::close(lock);
+      }) {}
 
 void AutosaveFile::clear() const {
   std::error_code ignored;

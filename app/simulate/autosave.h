@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <future>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -26,19 +27,16 @@ class AutosaveFile {
   /// This one; nothing where another has it.
   static std::optional<AutosaveFile> locked(const std::filesystem::path& path);
 
-  ~AutosaveFile();
-  AutosaveFile(AutosaveFile&& other) noexcept;
-  AutosaveFile& operator=(AutosaveFile&& other) noexcept;
-
   const std::filesystem::path& path() const { return path_; }
   /// Removes what it holds.
   void clear() const;
 
  private:
-  AutosaveFile(std::filesystem::path path, int lock) : path_(std::move(path)), lock_(lock) {}
+  AutosaveFile(std::filesystem::path path, int lock);
 
   std::filesystem::path path_;
-  int lock_ = -1;
+  // Gives it up as it goes.
+  std::shared_ptr<void> lock_;
 };
 
 /// What a program left that has ended, and what it is of.

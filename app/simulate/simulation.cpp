@@ -41,7 +41,7 @@ OpenedScan open_for_milling(const ScanOptions& scan, const MillingSetup& setup, 
   std::vector<Boundary> boundaries = boundaries_in(bone->grid());
   const WorkProgress::Part preparing(1);
   PreparedMilling prepared = prepare_milling(bone, setup, milled);
-  const WindowLevel grey_window = window_level_of(bone->grid(), prepared.densities.surroundings);
+  const WindowLevel grey_window = window_level_of(bone->grid(), prepared.session->densities().surroundings);
   return {loaded.name,
           scan,
           isovalue_from(scan, loaded, !milled.bricks.empty()),
@@ -65,8 +65,8 @@ Simulation::Simulation(OpenedScan opened, const Pose& X_WT, const Holder& holder
       boundaries(std::move(opened.boundaries)),
       grey_window(opened.grey_window),
       holder(holder_),
-      hand(handle_settings(opened.milling.setup), pointing_hand(), X_WT),
-      device(take_tool(opened.milling.setup, opened.milling.session->volume(), X_WT)),
+      hand(handle_settings(opened.milling.session->setup()), pointing_hand(), X_WT),
+      device(take_tool(opened.milling.session->setup(), opened.milling.session->volume(), X_WT)),
       milling(std::move(opened.milling), device),
       autosave(std::move(opened.scan), std::move(autosave_file)),
       labels(std::move(opened.labels)),

@@ -274,7 +274,7 @@ class Simulator {
       sender_.reset();
       simulation_.reset();
     } else {
-      view_.wanted = opened.milling.setup;
+      view_.wanted = opened.milling.session->setup();
       view_.help = view_.help && first_time_of_help();
     }
     options_.scan = opened_scan_;
@@ -284,8 +284,8 @@ class Simulator {
     view_.camera = first_camera(view_.box, size);
     const Volume& bone = opened.milling.session->volume();
     // Before its upper half, so that the shaft leaves the bone in sight.
-    const Pose X_WT =
-        tool_before_middle(bone, opened.milling.setup.tool, view_.camera, size, 0.15 * size.height);
+    const Pose X_WT = tool_before_middle(bone, opened.milling.session->setup().tool, view_.camera, size,
+                                         0.15 * size.height);
     const Holder holder{options_.device.device, hardware_.get()};
     simulation_ = std::make_unique<Simulation>(std::move(opened), X_WT, holder, options_.command_line,
                                                std::exchange(opened_milled_, std::nullopt));

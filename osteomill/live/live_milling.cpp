@@ -23,9 +23,10 @@ void add_picture(Recorder& recorder, std::string_view name, const LiveMilling::T
 }
 
 // As LiveSession has them.
-SessionSettings settings_of(MillingSetup setup, const BoneDensities& densities) {
-  setup.guard = setup.guard.for_a_hand();
-  return {std::move(setup), densities};
+SessionSettings settings_of(const MillingSession& session) {
+  SessionSettings settings{session.setup(), session.densities()};
+  settings.setup.guard = settings.setup.guard.for_a_hand();
+  return settings;
 }
 
 }  // namespace
@@ -52,13 +53,11 @@ PreparedMilling prepare_milling(std::shared_ptr<Volume> bone, const MillingSetup
   const WorkProgress::Part preparing(1);
   auto session = std::make_unique<MillingSession>(std::move(bone), densities, setup);
   session->count_removed_from(before.removed_mm3);
-  return {setup, densities, scan_hash, std::move(follower), std::move(session)};
+  return {scan_hash, std::move(follower), std::move(session)};
 }
 
 LiveMilling::LiveMilling(PreparedMilling prepared, Device& device)
-    : setup_(prepared.setup),
-      sample_points_(prepared.session->algorithm().sample_point_count()),
-      densities_(prepared.densities),
+    : sample_points_(prepared.session->algorithm().sample_point_count()),
       scan_hash_(prepared.scan_hash),
       follower_(std::move(prepared.follower)),
       live_(std::move(prepared.session), device) {
@@ -93,46 +92,39 @@ void LiveMilling::set_spindle(bool on) {
 }
 
 void LiveMilling::change(const MillingSetup& setup) {
-  if (preparing()) return;
-  live_.hold_bone(true);
-  preparation_ = std::async(std::launch::async, [this, setup, bone = live_.session().shared_volume(),
-                                                 removed_mm3 = live_.session().removed_mm3()] {
-    catch_up();
-    Prepared prepared{std::make_unique<MillingSession>(bone, densities_, setup), setup, densities_};
-    prepared.session->count_removed_from(removed_mm3);
-    return prepared;
+  prepare(setup, [this] {
+    return BoneFollower::NextBone{live_.session().shared_volume(), live_.session().removed_mm3(), {}};
   });
 }
 
 void LiveMilling::change_isovalue(double isovalue) {
-  rebuild([this, isovalue, surroundings = densities_.surroundings] {
+  prepare(setup(), [this, isovalue, surroundings = densities().surroundings] {
     return follower_->with_isovalue(isovalue, surroundings, live_.session().removed_mm3());
   });
 }
 
 void LiveMilling::undo() {
-  rebuild([this] { return follower_->without_last_cut(); });
+  prepare(setup(), [this] { return follower_->without_last_cut(); });
 }
 
 void LiveMilling::reset() {
-  rebuild([this] { return follower_->as_at_the_beginning(); });
+  prepare(setup(), [this] { return follower_->as_at_the_beginning(); });
 }
 
-// The follower's copy becomes the bone, since it can be written while the bone is felt.
-void LiveMilling::rebuild(MakeBone make_bone) {
+// Another bone is the follower's copy, since that can be written while the bone is felt.
+void LiveMilling::prepare(const MillingSetup& setup, MakeBone make_bone) {
   if (preparing()) return;
   live_.hold_bone(true);
-  preparation_ = std::async(std::launch::async, [this, make_bone = std::move(make_bone), setup = setup_] {
+  preparation_ = std::async(std::launch::async, [this, make_bone = std::move(make_bone), setup] {
     catch_up();
     const BoneFollower::NextBone next = make_bone();
+    const bool other_bone = next.bone != live_.session().shared_volume();
     try {
-      const BoneDensities densities = next.densities.value_or(densities_);
-      Prepared prepared{std::make_unique<MillingSession>(next.bone, densities, setup), setup, densities,
-                        true};
-      prepared.session->count_removed_from(next.removed_mm3);
-      return prepared;
+      auto session = std::make_unique<MillingSession>(next.bone, next.densities.value_or(densities()), setup);
+      session->count_removed_from(next.removed_mm3);
+      return Prepared{std::move(session), other_bone};
     } catch (...) {
-      follower_->give_up();
+      if (other_bone) follower_->give_up();
       throw;
     }
   });
@@ -153,9 +145,7 @@ void LiveMilling::take_over() {
   std::exception_ptr failure;
   try {
     Prepared prepared = preparation_.get();
-    setup_ = prepared.setup;
     sample_points_ = prepared.session->algorithm().sample_point_count();
-    densities_ = prepared.densities;
     const TakenOver left = live_.replace(std::move(prepared.session));
     if (prepared.other_bone) follower_->swap();
     if (recorder_) tell_recorder(left);
@@ -169,7 +159,7 @@ void LiveMilling::take_over() {
 std::vector<double> LiveMilling::removed_by_label() const {
   std::vector<double> removed_mm3 = follower_->drops_by_label();
   for (double& drop : removed_mm3) {
-    drop *= geometry().voxel_volume_mm3() / (densities_.reference - densities_.surroundings);
+    drop *= geometry().voxel_volume_mm3() / (densities().reference - densities().surroundings);
   }
   return removed_mm3;
 }
@@ -178,7 +168,7 @@ RunDescription LiveMilling::describe(const std::string& scan_name, const std::st
   const RunFacts facts{.scan_name = scan_name,
                        .scan_hash = scan_hash_,
                        .bone = live_.session().volume(),
-                       .session = settings_of(setup_, densities_),
+                       .session = settings_of(live_.session()),
                        .command_line = command_line};
   return describe_run(facts, sample_points_);
 }
@@ -197,14 +187,14 @@ void LiveMilling::start_recording(const std::filesystem::path& path, const RunDe
   recorded_from_ = untouched ? live_.session_number() : live_.session_number() + 1;
   if (untouched) tell_recorder({});
   listen();
-  if (!untouched) change(setup_);
+  if (!untouched) change(setup());
 }
 
 // While nothing is milled.
 void LiveMilling::tell_recorder(const TakenOver& taken_over) {
   RunDescription run = recorded_;
   run.isovalue = isovalue();
-  set_session_settings(run, settings_of(setup_, densities_), sample_points_);
+  set_session_settings(run, settings_of(live_.session()), sample_points_);
   recorder_->begin_session(live_.session_number(), {std::move(run), taken_over, live_.session().removed_mm3(),
                                                     follower_->touched_bricks(), ""});
 }

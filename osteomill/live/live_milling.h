@@ -18,8 +18,6 @@ namespace osteomill {
 
 /// A bone made ready for milling, which takes seconds.
 struct PreparedMilling {
-  MillingSetup setup;
-  BoneDensities densities;
   /// Of the scan, before anything was milled (fingerprint_of).
   std::uint64_t scan_hash = 0;
   std::unique_ptr<BoneFollower> follower;
@@ -101,8 +99,8 @@ class LiveMilling {
   TimingSummary timing() const { return live_.timing(); }
   const std::string& refused_real_time() const { return live_.refused_real_time(); }
 
-  const MillingSetup& setup() const { return setup_; }
-  const BoneDensities& densities() const { return densities_; }
+  const MillingSetup& setup() const { return live_.session().setup(); }
+  const BoneDensities& densities() const { return live_.session().densities(); }
   const GridGeometry& geometry() const { return live_.session().volume().geometry(); }
   double isovalue() const { return live_.session().volume().isovalue(); }
 
@@ -120,22 +118,18 @@ class LiveMilling {
  private:
   struct Prepared {
     std::unique_ptr<MillingSession> session;
-    MillingSetup setup;
-    BoneDensities densities;
-    bool other_bone = false;
+    bool other_bone;
   };
   using MakeBone = std::function<BoneFollower::NextBone()>;
 
   void listen();
-  void rebuild(MakeBone make_bone);
+  void prepare(const MillingSetup& setup, MakeBone make_bone);
   void catch_up();
   void take_over();
   void tell_recorder(const TakenOver& taken_over);
 
-  MillingSetup setup_;
   // As prepared: the haptic thread's algorithm changes them.
   int sample_points_;
-  BoneDensities densities_;
   std::uint64_t scan_hash_;
   std::unique_ptr<BoneFollower> follower_;
   std::unique_ptr<Recorder> recorder_;

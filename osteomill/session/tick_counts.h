@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -18,10 +19,8 @@ class FaultCount {
   std::optional<std::string> sentence() const;
 
  private:
-  int clamped_ = 0;
-  int not_finite_ = 0;
-  int no_pose_ = 0;
-  int jumped_or_late_ = 0;
+  // Of each kind.
+  std::array<int, static_cast<std::size_t>(WrenchFault::eased) + 1> ticks_{};
 };
 
 /// How much of each label was removed, when and with what force, from every tick in turn. Not for the tick.

@@ -36,8 +36,6 @@ double sine(double turns) {
   return std::sin(2 * std::numbers::pi * turns);
 }
 
-constexpr std::size_t kSamples = 768;
-constexpr std::size_t kBuffers = 4;
 // Pieces of 256 samples: longer ones make the sound lag and stutter.
 constexpr ALCint kRefresh_hz = SoundStream::kSampleRate_hz / 256;
 
@@ -97,48 +95,40 @@ void SpindleSound::render(const SpindleState& state, std::span<float> samples) {
   }
 }
 
-struct SoundStream::Impl {
-  SpindleSound sound{kSampleRate_hz};
-  ALuint source = 0;
-  std::array<ALuint, kBuffers> buffers{};
-  std::array<float, kSamples> samples{};
-  std::array<std::int16_t, kSamples> words{};
-
-  void fill(ALuint buffer, const SpindleState& state) {
-    sound.render(state, samples);
-    for (std::size_t n = 0; n < kSamples; ++n) {
-      words[n] = static_cast<std::int16_t>(std::lround(32000 * samples[n]));
-    }
-    alBufferData(buffer, AL_FORMAT_MONO16, words.data(), static_cast<ALsizei>(sizeof(words)), kSampleRate_hz);
-    alSourceQueueBuffers(source, 1, &buffer);
+void SoundStream::fill(unsigned buffer, const SpindleState& state) {
+  sound_.render(state, samples_);
+  for (std::size_t n = 0; n < kSamples; ++n) {
+    words_[n] = static_cast<std::int16_t>(std::lround(32000 * samples_[n]));
   }
-};
+  alBufferData(buffer, AL_FORMAT_MONO16, words_.data(), static_cast<ALsizei>(sizeof(words_)), kSampleRate_hz);
+  alSourceQueueBuffers(source_, 1, &buffer);
+}
 
-SoundStream::SoundStream() : impl_(std::make_unique<Impl>()) {
-  alGenSources(1, &impl_->source);
-  alGenBuffers(kBuffers, impl_->buffers.data());
-  for (const ALuint buffer : impl_->buffers) impl_->fill(buffer, {});
-  alSourcePlay(impl_->source);
+SoundStream::SoundStream() {
+  alGenSources(1, &source_);
+  alGenBuffers(static_cast<ALsizei>(buffers_.size()), buffers_.data());
+  for (const unsigned buffer : buffers_) fill(buffer, {});
+  alSourcePlay(source_);
 }
 
 SoundStream::~SoundStream() {
-  alSourceStop(impl_->source);
-  alDeleteSources(1, &impl_->source);
-  alDeleteBuffers(kBuffers, impl_->buffers.data());
+  alSourceStop(source_);
+  alDeleteSources(1, &source_);
+  alDeleteBuffers(static_cast<ALsizei>(buffers_.size()), buffers_.data());
 }
 
 void SoundStream::feed(const SpindleState& state) {
   ALint played = 0;
-  alGetSourcei(impl_->source, AL_BUFFERS_PROCESSED, &played);
+  alGetSourcei(source_, AL_BUFFERS_PROCESSED, &played);
   for (; played > 0; --played) {
     ALuint buffer = 0;
-    alSourceUnqueueBuffers(impl_->source, 1, &buffer);
-    impl_->fill(buffer, state);
+    alSourceUnqueueBuffers(source_, 1, &buffer);
+    fill(buffer, state);
   }
   // It stops by itself where it ran dry.
   ALint doing = AL_PLAYING;
-  alGetSourcei(impl_->source, AL_SOURCE_STATE, &doing);
-  if (doing != AL_PLAYING) alSourcePlay(impl_->source);
+  alGetSourcei(source_, AL_SOURCE_STATE, &doing);
+  if (doing != AL_PLAYING) alSourcePlay(source_);
 }
 
 struct SoundPlayer::Impl {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -53,8 +55,16 @@ class SoundStream {
   void feed(const SpindleState& state);
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  static constexpr std::size_t kSamples = 768;
+
+  void fill(unsigned buffer, const SpindleState& state);
+
+  SpindleSound sound_{kSampleRate_hz};
+  // OpenAL's names.
+  unsigned source_ = 0;
+  std::array<unsigned, 4> buffers_{};
+  std::array<float, kSamples> samples_{};
+  std::array<std::int16_t, kSamples> words_{};
 };
 
 /// Plays a spindle's sound on the system's sound device from a thread of its own. Without a device nothing is
