@@ -94,12 +94,9 @@ std::optional<AutosaveFile> AutosaveFile::locked(const fs::path& path) {
 
 std::optional<AutosaveFile> AutosaveFile::make() {
   const fs::path folder = autosave_folder();
-  if (folder.empty()) return std::nullopt;
-  try {
-    create_folder(folder);
-  } catch (const InputError&) {
-    return std::nullopt;
-  }
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (folder.empty() || error) return std::nullopt;
   const std::string time = fmt::format("{:%Y%m%d-%H%M%S}-{}", fmt::localtime(std::time(nullptr)), ::getpid());
   for (int n = 1; n < 100; ++n) {
     const fs::path path = folder / fmt::format("{}-{}{}", time, n, kExtension);

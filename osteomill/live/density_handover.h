@@ -34,8 +34,6 @@ class DensityHandover {
   void pop() noexcept { on_their_way_.pop(); }
 
  private:
-  VoxelIndex first_voxel(std::uint32_t number) const noexcept;
-
   std::array<int, 3> brick_dims_;
 
   // Bricks marked: a flag each, and their numbers in a ring in the order in which they were marked.

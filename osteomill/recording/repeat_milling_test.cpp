@@ -105,7 +105,7 @@ TEST(RepeatMilling, RefusesWhatItCannotRepeat) {
   EXPECT_NE(refusal(fresh_bone(), other).find("'milling.removal_rate'"), std::string::npos);
   other = recording;
   removal_rate(other.sessions[0].start.run)->value = -1.0;
-  EXPECT_NE(refusal(fresh_bone(), other).find("cannot be repeated"), std::string::npos);
+  EXPECT_NE(refusal(fresh_bone(), other).find("cannot be run again"), std::string::npos);
   EXPECT_EQ(refusal(fresh_bone(), recording), "");
 }
 

@@ -47,6 +47,16 @@ void begin_at(const SessionStart& start, Volume& bone) {
   for (DensityBlock brick : start.bricks) swap_densities(bone, brick);
 }
 
+// Of settings that may be out of range.
+template <typename Make>
+auto made(const Recording& recording, const Make& make) {
+  try {
+    return make();
+  } catch (const std::invalid_argument& error) {
+    refuse(recording, fmt::format("cannot be run again: {}", error.what()));
+  }
+}
+
 std::unique_ptr<MillingSession> session_at(const Volume& scan, const SessionStart& start,
                                            const Recording& recording, const Replay& replay) {
   const RunDescription& run = start.run;
@@ -54,16 +64,14 @@ std::unique_ptr<MillingSession> session_at(const Volume& scan, const SessionStar
   if (algorithm == nullptr) refuse(recording, "its algorithm " + run.algorithm.name + " is not known here");
   auto [setup, densities] = session_settings(run, recording.path);
   setup.algorithm = *algorithm;
-  try {
-    auto bone = std::make_shared<Volume>(scan);
+  auto bone = std::make_shared<Volume>(scan);
+  return made(recording, [&, &setup = setup, &densities = densities] {
     begin_at(start, *bone);
     auto session = std::make_unique<MillingSession>(std::move(bone), densities, setup);
     session->count_removed_from(start.removed_mm3);
     session->take_over(start.taken_over);
     return session;
-  } catch (const std::invalid_argument& error) {
-    refuse(recording, fmt::format("cannot be replayed: {}", error.what()));
-  }
+  });
 }
 
 TickRecord tick_again(MillingSession& session, const TickRecord& recorded) {
@@ -90,15 +98,6 @@ std::optional<std::string> difference_of(const TickRecord& recorded, const TickR
   return std::nullopt;
 }
 
-BurrMill make_mill(const Recording& recording, const SessionSettings& session, const GridGeometry& geometry) {
-  try {
-    return BurrMill(geometry, session.setup.tool.burr_radius_mm, session.densities,
-                    milling_settings(session.setup));
-  } catch (const std::invalid_argument& error) {
-    refuse(recording, fmt::format("cannot be repeated: {}", error.what()));
-  }
-}
-
 void require_same_removal(const Recording& recording, std::size_t tick, double removed_mm3) {
   const double recorded_mm3 = recording.records[tick].removed_mm3;
   if (removed_mm3 == recorded_mm3) return;
@@ -116,7 +115,9 @@ void repeat_session(Volume& volume, const Recording& recording, std::size_t numb
   const auto& [first, start] = recording.sessions[number];
   const SessionSettings settings = session_settings(start.run, recording.path);
   const MillingSettings milling = milling_settings(settings.setup);
-  BurrMill mill = make_mill(recording, settings, volume.geometry());
+  BurrMill mill = made(recording, [&] {
+    return BurrMill(volume.geometry(), settings.setup.tool.burr_radius_mm, settings.densities, milling);
+  });
   begin_at(start, volume);
   double removed_mm3 = start.removed_mm3;
   for (std::size_t tick = first; tick < end_of(recording, number); ++tick) {

@@ -246,7 +246,7 @@ TEST_F(OneRecording, WhatCannotBeReplayedIsRefused) {
   EXPECT_NE(refusal(scan_, other).find("somebody-s is not known"), std::string::npos);
   other = recording;
   other.sessions[0].start.run.tool.burr_radius_mm = -1;
-  EXPECT_NE(refusal(scan_, other).find("cannot be replayed"), std::string::npos);
+  EXPECT_NE(refusal(scan_, other).find("cannot be run again"), std::string::npos);
 }
 
 TEST_F(OneRecording, TheSameMotionGoesThroughAnotherAlgorithm) {
