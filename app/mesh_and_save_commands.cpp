@@ -1,7 +1,6 @@
 #include <filesystem>
 #include <memory>
 #include <string>
-#include <utility>
 
 #include "app/commands.h"
 #include "app/positive_number.h"
@@ -51,14 +50,6 @@ LoadedBone load_milled_bone(const WriteOptions& options) {
   return bone;
 }
 
-// Where no isovalue matters.
-DensityGrid load_milled_densities(const WriteOptions& options) {
-  if (!options.recording.empty()) return load_milled_bone(options).volume.grid();
-  Scan scan = open_scan(options.scan);
-  for (const std::string& warning : scan.warnings) warn(scan.name + ": " + warning);
-  return std::move(scan.grid);
-}
-
 void run_mesh(const WriteOptions& options) {
   const std::string& out = options.out;
   // Before the scan is read.
@@ -77,7 +68,14 @@ void run_save(const WriteOptions& options) {
   if (std::filesystem::path(options.out).extension() != ".nrrd") {
     throw InputError(options.out, "a scan is saved as .nrrd");
   }
-  write_nrrd(options.out, load_milled_densities(options));
+  if (options.recording.empty()) {
+    // No isovalue matters.
+    const Scan scan = open_scan(options.scan);
+    for (const std::string& warning : scan.warnings) warn(scan.name + ": " + warning);
+    write_nrrd(options.out, scan.grid);
+  } else {
+    write_nrrd(options.out, load_milled_bone(options).volume.grid());
+  }
   fmt::print("{}\n", options.out);
 }
 
