@@ -24,7 +24,7 @@
 #include "osteomill/experiment/record_trial.h"
 #include "osteomill/experiment/study_trials.h"
 #include "osteomill/files/atomic_file.h"
-#include "osteomill/recording/read_recording.h"
+#include "osteomill/recording/recording.h"
 #include "osteomill/session/milling_setup.h"
 #include "osteomill/volume/density_grid.h"
 

@@ -21,9 +21,8 @@
 #include "osteomill/live/bone_sender.h"
 #include "osteomill/live/live_milling.h"
 #include "osteomill/operator/virtual_hand.h"
-#include "osteomill/session/fault_count.h"
-#include "osteomill/session/label_count.h"
 #include "osteomill/session/milling_setup.h"
+#include "osteomill/session/tick_counts.h"
 
 namespace osteomill::app {
 
@@ -152,7 +151,7 @@ Seen run_for(LiveMilling& milling, double seconds, const std::shared_ptr<const L
   const Clock::time_point start = Clock::now();
   double passed_s = 0;
   Seen seen;
-  if (labels) seen.labels = LabelCount(labels->labels());
+  seen.labels = LabelCount(labels);
   const auto take = [&] {
     while (const auto record = milling.next_record()) {
       seen.faults.add(*record);
@@ -188,7 +187,7 @@ void run_live(LiveOptions options, const std::string& command_line) {
   const MillingEntry entry = place_entry(*bone, options.trial);
   Device& device = holder.take_tool(options.trial, setup, entry);
   PreparedMilling prepared = prepare_milling(bone, setup);
-  const BoneDensities densities = prepared.densities;
+  const BoneDensities densities = prepared.session->densities();
   LiveMilling milling(std::move(prepared), device);
   if (options.spindle) milling.set_spindle(true);
   std::optional<BoneSender> sender;

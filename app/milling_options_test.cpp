@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "osteomill/experiment/trial_plan.h"
-#include "osteomill/recording/session_settings.h"
+#include "osteomill/recording/describe_run.h"
 
 namespace osteomill::app {
 namespace {

@@ -16,15 +16,14 @@
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/files/input_error.h"
 #include "osteomill/haptics/algorithms.h"
-#include "osteomill/recording/read_recording.h"
+#include "osteomill/recording/describe_run.h"
+#include "osteomill/recording/record_columns.h"
 #include "osteomill/recording/recorder.h"
+#include "osteomill/recording/recording.h"
 #include "osteomill/recording/replay_recording.h"
-#include "osteomill/recording/session_settings.h"
-#include "osteomill/recording/write_csv.h"
-#include "osteomill/session/fault_count.h"
-#include "osteomill/session/label_count.h"
+#include "osteomill/session/milling_session.h"
 #include "osteomill/session/milling_setup.h"
-#include "osteomill/session/replay.h"
+#include "osteomill/session/tick_counts.h"
 #include "osteomill/volume/densities.h"
 
 namespace osteomill::app {
@@ -49,10 +48,9 @@ struct ReplayOptions {
 class Log {
  public:
   Log(const ReplayOptions& options, std::size_t ticks, const Volume& bone)
-      : options_(options), ticks_(ticks) {
+      : options_(options), ticks_(ticks), labels_(bone.labels()) {
     // Not only when all is done.
     if (!options.out.empty()) output_path(options.out);
-    if (bone.labels()) labels_ = LabelCount(bone.labels()->labels());
     log_.reserve(ticks);
   }
 
@@ -95,7 +93,7 @@ void replay_trajectory(ReplayOptions options) {
 // As it was read when the recording was made: the scan that is named, or else the one that it names.
 Volume scan_of(const ReplayOptions& options, const Recording& recording) {
   ScanOptions scan = options.scan;
-  if (scan.scan.empty() && recording.description.scan_name != open_scan({}).name)
+  if (scan.scan.empty() && recording.description.scan_name != kBuiltinTooth)
     scan.scan = recording.description.scan_name;
   scan.isovalue = recording.description.isovalue;
   scan.made_into = recording.description.scan_hash;

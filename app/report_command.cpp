@@ -10,8 +10,8 @@
 
 #include "osteomill/experiment/comparison_report.h"
 #include "osteomill/files/atomic_file.h"
-#include "osteomill/recording/read_recording.h"
-#include "osteomill/recording/write_csv.h"
+#include "osteomill/recording/record_columns.h"
+#include "osteomill/recording/recording.h"
 #include "osteomill/report/write_report.h"
 
 namespace osteomill::app {

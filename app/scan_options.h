@@ -29,6 +29,9 @@ struct ScanOptions {
   std::uint64_t made_into = 0;
 };
 
+/// What it is called where no scan is named.
+inline constexpr const char* kBuiltinTooth = "built-in tooth";
+
 /// What SCAN may be, for help.
 inline constexpr const char* kScanText =
     "DICOM folder or file, NRRD, MetaImage, NIfTI, or one of them in a zip file; without one, the built-in "
@@ -64,7 +67,7 @@ LabelsRead labels_of(const ScanOptions& options, const Scan& scan);
 /// A bone ready to be milled, with its labels.
 struct LoadedBone {
   Volume volume;
-  /// The scan as the user named it, or "built-in tooth".
+  /// The scan as the user named it, or kBuiltinTooth.
   std::string name;
   /// Where its isovalue came from: "given", or how it was suggested; half a sentence.
   std::string isovalue_from;

@@ -7,8 +7,8 @@
 #include <osteomill/device/device.h>
 #include <osteomill/operator/milling_entry.h>
 #include <osteomill/recording/describe_run.h>
-#include <osteomill/recording/read_recording.h>
 #include <osteomill/recording/recorder.h>
+#include <osteomill/recording/recording.h>
 #include <osteomill/recording/replay_recording.h>
 #include <osteomill/volume/builtin_tooth.h>
 #include <osteomill/volume/density_grid.h>
@@ -23,8 +23,7 @@ int main(int argc, char** argv) {
 
   const osteomill::RunFacts facts{.scan_name = "built-in tooth",
                                   .scan_hash = fingerprint_of(scan.grid()),
-                                  .geometry = scan.geometry(),
-                                  .isovalue = scan.isovalue(),
+                                  .bone = scan,
                                   .session = {setup, densities}};
   osteomill::Recorder recorder(path, describe_run(facts, session.algorithm().sample_point_count()));
   const osteomill::MillingEntry entry = place_entry(scan, setup.tool);

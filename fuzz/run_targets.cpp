@@ -8,9 +8,7 @@
 
 #include "osteomill/device/trajectory.h"
 #include "osteomill/haptics/algorithms.h"
-#include "osteomill/live/milled_bone.h"
-#include "osteomill/recording/read_recording.h"
-#include "osteomill/recording/recording_checksum.h"
+#include "osteomill/recording/recording.h"
 #include "osteomill/recording/recording_file.h"
 
 namespace osteomill::fuzzing {
@@ -52,25 +50,6 @@ std::vector<std::string> config_seeds(const fs::path&) {
       "seconds = 2.5 # s\nout = '''a\nb'''\nset = ['point-shell.scale=2']\n"};
 }
 
-void read_milled_bone_of(Bytes bytes, const fs::path& folder) {
-  write_bytes(folder / "a.milled", bytes);
-  read_milled_bone(folder / "a.milled");
-}
-
-std::vector<std::string> milled_bone_seeds(const fs::path& folder) {
-  MilledBone milled;
-  milled.scan = "/scans/a \"b\"";
-  milled.name = "a";
-  milled.isovalue = 0.5;
-  milled.dims = {9, 8, 8};
-  GridGeometry geometry;
-  geometry.dims = milled.dims;
-  const DensityGrid grid(geometry, std::vector<float>(geometry.voxel_count(), 1));
-  milled.bricks = {DensityBlock(grid, {0, 0, 0}), DensityBlock(grid, {8, 0, 0})};
-  write_milled_bone(folder / "a.milled", milled);
-  return {read_bytes(folder / "a.milled")};
-}
-
 // Not finished, since the checksum would refuse whatever is changed in one that is.
 std::string unfinished_recording(const fs::path& file) {
   RunDescription description;
@@ -83,6 +62,8 @@ std::string unfinished_recording(const fs::path& file) {
   record.label_cuts[0] = {1, 0.5};
   {
     RecordingFile recording(file, description);
+    const DensityGrid grid({.dims = description.dims}, std::vector<float>(512, 1));
+    recording.begin_session({.bricks = {DensityBlock(grid, {0, 0, 0})}}, 0);
     recording.append(std::vector<TickRecord>(3, record));
     recording.add_picture("bone", std::vector<unsigned char>{1, 2, 3});
     recording.flush(0);
@@ -203,7 +184,6 @@ std::vector<std::string> recording_orders(const fs::path&) {
 std::vector<Target> run_targets() {
   return {{"trajectory", read_trajectory_of, trajectory_seeds},
           {"config", read_config, config_seeds},
-          {"milled-bone", read_milled_bone_of, milled_bone_seeds},
           {"recording", read_recording_of, recording_seeds},
           {"recording-values", read_changed_recording, recording_orders}};
 }

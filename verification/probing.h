@@ -8,7 +8,7 @@
 #include "tests/shapes.h"
 
 #include "osteomill/haptics/algorithms.h"
-#include "osteomill/operator/seeded_random.h"
+#include "osteomill/operator/hand.h"
 
 namespace osteomill::verification {
 

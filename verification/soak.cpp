@@ -15,8 +15,8 @@
 #include "osteomill/operator/milling_entry.h"
 #include "osteomill/operator/simulated_operator.h"
 #include "osteomill/recording/describe_run.h"
-#include "osteomill/recording/read_recording.h"
 #include "osteomill/recording/recorder.h"
+#include "osteomill/recording/recording.h"
 #include "osteomill/recording/replay_recording.h"
 #include "osteomill/volume/density_grid.h"
 
@@ -129,11 +129,7 @@ class Soak {
   }
 
   RunDescription description() const {
-    return describe_run({.scan_name = "soak",
-                         .scan_hash = scan_hash_,
-                         .geometry = scan_.geometry(),
-                         .isovalue = scan_.isovalue(),
-                         .session = settings_},
+    return describe_run({.scan_name = "soak", .scan_hash = scan_hash_, .bone = scan_, .session = settings_},
                         session_->algorithm().sample_point_count());
   }
 

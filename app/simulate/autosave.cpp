@@ -14,7 +14,8 @@
 
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/files/input_error.h"
-#include "osteomill/files/user_folders.h"
+#include "osteomill/recording/recorder.h"
+#include "osteomill/recording/recording.h"
 
 namespace osteomill::app {
 
@@ -24,8 +25,12 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr const char* kExtension = ".milled";
+constexpr const char* kExtension = ".h5";
 constexpr const char* kLockExtension = ".lock";
+// Of what it takes to open the scan again, beside what every recording says of it.
+constexpr const char* kSeriesKey = "scan.series";
+constexpr const char* kLabelMapKey = "scan.labels";
+constexpr const char* kLabelTableKey = "scan.label_table";
 constexpr auto kBetween = 5s;
 constexpr int kWritingShare = 50;
 // 1 GiB.
@@ -62,6 +67,18 @@ std::vector<fs::path> names_in(const fs::path& folder) {
   return names;
 }
 
+std::string absolute_path(const fs::path& path) {
+  return path.empty() ? std::string() : fs::absolute(path).lexically_normal().string();
+}
+
+RunDescription describe(const ScanOptions& scan, const LiveMilling& milling) {
+  RunDescription run = milling.describe(scan.scan.empty() ? kBuiltinTooth : absolute_path(scan.scan), "");
+  run.settings.push_back({kSeriesKey, scan.read.series, ""});
+  run.settings.push_back({kLabelMapKey, absolute_path(scan.labels.map), ""});
+  run.settings.push_back({kLabelTableKey, absolute_path(scan.labels.table), ""});
+  return run;
+}
+
 }  // namespace
 
 std::optional<AutosaveFile> AutosaveFile::locked(const fs::path& path) {
@@ -77,12 +94,9 @@ std::optional<AutosaveFile> AutosaveFile::locked(const fs::path& path) {
 
 std::optional<AutosaveFile> AutosaveFile::make() {
   const fs::path folder = autosave_folder();
-  if (folder.empty()) return std::nullopt;
-  try {
-    create_folder(folder);
-  } catch (const InputError&) {
-    return std::nullopt;
-  }
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (folder.empty() || error) return std::nullopt;
   const std::string time = fmt::format("{:%Y%m%d-%H%M%S}-{}", fmt::localtime(std::time(nullptr)), ::getpid());
   for (int n = 1; n < 100; ++n) {
     const fs::path path = folder / fmt::format("{}-{}{}", time, n, kExtension);
@@ -100,7 +114,8 @@ std::optional<LeftMilling> last_left_milling() {
     // Whoever had it may have ended without anything to leave; then its lock goes with `file`.
     if (!fs::exists(path, ignored)) continue;
     try {
-      return LeftMilling{std::move(*file), read_milled_bone_facts(path)};
+      Recording left = read_recording(path);
+      if (!left.sessions.empty()) return LeftMilling{std::move(*file), std::move(left.sessions[0].start)};
     } catch (const InputError&) {
       // Not ours to remove: another version of the program may read it.
     }
@@ -108,21 +123,12 @@ std::optional<LeftMilling> last_left_milling() {
   return std::nullopt;
 }
 
-AutosaveFile::~AutosaveFile() {
-  if (lock_ < 0) return;
-  std::error_code ignored;
-  if (!fs::exists(path_, ignored)) fs::remove(lock_of(path_), ignored);
-  ::close(lock_);
-}
-
-AutosaveFile::AutosaveFile(AutosaveFile&& other) noexcept
-    : path_(std::move(other.path_)), lock_(std::exchange(other.lock_, -1)) {}
-
-AutosaveFile& AutosaveFile::operator=(AutosaveFile&& other) noexcept {
-  std::swap(path_, other.path_);
-  std::swap(lock_, other.lock_);
-  return *this;
-}
+AutosaveFile::AutosaveFile(fs::path path, int lock)
+    : path_(std::move(path)), lock_(nullptr, [path = path_, lock](void*) {
+        std::error_code ignored;
+        if (!fs::exists(path, ignored)) fs::remove(lock_of(path), ignored);
+        ::close(lock);
+      }) {}
 
 void AutosaveFile::clear() const {
   std::error_code ignored;
@@ -134,7 +140,23 @@ void AutosaveFile::clear() const {
   }
 }
 
-Autosave::Autosave(MilledBone scan, std::optional<AutosaveFile> file)
+ScanOptions scan_of(const SessionStart& left) {
+  const auto text = [&](const char* key) {
+    const std::string* value = find_setting<std::string>(left.run, key);
+    return value == nullptr ? std::string() : *value;
+  };
+  ScanOptions scan;
+  if (left.run.scan_name != kBuiltinTooth) scan.scan = left.run.scan_name;
+  scan.isovalue = left.run.isovalue;
+  scan.read.series = text(kSeriesKey);
+  scan.labels = {text(kLabelMapKey), text(kLabelTableKey), {}};
+  for (const Label& label : left.run.labels)
+    if (label.no_go) scan.labels.no_go.push_back(std::to_string(label.value));
+  scan.made_into = left.run.scan_hash;
+  return scan;
+}
+
+Autosave::Autosave(ScanOptions scan, std::optional<AutosaveFile> file)
     : scan_(std::move(scan)), file_(std::move(file)), kept_(file_.has_value()) {}
 
 Autosave::~Autosave() {
@@ -172,15 +194,13 @@ void Autosave::update(LiveMilling& milling) {
   }
   kept_version_ = version;
   kept_ = true;
-  MilledBone milled = scan_;
-  milled.isovalue = milling.isovalue();
-  milled.removed_mm3 = milling.state().record.removed_mm3;
+  SessionStart milled{.run = describe(scan_, milling), .removed_mm3 = milling.state().record.removed_mm3};
   work_ =
       std::async(std::launch::async, [&milling, path = file_->path(), milled = std::move(milled)]() mutable {
         const Clock::time_point start = Clock::now();
         milled.bricks = milling.touched_bricks();
         if (milled.bricks.size() > kMaxBricks) throw InputError(path.string(), "would take more than 1 GiB");
-        write_milled_bone(path, milled);
+        write_start(path, milled);
         return Clock::now() - start;
       });
 }

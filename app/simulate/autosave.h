@@ -4,19 +4,22 @@
 #include <cstdint>
 #include <filesystem>
 #include <future>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "app/scan_options.h"
+
 #include "osteomill/live/live_milling.h"
-#include "osteomill/live/milled_bone.h"
+#include "osteomill/recording/recording.h"
 
 namespace osteomill::app {
 
-/// The name of a file of milled bone in the user's state folder, this object's alone for as long as it lives:
-/// a lock goes with it that the system takes away however the program ends, so that windows which are open at
-/// the same time never touch each other's. What the file holds stays when the object goes.
+/// The name of a recording of milled bone in the user's state folder, this object's alone for as long as it
+/// lives: a lock goes with it that the system takes away however the program ends, so that windows which are
+/// open at the same time never touch each other's. What the file holds stays when the object goes.
 class AutosaveFile {
  public:
   /// A new name; nothing where the folder cannot be made or written, or the user has none.
@@ -24,36 +27,35 @@ class AutosaveFile {
   /// This one; nothing where another has it.
   static std::optional<AutosaveFile> locked(const std::filesystem::path& path);
 
-  ~AutosaveFile();
-  AutosaveFile(AutosaveFile&& other) noexcept;
-  AutosaveFile& operator=(AutosaveFile&& other) noexcept;
-
   const std::filesystem::path& path() const { return path_; }
   /// Removes what it holds.
   void clear() const;
 
  private:
-  AutosaveFile(std::filesystem::path path, int lock) : path_(std::move(path)), lock_(lock) {}
+  AutosaveFile(std::filesystem::path path, int lock);
 
   std::filesystem::path path_;
-  int lock_ = -1;
+  // Gives it up as it goes.
+  std::shared_ptr<void> lock_;
 };
 
 /// What a program left that has ended, and what it is of.
 struct LeftMilling {
   AutosaveFile file;
-  MilledBone facts;
+  SessionStart start;
 };
 /// The last one; nothing where there is none.
 std::optional<LeftMilling> last_left_milling();
+/// The scan of which it was milled, with all that it took to open it.
+ScanOptions scan_of(const SessionStart& left);
 
 /// Keeps what was milled and not saved in such a file, a few seconds behind: the first time at once, then no
-/// oftener than every 5 s and for no more than 2 % of the time. Reads the follower's copy and writes in a
-/// thread of its own.
+/// oftener than every 5 s and for no more than 2 % of the time: a recording of no ticks, with the bone as it
+/// is. Reads the follower's copy and writes in a thread of its own.
 class Autosave {
  public:
   /// What is milled of this scan; in `file`, or in a new one.
-  Autosave(MilledBone scan, std::optional<AutosaveFile> file);
+  Autosave(ScanOptions scan, std::optional<AutosaveFile> file);
   ~Autosave();
 
   /// Once a picture. Where nothing is milled that is not saved there is no file either.
@@ -73,7 +75,7 @@ class Autosave {
   using Clock = std::chrono::steady_clock;
   void take_result();
 
-  MilledBone scan_;
+  ScanOptions scan_;
   std::optional<AutosaveFile> file_;
   std::uint64_t saved_version_ = 0;
   std::uint64_t kept_version_ = 0;

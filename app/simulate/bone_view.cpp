@@ -6,7 +6,7 @@
 #include "app/simulate/widgets.h"
 #include <fmt/core.h>
 
-#include "osteomill/operator/free_pose.h"
+#include "osteomill/operator/milling_entry.h"
 #include "osteomill/volume/sampling.h"
 
 namespace osteomill::app {

@@ -60,13 +60,13 @@ Dialogue report_question(Dialogue::Action report, Dialogue::Action close) {
       {}};
 }
 
-Dialogue left_milling_question(const MilledBone& milled, Dialogue::Action open, Dialogue::Action remove,
+Dialogue left_milling_question(const SessionStart& left, Dialogue::Action open, Dialogue::Action remove,
                                Dialogue::Action later) {
   return {
       "Milled bone that was not saved",
       fmt::format("When osteomill last ended, {:.1f} mm³ of this bone had been milled and not saved:\n{}\n"
                   "(isovalue {:g}). Shall it be opened as it was?",
-                  milled.removed_mm3, milled.scan.empty() ? milled.name : milled.scan, milled.isovalue),
+                  left.removed_mm3, left.run.scan_name, left.run.isovalue),
       {{"Open it", std::move(open)}, {"Delete it", std::move(remove)}, {"Later", std::move(later)}},
       {},
       {}};

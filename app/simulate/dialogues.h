@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "osteomill/live/milled_bone.h"
+#include "osteomill/recording/recording.h"
 
 namespace osteomill::app {
 
@@ -59,7 +59,7 @@ Dialogue unsaved_question(const std::string& what, std::function<bool()> is_save
 Dialogue report_question(Dialogue::Action report, Dialogue::Action close);
 
 /// What is to be done with milled bone that a program left which ended without asking.
-Dialogue left_milling_question(const MilledBone& milled, Dialogue::Action open, Dialogue::Action remove,
+Dialogue left_milling_question(const SessionStart& left, Dialogue::Action open, Dialogue::Action remove,
                                Dialogue::Action later);
 
 }  // namespace osteomill::app

@@ -17,7 +17,7 @@
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/files/input_error.h"
 #include "osteomill/image/image.h"
-#include "osteomill/recording/read_recording.h"
+#include "osteomill/recording/recording.h"
 #include "osteomill/report/write_report.h"
 #include "osteomill/surface/mesh_file.h"
 #include "osteomill/surface/surface_mesh.h"

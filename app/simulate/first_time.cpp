@@ -6,7 +6,6 @@
 
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/files/input_error.h"
-#include "osteomill/files/user_folders.h"
 
 namespace osteomill::app {
 

@@ -10,7 +10,7 @@
 #include <GLFW/glfw3.h>
 #include <imgui.h>
 
-#include "osteomill/operator/entry_places.h"
+#include "osteomill/operator/milling_entry.h"
 #include "osteomill/tool/milling_tool.h"
 
 namespace osteomill::app {

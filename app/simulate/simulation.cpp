@@ -7,7 +7,6 @@
 
 #include "osteomill/files/input_error.h"
 #include "osteomill/numbers/work_progress.h"
-#include "osteomill/volume/density_grid.h"
 
 namespace osteomill::app {
 
@@ -26,39 +25,13 @@ std::string isovalue_from(const ScanOptions& scan, const LoadedBone& loaded, boo
   return scan.isovalue ? "given with --iso" : "suggested: " + loaded.isovalue_from;
 }
 
-std::string absolute_path(const std::filesystem::path& path) {
-  return path.empty() ? std::string() : std::filesystem::absolute(path).lexically_normal().string();
-}
-
-MilledBone nothing_milled_of(const ScanOptions& scan, const LoadedBone& loaded) {
-  MilledBone bone;
-  bone.scan = absolute_path(scan.scan);
-  bone.series = scan.read.series;
-  bone.labels = absolute_path(scan.labels.map);
-  bone.label_table = absolute_path(scan.labels.table);
-  bone.no_go = scan.labels.no_go;
-  bone.name = loaded.name;
-  bone.isovalue = loaded.volume.isovalue();
-  bone.dims = loaded.volume.geometry().dims;
-  bone.fingerprint = fingerprint_of(loaded.volume.grid());
-  return bone;
-}
-
 }  // namespace
 
-OpenedScan open_for_milling(const ScanOptions& scan, const MillingSetup& setup,
-                            const std::filesystem::path& milled) {
+OpenedScan open_for_milling(const ScanOptions& scan, const MillingSetup& setup, const SessionStart& milled) {
   LoadedBone loaded = [&] {
     const WorkProgress::Part reading(0.4);
     return load_bone(scan);
   }();
-  MilledBone as_scanned = nothing_milled_of(scan, loaded);
-  MilledBefore before;
-  if (!milled.empty()) {
-    MilledBone kept = read_milled_bone(milled);
-    require_same_scan(kept, as_scanned);
-    before = {std::move(kept.bricks), kept.removed_mm3};
-  }
   auto bone = std::make_shared<Volume>(std::move(loaded.volume));
   const BoneBox box = box_of_bone(*bone);
   const std::shared_ptr<const LabelMap> labels = bone->labels();
@@ -67,11 +40,11 @@ OpenedScan open_for_milling(const ScanOptions& scan, const MillingSetup& setup,
   const DensityHistogram histogram = histogram_of(bone->grid());
   std::vector<Boundary> boundaries = boundaries_in(bone->grid());
   const WorkProgress::Part preparing(1);
-  PreparedMilling prepared = prepare_milling(bone, setup, before);
-  const WindowLevel grey_window = window_level_of(bone->grid(), prepared.densities.surroundings);
+  PreparedMilling prepared = prepare_milling(bone, setup, milled);
+  const WindowLevel grey_window = window_level_of(bone->grid(), prepared.session->densities().surroundings);
   return {loaded.name,
-          std::move(as_scanned),
-          isovalue_from(scan, loaded, !milled.empty()),
+          scan,
+          isovalue_from(scan, loaded, !milled.bricks.empty()),
           loaded.in_hounsfield_units ? " HU" : "",
           box,
           histogram,
@@ -85,19 +58,19 @@ Simulation::Simulation(OpenedScan opened, const Pose& X_WT, const Holder& holder
                        const std::string& command_line_, std::optional<AutosaveFile> autosave_file)
     : scan_name(std::move(opened.name)),
       command_line(command_line_),
-      first_isovalue(opened.as_scanned.isovalue),
+      first_isovalue(opened.milling.session->volume().isovalue()),
       isovalue_from(std::move(opened.isovalue_from)),
       unit(std::move(opened.unit)),
       histogram(opened.histogram),
       boundaries(std::move(opened.boundaries)),
       grey_window(opened.grey_window),
       holder(holder_),
-      hand(handle_settings(opened.milling.setup), pointing_hand(), X_WT),
-      device(take_tool(opened.milling.setup, opened.milling.session->volume(), X_WT)),
+      hand(handle_settings(opened.milling.session->setup()), pointing_hand(), X_WT),
+      device(take_tool(opened.milling.session->setup(), opened.milling.session->volume(), X_WT)),
       milling(std::move(opened.milling), device),
-      autosave(std::move(opened.as_scanned), std::move(autosave_file)),
-      labels(std::move(opened.labels)) {
-  if (labels) label_count = LabelCount(labels->labels());
+      autosave(std::move(opened.scan), std::move(autosave_file)),
+      labels(std::move(opened.labels)),
+      label_count(labels) {
   milling.start();
   // What is drawn and pulled begins at the tool, so its first tick is waited for.
   while (history.empty() && milling.running()) {

@@ -17,7 +17,7 @@
 #include "osteomill/live/live_milling.h"
 #include "osteomill/operator/simulated_operator.h"
 #include "osteomill/operator/virtual_hand.h"
-#include "osteomill/session/label_count.h"
+#include "osteomill/session/tick_counts.h"
 #include "osteomill/view/clip_face.h"
 #include "osteomill/volume/isovalue.h"
 
@@ -26,8 +26,7 @@ namespace osteomill::app {
 /// A scan made ready for milling, and what the window shows of it beside its surface.
 struct OpenedScan {
   std::string name;
-  /// Of which scan it is, without anything milled.
-  MilledBone as_scanned;
+  ScanOptions scan;
   /// Where its isovalue came from, half a sentence, and "HU" where that is its unit.
   std::string isovalue_from;
   std::string unit;
@@ -39,11 +38,10 @@ struct OpenedScan {
   PreparedMilling milling;
 };
 
-/// Takes seconds; in any thread, also while another scan is milled. `milled` in its place where it is the
-/// file of what was milled of this scan before. Throws InputError as `load_bone` does, and
-/// std::invalid_argument for settings out of range.
-OpenedScan open_for_milling(const ScanOptions& scan, const MillingSetup& setup,
-                            const std::filesystem::path& milled = {});
+/// Takes seconds; in any thread, also while another scan is milled. `milled` of it before, if anything was.
+/// Throws InputError as `load_bone` does and where `milled` is of another scan, and std::invalid_argument for
+/// settings out of range.
+OpenedScan open_for_milling(const ScanOptions& scan, const MillingSetup& setup, const SessionStart& milled);
 
 /// Who holds the tool: hardware, which outlives the simulation, or a hand without hardware of this name.
 struct Holder {

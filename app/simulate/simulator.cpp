@@ -32,7 +32,7 @@
 #include "osteomill/files/input_error.h"
 #include "osteomill/image/image.h"
 #include "osteomill/live/bone_sender.h"
-#include "osteomill/sound/sound_stream.h"
+#include "osteomill/sound/spindle_sound.h"
 #include "osteomill/view/annotations.h"
 #include "osteomill/view/scene_renderer.h"
 
@@ -189,41 +189,39 @@ class Simulator {
       start();
     };
     view_.dialogues.add(left_milling_question(
-        left_->facts, [this] { open_left_milling(); }, remove, start));
+        left_->start, [this] { open_left_milling(); }, remove, start));
   }
 
   void open_left_milling() {
-    const MilledBone& left = left_->facts;
-    ScanOptions scan{left.scan,
-                     left.isovalue,
-                     {.series = left.series, .max_memory_bytes = options_.scan.read.max_memory_bytes},
-                     {left.labels, left.label_table, left.no_go},
-                     std::nullopt,
-                     left.fingerprint};
+    ScanOptions scan = scan_of(left_->start);
+    scan.read.max_memory_bytes = options_.scan.read.max_memory_bytes;
     // Those that are asked for now.
     std::error_code other;
     if (!options_.scan.labels.map.empty() &&
-        std::filesystem::equivalent(left.scan, options_.scan.scan, other))
+        std::filesystem::equivalent(scan.scan, options_.scan.scan, other))
       scan.labels = options_.scan.labels;
-    begin_opening(scan, std::move(left_->file));
-    left_.reset();
+    opened_milled_ = std::move(left_->file);
+    open(scan, std::exchange(left_, std::nullopt)->start);
   }
 
   bool opening() const { return opening_.valid() || opened_; }
 
-  void begin_opening(const ScanOptions& scan, std::optional<AutosaveFile> milled = std::nullopt) {
+  void begin_opening(const ScanOptions& scan) {
+    opened_milled_.reset();
+    open(scan, {});
+  }
+
+  void open(const ScanOptions& scan, SessionStart milled) {
     opened_scan_ = scan;
-    opened_milled_ = std::move(milled);
     opening_since_ = Clock::now();
     changes_before_ = view_.changes;
     const MillingSetup setup = simulation_ ? view_.wanted : options_.setup;
-    opening_.begin([scan, setup, milled = opened_milled_ ? opened_milled_->path() : std::filesystem::path()] {
-      return open_for_milling(scan, setup, milled);
-    });
+    opening_.begin(
+        [scan, setup, milled = std::move(milled)] { return open_for_milling(scan, setup, milled); });
   }
 
   void draw_opening() {
-    const std::string what = opened_scan_.scan.empty() ? "built-in tooth" : opened_scan_.scan;
+    const std::string what = opened_scan_.scan.empty() ? kBuiltinTooth : opened_scan_.scan;
     const bool given_up = draw_loading(what, opening_.share_done(), seconds_since(opening_since_),
                                        window_.size(), simulation_ != nullptr);
     if (given_up) give_up_opening(what);
@@ -269,13 +267,14 @@ class Simulator {
       simulation_->autosave.discard();
       view_.wanted_is_new = view_.changes != changes_before_;
       options_.command_line += " # then opened in the window: " + opened.name;
-      view_.message = fmt::format("Opened {}: isovalue {:.4g}{}, {}", opened.name, opened.as_scanned.isovalue,
-                                  opened.unit, opened.isovalue_from);
+      view_.message =
+          fmt::format("Opened {}: isovalue {:.4g}{}, {}", opened.name,
+                      opened.milling.session->volume().isovalue(), opened.unit, opened.isovalue_from);
       view_.result.clear();
       sender_.reset();
       simulation_.reset();
     } else {
-      view_.wanted = opened.milling.setup;
+      view_.wanted = opened.milling.session->setup();
       view_.help = view_.help && first_time_of_help();
     }
     options_.scan = opened_scan_;
@@ -285,8 +284,8 @@ class Simulator {
     view_.camera = first_camera(view_.box, size);
     const Volume& bone = opened.milling.session->volume();
     // Before its upper half, so that the shaft leaves the bone in sight.
-    const Pose X_WT =
-        tool_before_middle(bone, opened.milling.setup.tool, view_.camera, size, 0.15 * size.height);
+    const Pose X_WT = tool_before_middle(bone, opened.milling.session->setup().tool, view_.camera, size,
+                                         0.15 * size.height);
     const Holder holder{options_.device.device, hardware_.get()};
     simulation_ = std::make_unique<Simulation>(std::move(opened), X_WT, holder, options_.command_line,
                                                std::exchange(opened_milled_, std::nullopt));

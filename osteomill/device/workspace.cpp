@@ -12,7 +12,6 @@
 
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/files/input_error.h"
-#include "osteomill/files/user_folders.h"
 #include "osteomill/numbers/positive.h"
 
 namespace osteomill {

@@ -12,7 +12,7 @@
 #include "osteomill/experiment/record_trial.h"
 #include "osteomill/files/temporary_folder.h"
 #include "osteomill/haptics/algorithms.h"
-#include "osteomill/recording/read_recording.h"
+#include "osteomill/recording/recording.h"
 #include "osteomill/volume/builtin_tooth.h"
 
 namespace osteomill {

@@ -10,8 +10,7 @@
 #include "osteomill/experiment/paper.h"
 #include "osteomill/recording/recorder.h"
 #include "osteomill/recording/recording.h"
-#include "osteomill/session/fault_count.h"
-#include "osteomill/session/label_count.h"
+#include "osteomill/session/tick_counts.h"
 
 namespace osteomill {
 
@@ -65,8 +64,7 @@ std::vector<fs::path> record_trial(const TrialPlan& plan, const AlgorithmDescrip
   Recorder& holding = *recorders[1];
   const ScriptSettings& script = plan.settings.hand_and_device.script;
   FaultCount faults;
-  LabelCount labels;
-  if (plan.bone.labels()) labels = LabelCount(plan.bone.labels()->labels());
+  LabelCount labels(plan.bone.labels());
   for (int n = 0; !trial.finished(); ++n) {
     const MillingTrial::Tick tick = trial.tick();
     (tick.milling_phase ? milling : holding).push_waiting(tick.record);

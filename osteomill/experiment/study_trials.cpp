@@ -9,7 +9,7 @@
 #include "osteomill/experiment/parallel.h"
 #include "osteomill/experiment/phase_metrics.h"
 #include "osteomill/report/run_groups.h"
-#include "osteomill/session/fault_count.h"
+#include "osteomill/session/tick_counts.h"
 
 namespace osteomill {
 

@@ -54,12 +54,10 @@ RunDescription describe_trial(const TrialPlan& plan, const AlgorithmDescription&
   const OperatorSettings& person = trial.hand_and_device;
   RunDescription run = describe_run({.scan_name = plan.scan_name,
                                      .scan_hash = plan.scan_hash,
-                                     .geometry = plan.bone.geometry(),
-                                     .isovalue = plan.bone.isovalue(),
+                                     .bone = plan.bone,
                                      .session = {setup_of(trial, algorithm), plan.densities},
                                      .seed = person.seed,
-                                     .command_line = plan.command_line,
-                                     .labels = plan.bone.labels()},
+                                     .command_line = plan.command_line},
                                     sample_points);
   run.phase = phase;
   add_hand(run.settings, person.hand);

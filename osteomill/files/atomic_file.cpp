@@ -2,6 +2,7 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <memory>
 #include <string>
@@ -72,6 +73,19 @@ std::vector<fs::path> files_in(const fs::path& folder) {
   return files;
 }
 
+// A path that is not absolute does not count.
+fs::path folder_named_by(const char* variable) {
+  const char* value = std::getenv(variable);
+  const fs::path folder = value != nullptr ? value : "";
+  return folder.is_absolute() ? folder : fs::path();
+}
+
+fs::path own_folder(const char* variable, const char* in_home) {
+  if (const fs::path named = folder_named_by(variable); !named.empty()) return named / "osteomill";
+  if (const fs::path home = folder_named_by("HOME"); !home.empty()) return home / in_home / "osteomill";
+  return {};
+}
+
 }  // namespace
 
 fs::path output_path(const fs::path& path) {
@@ -139,6 +153,14 @@ void create_folder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) throw InputError(folder.string(), "cannot be created: " + error.message());
+}
+
+fs::path state_folder() {
+  return own_folder("XDG_STATE_HOME", ".local/state");
+}
+
+fs::path config_folder() {
+  return own_folder("XDG_CONFIG_HOME", ".config");
 }
 
 }  // namespace osteomill

@@ -8,7 +8,13 @@ namespace osteomill {
 
 /// The text with a question mark for every control character, a line's end among them: a file's own words may
 /// hold anything.
-std::string in_one_line(std::string_view text);
+inline std::string in_one_line(std::string_view text) {
+  std::string line(text);
+  for (char& c : line) {
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+  }
+  return line;
+}
 
 /// What the user handed us is at fault: a file, a folder, a row of it, or an option's value.
 /// The command line prints `what()` as its one line and exits with code 1.

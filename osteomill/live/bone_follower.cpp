@@ -5,6 +5,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <limits>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <shared_mutex>
@@ -30,37 +31,25 @@ constexpr std::size_t kBricksOnTheirWay = 511;
 // What the drawing thread has not taken yet, each brick once.
 class Published {
  public:
-  explicit Published(std::size_t bricks) : place_(bricks, -1) {}
-
   void add(std::vector<ChangedBrick> changed) {
     const std::lock_guard lock(mutex_);
-    for (ChangedBrick& brick : changed) {
-      std::int32_t& place = place_[brick.brick];
-      if (place >= 0) {
-        std::swap(bricks_[static_cast<std::size_t>(place)], brick);
-      } else {
-        place = static_cast<std::int32_t>(bricks_.size());
-        bricks_.push_back(std::move(brick));
-      }
-    }
+    for (ChangedBrick& brick : changed) bricks_.insert_or_assign(brick.brick, std::move(brick));
   }
 
   std::vector<ChangedBrick> take() {
-    std::vector<ChangedBrick> taken;
+    std::map<std::size_t, ChangedBrick> bricks;
     {
       const std::lock_guard lock(mutex_);
-      taken.swap(bricks_);
-      for (const ChangedBrick& brick : taken) place_[brick.brick] = -1;
+      bricks.swap(bricks_);
     }
-    std::sort(taken.begin(), taken.end(),
-              [](const ChangedBrick& a, const ChangedBrick& b) { return a.brick < b.brick; });
+    std::vector<ChangedBrick> taken;
+    for (auto& [place, brick] : bricks) taken.push_back(std::move(brick));
     return taken;
   }
 
  private:
   std::mutex mutex_;
-  std::vector<ChangedBrick> bricks_;
-  std::vector<std::int32_t> place_;  // by brick: where it stands in bricks_, or -1
+  std::map<std::size_t, ChangedBrick> bricks_;
 };
 
 }  // namespace
@@ -69,7 +58,6 @@ struct BoneFollower::Impl {
   Impl(std::shared_ptr<Volume> milled, std::size_t undo_bytes)
       : handover(milled->geometry(), kBricksOnTheirWay),
         layout(milled->geometry().dims),
-        published(layout.count()),
         bone(std::move(milled)),
         copy(std::make_shared<Volume>(*bone)),
         history(undo_bytes),

@@ -4,16 +4,13 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
+#include "osteomill/device/spsc_queue.h"
 #include "osteomill/volume/density_block.h"
 #include "osteomill/volume/volume.h"
 
 namespace osteomill {
-
-template <typename T>
-class SpscQueue;
 
 /// Copies of changed densities on their way from the thread that mills to one that keeps a copy of the
 /// volume. One thread marks and sends, one receives, and neither ever waits. What finds no room, or exceeds
@@ -23,7 +20,6 @@ class DensityHandover {
  public:
   /// Room for `capacity` bricks (or a few more) on their way, 2 KiB each. Allocates everything.
   DensityHandover(const GridGeometry& geometry, std::size_t capacity);
-  ~DensityHandover();
 
   /// The milling thread: what changed has to be sent. Safe in the haptic tick.
   void mark(const VolumeChange& change) noexcept;
@@ -34,12 +30,10 @@ class DensityHandover {
   std::size_t waiting() const noexcept { return waiting_.load(std::memory_order_acquire); }
 
   /// The receiving thread: the next brick, its own until `pop`; null where there is none.
-  DensityBlock* front() noexcept;
-  void pop() noexcept;
+  DensityBlock* front() noexcept { return on_their_way_.front(); }
+  void pop() noexcept { on_their_way_.pop(); }
 
  private:
-  VoxelIndex first_voxel(std::uint32_t number) const noexcept;
-
   std::array<int, 3> brick_dims_;
 
   // Bricks marked: a flag each, and their numbers in a ring in the order in which they were marked.
@@ -48,7 +42,7 @@ class DensityHandover {
   std::size_t next_ = 0;
   std::atomic<std::size_t> waiting_{0};
 
-  std::unique_ptr<SpscQueue<DensityBlock>> on_their_way_;
+  SpscQueue<DensityBlock> on_their_way_;
 };
 
 }  // namespace osteomill

@@ -5,6 +5,7 @@
 #include <thread>
 #include <utility>
 
+#include "osteomill/files/input_error.h"
 #include "osteomill/numbers/work_progress.h"
 #include "osteomill/recording/describe_run.h"
 #include "osteomill/recording/recording.h"
@@ -22,18 +23,24 @@ void add_picture(Recorder& recorder, std::string_view name, const LiveMilling::T
 }
 
 // As LiveSession has them.
-SessionSettings settings_of(MillingSetup setup, const BoneDensities& densities) {
-  setup.guard = setup.guard.for_a_hand();
-  return {std::move(setup), densities};
+SessionSettings settings_of(const MillingSession& session) {
+  SessionSettings settings{session.setup(), session.densities()};
+  settings.setup.guard = settings.setup.guard.for_a_hand();
+  return settings;
 }
 
 }  // namespace
 
 PreparedMilling prepare_milling(std::shared_ptr<Volume> bone, const MillingSetup& setup,
-                                const MilledBefore& before) {
+                                const SessionStart& before) {
   BoneDensities densities;
   std::unique_ptr<BoneFollower> follower;
   const std::uint64_t scan_hash = fingerprint_of(bone->grid());
+  if (!before.bricks.empty() &&
+      (before.run.dims != bone->geometry().dims || before.run.scan_hash != scan_hash)) {
+    throw InputError(before.run.scan_name,
+                     "has changed since it was milled, so what was milled cannot be put into it");
+  }
   {
     const WorkProgress::Part looking(0.2);
     densities = estimate_densities(*bone);
@@ -46,16 +53,12 @@ PreparedMilling prepare_milling(std::shared_ptr<Volume> bone, const MillingSetup
   const WorkProgress::Part preparing(1);
   auto session = std::make_unique<MillingSession>(std::move(bone), densities, setup);
   session->count_removed_from(before.removed_mm3);
-  return {setup, densities, scan_hash, std::move(follower), std::move(session)};
+  return {scan_hash, std::move(follower), std::move(session)};
 }
 
 LiveMilling::LiveMilling(PreparedMilling prepared, Device& device)
-    : setup_(prepared.setup),
-      sample_points_(prepared.session->algorithm().sample_point_count()),
-      densities_(prepared.densities),
+    : sample_points_(prepared.session->algorithm().sample_point_count()),
       scan_hash_(prepared.scan_hash),
-      geometry_(prepared.session->volume().geometry()),
-      isovalue_(prepared.session->volume().isovalue()),
       follower_(std::move(prepared.follower)),
       live_(std::move(prepared.session), device) {
   listen();
@@ -67,11 +70,11 @@ LiveMilling::~LiveMilling() {
 }
 
 void LiveMilling::listen() {
-  live_.wait_for(live_.listen([follower = follower_.get(), recorder = recorder_.get(), from = recorded_from_](
-                                  const TickRecord& record, const Volume& bone, const VolumeChange& change) {
+  live_.listen([follower = follower_.get(), recorder = recorder_.get(), from = recorded_from_](
+                   const TickRecord& record, const Volume& bone, const VolumeChange& change) {
     follower->bone_changed(bone, change);
     if (recorder != nullptr && record.session >= from) recorder->push(record);
-  }));
+  });
 }
 
 void LiveMilling::update() {
@@ -89,51 +92,39 @@ void LiveMilling::set_spindle(bool on) {
 }
 
 void LiveMilling::change(const MillingSetup& setup) {
-  if (preparing()) return;
-  live_.wait_for(live_.hold_bone(true));
-  preparation_ = std::async(std::launch::async, [this, setup, bone = live_.session().shared_volume(),
-                                                 removed_mm3 = live_.session().removed_mm3()] {
-    catch_up();
-    Prepared prepared{std::make_unique<MillingSession>(bone, densities_, setup), setup, densities_,
-                      removed_mm3, follower_->touched_bricks()};
-    prepared.session->count_removed_from(removed_mm3);
-    return prepared;
+  prepare(setup, [this] {
+    return BoneFollower::NextBone{live_.session().shared_volume(), live_.session().removed_mm3(), {}};
   });
 }
 
 void LiveMilling::change_isovalue(double isovalue) {
-  rebuild([this, isovalue, surroundings = densities_.surroundings] {
+  prepare(setup(), [this, isovalue, surroundings = densities().surroundings] {
     return follower_->with_isovalue(isovalue, surroundings, live_.session().removed_mm3());
   });
 }
 
 void LiveMilling::undo() {
-  rebuild([this] { return follower_->without_last_cut(); });
+  prepare(setup(), [this] { return follower_->without_last_cut(); });
 }
 
 void LiveMilling::reset() {
-  rebuild([this] { return follower_->as_at_the_beginning(); });
+  prepare(setup(), [this] { return follower_->as_at_the_beginning(); });
 }
 
-// The follower's copy becomes the bone, since it can be written while the bone is felt.
-void LiveMilling::rebuild(MakeBone make_bone) {
+// Another bone is the follower's copy, since that can be written while the bone is felt.
+void LiveMilling::prepare(const MillingSetup& setup, MakeBone make_bone) {
   if (preparing()) return;
-  live_.wait_for(live_.hold_bone(true));
-  preparation_ = std::async(std::launch::async, [this, make_bone = std::move(make_bone), setup = setup_] {
+  live_.hold_bone(true);
+  preparation_ = std::async(std::launch::async, [this, make_bone = std::move(make_bone), setup] {
     catch_up();
     const BoneFollower::NextBone next = make_bone();
+    const bool other_bone = next.bone != live_.session().shared_volume();
     try {
-      const BoneDensities densities = next.densities.value_or(densities_);
-      Prepared prepared{std::make_unique<MillingSession>(next.bone, densities, setup),
-                        setup,
-                        densities,
-                        next.removed_mm3,
-                        follower_->touched_bricks(),
-                        true};
-      prepared.session->count_removed_from(next.removed_mm3);
-      return prepared;
+      auto session = std::make_unique<MillingSession>(next.bone, next.densities.value_or(densities()), setup);
+      session->count_removed_from(next.removed_mm3);
+      return Prepared{std::move(session), other_bone};
     } catch (...) {
-      follower_->give_up();
+      if (other_bone) follower_->give_up();
       throw;
     }
   });
@@ -154,14 +145,10 @@ void LiveMilling::take_over() {
   std::exception_ptr failure;
   try {
     Prepared prepared = preparation_.get();
-    isovalue_ = prepared.session->volume().isovalue();
-    setup_ = prepared.setup;
     sample_points_ = prepared.session->algorithm().sample_point_count();
-    densities_ = prepared.densities;
-    live_.wait_for(live_.replace(std::move(prepared.session)));
-    ++session_number_;
+    const TakenOver left = live_.replace(std::move(prepared.session));
     if (prepared.other_bone) follower_->swap();
-    if (recorder_) tell_recorder(live_.taken_over(), prepared.removed_mm3, std::move(prepared.bricks));
+    if (recorder_) tell_recorder(left);
   } catch (...) {
     failure = std::current_exception();
   }
@@ -172,7 +159,7 @@ void LiveMilling::take_over() {
 std::vector<double> LiveMilling::removed_by_label() const {
   std::vector<double> removed_mm3 = follower_->drops_by_label();
   for (double& drop : removed_mm3) {
-    drop *= geometry_.voxel_volume_mm3() / (densities_.reference - densities_.surroundings);
+    drop *= geometry().voxel_volume_mm3() / (densities().reference - densities().surroundings);
   }
   return removed_mm3;
 }
@@ -180,11 +167,9 @@ std::vector<double> LiveMilling::removed_by_label() const {
 RunDescription LiveMilling::describe(const std::string& scan_name, const std::string& command_line) const {
   const RunFacts facts{.scan_name = scan_name,
                        .scan_hash = scan_hash_,
-                       .geometry = geometry_,
-                       .isovalue = isovalue_,
-                       .session = settings_of(setup_, densities_),
-                       .command_line = command_line,
-                       .labels = live_.session().volume().labels()};
+                       .bone = live_.session().volume(),
+                       .session = settings_of(live_.session()),
+                       .command_line = command_line};
   return describe_run(facts, sample_points_);
 }
 
@@ -199,23 +184,24 @@ void LiveMilling::start_recording(const std::filesystem::path& path, const RunDe
   take_picture_ = std::move(picture);
   recorded_ = description;
   const bool untouched = !live_.running() && live_.timing().ticks == 0;
-  recorded_from_ = untouched ? session_number_ : session_number_ + 1;
-  if (untouched) tell_recorder({}, live_.session().removed_mm3(), follower_->touched_bricks());
+  recorded_from_ = untouched ? live_.session_number() : live_.session_number() + 1;
+  if (untouched) tell_recorder({});
   listen();
-  if (!untouched) change(setup_);
+  if (!untouched) change(setup());
 }
 
-void LiveMilling::tell_recorder(const TakenOver& taken_over, double removed_mm3,
-                                std::vector<DensityBlock> bricks) {
+// While nothing is milled.
+void LiveMilling::tell_recorder(const TakenOver& taken_over) {
   RunDescription run = recorded_;
-  run.isovalue = isovalue_;
-  set_session_settings(run, settings_of(setup_, densities_), sample_points_);
-  recorder_->begin_session(session_number_, {std::move(run), taken_over, removed_mm3, std::move(bricks), ""});
+  run.isovalue = isovalue();
+  set_session_settings(run, settings_of(live_.session()), sample_points_);
+  recorder_->begin_session(live_.session_number(), {std::move(run), taken_over, live_.session().removed_mm3(),
+                                                    follower_->touched_bricks(), ""});
 }
 
 std::filesystem::path LiveMilling::stop_recording() {
   // One that was stopped before it could begin still begins.
-  if (session_number_ < recorded_from_) finish_preparing();
+  if (live_.session_number() < recorded_from_) finish_preparing();
   const std::unique_ptr<Recorder> recorder = std::move(recorder_);
   listen();
   add_picture(*recorder, kPictureAfter, std::exchange(take_picture_, {}));

@@ -18,24 +18,17 @@ namespace osteomill {
 
 /// A bone made ready for milling, which takes seconds.
 struct PreparedMilling {
-  MillingSetup setup;
-  BoneDensities densities;
   /// Of the scan, before anything was milled (fingerprint_of).
   std::uint64_t scan_hash = 0;
   std::unique_ptr<BoneFollower> follower;
   std::unique_ptr<MillingSession> session;
 };
 
-/// What was milled of a bone at another time.
-struct MilledBefore {
-  std::vector<DensityBlock> bricks;
-  double removed_mm3 = 0;
-};
-
-/// In any thread, also while another bone is milled. `bone` as scanned; what was milled of it before can be
-/// taken back as one cut. Throws std::invalid_argument for settings out of range.
+/// In any thread, also while another bone is milled. `bone` as scanned; what was milled of it `before`, if
+/// anything was, can be taken back as one cut. Throws std::invalid_argument for settings out of range, and
+/// InputError, naming the scan, where another was milled before.
 PreparedMilling prepare_milling(std::shared_ptr<Volume> bone, const MillingSetup& setup,
-                                const MilledBefore& before = {});
+                                const SessionStart& before = {});
 
 /// A bone that is milled in real time with a device, and all that can be done to it meanwhile. For one
 /// thread, beside the haptic one that this runs; one at a time. Whatever takes long (another algorithm or
@@ -106,10 +99,10 @@ class LiveMilling {
   TimingSummary timing() const { return live_.timing(); }
   const std::string& refused_real_time() const { return live_.refused_real_time(); }
 
-  const MillingSetup& setup() const { return setup_; }
-  const BoneDensities& densities() const { return densities_; }
-  const GridGeometry& geometry() const { return geometry_; }
-  double isovalue() const { return isovalue_; }
+  const MillingSetup& setup() const { return live_.session().setup(); }
+  const BoneDensities& densities() const { return live_.session().densities(); }
+  const GridGeometry& geometry() const { return live_.session().volume().geometry(); }
+  double isovalue() const { return live_.session().volume().isovalue(); }
 
   /// The isosurface's bricks, what changed of it since the last call, and how it would look at another
   /// isovalue (BoneFollower).
@@ -125,36 +118,27 @@ class LiveMilling {
  private:
   struct Prepared {
     std::unique_ptr<MillingSession> session;
-    MillingSetup setup;
-    BoneDensities densities;
-    double removed_mm3 = 0;
-    std::vector<DensityBlock> bricks;
-    bool other_bone = false;
+    bool other_bone;
   };
   using MakeBone = std::function<BoneFollower::NextBone()>;
 
   void listen();
-  void rebuild(MakeBone make_bone);
+  void prepare(const MillingSetup& setup, MakeBone make_bone);
   void catch_up();
   void take_over();
-  void tell_recorder(const TakenOver& taken_over, double removed_mm3, std::vector<DensityBlock> bricks);
+  void tell_recorder(const TakenOver& taken_over);
 
-  MillingSetup setup_;
   // As prepared: the haptic thread's algorithm changes them.
   int sample_points_;
-  BoneDensities densities_;
   std::uint64_t scan_hash_;
-  GridGeometry geometry_;
-  double isovalue_;
   std::unique_ptr<BoneFollower> follower_;
   std::unique_ptr<Recorder> recorder_;
   std::filesystem::path recorder_path_;
   TakePicture take_picture_;
   // What the recording says of its first session.
   RunDescription recorded_;
-  // The first session that is recorded, and the last that was made.
+  // The first session that is recorded.
   std::uint32_t recorded_from_ = 0;
-  std::uint32_t session_number_ = 0;
   LiveSession live_;
   std::future<Prepared> preparation_;
   bool spindle_ = false;

@@ -13,9 +13,10 @@
 #include "tests/support/recording_samples.h"
 #include <gtest/gtest.h>
 
+#include "osteomill/files/input_error.h"
 #include "osteomill/operator/milling_entry.h"
 #include "osteomill/operator/virtual_hand.h"
-#include "osteomill/recording/read_recording.h"
+#include "osteomill/recording/recording.h"
 #include "osteomill/recording/replay_recording.h"
 #include "osteomill/surface/surface_mesh.h"
 
@@ -223,7 +224,12 @@ TEST_F(LiveMillingTest, GoesOnWithWhatWasMilledBefore) {
   milling_.stop();
 
   VirtualHand hand({}, pointing_hand(), pose_above(entry_, setup_.tool, 0.2));
-  LiveMilling again(prepare_milling(ball_of_bone(), setup_, {milling_.touched_bricks(), removed_mm3}), hand);
+  const SessionStart before{
+      .run = milling_.describe("ball", ""), .removed_mm3 = removed_mm3, .bricks = milling_.touched_bricks()};
+  const auto another = ball_of_bone();
+  another->lower_density({25, 25, 25}, 1);
+  EXPECT_THROW(prepare_milling(another, setup_, before), InputError);
+  LiveMilling again(prepare_milling(ball_of_bone(), setup_, before), hand);
   const auto bone_again = [&] {
     CopyOnWriteFloats densities;
     again.read_bone([&](const Volume& bone) { densities = bone.grid().densities(); });

@@ -1,9 +1,8 @@
-#include "osteomill/operator/free_pose.h"
-
 #include "tests/shapes.h"
 #include <gtest/gtest.h>
 
 #include "osteomill/haptics/algorithms.h"
+#include "osteomill/operator/milling_entry.h"
 #include "osteomill/tool/milling_tool.h"
 
 namespace osteomill {

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <random>
 
 #include "osteomill/geometry/pose.h"
 #include "osteomill/geometry/wrench.h"
@@ -56,5 +58,45 @@ HandSettings random_hand(std::uint64_t seed);
 /// both rise steadily with the force of the grip (Hasser and Cutkosky 2002, nine hands on a knob; stiffness
 /// in proportion: Hoeppner, McIntyre and van der Smagt 2013).
 HandSettings gripping(HandSettings hand, double firmness);
+
+/// The tremor of a hand, a displacement or a rotation vector in W, a function of time alone: along each axis
+/// a sum of sines of equal size and seeded frequency and phase, nine tenths of the power between 8 and 12 Hz
+/// (physiological tremor) and one tenth spread over 1 to 30 Hz. The same seed gives the same signal whatever
+/// the tick's rate, and the same bits on every machine (nothing but sums and products is used, no library's
+/// sine).
+class Tremor {
+ public:
+  /// `rms` is the root mean square along each axis, in mm or rad. Throws std::invalid_argument where it is
+  /// negative or not finite.
+  Tremor(std::uint64_t seed, double rms);
+
+  /// Safe in the haptic tick.
+  Vec3 at(double time_s) const;
+
+ private:
+  static constexpr int kSinesPerBand = 16;
+  static constexpr int kSines = 2 * kSinesPerBand;
+  struct Sine {
+    double amplitude;
+    double frequency_hz;
+    double phase_turns;
+  };
+  std::array<std::array<Sine, kSines>, 3> axes_;
+};
+
+/// Random numbers that are the same bits with every compiler and library: the engine is fixed by the
+/// standard, the mapping to a range is our own (std::uniform_real_distribution is left to the library).
+class SeededRandom {
+ public:
+  explicit SeededRandom(std::uint64_t seed) : engine_(seed) {}
+
+  /// Uniform in [least, greatest), in steps of 2^-53 of the range.
+  double uniform(double min, double max) {
+    return min + (max - min) * (static_cast<double>(engine_() >> 11) * 0x1p-53);
+  }
+
+ private:
+  std::mt19937_64 engine_;
+};
 
 }  // namespace osteomill

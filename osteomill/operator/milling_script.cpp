@@ -15,9 +15,31 @@ void require(bool holds, const char* what) {
   if (!holds) throw std::invalid_argument(std::string("milling script: ") + what);
 }
 
-bool share(double value) {
-  return value >= 0 && value <= 1;
-}
+// What the hand wants of its push, or of the limit of its torque, in each stage.
+constexpr double kFeedPush = 0.9;
+constexpr double kLeanPush = 0.6;
+constexpr double kHoldPush = 0.5;
+// Sideways, towards the rim that is leant against. Leaning by torque alone would press the burr into the wall
+// on the other side as hard as the shaft into the rim, and so mill that wall away instead of loading the
+// edge.
+constexpr double kSide = 0.6;
+// With `until_leant` only until the shaft meets the wall, and from there by what its spring takes for the
+// torque: no further, where the wall gives way.
+constexpr double kTorque = 0.8;
+constexpr double kApproach_s = 1.0;
+constexpr double kFeed_mm_s = 2.0;
+constexpr double kLean_rad_s = 0.14;  // 8 degrees a second
+// The shaft is never meant to stand further from the direction than this (35 degrees).
+constexpr double kLeanLimit_rad = 0.61;
+// It leans, however deep the hole is, when this share of the (longest) milling is over; for this share of the
+// milling at the most; and settles for this share of the holding at the most.
+constexpr double kLatestLeanShare = 0.6;
+constexpr double kLongestLeanShare = 0.4;
+constexpr double kLongestSettleShare = 0.5;
+// How fast the hand corrects what it feels, as a rate of the spring's stretch and of its twist: slow against
+// the swing of hand and handle (41 rad/s), so that the script neither damps nor drives it.
+constexpr double kPushCorrection_per_s = 4.0;
+constexpr double kTorqueCorrection_per_s = 8.0;
 
 // Of what the hand wants to feel, enough to say that it does.
 constexpr double kFelt = 0.8;
@@ -42,22 +64,7 @@ double stretch_for(double share, double limit, double stiffness) {
 void require_valid(const ScriptSettings& settings) {
   require(is_not_negative(settings.milling_s) && is_not_negative(settings.holding_s),
           "a phase must not be shorter than 0 s");
-  require(is_positive(settings.approach_s), "the approach must take longer than 0 s");
-  require(is_not_negative(settings.feed_mm_s) && is_not_negative(settings.lean_rad_s),
-          "feed (mm/s) and lean (rad/s) must not be negative");
-  require(is_not_negative(settings.depth_mm) && is_not_negative(settings.lean_limit_rad),
-          "depth (mm) and the limit of the lean (rad) must not be negative");
-  require(share(settings.feed_push_share) && share(settings.latest_lean_share) &&
-              share(settings.lean_torque_share) && share(settings.lean_push_share) &&
-              share(settings.lean_side_share) && share(settings.hold_side_share) &&
-              share(settings.hold_push_share) && share(settings.hold_torque_share) &&
-              share(settings.leant_share) && share(settings.longest_lean_share) &&
-              share(settings.longest_settle_share),
-          "a share must lie in [0, 1]");
   require(is_not_negative(settings.settle_s), "settling must not take less than 0 s");
-  require(
-      is_not_negative(settings.push_correction_per_s) && is_not_negative(settings.torque_correction_per_s),
-      "a correction (1/s) must not be negative");
 }
 
 MillingScript::MillingScript(const ScriptSettings& settings, const HandSettings& hand,
@@ -107,20 +114,19 @@ bool MillingScript::is_milled(double now_s) const {
   if (now_s >= longest_milling_s()) return true;
   return settings_.until_leant && intent_.stage == ScriptStage::lean &&
          (shortfall_.lost || has_leant() ||
-          now_s - stage_began_s_ >= settings_.longest_lean_share * settings_.milling_s);
+          now_s - stage_began_s_ >= kLongestLeanShare * settings_.milling_s);
 }
 
 bool MillingScript::is_settled(double now_s, const Pose& X_WD) const {
   const double settling_s = now_s - stage_began_s_;
   if (settling_s < std::min(settings_.settle_s, settings_.holding_s)) return false;
-  if (!settings_.until_leant || shortfall_.lost ||
-      settling_s >= settings_.longest_settle_share * settings_.holding_s)
+  if (!settings_.until_leant || shortfall_.lost || settling_s >= kLongestSettleShare * settings_.holding_s)
     return true;
   return feels_what_it_holds(X_WD);
 }
 
 bool MillingScript::feels_what_it_holds(const Pose& X_WD) const {
-  return felt_push_share(X_WD) >= kFelt * settings_.hold_push_share && wall_rad_;
+  return felt_push_share(X_WD) >= kFelt * kHoldPush && wall_rad_;
 }
 
 void MillingScript::begin(ScriptStage stage, double now_s) {
@@ -146,7 +152,7 @@ void MillingScript::advance_stage(double now_s, double dt_s, const Pose& X_WD, c
     begin(ScriptStage::done, now_s);
   }
   if (intent_.stage >= ScriptStage::settle) return;
-  const double latest_s = settings_.latest_lean_share * longest_milling_s();
+  const double latest_s = kLatestLeanShare * longest_milling_s();
   if (intent_.stage == ScriptStage::lean) {
     if (shaft_free_s_ == 0) leant_s_ += dt_s;
   } else if (shown_depth_mm(X_WT) >= settings_.depth_mm || now_s >= latest_s) {
@@ -161,15 +167,15 @@ void MillingScript::push(double share, double slowest_mm_s, double fastest_mm_s,
                          const Pose& X_WD) {
   const double wanted_mm = stretch_for(share, hand_.push_N, hand_.stiffness_N_per_mm);
   const double felt_mm = along_mm_ - entry_.direction_W.dot(X_WD.position_mm - entry_.point_W);
-  const double rate_mm_s = settings_.push_correction_per_s * (wanted_mm - felt_mm);
+  const double rate_mm_s = kPushCorrection_per_s * (wanted_mm - felt_mm);
   along_mm_ += dt_s * std::clamp(rate_mm_s, slowest_mm_s, fastest_mm_s);
 }
 
 void MillingScript::push_sideways(double share, double dt_s, const Pose& X_WD) {
   const double wanted_mm = stretch_for(share, hand_.push_N, hand_.stiffness_N_per_mm);
   const double felt_mm = sideways_mm_ - entry_.lateral_W.dot(X_WD.position_mm - entry_.point_W);
-  const double rate_mm_s = settings_.push_correction_per_s * (wanted_mm - felt_mm);
-  sideways_mm_ += dt_s * std::clamp(rate_mm_s, -settings_.feed_mm_s, settings_.feed_mm_s);
+  const double rate_mm_s = kPushCorrection_per_s * (wanted_mm - felt_mm);
+  sideways_mm_ += dt_s * std::clamp(rate_mm_s, -kFeed_mm_s, kFeed_mm_s);
   // Where nothing resists (a burr that slides over bone too hard for it) the target must not wander off.
   sideways_mm_ = std::clamp(sideways_mm_, 0.0, wanted_mm);
 }
@@ -179,11 +185,10 @@ void MillingScript::lean(double share, double dt_s, const Pose& X_WD) {
       stretch_for(share, torque_limit_Nmm(hand_), hand_.torsional_stiffness_Nmm_per_rad);
   const double felt_rad =
       lean_axis_W_.dot(rotation_vector(target().orientation * X_WD.orientation.conjugate()));
-  const double rate_rad_s = settings_.torque_correction_per_s * (wanted_rad - felt_rad);
-  lean_rad_ += dt_s * std::clamp(rate_rad_s, -settings_.lean_rad_s, settings_.lean_rad_s);
-  const double limit_rad =
-      settings_.until_leant && wall_rad_ ? *wall_rad_ + wanted_rad : settings_.lean_limit_rad;
-  lean_rad_ = std::clamp(lean_rad_, 0.0, std::clamp(limit_rad, 0.0, settings_.lean_limit_rad));
+  const double rate_rad_s = kTorqueCorrection_per_s * (wanted_rad - felt_rad);
+  lean_rad_ += dt_s * std::clamp(rate_rad_s, -kLean_rad_s, kLean_rad_s);
+  const double limit_rad = settings_.until_leant && wall_rad_ ? *wall_rad_ + wanted_rad : kLeanLimit_rad;
+  lean_rad_ = std::clamp(lean_rad_, 0.0, std::clamp(limit_rad, 0.0, kLeanLimit_rad));
 }
 
 Pose MillingScript::target() const {
@@ -192,23 +197,22 @@ Pose MillingScript::target() const {
 }
 
 void MillingScript::move(double dt_s, const Pose& X_WD) {
-  const double feed_mm_s = settings_.feed_mm_s;
   switch (intent_.stage) {
     case ScriptStage::approach:
-      push(settings_.feed_push_share, 0.0, kStartAbove_mm / settings_.approach_s, dt_s, X_WD);
+      push(kFeedPush, 0.0, kStartAbove_mm / kApproach_s, dt_s, X_WD);
       break;
     case ScriptStage::feed:
-      push(settings_.feed_push_share, 0.0, feed_mm_s, dt_s, X_WD);
+      push(kFeedPush, 0.0, kFeed_mm_s, dt_s, X_WD);
       break;
     case ScriptStage::lean:
-      push(settings_.lean_push_share, -feed_mm_s, feed_mm_s, dt_s, X_WD);
-      push_sideways(settings_.lean_side_share, dt_s, X_WD);
-      lean(settings_.lean_torque_share, dt_s, X_WD);
+      push(kLeanPush, -kFeed_mm_s, kFeed_mm_s, dt_s, X_WD);
+      push_sideways(kSide, dt_s, X_WD);
+      lean(kTorque, dt_s, X_WD);
       break;
     case ScriptStage::settle:
-      push(settings_.hold_push_share, -feed_mm_s, feed_mm_s, dt_s, X_WD);
-      push_sideways(settings_.hold_side_share, dt_s, X_WD);
-      lean(settings_.hold_torque_share, dt_s, X_WD);
+      push(kHoldPush, -kFeed_mm_s, kFeed_mm_s, dt_s, X_WD);
+      push_sideways(kSide, dt_s, X_WD);
+      lean(kTorque, dt_s, X_WD);
       break;
     case ScriptStage::hold:
     case ScriptStage::done:

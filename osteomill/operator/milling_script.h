@@ -11,46 +11,21 @@
 namespace osteomill {
 
 /// The test of section 8.2 of the paper as one hand's intent: mill a hole and push the shaft against its
-/// edge, then stand in it and hold still. Shares are of the hand's push, or of the limit of its torque.
+/// edge, then stand in it and hold still.
 struct ScriptSettings {
   /// The milling lasts so long ...
   double milling_s = 20.0;
-  /// ... or, with true, until the shaft has leant on bone or the hand has tried that, for these shares of it,
-  /// or three times as long.
+  /// ... or, with true, until the shaft has leant on bone for `leant_share` of it, or the hand has tried that
+  /// for longer, but no longer than three times as long.
   bool until_leant = false;
-  double leant_share = 0.15;
-  double longest_lean_share = 0.4;
+  static constexpr double leant_share = 0.15;
   double holding_s = 20.0;
-  double approach_s = 1.0;
-  double feed_mm_s = 2.0;
-  double feed_push_share = 0.9;
-  /// The hole is deep enough to lean in when the shown burr's tip is this far below the entry, ...
-  double depth_mm = 3.0;
-  /// ... or when this share of the (longest) milling is over.
-  double latest_lean_share = 0.6;
-  double lean_rad_s = 0.14;  // 8 degrees a second
-  /// It leans with this torque; with `until_leant` until the shaft meets the wall, and from there by what its
-  /// spring takes for the torque: no further, where the wall gives way.
-  double lean_torque_share = 0.8;
-  double lean_push_share = 0.6;
-  /// Sideways, towards the rim that is leant against. Leaning by torque alone would press the burr into the
-  /// wall on the other side as hard as the shaft into the rim, and so mill that wall away instead of loading
-  /// the edge.
-  double lean_side_share = 0.6;
-  /// The shaft is never meant to stand further from the direction than this (35 degrees).
-  double lean_limit_rad = 0.61;
-  double hold_push_share = 0.5;
-  double hold_side_share = 0.6;
-  double hold_torque_share = 0.8;
+  /// The hole is deep enough to lean in when the shown burr's tip is this far below the entry.
+  static constexpr double depth_mm = 3.0;
   /// How long the hand takes, at the start of the holding, to come to what it then holds: at least this, and
-  /// with `until_leant` until it feels that push and the wall, but no longer than this share of the holding.
-  /// What it takes beyond `settle_s` makes the holding so much longer.
+  /// with `until_leant` until it feels that push and the wall, but no longer than half the holding. What it
+  /// takes beyond `settle_s` makes the holding so much longer.
   double settle_s = 1.0;
-  double longest_settle_share = 0.5;
-  /// How fast the hand corrects what it feels, as a rate (1/s) of the spring's stretch and of its twist: slow
-  /// against the swing of hand and handle (41 rad/s), so that the script neither damps nor drives it.
-  double push_correction_per_s = 4.0;
-  double torque_correction_per_s = 8.0;
 };
 
 /// Throws std::invalid_argument, naming it, where a setting is out of range.

@@ -314,9 +314,7 @@ TEST(MillingScript, ASettingOutOfRangeIsRefused) {
     EXPECT_THROW(MillingScript(settings, {}, kTool, {}), std::invalid_argument);
   };
   refused([](ScriptSettings& s) { s.milling_s = -1; });
-  refused([](ScriptSettings& s) { s.approach_s = 0; });
-  refused([](ScriptSettings& s) { s.lean_push_share = 1.5; });
-  refused([](ScriptSettings& s) { s.feed_mm_s = std::nan(""); });
+  refused([](ScriptSettings& s) { s.settle_s = std::nan(""); });
 }
 
 }  // namespace

@@ -6,7 +6,6 @@
 #include "osteomill/operator/hand.h"
 #include "osteomill/operator/milling_script.h"
 #include "osteomill/operator/simulated_handle.h"
-#include "osteomill/operator/tremor.h"
 
 namespace osteomill {
 

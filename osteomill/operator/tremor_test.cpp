@@ -1,11 +1,11 @@
-#include "osteomill/operator/tremor.h"
-
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <vector>
 
 #include <gtest/gtest.h>
+
+#include "osteomill/operator/hand.h"
 
 namespace osteomill {
 namespace {

@@ -24,7 +24,7 @@ HandSettings pointing_hand() {
 }
 
 VirtualHand::VirtualHand(const HandleSettings& handle, const HandSettings& hand, const Pose& X_WD)
-    : hand_(hand), handle_(handle, X_WD), push_N_(hand.push_N), X_W_target_(X_WD) {
+    : hand_(hand), handle_(handle, X_WD), X_W_target_(X_WD) {
   require_valid(hand);
 }
 
@@ -41,7 +41,6 @@ void VirtualHand::put_at(const Pose& X_WD) {
 
 void VirtualHand::tick_done(const Pose& /*X_WT*/, double dt_s) {
   const double passed_s = std::clamp(dt_s, 0.0, kMaxTick_s);
-  hand_.push_N = std::max(push_N_.load(std::memory_order_relaxed), 0.0);
   const Asked& asked = asked_.read();
   const Pose& X_W_asked = asked.number > over_ ? asked.X_W : X_W_target_;
   const double share = 1 - std::exp(-kFollow_per_s * passed_s);

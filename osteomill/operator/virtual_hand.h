@@ -1,6 +1,5 @@
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 
 #include "osteomill/device/device.h"
@@ -14,7 +13,7 @@ namespace osteomill {
 /// by a spring and a damper that pushes no harder than its limit. So whoever has no haptic hardware sees
 /// resistance: bone holds the handle back.
 ///
-/// `pull_to`, `set_push` and `set_spindle` are for one other thread and never wait.
+/// `pull_to` is for one other thread and never waits.
 class VirtualHand final : public Device {
  public:
   /// At rest at `X_WD`. Throws std::invalid_argument as SimulatedHandle and the hand's settings do.
@@ -25,8 +24,6 @@ class VirtualHand final : public Device {
   /// The haptic thread, between two ticks: the hand and its handle are there, at rest, and stay until the
   /// next `pull_to` after it. Safe in the tick.
   void put_at(const Pose& X_WD) override;
-  /// The most that the hand pushes, N.
-  void set_push(double push_N) { push_N_.store(push_N, std::memory_order_relaxed); }
 
   Pose read_pose() override { return handle_.read(); }
   void write_wrench(const Wrench& wrench) override { handle_.command(wrench); }
@@ -43,7 +40,6 @@ class VirtualHand final : public Device {
   std::uint64_t pulls_ = 0;
   // The last pull that does not count any more.
   std::uint64_t over_ = 0;
-  std::atomic<double> push_N_;
   // Where the hand pulls to now: it follows what is asked for smoothly, which comes only with every picture.
   Pose X_W_target_;
 };

@@ -32,10 +32,11 @@ TEST(VirtualHand, GoesWhereItIsPulledWithoutSwingingOver) {
 
 // A wall of 2 N/mm at z = 3, as the device's motors render it: the hand pushes down with all it has.
 TEST(VirtualHand, PushesNoHarderThanItsLimit) {
-  VirtualHand hand({}, pointing_hand(), kStart);
-  hand.pull_to({{1, 2, -40}, Quat::Identity()});
   for (const double push_N : {2.5, 1.0}) {
-    hand.set_push(push_N);
+    HandSettings settings = pointing_hand();
+    settings.push_N = push_N;
+    VirtualHand hand({}, settings, kStart);
+    hand.pull_to({{1, 2, -40}, Quat::Identity()});
     for (int n = 0; n < 3000; ++n) {
       const double sunk_mm = 3 - hand.read_pose().position_mm.z();
       hand.write_wrench({{0, 0, std::max(2 * sunk_mm, 0.0)}, Vec3::Zero()});

@@ -1,5 +1,3 @@
-#include "osteomill/recording/description_attributes.h"
-
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -14,7 +12,7 @@
 #include "osteomill/files/input_error.h"
 #include "osteomill/haptics/algorithms.h"
 #include "osteomill/numbers/positive.h"
-#include "osteomill/recording/hdf5.h"
+#include "osteomill/recording/recording_file.h"
 
 namespace osteomill {
 
@@ -25,10 +23,6 @@ namespace {
 constexpr const char* kSettingsGroup = "settings";
 constexpr const char* kLabelsGroup = "labels";
 constexpr std::string_view kUnitSuffix = ".unit";
-// With which others came: in version 3, and where algorithms' labels are kept.
-constexpr const char* kSince3 = "scan_hash";
-constexpr const char* kLabel = "algorithm_label";
-constexpr std::string_view kUnknownColour = "#888888";
 
 void require_usable_keys(const std::vector<RunSetting>& settings) {
   std::set<std::string> seen;
@@ -50,12 +44,8 @@ Hdf5Handle create_ordered_group(const fs::path& path, hid_t file, const char* na
 }
 
 void write_setting(const AttributeWriter& write, const RunSetting& setting) {
-  if (const double* number = std::get_if<double>(&setting.value)) {
-    write.real(setting.key, *number);
-  } else {
-    write.text(setting.key, std::get<std::string>(setting.value));
-  }
-  if (!setting.unit.empty()) write.text(setting.key + std::string(kUnitSuffix), setting.unit);
+  std::visit([&](const auto& value) { write.put(setting.key, value); }, setting.value);
+  if (!setting.unit.empty()) write.put(setting.key + std::string(kUnitSuffix), setting.unit);
 }
 
 void write_settings(const fs::path& path, hid_t file, const std::vector<RunSetting>& settings) {
@@ -73,12 +63,12 @@ std::vector<RunSetting> read_settings(const fs::path& path, hid_t file) {
     if (name.ends_with(kUnitSuffix)) continue;
     RunSetting setting{name, 0.0, ""};
     if (read.is_text(name)) {
-      setting.value = read.text(name);
+      setting.value = read.get<std::string>(name);
     } else {
       setting.value = read.real_or_infinite(name);
     }
     const std::string unit = name + std::string(kUnitSuffix);
-    if (read.has(unit)) setting.unit = read.text(unit);
+    if (read.has(unit)) read.get(unit, setting.unit);
     settings.push_back(std::move(setting));
   }
   return settings;
@@ -90,9 +80,9 @@ void write_labels(const fs::path& path, hid_t file, const std::vector<Label>& la
   const AttributeWriter write(path, group.get());
   for (const Label& label : labels) {
     const std::string value = std::to_string(label.value);
-    write.text(value + ".name", label.name);
-    write.text(value + ".colour", hex_colour(label));
-    write.unsigned_integer(value + ".no_go", label.no_go ? 1 : 0);
+    write.put(value + ".name", label.name);
+    write.put(value + ".colour", hex_colour(label));
+    write.put(value + ".no_go", std::uint64_t{label.no_go});
   }
 }
 
@@ -106,59 +96,52 @@ std::vector<Label> read_labels(const fs::path& path, hid_t file) {
     const std::string value = name.substr(0, name.find('.'));
     Label label;
     const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), label.value);
-    const std::string colour = read.text(value + ".colour");
+    const std::string colour = read.get<std::string>(value + ".colour");
     unsigned rgb = 0;
     if (error != std::errc() || end != value.data() + value.size() || labels.size() == LabelMap::kMaxLabels ||
         colour.size() != 7 || std::sscanf(colour.c_str(), "#%6x", &rgb) != 1) {
       throw InputError(path.string(), "has a label that cannot be used: '" + name + "'");
     }
-    label.name = read.text(name);
+    read.get(name, label.name);
     label.colour = {static_cast<std::uint8_t>(rgb >> 16), static_cast<std::uint8_t>(rgb >> 8),
                     static_cast<std::uint8_t>(rgb)};
-    label.no_go = read.unsigned_integer(value + ".no_go") != 0;
+    label.no_go = read.get<std::uint64_t>(value + ".no_go") != 0;
     labels.push_back(std::move(label));
   }
   return labels;
 }
 
 // What a description says by attributes, each with its name and place, in the order in which they are
-// written; behind them, of those that came later, the one with which they came.
+// written.
 template <typename Run, typename Visit>
 void visit_attributes(Run& run, const Visit& visit) {
   visit("program_version", run.program_version);
-  visit("date_utc", run.made.date_utc, kSince3);
-  visit("host", run.made.host, kSince3);
-  visit("system", run.made.system, kSince3);
-  visit("processor", run.made.processor, kSince3);
-  visit("compiler", run.made.compiler, kSince3);
-  visit("build", run.made.build, kSince3);
+  visit("date_utc", run.made.date_utc);
+  visit("host", run.made.host);
+  visit("system", run.made.system);
+  visit("processor", run.made.processor);
+  visit("compiler", run.made.compiler);
+  visit("build", run.made.build);
   visit("scan_name", run.scan_name);
   visit("dims", run.dims);
   visit("spacing_mm", run.spacing_mm);
-  visit("origin_mm", run.origin_mm, kSince3);
-  visit("axis_i", run.direction.col(0), kSince3);
-  visit("axis_j", run.direction.col(1), kSince3);
-  visit("axis_k", run.direction.col(2), kSince3);
-  visit("scan_hash", run.scan_hash, kSince3);
-  visit("label_map_hash", run.label_map_hash, kSince3);
+  visit("origin_mm", run.origin_mm);
+  visit("axis_i", run.direction.col(0));
+  visit("axis_j", run.direction.col(1));
+  visit("axis_k", run.direction.col(2));
+  visit("scan_hash", run.scan_hash);
+  visit("label_map_hash", run.label_map_hash);
   visit("isovalue", run.isovalue);
   visit("burr_radius_mm", run.tool.burr_radius_mm);
   visit("shaft_radius_mm", run.tool.shaft_radius_mm);
   visit("shaft_length_mm", run.tool.shaft_length_mm);
   visit("algorithm", run.algorithm.name);
-  visit("algorithm_label", run.algorithm.label, kLabel);
-  visit("algorithm_colour", run.algorithm.colour, kLabel);
+  visit("algorithm_label", run.algorithm.label);
+  visit("algorithm_colour", run.algorithm.colour);
   visit("mode", run.mode);
   visit("phase", run.phase);
   visit("seed", run.seed);
   visit("tick_period_s", run.tick_period_s);
-}
-
-// Recordings from before algorithms' labels were kept hold the project's own algorithms only; of others the
-// name serves.
-AlgorithmId by_its_name(const std::string& name) {
-  const AlgorithmDescription* known = find_algorithm(name);
-  return known != nullptr ? known->id : AlgorithmId{name, name, std::string(kUnknownColour)};
 }
 
 // A scan that can be, milled with a tool that can be.
@@ -193,20 +176,11 @@ void write_description(const fs::path& path, hid_t file, const RunDescription& d
                                 "': an algorithm or a phase that cannot be recorded by that name");
   }
   const AttributeWriter write(path, file);
-  visit_attributes(description, [&](const char* name, const auto& value, const char* /*with*/ = nullptr) {
-    using Value = std::decay_t<decltype(value)>;
-    if constexpr (std::is_same_v<Value, std::string>) {
-      write.text(name, value);
-    } else if constexpr (std::is_same_v<Value, double>) {
-      write.real(name, value);
-    } else if constexpr (std::is_same_v<Value, std::uint64_t>) {
-      write.unsigned_integer(name, value);
-    } else if constexpr (std::is_same_v<Value, std::array<int, 3>>) {
-      write.integers(name, value);
-    } else if constexpr (std::is_same_v<Value, Mode>) {
-      write.text(name, std::string(name_of(value)));
+  visit_attributes(description, [&](const char* name, const auto& value) {
+    if constexpr (std::is_same_v<std::decay_t<decltype(value)>, Mode>) {
+      write.put(name, std::string(name_of(value)));
     } else {
-      write.vector(name, value);
+      write.put(name, value);
     }
   });
   write_settings(path, file, description.settings);
@@ -222,24 +196,13 @@ void add_setting(const fs::path& path, hid_t file, const RunSetting& setting) {
 RunDescription read_description(const fs::path& path, hid_t file) {
   const AttributeReader read(path, file);
   RunDescription run;
-  visit_attributes(run, [&](const char* name, auto&& value, const char* with = nullptr) {
-    using Value = std::decay_t<decltype(value)>;
-    if (with != nullptr && !read.has(with)) return;
-    if constexpr (std::is_same_v<Value, std::string>) {
-      value = read.text(name);
-    } else if constexpr (std::is_same_v<Value, double>) {
-      value = read.real(name);
-    } else if constexpr (std::is_same_v<Value, std::uint64_t>) {
-      value = read.unsigned_integer(name);
-    } else if constexpr (std::is_same_v<Value, std::array<int, 3>>) {
-      value = read.integers(name);
-    } else if constexpr (std::is_same_v<Value, Mode>) {
-      value = require_mode(path, read.text(name));
+  visit_attributes(run, [&](const char* name, auto&& value) {
+    if constexpr (std::is_same_v<std::decay_t<decltype(value)>, Mode>) {
+      value = require_mode(path, read.get<std::string>(name));
     } else {
-      value = read.vector(name);
+      read.get(name, value);
     }
   });
-  if (!read.has(kLabel)) run.algorithm = by_its_name(run.algorithm.name);
   if (!is_usable(run.algorithm))
     throw InputError(path.string(), "its algorithm has a name, label or colour that cannot be used");
   if (!is_plain_name(run.phase)) throw InputError(path.string(), "the attribute 'phase' is not a plain name");

@@ -36,21 +36,17 @@ void AttributeWriter::write(const std::string& name, hid_t file_type, hid_t memo
   }
 }
 
-void AttributeWriter::text(const std::string& name, const std::string& value) const {
-  if (value.size() > kMaxText) {
+void AttributeWriter::put(const std::string& name, const std::string& text) const {
+  if (text.size() > kMaxText) {
     throw std::invalid_argument("the text of '" + name + "' is too long for a recording");
   }
   const Hdf5Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
-  H5Tset_size(type.get(), value.size() + 1);
+  H5Tset_size(type.get(), text.size() + 1);
   H5Tset_cset(type.get(), H5T_CSET_UTF8);
-  write(name, type.get(), type.get(), 1, value.c_str());
+  write(name, type.get(), type.get(), 1, text.c_str());
 }
 
-void AttributeWriter::real(const std::string& name, double value) const {
-  write(name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, 1, &value);
-}
-
-void AttributeWriter::unsigned_integer(const std::string& name, std::uint64_t value) const {
+void AttributeWriter::put(const std::string& name, std::uint64_t value) const {
   write(name, H5T_STD_U64LE, H5T_NATIVE_UINT64, 1, &value);
 }
 
@@ -58,11 +54,11 @@ void AttributeWriter::reals(const std::string& name, std::span<const double> val
   write(name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, values.size(), values.data());
 }
 
-void AttributeWriter::integers(const std::string& name, const std::array<int, 3>& values) const {
+void AttributeWriter::put(const std::string& name, const std::array<int, 3>& values) const {
   write(name, H5T_STD_I32LE, H5T_NATIVE_INT, values.size(), values.data());
 }
 
-void AttributeWriter::replace_unsigned_integer(const std::string& name, std::uint64_t value) const {
+void AttributeWriter::replace(const std::string& name, std::uint64_t value) const {
   const Hdf5Handle attribute(H5Aopen(object_, name.c_str(), H5P_DEFAULT), H5Aclose);
   if (!attribute.valid() || H5Awrite(attribute.get(), H5T_NATIVE_UINT64, &value) < 0) {
     throw InputError(file_.string(), "the attribute '" + name + "' cannot be written");
@@ -88,7 +84,7 @@ void AttributeReader::read(const std::string& name, H5T_class_t type_class, hid_
   }
 }
 
-std::string AttributeReader::text(const std::string& name) const {
+void AttributeReader::get(const std::string& name, std::string& text) const {
   const Hdf5Handle attribute = open(name);
   const Hdf5Handle type(H5Aget_type(attribute.get()), H5Tclose);
   const Hdf5Handle space(H5Aget_space(attribute.get()), H5Sclose);
@@ -97,17 +93,11 @@ std::string AttributeReader::text(const std::string& name) const {
       size > kMaxText + 1 || H5Sget_simple_extent_npoints(space.get()) != 1) {
     throw InputError(file_.string(), "the attribute '" + name + "' is not a short text");
   }
-  std::string value(size, '\0');
-  if (H5Aread(attribute.get(), type.get(), value.data()) < 0) {
+  text.assign(size, '\0');
+  if (H5Aread(attribute.get(), type.get(), text.data()) < 0) {
     throw InputError(file_.string(), "the attribute '" + name + "' cannot be read");
   }
-  return value.substr(0, value.find('\0'));
-}
-
-double AttributeReader::real(const std::string& name) const {
-  double value = 0;
-  reals(name, {&value, 1});
-  return value;
+  text.resize(std::min(size, text.find('\0')));
 }
 
 double AttributeReader::real_or_infinite(const std::string& name) const {
@@ -117,10 +107,8 @@ double AttributeReader::real_or_infinite(const std::string& name) const {
   return value;
 }
 
-std::uint64_t AttributeReader::unsigned_integer(const std::string& name) const {
-  std::uint64_t value = 0;
+void AttributeReader::get(const std::string& name, std::uint64_t& value) const {
   read(name, H5T_INTEGER, H5T_NATIVE_UINT64, 1, &value);
-  return value;
 }
 
 void AttributeReader::reals(const std::string& name, std::span<double> values) const {
@@ -129,16 +117,8 @@ void AttributeReader::reals(const std::string& name, std::span<double> values) c
     throw InputError(file_.string(), "the attribute '" + name + "' is not finite");
 }
 
-Vec3 AttributeReader::vector(const std::string& name) const {
-  Vec3 value;
-  reals(name, {value.data(), 3});
-  return value;
-}
-
-std::array<int, 3> AttributeReader::integers(const std::string& name) const {
-  std::array<int, 3> values{};
+void AttributeReader::get(const std::string& name, std::array<int, 3>& values) const {
   read(name, H5T_INTEGER, H5T_NATIVE_INT, 3, values.data());
-  return values;
 }
 
 bool AttributeReader::has(const std::string& name) const {

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -59,20 +60,29 @@ class Hdf5Handle {
   Closer closer_ = nullptr;
 };
 
+/// HDF5's name for what stands in memory.
+template <typename Value>
+hid_t memory_type() {
+  if constexpr (std::is_same_v<Value, double>) return H5T_NATIVE_DOUBLE;
+  if constexpr (std::is_same_v<Value, float>) return H5T_NATIVE_FLOAT;
+  if constexpr (std::is_same_v<Value, std::int32_t>) return H5T_NATIVE_INT32;
+  if constexpr (std::is_same_v<Value, std::uint64_t>) return H5T_NATIVE_UINT64;
+}
+
 /// Writes attributes of one object. Every failure is an InputError that names the file. Under Hdf5Lock.
 class AttributeWriter {
  public:
   AttributeWriter(std::filesystem::path file, hid_t object) : file_(std::move(file)), object_(object) {}
 
   /// Throws std::invalid_argument for a text of more than 60000 bytes, which HDF5 would not store.
-  void text(const std::string& name, const std::string& value) const;
-  void real(const std::string& name, double value) const;
-  void unsigned_integer(const std::string& name, std::uint64_t value) const;
+  void put(const std::string& name, const std::string& text) const;
+  void put(const std::string& name, double value) const { reals(name, {&value, 1}); }
+  void put(const std::string& name, std::uint64_t value) const;
+  void put(const std::string& name, const Vec3& value) const { reals(name, {value.data(), 3}); }
+  void put(const std::string& name, const std::array<int, 3>& values) const;
   void reals(const std::string& name, std::span<const double> values) const;
-  void vector(const std::string& name, const Vec3& value) const { reals(name, {value.data(), 3}); }
-  void integers(const std::string& name, const std::array<int, 3>& values) const;
   /// Writes over the value of an attribute that is there.
-  void replace_unsigned_integer(const std::string& name, std::uint64_t value) const;
+  void replace(const std::string& name, std::uint64_t value) const;
 
  private:
   void write(const std::string& name, hid_t file_type, hid_t memory_type, hsize_t count,
@@ -88,16 +98,22 @@ class AttributeReader {
  public:
   AttributeReader(std::filesystem::path file, hid_t object) : file_(std::move(file)), object_(object) {}
 
-  std::string text(const std::string& name) const;
-  /// Finite, as all that `reals` and `vector` read.
-  double real(const std::string& name) const;
-  /// Any but NaN.
-  double real_or_infinite(const std::string& name) const;
-  std::uint64_t unsigned_integer(const std::string& name) const;
+  void get(const std::string& name, std::string& text) const;
+  /// Finite, as all reals.
+  void get(const std::string& name, double& value) const { reals(name, {&value, 1}); }
+  void get(const std::string& name, std::uint64_t& value) const;
+  void get(const std::string& name, Eigen::Ref<Vec3> value) const { reals(name, {value.data(), 3}); }
+  void get(const std::string& name, std::array<int, 3>& values) const;
   /// As many as there is room for.
   void reals(const std::string& name, std::span<double> values) const;
-  Vec3 vector(const std::string& name) const;
-  std::array<int, 3> integers(const std::string& name) const;
+  template <typename Value>
+  Value get(const std::string& name) const {
+    Value value;
+    get(name, value);
+    return value;
+  }
+  /// Any but NaN.
+  double real_or_infinite(const std::string& name) const;
   bool has(const std::string& name) const;
   bool is_text(const std::string& name) const;
   /// In the order in which they were written.

@@ -1,8 +1,8 @@
 #include "tests/support/recording_samples.h"
 #include <gtest/gtest.h>
 
-#include "osteomill/recording/read_recording.h"
 #include "osteomill/recording/recorder.h"
+#include "osteomill/recording/recording.h"
 
 namespace osteomill {
 namespace {

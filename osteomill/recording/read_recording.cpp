@@ -1,5 +1,3 @@
-#include "osteomill/recording/read_recording.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,10 +13,9 @@
 
 #include "osteomill/files/input_error.h"
 #include "osteomill/files/input_files.h"
-#include "osteomill/recording/description_attributes.h"
 #include "osteomill/recording/hdf5.h"
 #include "osteomill/recording/record_columns.h"
-#include "osteomill/recording/recording_checksum.h"
+#include "osteomill/recording/recording.h"
 #include "osteomill/recording/recording_file.h"
 
 namespace osteomill {
@@ -51,11 +48,10 @@ OpenRecording open_recording(const fs::path& path) {
 
 void require_our_version(const OpenRecording& recording, const AttributeReader& root) {
   if (!root.has("osteomill_recording_version")) refuse(recording, "is HDF5, but no recording of osteomill");
-  const std::uint64_t version = root.unsigned_integer("osteomill_recording_version");
-  if (version < kOldestVersion || version > kRecordingVersion) {
-    refuse(recording, "is a recording of version " + std::to_string(version) +
-                          "; this program reads versions " + std::to_string(kOldestVersion) + " to " +
-                          std::to_string(kRecordingVersion));
+  const auto version = root.get<std::uint64_t>("osteomill_recording_version");
+  if (version != kRecordingVersion) {
+    refuse(recording, fmt::format("is a recording of version {}; this program reads version {}", version,
+                                  kRecordingVersion));
   }
 }
 
@@ -79,33 +75,28 @@ std::size_t checked_length(const OpenRecording& recording, hid_t dataset, const 
 }
 
 struct OpenColumn {
-  const RecordColumn* column;
+  std::string place;
   Hdf5Handle dataset;
   std::size_t rows;
 };
 
-std::vector<OpenColumn> open_columns(const OpenRecording& recording) {
-  std::vector<OpenColumn> columns;
-  for (const RecordColumn& column : record_columns()) {
-    const std::string place = std::string("columns/") + column.name;
-    Hdf5Handle dataset(H5Dopen2(recording.file.get(), place.c_str(), H5P_DEFAULT), H5Dclose);
-    if (!dataset.valid() && column.may_lack) continue;
-    if (!dataset.valid()) refuse(recording, std::string("has no column '") + column.name + "'");
-    const std::size_t rows = checked_length(recording, dataset.get(), column.name);
-    columns.push_back({&column, std::move(dataset), rows});
-  }
-  return columns;
+OpenColumn open_column(const OpenRecording& recording, const std::string& place) {
+  OpenColumn open{place, Hdf5Handle(H5Dopen2(recording.file.get(), place.c_str(), H5P_DEFAULT), H5Dclose), 0};
+  if (!open.dataset.valid()) refuse(recording, "has no column '" + place + "'");
+  open.rows = checked_length(recording, open.dataset.get(), place);
+  return open;
 }
 
-std::size_t row_count(const OpenRecording& recording, const std::vector<OpenColumn>& columns, bool complete) {
-  std::size_t rows = columns.front().rows;
-  for (const OpenColumn& open : columns) {
-    if (open.rows != rows && complete) {
-      refuse(recording, std::string("the column '") + open.column->name + "' has " +
-                            std::to_string(open.rows) + " rows, '" + columns.front().column->name + "' has " +
-                            std::to_string(columns.front().rows));
+// Of columns that belong together; of unequal lengths only where the recording is unfinished.
+std::size_t common_rows(const OpenRecording& recording, std::span<const OpenColumn> columns, bool complete) {
+  const OpenColumn& first = columns.front();
+  std::size_t rows = first.rows;
+  for (const OpenColumn& column : columns) {
+    if (column.rows != first.rows && complete) {
+      refuse(recording, fmt::format("the column '{}' has {} rows, '{}' has {}", column.place, column.rows,
+                                    first.place, first.rows));
     }
-    rows = std::min(rows, open.rows);
+    rows = std::min(rows, column.rows);
   }
   return rows;
 }
@@ -122,88 +113,68 @@ void require_in_range(const OpenRecording& recording, const RecordColumn& column
 }
 
 template <typename Value>
-std::vector<Value> read_values(const OpenRecording& recording, hid_t dataset, hid_t memory_type,
-                               const std::string& name, hsize_t rows) {
+std::vector<Value> read_values(const OpenRecording& recording, const OpenColumn& column, hsize_t rows) {
   std::vector<Value> values(rows);
+  const hid_t dataset = column.dataset.get();
   const hsize_t from = 0;
   const Hdf5Handle memory(H5Screate_simple(1, &rows, nullptr), H5Sclose);
   const Hdf5Handle space(H5Dget_space(dataset), H5Sclose);
   if (rows > 0 &&
       (H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, &from, nullptr, &rows, nullptr) < 0 ||
-       H5Dread(dataset, memory_type, memory.get(), space.get(), H5P_DEFAULT, values.data()) < 0)) {
-    refuse(recording, "the column '" + name + "' cannot be read");
+       H5Dread(dataset, memory_type<Value>(), memory.get(), space.get(), H5P_DEFAULT, values.data()) < 0)) {
+    refuse(recording, "the column '" + column.place + "' cannot be read");
   }
   return values;
 }
 
-std::vector<double> read_reals(const OpenRecording& recording, hid_t dataset, const std::string& name,
-                               hsize_t rows) {
-  return read_values<double>(recording, dataset, H5T_NATIVE_DOUBLE, name, rows);
-}
-
 std::vector<TickRecord> read_records(const OpenRecording& recording, bool complete) {
-  const std::vector<OpenColumn> columns = open_columns(recording);
-  const hsize_t rows = row_count(recording, columns, complete);
-  std::vector<TickRecord> records(rows);
-  for (const OpenColumn& open : columns) {
-    const std::vector<double> values = read_reals(recording, open.dataset.get(), open.column->name, rows);
+  std::vector<OpenColumn> columns;
+  for (const RecordColumn& column : record_columns())
+    columns.push_back(open_column(recording, std::string("columns/") + column.name));
+  std::vector<TickRecord> records(common_rows(recording, columns, complete));
+  for (std::size_t n = 0; n < columns.size(); ++n) {
+    const RecordColumn& column = record_columns()[n];
+    const auto values = read_values<double>(recording, columns[n], records.size());
     for (std::size_t row = 0; row < records.size(); ++row) {
-      require_in_range(recording, *open.column, values[row]);
-      open.column->set(records[row], values[row]);
+      require_in_range(recording, column, values[row]);
+      column.set(records[row], values[row]);
     }
   }
   return records;
 }
 
+// Of one length.
+template <typename Value, std::size_t kCount>
+std::array<std::vector<Value>, kCount> read_together(const OpenRecording& recording, bool complete,
+                                                     const std::array<const char*, kCount>& places) {
+  std::vector<OpenColumn> columns;
+  for (const char* place : places) columns.push_back(open_column(recording, place));
+  const std::size_t rows = common_rows(recording, columns, complete);
+  std::array<std::vector<Value>, kCount> values;
+  for (std::size_t n = 0; n < kCount; ++n) values[n] = read_values<Value>(recording, columns[n], rows);
+  return values;
+}
+
 void put_cut(const OpenRecording& recording, const std::vector<Label>& labels, double value,
              double removed_mm3, TickRecord& record) {
-  const auto label = std::find_if(labels.begin(), labels.end(), [&](const Label& known) {
-    return static_cast<double>(known.value) == value;
-  });
-  const auto free = std::find_if(record.label_cuts.begin(), record.label_cuts.end(),
-                                 [](const LabelCut& cut) { return cut.label == 0; });
+  const auto label =
+      std::ranges::find(labels, value, [](const Label& l) { return static_cast<double>(l.value); });
+  const auto free = std::ranges::find(record.label_cuts, 0, &LabelCut::label);
   if (label == labels.end() || free == record.label_cuts.end()) {
     refuse(recording, "has a cut of a label that cannot be");
   }
   *free = {static_cast<LabelMap::Place>(label - labels.begin() + 1), removed_mm3};
 }
 
-struct OpenDataset {
-  std::string name;
-  Hdf5Handle dataset;
-  std::size_t length;
-};
-
-OpenDataset open_dataset(const OpenRecording& recording, const std::string& name) {
-  OpenDataset open{name, Hdf5Handle(H5Dopen2(recording.file.get(), name.c_str(), H5P_DEFAULT), H5Dclose), 0};
-  if (!open.dataset.valid()) refuse(recording, "has no column '" + name + "'");
-  open.length = checked_length(recording, open.dataset.get(), name);
-  return open;
-}
-
-// Of columns that belong together; of unequal lengths only where the recording is unfinished.
-std::size_t common_length(const OpenRecording& recording, std::span<const OpenDataset> columns,
-                          bool complete) {
-  const auto [least, most] = std::ranges::minmax_element(columns, {}, &OpenDataset::length);
-  if (complete && least->length != most->length)
-    refuse(recording, "has columns of unequal lengths about '" + columns.front().name + "'");
-  return least->length;
-}
-
 // What ticks cut of labels goes into their records.
 void read_cuts(const OpenRecording& recording, const std::vector<Label>& labels, bool complete,
                std::vector<TickRecord>& records) {
   if (labels.empty()) return;
-  const std::array columns{open_dataset(recording, "labels/row"), open_dataset(recording, "labels/label"),
-                           open_dataset(recording, "labels/removed_mm3")};
-  const std::size_t length = common_length(recording, columns, complete);
-  std::array<std::vector<double>, columns.size()> values;
-  for (std::size_t n = 0; n < columns.size(); ++n)
-    values[n] = read_reals(recording, columns[n].dataset.get(), columns[n].name, length);
-  for (std::size_t n = 0; n < length; ++n) {
-    const double row = values[0][n];
-    if (row >= 0 && row < static_cast<double>(records.size())) {
-      put_cut(recording, labels, values[1][n], values[2][n], records[static_cast<std::size_t>(row)]);
+  const auto [rows, values, removed_mm3] =
+      read_together<double, 3>(recording, complete, {"labels/row", "labels/label", "labels/removed_mm3"});
+  for (std::size_t n = 0; n < rows.size(); ++n) {
+    if (rows[n] >= 0 && rows[n] < static_cast<double>(records.size())) {
+      put_cut(recording, labels, values[n], removed_mm3[n], records[static_cast<std::size_t>(rows[n])]);
     } else if (complete) {
       refuse(recording, "has a cut of a label in a row that is not there");
     }
@@ -211,27 +182,20 @@ void read_cuts(const OpenRecording& recording, const std::vector<Label>& labels,
 }
 
 std::vector<BoneHash> read_hashes(const OpenRecording& recording, bool complete, std::size_t records) {
-  const std::array columns{open_dataset(recording, "bone_hash/row"),
-                           open_dataset(recording, "bone_hash/hash")};
-  const std::size_t length = common_length(recording, columns, complete);
-  std::array<std::vector<std::uint64_t>, columns.size()> values;
-  for (std::size_t n = 0; n < columns.size(); ++n) {
-    values[n] = read_values<std::uint64_t>(recording, columns[n].dataset.get(), H5T_NATIVE_UINT64,
-                                           columns[n].name, length);
-  }
+  const auto [rows, values] =
+      read_together<std::uint64_t, 2>(recording, complete, {"bone_hash/row", "bone_hash/hash"});
   std::vector<BoneHash> hashes;
-  for (std::size_t n = 0; n < length; ++n) {
-    const bool there = values[0][n] < records && (n == 0 || values[0][n] > values[0][n - 1]);
+  for (std::size_t n = 0; n < rows.size(); ++n) {
+    const bool there = rows[n] < records && (n == 0 || rows[n] > rows[n - 1]);
     if (!there && complete) refuse(recording, "has a hash of the bone in a row that is not there");
-    if (there) hashes.push_back({values[0][n], values[1][n]});
+    if (there) hashes.push_back({rows[n], values[n]});
   }
   return hashes;
 }
 
 // `width` numbers for each of as many rows as there are, which the file is large enough to hold.
 template <typename Value>
-std::vector<Value> read_table(const OpenRecording& recording, hid_t group, const char* name,
-                              hid_t memory_type, hsize_t width) {
+std::vector<Value> read_table(const OpenRecording& recording, hid_t group, const char* name, hsize_t width) {
   constexpr double kMostThatDeflateSaves = 1100;
   const Hdf5Handle dataset(H5Dopen2(group, name, H5P_DEFAULT), H5Dclose);
   const Hdf5Handle space(H5Dget_space(dataset.get()), H5Sclose);
@@ -246,7 +210,7 @@ std::vector<Value> read_table(const OpenRecording& recording, hid_t group, const
   }
   std::vector<Value> values(size[0] * width);
   if (!values.empty() &&
-      H5Dread(dataset.get(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) {
+      H5Dread(dataset.get(), memory_type<Value>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) {
     refuse(recording, std::string("'") + name + "' of a session cannot be read");
   }
   return values;
@@ -256,8 +220,8 @@ std::vector<DensityBlock> read_bricks(const OpenRecording& recording, hid_t grou
                                       const std::array<int, 3>& dims) {
   if (H5Lexists(group, "brick_first", H5P_DEFAULT) <= 0) return {};
   constexpr std::size_t kDensities = std::tuple_size_v<decltype(DensityBlock::densities)>;
-  const auto first = read_table<int>(recording, group, "brick_first", H5T_NATIVE_INT, 3);
-  const auto densities = read_table<float>(recording, group, "brick_densities", H5T_NATIVE_FLOAT, kDensities);
+  const auto first = read_table<std::int32_t>(recording, group, "brick_first", 3);
+  const auto densities = read_table<float>(recording, group, "brick_densities", kDensities);
   std::vector<DensityBlock> bricks(first.size() / 3);
   bool right = densities.size() == bricks.size() * kDensities &&
                std::ranges::all_of(densities, [](float density) { return std::isfinite(density); });
@@ -277,13 +241,13 @@ SessionStart read_session_start(const OpenRecording& recording, hid_t group, con
   const AttributeReader read(recording.path, group);
   SessionStart start;
   start.run = run != nullptr ? *run : read_description(recording.path, group);
-  start.goes_on_from = read.text("goes_on_from");
-  start.removed_mm3 = read.real("removed_mm3");
-  start.taken_over.sent = {read.vector("force_N"), read.vector("torque_Nmm")};
+  read.get("goes_on_from", start.goes_on_from);
+  read.get("removed_mm3", start.removed_mm3);
+  start.taken_over.sent = {read.get<Vec3>("force_N"), read.get<Vec3>("torque_Nmm")};
   if (read.has("tool_mm")) {
     std::array<double, 4> q{};
     read.reals("tool_wxyz", q);
-    start.taken_over.X_WT = Pose{read.vector("tool_mm"), Quat(q[0], q[1], q[2], q[3])};
+    start.taken_over.X_WT = Pose{read.get<Vec3>("tool_mm"), Quat(q[0], q[1], q[2], q[3])};
   }
   start.bricks = read_bricks(recording, group, start.run.dims);
   return start;
@@ -297,7 +261,7 @@ std::vector<RecordedSession> read_sessions(const OpenRecording& open, const Reco
     if (H5Lexists(open.file.get(), place.c_str(), H5P_DEFAULT) <= 0) break;
     const Hdf5Handle group(H5Gopen2(open.file.get(), place.c_str(), H5P_DEFAULT), H5Gclose);
     if (!group.valid()) refuse(open, "'" + place + "' cannot be opened");
-    const std::uint64_t row = AttributeReader(open.path, group.get()).unsigned_integer("row");
+    const auto row = AttributeReader(open.path, group.get()).get<std::uint64_t>("row");
     const bool right = sessions.empty() ? row == 0 : row >= sessions.back().first;
     if (!recording.complete && row >= recording.records.size() && !sessions.empty()) break;
     if (!right || row > recording.records.size()) refuse(open, "'" + place + "' begins where it cannot");
@@ -305,6 +269,7 @@ std::vector<RecordedSession> read_sessions(const OpenRecording& open, const Reco
     sessions.push_back({row, read_session_start(open, group.get(), first)});
     sessions.back().start.run.labels = recording.description.labels;
   }
+  if (sessions.empty() && !recording.records.empty()) refuse(open, "has ticks of no session");
   return sessions;
 }
 
@@ -398,16 +363,14 @@ Recording read_open_file(const fs::path& path) {
   require_our_version(open, root);
   Recording recording;
   recording.path = path;
-  recording.complete = root.unsigned_integer("complete") != 0;
-  recording.dropped = root.unsigned_integer("dropped_records");
+  recording.complete = root.get<std::uint64_t>("complete") != 0;
+  root.get("dropped_records", recording.dropped);
   recording.description = read_description(path, open.file.get());
   recording.records = read_records(open, recording.complete);
   read_cuts(open, recording.description.labels, recording.complete, recording.records);
-  if (H5Lexists(open.file.get(), "sessions", H5P_DEFAULT) > 0) {
-    recording.bone_hashes = read_hashes(open, recording.complete, recording.records.size());
-    recording.sessions = read_sessions(open, recording);
-    number_records(recording);
-  }
+  recording.bone_hashes = read_hashes(open, recording.complete, recording.records.size());
+  recording.sessions = read_sessions(open, recording);
+  number_records(recording);
   recording.pictures = read_pictures(open);
   return recording;
 }

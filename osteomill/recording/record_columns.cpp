@@ -1,6 +1,12 @@
 #include "osteomill/recording/record_columns.h"
 
 #include <array>
+#include <iterator>
+#include <ostream>
+
+#include <fmt/format.h>
+
+#include "osteomill/files/atomic_file.h"
 
 namespace osteomill {
 
@@ -27,28 +33,30 @@ constexpr const char* kCuttingTorque =
   [](const TickRecord& r) -> double { return r.field ? 1 : 0; }, \
       [](TickRecord& r, double value) { r.field = value != 0; }
 
+constexpr RecordColumn real_column(const char* name, const char* unit, const char* meaning, bool in_log,
+                                   double (*get)(const TickRecord&), void (*set)(TickRecord&, double)) {
+  return {name, unit, meaning, real, in_log, get, set};
+}
+
+#define OSTEOMILL_VECTOR(name, unit_in_name, unit, meaning, in_log, field)                     \
+  real_column(name "_x_" unit_in_name, unit, meaning, in_log, OSTEOMILL_FIELD(field.x())),     \
+      real_column(name "_y_" unit_in_name, unit, meaning, in_log, OSTEOMILL_FIELD(field.y())), \
+      real_column(name "_z_" unit_in_name, unit, meaning, in_log, OSTEOMILL_FIELD(field.z()))
+
+#define OSTEOMILL_TURN(name, meaning, field)                                  \
+  real_column(name "_qw", "", meaning, true, OSTEOMILL_FIELD(field.w())),     \
+      real_column(name "_qx", "", meaning, true, OSTEOMILL_FIELD(field.x())), \
+      real_column(name "_qy", "", meaning, true, OSTEOMILL_FIELD(field.y())), \
+      real_column(name "_qz", "", meaning, true, OSTEOMILL_FIELD(field.z()))
+
 constexpr std::array kColumns{
     RecordColumn{"time_s", "s", "when the tick began", real, true, OSTEOMILL_FIELD(time_s)},
-    RecordColumn{"device_x_mm", "mm", kDevicePosition, real, true, OSTEOMILL_FIELD(X_WD.position_mm.x())},
-    RecordColumn{"device_y_mm", "mm", kDevicePosition, real, true, OSTEOMILL_FIELD(X_WD.position_mm.y())},
-    RecordColumn{"device_z_mm", "mm", kDevicePosition, real, true, OSTEOMILL_FIELD(X_WD.position_mm.z())},
-    RecordColumn{"device_qw", "", kDeviceTurn, real, true, OSTEOMILL_FIELD(X_WD.orientation.w())},
-    RecordColumn{"device_qx", "", kDeviceTurn, real, true, OSTEOMILL_FIELD(X_WD.orientation.x())},
-    RecordColumn{"device_qy", "", kDeviceTurn, real, true, OSTEOMILL_FIELD(X_WD.orientation.y())},
-    RecordColumn{"device_qz", "", kDeviceTurn, real, true, OSTEOMILL_FIELD(X_WD.orientation.z())},
-    RecordColumn{"tool_x_mm", "mm", kToolPosition, real, true, OSTEOMILL_FIELD(X_WT.position_mm.x())},
-    RecordColumn{"tool_y_mm", "mm", kToolPosition, real, true, OSTEOMILL_FIELD(X_WT.position_mm.y())},
-    RecordColumn{"tool_z_mm", "mm", kToolPosition, real, true, OSTEOMILL_FIELD(X_WT.position_mm.z())},
-    RecordColumn{"tool_qw", "", kToolTurn, real, true, OSTEOMILL_FIELD(X_WT.orientation.w())},
-    RecordColumn{"tool_qx", "", kToolTurn, real, true, OSTEOMILL_FIELD(X_WT.orientation.x())},
-    RecordColumn{"tool_qy", "", kToolTurn, real, true, OSTEOMILL_FIELD(X_WT.orientation.y())},
-    RecordColumn{"tool_qz", "", kToolTurn, real, true, OSTEOMILL_FIELD(X_WT.orientation.z())},
-    RecordColumn{"force_x_N", "N", kForce, real, true, OSTEOMILL_FIELD(wrench.force_N.x())},
-    RecordColumn{"force_y_N", "N", kForce, real, true, OSTEOMILL_FIELD(wrench.force_N.y())},
-    RecordColumn{"force_z_N", "N", kForce, real, true, OSTEOMILL_FIELD(wrench.force_N.z())},
-    RecordColumn{"torque_x_Nmm", "N mm", kTorque, real, true, OSTEOMILL_FIELD(wrench.torque_Nmm.x())},
-    RecordColumn{"torque_y_Nmm", "N mm", kTorque, real, true, OSTEOMILL_FIELD(wrench.torque_Nmm.y())},
-    RecordColumn{"torque_z_Nmm", "N mm", kTorque, real, true, OSTEOMILL_FIELD(wrench.torque_Nmm.z())},
+    OSTEOMILL_VECTOR("device", "mm", "mm", kDevicePosition, true, X_WD.position_mm),
+    OSTEOMILL_TURN("device", kDeviceTurn, X_WD.orientation),
+    OSTEOMILL_VECTOR("tool", "mm", "mm", kToolPosition, true, X_WT.position_mm),
+    OSTEOMILL_TURN("tool", kToolTurn, X_WT.orientation),
+    OSTEOMILL_VECTOR("force", "N", "N", kForce, true, wrench.force_N),
+    OSTEOMILL_VECTOR("torque", "Nmm", "N mm", kTorque, true, wrench.torque_Nmm),
     RecordColumn{"contacts", "", "sample points that touch", integer, true,
                  [](const TickRecord& r) -> double { return r.contacts; },
                  [](TickRecord& r, double value) { r.contacts = static_cast<int>(value); }},
@@ -60,9 +68,7 @@ constexpr std::array kColumns{
                  OSTEOMILL_FIELD(milling_us)},
     RecordColumn{"tick_cpu_us", "us", "CPU time of the whole tick; 0 where it was not measured", real, false,
                  OSTEOMILL_FIELD(tick_cpu_us)},
-    RecordColumn{"burr_force_x_N", "N", kBurrForce, real, false, OSTEOMILL_FIELD(burr_force_W_N.x())},
-    RecordColumn{"burr_force_y_N", "N", kBurrForce, real, false, OSTEOMILL_FIELD(burr_force_W_N.y())},
-    RecordColumn{"burr_force_z_N", "N", kBurrForce, real, false, OSTEOMILL_FIELD(burr_force_W_N.z())},
+    OSTEOMILL_VECTOR("burr_force", "N", "N", kBurrForce, false, burr_force_W_N),
     RecordColumn{"dt_s", "s", "how long the tick was taken to be", real, false, OSTEOMILL_FIELD(dt_s)},
     RecordColumn{"spindle", "", "1 where the burr could cut", small_integer, false,
                  OSTEOMILL_FLAG(spindle_on)},
@@ -71,29 +77,51 @@ constexpr std::array kColumns{
                  [](TickRecord& r, double value) { r.fault = static_cast<WrenchFault>(value); }},
     RecordColumn{"energy_given_Nmm", "N mm",
                  "energy given to the hand less what it gave, since the session began", real, true,
-                 OSTEOMILL_FIELD(energy_given_Nmm), true},
+                 OSTEOMILL_FIELD(energy_given_Nmm)},
     RecordColumn{"paused", "", "1 in a pause: zero is sent and nothing computed", small_integer, false,
-                 OSTEOMILL_FLAG(paused), true},
+                 OSTEOMILL_FLAG(paused)},
     RecordColumn{"let_go", "", "1 where from this tick on nothing is felt until the tool is placed",
-                 small_integer, false, OSTEOMILL_FLAG(let_go), true},
+                 small_integer, false, OSTEOMILL_FLAG(let_go)},
     RecordColumn{"placed", "",
                  "1 where the tool was placed at the device before the tick, contacts forgotten",
-                 small_integer, false, OSTEOMILL_FLAG(placed), true},
-    RecordColumn{"cutting_torque_x_Nmm", "N mm", kCuttingTorque, real, false,
-                 OSTEOMILL_FIELD(cutting_torque_W_Nmm.x()), true},
-    RecordColumn{"cutting_torque_y_Nmm", "N mm", kCuttingTorque, real, false,
-                 OSTEOMILL_FIELD(cutting_torque_W_Nmm.y()), true},
-    RecordColumn{"cutting_torque_z_Nmm", "N mm", kCuttingTorque, real, false,
-                 OSTEOMILL_FIELD(cutting_torque_W_Nmm.z()), true},
+                 small_integer, false, OSTEOMILL_FLAG(placed)},
+    OSTEOMILL_VECTOR("cutting_torque", "Nmm", "N mm", kCuttingTorque, false, cutting_torque_W_Nmm),
 };
 
+#undef OSTEOMILL_TURN
+#undef OSTEOMILL_VECTOR
 #undef OSTEOMILL_FLAG
 #undef OSTEOMILL_FIELD
+
+// A line of the log: of each column what `write` appends.
+template <typename Write>
+void append_line(fmt::memory_buffer& text, const Write& write) {
+  const char* separator = "";
+  for (const RecordColumn& column : record_columns()) {
+    if (!column.in_log) continue;
+    fmt::format_to(std::back_inserter(text), "{}{}", separator, write(column));
+    separator = ",";
+  }
+  text.push_back('\n');
+}
 
 }  // namespace
 
 std::span<const RecordColumn> record_columns() {
   return kColumns;
+}
+
+void write_csv(const std::filesystem::path& path, std::span<const TickRecord> records) {
+  write_text_atomically(path, [&](std::ostream& out) {
+    fmt::memory_buffer text;
+    append_line(text, [](const RecordColumn& column) { return column.name; });
+    for (const TickRecord& record : records) {
+      append_line(text, [&](const RecordColumn& column) { return column.get(record); });
+      out.write(text.data(), static_cast<std::streamsize>(text.size()));
+      text.clear();
+    }
+    out.write(text.data(), static_cast<std::streamsize>(text.size()));
+  });
 }
 
 }  // namespace osteomill

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <span>
 
 #include "osteomill/session/tick_record.h"
@@ -20,11 +21,14 @@ struct RecordColumn {
   bool in_log;
   double (*get)(const TickRecord&);
   void (*set)(TickRecord&, double);
-  /// A recording may lack it: it came later than the others.
-  bool may_lack = false;
 };
 
 /// All columns, those of the CSV log in its order.
 std::span<const RecordColumn> record_columns();
+
+/// Writes the CSV log: a header and a row a tick, `time_s` first and `compute_us` last. Numbers are the
+/// shortest that read back to the same double, with a point whatever the locale. Appears whole or not at all;
+/// throws InputError, naming the file, where it cannot be written.
+void write_csv(const std::filesystem::path& path, std::span<const TickRecord> records);
 
 }  // namespace osteomill

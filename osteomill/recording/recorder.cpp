@@ -32,13 +32,6 @@ constexpr auto kWaitAtMost = 800ms;
 constexpr auto kLookEvery = 2ms;
 constexpr std::size_t kRowsAtOnce = 2 * RecordingFile::kChunkRows;
 
-bool is_plain_name(const std::string& name) {
-  const auto plain = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_';
-  };
-  return !name.empty() && std::all_of(name.begin(), name.end(), plain);
-}
-
 // HDF5 writes here and there in a file, which then takes the place of what was there.
 fs::path file_behind(const fs::path& path) {
   const fs::path file = output_path(path);
@@ -201,7 +194,8 @@ bool Recorder::failed() const noexcept {
 
 void Recorder::add_picture(const std::string& name, std::vector<unsigned char> png) {
   const auto same = [&](const RunPicture& picture) { return picture.name == name; };
-  if (!is_plain_name(name) || std::any_of(impl_->pictures.begin(), impl_->pictures.end(), same)) {
+  if (name.empty() || !is_plain_name(name) ||
+      std::any_of(impl_->pictures.begin(), impl_->pictures.end(), same)) {
     throw std::invalid_argument("'" + name + "' cannot be the name of a picture, or is one already");
   }
   impl_->pictures.push_back({name, std::move(png)});
@@ -222,6 +216,14 @@ void Recorder::close() {
   std::error_code error;
   fs::rename(unfinished_recording_path(impl_->path), impl_->path, error);
   if (error) throw InputError(impl_->path.string(), "cannot be written: " + error.message());
+}
+
+void write_start(const fs::path& path, const SessionStart& start) {
+  write_file_atomically(path, [&](const fs::path& beside) {
+    RecordingFile file(beside, start.run);
+    file.begin_session(start, 0);
+    file.finish(0);
+  });
 }
 
 fs::path unfinished_recording_path(const fs::path& path) {

@@ -39,7 +39,7 @@ class Recorder {
 
   /// The queue holds `capacity` records (16 s at 1000 Hz) or a few more. Throws InputError, naming the file,
   /// where it cannot be created, and std::invalid_argument where the description cannot be stored
-  /// (description_attributes.h).
+  /// (write_description).
   Recorder(const std::filesystem::path& path, const RunDescription& description,
            std::size_t capacity = kUsualCapacity, Begins begins = Begins::with_the_recording,
            Unfinished unfinished = Unfinished::left);
@@ -79,6 +79,10 @@ class Recorder {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+/// Writes a recording of no ticks: what a session may go on from. Appears whole or not at all; throws
+/// InputError where it cannot be written.
+void write_start(const std::filesystem::path& path, const SessionStart& start);
 
 /// The name under which a recording that is to become `path` is written.
 std::filesystem::path unfinished_recording_path(const std::filesystem::path& path);

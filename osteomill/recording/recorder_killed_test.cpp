@@ -10,8 +10,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "osteomill/recording/read_recording.h"
 #include "osteomill/recording/recorder.h"
+#include "osteomill/recording/recording.h"
 
 namespace osteomill {
 namespace {

@@ -14,7 +14,7 @@
 #include <unistd.h>
 
 #include "osteomill/files/input_error.h"
-#include "osteomill/recording/read_recording.h"
+#include "osteomill/recording/recording.h"
 #include "osteomill/recording/recording_file.h"
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -124,6 +124,43 @@ TEST(Recorder, ARunOfNoTicksReadsBackAsOne) {
   const TestFolder folder;
   Recorder(folder / "run.h5", sample_description()).close();
   EXPECT_TRUE(read_recording(folder / "run.h5").records.empty());
+}
+
+TEST(Recorder, AStartWithoutTicksReadsBackOrIsRefused) {
+  const TestFolder folder;
+  SessionStart start{.run = sample_description(), .removed_mm3 = 1.0 / 3};
+  start.run.dims = {21, 21, 21};
+  start.run.labels = {{7, "nerve", {}, true}};
+  // The last reaches beyond the grid.
+  for (const VoxelIndex& first : {VoxelIndex{8, 8, 8}, VoxelIndex{16, 0, 16}}) {
+    start.bricks.emplace_back().first = first;
+    for (float& density : start.bricks.back().densities) density = 0.1f * static_cast<float>(first.k);
+  }
+  start.bricks[1].densities[3] = -0.125f;
+  write_start(folder / "a.h5", start);
+  const Recording read = read_recording(folder / "a.h5");
+  EXPECT_TRUE(read.complete && read.records.empty());
+  ASSERT_EQ(read.sessions.size(), 1u);
+  expect_same(read.sessions[0].start.run, start.run);
+  EXPECT_EQ(read.sessions[0].start.run.labels, start.run.labels);
+  EXPECT_EQ(read.sessions[0].start.removed_mm3, start.removed_mm3);
+  ASSERT_EQ(read.sessions[0].start.bricks.size(), 2u);
+  for (std::size_t n = 0; n < 2; ++n) {
+    EXPECT_EQ(read.sessions[0].start.bricks[n].first, start.bricks[n].first);
+    EXPECT_EQ(read.sessions[0].start.bricks[n].densities, start.bricks[n].densities);
+  }
+  const auto refused = [&](const SessionStart& wrong) {
+    write_start(folder / "b.h5", wrong);
+    EXPECT_THROW(read_recording(folder / "b.h5"), InputError);
+  };
+  SessionStart wrong = start;
+  wrong.bricks[0].densities[7] = std::numeric_limits<float>::quiet_NaN();
+  refused(wrong);
+  for (const VoxelIndex& first : {VoxelIndex{-8, 0, 0}, VoxelIndex{24, 0, 0}, VoxelIndex{4, 0, 0}}) {
+    wrong = start;
+    wrong.bricks[1].first = first;
+    refused(wrong);
+  }
 }
 
 // The queue is much smaller than what is pushed between two looks of the writing thread.

@@ -17,10 +17,7 @@ bool is_run_alike(const RunDescription& a, const RunDescription& b) {
     });
     return those;
   };
-  const auto tool = [](const RunDescription& run) {
-    return std::array{run.tool.burr_radius_mm, run.tool.shaft_radius_mm, run.tool.shaft_length_mm};
-  };
-  return a.algorithm == b.algorithm && a.mode == b.mode && a.isovalue == b.isovalue && tool(a) == tool(b) &&
+  return a.algorithm == b.algorithm && a.mode == b.mode && a.isovalue == b.isovalue && a.tool == b.tool &&
          settings(a) == settings(b);
 }
 

@@ -60,8 +60,7 @@ struct Recording {
   std::filesystem::path path;
   /// Of the first session.
   RunDescription description;
-  /// In turn, from the first record on; none in a recording of version 2. Read records carry the session's
-  /// place here as TickRecord::session.
+  /// In turn, from the first record on. Read records carry the session's place here as TickRecord::session.
   std::vector<RecordedSession> sessions;
   /// Every hundredth record's, and the last one's.
   std::vector<BoneHash> bone_hashes;
@@ -78,5 +77,20 @@ struct Recording {
 /// One recording for each stretch in which algorithm, tool and settings stayed as they were (what was taken
 /// back ends none), for whoever measures them: where there are several, by their numbers as phases.
 std::vector<Recording> in_stretches(Recording recording);
+
+/// Reads a recording that a Recorder wrote, or the unfinished one that a killed program left (`complete` is
+/// then false). Throws InputError, naming the file, where it is not HDF5, is no recording of a version that
+/// is known, is cut short or damaged, or its columns are missing, of another type or of unequal lengths; only
+/// in an unfinished recording are columns of unequal lengths cut to the shortest. A finished recording is
+/// held against its checksum before HDF5 reads it; one without (unfinished, or rewritten by another program)
+/// is read as it is. Sizes are held against the file's before memory is taken.
+Recording read_recording(const std::filesystem::path& path);
+
+/// The same where it may go on from another recording in its folder (SessionStart::goes_on_from): both as
+/// one, described as the first.
+Recording read_with_what_came_before(const std::filesystem::path& path);
+
+/// Whether a file is HDF5, as recordings are.
+bool is_hdf5(const std::filesystem::path& path);
 
 }  // namespace osteomill

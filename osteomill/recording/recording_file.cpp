@@ -2,16 +2,18 @@
 
 #include <array>
 #include <cerrno>
+#include <fstream>
+#include <string_view>
 #include <tuple>
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <unistd.h>
+#include <zlib.h>
 
 #include "osteomill/files/input_error.h"
-#include "osteomill/recording/description_attributes.h"
 #include "osteomill/recording/hdf5.h"
 #include "osteomill/recording/record_columns.h"
-#include "osteomill/recording/recording_checksum.h"
 
 namespace osteomill {
 
@@ -53,25 +55,6 @@ hid_t file_type(ColumnType type) {
   return H5I_INVALID_HID;
 }
 
-template <typename Value>
-hid_t memory_type();
-template <>
-hid_t memory_type<double>() {
-  return H5T_NATIVE_DOUBLE;
-}
-template <>
-hid_t memory_type<float>() {
-  return H5T_NATIVE_FLOAT;
-}
-template <>
-hid_t memory_type<std::int32_t>() {
-  return H5T_NATIVE_INT32;
-}
-template <>
-hid_t memory_type<std::uint64_t>() {
-  return H5T_NATIVE_UINT64;
-}
-
 // The library's metadata reach the disk only when the file is flushed. Left to itself it also writes some of
 // them whenever its cache is full, and a program killed between the two leaves a file that nobody can open.
 // So none leave the memory by themselves: `forget_flushed_metadata`.
@@ -84,6 +67,22 @@ bool keep_metadata_until_flush(hid_t file) {
   config.flash_incr_mode = H5C_flash_incr__off;
   config.decr_mode = H5C_decr__off;
   return H5Fset_mdc_config(file, &config) >= 0;
+}
+
+constexpr std::string_view kStart = "osteomill recording; HDF5 follows after 512 bytes, their crc32: ";
+
+// From where the stream stands to the end of the file.
+unsigned long crc32_of_rest(std::istream& in) {
+  std::vector<char> buffer(1 << 20);
+  unsigned long crc = ::crc32(0, nullptr, 0);
+  while (in.read(buffer.data(), static_cast<std::streamsize>(buffer.size())), in.gcount() > 0) {
+    crc = ::crc32(crc, reinterpret_cast<const Bytef*>(buffer.data()), static_cast<uInt>(in.gcount()));
+  }
+  return crc;
+}
+
+std::string seal_line(unsigned long crc) {
+  return fmt::format("{}{:08x}\n", kStart, crc);
 }
 
 }  // namespace
@@ -112,10 +111,10 @@ RecordingFile::RecordingFile(const fs::path& path, const RunDescription& descrip
 void RecordingFile::lay_out(const RunDescription& description) {
   reserve(0);
   const AttributeWriter write(path_, file_.get());
-  write.unsigned_integer("osteomill_recording_version", kRecordingVersion);
-  write.unsigned_integer("complete", 0);
-  write.unsigned_integer("dropped_records", 0);
-  write.text("conventions", kConventions);
+  write.put("osteomill_recording_version", kRecordingVersion);
+  write.put("complete", std::uint64_t{0});
+  write.put("dropped_records", std::uint64_t{0});
+  write.put("conventions", kConventions);
   write_description(path_, file_.get(), description);
   labels_ = description.labels;
   create_columns();
@@ -182,8 +181,8 @@ void RecordingFile::create_columns() {
     columns_.push_back(
         create_column(group.get(), column.name, file_type(column.type), column.unit, 1, kChunkRows));
     const AttributeWriter write(path_, columns_.back().dataset.get());
-    write.text("meaning", column.meaning);
-    if (std::string_view(column.name) == "fault") write.text("codes", kFaultCodes);
+    write.put("meaning", column.meaning);
+    if (std::string_view(column.name) == "fault") write.put("codes", kFaultCodes);
   }
   const Hdf5Handle hashes = create_group(file_.get(), "bone_hash");
   for (const char* name : {"row", "hash"})
@@ -215,7 +214,7 @@ RecordingFile::Column RecordingFile::create_column(hid_t group, const char* name
                  H5Dclose),
       width, chunk_rows};
   require(column.dataset.valid(), "a column cannot be created");
-  AttributeWriter(path_, column.dataset.get()).text("unit", unit);
+  AttributeWriter(path_, column.dataset.get()).put("unit", unit);
   return column;
 }
 
@@ -229,14 +228,14 @@ void RecordingFile::begin_session(const SessionStart& start, std::uint64_t row) 
   const std::string place = "sessions/" + std::to_string(sessions_);
   const Hdf5Handle group = create_group(file_.get(), place);
   const AttributeWriter write(path_, group.get());
-  write.unsigned_integer("row", row);
-  write.text("goes_on_from", start.goes_on_from);
-  write.real("removed_mm3", start.removed_mm3);
-  write.vector("force_N", start.taken_over.sent.force_N);
-  write.vector("torque_Nmm", start.taken_over.sent.torque_Nmm);
+  write.put("row", row);
+  write.put("goes_on_from", start.goes_on_from);
+  write.put("removed_mm3", start.removed_mm3);
+  write.put("force_N", start.taken_over.sent.force_N);
+  write.put("torque_Nmm", start.taken_over.sent.torque_Nmm);
   if (const auto& X_WT = start.taken_over.X_WT) {
     const Quat& q = X_WT->orientation;
-    write.vector("tool_mm", X_WT->position_mm);
+    write.put("tool_mm", X_WT->position_mm);
     write.reals("tool_wxyz", std::array{q.w(), q.x(), q.y(), q.z()});
   }
   if (!start.bricks.empty()) write_bricks(group.get(), start.bricks);
@@ -335,7 +334,7 @@ void RecordingFile::append_to(Column& column, std::span<const Value> values) con
 
 void RecordingFile::flush(std::uint64_t dropped) {
   const Hdf5Lock lock;
-  AttributeWriter(path_, file_.get()).replace_unsigned_integer("dropped_records", dropped);
+  AttributeWriter(path_, file_.get()).replace("dropped_records", dropped);
   require(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL) >= 0, "cannot be written (is the disk full?)");
   if (++flushes_ % kFlushesRemembered == 0) forget_flushed_metadata();
 }
@@ -378,10 +377,30 @@ void RecordingFile::finish(std::uint64_t dropped) {
   if (rows_ > 0 && rows_ % kHashRows != 0) append_hash(last_);
   reserve(0);
   const AttributeWriter write(path_, file_.get());
-  write.replace_unsigned_integer("dropped_records", dropped);
-  write.replace_unsigned_integer("complete", 1);
+  write.replace("dropped_records", dropped);
+  write.replace("complete", 1);
   require(close(), "cannot be written to its end (is the disk full?)");
   write_checksum(path_);
+}
+
+void write_checksum(const fs::path& path) {
+  std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
+  file.seekg(kUserBlockBytes);
+  const std::string line = seal_line(crc32_of_rest(file));
+  file.clear();
+  file.seekp(0);
+  file << line;
+  file.close();
+  if (!file) throw InputError(path.string(), "cannot be written to its end (is the disk full?)");
+}
+
+Checksum check_checksum(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) throw InputError(path.string(), "cannot be read");
+  std::string block(kUserBlockBytes, '\0');
+  if (!in.read(block.data(), kUserBlockBytes) || !block.starts_with(kStart)) return Checksum::none;
+  const std::string line = seal_line(crc32_of_rest(in));
+  return block.starts_with(line) ? Checksum::intact : Checksum::broken;
 }
 
 }  // namespace osteomill

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <span>
@@ -11,10 +12,9 @@
 
 namespace osteomill {
 
-/// The version of the layout, in the root's attribute `osteomill_recording_version`, and the oldest that is
+/// The version of the layout, in the root's attribute `osteomill_recording_version`: the only one that is
 /// read.
 inline constexpr std::uint64_t kRecordingVersion = 3;
-inline constexpr std::uint64_t kOldestVersion = 2;
 
 /// A recording being written, from one thread at a time; docs/formats.md describes it. Every failure is an
 /// InputError that names `path`; after one the file is closed with what it holds. Room on the disk is taken
@@ -88,5 +88,29 @@ class RecordingFile {
   // As many bytes of the file have room on the disk.
   std::uint64_t reserved_ = 0;
 };
+
+/// The bytes before the HDF5 part of a recording (HDF5's "user block"), which hold one line of text with the
+/// checksum (CRC-32) of all that follows. HDF5 crashes on some damaged files, so a damaged recording must be
+/// known before HDF5 sees it.
+inline constexpr std::size_t kUserBlockBytes = 512;
+
+/// Writes the line into a recording that is finished and closed. Throws InputError where that fails.
+void write_checksum(const std::filesystem::path& path);
+
+/// `none`: an unfinished recording, or one that another program has rewritten.
+enum class Checksum : unsigned char { none, intact, broken };
+
+/// Throws InputError where the file cannot be read.
+Checksum check_checksum(const std::filesystem::path& path);
+
+/// The description as attributes of the file's root, and its further settings as attributes of the group
+/// /settings, the unit of KEY in the attribute KEY.unit. Labels, where there are any, are three attributes of
+/// the group /labels each, VALUE.name, VALUE.colour ("#rrggbb") and VALUE.no_go (0 or 1). Failures are
+/// InputErrors that name the file; under Hdf5Lock. Throws std::invalid_argument for a key that is empty,
+/// stands twice or ends in ".unit".
+void write_description(const std::filesystem::path& path, hid_t file, const RunDescription& description);
+/// One more setting, of a new key.
+void add_setting(const std::filesystem::path& path, hid_t file, const RunSetting& setting);
+RunDescription read_description(const std::filesystem::path& path, hid_t file);
 
 }  // namespace osteomill

@@ -7,10 +7,10 @@
 #include "osteomill/device/device.h"
 #include "osteomill/files/input_error.h"
 #include "osteomill/haptics/algorithms.h"
-#include "osteomill/recording/read_recording.h"
+#include "osteomill/recording/describe_run.h"
 #include "osteomill/recording/recorder.h"
+#include "osteomill/recording/recording.h"
 #include "osteomill/recording/replay_recording.h"
-#include "osteomill/recording/session_settings.h"
 #include "osteomill/session/milling_session.h"
 
 namespace osteomill {
@@ -105,7 +105,7 @@ TEST(RepeatMilling, RefusesWhatItCannotRepeat) {
   EXPECT_NE(refusal(fresh_bone(), other).find("'milling.removal_rate'"), std::string::npos);
   other = recording;
   removal_rate(other.sessions[0].start.run)->value = -1.0;
-  EXPECT_NE(refusal(fresh_bone(), other).find("cannot be repeated"), std::string::npos);
+  EXPECT_NE(refusal(fresh_bone(), other).find("cannot be run again"), std::string::npos);
   EXPECT_EQ(refusal(fresh_bone(), recording), "");
 }
 

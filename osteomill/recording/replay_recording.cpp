@@ -11,8 +11,8 @@
 #include "osteomill/files/input_error.h"
 #include "osteomill/milling/burr_mill.h"
 #include "osteomill/milling/cutting_reaction.h"
+#include "osteomill/recording/describe_run.h"
 #include "osteomill/recording/record_columns.h"
-#include "osteomill/recording/session_settings.h"
 #include "osteomill/volume/density_grid.h"
 
 namespace osteomill {
@@ -28,20 +28,33 @@ std::string grid_text(const std::array<int, 3>& dims, const Vec3& spacing_mm) {
                      spacing_mm.x(), spacing_mm.y(), spacing_mm.z());
 }
 
-void require_replayable(const Recording& recording) {
-  if (recording.records.empty()) refuse(recording, "holds no ticks");
-  if (recording.sessions.empty())
-    refuse(recording, "is of version 2, which does not hold all that a replay takes");
+void require_whole(const Recording& recording) {
+  if (recording.sessions.empty()) refuse(recording, "holds no ticks");
   if (recording.dropped > 0)
-    refuse(recording, fmt::format("lost {} ticks, so it cannot be replayed", recording.dropped));
-  if (!recording.sessions.front().start.goes_on_from.empty())
-    refuse(recording, "goes on from " + recording.sessions.front().start.goes_on_from);
+    refuse(recording, fmt::format("lost {} ticks, so they cannot be run again", recording.dropped));
+  if (const std::string& before = recording.sessions.front().start.goes_on_from; !before.empty())
+    refuse(recording, "goes on from " + before + ", without which it cannot be run again");
+}
+
+std::size_t end_of(const Recording& recording, std::size_t session) {
+  return session + 1 < recording.sessions.size() ? recording.sessions[session + 1].first
+                                                 : recording.records.size();
 }
 
 // From the scan.
 void begin_at(const SessionStart& start, Volume& bone) {
   bone.set_isovalue(start.run.isovalue);
   for (DensityBlock brick : start.bricks) swap_densities(bone, brick);
+}
+
+// Of settings that may be out of range.
+template <typename Make>
+auto made(const Recording& recording, const Make& make) {
+  try {
+    return make();
+  } catch (const std::invalid_argument& error) {
+    refuse(recording, fmt::format("cannot be run again: {}", error.what()));
+  }
 }
 
 std::unique_ptr<MillingSession> session_at(const Volume& scan, const SessionStart& start,
@@ -51,16 +64,14 @@ std::unique_ptr<MillingSession> session_at(const Volume& scan, const SessionStar
   if (algorithm == nullptr) refuse(recording, "its algorithm " + run.algorithm.name + " is not known here");
   auto [setup, densities] = session_settings(run, recording.path);
   setup.algorithm = *algorithm;
-  try {
-    auto bone = std::make_shared<Volume>(scan);
+  auto bone = std::make_shared<Volume>(scan);
+  return made(recording, [&, &setup = setup, &densities = densities] {
     begin_at(start, *bone);
     auto session = std::make_unique<MillingSession>(std::move(bone), densities, setup);
     session->count_removed_from(start.removed_mm3);
     session->take_over(start.taken_over);
     return session;
-  } catch (const std::invalid_argument& error) {
-    refuse(recording, fmt::format("cannot be replayed: {}", error.what()));
-  }
+  });
 }
 
 TickRecord tick_again(MillingSession& session, const TickRecord& recorded) {
@@ -87,15 +98,6 @@ std::optional<std::string> difference_of(const TickRecord& recorded, const TickR
   return std::nullopt;
 }
 
-BurrMill make_mill(const Recording& recording, const SessionSettings& session, const GridGeometry& geometry) {
-  try {
-    return BurrMill(geometry, session.setup.tool.burr_radius_mm, session.densities,
-                    milling_settings(session.setup));
-  } catch (const std::invalid_argument& error) {
-    refuse(recording, fmt::format("cannot be repeated: {}", error.what()));
-  }
-}
-
 void require_same_removal(const Recording& recording, std::size_t tick, double removed_mm3) {
   const double recorded_mm3 = recording.records[tick].removed_mm3;
   if (removed_mm3 == recorded_mm3) return;
@@ -109,21 +111,16 @@ void require_same_removal(const Recording& recording, std::size_t tick, double r
                                 recorded_mm3, removed_mm3));
 }
 
-// Of version 2, whose recordings hold one session and begin with the scan.
-std::vector<RecordedSession> sessions_of(const Recording& recording) {
-  if (!recording.sessions.empty()) return recording.sessions;
-  return {{0, {recording.description, {}, 0, {}, ""}}};
-}
-
-void repeat_session(Volume& volume, const Recording& recording, const RecordedSession& session,
-                    std::size_t end) {
-  const SessionStart& start = session.start;
+void repeat_session(Volume& volume, const Recording& recording, std::size_t number) {
+  const auto& [first, start] = recording.sessions[number];
   const SessionSettings settings = session_settings(start.run, recording.path);
   const MillingSettings milling = milling_settings(settings.setup);
-  BurrMill mill = make_mill(recording, settings, volume.geometry());
+  BurrMill mill = made(recording, [&] {
+    return BurrMill(volume.geometry(), settings.setup.tool.burr_radius_mm, settings.densities, milling);
+  });
   begin_at(start, volume);
   double removed_mm3 = start.removed_mm3;
-  for (std::size_t tick = session.first; tick < end; ++tick) {
+  for (std::size_t tick = first; tick < end_of(recording, number); ++tick) {
     const TickRecord& record = recording.records[tick];
     if (!record.paused) {
       const Vec3 paying_W_N =
@@ -149,16 +146,15 @@ void require_made_with(const Recording& recording, const Volume& scan) {
 }
 
 void replay_recording(const Volume& scan, const Recording& recording, const Replay& replay) {
-  require_replayable(recording);
+  require_whole(recording);
+  if (recording.records.empty()) refuse(recording, "holds no ticks");
   require_made_with(recording, scan);
   for (std::size_t n = 0; n < recording.sessions.size(); ++n) {
     SessionStart start = recording.sessions[n].start;
     if (replay.as) start.run = replay.as(start.run);
     const auto session = session_at(scan, start, recording, replay);
     if (replay.begun) replay.begun(start, *session);
-    const std::size_t end =
-        n + 1 < recording.sessions.size() ? recording.sessions[n + 1].first : recording.records.size();
-    for (std::size_t row = recording.sessions[n].first; row < end; ++row) {
+    for (std::size_t row = recording.sessions[n].first; row < end_of(recording, n); ++row) {
       const TickRecord& recorded = recording.records[row];
       TickRecord now = tick_again(*session, recorded);
       now.session = recorded.session;
@@ -195,17 +191,11 @@ Verification verify_recording(const Volume& scan, const Recording& recording,
 
 void repeat_milling(Volume& volume, const Recording& recording) {
   require_made_with(recording, volume);
-  if (recording.dropped > 0) {
-    refuse(recording, fmt::format("lost {} ticks, so its milling cannot be repeated", recording.dropped));
-  }
+  require_whole(recording);
   const Volume scan = volume;
-  const std::vector<RecordedSession> sessions = sessions_of(recording);
-  if (const std::string& before = sessions.front().start.goes_on_from; !before.empty())
-    refuse(recording, "goes on from other milling, that of " + before);
-  for (std::size_t n = 0; n < sessions.size(); ++n) {
+  for (std::size_t n = 0; n < recording.sessions.size(); ++n) {
     if (n > 0) volume = scan;
-    repeat_session(volume, recording, sessions[n],
-                   n + 1 < sessions.size() ? sessions[n + 1].first : recording.records.size());
+    repeat_session(volume, recording, n);
   }
   volume.set_isovalue(scan.isovalue());
 }

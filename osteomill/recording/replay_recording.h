@@ -32,7 +32,7 @@ struct Replay {
 /// Runs the recording's ticks again through the same code as any session's: what the device, its spindle and
 /// its operator did comes from the recording, all else is computed. Every session begins from the bone, the
 /// tool and the wrench that it began from. Throws InputError, naming the recording, where that cannot be: it
-/// is of another scan or of version 2, lost ticks, or what it goes by is unknown here or out of range.
+/// is of another scan, lost ticks, or what it goes by is unknown here or out of range.
 void replay_recording(const Volume& scan, const Recording& recording, const Replay& replay);
 
 /// Where a recording and its replay first differ.

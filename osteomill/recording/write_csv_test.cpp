@@ -1,5 +1,3 @@
-#include "osteomill/recording/write_csv.h"
-
 #include <cstdlib>
 #include <fstream>
 #include <locale>
@@ -9,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "osteomill/files/input_error.h"
+#include "osteomill/recording/record_columns.h"
 
 namespace osteomill {
 namespace {

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "osteomill/report/gnuplot.h"
-#include "osteomill/session/label_count.h"
+#include "osteomill/session/tick_counts.h"
 
 namespace osteomill {
 

@@ -1,6 +1,6 @@
-#include "osteomill/session/label_count.h"
-
 #include <gtest/gtest.h>
+
+#include "osteomill/session/tick_counts.h"
 
 namespace osteomill {
 namespace {

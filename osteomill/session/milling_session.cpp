@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <utility>
 
 namespace osteomill {
@@ -29,11 +30,37 @@ double share_sent(const Vec3& asked, const Vec3& sent) {
   return sent == asked || asked.isZero(0) ? 1 : std::clamp(sent.dot(asked) / asked.squaredNorm(), 0.0, 1.0);
 }
 
+constexpr double kLoneTick_s = 1e-3;
+
+double tick_length_s(const std::vector<TrajectoryPoint>& trajectory, std::size_t n) {
+  if (trajectory.size() < 2) return kLoneTick_s;
+  const std::size_t end = n == 0 ? 1 : n;
+  return trajectory[end].time_s - trajectory[end - 1].time_s;
+}
+
+constexpr double kMax_hz = 250;
+
 }  // namespace
+
+double vibration_hz(double spindle_speed_rpm) {
+  const double turns_per_s = spindle_speed_rpm / 60;
+  return turns_per_s / std::max(1.0, std::ceil(turns_per_s / kMax_hz));
+}
+
+Vec3 Vibration::force_N(const Pose& X_WT, double burr_force_N, double dt_s) {
+  if (!settings_.on || !(burr_force_N > 0) || !std::isfinite(burr_force_N)) return Vec3::Zero();
+  turns_ += hz_ * dt_s;
+  turns_ -= std::floor(turns_);
+  const double amplitude_N = std::min(settings_.force_share * burr_force_N, settings_.max_N);
+  const double angle = 2 * std::numbers::pi * turns_;
+  return X_WT.orientation * Vec3(amplitude_N * std::cos(angle), amplitude_N * std::sin(angle), 0);
+}
 
 MillingSession::MillingSession(std::shared_ptr<Volume> bone, const BoneDensities& densities,
                                const MillingSetup& setup)
     : volume_(workable(setup.tool, std::move(bone))),
+      setup_(setup),
+      densities_(densities),
       algorithm_(make_algorithm(setup.algorithm, setup.haptics)),
       milling_(milling_settings(setup)),
       mill_(volume_->geometry(), setup.tool.burr_radius_mm, densities, milling_),
@@ -168,6 +195,16 @@ void MillingSession::mill(const HapticStep& step, bool spindle_on, double dt_s) 
   // Nothing is written where nothing is milled: then another thread may read it (LiveSession::hold_bone).
   if (cut.removed_mm3 > 0) removed_mm3_ += cut.removed_mm3;
   if (!cut.change.voxels.empty()) algorithm_->volume_changed(cut.change);
+}
+
+void replay(MillingSession& session, const std::vector<TrajectoryPoint>& trajectory,
+            const std::function<void(const TickRecord&)>& record) {
+  PosedDevice device;
+  for (std::size_t n = 0; n < trajectory.size(); ++n) {
+    const TrajectoryPoint& point = trajectory[n];
+    device.put(point.X_WD);
+    record(session.tick(device, point.time_s, tick_length_s(trajectory, n), point.milling));
+  }
 }
 
 }  // namespace osteomill

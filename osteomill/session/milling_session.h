@@ -1,9 +1,12 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "osteomill/device/device.h"
+#include "osteomill/device/trajectory.h"
 #include "osteomill/haptics/haptic_algorithm.h"
 #include "osteomill/milling/burr_mill.h"
 #include "osteomill/milling/cutting_reaction.h"
@@ -12,6 +15,25 @@
 #include "osteomill/session/tick_record.h"
 
 namespace osteomill {
+
+/// How often a second the force goes round: the spindle's turns, divided by the least whole number that
+/// brings them to at most 250 Hz, which hands feel best and a device at 1 kHz can still render.
+double vibration_hz(double spindle_speed_rpm);
+
+/// A force that goes round the shaft, as long as the burr cuts. Safe in the haptic tick.
+class Vibration {
+ public:
+  Vibration(const VibrationSettings& settings, double spindle_speed_rpm)
+      : settings_(settings), hz_(vibration_hz(spindle_speed_rpm)) {}
+
+  /// In W, `dt_s` after the last one.
+  Vec3 force_N(const Pose& X_WT, double burr_force_N, double dt_s);
+
+ private:
+  VibrationSettings settings_;
+  double hz_;
+  double turns_ = 0;
+};
 
 /// What a session leaves to the one that goes on from it: where its simulated tool is, outside the bone (a
 /// session that begins at the device, which may have sunk into it, has nothing), and what the hand feels.
@@ -67,6 +89,9 @@ class MillingSession {
   const Volume& volume() const { return *volume_; }
   const std::shared_ptr<Volume>& shared_volume() const { return volume_; }
   const HapticAlgorithm& algorithm() const { return *algorithm_; }
+  /// As it was made with.
+  const MillingSetup& setup() const { return setup_; }
+  const BoneDensities& densities() const { return densities_; }
 
  private:
   TickRecord begin_record(Device& device, double time_s, double dt_s);
@@ -83,6 +108,8 @@ class MillingSession {
 
   // Behind a pointer since the algorithm keeps its address.
   std::shared_ptr<Volume> volume_;
+  MillingSetup setup_;
+  BoneDensities densities_;
   std::unique_ptr<HapticAlgorithm> algorithm_;
   MillingSettings milling_;
   BurrMill mill_;
@@ -98,5 +125,10 @@ class MillingSession {
   bool let_go_asked_ = false;
   bool place_asked_ = false;
 };
+
+/// Runs the session along the trajectory, a tick a row, each as long as the time since the row before (the
+/// first as long as the second, or 1 ms where it is alone); calls `record` after each tick.
+void replay(MillingSession& session, const std::vector<TrajectoryPoint>& trajectory,
+            const std::function<void(const TickRecord&)>& record);
 
 }  // namespace osteomill

@@ -4,11 +4,19 @@
 
 #include "osteomill/haptics/algorithms.h"
 #include "osteomill/milling/burr_mill.h"
-#include "osteomill/session/vibration.h"
 #include "osteomill/session/wrench_guard.h"
 #include "osteomill/tool/milling_tool.h"
 
 namespace osteomill {
+
+/// The vibration that a cutting burr gives the hand (in the paper; its force is in earlier work, so this one
+/// is this project's own).
+struct VibrationSettings {
+  bool on = false;
+  /// Its amplitude as a share of the force with which the burr presses, and the most it may be.
+  double force_share = 0.08;
+  double max_N = 0.3;
+};
 
 /// Everything that can be chosen for milling a bone, beside the bone.
 struct MillingSetup {

@@ -1,5 +1,3 @@
-#include "osteomill/session/passivity_observer.h"
-
 #include <algorithm>
 #include <limits>
 

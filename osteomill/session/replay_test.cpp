@@ -1,9 +1,8 @@
-#include "osteomill/session/replay.h"
-
 #include "tests/shapes.h"
 #include <gtest/gtest.h>
 
 #include "osteomill/haptics/algorithms.h"
+#include "osteomill/session/milling_session.h"
 
 namespace osteomill {
 namespace {

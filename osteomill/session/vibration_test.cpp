@@ -1,6 +1,6 @@
-#include "osteomill/session/vibration.h"
-
 #include <gtest/gtest.h>
+
+#include "osteomill/session/milling_session.h"
 
 namespace osteomill {
 namespace {

@@ -8,7 +8,7 @@
 #include <AL/alext.h>
 #include <gtest/gtest.h>
 
-#include "osteomill/sound/sound_stream.h"
+#include "osteomill/sound/spindle_sound.h"
 
 namespace osteomill {
 namespace {

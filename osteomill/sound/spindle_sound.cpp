@@ -1,12 +1,24 @@
 #include "osteomill/sound/spindle_sound.h"
 
 #include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <numbers>
+#include <thread>
+
+#include <AL/al.h>
+#include <AL/alc.h>
+#include <fcntl.h>
+#include <unistd.h>
 
 namespace osteomill {
 
 namespace {
+
+using namespace std::chrono_literals;
 
 constexpr double kSecondsPerMinute = 60;
 // A motor under full load gives way by this share.
@@ -23,6 +35,29 @@ constexpr double kHalfTone = 0.12;
 double sine(double turns) {
   return std::sin(2 * std::numbers::pi * turns);
 }
+
+// Pieces of 256 samples: longer ones make the sound lag and stutter.
+constexpr ALCint kRefresh_hz = SoundStream::kSampleRate_hz / 256;
+
+// The libraries below OpenAL complain on standard error of a machine without sound, where nothing is wrong.
+class QuietStderr {
+ public:
+  QuietStderr() : kept_(dup(STDERR_FILENO)) {
+    const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
+    if (kept_ >= 0 && nowhere >= 0) dup2(nowhere, STDERR_FILENO);
+    if (nowhere >= 0) close(nowhere);
+  }
+  ~QuietStderr() {
+    if (kept_ < 0) return;
+    dup2(kept_, STDERR_FILENO);
+    close(kept_);
+  }
+  QuietStderr(const QuietStderr&) = delete;
+  QuietStderr& operator=(const QuietStderr&) = delete;
+
+ private:
+  int kept_;
+};
 
 }  // namespace
 
@@ -58,6 +93,82 @@ void SpindleSound::render(const SpindleState& state, std::span<float> samples) {
     const double hiss = kNoiseLoudness * load_ * static_cast<double>(noise());
     sample = static_cast<float>(loudness_ * ((kIdleLoudness + kLoadLoudness * load_) * tone + hiss));
   }
+}
+
+void SoundStream::fill(unsigned buffer, const SpindleState& state) {
+  sound_.render(state, samples_);
+  for (std::size_t n = 0; n < kSamples; ++n) {
+    words_[n] = static_cast<std::int16_t>(std::lround(32000 * samples_[n]));
+  }
+  alBufferData(buffer, AL_FORMAT_MONO16, words_.data(), static_cast<ALsizei>(sizeof(words_)), kSampleRate_hz);
+  alSourceQueueBuffers(source_, 1, &buffer);
+}
+
+SoundStream::SoundStream() {
+  alGenSources(1, &source_);
+  alGenBuffers(static_cast<ALsizei>(buffers_.size()), buffers_.data());
+  for (const unsigned buffer : buffers_) fill(buffer, {});
+  alSourcePlay(source_);
+}
+
+SoundStream::~SoundStream() {
+  alSourceStop(source_);
+  alDeleteSources(1, &source_);
+  alDeleteBuffers(static_cast<ALsizei>(buffers_.size()), buffers_.data());
+}
+
+void SoundStream::feed(const SpindleState& state) {
+  ALint played = 0;
+  alGetSourcei(source_, AL_BUFFERS_PROCESSED, &played);
+  for (; played > 0; --played) {
+    ALuint buffer = 0;
+    alSourceUnqueueBuffers(source_, 1, &buffer);
+    fill(buffer, state);
+  }
+  // It stops by itself where it ran dry.
+  ALint doing = AL_PLAYING;
+  alGetSourcei(source_, AL_SOURCE_STATE, &doing);
+  if (doing != AL_PLAYING) alSourcePlay(source_);
+}
+
+struct SoundPlayer::Impl {
+  std::atomic<double> speed_rpm{0};
+  std::atomic<double> load{0};
+  std::atomic<bool> stopping{false};
+  ALCdevice* device = nullptr;
+  ALCcontext* context = nullptr;
+  std::thread thread;
+
+  void play() {
+    SoundStream stream;
+    while (!stopping.load()) {
+      stream.feed({speed_rpm.load(std::memory_order_relaxed), load.load(std::memory_order_relaxed)});
+      std::this_thread::sleep_for(8ms);
+    }
+  }
+};
+
+SoundPlayer::SoundPlayer() : impl_(std::make_unique<Impl>()) {
+  const QuietStderr quiet;
+  impl_->device = alcOpenDevice(nullptr);
+  if (impl_->device == nullptr) return;
+  const ALCint wanted[] = {ALC_FREQUENCY, SoundStream::kSampleRate_hz, ALC_REFRESH, kRefresh_hz, 0};
+  impl_->context = alcCreateContext(impl_->device, wanted);
+  if (impl_->context == nullptr || alcMakeContextCurrent(impl_->context) == ALC_FALSE) return;
+  impl_->thread = std::thread([this] { impl_->play(); });
+}
+
+SoundPlayer::~SoundPlayer() {
+  impl_->stopping = true;
+  if (impl_->thread.joinable()) impl_->thread.join();
+  alcMakeContextCurrent(nullptr);
+  if (impl_->context != nullptr) alcDestroyContext(impl_->context);
+  if (impl_->device != nullptr) alcCloseDevice(impl_->device);
+}
+
+void SoundPlayer::set(const SpindleState& state) {
+  impl_->speed_rpm.store(state.speed_rpm, std::memory_order_relaxed);
+  impl_->load.store(state.load, std::memory_order_relaxed);
 }
 
 }  // namespace osteomill

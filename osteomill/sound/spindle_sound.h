@@ -1,6 +1,9 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 
 namespace osteomill {
@@ -36,6 +39,49 @@ class SpindleSound {
   double turns_ = 0;
   std::uint32_t noise_ = 1;
   float smooth_noise_ = 0;
+};
+
+/// Queues a spindle's sound to the OpenAL context that is current, some 70 ms ahead. For one thread.
+class SoundStream {
+ public:
+  static constexpr int kSampleRate_hz = 44100;
+
+  SoundStream();
+  ~SoundStream();
+  SoundStream(const SoundStream&) = delete;
+  SoundStream& operator=(const SoundStream&) = delete;
+
+  /// To be called at least every 15 ms or so: fills what has been played with what the spindle does now.
+  void feed(const SpindleState& state);
+
+ private:
+  static constexpr std::size_t kSamples = 768;
+
+  void fill(unsigned buffer, const SpindleState& state);
+
+  SpindleSound sound_{kSampleRate_hz};
+  // OpenAL's names.
+  unsigned source_ = 0;
+  std::array<unsigned, 4> buffers_{};
+  std::array<float, kSamples> samples_{};
+  std::array<std::int16_t, kSamples> words_{};
+};
+
+/// Plays a spindle's sound on the system's sound device from a thread of its own. Without a device nothing is
+/// heard, and nothing is wrong.
+class SoundPlayer {
+ public:
+  SoundPlayer();
+  ~SoundPlayer();
+  SoundPlayer(const SoundPlayer&) = delete;
+  SoundPlayer& operator=(const SoundPlayer&) = delete;
+
+  /// From one thread; never waits.
+  void set(const SpindleState& state);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace osteomill

@@ -10,6 +10,7 @@ struct MillingTool {
   double burr_radius_mm = 1.5;
   double shaft_radius_mm = 1.0;
   double shaft_length_mm = 25.0;
+  friend bool operator==(const MillingTool&, const MillingTool&) = default;
 };
 
 /// Throws std::invalid_argument, saying which, where a size is not positive and finite.

@@ -23,7 +23,7 @@ value() { sed -n "s/^$1\.$2=//p" said; }
 is() { [ "$(value "$1" "$2")" = "$3" ] || fail "at $1, $2 is '$(value "$1" "$2")' and not '$3'"; }
 shows() { value "$1" shown | grep -qF "[$2]" || fail "at $1 there is no '$2'"; }
 hides() { ! value "$1" shown | grep -qF "[$2]" || fail "at $1 there is still '$2'"; }
-autosaves() { find state -name '*.milled' 2>/dev/null | wc -l; }
+autosaves() { find state -name '*.h5' 2>/dev/null | wc -l; }
 mill="wait 0.2 ;; click S ;; glide 640 750 0 ;; key b ;; wait 0.2 ;; key t ;; wheel 26 0.6 ;; key space ;; wait 0.6 ;; key space ;; key t ;; wait 0.2"
 
 # --- Closing, resetting, another scan ---------------------------------------------------------------------------

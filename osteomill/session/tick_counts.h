@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,6 +10,18 @@
 #include "osteomill/volume/label_map.h"
 
 namespace osteomill {
+
+/// Counts the ticks whose wrench could not be sent as it was. `add` is safe in the haptic tick.
+class FaultCount {
+ public:
+  void add(const TickRecord& record);
+  /// What to tell people, in one sentence; nothing where there were none. Not for the tick.
+  std::optional<std::string> sentence() const;
+
+ private:
+  // Of each kind.
+  std::array<int, static_cast<std::size_t>(WrenchFault::eased) + 1> ticks_{};
+};
 
 /// How much of each label was removed, when and with what force, from every tick in turn. Not for the tick.
 class LabelCount {
@@ -26,8 +40,10 @@ class LabelCount {
     int contacts = 0;
   };
 
-  LabelCount() = default;
   explicit LabelCount(std::vector<Label> labels) : labels_(std::move(labels)), entries_(labels_.size()) {}
+  /// Of a bone's labels; null where it has none.
+  explicit LabelCount(const std::shared_ptr<const LabelMap>& map = nullptr)
+      : LabelCount(map ? map->labels() : std::vector<Label>{}) {}
 
   /// Returns the no-go label with which a contact begins in this tick, or null.
   const Label* add(const TickRecord& record);

@@ -1,10 +1,28 @@
-#include "osteomill/session/label_count.h"
+#include "osteomill/session/tick_counts.h"
 
 #include <algorithm>
 
 #include <fmt/core.h>
 
 namespace osteomill {
+
+void FaultCount::add(const TickRecord& record) {
+  ++ticks_[static_cast<std::size_t>(record.fault)];
+}
+
+std::optional<std::string> FaultCount::sentence() const {
+  using enum WrenchFault;
+  const auto of = [&](auto... faults) { return (ticks_[static_cast<std::size_t>(faults)] + ...); };
+  const int clamped = of(force_clamped, torque_clamped, force_and_torque_clamped);
+  const int wrong = of(not_finite), no_pose = of(pose_not_finite);
+  const int jumped_or_late = of(pose_jumped, tick_late);
+  if (clamped + wrong + no_pose + jumped_or_late == 0) return std::nullopt;
+  return fmt::format(
+      "{} wrenches were clamped to the device's limits, {} were not finite and sent as zero, {} were sent as "
+      "zero since the device gave no pose (a clutch that was held among them), {} since it jumped or the "
+      "tick came late",
+      clamped, wrong, no_pose, jumped_or_late);
+}
 
 const Label* LabelCount::add(const TickRecord& record) {
   constexpr double kApart_s = 0.5;

@@ -1,0 +1,106 @@
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "app/commands.h"
+#include "app/positive_number.h"
+#include "app/progress.h"
+#include "app/scan_options.h"
+#include <fmt/core.h>
+
+#include "osteomill/ct/write_nrrd.h"
+#include "osteomill/files/input_error.h"
+#include "osteomill/recording/recording.h"
+#include "osteomill/recording/replay_recording.h"
+#include "osteomill/surface/mesh_file.h"
+#include "osteomill/surface/surface_mesh.h"
+
+namespace osteomill::app {
+
+namespace {
+
+// Of the commands that write a bone to a file, as it was scanned or as a recording left it.
+struct WriteOptions {
+  ScanOptions scan;
+  std::string out;
+  // Empty: as scanned.
+  std::string recording;
+};
+
+void add_write_options(CLI::App& command, WriteOptions& options, const std::string& out_text) {
+  command.group("Scans");
+  add_scan_source(command, options.scan);
+  command.add_option("--out", options.out, "The file to write, " + out_text)->required()->type_name("FILE");
+  command
+      .add_option("--after", options.recording,
+                  "A recording (HDF5) made with this scan: the bone as milled at its end")
+      ->type_name("FILE");
+}
+
+// The isovalue is the one given, else the recording's, else a suggested one.
+LoadedBone load_milled_bone(const WriteOptions& options) {
+  if (options.recording.empty()) return load_bone(options.scan);
+  const Recording recording = read_with_what_came_before(options.recording);
+  ScanOptions scan = options.scan;
+  if (!scan.isovalue) scan.isovalue = recording.description.isovalue;
+  scan.made_into = recording.description.scan_hash;
+  LoadedBone bone = read_bone(scan);
+  repeat_milling(bone.volume, recording);
+  for (const std::string& warning : bone.warnings) warn(warning);
+  return bone;
+}
+
+void run_mesh(const WriteOptions& options) {
+  const std::string& out = options.out;
+  // Before the scan is read.
+  const MeshFormat format = mesh_format_of(out);
+  const LoadedBone bone = load_milled_bone(options);
+  const BrickMesh mesh = mesh_in_one_piece(DensityView(bone.volume));
+  if (mesh.empty()) throw InputError(bone.name, "no bone is left to be meshed");
+  const LabelMap* const labels = bone.volume.labels().get();
+  if (labels != nullptr && !holds_colours(format))
+    warn(out + ": STL holds no colours, so the labels are left out; .ply and .obj keep them");
+  write_mesh(out, mesh, labels);
+  fmt::print("{}\n", out);
+}
+
+void run_save(const WriteOptions& options) {
+  if (std::filesystem::path(options.out).extension() != ".nrrd") {
+    throw InputError(options.out, "a scan is saved as .nrrd");
+  }
+  if (options.recording.empty()) {
+    // No isovalue matters.
+    const Scan scan = open_scan(options.scan);
+    for (const std::string& warning : scan.warnings) warn(scan.name + ": " + warning);
+    write_nrrd(options.out, scan.grid);
+  } else {
+    write_nrrd(options.out, load_milled_bone(options).volume.grid());
+  }
+  fmt::print("{}\n", options.out);
+}
+
+}  // namespace
+
+void add_mesh_command(CLI::App& program) {
+  auto options = std::make_shared<WriteOptions>();
+  CLI::App* command =
+      program.add_subcommand("mesh", "Write the bone's surface as one closed mesh of triangles, in mm");
+  add_write_options(*command, *options, ".stl, .ply or .obj");
+  command->add_option("--iso", options->scan.isovalue, "Isovalue: bone where the density is greater")
+      ->check(not_empty())
+      ->type_name("DENSITY");
+  add_label_options(*command, options->scan.labels);
+  add_quiet_option(*command);
+  command->callback([=] { run_mesh(*options); });
+}
+
+void add_save_command(CLI::App& program) {
+  auto options = std::make_shared<WriteOptions>();
+  CLI::App* command =
+      program.add_subcommand("save", "Save the scan, as it was or as milled, as NRRD in the patient's frame");
+  add_write_options(*command, *options, ".nrrd");
+  add_quiet_option(*command);
+  command->callback([=] { run_save(*options); });
+}
+
+}  // namespace osteomill::app
