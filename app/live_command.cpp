@@ -134,7 +134,7 @@ class Holder {
     const bool well = report.state == DeviceReport::State::ok;
     if (report.state == state_ || (!well && report.since_s < kLasting_s)) return;
     state_ = report.state;
-    warn(hardware_->capabilities().name + (well ? ": gives poses again" : ": " + report.complaint()));
+    warn(hardware_->capabilities().name + (well ? ": all is well again" : ": " + report.complaint()));
   }
 
   DeviceOption option_;

@@ -89,7 +89,7 @@ TEST_F(ChangedRecording, Version2IsReadAsOneSessionThatCannotBeReplayed) {
     set_number(file, "osteomill_recording_version", 2);
     for (const char* later :
          {"columns/paused", "columns/let_go", "columns/placed", "columns/energy_given_Nmm",
-          "columns/cutting_torque_x_Nmm", "bone_hash", "sessions"})
+          "columns/given_share", "columns/cutting_torque_x_Nmm", "bone_hash", "sessions"})
       ASSERT_GE(H5Ldelete(file, later, H5P_DEFAULT), 0) << later;
     for (const char* later : {"scan_hash", "label_map_hash", "date_utc", "host", "origin_mm", "axis_i"})
       ASSERT_GE(H5Adelete(file, later), 0) << later;

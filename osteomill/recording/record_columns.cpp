@@ -79,6 +79,8 @@ constexpr std::array kColumns{
     RecordColumn{"placed", "",
                  "1 where the tool was placed at the device before the tick, contacts forgotten",
                  small_integer, false, OSTEOMILL_FLAG(placed), true},
+    RecordColumn{"given_share", "", "how much of the force that was asked for the device had sent by then",
+                 real, false, OSTEOMILL_FIELD(given_share), true},
     RecordColumn{"cutting_torque_x_Nmm", "N mm", kCuttingTorque, real, false,
                  OSTEOMILL_FIELD(cutting_torque_W_Nmm.x()), true},
     RecordColumn{"cutting_torque_y_Nmm", "N mm", kCuttingTorque, real, false,
