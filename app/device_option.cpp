@@ -64,7 +64,10 @@ WorkspaceSettings workspace_of(const DeviceOption& option, const std::string& de
 std::string degrees_of_freedom(const DeviceCapabilities& device) {
   return fmt::format("{} degrees of freedom sensed, {} driven, up to {:g} N", device.sensed, device.driven,
                      device.limits.force_N) +
-         (device.driven == 6 ? fmt::format(" and {:g} N mm", device.limits.torque_Nmm) : "");
+         (device.driven == 6 ? fmt::format(" and {:g} N mm", device.limits.torque_Nmm) : "") +
+         (device.lets_go_after_s > 0
+              ? fmt::format(", lets go {:.0f} ms after the last wrench", 1e3 * device.lets_go_after_s)
+              : ", no watchdog of its own is known");
 }
 
 }  // namespace

@@ -31,8 +31,8 @@ struct HardwareKind {
 
 /// A device of Force Dimension (delta, omega, sigma, lambda) or a Novint Falcon, by the maker's libdhd or
 /// libdrd, opened at run time (docs/devices.md). `address` is its number among those connected, 0 where
-/// empty. It has to be calibrated already. Its base D: x towards the operator, y to the right, z up. Throws
-/// InputError where the library or the device cannot be had.
+/// empty. It is driven once it is calibrated, by the maker's tool. Its base D: x towards the operator, y to
+/// the right, z up. Throws InputError where the library or the device cannot be had.
 std::unique_ptr<Connection> open_force_dimension(const std::string& address);
 FoundDevice find_force_dimension(const std::string& address);
 
@@ -45,9 +45,8 @@ FoundDevice find_haply(const std::string& address);
 
 /// A device of 3D Systems (Touch, Touch X, Phantom) by the maker's libHD, opened at run time
 /// (docs/devices.md). `address` is the name that it has in the maker's setup, the default device where empty.
-/// It has to be calibrated already. Its base D: x to the right, y up, z towards the operator.
-/// Torque goes to those that drive it, in N mm, or in N m where OSTEOMILL_HD_TORQUE_UNIT is "Nm".
-/// Throws InputError where the library or the device cannot be had. One at a time.
+/// It is driven once it is calibrated. Its base D: x to the right, y up, z towards the operator. Throws
+/// InputError where the library or the device cannot be had. One at a time.
 std::unique_ptr<Connection> open_touch(const std::string& address);
 FoundDevice find_touch(const std::string& address);
 

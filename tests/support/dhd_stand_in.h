@@ -18,12 +18,19 @@ struct DhdStandIn {
   std::array<double, 3> position_m{};
   double frame[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   unsigned buttons = 0;
+  /// As dhdGetStatus has it (dhdc.h, DHD_STATUS_...); force can be enabled where [3], RESET, is 0.
+  std::array<int, 17> status{1, 1, 1, 0, 1, 0, 1};
+  bool has_gripper = true;
+  /// Where it is 0 the device has none.
+  unsigned char longest_watchdog = 255;
 
   int opened = -1;
   bool is_stopped = false;
-  bool has_force = false;
-  bool has_brakes = true;
+  bool is_expert = false;
+  bool emulates_button = false;
+  int watchdog = 0;
   double max_force_N = 0;
+  double max_torque_Nm = 0;
   /// Force (N), torque (N m), force of the gripper (N).
   std::array<double, 7> sent{};
   int times_sent = 0;

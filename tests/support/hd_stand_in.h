@@ -14,6 +14,9 @@ struct HdStandIn {
   std::array<double, 16> transform{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
   int buttons = 0;
 
+  /// Said by hdCheckCalibration: 0x5000 calibrated, 0x5001 needs an update, 0x5002 an operator (hdDefines.h).
+  std::atomic<unsigned> calibration{0x5000};
+  std::atomic<unsigned> updated_style{0};
   /// Said by hdGetError after each frame.
   std::atomic<unsigned> error{0};
   /// The scheduler runs but no longer calls.
