@@ -12,7 +12,6 @@
 #include <CLI/Error.hpp>
 #include <fmt/core.h>
 
-#include "osteomill/device/trajectory.h"
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/files/input_error.h"
 #include "osteomill/haptics/algorithms.h"
@@ -25,6 +24,7 @@
 #include "osteomill/session/label_count.h"
 #include "osteomill/session/milling_setup.h"
 #include "osteomill/session/replay.h"
+#include "osteomill/session/trajectory.h"
 #include "osteomill/volume/densities.h"
 
 namespace osteomill::app {

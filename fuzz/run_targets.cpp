@@ -6,12 +6,12 @@
 #include <CLI/CLI.hpp>
 #include <hdf5.h>
 
-#include "osteomill/device/trajectory.h"
 #include "osteomill/haptics/algorithms.h"
 #include "osteomill/live/milled_bone.h"
 #include "osteomill/recording/read_recording.h"
 #include "osteomill/recording/recording_checksum.h"
 #include "osteomill/recording/recording_file.h"
+#include "osteomill/session/trajectory.h"
 
 namespace osteomill::fuzzing {
 

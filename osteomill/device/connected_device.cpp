@@ -160,11 +160,11 @@ ConnectionStatus ConnectedDevice::send() {
 ConnectionStatus ConnectedDevice::send(double now_s, bool driven) {
   const double lapse_s = connection_->capabilities().lets_go_after_s;
   if (lapse_s > 0 && now_s - sent_s_ > lapse_s) sent_D_ = {};
-  const double passed_s = std::clamp(now_s - sent_s_, 0.0, kRound_s);
+  const double passed_s = std::clamp(now_s - sent_s_, 0.0, settings_.max_age_s);
   const double share = driven ? std::min(1.0, blended_ + passed_s / settings_.blend_s) : 0;
   const Wrench asked = make_safe(asked_.read().wrench_D, capabilities_.limits).wrench;
   const Wrench target{share * asked.force_N, share * asked.torque_Nmm};
-  const Wrench next = approach(sent_D_, target, kRatesForAHand, passed_s);
+  const Wrench next = approach(sent_D_, target, kRatesForAHand, std::min(passed_s, kRound_s));
   const ConnectionStatus status = connection_->write(next);
   if (status == ConnectionStatus::fresh) {
     sent_D_ = next;

@@ -43,10 +43,10 @@ VendorLibrary::VendorLibrary(std::string device, const char* variable,
                                         : "the maker's software cannot be loaded: " + why);
 }
 
-void* VendorLibrary::address(const char* name) const {
+VendorLibrary::Function VendorLibrary::operator[](const char* name) const {
   void* const found = dlsym(library_.get(), name);
   if (found == nullptr) throw InputError(device_, fmt::format("{} has no {}", file_, name));
-  return found;
+  return {found};
 }
 
 }  // namespace osteomill

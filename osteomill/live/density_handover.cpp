@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "osteomill/device/spsc_queue.h"
+#include "osteomill/numbers/spsc_queue.h"
 
 namespace osteomill {
 

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "osteomill/device/real_time.h"
-#include "osteomill/device/spsc_queue.h"
+#include "osteomill/numbers/spsc_queue.h"
 
 namespace osteomill {
 

@@ -3,8 +3,8 @@
 #include <functional>
 #include <vector>
 
-#include "osteomill/device/trajectory.h"
 #include "osteomill/session/milling_session.h"
+#include "osteomill/session/trajectory.h"
 
 namespace osteomill {
 

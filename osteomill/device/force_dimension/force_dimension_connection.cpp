@@ -43,58 +43,33 @@ constexpr std::array kForceIsOff{"has its force off: switch it on by the device'
 // The functions of libdhd 3 that are used, as their manual declares them. A device's number is -1 for the one
 // opened last.
 struct Dhd {
-  explicit Dhd(const VendorLibrary& library)
-      : device_count(library.function<int()>("dhdGetDeviceCount")),
-        open(library.function<int(char)>("dhdOpenID")),
-        close(library.function<int(char)>("dhdClose")),
-        stop(library.function<int(char)>("dhdStop")),
-        last_error(library.function<const char*()>("dhdErrorGetLastStr")),
-        system_name(library.function<const char*(char)>("dhdGetSystemName")),
-        system_type(library.function<int(char)>("dhdGetSystemType")),
-        serial_number(library.function<int(unsigned short*, char)>("dhdGetSerialNumber")),
-        has_wrist(library.function<bool(char)>("dhdHasWrist")),
-        has_active_wrist(library.function<bool(char)>("dhdHasActiveWrist")),
-        has_gripper(library.function<bool(char)>("dhdHasGripper")),
-        emulate_button(library.function<int(unsigned char, char)>("dhdEmulateButton")),
-        enable_expert_mode(library.function<int()>("dhdEnableExpertMode")),
-        disable_expert_mode(library.function<int()>("dhdDisableExpertMode")),
-        set_watchdog(library.function<int(unsigned char, char)>("dhdSetWatchdog")),
-        get_watchdog(library.function<int(unsigned char*, char)>("dhdGetWatchdog")),
-        status(library.function<int(int*, char)>("dhdGetStatus")),
-        set_brakes(library.function<int(int, char)>("dhdSetBrakes")),
-        enable_force(library.function<int(unsigned char, char)>("dhdEnableForce")),
-        set_max_force(library.function<int(double, char)>("dhdSetMaxForce")),
-        set_max_torque(library.function<int(double, char)>("dhdSetMaxTorque")),
-        pose(library.function<int(double*, double*, double*, double (*)[3], char)>(
-            "dhdGetPositionAndOrientationFrame")),
-        button_mask(library.function<unsigned(char)>("dhdGetButtonMask")),
-        set_wrench(library.function<int(double, double, double, double, double, double, double, char)>(
-            "dhdSetForceAndTorqueAndGripperForce")) {}
-
-  int (*device_count)();
-  int (*open)(char);
-  int (*close)(char);
-  int (*stop)(char);
-  const char* (*last_error)();
-  const char* (*system_name)(char);
-  int (*system_type)(char);
-  int (*serial_number)(unsigned short*, char);
-  bool (*has_wrist)(char);
-  bool (*has_active_wrist)(char);
-  bool (*has_gripper)(char);
-  int (*emulate_button)(unsigned char, char);
-  int (*enable_expert_mode)();
-  int (*disable_expert_mode)();
-  int (*set_watchdog)(unsigned char, char);
-  int (*get_watchdog)(unsigned char*, char);
-  int (*status)(int*, char);
-  int (*set_brakes)(int, char);
-  int (*enable_force)(unsigned char, char);
-  int (*set_max_force)(double, char);
-  int (*set_max_torque)(double, char);
-  int (*pose)(double*, double*, double*, double (*)[3], char);
-  unsigned (*button_mask)(char);
-  int (*set_wrench)(double, double, double, double, double, double, double, char);
+  VendorLibrary file{
+      "dhd", "OSTEOMILL_DHD_LIBRARY", {"libdhd.so.3", "libdhd.so", "libdrd.so.3", "libdrd.so"}};
+  int (*device_count)() = file["dhdGetDeviceCount"];
+  int (*open)(char) = file["dhdOpenID"];
+  int (*close)(char) = file["dhdClose"];
+  int (*stop)(char) = file["dhdStop"];
+  const char* (*last_error)() = file["dhdErrorGetLastStr"];
+  const char* (*system_name)(char) = file["dhdGetSystemName"];
+  int (*system_type)(char) = file["dhdGetSystemType"];
+  int (*serial_number)(unsigned short*, char) = file["dhdGetSerialNumber"];
+  bool (*has_wrist)(char) = file["dhdHasWrist"];
+  bool (*has_active_wrist)(char) = file["dhdHasActiveWrist"];
+  bool (*has_gripper)(char) = file["dhdHasGripper"];
+  int (*emulate_button)(unsigned char, char) = file["dhdEmulateButton"];
+  int (*enable_expert_mode)() = file["dhdEnableExpertMode"];
+  int (*disable_expert_mode)() = file["dhdDisableExpertMode"];
+  int (*set_watchdog)(unsigned char, char) = file["dhdSetWatchdog"];
+  int (*get_watchdog)(unsigned char*, char) = file["dhdGetWatchdog"];
+  int (*status)(int*, char) = file["dhdGetStatus"];
+  int (*set_brakes)(int, char) = file["dhdSetBrakes"];
+  int (*enable_force)(unsigned char, char) = file["dhdEnableForce"];
+  int (*set_max_force)(double, char) = file["dhdSetMaxForce"];
+  int (*set_max_torque)(double, char) = file["dhdSetMaxTorque"];
+  int (*pose)(double*, double*, double*, double (*)[3], char) = file["dhdGetPositionAndOrientationFrame"];
+  unsigned (*button_mask)(char) = file["dhdGetButtonMask"];
+  int (*set_wrench)(double, double, double, double, double, double, double,
+                    char) = file["dhdSetForceAndTorqueAndGripperForce"];
 };
 
 // What the library does not say, from the makers' data sheets.
@@ -119,12 +94,6 @@ Model model_of(int system_type) {
   }
   return {0, 0, {8, 100}};
 }
-
-struct Library {
-  VendorLibrary file{
-      "dhd", "OSTEOMILL_DHD_LIBRARY", {"libdhd.so.3", "libdhd.so", "libdrd.so.3", "libdrd.so"}};
-  Dhd dhd{file};
-};
 
 [[noreturn]] void fail(const std::string& reason) {
   throw InputError("dhd", reason);
@@ -216,8 +185,7 @@ class ForceDimensionConnection final : public Connection {
   }
 
  private:
-  Library library_;
-  const Dhd& dhd_ = library_.dhd;
+  Dhd dhd_;
   // Not every device has one.
   void set_watchdog() {
     dhd_.enable_expert_mode();
@@ -262,15 +230,11 @@ std::unique_ptr<Connection> open_force_dimension(const std::string& address) {
 }
 
 // Without opening it, as that would take it from whoever has it.
-FoundDevice find_force_dimension(const std::string& address) {
-  try {
-    const Library library;
-    require_device(library.dhd, number_of(address));
-    const int count = library.dhd.device_count();
-    return {true, fmt::format("{} connected", count == 1 ? "a device" : fmt::format("{} devices", count))};
-  } catch (const InputError& error) {
-    return {false, error.what()};
-  }
+std::string look_for_force_dimension(const std::string& address) {
+  const Dhd dhd;
+  require_device(dhd, number_of(address));
+  const int count = dhd.device_count();
+  return count == 1 ? "a device connected" : fmt::format("{} devices connected", count);
 }
 
 }  // namespace osteomill

@@ -195,10 +195,10 @@ TEST_F(ForceDimension, WhyThereIsNoneIsSaid) {
   device_->fails_in = "dhdEnableForce";
   EXPECT_EQ(refusal(), "dhd: the stand-in fails");
   EXPECT_EQ(device_->opened, -1);
-  EXPECT_TRUE(find_force_dimension("").there);
-  EXPECT_EQ(find_force_dimension("").text, "a device connected");
+  EXPECT_TRUE(hardware_named("dhd")->find("").there);
+  EXPECT_EQ(hardware_named("dhd")->find("").text, "a device connected");
   device_->devices = 0;
-  EXPECT_EQ(find_force_dimension("").text, "dhd: no device is connected");
+  EXPECT_EQ(hardware_named("dhd")->find("").text, "dhd: no device is connected");
 }
 
 TEST_F(ForceDimension, ALibraryThatIsMissingOrAnotherIsSaid) {

@@ -230,12 +230,8 @@ std::unique_ptr<Connection> open_haply(const std::string& address) {
   return std::make_unique<HaplyConnection>(place_of(address));
 }
 
-FoundDevice find_haply(const std::string& address) {
-  try {
-    return {true, HaplyConnection(place_of(address)).capabilities().name};
-  } catch (const InputError& error) {
-    return {false, error.what()};
-  }
+std::string look_for_haply(const std::string& address) {
+  return HaplyConnection(place_of(address)).capabilities().name;
 }
 
 }  // namespace osteomill

@@ -114,7 +114,7 @@ TEST_F(Haply, ASlowServiceGetsNoLargerSteps) {
     {
       ConnectedDevice device([this] { return open_haply(service_.address()); });
       device.start();
-      const auto end = std::chrono::steady_clock::now() + 200ms;
+      const auto end = std::chrono::steady_clock::now() + 250ms;
       for (int n = 0; std::chrono::steady_clock::now() < end; ++n) {
         device.read_pose();
         device.write_wrench({{0, n % 60 < 30 ? 9.0 : -9.0, 0}, Vec3::Zero()});
@@ -248,11 +248,11 @@ TEST_F(Haply, AServiceThatIsMuteIsSilentAndOneThatClosesLost) {
 }
 
 TEST_F(Haply, WhyThereIsNoneIsSaid) {
-  EXPECT_EQ(find_haply(service_.address()).text, "Haply Inverse3 049D");
+  EXPECT_EQ(hardware_named("haply")->find(service_.address()).text, "Haply Inverse3 049D");
   service_.has_device = false;
   EXPECT_EQ(refusal(), "haply:" + service_.address() + ": the service has no Inverse3");
-  EXPECT_EQ(find_haply("127.0.0.1:1").text, "haply:127.0.0.1:1: nothing answers there");
-  EXPECT_EQ(find_haply("nowhere").text, "haply:nowhere: is not of the form HOST:PORT");
+  EXPECT_EQ(hardware_named("haply")->find("127.0.0.1:1").text, "haply:127.0.0.1:1: nothing answers there");
+  EXPECT_EQ(hardware_named("haply")->find("nowhere").text, "haply:nowhere: is not of the form HOST:PORT");
 }
 
 }  // namespace

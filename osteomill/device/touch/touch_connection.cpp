@@ -54,48 +54,24 @@ struct HdError {
 };
 
 struct Hd {
-  explicit Hd(const VendorLibrary& library)
-      : init_device(library.function<unsigned(const char*)>("hdInitDevice")),
-        disable_device(library.function<void(unsigned)>("hdDisableDevice")),
-        begin_frame(library.function<void(unsigned)>("hdBeginFrame")),
-        end_frame(library.function<void(unsigned)>("hdEndFrame")),
-        get_doubles(library.function<void(unsigned, double*)>("hdGetDoublev")),
-        set_doubles(library.function<void(unsigned, const double*)>("hdSetDoublev")),
-        get_integers(library.function<void(unsigned, int*)>("hdGetIntegerv")),
-        get_string(library.function<const char*(unsigned)>("hdGetString")),
-        enable(library.function<void(unsigned)>("hdEnable")),
-        check_calibration(library.function<unsigned()>("hdCheckCalibration")),
-        update_calibration(library.function<void(unsigned)>("hdUpdateCalibration")),
-        get_error(library.function<HdError()>("hdGetError")),
-        error_string(library.function<const char*(unsigned)>("hdGetErrorString")),
-        schedule(library.function<unsigned long(unsigned (*)(void*), void*, unsigned short)>(
-            "hdScheduleAsynchronous")),
-        unschedule(library.function<void(unsigned long)>("hdUnschedule")),
-        start_scheduler(library.function<void()>("hdStartScheduler")),
-        stop_scheduler(library.function<void()>("hdStopScheduler")) {}
-
-  unsigned (*init_device)(const char*);
-  void (*disable_device)(unsigned);
-  void (*begin_frame)(unsigned);
-  void (*end_frame)(unsigned);
-  void (*get_doubles)(unsigned, double*);
-  void (*set_doubles)(unsigned, const double*);
-  void (*get_integers)(unsigned, int*);
-  const char* (*get_string)(unsigned);
-  void (*enable)(unsigned);
-  unsigned (*check_calibration)();
-  void (*update_calibration)(unsigned);
-  HdError (*get_error)();
-  const char* (*error_string)(unsigned);
-  unsigned long (*schedule)(unsigned (*)(void*), void*, unsigned short);
-  void (*unschedule)(unsigned long);
-  void (*start_scheduler)();
-  void (*stop_scheduler)();
-};
-
-struct Library {
   VendorLibrary file{"hd", "OSTEOMILL_HD_LIBRARY", {"libHD.so", "libHD.so.3.4", "libHD.so.3"}};
-  Hd hd{file};
+  unsigned (*init_device)(const char*) = file["hdInitDevice"];
+  void (*disable_device)(unsigned) = file["hdDisableDevice"];
+  void (*begin_frame)(unsigned) = file["hdBeginFrame"];
+  void (*end_frame)(unsigned) = file["hdEndFrame"];
+  void (*get_doubles)(unsigned, double*) = file["hdGetDoublev"];
+  void (*set_doubles)(unsigned, const double*) = file["hdSetDoublev"];
+  void (*get_integers)(unsigned, int*) = file["hdGetIntegerv"];
+  const char* (*get_string)(unsigned) = file["hdGetString"];
+  void (*enable)(unsigned) = file["hdEnable"];
+  unsigned (*check_calibration)() = file["hdCheckCalibration"];
+  void (*update_calibration)(unsigned) = file["hdUpdateCalibration"];
+  HdError (*get_error)() = file["hdGetError"];
+  const char* (*error_string)(unsigned) = file["hdGetErrorString"];
+  unsigned long (*schedule)(unsigned (*)(void*), void*, unsigned short) = file["hdScheduleAsynchronous"];
+  void (*unschedule)(unsigned long) = file["hdUnschedule"];
+  void (*start_scheduler)() = file["hdStartScheduler"];
+  void (*stop_scheduler)() = file["hdStopScheduler"];
 };
 
 // A device that is opened, and none of whose motors has power.
@@ -124,8 +100,7 @@ struct OpenedDevice {
     return fmt::format("3D Systems {} {}", string_of(kDeviceModelType), string_of(kDeviceSerialNumber));
   }
 
-  Library library;
-  const Hd& hd = library.hd;
+  Hd hd;
   unsigned handle;
 };
 
@@ -264,12 +239,8 @@ std::unique_ptr<Connection> open_touch(const std::string& address) {
   return std::make_unique<TouchConnection>(address);
 }
 
-FoundDevice find_touch(const std::string& address) {
-  try {
-    return {true, OpenedDevice(address).name()};
-  } catch (const InputError& error) {
-    return {false, error.what()};
-  }
+std::string look_for_touch(const std::string& address) {
+  return OpenedDevice(address).name();
 }
 
 }  // namespace osteomill

@@ -80,7 +80,7 @@ TEST_F(Touch, SaysWhatItCan) {
 }
 
 TEST_F(Touch, ListingItGivesItsMotorsNoPower) {
-  EXPECT_EQ(find_touch("").text, "3D Systems Touch 0815");
+  EXPECT_EQ(hardware_named("hd")->find("").text, "3D Systems Touch 0815");
   EXPECT_FALSE(device_->has_force);
   EXPECT_EQ(device_->frames, 0);
   EXPECT_FALSE(device_->is_open);
@@ -182,7 +182,7 @@ TEST_F(Touch, ClosingSendsZero) {
 TEST_F(Touch, WhyThereIsNoneIsSaid) {
   EXPECT_EQ(refusal("Right"), "hd: the stand-in fails");
   device_->is_there = false;
-  EXPECT_FALSE(find_touch("").there);
+  EXPECT_FALSE(hardware_named("hd")->find("").there);
   unsetenv("OSTEOMILL_HD_LIBRARY");
   EXPECT_EQ(refusal(),
             "hd: libHD.so of the maker's software is not installed; OSTEOMILL_HD_LIBRARY may name it");

@@ -182,13 +182,9 @@ std::unique_ptr<Connection> open_udp(const std::string& address) {
   return std::make_unique<UdpConnection>(or_default(address));
 }
 
-FoundDevice find_udp(const std::string& address) {
-  try {
-    const std::string at = or_default(address);
-    return {true, fmt::format("{} at {}", Partner(at).capabilities.name, at)};
-  } catch (const InputError& error) {
-    return {false, error.what()};
-  }
+std::string look_for_udp(const std::string& address) {
+  const std::string at = or_default(address);
+  return fmt::format("{} at {}", Partner(at).capabilities.name, at);
 }
 
 }  // namespace osteomill

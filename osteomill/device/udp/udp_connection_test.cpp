@@ -228,11 +228,11 @@ TEST(UdpDevice, WithoutOneItSaysWhy) {
   {
     const Lab lab;
     address = lab.address;
-    const FoundDevice silent = find_udp(address);
+    const FoundDevice silent = hardware_named("udp")->find(address);
     EXPECT_FALSE(silent.there);
     EXPECT_EQ(silent.text, "udp:" + address + ": nothing answers there");
   }
-  EXPECT_EQ(find_udp(address).text, "udp:" + address + ": nothing listens there");
+  EXPECT_EQ(hardware_named("udp")->find(address).text, "udp:" + address + ": nothing listens there");
 }
 
 }  // namespace
