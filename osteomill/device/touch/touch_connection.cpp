@@ -204,7 +204,11 @@ class TouchConnection final : public Connection {
   // In a frame. The motors get power once it is calibrated.
   const char* why_not_driven() {
     const unsigned calibration = hd_.check_calibration();
-    if (calibration == kCalibratesItself) hd_.update_calibration(calibration_style_);
+    if (calibration == kCalibratesItself) {
+      hd_.update_calibration(calibration_style_);
+      // That it could not be is no error of the device: it is asked again in the next frame.
+      hd_.get_error();
+    }
     if (calibration != kCalibrated)
       return "is not calibrated: put its stylus into the inkwell, or calibrate it by the maker's tool";
     if (!has_power_) hd_.enable(kForceOutput);
