@@ -14,7 +14,7 @@ processes=
 end() { kill $processes 2>/dev/null || true; wait $processes 2>/dev/null || true; rm -rf "$folder"; }
 trap end EXIT
 cd "$folder"
-export XDG_CONFIG_HOME=$folder/config ROS_LOG_DIR=$folder/ros ROS_HOSTNAME=localhost
+export PYTHONDONTWRITEBYTECODE=1 XDG_CONFIG_HOME=$folder/config ROS_LOG_DIR=$folder/ros ROS_HOSTNAME=localhost
 port=$((20000 + $$ % 20000))
 export ROS_MASTER_URI=http://localhost:$((port + 1))
 fail() { echo "FAILED: $1"; tail -n 5 roscore said errors bridge arm hand 2>/dev/null || true; exit 1; }

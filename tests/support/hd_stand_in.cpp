@@ -76,7 +76,7 @@ void hdSetDoublev(unsigned parameter, const double* values) {
 void hdGetIntegerv(unsigned parameter, int* values) {
   if (parameter == 0x2000) *values = g_state.buttons;
   if (parameter == 0x2553) *values = 6;
-  if (parameter == 0x2555) *values = 4;
+  if (parameter == 0x2555) *values = 1 | 4;
   if (parameter == 0x2554) *values = g_state.output_dof;
 }
 const char* hdGetString(unsigned parameter) {

@@ -36,6 +36,9 @@ constexpr unsigned kInvalidHandle = 0xffffffff;
 constexpr unsigned kContinue = 1;
 constexpr unsigned kCalibrated = 0x5000;
 constexpr unsigned kCalibratesItself = 0x5001;
+// Styles of calibration that need no operator but for the inkwell; setting the encoders back does.
+constexpr unsigned kByItself = 1 << 1;
+constexpr unsigned kByInkwell = 1 << 2;
 constexpr unsigned short kDefaultPriority = 0xffff / 2;
 // Errors of 0x02.. are of forces (motors too warm, a force or velocity too large): the device goes on.
 constexpr bool is_of_force(unsigned code) {
@@ -163,7 +166,8 @@ class TouchConnection final : public Connection {
     capabilities_.sensed = device_.integer(kInputDof) >= 6 ? 6 : 3;
     capabilities_.driven = device_.integer(kOutputDof) >= 6 ? 6 : 3;
     capabilities_.lets_go_after_s = std::chrono::duration<double>(kLapse).count();
-    calibration_style_ = static_cast<unsigned>(device_.integer(kCalibrationStyle));
+    const auto styles = static_cast<unsigned>(device_.integer(kCalibrationStyle));
+    calibration_style_ = (styles & kByItself) != 0 ? kByItself : styles & kByInkwell;
     double force_N = 0, torque_Nmm = 0;
     hd_.get_doubles(kNominalMaxForce, &force_N);
     if (capabilities_.driven == 6) hd_.get_doubles(kNominalMaxTorque, &torque_Nmm);
@@ -204,7 +208,7 @@ class TouchConnection final : public Connection {
   // In a frame. The motors get power once it is calibrated.
   const char* why_not_driven() {
     const unsigned calibration = hd_.check_calibration();
-    if (calibration == kCalibratesItself) {
+    if (calibration == kCalibratesItself && calibration_style_ != 0) {
       hd_.update_calibration(calibration_style_);
       // That it could not be is no error of the device: it is asked again in the next frame.
       hd_.get_error();
