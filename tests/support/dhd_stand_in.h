@@ -3,7 +3,8 @@
 #include <array>
 #include <string>
 
-/// What the stand-in for libdhd says, and what it was told. A test has it by dlsym("dhd_stand_in").
+/// What the stand-in for libdhd says (names and numbers of dhdc.h, SDK 3.17.5), and what it was told. A test
+/// has it by dlsym("dhd_stand_in").
 struct DhdStandIn {
   int devices = 1;
   bool has_wrist = true;

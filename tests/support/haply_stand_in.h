@@ -19,7 +19,9 @@
 
 namespace osteomill::testing_support {
 
-/// Stands in for Haply's Inverse service: an inventory for who connects, then a state for each text.
+/// Stands in for Haply's Inverse service: an inventory for who connects, then a state for each text, as
+/// docs.haply.co/inverseSDK/service/realtime/websocket-protocol has them (3.5), `status` as
+/// docs.haply.co/inverseSDK/service/api/simulation.
 class HaplyStandIn {
  public:
   explicit HaplyStandIn(int port = 0) {

@@ -3,8 +3,9 @@
 #include <array>
 #include <atomic>
 
-/// What the stand-in for libHD says, and what it was told; its scheduler calls 1000 times a second. A test
-/// has it by dlsym("hd_stand_in"), and changes plain members only while no scheduler runs.
+/// What the stand-in for libHD says (names and numbers of hd.h and hdDefines.h, 3.0), and what it was told;
+/// its scheduler calls 1000 times a second. A test has it by dlsym("hd_stand_in"), and changes plain members
+/// only while no scheduler runs.
 struct HdStandIn {
   bool is_there = true;
   int output_dof = 3;

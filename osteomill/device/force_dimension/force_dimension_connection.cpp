@@ -202,7 +202,7 @@ class ForceDimensionConnection final : public Connection {
     if (dhd_.status(status.data(), id_) < 0) return "does not say whether it is calibrated";
     if (status[kIsReset] != 0) {
       has_begun_ = false;
-      return "is not calibrated: calibrate it by the maker's tool (HapticInit)";
+      return "is not calibrated: calibrate it by the maker's tool (HapticInit), a Falcon by hand";
     }
     const auto is_off = [&] { return status[kHasForce] == 0 || status[kBrakes] != 0; };
     if (is_off() && (!has_begun_ || status[kForceOffCause] == kByWatchdog)) {
