@@ -64,7 +64,10 @@ WorkspaceSettings workspace_of(const DeviceOption& option, const std::string& de
 std::string degrees_of_freedom(const DeviceCapabilities& device) {
   return fmt::format("{} degrees of freedom sensed, {} driven, up to {:g} N", device.sensed, device.driven,
                      device.limits.force_N) +
-         (device.driven == 6 ? fmt::format(" and {:g} N mm", device.limits.torque_Nmm) : "");
+         (device.driven == 6 ? fmt::format(" and {:g} N mm", device.limits.torque_Nmm) : "") +
+         (device.lets_go_after_s > 0
+              ? fmt::format(", lets go {:.0f} ms after the last wrench", 1e3 * device.lets_go_after_s)
+              : ", no watchdog of its own is known");
 }
 
 }  // namespace
@@ -97,9 +100,15 @@ void add_device_option(CLI::App& command, DeviceOption& option) {
       ->type_name("mm");
 }
 
-void add_send_bone_option(CLI::App& command, std::string& address) {
-  command.add_option("--send-bone", address, "The bone as it is milled, by OpenIGTLink, as to 3D Slicer")
+void add_send_options(CLI::App& command, SendOption& option) {
+  command
+      .add_option("--send-bone", option.address,
+                  "The bone as it is milled, and the tool, by OpenIGTLink, as to 3D Slicer")
       ->type_name("HOST:PORT");
+  command.add_option("--send-rate", option.tool_rate_Hz, "How often the tool's place and readings are sent")
+      ->check(positive_number())
+      ->type_name("Hz")
+      ->capture_default_str();
 }
 
 std::unique_ptr<ConnectedDevice> open_device(const DeviceOption& option) {

@@ -33,8 +33,14 @@ struct DeviceOption {
 /// Adds --device, which is `option.device` where it is not given, and how its workspace lies.
 void add_device_option(CLI::App& command, DeviceOption& option);
 
-/// Adds --send-bone: where the bone goes as it is milled (BoneSender), nowhere where that is empty.
-void add_send_bone_option(CLI::App& command, std::string& address);
+/// Where bone and tool go as it is milled (BoneSender), nowhere where that is empty.
+struct SendOption {
+  std::string address;
+  double tool_rate_Hz = 30;
+};
+
+/// Adds --send-bone and --send-rate.
+void add_send_options(CLI::App& command, SendOption& option);
 
 /// The haptic hardware that was asked for, its workspace as it was kept for it by its name, with what was
 /// given of it now, which is kept as well; says on standard error which device that is. Null for a hand

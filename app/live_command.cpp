@@ -38,7 +38,7 @@ struct LiveOptions {
   std::string record;
   DeviceOption device{kSimulated};
   bool spindle = false;
-  std::string send_bone;
+  SendOption send;
 };
 
 void print_times(const char* what, const TimePercentiles& times) {
@@ -133,7 +133,7 @@ class Holder {
     const bool well = report.state == DeviceReport::State::ok;
     if (report.state == state_ || (!well && report.since_s < kLasting_s)) return;
     state_ = report.state;
-    warn(hardware_->capabilities().name + (well ? ": gives poses again" : ": " + report.complaint()));
+    warn(hardware_->capabilities().name + (well ? ": all is well again" : ": " + report.complaint()));
   }
 
   DeviceOption option_;
@@ -146,7 +146,7 @@ class Holder {
 };
 
 Seen run_for(LiveMilling& milling, double seconds, const std::shared_ptr<const LabelMap>& labels,
-             Holder& holder) {
+             Holder& holder, BoneSender* sender) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
   double passed_s = 0;
@@ -166,6 +166,7 @@ Seen run_for(LiveMilling& milling, double seconds, const std::shared_ptr<const L
     passed_s = std::chrono::duration<double>(Clock::now() - start).count();
     take();
     holder.update(kEvery_s);
+    if (sender != nullptr) sender->show_tool(milling.state().record);
     show_progress("live", passed_s / seconds);
   }
   milling.stop();
@@ -191,7 +192,8 @@ void run_live(LiveOptions options, const std::string& command_line) {
   LiveMilling milling(std::move(prepared), device);
   if (options.spindle) milling.set_spindle(true);
   std::optional<BoneSender> sender;
-  if (!options.send_bone.empty()) sender.emplace(milling.follower(), options.send_bone);
+  if (!options.send.address.empty())
+    sender.emplace(milling.follower(), options.send.address, options.send.tool_rate_Hz);
   std::optional<EntryPictures> pictures;
   if (!options.record.empty()) {
     pictures.emplace(*bone, densities.reference, entry, events_on_terminal(), !options.scan.scan.empty());
@@ -205,9 +207,10 @@ void run_live(LiveOptions options, const std::string& command_line) {
   }
   milling.start();
   if (!milling.refused_real_time().empty()) warn(milling.refused_real_time());
-  Seen seen = run_for(milling, options.seconds, labels, holder);
+  Seen seen = run_for(milling, options.seconds, labels, holder, sender ? &*sender : nullptr);
   if (milling.recording()) end_recording(milling, seen);
-  if (sender && !sender->is_connected()) warn("--send-bone " + options.send_bone + ": the receiver has gone");
+  if (sender && !sender->is_connected())
+    warn("--send-bone " + options.send.address + ": the receiver has gone");
   if (const auto said = seen.faults.sentence()) warn(setup.algorithm.id.name + ": " + *said);
   print_timing(milling.timing());
   fmt::print("removed      {:.2f} mm³, {} bricks of the surface meshed\n", milling.state().record.removed_mm3,
@@ -237,7 +240,7 @@ void add_live_command(CLI::App& program, const std::string& command_line) {
   command->add_option("--record", options->record, "A recording (HDF5) of every tick")->type_name("FILE");
   add_device_option(*command, options->device);
   command->add_flag("--spindle", options->spindle, "The spindle turns without a button of the device");
-  add_send_bone_option(*command, options->send_bone);
+  add_send_options(*command, options->send);
   add_quiet_option(*command);
   command->callback([=] {
     apply_config_file(*command);

@@ -12,7 +12,6 @@
 #include <CLI/Error.hpp>
 #include <fmt/core.h>
 
-#include "osteomill/device/trajectory.h"
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/files/input_error.h"
 #include "osteomill/haptics/algorithms.h"
@@ -24,6 +23,7 @@
 #include "osteomill/session/milling_session.h"
 #include "osteomill/session/milling_setup.h"
 #include "osteomill/session/tick_counts.h"
+#include "osteomill/session/trajectory.h"
 #include "osteomill/volume/densities.h"
 
 namespace osteomill::app {

@@ -4,10 +4,13 @@
  *     ./udp_device [PORT [LOG]]          47117 where none is given; LOG gets a line for every millisecond
  *     osteomill live --device udp:127.0.0.1:47117
  *
- * Replace read_handle() and drive_motors(). As they stand a hand lowers the handle by 4 mm and lifts it again every
- * four seconds, and nothing is driven. Everything else is the protocol: send states while wrenches come, never drive a
- * wrench that is old, never change it faster than a hand can bear. Linux; little-endian, as the datagrams are. */
+ * Replace describe(), read_handle() and drive_motors(), here or in a file that defines OWN_DEVICE and includes this one
+ * (as chai3d_bridge.cpp does). As they stand a hand lowers the handle by 4 mm and lifts it again every four seconds, and
+ * nothing is driven. Everything else is the protocol: send states while wrenches come, never drive a wrench that is old,
+ * never change it faster than a hand can bear. Linux; little-endian, as the datagrams are. */
+#ifndef _GNU_SOURCE
 #define _GNU_SOURCE /* ppoll */
+#endif
 #include <arpa/inet.h>
 #include <errno.h>
 #include <math.h>
@@ -38,7 +41,7 @@ struct answer {
 struct state {
   struct head head;
   double position_mm[3], orientation_wxyz[4];
-  uint32_t buttons, reserved;
+  uint32_t buttons, not_driven;
 };
 struct wrench {
   struct head head;
@@ -68,12 +71,28 @@ static struct head head_of(uint16_t kind, uint32_t sequence) {
   return head;
 }
 
-/* Yours: where the handle is, in mm from the middle of its workspace; x to the operator's right, y up, z towards them. */
-static void read_handle(double time_s, struct state *state) {
+#ifdef OWN_DEVICE
+static void describe(struct answer *answer);
+static int read_handle(double time_s, struct state *state);
+static void drive_motors(const double force_N[3], const double torque_Nmm[3]);
+#else
+/* Yours: what it is called and can do. */
+static void describe(struct answer *answer) {
+  strcpy(answer->name, "example device");
+  answer->sensed = answer->driven = 6;
+  answer->max_force_N = 10;
+  answer->max_torque_Nmm = 200;
+}
+
+/* Yours: where the handle is, in mm from the middle of its workspace; x to the operator's right, y up, z towards them.
+ * 0 where nothing was measured since the last time. */
+static int read_handle(double time_s, struct state *state) {
   const double pi = 3.14159265358979;
   state->position_mm[1] = 2 * cos(0.5 * pi * time_s) - 2;
   state->orientation_wxyz[0] = 1;
-  state->buttons = 1; /* 1: spindle, 2: clutch */
+  state->buttons = 1;    /* 1: spindle, 2: clutch */
+  state->not_driven = 0; /* 1: it is not calibrated, 2: its force is off */
+  return 1;
 }
 
 /* Yours: force and torque as they act on the hand, about the handle's origin, along the same axes. */
@@ -81,6 +100,7 @@ static void drive_motors(const double force_N[3], const double torque_Nmm[3]) {
   (void)force_N;
   (void)torque_Nmm;
 }
+#endif
 
 static void approach(double sent[3], const double wanted[3], double most) {
   double way[3], length = 0;
@@ -101,7 +121,10 @@ static int is_finite(const struct wrench *wrench) {
 int main(int count, char **words) {
   const int port = count > 1 ? atoi(words[1]) : 47117;
   FILE *log = count > 2 ? fopen(words[2], "w") : NULL;
-  struct sockaddr_in here = {.sin_family = AF_INET, .sin_port = htons((uint16_t)port)};
+  struct sockaddr_in here;
+  memset(&here, 0, sizeof here);
+  here.sin_family = AF_INET;
+  here.sin_port = htons((uint16_t)port);
   here.sin_addr.s_addr = htonl(INADDR_LOOPBACK); /* INADDR_ANY where osteomill runs on another machine */
   const int to_all = socket(AF_INET, SOCK_DGRAM, 0);
   if (bind(to_all, (struct sockaddr *)&here, sizeof here) != 0) {
@@ -109,16 +132,21 @@ int main(int count, char **words) {
     return 1;
   }
   /* Before all ordinary work, where the system allows it. */
-  const struct sched_param priority = {.sched_priority = 30};
+  struct sched_param priority;
+  memset(&priority, 0, sizeof priority);
+  priority.sched_priority = 30;
   sched_setscheduler(0, SCHED_FIFO, &priority);
   signal(SIGINT, end);
   signal(SIGTERM, end);
 
-  struct answer answer = {.sensed = 6, .driven = 6, .max_force_N = 10, .max_torque_Nmm = 200};
-  strcpy(answer.name, "example device");
+  struct answer answer;
+  memset(&answer, 0, sizeof answer);
+  describe(&answer);
 
-  struct sockaddr_in partner = {0};
-  struct wrench asked = {0};
+  struct sockaddr_in partner;
+  struct wrench asked;
+  memset(&partner, 0, sizeof partner);
+  memset(&asked, 0, sizeof asked);
   double sent_N[3] = {0}, sent_Nmm[3] = {0}, heard_s = -1e9, started_s = 0;
   uint32_t states = 0;
   const double begun_s = now_s();
@@ -165,8 +193,11 @@ int main(int count, char **words) {
       fflush(log);
     }
     if (now_s() - heard_s < CONVERSATION_S) {
-      struct state state = {.head = head_of(STATE, ++states)};
-      read_handle(next_s - started_s, &state);
+      struct state state;
+      memset(&state, 0, sizeof state);
+      state.head = head_of(STATE, states + 1);
+      if (!read_handle(next_s - started_s, &state)) continue;
+      ++states;
       sendto(to_all, &state, sizeof state, 0, (struct sockaddr *)&partner, sizeof partner);
     }
   }

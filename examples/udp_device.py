@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """The device's side of docs/udp-device.md in Python: udp_device.py [PORT]. What udp_device.c does, to try things out
-with; at 1 kHz use C, whose loop is not held up. Replace read_handle() and drive_motors()."""
+with, and to be imported (as crtk_bridge.py does); at 1 kHz use C, whose loop is not held up."""
 import math
 import select
 import socket
@@ -21,14 +21,19 @@ FORCE_RATE_N_S = 4000  # a hand bears no faster change
 TORQUE_RATE_NMM_S = 1e5
 
 
-def read_handle(time_s):
-    """Yours: position in mm (x to the operator's right, y up, z towards them), orientation, buttons."""
-    y_mm = 2 * math.cos(0.5 * math.pi * time_s) - 2
-    return (0, y_mm, 0), (1, 0, 0, 0), 1
+class ExampleDevice:
+    """Yours, in place of this one."""
 
+    name, sensed, driven, max_force_N, max_torque_Nmm = b"example device in Python", 6, 6, 10, 200
 
-def drive_motors(force_N, torque_Nmm):
-    """Yours: as they act on the hand, about the handle's origin, along the same axes."""
+    def read_handle(self, time_s):
+        """Position in mm (x to the operator's right, y up, z towards them), orientation, buttons, and 0 where it may be
+        driven (1: it is not calibrated, 2: its force is off). None where nothing was measured since the last time."""
+        y_mm = 2 * math.cos(0.5 * math.pi * time_s) - 2
+        return (0, y_mm, 0), (1, 0, 0, 0), 1, 0
+
+    def drive_motors(self, force_N, torque_Nmm):
+        """As they act on the hand, about the handle's origin, along the same axes."""
 
 
 def head(kind, sequence):
@@ -42,12 +47,18 @@ def approach(sent, wanted, most):
     return [s + share * w for s, w in zip(sent, way)]
 
 
-def main():
-    port = int(sys.argv[1]) if len(sys.argv) > 1 else 47117
+def serve(device, port=47117):
+    """Until it is interrupted; the motors get zero then."""
+    try:
+        converse(device, port)
+    finally:
+        device.drive_motors([0] * 3, [0] * 3)
+
+
+def converse(device, port):
     to_all = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     to_all.bind(("127.0.0.1", port))
-    name = b"example device in Python"
-    answer = ANSWER.pack(name, 6, 6, 10, 200)
+    answer = ANSWER.pack(device.name, device.sensed, device.driven, device.max_force_N, device.max_torque_Nmm)
     partner, newest, asked = None, 0, ((0, 0, 0), (0, 0, 0))
     sent_N, sent_Nmm, states = [0] * 3, [0] * 3, 0
     heard_s = started_s = -math.inf
@@ -81,14 +92,15 @@ def main():
         force_N, torque_Nmm = ((0, 0, 0), (0, 0, 0)) if old else asked
         sent_N = approach(sent_N, force_N, FORCE_RATE_N_S * PERIOD_S)
         sent_Nmm = approach(sent_Nmm, torque_Nmm, TORQUE_RATE_NMM_S * PERIOD_S)
-        drive_motors(sent_N, sent_Nmm)
-        if time.monotonic() - heard_s < CONVERSATION_S:
+        device.drive_motors(sent_N, sent_Nmm)
+        measured = time.monotonic() - heard_s < CONVERSATION_S and device.read_handle(next_s - started_s)
+        if measured:
             states += 1
-            position, orientation, buttons = read_handle(next_s - started_s)
-            state = STATE.pack(*position, *orientation, buttons, 0)
+            position, orientation, buttons, not_driven = measured
+            state = STATE.pack(*position, *orientation, buttons, not_driven)
             to_all.sendto(head(STATE_KIND, states) + state, partner)
         next_s += PERIOD_S
 
 
 if __name__ == "__main__":
-    main()
+    serve(ExampleDevice(), *map(int, sys.argv[1:2]))

@@ -6,10 +6,10 @@
 #include <CLI/CLI.hpp>
 #include <hdf5.h>
 
-#include "osteomill/device/trajectory.h"
 #include "osteomill/haptics/algorithms.h"
 #include "osteomill/recording/recording.h"
 #include "osteomill/recording/recording_file.h"
+#include "osteomill/session/trajectory.h"
 
 namespace osteomill::fuzzing {
 

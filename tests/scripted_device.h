@@ -18,8 +18,11 @@ struct ScriptedDevice {
   DeviceCapabilities can;
   double now_s = 10;
   DeviceInput input;
-  /// It gives no input; it is gone, and cannot be opened.
+  /// It gives no input; takes no wrench; says that it is lost, but takes wrenches; is gone, and cannot be
+  /// opened.
   bool silent = false;
+  bool busy = false;
+  bool deaf = false;
   bool gone = false;
   bool throws = false;
   std::vector<Got> got;
@@ -56,7 +59,7 @@ struct ScriptedDevice {
   class Way final : public Connection {
    public:
     explicit Way(ScriptedDevice& device) : device_(device) {
-      if (device.gone) throw InputError(device.can.name, "cannot be had");
+      if (device.gone || device.deaf) throw InputError(device.can.name, "cannot be had");
       ++device.opened;
     }
     ~Way() override { ++device_.closed; }
@@ -65,13 +68,14 @@ struct ScriptedDevice {
     const DeviceCapabilities& capabilities() const override { return device_.can; }
     ConnectionStatus read(DeviceInput& input) override {
       if (device_.throws) throw std::runtime_error("the cable came off");
-      if (device_.gone) return ConnectionStatus::lost;
+      if (device_.gone || device_.deaf) return ConnectionStatus::lost;
       if (device_.silent) return ConnectionStatus::silent;
       input = device_.input;
       return ConnectionStatus::fresh;
     }
     ConnectionStatus write(const Wrench& wrench_D) override {
       if (device_.gone) return ConnectionStatus::lost;
+      if (device_.busy) return ConnectionStatus::silent;
       device_.got.push_back({device_.now_s, wrench_D});
       return ConnectionStatus::fresh;
     }

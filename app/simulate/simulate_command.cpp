@@ -39,7 +39,7 @@ void add_simulate_command(CLI::App& program, const std::string& command_line) {
   command->get_option("--algorithm")->expected(1);
   add_milling_options(*command, options->milling);
   add_device_option(*command, options->simulator.device);
-  add_send_bone_option(*command, options->simulator.send_bone);
+  add_send_options(*command, options->simulator.send);
   command->option_defaults()->group("The window");
   command->add_option("--out", options->simulator.folder, "For recordings and what is saved")
       ->type_name("FOLDER")

@@ -295,9 +295,9 @@ class Simulator {
 
   // Where nobody takes it, milling goes on without.
   void send_bone() {
-    if (options_.send_bone.empty()) return;
+    if (options_.send.address.empty()) return;
     try {
-      sender_.emplace(simulation_->milling.follower(), options_.send_bone);
+      sender_.emplace(simulation_->milling.follower(), options_.send.address, options_.send.tool_rate_Hz);
     } catch (const InputError& error) {
       view_.dialogues.complain(error.what());
     }
@@ -347,6 +347,7 @@ class Simulator {
     try {
       const bool prepared = simulation_->milling.preparing();
       simulation_->update();
+      if (sender_) sender_->show_tool(simulation_->milling.state().record);
       if (prepared && !simulation_->milling.preparing()) free_tool(view_, *simulation_, size);
     } catch (const std::exception& error) {
       view_.dialogues.complain(error.what());

@@ -15,7 +15,7 @@ struct SimulatorOptions {
   ScanOptions scan;
   MillingSetup setup;
   DeviceOption device{kMouse};
-  std::string send_bone;
+  SendOption send;
   PixelSize size{1280, 800};
   /// How much larger than usual text is; not given: as the screen asks for.
   std::optional<double> ui_scale;

@@ -20,8 +20,8 @@ namespace {
 using namespace std::chrono_literals;
 using State = DeviceReport::State;
 
-// However long a round took, what is sent makes no larger a step than in this time.
-constexpr double kLongestRound_s = 2e-3;
+// However long ago the last wrench went out, the next makes no larger a step than in this time.
+constexpr double kRound_s = 1e-3;
 constexpr double kUnitTolerance = 1e-3;
 constexpr int kWaitsForPose = 500;
 // What it takes to come down from anything, and then some.
@@ -37,10 +37,6 @@ bool is_pose(const Pose& pose) {
   return is_finite(pose) && std::abs(pose.orientation.norm() - 1) < kUnitTolerance;
 }
 
-bool same(const Pose& a, const Pose& b) {
-  return a.position_mm == b.position_mm && a.orientation.coeffs() == b.orientation.coeffs();
-}
-
 ConnectedDeviceSettings with_a_clock(ConnectedDeviceSettings settings) {
   if (!settings.now_s) settings.now_s = &steady_now_s;
   return settings;
@@ -52,10 +48,12 @@ std::string DeviceReport::complaint() const {
   switch (state) {
     case State::ok:
       return {};
+    case State::remark:
+      return reason;
+    case State::not_driven:
+      return fmt::format("is not driven: it {}", reason);
     case State::silent:
       return fmt::format("has given no pose for {:.1f} s", since_s);
-    case State::stuck:
-      return fmt::format("has given the same pose for {:.1f} s, to the last bit", since_s);
     case State::not_finite:
       return fmt::format("has given poses that are none for {:.1f} s", since_s);
     case State::lost:
@@ -82,24 +80,26 @@ ConnectedDevice::~ConnectedDevice() {
 
 void ConnectedDevice::start() {
   thread_ = std::thread([this] { run(); });
-  for (int n = 0; n < kWaitsForPose && state_.load(std::memory_order_acquire) != State::ok; ++n)
+  DeviceReport now = report();
+  for (int n = 0; n < kWaitsForPose && !now.gives_poses(); ++n, now = report())
     std::this_thread::sleep_for(1ms);
-  if (const DeviceReport now = report(); now.state != State::ok)
-    throw InputError(capabilities_.name, now.complaint());
+  if (!now.gives_poses()) throw InputError(capabilities_.name, now.complaint());
 }
 
 void ConnectedDevice::run() {
   // Whoever handles them waits for this thread (CrashStop).
-  sigset_t requests_to_end;
-  sigemptyset(&requests_to_end);
-  for (const int signal : {SIGTERM, SIGHUP, SIGINT}) sigaddset(&requests_to_end, signal);
-  pthread_sigmask(SIG_BLOCK, &requests_to_end, nullptr);
+  sigset_t of_others;
+  sigfillset(&of_others);
+  for (const int own : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTRAP, SIGSYS})
+    sigdelset(&of_others, own);
+  pthread_sigmask(SIG_BLOCK, &of_others, nullptr);
   request_real_time();
   while (!ending_.load(std::memory_order_acquire)) {
     exchange();
     if (!connection_) std::this_thread::sleep_for(1ms);
   }
-  for (int n = 0; n < kMostRoundsAtTheEnd && !at_rest_.load(std::memory_order_relaxed); ++n) exchange();
+  if (connection_) come_down();
+  at_rest_.store(true, std::memory_order_release);
 }
 
 void ConnectedDevice::exchange() {
@@ -123,21 +123,12 @@ void ConnectedDevice::exchange() {
 
 void ConnectedDevice::hear(const DeviceInput& input) {
   const double now_s = settings_.now_s();
-  finite_ = is_pose(input.X_DH);
-  if (!same(input.X_DH, newest_.input.X_DH)) {
-    stuck_ = false;
-    changed_s_ = now_s;
-  } else if (!stuck_) {
-    // A handle that was laid down is held by nobody.
-    if (is_zero(sent_D_)) changed_s_ = now_s;
-    stuck_ = now_s - changed_s_ > settings_.max_still_s;
-  }
   newest_.input = input;
   newest_.at_s = now_s;
-  newest_.usable = finite_ && !stuck_;
-  if (newest_.usable) {
-    if (now_s - usable_s_ > settings_.gone_s) ++newest_.returns;
-    usable_s_ = now_s;
+  newest_.is_pose = is_pose(input.X_DH);
+  if (newest_.is_pose) {
+    if (now_s - posed_s_ > settings_.gone_s) ++newest_.returns;
+    posed_s_ = now_s;
   }
   heard_.write(newest_);
   ++counted_;
@@ -151,25 +142,61 @@ void ConnectedDevice::count_input(double now_s) {
   counted_ = 0;
 }
 
-ConnectionStatus ConnectedDevice::send() {
-  const double now_s = settings_.now_s();
+bool ConnectedDevice::may_be_driven(double now_s) {
   const Asked& asked = asked_.read();
   const bool late = now_s - asked.at_s > settings_.max_age_s;
   if (late && !wrench_was_late_ && !is_zero(asked.wrench_D))
     late_wrenches_.fetch_add(1, std::memory_order_relaxed);
   wrench_was_late_ = late;
-  const bool felt = !late && !let_go_.load(std::memory_order_acquire);
-  const Wrench target = felt ? make_safe(asked.wrench_D, capabilities_.limits).wrench : Wrench{};
-  sent_D_ = approach(sent_D_, target, kRatesForAHand, std::clamp(now_s - sent_s_, 0.0, kLongestRound_s));
-  sent_s_ = now_s;
-  const ConnectionStatus status = connection_->write(sent_D_);
+  return !late && newest_.input.not_driven == nullptr && !let_go_.load(std::memory_order_acquire);
+}
+
+ConnectionStatus ConnectedDevice::send() {
+  const double now_s = settings_.now_s();
+  return send(now_s, may_be_driven(now_s));
+}
+
+// The only way by which a wrench goes out.
+ConnectionStatus ConnectedDevice::send(double now_s, bool driven) {
+  const double lapse_s = connection_->capabilities().lets_go_after_s;
+  if (lapse_s > 0 && now_s - sent_s_ > lapse_s) sent_D_ = {};
+  const double passed_s = std::clamp(now_s - sent_s_, 0.0, settings_.max_age_s);
+  const double share = driven ? std::min(1.0, blended_ + passed_s / settings_.blend_s) : 0;
+  const Wrench asked = make_safe(asked_.read().wrench_D, capabilities_.limits).wrench;
+  const Wrench target{share * asked.force_N, share * asked.torque_Nmm};
+  const Wrench next = approach(sent_D_, target, kRatesForAHand, std::min(passed_s, kRound_s));
+  const ConnectionStatus status = connection_->write(next);
+  if (status == ConnectionStatus::fresh) {
+    sent_D_ = next;
+    sent_s_ = now_s;
+  }
+  if (status == ConnectionStatus::fresh || share == 0) blended_ = share;
+  given_share_.store(share_sent(asked.force_N, sent_D_.force_N), std::memory_order_relaxed);
   at_rest_.store(is_zero(sent_D_), std::memory_order_release);
   return status;
 }
 
+// A round a millisecond, until zero has gone out; what cannot be sent any more is left to the device itself.
+void ConnectedDevice::come_down() {
+  double now_s = sent_s_;
+  try {
+    for (int n = 0; n < kMostRoundsAtTheEnd && !is_zero(sent_D_); ++n) {
+      const ConnectionStatus status = send(now_s += kRound_s, false);
+      if (status == ConnectionStatus::lost) return;
+      std::this_thread::sleep_for(1ms);
+      DeviceInput unread;
+      if (status == ConnectionStatus::silent) connection_->read(unread);
+    }
+  } catch (const std::exception&) {
+  }
+}
+
 void ConnectedDevice::lose(const std::string& reason) {
+  if (connection_) come_down();
   connection_.reset();
   sent_D_ = {};
+  blended_ = 0;
+  given_share_.store(0, std::memory_order_relaxed);
   lost_s_ = settings_.now_s();
   const std::lock_guard lock(said_mutex_);
   reason_ = reason;
@@ -190,18 +217,26 @@ void ConnectedDevice::reopen() {
 
 void ConnectedDevice::judge() {
   const double now_s = settings_.now_s();
-  if (const std::unique_lock lock(said_mutex_, std::try_to_lock); lock)
-    handle_D_mm_ = newest_.input.X_DH.position_mm;
+  const DeviceInput& input = newest_.input;
   count_input(now_s);
   State state = State::ok;
+  const char* says = "";
   if (!connection_) {
     state = State::lost;
   } else if (now_s - newest_.at_s > settings_.max_age_s) {
     state = State::silent;
-  } else if (!finite_) {
+  } else if (!newest_.is_pose) {
     state = State::not_finite;
-  } else if (stuck_) {
-    state = State::stuck;
+  } else if (input.not_driven != nullptr) {
+    state = State::not_driven;
+    says = input.not_driven;
+  } else if (input.remark != nullptr) {
+    state = State::remark;
+    says = input.remark;
+  }
+  if (const std::unique_lock lock(said_mutex_, std::try_to_lock); lock) {
+    handle_D_mm_ = input.X_DH.position_mm;
+    if (connection_) reason_ = says;
   }
   const State before = state_.load(std::memory_order_relaxed);
   if (state == before) return;
@@ -241,7 +276,7 @@ DeviceReport ConnectedDevice::report() const {
 Pose ConnectedDevice::read_pose() {
   const Heard& heard = heard_.read();
   const DeviceInput& input = heard.input;
-  const bool there = heard.usable && settings_.now_s() - heard.at_s <= settings_.max_age_s;
+  const bool there = heard.is_pose && settings_.now_s() - heard.at_s <= settings_.max_age_s;
   const bool clutched =
       clutched_.load(std::memory_order_relaxed) || (there && (input.buttons & kClutchButton) != 0);
   has_pose_ = there && !clutched;

@@ -22,8 +22,8 @@ struct ConnectedDeviceSettings {
   /// What is older is no longer true: an input (the haptic thread then has no pose, and sends zero) and a
   /// wrench (the device is then sent zero, whatever the haptic thread is doing).
   double max_age_s = 5e-3;
-  /// While something is felt, no hand holds still to the last bit for as long as this: the device is stuck.
-  double max_still_s = 0.5;
+  /// How long it takes to come up where the device may be driven (again).
+  double blend_s = 0.1;
   /// After this long without a pose the tool goes on from where it is, not from where the hand is by then.
   double gone_s = 0.1;
   double reopen_s = 0.5;
@@ -35,10 +35,12 @@ struct ConnectedDeviceSettings {
 struct DeviceReport {
   enum class State : unsigned char {
     ok,
+    /// It is driven, but there is something to know (`reason`).
+    remark,
+    /// It gives poses, but may not be driven: not calibrated, its force switched off (`reason`).
+    not_driven,
     /// No input for longer than `max_age_s`.
     silent,
-    /// The same input to the last bit, over and over.
-    stuck,
     /// It gives poses that are not finite, or turned by no rotation.
     not_finite,
     /// Gone; it is being opened again.
@@ -47,7 +49,7 @@ struct DeviceReport {
   State state = State::ok;
   /// How long it has been so.
   double since_s = 0;
-  /// Why it cannot be had, where it is lost.
+  /// Where it is lost, why it cannot be had; else what the device says of itself.
   std::string reason;
   double inputs_per_s = 0;
   /// Where its handle was a moment ago.
@@ -59,13 +61,15 @@ struct DeviceReport {
   std::uint64_t reopened = 0;
   /// Where something is wrong with it, what, in a sentence without a full stop; else empty.
   std::string complaint() const;
+  bool gives_poses() const { return state <= State::not_driven; }
 };
 
 /// Haptic hardware as a session's device, whichever its back end is. A thread of its own reads the connection
 /// and writes to it, so that nothing the hardware does makes a tick wait, and watches over both sides. What
-/// is written is within the device's limits, and never changes faster than kRatesForAHand; it comes down to
-/// zero where the wrench is too old, the device is lost or let go of, and at the end. A device that is lost
-/// is opened again until it is there.
+/// is sent is within the device's limits, and from one wrench that has gone out to the next changes by no
+/// more than kRatesForAHand in a millisecond; it comes down to zero where the wrench is too old, the device
+/// may not be driven, is lost or let go of, and at the end, and up again over `blend_s`. A device that is
+/// lost is opened again until it is there.
 ///
 /// The first button asks for the spindle. While the second is held (or `set_clutched`) the handle moves
 /// without the tool, which has no pose then; so it is felt nothing, and afterwards from where the tool is.
@@ -104,17 +108,18 @@ class ConnectedDevice final : public Device {
 
   Pose read_pose() override;
   void write_wrench(const Wrench& wrench) override;
+  double given_share() const override { return given_share_.load(std::memory_order_relaxed); }
   bool spindle_asked() const override { return (buttons_ & kSpindleButton) != 0; }
   void tick_done(const Pose& X_WT, double dt_s) override;
   void put_at(const Pose& X_WD) override;
   bool let_go() override;
+  void take_hold() override { let_go_.store(false, std::memory_order_release); }
 
  private:
   struct Heard {
     DeviceInput input;
     double at_s = -std::numeric_limits<double>::infinity();
-    // Neither stuck nor not finite.
-    bool usable = false;
+    bool is_pose = false;
     // How often it was gone before.
     std::uint64_t returns = 0;
   };
@@ -130,7 +135,10 @@ class ConnectedDevice final : public Device {
 
   void run();
   void hear(const DeviceInput& input);
+  bool may_be_driven(double now_s);
   ConnectionStatus send();
+  ConnectionStatus send(double now_s, bool driven);
+  void come_down();
   void lose(const std::string& reason);
   void reopen();
   void judge();
@@ -151,13 +159,13 @@ class ConnectedDevice final : public Device {
   // The device's thread's.
   std::unique_ptr<Connection> connection_;
   Heard newest_;
+  // The last that went out, and when.
   Wrench sent_D_;
   double sent_s_;
-  double changed_s_ = 0;
-  double usable_s_ = -std::numeric_limits<double>::infinity();
+  // How far it has come up, 0 to 1.
+  double blended_ = 0;
+  double posed_s_ = -std::numeric_limits<double>::infinity();
   double lost_s_ = 0;
-  bool finite_ = false;
-  bool stuck_ = false;
   bool wrench_was_late_ = false;
   double counting_since_s_;
   int counted_ = 0;
@@ -169,6 +177,7 @@ class ConnectedDevice final : public Device {
   std::atomic<std::uint64_t> faults_{0};
   std::atomic<std::uint64_t> late_wrenches_{0};
   std::atomic<std::uint64_t> reopened_{0};
+  std::atomic<double> given_share_{0};
   // Of the next two; while all is well the device's thread does not wait for it.
   mutable std::mutex said_mutex_;
   std::string reason_;

@@ -1,6 +1,7 @@
 #include "osteomill/device/connected_device.h"
 
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <thread>
 
@@ -14,6 +15,7 @@ namespace {
 
 using State = DeviceReport::State;
 constexpr double kTick_s = 1e-3;
+constexpr int kBlend = 110;
 // kRatesForAHand in a tick.
 constexpr double kMaxStep_N = 4 + 1e-6;
 const Pose kStart{{5, 6, 7}, quaternion_from_rotation_vector({0, 0.3, 0})};
@@ -22,7 +24,7 @@ class ConnectedDeviceTest : public ::testing::Test {
  protected:
   ConnectedDeviceTest() {
     device_.put_at(kStart);
-    run(5);
+    run(kBlend);
   }
   // A tick of the haptic thread, unless it hangs, and a round of the device's.
   void tick() {
@@ -118,24 +120,77 @@ TEST_F(ConnectedDeviceTest, APoseThatIsNoneIsNotHandedOn) {
   }
 }
 
-TEST_F(ConnectedDeviceTest, ADeviceThatIsStuckIsFoundOutWhileSomethingIsFelt) {
+// Encoders have steps.
+TEST_F(ConnectedDeviceTest, AHandleThatIsHeldStillIsFelt) {
   trembles_ = false;
-  // Laid down.
-  run(2000);
-  EXPECT_EQ(device_.report().state, State::ok);
   asked_.force_N = {0, 0, 2};
-  run(495);
-  EXPECT_EQ(device_.report().state, State::ok);
-  run(20);
-  EXPECT_EQ(device_.report().state, State::stuck);
-  EXPECT_FALSE(is_finite(pose_));
-  EXPECT_EQ(felt_N(), 0);
-  // That nothing is felt any more does not free it; that it moves does.
   run(1000);
-  EXPECT_EQ(device_.report().state, State::stuck);
-  trembles_ = true;
-  run(3);
   EXPECT_EQ(device_.report().state, State::ok);
+  EXPECT_NEAR(felt_N(), 2, 1e-9);
+}
+
+TEST_F(ConnectedDeviceTest, WhatMayNotBeDrivenGivesPosesAndGetsZeroUntilItMay) {
+  asked_.force_N = {0, 0, 10};
+  run(10);
+  hardware_.input.not_driven = "is not calibrated";
+  run(10);
+  EXPECT_TRUE(is_finite(pose_));
+  EXPECT_EQ(felt_N(), 0);
+  EXPECT_EQ(device_.given_share(), 0);
+  EXPECT_EQ(device_.report().complaint(), "is not driven: it is not calibrated");
+  hardware_.input.not_driven = nullptr;
+  run(10);
+  EXPECT_GT(felt_N(), 0);
+  EXPECT_LT(felt_N(), 1.1);
+  run(kBlend);
+  EXPECT_NEAR(felt_N(), 10, 1e-9);
+  EXPECT_EQ(device_.report().state, State::ok);
+  expect_no_step();
+}
+
+TEST_F(ConnectedDeviceTest, SoItIsForOneThatIsOpenedAgainUncalibrated) {
+  asked_.force_N = {0, 0, 10};
+  run(10);
+  hardware_.gone = true;
+  run(10);
+  hardware_.gone = false;
+  hardware_.input.not_driven = "is not calibrated";
+  hardware_.got.clear();
+  run(1000);
+  EXPECT_EQ(device_.report().reopened, 1u);
+  for (const auto& got : hardware_.got) EXPECT_TRUE(is_zero(got.wrench_D));
+}
+
+TEST_F(ConnectedDeviceTest, WhatElseThereIsToKnowIsSaidWhileItIsFelt) {
+  hardware_.input.remark = "changes forces";
+  asked_.force_N = {0, 0, 2};
+  run(3);
+  EXPECT_NEAR(felt_N(), 2, 1e-9);
+  EXPECT_EQ(device_.report().complaint(), "changes forces");
+}
+
+// It takes every third wrench: the step is between those that it took.
+TEST_F(ConnectedDeviceTest, ADeviceThatIsBusyFeelsNoLargerSteps) {
+  hardware_.got.clear();
+  for (int n = 0; n < 300; ++n) {
+    hardware_.busy = n % 3 != 0;
+    asked_.force_N = {0, 0, n % 60 < 30 ? 19.0 : -19.0};
+    tick();
+    const Vec3 asked_D(0, asked_.force_N.z(), 0);
+    EXPECT_EQ(device_.given_share(), share_sent(asked_D, hardware_.last().force_N)) << n;
+  }
+  EXPECT_EQ(hardware_.got.size(), 100u);
+  expect_no_step();
+}
+
+TEST_F(ConnectedDeviceTest, OneThatIsLostComesDownBeforeItIsClosed) {
+  asked_.force_N = {0, 0, 19};
+  run(20);
+  EXPECT_NEAR(felt_N(), 19, 1e-9);
+  hardware_.deaf = true;
+  tick();
+  EXPECT_EQ(device_.report().state, State::lost);
+  EXPECT_EQ(felt_N(), 0);
   expect_no_step();
 }
 
@@ -225,6 +280,11 @@ TEST_F(ConnectedDeviceTest, LetGoOfItGetsZeroForGood) {
   EXPECT_TRUE(device_.let_go());
   run(20);
   EXPECT_EQ(felt_N(), 0);
+  // Unless the program goes on after all.
+  device_.take_hold();
+  run(10);
+  EXPECT_GT(felt_N(), 0);
+  EXPECT_LT(felt_N(), 1.1);
   expect_no_step();
 }
 

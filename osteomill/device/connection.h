@@ -19,6 +19,8 @@ struct DeviceCapabilities {
   Quat R_VD = Quat::Identity();
   /// The most that its motors give.
   WrenchLimits limits;
+  /// After how long without a wrench it lets go of the hand by itself; 0 where nothing is known of that.
+  double lets_go_after_s = 0;
 };
 
 /// What a device said at one time, in its base frame D. An orientation that it does not sense is identity.
@@ -26,12 +28,18 @@ struct DeviceInput {
   Pose X_DH;
   /// A bit each; the first asks for the spindle.
   unsigned buttons = 0;
+  /// Why the device may not be driven now and what helps, after "it ..." ("is not calibrated: ..."); null
+  /// where it may be. It gets zero meanwhile.
+  const char* not_driven = nullptr;
+  /// What else its operator should know of it, in the same form; null where there is nothing.
+  const char* remark = nullptr;
 };
 
 enum class ConnectionStatus : unsigned char {
-  /// A new input has come.
+  /// The input is one that the device has measured since the last, by its own word (a count, a time stamp, a
+  /// status); the wrench has gone out.
   fresh,
-  /// None has come within the time that was waited; the device may still be there.
+  /// Not within the time that was waited; the device may still be there.
   silent,
   /// The device is gone or refuses: it has to be opened again.
   lost,
@@ -44,10 +52,11 @@ class Connection {
  public:
   virtual ~Connection() = default;
   virtual const DeviceCapabilities& capabilities() const = 0;
-  /// Waits for the next input, 2 ms at most.
+  /// Waits for the next input, 2 ms at most. A device that stands still gives new inputs all the same.
   virtual ConnectionStatus read(DeviceInput& input) = 0;
   /// Sends force and torque as they act on the hand, in D about the handle's origin; a device that drives
-  /// force alone drops the torque. Finite, and within the capabilities' limits.
+  /// force alone drops the torque. Finite, and within the capabilities' limits. Without waiting: where the
+  /// device cannot take it yet it is silent, and keeps to the wrench before.
   virtual ConnectionStatus write(const Wrench& wrench_D) = 0;
 };
 

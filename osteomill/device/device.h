@@ -1,13 +1,21 @@
 #pragma once
 
+#include <algorithm>
+
 #include "osteomill/geometry/pose.h"
 #include "osteomill/geometry/wrench.h"
 
 namespace osteomill {
 
+/// Of a force that was asked for, as much as what was sent has of it in its direction, 0 to 1. Safe in the
+/// haptic tick.
+inline double share_sent(const Vec3& asked, const Vec3& sent) {
+  return sent == asked || asked.isZero(0) ? 1 : std::clamp(sent.dot(asked) / asked.squaredNorm(), 0.0, 1.0);
+}
+
 /// Where poses come from and wrenches go: hardware behind its thread (ConnectedDevice), a simulated operator,
 /// a virtual hand, a recorded trajectory. All calls come from the haptic thread, once a tick, and none
-/// allocates, locks, logs or throws; only `let_go` may come from anywhere.
+/// allocates, locks, logs or throws; only `let_go` and `take_hold` may come from anywhere.
 class Device {
  public:
   virtual ~Device() = default;
@@ -15,6 +23,8 @@ class Device {
   virtual Pose read_pose() = 0;
   /// Sends a wrench that is already safe (finite, within the limits).
   virtual void write_wrench(const Wrench& wrench) = 0;
+  /// How much of the force that is written the hand has (share_sent): what bone that is milled is paid with.
+  virtual double given_share() const { return 1; }
 
   /// Whether the operator asks for the spindle by a button or pedal of the device.
   virtual bool spindle_asked() const { return false; }
@@ -30,19 +40,27 @@ class Device {
     write_wrench(Wrench{});
     return true;
   }
+  /// After `let_go`: the program goes on after all (it was only stopped), and so does what is written, which
+  /// comes up slowly.
+  virtual void take_hold() {}
 };
 
 /// A device that is where it is put, and remembers what it was sent: for replays and tests.
 class PosedDevice : public Device {
  public:
-  void put(const Pose& X_WD) { pose_ = X_WD; }
+  void put(const Pose& X_WD, double given_share = 1) {
+    pose_ = X_WD;
+    given_share_ = given_share;
+  }
   const Wrench& sent() const { return sent_; }
 
   Pose read_pose() override { return pose_; }
   void write_wrench(const Wrench& wrench) override { sent_ = wrench; }
+  double given_share() const override { return given_share_; }
 
  private:
   Pose pose_;
+  double given_share_ = 1;
   Wrench sent_;
 };
 

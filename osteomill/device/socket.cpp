@@ -1,10 +1,14 @@
 #include "osteomill/device/socket.h"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <charconv>
 #include <cstring>
+#include <future>
 #include <system_error>
+#include <thread>
+#include <utility>
 
 #include <fmt/core.h>
 #include <netdb.h>
@@ -21,9 +25,34 @@ namespace osteomill {
 namespace {
 
 constexpr std::chrono::milliseconds kConnectWithin{400};
+constexpr std::chrono::milliseconds kResolveWithin{400};
 
 bool would_wait() {
   return errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR || errno == ENOBUFS;
+}
+
+// The address of IPv4 before others: what listens on "localhost" mostly does there.
+std::string number_of(const addrinfo* found) {
+  const addrinfo* best = found;
+  for (const addrinfo* other = found; other != nullptr && best->ai_family != AF_INET; other = other->ai_next)
+    if (other->ai_family == AF_INET) best = other;
+  std::array<char, NI_MAXHOST> number{};
+  ::getnameinfo(best->ai_addr, best->ai_addrlen, number.data(), number.size(), nullptr, 0, NI_NUMERICHOST);
+  return number.data();
+}
+
+// Empty where nobody knows it. A name server that does not answer keeps a thread of its own waiting, so that
+// neither opening a device again nor ending the program waits for it.
+std::string resolved(const std::string& host) {
+  std::promise<std::string> promise;
+  std::future<std::string> number = promise.get_future();
+  std::thread([host, promise = std::move(promise)]() mutable {
+    addrinfo* found = nullptr;
+    const bool known = getaddrinfo(host.c_str(), nullptr, nullptr, &found) == 0;
+    promise.set_value(known ? number_of(found) : "");
+    if (known) freeaddrinfo(found);
+  }).detach();
+  return number.wait_for(kResolveWithin) == std::future_status::ready ? number.get() : "";
 }
 
 }  // namespace
@@ -35,7 +64,11 @@ HostAndPort host_and_port(std::string_view device, const std::string& address) {
     at.host = address.substr(0, colon);
     const char* const end = address.data() + address.size();
     const auto [stopped, error] = std::from_chars(address.data() + colon + 1, end, at.port);
-    if (error == std::errc() && stopped == end && at.port > 0 && at.port <= 65535) return at;
+    if (error == std::errc() && stopped == end && at.port > 0 && at.port <= 65535) {
+      at.host = resolved(at.host);
+      if (!at.host.empty()) return at;
+      throw InputError(fmt::format("{}:{}", device, address), "no such host is known");
+    }
   }
   throw InputError(fmt::format("{}:{}", device, address), "is not of the form HOST:PORT");
 }
@@ -43,26 +76,24 @@ HostAndPort host_and_port(std::string_view device, const std::string& address) {
 Socket::Socket(const std::string& device, const HostAndPort& at, Kind kind) : kind_(kind) {
   addrinfo hints{};
   hints.ai_socktype = kind == Kind::stream ? SOCK_STREAM : SOCK_DGRAM;
-  hints.ai_flags = AI_NUMERICSERV;
+  hints.ai_flags = AI_NUMERICHOST | AI_NUMERICSERV;
   addrinfo* found = nullptr;
   if (const int error = getaddrinfo(at.host.c_str(), std::to_string(at.port).c_str(), &hints, &found);
       error != 0)
     throw InputError(device, gai_strerror(error));
-  int reason = ETIMEDOUT;
-  for (const addrinfo* to = found; to != nullptr && socket_ < 0; to = to->ai_next) {
-    socket_ = ::socket(to->ai_family, to->ai_socktype | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
-    if (socket_ < 0) continue;
-    // Datagrams too, so that nobody else is heard.
-    reason = ::connect(socket_, to->ai_addr, to->ai_addrlen) == 0 ? 0 : errno;
-    if (reason == EINPROGRESS) {
-      socklen_t size = sizeof(reason);
-      reason = ETIMEDOUT;
-      if (wait_for(POLLOUT, kConnectWithin)) ::getsockopt(socket_, SOL_SOCKET, SO_ERROR, &reason, &size);
-    }
-    if (reason != 0) close();
-  }
+  socket_ = ::socket(found->ai_family, found->ai_socktype | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+  // Datagrams too, so that nobody else is heard.
+  int reason = ::connect(socket_, found->ai_addr, found->ai_addrlen) == 0 ? 0 : errno;
   freeaddrinfo(found);
-  if (socket_ < 0) throw InputError(device, std::strerror(reason));
+  if (reason == EINPROGRESS) {
+    socklen_t size = sizeof(reason);
+    reason = ETIMEDOUT;
+    if (wait_for(POLLOUT, kConnectWithin)) ::getsockopt(socket_, SOL_SOCKET, SO_ERROR, &reason, &size);
+  }
+  if (reason != 0) {
+    close();
+    throw InputError(device, std::strerror(reason));
+  }
   const int at_once = 1;
   if (kind == Kind::stream) ::setsockopt(socket_, IPPROTO_TCP, TCP_NODELAY, &at_once, sizeof(at_once));
 }

@@ -14,7 +14,8 @@ struct HostAndPort {
   int port = 0;
 };
 
-/// Of "HOST:PORT". Throws InputError naming `device` and the address where it is not of that form.
+/// Of "HOST:PORT", the host as the number that its name stands for. Throws InputError naming `device` and the
+/// address where it is not of that form, or no name server knows it within 400 ms.
 HostAndPort host_and_port(std::string_view device, const std::string& address);
 
 /// A client's end of a connection that never waits longer than it is told to. For one thread at a time.
@@ -22,7 +23,8 @@ class Socket {
  public:
   enum class Kind : unsigned char { stream, datagrams };
 
-  /// Throws InputError about `device` where it cannot be had; a stream, where nothing answers within 400 ms.
+  /// `at` as `host_and_port` gives it. Throws InputError about `device` where it cannot be had; a stream,
+  /// where nothing answers within 400 ms.
   Socket(const std::string& device, const HostAndPort& at, Kind kind);
   ~Socket();
   Socket(const Socket&) = delete;

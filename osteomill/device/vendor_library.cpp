@@ -28,19 +28,25 @@ VendorLibrary::VendorLibrary(std::string device, const char* variable,
     if (!library_) throw InputError(device_, dlerror());
     return;
   }
+  // A file that is there, but lacks a library that it needs, is told of before one that is not.
+  std::string why;
   for (const char* name : names) {
     file_ = name;
     library_ = opened(name);
     if (library_) return;
+    const std::string reason = dlerror();
+    if (!reason.starts_with(std::string(name) + ": cannot open shared object file")) why = reason;
   }
-  throw InputError(device_, fmt::format("{} of the maker's software is not installed; {} may name it",
-                                        *names.begin(), variable));
+  throw InputError(device_, why.empty() ? fmt::format("{} of the maker's software is not installed; {} may "
+                                                      "name it",
+                                                      *names.begin(), variable)
+                                        : "the maker's software cannot be loaded: " + why);
 }
 
-void* VendorLibrary::address(const char* name) const {
+VendorLibrary::Function VendorLibrary::operator[](const char* name) const {
   void* const found = dlsym(library_.get(), name);
   if (found == nullptr) throw InputError(device_, fmt::format("{} has no {}", file_, name));
-  return found;
+  return {found};
 }
 
 }  // namespace osteomill

@@ -14,15 +14,18 @@ class VendorLibrary {
   /// Throws InputError about `device` where there is none.
   VendorLibrary(std::string device, const char* variable, std::initializer_list<const char*> names);
 
+  /// A function, of whatever type it is put into a pointer of.
+  struct Function {
+    void* address;
+    template <typename Type>
+    operator Type*() const {
+      return reinterpret_cast<Type*>(address);
+    }
+  };
   /// Throws InputError where the library has none of that name.
-  template <typename Function>
-  Function* function(const char* name) const {
-    return reinterpret_cast<Function*>(address(name));
-  }
+  Function operator[](const char* name) const;
 
  private:
-  void* address(const char* name) const;
-
   std::string device_;
   std::string file_;
   std::shared_ptr<void> library_;

@@ -7,7 +7,10 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/core.h>
 #include <igtlImageMessage.h>
+#include <igtlStringMessage.h>
+#include <igtlTransformMessage.h>
 
 #include "osteomill/device/socket.h"
 #include "osteomill/files/input_error.h"
@@ -18,22 +21,25 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kBetweenMessages = 500ms;
+constexpr auto kBetweenBones = 500ms;
 constexpr auto kSendWithin = 2s;
 constexpr const char* kName = "OsteomillBone";
 
-// The protocol places an image by its middle, with x and y the other way round than W.
-igtl::Matrix4x4& set_place(const GridGeometry& grid, igtl::Matrix4x4& matrix) {
-  const Vec3 middle_W =
-      grid.world_from_voxel(0.5 * Vec3(grid.dims[0] - 1, grid.dims[1] - 1, grid.dims[2] - 1));
+// The protocol has x and y the other way round than W.
+igtl::Matrix4x4& set_place(const Mat3& axes_W, const Vec3& origin_W, igtl::Matrix4x4& matrix) {
   const Vec3 to_ras(-1, -1, 1);
   igtl::IdentityMatrix(matrix);
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column)
-      matrix[row][column] = static_cast<float>(to_ras[row] * grid.direction(row, column));
-    matrix[row][3] = static_cast<float>(to_ras[row] * middle_W[row]);
+      matrix[row][column] = static_cast<float>(to_ras[row] * axes_W(row, column));
+    matrix[row][3] = static_cast<float>(to_ras[row] * origin_W[row]);
   }
   return matrix;
+}
+
+// An image is placed by its middle.
+Vec3 middle_W(const GridGeometry& grid) {
+  return grid.world_from_voxel(0.5 * Vec3(grid.dims[0] - 1, grid.dims[1] - 1, grid.dims[2] - 1));
 }
 
 igtl::ImageMessage::Pointer message_of(const BoneFollower& bone, const VoxelBox& box) {
@@ -50,13 +56,34 @@ igtl::ImageMessage::Pointer message_of(const BoneFollower& bone, const VoxelBox&
     const auto [wide, high, deep] = box.dims();
     message->SetSubVolume(wide, high, deep, box.first.i, box.first.j, box.first.k);
     igtl::Matrix4x4 matrix;
-    message->SetMatrix(set_place(grid, matrix));
+    message->SetMatrix(set_place(grid.direction, middle_W(grid), matrix));
     message->AllocateScalars();
     auto* density = static_cast<float*>(message->GetScalarPointer());
     for_each(box, [&](const VoxelIndex& v) { *density++ = now.grid()[v]; });
   });
-  message->Pack();
   return message;
+}
+
+void send(Socket& stream, igtl::MessageBase* message) {
+  message->Pack();
+  stream.send_all({static_cast<const unsigned char*>(message->GetPackPointer()),
+                   static_cast<std::size_t>(message->GetPackSize())},
+                  kSendWithin);
+}
+
+void send_tool(Socket& stream, const TickRecord& now) {
+  const auto place = igtl::TransformMessage::New();
+  igtl::Matrix4x4 matrix;
+  place->SetDeviceName("OsteomillTool");
+  place->SetMatrix(set_place(now.X_WT.orientation.toRotationMatrix(), now.X_WT.position_mm, matrix));
+  send(stream, place.GetPointer());
+  const auto readings = igtl::StringMessage::New();
+  readings->SetDeviceName("OsteomillReadings");
+  std::string text = fmt::format("force {:.2f} N, torque {:.1f} N mm, removed {:.2f} mm^3, spindle {}",
+                                 now.wrench.force_N.norm(), now.wrench.torque_Nmm.norm(), now.removed_mm3,
+                                 now.spindle_on ? "on" : "off");
+  readings->SetString(text);
+  send(stream, readings.GetPointer());
 }
 
 VoxelBox milled_box(const BoneFollower& bone, const VoxelBox& all) {
@@ -68,15 +95,10 @@ VoxelBox milled_box(const BoneFollower& bone, const VoxelBox& all) {
   return box.intersected(all);
 }
 
-void send(Socket& stream, const igtl::ImageMessage::Pointer& message) {
-  stream.send_all({static_cast<const unsigned char*>(message->GetPackPointer()),
-                   static_cast<std::size_t>(message->GetPackSize())},
-                  kSendWithin);
-}
-
 }  // namespace
 
-BoneSender::BoneSender(const BoneFollower& bone, const std::string& address) : bone_(bone) {
+BoneSender::BoneSender(const BoneFollower& bone, const std::string& address, double tool_rate_Hz)
+    : bone_(bone), between_tools_(1 / tool_rate_Hz) {
   const std::string name = "--send-bone " + address;
   std::size_t voxels = 0;
   bone.read([&](const Volume& now) { voxels = now.geometry().voxel_count(); });
@@ -95,22 +117,35 @@ BoneSender::~BoneSender() {
   thread_.join();
 }
 
+void BoneSender::show_tool(const TickRecord& now) {
+  const std::lock_guard lock(mutex_);
+  tool_ = now;
+}
+
 void BoneSender::run(Socket& stream) {
   VoxelBox all;
   bone_.read([&](const Volume& now) { all = now.geometry().all_voxels(); });
   std::uint64_t sent_version = bone_.version();
-  send(stream, message_of(bone_, all));
+  send(stream, message_of(bone_, all).GetPointer());
+  auto next_bone = std::chrono::steady_clock::now() + kBetweenBones;
   std::vector<unsigned char> unread(1 << 16);
   for (bool is_last = false; stream.is_open() && !is_last;) {
+    std::optional<TickRecord> tool;
     {
       std::unique_lock lock(mutex_);
-      is_last = end_.wait_for(lock, kBetweenMessages, [&] { return ends_; });
+      is_last = end_.wait_for(lock, between_tools_, [&] { return ends_; });
+      tool = std::exchange(tool_, {});
     }
     // What the receiver says is not wanted, but would stop it from saying more.
     stream.receive(unread);
+    if (tool) send_tool(stream, *tool);
+    const auto now = std::chrono::steady_clock::now();
+    if (now < next_bone && !is_last) continue;
+    next_bone = now + kBetweenBones;
     const std::uint64_t version = bone_.version();
     if (version == std::exchange(sent_version, version)) continue;
-    if (const VoxelBox box = milled_box(bone_, all); !box.empty()) send(stream, message_of(bone_, box));
+    if (const VoxelBox box = milled_box(bone_, all); !box.empty())
+      send(stream, message_of(bone_, box).GetPointer());
   }
   is_connected_.store(stream.is_open(), std::memory_order_relaxed);
 }

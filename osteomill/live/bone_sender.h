@@ -1,33 +1,39 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 
 #include "osteomill/live/bone_follower.h"
+#include "osteomill/session/tick_record.h"
 
 namespace osteomill {
 
 class Socket;
 
-/// Sends the bone as it is milled to whoever takes OpenIGTLink (3D Slicer, PLUS): IMAGE messages called
-/// OsteomillBone, at the beginning all of it, then at most twice a second, where it has changed, the box of
-/// all that was ever milled, as a part of that image. Densities as in the scan, as 32-bit floats, in the
-/// patient's axes (RAS, as the protocol has them). On a thread of its own, for which neither the haptic
-/// thread nor anyone else waits longer than such a box takes to be copied.
+/// Sends the bone as it is milled, and the tool, to whoever takes OpenIGTLink (3D Slicer): IMAGE messages
+/// called OsteomillBone, at the beginning all of it, then at most twice a second, where it has changed, the
+/// box of all that was ever milled, as a part of that image, densities as in the scan, as 32-bit floats; and
+/// as often as it is told TRANSFORM messages called OsteomillTool (X_WT) and STRING messages called
+/// OsteomillReadings. All in the patient's axes (RAS, as the protocol has them). On a thread of its own, for
+/// which neither the haptic thread nor anyone else waits longer than such a box takes to be copied.
 class BoneSender {
  public:
   /// To HOST:PORT. `bone` outlives this. Throws InputError where the address is none, nothing listens there,
   /// or the bone does not fit into a message (2 GiB).
-  BoneSender(const BoneFollower& bone, const std::string& address);
+  BoneSender(const BoneFollower& bone, const std::string& address, double tool_rate_Hz);
   /// Sends the bone as it is by then, where that takes no longer than two seconds.
   ~BoneSender();
   BoneSender(const BoneSender&) = delete;
   BoneSender& operator=(const BoneSender&) = delete;
 
+  /// What is sent of the tool from now on. Any thread.
+  void show_tool(const TickRecord& now);
   /// Whether the receiver is still there; nothing is sent any more where it is not. Any thread.
   bool is_connected() const { return is_connected_.load(std::memory_order_relaxed); }
 
@@ -35,10 +41,12 @@ class BoneSender {
   void run(Socket& stream);
 
   const BoneFollower& bone_;
+  std::chrono::duration<double> between_tools_;
   std::atomic<bool> is_connected_{true};
   std::mutex mutex_;
   std::condition_variable end_;
   bool ends_ = false;
+  std::optional<TickRecord> tool_;
   std::thread thread_;
 };
 

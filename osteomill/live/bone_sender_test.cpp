@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <memory>
+#include <numbers>
 #include <thread>
 
 #include "tests/shapes.h"
@@ -61,7 +62,7 @@ class SendBone : public ::testing::Test {
 };
 
 TEST_F(SendBone, AllOfItComesFirstWhereItLies) {
-  const BoneSender sender(follower_, server_.address());
+  const BoneSender sender(follower_, server_.address(), 30);
   const IgtlStandIn::Image image = await_messages(server_, 1);
   expect_same(image, *bone_);
   // A voxel's place from the image's middle, axes and spacing, in the protocol's axes.
@@ -80,7 +81,7 @@ TEST_F(SendBone, AllOfItComesFirstWhereItLies) {
 }
 
 TEST_F(SendBone, ThenWhatWasMilled) {
-  const BoneSender sender(follower_, server_.address());
+  const BoneSender sender(follower_, server_.address(), 30);
   await_messages(server_, 1);
   mill();
   const IgtlStandIn::Image image = await_messages(server_, 2);
@@ -93,15 +94,37 @@ TEST_F(SendBone, ThenWhatWasMilled) {
 
 TEST_F(SendBone, TheLastOfItComesAtTheEnd) {
   {
-    const BoneSender sender(follower_, server_.address());
+    const BoneSender sender(follower_, server_.address(), 30);
     await_messages(server_, 1);
     mill();
   }
   expect_same(await_messages(server_, 2), *bone_);
 }
 
+TEST_F(SendBone, TheToolComesAsOftenAsItIsAskedFor) {
+  BoneSender sender(follower_, server_.address(), 50);
+  TickRecord now;
+  now.X_WT = {{1, 2, 3}, quaternion_from_rotation_vector({0, 0.5 * std::numbers::pi, 0})};
+  now.wrench.force_N = {0, 3, 4};
+  now.removed_mm3 = 12.345;
+  const auto end = std::chrono::steady_clock::now() + 500ms;
+  while (std::chrono::steady_clock::now() < end) {
+    sender.show_tool(now);
+    std::this_thread::sleep_for(1ms);
+  }
+  const IgtlStandIn::Tool tool = server_.tool();
+  EXPECT_EQ(tool.name, "OsteomillTool");
+  EXPECT_GE(tool.messages, 5);
+  EXPECT_LE(tool.messages, 26);
+  EXPECT_EQ(tool.readings, "force 5.00 N, torque 0.0 N mm, removed 12.35 mm^3, spindle off");
+  // The burr's centre, and the shaft along x of W, in RAS.
+  EXPECT_EQ(Vec3(tool.matrix[0][3], tool.matrix[1][3], tool.matrix[2][3]), Vec3(-1, -2, 3));
+  EXPECT_NEAR((Vec3(tool.matrix[0][2], tool.matrix[1][2], tool.matrix[2][2]) - Vec3(-1, 0, 0)).norm(), 0,
+              1e-6);
+}
+
 TEST_F(SendBone, AReceiverThatGoesIsNoticed) {
-  const BoneSender sender(follower_, server_.address());
+  const BoneSender sender(follower_, server_.address(), 30);
   await_messages(server_, 1);
   server_.closes = true;
   for (int n = 0; n < 3000 && sender.is_connected(); ++n) std::this_thread::sleep_for(1ms);
@@ -109,8 +132,8 @@ TEST_F(SendBone, AReceiverThatGoesIsNoticed) {
 }
 
 TEST_F(SendBone, WhereNothingListensIsSaid) {
-  EXPECT_THROW(BoneSender(follower_, "127.0.0.1:1"), InputError);
-  EXPECT_THROW(BoneSender(follower_, "here"), InputError);
+  EXPECT_THROW(BoneSender(follower_, "127.0.0.1:1", 30), InputError);
+  EXPECT_THROW(BoneSender(follower_, "here", 30), InputError);
 }
 
 }  // namespace

@@ -1,7 +1,13 @@
+#include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
+#include <cstring>
+#include <new>
+#include <span>
 #include <thread>
+#include <vector>
 
 #include "tests/shapes.h"
 #include <gtest/gtest.h>
@@ -19,8 +25,8 @@ using namespace std::chrono_literals;
 
 // What another process can see of a device.
 struct Sent {
-  double force_N;
-  double max_N;
+  std::atomic<double> force_N;
+  std::atomic<double> max_N;
 };
 
 // What is felt before it crashes.
@@ -28,91 +34,137 @@ constexpr double kPressed_N = 0.2;
 
 class SharedDevice : public Device {
  public:
-  SharedDevice(Sent* sent, bool crashes) : sent_(sent), crashes_(crashes) {}
+  SharedDevice(Sent* sent, void (*crash)()) : sent_(sent), crash_(crash) {}
   Pose read_pose() override {
-    if (crashes_ && sent_->max_N >= kPressed_N) raise(SIGSEGV);
+    if (crash_ != nullptr && sent_->max_N >= kPressed_N) crash_();
     return {{0, 0, 1.2}, Quat::Identity()};
   }
   void write_wrench(const Wrench& wrench) override {
-    sent_->force_N = wrench.force_N.norm();
-    sent_->max_N = std::max(sent_->max_N, sent_->force_N);
+    sent_->force_N = is_let_go_ ? 0 : wrench.force_N.norm();
+    sent_->max_N = std::max<double>(sent_->max_N, sent_->force_N);
   }
+  bool let_go() override {
+    is_let_go_ = true;
+    sent_->force_N = 0;
+    return true;
+  }
+  void take_hold() override { is_let_go_ = false; }
 
  private:
   Sent* sent_;
-  bool crashes_;
+  void (*crash_)();
+  std::atomic<bool> is_let_go_{false};
 };
 
-[[noreturn]] void run_live(Sent* sent, bool device_crashes, void (*crash)()) {
+// What makes a process end: a signal from elsewhere, or what the main or the haptic thread does.
+struct End {
+  int signal;
+  void (*main_thread)() = nullptr;
+  void (*haptic_thread)() = nullptr;
+};
+
+void overflow_the_stack() {
+  volatile char much[1 << 20];
+  much[0] = 1;
+  if (much[0] == 1) overflow_the_stack();
+  much[1] = 1;
+}
+
+[[noreturn]] void run_live(Sent* sent, const End& end) {
   const Volume bone = testing_support::shape_volume(testing_support::centred_cube(40, 0.25),
                                                     testing_support::plane(Vec3::Zero(), Vec3::UnitZ()));
-  SharedDevice device(sent, device_crashes);
+  SharedDevice device(sent, end.haptic_thread);
   LiveSession live(
       std::make_unique<MillingSession>(std::make_shared<Volume>(bone), BoneDensities{0, 1000},
                                        MillingSetup{.algorithm = algorithm_named("point-shell")}),
       device);
   live.start();
   for (int n = 0; n < 2000 && sent->max_N < kPressed_N; ++n) std::this_thread::sleep_for(5ms);
-  crash();
-  std::this_thread::sleep_for(1s);
+  if (end.main_thread != nullptr) end.main_thread();
+  std::this_thread::sleep_for(10s);
   _exit(0);
 }
 
 class CrashStopTest : public ::testing::Test {
  protected:
+  static constexpr std::size_t kMost = 32;
   void SetUp() override {
-    void* shared = mmap(nullptr, sizeof(Sent), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    void* shared =
+        mmap(nullptr, kMost * sizeof(Sent), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     ASSERT_NE(shared, MAP_FAILED);
-    sent_ = static_cast<Sent*>(shared);
+    sent_ = new (shared) Sent[kMost];
   }
-  void TearDown() override { munmap(sent_, sizeof(Sent)); }
+  void TearDown() override { munmap(sent_, kMost * sizeof(Sent)); }
 
-  // The signal that the process died of.
-  int run(bool device_crashes, void (*crash)(), [[maybe_unused]] int expected) {
+  pid_t begin(std::size_t n, const End& end) {
     const pid_t child = fork();
-    if (child == 0) run_live(sent_, device_crashes, crash);
-    int status = 0;
-    waitpid(child, &status, 0);
+    if (child == 0) run_live(&sent_[n], end);
+    return child;
+  }
+  void await_pressing(std::size_t n) const {
+    for (int k = 0; k < 2000 && sent_[n].max_N < kPressed_N; ++k) std::this_thread::sleep_for(5ms);
+  }
+  // The processes run side by side.
+  void expect_zero_after(std::span<const End> ends) {
+    std::vector<pid_t> children;
+    for (std::size_t n = 0; n < ends.size(); ++n) children.push_back(begin(n, ends[n]));
+    for (std::size_t n = 0; n < ends.size(); ++n) {
+      if (ends[n].main_thread == nullptr && ends[n].haptic_thread == nullptr) {
+        await_pressing(n);
+        kill(children[n], ends[n].signal);
+      }
+      int status = 0;
+      waitpid(children[n], &status, 0);
+      EXPECT_GE(sent_[n].max_N, kPressed_N) << n;
+      EXPECT_EQ(sent_[n].force_N, 0) << strsignal(ends[n].signal);
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-    // Sanitizers end a crashed program in their own way.
-    if (status != 0) return expected;
+      // Sanitizers end a crashed program in their own way.
+      EXPECT_NE(status, 0);
+#else
+      EXPECT_EQ(WIFSIGNALED(status) ? WTERMSIG(status) : 0, ends[n].signal);
 #endif
-    return WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+    }
   }
 
   Sent* sent_ = nullptr;
 };
 
-TEST_F(CrashStopTest, ACrashOfAnotherThreadLeavesTheWrenchAtZero) {
-  EXPECT_EQ(run(
-                false, [] { raise(SIGSEGV); }, SIGSEGV),
-            SIGSEGV);
-  EXPECT_GE(sent_->max_N, kPressed_N);
-  EXPECT_EQ(sent_->force_N, 0);
+TEST_F(CrashStopTest, WhateverSignalEndsItTheWrenchIsLeftAtZero) {
+  const std::vector<End> ends{{SIGSEGV}, {SIGBUS},  {SIGFPE},  {SIGILL},   {SIGABRT},   {SIGSYS},
+                              {SIGTRAP}, {SIGQUIT}, {SIGTERM}, {SIGHUP},   {SIGINT},    {SIGXCPU},
+                              {SIGXFSZ}, {SIGPIPE}, {SIGALRM}, {SIGPROF},  {SIGVTALRM}, {SIGUSR1},
+                              {SIGUSR2}, {SIGPOLL}, {SIGPWR},  {SIGSTKFLT}};
+  expect_zero_after(ends);
 }
 
-TEST_F(CrashStopTest, SoDoesAnExceptionThatNobodyCatches) {
-  EXPECT_EQ(run(
-                false, [] { std::abort(); }, SIGABRT),
-            SIGABRT);
-  EXPECT_GE(sent_->max_N, kPressed_N);
-  EXPECT_EQ(sent_->force_N, 0);
+TEST_F(CrashStopTest, SoItIsAfterACrashInAnyThread) {
+  const std::vector<End> ends {
+    {SIGSEGV, [] { raise(SIGSEGV); }}, {SIGABRT, [] { std::abort(); }},
+        {SIGSEGV, nullptr, [] { raise(SIGSEGV); }},
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+        {SIGSEGV, [] { overflow_the_stack(); }}, {SIGSEGV, nullptr, [] { overflow_the_stack(); }},
+#endif
+  };
+  expect_zero_after(ends);
 }
 
-TEST_F(CrashStopTest, SoDoesARequestToEnd) {
-  EXPECT_EQ(run(
-                false, [] { kill(getpid(), SIGTERM); }, SIGTERM),
-            SIGTERM);
-  EXPECT_GE(sent_->max_N, kPressed_N);
-  EXPECT_EQ(sent_->force_N, 0);
-}
-
-TEST_F(CrashStopTest, SoDoesACrashOfTheHapticThreadItself) {
-  EXPECT_EQ(run(
-                true, [] {}, SIGSEGV),
-            SIGSEGV);
-  EXPECT_GE(sent_->max_N, kPressed_N);
-  EXPECT_EQ(sent_->force_N, 0);
+// Ctrl-Z, and what reads from or writes to its terminal in the background.
+TEST_F(CrashStopTest, WhileItIsStoppedTheWrenchIsZeroAndThenComesUpSlowly) {
+  const int stops[] = {SIGTSTP, SIGTTIN, SIGTTOU};
+  for (std::size_t n = 0; n < 3; ++n) {
+    const pid_t child = begin(n, {});
+    await_pressing(n);
+    kill(child, stops[n]);
+    int status = 0;
+    waitpid(child, &status, WUNTRACED);
+    EXPECT_TRUE(WIFSTOPPED(status)) << strsignal(stops[n]);
+    EXPECT_EQ(sent_[n].force_N, 0) << strsignal(stops[n]);
+    kill(child, SIGCONT);
+    for (int k = 0; k < 2000 && sent_[n].force_N < kPressed_N; ++k) std::this_thread::sleep_for(1ms);
+    EXPECT_GE(sent_[n].force_N, kPressed_N);
+    kill(child, SIGKILL);
+    waitpid(child, &status, 0);
+  }
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "osteomill/device/spsc_queue.h"
+#include "osteomill/numbers/spsc_queue.h"
 #include "osteomill/volume/density_block.h"
 #include "osteomill/volume/volume.h"
 

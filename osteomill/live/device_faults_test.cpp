@@ -44,7 +44,7 @@ class DeviceFaults : public ::testing::TestWithParam<std::string> {
     hardware_.now_s += dt_s;
     hardware_.input.X_DH.position_mm.x() = 1e-3 * std::sin(300 * hardware_.now_s);
     if (!hangs_) {
-      record_ = session_.tick(device_, hardware_.now_s, dt_s, false);
+      record_ = session_.tick(device_, hardware_.now_s, dt_s, spindle_on_);
       device_.tick_done(record_.X_WT, dt_s);
     }
     device_.exchange();
@@ -96,6 +96,7 @@ class DeviceFaults : public ::testing::TestWithParam<std::string> {
       {.algorithm = algorithm_named(GetParam()), .guard = GuardSettings{}.for_a_hand()}};
   TickRecord record_;
   bool hangs_ = false;
+  bool spindle_on_ = false;
 };
 INSTANTIATE_TEST_SUITE_P(EveryAlgorithm, DeviceFaults, ::testing::ValuesIn(algorithm_names()),
                          [](const auto& of) {
@@ -117,26 +118,36 @@ TEST_P(DeviceFaults, FallsSilent) {
   expect_slow_return([this] { hardware_.silent = false; });
 }
 
-TEST_P(DeviceFaults, IsStuckWhileItsClockRuns) {
-  const DeviceInput stuck = hardware_.input;
-  const auto stay = [&](int ticks) {
-    for (int n = 0; n < ticks; ++n) {
-      hardware_.now_s += kTick_s;
-      hardware_.input = stuck;
-      record_ = session_.tick(device_, hardware_.now_s, kTick_s, false);
-      device_.tick_done(record_.X_WT, kTick_s);
-      device_.exchange();
-    }
-  };
+// What is not felt is not paid: nothing is milled meanwhile.
+TEST_P(DeviceFaults, IsNoLongerCalibrated) {
+  const double before_mm3 = session_.removed_mm3();
+  spindle_on_ = true;
+  expect_zero_after([this] { hardware_.input.not_driven = "is not calibrated"; }, 1);
+  EXPECT_TRUE(is_finite(record_.X_WD));
+  // The tick in which it came was felt.
+  EXPECT_LT(session_.removed_mm3() - before_mm3, 0.01);
+  spindle_on_ = false;
+  expect_slow_return([this] { hardware_.input.not_driven = nullptr; });
+}
+
+// A service that answers every 8 ms.
+TEST_P(DeviceFaults, TakesAWrenchWithEveryPoseButRarely) {
+  spindle_on_ = true;
   hardware_.got.clear();
-  stay(500);
-  EXPECT_GT(felt_N(), 1);
-  stay(2 + kTicksToZero);
-  EXPECT_EQ(felt_N(), 0);
-  stay(500);
-  EXPECT_EQ(felt_N(), 0);
+  double most_N = 0;
+  double before_mm3 = 0;
+  for (int n = 0; n < 1000; ++n) {
+    hardware_.silent = hardware_.busy = n % 8 != 0;
+    tick();
+    // What was felt before has come down by then.
+    if (n == 50) before_mm3 = session_.removed_mm3();
+    if (n > 50) most_N = std::max(most_N, felt_N());
+  }
+  EXPECT_LT(most_N, 1);
+  // Of what a force of that size pays in a second.
+  EXPECT_LE(session_.removed_mm3() - before_mm3,
+            0.01 + most_N * removal_rate_mm3_per_Ns(CuttingSettings{}, MillingTool{}.burr_radius_mm));
   expect_no_step();
-  expect_slow_return([] {});
 }
 
 TEST_P(DeviceFaults, GivesNumbersThatAreNone) {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "osteomill/device/latest_value.h"
-#include "osteomill/device/spsc_queue.h"
+#include "osteomill/numbers/spsc_queue.h"
 
 namespace osteomill {
 namespace {

@@ -33,6 +33,7 @@ void LiveSession::start() {
   running_.store(true, std::memory_order_release);
   std::atomic<bool> ready{false};
   thread_ = std::thread([this, &ready] {
+    CrashStop::give_this_thread_a_stack();
     refused_real_time_ = request_real_time();
     ready.store(true, std::memory_order_release);
     run();

@@ -9,9 +9,9 @@
 #include <thread>
 
 #include "osteomill/device/latest_value.h"
-#include "osteomill/device/spsc_queue.h"
 #include "osteomill/live/crash_stop.h"
 #include "osteomill/live/live_timing.h"
+#include "osteomill/numbers/spsc_queue.h"
 #include "osteomill/session/milling_session.h"
 
 namespace osteomill {

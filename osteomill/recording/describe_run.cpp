@@ -55,6 +55,7 @@ constexpr std::array kEntries{
     Entry{"guard.max_torque_rate", "N mm/s", OSTEOMILL_SETTING(setup.guard.rates.torque_Nmm_s)},
     Entry{"guard.blend", "s", OSTEOMILL_SETTING(setup.guard.blend_s)},
     Entry{"guard.max_move", "mm", OSTEOMILL_SETTING(setup.guard.max_move_mm)},
+    Entry{"guard.max_turn", "rad", OSTEOMILL_SETTING(setup.guard.max_turn_rad)},
     Entry{"guard.max_tick", "s", OSTEOMILL_SETTING(setup.guard.max_tick_s)},
     Entry{"passivity_controller", "", OSTEOMILL_SWITCH(setup.guard.passivity_controller)},
 };

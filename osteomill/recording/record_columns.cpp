@@ -85,6 +85,8 @@ constexpr std::array kColumns{
     RecordColumn{"placed", "",
                  "1 where the tool was placed at the device before the tick, contacts forgotten",
                  small_integer, false, OSTEOMILL_FLAG(placed)},
+    RecordColumn{"given_share", "", "how much of the force that was asked for the device had sent by then",
+                 real, false, OSTEOMILL_FIELD(given_share)},
     OSTEOMILL_VECTOR("cutting_torque", "Nmm", "N mm", kCuttingTorque, false, cutting_torque_W_Nmm),
 };
 

@@ -12,9 +12,9 @@
 #include <thread>
 #include <utility>
 
-#include "osteomill/device/spsc_queue.h"
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/files/input_error.h"
+#include "osteomill/numbers/spsc_queue.h"
 #include "osteomill/recording/recording.h"
 #include "osteomill/recording/recording_file.h"
 

@@ -65,7 +65,8 @@ class Hand {
     pose.orientation = quaternion_from_rotation_vector({0.3 * std::sin(0.01 * n), 0.2, 0.1});
     if (n == 300) pose.position_mm.x() += 20;
     if (n == 320) pose.position_mm.y() = std::numeric_limits<double>::quiet_NaN();
-    device_.put(pose);
+    // Now and then it gives the hand less.
+    device_.put(pose, n % 50 < 40 ? 1 : 0.4);
     if (n == 450) session.let_go();
     if (n == 500) {
       placed_ = true;

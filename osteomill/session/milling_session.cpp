@@ -25,11 +25,6 @@ std::shared_ptr<Volume> workable(const MillingTool& tool, std::shared_ptr<Volume
   return bone;
 }
 
-// Of a force, as far as what is sent has its direction: the bone that goes is paid with what the hand gives.
-double share_sent(const Vec3& asked, const Vec3& sent) {
-  return sent == asked || asked.isZero(0) ? 1 : std::clamp(sent.dot(asked) / asked.squaredNorm(), 0.0, 1.0);
-}
-
 constexpr double kLoneTick_s = 1e-3;
 
 double tick_length_s(const std::vector<TrajectoryPoint>& trajectory, std::size_t n) {
@@ -78,6 +73,7 @@ TickRecord MillingSession::begin_record(Device& device, double time_s, double dt
   record.let_go = std::exchange(let_go_asked_, false);
   if (record.let_go) guard_.let_go();
   record.X_WD = device.read_pose();
+  record.given_share = device.given_share();
   if (place_asked_ && is_finite(record.X_WD)) {
     place_asked_ = false;
     record.placed = true;
@@ -91,7 +87,9 @@ TickRecord MillingSession::tick(Device& device, double time_s, double dt_s, bool
   record.spindle_on = spindle_on;
 
   const Clock::time_point start = Clock::now();
-  const auto [step, safe, cutting_torque_W_Nmm] = step_safely(record.X_WD, dt_s, spindle_on);
+  auto [step, safe, cutting_torque_W_Nmm] = step_safely(record.X_WD, dt_s, spindle_on);
+  // The bone that goes is paid with what the hand gives.
+  step.burr_force_W_N *= record.given_share;
   record.compute_us = microseconds_since(start);
   device.write_wrench(safe.wrench);
 

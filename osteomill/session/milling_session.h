@@ -6,13 +6,13 @@
 #include <vector>
 
 #include "osteomill/device/device.h"
-#include "osteomill/device/trajectory.h"
 #include "osteomill/haptics/haptic_algorithm.h"
 #include "osteomill/milling/burr_mill.h"
 #include "osteomill/milling/cutting_reaction.h"
 #include "osteomill/milling/no_go_watch.h"
 #include "osteomill/session/milling_setup.h"
 #include "osteomill/session/tick_record.h"
+#include "osteomill/session/trajectory.h"
 
 namespace osteomill {
 

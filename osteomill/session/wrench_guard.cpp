@@ -50,14 +50,14 @@ Wrench PassivityObserver::damping(double dt_s) const {
 }
 
 GuardSettings GuardSettings::for_a_hand() const {
-  return {limits, kRatesForAHand, 0.1, 5, 0.005, passivity_controller};
+  return {limits, kRatesForAHand, 0.1, 5, 0.2, 0.005, passivity_controller};
 }
 
 void WrenchGuard::begin_anew() {
   from_ = sent_;
   blended_ = 0;
   let_go_ = false;
-  device_W_.reset();
+  X_WD_.reset();
 }
 
 void WrenchGuard::begin_from(const Wrench& sent) {
@@ -91,7 +91,7 @@ SafeWrench WrenchGuard::send_zero(double dt_s) {
   const SafeWrench safe = approach({}, WrenchFault::none, dt_s);
   from_ = {};
   blended_ = 0;
-  device_W_.reset();
+  X_WD_.reset();
   return safe;
 }
 
@@ -103,7 +103,8 @@ SafeWrench WrenchGuard::pass(const Wrench& asked, const Pose& X_WD, double dt_s)
   const SafeWrench within = make_safe(is_damped ? asked + damping : asked, settings_.limits);
   WrenchFault fault = within.fault;
   if (fault == WrenchFault::none && is_damped) fault = WrenchFault::eased;
-  if (device_W_ && (X_WD.position_mm - *device_W_).norm() > settings_.max_move_mm) {
+  if (X_WD_ && ((X_WD.position_mm - X_WD_->position_mm).norm() > settings_.max_move_mm ||
+                X_WD.orientation.angularDistance(X_WD_->orientation) > settings_.max_turn_rad)) {
     fault = WrenchFault::pose_jumped;
   } else if (dt_s > settings_.max_tick_s) {
     fault = WrenchFault::tick_late;
@@ -111,10 +112,10 @@ SafeWrench WrenchGuard::pass(const Wrench& asked, const Pose& X_WD, double dt_s)
   if (fault == WrenchFault::not_finite || fault == WrenchFault::pose_jumped ||
       fault == WrenchFault::tick_late) {
     const Wrench sent = send_zero(dt_s).wrench;
-    device_W_ = X_WD.position_mm;
+    X_WD_ = X_WD;
     return {sent, fault};
   }
-  device_W_ = X_WD.position_mm;
+  X_WD_ = X_WD;
   const Wrench wanted = let_go_ ? Wrench{} : within.wrench;
   blended_ = settings_.blend_s > 0 ? std::min(1.0, blended_ + usual_tick_s(dt_s) / settings_.blend_s) : 1;
   // In free space there is nothing to come up slowly.

@@ -14,14 +14,15 @@ struct GuardSettings {
   WrenchRates rates;
   /// How long it takes from what was sent before to what is asked for, where they need not agree.
   double blend_s = 0;
-  /// The furthest that a device moves in a tick, and the longest tick; beyond them zero is sent.
+  /// The furthest that a device moves and turns in a tick, and the longest tick; beyond them zero is sent.
   double max_move_mm = kAny;
+  double max_turn_rad = kAny;
   double max_tick_s = kAny;
   /// A damper is felt on contact while the hand has been given more energy than it gave (PassivityObserver).
   bool passivity_controller = false;
 
-  /// The same for a person's hand: kRatesForAHand, a blend of 0.1 s, moves of up to 5 mm and ticks of up to
-  /// 5 ms. The default only shortens to the limits, for hands that are simulated.
+  /// The same for a person's hand: kRatesForAHand, a blend of 0.1 s, moves of up to 5 mm and 0.2 rad
+  /// and ticks of up to 5 ms. The default only shortens to the limits, for hands that are simulated.
   GuardSettings for_a_hand() const;
 };
 
@@ -103,7 +104,7 @@ class WrenchGuard {
   Wrench from_;
   double blended_ = 0;
   bool let_go_ = false;
-  std::optional<Vec3> device_W_;
+  std::optional<Pose> X_WD_;
   PassivityObserver observer_;
 };
 

@@ -98,6 +98,11 @@ TEST(WrenchGuard, AFaultEndsInZeroWithin5ms) {
   };
   const Fault faults[] = {{{{nan, 0, 0}, Vec3::Zero()}, kHere, kTick_s, WrenchFault::not_finite},
                           {down(20), {{1, 2, 53}, Quat::Identity()}, kTick_s, WrenchFault::pose_jumped},
+                          // A grip that is centred anew.
+                          {down(20),
+                           {kHere.position_mm, quaternion_from_rotation_vector({0, 0.3, 0})},
+                           kTick_s,
+                           WrenchFault::pose_jumped},
                           {down(20), kHere, 0.02, WrenchFault::tick_late}};
   for (const Fault& fault : faults) {
     WrenchGuard guard = holding(20);

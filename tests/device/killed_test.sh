@@ -77,7 +77,7 @@ wait $device 2>/dev/null || true
 until_true 10 "missed" grep -qE "example device: has (been gone|given no pose) for" errors
 judge 0 "the device killed"
 begin_device
-until_true 10 "there again" grep -q "example device: gives poses again" errors
+until_true 10 "there again" grep -q "example device: all is well again" errors
 wait $program || fail "osteomill ended with $?"
 grep -qE "^device +example device: .* poses/s, [1-9]" said || fail "what was wrong is not counted"
 sleep 0.3

@@ -49,3 +49,14 @@ mills() {  # DEVICE NAME DOWN AWAY OPTIONS...: how the device is turned so that 
 mills dhd "Force Dimension sigma.7 4711" "90 0 0" "0 180 0"
 mills hd "3D Systems Touch 0815" "0 0 -90" "0 90 0"
 mills "haply:127.0.0.1:$port" "Haply Inverse3 049D" "0 0 -90" "0 90 0" --send-bone "127.0.0.1:$slicer_port"
+
+# Ctrl-Z, and then it is killed: the service, which knows no lapse, was sent zero before.
+: >hand
+"$osteomill" live ball.nrrd --device "haply:127.0.0.1:$port" --device-scale 0.2 --device-turn 0 0 -90 --seconds 60 \
+  --algorithm line-proxy --quiet >said 2>errors & program=$!
+sleep 2.5
+kill -TSTP $program
+for _ in $(seq 50); do ! grep -q "^State:.*T" "/proc/$program/status" || break; sleep 0.1; done
+kill -9 $program
+wait $program 2>/dev/null || true
+judge "haply stopped"

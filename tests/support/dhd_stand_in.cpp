@@ -63,13 +63,50 @@ bool dhdHasWrist(char) {
 bool dhdHasActiveWrist(char) {
   return g_state.has_active_wrist;
 }
-int dhdSetBrakes(int on, char) {
-  g_state.has_brakes = on != 0;
+bool dhdHasGripper(char) {
+  return g_state.has_gripper;
+}
+int dhdEmulateButton(unsigned char on, char) {
+  g_state.emulates_button = on != 0;
   return 0;
 }
+int dhdEnableExpertMode() {
+  g_state.is_expert = true;
+  return 0;
+}
+int dhdDisableExpertMode() {
+  g_state.is_expert = false;
+  return 0;
+}
+int dhdSetWatchdog(unsigned char value, char) {
+  if (!g_state.is_expert || g_state.longest_watchdog == 0) return -1;
+  g_state.watchdog = std::min(value, g_state.longest_watchdog);
+  return 0;
+}
+int dhdGetWatchdog(unsigned char* value, char) {
+  if (!g_state.is_expert || g_state.longest_watchdog == 0) return -1;
+  *value = static_cast<unsigned char>(g_state.watchdog);
+  return 0;
+}
+int dhdGetStatus(int* status, char) {
+  std::copy(g_state.status.begin(), g_state.status.end(), status);
+  return result_of("dhdGetStatus");
+}
+int dhdSetBrakes(int on, char) {
+  g_state.status[6] = on;
+  return 0;
+}
+// As the maker's own library does with the device that it simulates.
 int dhdEnableForce(unsigned char on, char) {
-  g_state.has_force = on != 0;
+  if (g_state.status[3] == 0) {
+    g_state.status[5] = on;
+    g_state.status[6] = 1 - on;
+  }
   return result_of("dhdEnableForce");
+}
+int dhdSetMaxTorque(double torque_Nm, char) {
+  g_state.max_torque_Nm = torque_Nm;
+  return 0;
 }
 int dhdSetMaxForce(double force_N, char) {
   g_state.max_force_N = force_N;

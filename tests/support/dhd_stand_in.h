@@ -3,7 +3,8 @@
 #include <array>
 #include <string>
 
-/// What the stand-in for libdhd says, and what it was told. A test has it by dlsym("dhd_stand_in").
+/// What the stand-in for libdhd says (names and numbers of dhdc.h, SDK 3.17.5), and what it was told. A test
+/// has it by dlsym("dhd_stand_in").
 struct DhdStandIn {
   int devices = 1;
   bool has_wrist = true;
@@ -18,12 +19,19 @@ struct DhdStandIn {
   std::array<double, 3> position_m{};
   double frame[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   unsigned buttons = 0;
+  /// As dhdGetStatus has it (dhdc.h, DHD_STATUS_...); force can be enabled where [3], RESET, is 0.
+  std::array<int, 17> status{1, 1, 1, 0, 1, 0, 1};
+  bool has_gripper = true;
+  /// Where it is 0 the device has none.
+  unsigned char longest_watchdog = 255;
 
   int opened = -1;
   bool is_stopped = false;
-  bool has_force = false;
-  bool has_brakes = true;
+  bool is_expert = false;
+  bool emulates_button = false;
+  int watchdog = 0;
   double max_force_N = 0;
+  double max_torque_Nm = 0;
   /// Force (N), torque (N m), force of the gripper (N).
   std::array<double, 7> sent{};
   int times_sent = 0;

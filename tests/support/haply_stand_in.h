@@ -19,7 +19,9 @@
 
 namespace osteomill::testing_support {
 
-/// Stands in for Haply's Inverse service: an inventory for who connects, then a state for each text.
+/// Stands in for Haply's Inverse service: an inventory for who connects, then a state for each text, as
+/// docs.haply.co/inverseSDK/service/realtime/websocket-protocol has them (3.5), `status` as
+/// docs.haply.co/inverseSDK/service/api/simulation.
 class HaplyStandIn {
  public:
   explicit HaplyStandIn(int port = 0) {
@@ -53,6 +55,12 @@ class HaplyStandIn {
   std::atomic<bool> is_3_5{true};
   const char* grip = "wireless_verse_grip";
   std::atomic<bool> has_device{true};
+  std::atomic<const char*> type{"inverse3"};
+  /// What is said of the device and its grip with every state.
+  std::atomic<bool> is_calibrated{true};
+  std::atomic<bool> is_awake{true};
+  /// By what the service's filters change a force.
+  std::atomic<double> force_scale{1};
 
   /// Said from now on in place of a state.
   void say(const std::string& text) {
@@ -72,6 +80,11 @@ class HaplyStandIn {
     const std::lock_guard lock(mutex_);
     return heard_;
   }
+  /// Every force that was commanded, one for each text.
+  std::vector<std::array<double, 3>> forces() const {
+    const std::lock_guard lock(mutex_);
+    return forces_;
+  }
   /// The force last commanded, under whichever of the two keys the version has; NaN where it was another.
   std::array<double, 3> force_N() const {
     const std::lock_guard lock(mutex_);
@@ -84,10 +97,19 @@ class HaplyStandIn {
     nlohmann::json message;
     message["inverse3"] = nlohmann::json::array();
     if (has_device) {
+      const double s = force_scale;
+      const auto& [x, y, z] = force_N_;
       message["inverse3"].push_back({{"device_id", "049D"},
                                      {"state",
                                       {{"cursor_position", {{"x", x_m}, {"y", -0.02}, {"z", 0.03}}},
-                                       {"cursor_velocity", {{"x", 0.1}, {"y", 0.2}, {"z", -0.3}}}}}});
+                                       {"cursor_velocity", {{"x", 0.1}, {"y", 0.2}, {"z", -0.3}}},
+                                       {"current_cursor_force", {{"x", s * x}, {"y", s * y}, {"z", s * z}}}}},
+                                     {"status",
+                                      {{"calibrated", is_calibrated.load()},
+                                       {"in_use", false},
+                                       {"power_supply", true},
+                                       {"ready", true},
+                                       {"started", true}}}});
     }
     if (grip != nullptr) {
       const double s = std::sqrt(0.5);
@@ -97,7 +119,8 @@ class HaplyStandIn {
       } else {
         held["buttons"] = {{"a", true}, {"b", false}, {"c", true}};
       }
-      message[grip] = nlohmann::json::array({{{"device_id", "61548"}, {"state", held}}});
+      message[grip] = nlohmann::json::array(
+          {{{"device_id", "61548"}, {"state", held}, {"status", {{"awake", is_awake.load()}}}}});
     }
     return message;
   }
@@ -114,6 +137,7 @@ class HaplyStandIn {
     switch (reason) {
       case LWS_CALLBACK_ESTABLISHED: {
         nlohmann::json inventory = self->state();
+        if (self->has_device) inventory["inverse3"][0]["config"]["type"] = self->type.load();
         if (self->is_3_5) inventory["session_id"] = 7;
         self->talks_[socket].going.push_back(inventory.dump());
         lws_callback_on_writable(socket);
@@ -167,6 +191,7 @@ class HaplyStandIn {
         nlohmann::json::json_pointer(std::string("/inverse3/0/commands/set_cursor_force/") + key),
         nlohmann::json{{"x", NAN}, {"y", NAN}, {"z", NAN}});
     force_N_ = {force["x"], force["y"], force["z"]};
+    forces_.push_back(force_N_);
     most_N_ = std::max(most_N_.load(), std::hypot(force_N_[0], force_N_[1], force_N_[2]));
   }
 
@@ -179,6 +204,7 @@ class HaplyStandIn {
   mutable std::mutex mutex_;
   std::string instead_;
   std::vector<std::string> heard_;
+  std::vector<std::array<double, 3>> forces_;
   std::array<double, 3> force_N_{};
   std::atomic<double> most_N_{0};
   std::thread thread_;

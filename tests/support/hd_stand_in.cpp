@@ -76,6 +76,7 @@ void hdSetDoublev(unsigned parameter, const double* values) {
 void hdGetIntegerv(unsigned parameter, int* values) {
   if (parameter == 0x2000) *values = g_state.buttons;
   if (parameter == 0x2553) *values = 6;
+  if (parameter == 0x2555) *values = 1 | 4;
   if (parameter == 0x2554) *values = g_state.output_dof;
 }
 const char* hdGetString(unsigned parameter) {
@@ -83,6 +84,13 @@ const char* hdGetString(unsigned parameter) {
 }
 void hdEnable(unsigned what) {
   if (what == 0x4000) g_state.has_force = true;
+}
+unsigned hdCheckCalibration() {
+  return g_state.calibration;
+}
+void hdUpdateCalibration(unsigned style) {
+  g_state.updated_style = style;
+  g_state.calibration = 0x5000;
 }
 HDErrorInfo hdGetError() {
   const unsigned code = g_error.exchange(0);

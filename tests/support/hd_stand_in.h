@@ -3,8 +3,9 @@
 #include <array>
 #include <atomic>
 
-/// What the stand-in for libHD says, and what it was told; its scheduler calls 1000 times a second. A test
-/// has it by dlsym("hd_stand_in"), and changes plain members only while no scheduler runs.
+/// What the stand-in for libHD says (names and numbers of hd.h and hdDefines.h, 3.0), and what it was told;
+/// its scheduler calls 1000 times a second. A test has it by dlsym("hd_stand_in"), and changes plain members
+/// only while no scheduler runs.
 struct HdStandIn {
   bool is_there = true;
   int output_dof = 3;
@@ -14,6 +15,9 @@ struct HdStandIn {
   std::array<double, 16> transform{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
   int buttons = 0;
 
+  /// Said by hdCheckCalibration: 0x5000 calibrated, 0x5001 needs an update, 0x5002 an operator (hdDefines.h).
+  std::atomic<unsigned> calibration{0x5000};
+  std::atomic<unsigned> updated_style{0};
   /// Said by hdGetError after each frame.
   std::atomic<unsigned> error{0};
   /// The scheduler runs but no longer calls.

@@ -11,11 +11,13 @@
 #include <igtlImageMessage.h>
 #include <igtlMessageHeader.h>
 #include <igtlServerSocket.h>
+#include <igtlStringMessage.h>
+#include <igtlTransformMessage.h>
 
 namespace osteomill::testing_support {
 
 /// Stands in for 3D Slicer: an OpenIGTLink server made of the library's own sockets, which keeps the image
-/// that it is sent.
+/// and the tool that it is sent, and closes on messages that Slicer has no reader for.
 class IgtlStandIn {
  public:
   explicit IgtlStandIn(int port = 0) {
@@ -45,6 +47,17 @@ class IgtlStandIn {
     igtl::Matrix4x4 matrix{};
     std::vector<float> values;
   };
+  /// The tool as it was last told of.
+  struct Tool {
+    int messages = 0;
+    std::string name;
+    igtl::Matrix4x4 matrix{};
+    std::string readings;
+  };
+  Tool tool() const {
+    const std::lock_guard lock(mutex_);
+    return tool_;
+  }
   Image image() const {
     const std::lock_guard lock(mutex_);
     return image_;
@@ -70,17 +83,44 @@ class IgtlStandIn {
     const int length = client.Receive(header->GetPackPointer(), header->GetPackSize());
     if (length <= 0) return length < 0;
     header->Unpack();
-    return take_image(client, header);
+    const std::string type = header->GetDeviceType();
+    if (type == "IMAGE") return take_image(client, header);
+    if (type == "TRANSFORM") return take_tool(client, header);
+    if (type == "STRING") return take_readings(client, header);
+    return false;
   }
 
-  bool take_image(igtl::Socket& client, const igtl::MessageHeader::Pointer& header) {
-    const auto message = igtl::ImageMessage::New();
+  template <typename Message>
+  bool take(igtl::Socket& client, const igtl::MessageHeader::Pointer& header, Message& message) {
     message->SetMessageHeader(header);
     message->AllocatePack();
     client.SetReceiveTimeout(2000);
     client.Receive(message->GetPackBodyPointer(), message->GetPackBodySize());
     client.SetReceiveTimeout(20);
-    if ((message->Unpack(1) & igtl::MessageHeader::UNPACK_BODY) == 0) return false;
+    return (message->Unpack(1) & igtl::MessageHeader::UNPACK_BODY) != 0;
+  }
+
+  bool take_tool(igtl::Socket& client, const igtl::MessageHeader::Pointer& header) {
+    const auto message = igtl::TransformMessage::New();
+    if (!take(client, header, message)) return false;
+    const std::lock_guard lock(mutex_);
+    tool_.name = message->GetDeviceName();
+    message->GetMatrix(tool_.matrix);
+    ++tool_.messages;
+    return true;
+  }
+
+  bool take_readings(igtl::Socket& client, const igtl::MessageHeader::Pointer& header) {
+    const auto message = igtl::StringMessage::New();
+    if (!take(client, header, message)) return false;
+    const std::lock_guard lock(mutex_);
+    tool_.readings = message->GetString();
+    return true;
+  }
+
+  bool take_image(igtl::Socket& client, const igtl::MessageHeader::Pointer& header) {
+    const auto message = igtl::ImageMessage::New();
+    if (!take(client, header, message)) return false;
     const std::lock_guard lock(mutex_);
     message->GetDimensions(image_.dims.data());
     message->GetSpacing(image_.spacing_mm.data());
@@ -105,6 +145,7 @@ class IgtlStandIn {
   std::atomic<bool> ends_{false};
   mutable std::mutex mutex_;
   Image image_;
+  Tool tool_;
   std::thread thread_;
 };
 

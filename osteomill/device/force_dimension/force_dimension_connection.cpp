@@ -21,48 +21,55 @@ using Clock = std::chrono::steady_clock;
 constexpr double kMmPerM = 1000;
 // Twice as often as wrenches change; the library itself does not wait for the device.
 constexpr auto kBetweenReadings = 500us;
+constexpr auto kBetweenStatuses = 20ms;
 // What dhd functions return: 0 done, below 0 failed; above 0 done, but the pose is the last one again.
 constexpr int kNotNew = 1;
+// In steps of 125 us, the longest that there is. It does not run before the first wrench.
+constexpr unsigned char kWatchdog = 255;
+constexpr double kWatchdogStep_s = 125e-6;
+
+// Where in the status things stand, and why force is off.
+constexpr std::size_t kStatuses = 17;
+enum Status : std::size_t { kIsReset = 3, kHasForce = 5, kBrakes = 6, kForceOffCause = 14 };
+constexpr int kByWatchdog = 3;
+constexpr std::array kForceIsOff{"has its force off: switch it on by the device's button",
+                                 "has its force off by its button: press it again",
+                                 "has braked, as it moved too fast: switch its force on by its button",
+                                 "has its force off, as it waited too long for a wrench",
+                                 "has its force off by another program",
+                                 "has its force off, as it was unplugged: switch it on by its button",
+                                 "has its force off: hold its dead man's switch"};
 
 // The functions of libdhd 3 that are used, as their manual declares them. A device's number is -1 for the one
 // opened last.
 struct Dhd {
-  explicit Dhd(const VendorLibrary& library)
-      : device_count(library.function<int()>("dhdGetDeviceCount")),
-        open(library.function<int(char)>("dhdOpenID")),
-        close(library.function<int(char)>("dhdClose")),
-        stop(library.function<int(char)>("dhdStop")),
-        last_error(library.function<const char*()>("dhdErrorGetLastStr")),
-        system_name(library.function<const char*(char)>("dhdGetSystemName")),
-        system_type(library.function<int(char)>("dhdGetSystemType")),
-        serial_number(library.function<int(unsigned short*, char)>("dhdGetSerialNumber")),
-        has_wrist(library.function<bool(char)>("dhdHasWrist")),
-        has_active_wrist(library.function<bool(char)>("dhdHasActiveWrist")),
-        set_brakes(library.function<int(int, char)>("dhdSetBrakes")),
-        enable_force(library.function<int(unsigned char, char)>("dhdEnableForce")),
-        set_max_force(library.function<int(double, char)>("dhdSetMaxForce")),
-        pose(library.function<int(double*, double*, double*, double (*)[3], char)>(
-            "dhdGetPositionAndOrientationFrame")),
-        button_mask(library.function<unsigned(char)>("dhdGetButtonMask")),
-        set_wrench(library.function<int(double, double, double, double, double, double, double, char)>(
-            "dhdSetForceAndTorqueAndGripperForce")) {}
-
-  int (*device_count)();
-  int (*open)(char);
-  int (*close)(char);
-  int (*stop)(char);
-  const char* (*last_error)();
-  const char* (*system_name)(char);
-  int (*system_type)(char);
-  int (*serial_number)(unsigned short*, char);
-  bool (*has_wrist)(char);
-  bool (*has_active_wrist)(char);
-  int (*set_brakes)(int, char);
-  int (*enable_force)(unsigned char, char);
-  int (*set_max_force)(double, char);
-  int (*pose)(double*, double*, double*, double (*)[3], char);
-  unsigned (*button_mask)(char);
-  int (*set_wrench)(double, double, double, double, double, double, double, char);
+  VendorLibrary file{
+      "dhd", "OSTEOMILL_DHD_LIBRARY", {"libdhd.so.3", "libdhd.so", "libdrd.so.3", "libdrd.so"}};
+  int (*device_count)() = file["dhdGetDeviceCount"];
+  int (*open)(char) = file["dhdOpenID"];
+  int (*close)(char) = file["dhdClose"];
+  int (*stop)(char) = file["dhdStop"];
+  const char* (*last_error)() = file["dhdErrorGetLastStr"];
+  const char* (*system_name)(char) = file["dhdGetSystemName"];
+  int (*system_type)(char) = file["dhdGetSystemType"];
+  int (*serial_number)(unsigned short*, char) = file["dhdGetSerialNumber"];
+  bool (*has_wrist)(char) = file["dhdHasWrist"];
+  bool (*has_active_wrist)(char) = file["dhdHasActiveWrist"];
+  bool (*has_gripper)(char) = file["dhdHasGripper"];
+  int (*emulate_button)(unsigned char, char) = file["dhdEmulateButton"];
+  int (*enable_expert_mode)() = file["dhdEnableExpertMode"];
+  int (*disable_expert_mode)() = file["dhdDisableExpertMode"];
+  int (*set_watchdog)(unsigned char, char) = file["dhdSetWatchdog"];
+  int (*get_watchdog)(unsigned char*, char) = file["dhdGetWatchdog"];
+  int (*status)(int*, char) = file["dhdGetStatus"];
+  int (*set_brakes)(int, char) = file["dhdSetBrakes"];
+  int (*enable_force)(unsigned char, char) = file["dhdEnableForce"];
+  int (*set_max_force)(double, char) = file["dhdSetMaxForce"];
+  int (*set_max_torque)(double, char) = file["dhdSetMaxTorque"];
+  int (*pose)(double*, double*, double*, double (*)[3], char) = file["dhdGetPositionAndOrientationFrame"];
+  unsigned (*button_mask)(char) = file["dhdGetButtonMask"];
+  int (*set_wrench)(double, double, double, double, double, double, double,
+                    char) = file["dhdSetForceAndTorqueAndGripperForce"];
 };
 
 // What the library does not say, from the makers' data sheets.
@@ -73,22 +80,20 @@ struct Model {
 
 Model model_of(int system_type) {
   const std::array models{
-      Model{32, 37, {12, 0}},     // omega.3, .6 and .7
-      Model{60, 60, {8, 0}},      // Falcon
-      Model{63, 64, {20, 200}},   // delta.3 and .6
-      Model{104, 107, {20, 400}}  // sigma.7
+      Model{32, 37, {12, 0}},      // omega.3, .6 and .7
+      Model{60, 60, {8, 0}},       // Falcon
+      Model{63, 64, {20, 200}},    // delta.3 and .6
+      Model{104, 107, {20, 400}},  // sigma.7
+      Model{108, 109, {12, 200}},  // lambda.7
+      Model{131, 132, {12, 0}},    // lambda.6
+      Model{203, 203, {12, 0}},    // lambda.3
+      Model{206, 206, {20, 0}}     // sigma.3
   };
   for (const Model& model : models) {
     if (model.first_type <= system_type && system_type <= model.last_type) return model;
   }
   return {0, 0, {8, 100}};
 }
-
-struct Library {
-  VendorLibrary file{
-      "dhd", "OSTEOMILL_DHD_LIBRARY", {"libdhd.so.3", "libdhd.so", "libdrd.so.3", "libdrd.so"}};
-  Dhd dhd{file};
-};
 
 [[noreturn]] void fail(const std::string& reason) {
   throw InputError("dhd", reason);
@@ -116,8 +121,9 @@ class ForceDimensionConnection final : public Connection {
   explicit ForceDimensionConnection(const std::string& address) {
     const char number = number_of(address);
     require_device(dhd_, number);
-    id_ = static_cast<char>(dhd_.open(number));
-    if (id_ < 0) fail(dhd_.last_error());
+    const int opened = dhd_.open(number);
+    if (opened < 0) fail(dhd_.last_error());
+    id_ = static_cast<char>(opened);
     const Model model = model_of(dhd_.system_type(id_));
     capabilities_.name = std::string("Force Dimension ") + dhd_.system_name(id_);
     if (unsigned short serial = 0; dhd_.serial_number(&serial, id_) >= 0)
@@ -126,12 +132,14 @@ class ForceDimensionConnection final : public Connection {
     capabilities_.driven = dhd_.has_active_wrist(id_) ? 6 : 3;
     capabilities_.R_VD = Mat3{{0, 1, 0}, {0, 0, 1}, {1, 0, 0}};
     capabilities_.limits = model.limits;
-    if (dhd_.set_brakes(0, id_) < 0 || dhd_.enable_force(1, id_) < 0 ||
-        dhd_.set_max_force(model.limits.force_N, id_) < 0) {
+    if (dhd_.enable_force(0, id_) < 0 || dhd_.set_max_force(model.limits.force_N, id_) < 0 ||
+        dhd_.set_max_torque(model.limits.torque_Nmm / kMmPerM, id_) < 0) {
       const std::string reason = dhd_.last_error();
       dhd_.close(id_);
       fail(reason);
     }
+    if (dhd_.has_gripper(id_)) dhd_.emulate_button(1, id_);
+    set_watchdog();
   }
   ~ForceDimensionConnection() override {
     write({});
@@ -160,6 +168,11 @@ class ForceDimensionConnection final : public Connection {
       input.X_DH.orientation = Quat(Mat3(R_DH)).normalized();
     }
     input.buttons = dhd_.button_mask(id_);
+    if (Clock::now() >= next_status_) {
+      next_status_ = Clock::now() + kBetweenStatuses;
+      not_driven_ = why_not_driven();
+    }
+    input.not_driven = not_driven_;
     return ConnectionStatus::fresh;
   }
 
@@ -172,11 +185,42 @@ class ForceDimensionConnection final : public Connection {
   }
 
  private:
-  Library library_;
-  const Dhd& dhd_ = library_.dhd;
-  char id_ = -1;
+  Dhd dhd_;
+  // Not every device has one.
+  void set_watchdog() {
+    dhd_.enable_expert_mode();
+    dhd_.set_watchdog(kWatchdog, id_);
+    unsigned char is_set = 0;
+    if (dhd_.get_watchdog(&is_set, id_) >= 0) capabilities_.lets_go_after_s = kWatchdogStep_s * is_set;
+    dhd_.disable_expert_mode();
+  }
+
+  // Force is switched on once the device is calibrated, and again where its watchdog alone had switched it
+  // off: what its operator or its brakes switched off is theirs to switch on.
+  const char* why_not_driven() {
+    std::array<int, kStatuses> status{};
+    if (dhd_.status(status.data(), id_) < 0) return "does not say whether it is calibrated";
+    if (status[kIsReset] != 0) {
+      has_begun_ = false;
+      return "is not calibrated: calibrate it by the maker's tool (HapticInit), a Falcon by hand";
+    }
+    const auto is_off = [&] { return status[kHasForce] == 0 || status[kBrakes] != 0; };
+    if (is_off() && (!has_begun_ || status[kForceOffCause] == kByWatchdog)) {
+      has_begun_ = true;
+      dhd_.set_brakes(0, id_);
+      dhd_.enable_force(1, id_);
+      if (dhd_.status(status.data(), id_) < 0) return "does not say whether its force is on";
+    }
+    const auto cause = static_cast<std::size_t>(status[kForceOffCause]);
+    return is_off() ? kForceIsOff[cause < kForceIsOff.size() ? cause : 0] : nullptr;
+  }
+
+  char id_ = 0;
   DeviceCapabilities capabilities_;
   Clock::time_point next_ = Clock::now();
+  Clock::time_point next_status_ = Clock::now();
+  const char* not_driven_ = nullptr;
+  bool has_begun_ = false;
 };
 
 }  // namespace
@@ -186,15 +230,11 @@ std::unique_ptr<Connection> open_force_dimension(const std::string& address) {
 }
 
 // Without opening it, as that would take it from whoever has it.
-FoundDevice find_force_dimension(const std::string& address) {
-  try {
-    const Library library;
-    require_device(library.dhd, number_of(address));
-    const int count = library.dhd.device_count();
-    return {true, fmt::format("{} connected", count == 1 ? "a device" : fmt::format("{} devices", count))};
-  } catch (const InputError& error) {
-    return {false, error.what()};
-  }
+std::string look_for_force_dimension(const std::string& address) {
+  const Dhd dhd;
+  require_device(dhd, number_of(address));
+  const int count = dhd.device_count();
+  return count == 1 ? "a device connected" : fmt::format("{} devices connected", count);
 }
 
 }  // namespace osteomill

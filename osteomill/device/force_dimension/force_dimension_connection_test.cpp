@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstdlib>
 #include <numbers>
 #include <string>
+#include <utility>
 
 #include "tests/support/dhd_stand_in.h"
 #include <dlfcn.h>
@@ -13,6 +15,8 @@
 
 namespace osteomill {
 namespace {
+
+using namespace std::chrono_literals;
 
 class ForceDimension : public ::testing::Test {
  protected:
@@ -51,11 +55,80 @@ TEST_F(ForceDimension, SaysWhatItCan) {
   EXPECT_EQ(can.driven, 6);
   EXPECT_EQ(can.limits.force_N, 20);
   EXPECT_EQ(device_->max_force_N, 20);
-  EXPECT_TRUE(device_->has_force);
-  EXPECT_FALSE(device_->has_brakes);
+  EXPECT_EQ(device_->max_torque_Nm, 0.4);
+  // The longest that there is, 255 steps of 125 us; only an expert may set it.
+  EXPECT_EQ(device_->watchdog, 255);
+  EXPECT_FALSE(device_->is_expert);
+  EXPECT_NEAR(can.lets_go_after_s, 0.032, 1e-3);
+  EXPECT_TRUE(device_->emulates_button);
   // Its x points to the operator, its y to the right, its z up.
   EXPECT_TRUE((can.R_VD * Vec3::UnitX()).isApprox(Vec3::UnitZ()));
   EXPECT_TRUE((can.R_VD * Vec3::UnitY()).isApprox(Vec3::UnitX()));
+}
+
+TEST_F(ForceDimension, WhereItHasNoWatchdogNoneIsSaid) {
+  device_->longest_watchdog = 0;
+  EXPECT_EQ(open_force_dimension("")->capabilities().lets_go_after_s, 0);
+}
+
+TEST_F(ForceDimension, EveryModelHasLimits) {
+  for (const int type : {33, 34, 35, 36, 37, 60, 63, 104, 105, 108, 109, 131, 132, 203, 206}) {
+    device_->system_type = type;
+    open_force_dimension("");
+    EXPECT_GE(device_->max_force_N, 8) << type;
+    EXPECT_EQ(device_->max_torque_Nm > 0, type == 63 || (type >= 104 && type <= 109)) << type;
+  }
+}
+
+// Once it is calibrated it gets force, and again after its watchdog; what its operator or its brakes switched
+// off is not switched on again.
+TEST_F(ForceDimension, IsDrivenWhereItIsCalibratedAndHasItsForceOn) {
+  enum { kReset = 3, kForce = 5, kBrake = 6, kCause = 14 };
+  device_->status[kReset] = 1;
+  const auto connection = open_force_dimension("");
+  DeviceInput input;
+  const auto why_not = [&] {
+    for (const auto end = std::chrono::steady_clock::now() + 25ms; std::chrono::steady_clock::now() < end;)
+      EXPECT_EQ(connection->read(input), ConnectionStatus::fresh);
+    return std::string(input.not_driven == nullptr ? "" : input.not_driven);
+  };
+  EXPECT_EQ(why_not().substr(0, 17), "is not calibrated");
+  EXPECT_EQ(device_->status[kForce], 0);
+  device_->status[kReset] = 0;
+  EXPECT_EQ(why_not(), "");
+  EXPECT_EQ(device_->status[kForce], 1);
+  for (const auto& [cause, said] : {std::pair(1, "by its button"), std::pair(2, "has braked"),
+                                    std::pair(0, "switch it on"), std::pair(6, "dead man")}) {
+    device_->status[kForce] = 0;
+    device_->status[kBrake] = 1;
+    device_->status[kCause] = cause;
+    EXPECT_NE(why_not().find(said), std::string::npos) << input.not_driven;
+    EXPECT_EQ(device_->status[kForce], 0);
+    // Its operator does.
+    device_->status[kForce] = 1;
+    device_->status[kBrake] = 0;
+    EXPECT_EQ(why_not(), "");
+  }
+  device_->status[kForce] = 0;
+  device_->status[kCause] = 3;
+  EXPECT_EQ(why_not(), "");
+  EXPECT_EQ(device_->status[kForce], 1);
+}
+
+// The maker's own library, with whatever device it has or simulates: it is read, and gets nothing.
+TEST(ForceDimensionLibrary, TheMakersOwnIsRead) {
+  const char* const library = std::getenv("OSTEOMILL_LIBDHD");
+  if (library == nullptr) GTEST_SKIP() << "OSTEOMILL_LIBDHD does not name the maker's library";
+  setenv("OSTEOMILL_DHD_LIBRARY", library, 1);
+  const auto connection = open_force_dimension("");
+  unsetenv("OSTEOMILL_DHD_LIBRARY");
+  DeviceInput input;
+  for (int n = 0; n < 500; ++n) {
+    ASSERT_EQ(connection->read(input), ConnectionStatus::fresh);
+    ASSERT_EQ(connection->write({}), ConnectionStatus::fresh);
+  }
+  EXPECT_NEAR(input.X_DH.orientation.norm(), 1, 1e-6);
+  EXPECT_LT(input.X_DH.position_mm.norm(), 500);
 }
 
 TEST_F(ForceDimension, ReadsMmFromMAndTurnsFromFrames) {
@@ -122,10 +195,10 @@ TEST_F(ForceDimension, WhyThereIsNoneIsSaid) {
   device_->fails_in = "dhdEnableForce";
   EXPECT_EQ(refusal(), "dhd: the stand-in fails");
   EXPECT_EQ(device_->opened, -1);
-  EXPECT_TRUE(find_force_dimension("").there);
-  EXPECT_EQ(find_force_dimension("").text, "a device connected");
+  EXPECT_TRUE(hardware_named("dhd")->find("").there);
+  EXPECT_EQ(hardware_named("dhd")->find("").text, "a device connected");
   device_->devices = 0;
-  EXPECT_EQ(find_force_dimension("").text, "dhd: no device is connected");
+  EXPECT_EQ(hardware_named("dhd")->find("").text, "dhd: no device is connected");
 }
 
 TEST_F(ForceDimension, ALibraryThatIsMissingOrAnotherIsSaid) {

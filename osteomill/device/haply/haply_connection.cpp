@@ -27,6 +27,12 @@ constexpr auto kInventoryWithin = 100ms;
 constexpr auto kWait = 1500us;
 constexpr auto kBetweenReadings = 500us;
 constexpr auto kAskAgainAfter = 20ms;
+// The mean of so many answers tells whether the forces are those that were sent.
+constexpr double kAnswers = 200;
+constexpr double kOtherForce_N = 0.3;
+constexpr double kOtherShare = 0.25;
+constexpr const char* kOtherForces =
+    "gives other forces than it is sent: look at its filters and force scale in the Haply Hub";
 constexpr const char* kGrips[] = {"wireless_verse_grip", "verse_grip"};
 
 // Nothing where a key is missing or something else is there than was expected: never an exception.
@@ -54,6 +60,34 @@ bool take(const Json* numbers, Vec3& vector) {
 
 bool is_true(const Json* value) {
   return value != nullptr && value->is_boolean() && value->get<bool>();
+}
+
+bool is_false(const Json* value) {
+  return value != nullptr && value->is_boolean() && !value->get<bool>();
+}
+
+// Also a Minverse stands among them, which is not driven with the forces of an Inverse3.
+const Json* inverse3_of(const Json& inventory) {
+  const Json* const device = first_of(&inventory, "inverse3");
+  const Json* const type = member(member(device, "config"), "type");
+  return type == nullptr || *type == "inverse3" || *type == "inverse3x" ? device : nullptr;
+}
+
+// By what it says of itself; where it says nothing it is not known to be calibrated.
+const char* why_not_driven(const Json* status) {
+  if (is_false(member(status, "power_supply"))) return "has no power: plug its power supply in";
+  if (is_false(member(status, "ready")) || is_false(member(status, "started")))
+    return "is not ready: look into the Haply Hub";
+  if (!is_true(member(status, "calibrated")))
+    return "is not calibrated: calibrate it as its maker says (inkwell)";
+  return nullptr;
+}
+
+const char* why_grip_is_not_used(const Json* grip) {
+  const Json* const status = member(grip, "status");
+  for (const char* needed : {"awake", "connected", "ready"})
+    if (is_false(member(status, needed))) return "has a grip that sleeps: press one of its buttons";
+  return nullptr;
 }
 
 const Json* grip_of(const Json& message) {
@@ -87,7 +121,8 @@ class HaplyConnection final : public Connection {
     const auto text = socket_.receive(kInventoryWithin);
     if (!text) throw InputError(name, "the service does not say which devices it has");
     const Json inventory = Json::parse(*text, nullptr, false);
-    const Json* const id = member(first_of(&inventory, "inverse3"), "device_id");
+    const Json* const device = inverse3_of(inventory);
+    const Json* const id = member(device, "device_id");
     if (id == nullptr || !id->is_string()) throw InputError(name, "the service has no Inverse3");
     id_ = id->get<std::string>();
     // Version 3.5 counts its sessions, and takes a force as `vector`; before it was `values`.
@@ -98,12 +133,11 @@ class HaplyConnection final : public Connection {
     capabilities_.driven = 3;
     capabilities_.R_VD = Mat3{{1, 0, 0}, {0, 0, 1}, {0, -1, 0}};
     capabilities_.limits = {10, 0};
-    ask();
+    not_driven_ = why_not_driven(member(device, "status"));
+    // By which the Haply Hub knows whose forces these are; only once.
+    ask(Vec3::Zero(), {{"session", {{"configure", {{"profile", {{"name", "osteomill"}}}}}}}});
   }
-  ~HaplyConnection() override {
-    wrench_ = {};
-    ask();
-  }
+  ~HaplyConnection() override { ask(Vec3::Zero()); }
   HaplyConnection(const HaplyConnection&) = delete;
   HaplyConnection& operator=(const HaplyConnection&) = delete;
 
@@ -111,7 +145,7 @@ class HaplyConnection final : public Connection {
 
   ConnectionStatus read(DeviceInput& input) override {
     const auto text = socket_.receive(kWait);
-    if (!text) return socket_.is_open() ? ConnectionStatus::silent : ConnectionStatus::lost;
+    if (!text) return or_lost(ConnectionStatus::silent);
     is_asked_ = false;
     // One that answers at once is not asked as often as it could answer.
     std::this_thread::sleep_until(next_);
@@ -120,36 +154,53 @@ class HaplyConnection final : public Connection {
   }
 
   ConnectionStatus write(const Wrench& wrench_D) override {
-    wrench_ = wrench_D;
     // One text at a time is on its way: a slow service would else work off wrenches of long ago.
-    if (!is_asked_ || Clock::now() - asked_ > kAskAgainAfter) ask();
-    return socket_.is_open() ? ConnectionStatus::fresh : ConnectionStatus::lost;
+    if (is_asked_ && Clock::now() - asked_ <= kAskAgainAfter) return or_lost(ConnectionStatus::silent);
+    ask(wrench_D.force_N);
+    return or_lost(ConnectionStatus::fresh);
   }
 
  private:
   static std::string name_of(const HostAndPort& at) { return fmt::format("haply:{}:{}", at.host, at.port); }
 
+  ConnectionStatus or_lost(ConnectionStatus status) const {
+    return socket_.is_open() ? status : ConnectionStatus::lost;
+  }
+
   // The force, for which the service answers with the state of all devices.
-  void ask() {
-    const Vec3& force_N = wrench_.force_N;
+  void ask(const Vec3& force_N, Json message = Json::object()) {
     const Json force{{force_key_, {{"x", force_N.x()}, {"y", force_N.y()}, {"z", force_N.z()}}}};
     const Json device{{"device_id", id_}, {"commands", {{"set_cursor_force", force}}}};
-    socket_.send(Json{{"inverse3", Json::array({device})}}.dump());
+    message["inverse3"] = Json::array({device});
+    socket_.send(message.dump());
+    force_N_ = force_N;
     is_asked_ = true;
     asked_ = Clock::now();
   }
 
-  bool take_state(const std::string& text, DeviceInput& input) const {
+  // Filters of the service, and its scale, change forces on their way.
+  bool gives_other_forces(const Json* state) {
+    Vec3 given_N;
+    if (!take(member(state, "current_cursor_force"), given_N)) return false;
+    mean_asked_N_ += (force_N_.norm() - mean_asked_N_) / kAnswers;
+    mean_other_N_ += ((given_N - force_N_).norm() - mean_other_N_) / kAnswers;
+    return mean_other_N_ > kOtherForce_N && mean_other_N_ > kOtherShare * mean_asked_N_;
+  }
+
+  bool take_state(const std::string& text, DeviceInput& input) {
     const Json message = Json::parse(text, nullptr, false);
     const Json* const device = first_of(&message, "inverse3");
     const Json* const id = member(device, "device_id");
     if (id == nullptr || *id != id_) return false;
     const Json* const state = member(device, "state");
     DeviceInput now;
-    if (!take(member(state, "cursor_position"), now.X_DH.position_mm) ||
-        (has_grip_ && !take_grip(grip_of(message), now)))
+    const Json* const grip = grip_of(message);
+    if (!take(member(state, "cursor_position"), now.X_DH.position_mm) || (has_grip_ && !take_grip(grip, now)))
       return false;
     now.X_DH.position_mm *= kMmPerM;
+    if (const Json* const status = member(device, "status")) not_driven_ = why_not_driven(status);
+    now.not_driven = not_driven_ != nullptr ? not_driven_ : why_grip_is_not_used(grip);
+    if (gives_other_forces(state)) now.remark = kOtherForces;
     input = now;
     return true;
   }
@@ -159,7 +210,11 @@ class HaplyConnection final : public Connection {
   std::string force_key_;
   bool has_grip_ = false;
   DeviceCapabilities capabilities_;
-  Wrench wrench_;
+  // As it last said.
+  const char* not_driven_ = nullptr;
+  Vec3 force_N_ = Vec3::Zero();
+  double mean_asked_N_ = 0;
+  double mean_other_N_ = 0;
   bool is_asked_ = false;
   Clock::time_point asked_;
   Clock::time_point next_ = Clock::now();
@@ -175,12 +230,8 @@ std::unique_ptr<Connection> open_haply(const std::string& address) {
   return std::make_unique<HaplyConnection>(place_of(address));
 }
 
-FoundDevice find_haply(const std::string& address) {
-  try {
-    return {true, HaplyConnection(place_of(address)).capabilities().name};
-  } catch (const InputError& error) {
-    return {false, error.what()};
-  }
+std::string look_for_haply(const std::string& address) {
+  return HaplyConnection(place_of(address)).capabilities().name;
 }
 
 }  // namespace osteomill

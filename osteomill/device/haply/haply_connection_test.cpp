@@ -6,6 +6,7 @@
 #include "tests/support/haply_stand_in.h"
 #include <gtest/gtest.h>
 
+#include "osteomill/device/connected_device.h"
 #include "osteomill/device/hardware.h"
 #include "osteomill/files/input_error.h"
 
@@ -60,6 +61,77 @@ TEST_F(Haply, SaysWhatItCan) {
   // Its y points away from the operator, its z up.
   EXPECT_TRUE((can.R_VD * Vec3::UnitY()).isApprox(-Vec3::UnitZ()));
   EXPECT_TRUE((can.R_VD * Vec3::UnitZ()).isApprox(Vec3::UnitY()));
+}
+
+TEST_F(Haply, AMinverseIsNoInverse3) {
+  service_.type = "minverse";
+  EXPECT_EQ(refusal(), "haply:" + service_.address() + ": the service has no Inverse3");
+}
+
+TEST_F(Haply, TheHubIsToldOnceWhoThisIs) {
+  open();
+  DeviceInput input;
+  for (int n = 0; n < 3; ++n) go_on_until(ConnectionStatus::fresh, input);
+  const auto heard = service_.heard();
+  ASSERT_GE(heard.size(), 2u);
+  EXPECT_NE(heard[0].find(R"("session":{"configure":{"profile":{"name":"osteomill"}}})"), std::string::npos);
+  EXPECT_EQ(heard[1].find("session"), std::string::npos);
+}
+
+TEST_F(Haply, IsDrivenWhereItIsCalibratedAndItsGripIsAwake) {
+  service_.is_calibrated = false;
+  open();
+  DeviceInput input;
+  const auto why_not = [&] {
+    for (int n = 0; n < 3; ++n) go_on_until(ConnectionStatus::fresh, input);
+    return std::string(input.not_driven == nullptr ? "" : input.not_driven);
+  };
+  EXPECT_EQ(why_not().substr(0, 17), "is not calibrated");
+  service_.is_calibrated = true;
+  EXPECT_EQ(why_not(), "");
+  service_.is_awake = false;
+  EXPECT_EQ(why_not().substr(0, 22), "has a grip that sleeps");
+}
+
+TEST_F(Haply, ThatForcesAreChangedOnTheirWayIsSaid) {
+  open();
+  wrench_.force_N = {0, 0, 3};
+  DeviceInput input;
+  for (int n = 0; n < 50; ++n) go_on_until(ConnectionStatus::fresh, input);
+  EXPECT_EQ(input.remark, nullptr);
+  service_.force_scale = 0.3;
+  for (int n = 0; n < 150; ++n) go_on_until(ConnectionStatus::fresh, input);
+  ASSERT_NE(input.remark, nullptr);
+  EXPECT_EQ(std::string(input.remark).substr(0, 18), "gives other forces");
+}
+
+// Consecutive forces of a slow service, as its thread sends them.
+TEST_F(Haply, ASlowServiceGetsNoLargerSteps) {
+  service_.is_held = true;
+  for (const int delay_ms : {2, 3}) {
+    service_.delay_ms = delay_ms;
+    const std::size_t before = service_.heard().size();
+    {
+      ConnectedDevice device([this] { return open_haply(service_.address()); });
+      device.start();
+      const auto end = std::chrono::steady_clock::now() + 250ms;
+      for (int n = 0; std::chrono::steady_clock::now() < end; ++n) {
+        device.read_pose();
+        device.write_wrench({{0, n % 60 < 30 ? 9.0 : -9.0, 0}, Vec3::Zero()});
+        std::this_thread::sleep_for(1ms);
+      }
+    }
+    const auto forces = service_.forces();
+    double most_N = 0;
+    double largest_N = 0;
+    for (std::size_t n = before + 1; n < forces.size(); ++n) {
+      const Vec3 now(forces[n].data());
+      largest_N = std::max(largest_N, (now - Vec3(forces[n - 1].data())).norm());
+      most_N = std::max(most_N, now.norm());
+    }
+    EXPECT_GT(most_N, 5) << delay_ms;
+    EXPECT_LE(largest_N, 4 + 1e-6) << delay_ms;
+  }
 }
 
 TEST_F(Haply, ReadsMmFromMAndTheGrip) {
@@ -176,11 +248,11 @@ TEST_F(Haply, AServiceThatIsMuteIsSilentAndOneThatClosesLost) {
 }
 
 TEST_F(Haply, WhyThereIsNoneIsSaid) {
-  EXPECT_EQ(find_haply(service_.address()).text, "Haply Inverse3 049D");
+  EXPECT_EQ(hardware_named("haply")->find(service_.address()).text, "Haply Inverse3 049D");
   service_.has_device = false;
   EXPECT_EQ(refusal(), "haply:" + service_.address() + ": the service has no Inverse3");
-  EXPECT_EQ(find_haply("127.0.0.1:1").text, "haply:127.0.0.1:1: nothing answers there");
-  EXPECT_EQ(find_haply("nowhere").text, "haply:nowhere: is not of the form HOST:PORT");
+  EXPECT_EQ(hardware_named("haply")->find("127.0.0.1:1").text, "haply:127.0.0.1:1: nothing answers there");
+  EXPECT_EQ(hardware_named("haply")->find("nowhere").text, "haply:nowhere: is not of the form HOST:PORT");
 }
 
 }  // namespace

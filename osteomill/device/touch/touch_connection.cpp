@@ -1,8 +1,6 @@
 #include <array>
 #include <atomic>
 #include <chrono>
-#include <cstdlib>
-#include <string_view>
 #include <thread>
 
 #include <fmt/core.h>
@@ -27,6 +25,7 @@ enum Parameter : unsigned {
   kDeviceSerialNumber = 0x2504,
   kInputDof = 0x2553,
   kOutputDof = 0x2554,
+  kCalibrationStyle = 0x2555,
   kNominalMaxForce = 0x2603,
   kNominalMaxTorque = 0x2622,
   kCurrentForce = 0x2700,
@@ -35,6 +34,11 @@ enum Parameter : unsigned {
 };
 constexpr unsigned kInvalidHandle = 0xffffffff;
 constexpr unsigned kContinue = 1;
+constexpr unsigned kCalibrated = 0x5000;
+constexpr unsigned kCalibratesItself = 0x5001;
+// Styles of calibration that need no operator but for the inkwell; setting the encoders back does.
+constexpr unsigned kByItself = 1 << 1;
+constexpr unsigned kByInkwell = 1 << 2;
 constexpr unsigned short kDefaultPriority = 0xffff / 2;
 // Errors of 0x02.. are of forces (motors too warm, a force or velocity too large): the device goes on.
 constexpr bool is_of_force(unsigned code) {
@@ -44,6 +48,7 @@ constexpr bool is_of_force(unsigned code) {
 // A wrench that nobody has renewed for so long is zero, in the servo thread of the library itself.
 constexpr auto kLapse = 20ms;
 constexpr auto kBetweenLooks = 200us;
+constexpr double kFrame_s = 1e-3;
 
 struct HdError {
   unsigned code;
@@ -52,53 +57,55 @@ struct HdError {
 };
 
 struct Hd {
-  explicit Hd(const VendorLibrary& library)
-      : init_device(library.function<unsigned(const char*)>("hdInitDevice")),
-        disable_device(library.function<void(unsigned)>("hdDisableDevice")),
-        begin_frame(library.function<void(unsigned)>("hdBeginFrame")),
-        end_frame(library.function<void(unsigned)>("hdEndFrame")),
-        get_doubles(library.function<void(unsigned, double*)>("hdGetDoublev")),
-        set_doubles(library.function<void(unsigned, const double*)>("hdSetDoublev")),
-        get_integers(library.function<void(unsigned, int*)>("hdGetIntegerv")),
-        get_string(library.function<const char*(unsigned)>("hdGetString")),
-        enable(library.function<void(unsigned)>("hdEnable")),
-        get_error(library.function<HdError()>("hdGetError")),
-        error_string(library.function<const char*(unsigned)>("hdGetErrorString")),
-        schedule(library.function<unsigned long(unsigned (*)(void*), void*, unsigned short)>(
-            "hdScheduleAsynchronous")),
-        unschedule(library.function<void(unsigned long)>("hdUnschedule")),
-        start_scheduler(library.function<void()>("hdStartScheduler")),
-        stop_scheduler(library.function<void()>("hdStopScheduler")) {}
-
-  unsigned (*init_device)(const char*);
-  void (*disable_device)(unsigned);
-  void (*begin_frame)(unsigned);
-  void (*end_frame)(unsigned);
-  void (*get_doubles)(unsigned, double*);
-  void (*set_doubles)(unsigned, const double*);
-  void (*get_integers)(unsigned, int*);
-  const char* (*get_string)(unsigned);
-  void (*enable)(unsigned);
-  HdError (*get_error)();
-  const char* (*error_string)(unsigned);
-  unsigned long (*schedule)(unsigned (*)(void*), void*, unsigned short);
-  void (*unschedule)(unsigned long);
-  void (*start_scheduler)();
-  void (*stop_scheduler)();
-};
-
-struct Library {
   VendorLibrary file{"hd", "OSTEOMILL_HD_LIBRARY", {"libHD.so", "libHD.so.3.4", "libHD.so.3"}};
-  Hd hd{file};
+  unsigned (*init_device)(const char*) = file["hdInitDevice"];
+  void (*disable_device)(unsigned) = file["hdDisableDevice"];
+  void (*begin_frame)(unsigned) = file["hdBeginFrame"];
+  void (*end_frame)(unsigned) = file["hdEndFrame"];
+  void (*get_doubles)(unsigned, double*) = file["hdGetDoublev"];
+  void (*set_doubles)(unsigned, const double*) = file["hdSetDoublev"];
+  void (*get_integers)(unsigned, int*) = file["hdGetIntegerv"];
+  const char* (*get_string)(unsigned) = file["hdGetString"];
+  void (*enable)(unsigned) = file["hdEnable"];
+  unsigned (*check_calibration)() = file["hdCheckCalibration"];
+  void (*update_calibration)(unsigned) = file["hdUpdateCalibration"];
+  HdError (*get_error)() = file["hdGetError"];
+  const char* (*error_string)(unsigned) = file["hdGetErrorString"];
+  unsigned long (*schedule)(unsigned (*)(void*), void*, unsigned short) = file["hdScheduleAsynchronous"];
+  void (*unschedule)(unsigned long) = file["hdUnschedule"];
+  void (*start_scheduler)() = file["hdStartScheduler"];
+  void (*stop_scheduler)() = file["hdStopScheduler"];
 };
 
-double torque_unit_per_Nmm() {
-  const char* const unit = std::getenv("OSTEOMILL_HD_TORQUE_UNIT");
-  const std::string_view name = unit == nullptr ? "" : unit;
-  if (name == "Nm") return 1e-3;
-  if (name.empty() || name == "Nmm") return 1;
-  throw InputError("OSTEOMILL_HD_TORQUE_UNIT", fmt::format("'{}' is neither Nmm nor Nm", name));
-}
+// A device that is opened, and none of whose motors has power.
+struct OpenedDevice {
+  explicit OpenedDevice(const std::string& address)
+      : handle(hd.init_device(address.empty() ? nullptr : address.c_str())) {
+    if (const unsigned code = hd.get_error().code; code != 0 || handle == kInvalidHandle) {
+      const char* const why = hd.error_string(code);
+      throw InputError("hd", code != 0 && why != nullptr ? why : "the device cannot be opened");
+    }
+  }
+  ~OpenedDevice() { hd.disable_device(handle); }
+  OpenedDevice(const OpenedDevice&) = delete;
+  OpenedDevice& operator=(const OpenedDevice&) = delete;
+
+  int integer(unsigned parameter) const {
+    int value = 0;
+    hd.get_integers(parameter, &value);
+    return value;
+  }
+  std::string name() const {
+    const auto string_of = [&](unsigned parameter) {
+      const char* const text = hd.get_string(parameter);
+      return std::string(text == nullptr ? "" : text);
+    };
+    return fmt::format("3D Systems {} {}", string_of(kDeviceModelType), string_of(kDeviceSerialNumber));
+  }
+
+  Hd hd;
+  unsigned handle;
+};
 
 struct SentWrench {
   Wrench wrench;
@@ -107,14 +114,8 @@ struct SentWrench {
 
 class TouchConnection final : public Connection {
  public:
-  explicit TouchConnection(const std::string& address) : torque_unit_per_Nmm_(torque_unit_per_Nmm()) {
-    device_ = hd_.init_device(address.empty() ? nullptr : address.c_str());
-    if (const unsigned code = hd_.get_error().code; code != 0 || device_ == kInvalidHandle) {
-      const char* const why = hd_.error_string(code);
-      throw InputError("hd", code != 0 && why != nullptr ? why : "the device cannot be opened");
-    }
+  explicit TouchConnection(const std::string& address) : device_(address) {
     ask();
-    hd_.enable(kForceOutput);
     frames_ = hd_.schedule([](void* self) { return static_cast<TouchConnection*>(self)->frame(); }, this,
                            kDefaultPriority);
     hd_.start_scheduler();
@@ -125,7 +126,7 @@ class TouchConnection final : public Connection {
     }
   }
   ~TouchConnection() override {
-    write({});
+    sent_.write({{}, Clock::now()});
     // Two frames, so that it was sent; none come where the library hangs.
     const unsigned before = frames_done_;
     for (const auto end = Clock::now() + 20ms; frames_done_ - before < 2 && Clock::now() < end;)
@@ -150,23 +151,23 @@ class TouchConnection final : public Connection {
   }
 
   ConnectionStatus write(const Wrench& wrench_D) override {
+    if (is_lost_.load(std::memory_order_relaxed)) return ConnectionStatus::lost;
+    // One a frame: in a frame that has begun the one before may still be to be sent.
+    const unsigned frames = frames_done_.load(std::memory_order_acquire);
+    if (frames == frames_at_writing_) return ConnectionStatus::silent;
+    frames_at_writing_ = frames;
     sent_.write({wrench_D, Clock::now()});
-    return is_lost_.load(std::memory_order_relaxed) ? ConnectionStatus::lost : ConnectionStatus::fresh;
+    return ConnectionStatus::fresh;
   }
 
  private:
   void ask() {
-    const auto string_of = [&](unsigned parameter) {
-      const char* const text = hd_.get_string(parameter);
-      return std::string(text == nullptr ? "" : text);
-    };
-    capabilities_.name =
-        fmt::format("3D Systems {} {}", string_of(kDeviceModelType), string_of(kDeviceSerialNumber));
-    int input_dof = 3, output_dof = 3;
-    hd_.get_integers(kInputDof, &input_dof);
-    hd_.get_integers(kOutputDof, &output_dof);
-    capabilities_.sensed = input_dof >= 6 ? 6 : 3;
-    capabilities_.driven = output_dof >= 6 ? 6 : 3;
+    capabilities_.name = device_.name();
+    capabilities_.sensed = device_.integer(kInputDof) >= 6 ? 6 : 3;
+    capabilities_.driven = device_.integer(kOutputDof) >= 6 ? 6 : 3;
+    capabilities_.lets_go_after_s = std::chrono::duration<double>(kLapse).count();
+    const auto styles = static_cast<unsigned>(device_.integer(kCalibrationStyle));
+    calibration_style_ = (styles & kByItself) != 0 ? kByItself : styles & kByInkwell;
     double force_N = 0, torque_Nmm = 0;
     hd_.get_doubles(kNominalMaxForce, &force_N);
     if (capabilities_.driven == 6) hd_.get_doubles(kNominalMaxTorque, &torque_Nmm);
@@ -175,7 +176,7 @@ class TouchConnection final : public Connection {
 
   // One servo tick of the library's own thread, at 1 kHz.
   unsigned frame() {
-    hd_.begin_frame(device_);
+    hd_.begin_frame(device_.handle);
     DeviceInput input;
     // Columns, as OpenGL has them; mm.
     std::array<double, 16> transform{};
@@ -187,15 +188,14 @@ class TouchConnection final : public Connection {
     int buttons = 0;
     hd_.get_integers(kCurrentButtons, &buttons);
     input.buttons = static_cast<unsigned>(buttons);
+    input.not_driven = why_not_driven();
 
     const SentWrench& sent = sent_.read();
-    const Wrench wrench = Clock::now() - sent.time < kLapse ? sent.wrench : Wrench{};
-    hd_.set_doubles(kCurrentForce, wrench.force_N.data());
-    if (capabilities_.driven == 6) {
-      const Vec3 torque = torque_unit_per_Nmm_ * wrench.torque_Nmm;
-      hd_.set_doubles(kCurrentTorque, torque.data());
-    }
-    hd_.end_frame(device_);
+    const bool is_driven = input.not_driven == nullptr && Clock::now() - sent.time < kLapse;
+    driven_ = approach(driven_, is_driven ? sent.wrench : Wrench{}, kRatesForAHand, kFrame_s);
+    hd_.set_doubles(kCurrentForce, driven_.force_N.data());
+    if (capabilities_.driven == 6) hd_.set_doubles(kCurrentTorque, driven_.torque_Nmm.data());
+    hd_.end_frame(device_.handle);
     if (const unsigned code = hd_.get_error().code; code != 0 && !is_of_force(code)) {
       is_lost_.store(true, std::memory_order_relaxed);
       return kContinue;
@@ -205,22 +205,39 @@ class TouchConnection final : public Connection {
     return kContinue;
   }
 
+  // In a frame. The motors get power once it is calibrated.
+  const char* why_not_driven() {
+    const unsigned calibration = hd_.check_calibration();
+    if (calibration == kCalibratesItself && calibration_style_ != 0) {
+      hd_.update_calibration(calibration_style_);
+      // That it could not be is no error of the device: it is asked again in the next frame.
+      hd_.get_error();
+    }
+    if (calibration != kCalibrated)
+      return "is not calibrated: put its stylus into the inkwell, or calibrate it by the maker's tool";
+    if (!has_power_) hd_.enable(kForceOutput);
+    has_power_ = true;
+    return nullptr;
+  }
+
   void close() {
     hd_.stop_scheduler();
     hd_.unschedule(frames_);
-    hd_.disable_device(device_);
   }
 
-  Library library_;
-  const Hd& hd_ = library_.hd;
-  double torque_unit_per_Nmm_;
-  unsigned device_ = kInvalidHandle;
+  OpenedDevice device_;
+  const Hd& hd_ = device_.hd;
+  unsigned calibration_style_ = 0;
   unsigned long frames_ = 0;
+  // The servo thread's.
+  bool has_power_ = false;
+  Wrench driven_;
   DeviceCapabilities capabilities_;
   LatestValue<DeviceInput> input_;
   LatestValue<SentWrench> sent_;
   std::atomic<unsigned> frames_done_{0};
   unsigned frames_seen_ = 0;
+  unsigned frames_at_writing_ = ~0U;
   std::atomic<bool> is_lost_{false};
 };
 
@@ -230,12 +247,8 @@ std::unique_ptr<Connection> open_touch(const std::string& address) {
   return std::make_unique<TouchConnection>(address);
 }
 
-FoundDevice find_touch(const std::string& address) {
-  try {
-    return {true, TouchConnection(address).capabilities().name};
-  } catch (const InputError& error) {
-    return {false, error.what()};
-  }
+std::string look_for_touch(const std::string& address) {
+  return OpenedDevice(address).name();
 }
 
 }  // namespace osteomill

@@ -30,7 +30,6 @@ class Touch : public ::testing::Test {
     connection_.reset();
     dlclose(library_);
     unsetenv("OSTEOMILL_HD_LIBRARY");
-    unsetenv("OSTEOMILL_HD_TORQUE_UNIT");
   }
   void open(const std::string& address = "") { connection_ = open_touch(address); }
   std::string refusal(const std::string& address = "") {
@@ -77,7 +76,49 @@ TEST_F(Touch, SaysWhatItCan) {
   EXPECT_EQ(can.sensed, 6);
   EXPECT_EQ(can.driven, 3);
   EXPECT_EQ(can.limits.force_N, 3.3);
+  EXPECT_EQ(can.lets_go_after_s, 0.02);
+}
+
+TEST_F(Touch, ListingItGivesItsMotorsNoPower) {
+  EXPECT_EQ(hardware_named("hd")->find("").text, "3D Systems Touch 0815");
+  EXPECT_FALSE(device_->has_force);
+  EXPECT_EQ(device_->frames, 0);
+  EXPECT_FALSE(device_->is_open);
+}
+
+TEST_F(Touch, IsDrivenOnceItIsCalibrated) {
+  device_->calibration = 0x5002;
+  open();
+  DeviceInput input;
+  read_until_it_is(ConnectionStatus::fresh, input);
+  EXPECT_EQ(std::string(input.not_driven).substr(0, 17), "is not calibrated");
+  for (int n = 0; n < 5; ++n) {
+    connection_->write({{1, 2, 3}, Vec3::Zero()});
+    await_frame();
+    EXPECT_EQ(force(), Vec3::Zero());
+  }
+  EXPECT_FALSE(device_->has_force);
+  // In its inkwell.
+  device_->calibration = 0x5001;
+  await_frame();
+  EXPECT_EQ(device_->updated_style, 4u);
+  await_frame();
+  read_until_it_is(ConnectionStatus::fresh, input);
+  EXPECT_EQ(input.not_driven, nullptr);
   EXPECT_TRUE(device_->has_force);
+  write_until_it_is({{1, 2, 3}, Vec3::Zero()}, {1, 2, 3}, Vec3::Zero());
+}
+
+TEST_F(Touch, AWrenchThatNoFrameTookIsNotSent) {
+  open();
+  await_frame();
+  device_->hangs = true;
+  std::this_thread::sleep_for(5ms);
+  connection_->write({{1, 0, 0}, Vec3::Zero()});
+  EXPECT_EQ(connection_->write({{2, 0, 0}, Vec3::Zero()}), ConnectionStatus::silent);
+  device_->hangs = false;
+  await_frame();
+  EXPECT_EQ(connection_->write({{2, 0, 0}, Vec3::Zero()}), ConnectionStatus::fresh);
 }
 
 TEST_F(Touch, ReadsColumnsInMm) {
@@ -97,18 +138,11 @@ TEST_F(Touch, WritesTheForceAndNoTorqueThatItCannotDrive) {
   write_until_it_is({{1, 2, 3}, {40, 50, 60}}, {1, 2, 3}, Vec3::Zero());
 }
 
-TEST_F(Touch, TorqueIsInNmmOrInNm) {
+TEST_F(Touch, TorqueIsInNmm) {
   device_->output_dof = 6;
   open();
   EXPECT_EQ(connection_->capabilities().limits.torque_Nmm, 188);
   write_until_it_is({Vec3::Zero(), {40, 50, 60}}, Vec3::Zero(), {40, 50, 60});
-  connection_.reset();
-  setenv("OSTEOMILL_HD_TORQUE_UNIT", "Nm", 1);
-  open();
-  write_until_it_is({Vec3::Zero(), {40, 50, 60}}, Vec3::Zero(), {0.04, 0.05, 0.06});
-  connection_.reset();
-  setenv("OSTEOMILL_HD_TORQUE_UNIT", "pound-feet", 1);
-  EXPECT_EQ(refusal(), "OSTEOMILL_HD_TORQUE_UNIT: 'pound-feet' is neither Nmm nor Nm");
 }
 
 TEST_F(Touch, AWrenchThatIsNotRenewedLapses) {
@@ -147,9 +181,8 @@ TEST_F(Touch, ClosingSendsZero) {
 
 TEST_F(Touch, WhyThereIsNoneIsSaid) {
   EXPECT_EQ(refusal("Right"), "hd: the stand-in fails");
-  EXPECT_EQ(find_touch("").text, "3D Systems Touch 0815");
   device_->is_there = false;
-  EXPECT_FALSE(find_touch("").there);
+  EXPECT_FALSE(hardware_named("hd")->find("").there);
   unsetenv("OSTEOMILL_HD_LIBRARY");
   EXPECT_EQ(refusal(),
             "hd: libHD.so of the maker's software is not installed; OSTEOMILL_HD_LIBRARY may name it");

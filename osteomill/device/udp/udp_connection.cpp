@@ -26,6 +26,9 @@ constexpr int kQuestions = 10;
 constexpr auto kWaitForAnswer = 50ms;
 // After a silence this long the device may have begun anew, and counts from anywhere.
 constexpr auto kSilence = 100ms;
+constexpr std::array<const char*, 3> kWhyNotDriven{nullptr,
+                                                   "is not calibrated: calibrate it as its maker says",
+                                                   "has its force off: switch it on as its maker says"};
 // Whoever floods us does not hold us up.
 constexpr int kMostAtOnce = 64;
 
@@ -34,11 +37,12 @@ struct Question {
   Head head;
 };
 
+// Whether it went out.
 template <typename Datagram>
-void send(Socket& socket, Datagram datagram, std::uint32_t sequence) {
+bool send(Socket& socket, Datagram datagram, std::uint32_t sequence) {
   datagram.head.kind = Datagram::kKind;
   datagram.head.sequence = sequence;
-  socket.send({reinterpret_cast<const unsigned char*>(&datagram), sizeof(datagram)});
+  return socket.send({reinterpret_cast<const unsigned char*>(&datagram), sizeof(datagram)}) > 0;
 }
 
 // One that has come and is of this kind.
@@ -86,6 +90,7 @@ DeviceCapabilities capabilities_of(const Answer& answer, const std::string& devi
   can.sensed = static_cast<int>(answer.sensed);
   can.driven = static_cast<int>(answer.driven);
   can.limits = {answer.max_force_N, answer.max_torque_Nmm};
+  can.lets_go_after_s = kLapse_s;
   if (!is_limit(can.limits.force_N) || !is_limit(can.limits.torque_Nmm))
     throw InputError(device, "the device says limits that are not numbers from 0");
   return can;
@@ -140,8 +145,9 @@ class UdpConnection final : public Connection {
     SentWrench sent;
     sent.force_N = numbers_of(wrench_D.force_N);
     if (partner_.capabilities.driven == 6) sent.torque_Nmm = numbers_of(wrench_D.torque_Nmm);
-    send(partner_.socket, sent, ++wrenches_);
-    return partner_.socket.is_open() ? ConnectionStatus::fresh : ConnectionStatus::lost;
+    const bool is_sent = send(partner_.socket, sent, ++wrenches_);
+    if (!partner_.socket.is_open()) return ConnectionStatus::lost;
+    return is_sent ? ConnectionStatus::fresh : ConnectionStatus::silent;
   }
 
  private:
@@ -157,6 +163,7 @@ class UdpConnection final : public Connection {
     const auto& [w, x, y, z] = state.orientation_wxyz;
     input.X_DH.orientation = partner_.capabilities.sensed == 6 ? Quat(w, x, y, z) : Quat::Identity();
     input.buttons = state.buttons;
+    input.not_driven = kWhyNotDriven[std::min<std::size_t>(state.not_driven, kWhyNotDriven.size() - 1)];
   }
 
   Partner partner_;
@@ -175,13 +182,9 @@ std::unique_ptr<Connection> open_udp(const std::string& address) {
   return std::make_unique<UdpConnection>(or_default(address));
 }
 
-FoundDevice find_udp(const std::string& address) {
-  try {
-    const std::string at = or_default(address);
-    return {true, fmt::format("{} at {}", Partner(at).capabilities.name, at)};
-  } catch (const InputError& error) {
-    return {false, error.what()};
-  }
+std::string look_for_udp(const std::string& address) {
+  const std::string at = or_default(address);
+  return fmt::format("{} at {}", Partner(at).capabilities.name, at);
 }
 
 }  // namespace osteomill

@@ -6,7 +6,9 @@
 #include <string>
 #include <thread>
 
+#include <dlfcn.h>
 #include <gtest/gtest.h>
+#include <netdb.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -14,6 +16,14 @@
 #include "osteomill/device/hardware.h"
 #include "osteomill/device/udp/udp_datagrams.h"
 #include "osteomill/files/input_error.h"
+
+// A name server that does not answer.
+extern "C" int getaddrinfo(const char* host, const char* service, const addrinfo* hints, addrinfo** found) {
+  if (host != nullptr && std::strcmp(host, "unanswered.invalid") == 0)
+    std::this_thread::sleep_for(std::chrono::seconds(5));
+  static const auto real = reinterpret_cast<decltype(&getaddrinfo)>(dlsym(RTLD_NEXT, "getaddrinfo"));
+  return real(host, service, hints, found);
+}
 
 namespace osteomill {
 namespace {
@@ -95,6 +105,7 @@ TEST(UdpDevice, SaysWhatItIsTakesStatesAndSendsWrenches) {
   const auto connection = lab.open();
   EXPECT_EQ(connection->capabilities().name, "Lab one");
   EXPECT_EQ(connection->capabilities().limits.force_N, 8);
+  EXPECT_EQ(connection->capabilities().lets_go_after_s, kLapse_s);
   lab.send_state(1, 7);
   DeviceInput input;
   ASSERT_EQ(connection->read(input), ConnectionStatus::fresh);
@@ -126,6 +137,22 @@ TEST(UdpDevice, TheNewestStateCountsAndWhatWasOvertakenDoesNot) {
   std::this_thread::sleep_for(std::chrono::milliseconds(120));
   lab.send_state(last - 9, 5);
   EXPECT_EQ(connection->read(input), ConnectionStatus::fresh);
+}
+
+TEST(UdpDevice, SaysWhetherItMayBeDriven) {
+  Lab lab;
+  const auto connection = lab.open();
+  State state;
+  state.head.kind = Kind::state;
+  DeviceInput input;
+  for (const char* said : {"", "is not calibrated", "has its force off", "has its force off"}) {
+    ++state.head.sequence;
+    lab.send(state);
+    ASSERT_EQ(connection->read(input), ConnectionStatus::fresh);
+    EXPECT_EQ(std::string(input.not_driven == nullptr ? "" : input.not_driven).find(said), 0u);
+    ++state.not_driven;
+  }
+  EXPECT_NE(input.not_driven, nullptr);
 }
 
 TEST(UdpDevice, DatagramsThatAreNoneOfTheProtocolAreLeftAlone) {
@@ -186,18 +213,26 @@ TEST(UdpDevice, ANameOfFullLengthNeedsNoEnd) {
   EXPECT_EQ(lab.open()->capabilities().name, std::string(64, 'n'));
 }
 
+TEST(UdpDevice, ANameServerThatDoesNotAnswerHoldsNobodyUp) {
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_EQ(fault_of([] { open_udp("unanswered.invalid:9"); }),
+            "udp:unanswered.invalid:9: no such host is known");
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(2));
+}
+
 TEST(UdpDevice, WithoutOneItSaysWhy) {
   EXPECT_EQ(fault_of([] { open_udp("nowhere"); }), "udp:nowhere: is not of the form HOST:PORT");
   EXPECT_EQ(fault_of([] { open_udp("127.0.0.1:what"); }).find("udp:127.0.0.1:what: "), 0u);
+  EXPECT_EQ(fault_of([] { open_udp("nobody.invalid:9"); }), "udp:nobody.invalid:9: no such host is known");
   std::string address;
   {
     const Lab lab;
     address = lab.address;
-    const FoundDevice silent = find_udp(address);
+    const FoundDevice silent = hardware_named("udp")->find(address);
     EXPECT_FALSE(silent.there);
     EXPECT_EQ(silent.text, "udp:" + address + ": nothing answers there");
   }
-  EXPECT_EQ(find_udp(address).text, "udp:" + address + ": nothing listens there");
+  EXPECT_EQ(hardware_named("udp")->find(address).text, "udp:" + address + ": nothing listens there");
 }
 
 }  // namespace

@@ -13,6 +13,7 @@ enum class Kind : std::uint16_t { question = 1, answer = 2, state = 3, wrench = 
 
 constexpr std::array<char, 4> kMagic{'O', 'M', 'I', 'L'};
 constexpr std::uint16_t kVersion = 1;
+constexpr double kLapse_s = 5e-3;
 
 struct Head {
   std::array<char, 4> magic = kMagic;
@@ -40,7 +41,8 @@ struct State {
   std::array<double, 3> position_mm{};
   std::array<double, 4> orientation_wxyz{};
   std::uint32_t buttons = 0;
-  std::uint32_t reserved = 0;
+  /// 0 where it may be driven, 1 where it is not calibrated, 2 where its force is off.
+  std::uint32_t not_driven = 0;
 };
 static_assert(sizeof(State) == 80);
 

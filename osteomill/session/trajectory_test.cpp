@@ -1,4 +1,4 @@
-#include "osteomill/device/trajectory.h"
+#include "osteomill/session/trajectory.h"
 
 #include <fstream>
 

@@ -1,0 +1,119 @@
+#!/usr/bin/env python3
+"""An arm that speaks CRTK over ROS, as those of the SAW drivers do, as osteomill's device: docs/bridges.md.
+
+    crtk_bridge.py /omega [--port 47117] [--wrench servo_cf] [--max-force N] [--spindle TOPIC] [--clutch TOPIC]
+"""
+import argparse
+import math
+import signal
+import struct
+import threading
+
+import udp_device
+
+try:
+    import rospy
+except ImportError:
+    import rclpy  # ROS 2: has not been tried
+    import rclpy.node
+    from crtk_msgs.msg import OperatingState
+from geometry_msgs.msg import PoseStamped, WrenchStamped
+from sensor_msgs.msg import Joy
+from std_msgs.msg import Bool
+
+
+class Ros1:
+    def __init__(self):
+        rospy.init_node("osteomill_crtk_bridge", anonymous=True, disable_signals=True)
+
+    def listen(self, kind, topic, heard):
+        rospy.Subscriber(topic, kind, heard, queue_size=1, tcp_nodelay=True)
+
+    def listen_to_state(self, topic, heard):
+        # Without crtk_msgs, which Debian does not have: a header, a text, is_homed, is_busy.
+        def read(message):
+            raw = message._buff
+            frame_end = 16 + struct.unpack_from("<I", raw, 12)[0]
+            text_end = frame_end + 4 + struct.unpack_from("<I", raw, frame_end)[0]
+            heard(raw[frame_end + 4:text_end].decode(), raw[text_end] != 0)
+
+        rospy.Subscriber(topic, rospy.AnyMsg, read, queue_size=1)
+
+    def speak(self, kind, topic, latch=False):
+        return rospy.Publisher(topic, kind, queue_size=1, tcp_nodelay=True, latch=latch).publish
+
+
+class Ros2:
+    def __init__(self):
+        rclpy.init()
+        self.node = rclpy.node.Node("osteomill_crtk_bridge")
+        threading.Thread(target=rclpy.spin, args=(self.node,), daemon=True).start()
+
+    def listen(self, kind, topic, heard):
+        self.node.create_subscription(kind, topic, heard, 1)
+
+    def listen_to_state(self, topic, heard):
+        self.listen(OperatingState, topic, lambda message: heard(message.state, message.is_homed))
+
+    def speak(self, kind, topic, latch=False):
+        return self.node.create_publisher(kind, topic, 1).publish
+
+
+class CrtkArm:
+    sensed = driven = 6
+    not_driven = 1  # until it says otherwise
+
+    def __init__(self, ros, options):
+        self.name = f"CRTK {options.arm}".encode()[:64]
+        self.max_force_N, self.max_torque_Nmm = options.max_force, options.max_torque
+        self.measured, self.pressed = None, {}
+        ros.listen(PoseStamped, f"{options.arm}/measured_cp", self.take_pose)
+        ros.listen_to_state(f"{options.arm}/operating_state", self.take_state)
+        for bit, topic in ((1, options.spindle), (2, options.clutch)):
+            if topic:
+                ros.listen(Joy, topic, lambda message, bit=bit: self.pressed.update({bit: any(message.buttons)}))
+        self.send = ros.speak(WrenchStamped, f"{options.arm}/{options.wrench}")
+        if options.wrench.startswith("body/"):  # in the axes of the base all the same
+            absolute = f"{options.arm}/body/set_cf_orientation_absolute"
+            ros.speak(Bool, absolute, latch=True)(Bool(data=True))
+
+    def take_pose(self, message):
+        p, q = message.pose.position, message.pose.orientation
+        self.measured = (1e3 * p.x, 1e3 * p.y, 1e3 * p.z), (q.w, q.x, q.y, q.z)
+
+    def take_state(self, state, is_homed):
+        self.not_driven = 1 if not is_homed else 0 if state == "ENABLED" else 2
+
+    def read_handle(self, time_s):
+        measured, self.measured = self.measured, None
+        if measured is None or not all(map(math.isfinite, measured[0] + measured[1])):
+            return None
+        return *measured, sum(bit for bit, is_down in self.pressed.items() if is_down), self.not_driven
+
+    def drive_motors(self, force_N, torque_Nmm):
+        message = WrenchStamped()
+        message.wrench.force.x, message.wrench.force.y, message.wrench.force.z = map(float, force_N)
+        torque = message.wrench.torque
+        torque.x, torque.y, torque.z = (1e-3 * value for value in torque_Nmm)
+        self.send(message)
+
+
+def main():
+    options = argparse.ArgumentParser(description=__doc__.split(":")[0])
+    options.add_argument("arm", help="its namespace, as /omega")
+    options.add_argument("--port", type=int, default=47117)
+    options.add_argument("--wrench", default="servo_cf", help="or body/servo_cf, as dVRK arms name it")
+    options.add_argument("--max-force", type=float, default=5, metavar="N")
+    options.add_argument("--max-torque", type=float, default=100, metavar="Nmm")
+    options.add_argument("--spindle", metavar="TOPIC", help="a button (sensor_msgs/Joy)")
+    options.add_argument("--clutch", metavar="TOPIC", help="another")
+    options = options.parse_args()
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    try:
+        udp_device.serve(CrtkArm((Ros1 if "rospy" in globals() else Ros2)(), options), options.port)
+    except KeyboardInterrupt:
+        pass
+
+
+if __name__ == "__main__":
+    main()
