@@ -59,10 +59,10 @@ INSTANTIATE_TEST_SUITE_P(AllAlgorithms, GoldenWrenches,
                          ::testing::Values(Golden{"line-proxy", Mode::paper, 0x4ae5dc947858fe18},
                                            Golden{"line-proxy", Mode::steady, 0xfff9264060c33f8e},
                                            Golden{"surface-points", Mode::paper, 0xe2ea466e2b30f36e},
-                                           Golden{"surface-points", Mode::steady, 0xfc5479fb8d691f69},
+                                           Golden{"surface-points", Mode::steady, 0x1044fba5e095c793},
                                            Golden{"point-shell", Mode::paper, 0x3467afb63e917654},
-                                           Golden{"point-shell", Mode::steady, 0x0542c8cb9ce46363},
-                                           Golden{"barrier-shell", Mode::steady, 0x12e1302e368c739d}),
+                                           Golden{"point-shell", Mode::steady, 0x7637918c076b98ea},
+                                           Golden{"barrier-shell", Mode::steady, 0xafd73b9abae070a9}),
                          [](const auto& test) {
                            std::string name(test.param.algorithm);
                            name[name.find('-')] = '_';

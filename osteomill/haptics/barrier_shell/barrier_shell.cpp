@@ -378,6 +378,7 @@ HapticStep BarrierShell::step(const Pose& X_WD, double dt_s) {
     X_WT_ = state.X_WT;
     energy_before_Nmm_ = state.sum.energy_Nmm;
     has_energy_ = true;
+    near_.find_bearing(barrier_.width_mm, bricks_.bearing());
     grow_cores(state.sum.nearest_mm, dt_s);
     last_move_ = room_of(move_between(start, X_WT_));
     result = report(state, X_WD, dt_s);

@@ -19,6 +19,7 @@ constexpr std::size_t kSpareChunks = 4096;
 constexpr std::size_t kNodes = 32768;
 constexpr std::size_t kSpareNodes = 4096;
 constexpr int kNodesLookedAt = 512;
+constexpr std::size_t kMostBearing = 1024;
 // Bricks nearer than this to the tool are not forgotten.
 constexpr double kKept_mm = 2;
 
@@ -43,6 +44,7 @@ BoneBricks::BoneBricks(const Volume& volume, double spacing_mm, Points points)
   for (std::size_t n = kSlots; n-- > 0;) free_slots_.push_back(static_cast<std::uint32_t>(n));
   for (std::size_t n = kNodes; n-- > kRoot + 1;) free_nodes_.push_back(static_cast<std::uint32_t>(n));
   nodes_[kRoot].places.fill(kUnseen);
+  bearing_.reserve(kMostBearing);
 }
 
 Vec3 BoneBricks::middle_G(int level, const VoxelIndex& node) const {
@@ -111,14 +113,19 @@ int BoneBricks::make(const VoxelIndex& brick, std::uint32_t& place) {
   return lattice_.densities_of_brick() / kDensitiesLookedAt + static_cast<int>(found_->fine_count);
 }
 
-void BoneBricks::refresh(const VoxelBox& voxels, int budget) {
+// What is new comes first: where the surface has moved on into another brick it is found there before it is
+// taken from where it was.
+void BoneBricks::refresh(const VoxelBox& voxels, int others) {
   refreshed_ = true;
+  for_each(lattice_.bricks_touched_by(voxels), [&](const VoxelIndex& brick) { others -= make_new(brick); });
+  remake_bearing();
   sweep_.wait_for(voxels);
   int spent = 0;
-  while (spent < budget && (sweep_.is_walking() || start_sweep())) {
-    spent += refresh_brick(sweep_.brick());
+  do {
+    if (!sweep_.is_walking() && !start_sweep()) break;
+    spent += remake(sweep_.brick());
     sweep_.advance();
-  }
+  } while (spent < others);
 }
 
 bool BoneBricks::start_sweep() {
@@ -128,19 +135,33 @@ bool BoneBricks::start_sweep() {
   return true;
 }
 
-// Bricks that had no surface come first: where it has moved into them it is found there before it is taken
-// from where it was.
-int BoneBricks::refresh_brick(const VoxelIndex& brick) {
+// Where there was bone alone; what it cost.
+int BoneBricks::make_new(const VoxelIndex& brick) {
   const auto [level, place] = find(brick);
-  if (*place == kUnseen || *place == kNoBone) return kPassedOverCost;
-  if ((*place == kBoneAlone) != sweep_.is_first_pass()) return kPassedOverCost;
-  if (*place != kBoneAlone) {
-    return changes_[*place] != lattice_.changes_of(brick) ? make(brick, *place) : kPassedOverCost;
-  }
-  if (lattice_.found_in(0, brick) != SurfaceLattice::Found::surface) return kPassedOverCost;
+  if (*place != kBoneAlone || lattice_.found_in(0, brick) != SurfaceLattice::Found::surface) return 0;
   if (level == 0 && has_room()) return make(brick, *place);
   *place = kUnseen;
   return kPassedOverCost;
+}
+
+// Where its points are of other densities; what it cost.
+int BoneBricks::remake(const VoxelIndex& brick) {
+  std::uint32_t* place = find(brick).place;
+  if (!is_index(*place) || changes_[*place] == lattice_.changes_of(brick)) return kPassedOverCost;
+  return make(brick, *place);
+}
+
+// Neighbours, whose slots follow one another, have their turns in different ticks.
+void BoneBricks::remake_bearing() {
+  int cost = 0;
+  for (const std::uint32_t slot : bearing_) {
+    cost += lattice_.densities_of_brick() / kDensitiesLookedAt + static_cast<int>(fine_.brick(slot).count);
+  }
+  const std::uint32_t turns = static_cast<std::uint32_t>(1 + cost / kBearingPerTick);
+  ++refreshes_;
+  for (const std::uint32_t slot : bearing_) {
+    if (fine_.brick(slot).count != 0 && (refreshes_ + slot) % turns == 0) remake(brick_of_slot_[slot]);
+  }
 }
 
 // For one more brick, however many points it has.

@@ -13,8 +13,8 @@
 namespace osteomill {
 
 /// The way of changed voxels into bricks of points: what has changed waits, and a walk goes through all
-/// bricks near it twice, one brick after the other, so that a tick may do as much of it as it has time for.
-/// Whoever owns the points says what a visit does in each pass. Safe in the haptic tick.
+/// bricks near it, one brick after the other, so that a tick may do as much of it as it has time for. Safe in
+/// the haptic tick.
 class BrickSweep {
  public:
   /// Takes a change in; empty where nothing changed.
@@ -31,33 +31,28 @@ class BrickSweep {
   }
   bool is_idle() const { return !is_walking() && waiting_.empty(); }
 
-  /// Begins at the first brick of the box, in the first pass.
+  /// Begins at the first brick of the box.
   void start(const VoxelBox& bricks) {
     bricks_ = bricks;
     brick_ = bricks.first;
-    first_pass_ = true;
   }
   bool is_walking() const { return !bricks_.empty(); }
-  bool is_first_pass() const { return first_pass_; }
   const VoxelIndex& brick() const { return brick_; }
 
-  /// On to the next brick, the next pass, or the end.
+  /// On to the next brick, or the end.
   void advance() {
     if (++brick_.i <= bricks_.last.i) return;
     brick_.i = bricks_.first.i;
     if (++brick_.j <= bricks_.last.j) return;
     brick_.j = bricks_.first.j;
     if (++brick_.k <= bricks_.last.k) return;
-    if (!first_pass_) bricks_ = {};
-    first_pass_ = false;
-    brick_ = bricks_.first;
+    bricks_ = {};
   }
 
  private:
   VoxelBox waiting_;
   VoxelBox bricks_;
   VoxelIndex brick_;
-  bool first_pass_ = false;
 };
 
 /// The bone's surface as points in bricks under an octree. Bricks are made when the tool comes near and
@@ -106,11 +101,16 @@ class BoneBricks {
     return may;
   }
 
-  /// About how many points are brought up to date a tick.
-  static constexpr int kRefreshedPerTick = 700;
-  /// Says that densities fell in `voxels`, and brings about `budget` points up to date, and what it takes to
-  /// find them.
-  void refresh(const VoxelBox& voxels, int budget = kRefreshedPerTick);
+  /// About how many points are brought up to date a tick: of bricks that bear the tool, and of all others.
+  static constexpr int kBearingPerTick = 1500;
+  static constexpr int kOthersPerTick = 100;
+  /// Says that densities fell in `voxels`, and brings points up to date: where the surface has come into bone
+  /// all of them, of the bricks that bear the tool each in one of so many ticks that there is time for, and
+  /// of the others about `others`, what it takes to find them counted with them.
+  void refresh(const VoxelBox& voxels, int others = kOthersPerTick);
+  /// The slots of the bricks that bear the tool, for who uses the points to keep. The tool rests on them:
+  /// were they left to wait with the others it would stand still and drop once the last had its turn.
+  std::vector<std::uint32_t>& bearing() { return bearing_; }
   bool is_up_to_date() const { return sweep_.is_idle(); }
   /// Makes room if little is left, by forgetting what is not near the tool.
   void make_room(const MillingTool& tool, const Pose& X_WT);
@@ -162,7 +162,9 @@ class BoneBricks {
   };
   Found find(const VoxelIndex& brick);
   int make(const VoxelIndex& brick, std::uint32_t& place);
-  int refresh_brick(const VoxelIndex& brick);
+  int make_new(const VoxelIndex& brick);
+  int remake(const VoxelIndex& brick);
+  void remake_bearing();
   bool start_sweep();
   bool is_short_of_room() const;
   bool has_room() const;
@@ -186,6 +188,8 @@ class BoneBricks {
   std::size_t next_to_forget_ = 0;
   std::size_t next_node_to_forget_ = 0;
   BrickSweep sweep_;
+  std::vector<std::uint32_t> bearing_;
+  std::uint32_t refreshes_ = 0;
   bool refreshed_ = false;
   std::unique_ptr<SurfaceLattice::BrickSurface> found_;
 };

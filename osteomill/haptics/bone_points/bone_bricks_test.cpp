@@ -102,6 +102,50 @@ TEST(BoneBricks, MilledAtRandomTheyAreInTheEndAsMadeAnew) {
   }
 }
 
+// The surface falls everywhere in every tick, faster than the others have their turns.
+TEST(BoneBricks, ThoseThatBearTheToolAreBroughtUpToDateWithinAFewTicks) {
+  Volume volume = testing_support::shape_volume(testing_support::centred_cube(90, 0.13),
+                                                testing_support::plane(Vec3::Zero(), Vec3::UnitZ()));
+  BoneBricks kept(volume, 0.13, BoneBricks::Points::fine);
+  const auto at_the_middle = [](BoneBricks& bricks, const auto& use) {
+    const Vec3 middle_G = Vec3::Constant(0.5 * 89 * 0.13);
+    bricks.visit(
+        [&](const Vec3& node_G, double radius_mm) { return (node_G - middle_G).norm() < radius_mm + 0.6; },
+        [&](const VoxelIndex&, std::uint32_t slot) { use(slot); });
+  };
+  make_all(kept);
+  const auto heights = [&](BoneBricks& bricks) {
+    std::vector<float> z_mm;
+    at_the_middle(bricks, [&](std::uint32_t slot) {
+      bricks.fine().for_each_of(slot, [&](const ShellPoint& point) { z_mm.push_back(point.z_mm); });
+    });
+    return z_mm;
+  };
+  at_the_middle(kept, [&](std::uint32_t slot) { kept.bearing().push_back(slot); });
+  ASSERT_GT(kept.bearing().size(), 4u);
+  const VoxelBox all = volume.geometry().all_voxels();
+  constexpr int kTicks = 30, kTurns = 4;
+  std::vector<std::vector<float>> as_made_anew;
+  for (int tick = 0; tick < kTicks; ++tick) {
+    for_each(all, [&](const VoxelIndex& v) {
+      const float density = volume.grid()[v];
+      if (density > 0 && density < 1000) volume.lower_density(v, std::max(0.0f, density - 2));
+    });
+    kept.refresh(all, 1);
+    BoneBricks anew(volume, 0.13, BoneBricks::Points::fine);
+    as_made_anew.push_back(heights(anew));
+  }
+  // Of one of the last ticks, brick by brick.
+  const std::vector<float> now = heights(kept);
+  ASSERT_EQ(now.size(), as_made_anew.back().size());
+  for (std::size_t n = 0; n < now.size(); ++n) {
+    bool of_late = false;
+    for (int tick = kTicks - kTurns; tick < kTicks; ++tick)
+      of_late |= now[n] == as_made_anew[static_cast<std::size_t>(tick)][n];
+    EXPECT_TRUE(of_late) << n;
+  }
+}
+
 // Bone in every brick of a scan, all asked for at once.
 TEST(BoneBricks, ABrickThatFoundNoRoomIsMadeWhenThereIs) {
   const Volume volume =

@@ -13,6 +13,8 @@ namespace {
 // More than the rounding of a place near the tool.
 constexpr double kClear_mm = 1e-4;
 
+constexpr std::size_t kBricks = 4096;
+
 // Which core a sphere of points may touch within the room.
 struct Meeting {
   const Cores& cores;
@@ -42,12 +44,15 @@ struct Meeting {
 NearBone::NearBone(std::size_t capacity, PointsMeet meet)
     : meet_(meet),
       ball_(capacity, meet == PointsMeet::the_nearest_part),
-      cylinder_(capacity, meet == PointsMeet::the_nearest_part) {}
+      cylinder_(capacity, meet == PointsMeet::the_nearest_part) {
+  if (capacity > 0) bricks_.reserve(kBricks);
+}
 
 void NearBone::gather(BoneBricks& bricks, const Cores& cores, double reach_mm, const Pose& X_WT,
                       const Room& room) {
   X_WT_gathered_ = X_WT;
   ball_.count = cylinder_.count = 0;
+  bricks_.clear();
   ball_.overflowed = cylinder_.overflowed = false;
   const bool nearest_alone = meet_ == PointsMeet::the_nearest_part;
   const BrickPoints& at_cylinder = nearest_alone ? bricks.fine() : bricks.coarse();
@@ -58,6 +63,7 @@ void NearBone::gather(BoneBricks& bricks, const Cores& cores, double reach_mm, c
     return meets.any(X_TG * middle_G, radius_mm);
   };
   bricks.visit(meets_node, [&](const VoxelIndex& brick, std::uint32_t slot) {
+    if (bricks_.size() < bricks_.capacity()) bricks_.push_back({slot, ball_.count, cylinder_.count});
     const Vec3 origin_T = X_TG * bricks.lattice().brick_origin_G(brick);
     const Frame frame = frame_of(X_TG.turn, origin_T);
     const auto middle_T = [&](const BrickPoints& points) -> Vec3 {
@@ -82,6 +88,22 @@ NearBone::Energy NearBone::energy(const Cores& cores, const PushLaw& law, const 
   const Frame moved = frame_of(R_TW * X_WT_gathered_.orientation.toRotationMatrix(),
                                R_TW * (X_WT_gathered_.position_mm - X_WT.position_mm));
   return {ball_energy(ball_, moved, cores, law), cylinder_energy(cylinder_, moved, cores, law)};
+}
+
+void NearBone::find_bearing(double within_mm, std::vector<std::uint32_t>& slots) const {
+  const auto within = static_cast<float>(within_mm);
+  const auto bears = [&](const NearPoints& near, std::size_t first, std::size_t end) {
+    const auto at = [&](std::size_t n) { return near.distance.begin() + static_cast<std::ptrdiff_t>(n); };
+    return std::any_of(at(first), at(end), [&](float distance) { return distance < within; });
+  };
+  slots.clear();
+  for (std::size_t n = 0; n < bricks_.size() && slots.size() < slots.capacity(); ++n) {
+    const bool last = n + 1 == bricks_.size();
+    if (bears(ball_, bricks_[n].at_ball, last ? ball_.count : bricks_[n + 1].at_ball) ||
+        bears(cylinder_, bricks_[n].at_cylinder, last ? cylinder_.count : bricks_[n + 1].at_cylinder)) {
+      slots.push_back(bricks_[n].slot);
+    }
+  }
 }
 
 double NearBone::max_use(const MoveT& move, const Barrier& barrier) const {

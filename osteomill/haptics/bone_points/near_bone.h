@@ -1,5 +1,9 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
 #include "osteomill/haptics/bone_points/bone_bricks.h"
 #include "osteomill/haptics/bone_points/near_points.h"
 
@@ -38,12 +42,23 @@ class NearBone {
   };
   /// At a pose within the room of the last gathering.
   Energy energy(const Cores& cores, const PushLaw& law, const Pose& X_WT);
+  /// The slots of the bricks that have points nearer than `within_mm` to a part at the pose of the last
+  /// `energy`, as many as there is room for in `slots`.
+  void find_bearing(double within_mm, std::vector<std::uint32_t>& slots) const;
   /// The greatest share of any point's distance that a move from the pose of the last `energy` by a barrier
   /// may use up.
   double max_use(const MoveT& move, const Barrier& barrier) const;
 
  private:
+  // A brick's slot, and where its points begin.
+  struct Gathered {
+    std::uint32_t slot;
+    std::size_t at_ball;
+    std::size_t at_cylinder;
+  };
+
   PointsMeet meet_;
+  std::vector<Gathered> bricks_;
   Pose X_WT_gathered_;
   NearPoints ball_;
   NearPoints cylinder_;

@@ -233,9 +233,9 @@ HWY_INLINE void sum_ball_by(const Law& law, NearPoints& near, const Frame& moved
       const V inverse = hn::Div(constant(1), hn::Max(r, constant(kTiny_mm)));
       const Vector out{hn::Mul(at.x, inverse), hn::Mul(at.y, inverse), hn::Mul(at.z, inverse)};
       const V distance = hn::Sub(r, constant(shape.ball_radius));
+      hn::StoreU(distance, d, &near.distance[n]);
       if constexpr (Law::kHasEnergy) {
         store_rows(out, near.out_x, near.out_y, near.out_z, n);
-        hn::StoreU(distance, d, &near.distance[n]);
         nearest = hn::Min(nearest, distance);
       }
       if (hn::AllFalse(d, hn::Lt(distance, law.reach()))) continue;  // adds nothing, to the last bit
@@ -289,9 +289,9 @@ HWY_INLINE void sum_side_by(const Law& law, NearPoints& near, const Frame& moved
       const M at_end = hn::Gt(beyond_end(shape, at.z), hn::Min(hn::Zero(d), beyond_side));
       const V distance = hn::IfThenElse(at_end, constant(PointChunk::kFarAway_mm), beyond_side);
       store_rows(at, near.x, near.y, near.z, n);
+      hn::StoreU(distance, d, &near.distance[n]);
       if constexpr (Law::kHasEnergy) {
         store_rows(out, near.out_x, near.out_y, near.out_z, n);
-        hn::StoreU(distance, d, &near.distance[n]);
         nearest = hn::Min(nearest, distance);
       }
       if (!hn::AllFalse(d, at_end)) list_at_end(near, at_end, n);

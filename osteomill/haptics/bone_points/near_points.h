@@ -13,7 +13,7 @@ namespace osteomill {
 
 /// The points near one part of the tool, each coordinate in a row of its own: places in T when they were
 /// gathered, the surface each stands for and, where the law asks for it, its normal, also in T then; and, as
-/// of the last sum by a barrier, place, distance to the part and direction out of it.
+/// of the last sum, the distance to the part and, by a barrier, place and direction out of it.
 struct NearPoints {
   /// Sums run in so many lanes whatever the width of the machine's registers, and so have the same bits.
   static constexpr std::size_t kLanes = 16;

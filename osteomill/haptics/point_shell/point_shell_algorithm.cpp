@@ -127,6 +127,7 @@ HapticStep PointShellAlgorithm::step(const Pose& X_WD, double dt_s) {
     result.X_WT = X_WT_ = X_WD;
   } else {
     result = balanced(X_WD, dt_s);
+    if (settings_.surface_shell) near_.find_bearing(0, surface_.bearing());
   }
   X_WD_before_ = X_WD;
   return result;
