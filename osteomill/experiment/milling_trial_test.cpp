@@ -40,7 +40,8 @@ class MillingTrialTest : public ::testing::TestWithParam<std::string> {
     result.density_in_hole = density_at(trial.volume().grid(), place_in_hole());
     return result;
   }
-  // The burr of line-proxy lags its line by a radius: in six seconds it comes 0.9 mm deep, the others 2.7 mm or more.
+  // The burr of line-proxy lags its line by a radius: in six seconds it comes 0.9 mm deep, the others 2.7 mm
+  // or more.
   Vec3 place_in_hole() const { return entry_.point_W + 0.5 * entry_.direction_W; }
 
   TrialSettings settings_;
