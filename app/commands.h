@@ -6,10 +6,8 @@
 
 namespace osteomill::app {
 
-/// Adds every command to the program; each runs when the command line has been parsed. `command_line` is how
-/// the program was called, for recordings to say.
-void add_commands(CLI::App& program, const std::string& command_line);
-
+/// Each adds a command to the program, which runs when the command line has been parsed. `command_line` is
+/// how the program was called, for recordings to say.
 void add_compare_command(CLI::App& program, const std::string& command_line);
 void add_devices_command(CLI::App& program);
 void add_info_command(CLI::App& program);

@@ -8,7 +8,7 @@
 
 #include "app/commands.h"
 #include "app/config_file.h"
-#include "app/positive_number.h"
+#include "app/option_checks.h"
 #include "app/progress.h"
 #include "app/scan_options.h"
 #include "app/trial_options.h"
@@ -21,8 +21,7 @@
 #include "osteomill/experiment/measure_passivity.h"
 #include "osteomill/experiment/paper.h"
 #include "osteomill/experiment/parallel.h"
-#include "osteomill/experiment/record_trial.h"
-#include "osteomill/experiment/study_trials.h"
+#include "osteomill/experiment/run_trials.h"
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/recording/recording.h"
 #include "osteomill/session/milling_setup.h"

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <vector>
 
-#include "app/nearest_word.h"
+#include "app/option_checks.h"
 #include <CLI/Error.hpp>
 #include <fmt/core.h>
 #include <toml++/toml.h>

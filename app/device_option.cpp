@@ -1,7 +1,6 @@
 #include "app/device_option.h"
 
-#include "app/nearest_word.h"
-#include "app/positive_number.h"
+#include "app/option_checks.h"
 #include "app/progress.h"
 #include <CLI/Option.hpp>
 #include <CLI/Validators.hpp>

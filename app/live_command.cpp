@@ -8,7 +8,7 @@
 #include "app/commands.h"
 #include "app/config_file.h"
 #include "app/device_option.h"
-#include "app/positive_number.h"
+#include "app/option_checks.h"
 #include "app/progress.h"
 #include "app/scan_options.h"
 #include "app/trial_options.h"

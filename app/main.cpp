@@ -3,13 +3,13 @@
 #include <exception>
 #include <memory>
 #include <stdexcept>
+#include <string>
 #include <system_error>
 
-#include "app/command_line.h"
 #include "app/commands.h"
 #include "app/help_text.h"
 #include "app/memory_limit.h"
-#include "app/nearest_word.h"
+#include "app/option_checks.h"
 #include "app/progress.h"
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
@@ -30,6 +30,25 @@ int complain(const char* reason, int code) {
   return code;
 }
 
+std::string quoted(const std::string& word) {
+  const bool plain = word.find_first_not_of(
+                         "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
+                         "_-+=./,:@%") == std::string::npos;
+  if (plain && !word.empty()) return word;
+  std::string text = "'";
+  for (const char letter : word) {
+    text += letter == '\'' ? std::string("'\\''") : std::string(1, letter);
+  }
+  return text + "'";
+}
+
+// How the program was called, as it would be typed into a shell, the program as "osteomill".
+std::string command_line_of(int argc, const char* const* argv) {
+  std::string line = "osteomill";
+  for (int n = 1; n < argc; ++n) line += " " + quoted(argv[n]);
+  return line;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -46,7 +65,18 @@ int main(int argc, char** argv) {
   program.set_version_flag("--version", OSTEOMILL_VERSION);
   program.formatter(std::make_shared<osteomill::app::HelpText>());
   program.get_formatter()->label("SUBCOMMAND", "COMMAND");
-  osteomill::app::add_commands(program, osteomill::app::command_line_of(argc, argv));
+  const std::string command_line = command_line_of(argc, argv);
+  osteomill::app::add_simulate_command(program, command_line);
+  osteomill::app::add_compare_command(program, command_line);
+  osteomill::app::add_live_command(program, command_line);
+  osteomill::app::add_rates_command(program);
+  osteomill::app::add_replay_command(program, command_line);
+  osteomill::app::add_info_command(program);
+  osteomill::app::add_mesh_command(program);
+  osteomill::app::add_save_command(program);
+  osteomill::app::add_devices_command(program);
+  osteomill::app::add_settings_command(program);
+  osteomill::app::add_report_command(program);
   const osteomill::WorkProgress watched([](double) { osteomill::app::check_memory_taken(); });
   try {
     osteomill::app::require_known_words(program, argc, argv);

@@ -3,7 +3,6 @@
 #include <string>
 
 #include "app/commands.h"
-#include "app/positive_number.h"
 #include "app/progress.h"
 #include "app/scan_options.h"
 #include <fmt/core.h>
@@ -86,10 +85,7 @@ void add_mesh_command(CLI::App& program) {
   CLI::App* command =
       program.add_subcommand("mesh", "Write the bone's surface as one closed mesh of triangles, in mm");
   add_write_options(*command, *options, ".stl, .ply or .obj");
-  command->add_option("--iso", options->scan.isovalue, "Isovalue: bone where the density is greater")
-      ->check(not_empty())
-      ->type_name("DENSITY");
-  add_label_options(*command, options->scan.labels);
+  add_bone_options(*command, options->scan);
   add_quiet_option(*command);
   command->callback([=] { run_mesh(*options); });
 }

@@ -9,8 +9,7 @@
 #include <string_view>
 
 #include "app/config_file.h"
-#include "app/nearest_word.h"
-#include "app/positive_number.h"
+#include "app/option_checks.h"
 #include <CLI/Error.hpp>
 #include <CLI/Option.hpp>
 #include <CLI/Validators.hpp>

@@ -4,8 +4,7 @@
 #include <utility>
 
 #include "app/memory_limit.h"
-#include "app/nearest_word.h"
-#include "app/positive_number.h"
+#include "app/option_checks.h"
 #include "app/progress.h"
 #include <fmt/core.h>
 
@@ -18,20 +17,29 @@
 
 namespace osteomill::app {
 
-void add_label_options(CLI::App& command, LabelFiles& labels) {
+void add_bone_options(CLI::App& command, ScanOptions& options) {
+  command.add_option("--iso", options.isovalue, "Isovalue: bone where the density is greater")
+      ->check(not_empty())
+      ->type_name("DENSITY");
   command
-      .add_option("--labels", labels.map,
+      .add_option("--labels", options.labels.map,
                   "A label map of the scan (NRRD, .seg.nrrd, NIfTI, MetaImage), on any grid")
       ->check(not_empty())
       ->type_name("FILE");
   command
-      .add_option("--label-table", labels.table, "Names and colours of labels: a colour table of 3D Slicer's")
+      .add_option("--label-table", options.labels.table,
+                  "Names and colours of labels: a colour table of 3D Slicer's")
       ->check(not_empty())
       ->type_name("FILE");
 }
 
 void add_scan_source(CLI::App& command, ScanOptions& options) {
-  command.add_option("scan", options.scan, kScanText)->check(not_empty());
+  command
+      .add_option("scan", options.scan,
+                  "DICOM folder or file, NRRD, MetaImage, NIfTI, or one of them in a zip file; without one, "
+                  "the built-in "
+                  "tooth")
+      ->check(not_empty());
   command
       .add_option(
           "--series", options.read.series,
@@ -60,10 +68,7 @@ void add_scan_source(CLI::App& command, ScanOptions& options) {
 void add_scan_options(CLI::App& command, ScanOptions& options) {
   command.option_defaults()->group("Scan");
   add_scan_source(command, options);
-  command.add_option("--iso", options.isovalue, "Isovalue: bone where the density is greater")
-      ->check(not_empty())
-      ->type_name("DENSITY");
-  add_label_options(command, options.labels);
+  add_bone_options(command, options);
   const auto take = [&labels = options.labels](const std::vector<std::string>& said) { labels.no_go = said; };
   command
       .add_option_function<std::vector<std::string>>("--no-go", take,

@@ -32,18 +32,13 @@ struct ScanOptions {
 /// What it is called where no scan is named.
 inline constexpr const char* kBuiltinTooth = "built-in tooth";
 
-/// What SCAN may be, for help.
-inline constexpr const char* kScanText =
-    "DICOM folder or file, NRRD, MetaImage, NIfTI, or one of them in a zip file; without one, the built-in "
-    "tooth";
-
 /// Adds SCAN and what it takes to read it: --series, --as, --max-memory.
 void add_scan_source(CLI::App& command, ScanOptions& options);
 
-/// Adds where its labels are: --labels, --label-table.
-void add_label_options(CLI::App& command, LabelFiles& labels);
+/// Adds what of it is bone, and where its labels are: --iso, --labels, --label-table.
+void add_bone_options(CLI::App& command, ScanOptions& options);
 
-/// All of these, --iso and --no-go.
+/// All of these and --no-go.
 void add_scan_options(CLI::App& command, ScanOptions& options);
 
 /// The scan, or the built-in tooth; the scan's warnings are its own, that it is taken for labels the first of

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "app/positive_number.h"
+#include "app/option_checks.h"
 #include "app/progress.h"
 #include <CLI/Option.hpp>
 

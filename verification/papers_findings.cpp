@@ -7,8 +7,8 @@
 #include <fmt/ranges.h>
 
 #include "osteomill/experiment/paper.h"
+#include "osteomill/experiment/run_trials.h"
 #include "osteomill/experiment/study_findings.h"
-#include "osteomill/experiment/study_trials.h"
 #include "osteomill/operator/milling_entry.h"
 #include "osteomill/volume/builtin_tooth.h"
 

@@ -16,7 +16,6 @@ namespace osteomill::app {
 namespace {
 
 constexpr float kWidth_px = 300;
-constexpr const char* kStiffnessOption = "stiffness";
 
 // A slider whose change takes preparation, so that it counts when let go of.
 bool settle(const char* label, double& value, float min, float max, const char* format) {
@@ -50,13 +49,6 @@ void draw_scan(ViewState& view, const std::string& name) {
   if ((entered || pressed) && view.scan_path[0] != 0) view.scan_asked = view.scan_path.data();
 }
 
-double stiffness_in_force(const MillingSetup& wanted, const SettingDescription& setting) {
-  for (const SettingValue& value : setting_values(wanted.algorithm, wanted.haptics)) {
-    if (value.name == setting.name) return value.value;
-  }
-  return setting.value_in(wanted.haptics.mode);
-}
-
 void draw_algorithm(MillingSetup& wanted, bool& changed) {
   if (!ui::header("Algorithm", true)) return;
   bool left = true;
@@ -77,12 +69,11 @@ void draw_algorithm(MillingSetup& wanted, bool& changed) {
     wanted.haptics.mode = Mode::paper;
     changed = true;
   }
-  const SettingDescription* setting = setting_of_option(wanted.algorithm, kStiffnessOption);
-  if (setting == nullptr) return;
-  double stiffness = stiffness_in_force(wanted, *setting);
-  const double before = stiffness;
+  const auto before = stiffness_of(wanted);
+  if (!before) return;
+  double stiffness = *before;
   const bool settled = settle("stiffness", stiffness, 0.5f, 30.0f, "%.1f N/mm");
-  if (stiffness != before) wanted.haptics.set_option(kStiffnessOption, stiffness);
+  if (stiffness != *before) wanted.haptics.set_option(kStiffnessOption, stiffness);
   changed = changed || settled;
 }
 
@@ -175,11 +166,10 @@ void draw_isovalue(ViewState& view, Simulation& simulation) {
 
 void draw_cuts(ViewState& view, Simulation& simulation) {
   if (!ui::header("Cuts", false)) return;
-  const char* names[] = {"axial", "coronal", "sagittal", "free"};
   for (std::size_t n = 0; n < view.cuts.size(); ++n) {
     ViewState::Cut& cut = view.cuts[n];
     ImGui::PushID(static_cast<int>(n));
-    if (ui::checkbox(names[n], &cut.on) && cut.on) {
+    if (ui::checkbox(kCutNames[n], &cut.on) && cut.on) {
       if (n == 3) cut.normal_W = -view.camera.towards_viewer_W();
       begin_cut_at(view, cut, simulation.milling.state().record.X_WT.position_mm);
     }
@@ -187,8 +177,8 @@ void draw_cuts(ViewState& view, Simulation& simulation) {
       ImGui::SameLine(ui::px(100));
       ui::checkbox("other side", &cut.other_side);
       const auto extent = extent_along(simulation.milling.geometry(), cut.normal_W);
-      ui::slider((std::string(names[n]) + " place").c_str(), &cut.offset_mm, static_cast<float>(extent[0]),
-                 static_cast<float>(extent[1]), "%.1f mm");
+      ui::slider((std::string(kCutNames[n]) + " place").c_str(), &cut.offset_mm,
+                 static_cast<float>(extent[0]), static_cast<float>(extent[1]), "%.1f mm");
     }
     ImGui::PopID();
   }

@@ -1,5 +1,3 @@
-#include "app/simulate/overlay.h"
-
 #include <algorithm>
 #include <cmath>
 

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <string>
+
+#include "app/simulate/dialogues.h"
 #include "app/simulate/files_panel.h"
 #include "app/simulate/simulation.h"
 #include "app/simulate/view_state.h"
@@ -30,5 +33,22 @@ void draw_help(ViewState& view, const PixelSize& size, const Room& room);
 
 /// While the burr touches a no-go label and some seconds after: a red line across the top that says so.
 void draw_no_go(Simulation& simulation, const PixelSize& size);
+
+/// Scale bar and orientation letters over the picture.
+void draw_annotations(const ViewState& view, const PixelSize& size, bool patient);
+
+/// A red badge with how long a recording has been going on.
+std::string recording_text(double recording_s);
+void draw_recording(double recording_s, const PixelSize& size);
+
+/// Whether a dialogue is seen, so that pointer and keys are nobody else's.
+bool dialogue_open();
+/// The dialogue that is to be seen, if any. Takes down what is chosen.
+void draw_dialogue(DialogueQueue& dialogues);
+
+/// In the middle of an empty window, or above the bone that is milled meanwhile: how far opening a scan is.
+/// True when it is to be given up.
+bool draw_loading(const std::string& what, double share_done, double passed_s, const PixelSize& size,
+                  bool above);
 
 }  // namespace osteomill::app

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "app/simulate/cuts.h"
-#include "app/simulate/overlay.h"
+#include "app/simulate/panels.h"
 #include "app/simulate/tool_control.h"
 #include <GLFW/glfw3.h>
 #include <imgui.h>

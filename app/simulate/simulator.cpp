@@ -5,18 +5,19 @@
 #include <ctime>
 #include <deque>
 #include <exception>
+#include <filesystem>
 #include <future>
 #include <memory>
 #include <optional>
+#include <ostream>
+#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
 
 #include "app/simulate/cuts.h"
 #include "app/simulate/files_panel.h"
-#include "app/simulate/first_time.h"
 #include "app/simulate/opening.h"
-#include "app/simulate/overlay.h"
 #include "app/simulate/panels.h"
 #include "app/simulate/pointer.h"
 #include "app/simulate/scene_of.h"
@@ -45,6 +46,25 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+// True until it was called once on this machine by this user: leaves a marker, or where none can be left is
+// true every time.
+bool first_time_of_help() {
+  const std::filesystem::path folder = state_folder();
+  if (folder.empty()) return true;
+  const std::filesystem::path marker = folder / "help-seen";
+  std::error_code unreadable;
+  if (std::filesystem::exists(marker, unreadable)) return false;
+  try {
+    create_folder(folder);
+    write_text_atomically(marker, [](std::ostream& text) {
+      text << "The page of osteomill simulate that explains the controls was shown; F1 shows it again.\n";
+    });
+  } catch (const InputError&) {
+    // Then it is shown again next time.
+  }
+  return true;
 }
 
 // How many pictures the last second had.

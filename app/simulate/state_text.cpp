@@ -1,8 +1,10 @@
 #include "app/simulate/state_text.h"
 
+#include <algorithm>
 #include <string_view>
+#include <vector>
 
-#include "app/simulate/overlay.h"
+#include "app/simulate/panels.h"
 #include "app/simulate/scene_of.h"
 #include "app/simulate/widgets.h"
 #include <fmt/core.h>
@@ -49,11 +51,7 @@ void add_controls(Lines& lines) {
 void add_setup(Lines& lines, const MillingSetup& setup) {
   lines.add("algorithm", setup.algorithm.id.name);
   lines.add("mode", setup.haptics.mode == Mode::paper ? "paper" : "steady");
-  if (const SettingDescription* stiffness = setting_of_option(setup.algorithm, "stiffness")) {
-    for (const SettingValue& value : setting_values(setup.algorithm, setup.haptics)) {
-      if (value.name == stiffness->name) lines.add("stiffness", fmt::format("{:.2f}", value.value));
-    }
-  }
+  if (const auto stiffness = stiffness_of(setup)) lines.add("stiffness", fmt::format("{:.2f}", *stiffness));
   lines.add("burr_mm", fmt::format("{:.2f}", setup.tool.burr_radius_mm));
   lines.add("shaft_mm", fmt::format("{:.2f}", setup.tool.shaft_radius_mm));
   lines.add("rpm", fmt::format("{:.0f}", setup.cutting.spindle_speed_rpm));
@@ -80,15 +78,23 @@ void add_scene(Lines& lines, const ViewState& view, const ViewScene& scene, cons
   lines.add("tool_seen", text_of(seen(scene.camera, scene.X_WT->position_mm)));
   lines.add("ghost", scene.X_WD.has_value());
   lines.add("force_arrow_N", fmt::format("{:.3f}", scene.wrench.force_N.norm()));
-  const char* const names[] = {"axial", "coronal", "sagittal", "free"};
   for (std::size_t n = 0; n < scene.cuts.size(); ++n) {
-    lines.add(names[n], scene.cuts[n] ? fmt::format("{} at {:.2f}", text_of(scene.cuts[n]->normal_W),
-                                                    scene.cuts[n]->offset_mm)
-                                      : "off");
+    lines.add(kCutNames[n], scene.cuts[n] ? fmt::format("{} at {:.2f}", text_of(scene.cuts[n]->normal_W),
+                                                        scene.cuts[n]->offset_mm)
+                                          : "off");
   }
 }
 
 }  // namespace
+
+std::optional<double> stiffness_of(const MillingSetup& setup) {
+  const SettingDescription* stiffness = setting_of_option(setup.algorithm, kStiffnessOption);
+  if (stiffness == nullptr) return std::nullopt;
+  const std::vector<SettingValue> values = setting_values(setup.algorithm, setup.haptics);
+  return std::find_if(values.begin(), values.end(),
+                      [&](const auto& one) { return one.name == stiffness->name; })
+      ->value;
+}
 
 std::string isovalue_text(const Simulation& simulation) {
   if (simulation.milling.isovalue() == simulation.first_isovalue) return simulation.isovalue_from;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "app/simulate/files_panel.h"
@@ -14,6 +15,10 @@ namespace osteomill::app {
 /// in force, is drawn and is heard. For scripts (ui_script.h).
 std::string state_text(const std::string& name, const ViewState& view, Simulation& simulation,
                        const FilesPanel& files, const SpindleState& heard, const PixelSize& size);
+
+/// What the slider of stiffness sets, in force: nothing where the algorithm has none.
+inline constexpr const char* kStiffnessOption = "stiffness";
+std::optional<double> stiffness_of(const MillingSetup& setup);
 
 /// Where the isovalue in force came from.
 std::string isovalue_text(const Simulation& simulation);

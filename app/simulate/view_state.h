@@ -13,6 +13,9 @@
 
 namespace osteomill::app {
 
+/// The three planes across the patient and a free one.
+inline constexpr std::array<const char*, kMaxClipPlanes> kCutNames{"axial", "coronal", "sagittal", "free"};
+
 /// What the window shows and how, beside the simulation itself.
 struct ViewState {
   Camera camera;

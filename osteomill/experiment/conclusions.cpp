@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "osteomill/experiment/paper.h"
-#include "osteomill/experiment/signed_rank.h"
+#include "osteomill/experiment/statistics.h"
 #include "osteomill/experiment/study_comparison.h"
 #include "osteomill/experiment/study_findings.h"
 

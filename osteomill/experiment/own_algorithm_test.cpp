@@ -9,7 +9,7 @@
 
 #include "osteomill/experiment/comparison_report.h"
 #include "osteomill/experiment/paper.h"
-#include "osteomill/experiment/record_trial.h"
+#include "osteomill/experiment/run_trials.h"
 #include "osteomill/files/temporary_folder.h"
 #include "osteomill/haptics/algorithms.h"
 #include "osteomill/recording/recording.h"

@@ -218,8 +218,7 @@ Figure draw_passivity_figure(std::span<const PassivityRow> rows, const std::file
                  .above_px = 44,
                  .below_px = 58};
   grid.height_px = grid.head_px + 330 * static_cast<double>(grid.rows);
-  FigureScript script{"stability", static_cast<int>(PanelGrid::kWidth_px), static_cast<int>(grid.height_px),
-                      ""};
+  FigureScript script{"stability", grid.height_px};
   script.body = common(axes, grid);
   for (std::size_t row = 0; row < grid.rows; ++row) {
     for (std::size_t column = 0; column < grid.columns; ++column) {
@@ -229,7 +228,6 @@ Figure draw_passivity_figure(std::span<const PassivityRow> rows, const std::file
                      panel(rows, column, row, axes, work) + "unset label\n";
     }
   }
-  script.body += "unset multiplot\n";
   return draw_figure(script, work, folder);
 }
 

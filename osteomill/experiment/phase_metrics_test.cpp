@@ -1,5 +1,3 @@
-#include "osteomill/experiment/phase_metrics.h"
-
 #include <cmath>
 
 #include <gtest/gtest.h>

@@ -16,7 +16,7 @@
 #include <fmt/format.h>
 
 #include "osteomill/experiment/paper.h"
-#include "osteomill/experiment/signed_rank.h"
+#include "osteomill/experiment/statistics.h"
 #include "osteomill/files/atomic_file.h"
 
 namespace osteomill {

@@ -1,6 +1,6 @@
 #include "osteomill/experiment/study_comparison.h"
 
-#include "osteomill/experiment/signed_rank.h"
+#include "osteomill/experiment/statistics.h"
 
 namespace osteomill {
 

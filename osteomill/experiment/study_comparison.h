@@ -2,8 +2,8 @@
 
 #include <vector>
 
+#include "osteomill/experiment/statistics.h"
 #include "osteomill/experiment/study.h"
-#include "osteomill/report/median_interval.h"
 
 namespace osteomill {
 

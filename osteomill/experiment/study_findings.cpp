@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "osteomill/experiment/paper.h"
-#include "osteomill/experiment/signed_rank.h"
+#include "osteomill/experiment/statistics.h"
 
 namespace osteomill {
 

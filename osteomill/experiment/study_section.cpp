@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "osteomill/experiment/paper.h"
-#include "osteomill/experiment/signed_rank.h"
+#include "osteomill/experiment/statistics.h"
 #include "osteomill/experiment/study_comparison.h"
 #include "osteomill/files/temporary_folder.h"
 
@@ -249,8 +249,7 @@ Figure draw_study_figure(const Study& study, std::string_view phase, const std::
                  .above_px = 34,
                  .below_px = 36};
   grid.height_px = grid.head_px + 280 * static_cast<double>(grid.rows);
-  FigureScript script{fmt::format("study_{}", phase), static_cast<int>(PanelGrid::kWidth_px),
-                      static_cast<int>(grid.height_px), ""};
+  FigureScript script{fmt::format("study_{}", phase), grid.height_px};
   script.body =
       begin_panels("y") + "set format y '%g'\n" + tics(study) + legend_row(grid, legend(study, phase));
   for (std::size_t n = 0; n < metrics.size(); ++n) {
@@ -258,7 +257,6 @@ Figure draw_study_figure(const Study& study, std::string_view phase, const std::
     script.body += panel_margins(grid, cell) + title(metrics[n], grid, cell) +
                    panel(study, phase, metrics[n], n, work) + "unset label\n";
   }
-  script.body += "unset multiplot\n";
   return draw_figure(script, work, folder);
 }
 

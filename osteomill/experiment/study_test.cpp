@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "osteomill/experiment/paper.h"
-#include "osteomill/experiment/signed_rank.h"
+#include "osteomill/experiment/statistics.h"
 #include "osteomill/experiment/study_comparison.h"
 #include "osteomill/experiment/study_findings.h"
 #include "osteomill/experiment/study_section.h"

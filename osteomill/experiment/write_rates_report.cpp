@@ -13,7 +13,6 @@
 #include "osteomill/files/temporary_folder.h"
 #include "osteomill/numbers/positive.h"
 #include "osteomill/report/figure.h"
-#include "osteomill/report/gnuplot.h"
 #include "osteomill/report/html.h"
 #include "osteomill/report/metrics.h"
 #include "osteomill/tool/sample_points.h"
@@ -96,7 +95,7 @@ Figure draw_rates_figure(std::span<const RateRow> rows, const std::filesystem::p
                        .below_px = 110};
   const bool in_paper =
       std::any_of(rows.begin(), rows.end(), [](const RateRow& r) { return r.paper_rate_hz > 0; });
-  FigureScript script{"rates", static_cast<int>(PanelGrid::kWidth_px), static_cast<int>(grid.height_px), ""};
+  FigureScript script{"rates", grid.height_px};
   script.body = begin_panels("y") + "set datafile missing '?'\nset logscale y\nset format y '%.0s %c'\n" +
                 rate_range(rows) +
                 fmt::format(
@@ -107,7 +106,6 @@ Figure draw_rates_figure(std::span<const RateRow> rows, const std::filesystem::p
     script.body +=
         panel_margins(grid, panel_cell(grid, n, 0)) + panel(panels[n], n, work) + "unset label 1\n";
   }
-  script.body += "unset multiplot\n";
   return draw_figure(script, work, folder);
 }
 

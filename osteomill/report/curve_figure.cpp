@@ -83,14 +83,6 @@ std::string value_range(const std::vector<const MeasuredRun*>& runs, const Shown
                      max > 0 ? max + std::max(above, 1e-6 * max) : 1.0);
 }
 
-std::vector<const MeasuredRun*> runs_of(const RunGroup& group, const std::string& phase) {
-  std::vector<const MeasuredRun*> runs;
-  for (const MeasuredRun& run : group.runs) {
-    if (run.phase == phase) runs.push_back(&run);
-  }
-  return runs;
-}
-
 std::string capitalised(std::string phase) {
   if (!phase.empty()) phase[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(phase[0])));
   return phase;
@@ -153,10 +145,10 @@ Figure draw_together(const RunGroup& group, const std::string& name, const std::
   const std::vector<std::string> phases = group.phases();
   const PanelGrid grid{
       phases.size() > 1 ? 760.0 : 440.0, columns.size(), phases.size(), 52, 0, 112, 26, 28, 60};
-  FigureScript script{name, static_cast<int>(PanelGrid::kWidth_px), static_cast<int>(grid.height_px), ""};
+  FigureScript script{name, grid.height_px};
   script.body = begin_panels("") + legend(group, grid.height_px);
   for (std::size_t row = 0; row < phases.size(); ++row) {
-    const auto runs = runs_of(group, phases[row]);
+    const auto runs = group.runs_of(phases[row]);
     for (std::size_t c = 0; c < columns.size(); ++c) {
       script.body += fmt::format("{}{}{}\nset title '{}' offset 0,-0.4\nset ylabel '{}'\n{}\n",
                                  panel_margins(grid, panel_cell(grid, c, row)), time_range(runs),
@@ -165,7 +157,6 @@ Figure draw_together(const RunGroup& group, const std::string& name, const std::
       script.body += panel(runs, columns[c], kBins / columns.size(), work);
     }
   }
-  script.body += "unset multiplot\n";
   return draw_figure(script, work, folder);
 }
 
@@ -185,14 +176,14 @@ Figure draw_apart(const RunGroup& group, const std::string& name, const Shown& s
                        .right_px = 12,
                        .above_px = 32,
                        .below_px = 72};
-  FigureScript script{name, static_cast<int>(PanelGrid::kWidth_px), static_cast<int>(grid.height_px), ""};
+  FigureScript script{name, grid.height_px};
   script.body = begin_panels("");
   if (!dashed.empty())
     script.body +=
         fmt::format("set label 1 '- - -  {}' at screen 0.5,screen {:.4f} center tc rgb '#444444'\n", dashed,
                     1 - 20 / grid.height_px);
   for (std::size_t row = 0; row < phases.size(); ++row) {
-    const auto runs = runs_of(group, phases[row]);
+    const auto runs = group.runs_of(phases[row]);
     script.body += fmt::format("{}{}\nset xlabel 'Time (s)'\n", time_range(runs),
                                shown.setup.empty() ? value_range(runs, shown) : shown.setup);
     for (std::size_t c = 0; c < algorithms.size(); ++c) {
@@ -209,7 +200,6 @@ Figure draw_apart(const RunGroup& group, const std::string& name, const Shown& s
       if (!shown.setup.empty()) script.body += shown.setup + "\n";
     }
   }
-  script.body += "unset multiplot\n";
   return draw_figure(script, work, folder);
 }
 

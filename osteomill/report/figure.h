@@ -10,16 +10,6 @@
 
 namespace osteomill {
 
-/// A figure to be drawn as SVG and as PNG from one description.
-struct FigureScript {
-  /// Of its files, without extension.
-  std::string name;
-  int width_px = 1150;
-  int height_px = 760;
-  /// gnuplot commands; the files that they name lie in the folder where it is run.
-  std::string body;
-};
-
 /// A figure that was drawn.
 struct Figure {
   std::filesystem::path svg;
@@ -37,6 +27,16 @@ struct PanelGrid {
   /// From a cell's edges to the panel's axes.
   double left_px = 0, right_px = 0, above_px = 0, below_px = 0;
   static constexpr double kWidth_px = 1150;
+};
+
+/// A figure to be drawn as SVG and as PNG from one description.
+struct FigureScript {
+  /// Of its files, without extension.
+  std::string name;
+  double height_px;
+  double width_px = PanelGrid::kWidth_px;
+  /// gnuplot commands, which begin a multiplot; the files that they name lie in the folder where it is run.
+  std::string body = {};
 };
 
 /// One panel's room: its upper left corner, from the figure's lower left, and its size.
@@ -64,5 +64,13 @@ Figure draw_figure(const FigureScript& script, const TemporaryFolder& work,
 /// Writes a file that a figure is drawn from. Throws InputError where it cannot be written to its end:
 /// gnuplot would draw what there is of it.
 void write_figure_data(const std::filesystem::path& path, std::string_view bytes);
+
+/// Runs `script` in a child process of `program` whose working folder is `folder`. Throws InputError where
+/// gnuplot is not installed, or, with its own last word, where it fails.
+void run_gnuplot(const std::filesystem::path& folder, const std::string& script,
+                 const std::string& program = "gnuplot");
+
+/// `text` between quotes that gnuplot takes as they are, without line breaks and other control characters.
+std::string gnuplot_quoted(const std::string& text);
 
 }  // namespace osteomill

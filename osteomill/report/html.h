@@ -48,4 +48,8 @@ std::string html(const PageSection& section, int level = 2);
 /// A whole page with its own style sheet, which loads nothing from anywhere. Throws as `html` does.
 std::string html_page(const std::string& title, const std::vector<PageSection>& sections);
 
+/// The text with U+FFFD for every byte that is no part of a character in UTF-8 (RFC 3629): names in scans,
+/// and of files, may be of other encodings.
+std::string valid_utf8(std::string_view text);
+
 }  // namespace osteomill

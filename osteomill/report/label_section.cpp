@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "osteomill/report/gnuplot.h"
+#include "osteomill/report/figure.h"
 #include "osteomill/session/tick_counts.h"
 
 namespace osteomill {
@@ -122,11 +122,11 @@ std::optional<Figure> draw_label_figure(const RunGroup& group, const std::filesy
   }
   if (count == 0) return std::nullopt;
   const int columns = std::min(count, 2), rows = (count + columns - 1) / columns;
-  FigureScript script{fmt::format("labels_{}", name_of(group.mode)), 1150, kPanel_px * rows, ""};
+  FigureScript script{fmt::format("labels_{}", name_of(group.mode)), static_cast<double>(kPanel_px) * rows};
   script.body = fmt::format(
       "set multiplot layout {},{}\nset border 3 lc rgb '#444444'\nset tics nomirror out scale 0.6\n"
       "set grid lc rgb '#dddddd' lt 1 lw 0.7\nset key left top noenhanced\nset xlabel 'Time (s)'\n"
-      "set ylabel 'Removed (mm³)'\nset yrange [0:*]\n{}unset multiplot\n",
+      "set ylabel 'Removed (mm³)'\nset yrange [0:*]\n{}",
       rows, columns, panels);
   return draw_figure(script, work, folder);
 }

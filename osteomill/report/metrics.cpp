@@ -7,8 +7,7 @@
 #include <fmt/format.h>
 
 #include "osteomill/files/input_error.h"
-#include "osteomill/report/high_pass.h"
-#include "osteomill/report/multiple_correlation.h"
+#include "osteomill/report/signals.h"
 
 namespace osteomill {
 

@@ -24,7 +24,7 @@ struct VectorMetrics {
   /// Mean and greatest magnitude over all ticks.
   double mean = 0;
   double max = 0;
-  /// Root of the mean square magnitude of what lies above 20 Hz (high_pass.h).
+  /// Root of the mean square magnitude of what lies above 20 Hz (signals.h).
   double hp_rms = 0;
   /// The greatest magnitude of the difference between two ticks that follow each other.
   double step_max = 0;
@@ -71,7 +71,7 @@ struct RunMetrics {
   DirectionMetrics shaft;
   ShaftTurns turns;
   /// How much of the torque above 20 Hz follows the force above 20 Hz of the 10 ms about it
-  /// (multiple_correlation.h), while the shaft touches; not a number where that is too short to say.
+  /// (signals.h), while the shaft touches; not a number where that is too short to say.
   double torque_follows_force = 0;
   /// How many sample points touched, on the average of the ticks in contact; not a number, as the turns,
   /// where those are too few.

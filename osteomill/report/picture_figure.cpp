@@ -6,7 +6,7 @@
 #include "osteomill/files/input_error.h"
 #include "osteomill/files/temporary_folder.h"
 #include "osteomill/image/image.h"
-#include "osteomill/report/gnuplot.h"
+#include "osteomill/report/figure.h"
 #include "osteomill/report/run_figures.h"
 
 namespace osteomill {
@@ -82,7 +82,8 @@ std::optional<Figure> draw_picture_figure(const RunGroup& group, const std::file
   for (const Panel& panel : panels) pictures.push_back(shrunk(*panel.recording, *panel.picture));
   const int wide = columns == 1 ? 800 : kPanelWidth_px;
   const int high = std::clamp(wide * pictures[0].height / pictures[0].width, 200, 1000) + 40;
-  FigureScript script{fmt::format("bone_{}", name_of(group.mode)), columns * wide, rows * high, ""};
+  FigureScript script{fmt::format("bone_{}", name_of(group.mode)), static_cast<double>(rows) * high,
+                      static_cast<double>(columns) * wide};
   script.body =
       "set multiplot\nunset tics\nunset border\nset size ratio -1\nset lmargin 0.5\nset rmargin 0.5\n"
       "set tmargin 2\nset bmargin 0.3\nset autoscale xfix\nset autoscale yfix\n";
@@ -98,7 +99,6 @@ std::optional<Figure> draw_picture_figure(const RunGroup& group, const std::file
         static_cast<double>(column) / columns, 1.0 - (row + 1.0) / rows, 1.0 / columns, 1.0 / rows,
         gnuplot_quoted(panels[n].label), file);
   }
-  script.body += "unset multiplot\n";
   return draw_figure(script, work, folder);
 }
 

@@ -24,6 +24,14 @@ const MeasuredRun* RunGroup::find(std::string_view algorithm, std::string_view p
   return nullptr;
 }
 
+std::vector<const MeasuredRun*> RunGroup::runs_of(std::string_view phase) const {
+  std::vector<const MeasuredRun*> of_phase;
+  for (const MeasuredRun& run : runs) {
+    if (run.phase == phase) of_phase.push_back(&run);
+  }
+  return of_phase;
+}
+
 std::vector<std::string> RunGroup::phases() const {
   std::vector<std::string> present;
   for (const MeasuredRun& run : runs) {

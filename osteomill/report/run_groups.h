@@ -19,6 +19,8 @@ struct RunGroup {
 
   /// Null where there is no such run.
   const MeasuredRun* find(std::string_view algorithm, std::string_view phase) const;
+
+  std::vector<const MeasuredRun*> runs_of(std::string_view phase) const;
   /// Those that have a run: phases in the order in which they began, algorithms in that of their labels.
   std::vector<std::string> phases() const;
   std::vector<AlgorithmId> algorithms() const;

@@ -38,14 +38,6 @@ Cloud cloud_of(const MeasuredRun& run) {
   return cloud;
 }
 
-std::vector<const MeasuredRun*> runs_of(const RunGroup& group, const std::string& phase) {
-  std::vector<const MeasuredRun*> runs;
-  for (const MeasuredRun& run : group.runs) {
-    if (run.phase == phase) runs.push_back(&run);
-  }
-  return runs;
-}
-
 // Across the mean shaft: along the two axes of W to which it is nearest to a right angle.
 struct Across {
   Vec3 right, up;
@@ -123,7 +115,7 @@ Figure draw_shaft_figure(const RunGroup& group, const std::filesystem::path& fol
   const std::vector<std::string> phases = group.phases();
   std::size_t columns = 1;
   double last_s = 0;
-  for (const std::string& phase : phases) columns = std::max(columns, runs_of(group, phase).size());
+  for (const std::string& phase : phases) columns = std::max(columns, group.runs_of(phase).size());
   for (const MeasuredRun& run : group.runs) {
     last_s = std::max(last_s, run.recording->records.back().time_s - run.recording->records.front().time_s -
                                   run.metrics.counted_from_s);
@@ -139,8 +131,7 @@ Figure draw_shaft_figure(const RunGroup& group, const std::filesystem::path& fol
                        .right_px = kRight_px,
                        .above_px = kAbove_px,
                        .below_px = kBelow_px};
-  FigureScript script{fmt::format("fig9_shaft_{}", name_of(group.mode)),
-                      static_cast<int>(PanelGrid::kWidth_px), static_cast<int>(grid.height_px), ""};
+  FigureScript script{fmt::format("fig9_shaft_{}", name_of(group.mode)), grid.height_px};
   script.body =
       begin_panels("") +
       fmt::format(
@@ -149,7 +140,7 @@ Figure draw_shaft_figure(const RunGroup& group, const std::filesystem::path& fol
           "set colorbox vertical user origin screen {:.4f},screen 0.2 size screen {:.4f},screen 0.6\n",
           last_s, 1 - (kBar_px - 16) / PanelGrid::kWidth_px, 16 / PanelGrid::kWidth_px);
   for (std::size_t row = 0; row < phases.size(); ++row) {
-    const auto runs = runs_of(group, phases[row]);
+    const auto runs = group.runs_of(phases[row]);
     for (std::size_t c = 0; c < runs.size(); ++c) {
       PanelCell cell = panel_cell(grid, c, row);
       cell.left_px = static_cast<double>(c) * wide_px;
@@ -157,7 +148,6 @@ Figure draw_shaft_figure(const RunGroup& group, const std::filesystem::path& fol
       script.body += panel(*runs[c], grid, cell, work);
     }
   }
-  script.body += "unset multiplot\n";
   return draw_figure(script, work, folder);
 }
 

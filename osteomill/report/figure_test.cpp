@@ -1,4 +1,4 @@
-#include "osteomill/report/gnuplot.h"
+#include "osteomill/report/figure.h"
 
 #include <fstream>
 

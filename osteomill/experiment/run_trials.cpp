@@ -1,15 +1,20 @@
-#include "osteomill/experiment/record_trial.h"
+#include "osteomill/experiment/run_trials.h"
 
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <utility>
 
 #include <fmt/core.h>
 
 #include "osteomill/experiment/entry_pictures.h"
+#include "osteomill/experiment/findings.h"
 #include "osteomill/experiment/paper.h"
+#include "osteomill/experiment/parallel.h"
+#include "osteomill/experiment/trial_plan.h"
 #include "osteomill/recording/recorder.h"
 #include "osteomill/recording/recording.h"
+#include "osteomill/report/run_groups.h"
 #include "osteomill/session/tick_counts.h"
 
 namespace osteomill {
@@ -70,13 +75,13 @@ std::vector<fs::path> record_trial(const TrialPlan& plan, const AlgorithmDescrip
     (tick.milling_phase ? milling : holding).push_waiting(tick.record);
     faults.add(tick.record);
     if (const Label* touched = labels.add(tick.record)) {
-      events.tell_no_go(fmt::format("{}: {}", algorithm.id.name, no_go_warning(*touched, tick.record)));
+      events.no_go(fmt::format("{}: {}", algorithm.id.name, no_go_warning(*touched, tick.record)));
     }
     if (n % kTicksBetweenProgress == 0) {
       // A trial that takes longer than asked for, since the hand does not yet feel what it should, stays at
       // its end.
       const double asked_s = script.milling_s + script.holding_s;
-      events.tell_progress(algorithm.id.name, std::min(1.0, tick.record.time_s / asked_s));
+      events.progress(algorithm.id.name, std::min(1.0, tick.record.time_s / asked_s));
     }
   }
   add_pictures(milling, pictures, trial.volume(), events);
@@ -91,6 +96,91 @@ std::vector<fs::path> record_trial(const TrialPlan& plan, const AlgorithmDescrip
         fmt::format("{}, {}: {}", algorithm.id.name, name_of(plan.settings.haptics.mode), not_reached));
   if (const auto said = faults.sentence()) events.warn(fmt::format("{}: {}", algorithm.id.name, *said));
   return paths;
+}
+
+namespace {
+
+struct TriedTrial {
+  // One a phase.
+  std::vector<StudyRow> rows;
+  std::optional<std::string> faults;
+};
+
+TriedTrial try_trial(const StudyTrial& planned) {
+  const auto& [plan, algorithm] = planned;
+  MillingTrial trial(plan.bone, plan.densities, plan.entry, algorithm, plan.settings);
+  std::array<Recording, kPhases.size()> phases;
+  FaultCount faults;
+  while (!trial.finished()) {
+    const MillingTrial::Tick tick = trial.tick();
+    phases[tick.milling_phase ? 0 : 1].records.push_back(tick.record);
+    faults.add(tick.record);
+  }
+  TriedTrial tried{{}, faults.sentence()};
+  for (std::size_t n = 0; n < kPhases.size(); ++n) {
+    RunDescription& run = phases[n].description;
+    run = describe_trial(plan, algorithm, trial.algorithm().sample_point_count(), kPhases[n]);
+    phases[n].path = fmt::format("{}, seed {}", algorithm.id.name, run.seed);
+    std::string missed = shortfall_words(trial.shortfall(), plan.settings.hand_and_device.script, kPhases[n]);
+    if (!missed.empty()) run.settings.push_back({std::string(kNotReachedKey), std::move(missed), ""});
+    tried.rows.push_back(row_of(plan, phases[n]));
+  }
+  return tried;
+}
+
+}  // namespace
+
+StudyRow row_of(const TrialPlan& plan, const Recording& recording) {
+  StudyRow row{recording.description.seed, plan.settings.hand_and_device.hand,
+               measured_run(recording, phase_metrics(recording)), plan.grip};
+  row.run.recording = nullptr;
+  return row;
+}
+
+std::vector<StudyTrial> trials_in_other_grips(const TrialPlan& plan) {
+  std::vector<StudyTrial> trials;
+  for (const double grip : kGrips) {
+    if (grip == 1) continue;
+    trials.push_back({plan, algorithm_named(kPapersAlgorithms[1])});
+    HandSettings& hand = trials.back().plan.settings.hand_and_device.hand;
+    hand = gripping(hand, grip);
+    trials.back().plan.grip = grip;
+  }
+  return trials;
+}
+
+TrialPlan with_seed(const TrialPlan& plan, std::uint64_t seed) {
+  TrialPlan other = plan;
+  OperatorSettings& person = other.settings.hand_and_device;
+  const HandSettings asked_for = person.hand;
+  person.seed = seed;
+  person.hand = random_hand(seed);
+  person.hand.push_N = asked_for.push_N;
+  person.hand.push_lever_mm = asked_for.push_lever_mm;
+  person.hand.tremor_mm = asked_for.tremor_mm;
+  person.hand.tremor_rad = asked_for.tremor_rad;
+  return other;
+}
+
+std::vector<StudyRow> run_study_trials(const std::vector<StudyTrial>& trials, std::size_t threads,
+                                       const RunEvents& events) {
+  std::vector<TriedTrial> tried(trials.size());
+  const auto task = [&](std::size_t n) { tried[n] = try_trial(trials[n]); };
+  run_in_parallel(trials.size(), threads, task, [&](std::size_t done) {
+    events.progress("study", static_cast<double>(done) / static_cast<double>(trials.size()));
+  });
+  std::vector<StudyRow> all;
+  for (std::size_t n = 0; n < trials.size(); ++n) {
+    all.insert(all.end(), tried[n].rows.begin(), tried[n].rows.end());
+    const TrialSettings& settings = trials[n].plan.settings;
+    const auto warn = [&](const std::string& line) {
+      events.warn(fmt::format("{}, {}, seed {}: {}", trials[n].algorithm.id.name,
+                              name_of(settings.haptics.mode), settings.hand_and_device.seed, line));
+    };
+    if (tried[n].faults) warn(*tried[n].faults);
+    if (const std::string& missed = all.back().run.not_reached; !missed.empty()) warn(missed);
+  }
+  return all;
 }
 
 }  // namespace osteomill

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include <CLI/App.hpp>
+#include <CLI/Option.hpp>
 #include <CLI/Validators.hpp>
 
 namespace osteomill::app {
@@ -22,5 +24,19 @@ std::vector<std::string> option_names(const CLI::App& command);
 /// Throws CLI::ParseError where the command, or any option of it, is not known, naming it and the nearest
 /// that is. Before parsing, which would name what is missing first.
 void require_known_words(const CLI::App& program, int argc, const char* const* argv);
+
+/// Refuses what is not a finite number above zero.
+CLI::Validator positive_number();
+/// Refuses what is not a whole number within these bounds.
+CLI::Validator whole_number(std::uint64_t min, std::uint64_t max);
+/// Refuses an empty text.
+CLI::Validator not_empty();
+
+/// Adds an option that holds a positive number in this unit, showing its default.
+template <typename T>
+void add_positive(CLI::App& command, const std::string& name, T& value, const std::string& unit,
+                  const std::string& what) {
+  command.add_option(name, value, what)->check(positive_number())->type_name(unit)->capture_default_str();
+}
 
 }  // namespace osteomill::app

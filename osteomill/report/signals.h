@@ -14,4 +14,12 @@ namespace osteomill {
 /// std::invalid_argument unless 0 < cutoff_hz < 0.4 rate_hz.
 std::vector<Vec3> high_pass(std::span<const Vec3> samples, double rate_hz, double cutoff_hz);
 
+/// How much of a vector signal follows another: the multiple correlation coefficient (0 for nothing, 1 for
+/// all) of `follower` with `leader` at the same sample and up to `reach` samples before and after it, that
+/// is the root of the share of the follower's squares that a linear filter of the leader explains. Both have
+/// a mean of zero. Over the samples that are `counted` and have all of their neighbours; not a
+/// number where those are fewer than twenty for each coefficient that is fitted, or where either is zero.
+double multiple_correlation(std::span<const Vec3> follower, std::span<const Vec3> leader, std::size_t reach,
+                            const std::vector<bool>& counted);
+
 }  // namespace osteomill
