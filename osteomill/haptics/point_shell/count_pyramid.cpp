@@ -8,7 +8,7 @@ CountPyramid::CountPyramid(const std::array<int, 3>& dims) {
   std::array<int, 3> level_dims = dims;
   while (true) {
     Level level{level_dims, {}};
-    level.counts.assign(level.index(0, 0, level_dims[2]), 0);
+    level.counts.assign(cell_count(level_dims), 0);
     levels_.push_back(std::move(level));
     if (level_dims == std::array<int, 3>{1, 1, 1}) return;
     for (int& dim : level_dims) dim = (dim + 1) / 2;
@@ -18,7 +18,7 @@ CountPyramid::CountPyramid(const std::array<int, 3>& dims) {
 void CountPyramid::add(int i, int j, int k, std::int32_t difference) {
   for (Level& level : levels_) {
     // Unsigned arithmetic wraps: adding a negative difference subtracts.
-    level.counts[level.index(i, j, k)] += static_cast<std::uint32_t>(difference);
+    level.counts[row_major(level.dims, i, j, k)] += static_cast<std::uint32_t>(difference);
     i /= 2;
     j /= 2;
     k /= 2;

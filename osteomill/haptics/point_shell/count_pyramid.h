@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "osteomill/numbers/row_major.h"
+
 namespace osteomill {
 
 /// An implicit octree over a grid of bricks: level 0 holds a count for every brick, each further level the
@@ -20,7 +22,7 @@ class CountPyramid {
   const std::array<int, 3>& dims(int level) const { return levels_[static_cast<std::size_t>(level)].dims; }
   std::uint32_t count(int level, int i, int j, int k) const {
     const Level& l = levels_[static_cast<std::size_t>(level)];
-    return l.counts[l.index(i, j, k)];
+    return l.counts[row_major(l.dims, i, j, k)];
   }
   std::uint32_t total() const { return levels_.empty() ? 0 : levels_.back().counts.front(); }
   /// Adds `difference` to a brick's count and to the sums above it. Safe in the haptic tick.
@@ -37,12 +39,6 @@ class CountPyramid {
   struct Level {
     std::array<int, 3> dims;
     std::vector<std::uint32_t> counts;
-    std::size_t index(int i, int j, int k) const {
-      return static_cast<std::size_t>(i) +
-             static_cast<std::size_t>(dims[0]) *
-                 (static_cast<std::size_t>(j) +
-                  static_cast<std::size_t>(dims[1]) * static_cast<std::size_t>(k));
-    }
   };
 
   template <typename Rejected, typename Leaf>
