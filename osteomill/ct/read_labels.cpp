@@ -10,8 +10,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "osteomill/ct/header_text.h"
 #include "osteomill/ct/label_table.h"
-#include "osteomill/ct/parse_numbers.h"
 #include "osteomill/ct/volume_file.h"
 #include "osteomill/files/input_error.h"
 #include "osteomill/numbers/work_progress.h"
