@@ -156,15 +156,10 @@ std::optional<Scan> read_file(const fs::path& file, const ReadOptions& options) 
 
 }  // namespace
 
-std::optional<Scan> read_dicom_folder(const fs::path& folder, const ReadOptions& options) {
+std::optional<Scan> read_dicom(const fs::path& path, const ReadOptions& options) {
   std::optional<Scan> scan;
-  with_dicom_stack([&] { scan = read_folder(folder, options); });
-  return scan;
-}
-
-std::optional<Scan> read_dicom_file(const fs::path& file, const ReadOptions& options) {
-  std::optional<Scan> scan;
-  with_dicom_stack([&] { scan = read_file(file, options); });
+  with_dicom_stack(
+      [&] { scan = fs::is_directory(path) ? read_folder(path, options) : read_file(path, options); });
   return scan;
 }
 

@@ -49,24 +49,6 @@ void check_axes(const std::string& subject, const Mat3& axes) {
   }
 }
 
-Scan read_behind(VolumeHeader header, const std::string& subject, const char* format,
-                 const ReadOptions& options) {
-  if (!options.series.empty()) {
-    throw InputError(subject, fmt::format("is {}, which has no series to choose from", format));
-  }
-  std::vector<float> densities;
-  {
-    const WorkProgress::Part reading(0.85);
-    densities = read_voxels(subject, header.voxels, header.geometry.voxel_count(), options.max_memory_bytes,
-                            header.warnings);
-  }
-  const WorkProgress::Part checking(1);
-  check_densities(subject, densities);
-  Scan scan{DensityGrid(header.geometry, std::move(densities)), subject, format, std::move(header.warnings)};
-  scan.is_labels = header.is_labels || subject.find(".seg.") != std::string::npos;
-  return scan;
-}
-
 }  // namespace
 
 std::vector<double> HeaderFields::numbers(const std::string& subject, const std::string& name) const {
@@ -127,29 +109,38 @@ double millimetres_in(const std::string& subject, std::string_view unit) {
   return found->second;
 }
 
-std::optional<VolumeFormat> volume_format_of(const fs::path& path) {
+const VolumeFormat* volume_format_of(const fs::path& path) {
+  static constexpr std::array<VolumeFormat, 3> kFormats{
+      {{"NRRD", {".nrrd", ".nhdr"}, read_nrrd_header},
+       {"MetaImage", {".mha", ".mhd"}, read_metaimage_header},
+       {"NIfTI", {".nii", ".nii.gz"}, read_nifti_header}}};
   const std::string name = lower(path.filename().string());
-  if (name.ends_with(".nrrd") || name.ends_with(".nhdr")) return VolumeFormat::nrrd;
-  if (name.ends_with(".mha") || name.ends_with(".mhd")) return VolumeFormat::metaimage;
-  if (name.ends_with(".nii") || name.ends_with(".nii.gz")) return VolumeFormat::nifti;
-  return std::nullopt;
-}
-
-VolumeHeader read_volume_header(const fs::path& path, VolumeFormat format) {
-  switch (format) {
-    case VolumeFormat::nrrd:
-      return read_nrrd_header(path);
-    case VolumeFormat::metaimage:
-      return read_metaimage_header(path);
-    default:
-      return read_nifti_header(path);
+  for (const VolumeFormat& format : kFormats) {
+    for (const std::string_view ending : format.endings) {
+      if (name.ends_with(ending)) return &format;
+    }
   }
+  return nullptr;
 }
 
-Scan read_volume_file(const fs::path& path, VolumeFormat format, const ReadOptions& options) {
-  constexpr std::array kNames{"NRRD", "MetaImage", "NIfTI"};
-  return read_behind(read_volume_header(path, format), path.string(),
-                     kNames[static_cast<std::size_t>(format)], options);
+Scan read_volume_file(const fs::path& path, const VolumeFormat& format, const ReadOptions& options) {
+  const std::string subject = path.string();
+  VolumeHeader header = format.read_header(path);
+  if (!options.series.empty()) {
+    throw InputError(subject, fmt::format("is {}, which has no series to choose from", format.name));
+  }
+  std::vector<float> densities;
+  {
+    const WorkProgress::Part reading(0.85);
+    densities = read_voxels(subject, header.voxels, header.geometry.voxel_count(), options.max_memory_bytes,
+                            header.warnings);
+  }
+  const WorkProgress::Part checking(1);
+  check_densities(subject, densities);
+  Scan scan{DensityGrid(header.geometry, std::move(densities)), subject, format.name,
+            std::move(header.warnings)};
+  scan.is_labels = header.is_labels || subject.find(".seg.") != std::string::npos;
+  return scan;
 }
 
 }  // namespace osteomill

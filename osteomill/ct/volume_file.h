@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,10 +13,6 @@
 #include "osteomill/volume/grid_geometry.h"
 
 namespace osteomill {
-
-enum class VolumeFormat { nrrd, metaimage, nifti };
-/// By how the file's name ends.
-std::optional<VolumeFormat> volume_format_of(const std::filesystem::path& path);
 
 /// What the header of a volume file says, and the voxels behind it, ready to be read.
 struct VolumeHeader {
@@ -36,12 +31,19 @@ VolumeHeader read_nrrd_header(const std::filesystem::path& path);
 VolumeHeader read_metaimage_header(const std::filesystem::path& path);
 VolumeHeader read_nifti_header(const std::filesystem::path& path);
 
-/// The header alone. Throws InputError naming the file.
-VolumeHeader read_volume_header(const std::filesystem::path& path, VolumeFormat format);
+/// One of the formats whose volume lies in one file (or in a header and a file of voxels).
+struct VolumeFormat {
+  const char* name;
+  /// Of its files, in small letters.
+  std::array<std::string_view, 2> endings;
+  VolumeHeader (*read_header)(const std::filesystem::path& path);
+};
+/// By how the file's name ends; null where it is none of them.
+const VolumeFormat* volume_format_of(const std::filesystem::path& path);
 
-/// Reads a volume that lies in one file (or in a header and a file of voxels).
 /// Throws InputError naming the file.
-Scan read_volume_file(const std::filesystem::path& path, VolumeFormat format, const ReadOptions& options);
+Scan read_volume_file(const std::filesystem::path& path, const VolumeFormat& format,
+                      const ReadOptions& options);
 
 /// The fields of a header that is text, by their names.
 struct HeaderFields {

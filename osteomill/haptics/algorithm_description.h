@@ -11,7 +11,6 @@
 
 #include "osteomill/haptics/haptic_algorithm.h"
 #include "osteomill/haptics/haptic_settings.h"
-#include "osteomill/haptics/mode.h"
 
 namespace osteomill {
 

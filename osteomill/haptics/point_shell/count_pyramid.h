@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "osteomill/numbers/row_major.h"
@@ -16,7 +17,16 @@ class CountPyramid {
  public:
   CountPyramid() = default;
   /// All counts zero. Every dimension at least 1.
-  explicit CountPyramid(const std::array<int, 3>& dims);
+  explicit CountPyramid(const std::array<int, 3>& dims) {
+    std::array<int, 3> level_dims = dims;
+    while (true) {
+      Level level{level_dims, {}};
+      level.counts.assign(cell_count(level_dims), 0);
+      levels_.push_back(std::move(level));
+      if (level_dims == std::array<int, 3>{1, 1, 1}) return;
+      for (int& dim : level_dims) dim = (dim + 1) / 2;
+    }
+  }
 
   int level_count() const { return static_cast<int>(levels_.size()); }
   const std::array<int, 3>& dims(int level) const { return levels_[static_cast<std::size_t>(level)].dims; }
@@ -26,7 +36,15 @@ class CountPyramid {
   }
   std::uint32_t total() const { return levels_.empty() ? 0 : levels_.back().counts.front(); }
   /// Adds `difference` to a brick's count and to the sums above it. Safe in the haptic tick.
-  void add(int i, int j, int k, std::int32_t difference);
+  void add(int i, int j, int k, std::int32_t difference) {
+    for (Level& level : levels_) {
+      // Unsigned arithmetic wraps: adding a negative difference subtracts.
+      level.counts[row_major(level.dims, i, j, k)] += static_cast<std::uint32_t>(difference);
+      i /= 2;
+      j /= 2;
+      k /= 2;
+    }
+  }
 
   /// Calls `leaf(i, j, k)` for every brick with points that no `rejected(level, i, j, k)` cut off, a node's
   /// answer standing for all below it. The order is fixed. Safe in the haptic tick.

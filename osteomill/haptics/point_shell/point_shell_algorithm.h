@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "osteomill/haptics/bone_points/near_bone.h"
-#include "osteomill/haptics/bone_points/penalty.h"
+#include "osteomill/haptics/bone_points/push_law.h"
 #include "osteomill/haptics/haptic_algorithm.h"
 #include "osteomill/haptics/point_shell/contacts.h"
 #include "osteomill/haptics/point_shell/point_shell_description.h"

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "osteomill/haptics/algorithm_description.h"
-#include "osteomill/haptics/mode.h"
 #include "osteomill/tool/milling_tool.h"
 
 namespace osteomill::point_shell {

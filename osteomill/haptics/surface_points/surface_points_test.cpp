@@ -1,5 +1,4 @@
 #include "osteomill/haptics/surface_points/surface_points.h"
-#include "osteomill/haptics/surface_points/vertex_springs.h"
 
 #include <algorithm>
 #include <random>
@@ -8,6 +7,7 @@
 #include "tests/shapes.h"
 #include <gtest/gtest.h>
 
+#include "osteomill/haptics/surface_points/vertex_springs.h"
 #include "osteomill/tool/sample_points.h"
 
 namespace osteomill::surface_points {
