@@ -8,7 +8,7 @@
 #include <benchmark/benchmark.h>
 
 #include "osteomill/haptics/algorithms.h"
-#include "osteomill/haptics/point_shell/brick_contacts.h"
+#include "osteomill/haptics/point_shell/contacts.h"
 #include "osteomill/haptics/point_shell/point_shell_description.h"
 
 namespace osteomill::benchmarks {

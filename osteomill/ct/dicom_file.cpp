@@ -10,8 +10,7 @@
 #include <fmt/format.h>
 
 #include "osteomill/ct/dicom_data.h"
-#include "osteomill/ct/parse_numbers.h"
-#include "osteomill/ct/volume_header.h"
+#include "osteomill/ct/header_text.h"
 #include "osteomill/files/input_error.h"
 
 namespace osteomill {
@@ -154,8 +153,6 @@ SlicePlane FileReader::plane_of(std::size_t frame) const {
 
 DicomSlice FileReader::slice_of(std::size_t frame) const {
   DicomSlice slice;
-  slice.file = header_.file;
-  slice.frame = frame;
   slice.plane = plane_of(frame);
   const std::string instance_uid = text_of(data_, DCM_SOPInstanceUID);
   const std::string file_name = header_.file.filename().string();

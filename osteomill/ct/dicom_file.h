@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -28,9 +29,6 @@ struct StoredPixels {
 
 /// One slice: a file, or a frame of it.
 struct DicomSlice {
-  std::filesystem::path file;
-  /// From 0.
-  std::size_t frame = 0;
   SlicePlane plane;
   StoredPixels pixels;
 };
@@ -77,5 +75,11 @@ std::optional<DicomHeader> read_dicom_header(const std::filesystem::path& path, 
 /// The items of compressed pixels: the table of offsets, and the fragments in order. None where they are not
 /// compressed.
 std::vector<DcmPixelItem*> pixel_items_of(DcmDataset& data);
+
+/// Decodes the pixels of the file of `header`, which has no fault, and writes the densities of frame f, row
+/// by row, to `frame_densities(f)`, which must have room for columns * rows (a null pointer: the frame is not
+/// wanted). Throws InputError naming the file where they cannot be decoded. Only within `with_dicom_stack`.
+void read_dicom_densities(const DicomHeader& header,
+                          const std::function<float*(std::size_t frame)>& frame_densities);
 
 }  // namespace osteomill

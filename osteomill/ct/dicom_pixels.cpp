@@ -1,5 +1,3 @@
-#include "osteomill/ct/dicom_pixels.h"
-
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
@@ -198,9 +196,9 @@ std::span<const char> FrameReader::read(std::size_t frame) {
 void read_dicom_densities(const DicomHeader& header,
                           const std::function<float*(std::size_t frame)>& frame_densities) {
   FrameReader reader(header);
-  for (const DicomSlice& slice : header.slices) {
-    float* densities = frame_densities(slice.frame);
-    if (densities != nullptr) rescale_frame(reader.read(slice.frame), slice.pixels, densities);
+  for (std::size_t frame = 0; frame < header.slices.size(); ++frame) {
+    float* densities = frame_densities(frame);
+    if (densities != nullptr) rescale_frame(reader.read(frame), header.slices[frame].pixels, densities);
   }
 }
 

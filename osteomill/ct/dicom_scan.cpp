@@ -1,16 +1,13 @@
 #include "osteomill/ct/dicom_scan.h"
 
 #include <algorithm>
-#include <map>
 
 #include <fmt/format.h>
 
 #include "osteomill/ct/dicom_data.h"
 #include "osteomill/ct/dicom_file.h"
-#include "osteomill/ct/dicom_pixels.h"
 #include "osteomill/ct/dicom_series.h"
 #include "osteomill/ct/plausible_scan.h"
-#include "osteomill/ct/resample_stack.h"
 #include "osteomill/ct/slice_stack.h"
 #include "osteomill/files/input_error.h"
 #include "osteomill/numbers/work_progress.h"
@@ -36,12 +33,6 @@ void drop_localizers(std::vector<DicomHeader>& images, std::vector<std::string>&
   images.erase(first, images.end());
 }
 
-void check_series(const DicomSeries& series) {
-  for (const DicomHeader& header : series.headers) {
-    if (header.fault) throw *header.fault;
-  }
-}
-
 void add_notes(const DicomHeader& first, std::vector<std::string>& warnings) {
   if (first.photometric == "MONOCHROME1") {
     warnings.push_back("MONOCHROME1: meant to be shown inverted; the densities are taken as they are");
@@ -53,22 +44,17 @@ void add_notes(const DicomHeader& first, std::vector<std::string>& warnings) {
 }
 
 // Slice after slice, as the stack has them.
-std::vector<float> read_densities(DicomSeries& series, const SliceStack& stack,
-                                  const std::vector<DicomSlice>& slices) {
-  std::map<std::pair<fs::path, std::size_t>, std::size_t> place_of_frame;
-  for (std::size_t k = 0; k < stack.order.size(); ++k) {
-    const DicomSlice& slice = slices[stack.order[k]];
-    place_of_frame[{slice.file, slice.frame}] = k;
-  }
+std::vector<float> read_densities(DicomSeries& series, const SliceStack& stack, std::size_t slices) {
   const std::size_t slice_size =
       stack.geometry.voxel_count() / static_cast<std::size_t>(stack.geometry.dims[2]);
   std::vector<float> densities(slice_size * stack.order.size());
+  std::vector<float*> of_slice(slices, nullptr);
+  for (std::size_t k = 0; k < stack.order.size(); ++k) of_slice[stack.order[k]] = &densities[k * slice_size];
   std::size_t read = 0;
   for (DicomHeader& header : series.headers) {
-    read_dicom_densities(header, [&](std::size_t frame) -> float* {
-      WorkProgress::done(read++, slices.size());
-      const auto place = place_of_frame.find({header.file, frame});
-      return place == place_of_frame.end() ? nullptr : densities.data() + place->second * slice_size;
+    read_dicom_densities(header, [&](std::size_t /*frame*/) {
+      WorkProgress::done(read, slices);
+      return of_slice[read++];
     });
     header.data.reset();
   }
@@ -77,15 +63,7 @@ std::vector<float> read_densities(DicomSeries& series, const SliceStack& stack,
 
 Scan build_scan(const std::string& subject, DicomSeries series, std::vector<std::string> warnings,
                 const ReadOptions& options) {
-  check_series(series);
-  std::vector<DicomSlice> slices;
-  std::vector<SlicePlane> planes;
-  for (const DicomHeader& header : series.headers) {
-    for (const DicomSlice& slice : header.slices) {
-      slices.push_back(slice);
-      planes.push_back(slice.plane);
-    }
-  }
+  const std::vector<SlicePlane> planes = series.planes();
   SliceStack stack = stack_slices(subject, planes);
   const bool is_moved = !stack.heights_mm.empty() || stack.drift_i_mm != 0 || stack.drift_j_mm != 0;
   check_memory(subject, (is_moved ? 2 : 1) * stack.geometry.voxel_count(), options.max_memory_bytes);
@@ -93,7 +71,7 @@ Scan build_scan(const std::string& subject, DicomSeries series, std::vector<std:
   std::vector<float> densities;
   {
     const WorkProgress::Part reading(0.95);
-    densities = read_densities(series, stack, slices);
+    densities = read_densities(series, stack, planes.size());
   }
   const WorkProgress::Part checking(1);
   check_densities(subject, densities);
@@ -178,15 +156,10 @@ std::optional<Scan> read_file(const fs::path& file, const ReadOptions& options) 
 
 }  // namespace
 
-std::optional<Scan> read_dicom_folder(const fs::path& folder, const ReadOptions& options) {
+std::optional<Scan> read_dicom(const fs::path& path, const ReadOptions& options) {
   std::optional<Scan> scan;
-  with_dicom_stack([&] { scan = read_folder(folder, options); });
-  return scan;
-}
-
-std::optional<Scan> read_dicom_file(const fs::path& file, const ReadOptions& options) {
-  std::optional<Scan> scan;
-  with_dicom_stack([&] { scan = read_file(file, options); });
+  with_dicom_stack(
+      [&] { scan = fs::is_directory(path) ? read_folder(path, options) : read_file(path, options); });
   return scan;
 }
 

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "osteomill/ct/dicom_file.h"
-#include "osteomill/ct/volume_header.h"
+#include "osteomill/ct/header_text.h"
 #include "osteomill/files/input_error.h"
 #include "osteomill/numbers/work_progress.h"
 
@@ -58,26 +58,16 @@ std::optional<fs::path> file_named(const fs::path& folder, const fs::path& name)
   return std::nullopt;
 }
 
-std::vector<SlicePlane> planes_of(const DicomSeries& series) {
-  std::vector<SlicePlane> planes;
-  for (const DicomHeader& header : series.headers) {
-    for (const DicomSlice& slice : header.slices) planes.push_back(slice.plane);
-  }
-  return planes;
-}
-
 // As they would be read.
 std::string size_and_spacing(const DicomSeries& series) {
-  const std::vector<SlicePlane> planes = planes_of(series);
   try {
-    for (const DicomHeader& header : series.headers) {
-      if (header.fault) throw *header.fault;
-    }
-    const GridGeometry grid = stack_slices("", planes).geometry;
+    const GridGeometry grid = stack_slices("", series.planes()).geometry;
     return fmt::format("{} x {} x {}, {:.4g} x {:.4g} x {:.4g} mm", grid.dims[0], grid.dims[1], grid.dims[2],
                        grid.spacing_mm.x(), grid.spacing_mm.y(), grid.spacing_mm.z());
   } catch (const InputError&) {
-    return fmt::format("{} slices, no volume", planes.size());
+    std::size_t slices = 0;
+    for (const DicomHeader& header : series.headers) slices += header.slices.size();
+    return fmt::format("{} slices, no volume", slices);
   }
 }
 
@@ -111,6 +101,15 @@ DicomImages images_of_directory(const DicomHeader& dicomdir, std::uint64_t max_b
 
 bool DicomSeries::is_ct() const {
   return headers.front().modality == "CT";
+}
+
+std::vector<SlicePlane> DicomSeries::planes() const {
+  std::vector<SlicePlane> planes;
+  for (const DicomHeader& header : headers) {
+    if (header.fault) throw *header.fault;
+    for (const DicomSlice& slice : header.slices) planes.push_back(slice.plane);
+  }
+  return planes;
 }
 
 std::uint64_t DicomSeries::pixel_count() const {

@@ -29,6 +29,8 @@ struct DicomSeries {
   std::vector<DicomHeader> headers;
 
   bool is_ct() const;
+  /// Of every slice, file by file. Throws the first fault of a file.
+  std::vector<SlicePlane> planes() const;
   /// Of those slices that can be read.
   std::uint64_t pixel_count() const;
 };

@@ -8,8 +8,8 @@
 
 #include <fmt/format.h>
 
-#include "osteomill/ct/parse_numbers.h"
-#include "osteomill/ct/volume_header.h"
+#include "osteomill/ct/byte_source.h"
+#include "osteomill/ct/header_text.h"
 #include "osteomill/files/input_error.h"
 
 namespace osteomill {

@@ -5,8 +5,8 @@
 
 #include <fmt/format.h>
 
-#include "osteomill/ct/parse_numbers.h"
-#include "osteomill/ct/volume_header.h"
+#include "osteomill/ct/header_text.h"
+#include "osteomill/ct/volume_file.h"
 #include "osteomill/files/input_error.h"
 
 namespace osteomill {
@@ -17,13 +17,7 @@ namespace {
 
 constexpr std::size_t kMaxHeader = 1 << 20;
 
-struct Fields {
-  std::map<std::string, std::string> values;
-
-  bool has(const std::string& name) const { return values.contains(name); }
-  std::string operator[](const std::string& name) const {
-    return has(name) ? values.at(name) : std::string();
-  }
+struct Fields : HeaderFields {
   bool is_true(const std::string& name) const {
     const std::string value = (*this)[name];
     return !value.empty() && (value[0] == 'T' || value[0] == 't' || value[0] == '1');
@@ -56,12 +50,6 @@ Fields read_fields(const std::string& subject, std::istream& in) {
   return fields;
 }
 
-std::vector<double> numbers(const std::string& subject, const Fields& fields, const std::string& name) {
-  const auto values = parse_numbers(fields[name]);
-  if (!values || values->empty()) throw InputError(subject, fmt::format("has no {} made of numbers", name));
-  return *values;
-}
-
 VoxelType type_of(const std::string& subject, const std::string& type) {
   using enum VoxelType;
   // MET_LONG is 4 bytes in a file, whatever it is on the machine.
@@ -78,14 +66,14 @@ VoxelType type_of(const std::string& subject, const std::string& type) {
 
 GridGeometry geometry_of(const std::string& subject, const Fields& fields,
                          std::vector<std::string>& warnings) {
-  if (numbers(subject, fields, "NDims").front() != 3)
+  if (fields.numbers(subject, "NDims").front() != 3)
     throw InputError(subject, "is not a volume: NDims is not 3");
   const std::string spacing = fields.first_of({"ElementSpacing", "ElementSize"});
   if (spacing.empty()) warnings.push_back("does not say how large its voxels are; 1 mm was assumed");
   Mat3 axes = Mat3::Identity();
   const std::string matrix = fields.first_of({"TransformMatrix", "Rotation", "Orientation"});
   if (!matrix.empty()) {
-    const std::vector<double> values = numbers(subject, fields, matrix);
+    const std::vector<double> values = fields.numbers(subject, matrix);
     if (values.size() != 9)
       throw InputError(subject, fmt::format("has a {} that is not nine numbers", matrix));
     axes = Eigen::Map<const Mat3>(values.data());
@@ -94,15 +82,15 @@ GridGeometry geometry_of(const std::string& subject, const Fields& fields,
   }
   const std::string origin = fields.first_of({"Offset", "Position", "Origin"});
   return checked_geometry(
-      subject, numbers(subject, fields, "DimSize"),
-      spacing.empty() ? std::vector<double>{1, 1, 1} : numbers(subject, fields, spacing), axes,
-      origin.empty() ? Vec3::Zero() : checked_point(subject, origin, numbers(subject, fields, origin)),
+      subject, fields.numbers(subject, "DimSize"),
+      spacing.empty() ? std::vector<double>{1, 1, 1} : fields.numbers(subject, spacing), axes,
+      origin.empty() ? Vec3::Zero() : checked_point(subject, origin, fields.numbers(subject, origin)),
       millimetres_in(subject, lower(fields["DistanceUnits"])));
 }
 
 void check_grey(const std::string& subject, const Fields& fields) {
   if (fields.has("ElementNumberOfChannels") &&
-      numbers(subject, fields, "ElementNumberOfChannels").front() != 1) {
+      fields.numbers(subject, "ElementNumberOfChannels").front() != 1) {
     throw InputError(subject, "is not a grey volume: it holds several values a voxel");
   }
   if (fields.has("BinaryData") && !fields.is_true("BinaryData")) {
@@ -110,37 +98,23 @@ void check_grey(const std::string& subject, const Fields& fields) {
   }
 }
 
-// A number of bytes, not less than `min`; 0 where the field is not there.
-double bytes_in(const std::string& subject, const Fields& fields, const std::string& name, double min) {
-  if (!fields.has(name)) return 0;
-  const std::vector<double> values = numbers(subject, fields, name);
-  if (values.size() != 1 || !(values[0] >= min && values[0] < 1e12))
-    throw InputError(subject, fmt::format("has no sensible {}", name));
-  return values[0];
-}
-
 StoredVoxels voxels_of(const std::string& subject, const fs::path& path, const Fields& fields,
                        std::ifstream header, std::uint64_t count) {
   const VoxelType type = type_of(subject, fields["ElementType"]);
   const std::string name = fields["ElementDataFile"];
-  if (name.starts_with("LIST") || name.find('%') != std::string::npos) {
-    throw InputError(subject, "keeps its data in several files, which is not supported");
-  }
   const bool local = lower(name) == "local";
   const bool packed = fields.is_true("CompressedData");
-  std::ifstream data = local ? std::move(header) : open_regular_file(subject, path.parent_path() / name);
-  const double header_size = bytes_in(subject, fields, "HeaderSize", -1);
+  std::ifstream data = open_data(subject, path, local ? "" : name, std::move(header));
+  const double header_size = fields.count(subject, "HeaderSize", -1);
   // It counts from the beginning of the file that holds the data.
   if (header_size > 0) data.seekg(static_cast<std::streamoff>(header_size));
   StoredVoxels voxels{.source = ByteSource(std::move(data), packed ? Packing::gzip_or_zlib : Packing::none),
                       .type = type};
   voxels.big_endian = fields.is_true("BinaryDataByteOrderMSB") || fields.is_true("ElementByteOrderMSB");
   if (packed) {
-    voxels.compressed_bytes = static_cast<std::uint64_t>(bytes_in(subject, fields, "CompressedDataSize", 1));
+    voxels.compressed_bytes = static_cast<std::uint64_t>(fields.count(subject, "CompressedDataSize", 1));
   } else if (header_size < 0) {
-    // The voxels are what the data end with.
-    const std::uint64_t there = voxels.source.bytes_to_come();
-    voxels.skip = there - std::min(there, count * bytes_of(type));
+    skip_to_last(voxels, count);
   }
   return voxels;
 }

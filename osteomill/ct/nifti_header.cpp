@@ -8,7 +8,7 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
-#include "osteomill/ct/volume_header.h"
+#include "osteomill/ct/volume_file.h"
 #include "osteomill/files/input_error.h"
 
 namespace osteomill {

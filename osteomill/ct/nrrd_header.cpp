@@ -9,8 +9,8 @@
 
 #include <fmt/format.h>
 
-#include "osteomill/ct/parse_numbers.h"
-#include "osteomill/ct/volume_header.h"
+#include "osteomill/ct/header_text.h"
+#include "osteomill/ct/volume_file.h"
 #include "osteomill/files/input_error.h"
 
 namespace osteomill {
@@ -19,17 +19,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-struct Fields {
-  std::map<std::string, std::string> values;
+struct Fields : HeaderFields {
   std::map<std::string, std::string> key_values;
   /// An empty line parts the header from what follows it.
   bool has_end = false;
-
-  std::string operator[](const std::string& name) const {
-    const auto found = values.find(name);
-    return found == values.end() ? std::string() : found->second;
-  }
-  bool has(const std::string& name) const { return values.contains(name); }
 };
 
 // Longer headers than this are no headers.
@@ -44,39 +37,12 @@ std::string field_name(std::string_view text) {
 
 // A field with a slip of the pen in its name would be missed in silence.
 void check_name(const std::string& subject, const std::string& name) {
-  constexpr std::array<std::string_view, 32> kNames{"axismaxs",
-                                                    "axismins",
-                                                    "blocksize",
-                                                    "byteskip",
-                                                    "centerings",
-                                                    "centers",
-                                                    "content",
-                                                    "data",
-                                                    "datafile",
-                                                    "dimension",
-                                                    "encoding",
-                                                    "endian",
-                                                    "kinds",
-                                                    "labels",
-                                                    "lineskip",
-                                                    "max",
-                                                    "measurementframe",
-                                                    "min",
-                                                    "number",
-                                                    "oldmax",
-                                                    "oldmin",
-                                                    "sampleunits",
-                                                    "sizes",
-                                                    "space",
-                                                    "spacedimension",
-                                                    "spacedirections",
-                                                    "spaceorigin",
-                                                    "spaceunits",
-                                                    "spacings",
-                                                    "thicknesses",
-                                                    "type",
-                                                    "units"};
-  if (std::find(kNames.begin(), kNames.end(), name) == kNames.end()) {
+  constexpr std::string_view kNames =
+      "|axismaxs|axismins|blocksize|byteskip|centerings|centers|content|data|datafile|dimension|"
+      "encoding|endian|kinds|labels|lineskip|max|measurementframe|min|number|oldmax|oldmin|"
+      "sampleunits|sizes|space|spacedimension|spacedirections|spaceorigin|spaceunits|spacings|"
+      "thicknesses|type|units|";
+  if (kNames.find("|" + name + "|") == std::string_view::npos) {
     throw InputError(subject, fmt::format("has a field \"{:.40}\" that is not known", name));
   }
 }
@@ -131,13 +97,6 @@ VoxelType type_of(const std::string& subject, const std::string& type) {
     if (names.find("|" + type + "|") != std::string_view::npos) return known;
   }
   throw InputError(subject, fmt::format("has voxels of type \"{:.40}\", which is not known", type));
-}
-
-std::vector<double> numbers(const std::string& subject, const Fields& fields, const std::string& name) {
-  const auto values = parse_numbers(fields[name]);
-  if (!values || values->empty())
-    throw InputError(subject, fmt::format("has a field \"{}\" without numbers", name));
-  return *values;
 }
 
 double unit_of(const std::string& subject, const Fields& fields, const std::string& name) {
@@ -200,7 +159,7 @@ void check_kinds(const std::string& subject, const std::string& kinds) {
 
 GridGeometry geometry_of(const std::string& subject, const Fields& fields,
                          std::vector<std::string>& warnings) {
-  const std::vector<double> dimension = numbers(subject, fields, "dimension");
+  const std::vector<double> dimension = fields.numbers(subject, "dimension");
   if (dimension.front() != 3) {
     throw InputError(subject,
                      fmt::format("is not a grey volume: it has {} dimensions, not 3", dimension.front()));
@@ -214,7 +173,7 @@ GridGeometry geometry_of(const std::string& subject, const Fields& fields,
     for (int axis = 0; axis < 3; ++axis) spacing[static_cast<std::size_t>(axis)] = axes.col(axis).norm();
     unit_mm = unit_of(subject, fields, "spaceunits");
   } else if (fields.has("spacings")) {
-    spacing = numbers(subject, fields, "spacings");
+    spacing = fields.numbers(subject, "spacings");
     unit_mm = unit_of(subject, fields, "units");
   } else {
     warnings.push_back("does not say how large its voxels are; 1 mm was assumed");
@@ -224,30 +183,17 @@ GridGeometry geometry_of(const std::string& subject, const Fields& fields,
     const auto values = parse_numbers(fields["spaceorigin"], "(), \t");
     origin = checked_point(subject, "space origin", values.value_or(std::vector<double>{}));
   }
-  return checked_geometry(subject, numbers(subject, fields, "sizes"), spacing, axes, origin, unit_mm,
+  return checked_geometry(subject, fields.numbers(subject, "sizes"), spacing, axes, origin, unit_mm,
                           lps_from_space(subject, lower(fields["space"]), warnings));
 }
 
-double skip_of(const std::string& subject, const Fields& fields, const std::string& name, double min) {
-  if (!fields.has(name)) return 0;
-  const std::vector<double> values = numbers(subject, fields, name);
-  if (values.size() != 1 || !(values[0] >= min && values[0] < 1e12)) {
-    throw InputError(subject, fmt::format("has a {} that is not supported: {}", name, fields[name]));
-  }
-  return values[0];
-}
-
 // The stream in which the voxels begin, behind the lines that are to be skipped.
-std::ifstream open_data(const std::string& subject, const fs::path& path, const Fields& fields,
-                        std::ifstream attached) {
+std::ifstream open_behind_lines(const std::string& subject, const fs::path& path, const Fields& fields,
+                                std::ifstream attached) {
   const std::string name = fields[fields.has("datafile") ? "datafile" : "data"];
   if (name.empty() && !fields.has_end) throw InputError(subject, "has a header without an end, and no data");
-  if (name.starts_with("LIST") || name.find('%') != std::string::npos) {
-    throw InputError(subject, "keeps its data in several files, which is not supported");
-  }
-  std::ifstream in =
-      name.empty() ? std::move(attached) : open_regular_file(subject, path.parent_path() / name);
-  const double lines = skip_of(subject, fields, "lineskip", 0);
+  std::ifstream in = open_data(subject, path, name, std::move(attached));
+  const double lines = fields.count(subject, "lineskip", 0);
   for (double n = 0; n < lines && in; ++n) in.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
   return in;
 }
@@ -272,11 +218,9 @@ StoredVoxels voxels_of(const std::string& subject, const Fields& fields, std::if
     throw InputError(subject, "does not say whether its voxels are little or big endian");
   }
   voxels.big_endian = endian == "big";
-  const double byte_skip = skip_of(subject, fields, "byteskip", is_text ? 0 : -1);
+  const double byte_skip = fields.count(subject, "byteskip", is_text ? 0 : -1);
   if (byte_skip < 0) {
-    // The voxels are what the data end with.
-    const std::uint64_t there = voxels.source.bytes_to_come();
-    voxels.skip = there - std::min(there, count * bytes_of(type));
+    skip_to_last(voxels, count);
   } else {
     voxels.skip = static_cast<std::uint64_t>(byte_skip);
   }
@@ -291,7 +235,7 @@ VolumeHeader read_nrrd_header(const fs::path& path) {
   const Fields fields = read_fields(subject, in);
   std::vector<std::string> warnings;
   const GridGeometry geometry = geometry_of(subject, fields, warnings);
-  std::ifstream data = open_data(subject, path, fields, std::move(in));
+  std::ifstream data = open_behind_lines(subject, path, fields, std::move(in));
   return {geometry, voxels_of(subject, fields, std::move(data), geometry.voxel_count()), std::move(warnings),
           fields.key_values, fields.key_values.contains("Segment0_ID")};
 }

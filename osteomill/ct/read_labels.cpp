@@ -10,8 +10,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "osteomill/ct/header_text.h"
 #include "osteomill/ct/label_table.h"
-#include "osteomill/ct/parse_numbers.h"
 #include "osteomill/ct/volume_file.h"
 #include "osteomill/files/input_error.h"
 #include "osteomill/numbers/work_progress.h"
@@ -160,17 +160,18 @@ std::optional<std::string> cover_warning(const FoundLabels& found, const GridGeo
 }  // namespace
 
 bool is_label_file(const fs::path& path) {
-  return volume_format_of(path).has_value();
+  return volume_format_of(path) != nullptr;
 }
 
 LabelsRead read_labels(const LabelFiles& files, const GridGeometry& scan, std::uint64_t max_memory_bytes) {
   const std::string subject = files.map.string();
   std::error_code error;
   if (!fs::exists(files.map, error)) throw InputError(subject, "no such file");
-  const auto format = volume_format_of(files.map);
-  if (!format) throw InputError(subject, "is not a label map: neither NRRD, NIfTI nor MetaImage by its name");
+  const VolumeFormat* const format = volume_format_of(files.map);
+  if (format == nullptr)
+    throw InputError(subject, "is not a label map: neither NRRD, NIfTI nor MetaImage by its name");
   try {
-    VolumeHeader header = read_volume_header(files.map, *format);
+    VolumeHeader header = format->read_header(files.map);
     LabelTable table = label_table_of(subject, header.key_values);
     if (!files.table.empty()) {
       LabelTable given = read_label_table(files.table);

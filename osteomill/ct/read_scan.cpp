@@ -19,11 +19,12 @@ namespace {
 
 // Of a folder without DICOM: its only volume file.
 Scan read_folder(const fs::path& folder, const ReadOptions& options) {
-  if (std::optional<Scan> scan = read_dicom_folder(folder, options)) return std::move(*scan);
+  if (std::optional<Scan> scan = read_dicom(folder, options)) return std::move(*scan);
   std::vector<fs::path> volumes;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
     const bool hidden = entry.path().filename().string().starts_with('.');
-    if (entry.is_regular_file() && !hidden && volume_format_of(entry.path())) volumes.push_back(entry.path());
+    if (entry.is_regular_file() && !hidden && volume_format_of(entry.path()) != nullptr)
+      volumes.push_back(entry.path());
   }
   if (volumes.empty()) throw InputError(folder.string(), "holds no DICOM slices");
   if (volumes.size() > 1) {
@@ -61,9 +62,9 @@ Scan read_any(const fs::path& path, const ReadOptions& options) {
   if (fs::is_directory(status)) return read_folder(path, options);
   if (!fs::is_regular_file(status)) throw InputError(path.string(), "is neither a file nor a folder");
   if (fs::file_size(path, error) == 0) throw InputError(path.string(), "is empty");
-  if (const auto format = volume_format_of(path)) return read_volume_file(path, *format, options);
+  if (const VolumeFormat* format = volume_format_of(path)) return read_volume_file(path, *format, options);
   if (is_zip(path)) return read_zip(path, options);
-  if (std::optional<Scan> scan = read_dicom_file(path, options)) return std::move(*scan);
+  if (std::optional<Scan> scan = read_dicom(path, options)) return std::move(*scan);
   throw InputError(
       path.string(),
       "is not a scan: neither DICOM nor a zip archive, nor NRRD, MetaImage or NIfTI by its name");

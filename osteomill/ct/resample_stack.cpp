@@ -1,5 +1,3 @@
-#include "osteomill/ct/resample_stack.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "osteomill/ct/slice_stack.h"
 #include "osteomill/files/input_error.h"
 
 namespace osteomill {

@@ -1,6 +1,7 @@
 #include "osteomill/ct/scan_summary.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include <fmt/format.h>
@@ -32,16 +33,10 @@ void summarise_values(const CopyOnWriteFloats& densities, double isovalue, ScanS
 }  // namespace
 
 ScanSummary summarise(const Scan& scan, SuggestedIsovalue suggested_iso, double isovalue) {
-  const GridGeometry& geometry = scan.grid.geometry();
   ScanSummary summary;
   summary.name = scan.name;
   summary.format = scan.format;
-  summary.dims = geometry.dims;
-  summary.spacing_mm = to_array(geometry.spacing_mm);
-  summary.origin_mm = to_array(geometry.origin_mm);
-  for (int row = 0; row < 3; ++row) {
-    summary.direction[static_cast<std::size_t>(row)] = to_array(geometry.direction.row(row).transpose());
-  }
+  summary.geometry = scan.grid.geometry();
   summary.suggested_iso = std::move(suggested_iso);
   summary.isovalue = isovalue;
   summary.warnings = scan.warnings;
@@ -69,10 +64,14 @@ std::vector<LabelSummary> summarise_labels(const Volume& bone) {
 }
 
 std::string to_json(const ScanSummary& summary) {
-  nlohmann::ordered_json json{{"dims", summary.dims},
-                              {"spacing_mm", summary.spacing_mm},
-                              {"origin_mm", summary.origin_mm},
-                              {"direction", summary.direction},
+  const GridGeometry& geometry = summary.geometry;
+  std::array<std::array<double, 3>, 3> direction;
+  for (int row = 0; row < 3; ++row)
+    direction[static_cast<std::size_t>(row)] = to_array(geometry.direction.row(row).transpose());
+  nlohmann::ordered_json json{{"dims", geometry.dims},
+                              {"spacing_mm", to_array(geometry.spacing_mm)},
+                              {"origin_mm", to_array(geometry.origin_mm)},
+                              {"direction", direction},
                               {"value_min", summary.value_min},
                               {"value_max", summary.value_max},
                               {"value_mean", summary.value_mean},
@@ -97,20 +96,18 @@ std::string to_json(const ScanSummary& summary) {
 }
 
 std::string to_text(const ScanSummary& summary) {
-  const auto& [columns, rows, slices] = summary.dims;
-  const auto& spacing = summary.spacing_mm;
-  const auto& origin = summary.origin_mm;
+  const auto& [columns, rows, slices] = summary.geometry.dims;
+  const Vec3& spacing = summary.geometry.spacing_mm;
+  const Vec3& origin = summary.geometry.origin_mm;
   std::string text = fmt::format("{} ({})\n", summary.name, summary.format);
   text += fmt::format("voxels      {} x {} x {}\n", columns, rows, slices);
   text += fmt::format("spacing     {:.6g} x {:.6g} x {:.6g} mm\n", spacing[0], spacing[1], spacing[2]);
   text += fmt::format("size        {:.6g} x {:.6g} x {:.6g} mm\n", spacing[0] * columns, spacing[1] * rows,
                       spacing[2] * slices);
   text += fmt::format("origin      {:.6g}, {:.6g}, {:.6g} mm\n", origin[0], origin[1], origin[2]);
-  constexpr std::array kAxes{'i', 'j', 'k'};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto& rows_of = summary.direction;
-    text += fmt::format("{} runs along {:.6g}, {:.6g}, {:.6g}\n", kAxes[axis], rows_of[0][axis],
-                        rows_of[1][axis], rows_of[2][axis]);
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vec3 along = summary.geometry.direction.col(axis);
+    text += fmt::format("{} runs along {:.6g}, {:.6g}, {:.6g}\n", "ijk"[axis], along[0], along[1], along[2]);
   }
   text += fmt::format("values      {:.6g} to {:.6g}, mean {:.6g}\n", summary.value_min, summary.value_max,
                       summary.value_mean);

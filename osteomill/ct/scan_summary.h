@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -24,12 +23,7 @@ struct LabelSummary {
 struct ScanSummary {
   std::string name;
   std::string format;
-  std::array<int, 3> dims{};
-  std::array<double, 3> spacing_mm{};
-  /// Centre of the first voxel.
-  std::array<double, 3> origin_mm{};
-  /// Rows of the matrix whose columns are the directions of i, j and k.
-  std::array<std::array<double, 3>, 3> direction{};
+  GridGeometry geometry;
   double value_min = 0;
   double value_max = 0;
   double value_mean = 0;

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "osteomill/ct/parse_numbers.h"
+#include "osteomill/ct/header_text.h"
 #include "osteomill/ct/plausible_scan.h"
 #include "osteomill/files/input_error.h"
 #include "osteomill/numbers/work_progress.h"
@@ -156,6 +156,11 @@ std::vector<float> read_text(const std::string& subject, StoredVoxels& stored, s
 
 std::uint64_t bytes_of(VoxelType type) {
   return with_type(type, [](auto value) { return std::uint64_t{sizeof(value)}; });
+}
+
+void skip_to_last(StoredVoxels& stored, std::uint64_t count) {
+  const std::uint64_t there = stored.source.bytes_to_come();
+  stored.skip = there - std::min(there, count * bytes_of(stored.type));
 }
 
 std::vector<float> read_voxels(const std::string& subject, StoredVoxels& stored, std::uint64_t count,

@@ -29,6 +29,9 @@ struct StoredVoxels {
   double intercept = 0;
 };
 
+/// Has the voxels be the last `count` of what there is.
+void skip_to_last(StoredVoxels& stored, std::uint64_t count);
+
 /// Reads `count` densities. Nothing is allocated that the file cannot hold. Throws InputError naming
 /// `subject` where the voxels are not all there or damaged, or the densities would take over `max_bytes`;
 /// adds a warning where there is more.

@@ -1,23 +1,83 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
-#include <optional>
+#include <fstream>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "osteomill/ct/read_scan.h"
-#include "osteomill/ct/volume_header.h"
+#include "osteomill/ct/stored_voxels.h"
+#include "osteomill/volume/grid_geometry.h"
 
 namespace osteomill {
 
-enum class VolumeFormat { nrrd, metaimage, nifti };
+/// What the header of a volume file says, and the voxels behind it, ready to be read.
+struct VolumeHeader {
+  GridGeometry geometry;
+  StoredVoxels voxels;
+  std::vector<std::string> warnings;
+  /// What NRRD calls key/value pairs, in which programs keep what the format has no field for.
+  std::map<std::string, std::string> key_values{};
+  /// Where the header says so; it need not.
+  bool is_labels = false;
+};
 
-/// By how the file's name ends.
-std::optional<VolumeFormat> volume_format_of(const std::filesystem::path& path);
+/// These read the header of one file each and check it: sizes and spacings are numbers above zero, the axes
+/// are at right angles, it is one grey volume. Throw InputError naming the file.
+VolumeHeader read_nrrd_header(const std::filesystem::path& path);
+VolumeHeader read_metaimage_header(const std::filesystem::path& path);
+VolumeHeader read_nifti_header(const std::filesystem::path& path);
 
-/// The header alone. Throws InputError naming the file.
-VolumeHeader read_volume_header(const std::filesystem::path& path, VolumeFormat format);
+/// One of the formats whose volume lies in one file (or in a header and a file of voxels).
+struct VolumeFormat {
+  const char* name;
+  /// Of its files, in small letters.
+  std::array<std::string_view, 2> endings;
+  VolumeHeader (*read_header)(const std::filesystem::path& path);
+};
+/// By how the file's name ends; null where it is none of them.
+const VolumeFormat* volume_format_of(const std::filesystem::path& path);
 
-/// Reads a volume that lies in one file (or in a header and a file of voxels).
 /// Throws InputError naming the file.
-Scan read_volume_file(const std::filesystem::path& path, VolumeFormat format, const ReadOptions& options);
+Scan read_volume_file(const std::filesystem::path& path, const VolumeFormat& format,
+                      const ReadOptions& options);
+
+/// The fields of a header that is text, by their names.
+struct HeaderFields {
+  std::map<std::string, std::string> values{};
+
+  bool has(const std::string& name) const { return values.contains(name); }
+  /// Empty where there is none.
+  std::string operator[](const std::string& name) const {
+    return has(name) ? values.at(name) : std::string();
+  }
+  /// Throws InputError naming `subject` where there are none.
+  std::vector<double> numbers(const std::string& subject, const std::string& name) const;
+  /// A number of bytes or lines, not less than `min`; 0 where the field is not there. Throws as `numbers`.
+  double count(const std::string& subject, const std::string& name, double min) const;
+};
+
+/// The file beside the header `path` that it names as that of its data; `attached` where `name` is empty.
+/// Throws InputError naming `subject`, also where there are several.
+std::ifstream open_data(const std::string& subject, const std::filesystem::path& path,
+                        const std::string& name, std::ifstream attached);
+
+/// A grid by what headers say of it, checked: sizes are three whole numbers above zero whose product can be a
+/// volume; the columns of `axes`, of which only the direction counts, are neither zero nor skew; spacings are
+/// finite, above zero and, like the origin, those of a bone (`check_plausible`). `unit_mm`: the millimetres
+/// in the unit of spacing and origin. `lps_from_axes`: the signs that turn the file's frame into LPS.
+GridGeometry checked_geometry(const std::string& subject, const std::vector<double>& sizes,
+                              const std::vector<double>& spacing, const Mat3& axes, const Vec3& origin,
+                              double unit_mm, const Vec3& lps_from_axes = Vec3::Ones());
+
+/// Three finite numbers; throws InputError, calling them `name`, where they are not.
+Vec3 checked_point(const std::string& subject, const std::string& name, const std::vector<double>& numbers);
+
+/// Millimetres in a unit of length as headers name it ("mm", "um", ...); throws InputError where it is not
+/// known.
+double millimetres_in(const std::string& subject, std::string_view unit);
 
 }  // namespace osteomill

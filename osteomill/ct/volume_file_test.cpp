@@ -346,14 +346,13 @@ TEST_F(VolumeFile, DirectionsThatAreNoUnitVectorsAreRefused) {
 TEST_F(VolumeFile, SpacingsThatAreNoDistanceAreRefused) {
   for (const char* spacing : {"0 1 1", "-1 1 1", "nan 1 1", "inf 1 1"}) {
     const std::string fields = std::string("spacings: ") + spacing + "\nencoding: raw\n";
-    EXPECT_TRUE(contains(refusal(write("a.nrrd", nrrd(fields, voxels<std::int16_t>()))), "no distance"))
+    EXPECT_TRUE(contains(refusal(write("a.nrrd", nrrd(fields, voxels<std::int16_t>()))), "mm apart"))
         << spacing;
     const std::string field = std::string("ElementSpacing = ") + spacing + "\n";
-    EXPECT_TRUE(contains(refusal(write("a.mha", mha(field, voxels<std::int16_t>()))), "no distance"))
-        << spacing;
+    EXPECT_TRUE(contains(refusal(write("a.mha", mha(field, voxels<std::int16_t>()))), "mm apart")) << spacing;
   }
   EXPECT_TRUE(contains(refusal(write("a.nii", Nifti().set<float>(84, 0.0F).with(voxels<std::int16_t>()))),
-                       "no distance"));
+                       "mm apart"));
   EXPECT_TRUE(contains(refusal(write("b.nii", Nifti().set<float>(84, 0.3F).with(voxels<std::int16_t>()))),
                        "different voxel sizes"));
 }

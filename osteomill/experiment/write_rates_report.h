@@ -5,7 +5,7 @@
 
 #include "osteomill/experiment/measure_rates.h"
 #include "osteomill/experiment/vertex_search.h"
-#include "osteomill/haptics/mode.h"
+#include "osteomill/haptics/haptic_settings.h"
 
 namespace osteomill {
 

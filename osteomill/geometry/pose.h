@@ -23,6 +23,10 @@ struct Pose {
     const Quat back = orientation.conjugate();
     return {-(back * position_mm), back};
   }
+  /// The same to the last bit.
+  friend bool operator==(const Pose& a, const Pose& b) {
+    return a.position_mm == b.position_mm && a.orientation.coeffs() == b.orientation.coeffs();
+  }
 };
 
 /// The rotation vector (axis times angle, rad, angle at most pi) of a unit quaternion.

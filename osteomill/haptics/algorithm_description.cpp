@@ -40,6 +40,17 @@ bool lies_within(const SettingRange& range, double value) {
 
 }  // namespace
 
+std::string_view name_of(Mode mode) {
+  return mode == Mode::paper ? "paper" : "steady";
+}
+
+std::optional<Mode> mode_named(std::string_view name) {
+  for (const Mode mode : {Mode::paper, Mode::steady}) {
+    if (name == name_of(mode)) return mode;
+  }
+  return std::nullopt;
+}
+
 bool is_plain_name(std::string_view name) {
   return name.find_first_not_of(kPlain) == std::string_view::npos;
 }

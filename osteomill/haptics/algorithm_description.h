@@ -11,7 +11,6 @@
 
 #include "osteomill/haptics/haptic_algorithm.h"
 #include "osteomill/haptics/haptic_settings.h"
-#include "osteomill/haptics/mode.h"
 
 namespace osteomill {
 
@@ -99,10 +98,10 @@ struct AlgorithmDescription {
   /// The setting by which its resolution is chosen, and what people call that; empty where there is none.
   std::string resolution_setting = {};
   std::string resolution_name = {};
-  std::vector<SettingDescription> settings;
+  std::vector<SettingDescription> settings = {};
   /// Makes it with a value for each of `settings`, all within their ranges. Throws std::invalid_argument
   /// where values do not go together.
-  std::function<std::unique_ptr<HapticAlgorithm>(std::span<const double> values)> make;
+  std::function<std::unique_ptr<HapticAlgorithm>(std::span<const double> values)> make = {};
 };
 
 /// Whether the algorithm is to be run in `mode`, one of those `asked` for: in each, or, where no setting

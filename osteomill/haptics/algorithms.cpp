@@ -2,10 +2,10 @@
 
 #include <stdexcept>
 
-#include "osteomill/haptics/barrier_shell/barrier_shell_description.h"
-#include "osteomill/haptics/line_proxy/line_proxy_description.h"
+#include "osteomill/haptics/barrier_shell/barrier_shell.h"
+#include "osteomill/haptics/line_proxy/line_proxy.h"
 #include "osteomill/haptics/point_shell/point_shell_description.h"
-#include "osteomill/haptics/surface_points/surface_points_description.h"
+#include "osteomill/haptics/surface_points/surface_points.h"
 
 namespace osteomill {
 

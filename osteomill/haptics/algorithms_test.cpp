@@ -94,12 +94,21 @@ TEST(MakeAlgorithm, WhatCannotBeIsRefused) {
   settings.set_option("vertices", 1);
   refused("line-proxy", settings);
   settings = {};
-  settings.named = {{"surface-points", "no-such-thing", 1}};
-  refused("surface-points", settings);
-  settings.named = {{"surface-points", "hold-tool", 0.5}};
-  refused("surface-points", settings);
-  settings.named = {{"surface-points", "slices", 2.5}};
-  refused("surface-points", settings);
+  const auto refused_value = [&](const char* algorithm, const char* setting, double value) {
+    settings.named = {{algorithm, setting, value}};
+    refused(algorithm, settings);
+  };
+  refused_value("surface-points", "no-such-thing", 1);
+  refused_value("surface-points", "hold-tool", 0.5);
+  refused_value("surface-points", "slices", 2.5);
+  refused_value("line-proxy", "stiffness", -1);
+  refused_value("point-shell", "torsional-stiffness", std::nan(""));
+}
+
+TEST(MakeAlgorithm, NoneTakesASceneWithoutAVolume) {
+  for (const std::string& name : algorithm_names()) {
+    EXPECT_THROW(make_algorithm(name, {})->prepare({nullptr, MillingTool{}}), std::invalid_argument) << name;
+  }
 }
 
 TEST(MakeAlgorithm, EachCountsItsSamplePoints) {

@@ -1,11 +1,18 @@
 #pragma once
 
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "osteomill/haptics/mode.h"
-
 namespace osteomill {
+
+/// `paper` is what the paper says; `steady` the same algorithm with named improvements.
+enum class Mode : unsigned char { paper, steady };
+
+/// As written on the command line and in files: "paper", "steady".
+std::string_view name_of(Mode mode);
+std::optional<Mode> mode_named(std::string_view name);
 
 /// What the user says of the algorithms' settings. What is left open takes each algorithm's own value for the
 /// mode.

@@ -3,7 +3,6 @@
 #include <memory>
 #include <span>
 #include <string>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -16,23 +15,25 @@ namespace osteomill {
 template <typename Settings>
 struct SettingField {
   SettingDescription description;
-  double (*get)(const Settings&);
   void (*set)(Settings&, double);
 };
 
-/// The field for the switch, number or choice that `place`, a lambda without captures, returns a reference
-/// to.
-template <typename Settings, typename Place>
-SettingField<Settings> setting_field(SettingDescription description, Place /*place*/) {
-  return {std::move(description),
-          [](const Settings& settings) {
-            Settings copy = settings;
-            return static_cast<double>(Place{}(copy));
-          },
-          [](Settings& settings, double value) {
-            auto& place = Place{}(settings);
-            place = static_cast<std::remove_reference_t<decltype(place)>>(value);
-          }};
+template <typename Place>
+struct PlaceOf;
+template <typename Settings, typename Value>
+struct PlaceOf<Value Settings::*> {
+  using Struct = Settings;
+  using Type = Value;
+};
+
+/// The field for a switch, number or choice: `setting_field<&Settings::push_N>({...})`.
+template <auto kPlace>
+auto setting_field(SettingDescription description) {
+  using Place = PlaceOf<decltype(kPlace)>;
+  return SettingField<typename Place::Struct>{std::move(description),
+                                              [](typename Place::Struct& settings, double value) {
+                                                settings.*kPlace = static_cast<typename Place::Type>(value);
+                                              }};
 }
 
 /// Every setting at its value of the mode.
@@ -43,15 +44,6 @@ Settings settings_in(Mode mode, std::span<const SettingField<Settings>> fields) 
     field.set(settings, field.description.value_in(mode));
   }
   return settings;
-}
-
-/// Throws std::invalid_argument, naming algorithm and setting, where one is out of its range.
-template <typename Settings>
-void require_in_range(const AlgorithmId& algorithm, const Settings& settings,
-                      std::span<const SettingField<Settings>> fields) {
-  for (const SettingField<Settings>& field : fields) {
-    require_in_range(algorithm, field.description, field.get(settings));
-  }
 }
 
 /// Completes a description with these settings, and makes `Algorithm` from them.

@@ -1,27 +1,12 @@
 #include "osteomill/milling/no_go_watch.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 #include <utility>
 
+#include "osteomill/tool/sample_points.h"
+
 namespace osteomill {
-
-namespace {
-
-// Spread evenly over a ball's surface (a Fibonacci spiral), and its centre.
-std::vector<Vec3> points_on_ball(double radius_mm, std::size_t count) {
-  const double turn = std::numbers::pi * (3 - std::sqrt(5.0));
-  std::vector<Vec3> points{Vec3::Zero()};
-  for (std::size_t n = 0; n < count; ++n) {
-    const double z = 1 - (2 * static_cast<double>(n) + 1) / static_cast<double>(count);
-    const double angle = turn * static_cast<double>(n), across = std::sqrt(1 - z * z);
-    points.emplace_back(radius_mm * Vec3(across * std::cos(angle), across * std::sin(angle), z));
-  }
-  return points;
-}
-
-}  // namespace
 
 NoGoWatch::NoGoWatch(std::shared_ptr<const LabelMap> labels, double burr_radius_mm)
     : labels_(std::move(labels)), radius_mm_(burr_radius_mm) {
@@ -29,8 +14,9 @@ NoGoWatch::NoGoWatch(std::shared_ptr<const LabelMap> labels, double burr_radius_
   if (!labels_ || labels_->no_go_box().empty()) return;
   const double apart_mm = labels_->scan_geometry().spacing_mm.minCoeff();
   const double count = 4 * std::numbers::pi * radius_mm_ * radius_mm_ / (apart_mm * apart_mm);
-  points_mm_ =
-      points_on_ball(radius_mm_, static_cast<std::size_t>(std::clamp(count, kMinPoints, kMaxPoints)));
+  points_mm_ = spiral_directions(static_cast<int>(std::clamp(count, kMinPoints, kMaxPoints)));
+  for (Vec3& point_mm : points_mm_) point_mm *= radius_mm_;
+  points_mm_.push_back(Vec3::Zero());
 }
 
 void NoGoWatch::look(const Vec3& burr_centre_W, LabelTally& tally) const {

@@ -21,7 +21,7 @@ class NoGoWatch {
  private:
   std::shared_ptr<const LabelMap> labels_;
   double radius_mm_;
-  // From the burr's centre, in W.
+  // From the burr's centre, in W: on its surface, and that centre.
   std::vector<Vec3> points_mm_;
 };
 

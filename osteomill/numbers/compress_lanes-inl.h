@@ -6,11 +6,11 @@
 #define OSTEOMILL_COMPRESS_LANES_INL
 #endif
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include <hwy/highway.h>
-
-#include "osteomill/numbers/lane_order.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace osteomill {
@@ -23,6 +23,21 @@ HWY_INLINE unsigned bits_of(D d, hwy::HWY_NAMESPACE::Mask<D> mask) {
   hwy::HWY_NAMESPACE::StoreMaskBits(d, mask, bytes);
   return bytes[0] | static_cast<unsigned>(bytes[1]) << 8;
 }
+
+/// For each choice of up to 8 lanes, a bit each: those that are chosen first, then the others.
+inline constexpr auto kLaneOrder = [] {
+  constexpr int kLanes = 8;
+  std::array<std::array<std::int32_t, kLanes>, 1u << kLanes> orders{};
+  for (std::size_t bits = 0; bits < orders.size(); ++bits) {
+    std::size_t n = 0;
+    for (const std::size_t chosen : {std::size_t{1}, std::size_t{0}}) {
+      for (int lane = 0; lane < kLanes; ++lane) {
+        if ((bits >> lane & 1) == chosen) orders[bits][n++] = lane;
+      }
+    }
+  }
+  return orders;
+}();
 
 /// Moves the lanes that a mask names to the front, in their order, of as many vectors as there are; what the
 /// others hold then is anything. Highway's own Compress looks its table up anew for each, and GCC 12 copies

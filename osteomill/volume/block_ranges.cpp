@@ -63,12 +63,8 @@ std::uint32_t BlockRanges::changes_in(const VoxelBox& voxels) const {
   return changes;
 }
 
-void BlockRanges::lower_bricks(const VoxelBox& bricks, float density) {
-  for_each(bricks, [&](const VoxelIndex& brick) { take_in(range(brick), density); });
-}
-
 void BlockRanges::lower(const VoxelIndex& v, float density) {
-  lower_bricks(bricks_counting({v, v}), density);
+  for_each(bricks_counting({v, v}), [&](const VoxelIndex& brick) { take_in(range(brick), density); });
 }
 
 void BlockRanges::lower_row(int j, int k, const int* columns, const float* densities, std::size_t count) {

@@ -45,7 +45,6 @@ class BlockRanges {
 
  private:
   Range& range(const VoxelIndex& brick) { return ranges_[row_major(dims_, brick.i, brick.j, brick.k)]; }
-  void lower_bricks(const VoxelBox& bricks, float density);
   static Range range_of(const DensityGrid& grid, const VoxelIndex& brick);
 
   std::array<int, 3> dims_{0, 0, 0};

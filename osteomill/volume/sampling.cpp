@@ -176,6 +176,12 @@ Vec3 density_gradient(const DensityGrid& grid, const Vec3& point_W, GradientKern
   return geometry.direction * gradient_voxel.cwiseQuotient(geometry.spacing_mm);
 }
 
+int count_in_bone(const Volume& volume, std::span<const Vec3> points_T, const Pose& X_WT) {
+  return static_cast<int>(std::count_if(points_T.begin(), points_T.end(), [&](const Vec3& point_T) {
+    return is_bone_at(volume, X_WT * point_T);
+  }));
+}
+
 std::optional<Vec3> outward_normal(const Volume& volume, const Vec3& point_W, GradientKernel kernel) {
   const Vec3 gradient = density_gradient(volume.grid(), point_W, kernel);
   const double steepness = gradient.norm();

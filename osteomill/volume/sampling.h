@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 
 #include "osteomill/volume/density_grid.h"
 #include "osteomill/volume/volume.h"
@@ -30,6 +31,9 @@ Vec3 density_gradient(const DensityGrid& grid, const Vec3& point_W, GradientKern
 inline bool is_bone_at(const Volume& volume, const Vec3& point_W) {
   return density_at(volume.grid(), point_W) > volume.isovalue();
 }
+
+/// How many of some points of the tool are in bone. Safe in the haptic tick.
+int count_in_bone(const Volume& volume, std::span<const Vec3> points_T, const Pose& X_WT);
 
 /// The unit vector out of the bone at a point (against the gradient), or nothing where the density is flat.
 /// Safe in the haptic tick.

@@ -145,9 +145,7 @@ const Counts* counts_of(const HapticAlgorithm& algorithm) {
 
 BarrierShell::BarrierShell(const Settings& settings)
     : settings_(settings),
-      coupling_{settings.translational_stiffness_N_per_mm, settings.torsional_stiffness_Nmm_per_rad} {
-  require_valid(settings);
-}
+      coupling_{settings.translational_stiffness_N_per_mm, settings.torsional_stiffness_Nmm_per_rad} {}
 
 void BarrierShell::prepare(const Scene& scene) {
   if (scene.volume == nullptr) throw std::invalid_argument("barrier-shell: the scene has no volume");
@@ -176,18 +174,12 @@ Cores BarrierShell::cores() const {
   return Cores::within(tool_, settings_.rounding_mm, smaller_mm_);
 }
 
-bool BarrierShell::is_inside_bone(const Pose& X_WT) const {
-  return std::any_of(centreline_T_.begin(), centreline_T_.end(), [&](const Vec3& point_T) {
-    return density_at(volume_->grid(), X_WT * point_T) > volume_->isovalue();
-  });
-}
-
 // Nothing is known of where the tool came from: in bone it is carried out, beside bone it has come from
 // outside, however deep its rim may lie in it.
 void BarrierShell::begin(const Pose& X_WD) {
   has_pose_ = true;
   X_WD_before_ = X_WD;
-  carried_ = is_inside_bone(X_WD);
+  carried_ = count_in_bone(*volume_, centreline_T_, X_WD) > 0;
   begin_outside(X_WD);
 }
 
@@ -365,7 +357,7 @@ HapticStep BarrierShell::step(const Pose& X_WD, double dt_s) {
   ++counts_.ticks;
   if (!has_pose_) begin(X_WD);
   if (carried_) {
-    carried_ = is_inside_bone(X_WD);
+    carried_ = count_in_bone(*volume_, centreline_T_, X_WD) > 0;
     begin_outside(X_WD);
   }
   HapticStep result;

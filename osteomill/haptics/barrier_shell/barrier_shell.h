@@ -2,8 +2,8 @@
 
 #include <vector>
 
+#include "osteomill/haptics/algorithm_description.h"
 #include "osteomill/haptics/barrier_shell/barrier_shell_counts.h"
-#include "osteomill/haptics/barrier_shell/barrier_shell_description.h"
 #include "osteomill/haptics/barrier_shell/coupling.h"
 #include "osteomill/haptics/bone_points/bone_bricks.h"
 #include "osteomill/haptics/bone_points/near_bone.h"
@@ -11,6 +11,21 @@
 #include "osteomill/haptics/tool_move.h"
 
 namespace osteomill::barrier_shell {
+
+/// Settings of the barrier-shell algorithm, as its description says them. There are no switches.
+struct Settings {
+  double translational_stiffness_N_per_mm = 0;
+  double torsional_stiffness_Nmm_per_rad = 0;
+  double skin_width_mm = 0;
+  double rounding_mm = 0;
+  double pressure_N_per_mm2 = 0;
+  double point_spacing_mm = 0;
+  double release_time_s = 0;
+  double release_mm_s = 0;
+  double release_rad_s = 0;
+
+  static Settings defaults();
+};
 
 /// Algorithm 4: the tool rests on a soft skin of bone that nothing can push through. Two convex cores within
 /// the tool keep away from the isosurface's points by a barrier that grows without bound; each tick a few
@@ -21,7 +36,7 @@ namespace osteomill::barrier_shell {
 /// core meets, `burr_force_W_N` is what the ball presses with.
 class BarrierShell final : public HapticAlgorithm {
  public:
-  /// Throws std::invalid_argument where a setting is out of range.
+  /// Settings within their ranges.
   explicit BarrierShell(const Settings& settings);
 
   void prepare(const Scene& scene) override;
@@ -37,7 +52,6 @@ class BarrierShell final : public HapticAlgorithm {
   struct Step;
   void begin(const Pose& X_WD);
   void begin_outside(const Pose& X_WT);
-  bool is_inside_bone(const Pose& X_WT) const;
   void grow_cores(double nearest_mm, double dt_s);
   Cores cores() const;
   State evaluated(const Pose& X_WT, const Pose& X_WD);
@@ -81,5 +95,8 @@ class BarrierShell final : public HapticAlgorithm {
   bool has_energy_ = false;
   Counts counts_;
 };
+
+/// Algorithm 4, not the paper's; it has one mode.
+AlgorithmDescription description();
 
 }  // namespace osteomill::barrier_shell

@@ -2,12 +2,10 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <variant>
 #include <vector>
 
 #include "osteomill/haptics/bone_points/cores.h"
 #include "osteomill/haptics/bone_points/energy_sum.h"
-#include "osteomill/haptics/bone_points/penalty.h"
 
 namespace osteomill {
 
@@ -41,9 +39,6 @@ Frame frame_of(const Mat3& turn, const Vec3& origin_mm);
 
 /// After the last brick.
 void close_gathering(NearPoints& near);
-
-/// How points push: by a barrier, or each by its penalty.
-using PushLaw = std::variant<Barrier, Penalty>;
 
 /// What the points push with and its derivatives by a move of a tool that has moved since the gathering, so
 /// that its frame then is `moved` seen from now. The same bits whatever the width of the machine's registers.

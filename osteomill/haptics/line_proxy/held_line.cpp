@@ -38,10 +38,6 @@ ToolMove operator*(double share, const ToolMove& move) {
   return {share * move.translation_mm, share * move.rotation_rad};
 }
 
-bool is_at(const Pose& a, const Pose& b) {
-  return a.position_mm == b.position_mm && a.orientation.coeffs() == b.orientation.coeffs();
-}
-
 }  // namespace
 
 void HeldLine::prepare(const Volume& volume, const ShaftSpan& span, const NormalRule& normal,
@@ -234,12 +230,12 @@ void HeldLine::follow(const Pose& X_WD, double dt_s) {
     const int strides = std::clamp(static_cast<int>(std::ceil(way_mm / kStride_mm)), 1, kStrides);
     const double part = 1.0 / strides;
     Pose before = X_WD_before_;
-    for (int n = 1; n <= strides && !is_at(X_WL_, X_WD); ++n) {
+    for (int n = 1; n <= strides && X_WL_ != X_WD; ++n) {
       const Pose next = n == strides ? X_WD : moved(X_WD_before_, n * part * device);
       slide(before, next, part * dt_s);
       before = next;
     }
-    held_back_ = tip_rests_ || shaft_push_ || (held_back_ && !is_at(X_WL_, X_WD));
+    held_back_ = tip_rests_ || shaft_push_ || (held_back_ && X_WL_ != X_WD);
   }
   X_WD_before_ = X_WD;
 }

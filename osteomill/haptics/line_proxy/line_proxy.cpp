@@ -6,11 +6,11 @@
 
 #include "osteomill/haptics/line_proxy/bone_surface.h"
 #include "osteomill/haptics/line_proxy/equations.h"
+#include "osteomill/haptics/line_proxy/intersection.h"
 #include "osteomill/haptics/line_proxy/point_proxy.h"
-#include "osteomill/haptics/line_proxy/shaft_probe.h"
 #include "osteomill/haptics/line_proxy/tool_clearance.h"
-#include "osteomill/haptics/line_proxy/translation_rotation_walk.h"
 #include "osteomill/tool/sample_points.h"
+#include "osteomill/volume/sampling.h"
 
 namespace osteomill::line_proxy {
 
@@ -44,9 +44,7 @@ Vec3 moved_toward(const Vec3& from, const Vec3& to, double limit) {
 
 }  // namespace
 
-LineProxy::LineProxy(const Settings& settings) : settings_(settings) {
-  require_valid(settings);
-}
+LineProxy::LineProxy(const Settings& settings) : settings_(settings) {}
 
 void LineProxy::prepare(const Scene& scene) {
   if (scene.volume == nullptr) throw std::invalid_argument("line-proxy: no volume");
@@ -77,11 +75,10 @@ HapticStep LineProxy::step(const Pose& X_WD, double dt_s) {
   memory_.device_before_W = memory_.device_tip_W;
   memory_.device_tip_W = X_WD.position_mm;
   const Pose& X_WF = *result.X_WF;
-  result.contacts =
-      (memory_.tip_proxy_W ? 1 : 0) +
-      (memory_.intersection_W ? std::max(1, vertices_in_bone(*scene_.volume, shaft_vertices(),
-                                                             {X_WF.position_mm, X_WD.orientation}))
-                              : 0);
+  result.contacts = (memory_.tip_proxy_W ? 1 : 0) +
+                    (memory_.intersection_W ? std::max(1, count_in_bone(*scene_.volume, shaft_vertices(),
+                                                                        {X_WF.position_mm, X_WD.orientation}))
+                                            : 0);
   forget_what_is_not_finite();
   result.intersection_W = memory_.intersection_W;
   Pose touching = touching_tool(X_WD, X_WF.position_mm);
@@ -158,7 +155,7 @@ std::optional<Vec3> LineProxy::first_tip_proxy(const Vec3& tip_W) const {
 void LineProxy::follow_with_intersection(const Pose& X_WL) {
   if (memory_.intersection_W) {
     memory_.intersection_W = next_intersection(X_WL);
-  } else if (vertices_in_bone(*scene_.volume, shaft_vertices(), X_WL) > 0) {
+  } else if (count_in_bone(*scene_.volume, shaft_vertices(), X_WL) > 0) {
     memory_.intersection_W = first_intersection(X_WL);
   }
 }

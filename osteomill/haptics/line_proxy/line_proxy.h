@@ -4,13 +4,28 @@
 #include <span>
 #include <vector>
 
+#include "osteomill/haptics/algorithm_description.h"
 #include "osteomill/haptics/haptic_algorithm.h"
 #include "osteomill/haptics/line_proxy/bone_surface.h"
 #include "osteomill/haptics/line_proxy/held_line.h"
-#include "osteomill/haptics/line_proxy/line_proxy_description.h"
 #include "osteomill/tool/burr_presses.h"
 
 namespace osteomill::line_proxy {
+
+/// What algorithm 1 is made of; line_proxy_description.cpp says of each setting what it means, its range and
+/// its value in either mode.
+struct Settings {
+  int vertices = 0;
+  double stiffness_N_per_mm = 0;
+  double friction = 0;
+  bool smoothed_normals = false;
+  bool hold_line = false;
+  double turning_Nmm_per_rad = 0;
+  bool show_outside = false;
+
+  /// `paper` as printed, or `steady` with every improvement at the value that was found best.
+  static Settings defaults(Mode mode);
+};
 
 /// Algorithm 1 of Eriksson 2012: the tool is its centreline, a row of vertices. Where the tip's vertex is in
 /// bone a point proxy stays on the surface and a spring pulls the hand to it; where the shaft, laid at that
@@ -19,7 +34,7 @@ namespace osteomill::line_proxy {
 /// (`HeldLine`). Threads and real time: as HapticAlgorithm.
 class LineProxy final : public HapticAlgorithm {
  public:
-  /// Throws std::invalid_argument where a setting is out of range.
+  /// Settings within their ranges.
   explicit LineProxy(const Settings& settings);
 
   void prepare(const Scene& scene) override;
@@ -74,5 +89,8 @@ class LineProxy final : public HapticAlgorithm {
   std::vector<Vec3> vertices_T_;
   Memory memory_;
 };
+
+/// Algorithm 1 of the paper (section 4).
+AlgorithmDescription description();
 
 }  // namespace osteomill::line_proxy

@@ -380,20 +380,5 @@ TEST_P(LineProxyTest, ABallIsPressedStraightDownOnItsTop) {
   }
 }
 
-TEST(LineProxy, SettingsOutOfRangeAreRefused) {
-  const Settings paper = Settings::defaults(Mode::paper);
-  Settings settings = paper;
-  settings.vertices = 1;
-  EXPECT_THROW(LineProxy{settings}, std::invalid_argument);
-  settings = paper;
-  settings.stiffness_N_per_mm = -1;
-  EXPECT_THROW(LineProxy{settings}, std::invalid_argument);
-  settings = paper;
-  settings.turning_Nmm_per_rad = std::nan("");
-  EXPECT_THROW(LineProxy{settings}, std::invalid_argument);
-  LineProxy algorithm{paper};
-  EXPECT_THROW(algorithm.prepare({nullptr, MillingTool{}}), std::invalid_argument);
-}
-
 }  // namespace
 }  // namespace osteomill::line_proxy

@@ -1,11 +1,11 @@
-#include "osteomill/haptics/line_proxy/shaft_probe.h"
-
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "tests/shapes.h"
 #include <gtest/gtest.h>
+
+#include "osteomill/haptics/line_proxy/intersection.h"
 
 namespace osteomill::line_proxy {
 namespace {
@@ -36,12 +36,12 @@ TEST(ShaftProbe, AmongEquallyDensePointsItIsTheMiddleOfTheRun) {
 TEST(ShaftProbe, OutsideTheBoneTheDensityIsBelowTheIsovalue) {
   const Volume bone = shape_volume(centred_cube(48, 0.25), plane(Vec3(0, 0, -1), Vec3::UnitZ()));
   EXPECT_LT(densest_point(bone, kShaft, Pose{}, Vec3(0, 0, 0)).density, bone.isovalue());
-  EXPECT_EQ(vertices_in_bone(bone, kShaft, Pose{}), 0);
+  EXPECT_EQ(count_in_bone(bone, kShaft, Pose{}), 0);
 }
 
 TEST(ShaftProbe, VerticesInBoneAreCounted) {
   const Volume bone = shape_volume(centred_cube(48, 0.25), plane(Vec3(0, 0, 2.5), -Vec3::UnitZ()));
-  EXPECT_EQ(vertices_in_bone(bone, kShaft, Pose{}), 2);
+  EXPECT_EQ(count_in_bone(bone, kShaft, Pose{}), 2);
 }
 
 }  // namespace

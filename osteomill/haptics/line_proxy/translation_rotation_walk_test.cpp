@@ -1,5 +1,3 @@
-#include "osteomill/haptics/line_proxy/translation_rotation_walk.h"
-
 #include <cmath>
 #include <vector>
 
@@ -7,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "osteomill/haptics/line_proxy/equations.h"
+#include "osteomill/haptics/line_proxy/intersection.h"
 
 namespace osteomill::line_proxy {
 namespace {

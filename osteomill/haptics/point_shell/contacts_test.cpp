@@ -1,3 +1,5 @@
+#include "osteomill/haptics/point_shell/contacts.h"
+
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -10,8 +12,6 @@
 
 #include "osteomill/haptics/bone_points/near_kernel.h"
 #include "osteomill/haptics/bone_points/tool_from_grid.h"
-#include "osteomill/haptics/point_shell/brick_contacts.h"
-#include "osteomill/haptics/point_shell/octree_contacts.h"
 #include "osteomill/haptics/point_shell/virtual_coupling.h"
 
 namespace osteomill::point_shell {

@@ -3,7 +3,10 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
+
+#include "osteomill/numbers/row_major.h"
 
 namespace osteomill {
 
@@ -14,17 +17,34 @@ class CountPyramid {
  public:
   CountPyramid() = default;
   /// All counts zero. Every dimension at least 1.
-  explicit CountPyramid(const std::array<int, 3>& dims);
+  explicit CountPyramid(const std::array<int, 3>& dims) {
+    std::array<int, 3> level_dims = dims;
+    while (true) {
+      Level level{level_dims, {}};
+      level.counts.assign(cell_count(level_dims), 0);
+      levels_.push_back(std::move(level));
+      if (level_dims == std::array<int, 3>{1, 1, 1}) return;
+      for (int& dim : level_dims) dim = (dim + 1) / 2;
+    }
+  }
 
   int level_count() const { return static_cast<int>(levels_.size()); }
   const std::array<int, 3>& dims(int level) const { return levels_[static_cast<std::size_t>(level)].dims; }
   std::uint32_t count(int level, int i, int j, int k) const {
     const Level& l = levels_[static_cast<std::size_t>(level)];
-    return l.counts[l.index(i, j, k)];
+    return l.counts[row_major(l.dims, i, j, k)];
   }
   std::uint32_t total() const { return levels_.empty() ? 0 : levels_.back().counts.front(); }
   /// Adds `difference` to a brick's count and to the sums above it. Safe in the haptic tick.
-  void add(int i, int j, int k, std::int32_t difference);
+  void add(int i, int j, int k, std::int32_t difference) {
+    for (Level& level : levels_) {
+      // Unsigned arithmetic wraps: adding a negative difference subtracts.
+      level.counts[row_major(level.dims, i, j, k)] += static_cast<std::uint32_t>(difference);
+      i /= 2;
+      j /= 2;
+      k /= 2;
+    }
+  }
 
   /// Calls `leaf(i, j, k)` for every brick with points that no `rejected(level, i, j, k)` cut off, a node's
   /// answer standing for all below it. The order is fixed. Safe in the haptic tick.
@@ -37,12 +57,6 @@ class CountPyramid {
   struct Level {
     std::array<int, 3> dims;
     std::vector<std::uint32_t> counts;
-    std::size_t index(int i, int j, int k) const {
-      return static_cast<std::size_t>(i) +
-             static_cast<std::size_t>(dims[0]) *
-                 (static_cast<std::size_t>(j) +
-                  static_cast<std::size_t>(dims[1]) * static_cast<std::size_t>(k));
-    }
   };
 
   template <typename Rejected, typename Leaf>

@@ -4,8 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "osteomill/haptics/point_shell/brick_contacts.h"
-#include "osteomill/haptics/point_shell/octree_contacts.h"
+#include "osteomill/haptics/point_shell/contacts.h"
 #include "osteomill/tool/sample_points.h"
 #include "osteomill/volume/sampling.h"
 
@@ -31,17 +30,11 @@ Vec3 burr_force_after(const ContactSum& burr, const ToolMove& move) {
   return force.dot(burr.force_N) > 0 ? Vec3(-force) : Vec3(Vec3::Zero());
 }
 
-bool is_at(const Pose& a, const Pose& b) {
-  return a.position_mm == b.position_mm && a.orientation.coeffs() == b.orientation.coeffs();
-}
-
 }  // namespace
 
 PointShellAlgorithm::PointShellAlgorithm(const Settings& settings)
     : settings_(settings),
-      coupling_{settings.translational_stiffness_N_per_mm, settings.torsional_stiffness_Nmm_per_rad, 0} {
-  require_valid(settings);
-}
+      coupling_{settings.translational_stiffness_N_per_mm, settings.torsional_stiffness_Nmm_per_rad, 0} {}
 
 void PointShellAlgorithm::prepare(const Scene& scene) {
   if (scene.volume == nullptr) throw std::invalid_argument("point-shell: the scene has no volume");
@@ -109,19 +102,13 @@ Pose PointShellAlgorithm::let_go(const Pose& X_WT_start, const Pose& target, con
   return moved(X_WT_start, {share * whole.translation_mm, share * whole.rotation_rad});
 }
 
-bool PointShellAlgorithm::is_inside_bone(const Pose& X_WT) const {
-  return std::any_of(centreline_T_.begin(), centreline_T_.end(), [&](const Vec3& point_T) {
-    return density_at(volume_->grid(), X_WT * point_T) > volume_->isovalue();
-  });
-}
-
 HapticStep PointShellAlgorithm::step(const Pose& X_WD, double dt_s) {
   if (settings_.surface_shell) surface_.begin_tick(milling_tool_, X_WT_);
   const bool begins = !has_pose_;
   if (begins) X_WT_ = X_WD_before_ = X_WD;
   has_pose_ = true;
-  if (begins) carried_ = settings_.guarded_move && is_inside_bone(X_WD);
-  if (carried_) carried_ = is_inside_bone(X_WD) || contacts_at(X_WD).touching > 0;
+  if (begins) carried_ = settings_.guarded_move && count_in_bone(*volume_, centreline_T_, X_WD) > 0;
+  if (carried_) carried_ = count_in_bone(*volume_, centreline_T_, X_WD) > 0 || contacts_at(X_WD).touching > 0;
   HapticStep result;
   if (carried_) {
     result.X_WT = X_WT_ = X_WD;
@@ -159,7 +146,7 @@ HapticStep PointShellAlgorithm::balanced(const Pose& X_WD, double dt_s) {
     }
   }
   in_contact_ = contacts.touching > 0;
-  held_back_ = in_contact_ || (held_back_ && !is_at(X_WT_, X_WD));
+  held_back_ = in_contact_ || (held_back_ && X_WT_ != X_WD);
   result.X_WT = X_WT_;
   result.contacts = contacts.touching;
   if (held_back_) result.wrench = wrench_on_hand(coupling_, X_WT_, X_WD, stretch_before_);

@@ -3,10 +3,10 @@
 #include <vector>
 
 #include "osteomill/haptics/bone_points/near_bone.h"
-#include "osteomill/haptics/bone_points/penalty.h"
+#include "osteomill/haptics/bone_points/push_law.h"
 #include "osteomill/haptics/haptic_algorithm.h"
+#include "osteomill/haptics/point_shell/contacts.h"
 #include "osteomill/haptics/point_shell/point_shell_description.h"
-#include "osteomill/haptics/point_shell/tool_signed_distance.h"
 #include "osteomill/haptics/point_shell/virtual_coupling.h"
 #include "osteomill/haptics/point_shell/voxel_shell.h"
 
@@ -23,7 +23,7 @@ namespace osteomill::point_shell {
 /// counts the points that touch.
 class PointShellAlgorithm final : public HapticAlgorithm {
  public:
-  /// Throws std::invalid_argument where a setting is out of range.
+  /// Settings within their ranges.
   explicit PointShellAlgorithm(const Settings& settings);
 
   void prepare(const Scene& scene) override;
@@ -38,7 +38,6 @@ class PointShellAlgorithm final : public HapticAlgorithm {
   ToolContacts contacts_at(const Pose& X_WT);
   Pose towards(const Pose& X_WT_start, const Pose& target) const;
   Pose let_go(const Pose& X_WT_start, const Pose& target, const MoveBound& bound) const;
-  bool is_inside_bone(const Pose& X_WT) const;
   HapticStep balanced(const Pose& X_WD, double dt_s);
 
   Settings settings_;

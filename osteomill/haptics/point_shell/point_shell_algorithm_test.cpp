@@ -390,21 +390,5 @@ TEST(Settings, TheContactStiffnessFollowsFromTheTwoRules) {
   EXPECT_NEAR(contact_stiffness_N_per_mm3(steady, kTool) * std::numbers::pi * (1.5 - d) * d * d, 20, 1e-9);
 }
 
-TEST(Settings, WhatIsOutOfRangeIsRefused) {
-  const auto refused = [](auto change) {
-    Settings settings = Settings::defaults(Mode::steady);
-    change(settings);
-    EXPECT_THROW(PointShellAlgorithm{settings}, std::invalid_argument);
-  };
-  EXPECT_NO_THROW(PointShellAlgorithm(Settings::defaults(Mode::paper)));
-  EXPECT_NO_THROW(PointShellAlgorithm(Settings::defaults(Mode::steady)));
-  refused([](Settings& s) { s.scale = 0; });
-  refused([](Settings& s) { s.translational_stiffness_N_per_mm = 0; });
-  refused([](Settings& s) { s.torsional_stiffness_Nmm_per_rad = std::nan(""); });
-  refused([](Settings& s) { s.max_depth_mm = -1; });
-  PointShellAlgorithm algorithm(Settings::defaults(Mode::steady));
-  EXPECT_THROW(algorithm.prepare({nullptr, kTool}), std::invalid_argument);
-}
-
 }  // namespace
 }  // namespace osteomill::point_shell

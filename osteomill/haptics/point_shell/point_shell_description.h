@@ -1,7 +1,6 @@
 #pragma once
 
 #include "osteomill/haptics/algorithm_description.h"
-#include "osteomill/haptics/mode.h"
 #include "osteomill/tool/milling_tool.h"
 
 namespace osteomill::point_shell {
@@ -23,9 +22,6 @@ struct Settings {
 
   static Settings defaults(Mode mode);
 };
-
-/// Throws std::invalid_argument, naming the setting, where one is out of range.
-void require_valid(const Settings& settings);
 
 /// kA in N/mm^3, newton a mm of depth and a mm^2 of surface: the smallest at which `kMaxForce_N` neither
 /// pulls the burr through a plane nor presses it deeper than `max_depth_mm` (0: no such rule).

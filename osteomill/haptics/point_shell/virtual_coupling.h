@@ -1,7 +1,7 @@
 #pragma once
 
 #include "osteomill/geometry/wrench.h"
-#include "osteomill/haptics/point_shell/contact_sum.h"
+#include "osteomill/haptics/point_shell/contacts.h"
 #include "osteomill/haptics/tool_move.h"
 
 namespace osteomill::point_shell {

@@ -32,11 +32,6 @@ GridGeometry coarser(const GridGeometry& voxels, int stride) {
   return nodes;
 }
 
-VoxelBox bricks_of(const VoxelBox& nodes) {
-  return {{nodes.first.i / kSide, nodes.first.j / kSide, nodes.first.k / kSide},
-          {nodes.last.i / kSide, nodes.last.j / kSide, nodes.last.k / kSide}};
-}
-
 }  // namespace
 
 VoxelShell::VoxelShell(const Volume& volume, int scale)
@@ -54,23 +49,20 @@ VoxelShell::VoxelShell(const Volume& volume, int scale)
       for (int byte = 0; 8 * byte < dims[0]; ++byte) bone_.set_byte(byte, j, k, bone_byte(byte, j, k));
     }
   }
-  const VoxelIndex last = bricks_of(geometry_.all_voxels()).last;
-  const std::array<int, 3> bricks{last.i + 1, last.j + 1, last.k + 1};
+  const VoxelBox all = geometry_.all_voxels().bricks(kSide);
+  const std::array<int, 3> bricks = all.dims();
   octree_ = CountPyramid(bricks);
   masks_.resize(cell_count(bricks));
   found_.reserve(kSide * kSide * kSide);
-  const auto for_each_brick = [&](auto&& f) {
-    for (int bk = 0; bk < bricks[2]; ++bk) {
-      WorkProgress::done(static_cast<std::size_t>(bk), static_cast<std::size_t>(bricks[2]));
-      for (int bj = 0; bj < bricks[1]; ++bj) {
-        for (int bi = 0; bi < bricks[0]; ++bi) f(VoxelIndex{bi, bj, bk});
-      }
-    }
+  const auto tell = [&](const VoxelIndex& b) {
+    if (b.i == 0 && b.j == 0)
+      WorkProgress::done(static_cast<std::size_t>(b.k), static_cast<std::size_t>(bricks[2]));
   };
   std::size_t chunks = 0;
   {
     const WorkProgress::Part counting(0.4);
-    for_each_brick([&](const VoxelIndex& b) {
+    for_each(all, [&](const VoxelIndex& b) {
+      tell(b);
       chunks += (count_of(mask_of(b)) + PointChunk::kSlots - 1) / PointChunk::kSlots;
     });
   }
@@ -79,19 +71,18 @@ VoxelShell::VoxelShell(const Volume& volume, int scale)
     points_ = BrickPoints(masks_.size(), 2 * chunks + kSpareChunks);
   }
   const WorkProgress::Part placing(1);
-  for_each_brick([&](const VoxelIndex& b) { refresh_brick(b); });
+  for_each(all, [&](const VoxelIndex& b) {
+    tell(b);
+    refresh_brick(b);
+  });
 }
 
 void VoxelShell::refresh(const VoxelBox& voxels) {
   const VoxelBox nodes = nodes_touched_by(voxels);
   if (nodes.empty()) return;
   lower_bone(nodes);
-  const VoxelBox bricks = bricks_of(nodes.grown(1).intersected(geometry_.all_voxels()));
-  for (int bk = bricks.first.k; bk <= bricks.last.k; ++bk) {
-    for (int bj = bricks.first.j; bj <= bricks.last.j; ++bj) {
-      for (int bi = bricks.first.i; bi <= bricks.last.i; ++bi) refresh_brick({bi, bj, bk});
-    }
-  }
+  for_each(nodes.grown(1).intersected(geometry_.all_voxels()).bricks(kSide),
+           [&](const VoxelIndex& brick) { refresh_brick(brick); });
 }
 
 // Bit n: whether node 8 * `byte` + n of row j of slice k is bone.

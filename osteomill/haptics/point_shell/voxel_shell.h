@@ -80,17 +80,13 @@ class VoxelShell {
 
 template <typename F>
 void VoxelShell::for_each_point(F&& f) const {
-  const auto& dims = octree_.dims(0);
-  for (int bk = 0; bk < dims[2]; ++bk) {
-    for (int bj = 0; bj < dims[1]; ++bj) {
-      for (int bi = 0; bi < dims[0]; ++bi) {
-        const Vec3 origin_G = brick_origin_G(bi, bj, bk);
-        points_.for_each_of(brick_index(bi, bj, bk), [&](const ShellPoint& p) {
-          f(Vec3(origin_W() + direction() * (origin_G + p.position_mm())), static_cast<double>(p.area_mm2));
-        });
-      }
-    }
-  }
+  const auto& [columns, rows, slices] = octree_.dims(0);
+  for_each(VoxelBox{{0, 0, 0}, {columns - 1, rows - 1, slices - 1}}, [&](const VoxelIndex& b) {
+    const Vec3 origin_G = brick_origin_G(b.i, b.j, b.k);
+    points_.for_each_of(brick_index(b.i, b.j, b.k), [&](const ShellPoint& p) {
+      f(Vec3(origin_W() + direction() * (origin_G + p.position_mm())), static_cast<double>(p.area_mm2));
+    });
+  });
 }
 
 }  // namespace osteomill::point_shell

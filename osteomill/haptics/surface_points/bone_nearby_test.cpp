@@ -1,5 +1,3 @@
-#include "osteomill/haptics/surface_points/bone_nearby.h"
-
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -7,6 +5,7 @@
 #include "tests/shapes.h"
 #include <gtest/gtest.h>
 
+#include "osteomill/haptics/surface_points/vertex_springs.h"
 #include "osteomill/volume/sampling.h"
 
 namespace osteomill::surface_points {

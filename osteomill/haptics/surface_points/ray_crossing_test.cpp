@@ -1,11 +1,10 @@
-#include "osteomill/haptics/surface_points/ray_crossing.h"
-
 #include <cmath>
 #include <random>
 
 #include "tests/shapes.h"
 #include <gtest/gtest.h>
 
+#include "osteomill/haptics/surface_points/vertex_springs.h"
 #include "osteomill/volume/sampling.h"
 
 namespace osteomill::surface_points {

@@ -7,8 +7,7 @@
 
 #include "osteomill/haptics/barrier_shell/barrier_shell.h"
 #include "osteomill/haptics/bone_points/cores.h"
-#include "osteomill/haptics/surface_points/bone_nearby.h"
-#include "osteomill/haptics/surface_points/ray_crossing.h"
+#include "osteomill/haptics/surface_points/vertex_springs.h"
 #include "osteomill/tool/sample_points.h"
 #include "osteomill/volume/sampling.h"
 
@@ -32,9 +31,7 @@ constexpr double kGive_mm_s = 15;
 
 }  // namespace
 
-SurfacePoints::SurfacePoints(const Settings& settings) : settings_(settings) {
-  require_valid(settings_);
-}
+SurfacePoints::SurfacePoints(const Settings& settings) : settings_(settings) {}
 
 void SurfacePoints::prepare(const Scene& scene) {
   if (scene.volume == nullptr) throw std::invalid_argument("surface-points: a scene without a volume");
@@ -85,10 +82,6 @@ int SurfacePoints::sample_point_count() const {
   return static_cast<int>(count);
 }
 
-bool SurfacePoints::in_bone(const Vec3& point_W) const {
-  return density_at(volume_->grid(), point_W) > volume_->isovalue();
-}
-
 Vec3 SurfacePoints::reach_of(const Vec3& vertex_W, const Vec3& centre_W, double free_mm) const {
   if (settings_.reach == Reach::to_first_bone) return marched_spring(*volume_, vertex_W, centre_W, free_mm);
   const Vec3 reach = interpolated_spring(*volume_, vertex_W, centre_W);
@@ -116,7 +109,8 @@ Vec3 SurfacePoints::sum_of_reaches(Fan& fan, const Stand& at, const Vec3& centre
     const Vec3 arm_W = orientation * fan.arms_T[n];
     const Vec3 vertex_W = centre_W + arm_W;
     Vec3 reach = Vec3::Zero();
-    if (near && (through_walls || in_bone(vertex_W))) reach = reach_of(vertex_W, centre_W, free_mm);
+    if (near && (through_walls || is_bone_at(*volume_, vertex_W)))
+      reach = reach_of(vertex_W, centre_W, free_mm);
     if (!reach.isZero(0)) ++fan.contacts;
     if (held_tool_) {
       double& depth_mm = fan.depths_mm[n];
@@ -130,7 +124,7 @@ Vec3 SurfacePoints::sum_of_reaches(Fan& fan, const Stand& at, const Vec3& centre
 
 void SurfacePoints::update(Fan& fan, const Stand& at) const {
   const Vec3 centre_W = at.X_WV * fan.centre_T;
-  const bool inside = in_bone(centre_W);
+  const bool inside = is_bone_at(*volume_, centre_W);
   const Vec3 reach_mm = sum_of_reaches(fan, at, centre_W, inside);
   // (17), (19): a centre in bone keeps the force of the step before.
   if (inside && !held_tool_) return;
@@ -214,24 +208,6 @@ HapticStep SurfacePoints::step(const Pose& X_WD, double dt_s) {
   result.wrench.torque_Nmm += each * shaft.torque_Nmm;
   if (settings_.shaft_force) result.wrench.force_N += each * shaft.force_N;
   return result;
-}
-
-double interpolated_share(double vertex_density, double free_density, double isovalue) {
-  return (vertex_density - isovalue) / (vertex_density - free_density);
-}
-
-Vec3 interpolated_spring(const Volume& volume, const Vec3& vertex_W, const Vec3& free_W) {
-  const double vertex_density = density_at(volume.grid(), vertex_W);
-  if (!(vertex_density > volume.isovalue())) return Vec3::Zero();
-  const double free_density = density_at(volume.grid(), free_W);
-  return interpolated_share(vertex_density, free_density, volume.isovalue()) * (free_W - vertex_W);
-}
-
-Vec3 marched_spring(const Volume& volume, const Vec3& vertex_W, const Vec3& free_W, double known_free_mm) {
-  const bool starts_in_bone = known_free_mm <= 0 && density_at(volume.grid(), free_W) > volume.isovalue();
-  if (starts_in_bone) return free_W - vertex_W;
-  const std::optional<double> share = share_to_bone(volume, free_W, vertex_W, known_free_mm);
-  return share ? Vec3((1 - *share) * (free_W - vertex_W)) : Vec3(Vec3::Zero());
 }
 
 }  // namespace osteomill::surface_points

@@ -4,11 +4,31 @@
 #include <optional>
 #include <vector>
 
+#include "osteomill/haptics/algorithm_description.h"
 #include "osteomill/haptics/haptic_algorithm.h"
-#include "osteomill/haptics/surface_points/surface_points_description.h"
 #include "osteomill/haptics/tool_move.h"
 
 namespace osteomill::surface_points {
+
+/// How far a vertex in bone is pulled towards its centre, a_i of (15): by a fraction that is measured from
+/// the centre, as printed; to where linear densities would cross the isovalue; to where a walk from the
+/// centre first meets bone, which sees thin walls too.
+enum class Reach : unsigned char { as_printed, to_surface, to_first_bone };
+
+/// What algorithm 2 is made of; surface_points_description.cpp says of each setting what it means, its range
+/// and its value in either mode.
+struct Settings {
+  double stiffness_N_per_mm = 0;
+  int slices = 0;
+  int sphere_vertices = 0;
+  int circle_vertices = 0;
+  Reach reach = Reach::to_surface;
+  bool hold_tool = false;
+  bool shaft_force = false;
+  double max_stiffness_N_per_mm = 0;
+
+  static Settings defaults(Mode mode);
+};
 
 /// Algorithm 2 of Eriksson 2012: vertices on the tool's surface, each that is in bone a spring back to the
 /// surface; the springs' forces and torques go straight to the hand (direct rendering, equations 14 to 21).
@@ -19,7 +39,7 @@ namespace osteomill::surface_points {
 /// says what `steady` does instead.
 class SurfacePoints final : public HapticAlgorithm {
  public:
-  /// Throws std::invalid_argument where a setting is out of range.
+  /// Settings within their ranges.
   explicit SurfacePoints(const Settings& settings);
 
   void prepare(const Scene& scene) override;
@@ -55,7 +75,6 @@ class SurfacePoints final : public HapticAlgorithm {
   void update(Fan& fan, const Stand& at) const;
   Vec3 sum_of_reaches(Fan& fan, const Stand& at, const Vec3& centre_W, bool inside) const;
   Vec3 reach_of(const Vec3& vertex_W, const Vec3& centre_W, double free_mm) const;
-  bool in_bone(const Vec3& point_W) const;
   Vec3 soften(const Vec3& force_N) const;
   Vec3 damping_N(double force_N, const Vec3& overlap_W_mm, double dt_s);
 
@@ -74,19 +93,7 @@ class SurfacePoints final : public HapticAlgorithm {
   std::vector<Fan> slices_;
 };
 
-/// Where the spring of (15) from a colliding vertex (density above the isovalue) to a free point (density at
-/// or below it) meets the surface, if the density ran linearly between the two: a share in (0, 1] of the way
-/// from the vertex. Safe in the haptic tick.
-double interpolated_share(double vertex_density, double free_density, double isovalue);
-
-/// a_i of (15): from `vertex_W`, in bone, towards `free_W`, outside it, as far as the surface, which is taken
-/// where the density between them would cross the isovalue. Zero where the vertex is not in bone. Safe in the
-/// haptic tick.
-Vec3 interpolated_spring(const Volume& volume, const Vec3& vertex_W, const Vec3& free_W);
-
-/// The same as far as the first bone that is met on the way from `free_W` to `vertex_W`, of which the first
-/// `known_free_mm` are known to be free; the whole way where `free_W` is itself in bone. Safe in the haptic
-/// tick.
-Vec3 marched_spring(const Volume& volume, const Vec3& vertex_W, const Vec3& free_W, double known_free_mm = 0);
+/// Algorithm 2 of the paper (section 5).
+AlgorithmDescription description();
 
 }  // namespace osteomill::surface_points

@@ -2,8 +2,39 @@
 
 #include <algorithm>
 #include <cmath>
+#include <variant>
 
 namespace osteomill {
+
+/// The energy of bone near a core, per area of its surface: psi(d) = w p0 / 3 x^3 / (1 - x) with x = 1 - d /
+/// w for distances d < w, else zero. Soft at first touch and infinite at the core, twice continuously
+/// differentiable, without a logarithm. Safe in the haptic tick.
+struct Barrier {
+  double width_mm;
+  double pressure_N_per_mm2;
+
+  /// Nearer than this share of the width the barrier no longer grows, so that its values stay finite; no
+  /// certified step comes so near.
+  static constexpr double kNearestShare = 1e-3;
+
+  /// psi (N/mm), p = -psi' (N/mm^2) and -p' = psi'' (N/mm^3).
+  struct Value {
+    double energy = 0;
+    double pressure = 0;
+    double stiffness = 0;
+  };
+  friend Value operator*(double area_mm2, const Value& v) {
+    return {area_mm2 * v.energy, area_mm2 * v.pressure, area_mm2 * v.stiffness};
+  }
+  Value at(double distance_mm) const {
+    const double share = std::max(distance_mm / width_mm, kNearestShare);
+    if (!(share < 1)) return {};
+    const double x = 1 - share, x2 = x * x;
+    const double p0 = pressure_N_per_mm2 / 3;
+    return {width_mm * p0 * x2 * x / share, p0 * x2 * (3 - 2 * x) / (share * share),
+            p0 / width_mm * x * (6 - 6 * x + 2 * x2) / (share * share * share)};
+  }
+};
 
 /// How a point of the shell pushes.
 struct Penalty {
@@ -40,5 +71,8 @@ struct Penalty {
     return {k * part * part * spread_mm, k * part};
   }
 };
+
+/// How points push: by a barrier, or each by its penalty.
+using PushLaw = std::variant<Barrier, Penalty>;
 
 }  // namespace osteomill

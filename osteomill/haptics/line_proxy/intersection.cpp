@@ -1,4 +1,7 @@
-#include "osteomill/haptics/line_proxy/translation_rotation_walk.h"
+#include "osteomill/haptics/line_proxy/intersection.h"
+
+#include <cmath>
+#include <limits>
 
 #include "osteomill/haptics/line_proxy/equations.h"
 #include "osteomill/volume/sampling.h"
@@ -20,6 +23,15 @@ std::optional<WalkHit> most_active_vertex(const Volume& volume, std::span<const 
     if (!most_active || fraction < most_active->fraction) most_active = WalkHit{before_W, at_W, fraction};
   }
   return most_active;
+}
+
+constexpr int kSubsteps = 4;
+
+// A quarter of the vertices' spacing along b; nothing where b has no direction.
+Vec3 substep_along(const Vec3& b, std::span<const Vec3> vertices_T) {
+  const double length = b.norm();
+  if (vertices_T.size() < 2 || !(length > 0.0) || !std::isfinite(length)) return Vec3::Zero();
+  return (vertices_T[1] - vertices_T[0]).norm() / kSubsteps / length * b;
 }
 
 }  // namespace
@@ -44,6 +56,33 @@ std::optional<WalkHit> walk_to_collision(const Volume& volume, std::span<const V
     before = at;
   }
   return std::nullopt;
+}
+
+ShaftProbe densest_point(const Volume& volume, std::span<const Vec3> vertices_T, const Pose& X_WT,
+                         const Vec3& intersection_before_W) {
+  const Vec3 substep = substep_along(X_WT.position_mm - intersection_before_W, vertices_T);
+  double densest = -std::numeric_limits<double>::infinity();
+  Vec3 first = X_WT * vertices_T.front();
+  Vec3 last = first;
+  bool in_run = false;
+  for (const Vec3& vertex_T : vertices_T) {
+    const Vec3 vertex_W = X_WT * vertex_T;
+    // b points down the shaft, so that the farthest sub-step comes first on the way up.
+    for (int n = kSubsteps - 1; n >= 0; --n) {
+      const Vec3 point_W = vertex_W + n * substep;
+      const double density = density_at(volume.grid(), point_W);
+      if (density > densest) {
+        densest = density;
+        first = last = point_W;
+        in_run = true;
+      } else if (density == densest && in_run) {
+        last = point_W;
+      } else {
+        in_run = false;
+      }
+    }
+  }
+  return {0.5 * (first + last), densest};
 }
 
 }  // namespace osteomill::line_proxy

@@ -1,6 +1,7 @@
-#include "osteomill/haptics/surface_points/ray_crossing.h"
+#include "osteomill/haptics/surface_points/vertex_springs.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "osteomill/volume/sampling.h"
@@ -63,6 +64,24 @@ std::optional<double> first_bone(const Volume& volume, const VoxelRay& ray, doub
 
 }  // namespace
 
+double interpolated_share(double vertex_density, double free_density, double isovalue) {
+  return (vertex_density - isovalue) / (vertex_density - free_density);
+}
+
+Vec3 interpolated_spring(const Volume& volume, const Vec3& vertex_W, const Vec3& free_W) {
+  const double vertex_density = density_at(volume.grid(), vertex_W);
+  if (!(vertex_density > volume.isovalue())) return Vec3::Zero();
+  const double free_density = density_at(volume.grid(), free_W);
+  return interpolated_share(vertex_density, free_density, volume.isovalue()) * (free_W - vertex_W);
+}
+
+Vec3 marched_spring(const Volume& volume, const Vec3& vertex_W, const Vec3& free_W, double known_free_mm) {
+  const bool starts_in_bone = known_free_mm <= 0 && is_bone_at(volume, free_W);
+  if (starts_in_bone) return free_W - vertex_W;
+  const std::optional<double> share = share_to_bone(volume, free_W, vertex_W, known_free_mm);
+  return share ? Vec3((1 - *share) * (free_W - vertex_W)) : Vec3(Vec3::Zero());
+}
+
 std::optional<double> share_to_bone(const Volume& volume, const Vec3& from_W, const Vec3& to_W,
                                     double known_free_mm) {
   const double way_mm = (to_W - from_W).norm();
@@ -78,6 +97,34 @@ std::optional<double> share_to_bone(const Volume& volume, const Vec3& from_W, co
   const double free_mm = std::min(way_mm, known_free_mm);
   if (above_isovalue(volume, ray, free_mm) > 0) return share(0, free_mm);
   return free_mm < way_mm ? share(free_mm, way_mm) : std::nullopt;
+}
+
+bool bone_near_disc(const Volume& volume, const Vec3& centre_W, const Vec3& axis_W, double radius_mm) {
+  const GridGeometry& geometry = volume.geometry();
+  const Vec3 axis = geometry.direction.transpose() * axis_W;
+  const Vec3 centre = geometry.voxel_from_world(centre_W);
+  std::array<int, 3> first;
+  std::array<int, 3> last;
+  for (std::size_t n = 0; n < 3; ++n) {
+    const auto i = static_cast<Eigen::Index>(n);
+    const double extent =
+        radius_mm * std::sqrt(std::max(0.0, 1 - axis[i] * axis[i])) / geometry.spacing_mm[i] + 1e-6;
+    // Density falls off within a voxel beyond the border, so a disc there asks the border's bricks.
+    const double max = geometry.dims[n] - 1;
+    const auto brick = [&](double voxel) {
+      return static_cast<int>(std::clamp(voxel, 0.0, max)) / BlockRanges::kBrickVoxels;
+    };
+    first[n] = brick(std::floor(centre[i] - extent));
+    last[n] = brick(std::floor(centre[i] + extent));
+  }
+  for (int k = first[2]; k <= last[2]; ++k) {
+    for (int j = first[1]; j <= last[1]; ++j) {
+      for (int i = first[0]; i <= last[0]; ++i) {
+        if (static_cast<double>(volume.bricks().at(i, j, k).max) > volume.isovalue()) return true;
+      }
+    }
+  }
+  return false;
 }
 
 }  // namespace osteomill::surface_points

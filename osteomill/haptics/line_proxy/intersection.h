@@ -6,6 +6,7 @@
 #include "osteomill/geometry/pose.h"
 #include "osteomill/volume/volume.h"
 
+/// Where the intersection point of section 4.3 begins, and what it follows. Safe in the haptic tick.
 namespace osteomill::line_proxy {
 
 /// Into how many steps the walk divides the translation and the rotation (each at least 1).
@@ -29,5 +30,19 @@ struct WalkHit {
 /// own and takes no part. Nothing where none collides on the way. Safe in the haptic tick.
 std::optional<WalkHit> walk_to_collision(const Volume& volume, std::span<const Vec3> vertices_T,
                                          const Pose& X_WT_before, const Pose& X_WT, const WalkSteps& steps);
+
+/// A point of the shaft's centreline and the density there.
+struct ShaftProbe {
+  Vec3 point_W;
+  double density;
+};
+
+/// v_max of section 4.3: the densest point among the shaft's vertices (those of the tip left out) and among
+/// the same vertices moved along b, from the intersection point of the tick before to the burr's centre (at
+/// the proxy), in three further steps that together stay below the vertices' spacing. `vertices_T` is not
+/// empty. Among equally dense ones (bone is often saturated inside) the middle one of the first unbroken run
+/// along the shaft. Safe in the haptic tick.
+ShaftProbe densest_point(const Volume& volume, std::span<const Vec3> vertices_T, const Pose& X_WT,
+                         const Vec3& intersection_before_W);
 
 }  // namespace osteomill::line_proxy

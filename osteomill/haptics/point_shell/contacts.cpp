@@ -1,4 +1,4 @@
-#include "osteomill/haptics/point_shell/octree_contacts.h"
+#include "osteomill/haptics/point_shell/contacts.h"
 
 #include "osteomill/haptics/bone_points/tool_from_grid.h"
 
@@ -16,6 +16,12 @@ bool is_apart(const ToolBox& tool_box, const VoxelShell::NodeBox& node, const To
   if ((between.cwiseAbs().array() > along_tool.array()).any()) return true;
   const Vec3 along_node = node.half_mm + reach.transpose() * tool_half;
   return ((X_TG.turn.transpose() * between).cwiseAbs().array() > along_node.array()).any();
+}
+
+// As they act on the tool.
+ContactSum contact_sum(const EnergySum& sum) {
+  return {-sum.gradient.head<3>(), -sum.gradient.tail<3>(), sum.convex.topLeftCorner<3, 3>(),
+          sum.convex.topRightCorner<3, 3>(), sum.convex.bottomRightCorner<3, 3>()};
 }
 
 }  // namespace
@@ -41,6 +47,16 @@ ToolContacts contacts_by_octree(const VoxelShell& shell, const ToolSignedDistanc
                        });
   const Mat3 R_WT = X_WT.orientation.toRotationMatrix();
   return {contacts.burr.in_outer(R_WT), contacts.shaft.in_outer(R_WT), contacts.touching};
+}
+
+ToolContacts contacts_by_bricks(BoneBricks& bricks, NearBone& near, const MillingTool& tool, const Pose& X_WT,
+                                const Penalty& penalty) {
+  const Cores whole{tool.burr_radius_mm, tool.shaft_radius_mm, tool.shaft_length_mm};
+  near.gather(bricks, whole, penalty.reach_mm(), X_WT, {});
+  const NearBone::Energy found = near.energy(whole, penalty, X_WT);
+  const Mat3 R_WT = X_WT.orientation.toRotationMatrix();
+  return {contact_sum(found.ball).in_outer(R_WT), contact_sum(found.cylinder).in_outer(R_WT),
+          found.ball.touching + found.cylinder.touching};
 }
 
 }  // namespace osteomill::point_shell

@@ -1,0 +1,109 @@
+#pragma once
+
+#include <cmath>
+#include <optional>
+
+#include "osteomill/geometry/wrench.h"
+#include "osteomill/haptics/bone_points/near_bone.h"
+#include "osteomill/haptics/point_shell/voxel_shell.h"
+#include "osteomill/tool/sampled_distance_field.h"
+
+namespace osteomill::point_shell {
+
+/// The penalty forces of many points on the tool, summed, and how they change as the tool moves: with the
+/// tool moved by dx (mm) and turned by dw (rad, about the burr's centre) the force is force_N - K_ff dx -
+/// K_ft dw and the torque torque_Nmm - K_ft^T dx - K_tt dw. All in one frame's axes, torque about the burr's
+/// centre.
+struct ContactSum {
+  Vec3 force_N = Vec3::Zero();
+  Vec3 torque_Nmm = Vec3::Zero();
+  Mat3 K_ff = Mat3::Zero();
+  Mat3 K_ft = Mat3::Zero();
+  Mat3 K_tt = Mat3::Zero();
+
+  /// A point at `r_mm` from the burr's centre that is pushed with `push_N` along the unit vector `n` out of
+  /// the tool, and pushes the tool the other way; `stiffness_N_per_mm` is how the push grows with the depth.
+  /// The depth grows by n . dx + (r x n) . dw (the field's gradient, exactly), so each point adds k [n; r x
+  /// n][n; r x n]^T to the derivatives of eq. 22 and 23 (Barbic and James 2008). Left out is how n turns as
+  /// the tool moves, of the size of push / (radius of the tool): it would make the sum indefinite, and
+  /// vanishes with the depth.
+  void add(double push_N, double stiffness_N_per_mm, const Vec3& n, const Vec3& r_mm) {
+    const Vec3 m = r_mm.cross(n);
+    force_N -= push_N * n;
+    torque_Nmm -= push_N * m;
+    const Vec3 kn = stiffness_N_per_mm * n;
+    const Vec3 km = stiffness_N_per_mm * m;
+    K_ff += kn * n.transpose();
+    K_ft += kn * m.transpose();
+    K_tt += km * m.transpose();
+  }
+  ContactSum& operator+=(const ContactSum& other) {
+    force_N += other.force_N;
+    torque_Nmm += other.torque_Nmm;
+    K_ff += other.K_ff;
+    K_ft += other.K_ft;
+    K_tt += other.K_tt;
+    return *this;
+  }
+  /// The same sum in the axes of an outer frame, `R` being those of this one in it.
+  ContactSum in_outer(const Mat3& R) const {
+    return {R * force_N, R * torque_Nmm, R * K_ff * R.transpose(), R * K_ft * R.transpose(),
+            R * K_tt * R.transpose()};
+  }
+};
+
+/// What touches the tool: burr (below the height on the axis at which the shaft takes over from the sphere)
+/// and shaft apart.
+struct ToolContacts {
+  ContactSum burr;
+  ContactSum shaft;
+  int touching = 0;
+
+  ContactSum total() const {
+    ContactSum sum = burr;
+    sum += shaft;
+    return sum;
+  }
+};
+
+/// The tool as the shell's points meet it ("SPO", Eriksson 2012, 6.1): a sampled signed distance field. Safe
+/// in the haptic tick once made.
+class ToolSignedDistance {
+ public:
+  ToolSignedDistance() = default;
+  explicit ToolSignedDistance(const MillingTool& tool)
+      : box_(bounding_box(tool)),
+        field_(SampledDistanceField(tool, SampledDistanceField::suitable_spacing_mm(tool))) {
+    // A burr no wider than the shaft ends at its equator, where the shaft begins.
+    const double squared =
+        tool.burr_radius_mm * tool.burr_radius_mm - tool.shaft_radius_mm * tool.shaft_radius_mm;
+    burr_top_mm_ = squared > 0 ? std::sqrt(squared) : 0.0;
+  }
+
+  /// Everything that touches lies in this box of T.
+  const ToolBox& box() const { return box_; }
+  /// Distance to the tool; nothing where that is known to be positive without a look.
+  std::optional<ToolDistance> distance(const Vec3& point_T) const { return field_->at(point_T); }
+  /// Whether a contact there is the burr's: below the height at which the shaft comes out of the sphere.
+  bool is_burr(const Vec3& point_T) const { return point_T.z() < burr_top_mm_; }
+
+ private:
+  ToolBox box_;
+  double burr_top_mm_ = 0;
+  std::optional<SampledDistanceField> field_;
+};
+
+/// The points of the shell that lie in the tool at `X_WT`, summed in W's axes (Eriksson 2012, 6.2 and 6.3):
+/// boxes of the octree against the tool's bounding box, then each point of the boxes left against the tool's
+/// distance. A point at the depth d pushes with `stiffness_N_per_mm3` times its area times d. Safe in the
+/// haptic tick.
+ToolContacts contacts_by_octree(const VoxelShell& shell, const ToolSignedDistance& tool, const Pose& X_WT,
+                                double stiffness_N_per_mm3);
+
+/// The points of the isosurface that push the tool at `X_WT`, each by its penalty, summed in single precision
+/// (Eriksson 2012, 6.3), in W's axes; what is nearest to the burr's sphere is the burr's. `near` is of points
+/// that meet the nearest part. Makes the bricks that the tool comes near. Safe in the haptic tick.
+ToolContacts contacts_by_bricks(BoneBricks& bricks, NearBone& near, const MillingTool& tool, const Pose& X_WT,
+                                const Penalty& penalty);
+
+}  // namespace osteomill::point_shell
