@@ -70,9 +70,8 @@ TEST(PassivityObserver, AStiffWallIsActiveWithoutTheControllerAndPassiveWithIt) 
   Wall active;
   active.press_N = 2;
   active.run(4000);
-  Wall controlled;
+  Wall controlled{.guard = WrenchGuard({.passivity_controller = true})};
   controlled.press_N = 2;
-  controlled.guard = WrenchGuard({.passivity_controller = true});
   controlled.run(4000);
   EXPECT_GT(active.most_given_Nmm, 100);
   EXPECT_GT(active.deepest_mm, 10);
