@@ -117,8 +117,7 @@ class Holder {
     if (!hardware_) return;
     const DeviceReport report = hardware_->report();
     fmt::print(
-        "device       {}: {:.0f} poses/s, {} times without a pose, {} times opened again, {} wrenches came "
-        "late\n",
+        "device       {}: {:.0f} poses/s, at fault {} times, opened again {} times, {} wrenches came late\n",
         hardware_->capabilities().name, report.inputs_per_s, report.faults, report.reopened,
         report.late_wrenches);
   }
@@ -131,14 +130,16 @@ class Holder {
   void warn_of(const DeviceReport& report) {
     constexpr double kLasting_s = 0.1;
     const bool well = report.state == DeviceReport::State::ok;
-    if (report.state == state_ || (!well && report.since_s < kLasting_s)) return;
+    if ((report.state == state_ && report.reason == reason_) || (!well && report.since_s < kLasting_s)) return;
     state_ = report.state;
+    reason_ = report.reason;
     warn(hardware_->capabilities().name + (well ? ": all is well again" : ": " + report.complaint()));
   }
 
   DeviceOption option_;
   std::unique_ptr<ConnectedDevice> hardware_;
   DeviceReport::State state_ = DeviceReport::State::ok;
+  std::string reason_;
   std::optional<SpaceMouse> space_mouse_;
   std::optional<SimulatedOperator> simulated_;
   std::optional<VirtualHand> virtual_;

@@ -114,8 +114,8 @@ std::optional<LeftMilling> last_left_milling() {
     // Whoever had it may have ended without anything to leave; then its lock goes with `file`.
     if (!fs::exists(path, ignored)) continue;
     try {
-      Recording left = read_recording(path);
-      if (!left.sessions.empty()) return LeftMilling{std::move(*file), std::move(left.sessions[0].start)};
+      SessionStart start = read_start(path);
+      return LeftMilling{std::move(*file), std::move(start)};
     } catch (const InputError&) {
       // Not ours to remove: another version of the program may read it.
     }
@@ -169,6 +169,7 @@ void Autosave::take_result() {
     next_ = Clock::now() + std::max<Clock::duration>(kBetween, kWritingShare * took);
   } catch (const std::exception& error) {
     next_ = Clock::now() + 60s;
+    kept_version_ = 0;
     complaint_ = std::string("What is milled is not kept for the next start: ") + error.what();
   }
 }

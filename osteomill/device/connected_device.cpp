@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <csignal>
 #include <exception>
 #include <utility>
 
@@ -55,7 +54,7 @@ std::string DeviceReport::complaint() const {
     case State::silent:
       return fmt::format("has given no pose for {:.1f} s", since_s);
     case State::not_finite:
-      return fmt::format("has given poses that are none for {:.1f} s", since_s);
+      return fmt::format("has given invalid poses for {:.1f} s", since_s);
     case State::lost:
       return fmt::format("has been gone for {:.1f} s ({})", since_s, reason);
   }
@@ -87,12 +86,7 @@ void ConnectedDevice::start() {
 }
 
 void ConnectedDevice::run() {
-  // Whoever handles them waits for this thread (CrashStop).
-  sigset_t of_others;
-  sigfillset(&of_others);
-  for (const int own : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTRAP, SIGSYS})
-    sigdelset(&of_others, own);
-  pthread_sigmask(SIG_BLOCK, &of_others, nullptr);
+  const SignalsForOthers none_here;
   request_real_time();
   while (!ending_.load(std::memory_order_acquire)) {
     exchange();
@@ -171,7 +165,7 @@ ConnectionStatus ConnectedDevice::send(double now_s, bool driven) {
     sent_s_ = now_s;
   }
   if (status == ConnectionStatus::fresh || share == 0) blended_ = share;
-  given_share_.store(share_sent(asked.force_N, sent_D_.force_N), std::memory_order_relaxed);
+  given_share_.store(driven ? share_sent(asked.force_N, sent_D_.force_N) : 0, std::memory_order_relaxed);
   at_rest_.store(is_zero(sent_D_), std::memory_order_release);
   return status;
 }

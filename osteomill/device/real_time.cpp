@@ -32,4 +32,16 @@ std::string request_real_time() {
   return refused;
 }
 
+SignalsForOthers::SignalsForOthers() {
+  sigset_t of_others;
+  sigfillset(&of_others);
+  for (const int own : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTRAP, SIGSYS})
+    sigdelset(&of_others, own);
+  pthread_sigmask(SIG_BLOCK, &of_others, &before_);
+}
+
+SignalsForOthers::~SignalsForOthers() {
+  pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+}
+
 }  // namespace osteomill

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <csignal>
 #include <string>
 
 namespace osteomill {
@@ -8,5 +9,18 @@ namespace osteomill {
 /// memory as it is now in RAM (mlockall). Returns an empty text, or in one line what was refused and why.
 /// What is refused is done without. Makes system calls: before the first tick, not in it.
 std::string request_real_time();
+
+/// While one lives the calling thread, and any that it starts, is handed no signal but of its own faults:
+/// whoever handles one (CrashStop) waits for the threads that drive a device.
+class SignalsForOthers {
+ public:
+  SignalsForOthers();
+  ~SignalsForOthers();
+  SignalsForOthers(const SignalsForOthers&) = delete;
+  SignalsForOthers& operator=(const SignalsForOthers&) = delete;
+
+ private:
+  sigset_t before_;
+};
 
 }  // namespace osteomill

@@ -173,16 +173,17 @@ RunDescription LiveMilling::describe(const std::string& scan_name, const std::st
   return describe_run(facts, sample_points_);
 }
 
-void LiveMilling::start_recording(const std::filesystem::path& path, const RunDescription& description,
+void LiveMilling::start_recording(const std::filesystem::path& path, RunDescription description,
                                   TakePicture picture) {
   finish_preparing();
+  set_as_now(description);
   auto recorder =
       std::make_unique<Recorder>(path, description, Recorder::kUsualCapacity, Recorder::Begins::when_told);
   add_picture(*recorder, kPictureBefore, picture);
   recorder_ = std::move(recorder);
   recorder_path_ = path;
   take_picture_ = std::move(picture);
-  recorded_ = description;
+  recorded_ = std::move(description);
   const bool untouched = !live_.running() && live_.timing().ticks == 0;
   recorded_from_ = untouched ? live_.session_number() : live_.session_number() + 1;
   if (untouched) tell_recorder({});
@@ -190,11 +191,15 @@ void LiveMilling::start_recording(const std::filesystem::path& path, const RunDe
   if (!untouched) change(setup());
 }
 
+void LiveMilling::set_as_now(RunDescription& run) const {
+  run.isovalue = isovalue();
+  set_session_settings(run, settings_of(live_.session()), sample_points_);
+}
+
 // While nothing is milled.
 void LiveMilling::tell_recorder(const TakenOver& taken_over) {
   RunDescription run = recorded_;
-  run.isovalue = isovalue();
-  set_session_settings(run, settings_of(live_.session()), sample_points_);
+  set_as_now(run);
   recorder_->begin_session(live_.session_number(), {std::move(run), taken_over, live_.session().removed_mm3(),
                                                     follower_->touched_bricks(), ""});
 }

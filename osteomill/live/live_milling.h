@@ -83,9 +83,9 @@ class LiveMilling {
   using TakePicture = std::function<std::vector<unsigned char>()>;
   /// Goes on over whatever is changed or taken back. Where something has been felt already the session begins
   /// anew as with another algorithm, so that the recording holds all it takes to replay it; it has then
-  /// ticks from when that is prepared. `picture`, where it is given, is taken now and at the end. Throws
+  /// ticks from when that is prepared; what is being prepared is waited for. `picture`, where it is given, is taken now and at the end. Throws
   /// InputError where the file cannot be written; a recording is then not going on.
-  void start_recording(const std::filesystem::path& path, const RunDescription& description,
+  void start_recording(const std::filesystem::path& path, RunDescription description,
                        TakePicture picture = {});
   /// Returns the recording's name. Throws as Recorder::close does.
   std::filesystem::path stop_recording();
@@ -126,6 +126,7 @@ class LiveMilling {
   void prepare(const MillingSetup& setup, MakeBone make_bone);
   void catch_up();
   void take_over();
+  void set_as_now(RunDescription& run) const;
   void tell_recorder(const TakenOver& taken_over);
 
   // As prepared: the haptic thread's algorithm changes them.

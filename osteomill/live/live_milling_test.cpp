@@ -343,6 +343,19 @@ TEST_F(LiveMillingTest, ARecordingGoesOnOverWhateverIsDone) {
   EXPECT_EQ(milled.grid().densities(), bone());
 }
 
+TEST_F(LiveMillingTest, ARecordingBegunWhileAnotherAlgorithmIsPreparedIsOfThatOne) {
+  const testing_support::TestFolder folder;
+  setup_.algorithm = algorithm_named("surface-points");
+  milling_.change(setup_);
+  milling_.start_recording(folder / "live.h5", milling_.describe("ball", ""));
+  milling_.finish_preparing();
+  mill(0.1);
+  milling_.stop_recording();
+  const Recording recording = read_recording(folder / "live.h5");
+  EXPECT_EQ(recording.description.algorithm, "surface-points");
+  EXPECT_FALSE(verify_recording(*ball_of_bone(), recording).difference);
+}
+
 TEST_F(LiveMillingTest, ARecordingFromTheFirstTickOnNeedsNoneBefore) {
   const testing_support::TestFolder folder;
   VirtualHand hand({}, pointing_hand(), pose_above(entry_, setup_.tool, 0.2));

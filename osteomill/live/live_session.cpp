@@ -144,24 +144,23 @@ std::optional<TickRecord> LiveSession::next_record() {
   return record;
 }
 
-// True in the tick in which the tool comes to its place.
-bool LiveSession::place_when_at_rest() {
-  if (!letting_go_ || !session_->guard().is_at_rest()) return false;
+// Until a tick has placed it, whichever session's that is and however long the device gives no pose.
+void LiveSession::place_when_at_rest() {
+  if (!letting_go_ || !session_->guard().is_at_rest()) return;
   device_.put_at(X_WD_place_);
   session_->place();
-  letting_go_ = false;
-  return true;
 }
 
 TickRecord LiveSession::tick(double time_s, double dt_s) {
-  const bool placed = place_when_at_rest();
+  place_when_at_rest();
   const bool spindle_on = !paused_ && !letting_go_ && (spindle_ || device_.spindle_asked());
   TickRecord record = paused_ ? session_->idle_tick(device_, time_s, dt_s)
                               : session_->tick(device_, time_s, dt_s, spindle_on && !bone_held_);
   record.session = session_number_;
+  if (record.placed) letting_go_ = false;
   if (listener_) listener_(record, session_->volume(), session_->last_change());
   state_.write({record, spindle_on, paused_, session_->intersection_W()});
-  if (placed) placing_.store(false, std::memory_order_release);
+  if (record.placed) placing_.store(false, std::memory_order_release);
   records_.try_push(record);
   return record;
 }

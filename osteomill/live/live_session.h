@@ -84,7 +84,7 @@ class LiveSession {
   void take_command();
   void run() noexcept;
   void tick_until_stopped();
-  bool place_when_at_rest();
+  void place_when_at_rest();
   TickRecord tick(double time_s, double dt_s);
 
   Device& device_;

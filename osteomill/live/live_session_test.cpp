@@ -1,6 +1,8 @@
 #include "osteomill/live/live_session.h"
 
+#include <atomic>
 #include <chrono>
+#include <limits>
 #include <stdexcept>
 #include <thread>
 
@@ -25,9 +27,11 @@ class PressedDevice : public Device {
   double time_passed_s = 0;
   int throw_at_tick = -1;
   int ticks = 0;
+  std::atomic<bool> gives_pose{true};
 
   Pose read_pose() override {
     if (ticks++ == throw_at_tick) throw std::runtime_error("the cable came off");
+    if (!gives_pose) return {Vec3::Constant(std::numeric_limits<double>::quiet_NaN()), Quat::Identity()};
     return X_WD;
   }
   void write_wrench(const Wrench& wrench) override {
@@ -35,6 +39,7 @@ class PressedDevice : public Device {
     max_force_N = std::max(max_force_N, wrench.force_N.norm());
   }
   void tick_done(const Pose&, double dt_s) override { time_passed_s += dt_s; }
+  void put_at(const Pose& X_WD_put) override { X_WD = X_WD_put; }
 };
 
 Volume half_space() {
@@ -104,6 +109,23 @@ TEST_F(LiveSessionTest, RecordsComeInOrder) {
     ++count;
   }
   EXPECT_EQ(count, live_.timing().ticks);
+}
+
+TEST_F(LiveSessionTest, WhatIsToBePlacedIsPlacedByTheSessionThatTicksThen) {
+  live_.start();
+  EXPECT_TRUE(pushes());
+  device_.gives_pose = false;
+  live_.place({{0, 0, 9}, Quat::Identity()});
+  EXPECT_TRUE(comes_true([&] { return live_.state().record.wrench.force_N.isZero(0); }));
+  std::this_thread::sleep_for(20ms);
+  EXPECT_TRUE(live_.placing());
+  live_.replace(session_on(bone_, "point-shell"));
+  std::this_thread::sleep_for(20ms);
+  EXPECT_TRUE(live_.placing());
+  device_.gives_pose = true;
+  EXPECT_TRUE(comes_true([&] { return !live_.placing(); }));
+  EXPECT_TRUE(comes_true([&] { return live_.state().record.X_WT.position_mm.z() == 9; }));
+  live_.stop();
 }
 
 TEST_F(LiveSessionTest, TheSpindleMillsAndAHeldBoneIsNotMilled) {

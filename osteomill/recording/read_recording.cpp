@@ -394,20 +394,31 @@ void try_in_child(const fs::path& path) {
     throw InputError(path.string(), "is damaged: it ends the program that reads it");
 }
 
-}  // namespace
-
-Recording read_recording(const fs::path& path) {
+Recording read_checked(const fs::path& path) {
   const Hdf5Lock lock;
   std::error_code error;
   if (!fs::exists(path, error)) throw InputError(path.string(), "no such file");
   if (!fs::is_regular_file(path, error)) throw InputError(path.string(), "is not a file");
-  note_input(path);
   const Checksum checksum = check_checksum(path);
   if (checksum == Checksum::broken) {
     throw InputError(path.string(), "is damaged or cut short: its checksum is not that of its content");
   }
   if (checksum == Checksum::none) try_in_child(path);
   return read_open_file(path);
+}
+
+}  // namespace
+
+Recording read_recording(const fs::path& path) {
+  Recording recording = read_checked(path);
+  note_input(path);
+  return recording;
+}
+
+SessionStart read_start(const fs::path& path) {
+  Recording recording = read_checked(path);
+  if (recording.sessions.empty()) throw InputError(path.string(), "holds nothing to go on from");
+  return std::move(recording.sessions.front().start);
 }
 
 Recording read_with_what_came_before(const fs::path& path) {

@@ -90,6 +90,9 @@ Recording read_recording(const std::filesystem::path& path);
 /// one, described as the first.
 Recording read_with_what_came_before(const std::filesystem::path& path);
 
+/// What write_start wrote. The file is no input of the program's (input_files.h): it may be written over.
+SessionStart read_start(const std::filesystem::path& path);
+
 /// Whether a file is HDF5, as recordings are.
 bool is_hdf5(const std::filesystem::path& path);
 

@@ -79,7 +79,7 @@ judge 0 "the device killed"
 begin_device
 until_true 10 "there again" grep -q "example device: all is well again" errors
 wait $program || fail "osteomill ended with $?"
-grep -qE "^device +example device: .* poses/s, [1-9]" said || fail "what was wrong is not counted"
+grep -qE "^device +example device: .* poses/s, at fault [1-9]" said || fail "what was wrong is not counted"
 sleep 0.3
 kill $device
 wait $device || true

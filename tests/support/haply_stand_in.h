@@ -55,6 +55,7 @@ class HaplyStandIn {
   std::atomic<bool> is_3_5{true};
   const char* grip = "wireless_verse_grip";
   std::atomic<bool> has_device{true};
+  std::atomic<bool> has_minverse_first{false};
   std::atomic<const char*> type{"inverse3"};
   /// What is said of the device and its grip with every state.
   std::atomic<bool> is_calibrated{true};
@@ -96,6 +97,8 @@ class HaplyStandIn {
     const double x_m = is_held ? 0.01 : 1e-3 * swept_mm();
     nlohmann::json message;
     message["inverse3"] = nlohmann::json::array();
+    if (has_minverse_first)
+      message["inverse3"].push_back({{"device_id", "0001"}, {"config", {{"type", "minverse"}}}});
     if (has_device) {
       const double s = force_scale;
       const auto& [x, y, z] = force_N_;
@@ -137,7 +140,7 @@ class HaplyStandIn {
     switch (reason) {
       case LWS_CALLBACK_ESTABLISHED: {
         nlohmann::json inventory = self->state();
-        if (self->has_device) inventory["inverse3"][0]["config"]["type"] = self->type.load();
+        if (self->has_device) inventory["inverse3"].back()["config"]["type"] = self->type.load();
         if (self->is_3_5) inventory["session_id"] = 7;
         self->talks_[socket].going.push_back(inventory.dump());
         lws_callback_on_writable(socket);

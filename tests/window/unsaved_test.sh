@@ -84,6 +84,7 @@ removed=$(sed -n 's/^killed\.removed_mm3=//p' said-killed)
 awk -v kept="$(value restored removed_mm3)" -v all="$removed" 'BEGIN { exit !(kept > 0 && kept <= all) }' ||
   fail "of $removed mm³, $(value restored removed_mm3) are kept"
 is restored unsaved true; is restored cuts 1; is restored isovalue "$(sed -n 's/^killed\.isovalue=//p' said-killed)"
+! value restored message | grep -q "not kept" || fail "what is taken up again is not kept: $(value restored message)"
 is undone removed_mm3 0.000; is undone unsaved false
 # That ended with a fault; its bone is no longer there, so the start goes on with the one that is named.
 mv ball.nrrd moved.nrrd

@@ -31,7 +31,9 @@ constexpr double kWatchdogStep_s = 125e-6;
 // Where in the status things stand, and why force is off.
 constexpr std::size_t kStatuses = 17;
 enum Status : std::size_t { kIsReset = 3, kHasForce = 5, kBrakes = 6, kForceOffCause = 14 };
+using StatusOfDevice = std::array<int, kStatuses>;
 constexpr int kByWatchdog = 3;
+constexpr int kByProgram = 4;
 constexpr std::array kForceIsOff{"has its force off: switch it on by the device's button",
                                  "has its force off by its button: press it again",
                                  "has braked, as it moved too fast: switch its force on by its button",
@@ -132,6 +134,10 @@ class ForceDimensionConnection final : public Connection {
     capabilities_.driven = dhd_.has_active_wrist(id_) ? 6 : 3;
     capabilities_.R_VD = Mat3{{0, 1, 0}, {0, 0, 1}, {1, 0, 0}};
     capabilities_.limits = model.limits;
+    // Reopened too, what its operator or its brakes switched off is theirs to switch on.
+    StatusOfDevice found{};
+    switches_on_ = dhd_.status(found.data(), id_) < 0 || !is_off(found) || found[kForceOffCause] == 0 ||
+                   found[kForceOffCause] == kByWatchdog || found[kForceOffCause] == kByProgram;
     if (dhd_.enable_force(0, id_) < 0 || dhd_.set_max_force(model.limits.force_N, id_) < 0 ||
         dhd_.set_max_torque(model.limits.torque_Nmm / kMmPerM, id_) < 0) {
       const std::string reason = dhd_.last_error();
@@ -195,24 +201,25 @@ class ForceDimensionConnection final : public Connection {
     dhd_.disable_expert_mode();
   }
 
+  static bool is_off(const StatusOfDevice& status) { return status[kHasForce] == 0 || status[kBrakes] != 0; }
+
   // Force is switched on once the device is calibrated, and again where its watchdog alone had switched it
-  // off: what its operator or its brakes switched off is theirs to switch on.
+  // off.
   const char* why_not_driven() {
-    std::array<int, kStatuses> status{};
+    StatusOfDevice status{};
     if (dhd_.status(status.data(), id_) < 0) return "does not say whether it is calibrated";
     if (status[kIsReset] != 0) {
-      has_begun_ = false;
+      switches_on_ = true;
       return "is not calibrated: calibrate it by the maker's tool (HapticInit), a Falcon by hand";
     }
-    const auto is_off = [&] { return status[kHasForce] == 0 || status[kBrakes] != 0; };
-    if (is_off() && (!has_begun_ || status[kForceOffCause] == kByWatchdog)) {
-      has_begun_ = true;
+    if (is_off(status) && (switches_on_ || status[kForceOffCause] == kByWatchdog)) {
+      switches_on_ = false;
       dhd_.set_brakes(0, id_);
       dhd_.enable_force(1, id_);
       if (dhd_.status(status.data(), id_) < 0) return "does not say whether its force is on";
     }
     const auto cause = static_cast<std::size_t>(status[kForceOffCause]);
-    return is_off() ? kForceIsOff[cause < kForceIsOff.size() ? cause : 0] : nullptr;
+    return is_off(status) ? kForceIsOff[cause < kForceIsOff.size() ? cause : 0] : nullptr;
   }
 
   char id_ = 0;
@@ -220,7 +227,7 @@ class ForceDimensionConnection final : public Connection {
   Clock::time_point next_ = Clock::now();
   Clock::time_point next_status_ = Clock::now();
   const char* not_driven_ = nullptr;
-  bool has_begun_ = false;
+  bool switches_on_ = true;
 };
 
 }  // namespace

@@ -115,6 +115,20 @@ TEST_F(ForceDimension, IsDrivenWhereItIsCalibratedAndHasItsForceOn) {
   EXPECT_EQ(device_->status[kForce], 1);
 }
 
+TEST_F(ForceDimension, OpenedAgainItLeavesOffWhatItsOperatorSwitchedOff) {
+  enum { kForce = 5, kBrake = 6, kCause = 14 };
+  for (const auto& [cause, is_on] : {std::pair(1, 0), std::pair(2, 0), std::pair(0, 1), std::pair(4, 1)}) {
+    device_->status[kForce] = 0;
+    device_->status[kBrake] = 1;
+    device_->status[kCause] = cause;
+    const auto connection = open_force_dimension("");
+    DeviceInput input;
+    EXPECT_EQ(connection->read(input), ConnectionStatus::fresh);
+    EXPECT_EQ(device_->status[kForce], is_on) << cause;
+    EXPECT_EQ(input.not_driven == nullptr, is_on == 1) << cause;
+  }
+}
+
 // The maker's own library, with whatever device it has or simulates: it is read, and gets nothing.
 TEST(ForceDimensionLibrary, TheMakersOwnIsRead) {
   const char* const library = std::getenv("OSTEOMILL_LIBDHD");

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <chrono>
 #include <optional>
 #include <thread>
@@ -42,9 +43,13 @@ const Json* member(const Json* of, const char* key) {
   return found == of->end() ? nullptr : &*found;
 }
 
-const Json* first_of(const Json* of, const char* key) {
-  const Json* const list = member(of, key);
-  return list != nullptr && list->is_array() && !list->empty() ? &list->front() : nullptr;
+// The first of a list that is as wanted.
+template <typename IsWanted>
+const Json* first_of(const Json& of, const char* key, IsWanted is_wanted) {
+  const Json* const list = member(&of, key);
+  if (list == nullptr || !list->is_array()) return nullptr;
+  const auto found = std::find_if(list->begin(), list->end(), is_wanted);
+  return found == list->end() ? nullptr : &*found;
 }
 
 bool take(const Json* numbers, const char* key, double& value) {
@@ -67,10 +72,11 @@ bool is_false(const Json* value) {
 }
 
 // Also a Minverse stands among them, which is not driven with the forces of an Inverse3.
-const Json* inverse3_of(const Json& inventory) {
-  const Json* const device = first_of(&inventory, "inverse3");
-  const Json* const type = member(member(device, "config"), "type");
-  return type == nullptr || *type == "inverse3" || *type == "inverse3x" ? device : nullptr;
+bool is_inverse3(const Json& device) {
+  const Json* const type = member(member(&device, "config"), "type");
+  const Json* const id = member(&device, "device_id");
+  return id != nullptr && id->is_string() &&
+         (type == nullptr || *type == "inverse3" || *type == "inverse3x");
 }
 
 // By what it says of itself; where it says nothing it is not known to be calibrated.
@@ -92,7 +98,7 @@ const char* why_grip_is_not_used(const Json* grip) {
 
 const Json* grip_of(const Json& message) {
   for (const char* kind : kGrips) {
-    if (const Json* const grip = first_of(&message, kind)) return grip;
+    if (const Json* const grip = first_of(message, kind, [](const Json&) { return true; })) return grip;
   }
   return nullptr;
 }
@@ -114,26 +120,41 @@ bool take_grip(const Json* grip, DeviceInput& input) {
   return true;
 }
 
+// A service that has said which devices it has, and was told nothing.
+struct OpenedService {
+  explicit OpenedService(const HostAndPort& at) : socket(name_of(at), at.host, at.port, kMostBytes) {
+    const auto text = socket.receive(kInventoryWithin);
+    if (!text) throw InputError(name_of(at), "the service does not say which devices it has");
+    inventory = Json::parse(*text, nullptr, false);
+    inverse3 = first_of(inventory, "inverse3", &is_inverse3);
+    if (inverse3 == nullptr) throw InputError(name_of(at), "the service has no Inverse3");
+  }
+  OpenedService(const OpenedService&) = delete;
+  OpenedService& operator=(const OpenedService&) = delete;
+
+  static std::string name_of(const HostAndPort& at) { return fmt::format("haply:{}:{}", at.host, at.port); }
+  std::string id() const { return member(inverse3, "device_id")->get<std::string>(); }
+  std::string name() const { return "Haply Inverse3 " + id(); }
+
+  WebSocket socket;
+  Json inventory;
+  const Json* inverse3;
+};
+
 class HaplyConnection final : public Connection {
  public:
-  explicit HaplyConnection(const HostAndPort& at) : socket_(name_of(at), at.host, at.port, kMostBytes) {
-    const std::string name = name_of(at);
-    const auto text = socket_.receive(kInventoryWithin);
-    if (!text) throw InputError(name, "the service does not say which devices it has");
-    const Json inventory = Json::parse(*text, nullptr, false);
-    const Json* const device = inverse3_of(inventory);
-    const Json* const id = member(device, "device_id");
-    if (id == nullptr || !id->is_string()) throw InputError(name, "the service has no Inverse3");
-    id_ = id->get<std::string>();
-    // Version 3.5 counts its sessions, and takes a force as `vector`; before it was `values`.
-    force_key_ = inventory.contains("session_id") ? "vector" : "values";
-    has_grip_ = grip_of(inventory) != nullptr;
-    capabilities_.name = "Haply Inverse3 " + id_;
+  explicit HaplyConnection(const HostAndPort& at)
+      // Version 3.5 counts its sessions, and takes a force as `vector`; before it was `values`.
+      : service_(at),
+        id_(service_.id()),
+        force_key_(service_.inventory.contains("session_id") ? "vector" : "values"),
+        has_grip_(grip_of(service_.inventory) != nullptr) {
+    capabilities_.name = service_.name();
     capabilities_.sensed = has_grip_ ? 6 : 3;
     capabilities_.driven = 3;
     capabilities_.R_VD = Mat3{{1, 0, 0}, {0, 0, 1}, {0, -1, 0}};
     capabilities_.limits = {10, 0};
-    not_driven_ = why_not_driven(member(device, "status"));
+    not_driven_ = why_not_driven(member(service_.inverse3, "status"));
     // By which the Haply Hub knows whose forces these are; only once.
     ask(Vec3::Zero(), {{"session", {{"configure", {{"profile", {{"name", "osteomill"}}}}}}}});
   }
@@ -144,7 +165,7 @@ class HaplyConnection final : public Connection {
   const DeviceCapabilities& capabilities() const override { return capabilities_; }
 
   ConnectionStatus read(DeviceInput& input) override {
-    const auto text = socket_.receive(kWait);
+    const auto text = service_.socket.receive(kWait);
     if (!text) return or_lost(ConnectionStatus::silent);
     is_asked_ = false;
     // One that answers at once is not asked as often as it could answer.
@@ -156,26 +177,23 @@ class HaplyConnection final : public Connection {
   ConnectionStatus write(const Wrench& wrench_D) override {
     // One text at a time is on its way: a slow service would else work off wrenches of long ago.
     if (is_asked_ && Clock::now() - asked_ <= kAskAgainAfter) return or_lost(ConnectionStatus::silent);
-    ask(wrench_D.force_N);
-    return or_lost(ConnectionStatus::fresh);
+    return or_lost(ask(wrench_D.force_N) ? ConnectionStatus::fresh : ConnectionStatus::silent);
   }
 
  private:
-  static std::string name_of(const HostAndPort& at) { return fmt::format("haply:{}:{}", at.host, at.port); }
-
   ConnectionStatus or_lost(ConnectionStatus status) const {
-    return socket_.is_open() ? status : ConnectionStatus::lost;
+    return service_.socket.is_open() ? status : ConnectionStatus::lost;
   }
 
-  // The force, for which the service answers with the state of all devices.
-  void ask(const Vec3& force_N, Json message = Json::object()) {
+  // The force, for which the service answers with the state of all devices. False where it waits to be sent.
+  bool ask(const Vec3& force_N, Json message = Json::object()) {
     const Json force{{force_key_, {{"x", force_N.x()}, {"y", force_N.y()}, {"z", force_N.z()}}}};
     const Json device{{"device_id", id_}, {"commands", {{"set_cursor_force", force}}}};
     message["inverse3"] = Json::array({device});
-    socket_.send(message.dump());
     force_N_ = force_N;
     is_asked_ = true;
     asked_ = Clock::now();
+    return service_.socket.send(message.dump());
   }
 
   // Filters of the service, and its scale, change forces on their way.
@@ -189,9 +207,10 @@ class HaplyConnection final : public Connection {
 
   bool take_state(const std::string& text, DeviceInput& input) {
     const Json message = Json::parse(text, nullptr, false);
-    const Json* const device = first_of(&message, "inverse3");
-    const Json* const id = member(device, "device_id");
-    if (id == nullptr || *id != id_) return false;
+    const Json* const device = first_of(message, "inverse3", [&](const Json& one) {
+      const Json* const id = member(&one, "device_id");
+      return id != nullptr && *id == id_;
+    });
     const Json* const state = member(device, "state");
     DeviceInput now;
     const Json* const grip = grip_of(message);
@@ -205,10 +224,10 @@ class HaplyConnection final : public Connection {
     return true;
   }
 
-  WebSocket socket_;
+  OpenedService service_;
   std::string id_;
   std::string force_key_;
-  bool has_grip_ = false;
+  bool has_grip_;
   DeviceCapabilities capabilities_;
   // As it last said.
   const char* not_driven_ = nullptr;
@@ -231,7 +250,7 @@ std::unique_ptr<Connection> open_haply(const std::string& address) {
 }
 
 std::string look_for_haply(const std::string& address) {
-  return HaplyConnection(place_of(address)).capabilities().name;
+  return OpenedService(place_of(address)).name();
 }
 
 }  // namespace osteomill

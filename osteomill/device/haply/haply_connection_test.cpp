@@ -68,6 +68,19 @@ TEST_F(Haply, AMinverseIsNoInverse3) {
   EXPECT_EQ(refusal(), "haply:" + service_.address() + ": the service has no Inverse3");
 }
 
+TEST_F(Haply, AnInverse3BehindAMinverseIsFoundAndDriven) {
+  service_.has_minverse_first = true;
+  open();
+  EXPECT_EQ(connection_->capabilities().name, "Haply Inverse3 049D");
+  DeviceInput input;
+  EXPECT_EQ(go_on_until(ConnectionStatus::fresh, input), ConnectionStatus::fresh);
+}
+
+TEST_F(Haply, LookingForItTellsItNothing) {
+  EXPECT_EQ(hardware_named("haply")->find(service_.address()).text, "Haply Inverse3 049D");
+  EXPECT_TRUE(service_.heard().empty()) << "who drives it would feel that";
+}
+
 TEST_F(Haply, TheHubIsToldOnceWhoThisIs) {
   open();
   DeviceInput input;

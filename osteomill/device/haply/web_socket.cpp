@@ -132,11 +132,12 @@ std::optional<std::string> WebSocket::receive(std::chrono::microseconds wait) {
   return std::exchange(impl_->newest, {});
 }
 
-void WebSocket::send(std::string text) {
-  if (!is_open()) return;
+bool WebSocket::send(std::string text) {
+  if (!is_open()) return false;
   impl_->going = std::move(text);
   lws_callback_on_writable(impl_->socket);
   impl_->serve({});
+  return !impl_->going;
 }
 
 }  // namespace osteomill

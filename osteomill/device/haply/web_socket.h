@@ -21,8 +21,8 @@ class WebSocket {
   bool is_open() const;
   /// The newest whole text that has come, or that comes within `wait`.
   std::optional<std::string> receive(std::chrono::microseconds wait);
-  /// Without waiting: in place of one that could not be sent yet.
-  void send(std::string text);
+  /// Without waiting, and in place of one that could not be sent yet. False where this could not either.
+  bool send(std::string text);
 
  private:
   struct Impl;

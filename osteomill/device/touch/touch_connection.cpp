@@ -7,6 +7,7 @@
 
 #include "osteomill/device/hardware.h"
 #include "osteomill/device/latest_value.h"
+#include "osteomill/device/real_time.h"
 #include "osteomill/device/vendor_library.h"
 #include "osteomill/files/input_error.h"
 
@@ -45,7 +46,8 @@ constexpr bool is_of_force(unsigned code) {
   return code >> 8 == 2;
 }
 
-// A wrench that nobody has renewed for so long is zero, in the servo thread of the library itself.
+// A wrench that nobody has renewed for so long is zero. No watchdog of the device's: the library's thread,
+// which sees to it, ends with the program.
 constexpr auto kLapse = 20ms;
 constexpr auto kBetweenLooks = 200us;
 constexpr double kFrame_s = 1e-3;
@@ -110,6 +112,8 @@ struct OpenedDevice {
 struct SentWrench {
   Wrench wrench;
   Clock::time_point time{};
+  // Of the wrenches; of zeros in a row there is one.
+  unsigned number = 0;
 };
 
 class TouchConnection final : public Connection {
@@ -118,7 +122,11 @@ class TouchConnection final : public Connection {
     ask();
     frames_ = hd_.schedule([](void* self) { return static_cast<TouchConnection*>(self)->frame(); }, this,
                            kDefaultPriority);
-    hd_.start_scheduler();
+    {
+      // The library's thread is to go on while another handles a signal.
+      const SignalsForOthers start_with_none;
+      hd_.start_scheduler();
+    }
     if (const unsigned code = hd_.get_error().code; code != 0) {
       const std::string why = hd_.error_string(code);
       close();
@@ -126,10 +134,8 @@ class TouchConnection final : public Connection {
     }
   }
   ~TouchConnection() override {
-    sent_.write({{}, Clock::now()});
-    // Two frames, so that it was sent; none come where the library hangs.
-    const unsigned before = frames_done_;
-    for (const auto end = Clock::now() + 20ms; frames_done_ - before < 2 && Clock::now() < end;)
+    // No frame sends it where the library hangs.
+    for (const auto end = Clock::now() + 20ms; !is_lost_ && !send({}) && Clock::now() < end;)
       std::this_thread::sleep_for(kBetweenLooks);
     close();
   }
@@ -156,16 +162,23 @@ class TouchConnection final : public Connection {
     const unsigned frames = frames_done_.load(std::memory_order_acquire);
     if (frames == frames_at_writing_) return ConnectionStatus::silent;
     frames_at_writing_ = frames;
-    sent_.write({wrench_D, Clock::now()});
-    return ConnectionStatus::fresh;
+    return send(wrench_D) ? ConnectionStatus::fresh : ConnectionStatus::silent;
   }
 
  private:
+  // Of zero, whether the motors have it.
+  bool send(const Wrench& wrench_D) {
+    const bool zero = is_zero(wrench_D);
+    if (!zero || !sends_zero_) ++number_;
+    sends_zero_ = zero;
+    sent_.write({wrench_D, Clock::now(), number_});
+    return !zero || zero_of_.load(std::memory_order_acquire) == number_;
+  }
+
   void ask() {
     capabilities_.name = device_.name();
     capabilities_.sensed = device_.integer(kInputDof) >= 6 ? 6 : 3;
     capabilities_.driven = device_.integer(kOutputDof) >= 6 ? 6 : 3;
-    capabilities_.lets_go_after_s = std::chrono::duration<double>(kLapse).count();
     const auto styles = static_cast<unsigned>(device_.integer(kCalibrationStyle));
     calibration_style_ = (styles & kByItself) != 0 ? kByItself : styles & kByInkwell;
     double force_N = 0, torque_Nmm = 0;
@@ -200,6 +213,7 @@ class TouchConnection final : public Connection {
       is_lost_.store(true, std::memory_order_relaxed);
       return kContinue;
     }
+    if (is_zero(driven_)) zero_of_.store(sent.number, std::memory_order_release);
     input_.write(input);
     frames_done_.fetch_add(1, std::memory_order_release);
     return kContinue;
@@ -238,6 +252,10 @@ class TouchConnection final : public Connection {
   std::atomic<unsigned> frames_done_{0};
   unsigned frames_seen_ = 0;
   unsigned frames_at_writing_ = ~0U;
+  unsigned number_ = 0;
+  bool sends_zero_ = true;
+  // The number of the wrench for which a frame sent zero last.
+  std::atomic<unsigned> zero_of_{0};
   std::atomic<bool> is_lost_{false};
 };
 

@@ -76,7 +76,7 @@ TEST_F(Touch, SaysWhatItCan) {
   EXPECT_EQ(can.sensed, 6);
   EXPECT_EQ(can.driven, 3);
   EXPECT_EQ(can.limits.force_N, 3.3);
-  EXPECT_EQ(can.lets_go_after_s, 0.02);
+  EXPECT_EQ(can.lets_go_after_s, 0);
 }
 
 TEST_F(Touch, ListingItGivesItsMotorsNoPower) {
@@ -119,6 +119,19 @@ TEST_F(Touch, AWrenchThatNoFrameTookIsNotSent) {
   device_->hangs = false;
   await_frame();
   EXPECT_EQ(connection_->write({{2, 0, 0}, Vec3::Zero()}), ConnectionStatus::fresh);
+}
+
+TEST_F(Touch, ZeroIsSentOnceTheMotorsHaveIt) {
+  open();
+  EXPECT_EQ(connection_->write({}), ConnectionStatus::fresh);
+  write_until_it_is({{3, 0, 0}, Vec3::Zero()}, {3, 0, 0}, Vec3::Zero());
+  int rounds = 0;
+  for (; connection_->write({}) != ConnectionStatus::fresh; ++rounds) {
+    ASSERT_LT(rounds, 100);
+    await_frame();
+  }
+  EXPECT_EQ(force(), Vec3::Zero());
+  EXPECT_GE(rounds, 1);
 }
 
 TEST_F(Touch, ReadsColumnsInMm) {
