@@ -130,7 +130,8 @@ class Holder {
   void warn_of(const DeviceReport& report) {
     constexpr double kLasting_s = 0.1;
     const bool well = report.state == DeviceReport::State::ok;
-    if ((report.state == state_ && report.reason == reason_) || (!well && report.since_s < kLasting_s)) return;
+    if ((report.state == state_ && report.reason == reason_) || (!well && report.since_s < kLasting_s))
+      return;
     state_ = report.state;
     reason_ = report.reason;
     warn(hardware_->capabilities().name + (well ? ": all is well again" : ": " + report.complaint()));

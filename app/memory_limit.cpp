@@ -62,9 +62,10 @@ void check_memory_taken() {
   thread_local std::chrono::steady_clock::time_point next;
   if (std::chrono::steady_clock::now() < next) return;
   const Limit allowed = limit_now();
+  if (allowed.scan.empty()) return;
   const std::uint64_t taken = memory_taken();
   next = std::chrono::steady_clock::now() + kEvery;
-  if (allowed.scan.empty() || taken <= allowed.taken_before + allowed.bytes) return;
+  if (taken <= allowed.taken_before + allowed.bytes) return;
   throw InputError(
       allowed.scan,
       fmt::format("takes {:.3g} GB with what is made of it so far, over the {:.3g} GB that it may take",

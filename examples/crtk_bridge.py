@@ -16,6 +16,7 @@ try:
 except ImportError:
     import rclpy  # ROS 2: has not been tried
     import rclpy.node
+    import rclpy.qos
     from crtk_msgs.msg import OperatingState
 from geometry_msgs.msg import PoseStamped, WrenchStamped
 from sensor_msgs.msg import Joy
@@ -56,7 +57,8 @@ class Ros2:
         self.listen(OperatingState, topic, lambda message: heard(message.state, message.is_homed))
 
     def speak(self, kind, topic, latch=False):
-        return self.node.create_publisher(kind, topic, 1).publish
+        kept = rclpy.qos.DurabilityPolicy.TRANSIENT_LOCAL if latch else rclpy.qos.DurabilityPolicy.VOLATILE
+        return self.node.create_publisher(kind, topic, rclpy.qos.QoSProfile(depth=1, durability=kept)).publish
 
 
 class CrtkArm:

@@ -23,7 +23,8 @@ struct HardwareKind {
   /// What an address looks like; empty where there is none.
   std::string_view address;
   std::string_view meaning;
-  /// What is there, after half a second at most; gives no motor power. Throws InputError as `open` does.
+  /// What is there, after a second at most. Commands nothing: motors stay as they are, whoever
+  /// drives them. Throws InputError as `open` does.
   std::string (*look_for)(const std::string& address);
   /// Throws InputError naming the device and why it cannot be had.
   std::unique_ptr<Connection> (*open)(const std::string& address);

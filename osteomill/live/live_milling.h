@@ -83,8 +83,9 @@ class LiveMilling {
   using TakePicture = std::function<std::vector<unsigned char>()>;
   /// Goes on over whatever is changed or taken back. Where something has been felt already the session begins
   /// anew as with another algorithm, so that the recording holds all it takes to replay it; it has then
-  /// ticks from when that is prepared; what is being prepared is waited for. `picture`, where it is given, is taken now and at the end. Throws
-  /// InputError where the file cannot be written; a recording is then not going on.
+  /// ticks from when that is prepared; what is being prepared is waited for. `picture`, where it is given, is
+  /// taken now and at the end. Throws InputError where the file cannot be written; a recording is then not
+  /// going on.
   void start_recording(const std::filesystem::path& path, RunDescription description,
                        TakePicture picture = {});
   /// Returns the recording's name. Throws as Recorder::close does.

@@ -18,7 +18,7 @@ namespace osteomill {
 /// file of the final name is always whole. Twice a second what was recorded so far is made safe: a program
 /// that is killed leaves a NAME.part.h5 that read_recording opens, less the last second at the most, and that
 /// other HDF5 programs open too (hence the extension stays last). A recorder destroyed without `close`, as
-/// when an exception passes, leaves the same, less nothing. NAME.part.h5 is written over by the next
+/// when an exception passes, leaves the same, with nothing missing. NAME.part.h5 is written over by the next
 /// recording of that name.
 ///
 /// Where several sessions follow each other on a bone (LiveSession::replace), `begin_session` is told of

@@ -251,6 +251,9 @@ void RecordingFile::begin_session(const SessionStart& start, std::uint64_t row) 
 void RecordingFile::write_bricks(hid_t session, std::span<const DensityBlock> bricks) const {
   std::vector<std::int32_t> first;
   std::vector<float> densities;
+  constexpr std::size_t kVoxels = std::tuple_size_v<decltype(DensityBlock::densities)>;
+  first.reserve(3 * bricks.size());
+  densities.reserve(kVoxels * bricks.size());
   for (const DensityBlock& brick : bricks) {
     for (const int n : {brick.first.i, brick.first.j, brick.first.k}) first.push_back(n);
     densities.insert(densities.end(), brick.densities.begin(), brick.densities.end());
@@ -258,8 +261,8 @@ void RecordingFile::write_bricks(hid_t session, std::span<const DensityBlock> br
   constexpr hsize_t kBricksOfChunk = 32;
   Column first_column = create_column(session, "brick_first", H5T_STD_I32LE, "voxels", 3, kBricksOfChunk);
   append_to<std::int32_t>(first_column, first);
-  Column density_column = create_column(session, "brick_densities", H5T_IEEE_F32LE, "",
-                                        std::tuple_size_v<decltype(DensityBlock::densities)>, kBricksOfChunk);
+  Column density_column =
+      create_column(session, "brick_densities", H5T_IEEE_F32LE, "", kVoxels, kBricksOfChunk);
   append_to<float>(density_column, densities);
 }
 

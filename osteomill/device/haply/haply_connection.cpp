@@ -75,8 +75,7 @@ bool is_false(const Json* value) {
 bool is_inverse3(const Json& device) {
   const Json* const type = member(member(&device, "config"), "type");
   const Json* const id = member(&device, "device_id");
-  return id != nullptr && id->is_string() &&
-         (type == nullptr || *type == "inverse3" || *type == "inverse3x");
+  return id != nullptr && id->is_string() && (type == nullptr || *type == "inverse3" || *type == "inverse3x");
 }
 
 // By what it says of itself; where it says nothing it is not known to be calibrated.
