@@ -129,6 +129,14 @@ TEST_F(ConnectedDeviceTest, AHandleThatIsHeldStillIsFelt) {
   EXPECT_NEAR(felt_N(), 2, 1e-9);
 }
 
+// What is milled in the tick in which the bone is met is paid by what was given before.
+TEST_F(ConnectedDeviceTest, WhatMayNotBeDrivenGivesNothingInTheAirEither) {
+  EXPECT_EQ(device_.given_share(), 1);
+  hardware_.input.not_driven = "is not calibrated";
+  run(2);
+  EXPECT_EQ(device_.given_share(), 0);
+}
+
 TEST_F(ConnectedDeviceTest, WhatMayNotBeDrivenGivesPosesAndGetsZeroUntilItMay) {
   asked_.force_N = {0, 0, 10};
   run(10);

@@ -147,6 +147,17 @@ TEST_F(Haply, ASlowServiceGetsNoLargerSteps) {
   }
 }
 
+TEST_F(Haply, OneThatGivesNoPoseIsNotStarted) {
+  service_.is_mute = true;
+  ConnectedDevice device([this] { return open_haply(service_.address()); });
+  try {
+    device.start();
+    FAIL() << "it gave no pose";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("has given no pose for"), std::string::npos) << error.what();
+  }
+}
+
 TEST_F(Haply, ReadsMmFromMAndTheGrip) {
   open();
   DeviceInput input;

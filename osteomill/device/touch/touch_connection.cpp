@@ -135,7 +135,7 @@ class TouchConnection final : public Connection {
   }
   ~TouchConnection() override {
     // No frame sends it where the library hangs.
-    for (const auto end = Clock::now() + 20ms; !is_lost_ && !send({}) && Clock::now() < end;)
+    for (const auto end = Clock::now() + 20ms; !send({}) && Clock::now() < end;)
       std::this_thread::sleep_for(kBetweenLooks);
     close();
   }
@@ -209,11 +209,11 @@ class TouchConnection final : public Connection {
     hd_.set_doubles(kCurrentForce, driven_.force_N.data());
     if (capabilities_.driven == 6) hd_.set_doubles(kCurrentTorque, driven_.torque_Nmm.data());
     hd_.end_frame(device_.handle);
+    if (is_zero(driven_)) zero_of_.store(sent.number, std::memory_order_release);
     if (const unsigned code = hd_.get_error().code; code != 0 && !is_of_force(code)) {
       is_lost_.store(true, std::memory_order_relaxed);
       return kContinue;
     }
-    if (is_zero(driven_)) zero_of_.store(sent.number, std::memory_order_release);
     input_.write(input);
     frames_done_.fetch_add(1, std::memory_order_release);
     return kContinue;
