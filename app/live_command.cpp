@@ -201,10 +201,13 @@ void run_live(LiveOptions options, const std::string& command_line) {
     pictures.emplace(*bone, densities.reference, entry, events_on_terminal(), !options.scan.scan.empty());
     RunDescription run = milling.describe(loaded.name, command_line);
     holder.describe(run);
-    milling.start_recording(options.record, run, [&] {
+    milling.start_recording(options.record, run, [&](std::string_view name) {
       std::optional<std::vector<unsigned char>> png;
-      milling.read_bone([&](const Volume& now) { png = pictures->of(now, events_on_terminal()); });
-      return png.value_or(std::vector<unsigned char>{});
+      milling.read_bone([&](const Volume& now) {
+        png = name == kPictureAlong ? pictures->along(now, events_on_terminal())
+                                    : pictures->of(now, events_on_terminal());
+      });
+      return png;
     });
   }
   milling.start();

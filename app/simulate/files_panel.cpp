@@ -72,7 +72,10 @@ void FilesPanel::record(ViewState& view, Simulation& simulation) {
     } else {
       simulation.milling.start_recording(
           name("recording.h5"), simulation.describe(),
-          [this, camera = view.camera] { return encode_png(take_picture_(camera)); });
+          [this, camera = view.camera](std::string_view name) -> std::optional<std::vector<unsigned char>> {
+            if (name == kPictureAlong) return std::nullopt;
+            return encode_png(take_picture_(camera));
+          });
       recording_since_ = std::chrono::steady_clock::now();
       view.message.clear();
     }

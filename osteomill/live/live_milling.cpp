@@ -19,7 +19,7 @@ using namespace std::chrono_literals;
 
 void add_picture(Recorder& recorder, std::string_view name, const LiveMilling::TakePicture& take) {
   if (!take) return;
-  if (auto png = take(); !png.empty()) recorder.add_picture(std::string(name), std::move(png));
+  if (auto png = take(name)) recorder.add_picture(std::string(name), *std::move(png));
 }
 
 // As LiveSession has them.
@@ -209,7 +209,8 @@ std::filesystem::path LiveMilling::stop_recording() {
   if (live_.session_number() < recorded_from_) finish_preparing();
   const std::unique_ptr<Recorder> recorder = std::move(recorder_);
   listen();
-  add_picture(*recorder, kPictureAfter, std::exchange(take_picture_, {}));
+  for (const auto name : {kPictureAfter, kPictureAlong}) add_picture(*recorder, name, take_picture_);
+  take_picture_ = {};
   recorder->close();
   return recorder_path_;
 }

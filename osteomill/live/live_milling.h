@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "osteomill/live/bone_follower.h"
@@ -79,13 +80,14 @@ class LiveMilling {
 
   /// What a recording says of the milling as it is now.
   RunDescription describe(const std::string& scan_name, const std::string& command_line) const;
-  /// A PNG of the bone as it is; empty where there is none.
-  using TakePicture = std::function<std::vector<unsigned char>()>;
+  /// The PNG of the bone as it is that this name stands for (kPictureBefore and the others); nothing where
+  /// there is none.
+  using TakePicture = std::function<std::optional<std::vector<unsigned char>>(std::string_view name)>;
   /// Goes on over whatever is changed or taken back. Where something has been felt already the session begins
   /// anew as with another algorithm, so that the recording holds all it takes to replay it; it has then
-  /// ticks from when that is prepared; what is being prepared is waited for. `picture`, where it is given, is
-  /// taken now and at the end. Throws InputError where the file cannot be written; a recording is then not
-  /// going on.
+  /// ticks from when that is prepared; what is being prepared is waited for. Pictures, where `picture` is
+  /// given, are taken now and at the end. Throws InputError where the file cannot be written; a recording is
+  /// then not going on.
   void start_recording(const std::filesystem::path& path, RunDescription description,
                        TakePicture picture = {});
   /// Returns the recording's name. Throws as Recorder::close does.

@@ -296,7 +296,7 @@ TEST_F(LiveMillingTest, ARecordingGoesOnOverWhateverIsDone) {
   mill(0.1);
   unsigned char pictures = 0;
   milling_.start_recording(path, milling_.describe("ball", ""),
-                           [&] { return std::vector<unsigned char>{++pictures}; });
+                           [&](std::string_view) { return std::vector<unsigned char>{++pictures}; });
   milling_.finish_preparing();
   mill(0.1);
   setup_.algorithm = algorithm_named("surface-points");
@@ -325,10 +325,12 @@ TEST_F(LiveMillingTest, ARecordingGoesOnOverWhateverIsDone) {
   EXPECT_EQ(milling_.stop_recording(), path);
 
   const Recording recording = read_recording(path);
-  ASSERT_EQ(recording.pictures.size(), 2u);
+  ASSERT_EQ(recording.pictures.size(), 3u);
   EXPECT_EQ(recording.pictures[0].name, kPictureAfter);
   EXPECT_EQ(recording.pictures[0].png, std::vector<unsigned char>{2});
-  EXPECT_EQ(recording.pictures[1].png, std::vector<unsigned char>{1});
+  EXPECT_EQ(recording.pictures[1].name, kPictureAlong);
+  EXPECT_EQ(recording.pictures[1].png, std::vector<unsigned char>{3});
+  EXPECT_EQ(recording.pictures[2].png, std::vector<unsigned char>{1});
   ASSERT_EQ(recording.sessions.size(), 5u);
   EXPECT_FALSE(recording.sessions[0].start.bricks.empty()) << "of what was milled before";
   EXPECT_TRUE(recording.sessions[4].start.bricks.empty()) << "as scanned";
