@@ -4,10 +4,8 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-#ifdef __SSE2__
-#include <emmintrin.h>
-#endif
 
+#include "osteomill/numbers/bits_above.h"
 #include "osteomill/surface/cube_cases.h"
 
 namespace osteomill {
@@ -17,28 +15,6 @@ namespace {
 // Vertices keep this far from voxel centres, as a share of the edge: where densities equal the isovalue,
 // the vertices about a voxel would fall together and the triangles between them have no area.
 constexpr float kMinShare = 1.0f / 512;
-
-float max_float_not_above(double value) {
-  constexpr float kMax = std::numeric_limits<float>::max();
-  const auto rounded =
-      static_cast<float>(std::clamp(value, static_cast<double>(-kMax), static_cast<double>(kMax)));
-  return static_cast<double>(rounded) <= value ? rounded : std::nextafter(rounded, -kMax);
-}
-
-// Bit n where value n of `count` (a multiple of 4) is above the threshold.
-std::uint32_t bits_above(const float* values, int count, float threshold) {
-  std::uint32_t bits = 0;
-#ifdef __SSE2__
-  const __m128 level = _mm_set1_ps(threshold);
-  for (int n = 0; n < count; n += 4) {
-    const int four = _mm_movemask_ps(_mm_cmpgt_ps(_mm_loadu_ps(values + n), level));
-    bits |= static_cast<std::uint32_t>(four) << n;
-  }
-#else
-  for (int n = 0; n < count; ++n) bits |= static_cast<std::uint32_t>(values[n] > threshold) << n;
-#endif
-  return bits;
-}
 
 // Bits `first` to `last`.
 constexpr std::uint32_t bit_span(int first, int last) {
@@ -50,7 +26,7 @@ constexpr std::uint32_t bit_span(int first, int last) {
 BrickMesher::BrickMesher(const DensityView& view)
     : view_(view),
       layout_(view.grid.geometry().dims),
-      threshold_(max_float_not_above(view.isovalue)),
+      threshold_(largest_float_up_to(view.isovalue)),
       outside_(std::min(view.grid.outside_density(), threshold_)),
       mirrored_(view.grid.geometry().direction.determinant() < 0) {
   const GridGeometry& geometry = view.grid.geometry();

@@ -4,7 +4,7 @@
 #include <bit>
 #include <cmath>
 
-#include "osteomill/haptics/bone_points/bits_above.h"
+#include "osteomill/numbers/bits_above.h"
 
 namespace osteomill {
 
@@ -272,8 +272,7 @@ SurfaceLattice::Found SurfaceLattice::find_bone(const Nodes& nodes, Rows& rows) 
     const int step = k % line_step_ == 0 ? 1 : line_step_;
     for (int j = 0; j <= brick_nodes_; j += step) {
       const float* row = nodes.at(0, j, k);
-      std::uint32_t bits = eight_above(row, isovalue_);
-      if (brick_nodes_ == 16) bits |= static_cast<std::uint32_t>(eight_above(row + 8, isovalue_)) << 8;
+      std::uint32_t bits = bits_above(row, brick_nodes_, isovalue_);
       bits |= static_cast<std::uint32_t>(row[brick_nodes_] > isovalue_) << brick_nodes_;
       rows[row_index(j, k)] = bits;
       any |= bits;

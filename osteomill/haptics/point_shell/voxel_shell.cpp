@@ -4,7 +4,7 @@
 #include <bit>
 #include <cmath>
 
-#include "osteomill/haptics/bone_points/bits_above.h"
+#include "osteomill/numbers/bits_above.h"
 #include "osteomill/numbers/work_progress.h"
 #include "osteomill/volume/sampling.h"
 
@@ -91,7 +91,8 @@ std::uint8_t VoxelShell::bone_byte(int byte, int j, int k) const {
   const int count = std::min(8, geometry_.dims[0] - first);
   const DensityGrid& grid = volume_->grid();
   if (stride_ == 1 && count == 8) {
-    return eight_above(grid.densities().data() + grid.linear_index({first, j, k}), bone_above_);
+    const float* row = grid.densities().data() + grid.linear_index({first, j, k});
+    return static_cast<std::uint8_t>(bits_above(row, 8, bone_above_));
   }
   unsigned bits = 0;
   for (int n = 0; n < count; ++n) {
