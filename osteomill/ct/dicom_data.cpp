@@ -1,10 +1,9 @@
 #include "osteomill/ct/dicom_data.h"
 
-#include <algorithm>
-#include <array>
 #include <cstdint>
 #include <exception>
 #include <system_error>
+#include <utility>
 
 #include <dcmtk/config/osconfig.h>
 #include <dcmtk/dcmdata/dcistrmf.h>
@@ -130,12 +129,8 @@ void check_bounds(const fs::path& path) {
 
 }  // namespace
 
-JpegComplaints::JpegComplaints() {
-  jpeg_complained = false;
-}
-
-bool JpegComplaints::any() const {
-  return jpeg_complained;
+bool take_jpeg_complaint() {
+  return std::exchange(jpeg_complained, false);
 }
 
 std::optional<DicomData> load_dicom(const fs::path& path, std::uint64_t max_bytes) {
@@ -155,13 +150,13 @@ std::optional<DicomData> load_dicom(const fs::path& path, std::uint64_t max_byte
 void with_dicom_stack(const std::function<void()>& work) {
   struct Job {
     const std::function<void()>& work;
-    const WorkProgress::OfOtherThread progress;
+    const WorkProgress::Listener progress;
     std::exception_ptr thrown = nullptr;
-  } job{work, {}};
+  } job{work, WorkProgress::of_this_thread()};
   const auto run = [](void* argument) -> void* {
     auto& mine = *static_cast<Job*>(argument);
     try {
-      const WorkProgress::OfOtherThread::Here here(mine.progress);
+      const WorkProgress here(mine.progress);
       mine.work();
     } catch (...) {
       mine.thrown = std::current_exception();

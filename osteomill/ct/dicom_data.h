@@ -27,12 +27,8 @@ std::optional<DicomData> load_dicom(const std::filesystem::path& path, std::uint
 /// `load_dicom` lets through.
 void with_dicom_stack(const std::function<void()>& work);
 
-/// While it lives, on this thread: whether a JPEG decoder complained that its data are damaged. It then goes
-/// on with what it has, and says so in DCMTK's log alone.
-class JpegComplaints {
- public:
-  JpegComplaints();
-  bool any() const;
-};
+/// Whether a JPEG decoder complained in this thread, since this was last asked, that its data are damaged. It
+/// then goes on with what it has, and says so in DCMTK's log alone.
+bool take_jpeg_complaint();
 
 }  // namespace osteomill

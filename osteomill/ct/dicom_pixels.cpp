@@ -2,7 +2,6 @@
 #include <cstdint>
 #include <cstring>
 #include <span>
-#include <type_traits>
 
 #include <dcmtk/config/osconfig.h>
 #include <dcmtk/dcmdata/dcfcache.h>
@@ -23,33 +22,26 @@ namespace {
 template <typename Stored>
 void rescale(std::span<const char> values, const StoredPixels& pixels, float* densities) {
   // Bits above the stored ones may hold anything; the sign is in the highest stored one.
-  using Wide = std::make_unsigned_t<Stored>;
-  const int unused = static_cast<int>(8 * sizeof(Stored)) - pixels.bits_stored;
+  const int unused = 32 - pixels.bits_stored;
   const char* bytes = values.data();
   for (std::size_t n = 0; n < values.size() / sizeof(Stored); ++n, bytes += sizeof(Stored)) {
-    Wide raw = 0;
+    Stored raw = 0;
     std::memcpy(&raw, bytes, sizeof(raw));
-    raw = static_cast<Wide>(raw << unused);
-    const auto value = static_cast<Stored>(static_cast<Stored>(raw) >> unused);
-    densities[n] = static_cast<float>(pixels.slope * static_cast<double>(value) + pixels.intercept);
+    const std::uint32_t highest = std::uint32_t{raw} << unused;
+    const auto value = pixels.is_signed ? static_cast<double>(static_cast<std::int32_t>(highest) >> unused)
+                                        : static_cast<double>(highest >> unused);
+    densities[n] = static_cast<float>(pixels.slope * value + pixels.intercept);
   }
 }
 
 void rescale_frame(std::span<const char> values, const StoredPixels& pixels, float* densities) {
-  const int kind = pixels.is_signed ? -pixels.bits_allocated : pixels.bits_allocated;
-  switch (kind) {
+  switch (pixels.bits_allocated) {
     case 8:
       return rescale<std::uint8_t>(values, pixels, densities);
-    case -8:
-      return rescale<std::int8_t>(values, pixels, densities);
     case 16:
       return rescale<std::uint16_t>(values, pixels, densities);
-    case -16:
-      return rescale<std::int16_t>(values, pixels, densities);
-    case 32:
-      return rescale<std::uint32_t>(values, pixels, densities);
     default:
-      return rescale<std::int32_t>(values, pixels, densities);
+      return rescale<std::uint32_t>(values, pixels, densities);
   }
 }
 
@@ -132,11 +124,11 @@ void FrameReader::read_by_dcmtk(DcmDataset& data, std::size_t frame, DcmFileCach
   auto* pixels = dynamic_cast<DcmPixelData*>(element);
   if (pixels == nullptr) throw fault("has pixels of a kind that is not supported");
   Uint32 fragment = 0;
-  const JpegComplaints complaints;
   const OFCondition read =
       pixels->getUncompressedFrame(&data, static_cast<Uint32>(frame), fragment, values_.data(),
                                    static_cast<Uint32>(values_.size()), colours, cache);
-  if (read.bad() || complaints.any()) throw damaged();
+  const bool is_damaged = take_jpeg_complaint();
+  if (read.bad() || is_damaged) throw damaged();
 }
 
 // In a data set of its own that holds nothing else, so that no table of offsets leads elsewhere.

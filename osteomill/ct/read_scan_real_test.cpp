@@ -9,7 +9,6 @@
 
 #include "osteomill/ct/read_scan.h"
 #include "osteomill/files/input_error.h"
-#include "osteomill/volume/boundaries.h"
 #include "osteomill/volume/isovalue.h"
 #include "osteomill/volume/label_scan.h"
 

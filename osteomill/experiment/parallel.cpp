@@ -37,9 +37,9 @@ void run_in_parallel(std::size_t count, std::size_t threads, const std::function
       if (!fault) done(++finished);
     }
   };
-  const WorkProgress::OfOtherThread progress;
+  const WorkProgress::Listener progress = WorkProgress::of_this_thread();
   const auto work_beside = [&] {
-    const WorkProgress::OfOtherThread::Here here(progress);
+    const WorkProgress here(progress);
     work();
   };
   std::vector<std::jthread> others;

@@ -46,30 +46,23 @@ class WorkProgress {
     int exceptions_;
   };
 
-  /// The same listener for work that goes on in another thread, while this one waits for it.
-  class OfOtherThread {
-   public:
-    OfOtherThread();
-    /// There, as long as what it returns lives.
-    class Here {
-     public:
-      explicit Here(const OfOtherThread& other);
-      ~Here();
-      Here(const Here&) = delete;
-      Here& operator=(const Here&) = delete;
-    };
-
-   private:
-    friend class Here;
-    Listener* listener_;
-    double from_, to_, at_;
-  };
+  /// Listens, to a WorkProgress in another thread, for the one that listens to this thread's work, which
+  /// waits for that one's.
+  static Listener of_this_thread();
 
  private:
+  // What a thread works on: a piece of the whole, and how far the whole is.
+  struct Work {
+    Listener* listener = nullptr;
+    double from = 0;
+    double to = 1;
+    double at = 0;
+  };
+  static thread_local Work work_;
+
   Listener listener_;
-  // Of the work around, which listens on once this is over.
-  Listener* outer_listener_;
-  double outer_from_, outer_to_, outer_at_;
+  // The work around, which is listened to again once this is over.
+  Work outer_;
 };
 
 }  // namespace osteomill

@@ -65,9 +65,9 @@ TEST(WorkProgress, GoesOnInAThreadThatIsWaitedFor) {
   const WorkProgress progress([&](double share) { told.push_back(share); });
   {
     const WorkProgress::Part part(0.5);
-    const WorkProgress::OfOtherThread mine;
+    const WorkProgress::Listener mine = WorkProgress::of_this_thread();
     std::jthread([&] {
-      const WorkProgress::OfOtherThread::Here here(mine);
+      const WorkProgress there(mine);
       long_work(2);
     }).join();
   }

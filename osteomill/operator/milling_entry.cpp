@@ -11,7 +11,6 @@
 #include <fmt/format.h>
 
 #include "osteomill/files/input_error.h"
-#include "osteomill/numbers/work_progress.h"
 #include "osteomill/volume/sampling.h"
 
 namespace osteomill {
@@ -175,9 +174,7 @@ std::optional<MillingEntry> find_entry(const Volume& volume, const MillingTool& 
     const auto outward_W = outward_normal(volume, point_W, GradientKernel::smoothed);
     if (!outward_W || outward_W->dot(-direction_W) < kLooksAtIt) continue;
     if (is_pit(lattice, place.first, place.second, direction_W)) continue;
-    MillingEntry entry;
-    entry.point_W = point_W;
-    entry.direction_W = direction_W;
+    const MillingEntry entry{point_W, direction_W};
     if (can_stay(volume, tool, entry)) return entry;
   }
   return std::nullopt;
@@ -186,17 +183,6 @@ std::optional<MillingEntry> find_entry(const Volume& volume, const MillingTool& 
 // A little more than 4 mm: a layer of voxels at just that depth counts whichever way its last bit falls.
 constexpr double kTop_mm = 4.0 + 1e-6;
 constexpr int kSides = 36;
-
-template <typename Visit>
-void for_each_bone_voxel(const Volume& volume, const Visit& visit) {
-  const auto& dims = volume.geometry().dims;
-  for (int k = 0; k < dims[2]; ++k) {
-    WorkProgress::done(static_cast<std::size_t>(k), static_cast<std::size_t>(dims[2]));
-    for_each({{0, 0, k}, {dims[0] - 1, dims[1] - 1, k}}, [&](const VoxelIndex& v) {
-      if (volume.is_bone(v)) visit(volume.geometry().world_from_voxel(v));
-    });
-  }
-}
 
 Vec3 unit_direction(const std::optional<Vec3>& direction) {
   if (!direction) return -Vec3::UnitZ();
@@ -215,7 +201,8 @@ struct Top {
 Top top_of_bone(const Volume& volume, const Vec3& direction_W) {
   double min_depth_mm = std::numeric_limits<double>::infinity();
   Top top;
-  for_each_bone_voxel(volume, [&](const Vec3& p) {
+  for_each_bone_voxel(volume, [&](const VoxelIndex& v) {
+    const Vec3 p = volume.geometry().world_from_voxel(v);
     const double depth_mm = direction_W.dot(p);
     if (depth_mm < min_depth_mm) {
       min_depth_mm = depth_mm;
@@ -227,7 +214,8 @@ Top top_of_bone(const Volume& volume, const Vec3& direction_W) {
   }
   Vec3 sum_mm = Vec3::Zero();
   double count = 0;
-  for_each_bone_voxel(volume, [&](const Vec3& p) {
+  for_each_bone_voxel(volume, [&](const VoxelIndex& v) {
+    const Vec3 p = volume.geometry().world_from_voxel(v);
     if (direction_W.dot(p) > min_depth_mm + kTop_mm) return;
     sum_mm += p - top.highest_W;
     count += 1;
@@ -276,9 +264,7 @@ MillingEntry given_entry(const Volume& volume, const MillingTool& tool, const Ve
   if (!entry_W.allFinite()) throw InputError("entry", "its numbers must be finite");
   const auto point_W = surface_along(volume, entry_W, direction_W);
   if (!point_W) throw InputError("entry", "the line from it along the direction meets no bone");
-  MillingEntry entry;
-  entry.point_W = *point_W;
-  entry.direction_W = direction_W;
+  const MillingEntry entry{*point_W, direction_W};
   if (!tool_is_free(volume, tool, pose_above(entry, tool, kStartAbove_mm))) {
     throw InputError("entry", "bone is in the way of the tool above it; another direction may be free");
   }

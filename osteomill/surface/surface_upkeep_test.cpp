@@ -31,7 +31,7 @@ TEST(SurfaceUpkeep, KeptUpIsTheSurfaceMadeFromScratch) {
   for (const float density : {0.0f, 1000.0f}) {
     for (int k = 40; k < 46; ++k) {
       const VoxelBox row{{12, 25, k}, {20, 25, k}};
-      for (int i = row.first.i; i <= row.last.i; ++i) volume.set_density({i, 25, k}, density);
+      for (int i = row.first.i; i <= row.last.i; ++i) volume.lower_density({i, 25, k}, density);
       volume.refresh_bricks(row);
       upkeep.mark(row);
     }
@@ -51,7 +51,7 @@ TEST(SurfaceUpkeep, ABrickThatIsMilledHasItsMeshAloneAndItsLevelsOnceItRests) {
   const std::vector<ChangedBrick> first = upkeep.remesh(DensityView(volume));
   EXPECT_TRUE(std::all_of(first.begin(), first.end(), has_levels));
   const VoxelBox row{{12, 25, 45}, {20, 25, 45}};
-  for (int i = row.first.i; i <= row.last.i; ++i) volume.set_density({i, 25, 45}, 0);
+  for (int i = row.first.i; i <= row.last.i; ++i) volume.lower_density({i, 25, 45}, 0);
   volume.refresh_bricks(row);
   std::size_t milled = 0;
   for (int n = 0; n < 2 * SurfaceUpkeep::kCallsAtRest; ++n) {

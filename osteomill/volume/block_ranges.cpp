@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "osteomill/numbers/work_progress.h"
-
 namespace osteomill {
 
 namespace {
@@ -30,11 +28,8 @@ void take_in(BlockRanges::Range& range, float lower_density) {
 BlockRanges::BlockRanges(const DensityGrid& grid)
     : dims_(grid.geometry().all_voxels().bricks(kBrickVoxels).dims()) {
   ranges_.resize(cell_count(dims_));
-  for_each(grid.geometry().all_voxels().bricks(kBrickVoxels), [&](const VoxelIndex& brick) {
-    range(brick) = range_of(grid, brick);
-    if (brick.i == 0 && brick.j == 0)
-      WorkProgress::done(static_cast<std::size_t>(brick.k), static_cast<std::size_t>(dims_[2]));
-  });
+  for_each_with_progress(grid.geometry().all_voxels().bricks(kBrickVoxels),
+                         [&](const VoxelIndex& brick) { range(brick) = range_of(grid, brick); });
 }
 
 VoxelBox BlockRanges::counted(const VoxelIndex& brick, const GridGeometry& geometry) {
@@ -61,10 +56,6 @@ std::uint32_t BlockRanges::changes_in(const VoxelBox& voxels) const {
   std::uint32_t changes = 0;
   for_each(voxels.bricks(kBrickVoxels), [&](const VoxelIndex& brick) { changes += at(brick).changes; });
   return changes;
-}
-
-void BlockRanges::lower(const VoxelIndex& v, float density) {
-  for_each(bricks_counting({v, v}), [&](const VoxelIndex& brick) { take_in(range(brick), density); });
 }
 
 void BlockRanges::lower_row(int j, int k, const int* columns, const float* densities, std::size_t count) {

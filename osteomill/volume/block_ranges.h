@@ -11,7 +11,7 @@ namespace osteomill {
 
 /// The least and greatest density in bricks of 8 x 8 x 8 voxels, each brick counted with one more layer of
 /// voxels at its upper sides, so that it speaks of every trilinear cell that begins in it. Ranges hold every
-/// density; after `lower` the upper end may be too wide until `refresh`.
+/// density; after `lower_row` the upper end may be too wide until `refresh`.
 class BlockRanges {
  public:
   static constexpr int kBrickVoxels = 8;
@@ -36,9 +36,8 @@ class BlockRanges {
   /// Safe in the haptic tick.
   std::uint32_t changes_in(const VoxelBox& voxels) const;
 
-  /// Takes a new, lower density of one voxel in. Safe in the haptic tick.
-  void lower(const VoxelIndex& v, float density);
-  /// The same for `count` voxels of one row, whose columns ascend. Safe in the haptic tick.
+  /// Takes new, lower densities of `count` voxels of one row in, whose columns ascend. Safe in the haptic
+  /// tick.
   void lower_row(int j, int k, const int* columns, const float* densities, std::size_t count);
   /// Makes the ranges of all bricks that touch `box` exact again.
   void refresh(const DensityGrid& grid, const VoxelBox& box);

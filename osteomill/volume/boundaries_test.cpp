@@ -1,5 +1,3 @@
-#include "osteomill/volume/boundaries.h"
-
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -7,6 +5,8 @@
 
 #include "tests/shapes.h"
 #include <gtest/gtest.h>
+
+#include "osteomill/volume/isovalue.h"
 
 namespace osteomill {
 namespace {

@@ -53,22 +53,6 @@ std::optional<double> median(const ForEach& for_each) {
   return static_cast<double>(std::bit_cast<float>((rank >> 31) != 0 ? rank & ~(1u << 31) : ~rank));
 }
 
-// Takes every bone voxel to `visit`; bricks without bone are passed over.
-template <typename Visit>
-void for_each_bone_voxel(const Volume& volume, const Visit& visit) {
-  constexpr int kSide = BlockRanges::kBrickVoxels;
-  const VoxelBox all = volume.geometry().all_voxels();
-  for_each(all.bricks(kSide), [&](const VoxelIndex& brick) {
-    if (brick.i == 0 && brick.j == 0)
-      WorkProgress::done(static_cast<std::size_t>(brick.k),
-                         static_cast<std::size_t>(volume.bricks().dims()[2]));
-    if (static_cast<double>(volume.bricks().at(brick).max) <= volume.isovalue()) return;
-    for_each(VoxelBox::of_brick(brick, kSide).intersected(all), [&](const VoxelIndex& v) {
-      if (volume.is_bone(v)) visit(v);
-    });
-  });
-}
-
 // The density some steps out of the bone along an axis, where all voxels on the way are in the grid and not
 // bone.
 std::optional<float> density_away(const Volume& volume, const VoxelIndex& bone, std::size_t axis, int sign) {

@@ -6,6 +6,7 @@
 
 #include "osteomill/geometry/pose.h"
 #include "osteomill/numbers/row_major.h"
+#include "osteomill/numbers/work_progress.h"
 
 namespace osteomill {
 
@@ -73,6 +74,15 @@ void for_each(const VoxelBox& box, const Use& use) {
     for (int j = box.first.j; j <= box.last.j; ++j) {
       for (int i = box.first.i; i <= box.last.i; ++i) use(VoxelIndex{i, j, k});
     }
+  }
+}
+
+/// The same where it takes long: says after each slice how far it is (WorkProgress).
+template <typename Use>
+void for_each_with_progress(const VoxelBox& box, const Use& use) {
+  for (int k = box.first.k; k <= box.last.k; ++k) {
+    WorkProgress::done(static_cast<std::size_t>(k - box.first.k), static_cast<std::size_t>(box.dims()[2]));
+    for_each({{box.first.i, box.first.j, k}, {box.last.i, box.last.j, k}}, use);
   }
 }
 

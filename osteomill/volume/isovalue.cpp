@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdlib>
+#include <iterator>
 #include <optional>
 #include <span>
 #include <utility>
@@ -21,14 +23,19 @@ struct Sample {
   double density;
   // Sum over the axes of the densities' difference across the voxel.
   double change;
+  float gradient_per_mm;
 };
 
-constexpr double kMaxSamples = 4e6;
+bool is_less_dense(const Sample& a, const Sample& b) {
+  return a.density < b.density;
+}
 
 std::vector<Sample> samples_of(const DensityGrid& grid) {
-  const auto& dims = grid.geometry().dims;
-  const int step = static_cast<int>(
-      std::ceil(std::cbrt(static_cast<double>(grid.geometry().voxel_count()) / kMaxSamples)));
+  constexpr double kMaxSamples = 4e6;
+  const GridGeometry& geometry = grid.geometry();
+  const auto& dims = geometry.dims;
+  const int step =
+      static_cast<int>(std::ceil(std::cbrt(static_cast<double>(geometry.voxel_count()) / kMaxSamples)));
   const auto at = [&](std::array<int, 3> v, std::size_t axis, int by) {
     v[axis] = std::clamp(v[axis] + by, 0, dims[axis] - 1);
     return static_cast<double>(grid[{v[0], v[1], v[2]}]);
@@ -39,14 +46,18 @@ std::vector<Sample> samples_of(const DensityGrid& grid) {
     for (int j = 0; j < dims[1]; j += step) {
       for (int i = 0; i < dims[0]; i += step) {
         double change = 0;
-        for (std::size_t axis = 0; axis < 3; ++axis)
-          change += std::abs(at({i, j, k}, axis, 1) - at({i, j, k}, axis, -1));
-        samples.push_back({static_cast<double>(grid[{i, j, k}]), change});
+        Vec3 gradient;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          const double rise = at({i, j, k}, axis, 1) - at({i, j, k}, axis, -1);
+          change += std::abs(rise);
+          const auto n = static_cast<Eigen::Index>(axis);
+          gradient[n] = rise / (2 * geometry.spacing_mm[n]);
+        }
+        samples.push_back(
+            {static_cast<double>(grid[{i, j, k}]), change, static_cast<float>(gradient.norm())});
       }
     }
   }
-  std::sort(samples.begin(), samples.end(),
-            [](const Sample& a, const Sample& b) { return a.density < b.density; });
   return samples;
 }
 
@@ -175,13 +186,8 @@ bool touches(const DensityGrid& grid, double isovalue, std::size_t axis, int pla
   return static_cast<double>(bone) > kTouchingShare * dims[across] * dims[up];
 }
 
-}  // namespace
-
-namespace {
-
-SuggestedIsovalue isovalue_of_bone(const DensityGrid& grid, bool in_hounsfield_units) {
-  const std::vector<Sample> all = samples_of(grid);
-  const std::span<const Sample> samples = all;
+// Of samples that ascend.
+SuggestedIsovalue isovalue_of_bone(std::span<const Sample> samples, bool in_hounsfield_units) {
   if (!(samples.back().density > samples.front().density)) {
     return {samples.front().density, "the only density there is"};
   }
@@ -206,11 +212,103 @@ SuggestedIsovalue isovalue_of_bone(const DensityGrid& grid, bool in_hounsfield_u
                                found.around, found.bone)};
 }
 
+constexpr std::size_t kLevels = 200;
+using Curve = std::array<double, kLevels>;
+
+Curve blurred(const Curve& curve) {
+  constexpr double kBlur_levels = 2;
+  Curve result{};
+  for (std::size_t n = 0; n < kLevels; ++n) {
+    double weights = 0;
+    for (std::size_t m = 0; m < kLevels; ++m) {
+      const double off = (static_cast<double>(m) - static_cast<double>(n)) / kBlur_levels;
+      const double weight = std::exp(-0.5 * off * off);
+      result[n] += weight * curve[m];
+      weights += weight;
+    }
+    result[n] /= weights;
+  }
+  return result;
+}
+
+// The mean gradient along the isosurface of a density.
+struct Level {
+  double density;
+  double gradient;
+};
+
+bool is_less_sharp(const Level& a, const Level& b) {
+  return a.gradient < b.gradient;
+}
+
+// The least gradient on the way from a level, down or up, to one that is sharper than it.
+template <typename Way>
+double least_before_sharper(const Level& from, Way next, Way end) {
+  const Way sharper =
+      std::find_if(next, end, [&](const Level& level) { return level.gradient > from.gradient; });
+  return next == sharper ? from.gradient : std::min_element(next, sharper, is_less_sharp)->gradient;
+}
+
+// Changes the order of the samples.
+std::vector<Boundary> boundaries_of(std::vector<Sample>& samples) {
+  constexpr double kProminence = 0.1, kLeastArea = 0.01;
+  // The rarest at both ends would only make the levels wide.
+  const auto rare = static_cast<std::ptrdiff_t>(samples.size() / 2000);
+  const auto density_at = [&](std::ptrdiff_t place) {
+    std::nth_element(samples.begin(), samples.begin() + place, samples.end(), is_less_dense);
+    return samples[static_cast<std::size_t>(place)].density;
+  };
+  const double min = density_at(rare), max = density_at(std::ssize(samples) - 1 - rare);
+  if (!(max > min)) return {};
+  const double width = (max - min) / kLevels;
+  // An isosurface's area is what the gradient sums up to over the voxels that lie between two levels.
+  Curve area{}, gradient{};
+  for (const Sample& sample : samples) {
+    const double level = (sample.density - min) / width;
+    if (!(level >= 0 && level <= kLevels)) continue;
+    const auto n = std::min(static_cast<std::size_t>(level), kLevels - 1);
+    const auto g = static_cast<double>(sample.gradient_per_mm);
+    area[n] += g;
+    gradient[n] += g * g;
+  }
+  area = blurred(area);
+  gradient = blurred(gradient);
+  const double least_area = kLeastArea * *std::max_element(area.begin(), area.end());
+  std::vector<Level> levels;
+  for (std::size_t n = 0; n < kLevels; ++n) {
+    if (area[n] > 0 && area[n] >= least_area)
+      levels.push_back({min + (static_cast<double>(n) + 0.5) * width, gradient[n] / area[n]});
+  }
+  std::vector<std::vector<Level>::const_iterator> sharpest;
+  for (auto level = levels.cbegin(); level != levels.cend(); ++level) {
+    const double below = least_before_sharper(*level, std::make_reverse_iterator(level), levels.crend());
+    const double above = least_before_sharper(*level, std::next(level), levels.cend());
+    if (level->gradient - std::max(below, above) >= kProminence * level->gradient && level->gradient > 0)
+      sharpest.push_back(level);
+  }
+  std::vector<Boundary> boundaries;
+  for (std::size_t n = 0; n < sharpest.size(); ++n) {
+    const auto begin = n > 0 ? sharpest[n - 1] : levels.cbegin();
+    const auto end = n + 1 < sharpest.size() ? sharpest[n + 1] : levels.cend();
+    boundaries.push_back({sharpest[n]->density, std::min_element(begin, sharpest[n], is_less_sharp)->density,
+                          std::min_element(sharpest[n], end, is_less_sharp)->density});
+  }
+  return boundaries;
+}
+
 }  // namespace
 
+std::vector<Boundary> boundaries_in(const DensityGrid& grid) {
+  std::vector<Sample> samples = samples_of(grid);
+  return boundaries_of(samples);
+}
+
 SuggestedIsovalue suggest_isovalue(const DensityGrid& grid, bool in_hounsfield_units) {
-  SuggestedIsovalue suggested = isovalue_of_bone(grid, in_hounsfield_units);
-  suggested.boundaries = boundaries_in(grid);
+  std::vector<Sample> samples = samples_of(grid);
+  std::vector<Boundary> boundaries = boundaries_of(samples);
+  std::sort(samples.begin(), samples.end(), is_less_dense);
+  SuggestedIsovalue suggested = isovalue_of_bone(samples, in_hounsfield_units);
+  suggested.boundaries = std::move(boundaries);
   std::string others;
   for (const Boundary& boundary : suggested.boundaries) {
     if (boundary.below < suggested.value && suggested.value < boundary.above) continue;

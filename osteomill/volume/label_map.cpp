@@ -7,27 +7,16 @@
 
 #include <fmt/format.h>
 
-#include "osteomill/numbers/work_progress.h"
 #include "osteomill/volume/density_grid.h"
 
 namespace osteomill {
 
 namespace {
 
-// Calls `use` with every voxel of a box, along i fastest.
-template <typename Use>
-void for_each_voxel(const VoxelBox& box, const Use& use) {
-  for (int k = box.first.k; k <= box.last.k; ++k) {
-    WorkProgress::done(0);
-    for (int j = box.first.j; j <= box.last.j; ++j)
-      for (int i = box.first.i; i <= box.last.i; ++i) use(VoxelIndex{i, j, k});
-  }
-}
-
 VoxelBox labelled_box(const GridGeometry& own, const std::vector<LabelMap::Place>& places) {
   VoxelBox box;
   std::size_t n = 0;
-  for_each_voxel(own.all_voxels(), [&](const VoxelIndex& v) {
+  for_each_with_progress(own.all_voxels(), [&](const VoxelIndex& v) {
     if (places[n++] != 0) box.include(v);
   });
   return box;
@@ -76,7 +65,7 @@ LabelMap::LabelMap(std::vector<Label> labels, const GridGeometry& scan, const Gr
     const VoxelIndex in_own = nearest_voxel(own, scan.world_from_voxel(v));
     return own_voxels.contains(in_own) ? places[row_major(own.dims, in_own.i, in_own.j, in_own.k)] : 0;
   };
-  for_each_voxel(covered(scan, own, labelled_box(own, places)), [&](const VoxelIndex& v) {
+  for_each_with_progress(covered(scan, own, labelled_box(own, places)), [&](const VoxelIndex& v) {
     const Place place = at_nearest(v);
     if (place == 0) return;
     box_.include(v);
@@ -85,7 +74,7 @@ LabelMap::LabelMap(std::vector<Label> labels, const GridGeometry& scan, const Gr
   if (box_.empty()) return;
   dims_ = box_.dims();
   places_.reserve(cell_count(dims_));
-  for_each_voxel(box_, [&](const VoxelIndex& v) { places_.push_back(at_nearest(v)); });
+  for_each_with_progress(box_, [&](const VoxelIndex& v) { places_.push_back(at_nearest(v)); });
   WordHash hash;
   for (const VoxelIndex& corner : {box_.first, box_.last})
     for (const int n : {corner.i, corner.j, corner.k}) hash.add(static_cast<std::uint64_t>(n));

@@ -54,29 +54,25 @@ bool looks_like_labels(const DensityGrid& grid) {
   std::size_t edges = 0, far = 0;
   const float* label = grid.densities().data();
   const auto rank_at = [&](const float* at) { return ranks[static_cast<std::size_t>(*at)]; };
-  for (int k = 0; k < dims[2]; ++k) {
-    WorkProgress::done(0);
-    for (int j = 0; j < dims[1]; ++j) {
-      for (int i = 0; i < dims[0]; ++i, ++label) {
-        const int rank = rank_at(label);
-        if (rank == 0) continue;
-        const std::array<int, 3> v{i, j, k};
-        bool between = false;
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-          const int below = v[axis] > 0 ? rank_at(label - paces[axis]) : rank;
-          const int above = v[axis] + 1 < dims[axis] ? rank_at(label + paces[axis]) : rank;
-          between = between || (below < rank && rank < above) || (above < rank && rank < below);
-          for (const int other : {below, above}) {
-            edges += other != rank ? 1 : 0;
-            far += std::abs(other - rank) > 1 ? 1 : 0;
-          }
-        }
-        Count& count = counts[static_cast<std::size_t>(rank)];
-        ++count.voxels;
-        count.between += between ? 1 : 0;
+  for_each_with_progress(grid.geometry().all_voxels(), [&](const VoxelIndex& voxel) {
+    const float* const here = label++;
+    const int rank = rank_at(here);
+    if (rank == 0) return;
+    const std::array<int, 3> v{voxel.i, voxel.j, voxel.k};
+    bool between = false;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const int below = v[axis] > 0 ? rank_at(here - paces[axis]) : rank;
+      const int above = v[axis] + 1 < dims[axis] ? rank_at(here + paces[axis]) : rank;
+      between = between || (below < rank && rank < above) || (above < rank && rank < below);
+      for (const int other : {below, above}) {
+        edges += other != rank ? 1 : 0;
+        far += std::abs(other - rank) > 1 ? 1 : 0;
       }
     }
-  }
+    Count& count = counts[static_cast<std::size_t>(rank)];
+    ++count.voxels;
+    count.between += between ? 1 : 0;
+  });
   const auto often = [](double share, std::size_t count, std::size_t of) {
     return static_cast<double>(count) >= share * static_cast<double>(of);
   };

@@ -44,10 +44,6 @@ inline double interpolate_cell(const float* pair00, const float* pair10, const f
                      interpolate(along_i(pair01), along_i(pair11), fy), fz);
 }
 
-bool is_interior(const DensityGrid& grid, const VoxelIndex& first, const VoxelIndex& last) {
-  return grid.contains(first) && grid.contains(last);
-}
-
 // Of a cell that is not wholly in the grid.
 std::array<float, 8> cell_corners(const DensityGrid& grid, const VoxelIndex& c) {
   std::array<float, 8> corner;
@@ -77,7 +73,7 @@ using Block = std::array<float, 64>;
 Block voxels_around(const DensityGrid& grid, const VoxelIndex& cell) {
   Block block;
   const VoxelIndex first{cell.i - 1, cell.j - 1, cell.k - 1};
-  const bool interior = is_interior(grid, first, {cell.i + 2, cell.j + 2, cell.k + 2});
+  const bool interior = grid.contains(first) && grid.contains({cell.i + 2, cell.j + 2, cell.k + 2});
   std::size_t n = 0;
   for (int k = 0; k < 4; ++k) {
     for (int j = 0; j < 4; ++j) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <memory>
@@ -36,22 +37,22 @@ class Volume {
   /// Any `v`; there is no bone beyond the border.
   bool is_bone_or_outside(const VoxelIndex& v) const { return grid_.contains(v) && is_bone(v); }
 
-  /// Lowers one voxel's density (milling never raises it). Safe in the haptic tick.
-  void lower_density(const VoxelIndex& v, float density) { set_density(v, density); }
-  /// Lowers `count` voxels of one row, whose columns ascend. Safe in the haptic tick, and faster than one by
-  /// one. Not in the tick they may rise too, if `refresh_bricks` follows as after `set_density`.
+  /// Lowers the densities of `count` voxels of one row, whose columns ascend (milling never raises them).
+  /// Safe in the haptic tick. Not in the tick, nor while anyone works on this bone, they may rise too, as
+  /// when a cut is taken back, if `refresh_bricks` follows.
   void lower_row(int j, int k, const int* columns, const float* densities, std::size_t count) {
-    for (std::size_t n = 0; n < count; ++n) set_hashed({columns[n], j, k}, densities[n]);
+    for (std::size_t n = 0; n < count; ++n) {
+      const VoxelIndex v{columns[n], j, k};
+      const std::size_t voxel = grid_.linear_index(v);
+      change_hash_ += density_hash(voxel, densities[n]) - density_hash(voxel, grid_[v]);
+      grid_.set(v, densities[n]);
+    }
     bricks_.lower_row(j, k, columns, densities, count);
   }
+  /// The same for one voxel.
+  void lower_density(const VoxelIndex& v, float density) { lower_row(v.j, v.k, &v.i, &density, 1); }
   /// See DensityGrid; by another thread than the one that lowers where that one must not wait.
   void prepare_about(const VoxelBox& changed) { grid_.prepare_about(changed); }
-  /// Writes one voxel's density, up or down, as when a cut is taken back: where it rose `refresh_bricks` is
-  /// due. Not for the tick, nor while anyone works on this bone.
-  void set_density(const VoxelIndex& v, float density) {
-    set_hashed(v, density);
-    bricks_.lower(v, density);
-  }
   /// By what the densities differ from those it was made with, however that came about: 0 where they do not,
   /// and the same for all bones of one scan that are the same. Safe in the haptic tick.
   std::uint64_t change_hash() const { return change_hash_; }
@@ -65,18 +66,28 @@ class Volume {
   void refresh_bricks(const VoxelBox& box) { bricks_.refresh(grid_, box); }
 
  private:
-  void set_hashed(const VoxelIndex& v, float density) {
-    const std::size_t voxel = grid_.linear_index(v);
-    change_hash_ += density_hash(voxel, density) - density_hash(voxel, grid_[v]);
-    grid_.set(v, density);
-  }
-
   DensityGrid grid_;
   BlockRanges bricks_;
   double isovalue_ = 0;
   std::uint64_t change_hash_ = 0;
   std::shared_ptr<const LabelMap> labels_;
 };
+
+/// Takes every bone voxel to `visit`, along i fastest; passes over bricks without bone. Long work.
+template <typename Visit>
+void for_each_bone_voxel(const Volume& volume, const Visit& visit) {
+  constexpr int kSide = BlockRanges::kBrickVoxels;
+  VoxelBox rows = volume.geometry().all_voxels();
+  const int last = std::exchange(rows.last.i, rows.last.i / kSide);
+  // Here i counts bricks.
+  for_each_with_progress(rows, [&](const VoxelIndex& row) {
+    const BlockRanges::Range& range = volume.bricks().at(row.i, row.j / kSide, row.k / kSide);
+    if (static_cast<double>(range.max) <= volume.isovalue()) return;
+    for (VoxelIndex v{kSide * row.i, row.j, row.k}; v.i <= std::min(last, kSide * row.i + kSide - 1); ++v.i) {
+      if (volume.is_bone(v)) visit(v);
+    }
+  });
+}
 
 /// What milling changed in one step: every voxel whose density fell lies in `voxels` (empty where none did).
 struct VolumeChange {
