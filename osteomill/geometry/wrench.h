@@ -11,6 +11,13 @@ namespace osteomill {
 struct Wrench {
   Vec3 force_N = Vec3::Zero();
   Vec3 torque_Nmm = Vec3::Zero();
+
+  friend Wrench operator+(const Wrench& a, const Wrench& b) {
+    return {a.force_N + b.force_N, a.torque_Nmm + b.torque_Nmm};
+  }
+  friend Wrench operator*(double share, const Wrench& wrench) {
+    return {share * wrench.force_N, share * wrench.torque_Nmm};
+  }
 };
 
 /// The most that a device may be asked for.

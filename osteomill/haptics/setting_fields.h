@@ -2,9 +2,7 @@
 
 #include <memory>
 #include <span>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "osteomill/haptics/algorithm_description.h"
 

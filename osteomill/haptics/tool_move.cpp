@@ -53,4 +53,10 @@ double share_within(const MoveBound& bound, const ToolMove& move) {
       share_within(bound.middle.rotation_rad, bound.radius_rad, Vec3::Zero(), move.rotation_rad));
 }
 
+Pose moved_within(const MoveBound& bound, const Pose& start, const Pose& target) {
+  const ToolMove whole = move_between(start, target);
+  const double share = share_within(bound, whole);
+  return share >= 1 ? target : moved(start, share * whole);
+}
+
 }  // namespace osteomill

@@ -11,6 +11,11 @@ struct ToolMove {
   Vec3 rotation_rad = Vec3::Zero();
 };
 
+/// A part of the move; a tool that slides along the bone while it turns stays on it.
+inline ToolMove operator*(double share, const ToolMove& move) {
+  return {share * move.translation_mm, share * move.rotation_rad};
+}
+
 /// The move that takes the tool from `from` to `to`.
 ToolMove move_between(const Pose& from, const Pose& to);
 /// The pose after the move.
@@ -45,5 +50,8 @@ MoveBound move_bound(const Pose& X_WT, const Pose& X_WD_before, const Pose& X_WD
 double share_within(const Vec3& middle, double radius, const Vec3& from, const Vec3& change);
 /// The share of a move from the tick's start that stays within both balls.
 double share_within(const MoveBound& bound, const ToolMove& move);
+/// On the way from the tick's start to the target as far as that; the target itself, to the last bit, where
+/// it lies within both balls.
+Pose moved_within(const MoveBound& bound, const Pose& start, const Pose& target);
 
 }  // namespace osteomill

@@ -19,6 +19,18 @@ TEST(ToolMove, AMoveBetweenPosesLeadsFromOneToTheOther) {
   EXPECT_LT(rotation_vector(after.orientation * to.orientation.conjugate()).norm(), 1e-12);
 }
 
+TEST(ToolMove, AMoveIsCutShortByOneFactor) {
+  const Pose start{{1, 2, 3}, quaternion_from_rotation_vector({0.1, 0.2, 0.3})};
+  const Pose target = moved(start, {{3, 0, 4}, {0, 0.1, 0}});
+  const ToolMove by_length = move_between(start, moved_within({{}, 0.5, 0.05}, start, target));
+  EXPECT_TRUE(by_length.translation_mm.isApprox(Vec3(0.3, 0, 0.4)));
+  EXPECT_TRUE(by_length.rotation_rad.isApprox(Vec3(0, 0.01, 0)));
+  const ToolMove by_angle = move_between(start, moved_within({{}, 10, 0.05}, start, target));
+  EXPECT_TRUE(by_angle.translation_mm.isApprox(Vec3(1.5, 0, 2)));
+  EXPECT_TRUE(by_angle.rotation_rad.isApprox(Vec3(0, 0.05, 0)));
+  EXPECT_EQ(moved_within({{}, 10, 1}, start, target), target);
+}
+
 // A point of the tool on a surface without friction, at a lever, with the device pressing further: the two
 // springs let the tool follow by a known part of the device's move, which needs no release.
 TEST(ToolMove, WhereASurfaceLeadsAPressedToolLiesWithinTheBound) {

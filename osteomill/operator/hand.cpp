@@ -1,8 +1,6 @@
 #include "osteomill/operator/hand.h"
 
 #include <cmath>
-#include <stdexcept>
-#include <string>
 
 #include "osteomill/numbers/positive.h"
 

@@ -1,7 +1,6 @@
 #include "osteomill/operator/milling_script.h"
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 #include <string>
 

@@ -80,10 +80,9 @@ void SimulatedHandle::advance(const Wrench& other) {
   motor_wrench_ = delay_line_[oldest_];
 
   const double h = settings_.substep_s;
-  const Vec3 force_N = motor_wrench_.force_N + other.force_N;
-  const Vec3 torque_Nmm = motor_wrench_.torque_Nmm + other.torque_Nmm;
-  velocity_.linear_mm_s += h * (kMmPerM / settings_.mass_kg) * force_N;
-  velocity_.angular_rad_s += h / (kMmPerM * settings_.inertia_kg_m2) * torque_Nmm;
+  const Wrench all = motor_wrench_ + other;
+  velocity_.linear_mm_s += h * (kMmPerM / settings_.mass_kg) * all.force_N;
+  velocity_.angular_rad_s += h / (kMmPerM * settings_.inertia_kg_m2) * all.torque_Nmm;
   X_WD_.position_mm += h * velocity_.linear_mm_s;
   X_WD_.orientation =
       (quaternion_from_rotation_vector(h * velocity_.angular_rad_s) * X_WD_.orientation).normalized();

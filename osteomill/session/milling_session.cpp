@@ -165,10 +165,7 @@ MillingSession::SafeStep MillingSession::step_safely(const Pose& X_WD, double dt
   }
   HapticStep step = algorithm_->step(X_WD, dt_s);
   if (spindle_on) step.wrench.force_N += vibration_.force_N(step.X_WT, step.burr_force_W_N.norm(), dt_s);
-  if (milling_.reaction_share > 0) {
-    step.wrench.force_N += reaction_.wrench().force_N;
-    step.wrench.torque_Nmm += reaction_.wrench().torque_Nmm;
-  }
+  if (milling_.reaction_share > 0) step.wrench = step.wrench + reaction_.wrench();
   const bool is_usable = is_finite(step.X_WT) && step.burr_force_W_N.allFinite();
   const SafeWrench safe = guard_.pass(is_usable ? step.wrench : kNotFinite, X_WD, dt_s);
   if (safe.fault == WrenchFault::not_finite) {

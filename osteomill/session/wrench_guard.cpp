@@ -1,7 +1,6 @@
 #include "osteomill/session/wrench_guard.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace osteomill {
 
@@ -11,13 +10,6 @@ namespace {
 double usual_tick_s(double dt_s) {
   constexpr double kUsualTick_s = 1e-3;
   return dt_s > 0 ? std::min(dt_s, kUsualTick_s) : 0;
-}
-
-Wrench operator*(double share, const Wrench& wrench) {
-  return {share * wrench.force_N, share * wrench.torque_Nmm};
-}
-Wrench operator+(const Wrench& a, const Wrench& b) {
-  return {a.force_N + b.force_N, a.torque_Nmm + b.torque_Nmm};
 }
 
 // What a handle of 0.1 kg read once a millisecond shows without shaking: a third of m / T.

@@ -1,13 +1,11 @@
 #include "osteomill/haptics/barrier_shell/barrier_shell.h"
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 
 #include <Eigen/Cholesky>
 
 #include "osteomill/haptics/barrier_shell/certificate.h"
-#include "osteomill/haptics/tool_move.h"
 #include "osteomill/tool/sample_points.h"
 #include "osteomill/volume/sampling.h"
 
@@ -320,7 +318,6 @@ BarrierShell::State BarrierShell::solve(const Pose& X_WD, double dt_s) {
       } else {
         step.move_T *= kShorter;
         step.reaches_device = false;
-        ++counts_.backtracks;
       }
     }
     if (!taken) break;
@@ -343,8 +340,7 @@ HapticStep BarrierShell::report(const State& state, const Pose& X_WD, double dt_
   result.wrench = coupling_.wrench_on_hand(X_WT_, X_WD);
   if (ramp_ < 1) {
     ramp_ = std::min(1.0, ramp_ + std::max(0.0, dt_s) / kRamp_s);
-    result.wrench.force_N = ramp_ * result.wrench.force_N + (1 - ramp_) * ramp_from_.force_N;
-    result.wrench.torque_Nmm = ramp_ * result.wrench.torque_Nmm + (1 - ramp_) * ramp_from_.torque_Nmm;
+    result.wrench = ramp_ * result.wrench + (1 - ramp_) * ramp_from_;
     // Bone is paid for with what the hand gives.
     result.burr_force_W_N *= ramp_;
   }

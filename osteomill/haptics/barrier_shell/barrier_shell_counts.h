@@ -11,7 +11,6 @@ struct Counts {
   std::uint64_t ticks = 0;
   /// Sums over the points.
   std::uint64_t passes = 0;
-  std::uint64_t backtracks = 0;
   /// Ticks that ended before the solver was done, at the best certified pose.
   std::uint64_t unfinished = 0;
   /// Ticks at whose start the stored energy was above that at the end of the tick before, with the device

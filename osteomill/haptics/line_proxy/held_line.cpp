@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "osteomill/haptics/line_proxy/bone_surface.h"
 #include "osteomill/volume/sampling.h"
 
 namespace osteomill::line_proxy {
@@ -33,10 +32,6 @@ constexpr double kReachBeyond_voxels = 2;
 // than twice as much on a ball with an edge of one voxel.
 constexpr double kRelaxation = 0.5;
 constexpr double kGivenWay_mm = 0.1;
-
-ToolMove operator*(double share, const ToolMove& move) {
-  return {share * move.translation_mm, share * move.rotation_rad};
-}
 
 }  // namespace
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <stdexcept>
 
 #include "osteomill/haptics/barrier_shell/barrier_shell.h"
@@ -167,8 +166,7 @@ SurfacePoints::Stand SurfacePoints::stand(const Pose& X_WD, double dt_s) {
   double ahead = 1;
   if (way_mm > room_mm) {
     ahead = room_mm / way_mm;
-    const ToolMove way = move_between(X_WH, X_WD);
-    at.X_WV = moved(X_WH, {ahead * way.translation_mm, ahead * way.rotation_rad});
+    at.X_WV = moved(X_WH, ahead * move_between(X_WH, X_WD));
   }
   at.coupled = 1 - (1 - kAlwaysCoupled) * ahead;
   at.move = move_between(X_WV_before_.value_or(at.X_WV), at.X_WV);
@@ -195,8 +193,7 @@ HapticStep SurfacePoints::step(const Pose& X_WD, double dt_s) {
   result.wrench.force_N = soften(sphere_.force_W_N);
   result.burr_force_W_N = -result.wrench.force_N;
   if (held_tool_) {
-    result.wrench.force_N += at.coupled * at.held.wrench.force_N;
-    result.wrench.torque_Nmm += at.coupled * at.held.wrench.torque_Nmm;
+    result.wrench = result.wrench + at.coupled * at.held.wrench;
     result.wrench.force_N +=
         damping_N(result.wrench.force_N.norm(), X_WD.position_mm - result.X_WT.position_mm, dt_s);
     // Of what the hand gives, a wall or the shaft may hold a part: the held tool tells what the burr presses
