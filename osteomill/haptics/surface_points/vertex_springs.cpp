@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "osteomill/volume/sampling.h"
 
@@ -62,26 +63,8 @@ std::optional<double> first_bone(const Volume& volume, const VoxelRay& ray, doub
   return std::nullopt;
 }
 
-}  // namespace
-
-double interpolated_share(double vertex_density, double free_density, double isovalue) {
-  return (vertex_density - isovalue) / (vertex_density - free_density);
-}
-
-Vec3 interpolated_spring(const Volume& volume, const Vec3& vertex_W, const Vec3& free_W) {
-  const double vertex_density = density_at(volume.grid(), vertex_W);
-  if (!(vertex_density > volume.isovalue())) return Vec3::Zero();
-  const double free_density = density_at(volume.grid(), free_W);
-  return interpolated_share(vertex_density, free_density, volume.isovalue()) * (free_W - vertex_W);
-}
-
-Vec3 marched_spring(const Volume& volume, const Vec3& vertex_W, const Vec3& free_W, double known_free_mm) {
-  const bool starts_in_bone = known_free_mm <= 0 && is_bone_at(volume, free_W);
-  if (starts_in_bone) return free_W - vertex_W;
-  const std::optional<double> share = share_to_bone(volume, free_W, vertex_W, known_free_mm);
-  return share ? Vec3((1 - *share) * (free_W - vertex_W)) : Vec3(Vec3::Zero());
-}
-
+// How far along the segment from `from_W` to `to_W` bone is first met, as a share in [0, 1]; nothing where it
+// is not, or where `from_W` is in bone.
 std::optional<double> share_to_bone(const Volume& volume, const Vec3& from_W, const Vec3& to_W,
                                     double known_free_mm) {
   const double way_mm = (to_W - from_W).norm();
@@ -97,6 +80,22 @@ std::optional<double> share_to_bone(const Volume& volume, const Vec3& from_W, co
   const double free_mm = std::min(way_mm, known_free_mm);
   if (above_isovalue(volume, ray, free_mm) > 0) return share(0, free_mm);
   return free_mm < way_mm ? share(free_mm, way_mm) : std::nullopt;
+}
+
+}  // namespace
+
+Vec3 interpolated_spring(const Volume& volume, const Vec3& vertex_W, const Vec3& free_W) {
+  const double vertex_density = density_at(volume.grid(), vertex_W);
+  if (!(vertex_density > volume.isovalue())) return Vec3::Zero();
+  const double free_density = density_at(volume.grid(), free_W);
+  const double share = (vertex_density - volume.isovalue()) / (vertex_density - free_density);
+  return share * (free_W - vertex_W);
+}
+
+Vec3 marched_spring(const Volume& volume, const Vec3& vertex_W, const Vec3& free_W, double known_free_mm) {
+  if (known_free_mm <= 0 && is_bone_at(volume, free_W)) return free_W - vertex_W;
+  const std::optional<double> share = share_to_bone(volume, free_W, vertex_W, known_free_mm);
+  return share ? Vec3((1 - *share) * (free_W - vertex_W)) : Vec3(Vec3::Zero());
 }
 
 bool bone_near_disc(const Volume& volume, const Vec3& centre_W, const Vec3& axis_W, double radius_mm) {
