@@ -1,5 +1,8 @@
 #include "osteomill/haptics/point_shell/contacts.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "osteomill/haptics/bone_points/tool_from_grid.h"
 
 namespace osteomill::point_shell {
@@ -26,25 +29,34 @@ ContactSum contact_sum(const EnergySum& sum) {
 
 }  // namespace
 
-ToolContacts contacts_by_octree(const VoxelShell& shell, const ToolSignedDistance& tool, const Pose& X_WT,
+double burr_top_mm(const MillingTool& tool) {
+  const double squared =
+      tool.burr_radius_mm * tool.burr_radius_mm - tool.shaft_radius_mm * tool.shaft_radius_mm;
+  return std::sqrt(std::max(0.0, squared));
+}
+
+ToolContacts contacts_by_octree(const VoxelShell& shell, const MillingTool& tool,
+                                const SampledDistanceField& field, const Pose& X_WT,
                                 double stiffness_N_per_mm3) {
   const ToolFromGrid X_TG(shell, X_WT);
+  const ToolBox box = bounding_box(tool);
+  const double burr_top = burr_top_mm(tool);
   ToolContacts contacts;
-  shell.octree().visit([&](int level, int i, int j,
-                           int k) { return is_apart(tool.box(), shell.node_box(level, i, j, k), X_TG); },
-                       [&](int bi, int bj, int bk) {
-                         const Vec3 origin_T = X_TG * shell.brick_origin_G(bi, bj, bk);
-                         shell.points().for_each_of(
-                             shell.brick_index(bi, bj, bk), [&](const ShellPoint& point) {
-                               const Vec3 point_T = origin_T + X_TG.turn * point.position_mm();
-                               const std::optional<ToolDistance> distance = tool.distance(point_T);
-                               if (!distance || !(distance->distance_mm < 0)) return;
-                               const double k = stiffness_N_per_mm3 * static_cast<double>(point.area_mm2);
-                               ContactSum& part = tool.is_burr(point_T) ? contacts.burr : contacts.shaft;
-                               part.add(-k * distance->distance_mm, k, distance->outward_T, point_T);
-                               ++contacts.touching;
-                             });
-                       });
+  const auto add = [&](const ShellPoint& point, const Vec3& origin_T) {
+    const Vec3 point_T = origin_T + X_TG.turn * point.position_mm();
+    const std::optional<ToolDistance> distance = field.at(point_T);
+    if (!distance || !(distance->distance_mm < 0)) return;
+    const double k = stiffness_N_per_mm3 * static_cast<double>(point.area_mm2);
+    ContactSum& part = point_T.z() < burr_top ? contacts.burr : contacts.shaft;
+    part.add(-k * distance->distance_mm, k, distance->outward_T, point_T);
+    ++contacts.touching;
+  };
+  shell.visit_bricks([&](const VoxelShell::NodeBox& node) { return is_apart(box, node, X_TG); },
+                     [&](std::size_t brick, const Vec3& origin_G) {
+                       const Vec3 origin_T = X_TG * origin_G;
+                       shell.points().for_each_of(brick,
+                                                  [&](const ShellPoint& point) { add(point, origin_T); });
+                     });
   const Mat3 R_WT = X_WT.orientation.toRotationMatrix();
   return {contacts.burr.in_outer(R_WT), contacts.shaft.in_outer(R_WT), contacts.touching};
 }

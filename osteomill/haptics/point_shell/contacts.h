@@ -1,8 +1,5 @@
 #pragma once
 
-#include <cmath>
-#include <optional>
-
 #include "osteomill/geometry/wrench.h"
 #include "osteomill/haptics/bone_points/near_bone.h"
 #include "osteomill/haptics/point_shell/voxel_shell.h"
@@ -52,8 +49,7 @@ struct ContactSum {
   }
 };
 
-/// What touches the tool: burr (below the height on the axis at which the shaft takes over from the sphere)
-/// and shaft apart.
+/// What touches the tool, burr and shaft apart.
 struct ToolContacts {
   ContactSum burr;
   ContactSum shaft;
@@ -66,38 +62,16 @@ struct ToolContacts {
   }
 };
 
-/// The tool as the shell's points meet it ("SPO", Eriksson 2012, 6.1): a sampled signed distance field. Safe
-/// in the haptic tick once made.
-class ToolSignedDistance {
- public:
-  ToolSignedDistance() = default;
-  explicit ToolSignedDistance(const MillingTool& tool)
-      : box_(bounding_box(tool)),
-        field_(SampledDistanceField(tool, SampledDistanceField::suitable_spacing_mm(tool))) {
-    // A burr no wider than the shaft ends at its equator, where the shaft begins.
-    const double squared =
-        tool.burr_radius_mm * tool.burr_radius_mm - tool.shaft_radius_mm * tool.shaft_radius_mm;
-    burr_top_mm_ = squared > 0 ? std::sqrt(squared) : 0.0;
-  }
-
-  /// Everything that touches lies in this box of T.
-  const ToolBox& box() const { return box_; }
-  /// Distance to the tool; nothing where that is known to be positive without a look.
-  std::optional<ToolDistance> distance(const Vec3& point_T) const { return field_->at(point_T); }
-  /// Whether a contact there is the burr's: below the height at which the shaft comes out of the sphere.
-  bool is_burr(const Vec3& point_T) const { return point_T.z() < burr_top_mm_; }
-
- private:
-  ToolBox box_;
-  double burr_top_mm_ = 0;
-  std::optional<SampledDistanceField> field_;
-};
+/// The height on the axis below which a contact is the burr's: where the shaft comes out of the sphere, or
+/// the equator of a burr no wider than its shaft.
+double burr_top_mm(const MillingTool& tool);
 
 /// The points of the shell that lie in the tool at `X_WT`, summed in W's axes (Eriksson 2012, 6.2 and 6.3):
 /// boxes of the octree against the tool's bounding box, then each point of the boxes left against the tool's
-/// distance. A point at the depth d pushes with `stiffness_N_per_mm3` times its area times d. Safe in the
-/// haptic tick.
-ToolContacts contacts_by_octree(const VoxelShell& shell, const ToolSignedDistance& tool, const Pose& X_WT,
+/// sampled distance ("SPO", 6.1). A point at the depth d pushes with `stiffness_N_per_mm3` times its area
+/// times d. Safe in the haptic tick.
+ToolContacts contacts_by_octree(const VoxelShell& shell, const MillingTool& tool,
+                                const SampledDistanceField& field, const Pose& X_WT,
                                 double stiffness_N_per_mm3);
 
 /// The points of the isosurface that push the tool at `X_WT`, each by its penalty, summed in single precision

@@ -41,22 +41,26 @@ ToolContacts by_bricks(BoneBricks& bricks, const MillingTool& tool, const Pose& 
   return contacts_by_bricks(bricks, near, tool, X_WT, penalty);
 }
 
+SampledDistanceField sampled(const MillingTool& tool) {
+  return SampledDistanceField(tool, SampledDistanceField::suitable_spacing_mm(tool));
+}
+
 BoneBricks fine_bricks(const Volume& volume, double spacing_mm = BoneBricks::kSpacing_mm) {
   return BoneBricks(volume, spacing_mm, BoneBricks::Points::fine);
 }
 
 // The slow plain answers: every point of the shell.
-ToolContacts contacts_by_brute_force(const VoxelShell& shell, const ToolSignedDistance& tool,
+ToolContacts contacts_by_brute_force(const VoxelShell& shell, const SampledDistanceField& field,
                                      const Pose& X_WT) {
   ToolContacts contacts;
   const Mat3 R_WT = X_WT.orientation.toRotationMatrix();
   shell.for_each_point([&](const Vec3& point_W, double area) {
     const Vec3 point_T = X_WT.inverse() * point_W;
-    const auto distance = tool.distance(point_T);
+    const auto distance = field.at(point_T);
     if (!distance || !(distance->distance_mm < 0)) return;
     ++contacts.touching;
     const double k = kStiffness_N_per_mm3 * area;
-    (tool.is_burr(point_T) ? contacts.burr : contacts.shaft)
+    (point_T.z() < burr_top_mm(kTool) ? contacts.burr : contacts.shaft)
         .add(-k * distance->distance_mm, k, R_WT * distance->outward_T, point_W - X_WT.position_mm);
   });
   return contacts;
@@ -136,14 +140,14 @@ GridGeometry turned_cube(int voxels, double spacing_mm) {
 TEST(OctreeContacts, FindsWhatLookingAtEveryPointFinds) {
   std::mt19937 bits(5);
   const Volume volume = shape_volume(turned_cube(60, 0.2), ball({0.3, 0.1, 0}, 5));
-  const ToolSignedDistance tool(kTool);
+  const SampledDistanceField field = sampled(kTool);
   for (const int scale : {1, 3}) {
     const VoxelShell shell(volume, scale);
     int touched = 0;
     for (int n = 0; n < 150; ++n) {
       const Pose X_WT = random_pose(bits, 7);
-      const ToolContacts by_octree = contacts_by_octree(shell, tool, X_WT, kStiffness_N_per_mm3);
-      const ToolContacts by_all = contacts_by_brute_force(shell, tool, X_WT);
+      const ToolContacts by_octree = contacts_by_octree(shell, kTool, field, X_WT, kStiffness_N_per_mm3);
+      const ToolContacts by_all = contacts_by_brute_force(shell, field, X_WT);
       EXPECT_EQ(by_octree.touching, by_all.touching);
       expect_near(by_octree.burr, by_all.burr, 1e-9);
       expect_near(by_octree.shaft, by_all.shaft, 1e-9);
@@ -233,8 +237,8 @@ auto surface_points_apart(double spacing_mm) {
 
 auto voxel_centres(int scale) {
   return [scale](const Volume& volume) {
-    return [shell = VoxelShell(volume, scale), tool = ToolSignedDistance(kTool)](const Pose& X_WT) {
-      return contacts_by_octree(shell, tool, X_WT, kStiffness_N_per_mm3);
+    return [shell = VoxelShell(volume, scale), field = sampled(kTool)](const Pose& X_WT) {
+      return contacts_by_octree(shell, kTool, field, X_WT, kStiffness_N_per_mm3);
     };
   };
 }
@@ -322,11 +326,11 @@ TEST(BallContact, PaperIsSofterButPushesOutwards) {
   std::mt19937 bits(10);
   const Volume volume = shape_volume(centred_cube(72, 0.125), ball({0, 0, 0}, 4));
   const VoxelShell shell(volume, 1);
-  const ToolSignedDistance tool(kTool);
+  const SampledDistanceField field = sampled(kTool);
   for (int n = 0; n < 100; ++n) {
     const Vec3 direction = random_vector(bits).normalized();
     const Pose X_WT{5.1 * direction, smallest_rotation(Vec3::UnitZ(), direction)};
-    const ContactSum sum = contacts_by_octree(shell, tool, X_WT, kStiffness_N_per_mm3).total();
+    const ContactSum sum = contacts_by_octree(shell, kTool, field, X_WT, kStiffness_N_per_mm3).total();
     const double ratio = sum.force_N.dot(direction) / (20 * ball_force(4, 1.5, 5.1));
     EXPECT_GT(ratio, 0.4);
     EXPECT_LT(ratio, 0.95);

@@ -1,10 +1,8 @@
 #include "osteomill/haptics/point_shell/point_shell_algorithm.h"
 
-#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
-#include "osteomill/haptics/point_shell/contacts.h"
 #include "osteomill/tool/sample_points.h"
 #include "osteomill/volume/sampling.h"
 
@@ -18,8 +16,7 @@ constexpr int kSteps = 2;
 constexpr double kSettled_mm = 0.005;
 constexpr double kSettled_rad = 0.0005;
 // The most that the tool moves in a tick: further, it could leap past thin walls.
-constexpr double kMaxMove_mm = 0.5;
-constexpr double kMaxTurn_rad = 0.05;
+const MoveBound kMost{{}, 0.5, 0.05};
 // Of the centreline, looked at for bone.
 constexpr int kCentrelinePoints = 51;
 
@@ -52,7 +49,7 @@ void PointShellAlgorithm::prepare(const Scene& scene) {
   } else {
     voxels_ = VoxelShell(*scene.volume, settings_.scale);
     penalty_.max_patch_mm2 = 0;
-    tool_ = ToolSignedDistance(scene.tool);
+    tool_.emplace(scene.tool, SampledDistanceField::suitable_spacing_mm(scene.tool));
   }
   reset();
 }
@@ -66,7 +63,7 @@ void PointShellAlgorithm::reset() {
 }
 
 int PointShellAlgorithm::sample_point_count() const {
-  return static_cast<int>(settings_.surface_shell ? surface_.fine().total() : voxels_.point_count());
+  return static_cast<int>(settings_.surface_shell ? surface_.fine().total() : voxels_.points().total());
 }
 
 void PointShellAlgorithm::volume_changed(const VolumeChange& change) {
@@ -78,28 +75,16 @@ void PointShellAlgorithm::volume_changed(const VolumeChange& change) {
 }
 
 ToolContacts PointShellAlgorithm::contacts_at(const Pose& X_WT) {
-  return settings_.surface_shell ? contacts_by_bricks(surface_, near_, milling_tool_, X_WT, penalty_)
-                                 : contacts_by_octree(voxels_, tool_, X_WT, penalty_.stiffness_N_per_mm3);
-}
-
-// The target itself, to the last bit, where the tick's limits let the tool reach it.
-Pose PointShellAlgorithm::towards(const Pose& X_WT_start, const Pose& target) const {
-  if (!settings_.guarded_move) return target;
-  const ToolMove wanted = move_between(X_WT_start, target);
-  const ToolMove allowed = limited(wanted, kMaxMove_mm, kMaxTurn_rad);
-  if (allowed.translation_mm == wanted.translation_mm && allowed.rotation_rad == wanted.rotation_rad) {
-    return target;
-  }
-  return moved(X_WT_start, allowed);
+  return settings_.surface_shell
+             ? contacts_by_bricks(surface_, near_, milling_tool_, X_WT, penalty_)
+             : contacts_by_octree(voxels_, milling_tool_, *tool_, X_WT, penalty_.stiffness_N_per_mm3);
 }
 
 // Short of the target, along the way there, where what is felt would leap.
-Pose PointShellAlgorithm::let_go(const Pose& X_WT_start, const Pose& target, const MoveBound& bound) const {
-  if (!held_back_ || !settings_.guarded_move) return target;
-  const ToolMove whole = move_between(X_WT_start, target);
-  const double share = share_within(bound, whole);
-  if (share >= 1) return target;
-  return moved(X_WT_start, {share * whole.translation_mm, share * whole.rotation_rad});
+Pose PointShellAlgorithm::towards(const Pose& X_WT_start, const Pose& target, const MoveBound& bound) const {
+  if (!settings_.guarded_move) return target;
+  const Pose near = moved_within(kMost, X_WT_start, target);
+  return held_back_ ? moved_within(bound, X_WT_start, near) : near;
 }
 
 HapticStep PointShellAlgorithm::step(const Pose& X_WD, double dt_s) {
@@ -125,20 +110,18 @@ HapticStep PointShellAlgorithm::balanced(const Pose& X_WD, double dt_s) {
   const double spring_length_mm =
       std::sqrt(settings_.torsional_stiffness_Nmm_per_rad / settings_.translational_stiffness_N_per_mm);
   const MoveBound bound = move_bound(start, X_WD_before_, X_WD, spring_length_mm, Release{}, dt_s);
-  if (settings_.guarded_move && !in_contact_) X_WT_ = let_go(start, towards(start, X_WD), bound);
+  if (settings_.guarded_move && !in_contact_) X_WT_ = towards(start, X_WD, bound);
 
   HapticStep result;
   ToolContacts contacts;
   for (int n = 0; n < (settings_.guarded_move ? kSteps : 1); ++n) {
     contacts = contacts_at(X_WT_);
     const Pose before = X_WT_;
-    if (contacts.touching == 0) {
-      X_WT_ = towards(start, X_WD);
-    } else {
-      const ToolMove move = balancing_move(coupling_, X_WT_, X_WD, stretch_before_, contacts.total());
-      X_WT_ = towards(start, moved(X_WT_, move));
+    Pose target = X_WD;
+    if (contacts.touching > 0) {
+      target = moved(X_WT_, balancing_move(coupling_, X_WT_, X_WD, stretch_before_, contacts.total()));
     }
-    X_WT_ = let_go(start, X_WT_, bound);
+    X_WT_ = towards(start, target, bound);
     const ToolMove step_move = move_between(before, X_WT_);
     result.burr_force_W_N = burr_force_after(contacts.burr, step_move);
     if (step_move.translation_mm.norm() <= kSettled_mm && step_move.rotation_rad.norm() <= kSettled_rad) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "osteomill/haptics/bone_points/near_bone.h"
@@ -36,8 +37,7 @@ class PointShellAlgorithm final : public HapticAlgorithm {
 
  private:
   ToolContacts contacts_at(const Pose& X_WT);
-  Pose towards(const Pose& X_WT_start, const Pose& target) const;
-  Pose let_go(const Pose& X_WT_start, const Pose& target, const MoveBound& bound) const;
+  Pose towards(const Pose& X_WT_start, const Pose& target, const MoveBound& bound) const;
   HapticStep balanced(const Pose& X_WD, double dt_s);
 
   Settings settings_;
@@ -45,7 +45,7 @@ class PointShellAlgorithm final : public HapticAlgorithm {
   MillingTool milling_tool_;
   // The bone, one or the other, and what meets it.
   VoxelShell voxels_;
-  ToolSignedDistance tool_;
+  std::optional<SampledDistanceField> tool_;
   BoneBricks surface_;
   NearBone near_;
   Penalty penalty_;

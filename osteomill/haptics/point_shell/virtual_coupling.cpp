@@ -1,18 +1,8 @@
 #include "osteomill/haptics/point_shell/virtual_coupling.h"
 
-#include <algorithm>
-
 #include <Eigen/Cholesky>
 
 namespace osteomill::point_shell {
-
-ToolMove limited(const ToolMove& move, double max_mm, double max_rad) {
-  const double length_mm = move.translation_mm.norm(), angle_rad = move.rotation_rad.norm();
-  double factor = 1;
-  if (max_mm > 0 && length_mm > max_mm) factor = max_mm / length_mm;
-  if (max_rad > 0 && angle_rad > max_rad) factor = std::min(factor, max_rad / angle_rad);
-  return {factor * move.translation_mm, factor * move.rotation_rad};
-}
 
 Wrench wrench_on_hand(const VirtualCoupling& coupling, const Pose& X_WT, const Pose& X_WD,
                       const ToolMove& stretch_before) {

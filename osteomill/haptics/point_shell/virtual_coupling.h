@@ -15,10 +15,6 @@ struct VirtualCoupling {
   double damping_ticks = 0;
 };
 
-/// The move cut short so that neither part exceeds its limit; both by the same factor, so that a tool that
-/// slides along the bone while it turns stays on it. A limit of 0 is none.
-ToolMove limited(const ToolMove& move, double max_mm, double max_rad);
-
 /// The coupling's wrench as it acts on the hand that holds the device at `X_WD` (on the tool it is the
 /// opposite). `stretch_before` is the move from the device to the tool at the end of the tick before.
 Wrench wrench_on_hand(const VirtualCoupling& coupling, const Pose& X_WT, const Pose& X_WD,

@@ -62,17 +62,5 @@ TEST(VirtualCoupling, TheDamperCountsTheStretchAsIfItWentOn) {
   EXPECT_NEAR(wrench_on_hand(kDamped, after, {}, before).force_N.z(), pushed_N, 1e-9);
 }
 
-TEST(VirtualCoupling, AMoveIsCutShortByOneFactor) {
-  const ToolMove move{{3, 0, 4}, {0, 0.1, 0}};
-  const ToolMove by_length = limited(move, 0.5, 0.05);
-  EXPECT_TRUE(by_length.translation_mm.isApprox(Vec3(0.3, 0, 0.4)));
-  EXPECT_TRUE(by_length.rotation_rad.isApprox(Vec3(0, 0.01, 0)));
-  const ToolMove by_angle = limited(move, 10, 0.05);
-  EXPECT_TRUE(by_angle.translation_mm.isApprox(Vec3(1.5, 0, 2)));
-  EXPECT_TRUE(by_angle.rotation_rad.isApprox(Vec3(0, 0.05, 0)));
-  EXPECT_EQ(limited(move, 0, 0).translation_mm, move.translation_mm);
-  EXPECT_EQ(limited(move, 0, 0).rotation_rad, move.rotation_rad);
-}
-
 }  // namespace
 }  // namespace osteomill::point_shell

@@ -49,20 +49,14 @@ VoxelShell::VoxelShell(const Volume& volume, int scale)
       for (int byte = 0; 8 * byte < dims[0]; ++byte) bone_.set_byte(byte, j, k, bone_byte(byte, j, k));
     }
   }
-  const VoxelBox all = geometry_.all_voxels().bricks(kSide);
-  const std::array<int, 3> bricks = all.dims();
-  octree_ = CountPyramid(bricks);
-  masks_.resize(cell_count(bricks));
+  bricks_ = geometry_.all_voxels().bricks(kSide);
+  while (bricks_.bricks(1 << root_level_).dims() != std::array{1, 1, 1}) ++root_level_;
+  masks_.resize(cell_count(bricks_.dims()));
   found_.reserve(kSide * kSide * kSide);
-  const auto tell = [&](const VoxelIndex& b) {
-    if (b.i == 0 && b.j == 0)
-      WorkProgress::done(static_cast<std::size_t>(b.k), static_cast<std::size_t>(bricks[2]));
-  };
   std::size_t chunks = 0;
   {
     const WorkProgress::Part counting(0.4);
-    for_each(all, [&](const VoxelIndex& b) {
-      tell(b);
+    for_each_with_progress(bricks_, [&](const VoxelIndex& b) {
       chunks += (count_of(mask_of(b)) + PointChunk::kSlots - 1) / PointChunk::kSlots;
     });
   }
@@ -71,10 +65,7 @@ VoxelShell::VoxelShell(const Volume& volume, int scale)
     points_ = BrickPoints(masks_.size(), 2 * chunks + kSpareChunks);
   }
   const WorkProgress::Part placing(1);
-  for_each(all, [&](const VoxelIndex& b) {
-    tell(b);
-    refresh_brick(b);
-  });
+  for_each_with_progress(bricks_, [&](const VoxelIndex& b) { refresh_brick(b); });
 }
 
 void VoxelShell::refresh(const VoxelBox& voxels) {
@@ -142,7 +133,7 @@ VoxelShell::SurfaceMask VoxelShell::mask_of(const VoxelIndex& b) const {
 }
 
 void VoxelShell::refresh_brick(const VoxelIndex& b) {
-  const std::size_t brick = brick_index(b.i, b.j, b.k);
+  const std::size_t brick = brick_index(b);
   const SurfaceMask mask = mask_of(b);
   if (mask == masks_[brick]) return;
   masks_[brick] = mask;
@@ -155,9 +146,7 @@ void VoxelShell::refresh_brick(const VoxelIndex& b) {
       found_.push_back({at_mm.x(), at_mm.y(), at_mm.z(), point_area_mm2_});
     }
   }
-  const std::uint32_t before = points_.brick(brick).count;
-  const std::uint32_t stored = points_.replace(brick, found_);
-  octree_.add(b.i, b.j, b.k, static_cast<std::int32_t>(stored) - static_cast<std::int32_t>(before));
+  points_.replace(brick, found_);
 }
 
 }  // namespace osteomill::point_shell

@@ -128,7 +128,7 @@ void mill_at_random(Volume& volume, std::mt19937& bits, VoxelBox& changed) {
 }
 
 void expect_same_points(const VoxelShell& kept, const VoxelShell& rebuilt) {
-  ASSERT_EQ(kept.point_count(), rebuilt.point_count());
+  ASSERT_EQ(kept.points().total(), rebuilt.points().total());
   const auto kept_points = points_of(kept);
   const auto rebuilt_points = points_of(rebuilt);
   ASSERT_EQ(kept_points.size(), rebuilt_points.size());
@@ -158,8 +158,8 @@ TEST(VoxelShell, WithoutBoneThereAreNoPointsAndAllBoneEndsAtTheBorder) {
   GridGeometry geometry = centred_cube(9, 0.5);
   const Volume air(DensityGrid(geometry, std::vector<float>(geometry.voxel_count(), 0.f)), 500);
   const Volume bone(DensityGrid(geometry, std::vector<float>(geometry.voxel_count(), 900.f)), 500);
-  EXPECT_EQ(VoxelShell(air, 1).point_count(), 0u);
-  EXPECT_EQ(VoxelShell(bone, 1).point_count(), 9u * 9 * 9 - 7 * 7 * 7);
+  EXPECT_EQ(VoxelShell(air, 1).points().total(), 0u);
+  EXPECT_EQ(VoxelShell(bone, 1).points().total(), 9u * 9 * 9 - 7 * 7 * 7);
 }
 
 }  // namespace
