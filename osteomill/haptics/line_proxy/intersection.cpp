@@ -3,7 +3,6 @@
 #include <cmath>
 #include <limits>
 
-#include "osteomill/haptics/line_proxy/equations.h"
 #include "osteomill/volume/sampling.h"
 
 namespace osteomill::line_proxy {
@@ -19,7 +18,7 @@ std::optional<WalkHit> most_active_vertex(const Volume& volume, std::span<const 
     if (!(density > volume.isovalue())) continue;
     const Vec3 before_W = before * vertex_T;
     const double density_before = density_at(volume.grid(), before_W);
-    const double fraction = crossing_fraction(density_before, density, volume.isovalue());  // eq. 1
+    const double fraction = (volume.isovalue() - density_before) / (density - density_before);  // eq. 1
     if (!most_active || fraction < most_active->fraction) most_active = WalkHit{before_W, at_W, fraction};
   }
   return most_active;
@@ -38,10 +37,9 @@ Vec3 substep_along(const Vec3& b, std::span<const Vec3> vertices_T) {
 
 std::optional<WalkHit> walk_to_collision(const Volume& volume, std::span<const Vec3> vertices_T,
                                          const Pose& X_WT_before, const Pose& X_WT, const WalkSteps& steps) {
-  const Vec3 step_d =
-      translation_step(X_WT.position_mm - X_WT_before.position_mm, steps.translation);  // eq. 3
+  const Vec3 step_d = (X_WT.position_mm - X_WT_before.position_mm) / steps.translation;  // eq. 3
   const Quat turn = X_WT.orientation * X_WT_before.orientation.conjugate();
-  const Vec3 step_alpha = rotation_step(rotation_vector(turn), steps.rotation);  // eq. 4
+  const Vec3 step_alpha = rotation_vector(turn) / steps.rotation;  // eq. 4
   Pose before = X_WT_before;
   for (int n = 1; n <= steps.translation + steps.rotation; ++n) {
     Pose at = X_WT;  // the last step of each part ends exactly there

@@ -20,8 +20,12 @@ struct WalkHit {
   /// Where it was at step n-1 and is at step n, in W.
   Vec3 before_W;
   Vec3 at_W;
-  /// Eq. 1, the smallest of the active vertices.
+  /// Eq. 1, the smallest of the active vertices: 0 to 1 where it was outside before; anything, also not
+  /// finite, where it was in bone already.
   double fraction;
+
+  /// Eq. 2: the intersection point IP.
+  Vec3 intersection_W() const { return before_W + fraction * (at_W - before_W); }
 };
 
 /// The translation/rotation method of section 4.3: from the pose of the tick before to that of this tick,

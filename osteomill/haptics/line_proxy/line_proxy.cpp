@@ -1,13 +1,9 @@
 #include "osteomill/haptics/line_proxy/line_proxy.h"
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 
-#include "osteomill/haptics/line_proxy/bone_surface.h"
-#include "osteomill/haptics/line_proxy/equations.h"
 #include "osteomill/haptics/line_proxy/intersection.h"
-#include "osteomill/haptics/line_proxy/point_proxy.h"
 #include "osteomill/haptics/line_proxy/tool_clearance.h"
 #include "osteomill/tool/sample_points.h"
 #include "osteomill/volume/sampling.h"
@@ -99,10 +95,9 @@ void LineProxy::follow_with_line(const Pose& X_WD, double dt_s, HapticStep& resu
   memory_.tip_proxy_W.reset();
   memory_.intersection_W.reset();
   if (!held_line_.is_held_back()) return;
-  result.wrench.force_N =
-      tip_force(settings_.stiffness_N_per_mm, X_WL.position_mm, X_WD.position_mm);  // eq. 6
-  result.wrench.torque_Nmm =
-      turning_Nmm_per_rad_ * rotation_vector((X_WL.orientation * X_WD.orientation.conjugate()).normalized());
+  const ToolMove stretch = move_between(X_WD, X_WL);
+  result.wrench = {settings_.stiffness_N_per_mm * stretch.translation_mm,  // eq. 6
+                   turning_Nmm_per_rad_ * stretch.rotation_rad};
   Vec3 shaft_N = Vec3::Zero();
   if (const auto& push = held_line_.shaft_push()) {
     memory_.arm_W = push->lever_mm * shaft_direction(X_WL);
@@ -121,8 +116,8 @@ void LineProxy::follow_as_printed(const Pose& X_WD, HapticStep& result) {
   follow_with_intersection(X_WL);
   turn_reaction(X_WL);
   memory_.X_WL = X_WL;
-  result.wrench.force_N = tip_force(settings_.stiffness_N_per_mm, X_WL.position_mm, tip_W);  // eq. 6
-  result.wrench.torque_Nmm = torque(memory_.arm_W, memory_.reaction_N);                      // eq. 11
+  result.wrench.force_N = settings_.stiffness_N_per_mm * (X_WL.position_mm - tip_W);  // eq. 6
+  result.wrench.torque_Nmm = memory_.arm_W.cross(memory_.reaction_N);                 // eq. 11
   if (memory_.tip_proxy_W) result.burr_force_W_N = -result.wrench.force_N;
   // The tip where (6) pulls to, the shaft through the intersection point.
   result.X_WF = X_WL;
@@ -165,7 +160,7 @@ std::optional<Vec3> LineProxy::first_intersection(const Pose& X_WL) const {
   if (!memory_.X_WL) return std::nullopt;  // the first tick has no path to walk
   const auto hit = walk_to_collision(*scene_.volume, shaft_vertices(), *memory_.X_WL, X_WL, kWalk);
   if (!hit) return std::nullopt;
-  return intersection_point(hit->before_W, hit->at_W, hit->fraction);  // eq. 2
+  return hit->intersection_W();
 }
 
 // Collision at t-1 already. The point-proxy rule takes IP from where it was toward the densest point; nothing
@@ -180,10 +175,11 @@ std::optional<Vec3> LineProxy::next_intersection(const Pose& X_WL) const {
 void LineProxy::turn_reaction(const Pose& X_WL) {
   memory_.reaction_N.setZero();
   if (!memory_.intersection_W) return;
-  memory_.arm_W = arm(*memory_.intersection_W, X_WL.position_mm);                                   // eq. 7
-  const Vec3 probe_W = probe_intersection(memory_.arm_W, shaft_direction(X_WL), X_WL.position_mm);  // eq. 8
-  const Vec3 g = orientation_error(*memory_.intersection_W, probe_W);                               // eq. 9
-  memory_.reaction_N = reaction_force(settings_.stiffness_N_per_mm, g);                             // eq. 10
+  // The point as far up the device's shaft as IP is, and g, the error of orientation alone.
+  memory_.arm_W = *memory_.intersection_W - X_WL.position_mm;                            // eq. 7
+  const Vec3 probe_W = memory_.arm_W.norm() * shaft_direction(X_WL) + X_WL.position_mm;  // eq. 8
+  const Vec3 g = *memory_.intersection_W - probe_W;                                      // eq. 9
+  memory_.reaction_N = settings_.stiffness_N_per_mm * g;                                 // eq. 10
 }
 
 // How much of the way the drawn shaft turns; in full where the tool is not kept outside.
@@ -198,13 +194,13 @@ Pose LineProxy::touching_tool(const Pose& X_WD, const Vec3& tool_tip_W) const {
   Pose X_WT{tool_tip_W, X_WD.orientation};
   if (memory_.tip_proxy_W) {
     const auto u = surface_normal(volume, tool_tip_W, normal_);
-    if (u) X_WT.position_mm = offset_point(tool_tip_W, *u, scene_.tool.burr_radius_mm);
+    if (u) X_WT.position_mm = tool_tip_W + *u * scene_.tool.burr_radius_mm;
   }
   if (!memory_.intersection_W) return X_WT;
   const auto u = surface_normal(volume, *memory_.intersection_W, normal_);
   if (!u) return X_WT;
-  const Vec3 offset_W = offset_point(*memory_.intersection_W, *u, scene_.tool.shaft_radius_mm);  // eq. 12
-  const Vec3 shaft_W = drawn_shaft(offset_W, X_WT.position_mm);                                  // eq. 13
+  const Vec3 offset_W = *memory_.intersection_W + *u * scene_.tool.shaft_radius_mm;  // eq. 12
+  const Vec3 shaft_W = offset_W - X_WT.position_mm;                                  // eq. 13
   const double share = drawn_share(memory_.arm_W.norm());
   const Vec3 direction = shaft_direction(X_WD);
   const Vec3 drawn = (1.0 - share) * direction + share * shaft_W.normalized();
@@ -229,13 +225,11 @@ void LineProxy::keep_outside(Pose& X_WT, double dt_s) {
 Pose LineProxy::gliding_tool(const Pose& X_WD, const Pose& touching, double dt_s) {
   const double device_move_mm =
       memory_.device_before_W ? (X_WD.position_mm - *memory_.device_before_W).norm() : 0.0;
-  memory_.tool_shift_W = moved_toward(memory_.tool_shift_W, touching.position_mm - X_WD.position_mm,
-                                      kGlide_mm_s * dt_s + device_move_mm);
-  memory_.tool_turn_W =
-      moved_toward(memory_.tool_turn_W, rotation_vector(touching.orientation * X_WD.orientation.conjugate()),
-                   kGlide_rad_s * dt_s);
-  return {X_WD.position_mm + memory_.tool_shift_W,
-          (quaternion_from_rotation_vector(memory_.tool_turn_W) * X_WD.orientation).normalized()};
+  const ToolMove goal = move_between(X_WD, touching);
+  ToolMove& tool = memory_.tool;
+  tool = {moved_toward(tool.translation_mm, goal.translation_mm, kGlide_mm_s * dt_s + device_move_mm),
+          moved_toward(tool.rotation_rad, goal.rotation_rad, kGlide_rad_s * dt_s)};
+  return moved(X_WD, tool);
 }
 
 // As printed, eq. 1 can divide by nothing. What comes of it is seen by who sends the wrench; it must not

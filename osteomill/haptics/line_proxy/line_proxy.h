@@ -60,9 +60,8 @@ class LineProxy final : public HapticAlgorithm {
     Vec3 reaction_N = Vec3::Zero();
     // How far the simulated tool is kept from where the centreline would have it.
     Vec3 clearance_W = Vec3::Zero();
-    // The simulated tool against the device: moved by, turned by (a rotation vector in W).
-    Vec3 tool_shift_W = Vec3::Zero();
-    Vec3 tool_turn_W = Vec3::Zero();
+    // From the device to the simulated tool.
+    ToolMove tool;
     PressingBurr burr;
   };
 

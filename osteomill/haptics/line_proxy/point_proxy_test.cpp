@@ -1,5 +1,3 @@
-#include "osteomill/haptics/line_proxy/point_proxy.h"
-
 #include <cmath>
 #include <limits>
 #include <numbers>

@@ -4,7 +4,6 @@
 #include "tests/shapes.h"
 #include <gtest/gtest.h>
 
-#include "osteomill/haptics/line_proxy/equations.h"
 #include "osteomill/haptics/line_proxy/intersection.h"
 
 namespace osteomill::line_proxy {
@@ -39,7 +38,7 @@ TEST_F(WalkTest, ATranslationStopsAtTheFirstCollidingStep) {
   EXPECT_NEAR(hit->before_W.x(), 0.8, 1e-12);
   EXPECT_NEAR(hit->at_W.x(), 1.2, 1e-12);
   EXPECT_NEAR(hit->fraction, 0.5, 1e-6);
-  EXPECT_NEAR(intersection_point(hit->before_W, hit->at_W, hit->fraction).x(), 1.0, 1e-6);
+  EXPECT_NEAR(hit->intersection_W().x(), 1.0, 1e-6);
 }
 
 // Leaning over about the tip, the far end arrives first.
@@ -48,7 +47,7 @@ TEST_F(WalkTest, ARotationIsWalkedAfterTheTranslation) {
   const Pose to = tilted(std::asin(0.25), 0.2);  // the far end reaches x = 1.2, the vertex before it 0.95
   const auto hit = walk(from, to);
   ASSERT_TRUE(hit);
-  const Vec3 point = intersection_point(hit->before_W, hit->at_W, hit->fraction);
+  const Vec3 point = hit->intersection_W();
   EXPECT_NEAR(point.x(), 1.0, 0.01);
   EXPECT_NEAR((point - from.position_mm).norm(), 4.0, 0.01);
 }
