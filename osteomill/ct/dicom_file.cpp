@@ -11,7 +11,6 @@
 
 #include "osteomill/ct/dicom_data.h"
 #include "osteomill/ct/header_text.h"
-#include "osteomill/files/input_error.h"
 
 namespace osteomill {
 

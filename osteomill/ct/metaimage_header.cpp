@@ -1,5 +1,4 @@
 // MetaImage, https://itk.org/Wiki/ITK/MetaIO/Documentation
-#include <algorithm>
 #include <fstream>
 #include <map>
 

@@ -1,7 +1,5 @@
 // Nearly Raw Raster Data, http://teem.sourceforge.net/nrrd/format.html
-#include <algorithm>
 #include <array>
-#include <cctype>
 #include <fstream>
 #include <limits>
 #include <map>

@@ -1,8 +1,11 @@
 #include "osteomill/ct/slice_stack.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
 #include <numeric>
+#include <utility>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
@@ -29,6 +32,8 @@ constexpr double kMaxUnevenGap_mm = 10;
 constexpr double kMostSlices = 4;
 // Sideways, in pixels: what cannot be seen after trilinear sampling.
 constexpr double kSidewaysTolerance = 0.25;
+// Gantries tilt by 30 degrees at most.
+constexpr double kMaxTilt_deg = 45.0;
 
 void check_plane(const std::string& subject, const SlicePlane& slice) {
   if (!(std::abs(slice.i_direction.norm() - 1) < 0.01 && std::abs(slice.j_direction.norm() - 1) < 0.01 &&
@@ -174,6 +179,17 @@ void find_drift(const std::string& subject, std::span<const SlicePlane> slices, 
   }
 }
 
+// How far a slice is moved: in whole pixels, and the fraction by which it lies further.
+struct Shift {
+  int whole;
+  double fraction;
+};
+
+Shift shift_of(double pixels) {
+  const double whole = std::floor(pixels + 1e-9);
+  return {static_cast<int>(whole), std::max(0.0, pixels - whole)};
+}
+
 }  // namespace
 
 SliceStack stack_slices(const std::string& subject, std::span<const SlicePlane> slices) {
@@ -202,6 +218,76 @@ SliceStack stack_slices(const std::string& subject, std::span<const SlicePlane> 
   check_plausible(subject, stack.geometry);
   find_drift(subject, slices, stack);
   return stack;
+}
+
+void even_out_slices(SliceStack& stack, std::vector<float>& densities) {
+  if (stack.heights_mm.empty()) return;
+  const std::vector<double> heights_mm = std::exchange(stack.heights_mm, {});
+  const std::size_t slice_size = densities.size() / heights_mm.size();
+  std::vector<float> even;
+  even.reserve(stack.geometry.voxel_count());
+  for (int k = 0; k < stack.geometry.dims[2]; ++k) {
+    const double height_mm = stack.geometry.spacing_mm.z() * k;
+    const auto above = std::clamp(std::upper_bound(heights_mm.begin(), heights_mm.end(), height_mm),
+                                  heights_mm.begin() + 1, heights_mm.end() - 1);
+    const double share = std::clamp((height_mm - above[-1]) / (above[0] - above[-1]), 0.0, 1.0);
+    const float* const lower =
+        densities.data() + static_cast<std::size_t>(above - heights_mm.begin() - 1) * slice_size;
+    const float* const upper = lower + slice_size;
+    for (std::size_t n = 0; n < slice_size; ++n) {
+      even.push_back(static_cast<float>((1 - share) * static_cast<double>(lower[n]) +
+                                        share * static_cast<double>(upper[n])));
+    }
+  }
+  densities = std::move(even);
+}
+
+void correct_gantry_tilt(const std::string& subject, SliceStack& stack, std::vector<float>& densities) {
+  if (stack.drift_i_mm == 0 && stack.drift_j_mm == 0) return;
+  GridGeometry& geometry = stack.geometry;
+  const double tilt_deg =
+      std::atan2(std::hypot(stack.drift_i_mm, stack.drift_j_mm), geometry.spacing_mm.z()) * 180 /
+      std::numbers::pi;
+  if (tilt_deg > kMaxTilt_deg) {
+    throw InputError(subject,
+                     fmt::format("slices lean by {:.1f} degrees, which is no gantry tilt", tilt_deg));
+  }
+  const auto [columns, rows, count] = geometry.dims;
+  const std::array<double, 2> step{stack.drift_i_mm / geometry.spacing_mm.x(),
+                                   stack.drift_j_mm / geometry.spacing_mm.y()};
+  std::array<int, 2> first{};
+  std::array<int, 3> dims = geometry.dims;
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    const double drift = step[axis] * (count - 1);
+    first[axis] = static_cast<int>(std::floor(std::min(0.0, drift)));
+    dims[axis] += static_cast<int>(std::ceil(std::abs(drift)));
+  }
+  if (cell_count(dims) > 4 * densities.size()) {
+    throw InputError(subject,
+                     fmt::format("slices lean by {:.1f} degrees, too far to put them straight", tilt_deg));
+  }
+  const float outside = *std::min_element(densities.begin(), densities.end());
+  std::vector<float> moved;
+  moved.reserve(cell_count(dims));
+  for_each({{0, 0, 0}, {dims[0] - 1, dims[1] - 1, count - 1}}, [&](const VoxelIndex& v) {
+    const auto at = [&, columns = columns, rows = rows](int i, int j) {
+      const bool inside = i >= 0 && j >= 0 && i < columns && j < rows;
+      return static_cast<double>(inside ? densities[row_major(geometry.dims, i, j, v.k)] : outside);
+    };
+    const Shift shift_i = shift_of(step[0] * v.k), shift_j = shift_of(step[1] * v.k);
+    const double a = shift_i.fraction, b = shift_j.fraction;
+    const int i = v.i + first[0] - shift_i.whole, j = v.j + first[1] - shift_j.whole;
+    const double here = (1 - a) * at(i, j) + a * at(i - 1, j);
+    const double above = (1 - a) * at(i, j - 1) + a * at(i - 1, j - 1);
+    moved.push_back(static_cast<float>((1 - b) * here + b * above));
+  });
+  geometry.origin_mm = geometry.world_from_voxel(Vec3(first[0], first[1], 0));
+  geometry.dims = dims;
+  stack.drift_i_mm = stack.drift_j_mm = 0;
+  stack.warnings.push_back(fmt::format(
+      "the gantry was tilted by {:.1f} degrees: slices were shifted into a straight grid of {} x {} x {}",
+      tilt_deg, dims[0], dims[1], dims[2]));
+  densities = std::move(moved);
 }
 
 }  // namespace osteomill
