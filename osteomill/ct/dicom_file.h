@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "osteomill/ct/read_scan.h"
 #include "osteomill/ct/slice_stack.h"
 #include "osteomill/files/input_error.h"
 
@@ -81,5 +82,11 @@ std::vector<DcmPixelItem*> pixel_items_of(DcmDataset& data);
 /// wanted). Throws InputError naming the file where they cannot be decoded. Only within `with_dicom_stack`.
 void read_dicom_densities(const DicomHeader& header,
                           const std::function<float*(std::size_t frame)>& frame_densities);
+
+/// Of a folder: reads one of the series that lie in it and the folders in it; nothing where there are no
+/// pictures. Of a file: the series to which it belongs, from the folder in which it lies; the frames of a
+/// file that has several; or one of the series that a DICOMDIR names. Nothing where the file is not DICOM.
+/// Throws InputError naming the path.
+std::optional<Scan> read_dicom(const std::filesystem::path& path, const ReadOptions& options);
 
 }  // namespace osteomill

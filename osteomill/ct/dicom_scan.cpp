@@ -1,5 +1,3 @@
-#include "osteomill/ct/dicom_scan.h"
-
 #include <algorithm>
 #include <charconv>
 #include <string>

@@ -15,7 +15,9 @@ namespace osteomill {
 struct LabelFiles {
   /// NRRD, NIfTI or MetaImage; a voxel's value is its label, 0 is none.
   std::filesystem::path map;
-  /// A table of names and colours (label_table.h), before those that a .seg.nrrd has itself; may be empty.
+  /// A colour table of 3D Slicer's (.ctbl or .txt): a line a label, "value name red green blue alpha",
+  /// colours from 0 to 255; lines that begin with # and empty ones say nothing. Before the names and colours
+  /// that a .seg.nrrd has itself; may be empty.
   std::filesystem::path table;
   /// Labels that no burr may touch, by value or by name (case does not matter).
   std::vector<std::string> no_go;

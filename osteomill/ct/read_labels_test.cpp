@@ -2,8 +2,6 @@
 
 #include "tests/support/folder_test.h"
 
-#include "osteomill/ct/label_table.h"
-
 namespace osteomill {
 namespace {
 

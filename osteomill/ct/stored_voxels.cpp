@@ -1,5 +1,3 @@
-#include "osteomill/ct/stored_voxels.h"
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -10,6 +8,7 @@
 
 #include "osteomill/ct/header_text.h"
 #include "osteomill/ct/plausible_scan.h"
+#include "osteomill/ct/volume_file.h"
 #include "osteomill/files/input_error.h"
 #include "osteomill/numbers/work_progress.h"
 

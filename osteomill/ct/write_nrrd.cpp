@@ -1,18 +1,20 @@
 #include "osteomill/ct/write_nrrd.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <fstream>
 #include <limits>
 #include <span>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <zlib.h>
 
 #include "osteomill/files/atomic_file.h"
+#include "osteomill/files/input_error.h"
 
 namespace osteomill {
 
@@ -21,42 +23,6 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "voxels are written as they lie in memory");
 
 constexpr std::size_t kValuesAtOnce = 1 << 16;
-
-// A gzip stream into a file that has begun already.
-class GzipWriter {
- public:
-  explicit GzipWriter(std::ostream& out) : out_(out) {
-    constexpr int kGzip = 15 + 16;
-    constexpr int kLevel = 4;  // scans are large, and higher levels win little on noise
-    constexpr int kMemory = 9;
-    if (deflateInit2(&stream_, kLevel, Z_DEFLATED, kGzip, kMemory, Z_DEFAULT_STRATEGY) != Z_OK) {
-      throw std::bad_alloc();
-    }
-  }
-  ~GzipWriter() { deflateEnd(&stream_); }
-  GzipWriter(const GzipWriter&) = delete;
-  GzipWriter& operator=(const GzipWriter&) = delete;
-
-  void write(const void* bytes, std::size_t count) { deflate_all(bytes, count, Z_NO_FLUSH); }
-  void finish() { deflate_all(nullptr, 0, Z_FINISH); }
-
- private:
-  void deflate_all(const void* bytes, std::size_t count, int flush) {
-    stream_.next_in = static_cast<Bytef*>(const_cast<void*>(bytes));
-    stream_.avail_in = static_cast<uInt>(count);
-    do {
-      stream_.next_out = packed_.data();
-      stream_.avail_out = static_cast<uInt>(packed_.size());
-      deflate(&stream_, flush);
-      out_.write(reinterpret_cast<const char*>(packed_.data()),
-                 static_cast<std::streamsize>(packed_.size() - stream_.avail_out));
-    } while (stream_.avail_out == 0);
-  }
-
-  std::ostream& out_;
-  z_stream stream_{};
-  std::array<Bytef, 1 << 16> packed_;
-};
 
 template <typename Stored>
 bool holds_exactly(std::span<const float> densities) {
@@ -67,17 +33,18 @@ bool holds_exactly(std::span<const float> densities) {
   });
 }
 
+// False where not all could be written.
 template <typename Stored>
-void write_values(std::ostream& out, std::span<const float> densities) {
-  GzipWriter gzip(out);
+bool write_values(gzFile file, std::span<const float> densities) {
   std::vector<Stored> values;
   while (!densities.empty()) {
     const std::span<const float> some = densities.first(std::min(kValuesAtOnce, densities.size()));
     values.assign(some.begin(), some.end());
-    gzip.write(values.data(), values.size() * sizeof(Stored));
+    const auto bytes = static_cast<unsigned>(values.size() * sizeof(Stored));
+    if (gzwrite(file, values.data(), bytes) != static_cast<int>(bytes)) return false;
     densities = densities.subspan(some.size());
   }
-  gzip.finish();
+  return true;
 }
 
 // As many digits as read back to the same number.
@@ -106,21 +73,32 @@ std::string header_of(const GridGeometry& geometry, const char* type) {
       vector_text(geometry.origin_mm));
 }
 
+// The values as a gzip stream behind the header.
+template <typename Stored>
+void write_as(const char* type, const DensityGrid& grid, const std::filesystem::path& path,
+              const std::filesystem::path& beside) {
+  std::ofstream header(beside);
+  header << header_of(grid.geometry(), type);
+  header.close();
+  // Scans are large, and higher levels than 4 win little on noise.
+  gzFile file = header ? gzopen(beside.c_str(), "ab4") : nullptr;
+  if (file == nullptr) throw InputError(path.string(), "cannot be created");
+  const bool written = write_values<Stored>(file, grid.densities());
+  if (gzclose(file) != Z_OK || !written)
+    throw InputError(path.string(), "cannot be written to its end (is the disk full?)");
+}
+
 }  // namespace
 
 void write_nrrd(const std::filesystem::path& path, const DensityGrid& grid) {
   const std::span<const float> densities = grid.densities();
-  const GridGeometry& geometry = grid.geometry();
-  write_text_atomically(path, [&](std::ostream& out) {
+  write_file_atomically(path, [&](const std::filesystem::path& beside) {
     if (holds_exactly<std::int16_t>(densities)) {
-      out << header_of(geometry, "short");
-      write_values<std::int16_t>(out, densities);
+      write_as<std::int16_t>("short", grid, path, beside);
     } else if (holds_exactly<std::uint16_t>(densities)) {
-      out << header_of(geometry, "ushort");
-      write_values<std::uint16_t>(out, densities);
+      write_as<std::uint16_t>("ushort", grid, path, beside);
     } else {
-      out << header_of(geometry, "float");
-      write_values<float>(out, densities);
+      write_as<float>("float", grid, path, beside);
     }
   });
 }
