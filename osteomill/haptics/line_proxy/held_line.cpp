@@ -9,13 +9,14 @@ namespace osteomill::line_proxy {
 
 namespace {
 
-// So many strides a tick at most.
+// So many strides a tick at most. With one a tool that is dropped on bone is thrown back.
 constexpr int kStrides = 8;
 constexpr int kSweeps = 100;
 constexpr double kSettled_mm = 1e-6;
 // Lets contacts that contradict one another (a line jammed between two walls) share the error.
 constexpr double kSoftness = 1e-5;
-// The line is kept so far off the bone, and a move that would still end in it is halved so often at most.
+// The line is kept so far off the bone, without which the torque may step by four times as much in the tooth,
+// and a move that would still end in it is halved so often at most, without which by twice as much.
 constexpr double kSkin_mm = 2e-5;
 constexpr int kHalvings = 6;
 // How steeply a stride may climb on what it meets: without that the force of a thin tool steps by half as
@@ -31,6 +32,7 @@ constexpr double kReachBeyond_voxels = 2;
 // How much of the way to where the energy is least is gone at once. With all of it the force steps by more
 // than twice as much on a ball with an edge of one voxel.
 constexpr double kRelaxation = 0.5;
+// So deep below it bone still carries a tip: without that a tool rebounds with nearly twice the energy.
 constexpr double kGivenWay_mm = 0.1;
 
 }  // namespace
@@ -62,22 +64,16 @@ double HeldLine::travel_mm(const ToolMove& move) const {
   return move.translation_mm.norm() + move.rotation_rad.norm() * span_.end_mm;
 }
 
-// False where there is no room for more.
+// The line stands outside the bone, so it cannot have gone in deeper than it went: what says so leads the
+// wrong way out and is left out, and the answer is false.
 bool HeldLine::add_limit(const Vec3& out_W, double depth_mm, const ToolMove& at, bool is_tip,
                          const Vec3& arm_W) {
-  if (limit_count_ == limits_.size()) return false;
   const Vec3 way_W = at.translation_mm + at.rotation_rad.cross(arm_W);
-  Vec3 along_W = out_W;
-  double climb_mm = depth_mm + kSkin_mm + out_W.dot(way_W);
-  // The line stands outside the bone, so it cannot have gone in deeper than it went: what says so leads the
-  // wrong way out.
-  if (climb_mm > kBetweenLooks_mm + kMaxSlope * way_W.norm()) {
-    along_W = -way_W.normalized();
-    climb_mm = 0;
-  }
-  const Vec3 about_W = arm_W.cross(along_W);
+  const double climb_mm = depth_mm + kSkin_mm + out_W.dot(way_W);
+  if (climb_mm > kBetweenLooks_mm + kMaxSlope * way_W.norm()) return false;
+  const Vec3 about_W = arm_W.cross(out_W);
   const double response = 1 / (1 + about_W.squaredNorm() / turn_weight_mm2_ + kSoftness);
-  limits_[limit_count_++] = {along_W, about_W, -climb_mm, response, is_tip, arm_W.norm()};
+  limits_[limit_count_++] = {out_W, about_W, -climb_mm, response, is_tip, arm_W.norm()};
   return true;
 }
 
@@ -92,6 +88,7 @@ bool HeldLine::add_tip_limit(const Pose& X_WL, const ToolMove& at) {
   const auto depth_mm =
       is_bone_at(*volume_, to_W) ? depth_along(*volume_, to_W, normal_W, reach_mm()) : std::nullopt;
   const Vec3 surface_W = depth_mm ? Vec3(to_W + *depth_mm * normal_W) : *met_W;
+  // With the normal of where the tip met it the force steps by half as much again on the way round a ball.
   const Vec3 out_W = surface_normal(*volume_, surface_W, normal_).value_or(normal_W);
   return add_limit(out_W, out_W.dot(surface_W - to_W), at, true, Vec3::Zero());
 }
@@ -101,13 +98,12 @@ double HeldLine::reach_mm() const {
 }
 
 bool HeldLine::add_shaft_limits(const Pose& X_WL, const ToolMove& at) {
-  const ShaftContacts contacts = shaft_contacts(*volume_, span_, X_WL, normal_, reach_mm());
+  const auto contacts = shaft_contacts(*volume_, span_, X_WL, normal_, reach_mm());
+  if (!contacts) return false;
   const Vec3 axis_W = shaft_direction(X_WL);
   bool overlaps = false;
-  for (std::size_t n = 0; n < contacts.count; ++n) {
-    const ShaftContact& contact = contacts.all[n];
+  for (const ShaftContact& contact : *contacts)
     overlaps = add_limit(contact.out_W, contact.depth_mm, at, false, contact.lever_mm * axis_W) || overlaps;
-  }
   return overlaps;
 }
 

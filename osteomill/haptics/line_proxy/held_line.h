@@ -58,8 +58,9 @@ class HeldLine {
     double lever_mm;
     double push = 0;
   };
+  // With one look a line on a rim jumps off it, and in a turned scan is another.
   static constexpr int kLooks = 4;
-  static constexpr std::size_t kLimits = (kLooks + 1) * (ShaftContacts::kMax + 1);
+  static constexpr std::size_t kLimits = (kLooks + 1) * (std::tuple_size_v<ShaftContacts> + 1);
 
   double travel_mm(const ToolMove& move) const;
   double reach_mm() const;

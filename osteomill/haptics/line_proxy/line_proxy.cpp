@@ -22,14 +22,16 @@ constexpr WalkSteps kWalk{10, 10};
 // The stiffness below 1 kHz: the slower the loop, the softer a spring it can hold (Colgate and Schenkel
 // 1997).
 constexpr double kMeantFor_s = 1e-3;
-// The line is looked at this often between two of its vertices.
+// The line is looked at this often between two of its vertices: at the vertices alone a thin sheet is gone
+// through.
 constexpr int kLooksPerVertex = 4;
 // The drawn tool that is kept outside goes over between touching and free at these speeds, beyond the
 // device's own movement. It is what cuts: standing as the line does, in place of (13), it left three times as
 // much bone within what it had swept, and its hole changed with the voxels by a sixth.
 constexpr double kGlide_mm_s = 100;
 constexpr double kGlide_rad_s = 20;
-// From the tip to so many shaft radii the drawn shaft turns from the device's direction to that of (13).
+// From the tip to so many shaft radii the drawn shaft turns from the device's direction to that of (13);
+// turned in full, the drawn tool of four times as many pushes ends in bone.
 constexpr double kDrawnFade_radii = 4;
 
 Vec3 moved_toward(const Vec3& from, const Vec3& to, double limit) {

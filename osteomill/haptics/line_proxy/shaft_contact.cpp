@@ -33,9 +33,8 @@ struct Stretch {
   bool leaves;
 };
 
-// Calls `visit` with one stretch after the other until it answers false.
-template <typename Visit>
-void visit_stretches(const Line& line, const ShaftSpan& span, Visit visit) {
+// From the tip up.
+std::optional<Stretch> first_stretch(const Line& line, const ShaftSpan& span) {
   const int samples = std::max(1, static_cast<int>((span.end_mm - span.start_mm) / span.sample_mm + 0.5));
   const double sample_mm = (span.end_mm - span.start_mm) / samples;
   double lower_mm = 0;
@@ -45,11 +44,11 @@ void visit_stretches(const Line& line, const ShaftSpan& span, Visit visit) {
     const bool in_bone = line.in_bone(lever_mm);
     if (in_bone && !inside) lower_mm = line.crossing(n > 0 ? lever_mm - sample_mm : 0, lever_mm);
     if (!in_bone && inside && n > 0) {
-      if (!visit(Stretch{lower_mm, line.crossing(lever_mm, lever_mm - sample_mm), true})) return;
+      return Stretch{lower_mm, line.crossing(lever_mm, lever_mm - sample_mm), true};
     }
     inside = in_bone;
   }
-  if (inside) visit(Stretch{lower_mm, span.end_mm, false});
+  return inside ? std::optional(Stretch{lower_mm, span.end_mm, false}) : std::nullopt;
 }
 
 // Where the line goes in and comes out, across edge and line; where its end is in, the normal.
@@ -61,37 +60,29 @@ Vec3 way_out(const Line& line, const Stretch& stretch, const NormalRule& rule) {
   const double lower_slope = std::max(kMinSlope, -lower->dot(line.along_W));
   const double upper_slope = std::max(kMinSlope, upper->dot(line.along_W));
   const Vec3 sum = upper_slope * *lower + lower_slope * *upper;
-  const Vec3 across = sum - sum.dot(line.along_W) * line.along_W;
-  // Through a thin wall the two surfaces look away from each other.
-  return across.norm() > 0.2 * (lower_slope + upper_slope) ? across.normalized() : Vec3::Zero();
+  return (sum - sum.dot(line.along_W) * line.along_W).normalized();
 }
 
 }  // namespace
 
 bool shaft_in_bone(const Volume& volume, const ShaftSpan& span, const Pose& X_WL) {
-  bool any = false;
-  visit_stretches({volume, X_WL.position_mm, shaft_direction(X_WL)}, span, [&](const Stretch&) {
-    any = true;
-    return false;
-  });
-  return any;
+  return first_stretch({volume, X_WL.position_mm, shaft_direction(X_WL)}, span).has_value();
 }
 
-ShaftContacts shaft_contacts(const Volume& volume, const ShaftSpan& span, const Pose& X_WL,
-                             const NormalRule& normal, double reach_mm) {
+std::optional<ShaftContacts> shaft_contacts(const Volume& volume, const ShaftSpan& span, const Pose& X_WL,
+                                            const NormalRule& normal, double reach_mm) {
   const Line line{volume, X_WL.position_mm, shaft_direction(X_WL)};
+  const auto stretch = first_stretch(line, span);
+  if (!stretch) return std::nullopt;
+  const Vec3 out_W = way_out(line, *stretch, normal);
   ShaftContacts contacts;
-  visit_stretches(line, span, [&](const Stretch& stretch) {
-    const Vec3 out_W = way_out(line, stretch, normal);
-    for (std::size_t n = 0; n < ShaftContacts::kPlaces; ++n) {
-      const double share = (static_cast<double>(n) + 0.5) / ShaftContacts::kPlaces;
-      const double lever_mm = stretch.lower_mm + share * (stretch.upper_mm - stretch.lower_mm);
-      contacts.all[contacts.count++] = {lever_mm, out_W,
-                                        depth_along(volume, line.at(lever_mm), out_W, reach_mm)
-                                            .value_or(std::numeric_limits<double>::infinity())};
-    }
-    return contacts.count < ShaftContacts::kMax;
-  });
+  for (std::size_t n = 0; n < contacts.size(); ++n) {
+    const double share = (static_cast<double>(n) + 0.5) / static_cast<double>(contacts.size());
+    const double lever_mm = stretch->lower_mm + share * (stretch->upper_mm - stretch->lower_mm);
+    contacts[n] = {lever_mm, out_W,
+                   depth_along(volume, line.at(lever_mm), out_W, reach_mm)
+                       .value_or(std::numeric_limits<double>::infinity())};
+  }
   return contacts;
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
+#include <optional>
 
 #include "osteomill/geometry/pose.h"
 #include "osteomill/haptics/line_proxy/bone_surface.h"
@@ -28,23 +28,17 @@ struct ShaftContact {
   double depth_mm;
 };
 
-/// The contacts of one line, from the tip up: places along each stretch in bone, so that what lies along a
-/// face is held along it, and what stands on an edge at the deepest of them.
-struct ShaftContacts {
-  static constexpr std::size_t kStretches = 4;
-  static constexpr std::size_t kPlaces = 12;
-  static constexpr std::size_t kMax = kStretches * kPlaces;
-  std::array<ShaftContact, kMax> all;
-  std::size_t count = 0;
-};
+/// The contacts of one line: places along the first stretch in bone from the tip up, so that what lies along
+/// a face is held along it, and what stands on an edge at the deepest of them.
+using ShaftContacts = std::array<ShaftContact, 12>;
 
 /// Whether any of the line's span lies in bone, looked at as for its contacts. Safe in the haptic tick.
 bool shaft_in_bone(const Volume& volume, const ShaftSpan& span, const Pose& X_WL);
 
-/// The contacts of the line through the origin of `X_WL` along its +z, of the first four stretches of it in
-/// bone, no deeper than `reach_mm`. The direction follows from the surface's normals where the line goes in
-/// and out. Safe in the haptic tick.
-ShaftContacts shaft_contacts(const Volume& volume, const ShaftSpan& span, const Pose& X_WL,
-                             const NormalRule& normal, double reach_mm);
+/// The contacts of the line through the origin of `X_WL` along its +z, no deeper than `reach_mm`; nothing
+/// where it is free. The direction follows from the surface's normals where the line goes in and out. Safe in
+/// the haptic tick.
+std::optional<ShaftContacts> shaft_contacts(const Volume& volume, const ShaftSpan& span, const Pose& X_WL,
+                                            const NormalRule& normal, double reach_mm);
 
 }  // namespace osteomill::line_proxy
