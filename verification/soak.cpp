@@ -6,6 +6,7 @@
 #include <random>
 #include <vector>
 
+#include "tests/support/differing_blocks.h"
 #include "verification/sections.h"
 #include <fmt/core.h>
 #include <malloc.h>

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "tests/shapes.h"
+#include "tests/support/differing_blocks.h"
 #include "tests/support/recording_samples.h"
 #include <gtest/gtest.h>
 

@@ -59,15 +59,4 @@ VoxelBox swap_densities(Volume& bone, DensityBlock& brick) {
   return changed;
 }
 
-std::vector<DensityBlock> differing_blocks(const DensityGrid& bone, const DensityGrid& scan) {
-  constexpr int kSide = DensityBlock::kVoxels;
-  std::vector<DensityBlock> blocks;
-  for_each(scan.geometry().all_voxels().bricks(kSide), [&](const VoxelIndex& brick) {
-    const VoxelIndex first = VoxelBox::of_brick(brick, kSide).first;
-    const DensityBlock block(bone, first);
-    if (block.densities != DensityBlock(scan, first).densities) blocks.push_back(block);
-  });
-  return blocks;
-}
-
 }  // namespace osteomill

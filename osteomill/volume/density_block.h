@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstddef>
-#include <vector>
 
 #include "osteomill/volume/volume.h"
 
@@ -27,8 +26,5 @@ struct DensityBlock {
 /// Returns which voxels changed. Keeps the bone's brick ranges, exact again where a density rose. Not for the
 /// tick.
 VoxelBox swap_densities(Volume& bone, DensityBlock& brick);
-
-/// Those of `bone` in which any density differs from that of `scan`, on the same grid. Goes through both.
-std::vector<DensityBlock> differing_blocks(const DensityGrid& bone, const DensityGrid& scan);
 
 }  // namespace osteomill
