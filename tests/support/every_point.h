@@ -1,6 +1,7 @@
 #pragma once
 
 #include "osteomill/haptics/bone_points/bone_bricks.h"
+#include "osteomill/haptics/point_shell/voxel_shell.h"
 
 namespace osteomill {
 
@@ -22,6 +23,18 @@ void for_each_point(BoneBricks& bricks, F&& f) {
   for_each_point(bricks, bricks.fine(), [&](const ShellPoint& point, const Vec3& origin_G) {
     f(Vec3(lattice.origin_W() + lattice.direction() * (origin_G + point.position_mm())),
       static_cast<double>(point.area_mm2));
+  });
+}
+
+/// The same of the points of voxels.
+template <typename F>
+void for_each_point(const point_shell::VoxelShell& shell, F&& f) {
+  const auto nowhere = [](const point_shell::VoxelShell::NodeBox&) { return false; };
+  shell.visit_bricks(nowhere, [&](std::size_t brick, const Vec3& origin_G) {
+    shell.points().for_each_of(brick, [&](const ShellPoint& point) {
+      f(Vec3(shell.origin_W() + shell.direction() * (origin_G + point.position_mm())),
+        static_cast<double>(point.area_mm2));
+    });
   });
 }
 

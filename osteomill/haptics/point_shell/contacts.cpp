@@ -21,13 +21,32 @@ bool is_apart(const ToolBox& tool_box, const VoxelShell::NodeBox& node, const To
   return ((X_TG.turn.transpose() * between).cwiseAbs().array() > along_node.array()).any();
 }
 
-// As they act on the tool.
-ContactSum contact_sum(const EnergySum& sum) {
-  return {-sum.gradient.head<3>(), -sum.gradient.tail<3>(), sum.convex.topLeftCorner<3, 3>(),
-          sum.convex.topRightCorner<3, 3>(), sum.convex.bottomRightCorner<3, 3>()};
+// The same sum in the axes of an outer frame, `R` being those of this one in it.
+EnergySum in_outer(const Mat3& R, const EnergySum& sum) {
+  const auto turned = [&](const Mat3& K) -> Mat3 { return R * K * R.transpose(); };
+  EnergySum outer;
+  outer.touching = sum.touching;
+  outer.gradient << R * sum.gradient.head<3>(), R * sum.gradient.tail<3>();
+  const Mat3 coupled = turned(sum.convex.topRightCorner<3, 3>());
+  outer.convex << turned(sum.convex.topLeftCorner<3, 3>()), coupled, coupled.transpose(),
+      turned(sum.convex.bottomRightCorner<3, 3>());
+  return outer;
+}
+
+ToolContacts in_world(const EnergySum& burr_T, const EnergySum& shaft_T, const Pose& X_WT) {
+  const Mat3 R_WT = X_WT.orientation.toRotationMatrix();
+  return {in_outer(R_WT, burr_T), in_outer(R_WT, shaft_T)};
 }
 
 }  // namespace
+
+void add_contact(EnergySum& sum, double push_N, double stiffness_N_per_mm, const Vec3& n, const Vec3& r_mm) {
+  Vector6 along;
+  along << n, r_mm.cross(n);
+  sum.gradient += push_N * along;
+  sum.convex += stiffness_N_per_mm * along * along.transpose();
+  ++sum.touching;
+}
 
 double burr_top_mm(const MillingTool& tool) {
   const double squared =
@@ -47,9 +66,8 @@ ToolContacts contacts_by_octree(const VoxelShell& shell, const MillingTool& tool
     const std::optional<ToolDistance> distance = field.at(point_T);
     if (!distance || !(distance->distance_mm < 0)) return;
     const double k = stiffness_N_per_mm3 * static_cast<double>(point.area_mm2);
-    ContactSum& part = point_T.z() < burr_top ? contacts.burr : contacts.shaft;
-    part.add(-k * distance->distance_mm, k, distance->outward_T, point_T);
-    ++contacts.touching;
+    add_contact(point_T.z() < burr_top ? contacts.burr : contacts.shaft, -k * distance->distance_mm, k,
+                distance->outward_T, point_T);
   };
   shell.visit_bricks([&](const VoxelShell::NodeBox& node) { return is_apart(box, node, X_TG); },
                      [&](std::size_t brick, const Vec3& origin_G) {
@@ -57,8 +75,7 @@ ToolContacts contacts_by_octree(const VoxelShell& shell, const MillingTool& tool
                        shell.points().for_each_of(brick,
                                                   [&](const ShellPoint& point) { add(point, origin_T); });
                      });
-  const Mat3 R_WT = X_WT.orientation.toRotationMatrix();
-  return {contacts.burr.in_outer(R_WT), contacts.shaft.in_outer(R_WT), contacts.touching};
+  return in_world(contacts.burr, contacts.shaft, X_WT);
 }
 
 ToolContacts contacts_by_bricks(BoneBricks& bricks, NearBone& near, const MillingTool& tool, const Pose& X_WT,
@@ -66,9 +83,7 @@ ToolContacts contacts_by_bricks(BoneBricks& bricks, NearBone& near, const Millin
   const Cores whole{tool.burr_radius_mm, tool.shaft_radius_mm, tool.shaft_length_mm};
   near.gather(bricks, whole, penalty.reach_mm(), X_WT, {});
   const NearBone::Energy found = near.energy(whole, penalty, X_WT);
-  const Mat3 R_WT = X_WT.orientation.toRotationMatrix();
-  return {contact_sum(found.ball).in_outer(R_WT), contact_sum(found.cylinder).in_outer(R_WT),
-          found.ball.touching + found.cylinder.touching};
+  return in_world(found.ball, found.cylinder, X_WT);
 }
 
 }  // namespace osteomill::point_shell

@@ -1,62 +1,27 @@
 #pragma once
 
-#include "osteomill/geometry/wrench.h"
 #include "osteomill/haptics/bone_points/near_bone.h"
 #include "osteomill/haptics/point_shell/voxel_shell.h"
 #include "osteomill/tool/sampled_distance_field.h"
 
 namespace osteomill::point_shell {
 
-/// The penalty forces of many points on the tool, summed, and how they change as the tool moves: with the
-/// tool moved by dx (mm) and turned by dw (rad, about the burr's centre) the force is force_N - K_ff dx -
-/// K_ft dw and the torque torque_Nmm - K_ft^T dx - K_tt dw. All in one frame's axes, torque about the burr's
-/// centre.
-struct ContactSum {
-  Vec3 force_N = Vec3::Zero();
-  Vec3 torque_Nmm = Vec3::Zero();
-  Mat3 K_ff = Mat3::Zero();
-  Mat3 K_ft = Mat3::Zero();
-  Mat3 K_tt = Mat3::Zero();
+/// Adds a point at `r_mm` from the burr's centre that is pushed with `push_N` along the unit vector `n` out
+/// of the tool, and pushes the tool the other way; `stiffness_N_per_mm` is how the push grows with the depth.
+/// The depth grows by n . dx + (r x n) . dw (the field's gradient, exactly), so each point adds k [n; r x
+/// n][n; r x n]^T to the derivatives of eq. 22 and 23 (Barbic and James 2008). Left out is how n turns as the
+/// tool moves, of the size of push / (radius of the tool): it would make the sum indefinite, and vanishes
+/// with the depth.
+void add_contact(EnergySum& sum, double push_N, double stiffness_N_per_mm, const Vec3& n, const Vec3& r_mm);
 
-  /// A point at `r_mm` from the burr's centre that is pushed with `push_N` along the unit vector `n` out of
-  /// the tool, and pushes the tool the other way; `stiffness_N_per_mm` is how the push grows with the depth.
-  /// The depth grows by n . dx + (r x n) . dw (the field's gradient, exactly), so each point adds k [n; r x
-  /// n][n; r x n]^T to the derivatives of eq. 22 and 23 (Barbic and James 2008). Left out is how n turns as
-  /// the tool moves, of the size of push / (radius of the tool): it would make the sum indefinite, and
-  /// vanishes with the depth.
-  void add(double push_N, double stiffness_N_per_mm, const Vec3& n, const Vec3& r_mm) {
-    const Vec3 m = r_mm.cross(n);
-    force_N -= push_N * n;
-    torque_Nmm -= push_N * m;
-    const Vec3 kn = stiffness_N_per_mm * n;
-    const Vec3 km = stiffness_N_per_mm * m;
-    K_ff += kn * n.transpose();
-    K_ft += kn * m.transpose();
-    K_tt += km * m.transpose();
-  }
-  ContactSum& operator+=(const ContactSum& other) {
-    force_N += other.force_N;
-    torque_Nmm += other.torque_Nmm;
-    K_ff += other.K_ff;
-    K_ft += other.K_ft;
-    K_tt += other.K_tt;
-    return *this;
-  }
-  /// The same sum in the axes of an outer frame, `R` being those of this one in it.
-  ContactSum in_outer(const Mat3& R) const {
-    return {R * force_N, R * torque_Nmm, R * K_ff * R.transpose(), R * K_ft * R.transpose(),
-            R * K_tt * R.transpose()};
-  }
-};
-
-/// What touches the tool, burr and shaft apart.
+/// What touches the tool, burr and shaft apart, in one frame's axes. With the tool moved by dx (mm) and
+/// turned by dw (rad, about the burr's centre), what acts on it is -(gradient + convex [dx; dw]).
 struct ToolContacts {
-  ContactSum burr;
-  ContactSum shaft;
-  int touching = 0;
+  EnergySum burr;
+  EnergySum shaft;
 
-  ContactSum total() const {
-    ContactSum sum = burr;
+  EnergySum total() const {
+    EnergySum sum = burr;
     sum += shaft;
     return sum;
   }

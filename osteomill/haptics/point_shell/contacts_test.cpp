@@ -35,6 +35,22 @@ Penalty of_patches(const BoneBricks& bricks) {
   return {20, 2 * bricks.lattice().cell_area_mm2()};
 }
 
+Vec3 force_of(const EnergySum& sum) {
+  return -sum.gradient.head<3>();
+}
+Vec3 torque_of(const EnergySum& sum) {
+  return -sum.gradient.tail<3>();
+}
+Mat3 K_ff(const EnergySum& sum) {
+  return sum.convex.topLeftCorner<3, 3>();
+}
+Mat3 K_ft(const EnergySum& sum) {
+  return sum.convex.topRightCorner<3, 3>();
+}
+Mat3 K_tt(const EnergySum& sum) {
+  return sum.convex.bottomRightCorner<3, 3>();
+}
+
 ToolContacts by_bricks(BoneBricks& bricks, const MillingTool& tool, const Pose& X_WT,
                        const Penalty& penalty) {
   static NearBone near(32768, NearBone::PointsMeet::the_nearest_part);
@@ -54,14 +70,13 @@ ToolContacts contacts_by_brute_force(const VoxelShell& shell, const SampledDista
                                      const Pose& X_WT) {
   ToolContacts contacts;
   const Mat3 R_WT = X_WT.orientation.toRotationMatrix();
-  shell.for_each_point([&](const Vec3& point_W, double area) {
+  for_each_point(shell, [&](const Vec3& point_W, double area) {
     const Vec3 point_T = X_WT.inverse() * point_W;
     const auto distance = field.at(point_T);
     if (!distance || !(distance->distance_mm < 0)) return;
-    ++contacts.touching;
     const double k = kStiffness_N_per_mm3 * area;
-    (point_T.z() < burr_top_mm(kTool) ? contacts.burr : contacts.shaft)
-        .add(-k * distance->distance_mm, k, R_WT * distance->outward_T, point_W - X_WT.position_mm);
+    add_contact(point_T.z() < burr_top_mm(kTool) ? contacts.burr : contacts.shaft, -k * distance->distance_mm,
+                k, R_WT * distance->outward_T, point_W - X_WT.position_mm);
   });
   return contacts;
 }
@@ -85,10 +100,8 @@ OneByOne contacts_one_by_one(BoneBricks& bricks, const MillingTool& tool, const 
                                             distance.outward_T.dot(X_TG.turn * point.normal()),
                                             on_ball ? 2 / tool.burr_radius_mm : 1 / tool.shaft_radius_mm);
     if (!(push.force_N > 0)) return;
-    (on_ball ? found.contacts.burr : found.contacts.shaft)
-        .add(push.force_N, push.stiffness_N_per_mm, X_WT.orientation * distance.outward_T,
-             X_WT.orientation * point_T);
-    ++found.contacts.touching;
+    add_contact(on_ball ? found.contacts.burr : found.contacts.shaft, push.force_N, push.stiffness_N_per_mm,
+                X_WT.orientation * distance.outward_T, X_WT.orientation * point_T);
     found.force_N += push.force_N;
     found.stiffness_N_per_mm += push.stiffness_N_per_mm;
     found.most_N = std::max(found.most_N, push.force_N);
@@ -99,30 +112,30 @@ OneByOne contacts_one_by_one(BoneBricks& bricks, const MillingTool& tool, const 
 
 // To the rounding of single precision; where two parts are equally near, a point's push may be either's.
 void expect_near(const ToolContacts& fast, const OneByOne& plain, const MillingTool& tool) {
-  EXPECT_NEAR(fast.touching, plain.contacts.touching, 1 + 0.01 * plain.contacts.touching);
-  const ContactSum a = fast.total(), b = plain.contacts.total();
+  EXPECT_NEAR(fast.total().touching, plain.contacts.total().touching,
+              1 + 0.01 * plain.contacts.total().touching);
+  const EnergySum a = fast.total(), b = plain.contacts.total();
   const double force = 1e-3 * plain.force_N + 2 * plain.most_N, lever_mm = tool.shaft_length_mm;
   const double stiffness = 1e-3 * plain.stiffness_N_per_mm + 2 * plain.most_N_per_mm;
-  EXPECT_LE((a.force_N - b.force_N).norm(), force);
-  EXPECT_LE((fast.burr.force_N - plain.contacts.burr.force_N).norm(), force);
-  EXPECT_LE((a.torque_Nmm - b.torque_Nmm).norm(), lever_mm * force);
-  EXPECT_LE((a.K_ff - b.K_ff).norm(), stiffness);
-  EXPECT_LE((a.K_ft - b.K_ft).norm(), lever_mm * stiffness);
-  EXPECT_LE((a.K_tt - b.K_tt).norm(), lever_mm * lever_mm * stiffness);
+  EXPECT_LE((force_of(a) - force_of(b)).norm(), force);
+  EXPECT_LE((force_of(fast.burr) - force_of(plain.contacts.burr)).norm(), force);
+  EXPECT_LE((torque_of(a) - torque_of(b)).norm(), lever_mm * force);
+  EXPECT_LE((K_ff(a) - K_ff(b)).norm(), stiffness);
+  EXPECT_LE((K_ft(a) - K_ft(b)).norm(), lever_mm * stiffness);
+  EXPECT_LE((K_tt(a) - K_tt(b)).norm(), lever_mm * lever_mm * stiffness);
 }
 
-bool same_bits(const ContactSum& a, const ContactSum& b) {
-  return a.force_N == b.force_N && a.torque_Nmm == b.torque_Nmm && a.K_ff == b.K_ff && a.K_ft == b.K_ft &&
-         a.K_tt == b.K_tt;
+bool same_bits(const EnergySum& a, const EnergySum& b) {
+  return a.gradient == b.gradient && a.convex == b.convex;
 }
 
-void expect_near(const ContactSum& a, const ContactSum& b, double relative) {
+void expect_near(const EnergySum& a, const EnergySum& b, double relative) {
   const double tiny = 1e-9;
-  EXPECT_LE((a.force_N - b.force_N).norm(), relative * b.force_N.norm() + tiny);
-  EXPECT_LE((a.torque_Nmm - b.torque_Nmm).norm(), relative * b.torque_Nmm.norm() + tiny);
-  EXPECT_LE((a.K_ff - b.K_ff).norm(), relative * b.K_ff.norm() + tiny);
-  EXPECT_LE((a.K_ft - b.K_ft).norm(), relative * b.K_tt.norm() + tiny);
-  EXPECT_LE((a.K_tt - b.K_tt).norm(), relative * b.K_tt.norm() + tiny);
+  EXPECT_LE((force_of(a) - force_of(b)).norm(), relative * force_of(b).norm() + tiny);
+  EXPECT_LE((torque_of(a) - torque_of(b)).norm(), relative * torque_of(b).norm() + tiny);
+  EXPECT_LE((K_ff(a) - K_ff(b)).norm(), relative * K_ff(b).norm() + tiny);
+  EXPECT_LE((K_ft(a) - K_ft(b)).norm(), relative * K_tt(b).norm() + tiny);
+  EXPECT_LE((K_tt(a) - K_tt(b)).norm(), relative * K_tt(b).norm() + tiny);
 }
 
 Pose random_pose(std::mt19937& bits, double reach_mm) {
@@ -148,10 +161,10 @@ TEST(OctreeContacts, FindsWhatLookingAtEveryPointFinds) {
       const Pose X_WT = random_pose(bits, 7);
       const ToolContacts by_octree = contacts_by_octree(shell, kTool, field, X_WT, kStiffness_N_per_mm3);
       const ToolContacts by_all = contacts_by_brute_force(shell, field, X_WT);
-      EXPECT_EQ(by_octree.touching, by_all.touching);
+      EXPECT_EQ(by_octree.total().touching, by_all.total().touching);
       expect_near(by_octree.burr, by_all.burr, 1e-9);
       expect_near(by_octree.shaft, by_all.shaft, 1e-9);
-      touched += by_all.touching > 0 ? 1 : 0;
+      touched += by_all.total().touching > 0 ? 1 : 0;
     }
     EXPECT_GT(touched, 50);
   }
@@ -184,12 +197,12 @@ TEST(BrickContacts, AreThePointsOneByOneAndTheSameBitsWithEveryInstructionSet) {
         for (const Penalty& penalty : {kOfPoints, of_patches(bricks)}) {
           const ToolContacts fast = by_bricks(bricks, tool, X_WT, penalty);
           expect_near(fast, contacts_one_by_one(bricks, tool, X_WT, penalty), tool);
-          touched += fast.touching;
+          touched += fast.total().touching;
           if (n > 9) continue;
           for (const std::int64_t target : instruction_sets_here(near_kernel_targets())) {
             const ForcedInstructionSet forced(target);
             const ToolContacts same = by_bricks(bricks, tool, X_WT, penalty);
-            EXPECT_EQ(same.touching, fast.touching) << hwy::TargetName(target);
+            EXPECT_EQ(same.total().touching, fast.total().touching) << hwy::TargetName(target);
             EXPECT_TRUE(same_bits(same.burr, fast.burr)) << hwy::TargetName(target);
             EXPECT_TRUE(same_bits(same.shaft, fast.shaft)) << hwy::TargetName(target);
           }
@@ -218,7 +231,7 @@ PlaneRatios slide_over_plane(const Contacts& contacts, const Vec3& normal, doubl
   for (int step = 0; step < 60; ++step) {
     const Vec3 along = (0.016 * step - 0.5) * n.unitOrthogonal() + 0.003 * step * n.cross(n.unitOrthogonal());
     const Pose X_WT{through + along + (1.5 - depth_mm) * n, smallest_rotation(Vec3::UnitZ(), n)};
-    const Vec3 force = contacts_at(X_WT).total().force_N;
+    const Vec3 force = force_of(contacts_at(X_WT).total());
     const double ratio = force.dot(n) / (20 * std::numbers::pi * (1.5 - depth_mm) * depth_mm * depth_mm);
     ratios.min = std::min(ratios.min, ratio);
     ratios.max = std::max(ratios.max, ratio);
@@ -314,11 +327,11 @@ TEST(BallContact, SteadyIsTheIntegralOverTheBall) {
     const Vec3 direction = random_vector(bits).normalized();
     const double depth_mm = uniform(bits, 0.15, 0.5);
     const Pose X_WT{(5.5 - depth_mm) * direction, smallest_rotation(Vec3::UnitZ(), direction)};
-    const ContactSum sum = by_bricks(bricks, kTool, X_WT, of_patches(bricks)).total();
+    const EnergySum sum = by_bricks(bricks, kTool, X_WT, of_patches(bricks)).total();
     const double expected = 20 * ball_force(4, 1.5, 5.5 - depth_mm);
-    EXPECT_NEAR(sum.force_N.dot(direction) / expected, 1, 0.035);
-    EXPECT_LT(sum.force_N.cross(direction).norm() / sum.force_N.norm(), 0.015);
-    EXPECT_LT(sum.torque_Nmm.norm(), 1e-9 * sum.force_N.norm());
+    EXPECT_NEAR(force_of(sum).dot(direction) / expected, 1, 0.035);
+    EXPECT_LT(force_of(sum).cross(direction).norm() / force_of(sum).norm(), 0.015);
+    EXPECT_LT(torque_of(sum).norm(), 1e-9 * force_of(sum).norm());
   }
 }
 
@@ -330,11 +343,11 @@ TEST(BallContact, PaperIsSofterButPushesOutwards) {
   for (int n = 0; n < 100; ++n) {
     const Vec3 direction = random_vector(bits).normalized();
     const Pose X_WT{5.1 * direction, smallest_rotation(Vec3::UnitZ(), direction)};
-    const ContactSum sum = contacts_by_octree(shell, kTool, field, X_WT, kStiffness_N_per_mm3).total();
-    const double ratio = sum.force_N.dot(direction) / (20 * ball_force(4, 1.5, 5.1));
+    const EnergySum sum = contacts_by_octree(shell, kTool, field, X_WT, kStiffness_N_per_mm3).total();
+    const double ratio = force_of(sum).dot(direction) / (20 * ball_force(4, 1.5, 5.1));
     EXPECT_GT(ratio, 0.4);
     EXPECT_LT(ratio, 0.95);
-    EXPECT_LT(sum.force_N.cross(direction).norm() / sum.force_N.norm(), 0.1);
+    EXPECT_LT(force_of(sum).cross(direction).norm() / force_of(sum).norm(), 0.1);
   }
 }
 
@@ -371,7 +384,7 @@ TEST(ContactSum, TheDerivativeOfTheForceLacksOnlyTheTurningOfTheNormals) {
   const Volume volume = shape_volume(centred_cube(64, 0.125), ball({0, 0, -2.5}, 3));
   BoneBricks bricks = fine_bricks(volume);
   const Pose X_WT{{0.2, 0.1, 1.7}, quaternion_from_rotation_vector({0.3, 0.2, 0})};
-  const ContactSum here = by_bricks(bricks, kTool, X_WT, kOfPoints).total();
+  const EnergySum here = by_bricks(bricks, kTool, X_WT, kOfPoints).total();
   Mat3 left_out = Mat3::Zero();
   for_each_point(bricks, [&](const Vec3& point_W, double area) {
     const Vec3 r = point_W - X_WT.position_mm;
@@ -385,13 +398,13 @@ TEST(ContactSum, TheDerivativeOfTheForceLacksOnlyTheTurningOfTheNormals) {
   for (int axis = 0; axis < 3; ++axis) {
     const auto force_at = [&](double step) {
       const Pose shifted{X_WT.position_mm + step * Vec3::Unit(axis), X_WT.orientation};
-      return by_bricks(bricks, kTool, shifted, kOfPoints).total().force_N;
+      return force_of(by_bricks(bricks, kTool, shifted, kOfPoints).total());
     };
     differences.col(axis) = (force_at(kStep) - force_at(-kStep)) / (2 * kStep);
   }
   EXPECT_GT(left_out.norm(), 1);
-  EXPECT_GT(here.K_ff.norm(), 4 * left_out.norm());
-  EXPECT_LT((differences - (left_out - here.K_ff)).norm(), 5e-3 * here.K_ff.norm());
+  EXPECT_GT(K_ff(here).norm(), 4 * left_out.norm());
+  EXPECT_LT((differences - (left_out - K_ff(here))).norm(), 5e-3 * K_ff(here).norm());
 }
 
 // The same for the shaft's side, where turning the tool matters: differences of force and torque over small
@@ -402,17 +415,17 @@ TEST(ContactSum, OnTheShaftTheLeftOutTermVanishesWithTheDepth) {
   const auto relative_error = [&](double depth_mm) {
     // The burr hangs free beyond the plane's border; the shaft lies along x.
     const Pose X_WT{{-6, 0, 1.02 - depth_mm}, smallest_rotation(Vec3::UnitZ(), Vec3::UnitX())};
-    const ContactSum here = by_bricks(bricks, kTool, X_WT, kOfPoints).total();
+    const EnergySum here = by_bricks(bricks, kTool, X_WT, kOfPoints).total();
     Mat3 differences;
     constexpr double kStep = 1e-4;
     for (int axis = 0; axis < 3; ++axis) {
       const auto torque_at = [&](double step) {
         const Pose turned = moved(X_WT, {Vec3::Zero(), step * Vec3::Unit(axis)});
-        return by_bricks(bricks, kTool, turned, kOfPoints).total().torque_Nmm;
+        return torque_of(by_bricks(bricks, kTool, turned, kOfPoints).total());
       };
       differences.col(axis) = (torque_at(kStep) - torque_at(-kStep)) / (2 * kStep);
     }
-    return (differences + here.K_tt).norm() / here.K_tt.norm();
+    return (differences + K_tt(here)).norm() / K_tt(here).norm();
   };
   const double deep = relative_error(0.2), shallow = relative_error(0.05);
   EXPECT_LT(deep, 0.25);

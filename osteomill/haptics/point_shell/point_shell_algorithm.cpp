@@ -22,9 +22,11 @@ constexpr int kCentrelinePoints = 51;
 
 // The burr's force on the bone after a move, by the derivatives from before it. A contact only pushes: where
 // the move is predicted to end in a pull, the burr has left.
-Vec3 burr_force_after(const ContactSum& burr, const ToolMove& move) {
-  const Vec3 force = burr.force_N - burr.K_ff * move.translation_mm - burr.K_ft * move.rotation_rad;
-  return force.dot(burr.force_N) > 0 ? Vec3(-force) : Vec3(Vec3::Zero());
+Vec3 burr_force_after(const EnergySum& burr, const ToolMove& move) {
+  const Vec3 before = -burr.gradient.head<3>();
+  const Vec3 force = before - burr.convex.topLeftCorner<3, 3>() * move.translation_mm -
+                     burr.convex.topRightCorner<3, 3>() * move.rotation_rad;
+  return force.dot(before) > 0 ? Vec3(-force) : Vec3(Vec3::Zero());
 }
 
 }  // namespace
@@ -93,7 +95,8 @@ HapticStep PointShellAlgorithm::step(const Pose& X_WD, double dt_s) {
   if (begins) X_WT_ = X_WD_before_ = X_WD;
   has_pose_ = true;
   if (begins) carried_ = settings_.guarded_move && count_in_bone(*volume_, centreline_T_, X_WD) > 0;
-  if (carried_) carried_ = count_in_bone(*volume_, centreline_T_, X_WD) > 0 || contacts_at(X_WD).touching > 0;
+  if (carried_)
+    carried_ = count_in_bone(*volume_, centreline_T_, X_WD) > 0 || contacts_at(X_WD).total().touching > 0;
   HapticStep result;
   if (carried_) {
     result.X_WT = X_WT_ = X_WD;
@@ -113,14 +116,13 @@ HapticStep PointShellAlgorithm::balanced(const Pose& X_WD, double dt_s) {
   if (settings_.guarded_move && !in_contact_) X_WT_ = towards(start, X_WD, bound);
 
   HapticStep result;
-  ToolContacts contacts;
   for (int n = 0; n < (settings_.guarded_move ? kSteps : 1); ++n) {
-    contacts = contacts_at(X_WT_);
+    const ToolContacts contacts = contacts_at(X_WT_);
+    const EnergySum all = contacts.total();
+    result.contacts = all.touching;
     const Pose before = X_WT_;
     Pose target = X_WD;
-    if (contacts.touching > 0) {
-      target = moved(X_WT_, balancing_move(coupling_, X_WT_, X_WD, stretch_before_, contacts.total()));
-    }
+    if (all.touching > 0) target = moved(X_WT_, balancing_move(coupling_, X_WT_, X_WD, stretch_before_, all));
     X_WT_ = towards(start, target, bound);
     const ToolMove step_move = move_between(before, X_WT_);
     result.burr_force_W_N = burr_force_after(contacts.burr, step_move);
@@ -128,10 +130,9 @@ HapticStep PointShellAlgorithm::balanced(const Pose& X_WD, double dt_s) {
       break;
     }
   }
-  in_contact_ = contacts.touching > 0;
+  in_contact_ = result.contacts > 0;
   held_back_ = in_contact_ || (held_back_ && X_WT_ != X_WD);
   result.X_WT = X_WT_;
-  result.contacts = contacts.touching;
   if (held_back_) result.wrench = wrench_on_hand(coupling_, X_WT_, X_WD, stretch_before_);
   stretch_before_ = move_between(X_WD, X_WT_);
   return result;

@@ -23,6 +23,6 @@ Wrench wrench_on_hand(const VirtualCoupling& coupling, const Pose& X_WT, const P
 /// The move after which coupling and contacts balance, both linearised about `X_WT` (Eriksson 2012, eq. 22
 /// and 23). `contacts` in W's axes at that pose. Safe in the haptic tick.
 ToolMove balancing_move(const VirtualCoupling& coupling, const Pose& X_WT, const Pose& X_WD,
-                        const ToolMove& stretch_before, const ContactSum& contacts);
+                        const ToolMove& stretch_before, const EnergySum& contacts);
 
 }  // namespace osteomill::point_shell

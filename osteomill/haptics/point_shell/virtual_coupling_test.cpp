@@ -20,8 +20,8 @@ TEST(VirtualCoupling, OnePointOnTheAxisIsTwoSpringsInSeries) {
   const Pose X_WT{{0, 0, 0}, Quat::Identity()};
   const Pose X_WD{{0, 0, -0.7}, Quat::Identity()};
   constexpr double kPoint = 8.0, kDepth = 0.1;
-  ContactSum contacts;
-  contacts.add(kPoint * kDepth, kPoint, {0, 0, -1}, {0, 0, -1.4});
+  EnergySum contacts;
+  add_contact(contacts, kPoint * kDepth, kPoint, {0, 0, -1}, {0, 0, -1.4});
   const ToolMove move = balancing_move(kCoupling, X_WT, X_WD, {}, contacts);
   // The point is free of load 0.1 above: the device is 0.8 below that, and pushes with 2 * 8 / (2 + 8) * 0.8
   // N.
@@ -36,8 +36,8 @@ TEST(VirtualCoupling, OnePointOnTheAxisIsTwoSpringsInSeries) {
 // One point on the shaft at the lever L: the point sees the coupling's two springs in series, 1/k + L^2/k_r.
 TEST(VirtualCoupling, OnePointAtALeverSharesBetweenForceAndTorque) {
   constexpr double kPoint = 50.0, kDepth = 0.02, kLever = 12.0;
-  ContactSum contacts;
-  contacts.add(kPoint * kDepth, kPoint, {-1, 0, 0}, {-1, 0, kLever});
+  EnergySum contacts;
+  add_contact(contacts, kPoint * kDepth, kPoint, {-1, 0, 0}, {-1, 0, kLever});
   const ToolMove move = balancing_move(kCoupling, {}, {}, {}, contacts);
   const double compliance = 1 / 2.0 + kLever * kLever / 1000.0 + 1 / kPoint;
   const double force = kDepth / compliance;
@@ -55,8 +55,8 @@ TEST(VirtualCoupling, TheDamperCountsTheStretchAsIfItWentOn) {
   const Wrench wrench = wrench_on_hand(kDamped, X_WT, {}, before);
   EXPECT_NEAR(wrench.force_N.z(), 2 * 0.8, 1e-12);
   EXPECT_NEAR(wrench.torque_Nmm.x(), 1000 * 0.05, 1e-9);
-  ContactSum contacts;
-  contacts.add(4 * 0.3, 4, {0, 0, -1}, {0, 0, 0});
+  EnergySum contacts;
+  add_contact(contacts, 4 * 0.3, 4, {0, 0, -1}, {0, 0, 0});
   const Pose after = moved(X_WT, balancing_move(kDamped, X_WT, {}, before, contacts));
   const double pushed_N = 4 * (0.3 - (after.position_mm.z() - 0.5));
   EXPECT_NEAR(wrench_on_hand(kDamped, after, {}, before).force_N.z(), pushed_N, 1e-9);

@@ -18,10 +18,7 @@ class BoneBits {
   BoneBits() = default;
   /// No bone. Every dimension at least 1.
   explicit BoneBits(const std::array<int, 3>& dims)
-      : row_bytes_((dims[0] + 7) / 8 + 2),
-        rows_(dims[1] + 2),
-        bytes_(static_cast<std::size_t>(row_bytes_) * static_cast<std::size_t>(rows_) *
-               static_cast<std::size_t>(dims[2] + 2)) {}
+      : dims_{(dims[0] + 7) / 8 + 2, dims[1] + 2, dims[2] + 2}, bytes_(cell_count(dims_)) {}
 
   /// Nodes 8 * `byte` to 8 * `byte` + 7 of row j of slice k, the first in the lowest bit.
   std::uint8_t byte(int byte, int j, int k) const { return bytes_[index(byte, j, k)]; }
@@ -30,8 +27,7 @@ class BoneBits {
   /// The nodes of that byte which are bone and have at least one of their 6 neighbours not bone.
   std::uint8_t surface_byte(int byte, int j, int k) const {
     const std::size_t here = index(byte, j, k);
-    const std::size_t row = static_cast<std::size_t>(row_bytes_);
-    const std::size_t slice = row * static_cast<std::size_t>(rows_);
+    const std::size_t row = row_major(dims_, 0, 1, 0), slice = row_major(dims_, 0, 0, 1);
     const unsigned bone = bytes_[here];
     const unsigned below = (bone << 1) | (bytes_[here - 1] >> 7);
     const unsigned above = (bone >> 1) | (static_cast<unsigned>(bytes_[here + 1]) << 7);
@@ -41,15 +37,9 @@ class BoneBits {
   }
 
  private:
-  std::size_t index(int byte, int j, int k) const {
-    return static_cast<std::size_t>(byte + 1) +
-           static_cast<std::size_t>(row_bytes_) *
-               (static_cast<std::size_t>(j + 1) +
-                static_cast<std::size_t>(rows_) * static_cast<std::size_t>(k + 1));
-  }
+  std::size_t index(int byte, int j, int k) const { return row_major(dims_, byte + 1, j + 1, k + 1); }
 
-  int row_bytes_ = 0;
-  int rows_ = 0;
+  std::array<int, 3> dims_{0, 0, 0};
   std::vector<std::uint8_t> bytes_;
 };
 
@@ -87,10 +77,6 @@ class VoxelShell {
   const Vec3& origin_W() const { return geometry_.origin_mm; }
   const Mat3& direction() const { return geometry_.direction; }
 
-  /// Calls `f(point_W, area_mm2)` for every point. Not for the tick.
-  template <typename F>
-  void for_each_point(F&& f) const;
-
  private:
   template <typename IsApart, typename Visit>
   void visit_node(int level, const VoxelIndex& node, const IsApart& is_apart, const Visit& visit) const;
@@ -126,17 +112,6 @@ class VoxelShell {
   // Room for one brick's points while it is rebuilt.
   std::vector<ShellPoint> found_;
 };
-
-template <typename F>
-void VoxelShell::for_each_point(F&& f) const {
-  visit_bricks([](const NodeBox&) { return false; },
-               [&](std::size_t brick, const Vec3& origin_G) {
-                 points_.for_each_of(brick, [&](const ShellPoint& p) {
-                   f(Vec3(origin_W() + direction() * (origin_G + p.position_mm())),
-                     static_cast<double>(p.area_mm2));
-                 });
-               });
-}
 
 template <typename IsApart, typename Visit>
 void VoxelShell::visit_node(int level, const VoxelIndex& node, const IsApart& is_apart,

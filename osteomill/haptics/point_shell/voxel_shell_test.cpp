@@ -8,6 +8,7 @@
 
 #include "tests/random.h"
 #include "tests/shapes.h"
+#include "tests/support/every_point.h"
 #include <gtest/gtest.h>
 
 #include "osteomill/volume/sampling.h"
@@ -28,7 +29,7 @@ struct WorldPoint {
 
 std::vector<WorldPoint> points_of(const VoxelShell& shell) {
   std::vector<WorldPoint> points;
-  shell.for_each_point([&](const Vec3& position, double area) { points.push_back({position, area}); });
+  for_each_point(shell, [&](const Vec3& position, double area) { points.push_back({position, area}); });
   return points;
 }
 
