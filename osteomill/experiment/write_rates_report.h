@@ -5,7 +5,7 @@
 
 #include "osteomill/experiment/measure_rates.h"
 #include "osteomill/experiment/vertex_search.h"
-#include "osteomill/haptics/haptic_settings.h"
+#include "osteomill/haptics/algorithm_description.h"
 
 namespace osteomill {
 

@@ -3,15 +3,48 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "osteomill/haptics/haptic_algorithm.h"
-#include "osteomill/haptics/haptic_settings.h"
 
 namespace osteomill {
+
+/// `paper` is what the paper says; `steady` the same algorithm with named improvements.
+enum class Mode : unsigned char { paper, steady };
+
+/// As written on the command line and in files: "paper", "steady".
+std::string_view name_of(Mode mode);
+std::optional<Mode> mode_named(std::string_view name);
+
+/// What the user says of the algorithms' settings. What is left open takes each algorithm's own value for the
+/// mode.
+struct HapticSettings {
+  struct Named {
+    /// Of this algorithm, by the setting's own name. Empty: of every algorithm that has a setting with an
+    /// option of that name (SettingDescription::option).
+    std::string algorithm;
+    std::string setting;
+    double value;
+  };
+
+  Mode mode = Mode::steady;
+  /// Options are applied first, then what is said of one algorithm, each in this order.
+  std::vector<Named> named = {};
+
+  /// For every algorithm that has it, in the place of what was said before: `set_option("stiffness", 2)`.
+  void set_option(const std::string& option, double value) {
+    clear_option(option);
+    named.push_back({"", option, value});
+  }
+  /// Leaves it open again.
+  void clear_option(const std::string& option) {
+    std::erase_if(named, [&](const Named& one) { return one.algorithm.empty() && one.setting == option; });
+  }
+};
 
 /// By what people and files know an algorithm; what a recording keeps of it. Figures and file names are made
 /// from it, so the name holds letters, digits, '-' and '_' alone, the label also spaces and any of ().,:+
@@ -54,7 +87,6 @@ struct SettingRange {
   static constexpr SettingRange limit() {
     return {.min = std::numeric_limits<double>::min(), .max = std::numeric_limits<double>::infinity()};
   }
-  static constexpr SettingRange share() { return {.max = 1}; }
   static constexpr SettingRange on_or_off() { return {.max = 1, .whole = true}; }
   static constexpr SettingRange count(int min, int max) {
     return {.min = static_cast<double>(min), .max = static_cast<double>(max), .whole = true};

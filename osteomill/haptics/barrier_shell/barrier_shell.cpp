@@ -172,15 +172,6 @@ Cores BarrierShell::cores() const {
   return Cores::within(tool_, settings_.rounding_mm, smaller_mm_);
 }
 
-// Nothing is known of where the tool came from: in bone it is carried out, beside bone it has come from
-// outside, however deep its rim may lie in it.
-void BarrierShell::begin(const Pose& X_WD) {
-  has_pose_ = true;
-  X_WD_before_ = X_WD;
-  carried_ = count_in_bone(*volume_, centreline_T_, X_WD) > 0;
-  begin_outside(X_WD);
-}
-
 // With cores so small that no point is in them.
 void BarrierShell::begin_outside(const Pose& X_WT) {
   X_WT_ = X_WT;
@@ -351,8 +342,10 @@ HapticStep BarrierShell::report(const State& state, const Pose& X_WD, double dt_
 HapticStep BarrierShell::step(const Pose& X_WD, double dt_s) {
   bricks_.begin_tick(tool_, X_WT_);
   ++counts_.ticks;
-  if (!has_pose_) begin(X_WD);
-  if (carried_) {
+  if (!has_pose_) X_WD_before_ = X_WD;
+  // Nothing is known of where a tool came from that begins: in bone it is carried out, beside bone it has
+  // come from outside, however deep its rim may lie in it.
+  if (carried_ || !has_pose_) {
     carried_ = count_in_bone(*volume_, centreline_T_, X_WD) > 0;
     begin_outside(X_WD);
   }
@@ -371,6 +364,7 @@ HapticStep BarrierShell::step(const Pose& X_WD, double dt_s) {
     last_move_ = room_of(move_between(start, X_WT_));
     result = report(state, X_WD, dt_s);
   }
+  has_pose_ = true;
   X_WD_before_ = X_WD;
   return result;
 }

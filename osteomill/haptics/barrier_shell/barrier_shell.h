@@ -50,7 +50,6 @@ class BarrierShell final : public HapticAlgorithm {
  private:
   struct State;
   struct Step;
-  void begin(const Pose& X_WD);
   void begin_outside(const Pose& X_WT);
   void grow_cores(double nearest_mm, double dt_s);
   Cores cores() const;
