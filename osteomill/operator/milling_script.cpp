@@ -170,8 +170,8 @@ void MillingScript::push(double share, double slowest_mm_s, double fastest_mm_s,
   along_mm_ += dt_s * std::clamp(rate_mm_s, slowest_mm_s, fastest_mm_s);
 }
 
-void MillingScript::push_sideways(double share, double dt_s, const Pose& X_WD) {
-  const double wanted_mm = stretch_for(share, hand_.push_N, hand_.stiffness_N_per_mm);
+void MillingScript::push_sideways(double dt_s, const Pose& X_WD) {
+  const double wanted_mm = stretch_for(kSide, hand_.push_N, hand_.stiffness_N_per_mm);
   const double felt_mm = sideways_mm_ - entry_.lateral_W.dot(X_WD.position_mm - entry_.point_W);
   const double rate_mm_s = kPushCorrection_per_s * (wanted_mm - felt_mm);
   sideways_mm_ += dt_s * std::clamp(rate_mm_s, -kFeed_mm_s, kFeed_mm_s);
@@ -179,9 +179,9 @@ void MillingScript::push_sideways(double share, double dt_s, const Pose& X_WD) {
   sideways_mm_ = std::clamp(sideways_mm_, 0.0, wanted_mm);
 }
 
-void MillingScript::lean(double share, double dt_s, const Pose& X_WD) {
+void MillingScript::lean(double dt_s, const Pose& X_WD) {
   const double wanted_rad =
-      stretch_for(share, torque_limit_Nmm(hand_), hand_.torsional_stiffness_Nmm_per_rad);
+      stretch_for(kTorque, torque_limit_Nmm(hand_), hand_.torsional_stiffness_Nmm_per_rad);
   const double felt_rad =
       lean_axis_W_.dot(rotation_vector(target().orientation * X_WD.orientation.conjugate()));
   const double rate_rad_s = kTorqueCorrection_per_s * (wanted_rad - felt_rad);
@@ -204,14 +204,10 @@ void MillingScript::move(double dt_s, const Pose& X_WD) {
       push(kFeedPush, 0.0, kFeed_mm_s, dt_s, X_WD);
       break;
     case ScriptStage::lean:
-      push(kLeanPush, -kFeed_mm_s, kFeed_mm_s, dt_s, X_WD);
-      push_sideways(kSide, dt_s, X_WD);
-      lean(kTorque, dt_s, X_WD);
-      break;
     case ScriptStage::settle:
-      push(kHoldPush, -kFeed_mm_s, kFeed_mm_s, dt_s, X_WD);
-      push_sideways(kSide, dt_s, X_WD);
-      lean(kTorque, dt_s, X_WD);
+      push(intent_.stage == ScriptStage::lean ? kLeanPush : kHoldPush, -kFeed_mm_s, kFeed_mm_s, dt_s, X_WD);
+      push_sideways(dt_s, X_WD);
+      lean(dt_s, X_WD);
       break;
     case ScriptStage::hold:
     case ScriptStage::done:

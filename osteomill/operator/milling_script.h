@@ -86,8 +86,8 @@ class MillingScript {
   double leant_by_rad(const Pose& X_WD) const;
   void move(double dt_s, const Pose& X_WD);
   void push(double share, double slowest_mm_s, double fastest_mm_s, double dt_s, const Pose& X_WD);
-  void push_sideways(double share, double dt_s, const Pose& X_WD);
-  void lean(double share, double dt_s, const Pose& X_WD);
+  void push_sideways(double dt_s, const Pose& X_WD);
+  void lean(double dt_s, const Pose& X_WD);
   Pose target() const;
 
   ScriptSettings settings_;

@@ -117,18 +117,6 @@ void MillingSession::take_over(const TakenOver& before) {
   if (before.X_WT && is_finite(*before.X_WT)) begin_at(*before.X_WT);
 }
 
-TakenOver MillingSession::left() const {
-  return {last_X_WT_, guard_.sent()};
-}
-
-void MillingSession::let_go() {
-  let_go_asked_ = true;
-}
-
-void MillingSession::place() {
-  place_asked_ = true;
-}
-
 void MillingSession::begin_at(const Pose& X_WT) {
   guard_.begin_anew();
   last_X_WT_ = X_WT;

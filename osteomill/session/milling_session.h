@@ -70,13 +70,13 @@ class MillingSession {
   /// `tick`.
   void take_over(const TakenOver& before);
   /// To be taken over by another, after the last tick.
-  TakenOver left() const;
+  TakenOver left() const { return {last_X_WT_, guard_.sent()}; }
 
   /// From the next tick on zero is sent, come down to slowly, until the tool is placed. As safe as `tick`.
-  void let_go();
+  void let_go() { let_go_asked_ = true; }
   /// In the next tick the algorithm begins anew where the device then is, whatever was touched before; the
   /// device is free of bone. As safe as `tick`.
-  void place();
+  void place() { place_asked_ = true; }
 
   /// What the last tick changed of the volume.
   const VolumeChange& last_change() const { return last_change_; }

@@ -63,10 +63,6 @@ void WrenchGuard::let_go() {
   let_go_ = true;
 }
 
-bool WrenchGuard::is_at_rest() const {
-  return is_zero(sent_);
-}
-
 SafeWrench WrenchGuard::approach(const Wrench& target, WrenchFault fault, double dt_s) {
   sent_ = osteomill::approach(sent_, target, settings_.rates, usual_tick_s(dt_s));
   const bool short_of_it = sent_.force_N != target.force_N || sent_.torque_Nmm != target.torque_Nmm;

@@ -86,7 +86,7 @@ class WrenchGuard {
   void let_go();
   const Wrench& sent() const { return sent_; }
   /// Zero was sent last.
-  bool is_at_rest() const;
+  bool is_at_rest() const { return is_zero(sent_); }
 
   /// What to send for a wrench in a tick of `dt_s`, with the reason where that is not what was asked for. One
   /// that is not finite is zero, and what follows begins anew.
