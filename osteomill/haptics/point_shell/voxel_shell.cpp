@@ -53,7 +53,6 @@ VoxelShell::VoxelShell(const Volume& volume, int scale)
   const std::array<int, 3> bricks = all.dims();
   octree_ = CountPyramid(bricks);
   masks_.resize(cell_count(bricks));
-  found_.reserve(kSide * kSide * kSide);
   const auto tell = [&](const VoxelIndex& b) {
     if (b.i == 0 && b.j == 0)
       WorkProgress::done(static_cast<std::size_t>(b.k), static_cast<std::size_t>(bricks[2]));
@@ -146,13 +145,13 @@ void VoxelShell::refresh_brick(const VoxelIndex& b) {
   const SurfaceMask mask = mask_of(b);
   if (mask == masks_[brick]) return;
   masks_[brick] = mask;
-  found_.clear();
+  found_.count = 0;
   for (std::size_t row = 0; row < mask.size(); ++row) {
     for (unsigned bits = mask[row]; bits != 0; bits &= bits - 1) {
       const Vec3 node(std::countr_zero(bits), static_cast<double>(row % kSide),
                       static_cast<double>(row / kSide));
       const Eigen::Vector3f at_mm = geometry_.spacing_mm.cwiseProduct(node).cast<float>();
-      found_.push_back({at_mm.x(), at_mm.y(), at_mm.z(), point_area_mm2_});
+      found_.add({at_mm.x(), at_mm.y(), at_mm.z(), point_area_mm2_});
     }
   }
   const std::uint32_t before = points_.brick(brick).count;
