@@ -282,17 +282,6 @@ SurfaceLattice::Found SurfaceLattice::find_bone(const Nodes& nodes, Rows& rows) 
   return (all & whole) == whole ? Found::bone_alone : Found::surface;
 }
 
-// The edges along lines from a row's nodes that are crossed; false where none is.
-bool SurfaceLattice::find_crossed(const Rows& rows, int j, int k, std::uint32_t (&crossed)[3]) const {
-  const std::uint32_t lower = (1u << brick_nodes_) - 1;
-  const std::uint32_t on_j = on_line(j) ? lower : 0, on_k = on_line(k) ? lower : 0;
-  const std::uint32_t here = rows[row_index(j, k)];
-  crossed[0] = (here ^ (here >> 1)) & on_j & on_k;
-  crossed[1] = (here ^ rows[row_index(j + 1, k)]) & on_lines_ & on_k;
-  crossed[2] = (here ^ rows[row_index(j, k + 1)]) & on_lines_ & on_j;
-  return (crossed[0] | crossed[1] | crossed[2]) != 0;
-}
-
 // A bit a cell of a row, of bits a node.
 std::uint32_t SurfaceLattice::cells_of(std::uint32_t nodes) const {
   if (group_ == 1) return nodes;

@@ -93,7 +93,16 @@ class SurfaceLattice {
   float density(const VoxelIndex& voxel) const;
   Found find_bone(const Nodes& nodes, Rows& rows) const;
   bool on_line(int node) const { return (on_lines_ >> node & 1) != 0; }
-  bool find_crossed(const Rows& rows, int j, int k, std::uint32_t (&crossed)[3]) const;
+  // The edges along lines from a row's nodes that are crossed; false where none is.
+  bool find_crossed(const Rows& rows, int j, int k, std::uint32_t (&crossed)[3]) const {
+    const std::uint32_t lower = (1u << brick_nodes_) - 1;
+    const std::uint32_t on_j = on_line(j) ? lower : 0, on_k = on_line(k) ? lower : 0;
+    const std::uint32_t here = rows[row_index(j, k)];
+    crossed[0] = (here ^ (here >> 1)) & on_j & on_k;
+    crossed[1] = (here ^ rows[row_index(j + 1, k)]) & on_lines_ & on_k;
+    crossed[2] = (here ^ rows[row_index(j, k + 1)]) & on_lines_ & on_j;
+    return (crossed[0] | crossed[1] | crossed[2]) != 0;
+  }
   std::uint32_t cells_of(std::uint32_t nodes) const;
   void mean_crossings(const Nodes& nodes, const Rows& rows, BrickSurface& surface) const;
 
