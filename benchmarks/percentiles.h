@@ -11,7 +11,8 @@ namespace osteomill::benchmarks {
 /// Times of single ticks, of which a mean says little: what a hand feels is the slow one.
 class TickTimes {
  public:
-  void add(double microseconds) { times_us_.push_back(microseconds); }
+  /// Sleeps now and then: the kernel takes 50 ms of a second from a real-time thread that never does.
+  void add(double microseconds);
   /// Times `f()`, takes it in and returns it, in microseconds.
   template <typename F>
   double time(F&& f) {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "osteomill/numbers/bits_above.h"
+
 namespace osteomill {
 
 namespace {
@@ -123,7 +125,7 @@ void BurrReach::measure(Squares& squares, double centre_mm, std::size_t axis) co
     double min = radius_mm_ * radius_mm_;
     for (int n = begin; n < begin + kSide; ++n) {
       const double away = n * spacing - centre_mm;
-      squares.of_voxel_mm2[static_cast<std::size_t>(n)] = away * away;
+      squares.of_voxel_mm2[static_cast<std::size_t>(n)] = static_cast<float>(away * away);
       if (n < end) min = std::min(min, away * away);
     }
     squares.of_brick_mm2[static_cast<std::size_t>(b)] = min;
@@ -160,17 +162,19 @@ void BurrReach::find_pieces(const DensityGrid& grid, std::size_t word, std::uint
   const int base = static_cast<int>(kWordBits * word);
   const Bits* bits = &bits_[brick_index(base, bj, bk)];
   for (int k = kSide * bk; k < end_k; ++k) {
-    const double across_z = radius_mm_ * radius_mm_ - z.of_voxel_mm2[static_cast<std::size_t>(k)];
+    const double across_z =
+        radius_mm_ * radius_mm_ - static_cast<double>(z.of_voxel_mm2[static_cast<std::size_t>(k)]);
     // Lines of the share are those with j + 3 k - turn a multiple of its count.
     const unsigned before = (share.turn - static_cast<unsigned>(kSide * bj + 3 * k)) & (share.count - 1);
     for (int j = kSide * bj + static_cast<int>(before); j < end_j; j += static_cast<int>(share.count)) {
-      const double half2 = across_z - y.of_voxel_mm2[static_cast<std::size_t>(j)];
+      const double half2 = across_z - static_cast<double>(y.of_voxel_mm2[static_cast<std::size_t>(j)]);
       const std::size_t row = row_in_brick(j, k);
       for (std::uint64_t left = held; left != 0; left &= left - 1) {
         const int n = std::countr_zero(left), bi = base + n;
         const unsigned byte = bits[n][row];
         if (byte == 0 || x.of_brick_mm2[static_cast<std::size_t>(bi)] >= half2) continue;
-        const unsigned inside = byte & in_ball(bi, half2);
+        const float* squares = &x.of_voxel_mm2[static_cast<std::size_t>(kSide * bi)];
+        const unsigned inside = byte & ~bits_above(squares, kSide, static_cast<float>(half2));
         if (inside == 0) continue;
         if (pieces_.size() == max_pieces_) return;
         const VoxelIndex first{kSide * bi, j, k};
@@ -180,14 +184,6 @@ void BurrReach::find_pieces(const DensityGrid& grid, std::size_t word, std::uint
       }
     }
   }
-}
-
-// The columns of a brick that lie in the ball, a bit each.
-unsigned BurrReach::in_ball(int bi, double half2_mm2) const {
-  const double* squares = &squares_[0].of_voxel_mm2[static_cast<std::size_t>(kSide * bi)];
-  unsigned bits = 0;
-  for (int n = 0; n < kSide; ++n) bits |= static_cast<unsigned>(squares[n] < half2_mm2) << n;
-  return bits;
 }
 
 void BurrReach::forget_voxels(const Piece& piece, unsigned gone) {

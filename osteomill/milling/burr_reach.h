@@ -62,7 +62,7 @@ class BurrReach {
   struct Squares {
     Span voxels;
     Span bricks;
-    std::vector<double> of_voxel_mm2;
+    std::vector<float> of_voxel_mm2;
     std::vector<double> of_brick_mm2;
   };
 
@@ -71,7 +71,6 @@ class BurrReach {
   bool look_at(const Volume& volume, int bi, int bj, int bk);
   void find_pieces(const DensityGrid& grid, std::size_t word, std::uint64_t held, int bj, int bk,
                    const Share& share);
-  unsigned in_ball(int bi, double half2_mm2) const;
   std::size_t brick_line(int bj, int bk) const {
     return static_cast<std::size_t>(bj) +
            static_cast<std::size_t>(brick_dims_[1]) * static_cast<std::size_t>(bk);

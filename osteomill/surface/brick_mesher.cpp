@@ -16,6 +16,11 @@ namespace {
 // the vertices about a voxel would fall together and the triangles between them have no area.
 constexpr float kMinShare = 1.0f / 512;
 
+// As Eigen adds, but from the first on.
+float squared(const Eigen::Vector3f& v) {
+  return v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+}
+
 // Bits `first` to `last`.
 constexpr std::uint32_t bit_span(int first, int last) {
   return ((2u << last) - 1u) & ~((1u << first) - 1u);
@@ -30,16 +35,10 @@ BrickMesher::BrickMesher(const DensityView& view)
       outside_(std::min(view.grid.outside_density(), threshold_)),
       mirrored_(view.grid.geometry().direction.determinant() < 0) {
   const GridGeometry& geometry = view.grid.geometry();
-  for (int axis = 0; axis < 3; ++axis) {
-    origin_mm_[static_cast<std::size_t>(axis)] = geometry.origin_mm[axis];
-    for (int row = 0; row < 3; ++row) {
-      const double direction = geometry.direction(row, axis);
-      const auto a = static_cast<std::size_t>(axis);
-      const auto r = static_cast<std::size_t>(row);
-      step_mm_[a][r] = direction * geometry.spacing_mm[axis];
-      normal_of_[a][r] = static_cast<float>(-direction / geometry.spacing_mm[axis]);
-    }
-  }
+  origin_mm_ = geometry.origin_mm;
+  step_mm_ = geometry.direction * geometry.spacing_mm.asDiagonal();
+  normal_of_ =
+      -(geometry.direction.array().rowwise() / geometry.spacing_mm.transpose().array()).cast<float>();
   for (int edge = 0; edge < 12; ++edge) {
     const int axis = edge / 4;
     const int u = axis == 0 ? 1 : 0;
@@ -153,35 +152,33 @@ void BrickMesher::add_vertex(int i, int j, int k) {
   const float share =
       std::min(std::max(kMinShare, (threshold_ - at[0]) / (at[kAlong] - at[0])), 1 - kMinShare);
 
-  std::array<double, 3> voxel{static_cast<double>(corner_.i + i), static_cast<double>(corner_.j + j),
-                              static_cast<double>(corner_.k + k)};
-  voxel[axis] += static_cast<double>(share);
-  const Triple slope = slope_between(at, at + kAlong, share);
   const int edge = axis * kBlockVoxels + place;
   edge_vertex_[static_cast<std::size_t>(edge)] = static_cast<std::uint16_t>(vertices_.size());
   vertex_edge_.push_back(static_cast<std::uint32_t>(edge));
-  std::array<float, 3> in_block{static_cast<float>(i), static_cast<float>(j), static_cast<float>(k)};
+  Vec3 voxel(corner_.i + i, corner_.j + j, corner_.k + k);
+  voxel[axis] += static_cast<double>(share);
+  Vec3f in_block = Eigen::Vector3i(i, j, k).cast<float>();
   in_block[axis] += share;
+  const Vec3f slope = slope_between(at, at + kAlong, share);
+  const Vec3f position_mm = position_at(voxel), normal = normal_against(slope, axis, bone_first);
   const float bone = bone_first ? at[0] : at[kAlong];
-  vertices_.push_back(
-      {position_at(voxel), normal_against(slope, axis, bone_first), density_below(in_block, slope, bone)});
+  vertices_.push_back({{position_mm[0], position_mm[1], position_mm[2]},
+                       {normal[0], normal[1], normal[2]},
+                       density_below(in_block, slope, bone)});
 }
 
 // At a point of the block, half a voxel and a voxel along the slope; `flat` where there is none.
-float BrickMesher::density_below(const Triple& point, const Triple& slope, float flat) const {
-  const float steepness = std::sqrt(slope[0] * slope[0] + slope[1] * slope[1] + slope[2] * slope[2]);
+float BrickMesher::density_below(const Vec3f& point, const Vec3f& slope, float flat) const {
+  const float steepness = std::sqrt(squared(slope));
   if (!(steepness > 0 && std::isfinite(steepness))) return flat;
+  const Vec3f below = 1 / steepness * slope;
   float greatest = threshold_;
   // A whole voxel would lead into the layer after the last that was loaded.
   for (const float voxels : {0.5f, 0.999f}) {
-    std::array<float, 3> fraction;
-    const float* corner = block_.data();
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const float here = point[axis] + voxels * slope[axis] / steepness;
-      const int cell = static_cast<int>(here);
-      corner += cell * kStride[axis];
-      fraction[axis] = here - static_cast<float>(cell);
-    }
+    const Vec3f here = point + voxels * below;
+    const Eigen::Vector3i cell = here.cast<int>();
+    const Vec3f fraction = here - cell.cast<float>();
+    const float* corner = block_.data() + cell[0] + cell[1] * kStride[1] + cell[2] * kStride[2];
     const auto along = [](float a, float b, float share) { return a + share * (b - a); };
     const auto row = [&](const float* at) { return along(at[0], at[1], fraction[0]); };
     const auto layer = [&](const float* at) { return along(row(at), row(at + kStride[1]), fraction[1]); };
@@ -191,47 +188,29 @@ float BrickMesher::density_below(const Triple& point, const Triple& slope, float
 }
 
 // Central differences at two voxels, in density per two voxels, interpolated.
-BrickMesher::Triple BrickMesher::slope_between(const float* from, const float* to, float share) {
-  Triple slope;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const int step = kStride[axis];
-    const float here = from[step] - from[-step];
-    const float there = to[step] - to[-step];
-    slope[axis] = here + share * (there - here);
-  }
-  return slope;
-}
-
-BrickMesher::Triple BrickMesher::position_at(const std::array<double, 3>& voxel) const {
-  Triple position_mm;
-  for (std::size_t r = 0; r < 3; ++r) {
-    position_mm[r] = static_cast<float>(origin_mm_[r] + step_mm_[0][r] * voxel[0] +
-                                        step_mm_[1][r] * voxel[1] + step_mm_[2][r] * voxel[2]);
-  }
-  return position_mm;
-}
-
-BrickMesher::Triple BrickMesher::normal_against(const Triple& slope, std::size_t axis,
-                                                bool bone_first) const {
-  const auto turned = [&](const Triple& s) {
-    Triple normal;
-    for (std::size_t r = 0; r < 3; ++r) {
-      normal[r] = normal_of_[0][r] * s[0] + normal_of_[1][r] * s[1] + normal_of_[2][r] * s[2];
-    }
-    return normal;
+BrickMesher::Vec3f BrickMesher::slope_between(const float* from, const float* to, float share) {
+  const auto differences = [](const float* at) -> Vec3f {
+    return {at[kStride[0]] - at[-kStride[0]], at[kStride[1]] - at[-kStride[1]],
+            at[kStride[2]] - at[-kStride[2]]};
   };
-  const auto squared = [](const Triple& v) { return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]; };
-  Triple normal = turned(slope);
+  const Vec3f here = differences(from);
+  return here + share * (differences(to) - here);
+}
+
+BrickMesher::Vec3f BrickMesher::position_at(const Vec3& voxel) const {
+  return (origin_mm_ + step_mm_.col(0) * voxel[0] + step_mm_.col(1) * voxel[1] + step_mm_.col(2) * voxel[2])
+      .cast<float>();
+}
+
+BrickMesher::Vec3f BrickMesher::normal_against(const Vec3f& slope, int axis, bool bone_first) const {
+  Vec3f normal = normal_of_.col(0) * slope[0] + normal_of_.col(1) * slope[1] + normal_of_.col(2) * slope[2];
   float length2 = squared(normal);
   if (!(length2 > 0 && std::isfinite(length2))) {
     // A flat density: out of the bone along the edge.
-    Triple along{0, 0, 0};
-    along[axis] = bone_first ? -1.0f : 1.0f;
-    normal = turned(along);
+    normal = (bone_first ? -1.0f : 1.0f) * normal_of_.col(axis);
     length2 = squared(normal);
   }
-  const float scale = 1 / std::sqrt(length2);
-  return {scale * normal[0], scale * normal[1], scale * normal[2]};
+  return 1 / std::sqrt(length2) * normal;
 }
 
 void BrickMesher::add_triangles() {

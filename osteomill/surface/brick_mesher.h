@@ -29,7 +29,7 @@ class BrickMesher {
   BrickMesh copy() const { return {vertices_, indices_}; }
 
  private:
-  using Triple = std::array<float, 3>;
+  using Vec3f = Eigen::Vector3f;
 
   // Voxels along each edge of the block: those of the cells, and what is needed around for gradients.
   static constexpr int kLow = 2;  // the block's index of the brick's first voxel
@@ -47,10 +47,10 @@ class BrickMesher {
   void add_row_vertices(int j, int k, std::uint32_t crossed);
   template <int axis>
   void add_vertex(int i, int j, int k);
-  float density_below(const Triple& point, const Triple& slope, float flat) const;
-  static Triple slope_between(const float* from, const float* to, float share);
-  Triple position_at(const std::array<double, 3>& voxel) const;
-  Triple normal_against(const Triple& slope, std::size_t axis, bool bone_first) const;
+  float density_below(const Vec3f& point, const Vec3f& slope, float flat) const;
+  static Vec3f slope_between(const float* from, const float* to, float share);
+  Vec3f position_at(const Vec3& voxel) const;
+  Vec3f normal_against(const Vec3f& slope, int axis, bool bone_first) const;
   void add_triangles();
   void add_row_triangles(int j, int k);
 
@@ -59,10 +59,10 @@ class BrickMesher {
   float threshold_;  // the greatest float that is not bone
   float outside_;
   bool mirrored_;  // the grid's axes are left-handed
-  std::array<double, 3> origin_mm_;
-  std::array<std::array<double, 3>, 3> step_mm_;  // to the next voxel along each axis
-  std::array<Triple, 3> normal_of_;               // outward, of a density falling along each axis
-  std::array<int, 12> edge_offset_;               // of a cube's edges in edge_vertex_
+  Vec3 origin_mm_;
+  Mat3 step_mm_;                     // to the next voxel along each axis, a column each
+  Eigen::Matrix3f normal_of_;        // outward, of a density falling along each axis
+  std::array<int, 12> edge_offset_;  // of a cube's edges in edge_vertex_
 
   VoxelIndex corner_;  // the voxel at the block's first index
   VoxelBox cells_;     // in the block's indices

@@ -31,8 +31,14 @@ void SurfaceUpkeep::mark(const VoxelBox& voxels) {
 }
 
 std::vector<ChangedBrick> SurfaceUpkeep::remesh(const DensityView& view) {
+  std::size_t at_rest = 0;
   std::erase_if(changing_, [&](std::size_t brick) {
-    if (--calls_left_[brick] > 0) return false;
+    if (calls_left_[brick] > 1) {
+      --calls_left_[brick];
+      return false;
+    }
+    if (at_rest++ >= kMostAtRest) return false;
+    calls_left_[brick] = 0;
     to_mesh_.push_back(brick);
     return true;
   });

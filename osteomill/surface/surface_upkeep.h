@@ -24,8 +24,9 @@ struct ChangedBrick {
 class SurfaceUpkeep {
  public:
   /// Levels take five times as long as the mesh, and where bone is milled the mesh is what is looked at: they
-  /// are made of a brick that so many calls of `remesh` have found unmarked.
+  /// are made of a brick that so many calls of `remesh` have found unmarked, and of so many bricks a call.
   static constexpr std::uint8_t kCallsAtRest = 10;
+  static constexpr std::size_t kMostAtRest = 2;
 
   /// At first every brick has to be meshed.
   explicit SurfaceUpkeep(const SurfaceBricks& layout);

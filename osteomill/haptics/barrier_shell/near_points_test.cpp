@@ -81,8 +81,10 @@ TEST(NearPoints, EveryInstructionSetGivesTheSameBitsAndThePlainSums) {
     const Cores cores = Cores::within(tool, 0.2);
     for (int n = 0; n < 20; ++n) {
       const std::vector<ShellPoint> all = random_points(cores, bits);
+      PointRows rows(all.size());
+      for (const ShellPoint& point : all) rows.add(point);
       BrickPoints points(1, 64);
-      ASSERT_EQ(points.replace(0, all), all.size());
+      ASSERT_EQ(points.replace(0, rows), all.size());
       const MoveT move{0.1 * Vec3(uniform(bits, -1, 1), uniform(bits, -1, 1), uniform(bits, -1, 1)),
                        0.01 * Vec3(uniform(bits, -1, 1), uniform(bits, -1, 1), uniform(bits, -1, 1))};
       EnergySum ball, cylinder;

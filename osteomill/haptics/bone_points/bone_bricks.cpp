@@ -36,8 +36,7 @@ BoneBricks::BoneBricks(const Volume& volume, double spacing_mm, Points points)
       fine_(kSlots, kFineChunks),
       coarse_(kSlots, points == Points::fine ? 0 : kCoarseChunks),
       brick_of_slot_(kSlots),
-      changes_(kSlots),
-      found_(std::make_unique<SurfaceLattice::BrickSurface>()) {
+      changes_(kSlots) {
   brick_radius_mm_ = 0.5 * lattice_.brick_nodes() * lattice_.step_mm().norm();
   const auto& dims = lattice_.brick_dims();
   while (1 << levels_ < *std::max_element(dims.begin(), dims.end())) ++levels_;
@@ -88,10 +87,10 @@ BoneBricks::Found BoneBricks::find(const VoxelIndex& brick) {
 // Makes a brick, or makes it anew; returns what it cost.
 int BoneBricks::make(const VoxelIndex& brick, std::uint32_t& place) {
   const std::uint32_t changes = lattice_.changes_of(brick);
-  lattice_.find_surface(brick, *found_);
+  lattice_.find_surface(brick, found_);
   if (!is_index(place)) {
     place = kBoneAlone;
-    if (found_->fine_count > 0) {
+    if (found_.fine.count > 0) {
       place = free_slots_.back();
       free_slots_.pop_back();
       brick_of_slot_[place] = brick;
@@ -99,18 +98,18 @@ int BoneBricks::make(const VoxelIndex& brick, std::uint32_t& place) {
   }
   if (is_index(place)) {
     changes_[place] = changes;
-    const std::uint32_t stored = fine_.replace(place, {found_->fine.data(), found_->fine_count});
+    const std::uint32_t stored = fine_.replace(place, found_.fine);
     if (kinds_ == Points::fine_and_coarse) {
-      SurfaceLattice::merge_flat_cells(*found_);
-      coarse_.replace(place, {found_->coarse.data(), found_->coarse_count});
+      SurfaceLattice::merge_flat_cells(found_);
+      coarse_.replace(place, found_.coarse);
     }
     if (stored == 0) {
       free_slots_.push_back(place);
       place = kBoneAlone;
     }
   }
-  if (!found_->has_bone) place = kNoBone;
-  return lattice_.densities_of_brick() / kDensitiesLookedAt + static_cast<int>(found_->fine_count);
+  if (!found_.has_bone) place = kNoBone;
+  return lattice_.densities_of_brick() / kDensitiesLookedAt + static_cast<int>(found_.fine.count);
 }
 
 // What is new comes first: where the surface has moved on into another brick it is found there before it is
@@ -196,8 +195,8 @@ bool BoneBricks::is_near(const MillingTool& tool, const Pose& X_TW, const VoxelI
 
 void BoneBricks::forget(std::uint32_t slot) {
   *find(brick_of_slot_[slot]).place = kUnseen;
-  fine_.replace(slot, {});
-  if (kinds_ == Points::fine_and_coarse) coarse_.replace(slot, {});
+  fine_.replace(slot, PointRows{});
+  if (kinds_ == Points::fine_and_coarse) coarse_.replace(slot, PointRows{});
   free_slots_.push_back(slot);
 }
 

@@ -3,7 +3,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 #include "osteomill/geometry/pose.h"
@@ -193,7 +192,7 @@ class BoneBricks {
   std::vector<std::uint32_t> bearing_;
   std::uint32_t refreshes_ = 0;
   bool refreshed_ = false;
-  std::unique_ptr<SurfaceLattice::BrickSurface> found_;
+  SurfaceLattice::BrickSurface found_;
 };
 
 }  // namespace osteomill

@@ -1,8 +1,8 @@
 #include "osteomill/haptics/bone_points/brick_points.h"
 
 #include <algorithm>
-#include <cmath>
 
+#include "osteomill/haptics/bone_points/brick_kernel.h"
 #include "osteomill/numbers/work_progress.h"
 
 namespace osteomill {
@@ -11,32 +11,39 @@ namespace {
 
 constexpr ShellPoint kNoPoint{PointChunk::kFarAway_mm, PointChunk::kFarAway_mm, PointChunk::kFarAway_mm, 0};
 
-float distance_to(const ShellPoint& point, const std::array<float, 3>& centre) {
-  const float dx = point.x_mm - centre[0], dy = point.y_mm - centre[1], dz = point.z_mm - centre[2];
-  return std::sqrt(dx * dx + dy * dy + dz * dz);
-}
-
-// About the middle of the points' box; a hair wider than the farthest point, for the rounding of all who use
-// it.
-constexpr float kBoundSlack = 1.0001f;
-
-BrickPoints::Bound bound_of(std::span<const ShellPoint> points) {
-  BrickPoints::Bound bound;
-  if (points.empty()) return bound;
-  ShellPoint min = points.front(), max = points.front();
-  for (const ShellPoint& point : points) {
-    min = {std::min(min.x_mm, point.x_mm), std::min(min.y_mm, point.y_mm), std::min(min.z_mm, point.z_mm), 0};
-    max = {std::max(max.x_mm, point.x_mm), std::max(max.y_mm, point.y_mm), std::max(max.z_mm, point.z_mm), 0};
-  }
-  bound.centre_mm = {0.5f * (min.x_mm + max.x_mm), 0.5f * (min.y_mm + max.y_mm),
-                     0.5f * (min.z_mm + max.z_mm)};
-  for (const ShellPoint& point : points) {
-    bound.radius_mm = std::max(bound.radius_mm, kBoundSlack * distance_to(point, bound.centre_mm));
-  }
-  return bound;
+// The points from `first` on, of `count`, and nothing where there are no more.
+void fill(PointChunk& chunk, const PointRows& points, std::size_t first, std::size_t count) {
+  const auto copy = [&](const std::vector<float>& from, std::array<float, PointChunk::kSlots>& to) {
+    std::copy_n(from.begin() + static_cast<std::ptrdiff_t>(first), PointChunk::kSlots, to.begin());
+  };
+  copy(points.x_mm, chunk.x_mm);
+  copy(points.y_mm, chunk.y_mm);
+  copy(points.z_mm, chunk.z_mm);
+  copy(points.area_mm2, chunk.area_mm2);
+  copy(points.normal_x, chunk.normal_x);
+  copy(points.normal_y, chunk.normal_y);
+  copy(points.normal_z, chunk.normal_z);
+  for (std::size_t slot = count - first; slot < PointChunk::kSlots; ++slot) chunk.set(slot, kNoPoint);
 }
 
 }  // namespace
+
+PointRows::PointRows(std::size_t most) {
+  for (std::vector<float>* row : {&x_mm, &y_mm, &z_mm, &area_mm2, &normal_x, &normal_y, &normal_z}) {
+    row->resize(most + PointChunk::kSlots);
+  }
+}
+
+void PointRows::add(const ShellPoint& point) {
+  x_mm[count] = point.x_mm;
+  y_mm[count] = point.y_mm;
+  z_mm[count] = point.z_mm;
+  area_mm2[count] = point.area_mm2;
+  normal_x[count] = point.normal_x;
+  normal_y[count] = point.normal_y;
+  normal_z[count] = point.normal_z;
+  ++count;
+}
 
 BrickPoints::BrickPoints(std::size_t brick_count, std::size_t chunk_capacity)
     : next_(chunk_capacity), bricks_(brick_count), free_chunks_(chunk_capacity) {
@@ -80,19 +87,18 @@ void BrickPoints::set_chunk_count(Brick& brick, std::size_t wanted) {
   }
 }
 
-std::uint32_t BrickPoints::replace(std::size_t brick_index, std::span<const ShellPoint> points) {
+std::uint32_t BrickPoints::replace(std::size_t brick_index, const PointRows& points) {
   Brick& brick = bricks_[brick_index];
-  set_chunk_count(brick, (points.size() + PointChunk::kSlots - 1) / PointChunk::kSlots);
+  set_chunk_count(brick, (points.count + PointChunk::kSlots - 1) / PointChunk::kSlots);
   std::size_t stored = 0;
   for (std::uint32_t c = brick.first_chunk; c != kNoChunk; c = next_[c]) {
-    for (std::size_t slot = 0; slot < PointChunk::kSlots; ++slot) {
-      chunks_[c].set(slot, stored < points.size() ? points[stored++] : kNoPoint);
-    }
+    fill(chunks_[c], points, stored, points.count);
+    stored = std::min(stored + PointChunk::kSlots, points.count);
   }
-  dropped_ += points.size() - stored;
+  dropped_ += points.count - stored;
   total_ += stored - brick.count;
   brick.count = static_cast<std::uint32_t>(stored);
-  brick.bound = bound_of(points.first(stored));
+  brick.bound = bound_of(points, stored);
   return brick.count;
 }
 

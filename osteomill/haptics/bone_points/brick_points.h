@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <span>
 #include <vector>
 
 #include "osteomill/geometry/pose.h"
@@ -59,6 +58,22 @@ struct PointChunk {
   }
 };
 
+/// Points of a brick before they are stored, each coordinate in a row of its own, with room for `most` and
+/// for whole vectors behind the last.
+struct PointRows {
+  /// No room.
+  PointRows() = default;
+  explicit PointRows(std::size_t most);
+
+  std::size_t count = 0;
+  std::vector<float> x_mm, y_mm, z_mm, area_mm2, normal_x, normal_y, normal_z;
+
+  void add(const ShellPoint& point);
+  ShellPoint point(std::size_t n) const {
+    return {x_mm[n], y_mm[n], z_mm[n], area_mm2[n], normal_x[n], normal_y[n], normal_z[n]};
+  }
+};
+
 /// The points of every brick, in chunks out of one pool that is allocated once. Reading and changing are safe
 /// in the haptic tick; one thread writes. A pool that has run out drops points and counts them.
 class BrickPoints {
@@ -94,7 +109,7 @@ class BrickPoints {
   std::uint64_t dropped() const { return dropped_; }
 
   /// Puts `points` in the place of the brick's points; how many there was room for.
-  std::uint32_t replace(std::size_t brick, std::span<const ShellPoint> points);
+  std::uint32_t replace(std::size_t brick, const PointRows& points);
   /// Calls `f(point)` for each of the brick's points, in their order.
   template <typename F>
   void for_each_of(std::size_t brick, F&& f) const {

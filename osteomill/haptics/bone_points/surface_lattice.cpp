@@ -12,8 +12,6 @@ namespace {
 
 // Of the mean normal of points that one may stand for.
 constexpr float kFlat = 0.98f;
-// Of the area: crossings whose normals are against one another.
-constexpr float kNoNormal = 1e-6f;
 
 // Voxels that are looked at one by one, where ranges of them are too wide to tell; and ranges, of a large
 // box.
@@ -75,7 +73,7 @@ SurfaceLattice::SurfaceLattice(const Volume& volume, double spacing_mm) : volume
   const double voxel_mm = geometry.spacing_mm.maxCoeff();
   constexpr double kRounding = 1e-9;
   // A brick of 16 nodes holds two cells of eight a side.
-  while (group_ < 8 && 2 * group_ * voxel_mm <= spacing_mm * (1 + kRounding)) group_ *= 2;
+  while (group_ < kMaxGroup && 2 * group_ * voxel_mm <= spacing_mm * (1 + kRounding)) group_ *= 2;
   line_step_ = std::max(1, group_ / 2);
   on_lines_ = 0;
   for (int n = 0; n < 32; n += line_step_) on_lines_ |= 1u << n;
@@ -256,7 +254,7 @@ void SurfaceLattice::interpolate_voxels(const VoxelIndex& first, Block& block) c
 }
 
 void SurfaceLattice::find_surface(const VoxelIndex& brick, BrickSurface& surface) const {
-  surface.fine_count = surface.coarse_count = 0;
+  surface.fine.count = surface.coarse.count = 0;
   Block block;
   const Nodes nodes = nodes_of(brick, block);
   Rows rows{};
@@ -269,7 +267,7 @@ void SurfaceLattice::find_surface(const VoxelIndex& brick, BrickSurface& surface
 SurfaceLattice::Found SurfaceLattice::find_bone(const Nodes& nodes, Rows& rows) const {
   std::uint32_t any = 0, all = ~0u;
   for (int k = 0; k <= brick_nodes_; ++k) {
-    const int step = k % line_step_ == 0 ? 1 : line_step_;
+    const int step = on_line(k) ? 1 : line_step_;
     for (int j = 0; j <= brick_nodes_; j += step) {
       const float* row = nodes.at(0, j, k);
       std::uint32_t bits = bits_above(row, brick_nodes_, isovalue_);
@@ -284,76 +282,59 @@ SurfaceLattice::Found SurfaceLattice::find_bone(const Nodes& nodes, Rows& rows) 
   return (all & whole) == whole ? Found::bone_alone : Found::surface;
 }
 
-// Of the edges along lines from a row's nodes, those that are crossed.
-SurfaceLattice::CrossedEdges SurfaceLattice::crossed_edges(const Rows& rows, int j, int k) const {
-  const std::uint32_t lower = (1u << brick_nodes_) - 1;
-  const std::uint32_t on_j = j % line_step_ == 0 ? lower : 0, on_k = k % line_step_ == 0 ? lower : 0;
-  const std::uint32_t here = rows[row_index(j, k)];
-  return {(here ^ (here >> 1)) & on_j & on_k, (here ^ rows[row_index(j + 1, k)]) & on_lines_ & on_k,
-          (here ^ rows[row_index(j, k + 1)]) & on_lines_ & on_j};
+// A bit a cell of a row, of bits a node.
+std::uint32_t SurfaceLattice::cells_of(std::uint32_t nodes) const {
+  if (group_ == 1) return nodes;
+  std::uint32_t cells = 0;
+  for (; nodes != 0; nodes &= nodes - 1) cells |= 1u << (std::countr_zero(nodes) / group_);
+  return cells;
 }
 
 // One point for each cell, a row of cells after the other.
 void SurfaceLattice::mean_crossings(const Nodes& nodes, const Rows& rows, BrickSurface& surface) const {
-  constexpr int n = static_cast<int>(CrossingRow::kNodes);
   const int side = brick_nodes_ / group_;
   const CrossingLattice lattice{{nodes.next[0], nodes.next[1], nodes.next[2]}, isovalue_, crossing_steps_};
+  std::array<CrossingRow, kMaxGroup * kMaxGroup> crossed_rows;
   for (int cell_k = 0; cell_k < side; ++cell_k) {
     for (int cell_j = 0; cell_j < side; ++cell_j) {
-      CellSums sums;
+      std::size_t count = 0;
       std::uint32_t crossed = 0;
       for (int k = group_ * cell_k; k < group_ * (cell_k + 1); ++k) {
-        for (int j = group_ * cell_j; j < group_ * (cell_j + 1); ++j) {
-          const CrossedEdges edges = crossed_edges(rows, j, k);
-          const std::uint32_t of_row = edges[0] | edges[1] | edges[2];
-          if (of_row == 0) continue;
-          if (crossed == 0) sums = {};
-          crossed |= of_row;
-          for (int i = 0; of_row >> i != 0; i += n) {
-            // The brick's frame begins one node above its first.
-            const CrossingRow row{
-                nodes.at(i, j, k), i - 1, j - 1, k - 1, {edges[0] >> i, edges[1] >> i, edges[2] >> i}};
-            add_crossings(lattice, row, sums[static_cast<std::size_t>(i / n)]);
-          }
+        const int step = on_line(k) ? 1 : line_step_;
+        for (int j = group_ * cell_j; j < group_ * (cell_j + 1); j += step) {
+          std::uint32_t edges[3];
+          if (!find_crossed(rows, j, k, edges)) continue;
+          crossed |= edges[0] | edges[1] | edges[2];
+          // The brick's frame begins one node above its first.
+          crossed_rows[count++] = {nodes.at(0, j, k), -1, j - 1, k - 1, {edges[0], edges[1], edges[2]}};
         }
       }
-      for (int cell_i = 0; crossed != 0; ++cell_i, crossed >>= group_) {
-        if ((crossed & ((1u << group_) - 1)) == 0) continue;
-        surface.coarse_cell[surface.fine_count] =
-            static_cast<std::uint8_t>(cell_i / 2 + 4 * (cell_j / 2) + 16 * (cell_k / 2));
-        surface.fine[surface.fine_count++] = mean_of_cell(sums, cell_i);
+      if (crossed == 0) continue;
+      std::uint32_t cells = cells_of(crossed);
+      std::size_t n = surface.fine.count;
+      add_means(lattice, {crossed_rows.data(), count}, group_, cells, surface.fine);
+      const int row = 4 * (cell_j / 2) + 16 * (cell_k / 2);
+      for (; cells != 0; cells &= cells - 1) {
+        surface.coarse_cell[n++] = static_cast<std::uint8_t>(std::countr_zero(cells) / 2 + row);
       }
     }
   }
 }
 
-ShellPoint SurfaceLattice::mean_of_cell(const CellSums& sums, int cell_i) const {
-  constexpr int n = static_cast<int>(CrossingRow::kNodes);
-  float of_cell[CrossingSums::kSums] = {};
-  for (int i = group_ * cell_i; i < group_ * (cell_i + 1); ++i) {
-    const CrossingSums& of_nodes = sums[static_cast<std::size_t>(i / n)];
-    for (int sum = 0; sum < CrossingSums::kSums; ++sum) of_cell[sum] += of_nodes.rows[sum][i % n];
-  }
-  const auto& [x, y, z, area, normal_x, normal_y, normal_z] = of_cell;
-  const float share = 1 / area;
-  const float length = std::sqrt(normal_x * normal_x + normal_y * normal_y + normal_z * normal_z);
-  const float unit = length > kNoNormal * area ? 1 / length : 0;
-  return {share * x, share * y, share * z, area, unit * normal_x, unit * normal_y, unit * normal_z};
-}
-
 void SurfaceLattice::merge_flat_cells(BrickSurface& surface) {
-  surface.coarse_count = 0;
+  const PointRows& fine = surface.fine;
+  surface.coarse.count = 0;
   std::array<Mean, 64> cells;
-  for (std::size_t n = 0; n < surface.fine_count; ++n) cells[surface.coarse_cell[n]].add(surface.fine[n]);
+  for (std::size_t n = 0; n < fine.count; ++n) cells[surface.coarse_cell[n]].add(fine.point(n));
   std::array<bool, 64> flat{};
   for (std::size_t cell = 0; cell < cells.size(); ++cell) {
     if (cells[cell].is_empty()) continue;
     const ShellPoint mean = cells[cell].mean();
     flat[cell] = is_flat(mean);
-    if (flat[cell]) surface.coarse[surface.coarse_count++] = mean;
+    if (flat[cell]) surface.coarse.add(mean);
   }
-  for (std::size_t n = 0; n < surface.fine_count; ++n) {
-    if (!flat[surface.coarse_cell[n]]) surface.coarse[surface.coarse_count++] = surface.fine[n];
+  for (std::size_t n = 0; n < fine.count; ++n) {
+    if (!flat[surface.coarse_cell[n]]) surface.coarse.add(fine.point(n));
   }
 }
 

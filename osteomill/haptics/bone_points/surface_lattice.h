@@ -3,8 +3,8 @@
 #include <array>
 #include <cstdint>
 
+#include "osteomill/haptics/bone_points/brick_kernel.h"
 #include "osteomill/haptics/bone_points/brick_points.h"
-#include "osteomill/haptics/bone_points/crossing_kernel.h"
 #include "osteomill/volume/volume.h"
 
 namespace osteomill {
@@ -18,7 +18,7 @@ namespace osteomill {
 /// spacing apart. The volume outlives it. Safe in the haptic tick.
 class SurfaceLattice {
  public:
-  static constexpr int kMaxBrickNodes = 16;
+  static constexpr int kMaxBrickNodes = static_cast<int>(CrossingRow::kMostNodes);
   static constexpr int kMaxBlockNodes = kMaxBrickNodes + 3;
   static constexpr std::size_t kMaxPointsOfBrick = 8 * 8 * 8;
 
@@ -57,11 +57,9 @@ class SurfaceLattice {
   /// Points in the brick's frame, at the lattice's spacing and, as `merge_flat_cells` makes them, at twice
   /// that in flat places.
   struct BrickSurface {
-    std::array<ShellPoint, kMaxPointsOfBrick> fine;
-    std::array<ShellPoint, kMaxPointsOfBrick> coarse;
+    PointRows fine{kMaxPointsOfBrick};
+    PointRows coarse{kMaxPointsOfBrick};
     std::array<std::uint8_t, kMaxPointsOfBrick> coarse_cell;
-    std::size_t fine_count = 0;
-    std::size_t coarse_count = 0;
     /// Whether anything that lines meet is bone.
     bool has_bone = false;
   };
@@ -94,16 +92,24 @@ class SurfaceLattice {
   void interpolate_voxels(const VoxelIndex& first, Block& block) const;
   float density(const VoxelIndex& voxel) const;
   Found find_bone(const Nodes& nodes, Rows& rows) const;
-  using CrossedEdges = std::array<std::uint32_t, 3>;
-  CrossedEdges crossed_edges(const Rows& rows, int j, int k) const;
-  // Of a row of cells' nodes.
-  using CellSums = std::array<CrossingSums, kMaxBrickNodes / CrossingRow::kNodes>;
+  bool on_line(int node) const { return (on_lines_ >> node & 1) != 0; }
+  // The edges along lines from a row's nodes that are crossed; false where none is.
+  bool find_crossed(const Rows& rows, int j, int k, std::uint32_t (&crossed)[3]) const {
+    const std::uint32_t lower = (1u << brick_nodes_) - 1;
+    const std::uint32_t on_j = on_line(j) ? lower : 0, on_k = on_line(k) ? lower : 0;
+    const std::uint32_t here = rows[row_index(j, k)];
+    crossed[0] = (here ^ (here >> 1)) & on_j & on_k;
+    crossed[1] = (here ^ rows[row_index(j + 1, k)]) & on_lines_ & on_k;
+    crossed[2] = (here ^ rows[row_index(j, k + 1)]) & on_lines_ & on_j;
+    return (crossed[0] | crossed[1] | crossed[2]) != 0;
+  }
+  std::uint32_t cells_of(std::uint32_t nodes) const;
   void mean_crossings(const Nodes& nodes, const Rows& rows, BrickSurface& surface) const;
-  ShellPoint mean_of_cell(const CellSums& sums, int cell_i) const;
 
   const Volume* volume_ = nullptr;
   std::array<int, 3> steps_per_voxel_{1, 1, 1};
   // Nodes of a cell, and from one line that is looked at to the next, along each axis.
+  static constexpr int kMaxGroup = 8;
   int group_ = 1;
   int line_step_ = 1;
   // Bit i: whether lines across i go through node i.

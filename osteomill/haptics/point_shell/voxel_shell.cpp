@@ -52,7 +52,6 @@ VoxelShell::VoxelShell(const Volume& volume, int scale)
   bricks_ = geometry_.all_voxels().bricks(kSide);
   while (bricks_.bricks(1 << root_level_).dims() != std::array{1, 1, 1}) ++root_level_;
   masks_.resize(cell_count(bricks_.dims()));
-  found_.reserve(kSide * kSide * kSide);
   std::size_t chunks = 0;
   {
     const WorkProgress::Part counting(0.4);
@@ -137,13 +136,13 @@ void VoxelShell::refresh_brick(const VoxelIndex& b) {
   const SurfaceMask mask = mask_of(b);
   if (mask == masks_[brick]) return;
   masks_[brick] = mask;
-  found_.clear();
+  found_.count = 0;
   for (std::size_t row = 0; row < mask.size(); ++row) {
     for (unsigned bits = mask[row]; bits != 0; bits &= bits - 1) {
       const Vec3 node(std::countr_zero(bits), static_cast<double>(row % kSide),
                       static_cast<double>(row / kSide));
       const Eigen::Vector3f at_mm = geometry_.spacing_mm.cwiseProduct(node).cast<float>();
-      found_.push_back({at_mm.x(), at_mm.y(), at_mm.z(), point_area_mm2_});
+      found_.add({at_mm.x(), at_mm.y(), at_mm.z(), point_area_mm2_});
     }
   }
   points_.replace(brick, found_);

@@ -110,7 +110,7 @@ class VoxelShell {
   BrickPoints points_;
   std::vector<SurfaceMask> masks_;
   // Room for one brick's points while it is rebuilt.
-  std::vector<ShellPoint> found_;
+  PointRows found_{kBrickNodes * kBrickNodes * kBrickNodes};
 };
 
 template <typename IsApart, typename Visit>
