@@ -148,13 +148,16 @@ VoxelBox SurfaceLattice::bricks_touched_by(const VoxelBox& voxels) const {
   if (voxels.empty()) return voxels;
   const int n = brick_nodes_;
   const auto& s = steps_per_voxel_;
-  // A node reads voxels less than one away; a crossing's weight nodes from one below its lower one to two
-  // above; and a brick's first lower node is one below its own.
+  // A node reads voxels less than one away; a crossing's weight nodes from one below the edge's lower one to
+  // two above it; and the lowest edges of a brick begin one node below its own.
+  const auto first_node = [&](int v, std::size_t axis) { return (v - 1) * s[axis] + 1; };
+  const auto last_node = [&](int v, std::size_t axis) { return (v + 1) * s[axis] - 1; };
+  const auto brick_of_edge = [&](int lower_node) { return divide_down(lower_node + 1, n); };
   const auto first = [&](int v, std::size_t axis) {
-    return std::max(0, divide_down((v - 1) * s[axis] + 1 - 2 + 1, n));
+    return std::max(0, brick_of_edge(first_node(v, axis) - 2));
   };
   const auto last = [&](int v, std::size_t axis) {
-    return std::min(brick_dims_[axis] - 1, divide_down((v + 1) * s[axis] - 1 + 1 + 1, n));
+    return std::min(brick_dims_[axis] - 1, brick_of_edge(last_node(v, axis) + 1));
   };
   return {{first(voxels.first.i, 0), first(voxels.first.j, 1), first(voxels.first.k, 2)},
           {last(voxels.last.i, 0), last(voxels.last.j, 1), last(voxels.last.k, 2)}};
