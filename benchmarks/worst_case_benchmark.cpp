@@ -58,7 +58,8 @@ void sleeved_contacts(benchmark::State& state, double spacing_mm) {
     TickTimes looks;
     for (int n = 0; n < kTicks; ++n) {
       looks.time([&] {
-        touching = point_shell::contacts_by_bricks(bricks, near, tool, stirred(pose, n), penalty).touching;
+        touching =
+            point_shell::contacts_by_bricks(bricks, near, tool, stirred(pose, n), penalty).total().touching;
       });
     }
     looks.report(state);
