@@ -13,7 +13,7 @@ using testing_support::allocations_of_this_thread;
 
 TEST(DeviceAllocation, NothingThatTheHapticThreadCallsAllocates) {
   testing_support::ScriptedDevice hardware;
-  ConnectedDevice device(hardware.way(), hardware.settings());
+  ConnectedDevice device(hardware.way(), hardware.clock());
   long allocations = 0;
   for (int n = 0; n < 3000; ++n) {
     hardware.now_s += 1e-3;

@@ -5,9 +5,9 @@
 #include "tests/shapes.h"
 #include <gtest/gtest.h>
 
-#include "osteomill/device/device.h"
 #include "osteomill/haptics/algorithms.h"
 #include "osteomill/session/milling_session.h"
+#include "osteomill/session/trajectory.h"
 #include "osteomill/view/offscreen_context.h"
 #include "osteomill/view/scene_renderer.h"
 #include "osteomill/volume/densities.h"

@@ -6,9 +6,9 @@
 #include "tests/shapes.h"
 #include <gtest/gtest.h>
 
-#include "osteomill/device/device.h"
 #include "osteomill/haptics/algorithms.h"
 #include "osteomill/session/milling_session.h"
+#include "osteomill/session/trajectory.h"
 #include "osteomill/volume/densities.h"
 
 // The same input must give the same wrenches to the last bit, whatever the optimisation: every preset (-O0,

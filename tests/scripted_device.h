@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <stdexcept>
 #include <vector>
@@ -36,10 +37,8 @@ struct ScriptedDevice {
   OpenConnection way() {
     return [this] { return std::make_unique<Way>(*this); };
   }
-  ConnectedDeviceSettings settings() {
-    ConnectedDeviceSettings settings;
-    settings.now_s = [this] { return now_s; };
-    return settings;
+  std::function<double()> clock() {
+    return [this] { return now_s; };
   }
   const Wrench& last() const { return got.back().wrench_D; }
 
@@ -63,8 +62,6 @@ struct ScriptedDevice {
       ++device.opened;
     }
     ~Way() override { ++device_.closed; }
-    Way(const Way&) = delete;
-    Way& operator=(const Way&) = delete;
     const DeviceCapabilities& capabilities() const override { return device_.can; }
     ConnectionStatus read(DeviceInput& input) override {
       if (device_.throws) throw std::runtime_error("the cable came off");

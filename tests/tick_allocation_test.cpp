@@ -12,11 +12,11 @@
 #include "tests/shapes.h"
 #include <gtest/gtest.h>
 
-#include "osteomill/device/device.h"
 #include "osteomill/haptics/algorithms.h"
 #include "osteomill/live/bone_follower.h"
 #include "osteomill/live/live_session.h"
 #include "osteomill/session/milling_session.h"
+#include "osteomill/session/trajectory.h"
 #include "osteomill/volume/densities.h"
 
 namespace osteomill {

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <exception>
+#include <string>
 
 #include "app/simulate/panels.h"
 #include "app/simulate/widgets.h"
@@ -56,6 +58,18 @@ void draw_calibration(ViewState& view, ConnectedDevice& device, const Vec3& hand
   }
 }
 
+// What lies below does not move as it comes and goes.
+void draw_complaint(const std::string& complaint) {
+  float& room_px = *ImGui::GetStateStorage()->GetFloatRef(ImGui::GetID("complaint"));
+  const float from_px = ImGui::GetCursorPosY();
+  ImGui::PushTextWrapPos(0);
+  if (!complaint.empty()) ImGui::TextColored(ui::kWarning, "It %s", complaint.c_str());
+  ImGui::PopTextWrapPos();
+  room_px = std::max(room_px, ImGui::GetCursorPosY() - from_px);
+  ImGui::SetCursorPosY(from_px);
+  if (room_px > 0) ImGui::Dummy({0, room_px - ImGui::GetStyle().ItemSpacing.y});
+}
+
 }  // namespace
 
 void draw_device(ViewState& view, ConnectedDevice& device) {
@@ -63,11 +77,10 @@ void draw_device(ViewState& view, ConnectedDevice& device) {
   const DeviceReport report = device.report();
   ImGui::PushTextWrapPos(0);
   ImGui::TextUnformatted(device.capabilities().name.c_str());
-  if (const std::string complaint = report.complaint(); !complaint.empty())
-    ImGui::TextColored(ui::kWarning, "It %s", complaint.c_str());
   ImGui::PopTextWrapPos();
   ImGui::TextDisabled("%.0f poses/s", report.inputs_per_s);
   draw_calibration(view, device, report.handle_D_mm);
+  draw_complaint(report.complaint());
 }
 
 }  // namespace osteomill::app

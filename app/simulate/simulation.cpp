@@ -7,6 +7,7 @@
 
 #include "osteomill/files/input_error.h"
 #include "osteomill/numbers/work_progress.h"
+#include "osteomill/operator/milling_entry.h"
 
 namespace osteomill::app {
 
@@ -116,11 +117,16 @@ void Simulation::look_for_warnings() {
   using namespace std::chrono_literals;
   if (warnings_to_come_.valid()) {
     if (warnings_to_come_.wait_for(0s) == std::future_status::ready) warnings = warnings_to_come_.get();
-  } else if (const double isovalue = milling.isovalue(); isovalue != isovalue_looked_at_) {
-    isovalue_looked_at_ = isovalue;
-    warnings_to_come_ = std::async(std::launch::async, [this, isovalue] {
+  } else if (const std::pair now(milling.isovalue(), milling.setup().tool.burr_radius_mm);
+             now != looked_at_) {
+    looked_at_ = now;
+    warnings_to_come_ = std::async(std::launch::async, [this, now, tool = milling.setup().tool] {
       std::vector<std::string> found;
-      milling.read_bone([&](const Volume& bone) { found = isovalue_warnings(bone.grid(), isovalue); });
+      milling.read_bone([&](const Volume& bone) {
+        found = coarseness_warnings(bone.geometry(), tool);
+        for (std::string& warning : isovalue_warnings(bone.grid(), now.first))
+          found.push_back(std::move(warning));
+      });
       return found;
     });
   }

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/device_option.h"
@@ -70,7 +71,7 @@ struct Simulation {
   double first_isovalue;
   std::string isovalue_from;
   std::string unit;
-  /// What a user of the isovalue should know (isovalue_warnings).
+  /// What a user of the isovalue and the burr should know (isovalue_warnings, coarseness_warnings).
   std::vector<std::string> warnings;
   DensityHistogram histogram;
   std::vector<Boundary> boundaries;
@@ -98,7 +99,8 @@ struct Simulation {
   void count_labels();
   void look_for_warnings();
 
-  std::optional<double> isovalue_looked_at_;
+  // An isovalue and a burr's radius (mm).
+  std::optional<std::pair<double, double>> looked_at_;
   std::future<std::vector<std::string>> warnings_to_come_;
   std::uint64_t counted_version_ = 0;
   std::chrono::steady_clock::time_point counted_;

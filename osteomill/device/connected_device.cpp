@@ -19,6 +19,14 @@ namespace {
 using namespace std::chrono_literals;
 using State = DeviceReport::State;
 
+// What is older is no longer true: an input (the haptic thread then has no pose, and sends zero) and a wrench
+// (the device is then sent zero, whatever the haptic thread is doing).
+constexpr double kMaxAge_s = 5e-3;
+// How long it takes to come up where the device may be driven (again).
+constexpr double kBlend_s = 0.1;
+// After this long without a pose the tool goes on from where it is, not from where the hand is by then.
+constexpr double kGone_s = 0.1;
+constexpr double kReopen_s = 0.5;
 // However long ago the last wrench went out, the next makes no larger a step than in this time.
 constexpr double kRound_s = 1e-3;
 constexpr double kUnitTolerance = 1e-3;
@@ -34,11 +42,6 @@ const Pose kNoPose{Vec3::Constant(std::numeric_limits<double>::quiet_NaN()), Qua
 
 bool is_pose(const Pose& pose) {
   return is_finite(pose) && std::abs(pose.orientation.norm() - 1) < kUnitTolerance;
-}
-
-ConnectedDeviceSettings with_a_clock(ConnectedDeviceSettings settings) {
-  if (!settings.now_s) settings.now_s = &steady_now_s;
-  return settings;
 }
 
 }  // namespace
@@ -61,11 +64,11 @@ std::string DeviceReport::complaint() const {
   return {};
 }
 
-ConnectedDevice::ConnectedDevice(OpenConnection open, ConnectedDeviceSettings settings)
+ConnectedDevice::ConnectedDevice(OpenConnection open, std::function<double()> now_s)
     : open_(std::move(open)),
-      settings_(with_a_clock(std::move(settings))),
+      now_s_(now_s ? std::move(now_s) : &steady_now_s),
       connection_(open_()),
-      sent_s_(settings_.now_s()),
+      sent_s_(now_s_()),
       counting_since_s_(sent_s_),
       state_since_s_(sent_s_),
       capabilities_(connection_->capabilities()),
@@ -105,7 +108,8 @@ void ConnectedDevice::exchange() {
       DeviceInput input;
       const ConnectionStatus heard = connection_->read(input);
       if (heard == ConnectionStatus::fresh) hear(input);
-      if (heard == ConnectionStatus::lost || send() == ConnectionStatus::lost)
+      const double now_s = now_s_();
+      if (heard == ConnectionStatus::lost || send(now_s, may_be_driven(now_s)) == ConnectionStatus::lost)
         lose("the connection was closed");
     }
   } catch (const std::exception& error) {
@@ -116,12 +120,12 @@ void ConnectedDevice::exchange() {
 }
 
 void ConnectedDevice::hear(const DeviceInput& input) {
-  const double now_s = settings_.now_s();
+  const double now_s = now_s_();
   newest_.input = input;
   newest_.at_s = now_s;
   newest_.is_pose = is_pose(input.X_DH);
   if (newest_.is_pose) {
-    if (now_s - posed_s_ > settings_.gone_s) ++newest_.returns;
+    if (now_s - posed_s_ > kGone_s) ++newest_.returns;
     posed_s_ = now_s;
   }
   heard_.write(newest_);
@@ -138,24 +142,19 @@ void ConnectedDevice::count_input(double now_s) {
 
 bool ConnectedDevice::may_be_driven(double now_s) {
   const Asked& asked = asked_.read();
-  const bool late = now_s - asked.at_s > settings_.max_age_s;
+  const bool late = now_s - asked.at_s > kMaxAge_s;
   if (late && !wrench_was_late_ && !is_zero(asked.wrench_D))
     late_wrenches_.fetch_add(1, std::memory_order_relaxed);
   wrench_was_late_ = late;
   return !late && newest_.input.not_driven == nullptr && !let_go_.load(std::memory_order_acquire);
 }
 
-ConnectionStatus ConnectedDevice::send() {
-  const double now_s = settings_.now_s();
-  return send(now_s, may_be_driven(now_s));
-}
-
 // The only way by which a wrench goes out.
 ConnectionStatus ConnectedDevice::send(double now_s, bool driven) {
   const double lapse_s = connection_->capabilities().lets_go_after_s;
   if (lapse_s > 0 && now_s - sent_s_ > lapse_s) sent_D_ = {};
-  const double passed_s = std::clamp(now_s - sent_s_, 0.0, settings_.max_age_s);
-  const double share = driven ? std::min(1.0, blended_ + passed_s / settings_.blend_s) : 0;
+  const double passed_s = std::clamp(now_s - sent_s_, 0.0, kMaxAge_s);
+  const double share = driven ? std::min(1.0, blended_ + passed_s / kBlend_s) : 0;
   const Wrench asked = make_safe(asked_.read().wrench_D, capabilities_.limits).wrench;
   const Wrench target{share * asked.force_N, share * asked.torque_Nmm};
   const Wrench next = approach(sent_D_, target, kRatesForAHand, std::min(passed_s, kRound_s));
@@ -191,13 +190,13 @@ void ConnectedDevice::lose(const std::string& reason) {
   sent_D_ = {};
   blended_ = 0;
   given_share_.store(0, std::memory_order_relaxed);
-  lost_s_ = settings_.now_s();
+  lost_s_ = now_s_();
   const std::lock_guard lock(said_mutex_);
   reason_ = reason;
 }
 
 void ConnectedDevice::reopen() {
-  if (settings_.now_s() - lost_s_ < settings_.reopen_s) return;
+  if (now_s_() - lost_s_ < kReopen_s) return;
   connection_ = open_();
   const DeviceCapabilities& now = connection_->capabilities();
   if (now.name != capabilities_.name || now.driven != capabilities_.driven ||
@@ -205,19 +204,19 @@ void ConnectedDevice::reopen() {
     lose("another device is there: " + now.name);
     return;
   }
-  sent_s_ = settings_.now_s();
+  sent_s_ = now_s_();
   reopened_.fetch_add(1, std::memory_order_relaxed);
 }
 
 void ConnectedDevice::judge() {
-  const double now_s = settings_.now_s();
+  const double now_s = now_s_();
   const DeviceInput& input = newest_.input;
   count_input(now_s);
   State state = State::ok;
   const char* says = "";
   if (!connection_) {
     state = State::lost;
-  } else if (now_s - newest_.at_s > settings_.max_age_s) {
+  } else if (now_s - newest_.at_s > kMaxAge_s) {
     state = State::silent;
   } else if (!newest_.is_pose) {
     state = State::not_finite;
@@ -256,7 +255,7 @@ void ConnectedDevice::set_view(const Quat& R_WV) {
 DeviceReport ConnectedDevice::report() const {
   DeviceReport report;
   report.state = state_.load(std::memory_order_acquire);
-  report.since_s = settings_.now_s() - state_since_s_.load(std::memory_order_relaxed);
+  report.since_s = now_s_() - state_since_s_.load(std::memory_order_relaxed);
   report.inputs_per_s = inputs_per_s_.load(std::memory_order_relaxed);
   report.faults = faults_.load(std::memory_order_relaxed);
   report.late_wrenches = late_wrenches_.load(std::memory_order_relaxed);
@@ -270,7 +269,7 @@ DeviceReport ConnectedDevice::report() const {
 Pose ConnectedDevice::read_pose() {
   const Heard& heard = heard_.read();
   const DeviceInput& input = heard.input;
-  const bool there = heard.is_pose && settings_.now_s() - heard.at_s <= settings_.max_age_s;
+  const bool there = heard.is_pose && now_s_() - heard.at_s <= kMaxAge_s;
   const bool clutched =
       clutched_.load(std::memory_order_relaxed) || (there && (input.buttons & kClutchButton) != 0);
   has_pose_ = there && !clutched;
@@ -288,7 +287,7 @@ Pose ConnectedDevice::read_pose() {
 }
 
 void ConnectedDevice::write_wrench(const Wrench& wrench) {
-  asked_.write({workspace_.wrench_D(wrench, shaft_direction(X_WD_)), settings_.now_s()});
+  asked_.write({workspace_.wrench_D(wrench, shaft_direction(X_WD_)), now_s_()});
 }
 
 void ConnectedDevice::tick_done(const Pose& X_WT, double /*dt_s*/) {

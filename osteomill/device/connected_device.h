@@ -18,19 +18,6 @@ namespace osteomill {
 
 using OpenConnection = std::function<std::unique_ptr<Connection>()>;
 
-struct ConnectedDeviceSettings {
-  /// What is older is no longer true: an input (the haptic thread then has no pose, and sends zero) and a
-  /// wrench (the device is then sent zero, whatever the haptic thread is doing).
-  double max_age_s = 5e-3;
-  /// How long it takes to come up where the device may be driven (again).
-  double blend_s = 0.1;
-  /// After this long without a pose the tool goes on from where it is, not from where the hand is by then.
-  double gone_s = 0.1;
-  double reopen_s = 0.5;
-  /// A clock that never goes back; tests have their own.
-  std::function<double()> now_s;
-};
-
 /// What there is to be said of a device. Any thread.
 struct DeviceReport {
   enum class State : unsigned char {
@@ -39,7 +26,7 @@ struct DeviceReport {
     remark,
     /// It gives poses, but may not be driven: not calibrated, its force switched off (`reason`).
     not_driven,
-    /// No input for longer than `max_age_s`.
+    /// No input for longer than 5 ms.
     silent,
     /// It gives poses that are not finite, or turned by no rotation.
     not_finite,
@@ -67,8 +54,8 @@ struct DeviceReport {
 /// Haptic hardware as a session's device, whichever its back end is. A thread of its own reads the connection
 /// and writes to it, so that nothing the hardware does makes a tick wait, and watches over both sides. What
 /// is sent is within the device's limits, and from one wrench that has gone out to the next changes by no
-/// more than kRatesForAHand in a millisecond; it comes down to zero where the wrench is too old, the device
-/// may not be driven, is lost or let go of, and at the end, and up again over `blend_s`. A device that is
+/// more than kRatesForAHand in a millisecond; it comes down to zero where the wrench is over 5 ms old, the
+/// device may not be driven, is lost or let go of, and at the end, and up again over 0.1 s. A device that is
 /// lost is opened again until it is there.
 ///
 /// The first button asks for the spindle. While the second is held (or `set_clutched`) the handle moves
@@ -78,8 +65,8 @@ class ConnectedDevice final : public Device {
   static constexpr unsigned kSpindleButton = 1;
   static constexpr unsigned kClutchButton = 2;
 
-  /// Opens the device. Throws as `open` does.
-  explicit ConnectedDevice(OpenConnection open, ConnectedDeviceSettings settings = {});
+  /// Opens the device. Throws as `open` does. Tests have a clock of their own, which never goes back either.
+  explicit ConnectedDevice(OpenConnection open, std::function<double()> now_s = {});
   /// Returns when zero has been sent and the device is closed.
   ~ConnectedDevice() override;
   ConnectedDevice(const ConnectedDevice&) = delete;
@@ -136,7 +123,6 @@ class ConnectedDevice final : public Device {
   void run();
   void hear(const DeviceInput& input);
   bool may_be_driven(double now_s);
-  ConnectionStatus send();
   ConnectionStatus send(double now_s, bool driven);
   void come_down();
   void lose(const std::string& reason);
@@ -145,7 +131,7 @@ class ConnectedDevice final : public Device {
   void count_input(double now_s);
 
   OpenConnection open_;
-  ConnectedDeviceSettings settings_;
+  std::function<double()> now_s_;
   LatestValue<Heard> heard_;
   LatestValue<Asked> asked_;
   Way way_set_;

@@ -45,7 +45,7 @@ class ConnectedDeviceTest : public ::testing::Test {
   void expect_no_step() const { EXPECT_LE(hardware_.largest_step().force_N.norm(), kMaxStep_N); }
 
   testing_support::ScriptedDevice hardware_;
-  ConnectedDevice device_{hardware_.way(), hardware_.settings()};
+  ConnectedDevice device_{hardware_.way(), hardware_.clock()};
   Wrench asked_;
   Pose pose_;
   bool hangs_ = false;

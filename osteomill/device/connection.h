@@ -50,7 +50,10 @@ enum class ConnectionStatus : unsigned char {
 /// one thread, which is not the haptic one: they may wait and make system calls, but no longer than said.
 class Connection {
  public:
+  Connection() = default;
   virtual ~Connection() = default;
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
   virtual const DeviceCapabilities& capabilities() const = 0;
   /// Waits for the next input, 2 ms at most. A device that stands still gives new inputs all the same.
   virtual ConnectionStatus read(DeviceInput& input) = 0;

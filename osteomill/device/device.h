@@ -45,23 +45,4 @@ class Device {
   virtual void take_hold() {}
 };
 
-/// A device that is where it is put, and remembers what it was sent: for replays and tests.
-class PosedDevice : public Device {
- public:
-  void put(const Pose& X_WD, double given_share = 1) {
-    pose_ = X_WD;
-    given_share_ = given_share;
-  }
-  const Wrench& sent() const { return sent_; }
-
-  Pose read_pose() override { return pose_; }
-  void write_wrench(const Wrench& wrench) override { sent_ = wrench; }
-  double given_share() const override { return given_share_; }
-
- private:
-  Pose pose_;
-  double given_share_ = 1;
-  Wrench sent_;
-};
-
 }  // namespace osteomill

@@ -111,14 +111,16 @@ std::string findings_sentence(const Study& study) {
     if (f.verdict == Verdict::does_not_agree) against.push_back(says);
     if (f.verdict == Verdict::not_settled) open.push_back(says);
   }
-  std::string text =
-      fmt::format("Of the paper's {} findings on force, torque and shaft, tried in {} mode: {} agree in {}",
-                  total, name_of(mode), agreeing, hands(study.seeds().size()));
-  const auto add = [&](const std::vector<std::string>& which, const char* verb) {
-    if (!which.empty()) text += fmt::format(", {} {} ({})", which.size(), verb, fmt::join(which, "; "));
+  std::string text = fmt::format(
+      "Of the paper's {} findings on force, torque and shaft, tried in {} mode: {} {} in {}", total,
+      name_of(mode), agreeing, agreeing == 1 ? "agrees" : "agree", hands(study.seeds().size()));
+  const auto add = [&](const std::vector<std::string>& which, const char* of_one, const char* of_more) {
+    if (which.empty()) return;
+    text += fmt::format(", {} {} ({})", which.size(), which.size() == 1 ? of_one : of_more,
+                        fmt::join(which, "; "));
   };
-  add(against, "do not");
-  add(open, "are not settled");
+  add(against, "does not", "do not");
+  add(open, "is not settled", "are not settled");
   if (untested > 0) text += fmt::format(", {} could not be tested", untested);
   return text + ".";
 }

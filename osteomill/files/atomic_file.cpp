@@ -73,6 +73,18 @@ std::vector<fs::path> files_in(const fs::path& folder) {
   return files;
 }
 
+// What is being handled, of a file beside by the name that it was to have.
+[[noreturn]] void throw_by_its_name(const fs::path& beside, const fs::path& folder) {
+  try {
+    throw;
+  } catch (const InputError& error) {
+    const std::string said = error.what(), name = in_one_line(beside.string());
+    if (!said.starts_with(name)) throw;
+    const std::size_t end = said.find(": ", name.size());
+    throw InputError(folder.string() + said.substr(name.size(), end - name.size()), said.substr(end + 2));
+  }
+}
+
 // A path that is not absolute does not count.
 fs::path folder_named_by(const char* variable) {
   const char* value = std::getenv(variable);
@@ -145,7 +157,7 @@ void write_folder_atomically(const fs::path& folder, const std::function<void(co
   } catch (...) {
     fs::remove_all(beside, ignored);
     if (!was_there) fs::remove(folder, ignored);
-    throw;
+    throw_by_its_name(beside, folder);
   }
 }
 

@@ -135,6 +135,20 @@ TEST_F(AtomicFileTest, FilesThatBelongTogetherAppearTogether) {
   EXPECT_EQ(file_count(), 3);
 }
 
+TEST_F(AtomicFileTest, AFileThatFailsAmongOthersIsCalledByItsName) {
+  const fs::path new_folder = folder_ / "new";
+  try {
+    write_folder_atomically(new_folder, [](const fs::path& beside) {
+      write_folder_atomically(beside, [](const fs::path& within) {
+        throw InputError((within / "a.csv").string(), "cannot be written: no");
+      });
+    });
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.what(), (new_folder / "a.csv").string() + ": cannot be written: no");
+  }
+}
+
 TEST_F(AtomicFileTest, OfFilesThatBelongTogetherNoneIsLeftWhereOneFails) {
   const auto fail = [](const fs::path& beside) {
     std::ofstream(beside / "a.csv") << "half";

@@ -88,7 +88,7 @@ class DeviceFaults : public ::testing::TestWithParam<std::string> {
   }
 
   testing_support::ScriptedDevice hardware_;
-  ConnectedDevice device_{hardware_.way(), hardware_.settings()};
+  ConnectedDevice device_{hardware_.way(), hardware_.clock()};
   MillingSession session_{
       std::make_shared<Volume>(testing_support::shape_volume(
           testing_support::centred_cube(60, 0.25), testing_support::plane(Vec3::Zero(), Vec3::UnitZ()))),

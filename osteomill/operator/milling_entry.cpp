@@ -346,16 +346,18 @@ Pose free_pose_before(const Volume& volume, const MillingTool& tool, const Vec3&
   return X_WT;
 }
 
+std::vector<std::string> coarseness_warnings(const GridGeometry& geometry, const MillingTool& tool) {
+  const double apart_mm = geometry.spacing_mm.maxCoeff();
+  if (apart_mm <= tool.burr_radius_mm) return {};
+  return {fmt::format(
+      "the scan's voxels lie up to {:.3g} mm apart, more than the burr's radius of {:.3g} mm: what is "
+      "milled is hardly seen or felt as it was",
+      apart_mm, tool.burr_radius_mm)};
+}
+
 std::vector<std::string> entry_warnings(const Volume& volume, const MillingTool& tool,
                                         const MillingEntry& entry) {
-  std::vector<std::string> warnings;
-  const double apart_mm = volume.geometry().spacing_mm.maxCoeff();
-  if (apart_mm > tool.burr_radius_mm) {
-    warnings.push_back(fmt::format(
-        "the scan's voxels lie up to {:.3g} mm apart, more than the burr's radius of {:.3g} mm: what is "
-        "milled is hardly seen or felt as it was",
-        apart_mm, tool.burr_radius_mm));
-  }
+  std::vector<std::string> warnings = coarseness_warnings(volume.geometry(), tool);
   if (is_on_cut_edge(volume.geometry(), entry.point_W)) {
     warnings.emplace_back("the tool enters where the border of the volume cuts the bone off");
   } else if (!can_stay(volume, tool, entry)) {

@@ -39,9 +39,12 @@ MillingEntry place_entry(const Volume& volume, const MillingTool& tool,
                          const std::optional<Vec3>& entry = std::nullopt,
                          const std::optional<Vec3>& direction = std::nullopt);
 
-/// What a user should know of this place, a sentence each: that the scan is too coarse for the burr, as its
-/// slices are where they lie further apart than its radius, that the border of the volume cuts the bone off
-/// there, or that the tool does not stay in bone.
+/// A sentence where the scan is too coarse for the burr, as its slices are where they lie further apart than
+/// its radius.
+std::vector<std::string> coarseness_warnings(const GridGeometry& geometry, const MillingTool& tool);
+
+/// What a user should know of this place, a sentence each: `coarseness_warnings`, that the border of the
+/// volume cuts the bone off there, or that the tool does not stay in bone.
 std::vector<std::string> entry_warnings(const Volume& volume, const MillingTool& tool,
                                         const MillingEntry& entry);
 

@@ -113,8 +113,8 @@ void AttributeReader::get(const std::string& name, std::uint64_t& value) const {
 
 void AttributeReader::reals(const std::string& name, std::span<double> values) const {
   read(name, H5T_FLOAT, H5T_NATIVE_DOUBLE, std::ssize(values), values.data());
-  if (!std::ranges::all_of(values, [](double value) { return std::isfinite(value); }))
-    throw InputError(file_.string(), "the attribute '" + name + "' is not finite");
+  if (!std::ranges::all_of(values, [](double value) { return std::abs(value) <= kMostReal; }))
+    throw InputError(file_.string(), "the attribute '" + name + "' is not finite, or beyond 1e12");
 }
 
 void AttributeReader::get(const std::string& name, std::array<int, 3>& values) const {

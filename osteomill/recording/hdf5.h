@@ -60,6 +60,9 @@ class Hdf5Handle {
   Closer closer_ = nullptr;
 };
 
+/// Greater numbers overflow in sums of squares, and are refused where they are read.
+inline constexpr double kMostReal = 1e12;
+
 /// HDF5's name for what stands in memory.
 template <typename Value>
 hid_t memory_type() {
@@ -99,7 +102,7 @@ class AttributeReader {
   AttributeReader(std::filesystem::path file, hid_t object) : file_(std::move(file)), object_(object) {}
 
   void get(const std::string& name, std::string& text) const;
-  /// Finite, as all reals.
+  /// Finite and up to kMostReal, as all reals.
   void get(const std::string& name, double& value) const { reals(name, {&value, 1}); }
   void get(const std::string& name, std::uint64_t& value) const;
   void get(const std::string& name, Eigen::Ref<Vec3> value) const { reals(name, {value.data(), 3}); }

@@ -4,6 +4,7 @@
 #include <limits>
 #include <span>
 #include <string>
+#include <string_view>
 #include <tuple>
 #include <vector>
 
@@ -104,10 +105,10 @@ std::size_t common_rows(const OpenRecording& recording, std::span<const OpenColu
 void require_in_range(const OpenRecording& recording, const RecordColumn& column, double value) {
   const double max = column.type == ColumnType::small_integer ? static_cast<double>(WrenchFault::eased)
                                                               : std::numeric_limits<int>::max();
-  // What is not finite is a pose that the device did not give; greater numbers overflow in sums of squares.
-  constexpr double kMaxReal = 1e12;
+  // Only a pose that the device did not give is not finite.
+  const bool is_missing = !std::isfinite(value) && std::string_view(column.name).starts_with("device_");
   const bool sound = column.type == ColumnType::real
-                         ? !std::isfinite(value) || std::abs(value) <= kMaxReal
+                         ? is_missing || std::abs(value) <= kMostReal
                          : value >= 0 && value <= max && value == std::floor(value);
   if (!sound) refuse(recording, fmt::format("the column '{}' holds {:g}", column.name, value));
 }

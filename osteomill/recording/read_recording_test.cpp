@@ -140,6 +140,7 @@ TEST_F(ChangedRecording, ADescriptionOfWhatCannotBeIsRefused) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   reals("isovalue", {kNan}, "'isovalue' is not finite");
+  reals("spacing_mm", {1, 1e300, 1}, "'spacing_mm' is not finite, or beyond 1e12");
   reals("origin_mm", {0, kInfinity, 0}, "'origin_mm' is not finite");
   reals("spacing_mm", {1, kNan, 1}, "'spacing_mm' is not finite");
   reals("spacing_mm", {1, 0, 1}, "'spacing_mm' is not three positive numbers");
@@ -153,13 +154,21 @@ TEST_F(ChangedRecording, ADescriptionOfWhatCannotBeIsRefused) {
   expect_refused(path_, "'dims' is no size of a scan");
 }
 
-TEST_F(ChangedRecording, AForceThatNobodyHasIsRefused) {
-  change([](hid_t file) {
-    const hid_t dataset = H5Dopen2(file, "columns/force_x_N", H5P_DEFAULT);
-    const std::vector<double> values(1500, 1e300);
-    H5Dwrite(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
-    H5Dclose(dataset);
-  });
+TEST_F(ChangedRecording, ANumberThatNobodyRecordsIsRefused) {
+  const auto fill = [this](const char* column, double value) {
+    change([&](hid_t file) {
+      const hid_t dataset = H5Dopen2(file, column, H5P_DEFAULT);
+      const std::vector<double> values(1500, value);
+      H5Dwrite(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
+      H5Dclose(dataset);
+    });
+  };
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  fill("columns/device_x_mm", kNan);
+  EXPECT_EQ(read_recording(path_).records.size(), 1500u);
+  fill("columns/dt_s", kNan);
+  expect_refused(path_, "'dt_s' holds nan");
+  fill("columns/force_x_N", 1e300);
   expect_refused(path_, "'force_x_N' holds 1e+300");
 }
 

@@ -88,9 +88,9 @@ TEST(Recorder, WhatIsRecordedReadsBackBitForBit) {
   const TestFolder folder;
   constexpr int kTicks = 5000;  // several chunks and a part of one
   TickRecord odd = sample_record(kTicks);
-  odd.wrench.force_N = {-0.0, std::numeric_limits<double>::denorm_min(),
-                        std::numeric_limits<double>::infinity()};
-  odd.compute_us = std::numeric_limits<double>::quiet_NaN();
+  odd.wrench.force_N = {-0.0, std::numeric_limits<double>::denorm_min(), -kMostReal};
+  odd.X_WD.position_mm = {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
+                          0};
   const std::vector<unsigned char> png{0x89, 'P', 'N', 'G', 0, 255, 1};
   {
     Recorder recorder(folder / "run.h5", sample_description());

@@ -4,7 +4,6 @@
 #include "tests/support/recording_samples.h"
 #include <gtest/gtest.h>
 
-#include "osteomill/device/device.h"
 #include "osteomill/files/input_error.h"
 #include "osteomill/haptics/algorithms.h"
 #include "osteomill/recording/describe_run.h"
@@ -12,6 +11,7 @@
 #include "osteomill/recording/recording.h"
 #include "osteomill/recording/replay_recording.h"
 #include "osteomill/session/milling_session.h"
+#include "osteomill/session/trajectory.h"
 
 namespace osteomill {
 namespace {

@@ -7,12 +7,12 @@
 
 #include <fmt/format.h>
 
-#include "osteomill/device/device.h"
 #include "osteomill/files/input_error.h"
 #include "osteomill/milling/burr_mill.h"
 #include "osteomill/milling/cutting_reaction.h"
 #include "osteomill/recording/describe_run.h"
 #include "osteomill/recording/record_columns.h"
+#include "osteomill/session/trajectory.h"
 #include "osteomill/volume/density_grid.h"
 
 namespace osteomill {

@@ -9,11 +9,11 @@
 #include "tests/support/recording_samples.h"
 #include <gtest/gtest.h>
 
-#include "osteomill/device/device.h"
 #include "osteomill/files/input_error.h"
 #include "osteomill/recording/describe_run.h"
 #include "osteomill/recording/recorder.h"
 #include "osteomill/recording/recording.h"
+#include "osteomill/session/trajectory.h"
 #include "osteomill/volume/density_grid.h"
 
 namespace osteomill {

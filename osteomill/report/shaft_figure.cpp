@@ -88,10 +88,9 @@ std::string degrees_text(double degrees) {
 std::string words(const MeasuredRun& run) {
   const DirectionMetrics& shaft = run.metrics.shaft;
   // The tables say for how long it did, at more length than there is room for here.
-  return std::isnan(shaft.spread_deg)
-             ? "too little contact"
-             : fmt::format("spread {}°, excursion {}°", degrees_text(shaft.spread_deg),
-                           degrees_text(shaft.excursion_deg));
+  return std::isnan(shaft.spread_deg) ? "too little contact"
+                                      : fmt::format("spread {}°, at most {}°", degrees_text(shaft.spread_deg),
+                                                    degrees_text(shaft.excursion_deg));
 }
 
 std::string panel(const MeasuredRun& run, const PanelGrid& grid, const PanelCell& cell,

@@ -6,8 +6,8 @@
 #include "tests/shapes.h"
 #include <gtest/gtest.h>
 
-#include "osteomill/device/device.h"
 #include "osteomill/session/milling_setup.h"
+#include "osteomill/session/trajectory.h"
 
 namespace osteomill {
 namespace {

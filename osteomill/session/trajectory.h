@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "osteomill/device/device.h"
 #include "osteomill/geometry/pose.h"
 
 namespace osteomill {
@@ -19,5 +20,24 @@ struct TrajectoryPoint {
 /// not a finite number, a quaternion that is not of unit length within 1e-3, milling other than 0 or 1, a
 /// time that does not go forward, a row with too few values, or no row at all.
 std::vector<TrajectoryPoint> read_trajectory(const std::filesystem::path& path);
+
+/// A device that is where it is put, and remembers what it was sent: for replays and tests.
+class PosedDevice : public Device {
+ public:
+  void put(const Pose& X_WD, double given_share = 1) {
+    pose_ = X_WD;
+    given_share_ = given_share;
+  }
+  const Wrench& sent() const { return sent_; }
+
+  Pose read_pose() override { return pose_; }
+  void write_wrench(const Wrench& wrench) override { sent_ = wrench; }
+  double given_share() const override { return given_share_; }
+
+ private:
+  Pose pose_;
+  double given_share_ = 1;
+  Wrench sent_;
+};
 
 }  // namespace osteomill

@@ -8,9 +8,9 @@
 #include "tests/shapes.h"
 #include <gtest/gtest.h>
 
-#include "osteomill/device/device.h"
 #include "osteomill/haptics/algorithms.h"
 #include "osteomill/session/milling_session.h"
+#include "osteomill/session/trajectory.h"
 
 namespace osteomill {
 namespace {

@@ -203,10 +203,9 @@ SuggestedIsovalue isovalue_of_bone(std::span<const Sample> samples, bool in_houn
     return {kBone_HU, "where bone begins in Hounsfield units"};
   }
   if (found.water) {
-    return {
-        *found.water + kBone_HU,
-        fmt::format("{:g} above water; the densities are spaced as Hounsfield units are, with another zero",
-                    kBone_HU)};
+    return {*found.water + kBone_HU,
+            fmt::format("{:g} above water; the densities are spaced as Hounsfield units are{}", kBone_HU,
+                        *found.water == 0 ? "" : ", with another zero")};
   }
   return {halfway, fmt::format("halfway between the commonest densities, {:.4g} below and {:.4g} above",
                                found.around, found.bone)};

@@ -76,6 +76,11 @@ TEST(SuggestIsovalue, OfABodyIsBoneAndNotSkin) {
   EXPECT_EQ(suggest_isovalue(head(0, false)).value, kBone_HU);
   EXPECT_EQ(suggest_isovalue(head(0, true)).value, kBone_HU);
   EXPECT_NEAR(suggest_isovalue(head(1024, false)).value, 1024 + kBone_HU, 30);
+  const auto has_another_zero = [](double offset) {
+    return suggest_isovalue(head(offset, false)).how.find("with another zero") != std::string::npos;
+  };
+  EXPECT_FALSE(has_another_zero(0));
+  EXPECT_TRUE(has_another_zero(1024));
 }
 
 TEST(SuggestIsovalue, IsSaidToBeAGuessWhereThereIsAnotherBoundary) {

@@ -324,6 +324,15 @@ for n in 0 1; do
     'BEGIN { exit !((is - as) ^ 2 < 1) }' || fault "the button ${boundaries[$n]} does not set the isovalue"
 done
 
+# --- A scan that is too coarse for the burr -----------------------------------------------------------------------
+sed 's/0.5 0.5 0.5/2 2 2/' ball.nrrd >coarse.nrrd
+window coarse.nrrd --no-help <<'END'
+wait 0.5 ;; state coarse ;; screenshot coarse.png ;; drag burr radius 60 ;; settle ;; wait 0.5 ;; state wide-burr
+close
+END
+value coarse warnings | grep -q "lie up to 2 mm apart" || fault "nobody is told that the voxels are longer than the burr's radius"
+is wide-burr warnings ""
+
 # --- Labels -------------------------------------------------------------------------------------------------------
 # The ball's left half is one label, its right half another.
 {

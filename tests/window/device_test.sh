@@ -49,10 +49,14 @@ await stopped
 wait 0.5
 state stopped
 screenshot stopped.png
+key f1
+wait 0.2
+state explained
 say go on
 await going-on
 wait 1
 state going_on
+key f1
 click Record
 wait 0.5
 click Stop recording
@@ -88,6 +92,10 @@ done
 [ "$(value moving.spindle)" = true ] || fail "its button does not mill"
 grep -q "^calibrated.dialogue=The two moves were shorter than 10 mm" said || fail "moves of no length calibrate"
 grep -qE "^stopped.device_fault=has given no pose for" said || fail "a stopped device is not said"
+for place in Calibrate "Start milling"; do
+  [ -n "$(value "going_on.place of $place")" ] && [ "$(value "going_on.place of $place")" = "$(value "explained.place of $place")" ] ||
+    fail "$place moves as a fault comes and goes"
+done
 [ "$(value stopped.force_arrow_N)" = 0.000 ] || fail "something is felt of a stopped device"
 [ "$(sed -n 's/^scale = //p' config/osteomill/devices/example-device.toml)" = 0.5 ] || fail "its workspace is not kept"
 "$osteomill" report ./*recording.h5 --out report >text

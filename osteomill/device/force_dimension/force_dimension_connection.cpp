@@ -152,8 +152,6 @@ class ForceDimensionConnection final : public Connection {
     dhd_.stop(id_);
     dhd_.close(id_);
   }
-  ForceDimensionConnection(const ForceDimensionConnection&) = delete;
-  ForceDimensionConnection& operator=(const ForceDimensionConnection&) = delete;
 
   const DeviceCapabilities& capabilities() const override { return capabilities_; }
 

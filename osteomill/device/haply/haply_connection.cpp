@@ -64,11 +64,11 @@ bool take(const Json* numbers, Vec3& vector) {
 }
 
 bool is_true(const Json* value) {
-  return value != nullptr && value->is_boolean() && value->get<bool>();
+  return value != nullptr && *value == true;
 }
 
 bool is_false(const Json* value) {
-  return value != nullptr && value->is_boolean() && !value->get<bool>();
+  return value != nullptr && *value == false;
 }
 
 // Also a Minverse stands among them, which is not driven with the forces of an Inverse3.
@@ -128,8 +128,6 @@ struct OpenedService {
     inverse3 = first_of(inventory, "inverse3", &is_inverse3);
     if (inverse3 == nullptr) throw InputError(name_of(at), "the service has no Inverse3");
   }
-  OpenedService(const OpenedService&) = delete;
-  OpenedService& operator=(const OpenedService&) = delete;
 
   static std::string name_of(const HostAndPort& at) { return fmt::format("haply:{}:{}", at.host, at.port); }
   std::string id() const { return member(inverse3, "device_id")->get<std::string>(); }
@@ -158,8 +156,6 @@ class HaplyConnection final : public Connection {
     ask(Vec3::Zero(), {{"session", {{"configure", {{"profile", {{"name", "osteomill"}}}}}}}});
   }
   ~HaplyConnection() override { ask(Vec3::Zero()); }
-  HaplyConnection(const HaplyConnection&) = delete;
-  HaplyConnection& operator=(const HaplyConnection&) = delete;
 
   const DeviceCapabilities& capabilities() const override { return capabilities_; }
 

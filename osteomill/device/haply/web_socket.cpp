@@ -44,7 +44,6 @@ struct WebSocket::Impl {
       case LWS_CALLBACK_CLIENT_CONNECTION_ERROR:
       case LWS_CALLBACK_CLIENT_CLOSED:
         self->is_open = false;
-        self->is_over = true;
         self->socket = nullptr;
         return 0;
       case LWS_CALLBACK_CLIENT_RECEIVE:
@@ -90,7 +89,6 @@ struct WebSocket::Impl {
   lws_context* context = nullptr;
   lws* socket = nullptr;
   bool is_open = false;
-  bool is_over = false;
   std::string coming;
   std::optional<std::string> newest;
   std::optional<std::string> going;
@@ -108,8 +106,7 @@ WebSocket::WebSocket(const std::string& device, const std::string& host, int por
   to.ietf_version_or_minus_one = -1;
   lws_client_connect_via_info(&to);
   const auto end = std::chrono::steady_clock::now() + kConnectWithin;
-  while (!impl_->is_open && !impl_->is_over && impl_->socket != nullptr &&
-         std::chrono::steady_clock::now() < end) {
+  while (!impl_->is_open && impl_->socket != nullptr && std::chrono::steady_clock::now() < end) {
     impl_->serve(std::chrono::milliseconds(1));
   }
   if (!impl_->is_open) throw InputError(device, "nothing answers there");

@@ -139,8 +139,6 @@ class TouchConnection final : public Connection {
       std::this_thread::sleep_for(kBetweenLooks);
     close();
   }
-  TouchConnection(const TouchConnection&) = delete;
-  TouchConnection& operator=(const TouchConnection&) = delete;
 
   const DeviceCapabilities& capabilities() const override { return capabilities_; }
 

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <cmath>
 #include <cstring>
 #include <optional>
 
@@ -11,6 +10,7 @@
 #include "osteomill/device/socket.h"
 #include "osteomill/device/udp/udp_datagrams.h"
 #include "osteomill/files/input_error.h"
+#include "osteomill/numbers/positive.h"
 
 namespace osteomill {
 
@@ -62,18 +62,6 @@ std::optional<Datagram> receive(Socket& socket) {
   return std::nullopt;
 }
 
-Vec3 vector_of(const std::array<double, 3>& numbers) {
-  return {numbers[0], numbers[1], numbers[2]};
-}
-
-std::array<double, 3> numbers_of(const Vec3& vector) {
-  return {vector.x(), vector.y(), vector.z()};
-}
-
-bool is_limit(double value) {
-  return std::isfinite(value) && value >= 0;
-}
-
 DeviceCapabilities capabilities_of(const Answer& answer, const std::string& device) {
   DeviceCapabilities can;
   const auto end = std::find(answer.name.begin(), answer.name.end(), '\0');
@@ -91,7 +79,7 @@ DeviceCapabilities capabilities_of(const Answer& answer, const std::string& devi
   can.driven = static_cast<int>(answer.driven);
   can.limits = {answer.max_force_N, answer.max_torque_Nmm};
   can.lets_go_after_s = kLapse_s;
-  if (!is_limit(can.limits.force_N) || !is_limit(can.limits.torque_Nmm))
+  if (!is_not_negative(can.limits.force_N) || !is_not_negative(can.limits.torque_Nmm))
     throw InputError(device, "the device says limits that are not numbers from 0");
   return can;
 }
@@ -122,8 +110,6 @@ class UdpConnection final : public Connection {
     // One of them arrives.
     for (int n = 0; n < 3; ++n) write({});
   }
-  UdpConnection(const UdpConnection&) = delete;
-  UdpConnection& operator=(const UdpConnection&) = delete;
 
   const DeviceCapabilities& capabilities() const override { return partner_.capabilities; }
 
@@ -143,8 +129,8 @@ class UdpConnection final : public Connection {
 
   ConnectionStatus write(const Wrench& wrench_D) override {
     SentWrench sent;
-    sent.force_N = numbers_of(wrench_D.force_N);
-    if (partner_.capabilities.driven == 6) sent.torque_Nmm = numbers_of(wrench_D.torque_Nmm);
+    Vec3::Map(sent.force_N.data()) = wrench_D.force_N;
+    if (partner_.capabilities.driven == 6) Vec3::Map(sent.torque_Nmm.data()) = wrench_D.torque_Nmm;
     const bool is_sent = send(partner_.socket, sent, ++wrenches_);
     if (!partner_.socket.is_open()) return ConnectionStatus::lost;
     return is_sent ? ConnectionStatus::fresh : ConnectionStatus::silent;
@@ -159,7 +145,7 @@ class UdpConnection final : public Connection {
   void take(const State& state, DeviceInput& input) {
     newest_ = state.head.sequence;
     heard_ = Clock::now();
-    input.X_DH.position_mm = vector_of(state.position_mm);
+    input.X_DH.position_mm = Vec3::Map(state.position_mm.data());
     const auto& [w, x, y, z] = state.orientation_wxyz;
     input.X_DH.orientation = partner_.capabilities.sensed == 6 ? Quat(w, x, y, z) : Quat::Identity();
     input.buttons = state.buttons;

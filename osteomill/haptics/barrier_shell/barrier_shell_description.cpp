@@ -21,8 +21,8 @@ const std::vector<Field>& fields() {
       number<&Settings::translational_stiffness_N_per_mm>(
           "translational-stiffness", "N/mm", 2, "Virtual coupling between device and simulated tool",
           "stiffness"),
-      number<&Settings::torsional_stiffness_Nmm_per_rad>("torsional-stiffness", "N mm/rad", 1000,
-                                                         "The same about rotation", "torsional-stiffness"),
+      number<&Settings::torsional_stiffness_Nmm_per_rad>(
+          "torsional-stiffness", "N mm/rad", 1000, "Of the coupling, about rotation", "torsional-stiffness"),
       number<&Settings::skin_width_mm>(
           "skin-width", "mm", 0.25,
           "How far from the tool's cores bone is felt; less where the rounding is less"),

@@ -30,8 +30,8 @@ const std::vector<Field>& fields() {
           {"translational-stiffness", "N/mm", SettingRange::positive(), 5, 2,
            "Virtual coupling between device and simulated tool", "stiffness"}),
       setting_field<&Settings::torsional_stiffness_Nmm_per_rad>(
-          {"torsional-stiffness", "N mm/rad", SettingRange::positive(), 2500, 1000, "The same about rotation",
-           "torsional-stiffness"}),
+          {"torsional-stiffness", "N mm/rad", SettingRange::positive(), 2500, 1000,
+           "Of the coupling, about rotation", "torsional-stiffness"}),
       setting_field<&Settings::damping_time_s>({"damping-time", "s", SettingRange::not_negative(), 0.001, 0,
                                                 "The coupling's dampers are its springs times this"}),
       setting_field<&Settings::max_depth_mm>(
