@@ -1,6 +1,5 @@
 #include "app/scan_options.h"
 
-#include <algorithm>
 #include <utility>
 
 #include "app/memory_limit.h"
@@ -8,11 +7,9 @@
 #include "app/progress.h"
 #include <fmt/core.h>
 
-#include "osteomill/ct/read_scan.h"
 #include "osteomill/files/input_error.h"
 #include "osteomill/numbers/work_progress.h"
 #include "osteomill/volume/builtin_tooth.h"
-#include "osteomill/volume/isovalue.h"
 #include "osteomill/volume/label_scan.h"
 
 namespace osteomill::app {

@@ -15,7 +15,6 @@
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/files/input_error.h"
 #include "osteomill/recording/recorder.h"
-#include "osteomill/recording/recording.h"
 
 namespace osteomill::app {
 

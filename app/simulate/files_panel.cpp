@@ -1,8 +1,6 @@
 #include "app/simulate/files_panel.h"
 
-#include <chrono>
 #include <ctime>
-#include <functional>
 #include <thread>
 
 #include "app/simulate/widgets.h"
@@ -16,7 +14,6 @@
 #include "osteomill/ct/write_nrrd.h"
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/files/input_error.h"
-#include "osteomill/image/image.h"
 #include "osteomill/recording/recording.h"
 #include "osteomill/report/write_report.h"
 #include "osteomill/surface/mesh_file.h"

@@ -5,7 +5,6 @@
 #include <functional>
 #include <future>
 #include <memory>
-#include <utility>
 #include <vector>
 
 #include "app/simulate/simulation.h"

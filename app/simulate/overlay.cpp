@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 
 #include "app/simulate/panels.h"
 #include "app/simulate/widgets.h"

@@ -1,6 +1,5 @@
 #include "app/simulate/pointer.h"
 
-#include <cmath>
 #include <optional>
 #include <utility>
 

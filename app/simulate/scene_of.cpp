@@ -1,7 +1,5 @@
 #include "app/simulate/scene_of.h"
 
-#include <algorithm>
-
 #include "app/simulate/cuts.h"
 
 namespace osteomill::app {

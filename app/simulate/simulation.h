@@ -2,7 +2,6 @@
 
 #include <chrono>
 #include <deque>
-#include <filesystem>
 #include <future>
 #include <memory>
 #include <optional>

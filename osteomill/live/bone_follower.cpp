@@ -7,7 +7,6 @@
 #include <limits>
 #include <map>
 #include <mutex>
-#include <optional>
 #include <shared_mutex>
 #include <thread>
 #include <utility>

@@ -1,7 +1,6 @@
 #include "osteomill/live/live_milling.h"
 
 #include <chrono>
-#include <string_view>
 #include <thread>
 #include <utility>
 

@@ -1,6 +1,5 @@
 #include "osteomill/recording/replay_recording.h"
 
-#include <algorithm>
 #include <bit>
 #include <stdexcept>
 #include <utility>

@@ -13,7 +13,6 @@
 #include <unistd.h>
 
 #include "osteomill/files/input_error.h"
-#include "osteomill/files/temporary_folder.h"
 #include "osteomill/report/html.h"
 
 extern char** environ;

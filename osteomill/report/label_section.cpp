@@ -1,12 +1,10 @@
 #include "osteomill/report/label_section.h"
 
 #include <algorithm>
-#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
-#include "osteomill/report/figure.h"
 #include "osteomill/session/tick_counts.h"
 
 namespace osteomill {

@@ -1,6 +1,5 @@
 #include "osteomill/view/bone_ground.h"
 
-#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <numbers>

@@ -1,7 +1,6 @@
 #include "osteomill/view/bone_layer.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <string>

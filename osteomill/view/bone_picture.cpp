@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
-#include <utility>
 #include <vector>
 
 #include "osteomill/surface/surface_mesh.h"

@@ -1,6 +1,5 @@
 #include "osteomill/view/clip_faces.h"
 
-#include <array>
 #include <vector>
 
 #include "osteomill/view/shaders.h"

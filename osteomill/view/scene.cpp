@@ -1,7 +1,5 @@
 #include "osteomill/view/scene.h"
 
-#include "osteomill/tool/milling_tool.h"
-
 namespace osteomill {
 
 namespace {
