@@ -4,8 +4,8 @@
 #include <string>
 #include <utility>
 
-#include "app/simulate/cuts.h"
 #include "app/simulate/panels.h"
+#include "app/simulate/scene_of.h"
 #include "app/simulate/state_text.h"
 #include "app/simulate/widgets.h"
 #include <fmt/core.h>
@@ -119,10 +119,10 @@ void draw_session(ViewState& view, LiveMilling& milling, bool by_pointer) {
 // Of several: which of them bounds bone nobody but the user knows. Beside the histogram, and below it where
 // there is no room.
 void draw_boundaries(Simulation& simulation) {
-  if (simulation.boundaries.size() < 2) return;
+  if (simulation.scan.boundaries.size() < 2) return;
   const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
   const ImGuiStyle& style = ImGui::GetStyle();
-  for (const Boundary& boundary : simulation.boundaries) {
+  for (const Boundary& boundary : simulation.scan.boundaries) {
     const std::string label = fmt::format("{:.4g}", boundary.density);
     const float width = ImGui::CalcTextSize(label.c_str()).x + 2 * style.FramePadding.x;
     if (ImGui::GetItemRectMax().x + style.ItemSpacing.x + width <= right) ImGui::SameLine();
@@ -135,7 +135,7 @@ void draw_boundaries(Simulation& simulation) {
 
 void draw_isovalue(ViewState& view, Simulation& simulation) {
   if (!ui::header("Bone", true)) return;
-  const DensityHistogram& histogram = simulation.histogram;
+  const DensityHistogram& histogram = simulation.scan.histogram;
   LiveMilling& milling = simulation.milling;
   float isovalue = view.isovalue.value_or(static_cast<float>(milling.isovalue()));
   const ImVec2 place = ImGui::GetCursorScreenPos();
@@ -147,7 +147,7 @@ void draw_isovalue(ViewState& view, Simulation& simulation) {
   ImGui::GetWindowDrawList()->AddLine({x, place.y}, {x, place.y + size.y}, IM_COL32(255, 180, 60, 255), 2);
   draw_boundaries(simulation);
   ImGui::BeginDisabled(milling.preparing());
-  const std::string format = "%.4g" + simulation.unit;
+  const std::string format = "%.4g" + simulation.scan.unit;
   if (ui::slider("isovalue", &isovalue, histogram.min, histogram.max, format.c_str(),
                  ImGuiSliderFlags_AlwaysClamp)) {
     view.isovalue = isovalue;
@@ -186,11 +186,11 @@ void draw_cuts(ViewState& view, Simulation& simulation) {
 
 void draw_view(ViewState& view, const Vec3& tool_W, const PixelSize& size) {
   if (!ui::header("View", true)) return;
-  for (const ViewFrom from : kAllViews) {
-    std::string letter(1, static_cast<char>(std::toupper(name_of(from).front())));
+  for (const auto& [from, direction_W, up_W] : kPatientViews) {
+    const std::string letter(1, static_cast<char>(std::toupper(from.front())));
     if (ui::button((letter + "##view").c_str()))
-      view.camera = with_whole(camera_from(from, view.box.bounds()), view.box, size);
-    ui::hint(("From " + std::string(name_of(from))).c_str());
+      view.camera = with_whole(camera_on(view.box.bounds(), direction_W, up_W), view.box, size);
+    ui::hint(fmt::format("From {}", from).c_str());
     ImGui::SameLine();
   }
   if (ui::button("Whole")) view.camera = with_whole(view.camera, view.box, size);
@@ -225,7 +225,7 @@ void draw_controls(ViewState& view, Simulation& simulation, FilesPanel& files, c
   ImGui::Begin("osteomill", nullptr, ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize);
   ImGui::PushItemWidth(ui::px(130));
   draw_reading_aids(view);
-  draw_scan(view, simulation.scan_name);
+  draw_scan(view, simulation.scan.name);
   bool changed = false;
   draw_isovalue(view, simulation);
   draw_session(view, simulation.milling, simulation.holder.is_pointer());

@@ -196,11 +196,11 @@ void FilesPanel::draw(ViewState& view, Simulation& simulation) {
       create_folder(folder_);
       BrickMesh mesh;
       simulation.milling.read_bone([&](const Volume& bone) { mesh = mesh_in_one_piece(DensityView(bone)); });
-      work_ = std::async(std::launch::async,
-                         [path = name("surface.ply"), mesh = std::move(mesh), labels = simulation.labels] {
-                           write_mesh(path, mesh, labels.get());
-                           return Done{"Saved " + path.string(), path, {}};
-                         });
+      work_ = std::async(std::launch::async, [path = name("surface.ply"), mesh = std::move(mesh),
+                                              labels = simulation.scan.labels] {
+        write_mesh(path, mesh, labels.get());
+        return Done{"Saved " + path.string(), path, {}};
+      });
     });
   }
   ImGui::SameLine();

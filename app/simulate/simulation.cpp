@@ -3,7 +3,9 @@
 #include <thread>
 #include <utility>
 
+#include "app/memory_limit.h"
 #include "app/progress.h"
+#include <malloc.h>
 
 #include "osteomill/files/input_error.h"
 #include "osteomill/numbers/work_progress.h"
@@ -11,6 +13,8 @@
 namespace osteomill::app {
 
 namespace {
+
+using namespace std::chrono_literals;
 
 constexpr std::size_t kHistory = 5000;
 
@@ -34,7 +38,6 @@ OpenedScan open_for_milling(const ScanOptions& scan, const MillingSetup& setup, 
   }();
   auto bone = std::make_shared<Volume>(std::move(loaded.volume));
   const BoneBox box = box_of_bone(*bone);
-  const std::shared_ptr<const LabelMap> labels = bone->labels();
   if (const std::string fault = tool_fault(setup.tool, box); !fault.empty())
     throw InputError(loaded.name, fault);
   const DensityHistogram histogram = histogram_of(bone->grid());
@@ -42,35 +45,49 @@ OpenedScan open_for_milling(const ScanOptions& scan, const MillingSetup& setup, 
   const WorkProgress::Part preparing(1);
   PreparedMilling prepared = prepare_milling(bone, setup, milled);
   const WindowLevel grey_window = window_level_of(bone->grid(), prepared.session->densities().surroundings);
-  return {loaded.name,
-          scan,
-          isovalue_from(scan, loaded, !milled.bricks.empty()),
-          loaded.in_hounsfield_units ? " HU" : "",
-          box,
-          histogram,
-          std::move(boundaries),
-          grey_window,
-          labels,
+  return {{loaded.name, scan, bone->isovalue(), isovalue_from(scan, loaded, !milled.bricks.empty()),
+           loaded.in_hounsfield_units ? " HU" : "", box, histogram, std::move(boundaries), grey_window,
+           bone->labels()},
           std::move(prepared)};
+}
+
+void Opening::begin(std::function<OpenedScan()> open) {
+  stop();
+  work_ = std::make_shared<Work>();
+  result_ = std::async(std::launch::async, [work = work_, open = std::move(open)] {
+    try {
+      const WorkProgress progress([&](double share) {
+        work->share_done = share;
+        if (work->stopped) throw WorkStopped();
+        check_memory_taken();
+      });
+      return open();
+    } catch (const WorkStopped&) {
+#ifdef __GLIBC__
+      ::malloc_trim(0);
+#endif
+      throw;
+    }
+  });
+}
+
+void Opening::stop() {
+  std::erase_if(stopped_, [](const auto& ended) { return ended.wait_for(0s) == std::future_status::ready; });
+  if (!result_.valid()) return;
+  work_->stopped = true;
+  stopped_.push_back(std::move(result_));
 }
 
 Simulation::Simulation(OpenedScan opened, const Pose& X_WT, const Holder& holder_,
                        const std::string& command_line_, std::optional<AutosaveFile> autosave_file)
-    : scan_name(std::move(opened.name)),
+    : scan(std::move(opened.scan)),
       command_line(command_line_),
-      first_isovalue(opened.milling.session->volume().isovalue()),
-      isovalue_from(std::move(opened.isovalue_from)),
-      unit(std::move(opened.unit)),
-      histogram(opened.histogram),
-      boundaries(std::move(opened.boundaries)),
-      grey_window(opened.grey_window),
       holder(holder_),
       hand(handle_settings(opened.milling.session->setup()), pointing_hand(), X_WT),
       device(take_tool(opened.milling.session->setup(), opened.milling.session->volume(), X_WT)),
       milling(std::move(opened.milling), device),
-      autosave(std::move(opened.scan), std::move(autosave_file)),
-      labels(std::move(opened.labels)),
-      label_count(labels) {
+      autosave(scan.source, std::move(autosave_file)),
+      label_count(scan.labels) {
   milling.start();
   // What is drawn and pulled begins at the tool, so its first tick is waited for.
   while (history.empty() && milling.running()) {
@@ -91,7 +108,7 @@ Device& Simulation::take_tool(const MillingSetup& setup, const Volume& bone, con
 }
 
 RunDescription Simulation::describe() const {
-  RunDescription run = milling.describe(scan_name, command_line);
+  RunDescription run = milling.describe(scan.name, command_line);
   describe_device(run, holder.name, holder.hardware);
   return run;
 }
@@ -113,7 +130,6 @@ void Simulation::update() {
 
 // Goes through every voxel.
 void Simulation::look_for_warnings() {
-  using namespace std::chrono_literals;
   if (warnings_to_come_.valid()) {
     if (warnings_to_come_.wait_for(0s) == std::future_status::ready) warnings = warnings_to_come_.get();
   } else if (const double isovalue = milling.isovalue(); isovalue != isovalue_looked_at_) {
@@ -131,7 +147,7 @@ void Simulation::count_labels() {
   constexpr auto kEvery = std::chrono::milliseconds(500);
   const auto now = std::chrono::steady_clock::now();
   const std::uint64_t version = milling.bone_version();
-  if (!labels || version == counted_version_ || now - counted_ < kEvery) return;
+  if (!scan.labels || version == counted_version_ || now - counted_ < kEvery) return;
   removed_by_label_mm3 = milling.removed_by_label();
   counted_version_ = version;
   counted_ = now;

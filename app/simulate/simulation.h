@@ -1,7 +1,9 @@
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <deque>
+#include <functional>
 #include <future>
 #include <memory>
 #include <optional>
@@ -22,18 +24,26 @@
 
 namespace osteomill::app {
 
-/// A scan made ready for milling, and what the window shows of it beside its surface.
-struct OpenedScan {
+/// A scan that is open, and what the window shows of it beside its surface.
+struct OpenScan {
   std::string name;
-  ScanOptions scan;
-  /// Where its isovalue came from, half a sentence, and "HU" where that is its unit.
+  ScanOptions source;
+  /// The isovalue it was opened with, where that came from, half a sentence, and " HU" where that is its
+  /// unit.
+  double isovalue;
   std::string isovalue_from;
   std::string unit;
   BoneBox box;
   DensityHistogram histogram;
   std::vector<Boundary> boundaries;
   WindowLevel grey_window;
+  /// Null where the bone has none.
   std::shared_ptr<const LabelMap> labels;
+};
+
+/// Made ready for milling.
+struct OpenedScan {
+  OpenScan scan;
   PreparedMilling milling;
 };
 
@@ -41,6 +51,36 @@ struct OpenedScan {
 /// Throws InputError as `load_bone` does and where `milled` is of another scan, and std::invalid_argument for
 /// settings out of range.
 OpenedScan open_for_milling(const ScanOptions& scan, const MillingSetup& setup, const SessionStart& milled);
+
+/// A scan that is being opened on a thread of its own, and can be stopped. What was stopped ends by itself
+/// within about a tenth of a second and gives its memory back; only the end of this object waits for it.
+class Opening {
+ public:
+  Opening() = default;
+  ~Opening() { stop(); }
+  Opening(const Opening&) = delete;
+  Opening& operator=(const Opening&) = delete;
+
+  /// Stops what is being opened, and begins another.
+  void begin(std::function<OpenedScan()> open);
+  void stop();
+
+  bool valid() const { return result_.valid(); }
+  std::future_status wait_for(std::chrono::milliseconds time) const { return result_.wait_for(time); }
+  /// Once. Throws what opening threw.
+  OpenedScan get() { return result_.get(); }
+  /// Of all that opening does.
+  double share_done() const { return work_ ? work_->share_done.load() : 0; }
+
+ private:
+  struct Work {
+    std::atomic<double> share_done = 0;
+    std::atomic<bool> stopped = false;
+  };
+  std::shared_ptr<Work> work_;
+  std::future<OpenedScan> result_;
+  std::vector<std::future<OpenedScan>> stopped_;
+};
 
 /// Who holds the tool: hardware, which outlives the simulation, or a hand without hardware of this name.
 struct Holder {
@@ -63,17 +103,10 @@ struct Simulation {
   /// What a recording that is begun now says of it.
   RunDescription describe() const;
 
-  std::string scan_name;
+  OpenScan scan;
   std::string command_line;
-  /// The one it was opened with.
-  double first_isovalue;
-  std::string isovalue_from;
-  std::string unit;
   /// What a user of the isovalue should know (isovalue_warnings).
   std::vector<std::string> warnings;
-  DensityHistogram histogram;
-  std::vector<Boundary> boundaries;
-  WindowLevel grey_window;
   Holder holder;
   /// Pulled where the pointer is, where it is a pointer that moves the tool.
   VirtualHand hand;
@@ -82,9 +115,7 @@ struct Simulation {
   Device& device;
   LiveMilling milling;
   Autosave autosave;
-  /// Null where the bone has none.
-  std::shared_ptr<const LabelMap> labels;
-  /// What the burr met of them, and how much of each has gone (LiveMilling::removed_by_label).
+  /// What the burr met of the labels, and how much of each has gone (LiveMilling::removed_by_label).
   LabelCount label_count;
   std::vector<double> removed_by_label_mm3;
   /// What to tell of the no-go contact that began last.

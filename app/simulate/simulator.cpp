@@ -14,11 +14,8 @@
 #include <utility>
 #include <vector>
 
-#include "app/simulate/cuts.h"
 #include "app/simulate/files_panel.h"
-#include "app/simulate/opening.h"
 #include "app/simulate/panels.h"
-#include "app/simulate/pointer.h"
 #include "app/simulate/scene_of.h"
 #include "app/simulate/screen_scale.h"
 #include "app/simulate/simulation.h"
@@ -281,14 +278,14 @@ class Simulator {
   void take_scan() {
     OpenedScan opened = std::move(*opened_);
     opened_.reset();
+    const OpenScan& scan = opened.scan;
     if (simulation_) {
       files_.end_recording(view_, *simulation_);
       simulation_->autosave.discard();
       view_.wanted_is_new = view_.changes != changes_before_;
-      options_.command_line += " # then opened in the window: " + opened.name;
-      view_.message =
-          fmt::format("Opened {}: isovalue {:.4g}{}, {}", opened.name,
-                      opened.milling.session->volume().isovalue(), opened.unit, opened.isovalue_from);
+      options_.command_line += " # then opened in the window: " + scan.name;
+      view_.message = fmt::format("Opened {}: isovalue {:.4g}{}, {}", scan.name, scan.isovalue, scan.unit,
+                                  scan.isovalue_from);
       view_.result.clear();
       sender_.reset();
       simulation_.reset();
@@ -296,10 +293,10 @@ class Simulator {
       view_.wanted = opened.milling.session->setup();
       view_.help = view_.help && first_time_of_help();
     }
-    options_.scan = opened_scan_;
+    options_.scan = scan.source;
     const PixelSize size = window_.size();
-    view_.box = opened.box;
-    window_.set_title(std::filesystem::path(opened.name).filename().string() + " - osteomill");
+    view_.box = scan.box;
+    window_.set_title(std::filesystem::path(scan.name).filename().string() + " - osteomill");
     view_.camera = first_camera(view_.box, size);
     const Volume& bone = opened.milling.session->volume();
     // Before its upper half, so that the shaft leaves the bone in sight.
@@ -332,8 +329,8 @@ class Simulator {
     reset_cuts(view_);
     cuts_ = {};
     to_draw_.clear();
-    renderer_ =
-        std::make_unique<SceneRenderer>(milling.surface_layout(), milling.geometry(), simulation_->labels);
+    renderer_ = std::make_unique<SceneRenderer>(milling.surface_layout(), milling.geometry(),
+                                                simulation_->scan.labels);
   }
 
   void wait_for_scan() {
@@ -481,7 +478,7 @@ class Simulator {
         "p99 {:.0f} us, force {:.2f} N, removed {:.3f} mm³, {} cuts, scan {}\n",
         text, rate_.per_s(), 1e3 * cpu_s / std::max(pictures_since_said_, 1), renderer_->triangle_count(),
         timing.ticks_per_s, timing.late_ticks, timing.step.p99_us, record.wrench.force_N.norm(),
-        record.removed_mm3, simulation_->milling.cuts(), simulation_->scan_name);
+        record.removed_mm3, simulation_->milling.cuts(), simulation_->scan.name);
     for (const std::string& complaint : view_.dialogues.complaints()) fmt::print("dialogue: {}\n", complaint);
     std::fflush(stdout);
     said_cpu_ = std::clock();

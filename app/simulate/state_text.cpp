@@ -97,9 +97,9 @@ std::optional<double> stiffness_of(const MillingSetup& setup) {
 }
 
 std::string isovalue_text(const Simulation& simulation) {
-  if (simulation.milling.isovalue() == simulation.first_isovalue) return simulation.isovalue_from;
-  return fmt::format("set here; first {:.4g}{}, {}", simulation.first_isovalue, simulation.unit,
-                     simulation.isovalue_from);
+  if (simulation.milling.isovalue() == simulation.scan.isovalue) return simulation.scan.isovalue_from;
+  return fmt::format("set here; first {:.4g}{}, {}", simulation.scan.isovalue, simulation.scan.unit,
+                     simulation.scan.isovalue_from);
 }
 
 std::string state_text(const std::string& name, const ViewState& view, Simulation& simulation,
@@ -136,7 +136,7 @@ std::string state_text(const std::string& name, const ViewState& view, Simulatio
   const auto recording_s = files.recording_s(simulation);
   lines.add("badge", recording_s ? recording_text(*recording_s) : "");
   lines.add("last_recording", files.last_recording().string());
-  lines.add("scan", simulation.scan_name);
+  lines.add("scan", simulation.scan.name);
   lines.add("help", view.help);
   lines.add("message", view.message);
   lines.add("dialogue", view.dialogues.shown() != nullptr ? view.dialogues.shown()->text : "");

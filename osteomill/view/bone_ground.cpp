@@ -5,12 +5,17 @@
 #include <numbers>
 #include <utility>
 
-#include "osteomill/view/depth_tiles.h"
-#include "osteomill/view/shaders.h"
-
 namespace osteomill {
 
 namespace {
+
+constexpr std::string_view kBackgroundFragment = R"(#version 330 core
+in vec2 place;
+out vec4 colour;
+void main() {
+  colour = vec4(mix(vec3(0.075, 0.085, 0.105), vec3(0.20, 0.23, 0.28), place.y), 1.0);
+}
+)";
 
 using Clock = std::chrono::steady_clock;
 
@@ -73,7 +78,7 @@ void clear_depths(const FrameTarget& target) {
 BoneGround::BoneGround(const SurfaceBricks& layout, const GridGeometry& geometry,
                        std::shared_ptr<const LabelMap> labels)
     : bone_(layout, geometry, std::move(labels)),
-      background_(gl::make_program(shaders::kScreenVertex, shaders::kBackgroundFragment)),
+      background_(gl::make_screen_program(kBackgroundFragment)),
       nothing_(gl::make_vertex_array()) {}
 
 void BoneGround::set_brick(std::size_t brick, const BrickMesh& mesh, const BrickLevels& levels) {

@@ -10,7 +10,6 @@
 #include "osteomill/view/bone_layer.h"
 #include "osteomill/view/cavity_pass.h"
 #include "osteomill/view/clip_faces.h"
-#include "osteomill/view/frame_target.h"
 #include "osteomill/volume/label_map.h"
 
 namespace osteomill {

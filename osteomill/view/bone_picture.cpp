@@ -10,8 +10,6 @@
 #include "osteomill/view/annotations.h"
 #include "osteomill/view/bone_layer.h"
 #include "osteomill/view/cavity_pass.h"
-#include "osteomill/view/depth_tiles.h"
-#include "osteomill/view/frame_target.h"
 #include "osteomill/view/offscreen_context.h"
 #include "osteomill/volume/sampling.h"
 

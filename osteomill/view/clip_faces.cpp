@@ -2,11 +2,35 @@
 
 #include <vector>
 
-#include "osteomill/view/shaders.h"
-
 namespace osteomill {
 
 namespace {
+
+constexpr std::string_view kCutVertex = R"(#version 330 core
+layout(location = 0) in vec3 position_W;
+layout(location = 1) in vec2 place_on_cut;
+uniform mat4 camera_from_world;
+uniform mat4 clip_from_camera;
+uniform vec4 cuts[4];
+out float gl_ClipDistance[4];
+out vec2 place;
+void main() {
+  gl_Position = clip_from_camera * (camera_from_world * vec4(position_W, 1.0));
+  place = place_on_cut;
+  for (int n = 0; n < 4; ++n) gl_ClipDistance[n] = dot(cuts[n].xyz, position_W) - cuts[n].w;
+}
+)";
+
+// Grey values, or labels' colours; what is as dark as air lets the view through.
+constexpr std::string_view kCutFragment = R"(#version 330 core
+in vec2 place;
+uniform sampler2D pixels;
+out vec4 colour;
+void main() {
+  colour = vec4(texture(pixels, place).rgb, 1.0);
+  if (max(colour.r, max(colour.g, colour.b)) < 0.14) discard;
+}
+)";
 
 // A label's colour over its grey value, and never quite dark: a nerve's canal may be as dark as air.
 std::vector<std::array<unsigned char, 3>> pixels_of(const ClipFace& face) {
@@ -28,7 +52,7 @@ std::vector<std::array<unsigned char, 3>> pixels_of(const ClipFace& face) {
 
 }  // namespace
 
-ClipFaces::ClipFaces() : program_(gl::make_program(shaders::kCutVertex, shaders::kCutFragment)) {
+ClipFaces::ClipFaces() : program_(gl::make_program(kCutVertex, kCutFragment)) {
   for (Face& face : faces_) {
     face.vertex_array = gl::make_vertex_array();
     face.corners = gl::make_buffer();
@@ -55,22 +79,15 @@ void ClipFaces::set(std::size_t cut, const ClipFace& face) {
     corners[n] = {corner.x(), corner.y(), corner.z(), places[n][0], places[n][1]};
   }
   glBindVertexArray(kept.vertex_array.get());
-  glBindBuffer(GL_ARRAY_BUFFER, kept.corners.get());
-  glBufferData(GL_ARRAY_BUFFER, sizeof(corners), corners.data(), GL_DYNAMIC_DRAW);
-  glEnableVertexAttribArray(0);
-  glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(corners[0]), nullptr);
-  glEnableVertexAttribArray(1);
-  glVertexAttribPointer(1, 2, GL_FLOAT, GL_FALSE, sizeof(corners[0]),
-                        reinterpret_cast<const void*>(3 * sizeof(float)));
+  gl::fill<std::array<float, 5>>(GL_ARRAY_BUFFER, kept.corners, corners, GL_DYNAMIC_DRAW);
+  gl::set_attribute(0, 3, sizeof(corners[0]), 0);
+  gl::set_attribute(1, 2, sizeof(corners[0]), 3 * sizeof(float));
 }
 
 void ClipFaces::draw(const ViewScene& scene, const Projection& projection) const {
   const GLuint program = program_.get();
   glUseProgram(program);
-  glUniformMatrix4fv(glGetUniformLocation(program, "camera_from_world"), 1, GL_FALSE,
-                     projection.camera_from_world.data());
-  glUniformMatrix4fv(glGetUniformLocation(program, "clip_from_camera"), 1, GL_FALSE,
-                     projection.clip_from_camera.data());
+  set_projection(program, projection);
   glActiveTexture(GL_TEXTURE0);
   for (std::size_t n = 0; n < kMaxClipPlanes; ++n) {
     if (!scene.cuts[n] || faces_[n].pixels.get() == 0) continue;

@@ -3,13 +3,18 @@
 #include <optional>
 
 #include "osteomill/view/bone_ground.h"
-#include "osteomill/view/frame_target.h"
-#include "osteomill/view/shaders.h"
 #include "osteomill/view/solid_shapes.h"
 
 namespace osteomill {
 
 namespace {
+
+constexpr std::string_view kPictureFragment = R"(#version 330 core
+in vec2 place;
+uniform sampler2D picture;
+out vec4 colour;
+void main() { colour = texture(picture, place); }
+)";
 
 constexpr Colour kBurr{0.80f, 0.72f, 0.50f, 1};
 constexpr Colour kShaft{0.66f, 0.69f, 0.73f, 1};
@@ -76,7 +81,7 @@ struct SceneRenderer::Impl {
 
   BoneGround ground;
   SolidShapes shapes;
-  gl::Program to_window = gl::make_program(shaders::kScreenVertex, shaders::kPictureFragment);
+  gl::Program to_window = gl::make_screen_program(kPictureFragment);
   gl::VertexArray nothing = gl::make_vertex_array();
   std::optional<FrameTarget> target;
   PixelSize asked_size;

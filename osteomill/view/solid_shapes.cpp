@@ -3,11 +3,36 @@
 #include <cmath>
 #include <numbers>
 
-#include "osteomill/view/shaders.h"
-
 namespace osteomill {
 
 namespace {
+
+constexpr std::string_view kSolidVertex = R"(#version 330 core
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 normal;
+uniform mat4 camera_from_shape;
+uniform mat3 normal_from_shape;
+uniform mat4 clip_from_camera;
+out vec3 normal_C;
+void main() {
+  gl_Position = clip_from_camera * (camera_from_shape * vec4(position, 1.0));
+  normal_C = normal_from_shape * normal;
+}
+)";
+
+constexpr std::string_view kSolidFragment = R"(#version 330 core
+in vec3 normal_C;
+uniform vec4 base;
+uniform float gloss;
+out vec4 colour;
+void main() {
+  vec3 n = normalize(normal_C);
+  vec3 towards_light = normalize(vec3(-0.45, 0.60, 0.66));
+  float light = 0.50 + 0.10 * n.y + 0.50 * max(dot(n, towards_light), 0.0);
+  float shine = gloss * pow(max(dot(n, normalize(towards_light + vec3(0.0, 0.0, 1.0))), 0.0), 40.0);
+  colour = vec4(base.rgb * light + shine, base.a);
+}
+)";
 
 constexpr int kSides = 32;
 constexpr int kRings = 16;
@@ -39,18 +64,13 @@ SolidShapes::Shape SolidShapes::turned(const std::vector<std::array<float, 4>>& 
   }
   Shape shape{gl::make_vertex_array(), gl::make_buffer(), static_cast<GLsizei>(corners.size() / 6)};
   glBindVertexArray(shape.vertex_array.get());
-  glBindBuffer(GL_ARRAY_BUFFER, shape.vertices.get());
-  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(corners.size() * sizeof(float)), corners.data(),
-               GL_STATIC_DRAW);
-  for (GLuint place = 0; place < 2; ++place) {
-    glEnableVertexAttribArray(place);
-    glVertexAttribPointer(place, 3, GL_FLOAT, GL_FALSE, 6 * sizeof(float),
-                          reinterpret_cast<const void*>(place * 3 * sizeof(float)));
-  }
+  gl::fill<float>(GL_ARRAY_BUFFER, shape.vertices, corners, GL_STATIC_DRAW);
+  gl::set_attribute(0, 3, 6 * sizeof(float), 0);
+  gl::set_attribute(1, 3, 6 * sizeof(float), 3 * sizeof(float));
   return shape;
 }
 
-SolidShapes::SolidShapes() : program_(gl::make_program(shaders::kSolidVertex, shaders::kSolidFragment)) {
+SolidShapes::SolidShapes() : program_(gl::make_program(kSolidVertex, kSolidFragment)) {
   std::vector<std::array<float, 4>> round;
   for (int ring = 0; ring < kRings; ++ring) {
     for (const int end : {ring, ring + 1}) {
