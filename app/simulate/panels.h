@@ -20,15 +20,13 @@ struct Room {
   float bottom_px;
 };
 
-/// The right column: everything that is measured. Returns where the next thing below has room.
+/// The right column: everything that is measured, and where hardware holds the tool, how that is. Returns
+/// where the next thing below has room.
 float draw_readings(ViewState& view, Simulation& simulation, double pictures_per_s, const PixelSize& size);
-
-/// Part of it where hardware holds the tool: how the device is, and how it stands before the operator.
-void draw_device(ViewState& view, ConnectedDevice& device);
 
 /// Below it, where the bone has labels: a legend, and how much of each was removed; what has no room is
 /// scrolled to.
-float draw_labels(ViewState& view, const Simulation& simulation, const PixelSize& size, const Room& room);
+float draw_labels(ViewState& view, const Simulation& simulation, const Room& room);
 
 /// Below all of that, until it is sent away: how everything is done.
 void draw_help(ViewState& view, const PixelSize& size, const Room& room);

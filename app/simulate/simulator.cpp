@@ -380,7 +380,7 @@ class Simulator {
     draw_controls(view_, *simulation_, files_, size);
     const float bottom_px = files_.draw_said(view_, *simulation_, size);
     float top_px = draw_readings(view_, *simulation_, rate_.per_s(), size);
-    top_px = draw_labels(view_, *simulation_, size, {top_px, bottom_px});
+    top_px = draw_labels(view_, *simulation_, {top_px, bottom_px});
     draw_help(view_, size, {top_px, bottom_px});
     if (opening_.valid()) draw_opening();
     if (const auto recording_s = files_.recording_s(*simulation_)) draw_recording(*recording_s, size);
@@ -423,14 +423,7 @@ class Simulator {
   void save_picture() {
     try {
       Image picture = this->picture(view_.camera);
-      const double scale = window_.ui_scale();
-      const PixelSize usual{static_cast<int>(picture.width / scale),
-                            static_cast<int>(picture.height / scale)};
-      draw_annotation(picture, scale_bar_annotation(view_.camera, usual), kInkOnDark, scale);
-      if (!options_.scan.scan.empty()) {
-        for (const Annotation& letter : orientation_letters(view_.camera, usual))
-          draw_annotation(picture, letter, kInkOnDark, scale);
-      }
+      annotate(picture, view_.camera, !options_.scan.scan.empty(), kInkOnDark, window_.ui_scale());
       create_folder(options_.folder);
       const auto path = files_.name("picture.png");
       write_png(path, picture);

@@ -45,6 +45,18 @@ bool remember(const char* label, bool acted) {
 
 }  // namespace
 
+void begin_right(const char* title, float y_px, ImGuiWindowFlags flags) {
+  ImGui::SetNextWindowPos({ImGui::GetIO().DisplaySize.x - px(kRightWidth_px + 8), y_px});
+  ImGui::SetNextWindowSize({px(kRightWidth_px), 0});
+  ImGui::Begin(title, nullptr, flags | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize);
+}
+
+float end_right() {
+  const float below_px = ImGui::GetWindowPos().y + ImGui::GetWindowSize().y + px(8);
+  ImGui::End();
+  return below_px;
+}
+
 bool button(const char* label, bool enabled) {
   if (!enabled) ImGui::BeginDisabled();
   const bool pressed = remember(label, ImGui::Button(label) && enabled);

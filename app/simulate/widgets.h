@@ -30,6 +30,11 @@ inline constexpr float kRightWidth_px = 250;
 /// The colour of what is not as it should be.
 inline const ImVec4 kWarning{1.0f, 0.72f, 0.25f, 1};
 
+/// Begins a panel of the right column, with its upper edge at `y_px`.
+void begin_right(const char* title, float y_px, ImGuiWindowFlags flags = 0);
+/// Ends it. Returns where the next one below has room.
+float end_right();
+
 bool button(const char* label, bool enabled = true);
 bool checkbox(const char* label, bool* value);
 bool radio(const char* label, bool chosen);

@@ -195,12 +195,7 @@ Image bone_picture(const Volume& bone, double reference_density, const Camera& c
   BonePainter painter(bone, scene, {kFiner * size.width, kFiner * size.height});
   Image image = averaged_down(painter.paint(), kFiner);
   const double scale = std::max(1.0, size.height / kAnnotatedHeight_px);
-  const PixelSize annotated{static_cast<int>(size.width / scale), static_cast<int>(size.height / scale)};
-  draw_annotation(image, scale_bar_annotation(camera, annotated), kInkOnLight, scale);
-  if (of_patient) {
-    for (const Annotation& letter : orientation_letters(camera, annotated))
-      draw_annotation(image, letter, kInkOnLight, scale);
-  }
+  annotate(image, camera, of_patient, kInkOnLight, scale);
   return image;
 }
 
