@@ -132,7 +132,7 @@ TEST_F(ChangedRecording, ADescriptionOfWhatCannotBeIsRefused) {
     const std::string sound = bytes_of(path_);
     change([&](hid_t file) {
       H5Adelete(file, name);
-      AttributeWriter(path_, file).reals(name, values);
+      Attributes(path_, file).put_reals(name, values);
     });
     expect_refused(path_, reason);
     write_bytes(path_, sound);
@@ -148,7 +148,7 @@ TEST_F(ChangedRecording, ADescriptionOfWhatCannotBeIsRefused) {
   reals("tick_period_s", {0}, "'tick_period_s' is not a positive number");
   change([this](hid_t file) {
     H5Adelete(file, "dims");
-    AttributeWriter(path_, file).put("dims", std::array{16, 0, 16});
+    Attributes(path_, file).put("dims", std::array{16, 0, 16});
   });
   expect_refused(path_, "'dims' is no size of a scan");
 }
@@ -211,7 +211,7 @@ TEST_F(ChangedRecording, NothingIsReadFromAnotherFile) {
 TEST_F(ChangedRecording, AColourThatIsNoneIsRefused) {
   change([this](hid_t file) {
     H5Adelete(file, "algorithm_colour");
-    AttributeWriter(path_, file).put("algorithm_colour", "red'; system 'ls");
+    Attributes(path_, file).put("algorithm_colour", "red'; system 'ls");
   });
   expect_refused(path_, "colour that cannot be used");
 }
