@@ -1,12 +1,21 @@
 #pragma once
 
+#include <atomic>
+#include <condition_variable>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
+#include <shared_mutex>
+#include <thread>
 #include <vector>
 
+#include "osteomill/live/cut_history.h"
+#include "osteomill/live/density_handover.h"
 #include "osteomill/surface/surface_bricks.h"
 #include "osteomill/surface/surface_upkeep.h"
 #include "osteomill/volume/densities.h"
@@ -42,7 +51,7 @@ class BoneFollower {
   /// copies at most a few bricks of 2 KiB, and never waits, allocates or throws.
   void bone_changed(const Volume& bone, const VolumeChange& change) noexcept;
 
-  const SurfaceBricks& layout() const;
+  const SurfaceBricks& layout() const { return layout_; }
   /// What changed of the surface since the last call, each brick once, as it is now; in the order of the
   /// bricks. The first call that brings anything brings the whole surface. For one drawing thread; never
   /// waits for meshing.
@@ -54,7 +63,7 @@ class BoneFollower {
   /// Lets `use` read the bone as last handed over, some ticks behind; nothing is taken over meanwhile.
   void read(const std::function<void(const Volume&)>& use) const;
   /// Grows with every change of what is read.
-  std::uint64_t version() const;
+  std::uint64_t version() const { return version_.load(std::memory_order_acquire); }
 
   /// What comes from now on belongs to another cut; `removed_mm3` is what had been removed before it.
   void begin_cut(double removed_mm3);
@@ -93,8 +102,43 @@ class BoneFollower {
   void give_up();
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  void keep_up();
+  void follow(const std::optional<double>& isovalue);
+  void mesh();
+  void take_over();
+  bool put(DensityBlock& brick);
+  void put_differing();
+  NextBone without(CutHistory::Taken cuts);
+
+  DensityHandover handover_;
+  const SurfaceBricks layout_;
+  // What the drawing thread has not taken yet, each brick once.
+  std::mutex published_mutex_;
+  std::map<std::size_t, ChangedBrick> published_;
+  std::atomic<std::uint64_t> version_{1};
+
+  // Never taken by the haptic thread. Whoever writes holds it alone: into the copy or what goes with it, or
+  // receives from the haptic thread.
+  mutable std::shared_mutex bone_mutex_;
+  // Milled by the haptic thread, which alone reads and writes its densities.
+  std::shared_ptr<Volume> bone_;
+  std::shared_ptr<Volume> copy_;
+  VoxelBox arrived_;  // since the thread last looked
+  CutHistory history_;
+  SurfaceUpkeep upkeep_;
+  double shown_isovalue_;
+  // While the copy is to become the bone: how the two differ.
+  std::vector<DensityBlock> differing_;
+  std::optional<CutHistory::Taken> taken_;
+  double isovalue_before_ = 0;
+  // The most that a voxel milled empty may have kept.
+  float emptied_ = std::numeric_limits<float>::lowest();
+
+  std::mutex mutex_;
+  std::condition_variable woken_;
+  std::optional<double> new_isovalue_;
+  std::atomic<bool> stopping_ = false;
+  std::thread mesher_;
 };
 
 }  // namespace osteomill
