@@ -6,7 +6,6 @@
 
 #include "app/simulate/panels.h"
 #include "app/simulate/scene_of.h"
-#include "app/simulate/state_text.h"
 #include "app/simulate/widgets.h"
 #include <fmt/core.h>
 #include <imgui.h>
@@ -23,7 +22,7 @@ bool settle(const char* label, double& value, float min, float max, const char* 
   if (ui::slider(label, &shown, min, max, format, ImGuiSliderFlags_AlwaysClamp)) {
     value = static_cast<double>(shown);
   }
-  return ui::released();
+  return ImGui::IsItemDeactivatedAfterEdit();
 }
 
 // Its end, which tells one scan from another, where there is no room for all of it.
@@ -97,7 +96,7 @@ void draw_session(ViewState& view, LiveMilling& milling, bool by_pointer) {
   bool spindle = milling.spindle_asked() || milling.state().spindle_on;
   if (ui::checkbox("spindle on", &spindle)) milling.set_spindle(spindle);
   ImGui::SameLine();
-  bool paused = milling.state().paused;
+  bool paused = milling.state().record.paused;
   if (ui::checkbox("pause", &paused)) milling.set_paused(paused);
   if (by_pointer) {
     ImGui::SameLine();
@@ -106,13 +105,13 @@ void draw_session(ViewState& view, LiveMilling& milling, bool by_pointer) {
     }
   }
   const bool free = !milling.preparing();
-  if (ui::button("Undo cut", free && milling.cuts() > 0)) milling.undo();
+  if (ui::button("Undo cut", free && milling.follower().cuts() > 0)) milling.undo();
   ui::hint(
       "Puts back what was milled since the spindle was last switched on (up to 256 MB of cuts are kept)");
   ImGui::SameLine();
-  if (ui::button("Reset bone", free && milling.touched())) view.reset_asked = true;
+  if (ui::button("Reset bone", free && milling.follower().touched())) view.reset_asked = true;
   ImGui::SameLine();
-  const auto cuts = static_cast<int>(milling.cuts());
+  const auto cuts = static_cast<int>(milling.follower().cuts());
   ImGui::TextDisabled(cuts == 1 ? "%d cut" : "%d cuts", cuts);
 }
 
@@ -154,7 +153,8 @@ void draw_isovalue(ViewState& view, Simulation& simulation) {
     milling.show_isovalue(static_cast<double>(isovalue));
   }
   const bool moved = ImGui::IsItemActive();
-  if (ui::released() && view.isovalue) milling.change_isovalue(static_cast<double>(*view.isovalue));
+  if (ImGui::IsItemDeactivatedAfterEdit() && view.isovalue)
+    milling.change_isovalue(static_cast<double>(*view.isovalue));
   ui::hint("What is denser than this is bone. Drag, or hold Ctrl and click to type a number");
   ImGui::EndDisabled();
   if (!moved && !milling.preparing()) view.isovalue.reset();
@@ -176,7 +176,8 @@ void draw_cuts(ViewState& view, Simulation& simulation) {
     if (cut.on) {
       ImGui::SameLine(ui::px(100));
       ui::checkbox("other side", &cut.other_side);
-      const auto extent = extent_along(simulation.milling.geometry(), cut.normal_W);
+      const GridGeometry& grid = simulation.milling.geometry();
+      const auto extent = extent_along(corners_W(grid, grid.all_voxels()), cut.normal_W);
       ui::slider((std::string(kCutNames[n]) + " place").c_str(), &cut.offset_mm,
                  static_cast<float>(extent[0]), static_cast<float>(extent[1]), "%.1f mm");
     }

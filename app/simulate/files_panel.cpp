@@ -115,9 +115,9 @@ void FilesPanel::save_scan(ViewState& view, Simulation& simulation) {
   attempt(view, [&] {
     DensityGrid grid;
     std::uint64_t version = 0;
-    simulation.milling.read_bone([&](const Volume& bone) {
+    simulation.milling.follower().read([&](const Volume& bone) {
       grid = bone.grid();
-      version = simulation.milling.bone_version();
+      version = simulation.milling.follower().version();
     });
     begin(name("milled.nrrd"), [grid = std::move(grid)](const fs::path& path) { write_nrrd(path, grid); });
     saving_version_ = version;
@@ -199,7 +199,8 @@ void FilesPanel::draw(ViewState& view, Simulation& simulation) {
   if (ui::button("Save surface", free)) {
     attempt(view, [&] {
       BrickMesh mesh;
-      simulation.milling.read_bone([&](const Volume& bone) { mesh = mesh_in_one_piece(DensityView(bone)); });
+      simulation.milling.follower().read(
+          [&](const Volume& bone) { mesh = mesh_in_one_piece(DensityView(bone)); });
       begin(name("surface.ply"), [mesh = std::move(mesh), labels = simulation.scan.labels](
                                      const fs::path& path) { write_mesh(path, mesh, labels.get()); });
     });

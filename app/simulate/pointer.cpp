@@ -133,10 +133,10 @@ void take_keys(ViewState& view, LiveMilling& milling, bool by_pointer) {
   if (pressed(GLFW_KEY_T) && by_pointer) view.holding_tool = !view.holding_tool;
   if (pressed(GLFW_KEY_ESCAPE)) view.holding_tool = false;
   if (pressed(GLFW_KEY_SPACE)) milling.set_spindle(!milling.spindle_asked());
-  if (pressed(GLFW_KEY_P)) milling.set_paused(!milling.state().paused);
+  if (pressed(GLFW_KEY_P)) milling.set_paused(!milling.state().record.paused);
   if (pressed(GLFW_KEY_F1)) view.help = !view.help;
   if (pressed(GLFW_KEY_F11)) view.full_screen_asked = true;
-  if (io.KeyCtrl && pressed(GLFW_KEY_Z) && milling.cuts() > 0) milling.undo();
+  if (io.KeyCtrl && pressed(GLFW_KEY_Z) && milling.follower().cuts() > 0) milling.undo();
 }
 
 // Before the bone that is seen at the pixel, if there is any, or else in the middle.
@@ -145,7 +145,7 @@ void bring_tool(ViewState& view, Simulation& simulation, const PixelSize& size,
   LiveMilling& milling = simulation.milling;
   const MillingTool& tool = milling.setup().tool;
   milling.set_spindle(false);
-  milling.read_bone([&](const Volume& bone) {
+  milling.follower().read([&](const Volume& bone) {
     if (pixel) view.X_W_brought = tool_before(bone, tool, view.camera, size, pixel->x(), pixel->y());
     if (!view.X_W_brought) view.X_W_brought = tool_before_middle(bone, tool, view.camera, size);
   });
@@ -223,7 +223,7 @@ void free_tool(ViewState& view, Simulation& simulation, const PixelSize& size) {
   core.burr_radius_mm *= 0.5;
   core.shaft_radius_mm *= 0.5;
   bool free = true;
-  simulation.milling.read_bone([&](const Volume& bone) { free = tool_is_free(bone, core, X_WT); });
+  simulation.milling.follower().read([&](const Volume& bone) { free = tool_is_free(bone, core, X_WT); });
   if (!free) bring_tool(view, simulation, size, pixel_of(view.camera, size, X_WT.position_mm));
 }
 

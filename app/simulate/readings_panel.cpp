@@ -263,19 +263,13 @@ float draw_labels(ViewState& view, const Simulation& simulation, const Room& roo
   return ui::end_right();
 }
 
-void draw_no_go(Simulation& simulation, const PixelSize& size) {
+void draw_no_go(Simulation& simulation) {
   constexpr double kShown_s = 4;
   const double now_s = simulation.milling.state().record.time_s;
   const auto last_s = simulation.label_count.last_no_go_s();
   if (!last_s || now_s - *last_s > kShown_s) return;
-  const ImVec2 text_px = ImGui::CalcTextSize(simulation.no_go_text.c_str());
-  const float margin = 0.7f * text_px.y;
-  const ImVec2 place(0.5f * (static_cast<float>(size.width) - text_px.x), ui::px(48) + margin);
-  ImDrawList& list = *ImGui::GetForegroundDrawList();
-  list.AddRectFilled({place.x - 2 * margin, place.y - margin},
-                     {place.x + text_px.x + 2 * margin, place.y + text_px.y + margin},
-                     IM_COL32(190, 25, 25, 245), margin);
-  list.AddText(place, IM_COL32(255, 255, 255, 255), simulation.no_go_text.c_str());
+  const float margin_px = 0.7f * ImGui::GetTextLineHeight();
+  ui::badge(simulation.no_go_text, ui::px(48), margin_px, IM_COL32(190, 25, 25, 245), false);
 }
 
 }  // namespace osteomill::app

@@ -1,7 +1,6 @@
 #include "app/simulate/scene_of.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace osteomill::app {
 
@@ -14,10 +13,6 @@ constexpr int kMaxPixels = 320;
 // Nearer the ghost would only tint the tool.
 constexpr double kApart_mm = 0.03;
 constexpr double kApart_rad = 0.01;
-
-bool same(const ClipPlane& a, const ClipPlane& b) {
-  return a.normal_W == b.normal_W && a.offset_mm == b.offset_mm;
-}
 
 // The cut as a plane; its `other_side` turned round.
 ClipPlane plane_of(const ViewState::Cut& cut) {
@@ -37,10 +32,10 @@ void CutUpdates::update(const ViewState& view, const Simulation& simulation, Sce
     }
     const ClipPlane plane = plane_of(view.cuts[n]);
     const bool milled =
-        shown.bone_version != simulation.milling.bone_version() && pictures_ % kPicturesBetween == 0;
-    if (shown.on && same(shown.plane, plane) && shown.labels == view.labels && !milled) continue;
-    shown = {true, plane, view.labels, simulation.milling.bone_version()};
-    simulation.milling.read_bone([&](const Volume& bone) {
+        shown.bone_version != simulation.milling.follower().version() && pictures_ % kPicturesBetween == 0;
+    if (shown.on && shown.plane == plane && shown.labels == view.labels && !milled) continue;
+    shown = {true, plane, view.labels, simulation.milling.follower().version()};
+    simulation.milling.follower().read([&](const Volume& bone) {
       renderer.set_clip_face(n, clip_face(bone.grid(), plane, simulation.scan.grey_window, kMaxPixels,
                                           view.labels ? bone.labels().get() : nullptr));
     });
@@ -58,12 +53,7 @@ void reset_cuts(ViewState& view) {
 
 void begin_cut_at(const ViewState& view, ViewState::Cut& cut, const Vec3& tool_W) {
   constexpr double kLeast = 0.1;
-  double least_mm = std::numeric_limits<double>::infinity();
-  double most_mm = -least_mm;
-  for (const Vec3& corner_W : view.box.corners_W) {
-    least_mm = std::min(least_mm, cut.normal_W.dot(corner_W));
-    most_mm = std::max(most_mm, cut.normal_W.dot(corner_W));
-  }
+  const auto [least_mm, most_mm] = extent_along(view.box.corners_W, cut.normal_W);
   const double place_mm = cut.normal_W.dot(tool_W);
   cut.offset_mm = static_cast<float>(std::clamp(place_mm, least_mm, most_mm));
   // Beyond the bone, or near its end, it would leave nothing to be seen.

@@ -3,9 +3,7 @@
 #include <thread>
 #include <utility>
 
-#include "app/memory_limit.h"
 #include "app/progress.h"
-#include <malloc.h>
 
 #include "osteomill/files/input_error.h"
 #include "osteomill/numbers/work_progress.h"
@@ -49,33 +47,6 @@ OpenedScan open_for_milling(const ScanOptions& scan, const MillingSetup& setup, 
            loaded.in_hounsfield_units ? " HU" : "", box, histogram, std::move(boundaries), grey_window,
            bone->labels()},
           std::move(prepared)};
-}
-
-void Opening::begin(std::function<OpenedScan()> open) {
-  stop();
-  work_ = std::make_shared<Work>();
-  result_ = std::async(std::launch::async, [work = work_, open = std::move(open)] {
-    try {
-      const WorkProgress progress([&](double share) {
-        work->share_done = share;
-        if (work->stopped) throw WorkStopped();
-        check_memory_taken();
-      });
-      return open();
-    } catch (const WorkStopped&) {
-#ifdef __GLIBC__
-      ::malloc_trim(0);
-#endif
-      throw;
-    }
-  });
-}
-
-void Opening::stop() {
-  std::erase_if(stopped_, [](const auto& ended) { return ended.wait_for(0s) == std::future_status::ready; });
-  if (!result_.valid()) return;
-  work_->stopped = true;
-  stopped_.push_back(std::move(result_));
 }
 
 Simulation::Simulation(OpenedScan opened, const Pose& X_WT, const Holder& holder_,
@@ -136,7 +107,7 @@ void Simulation::look_for_warnings() {
     isovalue_looked_at_ = isovalue;
     warnings_to_come_ = std::async(std::launch::async, [this, isovalue] {
       std::vector<std::string> found;
-      milling.read_bone([&](const Volume& bone) { found = isovalue_warnings(bone.grid(), isovalue); });
+      milling.follower().read([&](const Volume& bone) { found = isovalue_warnings(bone.grid(), isovalue); });
       return found;
     });
   }
@@ -146,7 +117,7 @@ void Simulation::look_for_warnings() {
 void Simulation::count_labels() {
   constexpr auto kEvery = std::chrono::milliseconds(500);
   const auto now = std::chrono::steady_clock::now();
-  const std::uint64_t version = milling.bone_version();
+  const std::uint64_t version = milling.follower().version();
   if (!scan.labels || version == counted_version_ || now - counted_ < kEvery) return;
   removed_by_label_mm3 = milling.removed_by_label();
   counted_version_ = version;

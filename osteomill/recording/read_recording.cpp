@@ -301,36 +301,20 @@ bool holds_its_own_values(hid_t dataset) {
   return own;
 }
 
-// Groups may hold each other, so neither depth nor number ends by itself.
-struct LinkSearch {
-  int depth = 4;
-  int links = 100000;
+void require_nothing_elsewhere(const OpenRecording& recording) {
   std::string refused;
-
-  bool all_lead_within(hid_t group) {
-    if (depth == 0) return false;
-    --depth;
-    const herr_t ended = H5Literate(group, H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, look, this);
-    ++depth;
-    return ended == 0;
-  }
-  static herr_t look(hid_t group, const char* name, const H5L_info_t* link, void* search) {
-    auto& self = *static_cast<LinkSearch*>(search);
-    bool within = link->type == H5L_TYPE_HARD && --self.links > 0;
+  const auto look = [](hid_t group, const char* name, const H5L_info_t* link, void* found) -> herr_t {
+    bool within = link->type == H5L_TYPE_HARD;
     if (within) {
       const Hdf5Handle object(H5Oopen(group, name, H5P_DEFAULT), H5Oclose);
-      within = H5Iget_type(object.get()) == H5I_DATASET ? holds_its_own_values(object.get())
-                                                        : self.all_lead_within(object.get());
+      const H5I_type_t type = H5Iget_type(object.get());
+      within = type == H5I_GROUP || (type == H5I_DATASET && holds_its_own_values(object.get()));
     }
-    if (!within && self.refused.empty()) self.refused = name;
+    if (!within) *static_cast<std::string*>(found) = name;
     return within ? 0 : 1;
-  }
-};
-
-void require_nothing_elsewhere(const OpenRecording& recording) {
-  LinkSearch search;
-  if (!search.all_lead_within(recording.file.get()))
-    refuse(recording, "'" + search.refused + "' leads elsewhere, or needs a filter that is not HDF5's own");
+  };
+  if (H5Lvisit(recording.file.get(), H5_INDEX_NAME, H5_ITER_NATIVE, look, &refused) != 0)
+    refuse(recording, "'" + refused + "' leads elsewhere, or needs a filter that is not HDF5's own");
 }
 
 Recording read_open_file(const fs::path& path) {
@@ -431,6 +415,56 @@ bool is_hdf5(const fs::path& path) {
   const Hdf5Lock lock;
   std::error_code ignored;
   return fs::is_regular_file(path, ignored) && H5Fis_hdf5(path.c_str()) > 0;
+}
+
+namespace {
+
+bool is_run_alike(const RunDescription& a, const RunDescription& b) {
+  const auto settings = [](const RunDescription& run) {
+    std::vector<RunSetting> those = run.settings;
+    // Not what was set: how the program was called, and what the algorithm made of it.
+    std::erase_if(those, [](const RunSetting& setting) {
+      return setting.key == kCommandLineKey || setting.key == "sample_points";
+    });
+    return those;
+  };
+  return a.algorithm == b.algorithm && a.mode == b.mode && a.isovalue == b.isovalue && a.tool == b.tool &&
+         settings(a) == settings(b);
+}
+
+}  // namespace
+
+std::vector<Recording> in_stretches(Recording recording) {
+  std::vector<std::size_t> first{0};
+  const std::vector<RecordedSession>& sessions = recording.sessions;
+  for (std::size_t n = 1; n < sessions.size(); ++n) {
+    if (sessions[n].first > sessions[first.back()].first &&
+        !is_run_alike(sessions[n - 1].start.run, sessions[n].start.run))
+      first.push_back(n);
+  }
+  std::vector<Recording> stretches;
+  if (first.size() < 2) {
+    stretches.push_back(std::move(recording));
+    return stretches;
+  }
+  for (std::size_t n = 0; n < first.size(); ++n) {
+    const RecordedSession& begin = sessions[first[n]];
+    const bool last = n + 1 == first.size();
+    const std::size_t end = last ? recording.records.size() : sessions[first[n + 1]].first;
+    if (begin.first == end) continue;
+    Recording stretch{.path = recording.path, .description = begin.start.run};
+    stretch.description.phase = "part " + std::to_string(n + 1);
+    stretch.records.assign(recording.records.begin() + static_cast<std::ptrdiff_t>(begin.first),
+                           recording.records.begin() + static_cast<std::ptrdiff_t>(end));
+    stretch.complete = recording.complete;
+    stretch.dropped = n == 0 ? recording.dropped : 0;
+    stretches.push_back(std::move(stretch));
+  }
+  for (const RunPicture& picture : recording.pictures) {
+    Recording& shown = picture.name == kPictureBefore ? stretches.front() : stretches.back();
+    shown.pictures.push_back(picture);
+  }
+  return stretches;
 }
 
 }  // namespace osteomill

@@ -14,6 +14,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "osteomill/files/atomic_file.h"
 #include "osteomill/files/input_error.h"
 #include "osteomill/report/html.h"
 
@@ -189,10 +190,7 @@ Figure draw_figure(const FigureScript& script, const TemporaryFolder& work, cons
 }
 
 void write_figure_data(const fs::path& path, std::string_view bytes) {
-  std::ofstream out(path, std::ios::binary);
-  out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  out.close();
-  if (!out) throw InputError(path.string(), "cannot be written to its end (is the disk full?)");
+  write_text_atomically(path, [&](std::ostream& out) { out << bytes; });
 }
 
 std::vector<std::size_t> thin_out_curve(std::span<const double> values, std::size_t bins) {

@@ -1,7 +1,6 @@
 #include "osteomill/report/metrics.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 
 #include <fmt/format.h>

@@ -1,5 +1,3 @@
-#include "osteomill/report/run_figures.h"
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -7,6 +5,8 @@
 #include <numbers>
 
 #include <fmt/format.h>
+
+#include "osteomill/report/report_parts.h"
 
 namespace osteomill {
 

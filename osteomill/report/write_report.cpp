@@ -7,10 +7,8 @@
 #include <fmt/format.h>
 
 #include "osteomill/files/atomic_file.h"
-#include "osteomill/report/label_section.h"
 #include "osteomill/report/metric_table.h"
-#include "osteomill/report/run_figures.h"
-#include "osteomill/report/settings_table.h"
+#include "osteomill/report/report_parts.h"
 
 namespace osteomill {
 

@@ -115,6 +115,15 @@ bool may_be_seen(const std::array<Eigen::Vector4d, 6>& planes, const Sphere& sph
   });
 }
 
+template <typename Brick>
+std::vector<Brick> by_distance(std::vector<std::pair<double, Brick>> found) {
+  std::ranges::stable_sort(found, {}, &std::pair<double, Brick>::first);
+  std::vector<Brick> bricks;
+  bricks.reserve(found.size());
+  for (const auto& [distance, brick] : found) bricks.push_back(brick);
+  return bricks;
+}
+
 // The label's colour, of which the fourth channel says whether there is one.
 using LabelColour = std::array<std::uint8_t, 4>;
 
@@ -210,11 +219,7 @@ std::vector<std::size_t> bricks_in_view(const SurfaceBricks& layout, const GridG
     const Sphere bounds = bounding_sphere(geometry, layout.cells(brick));
     if (may_be_seen(planes, bounds)) found.emplace_back((bounds.centre_W - eye_W).squaredNorm(), brick);
   }
-  std::sort(found.begin(), found.end());
-  std::vector<std::size_t> bricks;
-  bricks.reserve(found.size());
-  for (const auto& [way, brick] : found) bricks.push_back(brick);
-  return bricks;
+  return by_distance(std::move(found));
 }
 
 DepthTiles::DepthTiles(const FrameTarget& target, const Projection& projection, const Camera& camera)
@@ -349,10 +354,7 @@ std::vector<SeenBrick> BoneLayer::seen(const ViewScene& scene, const Projection&
         geometry_.spacing_mm.maxCoeff() / mm_per_pixel(scene.camera, projection.size, front_mm);
     found.push_back({(brick.bounds.centre_W - eye_W).squaredNorm(), {n, 0, cell_px, sharp}});
   }
-  std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-  std::vector<SeenBrick> bricks;
-  bricks.reserve(found.size());
-  for (const auto& [way, brick] : found) bricks.push_back(brick);
+  std::vector<SeenBrick> bricks = by_distance(std::move(found));
   choose_levels(bricks, detail);
   return bricks;
 }

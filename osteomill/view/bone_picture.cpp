@@ -10,6 +10,7 @@
 #include "osteomill/view/annotations.h"
 #include "osteomill/view/bone_layer.h"
 #include "osteomill/view/cavity_pass.h"
+#include "osteomill/view/clip_face.h"
 #include "osteomill/view/offscreen_context.h"
 #include "osteomill/volume/sampling.h"
 
@@ -45,10 +46,7 @@ Extent extent_of_bone(const Volume& bone, const Camera& camera) {
   const GridGeometry& geometry = bone.geometry();
   Eigen::AlignedBox3d box;
   const auto take_in = [&](const VoxelBox& voxels) {
-    for (const int i : {voxels.first.i, voxels.last.i})
-      for (const int j : {voxels.first.j, voxels.last.j})
-        for (const int k : {voxels.first.k, voxels.last.k})
-          box.extend(axes.transpose() * geometry.world_from_voxel(VoxelIndex{i, j, k}));
+    for (const Vec3& corner_W : corners_W(geometry, voxels)) box.extend(axes.transpose() * corner_W);
   };
   for_each(geometry.all_voxels().bricks(BlockRanges::kBrickVoxels), [&](const VoxelIndex& brick) {
     if (static_cast<double>(bone.bricks().at(brick).max) > bone.isovalue())

@@ -10,11 +10,13 @@ namespace osteomill {
 struct PixelSize {
   int width = 0;
   int height = 0;
+  friend bool operator==(const PixelSize&, const PixelSize&) = default;
 };
 
 struct Sphere {
   Vec3 centre_W = Vec3::Zero();
   double radius_mm = 1;
+  friend bool operator==(const Sphere&, const Sphere&) = default;
 };
 
 /// A perspective view: from `focus_W`, in the middle of the picture, back by `distance_mm`.
@@ -31,6 +33,7 @@ struct Camera {
   Vec3 up_W() const { return orientation * Vec3::UnitY(); }
   Vec3 towards_viewer_W() const { return orientation * Vec3::UnitZ(); }
   Vec3 eye_W() const { return focus_W + distance_mm * towards_viewer_W(); }
+  friend bool operator==(const Camera&, const Camera&) = default;
 };
 
 /// Looks along `direction_W` at all of the sphere, with `up_W` up in the picture (not along the direction).
