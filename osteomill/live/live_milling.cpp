@@ -6,8 +6,8 @@
 
 #include "osteomill/files/input_error.h"
 #include "osteomill/numbers/work_progress.h"
-#include "osteomill/recording/describe_run.h"
 #include "osteomill/recording/recording.h"
+#include "osteomill/recording/run_description.h"
 #include "osteomill/volume/density_grid.h"
 
 namespace osteomill {

@@ -424,7 +424,7 @@ bool is_run_alike(const RunDescription& a, const RunDescription& b) {
     std::vector<RunSetting> those = run.settings;
     // Not what was set: how the program was called, and what the algorithm made of it.
     std::erase_if(those, [](const RunSetting& setting) {
-      return setting.key == kCommandLineKey || setting.key == "sample_points";
+      return setting.key == kCommandLineKey || setting.key == kSamplePointsKey;
     });
     return those;
   };

@@ -163,6 +163,14 @@ TEST_F(ChangedRecording, AForceThatNobodyHasIsRefused) {
   expect_refused(path_, "'force_x_N' holds 1e+300");
 }
 
+TEST_F(ChangedRecording, AGroupThatHoldsItselfIsRefusedAndNotFollowedForEver) {
+  change([](hid_t file) {
+    H5Ldelete(file, "pictures", H5P_DEFAULT);
+    H5Lcreate_hard(file, "/", file, "pictures", H5P_DEFAULT, H5P_DEFAULT);
+  });
+  expect_refused(path_, "has no column 'pictures/");
+}
+
 TEST_F(ChangedRecording, NothingIsReadFromAnotherFile) {
   const auto put = [this](const char* name, const std::function<void(hid_t file)>& how) {
     const std::string sound = bytes_of(path_);
@@ -181,7 +189,6 @@ TEST_F(ChangedRecording, NothingIsReadFromAnotherFile) {
   put("columns", [&](hid_t file) {
     H5Lcreate_external(other.c_str(), "columns", file, "columns", H5P_DEFAULT, H5P_DEFAULT);
   });
-  put("pictures", [](hid_t file) { H5Lcreate_hard(file, "/", file, "pictures", H5P_DEFAULT, H5P_DEFAULT); });
   const auto dataset = [&](const std::function<void(hid_t layout)>& lay_out) {
     put("columns/time_s", [&](hid_t file) {
       const hsize_t rows = 1500;

@@ -10,8 +10,8 @@
 #include "osteomill/files/input_error.h"
 #include "osteomill/milling/burr_mill.h"
 #include "osteomill/milling/cutting_reaction.h"
-#include "osteomill/recording/describe_run.h"
 #include "osteomill/recording/record_columns.h"
+#include "osteomill/recording/run_description.h"
 #include "osteomill/volume/density_grid.h"
 
 namespace osteomill {

@@ -10,9 +10,9 @@
 
 #include "osteomill/device/device.h"
 #include "osteomill/files/input_error.h"
-#include "osteomill/recording/describe_run.h"
 #include "osteomill/recording/recorder.h"
 #include "osteomill/recording/recording.h"
+#include "osteomill/recording/run_description.h"
 #include "osteomill/volume/density_grid.h"
 
 namespace osteomill {
