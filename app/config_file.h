@@ -1,7 +1,5 @@
 #pragma once
 
-#include <string>
-
 #include <CLI/App.hpp>
 
 namespace osteomill::app {

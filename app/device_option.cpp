@@ -7,7 +7,9 @@
 #include <fmt/core.h>
 
 #include "osteomill/device/hardware.h"
+#include "osteomill/device/space_mouse.h"
 #include "osteomill/device/workspace.h"
+#include "osteomill/files/input_error.h"
 
 namespace osteomill::app {
 
@@ -112,6 +114,8 @@ void add_send_options(CLI::App& command, SendOption& option) {
 
 std::unique_ptr<ConnectedDevice> open_device(const DeviceOption& option) {
   const HardwareKind* kind = hardware_named(name_in(option.device));
+  if (option.is(kSpaceMouse) && !SpaceMouse().present())
+    throw InputError("--device spacemouse", kNoSpaceMouse);
   if (kind == nullptr) return nullptr;
   const auto open = [kind, address = address_in(option.device)] { return kind->open(address); };
   auto device = std::make_unique<ConnectedDevice>(open);

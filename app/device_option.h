@@ -44,7 +44,7 @@ void add_send_options(CLI::App& command, SendOption& option);
 
 /// The haptic hardware that was asked for, its workspace as it was kept for it by its name, with what was
 /// given of it now, which is kept as well; says on standard error which device that is. Null for a hand
-/// without hardware. Throws InputError where the device cannot be had.
+/// without hardware. Throws InputError where the device, or what tells of a SpaceMouse, cannot be had.
 std::unique_ptr<ConnectedDevice> open_device(const DeviceOption& option);
 
 /// What a recording says of who held the tool.

@@ -81,9 +81,7 @@ class Holder {
  public:
   explicit Holder(const DeviceOption& option) : option_(option), hardware_(open_device(option)) {
     if (option.is(kMouse)) throw InputError("--device mouse", "needs the window: osteomill simulate");
-    if (!option.is(kSpaceMouse)) return;
-    space_mouse_.emplace();
-    if (!space_mouse_->present()) throw InputError("--device spacemouse", kNoSpaceMouse);
+    if (option.is(kSpaceMouse)) space_mouse_.emplace();
   }
 
   const ConnectedDevice* hardware() const { return hardware_.get(); }
@@ -203,7 +201,7 @@ void run_live(LiveOptions options, const std::string& command_line) {
     holder.describe(run);
     milling.start_recording(options.record, run, [&](std::string_view name) {
       std::optional<std::vector<unsigned char>> png;
-      milling.read_bone([&](const Volume& now) {
+      milling.follower().read([&](const Volume& now) {
         png = name == kPictureAlong ? pictures->along(now, events_on_terminal())
                                     : pictures->of(now, events_on_terminal());
       });

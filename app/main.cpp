@@ -1,13 +1,16 @@
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <exception>
 #include <memory>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <system_error>
+#include <utility>
+#include <vector>
 
 #include "app/commands.h"
-#include "app/help_text.h"
 #include "app/memory_limit.h"
 #include "app/option_checks.h"
 #include "app/progress.h"
@@ -49,6 +52,73 @@ std::string command_line_of(int argc, const char* const* argv) {
   return line;
 }
 
+constexpr std::size_t kWidth = 80;
+constexpr std::size_t kColumn = 28;
+
+// Words put into lines, each but the first after `indent` blanks; the first has room from `column` on.
+std::string wrapped(const std::string& text, std::size_t column, std::size_t indent) {
+  std::istringstream words(text);
+  std::string lines, word;
+  std::size_t at = column;
+  while (words >> word) {
+    if (at > column && at + 1 + word.size() > kWidth) {
+      lines += "\n" + std::string(indent, ' ');
+      at = column = indent;
+    }
+    lines += (at > column ? " " : "") + word;
+    at += word.size() + (at > column ? 1 : 0);
+  }
+  return lines;
+}
+
+std::string entry(const std::string& name, const std::string& text) {
+  std::string line = "  " + name;
+  line +=
+      line.size() + 2 > kColumn ? "\n" + std::string(kColumn, ' ') : std::string(kColumn - line.size(), ' ');
+  return line + wrapped(text, kColumn, kColumn) + "\n";
+}
+
+constexpr const char* kLast = "Options";
+
+// Help for a terminal of 80 columns: options in their groups, those of the program itself last, descriptions
+// wrapped, what an option takes as a unit or in one word, and what it is without being given in brackets.
+class HelpText : public CLI::Formatter {
+ public:
+  std::string make_description(const CLI::App* app) const override {
+    return wrapped(app->get_description(), 0, 0) + "\n";
+  }
+
+  std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override {
+    std::string text = make_description(app) + make_usage(app, std::move(name)) + make_positionals(app);
+    std::vector<std::string> groups = app->get_groups();
+    std::stable_partition(groups.begin(), groups.end(),
+                          [](const std::string& group) { return group != kLast; });
+    for (const std::string& group : groups) {
+      const auto options = app->get_options(
+          [&](const CLI::Option* option) { return option->get_group() == group && option->nonpositional(); });
+      if (!options.empty()) text += make_group(group, false, options);
+    }
+    return text + make_subcommands(app, mode);
+  }
+
+  std::string make_subcommand(const CLI::App* command) const override {
+    return entry(command->get_name(), command->get_description());
+  }
+
+  std::string make_option(const CLI::Option* option, bool is_positional) const override {
+    std::string name = make_option_name(option, is_positional);
+    if (is_positional) {
+      name = option->get_expected_max() > 1 ? name + " ..." : name;
+    } else if (option->get_type_size() != 0) {
+      name += " " + option->get_type_name();
+    }
+    std::string text = option->get_description();
+    if (option->get_required()) text += " (required)";
+    if (!option->get_default_str().empty()) text += fmt::format(" [{}]", option->get_default_str());
+    return entry(name, text);
+  }
+};
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -63,7 +133,7 @@ int main(int argc, char** argv) {
   }
   CLI::App program("6-DOF haptic bone milling: haptic algorithms on a CT scan, measured", "osteomill");
   program.set_version_flag("--version", OSTEOMILL_VERSION);
-  program.formatter(std::make_shared<osteomill::app::HelpText>());
+  program.formatter(std::make_shared<HelpText>());
   program.get_formatter()->label("SUBCOMMAND", "COMMAND");
   const std::string command_line = command_line_of(argc, argv);
   osteomill::app::add_simulate_command(program, command_line);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -14,8 +13,6 @@
 #include <CLI/Option.hpp>
 #include <CLI/Validators.hpp>
 #include <fmt/core.h>
-
-#include "osteomill/haptics/algorithms.h"
 
 namespace osteomill::app {
 

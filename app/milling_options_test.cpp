@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "osteomill/experiment/trial_plan.h"
-#include "osteomill/recording/describe_run.h"
+#include "osteomill/recording/run_description.h"
 
 namespace osteomill::app {
 namespace {

@@ -7,7 +7,6 @@
 #include <optional>
 
 #include <CLI/Error.hpp>
-#include <CLI/Option.hpp>
 #include <fmt/core.h>
 
 #include "osteomill/numbers/positive.h"

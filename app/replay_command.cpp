@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
@@ -15,11 +14,11 @@
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/files/input_error.h"
 #include "osteomill/haptics/algorithms.h"
-#include "osteomill/recording/describe_run.h"
 #include "osteomill/recording/record_columns.h"
 #include "osteomill/recording/recorder.h"
 #include "osteomill/recording/recording.h"
 #include "osteomill/recording/replay_recording.h"
+#include "osteomill/recording/run_description.h"
 #include "osteomill/session/milling_session.h"
 #include "osteomill/session/milling_setup.h"
 #include "osteomill/session/tick_counts.h"

@@ -1,6 +1,5 @@
 #include "app/scan_options.h"
 
-#include <algorithm>
 #include <utility>
 
 #include "app/memory_limit.h"
@@ -8,11 +7,9 @@
 #include "app/progress.h"
 #include <fmt/core.h>
 
-#include "osteomill/ct/read_scan.h"
 #include "osteomill/files/input_error.h"
 #include "osteomill/numbers/work_progress.h"
 #include "osteomill/volume/builtin_tooth.h"
-#include "osteomill/volume/isovalue.h"
 #include "osteomill/volume/label_scan.h"
 
 namespace osteomill::app {
@@ -112,11 +109,6 @@ SuggestedIsovalue suggested_isovalue(const ScanOptions& options, const Scan& sca
   return suggest_isovalue(scan.grid, scan.in_hounsfield_units);
 }
 
-SuggestedIsovalue chosen_isovalue(const ScanOptions& options, const Scan& scan) {
-  if (options.isovalue) return {*options.isovalue, "given"};
-  return suggested_isovalue(options, scan);
-}
-
 Volume bone_of(Scan scan, double isovalue) {
   return Volume(scan.is_labels ? bone_of_labels(scan.grid, isovalue) : std::move(scan.grid), isovalue);
 }
@@ -140,7 +132,8 @@ LoadedBone read_bone(const ScanOptions& options) {
     return open_scan(options);
   }();
   const WorkProgress::Part looking(1);
-  SuggestedIsovalue isovalue = chosen_isovalue(options, scan);
+  SuggestedIsovalue isovalue =
+      options.isovalue ? SuggestedIsovalue{*options.isovalue, "given"} : suggested_isovalue(options, scan);
   std::vector<std::string> warnings = std::move(scan.warnings);
   if (!options.isovalue && !options.scan.empty()) {
     warnings.push_back(

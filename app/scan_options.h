@@ -48,9 +48,6 @@ Scan open_scan(const ScanOptions& options);
 /// The isovalue that the user leaves us to choose for this scan.
 SuggestedIsovalue suggested_isovalue(const ScanOptions& options, const Scan& scan);
 
-/// The isovalue in use: the user's, or else the suggested one.
-SuggestedIsovalue chosen_isovalue(const ScanOptions& options, const Scan& scan);
-
 /// The bone of a scan: its densities with the isovalue, or, of one that holds labels, whatever is labelled
 /// above the isovalue, all of one density.
 Volume bone_of(Scan scan, double isovalue);

@@ -18,7 +18,6 @@
 
 #include "osteomill/ct/read_scan.h"
 #include "osteomill/live/bone_follower.h"
-#include "osteomill/live/density_handover.h"
 #include "osteomill/milling/burr_mill.h"
 #include "osteomill/numbers/distribution.h"
 #include "osteomill/surface/surface_mesh.h"

@@ -34,7 +34,7 @@ int main() {
   const osteomill::MillingEntry entry = place_entry(*bone, setup.tool);
   osteomill::VirtualHand hand({}, osteomill::pointing_hand(), pose_above(entry, setup.tool, 0.5));
   osteomill::LiveMilling milling(bone, setup, hand);
-  std::vector<std::size_t> by_brick(milling.surface_layout().count());
+  std::vector<std::size_t> by_brick(milling.follower().layout().count());
   milling.start();
   hand.pull_to(pose_above(entry, setup.tool, -2.0));
   for (const char* name : {"point-shell", "surface-points"}) {

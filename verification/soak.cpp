@@ -15,10 +15,10 @@
 #include "osteomill/haptics/algorithms.h"
 #include "osteomill/operator/milling_entry.h"
 #include "osteomill/operator/simulated_operator.h"
-#include "osteomill/recording/describe_run.h"
 #include "osteomill/recording/recorder.h"
 #include "osteomill/recording/recording.h"
 #include "osteomill/recording/replay_recording.h"
+#include "osteomill/recording/run_description.h"
 #include "osteomill/volume/density_grid.h"
 
 namespace osteomill::verification {

@@ -15,7 +15,6 @@
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/files/input_error.h"
 #include "osteomill/recording/recorder.h"
-#include "osteomill/recording/recording.h"
 
 namespace osteomill::app {
 
@@ -184,7 +183,7 @@ void Autosave::update(LiveMilling& milling) {
     }
     return;
   }
-  const std::uint64_t version = milling.bone_version();
+  const std::uint64_t version = milling.follower().version();
   if (version == kept_version_ || Clock::now() < next_) return;
   if (!file_) file_ = AutosaveFile::make();
   if (!file_) {
@@ -199,7 +198,7 @@ void Autosave::update(LiveMilling& milling) {
   work_ =
       std::async(std::launch::async, [&milling, path = file_->path(), milled = std::move(milled)]() mutable {
         const Clock::time_point start = Clock::now();
-        milled.bricks = milling.touched_bricks();
+        milled.bricks = milling.follower().touched_bricks();
         if (milled.bricks.size() > kMaxBricks) throw InputError(path.string(), "would take more than 1 GiB");
         write_start(path, milled);
         return Clock::now() - start;

@@ -8,7 +8,6 @@
 #include <optional>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "app/scan_options.h"
 
@@ -64,7 +63,7 @@ class Autosave {
   void saved(std::uint64_t bone_version) { saved_version_ = bone_version; }
   /// Whether bone was milled that is not saved.
   bool unsaved(const LiveMilling& milling) const {
-    return milling.touched() && milling.bone_version() != saved_version_;
+    return milling.follower().touched() && milling.follower().version() != saved_version_;
   }
   /// The user lets it go.
   void discard();

@@ -7,6 +7,7 @@
 #include <fmt/core.h>
 
 #include "osteomill/operator/milling_entry.h"
+#include "osteomill/view/clip_face.h"
 #include "osteomill/volume/sampling.h"
 
 namespace osteomill::app {
@@ -21,15 +22,10 @@ constexpr double kAbove_rad = 0.35;
 
 VoxelBox voxels_of_bone(const Volume& bone) {
   VoxelBox box;
-  const auto& dims = bone.geometry().dims;
   const float* density = bone.grid().densities().data();
-  for (int k = 0; k < dims[2]; ++k) {
-    for (int j = 0; j < dims[1]; ++j) {
-      for (int i = 0; i < dims[0]; ++i) {
-        if (static_cast<double>(*density++) > bone.isovalue()) box.include({i, j, k});
-      }
-    }
-  }
+  for_each(bone.geometry().all_voxels(), [&](const VoxelIndex& v) {
+    if (static_cast<double>(*density++) > bone.isovalue()) box.include(v);
+  });
   return box.empty() ? bone.geometry().all_voxels() : box;
 }
 
@@ -40,14 +36,7 @@ Sphere BoneBox::bounds() const {
 }
 
 BoneBox box_of_bone(const Volume& bone) {
-  const VoxelBox voxels = voxels_of_bone(bone);
-  BoneBox box;
-  for (std::size_t n = 0; n < 8; ++n) {
-    box.corners_W[n] = bone.geometry().world_from_voxel(VoxelIndex{
-        (n & 1) != 0 ? voxels.last.i : voxels.first.i, (n & 2) != 0 ? voxels.last.j : voxels.first.j,
-        (n & 4) != 0 ? voxels.last.k : voxels.first.k});
-  }
-  return box;
+  return {corners_W(bone.geometry(), voxels_of_bone(bone))};
 }
 
 std::string tool_fault(const MillingTool& tool, const BoneBox& box) {

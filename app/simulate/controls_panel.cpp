@@ -4,9 +4,8 @@
 #include <string>
 #include <utility>
 
-#include "app/simulate/cuts.h"
 #include "app/simulate/panels.h"
-#include "app/simulate/state_text.h"
+#include "app/simulate/scene_of.h"
 #include "app/simulate/widgets.h"
 #include <fmt/core.h>
 #include <imgui.h>
@@ -23,7 +22,7 @@ bool settle(const char* label, double& value, float min, float max, const char* 
   if (ui::slider(label, &shown, min, max, format, ImGuiSliderFlags_AlwaysClamp)) {
     value = static_cast<double>(shown);
   }
-  return ui::released();
+  return ImGui::IsItemDeactivatedAfterEdit();
 }
 
 // Its end, which tells one scan from another, where there is no room for all of it.
@@ -97,7 +96,7 @@ void draw_session(ViewState& view, LiveMilling& milling, bool by_pointer) {
   bool spindle = milling.spindle_asked() || milling.state().spindle_on;
   if (ui::checkbox("spindle on", &spindle)) milling.set_spindle(spindle);
   ImGui::SameLine();
-  bool paused = milling.state().paused;
+  bool paused = milling.state().record.paused;
   if (ui::checkbox("pause", &paused)) milling.set_paused(paused);
   if (by_pointer) {
     ImGui::SameLine();
@@ -106,23 +105,23 @@ void draw_session(ViewState& view, LiveMilling& milling, bool by_pointer) {
     }
   }
   const bool free = !milling.preparing();
-  if (ui::button("Undo cut", free && milling.cuts() > 0)) milling.undo();
+  if (ui::button("Undo cut", free && milling.follower().cuts() > 0)) milling.undo();
   ui::hint(
       "Puts back what was milled since the spindle was last switched on (up to 256 MB of cuts are kept)");
   ImGui::SameLine();
-  if (ui::button("Reset bone", free && milling.touched())) view.reset_asked = true;
+  if (ui::button("Reset bone", free && milling.follower().touched())) view.reset_asked = true;
   ImGui::SameLine();
-  const auto cuts = static_cast<int>(milling.cuts());
+  const auto cuts = static_cast<int>(milling.follower().cuts());
   ImGui::TextDisabled(cuts == 1 ? "%d cut" : "%d cuts", cuts);
 }
 
 // Of several: which of them bounds bone nobody but the user knows. Beside the histogram, and below it where
 // there is no room.
 void draw_boundaries(Simulation& simulation) {
-  if (simulation.boundaries.size() < 2) return;
+  if (simulation.scan.boundaries.size() < 2) return;
   const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
   const ImGuiStyle& style = ImGui::GetStyle();
-  for (const Boundary& boundary : simulation.boundaries) {
+  for (const Boundary& boundary : simulation.scan.boundaries) {
     const std::string label = fmt::format("{:.4g}", boundary.density);
     const float width = ImGui::CalcTextSize(label.c_str()).x + 2 * style.FramePadding.x;
     if (ImGui::GetItemRectMax().x + style.ItemSpacing.x + width <= right) ImGui::SameLine();
@@ -135,7 +134,7 @@ void draw_boundaries(Simulation& simulation) {
 
 void draw_isovalue(ViewState& view, Simulation& simulation) {
   if (!ui::header("Bone", true)) return;
-  const DensityHistogram& histogram = simulation.histogram;
+  const DensityHistogram& histogram = simulation.scan.histogram;
   LiveMilling& milling = simulation.milling;
   float isovalue = view.isovalue.value_or(static_cast<float>(milling.isovalue()));
   const ImVec2 place = ImGui::GetCursorScreenPos();
@@ -147,14 +146,15 @@ void draw_isovalue(ViewState& view, Simulation& simulation) {
   ImGui::GetWindowDrawList()->AddLine({x, place.y}, {x, place.y + size.y}, IM_COL32(255, 180, 60, 255), 2);
   draw_boundaries(simulation);
   ImGui::BeginDisabled(milling.preparing());
-  const std::string format = "%.4g" + simulation.unit;
+  const std::string format = "%.4g" + simulation.scan.unit;
   if (ui::slider("isovalue", &isovalue, histogram.min, histogram.max, format.c_str(),
                  ImGuiSliderFlags_AlwaysClamp)) {
     view.isovalue = isovalue;
     milling.show_isovalue(static_cast<double>(isovalue));
   }
   const bool moved = ImGui::IsItemActive();
-  if (ui::released() && view.isovalue) milling.change_isovalue(static_cast<double>(*view.isovalue));
+  if (ImGui::IsItemDeactivatedAfterEdit() && view.isovalue)
+    milling.change_isovalue(static_cast<double>(*view.isovalue));
   ui::hint("What is denser than this is bone. Drag, or hold Ctrl and click to type a number");
   ImGui::EndDisabled();
   if (!moved && !milling.preparing()) view.isovalue.reset();
@@ -176,7 +176,8 @@ void draw_cuts(ViewState& view, Simulation& simulation) {
     if (cut.on) {
       ImGui::SameLine(ui::px(100));
       ui::checkbox("other side", &cut.other_side);
-      const auto extent = extent_along(simulation.milling.geometry(), cut.normal_W);
+      const GridGeometry& grid = simulation.milling.geometry();
+      const auto extent = extent_along(corners_W(grid, grid.all_voxels()), cut.normal_W);
       ui::slider((std::string(kCutNames[n]) + " place").c_str(), &cut.offset_mm,
                  static_cast<float>(extent[0]), static_cast<float>(extent[1]), "%.1f mm");
     }
@@ -186,11 +187,11 @@ void draw_cuts(ViewState& view, Simulation& simulation) {
 
 void draw_view(ViewState& view, const Vec3& tool_W, const PixelSize& size) {
   if (!ui::header("View", true)) return;
-  for (const ViewFrom from : kAllViews) {
-    std::string letter(1, static_cast<char>(std::toupper(name_of(from).front())));
+  for (const auto& [from, direction_W, up_W] : kPatientViews) {
+    const std::string letter(1, static_cast<char>(std::toupper(from.front())));
     if (ui::button((letter + "##view").c_str()))
-      view.camera = with_whole(camera_from(from, view.box.bounds()), view.box, size);
-    ui::hint(("From " + std::string(name_of(from))).c_str());
+      view.camera = with_whole(camera_on(view.box.bounds(), direction_W, up_W), view.box, size);
+    ui::hint(fmt::format("From {}", from).c_str());
     ImGui::SameLine();
   }
   if (ui::button("Whole")) view.camera = with_whole(view.camera, view.box, size);
@@ -225,7 +226,7 @@ void draw_controls(ViewState& view, Simulation& simulation, FilesPanel& files, c
   ImGui::Begin("osteomill", nullptr, ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize);
   ImGui::PushItemWidth(ui::px(130));
   draw_reading_aids(view);
-  draw_scan(view, simulation.scan_name);
+  draw_scan(view, simulation.scan.name);
   bool changed = false;
   draw_isovalue(view, simulation);
   draw_session(view, simulation.milling, simulation.holder.is_pointer());

@@ -1,8 +1,6 @@
 #include "app/simulate/files_panel.h"
 
-#include <chrono>
 #include <ctime>
-#include <functional>
 #include <thread>
 
 #include "app/simulate/widgets.h"
@@ -16,7 +14,6 @@
 #include "osteomill/ct/write_nrrd.h"
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/files/input_error.h"
-#include "osteomill/image/image.h"
 #include "osteomill/recording/recording.h"
 #include "osteomill/report/write_report.h"
 #include "osteomill/surface/mesh_file.h"
@@ -91,6 +88,16 @@ void FilesPanel::close(ViewState& view, Simulation& simulation) {
   if (work_.valid()) work_.wait();
 }
 
+template <typename Write>
+void FilesPanel::begin(const fs::path& path, Write write) {
+  written_ = false;
+  create_folder(folder_);
+  work_ = std::async(std::launch::async, [path, write = std::move(write)] {
+    write(path);
+    return Done{"Saved " + path.string(), path, {}};
+  });
+}
+
 void FilesPanel::make_report() {
   written_ = false;
   work_ = std::async(std::launch::async, [recording = last_recording_, folder = name("report")] {
@@ -105,19 +112,14 @@ void FilesPanel::end_with_report(ViewState& view, Simulation& simulation) {
 }
 
 void FilesPanel::save_scan(ViewState& view, Simulation& simulation) {
-  written_ = false;
   attempt(view, [&] {
-    create_folder(folder_);
     DensityGrid grid;
     std::uint64_t version = 0;
-    simulation.milling.read_bone([&](const Volume& bone) {
+    simulation.milling.follower().read([&](const Volume& bone) {
       grid = bone.grid();
-      version = simulation.milling.bone_version();
+      version = simulation.milling.follower().version();
     });
-    work_ = std::async(std::launch::async, [path = name("milled.nrrd"), grid = std::move(grid)] {
-      write_nrrd(path, grid);
-      return Done{"Saved " + path.string(), path, {}};
-    });
+    begin(name("milled.nrrd"), [grid = std::move(grid)](const fs::path& path) { write_nrrd(path, grid); });
     saving_version_ = version;
   });
 }
@@ -196,14 +198,11 @@ void FilesPanel::draw(ViewState& view, Simulation& simulation) {
   ImGui::SameLine();
   if (ui::button("Save surface", free)) {
     attempt(view, [&] {
-      create_folder(folder_);
       BrickMesh mesh;
-      simulation.milling.read_bone([&](const Volume& bone) { mesh = mesh_in_one_piece(DensityView(bone)); });
-      work_ = std::async(std::launch::async,
-                         [path = name("surface.ply"), mesh = std::move(mesh), labels = simulation.labels] {
-                           write_mesh(path, mesh, labels.get());
-                           return Done{"Saved " + path.string(), path, {}};
-                         });
+      simulation.milling.follower().read(
+          [&](const Volume& bone) { mesh = mesh_in_one_piece(DensityView(bone)); });
+      begin(name("surface.ply"), [mesh = std::move(mesh), labels = simulation.scan.labels](
+                                     const fs::path& path) { write_mesh(path, mesh, labels.get()); });
     });
   }
   ImGui::SameLine();

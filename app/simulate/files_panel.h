@@ -53,6 +53,9 @@ class FilesPanel {
 
  private:
   void record(ViewState& view, Simulation& simulation);
+  /// Begins to write this file.
+  template <typename Write>
+  void begin(const std::filesystem::path& path, Write write);
   void make_report();
 
   std::filesystem::path folder_;

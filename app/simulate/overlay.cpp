@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 
 #include "app/simulate/panels.h"
 #include "app/simulate/widgets.h"
@@ -57,18 +56,6 @@ void draw(ImDrawList& list, Annotation annotation) {
   list.AddText(place, kLight, text);
 }
 
-void begin_at(const ImVec2& place, const char* title, const ImVec2& pivot) {
-  ImGui::SetNextWindowPos(place, ImGuiCond_Always, pivot);
-  ImGui::Begin(title, nullptr,
-               ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove |
-                   ImGuiWindowFlags_NoFocusOnAppearing);
-}
-
-void begin_in_the_middle(const char* title, const PixelSize& size) {
-  begin_at({0.5f * static_cast<float>(size.width), 0.5f * static_cast<float>(size.height)}, title,
-           {0.5f, 0.5f});
-}
-
 }  // namespace
 
 void draw_annotations(const ViewState& view, const PixelSize& size, bool patient) {
@@ -124,18 +111,9 @@ std::string recording_text(double recording_s) {
   return fmt::format("REC {}:{:02}", whole_s / 60, whole_s % 60);
 }
 
-void draw_recording(double recording_s, const PixelSize& size) {
-  const std::string text = recording_text(recording_s);
-  const ImVec2 text_px = ImGui::CalcTextSize(text.c_str());
-  const float margin = 0.5f * text_px.y;
-  const ImVec2 place(0.5f * (static_cast<float>(size.width) - text_px.x), ui::px(8) + margin);
-  ImDrawList& list = *ImGui::GetForegroundDrawList();
-  list.AddRectFilled({place.x - 3 * margin, place.y - margin},
-                     {place.x + text_px.x + margin, place.y + text_px.y + margin}, IM_COL32(200, 30, 30, 255),
-                     margin);
-  list.AddCircleFilled({place.x - 1.6f * margin, place.y + 0.5f * text_px.y}, 0.6f * margin,
-                       IM_COL32(255, 255, 255, 255));
-  list.AddText(place, IM_COL32(255, 255, 255, 255), text.c_str());
+void draw_recording(double recording_s) {
+  const float margin_px = 0.5f * ImGui::GetTextLineHeight();
+  ui::badge(recording_text(recording_s), ui::px(8), margin_px, IM_COL32(200, 30, 30, 255), true);
 }
 
 bool dialogue_open() {
@@ -165,11 +143,16 @@ void draw_dialogue(DialogueQueue& dialogues) {
 
 bool draw_loading(const std::string& what, double share_done, double passed_s, const PixelSize& size,
                   bool above) {
+  const float middle_px = 0.5f * static_cast<float>(size.width);
   if (above) {
-    begin_at({0.5f * static_cast<float>(size.width), ui::px(8)}, "Opening", {0.5f, 0});
+    ImGui::SetNextWindowPos({middle_px, ui::px(8)}, ImGuiCond_Always, {0.5f, 0});
   } else {
-    begin_in_the_middle("Opening", size);
+    ImGui::SetNextWindowPos({middle_px, 0.5f * static_cast<float>(size.height)}, ImGuiCond_Always,
+                            {0.5f, 0.5f});
   }
+  ImGui::Begin("Opening", nullptr,
+               ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoFocusOnAppearing);
   ImGui::Text("%s", what.c_str());
   ImGui::ProgressBar(static_cast<float>(share_done), {ui::px(360), 0});
   ImGui::Text("%.0f s", passed_s);

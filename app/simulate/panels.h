@@ -1,11 +1,15 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "app/simulate/dialogues.h"
 #include "app/simulate/files_panel.h"
 #include "app/simulate/simulation.h"
 #include "app/simulate/view_state.h"
+
+#include "osteomill/device/space_mouse.h"
+#include "osteomill/sound/spindle_sound.h"
 
 namespace osteomill::app {
 
@@ -18,28 +22,26 @@ struct Room {
   float bottom_px;
 };
 
-/// The right column: everything that is measured. Returns where the next thing below has room.
+/// The right column: everything that is measured, and where hardware holds the tool, how that is. Returns
+/// where the next thing below has room.
 float draw_readings(ViewState& view, Simulation& simulation, double pictures_per_s, const PixelSize& size);
-
-/// Part of it where hardware holds the tool: how the device is, and how it stands before the operator.
-void draw_device(ViewState& view, ConnectedDevice& device);
 
 /// Below it, where the bone has labels: a legend, and how much of each was removed; what has no room is
 /// scrolled to.
-float draw_labels(ViewState& view, const Simulation& simulation, const PixelSize& size, const Room& room);
+float draw_labels(ViewState& view, const Simulation& simulation, const Room& room);
 
 /// Below all of that, until it is sent away: how everything is done.
 void draw_help(ViewState& view, const PixelSize& size, const Room& room);
 
 /// While the burr touches a no-go label and some seconds after: a red line across the top that says so.
-void draw_no_go(Simulation& simulation, const PixelSize& size);
+void draw_no_go(Simulation& simulation);
 
 /// Scale bar and orientation letters over the picture.
 void draw_annotations(const ViewState& view, const PixelSize& size, bool patient);
 
 /// A red badge with how long a recording has been going on.
 std::string recording_text(double recording_s);
-void draw_recording(double recording_s, const PixelSize& size);
+void draw_recording(double recording_s);
 
 /// Whether a dialogue is seen, so that pointer and keys are nobody else's.
 bool dialogue_open();
@@ -50,5 +52,25 @@ void draw_dialogue(DialogueQueue& dialogues);
 /// True when it is to be given up.
 bool draw_loading(const std::string& what, double share_done, double passed_s, const PixelSize& size,
                   bool above);
+
+/// Takes what mouse, keyboard and SpaceMouse did since the last picture to the camera and the tool, as the
+/// help tells.
+void take_input(ViewState& view, Simulation& simulation, SpaceMouse& space_mouse, const PixelSize& size);
+
+/// Where bone came back (a cut undone, another isovalue) or the tool grew while it was in a hole: brings it
+/// out, before the bone where it is seen. Does nothing to a tool that only presses on bone.
+void free_tool(ViewState& view, Simulation& simulation, const PixelSize& size);
+
+/// What the window's controls bring about, a line "NAME.KEY=VALUE" each: not how a control stands but what is
+/// in force, is drawn and is heard. For scripts (ui_script.h).
+std::string state_text(const std::string& name, const ViewState& view, Simulation& simulation,
+                       const FilesPanel& files, const SpindleState& heard, const PixelSize& size);
+
+/// What the slider of stiffness sets, in force: nothing where the algorithm has none.
+inline constexpr const char* kStiffnessOption = "stiffness";
+std::optional<double> stiffness_of(const MillingSetup& setup);
+
+/// Where the isovalue in force came from.
+std::string isovalue_text(const Simulation& simulation);
 
 }  // namespace osteomill::app

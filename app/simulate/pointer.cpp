@@ -1,10 +1,8 @@
-#include "app/simulate/pointer.h"
-
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
-#include "app/simulate/cuts.h"
 #include "app/simulate/panels.h"
 #include "app/simulate/tool_control.h"
 #include <GLFW/glfw3.h>
@@ -27,6 +25,61 @@ bool held(int key) {
 
 double held_way(int forwards, int backwards) {
   return (held(forwards) ? 1.0 : 0.0) - (held(backwards) ? 1.0 : 0.0);
+}
+
+// What the pointer has moved since the picture before; and by how much it drags what a button holds: nothing
+// in the picture in which the button went down, before which it may have come a long way.
+Eigen::Vector2d pointer_moved_px() {
+  const ImVec2 moved = ImGui::GetIO().MouseDelta;
+  return {static_cast<double>(moved.x), static_cast<double>(moved.y)};
+}
+
+Eigen::Vector2d pointer_dragged_px() {
+  const bool just_pressed = ImGui::IsMouseClicked(0) || ImGui::IsMouseClicked(1) || ImGui::IsMouseClicked(2);
+  return just_pressed ? Eigen::Vector2d::Zero() : pointer_moved_px();
+}
+
+// The cut that the line of sight through a pixel meets first within the bone's surroundings.
+std::optional<std::size_t> cut_under(const ViewState& view, const PixelSize& size, double x_px, double y_px) {
+  const Vec3 ray = ray_through(view.camera, size, x_px, y_px);
+  const Vec3 eye = view.camera.eye_W();
+  const Sphere bounds = view.box.bounds();
+  double nearest_mm = std::numeric_limits<double>::infinity();
+  std::optional<std::size_t> found;
+  for (std::size_t n = 0; n < view.cuts.size(); ++n) {
+    const ViewState::Cut& cut = view.cuts[n];
+    const double towards = ray.dot(cut.normal_W);
+    if (!cut.on || std::abs(towards) < 1e-6) continue;
+    const double way_mm = (static_cast<double>(cut.offset_mm) - cut.normal_W.dot(eye)) / towards;
+    const Vec3 point_W = eye + way_mm * ray;
+    if (way_mm <= 0 || way_mm > nearest_mm) continue;
+    if ((point_W - bounds.centre_W).norm() > 1.1 * bounds.radius_mm) continue;
+    nearest_mm = way_mm;
+    found = n;
+  }
+  return found;
+}
+
+// Ctrl with the left button drags the cut under the pointer along its normal; true while it does.
+bool drag_cut(ViewState& view, const PixelSize& size) {
+  const ImGuiIO& io = ImGui::GetIO();
+  if (ImGui::IsMouseClicked(0) && io.KeyCtrl && !io.WantCaptureMouse) {
+    const auto under =
+        cut_under(view, size, static_cast<double>(io.MousePos.x), static_cast<double>(io.MousePos.y));
+    view.dragged_cut = under ? static_cast<int>(*under) : -1;
+  }
+  if (!io.MouseDown[0]) view.dragged_cut = -1;
+  if (view.dragged_cut < 0) return false;
+  ViewState::Cut& cut = view.cuts[static_cast<std::size_t>(view.dragged_cut)];
+  // The normal as it is seen, pixels a mm; towards the viewer it hardly moves in the picture: then upwards is
+  // on.
+  const Vec3 anchor_W = view.box.centre_W();
+  Eigen::Vector2d seen =
+      pixel_of(view.camera, size, anchor_W + cut.normal_W) - pixel_of(view.camera, size, anchor_W);
+  const double full = 1 / mm_per_pixel(view.camera, size, depth_of(view.camera, anchor_W));
+  if (seen.norm() < 0.2 * full) seen = Eigen::Vector2d(0, -full);
+  cut.offset_mm += static_cast<float>(pointer_dragged_px().dot(seen) / seen.squaredNorm());
+  return true;
 }
 
 // Whether the pointer is on the picture of the tool.
@@ -80,10 +133,10 @@ void take_keys(ViewState& view, LiveMilling& milling, bool by_pointer) {
   if (pressed(GLFW_KEY_T) && by_pointer) view.holding_tool = !view.holding_tool;
   if (pressed(GLFW_KEY_ESCAPE)) view.holding_tool = false;
   if (pressed(GLFW_KEY_SPACE)) milling.set_spindle(!milling.spindle_asked());
-  if (pressed(GLFW_KEY_P)) milling.set_paused(!milling.state().paused);
+  if (pressed(GLFW_KEY_P)) milling.set_paused(!milling.state().record.paused);
   if (pressed(GLFW_KEY_F1)) view.help = !view.help;
   if (pressed(GLFW_KEY_F11)) view.full_screen_asked = true;
-  if (io.KeyCtrl && pressed(GLFW_KEY_Z) && milling.cuts() > 0) milling.undo();
+  if (io.KeyCtrl && pressed(GLFW_KEY_Z) && milling.follower().cuts() > 0) milling.undo();
 }
 
 // Before the bone that is seen at the pixel, if there is any, or else in the middle.
@@ -92,7 +145,7 @@ void bring_tool(ViewState& view, Simulation& simulation, const PixelSize& size,
   LiveMilling& milling = simulation.milling;
   const MillingTool& tool = milling.setup().tool;
   milling.set_spindle(false);
-  milling.read_bone([&](const Volume& bone) {
+  milling.follower().read([&](const Volume& bone) {
     if (pixel) view.X_W_brought = tool_before(bone, tool, view.camera, size, pixel->x(), pixel->y());
     if (!view.X_W_brought) view.X_W_brought = tool_before_middle(bone, tool, view.camera, size);
   });
@@ -170,7 +223,7 @@ void free_tool(ViewState& view, Simulation& simulation, const PixelSize& size) {
   core.burr_radius_mm *= 0.5;
   core.shaft_radius_mm *= 0.5;
   bool free = true;
-  simulation.milling.read_bone([&](const Volume& bone) { free = tool_is_free(bone, core, X_WT); });
+  simulation.milling.follower().read([&](const Volume& bone) { free = tool_is_free(bone, core, X_WT); });
   if (!free) bring_tool(view, simulation, size, pixel_of(view.camera, size, X_WT.position_mm));
 }
 

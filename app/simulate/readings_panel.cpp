@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
+#include <exception>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,8 @@
 #include "app/simulate/widgets.h"
 #include <fmt/core.h>
 #include <imgui.h>
+
+#include "osteomill/device/workspace.h"
 
 namespace osteomill::app {
 
@@ -118,12 +121,115 @@ void draw_faults(const std::deque<TickRecord>& history) {
           .c_str());
 }
 
+using Step = ViewState::Calibration::Step;
+
+void keep_turn(ViewState& view, ConnectedDevice& device, const Vec3& up_D_mm) {
+  const DeviceCapabilities& can = device.capabilities();
+  const auto turn_deg = turn_by_moves_deg(can, view.calibration.right_D_mm, up_D_mm);
+  if (!turn_deg) {
+    view.dialogues.complain(
+        "The two moves were shorter than 10 mm, or both went the same way. What is known of the device stays "
+        "as it was.");
+    return;
+  }
+  WorkspaceSettings settings = device.workspace();
+  settings.turn_V_deg = *turn_deg;
+  device.set_workspace(settings);
+  const std::filesystem::path path = workspace_path(can.name);
+  try {
+    if (!path.empty()) keep_workspace(path, can.name, settings);
+    view.message = "How the device stands before you is kept in " + path.string();
+  } catch (const std::exception& error) {
+    view.dialogues.complain(error.what());
+  }
+}
+
+void draw_calibration(ViewState& view, ConnectedDevice& device, const Vec3& handle_D_mm) {
+  ViewState::Calibration& calibration = view.calibration;
+  if (calibration.step == Step::none) {
+    ImGui::SameLine();
+    if (ui::button("Calibrate")) calibration = {Step::right, handle_D_mm, Vec3::Zero()};
+    ui::hint("Two moves of your hand tell how the device stands before you; the tool stays meanwhile");
+    return;
+  }
+  const bool to_the_right = calibration.step == Step::right;
+  ImGui::TextWrapped("%s", to_the_right ? "Move your hand some centimetres to the right, then press"
+                                        : "Now move it some centimetres up, then press");
+  const bool moved = ui::button(to_the_right ? "That was right" : "That was up");
+  ImGui::SameLine();
+  if (ui::button("Cancel##calibration")) {
+    calibration = {};
+  } else if (moved && to_the_right) {
+    calibration = {Step::up, handle_D_mm, handle_D_mm - calibration.from_D_mm};
+  } else if (moved) {
+    keep_turn(view, device, handle_D_mm - calibration.from_D_mm);
+    calibration = {};
+  }
+}
+
+// What lies below does not move as it comes and goes.
+void draw_complaint(const std::string& complaint) {
+  float& room_px = *ImGui::GetStateStorage()->GetFloatRef(ImGui::GetID("complaint"));
+  const float from_px = ImGui::GetCursorPosY();
+  ImGui::PushTextWrapPos(0);
+  if (!complaint.empty()) ImGui::TextColored(ui::kWarning, "It %s", complaint.c_str());
+  ImGui::PopTextWrapPos();
+  room_px = std::max(room_px, ImGui::GetCursorPosY() - from_px);
+  ImGui::SetCursorPosY(from_px);
+  if (room_px > 0) ImGui::Dummy({0, room_px - ImGui::GetStyle().ItemSpacing.y});
+}
+
+// How the device is, and how it stands before the operator.
+void draw_device(ViewState& view, ConnectedDevice& device) {
+  ImGui::Separator();
+  const DeviceReport report = device.report();
+  ImGui::PushTextWrapPos(0);
+  ImGui::TextUnformatted(device.capabilities().name.c_str());
+  ImGui::PopTextWrapPos();
+  ImGui::TextDisabled("%.0f poses/s", report.inputs_per_s);
+  draw_calibration(view, device, report.handle_D_mm);
+  draw_complaint(report.complaint());
+}
+
+const ImVec4 kNoGo{1.0f, 0.38f, 0.30f, 1};
+// Of what more there is, the list is scrolled.
+constexpr float kMostRows = 12;
+constexpr float kFewestRows = 2;
+// Of help that is shown below, and of title and box above the rows, at the usual size of text.
+constexpr float kHelp_px = 110;
+constexpr float kHead_px = 62;
+
+ImU32 colour_of(const Label& label) {
+  return IM_COL32(label.colour[0], label.colour[1], label.colour[2], 255);
+}
+
+void draw_row(const Simulation& simulation, std::size_t n) {
+  const Label& label = simulation.label_count.labels()[n];
+  const float side = ImGui::GetTextLineHeight();
+  const ImVec2 place = ImGui::GetCursorScreenPos();
+  ImGui::GetWindowDrawList()->AddRectFilled(place, {place.x + side, place.y + side}, colour_of(label), 2);
+  ImGui::Dummy({side, side});
+  ImGui::SameLine();
+  const ImVec4 text = label.no_go ? kNoGo : ImGui::GetStyleColorVec4(ImGuiCol_Text);
+  ImGui::TextColored(text, "%s%s", label.name.c_str(), label.no_go ? " (no-go)" : "");
+  const LabelCount::Entry& entry = simulation.label_count.entries()[n];
+  if (entry.contacts > 0) {
+    ui::hint(fmt::format("The burr touched it for {:.1f} s, first at {:.1f} s, and pressed with {:.2f} N on "
+                         "average and {:.2f} N at most",
+                         entry.time_s, entry.first_s, entry.force_mean_N, entry.force_max_N)
+                 .c_str());
+  }
+  const std::vector<double>& removed_mm3 = simulation.removed_by_label_mm3;
+  if (n + 1 >= removed_mm3.size() || (entry.contacts == 0 && removed_mm3[n + 1] == 0)) return;
+  const std::string removed = fmt::format("{:.2f} mm³", removed_mm3[n + 1]);
+  ImGui::SameLine(ImGui::GetContentRegionMax().x - ImGui::CalcTextSize(removed.c_str()).x);
+  ImGui::TextUnformatted(removed.c_str());
+}
+
 }  // namespace
 
 float draw_readings(ViewState& view, Simulation& simulation, double pictures_per_s, const PixelSize& size) {
-  ImGui::SetNextWindowPos({static_cast<float>(size.width) - ui::px(ui::kRightWidth_px + 8), ui::px(8)});
-  ImGui::SetNextWindowSize({ui::px(ui::kRightWidth_px), 0});
-  ImGui::Begin("Readings", nullptr, ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize);
+  ui::begin_right("Readings", ui::px(8));
   const TimingSummary timing = simulation.milling.timing();
   const LiveState& state = simulation.milling.state();
   row("haptic rate", fmt::format("{:.0f} ticks/s", timing.recent_ticks_per_s));
@@ -148,9 +254,33 @@ float draw_readings(ViewState& view, Simulation& simulation, double pictures_per
     ImGui::TextColored(ui::kWarning, "%s", simulation.milling.refused_real_time().c_str());
     ImGui::PopTextWrapPos();
   }
-  const float below_px = ImGui::GetWindowPos().y + ImGui::GetWindowSize().y + ui::px(8);
-  ImGui::End();
-  return below_px;
+  return ui::end_right();
+}
+
+float draw_labels(ViewState& view, const Simulation& simulation, const Room& room) {
+  const std::size_t count = simulation.label_count.labels().size();
+  if (count == 0) return room.top_px;
+  const float line_px = ImGui::GetTextLineHeightWithSpacing();
+  const float rows_px = room.bottom_px - room.top_px - ui::px(kHead_px) - (view.help ? ui::px(kHelp_px) : 0);
+  const float rows = std::min({static_cast<float>(count), kMostRows, rows_px / line_px});
+  // Once help was read there is room for them.
+  if (view.help && rows < kFewestRows) return room.top_px;
+  ui::begin_right("Labels", room.top_px, ImGuiWindowFlags_NoFocusOnAppearing);
+  ui::checkbox("label colours", &view.labels);
+  ui::hint("Shows bone in the colours of its label map. Beside each label stands how much of it was removed");
+  ImGui::BeginChild("##labels", {0, std::floor(std::max(rows, kFewestRows) * line_px)});
+  for (std::size_t n = 0; n < count; ++n) draw_row(simulation, n);
+  ImGui::EndChild();
+  return ui::end_right();
+}
+
+void draw_no_go(Simulation& simulation) {
+  constexpr double kShown_s = 4;
+  const double now_s = simulation.milling.state().record.time_s;
+  const auto last_s = simulation.label_count.last_no_go_s();
+  if (!last_s || now_s - *last_s > kShown_s) return;
+  const float margin_px = 0.7f * ImGui::GetTextLineHeight();
+  ui::badge(simulation.no_go_text, ui::px(48), margin_px, IM_COL32(190, 25, 25, 245), false);
 }
 
 }  // namespace osteomill::app

@@ -2,16 +2,63 @@
 
 #include <algorithm>
 
-#include "app/simulate/cuts.h"
-
 namespace osteomill::app {
 
 namespace {
 
+// While milling goes on, pictures from one sampling of a cut to the next.
+constexpr int kPicturesBetween = 8;
+// Along the longer side of what a cut lays open.
+constexpr int kMaxPixels = 320;
+// Nearer the ghost would only tint the tool.
 constexpr double kApart_mm = 0.03;
 constexpr double kApart_rad = 0.01;
 
+// The cut as a plane; its `other_side` turned round.
+ClipPlane plane_of(const ViewState::Cut& cut) {
+  const double side = cut.other_side ? -1 : 1;
+  return {side * cut.normal_W, side * static_cast<double>(cut.offset_mm)};
+}
+
 }  // namespace
+
+void CutUpdates::update(const ViewState& view, const Simulation& simulation, SceneRenderer& renderer) {
+  ++pictures_;
+  for (std::size_t n = 0; n < view.cuts.size(); ++n) {
+    Shown& shown = shown_[n];
+    if (!view.cuts[n].on) {
+      shown.on = false;
+      continue;
+    }
+    const ClipPlane plane = plane_of(view.cuts[n]);
+    const bool milled =
+        shown.bone_version != simulation.milling.follower().version() && pictures_ % kPicturesBetween == 0;
+    if (shown.on && shown.plane == plane && shown.labels == view.labels && !milled) continue;
+    shown = {true, plane, view.labels, simulation.milling.follower().version()};
+    simulation.milling.follower().read([&](const Volume& bone) {
+      renderer.set_clip_face(n, clip_face(bone.grid(), plane, simulation.scan.grey_window, kMaxPixels,
+                                          view.labels ? bone.labels().get() : nullptr));
+    });
+  }
+}
+
+void reset_cuts(ViewState& view) {
+  // What is cut away lies towards the viewer of the usual views: above, in front, to the patient's left.
+  const Vec3 normals[] = {-Vec3::UnitZ(), Vec3::UnitY(), -Vec3::UnitX(), -view.camera.towards_viewer_W()};
+  for (std::size_t n = 0; n < view.cuts.size(); ++n) {
+    view.cuts[n] = {};
+    view.cuts[n].normal_W = normals[n];
+  }
+}
+
+void begin_cut_at(const ViewState& view, ViewState::Cut& cut, const Vec3& tool_W) {
+  constexpr double kLeast = 0.1;
+  const auto [least_mm, most_mm] = extent_along(view.box.corners_W, cut.normal_W);
+  const double place_mm = cut.normal_W.dot(tool_W);
+  cut.offset_mm = static_cast<float>(std::clamp(place_mm, least_mm, most_mm));
+  // Beyond the bone, or near its end, it would leave nothing to be seen.
+  cut.other_side = place_mm > most_mm - kLeast * (most_mm - least_mm);
+}
 
 ViewScene scene_of(const ViewState& view, Simulation& simulation) {
   const LiveState& state = simulation.milling.state();
@@ -21,7 +68,6 @@ ViewScene scene_of(const ViewState& view, Simulation& simulation) {
   scene.bounds = view.box.bounds();
   scene.tool = simulation.milling.setup().tool;
   scene.X_WT = record.X_WT;
-  // Where both are the same the ghost would only tint the tool.
   const double apart_mm = (record.X_WD.position_mm - record.X_WT.position_mm).norm();
   const double apart_rad = record.X_WD.orientation.angularDistance(record.X_WT.orientation);
   if (view.ghost && (apart_mm > kApart_mm || apart_rad > kApart_rad)) scene.X_WD = record.X_WD;

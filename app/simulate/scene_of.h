@@ -1,11 +1,39 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
+
 #include "app/simulate/simulation.h"
 #include "app/simulate/view_state.h"
+
+#include "osteomill/view/scene_renderer.h"
 
 namespace osteomill::app {
 
 /// What is to be drawn now.
 ViewScene scene_of(const ViewState& view, Simulation& simulation);
+
+/// Keeps the grey values on the cuts up with the planes, and a few times a second with the milling.
+class CutUpdates {
+ public:
+  void update(const ViewState& view, const Simulation& simulation, SceneRenderer& renderer);
+
+ private:
+  struct Shown {
+    bool on = false;
+    ClipPlane plane;
+    bool labels = false;
+    std::uint64_t bone_version = 0;
+  };
+  std::array<Shown, kMaxClipPlanes> shown_;
+  int pictures_ = 0;
+};
+
+/// Three planes across the patient and one that faces the camera, all off.
+void reset_cuts(ViewState& view);
+
+/// A cut that is switched on begins at the burr's centre, or at the end of the bone nearest to it; on the
+/// side that leaves bone to be seen.
+void begin_cut_at(const ViewState& view, ViewState::Cut& cut, const Vec3& tool_W);
 
 }  // namespace osteomill::app

@@ -13,6 +13,8 @@ namespace osteomill::app {
 
 namespace {
 
+using namespace std::chrono_literals;
+
 constexpr std::size_t kHistory = 5000;
 
 HandleSettings handle_settings(const MillingSetup& setup) {
@@ -35,7 +37,6 @@ OpenedScan open_for_milling(const ScanOptions& scan, const MillingSetup& setup, 
   }();
   auto bone = std::make_shared<Volume>(std::move(loaded.volume));
   const BoneBox box = box_of_bone(*bone);
-  const std::shared_ptr<const LabelMap> labels = bone->labels();
   if (const std::string fault = tool_fault(setup.tool, box); !fault.empty())
     throw InputError(loaded.name, fault);
   const DensityHistogram histogram = histogram_of(bone->grid());
@@ -43,35 +44,22 @@ OpenedScan open_for_milling(const ScanOptions& scan, const MillingSetup& setup, 
   const WorkProgress::Part preparing(1);
   PreparedMilling prepared = prepare_milling(bone, setup, milled);
   const WindowLevel grey_window = window_level_of(bone->grid(), prepared.session->densities().surroundings);
-  return {loaded.name,
-          scan,
-          isovalue_from(scan, loaded, !milled.bricks.empty()),
-          loaded.in_hounsfield_units ? " HU" : "",
-          box,
-          histogram,
-          std::move(boundaries),
-          grey_window,
-          labels,
+  return {{loaded.name, scan, bone->isovalue(), isovalue_from(scan, loaded, !milled.bricks.empty()),
+           loaded.in_hounsfield_units ? " HU" : "", box, histogram, std::move(boundaries), grey_window,
+           bone->labels()},
           std::move(prepared)};
 }
 
 Simulation::Simulation(OpenedScan opened, const Pose& X_WT, const Holder& holder_,
                        const std::string& command_line_, std::optional<AutosaveFile> autosave_file)
-    : scan_name(std::move(opened.name)),
+    : scan(std::move(opened.scan)),
       command_line(command_line_),
-      first_isovalue(opened.milling.session->volume().isovalue()),
-      isovalue_from(std::move(opened.isovalue_from)),
-      unit(std::move(opened.unit)),
-      histogram(opened.histogram),
-      boundaries(std::move(opened.boundaries)),
-      grey_window(opened.grey_window),
       holder(holder_),
       hand(handle_settings(opened.milling.session->setup()), pointing_hand(), X_WT),
       device(take_tool(opened.milling.session->setup(), opened.milling.session->volume(), X_WT)),
       milling(std::move(opened.milling), device),
-      autosave(std::move(opened.scan), std::move(autosave_file)),
-      labels(std::move(opened.labels)),
-      label_count(labels) {
+      autosave(scan.source, std::move(autosave_file)),
+      label_count(scan.labels) {
   milling.start();
   // What is drawn and pulled begins at the tool, so its first tick is waited for.
   while (history.empty() && milling.running()) {
@@ -92,7 +80,7 @@ Device& Simulation::take_tool(const MillingSetup& setup, const Volume& bone, con
 }
 
 RunDescription Simulation::describe() const {
-  RunDescription run = milling.describe(scan_name, command_line);
+  RunDescription run = milling.describe(scan.name, command_line);
   describe_device(run, holder.name, holder.hardware);
   return run;
 }
@@ -114,7 +102,6 @@ void Simulation::update() {
 
 // Goes through every voxel.
 void Simulation::look_for_warnings() {
-  using namespace std::chrono_literals;
   if (warnings_to_come_.valid()) {
     if (warnings_to_come_.wait_for(0s) == std::future_status::ready) warnings = warnings_to_come_.get();
   } else if (const std::pair now(milling.isovalue(), milling.setup().tool.burr_radius_mm);
@@ -122,7 +109,7 @@ void Simulation::look_for_warnings() {
     looked_at_ = now;
     warnings_to_come_ = std::async(std::launch::async, [this, now, tool = milling.setup().tool] {
       std::vector<std::string> found;
-      milling.read_bone([&](const Volume& bone) {
+      milling.follower().read([&](const Volume& bone) {
         found = coarseness_warnings(bone.geometry(), tool);
         for (std::string& warning : isovalue_warnings(bone.grid(), now.first))
           found.push_back(std::move(warning));
@@ -136,8 +123,8 @@ void Simulation::look_for_warnings() {
 void Simulation::count_labels() {
   constexpr auto kEvery = std::chrono::milliseconds(500);
   const auto now = std::chrono::steady_clock::now();
-  const std::uint64_t version = milling.bone_version();
-  if (!labels || version == counted_version_ || now - counted_ < kEvery) return;
+  const std::uint64_t version = milling.follower().version();
+  if (!scan.labels || version == counted_version_ || now - counted_ < kEvery) return;
   removed_by_label_mm3 = milling.removed_by_label();
   counted_version_ = version;
   counted_ = now;

@@ -2,7 +2,6 @@
 
 #include <chrono>
 #include <deque>
-#include <filesystem>
 #include <future>
 #include <memory>
 #include <optional>
@@ -24,18 +23,26 @@
 
 namespace osteomill::app {
 
-/// A scan made ready for milling, and what the window shows of it beside its surface.
-struct OpenedScan {
+/// A scan that is open, and what the window shows of it beside its surface.
+struct OpenScan {
   std::string name;
-  ScanOptions scan;
-  /// Where its isovalue came from, half a sentence, and "HU" where that is its unit.
+  ScanOptions source;
+  /// The isovalue it was opened with, where that came from, half a sentence, and " HU" where that is its
+  /// unit.
+  double isovalue;
   std::string isovalue_from;
   std::string unit;
   BoneBox box;
   DensityHistogram histogram;
   std::vector<Boundary> boundaries;
   WindowLevel grey_window;
+  /// Null where the bone has none.
   std::shared_ptr<const LabelMap> labels;
+};
+
+/// Made ready for milling.
+struct OpenedScan {
+  OpenScan scan;
   PreparedMilling milling;
 };
 
@@ -65,17 +72,10 @@ struct Simulation {
   /// What a recording that is begun now says of it.
   RunDescription describe() const;
 
-  std::string scan_name;
+  OpenScan scan;
   std::string command_line;
-  /// The one it was opened with.
-  double first_isovalue;
-  std::string isovalue_from;
-  std::string unit;
   /// What a user of the isovalue and the burr should know (isovalue_warnings, coarseness_warnings).
   std::vector<std::string> warnings;
-  DensityHistogram histogram;
-  std::vector<Boundary> boundaries;
-  WindowLevel grey_window;
   Holder holder;
   /// Pulled where the pointer is, where it is a pointer that moves the tool.
   VirtualHand hand;
@@ -84,9 +84,7 @@ struct Simulation {
   Device& device;
   LiveMilling milling;
   Autosave autosave;
-  /// Null where the bone has none.
-  std::shared_ptr<const LabelMap> labels;
-  /// What the burr met of them, and how much of each has gone (LiveMilling::removed_by_label).
+  /// What the burr met of the labels, and how much of each has gone (LiveMilling::removed_by_label).
   LabelCount label_count;
   std::vector<double> removed_by_label_mm3;
   /// What to tell of the no-go contact that began last.

@@ -1,38 +1,43 @@
-#include "app/simulate/simulator.h"
-
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <ctime>
 #include <deque>
 #include <exception>
 #include <filesystem>
+#include <functional>
 #include <future>
 #include <memory>
 #include <optional>
 #include <ostream>
+#include <string>
 #include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
 
-#include "app/simulate/cuts.h"
+#include "app/commands.h"
+#include "app/config_file.h"
+#include "app/device_option.h"
+#include "app/memory_limit.h"
+#include "app/milling_options.h"
+#include "app/scan_options.h"
 #include "app/simulate/files_panel.h"
-#include "app/simulate/opening.h"
 #include "app/simulate/panels.h"
-#include "app/simulate/pointer.h"
 #include "app/simulate/scene_of.h"
 #include "app/simulate/screen_scale.h"
 #include "app/simulate/simulation.h"
-#include "app/simulate/state_text.h"
 #include "app/simulate/ui_script.h"
 #include "app/simulate/window.h"
 #include <fmt/core.h>
 #include <imgui.h>
+#include <malloc.h>
 
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/files/input_error.h"
 #include "osteomill/image/image.h"
 #include "osteomill/live/bone_sender.h"
+#include "osteomill/numbers/work_progress.h"
 #include "osteomill/sound/spindle_sound.h"
 #include "osteomill/view/annotations.h"
 #include "osteomill/view/scene_renderer.h"
@@ -86,19 +91,90 @@ class PictureRate {
   double rate_ = 0;
 };
 
-// Everything between opening the window and closing it.
+// A scan that is being opened on a thread of its own, and can be stopped. What was stopped ends by itself
+// within about a tenth of a second and gives its memory back; only the end of this object waits for it.
+class Opening {
+ public:
+  Opening() = default;
+  ~Opening() { stop(); }
+  Opening(const Opening&) = delete;
+  Opening& operator=(const Opening&) = delete;
+
+  // Stops what is being opened, and begins another.
+  void begin(std::function<OpenedScan()> open) {
+    stop();
+    work_ = std::make_shared<Work>();
+    result_ = std::async(std::launch::async, [work = work_, open = std::move(open)] {
+      try {
+        const WorkProgress progress([&](double share) {
+          work->share_done = share;
+          if (work->stopped) throw WorkStopped();
+          check_memory_taken();
+        });
+        return open();
+      } catch (const WorkStopped&) {
+        ::malloc_trim(0);
+        throw;
+      }
+    });
+  }
+
+  void stop() {
+    std::erase_if(stopped_,
+                  [](const auto& ended) { return ended.wait_for(0s) == std::future_status::ready; });
+    if (!result_.valid()) return;
+    work_->stopped = true;
+    stopped_.push_back(std::move(result_));
+  }
+
+  bool valid() const { return result_.valid(); }
+  std::future_status wait_for(std::chrono::milliseconds time) const { return result_.wait_for(time); }
+  // Once. Throws what opening threw.
+  OpenedScan get() { return result_.get(); }
+  // Of all that opening does.
+  double share_done() const { return work_ ? work_->share_done.load() : 0; }
+
+ private:
+  struct Work {
+    std::atomic<double> share_done = 0;
+    std::atomic<bool> stopped = false;
+  };
+  std::shared_ptr<Work> work_;
+  std::future<OpenedScan> result_;
+  std::vector<std::future<OpenedScan>> stopped_;
+};
+
+struct SimulatorOptions {
+  ScanOptions scan;
+  MillingOptions milling;
+  std::vector<AlgorithmDescription> algorithm{default_algorithm()};
+  DeviceOption device{kMouse};
+  SendOption send;
+  // How much larger than usual text is; not given: as the screen asks for.
+  std::optional<double> ui_scale;
+  // Works the window in place of a person (ui_script.h); empty: nobody does.
+  std::string script;
+  bool no_help = false;
+  // Where recordings and what is saved go.
+  std::string folder = ".";
+  std::string command_line;
+};
+
+constexpr PixelSize kWindowSize{1280, 800};
 constexpr int kMostPictures = 500;
 
+// Everything between opening the window and closing it.
 class Simulator {
  public:
   explicit Simulator(const SimulatorOptions& options)
       : options_(options),
+        setup_(options.milling.setup),
         hardware_(open_device(options.device)),
-        window_("osteomill", options.size, options.ui_scale),
+        window_("osteomill", kWindowSize, options.ui_scale),
         files_(options.folder, [this](const Camera& camera) { return picture(camera); }) {
-    if (options.device.is(kSpaceMouse) && !space_mouse_.present())
-      throw InputError("--device spacemouse", kNoSpaceMouse);
-    if (hardware_) options_.setup.guard.limits = hardware_->limits_W(options_.setup.guard.limits);
+    setup_.algorithm = options.algorithm.front();
+    setup_.vibration.on = true;
+    if (hardware_) setup_.guard.limits = hardware_->limits_W(setup_.guard.limits);
     if (!options.script.empty()) script_.emplace(options.script);
     view_.help = !options.no_help;
   }
@@ -235,7 +311,7 @@ class Simulator {
     opened_scan_ = scan;
     opening_since_ = Clock::now();
     changes_before_ = view_.changes;
-    const MillingSetup setup = simulation_ ? view_.wanted : options_.setup;
+    const MillingSetup setup = simulation_ ? view_.wanted : setup_;
     opening_.begin(
         [scan, setup, milled = std::move(milled)] { return open_for_milling(scan, setup, milled); });
   }
@@ -282,14 +358,14 @@ class Simulator {
   void take_scan() {
     OpenedScan opened = std::move(*opened_);
     opened_.reset();
+    const OpenScan& scan = opened.scan;
     if (simulation_) {
       files_.end_recording(view_, *simulation_);
       simulation_->autosave.discard();
       view_.wanted_is_new = view_.changes != changes_before_;
-      options_.command_line += " # then opened in the window: " + opened.name;
-      view_.message =
-          fmt::format("Opened {}: isovalue {:.4g}{}, {}", opened.name,
-                      opened.milling.session->volume().isovalue(), opened.unit, opened.isovalue_from);
+      options_.command_line += " # then opened in the window: " + scan.name;
+      view_.message = fmt::format("Opened {}: isovalue {:.4g}{}, {}", scan.name, scan.isovalue, scan.unit,
+                                  scan.isovalue_from);
       view_.result.clear();
       sender_.reset();
       simulation_.reset();
@@ -297,10 +373,10 @@ class Simulator {
       view_.wanted = opened.milling.session->setup();
       view_.help = view_.help && first_time_of_help();
     }
-    options_.scan = opened_scan_;
+    options_.scan = scan.source;
     const PixelSize size = window_.size();
-    view_.box = opened.box;
-    window_.set_title(std::filesystem::path(opened.name).filename().string() + " - osteomill");
+    view_.box = scan.box;
+    window_.set_title(std::filesystem::path(scan.name).filename().string() + " - osteomill");
     view_.camera = first_camera(view_.box, size);
     const Volume& bone = opened.milling.session->volume();
     // Before its upper half, so that the shaft leaves the bone in sight.
@@ -333,8 +409,8 @@ class Simulator {
     reset_cuts(view_);
     cuts_ = {};
     to_draw_.clear();
-    renderer_ =
-        std::make_unique<SceneRenderer>(milling.surface_layout(), milling.geometry(), simulation_->labels);
+    renderer_ = std::make_unique<SceneRenderer>(milling.follower().layout(), milling.geometry(),
+                                                simulation_->scan.labels);
   }
 
   void wait_for_scan() {
@@ -384,11 +460,11 @@ class Simulator {
     draw_controls(view_, *simulation_, files_, size);
     const float bottom_px = files_.draw_said(view_, *simulation_, size);
     float top_px = draw_readings(view_, *simulation_, rate_.per_s(), size);
-    top_px = draw_labels(view_, *simulation_, size, {top_px, bottom_px});
+    top_px = draw_labels(view_, *simulation_, {top_px, bottom_px});
     draw_help(view_, size, {top_px, bottom_px});
     if (opening_.valid()) draw_opening();
-    if (const auto recording_s = files_.recording_s(*simulation_)) draw_recording(*recording_s, size);
-    draw_no_go(*simulation_, size);
+    if (const auto recording_s = files_.recording_s(*simulation_)) draw_recording(*recording_s);
+    draw_no_go(*simulation_);
     set_sound();
   }
 
@@ -427,14 +503,7 @@ class Simulator {
   void save_picture() {
     try {
       Image picture = this->picture(view_.camera);
-      const double scale = window_.ui_scale();
-      const PixelSize usual{static_cast<int>(picture.width / scale),
-                            static_cast<int>(picture.height / scale)};
-      draw_annotation(picture, scale_bar_annotation(view_.camera, usual), kInkOnDark, scale);
-      if (!options_.scan.scan.empty()) {
-        for (const Annotation& letter : orientation_letters(view_.camera, usual))
-          draw_annotation(picture, letter, kInkOnDark, scale);
-      }
+      annotate(picture, view_.camera, !options_.scan.scan.empty(), kInkOnDark, window_.ui_scale());
       create_folder(options_.folder);
       const auto path = files_.name("picture.png");
       write_png(path, picture);
@@ -482,7 +551,7 @@ class Simulator {
         "p99 {:.0f} us, force {:.2f} N, removed {:.3f} mm³, {} cuts, scan {}\n",
         text, rate_.per_s(), 1e3 * cpu_s / std::max(pictures_since_said_, 1), renderer_->triangle_count(),
         timing.ticks_per_s, timing.late_ticks, timing.step.p99_us, record.wrench.force_N.norm(),
-        record.removed_mm3, simulation_->milling.cuts(), simulation_->scan_name);
+        record.removed_mm3, simulation_->milling.follower().cuts(), simulation_->scan.name);
     for (const std::string& complaint : view_.dialogues.complaints()) fmt::print("dialogue: {}\n", complaint);
     std::fflush(stdout);
     said_cpu_ = std::clock();
@@ -490,6 +559,8 @@ class Simulator {
   }
 
   SimulatorOptions options_;
+  // With which the first scan is opened.
+  MillingSetup setup_;
   std::unique_ptr<ConnectedDevice> hardware_;
   Window window_;
   std::optional<UiScript> script_;
@@ -524,8 +595,37 @@ class Simulator {
 
 }  // namespace
 
-void run_simulator(const SimulatorOptions& options) {
-  Simulator(options).run();
+void add_simulate_command(CLI::App& program, const std::string& command_line) {
+  auto options = std::make_shared<SimulatorOptions>();
+  options->command_line = command_line;
+  options->milling.setup.cutting_reaction = true;
+  CLI::App* command =
+      program.add_subcommand("simulate", "Open the window: see the bone, take the burr, mill");
+  command->group("In a window");
+  add_scan_options(*command, options->scan);
+  command->option_defaults()->group("Algorithm");
+  add_algorithm_option(*command, options->algorithm);
+  command->get_option("--algorithm")->expected(1);
+  add_milling_options(*command, options->milling);
+  add_device_option(*command, options->device);
+  add_send_options(*command, options->send);
+  command->option_defaults()->group("The window");
+  command->add_option("--out", options->folder, "For recordings and what is saved")
+      ->type_name("FOLDER")
+      ->capture_default_str();
+  command
+      ->add_option("--ui-scale", options->ui_scale,
+                   "How much larger than usual text is (2 at 4K), else as the screen asks for")
+      ->check(CLI::Range(kMinScale, kMaxScale));
+  command->add_flag("--no-help", options->no_help,
+                    "Begin without the page that explains the controls (else shown the first time)");
+  command
+      ->add_option("--script", options->script, "Work the window from this file (app/simulate/ui_script.h)")
+      ->type_name("FILE");
+  command->callback([=] {
+    apply_config_file(*command);
+    Simulator(*options).run();
+  });
 }
 
 }  // namespace osteomill::app

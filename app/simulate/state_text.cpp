@@ -1,5 +1,3 @@
-#include "app/simulate/state_text.h"
-
 #include <algorithm>
 #include <string_view>
 #include <vector>
@@ -97,9 +95,9 @@ std::optional<double> stiffness_of(const MillingSetup& setup) {
 }
 
 std::string isovalue_text(const Simulation& simulation) {
-  if (simulation.milling.isovalue() == simulation.first_isovalue) return simulation.isovalue_from;
-  return fmt::format("set here; first {:.4g}{}, {}", simulation.first_isovalue, simulation.unit,
-                     simulation.isovalue_from);
+  if (simulation.milling.isovalue() == simulation.scan.isovalue) return simulation.scan.isovalue_from;
+  return fmt::format("set here; first {:.4g}{}, {}", simulation.scan.isovalue, simulation.scan.unit,
+                     simulation.scan.isovalue_from);
 }
 
 std::string state_text(const std::string& name, const ViewState& view, Simulation& simulation,
@@ -115,13 +113,13 @@ std::string state_text(const std::string& name, const ViewState& view, Simulatio
   lines.add("force_N", fmt::format("{:.3f}", state.record.wrench.force_N.norm()));
   lines.add("in_hand", view.holding_tool);
   lines.add("spindle", state.spindle_on);
-  lines.add("paused", state.paused);
+  lines.add("paused", state.record.paused);
   lines.add("heard_rpm", fmt::format("{:.0f}", heard.speed_rpm));
   lines.add("isovalue", fmt::format("{:.6g}", milling.isovalue()));
   lines.add("isovalue_from", isovalue_text(simulation));
   lines.add("warnings", simulation.warnings.empty() ? "" : simulation.warnings.front());
   lines.add("removed_mm3", fmt::format("{:.3f}", state.record.removed_mm3));
-  lines.add("cuts", milling.cuts());
+  lines.add("cuts", milling.follower().cuts());
   for (std::size_t n = 0; n < simulation.label_count.labels().size(); ++n) {
     const bool counted = n + 1 < simulation.removed_by_label_mm3.size();
     lines.add("removed of " + simulation.label_count.labels()[n].name,
@@ -136,7 +134,7 @@ std::string state_text(const std::string& name, const ViewState& view, Simulatio
   const auto recording_s = files.recording_s(simulation);
   lines.add("badge", recording_s ? recording_text(*recording_s) : "");
   lines.add("last_recording", files.last_recording().string());
-  lines.add("scan", simulation.scan_name);
+  lines.add("scan", simulation.scan.name);
   lines.add("help", view.help);
   lines.add("message", view.message);
   lines.add("dialogue", view.dialogues.shown() != nullptr ? view.dialogues.shown()->text : "");

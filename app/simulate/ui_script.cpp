@@ -98,8 +98,8 @@ void UiScript::press(const Action& action, bool down) {
 void UiScript::begin(const Action& action, Window& window) {
   begun_ = true;
   time_left_s_ = 0;
-  from_x_ = to_x_ = x_;
-  from_y_ = to_y_ = y_;
+  to_x_ = x_;
+  to_y_ = y_;
   const std::string& name = action.name;
   if (name == "wait") {
     time_left_s_ = number(action, 0);
@@ -123,8 +123,8 @@ void UiScript::begin(const Action& action, Window& window) {
       throw InputError(path_.string(),
                        fmt::format("line {}: nothing is called '{}' now", action.line, label));
     }
-    x_ = from_x_ = to_x_ = found->second.middle.x;
-    y_ = from_y_ = to_y_ = found->second.middle.y;
+    x_ = to_x_ = found->second.middle.x;
+    y_ = to_y_ = found->second.middle.y;
     if (name == "drag") to_x_ += static_cast<float>(number(action, action.words.size() - 1));
     click_picture_ = 1;
   } else if (name == "type") {
@@ -195,7 +195,8 @@ void UiScript::end() const {
   if (controls_path_.empty()) return;
   std::ofstream file(controls_path_, std::ios::app);
   for (const auto& [label, place] : ui::places()) file << "drawn " << label << '\n';
-  for (const std::string& label : ui::worked()) file << "worked " << label << '\n';
+  for (const auto& [label, place] : ui::places())
+    if (place.worked) file << "worked " << label << '\n';
 }
 
 UiScript::Saying UiScript::after_drawing(const Window& window) {

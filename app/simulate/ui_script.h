@@ -81,8 +81,6 @@ class UiScript {
   float y_ = 300;
   float to_x_ = 400;
   float to_y_ = 300;
-  float from_x_ = 400;
-  float from_y_ = 300;
   bool buttons_[3] = {false, false, false};
   int click_picture_ = 0;
   double wheel_left_ = 0;

@@ -25,11 +25,6 @@ std::map<std::string, Place>& places() {
   return kept;
 }
 
-std::set<std::string>& worked() {
-  static std::set<std::string> kept;
-  return kept;
-}
-
 namespace {
 
 // Remembers the widget drawn last. Returns whether it acted.
@@ -38,12 +33,24 @@ bool remember(const char* label, bool acted) {
   text.erase(std::min(text.find("##"), text.size()));
   const ImVec2 min = ImGui::GetItemRectMin();
   const ImVec2 max = ImGui::GetItemRectMax();
-  places()[text] = {{0.5f * (min.x + max.x), 0.5f * (min.y + max.y)}, ImGui::GetFrameCount()};
-  if (acted) worked().insert(text);
+  Place& place = places()[text];
+  place = {{0.5f * (min.x + max.x), 0.5f * (min.y + max.y)}, ImGui::GetFrameCount(), place.worked || acted};
   return acted;
 }
 
 }  // namespace
+
+void begin_right(const char* title, float y_px, ImGuiWindowFlags flags) {
+  ImGui::SetNextWindowPos({ImGui::GetIO().DisplaySize.x - px(kRightWidth_px + 8), y_px});
+  ImGui::SetNextWindowSize({px(kRightWidth_px), 0});
+  ImGui::Begin(title, nullptr, flags | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize);
+}
+
+float end_right() {
+  const float below_px = ImGui::GetWindowPos().y + ImGui::GetWindowSize().y + px(8);
+  ImGui::End();
+  return below_px;
+}
 
 bool button(const char* label, bool enabled) {
   if (!enabled) ImGui::BeginDisabled();
@@ -75,10 +82,6 @@ bool header(const char* label, bool open) {
   return shown;
 }
 
-bool released() {
-  return ImGui::IsItemDeactivatedAfterEdit();
-}
-
 std::optional<std::size_t> choice(const std::vector<std::string>& labels) {
   std::optional<std::size_t> chosen;
   for (std::size_t n = 0; n < labels.size(); ++n) {
@@ -91,8 +94,22 @@ std::optional<std::size_t> choice(const std::vector<std::string>& labels) {
   const auto pressed = [](int key) { return ImGui::IsKeyPressed(key, false); };
   if (pressed(GLFW_KEY_ENTER) || pressed(GLFW_KEY_KP_ENTER)) chosen = 0;
   if (pressed(GLFW_KEY_ESCAPE)) chosen = labels.size() - 1;
-  if (chosen) worked().insert(labels[*chosen]);
+  if (chosen) places()[labels[*chosen]].worked = true;
   return chosen;
+}
+
+void badge(const std::string& text, float top_px, float margin_px, ImU32 ground, bool dot) {
+  constexpr ImU32 kWhite = IM_COL32(255, 255, 255, 255);
+  const ImVec2 text_px = ImGui::CalcTextSize(text.c_str());
+  const ImVec2 place(0.5f * (ImGui::GetIO().DisplaySize.x - text_px.x), top_px + margin_px);
+  const float before = (dot ? 3 : 2) * margin_px, after = (dot ? 1 : 2) * margin_px;
+  ImDrawList& list = *ImGui::GetForegroundDrawList();
+  list.AddRectFilled({place.x - before, place.y - margin_px},
+                     {place.x + text_px.x + after, place.y + text_px.y + margin_px}, ground, margin_px);
+  if (dot) {
+    list.AddCircleFilled({place.x - 1.6f * margin_px, place.y + 0.5f * text_px.y}, 0.6f * margin_px, kWhite);
+  }
+  list.AddText(place, kWhite, text.c_str());
 }
 
 void hint(const char* text) {

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "osteomill/experiment/paper.h"
-#include "osteomill/recording/describe_run.h"
+#include "osteomill/recording/run_description.h"
 
 namespace osteomill {
 

@@ -1,10 +1,8 @@
 #include "osteomill/files/atomic_file.h"
 
 #include <cerrno>
-#include <cstdio>
 #include <cstdlib>
 #include <fstream>
-#include <memory>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -37,24 +35,18 @@ bool is_device_or_pipe(const fs::path& path) {
 
 void write_into(const fs::path& path, const std::function<void(const fs::path&)>& write) {
   // Whoever opens a FIFO otherwise waits until somebody reads.
-  const int descriptor = ::open(path.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
-  if (descriptor < 0)
+  const int reader_is_there = ::open(path.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
+  if (reader_is_there < 0)
     throw InputError(path.string(),
                      errno == ENXIO ? "is a pipe that nobody reads" : "cannot be opened for writing");
-  ::fcntl(descriptor, F_SETFL, 0);
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> out(::fdopen(descriptor, "wb"), std::fclose);
+  std::ofstream out(path, std::ios::binary);
+  ::close(reader_is_there);
   const TemporaryFolder folder;
   const fs::path whole = folder / ("whole" + path.extension().string());
   write(whole);
-  std::ifstream in(whole, std::ios::binary);
-  std::vector<char> block(1 << 16);
-  bool well = true;
-  while (well && in) {
-    in.read(block.data(), static_cast<std::streamsize>(block.size()));
-    const auto count = static_cast<std::size_t>(in.gcount());
-    well = std::fwrite(block.data(), 1, count, out.get()) == count;
-  }
-  if (!well || std::fflush(out.get()) != 0) throw InputError(path.string(), "cannot be written to its end");
+  out << std::ifstream(whole, std::ios::binary).rdbuf();
+  out.close();
+  if (!out) throw InputError(path.string(), "cannot be written to its end");
 }
 
 void rename_to(const fs::path& from, const fs::path& target, const fs::path& path) {

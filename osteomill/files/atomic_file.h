@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <functional>
 #include <ostream>
-#include <string_view>
 
 namespace osteomill {
 

@@ -1,19 +1,9 @@
 #include "osteomill/live/bone_follower.h"
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
-#include <condition_variable>
-#include <limits>
-#include <map>
-#include <mutex>
-#include <optional>
-#include <shared_mutex>
-#include <thread>
 #include <utility>
 
-#include "osteomill/live/cut_history.h"
-#include "osteomill/live/density_handover.h"
 #include "osteomill/numbers/work_progress.h"
 
 namespace osteomill {
@@ -28,240 +18,213 @@ constexpr auto kLookEvery = 20ms;
 // 1 MiB: what comes while the whole surface is meshed at a new isovalue.
 constexpr std::size_t kBricksOnTheirWay = 511;
 
-// What the drawing thread has not taken yet, each brick once.
-class Published {
- public:
-  void add(std::vector<ChangedBrick> changed) {
-    const std::lock_guard lock(mutex_);
-    for (ChangedBrick& brick : changed) bricks_.insert_or_assign(brick.brick, std::move(brick));
-  }
-
-  std::vector<ChangedBrick> take() {
-    std::map<std::size_t, ChangedBrick> bricks;
-    {
-      const std::lock_guard lock(mutex_);
-      bricks.swap(bricks_);
-    }
-    std::vector<ChangedBrick> taken;
-    for (auto& [place, brick] : bricks) taken.push_back(std::move(brick));
-    return taken;
-  }
-
- private:
-  std::mutex mutex_;
-  std::map<std::size_t, ChangedBrick> bricks_;
-};
-
 }  // namespace
 
-struct BoneFollower::Impl {
-  Impl(std::shared_ptr<Volume> milled, std::size_t undo_bytes)
-      : handover(milled->geometry(), kBricksOnTheirWay),
-        layout(milled->geometry().dims),
-        bone(std::move(milled)),
-        copy(std::make_shared<Volume>(*bone)),
-        history(undo_bytes),
-        upkeep(layout),
-        shown_isovalue(bone->isovalue()) {
-    mesh();
-    mesher = std::thread([this] { keep_up(); });
+DensityHandover::DensityHandover(const GridGeometry& geometry, std::size_t capacity)
+    : brick_dims_(geometry.all_voxels().bricks(DensityBlock::kVoxels).dims()),
+      marked_(cell_count(brick_dims_)),
+      order_(cell_count(brick_dims_)),
+      on_their_way_(std::max<std::size_t>(capacity, 1)) {}
+
+void DensityHandover::mark(const VolumeChange& change) noexcept {
+  const VoxelBox& box = change.voxels;
+  if (box.empty()) return;
+  std::size_t waiting = waiting_.load(std::memory_order_relaxed);
+  for_each(box.bricks(DensityBlock::kVoxels), [&](const VoxelIndex& brick) {
+    const auto number = static_cast<std::uint32_t>(row_major(brick_dims_, brick.i, brick.j, brick.k));
+    if (marked_[number]) return;
+    marked_[number] = 1;
+    order_[(next_ + waiting) % order_.size()] = number;
+    ++waiting;
+  });
+  waiting_.store(waiting, std::memory_order_release);
+}
+
+void DensityHandover::send(const Volume& volume, std::size_t max) noexcept {
+  std::size_t waiting = waiting_.load(std::memory_order_relaxed);
+  for (std::size_t n = 0; n < max && waiting > 0; ++n) {
+    const std::uint32_t number = order_[next_];
+    const auto [bi, bj, bk] = cell_at(brick_dims_, number);
+    const VoxelBox voxels = VoxelBox::of_brick({bi, bj, bk}, DensityBlock::kVoxels);
+    if (!on_their_way_.try_push(volume.grid(), voxels.first)) break;
+    next_ = (next_ + 1) % order_.size();
+    --waiting;
+    marked_[number] = 0;
   }
-  ~Impl() {
-    {
-      const std::lock_guard lock(mutex);
-      stopping = true;
-    }
-    woken.notify_one();
-    mesher.join();
-  }
-
-  void keep_up() {
-    const WorkProgress meshing([this](double) {
-      if (stopping) throw WorkStopped();
-    });
-    try {
-      std::unique_lock lock(mutex);
-      while (!stopping) {
-        const auto isovalue = std::exchange(new_isovalue, std::nullopt);
-        lock.unlock();
-        follow(isovalue);
-        mesh();
-        lock.lock();
-        woken.wait_for(lock, kLookEvery, [this] { return stopping || new_isovalue; });
-      }
-    } catch (const WorkStopped&) {
-      // The whole bone was being meshed.
-    }
-  }
-
-  void follow(const std::optional<double>& isovalue) {
-    std::shared_ptr<Volume> milled;
-    VoxelBox where;
-    {
-      const std::lock_guard lock(bone_mutex);
-      if (isovalue && *isovalue != shown_isovalue) {
-        shown_isovalue = *isovalue;
-        upkeep.mark_all();
-      }
-      take_over();
-      milled = bone;
-      where = std::exchange(arrived, {});
-    }
-    milled->prepare_about(where);
-  }
-
-  // The others may read meanwhile; no other thread marks what is to be meshed while one holds the lock.
-  void mesh() {
-    const std::shared_lock lock(bone_mutex);
-    published.add(upkeep.remesh({copy->grid(), copy->bricks(), shown_isovalue}));
-  }
-
-  // A bounded number, so that bricks which come as fast as they are taken cannot put off the meshing.
-  void take_over() {
-    DensityBlock* brick = handover.front();
-    for (std::size_t n = 0; brick != nullptr && n < kBricksOnTheirWay; ++n) {
-      if (put(*brick)) {
-        history.keep(*brick);
-        arrived.include(brick->first);
-        arrived.include(brick->last());
-      }
-      handover.pop();
-      brick = handover.front();
-    }
-  }
-
-  // What was there is in the brick afterwards. False where nothing changed.
-  bool put(DensityBlock& brick) {
-    const VoxelBox changed = swap_densities(*copy, brick);
-    if (changed.empty()) return false;
-    upkeep.mark(changed);
-    version.fetch_add(1, std::memory_order_release);
-    return true;
-  }
-
-  // After it `differing` holds what was there.
-  void put_differing() {
-    for (DensityBlock& brick : differing) put(brick);
-  }
-
-  NextBone without(CutHistory::Taken cuts) {
-    isovalue_before = copy->isovalue();
-    taken = std::move(cuts);
-    differing.clear();
-    for (const auto& [place, brick] : taken->bricks) differing.push_back(brick);
-    put_differing();
-    return {copy, taken->removed_mm3, {}};
-  }
-
-  void show(double isovalue) {
-    {
-      const std::lock_guard lock(mutex);
-      new_isovalue = isovalue;
-    }
-    woken.notify_one();
-  }
-
-  DensityHandover handover;
-  const SurfaceBricks layout;
-  Published published;
-  std::atomic<std::uint64_t> version{1};
-
-  // Never taken by the haptic thread. Whoever writes holds it alone: into the copy or what goes with it, or
-  // receives from the haptic thread.
-  mutable std::shared_mutex bone_mutex;
-  // Milled by the haptic thread, which alone reads and writes its densities.
-  std::shared_ptr<Volume> bone;
-  std::shared_ptr<Volume> copy;
-  VoxelBox arrived;  // since the thread last looked
-  CutHistory history;
-  SurfaceUpkeep upkeep;
-  double shown_isovalue;
-  // While the copy is to become the bone: how the two differ.
-  std::vector<DensityBlock> differing;
-  std::optional<CutHistory::Taken> taken;
-  double isovalue_before = 0;
-  // The most that a voxel milled empty may have kept.
-  float emptied = std::numeric_limits<float>::lowest();
-
-  std::mutex mutex;
-  std::condition_variable woken;
-  std::optional<double> new_isovalue;
-  std::atomic<bool> stopping = false;
-  std::thread mesher;
-};
+  waiting_.store(waiting, std::memory_order_release);
+}
 
 BoneFollower::BoneFollower(std::shared_ptr<Volume> bone, std::size_t undo_bytes)
-    : impl_(std::make_unique<Impl>(std::move(bone), undo_bytes)) {}
+    : handover_(bone->geometry(), kBricksOnTheirWay),
+      layout_(bone->geometry().dims),
+      bone_(std::move(bone)),
+      copy_(std::make_shared<Volume>(*bone_)),
+      history_(undo_bytes),
+      upkeep_(layout_),
+      shown_isovalue_(bone_->isovalue()) {
+  mesh();
+  mesher_ = std::thread([this] { keep_up(); });
+}
 
-BoneFollower::~BoneFollower() = default;
+BoneFollower::~BoneFollower() {
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+  }
+  woken_.notify_one();
+  mesher_.join();
+}
+
+void BoneFollower::keep_up() {
+  const WorkProgress meshing([this](double) {
+    if (stopping_) throw WorkStopped();
+  });
+  try {
+    std::unique_lock lock(mutex_);
+    while (!stopping_) {
+      const auto isovalue = std::exchange(new_isovalue_, std::nullopt);
+      lock.unlock();
+      follow(isovalue);
+      mesh();
+      lock.lock();
+      woken_.wait_for(lock, kLookEvery, [this] { return stopping_ || new_isovalue_; });
+    }
+  } catch (const WorkStopped&) {
+    // The whole bone was being meshed.
+  }
+}
+
+void BoneFollower::follow(const std::optional<double>& isovalue) {
+  std::shared_ptr<Volume> milled;
+  VoxelBox where;
+  {
+    const std::lock_guard lock(bone_mutex_);
+    if (isovalue && *isovalue != shown_isovalue_) {
+      shown_isovalue_ = *isovalue;
+      upkeep_.mark_all();
+    }
+    take_over();
+    milled = bone_;
+    where = std::exchange(arrived_, {});
+  }
+  milled->prepare_about(where);
+}
+
+// The others may read meanwhile; no other thread marks what is to be meshed while one holds the lock.
+void BoneFollower::mesh() {
+  const std::shared_lock lock(bone_mutex_);
+  std::vector<ChangedBrick> changed = upkeep_.remesh({copy_->grid(), copy_->bricks(), shown_isovalue_});
+  const std::lock_guard publishing(published_mutex_);
+  for (ChangedBrick& brick : changed) published_.insert_or_assign(brick.brick, std::move(brick));
+}
+
+// A bounded number, so that bricks which come as fast as they are taken cannot put off the meshing.
+void BoneFollower::take_over() {
+  DensityBlock* brick = handover_.front();
+  for (std::size_t n = 0; brick != nullptr && n < kBricksOnTheirWay; ++n) {
+    if (put(*brick)) {
+      history_.keep(*brick);
+      arrived_.include(brick->first);
+      arrived_.include(brick->last());
+    }
+    handover_.pop();
+    brick = handover_.front();
+  }
+}
+
+// What was there is in the brick afterwards. False where nothing changed.
+bool BoneFollower::put(DensityBlock& brick) {
+  const VoxelBox changed = swap_densities(*copy_, brick);
+  if (changed.empty()) return false;
+  upkeep_.mark(changed);
+  version_.fetch_add(1, std::memory_order_release);
+  return true;
+}
+
+// After it `differing_` holds what was there.
+void BoneFollower::put_differing() {
+  for (DensityBlock& brick : differing_) put(brick);
+}
+
+BoneFollower::NextBone BoneFollower::without(CutHistory::Taken cuts) {
+  isovalue_before_ = copy_->isovalue();
+  taken_ = std::move(cuts);
+  differing_.clear();
+  for (const auto& [place, brick] : taken_->bricks) differing_.push_back(brick);
+  put_differing();
+  return {copy_, taken_->removed_mm3, {}};
+}
 
 void BoneFollower::begin_with(const std::vector<DensityBlock>& milled) {
-  const std::lock_guard lock(impl_->bone_mutex);
+  const std::lock_guard lock(bone_mutex_);
   for (DensityBlock brick : milled) {
     DensityBlock same = brick;
-    swap_densities(*impl_->bone, same);
-    if (impl_->put(brick)) impl_->history.keep(brick);
+    swap_densities(*bone_, same);
+    if (put(brick)) history_.keep(brick);
   }
 }
 
 void BoneFollower::bone_changed(const Volume& bone, const VolumeChange& change) noexcept {
-  impl_->handover.mark(change);
-  impl_->handover.send(bone, kBricksPerTick);
-}
-
-const SurfaceBricks& BoneFollower::layout() const {
-  return impl_->layout;
+  handover_.mark(change);
+  handover_.send(bone, kBricksPerTick);
 }
 
 std::vector<ChangedBrick> BoneFollower::take_changed_bricks() {
-  return impl_->published.take();
+  std::map<std::size_t, ChangedBrick> bricks;
+  {
+    const std::lock_guard lock(published_mutex_);
+    bricks.swap(published_);
+  }
+  std::vector<ChangedBrick> taken;
+  for (auto& [place, brick] : bricks) taken.push_back(std::move(brick));
+  return taken;
 }
 
 void BoneFollower::show_isovalue(double isovalue) {
-  impl_->show(isovalue);
+  {
+    const std::lock_guard lock(mutex_);
+    new_isovalue_ = isovalue;
+  }
+  woken_.notify_one();
 }
 
 void BoneFollower::read(const std::function<void(const Volume&)>& use) const {
-  const std::shared_lock lock(impl_->bone_mutex);
-  use(*impl_->copy);
-}
-
-std::uint64_t BoneFollower::version() const {
-  return impl_->version.load(std::memory_order_acquire);
+  const std::shared_lock lock(bone_mutex_);
+  use(*copy_);
 }
 
 void BoneFollower::begin_cut(double removed_mm3) {
-  const std::lock_guard lock(impl_->bone_mutex);
-  impl_->take_over();
-  impl_->history.begin_cut(removed_mm3);
+  const std::lock_guard lock(bone_mutex_);
+  take_over();
+  history_.begin_cut(removed_mm3);
 }
 
 std::size_t BoneFollower::cuts() const {
-  const std::shared_lock lock(impl_->bone_mutex);
-  return impl_->history.cuts();
+  const std::shared_lock lock(bone_mutex_);
+  return history_.cuts();
 }
 
 bool BoneFollower::touched() const {
-  const std::shared_lock lock(impl_->bone_mutex);
-  return impl_->history.touched();
+  const std::shared_lock lock(bone_mutex_);
+  return history_.touched();
 }
 
 std::vector<DensityBlock> BoneFollower::touched_bricks() const {
-  const std::shared_lock lock(impl_->bone_mutex);
+  const std::shared_lock lock(bone_mutex_);
   std::vector<DensityBlock> bricks;
-  bricks.reserve(impl_->history.first().size());
-  for (const auto& [place, first] : impl_->history.first()) {
-    bricks.emplace_back(impl_->copy->grid(), first.first);
+  bricks.reserve(history_.first().size());
+  for (const auto& [place, first] : history_.first()) {
+    bricks.emplace_back(copy_->grid(), first.first);
   }
   return bricks;
 }
 
 std::vector<double> BoneFollower::drops_by_label() const {
-  const std::shared_lock lock(impl_->bone_mutex);
-  const Volume& bone = *impl_->copy;
+  const std::shared_lock lock(bone_mutex_);
+  const Volume& bone = *copy_;
   if (!bone.labels()) return {};
   std::vector<double> drops(bone.labels()->labels().size() + 1);
-  for (const auto& [place, first] : impl_->history.first()) {
+  for (const auto& [place, first] : history_.first()) {
     const float* before = first.densities.data();
     for_each({first.first, first.last()}, [&](const VoxelIndex& v) {
       const LabelMap::Place label = bone.labels()->at(v);
@@ -273,61 +236,61 @@ std::vector<double> BoneFollower::drops_by_label() const {
 }
 
 bool BoneFollower::catch_up() {
-  const bool all_sent = impl_->handover.waiting() == 0;
-  const std::lock_guard lock(impl_->bone_mutex);
-  impl_->take_over();
-  return all_sent && impl_->handover.front() == nullptr;
+  const bool all_sent = handover_.waiting() == 0;
+  const std::lock_guard lock(bone_mutex_);
+  take_over();
+  return all_sent && handover_.front() == nullptr;
 }
 
 BoneFollower::NextBone BoneFollower::without_last_cut() {
-  const std::lock_guard lock(impl_->bone_mutex);
-  return impl_->without(impl_->history.take_last());
+  const std::lock_guard lock(bone_mutex_);
+  return without(history_.take_last());
 }
 
 BoneFollower::NextBone BoneFollower::as_at_the_beginning() {
-  const std::lock_guard lock(impl_->bone_mutex);
-  return impl_->without(impl_->history.take_all());
+  const std::lock_guard lock(bone_mutex_);
+  return without(history_.take_all());
 }
 
 BoneFollower::NextBone BoneFollower::with_isovalue(double isovalue, double surroundings, double removed_mm3) {
-  Volume& copy = *impl_->copy;
+  Volume& copy = *copy_;
   {
-    const std::lock_guard lock(impl_->bone_mutex);
-    impl_->isovalue_before = copy.isovalue();
+    const std::lock_guard lock(bone_mutex_);
+    isovalue_before_ = copy.isovalue();
     copy.set_isovalue(isovalue);
-    impl_->show(isovalue);
+    show_isovalue(isovalue);
   }
   // Goes through every voxel, while others read.
   const BoneDensities densities = estimate_densities(copy);
-  const std::lock_guard lock(impl_->bone_mutex);
+  const std::lock_guard lock(bone_mutex_);
   // Also at an isovalue before this one.
-  impl_->emptied = std::max(impl_->emptied, static_cast<float>(surroundings));
-  impl_->differing = impl_->history.keep_emptied(copy.grid(), impl_->emptied, isovalue,
-                                                 static_cast<float>(densities.surroundings));
-  impl_->put_differing();
-  return {impl_->copy, removed_mm3, densities};
+  emptied_ = std::max(emptied_, static_cast<float>(surroundings));
+  differing_ =
+      history_.keep_emptied(copy.grid(), emptied_, isovalue, static_cast<float>(densities.surroundings));
+  put_differing();
+  return {copy_, removed_mm3, densities};
 }
 
 void BoneFollower::swap() {
-  const std::lock_guard lock(impl_->bone_mutex);
-  std::swap(impl_->bone, impl_->copy);
-  const Volume& bone = *impl_->bone;
-  for (const DensityBlock& brick : impl_->differing) {
+  const std::lock_guard lock(bone_mutex_);
+  std::swap(bone_, copy_);
+  const Volume& bone = *bone_;
+  for (const DensityBlock& brick : differing_) {
     DensityBlock now(bone.grid(), brick.first);
-    swap_densities(*impl_->copy, now);
+    swap_densities(*copy_, now);
   }
-  impl_->copy->set_isovalue(bone.isovalue());
-  impl_->differing.clear();
-  impl_->taken.reset();
+  copy_->set_isovalue(bone.isovalue());
+  differing_.clear();
+  taken_.reset();
 }
 
 void BoneFollower::give_up() {
-  const std::lock_guard lock(impl_->bone_mutex);
-  impl_->put_differing();
-  impl_->differing.clear();
-  if (impl_->taken) impl_->history.put_back(*std::exchange(impl_->taken, std::nullopt));
-  impl_->copy->set_isovalue(impl_->isovalue_before);
-  impl_->show(impl_->isovalue_before);
+  const std::lock_guard lock(bone_mutex_);
+  put_differing();
+  differing_.clear();
+  if (taken_) history_.put_back(*std::exchange(taken_, std::nullopt));
+  copy_->set_isovalue(isovalue_before_);
+  show_isovalue(isovalue_before_);
 }
 
 }  // namespace osteomill

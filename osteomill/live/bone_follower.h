@@ -1,12 +1,22 @@
 #pragma once
 
+#include <array>
+#include <atomic>
+#include <condition_variable>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
+#include <shared_mutex>
+#include <thread>
 #include <vector>
 
+#include "osteomill/live/cut_history.h"
+#include "osteomill/numbers/spsc_queue.h"
 #include "osteomill/surface/surface_bricks.h"
 #include "osteomill/surface/surface_upkeep.h"
 #include "osteomill/volume/densities.h"
@@ -14,6 +24,39 @@
 #include "osteomill/volume/volume.h"
 
 namespace osteomill {
+
+/// Copies of changed densities on their way from the thread that mills to one that keeps a copy of the
+/// volume. One thread marks and sends, one receives, and neither ever waits. What finds no room, or exceeds
+/// what a tick may copy, stays marked and is sent later as it is then, so that once everything marked has
+/// been sent and received both sides are the same.
+class DensityHandover {
+ public:
+  /// Room for `capacity` bricks (or a few more) on their way, 2 KiB each. Allocates everything.
+  DensityHandover(const GridGeometry& geometry, std::size_t capacity);
+
+  /// The milling thread: what changed has to be sent. Safe in the haptic tick.
+  void mark(const VolumeChange& change) noexcept;
+  /// The milling thread: copies up to `max` of the bricks marked, the longest marked first. Safe in the
+  /// haptic tick.
+  void send(const Volume& volume, std::size_t max) noexcept;
+  /// How many bricks are marked and not sent. From any thread: those it does not count can be received.
+  std::size_t waiting() const noexcept { return waiting_.load(std::memory_order_acquire); }
+
+  /// The receiving thread: the next brick, its own until `pop`; null where there is none.
+  DensityBlock* front() noexcept { return on_their_way_.front(); }
+  void pop() noexcept { on_their_way_.pop(); }
+
+ private:
+  std::array<int, 3> brick_dims_;
+
+  // Bricks marked: a flag each, and their numbers in a ring in the order in which they were marked.
+  std::vector<std::uint8_t> marked_;
+  std::vector<std::uint32_t> order_;
+  std::size_t next_ = 0;
+  std::atomic<std::size_t> waiting_{0};
+
+  SpscQueue<DensityBlock> on_their_way_;
+};
 
 /// Follows a bone that is being milled, for all who are not the haptic thread: the one copy of its densities
 /// (which shares with it what was not milled), from which its surface is kept up on a thread of its own, cuts
@@ -42,7 +85,7 @@ class BoneFollower {
   /// copies at most a few bricks of 2 KiB, and never waits, allocates or throws.
   void bone_changed(const Volume& bone, const VolumeChange& change) noexcept;
 
-  const SurfaceBricks& layout() const;
+  const SurfaceBricks& layout() const { return layout_; }
   /// What changed of the surface since the last call, each brick once, as it is now; in the order of the
   /// bricks. The first call that brings anything brings the whole surface. For one drawing thread; never
   /// waits for meshing.
@@ -54,7 +97,7 @@ class BoneFollower {
   /// Lets `use` read the bone as last handed over, some ticks behind; nothing is taken over meanwhile.
   void read(const std::function<void(const Volume&)>& use) const;
   /// Grows with every change of what is read.
-  std::uint64_t version() const;
+  std::uint64_t version() const { return version_.load(std::memory_order_acquire); }
 
   /// What comes from now on belongs to another cut; `removed_mm3` is what had been removed before it.
   void begin_cut(double removed_mm3);
@@ -93,8 +136,43 @@ class BoneFollower {
   void give_up();
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  void keep_up();
+  void follow(const std::optional<double>& isovalue);
+  void mesh();
+  void take_over();
+  bool put(DensityBlock& brick);
+  void put_differing();
+  NextBone without(CutHistory::Taken cuts);
+
+  DensityHandover handover_;
+  const SurfaceBricks layout_;
+  // What the drawing thread has not taken yet, each brick once.
+  std::mutex published_mutex_;
+  std::map<std::size_t, ChangedBrick> published_;
+  std::atomic<std::uint64_t> version_{1};
+
+  // Never taken by the haptic thread. Whoever writes holds it alone: into the copy or what goes with it, or
+  // receives from the haptic thread.
+  mutable std::shared_mutex bone_mutex_;
+  // Milled by the haptic thread, which alone reads and writes its densities.
+  std::shared_ptr<Volume> bone_;
+  std::shared_ptr<Volume> copy_;
+  VoxelBox arrived_;  // since the thread last looked
+  CutHistory history_;
+  SurfaceUpkeep upkeep_;
+  double shown_isovalue_;
+  // While the copy is to become the bone: how the two differ.
+  std::vector<DensityBlock> differing_;
+  std::optional<CutHistory::Taken> taken_;
+  double isovalue_before_ = 0;
+  // The most that a voxel milled empty may have kept.
+  float emptied_ = std::numeric_limits<float>::lowest();
+
+  std::mutex mutex_;
+  std::condition_variable woken_;
+  std::optional<double> new_isovalue_;
+  std::atomic<bool> stopping_ = false;
+  std::thread mesher_;
 };
 
 }  // namespace osteomill

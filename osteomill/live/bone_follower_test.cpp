@@ -13,7 +13,6 @@
 #include "tests/support/mesh_checks.h"
 #include <gtest/gtest.h>
 
-#include "osteomill/live/density_handover.h"
 #include "osteomill/milling/burr_mill.h"
 #include "osteomill/surface/surface_mesh.h"
 

@@ -1,7 +1,5 @@
 #include "osteomill/live/bone_sender.h"
 
-#include <array>
-#include <chrono>
 #include <limits>
 #include <memory>
 #include <utility>

@@ -1,14 +1,13 @@
 #include "osteomill/live/live_milling.h"
 
 #include <chrono>
-#include <string_view>
 #include <thread>
 #include <utility>
 
 #include "osteomill/files/input_error.h"
 #include "osteomill/numbers/work_progress.h"
-#include "osteomill/recording/describe_run.h"
 #include "osteomill/recording/recording.h"
+#include "osteomill/recording/run_description.h"
 #include "osteomill/volume/density_grid.h"
 
 namespace osteomill {

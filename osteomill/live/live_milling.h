@@ -69,10 +69,6 @@ class LiveMilling {
   /// Takes the last cut back; or all of them.
   void undo();
   void reset();
-  std::size_t cuts() const { return follower_->cuts(); }
-  bool touched() const { return follower_->touched(); }
-  /// Every brick that was ever milled, as it is now; from any thread.
-  std::vector<DensityBlock> touched_bricks() const { return follower_->touched_bricks(); }
 
   /// How much of each label's bone has gone since the beginning, mm^3 of reference density, by the labels'
   /// places from 1; what was taken back counts no more. Empty for a bone without labels.
@@ -107,16 +103,12 @@ class LiveMilling {
   const GridGeometry& geometry() const { return live_.session().volume().geometry(); }
   double isovalue() const { return live_.session().volume().isovalue(); }
 
-  /// The isosurface's bricks, what changed of it since the last call, and how it would look at another
-  /// isovalue (BoneFollower).
-  const SurfaceBricks& surface_layout() const { return follower_->layout(); }
+  /// The bone as it is milled, some ticks behind: its surface, cuts and densities; from any thread.
+  const BoneFollower& follower() const { return *follower_; }
+  /// What changed of its surface since the last call, and how that would look at another isovalue
+  /// (BoneFollower).
   std::vector<ChangedBrick> take_changed_bricks() { return follower_->take_changed_bricks(); }
   void show_isovalue(double isovalue) { follower_->show_isovalue(isovalue); }
-  /// Lets `use` read the bone, some ticks behind; from any thread. The version grows with every change.
-  void read_bone(const std::function<void(const Volume&)>& use) const { follower_->read(use); }
-  std::uint64_t bone_version() const { return follower_->version(); }
-  /// For whoever else follows the bone (BoneSender).
-  const BoneFollower& follower() const { return *follower_; }
 
  private:
   struct Prepared {

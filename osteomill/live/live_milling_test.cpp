@@ -71,7 +71,7 @@ class LiveMillingTest : public ::testing::Test {
 
   CopyOnWriteFloats bone() const {
     CopyOnWriteFloats densities;
-    milling_.read_bone([&](const Volume& bone) { densities = bone.grid().densities(); });
+    milling_.follower().read([&](const Volume& bone) { densities = bone.grid().densities(); });
     return densities;
   }
 
@@ -82,7 +82,7 @@ class LiveMillingTest : public ::testing::Test {
         surface_[brick.brick] = std::move(brick.mesh);
       }
       bool same = false;
-      milling_.read_bone(
+      milling_.follower().read(
           [&](const Volume& bone) { same = surface_ == mesh_surface(DensityView(bone)).bricks; });
       if (same) return true;
       std::this_thread::sleep_for(20ms);
@@ -96,7 +96,7 @@ class LiveMillingTest : public ::testing::Test {
   VirtualHand hand_{{}, pointing_hand(), pose_above(entry_, setup_.tool, 0.2)};
   LiveMilling milling_{bone_, setup_, hand_};
   const CopyOnWriteFloats untouched_ = ball_of_bone()->grid().densities();
-  std::vector<BrickMesh> surface_ = std::vector<BrickMesh>(milling_.surface_layout().count());
+  std::vector<BrickMesh> surface_ = std::vector<BrickMesh>(milling_.follower().layout().count());
 };
 
 TEST_F(LiveMillingTest, TakesCutsBackOneByOneAndMillsOn) {
@@ -104,7 +104,7 @@ TEST_F(LiveMillingTest, TakesCutsBackOneByOneAndMillsOn) {
   const CopyOnWriteFloats after_first = bone();
   const double removed_mm3 = milling_.state().record.removed_mm3;
   mill(0.3);
-  EXPECT_EQ(milling_.cuts(), 2u);
+  EXPECT_EQ(milling_.follower().cuts(), 2u);
   EXPECT_NE(bone(), after_first);
   milling_.undo();
   milling_.finish_preparing();
@@ -116,10 +116,10 @@ TEST_F(LiveMillingTest, TakesCutsBackOneByOneAndMillsOn) {
   EXPECT_NEAR(of_label_mm3[1] + of_label_mm3[2], removed_mm3, 1e-6);
   EXPECT_GT(of_label_mm3[1], 0.2 * removed_mm3);
   EXPECT_GT(of_label_mm3[2], 0.2 * removed_mm3);
-  EXPECT_EQ(milling_.cuts(), 1u);
+  EXPECT_EQ(milling_.follower().cuts(), 1u);
   EXPECT_TRUE(surface_is_the_bones());
   mill(0.3);
-  EXPECT_EQ(milling_.cuts(), 2u);
+  EXPECT_EQ(milling_.follower().cuts(), 2u);
   EXPECT_TRUE(surface_is_the_bones());
   milling_.reset();
   milling_.finish_preparing();
@@ -127,7 +127,7 @@ TEST_F(LiveMillingTest, TakesCutsBackOneByOneAndMillsOn) {
   EXPECT_EQ(bone(), untouched_);
   EXPECT_EQ(milling_.state().record.removed_mm3, 0);
   EXPECT_EQ(milling_.removed_by_label(), (std::vector<double>{0, 0, 0}));
-  EXPECT_FALSE(milling_.touched());
+  EXPECT_FALSE(milling_.follower().touched());
   EXPECT_TRUE(surface_is_the_bones());
 }
 
@@ -139,7 +139,7 @@ TEST_F(LiveMillingTest, TheBoneThatIsFeltIsTheBoneThatIsSeen) {
     milling_.finish_preparing();
     mill(0.2);
   }
-  const std::uint64_t version = milling_.bone_version();
+  const std::uint64_t version = milling_.follower().version();
   hand_.pull_to(pose_above(entry_, setup_.tool, -4.0));
   for (int n = 0; n < 400 && milling_.state().record.wrench.force_N.norm() < 1.0; ++n) {
     std::this_thread::sleep_for(5ms);
@@ -147,7 +147,7 @@ TEST_F(LiveMillingTest, TheBoneThatIsFeltIsTheBoneThatIsSeen) {
   // The burr rests on what is left: its lowest point is on the surface of the copy.
   const Pose X_WT = milling_.state().record.X_WT;
   const Vec3 lowest_W = X_WT.position_mm + setup_.tool.burr_radius_mm * entry_.direction_W;
-  milling_.read_bone([&](const Volume& bone) {
+  milling_.follower().read([&](const Volume& bone) {
     const GridGeometry& geometry = bone.geometry();
     const auto density_at = [&](const Vec3& point_W) {
       const Vec3 voxel = geometry.voxel_from_world(point_W);
@@ -157,7 +157,7 @@ TEST_F(LiveMillingTest, TheBoneThatIsFeltIsTheBoneThatIsSeen) {
     EXPECT_GT(density_at(lowest_W + 0.5 * entry_.direction_W), kIsovalue);
     EXPECT_LT(density_at(X_WT.position_mm), kIsovalue);
   });
-  EXPECT_EQ(milling_.bone_version(), version);
+  EXPECT_EQ(milling_.follower().version(), version);
 }
 
 TEST_F(LiveMillingTest, AnotherAlgorithmAndToolTakeOver) {
@@ -211,8 +211,8 @@ TEST_F(LiveMillingTest, WhatWasMilledIsTheSameToTheBitAfterOtherIsovalues) {
   milling_.undo();
   milling_.finish_preparing();
   EXPECT_EQ(bone(), untouched_);
-  EXPECT_FALSE(milling_.touched());
-  milling_.read_bone([](const Volume& bone) { EXPECT_EQ(bone.isovalue(), 300); });
+  EXPECT_FALSE(milling_.follower().touched());
+  milling_.follower().read([](const Volume& bone) { EXPECT_EQ(bone.isovalue(), 300); });
   EXPECT_TRUE(surface_is_the_bones());
 }
 
@@ -224,23 +224,24 @@ TEST_F(LiveMillingTest, GoesOnWithWhatWasMilledBefore) {
   milling_.stop();
 
   VirtualHand hand({}, pointing_hand(), pose_above(entry_, setup_.tool, 0.2));
-  const SessionStart before{
-      .run = milling_.describe("ball", ""), .removed_mm3 = removed_mm3, .bricks = milling_.touched_bricks()};
+  const SessionStart before{.run = milling_.describe("ball", ""),
+                            .removed_mm3 = removed_mm3,
+                            .bricks = milling_.follower().touched_bricks()};
   const auto another = ball_of_bone();
   another->lower_density({25, 25, 25}, 1);
   EXPECT_THROW(prepare_milling(another, setup_, before), InputError);
   LiveMilling again(prepare_milling(ball_of_bone(), setup_, before), hand);
   const auto bone_again = [&] {
     CopyOnWriteFloats densities;
-    again.read_bone([&](const Volume& bone) { densities = bone.grid().densities(); });
+    again.follower().read([&](const Volume& bone) { densities = bone.grid().densities(); });
     return densities;
   };
   EXPECT_EQ(bone_again(), milled);
-  EXPECT_TRUE(again.touched());
+  EXPECT_TRUE(again.follower().touched());
   again.start();
   std::this_thread::sleep_for(20ms);
   EXPECT_EQ(again.state().record.removed_mm3, removed_mm3);
-  EXPECT_EQ(again.cuts(), 1u);
+  EXPECT_EQ(again.follower().cuts(), 1u);
   again.undo();
   again.finish_preparing();
   EXPECT_EQ(bone_again(), untouched_);

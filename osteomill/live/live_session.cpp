@@ -159,7 +159,7 @@ TickRecord LiveSession::tick(double time_s, double dt_s) {
   record.session = session_number_;
   if (record.placed) letting_go_ = false;
   if (listener_) listener_(record, session_->volume(), session_->last_change());
-  state_.write({record, spindle_on, paused_, session_->intersection_W()});
+  state_.write({record, spindle_on, session_->intersection_W()});
   if (record.placed) placing_.store(false, std::memory_order_release);
   records_.try_push(record);
   return record;

@@ -24,7 +24,6 @@ using TickListener = std::function<void(const TickRecord&, const Volume&, const 
 struct LiveState {
   TickRecord record;
   bool spindle_on = false;
-  bool paused = false;
   /// MillingSession::intersection_W.
   std::optional<Vec3> intersection_W = {};
 };

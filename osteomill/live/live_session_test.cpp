@@ -152,7 +152,7 @@ TEST_F(LiveSessionTest, APauseSendsZeroAndKeepsTheTool) {
   live_.set_paused(true);
   EXPECT_TRUE(comes_true([&] { return is_zero(live_.state().record.wrench); }));
   const LiveState state = live_.state();
-  EXPECT_TRUE(state.paused);
+  EXPECT_TRUE(state.record.paused);
   EXPECT_FALSE(state.spindle_on);
   EXPECT_EQ(state.record.wrench.force_N, Vec3::Zero());
   EXPECT_GT(state.record.X_WT.position_mm.z(), device_.X_WD.position_mm.z());

@@ -1,7 +1,6 @@
 #include "osteomill/live/live_timing.h"
 
 #include <algorithm>
-#include <cmath>
 #include <ctime>
 #include <limits>
 #include <type_traits>

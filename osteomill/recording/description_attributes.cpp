@@ -1,7 +1,5 @@
 #include <algorithm>
-#include <array>
 #include <charconv>
-#include <cmath>
 #include <cstdio>
 #include <optional>
 #include <set>
@@ -43,21 +41,21 @@ Hdf5Handle create_ordered_group(const fs::path& path, hid_t file, const char* na
   return group;
 }
 
-void write_setting(const AttributeWriter& write, const RunSetting& setting) {
+void write_setting(const Attributes& write, const RunSetting& setting) {
   std::visit([&](const auto& value) { write.put(setting.key, value); }, setting.value);
   if (!setting.unit.empty()) write.put(setting.key + std::string(kUnitSuffix), setting.unit);
 }
 
 void write_settings(const fs::path& path, hid_t file, const std::vector<RunSetting>& settings) {
   const Hdf5Handle group = create_ordered_group(path, file, kSettingsGroup);
-  const AttributeWriter write(path, group.get());
+  const Attributes write(path, group.get());
   for (const RunSetting& setting : settings) write_setting(write, setting);
 }
 
 std::vector<RunSetting> read_settings(const fs::path& path, hid_t file) {
   const Hdf5Handle group(H5Gopen2(file, kSettingsGroup, H5P_DEFAULT), H5Gclose);
   if (!group.valid()) throw InputError(path.string(), "has no group of settings");
-  const AttributeReader read(path, group.get());
+  const Attributes read(path, group.get());
   std::vector<RunSetting> settings;
   for (const std::string& name : read.names()) {
     if (name.ends_with(kUnitSuffix)) continue;
@@ -77,7 +75,7 @@ std::vector<RunSetting> read_settings(const fs::path& path, hid_t file) {
 void write_labels(const fs::path& path, hid_t file, const std::vector<Label>& labels) {
   if (labels.empty()) return;
   const Hdf5Handle group = create_ordered_group(path, file, kLabelsGroup);
-  const AttributeWriter write(path, group.get());
+  const Attributes write(path, group.get());
   for (const Label& label : labels) {
     const std::string value = std::to_string(label.value);
     write.put(value + ".name", label.name);
@@ -90,7 +88,7 @@ std::vector<Label> read_labels(const fs::path& path, hid_t file) {
   std::vector<Label> labels;
   if (H5Lexists(file, kLabelsGroup, H5P_DEFAULT) <= 0) return labels;
   const Hdf5Handle group(H5Gopen2(file, kLabelsGroup, H5P_DEFAULT), H5Gclose);
-  const AttributeReader read(path, group.get());
+  const Attributes read(path, group.get());
   for (const std::string& name : read.names()) {
     if (!name.ends_with(".name")) continue;
     const std::string value = name.substr(0, name.find('.'));
@@ -175,7 +173,7 @@ void write_description(const fs::path& path, hid_t file, const RunDescription& d
     throw std::invalid_argument("'" + description.algorithm.name + "', '" + description.phase +
                                 "': an algorithm or a phase that cannot be recorded by that name");
   }
-  const AttributeWriter write(path, file);
+  const Attributes write(path, file);
   visit_attributes(description, [&](const char* name, const auto& value) {
     if constexpr (std::is_same_v<std::decay_t<decltype(value)>, Mode>) {
       write.put(name, std::string(name_of(value)));
@@ -190,11 +188,11 @@ void write_description(const fs::path& path, hid_t file, const RunDescription& d
 void add_setting(const fs::path& path, hid_t file, const RunSetting& setting) {
   const Hdf5Handle group(H5Gopen2(file, kSettingsGroup, H5P_DEFAULT), H5Gclose);
   if (!group.valid()) throw InputError(path.string(), "has no group of settings");
-  write_setting(AttributeWriter(path, group.get()), setting);
+  write_setting(Attributes(path, group.get()), setting);
 }
 
 RunDescription read_description(const fs::path& path, hid_t file) {
-  const AttributeReader read(path, file);
+  const Attributes read(path, file);
   RunDescription run;
   visit_attributes(run, [&](const char* name, auto&& value) {
     if constexpr (std::is_same_v<std::decay_t<decltype(value)>, Mode>) {

@@ -26,8 +26,8 @@ Hdf5Lock::Hdf5Lock() : lock_(hdf5_mutex()) {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
 }
 
-void AttributeWriter::write(const std::string& name, hid_t file_type, hid_t memory_type, hsize_t count,
-                            const void* data) const {
+void Attributes::write(const std::string& name, hid_t file_type, hid_t memory_type, hsize_t count,
+                       const void* data) const {
   const Hdf5Handle space(count == 1 ? H5Screate(H5S_SCALAR) : H5Screate_simple(1, &count, nullptr), H5Sclose);
   const Hdf5Handle attribute(
       H5Acreate2(object_, name.c_str(), file_type, space.get(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
@@ -36,7 +36,7 @@ void AttributeWriter::write(const std::string& name, hid_t file_type, hid_t memo
   }
 }
 
-void AttributeWriter::put(const std::string& name, const std::string& text) const {
+void Attributes::put(const std::string& name, const std::string& text) const {
   if (text.size() > kMaxText) {
     throw std::invalid_argument("the text of '" + name + "' is too long for a recording");
   }
@@ -46,33 +46,33 @@ void AttributeWriter::put(const std::string& name, const std::string& text) cons
   write(name, type.get(), type.get(), 1, text.c_str());
 }
 
-void AttributeWriter::put(const std::string& name, std::uint64_t value) const {
+void Attributes::put(const std::string& name, std::uint64_t value) const {
   write(name, H5T_STD_U64LE, H5T_NATIVE_UINT64, 1, &value);
 }
 
-void AttributeWriter::reals(const std::string& name, std::span<const double> values) const {
+void Attributes::put_reals(const std::string& name, std::span<const double> values) const {
   write(name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, values.size(), values.data());
 }
 
-void AttributeWriter::put(const std::string& name, const std::array<int, 3>& values) const {
+void Attributes::put(const std::string& name, const std::array<int, 3>& values) const {
   write(name, H5T_STD_I32LE, H5T_NATIVE_INT, values.size(), values.data());
 }
 
-void AttributeWriter::replace(const std::string& name, std::uint64_t value) const {
+void Attributes::replace(const std::string& name, std::uint64_t value) const {
   const Hdf5Handle attribute(H5Aopen(object_, name.c_str(), H5P_DEFAULT), H5Aclose);
   if (!attribute.valid() || H5Awrite(attribute.get(), H5T_NATIVE_UINT64, &value) < 0) {
     throw InputError(file_.string(), "the attribute '" + name + "' cannot be written");
   }
 }
 
-Hdf5Handle AttributeReader::open(const std::string& name) const {
+Hdf5Handle Attributes::open(const std::string& name) const {
   Hdf5Handle attribute(H5Aopen(object_, name.c_str(), H5P_DEFAULT), H5Aclose);
   if (!attribute.valid()) throw InputError(file_.string(), "has no attribute '" + name + "'");
   return attribute;
 }
 
-void AttributeReader::read(const std::string& name, H5T_class_t type_class, hid_t memory_type, hssize_t count,
-                           void* data) const {
+void Attributes::read(const std::string& name, H5T_class_t type_class, hid_t memory_type, hssize_t count,
+                      void* data) const {
   const Hdf5Handle attribute = open(name);
   const Hdf5Handle type(H5Aget_type(attribute.get()), H5Tclose);
   const Hdf5Handle space(H5Aget_space(attribute.get()), H5Sclose);
@@ -84,7 +84,7 @@ void AttributeReader::read(const std::string& name, H5T_class_t type_class, hid_
   }
 }
 
-void AttributeReader::get(const std::string& name, std::string& text) const {
+void Attributes::get(const std::string& name, std::string& text) const {
   const Hdf5Handle attribute = open(name);
   const Hdf5Handle type(H5Aget_type(attribute.get()), H5Tclose);
   const Hdf5Handle space(H5Aget_space(attribute.get()), H5Sclose);
@@ -100,38 +100,38 @@ void AttributeReader::get(const std::string& name, std::string& text) const {
   text.resize(std::min(size, text.find('\0')));
 }
 
-double AttributeReader::real_or_infinite(const std::string& name) const {
+double Attributes::real_or_infinite(const std::string& name) const {
   double value = 0;
   read(name, H5T_FLOAT, H5T_NATIVE_DOUBLE, 1, &value);
   if (std::isnan(value)) throw InputError(file_.string(), "the attribute '" + name + "' is not a number");
   return value;
 }
 
-void AttributeReader::get(const std::string& name, std::uint64_t& value) const {
+void Attributes::get(const std::string& name, std::uint64_t& value) const {
   read(name, H5T_INTEGER, H5T_NATIVE_UINT64, 1, &value);
 }
 
-void AttributeReader::reals(const std::string& name, std::span<double> values) const {
+void Attributes::get_reals(const std::string& name, std::span<double> values) const {
   read(name, H5T_FLOAT, H5T_NATIVE_DOUBLE, std::ssize(values), values.data());
   if (!std::ranges::all_of(values, [](double value) { return std::abs(value) <= kMostReal; }))
     throw InputError(file_.string(), "the attribute '" + name + "' is not finite, or beyond 1e12");
 }
 
-void AttributeReader::get(const std::string& name, std::array<int, 3>& values) const {
+void Attributes::get(const std::string& name, std::array<int, 3>& values) const {
   read(name, H5T_INTEGER, H5T_NATIVE_INT, 3, values.data());
 }
 
-bool AttributeReader::has(const std::string& name) const {
+bool Attributes::has(const std::string& name) const {
   return H5Aexists(object_, name.c_str()) > 0;
 }
 
-bool AttributeReader::is_text(const std::string& name) const {
+bool Attributes::is_text(const std::string& name) const {
   const Hdf5Handle attribute = open(name);
   const Hdf5Handle type(H5Aget_type(attribute.get()), H5Tclose);
   return H5Tget_class(type.get()) == H5T_STRING;
 }
 
-std::vector<std::string> AttributeReader::names() const {
+std::vector<std::string> Attributes::names() const {
   std::vector<std::string> names;
   const auto collect = [](hid_t, const char* name, const H5A_info_t*, void* list) -> herr_t {
     static_cast<std::vector<std::string>*>(list)->emplace_back(name);

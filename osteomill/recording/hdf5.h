@@ -67,48 +67,36 @@ inline constexpr double kMostReal = 1e12;
 template <typename Value>
 hid_t memory_type() {
   if constexpr (std::is_same_v<Value, double>) return H5T_NATIVE_DOUBLE;
+  if constexpr (std::is_same_v<Value, unsigned char>) return H5T_NATIVE_UCHAR;
   if constexpr (std::is_same_v<Value, float>) return H5T_NATIVE_FLOAT;
   if constexpr (std::is_same_v<Value, std::int32_t>) return H5T_NATIVE_INT32;
   if constexpr (std::is_same_v<Value, std::uint64_t>) return H5T_NATIVE_UINT64;
 }
 
-/// Writes attributes of one object. Every failure is an InputError that names the file. Under Hdf5Lock.
-class AttributeWriter {
+/// The attributes of one object. Every failure, also of one that is missing, of another type or length, is an
+/// InputError that names the file and the attribute. Under Hdf5Lock.
+class Attributes {
  public:
-  AttributeWriter(std::filesystem::path file, hid_t object) : file_(std::move(file)), object_(object) {}
+  Attributes(std::filesystem::path file, hid_t object) : file_(std::move(file)), object_(object) {}
 
   /// Throws std::invalid_argument for a text of more than 60000 bytes, which HDF5 would not store.
   void put(const std::string& name, const std::string& text) const;
-  void put(const std::string& name, double value) const { reals(name, {&value, 1}); }
+  void put(const std::string& name, double value) const { put_reals(name, {&value, 1}); }
   void put(const std::string& name, std::uint64_t value) const;
-  void put(const std::string& name, const Vec3& value) const { reals(name, {value.data(), 3}); }
+  void put(const std::string& name, const Vec3& value) const { put_reals(name, {value.data(), 3}); }
   void put(const std::string& name, const std::array<int, 3>& values) const;
-  void reals(const std::string& name, std::span<const double> values) const;
+  void put_reals(const std::string& name, std::span<const double> values) const;
   /// Writes over the value of an attribute that is there.
   void replace(const std::string& name, std::uint64_t value) const;
 
- private:
-  void write(const std::string& name, hid_t file_type, hid_t memory_type, hsize_t count,
-             const void* data) const;
-
-  std::filesystem::path file_;
-  hid_t object_;
-};
-
-/// Reads attributes of one object. One that is missing, of another type or length is an InputError that names
-/// the file and the attribute. Under Hdf5Lock.
-class AttributeReader {
- public:
-  AttributeReader(std::filesystem::path file, hid_t object) : file_(std::move(file)), object_(object) {}
-
   void get(const std::string& name, std::string& text) const;
   /// Finite and up to kMostReal, as all reals.
-  void get(const std::string& name, double& value) const { reals(name, {&value, 1}); }
+  void get(const std::string& name, double& value) const { get_reals(name, {&value, 1}); }
   void get(const std::string& name, std::uint64_t& value) const;
-  void get(const std::string& name, Eigen::Ref<Vec3> value) const { reals(name, {value.data(), 3}); }
+  void get(const std::string& name, Eigen::Ref<Vec3> value) const { get_reals(name, {value.data(), 3}); }
   void get(const std::string& name, std::array<int, 3>& values) const;
   /// As many as there is room for.
-  void reals(const std::string& name, std::span<double> values) const;
+  void get_reals(const std::string& name, std::span<double> values) const;
   template <typename Value>
   Value get(const std::string& name) const {
     Value value;
@@ -123,6 +111,8 @@ class AttributeReader {
   std::vector<std::string> names() const;
 
  private:
+  void write(const std::string& name, hid_t file_type, hid_t memory_type, hsize_t count,
+             const void* data) const;
   Hdf5Handle open(const std::string& name) const;
   void read(const std::string& name, H5T_class_t type_class, hid_t memory_type, hssize_t count,
             void* data) const;

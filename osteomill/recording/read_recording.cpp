@@ -47,7 +47,7 @@ OpenRecording open_recording(const fs::path& path) {
   return recording;
 }
 
-void require_our_version(const OpenRecording& recording, const AttributeReader& root) {
+void require_our_version(const OpenRecording& recording, const Attributes& root) {
   if (!root.has("osteomill_recording_version")) refuse(recording, "is HDF5, but no recording of osteomill");
   const auto version = root.get<std::uint64_t>("osteomill_recording_version");
   if (version != kRecordingVersion) {
@@ -56,35 +56,37 @@ void require_our_version(const OpenRecording& recording, const AttributeReader& 
   }
 }
 
-// The length of a dataset of one dimension that holds numbers and, claiming more than the file could hold, is
-// refused. A byte of file for each number lets through what other programs have compressed.
-std::size_t checked_length(const OpenRecording& recording, hid_t dataset, const std::string& name) {
-  const Hdf5Handle type(H5Dget_type(dataset), H5Tclose);
-  const H5T_class_t type_class = H5Tget_class(type.get());
-  const Hdf5Handle space(H5Dget_space(dataset), H5Sclose);
-  if ((type_class != H5T_FLOAT && type_class != H5T_INTEGER) ||
-      H5Sget_simple_extent_ndims(space.get()) != 1) {
-    refuse(recording, "'" + name + "' is not a column of numbers");
-  }
-  hsize_t length = 0;
-  H5Sget_simple_extent_dims(space.get(), &length, nullptr);
-  if (length > recording.bytes) {
-    refuse(recording,
-           "'" + name + "' claims " + std::to_string(length) + " rows, more than the file can hold");
-  }
-  return static_cast<std::size_t>(length);
-}
-
 struct OpenColumn {
   std::string place;
   Hdf5Handle dataset;
-  std::size_t rows;
+  hsize_t width;
+  std::size_t rows = 0;
 };
 
-OpenColumn open_column(const OpenRecording& recording, const std::string& place) {
-  OpenColumn open{place, Hdf5Handle(H5Dopen2(recording.file.get(), place.c_str(), H5P_DEFAULT), H5Dclose), 0};
+// A dataset of `width` numbers a row. One that claims more than the file could hold is refused: a byte of
+// file for each row lets through what other programs have compressed; of wide ones, whatever deflate may
+// save.
+OpenColumn open_column(const OpenRecording& recording, const std::string& place, hsize_t width = 1) {
+  constexpr hsize_t kMostThatDeflateSaves = 1100;
+  OpenColumn open{place, Hdf5Handle(H5Dopen2(recording.file.get(), place.c_str(), H5P_DEFAULT), H5Dclose),
+                  width};
   if (!open.dataset.valid()) refuse(recording, "has no column '" + place + "'");
-  open.rows = checked_length(recording, open.dataset.get(), place);
+  const Hdf5Handle type(H5Dget_type(open.dataset.get()), H5Tclose);
+  const H5T_class_t type_class = H5Tget_class(type.get());
+  const Hdf5Handle space(H5Dget_space(open.dataset.get()), H5Sclose);
+  const int rank = width == 1 ? 1 : 2;
+  std::array<hsize_t, 2> size{0, 1};
+  if ((type_class != H5T_FLOAT && type_class != H5T_INTEGER) ||
+      H5Sget_simple_extent_ndims(space.get()) != rank ||
+      H5Sget_simple_extent_dims(space.get(), size.data(), nullptr) != rank || size[1] != width) {
+    refuse(recording, "'" + place + "' is not a column of numbers");
+  }
+  const hsize_t most =
+      rank == 1 ? recording.bytes : kMostThatDeflateSaves * recording.bytes / (width * sizeof(float));
+  if (size[0] > most) {
+    refuse(recording, fmt::format("'{}' claims {} rows, more than the file can hold", place, size[0]));
+  }
+  open.rows = size[0];
   return open;
 }
 
@@ -115,13 +117,14 @@ void require_in_range(const OpenRecording& recording, const RecordColumn& column
 
 template <typename Value>
 std::vector<Value> read_values(const OpenRecording& recording, const OpenColumn& column, hsize_t rows) {
-  std::vector<Value> values(rows);
+  std::vector<Value> values(rows * column.width);
   const hid_t dataset = column.dataset.get();
-  const hsize_t from = 0;
-  const Hdf5Handle memory(H5Screate_simple(1, &rows, nullptr), H5Sclose);
+  const int rank = column.width == 1 ? 1 : 2;
+  const std::array<hsize_t, 2> from{0, 0}, count{rows, column.width};
+  const Hdf5Handle memory(H5Screate_simple(rank, count.data(), nullptr), H5Sclose);
   const Hdf5Handle space(H5Dget_space(dataset), H5Sclose);
   if (rows > 0 &&
-      (H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, &from, nullptr, &rows, nullptr) < 0 ||
+      (H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, from.data(), nullptr, count.data(), nullptr) < 0 ||
        H5Dread(dataset, memory_type<Value>(), memory.get(), space.get(), H5P_DEFAULT, values.data()) < 0)) {
     refuse(recording, "the column '" + column.place + "' cannot be read");
   }
@@ -194,35 +197,14 @@ std::vector<BoneHash> read_hashes(const OpenRecording& recording, bool complete,
   return hashes;
 }
 
-// `width` numbers for each of as many rows as there are, which the file is large enough to hold.
-template <typename Value>
-std::vector<Value> read_table(const OpenRecording& recording, hid_t group, const char* name, hsize_t width) {
-  constexpr double kMostThatDeflateSaves = 1100;
-  const Hdf5Handle dataset(H5Dopen2(group, name, H5P_DEFAULT), H5Dclose);
-  const Hdf5Handle space(H5Dget_space(dataset.get()), H5Sclose);
-  std::array<hsize_t, 2> size{};
-  if (!dataset.valid() || H5Sget_simple_extent_ndims(space.get()) != 2 ||
-      H5Sget_simple_extent_dims(space.get(), size.data(), nullptr) != 2 || size[1] != width) {
-    refuse(recording, std::string("'") + name + "' of a session is not the table that it should be");
-  }
-  if (static_cast<double>(size[0]) * static_cast<double>(width * sizeof(Value)) >
-      kMostThatDeflateSaves * static_cast<double>(recording.bytes)) {
-    refuse(recording, std::string("'") + name + "' of a session claims more than the file can hold");
-  }
-  std::vector<Value> values(size[0] * width);
-  if (!values.empty() &&
-      H5Dread(dataset.get(), memory_type<Value>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) {
-    refuse(recording, std::string("'") + name + "' of a session cannot be read");
-  }
-  return values;
-}
-
-std::vector<DensityBlock> read_bricks(const OpenRecording& recording, hid_t group,
+std::vector<DensityBlock> read_bricks(const OpenRecording& recording, const std::string& session,
                                       const std::array<int, 3>& dims) {
-  if (H5Lexists(group, "brick_first", H5P_DEFAULT) <= 0) return {};
+  if (H5Lexists(recording.file.get(), (session + "/brick_first").c_str(), H5P_DEFAULT) <= 0) return {};
   constexpr std::size_t kDensities = std::tuple_size_v<decltype(DensityBlock::densities)>;
-  const auto first = read_table<std::int32_t>(recording, group, "brick_first", 3);
-  const auto densities = read_table<float>(recording, group, "brick_densities", kDensities);
+  const OpenColumn firsts = open_column(recording, session + "/brick_first", 3);
+  const OpenColumn bones = open_column(recording, session + "/brick_densities", kDensities);
+  const auto first = read_values<std::int32_t>(recording, firsts, firsts.rows);
+  const auto densities = read_values<float>(recording, bones, bones.rows);
   std::vector<DensityBlock> bricks(first.size() / 3);
   bool right = densities.size() == bricks.size() * kDensities &&
                std::ranges::all_of(densities, [](float density) { return std::isfinite(density); });
@@ -238,8 +220,9 @@ std::vector<DensityBlock> read_bricks(const OpenRecording& recording, hid_t grou
   return bricks;
 }
 
-SessionStart read_session_start(const OpenRecording& recording, hid_t group, const RunDescription* run) {
-  const AttributeReader read(recording.path, group);
+SessionStart read_session_start(const OpenRecording& recording, hid_t group, const std::string& place,
+                                const RunDescription* run) {
+  const Attributes read(recording.path, group);
   SessionStart start;
   start.run = run != nullptr ? *run : read_description(recording.path, group);
   read.get("goes_on_from", start.goes_on_from);
@@ -247,10 +230,10 @@ SessionStart read_session_start(const OpenRecording& recording, hid_t group, con
   start.taken_over.sent = {read.get<Vec3>("force_N"), read.get<Vec3>("torque_Nmm")};
   if (read.has("tool_mm")) {
     std::array<double, 4> q{};
-    read.reals("tool_wxyz", q);
+    read.get_reals("tool_wxyz", q);
     start.taken_over.X_WT = Pose{read.get<Vec3>("tool_mm"), Quat(q[0], q[1], q[2], q[3])};
   }
-  start.bricks = read_bricks(recording, group, start.run.dims);
+  start.bricks = read_bricks(recording, place, start.run.dims);
   return start;
 }
 
@@ -262,12 +245,12 @@ std::vector<RecordedSession> read_sessions(const OpenRecording& open, const Reco
     if (H5Lexists(open.file.get(), place.c_str(), H5P_DEFAULT) <= 0) break;
     const Hdf5Handle group(H5Gopen2(open.file.get(), place.c_str(), H5P_DEFAULT), H5Gclose);
     if (!group.valid()) refuse(open, "'" + place + "' cannot be opened");
-    const auto row = AttributeReader(open.path, group.get()).get<std::uint64_t>("row");
+    const auto row = Attributes(open.path, group.get()).get<std::uint64_t>("row");
     const bool right = sessions.empty() ? row == 0 : row >= sessions.back().first;
     if (!recording.complete && row >= recording.records.size() && !sessions.empty()) break;
     if (!right || row > recording.records.size()) refuse(open, "'" + place + "' begins where it cannot");
     const RunDescription* first = sessions.empty() ? &recording.description : nullptr;
-    sessions.push_back({row, read_session_start(open, group.get(), first)});
+    sessions.push_back({row, read_session_start(open, group.get(), place, first)});
     sessions.back().start.run.labels = recording.description.labels;
   }
   if (sessions.empty() && !recording.records.empty()) refuse(open, "has ticks of no session");
@@ -299,14 +282,8 @@ std::vector<RunPicture> read_pictures(const OpenRecording& recording) {
   if (!group.valid()) refuse(recording, "has no group of pictures");
   std::vector<RunPicture> pictures;
   for (const std::string& name : picture_names(recording, group.get())) {
-    const Hdf5Handle dataset(H5Dopen2(group.get(), name.c_str(), H5P_DEFAULT), H5Dclose);
-    if (!dataset.valid()) refuse(recording, "the picture '" + name + "' cannot be opened");
-    RunPicture picture{name, std::vector<unsigned char>(checked_length(recording, dataset.get(), name))};
-    if (!picture.png.empty() &&
-        H5Dread(dataset.get(), H5T_NATIVE_UCHAR, H5S_ALL, H5S_ALL, H5P_DEFAULT, picture.png.data()) < 0) {
-      refuse(recording, "the picture '" + name + "' cannot be read");
-    }
-    pictures.push_back(std::move(picture));
+    const OpenColumn png = open_column(recording, "pictures/" + name);
+    pictures.push_back({name, read_values<unsigned char>(recording, png, png.rows)});
   }
   return pictures;
 }
@@ -325,42 +302,26 @@ bool holds_its_own_values(hid_t dataset) {
   return own;
 }
 
-// Groups may hold each other, so neither depth nor number ends by itself.
-struct LinkSearch {
-  int depth = 4;
-  int links = 100000;
+void require_nothing_elsewhere(const OpenRecording& recording) {
   std::string refused;
-
-  bool all_lead_within(hid_t group) {
-    if (depth == 0) return false;
-    --depth;
-    const herr_t ended = H5Literate(group, H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, look, this);
-    ++depth;
-    return ended == 0;
-  }
-  static herr_t look(hid_t group, const char* name, const H5L_info_t* link, void* search) {
-    auto& self = *static_cast<LinkSearch*>(search);
-    bool within = link->type == H5L_TYPE_HARD && --self.links > 0;
+  const auto look = [](hid_t group, const char* name, const H5L_info_t* link, void* found) -> herr_t {
+    bool within = link->type == H5L_TYPE_HARD;
     if (within) {
       const Hdf5Handle object(H5Oopen(group, name, H5P_DEFAULT), H5Oclose);
-      within = H5Iget_type(object.get()) == H5I_DATASET ? holds_its_own_values(object.get())
-                                                        : self.all_lead_within(object.get());
+      const H5I_type_t type = H5Iget_type(object.get());
+      within = type == H5I_GROUP || (type == H5I_DATASET && holds_its_own_values(object.get()));
     }
-    if (!within && self.refused.empty()) self.refused = name;
+    if (!within) *static_cast<std::string*>(found) = name;
     return within ? 0 : 1;
-  }
-};
-
-void require_nothing_elsewhere(const OpenRecording& recording) {
-  LinkSearch search;
-  if (!search.all_lead_within(recording.file.get()))
-    refuse(recording, "'" + search.refused + "' leads elsewhere, or needs a filter that is not HDF5's own");
+  };
+  if (H5Lvisit(recording.file.get(), H5_INDEX_NAME, H5_ITER_NATIVE, look, &refused) != 0)
+    refuse(recording, "'" + refused + "' leads elsewhere, or needs a filter that is not HDF5's own");
 }
 
 Recording read_open_file(const fs::path& path) {
   const OpenRecording open = open_recording(path);
   require_nothing_elsewhere(open);
-  const AttributeReader root(path, open.file.get());
+  const Attributes root(path, open.file.get());
   require_our_version(open, root);
   Recording recording;
   recording.path = path;
@@ -455,6 +416,56 @@ bool is_hdf5(const fs::path& path) {
   const Hdf5Lock lock;
   std::error_code ignored;
   return fs::is_regular_file(path, ignored) && H5Fis_hdf5(path.c_str()) > 0;
+}
+
+namespace {
+
+bool is_run_alike(const RunDescription& a, const RunDescription& b) {
+  const auto settings = [](const RunDescription& run) {
+    std::vector<RunSetting> those = run.settings;
+    // Not what was set: how the program was called, and what the algorithm made of it.
+    std::erase_if(those, [](const RunSetting& setting) {
+      return setting.key == kCommandLineKey || setting.key == kSamplePointsKey;
+    });
+    return those;
+  };
+  return a.algorithm == b.algorithm && a.mode == b.mode && a.isovalue == b.isovalue && a.tool == b.tool &&
+         settings(a) == settings(b);
+}
+
+}  // namespace
+
+std::vector<Recording> in_stretches(Recording recording) {
+  std::vector<std::size_t> first{0};
+  const std::vector<RecordedSession>& sessions = recording.sessions;
+  for (std::size_t n = 1; n < sessions.size(); ++n) {
+    if (sessions[n].first > sessions[first.back()].first &&
+        !is_run_alike(sessions[n - 1].start.run, sessions[n].start.run))
+      first.push_back(n);
+  }
+  std::vector<Recording> stretches;
+  if (first.size() < 2) {
+    stretches.push_back(std::move(recording));
+    return stretches;
+  }
+  for (std::size_t n = 0; n < first.size(); ++n) {
+    const RecordedSession& begin = sessions[first[n]];
+    const bool last = n + 1 == first.size();
+    const std::size_t end = last ? recording.records.size() : sessions[first[n + 1]].first;
+    if (begin.first == end) continue;
+    Recording stretch{.path = recording.path, .description = begin.start.run};
+    stretch.description.phase = "part " + std::to_string(n + 1);
+    stretch.records.assign(recording.records.begin() + static_cast<std::ptrdiff_t>(begin.first),
+                           recording.records.begin() + static_cast<std::ptrdiff_t>(end));
+    stretch.complete = recording.complete;
+    stretch.dropped = n == 0 ? recording.dropped : 0;
+    stretches.push_back(std::move(stretch));
+  }
+  for (const RunPicture& picture : recording.pictures) {
+    Recording& shown = picture.name == kPictureBefore ? stretches.front() : stretches.back();
+    shown.pictures.push_back(picture);
+  }
+  return stretches;
 }
 
 }  // namespace osteomill

@@ -132,7 +132,7 @@ TEST_F(ChangedRecording, ADescriptionOfWhatCannotBeIsRefused) {
     const std::string sound = bytes_of(path_);
     change([&](hid_t file) {
       H5Adelete(file, name);
-      AttributeWriter(path_, file).reals(name, values);
+      Attributes(path_, file).put_reals(name, values);
     });
     expect_refused(path_, reason);
     write_bytes(path_, sound);
@@ -149,7 +149,7 @@ TEST_F(ChangedRecording, ADescriptionOfWhatCannotBeIsRefused) {
   reals("tick_period_s", {0}, "'tick_period_s' is not a positive number");
   change([this](hid_t file) {
     H5Adelete(file, "dims");
-    AttributeWriter(path_, file).put("dims", std::array{16, 0, 16});
+    Attributes(path_, file).put("dims", std::array{16, 0, 16});
   });
   expect_refused(path_, "'dims' is no size of a scan");
 }
@@ -172,6 +172,14 @@ TEST_F(ChangedRecording, ANumberThatNobodyRecordsIsRefused) {
   expect_refused(path_, "'force_x_N' holds 1e+300");
 }
 
+TEST_F(ChangedRecording, AGroupThatHoldsItselfIsRefusedAndNotFollowedForEver) {
+  change([](hid_t file) {
+    H5Ldelete(file, "pictures", H5P_DEFAULT);
+    H5Lcreate_hard(file, "/", file, "pictures", H5P_DEFAULT, H5P_DEFAULT);
+  });
+  expect_refused(path_, "has no column 'pictures/");
+}
+
 TEST_F(ChangedRecording, NothingIsReadFromAnotherFile) {
   const auto put = [this](const char* name, const std::function<void(hid_t file)>& how) {
     const std::string sound = bytes_of(path_);
@@ -190,7 +198,6 @@ TEST_F(ChangedRecording, NothingIsReadFromAnotherFile) {
   put("columns", [&](hid_t file) {
     H5Lcreate_external(other.c_str(), "columns", file, "columns", H5P_DEFAULT, H5P_DEFAULT);
   });
-  put("pictures", [](hid_t file) { H5Lcreate_hard(file, "/", file, "pictures", H5P_DEFAULT, H5P_DEFAULT); });
   const auto dataset = [&](const std::function<void(hid_t layout)>& lay_out) {
     put("columns/time_s", [&](hid_t file) {
       const hsize_t rows = 1500;
@@ -220,7 +227,7 @@ TEST_F(ChangedRecording, NothingIsReadFromAnotherFile) {
 TEST_F(ChangedRecording, AColourThatIsNoneIsRefused) {
   change([this](hid_t file) {
     H5Adelete(file, "algorithm_colour");
-    AttributeWriter(path_, file).put("algorithm_colour", "red'; system 'ls");
+    Attributes(path_, file).put("algorithm_colour", "red'; system 'ls");
   });
   expect_refused(path_, "colour that cannot be used");
 }

@@ -15,7 +15,6 @@
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/files/input_error.h"
 #include "osteomill/numbers/spsc_queue.h"
-#include "osteomill/recording/recording.h"
 #include "osteomill/recording/recording_file.h"
 
 namespace osteomill {

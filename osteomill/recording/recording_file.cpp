@@ -110,7 +110,7 @@ RecordingFile::RecordingFile(const fs::path& path, const RunDescription& descrip
 
 void RecordingFile::lay_out(const RunDescription& description) {
   reserve(0);
-  const AttributeWriter write(path_, file_.get());
+  const Attributes write(path_, file_.get());
   write.put("osteomill_recording_version", kRecordingVersion);
   write.put("complete", std::uint64_t{0});
   write.put("dropped_records", std::uint64_t{0});
@@ -180,7 +180,7 @@ void RecordingFile::create_columns() {
   for (const RecordColumn& column : record_columns()) {
     columns_.push_back(
         create_column(group.get(), column.name, file_type(column.type), column.unit, 1, kChunkRows));
-    const AttributeWriter write(path_, columns_.back().dataset.get());
+    const Attributes write(path_, columns_.back().dataset.get());
     write.put("meaning", column.meaning);
     if (std::string_view(column.name) == "fault") write.put("codes", kFaultCodes);
   }
@@ -212,9 +212,9 @@ RecordingFile::Column RecordingFile::create_column(hid_t group, const char* name
   Column column{
       Hdf5Handle(H5Dcreate2(group, name, type, space.get(), H5P_DEFAULT, pieces.get(), access.get()),
                  H5Dclose),
-      width, chunk_rows};
+      width};
   require(column.dataset.valid(), "a column cannot be created");
-  AttributeWriter(path_, column.dataset.get()).put("unit", unit);
+  Attributes(path_, column.dataset.get()).put("unit", unit);
   return column;
 }
 
@@ -227,7 +227,7 @@ void RecordingFile::begin_session(const SessionStart& start, std::uint64_t row) 
   reserve(start.bricks.size() * sizeof(DensityBlock));
   const std::string place = "sessions/" + std::to_string(sessions_);
   const Hdf5Handle group = create_group(file_.get(), place);
-  const AttributeWriter write(path_, group.get());
+  const Attributes write(path_, group.get());
   write.put("row", row);
   write.put("goes_on_from", start.goes_on_from);
   write.put("removed_mm3", start.removed_mm3);
@@ -236,7 +236,7 @@ void RecordingFile::begin_session(const SessionStart& start, std::uint64_t row) 
   if (const auto& X_WT = start.taken_over.X_WT) {
     const Quat& q = X_WT->orientation;
     write.put("tool_mm", X_WT->position_mm);
-    write.reals("tool_wxyz", std::array{q.w(), q.x(), q.y(), q.z()});
+    write.put_reals("tool_wxyz", std::array{q.w(), q.x(), q.y(), q.z()});
   }
   if (!start.bricks.empty()) write_bricks(group.get(), start.bricks);
   if (sessions_ > 0) {
@@ -337,7 +337,7 @@ void RecordingFile::append_to(Column& column, std::span<const Value> values) con
 
 void RecordingFile::flush(std::uint64_t dropped) {
   const Hdf5Lock lock;
-  AttributeWriter(path_, file_.get()).replace("dropped_records", dropped);
+  Attributes(path_, file_.get()).replace("dropped_records", dropped);
   require(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL) >= 0, "cannot be written (is the disk full?)");
   if (++flushes_ % kFlushesRemembered == 0) forget_flushed_metadata();
 }
@@ -379,7 +379,7 @@ void RecordingFile::finish(std::uint64_t dropped) {
   const Hdf5Lock lock;
   if (rows_ > 0 && rows_ % kHashRows != 0) append_hash(last_);
   reserve(0);
-  const AttributeWriter write(path_, file_.get());
+  const Attributes write(path_, file_.get());
   write.replace("dropped_records", dropped);
   write.replace("complete", 1);
   require(close(), "cannot be written to its end (is the disk full?)");

@@ -49,7 +49,6 @@ class RecordingFile {
   struct Column {
     Hdf5Handle dataset;
     hsize_t width = 1;
-    hsize_t chunk_rows = 1;
     hsize_t rows = 0;
   };
 

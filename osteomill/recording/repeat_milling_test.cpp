@@ -6,10 +6,10 @@
 
 #include "osteomill/files/input_error.h"
 #include "osteomill/haptics/algorithms.h"
-#include "osteomill/recording/describe_run.h"
 #include "osteomill/recording/recorder.h"
 #include "osteomill/recording/recording.h"
 #include "osteomill/recording/replay_recording.h"
+#include "osteomill/recording/run_description.h"
 #include "osteomill/session/milling_session.h"
 #include "osteomill/session/trajectory.h"
 

@@ -1,6 +1,5 @@
 #include "osteomill/recording/replay_recording.h"
 
-#include <algorithm>
 #include <bit>
 #include <stdexcept>
 #include <utility>
@@ -10,8 +9,8 @@
 #include "osteomill/files/input_error.h"
 #include "osteomill/milling/burr_mill.h"
 #include "osteomill/milling/cutting_reaction.h"
-#include "osteomill/recording/describe_run.h"
 #include "osteomill/recording/record_columns.h"
+#include "osteomill/recording/run_description.h"
 #include "osteomill/session/trajectory.h"
 #include "osteomill/volume/density_grid.h"
 

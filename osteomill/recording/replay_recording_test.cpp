@@ -10,9 +10,9 @@
 #include <gtest/gtest.h>
 
 #include "osteomill/files/input_error.h"
-#include "osteomill/recording/describe_run.h"
 #include "osteomill/recording/recorder.h"
 #include "osteomill/recording/recording.h"
+#include "osteomill/recording/run_description.h"
 #include "osteomill/session/trajectory.h"
 #include "osteomill/volume/density_grid.h"
 

@@ -1,10 +1,12 @@
 #include "osteomill/report/figure.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <csignal>
 #include <cstring>
 #include <fstream>
+#include <numeric>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -12,8 +14,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "osteomill/files/atomic_file.h"
 #include "osteomill/files/input_error.h"
-#include "osteomill/files/temporary_folder.h"
 #include "osteomill/report/html.h"
 
 extern char** environ;
@@ -26,13 +28,6 @@ namespace {
 
 constexpr const char* kScript = "script.gp";
 constexpr const char* kLog = "gnuplot.log";
-
-void write_script(const fs::path& path, const std::string& script) {
-  std::ofstream out(path, std::ios::binary);
-  out << valid_utf8(script);
-  out.close();
-  if (!out) throw InputError(path.string(), "cannot be written (is the disk full?)");
-}
 
 std::string last_line(const fs::path& path) {
   std::ifstream in(path);
@@ -74,6 +69,30 @@ class ChildSetup {
   posix_spawn_file_actions_t actions_;
 };
 
+void copy_to(const fs::path& from, const fs::path& to) {
+  std::error_code error;
+  fs::copy_file(from, to, fs::copy_options::overwrite_existing, error);
+  if (error) throw InputError(to.string(), "cannot be written: " + error.message());
+}
+
+// Two indices of each bin, as `pick(first, last)` chooses them.
+template <typename Pick>
+std::vector<std::size_t> two_of_each(std::size_t count, std::size_t bins, Pick pick) {
+  std::vector<std::size_t> kept;
+  if (count <= 2 * bins) {
+    kept.resize(count);
+    std::iota(kept.begin(), kept.end(), std::size_t{0});
+    return kept;
+  }
+  kept.reserve(2 * bins);
+  for (std::size_t bin = 0; bin < bins; ++bin) {
+    const auto [a, b] = pick(bin * count / bins, (bin + 1) * count / bins);
+    kept.push_back(std::min(a, b));
+    if (a != b) kept.push_back(std::max(a, b));
+  }
+  return kept;
+}
+
 int wait_for(pid_t child) {
   int status = 0;
   while (::waitpid(child, &status, 0) < 0) {
@@ -85,7 +104,7 @@ int wait_for(pid_t child) {
 }  // namespace
 
 void run_gnuplot(const fs::path& folder, const std::string& script, const std::string& program) {
-  write_script(folder / kScript, script);
+  write_figure_data(folder / kScript, valid_utf8(script));
   const ChildSetup setup(folder);
   // -d: the settings of the user's own must not change the figures.
   std::string name = program, defaults = "-d", file = kScript;
@@ -113,18 +132,6 @@ std::string gnuplot_quoted(const std::string& text) {
   }
   return quoted + "'";
 }
-
-namespace fs = std::filesystem;
-
-namespace {
-
-void copy_to(const fs::path& from, const fs::path& to) {
-  std::error_code error;
-  fs::copy_file(from, to, fs::copy_options::overwrite_existing, error);
-  if (error) throw InputError(to.string(), "cannot be written: " + error.message());
-}
-
-}  // namespace
 
 PanelCell panel_cell(const PanelGrid& grid, std::size_t column, std::size_t row) {
   const double wide = (PanelGrid::kWidth_px - grid.indent_px) / static_cast<double>(grid.columns);
@@ -183,10 +190,29 @@ Figure draw_figure(const FigureScript& script, const TemporaryFolder& work, cons
 }
 
 void write_figure_data(const fs::path& path, std::string_view bytes) {
-  std::ofstream out(path, std::ios::binary);
-  out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  out.close();
-  if (!out) throw InputError(path.string(), "cannot be written to its end (is the disk full?)");
+  write_text_atomically(path, [&](std::ostream& out) { out << bytes; });
+}
+
+std::vector<std::size_t> thin_out_curve(std::span<const double> values, std::size_t bins) {
+  return two_of_each(values.size(), bins, [&](std::size_t first, std::size_t last) {
+    const auto begin = values.begin() + static_cast<std::ptrdiff_t>(first);
+    const auto end = values.begin() + static_cast<std::ptrdiff_t>(last);
+    const auto [min, max] = std::minmax_element(begin, end);
+    return std::pair(static_cast<std::size_t>(min - values.begin()),
+                     static_cast<std::size_t>(max - values.begin()));
+  });
+}
+
+std::vector<std::size_t> thin_out_cloud(std::span<const Vec3> directions, const Vec3& centre,
+                                        std::size_t bins) {
+  return two_of_each(directions.size(), bins, [&](std::size_t first, std::size_t last) {
+    std::size_t farthest = first;
+    for (std::size_t n = first; n < last; ++n) {
+      if ((directions[n] - centre).squaredNorm() > (directions[farthest] - centre).squaredNorm())
+        farthest = n;
+    }
+    return std::pair(first, farthest);
+  });
 }
 
 }  // namespace osteomill

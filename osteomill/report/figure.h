@@ -2,11 +2,13 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "osteomill/files/temporary_folder.h"
+#include "osteomill/geometry/pose.h"
 
 namespace osteomill {
 
@@ -64,6 +66,15 @@ Figure draw_figure(const FigureScript& script, const TemporaryFolder& work,
 /// Writes a file that a figure is drawn from. Throws InputError where it cannot be written to its end:
 /// gnuplot would draw what there is of it.
 void write_figure_data(const std::filesystem::path& path, std::string_view bytes);
+
+/// The indices of a curve's samples that a drawing about `bins` pixels wide needs: of each of `bins` equal
+/// parts the least and the greatest sample, in order, so that no spike is lost. All indices where there are
+/// few samples.
+std::vector<std::size_t> thin_out_curve(std::span<const double> values, std::size_t bins);
+
+/// The same for a cloud of unit directions: of each part its first sample and the one farthest from `centre`.
+std::vector<std::size_t> thin_out_cloud(std::span<const Vec3> directions, const Vec3& centre,
+                                        std::size_t bins);
 
 /// Runs `script` in a child process of `program` whose working folder is `folder`. Throws InputError where
 /// gnuplot is not installed, or, with its own last word, where it fails.

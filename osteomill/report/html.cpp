@@ -1,8 +1,10 @@
 #include "osteomill/report/html.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <fstream>
 #include <iterator>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -102,24 +104,12 @@ std::string in_tag(std::string_view tag, const std::string& text) {
 }  // namespace
 
 std::string html_escaped(std::string_view text) {
+  constexpr std::pair<char, const char*> kEntities[] = {
+      {'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}};
   std::string escaped;
   for (const char c : text) {
-    switch (c) {
-      case '&':
-        escaped += "&amp;";
-        break;
-      case '<':
-        escaped += "&lt;";
-        break;
-      case '>':
-        escaped += "&gt;";
-        break;
-      case '"':
-        escaped += "&quot;";
-        break;
-      default:
-        escaped += c;
-    }
+    const auto* const entity = std::ranges::find(kEntities, c, &std::pair<char, const char*>::first);
+    escaped += entity != std::end(kEntities) ? entity->second : std::string(1, c);
   }
   return escaped;
 }

@@ -1,11 +1,10 @@
-#include "osteomill/report/label_section.h"
-
 #include <filesystem>
 
 #include "tests/support/report_samples.h"
 #include <gtest/gtest.h>
 
 #include "osteomill/files/temporary_folder.h"
+#include "osteomill/report/report_parts.h"
 
 namespace osteomill {
 namespace {

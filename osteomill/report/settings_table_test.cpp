@@ -1,7 +1,7 @@
-#include "osteomill/report/settings_table.h"
-
 #include "tests/support/report_samples.h"
 #include <gtest/gtest.h>
+
+#include "osteomill/report/report_parts.h"
 
 namespace osteomill {
 namespace {

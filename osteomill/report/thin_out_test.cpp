@@ -1,9 +1,9 @@
-#include "osteomill/report/thin_out.h"
-
 #include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
+
+#include "osteomill/report/figure.h"
 
 namespace osteomill {
 namespace {

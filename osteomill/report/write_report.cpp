@@ -1,11 +1,14 @@
 #include "osteomill/report/write_report.h"
 
+#include <algorithm>
+#include <cmath>
 #include <ostream>
 
+#include <fmt/format.h>
+
 #include "osteomill/files/atomic_file.h"
-#include "osteomill/report/label_section.h"
 #include "osteomill/report/metric_table.h"
-#include "osteomill/report/run_figures.h"
+#include "osteomill/report/report_parts.h"
 
 namespace osteomill {
 
@@ -13,38 +16,283 @@ namespace fs = std::filesystem;
 
 namespace {
 
-DrawnGroup draw(const RunGroup& group, const fs::path& folder, const PageText& text) {
-  DrawnGroup drawn{group, {}};
-  const auto add = [&](const std::string& name, const fs::path& file, std::string caption) {
-    const auto note = text.caption_notes.find(name);
-    if (note != text.caption_notes.end()) caption += " " + note->second;
-    drawn.figures[name] = {file, std::move(caption)};
-  };
-  if (const auto bone = draw_picture_figure(group, folder)) {
-    // Smaller as PNG; curves and clouds stay sharp as SVG.
-    add("bone", bone->png, "The bone before, and after each algorithm's run.");
+using Groups = std::vector<RunGroup>;
+
+std::vector<const Recording*> all_recordings(const Groups& groups) {
+  std::vector<const Recording*> recordings;
+  for (const RunGroup& group : groups) {
+    for (const MeasuredRun& run : group.runs) recordings.push_back(run.recording);
   }
-  add("force", draw_force_figure(group, folder).svg,
-      "Magnitude of the force sent to the hand. The panels of a row have one scale. Each pixel's least and "
-      "greatest are drawn, so no spike is lost. What is shaded, before 0 s, is not counted in the tables.");
-  add("torque", draw_torque_figure(group, folder).svg,
-      "Magnitude of the torque sent to the hand, about the burr's centre.");
-  add("shaft", draw_shaft_figure(group, folder).svg,
-      "Where the simulated tool's shaft points while it touches, in degrees from its mean direction and "
-      "coloured by time. Each panel has a scale of its own.");
-  add("removed", draw_removed_figure(group, folder).svg,
-      "Bone removed since the milling began, in mm³ of bone of the reference density.");
-  add("path", draw_path_figure(group, folder).svg, "Where the burr's centre was, along the scan's axes.");
-  if (const auto labels = draw_label_figure(group, folder)) {
-    add("labels", labels->svg, "What was removed of each label over time, in the labels' colours.");
-  }
-  add("rate", draw_rate_figure(group, folder).svg,
-      "Compute time of each tick, the algorithm's and the milling's: CPU time where the trial ran in "
-      "simulated time, else by the clock. A loop at 1000 Hz is late where it goes above the dashed line.");
-  return drawn;
+  return recordings;
 }
 
-void write_summary_csv(const fs::path& path, const std::vector<RunGroup>& groups) {
+PageSection notices(const std::vector<const Recording*>& recordings) {
+  PageSection section;
+  const RunDescription& first = recordings.front()->description;
+  for (const Recording* recording : recordings) {
+    const RunDescription& d = recording->description;
+    const std::string name = recording->path.filename().string();
+    if (!recording->complete) {
+      section.notices.push_back(name + " is unfinished: the program ended before it closed the recording.");
+    }
+    if (recording->dropped > 0) {
+      section.notices.push_back(fmt::format("{} lacks {} ticks for which there was no room while recording.",
+                                            name, recording->dropped));
+    }
+    if (d.scan_name != first.scan_name || d.dims != first.dims || d.isovalue != first.isovalue) {
+      section.notices.push_back(name + " is of another scan or isovalue than " +
+                                recordings.front()->path.filename().string() + "; compare them with care.");
+    }
+  }
+  return section;
+}
+
+PageSection what_was_run(const std::vector<const Recording*>& recordings) {
+  const RunDescription& d = recordings.front()->description;
+  double seconds = 0;
+  for (const Recording* recording : recordings) {
+    seconds = std::max(seconds, recording->records.back().time_s - recording->records.front().time_s);
+  }
+  return {
+      .title = "What was run",
+      .paragraphs = {fmt::format("Scan: {}, {} × {} × {} voxels of {:.4g} × {:.4g} × {:.4g} mm, bone above "
+                                 "{:.6g}. Tool: a burr of {:.4g} mm "
+                                 "radius on a shaft of {:.4g} mm radius and {:.4g} mm length. {} {} of up to "
+                                 "{:.4g} s at {:.6g} ticks a "
+                                 "second, seed {}. osteomill {}.",
+                                 d.scan_name, d.dims[0], d.dims[1], d.dims[2], d.spacing_mm.x(),
+                                 d.spacing_mm.y(), d.spacing_mm.z(), d.isovalue, d.tool.burr_radius_mm,
+                                 d.tool.shaft_radius_mm, d.tool.shaft_length_mm, recordings.size(),
+                                 recordings.size() == 1 ? "recording" : "recordings", seconds,
+                                 1 / d.tick_period_s, d.seed, d.program_version),
+                     "What is reported is what was sent to the hand at every tick."}};
+}
+
+// A figure of one mode's runs.
+struct RunFigure {
+  const char* name;
+  Figure (*draw)(const RunGroup&, const fs::path& folder);
+  const char* caption;
+};
+
+// What a reader wants to know at once: figures and the metrics beside them.
+struct Topic {
+  const char* title;
+  std::vector<RunFigure> figures;
+  std::vector<MetricTable> tables;
+};
+
+const Topic kFelt[] = {
+    {"Force",
+     {{"force", draw_force_figure,
+       "Magnitude of the force sent to the hand. The panels of a row have one scale. Each pixel's least and "
+       "greatest are drawn, so no spike is lost. What is shaded, before 0 s, is not counted in the tables."}},
+     {MetricTable::force}},
+    {"Torque",
+     {{"torque", draw_torque_figure, "Magnitude of the torque sent to the hand, about the burr's centre."}},
+     {MetricTable::torque}},
+    {"Shaft",
+     {{"shaft", draw_shaft_figure,
+       "Where the simulated tool's shaft points while it touches, in degrees from its mean direction and "
+       "coloured by time. Each panel has a scale of its own."}},
+     {MetricTable::shaft}},
+    {"Path and bone removed",
+     {{"removed", draw_removed_figure,
+       "Bone removed since the milling began, in mm³ of bone of the reference density."},
+      {"path", draw_path_figure, "Where the burr's centre was, along the scan's axes."}},
+     {MetricTable::path}}};
+const Topic kTimes{
+    "How long the ticks took",
+    {{"rate", draw_rate_figure,
+      "Compute time of each tick, the algorithm's and the milling's: CPU time where the trial ran in "
+      "simulated time, else by the clock. A loop at 1000 Hz is late where it goes above the dashed line."}},
+    {MetricTable::times, MetricTable::rate}};
+
+CaptionedFigure drawn(const RunFigure& figure, const RunGroup& group, const PageText& text,
+                      const fs::path& folder) {
+  std::string caption = figure.caption;
+  if (const auto note = text.caption_notes.find(figure.name); note != text.caption_notes.end())
+    caption += " " + note->second;
+  return {figure.draw(group, folder).svg, std::move(caption)};
+}
+
+std::string cell(const Metric& metric, const MeasuredRun& run) {
+  const double value = metric(run.metrics);
+  return std::isnan(value) ? contact_words(run.metrics.contact)
+                           : fmt::format(fmt::runtime(metric.format), value);
+}
+
+std::vector<MetricLine> lines_of(const Topic& topic) {
+  std::vector<MetricLine> lines;
+  for (const MetricTable table : topic.tables) {
+    for (const Metric& metric : all_metrics()) {
+      if (metric.table != table) continue;
+      lines.push_back(
+          {with_unit(metric.label, metric), [&metric](const MeasuredRun& run) { return cell(metric, run); }});
+    }
+  }
+  return lines;
+}
+
+HtmlTable metrics_table(const RunGroup& group, const std::vector<MetricLine>& lines) {
+  HtmlTable table{{""}, {{"Not reached"}}, true};
+  for (const MeasuredRun& run : group.runs) {
+    const std::string phase = run.phase.empty() ? "" : html_escaped(run.phase) + "<br>";
+    table.header.push_back(phase + html_escaped(run.algorithm.label));
+    table.rows.front().push_back("<span class=\"words\">" + html_escaped(run.not_reached) + "</span>");
+  }
+  // What was not reached stands before all that is compared.
+  const auto reached = [](const MeasuredRun& run) { return run.not_reached.empty(); };
+  if (std::all_of(group.runs.begin(), group.runs.end(), reached)) table.rows.clear();
+  for (const MetricLine& line : lines) {
+    table.rows.push_back({line.label});
+    for (const MeasuredRun& run : group.runs) table.rows.back().push_back(line.cell(run));
+  }
+  return table;
+}
+
+// A part for a mode, whose title says which where there are several.
+PageSection mode_part(const RunGroup& group, const Groups& groups) {
+  return {.title = groups.size() > 1 ? fmt::format("Mode {}", name_of(group.mode)) : ""};
+}
+
+PageSection topic_section(const Topic& topic, const Groups& groups, const PageText& text,
+                          const fs::path& folder, const std::vector<MetricLine>& further = {}) {
+  std::vector<MetricLine> lines = lines_of(topic);
+  lines.insert(lines.end(), further.begin(), further.end());
+  PageSection section{.title = topic.title};
+  for (const RunGroup& group : groups) {
+    PageSection part = mode_part(group, groups);
+    for (const RunFigure& figure : topic.figures) part.figures.push_back(drawn(figure, group, text, folder));
+    part.tables = {metrics_table(group, lines)};
+    section.parts.push_back(std::move(part));
+  }
+  return section;
+}
+
+bool has_setting(const RunGroup& group, std::string_view key) {
+  return std::any_of(group.runs.begin(), group.runs.end(), [&](const MeasuredRun& run) {
+    return find_setting<std::string>(run.recording->description, key) != nullptr;
+  });
+}
+
+std::vector<PageSection> pictures_section(const Groups& groups, const fs::path& folder) {
+  PageSection section{.title = "The bone before and after"};
+  for (const RunGroup& group : groups) {
+    PageSection part = mode_part(group, groups);
+    if (const auto bone = draw_picture_figure(group, folder)) {
+      // Smaller as PNG; curves and clouds stay sharp as SVG.
+      part.figures = {{bone->png, "The bone before, and after each algorithm's run."}};
+    } else if (has_setting(group, kPicturesKey)) {
+      part.notices = {"No pictures of the bone: OpenGL could not be had when this was recorded."};
+    } else {
+      continue;
+    }
+    section.parts.push_back(std::move(part));
+  }
+  if (section.parts.empty()) return {};
+  return {section};
+}
+
+// Of a scan with labels.
+PageSection labels_section(const Groups& groups, const fs::path& folder) {
+  PageSection section;
+  for (const RunGroup& group : groups) {
+    std::optional<PageSection> labels = label_section(group);
+    if (!labels) continue;
+    // Below the table.
+    if (const auto figure = draw_label_figure(group, folder)) {
+      labels->parts = {
+          {.figures = {{figure->svg, "What was removed of each label over time, in the labels' colours."}}}};
+    }
+    section.parts.push_back(mode_part(group, groups));
+    section.parts.push_back(std::move(*labels));
+  }
+  return section;
+}
+
+double spindle_s(const Recording& recording) {
+  double on_s = 0;
+  for (const TickRecord& record : recording.records) on_s += record.spindle_on ? record.dt_s : 0;
+  return on_s;
+}
+
+// What a session was, to whoever held the tool.
+std::string session_in_words(const MeasuredRun& run) {
+  const RunMetrics& m = run.metrics;
+  const auto& records = run.recording->records;
+  const std::string put_back =
+      m.put_back_mm3 > 0 ? fmt::format("; {:.1f} mm³ were put back", m.put_back_mm3) : "";
+  const std::string text = fmt::format(
+      "{}{}: {:.1f} s, of which the spindle ran for {:.1f} s. The burr went {:.0f} mm, and {:.1f} mm³ of "
+      "bone were removed{}. ",
+      run.algorithm.label, run.phase.empty() ? "" : ", " + run.phase,
+      records.back().time_s - records.front().time_s, spindle_s(*run.recording), m.path_mm, m.removed_mm3,
+      put_back);
+  if (!is_enough_contact(m.contact.any)) {
+    return text + fmt::format("The tool {}, too little to say what was felt.", contact_words(m.contact));
+  }
+  std::vector<std::string> means, greatest;
+  for (const auto& [felt, unit] : {std::pair(&m.force_N, "N"), std::pair(&m.torque_Nmm, "N mm")}) {
+    if (std::isnan(felt->mean)) continue;
+    means.push_back(fmt::format("{:.2g} {}", felt->mean, unit));
+    greatest.push_back(fmt::format("{:.2g} {}", felt->max, unit));
+  }
+  if (means.empty()) {
+    return text + fmt::format("The tool touched for {:.0f} % of the time, too little to say what was felt.",
+                              100 * m.contact.any);
+  }
+  return text +
+         fmt::format(
+             "The tool touched for {:.0f} % of the time, the shaft for {:.0f} %; while it did, the hand "
+             "felt {} on average, at most {}.",
+             100 * m.contact.any, 100 * m.contact.shaft, fmt::join(means, " and "),
+             fmt::join(greatest, " and "));
+}
+
+PageSection sessions_in_words(const Groups& groups) {
+  PageSection section;
+  for (const RunGroup& group : groups) {
+    for (const MeasuredRun& run : group.runs) section.paragraphs.push_back(session_in_words(run));
+  }
+  return section;
+}
+
+PageSection how_to_repeat(const std::vector<const Recording*>& recordings) {
+  std::vector<std::string> commands;
+  for (const Recording* recording : recordings) {
+    const std::string* command = find_setting<std::string>(recording->description, kCommandLineKey);
+    if (command == nullptr || command->empty()) continue;
+    if (std::find(commands.begin(), commands.end(), *command) == commands.end()) commands.push_back(*command);
+  }
+  return {
+      .title = "How to repeat this",
+      .paragraphs = {commands.empty()
+                         ? "With the settings above; the recordings name no command."
+                         : "With the same seed, forces, poses and removed bone come out the same; compute "
+                           "times are those of the machine."},
+      .commands = commands};
+}
+
+std::string report_page(const Groups& groups, const PageText& text, const fs::path& folder) {
+  const std::vector<const Recording*> recordings = all_recordings(groups);
+  std::vector<PageSection> sections{notices(recordings),
+                                    text.opening ? *text.opening : sessions_in_words(groups)};
+  const auto add = [&](const std::vector<PageSection>& more) {
+    sections.insert(sections.end(), more.begin(), more.end());
+  };
+  add(pictures_section(groups, folder));
+  for (const Topic& topic : kFelt) sections.push_back(topic_section(topic, groups, text, folder));
+  sections.push_back(labels_section(groups, folder));
+  add(text.sections);
+  sections.push_back(topic_section(kTimes, groups, text, folder, text.further_times));
+  add({what_was_run(recordings),
+       {.title = "Settings", .tables = {settings_table(recordings)}},
+       how_to_repeat(recordings)});
+  return html_page(text.title, sections);
+}
+
+void write_summary_csv(const fs::path& path, const Groups& groups) {
   write_text_atomically(path, [&](std::ostream& out) {
     out << summary_columns() << '\n';
     for (const RunGroup& group : groups) {
@@ -55,14 +303,12 @@ void write_summary_csv(const fs::path& path, const std::vector<RunGroup>& groups
 
 }  // namespace
 
-fs::path write_report(const std::vector<RunGroup>& groups, const fs::path& out_dir, const PageText& text) {
+fs::path write_report(const Groups& groups, const fs::path& out_dir, const PageText& text) {
   write_folder_atomically(out_dir, [&](const fs::path& beside) {
     create_folder(beside / "figures");
     write_summary_csv(beside / "summary.csv", groups);
-    std::vector<DrawnGroup> drawn;
-    for (const RunGroup& group : groups) drawn.push_back(draw(group, beside / "figures", text));
-    write_text_atomically(beside / "report.html",
-                          [&](std::ostream& out) { out << report_page(drawn, text); });
+    const std::string page = report_page(groups, text, beside / "figures");
+    write_text_atomically(beside / "report.html", [&](std::ostream& out) { out << page; });
   });
   return out_dir / "report.html";
 }

@@ -1,11 +1,9 @@
 #include "osteomill/sound/spindle_sound.h"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <chrono>
 #include <cmath>
-#include <cstdlib>
 #include <numbers>
 #include <thread>
 

@@ -156,4 +156,12 @@ void draw_annotation(Image& image, const Annotation& annotation, const Ink& ink,
   letters.draw(image, annotation.text, pen, ink.level);
 }
 
+void annotate(Image& image, const Camera& camera, bool of_patient, const Ink& ink, double scale) {
+  const PixelSize size{static_cast<int>(image.width / scale), static_cast<int>(image.height / scale)};
+  draw_annotation(image, scale_bar_annotation(camera, size), ink, scale);
+  if (!of_patient) return;
+  for (const Annotation& letter : orientation_letters(camera, size))
+    draw_annotation(image, letter, ink, scale);
+}
+
 }  // namespace osteomill

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <string>
 #include <vector>
 
@@ -43,5 +42,8 @@ inline constexpr Ink kInkOnDark{236, 0};
 
 /// Draws an annotation into an image, all its lengths times `scale`. Any thread.
 void draw_annotation(Image& image, const Annotation& annotation, const Ink& ink, double scale = 1);
+
+/// Draws the scale bar, and of a patient the letters, as into an image `scale` times smaller.
+void annotate(Image& image, const Camera& camera, bool of_patient, const Ink& ink, double scale);
 
 }  // namespace osteomill

@@ -1,17 +1,65 @@
 #include "osteomill/view/bone_ground.h"
 
-#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <numbers>
 #include <utility>
 
-#include "osteomill/view/depth_tiles.h"
-#include "osteomill/view/shaders.h"
-
 namespace osteomill {
 
 namespace {
+
+constexpr std::string_view kCutVertex = R"(#version 330 core
+layout(location = 0) in vec3 position_W;
+layout(location = 1) in vec2 place_on_cut;
+uniform mat4 camera_from_world;
+uniform mat4 clip_from_camera;
+uniform vec4 cuts[4];
+out float gl_ClipDistance[4];
+out vec2 place;
+void main() {
+  gl_Position = clip_from_camera * (camera_from_world * vec4(position_W, 1.0));
+  place = place_on_cut;
+  for (int n = 0; n < 4; ++n) gl_ClipDistance[n] = dot(cuts[n].xyz, position_W) - cuts[n].w;
+}
+)";
+
+// Grey values, or labels' colours; what is as dark as air lets the view through.
+constexpr std::string_view kCutFragment = R"(#version 330 core
+in vec2 place;
+uniform sampler2D pixels;
+out vec4 colour;
+void main() {
+  colour = vec4(texture(pixels, place).rgb, 1.0);
+  if (max(colour.r, max(colour.g, colour.b)) < 0.14) discard;
+}
+)";
+
+// A label's colour over its grey value, and never quite dark: a nerve's canal may be as dark as air.
+std::vector<std::array<unsigned char, 3>> pixels_of(const ClipFace& face) {
+  constexpr double kLabel = 0.55, kLeast = 0.35;
+  std::vector<std::array<unsigned char, 3>> pixels;
+  pixels.reserve(face.greys.size());
+  for (std::size_t n = 0; n < face.greys.size(); ++n) {
+    const unsigned char grey = face.greys[n];
+    pixels.push_back({grey, grey, grey});
+    if (face.label_colours.empty() || face.label_colours[n] == std::array<unsigned char, 3>{}) continue;
+    const double light = kLeast + (1 - kLeast) * grey / 255;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double tinted = (1 - kLabel) * grey + kLabel * light * face.label_colours[n][c];
+      pixels.back()[c] = static_cast<unsigned char>(tinted);
+    }
+  }
+  return pixels;
+}
+
+constexpr std::string_view kBackgroundFragment = R"(#version 330 core
+in vec2 place;
+out vec4 colour;
+void main() {
+  colour = vec4(mix(vec3(0.075, 0.085, 0.105), vec3(0.20, 0.23, 0.28), place.y), 1.0);
+}
+)";
 
 using Clock = std::chrono::steady_clock;
 
@@ -21,10 +69,6 @@ constexpr unsigned kPicturesPerBlur = 4;
 constexpr double kCoarsest_px = 64;
 constexpr int kWidestPixels = 4;
 
-bool same_size(const PixelSize& a, const PixelSize& b) {
-  return a.width == b.width && a.height == b.height;
-}
-
 std::size_t pixels_of(const PixelSize& size) {
   return static_cast<std::size_t>(size.width) * static_cast<std::size_t>(size.height);
 }
@@ -33,19 +77,11 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-bool same_cut(const std::optional<ClipPlane>& a, const std::optional<ClipPlane>& b) {
-  if (!a || !b) return a.has_value() == b.has_value();
-  return a->normal_W == b->normal_W && a->offset_mm == b->offset_mm;
-}
-
 // As far as the bone is drawn by it.
 bool same_view(const ViewScene& a, const ViewScene& b) {
-  return a.camera.focus_W == b.camera.focus_W && a.camera.distance_mm == b.camera.distance_mm &&
-         a.camera.orientation.coeffs() == b.camera.orientation.coeffs() &&
-         a.camera.field_of_view_rad == b.camera.field_of_view_rad && a.bounds.centre_W == b.bounds.centre_W &&
-         a.bounds.radius_mm == b.bounds.radius_mm && a.isovalue == b.isovalue &&
+  return a.camera == b.camera && a.bounds == b.bounds && a.isovalue == b.isovalue &&
          a.reference_density == b.reference_density && a.light_from_below == b.light_from_below &&
-         a.show_labels == b.show_labels && std::equal(a.cuts.begin(), a.cuts.end(), b.cuts.begin(), same_cut);
+         a.show_labels == b.show_labels && a.cuts == b.cuts;
 }
 
 // Where a sphere is drawn at the most, pixels from the lower left; everywhere where it reaches the eye.
@@ -71,10 +107,59 @@ void clear_depths(const FrameTarget& target) {
 
 }  // namespace
 
+ClipFaces::ClipFaces() : program_(gl::make_program(kCutVertex, kCutFragment)) {
+  for (Face& face : faces_) {
+    face.vertex_array = gl::make_vertex_array();
+    face.corners = gl::make_buffer();
+  }
+}
+
+void ClipFaces::set(std::size_t cut, const ClipFace& face) {
+  Face& kept = faces_.at(cut);
+  if (face.greys.empty()) {
+    kept.pixels = {};
+    return;
+  }
+  kept.pixels = gl::make_texture(GL_RGB8, GL_RGB, GL_UNSIGNED_BYTE, face.width, face.height, GL_LINEAR);
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, face.width, face.height, GL_RGB, GL_UNSIGNED_BYTE,
+                  pixels_of(face).data());
+  // As a fan; the outermost pixels' middles lie half a pixel within the texture.
+  const float u = 0.5f / static_cast<float>(face.width);
+  const float v = 0.5f / static_cast<float>(face.height);
+  const float places[4][2] = {{u, v}, {1 - u, v}, {1 - u, 1 - v}, {u, 1 - v}};
+  std::array<std::array<float, 5>, 4> corners;
+  for (std::size_t n = 0; n < 4; ++n) {
+    const Eigen::Vector3f corner = face.corners_W[n].cast<float>();
+    corners[n] = {corner.x(), corner.y(), corner.z(), places[n][0], places[n][1]};
+  }
+  glBindVertexArray(kept.vertex_array.get());
+  gl::fill<std::array<float, 5>>(GL_ARRAY_BUFFER, kept.corners, corners, GL_DYNAMIC_DRAW);
+  gl::set_attribute(0, 3, sizeof(corners[0]), 0);
+  gl::set_attribute(1, 2, sizeof(corners[0]), 3 * sizeof(float));
+}
+
+void ClipFaces::draw(const ViewScene& scene, const Projection& projection) const {
+  const GLuint program = program_.get();
+  glUseProgram(program);
+  set_projection(program, projection);
+  glActiveTexture(GL_TEXTURE0);
+  for (std::size_t n = 0; n < kMaxClipPlanes; ++n) {
+    if (!scene.cuts[n] || faces_[n].pixels.get() == 0) continue;
+    ViewScene others = scene;
+    others.cuts[n].reset();
+    begin_cuts(program, others);
+    glBindTexture(GL_TEXTURE_2D, faces_[n].pixels.get());
+    glBindVertexArray(faces_[n].vertex_array.get());
+    glDrawArrays(GL_TRIANGLE_FAN, 0, 4);
+    end_cuts();
+  }
+}
+
 BoneGround::BoneGround(const SurfaceBricks& layout, const GridGeometry& geometry,
                        std::shared_ptr<const LabelMap> labels)
     : bone_(layout, geometry, std::move(labels)),
-      background_(gl::make_program(shaders::kScreenVertex, shaders::kBackgroundFragment)),
+      background_(gl::make_screen_program(kBackgroundFragment)),
       nothing_(gl::make_vertex_array()) {}
 
 void BoneGround::set_brick(std::size_t brick, const BrickMesh& mesh, const BrickLevels& levels) {
@@ -89,7 +174,7 @@ void BoneGround::set_clip_face(std::size_t cut, const ClipFace& face) {
 }
 
 void BoneGround::fit(const PixelSize& size) {
-  if (resting_ && same_size(resting_->size(), size)) return;
+  if (resting_ && resting_->size() == size) return;
   resting_.emplace(size);
   cavities_.emplace(size);
   drawn_ = 0;
@@ -123,7 +208,7 @@ PixelSize BoneGround::size_in_time(const PixelSize& size) {
 
 void BoneGround::draw_at_once(const ViewScene& scene, const PixelSize& size) {
   const auto start = Clock::now();
-  if (!moving_ || !same_size(moving_->size(), size)) moving_.emplace(size);
+  if (!moving_ || moving_->size() != size) moving_.emplace(size);
   shown_ = &*moving_;
   const Projection projection = projection_of(scene, size);
   const std::vector<SeenBrick> seen = seen_in_time(scene, projection);
@@ -204,9 +289,8 @@ bool BoneGround::draw_changed(const ViewScene& scene, const Projection& projecti
   const auto start = Clock::now();
   if (last || drawn_ % kPicturesPerBlur == 0) look_for_cavities(projection);
   to_shade_.insert(changed_.begin(), changed_.end());
-  const Rectangle part = changed_part(last ? to_shade_ : changed_, scene, projection);
-  const Eigen::AlignedBox2d box(Eigen::Vector2d(part.left, part.bottom),
-                                Eigen::Vector2d(part.left + part.width, part.bottom + part.height));
+  const Eigen::AlignedBox2i part = changed_part(last ? to_shade_ : changed_, scene, projection);
+  const Eigen::AlignedBox2d box = part.cast<double>();
   std::vector<SeenBrick> seen = bone_.seen(scene, projection, kFullDetail);
   std::erase_if(seen, [&](const SeenBrick& brick) {
     return !box.intersects(drawn_within(scene, projection, bone_.bounds(brick.brick)));
@@ -214,7 +298,7 @@ bool BoneGround::draw_changed(const ViewScene& scene, const Projection& projecti
   const std::size_t triangles = bone_.triangle_count(seen);
   if (triangles > pace_.triangles()) return false;
   glEnable(GL_SCISSOR_TEST);
-  glScissor(part.left, part.bottom, part.width, part.height);
+  glScissor(part.min().x(), part.min().y(), part.sizes().x(), part.sizes().y());
   clear_depths(*shown_);
   bone_.draw(scene, projection, *cavities_, seen);
   draw_around(scene, projection);
@@ -226,8 +310,8 @@ bool BoneGround::draw_changed(const ViewScene& scene, const Projection& projecti
   return true;
 }
 
-BoneGround::Rectangle BoneGround::changed_part(const std::set<std::size_t>& bricks, const ViewScene& scene,
-                                               const Projection& projection) const {
+Eigen::AlignedBox2i BoneGround::changed_part(const std::set<std::size_t>& bricks, const ViewScene& scene,
+                                             const Projection& projection) const {
   Eigen::AlignedBox2d box;
   for (const std::size_t brick : bricks) box.extend(drawn_within(scene, projection, bone_.bounds(brick)));
   // What is milled away darkens and lightens what is around it.
@@ -235,9 +319,7 @@ BoneGround::Rectangle BoneGround::changed_part(const std::set<std::size_t>& bric
   const Eigen::Array2d all(projection.size.width, projection.size.height);
   const Eigen::Array2d first = (box.min().array() - more_px).floor().max(0.0).min(all);
   const Eigen::Array2d last = (box.max().array() + more_px).ceil().min(all).max(first);
-  const Eigen::Array2i place = first.cast<int>();
-  const Eigen::Array2i extent = last.cast<int>() - place;
-  return {place.x(), place.y(), extent.x(), extent.y()};
+  return {first.cast<int>().matrix(), last.cast<int>().matrix()};
 }
 
 void BoneGround::look_for_cavities(const Projection& projection) {

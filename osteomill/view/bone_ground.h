@@ -10,8 +10,7 @@
 
 #include "osteomill/view/bone_layer.h"
 #include "osteomill/view/cavity_pass.h"
-#include "osteomill/view/clip_faces.h"
-#include "osteomill/view/frame_target.h"
+#include "osteomill/view/clip_face.h"
 #include "osteomill/volume/label_map.h"
 
 namespace osteomill {
@@ -48,6 +47,24 @@ class DrawingPace {
   double s_per_pixel_ = kBone_s / 2'000'000;
 };
 
+/// What cuts lay open: grey values, tinted by labels.
+class ClipFaces {
+ public:
+  ClipFaces();
+  void set(std::size_t cut, const ClipFace& face);
+  /// Each face as far as the other cuts leave it.
+  void draw(const ViewScene& scene, const Projection& projection) const;
+
+ private:
+  struct Face {
+    gl::VertexArray vertex_array;
+    gl::Buffer corners;
+    gl::Texture pixels;
+  };
+  gl::Program program_;
+  std::array<Face, kMaxClipPlanes> faces_;
+};
+
 /// The bone with all that stands still beside it, in a picture of its own, however many triangles it has:
 /// while the view moves with as many triangles and pixels as there is time for; where it rests in full
 /// detail, brick by brick in a second picture that takes the first one's place when it is done; and where
@@ -68,18 +85,15 @@ class BoneGround {
   bool settled() const { return settled_ && changed_.empty() && to_shade_.empty(); }
 
  private:
-  struct Rectangle {
-    int left, bottom, width, height;
-  };
-
   void fit(const PixelSize& size);
   PixelSize size_in_time(const PixelSize& size);
   void draw_at_once(const ViewScene& scene, const PixelSize& size);
   void begin_refining(const ViewScene& scene, const Projection& projection);
   void refine(const ViewScene& scene, const Projection& projection);
   bool draw_changed(const ViewScene& scene, const Projection& projection);
-  Rectangle changed_part(const std::set<std::size_t>& bricks, const ViewScene& scene,
-                         const Projection& projection) const;
+  /// Pixels from the lower left.
+  Eigen::AlignedBox2i changed_part(const std::set<std::size_t>& bricks, const ViewScene& scene,
+                                   const Projection& projection) const;
   std::vector<SeenBrick> seen_in_time(const ViewScene& scene, const Projection& projection);
   void draw_around(const ViewScene& scene, const Projection& projection);
   void look_for_cavities(const Projection& projection);

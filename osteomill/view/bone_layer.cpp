@@ -1,17 +1,93 @@
 #include "osteomill/view/bone_layer.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <string>
 #include <utility>
 
-#include "osteomill/view/shaders.h"
-
 namespace osteomill {
 
 namespace {
+
+constexpr std::string_view kBoneVertex = R"(
+layout(location = 0) in vec3 position_W;
+layout(location = 1) in vec3 normal_W;
+layout(location = 2) in float density;
+layout(location = 3) in vec4 label;
+uniform mat4 camera_from_world;
+uniform mat4 clip_from_camera;
+#ifdef CUT
+uniform vec4 cuts[4];
+out float gl_ClipDistance[4];
+#endif
+out vec3 normal_C;
+out float depth_mm;
+out float bone_density;
+out vec4 label_colour;
+void main() {
+  vec4 position_C = camera_from_world * vec4(position_W, 1.0);
+  gl_Position = clip_from_camera * position_C;
+  normal_C = mat3(camera_from_world) * normal_W;
+  depth_mm = -position_C.z;
+  bone_density = density;
+  label_colour = vec4(label.rgb * label.a, label.a);
+#ifdef CUT
+  for (int n = 0; n < 4; ++n) gl_ClipDistance[n] = dot(cuts[n].xyz, position_W) - cuts[n].w;
+#endif
+}
+)";
+
+// A key light over the viewer's left shoulder, a weaker one from the right, and light from all around that is
+// another from below. Bone that lies deeper than what is around it in the picture (blurred_depth,
+// of the picture before) gets less of all of them.
+constexpr std::string_view kBoneFragment = R"(#version 330 core
+in vec3 normal_C;
+in float depth_mm;
+in float bone_density;
+in vec4 label_colour;  // times its share
+uniform float label_share;
+uniform float isovalue;
+uniform float reference_density;
+uniform vec2 picture_size;
+uniform vec3 light_from_below;
+uniform float cavity_scale;  // 1 / mm, at a depth of 1 mm
+uniform sampler2D blurred_depth;
+out vec4 colour;
+const vec3 kSoft = vec3(0.76, 0.52, 0.40);
+const vec3 kBone = vec3(0.87, 0.76, 0.58);
+const vec3 kEnamel = vec3(0.93, 0.91, 0.86);
+const vec3 kTowardsKey = vec3(-0.4504, 0.6005, 0.6606);
+const vec3 kTowardsFill = vec3(0.8053, -0.0537, 0.5905);
+const vec3 kHalfWay = vec3(-0.2471, 0.3295, 0.9113);
+void main() {
+  vec3 n = normalize(normal_C);
+  float share = (bone_density - isovalue) / max(reference_density - isovalue, 1e-6);
+  vec3 base = share < 1.0 ? mix(kSoft, kBone, smoothstep(0.05, 0.85, share))
+                          : mix(kBone, kEnamel, smoothstep(1.05, 2.1, share));
+  base = (1.0 - label_share * label_colour.a) * base + label_share * label_colour.rgb;
+  if (!gl_FrontFacing) {
+    colour = vec4(0.42 * base, 1.0);
+    return;
+  }
+  vec2 around = texture(blurred_depth, gl_FragCoord.xy / picture_size).rg;
+  float sunk = around.g > 0.05 ? (depth_mm - around.r / around.g) * cavity_scale / depth_mm : 0.0;
+  // Towards its outline everything lies deeper than the middle of the picture's bone: that is no cavity.
+  sunk *= smoothstep(0.3, 0.8, n.z);
+  float open = 1.0 - 0.62 * smoothstep(0.0, 1.0, sunk) + 0.06 * smoothstep(0.0, 1.0, -sunk);
+  float key = max(dot(n, kTowardsKey), 0.0);
+  float fill = max(dot(n, kTowardsFill), 0.0);
+  vec3 ambient = mix(light_from_below, vec3(0.33, 0.35, 0.39), 0.5 + 0.5 * n.y);
+  float gloss = max(dot(n, kHalfWay), 0.0);
+  gloss *= gloss;
+  gloss *= gloss;
+  gloss *= gloss;
+  gloss *= gloss;
+  gloss *= 0.10 * gloss;
+  vec3 light = ambient + 0.62 * key * vec3(1.0, 0.98, 0.94) + 0.22 * fill * vec3(0.88, 0.93, 1.0);
+  colour = vec4((base * light + gloss) * open, 1.0);
+}
+)";
 
 // Beyond the bone there is the tool.
 constexpr double kRoomAround_mm = 60;
@@ -37,6 +113,15 @@ bool may_be_seen(const std::array<Eigen::Vector4d, 6>& planes, const Sphere& sph
   return std::all_of(planes.begin(), planes.end(), [&](const Eigen::Vector4d& plane) {
     return plane.head<3>().dot(sphere.centre_W) + plane.w() >= -sphere.radius_mm;
   });
+}
+
+template <typename Brick>
+std::vector<Brick> by_distance(std::vector<std::pair<double, Brick>> found) {
+  std::ranges::stable_sort(found, {}, &std::pair<double, Brick>::first);
+  std::vector<Brick> bricks;
+  bricks.reserve(found.size());
+  for (const auto& [distance, brick] : found) bricks.push_back(brick);
+  return bricks;
 }
 
 // The label's colour, of which the fourth channel says whether there is one.
@@ -77,15 +162,13 @@ Facing facing_of(const BrickMesh& mesh) {
 }
 
 gl::Program bone_program(const char* definitions) {
-  const std::string vertex =
-      std::string("#version 330 core\n") + definitions + std::string(shaders::kBoneVertex);
-  return gl::make_program(vertex, shaders::kBoneFragment);
+  const std::string vertex = std::string("#version 330 core\n") + definitions + std::string(kBoneVertex);
+  return gl::make_program(vertex, kBoneFragment);
 }
 
 void set_uniforms(GLuint program, const ViewScene& scene, const Projection& projection, double reach_px) {
+  set_projection(program, projection);
   const auto place = [&](const char* name) { return glGetUniformLocation(program, name); };
-  glUniformMatrix4fv(place("camera_from_world"), 1, GL_FALSE, projection.camera_from_world.data());
-  glUniformMatrix4fv(place("clip_from_camera"), 1, GL_FALSE, projection.clip_from_camera.data());
   glUniform1f(place("isovalue"), static_cast<float>(scene.isovalue));
   glUniform1f(place("reference_density"), static_cast<float>(scene.reference_density));
   constexpr float kLabelShare = 0.8f;
@@ -113,6 +196,13 @@ Projection projection_of(const ViewScene& scene, const PixelSize& size) {
   return projection;
 }
 
+void set_projection(GLuint program, const Projection& projection) {
+  glUniformMatrix4fv(glGetUniformLocation(program, "camera_from_world"), 1, GL_FALSE,
+                     projection.camera_from_world.data());
+  glUniformMatrix4fv(glGetUniformLocation(program, "clip_from_camera"), 1, GL_FALSE,
+                     projection.clip_from_camera.data());
+}
+
 Sphere bounding_sphere(const GridGeometry& geometry, const VoxelBox& cells) {
   const Vec3 first(cells.first.i, cells.first.j, cells.first.k);
   const Vec3 last(cells.last.i + 1, cells.last.j + 1, cells.last.k + 1);
@@ -129,11 +219,43 @@ std::vector<std::size_t> bricks_in_view(const SurfaceBricks& layout, const GridG
     const Sphere bounds = bounding_sphere(geometry, layout.cells(brick));
     if (may_be_seen(planes, bounds)) found.emplace_back((bounds.centre_W - eye_W).squaredNorm(), brick);
   }
-  std::sort(found.begin(), found.end());
-  std::vector<std::size_t> bricks;
-  bricks.reserve(found.size());
-  for (const auto& [way, brick] : found) bricks.push_back(brick);
-  return bricks;
+  return by_distance(std::move(found));
+}
+
+DepthTiles::DepthTiles(const FrameTarget& target, const Projection& projection, const Camera& camera)
+    : projection_(projection),
+      camera_(camera),
+      columns_((projection.size.width + kTile_px - 1) / kTile_px),
+      rows_((projection.size.height + kTile_px - 1) / kTile_px),
+      depths_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), 0.0f) {
+  const PixelSize& size = projection.size;
+  const std::vector<float> drawn = target.read_depths();
+  auto depth = drawn.begin();
+  for (int y = size.height - 1; y >= 0; --y) {
+    for (int x = 0; x < size.width; ++x, ++depth) {
+      float& tile = depths_[static_cast<std::size_t>(x / kTile_px + columns_ * (y / kTile_px))];
+      tile = std::max(tile, *depth);
+    }
+  }
+}
+
+bool DepthTiles::hide(const Sphere& sphere) const {
+  const double front_mm = depth_of(camera_, sphere.centre_W) - sphere.radius_mm;
+  if (front_mm <= projection_.near_mm) return false;
+  const auto front = static_cast<float>(projection_.far_mm * (front_mm - projection_.near_mm) /
+                                        (front_mm * (projection_.far_mm - projection_.near_mm)));
+  const Eigen::Vector2d middle = pixel_of(camera_, projection_.size, sphere.centre_W);
+  const double reach_px = sphere.radius_mm / mm_per_pixel(camera_, projection_.size, front_mm) + 1;
+  const auto tile = [](double pixel, int count) {
+    return static_cast<int>(std::clamp(pixel / kTile_px, 0.0, count - 1.0));
+  };
+  for (int row = tile(middle.y() - reach_px, rows_); row <= tile(middle.y() + reach_px, rows_); ++row) {
+    for (int column = tile(middle.x() - reach_px, columns_); column <= tile(middle.x() + reach_px, columns_);
+         ++column) {
+      if (depths_[static_cast<std::size_t>(column + columns_ * row)] >= front) return false;
+    }
+  }
+  return true;
 }
 
 void begin_cuts(GLuint program, const ViewScene& scene) {
@@ -184,22 +306,13 @@ void BoneLayer::set_brick(std::size_t number, const BrickMesh& mesh, const Brick
   std::vector<MeshVertex> vertices = mesh.vertices;
   vertices.insert(vertices.end(), levels.vertices.begin(), levels.vertices.end());
   glBindVertexArray(brick.vertex_array.get());
-  glBindBuffer(GL_ARRAY_BUFFER, brick.vertices.get());
-  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(vertices.size() * sizeof(MeshVertex)),
-               vertices.data(), GL_DYNAMIC_DRAW);
-  glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, brick.indices.get());
+  gl::fill<MeshVertex>(GL_ARRAY_BUFFER, brick.vertices, vertices, GL_DYNAMIC_DRAW);
   // A brick has less than 2^16 grid edges for vertices to lie on.
   const std::vector<GLushort> indices(levels.indices.begin(), levels.indices.end());
-  glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(indices.size() * sizeof(GLushort)),
-               indices.data(), GL_DYNAMIC_DRAW);
-  const auto attribute = [](GLuint place, GLint count, std::size_t offset) {
-    glEnableVertexAttribArray(place);
-    glVertexAttribPointer(place, count, GL_FLOAT, GL_FALSE, sizeof(MeshVertex),
-                          reinterpret_cast<const void*>(offset));
-  };
-  attribute(0, 3, offsetof(MeshVertex, position_mm));
-  attribute(1, 3, offsetof(MeshVertex, normal));
-  attribute(2, 1, offsetof(MeshVertex, density));
+  gl::fill<GLushort>(GL_ELEMENT_ARRAY_BUFFER, brick.indices, indices, GL_DYNAMIC_DRAW);
+  gl::set_attribute(0, 3, sizeof(MeshVertex), offsetof(MeshVertex, position_mm));
+  gl::set_attribute(1, 3, sizeof(MeshVertex), offsetof(MeshVertex, normal));
+  gl::set_attribute(2, 1, sizeof(MeshVertex), offsetof(MeshVertex, density));
   if (labels_) set_label_colours(brick, vertices);
 }
 
@@ -208,9 +321,7 @@ void BoneLayer::set_label_colours(Brick& brick, const std::vector<MeshVertex>& v
   std::vector<LabelColour> colours;
   colours.reserve(vertices.size());
   for (const MeshVertex& vertex : vertices) colours.push_back(label_colour_below(*labels_, vertex));
-  glBindBuffer(GL_ARRAY_BUFFER, brick.label_colours.get());
-  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(colours.size() * sizeof(LabelColour)), colours.data(),
-               GL_DYNAMIC_DRAW);
+  gl::fill<LabelColour>(GL_ARRAY_BUFFER, brick.label_colours, colours, GL_DYNAMIC_DRAW);
   glEnableVertexAttribArray(3);
   glVertexAttribPointer(3, 4, GL_UNSIGNED_BYTE, GL_TRUE, sizeof(LabelColour), nullptr);
 }
@@ -243,10 +354,7 @@ std::vector<SeenBrick> BoneLayer::seen(const ViewScene& scene, const Projection&
         geometry_.spacing_mm.maxCoeff() / mm_per_pixel(scene.camera, projection.size, front_mm);
     found.push_back({(brick.bounds.centre_W - eye_W).squaredNorm(), {n, 0, cell_px, sharp}});
   }
-  std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-  std::vector<SeenBrick> bricks;
-  bricks.reserve(found.size());
-  for (const auto& [way, brick] : found) bricks.push_back(brick);
+  std::vector<SeenBrick> bricks = by_distance(std::move(found));
   choose_levels(bricks, detail);
   return bricks;
 }

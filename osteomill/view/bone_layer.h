@@ -27,6 +27,8 @@ struct Projection {
   Eigen::Matrix4f clip_from_camera;
 };
 Projection projection_of(const ViewScene& scene, const PixelSize& size);
+/// Hands both matrices to the uniforms of these names of the program in use.
+void set_projection(GLuint program, const Projection& projection);
 
 /// Holds a box of cells, each named by its least voxel.
 Sphere bounding_sphere(const GridGeometry& geometry, const VoxelBox& cells);
@@ -34,6 +36,27 @@ Sphere bounding_sphere(const GridGeometry& geometry, const VoxelBox& cells);
 /// The bricks, empty or not, that lie at least in part where the camera sees, the nearest first.
 std::vector<std::size_t> bricks_in_view(const SurfaceBricks& layout, const GridGeometry& geometry,
                                         const ViewScene& scene, const Projection& projection);
+
+/// What was drawn so far as the greatest depth in each small square of the picture: what lies behind need not
+/// be drawn.
+class DepthTiles {
+ public:
+  /// Reads the depths, which waits for all drawing.
+  DepthTiles(const FrameTarget& target, const Projection& projection, const Camera& camera);
+
+  /// Whether all of the sphere lies behind what was drawn.
+  bool hide(const Sphere& sphere) const;
+
+ private:
+  static constexpr int kTile_px = 16;
+
+  Projection projection_;
+  Camera camera_;
+  int columns_;
+  int rows_;
+  // As OpenGL keeps depths, 0 to 1; rows from the top.
+  std::vector<float> depths_;
+};
 
 /// Hands the scene's cuts to the uniform `cuts` of the program in use and has OpenGL clip by them. Ends with
 /// `end_cuts`.

@@ -3,17 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
-#include <utility>
 #include <vector>
 
 #include "osteomill/surface/surface_mesh.h"
 #include "osteomill/view/annotations.h"
 #include "osteomill/view/bone_layer.h"
 #include "osteomill/view/cavity_pass.h"
-#include "osteomill/view/depth_tiles.h"
-#include "osteomill/view/frame_target.h"
+#include "osteomill/view/clip_face.h"
 #include "osteomill/view/offscreen_context.h"
 #include "osteomill/volume/sampling.h"
 
@@ -49,10 +46,7 @@ Extent extent_of_bone(const Volume& bone, const Camera& camera) {
   const GridGeometry& geometry = bone.geometry();
   Eigen::AlignedBox3d box;
   const auto take_in = [&](const VoxelBox& voxels) {
-    for (const int i : {voxels.first.i, voxels.last.i})
-      for (const int j : {voxels.first.j, voxels.last.j})
-        for (const int k : {voxels.first.k, voxels.last.k})
-          box.extend(axes.transpose() * geometry.world_from_voxel(VoxelIndex{i, j, k}));
+    for (const Vec3& corner_W : corners_W(geometry, voxels)) box.extend(axes.transpose() * corner_W);
   };
   for_each(geometry.all_voxels().bricks(BlockRanges::kBrickVoxels), [&](const VoxelIndex& brick) {
     if (static_cast<double>(bone.bricks().at(brick).max) > bone.isovalue())
@@ -199,12 +193,7 @@ Image bone_picture(const Volume& bone, double reference_density, const Camera& c
   BonePainter painter(bone, scene, {kFiner * size.width, kFiner * size.height});
   Image image = averaged_down(painter.paint(), kFiner);
   const double scale = std::max(1.0, size.height / kAnnotatedHeight_px);
-  const PixelSize annotated{static_cast<int>(size.width / scale), static_cast<int>(size.height / scale)};
-  draw_annotation(image, scale_bar_annotation(camera, annotated), kInkOnLight, scale);
-  if (of_patient) {
-    for (const Annotation& letter : orientation_letters(camera, annotated))
-      draw_annotation(image, letter, kInkOnLight, scale);
-  }
+  annotate(image, camera, of_patient, kInkOnLight, scale);
   return image;
 }
 

@@ -102,40 +102,4 @@ Eigen::Matrix4f projection_matrix(const Camera& camera, const PixelSize& size, d
   return matrix;
 }
 
-std::string_view name_of(ViewFrom view) {
-  switch (view) {
-    case ViewFrom::anterior:
-      return "anterior";
-    case ViewFrom::posterior:
-      return "posterior";
-    case ViewFrom::left:
-      return "left";
-    case ViewFrom::right:
-      return "right";
-    case ViewFrom::superior:
-      return "superior";
-    case ViewFrom::inferior:
-      return "inferior";
-  }
-  return "";
-}
-
-Camera camera_from(ViewFrom view, const Sphere& sphere) {
-  switch (view) {
-    case ViewFrom::posterior:
-      return camera_on(sphere, -Vec3::UnitY(), Vec3::UnitZ());
-    case ViewFrom::left:
-      return camera_on(sphere, -Vec3::UnitX(), Vec3::UnitZ());
-    case ViewFrom::right:
-      return camera_on(sphere, Vec3::UnitX(), Vec3::UnitZ());
-    case ViewFrom::superior:
-      return camera_on(sphere, -Vec3::UnitZ(), -Vec3::UnitY());
-    case ViewFrom::inferior:
-      return camera_on(sphere, Vec3::UnitZ(), -Vec3::UnitY());
-    case ViewFrom::anterior:
-      break;
-  }
-  return camera_on(sphere, Vec3::UnitY(), Vec3::UnitZ());
-}
-
 }  // namespace osteomill

@@ -10,11 +10,13 @@ namespace osteomill {
 struct PixelSize {
   int width = 0;
   int height = 0;
+  friend bool operator==(const PixelSize&, const PixelSize&) = default;
 };
 
 struct Sphere {
   Vec3 centre_W = Vec3::Zero();
   double radius_mm = 1;
+  friend bool operator==(const Sphere&, const Sphere&) = default;
 };
 
 /// A perspective view: from `focus_W`, in the middle of the picture, back by `distance_mm`.
@@ -31,6 +33,7 @@ struct Camera {
   Vec3 up_W() const { return orientation * Vec3::UnitY(); }
   Vec3 towards_viewer_W() const { return orientation * Vec3::UnitZ(); }
   Vec3 eye_W() const { return focus_W + distance_mm * towards_viewer_W(); }
+  friend bool operator==(const Camera&, const Camera&) = default;
 };
 
 /// Looks along `direction_W` at all of the sphere, with `up_W` up in the picture (not along the direction).
@@ -60,11 +63,18 @@ Vec3 ray_through(const Camera& camera, const PixelSize& size, double x_px, doubl
 Eigen::Matrix4f view_matrix(const Camera& camera);
 Eigen::Matrix4f projection_matrix(const Camera& camera, const PixelSize& size, double near_mm, double far_mm);
 
-/// The six views along the patient's axes (W is LPS: +x left, +y posterior, +z superior).
-enum class ViewFrom : unsigned char { anterior, posterior, left, right, superior, inferior };
-inline constexpr std::array kAllViews{ViewFrom::anterior, ViewFrom::posterior, ViewFrom::left,
-                                      ViewFrom::right,    ViewFrom::superior,  ViewFrom::inferior};
-std::string_view name_of(ViewFrom view);
-Camera camera_from(ViewFrom view, const Sphere& sphere);
+/// A view along the patient's axes (W is LPS: +x left, +y posterior, +z superior).
+struct PatientView {
+  /// Where the viewer is.
+  std::string_view from;
+  Vec3 direction_W;
+  Vec3 up_W;
+};
+inline const std::array<PatientView, 6> kPatientViews{{{"anterior", Vec3::UnitY(), Vec3::UnitZ()},
+                                                       {"posterior", -Vec3::UnitY(), Vec3::UnitZ()},
+                                                       {"left", -Vec3::UnitX(), Vec3::UnitZ()},
+                                                       {"right", Vec3::UnitX(), Vec3::UnitZ()},
+                                                       {"superior", -Vec3::UnitZ(), -Vec3::UnitY()},
+                                                       {"inferior", Vec3::UnitZ(), -Vec3::UnitY()}}};
 
 }  // namespace osteomill

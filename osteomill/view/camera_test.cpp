@@ -39,12 +39,12 @@ TEST(Camera, TheWholeSphereIsSeen) {
 
 TEST(Camera, PatientsAreSeenAsPhysiciansSeeThem) {
   // Facing the patient: its left is on the right of the picture, its head up.
-  const Camera front = camera_from(ViewFrom::anterior, kSphere);
+  const Camera front = camera_on(kSphere, kPatientViews[0].direction_W, kPatientViews[0].up_W);
   EXPECT_GT(front.right_W().x(), 0.99);
   EXPECT_GT(front.up_W().z(), 0.99);
-  const Camera above = camera_from(ViewFrom::superior, kSphere);
+  const Camera above = camera_on(kSphere, kPatientViews[4].direction_W, kPatientViews[4].up_W);
   EXPECT_GT(above.towards_viewer_W().z(), 0.99);
-  const Camera left = camera_from(ViewFrom::left, kSphere);
+  const Camera left = camera_on(kSphere, kPatientViews[2].direction_W, kPatientViews[2].up_W);
   EXPECT_GT(left.towards_viewer_W().x(), 0.99);
   EXPECT_GT(left.up_W().z(), 0.99);
 }

@@ -2,11 +2,36 @@
 
 #include <algorithm>
 
-#include "osteomill/view/shaders.h"
-
 namespace osteomill {
 
 namespace {
+
+// Depth in mm and 1, or zeros where there is nothing.
+constexpr std::string_view kDepthFragment = R"(#version 330 core
+in vec2 place;
+uniform sampler2D depths;
+uniform vec2 near_far;
+out vec2 depth;
+void main() {
+  float d = texture(depths, place).r;
+  float mm = near_far.x * near_far.y / (near_far.y - d * (near_far.y - near_far.x));
+  depth = d < 1.0 ? vec2(mm, 1.0) : vec2(0.0);
+}
+)";
+
+constexpr std::string_view kBlurFragment = R"(#version 330 core
+in vec2 place;
+uniform sampler2D source;
+uniform vec2 pace;
+out vec2 blurred;
+void main() {
+  vec2 sum = vec2(0.0);
+  sum += 0.0702 * (texture(source, place - 3.0 * pace).rg + texture(source, place + 3.0 * pace).rg);
+  sum += 0.1311 * (texture(source, place - 2.0 * pace).rg + texture(source, place + 2.0 * pace).rg);
+  sum += 0.1907 * (texture(source, place - pace).rg + texture(source, place + pace).rg);
+  blurred = sum + 0.2160 * texture(source, place).rg;
+}
+)";
 
 // Small pixels that the blur reaches to each side.
 constexpr int kBlurSteps = 3;
@@ -39,8 +64,8 @@ CavityPass::CavityPass(const PixelSize& size, int reach_px)
       to_small_(framebuffer_on(small_)),
       to_half_blurred_(framebuffer_on(half_blurred_)),
       to_blurred_(framebuffer_on(blurred_)),
-      linear_depth_(gl::make_program(shaders::kScreenVertex, shaders::kDepthFragment)),
-      blur_(gl::make_program(shaders::kScreenVertex, shaders::kBlurFragment)),
+      linear_depth_(gl::make_screen_program(kDepthFragment)),
+      blur_(gl::make_screen_program(kBlurFragment)),
       nothing_(gl::make_vertex_array()) {}
 
 void CavityPass::blur(GLuint depths, double near_mm, double far_mm) const {

@@ -9,19 +9,9 @@ namespace osteomill {
 
 namespace {
 
-std::array<Vec3, 8> corners_of(const GridGeometry& geometry) {
-  std::array<Vec3, 8> corners;
-  for (std::size_t n = 0; n < 8; ++n) {
-    const Vec3 voxel((n & 1) != 0 ? geometry.dims[0] - 1 : 0, (n & 2) != 0 ? geometry.dims[1] - 1 : 0,
-                     (n & 4) != 0 ? geometry.dims[2] - 1 : 0);
-    corners[n] = geometry.world_from_voxel(voxel);
-  }
-  return corners;
-}
-
 // Where the edges of the grid's box cross the plane.
 std::vector<Vec3> crossings(const GridGeometry& geometry, const ClipPlane& plane) {
-  const std::array<Vec3, 8> corners = corners_of(geometry);
+  const std::array<Vec3, 8> corners = corners_W(geometry, geometry.all_voxels());
   std::vector<Vec3> found;
   for (std::size_t a = 0; a < 8; ++a) {
     for (const std::size_t bit : {1u, 2u, 4u}) {
@@ -50,9 +40,19 @@ WindowLevel window_level_of(const DensityGrid& grid, double surroundings_density
   return {surroundings_density - 0.02 * (white - surroundings_density), white};
 }
 
-std::array<double, 2> extent_along(const GridGeometry& geometry, const Vec3& normal_W) {
+std::array<Vec3, 8> corners_W(const GridGeometry& geometry, const VoxelBox& voxels) {
+  std::array<Vec3, 8> corners;
+  for (std::size_t n = 0; n < 8; ++n) {
+    corners[n] = geometry.world_from_voxel(VoxelIndex{(n & 1) != 0 ? voxels.last.i : voxels.first.i,
+                                                      (n & 2) != 0 ? voxels.last.j : voxels.first.j,
+                                                      (n & 4) != 0 ? voxels.last.k : voxels.first.k});
+  }
+  return corners;
+}
+
+std::array<double, 2> extent_along(const std::array<Vec3, 8>& corners, const Vec3& normal_W) {
   std::array<double, 2> extent{1e300, -1e300};
-  for (const Vec3& corner : corners_of(geometry)) {
+  for (const Vec3& corner : corners) {
     extent[0] = std::min(extent[0], normal_W.dot(corner));
     extent[1] = std::max(extent[1], normal_W.dot(corner));
   }

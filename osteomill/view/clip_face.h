@@ -35,7 +35,10 @@ WindowLevel window_level_of(const DensityGrid& grid, double surroundings_density
 ClipFace clip_face(const DensityGrid& grid, const ClipPlane& plane, const WindowLevel& window,
                    int max_pixels = 320, const LabelMap* labels = nullptr);
 
-/// The least and the greatest normal . p over the grid's corners: how far a plane can be moved.
-std::array<double, 2> extent_along(const GridGeometry& geometry, const Vec3& normal_W);
+/// The corners of a box of voxels, with the first voxel first and the last one last.
+std::array<Vec3, 8> corners_W(const GridGeometry& geometry, const VoxelBox& voxels);
+
+/// The least and the greatest normal . p over such corners: how far a plane can be moved.
+std::array<double, 2> extent_along(const std::array<Vec3, 8>& corners, const Vec3& normal_W);
 
 }  // namespace osteomill

@@ -58,7 +58,8 @@ TEST(ClipFace, LargeOnesAreSampledMoreCoarsely) {
 }
 
 TEST(ClipFace, PlanesCanBeMovedAsFarAsTheGridReaches) {
-  const auto extent = extent_along(testing_support::centred_cube(41, 0.25), Vec3::UnitY());
+  const GridGeometry cube = testing_support::centred_cube(41, 0.25);
+  const auto extent = extent_along(corners_W(cube, cube.all_voxels()), Vec3::UnitY());
   EXPECT_NEAR(extent[0], -5, 1e-9);
   EXPECT_NEAR(extent[1], 5, 1e-9);
 }

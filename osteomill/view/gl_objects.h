@@ -1,10 +1,14 @@
 #pragma once
 
+#include <span>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include <epoxy/gl.h>
+
+#include "osteomill/image/image.h"
+#include "osteomill/view/camera.h"
 
 namespace osteomill::gl {
 
@@ -64,5 +68,43 @@ Texture make_texture(GLint internal_format, GLenum format, GLenum type, int widt
 
 /// Throws std::runtime_error with the driver's complaint.
 Program make_program(std::string_view vertex_source, std::string_view fragment_source);
+/// For one triangle over the whole picture and behind everything, without any buffer. The fragment takes `in
+/// vec2 place`, 0 to 1 across the picture.
+Program make_screen_program(std::string_view fragment_source);
+
+/// Binds the buffer to `target` and fills it.
+template <typename Value>
+void fill(GLenum target, const Buffer& buffer, std::span<const Value> values, GLenum usage) {
+  glBindBuffer(target, buffer.get());
+  glBufferData(target, static_cast<GLsizeiptr>(values.size_bytes()), values.data(), usage);
+}
+
+/// An attribute of `count` floats, so many bytes into each vertex, in the buffer and array that are bound.
+void set_attribute(GLuint place, GLint count, std::size_t vertex_bytes, std::size_t offset_bytes);
 
 }  // namespace osteomill::gl
+
+namespace osteomill {
+
+/// What is drawn into: colours and depths of one size, as textures.
+class FrameTarget {
+ public:
+  explicit FrameTarget(const PixelSize& size);
+
+  const PixelSize& size() const { return size_; }
+  void bind() const;
+  GLuint framebuffer() const { return framebuffer_.get(); }
+  GLuint colours() const { return colours_.get(); }
+  GLuint depths() const { return depths_.get(); }
+  Image read() const;
+  /// 0 to 1, row by row from the bottom.
+  std::vector<float> read_depths() const;
+
+ private:
+  PixelSize size_;
+  gl::Texture colours_;
+  gl::Texture depths_;
+  gl::Framebuffer framebuffer_;
+};
+
+}  // namespace osteomill

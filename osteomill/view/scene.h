@@ -16,6 +16,7 @@ namespace osteomill {
 struct ClipPlane {
   Vec3 normal_W = Vec3::UnitZ();
   double offset_mm = 0;
+  friend bool operator==(const ClipPlane&, const ClipPlane&) = default;
 };
 inline constexpr std::size_t kMaxClipPlanes = 4;
 

@@ -78,7 +78,7 @@ TEST(Annotations, TheScaleBarHasARoundLengthThatFits) {
 
 TEST(Annotations, LettersStandWhereThePatientsSidesAre) {
   const PixelSize size{1000, 700};
-  const Camera camera = camera_from(ViewFrom::anterior, {Vec3::Zero(), 20});
+  const Camera camera = camera_on({Vec3::Zero(), 20}, kPatientViews[0].direction_W, kPatientViews[0].up_W);
   std::string seen;
   for (const Annotation& letter : orientation_letters(camera, size)) {
     seen += letter.text;

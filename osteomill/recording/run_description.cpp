@@ -1,4 +1,4 @@
-#include "osteomill/recording/describe_run.h"
+#include "osteomill/recording/run_description.h"
 
 #include <algorithm>
 #include <array>
@@ -10,7 +10,6 @@
 #include <sys/utsname.h>
 
 #include "osteomill/files/input_error.h"
-#include "osteomill/volume/label_map.h"
 
 namespace osteomill {
 

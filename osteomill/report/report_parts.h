@@ -2,11 +2,14 @@
 
 #include <filesystem>
 #include <optional>
+#include <vector>
 
 #include "osteomill/report/figure.h"
+#include "osteomill/report/html.h"
 #include "osteomill/report/run_groups.h"
 
-/// The figures of one mode's runs. Each throws InputError as `draw_figure` does.
+/// What a report's page is put together from. Each figure is of one mode's runs and throws InputError as
+/// `draw_figure` does.
 namespace osteomill {
 
 /// The bone before, and after each algorithm, side by side, from the recordings' pictures; those of the
@@ -29,5 +32,17 @@ Figure draw_path_figure(const RunGroup& group, const std::filesystem::path& fold
 /// The paper's figure 9: where the simulated tool's shaft points while it touches, in degrees across its mean
 /// direction, coloured by time; a panel for each phase and algorithm, each with a scale of its own.
 Figure draw_shaft_figure(const RunGroup& group, const std::filesystem::path& folder);
+
+/// What each run removed of each label, when and with what force, no-go labels first; nothing where no
+/// recording has labels.
+std::optional<PageSection> label_section(const RunGroup& group);
+
+/// How much was removed of each label over time, a panel for each run that removed any, in the labels'
+/// colours; nothing where none did.
+std::optional<Figure> draw_label_figure(const RunGroup& group, const std::filesystem::path& folder);
+
+/// Every setting of the recordings, once where it is the same in all, else with the value of each algorithm
+/// or, where that does not tell them apart, of each recording. The command line is left out.
+HtmlTable settings_table(const std::vector<const Recording*>& recordings);
 
 }  // namespace osteomill
