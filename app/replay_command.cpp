@@ -23,7 +23,7 @@
 #include "osteomill/session/milling_setup.h"
 #include "osteomill/session/tick_counts.h"
 #include "osteomill/session/trajectory.h"
-#include "osteomill/volume/densities.h"
+#include "osteomill/volume/bone_densities.h"
 
 namespace osteomill::app {
 

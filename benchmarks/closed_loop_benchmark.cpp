@@ -8,7 +8,7 @@
 #include <benchmark/benchmark.h>
 
 #include "osteomill/experiment/milling_trial.h"
-#include "osteomill/volume/densities.h"
+#include "osteomill/volume/bone_densities.h"
 
 namespace osteomill::benchmarks {
 

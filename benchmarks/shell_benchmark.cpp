@@ -8,7 +8,7 @@
 
 #include "osteomill/haptics/bone_points/bone_bricks.h"
 #include "osteomill/milling/burr_mill.h"
-#include "osteomill/volume/densities.h"
+#include "osteomill/volume/bone_densities.h"
 
 namespace osteomill::benchmarks {
 

@@ -22,8 +22,8 @@
 #include "osteomill/numbers/distribution.h"
 #include "osteomill/surface/surface_mesh.h"
 #include "osteomill/surface/surface_upkeep.h"
+#include "osteomill/volume/bone_densities.h"
 #include "osteomill/volume/builtin_tooth.h"
-#include "osteomill/volume/densities.h"
 #include "osteomill/volume/sampling.h"
 
 namespace {

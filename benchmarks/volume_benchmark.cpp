@@ -5,8 +5,8 @@
 #include "benchmarks/bones.h"
 #include <benchmark/benchmark.h>
 
+#include "osteomill/volume/bone_densities.h"
 #include "osteomill/volume/builtin_tooth.h"
-#include "osteomill/volume/densities.h"
 #include "osteomill/volume/sampling.h"
 
 namespace osteomill::benchmarks {

@@ -10,7 +10,7 @@
 #include "osteomill/session/trajectory.h"
 #include "osteomill/view/offscreen_context.h"
 #include "osteomill/view/scene_renderer.h"
-#include "osteomill/volume/densities.h"
+#include "osteomill/volume/bone_densities.h"
 
 namespace osteomill {
 namespace {

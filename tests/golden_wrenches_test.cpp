@@ -9,7 +9,7 @@
 #include "osteomill/haptics/algorithms.h"
 #include "osteomill/session/milling_session.h"
 #include "osteomill/session/trajectory.h"
-#include "osteomill/volume/densities.h"
+#include "osteomill/volume/bone_densities.h"
 
 // The same input must give the same wrenches to the last bit, whatever the optimisation: every preset (-O0,
 // -O1, -O2, with sanitizers and without) runs this test against the same numbers. Where an algorithm was

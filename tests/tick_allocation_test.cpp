@@ -17,7 +17,7 @@
 #include "osteomill/live/live_session.h"
 #include "osteomill/session/milling_session.h"
 #include "osteomill/session/trajectory.h"
-#include "osteomill/volume/densities.h"
+#include "osteomill/volume/bone_densities.h"
 
 namespace osteomill {
 namespace {

@@ -11,8 +11,8 @@
 #include "osteomill/experiment/milling_trial.h"
 #include "osteomill/operator/milling_entry.h"
 #include "osteomill/report/metrics.h"
+#include "osteomill/volume/bone_densities.h"
 #include "osteomill/volume/builtin_tooth.h"
-#include "osteomill/volume/densities.h"
 
 namespace osteomill::verification {
 

@@ -4,7 +4,7 @@
 
 #include "osteomill/milling/cutting_reaction.h"
 #include "osteomill/operator/milling_entry.h"
-#include "osteomill/volume/densities.h"
+#include "osteomill/volume/bone_densities.h"
 
 namespace osteomill::verification {
 

@@ -8,7 +8,7 @@
 #include <fmt/core.h>
 
 #include "osteomill/operator/milling_entry.h"
-#include "osteomill/volume/densities.h"
+#include "osteomill/volume/bone_densities.h"
 
 namespace osteomill::verification {
 

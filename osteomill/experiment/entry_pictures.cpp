@@ -34,7 +34,7 @@ double share_seen(const Volume& before, const Volume& milled, const Camera& came
   const GridGeometry& geometry = before.geometry();
   double seen = 0, all = 0;
   for_each(geometry.all_voxels().bricks(kBrick), [&](const VoxelIndex& brick) {
-    if (before.bricks().at(brick).changes == milled.bricks().at(brick).changes) return;
+    if (before.ranges().at(brick).changes == milled.ranges().at(brick).changes) return;
     for_each(VoxelBox::of_brick(brick, kBrick).intersected(geometry.all_voxels()), [&](const VoxelIndex& v) {
       if (!before.is_bone(v) || milled.is_bone(v)) return;
       const bool at_surface = std::any_of(kBeside.begin(), kBeside.end(), [&](const VoxelIndex& by) {

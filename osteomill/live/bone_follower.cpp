@@ -113,7 +113,7 @@ void BoneFollower::follow(const std::optional<double>& isovalue) {
 // The others may read meanwhile; no other thread marks what is to be meshed while one holds the lock.
 void BoneFollower::mesh() {
   const std::shared_lock lock(bone_mutex_);
-  std::vector<ChangedBrick> changed = upkeep_.remesh({copy_->grid(), copy_->bricks(), shown_isovalue_});
+  std::vector<ChangedBrick> changed = upkeep_.remesh({copy_->grid(), copy_->ranges(), shown_isovalue_});
   const std::lock_guard publishing(published_mutex_);
   for (ChangedBrick& brick : changed) published_.insert_or_assign(brick.brick, std::move(brick));
 }

@@ -19,7 +19,7 @@
 #include "osteomill/numbers/spsc_queue.h"
 #include "osteomill/surface/surface_bricks.h"
 #include "osteomill/surface/surface_upkeep.h"
-#include "osteomill/volume/densities.h"
+#include "osteomill/volume/bone_densities.h"
 #include "osteomill/volume/density_block.h"
 #include "osteomill/volume/volume.h"
 

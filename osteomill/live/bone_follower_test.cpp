@@ -54,7 +54,7 @@ struct Collected {
 };
 
 bool same_surface(const SurfaceMesh& mesh, const Volume& volume, double isovalue) {
-  return mesh.bricks == mesh_surface({volume.grid(), volume.bricks(), isovalue}).bricks;
+  return mesh.bricks == mesh_surface({volume.grid(), volume.ranges(), isovalue}).bricks;
 }
 
 // Ticks without milling until the surface is that of the volume, for at most 20 s.
@@ -122,7 +122,7 @@ bool ranges_hold(const BoneFollower& follower) {
     for (int bk = 0; bk < dims[2]; ++bk) {
       for (int bj = 0; bj < dims[1]; ++bj) {
         for (int bi = 0; bi < dims[0]; ++bi) {
-          const auto& held = copy.bricks().at(bi, bj, bk);
+          const auto& held = copy.ranges().at(bi, bj, bk);
           const auto& range = exact.at(bi, bj, bk);
           hold = hold && held.min <= range.min && held.max >= range.max;
         }

@@ -5,7 +5,7 @@
 #include "osteomill/milling/cut_voxels.h"
 #include "osteomill/milling/label_tally.h"
 #include "osteomill/tool/milling_tool.h"
-#include "osteomill/volume/densities.h"
+#include "osteomill/volume/bone_densities.h"
 #include "osteomill/volume/volume.h"
 
 namespace osteomill {

@@ -134,7 +134,7 @@ void BurrReach::measure(Squares& squares, double centre_mm, std::size_t axis) co
 
 // Whether the brick holds anything.
 bool BurrReach::look_at(const Volume& volume, int bi, int bj, int bk) {
-  if (!(volume.bricks().at(bi, bj, bk).max > floor_density_)) return false;
+  if (!(volume.ranges().at(bi, bj, bk).max > floor_density_)) return false;
   Bits& bits = bits_[brick_index(bi, bj, bk)];
   bits.fill(0);
   const auto& dims = geometry_.dims;

@@ -10,7 +10,7 @@
 
 #include "osteomill/geometry/pose.h"
 #include "osteomill/session/milling_setup.h"
-#include "osteomill/volume/densities.h"
+#include "osteomill/volume/bone_densities.h"
 #include "osteomill/volume/label_map.h"
 #include "osteomill/volume/volume.h"
 

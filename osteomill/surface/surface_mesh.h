@@ -29,7 +29,7 @@ struct DensityView {
   DensityView(const DensityGrid& grid_, const BlockRanges& ranges_, double isovalue_)
       : grid(grid_), ranges(ranges_), isovalue(isovalue_) {}
   explicit DensityView(const Volume& volume)
-      : DensityView(volume.grid(), volume.bricks(), volume.isovalue()) {}
+      : DensityView(volume.grid(), volume.ranges(), volume.isovalue()) {}
 };
 
 /// The isosurface within one brick of `SurfaceBricks(view.grid.geometry().dims)`, by Marching Cubes (Lorensen

@@ -230,7 +230,7 @@ TEST(SurfaceMesh, CarriesTheDensityOfTheBoneUnderIt) {
 TEST(SurfaceMesh, FollowsTheIsovalueItIsAskedFor) {
   const Volume volume = shape_volume(centred_cube(50, 0.25), ball(Vec3::Zero(), 4.0), 4.0);
   const auto radius = [&](double isovalue) {
-    const BrickMesh mesh = mesh_in_one_piece({volume.grid(), volume.bricks(), isovalue});
+    const BrickMesh mesh = mesh_in_one_piece({volume.grid(), volume.ranges(), isovalue});
     return std::cbrt(enclosed_volume_mm3(mesh) * 3 / 4 / std::numbers::pi);
   };
   EXPECT_NEAR(radius(500), 4.0, 0.01);

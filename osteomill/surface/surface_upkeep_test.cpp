@@ -13,7 +13,7 @@ using testing_support::centred_cube;
 using testing_support::shape_volume;
 
 DensityView at_isovalue(const Volume& volume, double isovalue) {
-  return {volume.grid(), volume.bricks(), isovalue};
+  return {volume.grid(), volume.ranges(), isovalue};
 }
 
 TEST(SurfaceUpkeep, KeptUpIsTheSurfaceMadeFromScratch) {
@@ -32,7 +32,7 @@ TEST(SurfaceUpkeep, KeptUpIsTheSurfaceMadeFromScratch) {
     for (int k = 40; k < 46; ++k) {
       const VoxelBox row{{12, 25, k}, {20, 25, k}};
       for (int i = row.first.i; i <= row.last.i; ++i) volume.lower_density({i, 25, k}, density);
-      volume.refresh_bricks(row);
+      volume.refresh_ranges(row);
       upkeep.mark(row);
     }
     const std::size_t meshed = take();
@@ -52,7 +52,7 @@ TEST(SurfaceUpkeep, ABrickThatIsMilledHasItsMeshAloneAndItsLevelsOnceItRests) {
   EXPECT_TRUE(std::all_of(first.begin(), first.end(), has_levels));
   const VoxelBox row{{12, 25, 45}, {40, 25, 45}};
   for (int i = row.first.i; i <= row.last.i; ++i) volume.lower_density({i, 25, 45}, 0);
-  volume.refresh_bricks(row);
+  volume.refresh_ranges(row);
   std::size_t milled = 0;  // more than come to rest at once
   for (int n = 0; n < 2 * SurfaceUpkeep::kCallsAtRest; ++n) {
     upkeep.mark(row);

@@ -49,7 +49,7 @@ Extent extent_of_bone(const Volume& bone, const Camera& camera) {
     for (const Vec3& corner_W : corners_W(geometry, voxels)) box.extend(axes.transpose() * corner_W);
   };
   for_each(geometry.all_voxels().bricks(BlockRanges::kBrickVoxels), [&](const VoxelIndex& brick) {
-    if (static_cast<double>(bone.bricks().at(brick).max) > bone.isovalue())
+    if (static_cast<double>(bone.ranges().at(brick).max) > bone.isovalue())
       take_in(BlockRanges::counted(brick, geometry));
   });
   if (box.isEmpty()) take_in(geometry.all_voxels());

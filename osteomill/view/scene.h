@@ -8,7 +8,7 @@
 #include "osteomill/geometry/wrench.h"
 #include "osteomill/tool/milling_tool.h"
 #include "osteomill/view/camera.h"
-#include "osteomill/volume/densities.h"
+#include "osteomill/volume/bone_densities.h"
 
 namespace osteomill {
 

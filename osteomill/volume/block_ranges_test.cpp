@@ -59,7 +59,7 @@ TEST(BlockRanges, TakeAWholeRowInAsOneByOne) {
       for (std::size_t n = 0; n < columns.size(); ++n) {
         EXPECT_EQ((volume.grid()[{columns[n], j, k}]), densities[n]);
       }
-      expect_ranges_hold(volume.bricks(), volume.grid(), false);
+      expect_ranges_hold(volume.ranges(), volume.grid(), false);
     }
   }
 }
@@ -70,15 +70,15 @@ TEST(BlockRanges, HoldWhileDensitiesFallAndAreExactAfterARefresh) {
   for (int k = box.first.k; k <= box.last.k; ++k)
     for (int j = box.first.j; j <= box.last.j; ++j)
       for (int i = box.first.i; i <= box.last.i; ++i) volume.lower_density({i, j, k}, -2000.0f - float(i));
-  expect_ranges_hold(volume.bricks(), volume.grid(), false);
-  volume.refresh_bricks(box);
-  expect_ranges_hold(volume.bricks(), volume.grid(), true);
+  expect_ranges_hold(volume.ranges(), volume.grid(), false);
+  volume.refresh_ranges(box);
+  expect_ranges_hold(volume.ranges(), volume.grid(), true);
 }
 
 TEST(BlockRanges, SayWhereADensityWasTakenInAnew) {
   Volume volume(random_grid(), 500);
   const VoxelBox all = volume.geometry().all_voxels();
-  const BlockRanges& ranges = volume.bricks();
+  const BlockRanges& ranges = volume.ranges();
   for (const VoxelIndex& v : {VoxelIndex{0, 0, 0}, all.last, VoxelIndex{8, 7, 8}, VoxelIndex{7, 3, 16}}) {
     const VoxelBox near = VoxelBox{v, v}.grown(2).intersected(all);
     const std::uint32_t before = ranges.changes_in(near), of_all = ranges.changes_in(all);
@@ -91,7 +91,7 @@ TEST(BlockRanges, SayWhereADensityWasTakenInAnew) {
     volume.lower_row(v.j, v.k, &v.i, &lower, 1);
     EXPECT_NE(ranges.changes_in(near), lowered);
     const std::uint32_t again = ranges.changes_in(near);
-    volume.refresh_bricks({v, v});
+    volume.refresh_ranges({v, v});
     EXPECT_NE(ranges.changes_in(near), again);
   }
 }

@@ -55,7 +55,7 @@ VoxelBox swap_densities(Volume& bone, DensityBlock& brick) {
       if (count > 0) bone.lower_row(j, k, columns.data(), densities.data(), count);
     }
   }
-  bone.refresh_bricks(risen);
+  bone.refresh_ranges(risen);
   return changed;
 }
 

@@ -19,13 +19,13 @@ namespace osteomill {
 class Volume {
  public:
   /// Throws std::invalid_argument where the isovalue is not finite.
-  Volume(DensityGrid grid, double isovalue) : grid_(std::move(grid)), bricks_(grid_) {
+  Volume(DensityGrid grid, double isovalue) : grid_(std::move(grid)), ranges_(grid_) {
     set_isovalue(isovalue);
   }
 
   const DensityGrid& grid() const { return grid_; }
   const GridGeometry& geometry() const { return grid_.geometry(); }
-  const BlockRanges& bricks() const { return bricks_; }
+  const BlockRanges& ranges() const { return ranges_; }
   double isovalue() const { return isovalue_; }
   /// Which structures the bone is made of; null where nobody said. Copies of the bone share it.
   const std::shared_ptr<const LabelMap>& labels() const { return labels_; }
@@ -39,7 +39,7 @@ class Volume {
 
   /// Lowers the densities of `count` voxels of one row, whose columns ascend (milling never raises them).
   /// Safe in the haptic tick. Not in the tick, nor while anyone works on this bone, they may rise too, as
-  /// when a cut is taken back, if `refresh_bricks` follows.
+  /// when a cut is taken back, if `refresh_ranges` follows.
   void lower_row(int j, int k, const int* columns, const float* densities, std::size_t count) {
     for (std::size_t n = 0; n < count; ++n) {
       const VoxelIndex v{columns[n], j, k};
@@ -47,7 +47,7 @@ class Volume {
       change_hash_ += density_hash(voxel, densities[n]) - density_hash(voxel, grid_[v]);
       grid_.set(v, densities[n]);
     }
-    bricks_.lower_row(j, k, columns, densities, count);
+    ranges_.lower_row(j, k, columns, densities, count);
   }
   /// The same for one voxel.
   void lower_density(const VoxelIndex& v, float density) { lower_row(v.j, v.k, &v.i, &density, 1); }
@@ -63,11 +63,11 @@ class Volume {
     isovalue_ = isovalue;
   }
   /// Makes the brick ranges around a changed box exact again; not for the tick.
-  void refresh_bricks(const VoxelBox& box) { bricks_.refresh(grid_, box); }
+  void refresh_ranges(const VoxelBox& box) { ranges_.refresh(grid_, box); }
 
  private:
   DensityGrid grid_;
-  BlockRanges bricks_;
+  BlockRanges ranges_;
   double isovalue_ = 0;
   std::uint64_t change_hash_ = 0;
   std::shared_ptr<const LabelMap> labels_;
@@ -81,7 +81,7 @@ void for_each_bone_voxel(const Volume& volume, const Visit& visit) {
   const int last = std::exchange(rows.last.i, rows.last.i / kSide);
   // Here i counts bricks.
   for_each_with_progress(rows, [&](const VoxelIndex& row) {
-    const BlockRanges::Range& range = volume.bricks().at(row.i, row.j / kSide, row.k / kSide);
+    const BlockRanges::Range& range = volume.ranges().at(row.i, row.j / kSide, row.k / kSide);
     if (static_cast<double>(range.max) <= volume.isovalue()) return;
     for (VoxelIndex v{kSide * row.i, row.j, row.k}; v.i <= std::min(last, kSide * row.i + kSide - 1); ++v.i) {
       if (volume.is_bone(v)) visit(v);

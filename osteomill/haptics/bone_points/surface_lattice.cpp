@@ -120,7 +120,7 @@ VoxelBox SurfaceLattice::voxels_of(int level, const VoxelIndex& node, int more_n
 
 // The weights of crossings depend on one more node all round.
 std::uint32_t SurfaceLattice::changes_of(const VoxelIndex& brick) const {
-  return volume_->bricks().changes_in(voxels_of(0, brick, 1).intersected(volume_->geometry().all_voxels()));
+  return volume_->ranges().changes_in(voxels_of(0, brick, 1).intersected(volume_->geometry().all_voxels()));
 }
 
 SurfaceLattice::Found SurfaceLattice::found_in(int level, const VoxelIndex& node) const {
@@ -132,7 +132,7 @@ SurfaceLattice::Found SurfaceLattice::found_in(int level, const VoxelIndex& node
   if (cell_count(ranges.dims()) > kMostRanges) return Found::surface;
   Seen seen = none;
   for_each(ranges, [&](const VoxelIndex& at) {
-    const BlockRanges::Range& range = volume_->bricks().at(at);
+    const BlockRanges::Range& range = volume_->ranges().at(at);
     seen.add(range.max > isovalue_, range.min > isovalue_);
   });
   if (seen.found() != Found::surface || cell_count(inside.dims()) > kMostVoxels) return seen.found();

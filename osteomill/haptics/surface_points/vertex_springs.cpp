@@ -119,7 +119,7 @@ bool bone_near_disc(const Volume& volume, const Vec3& centre_W, const Vec3& axis
   for (int k = first[2]; k <= last[2]; ++k) {
     for (int j = first[1]; j <= last[1]; ++j) {
       for (int i = first[0]; i <= last[0]; ++i) {
-        if (static_cast<double>(volume.bricks().at(i, j, k).max) > volume.isovalue()) return true;
+        if (static_cast<double>(volume.ranges().at(i, j, k).max) > volume.isovalue()) return true;
       }
     }
   }

@@ -1,4 +1,4 @@
-#include "osteomill/volume/densities.h"
+#include "osteomill/volume/bone_densities.h"
 
 #include <fstream>
 #include <vector>
