@@ -73,9 +73,10 @@ Cells cells_of(const std::set<double>& values, bool words) {
 }
 
 std::string axis_script(char axis, const Cells& cells, const ShownQuantity& shown) {
-  std::string script = fmt::format("{0} logscale {1}\nset {1}range [{2:.9g}:{3:.9g}]\nset {1}label {4}\n",
-                                   cells.logarithmic ? "set" : "unset", axis, cells.edges.front(),
-                                   cells.edges.back(), gnuplot_quoted(shown.label()));
+  std::string script =
+      fmt::format("{0} logscale {1}\nset {1}range [{2:.9g}:{3:.9g}]\nset {1}label {4} noenhanced\n",
+                  cells.logarithmic ? "set" : "unset", axis, cells.edges.front(), cells.edges.back(),
+                  gnuplot_quoted(shown.label()));
   if (cells.tics.empty()) return script + fmt::format("set {}tics autofreq\n", axis);
   std::string tics;
   for (std::size_t n = 0; n < cells.tics.size(); ++n) {
@@ -102,11 +103,11 @@ std::string colour_script(const StudyMap& map, const std::string& label, double 
       "set palette defined (0 '#440154', 1 '#3b528b', 2 '#21918c', 3 '#5ec962', 4 '#fde725')\n"
       "{} logscale cb\nset cbrange [{:.6g}:{:.6g}]\nset format cb '%g'\nset format x '%g'\nset format y "
       "'%g'\n"
-      "set label 101 {} at screen 0.5,screen {:.4f} center font ',15'\n"
-      "set label 102 {} at screen 0.29,screen {:.4f} right\n"
+      "set label 101 {} at screen 0.5,screen {:.4f} center font ',15' noenhanced\n"
+      "set label 102 {} at screen 0.5,screen {:.4f} center noenhanced\n"
       "set colorbox horizontal user origin screen 0.3,screen {:.4f} size screen 0.4,screen {:.4f} border\n",
       logarithmic ? "set" : "unset", min, max, gnuplot_quoted(map.title), up(22),
-      gnuplot_quoted(fmt::format("{}, {}", label, map.statistic)), up(54), up(62), 16 / grid.height_px);
+      gnuplot_quoted(fmt::format("{}, {}", label, map.statistic)), up(50), up(78), 14 / grid.height_px);
 }
 
 }  // namespace
@@ -196,7 +197,7 @@ Figure MapOfStudy::draw(const std::string& name, const std::filesystem::path& fo
                                x.edges[column + 1], y.edges[row], y.edges[row + 1], value);
   }
   PanelGrid grid{.columns = std::min<std::size_t>(panels, 4),
-                 .head_px = 100,
+                 .head_px = 118,
                  .left_px = 84,
                  .right_px = 18,
                  .above_px = 34,
@@ -211,7 +212,7 @@ Figure MapOfStudy::draw(const std::string& name, const std::filesystem::path& fo
     const std::string file = fmt::format("map-{}.dat", n);
     write_figure_data(work / file, data[n]);
     script.body += panel_margins(grid, panel_cell(grid, n % grid.columns, n / grid.columns)) +
-                   fmt::format("set title {} offset 0,-0.4\n",
+                   fmt::format("set title {} offset 0,-0.4 noenhanced\n",
                                gnuplot_quoted(panels_.words().empty() ? "" : panels_.words()[n])) +
                    fmt::format(
                        "plot '{}' using 1:2:3:4:5:6:7 with boxxyerror fs solid noborder lc palette{}\n"

@@ -22,9 +22,10 @@ std::vector<StudyColumn> milling_columns() {
                                    {"hand_damping_Ns_per_m", "damping of the hand (N s/m)"}};
   for (const Metric& metric : all_metrics()) {
     if (*metric.column == '\0') continue;
-    const char* words = *metric.name != '\0' ? metric.name : metric.column;
+    const bool has_label = *metric.label != '\0' && !std::string_view(metric.label).starts_with("…");
+    const char* words = *metric.name != '\0' ? metric.name : has_label ? metric.label : metric.column;
     columns.push_back(
-        {metric.column, *metric.name != '\0' ? with_unit(words, metric) : words, is_of_time(metric)});
+        {metric.column, words == metric.column ? words : with_unit(words, metric), is_of_time(metric)});
   }
   return columns;
 }

@@ -2,8 +2,10 @@
 # A study on a cluster: Debian's own Slurm, a controller and a node of two CPUs on this machine. The rows are those of one
 # thread and of two; and whatever happens to slices (killed, failed, cancelled, run twice at once, cut short), resuming
 # submits what is missing on the disk and nothing else, and gives the same rows.
+#   slurm_study.sh OSTEOMILL BALL.SH [SEEDS]   of four trials each, a multiple of 3
 set -euo pipefail
-osteomill=$1 ball=$2
+osteomill=$1 ball=$2 seeds=${3:-6}
+trials=$((4 * seeds))
 
 installed() { PATH=$PATH:/usr/sbin command -v slurmctld slurmd sbatch >/dev/null; }
 installed || { [ "$(id -u)" = 0 ] && apt-get install -y slurmctld slurmd slurm-client >/dev/null 2>&1; } || true
@@ -75,12 +77,12 @@ scan = "ball.nrrd"
 iso = 750
 burr-radius = 1
 shaft-radius = 0.5
-seconds = 0.5
+seconds = 1
 draw-hand = true
 [grid]
 algorithm = ["line-proxy", "point-shell"]
 push = [0.5, 1.5]
-seed = {from = 1, to = 6, steps = 6}
+seed = {from = 1, to = $seeds, steps = $seeds}
 TOML
 # Without the columns of time.
 rows() {
@@ -90,7 +92,7 @@ rows() {
 }
 "$osteomill" study study.toml --out out1 --slices 1 --threads 1 --quiet >/dev/null
 rows out1 >expected
-[ "$(wc -l <expected)" -eq 49 ] || fault "there should be a head and two rows for each of 24 trials"
+[ "$(wc -l <expected)" -eq $((1 + 2 * trials)) ] || fault "there should be a head and two rows for each of $trials trials"
 "$osteomill" study study.toml --out out2 --slices 5 --threads 2 --quiet >/dev/null
 rows out2 | cmp - expected || fault "two threads give other rows than one"
 
@@ -99,7 +101,7 @@ rows out2 | cmp - expected || fault "two threads give other rows than one"
 [ "$(grep -c "^submitted as job" submitted)" -eq 2 ] || fault "6 slices should be two arrays: $(cat submitted)"
 until_true 60 nothing_queued || fault "the arrays do not end"
 rows out3 | cmp - expected || fault "the cluster gives other rows than one thread"
-"$osteomill" study out3 --status | grep -q "^24 of 24 trials are done (100 %), 6 of 6 slices$" || fault "not all is done"
+"$osteomill" study out3 --status | grep -q "^$trials of $trials trials are done (100 %), 6 of 6 slices$" || fault "not all is done"
 
 # Whatever can happen to a slice. submit.sh is its user's to change.
 mkdir out4
@@ -119,11 +121,11 @@ scancel "${job}_3"
 until_true 60 nothing_queued || fault "the arrays with faults do not end"
 truncate -s -500 out4/slice-0.h5
 "$osteomill" study out4 --status >status || fault "no status"
-grep -q "^8 of 24 trials are done (33.3 %), 2 of 6 slices$" status || fault "status: $(cat status)"
+grep -q "^$((trials / 3)) of $trials trials are done (33.3 %), 2 of 6 slices$" status || fault "status: $(cat status)"
 grep -q "^left: slices 0-3, " status || fault "status: $(cat status)"
 grep -q "slice-0.h5 cannot be used" status || fault "a file that is cut short is not told of"
 "$osteomill" study out4 --report >/dev/null
-grep -q "This is a part of the study: 8 of 24 trials (33.3 %)" out4/report/report.html || fault "the report hides that it is of a part"
+grep -q "This is a part of the study: $((trials / 3)) of $trials trials (33.3 %)" out4/report/report.html || fault "the report hides that it is of a part"
 cp whole.sh out4/submit.sh
 stat -c %Y.%i out4/slice-[45].h5 >before
 rm -f out4/logs/*

@@ -16,7 +16,7 @@ scan = "ball.nrrd"
 iso = 750
 burr-radius = 1
 shaft-radius = 0.5
-seconds = 0.3
+seconds = 1
 [grid]
 algorithm = ["line-proxy", "point-shell"]
 [latin-hypercube]
@@ -30,7 +30,7 @@ y = "device-mass"
 colour = "force_mean_N"
 TOML
 "$osteomill" study study.toml --list >list
-[ "$(head -n 1 list)" = "trial,algorithm,push,device-mass" ] || fault "the list begins: $(head -n 1 list)"
+[ "$(head -n 1 list)" = "trial,push,device-mass,algorithm" ] || fault "the list begins: $(head -n 1 list)"
 [ "$(wc -l <list)" -eq 9 ] || fault "the list should have a head and 8 trials"
 "$osteomill" study study.toml --estimate | grep -q "^8 trials; three of them took [0-9.e-]*, [0-9.e-]* and [0-9.e-]* s of CPU$" ||
   fault "no estimate"
@@ -67,8 +67,8 @@ refused() {  # TEXT COMMAND...
 variant() { sed "$1" study.toml >variant.toml; }
 variant 's/^seconds/secnods/'
 refused "^osteomill: variant.toml: line 7: a trial has no option secnods; did you mean seconds\?$" "$osteomill" study variant.toml --out c
-variant 's/^\[grid\]/[gird]/'
-refused "line 8: a study has no gird; did you mean grid\?" "$osteomill" study variant.toml --out c
+variant 's/^\[grid\]/[grids]/'
+refused "line 8: a study has no grids; did you mean grid\?" "$osteomill" study variant.toml --out c
 variant 's/from = 0.5/from = -1/'
 refused "variant.toml: trial [0-9]+: --push: -0.* is not a positive number" "$osteomill" study variant.toml --out c
 variant 's/^algorithm.*/algorithm = []/'
@@ -80,7 +80,7 @@ refused "no option and no column force_maen_N; did you mean force_mean_N" "$oste
 variant 's/ball.nrrd/none.nrrd/'
 refused "none.nrrd: no such file" "$osteomill" study variant.toml --out c
 [ ! -e c ] || fault "what was refused left a folder"
-variant 's/seconds = 0.3/seconds = 0.2/'
+variant 's/seconds = 1/seconds = 0.2/'
 refused "^osteomill: a: holds another study$" "$osteomill" study variant.toml --out a
 refused "a: holds this study already; osteomill study a --resume goes on with it" "$osteomill" study study.toml --out a
 bash "$ball" 4.5 >ball.nrrd
