@@ -44,9 +44,13 @@ double StudyRange::at(double share) const {
 
 std::vector<double> steps_of(const StudyRange& range, std::size_t steps) {
   if (steps == 0) throw std::invalid_argument("has no values");
-  std::vector<double> values;
-  for (std::size_t n = 0; n < steps; ++n)
-    values.push_back(range.at(steps == 1 ? 0 : static_cast<double>(n) / static_cast<double>(steps - 1)));
+  std::vector<double> values{range.from};
+  const auto last = static_cast<double>(steps - 1);
+  for (double n = 1; n <= last; ++n) {
+    // Whole numbers stay whole.
+    values.push_back(range.logarithmic ? range.at(n / last)
+                                       : range.from + (range.to - range.from) * n / last);
+  }
   return values;
 }
 

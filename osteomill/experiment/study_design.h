@@ -48,9 +48,9 @@ struct LatinHypercube {
   std::vector<Axis> axes;
 };
 
-/// What a map of a study shows: the trials by two of what was set or measured, a panel for each value of a
-/// third, coloured by what came of them. `x`, `y` and `colour` are an option, a column of the rows, or two of
-/// them with " / " between.
+/// What a map of a study shows: the trials by two of what was set or measured, coloured by what came of them.
+/// `x`, `y` and `colour` are an option, a column of the rows, or the ratio of two of them, "A / B"; `panels`
+/// is an option, or two in the same way, with a panel for each value.
 struct StudyMap {
   std::string title;
   std::string x;

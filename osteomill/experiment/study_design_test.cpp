@@ -76,6 +76,8 @@ TEST(StudyDesign, WhatHasNoTrialsOrTooManyIsRefused) {
 TEST(StudyDesign, StepsEndWhereTheRangeDoes) {
   EXPECT_EQ(steps_of({1, 3, false}, 3), (std::vector<double>{1, 2, 3}));
   EXPECT_EQ(steps_of({2, 3, false}, 1), (std::vector<double>{2}));
+  const std::vector<double> seeds = steps_of({1, 10000, false}, 10000);
+  for (std::size_t n = 0; n < seeds.size(); ++n) ASSERT_EQ(seeds[n], static_cast<double>(n + 1));
   const std::vector<double> decades = steps_of({0.01, 100, true}, 5);
   EXPECT_NEAR(decades[2], 1, 1e-12);
   EXPECT_EQ(decades.back(), 100);

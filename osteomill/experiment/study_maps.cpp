@@ -146,21 +146,26 @@ double ShownQuantity::of(const StudySettings& settings, const TrialRow& row) {
 }
 
 MapOfStudy::MapOfStudy(const StudyDesign& design, const StudyMap& map)
-    : map_(map),
-      x_(design, map.x),
-      y_(design, map.y),
-      colour_(design, map.colour),
-      panels_(design, map.panels) {
+    : map_(map), x_(design, map.x), y_(design, map.y), colour_(design, map.colour) {
   const auto parts = parts_of(design.test);
   const auto part = std::find(parts.begin(), parts.end(), map.part);
   if (part != parts.end()) part_ = static_cast<std::size_t>(part - parts.begin());
 }
 
+std::size_t MapOfStudy::panel_of(const StudySettings& settings) {
+  std::string name;
+  for (const std::string& key : names_in(map_.panels))
+    if (const std::string* value = find_value(settings, key)) name += (name.empty() ? "" : ", ") + *value;
+  const auto known = std::find(panels_.begin(), panels_.end(), name);
+  if (known != panels_.end()) return static_cast<std::size_t>(known - panels_.begin());
+  panels_.push_back(name);
+  return panels_.size() - 1;
+}
+
 void MapOfStudy::add(const StudySettings& settings, const TrialRow& row) {
   if (row.part != part_) return;
-  const double panel = panels_.of(settings, row);
-  const Point point{std::isfinite(panel) && !panels_.words().empty() ? static_cast<std::size_t>(panel) : 0,
-                    x_.of(settings, row), y_.of(settings, row), colour_.of(settings, row)};
+  const Point point{panel_of(settings), x_.of(settings, row), y_.of(settings, row),
+                    colour_.of(settings, row)};
   if (std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.colour))
     points_.push_back(point);
 }
@@ -180,7 +185,7 @@ Figure MapOfStudy::draw(const std::string& name, const std::filesystem::path& fo
     ys.insert(point.y);
   }
   const Cells x = cells_of(xs, !x_.words().empty()), y = cells_of(ys, !y_.words().empty());
-  const std::size_t panels = std::max<std::size_t>(1, panels_.words().size());
+  const std::size_t panels = panels_.size();
   std::map<std::array<std::size_t, 3>, std::vector<double>> cells;
   for (const Point& point : points_)
     cells[{point.panel, x.of(point.x), y.of(point.y)}].push_back(point.colour);
@@ -212,8 +217,7 @@ Figure MapOfStudy::draw(const std::string& name, const std::filesystem::path& fo
     const std::string file = fmt::format("map-{}.dat", n);
     write_figure_data(work / file, data[n]);
     script.body += panel_margins(grid, panel_cell(grid, n % grid.columns, n / grid.columns)) +
-                   fmt::format("set title {} offset 0,-0.4 noenhanced\n",
-                               gnuplot_quoted(panels_.words().empty() ? "" : panels_.words()[n])) +
+                   fmt::format("set title {} offset 0,-0.4 noenhanced\n", gnuplot_quoted(panels_[n])) +
                    fmt::format(
                        "plot '{}' using 1:2:3:4:5:6:7 with boxxyerror fs solid noborder lc palette{}\n"
                        "unset label\nunset colorbox\n",

@@ -52,9 +52,12 @@ class MapOfStudy {
     double x, y, colour;
   };
 
+  std::size_t panel_of(const StudySettings& settings);
+
   StudyMap map_;
   std::size_t part_ = 0;
-  ShownQuantity x_, y_, colour_, panels_;
+  ShownQuantity x_, y_, colour_;
+  std::vector<std::string> panels_;
   std::vector<Point> points_;
 };
 
