@@ -18,13 +18,25 @@ namespace osteomill {
 namespace {
 
 constexpr std::size_t kMaxCells = 40, kParts = 24, kMaxTics = 8;
-constexpr double kMuch = 20;
+constexpr double kMuch = 10;
 
 std::string label_of(const StudyDesign& design, const std::string& name) {
   for (const StudyColumn& column : columns_of(design.test))
     if (column.name == name) return column.label;
   const std::string* unit = find_value(design.units, name);
   return unit == nullptr || unit->empty() ? name : fmt::format("{} ({})", name, *unit);
+}
+
+// A unit that both have is none of their ratio.
+std::string ratio_label(std::string above, std::string below) {
+  const auto unit_of = [](const std::string& label) {
+    return label.ends_with(')') ? label.substr(label.rfind(" (")) : std::string();
+  };
+  if (const std::string unit = unit_of(above); !unit.empty() && unit == unit_of(below)) {
+    above.resize(above.size() - unit.size());
+    below.resize(below.size() - unit.size());
+  }
+  return above + " / " + (below.find('/') == std::string::npos ? below : "(" + below + ")");
 }
 
 // The cells of an axis: values, or parts of their range, by their edges.
@@ -114,6 +126,7 @@ std::string colour_script(const StudyMap& map, const std::string& label, double 
 
 ShownQuantity::ShownQuantity(const StudyDesign& design, const std::string& shown) {
   const std::vector<StudyColumn>& columns = columns_of(design.test);
+  std::vector<std::string> labels;
   for (const std::string& name : names_in(shown)) {
     const auto column = std::find_if(columns.begin(), columns.end(),
                                      [&](const StudyColumn& one) { return one.name == name; });
@@ -122,8 +135,9 @@ ShownQuantity::ShownQuantity(const StudyDesign& design, const std::string& shown
     } else {
       sources_.emplace_back(static_cast<std::size_t>(column - columns.begin()));
     }
-    label_ += (label_.empty() ? "" : " / ") + label_of(design, name);
+    labels.push_back(label_of(design, name));
   }
+  label_ = labels.size() == 1 ? labels.front() : ratio_label(labels.front(), labels.back());
 }
 
 double ShownQuantity::of(const std::variant<std::size_t, std::string>& source, const StudySettings& settings,

@@ -2,6 +2,8 @@
 
 #include <cmath>
 #include <fstream>
+#include <iterator>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -35,13 +37,15 @@ Slice sample_slice(const StudyRecord& record, std::size_t number) {
   return slice;
 }
 
+// One bit of one value.
 void damage(const fs::path& path) {
-  std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
-  const auto middle = static_cast<std::streamoff>(fs::file_size(path) / 2);
-  for (std::streamoff at = middle - 200; at < middle + 200; ++at) {
-    file.seekp(at);
-    file.put('\x5a');
-  }
+  std::ifstream in(path, std::ios::binary);
+  std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  const double value = 0.1;
+  const std::size_t at = bytes.find(std::string(reinterpret_cast<const char*>(&value), sizeof(value)));
+  ASSERT_NE(at, std::string::npos);
+  bytes[at] = static_cast<char>(bytes[at] ^ 1);
+  std::ofstream(path, std::ios::binary) << bytes;
 }
 
 TEST(StudySlices, TheLastHasWhatIsLeft) {
