@@ -14,6 +14,7 @@
 #include <CLI/Error.hpp>
 #include <CLI/Option.hpp>
 #include <fmt/format.h>
+#include <malloc.h>
 
 #include "osteomill/experiment/parallel.h"
 #include "osteomill/experiment/study_report.h"
@@ -175,6 +176,8 @@ void create_study_folder(const StudyOptions& options) {
                                             " --resume goes on with it"
                                       : "holds another study");
   }
+  if (fs::exists(out / "study.toml") && hash_of_file(out / "study.toml") != record.study_hash)
+    throw InputError((out / "study.toml").string(), "is there already, and would be written over");
   check_every_trial(study);
   const std::size_t wanted =
       options.slices > 0 ? (record.trials + options.slices - 1) / options.slices
@@ -215,6 +218,10 @@ void go_on(StudyFolder& folder, const StudyOptions& options) {
 }
 
 void run_study(const StudyOptions& options) {
+  // A trial's large blocks go back to the system when it ends; glibc would come to keep them in its heap,
+  // where the few bytes that stay of each trial hinder the next from taking the same place (6 GB after 300 on
+  // a wall).
+  ::mallopt(M_MMAP_THRESHOLD, 1 << 20);
   if (fs::is_directory(options.study)) {
     if (!options.status && !options.report && !options.resume && !options.slice)
       throw CLI::ValidationError("study", "of a folder takes --status, --resume, --report or --slice");

@@ -153,7 +153,8 @@ class Reader {
     LatinHypercube hypercube;
     if (table.empty()) return hypercube;
     const auto trials = value<int64_t>(table, "trials", 0);
-    if (trials < 1 || trials > 1'000'000'000) refuse(table, "latin-hypercube needs trials, 1 or more");
+    if (trials < 1 || trials > 10'000'000)
+      refuse(table, "latin-hypercube needs trials, from 1 to 10,000,000");
     hypercube.trials = static_cast<std::size_t>(trials);
     hypercube.seed = static_cast<std::uint64_t>(value<int64_t>(table, "seed", 1));
     for (const Entry& entry : options(table, {"trials", "seed"})) {
@@ -172,13 +173,9 @@ class Reader {
     design.title = value<std::string>(file, "title", "");
     design.units = trials_.units();
     design.findings = value(file, "findings", false);
-    const auto test = value<std::string>(file, "test", "milling");
-    const auto known = std::find(std::begin(kStudyTests), std::end(kStudyTests), test);
-    if (known == std::end(kStudyTests))
-      refuse(*file.get("test"),
-             fmt::format("there is no test {}{}", test,
-                         did_you_mean(test, {std::begin(kStudyTests), std::end(kStudyTests)})));
-    design.test = static_cast<StudyTest>(known - std::begin(kStudyTests));
+    const Keys tests{std::begin(kStudyTests), std::end(kStudyTests)};
+    const auto test = std::find(tests.begin(), tests.end(), choice(file, "test", tests));
+    design.test = static_cast<StudyTest>(test - tests.begin());
     if (design.findings && design.test != StudyTest::milling)
       refuse(*file.get("findings"), "findings are of the test milling");
     const toml::node* maps = file.get("map");
