@@ -80,7 +80,8 @@ std::vector<std::string> StudyTrials::keys() const {
 StudySettings StudyTrials::units() const {
   StudySettings units;
   for (const std::string& key : keys()) {
-    const std::string unit = option(key)->get_type_name();
+    // Behind it stands what the option checks.
+    const std::string type = option(key)->get_type_name(), unit = type.substr(0, type.find(':'));
     const bool is_word = unit.find_first_of("|,") != std::string::npos || unit == "NUMBER" ||
                          unit == "COUNT" || unit == "NAME" || unit == "MODE" || unit == "TEXT" ||
                          unit == "FILE";

@@ -46,6 +46,11 @@ struct Cells {
   bool logarithmic = false;
 
   std::size_t count() const { return edges.size() - 1; }
+  // Of the axis's length.
+  double share_at(double value) const {
+    const double from = edges.front(), to = edges.back();
+    return logarithmic ? std::log(value / from) / std::log(to / from) : (value - from) / (to - from);
+  }
   std::size_t of(double value) const {
     const auto above = std::upper_bound(edges.begin(), edges.end(), value);
     const auto n = static_cast<std::size_t>(std::max<std::ptrdiff_t>(1, above - edges.begin()));
@@ -91,9 +96,16 @@ std::string axis_script(char axis, const Cells& cells, const ShownQuantity& show
                   gnuplot_quoted(shown.label()));
   if (cells.tics.empty()) return script + fmt::format("set {}tics autofreq\n", axis);
   std::string tics;
+  double last = -1;
   for (std::size_t n = 0; n < cells.tics.size(); ++n) {
-    const std::string text = shown.words().empty() ? fmt::format("{:.4g}", cells.tics[n]) : shown.words()[n];
-    tics += fmt::format("{}{} {:.9g}", n == 0 ? "" : ", ", gnuplot_quoted(text), cells.tics[n]);
+    const bool is_word = !shown.words().empty();
+    const double share = cells.share_at(cells.tics[n]);
+    // Numbers beside each other need room.
+    if (axis == 'x' && !is_word && n > 0 && share - last < 0.15) continue;
+    last = share;
+    tics += fmt::format("{}{} {:.9g}", n == 0 ? "" : ", ",
+                        gnuplot_quoted(is_word ? shown.words()[n] : fmt::format("{:.4g}", cells.tics[n])),
+                        cells.tics[n]);
   }
   return script + fmt::format("set {}tics ({})\n", axis, tics);
 }
@@ -111,15 +123,21 @@ std::string colour_script(const StudyMap& map, const std::string& label, double 
   const bool logarithmic = map.logarithmic_colour && min > 0;
   if (!(max > min)) max = min + (min == 0 ? 1 : 0.1 * std::abs(min));
   const auto up = [&](double px) { return 1 - px / grid.height_px; };
+  std::string tics;
+  for (const double value : steps_of({min, max, true}, logarithmic ? 5 : 1))
+    tics += fmt::format("{}'{:.2g}' {:.6g}", tics.empty() ? "" : ", ", value, value);
   return fmt::format(
       "set palette defined (0 '#440154', 1 '#3b528b', 2 '#21918c', 3 '#5ec962', 4 '#fde725')\n"
-      "{} logscale cb\nset cbrange [{:.6g}:{:.6g}]\nset format cb '%g'\nset format x '%g'\nset format y "
+      "{} logscale cb\nset cbtics {}\nset cbrange [{:.6g}:{:.6g}]\nset format cb '%g'\nset format x "
+      "'%g'\nset format y "
       "'%g'\n"
       "set label 101 {} at screen 0.5,screen {:.4f} center font ',15' noenhanced\n"
       "set label 102 {} at screen 0.5,screen {:.4f} center noenhanced\n"
       "set colorbox horizontal user origin screen 0.3,screen {:.4f} size screen 0.4,screen {:.4f} border\n",
-      logarithmic ? "set" : "unset", min, max, gnuplot_quoted(map.title), up(22),
-      gnuplot_quoted(fmt::format("{}, {}", label, map.statistic)), up(50), up(78), 14 / grid.height_px);
+      logarithmic ? "set" : "unset", logarithmic ? "(" + tics + ")" : "autofreq", min, max,
+      gnuplot_quoted(map.title), up(22),
+      gnuplot_quoted(fmt::format("{}: {} of a cell", label, map.statistic)), up(50), up(78),
+      14 / grid.height_px);
 }
 
 }  // namespace
@@ -218,7 +236,7 @@ Figure MapOfStudy::draw(const std::string& name, const std::filesystem::path& fo
   PanelGrid grid{.columns = std::min<std::size_t>(panels, 4),
                  .head_px = 118,
                  .left_px = 84,
-                 .right_px = 18,
+                 .right_px = 34,
                  .above_px = 34,
                  .below_px = 58};
   grid.rows = (panels + grid.columns - 1) / grid.columns;
