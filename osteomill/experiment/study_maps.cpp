@@ -125,7 +125,7 @@ std::string colour_script(const StudyMap& map, const std::string& label, double 
   const auto up = [&](double px) { return 1 - px / grid.height_px; };
   std::string tics;
   for (const double value : steps_of({min, max, true}, logarithmic ? 5 : 1))
-    tics += fmt::format("{}'{:.2g}' {:.6g}", tics.empty() ? "" : ", ", value, value);
+    tics += fmt::format("{}'{:.3g}' {:.6g}", tics.empty() ? "" : ", ", value, value);
   return fmt::format(
       "set palette defined (0 '#440154', 1 '#3b528b', 2 '#21918c', 3 '#5ec962', 4 '#fde725')\n"
       "{} logscale cb\nset cbtics {}\nset cbrange [{:.6g}:{:.6g}]\nset format cb '%g'\nset format x "
