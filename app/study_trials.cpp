@@ -107,14 +107,15 @@ void StudyTrials::take(const StudySettings& settings) {
   asked_.trial.hand.script.until_leant = true;
   std::vector<std::string> named;
   for (const auto& [key, text] : settings) {
-    if (asked_.draw_hand && key.starts_with("hand-"))
-      throw std::invalid_argument("draw-hand draws what " + key + " sets");
     if (is_of_algorithm(key)) {
       named.push_back(key + "=" + text);
     } else if (key != "scan" || text != kBuiltIn) {
       set_results(*command_.get_option(key == "scan" ? key : "--" + key), {text});
     }
   }
+  for (const auto& [key, text] : settings)
+    if (asked_.draw_hand && key.starts_with("hand-"))
+      throw std::invalid_argument("draw-hand draws what " + key + " sets");
   if (!named.empty()) set_results(*command_.get_option("--set"), named);
   if (!asked_.scan.scan.empty()) asked_.scan.scan = (scans_from_ / asked_.scan.scan).string();
   asked_.scan.refinement = Asked().voxel_mm / asked_.voxel_mm;

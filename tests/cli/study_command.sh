@@ -79,6 +79,8 @@ variant 's/force_mean_N/force_maen_N/'
 refused "no option and no column force_maen_N; did you mean force_mean_N" "$osteomill" study variant.toml --out c
 variant 's/ball.nrrd/none.nrrd/'
 refused "none.nrrd: no such file" "$osteomill" study variant.toml --out c
+variant 's/^seconds.*/hand-stiffness = 1\ndraw-hand = true/'
+refused "trial 0: draw-hand draws what hand-stiffness sets$" "$osteomill" study variant.toml --out c
 [ ! -e c ] || fault "what was refused left a folder"
 variant 's/seconds = 1/seconds = 0.2/'
 refused "^osteomill: a: holds another study$" "$osteomill" study variant.toml --out a
