@@ -5,6 +5,7 @@
 #   slurm_study.sh OSTEOMILL BALL.SH [SEEDS]   of four trials each, a multiple of 3
 set -euo pipefail
 osteomill=$1 ball=$2 seeds=${3:-6}
+. "$(dirname "${BASH_SOURCE[0]}")/study_rows.sh"
 trials=$((4 * seeds))
 
 installed() { PATH=$PATH:/usr/sbin command -v slurmctld slurmd sbatch >/dev/null; }
@@ -84,12 +85,6 @@ algorithm = ["line-proxy", "point-shell"]
 push = [0.5, 1.5]
 seed = {from = 1, to = $seeds, steps = $seeds}
 TOML
-# Without the columns of time.
-rows() {
-  "$osteomill" study "$1" --report >/dev/null
-  awk -F, -v OFS=, 'NR == 1 {for (n = 1; n <= NF; ++n) timed[n] = $n ~ /_us_|rate_hz/}
-    {for (n = 1; n <= NF; ++n) if (timed[n]) $n = ""; print}' "$1/report/trials.csv"
-}
 "$osteomill" study study.toml --out out1 --slices 1 --threads 1 --quiet >/dev/null
 rows out1 >expected
 [ "$(wc -l <expected)" -eq $((1 + 2 * trials)) ] || fault "there should be a head and two rows for each of $trials trials"

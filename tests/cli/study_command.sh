@@ -3,6 +3,7 @@
 # is missing on the disk is run again, and whatever is wrong is one line before anything runs.
 set -euo pipefail
 osteomill=$1 ball=$2 studies=$3
+. "$(dirname "${BASH_SOURCE[0]}")/study_rows.sh"
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
@@ -36,11 +37,6 @@ TOML
   fault "no estimate"
 [ "$(ls)" = "$(printf 'ball.nrrd\nlist\nstudy.toml')" ] || fault "--list and --estimate left something: $(ls)"
 
-rows() {
-  "$osteomill" study "$1" --report >/dev/null
-  awk -F, -v OFS=, 'NR == 1 {for (n = 1; n <= NF; ++n) timed[n] = $n ~ /_us_|rate_hz/}
-    {for (n = 1; n <= NF; ++n) if (timed[n]) $n = ""; print}' "$1/report/trials.csv"
-}
 "$osteomill" study study.toml --out a --threads 1 --slices 1 --quiet >/dev/null
 rows a >expected
 diff <(tail -n +2 list) <(tail -n +2 expected | cut -d, -f1-4 | uniq) || fault "what was run is not what was listed"
