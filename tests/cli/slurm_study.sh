@@ -8,7 +8,8 @@ osteomill=$1 ball=$2 seeds=${3:-6}
 . "$(dirname "${BASH_SOURCE[0]}")/study_rows.sh"
 trials=$((4 * seeds))
 
-installed() { PATH=$PATH:/usr/sbin command -v slurmctld slurmd sbatch >/dev/null; }
+PATH=$PATH:/usr/sbin
+installed() { command -v slurmctld && command -v slurmd && command -v sbatch; } >/dev/null
 installed || { [ "$(id -u)" = 0 ] && apt-get install -y slurmctld slurmd slurm-client >/dev/null 2>&1; } || true
 installed || { echo "SKIPPED: needs slurmctld, slurmd and slurm-client, which cannot be installed here"; exit 77; }
 [ "$(id -u)" = 0 ] || { echo "SKIPPED: a Slurm of one's own needs root"; exit 77; }
@@ -23,7 +24,11 @@ finish() {
 trap finish EXIT
 cd "$folder"
 fault() { echo "FAILED: $1"; tail -n 20 ./*.log out*/logs/* 2>/dev/null || true; exit 1; }
-free_port() { python3 -c 'import socket; s = socket.socket(); s.bind(("127.0.0.1", 0)); print(s.getsockname()[1])'; }
+free_port() {
+  local port=$((20000 + RANDOM % 20000))
+  while (exec 3<>"/dev/tcp/127.0.0.1/$port") 2>/dev/null; do port=$((port + 1)); done
+  echo "$port"
+}
 until_true() {  # SECONDS COMMAND...
   local deadline=$((SECONDS + $1))
   shift
@@ -61,7 +66,6 @@ SlurmdPidFile=$folder/slurmd.pid
 NodeName=here NodeHostname=$(hostname -s) NodeAddr=127.0.0.1 CPUs=2 State=UNKNOWN
 PartitionName=all Nodes=here Default=YES MaxTime=INFINITE State=UP
 CONF
-PATH=$PATH:/usr/sbin
 slurmctld -D -c >slurmctld.log 2>&1 &
 daemons+=($!)
 slurmd -D -c -N here >slurmd.log 2>&1 &
