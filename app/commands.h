@@ -19,5 +19,6 @@ void add_report_command(CLI::App& program);
 void add_save_command(CLI::App& program);
 void add_settings_command(CLI::App& program);
 void add_simulate_command(CLI::App& program, const std::string& command_line);
+void add_study_command(CLI::App& program);
 
 }  // namespace osteomill::app

@@ -22,6 +22,7 @@
 #include "osteomill/experiment/paper.h"
 #include "osteomill/experiment/parallel.h"
 #include "osteomill/experiment/run_trials.h"
+#include "osteomill/experiment/study_design.h"
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/recording/recording.h"
 #include "osteomill/session/milling_setup.h"
@@ -84,9 +85,9 @@ std::vector<StudyTrial> trials_of(const CompareOptions& options, const std::vect
 
 double softest_felt_N_per_mm(const std::vector<StudyTrial>& trials, const StiffnessTrial& trial) {
   double softest = std::numeric_limits<double>::infinity();
-  for (const auto& [plan, algorithm] : trials) {
-    const double felt = felt_stiffness_N_per_mm(algorithm, plan.settings.haptics, trial);
-    if (!(felt > 0)) throw std::invalid_argument(algorithm.id.name + " carries no 0.5 N on a flat wall");
+  for (const StudyTrial& one : trials) {
+    const double felt = felt_stiffness_N_per_mm(one.algorithm, one.plan.settings.haptics, trial);
+    if (!(felt > 0)) throw std::invalid_argument(one.algorithm.id.name + " carries no 0.5 N on a flat wall");
     softest = std::min(softest, felt);
   }
   return softest;
@@ -118,11 +119,12 @@ void add_other_grips(std::vector<StudyTrial>& others, StudyTrial trial) {
 
 std::vector<StudyRow> try_other_hands(const CompareOptions& options, const std::vector<StudyTrial>& trials) {
   std::vector<StudyTrial> others;
+  const StudyDesign hands =
+      design_of_seeds(options.trial.milling.seed, static_cast<std::size_t>(options.seeds));
   for (const StudyTrial& trial : trials) add_other_grips(others, trial);
-  for (int n = 1; n < options.seeds; ++n) {
+  for (std::size_t n = 1; n < hands.trial_count(); ++n) {
     for (const StudyTrial& trial : trials) {
-      const auto seed = options.trial.milling.seed + static_cast<std::uint64_t>(n);
-      others.push_back({with_seed(trial.plan, seed), trial.algorithm});
+      others.push_back({with_seed(trial.plan, seed_of(hands.trial(n))), trial.algorithm});
       add_other_grips(others, others.back());
     }
   }
@@ -132,14 +134,12 @@ std::vector<StudyRow> try_other_hands(const CompareOptions& options, const std::
 std::vector<PassivityRow> press_on_walls(const CompareOptions& options, const TrialSettings& settings) {
   const std::vector<PassivityCase> cases = passivity_cases(options.algorithms, options.modes);
   const Volume wall = flat_wall(settings.tool);
-  std::vector<PassivityRow> rows(cases.size());
-  const auto task = [&](std::size_t n) {
-    rows[n] = measure_passivity(cases[n], wall, settings.tool, settings.haptics,
-                                settings.hand_and_device.handle, settings.tick_s);
+  const auto measure = [&](const PassivityCase& device) {
+    return measure_passivity(device, wall, settings.tool, settings.haptics, settings.hand_and_device.handle,
+                             settings.tick_s);
   };
-  run_in_parallel(cases.size(), static_cast<std::size_t>(options.threads), task, [&](std::size_t done) {
-    show_progress("stability", static_cast<double>(done) / static_cast<double>(cases.size()));
-  });
+  std::vector<PassivityRow> rows = run_trials(cases, "stability", static_cast<std::size_t>(options.threads),
+                                              events_on_terminal(), measure);
   end_progress();
   return rows;
 }
@@ -155,10 +155,11 @@ void run_compare(const CompareOptions& options, const std::string& command_line)
   std::vector<Recording> recordings;
   std::vector<StudyRow> rows;
   const std::vector<StudyTrial> trials = trials_of(options, plans);
-  for (const auto& [plan, algorithm] : trials) {
-    for (const fs::path& path : record_trial(plan, algorithm, pictures, options.out, events_on_terminal())) {
+  for (const StudyTrial& trial : trials) {
+    for (const fs::path& path :
+         record_trial(trial.plan, trial.algorithm, pictures, options.out, events_on_terminal())) {
       recordings.push_back(read_recording(path));
-      rows.push_back(row_of(plan, recordings.back()));
+      rows.push_back(row_of(trial.plan, recordings.back()));
     }
   }
   ReportExtras extras;

@@ -1,17 +1,14 @@
 #include "app/config_file.h"
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
 #include <vector>
 
 #include "app/option_checks.h"
+#include "app/toml_file.h"
 #include <CLI/Error.hpp>
 #include <fmt/core.h>
-#include <toml++/toml.h>
 
 #include "osteomill/files/input_error.h"
-#include "osteomill/files/input_files.h"
 #include "osteomill/haptics/algorithms.h"
 
 namespace osteomill::app {
@@ -19,44 +16,6 @@ namespace osteomill::app {
 namespace {
 
 constexpr const char* kConfigOption = "--config";
-
-// What the command line would have said: one string a value.
-std::vector<std::string> option_values(const toml::node& value, const std::string& file,
-                                       const std::string& key) {
-  std::vector<std::string> values;
-  const auto take = [&](const toml::node& node) {
-    if (const auto text = node.value_exact<std::string>()) {
-      values.push_back(*text);
-    } else if (const auto whole = node.value_exact<int64_t>()) {
-      values.push_back(fmt::format("{}", *whole));
-    } else if (const auto number = node.value_exact<double>()) {
-      values.push_back(fmt::format("{}", *number));
-    } else if (const auto flag = node.value_exact<bool>()) {
-      values.push_back(*flag ? "true" : "false");
-    } else {
-      throw InputError(file,
-                       fmt::format("line {}: {} takes a text, a number, true or false, or a list of them",
-                                   node.source().begin.line, key));
-    }
-  };
-  if (const toml::array* list = value.as_array()) {
-    for (const toml::node& node : *list) take(node);
-  } else {
-    take(value);
-  }
-  return values;
-}
-
-// The library goes down into a name's parts by recursion, however many there are.
-void require_short_names(const std::string& file) {
-  constexpr std::ptrdiff_t kMaxDots = 1000;
-  std::ifstream in(file);
-  std::string line;
-  for (int number = 1; std::getline(in, line); ++number) {
-    if (std::count(line.begin(), line.end(), '.') > kMaxDots)
-      throw InputError(file, fmt::format("line {}: has a name of over {} parts", number, kMaxDots));
-  }
-}
 
 // What may stand in the file: the options without their dashes, and tables named after algorithms.
 std::vector<std::string> keys_of(const CLI::App& command) {
@@ -70,16 +29,15 @@ std::vector<std::string> keys_of(const CLI::App& command) {
   return keys;
 }
 
-toml::table parse(const std::string& file) {
-  if (!std::filesystem::is_regular_file(file)) throw InputError(file, "no such file");
-  note_input(file);
-  require_short_names(file);
-  try {
-    return toml::parse_file(file);
-  } catch (const toml::parse_error& error) {
-    throw InputError(file, fmt::format("line {}: {}", error.source().begin.line, error.description()));
-  }
+}  // namespace
+
+void set_results(CLI::Option& option, const std::vector<std::string>& texts) {
+  option.clear();
+  for (const std::string& text : texts) option.add_result(text);
+  option.run_callback();
 }
+
+namespace {
 
 void give(CLI::Option& option, const toml::node& value, const std::string& file, const std::string& key) {
   try {
@@ -88,12 +46,6 @@ void give(CLI::Option& option, const toml::node& value, const std::string& file,
   } catch (const CLI::Error& error) {
     throw InputError(file, fmt::format("line {}: {}", value.source().begin.line, error.what()));
   }
-}
-
-void set_results(CLI::Option& option, const std::vector<std::string>& texts) {
-  option.clear();
-  for (const std::string& text : texts) option.add_result(text);
-  option.run_callback();
 }
 
 // A table named after an algorithm holds that algorithm's own settings; the command line's come last and so
@@ -127,7 +79,7 @@ void apply_config_file(CLI::App& command) {
   const CLI::Option* config = command.get_option(kConfigOption);
   if (config->count() == 0) return;
   const auto file = config->as<std::string>();
-  for (auto&& [key, value] : parse(file)) {
+  for (auto&& [key, value] : read_toml(file)) {
     const std::string name(key.str());
     CLI::Option* named_settings = command.get_option_no_throw("--set");
     if (value.is_table() && named_settings != nullptr && find_algorithm(name) != nullptr) {

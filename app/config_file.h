@@ -1,5 +1,8 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include <CLI/App.hpp>
 
 namespace osteomill::app {
@@ -12,5 +15,8 @@ void add_config_option(CLI::App& command);
 /// command. Throws InputError naming the file, and the line where there is one, for a file that is not there,
 /// is not TOML, or has a key or value that the command does not know.
 void apply_config_file(CLI::App& command);
+
+/// In the place of what an option was given before. Throws CLI::Error where it takes no such values.
+void set_results(CLI::Option& option, const std::vector<std::string>& texts);
 
 }  // namespace osteomill::app

@@ -14,6 +14,7 @@
 #include "app/memory_limit.h"
 #include "app/option_checks.h"
 #include "app/progress.h"
+#include "app/shell.h"
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
 #include <sys/resource.h>
@@ -33,22 +34,10 @@ int complain(const char* reason, int code) {
   return code;
 }
 
-std::string quoted(const std::string& word) {
-  const bool plain = word.find_first_not_of(
-                         "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
-                         "_-+=./,:@%") == std::string::npos;
-  if (plain && !word.empty()) return word;
-  std::string text = "'";
-  for (const char letter : word) {
-    text += letter == '\'' ? std::string("'\\''") : std::string(1, letter);
-  }
-  return text + "'";
-}
-
 // How the program was called, as it would be typed into a shell, the program as "osteomill".
 std::string command_line_of(int argc, const char* const* argv) {
   std::string line = "osteomill";
-  for (int n = 1; n < argc; ++n) line += " " + quoted(argv[n]);
+  for (int n = 1; n < argc; ++n) line += " " + osteomill::app::quoted(argv[n]);
   return line;
 }
 
@@ -147,6 +136,7 @@ int main(int argc, char** argv) {
   osteomill::app::add_devices_command(program);
   osteomill::app::add_settings_command(program);
   osteomill::app::add_report_command(program);
+  osteomill::app::add_study_command(program);
   const osteomill::WorkProgress watched([](double) { osteomill::app::check_memory_taken(); });
   try {
     osteomill::app::require_known_words(program, argc, argv);

@@ -88,7 +88,7 @@ bool holds_labels(const ScanOptions& options, const Scan& scan) {
 }  // namespace
 
 Scan open_scan(const ScanOptions& options) {
-  if (options.scan.empty()) return {builtin_tooth(), kBuiltinTooth, "made up", {}};
+  if (options.scan.empty()) return {builtin_tooth(options.refinement), kBuiltinTooth, "made up", {}};
   Scan scan = read_scan(options.scan, options.read);
   const bool said = scan.is_labels || options.as_labels || options.made_into != 0;
   scan.is_labels = holds_labels(options, scan);

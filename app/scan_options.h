@@ -27,6 +27,8 @@ struct ScanOptions {
   std::optional<bool> as_labels{};
   /// The bone that was made of it before (fingerprint_of; 0: none), which tells what it was taken for then.
   std::uint64_t made_into = 0;
+  /// Of the built-in tooth (builtin_tooth).
+  double refinement = 1;
 };
 
 /// What it is called where no scan is named.

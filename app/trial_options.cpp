@@ -62,11 +62,14 @@ TrialSettings trial_settings(const TrialOptions& options) {
   return trial;
 }
 
+MillingEntry entry_into(const Volume& bone, const TrialOptions& options) {
+  return osteomill::place_entry(bone, options.milling.setup.tool, as_vector(options.entry_mm),
+                                as_vector(options.direction));
+}
+
 MillingEntry place_entry(const Volume& bone, const TrialOptions& options) {
-  const MillingTool& tool = options.milling.setup.tool;
-  const MillingEntry entry =
-      osteomill::place_entry(bone, tool, as_vector(options.entry_mm), as_vector(options.direction));
-  for (const std::string& warning : entry_warnings(bone, tool, entry)) warn(warning);
+  const MillingEntry entry = entry_into(bone, options);
+  for (const std::string& warning : entry_warnings(bone, options.milling.setup.tool, entry)) warn(warning);
   return entry;
 }
 

@@ -25,6 +25,9 @@ void add_trial_options(CLI::App& command, TrialOptions& options);
 TrialSettings trial_settings(const TrialOptions& options);
 
 /// Where the tool enters this bone. Throws InputError where it cannot.
+MillingEntry entry_into(const Volume& bone, const TrialOptions& options);
+
+/// The same, with what a user should know of that place on standard error.
 MillingEntry place_entry(const Volume& bone, const TrialOptions& options);
 
 }  // namespace osteomill::app

@@ -77,4 +77,4 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/osteomillConfig.cmake
               cmake/FindHDF5C.cmake DESTINATION ${package_dir})
 
 install(FILES LICENSE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
-install(DIRECTORY docs examples DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY docs examples studies DESTINATION ${CMAKE_INSTALL_DOCDIR})

@@ -63,6 +63,11 @@ std::vector<PassivityCase> passivity_cases(const std::vector<AlgorithmDescriptio
 /// radius (0.05 to 0.5 mm).
 Volume flat_wall(const MillingTool& tool);
 
+/// Presses on the wall (wall_press.h) at the stiffness that `haptics` says. Of it everything else counts but
+/// the mode, of `handle` all but the delay. Throws std::invalid_argument where a setting is out of range.
+WallPressResult press_on_wall(const PassivityCase& setup, const Volume& wall, const MillingTool& tool,
+                              HapticSettings haptics, const HandleSettings& handle, double tick_s);
+
 /// Seeks the greatest `--stiffness` at which the wall stays passive (wall_press.h). Of `haptics` everything
 /// counts but the mode and that stiffness, of `handle` all but the delay. Throws std::invalid_argument where
 /// a setting is out of range.

@@ -4,16 +4,11 @@
 
 namespace osteomill {
 
-namespace {
-
-// A system call, so it is made outside the tick: before the pose is read and after the bone is milled.
-double thread_cpu_us() {
+double thread_cpu_s() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return 1e6 * static_cast<double>(now.tv_sec) + 1e-3 * static_cast<double>(now.tv_nsec);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
-
-}  // namespace
 
 MillingSetup setup_of(const TrialSettings& settings, const AlgorithmDescription& algorithm) {
   MillingSetup setup = settings;
@@ -30,9 +25,10 @@ MillingTrial::MillingTrial(const Volume& bone, const BoneDensities& densities, c
 
 MillingTrial::Tick MillingTrial::tick() {
   const bool milling_phase = operator_.milling();
-  const double before_us = thread_cpu_us();
+  // Before the pose is read and after the bone is milled.
+  const double before_s = thread_cpu_s();
   TickRecord record = session_.tick(operator_, operator_.time_s(), tick_s_, milling_phase && spindle_);
-  record.tick_cpu_us = thread_cpu_us() - before_us;
+  record.tick_cpu_us = 1e6 * (thread_cpu_s() - before_s);
   session_.prepare_next_ticks();
   operator_.see(record.X_WT);
   operator_.advance(tick_s_);

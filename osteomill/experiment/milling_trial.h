@@ -14,6 +14,9 @@ struct TrialSettings : MillingSetup {
   bool spindle = true;
 };
 
+/// That this thread has taken. A system call: outside the tick.
+double thread_cpu_s();
+
 /// As what the trial of an algorithm mills.
 MillingSetup setup_of(const TrialSettings& settings, const AlgorithmDescription& algorithm);
 

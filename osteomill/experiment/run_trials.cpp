@@ -100,14 +100,15 @@ std::vector<fs::path> record_trial(const TrialPlan& plan, const AlgorithmDescrip
 
 namespace {
 
-struct TriedTrial {
+struct MilledTrial {
   // One a phase.
   std::vector<StudyRow> rows;
   std::optional<std::string> faults;
 };
 
-TriedTrial try_trial(const StudyTrial& planned) {
-  const auto& [plan, algorithm] = planned;
+MilledTrial mill(const StudyTrial& planned) {
+  const TrialPlan& plan = planned.plan;
+  const AlgorithmDescription& algorithm = planned.algorithm;
   MillingTrial trial(plan.bone, plan.densities, plan.entry, algorithm, plan.settings);
   std::array<Recording, kPhases.size()> phases;
   FaultCount faults;
@@ -116,7 +117,7 @@ TriedTrial try_trial(const StudyTrial& planned) {
     phases[tick.milling_phase ? 0 : 1].records.push_back(tick.record);
     faults.add(tick.record);
   }
-  TriedTrial tried{{}, faults.sentence()};
+  MilledTrial tried{{}, faults.sentence()};
   for (std::size_t n = 0; n < kPhases.size(); ++n) {
     RunDescription& run = phases[n].description;
     run = describe_trial(plan, algorithm, trial.algorithm().sample_point_count(), kPhases[n]);
@@ -128,7 +129,33 @@ TriedTrial try_trial(const StudyTrial& planned) {
   return tried;
 }
 
+TrialRow press(const StudyTrial& trial) {
+  const TrialSettings& settings = trial.plan.settings;
+  const HandleSettings& handle = settings.hand_and_device.handle;
+  const PassivityCase setup{trial.algorithm, settings.haptics.mode, trial.device_damping_Ns_per_mm,
+                            handle.force_delay_s};
+  const Volume& wall = trial.plan.bone;
+  const WallPressResult result =
+      press_on_wall(setup, wall, settings.tool, settings.haptics, handle, settings.tick_s);
+  return as_row(0, setup, result, settings.tick_s);
+}
+
 }  // namespace
+
+TriedTrial try_trial(StudyTest test, const StudyTrial& trial) {
+  const double before_s = thread_cpu_s();
+  TriedTrial tried;
+  if (test == StudyTest::milling) {
+    const MilledTrial milled = mill(trial);
+    for (std::size_t part = 0; part < milled.rows.size(); ++part)
+      tried.rows.push_back(as_row(0, part, milled.rows[part]));
+    tried.faults = milled.faults;
+  } else {
+    tried.rows.push_back(press(trial));
+  }
+  tried.cpu_s = thread_cpu_s() - before_s;
+  return tried;
+}
 
 StudyRow row_of(const TrialPlan& plan, const Recording& recording) {
   StudyRow row{recording.description.seed, plan.settings.hand_and_device.hand,
@@ -164,11 +191,7 @@ TrialPlan with_seed(const TrialPlan& plan, std::uint64_t seed) {
 
 std::vector<StudyRow> run_study_trials(const std::vector<StudyTrial>& trials, std::size_t threads,
                                        const RunEvents& events) {
-  std::vector<TriedTrial> tried(trials.size());
-  const auto task = [&](std::size_t n) { tried[n] = try_trial(trials[n]); };
-  run_in_parallel(trials.size(), threads, task, [&](std::size_t done) {
-    events.progress("study", static_cast<double>(done) / static_cast<double>(trials.size()));
-  });
+  const std::vector<MilledTrial> tried = run_trials(trials, "study", threads, events, mill);
   std::vector<StudyRow> all;
   for (std::size_t n = 0; n < trials.size(); ++n) {
     all.insert(all.end(), tried[n].rows.begin(), tried[n].rows.end());

@@ -1,12 +1,17 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
+#include <string>
+#include <type_traits>
 #include <vector>
 
 #include "osteomill/experiment/entry_pictures.h"
+#include "osteomill/experiment/parallel.h"
 #include "osteomill/experiment/run_events.h"
 #include "osteomill/experiment/study.h"
 #include "osteomill/experiment/trial_plan.h"
+#include "osteomill/experiment/trial_rows.h"
 
 namespace osteomill {
 
@@ -14,7 +19,33 @@ namespace osteomill {
 struct StudyTrial {
   TrialPlan plan;
   AlgorithmDescription algorithm;
+  /// Of the device where it is pressed on a wall (StudyTest::wall).
+  double device_damping_Ns_per_mm = 0.005;
 };
+
+/// The one way in which many trials are run: `try_one` of each, side by side on `threads` threads, each in
+/// simulated time; results stand in the order of the trials. `what` is being done, for who watches.
+template <typename Trial, typename TryOne>
+auto run_trials(const std::vector<Trial>& trials, const std::string& what, std::size_t threads,
+                const RunEvents& events, const TryOne& try_one) {
+  std::vector<std::invoke_result_t<TryOne, const Trial&>> results(trials.size());
+  const auto task = [&](std::size_t n) { results[n] = try_one(trials[n]); };
+  run_in_parallel(trials.size(), threads, task, [&](std::size_t done) {
+    events.progress(what, static_cast<double>(done) / static_cast<double>(trials.size()));
+  });
+  return results;
+}
+
+/// What came of a trial of a study.
+struct TriedTrial {
+  /// One a part of its test, their trial left open.
+  std::vector<TrialRow> rows;
+  /// One sentence on ticks that were not as they should be.
+  std::optional<std::string> faults;
+  double cpu_s = 0;
+};
+/// One trial of a study, on this thread. Of the plan, `wall` takes the settings, and the bone for the wall.
+TriedTrial try_trial(StudyTest test, const StudyTrial& trial);
 
 /// The plan's trial with another seed, in the hand that this seed draws (random_hand); what the published
 /// ranges do not say of a hand (its push, its tremor) stays the plan's.

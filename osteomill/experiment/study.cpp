@@ -65,16 +65,6 @@ Number number_in(const std::string& field) {
   return whole ? number : std::numeric_limits<Number>::quiet_NaN();
 }
 
-// What has no column follows from the others: in these trials the spindle turns throughout the milling, and
-// not while holding.
-void complete(MeasuredRun& run) {
-  RunMetrics& m = run.metrics;
-  for (VectorMetrics* felt : {&m.force_N, &m.torque_Nmm})
-    felt->hp_share = felt->mean == 0 ? 0 : felt->hp_rms / felt->mean;
-  m.contact.force = m.contact.torque = m.contact.any;
-  m.contact.lost_while_milling = m.contact.is_lost() && (run.phase == kMilling) == (m.contact.any > 0);
-}
-
 // Nothing where it is not of an algorithm, mode and phase of these rows, whose number of columns it has.
 std::optional<StudyRow> read_row(const std::string& line, const std::vector<StudyRow>& rows) {
   const std::vector<std::string> fields = fields_of(line);
@@ -95,7 +85,7 @@ std::optional<StudyRow> read_row(const std::string& line, const std::vector<Stud
   for (const Metric& metric : all_metrics()) {
     if (*metric.column != '\0') metric.place(row.run.metrics) = number_in<double>(fields[n++]);
   }
-  complete(row.run);
+  complete_metrics(row.run);
   return row;
 }
 
@@ -110,6 +100,14 @@ bool same_figures(const MeasuredRun& a, const MeasuredRun& b) {
 }
 
 }  // namespace
+
+void complete_metrics(MeasuredRun& run) {
+  RunMetrics& m = run.metrics;
+  for (VectorMetrics* felt : {&m.force_N, &m.torque_Nmm})
+    felt->hp_share = felt->mean == 0 ? 0 : felt->hp_rms / felt->mean;
+  m.contact.force = m.contact.torque = m.contact.any;
+  m.contact.lost_while_milling = m.contact.is_lost() && (run.phase == kMilling) == (m.contact.any > 0);
+}
 
 std::vector<Metric> key_metrics() {
   std::vector<Metric> compared;

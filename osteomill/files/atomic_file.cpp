@@ -20,10 +20,13 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Keeps the extension last, since libraries choose a format by it.
+// Keeps the extension last, since libraries choose a format by it. Machines that share a folder may give two
+// processes the same number.
 fs::path name_beside(const fs::path& path) {
-  const std::string name =
-      "." + path.stem().string() + ".writing-" + std::to_string(::getpid()) + path.extension().string();
+  char host[64] = "";
+  ::gethostname(host, sizeof(host) - 1);
+  const std::string name = "." + path.stem().string() + ".writing-" + host + "-" +
+                           std::to_string(::getpid()) + path.extension().string();
   return path.parent_path() / name;
 }
 

@@ -1,0 +1,38 @@
+#include "app/shell.h"
+
+#include <array>
+#include <cstdio>
+
+#include <sys/wait.h>
+
+#include "osteomill/files/input_error.h"
+
+namespace osteomill::app {
+
+std::string quoted(const std::string& word) {
+  const bool plain = word.find_first_not_of(
+                         "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
+                         "_-+=./,:@%") == std::string::npos;
+  if (plain && !word.empty()) return word;
+  std::string text = "'";
+  for (const char letter : word) {
+    text += letter == '\'' ? std::string("'\\''") : std::string(1, letter);
+  }
+  return text + "'";
+}
+
+Said run_program(const std::vector<std::string>& words) {
+  std::string line;
+  for (const std::string& word : words) line += quoted(word) + " ";
+  std::FILE* output = ::popen((line + "2>&1 </dev/null").c_str(), "r");
+  if (output == nullptr) throw InputError(words.front(), "cannot be started");
+  Said said;
+  std::array<char, 4096> part{};
+  while (const std::size_t count = std::fread(part.data(), 1, part.size(), output))
+    said.text.append(part.data(), count);
+  const int status = ::pclose(output);
+  said.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  return said;
+}
+
+}  // namespace osteomill::app

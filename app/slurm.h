@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace osteomill::app {
+
+/// The greatest number of tasks in an array of jobs on this cluster. Throws InputError, with the scheduler's
+/// own words, where there is no Slurm, it does not answer, or it takes no arrays.
+std::size_t slurm_array_limit();
+
+/// "1,4-6".
+std::string ranges_text(const std::vector<std::size_t>& numbers);
+
+/// Submits these slices of the study in `folder` as arrays of jobs, each below the limit, by its submit.sh,
+/// which is written where there is none yet and is the user's to change, and prints their job numbers. Throws
+/// InputError, with sbatch's own words, where it refuses; those before it are submitted then.
+void submit_to_slurm(const std::filesystem::path& folder, const std::vector<std::size_t>& slices,
+                     std::size_t array_limit);
+
+}  // namespace osteomill::app

@@ -1,0 +1,286 @@
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/commands.h"
+#include "app/option_checks.h"
+#include "app/progress.h"
+#include "app/slurm.h"
+#include "app/study_file.h"
+#include "app/study_trials.h"
+#include <CLI/Error.hpp>
+#include <CLI/Option.hpp>
+#include <fmt/format.h>
+#include <malloc.h>
+
+#include "osteomill/experiment/parallel.h"
+#include "osteomill/experiment/study_report.h"
+#include "osteomill/experiment/study_slices.h"
+#include "osteomill/files/atomic_file.h"
+#include "osteomill/files/input_error.h"
+
+namespace osteomill::app {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr int kMaxThreads = 256;
+constexpr std::uint64_t kMaxSlices = 1'000'000;
+// A scheduler takes a second or two for a task; a slice that is lost is run again as a whole.
+constexpr double kSlice_s = 60;
+constexpr double kSecondsPerHour = 3600;
+
+struct StudyOptions {
+  std::string study;
+  std::string out;
+  std::string on;
+  std::size_t slices = 0;
+  std::optional<std::size_t> slice;
+  int threads = static_cast<int>(core_count());
+  bool list = false, estimate = false, status = false, resume = false, report = false;
+};
+
+// A study's file with what makes its trials.
+struct OpenStudy {
+  OpenStudy(const std::string& file, const fs::path& scans_from)
+      : trials(file, scans_from), design(read_study_file(file, trials)) {}
+  StudyTrials trials;
+  StudyDesign design;
+};
+
+// A study that was begun.
+struct StudyFolder {
+  explicit StudyFolder(const fs::path& folder)
+      : path(folder), record(record_in(folder)), study((folder / "study.toml").string(), record.scans_from) {
+    study.trials.expect(record.bones);
+    if (hash_of_file(path / "study.toml") != record.study_hash)
+      throw InputError((path / "study.toml").string(), "has changed since the study was begun");
+  }
+  static StudyRecord record_in(const fs::path& path) {
+    if (auto record = read_study_record(path)) return *std::move(record);
+    throw InputError(path.string(), "is no folder of a study: it has no study.h5");
+  }
+
+  fs::path path;
+  StudyRecord record;
+  OpenStudy study;
+};
+
+std::uint64_t program_hash() {
+  return hash_of_file("/proc/self/exe");
+}
+
+void require_same_program(const StudyFolder& folder) {
+  if (folder.record.program_hash != program_hash())
+    throw InputError(folder.path.string(), "was begun with another build of this program");
+}
+
+// All of it before any of it runs.
+void check_every_trial(OpenStudy& study) {
+  for (std::size_t n = 0; n < study.design.trial_count(); ++n) study.trials.make(study.design, n, 1);
+}
+
+// The CPU time of three trials spread over the study, the shortest first.
+std::vector<double> time_three_trials(OpenStudy& study) {
+  const std::size_t count = study.design.trial_count();
+  std::vector<double> taken_s;
+  for (const std::size_t sixth : {1, 3, 5}) {
+    const std::vector<StudyTrial> trial = study.trials.make(study.design, count * sixth / 6, 1);
+    taken_s.push_back(try_trial(study.design.test, trial.front()).cpu_s);
+  }
+  std::sort(taken_s.begin(), taken_s.end());
+  return taken_s;
+}
+
+void estimate(OpenStudy& study, int threads) {
+  const std::vector<double> taken_s = time_three_trials(study);
+  const auto hours = [&](double trial_s) {
+    return trial_s * static_cast<double>(study.design.trial_count()) / kSecondsPerHour;
+  };
+  fmt::print(
+      "{} trials; three of them took {:.3g}, {:.3g} and {:.3g} s of CPU\n"
+      "{:.3g} h of CPU in all by the median ({:.3g} to {:.3g} h by the others), {:.3g} h on {} threads\n",
+      study.design.trial_count(), taken_s[0], taken_s[1], taken_s[2], hours(taken_s[1]), hours(taken_s[0]),
+      hours(taken_s[2]), hours(taken_s[1]) / threads, threads);
+}
+
+void list(const StudyDesign& design) {
+  fmt::print("{}\n", list_head(design));
+  for (std::size_t n = 0; n < design.trial_count(); ++n) fmt::print("{}\n", list_row(design, n));
+}
+
+void status(const StudyFolder& folder) {
+  const StudyRecord& record = folder.record;
+  const StudyStatus now = study_status(folder.path, record, folder.study.design.test);
+  fmt::print("{} of {} trials are done ({:.3g} %), {} of {} slices\n", now.trials_done, record.trials,
+             100 * static_cast<double>(now.trials_done) / static_cast<double>(record.trials),
+             record.slices() - now.missing.size(), record.slices());
+  for (const fs::path& file : now.damaged)
+    fmt::print("{} cannot be used: cut short, damaged, or of another study\n", file.string());
+  if (now.missing.empty()) return;
+  fmt::print("left: slices {}", ranges_text(now.missing));
+  if (now.trials_done > 0) {
+    const double trial_h = now.cpu_s / static_cast<double>(now.trials_done) / kSecondsPerHour;
+    fmt::print(", {:.3g} h of CPU by what the others took",
+               trial_h * static_cast<double>(record.trials - now.trials_done));
+  }
+  fmt::print("\n");
+}
+
+void run_slice(StudyFolder& folder, std::size_t number, int threads, const RunEvents& events) {
+  const StudyRecord& record = folder.record;
+  const StudyTest test = folder.study.design.test;
+  const std::vector<StudyTrial> trials =
+      folder.study.trials.make(folder.study.design, record.first_of(number), record.size_of(number));
+  write_slice(folder.path, record, test,
+              osteomill::run_slice(test, number, record.first_of(number), trials,
+                                   static_cast<std::size_t>(threads), events));
+}
+
+void run_here(StudyFolder& folder, const std::vector<std::size_t>& slices, int threads) {
+  RunEvents events = events_on_terminal();
+  for (std::size_t n = 0; n < slices.size(); ++n) {
+    events.progress = [&](std::string_view what, double fraction) {
+      show_progress(what, (static_cast<double>(n) + fraction) / static_cast<double>(slices.size()));
+    };
+    run_slice(folder, slices[n], threads, events);
+  }
+  end_progress();
+}
+
+void run_missing(StudyFolder& folder, const StudyOptions& options, std::size_t array_limit) {
+  const std::vector<std::size_t> missing =
+      study_status(folder.path, folder.record, folder.study.design.test).missing;
+  if (!options.on.empty()) {
+    submit_to_slurm(folder.path, missing, array_limit);
+  } else {
+    run_here(folder, missing, options.threads);
+  }
+  fmt::print("{}\n", folder.path.string());
+}
+
+void create_study_folder(const StudyOptions& options) {
+  const fs::path file = options.study, out = options.out;
+  OpenStudy study(options.study, fs::absolute(file).parent_path());
+  StudyRecord record{.study_hash = hash_of_file(file),
+                     .program_hash = program_hash(),
+                     .scans_from = fs::absolute(file).parent_path().string(),
+                     .trials = study.design.trial_count()};
+  if (const auto there = read_study_record(out)) {
+    throw InputError(options.out, there->study_hash == record.study_hash
+                                      ? "holds this study already; osteomill study " + options.out +
+                                            " --resume goes on with it"
+                                      : "holds another study");
+  }
+  if (fs::exists(out / "study.toml") && hash_of_file(out / "study.toml") != record.study_hash)
+    throw InputError((out / "study.toml").string(), "is there already, and would be written over");
+  check_every_trial(study);
+  const std::size_t wanted =
+      options.slices > 0 ? (record.trials + options.slices - 1) / options.slices
+                         : static_cast<std::size_t>(kSlice_s / std::max(1e-3, time_three_trials(study)[1]));
+  record.trials_a_slice = std::clamp<std::size_t>(wanted, 1, record.trials);
+  record.bones.assign(study.trials.fingerprints().begin(), study.trials.fingerprints().end());
+  create_folder(out);
+  write_file_atomically(out / "study.toml", [&](const fs::path& beside) { fs::copy_file(file, beside); });
+  write_study_record(out, record);
+}
+
+void begin(const StudyOptions& options) {
+  const std::size_t array_limit = options.on.empty() ? 0 : slurm_array_limit();
+  create_study_folder(options);
+  StudyFolder folder(options.out);
+  run_missing(folder, options, array_limit);
+}
+
+void go_on(StudyFolder& folder, const StudyOptions& options) {
+  if (options.status) return status(folder);
+  if (options.report) {
+    fmt::print("{}\n", write_study_report(folder.study.design, folder.record, folder.path).string());
+    return;
+  }
+  require_same_program(folder);
+  if (options.slice) {
+    if (*options.slice >= folder.record.slices())
+      throw InputError(folder.path.string(), fmt::format("has slices 0 to {}, and no {}",
+                                                         folder.record.slices() - 1, *options.slice));
+    // A task that waited while another did its work.
+    if (!read_slice(folder.path, folder.record, folder.study.design.test, *options.slice))
+      run_slice(folder, *options.slice, options.threads, events_on_terminal());
+    return;
+  }
+  const std::size_t array_limit = options.on.empty() ? 0 : slurm_array_limit();
+  check_every_trial(folder.study);
+  run_missing(folder, options, array_limit);
+}
+
+void run_study(const StudyOptions& options) {
+  // A trial's large blocks go back to the system when it ends; glibc would come to keep them in its heap,
+  // where the few bytes that stay of each trial hinder the next from taking the same place (6 GB after 300 on
+  // a wall).
+  ::mallopt(M_MMAP_THRESHOLD, 1 << 20);
+  if (fs::is_directory(options.study)) {
+    if (!options.status && !options.report && !options.resume && !options.slice)
+      throw CLI::ValidationError("study", "of a folder takes --status, --resume, --report or --slice");
+    StudyFolder folder(options.study);
+    return go_on(folder, options);
+  }
+  if (options.list || options.estimate) {
+    OpenStudy study(options.study, fs::absolute(options.study).parent_path());
+    check_every_trial(study);
+    return options.list ? list(study.design) : estimate(study, options.threads);
+  }
+  if (options.status || options.report || options.resume || options.slice)
+    throw InputError(options.study, "is no folder of a study");
+  if (options.out.empty()) throw CLI::ValidationError("--out", "is required to begin a study");
+  begin(options);
+}
+
+}  // namespace
+
+void add_study_command(CLI::App& program) {
+  auto options = std::make_shared<StudyOptions>();
+  CLI::App* command = program.add_subcommand(
+      "study", "Run many trials: a grid, a list or a Latin hypercube of anything that a trial takes");
+  command->group("Compare and measure");
+  command->option_defaults()->group("The study");
+  command
+      ->add_option("study", options->study,
+                   "A study's file (TOML, docs/studies.md), or the folder of one that was begun")
+      ->required()
+      ->check(not_empty())
+      ->type_name("FILE|FOLDER");
+  command->add_option("--out", options->out, "Begin the study in this folder")
+      ->check(not_empty())
+      ->type_name("FOLDER");
+  command->add_flag("--list", options->list, "Print every trial, and run none");
+  command->add_flag("--estimate", options->estimate, "How long it would take, by three trials");
+  command->add_flag("--status", options->status, "Of a folder: what is done and what is left");
+  command->add_flag("--resume", options->resume, "Of a folder: run what is missing, and nothing else");
+  command->add_flag("--report", options->report, "Of a folder: table and maps of what is done so far");
+  command->option_defaults()->group("How it is run");
+  command->add_option("--on", options->on, "Submit it to a cluster's scheduler")
+      ->check(one_of("scheduler", {"slurm"}))
+      ->type_name("slurm");
+  command
+      ->add_option("--slices", options->slices,
+                   "In how many files of trials; else a minute each by three trials")
+      ->check(whole_number(1, kMaxSlices))
+      ->type_name("COUNT");
+  command
+      ->add_option("--slice", options->slice, "Of a folder: run this one alone, as a task of a cluster does")
+      ->check(whole_number(0, kMaxSlices))
+      ->type_name("NUMBER");
+  command->add_option("--threads", options->threads, "How many trials are run side by side")
+      ->check(whole_number(1, kMaxThreads))
+      ->type_name("COUNT")
+      ->capture_default_str();
+  command->option_defaults()->group("Options");
+  add_quiet_option(*command);
+  command->callback([=] { run_study(*options); });
+}
+
+}  // namespace osteomill::app

@@ -1,0 +1,193 @@
+#include "app/study_trials.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "app/config_file.h"
+#include "app/option_checks.h"
+#include "app/progress.h"
+#include <CLI/Error.hpp>
+#include <fmt/format.h>
+
+#include "osteomill/experiment/match_stiffness.h"
+#include "osteomill/files/input_error.h"
+
+namespace osteomill::app {
+
+namespace {
+
+constexpr const char* kBuiltIn = "built-in";
+constexpr std::size_t kBonesKept = 8;
+// Of a command line or of one recording, and not of a trial.
+constexpr const char* kNoKeys[] = {"--help", "--config", "--set", "--max-memory"};
+
+bool is_of_algorithm(const std::string& key) {
+  return key.find('.') != std::string::npos;
+}
+
+std::string tool_text(const MillingTool& tool) {
+  return fmt::format("{} {} {}", tool.burr_radius_mm, tool.shaft_radius_mm, tool.shaft_length_mm);
+}
+
+// Where bones and settings do not go together, as the trial itself would find when it begins.
+void require_runnable(StudyTest test, const StudyTrial& trial) {
+  const TrialSettings& settings = trial.plan.settings;
+  setting_values(trial.algorithm, settings.haptics);
+  if (test != StudyTest::milling) {
+    require_valid(settings.hand_and_device.handle);
+    if (setting_of_option(trial.algorithm, kStiffnessOption) == nullptr)
+      throw std::invalid_argument(trial.algorithm.id.name + " has no stiffness");
+    return;
+  }
+  require_workable(settings.tool, trial.plan.bone.geometry());
+  milling_settings(settings);
+  SimulatedOperator(settings.hand_and_device, settings.tool, trial.plan.entry);
+}
+
+}  // namespace
+
+StudyTrials::StudyTrials(std::string file, std::filesystem::path scans_from)
+    : file_(std::move(file)), scans_from_(std::move(scans_from)), command_("", "a study") {
+  add_scan_options(command_, asked_.scan);
+  command_.add_option("--voxel", asked_.voxel_mm, "Of the built-in tooth")
+      ->check(CLI::Range(0.03, 1.0))
+      ->type_name("mm");
+  command_.option_defaults()->group("A study");
+  add_algorithm_option(command_, asked_.algorithms);
+  add_mode_option(command_, asked_.trial.milling.setup.haptics.mode);
+  command_.add_option("--rate", asked_.rate_hz, "Of the haptic loop")
+      ->check(CLI::Range(100.0, 20000.0))
+      ->type_name("Hz");
+  add_positive(command_, "--device-damping", asked_.device_damping_Ns_per_mm, "N.s/mm",
+               "Of the device, on a wall");
+  add_positive(command_, "--grip", asked_.grip, "", "How many times as firmly the hand grips");
+  command_.add_flag("--draw-hand", asked_.draw_hand, "The seed draws the hand");
+  add_trial_options(command_, asked_.trial);
+}
+
+const CLI::Option* StudyTrials::option(const std::string& key) const {
+  if (std::find(std::begin(kNoKeys), std::end(kNoKeys), "--" + key) != std::end(kNoKeys)) return nullptr;
+  return command_.get_option_no_throw(key == "scan" ? key : "--" + key);
+}
+
+std::vector<std::string> StudyTrials::keys() const {
+  std::vector<std::string> keys{"scan"};
+  for (const std::string& name : option_names(command_))
+    if (option(name.substr(2)) != nullptr) keys.push_back(name.substr(2));
+  return keys;
+}
+
+StudySettings StudyTrials::units() const {
+  StudySettings units;
+  for (const std::string& key : keys()) {
+    // Behind it stands what the option checks.
+    const std::string type = option(key)->get_type_name(), unit = type.substr(0, type.find(':'));
+    const bool is_word = unit.find_first_of("|,") != std::string::npos || unit == "NUMBER" ||
+                         unit == "COUNT" || unit == "NAME" || unit == "MODE" || unit == "TEXT" ||
+                         unit == "FILE";
+    if (key != "scan" && !is_word) units.emplace_back(key, unit);
+  }
+  return units;
+}
+
+void StudyTrials::require_known(const std::string& key, const std::string& where) const {
+  std::vector<std::string> known = keys();
+  if (is_of_algorithm(key)) {
+    known = algorithm_names();
+    if (find_algorithm(key.substr(0, key.find('.'))) != nullptr) return;
+  } else if (option(key) != nullptr) {
+    return;
+  }
+  throw InputError(file_,
+                   fmt::format("{}: a trial has no option {}{}", where, key, did_you_mean(key, known)));
+}
+
+void StudyTrials::take(const StudySettings& settings) {
+  asked_ = Asked();
+  asked_.trial.hand.script.until_leant = true;
+  std::vector<std::string> named;
+  for (const auto& [key, text] : settings) {
+    if (is_of_algorithm(key)) {
+      named.push_back(key + "=" + text);
+    } else if (key != "scan" || text != kBuiltIn) {
+      set_results(*command_.get_option(key == "scan" ? key : "--" + key), {text});
+    }
+  }
+  for (const auto& [key, text] : settings)
+    if (asked_.draw_hand && key.starts_with("hand-"))
+      throw std::invalid_argument("draw-hand draws what " + key + " sets");
+  if (!named.empty()) set_results(*command_.get_option("--set"), named);
+  if (!asked_.scan.scan.empty()) asked_.scan.scan = (scans_from_ / asked_.scan.scan).string();
+  asked_.scan.refinement = Asked().voxel_mm / asked_.voxel_mm;
+}
+
+StudyTrials::Bone& StudyTrials::bone_of(const StudySettings& settings) {
+  std::string key;
+  for (const auto& [name, text] : settings)
+    if (!is_of_algorithm(name) &&
+        command_.get_option(name == "scan" ? name : "--" + name)->get_group() == "Scan")
+      key += fmt::format("{}{}={}", key.empty() ? "" : " ", name, text);
+  std::unique_ptr<Bone>& bone = bones_[key];
+  if (bone) return *bone;
+  LoadedBone loaded = read_bone(asked_.scan);
+  const BoneDensities densities = estimate_densities(loaded.volume);
+  const std::uint64_t fingerprint = fingerprint_of(loaded.volume.grid());
+  const auto [expected, is_new] = fingerprints_.emplace(key, fingerprint);
+  if (expected->second != fingerprint) throw InputError(loaded.name, "has changed since the study was begun");
+  if (is_new)
+    for (const std::string& warning : loaded.warnings) warn(warning);
+  bone = std::make_unique<Bone>(Bone{std::move(loaded.volume), std::move(loaded.name), densities, {}});
+  return *bone;
+}
+
+const Volume& StudyTrials::wall_of(const MillingTool& tool) {
+  const std::string key = tool_text(tool);
+  const auto found = walls_.find(key);
+  return found != walls_.end() ? found->second : walls_.emplace(key, flat_wall(tool)).first->second;
+}
+
+StudyTrial StudyTrials::trial_of(const StudyDesign& design, const StudySettings& settings) {
+  take(settings);
+  TrialSettings set = trial_settings(asked_.trial);
+  set.tick_s = 1 / asked_.rate_hz;
+  const AlgorithmDescription& algorithm = asked_.algorithms.front();
+  if (design.test != StudyTest::milling) {
+    return {{wall_of(set.tool), "a wall", {}, {}, set, ""}, algorithm, asked_.device_damping_Ns_per_mm};
+  }
+  Bone& bone = bone_of(settings);
+  const auto numbers = [](const std::vector<double>& values) {
+    return fmt::format("{}", fmt::join(values, ","));
+  };
+  const std::string place =
+      tool_text(set.tool) + " " + numbers(asked_.trial.entry_mm) + " " + numbers(asked_.trial.direction);
+  auto entry = bone.entries.find(place);
+  if (entry == bone.entries.end())
+    entry = bone.entries.emplace(place, entry_into(bone.volume, asked_.trial)).first;
+  const TrialPlan as_set{bone.volume, bone.name, bone.densities, entry->second, set, "", true};
+  TrialPlan plan = asked_.draw_hand ? with_seed(as_set, asked_.trial.milling.seed) : as_set;
+  plan.grip = asked_.grip;
+  HandSettings& hand = plan.settings.hand_and_device.hand;
+  hand = gripping(hand, asked_.grip);
+  return {plan, algorithm, asked_.device_damping_Ns_per_mm};
+}
+
+std::vector<StudyTrial> StudyTrials::make(const StudyDesign& design, std::size_t first, std::size_t count) {
+  if (bones_.size() > kBonesKept) bones_.clear();
+  std::vector<StudyTrial> trials;
+  for (std::size_t number = first; number < first + count; ++number) {
+    const auto refuse = [&](const std::exception& error) {
+      throw InputError(file_, fmt::format("trial {}: {}", number, error.what()));
+    };
+    try {
+      trials.push_back(trial_of(design, design.trial(number)));
+      require_runnable(design.test, trials.back());
+    } catch (const CLI::Error& error) {
+      refuse(error);
+    } catch (const std::invalid_argument& error) {
+      refuse(error);
+    }
+  }
+  return trials;
+}
+
+}  // namespace osteomill::app

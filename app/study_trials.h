@@ -1,0 +1,79 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/scan_options.h"
+#include "app/trial_options.h"
+#include <CLI/App.hpp>
+
+#include "osteomill/experiment/run_trials.h"
+#include "osteomill/experiment/study_design.h"
+
+namespace osteomill::app {
+
+/// Makes the trials of a study of what is set of them: by the options of `compare`, and some that only a
+/// study has. Opens every bone once.
+class StudyTrials {
+ public:
+  /// `file` is named where a setting is at fault; scans are sought from the folder `scans_from`.
+  StudyTrials(std::string file, std::filesystem::path scans_from);
+  StudyTrials(const StudyTrials&) = delete;
+  StudyTrials& operator=(const StudyTrials&) = delete;
+
+  /// Every option that can be set, but for the algorithms' own settings ("point-shell.scale"), and its unit.
+  std::vector<std::string> keys() const;
+  StudySettings units() const;
+  /// Throws InputError where the option cannot be set at all; `where` is the line.
+  void require_known(const std::string& key, const std::string& where) const;
+
+  /// Bones are then to have these fingerprints, by what is set of them.
+  void expect(const std::vector<std::pair<std::string, std::uint64_t>>& bones) {
+    fingerprints_ = {bones.begin(), bones.end()};
+  }
+  const std::map<std::string, std::uint64_t>& fingerprints() const { return fingerprints_; }
+
+  /// Trials that follow each other. They hold on to this object's bones: until the next call. Throws
+  /// InputError, naming the file and the trial, where a setting is out of its range or does not go with the
+  /// others, and naming the scan where that is at fault or has changed.
+  std::vector<StudyTrial> make(const StudyDesign& design, std::size_t first, std::size_t count);
+
+ private:
+  struct Asked {
+    ScanOptions scan;
+    TrialOptions trial;
+    std::vector<AlgorithmDescription> algorithms{default_algorithm()};
+    double voxel_mm = 0.125;
+    double rate_hz = 1000;
+    double device_damping_Ns_per_mm = 0.005;
+    double grip = 1;
+    bool draw_hand = false;
+  };
+  struct Bone {
+    Volume volume;
+    std::string name;
+    BoneDensities densities;
+    std::map<std::string, MillingEntry> entries;
+  };
+
+  const CLI::Option* option(const std::string& key) const;
+  void take(const StudySettings& settings);
+  StudyTrial trial_of(const StudyDesign& design, const StudySettings& settings);
+  Bone& bone_of(const StudySettings& settings);
+  const Volume& wall_of(const MillingTool& tool);
+
+  std::string file_;
+  std::filesystem::path scans_from_;
+  Asked asked_;
+  CLI::App command_;
+  std::map<std::string, std::unique_ptr<Bone>> bones_;
+  std::map<std::string, Volume> walls_;
+  std::map<std::string, std::uint64_t> fingerprints_;
+};
+
+}  // namespace osteomill::app

@@ -1,0 +1,244 @@
+#include "osteomill/experiment/study_slices.h"
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include "osteomill/files/atomic_file.h"
+#include "osteomill/files/input_error.h"
+#include "osteomill/recording/hdf5.h"
+
+namespace osteomill {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* kRecordVersion = "osteomill_study_version";
+constexpr const char* kSliceVersion = "osteomill_slice_version";
+constexpr std::uint64_t kVersion = 1;
+
+void add_text(WordHash& hash, std::string_view text) {
+  for (const char c : text) hash.add(static_cast<unsigned char>(c));
+  hash.add(text.size());
+}
+
+// Throws where writing, or putting it on the disk, fails.
+void write_hdf5(const fs::path& path, const std::function<void(hid_t)>& write) {
+  write_file_atomically(path, [&](const fs::path& beside) {
+    const Hdf5Lock lock;
+    Hdf5Handle file(H5Fcreate(beside.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
+    if (!file.valid()) throw InputError(path.string(), "cannot be created");
+    write(file.get());
+    if (!file.close()) throw InputError(path.string(), "cannot be written to its end (is the disk full?)");
+  });
+}
+
+// With a checksum, so that what is damaged is not taken for a result.
+void write_dataset(const fs::path& path, hid_t file, const char* name, hid_t file_type, hid_t memory_type,
+                   const std::vector<hsize_t>& dims, const void* data) {
+  const Hdf5Handle layout(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  H5Pset_chunk(layout.get(), static_cast<int>(dims.size()), dims.data());
+  H5Pset_fletcher32(layout.get());
+  const Hdf5Handle space(H5Screate_simple(static_cast<int>(dims.size()), dims.data(), nullptr), H5Sclose);
+  const Hdf5Handle dataset(
+      H5Dcreate2(file, name, file_type, space.get(), H5P_DEFAULT, layout.get(), H5P_DEFAULT), H5Dclose);
+  if (!dataset.valid() || H5Dwrite(dataset.get(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0)
+    throw InputError(path.string(), fmt::format("'{}' cannot be written (is the disk full?)", name));
+}
+
+// False where it is not there in this length, or damaged.
+bool read_dataset(hid_t file, const char* name, hid_t memory_type, std::size_t count, void* data) {
+  const Hdf5Handle dataset(H5Dopen2(file, name, H5P_DEFAULT), H5Dclose);
+  if (!dataset.valid()) return false;
+  const Hdf5Handle space(H5Dget_space(dataset.get()), H5Sclose);
+  return H5Sget_simple_extent_npoints(space.get()) == static_cast<hssize_t>(count) &&
+         H5Dread(dataset.get(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) >= 0;
+}
+
+}  // namespace
+
+std::size_t StudyRecord::size_of(std::size_t slice) const {
+  return std::min(trials_a_slice, trials - std::min(trials, first_of(slice)));
+}
+
+std::uint64_t StudyRecord::hash() const {
+  WordHash hash;
+  for (const std::uint64_t word :
+       {study_hash, program_hash, std::uint64_t{trials}, std::uint64_t{trials_a_slice}})
+    hash.add(word);
+  for (const auto& [bone, fingerprint] : bones) {
+    add_text(hash, bone);
+    hash.add(fingerprint);
+  }
+  return hash.value();
+}
+
+std::uint64_t hash_of_file(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  if (!in) throw InputError(path.string(), "cannot be read");
+  WordHash hash;
+  add_text(hash, bytes);
+  return hash.value();
+}
+
+void write_study_record(const fs::path& folder, const StudyRecord& record) {
+  const fs::path path = folder / "study.h5";
+  write_hdf5(path, [&](hid_t file) {
+    const Attributes write(path, file);
+    write.put(kRecordVersion, kVersion);
+    write.put("study_hash", record.study_hash);
+    write.put("program_hash", record.program_hash);
+    write.put("scans_from", record.scans_from);
+    write.put("trials", std::uint64_t{record.trials});
+    write.put("trials_a_slice", std::uint64_t{record.trials_a_slice});
+    write.put("bones", std::uint64_t{record.bones.size()});
+    for (std::size_t n = 0; n < record.bones.size(); ++n) {
+      write.put(fmt::format("bone_{}", n), record.bones[n].first);
+      write.put(fmt::format("bone_{}_fingerprint", n), record.bones[n].second);
+    }
+  });
+}
+
+std::optional<StudyRecord> read_study_record(const fs::path& folder) {
+  const fs::path path = folder / "study.h5";
+  if (!fs::exists(path)) return std::nullopt;
+  const Hdf5Lock lock;
+  const Hdf5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  if (!file.valid()) throw InputError(path.string(), "is no HDF5 file, cut short or damaged");
+  const Attributes read(path, file.get());
+  if (!read.has(kRecordVersion) || read.get<std::uint64_t>(kRecordVersion) != kVersion)
+    throw InputError(path.string(), "is not what a study of this program writes");
+  StudyRecord record{read.get<std::uint64_t>("study_hash"),     read.get<std::uint64_t>("program_hash"),
+                     read.get<std::string>("scans_from"),       read.get<std::uint64_t>("trials"),
+                     read.get<std::uint64_t>("trials_a_slice"), {}};
+  if (record.trials == 0 || record.trials_a_slice == 0 || record.trials_a_slice > record.trials)
+    throw InputError(path.string(), "has no trials");
+  const auto bones = read.get<std::uint64_t>("bones");
+  for (std::uint64_t n = 0; n < bones; ++n)
+    record.bones.emplace_back(read.get<std::string>(fmt::format("bone_{}", n)),
+                              read.get<std::uint64_t>(fmt::format("bone_{}_fingerprint", n)));
+  return record;
+}
+
+fs::path slice_path(const fs::path& folder, std::size_t number) {
+  return folder / fmt::format("slice-{}.h5", number);
+}
+
+Slice run_slice(StudyTest test, std::size_t number, std::size_t first, const std::vector<StudyTrial>& trials,
+                std::size_t threads, const RunEvents& events) {
+  Slice slice{number, {}, 0};
+  const auto tried = run_trials(trials, "study", threads, events,
+                                [&](const StudyTrial& trial) { return try_trial(test, trial); });
+  for (std::size_t n = 0; n < tried.size(); ++n) {
+    slice.cpu_s += tried[n].cpu_s;
+    if (tried[n].faults) events.warn(fmt::format("trial {}: {}", first + n, *tried[n].faults));
+    for (const TrialRow& row : tried[n].rows) {
+      slice.rows.push_back(row);
+      slice.rows.back().trial = first + n;
+    }
+  }
+  return slice;
+}
+
+void write_slice(const fs::path& folder, const StudyRecord& record, StudyTest test, const Slice& slice) {
+  const fs::path path = slice_path(folder, slice.number);
+  std::vector<std::uint64_t> trials;
+  std::vector<double> values;
+  std::string not_reached;
+  for (const TrialRow& row : slice.rows) {
+    trials.push_back(row.trial);
+    values.insert(values.end(), row.values.begin(), row.values.end());
+    not_reached += row.not_reached + '\n';
+  }
+  std::string names;
+  for (const StudyColumn& column : columns_of(test)) names += (names.empty() ? "" : ",") + column.name;
+  write_hdf5(path, [&](hid_t file) {
+    const Attributes write(path, file);
+    write.put(kSliceVersion, kVersion);
+    write.put("made_of", record.hash());
+    write.put("slice", std::uint64_t{slice.number});
+    write.put("cpu_s", slice.cpu_s);
+    write.put("columns", names);
+    write.put("not_reached_bytes", std::uint64_t{not_reached.size()});
+    write_dataset(path, file, "trial", H5T_STD_U64LE, H5T_NATIVE_UINT64, {trials.size()}, trials.data());
+    write_dataset(path, file, "values", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE,
+                  {trials.size(), columns_of(test).size()}, values.data());
+    write_dataset(path, file, "not_reached", H5T_STD_U8LE, H5T_NATIVE_UINT8, {not_reached.size()},
+                  not_reached.data());
+  });
+}
+
+namespace {
+
+// Nothing where the file holds something else than these rows.
+std::optional<Slice> rows_in(hid_t file, const fs::path& path, const StudyRecord& record, StudyTest test,
+                             std::size_t number) {
+  const std::size_t parts = parts_of(test).size(), columns = columns_of(test).size();
+  const std::size_t count = record.size_of(number) * parts;
+  const Attributes read(path, file);
+  if (read.get<std::uint64_t>("made_of") != record.hash() || read.get<std::uint64_t>("slice") != number)
+    return std::nullopt;
+  const auto bytes = read.get<std::uint64_t>("not_reached_bytes");
+  std::vector<std::uint64_t> trials(count);
+  std::vector<double> values(count * columns);
+  std::string words(std::min<std::uint64_t>(bytes, fs::file_size(path)), '\0');
+  if (!read_dataset(file, "trial", H5T_NATIVE_UINT64, count, trials.data()) ||
+      !read_dataset(file, "values", H5T_NATIVE_DOUBLE, values.size(), values.data()) ||
+      !read_dataset(file, "not_reached", H5T_NATIVE_UINT8, words.size(), words.data()) ||
+      std::count(words.begin(), words.end(), '\n') != static_cast<std::ptrdiff_t>(count))
+    return std::nullopt;
+  Slice slice{number, {}, read.get<double>("cpu_s")};
+  std::size_t from = 0;
+  for (std::size_t n = 0; n < count; ++n) {
+    if (trials[n] != record.first_of(number) + n / parts) return std::nullopt;
+    const std::size_t to = words.find('\n', from);
+    const auto begin = values.begin() + static_cast<std::ptrdiff_t>(n * columns);
+    slice.rows.push_back({trials[n],
+                          n % parts,
+                          {begin, begin + static_cast<std::ptrdiff_t>(columns)},
+                          words.substr(from, to - from)});
+    from = to + 1;
+  }
+  return slice;
+}
+
+}  // namespace
+
+std::optional<Slice> read_slice(const fs::path& folder, const StudyRecord& record, StudyTest test,
+                                std::size_t number) {
+  const fs::path path = slice_path(folder, number);
+  std::error_code error;
+  if (!fs::exists(path, error)) return std::nullopt;
+  const Hdf5Lock lock;
+  const Hdf5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  if (!file.valid()) return std::nullopt;
+  try {
+    return rows_in(file.get(), path, record, test, number);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
+StudyStatus study_status(const fs::path& folder, const StudyRecord& record, StudyTest test) {
+  StudyStatus status;
+  for (std::size_t number = 0; number < record.slices(); ++number) {
+    const std::optional<Slice> slice = read_slice(folder, record, test, number);
+    if (slice) {
+      status.trials_done += record.size_of(number);
+      status.cpu_s += slice->cpu_s;
+      continue;
+    }
+    status.missing.push_back(number);
+    std::error_code error;
+    if (const fs::path path = slice_path(folder, number); fs::exists(path, error))
+      status.damaged.push_back(path);
+  }
+  return status;
+}
+
+}  // namespace osteomill

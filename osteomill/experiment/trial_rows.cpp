@@ -1,0 +1,82 @@
+#include "osteomill/experiment/trial_rows.h"
+
+#include <fmt/format.h>
+
+#include "osteomill/experiment/paper.h"
+
+namespace osteomill {
+
+namespace {
+
+constexpr double kMmPerM = 1000;
+constexpr std::string_view kOnce[] = {"press"};
+
+bool is_of_time(const Metric& metric) {
+  const std::string_view column = metric.column;
+  return metric.table == MetricTable::times || metric.table == MetricTable::rate ||
+         column.starts_with("step_us");
+}
+
+std::vector<StudyColumn> milling_columns() {
+  std::vector<StudyColumn> columns{{"hand_stiffness_N_per_m", "stiffness of the hand (N/m)"},
+                                   {"hand_damping_Ns_per_m", "damping of the hand (N s/m)"}};
+  for (const Metric& metric : all_metrics()) {
+    if (*metric.column == '\0') continue;
+    const bool has_label = *metric.label != '\0' && !std::string_view(metric.label).starts_with("…");
+    const char* words = *metric.name != '\0' ? metric.name : has_label ? metric.label : metric.column;
+    columns.push_back(
+        {metric.column, words == metric.column ? words : with_unit(words, metric), is_of_time(metric)});
+  }
+  return columns;
+}
+
+}  // namespace
+
+std::span<const std::string_view> parts_of(StudyTest test) {
+  if (test == StudyTest::milling) return kPhases;
+  return kOnce;
+}
+
+const std::vector<StudyColumn>& columns_of(StudyTest test) {
+  static const std::vector<StudyColumn> milling = milling_columns();
+  static const std::vector<StudyColumn> wall{{"passive", "share that stays passive"},
+                                             {"carries", "share that carries 0.5 N"},
+                                             {"felt_N_per_mm", "felt stiffness (N/mm)"},
+                                             {"rule_N_per_mm", "2 b / (T + 2 τ) (N/mm)"}};
+  return test == StudyTest::milling ? milling : wall;
+}
+
+TrialRow as_row(std::size_t trial, std::size_t part, const StudyRow& row) {
+  TrialRow out{trial,
+               part,
+               {kMmPerM * row.hand.stiffness_N_per_mm, kMmPerM * row.hand.damping_Ns_per_mm},
+               row.run.not_reached};
+  for (const Metric& metric : all_metrics())
+    if (*metric.column != '\0') out.values.push_back(metric(row.run.metrics));
+  return out;
+}
+
+StudyRow milling_row(const TrialRow& row) {
+  StudyRow out;
+  out.hand.stiffness_N_per_mm = row.values[0] / kMmPerM;
+  out.hand.damping_Ns_per_mm = row.values[1] / kMmPerM;
+  out.run.phase = kPhases[row.part];
+  out.run.not_reached = row.not_reached;
+  std::size_t n = 2;
+  for (const Metric& metric : all_metrics())
+    if (*metric.column != '\0') metric.place(out.run.metrics) = row.values[n++];
+  complete_metrics(out.run);
+  return out;
+}
+
+TrialRow as_row(std::size_t trial, const PassivityCase& setup, const WallPressResult& result, double tick_s) {
+  const bool carries = result.motion != WallMotion::gives_way;
+  return {trial,
+          0,
+          {carries ? (result.motion == WallMotion::dies_out ? 1.0 : 0.0) : kNotMeasured, carries ? 1.0 : 0.0,
+           carries ? result.felt_N_per_mm : kNotMeasured,
+           passive_stiffness_rule_N_per_mm(setup.damping_Ns_per_mm, tick_s, setup.delay_s)},
+          ""};
+}
+
+}  // namespace osteomill

@@ -1,0 +1,99 @@
+#!/usr/bin/env bash
+# A study from its file to its report: what it lists it runs, neither the number of threads nor of slices changes a row, what
+# is missing on the disk is run again, and whatever is wrong is one line before anything runs.
+set -euo pipefail
+osteomill=$1 ball=$2 studies=$3
+. "$(dirname "${BASH_SOURCE[0]}")/study_rows.sh"
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cd "$folder"
+
+fault() { echo "FAILED: $1"; exit 1; }
+bash "$ball" >ball.nrrd
+cat >study.toml <<TOML
+title = "Push and hand"
+[fixed]
+scan = "ball.nrrd"
+iso = 750
+burr-radius = 1
+shaft-radius = 0.5
+seconds = 1
+[grid]
+algorithm = ["line-proxy", "point-shell"]
+[latin-hypercube]
+trials = 4
+push = { from = 0.5, to = 2 }
+device-mass = { from = 0.1, to = 1, log = true }
+[[map]]
+title = "Force"
+x = "push"
+y = "device-mass"
+colour = "force_mean_N"
+TOML
+"$osteomill" study study.toml --list >list
+[ "$(head -n 1 list)" = "trial,push,device-mass,algorithm" ] || fault "the list begins: $(head -n 1 list)"
+[ "$(wc -l <list)" -eq 9 ] || fault "the list should have a head and 8 trials"
+"$osteomill" study study.toml --estimate | grep -q "^8 trials; three of them took [0-9.e-]*, [0-9.e-]* and [0-9.e-]* s of CPU$" ||
+  fault "no estimate"
+[ "$(ls)" = "$(printf 'ball.nrrd\nlist\nstudy.toml')" ] || fault "--list and --estimate left something: $(ls)"
+
+"$osteomill" study study.toml --out a --threads 1 --slices 1 --quiet >/dev/null
+rows a >expected
+diff <(tail -n +2 list) <(tail -n +2 expected | cut -d, -f1-4 | uniq) || fault "what was run is not what was listed"
+[ "$(tail -n +2 expected | cut -d, -f1,5 | sort -u | wc -l)" -eq 16 ] || fault "each trial has a row for either phase"
+for file in report.html figures/map_1.svg figures/map_1.png; do [ -s "a/report/$file" ] || fault "no $file"; done
+grep -q "8 of 8 trials (100 %)" a/report/report.html || fault "the report does not say what it is of"
+"$osteomill" study study.toml --out b --threads 2 --slices 3 --quiet >/dev/null
+rows b | cmp - expected || fault "threads or slices change the rows"
+rm b/slice-1.h5
+truncate -s 1000 b/slice-2.h5
+kept=$(stat -c %i.%Y b/slice-0.h5)
+"$osteomill" study b --status | grep -q "^3 of 8 trials are done (37.5 %), 1 of 3 slices$" || fault "$("$osteomill" study b --status)"
+"$osteomill" study b --resume --quiet >/dev/null
+[ "$kept" = "$(stat -c %i.%Y b/slice-0.h5)" ] || fault "what was done was run again"
+rows b | cmp - expected || fault "resumed rows are others"
+
+refused() {  # TEXT COMMAND...
+  local text=$1 code=0
+  shift
+  "$@" >out 2>err || code=$?
+  [ $code -eq 1 ] && [ "$(wc -l <err)" -eq 1 ] && grep -qE "$text" err || fault "exit code $code, expected one line with '$text': $(cat err)"
+}
+"$osteomill" study study.toml --list >/dev/null
+variant() { sed "$1" study.toml >variant.toml; }
+variant 's/^seconds/secnods/'
+refused "^osteomill: variant.toml: line 7: a trial has no option secnods; did you mean seconds\?$" "$osteomill" study variant.toml --out c
+variant 's/^\[grid\]/[grids]/'
+refused "line 8: a study has no grids; did you mean grid\?" "$osteomill" study variant.toml --out c
+variant 's/from = 0.5/from = -1/'
+refused "variant.toml: trial [0-9]+: --push: -0.* is not a positive number" "$osteomill" study variant.toml --out c
+variant 's/^algorithm.*/algorithm = []/'
+refused "line 9: algorithm has no values" "$osteomill" study variant.toml --out c
+variant 's/point-shell/pointshell/'
+refused "there is no algorithm pointshell; did you mean point-shell" "$osteomill" study variant.toml --out c
+variant 's/force_mean_N/force_maen_N/'
+refused "no option and no column force_maen_N; did you mean force_mean_N" "$osteomill" study variant.toml --out c
+variant 's/ball.nrrd/none.nrrd/'
+refused "none.nrrd: no such file" "$osteomill" study variant.toml --out c
+variant 's/^seconds.*/hand-stiffness = 1\ndraw-hand = true/'
+refused "trial 0: draw-hand draws what hand-stiffness sets$" "$osteomill" study variant.toml --out c
+[ ! -e c ] || fault "what was refused left a folder"
+variant 's/seconds = 1/seconds = 0.2/'
+refused "^osteomill: a: holds another study$" "$osteomill" study variant.toml --out a
+refused "a: holds this study already; osteomill study a --resume goes on with it" "$osteomill" study study.toml --out a
+bash "$ball" 4.5 >ball.nrrd
+rm b/slice-0.h5
+refused "ball.nrrd: has changed since the study was begun$" "$osteomill" study b --resume
+bash "$ball" >ball.nrrd
+(cat "$osteomill"; echo) >other && chmod +x other
+refused "^osteomill: b: was begun with another build of this program$" ./other study b --resume
+echo >>b/study.toml
+refused "study.toml: has changed since the study was begun$" "$osteomill" study b --resume
+refused "ball.nrrd: is no folder of a study|ball.nrrd: .*line" "$osteomill" study ball.nrrd --status
+refused "is no folder of a study: it has no study.h5" "$osteomill" study . --status
+
+# What is shipped can be read, and says how many trials it has.
+for study in "$studies"/*.toml; do
+  [ "$(basename "$study")" = findings-200.toml ] || "$osteomill" study "$study" --list | tail -n 1 | grep -q "^[0-9][0-9]*," || fault "$study"
+done
+exit 0
