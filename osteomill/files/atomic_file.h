@@ -6,9 +6,9 @@
 
 namespace osteomill {
 
-/// Where a file called `path` is to be written: where it leads as a symbolic link, else itself. Every file
-/// that is written goes through this first. Throws InputError where that would write over an input
-/// (input_files.h), or it is a folder.
+/// Where a file called `path` is to be written: the target of a symbolic link, else `path` itself. Whatever
+/// writes a file asks this first. Throws InputError where the place is a folder, or a file that was read as
+/// input (input_files.h).
 std::filesystem::path output_path(const std::filesystem::path& path);
 
 /// Calls `write` with the name of a file beside `path`, then renames that file to `path`, so that nobody ever
@@ -20,13 +20,14 @@ std::filesystem::path output_path(const std::filesystem::path& path);
 void write_file_atomically(const std::filesystem::path& path,
                            const std::function<void(const std::filesystem::path& beside)>& write);
 
-/// The same for text: `write` fills the stream; a stream that failed (a full disk) is an InputError.
+/// As `write_file_atomically`, for text: `write` fills the stream. Throws InputError where the stream failed
+/// (a full disk).
 void write_text_atomically(const std::filesystem::path& path,
                            const std::function<void(std::ostream&)>& write);
 
-/// The same for files that belong together: calls `write` with an empty folder, then moves all that is in it
-/// into `folder`, over files of the same names. What `write` throws is passed on, and none is left of its
-/// files, nor `folder` where it was not there before. Throws InputError where one of them cannot be written.
+/// As `write_file_atomically`, for files that belong together: calls `write` with an empty folder, then moves
+/// all that is in it into `folder`, over files of the same names. What `write` throws is passed on; then none
+/// of its files is left, nor `folder` itself if it is new. Throws InputError where a file cannot be written.
 void write_folder_atomically(const std::filesystem::path& folder,
                              const std::function<void(const std::filesystem::path& beside)>& write);
 

@@ -4,9 +4,9 @@
 
 namespace osteomill {
 
-/// While one lives, nothing of this program writes over a file that it has read as input: whatever writes by
-/// `output_path` (atomic_file.h) refuses it. One at a time; for a command, whose user may name the same file
-/// twice.
+/// While one lives, this program does not write over a file that it has read as input: `output_path`
+/// (atomic_file.h) refuses it. Meant for commands, whose user may name the same file as input and output.
+/// Only one may live at a time.
 class KeepInputs {
  public:
   KeepInputs();
@@ -15,11 +15,12 @@ class KeepInputs {
   KeepInputs& operator=(const KeepInputs&) = delete;
 };
 
-/// To be called by whatever opens a file as input, however it came to it: named by the user, in a folder,
-/// behind a header, beside a recording. From any thread.
+/// To be called by whatever opens a file as input, whether the user named it or it was found in a folder,
+/// behind a header or beside a recording. From any thread.
 void note_input(const std::filesystem::path& path);
 
-/// Whether this is a file that was noted, by device and inode. Never without KeepInputs. From any thread.
+/// Whether this file was noted, compared by device and inode. Always false where no KeepInputs lives. From
+/// any thread.
 bool is_input(const std::filesystem::path& path);
 
 }  // namespace osteomill

@@ -4,7 +4,7 @@
 
 namespace osteomill {
 
-/// A new folder, which goes, with all in it, when this object goes.
+/// A new folder, which is removed with all that is in it when this object is destroyed.
 class TemporaryFolder {
  public:
   /// Throws InputError where none can be made.

@@ -39,7 +39,8 @@ enum class WrenchFault : unsigned char {
   /// The device moved further in a tick than a hand can, or the tick came too late; zero was sent.
   pose_jumped = 6,
   tick_late = 7,
-  /// Not what was asked for was sent: it comes up slowly, changes no faster than it may, or is damped.
+  /// Something else than what was asked for was sent: the wrench is being faded in, was changing too fast, or
+  /// is damped.
   eased = 8,
 };
 
@@ -52,7 +53,7 @@ struct SafeWrench {
 /// any component is not finite. Safe in the haptic tick.
 SafeWrench make_safe(const Wrench& wrench, const WrenchLimits& limits);
 
-/// How fast force and torque may change, as vectors; any, where not set.
+/// How fast the vectors of force and torque may change; without limit where not set.
 struct WrenchRates {
   static constexpr double kAny = std::numeric_limits<double>::infinity();
   double force_N_s = kAny;
@@ -62,10 +63,10 @@ struct WrenchRates {
 /// For a person's hand: 20 N and 500 N mm are gone within 5 ms.
 inline constexpr WrenchRates kRatesForAHand{4000, 1e5};
 
-/// `to`, or as far towards it from `from` as may be in `dt_s`. Safe in the haptic tick.
+/// `to`, or as far from `from` towards it as the rates allow in `dt_s`. Safe in the haptic tick.
 Wrench approach(const Wrench& from, const Wrench& to, const WrenchRates& rates, double dt_s);
 
-/// True where nothing at all is sent.
+/// True where force and torque are exactly zero.
 bool is_zero(const Wrench& wrench);
 
 }  // namespace osteomill

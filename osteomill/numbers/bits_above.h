@@ -27,7 +27,7 @@ inline std::uint32_t bits_above(const float* row, int count, float limit) {
   return bits;
 }
 
-/// What a float has to be above to be above `value`.
+/// The largest float that is not above `value`: a float is above `value` exactly where it is above this one.
 inline float largest_float_up_to(double value) {
   constexpr double kMax = std::numeric_limits<float>::max();
   const float nearest = static_cast<float>(std::clamp(value, -kMax, kMax));

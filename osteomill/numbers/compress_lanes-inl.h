@@ -16,7 +16,7 @@ HWY_BEFORE_NAMESPACE();
 namespace osteomill {
 namespace HWY_NAMESPACE {
 
-/// A bit a lane.
+/// The mask as a number: bit n is set where the mask names lane n.
 template <class D>
 HWY_INLINE unsigned bits_of(D d, hwy::HWY_NAMESPACE::Mask<D> mask) {
   std::uint8_t bytes[8] = {};
@@ -24,7 +24,7 @@ HWY_INLINE unsigned bits_of(D d, hwy::HWY_NAMESPACE::Mask<D> mask) {
   return bytes[0] | static_cast<unsigned>(bytes[1]) << 8;
 }
 
-/// For each choice of up to 8 lanes, a bit each: those that are chosen first, then the others.
+/// For each choice of up to 8 lanes, given as one bit for each lane: the chosen lanes, then the others.
 inline constexpr auto kLaneOrder = [] {
   constexpr int kLanes = 8;
   std::array<std::array<std::int32_t, kLanes>, 1u << kLanes> orders{};
@@ -39,9 +39,10 @@ inline constexpr auto kLaneOrder = [] {
   return orders;
 }();
 
-/// Moves the lanes that a mask names to the front, in their order, of as many vectors as there are; what the
-/// others hold then is anything. Highway's own Compress looks its table up anew for each, and GCC 12 copies
-/// that whole table to the stack first: two thirds of the time of a gathering, with AVX2.
+/// Moves the lanes that a mask names to the front of a vector, in their order; what the other lanes hold
+/// afterwards is undefined. One object serves any number of vectors. Highway's own Compress looks up its
+/// table anew for each vector, and GCC 12 copies that whole table to the stack first: with AVX2, two thirds
+/// of the time of gathering points.
 template <class D>
 class CompressLanes {
  public:

@@ -6,10 +6,10 @@
 
 namespace osteomill {
 
-/// The one meaning of a percentile in all that osteomill writes: the least value that at least this share
-/// (0 to 1) of the values do not exceed, and where exactly that share does not exceed it, the mean of it and
-/// the next (Hyndman and Fan 1996, type 2). So half gives the usual median, 0 the least value, 1 the
-/// greatest. These are the ranks, counted from 1, of the two values whose mean it is.
+/// A percentile, wherever osteomill writes one, is the least value that at least this share (0 to 1) of the
+/// values do not exceed; where exactly that share does not exceed it, it is the mean of that value and the
+/// next (Hyndman and Fan 1996, type 2). So 0.5 gives the usual median, 0 the least value, 1 the greatest.
+/// The percentile is the mean of the values with these two ranks, counted from 1.
 struct PercentileRanks {
   std::size_t lower = 1;
   std::size_t upper = 1;
@@ -27,9 +27,9 @@ struct Distribution {
 };
 Distribution distribution_of(std::vector<double> values);
 
-/// The one meaning of `rate_hz` in all that osteomill writes: the rate that a loop held to `period_us` holds
-/// when its ticks keep it busy as long as those added, a tick that is done early waiting for the next. So it
-/// is at most the loop's own rate. Adding is safe in the haptic tick.
+/// What `rate_hz` means wherever osteomill writes it: the rate that a loop with the period `period_us`
+/// reaches when its ticks are busy for the times that were added. A tick that is done early waits for the
+/// end of its period, so the rate is at most the loop's own. Adding is safe in the haptic tick.
 class HeldRate {
  public:
   explicit HeldRate(double period_us = 1000) : period_us_(period_us) {}

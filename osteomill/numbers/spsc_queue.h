@@ -12,8 +12,8 @@ extern "C" void __tsan_ignore_thread_end();
 
 namespace osteomill {
 
-/// A queue of fixed capacity from one thread to one other (moodycamel's, with what the thread sanitizer has
-/// to be told). Both ends are safe in the haptic tick (no allocation, lock or system call) where making and
+/// A queue of fixed capacity from one thread to one other (moodycamel's, made known to the thread sanitizer).
+/// Both ends are safe in the haptic tick (no allocation, lock or system call) where making and
 /// moving a T is. Made and destroyed while neither thread uses it.
 template <typename T>
 class SpscQueue {
@@ -38,7 +38,8 @@ class SpscQueue {
     const Access access(&queue_);
     return queue_.try_dequeue(value);
   }
-  /// For the receiving thread: the oldest value at its place, its own until `pop`; null where there is none.
+  /// For the receiving thread: the oldest value at its place, which stays valid until `pop`; null where there
+  /// is none.
   T* front() {
     const Access access(&queue_);
     return queue_.peek();

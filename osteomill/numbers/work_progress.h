@@ -6,15 +6,14 @@
 
 namespace osteomill {
 
-/// Out of long work that is no longer wanted.
+/// Thrown to end long work that is no longer wanted.
 struct WorkStopped : std::exception {
   const char* what() const noexcept override { return "stopped, since it is no longer wanted"; }
 };
 
-/// Has the long work of this thread told of, as long as it lives: reading a scan, meshing it, preparing an
-/// algorithm. Nothing is told of in the haptic tick. The work says how far it is wherever a tenth of a second
-/// may have passed since it last did; one who no longer wants it throws WorkStopped from the listener, which
-/// ends the work and gives its memory back.
+/// While one lives, its listener hears how far the long work of this thread is: reading a scan, meshing it,
+/// preparing an algorithm. The haptic tick reports nothing. The work reports at least about every tenth of a
+/// second; to stop it, throw WorkStopped from the listener, which ends the work and frees its memory.
 class WorkProgress {
  public:
   /// Called often, in this thread, with the share done of the whole, from 0 to 1 and never falling.
@@ -24,15 +23,15 @@ class WorkProgress {
   WorkProgress(const WorkProgress&) = delete;
   WorkProgress& operator=(const WorkProgress&) = delete;
 
-  /// The work says that it has done so much of itself. Nothing where nobody listens.
+  /// For the work to call: this share of it (0 to 1) is done. Does nothing where nobody listens.
   static void done(double share);
   static void done(std::size_t parts, std::size_t of_parts) {
     done(of_parts > 0 ? static_cast<double>(parts) / static_cast<double>(of_parts) : 1);
   }
 
-  /// What goes on while this lives is the next piece of a larger work: from where the one before ended to
-  /// `until`, a share of the larger work. The end says that it is done, but not where the work was ended by
-  /// an exception.
+  /// What is done while one lives is one piece of a larger work: from where the piece before it ended to
+  /// `until`, a share of the larger work. When it is destroyed the piece counts as done, unless an exception
+  /// ended it.
   class Part {
    public:
     explicit Part(double until);
@@ -46,8 +45,8 @@ class WorkProgress {
     int exceptions_;
   };
 
-  /// Listens, to a WorkProgress in another thread, for the one that listens to this thread's work, which
-  /// waits for that one's.
+  /// A listener for a WorkProgress in another thread, on which this thread waits: it passes that thread's
+  /// progress on to whoever listens to this one's.
   static Listener of_this_thread();
 
  private:
