@@ -51,7 +51,7 @@ std::vector<LabelSummary> summarise_labels(const Volume& bone);
 /// replaced.
 std::string to_json(const ScanSummary& summary);
 
-/// The same for people, a line each.
+/// The summary for people to read, a line for each fact.
 std::string to_text(const ScanSummary& summary);
 
 }  // namespace osteomill

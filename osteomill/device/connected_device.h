@@ -59,7 +59,8 @@ struct DeviceReport {
 /// lost is opened again until it is there.
 ///
 /// The first button asks for the spindle. While the second is held (or `set_clutched`) the handle moves
-/// without the tool, which has no pose then; so it is felt nothing, and afterwards from where the tool is.
+/// without the tool: the device gives no pose and the hand feels nothing. Then it goes on from where the tool
+/// is.
 class ConnectedDevice final : public Device {
  public:
   static constexpr unsigned kSpindleButton = 1;

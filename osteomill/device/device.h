@@ -7,8 +7,8 @@
 
 namespace osteomill {
 
-/// Of a force that was asked for, as much as what was sent has of it in its direction, 0 to 1. Safe in the
-/// haptic tick.
+/// Which share of a force that was asked for the one that was sent gives in its direction, 0 to 1. Safe in
+/// the haptic tick.
 inline double share_sent(const Vec3& asked, const Vec3& sent) {
   return sent == asked || asked.isZero(0) ? 1 : std::clamp(sent.dot(asked) / asked.squaredNorm(), 0.0, 1.0);
 }
@@ -23,7 +23,8 @@ class Device {
   virtual Pose read_pose() = 0;
   /// Sends a wrench that is already safe (finite, within the limits).
   virtual void write_wrench(const Wrench& wrench) = 0;
-  /// How much of the force that is written the hand has (share_sent): what bone that is milled is paid with.
+  /// Which share of the force that was written has reached the hand (share_sent). Milling removes bone for
+  /// that share alone.
   virtual double given_share() const { return 1; }
 
   /// Whether the operator asks for the spindle by a button or pedal of the device.
@@ -31,8 +32,8 @@ class Device {
   /// The tick is over: where the simulated tool is shown, and how long it is until the next pose is read. A
   /// simulated device moves on; hardware has nothing to do.
   virtual void tick_done(const Pose& /*X_WT*/, double /*dt_s*/) {}
-  /// Between two ticks: the tool is to be there, wherever the hand is, and moves on from there with it. A
-  /// device that gives poses of its own (a trajectory) does nothing.
+  /// Called between two ticks: from now on the tool is at `X_WD` wherever the hand is, and moves from there
+  /// as the hand moves. A device that gives poses of its own (a trajectory) does nothing.
   virtual void put_at(const Pose& /*X_WD*/) {}
   /// The program is ending: zero from now on, whatever is written later. From any thread, and from a signal's
   /// handler. True once zero has gone out; it is asked again until then.

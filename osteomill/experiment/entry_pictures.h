@@ -25,7 +25,7 @@ class EntryPictures {
   const std::optional<std::vector<unsigned char>>& before() const { return before_; }
   /// Nothing where there was none before either, or OpenGL failed since.
   std::optional<std::vector<unsigned char>> of(const Volume& milled, const RunEvents& events) const;
-  /// The same straight along the entry, where fewer than half of what milling left of the surface is seen in
+  /// A picture straight along the entry, where fewer than half of what milling left of the surface is seen in
   /// the other, as behind a ridge.
   std::optional<std::vector<unsigned char>> along(const Volume& milled, const RunEvents& events) const;
 

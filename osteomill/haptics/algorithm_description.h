@@ -46,8 +46,8 @@ struct HapticSettings {
   }
 };
 
-/// By what people and files know an algorithm; what a recording keeps of it. Figures and file names are made
-/// from it, so the name holds letters, digits, '-' and '_' alone, the label also spaces and any of ().,:+
+/// How people and files know an algorithm; a recording keeps this of it. Figures and file names are made from
+/// it, so the name holds only letters, digits, '-' and '_', and the label also spaces and any of ().,:+
 /// (`is_usable`).
 struct AlgorithmId {
   /// On the command line and in files: "point-shell". Two algorithms of one name are the same.

@@ -29,14 +29,16 @@ struct Release {
   double rad_s = 0.05;
 };
 
-/// How far the simulated tool may go in a tick, so that what is felt, the stretch between it and the device,
-/// does not leap where bone gives way. Held on a spring by surfaces without friction, a tool goes along with
-/// the device by a projection of the device's move, and all projections of a vector lie on the sphere of
-/// which it is a diameter: so the tool's move stays in that ball, and its turn in the other, grown by the
-/// release's speed, and by its share on the side on which the stretch fades. A turn of the device may also
-/// move a tool that is held at a lever, and a move turn it: by half, at the length `sqrt(torsional /
-/// translational stiffness)`, and on the side on which the stretch grows.
-/// Standing still always lies within. In W's axes.
+/// How far the simulated tool may go in a tick. The hand feels the stretch between tool and device, and this
+/// bound keeps the stretch from leaping where bone gives way.
+///
+/// The tool's move has to stay in a ball, and its turn in another, in W's axes. A tool that surfaces without
+/// friction hold on a spring follows the device by some projection of the device's move. All projections of a
+/// vector lie on the sphere of which the vector is a diameter, so that sphere is where the ball begins. It is
+/// wider by the release's speed, and, on the side on which the stretch fades, by the release's share of the
+/// stretch. It is also wider on the side on which the stretch grows, since a turn of the device may move a
+/// tool that is held at a lever and a move may turn it: by half of it, at the length `sqrt(torsional /
+/// translational stiffness)`. Standing still always lies within.
 struct MoveBound {
   ToolMove middle;
   double radius_mm = 0;

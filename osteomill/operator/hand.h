@@ -29,9 +29,9 @@ struct HandSettings {
   /// Root mean square of the tremor along each axis: instruments held still over an eye were measured with
   /// 0.038 mm in all (Singh and Riviere 2002).
   double tremor_mm = 0.02;
-  /// The same of its turning about each axis. Hands held out were measured with 0.01 g at 7 Hz (the commonest
-  /// of 97; 0.0015 to 0.035 g; Wade, Gresty and Findley 1982): 0.036 mm, some 80 mm from the wrist that
-  /// turns.
+  /// How far the tremor turns about each axis, rms. Hands held out were measured with 0.01 g at 7 Hz (the
+  /// commonest of 97; 0.0015 to 0.035 g; Wade, Gresty and Findley 1982): 0.036 mm, some 80 mm from the wrist
+  /// that turns.
   double tremor_rad = 0.0005;
 };
 
@@ -54,7 +54,7 @@ Wrench hand_wrench(const HandSettings& hand, const Pose& X_W_target, const Twist
 /// grips reach about 1000 N/m. Push and tremor stay at their defaults. The same seed gives the same hand.
 HandSettings random_hand(std::uint64_t seed);
 
-/// The same hand gripping so many times as firmly: all its stiffness and damping times `firmness`, since
+/// A hand that grips `firmness` times as firmly: all its stiffness and damping times `firmness`, since
 /// both rise steadily with the force of the grip (Hasser and Cutkosky 2002, nine hands on a knob; stiffness
 /// in proportion: Hoeppner, McIntyre and van der Smagt 2013).
 HandSettings gripping(HandSettings hand, double firmness);

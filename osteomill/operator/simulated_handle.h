@@ -14,7 +14,8 @@ struct HandleSettings {
   double inertia_kg_m2 = 3e-4;
   /// The encoder's step; 0 reads without rounding.
   double position_step_mm = 0.005;
-  /// The same step at the end of a lever of 50 mm; 0 reads without rounding.
+  /// What the encoder resolves of turning: the step above at the end of a lever of 50 mm. 0 reads without
+  /// rounding.
   double rotation_step_rad = 1e-4;
   /// From the command to the motors' acting on it; rounded to whole substeps.
   double force_delay_s = 0.3e-3;

@@ -50,7 +50,7 @@ class Recorder {
   /// Hands a record to the writing thread. Safe in the haptic tick: never waits, allocates or throws. Where
   /// the queue is full the record is lost: false, and counted.
   bool push(const TickRecord& record) noexcept;
-  /// The same for runs in simulated time, outside the tick: waits while the queue is full. Throws the
+  /// Takes a record of a run in simulated time, outside the tick: waits while the queue is full. Throws the
   /// InputError with which writing failed, if it did.
   void push_waiting(const TickRecord& record);
 

@@ -86,8 +86,8 @@ std::vector<Recording> in_stretches(Recording recording);
 /// is read as it is. Sizes are held against the file's before memory is taken.
 Recording read_recording(const std::filesystem::path& path);
 
-/// The same where it may go on from another recording in its folder (SessionStart::goes_on_from): both as
-/// one, described as the first.
+/// Reads a recording that may go on from another one in its folder (SessionStart::goes_on_from): both as one,
+/// described as the first. Throws as read_recording.
 Recording read_with_what_came_before(const std::filesystem::path& path);
 
 /// What write_start wrote. The file is no input of the program's (input_files.h): it may be written over.

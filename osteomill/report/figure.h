@@ -72,7 +72,8 @@ void write_figure_data(const std::filesystem::path& path, std::string_view bytes
 /// few samples.
 std::vector<std::size_t> thin_out_curve(std::span<const double> values, std::size_t bins);
 
-/// The same for a cloud of unit directions: of each part its first sample and the one farthest from `centre`.
+/// Samples that stand for a cloud of unit directions: of each part its first sample and the one farthest from
+/// `centre`.
 std::vector<std::size_t> thin_out_cloud(std::span<const Vec3> directions, const Vec3& centre,
                                         std::size_t bins);
 

@@ -40,7 +40,7 @@ struct PageText {
 std::filesystem::path write_report(const std::vector<RunGroup>& groups, const std::filesystem::path& out_dir,
                                    const PageText& text = {});
 
-/// The same of any number of recordings, one for each algorithm, mode and phase that there is. Throws
+/// A report of any number of recordings, one for each algorithm, mode and phase that there is. Throws
 /// InputError also where there are no recordings, two are of the same algorithm, mode and phase, or one
 /// cannot be measured.
 std::filesystem::path write_report(const std::vector<Recording>& recordings,

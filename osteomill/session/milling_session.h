@@ -35,8 +35,9 @@ class Vibration {
   double turns_ = 0;
 };
 
-/// What a session leaves to the one that goes on from it: where its simulated tool is, outside the bone (a
-/// session that begins at the device, which may have sunk into it, has nothing), and what the hand feels.
+/// What a session leaves to the one that goes on from it: where its simulated tool is, which is outside the
+/// bone, and what the hand feels. There is no tool's pose where the next session is to begin at the device,
+/// which may have sunk into the bone.
 struct TakenOver {
   std::optional<Pose> X_WT;
   Wrench sent;
@@ -72,7 +73,8 @@ class MillingSession {
   /// To be taken over by another, after the last tick.
   TakenOver left() const { return {last_X_WT_, guard_.sent()}; }
 
-  /// From the next tick on zero is sent, come down to slowly, until the tool is placed. As safe as `tick`.
+  /// From the next tick on the wrench comes down to zero slowly and stays there until the tool is placed. As
+  /// safe as `tick`.
   void let_go() { let_go_asked_ = true; }
   /// In the next tick the algorithm begins anew where the device then is, whatever was touched before; the
   /// device is free of bone. As safe as `tick`.

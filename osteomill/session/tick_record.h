@@ -15,10 +15,10 @@ struct TickRecord {
   /// force all that milling depends on.
   double dt_s = 0;
   bool spindle_on = false;
-  /// The other inputs of a session, with the device's pose: how much of the force the hand had so far
-  /// (Device::given_share); a tick of a pause; from this one on nothing is
-  /// felt until the tool is placed; before it the tool was placed where the device is, and contacts
-  /// forgotten.
+  /// The session's other inputs beside the device's pose. How much of the force the hand had so far
+  /// (Device::given_share); whether the tick is one of a pause; whether from this tick on nothing is felt
+  /// until the tool is placed; whether before this tick the tool was placed where the device is, and its
+  /// contacts were forgotten.
   double given_share = 1;
   bool paused = false;
   bool let_go = false;

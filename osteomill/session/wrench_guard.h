@@ -21,8 +21,8 @@ struct GuardSettings {
   /// A damper is felt on contact while the hand has been given more energy than it gave (PassivityObserver).
   bool passivity_controller = false;
 
-  /// The same for a person's hand: kRatesForAHand, a blend of 0.1 s, moves of up to 5 mm and 0.2 rad
-  /// and ticks of up to 5 ms. The default only shortens to the limits, for hands that are simulated.
+  /// These settings, made safe for a person's hand: kRatesForAHand, a blend of 0.1 s, moves of up to 5 mm and
+  /// 0.2 rad and ticks of up to 5 ms. The default, for simulated hands, only shortens to the limits.
   GuardSettings for_a_hand() const;
 };
 
@@ -80,9 +80,9 @@ class WrenchGuard {
   double energy_given_Nmm() const { return observer_.energy_given_Nmm(); }
   /// From now what is asked for comes up slowly, from what was last sent.
   void begin_anew();
-  /// The same where the hand feels `sent`, from whatever stood here before; energy is counted from here.
+  /// As begin_anew, in the place of another guard whose hand feels `sent`; energy is counted from now on.
   void begin_from(const Wrench& sent);
-  /// From now zero is sent, come down to slowly, until `begin_anew`.
+  /// From now on the wrench comes down to zero slowly and stays there until `begin_anew`.
   void let_go();
   const Wrench& sent() const { return sent_; }
   /// Zero was sent last.
@@ -91,7 +91,7 @@ class WrenchGuard {
   /// What to send for a wrench in a tick of `dt_s`, with the reason where that is not what was asked for. One
   /// that is not finite is zero, and what follows begins anew.
   SafeWrench pass(const Wrench& asked, const Pose& X_WD, double dt_s);
-  /// The same where nothing is felt: no pose that is finite, or a pause.
+  /// What to send in a tick in which nothing may be felt, as there is no finite pose or a pause.
   SafeWrench pass_zero(const Pose& X_WD, double dt_s);
 
  private:

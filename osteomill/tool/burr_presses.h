@@ -6,16 +6,17 @@
 
 namespace osteomill {
 
-/// How far off a burr what it presses on may lie: as far as a proxy or a skin keeps it off, and no less than
-/// half a voxel, which a coarse scan's surface may be wrong. In mm.
+/// How far from the burr's surface the bone that it presses on may lie, in mm: as far as a proxy or a skin
+/// keeps the burr away, and at least half a voxel, by which the surface of a coarse scan may be wrong.
 double pressing_reach_mm(const GridGeometry& geometry);
 
 /// Whether bone lies ahead of a burr that presses with this force, no farther off than `pressing_reach_mm`.
-/// A wall beside a burr may hold it, but is not what it presses on. Safe in the haptic tick.
+/// A wall beside the burr may hold it, but the burr does not press on it. Safe in the haptic tick.
 bool burr_presses(const Volume& volume, double burr_radius_mm, const Vec3& burr_W, const Vec3& force_W_N);
 
-/// A burr may swing on what it presses on: so much of the time for which bone was ahead of it counts as well
-/// after the bone has gone, and what could not be spent meanwhile is kept for when it is there again.
+/// A burr may swing on the bone that it presses on and lose it for some ticks. It still counts as pressing
+/// for as long as bone was ahead of it before, but for no longer than this; and milling keeps what it could
+/// not spend for as long.
 inline constexpr double kPressingKept_s = 0.01;
 
 /// `burr_presses` from tick to tick.

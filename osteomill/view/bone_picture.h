@@ -11,7 +11,7 @@ namespace osteomill {
 /// across, which turns the view about the entry. For square pictures. From far away, so that lengths can be
 /// read off: what is nearer by half of the picture's height is drawn 2 % larger.
 Camera camera_above(const Volume& bone, const Vec3& entry_W, const Vec3& into_W, const Vec3& lateral_W);
-/// The same straight along `into_W`, with `lateral_W` upwards.
+/// A camera that looks at the entry straight along `into_W`, with `lateral_W` upwards.
 Camera camera_along(const Volume& bone, const Vec3& entry_W, const Vec3& into_W, const Vec3& lateral_W);
 
 /// A picture of the bone on white with a scale bar, coloured and lit as in the window (scene.h says what

@@ -11,8 +11,8 @@
 namespace osteomill {
 
 /// The densities of a scan, one float a voxel (Hounsfield units where the scan has them), i running fastest.
-/// Outside the grid there is nothing: every voxel there counts as `outside_density()`. Copies share what was
-/// changed in neither. Reading is safe in the haptic tick; one thread writes.
+/// Outside the grid there is nothing: every voxel there counts as `outside_density()`. Copies share
+/// the memory of what was changed in none of them. Reading is safe in the haptic tick; one thread writes.
 class DensityGrid {
  public:
   DensityGrid() = default;

@@ -28,7 +28,7 @@ std::vector<Boundary> boundaries_in(const DensityGrid& grid);
 struct SuggestedIsovalue {
   double value = 0;
   std::string how;
-  /// Of the scan; that the isovalue is a guess among them stands in `how`.
+  /// The scan's boundaries. Where there are several, `how` says that the isovalue is a guess among them.
   std::vector<Boundary> boundaries{};
 };
 
@@ -49,7 +49,7 @@ inline constexpr double kBone_HU = 260;
 /// Not for the tick.
 SuggestedIsovalue suggest_isovalue(const DensityGrid& grid, bool in_hounsfield_units = false);
 
-/// Whether there are both bone and something else by this isovalue.
+/// Whether there are both bone and something else by this isovalue. Goes through the grid; not for the tick.
 bool is_within(const DensityGrid& grid, double isovalue);
 
 /// What a user of this isovalue should know, a sentence each: that it lies outside the grid's densities, so

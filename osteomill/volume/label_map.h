@@ -49,12 +49,12 @@ class LabelMap {
   }
   /// At the voxel nearest to any finite point of W.
   Place nearest_to(const Vec3& point_W) const;
-  /// Of the bone just under a place of its surface with this normal, no more than 1.5 voxels deep: of a
-  /// scan's label map the outermost voxels are often left out.
+  /// The label of the bone just under a place of its surface with this normal. Looks up to 1.5 voxels deep,
+  /// since label maps often leave out the bone's outermost voxels.
   Place under_surface(const Vec3& point_W, const Vec3& normal_W) const;
 
-  /// How many voxels of the scan have each label, by its place; of no label, none are counted. Goes through
-  /// all of them.
+  /// How many voxels of the scan have each label, by the label's place; voxels without a label are not
+  /// counted. Goes through all voxels; not for the tick.
   std::vector<std::size_t> voxel_counts() const;
 
   /// Where there are labels; empty where there is none.

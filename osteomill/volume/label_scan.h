@@ -14,8 +14,8 @@ bool looks_like_labels(const DensityGrid& grid);
 /// Between the two lowest labels (where there are two), so that whatever is labelled is bone.
 double isovalue_of_labels(const DensityGrid& grid);
 
-/// A grid of labels as one of densities, since labels are no quantities: those above the isovalue are all as
-/// dense as each other, half above it, and the others half below.
+/// A grid of labels as one of densities, since labels are no quantities: every voxel whose label is above the
+/// isovalue gets the isovalue plus 0.5, every other one the isovalue less 0.5.
 DensityGrid bone_of_labels(const DensityGrid& labels, double isovalue);
 
 }  // namespace osteomill

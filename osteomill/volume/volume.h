@@ -37,9 +37,9 @@ class Volume {
   /// Any `v`; there is no bone beyond the border.
   bool is_bone_or_outside(const VoxelIndex& v) const { return grid_.contains(v) && is_bone(v); }
 
-  /// Lowers the densities of `count` voxels of one row, whose columns ascend (milling never raises them).
-  /// Safe in the haptic tick. Not in the tick, nor while anyone works on this bone, they may rise too, as
-  /// when a cut is taken back, if `refresh_ranges` follows.
+  /// Lowers the densities of `count` voxels of one row, whose columns ascend. Safe in the haptic tick. Where
+  /// a cut is taken back densities may also rise, but only outside the tick, while nobody works on this bone,
+  /// and with `refresh_ranges` after it.
   void lower_row(int j, int k, const int* columns, const float* densities, std::size_t count) {
     for (std::size_t n = 0; n < count; ++n) {
       const VoxelIndex v{columns[n], j, k};
@@ -53,8 +53,8 @@ class Volume {
   void lower_density(const VoxelIndex& v, float density) { lower_row(v.j, v.k, &v.i, &density, 1); }
   /// See DensityGrid; by another thread than the one that lowers where that one must not wait.
   void prepare_about(const VoxelBox& changed) { grid_.prepare_about(changed); }
-  /// By what the densities differ from those it was made with, however that came about: 0 where they do not,
-  /// and the same for all bones of one scan that are the same. Safe in the haptic tick.
+  /// A hash of what differs from the densities it was made with: 0 where nothing does, and the same for any
+  /// two bones of one scan that are the same, in whatever order they were milled. Safe in the haptic tick.
   std::uint64_t change_hash() const { return change_hash_; }
   /// Bone is where the density is greater from now on. Throws std::invalid_argument where it is not finite.
   /// Not for the tick, nor while anyone works on this bone.

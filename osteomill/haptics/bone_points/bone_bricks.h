@@ -105,18 +105,19 @@ class BoneBricks {
   /// doubles the steps of torque: 0.28 N mm for 0.14, tooth, 3 N.)
   static constexpr int kBearingPerTick = 1500;
   static constexpr int kOthersPerTick = 100;
-  /// Says that densities fell in `voxels`, and brings points up to date: where the surface has come into bone
-  /// all of them, of the bricks that bear the tool each in one of so many ticks that there is time for, and
-  /// of the others about `others`, what it takes to find them counted with them.
+  /// Says that densities fell in `voxels`, and brings points up to date. Bricks into which the surface has
+  /// newly come are made at once. Those that bear the tool take turns, each in one of as many ticks as it
+  /// takes to do about kBearingPerTick points in each. Of all other bricks about `others` points are done;
+  /// the cost of looking for them counts as points too.
   void refresh(const VoxelBox& voxels, int others = kOthersPerTick);
-  /// The slots of the bricks that bear the tool, for who uses the points to keep. The tool rests on them:
-  /// were they left to wait with the others it would stand still and drop once the last had its turn.
+  /// The slots of the bricks that bear the tool. Whoever uses the points keeps this list. The tool rests on
+  /// these bricks: if they waited with the others, it would stand still and drop once the last had its turn.
   std::vector<std::uint32_t>& bearing() { return bearing_; }
   bool is_up_to_date() const { return sweep_.is_idle(); }
   /// Makes room if little is left, by forgetting what is not near the tool.
   void make_room(const MillingTool& tool, const Pose& X_WT);
-  /// What a tick begins with: that, and what still waits to be brought up to date, where nothing fell since
-  /// the tick before.
+  /// What a tick begins with: room is made, and bricks that still wait are brought up to date where no
+  /// densities fell since the tick before.
   void begin_tick(const MillingTool& tool, const Pose& X_WT) {
     if (!refreshed_ && !is_up_to_date()) refresh({});
     refreshed_ = false;

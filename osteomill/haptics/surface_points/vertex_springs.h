@@ -10,7 +10,7 @@ namespace osteomill::surface_points {
 /// haptic tick.
 Vec3 interpolated_spring(const Volume& volume, const Vec3& vertex_W, const Vec3& free_W);
 
-/// The same as far as the first bone that is met on the way from `free_W` to `vertex_W`, to 0.0001 mm; the
+/// The spring as far as the first bone that is met on the way from `free_W` to `vertex_W`, to 0.0001 mm; the
 /// whole way where `free_W` is itself in bone. The first `known_free_mm` are taken to be free unless their
 /// end is in bone. Looks every half voxel, but no closer than every 0.045 mm: what is thinner than that does
 /// not hold a tool, and in the finest scans most of the looks would be for it. A third of the samples of
