@@ -34,17 +34,6 @@ PointRows::PointRows(std::size_t most) {
   }
 }
 
-void PointRows::add(const ShellPoint& point) {
-  x_mm[count] = point.x_mm;
-  y_mm[count] = point.y_mm;
-  z_mm[count] = point.z_mm;
-  area_mm2[count] = point.area_mm2;
-  normal_x[count] = point.normal_x;
-  normal_y[count] = point.normal_y;
-  normal_z[count] = point.normal_z;
-  ++count;
-}
-
 BrickPoints::BrickPoints(std::size_t brick_count, std::size_t chunk_capacity)
     : next_(chunk_capacity), bricks_(brick_count), free_chunks_(chunk_capacity) {
   chunks_.reserve(chunk_capacity);
