@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -82,14 +83,15 @@ class Times {
   std::vector<double> ms_;
 };
 
-vtkNew<vtkImageData> share_with_vtk(const Volume& volume) {
+vtkNew<vtkImageData> image_for_vtk(const Volume& volume) {
   const GridGeometry& geometry = volume.geometry();
   vtkNew<vtkImageData> image;
   image->SetDimensions(geometry.dims[0], geometry.dims[1], geometry.dims[2]);
   image->SetSpacing(geometry.spacing_mm.x(), geometry.spacing_mm.y(), geometry.spacing_mm.z());
   vtkNew<vtkFloatArray> densities;
-  const CopyOnWriteFloats& values = volume.grid().densities();
-  densities->SetArray(const_cast<float*>(values.data()), static_cast<vtkIdType>(values.size()), 1);
+  for_each_row(volume.grid(), [&](std::span<const float> row) {
+    for (const float density : row) densities->InsertNextValue(density);
+  });
   image->GetPointData()->SetScalars(densities);
   return image;
 }
@@ -159,7 +161,7 @@ FrameTimes mill_and_mesh(const Volume& bone, double radius_mm, vtkFlyingEdges3D*
     }));
   }
   if (flying != nullptr) {
-    const vtkNew<vtkImageData> image = share_with_vtk(volume);
+    const vtkNew<vtkImageData> image = image_for_vtk(volume);
     flying->SetInputData(image);
     for (int n = 0; n < 3; ++n) times.vtk.add(milliseconds([&] { flying->Modified(), flying->Update(); }));
   }
@@ -207,7 +209,7 @@ int main(int argc, char** argv) {
   setenv("VTK_SMP_BACKEND_IN_USE", "Sequential", 1);
   setenv("VTK_SMP_MAX_THREADS", "1", 1);
   const Volume volume = make_volume(argc, argv);
-  const vtkNew<vtkImageData> image = share_with_vtk(volume);
+  const vtkNew<vtkImageData> image = image_for_vtk(volume);
   vtkNew<vtkFlyingEdges3D> flying;
   flying->SetInputData(image);
   flying->SetValue(0, volume.isovalue());

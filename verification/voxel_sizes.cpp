@@ -36,10 +36,10 @@ double hole_mm3(std::string_view algorithm, double spacing_mm, double seconds) {
                      algorithm_named(algorithm), settings);
   while (trial.tick().milling_phase) {
   }
-  const CopyOnWriteFloats& before = bone.grid().densities();
-  const CopyOnWriteFloats& after = trial.volume().grid().densities();
   double lost = 0;
-  for (std::size_t n = 0; n < before.size(); ++n) lost += before[n] - after[n];
+  for_each(bone.geometry().all_voxels(), [&](const VoxelIndex& v) {
+    lost += static_cast<double>(bone.grid()[v] - trial.volume().grid()[v]);
+  });
   return lost / 1000 * bone.geometry().voxel_volume_mm3();
 }
 

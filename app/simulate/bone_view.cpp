@@ -22,10 +22,7 @@ constexpr double kAbove_rad = 0.35;
 
 VoxelBox voxels_of_bone(const Volume& bone) {
   VoxelBox box;
-  const float* density = bone.grid().densities().data();
-  for_each(bone.geometry().all_voxels(), [&](const VoxelIndex& v) {
-    if (static_cast<double>(*density++) > bone.isovalue()) box.include(v);
-  });
+  for_each_bone_voxel(bone, [&](const VoxelIndex& v) { box.include(v); });
   return box.empty() ? bone.geometry().all_voxels() : box;
 }
 

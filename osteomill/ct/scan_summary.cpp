@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
@@ -15,19 +16,21 @@ std::array<double, 3> to_array(const Vec3& v) {
   return {v.x(), v.y(), v.z()};
 }
 
-void summarise_values(const CopyOnWriteFloats& densities, double isovalue, ScanSummary& summary) {
+void summarise_values(const DensityGrid& grid, double isovalue, ScanSummary& summary) {
   double sum = 0;
-  float min = densities.front();
-  float max = densities.front();
-  for (const float density : densities) {
-    sum += static_cast<double>(density);
-    min = std::min(min, density);
-    max = std::max(max, density);
-    summary.voxels_above_iso += static_cast<double>(density) > isovalue;
-  }
+  float min = grid[{0, 0, 0}];
+  float max = min;
+  for_each_row(grid, [&](std::span<const float> row) {
+    for (const float density : row) {
+      sum += static_cast<double>(density);
+      min = std::min(min, density);
+      max = std::max(max, density);
+      summary.voxels_above_iso += static_cast<double>(density) > isovalue;
+    }
+  });
   summary.value_min = static_cast<double>(min);
   summary.value_max = static_cast<double>(max);
-  summary.value_mean = sum / static_cast<double>(densities.size());
+  summary.value_mean = sum / static_cast<double>(grid.geometry().voxel_count());
 }
 
 }  // namespace
@@ -41,7 +44,7 @@ ScanSummary summarise(const Scan& scan, SuggestedIsovalue suggested_iso, double 
   summary.isovalue = isovalue;
   summary.warnings = scan.warnings;
   summary.series = scan.series;
-  summarise_values(scan.grid.densities(), isovalue, summary);
+  summarise_values(scan.grid, isovalue, summary);
   return summary;
 }
 

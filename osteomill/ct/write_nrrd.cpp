@@ -22,29 +22,30 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "voxels are written as they lie in memory");
 
-constexpr std::size_t kValuesAtOnce = 1 << 16;
-
 template <typename Stored>
-bool holds_exactly(std::span<const float> densities) {
+bool holds_exactly(const DensityGrid& grid) {
   const auto min = static_cast<float>(std::numeric_limits<Stored>::min());
   const auto max = static_cast<float>(std::numeric_limits<Stored>::max());
-  return std::all_of(densities.begin(), densities.end(), [&](float density) {
-    return density >= min && density <= max && std::floor(density) == density;
+  bool holds = true;
+  for_each_row(grid, [&](std::span<const float> row) {
+    holds = holds && std::all_of(row.begin(), row.end(), [&](float density) {
+              return density >= min && density <= max && std::floor(density) == density;
+            });
   });
+  return holds;
 }
 
 // False where not all could be written.
 template <typename Stored>
-bool write_values(gzFile file, std::span<const float> densities) {
+bool write_values(gzFile file, const DensityGrid& grid) {
   std::vector<Stored> values;
-  while (!densities.empty()) {
-    const std::span<const float> some = densities.first(std::min(kValuesAtOnce, densities.size()));
-    values.assign(some.begin(), some.end());
+  bool written = true;
+  for_each_row(grid, [&](std::span<const float> row) {
+    values.assign(row.begin(), row.end());
     const auto bytes = static_cast<unsigned>(values.size() * sizeof(Stored));
-    if (gzwrite(file, values.data(), bytes) != static_cast<int>(bytes)) return false;
-    densities = densities.subspan(some.size());
-  }
-  return true;
+    written = written && gzwrite(file, values.data(), bytes) == static_cast<int>(bytes);
+  });
+  return written;
 }
 
 // As many digits as read back to the same number.
@@ -83,7 +84,7 @@ void write_as(const char* type, const DensityGrid& grid, const std::filesystem::
   // Scans are large, and higher levels than 4 win little on noise.
   gzFile file = header ? gzopen(beside.c_str(), "ab4") : nullptr;
   if (file == nullptr) throw InputError(path.string(), "cannot be created");
-  const bool written = write_values<Stored>(file, grid.densities());
+  const bool written = write_values<Stored>(file, grid);
   if (gzclose(file) != Z_OK || !written)
     throw InputError(path.string(), "cannot be written to its end (is the disk full?)");
 }
@@ -91,11 +92,10 @@ void write_as(const char* type, const DensityGrid& grid, const std::filesystem::
 }  // namespace
 
 void write_nrrd(const std::filesystem::path& path, const DensityGrid& grid) {
-  const std::span<const float> densities = grid.densities();
   write_file_atomically(path, [&](const std::filesystem::path& beside) {
-    if (holds_exactly<std::int16_t>(densities)) {
+    if (holds_exactly<std::int16_t>(grid)) {
       write_as<std::int16_t>("short", grid, path, beside);
-    } else if (holds_exactly<std::uint16_t>(densities)) {
+    } else if (holds_exactly<std::uint16_t>(grid)) {
       write_as<std::uint16_t>("ushort", grid, path, beside);
     } else {
       write_as<float>("float", grid, path, beside);

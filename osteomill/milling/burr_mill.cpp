@@ -131,7 +131,7 @@ void BurrMill::find(const Volume& volume, const CuttingBall& ball, double max_ah
   share_after(reach_.pieces().size(), pressed_mm3 / contact_mm2 / geometry_.spacing_mm.minCoeff());
   const CutProfile profile = CutProfile::between(static_cast<double>(reach_.floor_density()),
                                                  volume.isovalue(), densities_.reference);
-  voxels_.gather(volume.grid(), reach_, ball, profile, max_ahead_mm);
+  voxels_.gather(reach_, ball, profile, max_ahead_mm);
 }
 
 // A burr deep in its hole has tens of thousands of voxels before it, and takes a thousandth of each in a

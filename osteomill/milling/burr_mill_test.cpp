@@ -37,7 +37,7 @@ Volume half_space(const GridGeometry& geometry, const Vec3& normal = Vec3::UnitZ
 
 double charge_mm3(const DensityGrid& grid, const BoneDensities& bone) {
   double sum = 0;
-  for (const float density : grid.densities()) {
+  for (const float density : every_nth_density(grid, 1)) {
     sum += std::max(0.0, static_cast<double>(density) - bone.surroundings);
   }
   return sum * grid.geometry().voxel_volume_mm3() / (bone.reference - bone.surroundings);
@@ -116,7 +116,7 @@ TEST(BurrMill, RemovesWhatTheForcePaysFor) {
 TEST(BurrMill, CutsEnamelSlowerInProportionToItsDensity) {
   const GridGeometry geometry = cube_of(7, 0.125);
   Volume dentine = half_space(geometry);
-  std::vector<float> denser(dentine.grid().densities().begin(), dentine.grid().densities().end());
+  std::vector<float> denser = every_nth_density(dentine.grid(), 1);
   for (float& density : denser) density *= 1.9f;
   Volume enamel(DensityGrid(geometry, denser), 1.9 * 500);
   BurrMill dentine_mill(geometry, kRadius_mm, kBone, kMilling);
@@ -144,7 +144,7 @@ TEST(BurrMill, NeverStallsOnDenseBoneThatItOnlyTouches) {
   for (const double spacing_mm : {0.125, 0.25}) {
     for (const Vec3& normal : {Vec3(0, 0, 1), Vec3(Vec3::Ones().normalized())}) {
       const Volume bone = half_space(cube_of(6, spacing_mm), normal);
-      std::vector<float> densities(bone.grid().densities().begin(), bone.grid().densities().end());
+      std::vector<float> densities = every_nth_density(bone.grid(), 1);
       for (float& density : densities) density *= 3;
       Volume volume(DensityGrid(bone.geometry(), densities), 500);
       BurrMill mill(volume.geometry(), kRadius_mm, kBone, kMilling);
@@ -235,13 +235,12 @@ TEST(BurrMill, CutsWhereItPresses) {
   for (int n = 0; n < 200; ++n) mill.step(volume, Vec3::Zero(), 1.5 * press, 0.001);
   double lost_there = 0, deepest_drop = 0;
   Vec3 deepest = Vec3::Zero();
-  std::size_t index = 0;
   for (int k = 0; k < geometry.dims[2]; ++k)
     for (int j = 0; j < geometry.dims[1]; ++j)
-      for (int i = 0; i < geometry.dims[0]; ++i, ++index) {
+      for (int i = 0; i < geometry.dims[0]; ++i) {
         const Vec3 at = geometry.world_from_voxel(VoxelIndex{i, j, k});
-        const double drop = static_cast<double>(before.grid().densities()[index]) -
-                            static_cast<double>(volume.grid().densities()[index]);
+        const double drop =
+            static_cast<double>(before.grid()[{i, j, k}]) - static_cast<double>(volume.grid()[{i, j, k}]);
         if (at.dot(press) <= 0) {
           ASSERT_NEAR(drop, 0, 60) << "the edge of the hole, rounded off in its voxels";
         } else {
@@ -322,7 +321,7 @@ TEST(BurrMill, CutsATurnedGridAsItCutsAStraightOne) {
   turned.origin_mm = turned.direction * straight.origin_mm;
   Volume straight_volume = half_space(straight);
   Volume turned_volume(straight_volume.grid(), 500);
-  turned_volume = Volume(DensityGrid(turned, straight_volume.grid().densities()), 500);
+  turned_volume = Volume(DensityGrid(turned, every_nth_density(straight_volume.grid(), 1)), 500);
   BurrMill straight_mill(straight, kRadius_mm, kBone, kMilling);
   BurrMill turned_mill(turned, kRadius_mm, kBone, kMilling);
   double straight_mm3 = 0, turned_mm3 = 0;
@@ -335,9 +334,8 @@ TEST(BurrMill, CutsATurnedGridAsItCutsAStraightOne) {
     turned_mm3 += b.removed_mm3;
   }
   EXPECT_NEAR(turned_mm3, straight_mm3, 1e-3 * straight_mm3);
-  for (std::size_t n = 0; n < straight.voxel_count(); ++n) {
-    ASSERT_NEAR(straight_volume.grid().densities()[n], turned_volume.grid().densities()[n], 2);
-  }
+  for_each(straight.all_voxels(),
+           [&](const VoxelIndex& v) { ASSERT_NEAR(straight_volume.grid()[v], turned_volume.grid()[v], 2); });
 }
 
 TEST(BurrMill, NamesExactlyTheBoxThatChanged) {
@@ -345,15 +343,13 @@ TEST(BurrMill, NamesExactlyTheBoxThatChanged) {
   Volume volume = half_space(geometry);
   BurrMill mill(geometry, kRadius_mm, kBone, kMilling);
   for (int n = 0; n < 200; ++n) {
-    const CopyOnWriteFloats before = volume.grid().densities();
+    const DensityGrid before = volume.grid();
     const VoxelBox said =
         mill.step(volume, Vec3(0.01 * n, 0.3, 1.4 - 0.005 * n), down(1), 0.001).change.voxels;
     VoxelBox changed;
-    std::size_t index = 0;
-    for (int k = 0; k < 30; ++k)
-      for (int j = 0; j < 30; ++j)
-        for (int i = 0; i < 30; ++i, ++index)
-          if (before[index] != volume.grid().densities()[index]) changed.include({i, j, k});
+    for_each(geometry.all_voxels(), [&](const VoxelIndex& v) {
+      if (before[v] != volume.grid()[v]) changed.include(v);
+    });
     ASSERT_EQ(said.empty(), changed.empty());
     if (changed.empty()) continue;
     ASSERT_EQ(said.first, changed.first);

@@ -143,8 +143,7 @@ bool BurrReach::look_at(const Volume& volume, int bi, int bj, int bk) {
   bool holds = false;
   for (int k = 0; k < end_k; ++k) {
     for (int j = 0; j < end_j; ++j) {
-      const float* row =
-          volume.grid().densities().data() + volume.grid().linear_index({i, kSide * bj + j, kSide * bk + k});
+      const float* row = volume.grid().address_of({i, kSide * bj + j, kSide * bk + k});
       unsigned byte = 0;
       for (int n = 0; n < columns; ++n) byte |= static_cast<unsigned>(row[n] > floor_density_) << n;
       bits[static_cast<std::size_t>(j + kSide * k)] = static_cast<std::uint8_t>(byte);
@@ -178,7 +177,7 @@ void BurrReach::find_pieces(const DensityGrid& grid, std::size_t word, std::uint
         if (inside == 0) continue;
         if (pieces_.size() == max_pieces_) return;
         const VoxelIndex first{kSide * bi, j, k};
-        pieces_.push_back({grid.linear_index(first), first, static_cast<std::uint8_t>(inside)});
+        pieces_.push_back({grid.address_of(first), first, static_cast<std::uint8_t>(inside)});
         // Each row lies in a cache line of its own; by the time that all are known, the first have come.
         grid.prefetch(first);
       }

@@ -29,10 +29,10 @@ class BurrReach {
     unsigned count = 1;
     unsigned turn = 0;
   };
-  /// The voxels of a row within a brick: a bit each, from `first` on, for those that lie in the ball and may
-  /// be denser than the floor.
+  /// The voxels of a row within a brick, from `first` on, whose density is the first of `densities`: a bit
+  /// for each that lies in the ball and may be denser than the floor.
   struct Piece {
-    std::size_t first_voxel;
+    const float* densities;
     VoxelIndex first;
     std::uint8_t bits;
   };

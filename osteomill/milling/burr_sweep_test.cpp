@@ -197,7 +197,7 @@ TEST(BurrSweep, CuttingAgainChangesNothing) {
   const CutProfile profile = CutProfile::between(0, 500, 1000);
   const auto cut = [&] {
     reach.find(volume, ball.centre_mm, 2.2);
-    voxels.gather(volume.grid(), reach, ball, profile, 0.1);
+    voxels.gather(reach, ball, profile, 0.1);
     const double dropped = voxels.find_lowered(0.1, {});
     for (const CutVoxels::Row& row : voxels.rows()) {
       volume.lower_row(row.j, row.k, voxels.columns() + row.begin, voxels.after() + row.begin,

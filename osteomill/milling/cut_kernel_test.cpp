@@ -43,7 +43,7 @@ Gathered gathered(const Volume& bone, double max_ahead_mm) {
              CutVoxels(geometry, geometry.voxel_count(), 3 * 27 * 22 * 4),
              {middle, Vec3(0.5, -0.3, 0.8).normalized(), kRadius_mm}};
   g.reach.find(bone, middle, 2.3);
-  g.voxels.gather(bone.grid(), g.reach, g.ball, kProfile, max_ahead_mm);
+  g.voxels.gather(g.reach, g.ball, kProfile, max_ahead_mm);
   return g;
 }
 

@@ -91,26 +91,18 @@ void CutVoxels::measure(const CuttingBall& ball, double reach_mm) {
   }
 }
 
-void CutVoxels::gather(const DensityGrid& grid, BurrReach& reach, const CuttingBall& ball,
-                       const CutProfile& profile, double max_ahead_mm) {
+void CutVoxels::gather(BurrReach& reach, const CuttingBall& ball, const CutProfile& profile,
+                       double max_ahead_mm) {
   radius_mm_ = static_cast<float>(ball.radius_mm);
   profile_ = profile;
   rows_.clear();
   lists_.size = 0;
   measure(ball, ball.radius_mm + max_ahead_mm + CutProfile::kReach_voxels * geometry_.spacing_mm.maxCoeff());
   const CutKernelBall kernel = kernel_ball(ball, geometry_.spacing_mm);
-  const CopyOnWriteFloats& densities = grid.densities();
   for (const BurrReach::Piece& piece : reach.pieces()) {
     const auto& [i, j, k] = piece.first;
-    const float* row = densities.data() + piece.first_voxel;
-    // The grid's last row may end before the piece's last lane.
-    float last_row[kLanes] = {};
-    if (piece.first_voxel + kLanes > densities.size()) {
-      std::copy(row, densities.data() + densities.size(), last_row);
-      row = last_row;
-    }
     const std::size_t begin = lists_.size;
-    const unsigned denser = gather_piece({row, &from_centre_mm_[0][static_cast<std::size_t>(i)],
+    const unsigned denser = gather_piece({piece.densities, &from_centre_mm_[0][static_cast<std::size_t>(i)],
                                           from_centre_mm_[1][static_cast<std::size_t>(j)],
                                           from_centre_mm_[2][static_cast<std::size_t>(k)], i, piece.bits},
                                          kernel, profile, static_cast<float>(max_ahead_mm), lists_);

@@ -62,8 +62,7 @@ class CutVoxels {
 
   /// From the rows found about the ball: what it lowers with the leading half up to `max_ahead_mm` ahead. Has
   /// `reach` forget what holds nothing.
-  void gather(const DensityGrid& grid, BurrReach& reach, const CuttingBall& ball, const CutProfile& profile,
-              double max_ahead_mm);
+  void gather(BurrReach& reach, const CuttingBall& ball, const CutProfile& profile, double max_ahead_mm);
 
   /// What cutting to the ball's surface takes, as sums of densities.
   struct Cost {

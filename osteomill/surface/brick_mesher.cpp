@@ -103,7 +103,7 @@ void BrickMesher::load_row(const VoxelIndex& first, float* row) const {
     std::fill_n(row, kBlock, outside_);
     return;
   }
-  const float* stored = view_.grid.densities().data() + view_.grid.linear_index({0, first.j, first.k});
+  const float* stored = view_.grid.row(first.j, first.k).data();
   if (first.i >= 0 && first.i + kBlock <= dims[0]) {
     std::copy_n(stored + first.i, kBlock, row);
     return;

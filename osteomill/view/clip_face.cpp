@@ -30,9 +30,7 @@ std::vector<Vec3> crossings(const GridGeometry& geometry, const ClipPlane& plane
 }  // namespace
 
 WindowLevel window_level_of(const DensityGrid& grid, double surroundings_density) {
-  std::vector<float> sample;
-  constexpr std::size_t kEvery = 37;
-  for (std::size_t n = 0; n < grid.densities().size(); n += kEvery) sample.push_back(grid.densities()[n]);
+  std::vector<float> sample = every_nth_density(grid, 37);
   const auto high =
       sample.begin() + static_cast<std::ptrdiff_t>(0.998 * static_cast<double>(sample.size() - 1));
   std::nth_element(sample.begin(), high, sample.end());

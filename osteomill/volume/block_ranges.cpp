@@ -43,7 +43,7 @@ BlockRanges::Range BlockRanges::range_of(const DensityGrid& grid, const VoxelInd
   Range range{grid[box.first], grid[box.first]};
   for (int k = box.first.k; k <= box.last.k; ++k) {
     for (int j = box.first.j; j <= box.last.j; ++j) {
-      const float* row = grid.densities().data() + grid.linear_index({box.first.i, j, k});
+      const float* row = grid.address_of({box.first.i, j, k});
       const auto [min, max] = std::minmax_element(row, row + (box.last.i - box.first.i + 1));
       range.min = std::min(range.min, *min);
       range.max = std::max(range.max, *max);

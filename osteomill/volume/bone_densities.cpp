@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "osteomill/numbers/work_progress.h"
@@ -85,11 +86,11 @@ std::optional<double> median_around(const Volume& volume) {
 
 double surroundings_without_a_surface(const Volume& volume) {
   const std::optional<double> others = median([&](const auto& take) {
-    const auto& densities = volume.grid().densities();
-    for (std::size_t n = 0; n < densities.size(); ++n) {
-      if (n % (1 << 22) == 0) WorkProgress::done(n, densities.size());
-      if (static_cast<double>(densities[n]) < volume.isovalue()) take(densities[n]);
-    }
+    for_each_row(volume.grid(), [&](std::span<const float> row) {
+      for (const float density : row) {
+        if (static_cast<double>(density) < volume.isovalue()) take(density);
+      }
+    });
   });
   return others.value_or(volume.isovalue() - std::max(1.0, std::abs(volume.isovalue())));
 }

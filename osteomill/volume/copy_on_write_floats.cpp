@@ -52,10 +52,11 @@ void give_back(float* from, float* to) {
 // A file that lies in memory alone and has no name, never written once it is filled.
 class CopyOnWriteFloats::Original {
  public:
-  explicit Original(std::vector<float> values) : file_(memfd_create("osteomill", MFD_CLOEXEC)) {
+  Original(std::vector<float> values, const RowLayout& layout)
+      : file_(memfd_create("osteomill", MFD_CLOEXEC)) {
     if (file_ < 0) throw std::bad_alloc();
     try {
-      fill(values);
+      fill(values, layout);
     } catch (...) {
       close(file_);
       throw;
@@ -68,24 +69,42 @@ class CopyOnWriteFloats::Original {
   int file() const { return file_; }
 
  private:
-  void fill(std::vector<float>& values) const {
-    if (ftruncate(file_, static_cast<off_t>(mapped_bytes(values.size()))) != 0) say_why_not();
-    constexpr std::size_t kAtOnce = 1 << 22;
-    for (std::size_t n = 0; n < values.size(); n += kAtOnce) {
-      const std::size_t count = std::min(kAtOnce, values.size() - n);
-      float* from = values.data() + n;
-      write_all(file_, reinterpret_cast<const char*>(from), count * sizeof(float), n * sizeof(float));
-      give_back(from, from + count);
-      WorkProgress::done(n + count, values.size());
+  void fill(std::vector<float>& values, const RowLayout& layout) const {
+    if (ftruncate(file_, static_cast<off_t>(mapped_bytes(layout.size()))) != 0) say_why_not();
+    std::vector<float> slice(layout.slice_stride);
+    float* from = values.data();
+    for (std::size_t k = 0; k < layout.slices; ++k) {
+      for (std::size_t j = 0; j < layout.slice_rows; ++j) {
+        std::copy_n(from + j * layout.row_length, layout.row_length, slice.data() + j * layout.row_stride);
+      }
+      write_all(file_, reinterpret_cast<const char*>(slice.data()), slice.size() * sizeof(float),
+                k * slice.size() * sizeof(float));
+      float* const next = from + layout.slice_rows * layout.row_length;
+      give_back(from, next);
+      from = next;
+      WorkProgress::done(k + 1, layout.slices);
     }
   }
 
   int file_;
 };
 
-CopyOnWriteFloats::CopyOnWriteFloats(std::vector<float> values) : size_(values.size()) {
+RowLayout RowLayout::apart(std::size_t row_length, std::size_t slice_rows, std::size_t slices) {
+  constexpr std::size_t kLineFloats = 16;
+  // Of a first-level cache of 32 KiB; an odd count of lines goes through all of them.
+  constexpr std::size_t kSets = 64;
+  // So many rows of a slice have sets to themselves before the next slice's begin.
+  constexpr std::size_t kRowsTogether = 12;
+  const std::size_t row_lines = (row_length + kLineFloats - 1) / kLineFloats | 1;
+  const std::size_t least = slice_rows * row_lines, wanted = kRowsTogether * row_lines;
+  const std::size_t slice_lines = least + (wanted - least) % kSets;
+  return {row_length, row_lines * kLineFloats, slice_rows, slice_lines * kLineFloats, slices};
+}
+
+CopyOnWriteFloats::CopyOnWriteFloats(std::vector<float> values, const RowLayout& layout)
+    : size_(layout.size()) {
   if (values.empty()) return;
-  original_ = std::make_shared<const Original>(std::move(values));
+  original_ = std::make_shared<const Original>(std::move(values), layout);
   written_.assign(mapped_bytes(size_) / kPageBytes, 0);
   map();
 }
@@ -128,7 +147,7 @@ void CopyOnWriteFloats::swap(CopyOnWriteFloats& other) noexcept {
 }
 
 bool CopyOnWriteFloats::operator==(const CopyOnWriteFloats& other) const {
-  return std::equal(begin(), end(), other.begin(), other.end());
+  return std::equal(values_, values_ + size_, other.values_, other.values_ + other.size_);
 }
 
 void CopyOnWriteFloats::prepare(std::size_t first, std::size_t last) {

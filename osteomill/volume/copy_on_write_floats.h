@@ -8,6 +8,26 @@
 
 namespace osteomill {
 
+/// Where rows of floats lie in one array: rows of `row_length` values begin `row_stride` apart, slices of
+/// `slice_rows` rows `slice_stride` apart; what is between them is 0 and nobody's.
+struct RowLayout {
+  std::size_t row_length = 0;
+  std::size_t row_stride = 0;
+  std::size_t slice_rows = 0;
+  std::size_t slice_stride = 0;
+  std::size_t slices = 0;
+
+  /// Every row begins with a cache line, and rows that are neighbours, along j or along k, come to different
+  /// sets of the caches: those of a scan 512 voxels wide would share so few that a burr's reach, a tenth of a
+  /// cache's size, throws itself out again and again.
+  static RowLayout apart(std::size_t row_length, std::size_t slice_rows, std::size_t slices);
+  /// One behind the other.
+  static RowLayout dense(std::size_t count) { return {count, count, 1, count, 1}; }
+
+  std::size_t values() const { return row_length * slice_rows * slices; }
+  std::size_t size() const { return slice_stride * slices; }
+};
+
 /// An array of floats whose copies share its memory until they differ: a copy costs the pages (4 KiB) that
 /// were written in it or in what it was copied from. Reading costs what reading any array does.
 ///
@@ -15,14 +35,10 @@ namespace osteomill {
 /// thread that cannot wait has `prepare` called for it. One thread writes; no one copies meanwhile.
 class CopyOnWriteFloats {
  public:
-  using value_type = float;
-  using const_iterator = const float*;
-  using iterator = const_iterator;
-
   CopyOnWriteFloats() = default;
-  /// Gives the memory of `values` back while they are taken over, so that both never stand whole. Throws
-  /// std::bad_alloc, and WorkStopped as all long work.
-  CopyOnWriteFloats(std::vector<float> values);
+  /// Row by row from `values`, which has `layout.values()` of them. Gives their memory back while they are
+  /// taken over, so that both never stand whole. Throws std::bad_alloc, and WorkStopped as all long work.
+  CopyOnWriteFloats(std::vector<float> values, const RowLayout& layout);
   CopyOnWriteFloats(const CopyOnWriteFloats& other);
   CopyOnWriteFloats(CopyOnWriteFloats&& other) noexcept { swap(other); }
   CopyOnWriteFloats& operator=(CopyOnWriteFloats other) noexcept {
@@ -35,9 +51,6 @@ class CopyOnWriteFloats {
   bool empty() const { return size_ == 0; }
   /// 64 bytes behind the last may be read too.
   const float* data() const { return values_; }
-  const float* begin() const { return values_; }
-  const float* end() const { return values_ + size_; }
-  float front() const { return *values_; }
   float operator[](std::size_t n) const { return values_[n]; }
   bool operator==(const CopyOnWriteFloats& other) const;
 

@@ -2,7 +2,9 @@
 
 #include <cstddef>
 #include <numeric>
+#include <set>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "tests/own_memory.h"
@@ -21,17 +23,54 @@ std::vector<float> ascending(std::size_t count) {
   return values;
 }
 
+CopyOnWriteFloats dense(std::vector<float> values) {
+  const RowLayout layout = RowLayout::dense(values.size());
+  return CopyOnWriteFloats(std::move(values), layout);
+}
+
 TEST(CopyOnWriteFloats, HoldsWhatItWasGiven) {
   for (const std::size_t count : {1, 15, 1023, 1024, 1025, 5'000'000}) {
     const std::vector<float> values = ascending(count);
-    const CopyOnWriteFloats floats(values);
-    EXPECT_TRUE(std::equal(floats.begin(), floats.end(), values.begin(), values.end())) << count;
+    const CopyOnWriteFloats floats = dense(values);
+    EXPECT_TRUE(std::equal(values.begin(), values.end(), floats.data())) << count;
   }
-  EXPECT_TRUE(CopyOnWriteFloats(std::vector<float>()).empty());
+  EXPECT_TRUE(CopyOnWriteFloats({}, RowLayout::dense(0)).empty());
+}
+
+TEST(RowLayout, GivesNeighbouringRowsSetsOfTheCacheToThemselvesWhateverTheScan) {
+  constexpr std::size_t kLine = 16, kSets = 64;
+  for (const std::size_t width : {1u, 100u, 192u, 256u, 511u, 512u, 1024u}) {
+    const RowLayout layout = RowLayout::apart(width, width, 20);
+    EXPECT_GE(layout.row_stride, width);
+    EXPECT_LE(layout.row_stride, width + 2 * kLine);
+    EXPECT_GE(layout.slice_stride, width * layout.row_stride);
+    EXPECT_LT(layout.slice_stride, width * layout.row_stride + kSets * kLine);
+    std::multiset<std::size_t> sets;
+    for (std::size_t k = 0; k < 12; ++k) {
+      for (std::size_t j = 0; j < 12; ++j) {
+        const std::size_t at = j * layout.row_stride + k * layout.slice_stride;
+        EXPECT_EQ(at % kLine, 0u);
+        sets.insert(at / kLine % kSets);
+      }
+    }
+    for (const std::size_t set : sets) EXPECT_LE(sets.count(set), 3u) << width;
+  }
+}
+
+TEST(CopyOnWriteFloats, TakesRowsApartAndLeavesZerosBetween) {
+  const std::vector<float> values = ascending(2 * 3 * 100);
+  const RowLayout layout = RowLayout::apart(100, 3, 2);
+  const CopyOnWriteFloats floats(values, layout);
+  std::vector<float> expected(layout.size());
+  for (std::size_t row = 0; row < 6; ++row) {
+    const std::size_t at = row / 3 * layout.slice_stride + row % 3 * layout.row_stride;
+    for (std::size_t i = 0; i < 100; ++i) expected[at + i] = values[100 * row + i];
+  }
+  EXPECT_TRUE(std::equal(expected.begin(), expected.end(), floats.data(), floats.data() + floats.size()));
 }
 
 TEST(CopyOnWriteFloats, CopiesDifferInWhatWasWrittenAlone) {
-  CopyOnWriteFloats first(ascending(5000));
+  CopyOnWriteFloats first = dense(ascending(5000));
   first.set(4096, -1);
   CopyOnWriteFloats second = first;
   first.set(0, -2);
@@ -43,17 +82,17 @@ TEST(CopyOnWriteFloats, CopiesDifferInWhatWasWrittenAlone) {
   EXPECT_EQ(second, [&] {
     auto v = expected;
     v[4999] = -4;
-    return CopyOnWriteFloats(v);
+    return dense(v);
   }());
   EXPECT_EQ(third, [&] {
     auto v = expected;
     v[4999] = -3;
-    return CopyOnWriteFloats(v);
+    return dense(v);
   }());
   EXPECT_EQ(first, [&] {
     auto v = expected;
     v[0] = -2;
-    return CopyOnWriteFloats(v);
+    return dense(v);
   }());
   second = first;
   EXPECT_EQ(second, first);
@@ -62,7 +101,7 @@ TEST(CopyOnWriteFloats, CopiesDifferInWhatWasWrittenAlone) {
 TEST(CopyOnWriteFloats, ACopyOutlivesWhatItWasCopiedFrom) {
   CopyOnWriteFloats copy;
   {
-    CopyOnWriteFloats first(ascending(3000));
+    CopyOnWriteFloats first = dense(ascending(3000));
     first.set(7, 70);
     copy = first;
   }
@@ -71,7 +110,7 @@ TEST(CopyOnWriteFloats, ACopyOutlivesWhatItWasCopiedFrom) {
 }
 
 TEST(CopyOnWriteFloats, PreparingChangesNothingAndSharesNothingWritten) {
-  CopyOnWriteFloats first(ascending(20'000));
+  CopyOnWriteFloats first = dense(ascending(20'000));
   const CopyOnWriteFloats before = first;
   std::thread other([&] { first.prepare(0, 19'999); });
   for (std::size_t n = 0; n < 20'000; n += 3) first.set(n, -1);
@@ -84,7 +123,7 @@ TEST(CopyOnWriteFloats, PreparingChangesNothingAndSharesNothingWritten) {
 
 // 40 MB; what the allocator itself keeps is well below a tenth of it.
 TEST(CopyOnWriteFloats, CopiesTakeTheMemoryOfWhatWasWritten) {
-  const CopyOnWriteFloats first(ascending(kCount));
+  const CopyOnWriteFloats first = dense(ascending(kCount));
   const double before_MiB = own_memory_MiB();
   std::vector<CopyOnWriteFloats> copies(10, first);
   for (CopyOnWriteFloats& copy : copies) {

@@ -26,8 +26,7 @@ DensityBlock::DensityBlock(const DensityGrid& grid, const VoxelIndex& first_) no
   for (int k = first.k; k <= inside.last.k; ++k) {
     for (int j = first.j; j <= inside.last.j; ++j) {
       const VoxelIndex row{first.i, j, k};
-      std::copy_n(grid.densities().data() + grid.linear_index(row), inside.last.i - first.i + 1,
-                  &densities[place_in(*this, row)]);
+      std::copy_n(grid.address_of(row), inside.last.i - first.i + 1, &densities[place_in(*this, row)]);
     }
   }
 }
@@ -41,7 +40,7 @@ VoxelBox swap_densities(Volume& bone, DensityBlock& brick) {
   for (int k = inside.first.k; k <= inside.last.k; ++k) {
     for (int j = inside.first.j; j <= inside.last.j; ++j) {
       float* kept = &brick.densities[place_in(brick, {inside.first.i, j, k})];
-      const float* before = bone.grid().densities().data() + bone.grid().linear_index({inside.first.i, j, k});
+      const float* before = bone.grid().address_of({inside.first.i, j, k});
       const auto length = static_cast<std::size_t>(inside.last.i - inside.first.i + 1);
       if (std::memcmp(kept, before, length * sizeof(float)) == 0) continue;
       std::size_t count = 0;

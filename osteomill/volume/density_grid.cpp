@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <span>
 #include <stdexcept>
 #include <utility>
 
@@ -15,25 +16,30 @@ namespace {
 // Of what a burr at 20 mm/s reaches in 25 ms.
 constexpr double kAhead_mm = 0.5;
 
-float least_of(const CopyOnWriteFloats& densities) {
-  constexpr std::size_t kAtOnce = 1 << 22;
-  float least = densities.front();
-  for (std::size_t first = 0; first < densities.size(); first += kAtOnce) {
-    const std::size_t last = std::min(first + kAtOnce, densities.size());
-    least = std::min(least, *std::min_element(densities.begin() + first, densities.begin() + last));
-    WorkProgress::done(1);
+RowLayout layout_of(const GridGeometry& geometry) {
+  const auto& [i, j, k] = geometry.dims;
+  return RowLayout::apart(static_cast<std::size_t>(i), static_cast<std::size_t>(j),
+                          static_cast<std::size_t>(k));
+}
+
+// What the grid is made of, and there is something.
+std::vector<float> checked(const GridGeometry& geometry, std::vector<float> densities) {
+  if (densities.empty() || densities.size() != geometry.voxel_count()) {
+    throw std::invalid_argument("DensityGrid: as many densities as voxels, and at least one");
   }
-  return least;
+  return densities;
 }
 
 }  // namespace
 
-DensityGrid::DensityGrid(const GridGeometry& geometry, CopyOnWriteFloats densities)
-    : geometry_(geometry), densities_(std::move(densities)) {
-  if (densities_.empty() || densities_.size() != geometry_.voxel_count()) {
-    throw std::invalid_argument("DensityGrid: as many densities as voxels, and at least one");
-  }
-  outside_density_ = least_of(densities_);
+DensityGrid::DensityGrid(const GridGeometry& geometry, std::vector<float> densities)
+    : geometry_(geometry),
+      layout_(layout_of(geometry)),
+      densities_(checked(geometry, std::move(densities)), layout_),
+      outside_density_(*densities_.data()) {
+  for_each_row(*this, [this](std::span<const float> row) {
+    outside_density_ = std::min(outside_density_, *std::min_element(row.begin(), row.end()));
+  });
 }
 
 void DensityGrid::prepare_about(const VoxelBox& changed) {
@@ -54,13 +60,26 @@ void DensityGrid::prepare_about(const VoxelBox& changed) {
   prepared_ = grown(2 * kAhead_mm);
   const auto& [first, last] = prepared_;
   for (int k = first.k; k <= last.k; ++k) {
-    densities_.prepare(linear_index({first.i, first.j, k}), linear_index({last.i, last.j, k}));
+    densities_.prepare(place(first.i, first.j, k), place(last.i, last.j, k));
   }
+}
+
+std::vector<float> every_nth_density(const DensityGrid& grid, std::size_t every) {
+  const auto& dims = grid.geometry().dims;
+  std::vector<float> densities;
+  densities.reserve(cell_count(dims) / every + 1);
+  for (std::size_t n = 0; n < cell_count(dims); n += every) {
+    const auto& [i, j, k] = cell_at(dims, n);
+    densities.push_back(grid[{i, j, k}]);
+  }
+  return densities;
 }
 
 std::uint64_t fingerprint_of(const DensityGrid& grid) {
   WordHash hash;
-  for (const float density : grid.densities()) hash.add(std::bit_cast<std::uint32_t>(density));
+  for_each_row(grid, [&](std::span<const float> row) {
+    for (const float density : row) hash.add(std::bit_cast<std::uint32_t>(density));
+  });
   return hash.value();
 }
 

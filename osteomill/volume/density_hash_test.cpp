@@ -21,8 +21,10 @@ Volume small_ball() {
 
 std::uint64_t difference_of_all(const Volume& bone, const Volume& scan) {
   std::uint64_t sum = 0;
-  for (std::size_t n = 0; n < bone.geometry().voxel_count(); ++n)
-    sum += density_hash(n, bone.grid().densities()[n]) - density_hash(n, scan.grid().densities()[n]);
+  for_each(bone.geometry().all_voxels(), [&](const VoxelIndex& v) {
+    const std::size_t n = bone.grid().linear_index(v);
+    sum += density_hash(n, bone.grid()[v]) - density_hash(n, scan.grid()[v]);
+  });
   return sum;
 }
 

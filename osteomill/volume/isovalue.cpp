@@ -161,16 +161,13 @@ struct Range {
   bool holds(double isovalue) const { return isovalue < max && isovalue >= min; }
 };
 
-Range range_of(const CopyOnWriteFloats& densities) {
-  constexpr std::size_t kAtOnce = 1 << 22;
-  float min = densities.front(), max = min;
-  for (std::size_t first = 0; first < densities.size(); first += kAtOnce) {
-    const std::size_t last = std::min(first + kAtOnce, densities.size());
-    const auto [low, high] = std::minmax_element(densities.begin() + first, densities.begin() + last);
+Range range_of(const DensityGrid& grid) {
+  float min = grid[{0, 0, 0}], max = min;
+  for_each_row(grid, [&](std::span<const float> row) {
+    const auto [low, high] = std::minmax_element(row.begin(), row.end());
     min = std::min(min, *low);
     max = std::max(max, *high);
-    WorkProgress::done(first, 2 * densities.size());
-  }
+  });
   return {static_cast<double>(min), static_cast<double>(max)};
 }
 
@@ -318,11 +315,11 @@ SuggestedIsovalue suggest_isovalue(const DensityGrid& grid, bool in_hounsfield_u
 }
 
 bool is_within(const DensityGrid& grid, double isovalue) {
-  return range_of(grid.densities()).holds(isovalue);
+  return range_of(grid).holds(isovalue);
 }
 
 std::vector<std::string> isovalue_warnings(const DensityGrid& grid, double isovalue) {
-  if (const Range range = range_of(grid.densities()); !range.holds(isovalue)) {
+  if (const Range range = range_of(grid); !range.holds(isovalue)) {
     return {fmt::format("the isovalue {:g} lies outside its values, {:g} to {:g}: {}", isovalue, range.min,
                         range.max, isovalue < range.min ? "all of it is bone" : "there is no bone")};
   }
@@ -341,9 +338,8 @@ std::vector<std::string> isovalue_warnings(const DensityGrid& grid, double isova
 DensityHistogram histogram_of(const DensityGrid& grid) {
   // An odd number, so that not all come from the same columns.
   constexpr std::size_t kEnough = 1'000'000;
-  const std::size_t every = std::max<std::size_t>(7, grid.densities().size() / kEnough | 1);
-  std::vector<float> sample;
-  for (std::size_t n = 0; n < grid.densities().size(); n += every) sample.push_back(grid.densities()[n]);
+  std::vector<float> sample =
+      every_nth_density(grid, std::max<std::size_t>(7, grid.geometry().voxel_count() / kEnough | 1));
   std::sort(sample.begin(), sample.end());
   const std::size_t rare = sample.size() / 2000;
   DensityHistogram histogram;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <limits>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -22,12 +23,20 @@ constexpr int kGreatestLabel = std::numeric_limits<std::int16_t>::max();
 // the commonest.
 std::vector<int> ranks_of(const DensityGrid& grid) {
   std::vector<std::size_t> counts(kGreatestLabel + 1);
-  std::size_t different = 0, n = 0;
-  for (const float value : grid.densities()) {
-    if (n++ % (1 << 20) == 0) WorkProgress::done(0);
-    if (!(value >= 0 && value <= kGreatestLabel && value == std::floor(value))) return {};
-    different += counts[static_cast<std::size_t>(value)]++ == 0 ? 1 : 0;
-    if (different > LabelMap::kMaxLabels + 1) return {};
+  std::size_t different = 0;
+  const auto count_row = [&](std::span<const float> row) {
+    for (const float value : row) {
+      if (!(value >= 0 && value <= kGreatestLabel && value == std::floor(value))) return false;
+      different += counts[static_cast<std::size_t>(value)]++ == 0 ? 1 : 0;
+      if (different > LabelMap::kMaxLabels + 1) return false;
+    }
+    return true;
+  };
+  for (int k = 0; k < grid.geometry().dims[2]; ++k) {
+    WorkProgress::done(0);
+    for (int j = 0; j < grid.geometry().dims[1]; ++j) {
+      if (!count_row(grid.row(j, k))) return {};
+    }
   }
   if (different < 2 || counts[0] < *std::max_element(counts.begin(), counts.end())) return {};
   std::vector<int> ranks(counts.size());
@@ -45,17 +54,16 @@ bool looks_like_labels(const DensityGrid& grid) {
   const std::vector<int> ranks = ranks_of(grid);
   if (ranks.empty()) return false;
   const auto& dims = grid.geometry().dims;
-  const std::array<std::ptrdiff_t, 3> paces{1, dims[0], static_cast<std::ptrdiff_t>(dims[0]) * dims[1]};
+  const std::array<std::ptrdiff_t, 3> paces{1, grid.row_stride(), grid.slice_stride()};
   struct Count {
     std::size_t voxels = 0;
     std::size_t between = 0;
   };
   std::vector<Count> counts(static_cast<std::size_t>(*std::max_element(ranks.begin(), ranks.end())) + 1);
   std::size_t edges = 0, far = 0;
-  const float* label = grid.densities().data();
   const auto rank_at = [&](const float* at) { return ranks[static_cast<std::size_t>(*at)]; };
   for_each_with_progress(grid.geometry().all_voxels(), [&](const VoxelIndex& voxel) {
-    const float* const here = label++;
+    const float* const here = grid.address_of(voxel);
     const int rank = rank_at(here);
     if (rank == 0) return;
     const std::array<int, 3> v{voxel.i, voxel.j, voxel.k};
@@ -85,10 +93,12 @@ bool looks_like_labels(const DensityGrid& grid) {
 
 double isovalue_of_labels(const DensityGrid& grid) {
   float lowest = std::numeric_limits<float>::max(), next = lowest;
-  for (const float label : grid.densities()) {
-    if (label < lowest) next = std::exchange(lowest, label);
-    if (label > lowest && label < next) next = label;
-  }
+  for_each_row(grid, [&](std::span<const float> row) {
+    for (const float label : row) {
+      if (label < lowest) next = std::exchange(lowest, label);
+      if (label > lowest && label < next) next = label;
+    }
+  });
   return 0.5 * (static_cast<double>(lowest) +
                 static_cast<double>(next < std::numeric_limits<float>::max() ? next : lowest));
 }
@@ -97,10 +107,9 @@ DensityGrid bone_of_labels(const DensityGrid& labels, double isovalue) {
   std::vector<float> densities;
   densities.reserve(labels.geometry().voxel_count());
   const auto bone = static_cast<float>(isovalue + 0.5), other = static_cast<float>(isovalue - 0.5);
-  for (const float label : labels.densities()) {
-    if (densities.size() % (1 << 20) == 0) WorkProgress::done(0);
-    densities.push_back(static_cast<double>(label) > isovalue ? bone : other);
-  }
+  for_each_row(labels, [&](std::span<const float> row) {
+    for (const float label : row) densities.push_back(static_cast<double>(label) > isovalue ? bone : other);
+  });
   return DensityGrid(labels.geometry(), std::move(densities));
 }
 

@@ -79,7 +79,7 @@ Block voxels_around(const DensityGrid& grid, const VoxelIndex& cell) {
     for (int j = 0; j < 4; ++j) {
       const VoxelIndex row{first.i, first.j + j, first.k + k};
       if (interior) {
-        const float* density = grid.densities().data() + grid.linear_index(row);
+        const float* density = grid.address_of(row);
         for (int i = 0; i < 4; ++i) block[n++] = density[i];
       } else {
         for (int i = 0; i < 4; ++i) block[n++] = grid.at_or_outside({row.i + i, row.j, row.k});
@@ -123,10 +123,10 @@ double density_at_voxel(const DensityGrid& grid, const Vec3& voxel) {
   if (x >= 0 && y >= 0 && z >= 0 && x < dims[0] - 1 && y < dims[1] - 1 && z < dims[2] - 1) {
     // Nearly always: the whole cell lies in the grid.
     const VoxelIndex c{static_cast<int>(x), static_cast<int>(y), static_cast<int>(z)};
-    const float* row = grid.densities().data() + grid.linear_index(c);
-    const std::size_t nx = static_cast<std::size_t>(dims[0]);
-    const std::size_t nxy = nx * static_cast<std::size_t>(dims[1]);
-    return interpolate_cell(row, row + nx, row + nxy, row + nxy + nx, x - c.i, y - c.j, z - c.k);
+    const float* row = grid.address_of(c);
+    const float* next = row + grid.slice_stride();
+    return interpolate_cell(row, row + grid.row_stride(), next, next + grid.row_stride(), x - c.i, y - c.j,
+                            z - c.k);
   }
   const Cell cell = cell_around(grid, voxel);
   if (cell.far_outside) return grid.outside_density();

@@ -175,10 +175,8 @@ SurfaceLattice::Nodes SurfaceLattice::nodes_of(const VoxelIndex& brick, Block& b
       grid.contains({first.i + last + static_cast<int>(CrossingRow::kNodes), first.j + last, first.k + last});
   const bool at_voxels = steps_per_voxel_ == std::array{1, 1, 1};
   if (at_voxels && inside) {
-    const auto& dims = grid.geometry().dims;
-    const std::ptrdiff_t row = dims[0];
-    return {grid.densities().data() + grid.linear_index({first.i + 1, first.j + 1, first.k + 1}),
-            {1, row, row * dims[1]}};
+    return {grid.address_of({first.i + 1, first.j + 1, first.k + 1}),
+            {1, grid.row_stride(), grid.slice_stride()}};
   }
   if (at_voxels) {
     copy_voxels(first, block);

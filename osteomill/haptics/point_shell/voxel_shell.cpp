@@ -81,7 +81,7 @@ std::uint8_t VoxelShell::bone_byte(int byte, int j, int k) const {
   const int count = std::min(8, geometry_.dims[0] - first);
   const DensityGrid& grid = volume_->grid();
   if (stride_ == 1 && count == 8) {
-    const float* row = grid.densities().data() + grid.linear_index({first, j, k});
+    const float* row = grid.address_of({first, j, k});
     return static_cast<std::uint8_t>(bits_above(row, 8, bone_above_));
   }
   unsigned bits = 0;
