@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cstdint>
 #include <filesystem>
 #include <limits>
 #include <memory>
@@ -22,7 +23,6 @@
 #include "osteomill/experiment/paper.h"
 #include "osteomill/experiment/parallel.h"
 #include "osteomill/experiment/run_trials.h"
-#include "osteomill/experiment/study_design.h"
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/recording/recording.h"
 #include "osteomill/session/milling_setup.h"
@@ -119,12 +119,11 @@ void add_other_grips(std::vector<StudyTrial>& others, StudyTrial trial) {
 
 std::vector<StudyRow> try_other_hands(const CompareOptions& options, const std::vector<StudyTrial>& trials) {
   std::vector<StudyTrial> others;
-  const StudyDesign hands =
-      design_of_seeds(options.trial.milling.seed, static_cast<std::size_t>(options.seeds));
   for (const StudyTrial& trial : trials) add_other_grips(others, trial);
-  for (std::size_t n = 1; n < hands.trial_count(); ++n) {
+  for (int n = 1; n < options.seeds; ++n) {
+    const std::uint64_t seed = options.trial.milling.seed + static_cast<std::uint64_t>(n);
     for (const StudyTrial& trial : trials) {
-      others.push_back({with_seed(trial.plan, seed_of(hands.trial(n))), trial.algorithm});
+      others.push_back({with_seed(trial.plan, seed), trial.algorithm});
       add_other_grips(others, others.back());
     }
   }

@@ -117,8 +117,8 @@ void status(const StudyFolder& folder) {
   const StudyRecord& record = folder.record;
   const StudyStatus now = study_status(folder.path, record, folder.study.design.test);
   fmt::print("{} of {} trials are done ({:.3g} %), {} of {} slices\n", now.trials_done, record.trials,
-             100 * static_cast<double>(now.trials_done) / static_cast<double>(record.trials),
-             record.slices() - now.missing.size(), record.slices());
+             100 * static_cast<double>(now.trials_done) / static_cast<double>(record.trials), now.done.size(),
+             record.slices());
   for (const fs::path& file : now.damaged)
     fmt::print("{} cannot be used: cut short, damaged, or of another study\n", file.string());
   if (now.missing.empty()) return;

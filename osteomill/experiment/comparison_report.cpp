@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include "osteomill/experiment/conclusions.h"
-#include "osteomill/experiment/findings_section.h"
 #include "osteomill/experiment/paper.h"
 #include "osteomill/experiment/passivity_section.h"
 #include "osteomill/experiment/study_section.h"

@@ -28,10 +28,6 @@ struct StudyRow {
 /// (Metric::compared).
 std::vector<Metric> key_metrics();
 
-/// Fills in what has no column of its own and follows from the others: in these trials the spindle turns
-/// throughout the milling, and not while holding.
-void complete_metrics(MeasuredRun& run);
-
 /// What a row is compared by: a Metric, or anything else that follows from a run's figures.
 using RunFigure = std::function<double(const RunMetrics&)>;
 

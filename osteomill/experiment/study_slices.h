@@ -69,6 +69,8 @@ std::optional<Slice> read_slice(const std::filesystem::path& folder, const Study
 
 /// How far a study is, by the files of its folder.
 struct StudyStatus {
+  /// By their numbers, all slices.
+  std::vector<std::size_t> done;
   std::vector<std::size_t> missing;
   std::size_t trials_done = 0;
   double cpu_s = 0;
