@@ -76,7 +76,7 @@ std::optional<StudyRow> read_row(const std::string& line, const std::vector<Stud
   return row;
 }
 
-// But for times, which are the machine's.
+// Times are not compared: they are the machine's.
 bool same_figures(const MeasuredRun& a, const MeasuredRun& b) {
   return std::all_of(all_metrics().begin(), all_metrics().end(), [&](const Metric& metric) {
     const double first = metric(a.metrics), second = metric(b.metrics);

@@ -18,9 +18,9 @@ namespace osteomill {
 struct StudyRow {
   std::uint64_t seed = 0;
   HandSettings hand;
-  /// Its recording is not kept.
+  /// `recording` is null: no recording is kept.
   MeasuredRun run;
-  /// Of trials beside the study's, in other grips of its hands (TrialPlan::grip).
+  /// How firmly the hand grips (TrialPlan::grip): 1 in the study itself, else a trial beside it.
   double grip = 1;
 };
 

@@ -12,8 +12,8 @@
 
 namespace osteomill {
 
-/// What a study's folder is of, as its file study.h5 says; its trials lie there in slices, a file each, and
-/// what is done is what such files hold.
+/// Which study a folder is of: the content of its file study.h5. The study's trials are run in slices, trials
+/// that follow each other, and a slice is done when its file lies in the folder.
 struct StudyRecord {
   /// Of the study's file and of the program, as bytes.
   std::uint64_t study_hash = 0;
