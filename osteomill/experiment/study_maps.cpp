@@ -196,27 +196,40 @@ std::string panel_name(const StudyMap& map, const StudySettings& settings) {
   return name;
 }
 
+Cells cells_along(double Point::*axis, const std::vector<Point>& points, const Shown& shown) {
+  std::set<double> values;
+  for (const Point& point : points) values.insert(point.*axis);
+  return cells_of(values, !shown.words.empty());
+}
+
+// What stands in the map's panels.
+struct Gathered {
+  Shown x, y, colour;
+  std::vector<std::string> panels = {};
+  std::vector<Point> points = {};
+};
+
+Gathered gather(const StudyDesign& design, const StudyMap& map, const EachRow& each_row) {
+  Gathered all{{design, map.x}, {design, map.y}, {design, map.colour}};
+  const auto parts = parts_of(design.test);
+  each_row([&](const StudySettings& settings, const TrialRow& row) {
+    if (parts[row.part] != (map.part.empty() ? parts.front() : map.part)) return;
+    const Point point{place_in(all.panels, panel_name(map, settings)), all.x.of(settings, row),
+                      all.y.of(settings, row), all.colour.of(settings, row)};
+    if (std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.colour))
+      all.points.push_back(point);
+  });
+  return all;
+}
+
 }  // namespace
 
 std::optional<CaptionedFigure> draw_study_map(const StudyDesign& design, const StudyMap& map,
                                               const EachRow& each_row, const std::string& name,
                                               const std::filesystem::path& folder) {
-  const auto parts = parts_of(design.test);
-  Shown shown_x(design, map.x), shown_y(design, map.y), colour(design, map.colour);
-  std::vector<std::string> panels;
-  std::vector<Point> points;
-  std::set<double> xs, ys;
-  each_row([&](const StudySettings& settings, const TrialRow& row) {
-    if (parts[row.part] != (map.part.empty() ? parts.front() : map.part)) return;
-    const Point point{place_in(panels, panel_name(map, settings)), shown_x.of(settings, row),
-                      shown_y.of(settings, row), colour.of(settings, row)};
-    if (!std::isfinite(point.x) || !std::isfinite(point.y) || !std::isfinite(point.colour)) return;
-    points.push_back(point);
-    xs.insert(point.x);
-    ys.insert(point.y);
-  });
+  const auto [shown_x, shown_y, colour, panels, points] = gather(design, map, each_row);
   if (points.empty()) return std::nullopt;
-  const Cells x = cells_of(xs, !shown_x.words.empty()), y = cells_of(ys, !shown_y.words.empty());
+  const Cells x = cells_along(&Point::x, points, shown_x), y = cells_along(&Point::y, points, shown_y);
   std::map<std::array<std::size_t, 3>, std::vector<double>> cells;
   for (const Point& point : points)
     cells[{point.panel, x.of(point.x), y.of(point.y)}].push_back(point.colour);

@@ -109,6 +109,8 @@ Contact contact_of(const TickRecord& record) {
   return contact;
 }
 
+namespace {
+
 ContactShares contact_shares(std::span<const TickRecord> records) {
   ContactShares shares;
   if (records.empty()) return shares;
@@ -130,6 +132,8 @@ ContactShares contact_shares(std::span<const TickRecord> records) {
   }
   return shares;
 }
+
+}  // namespace
 
 std::string contact_words(const ContactShares& contact) {
   const auto share_of_time = [](double share) {
