@@ -49,7 +49,7 @@ class Wall {
   const WallPress* press_;
 };
 
-// Where the wall carries the bias force, and how steeply its force rises there.
+// Where the wall carries the pressing force, and how steeply its force rises there.
 struct Rest {
   double depth_mm;
   /// Of it, from where the wall first resists: an algorithm may feel the burr's centre and not its surface.

@@ -21,8 +21,8 @@ enum class WallMotion : unsigned char { dies_out, goes_on, gives_way };
 
 struct WallPressResult {
   WallMotion motion = WallMotion::gives_way;
-  /// The slope of the force over the depth about the bias force, pressed slowly: the stiffness that a hand
-  /// feels. 0 where the wall gives way.
+  /// The slope of the force over the depth about the pressing force, pressed slowly: the stiffness that a
+  /// hand feels. 0 where the wall gives way.
   double felt_N_per_mm = 0;
 };
 
@@ -40,8 +40,8 @@ struct WallPressResult {
 /// Throws std::invalid_argument where a setting of the handle is out of range.
 WallPressResult press_on_wall(HapticAlgorithm& algorithm, double burr_radius_mm, const WallPress& press);
 
-/// The first part of it alone: the stiffness that a hand feels about the bias force, of `press` but for its
-/// handle and damping; 0 where the wall gives way.
+/// The first part of it alone: the stiffness that a hand feels about the pressing force, of `press` but for
+/// its handle and damping; 0 where the wall gives way.
 double press_slowly_on_wall(HapticAlgorithm& algorithm, double burr_radius_mm, const WallPress& press);
 
 }  // namespace osteomill
