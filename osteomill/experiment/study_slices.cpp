@@ -38,29 +38,25 @@ void write_hdf5(const fs::path& path, const std::function<void(hid_t)>& write) {
 }
 
 // With a checksum, so that what is damaged is not taken for a result.
-template <typename Value>
-void write_dataset(const fs::path& path, hid_t file, const char* name, hid_t file_type,
-                   const std::vector<hsize_t>& dims, const Value* data) {
+void write_dataset(const fs::path& path, hid_t file, const char* name, hid_t file_type, hid_t memory_type,
+                   const std::vector<hsize_t>& dims, const void* data) {
   const Hdf5Handle layout(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   H5Pset_chunk(layout.get(), static_cast<int>(dims.size()), dims.data());
   H5Pset_fletcher32(layout.get());
   const Hdf5Handle space(H5Screate_simple(static_cast<int>(dims.size()), dims.data(), nullptr), H5Sclose);
   const Hdf5Handle dataset(
       H5Dcreate2(file, name, file_type, space.get(), H5P_DEFAULT, layout.get(), H5P_DEFAULT), H5Dclose);
-  if (!dataset.valid() ||
-      H5Dwrite(dataset.get(), memory_type<Value>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0)
+  if (!dataset.valid() || H5Dwrite(dataset.get(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0)
     throw InputError(path.string(), fmt::format("'{}' cannot be written (is the disk full?)", name));
 }
 
 // False where it is not there in this length, or damaged.
-template <typename Values>
-bool read_dataset(hid_t file, const char* name, Values& values) {
+bool read_dataset(hid_t file, const char* name, hid_t memory_type, std::size_t count, void* data) {
   const Hdf5Handle dataset(H5Dopen2(file, name, H5P_DEFAULT), H5Dclose);
   if (!dataset.valid()) return false;
   const Hdf5Handle space(H5Dget_space(dataset.get()), H5Sclose);
-  return H5Sget_simple_extent_npoints(space.get()) == static_cast<hssize_t>(values.size()) &&
-         H5Dread(dataset.get(), memory_type<typename Values::value_type>(), H5S_ALL, H5S_ALL, H5P_DEFAULT,
-                 values.data()) >= 0;
+  return H5Sget_simple_extent_npoints(space.get()) == static_cast<hssize_t>(count) &&
+         H5Dread(dataset.get(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) >= 0;
 }
 
 }  // namespace
@@ -153,13 +149,11 @@ void write_slice(const fs::path& folder, const StudyRecord& record, StudyTest te
   const fs::path path = slice_path(folder, slice.number);
   std::vector<std::uint64_t> trials;
   std::vector<double> values;
-  // A line for each row.
-  std::vector<unsigned char> words;
+  std::string not_reached;
   for (const TrialRow& row : slice.rows) {
     trials.push_back(row.trial);
     values.insert(values.end(), row.values.begin(), row.values.end());
-    words.insert(words.end(), row.not_reached.begin(), row.not_reached.end());
-    words.push_back('\n');
+    not_reached += row.not_reached + '\n';
   }
   std::string names;
   for (const StudyColumn& column : columns_of(test)) names += (names.empty() ? "" : ",") + column.name;
@@ -170,11 +164,12 @@ void write_slice(const fs::path& folder, const StudyRecord& record, StudyTest te
     write.put("slice", std::uint64_t{slice.number});
     write.put("cpu_s", slice.cpu_s);
     write.put("columns", names);
-    write.put("not_reached_bytes", std::uint64_t{words.size()});
-    write_dataset(path, file, "trial", H5T_STD_U64LE, {trials.size()}, trials.data());
-    write_dataset(path, file, "values", H5T_IEEE_F64LE, {trials.size(), columns_of(test).size()},
-                  values.data());
-    write_dataset(path, file, "not_reached", H5T_STD_U8LE, {words.size()}, words.data());
+    write.put("not_reached_bytes", std::uint64_t{not_reached.size()});
+    write_dataset(path, file, "trial", H5T_STD_U64LE, H5T_NATIVE_UINT64, {trials.size()}, trials.data());
+    write_dataset(path, file, "values", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE,
+                  {trials.size(), columns_of(test).size()}, values.data());
+    write_dataset(path, file, "not_reached", H5T_STD_U8LE, H5T_NATIVE_UINT8, {not_reached.size()},
+                  not_reached.data());
   });
 }
 
@@ -191,12 +186,12 @@ std::optional<Slice> rows_in(hid_t file, const fs::path& path, const StudyRecord
   const auto bytes = read.get<std::uint64_t>("not_reached_bytes");
   std::vector<std::uint64_t> trials(count);
   std::vector<double> values(count * columns);
-  std::vector<unsigned char> bytes_read(std::min<std::uint64_t>(bytes, fs::file_size(path)));
-  if (!read_dataset(file, "trial", trials) || !read_dataset(file, "values", values) ||
-      !read_dataset(file, "not_reached", bytes_read) ||
-      std::ranges::count(bytes_read, '\n') != static_cast<std::ptrdiff_t>(count))
+  std::string words(std::min<std::uint64_t>(bytes, fs::file_size(path)), '\0');
+  if (!read_dataset(file, "trial", H5T_NATIVE_UINT64, count, trials.data()) ||
+      !read_dataset(file, "values", H5T_NATIVE_DOUBLE, values.size(), values.data()) ||
+      !read_dataset(file, "not_reached", H5T_NATIVE_UINT8, words.size(), words.data()) ||
+      std::count(words.begin(), words.end(), '\n') != static_cast<std::ptrdiff_t>(count))
     return std::nullopt;
-  const std::string words(bytes_read.begin(), bytes_read.end());
   Slice slice{number, {}, read.get<double>("cpu_s")};
   std::size_t from = 0;
   for (std::size_t n = 0; n < count; ++n) {
