@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cstdint>
 #include <filesystem>
 #include <limits>
 #include <memory>
@@ -22,7 +23,6 @@
 #include "osteomill/experiment/paper.h"
 #include "osteomill/experiment/parallel.h"
 #include "osteomill/experiment/run_trials.h"
-#include "osteomill/experiment/study_design.h"
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/recording/recording.h"
 #include "osteomill/session/milling_setup.h"
@@ -47,12 +47,12 @@ struct CompareOptions {
   int threads = static_cast<int>(core_count());
   bool no_stability = false;
   bool match_stiffness = false;
-  /// As what it is to be felt; 0 for the softest.
+  /// What every algorithm is to be felt as on a flat wall; 0 for what the softest is felt as.
   double matched_N_per_mm = 0;
   std::string out = "osteomill-comparison";
 };
 
-// One plan a mode, with the first seed.
+// A plan for each mode, with the first seed.
 std::vector<TrialPlan> plans_of(const CompareOptions& options, const LoadedBone& bone,
                                 const std::string& command_line) {
   TrialPlan plan{bone.volume,
@@ -72,7 +72,7 @@ std::vector<TrialPlan> plans_of(const CompareOptions& options, const LoadedBone&
   return plans;
 }
 
-// Every algorithm in every mode that it has, mode by mode.
+// Mode by mode, every algorithm that has this mode.
 std::vector<StudyTrial> trials_of(const CompareOptions& options, const std::vector<TrialPlan>& plans) {
   std::vector<StudyTrial> trials;
   for (const TrialPlan& plan : plans) {
@@ -83,10 +83,10 @@ std::vector<StudyTrial> trials_of(const CompareOptions& options, const std::vect
   return trials;
 }
 
-double softest_felt_N_per_mm(const std::vector<StudyTrial>& trials, const StiffnessTrial& trial) {
+double softest_felt_N_per_mm(const std::vector<StudyTrial>& trials, const Volume& wall) {
   double softest = std::numeric_limits<double>::infinity();
   for (const StudyTrial& one : trials) {
-    const double felt = felt_stiffness_N_per_mm(one.algorithm, one.plan.settings.haptics, trial);
+    const double felt = felt_stiffness_N_per_mm(setup_of(one.plan.settings, one.algorithm), wall);
     if (!(felt > 0)) throw std::invalid_argument(one.algorithm.id.name + " carries no 0.5 N on a flat wall");
     softest = std::min(softest, felt);
   }
@@ -94,17 +94,15 @@ double softest_felt_N_per_mm(const std::vector<StudyTrial>& trials, const Stiffn
 }
 
 void match_stiffness(const CompareOptions& options, std::vector<TrialPlan>& plans) {
-  const MillingTool tool = plans.front().settings.tool;
-  const Volume wall = flat_wall(tool);
-  const StiffnessTrial trial{wall, tool, plans.front().settings.tick_s};
+  const Volume wall = flat_wall(plans.front().settings.tool);
   const double felt_N_per_mm = options.matched_N_per_mm > 0
                                    ? options.matched_N_per_mm
-                                   : softest_felt_N_per_mm(trials_of(options, plans), trial);
+                                   : softest_felt_N_per_mm(trials_of(options, plans), wall);
   for (TrialPlan& plan : plans) {
     HapticSettings& haptics = plan.settings.haptics;
     for (const AlgorithmDescription& algorithm : options.algorithms) {
       if (!runs_in(algorithm, haptics.mode, options.modes)) continue;
-      haptics.named.push_back(setting_felt_as(felt_N_per_mm, algorithm, haptics, trial));
+      haptics.named.push_back(setting_felt_as(felt_N_per_mm, setup_of(plan.settings, algorithm), wall));
     }
     plan.matched_N_per_mm = felt_N_per_mm;
   }
@@ -119,12 +117,11 @@ void add_other_grips(std::vector<StudyTrial>& others, StudyTrial trial) {
 
 std::vector<StudyRow> try_other_hands(const CompareOptions& options, const std::vector<StudyTrial>& trials) {
   std::vector<StudyTrial> others;
-  const StudyDesign hands =
-      design_of_seeds(options.trial.milling.seed, static_cast<std::size_t>(options.seeds));
   for (const StudyTrial& trial : trials) add_other_grips(others, trial);
-  for (std::size_t n = 1; n < hands.trial_count(); ++n) {
+  for (int n = 1; n < options.seeds; ++n) {
+    const std::uint64_t seed = options.trial.milling.seed + static_cast<std::uint64_t>(n);
     for (const StudyTrial& trial : trials) {
-      others.push_back({with_seed(trial.plan, seed_of(hands.trial(n))), trial.algorithm});
+      others.push_back({with_seed(trial.plan, seed), trial.algorithm});
       add_other_grips(others, others.back());
     }
   }
@@ -134,10 +131,7 @@ std::vector<StudyRow> try_other_hands(const CompareOptions& options, const std::
 std::vector<PassivityRow> press_on_walls(const CompareOptions& options, const TrialSettings& settings) {
   const std::vector<PassivityCase> cases = passivity_cases(options.algorithms, options.modes);
   const Volume wall = flat_wall(settings.tool);
-  const auto measure = [&](const PassivityCase& device) {
-    return measure_passivity(device, wall, settings.tool, settings.haptics, settings.hand_and_device.handle,
-                             settings.tick_s);
-  };
+  const auto measure = [&](const PassivityCase& device) { return measure_passivity(device, wall, settings); };
   std::vector<PassivityRow> rows = run_trials(cases, "stability", static_cast<std::size_t>(options.threads),
                                               events_on_terminal(), measure);
   end_progress();

@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kNoProgram = 127;
 
-// What it said; an InputError with its last words where it failed.
+// What a program printed. Throws InputError with its last line where it fails.
 std::string output_of(const std::vector<std::string>& words) {
   Said said = run_program(words);
   if (said.exit_code == kNoProgram)
@@ -80,7 +80,7 @@ std::size_t slurm_array_limit() {
   std::size_t limit = 0;
   if (digits != std::string::npos)
     std::from_chars(config.data() + digits, config.data() + config.size(), limit);
-  // Its tasks are numbered from 0 to below it.
+  // An array's tasks are numbered from 0 to MaxArraySize - 1.
   if (limit < 2) throw InputError("slurm", "takes no arrays of jobs here (MaxArraySize)");
   return limit;
 }

@@ -44,7 +44,7 @@ struct StudyOptions {
   bool list = false, estimate = false, status = false, resume = false, report = false;
 };
 
-// A study's file with what makes its trials.
+// A study's file, and what makes the trials that it describes.
 struct OpenStudy {
   OpenStudy(const std::string& file, const fs::path& scans_from)
       : trials(file, scans_from), design(read_study_file(file, trials)) {}
@@ -79,7 +79,7 @@ void require_same_program(const StudyFolder& folder) {
     throw InputError(folder.path.string(), "was begun with another build of this program");
 }
 
-// All of it before any of it runs.
+// So that a fault of any trial is told before the first is run.
 void check_every_trial(OpenStudy& study) {
   for (std::size_t n = 0; n < study.design.trial_count(); ++n) study.trials.make(study.design, n, 1);
 }
@@ -117,8 +117,8 @@ void status(const StudyFolder& folder) {
   const StudyRecord& record = folder.record;
   const StudyStatus now = study_status(folder.path, record, folder.study.design.test);
   fmt::print("{} of {} trials are done ({:.3g} %), {} of {} slices\n", now.trials_done, record.trials,
-             100 * static_cast<double>(now.trials_done) / static_cast<double>(record.trials),
-             record.slices() - now.missing.size(), record.slices());
+             100 * static_cast<double>(now.trials_done) / static_cast<double>(record.trials), now.done.size(),
+             record.slices());
   for (const fs::path& file : now.damaged)
     fmt::print("{} cannot be used: cut short, damaged, or of another study\n", file.string());
   if (now.missing.empty()) return;
@@ -207,7 +207,7 @@ void go_on(StudyFolder& folder, const StudyOptions& options) {
     if (*options.slice >= folder.record.slices())
       throw InputError(folder.path.string(), fmt::format("has slices 0 to {}, and no {}",
                                                          folder.record.slices() - 1, *options.slice));
-    // A task that waited while another did its work.
+    // Another task may have run it while this one waited in the queue.
     if (!read_slice(folder.path, folder.record, folder.study.design.test, *options.slice))
       run_slice(folder, *options.slice, options.threads, events_on_terminal());
     return;

@@ -18,7 +18,7 @@ namespace {
 
 constexpr const char* kBuiltIn = "built-in";
 constexpr std::size_t kBonesKept = 8;
-// Of a command line or of one recording, and not of a trial.
+// Options of a command, which a trial does not have.
 constexpr const char* kNoKeys[] = {"--help", "--config", "--set", "--max-memory"};
 
 bool is_of_algorithm(const std::string& key) {
@@ -80,7 +80,7 @@ std::vector<std::string> StudyTrials::keys() const {
 StudySettings StudyTrials::units() const {
   StudySettings units;
   for (const std::string& key : keys()) {
-    // Behind it stands what the option checks.
+    // The library appends what an option checks, behind a colon.
     const std::string type = option(key)->get_type_name(), unit = type.substr(0, type.find(':'));
     const bool is_word = unit.find_first_of("|,") != std::string::npos || unit == "NUMBER" ||
                          unit == "COUNT" || unit == "NAME" || unit == "MODE" || unit == "TEXT" ||

@@ -13,7 +13,7 @@ namespace osteomill::app {
 
 namespace {
 
-// The library goes down into a name's parts by recursion, however many there are.
+// The library reads the parts of a dotted name by recursion: too many of them would overflow the stack.
 void require_short_names(const std::string& file) {
   constexpr std::ptrdiff_t kMaxDots = 1000;
   std::ifstream in(file);

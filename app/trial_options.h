@@ -27,7 +27,7 @@ TrialSettings trial_settings(const TrialOptions& options);
 /// Where the tool enters this bone. Throws InputError where it cannot.
 MillingEntry entry_into(const Volume& bone, const TrialOptions& options);
 
-/// The same, with what a user should know of that place on standard error.
+/// As entry_into, and warns on standard error where that place is unlikely to be what the user wants.
 MillingEntry place_entry(const Volume& bone, const TrialOptions& options);
 
 }  // namespace osteomill::app

@@ -22,12 +22,10 @@ Section passivity() {
       {"algorithm", "least", "median", "greatest", "none passive", "all passive", ""},
       {},
       {}};
-  const MillingTool tool;
-  const Volume wall = flat_wall(tool);
+  const Volume wall = flat_wall({});
   const std::vector<PassivityCase> cases = passivity_cases(all_algorithms(), {Mode::steady});
   std::vector<PassivityRow> rows(cases.size());
-  in_parallel(cases.size(),
-              [&](std::size_t n) { rows[n] = measure_passivity(cases[n], wall, tool, {}, {}, 1e-3); });
+  in_parallel(cases.size(), [&](std::size_t n) { rows[n] = measure_passivity(cases[n], wall, {}); });
   for (const AlgorithmDescription& algorithm : all_algorithms()) {
     std::vector<double> shares;
     int none = 0, all = 0;

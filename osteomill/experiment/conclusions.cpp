@@ -46,11 +46,11 @@ std::string joined(const std::vector<std::string>& parts) {
 std::string least_words(const Study& study, Mode mode, std::string_view phase, const Metric& metric,
                         const AlgorithmId& least) {
   std::vector<std::string> clear, unclear;
-  for (const AlgorithmPair& pair : compare_algorithms(study, mode, phase, metric)) {
-    if (pair.first != least && pair.second != least) continue;
-    const AlgorithmId& other = pair.first == least ? pair.second : pair.first;
-    const bool is_clear = pair.p <= kSignificance && pair.greater == other;
-    (is_clear ? clear : unclear).push_back(short_label(other));
+  for (const PairedComparison& pair : compare_algorithms(study, mode, phase, metric)) {
+    const AlgorithmId &first = pair.first.algorithm, &second = pair.second.algorithm;
+    if (first != least && second != least) continue;
+    const bool is_clear = pair.p <= kSignificance && pair.second_is_greater == (first == least);
+    (is_clear ? clear : unclear).push_back(short_label(first == least ? second : first));
   }
   if (clear.empty()) return "; no difference between the least and another is significant";
   return fmt::format("; least with {}, significantly against {}{}", least.label, joined(clear),
@@ -151,11 +151,12 @@ std::string changes_sentence(const Study& study) {
   for (const std::string_view phase : study.phases()) {
     for (const Metric& metric : key_metrics()) {
       if (!metric.less_is_better) continue;
-      for (const ModeChange& change : compare_modes(study, phase, metric)) {
+      for (const PairedComparison& change : compare_modes(study, phase, metric)) {
         const double ratio = change.ratio.median;
         if (!(ratio > 0) || ratio == 1 || (!too_few(study) && change.p > kSignificance)) continue;
         all.push_back(
-            {fmt::format("{} of {} {}", metric.name, short_label(change.algorithm), during(phase)), ratio});
+            {fmt::format("{} of {} {}", metric.name, short_label(change.first.algorithm), during(phase)),
+             ratio});
         (ratio > 1 ? worse : better).push_back(all.back());
       }
     }

@@ -5,10 +5,12 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "osteomill/experiment/wall_press.h"
+#include "osteomill/haptics/algorithms.h"
 
 namespace osteomill {
 
@@ -45,33 +47,32 @@ std::string reason(const Pressed& low, const Pressed& high) {
 
 }  // namespace
 
-double felt_stiffness_N_per_mm(const AlgorithmDescription& algorithm, const HapticSettings& haptics,
-                               const StiffnessTrial& trial) {
-  const auto made = make_algorithm(algorithm, haptics);
-  made->prepare({&trial.wall, trial.tool, trial.tick_s});
+double felt_stiffness_N_per_mm(const MillingSetup& setup, const Volume& wall) {
+  const auto made = make_algorithm(setup.algorithm, setup.haptics);
+  made->prepare({&wall, setup.tool, setup.tick_s});
   WallPress press;
-  press.tick_s = trial.tick_s;
-  return press_slowly_on_wall(*made, trial.tool.burr_radius_mm, press);
+  press.tick_s = setup.tick_s;
+  return press_slowly_on_wall(*made, setup.tool.burr_radius_mm, press);
 }
 
-HapticSettings::Named setting_felt_as(double felt_N_per_mm, const AlgorithmDescription& algorithm,
-                                      const HapticSettings& haptics, const StiffnessTrial& trial) {
+HapticSettings::Named setting_felt_as(double felt_N_per_mm, MillingSetup setup, const Volume& wall) {
+  const AlgorithmDescription& algorithm = setup.algorithm;
   const SettingDescription* setting = setting_of_option(algorithm, kStiffnessOption);
   if (setting == nullptr) {
     throw std::invalid_argument(algorithm.id.name + " has no stiffness that could be matched");
   }
   const double softest = std::max(kSoftest_N_per_mm, setting->range.min);
   const double stiffest = std::min(kStiffest_N_per_mm, setting->range.max);
-  HapticSettings tried = haptics;
-  for (const SettingValue& value : setting_values(algorithm, haptics)) {
+  std::vector<HapticSettings::Named>& named = setup.haptics.named;
+  for (const SettingValue& value : setting_values(algorithm, setup.haptics)) {
     if (value.name != setting->name) continue;
-    tried.named.push_back({algorithm.id.name, setting->name, std::clamp(value.value, softest, stiffest)});
+    named.push_back({algorithm.id.name, setting->name, std::clamp(value.value, softest, stiffest)});
   }
-  double& stiffness = tried.named.back().value;
+  double& stiffness = named.back().value;
   Pressed low{softest}, high{stiffest};
   for (int n = 0; n < kMaxPresses && high.stiffness_N_per_mm > kApart * low.stiffness_N_per_mm; ++n) {
-    const double felt = felt_stiffness_N_per_mm(algorithm, tried, trial);
-    if (std::abs(felt - felt_N_per_mm) <= kWithin * felt_N_per_mm) return tried.named.back();
+    const double felt = felt_stiffness_N_per_mm(setup, wall);
+    if (std::abs(felt - felt_N_per_mm) <= kWithin * felt_N_per_mm) return named.back();
     (felt < felt_N_per_mm ? low : high) = {stiffness, felt};
     // Most are felt in proportion to the setting; where that leads out of what is left, its middle.
     const double proportional = felt > 0 ? stiffness * felt_N_per_mm / felt : 0;
@@ -80,7 +81,7 @@ HapticSettings::Named setting_felt_as(double felt_N_per_mm, const AlgorithmDescr
         is_within && n % 4 != 3 ? proportional : std::sqrt(low.stiffness_N_per_mm * high.stiffness_N_per_mm);
   }
   throw std::invalid_argument(fmt::format("{} in {} cannot be felt as {:.4g} N/mm on a flat wall; {}",
-                                          algorithm.id.name, name_of(haptics.mode), felt_N_per_mm,
+                                          algorithm.id.name, name_of(setup.haptics.mode), felt_N_per_mm,
                                           reason(low, high)));
 }
 

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "osteomill/experiment/measure_passivity.h"
+#include "osteomill/haptics/algorithms.h"
 
 namespace osteomill {
 namespace {
@@ -19,6 +20,10 @@ constexpr double kTick_s = 1e-3;
 const Volume& wall() {
   static const Volume volume = flat_wall(kTool);
   return volume;
+}
+
+MillingSetup setup_of(const AlgorithmDescription& algorithm, Mode mode = Mode::steady) {
+  return {.tool = kTool, .algorithm = algorithm, .haptics = {.mode = mode}, .tick_s = kTick_s};
 }
 
 // The force at rest at this depth, come from outside.
@@ -74,7 +79,7 @@ TEST_P(MatchStiffness, IsFeltAsAskedFor) {
   const AlgorithmDescription& algorithm = algorithm_named(name);
   HapticSettings haptics{.mode = mode};
   const double felt_N_per_mm = 0.8;
-  haptics.named.push_back(setting_felt_as(felt_N_per_mm, algorithm, haptics, {wall(), kTool, kTick_s}));
+  haptics.named.push_back(setting_felt_as(felt_N_per_mm, setup_of(algorithm, mode), wall()));
   const auto made = make_algorithm(algorithm, haptics);
   made->prepare({&wall(), kTool, kTick_s});
   EXPECT_NEAR(slope_at_rest_N_per_mm(*made), felt_N_per_mm, 0.1 * felt_N_per_mm)
@@ -82,24 +87,23 @@ TEST_P(MatchStiffness, IsFeltAsAskedFor) {
 }
 
 TEST(MatchStiffness, ASpringToTheSurfaceIsFeltAsItsStiffness) {
-  const AlgorithmDescription& algorithm = algorithm_named("line-proxy");
-  const auto named = setting_felt_as(1.3, algorithm, {}, {wall(), kTool, kTick_s});
+  const auto named = setting_felt_as(1.3, setup_of(algorithm_named("line-proxy")), wall());
   EXPECT_EQ(named.setting, "stiffness");
   EXPECT_NEAR(named.value, 1.3, 0.02 * 1.3);
 }
 
 TEST(MatchStiffness, WhatNoSettingGivesIsRefused) {
-  const StiffnessTrial trial{wall(), kTool, kTick_s};
   for (const std::string& name : algorithm_names()) {
-    EXPECT_THROW(setting_felt_as(1e4, algorithm_named(name), {}, trial), std::invalid_argument) << name;
-    EXPECT_THROW(setting_felt_as(1e-4, algorithm_named(name), {}, trial), std::invalid_argument) << name;
+    const MillingSetup setup = setup_of(algorithm_named(name));
+    EXPECT_THROW(setting_felt_as(1e4, setup, wall()), std::invalid_argument) << name;
+    EXPECT_THROW(setting_felt_as(1e-4, setup, wall()), std::invalid_argument) << name;
   }
 }
 
 // The paper's second pushes with one ring of vertices after another, each capped as it is all in bone.
 TEST(MatchStiffness, ASlopeThatIsLeaptOverIsRefused) {
   try {
-    setting_felt_as(1.5, algorithm_named("surface-points"), {.mode = Mode::paper}, {wall(), kTool, kTick_s});
+    setting_felt_as(1.5, setup_of(algorithm_named("surface-points"), Mode::paper), wall());
     ADD_FAILURE();
   } catch (const std::invalid_argument& error) {
     EXPECT_NE(std::string(error.what()).find("surface-points in paper cannot be felt as 1.5 N/mm"),

@@ -107,29 +107,28 @@ Volume flat_wall(const MillingTool& tool) {
   return Volume(DensityGrid(geometry, std::move(densities)), kIsovalue);
 }
 
-WallPressResult press_on_wall(const PassivityCase& setup, const Volume& wall, const MillingTool& tool,
-                              HapticSettings haptics, const HandleSettings& handle, double tick_s) {
+WallPressResult press_on_wall(const PassivityCase& setup, const Volume& wall, const TrialSettings& settings) {
   WallPress press;
-  press.handle = handle;
+  press.handle = settings.hand_and_device.handle;
   press.handle.force_delay_s = setup.delay_s;
   press.damping_Ns_per_mm = setup.damping_Ns_per_mm;
-  press.tick_s = tick_s;
+  press.tick_s = settings.tick_s;
+  HapticSettings haptics = settings.haptics;
   haptics.mode = setup.mode;
   const auto algorithm = make_algorithm(setup.algorithm, haptics);
-  algorithm->prepare({&wall, tool, tick_s});
-  return press_on_wall(*algorithm, tool.burr_radius_mm, press);
+  algorithm->prepare({&wall, settings.tool, settings.tick_s});
+  return press_on_wall(*algorithm, settings.tool.burr_radius_mm, press);
 }
 
-PassivityRow measure_passivity(const PassivityCase& setup, const Volume& wall, const MillingTool& tool,
-                               const HapticSettings& haptics, const HandleSettings& handle, double tick_s) {
-  HapticSettings settings = haptics;
+PassivityRow measure_passivity(const PassivityCase& setup, const Volume& wall, TrialSettings settings) {
   const std::string stiffness = setting_of_option(setup.algorithm, kStiffnessOption)->name;
-  settings.named.push_back({setup.algorithm.id.name, stiffness, 0});
+  settings.haptics.named.push_back({setup.algorithm.id.name, stiffness, 0});
   const auto press_at = [&](double stiffness_N_per_mm) {
-    settings.named.back().value = stiffness_N_per_mm;
-    return press_on_wall(setup, wall, tool, settings, handle, tick_s);
+    settings.haptics.named.back().value = stiffness_N_per_mm;
+    return press_on_wall(setup, wall, settings);
   };
-  const double rule = passive_stiffness_rule_N_per_mm(setup.damping_Ns_per_mm, tick_s, setup.delay_s);
+  const double rule =
+      passive_stiffness_rule_N_per_mm(setup.damping_Ns_per_mm, settings.tick_s, setup.delay_s);
   return {setup, seek_stiffness_limit(press_at, rule), rule};
 }
 

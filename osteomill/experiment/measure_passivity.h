@@ -3,6 +3,7 @@
 #include <functional>
 #include <vector>
 
+#include "osteomill/experiment/milling_trial.h"
 #include "osteomill/experiment/wall_press.h"
 #include "osteomill/haptics/algorithms.h"
 #include "osteomill/volume/volume.h"
@@ -22,7 +23,7 @@ struct StiffnessLimit {
   Kind kind = Kind::below_all;
   /// The greatest passive one that was tried; 0 for `below_all`.
   double stiffness_N_per_mm = 0;
-  /// What was felt of it.
+  /// How stiff that one is felt.
   double felt_N_per_mm = 0;
 };
 
@@ -45,12 +46,12 @@ struct PassivityCase {
   double delay_s = 0;
 };
 
-/// How stiff it can be there.
+/// How stiff an algorithm can be on a device.
 struct PassivityRow {
   PassivityCase setup;
   /// By the algorithm's own setting (--stiffness), which need not be what is felt.
   StiffnessLimit limit;
-  /// What an ideal wall could be.
+  /// How stiff an ideal wall could be there (passive_stiffness_rule_N_per_mm).
   double rule_N_per_mm = 0;
 };
 
@@ -63,15 +64,12 @@ std::vector<PassivityCase> passivity_cases(const std::vector<AlgorithmDescriptio
 /// radius (0.05 to 0.5 mm).
 Volume flat_wall(const MillingTool& tool);
 
-/// Presses on the wall (wall_press.h) at the stiffness that `haptics` says. Of it everything else counts but
-/// the mode, of `handle` all but the delay. Throws std::invalid_argument where a setting is out of range.
-WallPressResult press_on_wall(const PassivityCase& setup, const Volume& wall, const MillingTool& tool,
-                              HapticSettings haptics, const HandleSettings& handle, double tick_s);
+/// Presses on the wall (wall_press.h) with the tool, tick, haptic settings and handle of `settings`; the mode
+/// and the handle's delay are those of `setup`. Throws std::invalid_argument where a setting is out of range.
+WallPressResult press_on_wall(const PassivityCase& setup, const Volume& wall, const TrialSettings& settings);
 
-/// Seeks the greatest `--stiffness` at which the wall stays passive (wall_press.h). Of `haptics` everything
-/// counts but the mode and that stiffness, of `handle` all but the delay. Throws std::invalid_argument where
-/// a setting is out of range.
-PassivityRow measure_passivity(const PassivityCase& setup, const Volume& wall, const MillingTool& tool,
-                               const HapticSettings& haptics, const HandleSettings& handle, double tick_s);
+/// Seeks the greatest `--stiffness` at which the wall stays passive, pressed as `press_on_wall` does. Throws
+/// as that does.
+PassivityRow measure_passivity(const PassivityCase& setup, const Volume& wall, TrialSettings settings);
 
 }  // namespace osteomill

@@ -7,17 +7,18 @@
 
 namespace osteomill {
 
-/// All that a trial depends on but the bone, the entry and the algorithm, which is none that stands here.
+/// All that a trial depends on but the bone, the entry and the algorithm: that is handed over beside these
+/// settings, and the one in MillingSetup is not used.
 struct TrialSettings : MillingSetup {
   OperatorSettings hand_and_device;
   /// False lets the hand go through its motions without removing bone, as section 8.1 measures rates.
   bool spindle = true;
 };
 
-/// That this thread has taken. A system call: outside the tick.
+/// The CPU time that this thread has taken so far, in s. A system call, so not for the tick.
 double thread_cpu_s();
 
-/// As what the trial of an algorithm mills.
+/// The setup of one algorithm's trial.
 MillingSetup setup_of(const TrialSettings& settings, const AlgorithmDescription& algorithm);
 
 /// One algorithm in the test of section 8.2, in simulated time: a simulated hand mills a hole, leans the

@@ -1,8 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
-#include <optional>
 #include <string_view>
 
 namespace osteomill {
@@ -13,13 +13,12 @@ inline constexpr std::string_view kHolding = "holding";
 inline constexpr std::array<std::string_view, 2> kPhases{kMilling, kHolding};
 
 /// The place of a phase in that order; of any other phase the one after the last.
-std::size_t phase_number(std::string_view phase);
+inline std::size_t phase_number(std::string_view phase) {
+  return static_cast<std::size_t>(std::ranges::find(kPhases, phase) - kPhases.begin());
+}
 
 /// The algorithms that the paper compares, in its order.
 inline constexpr std::array<std::string_view, 3> kPapersAlgorithms{"line-proxy", "surface-points",
                                                                    "point-shell"};
-
-/// The paper's mean haptic rate, figure 6; nothing for an algorithm or a phase that is not in the paper.
-std::optional<double> paper_mean_rate_hz(std::string_view algorithm, std::string_view phase);
 
 }  // namespace osteomill

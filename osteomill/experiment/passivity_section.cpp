@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 
 #include "osteomill/files/atomic_file.h"
-#include "osteomill/files/temporary_folder.h"
 
 namespace osteomill {
 
@@ -208,7 +207,6 @@ std::string common(const Axes& axes, const PanelGrid& grid) {
 }  // namespace
 
 Figure draw_passivity_figure(std::span<const PassivityRow> rows, const std::filesystem::path& folder) {
-  const TemporaryFolder work;
   const Axes axes = axes_of(rows);
   PanelGrid grid{.columns = axes.delays_s.size(),
                  .rows = axes.modes.size(),
@@ -225,10 +223,10 @@ Figure draw_passivity_figure(std::span<const PassivityRow> rows, const std::file
       script.body += panel_margins(grid, panel_cell(grid, column, row)) +
                      fmt::format("set title '{}, delay {:.3g} ms' offset 0,-0.4\n", name_of(axes.modes[row]),
                                  1e3 * axes.delays_s[column]) +
-                     panel(rows, column, row, axes, work) + "unset label\n";
+                     panel(rows, column, row, axes, script.work) + "unset label\n";
     }
   }
-  return draw_figure(script, work, folder);
+  return draw_figure(script, folder);
 }
 
 PageSection passivity_section(std::span<const PassivityRow> rows, const Figure& figure) {

@@ -131,13 +131,9 @@ MilledTrial mill(const StudyTrial& planned) {
 
 TrialRow press(const StudyTrial& trial) {
   const TrialSettings& settings = trial.plan.settings;
-  const HandleSettings& handle = settings.hand_and_device.handle;
   const PassivityCase setup{trial.algorithm, settings.haptics.mode, trial.device_damping_Ns_per_mm,
-                            handle.force_delay_s};
-  const Volume& wall = trial.plan.bone;
-  const WallPressResult result =
-      press_on_wall(setup, wall, settings.tool, settings.haptics, handle, settings.tick_s);
-  return as_row(0, setup, result, settings.tick_s);
+                            settings.hand_and_device.handle.force_delay_s};
+  return as_row(0, setup, press_on_wall(setup, trial.plan.bone, settings), settings.tick_s);
 }
 
 }  // namespace

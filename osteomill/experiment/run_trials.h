@@ -38,7 +38,7 @@ auto run_trials(const std::vector<Trial>& trials, const std::string& what, std::
 
 /// What came of a trial of a study.
 struct TriedTrial {
-  /// One a part of its test, their trial left open.
+  /// One for each part of its test, without the trial's number.
   std::vector<TrialRow> rows;
   /// One sentence on ticks that were not as they should be.
   std::optional<std::string> faults;

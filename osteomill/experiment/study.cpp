@@ -1,7 +1,6 @@
 #include "osteomill/experiment/study.h"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <fstream>
@@ -17,6 +16,7 @@
 
 #include "osteomill/experiment/paper.h"
 #include "osteomill/experiment/statistics.h"
+#include "osteomill/experiment/trial_rows.h"
 #include "osteomill/files/atomic_file.h"
 
 namespace osteomill {
@@ -32,16 +32,6 @@ using M = RunMetrics;
 // Phase before algorithm, as in summary.csv.
 auto place(const MeasuredRun& run) {
   return std::tuple(run.mode, phase_number(run.phase), run.algorithm);
-}
-
-template <typename Values, typename Matches>
-auto present(const Values& all, std::span<const StudyRow> rows, const Matches& matches) {
-  std::vector<typename Values::value_type> found;
-  for (const auto& value : all) {
-    const auto has_it = [&](const StudyRow& row) { return matches(row.run, value); };
-    if (std::any_of(rows.begin(), rows.end(), has_it)) found.push_back(value);
-  }
-  return found;
 }
 
 std::vector<std::string> fields_of(const std::string& line) {
@@ -74,22 +64,19 @@ std::optional<StudyRow> read_row(const std::string& line, const std::vector<Stud
            fields[kHandFields + 1] == name_of(row.run.mode) && fields[kHandFields + 2] == row.run.phase;
   });
   if (of_it == rows.end()) return std::nullopt;
-  StudyRow row = *of_it;
+  TrialRow numbers{.part = phase_number(of_it->run.phase), .not_reached = fields.back()};
+  for (const std::size_t n : {1, 2}) numbers.values.push_back(number_in<double>(fields[n]));
+  for (std::size_t n = kHandFields + kNamedFields; n + 1 < fields.size(); ++n)
+    numbers.values.push_back(number_in<double>(fields[n]));
+  StudyRow row = milling_row(numbers);
+  row.run.algorithm = of_it->run.algorithm;
+  row.run.mode = of_it->run.mode;
   row.seed = number_in<std::uint64_t>(fields[0]);
-  row.hand.stiffness_N_per_mm = number_in<double>(fields[1]) / kMmPerM;
-  row.hand.damping_Ns_per_mm = number_in<double>(fields[2]) / kMmPerM;
   row.grip = number_in<double>(fields[3]);
-  row.run.recording = nullptr;
-  row.run.not_reached = fields.back();
-  std::size_t n = kHandFields + kNamedFields;
-  for (const Metric& metric : all_metrics()) {
-    if (*metric.column != '\0') metric.place(row.run.metrics) = number_in<double>(fields[n++]);
-  }
-  complete_metrics(row.run);
   return row;
 }
 
-// But for times, which are the machine's.
+// Times are not compared: they are the machine's.
 bool same_figures(const MeasuredRun& a, const MeasuredRun& b) {
   return std::all_of(all_metrics().begin(), all_metrics().end(), [&](const Metric& metric) {
     const double first = metric(a.metrics), second = metric(b.metrics);
@@ -100,14 +87,6 @@ bool same_figures(const MeasuredRun& a, const MeasuredRun& b) {
 }
 
 }  // namespace
-
-void complete_metrics(MeasuredRun& run) {
-  RunMetrics& m = run.metrics;
-  for (VectorMetrics* felt : {&m.force_N, &m.torque_Nmm})
-    felt->hp_share = felt->mean == 0 ? 0 : felt->hp_rms / felt->mean;
-  m.contact.force = m.contact.torque = m.contact.any;
-  m.contact.lost_while_milling = m.contact.is_lost() && (run.phase == kMilling) == (m.contact.any > 0);
-}
 
 std::vector<Metric> key_metrics() {
   std::vector<Metric> compared;
@@ -158,13 +137,19 @@ std::vector<AlgorithmId> Study::algorithms() const {
 }
 
 std::vector<Mode> Study::modes() const {
-  return present(std::array{Mode::paper, Mode::steady}, rows_,
-                 [](const MeasuredRun& r, Mode mode) { return r.mode == mode; });
+  std::vector<Mode> tried;
+  for (const Mode mode : {Mode::paper, Mode::steady})
+    if (std::ranges::any_of(rows_, [&](const StudyRow& row) { return row.run.mode == mode; }))
+      tried.push_back(mode);
+  return tried;
 }
 
 std::vector<std::string_view> Study::phases() const {
-  return present(kPhases, rows_,
-                 [](const MeasuredRun& r, std::string_view phase) { return r.phase == phase; });
+  std::vector<std::string_view> tried;
+  for (const std::string_view phase : kPhases)
+    if (std::ranges::any_of(rows_, [&](const StudyRow& row) { return row.run.phase == phase; }))
+      tried.push_back(phase);
+  return tried;
 }
 
 std::size_t Study::seeds_needed() const {
@@ -213,11 +198,9 @@ ContactShares Study::contact(const Tried& tried, std::string_view phase) const {
     return distribution_of(values(tried, phase, figure)).median;
   };
   ContactShares shares;
-  shares.any = median([](const M& m) { return m.contact.any; });
-  shares.burr = median([](const M& m) { return m.contact.burr; });
-  shares.shaft = median([](const M& m) { return m.contact.shaft; });
-  shares.force = median([](const M& m) { return m.contact.force; });
-  shares.torque = median([](const M& m) { return m.contact.torque; });
+  for (double ContactShares::*share : {&ContactShares::any, &ContactShares::burr, &ContactShares::shaft,
+                                       &ContactShares::force, &ContactShares::torque})
+    shares.*share = median([&](const M& m) { return m.contact.*share; });
   const std::vector<double> lost = values(tried, phase, [](const M& m) { return m.contact.lost_after_s; });
   if (!lost.empty() && !are_most(seeds_.size() - lost.size()))
     shares.lost_after_s = distribution_of(lost).median;

@@ -18,19 +18,15 @@ namespace osteomill {
 struct StudyRow {
   std::uint64_t seed = 0;
   HandSettings hand;
-  /// Its recording is not kept.
+  /// `recording` is null: no recording is kept.
   MeasuredRun run;
-  /// Of trials beside the study's, in other grips of its hands (TrialPlan::grip).
+  /// How firmly the hand grips (TrialPlan::grip): 1 in the study itself, else a trial beside it.
   double grip = 1;
 };
 
 /// Force, torque, shaft, bone removed and compute time, in the order in which people should read them
 /// (Metric::compared).
 std::vector<Metric> key_metrics();
-
-/// Fills in what has no column of its own and follows from the others: in these trials the spindle turns
-/// throughout the milling, and not while holding.
-void complete_metrics(MeasuredRun& run);
 
 /// What a row is compared by: a Metric, or anything else that follows from a run's figures.
 using RunFigure = std::function<double(const RunMetrics&)>;

@@ -118,10 +118,9 @@ StudySettings StudyDesign::trial(std::size_t number) const {
   return settings;
 }
 
-StudyDesign design_of_seeds(std::uint64_t first, std::size_t count) {
-  StudyAxis seeds;
-  for (std::size_t n = 0; n < count; ++n) seeds.push_back({{"seed", fmt::format("{}", first + n)}});
-  return StudyDesign({}, {seeds}, {});
+std::string StudyDesign::label_of(const std::string& option) const {
+  const std::string* unit = find_value(units, option);
+  return unit == nullptr || unit->empty() ? option : fmt::format("{} ({})", option, *unit);
 }
 
 std::uint64_t seed_of(const StudySettings& settings) {

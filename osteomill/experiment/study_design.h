@@ -82,7 +82,8 @@ class StudyDesign {
   StudySettings trial(std::size_t number) const;
   /// The options that differ between trials, in the order of the axes.
   const std::vector<std::string>& varied() const { return varied_; }
-  const StudySettings& fixed() const { return fixed_; }
+  /// An option with its unit: "push (N)".
+  std::string label_of(const std::string& option) const;
 
   std::string title;
   StudyTest test = StudyTest::milling;
@@ -101,9 +102,6 @@ class StudyDesign {
   std::vector<std::string> varied_;
   std::size_t count_ = 1;
 };
-
-/// The design of `compare --seeds`: one axis, the seed, which follow each other from `first` on.
-StudyDesign design_of_seeds(std::uint64_t first, std::size_t count);
 
 /// The seed of a trial; 1 where it is not set.
 std::uint64_t seed_of(const StudySettings& settings);

@@ -83,10 +83,8 @@ TEST(StudyDesign, StepsEndWhereTheRangeDoes) {
   EXPECT_EQ(decades.back(), 100);
 }
 
-TEST(StudyDesign, SeedsFollowEachOther) {
-  const StudyDesign design = design_of_seeds(11, 3);
-  ASSERT_EQ(design.trial_count(), 3u);
-  EXPECT_EQ(seed_of(design.trial(2)), 13u);
+TEST(StudyDesign, ATrialWithoutASeedHasTheFirst) {
+  EXPECT_EQ(seed_of({{"seed", "13"}}), 13u);
   EXPECT_EQ(seed_of({}), 1u);
 }
 

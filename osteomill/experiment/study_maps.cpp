@@ -7,25 +7,20 @@
 #include <limits>
 #include <map>
 #include <set>
+#include <vector>
 
 #include <fmt/format.h>
 
-#include "osteomill/haptics/algorithms.h"
 #include "osteomill/numbers/distribution.h"
+#include "osteomill/report/figure.h"
 
 namespace osteomill {
 
 namespace {
 
 constexpr std::size_t kMaxCells = 40, kParts = 24, kMaxTics = 8;
-constexpr double kMuch = 10;
-
-std::string label_of(const StudyDesign& design, const std::string& name) {
-  for (const StudyColumn& column : columns_of(design.test))
-    if (column.name == name) return column.label;
-  const std::string* unit = find_value(design.units, name);
-  return unit == nullptr || unit->empty() ? name : fmt::format("{} ({})", name, *unit);
-}
+// Values that span this factor stand on a logarithmic axis.
+constexpr double kWide = 10;
 
 // A unit that both have is none of their ratio.
 std::string ratio_label(std::string above, std::string below) {
@@ -38,6 +33,55 @@ std::string ratio_label(std::string above, std::string below) {
   }
   return above + " / " + (below.find('/') == std::string::npos ? below : "(" + below + ")");
 }
+
+// Where it stands among those that are known; if it is new, it is put behind them.
+std::size_t place_in(std::vector<std::string>& known, const std::string& text) {
+  const auto at = std::ranges::find(known, text);
+  const auto place = static_cast<std::size_t>(at - known.begin());
+  if (at == known.end()) known.push_back(text);
+  return place;
+}
+
+// What stands along an axis, or is coloured: an option, a column of the rows, or the ratio of two of them.
+class Shown {
+ public:
+  Shown(const StudyDesign& design, const std::string& shown) : columns_(&columns_of(design.test)) {
+    names_ = names_in(shown);
+    label = label_of(design, names_.front());
+    if (names_.size() > 1) label = ratio_label(label, label_of(design, names_.back()));
+  }
+
+  // Not a number where it is not set or could not be measured.
+  double of(const StudySettings& settings, const TrialRow& row) {
+    const double value = one(names_.front(), settings, row);
+    return names_.size() == 1 ? value : value / one(names_.back(), settings, row);
+  }
+
+  std::string label;
+  // The values of an option that has words for values, each shown as its place among them.
+  std::vector<std::string> words;
+
+ private:
+  std::string label_of(const StudyDesign& design, const std::string& name) const {
+    const auto column = std::ranges::find(*columns_, name, &StudyColumn::name);
+    if (column != columns_->end()) return column->label;
+    return design.label_of(name);
+  }
+
+  double one(const std::string& name, const StudySettings& settings, const TrialRow& row) {
+    const auto column = std::ranges::find(*columns_, name, &StudyColumn::name);
+    if (column != columns_->end()) return row.values[static_cast<std::size_t>(column - columns_->begin())];
+    const std::string* text = find_value(settings, name);
+    if (text == nullptr) return kNotMeasured;
+    double number = 0;
+    const auto [end, error] = std::from_chars(text->data(), text->data() + text->size(), number);
+    if (error == std::errc() && end == text->data() + text->size()) return number;
+    return static_cast<double>(place_in(words, *text));
+  }
+
+  const std::vector<StudyColumn>* columns_;
+  std::vector<std::string> names_;
+};
 
 // The cells of an axis: values, or parts of their range, by their edges.
 struct Cells {
@@ -70,7 +114,7 @@ double mirrored(double value, double edge, bool logarithmic) {
 Cells cells_of(const std::set<double>& values, bool words) {
   Cells cells;
   const double min = *values.begin(), max = *values.rbegin();
-  cells.logarithmic = !words && min > 0 && max / min >= kMuch;
+  cells.logarithmic = !words && min > 0 && max / min >= kWide;
   if (values.size() > kMaxCells) {
     const StudyRange range{min, max, cells.logarithmic};
     cells.edges = steps_of(range, kParts + 1);
@@ -89,22 +133,22 @@ Cells cells_of(const std::set<double>& values, bool words) {
   return cells;
 }
 
-std::string axis_script(char axis, const Cells& cells, const ShownQuantity& shown) {
+std::string axis_script(char axis, const Cells& cells, const Shown& shown) {
   std::string script =
       fmt::format("{0} logscale {1}\nset {1}range [{2:.9g}:{3:.9g}]\nset {1}label {4} noenhanced\n",
                   cells.logarithmic ? "set" : "unset", axis, cells.edges.front(), cells.edges.back(),
-                  gnuplot_quoted(shown.label()));
+                  gnuplot_quoted(shown.label));
   if (cells.tics.empty()) return script + fmt::format("set {}tics autofreq\n", axis);
   std::string tics;
   double last = -1;
   for (std::size_t n = 0; n < cells.tics.size(); ++n) {
-    const bool is_word = !shown.words().empty();
+    const bool is_word = !shown.words.empty();
     const double share = cells.share_at(cells.tics[n]);
     // Numbers beside each other need room.
     if (axis == 'x' && !is_word && n > 0 && share - last < 0.15) continue;
     last = share;
     tics += fmt::format("{}{} {:.9g}", n == 0 ? "" : ", ",
-                        gnuplot_quoted(is_word ? shown.words()[n] : fmt::format("{:.4g}", cells.tics[n])),
+                        gnuplot_quoted(is_word ? shown.words[n] : fmt::format("{:.4g}", cells.tics[n])),
                         cells.tics[n]);
   }
   return script + fmt::format("set {}tics ({})\n", axis, tics);
@@ -140,92 +184,60 @@ std::string colour_script(const StudyMap& map, const std::string& label, double 
       14 / grid.height_px);
 }
 
+struct Point {
+  std::size_t panel;
+  double x, y, colour;
+};
+
+std::string panel_name(const StudyMap& map, const StudySettings& settings) {
+  std::string name;
+  for (const std::string& key : names_in(map.panels))
+    if (const std::string* value = find_value(settings, key)) name += (name.empty() ? "" : ", ") + *value;
+  return name;
+}
+
+Cells cells_along(double Point::*axis, const std::vector<Point>& points, const Shown& shown) {
+  std::set<double> values;
+  for (const Point& point : points) values.insert(point.*axis);
+  return cells_of(values, !shown.words.empty());
+}
+
+// What stands in the map's panels.
+struct Gathered {
+  Shown x, y, colour;
+  std::vector<std::string> panels = {};
+  std::vector<Point> points = {};
+};
+
+Gathered gather(const StudyDesign& design, const StudyMap& map, const EachRow& each_row) {
+  Gathered all{{design, map.x}, {design, map.y}, {design, map.colour}};
+  const auto parts = parts_of(design.test);
+  each_row([&](const StudySettings& settings, const TrialRow& row) {
+    if (parts[row.part] != (map.part.empty() ? parts.front() : map.part)) return;
+    const Point point{place_in(all.panels, panel_name(map, settings)), all.x.of(settings, row),
+                      all.y.of(settings, row), all.colour.of(settings, row)};
+    if (std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.colour))
+      all.points.push_back(point);
+  });
+  return all;
+}
+
 }  // namespace
 
-ShownQuantity::ShownQuantity(const StudyDesign& design, const std::string& shown) {
-  const std::vector<StudyColumn>& columns = columns_of(design.test);
-  std::vector<std::string> labels;
-  for (const std::string& name : names_in(shown)) {
-    const auto column = std::find_if(columns.begin(), columns.end(),
-                                     [&](const StudyColumn& one) { return one.name == name; });
-    if (column == columns.end()) {
-      sources_.emplace_back(name);
-    } else {
-      sources_.emplace_back(static_cast<std::size_t>(column - columns.begin()));
-    }
-    labels.push_back(label_of(design, name));
-  }
-  label_ = labels.size() == 1 ? labels.front() : ratio_label(labels.front(), labels.back());
-}
-
-double ShownQuantity::of(const std::variant<std::size_t, std::string>& source, const StudySettings& settings,
-                         const TrialRow& row) {
-  if (const auto* column = std::get_if<std::size_t>(&source)) return row.values[*column];
-  const std::string* text = find_value(settings, std::get<std::string>(source));
-  if (text == nullptr) return kNotMeasured;
-  double number = 0;
-  const auto [end, error] = std::from_chars(text->data(), text->data() + text->size(), number);
-  if (error == std::errc() && end == text->data() + text->size()) return number;
-  const auto known = std::find(words_.begin(), words_.end(), *text);
-  const auto place = static_cast<double>(known - words_.begin());
-  if (known == words_.end()) words_.push_back(*text);
-  return place;
-}
-
-double ShownQuantity::of(const StudySettings& settings, const TrialRow& row) {
-  const double value = of(sources_.front(), settings, row);
-  return sources_.size() == 1 ? value : value / of(sources_.back(), settings, row);
-}
-
-MapOfStudy::MapOfStudy(const StudyDesign& design, const StudyMap& map)
-    : map_(map), x_(design, map.x), y_(design, map.y), colour_(design, map.colour) {
-  const auto parts = parts_of(design.test);
-  const auto part = std::find(parts.begin(), parts.end(), map.part);
-  if (part != parts.end()) part_ = static_cast<std::size_t>(part - parts.begin());
-}
-
-std::size_t MapOfStudy::panel_of(const StudySettings& settings) {
-  std::string name;
-  for (const std::string& key : names_in(map_.panels))
-    if (const std::string* value = find_value(settings, key)) name += (name.empty() ? "" : ", ") + *value;
-  const auto known = std::find(panels_.begin(), panels_.end(), name);
-  if (known != panels_.end()) return static_cast<std::size_t>(known - panels_.begin());
-  panels_.push_back(name);
-  return panels_.size() - 1;
-}
-
-void MapOfStudy::add(const StudySettings& settings, const TrialRow& row) {
-  if (row.part != part_) return;
-  const Point point{panel_of(settings), x_.of(settings, row), y_.of(settings, row),
-                    colour_.of(settings, row)};
-  if (std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.colour))
-    points_.push_back(point);
-}
-
-std::string MapOfStudy::caption() const {
-  return fmt::format(
-      "{}: {} of the trials in a cell, by {} and {}. What is white was not tried, or could not be "
-      "measured.",
-      colour_.label(), map_.statistic, x_.label(), y_.label());
-}
-
-Figure MapOfStudy::draw(const std::string& name, const std::filesystem::path& folder) const {
-  const TemporaryFolder work;
-  std::set<double> xs, ys;
-  for (const Point& point : points_) {
-    xs.insert(point.x);
-    ys.insert(point.y);
-  }
-  const Cells x = cells_of(xs, !x_.words().empty()), y = cells_of(ys, !y_.words().empty());
-  const std::size_t panels = panels_.size();
+std::optional<CaptionedFigure> draw_study_map(const StudyDesign& design, const StudyMap& map,
+                                              const EachRow& each_row, const std::string& name,
+                                              const std::filesystem::path& folder) {
+  const auto [shown_x, shown_y, colour, panels, points] = gather(design, map, each_row);
+  if (points.empty()) return std::nullopt;
+  const Cells x = cells_along(&Point::x, points, shown_x), y = cells_along(&Point::y, points, shown_y);
   std::map<std::array<std::size_t, 3>, std::vector<double>> cells;
-  for (const Point& point : points_)
+  for (const Point& point : points)
     cells[{point.panel, x.of(point.x), y.of(point.y)}].push_back(point.colour);
-  std::vector<std::string> data(panels);
+  std::vector<std::string> data(panels.size());
   double min = std::numeric_limits<double>::infinity(), max = -min;
   for (const auto& [place, values] : cells) {
     const auto [panel, column, row] = place;
-    const double value = statistic_of(map_.statistic, values);
+    const double value = statistic_of(map.statistic, values);
     min = std::min(min, value);
     max = std::max(max, value);
     data[panel] += fmt::format("{:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g}\n",
@@ -233,29 +245,34 @@ Figure MapOfStudy::draw(const std::string& name, const std::filesystem::path& fo
                                between(y.edges[row], y.edges[row + 1], false), x.edges[column],
                                x.edges[column + 1], y.edges[row], y.edges[row + 1], value);
   }
-  PanelGrid grid{.columns = std::min<std::size_t>(panels, 4),
+  PanelGrid grid{.columns = std::min<std::size_t>(panels.size(), 4),
                  .head_px = 118,
                  .left_px = 84,
                  .right_px = 34,
                  .above_px = 34,
                  .below_px = 58};
-  grid.rows = (panels + grid.columns - 1) / grid.columns;
+  grid.rows = (panels.size() + grid.columns - 1) / grid.columns;
   grid.height_px = grid.head_px + 340 * static_cast<double>(grid.rows);
   FigureScript script{name, grid.height_px};
-  script.body = begin_panels("") + axis_script('x', x, x_) + axis_script('y', y, y_) +
-                colour_script(map_, colour_.label(), min, max, grid);
-  for (std::size_t n = 0; n < panels; ++n) {
+  script.body = begin_panels("") + axis_script('x', x, shown_x) + axis_script('y', y, shown_y) +
+                colour_script(map, colour.label, min, max, grid);
+  for (std::size_t n = 0; n < panels.size(); ++n) {
     if (data[n].empty()) continue;
     const std::string file = fmt::format("map-{}.dat", n);
-    write_figure_data(work / file, data[n]);
+    write_figure_data(script.work / file, data[n]);
     script.body += panel_margins(grid, panel_cell(grid, n % grid.columns, n / grid.columns)) +
-                   fmt::format("set title {} offset 0,-0.4 noenhanced\n", gnuplot_quoted(panels_[n])) +
+                   fmt::format("set title {} offset 0,-0.4 noenhanced\n", gnuplot_quoted(panels[n])) +
                    fmt::format(
                        "plot '{}' using 1:2:3:4:5:6:7 with boxxyerror fs solid noborder lc palette{}\n"
                        "unset label\nunset colorbox\n",
-                       file, map_.line_of_equality ? ", x with lines dt 2 lw 2 lc rgb '#d32f2f'" : "");
+                       file, map.line_of_equality ? ", x with lines dt 2 lw 2 lc rgb '#d32f2f'" : "");
   }
-  return draw_figure(script, work, folder);
+  return CaptionedFigure{
+      draw_figure(script, folder).svg,
+      fmt::format(
+          "{}: {} of the trials in a cell, by {} and {}. What is white was not tried, or could not be "
+          "measured.",
+          colour.label, map.statistic, shown_x.label, shown_y.label)};
 }
 
 }  // namespace osteomill

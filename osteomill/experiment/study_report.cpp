@@ -2,16 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 
 #include <fmt/format.h>
 #include <fmt/ostream.h>
 
 #include "osteomill/experiment/conclusions.h"
-#include "osteomill/experiment/findings_section.h"
 #include "osteomill/experiment/study_maps.h"
 #include "osteomill/experiment/study_section.h"
 #include "osteomill/files/atomic_file.h"
+#include "osteomill/files/csv_field.h"
 #include "osteomill/files/input_error.h"
 
 namespace osteomill {
@@ -19,14 +20,6 @@ namespace osteomill {
 namespace fs = std::filesystem;
 
 namespace {
-
-// As RFC 4180 has it.
-std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + "\"";
-}
 
 std::string varied_fields(const StudyDesign& design, const StudySettings& settings) {
   std::string fields;
@@ -55,60 +48,65 @@ std::string text_of(const StudySettings& settings, std::string_view key, const c
   return value == nullptr ? otherwise : *value;
 }
 
-// Rows that are compared hand by hand: those of the same bone, tool and all else that is set.
-class FindingsByGroup {
- public:
-  void add(const StudyDesign& design, const StudySettings& settings, const TrialRow& row) {
-    std::string group;
-    for (const std::string& key : design.varied()) {
-      if (key == "seed" || key == "algorithm" || key == "mode" || key == "grip") continue;
-      if (const std::string* value = find_value(settings, key))
-        group += fmt::format("{}{} {}", group.empty() ? "" : ", ", key, *value);
+StudyRow row_of_hand(const StudySettings& settings, const TrialRow& row) {
+  StudyRow of_hand = milling_row(row);
+  of_hand.seed = seed_of(settings);
+  of_hand.grip = std::stod(text_of(settings, "grip", "1"));
+  of_hand.run.algorithm =
+      algorithm_named(text_of(settings, "algorithm", default_algorithm().id.name.c_str())).id;
+  of_hand.run.mode = *mode_named(text_of(settings, "mode", "steady"));
+  return of_hand;
+}
+
+// What hands that are compared have in common: the bone, the tool, and all else that varies but the hand
+// itself and what is compared.
+std::string group_of(const StudyDesign& design, const StudySettings& settings) {
+  std::string group;
+  for (const std::string& key : design.varied()) {
+    if (key == "seed" || key == "algorithm" || key == "mode" || key == "grip") continue;
+    if (const std::string* value = find_value(settings, key))
+      group += fmt::format("{}{} {}", group.empty() ? "" : ", ", key, *value);
+  }
+  return group;
+}
+
+// While a study is not done some hands have not yet tried all.
+std::vector<StudyRow> of_whole_hands(std::vector<StudyRow> rows) {
+  std::map<std::uint64_t, std::size_t> tried;
+  std::size_t most = 0;
+  for (const StudyRow& row : rows) most = std::max(most, ++tried[row.seed]);
+  std::erase_if(rows, [&](const StudyRow& row) { return tried[row.seed] < most; });
+  return rows;
+}
+
+// One for each group of hands.
+std::vector<PageSection> findings_sections(const StudyDesign& design, const EachRow& each_row,
+                                           const fs::path& figures) {
+  std::map<std::string, std::vector<StudyRow>> groups;
+  each_row([&](const StudySettings& settings, const TrialRow& row) {
+    groups[group_of(design, settings)].push_back(row_of_hand(settings, row));
+  });
+  std::vector<PageSection> sections;
+  for (const auto& [group, rows] : groups) {
+    const Study study(of_whole_hands(rows));
+    PageSection section{.title = group.empty() ? "Over the hands" : "Over the hands: " + group,
+                        .paragraphs = {what_was_compared(study, group.empty() ? "the same bone" : group)},
+                        .points = conclusions(study),
+                        .parts = {findings_section(study)}};
+    const fs::path folder = figures / fmt::format("{}", sections.size());
+    for (const std::string_view phase : study.phases()) {
+      create_folder(folder);
+      section.figures.push_back({draw_study_figure(study, phase, folder).svg, "Every hand."});
     }
-    StudyRow of_hand = milling_row(row);
-    of_hand.seed = seed_of(settings);
-    of_hand.grip = std::stod(text_of(settings, "grip", "1"));
-    of_hand.run.algorithm =
-        algorithm_named(text_of(settings, "algorithm", default_algorithm().id.name.c_str())).id;
-    of_hand.run.mode = *mode_named(text_of(settings, "mode", "steady"));
-    groups_[group].push_back(std::move(of_hand));
+    sections.push_back(std::move(section));
   }
-
-  void add_sections(std::vector<PageSection>& sections, const fs::path& figures) const {
-    std::size_t number = 0;
-    for (const auto& [group, rows] : groups_) {
-      const Study study(of_whole_hands(rows));
-      PageSection section{.title = group.empty() ? "Over the hands" : "Over the hands: " + group,
-                          .paragraphs = {what_was_compared(study, group.empty() ? "the same bone" : group)},
-                          .points = conclusions(study),
-                          .parts = {findings_section(study)}};
-      for (const std::string_view phase : study.phases()) {
-        const fs::path folder = figures / fmt::format("{}", number);
-        create_folder(folder);
-        section.figures.push_back({draw_study_figure(study, phase, folder).svg, "Every hand."});
-      }
-      sections.push_back(std::move(section));
-      ++number;
-    }
-  }
-
- private:
-  // Of a part of a study some hands have not yet tried all.
-  static std::vector<StudyRow> of_whole_hands(std::vector<StudyRow> rows) {
-    std::map<std::uint64_t, std::size_t> tried;
-    std::size_t most = 0;
-    for (const StudyRow& row : rows) most = std::max(most, ++tried[row.seed]);
-    std::erase_if(rows, [&](const StudyRow& row) { return tried[row.seed] < most; });
-    return rows;
-  }
-
-  std::map<std::string, std::vector<StudyRow>> groups_;
-};
+  return sections;
+}
 
 constexpr std::size_t kFewValues = 12;
 using TriedValues = std::map<std::string, std::vector<std::string>>;
 
-// One more than few stands for any number.
+// Of each option up to one value more than the table shows, so that the table can say that there are others.
 void note_tried(TriedValues& tried, const StudySettings& settings) {
   for (const auto& [key, value] : settings) {
     std::vector<std::string>& values = tried[key];
@@ -120,14 +118,26 @@ void note_tried(TriedValues& tried, const StudySettings& settings) {
 HtmlTable options_table(const StudyDesign& design, const TriedValues& tried) {
   HtmlTable table{{"Option", "What was tried"}, {}};
   for (const auto& [key, values] : tried) {
-    const std::string unit = text_of(design.units, key, "");
     std::string words;
     for (std::size_t n = 0; n < std::min(values.size(), kFewValues); ++n)
       words += (n == 0 ? "" : ", ") + values[n];
-    table.rows.push_back({html_escaped(unit.empty() ? key : fmt::format("{} ({})", key, unit)),
+    table.rows.push_back({html_escaped(design.label_of(key)),
                           html_escaped(values.size() > kFewValues ? words + " and others" : words)});
   }
   return table;
+}
+
+PageSection maps_section(const StudyDesign& design, const EachRow& each_row, const fs::path& figures) {
+  PageSection section{.title = "Maps"};
+  for (std::size_t n = 1; n <= design.maps.size(); ++n) {
+    const StudyMap& map = design.maps[n - 1];
+    if (const auto drawn = draw_study_map(design, map, each_row, fmt::format("map_{}", n), figures)) {
+      section.figures.push_back(*drawn);
+    } else {
+      section.notices.push_back(fmt::format("Map {}, {}: nothing was measured.", n, map.title));
+    }
+  }
+  return section;
 }
 
 std::string share_text(std::size_t done, std::size_t all) {
@@ -148,51 +158,36 @@ std::string list_row(const StudyDesign& design, std::size_t number) {
 }
 
 fs::path write_study_report(const StudyDesign& design, const StudyRecord& record, const fs::path& folder) {
-  std::vector<MapOfStudy> maps;
-  for (const StudyMap& map : design.maps) maps.emplace_back(design, map);
-  TriedValues tried;
-  FindingsByGroup findings;
-  std::size_t done = 0;
-  double cpu_s = 0;
+  const StudyStatus status = study_status(folder, record, design.test);
+  if (status.done.empty()) throw InputError(folder.string(), "has no trial that is done");
+  const EachRow each_row = [&](const auto& see) {
+    for (const std::size_t number : status.done) {
+      const std::optional<Slice> slice = read_slice(folder, record, design.test, number);
+      if (!slice) throw InputError(slice_path(folder, number).string(), "has gone while the report was made");
+      for (const TrialRow& row : slice->rows) see(design.trial(row.trial), row);
+    }
+  };
+  const std::string share = share_text(status.trials_done, record.trials);
   const fs::path out = folder / "report";
   write_folder_atomically(out, [&](const fs::path& beside) {
+    TriedValues tried;
     write_text_atomically(beside / "trials.csv", [&](std::ostream& csv) {
       csv << csv_head(design);
-      for (std::size_t number = 0; number < record.slices(); ++number) {
-        const std::optional<Slice> slice = read_slice(folder, record, design.test, number);
-        if (!slice) continue;
-        done += record.size_of(number);
-        cpu_s += slice->cpu_s;
-        for (const TrialRow& row : slice->rows) {
-          const StudySettings settings = design.trial(row.trial);
-          csv << csv_row(design, settings, row);
-          note_tried(tried, settings);
-          for (MapOfStudy& map : maps) map.add(settings, row);
-          if (design.findings) findings.add(design, settings, row);
-        }
-      }
+      each_row([&](const StudySettings& settings, const TrialRow& row) {
+        csv << csv_row(design, settings, row);
+        note_tried(tried, settings);
+      });
     });
-    if (done == 0) throw InputError(folder.string(), "has no trial that is done");
-    create_folder(beside / "figures");
-    PageSection opening{
-        .paragraphs = {fmt::format("{}, test {}; {:.3g} h of CPU.", share_text(done, record.trials),
-                                   name_of(design.test), cpu_s / 3600)},
-        .tables = {options_table(design, tried)}};
-    if (done < record.trials)
-      opening.notices = {fmt::format("This is a part of the study: {}.", share_text(done, record.trials))};
-    std::vector<PageSection> sections{std::move(opening)};
-    PageSection drawn{.title = "Maps"};
-    for (std::size_t n = 0; n < maps.size(); ++n) {
-      if (maps[n].empty()) {
-        drawn.notices.push_back(
-            fmt::format("Map {}, {}: nothing was measured.", n + 1, design.maps[n].title));
-        continue;
-      }
-      drawn.figures.push_back(
-          {maps[n].draw(fmt::format("map_{}", n + 1), beside / "figures").svg, maps[n].caption()});
-    }
-    if (!maps.empty()) sections.push_back(std::move(drawn));
-    if (design.findings) findings.add_sections(sections, beside / "figures");
+    const fs::path figures = beside / "figures";
+    create_folder(figures);
+    std::vector<PageSection> sections{{.paragraphs = {fmt::format("{}, test {}; {:.3g} h of CPU.", share,
+                                                                  name_of(design.test), status.cpu_s / 3600)},
+                                       .tables = {options_table(design, tried)}}};
+    if (status.trials_done < record.trials)
+      sections.front().notices = {fmt::format("This is a part of the study: {}.", share)};
+    if (!design.maps.empty()) sections.push_back(maps_section(design, each_row, figures));
+    if (design.findings)
+      std::ranges::move(findings_sections(design, each_row, figures), std::back_inserter(sections));
     write_text_atomically(beside / "report.html", [&](std::ostream& page) {
       page << html_page(design.title.empty() ? "A study" : design.title, sections);
     });

@@ -8,7 +8,7 @@
 #include "osteomill/experiment/paper.h"
 #include "osteomill/experiment/statistics.h"
 #include "osteomill/experiment/study_comparison.h"
-#include "osteomill/files/temporary_folder.h"
+#include "osteomill/experiment/study_findings.h"
 
 namespace osteomill {
 
@@ -115,14 +115,13 @@ std::string interval_text(const MedianInterval& interval) {
 }
 
 // "2 > 1, p = 0.012" in bold where significant, else "1, 2: p = 0.3" in grey.
-std::string pair_text(const AlgorithmPair& pair) {
-  const AlgorithmId& lesser = pair.greater == pair.first ? pair.second : pair.first;
+std::string pair_text(const PairedComparison& pair) {
+  const std::string first = short_label(pair.first.algorithm), second = short_label(pair.second.algorithm);
   if (pair.p <= kSignificance) {
-    return fmt::format("<b>{} &gt; {}</b>, {}", short_label(pair.greater), short_label(lesser),
-                       html_escaped(p_text(pair.p)));
+    return fmt::format("<b>{} &gt; {}</b>, {}", pair.second_is_greater ? second : first,
+                       pair.second_is_greater ? first : second, html_escaped(p_text(pair.p)));
   }
-  return fmt::format("<span class=\"none\">{}, {}: {}</span>", short_label(pair.first),
-                     short_label(pair.second), p_text(pair.p));
+  return fmt::format("<span class=\"none\">{}, {}: {}</span>", first, second, p_text(pair.p));
 }
 
 // "0.02 [0.01, 0.03]", with the hands where it could not be measured in all; else why not in any.
@@ -155,7 +154,7 @@ HtmlTable algorithms_table(const Study& study, Mode mode, std::string_view phase
       table.rows.back().push_back(values_text(study, {algorithm, mode}, phase, metric));
     }
     std::string pairs;
-    for (const AlgorithmPair& pair : compare_algorithms(study, mode, phase, metric)) {
+    for (const PairedComparison& pair : compare_algorithms(study, mode, phase, metric)) {
       pairs += (pairs.empty() ? "" : "<br>") + pair_text(pair);
     }
     if (study.algorithms().size() > 1) table.rows.back().push_back(pairs);
@@ -163,10 +162,10 @@ HtmlTable algorithms_table(const Study& study, Mode mode, std::string_view phase
   return table;
 }
 
-std::string change_text(const ModeChange& change, std::size_t all_hands) {
+std::string change_text(const PairedComparison& change, std::size_t all_hands) {
   const std::string p = html_escaped(p_text(change.p));
   return fmt::format(
-      "{:.3g} → {:.3g}{}<br>× {}<br>{}", change.paper.median, change.steady.median,
+      "{:.3g} → {:.3g}{}<br>× {}<br>{}", change.first_values.median, change.second_values.median,
       change.hands < all_hands ? fmt::format(" in {} of {} hands", change.hands, all_hands) : "",
       change.ratios > 0 ? interval_text(change.ratio) : "–",
       change.p <= kSignificance ? "<b>" + p + "</b>" : "<span class=\"none\">" + p + "</span>");
@@ -177,10 +176,11 @@ HtmlTable changes_table(const Study& study, std::string_view phase) {
   for (const AlgorithmId& algorithm : study.algorithms()) table.header.emplace_back(algorithm.label);
   for (const Metric& metric : study.metrics_of(phase)) {
     table.rows.push_back({html_escaped(with_unit(metric.name, metric))});
-    const std::vector<ModeChange> changes = compare_modes(study, phase, metric);
+    const std::vector<PairedComparison> changes = compare_modes(study, phase, metric);
     for (const AlgorithmId& algorithm : study.algorithms()) {
-      const auto change = std::find_if(changes.begin(), changes.end(),
-                                       [&](const ModeChange& of) { return of.algorithm == algorithm; });
+      const auto change = std::find_if(changes.begin(), changes.end(), [&](const PairedComparison& of) {
+        return of.first.algorithm == algorithm;
+      });
       table.rows.back().push_back(change == changes.end() ? "–" : change_text(*change, study.seeds().size()));
     }
   }
@@ -231,6 +231,31 @@ std::vector<std::string> how_to_read(const Study& study) {
   return paragraphs;
 }
 
+const char* css_of(Verdict verdict) {
+  return verdict == Verdict::agrees ? "agrees" : verdict == Verdict::does_not_agree ? "differs" : "none";
+}
+
+HtmlTable findings_table(const Study& study, Mode mode) {
+  const bool one = study.seeds().size() == 1;
+  HtmlTable table{{"The paper found", one ? "Measured here" : "Medians over the hands",
+                   one ? "In this hand" : "Verdict", "Rule"},
+                  {}};
+  if (!one) table.header.insert(table.header.end() - 1, {"In how many hands", "Sign test"});
+  for (const StudyFinding& f : check_study_findings(study, mode)) {
+    const Verdict verdict = f.verdict;
+    std::vector<std::string> row{
+        html_escaped(f.of_medians.paper_says), html_escaped(f.of_medians.measured),
+        fmt::format("<span class=\"{}\">{}</span>", css_of(verdict), name_of(verdict))};
+    if (!one) {
+      row.push_back(fmt::format("{} of {}", f.agreeing, f.tested));
+      row.push_back(html_escaped(p_text(f.p)));
+    }
+    row.push_back("agrees where " + html_escaped(f.of_medians.rule));
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
 std::string phase_title(std::string_view phase) {
   return phase == kMilling ? "Milling" : "Holding still, not milling";
 }
@@ -238,7 +263,6 @@ std::string phase_title(std::string_view phase) {
 }  // namespace
 
 Figure draw_study_figure(const Study& study, std::string_view phase, const std::filesystem::path& folder) {
-  const TemporaryFolder work;
   std::vector<Metric> metrics = study.metrics_of(phase);
   if (metrics.size() > kMaxPanels) metrics.resize(kMaxPanels);
   PanelGrid grid{.columns = kColumns,
@@ -255,9 +279,9 @@ Figure draw_study_figure(const Study& study, std::string_view phase, const std::
   for (std::size_t n = 0; n < metrics.size(); ++n) {
     const PanelCell cell = panel_cell(grid, n % kColumns, n / kColumns);
     script.body += panel_margins(grid, cell) + title(metrics[n], grid, cell) +
-                   panel(study, phase, metrics[n], n, work) + "unset label\n";
+                   panel(study, phase, metrics[n], n, script.work) + "unset label\n";
   }
-  return draw_figure(script, work, folder);
+  return draw_figure(script, folder);
 }
 
 PageSection study_section(const Study& study, const std::vector<CaptionedFigure>& figures) {
@@ -274,6 +298,27 @@ PageSection study_section(const Study& study, const std::vector<CaptionedFigure>
   for (const std::string_view phase : study.phases()) {
     section.parts.push_back({.title = fmt::format("What steady changes: {}", phase_title(phase)),
                              .tables = {changes_table(study, phase)}});
+  }
+  return section;
+}
+
+PageSection findings_section(const Study& study) {
+  PageSection section{
+      .title = "The paper's findings",
+      .paragraphs = {
+          "What section 8.2 of the paper says it found, each held against what was measured by a rule of "
+          "this "
+          "project. Mode paper has the algorithms as the paper has them; steady has this project's named "
+          "improvements, so what the paper found wrong with one of them need not be wrong there."}};
+  if (study.seeds().size() > 1) {
+    section.paragraphs.push_back(
+        "Several hands agree with the paper, or do not, where all of them do, or so many more than half that "
+        "tossing a coin would give as many in one of twenty tries at most; else it is not settled. p is the "
+        "chance that as many or more would agree by the toss.");
+  }
+  for (const Mode mode : study.modes()) {
+    section.parts.push_back(
+        {.title = fmt::format("Mode {}", name_of(mode)), .tables = {findings_table(study, mode)}});
   }
   return section;
 }

@@ -15,7 +15,10 @@ namespace osteomill {
 Figure draw_study_figure(const Study& study, std::string_view phase, const std::filesystem::path& folder);
 
 /// The report's section on a study: medians with their intervals, which differences between algorithms are
-/// significant, whether the paper's findings hold over the seeds, and what `steady` changes.
+/// significant, and what `steady` changes.
 PageSection study_section(const Study& study, const std::vector<CaptionedFigure>& figures);
+
+/// The report's section on what the paper says it found, each held against the study, mode by mode.
+PageSection findings_section(const Study& study);
 
 }  // namespace osteomill

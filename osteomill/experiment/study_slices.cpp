@@ -229,6 +229,7 @@ StudyStatus study_status(const fs::path& folder, const StudyRecord& record, Stud
   for (std::size_t number = 0; number < record.slices(); ++number) {
     const std::optional<Slice> slice = read_slice(folder, record, test, number);
     if (slice) {
+      status.done.push_back(number);
       status.trials_done += record.size_of(number);
       status.cpu_s += slice->cpu_s;
       continue;

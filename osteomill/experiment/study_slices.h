@@ -12,8 +12,8 @@
 
 namespace osteomill {
 
-/// What a study's folder is of, as its file study.h5 says; its trials lie there in slices, a file each, and
-/// what is done is what such files hold.
+/// Which study a folder is of: the content of its file study.h5. The study's trials are run in slices, trials
+/// that follow each other, and a slice is done when its file lies in the folder.
 struct StudyRecord {
   /// Of the study's file and of the program, as bytes.
   std::uint64_t study_hash = 0;
@@ -69,6 +69,8 @@ std::optional<Slice> read_slice(const std::filesystem::path& folder, const Study
 
 /// How far a study is, by the files of its folder.
 struct StudyStatus {
+  /// By their numbers, all slices.
+  std::vector<std::size_t> done;
   std::vector<std::size_t> missing;
   std::size_t trials_done = 0;
   double cpu_s = 0;

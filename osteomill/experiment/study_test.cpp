@@ -64,8 +64,10 @@ TEST(Study, WhatDiffersInEveryHandIsSignificantFromSevenHandsOn) {
     const Study study(sample_rows(seeds));
     const auto pairs = compare_algorithms(study, Mode::paper, kMilling, force_hp());
     ASSERT_EQ(pairs.size(), 3u);
-    EXPECT_EQ(pairs[0].greater, "surface-points");
-    EXPECT_EQ(pairs[2].greater, "surface-points");
+    EXPECT_TRUE(pairs[0].second_is_greater);
+    EXPECT_EQ(pairs[0].second.algorithm, "surface-points");
+    EXPECT_FALSE(pairs[2].second_is_greater);
+    EXPECT_EQ(pairs[2].first.algorithm, "surface-points");
     // Two of three pairs lie at the least p, 2^(1 - n); Holm takes three times the first.
     EXPECT_DOUBLE_EQ(pairs[0].p, 3 * std::pow(0.5, static_cast<double>(seeds) - 1));
     EXPECT_EQ(pairs[0].p <= kSignificance, seeds == 7);
@@ -79,7 +81,7 @@ TEST(Study, WhatSteadyChangesIsARatioOfPairs) {
   ASSERT_EQ(changes.size(), 3u);
   EXPECT_NEAR(changes[1].ratio.median, 0.1, 1e-12);
   EXPECT_EQ(changes[1].ratios, 8u);
-  EXPECT_TRUE(changes[1].falls);
+  EXPECT_FALSE(changes[1].second_is_greater);
   EXPECT_DOUBLE_EQ(changes[1].p, 3 * std::pow(0.5, 7));
   EXPECT_EQ(changes[0].p, 1);
   EXPECT_EQ(changes[0].ratio.median, 1);

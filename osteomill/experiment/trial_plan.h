@@ -25,7 +25,7 @@ struct TrialPlan {
   bool mode_in_names = false;
   /// How many times as firmly the hand grips as it is said to otherwise; its settings are those of the grip.
   double grip = 1;
-  /// As what every algorithm's stiffness was chosen to be felt on a flat wall (match_stiffness.h); nothing
+  /// Every algorithm's stiffness was chosen so that a flat wall is felt as this (match_stiffness.h); nothing
   /// where each has its own.
   std::optional<double> matched_N_per_mm = std::nullopt;
   /// Of the bone as scanned (fingerprint_of), for its recordings to be verified.
@@ -35,7 +35,7 @@ struct TrialPlan {
 /// The key of the setting in which every recording of this test says where the tool enters.
 inline constexpr std::string_view kScriptEntryKey = "script.entry";
 
-/// And how long it was to be held there, in s.
+/// The key of the setting in which it says for how long the tool was to be held still, in s.
 inline constexpr std::string_view kScriptHoldingKey = "script.holding";
 
 /// The key of the setting in which a recording says TrialPlan::matched_N_per_mm.

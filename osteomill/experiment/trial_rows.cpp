@@ -11,12 +11,6 @@ namespace {
 constexpr double kMmPerM = 1000;
 constexpr std::string_view kOnce[] = {"press"};
 
-bool is_of_time(const Metric& metric) {
-  const std::string_view column = metric.column;
-  return metric.table == MetricTable::times || metric.table == MetricTable::rate ||
-         column.starts_with("step_us");
-}
-
 std::vector<StudyColumn> milling_columns() {
   std::vector<StudyColumn> columns{{"hand_stiffness_N_per_m", "stiffness of the hand (N/m)"},
                                    {"hand_damping_Ns_per_m", "damping of the hand (N s/m)"}};
@@ -24,10 +18,19 @@ std::vector<StudyColumn> milling_columns() {
     if (*metric.column == '\0') continue;
     const bool has_label = *metric.label != '\0' && !std::string_view(metric.label).starts_with("…");
     const char* words = *metric.name != '\0' ? metric.name : has_label ? metric.label : metric.column;
-    columns.push_back(
-        {metric.column, words == metric.column ? words : with_unit(words, metric), is_of_time(metric)});
+    columns.push_back({metric.column, words == metric.column ? words : with_unit(words, metric)});
   }
   return columns;
+}
+
+// What follows from the columns: in these trials the spindle turns throughout the milling, and not while
+// holding.
+void complete_metrics(MeasuredRun& run) {
+  RunMetrics& m = run.metrics;
+  for (VectorMetrics* felt : {&m.force_N, &m.torque_Nmm})
+    felt->hp_share = felt->mean == 0 ? 0 : felt->hp_rms / felt->mean;
+  m.contact.force = m.contact.torque = m.contact.any;
+  m.contact.lost_while_milling = m.contact.is_lost() && (run.phase == kMilling) == (m.contact.any > 0);
 }
 
 }  // namespace

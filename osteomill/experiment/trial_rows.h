@@ -27,8 +27,6 @@ struct StudyColumn {
   std::string name;
   /// In words, with the unit.
   std::string label;
-  /// The machine's, and not the trial's alone.
-  bool of_time = false;
 };
 const std::vector<StudyColumn>& columns_of(StudyTest test);
 

@@ -10,6 +10,8 @@ namespace osteomill {
 namespace {
 
 constexpr double kMmPerM = 1000;
+// With which the handle is pressed.
+constexpr double kBias_N = 0.5;
 // Pressing slowly: 5 mm/s at 1000 Hz. From where it first resists, no wall is that soft.
 constexpr double kDepthStep_mm = 0.005;
 constexpr double kDeepest_mm = 3;
@@ -47,7 +49,7 @@ class Wall {
   const WallPress* press_;
 };
 
-// Where the wall carries the bias force, and how steeply its force rises there.
+// Where the wall carries the pressing force, and how steeply its force rises there.
 struct Rest {
   double depth_mm;
   /// Of it, from where the wall first resists: an algorithm may feel the burr's centre and not its surface.
@@ -55,7 +57,7 @@ struct Rest {
   double felt_N_per_mm;
 };
 
-std::optional<Rest> press_slowly(Wall& wall, double bias_N) {
+std::optional<Rest> press_slowly(Wall& wall) {
   double depth_mm = -kBeginsAbove_mm;
   double force_N = 0;
   double last_force_N = 0;
@@ -70,12 +72,12 @@ std::optional<Rest> press_slowly(Wall& wall, double bias_N) {
     return force_N >= wanted_N;
   };
   // From the last depth short of three quarters of the force, so that a force that jumps is steep, not flat.
-  if (!press_to(0.75 * bias_N)) return std::nullopt;
+  if (!press_to(0.75 * kBias_N)) return std::nullopt;
   const double shallow_mm = depth_mm - kDepthStep_mm;
   const double shallow_N = last_force_N;
-  if (!press_to(bias_N)) return std::nullopt;
+  if (!press_to(kBias_N)) return std::nullopt;
   const double rest_mm = depth_mm;
-  if (!press_to(1.25 * bias_N)) return std::nullopt;
+  if (!press_to(1.25 * kBias_N)) return std::nullopt;
   const Rest rest{rest_mm, std::max(rest_mm - touch_mm, kDepthStep_mm),
                   (force_N - shallow_N) / (depth_mm - shallow_mm)};
   while (depth_mm > rest_mm) wall.force_N(wall.pose_at(depth_mm -= kDepthStep_mm));
@@ -124,7 +126,7 @@ bool swing_dies_out(Wall& wall, const Rest& rest, const WallPress& press) {
   SimulatedHandle handle(press.handle, wall.pose_at(rest.depth_mm));
   const double amplitude_mm = std::clamp(0.5 * rest.pressed_mm, kMinSwing_mm, kMaxSwing_mm);
   // By the force over the whole depth; the slope may be that of a jump.
-  const double stiffness_N_per_mm = press.bias_N / rest.pressed_mm;
+  const double stiffness_N_per_mm = kBias_N / rest.pressed_mm;
   const double speed_mm_s = amplitude_mm * std::sqrt(kMmPerM * stiffness_N_per_mm / press.handle.mass_kg);
   const double substep_s = press.handle.substep_s;
   const int substeps = static_cast<int>(std::lround(press.tick_s / substep_s));
@@ -140,7 +142,7 @@ bool swing_dies_out(Wall& wall, const Rest& rest, const WallPress& press) {
     for (int n = 0; n < substeps; ++n) {
       handle.advance(other);
       swings.see(wall.depth_of(handle.pose()));
-      other.force_N.z() = -press.bias_N - press.damping_Ns_per_mm * handle.velocity().linear_mm_s.z();
+      other.force_N.z() = -kBias_N - press.damping_Ns_per_mm * handle.velocity().linear_mm_s.z();
     }
     if (const auto known = dies_out(swings)) return *known;
   }
@@ -156,7 +158,7 @@ bool swing_dies_out(Wall& wall, const Rest& rest, const WallPress& press) {
 WallPressResult press_on_wall(HapticAlgorithm& algorithm, double burr_radius_mm, const WallPress& press) {
   require_valid(press.handle);
   Wall wall(algorithm, burr_radius_mm, press);
-  const std::optional<Rest> rest = press_slowly(wall, press.bias_N);
+  const std::optional<Rest> rest = press_slowly(wall);
   if (!rest) return {};
   return {swing_dies_out(wall, *rest, press) ? WallMotion::dies_out : WallMotion::goes_on,
           rest->felt_N_per_mm};
@@ -164,7 +166,7 @@ WallPressResult press_on_wall(HapticAlgorithm& algorithm, double burr_radius_mm,
 
 double press_slowly_on_wall(HapticAlgorithm& algorithm, double burr_radius_mm, const WallPress& press) {
   Wall wall(algorithm, burr_radius_mm, press);
-  const std::optional<Rest> rest = press_slowly(wall, press.bias_N);
+  const std::optional<Rest> rest = press_slowly(wall);
   return rest ? rest->felt_N_per_mm : 0;
 }
 

@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 
 #include "osteomill/files/atomic_file.h"
+#include "osteomill/files/csv_field.h"
 #include "osteomill/files/input_error.h"
-#include "osteomill/files/temporary_folder.h"
 #include "osteomill/numbers/positive.h"
 #include "osteomill/report/figure.h"
 #include "osteomill/report/html.h"
@@ -80,7 +80,6 @@ std::string panel(const std::vector<RateRow>& rows, std::size_t column, const Te
 // Rate against resolution, a panel for each algorithm, measured and from the paper, with the 1000 Hz that a
 // haptic loop needs.
 Figure draw_rates_figure(std::span<const RateRow> rows, const std::filesystem::path& folder) {
-  const TemporaryFolder work;
   std::vector<std::vector<RateRow>> panels;
   std::vector<AlgorithmId> algorithms;
   for (const RateRow& row : rows) algorithms.push_back(row.algorithm);
@@ -104,9 +103,9 @@ Figure draw_rates_figure(std::span<const RateRow> rows, const std::filesystem::p
                     in_paper ? "{/:Normal ○} the paper, on a Pentium 4    " : "", 1 - 26 / grid.height_px);
   for (std::size_t n = 0; n < panels.size(); ++n) {
     script.body +=
-        panel_margins(grid, panel_cell(grid, n, 0)) + panel(panels[n], n, work) + "unset label 1\n";
+        panel_margins(grid, panel_cell(grid, n, 0)) + panel(panels[n], n, script.work) + "unset label 1\n";
   }
-  return draw_figure(script, work, folder);
+  return draw_figure(script, folder);
 }
 
 void require_usable(const std::vector<RateRow>& rows) {
@@ -117,17 +116,6 @@ void require_usable(const std::vector<RateRow>& rows) {
                                             name_of(row.algorithm), row.resolution));
     }
   }
-}
-
-// A resolution is free text and may hold what separates columns.
-std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"') quoted += '"';
-    quoted += c;
-  }
-  return quoted + "\"";
 }
 
 void write_rates_csv(const fs::path& path, const MeasuredRates& measured) {

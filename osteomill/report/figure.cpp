@@ -173,10 +173,10 @@ std::string legend_row(const PanelGrid& grid, const std::vector<LegendEntry>& en
   return script;
 }
 
-Figure draw_figure(const FigureScript& script, const TemporaryFolder& work, const fs::path& folder) {
+Figure draw_figure(const FigureScript& script, const fs::path& folder) {
   const std::string size =
       fmt::format("{:.0f},{:.0f}", std::floor(script.width_px), std::floor(script.height_px));
-  run_gnuplot(work.path(),
+  run_gnuplot(script.work.path(),
               fmt::format("set encoding utf8\n"
                           "set terminal svg size {0} font 'DejaVu Sans,14.5' background 'white'\n"
                           "set output '{1}.svg'\n{2}unset multiplot\n\nunset output\nreset\n"
@@ -184,8 +184,8 @@ Figure draw_figure(const FigureScript& script, const TemporaryFolder& work, cons
                           "set output '{1}.png'\n{2}unset multiplot\n\nunset output\n",
                           size, script.name, script.body));
   const Figure figure{folder / (script.name + ".svg"), folder / (script.name + ".png")};
-  copy_to(work / (script.name + ".svg"), figure.svg);
-  copy_to(work / (script.name + ".png"), figure.png);
+  copy_to(script.work / (script.name + ".svg"), figure.svg);
+  copy_to(script.work / (script.name + ".png"), figure.png);
   return figure;
 }
 

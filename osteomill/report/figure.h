@@ -37,8 +37,10 @@ struct FigureScript {
   std::string name;
   double height_px;
   double width_px = PanelGrid::kWidth_px;
-  /// gnuplot commands, which begin a multiplot; the files that they name lie in the folder where it is run.
+  /// gnuplot commands, which begin a multiplot.
   std::string body = {};
+  /// Where gnuplot runs: the data files that `body` names lie here.
+  TemporaryFolder work = {};
 };
 
 /// One panel's room: its upper left corner, from the figure's lower left, and its size.
@@ -58,10 +60,9 @@ struct LegendEntry {
 };
 std::string legend_row(const PanelGrid& grid, const std::vector<LegendEntry>& entries);
 
-/// Runs gnuplot in `work`, where the figure's data lie, and puts NAME.svg and NAME.png into `folder`. Throws
-/// InputError where gnuplot or writing fails.
-Figure draw_figure(const FigureScript& script, const TemporaryFolder& work,
-                   const std::filesystem::path& folder);
+/// Runs gnuplot and puts NAME.svg and NAME.png into `folder`. Throws InputError where gnuplot or writing
+/// fails.
+Figure draw_figure(const FigureScript& script, const std::filesystem::path& folder);
 
 /// Writes a file that a figure is drawn from. Throws InputError where it cannot be written to its end:
 /// gnuplot would draw what there is of it.

@@ -64,7 +64,7 @@ double torque_following_force(std::span<const Vec3> torque_Nmm, std::span<const 
                               high_pass(force_N, rate_hz, kBuzzAbove_hz), reach, shaft_touches);
 }
 
-// But for the device's pose: it may have given none.
+// The device's pose is left out: a device may give one that is not finite.
 bool all_finite(const TickRecord& r) {
   return std::isfinite(r.time_s) && is_finite(r.X_WT) && r.wrench.force_N.allFinite() &&
          r.wrench.torque_Nmm.allFinite() && std::isfinite(r.removed_mm3) && std::isfinite(r.compute_us) &&
@@ -109,6 +109,8 @@ Contact contact_of(const TickRecord& record) {
   return contact;
 }
 
+namespace {
+
 ContactShares contact_shares(std::span<const TickRecord> records) {
   ContactShares shares;
   if (records.empty()) return shares;
@@ -130,6 +132,8 @@ ContactShares contact_shares(std::span<const TickRecord> records) {
   }
   return shares;
 }
+
+}  // namespace
 
 std::string contact_words(const ContactShares& contact) {
   const auto share_of_time = [](double share) {

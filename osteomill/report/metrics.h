@@ -50,7 +50,6 @@ struct ContactShares {
 
   bool is_lost() const { return !std::isnan(lost_after_s); }
 };
-ContactShares contact_shares(std::span<const TickRecord> records);
 
 /// Whether a share of contact is enough to measure what is felt in it: a tenth of the ticks.
 inline bool is_enough_contact(double share) {

@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include "osteomill/files/input_error.h"
-#include "osteomill/files/temporary_folder.h"
 #include "osteomill/image/image.h"
 #include "osteomill/session/tick_counts.h"
 
@@ -74,7 +73,6 @@ std::vector<Panel> panels_of(const RunGroup& group) {
 }  // namespace
 
 std::optional<Figure> draw_picture_figure(const RunGroup& group, const std::filesystem::path& folder) {
-  const TemporaryFolder work;
   const std::vector<Panel> panels = panels_of(group);
   if (panels.empty()) return std::nullopt;
   const int columns = panels.size() == 1 ? 1 : 2;
@@ -91,7 +89,7 @@ std::optional<Figure> draw_picture_figure(const RunGroup& group, const std::file
   for (std::size_t n = 0; n < panels.size(); ++n) {
     const std::string file = fmt::format("picture{}.png", n);
     const std::vector<unsigned char>& png = encode_png(pictures[n]);
-    write_figure_data(work / file, {reinterpret_cast<const char*>(png.data()), png.size()});
+    write_figure_data(script.work / file, {reinterpret_cast<const char*>(png.data()), png.size()});
     const int column = static_cast<int>(n) % columns;
     const int row = static_cast<int>(n) / columns;
     script.body += fmt::format(
@@ -100,7 +98,7 @@ std::optional<Figure> draw_picture_figure(const RunGroup& group, const std::file
         static_cast<double>(column) / columns, 1.0 - (row + 1.0) / rows, 1.0 / columns, 1.0 / rows,
         gnuplot_quoted(panels[n].label), file);
   }
-  return draw_figure(script, work, folder);
+  return draw_figure(script, folder);
 }
 
 namespace {
@@ -204,23 +202,23 @@ std::optional<PageSection> label_section(const RunGroup& group) {
 
 std::optional<Figure> draw_label_figure(const RunGroup& group, const std::filesystem::path& folder) {
   constexpr int kPanel_px = 360;
-  const TemporaryFolder work;
+  FigureScript script{fmt::format("labels_{}", name_of(group.mode)), 0};
   std::string panels;
   int count = 0;
   for (std::size_t n = 0; n < group.runs.size(); ++n) {
-    const std::string one = panel(group.runs[n], n, work);
+    const std::string one = panel(group.runs[n], n, script.work);
     panels += one;
     count += one.empty() ? 0 : 1;
   }
   if (count == 0) return std::nullopt;
   const int columns = std::min(count, 2), rows = (count + columns - 1) / columns;
-  FigureScript script{fmt::format("labels_{}", name_of(group.mode)), static_cast<double>(kPanel_px) * rows};
+  script.height_px = static_cast<double>(kPanel_px) * rows;
   script.body = fmt::format(
       "set multiplot layout {},{}\nset border 3 lc rgb '#444444'\nset tics nomirror out scale 0.6\n"
       "set grid lc rgb '#dddddd' lt 1 lw 0.7\nset key left top noenhanced\nset xlabel 'Time (s)'\n"
       "set ylabel 'Removed (mm³)'\nset yrange [0:*]\n{}",
       rows, columns, panels);
-  return draw_figure(script, work, folder);
+  return draw_figure(script, folder);
 }
 
 namespace {

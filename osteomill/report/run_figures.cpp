@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "osteomill/numbers/round_numbers.h"
 #include "osteomill/report/report_parts.h"
 
 namespace osteomill {
@@ -140,7 +141,6 @@ constexpr std::size_t kCurveBins = 1000;
 // All algorithms in one panel, the columns side by side, a row for each phase.
 Figure draw_together(const RunGroup& group, const std::string& name, const std::vector<Shown>& columns,
                      const std::filesystem::path& folder) {
-  const TemporaryFolder work;
   const std::vector<std::string> phases = group.phases();
   const PanelGrid grid{
       phases.size() > 1 ? 760.0 : 440.0, columns.size(), phases.size(), 52, 0, 112, 26, 28, 60};
@@ -153,17 +153,16 @@ Figure draw_together(const RunGroup& group, const std::string& name, const std::
                                  panel_margins(grid, panel_cell(grid, c, row)), time_range(runs),
                                  columns[c].setup, capitalised(phases[row]), columns[c].label,
                                  row + 1 == phases.size() ? "set xlabel 'Time (s)'" : "unset xlabel");
-      script.body += curve_panel(runs, columns[c], kCurveBins / columns.size(), work);
+      script.body += curve_panel(runs, columns[c], kCurveBins / columns.size(), script.work);
     }
   }
-  return draw_figure(script, work, folder);
+  return draw_figure(script, folder);
 }
 
 // A panel for each algorithm, side by side at one scale, a row for each phase: curves that lie on each
 // other would show nothing.
 Figure draw_apart(const RunGroup& group, const std::string& name, const Shown& shown,
                   const std::string& dashed, const std::filesystem::path& folder) {
-  const TemporaryFolder work;
   const std::vector<std::string> phases = group.phases();
   const std::vector<AlgorithmId> algorithms = group.algorithms();
   const PanelGrid grid{.height_px = phases.size() > 1 ? 680.0 : 400.0,
@@ -195,11 +194,11 @@ Figure draw_apart(const RunGroup& group, const std::string& name, const Shown& s
           c == 0 ? fmt::format("set ylabel '{}{}'\nset format y '%g'",
                                phases[row].empty() ? "" : capitalised(phases[row]) + ":  ", shown.label)
                  : "unset ylabel\nset format y ''");
-      script.body += curve_panel({run}, shown, kCurveBins / algorithms.size(), work);
+      script.body += curve_panel({run}, shown, kCurveBins / algorithms.size(), script.work);
       if (!shown.setup.empty()) script.body += shown.setup + "\n";
     }
   }
-  return draw_figure(script, work, folder);
+  return draw_figure(script, folder);
 }
 
 // Points a panel; an SVG takes about 90 bytes for each.
@@ -246,13 +245,6 @@ Across across(const Vec3& mean) {
   return {right, up, "xyz"[least], "xyz"[other]};
 }
 
-// About two steps to an axis, of 1, 2 or 5 times a power of ten.
-double tic_step(double half) {
-  const double power = std::pow(10.0, std::floor(std::log10(half)));
-  const double ratio = half / power;
-  return power * (ratio < 2 ? 1 : ratio < 5 ? 2 : 5);
-}
-
 // Writes the cloud in degrees from its mean, and returns how far it reaches.
 double write_cloud(const Cloud& cloud, const Across& axes, const std::filesystem::path& path) {
   std::string data;
@@ -294,7 +286,7 @@ std::string shaft_panel(const MeasuredRun& run, const PanelGrid& grid, const Pan
       "set xlabel 'Towards {} (°)' offset 0,0.4\nset ylabel 'Towards {} (°)' offset 1,0\n"
       "plot '{}' using 1:2:3 with points pt 7 ps 0.38 lc palette notitle\nunset colorbox\n",
       panel_margins(grid, cell), run.algorithm.label, run.phase, words(run), -half_deg, half_deg, -half_deg,
-      half_deg, tic_step(half_deg), tic_step(half_deg), axes.right_name, axes.up_name, file);
+      half_deg, round_down(half_deg), round_down(half_deg), axes.right_name, axes.up_name, file);
 }
 
 }  // namespace
@@ -342,7 +334,6 @@ Figure draw_path_figure(const RunGroup& group, const std::filesystem::path& fold
 }
 
 Figure draw_shaft_figure(const RunGroup& group, const std::filesystem::path& folder) {
-  const TemporaryFolder work;
   const std::vector<std::string> phases = group.phases();
   std::size_t columns = 1;
   double last_s = 0;
@@ -375,10 +366,10 @@ Figure draw_shaft_figure(const RunGroup& group, const std::filesystem::path& fol
       PanelCell cell = panel_cell(grid, c, row);
       cell.left_px = static_cast<double>(c) * wide_px;
       cell.wide_px = wide_px;
-      script.body += shaft_panel(*runs[c], grid, cell, work);
+      script.body += shaft_panel(*runs[c], grid, cell, script.work);
     }
   }
-  return draw_figure(script, work, folder);
+  return draw_figure(script, folder);
 }
 
 }  // namespace osteomill

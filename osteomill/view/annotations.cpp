@@ -9,6 +9,8 @@
 
 #include <imgui.h>
 
+#include "osteomill/numbers/round_numbers.h"
+
 namespace osteomill {
 
 namespace {
@@ -20,15 +22,6 @@ constexpr double kTextReach_px = 84;
 constexpr double kAxis_px = 30;
 constexpr double kLetter_px = 44;
 constexpr double kMinAxis = 0.25;
-
-// 1, 2 or 5 times a power of ten.
-double round_length_mm(double max_mm) {
-  const double power = std::pow(10.0, std::floor(std::log10(max_mm)));
-  for (const double times : {5.0, 2.0}) {
-    if (times * power <= max_mm) return times * power;
-  }
-  return power;
-}
 
 using Eigen::Vector2d;
 
@@ -115,7 +108,7 @@ class Letters {
 
 Annotation scale_bar_annotation(const Camera& camera, const PixelSize& size) {
   const double pixel_mm = mm_per_pixel(camera, size, camera.distance_mm);
-  const double length_mm = round_length_mm(0.25 * size.width * pixel_mm);
+  const double length_mm = round_down(0.25 * size.width * pixel_mm);
   const Eigen::Vector2d left(kMargin_px, size.height - kMargin_px);
   const Eigen::Vector2d right = left + Eigen::Vector2d(length_mm / pixel_mm, 0);
   const Eigen::Vector2d tick(0, kTick_px);

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <cmath>
+
+namespace osteomill {
+
+/// Of 1, 2 and 5 times the powers of ten the greatest that is not above a positive value.
+inline double round_down(double value) {
+  const double power = std::pow(10.0, std::floor(std::log10(value)));
+  for (const double times : {5.0, 2.0}) {
+    if (times * power <= value) return times * power;
+  }
+  return power;
+}
+
+}  // namespace osteomill
