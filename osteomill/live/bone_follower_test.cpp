@@ -22,7 +22,9 @@ namespace {
 using namespace std::chrono_literals;
 using testing_support::ball;
 using testing_support::centred_cube;
+using testing_support::mesh_surface;
 using testing_support::shape_volume;
+using testing_support::SurfaceMesh;
 
 Volume ball_of_bone() {
   return shape_volume(centred_cube(51, 0.25), ball(Vec3::Zero(), 5.0));

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "tests/shapes.h"
+#include "tests/support/mesh_checks.h"
 #include "tests/support/recording_samples.h"
 #include <gtest/gtest.h>
 
@@ -24,6 +25,7 @@ namespace osteomill {
 namespace {
 
 using namespace std::chrono_literals;
+using testing_support::mesh_surface;
 
 constexpr double kIsovalue = 500;
 

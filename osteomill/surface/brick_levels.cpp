@@ -113,7 +113,9 @@ class Coarsening {
   // densities; one that is alone stays the mesh's own.
   void add_means(std::vector<MeshVertex>& means, double reach_mm) {
     struct Sum {
-      std::array<double, 7> of{};
+      Vec3 positions_mm = Vec3::Zero();
+      Vec3 normals = Vec3::Zero();
+      double densities = 0;
       int count = 0;
     };
     std::vector<Sum> sums(cluster_.size());
@@ -121,11 +123,9 @@ class Coarsening {
     for (Index vertex = 0; vertex < sums.size(); ++vertex) {
       Sum& sum = sums[cluster_[vertex]];
       const MeshVertex& v = mesh_.vertices[vertex];
-      for (std::size_t n = 0; n < 3; ++n) {
-        sum.of[n] += static_cast<double>(v.position_mm[n]);
-        sum.of[3 + n] += static_cast<double>(v.normal[n]);
-      }
-      sum.of[6] += static_cast<double>(v.density);
+      sum.positions_mm += vec3_of(v.position_mm);
+      sum.normals += vec3_of(v.normal);
+      sum.densities += static_cast<double>(v.density);
       ++sum.count;
     }
     mean_ = cluster_;
@@ -135,14 +135,9 @@ class Coarsening {
       if (sum.count < 2) continue;
       place[vertex] = static_cast<Index>(mesh_.vertices.size() + means.size());
       MeshVertex mean = mesh_.vertices[vertex];
-      const double length = std::hypot(sum.of[3], sum.of[4], sum.of[5]);
-      const Vec3 middle = Vec3(sum.of[0], sum.of[1], sum.of[2]) / sum.count;
-      const Vec3 place_W = planes_of[vertex].meeting_near(middle, reach_mm);
-      for (std::size_t n = 0; n < 3; ++n) {
-        mean.position_mm[n] = static_cast<float>(place_W[static_cast<Eigen::Index>(n)]);
-        if (length > 1e-3) mean.normal[n] = static_cast<float>(sum.of[3 + n] / length);
-      }
-      mean.density = static_cast<float>(sum.of[6] / sum.count);
+      put(planes_of[vertex].meeting_near(sum.positions_mm / sum.count, reach_mm), mean.position_mm);
+      if (sum.normals.norm() > 1e-3) put(sum.normals.normalized(), mean.normal);
+      mean.density = static_cast<float>(sum.densities / sum.count);
       means.push_back(mean);
     }
     for (Index& mean : mean_) {

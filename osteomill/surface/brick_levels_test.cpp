@@ -13,8 +13,10 @@ namespace {
 
 using testing_support::ball;
 using testing_support::centred_cube;
+using testing_support::mesh_surface;
 using testing_support::position_of;
 using testing_support::shape_volume;
+using testing_support::SurfaceMesh;
 
 // A ball, a thin wall beside it and a drilled hole, over several bricks.
 Volume bone() {

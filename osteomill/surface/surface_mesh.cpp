@@ -1,10 +1,9 @@
 #include "osteomill/surface/surface_mesh.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cstdint>
-#include <thread>
 #include <utility>
+#include <vector>
 
 #include "osteomill/surface/brick_mesher.h"
 
@@ -50,28 +49,6 @@ BrickMesh mesh_brick(const DensityView& view, std::size_t brick) {
   BrickMesher mesher(view);
   mesher.mesh(brick);
   return mesher.copy();
-}
-
-SurfaceMesh mesh_surface(const DensityView& view, int threads) {
-  SurfaceMesh mesh{SurfaceBricks(view.grid.geometry().dims), {}};
-  mesh.bricks.resize(mesh.layout.count());
-  std::atomic<std::size_t> next{0};
-  constexpr std::size_t kBricksAtOnce = 64;
-  const auto work = [&] {
-    BrickMesher mesher(view);
-    for (std::size_t begin; (begin = next.fetch_add(kBricksAtOnce)) < mesh.bricks.size();) {
-      const std::size_t end = std::min(begin + kBricksAtOnce, mesh.bricks.size());
-      for (std::size_t brick = begin; brick < end; ++brick) {
-        mesher.mesh(brick);
-        if (!mesher.indices().empty()) mesh.bricks[brick] = mesher.copy();
-      }
-    }
-  };
-  std::vector<std::jthread> others;
-  for (int n = 1; n < threads; ++n) others.emplace_back(work);
-  work();
-  others.clear();
-  return mesh;
 }
 
 BrickMesh mesh_in_one_piece(const DensityView& view) {

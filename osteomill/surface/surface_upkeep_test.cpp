@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "tests/shapes.h"
+#include "tests/support/mesh_checks.h"
 #include <gtest/gtest.h>
 
 namespace osteomill {
@@ -10,7 +11,9 @@ namespace {
 
 using testing_support::ball;
 using testing_support::centred_cube;
+using testing_support::mesh_surface;
 using testing_support::shape_volume;
+using testing_support::SurfaceMesh;
 
 DensityView at_isovalue(const Volume& volume, double isovalue) {
   return {volume.grid(), volume.ranges(), isovalue};

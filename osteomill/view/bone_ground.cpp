@@ -109,8 +109,8 @@ void clear_depths(const FrameTarget& target) {
 
 ClipFaces::ClipFaces() : program_(gl::make_program(kCutVertex, kCutFragment)) {
   for (Face& face : faces_) {
-    face.vertex_array = gl::make_vertex_array();
-    face.corners = gl::make_buffer();
+    face.vertex_array = gl::VertexArray::make();
+    face.corners = gl::Buffer::make();
   }
 }
 
@@ -158,9 +158,7 @@ void ClipFaces::draw(const ViewScene& scene, const Projection& projection) const
 
 BoneGround::BoneGround(const SurfaceBricks& layout, const GridGeometry& geometry,
                        std::shared_ptr<const LabelMap> labels)
-    : bone_(layout, geometry, std::move(labels)),
-      background_(gl::make_screen_program(kBackgroundFragment)),
-      nothing_(gl::make_vertex_array()) {}
+    : bone_(layout, geometry, std::move(labels)), background_(kBackgroundFragment) {}
 
 void BoneGround::set_brick(std::size_t brick, const BrickMesh& mesh, const BrickLevels& levels) {
   bone_.set_brick(brick, mesh, levels);
@@ -329,9 +327,7 @@ void BoneGround::look_for_cavities(const Projection& projection) {
 // Into the picture that is bound.
 void BoneGround::draw_around(const ViewScene& scene, const Projection& projection) {
   glDepthFunc(GL_LEQUAL);
-  glUseProgram(background_.get());
-  glBindVertexArray(nothing_.get());
-  glDrawArrays(GL_TRIANGLES, 0, 3);
+  background_.draw();
   glDepthFunc(GL_LESS);
   cut_faces_.draw(scene, projection);
 }

@@ -100,8 +100,7 @@ class BoneGround {
 
   BoneLayer bone_;
   ClipFaces cut_faces_;
-  gl::Program background_;
-  gl::VertexArray nothing_;
+  gl::ScreenProgram background_;
   std::optional<FrameTarget> moving_;
   // Where full detail is drawn.
   std::optional<FrameTarget> resting_;

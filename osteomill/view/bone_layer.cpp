@@ -143,10 +143,7 @@ Facing facing_of(const BrickMesh& mesh) {
   std::vector<Vec3> normals;
   normals.reserve(mesh.triangle_count());
   Vec3 sum = Vec3::Zero();
-  const auto corner = [&](std::size_t n) {
-    const auto& p = mesh.vertices[mesh.indices[n]].position_mm;
-    return Vec3(p[0], p[1], p[2]);
-  };
+  const auto corner = [&](std::size_t n) { return vec3_of(mesh.vertices[mesh.indices[n]].position_mm); };
   for (std::size_t n = 0; n < mesh.indices.size(); n += 3) {
     const Vec3 normal = (corner(n + 1) - corner(n)).cross(corner(n + 2) - corner(n));
     if (!(normal.norm() > 0)) continue;
@@ -296,9 +293,9 @@ void BoneLayer::set_brick(std::size_t number, const BrickMesh& mesh, const Brick
     return;
   }
   if (brick.vertex_array.get() == 0) {
-    brick.vertex_array = gl::make_vertex_array();
-    brick.vertices = gl::make_buffer();
-    brick.indices = gl::make_buffer();
+    brick.vertex_array = gl::VertexArray::make();
+    brick.vertices = gl::Buffer::make();
+    brick.indices = gl::Buffer::make();
   }
   const Facing facing = facing_of(mesh);
   brick.facing_W = facing.axis_W;
@@ -317,7 +314,7 @@ void BoneLayer::set_brick(std::size_t number, const BrickMesh& mesh, const Brick
 }
 
 void BoneLayer::set_label_colours(Brick& brick, const std::vector<MeshVertex>& vertices) {
-  if (brick.label_colours.get() == 0) brick.label_colours = gl::make_buffer();
+  if (brick.label_colours.get() == 0) brick.label_colours = gl::Buffer::make();
   std::vector<LabelColour> colours;
   colours.reserve(vertices.size());
   for (const MeshVertex& vertex : vertices) colours.push_back(label_colour_below(*labels_, vertex));

@@ -70,7 +70,7 @@ ViewScene scene_with(const Volume& bone, double reference_density, const Camera&
 // show as terraces in glancing light, and for colours from deeper below the surface, where the scanner's blur
 // has ended.
 void look_closer(const Volume& bone, MeshVertex& vertex) {
-  const Vec3 point_W = Eigen::Map<const Eigen::Vector3f>(vertex.position_mm.data()).cast<double>();
+  const Vec3 point_W = vec3_of(vertex.position_mm);
   const GridGeometry& geometry = bone.geometry();
   Vec3 slope = density_gradient(bone.grid(), point_W, GradientKernel::smoothed);
   for (int axis = 0; axis < 3; ++axis) {
@@ -80,7 +80,7 @@ void look_closer(const Volume& bone, MeshVertex& vertex) {
   }
   if (!(slope.norm() > 1e-9)) return;
   const Vec3 normal_W = -slope.normalized();
-  Eigen::Map<Eigen::Vector3f>(vertex.normal.data()) = normal_W.cast<float>();
+  put(normal_W, vertex.normal);
   for (const double voxels : {1.25, 2.5}) {
     const Vec3 below_W = point_W - voxels * geometry.spacing_mm.minCoeff() * normal_W;
     vertex.density = std::max(vertex.density, static_cast<float>(density_at(bone.grid(), below_W)));

@@ -45,7 +45,7 @@ gl::Texture small_texture(const PixelSize& size, GLint filter) {
 }
 
 gl::Framebuffer framebuffer_on(const gl::Texture& texture) {
-  gl::Framebuffer framebuffer = gl::make_framebuffer();
+  gl::Framebuffer framebuffer = gl::Framebuffer::make();
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.get());
   glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture.get(), 0);
   glClearColor(0, 0, 0, 0);
@@ -64,32 +64,30 @@ CavityPass::CavityPass(const PixelSize& size, int reach_px)
       to_small_(framebuffer_on(small_)),
       to_half_blurred_(framebuffer_on(half_blurred_)),
       to_blurred_(framebuffer_on(blurred_)),
-      linear_depth_(gl::make_screen_program(kDepthFragment)),
-      blur_(gl::make_screen_program(kBlurFragment)),
-      nothing_(gl::make_vertex_array()) {}
+      linear_depth_(kDepthFragment),
+      blur_(kBlurFragment) {}
 
 void CavityPass::blur(GLuint depths, double near_mm, double far_mm) const {
   glDisable(GL_DEPTH_TEST);
   glUseProgram(linear_depth_.get());
   glUniform2f(glGetUniformLocation(linear_depth_.get(), "near_far"), static_cast<float>(near_mm),
               static_cast<float>(far_mm));
-  draw(to_small_, depths);
+  draw(linear_depth_, to_small_, depths);
   glUseProgram(blur_.get());
   const GLint pace = glGetUniformLocation(blur_.get(), "pace");
   glUniform2f(pace, 1.0f / static_cast<float>(size_.width), 0);
-  draw(to_half_blurred_, small_.get());
+  draw(blur_, to_half_blurred_, small_.get());
   glUniform2f(pace, 0, 1.0f / static_cast<float>(size_.height));
-  draw(to_blurred_, half_blurred_.get());
+  draw(blur_, to_blurred_, half_blurred_.get());
   glEnable(GL_DEPTH_TEST);
 }
 
-void CavityPass::draw(const gl::Framebuffer& target, GLuint source) const {
+void CavityPass::draw(const gl::ScreenProgram& program, const gl::Framebuffer& target, GLuint source) const {
   glBindFramebuffer(GL_FRAMEBUFFER, target.get());
   glViewport(0, 0, size_.width, size_.height);
-  glBindVertexArray(nothing_.get());
   glActiveTexture(GL_TEXTURE0);
   glBindTexture(GL_TEXTURE_2D, source);
-  glDrawArrays(GL_TRIANGLES, 0, 3);
+  program.draw();
 }
 
 }  // namespace osteomill

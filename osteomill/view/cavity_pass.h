@@ -19,7 +19,7 @@ class CavityPass {
   double reach_px(const PixelSize& picture) const { return reach_of_height_ * picture.height; }
 
  private:
-  void draw(const gl::Framebuffer& target, GLuint source) const;
+  void draw(const gl::ScreenProgram& program, const gl::Framebuffer& target, GLuint source) const;
 
   double reach_of_height_;
   PixelSize size_;
@@ -29,9 +29,8 @@ class CavityPass {
   gl::Framebuffer to_small_;
   gl::Framebuffer to_half_blurred_;
   gl::Framebuffer to_blurred_;
-  gl::Program linear_depth_;
-  gl::Program blur_;
-  gl::VertexArray nothing_;
+  gl::ScreenProgram linear_depth_;
+  gl::ScreenProgram blur_;
 };
 
 }  // namespace osteomill

@@ -59,8 +59,8 @@ std::array<double, 2> extent_along(const std::array<Vec3, 8>& corners, const Vec
   return extent;
 }
 
-ClipFace clip_face(const DensityGrid& grid, const ClipPlane& plane, const WindowLevel& window, int max_pixels,
-                   const LabelMap* labels) {
+ClipFace clip_face(const DensityGrid& grid, const ClipPlane& plane, const WindowLevel& window,
+                   const LabelMap* labels, int max_pixels) {
   const std::vector<Vec3> border = crossings(grid.geometry(), plane);
   if (border.size() < 3) return {};
   // Any two directions in the plane.

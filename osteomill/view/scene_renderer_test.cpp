@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "tests/shapes.h"
+#include "tests/support/mesh_checks.h"
 #include <gtest/gtest.h>
 
 #include "osteomill/image/image.h"
@@ -15,6 +16,9 @@
 
 namespace osteomill {
 namespace {
+
+using testing_support::mesh_surface;
+using testing_support::SurfaceMesh;
 
 // A ball of bone with a denser shell on its left half, and a hole from above.
 Volume drilled_ball() {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "osteomill/geometry/pose.h"
+#include "osteomill/surface/brick_mesher.h"
 #include "osteomill/surface/surface_mesh.h"
 #include "osteomill/volume/sampling.h"
 
@@ -21,6 +22,23 @@ inline Vec3 position_of(const MeshVertex& vertex) {
 
 inline Vec3 normal_of(const MeshVertex& vertex) {
   return {vertex.normal[0], vertex.normal[1], vertex.normal[2]};
+}
+
+/// A whole isosurface, a piece a brick; most are empty.
+struct SurfaceMesh {
+  SurfaceBricks layout;
+  /// By the brick's number.
+  std::vector<BrickMesh> bricks;
+};
+
+inline SurfaceMesh mesh_surface(const DensityView& view) {
+  SurfaceMesh mesh{SurfaceBricks(view.grid.geometry().dims), {}};
+  BrickMesher mesher(view);
+  for (std::size_t brick = 0; brick < mesh.layout.count(); ++brick) {
+    mesher.mesh(brick);
+    mesh.bricks.push_back(mesher.copy());
+  }
+  return mesh;
 }
 
 /// All bricks as one mesh whose vertices are shared where their positions agree bit for bit.
