@@ -12,7 +12,7 @@
 #include <CLI/Error.hpp>
 #include <CLI/Option.hpp>
 #include <CLI/Validators.hpp>
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 namespace osteomill::app {
 
@@ -203,17 +203,26 @@ std::span<const MillingOption> milling_options() {
   return kOptions;
 }
 
-void take_what_was_said(const CLI::App& command, MillingSetup given, MillingSetup& setup) {
+void take_given_options(const CLI::App& command, MillingSetup given, MillingSetup& setup) {
   for (const MillingOption& option : kOptions) {
     if (command.count(option.name) > 0)
       std::visit([&](auto place) { place(setup) = place(given); }, option.place);
   }
 }
 
+void add_algorithm_option(CLI::App& command, AlgorithmDescription& algorithm) {
+  command
+      .add_option_function<std::string>(
+          "--algorithm", [&algorithm](const std::string& name) { algorithm = algorithm_named(name); },
+          fmt::format("{}", fmt::join(algorithm_names(), ", ")))
+      ->check(one_of("algorithm", algorithm_names()))
+      ->type_name("NAME")
+      ->default_str(algorithm.id.name);
+}
+
 void add_algorithm_option(CLI::App& command, std::vector<AlgorithmDescription>& algorithms) {
   const std::string all = algorithms.size() > 1 ? "all" : algorithms.front().id.name;
-  std::string what;
-  for (const std::string& name : algorithm_names()) what += (what.empty() ? "" : ", ") + name;
+  std::string what = fmt::format("{}", fmt::join(algorithm_names(), ", "));
   if (algorithms.size() > 1) what += "; may repeat";
   command
       .add_option_function<std::vector<std::string>>(

@@ -33,11 +33,10 @@ struct ReplayOptions {
   std::string input;
   ScanOptions scan;
   MillingOptions milling;
-  std::vector<AlgorithmDescription> algorithm{default_algorithm()};
   std::string out;
   std::string record;
   bool verify = false;
-  // In which the options stand.
+  // The command whose options these are.
   const CLI::App* command = nullptr;
 
   bool given(const char* option) const { return command->count(option) > 0; }
@@ -56,7 +55,7 @@ class Log {
   void add(const TickRecord& record) {
     log_.push_back(record);
     faults_.add(record);
-    if (const Label* touched = labels_.add(record)) warn_though_quiet(no_go_warning(*touched, record));
+    if (const auto touched = labels_.add(record)) warn_though_quiet(*touched);
     if (log_.size() % 1000 == 0)
       show_progress("replay", static_cast<double>(log_.size()) / static_cast<double>(ticks_));
   }
@@ -82,7 +81,6 @@ void replay_trajectory(ReplayOptions options) {
   LoadedBone bone = load_bone(options.scan);
   require_workable(options.milling.setup.tool, bone.volume.geometry());
   const BoneDensities densities = estimate_densities(bone.volume);
-  options.milling.setup.algorithm = options.algorithm.front();
   MillingSession session(std::make_shared<Volume>(std::move(bone.volume)), densities, options.milling.setup);
   Log log(options, trajectory.size(), session.volume());
   replay(session, trajectory, [&](const TickRecord& record) { log.add(record); });
@@ -133,10 +131,10 @@ HapticSettings settings_for(const AlgorithmDescription& algorithm, const HapticS
 }
 
 RunDescription run_as(const ReplayOptions& options, RunDescription run) {
-  const AlgorithmDescription* algorithm =
-      options.given("--algorithm") ? &options.algorithm.front() : find_algorithm(run.algorithm.name);
-  if (algorithm == nullptr) return run;
   const MillingSetup& given = options.milling.setup;
+  const AlgorithmDescription* algorithm =
+      options.given("--algorithm") ? &given.algorithm : find_algorithm(run.algorithm.name);
+  if (algorithm == nullptr) return run;
   const HapticSettings said = settings_for(*algorithm, given.haptics);
   SessionSettings session = session_settings(run, options.input);
   MillingSetup& setup = session.setup;
@@ -145,7 +143,7 @@ RunDescription run_as(const ReplayOptions& options, RunDescription run) {
   // Settings of another algorithm, or of another mode, mean nothing here.
   if (!(run.algorithm == algorithm->id) || mode != run.mode) setup.haptics = {mode};
   setup.haptics.named.insert(setup.haptics.named.end(), said.named.begin(), said.named.end());
-  take_what_was_said(*options.command, given, setup);
+  take_given_options(*options.command, given, setup);
   set_session_settings(run, session, 0);
   return run;
 }
@@ -227,8 +225,7 @@ void add_replay_command(CLI::App& program, const std::string& command_line) {
   command->option_defaults()->group("The replay");
   command->add_flag("--verify", options->verify,
                     "Whether a recording comes out again to the bit, or the first tick that differs");
-  add_algorithm_option(*command, options->algorithm);
-  command->get_option("--algorithm")->expected(1);
+  add_algorithm_option(*command, options->milling.setup.algorithm);
   command->add_option("--out", options->out, "The log, CSV, a row a tick")->type_name("FILE");
   command->add_option("--record", options->record, "Of a recording's motion, another recording")
       ->type_name("FILE");

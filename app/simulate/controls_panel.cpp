@@ -16,7 +16,7 @@ namespace {
 
 constexpr float kWidth_px = 300;
 
-// A slider whose change takes preparation, so that it counts when let go of.
+// A slider for what takes long to change: true once it is let go of at another value.
 bool settle(const char* label, double& value, float min, float max, const char* format) {
   float shown = static_cast<float>(value);
   if (ui::slider(label, &shown, min, max, format, ImGuiSliderFlags_AlwaysClamp)) {
@@ -25,7 +25,7 @@ bool settle(const char* label, double& value, float min, float max, const char* 
   return ImGui::IsItemDeactivatedAfterEdit();
 }
 
-// Its end, which tells one scan from another, where there is no room for all of it.
+// The end of a name, which tells one scan from another, where there is no room for all of it.
 std::string end_that_fits(const std::string& name) {
   const float room = ImGui::GetContentRegionAvail().x;
   std::string shown = name;
@@ -59,14 +59,12 @@ void draw_algorithm(MillingSetup& wanted, bool& changed) {
       changed = true;
     }
   }
-  if (ui::radio("steady", wanted.haptics.mode == Mode::steady)) {
-    wanted.haptics.mode = Mode::steady;
-    changed = true;
-  }
-  ImGui::SameLine();
-  if (ui::radio("as in the paper", wanted.haptics.mode == Mode::paper)) {
-    wanted.haptics.mode = Mode::paper;
-    changed = true;
+  for (const auto& [label, mode] : {std::pair("steady", Mode::steady), {"as in the paper", Mode::paper}}) {
+    if (mode != Mode::steady) ImGui::SameLine();
+    if (ui::radio(label, wanted.haptics.mode == mode)) {
+      wanted.haptics.mode = mode;
+      changed = true;
+    }
   }
   const auto before = stiffness_of(wanted);
   if (!before) return;
@@ -115,8 +113,8 @@ void draw_session(ViewState& view, LiveMilling& milling, bool by_pointer) {
   ImGui::TextDisabled(cuts == 1 ? "%d cut" : "%d cuts", cuts);
 }
 
-// Of several: which of them bounds bone nobody but the user knows. Beside the histogram, and below it where
-// there is no room.
+// Buttons for the densities that may bound bone, where there are several: only the user knows which does.
+// They stand beside the histogram, and below it where there is no room.
 void draw_boundaries(Simulation& simulation) {
   if (simulation.scan.boundaries.size() < 2) return;
   const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
@@ -208,7 +206,7 @@ void draw_view(ViewState& view, const Vec3& tool_W, const PixelSize& size) {
   ui::checkbox("arrows", &view.arrows);
 }
 
-// Above all else: whoever cannot read what stands there, or not reach what lies below, needs these.
+// They come first, for whoever cannot read the rest or cannot reach what lies below.
 void draw_reading_aids(ViewState& view) {
   if (ui::button("Help")) view.help = true;
   ImGui::SameLine();

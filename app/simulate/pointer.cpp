@@ -5,6 +5,7 @@
 
 #include "app/simulate/panels.h"
 #include "app/simulate/tool_control.h"
+#include "app/simulate/widgets.h"
 #include <GLFW/glfw3.h>
 #include <imgui.h>
 
@@ -129,7 +130,7 @@ ToolInput keys_for_tool() {
 void take_keys(ViewState& view, LiveMilling& milling, bool by_pointer) {
   const ImGuiIO& io = ImGui::GetIO();
   if (io.WantTextInput) return;
-  const auto pressed = [](int key) { return ImGui::IsKeyPressed(key, false); };
+  using ui::pressed;
   if (pressed(GLFW_KEY_T) && by_pointer) view.holding_tool = !view.holding_tool;
   if (pressed(GLFW_KEY_ESCAPE)) view.holding_tool = false;
   if (pressed(GLFW_KEY_SPACE)) milling.set_spindle(!milling.spindle_asked());
@@ -207,7 +208,7 @@ void take_input(ViewState& view, Simulation& simulation, SpaceMouse& space_mouse
     hardware->set_clutched(clutched || view.calibration.step != ViewState::Calibration::Step::none);
   }
   take_keys(view, milling, simulation.holder.is_pointer());
-  const bool by_key = !io.WantTextInput && ImGui::IsKeyPressed(GLFW_KEY_B, false);
+  const bool by_key = !io.WantTextInput && ui::pressed(GLFW_KEY_B);
   if ((std::exchange(view.bring_asked, false) || by_key) && !milling.placing()) {
     std::optional<Eigen::Vector2d> pointer;
     if (by_key && !io.WantCaptureMouse)

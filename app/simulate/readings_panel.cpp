@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
-#include <exception>
 #include <string>
 #include <vector>
 
@@ -82,29 +81,11 @@ void plot(const char* name, const char* unit, const std::deque<TickRecord>& hist
 
 // One line, whatever there is to tell, so that nothing below it moves.
 void draw_faults(const std::deque<TickRecord>& history) {
-  int limited = 0, unknown = 0, unsafe = 0;
-  for (const TickRecord& record : history) {
-    switch (record.fault) {
-      case WrenchFault::none:
-      case WrenchFault::eased:
-      // The hand moves without the tool, or the device says itself that it gives no pose.
-      case WrenchFault::pose_not_finite:
-        break;
-      case WrenchFault::force_clamped:
-      case WrenchFault::torque_clamped:
-      case WrenchFault::force_and_torque_clamped:
-        ++limited;
-        break;
-      case WrenchFault::not_finite:
-        ++unknown;
-        break;
-      case WrenchFault::pose_jumped:
-      case WrenchFault::tick_late:
-        ++unsafe;
-        break;
-    }
-  }
-  const int zero = unknown + unsafe;
+  FaultCount faults;
+  for (const TickRecord& record : history) faults.add(record);
+  const int limited = faults.limited();
+  // Not those without a pose: a clutch is held, or the device's own line tells of it.
+  const int zero = faults.not_finite() + faults.unsafe();
   const std::string text = zero > 0      ? fmt::format("no force, {} ticks", zero)
                            : limited > 0 ? fmt::format("limited, {} ticks", limited)
                                          : "as computed";
@@ -117,7 +98,7 @@ void draw_faults(const std::deque<TickRecord>& history) {
           "Of the last {} ticks, {} would have been stronger than the limits of force and torque. {} had "
           "none: in {} the hand was moved too fast, or the tick came too late, to be safe, and in {} "
           "there was no number to send.",
-          history.size(), limited, zero, unsafe, unknown)
+          history.size(), limited, zero, faults.unsafe(), faults.not_finite())
           .c_str());
 }
 
@@ -136,12 +117,10 @@ void keep_turn(ViewState& view, ConnectedDevice& device, const Vec3& up_D_mm) {
   settings.turn_V_deg = *turn_deg;
   device.set_workspace(settings);
   const std::filesystem::path path = workspace_path(can.name);
-  try {
+  view.dialogues.attempt([&] {
     if (!path.empty()) keep_workspace(path, can.name, settings);
     view.message = "How the device stands before you is kept in " + path.string();
-  } catch (const std::exception& error) {
-    view.dialogues.complain(error.what());
-  }
+  });
 }
 
 void draw_calibration(ViewState& view, ConnectedDevice& device, const Vec3& handle_D_mm) {

@@ -40,6 +40,10 @@ bool remember(const char* label, bool acted) {
 
 }  // namespace
 
+bool pressed(int key) {
+  return ImGui::IsKeyPressed(key, false);
+}
+
 void begin_right(const char* title, float y_px, ImGuiWindowFlags flags) {
   ImGui::SetNextWindowPos({ImGui::GetIO().DisplaySize.x - px(kRightWidth_px + 8), y_px});
   ImGui::SetNextWindowSize({px(kRightWidth_px), 0});
@@ -91,7 +95,6 @@ std::optional<std::size_t> choice(const std::vector<std::string>& labels) {
   if (labels.empty()) return chosen;
   // The key that led to the dialogue may still be going down.
   if (ImGui::IsWindowAppearing()) return chosen;
-  const auto pressed = [](int key) { return ImGui::IsKeyPressed(key, false); };
   if (pressed(GLFW_KEY_ENTER) || pressed(GLFW_KEY_KP_ENTER)) chosen = 0;
   if (pressed(GLFW_KEY_ESCAPE)) chosen = labels.size() - 1;
   if (chosen) places()[labels[*chosen]].worked = true;
