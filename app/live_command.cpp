@@ -57,7 +57,7 @@ void print_timing(const TimingSummary& timing) {
   print_times("whole tick", timing.tick);
 }
 
-// What a window would have taken meanwhile.
+// What is told of the ticks at the end.
 struct Seen {
   LabelCount labels;
   FaultCount faults = {};
@@ -75,7 +75,7 @@ void end_recording(LiveMilling& milling, Seen& seen) {
   }
 }
 
-// Who holds the tool, and what is to be done for them meanwhile.
+// Who holds the tool: hardware, a SpaceMouse or the simulated operator.
 class Holder {
  public:
   explicit Holder(const DeviceOption& option) : option_(option), hardware_(open_device(option)) {
@@ -84,7 +84,7 @@ class Holder {
   }
 
   const ConnectedDevice* hardware() const { return hardware_.get(); }
-  // Before the entry, with what may be asked for of them.
+  // Puts the tool before the entry, and the hardware's limits into the setup.
   Device& take_tool(const TrialOptions& trial, MillingSetup& setup, const MillingEntry& entry) {
     const Pose X_WT = pose_above(entry, setup.tool, kHeldAbove_mm);
     if (hardware_) {
@@ -123,7 +123,8 @@ class Holder {
  private:
   static constexpr double kHeldAbove_mm = 1;
 
-  // Once when it has lasted, and once when it is over; what was shorter is counted.
+  // Warns once when a fault has lasted for a while, and says once when it is over; shorter ones are only
+  // counted.
   void warn_of(const DeviceReport& report) {
     constexpr double kLasting_s = 0.1;
     const bool well = report.state == DeviceReport::State::ok;

@@ -42,7 +42,7 @@ struct ReplayOptions {
   bool given(const char* option) const { return command->count(option) > 0; }
 };
 
-// The log, and what is to be told of ticks.
+// Keeps the replay's ticks for the log, warns of no-go contacts, and counts what is told at the end.
 class Log {
  public:
   Log(const ReplayOptions& options, std::size_t ticks, const Volume& bone)
@@ -87,7 +87,7 @@ void replay_trajectory(ReplayOptions options) {
   log.write();
 }
 
-// As it was read when the recording was made: the scan that is named, or else the one that it names.
+// The scan that is named, or else the one that the recording names, read as it was for the recording.
 Volume scan_of(const ReplayOptions& options, const Recording& recording) {
   ScanOptions scan = options.scan;
   if (scan.scan.empty() && recording.description.scan_name != kBuiltinTooth)
@@ -117,7 +117,8 @@ void verify(const Volume& scan, const Recording& recording) {
              verified.bones);
 }
 
-// What was said for all algorithms, said for this one, so that it comes after what was recorded.
+// The settings of the command line, each under this algorithm's own name, so that they come after the
+// recorded ones and win.
 HapticSettings settings_for(const AlgorithmDescription& algorithm, const HapticSettings& said) {
   HapticSettings own{said.mode};
   for (const HapticSettings::Named& named : said.named) {
@@ -196,7 +197,7 @@ void run_replay(const ReplayOptions& options, const std::string& command_line) {
     replay_another_way(options, command_line, scan, recording);
 }
 
-// Only what turns motion into a wrench can be another.
+// A recording can be replayed with another algorithm and its settings, but not with another tool or bone.
 void refuse_what_is_recorded(const ReplayOptions& options) {
   const auto refuse = [&](const char* option) {
     if (options.given(option))

@@ -118,7 +118,7 @@ void BoneFollower::mesh() {
   for (ChangedBrick& brick : changed) published_.insert_or_assign(brick.brick, std::move(brick));
 }
 
-// A bounded number, so that bricks which come as fast as they are taken cannot put off the meshing.
+// At most so many bricks, or those that come as fast as they are taken would put off the meshing for ever.
 void BoneFollower::take_over() {
   DensityBlock* brick = handover_.front();
   for (std::size_t n = 0; brick != nullptr && n < kBricksOnTheirWay; ++n) {
@@ -132,7 +132,8 @@ void BoneFollower::take_over() {
   }
 }
 
-// What was there is in the brick afterwards. False where nothing changed.
+// Puts the brick's densities into the copy and those that were there into the brick. Returns false where
+// nothing changed.
 bool BoneFollower::put(DensityBlock& brick) {
   const VoxelBox changed = swap_densities(*copy_, brick);
   if (changed.empty()) return false;
@@ -141,7 +142,7 @@ bool BoneFollower::put(DensityBlock& brick) {
   return true;
 }
 
-// After it `differing_` holds what was there.
+// `differing_` holds afterwards what was there, so that the same call takes it back.
 void BoneFollower::put_differing() {
   for (DensityBlock& brick : differing_) put(brick);
 }

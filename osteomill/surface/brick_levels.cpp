@@ -12,7 +12,7 @@ namespace {
 
 using Index = std::uint32_t;
 
-// Takes the vertices of one brick together, level by level.
+// Clusters the vertices of one brick, level by level.
 class Coarsening {
  public:
   Coarsening(const BrickMesh& mesh, const GridGeometry& geometry, const VoxelBox& cells)
@@ -33,8 +33,8 @@ class Coarsening {
     std::iota(cluster_.begin(), cluster_.end(), Index{0});
   }
 
-  // Cells of `size` voxels.
-  void take_together(int size) {
+  // Clusters what is connected within cells of `size` voxels.
+  void cluster_within(int size) {
     std::iota(parent_.begin(), parent_.end(), Index{0});
     for (std::size_t n = 0; n < triangles_.size(); n += 3) {
       for (std::size_t corner = 0; corner < 3; ++corner) {
@@ -77,13 +77,14 @@ class Coarsening {
     return true;
   }
 
-  // The planes of a cluster's triangles, by their area, as the least squares of a point's distances to them.
+  // The planes of a cluster's triangles, weighted by their areas: the normal equations of the point with the
+  // least squared distances to them.
   struct Planes {
     Mat3 normals = Mat3::Zero();
     Vec3 offsets = Vec3::Zero();
 
-    // The point nearest to all of them, near another which says what they leave open: the mean of a sharp
-    // edge's vertices lies below it.
+    // The point nearest to all planes; where they leave it open, the one nearest to `point_W`. That is the
+    // mean of the vertices, which alone would lie below a sharp edge.
     Vec3 meeting_near(const Vec3& point_W, double reach_mm) const {
       constexpr double kHeld = 0.004;
       const Mat3 held = normals + kHeld * normals.trace() * Mat3::Identity();
@@ -109,8 +110,8 @@ class Coarsening {
     return result;
   }
 
-  // One vertex for each cluster, where its planes meet, with the mean of its normals and
-  // densities; one that is alone stays the mesh's own.
+  // One vertex for each cluster, where its planes meet, with the mean of its normals and densities; a cluster
+  // of one vertex keeps the mesh's own.
   void add_means(std::vector<MeshVertex>& means, double reach_mm) {
     struct Sum {
       Vec3 positions_mm = Vec3::Zero();
@@ -149,9 +150,9 @@ class Coarsening {
   double min_spacing_mm_;
   std::vector<Vec3> voxels_;
   std::vector<bool> on_border_;
-  std::vector<Index> cluster_;  // by vertex: one that stands for all that are together
-  std::vector<Index> parent_;   // of what is taken together in this step
-  std::vector<Index> mean_;     // by vertex: where the mean of its cluster is
+  std::vector<Index> cluster_;  // by vertex: the vertex that stands for its cluster
+  std::vector<Index> parent_;   // union-find of the level that is being made
+  std::vector<Index> mean_;     // by vertex: the number of its cluster's mean
   std::vector<Index> triangles_;
 };
 
@@ -169,7 +170,7 @@ BrickLevels levels_of(const BrickMesh& mesh, const GridGeometry& geometry, const
   if (mesh.empty()) return result;
   Coarsening coarsening(mesh, geometry, cells);
   for (std::size_t level = 1; level < BrickLevels::kCount; ++level) {
-    coarsening.take_together(1 << level);
+    coarsening.cluster_within(1 << level);
     coarsening.add_level(result, level);
   }
   return result;

@@ -21,11 +21,11 @@ struct BrickLevels {
     std::size_t first = 0;
     std::size_t count = 0;
   };
-  /// To be numbered on from the mesh's own.
+  /// Of levels 1 and up. Their numbers go on from those of the mesh's own vertices.
   std::vector<MeshVertex> vertices;
   /// Three a triangle, first all of level 0.
   std::vector<std::uint32_t> indices;
-  /// Which indices a level has; all have the mesh's own in `full_detail`.
+  /// Which of the indices belong to a level.
   std::array<Range, kCount> levels{};
 };
 

@@ -19,13 +19,14 @@ struct ChangedBrick {
   BrickLevels levels;
 };
 
-/// Which bricks of a surface have to be meshed anew as the densities change. Holds no densities. For one
-/// thread.
+/// Keeps a surface up with changing densities: notes which bricks are to be meshed anew, and meshes them.
+/// Holds no densities. For one thread.
 class SurfaceUpkeep {
  public:
-  /// Levels take five times as long as the mesh, and where bone is milled the mesh is what is looked at: they
-  /// are made of a brick that so many calls of `remesh` have found unmarked, and of so many bricks a call.
+  /// Making a brick's levels takes five times as long as its mesh, and where bone is milled they are not
+  /// looked at. So they are made once this many calls of `remesh` in a row found the brick unmarked ...
   static constexpr std::uint8_t kCallsAtRest = 10;
+  /// ... and for at most so many bricks in one call.
   static constexpr std::size_t kMostAtRest = 2;
 
   /// At first every brick has to be meshed.

@@ -13,9 +13,9 @@ class CavityPass {
   explicit CavityPass(const PixelSize& size, int reach_px = 24);
 
   void blur(GLuint depths, double near_mm, double far_mm) const;
-  /// Depths in mm times a weight, and the weight.
+  /// A texture of two channels: blurred depths in mm times a weight, and that weight (0: nothing was drawn).
   GLuint blurred_depths() const { return blurred_.get(); }
-  /// In a picture of the same view of this size.
+  /// How far the blur reaches in a picture of the same view of this size.
   double reach_px(const PixelSize& picture) const { return reach_of_height_ * picture.height; }
 
  private:
