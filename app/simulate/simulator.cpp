@@ -2,7 +2,6 @@
 #include <atomic>
 #include <chrono>
 #include <ctime>
-#include <deque>
 #include <exception>
 #include <filesystem>
 #include <functional>
@@ -462,15 +461,15 @@ class Simulator {
   }
 
   void take_surface() {
-    for (ChangedBrick& changed : simulation_->milling.take_changed_bricks())
-      to_draw_.push_back(std::move(changed));
+    ChangedBricks changed = simulation_->milling.take_changed_bricks();
+    changed.merge(to_draw_);
+    to_draw_ = std::move(changed);
     // All bricks of a large bone take longer than a picture may. But where pictures take long anyway, as
     // without a graphics card, too few at a time would take minutes.
     const double most_s = std::max(0.02, 0.5 / std::max(rate_.per_s(), 1.0));
     for (const auto start = Clock::now(); !to_draw_.empty() && seconds_since(start) < most_s;
-         to_draw_.pop_front()) {
-      const ChangedBrick& changed = to_draw_.front();
-      renderer_->set_brick(changed.brick, changed.mesh, changed.levels);
+         to_draw_.erase(to_draw_.begin())) {
+      renderer_->set_brick(to_draw_.begin()->first, to_draw_.begin()->second);
     }
   }
 
@@ -555,8 +554,8 @@ class Simulator {
   Clock::time_point opening_since_;
   int changes_before_ = 0;
   std::unique_ptr<SceneRenderer> renderer_;
-  // Of the surface, in the order in which they changed.
-  std::deque<ChangedBrick> to_draw_;
+  // Of the surface.
+  ChangedBricks to_draw_;
   bool closing_ = false;
   bool reported_ = false;
   ViewState view_;

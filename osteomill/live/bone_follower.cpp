@@ -113,9 +113,11 @@ void BoneFollower::follow(const std::optional<double>& isovalue) {
 // The others may read meanwhile; no other thread marks what is to be meshed while one holds the lock.
 void BoneFollower::mesh() {
   const std::shared_lock lock(bone_mutex_);
-  std::vector<ChangedBrick> changed = upkeep_.remesh({copy_->grid(), copy_->ranges(), shown_isovalue_});
+  ChangedBricks changed = upkeep_.remesh({copy_->grid(), copy_->ranges(), shown_isovalue_});
   const std::lock_guard publishing(published_mutex_);
-  for (ChangedBrick& brick : changed) published_.insert_or_assign(brick.brick, std::move(brick));
+  // Of a brick that is in both, the newer stays.
+  changed.merge(published_);
+  published_ = std::move(changed);
 }
 
 // At most so many bricks, or those that come as fast as they are taken would put off the meshing for ever.
@@ -170,15 +172,9 @@ void BoneFollower::bone_changed(const Volume& bone, const VolumeChange& change) 
   handover_.send(bone, kBricksPerTick);
 }
 
-std::vector<ChangedBrick> BoneFollower::take_changed_bricks() {
-  std::map<std::size_t, ChangedBrick> bricks;
-  {
-    const std::lock_guard lock(published_mutex_);
-    bricks.swap(published_);
-  }
-  std::vector<ChangedBrick> taken;
-  for (auto& [place, brick] : bricks) taken.push_back(std::move(brick));
-  return taken;
+ChangedBricks BoneFollower::take_changed_bricks() {
+  const std::lock_guard lock(published_mutex_);
+  return std::exchange(published_, {});
 }
 
 void BoneFollower::show_isovalue(double isovalue) {

@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
-#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -86,10 +85,9 @@ class BoneFollower {
   void bone_changed(const Volume& bone, const VolumeChange& change) noexcept;
 
   const SurfaceBricks& layout() const { return layout_; }
-  /// What changed of the surface since the last call, each brick once, as it is now; in the order of the
-  /// bricks. The first call that brings anything brings the whole surface. For one drawing thread; never
-  /// waits for meshing.
-  std::vector<ChangedBrick> take_changed_bricks();
+  /// What changed of the surface since the last call. The first call that brings anything brings the whole
+  /// surface. For one drawing thread; never waits for meshing.
+  ChangedBricks take_changed_bricks();
   /// Has the whole surface meshed anew at another isovalue; of several in short order, at the last one. The
   /// bone's own isovalue stays. Any thread but the haptic one, as all that follows.
   void show_isovalue(double isovalue);
@@ -145,9 +143,9 @@ class BoneFollower {
 
   DensityHandover handover_;
   const SurfaceBricks layout_;
-  // What the drawing thread has not taken yet, each brick once.
+  // What the drawing thread has not taken yet.
   std::mutex published_mutex_;
-  std::map<std::size_t, ChangedBrick> published_;
+  ChangedBricks published_;
   std::atomic<std::uint64_t> version_{1};
 
   // Never taken by the haptic thread. Whoever writes holds it alone: into the copy or what goes with it, or

@@ -22,6 +22,7 @@ namespace {
 using namespace std::chrono_literals;
 using testing_support::ball;
 using testing_support::centred_cube;
+using testing_support::mesh_of;
 using testing_support::mesh_surface;
 using testing_support::shape_volume;
 using testing_support::SurfaceMesh;
@@ -49,8 +50,8 @@ class Miller {
 // Keeps what changed, as a window would.
 struct Collected {
   explicit Collected(const SurfaceBricks& layout) : mesh{layout, {}} { mesh.bricks.resize(layout.count()); }
-  void take(std::vector<ChangedBrick> changed) {
-    for (ChangedBrick& brick : changed) mesh.bricks[brick.brick] = std::move(brick.mesh);
+  void take(const ChangedBricks& changed) {
+    for (const auto& [number, brick] : changed) mesh.bricks[number] = mesh_of(brick);
   }
   SurfaceMesh mesh;
 };

@@ -106,7 +106,7 @@ class LiveMilling {
   const BoneFollower& follower() const { return *follower_; }
   /// What changed of its surface since the last call, and how that would look at another isovalue
   /// (BoneFollower).
-  std::vector<ChangedBrick> take_changed_bricks() { return follower_->take_changed_bricks(); }
+  ChangedBricks take_changed_bricks() { return follower_->take_changed_bricks(); }
   void show_isovalue(double isovalue) { follower_->show_isovalue(isovalue); }
 
  private:

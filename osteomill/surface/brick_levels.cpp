@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include <Eigen/Cholesky>
 
@@ -112,7 +113,7 @@ class Coarsening {
 
   // One vertex for each cluster, where its planes meet, with the mean of its normals and densities; a cluster
   // of one vertex keeps the mesh's own.
-  void add_means(std::vector<MeshVertex>& means, double reach_mm) {
+  void add_means(std::vector<MeshVertex>& vertices, double reach_mm) {
     struct Sum {
       Vec3 positions_mm = Vec3::Zero();
       Vec3 normals = Vec3::Zero();
@@ -134,12 +135,12 @@ class Coarsening {
     for (Index vertex = 0; vertex < sums.size(); ++vertex) {
       const Sum& sum = sums[vertex];
       if (sum.count < 2) continue;
-      place[vertex] = static_cast<Index>(mesh_.vertices.size() + means.size());
+      place[vertex] = static_cast<Index>(vertices.size());
       MeshVertex mean = mesh_.vertices[vertex];
       put(planes_of[vertex].meeting_near(sum.positions_mm / sum.count, reach_mm), mean.position_mm);
       if (sum.normals.norm() > 1e-3) put(sum.normals.normalized(), mean.normal);
       mean.density = static_cast<float>(sum.densities / sum.count);
-      means.push_back(mean);
+      vertices.push_back(mean);
     }
     for (Index& mean : mean_) {
       if (place[mean] != 0) mean = place[mean];
@@ -158,10 +159,9 @@ class Coarsening {
 
 }  // namespace
 
-BrickLevels full_detail(const BrickMesh& mesh) {
-  BrickLevels result;
-  result.indices = mesh.indices;
-  result.levels.fill({0, mesh.indices.size()});
+BrickLevels full_detail(BrickMesh mesh) {
+  BrickLevels result{std::move(mesh.vertices), std::move(mesh.indices)};
+  result.levels.fill({0, result.indices.size()});
   return result;
 }
 

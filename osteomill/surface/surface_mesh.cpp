@@ -46,9 +46,7 @@ void merge_vertices(BrickMesh& mesh, const std::vector<std::uint32_t>& first) {
 }  // namespace
 
 BrickMesh mesh_brick(const DensityView& view, std::size_t brick) {
-  BrickMesher mesher(view);
-  mesher.mesh(brick);
-  return mesher.copy();
+  return BrickMesher(view).mesh(brick);
 }
 
 BrickMesh mesh_in_one_piece(const DensityView& view) {
@@ -57,14 +55,14 @@ BrickMesh mesh_in_one_piece(const DensityView& view) {
   BrickMesher mesher(view);
   const std::size_t bricks = SurfaceBricks(view.grid.geometry().dims).count();
   for (std::size_t brick = 0; brick < bricks; ++brick) {
-    mesher.mesh(brick);
+    const BrickMesh& mesh = mesher.mesh(brick);
     const auto base = static_cast<std::uint32_t>(whole.vertices.size());
-    for (std::size_t n = 0; n < mesher.vertices().size(); ++n) {
+    for (std::size_t n = 0; n < mesh.vertices.size(); ++n) {
       if (mesher.on_brick_border(n))
         shared.push_back({mesher.edge_of(n), base + static_cast<std::uint32_t>(n)});
     }
-    whole.vertices.insert(whole.vertices.end(), mesher.vertices().begin(), mesher.vertices().end());
-    for (const std::uint32_t index : mesher.indices()) whole.indices.push_back(base + index);
+    whole.vertices.insert(whole.vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
+    for (const std::uint32_t index : mesh.indices) whole.indices.push_back(base + index);
   }
   merge_vertices(whole, first_of_same_edge(whole.vertices.size(), std::move(shared)));
   return whole;

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <vector>
 
 #include "osteomill/surface/brick_levels.h"
@@ -11,13 +12,9 @@
 
 namespace osteomill {
 
-/// A brick of `SurfaceBricks` whose triangles are no longer what they were; it may have none now.
-struct ChangedBrick {
-  std::size_t brick;
-  BrickMesh mesh;
-  /// The mesh with fewer triangles, for drawing it; the mesh alone while it is being milled.
-  BrickLevels levels;
-};
+/// Bricks of `SurfaceBricks`, by their numbers, whose triangles are no longer what they were, as they are
+/// now; they may have none. While a brick is being milled all its levels are its mesh (`full_detail`).
+using ChangedBricks = std::map<std::size_t, BrickLevels>;
 
 /// Keeps a surface up with changing densities: notes which bricks are to be meshed anew, and meshes them.
 /// Holds no densities. For one thread.
@@ -39,7 +36,7 @@ class SurfaceUpkeep {
   void mark_all();
   /// Meshes the bricks marked, and returns those that have triangles or had some before; bricks that rest,
   /// once more with their levels.
-  std::vector<ChangedBrick> remesh(const DensityView& view);
+  ChangedBricks remesh(const DensityView& view);
 
  private:
   SurfaceBricks layout_;

@@ -161,8 +161,8 @@ BoneGround::BoneGround(const SurfaceBricks& layout, const GridGeometry& geometry
                        std::shared_ptr<const LabelMap> labels)
     : bone_(layout, geometry, std::move(labels)), background_(kBackgroundFragment) {}
 
-void BoneGround::set_brick(std::size_t brick, const BrickMesh& mesh, const BrickLevels& levels) {
-  bone_.set_brick(brick, mesh, levels);
+void BoneGround::set_brick(std::size_t brick, const BrickLevels& levels) {
+  bone_.set_brick(brick, levels);
   changed_.insert(brick);
   changed_since_.insert(brick);
 }

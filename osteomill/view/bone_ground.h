@@ -75,7 +75,7 @@ class BoneGround {
   BoneGround(const SurfaceBricks& layout, const GridGeometry& geometry,
              std::shared_ptr<const LabelMap> labels);
 
-  void set_brick(std::size_t brick, const BrickMesh& mesh, const BrickLevels& levels);
+  void set_brick(std::size_t brick, const BrickLevels& levels);
   void set_clip_face(std::size_t cut, const ClipFace& face);
   std::size_t triangle_count() const { return bone_.triangle_count(); }
 

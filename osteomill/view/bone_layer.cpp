@@ -131,12 +131,12 @@ struct Facing {
   double spread_rad;
 };
 
-Facing facing_of(const BrickMesh& mesh) {
+Facing facing_of(const BrickLevels& brick) {
   std::vector<Vec3> normals;
-  normals.reserve(mesh.triangle_count());
+  normals.reserve(brick.levels[0].count / 3);
   Vec3 sum = Vec3::Zero();
-  const auto corner = [&](std::size_t n) { return vec3_of(mesh.vertices[mesh.indices[n]].position_mm); };
-  for (std::size_t n = 0; n < mesh.indices.size(); n += 3) {
+  const auto corner = [&](std::size_t n) { return vec3_of(brick.vertices[brick.indices[n]].position_mm); };
+  for (std::size_t n = 0; n < brick.levels[0].count; n += 3) {
     const Vec3 normal = (corner(n + 1) - corner(n)).cross(corner(n + 2) - corner(n));
     if (!(normal.norm() > 0)) continue;
     normals.push_back(normal.normalized());
@@ -263,10 +263,10 @@ BoneLayer::BoneLayer(const SurfaceBricks& layout, const GridGeometry& geometry,
     bricks_[n].bounds = bounding_sphere(geometry, layout.cells(n));
 }
 
-void BoneLayer::set_brick(std::size_t number, const BrickMesh& mesh, const BrickLevels& levels) {
+void BoneLayer::set_brick(std::size_t number, const BrickLevels& levels) {
   Brick& brick = bricks_[number];
   brick.levels = levels.levels;
-  if (mesh.empty()) {
+  if (levels.empty()) {
     brick.vertex_array = {};
     brick.vertices = {};
     brick.indices = {};
@@ -277,20 +277,18 @@ void BoneLayer::set_brick(std::size_t number, const BrickMesh& mesh, const Brick
     brick.vertices = gl::Buffer::make();
     brick.indices = gl::Buffer::make();
   }
-  const Facing facing = facing_of(mesh);
+  const Facing facing = facing_of(levels);
   brick.facing_W = facing.axis_W;
   brick.facing_spread_rad = facing.spread_rad;
-  std::vector<MeshVertex> vertices = mesh.vertices;
-  vertices.insert(vertices.end(), levels.vertices.begin(), levels.vertices.end());
   glBindVertexArray(brick.vertex_array.get());
-  gl::fill<MeshVertex>(GL_ARRAY_BUFFER, brick.vertices, vertices, GL_DYNAMIC_DRAW);
+  gl::fill<MeshVertex>(GL_ARRAY_BUFFER, brick.vertices, levels.vertices, GL_DYNAMIC_DRAW);
   // A brick has less than 2^16 grid edges for vertices to lie on.
   const std::vector<GLushort> indices(levels.indices.begin(), levels.indices.end());
   gl::fill<GLushort>(GL_ELEMENT_ARRAY_BUFFER, brick.indices, indices, GL_DYNAMIC_DRAW);
   gl::set_attribute(0, 3, sizeof(MeshVertex), offsetof(MeshVertex, position_mm));
   gl::set_attribute(1, 3, sizeof(MeshVertex), offsetof(MeshVertex, normal));
   gl::set_attribute(2, 1, sizeof(MeshVertex), offsetof(MeshVertex, density));
-  if (labels_) set_label_colours(brick, vertices);
+  if (labels_) set_label_colours(brick, levels.vertices);
 }
 
 void BoneLayer::set_label_colours(Brick& brick, const std::vector<MeshVertex>& vertices) {

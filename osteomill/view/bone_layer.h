@@ -87,7 +87,7 @@ class BoneLayer {
   BoneLayer(const SurfaceBricks& layout, const GridGeometry& geometry,
             std::shared_ptr<const LabelMap> labels = nullptr);
 
-  void set_brick(std::size_t brick, const BrickMesh& mesh, const BrickLevels& levels);
+  void set_brick(std::size_t brick, const BrickLevels& levels);
 
   /// All bricks, empty ones too, that lie at least in part where the camera looks, the nearest first.
   std::vector<std::size_t> in_view(const ViewScene& scene, const Projection& projection) const;

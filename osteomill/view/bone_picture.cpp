@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "osteomill/surface/surface_mesh.h"
@@ -125,7 +126,7 @@ class BonePainter {
     DepthTiles depths(target_, projection_, scene_.camera);
     const auto flush = [&] {
       layer_.draw(scene_, projection_, cavities_, layer_.seen(scene_, projection_, kFullDetail));
-      for (; done < drawn.size(); ++done) layer_.set_brick(drawn[done], {}, {});
+      for (; done < drawn.size(); ++done) layer_.set_brick(drawn[done], {});
       depths = DepthTiles(target_, projection_, scene_.camera);
     };
     std::size_t triangles = 0;
@@ -136,9 +137,9 @@ class BonePainter {
       if (whom == For::eyes) {
         for (MeshVertex& vertex : mesh.vertices) look_closer(bone_, vertex);
       }
-      layer_.set_brick(brick, mesh, full_detail(mesh));
       drawn.push_back(brick);
       triangles += mesh.triangle_count();
+      layer_.set_brick(brick, full_detail(std::move(mesh)));
       if (triangles < kTrianglesAtOnce) continue;
       flush();
       triangles = 0;

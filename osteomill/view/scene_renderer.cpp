@@ -272,8 +272,8 @@ SceneRenderer::SceneRenderer(const SurfaceBricks& layout, const GridGeometry& ge
 
 SceneRenderer::~SceneRenderer() = default;
 
-void SceneRenderer::set_brick(std::size_t brick, const BrickMesh& mesh, const BrickLevels& levels) {
-  impl_->ground.set_brick(brick, mesh, levels);
+void SceneRenderer::set_brick(std::size_t brick, const BrickLevels& levels) {
+  impl_->ground.set_brick(brick, levels);
 }
 
 void SceneRenderer::set_clip_face(std::size_t cut, const ClipFace& face) {

@@ -5,7 +5,6 @@
 
 #include "osteomill/image/image.h"
 #include "osteomill/surface/brick_levels.h"
-#include "osteomill/surface/brick_mesh.h"
 #include "osteomill/surface/surface_bricks.h"
 #include "osteomill/view/clip_face.h"
 #include "osteomill/view/scene.h"
@@ -26,9 +25,8 @@ class SceneRenderer {
   SceneRenderer(const SceneRenderer&) = delete;
   SceneRenderer& operator=(const SceneRenderer&) = delete;
 
-  /// A brick's triangles as they are now, and its coarser levels for drawing it while the view moves. A mesh
-  /// without triangles removes it.
-  void set_brick(std::size_t brick, const BrickMesh& mesh, const BrickLevels& levels);
+  /// A brick's triangles as they are now; without any the brick is removed.
+  void set_brick(std::size_t brick, const BrickLevels& levels);
   /// What the scene's cut of this number lays open; drawn where the other cuts do not cut it away.
   void set_clip_face(std::size_t cut, const ClipFace& face);
 

@@ -48,7 +48,7 @@ class SceneRendererTest : public ::testing::Test {
     scene_.reference_density = 900;
   }
 
-  void set_brick(std::size_t n, const BrickMesh& mesh) { renderer_->set_brick(n, mesh, full_detail(mesh)); }
+  void set_brick(std::size_t n, const BrickMesh& mesh) { renderer_->set_brick(n, full_detail(mesh)); }
 
   // Holds the picture against the one kept under this test's name. With OSTEOMILL_KEEP_PICTURES it is kept
   // anew.
@@ -191,7 +191,7 @@ TEST_F(SceneRendererTest, CoarserLevelsAreHardlyTold) {
   for (std::size_t n = 0; n < mesh.bricks.size(); ++n) {
     BrickLevels levels = levels_of(mesh.bricks[n], bone_.geometry(), mesh.layout.cells(n));
     levels.levels[0] = levels.levels[1 + n % 3];
-    renderer_->set_brick(n, mesh.bricks[n], levels);
+    renderer_->set_brick(n, levels);
   }
   const Image fewer = picture();
   double sum = 0;

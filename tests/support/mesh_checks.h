@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "osteomill/geometry/pose.h"
+#include "osteomill/surface/brick_levels.h"
 #include "osteomill/surface/brick_mesher.h"
 #include "osteomill/surface/surface_mesh.h"
 #include "osteomill/volume/sampling.h"
@@ -35,9 +36,18 @@ inline SurfaceMesh mesh_surface(const DensityView& view) {
   SurfaceMesh mesh{SurfaceBricks(view.grid.geometry().dims), {}};
   BrickMesher mesher(view);
   for (std::size_t brick = 0; brick < mesh.layout.count(); ++brick) {
-    mesher.mesh(brick);
-    mesh.bricks.push_back(mesher.copy());
+    mesh.bricks.push_back(mesher.mesh(brick));
   }
+  return mesh;
+}
+
+/// Level 0 alone.
+inline BrickMesh mesh_of(const BrickLevels& brick) {
+  BrickMesh mesh{{},
+                 {brick.indices.begin(), brick.indices.begin() + static_cast<long>(brick.levels[0].count)}};
+  if (mesh.empty()) return mesh;
+  const std::uint32_t last = *std::max_element(mesh.indices.begin(), mesh.indices.end());
+  mesh.vertices.assign(brick.vertices.begin(), brick.vertices.begin() + last + 1);
   return mesh;
 }
 
