@@ -40,7 +40,7 @@ std::string end_that_fits(const std::string& name) {
 
 void draw_scan(ViewState& view, const std::string& name) {
   ImGui::TextUnformatted(end_that_fits(name).c_str());
-  ui::hint(name.c_str());
+  ui::hint(name);
   const bool entered = ui::text_field("scan", view.scan_path.data(), view.scan_path.size());
   ui::hint("Path of a DICOM folder or of a NRRD, MetaImage or NIfTI file; or drop it onto the window");
   ImGui::SameLine();
@@ -125,8 +125,8 @@ void draw_boundaries(Simulation& simulation) {
     if (ImGui::GetItemRectMax().x + style.ItemSpacing.x + width <= right) ImGui::SameLine();
     if (ui::button(label.c_str(), !simulation.milling.preparing()))
       simulation.milling.change_isovalue(boundary.density);
-    ui::hint(fmt::format("A boundary of the scan: {:.4g} below, {:.4g} above", boundary.below, boundary.above)
-                 .c_str());
+    ui::hint(
+        fmt::format("A boundary of the scan: {:.4g} below, {:.4g} above", boundary.below, boundary.above));
   }
 }
 
@@ -157,9 +157,7 @@ void draw_isovalue(ViewState& view, Simulation& simulation) {
   ImGui::EndDisabled();
   if (!moved && !milling.preparing()) view.isovalue.reset();
   ImGui::TextWrapped("%s", isovalue_text(simulation).c_str());
-  ImGui::PushStyleColor(ImGuiCol_Text, ui::kWarning);
-  for (const std::string& warning : simulation.warnings) ImGui::TextWrapped("%s", warning.c_str());
-  ImGui::PopStyleColor();
+  for (const std::string& warning : simulation.warnings) ui::warning(warning);
 }
 
 void draw_cuts(ViewState& view, Simulation& simulation) {
@@ -189,7 +187,7 @@ void draw_view(ViewState& view, const Vec3& tool_W, const PixelSize& size) {
     const std::string letter(1, static_cast<char>(std::toupper(from.front())));
     if (ui::button((letter + "##view").c_str()))
       view.camera = with_whole(camera_on(view.box.bounds(), direction_W, up_W), view.box, size);
-    ui::hint(fmt::format("From {}", from).c_str());
+    ui::hint(fmt::format("From {}", from));
     ImGui::SameLine();
   }
   if (ui::button("Whole")) view.camera = with_whole(view.camera, view.box, size);

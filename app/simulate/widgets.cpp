@@ -115,11 +115,17 @@ void badge(const std::string& text, float top_px, float margin_px, ImU32 ground,
   list.AddText(place, kWhite, text.c_str());
 }
 
-void hint(const char* text) {
+void warning(const std::string& text) {
+  ImGui::PushStyleColor(ImGuiCol_Text, kWarning);
+  ImGui::TextWrapped("%s", text.c_str());
+  ImGui::PopStyleColor();
+}
+
+void hint(const std::string& text) {
   if (!ImGui::IsItemHovered()) return;
   ImGui::BeginTooltip();
   ImGui::PushTextWrapPos(25 * ImGui::GetFontSize());
-  ImGui::TextUnformatted(text);
+  ImGui::TextUnformatted(text.c_str());
   ImGui::PopTextWrapPos();
   ImGui::EndTooltip();
 }

@@ -52,6 +52,8 @@ std::optional<std::size_t> choice(const std::vector<std::string>& labels);
 /// edge; with a dot before it where something is going on.
 void badge(const std::string& text, float top_px, float margin_px, ImU32 ground, bool dot);
 /// Explains the widget drawn last where the pointer rests on it.
-void hint(const char* text);
+void hint(const std::string& text);
+/// Text in the colour of warnings, wrapped to the panel.
+void warning(const std::string& text);
 
 }  // namespace osteomill::app::ui
