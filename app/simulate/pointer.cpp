@@ -28,13 +28,14 @@ double held_way(int forwards, int backwards) {
   return (held(forwards) ? 1.0 : 0.0) - (held(backwards) ? 1.0 : 0.0);
 }
 
-// What the pointer has moved since the picture before; and by how much it drags what a button holds: nothing
-// in the picture in which the button went down, before which it may have come a long way.
+// How far the pointer moved since the last picture.
 Eigen::Vector2d pointer_moved_px() {
   const ImVec2 moved = ImGui::GetIO().MouseDelta;
   return {static_cast<double>(moved.x), static_cast<double>(moved.y)};
 }
 
+// The same for what a button drags. Zero in the picture in which the button went down: the pointer may have
+// moved far before that.
 Eigen::Vector2d pointer_dragged_px() {
   const bool just_pressed = ImGui::IsMouseClicked(0) || ImGui::IsMouseClicked(1) || ImGui::IsMouseClicked(2);
   return just_pressed ? Eigen::Vector2d::Zero() : pointer_moved_px();
@@ -72,8 +73,8 @@ bool drag_cut(ViewState& view, const PixelSize& size) {
   if (!io.MouseDown[0]) view.dragged_cut = -1;
   if (view.dragged_cut < 0) return false;
   ViewState::Cut& cut = view.cuts[static_cast<std::size_t>(view.dragged_cut)];
-  // The normal as it is seen, pixels a mm; towards the viewer it hardly moves in the picture: then upwards is
-  // on.
+  // How the normal is seen, in pixels a mm. A cut that faces the viewer hardly moves in the picture: then
+  // dragging upwards moves it along its normal.
   const Vec3 anchor_W = view.box.centre_W();
   Eigen::Vector2d seen =
       pixel_of(view.camera, size, anchor_W + cut.normal_W) - pixel_of(view.camera, size, anchor_W);

@@ -97,7 +97,7 @@ void Simulation::update() {
   look_for_warnings();
 }
 
-// Goes through every voxel.
+// On a thread of its own, since it goes through every voxel.
 void Simulation::look_for_warnings() {
   if (warnings_to_come_.valid()) {
     if (warnings_to_come_.wait_for(0s) == std::future_status::ready) warnings = warnings_to_come_.get();

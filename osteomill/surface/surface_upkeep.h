@@ -29,7 +29,6 @@ class SurfaceUpkeep {
   /// At first every brick has to be meshed.
   explicit SurfaceUpkeep(const SurfaceBricks& layout);
 
-  const SurfaceBricks& layout() const { return layout_; }
   /// Densities of these voxels (in the grid) changed, up or down.
   void mark(const VoxelBox& voxels);
   /// As after another isovalue.

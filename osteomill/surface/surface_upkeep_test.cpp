@@ -22,8 +22,9 @@ DensityView at_isovalue(const Volume& volume, double isovalue) {
 
 TEST(SurfaceUpkeep, KeptUpIsTheSurfaceMadeFromScratch) {
   Volume volume = shape_volume(centred_cube(51, 0.25), ball(Vec3::Zero(), 5.0));
-  SurfaceUpkeep upkeep{SurfaceBricks(volume.geometry().dims)};
-  SurfaceMesh kept{upkeep.layout(), std::vector<BrickMesh>(upkeep.layout().count())};
+  const SurfaceBricks layout(volume.geometry().dims);
+  SurfaceUpkeep upkeep{layout};
+  SurfaceMesh kept{layout, std::vector<BrickMesh>(layout.count())};
   const auto take = [&] {
     const ChangedBricks changed = upkeep.remesh(DensityView(volume));
     const std::size_t count = changed.size();

@@ -63,7 +63,7 @@ ClipFace clip_face(const DensityGrid& grid, const ClipPlane& plane, const Window
                    const LabelMap* labels, int max_pixels) {
   const std::vector<Vec3> border = crossings(grid.geometry(), plane);
   if (border.size() < 3) return {};
-  // Any two directions in the plane.
+  // Any two directions in the plane at right angles.
   const Vec3 some = std::abs(plane.normal_W.z()) < 0.9 ? Vec3::UnitZ() : Vec3::UnitY();
   const Vec3 across = some.cross(plane.normal_W).normalized();
   const Vec3 along = plane.normal_W.cross(across);
