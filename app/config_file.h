@@ -16,7 +16,7 @@ void add_config_option(CLI::App& command);
 /// is not TOML, or has a key or value that the command does not know.
 void apply_config_file(CLI::App& command);
 
-/// In the place of what an option was given before. Throws CLI::Error where it takes no such values.
+/// Replaces the values that an option was given before. Throws CLI::Error where it does not take these.
 void set_results(CLI::Option& option, const std::vector<std::string>& texts);
 
 }  // namespace osteomill::app

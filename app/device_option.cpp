@@ -81,12 +81,10 @@ void add_device_option(CLI::App& command, DeviceOption& option) {
       ->check(known_device())
       ->type_name("DEVICE")
       ->capture_default_str();
-  command.add_option("--device-scale", option.scale, "By how much the tool moves further than the handle")
-      ->check(positive_number())
-      ->type_name("NUMBER");
-  command.add_option("--device-power", option.power, "How much of the tool's power the hand feels")
-      ->check(positive_number())
-      ->type_name("NUMBER");
+  add_positive(command, "--device-scale", option.scale, "NUMBER",
+               "By how much the tool moves further than the handle");
+  add_positive(command, "--device-power", option.power, "NUMBER",
+               "How much of the tool's power the hand feels");
   command
       .add_option("--device-turn", option.turn_deg,
                   "How the device stands, turned in degrees about right, up and towards you")
@@ -106,10 +104,13 @@ void add_send_options(CLI::App& command, SendOption& option) {
       .add_option("--send-bone", option.address,
                   "The bone as it is milled, and the tool, by OpenIGTLink, as to 3D Slicer")
       ->type_name("HOST:PORT");
-  command.add_option("--send-rate", option.tool_rate_Hz, "How often the tool's place and readings are sent")
-      ->check(positive_number())
-      ->type_name("Hz")
-      ->capture_default_str();
+  add_positive(command, "--send-rate", option.tool_rate_Hz, "Hz",
+               "How often the tool's place and readings are sent");
+}
+
+std::unique_ptr<BoneSender> send_bone(const BoneFollower& bone, const SendOption& option) {
+  if (option.address.empty()) return nullptr;
+  return std::make_unique<BoneSender>(bone, option.address, option.tool_rate_Hz);
 }
 
 std::unique_ptr<ConnectedDevice> open_device(const DeviceOption& option) {

@@ -8,6 +8,7 @@
 #include <CLI/App.hpp>
 
 #include "osteomill/device/connected_device.h"
+#include "osteomill/live/bone_sender.h"
 #include "osteomill/recording/run_description.h"
 
 namespace osteomill::app {
@@ -18,7 +19,7 @@ inline constexpr const char* kSpaceMouse = "spacemouse";
 inline constexpr const char* kSimulated = "simulated";
 inline constexpr const char* kNoSpaceMouse = "the daemon spacenavd does not answer";
 
-/// Which device, and how it moves the tool where that is not as it was kept.
+/// Which device holds the tool, and what of its workspace is to be other than was kept for it.
 struct DeviceOption {
   /// NAME or NAME:ADDRESS.
   std::string device;
@@ -33,8 +34,9 @@ struct DeviceOption {
 /// Adds --device, which is `option.device` where it is not given, and how its workspace lies.
 void add_device_option(CLI::App& command, DeviceOption& option);
 
-/// Where bone and tool go as it is milled (BoneSender), nowhere where that is empty.
+/// Where the bone and the tool are sent while it is milled (BoneSender).
 struct SendOption {
+  /// Empty: nowhere.
   std::string address;
   double tool_rate_Hz = 30;
 };
@@ -42,9 +44,13 @@ struct SendOption {
 /// Adds --send-bone and --send-rate.
 void add_send_options(CLI::App& command, SendOption& option);
 
-/// The haptic hardware that was asked for, its workspace as it was kept for it by its name, with what was
-/// given of it now, which is kept as well; says on standard error which device that is. Null for a hand
-/// without hardware. Throws InputError where the device, or what tells of a SpaceMouse, cannot be had.
+/// What sends them; null where nothing is to be sent. Throws as BoneSender does.
+std::unique_ptr<BoneSender> send_bone(const BoneFollower& bone, const SendOption& option);
+
+/// Opens the haptic hardware that was asked for and names it on standard error; null for a hand without
+/// hardware. Its workspace is the one kept under the device's name, changed by what the option gives, and
+/// that is then kept. Throws InputError where the device, or the daemon that a SpaceMouse needs, is not
+/// there.
 std::unique_ptr<ConnectedDevice> open_device(const DeviceOption& option);
 
 /// What a recording says of who held the tool.

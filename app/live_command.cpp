@@ -33,7 +33,6 @@ constexpr double kEvery_s = 0.02;
 struct LiveOptions {
   ScanOptions scan;
   TrialOptions trial;
-  std::vector<AlgorithmDescription> algorithm{default_algorithm()};
   double seconds = 60;
   std::string record;
   DeviceOption device{kSimulated};
@@ -58,10 +57,10 @@ void print_timing(const TimingSummary& timing) {
   print_times("whole tick", timing.tick);
 }
 
-// What a window would have taken meanwhile.
+// What is told of the ticks at the end.
 struct Seen {
-  FaultCount faults;
   LabelCount labels;
+  FaultCount faults = {};
   std::size_t bricks = 0;
   bool recording_failed = false;
 };
@@ -76,7 +75,7 @@ void end_recording(LiveMilling& milling, Seen& seen) {
   }
 }
 
-// Who holds the tool, and what is to be done for them meanwhile.
+// Who holds the tool: hardware, a SpaceMouse or the simulated operator.
 class Holder {
  public:
   explicit Holder(const DeviceOption& option) : option_(option), hardware_(open_device(option)) {
@@ -85,7 +84,7 @@ class Holder {
   }
 
   const ConnectedDevice* hardware() const { return hardware_.get(); }
-  // Before the entry, with what may be asked for of them.
+  // Puts the tool before the entry, and the hardware's limits into the setup.
   Device& take_tool(const TrialOptions& trial, MillingSetup& setup, const MillingEntry& entry) {
     const Pose X_WT = pose_above(entry, setup.tool, kHeldAbove_mm);
     if (hardware_) {
@@ -124,7 +123,8 @@ class Holder {
  private:
   static constexpr double kHeldAbove_mm = 1;
 
-  // Once when it has lasted, and once when it is over; what was shorter is counted.
+  // Warns once when a fault has lasted for a while, and says once when it is over; shorter ones are only
+  // counted.
   void warn_of(const DeviceReport& report) {
     constexpr double kLasting_s = 0.1;
     const bool well = report.state == DeviceReport::State::ok;
@@ -150,13 +150,11 @@ Seen run_for(LiveMilling& milling, double seconds, const std::shared_ptr<const L
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
   double passed_s = 0;
-  Seen seen;
-  seen.labels = LabelCount(labels);
+  Seen seen{.labels = LabelCount(labels)};
   const auto take = [&] {
     while (const auto record = milling.next_record()) {
       seen.faults.add(*record);
-      if (const Label* touched = seen.labels.add(*record))
-        warn_though_quiet(no_go_warning(*touched, *record));
+      if (const auto touched = seen.labels.add(*record)) warn_though_quiet(*touched);
     }
     seen.bricks += milling.take_changed_bricks().size();
     if (milling.recording_failed()) end_recording(milling, seen);
@@ -180,7 +178,6 @@ void run_live(LiveOptions options, const std::string& command_line) {
   script.milling_s = script.holding_s = 0.5 * options.seconds;
   Holder holder(options.device);
   MillingSetup setup = options.trial.milling.setup;
-  setup.algorithm = options.algorithm.front();
   LoadedBone loaded = load_bone(options.scan);
   require_workable(setup.tool, loaded.volume.geometry());
   const auto bone = std::make_shared<Volume>(std::move(loaded.volume));
@@ -191,9 +188,7 @@ void run_live(LiveOptions options, const std::string& command_line) {
   const BoneDensities densities = prepared.session->densities();
   LiveMilling milling(std::move(prepared), device);
   if (options.spindle) milling.set_spindle(true);
-  std::optional<BoneSender> sender;
-  if (!options.send.address.empty())
-    sender.emplace(milling.follower(), options.send.address, options.send.tool_rate_Hz);
+  const std::unique_ptr<BoneSender> sender = send_bone(milling.follower(), options.send);
   std::optional<EntryPictures> pictures;
   if (!options.record.empty()) {
     pictures.emplace(*bone, densities.reference, entry, events_on_terminal(), !options.scan.scan.empty());
@@ -210,7 +205,7 @@ void run_live(LiveOptions options, const std::string& command_line) {
   }
   milling.start();
   if (!milling.refused_real_time().empty()) warn(milling.refused_real_time());
-  Seen seen = run_for(milling, options.seconds, labels, holder, sender ? &*sender : nullptr);
+  Seen seen = run_for(milling, options.seconds, labels, holder, sender.get());
   if (milling.recording()) end_recording(milling, seen);
   if (sender && !sender->is_connected())
     warn("--send-bone " + options.send.address + ": the receiver has gone");
@@ -232,8 +227,7 @@ void add_live_command(CLI::App& program, const std::string& command_line) {
       "Run one algorithm in real time with a device or the simulated hand, and say how well time is kept");
   command->group("Compare and measure");
   add_scan_options(*command, options->scan);
-  add_algorithm_option(*command, options->algorithm);
-  command->get_option("--algorithm")->expected(1);
+  add_algorithm_option(*command, options->trial.milling.setup.algorithm);
   add_mode_option(*command, options->trial.milling.setup.haptics.mode);
   add_trial_options(*command, options->trial);
   command->remove_option(command->get_option("--seconds"));

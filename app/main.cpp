@@ -145,10 +145,8 @@ int main(int argc, char** argv) {
       return complain("no command is given; osteomill --help lists them", kWrongUsage);
     }
     return kDone;
-  } catch (const CLI::CallForHelp& help) {
-    return program.exit(help);
-  } catch (const CLI::CallForVersion& version) {
-    return program.exit(version);
+  } catch (const CLI::Success& help_or_version) {
+    return program.exit(help_or_version);
   } catch (const CLI::RuntimeError& said) {
     return said.get_exit_code();
   } catch (const CLI::ParseError& error) {

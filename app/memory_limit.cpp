@@ -30,7 +30,7 @@ Limit limit_now() {
   return limit;
 }
 
-// Of a file of /proc: what stands behind these words, all in kB.
+// The sum of the numbers that follow these words in a file of /proc, where they are in kB.
 std::uint64_t bytes_in(const char* path, std::initializer_list<std::string_view> words) {
   std::ifstream file(path);
   std::uint64_t bytes = 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -12,32 +13,36 @@
 #include <CLI/Error.hpp>
 #include <CLI/Option.hpp>
 #include <CLI/Validators.hpp>
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 namespace osteomill::app {
 
+namespace {
+
+// `take` gets one of the names, which are all that may be given; where none is, the option shows `usual`.
+void add_choice(CLI::App& command, const std::string& kind, const std::vector<std::string>& names,
+                std::string_view usual, const std::string& type, const std::string& what,
+                const std::function<void(const std::string&)>& take) {
+  command.add_option_function<std::string>("--" + kind, take, what)
+      ->check(one_of(kind, names))
+      ->type_name(type)
+      ->default_str(std::string(usual));
+}
+
+}  // namespace
+
 void add_mode_option(CLI::App& command, Mode& mode) {
-  command
-      .add_option_function<std::string>(
-          "--mode", [&mode](const std::string& name) { mode = *mode_named(name); },
-          "paper as published, steady with every improvement")
-      ->check(one_of("mode", {"paper", "steady"}))
-      ->type_name("MODE")
-      ->default_str(std::string(name_of(mode)));
+  add_choice(command, "mode", {"paper", "steady"}, name_of(mode), "MODE",
+             "paper as published, steady with every improvement",
+             [&mode](const std::string& name) { mode = *mode_named(name); });
 }
 
 void add_modes_option(CLI::App& command, std::vector<Mode>& modes) {
-  command
-      .add_option_function<std::string>(
-          "--mode",
-          [&modes](const std::string& name) {
-            const auto one = mode_named(name);
-            modes = one ? std::vector{*one} : std::vector{Mode::paper, Mode::steady};
-          },
-          "paper as published, steady with every improvement, or both")
-      ->check(one_of("mode", {"paper", "steady", "both"}))
-      ->type_name("MODE")
-      ->default_str(std::string(name_of(modes.front())));
+  add_choice(command, "mode", {"paper", "steady", "both"}, name_of(modes.front()), "MODE",
+             "paper as published, steady with every improvement, or both", [&modes](const std::string& name) {
+               const auto one = mode_named(name);
+               modes = one ? std::vector{*one} : std::vector{Mode::paper, Mode::steady};
+             });
 }
 
 namespace {
@@ -203,17 +208,22 @@ std::span<const MillingOption> milling_options() {
   return kOptions;
 }
 
-void take_what_was_said(const CLI::App& command, MillingSetup given, MillingSetup& setup) {
+void take_given_options(const CLI::App& command, MillingSetup given, MillingSetup& setup) {
   for (const MillingOption& option : kOptions) {
     if (command.count(option.name) > 0)
       std::visit([&](auto place) { place(setup) = place(given); }, option.place);
   }
 }
 
+void add_algorithm_option(CLI::App& command, AlgorithmDescription& algorithm) {
+  add_choice(command, "algorithm", algorithm_names(), algorithm.id.name, "NAME",
+             fmt::format("{}", fmt::join(algorithm_names(), ", ")),
+             [&algorithm](const std::string& name) { algorithm = algorithm_named(name); });
+}
+
 void add_algorithm_option(CLI::App& command, std::vector<AlgorithmDescription>& algorithms) {
   const std::string all = algorithms.size() > 1 ? "all" : algorithms.front().id.name;
-  std::string what;
-  for (const std::string& name : algorithm_names()) what += (what.empty() ? "" : ", ") + name;
+  std::string what = fmt::format("{}", fmt::join(algorithm_names(), ", "));
   if (algorithms.size() > 1) what += "; may repeat";
   command
       .add_option_function<std::vector<std::string>>(

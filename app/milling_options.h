@@ -35,8 +35,8 @@ struct MillingOption {
 };
 std::span<const MillingOption> milling_options();
 
-/// Puts those of `given` that were said to the command in their places in `setup`.
-void take_what_was_said(const CLI::App& command, MillingSetup given, MillingSetup& setup);
+/// Copies from `given` into `setup` those milling options that stand on the command line, and no others.
+void take_given_options(const CLI::App& command, MillingSetup given, MillingSetup& setup);
 
 /// Adds --mode for a command that works in one mode, or in one or both.
 void add_mode_option(CLI::App& command, Mode& mode);
@@ -45,7 +45,9 @@ void add_modes_option(CLI::App& command, std::vector<Mode>& modes);
 /// Adds the tool, the algorithms' settings, milling, limits, --seed and --config to a command.
 void add_milling_options(CLI::App& command, MillingOptions& options);
 
-/// Adds --algorithm, which may repeat; none given means all.
+/// Adds --algorithm for a command that works with one.
+void add_algorithm_option(CLI::App& command, AlgorithmDescription& algorithm);
+/// Adds --algorithm, which may repeat; none given means all of `algorithms`.
 void add_algorithm_option(CLI::App& command, std::vector<AlgorithmDescription>& algorithms);
 
 }  // namespace osteomill::app

@@ -69,7 +69,7 @@ TEST(MillingOptions, WhatIsSaidToAReplayIsTakenOverAndNothingElse) {
     parse(command, words);
     MillingSetup setup;
     setup.tool.burr_radius_mm = 1.25;
-    take_what_was_said(command, options.setup, setup);
+    take_given_options(command, options.setup, setup);
     RunDescription run;
     set_session_settings(run, {setup, {0, 1000}}, 0);
     EXPECT_EQ(run.tool.burr_radius_mm, 1.25);

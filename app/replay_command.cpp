@@ -33,17 +33,16 @@ struct ReplayOptions {
   std::string input;
   ScanOptions scan;
   MillingOptions milling;
-  std::vector<AlgorithmDescription> algorithm{default_algorithm()};
   std::string out;
   std::string record;
   bool verify = false;
-  // In which the options stand.
+  // The command whose options these are.
   const CLI::App* command = nullptr;
 
   bool given(const char* option) const { return command->count(option) > 0; }
 };
 
-// The log, and what is to be told of ticks.
+// Keeps the replay's ticks for the log, warns of no-go contacts, and counts what is told at the end.
 class Log {
  public:
   Log(const ReplayOptions& options, std::size_t ticks, const Volume& bone)
@@ -56,7 +55,7 @@ class Log {
   void add(const TickRecord& record) {
     log_.push_back(record);
     faults_.add(record);
-    if (const Label* touched = labels_.add(record)) warn_though_quiet(no_go_warning(*touched, record));
+    if (const auto touched = labels_.add(record)) warn_though_quiet(*touched);
     if (log_.size() % 1000 == 0)
       show_progress("replay", static_cast<double>(log_.size()) / static_cast<double>(ticks_));
   }
@@ -82,14 +81,13 @@ void replay_trajectory(ReplayOptions options) {
   LoadedBone bone = load_bone(options.scan);
   require_workable(options.milling.setup.tool, bone.volume.geometry());
   const BoneDensities densities = estimate_densities(bone.volume);
-  options.milling.setup.algorithm = options.algorithm.front();
   MillingSession session(std::make_shared<Volume>(std::move(bone.volume)), densities, options.milling.setup);
   Log log(options, trajectory.size(), session.volume());
   replay(session, trajectory, [&](const TickRecord& record) { log.add(record); });
   log.write();
 }
 
-// As it was read when the recording was made: the scan that is named, or else the one that it names.
+// The scan that is named, or else the one that the recording names, read as it was for the recording.
 Volume scan_of(const ReplayOptions& options, const Recording& recording) {
   ScanOptions scan = options.scan;
   if (scan.scan.empty() && recording.description.scan_name != kBuiltinTooth)
@@ -119,7 +117,8 @@ void verify(const Volume& scan, const Recording& recording) {
              verified.bones);
 }
 
-// What was said for all algorithms, said for this one, so that it comes after what was recorded.
+// The settings of the command line, each under this algorithm's own name, so that they come after the
+// recorded ones and win.
 HapticSettings settings_for(const AlgorithmDescription& algorithm, const HapticSettings& said) {
   HapticSettings own{said.mode};
   for (const HapticSettings::Named& named : said.named) {
@@ -133,10 +132,10 @@ HapticSettings settings_for(const AlgorithmDescription& algorithm, const HapticS
 }
 
 RunDescription run_as(const ReplayOptions& options, RunDescription run) {
-  const AlgorithmDescription* algorithm =
-      options.given("--algorithm") ? &options.algorithm.front() : find_algorithm(run.algorithm.name);
-  if (algorithm == nullptr) return run;
   const MillingSetup& given = options.milling.setup;
+  const AlgorithmDescription* algorithm =
+      options.given("--algorithm") ? &given.algorithm : find_algorithm(run.algorithm.name);
+  if (algorithm == nullptr) return run;
   const HapticSettings said = settings_for(*algorithm, given.haptics);
   SessionSettings session = session_settings(run, options.input);
   MillingSetup& setup = session.setup;
@@ -145,7 +144,7 @@ RunDescription run_as(const ReplayOptions& options, RunDescription run) {
   // Settings of another algorithm, or of another mode, mean nothing here.
   if (!(run.algorithm == algorithm->id) || mode != run.mode) setup.haptics = {mode};
   setup.haptics.named.insert(setup.haptics.named.end(), said.named.begin(), said.named.end());
-  take_what_was_said(*options.command, given, setup);
+  take_given_options(*options.command, given, setup);
   set_session_settings(run, session, 0);
   return run;
 }
@@ -198,7 +197,7 @@ void run_replay(const ReplayOptions& options, const std::string& command_line) {
     replay_another_way(options, command_line, scan, recording);
 }
 
-// Only what turns motion into a wrench can be another.
+// A recording can be replayed with another algorithm and its settings, but not with another tool or bone.
 void refuse_what_is_recorded(const ReplayOptions& options) {
   const auto refuse = [&](const char* option) {
     if (options.given(option))
@@ -227,8 +226,7 @@ void add_replay_command(CLI::App& program, const std::string& command_line) {
   command->option_defaults()->group("The replay");
   command->add_flag("--verify", options->verify,
                     "Whether a recording comes out again to the bit, or the first tick that differs");
-  add_algorithm_option(*command, options->algorithm);
-  command->get_option("--algorithm")->expected(1);
+  add_algorithm_option(*command, options->milling.setup.algorithm);
   command->add_option("--out", options->out, "The log, CSV, a row a tick")->type_name("FILE");
   command->add_option("--record", options->record, "Of a recording's motion, another recording")
       ->type_name("FILE");

@@ -14,20 +14,21 @@
 
 namespace osteomill::app {
 
+namespace {
+
+template <typename Value>
+void add_text(CLI::App& command, const char* name, Value& value, const char* type, const char* what) {
+  command.add_option(name, value, what)->check(not_empty())->type_name(type);
+}
+
+}  // namespace
+
 void add_bone_options(CLI::App& command, ScanOptions& options) {
-  command.add_option("--iso", options.isovalue, "Isovalue: bone where the density is greater")
-      ->check(not_empty())
-      ->type_name("DENSITY");
-  command
-      .add_option("--labels", options.labels.map,
-                  "A label map of the scan (NRRD, .seg.nrrd, NIfTI, MetaImage), on any grid")
-      ->check(not_empty())
-      ->type_name("FILE");
-  command
-      .add_option("--label-table", options.labels.table,
-                  "Names and colours of labels: a colour table of 3D Slicer's")
-      ->check(not_empty())
-      ->type_name("FILE");
+  add_text(command, "--iso", options.isovalue, "DENSITY", "Isovalue: bone where the density is greater");
+  add_text(command, "--labels", options.labels.map, "FILE",
+           "A label map of the scan (NRRD, .seg.nrrd, NIfTI, MetaImage), on any grid");
+  add_text(command, "--label-table", options.labels.table, "FILE",
+           "Names and colours of labels: a colour table of 3D Slicer's");
 }
 
 void add_scan_source(CLI::App& command, ScanOptions& options) {
@@ -37,13 +38,10 @@ void add_scan_source(CLI::App& command, ScanOptions& options) {
                   "the built-in "
                   "tooth")
       ->check(not_empty());
-  command
-      .add_option(
-          "--series", options.read.series,
-          "Which DICOM series, where there are several: its number in what info lists, or the beginning "
-          "of its UID; else the largest CT")
-      ->check(not_empty())
-      ->type_name("SERIES");
+  add_text(
+      command, "--series", options.read.series, "SERIES",
+      "Which DICOM series, where there are several: its number in what info lists, or the beginning of its "
+      "UID; else the largest CT");
   command
       .add_option_function<std::string>(
           "--as", [&options](const std::string& kind) { options.as_labels = kind == "labels"; },

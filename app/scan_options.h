@@ -20,18 +20,19 @@ struct ScanOptions {
   /// Not given: the built-in tooth's own, or one suggested from the scan's values.
   std::optional<double> isovalue;
   ReadOptions read;
-  /// Of a label map beside the scan; without one none, but where the scan is itself a label map.
+  /// A label map beside the scan, and which of its labels are no-go.
   LabelFiles labels{};
   /// Whether the scan holds labels in the place of densities. Not given: as it says or looks, and with an
   /// isovalue given it does not.
   std::optional<bool> as_labels{};
-  /// The bone that was made of it before (fingerprint_of; 0: none), which tells what it was taken for then.
+  /// The fingerprint (fingerprint_of) of the bone that an earlier run made of this scan, 0 for none. It tells
+  /// whether the scan was then taken for densities or for labels.
   std::uint64_t made_into = 0;
   /// Of the built-in tooth (builtin_tooth).
   double refinement = 1;
 };
 
-/// What it is called where no scan is named.
+/// The bone's name where no scan is named.
 inline constexpr const char* kBuiltinTooth = "built-in tooth";
 
 /// Adds SCAN and what it takes to read it: --series, --as, --max-memory.
@@ -43,18 +44,19 @@ void add_bone_options(CLI::App& command, ScanOptions& options);
 /// All of these and --no-go.
 void add_scan_options(CLI::App& command, ScanOptions& options);
 
-/// The scan, or the built-in tooth; the scan's warnings are its own, that it is taken for labels the first of
-/// them. Throws InputError as `read_scan` does.
+/// The scan, or the built-in tooth. Where it is taken for labels, the first of its warnings says so. Throws
+/// InputError as `read_scan` does.
 Scan open_scan(const ScanOptions& options);
 
-/// The isovalue that the user leaves us to choose for this scan.
+/// The isovalue for this scan where the user has given none.
 SuggestedIsovalue suggested_isovalue(const ScanOptions& options, const Scan& scan);
 
 /// The bone of a scan: its densities with the isovalue, or, of one that holds labels, whatever is labelled
 /// above the isovalue, all of one density.
 Volume bone_of(Scan scan, double isovalue);
 
-/// The labels of a scan, if it has any: those that were asked for, or its own. Their warnings name the file.
+/// The labels of a scan, if it has any: those of the label map that is named, or, where the scan is itself a
+/// label map, its own. Their warnings name the file.
 /// Throws InputError as `read_labels` does.
 LabelsRead labels_of(const ScanOptions& options, const Scan& scan);
 

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "tests/support/mesh_checks.h"
 #include <vtkFloatArray.h>
 #include <vtkFlyingEdges3D.h>
 #include <vtkImageData.h>
@@ -30,6 +31,8 @@
 namespace {
 
 using namespace osteomill;
+using testing_support::mesh_surface;
+using testing_support::SurfaceMesh;
 
 DensityGrid refined(const DensityGrid& grid) {
   GridGeometry geometry = grid.geometry();
@@ -64,14 +67,6 @@ double milliseconds(const Work& work) {
   const double start = seconds_on(CLOCK_THREAD_CPUTIME_ID);
   work();
   return 1e3 * (seconds_on(CLOCK_THREAD_CPUTIME_ID) - start);
-}
-
-// On the wall, for work that has several threads.
-template <typename Work>
-double wall_milliseconds(const Work& work) {
-  const double start = seconds_on(CLOCK_MONOTONIC);
-  work();
-  return 1e3 * (seconds_on(CLOCK_MONOTONIC) - start);
 }
 
 class Times {
@@ -169,23 +164,20 @@ FrameTimes mill_and_mesh(const Volume& bone, double radius_mm, vtkFlyingEdges3D*
 }
 
 void compare_whole(const Volume& volume, vtkFlyingEdges3D* flying) {
-  Times vtk, one, two;
+  Times vtk, own;
   std::size_t triangles = 0;
   for (int n = 0; n < 7; ++n) {
     vtk.add(milliseconds([&] { flying->Modified(), flying->Update(); }));
     SurfaceMesh mesh;
-    one.add(milliseconds([&] { mesh = mesh_surface(DensityView(volume), 1); }));
+    own.add(milliseconds([&] { mesh = mesh_surface(DensityView(volume)); }));
     triangles = triangles_in(mesh);
-    mesh = {};
-    two.add(wall_milliseconds([&] { mesh = mesh_surface(DensityView(volume), 2); }));
   }
   const auto& dims = volume.geometry().dims;
   std::printf("%d x %d x %d voxels, %zu triangles (VTK: %lld)\n", dims[0], dims[1], dims[2], triangles,
               static_cast<long long>(flying->GetOutput()->GetNumberOfPolys()));
   std::printf("whole surface, one thread, CPU ms (least / median): VTK %.1f / %.1f, osteomill %.1f / %.1f\n",
-              vtk.share(0), vtk.share(0.5), one.share(0), one.share(0.5));
-  std::printf("              two threads, wall ms: osteomill %.1f / %.1f\n", two.share(0), two.share(0.5));
-  std::printf("              osteomill is %.1f times as fast\n", vtk.share(0.5) / one.share(0.5));
+              vtk.share(0), vtk.share(0.5), own.share(0), own.share(0.5));
+  std::printf("              osteomill is %.1f times as fast\n", vtk.share(0.5) / own.share(0.5));
 }
 
 void compare_milling(const Volume& volume, double radius_mm, vtkFlyingEdges3D* flying) {

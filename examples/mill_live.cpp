@@ -17,8 +17,8 @@ namespace {
 // What a window would draw.
 std::size_t count_triangles(osteomill::LiveMilling& milling, std::vector<std::size_t>& by_brick) {
   std::this_thread::sleep_for(std::chrono::milliseconds(200));
-  for (const auto& changed : milling.take_changed_bricks()) {
-    by_brick[changed.brick] = changed.mesh.triangle_count();
+  for (const auto& [brick, levels] : milling.take_changed_bricks()) {
+    by_brick[brick] = levels.levels[0].count / 3;
   }
   std::size_t count = 0;
   for (const std::size_t triangles : by_brick) count += triangles;

@@ -11,6 +11,7 @@ namespace {
 using testing_support::enclosed_volume_mm3;
 using testing_support::is_closed;
 using testing_support::is_sound;
+using testing_support::mesh_surface;
 using testing_support::trilinear_volume_mm3;
 using testing_support::welded_by_position;
 

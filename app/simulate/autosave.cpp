@@ -44,7 +44,7 @@ fs::path lock_of(const fs::path& path) {
   return path.string() + kLockExtension;
 }
 
-// Whoever removed the lock's file meanwhile has taken the name away with it.
+// Whether the lock's file is still the one that was opened: another program may have removed it meanwhile.
 bool still_there(int lock, const fs::path& path) {
   struct stat held {};
   struct stat named {};
@@ -105,16 +105,16 @@ std::optional<AutosaveFile> AutosaveFile::make() {
   return std::nullopt;
 }
 
-std::optional<LeftMilling> last_left_milling() {
+std::optional<LeftoverMilling> last_leftover_milling() {
   for (const fs::path& path : names_in(autosave_folder())) {
     auto file = AutosaveFile::locked(path);
     if (!file) continue;
     std::error_code ignored;
-    // Whoever had it may have ended without anything to leave; then its lock goes with `file`.
+    // Its program may have ended with nothing to keep; the lock's file then goes with `file`.
     if (!fs::exists(path, ignored)) continue;
     try {
       SessionStart start = read_start(path);
-      return LeftMilling{std::move(*file), std::move(start)};
+      return LeftoverMilling{std::move(*file), std::move(start)};
     } catch (const InputError&) {
       // Not ours to remove: another version of the program may read it.
     }
@@ -139,19 +139,19 @@ void AutosaveFile::clear() const {
   }
 }
 
-ScanOptions scan_of(const SessionStart& left) {
+ScanOptions scan_of(const SessionStart& leftover) {
   const auto text = [&](const char* key) {
-    const std::string* value = find_setting<std::string>(left.run, key);
+    const std::string* value = find_setting<std::string>(leftover.run, key);
     return value == nullptr ? std::string() : *value;
   };
   ScanOptions scan;
-  if (left.run.scan_name != kBuiltinTooth) scan.scan = left.run.scan_name;
-  scan.isovalue = left.run.isovalue;
+  if (leftover.run.scan_name != kBuiltinTooth) scan.scan = leftover.run.scan_name;
+  scan.isovalue = leftover.run.isovalue;
   scan.read.series = text(kSeriesKey);
   scan.labels = {text(kLabelMapKey), text(kLabelTableKey), {}};
-  for (const Label& label : left.run.labels)
+  for (const Label& label : leftover.run.labels)
     if (label.no_go) scan.labels.no_go.push_back(std::to_string(label.value));
-  scan.made_into = left.run.scan_hash;
+  scan.made_into = leftover.run.scan_hash;
   return scan;
 }
 

@@ -16,18 +16,18 @@
 
 namespace osteomill::app {
 
-/// The name of a recording of milled bone in the user's state folder, this object's alone for as long as it
-/// lives: a lock goes with it that the system takes away however the program ends, so that windows which are
-/// open at the same time never touch each other's. What the file holds stays when the object goes.
+/// The name of a file for milled bone in the user's state folder, locked for as long as this object lives, so
+/// that windows which are open at the same time never touch each other's. The system takes the lock away
+/// however the program ends. The file itself stays.
 class AutosaveFile {
  public:
   /// A new name; nothing where the folder cannot be made or written, or the user has none.
   static std::optional<AutosaveFile> make();
-  /// This one; nothing where another has it.
+  /// The file of this name; nothing where another program has it locked.
   static std::optional<AutosaveFile> locked(const std::filesystem::path& path);
 
   const std::filesystem::path& path() const { return path_; }
-  /// Removes what it holds.
+  /// Removes the file.
   void clear() const;
 
  private:
@@ -38,36 +38,36 @@ class AutosaveFile {
   std::shared_ptr<void> lock_;
 };
 
-/// What a program left that has ended, and what it is of.
-struct LeftMilling {
+/// Milled bone that an earlier run of the program kept and nobody saved.
+struct LeftoverMilling {
   AutosaveFile file;
   SessionStart start;
 };
-/// The last one; nothing where there is none.
-std::optional<LeftMilling> last_left_milling();
-/// The scan of which it was milled, with all that it took to open it.
-ScanOptions scan_of(const SessionStart& left);
+/// The newest that no other running program holds; nothing where there is none.
+std::optional<LeftoverMilling> last_leftover_milling();
+/// The scan that was milled, with all options that it takes to open it again.
+ScanOptions scan_of(const SessionStart& leftover);
 
-/// Keeps what was milled and not saved in such a file, a few seconds behind: the first time at once, then no
-/// oftener than every 5 s and for no more than 2 % of the time: a recording of no ticks, with the bone as it
-/// is. Reads the follower's copy and writes in a thread of its own.
+/// Keeps unsaved milled bone in such a file, as a recording of no ticks: the first time at once, then at most
+/// every 5 s and for no more than 2 % of the time. Reads the follower's copy and writes on a thread of its
+/// own.
 class Autosave {
  public:
-  /// What is milled of this scan; in `file`, or in a new one.
+  /// For milling this scan. Writes to `file`, or to a new one where that is not given.
   Autosave(ScanOptions scan, std::optional<AutosaveFile> file);
   ~Autosave();
 
-  /// Once a picture. Where nothing is milled that is not saved there is no file either.
+  /// To be called once a picture. Removes the file where nothing is unsaved.
   void update(LiveMilling& milling);
-  /// The bone as it was at this version is saved.
+  /// The bone of this version (BoneFollower::version) was saved by the user.
   void saved(std::uint64_t bone_version) { saved_version_ = bone_version; }
   /// Whether bone was milled that is not saved.
   bool unsaved(const LiveMilling& milling) const {
     return milling.follower().touched() && milling.follower().version() != saved_version_;
   }
-  /// The user lets it go.
+  /// Removes the file: the user does not want what was milled.
   void discard();
-  /// Why there is no autosave, once; else empty.
+  /// Why nothing can be kept, told once; else empty.
   std::string take_complaint() { return std::exchange(complaint_, {}); }
 
  private:

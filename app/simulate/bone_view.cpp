@@ -47,7 +47,7 @@ std::string tool_fault(const MillingTool& tool, const BoneBox& box) {
 Camera with_whole(Camera camera, const BoneBox& box, const PixelSize& size) {
   camera.focus_W = box.centre_W();
   const double up = std::tan(0.5 * camera.field_of_view_rad) * kFilled;
-  // Of a narrow window the panels would leave nothing.
+  // In a narrow window the panels would leave no room.
   const double free_px = std::max(size.width - static_cast<double>(ui::px(kPanels_px)), 0.3 * size.width);
   const double across = up * free_px / size.height;
   camera.distance_mm = 2;
@@ -87,7 +87,7 @@ std::optional<Pose> tool_before(const Volume& bone, const MillingTool& tool, con
   const auto point_W = first_crossing(bone, camera.eye_W() + std::max(0.0, middle_mm - radius_mm) * ray_W,
                                       camera.eye_W() + (middle_mm + radius_mm) * ray_W);
   if (!point_W) return std::nullopt;
-  // Towards the eye and not along the view, so that it stands where the point is seen.
+  // Before the point in the direction of the eye, so that the tool is seen at the pixel.
   const Vec3 right_W = camera.up_W().cross(-ray_W).normalized();
   return free_pose_before(bone, tool, *point_W, -ray_W, -ray_W.cross(right_W));
 }

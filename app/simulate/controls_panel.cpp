@@ -16,7 +16,7 @@ namespace {
 
 constexpr float kWidth_px = 300;
 
-// A slider whose change takes preparation, so that it counts when let go of.
+// A slider for what takes long to change: true once it is let go of at another value.
 bool settle(const char* label, double& value, float min, float max, const char* format) {
   float shown = static_cast<float>(value);
   if (ui::slider(label, &shown, min, max, format, ImGuiSliderFlags_AlwaysClamp)) {
@@ -25,7 +25,7 @@ bool settle(const char* label, double& value, float min, float max, const char* 
   return ImGui::IsItemDeactivatedAfterEdit();
 }
 
-// Its end, which tells one scan from another, where there is no room for all of it.
+// The end of a name, which tells one scan from another, where there is no room for all of it.
 std::string end_that_fits(const std::string& name) {
   const float room = ImGui::GetContentRegionAvail().x;
   std::string shown = name;
@@ -40,7 +40,7 @@ std::string end_that_fits(const std::string& name) {
 
 void draw_scan(ViewState& view, const std::string& name) {
   ImGui::TextUnformatted(end_that_fits(name).c_str());
-  ui::hint(name.c_str());
+  ui::hint(name);
   const bool entered = ui::text_field("scan", view.scan_path.data(), view.scan_path.size());
   ui::hint("Path of a DICOM folder or of a NRRD, MetaImage or NIfTI file; or drop it onto the window");
   ImGui::SameLine();
@@ -59,14 +59,12 @@ void draw_algorithm(MillingSetup& wanted, bool& changed) {
       changed = true;
     }
   }
-  if (ui::radio("steady", wanted.haptics.mode == Mode::steady)) {
-    wanted.haptics.mode = Mode::steady;
-    changed = true;
-  }
-  ImGui::SameLine();
-  if (ui::radio("as in the paper", wanted.haptics.mode == Mode::paper)) {
-    wanted.haptics.mode = Mode::paper;
-    changed = true;
+  for (const auto& [label, mode] : {std::pair("steady", Mode::steady), {"as in the paper", Mode::paper}}) {
+    if (mode != Mode::steady) ImGui::SameLine();
+    if (ui::radio(label, wanted.haptics.mode == mode)) {
+      wanted.haptics.mode = mode;
+      changed = true;
+    }
   }
   const auto before = stiffness_of(wanted);
   if (!before) return;
@@ -115,8 +113,8 @@ void draw_session(ViewState& view, LiveMilling& milling, bool by_pointer) {
   ImGui::TextDisabled(cuts == 1 ? "%d cut" : "%d cuts", cuts);
 }
 
-// Of several: which of them bounds bone nobody but the user knows. Beside the histogram, and below it where
-// there is no room.
+// Buttons for the densities that may bound bone, where there are several: only the user knows which does.
+// They stand beside the histogram, and below it where there is no room.
 void draw_boundaries(Simulation& simulation) {
   if (simulation.scan.boundaries.size() < 2) return;
   const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
@@ -127,8 +125,8 @@ void draw_boundaries(Simulation& simulation) {
     if (ImGui::GetItemRectMax().x + style.ItemSpacing.x + width <= right) ImGui::SameLine();
     if (ui::button(label.c_str(), !simulation.milling.preparing()))
       simulation.milling.change_isovalue(boundary.density);
-    ui::hint(fmt::format("A boundary of the scan: {:.4g} below, {:.4g} above", boundary.below, boundary.above)
-                 .c_str());
+    ui::hint(
+        fmt::format("A boundary of the scan: {:.4g} below, {:.4g} above", boundary.below, boundary.above));
   }
 }
 
@@ -159,9 +157,7 @@ void draw_isovalue(ViewState& view, Simulation& simulation) {
   ImGui::EndDisabled();
   if (!moved && !milling.preparing()) view.isovalue.reset();
   ImGui::TextWrapped("%s", isovalue_text(simulation).c_str());
-  ImGui::PushStyleColor(ImGuiCol_Text, ui::kWarning);
-  for (const std::string& warning : simulation.warnings) ImGui::TextWrapped("%s", warning.c_str());
-  ImGui::PopStyleColor();
+  for (const std::string& warning : simulation.warnings) ui::warning(warning);
 }
 
 void draw_cuts(ViewState& view, Simulation& simulation) {
@@ -191,7 +187,7 @@ void draw_view(ViewState& view, const Vec3& tool_W, const PixelSize& size) {
     const std::string letter(1, static_cast<char>(std::toupper(from.front())));
     if (ui::button((letter + "##view").c_str()))
       view.camera = with_whole(camera_on(view.box.bounds(), direction_W, up_W), view.box, size);
-    ui::hint(fmt::format("From {}", from).c_str());
+    ui::hint(fmt::format("From {}", from));
     ImGui::SameLine();
   }
   if (ui::button("Whole")) view.camera = with_whole(view.camera, view.box, size);
@@ -208,7 +204,7 @@ void draw_view(ViewState& view, const Vec3& tool_W, const PixelSize& size) {
   ui::checkbox("arrows", &view.arrows);
 }
 
-// Above all else: whoever cannot read what stands there, or not reach what lies below, needs these.
+// They come first, for whoever cannot read the rest or cannot reach what lies below.
 void draw_reading_aids(ViewState& view) {
   if (ui::button("Help")) view.help = true;
   ImGui::SameLine();

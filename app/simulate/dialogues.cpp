@@ -1,6 +1,7 @@
 #include "app/simulate/dialogues.h"
 
 #include <algorithm>
+#include <exception>
 #include <utility>
 
 #include <fmt/core.h>
@@ -22,6 +23,16 @@ void DialogueQueue::add(Dialogue dialogue) {
 
 void DialogueQueue::complain(const std::string& what) {
   add({kComplaint, what, {{"Close", {}}}, {}, {}});
+}
+
+bool DialogueQueue::attempt(const std::function<void()>& work) {
+  try {
+    work();
+    return true;
+  } catch (const std::exception& error) {
+    complain(error.what());
+    return false;
+  }
 }
 
 void DialogueQueue::proceed() {
@@ -60,13 +71,13 @@ Dialogue report_question(Dialogue::Action report, Dialogue::Action close) {
       {}};
 }
 
-Dialogue left_milling_question(const SessionStart& left, Dialogue::Action open, Dialogue::Action remove,
-                               Dialogue::Action later) {
+Dialogue leftover_question(const SessionStart& leftover, Dialogue::Action open, Dialogue::Action remove,
+                           Dialogue::Action later) {
   return {
       "Milled bone that was not saved",
       fmt::format("When osteomill last ended, {:.1f} mm³ of this bone had been milled and not saved:\n{}\n"
                   "(isovalue {:g}). Shall it be opened as it was?",
-                  left.removed_mm3, left.run.scan_name, left.run.isovalue),
+                  leftover.removed_mm3, leftover.run.scan_name, leftover.run.isovalue),
       {{"Open it", std::move(open)}, {"Delete it", std::move(remove)}, {"Later", std::move(later)}},
       {},
       {}};

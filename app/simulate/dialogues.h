@@ -11,7 +11,7 @@
 
 namespace osteomill::app {
 
-/// A question or a message; all else waits meanwhile.
+/// A question or a message in the middle of the window. Input goes nowhere else while it is shown.
 struct Dialogue {
   using Action = std::function<void()>;
   struct Choice {
@@ -20,29 +20,32 @@ struct Dialogue {
   };
   std::string title;
   std::string text;
-  /// A button each: Enter is the first, Esc the last. None where there is only something to be waited for.
+  /// A button for each: Enter presses the first, Esc the last. Empty for a message that only asks to wait.
   std::vector<Choice> choices;
-  /// Once this is so it goes by itself, with `then`.
+  /// Once this is true the dialogue closes by itself and does `then`.
   std::function<bool()> until;
   Action then;
 };
 
-/// Dialogues are shown one at a time, in the order in which they came. For one thread.
+/// Dialogues, shown one at a time in the order in which they were added. For one thread.
 class DialogueQueue {
  public:
-  /// Does nothing where one that says the same waits already.
+  /// Does nothing where one with the same title and text is there already.
   void add(Dialogue dialogue);
-  /// What went wrong, until it was read.
+  /// Says what went wrong, until somebody has read it.
   void complain(const std::string& what);
+  /// Does the work and complains of what it throws. Returns whether it threw nothing.
+  bool attempt(const std::function<void()>& work);
 
-  /// The one that is to be seen; null where there is none.
+  /// The dialogue to be drawn; null where there is none.
   const Dialogue* shown() const { return dialogues_.empty() ? nullptr : &dialogues_.front(); }
-  /// What is to be done with the one that is shown.
+  /// Notes which of its choices was pressed; `proceed` does it.
   void choose(std::size_t choice) { chosen_ = choice; }
-  /// Does what was chosen. Between two pictures, since it may be the end of what they show.
+  /// Closes the dialogue shown, if it was answered or need not wait any longer, and does what that means. To
+  /// be called between two pictures, since it may destroy what they show.
   void proceed();
 
-  /// Those that nobody has read.
+  /// The complaints that nobody has read.
   std::vector<std::string> complaints() const;
 
  private:
@@ -50,16 +53,16 @@ class DialogueQueue {
   std::optional<std::size_t> chosen_;
 };
 
-/// Asks, before bone that was milled and not saved is lost by `what`, whether to save it. Goes by itself, and
-/// on, once nothing is left to be saved.
+/// Asks whether to save the milled bone before `what` ("Closing the window") would lose it. Once it is saved
+/// the question closes by itself and `go_on` is done.
 Dialogue unsaved_question(const std::string& what, std::function<bool()> is_saved, Dialogue::Action save,
                           Dialogue::Action go_on, Dialogue::Action stay);
 
 /// Asks whether to make the report of what was recorded before the window closes.
 Dialogue report_question(Dialogue::Action report, Dialogue::Action close);
 
-/// What is to be done with milled bone that a program left which ended without asking.
-Dialogue left_milling_question(const SessionStart& left, Dialogue::Action open, Dialogue::Action remove,
-                               Dialogue::Action later);
+/// Asks what to do with unsaved milled bone of an earlier run of the program that ended without asking.
+Dialogue leftover_question(const SessionStart& leftover, Dialogue::Action open, Dialogue::Action remove,
+                           Dialogue::Action later);
 
 }  // namespace osteomill::app

@@ -17,7 +17,7 @@ std::vector<Dialogue> dialogues_of_the_window(int& acted) {
           unsaved_question("Closing the window", never, act, act, act),
           unsaved_question("Resetting the bone", never, act, act, act),
           report_question(act, act),
-          left_milling_question({}, act, act, act),
+          leftover_question({}, act, act, act),
           {"Save the milled bone?", "Saving ...", {}, [] { return true; }, act}};
 }
 

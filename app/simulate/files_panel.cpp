@@ -25,15 +25,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// What it throws is told.
-void attempt(ViewState& view, const std::function<void()>& work) {
-  try {
-    work();
-  } catch (const std::exception& error) {
-    view.dialogues.complain(error.what());
-  }
-}
-
 // Whatever the desktop opens it with.
 void open_outside(const fs::path& path) {
   std::string program = "xdg-open";
@@ -60,7 +51,7 @@ fs::path FilesPanel::name(const std::string& what) const {
 }
 
 void FilesPanel::record(ViewState& view, Simulation& simulation) {
-  attempt(view, [&] {
+  view.dialogues.attempt([&] {
     create_folder(folder_);
     if (simulation.milling.recording()) {
       last_recording_ = simulation.milling.stop_recording();
@@ -112,7 +103,7 @@ void FilesPanel::end_with_report(ViewState& view, Simulation& simulation) {
 }
 
 void FilesPanel::save_scan(ViewState& view, Simulation& simulation) {
-  attempt(view, [&] {
+  view.dialogues.attempt([&] {
     DensityGrid grid;
     std::uint64_t version = 0;
     simulation.milling.follower().read([&](const Volume& bone) {
@@ -127,9 +118,9 @@ void FilesPanel::save_scan(ViewState& view, Simulation& simulation) {
 void FilesPanel::take_result(ViewState& view, Simulation& simulation) {
   if (!work_.valid() || work_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
   const auto version = std::exchange(saving_version_, std::nullopt);
-  attempt(view, [&] {
+  view.dialogues.attempt([&] {
     Done done = work_.get();
-    view.message = std::move(done.said);
+    view.message = std::move(done.message);
     view.result = std::move(done.result);
     written_ = true;
     if (!done.recording.empty()) {
@@ -145,7 +136,7 @@ std::optional<double> FilesPanel::recording_s(const Simulation& simulation) cons
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - recording_since_).count();
 }
 
-float FilesPanel::draw_said(ViewState& view, const Simulation& simulation, const PixelSize& size) {
+float FilesPanel::draw_message(ViewState& view, const Simulation& simulation, const PixelSize& size) {
   const bool preparing = simulation.milling.preparing();
   const float bottom_px = static_cast<float>(size.height) - ui::px(8);
   if (view.message.empty() && !busy() && !preparing) return bottom_px;
@@ -161,12 +152,12 @@ float FilesPanel::draw_said(ViewState& view, const Simulation& simulation, const
   if (!view.message.empty()) {
     ImGui::TextWrapped("%s", view.message.c_str());
     if (!view.report.empty()) {
-      if (ui::button("Open report")) attempt(view, [&] { open_outside(view.report); });
+      if (ui::button("Open report")) view.dialogues.attempt([&] { open_outside(view.report); });
       ImGui::SameLine();
     }
     if (!view.result.empty()) {
       if (ui::button("Open folder"))
-        attempt(view, [&] { open_outside(fs::absolute(view.result).parent_path()); });
+        view.dialogues.attempt([&] { open_outside(fs::absolute(view.result).parent_path()); });
       ui::hint("The folder that holds it");
       ImGui::SameLine();
     }
@@ -182,9 +173,9 @@ float FilesPanel::draw_said(ViewState& view, const Simulation& simulation, const
 }
 
 void FilesPanel::draw(ViewState& view, Simulation& simulation) {
-  // A full disk: what was milled so far stays, under the name of what is unfinished.
+  // As on a full disk: what was recorded so far stays in the unfinished file.
   if (simulation.milling.recording_failed()) {
-    attempt(view, [&] { simulation.milling.stop_recording(); });
+    view.dialogues.attempt([&] { simulation.milling.stop_recording(); });
     view.message.clear();
   }
   if (!ui::header("Record and save", true)) return;
@@ -197,7 +188,7 @@ void FilesPanel::draw(ViewState& view, Simulation& simulation) {
   if (ui::button("Save scan", free)) save_scan(view, simulation);
   ImGui::SameLine();
   if (ui::button("Save surface", free)) {
-    attempt(view, [&] {
+    view.dialogues.attempt([&] {
       BrickMesh mesh;
       simulation.milling.follower().read(
           [&](const Volume& bone) { mesh = mesh_in_one_piece(DensityView(bone)); });

@@ -26,14 +26,14 @@ class FilesPanel {
 
   void draw(ViewState& view, Simulation& simulation);
   /// At the bottom of the right column, where it is always in sight: what is going on, what was done last,
-  /// and buttons that open what came of it. Returns where what stands above has to end.
-  float draw_said(ViewState& view, const Simulation& simulation, const PixelSize& size);
-  /// Ends a recording that still goes on.
+  /// and buttons that open the file it made. Returns its upper edge, pixels from the top of the window.
+  float draw_message(ViewState& view, const Simulation& simulation, const PixelSize& size);
+  /// Ends a recording that still goes on, and waits until everything is written.
   void close(ViewState& view, Simulation& simulation);
-  /// The same, where nothing more is to be closed.
+  /// Ends a recording that still goes on.
   void end_recording(ViewState& view, Simulation& simulation);
   bool busy() const { return work_.valid(); }
-  /// Whether what was begun to be written last is there.
+  /// Whether the last thing that was to be written was written without an error.
   bool written() const { return written_; }
   /// Whether there is a recording without a report.
   bool unreported(const Simulation& simulation) const {
@@ -43,7 +43,7 @@ class FilesPanel {
   void end_with_report(ViewState& view, Simulation& simulation);
   /// Begins to write the milled bone. Not while busy.
   void save_scan(ViewState& view, Simulation& simulation);
-  /// Tells in the view how it went once what was being written is written.
+  /// Tells in the view how writing went, once it has ended.
   void take_result(ViewState& view, Simulation& simulation);
   /// For how long a recording has been going on, s; nothing where none does.
   std::optional<double> recording_s(const Simulation& simulation) const;
@@ -61,18 +61,18 @@ class FilesPanel {
   std::filesystem::path folder_;
   TakePicture take_picture_;
   std::filesystem::path last_recording_;
-  // The last one of which there is a report.
+  // The last recording of which there is a report.
   std::filesystem::path reported_;
   bool written_ = false;
   struct Done {
-    std::string said;
+    std::string message;
     std::filesystem::path result;
-    /// Where it is a report, of what.
+    /// Of which recording the result is the report; empty for any other file.
     std::filesystem::path recording;
   };
   std::chrono::steady_clock::time_point recording_since_;
   std::future<Done> work_;
-  // Of the bone that is being saved.
+  // The version of the bone that is being saved (BoneFollower::version).
   std::optional<std::uint64_t> saving_version_;
 };
 

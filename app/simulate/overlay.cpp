@@ -102,8 +102,7 @@ void draw_help(ViewState& view, const PixelSize& size, const Room& room) {
   ImGui::PopTextWrapPos();
   ImGui::End();
   if (dialogue_open() || ImGui::GetIO().WantTextInput) return;
-  const auto pressed = [](int key) { return ImGui::IsKeyPressed(key, false); };
-  if (pressed(GLFW_KEY_ENTER) || pressed(GLFW_KEY_ESCAPE)) view.help = false;
+  if (ui::pressed(GLFW_KEY_ENTER) || ui::pressed(GLFW_KEY_ESCAPE)) view.help = false;
 }
 
 std::string recording_text(double recording_s) {
@@ -143,13 +142,9 @@ void draw_dialogue(DialogueQueue& dialogues) {
 
 bool draw_loading(const std::string& what, double share_done, double passed_s, const PixelSize& size,
                   bool above) {
-  const float middle_px = 0.5f * static_cast<float>(size.width);
-  if (above) {
-    ImGui::SetNextWindowPos({middle_px, ui::px(8)}, ImGuiCond_Always, {0.5f, 0});
-  } else {
-    ImGui::SetNextWindowPos({middle_px, 0.5f * static_cast<float>(size.height)}, ImGuiCond_Always,
-                            {0.5f, 0.5f});
-  }
+  const ImVec2 middle(0.5f * static_cast<float>(size.width), 0.5f * static_cast<float>(size.height));
+  ImGui::SetNextWindowPos({middle.x, above ? ui::px(8) : middle.y}, ImGuiCond_Always,
+                          {0.5f, above ? 0.0f : 0.5f});
   ImGui::Begin("Opening", nullptr,
                ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_NoFocusOnAppearing);
@@ -157,8 +152,7 @@ bool draw_loading(const std::string& what, double share_done, double passed_s, c
   ImGui::ProgressBar(static_cast<float>(share_done), {ui::px(360), 0});
   ImGui::Text("%.0f s", passed_s);
   ImGui::SameLine();
-  const bool given_up =
-      ui::button("Cancel") || (!dialogue_open() && ImGui::IsKeyPressed(GLFW_KEY_ESCAPE, false));
+  const bool given_up = ui::button("Cancel") || (!dialogue_open() && ui::pressed(GLFW_KEY_ESCAPE));
   ImGui::End();
   return given_up;
 }

@@ -5,6 +5,7 @@
 
 #include "app/simulate/panels.h"
 #include "app/simulate/tool_control.h"
+#include "app/simulate/widgets.h"
 #include <GLFW/glfw3.h>
 #include <imgui.h>
 
@@ -27,13 +28,14 @@ double held_way(int forwards, int backwards) {
   return (held(forwards) ? 1.0 : 0.0) - (held(backwards) ? 1.0 : 0.0);
 }
 
-// What the pointer has moved since the picture before; and by how much it drags what a button holds: nothing
-// in the picture in which the button went down, before which it may have come a long way.
+// How far the pointer moved since the last picture.
 Eigen::Vector2d pointer_moved_px() {
   const ImVec2 moved = ImGui::GetIO().MouseDelta;
   return {static_cast<double>(moved.x), static_cast<double>(moved.y)};
 }
 
+// The same for what a button drags. Zero in the picture in which the button went down: the pointer may have
+// moved far before that.
 Eigen::Vector2d pointer_dragged_px() {
   const bool just_pressed = ImGui::IsMouseClicked(0) || ImGui::IsMouseClicked(1) || ImGui::IsMouseClicked(2);
   return just_pressed ? Eigen::Vector2d::Zero() : pointer_moved_px();
@@ -71,8 +73,8 @@ bool drag_cut(ViewState& view, const PixelSize& size) {
   if (!io.MouseDown[0]) view.dragged_cut = -1;
   if (view.dragged_cut < 0) return false;
   ViewState::Cut& cut = view.cuts[static_cast<std::size_t>(view.dragged_cut)];
-  // The normal as it is seen, pixels a mm; towards the viewer it hardly moves in the picture: then upwards is
-  // on.
+  // How the normal is seen, in pixels a mm. A cut that faces the viewer hardly moves in the picture: then
+  // dragging upwards moves it along its normal.
   const Vec3 anchor_W = view.box.centre_W();
   Eigen::Vector2d seen =
       pixel_of(view.camera, size, anchor_W + cut.normal_W) - pixel_of(view.camera, size, anchor_W);
@@ -129,7 +131,7 @@ ToolInput keys_for_tool() {
 void take_keys(ViewState& view, LiveMilling& milling, bool by_pointer) {
   const ImGuiIO& io = ImGui::GetIO();
   if (io.WantTextInput) return;
-  const auto pressed = [](int key) { return ImGui::IsKeyPressed(key, false); };
+  using ui::pressed;
   if (pressed(GLFW_KEY_T) && by_pointer) view.holding_tool = !view.holding_tool;
   if (pressed(GLFW_KEY_ESCAPE)) view.holding_tool = false;
   if (pressed(GLFW_KEY_SPACE)) milling.set_spindle(!milling.spindle_asked());
@@ -207,7 +209,7 @@ void take_input(ViewState& view, Simulation& simulation, SpaceMouse& space_mouse
     hardware->set_clutched(clutched || view.calibration.step != ViewState::Calibration::Step::none);
   }
   take_keys(view, milling, simulation.holder.is_pointer());
-  const bool by_key = !io.WantTextInput && ImGui::IsKeyPressed(GLFW_KEY_B, false);
+  const bool by_key = !io.WantTextInput && ui::pressed(GLFW_KEY_B);
   if ((std::exchange(view.bring_asked, false) || by_key) && !milling.placing()) {
     std::optional<Eigen::Vector2d> pointer;
     if (by_key && !io.WantCaptureMouse)

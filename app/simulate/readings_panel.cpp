@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
-#include <exception>
 #include <string>
 #include <vector>
 
@@ -31,10 +30,11 @@ std::vector<float> thinned(const std::deque<TickRecord>& history, double (*magni
   return points;
 }
 
-void row(const char* name, const std::string& value) {
+void row(const char* name, const std::string& value,
+         const ImVec4& colour = ImGui::GetStyleColorVec4(ImGuiCol_Text)) {
   ImGui::TextUnformatted(name);
   ImGui::SameLine(ui::px(kValues_px));
-  ImGui::TextUnformatted(value.c_str());
+  ImGui::TextColored(colour, "%s", value.c_str());
 }
 
 // The least of 1, 2 and 5 times a power of ten that is not below.
@@ -82,43 +82,20 @@ void plot(const char* name, const char* unit, const std::deque<TickRecord>& hist
 
 // One line, whatever there is to tell, so that nothing below it moves.
 void draw_faults(const std::deque<TickRecord>& history) {
-  int limited = 0, unknown = 0, unsafe = 0;
-  for (const TickRecord& record : history) {
-    switch (record.fault) {
-      case WrenchFault::none:
-      case WrenchFault::eased:
-      // The hand moves without the tool, or the device says itself that it gives no pose.
-      case WrenchFault::pose_not_finite:
-        break;
-      case WrenchFault::force_clamped:
-      case WrenchFault::torque_clamped:
-      case WrenchFault::force_and_torque_clamped:
-        ++limited;
-        break;
-      case WrenchFault::not_finite:
-        ++unknown;
-        break;
-      case WrenchFault::pose_jumped:
-      case WrenchFault::tick_late:
-        ++unsafe;
-        break;
-    }
-  }
-  const int zero = unknown + unsafe;
+  FaultCount faults;
+  for (const TickRecord& record : history) faults.add(record);
+  const int limited = faults.limited();
+  // Not those without a pose: a clutch is held, or the device's own line tells of it.
+  const int zero = faults.not_finite() + faults.unsafe();
   const std::string text = zero > 0      ? fmt::format("no force, {} ticks", zero)
                            : limited > 0 ? fmt::format("limited, {} ticks", limited)
                                          : "as computed";
-  ImGui::TextUnformatted("hand gets");
-  ImGui::SameLine(ui::px(kValues_px));
-  ImGui::TextColored(zero + limited > 0 ? ui::kWarning : ImGui::GetStyleColorVec4(ImGuiCol_Text), "%s",
-                     text.c_str());
-  ui::hint(
-      fmt::format(
-          "Of the last {} ticks, {} would have been stronger than the limits of force and torque. {} had "
-          "none: in {} the hand was moved too fast, or the tick came too late, to be safe, and in {} "
-          "there was no number to send.",
-          history.size(), limited, zero, unsafe, unknown)
-          .c_str());
+  row("hand gets", text, zero + limited > 0 ? ui::kWarning : ImGui::GetStyleColorVec4(ImGuiCol_Text));
+  ui::hint(fmt::format(
+      "Of the last {} ticks, {} would have been stronger than the limits of force and torque. {} had "
+      "none: in {} the hand was moved too fast, or the tick came too late, to be safe, and in {} "
+      "there was no number to send.",
+      history.size(), limited, zero, faults.unsafe(), faults.not_finite()));
 }
 
 using Step = ViewState::Calibration::Step;
@@ -136,12 +113,10 @@ void keep_turn(ViewState& view, ConnectedDevice& device, const Vec3& up_D_mm) {
   settings.turn_V_deg = *turn_deg;
   device.set_workspace(settings);
   const std::filesystem::path path = workspace_path(can.name);
-  try {
+  view.dialogues.attempt([&] {
     if (!path.empty()) keep_workspace(path, can.name, settings);
     view.message = "How the device stands before you is kept in " + path.string();
-  } catch (const std::exception& error) {
-    view.dialogues.complain(error.what());
-  }
+  });
 }
 
 void draw_calibration(ViewState& view, ConnectedDevice& device, const Vec3& handle_D_mm) {
@@ -171,9 +146,7 @@ void draw_calibration(ViewState& view, ConnectedDevice& device, const Vec3& hand
 void draw_complaint(const std::string& complaint) {
   float& room_px = *ImGui::GetStateStorage()->GetFloatRef(ImGui::GetID("complaint"));
   const float from_px = ImGui::GetCursorPosY();
-  ImGui::PushTextWrapPos(0);
-  if (!complaint.empty()) ImGui::TextColored(ui::kWarning, "It %s", complaint.c_str());
-  ImGui::PopTextWrapPos();
+  if (!complaint.empty()) ui::warning("It " + complaint);
   room_px = std::max(room_px, ImGui::GetCursorPosY() - from_px);
   ImGui::SetCursorPosY(from_px);
   if (room_px > 0) ImGui::Dummy({0, room_px - ImGui::GetStyle().ItemSpacing.y});
@@ -183,9 +156,7 @@ void draw_complaint(const std::string& complaint) {
 void draw_device(ViewState& view, ConnectedDevice& device) {
   ImGui::Separator();
   const DeviceReport report = device.report();
-  ImGui::PushTextWrapPos(0);
-  ImGui::TextUnformatted(device.capabilities().name.c_str());
-  ImGui::PopTextWrapPos();
+  ImGui::TextWrapped("%s", device.capabilities().name.c_str());
   ImGui::TextDisabled("%.0f poses/s", report.inputs_per_s);
   draw_calibration(view, device, report.handle_D_mm);
   draw_complaint(report.complaint());
@@ -214,10 +185,10 @@ void draw_row(const Simulation& simulation, std::size_t n) {
   ImGui::TextColored(text, "%s%s", label.name.c_str(), label.no_go ? " (no-go)" : "");
   const LabelCount::Entry& entry = simulation.label_count.entries()[n];
   if (entry.contacts > 0) {
-    ui::hint(fmt::format("The burr touched it for {:.1f} s, first at {:.1f} s, and pressed with {:.2f} N on "
-                         "average and {:.2f} N at most",
-                         entry.time_s, entry.first_s, entry.force_mean_N, entry.force_max_N)
-                 .c_str());
+    ui::hint(
+        fmt::format("The burr touched it for {:.1f} s, first at {:.1f} s, and pressed with {:.2f} N on "
+                    "average and {:.2f} N at most",
+                    entry.time_s, entry.first_s, entry.force_mean_N, entry.force_max_N));
   }
   const std::vector<double>& removed_mm3 = simulation.removed_by_label_mm3;
   if (n + 1 >= removed_mm3.size() || (entry.contacts == 0 && removed_mm3[n + 1] == 0)) return;
@@ -249,11 +220,8 @@ float draw_readings(ViewState& view, Simulation& simulation, double pictures_per
   plot(
       "torque", "N mm", history, [](const TickRecord& r) { return r.wrench.torque_Nmm.norm(); }, 5,
       {0.98f, 0.76f, 0.25f, 1}, height_px);
-  if (!simulation.milling.refused_real_time().empty()) {
-    ImGui::PushTextWrapPos(0);
-    ImGui::TextColored(ui::kWarning, "%s", simulation.milling.refused_real_time().c_str());
-    ImGui::PopTextWrapPos();
-  }
+  if (const std::string& refused = simulation.milling.refused_real_time(); !refused.empty())
+    ui::warning(refused);
   return ui::end_right();
 }
 

@@ -6,11 +6,9 @@ namespace osteomill::app {
 
 namespace {
 
-// While milling goes on, pictures from one sampling of a cut to the next.
+// Pictures from one sampling of a cut to the next while bone is milled.
 constexpr int kPicturesBetween = 8;
-// Along the longer side of what a cut lays open.
-constexpr int kMaxPixels = 320;
-// Nearer the ghost would only tint the tool.
+// Where hand and tool are closer than this, the hand's ghost would only tint the tool.
 constexpr double kApart_mm = 0.03;
 constexpr double kApart_rad = 0.01;
 
@@ -25,18 +23,18 @@ ClipPlane plane_of(const ViewState::Cut& cut) {
 void CutUpdates::update(const ViewState& view, const Simulation& simulation, SceneRenderer& renderer) {
   ++pictures_;
   for (std::size_t n = 0; n < view.cuts.size(); ++n) {
-    Shown& shown = shown_[n];
+    std::optional<Shown>& shown = shown_[n];
     if (!view.cuts[n].on) {
-      shown.on = false;
+      shown.reset();
       continue;
     }
     const ClipPlane plane = plane_of(view.cuts[n]);
-    const bool milled =
-        shown.bone_version != simulation.milling.follower().version() && pictures_ % kPicturesBetween == 0;
-    if (shown.on && shown.plane == plane && shown.labels == view.labels && !milled) continue;
-    shown = {true, plane, view.labels, simulation.milling.follower().version()};
+    const std::uint64_t version = simulation.milling.follower().version();
+    const bool same_cut = shown && shown->plane == plane && shown->labels == view.labels;
+    if (same_cut && (shown->bone_version == version || pictures_ % kPicturesBetween != 0)) continue;
+    shown = {plane, view.labels, version};
     simulation.milling.follower().read([&](const Volume& bone) {
-      renderer.set_clip_face(n, clip_face(bone.grid(), plane, simulation.scan.grey_window, kMaxPixels,
+      renderer.set_clip_face(n, clip_face(bone.grid(), plane, simulation.scan.grey_window,
                                           view.labels ? bone.labels().get() : nullptr));
     });
   }

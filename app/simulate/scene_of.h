@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "app/simulate/simulation.h"
 #include "app/simulate/view_state.h"
@@ -13,19 +14,18 @@ namespace osteomill::app {
 /// What is to be drawn now.
 ViewScene scene_of(const ViewState& view, Simulation& simulation);
 
-/// Keeps the grey values on the cuts up with the planes, and a few times a second with the milling.
+/// Samples the grey values on the cuts anew as their planes move, and a few times a second as bone is milled.
 class CutUpdates {
  public:
   void update(const ViewState& view, const Simulation& simulation, SceneRenderer& renderer);
 
  private:
   struct Shown {
-    bool on = false;
     ClipPlane plane;
-    bool labels = false;
-    std::uint64_t bone_version = 0;
+    bool labels;
+    std::uint64_t bone_version;
   };
-  std::array<Shown, kMaxClipPlanes> shown_;
+  std::array<std::optional<Shown>, kMaxClipPlanes> shown_;
   int pictures_ = 0;
 };
 

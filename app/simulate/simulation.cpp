@@ -88,10 +88,7 @@ RunDescription Simulation::describe() const {
 void Simulation::update() {
   while (const auto record = milling.next_record()) {
     history.push_back(*record);
-    if (const Label* touched = label_count.add(*record)) {
-      no_go_text = no_go_warning(*touched, *record);
-      warn(no_go_text);
-    }
+    if (const auto touched = label_count.add(*record)) warn(no_go_text = *touched);
   }
   while (history.size() > kHistory) history.pop_front();
   milling.update();
@@ -100,7 +97,7 @@ void Simulation::update() {
   look_for_warnings();
 }
 
-// Goes through every voxel.
+// On a thread of its own, since it goes through every voxel.
 void Simulation::look_for_warnings() {
   if (warnings_to_come_.valid()) {
     if (warnings_to_come_.wait_for(0s) == std::future_status::ready) warnings = warnings_to_come_.get();

@@ -40,15 +40,15 @@ struct OpenScan {
   std::shared_ptr<const LabelMap> labels;
 };
 
-/// Made ready for milling.
+/// A scan that was opened and made ready for milling, but is not milled yet.
 struct OpenedScan {
   OpenScan scan;
   PreparedMilling milling;
 };
 
-/// Takes seconds; in any thread, also while another scan is milled. `milled` of it before, if anything was.
-/// Throws InputError as `load_bone` does and where `milled` is of another scan, and std::invalid_argument for
-/// settings out of range.
+/// Opens a scan, and puts into it what was milled of it before (`milled`), if anything was. Takes seconds;
+/// any thread, also while another scan is milled. Throws InputError as `load_bone` does and where `milled` is
+/// of another scan, and std::invalid_argument for settings out of range.
 OpenedScan open_for_milling(const ScanOptions& scan, const MillingSetup& setup, const SessionStart& milled);
 
 /// Who holds the tool: hardware, which outlives the simulation, or a hand without hardware of this name.
@@ -67,20 +67,20 @@ struct Simulation {
   Simulation(OpenedScan opened, const Pose& X_WT, const Holder& holder, const std::string& command_line,
              std::optional<AutosaveFile> autosave_file = std::nullopt);
 
-  /// Once a picture: as LiveMilling::update, and keeps the ticks and what was milled.
+  /// To be called once a picture: LiveMilling::update, with the ticks' history, the counts and the autosave.
   void update();
   /// What a recording that is begun now says of it.
   RunDescription describe() const;
 
   OpenScan scan;
   std::string command_line;
-  /// What a user of the isovalue and the burr should know (isovalue_warnings, coarseness_warnings).
+  /// What to warn the user of for this isovalue and burr (isovalue_warnings, coarseness_warnings).
   std::vector<std::string> warnings;
   Holder holder;
-  /// Pulled where the pointer is, where it is a pointer that moves the tool.
+  /// Holds the tool where mouse, keyboard or SpaceMouse move it.
   VirtualHand hand;
   std::optional<SimulatedOperator> simulated;
-  /// That of them which holds the tool.
+  /// The one of hardware, `hand` and `simulated` that holds the tool.
   Device& device;
   LiveMilling milling;
   Autosave autosave;
@@ -97,7 +97,7 @@ struct Simulation {
   void count_labels();
   void look_for_warnings();
 
-  // An isovalue and a burr's radius (mm).
+  // The isovalue and the burr's radius (mm) that the warnings are for.
   std::optional<std::pair<double, double>> looked_at_;
   std::future<std::vector<std::string>> warnings_to_come_;
   std::uint64_t counted_version_ = 0;

@@ -2,7 +2,6 @@
 #include <atomic>
 #include <chrono>
 #include <ctime>
-#include <deque>
 #include <exception>
 #include <filesystem>
 #include <functional>
@@ -53,8 +52,8 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// True until it was called once on this machine by this user: leaves a marker, or where none can be left is
-// true every time.
+// Whether this user has never seen the help on this machine. Leaves a file that says that it was seen; where
+// none can be left the help is shown at every start.
 bool first_time_of_help() {
   const std::filesystem::path folder = state_folder();
   if (folder.empty()) return true;
@@ -91,8 +90,8 @@ class PictureRate {
   double rate_ = 0;
 };
 
-// A scan that is being opened on a thread of its own, and can be stopped. What was stopped ends by itself
-// within about a tenth of a second and gives its memory back; only the end of this object waits for it.
+// Opens a scan on a thread of its own, and can be stopped: that thread then ends by itself within about a
+// tenth of a second and gives its memory back. Only this object's destructor waits for it.
 class Opening {
  public:
   Opening() = default;
@@ -100,7 +99,7 @@ class Opening {
   Opening(const Opening&) = delete;
   Opening& operator=(const Opening&) = delete;
 
-  // Stops what is being opened, and begins another.
+  // Stops what is being opened, if anything is, and begins to open another scan.
   void begin(std::function<OpenedScan()> open) {
     stop();
     work_ = std::make_shared<Work>();
@@ -129,9 +128,9 @@ class Opening {
 
   bool valid() const { return result_.valid(); }
   std::future_status wait_for(std::chrono::milliseconds time) const { return result_.wait_for(time); }
-  // Once. Throws what opening threw.
+  // To be called once for each scan. Throws what opening threw.
   OpenedScan get() { return result_.get(); }
-  // Of all that opening does.
+  // How much of opening is done, 0 to 1.
   double share_done() const { return work_ ? work_->share_done.load() : 0; }
 
  private:
@@ -147,10 +146,9 @@ class Opening {
 struct SimulatorOptions {
   ScanOptions scan;
   MillingOptions milling;
-  std::vector<AlgorithmDescription> algorithm{default_algorithm()};
   DeviceOption device{kMouse};
   SendOption send;
-  // How much larger than usual text is; not given: as the screen asks for.
+  // How much larger than usual text is drawn; not given: as the screen needs it.
   std::optional<double> ui_scale;
   // Works the window in place of a person (ui_script.h); empty: nobody does.
   std::string script;
@@ -172,7 +170,6 @@ class Simulator {
         hardware_(open_device(options.device)),
         window_("osteomill", kWindowSize, options.ui_scale),
         files_(options.folder, [this](const Camera& camera) { return picture(camera); }) {
-    setup_.algorithm = options.algorithm.front();
     setup_.vibration.on = true;
     if (hardware_) setup_.guard.limits = hardware_->limits_W(setup_.guard.limits);
     if (!options.script.empty()) script_.emplace(options.script);
@@ -180,10 +177,10 @@ class Simulator {
   }
 
   void run() {
-    // What a program left that ended without asking comes before the scan that was named.
-    left_ = last_left_milling();
-    if (left_) {
-      ask_about_left_milling();
+    // Unsaved milling of an earlier run comes before the scan that was named.
+    leftover_ = last_leftover_milling();
+    if (leftover_) {
+      ask_about_leftover();
     } else {
       begin_opening(options_.scan);
     }
@@ -214,7 +211,7 @@ class Simulator {
  private:
   bool unsaved() const { return simulation_ && simulation_->autosave.unsaved(simulation_->milling); }
 
-  // Does it at once where nothing is lost by it.
+  // Does `go_on` at once where nothing unsaved would be lost by it; else asks first.
   void ask_before(const char* what, const Dialogue::Action& go_on, const Dialogue::Action& stay = {}) {
     if (!unsaved()) return go_on();
     simulation_->milling.set_spindle(false);
@@ -231,7 +228,8 @@ class Simulator {
     view_.dialogues.add({"osteomill", doing, {}, [this] { return !files_.busy(); }, then});
   }
 
-  // Begins it when nothing else is being written. Whoever is to read why it was not written stays.
+  // Begins to write as soon as nothing else is being written. Once it is written `then` follows; where that
+  // failed, `stay`: a dialogue then says why.
   void write(const char* doing, const Dialogue::Action& begin, const Dialogue::Action& then,
              const Dialogue::Action& stay) {
     once_written(doing, [=, this] {
@@ -257,7 +255,7 @@ class Simulator {
 
   bool over() {
     if (window_.take_close_asked()) ask_before("Closing the window", [this] { close(); });
-    // Also of a window that is too small to be drawn.
+    // Also while the window is too small to be drawn.
     if (simulation_) files_.take_result(view_, *simulation_);
     view_.dialogues.proceed();
     return closing_ || (script_ && script_->closed());
@@ -268,36 +266,36 @@ class Simulator {
     const bool settled = simulation_ && to_draw_.empty() && !simulation_->milling.preparing() &&
                          !simulation_->milling.placing() && !view_.X_W_brought && !view_.wanted_is_new &&
                          !files_.busy() && (!opening() || view_.dialogues.shown() != nullptr);
-    if (script_ && (simulation_ || left_ || script_->at_once())) {
+    if (script_ && (simulation_ || leftover_ || script_->at_once())) {
       script_->feed(seconds_since(last_picture_), settled, window_);
     }
     last_picture_ = Clock::now();
     ImGui::NewFrame();
   }
 
-  void ask_about_left_milling() {
+  void ask_about_leftover() {
     const auto start = [this] {
-      left_.reset();
+      leftover_.reset();
       begin_opening(options_.scan);
     };
     const auto remove = [this, start] {
-      left_->file.clear();
+      leftover_->file.clear();
       start();
     };
-    view_.dialogues.add(left_milling_question(
-        left_->start, [this] { open_left_milling(); }, remove, start));
+    view_.dialogues.add(leftover_question(
+        leftover_->start, [this] { open_leftover(); }, remove, start));
   }
 
-  void open_left_milling() {
-    ScanOptions scan = scan_of(left_->start);
+  void open_leftover() {
+    ScanOptions scan = scan_of(leftover_->start);
     scan.read.max_memory_bytes = options_.scan.read.max_memory_bytes;
-    // Those that are asked for now.
+    // The labels that were asked for at this start come before those of the earlier run.
     std::error_code other;
     if (!options_.scan.labels.map.empty() &&
         std::filesystem::equivalent(scan.scan, options_.scan.scan, other))
       scan.labels = options_.scan.labels;
-    opened_milled_ = std::move(left_->file);
-    open(scan, std::exchange(left_, std::nullopt)->start);
+    opened_milled_ = std::move(leftover_->file);
+    open(scan, std::exchange(leftover_, std::nullopt)->start);
   }
 
   bool opening() const { return opening_.valid() || opened_; }
@@ -327,7 +325,7 @@ class Simulator {
     opening_.stop();
     opened_milled_.reset();
     view_.message = "Opening " + what + " was given up";
-    // There is nothing to be shown.
+    // Without any scan the window would stay empty.
     if (!simulation_) closing_ = true;
   }
 
@@ -335,7 +333,7 @@ class Simulator {
     return {scan, std::nullopt, {.series = "", .max_memory_bytes = options_.scan.read.max_memory_bytes}};
   }
 
-  // Another scan, once it was read; the one that is milled goes on until then.
+  // Milling goes on until another scan was read and takes its place.
   void open_another() {
     std::vector<std::string> asked = window_.take_dropped();
     if (!view_.scan_asked.empty()) asked.push_back(std::exchange(view_.scan_asked, {}));
@@ -345,12 +343,7 @@ class Simulator {
       begin_opening(another(asked.front()));
     }
     if (!opening_.valid() || opening_.wait_for(0s) != std::future_status::ready) return;
-    try {
-      opened_ = opening_.get();
-    } catch (const std::exception& error) {
-      view_.dialogues.complain(error.what());
-      return;
-    }
+    if (!view_.dialogues.attempt([this] { opened_ = opening_.get(); })) return;
     const auto take = [this] { once_written("Writing ...", [this] { take_scan(); }); };
     ask_before("Opening another scan", take, [this] { opened_.reset(); });
   }
@@ -379,24 +372,15 @@ class Simulator {
     window_.set_title(std::filesystem::path(scan.name).filename().string() + " - osteomill");
     view_.camera = first_camera(view_.box, size);
     const Volume& bone = opened.milling.session->volume();
-    // Before its upper half, so that the shaft leaves the bone in sight.
+    // In front of the bone's upper half, so that the shaft does not hide the bone.
     const Pose X_WT = tool_before_middle(bone, opened.milling.session->setup().tool, view_.camera, size,
                                          0.15 * size.height);
     const Holder holder{options_.device.device, hardware_.get()};
     simulation_ = std::make_unique<Simulation>(std::move(opened), X_WT, holder, options_.command_line,
                                                std::exchange(opened_milled_, std::nullopt));
-    send_bone();
+    // Where nothing listens there, milling goes on without sending.
+    view_.dialogues.attempt([&] { sender_ = send_bone(simulation_->milling.follower(), options_.send); });
     show_from_the_beginning();
-  }
-
-  // Where nobody takes it, milling goes on without.
-  void send_bone() {
-    if (options_.send.address.empty()) return;
-    try {
-      sender_.emplace(simulation_->milling.follower(), options_.send.address, options_.send.tool_rate_Hz);
-    } catch (const InputError& error) {
-      view_.dialogues.complain(error.what());
-    }
   }
 
   void show_from_the_beginning() {
@@ -414,7 +398,7 @@ class Simulator {
   }
 
   void wait_for_scan() {
-    // The last thing said is what is meant.
+    // Of several paths that were dropped the last one is meant.
     if (const auto asked = window_.take_dropped(); !asked.empty()) begin_opening(another(asked.back()));
     if (opening_.wait_for(0s) == std::future_status::ready) take_first_scan();
     draw_opening();
@@ -425,7 +409,7 @@ class Simulator {
       opened_ = opening_.get();
     } catch (const std::exception& error) {
       if (!opened_milled_) throw;
-      // It stays for another start, when its scan may be there again.
+      // The milled bone is kept for another start, when its scan may be there again.
       view_.dialogues.complain(error.what());
       begin_opening(options_.scan);
       return;
@@ -440,15 +424,13 @@ class Simulator {
     if (std::exchange(view_.reset_asked, false)) {
       ask_before("Resetting the bone", [this] { simulation_->milling.reset(); });
     }
-    try {
+    const bool updated = view_.dialogues.attempt([&] {
       const bool prepared = simulation_->milling.preparing();
       simulation_->update();
       if (sender_) sender_->show_tool(simulation_->milling.state().record);
       if (prepared && !simulation_->milling.preparing()) free_tool(view_, *simulation_, size);
-    } catch (const std::exception& error) {
-      view_.dialogues.complain(error.what());
-      view_.wanted = simulation_->milling.setup();
-    }
+    });
+    if (!updated) view_.wanted = simulation_->milling.setup();
     if (view_.message.empty()) view_.message = simulation_->autosave.take_complaint();
     take_input(view_, *simulation_, space_mouse_, size);
     take_surface();
@@ -458,7 +440,7 @@ class Simulator {
     if (std::exchange(view_.picture_asked, false)) save_picture();
     draw_annotations(view_, size, !options_.scan.scan.empty());
     draw_controls(view_, *simulation_, files_, size);
-    const float bottom_px = files_.draw_said(view_, *simulation_, size);
+    const float bottom_px = files_.draw_message(view_, *simulation_, size);
     float top_px = draw_readings(view_, *simulation_, rate_.per_s(), size);
     top_px = draw_labels(view_, *simulation_, {top_px, bottom_px});
     draw_help(view_, size, {top_px, bottom_px});
@@ -469,7 +451,7 @@ class Simulator {
   }
 
   void set_sound() {
-    // What a firm hand presses with while cutting.
+    // The force of a firm hand while cutting.
     constexpr double kFullLoad_N = 2;
     const LiveState& state = simulation_->milling.state();
     const bool heard = view_.sound && state.spindle_on;
@@ -479,19 +461,19 @@ class Simulator {
   }
 
   void take_surface() {
-    for (ChangedBrick& changed : simulation_->milling.take_changed_bricks())
-      to_draw_.push_back(std::move(changed));
-    // All of a large bone's take longer than a picture may. Where pictures take long anyway, as without a
-    // graphics card, the bone would else come together over minutes.
+    ChangedBricks changed = simulation_->milling.take_changed_bricks();
+    changed.merge(to_draw_);
+    to_draw_ = std::move(changed);
+    // All bricks of a large bone take longer than a picture may. But where pictures take long anyway, as
+    // without a graphics card, too few at a time would take minutes.
     const double most_s = std::max(0.02, 0.5 / std::max(rate_.per_s(), 1.0));
     for (const auto start = Clock::now(); !to_draw_.empty() && seconds_since(start) < most_s;
-         to_draw_.pop_front()) {
-      const ChangedBrick& changed = to_draw_.front();
-      renderer_->set_brick(changed.brick, changed.mesh, changed.levels);
+         to_draw_.erase(to_draw_.begin())) {
+      renderer_->set_brick(to_draw_.begin()->first, to_draw_.begin()->second);
     }
   }
 
-  // In full detail, also where the view has just come to rest.
+  // Drawn until it has full detail.
   Image picture(const Camera& camera) {
     ViewScene scene = scene_of(view_, *simulation_);
     scene.camera = camera;
@@ -501,7 +483,7 @@ class Simulator {
   }
 
   void save_picture() {
-    try {
+    view_.dialogues.attempt([this] {
       Image picture = this->picture(view_.camera);
       annotate(picture, view_.camera, !options_.scan.scan.empty(), kInkOnDark, window_.ui_scale());
       create_folder(options_.folder);
@@ -509,14 +491,12 @@ class Simulator {
       write_png(path, picture);
       view_.message = "Saved " + path.string();
       view_.result = path;
-    } catch (const std::exception& error) {
-      view_.dialogues.complain(error.what());
-    }
+    });
   }
 
   void finish() {
     window_.end_frame();
-    if (script_ && (simulation_ || left_ || script_->at_once())) tell(script_->after_drawing(window_));
+    if (script_ && (simulation_ || leftover_ || script_->at_once())) tell(script_->after_drawing(window_));
     window_.show();
     rate_.count();
     ++pictures_since_said_;
@@ -525,7 +505,7 @@ class Simulator {
       constexpr double kStep = 0.25;
       window_.ask_ui_scale(std::clamp(window_.ui_scale() + kStep * steps, kMinScale, kMaxScale));
     }
-    // Faster than anyone sees only takes time from the others.
+    // More pictures than anyone sees would only take time from the other threads.
     constexpr auto kMin = 12ms;
     std::this_thread::sleep_until(last_picture_ + kMin);
   }
@@ -533,7 +513,7 @@ class Simulator {
   void tell(const UiScript::Saying& saying) {
     if (saying.text.empty()) return;
     if (!simulation_) {
-      if (left_) fmt::print("{}\n", saying.text);
+      if (leftover_) fmt::print("{}\n", saying.text);
     } else if (saying.state) {
       fmt::print("{}", state_text(saying.text, view_, *simulation_, files_, heard_, window_.size()));
     } else {
@@ -559,23 +539,23 @@ class Simulator {
   }
 
   SimulatorOptions options_;
-  // With which the first scan is opened.
+  // The first scan is opened with it.
   MillingSetup setup_;
   std::unique_ptr<ConnectedDevice> hardware_;
   Window window_;
   std::optional<UiScript> script_;
   Opening opening_;
-  // What is offered of an earlier program.
-  std::optional<LeftMilling> left_;
-  // Read, and waiting for an answer to what becomes of the one that is milled.
+  // Milled bone of an earlier run that is offered to the user.
+  std::optional<LeftoverMilling> leftover_;
+  // A scan that was read, and waits for the answer to what becomes of the one that is milled.
   std::optional<OpenedScan> opened_;
   std::optional<AutosaveFile> opened_milled_;
   ScanOptions opened_scan_;
   Clock::time_point opening_since_;
   int changes_before_ = 0;
   std::unique_ptr<SceneRenderer> renderer_;
-  // Of the surface, in the order in which they changed.
-  std::deque<ChangedBrick> to_draw_;
+  // Of the surface.
+  ChangedBricks to_draw_;
   bool closing_ = false;
   bool reported_ = false;
   ViewState view_;
@@ -588,9 +568,9 @@ class Simulator {
   int pictures_since_said_ = 0;
   std::clock_t said_cpu_ = 0;
   Clock::time_point last_picture_ = Clock::now();
-  // Ends first: no tick outlives what it tells of.
+  // Destroyed before all that stands above, which its ticks refer to.
   std::unique_ptr<Simulation> simulation_;
-  std::optional<BoneSender> sender_;
+  std::unique_ptr<BoneSender> sender_;
 };
 
 }  // namespace
@@ -604,8 +584,7 @@ void add_simulate_command(CLI::App& program, const std::string& command_line) {
   command->group("In a window");
   add_scan_options(*command, options->scan);
   command->option_defaults()->group("Algorithm");
-  add_algorithm_option(*command, options->algorithm);
-  command->get_option("--algorithm")->expected(1);
+  add_algorithm_option(*command, options->milling.setup.algorithm);
   add_milling_options(*command, options->milling);
   add_device_option(*command, options->device);
   add_send_options(*command, options->send);

@@ -6,7 +6,7 @@
 
 namespace osteomill::app {
 
-/// What mouse and keyboard say to the tool in one picture.
+/// What mouse, keyboard and SpaceMouse tell the tool to do in one picture.
 struct ToolInput {
   /// Pixels to the right and down: moves, or with `turning` turns.
   Eigen::Vector2d moved_px = Eigen::Vector2d::Zero();

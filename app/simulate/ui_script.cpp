@@ -19,7 +19,8 @@ namespace osteomill::app {
 
 namespace {
 
-// Pictures: on its place, down, up; and moved in between, nearer to the end each time.
+// How many pictures a click takes (the pointer there, the button down, and up) and a drag (moving in
+// between).
 constexpr int kClickPictures = 6;
 constexpr int kDragPictures = 12;
 
@@ -36,7 +37,7 @@ const std::map<std::string, int> kKeys{
     {"page-up", GLFW_KEY_PAGE_UP},  {"page-down", GLFW_KEY_PAGE_DOWN},  {"f1", GLFW_KEY_F1},
     {"f11", GLFW_KEY_F11}};
 
-// What is done once the picture is there.
+// Actions that are done after the picture was drawn.
 const std::set<std::string> kDrawnFirst{"screenshot", "say", "state"};
 
 int key_named(const std::string& name) {

@@ -18,16 +18,15 @@ namespace osteomill::app {
 ///     glide X Y SECONDS               moves the pointer there
 ///     press NAME, release NAME        the button left, middle or right, or a key
 ///     wheel STEPS SECONDS             turns it step by step
-///     key NAME, hold NAME SECONDS     a letter, or space, enter, escape, shift, control, arrow-up,
-///     arrow-down,
-///                                     arrow-left, arrow-right, page-up, page-down, f1, f11
+///     key NAME, hold NAME SECONDS     a letter, or space, enter, escape, shift, control, f1, f11, page-up,
+///                                     page-down, arrow-up, arrow-down, arrow-left, arrow-right
 ///     click LABEL                     the button, box or heading of that label
 ///     drag LABEL PIXELS               the slider of that label, to the right
 ///     type TEXT                       into the field that was clicked
 ///     open PATH                       drops that file or folder onto the window
 ///     screenshot FILE                 a PNG of the window
 ///     say TEXT                        on standard output, with the readings
-///     state NAME                      on standard output, all that the controls bring about (state_text.h)
+///     state NAME                      on standard output, all that the controls bring about (panels.h)
 ///     controls FILE                   once the window has closed, adds to it the labels of all controls that
 ///                                     were drawn ("drawn LABEL") and of those that acted ("worked LABEL")
 ///     await FILE                      until it is there; meanwhile pointer and keys are the display's own
@@ -40,16 +39,17 @@ class UiScript {
   /// Throws InputError naming the file and the line for what is not an action.
   explicit UiScript(const std::filesystem::path& path);
 
-  /// Before ImGui's frame begins: hands it the events of this picture. `passed_s` since the last one. Throws
-  /// InputError where a label is not in the window.
+  /// To be called before ImGui's frame begins: hands it the events of this picture, `passed_s` after the last
+  /// one. Throws InputError where a label is not in the window.
   void feed(double passed_s, bool settled, Window& window);
-  /// After the window was drawn: screenshots. What is to be said, if anything, and whether all of the state.
+  /// To be called after the window was drawn: takes screenshots. Returns what is to be printed, if anything,
+  /// and whether that is all of the state under this name.
   struct Saying {
     std::string text;
     bool state = false;
   };
   Saying after_drawing(const Window& window);
-  /// After the last picture.
+  /// To be called after the last picture: writes the file of controls.
   void end() const;
   /// Whether it begins before there is a scan.
   bool at_once() const { return !actions_.empty() && actions_.front().name == "at-once"; }
@@ -85,7 +85,7 @@ class UiScript {
   int click_picture_ = 0;
   double wheel_left_ = 0;
   std::vector<int> keys_;
-  // Pressed and not yet released.
+  // Pressed by `press` and not yet released.
   std::set<int> held_keys_;
 };
 

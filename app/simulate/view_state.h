@@ -26,7 +26,7 @@ struct ViewState {
   bool bring_asked = false;
   /// The pointer moves the tool without a button.
   bool holding_tool = false;
-  /// What the left button drags, settled where it went down.
+  /// What the left button drags; decided where it was pressed.
   bool dragging_tool = false;
   bool dragging_view = false;
   /// The left button is the spindle's pedal as long as it is down.
@@ -39,7 +39,7 @@ struct ViewState {
     Vec3 right_D_mm = Vec3::Zero();
   };
   Calibration calibration;
-  /// What the sliders say, and whether it is still to become real.
+  /// What the controls are set to, and whether milling is still to be changed to it.
   MillingSetup wanted;
   bool wanted_is_new = false;
   /// How often `wanted` was changed.
@@ -49,22 +49,22 @@ struct ViewState {
   bool labels = true;
   bool sound = true;
   bool help = true;
-  /// What is typed as the scan to open, and the scan that is to be opened (the button was pressed).
+  /// The text in the field for the scan to open, and the scan to be opened once its button was pressed.
   std::array<char, 4096> scan_path{};
   std::string scan_asked;
-  /// So many times larger text was asked for, less the times that smaller was.
+  /// By how many steps text is to become larger; negative: smaller.
   int text_steps = 0;
   bool reset_asked = false;
   bool full_screen_asked = false;
   bool picture_asked = false;
   DialogueQueue dialogues;
-  /// What was done last, and the file or folder that came of it, if any did.
+  /// What was done last, and the file or folder that it made, if any.
   std::string message;
   std::filesystem::path result;
   /// The page of the report that was made last.
   std::filesystem::path report;
 
-  /// The three planes across the patient and a free one, with their places along their normals.
+  /// A plane that cuts the bone open: which way it faces and how far along that it lies.
   struct Cut {
     bool on = false;
     bool other_side = false;
@@ -74,7 +74,7 @@ struct ViewState {
   std::array<Cut, kMaxClipPlanes> cuts;
   /// Which one the pointer drags, or -1.
   int dragged_cut = -1;
-  /// While the slider is moved, and until the bone is made anew.
+  /// The isovalue that the slider shows while it is moved, and until the bone has it.
   std::optional<float> isovalue;
 };
 

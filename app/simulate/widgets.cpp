@@ -40,6 +40,10 @@ bool remember(const char* label, bool acted) {
 
 }  // namespace
 
+bool pressed(int key) {
+  return ImGui::IsKeyPressed(key, false);
+}
+
 void begin_right(const char* title, float y_px, ImGuiWindowFlags flags) {
   ImGui::SetNextWindowPos({ImGui::GetIO().DisplaySize.x - px(kRightWidth_px + 8), y_px});
   ImGui::SetNextWindowSize({px(kRightWidth_px), 0});
@@ -91,7 +95,6 @@ std::optional<std::size_t> choice(const std::vector<std::string>& labels) {
   if (labels.empty()) return chosen;
   // The key that led to the dialogue may still be going down.
   if (ImGui::IsWindowAppearing()) return chosen;
-  const auto pressed = [](int key) { return ImGui::IsKeyPressed(key, false); };
   if (pressed(GLFW_KEY_ENTER) || pressed(GLFW_KEY_KP_ENTER)) chosen = 0;
   if (pressed(GLFW_KEY_ESCAPE)) chosen = labels.size() - 1;
   if (chosen) places()[labels[*chosen]].worked = true;
@@ -112,11 +115,17 @@ void badge(const std::string& text, float top_px, float margin_px, ImU32 ground,
   list.AddText(place, kWhite, text.c_str());
 }
 
-void hint(const char* text) {
+void warning(const std::string& text) {
+  ImGui::PushStyleColor(ImGuiCol_Text, kWarning);
+  ImGui::TextWrapped("%s", text.c_str());
+  ImGui::PopStyleColor();
+}
+
+void hint(const std::string& text) {
   if (!ImGui::IsItemHovered()) return;
   ImGui::BeginTooltip();
   ImGui::PushTextWrapPos(25 * ImGui::GetFontSize());
-  ImGui::TextUnformatted(text);
+  ImGui::TextUnformatted(text.c_str());
   ImGui::PopTextWrapPos();
   ImGui::EndTooltip();
 }

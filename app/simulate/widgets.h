@@ -10,28 +10,31 @@
 
 namespace osteomill::app::ui {
 
-/// ImGui's widgets, which remember where they were drawn, so that a script finds them by their label (what
-/// stands before "##").
+/// The functions below draw ImGui's widgets and note where, so that a script (ui_script.h) finds a widget by
+/// its label (what stands before "##").
 struct Place {
   ImVec2 middle;
+  /// In which of ImGui's frames it was drawn last.
   int frame = 0;
-  /// It did what it is for at least once: a button was pressed, a slider moved. A test sees by it which never
-  /// were.
+  /// It was used at least once: a button pressed, a slider moved. Tests find by it what they never use.
   bool worked = false;
 };
 std::map<std::string, Place>& places();
 
-/// A length of the layout, given as it is where text has its usual size.
+/// Pixels for a length that is `length` pixels where text has its usual size.
 float px(float length);
 void set_scale(double scale);
-/// Of what stands below one another on the right, at the usual size of text.
+/// Of the column on the right, at the usual size of text.
 inline constexpr float kRightWidth_px = 250;
-/// The colour of what is not as it should be.
+/// The colour of warnings.
 inline const ImVec4 kWarning{1.0f, 0.72f, 0.25f, 1};
+
+/// Whether the key (GLFW's number) went down in this picture.
+bool pressed(int key);
 
 /// Begins a panel of the right column, with its upper edge at `y_px`.
 void begin_right(const char* title, float y_px, ImGuiWindowFlags flags = 0);
-/// Ends it. Returns where the next one below has room.
+/// Ends it. Returns where the next panel below may begin.
 float end_right();
 
 bool button(const char* label, bool enabled = true);
@@ -42,12 +45,15 @@ bool slider(const char* label, float* value, float min, float max, const char* f
 /// True when Enter was pressed in it.
 bool text_field(const char* label, char* text, std::size_t size);
 bool header(const char* label, bool open);
-/// A dialogue's buttons in a row, by number the one that was chosen: Enter is the first, Esc the last.
+/// A dialogue's buttons in a row; Enter presses the first, Esc the last. Returns the number of the one that
+/// was pressed.
 std::optional<std::size_t> choice(const std::vector<std::string>& labels);
-/// Words in white on a rounded ground over everything, in the middle of the window, so far below its top;
-/// with a dot before them where something is going on.
+/// White text on a rounded rectangle over everything else, `top_px` below the middle of the window's upper
+/// edge; with a dot before it where something is going on.
 void badge(const std::string& text, float top_px, float margin_px, ImU32 ground, bool dot);
 /// Explains the widget drawn last where the pointer rests on it.
-void hint(const char* text);
+void hint(const std::string& text);
+/// Text in the colour of warnings, wrapped to the panel.
+void warning(const std::string& text);
 
 }  // namespace osteomill::app::ui

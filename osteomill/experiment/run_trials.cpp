@@ -74,9 +74,8 @@ std::vector<fs::path> record_trial(const TrialPlan& plan, const AlgorithmDescrip
     const MillingTrial::Tick tick = trial.tick();
     (tick.milling_phase ? milling : holding).push_waiting(tick.record);
     faults.add(tick.record);
-    if (const Label* touched = labels.add(tick.record)) {
-      events.no_go(fmt::format("{}: {}", algorithm.id.name, no_go_warning(*touched, tick.record)));
-    }
+    if (const auto touched = labels.add(tick.record))
+      events.no_go(fmt::format("{}: {}", algorithm.id.name, *touched));
     if (n % kTicksBetweenProgress == 0) {
       // A trial that takes longer than asked for, since the hand does not yet feel what it should, stays at
       // its end.

@@ -113,12 +113,14 @@ void BoneFollower::follow(const std::optional<double>& isovalue) {
 // The others may read meanwhile; no other thread marks what is to be meshed while one holds the lock.
 void BoneFollower::mesh() {
   const std::shared_lock lock(bone_mutex_);
-  std::vector<ChangedBrick> changed = upkeep_.remesh({copy_->grid(), copy_->ranges(), shown_isovalue_});
+  ChangedBricks changed = upkeep_.remesh({copy_->grid(), copy_->ranges(), shown_isovalue_});
   const std::lock_guard publishing(published_mutex_);
-  for (ChangedBrick& brick : changed) published_.insert_or_assign(brick.brick, std::move(brick));
+  // Of a brick that is in both, the newer stays.
+  changed.merge(published_);
+  published_ = std::move(changed);
 }
 
-// A bounded number, so that bricks which come as fast as they are taken cannot put off the meshing.
+// At most so many bricks, or those that come as fast as they are taken would put off the meshing for ever.
 void BoneFollower::take_over() {
   DensityBlock* brick = handover_.front();
   for (std::size_t n = 0; brick != nullptr && n < kBricksOnTheirWay; ++n) {
@@ -132,7 +134,8 @@ void BoneFollower::take_over() {
   }
 }
 
-// What was there is in the brick afterwards. False where nothing changed.
+// Puts the brick's densities into the copy and those that were there into the brick. Returns false where
+// nothing changed.
 bool BoneFollower::put(DensityBlock& brick) {
   const VoxelBox changed = swap_densities(*copy_, brick);
   if (changed.empty()) return false;
@@ -141,7 +144,7 @@ bool BoneFollower::put(DensityBlock& brick) {
   return true;
 }
 
-// After it `differing_` holds what was there.
+// `differing_` holds afterwards what was there, so that the same call takes it back.
 void BoneFollower::put_differing() {
   for (DensityBlock& brick : differing_) put(brick);
 }
@@ -169,15 +172,9 @@ void BoneFollower::bone_changed(const Volume& bone, const VolumeChange& change) 
   handover_.send(bone, kBricksPerTick);
 }
 
-std::vector<ChangedBrick> BoneFollower::take_changed_bricks() {
-  std::map<std::size_t, ChangedBrick> bricks;
-  {
-    const std::lock_guard lock(published_mutex_);
-    bricks.swap(published_);
-  }
-  std::vector<ChangedBrick> taken;
-  for (auto& [place, brick] : bricks) taken.push_back(std::move(brick));
-  return taken;
+ChangedBricks BoneFollower::take_changed_bricks() {
+  const std::lock_guard lock(published_mutex_);
+  return std::exchange(published_, {});
 }
 
 void BoneFollower::show_isovalue(double isovalue) {

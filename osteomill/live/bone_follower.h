@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
-#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -65,9 +64,9 @@ class DensityHandover {
 /// be put in place or meshed (the whole bone after another isovalue).
 class BoneFollower {
  public:
-  /// What a tick copies at most, 16 KiB; all that a burr of 3 mm changes has gone within 20 ticks.
+  /// How many a tick copies at most, 16 KiB. All that a burr of 3 mm changes is sent within 20 ticks.
   static constexpr std::size_t kBricksPerTick = 8;
-  /// What cuts that can be taken back may take.
+  /// The memory that cuts which can be taken back may take.
   static constexpr std::size_t kUndoBytes = std::size_t{256} << 20;
 
   /// Copies the bone and starts meshing all of it; has the memory made that milling it takes
@@ -86,10 +85,9 @@ class BoneFollower {
   void bone_changed(const Volume& bone, const VolumeChange& change) noexcept;
 
   const SurfaceBricks& layout() const { return layout_; }
-  /// What changed of the surface since the last call, each brick once, as it is now; in the order of the
-  /// bricks. The first call that brings anything brings the whole surface. For one drawing thread; never
-  /// waits for meshing.
-  std::vector<ChangedBrick> take_changed_bricks();
+  /// What changed of the surface since the last call. The first call that brings anything brings the whole
+  /// surface. For one drawing thread; never waits for meshing.
+  ChangedBricks take_changed_bricks();
   /// Has the whole surface meshed anew at another isovalue; of several in short order, at the last one. The
   /// bone's own isovalue stays. Any thread but the haptic one, as all that follows.
   void show_isovalue(double isovalue);
@@ -99,7 +97,7 @@ class BoneFollower {
   /// Grows with every change of what is read.
   std::uint64_t version() const { return version_.load(std::memory_order_acquire); }
 
-  /// What comes from now on belongs to another cut; `removed_mm3` is what had been removed before it.
+  /// What is milled from now on belongs to another cut; `removed_mm3` is what was removed before it.
   void begin_cut(double removed_mm3);
   /// How many cuts can be taken back, and whether anything was milled since the beginning.
   std::size_t cuts() const;
@@ -121,11 +119,10 @@ class BoneFollower {
     /// Where another isovalue makes them others.
     std::optional<BoneDensities> densities;
   };
-  /// With the last cut taken back, as it was at the beginning, or with another isovalue
-  /// (std::invalid_argument where it is not finite), at which what milling had emptied stays empty:
-  /// `surroundings` is what it has been cut down to. All three
-  /// while the bone is held and the copy is caught up, and until `swap` or `give_up` nobody writes into
-  /// either. Cuts and surface show it at once.
+  /// The copy with the last cut taken back, as it was at the beginning, or with another isovalue. With the
+  /// last, what milling had emptied (cut down to `surroundings`) stays empty; throws std::invalid_argument
+  /// where the isovalue is not finite. To be called while the bone is held and the copy is caught up; from
+  /// then until `swap` or `give_up` nobody writes into either. Cuts and surface show the change at once.
   NextBone without_last_cut();
   NextBone as_at_the_beginning();
   NextBone with_isovalue(double isovalue, double surroundings, double removed_mm3);
@@ -146,15 +143,15 @@ class BoneFollower {
 
   DensityHandover handover_;
   const SurfaceBricks layout_;
-  // What the drawing thread has not taken yet, each brick once.
+  // What the drawing thread has not taken yet.
   std::mutex published_mutex_;
-  std::map<std::size_t, ChangedBrick> published_;
+  ChangedBricks published_;
   std::atomic<std::uint64_t> version_{1};
 
   // Never taken by the haptic thread. Whoever writes holds it alone: into the copy or what goes with it, or
   // receives from the haptic thread.
   mutable std::shared_mutex bone_mutex_;
-  // Milled by the haptic thread, which alone reads and writes its densities.
+  // The bone that is milled: the haptic thread alone reads and writes its densities.
   std::shared_ptr<Volume> bone_;
   std::shared_ptr<Volume> copy_;
   VoxelBox arrived_;  // since the thread last looked

@@ -22,7 +22,10 @@ namespace {
 using namespace std::chrono_literals;
 using testing_support::ball;
 using testing_support::centred_cube;
+using testing_support::mesh_of;
+using testing_support::mesh_surface;
 using testing_support::shape_volume;
+using testing_support::SurfaceMesh;
 
 Volume ball_of_bone() {
   return shape_volume(centred_cube(51, 0.25), ball(Vec3::Zero(), 5.0));
@@ -47,8 +50,8 @@ class Miller {
 // Keeps what changed, as a window would.
 struct Collected {
   explicit Collected(const SurfaceBricks& layout) : mesh{layout, {}} { mesh.bricks.resize(layout.count()); }
-  void take(std::vector<ChangedBrick> changed) {
-    for (ChangedBrick& brick : changed) mesh.bricks[brick.brick] = std::move(brick.mesh);
+  void take(const ChangedBricks& changed) {
+    for (const auto& [number, brick] : changed) mesh.bricks[number] = mesh_of(brick);
   }
   SurfaceMesh mesh;
 };

@@ -22,8 +22,8 @@ class CrashStop {
   CrashStop(const CrashStop&) = delete;
   CrashStop& operator=(const CrashStop&) = delete;
 
-  /// A stack for the handler, for a thread whose own may overflow; the one that makes this has it. Where
-  /// another thread's overflows, nothing is sent any more.
+  /// Gives the calling thread a stack for the signal's handler, in case its own overflows; the thread that
+  /// makes this object has one. Where the stack of a thread without one overflows, no zero is sent.
   static void give_this_thread_a_stack();
   /// For the haptic thread, at every tick: true when it is to send zero and call `stopped`. Real-time safe.
   bool asked() const { return asked_.load(std::memory_order_acquire); }

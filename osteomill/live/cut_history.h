@@ -10,10 +10,10 @@
 
 namespace osteomill {
 
-/// What was milled, so that it can be taken back: bricks as they were before, since the beginning, for a
-/// reset, and for each cut, for an undo. The cuts' bricks take at most `undo_bytes`; the oldest cuts are then
-/// forgotten. Bricks for the reset are not limited: they grow with the bone that was touched, not with time.
-/// For one thread.
+/// Keeps bricks as they were before they were milled, so that milling can be taken back: as they were before
+/// each cut, for an undo, and as they were at the beginning, for a reset. The bricks of cuts take at most
+/// `undo_bytes`; beyond that the oldest cuts are forgotten. Those for the reset are not limited: they grow
+/// with the bone that was touched, not with time. For one thread.
 class CutHistory {
  public:
   /// By the brick's place.
@@ -29,7 +29,7 @@ class CutHistory {
     double removed_mm3 = 0;
     /// All of a history that was taken at once.
     std::deque<Cut> cuts;
-    /// Whether there had been older ones.
+    /// Whether older cuts had been forgotten.
     bool forgotten = false;
   };
 
@@ -47,11 +47,11 @@ class CutHistory {
   /// Every brick that was touched, as it was at the beginning.
   const Bricks& first() const { return first_; }
 
-  /// The last cut; without bricks where there is none. With the first of all cuts, all.
+  /// Takes out the last cut; no bricks where there is none. Taking the first of all cuts takes all.
   Taken take_last();
-  /// All since the beginning, beyond which cuts cannot be taken back.
+  /// Takes out all that was milled since the beginning.
   Taken take_all();
-  /// As it was before `taken` was taken, nothing having been kept since.
+  /// Undoes the last call of `take_last` or `take_all`, which returned `taken`; nothing was kept since.
   void put_back(Taken taken);
 
   /// Another isovalue, at which voxels that milling had cut down to `emptied` or below would count as bone:

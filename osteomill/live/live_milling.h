@@ -31,13 +31,13 @@ struct PreparedMilling {
 PreparedMilling prepare_milling(std::shared_ptr<Volume> bone, const MillingSetup& setup,
                                 const SessionStart& before = {});
 
-/// A bone that is milled in real time with a device, and all that can be done to it meanwhile. For one
-/// thread, beside the haptic one that this runs; one at a time. Whatever takes long (another algorithm or
-/// tool, taking a cut back) is prepared on a thread of its own: the tool goes on being felt, but nothing is
-/// milled until `update` has put it in place.
+/// A bone that is milled in real time with a device, and all that can be done to it meanwhile. It runs the
+/// haptic thread; all of its functions are for one other thread. One at a time. Whatever takes long (another
+/// algorithm or tool, undoing a cut) is prepared on a thread of its own: the tool goes on being felt, but
+/// nothing is milled until `update` has put the result in place.
 class LiveMilling {
  public:
-  /// `device` outlives this object, and is held where the simulated tool may be. Does not start yet.
+  /// `device` outlives this object; its handle is where the tool may begin. Does not start yet.
   LiveMilling(PreparedMilling prepared, Device& device);
   LiveMilling(std::shared_ptr<Volume> bone, const MillingSetup& setup, Device& device)
       : LiveMilling(prepare_milling(std::move(bone), setup), device) {}
@@ -56,7 +56,7 @@ class LiveMilling {
   void finish_preparing();
   bool preparing() const { return preparation_.valid(); }
 
-  /// Where it goes on is another cut, to be taken back by itself.
+  /// Switching it on begins another cut, which `undo` takes back by itself.
   void set_spindle(bool on);
   bool spindle_asked() const { return spindle_; }
   void set_paused(bool paused) { live_.set_paused(paused); }
@@ -70,20 +70,19 @@ class LiveMilling {
   void undo();
   void reset();
 
-  /// How much of each label's bone has gone since the beginning, mm^3 of reference density, by the labels'
-  /// places from 1; what was taken back counts no more. Empty for a bone without labels.
+  /// How much of each label's bone is gone, mm^3 of reference density, by the labels' places from 1; what was
+  /// taken back does not count. Empty for a bone without labels.
   std::vector<double> removed_by_label() const;
 
   /// What a recording says of the milling as it is now.
   RunDescription describe(const std::string& scan_name, const std::string& command_line) const;
-  /// The PNG of the bone as it is that this name stands for (kPictureBefore and the others); nothing where
-  /// there is none.
+  /// Takes the picture of the bone with this name (kPictureBefore and the others) and returns its PNG;
+  /// nothing where there is none of that name.
   using TakePicture = std::function<std::optional<std::vector<unsigned char>>(std::string_view name)>;
-  /// Goes on over whatever is changed or taken back. Where something has been felt already the session begins
-  /// anew as with another algorithm, so that the recording holds all it takes to replay it; it has then
-  /// ticks from when that is prepared; what is being prepared is waited for. Pictures, where `picture` is
-  /// given, are taken now and at the end. Throws InputError where the file cannot be written; a recording is
-  /// then not going on.
+  /// The recording goes on whatever is changed or taken back. Waits for what is being prepared. Where ticks
+  /// have run already, another session is prepared, so that the recording holds all that it takes to replay
+  /// it, and its ticks begin with that session. Pictures, where `picture` is given, are taken now and at the
+  /// end. Throws InputError where the file cannot be written; then nothing is recorded.
   void start_recording(const std::filesystem::path& path, RunDescription description,
                        TakePicture picture = {});
   /// Returns the recording's name. Throws as Recorder::close does.
@@ -107,7 +106,7 @@ class LiveMilling {
   const BoneFollower& follower() const { return *follower_; }
   /// What changed of its surface since the last call, and how that would look at another isovalue
   /// (BoneFollower).
-  std::vector<ChangedBrick> take_changed_bricks() { return follower_->take_changed_bricks(); }
+  ChangedBricks take_changed_bricks() { return follower_->take_changed_bricks(); }
   void show_isovalue(double isovalue) { follower_->show_isovalue(isovalue); }
 
  private:
@@ -124,7 +123,7 @@ class LiveMilling {
   void set_as_now(RunDescription& run) const;
   void tell_recorder(const TakenOver& taken_over);
 
-  // As prepared: the haptic thread's algorithm changes them.
+  // Of the algorithm as it was prepared: those in use belong to the haptic thread, and change.
   int sample_points_;
   std::uint64_t scan_hash_;
   std::unique_ptr<BoneFollower> follower_;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "tests/shapes.h"
+#include "tests/support/mesh_checks.h"
 #include "tests/support/recording_samples.h"
 #include <gtest/gtest.h>
 
@@ -24,6 +25,8 @@ namespace osteomill {
 namespace {
 
 using namespace std::chrono_literals;
+using testing_support::mesh_of;
+using testing_support::mesh_surface;
 
 constexpr double kIsovalue = 500;
 
@@ -78,9 +81,7 @@ class LiveMillingTest : public ::testing::Test {
   // Whether the surface taken brick by brick becomes that of the bone.
   bool surface_is_the_bones() {
     for (int n = 0; n < 200; ++n) {
-      for (ChangedBrick& brick : milling_.take_changed_bricks()) {
-        surface_[brick.brick] = std::move(brick.mesh);
-      }
+      for (const auto& [number, brick] : milling_.take_changed_bricks()) surface_[number] = mesh_of(brick);
       bool same = false;
       milling_.follower().read(
           [&](const Volume& bone) { same = surface_ == mesh_surface(DensityView(bone)).bricks; });

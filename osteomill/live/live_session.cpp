@@ -12,7 +12,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// A tick that comes later than this mills and moves as if it came at this time.
+// However late a tick comes, no more time than this is simulated in it.
 constexpr double kMaxTick_s = 0.02;
 
 }  // namespace
@@ -46,7 +46,7 @@ void LiveSession::stop() {
   if (thread_.joinable()) thread_.join();
 }
 
-// What a command replaces is left with the thread that gave it, which destroys it.
+// Commands swap what they replace into the commanding thread's hands, so that it is destroyed there.
 void LiveSession::between_ticks(const std::function<void()>& command) {
   command_.store(&command, std::memory_order_release);
   while (command_.load(std::memory_order_acquire) != nullptr) {
@@ -144,7 +144,8 @@ std::optional<TickRecord> LiveSession::next_record() {
   return record;
 }
 
-// Until a tick has placed it, whichever session's that is and however long the device gives no pose.
+// Again at every tick until one has placed the tool, since the session may be replaced meanwhile and the
+// device may give no pose for a while.
 void LiveSession::place_when_at_rest() {
   if (!letting_go_ || !session_->guard().is_at_rest()) return;
   device_.put_at(X_WD_place_);

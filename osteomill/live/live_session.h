@@ -52,24 +52,24 @@ class LiveSession {
   void set_paused(bool paused);
   /// While held nothing is milled, though everything is felt: the volume may then be read from other threads.
   void hold_bone(bool held);
-  /// Another algorithm, tool, setting or bone, prepared beforehand. Returns what it begins from.
+  /// Goes on with another algorithm, tool, setting or bone, prepared beforehand. Returns the state in which
+  /// that began.
   TakenOver replace(std::unique_ptr<MillingSession> session);
   /// The tool to a pose free of bone, however far away. The wrench fades in a hundred ticks, in which nothing
   /// is milled, so that the hand feels no step; then the device is put there (Device::put_at), and the
   /// algorithm begins anew. One at a time: nothing while `placing`.
   void place(const Pose& X_WD);
   bool placing() const { return placing_.load(std::memory_order_acquire); }
-  /// In place of the listener before. May be empty.
+  /// Replaces the listener; an empty one for none.
   void listen(TickListener listener);
 
   /// Of the last tick.
   const LiveState& state() { return state_.read(); }
-  /// Every tick's record in turn, as long as they are taken often enough: the queue holds 4 s, and what finds
-  /// it full is left out.
+  /// Every tick's record in turn. The queue holds 4 s; records that find it full are lost.
   std::optional<TickRecord> next_record();
   /// From any thread.
   TimingSummary timing() const { return timing_.summary(); }
-  /// In one line what real-time scheduling was refused, or nothing. Valid once started.
+  /// In one line, what real-time scheduling the system refused; empty where nothing. Valid once started.
   const std::string& refused_real_time() const { return refused_real_time_; }
   bool running() const { return running_.load(std::memory_order_acquire); }
 
@@ -93,7 +93,7 @@ class LiveSession {
   std::atomic<bool> stopping_{false};
   std::string refused_real_time_;
 
-  // The haptic thread's while it runs.
+  // Used by the haptic thread alone while it runs.
   std::unique_ptr<MillingSession> session_;
   TickListener listener_;
   bool spindle_ = false;
@@ -105,7 +105,7 @@ class LiveSession {
   bool letting_go_ = false;
   std::atomic<bool> placing_{false};
 
-  // Waited for by the commanding thread; null once it is done.
+  // Set by the commanding thread, which waits until the haptic one has done it and made it null.
   std::atomic<const std::function<void()>*> command_{nullptr};
 
   SpscQueue<TickRecord> records_{4096};

@@ -10,21 +10,39 @@ void FaultCount::add(const TickRecord& record) {
   ++ticks_[static_cast<std::size_t>(record.fault)];
 }
 
-std::optional<std::string> FaultCount::sentence() const {
+int FaultCount::count(std::initializer_list<WrenchFault> faults) const {
+  int ticks = 0;
+  for (const WrenchFault fault : faults) ticks += ticks_[static_cast<std::size_t>(fault)];
+  return ticks;
+}
+
+int FaultCount::limited() const {
   using enum WrenchFault;
-  const auto of = [&](auto... faults) { return (ticks_[static_cast<std::size_t>(faults)] + ...); };
-  const int clamped = of(force_clamped, torque_clamped, force_and_torque_clamped);
-  const int wrong = of(not_finite), no_pose = of(pose_not_finite);
-  const int jumped_or_late = of(pose_jumped, tick_late);
-  if (clamped + wrong + no_pose + jumped_or_late == 0) return std::nullopt;
+  return count({force_clamped, torque_clamped, force_and_torque_clamped});
+}
+
+int FaultCount::not_finite() const {
+  return count({WrenchFault::not_finite});
+}
+
+int FaultCount::without_pose() const {
+  return count({WrenchFault::pose_not_finite});
+}
+
+int FaultCount::unsafe() const {
+  return count({WrenchFault::pose_jumped, WrenchFault::tick_late});
+}
+
+std::optional<std::string> FaultCount::sentence() const {
+  if (limited() + not_finite() + without_pose() + unsafe() == 0) return std::nullopt;
   return fmt::format(
       "{} wrenches were clamped to the device's limits, {} were not finite and sent as zero, {} were sent as "
       "zero since the device gave no pose (a clutch that was held among them), {} since it jumped or the "
       "tick came late",
-      clamped, wrong, no_pose, jumped_or_late);
+      limited(), not_finite(), without_pose(), unsafe());
 }
 
-const Label* LabelCount::add(const TickRecord& record) {
+std::optional<std::string> LabelCount::add(const TickRecord& record) {
   constexpr double kApart_s = 0.5;
   const Label* begun = nullptr;
   for (const LabelCut& cut : record.label_cuts) {
@@ -42,7 +60,9 @@ const Label* LabelCount::add(const TickRecord& record) {
     if (entry.time_s > 0) entry.force_mean_N += (force_N - entry.force_mean_N) * record.dt_s / entry.time_s;
     entry.force_max_N = std::max(entry.force_max_N, force_N);
   }
-  return begun;
+  if (begun == nullptr) return std::nullopt;
+  return fmt::format("no-go: the burr touched {} at {:.3f} s, pressing with {:.2f} N", begun->name,
+                     record.time_s, record.burr_force_W_N.norm());
 }
 
 std::optional<double> LabelCount::last_no_go_s() const {
@@ -52,11 +72,6 @@ std::optional<double> LabelCount::last_no_go_s() const {
       last_s = std::max(last_s.value_or(entries_[n].last_s), entries_[n].last_s);
   }
   return last_s;
-}
-
-std::string no_go_warning(const Label& label, const TickRecord& record) {
-  return fmt::format("no-go: the burr touched {} at {:.3f} s, pressing with {:.2f} N", label.name,
-                     record.time_s, record.burr_force_W_N.norm());
 }
 
 std::vector<std::string> label_lines(const LabelCount& count) {

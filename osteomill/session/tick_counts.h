@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <initializer_list>
 #include <memory>
 #include <optional>
 #include <string>
@@ -15,10 +16,19 @@ namespace osteomill {
 class FaultCount {
  public:
   void add(const TickRecord& record);
+  /// Wrenches that were shortened to the device's limits.
+  int limited() const;
+  /// Ticks that sent zero: the wrench was no number; the device gave no pose; the pose jumped or the tick
+  /// came too late to be safe.
+  int not_finite() const;
+  int without_pose() const;
+  int unsafe() const;
   /// What to tell people, in one sentence; nothing where there were none. Not for the tick.
   std::optional<std::string> sentence() const;
 
  private:
+  int count(std::initializer_list<WrenchFault> faults) const;
+
   // Of each kind.
   std::array<int, static_cast<std::size_t>(WrenchFault::eased) + 1> ticks_{};
 };
@@ -45,8 +55,8 @@ class LabelCount {
   explicit LabelCount(const std::shared_ptr<const LabelMap>& map = nullptr)
       : LabelCount(map ? map->labels() : std::vector<Label>{}) {}
 
-  /// Returns the no-go label with which a contact begins in this tick, or null.
-  const Label* add(const TickRecord& record);
+  /// Returns what to tell people where a contact with a no-go label begins in this tick.
+  std::optional<std::string> add(const TickRecord& record);
 
   /// When the burr last cut or touched a no-go label.
   std::optional<double> last_no_go_s() const;
@@ -59,9 +69,6 @@ class LabelCount {
   std::vector<Label> labels_;
   std::vector<Entry> entries_;
 };
-
-/// What to tell people of a contact that begins with a no-go label.
-std::string no_go_warning(const Label& label, const TickRecord& record);
 
 /// A line for each label that was cut or touched, without line feeds.
 std::vector<std::string> label_lines(const LabelCount& count);

@@ -10,7 +10,7 @@ namespace osteomill {
 
 /// What a spindle is doing.
 struct SpindleState {
-  /// What it is asked for; 0 is off. A turn is 1/60 s at 1 rpm.
+  /// Turns a minute that it is set to; 0 is off.
   double speed_rpm = 0;
   /// How hard the burr cuts, 0 to 1.
   double load = 0;

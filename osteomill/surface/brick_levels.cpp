@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include <Eigen/Cholesky>
 
@@ -12,7 +13,7 @@ namespace {
 
 using Index = std::uint32_t;
 
-// Takes the vertices of one brick together, level by level.
+// Clusters the vertices of one brick, level by level.
 class Coarsening {
  public:
   Coarsening(const BrickMesh& mesh, const GridGeometry& geometry, const VoxelBox& cells)
@@ -33,8 +34,8 @@ class Coarsening {
     std::iota(cluster_.begin(), cluster_.end(), Index{0});
   }
 
-  // Cells of `size` voxels.
-  void take_together(int size) {
+  // Clusters what is connected within cells of `size` voxels.
+  void cluster_within(int size) {
     std::iota(parent_.begin(), parent_.end(), Index{0});
     for (std::size_t n = 0; n < triangles_.size(); n += 3) {
       for (std::size_t corner = 0; corner < 3; ++corner) {
@@ -77,13 +78,14 @@ class Coarsening {
     return true;
   }
 
-  // The planes of a cluster's triangles, by their area, as the least squares of a point's distances to them.
+  // The planes of a cluster's triangles, weighted by their areas: the normal equations of the point with the
+  // least squared distances to them.
   struct Planes {
     Mat3 normals = Mat3::Zero();
     Vec3 offsets = Vec3::Zero();
 
-    // The point nearest to all of them, near another which says what they leave open: the mean of a sharp
-    // edge's vertices lies below it.
+    // The point nearest to all planes; where they leave it open, the one nearest to `point_W`. That is the
+    // mean of the vertices, which alone would lie below a sharp edge.
     Vec3 meeting_near(const Vec3& point_W, double reach_mm) const {
       constexpr double kHeld = 0.004;
       const Mat3 held = normals + kHeld * normals.trace() * Mat3::Identity();
@@ -109,11 +111,13 @@ class Coarsening {
     return result;
   }
 
-  // One vertex for each cluster, where its planes meet, with the mean of its normals and
-  // densities; one that is alone stays the mesh's own.
-  void add_means(std::vector<MeshVertex>& means, double reach_mm) {
+  // One vertex for each cluster, where its planes meet, with the mean of its normals and densities; a cluster
+  // of one vertex keeps the mesh's own.
+  void add_means(std::vector<MeshVertex>& vertices, double reach_mm) {
     struct Sum {
-      std::array<double, 7> of{};
+      Vec3 positions_mm = Vec3::Zero();
+      Vec3 normals = Vec3::Zero();
+      double densities = 0;
       int count = 0;
     };
     std::vector<Sum> sums(cluster_.size());
@@ -121,11 +125,9 @@ class Coarsening {
     for (Index vertex = 0; vertex < sums.size(); ++vertex) {
       Sum& sum = sums[cluster_[vertex]];
       const MeshVertex& v = mesh_.vertices[vertex];
-      for (std::size_t n = 0; n < 3; ++n) {
-        sum.of[n] += static_cast<double>(v.position_mm[n]);
-        sum.of[3 + n] += static_cast<double>(v.normal[n]);
-      }
-      sum.of[6] += static_cast<double>(v.density);
+      sum.positions_mm += vec3_of(v.position_mm);
+      sum.normals += vec3_of(v.normal);
+      sum.densities += static_cast<double>(v.density);
       ++sum.count;
     }
     mean_ = cluster_;
@@ -133,17 +135,12 @@ class Coarsening {
     for (Index vertex = 0; vertex < sums.size(); ++vertex) {
       const Sum& sum = sums[vertex];
       if (sum.count < 2) continue;
-      place[vertex] = static_cast<Index>(mesh_.vertices.size() + means.size());
+      place[vertex] = static_cast<Index>(vertices.size());
       MeshVertex mean = mesh_.vertices[vertex];
-      const double length = std::hypot(sum.of[3], sum.of[4], sum.of[5]);
-      const Vec3 middle = Vec3(sum.of[0], sum.of[1], sum.of[2]) / sum.count;
-      const Vec3 place_W = planes_of[vertex].meeting_near(middle, reach_mm);
-      for (std::size_t n = 0; n < 3; ++n) {
-        mean.position_mm[n] = static_cast<float>(place_W[static_cast<Eigen::Index>(n)]);
-        if (length > 1e-3) mean.normal[n] = static_cast<float>(sum.of[3 + n] / length);
-      }
-      mean.density = static_cast<float>(sum.of[6] / sum.count);
-      means.push_back(mean);
+      put(planes_of[vertex].meeting_near(sum.positions_mm / sum.count, reach_mm), mean.position_mm);
+      if (sum.normals.norm() > 1e-3) put(sum.normals.normalized(), mean.normal);
+      mean.density = static_cast<float>(sum.densities / sum.count);
+      vertices.push_back(mean);
     }
     for (Index& mean : mean_) {
       if (place[mean] != 0) mean = place[mean];
@@ -154,18 +151,17 @@ class Coarsening {
   double min_spacing_mm_;
   std::vector<Vec3> voxels_;
   std::vector<bool> on_border_;
-  std::vector<Index> cluster_;  // by vertex: one that stands for all that are together
-  std::vector<Index> parent_;   // of what is taken together in this step
-  std::vector<Index> mean_;     // by vertex: where the mean of its cluster is
+  std::vector<Index> cluster_;  // by vertex: the vertex that stands for its cluster
+  std::vector<Index> parent_;   // union-find of the level that is being made
+  std::vector<Index> mean_;     // by vertex: the number of its cluster's mean
   std::vector<Index> triangles_;
 };
 
 }  // namespace
 
-BrickLevels full_detail(const BrickMesh& mesh) {
-  BrickLevels result;
-  result.indices = mesh.indices;
-  result.levels.fill({0, mesh.indices.size()});
+BrickLevels full_detail(BrickMesh mesh) {
+  BrickLevels result{std::move(mesh.vertices), std::move(mesh.indices)};
+  result.levels.fill({0, result.indices.size()});
   return result;
 }
 
@@ -174,7 +170,7 @@ BrickLevels levels_of(const BrickMesh& mesh, const GridGeometry& geometry, const
   if (mesh.empty()) return result;
   Coarsening coarsening(mesh, geometry, cells);
   for (std::size_t level = 1; level < BrickLevels::kCount; ++level) {
-    coarsening.take_together(1 << level);
+    coarsening.cluster_within(1 << level);
     coarsening.add_level(result, level);
   }
   return result;

@@ -21,17 +21,19 @@ struct BrickLevels {
     std::size_t first = 0;
     std::size_t count = 0;
   };
-  /// To be numbered on from the mesh's own.
+  /// First the mesh's own, then those of levels 1 and up.
   std::vector<MeshVertex> vertices;
   /// Three a triangle, first all of level 0.
   std::vector<std::uint32_t> indices;
-  /// Which indices a level has; all have the mesh's own in `full_detail`.
+  /// Which of the indices belong to a level.
   std::array<Range, kCount> levels{};
+
+  bool empty() const { return levels[0].count == 0; }
 };
 
 /// `cells` are the brick's, as SurfaceBricks names them. Not for the tick; any thread.
 BrickLevels levels_of(const BrickMesh& mesh, const GridGeometry& geometry, const VoxelBox& cells);
 /// The mesh alone, at every level.
-BrickLevels full_detail(const BrickMesh& mesh);
+BrickLevels full_detail(BrickMesh mesh);
 
 }  // namespace osteomill

@@ -22,8 +22,12 @@ struct MeshVertex {
 };
 static_assert(sizeof(MeshVertex) == 28 && std::is_trivially_copyable_v<MeshVertex>);
 
+/// What is in three floats of a vertex, and what puts it there.
 inline Vec3 vec3_of(const std::array<float, 3>& numbers) {
-  return {static_cast<double>(numbers[0]), static_cast<double>(numbers[1]), static_cast<double>(numbers[2])};
+  return Eigen::Map<const Eigen::Vector3f>(numbers.data()).cast<double>();
+}
+inline void put(const Vec3& vector, std::array<float, 3>& numbers) {
+  Eigen::Map<Eigen::Vector3f>(numbers.data()) = vector.cast<float>();
 }
 
 /// A piece of the isosurface as indexed triangles: three indices each, anticlockwise seen from outside the

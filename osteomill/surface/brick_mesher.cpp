@@ -70,15 +70,16 @@ bool BrickMesher::may_hold_surface(std::size_t brick) const {
   return false;
 }
 
-void BrickMesher::mesh(std::size_t brick) {
-  vertices_.clear();
+const BrickMesh& BrickMesher::mesh(std::size_t brick) {
+  mesh_.vertices.clear();
   vertex_edge_.clear();
-  indices_.clear();
-  if (!may_hold_surface(brick)) return;
+  mesh_.indices.clear();
+  if (!may_hold_surface(brick)) return mesh_;
   load(brick);
   find_bone();
   add_vertices();
   add_triangles();
+  return mesh_;
 }
 
 void BrickMesher::load(std::size_t brick) {
@@ -153,7 +154,7 @@ void BrickMesher::add_vertex(int i, int j, int k) {
       std::min(std::max(kMinShare, (threshold_ - at[0]) / (at[kAlong] - at[0])), 1 - kMinShare);
 
   const int edge = axis * kBlockVoxels + place;
-  edge_vertex_[static_cast<std::size_t>(edge)] = static_cast<std::uint16_t>(vertices_.size());
+  edge_vertex_[static_cast<std::size_t>(edge)] = static_cast<std::uint16_t>(mesh_.vertices.size());
   vertex_edge_.push_back(static_cast<std::uint32_t>(edge));
   Vec3 voxel(corner_.i + i, corner_.j + j, corner_.k + k);
   voxel[axis] += static_cast<double>(share);
@@ -162,9 +163,9 @@ void BrickMesher::add_vertex(int i, int j, int k) {
   const Vec3f slope = slope_between(at, at + kAlong, share);
   const Vec3f position_mm = position_at(voxel), normal = normal_against(slope, axis, bone_first);
   const float bone = bone_first ? at[0] : at[kAlong];
-  vertices_.push_back({{position_mm[0], position_mm[1], position_mm[2]},
-                       {normal[0], normal[1], normal[2]},
-                       density_below(in_block, slope, bone)});
+  mesh_.vertices.push_back({{position_mm[0], position_mm[1], position_mm[2]},
+                            {normal[0], normal[1], normal[2]},
+                            density_below(in_block, slope, bone)});
 }
 
 // At a point of the block, half a voxel and a voxel along the slope; `flat` where there is none.
@@ -241,7 +242,7 @@ void BrickMesher::add_row_triangles(int j, int k) {
     if (mirrored_) {
       for (std::size_t n = 0; n < cube.edge_count; n += 3) std::swap(corners[n], corners[n + 1]);
     }
-    indices_.insert(indices_.end(), corners.begin(), corners.begin() + cube.edge_count);
+    mesh_.indices.insert(mesh_.indices.end(), corners.begin(), corners.begin() + cube.edge_count);
   }
 }
 

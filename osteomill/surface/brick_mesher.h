@@ -18,15 +18,12 @@ class BrickMesher {
   explicit BrickMesher(const DensityView& view);
 
   /// The brick's surface, until the next call.
-  void mesh(std::size_t brick);
+  const BrickMesh& mesh(std::size_t brick);
 
-  const std::vector<MeshVertex>& vertices() const { return vertices_; }
-  const std::vector<std::uint32_t>& indices() const { return indices_; }
   /// The grid edge on which each vertex lies: one number for every edge of the grid, the same in all bricks.
   std::uint64_t edge_of(std::size_t vertex) const;
   /// Whether other bricks may have this vertex too.
   bool on_brick_border(std::size_t vertex) const;
-  BrickMesh copy() const { return {vertices_, indices_}; }
 
  private:
   using Vec3f = Eigen::Vector3f;
@@ -69,9 +66,8 @@ class BrickMesher {
   std::array<float, kBlockVoxels> block_;
   std::array<std::uint32_t, kBlock * kBlock> bone_;  // a bit a voxel, a word a row
   std::array<std::uint16_t, 3 * kBlockVoxels> edge_vertex_;
-  std::vector<MeshVertex> vertices_;
-  std::vector<std::uint32_t> vertex_edge_;
-  std::vector<std::uint32_t> indices_;
+  BrickMesh mesh_;
+  std::vector<std::uint32_t> vertex_edge_;  // by vertex
 };
 
 }  // namespace osteomill

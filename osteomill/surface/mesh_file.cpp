@@ -4,7 +4,6 @@
 #include <bit>
 #include <cctype>
 #include <charconv>
-#include <cmath>
 #include <cstring>
 #include <ostream>
 #include <string>
@@ -54,18 +53,12 @@ class Output {
 
 using Point = std::array<float, 3>;
 
-Point facet_normal(const Point& a, const Point& b, const Point& c) {
-  std::array<double, 3> u, v;
-  for (std::size_t n = 0; n < 3; ++n) {
-    u[n] = static_cast<double>(b[n]) - static_cast<double>(a[n]);
-    v[n] = static_cast<double>(c[n]) - static_cast<double>(a[n]);
-  }
-  const std::array<double, 3> cross{u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
-                                    u[0] * v[1] - u[1] * v[0]};
-  const double length = std::hypot(cross[0], cross[1], cross[2]);
-  if (length == 0) return {0, 0, 0};
-  return {static_cast<float>(cross[0] / length), static_cast<float>(cross[1] / length),
-          static_cast<float>(cross[2] / length)};
+// Zero for a triangle without area.
+Point facet_normal(const std::array<Point, 3>& corners) {
+  const Vec3 first = vec3_of(corners[0]);
+  Point normal;
+  put((vec3_of(corners[1]) - first).cross(vec3_of(corners[2]) - first).normalized(), normal);
+  return normal;
 }
 
 void write_stl(Output& out, const BrickMesh& mesh) {
@@ -76,7 +69,7 @@ void write_stl(Output& out, const BrickMesh& mesh) {
   for (std::size_t n = 0; n < mesh.indices.size(); n += 3) {
     std::array<Point, 3> corners;
     for (std::size_t c = 0; c < 3; ++c) corners[c] = mesh.vertices[mesh.indices[n + c]].position_mm;
-    out.bytes(facet_normal(corners[0], corners[1], corners[2]));
+    out.bytes(facet_normal(corners));
     out.bytes(corners);
     out.bytes(std::uint16_t{0});
   }

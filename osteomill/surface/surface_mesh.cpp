@@ -1,10 +1,9 @@
 #include "osteomill/surface/surface_mesh.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cstdint>
-#include <thread>
 #include <utility>
+#include <vector>
 
 #include "osteomill/surface/brick_mesher.h"
 
@@ -47,31 +46,7 @@ void merge_vertices(BrickMesh& mesh, const std::vector<std::uint32_t>& first) {
 }  // namespace
 
 BrickMesh mesh_brick(const DensityView& view, std::size_t brick) {
-  BrickMesher mesher(view);
-  mesher.mesh(brick);
-  return mesher.copy();
-}
-
-SurfaceMesh mesh_surface(const DensityView& view, int threads) {
-  SurfaceMesh mesh{SurfaceBricks(view.grid.geometry().dims), {}};
-  mesh.bricks.resize(mesh.layout.count());
-  std::atomic<std::size_t> next{0};
-  constexpr std::size_t kBricksAtOnce = 64;
-  const auto work = [&] {
-    BrickMesher mesher(view);
-    for (std::size_t begin; (begin = next.fetch_add(kBricksAtOnce)) < mesh.bricks.size();) {
-      const std::size_t end = std::min(begin + kBricksAtOnce, mesh.bricks.size());
-      for (std::size_t brick = begin; brick < end; ++brick) {
-        mesher.mesh(brick);
-        if (!mesher.indices().empty()) mesh.bricks[brick] = mesher.copy();
-      }
-    }
-  };
-  std::vector<std::jthread> others;
-  for (int n = 1; n < threads; ++n) others.emplace_back(work);
-  work();
-  others.clear();
-  return mesh;
+  return BrickMesher(view).mesh(brick);
 }
 
 BrickMesh mesh_in_one_piece(const DensityView& view) {
@@ -80,14 +55,14 @@ BrickMesh mesh_in_one_piece(const DensityView& view) {
   BrickMesher mesher(view);
   const std::size_t bricks = SurfaceBricks(view.grid.geometry().dims).count();
   for (std::size_t brick = 0; brick < bricks; ++brick) {
-    mesher.mesh(brick);
+    const BrickMesh& mesh = mesher.mesh(brick);
     const auto base = static_cast<std::uint32_t>(whole.vertices.size());
-    for (std::size_t n = 0; n < mesher.vertices().size(); ++n) {
+    for (std::size_t n = 0; n < mesh.vertices.size(); ++n) {
       if (mesher.on_brick_border(n))
         shared.push_back({mesher.edge_of(n), base + static_cast<std::uint32_t>(n)});
     }
-    whole.vertices.insert(whole.vertices.end(), mesher.vertices().begin(), mesher.vertices().end());
-    for (const std::uint32_t index : mesher.indices()) whole.indices.push_back(base + index);
+    whole.vertices.insert(whole.vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
+    for (const std::uint32_t index : mesh.indices) whole.indices.push_back(base + index);
   }
   merge_vertices(whole, first_of_same_edge(whole.vertices.size(), std::move(shared)));
   return whole;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <vector>
 
 #include "osteomill/surface/brick_mesh.h"
 #include "osteomill/surface/surface_bricks.h"
@@ -10,13 +9,6 @@
 #include "osteomill/volume/volume.h"
 
 namespace osteomill {
-
-/// A whole isosurface, a piece a brick; most are empty.
-struct SurfaceMesh {
-  SurfaceBricks layout;
-  /// By the brick's number.
-  std::vector<BrickMesh> bricks;
-};
 
 /// What a surface is made from: densities, their ranges brick by brick, and where bone begins. Refers to
 /// both.
@@ -37,9 +29,6 @@ struct DensityView {
 /// triangle belongs to one other, which runs along it the other way. Beyond the grid is no bone. Not for the
 /// tick; any thread that may read the grid.
 BrickMesh mesh_brick(const DensityView& view, std::size_t brick);
-
-/// All bricks. `threads` share the work; the answer does not depend on how many.
-SurfaceMesh mesh_surface(const DensityView& view, int threads = 1);
 
 /// The whole surface as one piece: vertices shared everywhere, so that it is closed by its indices alone.
 BrickMesh mesh_in_one_piece(const DensityView& view);

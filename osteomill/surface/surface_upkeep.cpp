@@ -1,7 +1,6 @@
 #include "osteomill/surface/surface_upkeep.h"
 
 #include <numeric>
-#include <utility>
 
 #include "osteomill/numbers/work_progress.h"
 #include "osteomill/surface/brick_mesher.h"
@@ -30,7 +29,7 @@ void SurfaceUpkeep::mark(const VoxelBox& voxels) {
   });
 }
 
-std::vector<ChangedBrick> SurfaceUpkeep::remesh(const DensityView& view) {
+ChangedBricks SurfaceUpkeep::remesh(const DensityView& view) {
   std::size_t at_rest = 0;
   std::erase_if(changing_, [&](std::size_t brick) {
     if (calls_left_[brick] > 1) {
@@ -42,20 +41,18 @@ std::vector<ChangedBrick> SurfaceUpkeep::remesh(const DensityView& view) {
     to_mesh_.push_back(brick);
     return true;
   });
-  std::vector<ChangedBrick> changed;
+  ChangedBricks changed;
   BrickMesher mesher(view);
   for (std::size_t n = 0; n < to_mesh_.size(); ++n) {
     const std::size_t brick = to_mesh_[n];
     if (n % 64 == 0) WorkProgress::done(n, to_mesh_.size());
     marked_[brick] = 0;
-    mesher.mesh(brick);
+    const BrickMesh& mesh = mesher.mesh(brick);
     const bool had_mesh = has_mesh_[brick] != 0;
-    has_mesh_[brick] = !mesher.indices().empty();
-    if (!had_mesh && !has_mesh_[brick]) continue;
-    BrickMesh mesh = mesher.copy();
-    BrickLevels levels = calls_left_[brick] > 0 ? full_detail(mesh)
-                                                : levels_of(mesh, view.grid.geometry(), layout_.cells(brick));
-    changed.push_back({brick, std::move(mesh), std::move(levels)});
+    has_mesh_[brick] = !mesh.empty();
+    if (!had_mesh && mesh.empty()) continue;
+    changed[brick] = calls_left_[brick] > 0 ? full_detail(mesh)
+                                            : levels_of(mesh, view.grid.geometry(), layout_.cells(brick));
   }
   to_mesh_.clear();
   return changed;

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <vector>
 
 #include "osteomill/surface/brick_levels.h"
@@ -11,34 +12,30 @@
 
 namespace osteomill {
 
-/// A brick of `SurfaceBricks` whose triangles are no longer what they were; it may have none now.
-struct ChangedBrick {
-  std::size_t brick;
-  BrickMesh mesh;
-  /// The mesh with fewer triangles, for drawing it; the mesh alone while it is being milled.
-  BrickLevels levels;
-};
+/// Bricks of `SurfaceBricks`, by their numbers, whose triangles are no longer what they were, as they are
+/// now; they may have none. While a brick is being milled all its levels are its mesh (`full_detail`).
+using ChangedBricks = std::map<std::size_t, BrickLevels>;
 
-/// Which bricks of a surface have to be meshed anew as the densities change. Holds no densities. For one
-/// thread.
+/// Keeps a surface up with changing densities: notes which bricks are to be meshed anew, and meshes them.
+/// Holds no densities. For one thread.
 class SurfaceUpkeep {
  public:
-  /// Levels take five times as long as the mesh, and where bone is milled the mesh is what is looked at: they
-  /// are made of a brick that so many calls of `remesh` have found unmarked, and of so many bricks a call.
+  /// Making a brick's levels takes five times as long as its mesh, and where bone is milled they are not
+  /// looked at. So they are made once this many calls of `remesh` in a row found the brick unmarked ...
   static constexpr std::uint8_t kCallsAtRest = 10;
+  /// ... and for at most so many bricks in one call.
   static constexpr std::size_t kMostAtRest = 2;
 
   /// At first every brick has to be meshed.
   explicit SurfaceUpkeep(const SurfaceBricks& layout);
 
-  const SurfaceBricks& layout() const { return layout_; }
   /// Densities of these voxels (in the grid) changed, up or down.
   void mark(const VoxelBox& voxels);
   /// As after another isovalue.
   void mark_all();
   /// Meshes the bricks marked, and returns those that have triangles or had some before; bricks that rest,
   /// once more with their levels.
-  std::vector<ChangedBrick> remesh(const DensityView& view);
+  ChangedBricks remesh(const DensityView& view);
 
  private:
   SurfaceBricks layout_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "tests/shapes.h"
+#include "tests/support/mesh_checks.h"
 #include <gtest/gtest.h>
 
 namespace osteomill {
@@ -10,7 +11,10 @@ namespace {
 
 using testing_support::ball;
 using testing_support::centred_cube;
+using testing_support::mesh_of;
+using testing_support::mesh_surface;
 using testing_support::shape_volume;
+using testing_support::SurfaceMesh;
 
 DensityView at_isovalue(const Volume& volume, double isovalue) {
   return {volume.grid(), volume.ranges(), isovalue};
@@ -18,12 +22,13 @@ DensityView at_isovalue(const Volume& volume, double isovalue) {
 
 TEST(SurfaceUpkeep, KeptUpIsTheSurfaceMadeFromScratch) {
   Volume volume = shape_volume(centred_cube(51, 0.25), ball(Vec3::Zero(), 5.0));
-  SurfaceUpkeep upkeep{SurfaceBricks(volume.geometry().dims)};
-  SurfaceMesh kept{upkeep.layout(), std::vector<BrickMesh>(upkeep.layout().count())};
+  const SurfaceBricks layout(volume.geometry().dims);
+  SurfaceUpkeep upkeep{layout};
+  SurfaceMesh kept{layout, std::vector<BrickMesh>(layout.count())};
   const auto take = [&] {
-    std::vector<ChangedBrick> changed = upkeep.remesh(DensityView(volume));
+    const ChangedBricks changed = upkeep.remesh(DensityView(volume));
     const std::size_t count = changed.size();
-    for (ChangedBrick& brick : changed) kept.bricks[brick.brick] = std::move(brick.mesh);
+    for (const auto& [number, brick] : changed) kept.bricks[number] = mesh_of(brick);
     return count;
   };
   EXPECT_GT(take(), 20u);  // of 64
@@ -45,10 +50,10 @@ TEST(SurfaceUpkeep, KeptUpIsTheSurfaceMadeFromScratch) {
 TEST(SurfaceUpkeep, ABrickThatIsMilledHasItsMeshAloneAndItsLevelsOnceItRests) {
   Volume volume = shape_volume(centred_cube(51, 0.25), ball(Vec3::Zero(), 5.0));
   SurfaceUpkeep upkeep{SurfaceBricks(volume.geometry().dims)};
-  const auto has_levels = [](const ChangedBrick& changed) {
-    return changed.levels.levels.back().count < changed.mesh.indices.size();
+  const auto has_levels = [](const auto& changed) {
+    return changed.second.levels.back().count < changed.second.levels.front().count;
   };
-  const std::vector<ChangedBrick> first = upkeep.remesh(DensityView(volume));
+  const ChangedBricks first = upkeep.remesh(DensityView(volume));
   EXPECT_TRUE(std::all_of(first.begin(), first.end(), has_levels));
   const VoxelBox row{{12, 25, 45}, {40, 25, 45}};
   for (int i = row.first.i; i <= row.last.i; ++i) volume.lower_density({i, 25, 45}, 0);
@@ -56,7 +61,7 @@ TEST(SurfaceUpkeep, ABrickThatIsMilledHasItsMeshAloneAndItsLevelsOnceItRests) {
   std::size_t milled = 0;  // more than come to rest at once
   for (int n = 0; n < 2 * SurfaceUpkeep::kCallsAtRest; ++n) {
     upkeep.mark(row);
-    const std::vector<ChangedBrick> changed = upkeep.remesh(DensityView(volume));
+    const ChangedBricks changed = upkeep.remesh(DensityView(volume));
     milled = changed.size();
     EXPECT_GT(milled, SurfaceUpkeep::kMostAtRest);
     EXPECT_TRUE(std::none_of(changed.begin(), changed.end(), has_levels));
@@ -65,7 +70,7 @@ TEST(SurfaceUpkeep, ABrickThatIsMilledHasItsMeshAloneAndItsLevelsOnceItRests) {
     EXPECT_TRUE(upkeep.remesh(DensityView(volume)).empty());
   // A few a call, so that none takes long.
   for (std::size_t left = milled; left > 0;) {
-    const std::vector<ChangedBrick> at_rest = upkeep.remesh(DensityView(volume));
+    const ChangedBricks at_rest = upkeep.remesh(DensityView(volume));
     EXPECT_EQ(at_rest.size(), std::min(left, SurfaceUpkeep::kMostAtRest));
     EXPECT_TRUE(std::all_of(at_rest.begin(), at_rest.end(), has_levels));
     ASSERT_FALSE(at_rest.empty());
@@ -79,9 +84,9 @@ TEST(SurfaceUpkeep, SaysWhichBricksLostTheirTriangles) {
   SurfaceUpkeep upkeep{SurfaceBricks(volume.geometry().dims)};
   EXPECT_EQ(upkeep.remesh(at_isovalue(volume, 500)).size(), 1u);
   upkeep.mark_all();
-  const std::vector<ChangedBrick> changed = upkeep.remesh(at_isovalue(volume, 5000));
+  const ChangedBricks changed = upkeep.remesh(at_isovalue(volume, 5000));
   ASSERT_EQ(changed.size(), 1u);
-  EXPECT_TRUE(changed[0].mesh.empty());
+  EXPECT_TRUE(changed.begin()->second.empty());
   EXPECT_TRUE(upkeep.remesh(at_isovalue(volume, 5000)).empty());
 }
 

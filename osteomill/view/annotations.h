@@ -15,13 +15,13 @@ struct Annotation {
     Eigen::Vector2d to;
   };
   std::vector<Line> lines;
-  /// In the middle of it.
+  /// Of the text's middle.
   Eigen::Vector2d place = Eigen::Vector2d::Zero();
   std::string text;
 };
 
-/// A bar of a round length in mm at the focus, in the lower left corner, at most a quarter of the picture
-/// long. Says so where what is nearer is drawn noticeably larger.
+/// A bar of a round length in mm, at most a quarter of the picture long, in its lower left corner. It holds
+/// at the camera's focus, which its text says where what is nearer is drawn noticeably larger.
 Annotation scale_bar_annotation(const Camera& camera, const PixelSize& size);
 
 /// The patient's directions (L R A P S I, of W's LPS axes) about a point in the lower right corner, each
@@ -43,7 +43,8 @@ inline constexpr Ink kInkOnDark{236, 0};
 /// Draws an annotation into an image, all its lengths times `scale`. Any thread.
 void draw_annotation(Image& image, const Annotation& annotation, const Ink& ink, double scale = 1);
 
-/// Draws the scale bar, and of a patient the letters, as into an image `scale` times smaller.
+/// Draws the scale bar, and with `of_patient` the letters of the patient's directions, laid out as in an
+/// image `scale` times smaller.
 void annotate(Image& image, const Camera& camera, bool of_patient, const Ink& ink, double scale);
 
 }  // namespace osteomill

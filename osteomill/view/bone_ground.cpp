@@ -77,21 +77,22 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// As far as the bone is drawn by it.
+// Whether the bone looks the same in both.
 bool same_view(const ViewScene& a, const ViewScene& b) {
   return a.camera == b.camera && a.bounds == b.bounds && a.isovalue == b.isovalue &&
          a.reference_density == b.reference_density && a.light_from_below == b.light_from_below &&
          a.show_labels == b.show_labels && a.cuts == b.cuts;
 }
 
-// Where a sphere is drawn at the most, pixels from the lower left; everywhere where it reaches the eye.
+// A box, in pixels from the lower left, outside of which no part of the sphere is drawn; the whole picture
+// where the sphere reaches the eye.
 Eigen::AlignedBox2d drawn_within(const ViewScene& scene, const Projection& projection, const Sphere& sphere) {
   const double front_mm = depth_of(scene.camera, sphere.centre_W) - sphere.radius_mm;
   const Eigen::Vector2d all(projection.size.width, projection.size.height);
   if (front_mm < projection.near_mm) return {Eigen::Vector2d::Zero(), all};
   Eigen::Vector2d middle = pixel_of(scene.camera, projection.size, sphere.centre_W);
   middle.y() = projection.size.height - middle.y();
-  // Off the picture's middle a ball is seen longish.
+  // Away from the picture's middle perspective draws a ball out in length.
   const double aside = (middle - 0.5 * all).norm() * mm_per_pixel(scene.camera, projection.size, 1.0);
   const double reach_px =
       std::hypot(1.0, aside) * sphere.radius_mm / mm_per_pixel(scene.camera, projection.size, front_mm);
@@ -109,8 +110,8 @@ void clear_depths(const FrameTarget& target) {
 
 ClipFaces::ClipFaces() : program_(gl::make_program(kCutVertex, kCutFragment)) {
   for (Face& face : faces_) {
-    face.vertex_array = gl::make_vertex_array();
-    face.corners = gl::make_buffer();
+    face.vertex_array = gl::VertexArray::make();
+    face.corners = gl::Buffer::make();
   }
 }
 
@@ -158,12 +159,10 @@ void ClipFaces::draw(const ViewScene& scene, const Projection& projection) const
 
 BoneGround::BoneGround(const SurfaceBricks& layout, const GridGeometry& geometry,
                        std::shared_ptr<const LabelMap> labels)
-    : bone_(layout, geometry, std::move(labels)),
-      background_(gl::make_screen_program(kBackgroundFragment)),
-      nothing_(gl::make_vertex_array()) {}
+    : bone_(layout, geometry, std::move(labels)), background_(kBackgroundFragment) {}
 
-void BoneGround::set_brick(std::size_t brick, const BrickMesh& mesh, const BrickLevels& levels) {
-  bone_.set_brick(brick, mesh, levels);
+void BoneGround::set_brick(std::size_t brick, const BrickLevels& levels) {
+  bone_.set_brick(brick, levels);
   changed_.insert(brick);
   changed_since_.insert(brick);
 }
@@ -193,7 +192,7 @@ void BoneGround::draw(const ViewScene& scene, const PixelSize& size) {
   ++drawn_;
 }
 
-// The most pixels that there is time for, as with triangles.
+// The most pixels that there is time for. As with triangles, more only where that leaves some time.
 PixelSize BoneGround::size_in_time(const PixelSize& size) {
   const auto coarse = [&](int n) { return PixelSize{(size.width + n - 1) / n, (size.height + n - 1) / n}; };
   const auto allowed = static_cast<double>(pace_.pixels());
@@ -216,7 +215,7 @@ void BoneGround::draw_at_once(const ViewScene& scene, const PixelSize& size) {
   bone_.draw(scene, projection, *cavities_, seen);
   draw_around(scene, projection);
   look_for_cavities(projection);
-  // Else it would not be known how long it took.
+  // Else drawing would go on after its time was taken.
   glFinish();
   const double passed_s = seconds_since(start);
   pace_.drew(bone_.triangle_count(seen), passed_s);
@@ -226,8 +225,8 @@ void BoneGround::draw_at_once(const ViewScene& scene, const PixelSize& size) {
   to_shade_.clear();
 }
 
-// The finest that there is time for. It gets finer only where that leaves some, so that it does not change to
-// and fro.
+// In the finest detail that there is time for. It gets finer than before only where that leaves some time, so
+// that it does not change to and fro.
 std::vector<SeenBrick> BoneGround::seen_in_time(const ViewScene& scene, const Projection& projection) {
   Detail detail = kFullDetail;
   if (scene.X_WT) detail.sharp = Sphere{scene.X_WT->position_mm, 2 * scene.tool.burr_radius_mm};
@@ -281,8 +280,8 @@ void BoneGround::refine(const ViewScene& scene, const Projection& projection) {
   pace_.drew(triangles, seconds_since(start));
 }
 
-// Also once more when nothing changes any longer, since what lies deep is darkened after the picture before.
-// False where that would take longer than a picture may.
+// Draws the part of the picture in which bone changed; once more when nothing changes any longer, since what
+// lies deep is darkened by the picture drawn before. Returns false where that would take too long.
 bool BoneGround::draw_changed(const ViewScene& scene, const Projection& projection) {
   const bool last = changed_.empty();
   if (last && to_shade_.empty()) return true;
@@ -329,9 +328,7 @@ void BoneGround::look_for_cavities(const Projection& projection) {
 // Into the picture that is bound.
 void BoneGround::draw_around(const ViewScene& scene, const Projection& projection) {
   glDepthFunc(GL_LEQUAL);
-  glUseProgram(background_.get());
-  glBindVertexArray(nothing_.get());
-  glDrawArrays(GL_TRIANGLES, 0, 3);
+  background_.draw();
   glDepthFunc(GL_LESS);
   cut_faces_.draw(scene, projection);
 }

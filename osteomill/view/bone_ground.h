@@ -15,18 +15,18 @@
 
 namespace osteomill {
 
-/// How many triangles and pixels may be drawn for one picture so that pictures follow each other quickly,
-/// from how long those before took. No clock of its own.
+/// How many triangles and pixels there is time for in one picture, learnt from how long earlier pictures
+/// took. Reads no clock itself.
 class DrawingPace {
  public:
-  /// Leaves room in a thirtieth of a second for the tool, the panels and showing it all.
+  /// For the bone of one picture: in a thirtieth of a second it leaves time for all else.
   static constexpr double kBone_s = 0.018;
   static constexpr std::size_t kFewest = 20'000;
   static constexpr std::size_t kFewestPixels = 500'000;
 
   std::size_t triangles() const { return within(kFewest, s_per_triangle_); }
   std::size_t pixels() const { return within(kFewestPixels, s_per_pixel_); }
-  /// So many took so long. Pictures of a few say nothing of what many take.
+  /// So many took so long. Fewer than `kFewest` are taken for that many, since they say nothing of many.
   void drew(std::size_t triangles, double passed_s) { learn(s_per_triangle_, triangles, kFewest, passed_s); }
   void drew_pixels(std::size_t pixels, double passed_s) {
     learn(s_per_pixel_, pixels, kFewestPixels, passed_s);
@@ -47,7 +47,7 @@ class DrawingPace {
   double s_per_pixel_ = kBone_s / 2'000'000;
 };
 
-/// What cuts lay open: grey values, tinted by labels.
+/// Draws what cuts lay open: grey values, tinted by labels.
 class ClipFaces {
  public:
   ClipFaces();
@@ -65,16 +65,17 @@ class ClipFaces {
   std::array<Face, kMaxClipPlanes> faces_;
 };
 
-/// The bone with all that stands still beside it, in a picture of its own, however many triangles it has:
-/// while the view moves with as many triangles and pixels as there is time for; where it rests in full
-/// detail, brick by brick in a second picture that takes the first one's place when it is done; and where
-/// bone is milled only the part of the picture in which it changed.
+/// The ground on which the scene is drawn: background, bone and cuts in a picture of their own, which is kept
+/// from one frame to the next. While the view moves it has as many triangles and pixels as there is time for.
+/// Where the view rests, full detail is drawn brick by brick into a second picture, which takes the first
+/// one's place when it is done. Where bone is milled only the part of the picture in which it changed is
+/// drawn anew.
 class BoneGround {
  public:
   BoneGround(const SurfaceBricks& layout, const GridGeometry& geometry,
              std::shared_ptr<const LabelMap> labels);
 
-  void set_brick(std::size_t brick, const BrickMesh& mesh, const BrickLevels& levels);
+  void set_brick(std::size_t brick, const BrickLevels& levels);
   void set_clip_face(std::size_t cut, const ClipFace& face);
   std::size_t triangle_count() const { return bone_.triangle_count(); }
 
@@ -100,14 +101,13 @@ class BoneGround {
 
   BoneLayer bone_;
   ClipFaces cut_faces_;
-  gl::Program background_;
-  gl::VertexArray nothing_;
+  gl::ScreenProgram background_;
   std::optional<FrameTarget> moving_;
-  // Where full detail is drawn.
+  // Takes full detail.
   std::optional<FrameTarget> resting_;
-  // That of the two which is to be seen.
+  // The one of the two that is shown.
   const FrameTarget* shown_ = nullptr;
-  // A moving picture's pixels are so many times as wide.
+  // While the view moves, so many pixels of the window are one of the picture, along each side.
   int coarseness_ = 1;
   std::optional<CavityPass> cavities_;
   std::optional<ViewScene> scene_;
@@ -117,10 +117,10 @@ class BoneGround {
   std::size_t refined_ = 0;
   bool refining_ = false;
   bool settled_ = false;
-  // Bricks that are drawn as they were: in the picture shown, and since refining began.
+  // Bricks that changed since they were drawn: in the picture shown, and in the one that is being refined.
   std::set<std::size_t> changed_;
   std::set<std::size_t> changed_since_;
-  // Drawn since, but with the darkening of a picture before.
+  // Bricks that were drawn anew since, but with the darkening of an earlier picture.
   std::set<std::size_t> to_shade_;
   unsigned drawn_ = 0;
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <ranges>
 #include <string>
 #include <utility>
 
@@ -39,8 +40,8 @@ void main() {
 )";
 
 // A key light over the viewer's left shoulder, a weaker one from the right, and light from all around that is
-// another from below. Bone that lies deeper than what is around it in the picture (blurred_depth,
-// of the picture before) gets less of all of them.
+// another from below. Bone that lies deeper than what is around it in the picture (blurred_depth, from the
+// picture drawn before) gets less of all of them.
 constexpr std::string_view kBoneFragment = R"(#version 330 core
 in vec3 normal_C;
 in float depth_mm;
@@ -115,16 +116,7 @@ bool may_be_seen(const std::array<Eigen::Vector4d, 6>& planes, const Sphere& sph
   });
 }
 
-template <typename Brick>
-std::vector<Brick> by_distance(std::vector<std::pair<double, Brick>> found) {
-  std::ranges::stable_sort(found, {}, &std::pair<double, Brick>::first);
-  std::vector<Brick> bricks;
-  bricks.reserve(found.size());
-  for (const auto& [distance, brick] : found) bricks.push_back(brick);
-  return bricks;
-}
-
-// The label's colour, of which the fourth channel says whether there is one.
+// Red, green, blue, and 255 where there is a label, else 0.
 using LabelColour = std::array<std::uint8_t, 4>;
 
 LabelColour label_colour_below(const LabelMap& labels, const MeshVertex& vertex) {
@@ -139,15 +131,12 @@ struct Facing {
   double spread_rad;
 };
 
-Facing facing_of(const BrickMesh& mesh) {
+Facing facing_of(const BrickLevels& brick) {
   std::vector<Vec3> normals;
-  normals.reserve(mesh.triangle_count());
+  normals.reserve(brick.levels[0].count / 3);
   Vec3 sum = Vec3::Zero();
-  const auto corner = [&](std::size_t n) {
-    const auto& p = mesh.vertices[mesh.indices[n]].position_mm;
-    return Vec3(p[0], p[1], p[2]);
-  };
-  for (std::size_t n = 0; n < mesh.indices.size(); n += 3) {
+  const auto corner = [&](std::size_t n) { return vec3_of(brick.vertices[brick.indices[n]].position_mm); };
+  for (std::size_t n = 0; n < brick.levels[0].count; n += 3) {
     const Vec3 normal = (corner(n + 1) - corner(n)).cross(corner(n + 2) - corner(n));
     if (!(normal.norm() > 0)) continue;
     normals.push_back(normal.normalized());
@@ -208,18 +197,6 @@ Sphere bounding_sphere(const GridGeometry& geometry, const VoxelBox& cells) {
   const Vec3 last(cells.last.i + 1, cells.last.j + 1, cells.last.k + 1);
   return {geometry.world_from_voxel(Vec3(0.5 * (first + last))),
           0.5 * geometry.spacing_mm.cwiseProduct(last - first).norm()};
-}
-
-std::vector<std::size_t> bricks_in_view(const SurfaceBricks& layout, const GridGeometry& geometry,
-                                        const ViewScene& scene, const Projection& projection) {
-  const auto planes = view_planes(projection);
-  const Vec3 eye_W = scene.camera.eye_W();
-  std::vector<std::pair<double, std::size_t>> found;
-  for (std::size_t brick = 0; brick < layout.count(); ++brick) {
-    const Sphere bounds = bounding_sphere(geometry, layout.cells(brick));
-    if (may_be_seen(planes, bounds)) found.emplace_back((bounds.centre_W - eye_W).squaredNorm(), brick);
-  }
-  return by_distance(std::move(found));
 }
 
 DepthTiles::DepthTiles(const FrameTarget& target, const Projection& projection, const Camera& camera)
@@ -286,38 +263,36 @@ BoneLayer::BoneLayer(const SurfaceBricks& layout, const GridGeometry& geometry,
     bricks_[n].bounds = bounding_sphere(geometry, layout.cells(n));
 }
 
-void BoneLayer::set_brick(std::size_t number, const BrickMesh& mesh, const BrickLevels& levels) {
+void BoneLayer::set_brick(std::size_t number, const BrickLevels& levels) {
   Brick& brick = bricks_[number];
   brick.levels = levels.levels;
-  if (mesh.empty()) {
+  if (levels.empty()) {
     brick.vertex_array = {};
     brick.vertices = {};
     brick.indices = {};
     return;
   }
   if (brick.vertex_array.get() == 0) {
-    brick.vertex_array = gl::make_vertex_array();
-    brick.vertices = gl::make_buffer();
-    brick.indices = gl::make_buffer();
+    brick.vertex_array = gl::VertexArray::make();
+    brick.vertices = gl::Buffer::make();
+    brick.indices = gl::Buffer::make();
   }
-  const Facing facing = facing_of(mesh);
+  const Facing facing = facing_of(levels);
   brick.facing_W = facing.axis_W;
   brick.facing_spread_rad = facing.spread_rad;
-  std::vector<MeshVertex> vertices = mesh.vertices;
-  vertices.insert(vertices.end(), levels.vertices.begin(), levels.vertices.end());
   glBindVertexArray(brick.vertex_array.get());
-  gl::fill<MeshVertex>(GL_ARRAY_BUFFER, brick.vertices, vertices, GL_DYNAMIC_DRAW);
+  gl::fill<MeshVertex>(GL_ARRAY_BUFFER, brick.vertices, levels.vertices, GL_DYNAMIC_DRAW);
   // A brick has less than 2^16 grid edges for vertices to lie on.
   const std::vector<GLushort> indices(levels.indices.begin(), levels.indices.end());
   gl::fill<GLushort>(GL_ELEMENT_ARRAY_BUFFER, brick.indices, indices, GL_DYNAMIC_DRAW);
   gl::set_attribute(0, 3, sizeof(MeshVertex), offsetof(MeshVertex, position_mm));
   gl::set_attribute(1, 3, sizeof(MeshVertex), offsetof(MeshVertex, normal));
   gl::set_attribute(2, 1, sizeof(MeshVertex), offsetof(MeshVertex, density));
-  if (labels_) set_label_colours(brick, vertices);
+  if (labels_) set_label_colours(brick, levels.vertices);
 }
 
 void BoneLayer::set_label_colours(Brick& brick, const std::vector<MeshVertex>& vertices) {
-  if (brick.label_colours.get() == 0) brick.label_colours = gl::make_buffer();
+  if (brick.label_colours.get() == 0) brick.label_colours = gl::Buffer::make();
   std::vector<LabelColour> colours;
   colours.reserve(vertices.size());
   for (const MeshVertex& vertex : vertices) colours.push_back(label_colour_below(*labels_, vertex));
@@ -335,26 +310,45 @@ bool BoneLayer::Brick::turned_away(const Vec3& eye_W) const {
   return angle + facing_spread_rad + std::asin(bounds.radius_mm / way_mm) < 0.5 * std::numbers::pi;
 }
 
+template <typename Wanted>
+std::vector<std::size_t> BoneLayer::in_view(const ViewScene& scene, const Projection& projection,
+                                            const Wanted& wanted) const {
+  const auto planes = view_planes(projection);
+  const Vec3 eye_W = scene.camera.eye_W();
+  std::vector<std::pair<double, std::size_t>> found;
+  for (std::size_t n = 0; n < bricks_.size(); ++n) {
+    const Sphere& bounds = bricks_[n].bounds;
+    if (wanted(bricks_[n]) && may_be_seen(planes, bounds))
+      found.emplace_back((bounds.centre_W - eye_W).squaredNorm(), n);
+  }
+  std::ranges::sort(found);
+  const auto numbers = found | std::views::values;
+  return {numbers.begin(), numbers.end()};
+}
+
+std::vector<std::size_t> BoneLayer::in_view(const ViewScene& scene, const Projection& projection) const {
+  return in_view(scene, projection, [](const Brick&) { return true; });
+}
+
 // The nearest first, so that what they hide need not be coloured.
 std::vector<SeenBrick> BoneLayer::seen(const ViewScene& scene, const Projection& projection,
                                        const Detail& detail) const {
-  const auto planes = view_planes(projection);
   const Vec3 eye_W = scene.camera.eye_W();
   const bool cut = is_cut(scene);
-  std::vector<std::pair<double, SeenBrick>> found;
-  for (std::size_t n = 0; n < bricks_.size(); ++n) {
+  const auto faces_us = [&](const Brick& brick) {
+    return !brick.empty() && (cut || !brick.turned_away(eye_W));
+  };
+  std::vector<SeenBrick> bricks;
+  for (const std::size_t n : in_view(scene, projection, faces_us)) {
     const Brick& brick = bricks_[n];
-    if (brick.empty() || !may_be_seen(planes, brick.bounds)) continue;
-    if (!cut && brick.turned_away(eye_W)) continue;
     const double front_mm =
         std::max(depth_of(scene.camera, brick.bounds.centre_W) - brick.bounds.radius_mm, projection.near_mm);
     const bool sharp = detail.sharp && (detail.sharp->centre_W - brick.bounds.centre_W).norm() <
                                            detail.sharp->radius_mm + brick.bounds.radius_mm;
     const double cell_px =
         geometry_.spacing_mm.maxCoeff() / mm_per_pixel(scene.camera, projection.size, front_mm);
-    found.push_back({(brick.bounds.centre_W - eye_W).squaredNorm(), {n, 0, cell_px, sharp}});
+    bricks.push_back({n, 0, cell_px, sharp});
   }
-  std::vector<SeenBrick> bricks = by_distance(std::move(found));
   choose_levels(bricks, detail);
   return bricks;
 }

@@ -18,7 +18,7 @@
 
 namespace osteomill {
 
-/// The camera's matrices and depths, as every layer is drawn with them.
+/// How a scene is projected into a picture of this size: the matrices, and the range of depths it covers.
 struct Projection {
   PixelSize size;
   double near_mm;
@@ -27,18 +27,14 @@ struct Projection {
   Eigen::Matrix4f clip_from_camera;
 };
 Projection projection_of(const ViewScene& scene, const PixelSize& size);
-/// Hands both matrices to the uniforms of these names of the program in use.
+/// Sets the uniforms `camera_from_world` and `clip_from_camera` of the program in use.
 void set_projection(GLuint program, const Projection& projection);
 
-/// Holds a box of cells, each named by its least voxel.
+/// A sphere around a box of cells, each named by its least voxel.
 Sphere bounding_sphere(const GridGeometry& geometry, const VoxelBox& cells);
 
-/// The bricks, empty or not, that lie at least in part where the camera sees, the nearest first.
-std::vector<std::size_t> bricks_in_view(const SurfaceBricks& layout, const GridGeometry& geometry,
-                                        const ViewScene& scene, const Projection& projection);
-
-/// What was drawn so far as the greatest depth in each small square of the picture: what lies behind need not
-/// be drawn.
+/// The greatest depth that was drawn so far in each small square of the picture: what lies behind it is
+/// hidden and need not be drawn.
 class DepthTiles {
  public:
   /// Reads the depths, which waits for all drawing.
@@ -58,46 +54,50 @@ class DepthTiles {
   std::vector<float> depths_;
 };
 
-/// Hands the scene's cuts to the uniform `cuts` of the program in use and has OpenGL clip by them. Ends with
-/// `end_cuts`.
+/// Has OpenGL clip by the scene's cuts, by the uniform `cuts` of the program in use, until `end_cuts`.
 void begin_cuts(GLuint program, const ViewScene& scene);
 void end_cuts();
 
-/// How closely the bone is looked at: a brick is drawn at the coarsest level whose cells are no wider in the
-/// picture than this.
+/// How finely the bone is drawn: each brick at the coarsest of its levels (BrickLevels) whose cells are at
+/// most this wide in the picture.
 struct Detail {
   double cell_px = 0;
-  /// No coarser than a pixel in here.
+  /// In here, where the burr works, a cell is at most a pixel wide.
   std::optional<Sphere> sharp;
 };
-/// All that can be told apart.
+/// So fine that a finer level would look the same.
 inline constexpr Detail kFullDetail{0.5, std::nullopt};
 
-/// A brick that the camera may see, and how closely.
+/// A brick that the camera may see.
 struct SeenBrick {
   std::size_t brick;
+  /// Of BrickLevels, to draw it at.
   std::size_t level;
   /// How wide a cell of the finest level is in the picture where the brick is nearest.
   double cell_px;
+  /// It lies at least in part in `Detail::sharp`.
   bool sharp;
 };
 
-/// The bone's surface, a piece of graphics memory a brick, so that milling replaces only what changed.
+/// The bone's surface in graphics memory, brick by brick, so that milling replaces only the bricks that
+/// changed.
 class BoneLayer {
  public:
   /// `labels` are those of the bone; null for none.
   BoneLayer(const SurfaceBricks& layout, const GridGeometry& geometry,
             std::shared_ptr<const LabelMap> labels = nullptr);
 
-  void set_brick(std::size_t brick, const BrickMesh& mesh, const BrickLevels& levels);
+  void set_brick(std::size_t brick, const BrickLevels& levels);
 
-  /// Only bricks that the camera may see, the nearest first.
+  /// All bricks, empty ones too, that lie at least in part where the camera looks, the nearest first.
+  std::vector<std::size_t> in_view(const ViewScene& scene, const Projection& projection) const;
+  /// Those of them that have triangles which the camera may see.
   std::vector<SeenBrick> seen(const ViewScene& scene, const Projection& projection,
                               const Detail& detail) const;
-  /// The same bricks in another detail.
+  /// Sets the levels of these bricks for another detail.
   void choose_levels(std::span<SeenBrick> bricks, const Detail& detail) const;
   std::size_t triangle_count(std::span<const SeenBrick> bricks) const;
-  /// Back faces only where the scene is cut open.
+  /// Draws back faces too where the scene is cut open.
   void draw(const ViewScene& scene, const Projection& projection, const CavityPass& cavities,
             std::span<const SeenBrick> bricks) const;
   /// In full detail.
@@ -119,9 +119,12 @@ class BoneLayer {
     bool empty() const { return levels[0].count == 0; }
     bool turned_away(const Vec3& eye_W) const;
   };
+  template <typename Wanted>
+  std::vector<std::size_t> in_view(const ViewScene& scene, const Projection& projection,
+                                   const Wanted& wanted) const;
   void set_label_colours(Brick& brick, const std::vector<MeshVertex>& vertices);
 
-  // Clipping costs time at every vertex.
+  // Without cuts and with them, since clipping costs time at every vertex.
   gl::Program whole_;
   gl::Program cut_;
   GridGeometry geometry_;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "osteomill/surface/surface_mesh.h"
@@ -21,7 +22,7 @@ namespace {
 constexpr double kFieldOfView_rad = 0.04;
 constexpr double kMaxWhole_mm = 45.0;
 constexpr double kAroundEntry_mm = 24.0;
-// Around the entry as well: fewer would show no shape that anyone knows.
+// At least so many voxels around the entry: fewer would show no shape that anyone recognises.
 constexpr double kAroundEntry_voxels = 32;
 constexpr double kMargin = 1.0 / 20;
 // Pixels drawn for one of the picture, along each side.
@@ -35,7 +36,7 @@ constexpr std::array<float, 3> kLightFromBelow{0.47f, 0.45f, 0.42f};
 // Surface that is in memory at once.
 constexpr std::size_t kTrianglesAtOnce = 400'000;
 
-// What a camera sees of the bone, from bottom to top or side to side, whichever is more.
+// The middle of the bone, and its height or width as the camera sees it, whichever is more.
 struct Extent {
   Vec3 centre_W;
   double size_mm;
@@ -70,7 +71,7 @@ ViewScene scene_with(const Volume& bone, double reference_density, const Camera&
 // show as terraces in glancing light, and for colours from deeper below the surface, where the scanner's blur
 // has ended.
 void look_closer(const Volume& bone, MeshVertex& vertex) {
-  const Vec3 point_W = Eigen::Map<const Eigen::Vector3f>(vertex.position_mm.data()).cast<double>();
+  const Vec3 point_W = vec3_of(vertex.position_mm);
   const GridGeometry& geometry = bone.geometry();
   Vec3 slope = density_gradient(bone.grid(), point_W, GradientKernel::smoothed);
   for (int axis = 0; axis < 3; ++axis) {
@@ -80,7 +81,7 @@ void look_closer(const Volume& bone, MeshVertex& vertex) {
   }
   if (!(slope.norm() > 1e-9)) return;
   const Vec3 normal_W = -slope.normalized();
-  Eigen::Map<Eigen::Vector3f>(vertex.normal.data()) = normal_W.cast<float>();
+  put(normal_W, vertex.normal);
   for (const double voxels : {1.25, 2.5}) {
     const Vec3 below_W = point_W - voxels * geometry.spacing_mm.minCoeff() * normal_W;
     vertex.density = std::max(vertex.density, static_cast<float>(density_at(bone.grid(), below_W)));
@@ -94,8 +95,7 @@ class BonePainter {
       : bone_(bone),
         scene_(scene),
         projection_(projection_of(scene, size)),
-        layout_(bone.geometry().dims),
-        layer_(layout_, bone.geometry(), bone.labels()),
+        layer_(SurfaceBricks(bone.geometry().dims), bone.geometry(), bone.labels()),
         target_(size),
         cavities_(size, std::max(1, static_cast<int>(kCavityReach * size.height))) {}
 
@@ -106,8 +106,7 @@ class BonePainter {
     glClearColor(1, 1, 1, 1);
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     // Once for the depths, which tell what is hidden and what is sunk, and once more to be seen.
-    const std::vector<std::size_t> seen =
-        draw(bricks_in_view(layout_, bone_.geometry(), scene_, projection_), For::depths);
+    const std::vector<std::size_t> seen = draw(layer_.in_view(scene_, projection_), For::depths);
     cavities_.blur(target_.depths(), projection_.near_mm, projection_.far_mm);
     target_.bind();
     draw(seen, For::eyes);
@@ -119,7 +118,7 @@ class BonePainter {
  private:
   enum class For : unsigned char { depths, eyes };
 
-  // Draws these bricks, the nearest first, but for what is hidden by then, and returns those that were drawn.
+  // Draws these bricks in their order, leaving out those that are hidden by then; returns those that it drew.
   std::vector<std::size_t> draw(const std::vector<std::size_t>& bricks, For whom) {
     const DensityView view(bone_);
     std::vector<std::size_t> drawn;
@@ -127,20 +126,20 @@ class BonePainter {
     DepthTiles depths(target_, projection_, scene_.camera);
     const auto flush = [&] {
       layer_.draw(scene_, projection_, cavities_, layer_.seen(scene_, projection_, kFullDetail));
-      for (; done < drawn.size(); ++done) layer_.set_brick(drawn[done], {}, {});
+      for (; done < drawn.size(); ++done) layer_.set_brick(drawn[done], {});
       depths = DepthTiles(target_, projection_, scene_.camera);
     };
     std::size_t triangles = 0;
     for (const std::size_t brick : bricks) {
-      if (depths.hide(bounding_sphere(bone_.geometry(), layout_.cells(brick)))) continue;
+      if (depths.hide(layer_.bounds(brick))) continue;
       BrickMesh mesh = mesh_brick(view, brick);
       if (mesh.empty()) continue;
       if (whom == For::eyes) {
         for (MeshVertex& vertex : mesh.vertices) look_closer(bone_, vertex);
       }
-      layer_.set_brick(brick, mesh, full_detail(mesh));
       drawn.push_back(brick);
       triangles += mesh.triangle_count();
+      layer_.set_brick(brick, full_detail(std::move(mesh)));
       if (triangles < kTrianglesAtOnce) continue;
       flush();
       triangles = 0;
@@ -152,15 +151,10 @@ class BonePainter {
   const Volume& bone_;
   const ViewScene& scene_;
   Projection projection_;
-  SurfaceBricks layout_;
   BoneLayer layer_;
   FrameTarget target_;
   CavityPass cavities_;
 };
-
-}  // namespace
-
-namespace {
 
 Camera camera_at(const Volume& bone, const Vec3& entry_W, const Vec3& direction_W, const Vec3& up_W) {
   Camera camera = camera_on({entry_W, 1}, direction_W, up_W);

@@ -23,10 +23,10 @@ struct Sphere {
 struct Camera {
   Vec3 focus_W = Vec3::Zero();
   double distance_mm = 100;
-  /// Of the camera's axes in W: x to the right, y up, z towards the viewer.
+  /// From the camera's axes to W's: x to the right, y up, z towards the viewer.
   Quat orientation = Quat::Identity();
 
-  /// From bottom to top. The narrower and the further away, the less do lengths change with their depth.
+  /// From bottom to top. The narrower it is (and the further away the camera), the less perspective there is.
   double field_of_view_rad = 0.52;
 
   Vec3 right_W() const { return orientation * Vec3::UnitX(); }
@@ -47,10 +47,10 @@ void pan(Camera& camera, const PixelSize& size, double right_px, double down_px)
 void zoom_by_drag(Camera& camera, const PixelSize& size, double down_px);
 void zoom_by_wheel(Camera& camera, double steps);
 
-/// What a pixel is wide at a distance from the eye along the view.
+/// How wide a pixel is at this distance from the eye along the view.
 double mm_per_pixel(const Camera& camera, const PixelSize& size, double depth_mm);
 
-/// Of the point, from the eye along the view.
+/// The point's distance from the eye along the view.
 double depth_of(const Camera& camera, const Vec3& point_W);
 
 /// Where a point is seen, pixels from the top left; meaningless behind the eye.

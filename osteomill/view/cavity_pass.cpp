@@ -40,56 +40,47 @@ int shrunk(int pixels, int reach_px) {
   return std::max(1, pixels * kBlurSteps / reach_px);
 }
 
-gl::Texture small_texture(const PixelSize& size, GLint filter) {
-  return gl::make_texture(GL_RG32F, GL_RG, GL_FLOAT, size.width, size.height, filter);
-}
+}  // namespace
 
-gl::Framebuffer framebuffer_on(const gl::Texture& texture) {
-  gl::Framebuffer framebuffer = gl::make_framebuffer();
+CavityPass::Layer::Layer(const PixelSize& size, GLint filter)
+    : texture(gl::make_texture(GL_RG32F, GL_RG, GL_FLOAT, size.width, size.height, filter)),
+      framebuffer(gl::Framebuffer::make()) {
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer.get());
   glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture.get(), 0);
   glClearColor(0, 0, 0, 0);
   glClear(GL_COLOR_BUFFER_BIT);
-  return framebuffer;
 }
-
-}  // namespace
 
 CavityPass::CavityPass(const PixelSize& size, int reach_px)
     : reach_of_height_(static_cast<double>(reach_px) / size.height),
       size_{shrunk(size.width, reach_px), shrunk(size.height, reach_px)},
-      small_(small_texture(size_, GL_NEAREST)),
-      half_blurred_(small_texture(size_, GL_NEAREST)),
-      blurred_(small_texture(size_, GL_LINEAR)),
-      to_small_(framebuffer_on(small_)),
-      to_half_blurred_(framebuffer_on(half_blurred_)),
-      to_blurred_(framebuffer_on(blurred_)),
-      linear_depth_(gl::make_screen_program(kDepthFragment)),
-      blur_(gl::make_screen_program(kBlurFragment)),
-      nothing_(gl::make_vertex_array()) {}
+      small_(size_, GL_NEAREST),
+      half_blurred_(size_, GL_NEAREST),
+      blurred_(size_, GL_LINEAR),
+      linear_depth_(kDepthFragment),
+      blur_(kBlurFragment) {}
 
 void CavityPass::blur(GLuint depths, double near_mm, double far_mm) const {
   glDisable(GL_DEPTH_TEST);
   glUseProgram(linear_depth_.get());
   glUniform2f(glGetUniformLocation(linear_depth_.get(), "near_far"), static_cast<float>(near_mm),
               static_cast<float>(far_mm));
-  draw(to_small_, depths);
+  draw(linear_depth_, small_, depths);
   glUseProgram(blur_.get());
   const GLint pace = glGetUniformLocation(blur_.get(), "pace");
   glUniform2f(pace, 1.0f / static_cast<float>(size_.width), 0);
-  draw(to_half_blurred_, small_.get());
+  draw(blur_, half_blurred_, small_.texture.get());
   glUniform2f(pace, 0, 1.0f / static_cast<float>(size_.height));
-  draw(to_blurred_, half_blurred_.get());
+  draw(blur_, blurred_, half_blurred_.texture.get());
   glEnable(GL_DEPTH_TEST);
 }
 
-void CavityPass::draw(const gl::Framebuffer& target, GLuint source) const {
-  glBindFramebuffer(GL_FRAMEBUFFER, target.get());
+void CavityPass::draw(const gl::ScreenProgram& program, const Layer& target, GLuint source) const {
+  glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer.get());
   glViewport(0, 0, size_.width, size_.height);
-  glBindVertexArray(nothing_.get());
   glActiveTexture(GL_TEXTURE0);
   glBindTexture(GL_TEXTURE_2D, source);
-  glDrawArrays(GL_TRIANGLES, 0, 3);
+  program.draw();
 }
 
 }  // namespace osteomill

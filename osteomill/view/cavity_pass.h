@@ -13,25 +13,27 @@ class CavityPass {
   explicit CavityPass(const PixelSize& size, int reach_px = 24);
 
   void blur(GLuint depths, double near_mm, double far_mm) const;
-  /// Depths in mm times a weight, and the weight.
-  GLuint blurred_depths() const { return blurred_.get(); }
-  /// In a picture of the same view of this size.
+  /// A texture of two channels: blurred depths in mm times a weight, and that weight (0: nothing was drawn).
+  GLuint blurred_depths() const { return blurred_.texture.get(); }
+  /// How far the blur reaches in a picture of the same view of this size.
   double reach_px(const PixelSize& picture) const { return reach_of_height_ * picture.height; }
 
  private:
-  void draw(const gl::Framebuffer& target, GLuint source) const;
+  /// A texture of two floats a pixel that is drawn into.
+  struct Layer {
+    Layer(const PixelSize& size, GLint filter);
+    gl::Texture texture;
+    gl::Framebuffer framebuffer;
+  };
+  void draw(const gl::ScreenProgram& program, const Layer& target, GLuint source) const;
 
   double reach_of_height_;
   PixelSize size_;
-  gl::Texture small_;
-  gl::Texture half_blurred_;
-  gl::Texture blurred_;
-  gl::Framebuffer to_small_;
-  gl::Framebuffer to_half_blurred_;
-  gl::Framebuffer to_blurred_;
-  gl::Program linear_depth_;
-  gl::Program blur_;
-  gl::VertexArray nothing_;
+  Layer small_;
+  Layer half_blurred_;
+  Layer blurred_;
+  gl::ScreenProgram linear_depth_;
+  gl::ScreenProgram blur_;
 };
 
 }  // namespace osteomill

@@ -57,28 +57,23 @@ std::array<double, 2> extent_along(const std::array<Vec3, 8>& corners, const Vec
   return extent;
 }
 
-ClipFace clip_face(const DensityGrid& grid, const ClipPlane& plane, const WindowLevel& window, int max_pixels,
-                   const LabelMap* labels) {
+ClipFace clip_face(const DensityGrid& grid, const ClipPlane& plane, const WindowLevel& window,
+                   const LabelMap* labels, int max_pixels) {
   const std::vector<Vec3> border = crossings(grid.geometry(), plane);
   if (border.size() < 3) return {};
-  // Any two directions in the plane.
+  // Any two directions in the plane at right angles.
   const Vec3 some = std::abs(plane.normal_W.z()) < 0.9 ? Vec3::UnitZ() : Vec3::UnitY();
   const Vec3 across = some.cross(plane.normal_W).normalized();
   const Vec3 along = plane.normal_W.cross(across);
-  Eigen::Vector2d min(1e300, 1e300);
-  Eigen::Vector2d max(-1e300, -1e300);
-  for (const Vec3& point : border) {
-    const Eigen::Vector2d place(across.dot(point), along.dot(point));
-    min = min.cwiseMin(place);
-    max = max.cwiseMax(place);
-  }
-  const Eigen::Vector2d size_mm = max - min;
+  Eigen::AlignedBox2d box_mm;
+  for (const Vec3& point : border) box_mm.extend(Eigen::Vector2d(across.dot(point), along.dot(point)));
+  const Eigen::Vector2d size_mm = box_mm.sizes();
   const double pixel_mm =
       std::max(grid.geometry().spacing_mm.minCoeff(), size_mm.maxCoeff() / (max_pixels - 1));
   ClipFace face;
   face.width = std::max(2, static_cast<int>(size_mm.x() / pixel_mm) + 1);
   face.height = std::max(2, static_cast<int>(size_mm.y() / pixel_mm) + 1);
-  const Vec3 first = plane.offset_mm * plane.normal_W + min.x() * across + min.y() * along;
+  const Vec3 first = plane.offset_mm * plane.normal_W + box_mm.min().x() * across + box_mm.min().y() * along;
   const auto at = [&](int x, int y) -> Vec3 { return first + pixel_mm * (x * across + y * along); };
   face.corners_W = {at(0, 0), at(face.width - 1, 0), at(face.width - 1, face.height - 1),
                     at(0, face.height - 1)};

@@ -33,7 +33,7 @@ WindowLevel window_level_of(const DensityGrid& grid, double surroundings_density
 /// black outside the grid. With `labels`, those of the voxels nearest to the pixels. Nothing (no pixels)
 /// where the plane misses it. Not for the tick.
 ClipFace clip_face(const DensityGrid& grid, const ClipPlane& plane, const WindowLevel& window,
-                   int max_pixels = 320, const LabelMap* labels = nullptr);
+                   const LabelMap* labels = nullptr, int max_pixels = 320);
 
 /// The corners of a box of voxels, with the first voxel first and the last one last.
 std::array<Vec3, 8> corners_W(const GridGeometry& geometry, const VoxelBox& voxels);

@@ -52,7 +52,7 @@ TEST(ClipFace, APlaneBesideTheGridShowsNothing) {
 
 TEST(ClipFace, LargeOnesAreSampledMoreCoarsely) {
   const DensityGrid grid = ramp(testing_support::centred_cube(60, 0.25));
-  const ClipFace face = clip_face(grid, {Vec3::UnitX(), 0}, {0, 1}, 30);
+  const ClipFace face = clip_face(grid, {Vec3::UnitX(), 0}, {0, 1}, nullptr, 30);
   EXPECT_LE(face.width, 31);
   EXPECT_LE(face.height, 31);
 }
@@ -72,7 +72,7 @@ TEST(ClipFace, ShowsTheLabelsOfTheNearestVoxels) {
       for (int i = 0; i < 8; ++i) places.push_back(i < 4 ? 0 : j < 4 ? 1 : 2);
   const LabelMap labels({{1, "a", {10, 20, 30}}, {2, "b", {40, 50, 60}}}, geometry, geometry, places);
   const DensityGrid grid(geometry, std::vector<float>(geometry.voxel_count(), 100.0f));
-  const ClipFace face = clip_face(grid, {Vec3::UnitZ(), 0.1}, {0, 200}, 320, &labels);
+  const ClipFace face = clip_face(grid, {Vec3::UnitZ(), 0.1}, {0, 200}, &labels);
   ASSERT_EQ(face.label_colours.size(), face.greys.size());
   std::map<std::array<unsigned char, 3>, int> counts;
   for (const auto& colour : face.label_colours) ++counts[colour];

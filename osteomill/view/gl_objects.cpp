@@ -19,13 +19,6 @@ void main() {
 }
 )";
 
-template <typename Object>
-Object made_by(void (*generate)(GLsizei, GLuint*)) {
-  GLuint name = 0;
-  generate(1, &name);
-  return Object(name);
-}
-
 GLuint compiled(GLenum kind, std::string_view source) {
   const GLuint shader = glCreateShader(kind);
   const char* text = source.data();
@@ -45,20 +38,8 @@ GLuint compiled(GLenum kind, std::string_view source) {
 
 }  // namespace
 
-Buffer make_buffer() {
-  return made_by<Buffer>([](GLsizei n, GLuint* names) { glGenBuffers(n, names); });
-}
-
-VertexArray make_vertex_array() {
-  return made_by<VertexArray>([](GLsizei n, GLuint* names) { glGenVertexArrays(n, names); });
-}
-
-Framebuffer make_framebuffer() {
-  return made_by<Framebuffer>([](GLsizei n, GLuint* names) { glGenFramebuffers(n, names); });
-}
-
 Texture make_texture(GLint internal_format, GLenum format, GLenum type, int width, int height, GLint filter) {
-  Texture texture = made_by<Texture>([](GLsizei n, GLuint* names) { glGenTextures(n, names); });
+  Texture texture = Texture::make();
   glBindTexture(GL_TEXTURE_2D, texture.get());
   glTexImage2D(GL_TEXTURE_2D, 0, internal_format, width, height, 0, format, type, nullptr);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, filter);
@@ -71,7 +52,7 @@ Texture make_texture(GLint internal_format, GLenum format, GLenum type, int widt
 Program make_program(std::string_view vertex_source, std::string_view fragment_source) {
   const GLuint vertex = compiled(GL_VERTEX_SHADER, vertex_source);
   const GLuint fragment = compiled(GL_FRAGMENT_SHADER, fragment_source);
-  Program program(glCreateProgram());
+  Program program = Program::make();
   for (const GLuint shader : {vertex, fragment}) {
     glAttachShader(program.get(), shader);
     glDeleteShader(shader);
@@ -87,8 +68,13 @@ Program make_program(std::string_view vertex_source, std::string_view fragment_s
   return program;
 }
 
-Program make_screen_program(std::string_view fragment_source) {
-  return make_program(kScreenVertex, fragment_source);
+ScreenProgram::ScreenProgram(std::string_view fragment_source)
+    : program_(make_program(kScreenVertex, fragment_source)) {}
+
+void ScreenProgram::draw() const {
+  glUseProgram(program_.get());
+  glBindVertexArray(no_buffers_.get());
+  glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
 void set_attribute(GLuint place, GLint count, std::size_t vertex_bytes, std::size_t offset_bytes) {
@@ -107,7 +93,7 @@ FrameTarget::FrameTarget(const PixelSize& size)
       colours_(gl::make_texture(GL_RGBA8, GL_BGRA, GL_UNSIGNED_BYTE, size.width, size.height, GL_NEAREST)),
       depths_(gl::make_texture(GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT, size.width,
                                size.height, GL_NEAREST)),
-      framebuffer_(gl::make_framebuffer()) {
+      framebuffer_(gl::Framebuffer::make()) {
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.get());
   glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, colours_.get(), 0);
   glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depths_.get(), 0);

@@ -12,65 +12,64 @@
 
 namespace osteomill::gl {
 
-/// Owns an OpenGL object of the context that is current now and at its end.
-template <void (*Delete)(GLuint)>
+/// Owns an OpenGL object of the context that is current when it is made and when it is destroyed.
+template <auto& Create, auto& Delete>
 class Handle {
  public:
+  /// No object: its name is 0.
   Handle() = default;
-  explicit Handle(GLuint name) : name_(name) {}
-  ~Handle() { reset(); }
+  static Handle make() {
+    Handle made;
+    Create(1, &made.name_);
+    return made;
+  }
+  ~Handle() {
+    if (name_ != 0) Delete(1, &name_);
+  }
   Handle(Handle&& other) noexcept : name_(std::exchange(other.name_, 0)) {}
   Handle& operator=(Handle&& other) noexcept {
-    if (this != &other) {
-      reset();
-      name_ = std::exchange(other.name_, 0);
-    }
+    std::swap(name_, other.name_);
     return *this;
   }
   GLuint get() const { return name_; }
 
  private:
-  void reset() {
-    if (name_ != 0) Delete(name_);
-    name_ = 0;
-  }
   GLuint name_ = 0;
 };
 
-inline void delete_buffer(GLuint name) {
-  glDeleteBuffers(1, &name);
+inline void create_program(GLsizei, GLuint* name) {
+  *name = glCreateProgram();
 }
-inline void delete_vertex_array(GLuint name) {
-  glDeleteVertexArrays(1, &name);
-}
-inline void delete_texture(GLuint name) {
-  glDeleteTextures(1, &name);
-}
-inline void delete_framebuffer(GLuint name) {
-  glDeleteFramebuffers(1, &name);
-}
-inline void delete_program(GLuint name) {
-  glDeleteProgram(name);
+inline void delete_program(GLsizei, const GLuint* name) {
+  glDeleteProgram(*name);
 }
 
-using Buffer = Handle<delete_buffer>;
-using VertexArray = Handle<delete_vertex_array>;
-using Texture = Handle<delete_texture>;
-using Framebuffer = Handle<delete_framebuffer>;
-using Program = Handle<delete_program>;
+using Buffer = Handle<glGenBuffers, glDeleteBuffers>;
+using VertexArray = Handle<glGenVertexArrays, glDeleteVertexArrays>;
+using Texture = Handle<glGenTextures, glDeleteTextures>;
+using Framebuffer = Handle<glGenFramebuffers, glDeleteFramebuffers>;
+using Program = Handle<create_program, delete_program>;
 
-Buffer make_buffer();
-VertexArray make_vertex_array();
-Framebuffer make_framebuffer();
-
-/// A texture of one level. Edges are clamped.
+/// A texture without mipmaps; outside it the pixels of its edge go on.
 Texture make_texture(GLint internal_format, GLenum format, GLenum type, int width, int height, GLint filter);
 
 /// Throws std::runtime_error with the driver's complaint.
 Program make_program(std::string_view vertex_source, std::string_view fragment_source);
-/// For one triangle over the whole picture and behind everything, without any buffer. The fragment takes `in
-/// vec2 place`, 0 to 1 across the picture.
-Program make_screen_program(std::string_view fragment_source);
+
+/// Draws over the whole picture, behind everything: one triangle that covers it. The fragment shader takes
+/// `in vec2 place`, 0 to 1 across the picture.
+class ScreenProgram {
+ public:
+  explicit ScreenProgram(std::string_view fragment_source);
+  GLuint get() const { return program_.get(); }
+  /// With the texture that is bound and the uniforms as they are.
+  void draw() const;
+
+ private:
+  Program program_;
+  // OpenGL draws nothing without one, though this triangle has no buffers.
+  VertexArray no_buffers_ = VertexArray::make();
+};
 
 /// Binds the buffer to `target` and fills it.
 template <typename Value>

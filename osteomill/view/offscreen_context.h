@@ -4,10 +4,10 @@
 
 namespace osteomill {
 
-/// An OpenGL 3.3 core context without a window or a display (EGL, surfaceless), current in the thread that
-/// made it, which is to end it too and has no other meanwhile; each thread may have one. Everything else that
-/// draws needs a current context and does not care which. Throws std::runtime_error where the system has none
-/// to give.
+/// An OpenGL 3.3 core context without a window or a display (EGL, surfaceless). It is current in the thread
+/// that made it, which also has to destroy it and may have no other meanwhile; each thread may have one.
+/// Whatever draws needs a current context, this one or a window's. Throws std::runtime_error where the system
+/// has none to give.
 class OffscreenContext {
  public:
   OffscreenContext();

@@ -49,9 +49,9 @@ struct ViewScene {
 inline constexpr double kArrow_mm_per_N = 3.0;
 inline constexpr double kArrow_mm_per_Nmm = 0.4;
 
-/// Where one force at the tool's surface would act to give the wrench at the tool, as far as one can: on the
-/// line along the force that is nearest to the wrench's torque, where it enters the tool. Nothing for hardly
-/// any force, and the burr's surface against the force where the line misses the tool.
+/// The point of the tool's surface at which the wrench's force alone would give the wrench, as far as one
+/// force can: where the line along which it would act enters the tool. Where that line misses the tool, the
+/// point of the burr that faces the force; nothing where there is hardly any force.
 std::optional<Vec3> point_of_action(const MillingTool& tool, const Pose& X_WT, const Wrench& wrench);
 
 /// Where the red point is drawn: at the algorithm's intersection point, as in figure 4 of the paper; where it

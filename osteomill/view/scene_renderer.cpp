@@ -86,7 +86,7 @@ static SolidShape turned(const std::vector<std::array<float, 4>>& outline) {
       }
     }
   }
-  SolidShape shape{gl::make_vertex_array(), gl::make_buffer(), static_cast<GLsizei>(corners.size() / 6)};
+  SolidShape shape{gl::VertexArray::make(), gl::Buffer::make(), static_cast<GLsizei>(corners.size() / 6)};
   glBindVertexArray(shape.vertex_array.get());
   gl::fill<float>(GL_ARRAY_BUFFER, shape.vertices, corners, GL_STATIC_DRAW);
   gl::set_attribute(0, 3, 6 * sizeof(float), 0);
@@ -237,8 +237,7 @@ struct SceneRenderer::Impl {
 
   BoneGround ground;
   SolidShapes shapes;
-  gl::Program to_window = gl::make_screen_program(kPictureFragment);
-  gl::VertexArray nothing = gl::make_vertex_array();
+  gl::ScreenProgram to_window{kPictureFragment};
   std::optional<FrameTarget> target;
   PixelSize asked_size;
 };
@@ -273,8 +272,8 @@ SceneRenderer::SceneRenderer(const SurfaceBricks& layout, const GridGeometry& ge
 
 SceneRenderer::~SceneRenderer() = default;
 
-void SceneRenderer::set_brick(std::size_t brick, const BrickMesh& mesh, const BrickLevels& levels) {
-  impl_->ground.set_brick(brick, mesh, levels);
+void SceneRenderer::set_brick(std::size_t brick, const BrickLevels& levels) {
+  impl_->ground.set_brick(brick, levels);
 }
 
 void SceneRenderer::set_clip_face(std::size_t cut, const ClipFace& face) {
@@ -306,11 +305,9 @@ void SceneRenderer::copy_to_window() const {
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
   glViewport(0, 0, to.width, to.height);
   glDisable(GL_DEPTH_TEST);
-  glUseProgram(impl_->to_window.get());
   glActiveTexture(GL_TEXTURE0);
   glBindTexture(GL_TEXTURE_2D, impl_->target->colours());
-  glBindVertexArray(impl_->nothing.get());
-  glDrawArrays(GL_TRIANGLES, 0, 3);
+  impl_->to_window.draw();
   glEnable(GL_DEPTH_TEST);
 }
 

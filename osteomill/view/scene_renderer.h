@@ -5,7 +5,6 @@
 
 #include "osteomill/image/image.h"
 #include "osteomill/surface/brick_levels.h"
-#include "osteomill/surface/brick_mesh.h"
 #include "osteomill/surface/surface_bricks.h"
 #include "osteomill/view/clip_face.h"
 #include "osteomill/view/scene.h"
@@ -26,16 +25,15 @@ class SceneRenderer {
   SceneRenderer(const SceneRenderer&) = delete;
   SceneRenderer& operator=(const SceneRenderer&) = delete;
 
-  /// A brick's triangles as they are now, and fewer to draw it with while the view moves; none remove it.
-  void set_brick(std::size_t brick, const BrickMesh& mesh, const BrickLevels& levels);
-  /// What the scene's cut of this number lays open. Drawn as far as the other cuts leave it.
+  /// A brick's triangles as they are now; without any the brick is removed.
+  void set_brick(std::size_t brick, const BrickLevels& levels);
+  /// What the scene's cut of this number lays open; drawn where the other cuts do not cut it away.
   void set_clip_face(std::size_t cut, const ClipFace& face);
 
   /// Draws into a picture of its own, in a time that hardly depends on how many triangles and pixels there
-  /// are: while the view moves it has as many as there is time for, and full detail and `size` some pictures
-  /// after it rests.
-  /// What lies deep is darkened after a picture drawn before, so that a still picture is drawn twice at
-  /// least.
+  /// are: while the view moves, with as many as there is time for; some calls after it has come to rest, in
+  /// full detail and `size`. What lies deep is darkened by the depths of the picture drawn before, so that a
+  /// still picture is complete only when it was drawn twice.
   void draw(const ViewScene& scene, const PixelSize& size);
   /// Whether drawing the same again would change nothing: the picture has full detail.
   bool settled() const;

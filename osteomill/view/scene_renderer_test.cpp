@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "tests/shapes.h"
+#include "tests/support/mesh_checks.h"
 #include <gtest/gtest.h>
 
 #include "osteomill/image/image.h"
@@ -15,6 +16,9 @@
 
 namespace osteomill {
 namespace {
+
+using testing_support::mesh_surface;
+using testing_support::SurfaceMesh;
 
 // A ball of bone with a denser shell on its left half, and a hole from above.
 Volume drilled_ball() {
@@ -44,7 +48,7 @@ class SceneRendererTest : public ::testing::Test {
     scene_.reference_density = 900;
   }
 
-  void set_brick(std::size_t n, const BrickMesh& mesh) { renderer_->set_brick(n, mesh, full_detail(mesh)); }
+  void set_brick(std::size_t n, const BrickMesh& mesh) { renderer_->set_brick(n, full_detail(mesh)); }
 
   // Holds the picture against the one kept under this test's name. With OSTEOMILL_KEEP_PICTURES it is kept
   // anew.
@@ -187,7 +191,7 @@ TEST_F(SceneRendererTest, CoarserLevelsAreHardlyTold) {
   for (std::size_t n = 0; n < mesh.bricks.size(); ++n) {
     BrickLevels levels = levels_of(mesh.bricks[n], bone_.geometry(), mesh.layout.cells(n));
     levels.levels[0] = levels.levels[1 + n % 3];
-    renderer_->set_brick(n, mesh.bricks[n], levels);
+    renderer_->set_brick(n, levels);
   }
   const Image fewer = picture();
   double sum = 0;

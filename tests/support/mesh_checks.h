@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "osteomill/geometry/pose.h"
+#include "osteomill/surface/brick_levels.h"
+#include "osteomill/surface/brick_mesher.h"
 #include "osteomill/surface/surface_mesh.h"
 #include "osteomill/volume/sampling.h"
 
@@ -21,6 +23,32 @@ inline Vec3 position_of(const MeshVertex& vertex) {
 
 inline Vec3 normal_of(const MeshVertex& vertex) {
   return {vertex.normal[0], vertex.normal[1], vertex.normal[2]};
+}
+
+/// A whole isosurface, a piece a brick; most are empty.
+struct SurfaceMesh {
+  SurfaceBricks layout;
+  /// By the brick's number.
+  std::vector<BrickMesh> bricks;
+};
+
+inline SurfaceMesh mesh_surface(const DensityView& view) {
+  SurfaceMesh mesh{SurfaceBricks(view.grid.geometry().dims), {}};
+  BrickMesher mesher(view);
+  for (std::size_t brick = 0; brick < mesh.layout.count(); ++brick) {
+    mesh.bricks.push_back(mesher.mesh(brick));
+  }
+  return mesh;
+}
+
+/// Level 0 alone.
+inline BrickMesh mesh_of(const BrickLevels& brick) {
+  BrickMesh mesh{{},
+                 {brick.indices.begin(), brick.indices.begin() + static_cast<long>(brick.levels[0].count)}};
+  if (mesh.empty()) return mesh;
+  const std::uint32_t last = *std::max_element(mesh.indices.begin(), mesh.indices.end());
+  mesh.vertices.assign(brick.vertices.begin(), brick.vertices.begin() + last + 1);
+  return mesh;
 }
 
 /// All bricks as one mesh whose vertices are shared where their positions agree bit for bit.
