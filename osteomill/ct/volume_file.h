@@ -76,8 +76,9 @@ const VolumeFormat* volume_format_of(const std::filesystem::path& path);
 Scan read_volume_file(const std::filesystem::path& path, const VolumeFormat& format,
                       const ReadOptions& options);
 
-/// The fields of a header that is text, by their names.
+/// The fields of a header that is text, by their names. Errors are InputErrors that name `subject`.
 struct HeaderFields {
+  std::string subject;
   std::map<std::string, std::string> values{};
 
   bool has(const std::string& name) const { return values.contains(name); }
@@ -85,10 +86,11 @@ struct HeaderFields {
   std::string operator[](const std::string& name) const {
     return has(name) ? values.at(name) : std::string();
   }
-  /// Throws InputError naming `subject` where there are none.
-  std::vector<double> numbers(const std::string& subject, const std::string& name) const;
-  /// A number of bytes or lines, not less than `min`; 0 where the field is not there. Throws as `numbers`.
-  double count(const std::string& subject, const std::string& name, double min) const;
+  /// Throws where there are none.
+  std::vector<double> numbers(const std::string& name) const;
+  /// A number of bytes or lines, not less than `min`; 0 where the field is not there. Throws where it is
+  /// anything else.
+  double count(const std::string& name, double min) const;
 };
 
 /// The file beside the header `path` that it names as that of its data; `attached` where `name` is empty.
