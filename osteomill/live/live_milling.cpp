@@ -177,7 +177,7 @@ void LiveMilling::start_recording(const std::filesystem::path& path, RunDescript
   finish_preparing();
   set_as_now(description);
   auto recorder =
-      std::make_unique<Recorder>(path, description, Recorder::kUsualCapacity, Recorder::Begins::when_told);
+      std::make_unique<Recorder>(path, description, Recorder::Begins::when_told);
   add_picture(*recorder, kPictureBefore, picture);
   recorder_ = std::move(recorder);
   recorder_path_ = path;

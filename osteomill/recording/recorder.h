@@ -27,7 +27,8 @@ namespace osteomill {
 /// One thread pushes; another (or the same) makes, closes and destroys the recorder, after the last push.
 class Recorder {
  public:
-  static constexpr std::size_t kUsualCapacity = 16384;
+  /// So many records (16 s at 1000 Hz), or a few more, wait to be written before any is lost.
+  static constexpr std::size_t kCapacity = 16384;
 
   /// When records are written: those of a session that begins with the recording at once, others from when
   /// `begin_session` says what they began from.
@@ -37,12 +38,10 @@ class Recorder {
   /// worth keeping, nor of any before its first record.
   enum class Unfinished : unsigned char { left, removed };
 
-  /// The queue holds `capacity` records (16 s at 1000 Hz) or a few more. Throws InputError, naming the file,
-  /// where it cannot be created, and std::invalid_argument where the description cannot be stored
-  /// (write_description).
+  /// Throws InputError, naming the file, where it cannot be created, and std::invalid_argument where the
+  /// description cannot be stored (write_description).
   Recorder(const std::filesystem::path& path, const RunDescription& description,
-           std::size_t capacity = kUsualCapacity, Begins begins = Begins::with_the_recording,
-           Unfinished unfinished = Unfinished::left);
+           Begins begins = Begins::with_the_recording, Unfinished unfinished = Unfinished::left);
   ~Recorder();
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;

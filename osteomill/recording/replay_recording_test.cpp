@@ -139,7 +139,7 @@ TEST(ReplayRecording, SeveralSessionsOnABoneThatWasMilledBefore) {
     bool reset;
   };
   Recorder recorder(folder / "run.h5", description_of(scan, algorithm_named("point-shell"), Mode::steady),
-                    Recorder::kUsualCapacity, Recorder::Begins::when_told);
+                    Recorder::Begins::when_told);
   std::uint32_t number = 3;
   std::shared_ptr<Volume> now = bone;
   for (const Step& step : {Step{"point-shell", kIsovalue, false}, Step{"barrier-shell", kIsovalue, false},
@@ -183,7 +183,7 @@ class OneRecording : public ::testing::Test {
   OneRecording() {
     const auto session = make(std::make_shared<Volume>(scan_), algorithm_, Mode::steady);
     Recorder recorder(folder_ / "a.h5", description_of(scan_, algorithm_, Mode::steady));
-    Recorder rest(folder_ / "b.h5", description_of(scan_, algorithm_, Mode::steady), 64,
+    Recorder rest(folder_ / "b.h5", description_of(scan_, algorithm_, Mode::steady),
                   Recorder::Begins::when_told);
     rest.begin_session(0, {.goes_on_from = "a.h5"});
     Hand hand;
