@@ -86,7 +86,8 @@ TEST(SimulatedOperator, TheHandDoesTheSameWhateverTheTicksRate) {
     for (int n = 0; n < 400; ++n) {
       one.tick_done(one.read_pose(), 1e-3);
       one.tick_done(one.read_pose(), 1e-3);
-      for (double passed_s = 0; passed_s < 2e-3 - 1e-9; passed_s += tick_s) other.tick_done(other.read_pose(), tick_s);
+      for (double passed_s = 0; passed_s < 2e-3 - 1e-9; passed_s += tick_s)
+        other.tick_done(other.read_pose(), tick_s);
       ASSERT_NEAR(one.time_s(), other.time_s(), 1e-12);
       ASSERT_LT((one.target().position_mm - other.target().position_mm).norm(), 1e-9);
       ASSERT_LT((one.handle().pose().position_mm - other.handle().pose().position_mm).norm(), 1e-3);
@@ -98,7 +99,8 @@ TEST(SimulatedOperator, TimeThatFillsNoSubstepIsKeptForLater) {
   SimulatedOperator person(short_run(), kTool, {});
   for (int n = 0; n < 10; ++n) person.tick_done(person.read_pose(), 0.03e-3);
   EXPECT_NEAR(person.time_s(), 0.3e-3, 1e-12);
-  for (double dt_s : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(), 2.0}) person.tick_done(person.read_pose(), dt_s);
+  for (double dt_s : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(), 2.0})
+    person.tick_done(person.read_pose(), dt_s);
   EXPECT_NEAR(person.time_s(), 0.3e-3, 1e-12);
   EXPECT_TRUE(is_finite(person.read_pose()));
 }

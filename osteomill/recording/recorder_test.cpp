@@ -263,7 +263,8 @@ TEST(Recorder, WithoutCloseAnUnfinishedRecordingIsLeft) {
 TEST(Recorder, OfARunThatCanBeRunAgainNothingIsLeftWithoutClose) {
   const TestFolder folder;
   {
-    Recorder recorder(folder / "run.h5", sample_description(), Recorder::Begins::with_the_recording, Recorder::Unfinished::removed);
+    Recorder recorder(folder / "run.h5", sample_description(), Recorder::Begins::with_the_recording,
+                      Recorder::Unfinished::removed);
     recorder.push_waiting(sample_record(0));
   }
   EXPECT_TRUE(fs::is_empty(folder.path()));
