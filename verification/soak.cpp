@@ -129,8 +129,10 @@ class Soak {
   }
 
   RunDescription description() const {
-    return describe_run({.scan_name = "soak", .scan_hash = scan_hash_, .bone = scan_, .session = settings_},
-                        session_->algorithm().sample_point_count());
+    RunDescription run = describe_run(scan_, settings_, session_->algorithm().sample_point_count());
+    run.scan_name = "soak";
+    run.scan_hash = scan_hash_;
+    return run;
   }
 
   const Volume& scan_;

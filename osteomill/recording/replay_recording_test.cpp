@@ -41,11 +41,10 @@ SessionSettings settings_of_all(const AlgorithmDescription& algorithm, Mode mode
 }
 
 RunDescription description_of(const Volume& scan, const AlgorithmDescription& algorithm, Mode mode) {
-  return describe_run({.scan_name = "ball",
-                       .scan_hash = fingerprint_of(scan.grid()),
-                       .bone = scan,
-                       .session = settings_of_all(algorithm, mode)},
-                      0);
+  RunDescription run = describe_run(scan, settings_of_all(algorithm, mode), 0);
+  run.scan_name = "ball";
+  run.scan_hash = fingerprint_of(scan.grid());
+  return run;
 }
 
 std::unique_ptr<MillingSession> make(std::shared_ptr<Volume> bone, const AlgorithmDescription& algorithm,
