@@ -34,8 +34,8 @@ class Recorder {
   /// `begin_session` says what they began from.
   enum class Begins : unsigned char { with_the_recording, when_told };
 
-  /// What becomes of a recording that is destroyed without `close`: of a run that can be run again nothing is
-  /// worth keeping, nor of any before its first record.
+  /// What becomes of the file where the recorder is destroyed without `close`. It is removed in any case
+  /// where nothing was recorded yet; `removed` is for runs that can simply be run again.
   enum class Unfinished : unsigned char { left, removed };
 
   /// Throws InputError, naming the file, where it cannot be created, and std::invalid_argument where the
@@ -53,8 +53,9 @@ class Recorder {
   /// InputError with which writing failed, if it did.
   void push_waiting(const TickRecord& record);
 
-  /// What the session of this number began from: at the first record of that number, which may have been
-  /// pushed before. In the order of the numbers. The first one's description is the recording's own.
+  /// Says what the session of this number began from, which belongs to the first record of that number; that
+  /// may have been pushed before. To be called in the order of the numbers. The first session's description
+  /// is the recording's own.
   void begin_session(std::uint32_t number, SessionStart start);
 
   /// How many records were lost. From any thread.
