@@ -64,8 +64,7 @@ VoxelType type_of(const std::string& subject, const std::string& type) {
 
 GridGeometry geometry_of(const HeaderFields& fields, std::vector<std::string>& warnings) {
   const std::string& subject = fields.subject;
-  if (fields.numbers("NDims").front() != 3)
-    throw InputError(subject, "is not a volume: NDims is not 3");
+  if (fields.numbers("NDims").front() != 3) throw InputError(subject, "is not a volume: NDims is not 3");
   const std::string spacing = first_of(fields, {"ElementSpacing", "ElementSize"});
   if (spacing.empty()) warnings.push_back("does not say how large its voxels are; 1 mm was assumed");
   Mat3 axes = Mat3::Identity();
@@ -87,8 +86,7 @@ GridGeometry geometry_of(const HeaderFields& fields, std::vector<std::string>& w
 }
 
 void check_grey(const HeaderFields& fields) {
-  if (fields.has("ElementNumberOfChannels") &&
-      fields.numbers("ElementNumberOfChannels").front() != 1) {
+  if (fields.has("ElementNumberOfChannels") && fields.numbers("ElementNumberOfChannels").front() != 1) {
     throw InputError(fields.subject, "is not a grey volume: it holds several values a voxel");
   }
   if (fields.has("BinaryData") && !is_true(fields, "BinaryData")) {
@@ -126,8 +124,7 @@ VolumeHeader read_metaimage_header(const fs::path& path) {
   std::vector<std::string> warnings;
   const GridGeometry geometry = geometry_of(fields, warnings);
   check_grey(fields);
-  return {geometry, voxels_of(path, fields, std::move(in), geometry.voxel_count()),
-          std::move(warnings)};
+  return {geometry, voxels_of(path, fields, std::move(in), geometry.voxel_count()), std::move(warnings)};
 }
 
 }  // namespace osteomill
