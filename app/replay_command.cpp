@@ -164,8 +164,7 @@ void replay_another_way(const ReplayOptions& options, const std::string& command
         setting.value = static_cast<double>(session.algorithm().sample_point_count());
     }
     if (!recorder)
-      recorder.emplace(options.record, start.run, Recorder::kUsualCapacity, Recorder::Begins::when_told,
-                       Recorder::Unfinished::removed);
+      recorder.emplace(options.record, start.run, Recorder::Begins::when_told, Recorder::Unfinished::removed);
     recorder->begin_session(session_number++, std::move(start));
   };
   replay.tick = [&](const TickRecord&, const TickRecord& now) {

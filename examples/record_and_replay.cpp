@@ -21,11 +21,11 @@ int main(int argc, char** argv) {
   setup.algorithm = osteomill::algorithm_named("point-shell");
   osteomill::MillingSession session(std::make_shared<osteomill::Volume>(scan), densities, setup);
 
-  const osteomill::RunFacts facts{.scan_name = "built-in tooth",
-                                  .scan_hash = fingerprint_of(scan.grid()),
-                                  .bone = scan,
-                                  .session = {setup, densities}};
-  osteomill::Recorder recorder(path, describe_run(facts, session.algorithm().sample_point_count()));
+  osteomill::RunDescription run =
+      osteomill::describe_run(scan, {setup, densities}, session.algorithm().sample_point_count());
+  run.scan_name = "built-in tooth";
+  run.scan_hash = fingerprint_of(scan.grid());
+  osteomill::Recorder recorder(path, run);
   const osteomill::MillingEntry entry = place_entry(scan, setup.tool);
   osteomill::PosedDevice device;
   for (int n = 0; n < 2000; ++n) {

@@ -84,11 +84,10 @@ class Soak {
     const double removed_before_mm3 = session_->removed_mm3();
     session_->place();
     while (!hand.finished()) {
-      TickRecord record = session_->tick(hand, time_s_, kTick_s, hand.milling());
+      TickRecord record = session_->tick(hand, time_s_, kTick_s, hand.spindle_asked());
       record.session = number_;
       session_->prepare_next_ticks();
-      hand.see(record.X_WT);
-      hand.advance(kTick_s);
+      hand.tick_done(record.X_WT, kTick_s);
       time_s_ += kTick_s;
       stretch.add(record);
       recorder_->push_waiting(record);
@@ -130,8 +129,10 @@ class Soak {
   }
 
   RunDescription description() const {
-    return describe_run({.scan_name = "soak", .scan_hash = scan_hash_, .bone = scan_, .session = settings_},
-                        session_->algorithm().sample_point_count());
+    RunDescription run = describe_run(scan_, settings_, session_->algorithm().sample_point_count());
+    run.scan_name = "soak";
+    run.scan_hash = scan_hash_;
+    return run;
   }
 
   const Volume& scan_;

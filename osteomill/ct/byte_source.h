@@ -29,13 +29,14 @@ class ByteSource {
   bool is_packed() const { return stream_ != nullptr; }
   /// What the file holds from where the source began, packed as it is.
   std::uint64_t bytes_in_file() const { return in_file_; }
-  /// How many of these were needed so far.
+  /// How many bytes of the file, packed as they are, have been read so far.
   std::uint64_t bytes_used() const;
-  /// More bytes than this cannot come.
+  /// An upper bound on the bytes still to be read: of a packed file what the best packing could hold.
   std::uint64_t max_bytes() const;
-  /// How many will come. Of what is packed nothing may have been read yet, and all of it is unpacked once.
+  /// Exactly how many bytes there are to be read. For a packed file this unpacks all of it once, and nothing
+  /// may have been read before.
   std::uint64_t bytes_to_come();
-  /// What was packed came to its proper end, and its checksums are right.
+  /// Whether the packed data were read to their proper end, with the right checksums.
   bool ended_well() const { return ended_; }
 
  private:

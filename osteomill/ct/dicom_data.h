@@ -17,9 +17,9 @@ struct DicomData {
   bool damaged = false;
 };
 
-/// Nothing where the file is not DICOM at all. Throws InputError naming the file where it cannot be opened,
-/// is longer than `max_bytes` by far, which its densities would be too, or is built to take more memory or
-/// deeper recursion than any scan. Only within `with_dicom_stack`.
+/// Reads a DICOM file; nothing where it is not DICOM at all. Throws InputError naming the file where it
+/// cannot be opened, is far longer than `max_bytes` (the memory that its densities may take), or would take
+/// more memory or deeper recursion than any scan does. To be called only within `with_dicom_stack`.
 std::optional<DicomData> load_dicom(const std::filesystem::path& path, std::uint64_t max_bytes);
 
 /// Runs `work` on a thread of its own, waits for it, and hands on what it throws. DCMTK goes down into
@@ -27,8 +27,8 @@ std::optional<DicomData> load_dicom(const std::filesystem::path& path, std::uint
 /// `load_dicom` lets through.
 void with_dicom_stack(const std::function<void()>& work);
 
-/// Whether a JPEG decoder complained in this thread, since this was last asked, that its data are damaged. It
-/// then goes on with what it has, and says so in DCMTK's log alone.
+/// Whether a JPEG decoder has found damaged data in this thread since this was last called. (Such a decoder
+/// goes on with what it has, and says so only in DCMTK's log.)
 bool take_jpeg_complaint();
 
 }  // namespace osteomill

@@ -22,9 +22,9 @@ bool decode_rle(std::span<const unsigned char> stream, const FrameSize& size, st
 bool decode_jpeg2000(std::span<const unsigned char> stream, const FrameSize& size, std::span<char> values);
 
 enum class JpegKind { jpeg, jpeg_ls };
-/// Whether a stream begins as the kind that it is said to be, with nothing but segments before a grey image
-/// of that size and no more than so many bits. DCMTK takes the stream's word for it, and looks for ever at
-/// what is no segment, or for the other kind's image.
+/// Whether a stream is of the kind that it is said to be, and has nothing but well-formed segments before a
+/// grey image of that size with no more bits than `size` has room for. DCMTK does not check this: it never
+/// returns from what is no segment, or from an image of the other kind.
 bool jpeg_fits(std::span<const unsigned char> stream, JpegKind kind, const FrameSize& size);
 
 }  // namespace osteomill

@@ -17,9 +17,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-struct Fields : HeaderFields {
-  std::map<std::string, std::string> key_values;
-  /// An empty line parts the header from what follows it.
+struct Header {
+  HeaderFields fields;
+  std::map<std::string, std::string> key_values{};
+  // An empty line parts the header from what follows it.
   bool has_end = false;
 };
 
@@ -45,8 +46,8 @@ void check_name(const std::string& subject, const std::string& name) {
   }
 }
 
-Fields read_fields(const std::string& subject, std::istream& in) {
-  Fields fields;
+Header read_header(const std::string& subject, std::istream& in) {
+  Header header{{subject}};
   std::string line;
   std::size_t length = 0;
   if (!std::getline(in, line) || !line.starts_with("NRRD000") || line.size() < 8 || line[7] < '1' ||
@@ -58,13 +59,13 @@ Fields read_fields(const std::string& subject, std::istream& in) {
     if (length > kMaxHeader) throw InputError(subject, "has a header without an end");
     if (line.ends_with('\r')) line.pop_back();
     if (line.empty()) {
-      fields.has_end = true;
+      header.has_end = true;
       break;
     }
     if (line.find('\0') != std::string::npos) throw InputError(subject, "has a zero byte in its header");
     if (line.starts_with('#')) continue;
     if (const std::size_t equals = line.find(":="); equals != std::string::npos) {
-      fields.key_values[line.substr(0, equals)] = line.substr(equals + 2);
+      header.key_values[line.substr(0, equals)] = line.substr(equals + 2);
       continue;
     }
     const std::size_t colon = line.find(':');
@@ -72,9 +73,9 @@ Fields read_fields(const std::string& subject, std::istream& in) {
       throw InputError(subject, "has a header line that is not \"field: value\"");
     const std::string name = field_name(std::string_view(line).substr(0, colon));
     check_name(subject, name);
-    fields.values[name] = trimmed(std::string_view(line).substr(colon + 1));
+    header.fields.values[name] = trimmed(std::string_view(line).substr(colon + 1));
   }
-  return fields;
+  return header;
 }
 
 VoxelType type_of(const std::string& subject, const std::string& type) {
@@ -97,11 +98,11 @@ VoxelType type_of(const std::string& subject, const std::string& type) {
   throw InputError(subject, fmt::format("has voxels of type \"{:.40}\", which is not known", type));
 }
 
-double unit_of(const std::string& subject, const Fields& fields, const std::string& name) {
+double unit_of(const HeaderFields& fields, const std::string& name) {
   const std::string text = fields[name];
   const std::size_t open = text.find('"');
   if (open == std::string::npos) return 1;
-  return millimetres_in(subject, lower(text.substr(open + 1, text.find('"', open + 1) - open - 1)));
+  return millimetres_in(fields.subject, lower(text.substr(open + 1, text.find('"', open + 1) - open - 1)));
 }
 
 Mat3 space_directions(const std::string& subject, const std::string& text) {
@@ -155,9 +156,9 @@ void check_kinds(const std::string& subject, const std::string& kinds) {
   }
 }
 
-GridGeometry geometry_of(const std::string& subject, const Fields& fields,
-                         std::vector<std::string>& warnings) {
-  const std::vector<double> dimension = fields.numbers(subject, "dimension");
+GridGeometry geometry_of(const HeaderFields& fields, std::vector<std::string>& warnings) {
+  const std::string& subject = fields.subject;
+  const std::vector<double> dimension = fields.numbers("dimension");
   if (dimension.front() != 3) {
     throw InputError(subject,
                      fmt::format("is not a grey volume: it has {} dimensions, not 3", dimension.front()));
@@ -169,10 +170,10 @@ GridGeometry geometry_of(const std::string& subject, const Fields& fields,
   if (fields.has("spacedirections")) {
     axes = space_directions(subject, fields["spacedirections"]);
     for (int axis = 0; axis < 3; ++axis) spacing[static_cast<std::size_t>(axis)] = axes.col(axis).norm();
-    unit_mm = unit_of(subject, fields, "spaceunits");
+    unit_mm = unit_of(fields, "spaceunits");
   } else if (fields.has("spacings")) {
-    spacing = fields.numbers(subject, "spacings");
-    unit_mm = unit_of(subject, fields, "units");
+    spacing = fields.numbers("spacings");
+    unit_mm = unit_of(fields, "units");
   } else {
     warnings.push_back("does not say how large its voxels are; 1 mm was assumed");
   }
@@ -181,23 +182,24 @@ GridGeometry geometry_of(const std::string& subject, const Fields& fields,
     const auto values = parse_numbers(fields["spaceorigin"], "(), \t");
     origin = checked_point(subject, "space origin", values.value_or(std::vector<double>{}));
   }
-  return checked_geometry(subject, fields.numbers(subject, "sizes"), spacing, axes, origin, unit_mm,
+  return checked_geometry(subject, fields.numbers("sizes"), spacing, axes, origin, unit_mm,
                           lps_from_space(subject, lower(fields["space"]), warnings));
 }
 
 // The stream in which the voxels begin, behind the lines that are to be skipped.
-std::ifstream open_behind_lines(const std::string& subject, const fs::path& path, const Fields& fields,
-                                std::ifstream attached) {
+std::ifstream open_behind_lines(const fs::path& path, const Header& header, std::ifstream attached) {
+  const HeaderFields& fields = header.fields;
   const std::string name = fields[fields.has("datafile") ? "datafile" : "data"];
-  if (name.empty() && !fields.has_end) throw InputError(subject, "has a header without an end, and no data");
-  std::ifstream in = open_data(subject, path, name, std::move(attached));
-  const double lines = fields.count(subject, "lineskip", 0);
+  if (name.empty() && !header.has_end)
+    throw InputError(fields.subject, "has a header without an end, and no data");
+  std::ifstream in = open_data(fields.subject, path, name, std::move(attached));
+  const double lines = fields.count("lineskip", 0);
   for (double n = 0; n < lines && in; ++n) in.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
   return in;
 }
 
-StoredVoxels voxels_of(const std::string& subject, const Fields& fields, std::ifstream data,
-                       std::uint64_t count) {
+StoredVoxels voxels_of(const HeaderFields& fields, std::ifstream data, std::uint64_t count) {
+  const std::string& subject = fields.subject;
   const VoxelType type = type_of(subject, lower(fields["type"]));
   const std::string encoding = lower(fields["encoding"]);
   const bool is_text = encoding == "ascii" || encoding == "txt" || encoding == "text";
@@ -216,7 +218,7 @@ StoredVoxels voxels_of(const std::string& subject, const Fields& fields, std::if
     throw InputError(subject, "does not say whether its voxels are little or big endian");
   }
   voxels.big_endian = endian == "big";
-  const double byte_skip = fields.count(subject, "byteskip", is_text ? 0 : -1);
+  const double byte_skip = fields.count("byteskip", is_text ? 0 : -1);
   if (byte_skip < 0) {
     skip_to_last(voxels, count);
   } else {
@@ -228,14 +230,13 @@ StoredVoxels voxels_of(const std::string& subject, const Fields& fields, std::if
 }  // namespace
 
 VolumeHeader read_nrrd_header(const fs::path& path) {
-  const std::string subject = path.string();
-  std::ifstream in = open_regular_file(subject, path);
-  const Fields fields = read_fields(subject, in);
+  std::ifstream in = open_regular_file(path.string(), path);
+  const Header header = read_header(path.string(), in);
   std::vector<std::string> warnings;
-  const GridGeometry geometry = geometry_of(subject, fields, warnings);
-  std::ifstream data = open_behind_lines(subject, path, fields, std::move(in));
-  return {geometry, voxels_of(subject, fields, std::move(data), geometry.voxel_count()), std::move(warnings),
-          fields.key_values, fields.key_values.contains("Segment0_ID")};
+  const GridGeometry geometry = geometry_of(header.fields, warnings);
+  std::ifstream data = open_behind_lines(path, header, std::move(in));
+  return {geometry, voxels_of(header.fields, std::move(data), geometry.voxel_count()), std::move(warnings),
+          header.key_values, header.key_values.contains("Segment0_ID")};
 }
 
 }  // namespace osteomill

@@ -15,9 +15,9 @@
 
 namespace osteomill {
 
-/// Throws InputError naming `subject` where a grid lies as no bone can: voxels under 1 um or over 100 mm
-/// apart, or a first voxel over 100 m from the scanner's own origin. What is measured by such numbers later
-/// would take for ever or overflow.
+/// Throws InputError naming `subject` where a grid is not one that a scanner makes of a bone: voxels under
+/// 1 um or over 100 mm apart, or a first voxel over 100 m from the scanner's own origin. With such numbers
+/// later work would overflow or never end.
 inline void check_plausible(const std::string& subject, const GridGeometry& geometry) {
   constexpr double kMinSpacing_mm = 1e-3, kMaxSpacing_mm = 100, kMaxOrigin_mm = 1e5;
   for (const double spacing_mm : geometry.spacing_mm) {

@@ -51,16 +51,16 @@ void check_axes(const std::string& subject, const Mat3& axes) {
 
 }  // namespace
 
-std::vector<double> HeaderFields::numbers(const std::string& subject, const std::string& name) const {
+std::vector<double> HeaderFields::numbers(const std::string& name) const {
   const auto found = parse_numbers((*this)[name]);
   if (!found || found->empty())
     throw InputError(subject, fmt::format("has a field \"{}\" without numbers", name));
   return *found;
 }
 
-double HeaderFields::count(const std::string& subject, const std::string& name, double min) const {
+double HeaderFields::count(const std::string& name, double min) const {
   if (!has(name)) return 0;
-  const std::vector<double> found = numbers(subject, name);
+  const std::vector<double> found = numbers(name);
   if (found.size() != 1 || !(found[0] >= min && found[0] < 1e12))
     throw InputError(subject, fmt::format("has a {} that is not supported: {}", name, (*this)[name]));
   return found[0];

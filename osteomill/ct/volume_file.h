@@ -36,7 +36,7 @@ struct StoredVoxels {
   double intercept = 0;
 };
 
-/// Has the voxels be the last `count` of what there is.
+/// Sets `skip` so that the voxels are the last `count` that the source holds.
 void skip_to_last(StoredVoxels& stored, std::uint64_t count);
 
 /// Reads `count` densities. Nothing is allocated that the file cannot hold. Throws InputError naming
@@ -56,8 +56,8 @@ struct VolumeHeader {
   bool is_labels = false;
 };
 
-/// These read the header of one file each and check it: sizes and spacings are numbers above zero, the axes
-/// are at right angles, it is one grey volume. Throw InputError naming the file.
+/// Each reads the header of a file of its format, and checks that it is of one grey volume, with sizes and
+/// spacings above zero and axes at right angles. Throws InputError naming the file.
 VolumeHeader read_nrrd_header(const std::filesystem::path& path);
 VolumeHeader read_metaimage_header(const std::filesystem::path& path);
 VolumeHeader read_nifti_header(const std::filesystem::path& path);
@@ -76,8 +76,9 @@ const VolumeFormat* volume_format_of(const std::filesystem::path& path);
 Scan read_volume_file(const std::filesystem::path& path, const VolumeFormat& format,
                       const ReadOptions& options);
 
-/// The fields of a header that is text, by their names.
+/// The fields of a header that is text, by their names. Errors are InputErrors that name `subject`.
 struct HeaderFields {
+  std::string subject;
   std::map<std::string, std::string> values{};
 
   bool has(const std::string& name) const { return values.contains(name); }
@@ -85,14 +86,16 @@ struct HeaderFields {
   std::string operator[](const std::string& name) const {
     return has(name) ? values.at(name) : std::string();
   }
-  /// Throws InputError naming `subject` where there are none.
-  std::vector<double> numbers(const std::string& subject, const std::string& name) const;
-  /// A number of bytes or lines, not less than `min`; 0 where the field is not there. Throws as `numbers`.
-  double count(const std::string& subject, const std::string& name, double min) const;
+  /// Throws where there are none.
+  std::vector<double> numbers(const std::string& name) const;
+  /// A number of bytes or lines, not less than `min`; 0 where the field is not there. Throws where it is
+  /// anything else.
+  double count(const std::string& name, double min) const;
 };
 
-/// The file beside the header `path` that it names as that of its data; `attached` where `name` is empty.
-/// Throws InputError naming `subject`, also where there are several.
+/// Opens the data file `name` that the header in the file `path` names, in the same folder. Where `name` is
+/// empty the data follow the header, and `attached`, its stream, is returned. Throws InputError naming
+/// `subject` where the file cannot be read, or the data are in several files.
 std::ifstream open_data(const std::string& subject, const std::filesystem::path& path,
                         const std::string& name, std::ifstream attached);
 

@@ -70,7 +70,8 @@ ConnectedDevice::ConnectedDevice(OpenConnection open, std::function<double()> no
       connection_(open_()),
       sent_s_(now_s_()),
       counting_since_s_(sent_s_),
-      state_since_s_(sent_s_),
+      to_say_{.state = State::silent, .since_s = sent_s_},
+      said_(to_say_),
       capabilities_(connection_->capabilities()),
       workspace_(capabilities_, {}) {}
 
@@ -135,7 +136,7 @@ void ConnectedDevice::hear(const DeviceInput& input) {
 void ConnectedDevice::count_input(double now_s) {
   const double passed_s = now_s - counting_since_s_;
   if (passed_s < 1) return;
-  inputs_per_s_.store(counted_ / passed_s, std::memory_order_relaxed);
+  to_say_.inputs_per_s = counted_ / passed_s;
   counting_since_s_ = now_s;
   counted_ = 0;
 }
@@ -143,8 +144,7 @@ void ConnectedDevice::count_input(double now_s) {
 bool ConnectedDevice::may_be_driven(double now_s) {
   const Asked& asked = asked_.read();
   const bool late = now_s - asked.at_s > kMaxAge_s;
-  if (late && !wrench_was_late_ && !is_zero(asked.wrench_D))
-    late_wrenches_.fetch_add(1, std::memory_order_relaxed);
+  if (late && !wrench_was_late_ && !is_zero(asked.wrench_D)) ++to_say_.late_wrenches;
   wrench_was_late_ = late;
   return !late && newest_.input.not_driven == nullptr && !let_go_.load(std::memory_order_acquire);
 }
@@ -191,8 +191,7 @@ void ConnectedDevice::lose(const std::string& reason) {
   blended_ = 0;
   given_share_.store(0, std::memory_order_relaxed);
   lost_s_ = now_s_();
-  const std::lock_guard lock(said_mutex_);
-  reason_ = reason;
+  to_say_.reason = reason;
 }
 
 void ConnectedDevice::reopen() {
@@ -205,7 +204,7 @@ void ConnectedDevice::reopen() {
     return;
   }
   sent_s_ = now_s_();
-  reopened_.fetch_add(1, std::memory_order_relaxed);
+  ++to_say_.reopened;
 }
 
 void ConnectedDevice::judge() {
@@ -227,15 +226,18 @@ void ConnectedDevice::judge() {
     state = State::remark;
     says = input.remark;
   }
-  if (const std::unique_lock lock(said_mutex_, std::try_to_lock); lock) {
-    handle_D_mm_ = input.X_DH.position_mm;
-    if (connection_) reason_ = says;
+  if (connection_) to_say_.reason = says;
+  tell(state, now_s);
+}
+
+void ConnectedDevice::tell(State state, double now_s) {
+  if (state != to_say_.state) {
+    if (to_say_.state == State::ok) ++to_say_.faults;
+    to_say_.state = state;
+    to_say_.since_s = now_s;
   }
-  const State before = state_.load(std::memory_order_relaxed);
-  if (state == before) return;
-  if (before == State::ok) faults_.fetch_add(1, std::memory_order_relaxed);
-  state_since_s_.store(now_s, std::memory_order_relaxed);
-  state_.store(state, std::memory_order_release);
+  to_say_.handle_D_mm = newest_.input.X_DH.position_mm;
+  if (const std::unique_lock lock(said_mutex_, std::try_to_lock); lock) said_ = to_say_;
 }
 
 void ConnectedDevice::set_workspace(const WorkspaceSettings& settings) {
@@ -253,16 +255,9 @@ void ConnectedDevice::set_view(const Quat& R_WV) {
 }
 
 DeviceReport ConnectedDevice::report() const {
-  DeviceReport report;
-  report.state = state_.load(std::memory_order_acquire);
-  report.since_s = now_s_() - state_since_s_.load(std::memory_order_relaxed);
-  report.inputs_per_s = inputs_per_s_.load(std::memory_order_relaxed);
-  report.faults = faults_.load(std::memory_order_relaxed);
-  report.late_wrenches = late_wrenches_.load(std::memory_order_relaxed);
-  report.reopened = reopened_.load(std::memory_order_relaxed);
   const std::lock_guard lock(said_mutex_);
-  report.reason = reason_;
-  report.handle_D_mm = handle_D_mm_;
+  DeviceReport report = said_;
+  report.since_s = now_s_() - report.since_s;
   return report;
 }
 

@@ -130,6 +130,7 @@ class ConnectedDevice final : public Device {
   void reopen();
   void judge();
   void count_input(double now_s);
+  void tell(DeviceReport::State state, double now_s);
 
   OpenConnection open_;
   std::function<double()> now_s_;
@@ -157,18 +158,12 @@ class ConnectedDevice final : public Device {
   double counting_since_s_;
   int counted_ = 0;
 
-  // What it is judged to be; written by the device's thread.
-  std::atomic<DeviceReport::State> state_{DeviceReport::State::silent};
-  std::atomic<double> state_since_s_;
-  std::atomic<double> inputs_per_s_{0};
-  std::atomic<std::uint64_t> faults_{0};
-  std::atomic<std::uint64_t> late_wrenches_{0};
-  std::atomic<std::uint64_t> reopened_{0};
-  std::atomic<double> given_share_{0};
-  // Of the next two; while all is well the device's thread does not wait for it.
+  // What is to be said of it; `since_s` holds the time of the clock here.
+  DeviceReport to_say_;
+  // And what others may read of that, under the lock, for which the device's thread does not wait.
   mutable std::mutex said_mutex_;
-  std::string reason_;
-  Vec3 handle_D_mm_ = Vec3::Zero();
+  DeviceReport said_;
+  std::atomic<double> given_share_{0};
 
   // The haptic thread's.
   DeviceCapabilities capabilities_;

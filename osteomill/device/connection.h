@@ -23,15 +23,16 @@ struct DeviceCapabilities {
   double lets_go_after_s = 0;
 };
 
-/// What a device said at one time, in its base frame D. An orientation that it does not sense is identity.
+/// One input of a device: the pose X_DH of its handle H in its base frame D (mm), and what else it says. An
+/// orientation that it does not sense is identity.
 struct DeviceInput {
   Pose X_DH;
   /// A bit each; the first asks for the spindle.
   unsigned buttons = 0;
-  /// Why the device may not be driven now and what helps, after "it ..." ("is not calibrated: ..."); null
-  /// where it may be. It gets zero meanwhile.
+  /// Why no force may be sent to the device now, and what helps, to be read after "it" ("is not calibrated:
+  /// ..."); null where force may be sent. Until then it is sent zero.
   const char* not_driven = nullptr;
-  /// What else its operator should know of it, in the same form; null where there is nothing.
+  /// What else its operator should know of the device, in the same form; null where there is nothing.
   const char* remark = nullptr;
 };
 
@@ -45,9 +46,11 @@ enum class ConnectionStatus : unsigned char {
   lost,
 };
 
-/// A back end: the way to one opened device. Opened by a function of its own, which throws InputError naming
-/// the device and why it cannot be had; destroying it sends zero and closes the device. All calls come from
-/// one thread, which is not the haptic one: they may wait and make system calls, but no longer than said.
+/// A back end: the connection to one opened device. Each has a function that opens it, which throws
+/// InputError naming the device and why it cannot be had; destroying it sends zero and closes the device. All
+/// calls come from one thread, which is not the haptic one: they may allocate, make system calls and wait,
+/// but no longer than said. They do not throw: what fails is told by the status. (One that throws all the
+/// same is taken for lost.)
 class Connection {
  public:
   Connection() = default;
@@ -56,10 +59,11 @@ class Connection {
   Connection& operator=(const Connection&) = delete;
   virtual const DeviceCapabilities& capabilities() const = 0;
   /// Waits for the next input, 2 ms at most. A device that stands still gives new inputs all the same.
+  /// `input` is written to only where the result is `fresh`.
   virtual ConnectionStatus read(DeviceInput& input) = 0;
   /// Sends force and torque as they act on the hand, in D about the handle's origin; a device that drives
-  /// force alone drops the torque. Finite, and within the capabilities' limits. Without waiting: where the
-  /// device cannot take it yet it is silent, and keeps to the wrench before.
+  /// force alone drops the torque. Finite, and within the capabilities' limits. Does not wait: `silent` where
+  /// the device cannot take it yet, and goes on giving the wrench before.
   virtual ConnectionStatus write(const Wrench& wrench_D) = 0;
 };
 

@@ -24,14 +24,13 @@ MillingTrial::MillingTrial(const Volume& bone, const BoneDensities& densities, c
       spindle_(settings.spindle) {}
 
 MillingTrial::Tick MillingTrial::tick() {
-  const bool milling_phase = operator_.milling();
+  const bool milling_phase = operator_.spindle_asked();
   // Before the pose is read and after the bone is milled.
   const double before_s = thread_cpu_s();
   TickRecord record = session_.tick(operator_, operator_.time_s(), tick_s_, milling_phase && spindle_);
   record.tick_cpu_us = 1e6 * (thread_cpu_s() - before_s);
   session_.prepare_next_ticks();
-  operator_.see(record.X_WT);
-  operator_.advance(tick_s_);
+  operator_.tick_done(record.X_WT, tick_s_);
   return {record, milling_phase};
 }
 

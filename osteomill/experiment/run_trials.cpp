@@ -58,10 +58,9 @@ std::vector<fs::path> record_trial(const TrialPlan& plan, const AlgorithmDescrip
       run.settings.push_back({std::string(kPicturesKey), "none, as OpenGL could not be had", ""});
     }
     const bool first = recorders.empty();
-    recorders.push_back(
-        std::make_unique<Recorder>(paths.back(), run, Recorder::kUsualCapacity,
-                                   first ? Recorder::Begins::with_the_recording : Recorder::Begins::when_told,
-                                   Recorder::Unfinished::removed));
+    recorders.push_back(std::make_unique<Recorder>(
+        paths.back(), run, first ? Recorder::Begins::with_the_recording : Recorder::Begins::when_told,
+        Recorder::Unfinished::removed));
     // The session goes on from phase to phase.
     if (!first) recorders.back()->begin_session(0, {.goes_on_from = paths.front().filename().string()});
   }

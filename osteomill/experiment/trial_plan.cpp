@@ -54,13 +54,11 @@ RunDescription describe_trial(const TrialPlan& plan, const AlgorithmDescription&
                               std::string_view phase) {
   const TrialSettings& trial = plan.settings;
   const OperatorSettings& person = trial.hand_and_device;
-  RunDescription run = describe_run({.scan_name = plan.scan_name,
-                                     .scan_hash = plan.scan_hash,
-                                     .bone = plan.bone,
-                                     .session = {setup_of(trial, algorithm), plan.densities},
-                                     .seed = person.seed,
-                                     .command_line = plan.command_line},
-                                    sample_points);
+  RunDescription run =
+      describe_run(plan.bone, {setup_of(trial, algorithm), plan.densities}, sample_points, plan.command_line);
+  run.scan_name = plan.scan_name;
+  run.scan_hash = plan.scan_hash;
+  run.seed = person.seed;
   run.phase = phase;
   add_hand(run.settings, person.hand);
   add_device(run.settings, person.handle);

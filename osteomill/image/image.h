@@ -24,14 +24,17 @@ struct Image {
   }
 };
 
-/// The image smaller by a whole number (1 or more), each pixel the mean of `factor` x `factor`; what is left
-/// over at the right and at the bottom is dropped.
+/// A smaller image, of width / factor x height / factor pixels: each is the mean of a square of `factor` x
+/// `factor` pixels. `factor` is 1 or more; columns at the right and rows at the bottom that fill no square
+/// are dropped.
 Image averaged_down(const Image& image, int factor);
 
-/// The image as the bytes of a PNG file. Throws std::invalid_argument where its sizes do not agree.
+/// The image as the bytes of a PNG file. Throws std::invalid_argument where the number of bytes in `rgb` is
+/// not that of width and height.
 std::vector<unsigned char> encode_png(const Image& image);
 
-/// On white where the PNG is transparent. Nothing where the bytes are not a whole PNG of at most 4096 x 4096.
+/// The image of a PNG file's bytes; where it is transparent, white shows through. Nothing where the bytes are
+/// not a whole PNG of at most 4096 x 4096 pixels.
 std::optional<Image> decode_png(std::span<const unsigned char> png);
 
 /// Writes a PNG file, whole or not at all. Throws InputError, naming the file, where it cannot be written.

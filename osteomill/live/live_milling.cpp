@@ -164,20 +164,18 @@ std::vector<double> LiveMilling::removed_by_label() const {
 }
 
 RunDescription LiveMilling::describe(const std::string& scan_name, const std::string& command_line) const {
-  const RunFacts facts{.scan_name = scan_name,
-                       .scan_hash = scan_hash_,
-                       .bone = live_.session().volume(),
-                       .session = settings_of(live_.session()),
-                       .command_line = command_line};
-  return describe_run(facts, sample_points_);
+  const MillingSession& session = live_.session();
+  RunDescription run = describe_run(session.volume(), settings_of(session), sample_points_, command_line);
+  run.scan_name = scan_name;
+  run.scan_hash = scan_hash_;
+  return run;
 }
 
 void LiveMilling::start_recording(const std::filesystem::path& path, RunDescription description,
                                   TakePicture picture) {
   finish_preparing();
   set_as_now(description);
-  auto recorder =
-      std::make_unique<Recorder>(path, description, Recorder::kUsualCapacity, Recorder::Begins::when_told);
+  auto recorder = std::make_unique<Recorder>(path, description, Recorder::Begins::when_told);
   add_picture(*recorder, kPictureBefore, picture);
   recorder_ = std::move(recorder);
   recorder_path_ = path;

@@ -13,10 +13,10 @@ namespace osteomill {
 /// The test of section 8.2 of the paper as one hand's intent: mill a hole and push the shaft against its
 /// edge, then stand in it and hold still.
 struct ScriptSettings {
-  /// The milling lasts so long ...
+  /// How long the milling lasts.
   double milling_s = 20.0;
-  /// ... or, with true, until the shaft has leant on bone for `leant_share` of it, or the hand has tried that
-  /// for longer, but no longer than three times as long.
+  /// Where true, the milling instead lasts until the shaft has leant on bone for `leant_share` of
+  /// `milling_s`, or the hand gives up trying to, after three times `milling_s` at the latest.
   bool until_leant = false;
   static constexpr double leant_share = 0.15;
   double holding_s = 20.0;
@@ -31,7 +31,7 @@ struct ScriptSettings {
 /// Throws std::invalid_argument, naming it, where a setting is out of range.
 void require_valid(const ScriptSettings& settings);
 
-/// What of the test the hand could not bring about in the time it had.
+/// What of the test the hand did not achieve in the time it had.
 struct ScriptShortfall {
   /// The hole was not deep enough when the hand began to lean.
   bool shallow = false;
@@ -43,7 +43,7 @@ struct ScriptShortfall {
   bool unsettled = false;
 };
 
-/// What the hand is about.
+/// What the hand is doing.
 enum class ScriptStage : unsigned char { approach, feed, lean, settle, hold, done };
 
 /// Where the hand wants the tool to be, and whether the spindle turns.
@@ -64,8 +64,7 @@ class MillingScript {
 
   /// What the script wants at time 0, and where the device is then.
   const ScriptIntent& intent() const { return intent_; }
-  /// Of what has been tried so far; with a milling of a given length leaning and settling are not waited for,
-  /// and not judged.
+  /// Up to now. Without `until_leant` leaning and settling are not waited for, and not judged.
   const ScriptShortfall& shortfall() const { return shortfall_; }
   /// The intent at `time_s`, `dt_s` after the last one. `X_WD` is where the device is, `X_WT` where the
   /// simulated tool is shown, `felt` the last wrench on the hand. Safe in the haptic tick.

@@ -54,14 +54,13 @@ std::vector<Sample> run(const OperatorSettings& settings, const MillingEntry& en
   std::vector<Sample> samples;
   while (!person.finished()) {
     const Pose X_WD = person.read_pose();
-    const auto step = hole.step(X_WD, person.milling(), kTick_s);
+    const auto step = hole.step(X_WD, person.spindle_asked(), kTick_s);
     person.write_wrench(step.wrench);
-    person.see(step.X_WT);
     const auto depth_mm = [&](const Pose& X) { return entry.direction_W.dot(X.position_mm - entry.point_W); };
-    samples.push_back({person.time_s(), person.stage(), person.milling(), person.target(), X_WD,
+    samples.push_back({person.time_s(), person.stage(), person.spindle_asked(), person.target(), X_WD,
                        person.hand_wrench(), depth_mm(step.X_WT) + kTool.burr_radius_mm, depth_mm(X_WD),
                        std::acos(std::min(1.0, -shaft_direction(X_WD).dot(entry.direction_W)))});
-    person.advance(kTick_s);
+    person.tick_done(step.X_WT, kTick_s);
   }
   return samples;
 }
@@ -176,9 +175,8 @@ TEST(MillingScript, AWallThatGivesWayIsNotSunkInto) {
       person.write_wrench(
           {{0, 0, std::max(0.0, 2 * (kTool.burr_radius_mm - 4 - device.position_mm.z()))},
            beyond_rad > 0 ? Vec3(-wall_Nmm_per_rad * beyond_rad * turn.normalized()) : Vec3(Vec3::Zero())});
-      person.see(device);
       most_rad = std::max(most_rad, turn.norm() - kWall_rad);
-      person.advance(kTick_s);
+      person.tick_done(device, kTick_s);
     }
     return most_rad;
   };
@@ -203,8 +201,7 @@ TEST(MillingScript, AToolThatLeavesTheBoneWhileItLeansIsLostAndTheHandStays) {
     const double floor_N = gone ? 0 : 2 * (kTool.burr_radius_mm - 4 - device.position_mm.z());
     person.write_wrench({{0, 0, std::max(0.0, floor_N)}, Vec3::Zero()});
     if (floor_N > 0) last_touched_W = device.position_mm;
-    person.see(device);
-    person.advance(kTick_s);
+    person.tick_done(device, kTick_s);
   }
   EXPECT_TRUE(person.shortfall().lost);
   EXPECT_FALSE(person.shortfall().hardly_leant || person.shortfall().unsettled)
@@ -245,8 +242,7 @@ TEST(MillingScript, InEmptyAirTheTargetKeepsWithinItsBounds) {
   settings.script.holding_s = 2;
   SimulatedOperator person(settings, kTool, entry);
   while (!person.finished()) {
-    person.see(person.read_pose());
-    person.advance(kTick_s);
+    person.tick_done(person.read_pose(), kTick_s);
     ASSERT_LT((person.target().position_mm - entry.point_W).norm(), 12.0);
   }
   EXPECT_NEAR(person.time_s(), 6.0, 1e-9);
@@ -268,9 +264,8 @@ TEST(MillingScript, MillsUntilTheShaftHasLeantAndHoldsWhatItFeels) {
           rotation_vector(device.orientation * pose_above({}, kTool, 0).orientation.conjugate());
       person.write_wrench({{0, 0, std::max(0.0, 2 * (kTool.burr_radius_mm - 4 - device.position_mm.z()))},
                            -wall_Nmm_per_rad * turn});
-      person.see(device);
-      if (person.milling()) milled_s = person.time_s();
-      person.advance(kTick_s);
+      if (person.spindle_asked()) milled_s = person.time_s();
+      person.tick_done(device, kTick_s);
     }
     return std::pair(milled_s, person.time_s() - milled_s);
   };

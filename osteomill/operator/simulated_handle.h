@@ -48,10 +48,10 @@ class SimulatedHandle {
   /// What the encoder says of the pose now: position to whole steps in W, orientation to whole steps of the
   /// rotation vector from where the handle was at the start.
   Pose read() const;
-  /// Sends a wrench (on the handle, in W, about the burr's centre) to the motors, which give it, within their
-  /// limits, `force_delay_s` later and until the next one.
+  /// Commands a wrench (on the handle, in W, about the burr's centre). The motors give it, within their
+  /// limits, from `force_delay_s` later on, until the next command takes effect.
   void command(const Wrench& wrench);
-  /// One substep on, with `other` acting beside the motors (the hand).
+  /// Moves the handle on by one substep. `other` is what acts on it beside the motors: the hand.
   void advance(const Wrench& other);
 
   const HandleSettings& settings() const { return settings_; }

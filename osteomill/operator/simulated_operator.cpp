@@ -7,7 +7,7 @@ namespace osteomill {
 
 namespace {
 
-constexpr double kMaxAdvance_s = 1.0;
+constexpr double kLongestTick_s = 1.0;
 // Of the seed that makes a hand's turning another random signal than its displacement.
 constexpr std::uint64_t kTurning = 0x9e3779b97f4a7c15;
 
@@ -35,7 +35,6 @@ SimulatedOperator::SimulatedOperator(const OperatorSettings& settings, const Mil
       script_(settings.script, settings.hand, tool, entry),
       handle_(settings.handle, script_.intent().X_W_target) {
   require_integrable(settings.handle, settings.hand);
-  X_WT_seen_ = handle_.pose();
   X_W_target_ = trembling(script_.intent().X_W_target);
 }
 
@@ -44,8 +43,8 @@ Pose SimulatedOperator::trembling(const Pose& X_W_intended) const {
   return {X_W_intended.position_mm + tremor_mm_.at(time_s()), (turn * X_W_intended.orientation).normalized()};
 }
 
-void SimulatedOperator::advance(double dt_s) {
-  if (!(dt_s > 0 && dt_s <= kMaxAdvance_s)) return;
+void SimulatedOperator::tick_done(const Pose& X_WT, double dt_s) {
+  if (!(dt_s > 0 && dt_s <= kLongestTick_s)) return;
   const double substep_s = handle_.settings().substep_s;
   const double owed_s = time_left_over_s_ + dt_s;
   // A rounding must not cost a substep.
@@ -58,7 +57,7 @@ void SimulatedOperator::advance(double dt_s) {
   substeps_ += count;
   const double passed_s = static_cast<double>(count) * substep_s;
   const Pose from = X_W_target_;
-  const Pose to = trembling(script_.step(time_s(), passed_s, handle_.pose(), X_WT_seen_, felt_).X_W_target);
+  const Pose to = trembling(script_.step(time_s(), passed_s, handle_.pose(), X_WT, felt_).X_W_target);
   const Vec3 turn_rad = rotation_vector(to.orientation * from.orientation.conjugate());
   const Twist speed{(to.position_mm - from.position_mm) / passed_s, turn_rad / passed_s};
   for (std::int64_t n = 0; n < count; ++n) {

@@ -19,7 +19,7 @@ struct OperatorSettings {
 
 /// A device and the hand that holds it, in simulated time: the same settings give the same run on any
 /// machine, however long a tick takes to compute. A tick is
-///     read_pose, (the algorithm), write_wrench, see, (milling while `milling()`), advance.
+///     read_pose, (the algorithm), write_wrench, (milling while `spindle_asked()`), tick_done.
 /// Made outside the tick; nothing else allocates, locks, logs or throws.
 class SimulatedOperator final : public Device {
  public:
@@ -33,20 +33,13 @@ class SimulatedOperator final : public Device {
     felt_ = wrench;
     handle_.command(wrench);
   }
-  bool spindle_asked() const override { return milling(); }
-  void tick_done(const Pose& X_WT, double dt_s) override {
-    see(X_WT);
-    advance(dt_s);
-  }
-  /// Shows the operator the simulated tool, by which it judges how deep the hole is.
-  void see(const Pose& X_WT_simulated) { X_WT_seen_ = X_WT_simulated; }
-  /// Lets `dt_s` pass, in whole substeps of the handle; what is left over is kept for the next call. Nothing
-  /// passes where `dt_s` does not lie in (0, 1 s].
-  void advance(double dt_s);
+  /// Whether the tick that begins now belongs to the milling phase, in which the spindle turns.
+  bool spindle_asked() const override { return script_.intent().milling; }
+  /// By the simulated tool the operator judges how deep the hole is. `dt_s` passes in whole substeps of the
+  /// handle; what is left over is kept for the next call. Nothing passes where it does not lie in (0, 1 s].
+  void tick_done(const Pose& X_WT, double dt_s) override;
 
   double time_s() const { return static_cast<double>(substeps_) * handle_.settings().substep_s; }
-  /// Whether the spindle turns in the tick that begins now: the milling phase, and after it the holding.
-  bool milling() const { return script_.intent().milling; }
   ScriptStage stage() const { return script_.intent().stage; }
   const ScriptShortfall& shortfall() const { return script_.shortfall(); }
   /// Both phases are over.
@@ -67,7 +60,6 @@ class SimulatedOperator final : public Device {
   Tremor tremor_rad_;
   MillingScript script_;
   SimulatedHandle handle_;
-  Pose X_WT_seen_;
   Wrench felt_;
   Pose X_W_target_;
   Wrench hand_wrench_;

@@ -57,10 +57,9 @@ std::vector<Pose> poses_of_a_run(const OperatorSettings& settings, double tick_s
   std::vector<Pose> poses;
   while (!person.finished()) {
     poses.push_back(person.read_pose());
-    const auto step = hole.step(poses.back(), person.milling(), tick_s);
+    const auto step = hole.step(poses.back(), person.spindle_asked(), tick_s);
     person.write_wrench(step.wrench);
-    person.see(step.X_WT);
-    person.advance(tick_s);
+    person.tick_done(step.X_WT, tick_s);
   }
   return poses;
 }
@@ -85,9 +84,10 @@ TEST(SimulatedOperator, TheHandDoesTheSameWhateverTheTicksRate) {
     SimulatedOperator one(short_run(), kTool, {});
     SimulatedOperator other(short_run(), kTool, {});
     for (int n = 0; n < 400; ++n) {
-      one.advance(1e-3);
-      one.advance(1e-3);
-      for (double passed_s = 0; passed_s < 2e-3 - 1e-9; passed_s += tick_s) other.advance(tick_s);
+      one.tick_done(one.read_pose(), 1e-3);
+      one.tick_done(one.read_pose(), 1e-3);
+      for (double passed_s = 0; passed_s < 2e-3 - 1e-9; passed_s += tick_s)
+        other.tick_done(other.read_pose(), tick_s);
       ASSERT_NEAR(one.time_s(), other.time_s(), 1e-12);
       ASSERT_LT((one.target().position_mm - other.target().position_mm).norm(), 1e-9);
       ASSERT_LT((one.handle().pose().position_mm - other.handle().pose().position_mm).norm(), 1e-3);
@@ -97,9 +97,10 @@ TEST(SimulatedOperator, TheHandDoesTheSameWhateverTheTicksRate) {
 
 TEST(SimulatedOperator, TimeThatFillsNoSubstepIsKeptForLater) {
   SimulatedOperator person(short_run(), kTool, {});
-  for (int n = 0; n < 10; ++n) person.advance(0.03e-3);
+  for (int n = 0; n < 10; ++n) person.tick_done(person.read_pose(), 0.03e-3);
   EXPECT_NEAR(person.time_s(), 0.3e-3, 1e-12);
-  for (double dt_s : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(), 2.0}) person.advance(dt_s);
+  for (double dt_s : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(), 2.0})
+    person.tick_done(person.read_pose(), dt_s);
   EXPECT_NEAR(person.time_s(), 0.3e-3, 1e-12);
   EXPECT_TRUE(is_finite(person.read_pose()));
 }
@@ -107,9 +108,9 @@ TEST(SimulatedOperator, TimeThatFillsNoSubstepIsKeptForLater) {
 TEST(SimulatedOperator, ATickTakesTwentySubstepsAndTheForceItsDelay) {
   SimulatedOperator person(short_run(), kTool, {});
   person.write_wrench({{0, 0, 5}, Vec3::Zero()});
-  person.advance(0.3e-3);
+  person.tick_done(person.read_pose(), 0.3e-3);
   EXPECT_EQ(person.handle().motor_wrench().force_N, Vec3::Zero());
-  person.advance(0.05e-3);
+  person.tick_done(person.read_pose(), 0.05e-3);
   EXPECT_EQ(person.handle().motor_wrench().force_N, Vec3(0, 0, 5));
   EXPECT_NEAR(person.time_s(), 0.35e-3, 1e-12);
 }
@@ -120,12 +121,12 @@ TEST(SimulatedOperator, TremblesByTheTremorAskedForWhileItHolds) {
   settings.script.settle_s = 0;
   settings.script.holding_s = 20;
   SimulatedOperator person(settings, kTool, {});
-  EXPECT_FALSE(person.milling());
+  EXPECT_FALSE(person.spindle_asked());
   Vec3 sum = Vec3::Zero();
   Vec3 squares = Vec3::Zero();
   int count = 0;
   while (!person.finished()) {
-    person.advance(1e-3);
+    person.tick_done(person.read_pose(), 1e-3);
     const Vec3 x = person.target().position_mm;
     sum += x;
     squares += x.cwiseProduct(x);
@@ -143,10 +144,9 @@ TEST(SimulatedOperator, ATickAllocatesNothing) {
   SimulatedOperator person(short_run(), kTool, entry);
   const long before = allocations;
   while (!person.finished()) {
-    const auto step = hole.step(person.read_pose(), person.milling(), 1e-3);
+    const auto step = hole.step(person.read_pose(), person.spindle_asked(), 1e-3);
     person.write_wrench(step.wrench);
-    person.see(step.X_WT);
-    person.advance(1e-3);
+    person.tick_done(step.X_WT, 1e-3);
   }
   EXPECT_EQ(allocations - before, 0);
   // The counter does count (a direct call, which unlike a new-expression may not be left out).

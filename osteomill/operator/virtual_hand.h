@@ -9,9 +9,9 @@
 
 namespace osteomill {
 
-/// A simulated device whose handle is pulled towards a pose that another thread sets (a mouse, a SpaceMouse)
-/// by a spring and a damper that pushes no harder than its limit. So whoever has no haptic hardware sees
-/// resistance: bone holds the handle back.
+/// A simulated device whose handle follows a pose that another thread sets (from a mouse or a SpaceMouse). It
+/// is pulled there by a spring of limited force and a damper, so that bone can hold it back: who has no
+/// haptic hardware sees the resistance.
 ///
 /// `pull_to` is for one other thread and never waits.
 class VirtualHand final : public Device {
@@ -21,8 +21,8 @@ class VirtualHand final : public Device {
 
   /// Poses that are not finite are not taken.
   void pull_to(const Pose& X_W_target);
-  /// The haptic thread, between two ticks: the hand and its handle are there, at rest, and stay until the
-  /// next `pull_to` after it. Safe in the tick.
+  /// For the haptic thread, between two ticks: puts hand and handle there, at rest, where they stay until the
+  /// next `pull_to`. Safe in the tick.
   void put_at(const Pose& X_WD) override;
 
   Pose read_pose() override { return handle_.read(); }

@@ -16,8 +16,8 @@
 
 namespace osteomill {
 
-/// Held by whoever calls HDF5: the library keeps state of its own and is not safe in two threads at once.
-/// Switches off the library's printing of errors, which are thrown as InputError instead.
+/// To be held while HDF5 is called: the library is not safe in two threads at once. Also switches off its
+/// printing of errors, which are thrown as InputError instead.
 class Hdf5Lock {
  public:
   Hdf5Lock();
@@ -103,7 +103,7 @@ class Attributes {
     get(name, value);
     return value;
   }
-  /// Any but NaN.
+  /// A real that may be infinite, but not NaN.
   double real_or_infinite(const std::string& name) const;
   bool has(const std::string& name) const;
   bool is_text(const std::string& name) const;

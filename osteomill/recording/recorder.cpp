@@ -46,12 +46,10 @@ fs::path file_behind(const fs::path& path) {
 struct Recorder::Impl {
   using Clock = std::chrono::steady_clock;
 
-  Impl(const fs::path& path_, const RunDescription& description, std::size_t capacity, Begins begins,
-       Unfinished unfinished_)
+  Impl(const fs::path& path_, const RunDescription& description, Begins begins, Unfinished unfinished_)
       : unfinished(unfinished_),
         path(file_behind(path_)),
-        file(file_behind(unfinished_recording_path(path)), description),
-        queue(capacity) {
+        file(file_behind(unfinished_recording_path(path)), description) {
     if (begins == Begins::with_the_recording) {
       file.begin_session({}, 0);
       session = 0;
@@ -141,7 +139,7 @@ struct Recorder::Impl {
   Unfinished unfinished;
   fs::path path;
   RecordingFile file;
-  SpscQueue<TickRecord> queue;
+  SpscQueue<TickRecord> queue{kCapacity};
   // The writing thread's: taken from the queue and not yet written, and of which session the last one is.
   std::vector<TickRecord> rows;
   Clock::time_point waiting_since;
@@ -159,9 +157,9 @@ struct Recorder::Impl {
   std::thread writer;
 };
 
-Recorder::Recorder(const fs::path& path, const RunDescription& description, std::size_t capacity,
-                   Begins begins, Unfinished unfinished)
-    : impl_(std::make_unique<Impl>(path, description, capacity, begins, unfinished)) {}
+Recorder::Recorder(const fs::path& path, const RunDescription& description, Begins begins,
+                   Unfinished unfinished)
+    : impl_(std::make_unique<Impl>(path, description, begins, unfinished)) {}
 
 Recorder::~Recorder() = default;
 

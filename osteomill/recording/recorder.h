@@ -27,22 +27,21 @@ namespace osteomill {
 /// One thread pushes; another (or the same) makes, closes and destroys the recorder, after the last push.
 class Recorder {
  public:
-  static constexpr std::size_t kUsualCapacity = 16384;
+  /// So many records (16 s at 1000 Hz), or a few more, wait to be written before any is lost.
+  static constexpr std::size_t kCapacity = 16384;
 
   /// When records are written: those of a session that begins with the recording at once, others from when
   /// `begin_session` says what they began from.
   enum class Begins : unsigned char { with_the_recording, when_told };
 
-  /// What becomes of a recording that is destroyed without `close`: of a run that can be run again nothing is
-  /// worth keeping, nor of any before its first record.
+  /// What becomes of the file where the recorder is destroyed without `close`. It is removed in any case
+  /// where nothing was recorded yet; `removed` is for runs that can simply be run again.
   enum class Unfinished : unsigned char { left, removed };
 
-  /// The queue holds `capacity` records (16 s at 1000 Hz) or a few more. Throws InputError, naming the file,
-  /// where it cannot be created, and std::invalid_argument where the description cannot be stored
-  /// (write_description).
+  /// Throws InputError, naming the file, where it cannot be created, and std::invalid_argument where the
+  /// description cannot be stored (write_description).
   Recorder(const std::filesystem::path& path, const RunDescription& description,
-           std::size_t capacity = kUsualCapacity, Begins begins = Begins::with_the_recording,
-           Unfinished unfinished = Unfinished::left);
+           Begins begins = Begins::with_the_recording, Unfinished unfinished = Unfinished::left);
   ~Recorder();
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
@@ -54,8 +53,9 @@ class Recorder {
   /// InputError with which writing failed, if it did.
   void push_waiting(const TickRecord& record);
 
-  /// What the session of this number began from: at the first record of that number, which may have been
-  /// pushed before. In the order of the numbers. The first one's description is the recording's own.
+  /// Says what the session of this number began from, which belongs to the first record of that number; that
+  /// may have been pushed before. To be called in the order of the numbers. The first session's description
+  /// is the recording's own.
   void begin_session(std::uint32_t number, SessionStart start);
 
   /// How many records were lost. From any thread.

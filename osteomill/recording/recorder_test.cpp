@@ -163,13 +163,13 @@ TEST(Recorder, AStartWithoutTicksReadsBackOrIsRefused) {
   }
 }
 
-// The queue is much smaller than what is pushed between two looks of the writing thread.
+// Records are pushed faster than any disk takes them.
 TEST(Recorder, AFullQueueIsCountedAndTheRestIsKept) {
   const TestFolder folder;
   std::vector<int> accepted;
   std::uint64_t refused = 0;
-  Recorder recorder(folder / "run.h5", sample_description(), 16);
-  for (int tick = 0; tick < 20000; ++tick) {
+  Recorder recorder(folder / "run.h5", sample_description());
+  for (int tick = 0; tick < 100000; ++tick) {
     if (recorder.push(sample_record(tick))) {
       accepted.push_back(tick);
     } else {
@@ -177,7 +177,7 @@ TEST(Recorder, AFullQueueIsCountedAndTheRestIsKept) {
     }
   }
   EXPECT_GT(refused, 0u);
-  EXPECT_GE(accepted.size(), 16u);
+  EXPECT_GE(accepted.size(), Recorder::kCapacity);
   EXPECT_EQ(recorder.dropped(), refused);
   recorder.close();
   const Recording read = read_recording(folder / "run.h5");
@@ -188,24 +188,25 @@ TEST(Recorder, AFullQueueIsCountedAndTheRestIsKept) {
   }
 }
 
-TEST(Recorder, WaitingLosesNothingHoweverSmallTheQueue) {
+TEST(Recorder, WaitingLosesNothingWhereTheQueueIsFull) {
   const TestFolder folder;
-  Recorder recorder(folder / "run.h5", sample_description(), 16);
-  for (int tick = 0; tick < 3000; ++tick) recorder.push_waiting(sample_record(tick));
+  Recorder recorder(folder / "run.h5", sample_description());
+  constexpr int kTicks = 40000;
+  for (int tick = 0; tick < kTicks; ++tick) recorder.push_waiting(sample_record(tick));
   recorder.close();
   const Recording read = read_recording(folder / "run.h5");
   EXPECT_EQ(read.dropped, 0u);
-  ASSERT_EQ(read.records.size(), 3000u);
-  EXPECT_TRUE(same_bits(read.records.back(), sample_record(2999)));
+  ASSERT_EQ(read.records.size(), std::size_t{kTicks});
+  EXPECT_TRUE(same_bits(read.records.back(), sample_record(kTicks - 1)));
 }
 
 TEST(Recorder, PushingAllocatesNothingEvenWhenFull) {
 #if OSTEOMILL_COUNTS_ALLOCATIONS
   const TestFolder folder;
-  Recorder recorder(folder / "run.h5", sample_description(), 512);
+  Recorder recorder(folder / "run.h5", sample_description());
   const TickRecord record = sample_record(1);
   const long before = allocations_here;
-  for (int tick = 0; tick < 20000; ++tick) recorder.push(record);
+  for (int tick = 0; tick < 100000; ++tick) recorder.push(record);
   EXPECT_EQ(allocations_here, before);
   EXPECT_GT(recorder.dropped(), 0u);
   recorder.close();
@@ -219,8 +220,8 @@ TEST(Recorder, PushingAllocatesNothingEvenWhenFull) {
 // beside.
 TEST(Recorder, PushingWatchingAndWritingThreadsDoNotDisturbEachOther) {
   const TestFolder folder;
-  Recorder recorder(folder / "a.h5", sample_description(), 256);
-  Recorder other(folder / "b.h5", sample_description(), 256);
+  Recorder recorder(folder / "a.h5", sample_description());
+  Recorder other(folder / "b.h5", sample_description());
   std::atomic<std::uint64_t> refused{0};
   std::thread haptic([&] {
     for (int tick = 0; tick < 20000; ++tick) {
@@ -262,8 +263,8 @@ TEST(Recorder, WithoutCloseAnUnfinishedRecordingIsLeft) {
 TEST(Recorder, OfARunThatCanBeRunAgainNothingIsLeftWithoutClose) {
   const TestFolder folder;
   {
-    Recorder recorder(folder / "run.h5", sample_description(), Recorder::kUsualCapacity,
-                      Recorder::Begins::with_the_recording, Recorder::Unfinished::removed);
+    Recorder recorder(folder / "run.h5", sample_description(), Recorder::Begins::with_the_recording,
+                      Recorder::Unfinished::removed);
     recorder.push_waiting(sample_record(0));
   }
   EXPECT_TRUE(fs::is_empty(folder.path()));
@@ -304,7 +305,7 @@ TEST(Recorder, AFullDiskIsReportedAndWhatWasWrittenIsWhole) {
       std::signal(SIGXFSZ, SIG_IGN);
       const rlimit limit{limit_bytes, limit_bytes};
       ::setrlimit(RLIMIT_FSIZE, &limit);
-      auto recorder = std::make_unique<Recorder>(folder / "run.h5", sample_description(), 256);
+      auto recorder = std::make_unique<Recorder>(folder / "run.h5", sample_description());
       bool told = false;
       try {
         for (int tick = 0; tick < 10'000'000; ++tick) recorder->push_waiting(sample_record(tick));

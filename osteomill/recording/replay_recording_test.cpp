@@ -41,11 +41,10 @@ SessionSettings settings_of_all(const AlgorithmDescription& algorithm, Mode mode
 }
 
 RunDescription description_of(const Volume& scan, const AlgorithmDescription& algorithm, Mode mode) {
-  return describe_run({.scan_name = "ball",
-                       .scan_hash = fingerprint_of(scan.grid()),
-                       .bone = scan,
-                       .session = settings_of_all(algorithm, mode)},
-                      0);
+  RunDescription run = describe_run(scan, settings_of_all(algorithm, mode), 0);
+  run.scan_name = "ball";
+  run.scan_hash = fingerprint_of(scan.grid());
+  return run;
 }
 
 std::unique_ptr<MillingSession> make(std::shared_ptr<Volume> bone, const AlgorithmDescription& algorithm,
@@ -139,7 +138,7 @@ TEST(ReplayRecording, SeveralSessionsOnABoneThatWasMilledBefore) {
     bool reset;
   };
   Recorder recorder(folder / "run.h5", description_of(scan, algorithm_named("point-shell"), Mode::steady),
-                    Recorder::kUsualCapacity, Recorder::Begins::when_told);
+                    Recorder::Begins::when_told);
   std::uint32_t number = 3;
   std::shared_ptr<Volume> now = bone;
   for (const Step& step : {Step{"point-shell", kIsovalue, false}, Step{"barrier-shell", kIsovalue, false},
@@ -183,7 +182,7 @@ class OneRecording : public ::testing::Test {
   OneRecording() {
     const auto session = make(std::make_shared<Volume>(scan_), algorithm_, Mode::steady);
     Recorder recorder(folder_ / "a.h5", description_of(scan_, algorithm_, Mode::steady));
-    Recorder rest(folder_ / "b.h5", description_of(scan_, algorithm_, Mode::steady), 64,
+    Recorder rest(folder_ / "b.h5", description_of(scan_, algorithm_, Mode::steady),
                   Recorder::Begins::when_told);
     rest.begin_session(0, {.goes_on_from = "a.h5"});
     Hand hand;

@@ -150,25 +150,23 @@ SessionSettings session_settings(const RunDescription& run, const std::filesyste
   return session;
 }
 
-RunDescription describe_run(const RunFacts& facts, int sample_points) {
-  const GridGeometry& geometry = facts.bone.geometry();
+RunDescription describe_run(const Volume& bone, const SessionSettings& session, int sample_points,
+                            const std::string& command_line) {
+  const GridGeometry& geometry = bone.geometry();
   RunDescription run;
   run.program_version = OSTEOMILL_VERSION;
   run.made = made_here_and_now();
-  run.scan_name = facts.scan_name;
   run.dims = geometry.dims;
   run.spacing_mm = geometry.spacing_mm;
   run.origin_mm = geometry.origin_mm;
   run.direction = geometry.direction;
-  run.scan_hash = facts.scan_hash;
-  run.isovalue = facts.bone.isovalue();
-  run.seed = facts.seed;
-  if (const auto& labels = facts.bone.labels()) {
+  run.isovalue = bone.isovalue();
+  if (const auto& labels = bone.labels()) {
     run.labels = labels->labels();
     run.label_map_hash = labels->fingerprint();
   }
-  run.settings.push_back({std::string(kCommandLineKey), facts.command_line, ""});
-  set_session_settings(run, facts.session, sample_points);
+  run.settings.push_back({std::string(kCommandLineKey), command_line, ""});
+  set_session_settings(run, session, sample_points);
   return run;
 }
 

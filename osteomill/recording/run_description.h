@@ -55,8 +55,8 @@ struct RunDescription {
   /// Where the grid lies (GridGeometry).
   Vec3 origin_mm = Vec3::Zero();
   Mat3 direction = Mat3::Identity();
-  /// Of the densities as they were read, and of the label map (density_grid.h); 0 where nobody said, or there
-  /// is none.
+  /// Of the densities as they were read (fingerprint_of): a recording can be verified only against these. And
+  /// of the label map. 0 where nobody said, or there is none.
   std::uint64_t scan_hash = 0;
   std::uint64_t label_map_hash = 0;
   /// In the scan's own unit of density.
@@ -100,22 +100,10 @@ void set_session_settings(RunDescription& run, const SessionSettings& session, i
 /// InputError, naming the recording's `path`, where a setting is missing.
 SessionSettings session_settings(const RunDescription& run, const std::filesystem::path& path);
 
-/// What any session is made of. Whoever runs it adds the settings of its own (a script, a hand) to what
-/// `describe_run` makes of this.
-struct RunFacts {
-  std::string scan_name;
-  /// Of the scan as it was read (fingerprint_of); a recording can be verified only against that one.
-  std::uint64_t scan_hash = 0;
-  /// Of which the grid's place, the isovalue and the labels are told.
-  const Volume& bone;
-  SessionSettings session;
-  std::uint64_t seed = 0;
-  /// How the program was called; may be empty.
-  std::string command_line;
-};
-
-/// All that a recording says of such a session: program, scan, tool, every setting with its unit.
-/// `sample_points` is how many the algorithm works with as it stands.
-RunDescription describe_run(const RunFacts& facts, int sample_points);
+/// All that a recording says of a session on this bone, but for what the caller alone knows: scan_name,
+/// scan_hash, seed, and settings of its own (a script, a hand), which it adds. `sample_points` is how many
+/// the algorithm works with as it stands; `command_line`, how the program was called, may be empty.
+RunDescription describe_run(const Volume& bone, const SessionSettings& session, int sample_points,
+                            const std::string& command_line = {});
 
 }  // namespace osteomill
