@@ -128,8 +128,8 @@ TEST(CopyOnWriteFloats, CopiesTakeTheMemoryOfWhatWasWritten) {
   std::vector<CopyOnWriteFloats> copies(10, first);
   for (CopyOnWriteFloats& copy : copies) {
     for (std::size_t n = 0; n < kCount / 100; ++n) copy.set(n, -1);
-    EXPECT_EQ(std::accumulate(copy.begin() + kCount / 100, copy.begin() + kCount / 50, 0.0),
-              std::accumulate(first.begin() + kCount / 100, first.begin() + kCount / 50, 0.0));
+    EXPECT_EQ(std::accumulate(copy.data() + kCount / 100, copy.data() + kCount / 50, 0.0),
+              std::accumulate(first.data() + kCount / 100, first.data() + kCount / 50, 0.0));
   }
   EXPECT_LT(own_memory_MiB() - before_MiB, 8);
 }
