@@ -102,8 +102,9 @@ class CrashStopTest : public ::testing::Test {
     if (child == 0) run_live(&sent_[n], end);
     return child;
   }
+  // A minute: under a sanitizer all of them begin at once on a core or two.
   void await_pressing(std::size_t n) const {
-    for (int k = 0; k < 2000 && sent_[n].max_N < kPressed_N; ++k) std::this_thread::sleep_for(5ms);
+    for (int k = 0; k < 12000 && sent_[n].max_N < kPressed_N; ++k) std::this_thread::sleep_for(5ms);
   }
   // The processes run side by side.
   void expect_zero_after(std::span<const End> ends) {
