@@ -71,18 +71,24 @@ class CopyOnWriteFloats::Original {
  private:
   void fill(std::vector<float>& values, const RowLayout& layout) const {
     if (ftruncate(file_, static_cast<off_t>(mapped_bytes(layout.size()))) != 0) say_why_not();
-    std::vector<float> slice(layout.slice_stride);
-    float* from = values.data();
-    for (std::size_t k = 0; k < layout.slices; ++k) {
-      for (std::size_t j = 0; j < layout.slice_rows; ++j) {
-        std::copy_n(from + j * layout.row_length, layout.row_length, slice.data() + j * layout.row_stride);
-      }
-      write_all(file_, reinterpret_cast<const char*>(slice.data()), slice.size() * sizeof(float),
-                k * slice.size() * sizeof(float));
-      float* const next = from + layout.slice_rows * layout.row_length;
-      give_back(from, next);
-      from = next;
-      WorkProgress::done(k + 1, layout.slices);
+    constexpr std::size_t kAtOnce = 1 << 22;
+    const std::size_t rows = layout.slice_rows * layout.slices;
+    std::vector<float> piece;
+    std::size_t written = 0;
+    float *begin = values.data(), *from = begin;
+    for (std::size_t row = 0; row < rows; ++row, from += layout.row_length) {
+      const std::size_t at =
+          row / layout.slice_rows * layout.slice_stride + row % layout.slice_rows * layout.row_stride;
+      piece.resize(at - written);
+      piece.insert(piece.end(), from, from + layout.row_length);
+      if (piece.size() < kAtOnce && row + 1 < rows) continue;
+      write_all(file_, reinterpret_cast<const char*>(piece.data()), piece.size() * sizeof(float),
+                written * sizeof(float));
+      give_back(begin, from + layout.row_length);
+      begin = from + layout.row_length;
+      written += piece.size();
+      piece.clear();
+      WorkProgress::done(row + 1, rows);
     }
   }
 
@@ -95,6 +101,9 @@ RowLayout RowLayout::apart(std::size_t row_length, std::size_t slice_rows, std::
   constexpr std::size_t kSets = 64;
   // So many rows of a slice have sets to themselves before the next slice's begin.
   constexpr std::size_t kRowsTogether = 12;
+  constexpr std::size_t kThin = 64;
+  if (row_length < kThin || slice_rows < kThin)
+    return {row_length, row_length, slice_rows, row_length * slice_rows, slices};
   const std::size_t row_lines = (row_length + kLineFloats - 1) / kLineFloats | 1;
   const std::size_t least = slice_rows * row_lines, wanted = kRowsTogether * row_lines;
   const std::size_t slice_lines = least + (wanted - least) % kSets;

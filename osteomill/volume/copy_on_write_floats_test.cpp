@@ -24,7 +24,7 @@ std::vector<float> ascending(std::size_t count) {
 }
 
 CopyOnWriteFloats dense(std::vector<float> values) {
-  const RowLayout layout = RowLayout::dense(values.size());
+  const RowLayout layout = RowLayout::apart(values.size(), 1, 1);
   return CopyOnWriteFloats(std::move(values), layout);
 }
 
@@ -34,17 +34,18 @@ TEST(CopyOnWriteFloats, HoldsWhatItWasGiven) {
     const CopyOnWriteFloats floats = dense(values);
     EXPECT_TRUE(std::equal(values.begin(), values.end(), floats.data())) << count;
   }
-  EXPECT_TRUE(CopyOnWriteFloats({}, RowLayout::dense(0)).empty());
+  EXPECT_TRUE(CopyOnWriteFloats({}, RowLayout::apart(0, 1, 1)).empty());
 }
 
 TEST(RowLayout, GivesNeighbouringRowsSetsOfTheCacheToThemselvesWhateverTheScan) {
   constexpr std::size_t kLine = 16, kSets = 64;
-  for (const std::size_t width : {1u, 100u, 192u, 256u, 511u, 512u, 1024u}) {
+  for (const std::size_t width : {64u, 65u, 100u, 192u, 256u, 511u, 512u, 1024u}) {
     const RowLayout layout = RowLayout::apart(width, width, 20);
     EXPECT_GE(layout.row_stride, width);
     EXPECT_LE(layout.row_stride, width + 2 * kLine);
     EXPECT_GE(layout.slice_stride, width * layout.row_stride);
     EXPECT_LT(layout.slice_stride, width * layout.row_stride + kSets * kLine);
+    EXPECT_LT(layout.size(), 1.6 * static_cast<double>(width * width * 20));
     std::multiset<std::size_t> sets;
     for (std::size_t k = 0; k < 12; ++k) {
       for (std::size_t j = 0; j < 12; ++j) {
@@ -57,13 +58,18 @@ TEST(RowLayout, GivesNeighbouringRowsSetsOfTheCacheToThemselvesWhateverTheScan) 
   }
 }
 
+TEST(RowLayout, OfThinScansHasNoGaps) {
+  EXPECT_EQ(RowLayout::apart(2, 2, 10'000'000).size(), 40'000'000u);
+  EXPECT_EQ(RowLayout::apart(512, 8, 512).size(), 512u * 8 * 512);
+}
+
 TEST(CopyOnWriteFloats, TakesRowsApartAndLeavesZerosBetween) {
-  const std::vector<float> values = ascending(2 * 3 * 100);
-  const RowLayout layout = RowLayout::apart(100, 3, 2);
+  const std::vector<float> values = ascending(2 * 70 * 100);
+  const RowLayout layout = RowLayout::apart(100, 70, 2);
   const CopyOnWriteFloats floats(values, layout);
   std::vector<float> expected(layout.size());
-  for (std::size_t row = 0; row < 6; ++row) {
-    const std::size_t at = row / 3 * layout.slice_stride + row % 3 * layout.row_stride;
+  for (std::size_t row = 0; row < 2 * 70; ++row) {
+    const std::size_t at = row / 70 * layout.slice_stride + row % 70 * layout.row_stride;
     for (std::size_t i = 0; i < 100; ++i) expected[at + i] = values[100 * row + i];
   }
   EXPECT_TRUE(std::equal(expected.begin(), expected.end(), floats.data(), floats.data() + floats.size()));
