@@ -133,6 +133,14 @@ Cells cells_of(const std::set<double>& values, bool words) {
   return cells;
 }
 
+// What the tics and the label of the upright axis take.
+double room_left_px(const Shown& shown) {
+  constexpr double kNumbers_px = 84, kLetter_px = 9, kLabel_px = 64;
+  std::size_t longest = 0;
+  for (const std::string& word : shown.words) longest = std::max(longest, word.size());
+  return std::max(kNumbers_px, kLabel_px + kLetter_px * static_cast<double>(longest));
+}
+
 std::string axis_script(char axis, const Cells& cells, const Shown& shown) {
   std::string script =
       fmt::format("{0} logscale {1}\nset {1}range [{2:.9g}:{3:.9g}]\nset {1}label {4} noenhanced\n",
@@ -247,7 +255,7 @@ std::optional<CaptionedFigure> draw_study_map(const StudyDesign& design, const S
   }
   PanelGrid grid{.columns = std::min<std::size_t>(panels.size(), 4),
                  .head_px = 118,
-                 .left_px = 84,
+                 .left_px = room_left_px(shown_y),
                  .right_px = 34,
                  .above_px = 34,
                  .below_px = 58};

@@ -359,7 +359,7 @@ Figure draw_shaft_figure(const RunGroup& group, const std::filesystem::path& fol
           "set palette defined (0 '#440154', 0.27 '#3b528b', 0.54 '#21918c', 0.8 '#5ec962', 1 "
           "'#c2df23')\nset cbrange [0:{:.6g}]\nset cblabel 'Time (s)'\n"
           "set colorbox vertical user origin screen {:.4f},screen 0.2 size screen {:.4f},screen 0.6\n",
-          last_s, 1 - (kBar_px - 16) / PanelGrid::kWidth_px, 16 / PanelGrid::kWidth_px);
+          last_s, 1 - (kBar_px - 36) / PanelGrid::kWidth_px, 16 / PanelGrid::kWidth_px);
   for (std::size_t row = 0; row < phases.size(); ++row) {
     const auto runs = group.runs_of(phases[row]);
     for (std::size_t c = 0; c < runs.size(); ++c) {
