@@ -52,9 +52,9 @@ struct CompareOptions {
   std::string out = "osteomill-comparison";
 };
 
-// A plan for each mode, with the first seed.
-std::vector<TrialPlan> plans_of(const CompareOptions& options, const LoadedBone& bone,
-                                const std::string& command_line) {
+// With the first seed, mode by mode, every algorithm that has this mode.
+std::vector<TrialPlan> trials_of(const CompareOptions& options, const LoadedBone& bone,
+                                 const std::string& command_line) {
   TrialPlan plan{bone.volume,
                  bone.name,
                  estimate_densities(bone.volume),
@@ -64,76 +64,65 @@ std::vector<TrialPlan> plans_of(const CompareOptions& options, const LoadedBone&
                  options.modes.size() > 1};
   plan.scan_hash = fingerprint_of(bone.volume.grid());
   plan.settings.hand_and_device.script.until_leant = true;
-  std::vector<TrialPlan> plans;
+  std::vector<TrialPlan> trials;
   for (const Mode mode : options.modes) {
-    plans.push_back(options.seeds > 1 ? with_seed(plan, options.trial.milling.seed) : plan);
-    plans.back().settings.haptics.mode = mode;
-  }
-  return plans;
-}
-
-// Mode by mode, every algorithm that has this mode.
-std::vector<StudyTrial> trials_of(const CompareOptions& options, const std::vector<TrialPlan>& plans) {
-  std::vector<StudyTrial> trials;
-  for (const TrialPlan& plan : plans) {
     for (const AlgorithmDescription& algorithm : options.algorithms) {
-      if (runs_in(algorithm, plan.settings.haptics.mode, options.modes)) trials.push_back({plan, algorithm});
+      if (!runs_in(algorithm, mode, options.modes)) continue;
+      trials.push_back(options.seeds > 1 ? with_seed(plan, options.trial.milling.seed) : plan);
+      trials.back().settings.algorithm = algorithm;
+      trials.back().settings.haptics.mode = mode;
     }
   }
   return trials;
 }
 
-double softest_felt_N_per_mm(const std::vector<StudyTrial>& trials, const Volume& wall) {
+double softest_felt_N_per_mm(const std::vector<TrialPlan>& trials, const Volume& wall) {
   double softest = std::numeric_limits<double>::infinity();
-  for (const StudyTrial& one : trials) {
-    const double felt = felt_stiffness_N_per_mm(setup_of(one.plan.settings, one.algorithm), wall);
-    if (!(felt > 0)) throw std::invalid_argument(one.algorithm.id.name + " carries no 0.5 N on a flat wall");
+  for (const TrialPlan& trial : trials) {
+    const double felt = felt_stiffness_N_per_mm(trial.settings, wall);
+    if (!(felt > 0))
+      throw std::invalid_argument(trial.settings.algorithm.id.name + " carries no 0.5 N on a flat wall");
     softest = std::min(softest, felt);
   }
   return softest;
 }
 
-void match_stiffness(const CompareOptions& options, std::vector<TrialPlan>& plans) {
-  const Volume wall = flat_wall(plans.front().settings.tool);
-  const double felt_N_per_mm = options.matched_N_per_mm > 0
-                                   ? options.matched_N_per_mm
-                                   : softest_felt_N_per_mm(trials_of(options, plans), wall);
-  for (TrialPlan& plan : plans) {
-    HapticSettings& haptics = plan.settings.haptics;
-    for (const AlgorithmDescription& algorithm : options.algorithms) {
-      if (!runs_in(algorithm, haptics.mode, options.modes)) continue;
-      haptics.named.push_back(setting_felt_as(felt_N_per_mm, setup_of(plan.settings, algorithm), wall));
-    }
-    plan.matched_N_per_mm = felt_N_per_mm;
+void match_stiffness(const CompareOptions& options, std::vector<TrialPlan>& trials) {
+  const Volume wall = flat_wall(trials.front().settings.tool);
+  const double felt_N_per_mm =
+      options.matched_N_per_mm > 0 ? options.matched_N_per_mm : softest_felt_N_per_mm(trials, wall);
+  for (TrialPlan& trial : trials) {
+    trial.settings.haptics.named.push_back(setting_felt_as(felt_N_per_mm, trial.settings, wall));
+    trial.matched_N_per_mm = felt_N_per_mm;
   }
 }
 
 // Of the paper's algorithm 2 as published, every hand tries other grips too.
-void add_other_grips(std::vector<StudyTrial>& others, StudyTrial trial) {
-  if (trial.plan.settings.haptics.mode != Mode::paper || !(trial.algorithm.id == kPapersAlgorithms[1]))
+void add_other_grips(std::vector<TrialPlan>& others, const TrialPlan& trial) {
+  if (trial.settings.haptics.mode != Mode::paper || trial.settings.algorithm.id != kPapersAlgorithms[1])
     return;
-  for (StudyTrial& grip : trials_in_other_grips(trial.plan)) others.push_back(std::move(grip));
+  for (const TrialPlan& grip : trials_in_other_grips(trial)) others.push_back(grip);
 }
 
-std::vector<StudyRow> try_other_hands(const CompareOptions& options, const std::vector<StudyTrial>& trials) {
-  std::vector<StudyTrial> others;
-  for (const StudyTrial& trial : trials) add_other_grips(others, trial);
+std::vector<StudyRow> try_other_hands(const CompareOptions& options, const std::vector<TrialPlan>& trials) {
+  std::vector<TrialPlan> others;
+  for (const TrialPlan& trial : trials) add_other_grips(others, trial);
   for (int n = 1; n < options.seeds; ++n) {
-    const std::uint64_t seed = options.trial.milling.seed + static_cast<std::uint64_t>(n);
-    for (const StudyTrial& trial : trials) {
-      others.push_back({with_seed(trial.plan, seed), trial.algorithm});
-      add_other_grips(others, others.back());
+    for (const TrialPlan& trial : trials) {
+      const TrialPlan other = with_seed(trial, options.trial.milling.seed + static_cast<std::uint64_t>(n));
+      others.push_back(other);
+      add_other_grips(others, other);
     }
   }
   return run_study_trials(others, static_cast<std::size_t>(options.threads), events_on_terminal());
 }
 
 std::vector<PassivityRow> press_on_walls(const CompareOptions& options, const TrialSettings& settings) {
-  const std::vector<PassivityCase> cases = passivity_cases(options.algorithms, options.modes);
   const Volume wall = flat_wall(settings.tool);
-  const auto measure = [&](const PassivityCase& device) { return measure_passivity(device, wall, settings); };
-  std::vector<PassivityRow> rows = run_trials(cases, "stability", static_cast<std::size_t>(options.threads),
-                                              events_on_terminal(), measure);
+  std::vector<PassivityRow> rows =
+      run_trials(passivity_cases(options.algorithms, options.modes, settings), "stability",
+                 static_cast<std::size_t>(options.threads), events_on_terminal(),
+                 [&](const TrialSettings& device) { return measure_passivity(device, wall); });
   end_progress();
   return rows;
 }
@@ -141,26 +130,24 @@ std::vector<PassivityRow> press_on_walls(const CompareOptions& options, const Tr
 void run_compare(const CompareOptions& options, const std::string& command_line) {
   const LoadedBone bone = load_bone(options.scan);
   require_workable(options.trial.milling.setup.tool, bone.volume.geometry());
-  std::vector<TrialPlan> plans = plans_of(options, bone, command_line);
-  if (options.match_stiffness) match_stiffness(options, plans);
+  std::vector<TrialPlan> trials = trials_of(options, bone, command_line);
+  if (options.match_stiffness) match_stiffness(options, trials);
   create_folder(options.out);
-  const EntryPictures pictures(bone.volume, plans.front().densities.reference, plans.front().entry,
+  const EntryPictures pictures(bone.volume, trials.front().densities.reference, trials.front().entry,
                                events_on_terminal(), !options.scan.scan.empty());
   std::vector<Recording> recordings;
   std::vector<StudyRow> rows;
-  const std::vector<StudyTrial> trials = trials_of(options, plans);
-  for (const StudyTrial& trial : trials) {
-    for (const fs::path& path :
-         record_trial(trial.plan, trial.algorithm, pictures, options.out, events_on_terminal())) {
+  for (const TrialPlan& trial : trials) {
+    for (const fs::path& path : record_trial(trial, pictures, options.out, events_on_terminal())) {
       recordings.push_back(read_recording(path));
-      rows.push_back(row_of(trial.plan, recordings.back()));
+      rows.push_back(row_of(trial, recordings.back()));
     }
   }
   ReportExtras extras;
   const std::vector<StudyRow> others = try_other_hands(options, trials);
   rows.insert(rows.end(), others.begin(), others.end());
   extras.study.emplace(std::move(rows));
-  if (!options.no_stability) extras.passivity = press_on_walls(options, plans.front().settings);
+  if (!options.no_stability) extras.passivity = press_on_walls(options, trials.front().settings);
   fmt::print("{}\n", write_comparison_report(recordings, options.out, extras).string());
 }
 

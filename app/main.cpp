@@ -14,13 +14,13 @@
 #include "app/memory_limit.h"
 #include "app/option_checks.h"
 #include "app/progress.h"
-#include "app/shell.h"
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
 #include <sys/resource.h>
 
 #include "osteomill/files/input_error.h"
 #include "osteomill/files/input_files.h"
+#include "osteomill/files/run_program.h"
 #include "osteomill/numbers/work_progress.h"
 
 namespace {
@@ -37,7 +37,7 @@ int complain(const char* reason, int code) {
 // How the program was called, as it would be typed into a shell, the program as "osteomill".
 std::string command_line_of(int argc, const char* const* argv) {
   std::string line = "osteomill";
-  for (int n = 1; n < argc; ++n) line += " " + osteomill::app::quoted(argv[n]);
+  for (int n = 1; n < argc; ++n) line += " " + osteomill::quoted(argv[n]);
   return line;
 }
 

@@ -34,10 +34,11 @@ std::vector<RunSetting> recorded(const std::vector<std::string>& words) {
   parse(command, words);
   const Volume bone = testing_support::shape_volume(testing_support::centred_cube(60, 0.25),
                                                     testing_support::ball(Vec3::Zero(), 5));
-  const TrialPlan plan{bone, "", {0, 1000}, place_entry(bone, options), trial_settings(options), ""};
+  TrialPlan plan{bone, "", {0, 1000}, place_entry(bone, options), trial_settings(options), ""};
   std::vector<RunSetting> all;
   for (const AlgorithmDescription& algorithm : all_algorithms()) {
-    const RunDescription run = describe_trial(plan, algorithm, 0, "milling");
+    plan.settings.algorithm = algorithm;
+    const RunDescription run = describe_trial(plan, 0, "milling");
     all.insert(all.end(), run.settings.begin(), run.settings.end());
     all.push_back({"burr", run.tool.burr_radius_mm, "mm"});
     all.push_back({"shaft", run.tool.shaft_radius_mm, "mm"});

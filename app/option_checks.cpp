@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <numeric>
 #include <optional>
 
 #include <CLI/Error.hpp>
 #include <fmt/core.h>
 
+#include "osteomill/numbers/parse_number.h"
 #include "osteomill/numbers/positive.h"
 
 namespace osteomill::app {
@@ -150,10 +150,8 @@ CLI::Validator positive_number() {
 CLI::Validator whole_number(std::uint64_t min, std::uint64_t max) {
   return CLI::Validator(
       [=](std::string& text) {
-        std::uint64_t value = 0;
-        const char* end = text.data() + text.size();
-        const auto [rest, error] = std::from_chars(text.data(), end, value);
-        const bool good = error == std::errc() && rest == end && value >= min && value <= max;
+        const auto value = parsed_number<std::uint64_t>(text);
+        const bool good = value && *value >= min && *value <= max;
         return good ? std::string() : fmt::format("{} is not a whole number from {} to {}", text, min, max);
       },
       "");

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <charconv>
 
-#include "app/shell.h"
 #include <fmt/format.h>
 #include <fmt/ostream.h>
 
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/files/input_error.h"
+#include "osteomill/files/run_program.h"
 
 namespace osteomill::app {
 
@@ -16,12 +16,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr int kNoProgram = 127;
-
 // What a program printed. Throws InputError with its last line where it fails.
 std::string output_of(const std::vector<std::string>& words) {
   Said said = run_program(words);
-  if (said.exit_code == kNoProgram)
+  if (said.exit_code == Said::kNoProgram)
     throw InputError(words.front(),
                      "is not installed, and --on slurm submits with it (package slurm-client)");
   while (!said.text.empty() && said.text.back() == '\n') said.text.pop_back();

@@ -89,7 +89,7 @@ std::vector<double> time_three_trials(OpenStudy& study) {
   const std::size_t count = study.design.trial_count();
   std::vector<double> taken_s;
   for (const std::size_t sixth : {1, 3, 5}) {
-    const std::vector<StudyTrial> trial = study.trials.make(study.design, count * sixth / 6, 1);
+    const std::vector<TrialPlan> trial = study.trials.make(study.design, count * sixth / 6, 1);
     taken_s.push_back(try_trial(study.design.test, trial.front()).cpu_s);
   }
   std::sort(taken_s.begin(), taken_s.end());
@@ -134,7 +134,7 @@ void status(const StudyFolder& folder) {
 void run_slice(StudyFolder& folder, std::size_t number, int threads, const RunEvents& events) {
   const StudyRecord& record = folder.record;
   const StudyTest test = folder.study.design.test;
-  const std::vector<StudyTrial> trials =
+  const std::vector<TrialPlan> trials =
       folder.study.trials.make(folder.study.design, record.first_of(number), record.size_of(number));
   write_slice(folder.path, record, test,
               osteomill::run_slice(test, number, record.first_of(number), trials,

@@ -30,18 +30,18 @@ std::string tool_text(const MillingTool& tool) {
 }
 
 // Where bones and settings do not go together, as the trial itself would find when it begins.
-void require_runnable(StudyTest test, const StudyTrial& trial) {
-  const TrialSettings& settings = trial.plan.settings;
-  setting_values(trial.algorithm, settings.haptics);
+void require_runnable(StudyTest test, const TrialPlan& trial) {
+  const TrialSettings& settings = trial.settings;
+  setting_values(settings.algorithm, settings.haptics);
   if (test != StudyTest::milling) {
     require_valid(settings.hand_and_device.handle);
-    if (setting_of_option(trial.algorithm, kStiffnessOption) == nullptr)
-      throw std::invalid_argument(trial.algorithm.id.name + " has no stiffness");
+    if (setting_of_option(settings.algorithm, kStiffnessOption) == nullptr)
+      throw std::invalid_argument(settings.algorithm.id.name + " has no stiffness");
     return;
   }
-  require_workable(settings.tool, trial.plan.bone.geometry());
+  require_workable(settings.tool, trial.bone.geometry());
   milling_settings(settings);
-  SimulatedOperator(settings.hand_and_device, settings.tool, trial.plan.entry);
+  SimulatedOperator(settings.hand_and_device, settings.tool, trial.entry);
 }
 
 }  // namespace
@@ -53,7 +53,7 @@ StudyTrials::StudyTrials(std::string file, std::filesystem::path scans_from)
       ->check(CLI::Range(0.03, 1.0))
       ->type_name("mm");
   command_.option_defaults()->group("A study");
-  add_algorithm_option(command_, asked_.algorithms);
+  add_algorithm_option(command_, asked_.trial.milling.setup.algorithm);
   add_mode_option(command_, asked_.trial.milling.setup.haptics.mode);
   command_.add_option("--rate", asked_.rate_hz, "Of the haptic loop")
       ->check(CLI::Range(100.0, 20000.0))
@@ -146,14 +146,12 @@ const Volume& StudyTrials::wall_of(const MillingTool& tool) {
   return found != walls_.end() ? found->second : walls_.emplace(key, flat_wall(tool)).first->second;
 }
 
-StudyTrial StudyTrials::trial_of(const StudyDesign& design, const StudySettings& settings) {
+TrialPlan StudyTrials::trial_of(const StudyDesign& design, const StudySettings& settings) {
   take(settings);
   TrialSettings set = trial_settings(asked_.trial);
   set.tick_s = 1 / asked_.rate_hz;
-  const AlgorithmDescription& algorithm = asked_.algorithms.front();
-  if (design.test != StudyTest::milling) {
-    return {{wall_of(set.tool), "a wall", {}, {}, set, ""}, algorithm, asked_.device_damping_Ns_per_mm};
-  }
+  set.device_damping_Ns_per_mm = asked_.device_damping_Ns_per_mm;
+  if (design.test != StudyTest::milling) return {wall_of(set.tool), "a wall", {}, {}, set, ""};
   Bone& bone = bone_of(settings);
   const auto numbers = [](const std::vector<double>& values) {
     return fmt::format("{}", fmt::join(values, ","));
@@ -168,12 +166,12 @@ StudyTrial StudyTrials::trial_of(const StudyDesign& design, const StudySettings&
   plan.grip = asked_.grip;
   HandSettings& hand = plan.settings.hand_and_device.hand;
   hand = gripping(hand, asked_.grip);
-  return {plan, algorithm, asked_.device_damping_Ns_per_mm};
+  return plan;
 }
 
-std::vector<StudyTrial> StudyTrials::make(const StudyDesign& design, std::size_t first, std::size_t count) {
+std::vector<TrialPlan> StudyTrials::make(const StudyDesign& design, std::size_t first, std::size_t count) {
   if (bones_.size() > kBonesKept) bones_.clear();
-  std::vector<StudyTrial> trials;
+  std::vector<TrialPlan> trials;
   for (std::size_t number = first; number < first + count; ++number) {
     const auto refuse = [&](const std::exception& error) {
       throw InputError(file_, fmt::format("trial {}: {}", number, error.what()));

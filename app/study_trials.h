@@ -41,13 +41,12 @@ class StudyTrials {
   /// Trials that follow each other. They hold on to this object's bones: until the next call. Throws
   /// InputError, naming the file and the trial, where a setting is out of its range or does not go with the
   /// others, and naming the scan where that is at fault or has changed.
-  std::vector<StudyTrial> make(const StudyDesign& design, std::size_t first, std::size_t count);
+  std::vector<TrialPlan> make(const StudyDesign& design, std::size_t first, std::size_t count);
 
  private:
   struct Asked {
     ScanOptions scan;
     TrialOptions trial;
-    std::vector<AlgorithmDescription> algorithms{default_algorithm()};
     double voxel_mm = 0.125;
     double rate_hz = 1000;
     double device_damping_Ns_per_mm = 0.005;
@@ -63,7 +62,7 @@ class StudyTrials {
 
   const CLI::Option* option(const std::string& key) const;
   void take(const StudySettings& settings);
-  StudyTrial trial_of(const StudyDesign& design, const StudySettings& settings);
+  TrialPlan trial_of(const StudyDesign& design, const StudySettings& settings);
   Bone& bone_of(const StudySettings& settings);
   const Volume& wall_of(const MillingTool& tool);
 

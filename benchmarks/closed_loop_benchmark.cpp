@@ -25,6 +25,7 @@ struct Trial {
 
 TrialSettings settings_of(const Trial& trial) {
   TrialSettings settings;
+  settings.algorithm = algorithm_named(trial.algorithm);
   settings.spindle = trial.milling;
   settings.haptics.mode = trial.mode;
   settings.hand_and_device.script.milling_s = 5;
@@ -44,7 +45,7 @@ void closed_loop(benchmark::State& state, const Trial& trial) {
   const MillingEntry entry = place_entry(bone, settings.tool);
   const BoneDensities densities = estimate_densities(bone);
   for ([[maybe_unused]] auto _ : state) {
-    MillingTrial run(bone, densities, entry, algorithm_named(trial.algorithm), settings);
+    MillingTrial run(bone, densities, entry, settings);
     TickTimes steps, milling;
     double removed_mm3 = 0, contacts = 0;
     while (!run.finished()) {

@@ -32,12 +32,13 @@ struct Milling {
 
 Milling mill(std::string_view algorithm, double push_N, std::uint64_t seed, double tick_s) {
   TrialSettings settings;
+  settings.algorithm = algorithm_named(algorithm);
   settings.tick_s = tick_s;
   settings.hand_and_device.hand.push_N = push_N;
   settings.hand_and_device.seed = seed;
   settings.hand_and_device.script.holding_s = 0;
   const RealTooth& tooth = real_tooth();
-  MillingTrial trial(tooth.volume, tooth.densities, tooth.entry, algorithm_named(algorithm), settings);
+  MillingTrial trial(tooth.volume, tooth.densities, tooth.entry, settings);
   std::vector<Vec3> forces;
   std::vector<Vec3> torques;
   Milling milling;

@@ -55,13 +55,13 @@ struct Phases {
 
 Phases run_trial(const Volume& bone, const std::string& algorithm, double phase_s) {
   TrialSettings settings;
+  settings.algorithm = algorithm_named(algorithm);
   settings.hand_and_device.seed = 11;
   settings.hand_and_device.script.until_leant = true;
   settings.hand_and_device.script.milling_s = phase_s;
   settings.hand_and_device.script.holding_s = 0.5 * phase_s;
   const double before_MiB = testing_support::own_memory_MiB();
-  MillingTrial trial(bone, estimate_densities(bone), place_entry(bone, settings.tool),
-                     algorithm_named(algorithm), settings);
+  MillingTrial trial(bone, estimate_densities(bone), place_entry(bone, settings.tool), settings);
   Phases phases;
   while (!trial.finished()) {
     const MillingTrial::Tick tick = trial.tick();

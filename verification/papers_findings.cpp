@@ -35,14 +35,15 @@ std::vector<StudyRow> rows_on(const Volume& bone, Hands hands, double phase_s,
   script.until_leant = true;
   script.milling_s = script.holding_s = phase_s;
   const TrialPlan plan{bone, "", estimate_densities(bone), place_entry(bone, settings.tool), settings, ""};
-  std::vector<StudyTrial> trials;
+  std::vector<TrialPlan> trials;
   for (std::uint64_t seed = hands.first; seed <= hands.last; ++seed) {
     TrialPlan in_hand = with_seed(plan, seed);
     change(in_hand.settings);
     for (const std::size_t n : algorithms) {
-      trials.push_back({in_hand, algorithm_named(kPapersAlgorithms[n - 1])});
+      trials.push_back(in_hand);
+      trials.back().settings.algorithm = algorithm_named(kPapersAlgorithms[n - 1]);
       if (n != 2) continue;
-      for (StudyTrial& grip : trials_in_other_grips(in_hand)) trials.push_back(std::move(grip));
+      for (const TrialPlan& grip : trials_in_other_grips(in_hand)) trials.push_back(grip);
     }
   }
   return run_study_trials(trials, std::thread::hardware_concurrency(), {});

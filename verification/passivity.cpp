@@ -23,14 +23,14 @@ Section passivity() {
       {},
       {}};
   const Volume wall = flat_wall({});
-  const std::vector<PassivityCase> cases = passivity_cases(all_algorithms(), {Mode::steady});
+  const std::vector<TrialSettings> cases = passivity_cases(all_algorithms(), {Mode::steady});
   std::vector<PassivityRow> rows(cases.size());
-  in_parallel(cases.size(), [&](std::size_t n) { rows[n] = measure_passivity(cases[n], wall, {}); });
+  in_parallel(cases.size(), [&](std::size_t n) { rows[n] = measure_passivity(cases[n], wall); });
   for (const AlgorithmDescription& algorithm : all_algorithms()) {
     std::vector<double> shares;
     int none = 0, all = 0;
     for (const PassivityRow& row : rows) {
-      if (!(row.setup.algorithm.id == algorithm.id)) continue;
+      if (!(row.algorithm == algorithm.id)) continue;
       none += row.limit.kind == StiffnessLimit::Kind::below_all ? 1 : 0;
       all += row.limit.kind == StiffnessLimit::Kind::above_all ? 1 : 0;
       if (row.limit.kind == StiffnessLimit::Kind::found) {

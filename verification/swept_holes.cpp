@@ -79,12 +79,12 @@ struct Milled {
 Milled mill(std::string_view algorithm, const Hole& hole, double seconds) {
   const Volume bone = block(hole);
   TrialSettings settings;
+  settings.algorithm = algorithm_named(algorithm);
   settings.tool.burr_radius_mm = hole.burr_radius_mm;
   settings.tool.shaft_radius_mm = std::min(settings.tool.shaft_radius_mm, 0.7 * hole.burr_radius_mm);
   settings.hand_and_device.hand.push_N = hole.push_N;
   settings.hand_and_device.script.milling_s = seconds * hole.time;
-  MillingTrial trial(bone, estimate_densities(bone), place_entry(bone, settings.tool),
-                     algorithm_named(algorithm), settings);
+  MillingTrial trial(bone, estimate_densities(bone), place_entry(bone, settings.tool), settings);
   std::vector<Vec3> path_W;
   double paid_for_mm3 = 0, removed_mm3 = 0;
   for (MillingTrial::Tick tick = trial.tick(); tick.milling_phase; tick = trial.tick()) {

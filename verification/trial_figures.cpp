@@ -12,6 +12,7 @@ namespace {
 
 TrialSettings settings_of(const TrialVariant& variant) {
   TrialSettings settings;
+  settings.algorithm = algorithm_named(variant.algorithm);
   settings.tick_s = variant.tick_s;
   settings.tool = variant.tool;
   settings.cutting_reaction = variant.cutting_reaction;
@@ -32,8 +33,7 @@ TrialSettings settings_of(const TrialVariant& variant) {
 
 TrialFigures milling_figures(const Volume& bone, const TrialVariant& variant) {
   const TrialSettings settings = settings_of(variant);
-  MillingTrial trial(bone, estimate_densities(bone), place_entry(bone, settings.tool),
-                     algorithm_named(variant.algorithm), settings);
+  MillingTrial trial(bone, estimate_densities(bone), place_entry(bone, settings.tool), settings);
   const MillingSettings milling = milling_settings(settings);
   Recording recording;
   recording.description.tick_period_s = variant.tick_s;

@@ -31,9 +31,9 @@ Volume block(double spacing_mm) {
 double hole_mm3(std::string_view algorithm, double spacing_mm, double seconds) {
   const Volume bone = block(spacing_mm);
   TrialSettings settings;
+  settings.algorithm = algorithm_named(algorithm);
   settings.hand_and_device.script.milling_s = seconds;
-  MillingTrial trial(bone, estimate_densities(bone), place_entry(bone, settings.tool),
-                     algorithm_named(algorithm), settings);
+  MillingTrial trial(bone, estimate_densities(bone), place_entry(bone, settings.tool), settings);
   while (trial.tick().milling_phase) {
   }
   double lost = 0;

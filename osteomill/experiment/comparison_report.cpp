@@ -63,7 +63,8 @@ PageSection opening(const Study& study, const std::vector<Recording>& recordings
 Study study_of(const std::vector<RunGroup>& groups) {
   std::vector<StudyRow> rows;
   for (const RunGroup& group : groups) {
-    for (const MeasuredRun& run : group.runs) rows.push_back({run.recording->description.seed, {}, run});
+    for (const MeasuredRun& run : group.runs)
+      rows.push_back({.seed = run.recording->description.seed, .run = run});
   }
   const fs::path folder = rows.front().run.recording->path.parent_path();
   std::optional<Study> whole = read_study_csv(folder / kStudyCsv, rows);

@@ -65,15 +65,21 @@ constexpr double kDelays_s[] = {0.3e-3, 1e-3, 2e-3};
 
 }  // namespace
 
-std::vector<PassivityCase> passivity_cases(const std::vector<AlgorithmDescription>& algorithms,
-                                           const std::vector<Mode>& modes) {
-  std::vector<PassivityCase> cases;
+std::vector<TrialSettings> passivity_cases(const std::vector<AlgorithmDescription>& algorithms,
+                                           const std::vector<Mode>& modes, const TrialSettings& settings) {
+  std::vector<TrialSettings> cases;
   for (const Mode mode : modes) {
     for (const AlgorithmDescription& algorithm : algorithms) {
       if (setting_of_option(algorithm, kStiffnessOption) == nullptr) continue;
       if (!runs_in(algorithm, mode, modes)) continue;
       for (const double delay_s : kDelays_s) {
-        for (const double damping : kDampings_Ns_per_mm) cases.push_back({algorithm, mode, damping, delay_s});
+        for (const double damping : kDampings_Ns_per_mm) {
+          TrialSettings& one = cases.emplace_back(settings);
+          one.algorithm = algorithm;
+          one.haptics.mode = mode;
+          one.hand_and_device.handle.force_delay_s = delay_s;
+          one.device_damping_Ns_per_mm = damping;
+        }
       }
     }
   }
@@ -107,29 +113,25 @@ Volume flat_wall(const MillingTool& tool) {
   return Volume(DensityGrid(geometry, std::move(densities)), kIsovalue);
 }
 
-WallPressResult press_on_wall(const PassivityCase& setup, const Volume& wall, const TrialSettings& settings) {
-  WallPress press;
-  press.handle = settings.hand_and_device.handle;
-  press.handle.force_delay_s = setup.delay_s;
-  press.damping_Ns_per_mm = setup.damping_Ns_per_mm;
-  press.tick_s = settings.tick_s;
-  HapticSettings haptics = settings.haptics;
-  haptics.mode = setup.mode;
-  const auto algorithm = make_algorithm(setup.algorithm, haptics);
+WallPressResult press_on_wall(const TrialSettings& settings, const Volume& wall) {
+  const auto algorithm = make_algorithm(settings.algorithm, settings.haptics);
   algorithm->prepare({&wall, settings.tool, settings.tick_s});
-  return press_on_wall(*algorithm, settings.tool.burr_radius_mm, press);
+  return press_on_wall(*algorithm, settings.tool.burr_radius_mm,
+                       {settings.hand_and_device.handle, settings.device_damping_Ns_per_mm, settings.tick_s});
 }
 
-PassivityRow measure_passivity(const PassivityCase& setup, const Volume& wall, TrialSettings settings) {
-  const std::string stiffness = setting_of_option(setup.algorithm, kStiffnessOption)->name;
-  settings.haptics.named.push_back({setup.algorithm.id.name, stiffness, 0});
+PassivityRow measure_passivity(TrialSettings settings, const Volume& wall) {
+  const AlgorithmId& algorithm = settings.algorithm.id;
+  settings.haptics.named.push_back(
+      {algorithm.name, setting_of_option(settings.algorithm, kStiffnessOption)->name, 0});
   const auto press_at = [&](double stiffness_N_per_mm) {
     settings.haptics.named.back().value = stiffness_N_per_mm;
-    return press_on_wall(setup, wall, settings);
+    return press_on_wall(settings, wall);
   };
-  const double rule =
-      passive_stiffness_rule_N_per_mm(setup.damping_Ns_per_mm, settings.tick_s, setup.delay_s);
-  return {setup, seek_stiffness_limit(press_at, rule), rule};
+  const double damping = settings.device_damping_Ns_per_mm;
+  const double delay_s = settings.hand_and_device.handle.force_delay_s;
+  const double rule = passive_stiffness_rule_N_per_mm(damping, settings.tick_s, delay_s);
+  return {algorithm, settings.haptics.mode, damping, delay_s, seek_stiffness_limit(press_at, rule), rule};
 }
 
 }  // namespace osteomill

@@ -38,17 +38,12 @@ StiffnessLimit seek_stiffness_limit(const std::function<WallPressResult(double s
 /// Schenkel (1997) and Diolaiti et al. (2006).
 double passive_stiffness_rule_N_per_mm(double damping_Ns_per_mm, double tick_s, double delay_s);
 
-/// One algorithm on one device.
-struct PassivityCase {
-  AlgorithmDescription algorithm;
+/// How stiff an algorithm can be on a device of this damping and delay.
+struct PassivityRow {
+  AlgorithmId algorithm;
   Mode mode = Mode::steady;
   double damping_Ns_per_mm = 0;
   double delay_s = 0;
-};
-
-/// How stiff an algorithm can be on a device.
-struct PassivityRow {
-  PassivityCase setup;
   /// By the algorithm's own setting (--stiffness), which need not be what is felt.
   StiffnessLimit limit;
   /// How stiff an ideal wall could be there (passive_stiffness_rule_N_per_mm).
@@ -56,20 +51,21 @@ struct PassivityRow {
 };
 
 /// Every algorithm that has a setting of the option "stiffness", in every mode that it has, on devices with
-/// 1, 2, 5 and 10 N s/m of damping and 0.3, 1 and 2 ms of delay.
-std::vector<PassivityCase> passivity_cases(const std::vector<AlgorithmDescription>& algorithms,
-                                           const std::vector<Mode>& modes);
+/// 1, 2, 5 and 10 N s/m of damping and 0.3, 1 and 2 ms of delay; all else as in `settings`.
+std::vector<TrialSettings> passivity_cases(const std::vector<AlgorithmDescription>& algorithms,
+                                           const std::vector<Mode>& modes,
+                                           const TrialSettings& settings = {});
 
 /// Bone that fills z < 0, wide and deep enough to press this tool on, of voxels a twelfth of the burr's
 /// radius (0.05 to 0.5 mm).
 Volume flat_wall(const MillingTool& tool);
 
-/// Presses on the wall (wall_press.h) with the tool, tick, haptic settings and handle of `settings`; the mode
-/// and the handle's delay are those of `setup`. Throws std::invalid_argument where a setting is out of range.
-WallPressResult press_on_wall(const PassivityCase& setup, const Volume& wall, const TrialSettings& settings);
+/// Presses on the wall (wall_press.h) with the algorithm, tool, tick and device of `settings`. Throws
+/// std::invalid_argument where one is out of range.
+WallPressResult press_on_wall(const TrialSettings& settings, const Volume& wall);
 
 /// Seeks the greatest `--stiffness` at which the wall stays passive, pressed as `press_on_wall` does. Throws
 /// as that does.
-PassivityRow measure_passivity(const PassivityCase& setup, const Volume& wall, TrialSettings settings);
+PassivityRow measure_passivity(TrialSettings settings, const Volume& wall);
 
 }  // namespace osteomill

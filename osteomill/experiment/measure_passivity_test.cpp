@@ -66,14 +66,15 @@ double exact_limit_N_per_mm(const WallPress& press) {
 }
 
 TEST(Passivity, AnIdealSpringKeepsToTheRule) {
-  for (const PassivityCase& setup : passivity_cases({algorithm_named("line-proxy")}, {Mode::steady})) {
-    const WallPress press = device(setup.damping_Ns_per_mm, setup.delay_s);
+  for (const TrialSettings& setup : passivity_cases({algorithm_named("line-proxy")}, {Mode::steady})) {
+    const double damping = setup.device_damping_Ns_per_mm;
+    const double delay_s = setup.hand_and_device.handle.force_delay_s;
+    const WallPress press = device(damping, delay_s);
     const StiffnessLimit limit = ideal_limit(press);
-    const double rule = passive_stiffness_rule_N_per_mm(setup.damping_Ns_per_mm, 1e-3, setup.delay_s);
+    const double rule = passive_stiffness_rule_N_per_mm(damping, 1e-3, delay_s);
     const double exact = exact_limit_N_per_mm(press);
     EXPECT_EQ(limit.kind, StiffnessLimit::Kind::found);
-    EXPECT_NEAR(limit.stiffness_N_per_mm / exact, 1, 0.05)
-        << "b " << setup.damping_Ns_per_mm << " delay " << setup.delay_s;
+    EXPECT_NEAR(limit.stiffness_N_per_mm / exact, 1, 0.05) << "b " << damping << " delay " << delay_s;
     EXPECT_NEAR(limit.stiffness_N_per_mm / rule, 1, 0.08);
     EXPECT_NEAR(limit.felt_N_per_mm / limit.stiffness_N_per_mm, 1, 1e-6);
   }

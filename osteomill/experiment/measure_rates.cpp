@@ -92,10 +92,11 @@ std::vector<RateRow> measure_rates(const Volume& bone, const BoneDensities& dens
                                         [&](const auto& one) { return one.id == resolution.algorithm; });
     if (algorithm == algorithms.end()) continue;
     TrialSettings trial_settings = settings;
+    trial_settings.algorithm = *algorithm;
     trial_settings.spindle = false;
     trial_settings.haptics.named.push_back(
         {algorithm->id.name, algorithm->resolution_setting, resolution.value});
-    MillingTrial trial(bone, densities, entry, *algorithm, trial_settings);
+    MillingTrial trial(bone, densities, entry, trial_settings);
     const Times times = times_of(trial);
     // Known only once points were needed.
     const auto same_points = [&](const RateRow& row) {
@@ -105,7 +106,7 @@ std::vector<RateRow> measure_rates(const Volume& bone, const BoneDensities& dens
       twin->resolution += " and " + text_of(*algorithm, resolution);
       continue;
     }
-    MillingTrial again(bone, densities, entry, *algorithm, trial_settings);
+    MillingTrial again(bone, densities, entry, trial_settings);
     const Distribution step_us = distribution_of(times.step_us);
     rows.push_back({algorithm->id, text_of(*algorithm, resolution), trial.algorithm().sample_point_count(),
                     step_us.median, step_us.p99, times.held.rate_hz(), 1e6 / step_us.median,

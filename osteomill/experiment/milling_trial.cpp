@@ -10,15 +10,9 @@ double thread_cpu_s() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-MillingSetup setup_of(const TrialSettings& settings, const AlgorithmDescription& algorithm) {
-  MillingSetup setup = settings;
-  setup.algorithm = algorithm;
-  return setup;
-}
-
 MillingTrial::MillingTrial(const Volume& bone, const BoneDensities& densities, const MillingEntry& entry,
-                           const AlgorithmDescription& algorithm, const TrialSettings& settings)
-    : session_(std::make_shared<Volume>(bone), densities, setup_of(settings, algorithm)),
+                           const TrialSettings& settings)
+    : session_(std::make_shared<Volume>(bone), densities, settings),
       operator_(settings.hand_and_device, settings.tool, entry),
       tick_s_(settings.tick_s),
       spindle_(settings.spindle) {}

@@ -7,19 +7,17 @@
 
 namespace osteomill {
 
-/// All that a trial depends on but the bone, the entry and the algorithm: that is handed over beside these
-/// settings, and the one in MillingSetup is not used.
+/// All that a trial depends on but the bone and the entry.
 struct TrialSettings : MillingSetup {
   OperatorSettings hand_and_device;
+  /// Of the device itself, where it is pressed on a wall without a hand.
+  double device_damping_Ns_per_mm = 0.005;
   /// False lets the hand go through its motions without removing bone, as section 8.1 measures rates.
   bool spindle = true;
 };
 
 /// The CPU time that this thread has taken so far, in s. A system call, so not for the tick.
 double thread_cpu_s();
-
-/// The setup of one algorithm's trial.
-MillingSetup setup_of(const TrialSettings& settings, const AlgorithmDescription& algorithm);
 
 /// One algorithm in the test of section 8.2, in simulated time: a simulated hand mills a hole, leans the
 /// shaft on its edge, and then stands in it with the spindle off. The same settings give the same records on
@@ -34,7 +32,7 @@ class MillingTrial {
 
   /// Copies the bone. Throws std::invalid_argument where a setting is out of range.
   MillingTrial(const Volume& bone, const BoneDensities& densities, const MillingEntry& entry,
-               const AlgorithmDescription& algorithm, const TrialSettings& settings);
+               const TrialSettings& settings);
 
   bool finished() const { return operator_.finished(); }
   /// What the hand could not bring about.

@@ -30,8 +30,9 @@ class MillingTrialTest : public ::testing::TestWithParam<std::string> {
   };
   Run run(std::uint64_t seed) const {
     TrialSettings settings = settings_;
+    settings.algorithm = algorithm_named(GetParam());
     settings.hand_and_device.seed = seed;
-    MillingTrial trial(bone_, densities_, entry_, algorithm_named(GetParam()), settings);
+    MillingTrial trial(bone_, densities_, entry_, settings);
     Run result;
     while (!trial.finished()) {
       const MillingTrial::Tick tick = trial.tick();

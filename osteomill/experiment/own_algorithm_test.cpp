@@ -62,15 +62,16 @@ TEST(OwnAlgorithm, IsRunRecordedAndReportedBesideThePapers) {
   TrialSettings settings;
   settings.hand_and_device.script.milling_s = 4;
   settings.hand_and_device.script.holding_s = 0.5;
-  const TrialPlan plan{bone,     "built-in tooth", estimate_densities(bone), place_entry(bone, settings.tool),
-                       settings, "my_program"};
+  TrialPlan plan{bone,     "built-in tooth", estimate_densities(bone), place_entry(bone, settings.tool),
+                 settings, "my_program"};
   const TemporaryFolder folder;
   const RunEvents quiet;
   const EntryPictures pictures(bone, plan.densities.reference, plan.entry, quiet);
   std::vector<Recording> recordings;
   for (const AlgorithmDescription& algorithm :
        {cushion(plan.entry.point_W.z()), algorithm_named("line-proxy")}) {
-    for (const auto& path : record_trial(plan, algorithm, pictures, folder.path(), quiet)) {
+    plan.settings.algorithm = algorithm;
+    for (const auto& path : record_trial(plan, pictures, folder.path(), quiet)) {
       recordings.push_back(read_recording(path));
     }
   }

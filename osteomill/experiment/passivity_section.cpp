@@ -38,7 +38,7 @@ std::string cell(const PassivityRow& row) {
 std::vector<AlgorithmId> algorithms_of(std::span<const PassivityRow> rows, Mode mode) {
   std::vector<AlgorithmId> present;
   for (const PassivityRow& row : rows) {
-    if (row.setup.mode == mode) present.push_back(row.setup.algorithm.id);
+    if (row.mode == mode) present.push_back(row.algorithm);
   }
   return each_once(std::move(present));
 }
@@ -49,15 +49,14 @@ HtmlTable mode_table(std::span<const PassivityRow> rows, Mode mode) {
   HtmlTable table{{"Device: damping, delay", "2 b / (T + 2 τ)"}, {}, true};
   for (const AlgorithmId& algorithm : algorithms) table.header.emplace_back(algorithm.label);
   for (const PassivityRow& device : rows) {
-    if (device.setup.mode != mode || device.setup.algorithm.id != algorithms.front()) continue;
-    table.rows.push_back({fmt::format("{:.3g} N s/m, {:.3g} ms", 1e3 * device.setup.damping_Ns_per_mm,
-                                      1e3 * device.setup.delay_s),
-                          fmt::format("{:.3g}", device.rule_N_per_mm)});
+    if (device.mode != mode || device.algorithm != algorithms.front()) continue;
+    table.rows.push_back(
+        {fmt::format("{:.3g} N s/m, {:.3g} ms", 1e3 * device.damping_Ns_per_mm, 1e3 * device.delay_s),
+         fmt::format("{:.3g}", device.rule_N_per_mm)});
     for (const AlgorithmId& algorithm : algorithms) {
       const auto row = std::find_if(rows.begin(), rows.end(), [&](const PassivityRow& of) {
-        return of.setup.mode == mode && of.setup.algorithm.id == algorithm &&
-               of.setup.delay_s == device.setup.delay_s &&
-               of.setup.damping_Ns_per_mm == device.setup.damping_Ns_per_mm;
+        return of.mode == mode && of.algorithm == algorithm && of.delay_s == device.delay_s &&
+               of.damping_Ns_per_mm == device.damping_Ns_per_mm;
       });
       table.rows.back().push_back(row == rows.end() ? "–" : cell(*row));
     }
@@ -70,7 +69,7 @@ std::string range_against_rule(std::span<const PassivityRow> rows, const Algorit
   std::vector<double> ratios;
   std::size_t none = 0;
   for (const PassivityRow& row : rows) {
-    if (row.setup.algorithm.id != algorithm || row.setup.mode != mode) continue;
+    if (row.algorithm != algorithm || row.mode != mode) continue;
     if (row.limit.kind == Kind::below_all) {
       ++none;
     } else {
@@ -114,7 +113,7 @@ constexpr const char* kCaption =
     "Points stand a little aside of each other.";
 
 double damping_Ns_per_m(const PassivityRow& row) {
-  return 1e3 * row.setup.damping_Ns_per_mm;
+  return 1e3 * row.damping_Ns_per_mm;
 }
 
 struct Axes {
@@ -134,9 +133,9 @@ void add_once(std::vector<T>& all, const T& value) {
 Axes axes_of(std::span<const PassivityRow> rows) {
   Axes axes;
   for (const PassivityRow& row : rows) {
-    add_once(axes.modes, row.setup.mode);
-    add_once(axes.delays_s, row.setup.delay_s);
-    add_once(axes.algorithms, row.setup.algorithm.id);
+    add_once(axes.modes, row.mode);
+    add_once(axes.delays_s, row.delay_s);
+    add_once(axes.algorithms, row.algorithm);
     add_once(axes.dampings_Ns_per_m, damping_Ns_per_m(row));
     for (const double stiffness : {row.rule_N_per_mm, row.limit.felt_N_per_mm}) {
       if (!(stiffness > 0)) continue;
@@ -154,8 +153,7 @@ std::string curve_data(std::span<const PassivityRow> rows, const AlgorithmId& al
                        Mode mode, double delay_s) {
   std::string data;
   for (const PassivityRow& row : rows) {
-    const PassivityCase& setup = row.setup;
-    if (setup.algorithm.id != algorithm || setup.mode != mode || setup.delay_s != delay_s) continue;
+    if (row.algorithm != algorithm || row.mode != mode || row.delay_s != delay_s) continue;
     const std::string felt = fmt::format("{:.6g}", row.limit.felt_N_per_mm);
     data += fmt::format("{:.6g} {} {} {:.6g} {:.6g}\n", aside * damping_Ns_per_m(row),
                         row.limit.kind == StiffnessLimit::Kind::below_all ? "?" : felt,
@@ -249,9 +247,8 @@ void write_passivity_csv(const std::filesystem::path& path, std::span<const Pass
     out << "algorithm,mode,device_damping_Ns_per_m,device_delay_s,limit,stiffness_N_per_mm,felt_N_per_mm,"
            "rule_N_per_mm\n";
     for (const PassivityRow& row : rows) {
-      const PassivityCase& setup = row.setup;
-      out << fmt::format("{},{},{},{},{},{},{},{}\n", setup.algorithm.id.name, name_of(setup.mode),
-                         1e3 * setup.damping_Ns_per_mm, setup.delay_s, name_of_kind(row.limit.kind),
+      out << fmt::format("{},{},{},{},{},{},{},{}\n", name_of(row.algorithm), name_of(row.mode),
+                         damping_Ns_per_m(row), row.delay_s, name_of_kind(row.limit.kind),
                          row.limit.stiffness_N_per_mm, row.limit.felt_N_per_mm, row.rule_N_per_mm);
     }
   });

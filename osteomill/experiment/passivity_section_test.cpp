@@ -27,12 +27,15 @@ std::vector<PassivityRow> sample_rows(const std::vector<Mode>& modes) {
   std::vector<PassivityRow> rows;
   std::vector<AlgorithmDescription> algorithms;
   for (const std::string_view name : kPapersAlgorithms) algorithms.push_back(algorithm_named(name));
-  for (const PassivityCase& setup : passivity_cases(algorithms, modes)) {
-    const double rule = passive_stiffness_rule_N_per_mm(setup.damping_Ns_per_mm, 1e-3, setup.delay_s);
-    PassivityRow row{setup, {Kind::found, rule, rule}, rule};
-    if (setup.algorithm.id == "surface-points") row.limit = {Kind::found, 4 * rule, 0.5 * rule};
-    if (setup.algorithm.id == "surface-points" && setup.damping_Ns_per_mm == 0.01) row.limit = {};
-    if (setup.algorithm.id == "point-shell") row.limit = {Kind::above_all, 200, 9};
+  for (const TrialSettings& setup : passivity_cases(algorithms, modes)) {
+    const double damping = setup.device_damping_Ns_per_mm;
+    const double delay_s = setup.hand_and_device.handle.force_delay_s;
+    const double rule = passive_stiffness_rule_N_per_mm(damping, 1e-3, delay_s);
+    PassivityRow row{
+        setup.algorithm.id, setup.haptics.mode, damping, delay_s, {Kind::found, rule, rule}, rule};
+    if (row.algorithm == "surface-points") row.limit = {Kind::found, 4 * rule, 0.5 * rule};
+    if (row.algorithm == "surface-points" && damping == 0.01) row.limit = {};
+    if (row.algorithm == "point-shell") row.limit = {Kind::above_all, 200, 9};
     rows.push_back(row);
   }
   return rows;
@@ -58,7 +61,7 @@ TEST_F(PassivitySectionTest, AColumnIsOfItsAlgorithmInWhateverOrderTheyWereMeasu
   const Figure figure = draw_passivity_figure(rows, out_);
   const std::string page = html(passivity_section(rows, figure));
   std::stable_sort(rows.begin(), rows.end(), [](const PassivityRow& a, const PassivityRow& b) {
-    return a.setup.algorithm.id.label > b.setup.algorithm.id.label;
+    return a.algorithm.label > b.algorithm.label;
   });
   const std::string reversed = html(passivity_section(rows, figure));
   const auto first_row = [](const std::string& text) {
@@ -97,7 +100,7 @@ TEST_F(PassivitySectionTest, TheWordsGiveTheRangeAgainstTheRule) {
 
 TEST_F(PassivitySectionTest, OneAlgorithmThatIsNeverPassiveIsDrawnToo) {
   std::vector<PassivityRow> rows = sample_rows({Mode::paper});
-  std::erase_if(rows, [](const PassivityRow& row) { return row.setup.algorithm.id != "line-proxy"; });
+  std::erase_if(rows, [](const PassivityRow& row) { return row.algorithm != "line-proxy"; });
   for (PassivityRow& row : rows) row.limit = {};
   const std::string page = html(passivity_section(rows, draw_passivity_figure(rows, out_)));
   EXPECT_NE(page.find("1 line-proxy passive on no device"), std::string::npos);
@@ -113,7 +116,8 @@ TEST_F(PassivitySectionTest, TheReportOfAStudyHasItsFilesFiguresAndWords) {
       MeasuredRun row{d.algorithm, d.mode, d.phase, run_metrics(run)};
       for (double* unrest : {&row.metrics.force_N.hp_rms, &row.metrics.force_N.hp_share})
         *unrest *= 1 + 0.01 * static_cast<double>(seed);
-      trials.push_back({seed, random_hand(seed), row});
+      trials.push_back(
+          {.seed = seed, .stiffness_N_per_m = 1000 * random_hand(seed).stiffness_N_per_mm, .run = row});
     }
   }
   extras.study.emplace(trials);

@@ -1,11 +1,9 @@
 #include "osteomill/experiment/study.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <iterator>
-#include <limits>
 #include <map>
 #include <ostream>
 #include <stdexcept>
@@ -18,12 +16,13 @@
 #include "osteomill/experiment/statistics.h"
 #include "osteomill/experiment/trial_rows.h"
 #include "osteomill/files/atomic_file.h"
+#include "osteomill/files/csv_field.h"
+#include "osteomill/numbers/parse_number.h"
 
 namespace osteomill {
 
 namespace {
 
-constexpr double kMmPerM = 1000;
 const std::string kHandColumns = "seed,hand_stiffness_N_per_m,hand_damping_Ns_per_m,hand_grip,";
 constexpr std::size_t kHandFields = 4, kNamedFields = 3;
 
@@ -34,55 +33,32 @@ auto place(const MeasuredRun& run) {
   return std::tuple(run.mode, phase_number(run.phase), run.algorithm);
 }
 
-std::vector<std::string> fields_of(const std::string& line) {
-  std::vector<std::string> fields{""};
-  for (const char c : line) {
-    if (c == ',') {
-      fields.emplace_back();
-    } else {
-      fields.back() += c;
-    }
-  }
-  return fields;
-}
-
-// Not a number where the field is empty, or is none.
-template <typename Number>
-Number number_in(const std::string& field) {
-  Number number = 0;
-  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), number);
-  const bool whole = error == std::errc() && end == field.data() + field.size();
-  return whole ? number : std::numeric_limits<Number>::quiet_NaN();
-}
-
 // Nothing where it is not of an algorithm, mode and phase of these rows, whose number of columns it has.
-std::optional<StudyRow> read_row(const std::string& line, const std::vector<StudyRow>& rows) {
-  const std::vector<std::string> fields = fields_of(line);
-  if (fields.size() != fields_of(kHandColumns + summary_columns()).size()) return std::nullopt;
-  const auto of_it = std::find_if(rows.begin(), rows.end(), [&](const StudyRow& row) {
+std::optional<StudyRow> read_row(std::string_view line, const std::vector<StudyRow>& rows) {
+  const std::vector<std::string_view> fields = csv_fields(line);
+  if (fields.size() != kHandFields + kNamedFields + summary_metrics().size() + 1) return std::nullopt;
+  const auto of = std::ranges::find_if(rows, [&](const StudyRow& row) {
     return fields[kHandFields] == row.run.algorithm.name &&
            fields[kHandFields + 1] == name_of(row.run.mode) && fields[kHandFields + 2] == row.run.phase;
   });
-  if (of_it == rows.end()) return std::nullopt;
-  TrialRow numbers{.part = phase_number(of_it->run.phase), .not_reached = fields.back()};
-  for (const std::size_t n : {1, 2}) numbers.values.push_back(number_in<double>(fields[n]));
+  if (of == rows.end()) return std::nullopt;
+  const auto number = [&](std::size_t n) { return parsed_number<double>(fields[n]).value_or(kNotMeasured); };
+  TrialRow row{.part = phase_number(of->run.phase),
+               .values = {number(1), number(2)},
+               .not_reached = std::string(fields.back())};
   for (std::size_t n = kHandFields + kNamedFields; n + 1 < fields.size(); ++n)
-    numbers.values.push_back(number_in<double>(fields[n]));
-  StudyRow row = milling_row(numbers);
-  row.run.algorithm = of_it->run.algorithm;
-  row.run.mode = of_it->run.mode;
-  row.seed = number_in<std::uint64_t>(fields[0]);
-  row.grip = number_in<double>(fields[3]);
-  return row;
+    row.values.push_back(number(n));
+  return milling_row(row, {.seed = parsed_number<std::uint64_t>(fields[0]).value_or(0),
+                           .run = {of->run.algorithm, of->run.mode, {}, {}},
+                           .grip = number(3)});
 }
 
 // Times are not compared: they are the machine's.
 bool same_figures(const MeasuredRun& a, const MeasuredRun& b) {
-  return std::all_of(all_metrics().begin(), all_metrics().end(), [&](const Metric& metric) {
+  return std::ranges::all_of(summary_metrics(), [&](const Metric& metric) {
     const double first = metric(a.metrics), second = metric(b.metrics);
     return metric.table == MetricTable::none || metric.table == MetricTable::times ||
-           metric.table == MetricTable::rate || *metric.column == '\0' || first == second ||
-           (std::isnan(first) && std::isnan(second));
+           metric.table == MetricTable::rate || first == second || (std::isnan(first) && std::isnan(second));
   });
 }
 
@@ -244,8 +220,8 @@ void write_study_csv(const std::filesystem::path& path, const Study& study) {
     out << kHandColumns << summary_columns() << '\n';
     for (const auto* rows : {&study.rows(), &study.rows_of_other_grips()}) {
       for (const StudyRow& row : *rows) {
-        out << fmt::format("{},{},{},{},{}\n", row.seed, kMmPerM * row.hand.stiffness_N_per_mm,
-                           kMmPerM * row.hand.damping_Ns_per_mm, row.grip, summary_fields(row.run));
+        out << fmt::format("{},{},{},{},{}\n", row.seed, row.stiffness_N_per_m, row.damping_Ns_per_m,
+                           row.grip, summary_fields(row.run));
       }
     }
   });

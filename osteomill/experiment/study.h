@@ -9,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "osteomill/operator/hand.h"
 #include "osteomill/report/metric_table.h"
 
 namespace osteomill {
@@ -17,7 +16,9 @@ namespace osteomill {
 /// One phase of one trial of a study.
 struct StudyRow {
   std::uint64_t seed = 0;
-  HandSettings hand;
+  /// Of the hand.
+  double stiffness_N_per_m = 0;
+  double damping_Ns_per_m = 0;
   /// `recording` is null: no recording is kept.
   MeasuredRun run;
   /// How firmly the hand grips (TrialPlan::grip): 1 in the study itself, else a trial beside it.

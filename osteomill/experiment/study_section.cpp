@@ -192,8 +192,8 @@ std::vector<std::string> how_to_read(const Study& study) {
   const std::size_t n = study.seeds().size();
   std::vector<double> stiffness, damping;
   for (const StudyRow& row : study.rows()) {
-    stiffness.push_back(1e3 * row.hand.stiffness_N_per_mm);
-    damping.push_back(1e3 * row.hand.damping_Ns_per_mm);
+    stiffness.push_back(row.stiffness_N_per_m);
+    damping.push_back(row.damping_Ns_per_m);
   }
   const auto [softest, stiffest] = std::minmax_element(stiffness.begin(), stiffness.end());
   const auto [min, max] = std::minmax_element(damping.begin(), damping.end());

@@ -129,11 +129,11 @@ fs::path slice_path(const fs::path& folder, std::size_t number) {
   return folder / fmt::format("slice-{}.h5", number);
 }
 
-Slice run_slice(StudyTest test, std::size_t number, std::size_t first, const std::vector<StudyTrial>& trials,
+Slice run_slice(StudyTest test, std::size_t number, std::size_t first, const std::vector<TrialPlan>& trials,
                 std::size_t threads, const RunEvents& events) {
   Slice slice{number, {}, 0};
   const auto tried = run_trials(trials, "study", threads, events,
-                                [&](const StudyTrial& trial) { return try_trial(test, trial); });
+                                [&](const TrialPlan& trial) { return try_trial(test, trial); });
   for (std::size_t n = 0; n < tried.size(); ++n) {
     slice.cpu_s += tried[n].cpu_s;
     if (tried[n].faults) events.warn(fmt::format("trial {}: {}", first + n, *tried[n].faults));

@@ -55,7 +55,7 @@ std::filesystem::path slice_path(const std::filesystem::path& folder, std::size_
 
 /// Runs trials that follow each other from `first` on, side by side on `threads` threads; but for times, the
 /// rows are the same however many.
-Slice run_slice(StudyTest test, std::size_t number, std::size_t first, const std::vector<StudyTrial>& trials,
+Slice run_slice(StudyTest test, std::size_t number, std::size_t first, const std::vector<TrialPlan>& trials,
                 std::size_t threads, const RunEvents& events);
 
 /// Written under another name and renamed. Throws InputError where it cannot be written.

@@ -111,13 +111,13 @@ TEST(StudySlices, ARecordComesBackAndNoneIsNone) {
 // Columns, and what follows from others, survive a slice.
 TEST(StudySlices, AMillingRowIsTheSameAfterASlice) {
   StudyRow row;
-  row.hand.stiffness_N_per_mm = 0.7;
+  row.stiffness_N_per_m = 700;
   row.run.phase = "holding";
   row.run.metrics.force_N = {2, 3, 0.5, 0.1, 0.25};
   row.run.metrics.removed_mm3 = 4;
   row.run.not_reached = "lost";
-  const StudyRow back = milling_row(as_row(3, 1, row));
-  EXPECT_DOUBLE_EQ(back.hand.stiffness_N_per_mm, 0.7);
+  const StudyRow back = milling_row(as_row(row));
+  EXPECT_EQ(back.stiffness_N_per_m, 700);
   EXPECT_EQ(back.run.phase, "holding");
   EXPECT_EQ(back.run.metrics.force_N.max, 3);
   EXPECT_EQ(back.run.metrics.force_N.hp_share, 0.25);

@@ -50,12 +50,10 @@ void add_script(Settings& settings, const ScriptSettings& script, const MillingE
 
 }  // namespace
 
-RunDescription describe_trial(const TrialPlan& plan, const AlgorithmDescription& algorithm, int sample_points,
-                              std::string_view phase) {
+RunDescription describe_trial(const TrialPlan& plan, int sample_points, std::string_view phase) {
   const TrialSettings& trial = plan.settings;
   const OperatorSettings& person = trial.hand_and_device;
-  RunDescription run =
-      describe_run(plan.bone, {setup_of(trial, algorithm), plan.densities}, sample_points, plan.command_line);
+  RunDescription run = describe_run(plan.bone, {trial, plan.densities}, sample_points, plan.command_line);
   run.scan_name = plan.scan_name;
   run.scan_hash = plan.scan_hash;
   run.seed = person.seed;

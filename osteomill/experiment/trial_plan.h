@@ -11,7 +11,7 @@
 
 namespace osteomill {
 
-/// What every algorithm of a comparison has in common.
+/// A trial, and what is said of it in its recordings.
 struct TrialPlan {
   /// As scanned; outlives the plan.
   const Volume& bone;
@@ -25,8 +25,8 @@ struct TrialPlan {
   bool mode_in_names = false;
   /// How many times as firmly the hand grips as it is said to otherwise; its settings are those of the grip.
   double grip = 1;
-  /// Every algorithm's stiffness was chosen so that a flat wall is felt as this (match_stiffness.h); nothing
-  /// where each has its own.
+  /// The algorithm's stiffness was chosen so that a flat wall is felt as this (match_stiffness.h); nothing
+  /// where it has its own.
   std::optional<double> matched_N_per_mm = std::nullopt;
   /// Of the bone as scanned (fingerprint_of), for its recordings to be verified.
   std::uint64_t scan_hash = 0;
@@ -42,8 +42,7 @@ inline constexpr std::string_view kScriptHoldingKey = "script.holding";
 inline constexpr std::string_view kMatchedStiffnessKey = "matched.felt_stiffness";
 
 /// All that a recording says of a phase of section 8.2: what any session's says, and hand, device and script.
-RunDescription describe_trial(const TrialPlan& plan, const AlgorithmDescription& algorithm, int sample_points,
-                              std::string_view phase);
+RunDescription describe_trial(const TrialPlan& plan, int sample_points, std::string_view phase);
 
 /// "the hole stayed shallower than 3 mm; the shaft leant on the bone for less than 3 s": what of the plan was
 /// not reached up to the end of this phase. Empty for nothing.

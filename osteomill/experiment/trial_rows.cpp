@@ -8,14 +8,12 @@ namespace osteomill {
 
 namespace {
 
-constexpr double kMmPerM = 1000;
 constexpr std::string_view kOnce[] = {"press"};
 
 std::vector<StudyColumn> milling_columns() {
   std::vector<StudyColumn> columns{{"hand_stiffness_N_per_m", "stiffness of the hand (N/m)"},
                                    {"hand_damping_Ns_per_m", "damping of the hand (N s/m)"}};
-  for (const Metric& metric : all_metrics()) {
-    if (*metric.column == '\0') continue;
+  for (const Metric& metric : summary_metrics()) {
     const bool has_label = *metric.label != '\0' && !std::string_view(metric.label).starts_with("…");
     const char* words = *metric.name != '\0' ? metric.name : has_label ? metric.label : metric.column;
     columns.push_back({metric.column, words == metric.column ? words : with_unit(words, metric)});
@@ -49,37 +47,31 @@ const std::vector<StudyColumn>& columns_of(StudyTest test) {
   return test == StudyTest::milling ? milling : wall;
 }
 
-TrialRow as_row(std::size_t trial, std::size_t part, const StudyRow& row) {
-  TrialRow out{trial,
-               part,
-               {kMmPerM * row.hand.stiffness_N_per_mm, kMmPerM * row.hand.damping_Ns_per_mm},
-               row.run.not_reached};
-  for (const Metric& metric : all_metrics())
-    if (*metric.column != '\0') out.values.push_back(metric(row.run.metrics));
+TrialRow as_row(const StudyRow& row) {
+  TrialRow out{.part = phase_number(row.run.phase),
+               .values = {row.stiffness_N_per_m, row.damping_Ns_per_m},
+               .not_reached = row.run.not_reached};
+  for (const Metric& metric : summary_metrics()) out.values.push_back(metric(row.run.metrics));
   return out;
 }
 
-StudyRow milling_row(const TrialRow& row) {
-  StudyRow out;
-  out.hand.stiffness_N_per_mm = row.values[0] / kMmPerM;
-  out.hand.damping_Ns_per_mm = row.values[1] / kMmPerM;
-  out.run.phase = kPhases[row.part];
-  out.run.not_reached = row.not_reached;
-  std::size_t n = 2;
-  for (const Metric& metric : all_metrics())
-    if (*metric.column != '\0') metric.place(out.run.metrics) = row.values[n++];
-  complete_metrics(out.run);
-  return out;
+StudyRow milling_row(const TrialRow& row, StudyRow of) {
+  auto value = row.values.begin();
+  of.stiffness_N_per_m = *value++;
+  of.damping_Ns_per_m = *value++;
+  of.run.phase = kPhases[row.part];
+  of.run.not_reached = row.not_reached;
+  for (const Metric& metric : summary_metrics()) metric.place(of.run.metrics) = *value++;
+  complete_metrics(of.run);
+  return of;
 }
 
-TrialRow as_row(std::size_t trial, const PassivityCase& setup, const WallPressResult& result, double tick_s) {
+TrialRow as_row(const TrialSettings& settings, const WallPressResult& result) {
   const bool carries = result.motion != WallMotion::gives_way;
-  return {trial,
-          0,
-          {carries ? (result.motion == WallMotion::dies_out ? 1.0 : 0.0) : kNotMeasured, carries ? 1.0 : 0.0,
-           carries ? result.felt_N_per_mm : kNotMeasured,
-           passive_stiffness_rule_N_per_mm(setup.damping_Ns_per_mm, tick_s, setup.delay_s)},
-          ""};
+  return {.values = {carries ? (result.motion == WallMotion::dies_out ? 1.0 : 0.0) : kNotMeasured,
+                     carries ? 1.0 : 0.0, carries ? result.felt_N_per_mm : kNotMeasured,
+                     passive_stiffness_rule_N_per_mm(settings.device_damping_Ns_per_mm, settings.tick_s,
+                                                     settings.hand_and_device.handle.force_delay_s)}};
 }
 
 }  // namespace osteomill

@@ -39,10 +39,11 @@ struct TrialRow {
   std::string not_reached;
 };
 
-TrialRow as_row(std::size_t trial, std::size_t part, const StudyRow& row);
-TrialRow as_row(std::size_t trial, const PassivityCase& setup, const WallPressResult& result, double tick_s);
+/// Of trial 0.
+TrialRow as_row(const StudyRow& row);
+TrialRow as_row(const TrialSettings& settings, const WallPressResult& result);
 
-/// A row of `milling` as it was before `as_row`, but for its seed, algorithm, mode and grip.
-StudyRow milling_row(const TrialRow& row);
+/// A row of `milling` as it was before `as_row`, with the seed, algorithm, mode and grip of `of`.
+StudyRow milling_row(const TrialRow& row, StudyRow of = {});
 
 }  // namespace osteomill

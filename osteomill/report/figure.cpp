@@ -1,24 +1,16 @@
 #include "osteomill/report/figure.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <csignal>
-#include <cstring>
-#include <fstream>
 #include <numeric>
+#include <sstream>
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/files/input_error.h"
+#include "osteomill/files/run_program.h"
 #include "osteomill/report/html.h"
-
-extern char** environ;
 
 namespace osteomill {
 
@@ -27,47 +19,16 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kScript = "script.gp";
-constexpr const char* kLog = "gnuplot.log";
 
-std::string last_line(const fs::path& path) {
-  std::ifstream in(path);
+// That says something: gnuplot ends with a mark under what it did not understand.
+std::string last_line(const std::string& text) {
+  std::istringstream in(text);
   std::string last;
   for (std::string line; std::getline(in, line);) {
     if (line.find_first_not_of(" \t^") != std::string::npos) last = line;
   }
   return last;
 }
-
-// What the child does before it becomes gnuplot: its folder, no input, and all it says into a file.
-class ChildSetup {
- public:
-  explicit ChildSetup(const fs::path& folder) {
-    ::posix_spawn_file_actions_init(&actions_);
-    ::posix_spawn_file_actions_addchdir_np(&actions_, folder.c_str());
-    ::posix_spawn_file_actions_addopen(&actions_, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-    ::posix_spawn_file_actions_addopen(&actions_, STDOUT_FILENO, kLog, O_WRONLY | O_CREAT | O_TRUNC, 0600);
-    ::posix_spawn_file_actions_adddup2(&actions_, STDOUT_FILENO, STDERR_FILENO);
-    // gnuplot does not look at what could not be written; a limit to its files ends it.
-    ::posix_spawnattr_init(&attributes_);
-    ::posix_spawnattr_setflags(&attributes_, POSIX_SPAWN_SETSIGDEF);
-    sigset_t signals;
-    ::sigemptyset(&signals);
-    ::sigaddset(&signals, SIGXFSZ);
-    ::posix_spawnattr_setsigdefault(&attributes_, &signals);
-  }
-  ~ChildSetup() {
-    ::posix_spawn_file_actions_destroy(&actions_);
-    ::posix_spawnattr_destroy(&attributes_);
-  }
-  ChildSetup(const ChildSetup&) = delete;
-  ChildSetup& operator=(const ChildSetup&) = delete;
-  const posix_spawn_file_actions_t* actions() const { return &actions_; }
-  const posix_spawnattr_t* attributes() const { return &attributes_; }
-
- private:
-  posix_spawnattr_t attributes_;
-  posix_spawn_file_actions_t actions_;
-};
 
 void copy_to(const fs::path& from, const fs::path& to) {
   std::error_code error;
@@ -93,34 +54,19 @@ std::vector<std::size_t> two_of_each(std::size_t count, std::size_t bins, Pick p
   return kept;
 }
 
-int wait_for(pid_t child) {
-  int status = 0;
-  while (::waitpid(child, &status, 0) < 0) {
-    if (errno != EINTR) return -1;
-  }
-  return status;
-}
-
 }  // namespace
 
 void run_gnuplot(const fs::path& folder, const std::string& script, const std::string& program) {
   write_figure_data(folder / kScript, valid_utf8(script));
-  const ChildSetup setup(folder);
-  // -d: the settings of the user's own must not change the figures.
-  std::string name = program, defaults = "-d", file = kScript;
-  char* const arguments[] = {name.data(), defaults.data(), file.data(), nullptr};
-  pid_t child = 0;
-  const int failed =
-      ::posix_spawnp(&child, program.c_str(), setup.actions(), setup.attributes(), arguments, environ);
-  if (failed == ENOENT) {
+  // gnuplot does not look at what could not be written; a limit to its files ends it. -d: the settings of the
+  // user's own must not change the figures.
+  const Said said =
+      run_program({"env", "--default-signal=XFSZ", "--chdir=" + folder.string(), program, "-d", kScript});
+  if (said.exit_code == Said::kNoProgram) {
     throw InputError(program,
                      "is not installed, and without it no figures can be drawn (package gnuplot-nox)");
   }
-  if (failed != 0) throw InputError(program, std::string("cannot be started: ") + std::strerror(failed));
-  const int status = wait_for(child);
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
-    throw InputError(program, "could not draw a figure: " + last_line(folder / kLog));
-  }
+  if (said.exit_code != 0) throw InputError(program, "could not draw a figure: " + last_line(said.text));
 }
 
 std::string gnuplot_quoted(const std::string& text) {

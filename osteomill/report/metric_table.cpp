@@ -63,25 +63,32 @@ std::span<const Metric> all_metrics() {
   return kMetrics;
 }
 
+const std::vector<Metric>& summary_metrics() {
+  static const std::vector<Metric> columns = [] {
+    std::vector<Metric> with_column(std::begin(kMetrics), std::end(kMetrics));
+    std::erase_if(with_column, [](const Metric& metric) { return *metric.column == '\0'; });
+    return with_column;
+  }();
+  return columns;
+}
+
+std::string csv_number(double value) {
+  return std::isnan(value) ? "," : fmt::format(",{}", value);
+}
+
 std::string with_unit(const char* text, const Metric& metric) {
   return *metric.unit == '\0' ? text : fmt::format("{} ({})", text, metric.unit);
 }
 
 std::string summary_columns() {
   std::string columns = "algorithm,mode,phase";
-  for (const Metric& metric : kMetrics) {
-    if (*metric.column != '\0') columns += fmt::format(",{}", metric.column);
-  }
+  for (const Metric& metric : summary_metrics()) columns += fmt::format(",{}", metric.column);
   return columns + ",not_reached";
 }
 
 std::string summary_fields(const MeasuredRun& run) {
   std::string fields = fmt::format("{},{},{}", name_of(run.algorithm), name_of(run.mode), run.phase);
-  for (const Metric& metric : kMetrics) {
-    if (*metric.column == '\0') continue;
-    const double value = metric(run.metrics);
-    fields += std::isnan(value) ? "," : fmt::format(",{}", value);
-  }
+  for (const Metric& metric : summary_metrics()) fields += csv_number(metric(run.metrics));
   return fields + "," + run.not_reached;
 }
 

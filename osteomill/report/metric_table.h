@@ -2,6 +2,7 @@
 
 #include <span>
 #include <string>
+#include <vector>
 
 #include "osteomill/report/metrics.h"
 
@@ -34,8 +35,9 @@ struct Metric {
   double operator()(RunMetrics run) const { return place(run); }
 };
 
-/// Every figure that is shown anywhere.
+/// Every figure that is shown anywhere, and the columns of summary.csv among them.
 std::span<const Metric> all_metrics();
+const std::vector<Metric>& summary_metrics();
 
 /// "force above 20 Hz, rms (N)".
 std::string with_unit(const char* text, const Metric& metric);
@@ -43,5 +45,8 @@ std::string with_unit(const char* text, const Metric& metric);
 /// The head of summary.csv, and a row of it, without line ends.
 std::string summary_columns();
 std::string summary_fields(const MeasuredRun& run);
+
+/// A field of CSV behind a comma; empty where it is not a number.
+std::string csv_number(double value);
 
 }  // namespace osteomill

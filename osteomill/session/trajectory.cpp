@@ -2,17 +2,17 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <fstream>
-#include <optional>
 #include <string>
 #include <string_view>
 
 #include <fmt/core.h>
 
+#include "osteomill/files/csv_field.h"
 #include "osteomill/files/input_error.h"
 #include "osteomill/files/input_files.h"
+#include "osteomill/numbers/parse_number.h"
 
 namespace osteomill {
 
@@ -25,27 +25,6 @@ constexpr double kUnitTolerance = 1e-3;
 constexpr std::size_t kMaxLine = 4096;
 
 using Row = std::array<double, kColumns.size()>;
-
-std::vector<std::string_view> split(std::string_view line) {
-  if (line.ends_with('\r')) line.remove_suffix(1);
-  std::vector<std::string_view> fields;
-  while (true) {
-    const std::size_t comma = line.find(',');
-    std::string_view field = line.substr(0, comma);
-    while (field.starts_with(' ')) field.remove_prefix(1);
-    while (field.ends_with(' ')) field.remove_suffix(1);
-    fields.push_back(field);
-    if (comma == std::string_view::npos) return fields;
-    line.remove_prefix(comma + 1);
-  }
-}
-
-std::optional<double> finite_number(std::string_view text) {
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
-  return value;
-}
 
 class TrajectoryReader {
  public:
@@ -85,7 +64,7 @@ class TrajectoryReader {
 
   void read_head() {
     if (!next_line()) throw InputError(name_, "is empty");
-    const auto names = split(line_);
+    const auto names = csv_fields(line_);
     for (std::size_t n = 0; n < kColumns.size(); ++n) {
       const auto found = std::find(names.begin(), names.end(), kColumns[n]);
       if (found == names.end()) fail(fmt::format("the column {} is missing", kColumns[n]));
@@ -95,13 +74,13 @@ class TrajectoryReader {
   }
 
   Row row() const {
-    const auto fields = split(line_);
+    const auto fields = csv_fields(line_);
     if (fields.size() != fields_) fail(fmt::format("{} values for {} columns", fields.size(), fields_));
     Row row;
     for (std::size_t n = 0; n < kColumns.size(); ++n) {
       const std::string_view text = fields[field_of_column_[n]];
-      const auto value = finite_number(text);
-      if (!value) fail(fmt::format("{} is not a number: '{}'", kColumns[n], text));
+      const auto value = parsed_number<double>(text);
+      if (!value || !std::isfinite(*value)) fail(fmt::format("{} is not a number: '{}'", kColumns[n], text));
       row[n] = *value;
     }
     return row;

@@ -17,8 +17,8 @@ struct Values {
 
 inline StudyRow row(std::uint64_t seed, std::string_view algorithm, Mode mode, std::string_view phase,
                     const Values& values) {
-  StudyRow row{seed, {}, {algorithm_named(algorithm).id, mode, std::string(phase), {}}};
-  row.hand.stiffness_N_per_mm = 0.1 * static_cast<double>(seed);
+  StudyRow row{.seed = seed, .run = {algorithm_named(algorithm).id, mode, std::string(phase), {}}};
+  row.stiffness_N_per_m = 100 * static_cast<double>(seed);
   row.run.metrics.rate_hz = 1000;
   row.run.metrics.contact = {1, 1, 1, 1, 1};
   row.run.metrics.force_N.mean = 2;

@@ -1,4 +1,4 @@
-#include "app/shell.h"
+#include "osteomill/files/run_program.h"
 
 #include <array>
 #include <cstdio>
@@ -7,7 +7,7 @@
 
 #include "osteomill/files/input_error.h"
 
-namespace osteomill::app {
+namespace osteomill {
 
 std::string quoted(const std::string& word) {
   const bool plain = word.find_first_not_of(
@@ -35,4 +35,4 @@ Said run_program(const std::vector<std::string>& words) {
   return said;
 }
 
-}  // namespace osteomill::app
+}  // namespace osteomill
