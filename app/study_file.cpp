@@ -17,23 +17,19 @@ namespace {
 
 using Keys = std::vector<std::string>;
 
-struct Entry {
-  std::string key;
-  const toml::node* value;
-};
-
 class Reader {
  public:
   Reader(std::string file, const StudyTrials& trials) : file_(std::move(file)), trials_(trials) {}
 
   StudyDesign read() const {
     const toml::table file = read_toml(file_);
-    for (const Entry& entry : entries(file))
+    for (const TomlEntry& entry : entries_of(file))
       require_one_of(entry, {"title", "test", "findings", "fixed", "grid", "list", "latin-hypercube", "map"});
     StudySettings fixed;
-    for (const Entry& entry : options(table(file, "fixed"))) fixed.emplace_back(entry.key, text(entry));
+    for (const TomlEntry& entry : options_of(table(file, "fixed")))
+      fixed.emplace_back(entry.key, text(entry));
     std::vector<StudyAxis> grid;
-    for (const Entry& entry : options(table(file, "grid"))) grid.push_back(axis(entry));
+    for (const TomlEntry& entry : options_of(table(file, "grid"))) grid.push_back(axis(entry));
     if (const toml::node* list = file.get("list")) grid.push_back(axis({"list", list}));
     LatinHypercube hypercube = latin_hypercube(table(file, "latin-hypercube"));
     try {
@@ -48,44 +44,12 @@ class Reader {
   }
 
  private:
-  static std::string line_of(const toml::node& node) {
-    return fmt::format("line {}", node.source().begin.line);
-  }
   [[noreturn]] void refuse(const toml::node& node, const std::string& reason) const {
-    throw InputError(file_, fmt::format("{}: {}", line_of(node), reason));
+    throw error_at(node, file_, reason);
   }
-  void require_one_of(const Entry& entry, const Keys& keys) const {
+  void require_one_of(const TomlEntry& entry, const Keys& keys) const {
     if (std::find(keys.begin(), keys.end(), entry.key) == keys.end())
       refuse(*entry.value, fmt::format("a study has no {}{}", entry.key, did_you_mean(entry.key, keys)));
-  }
-
-  // In the order of the file: the library sorts them by name.
-  static std::vector<Entry> entries(const toml::table& table) {
-    std::vector<Entry> entries;
-    for (auto&& [key, value] : table) entries.push_back({std::string(key.str()), &value});
-    const auto place = [](const Entry& entry) {
-      const toml::source_position at = entry.value->source().begin;
-      return std::pair(at.line, at.column);
-    };
-    std::sort(entries.begin(), entries.end(),
-              [&](const Entry& a, const Entry& b) { return place(a) < place(b); });
-    return entries;
-  }
-
-  // Of a trial: an algorithm's own settings stand in a table that is named after it, or behind its name.
-  std::vector<Entry> options(const toml::table& table, const Keys& others = {}) const {
-    std::vector<Entry> all;
-    for (const Entry& entry : entries(table)) {
-      const toml::table* own = entry.value->as_table();
-      if (std::find(others.begin(), others.end(), entry.key) != others.end()) continue;
-      if (own != nullptr && find_algorithm(entry.key) != nullptr) {
-        for (const Entry& setting : entries(*own))
-          all.push_back({entry.key + "." + setting.key, setting.value});
-      } else {
-        all.push_back(entry);
-      }
-    }
-    return all;
   }
 
   const toml::table& table(const toml::table& file, const char* name) const {
@@ -96,9 +60,16 @@ class Reader {
     return *node->as_table();
   }
 
+  void require_known(const TomlEntry& option) const {
+    const Keys known = is_own_setting(option.key) ? algorithm_names() : trials_.keys();
+    if (std::ranges::find(known, option.key.substr(0, option.key.find('.'))) == known.end())
+      refuse(*option.value,
+             fmt::format("a trial has no option {}{}", option.key, did_you_mean(option.key, known)));
+  }
+
   // As the command line would have it: "0,0,-1".
-  std::string text(const Entry& entry) const {
-    trials_.require_known(entry.key, line_of(*entry.value));
+  std::string text(const TomlEntry& entry) const {
+    require_known(entry);
     return fmt::format("{}", fmt::join(option_values(*entry.value, file_, entry.key), ","));
   }
 
@@ -112,20 +83,20 @@ class Reader {
   }
 
   // Nothing where it is no table of {from, to}.
-  std::optional<StudyRange> range(const Entry& entry) const {
+  std::optional<StudyRange> range(const TomlEntry& entry) const {
     const toml::table* table = entry.value->as_table();
     if (table == nullptr || !table->contains("from")) return std::nullopt;
-    for (const Entry& key : entries(*table)) require_one_of(key, {"from", "to", "steps", "log"});
+    for (const TomlEntry& key : entries_of(*table)) require_one_of(key, {"from", "to", "steps", "log"});
     const StudyRange range{value(*table, "from", 0.0), value(*table, "to", 0.0), value(*table, "log", false)};
     if (!(range.to >= range.from) || (range.logarithmic && !(range.from > 0)))
       refuse(*entry.value, fmt::format("{} has no range from {} to {}", entry.key, range.from, range.to));
     return range;
   }
 
-  StudyAxis axis(const Entry& entry) const {
+  StudyAxis axis(const TomlEntry& entry) const {
     StudyAxis axis;
     if (const auto found = range(entry)) {
-      trials_.require_known(entry.key, line_of(*entry.value));
+      require_known(entry);
       const auto steps = value<int64_t>(*entry.value->as_table(), "steps", 0);
       if (steps < 1 || steps > 1'000'000)
         refuse(*entry.value, fmt::format("{} needs steps, 1 or more", entry.key));
@@ -140,7 +111,7 @@ class Reader {
     for (const toml::node& node : *values) {
       StudySettings settings;
       if (const toml::table* together = node.as_table()) {
-        for (const Entry& one : options(*together)) settings.emplace_back(one.key, text(one));
+        for (const TomlEntry& one : options_of(*together)) settings.emplace_back(one.key, text(one));
       } else {
         settings.emplace_back(entry.key, text({entry.key, &node}));
       }
@@ -157,9 +128,10 @@ class Reader {
       refuse(table, "latin-hypercube needs trials, from 1 to 10,000,000");
     hypercube.trials = static_cast<std::size_t>(trials);
     hypercube.seed = static_cast<std::uint64_t>(value<int64_t>(table, "seed", 1));
-    for (const Entry& entry : options(table, {"trials", "seed"})) {
+    for (const TomlEntry& entry : options_of(table)) {
+      if (entry.key == "trials" || entry.key == "seed") continue;
       if (const auto found = range(entry)) {
-        trials_.require_known(entry.key, line_of(*entry.value));
+        require_known(entry);
         hypercube.axes.push_back({entry.key, *found, {}});
       } else {
         hypercube.axes.push_back({entry.key, {}, axis(entry)});
@@ -186,7 +158,7 @@ class Reader {
   }
 
   StudyMap map(const toml::table& table, StudyTest test) const {
-    for (const Entry& entry : entries(table))
+    for (const TomlEntry& entry : entries_of(table))
       require_one_of(entry, {"title", "x", "y", "colour", "panels", "part", "statistic", "log-colour",
                              "line-of-equality"});
     StudyMap map;

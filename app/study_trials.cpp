@@ -6,6 +6,7 @@
 #include "app/config_file.h"
 #include "app/option_checks.h"
 #include "app/progress.h"
+#include "app/toml_file.h"
 #include <CLI/Error.hpp>
 #include <fmt/format.h>
 
@@ -19,10 +20,10 @@ namespace {
 constexpr const char* kBuiltIn = "built-in";
 constexpr std::size_t kBonesKept = 8;
 // Options of a command, which a trial does not have.
-constexpr const char* kNoKeys[] = {"--help", "--config", "--set", "--max-memory"};
+constexpr std::string_view kNoKeys[] = {"--help", "--config", "--set", "--max-memory"};
 
-bool is_of_algorithm(const std::string& key) {
-  return key.find('.') != std::string::npos;
+std::string option_name(const std::string& key) {
+  return key == "scan" ? key : "--" + key;
 }
 
 std::string tool_text(const MillingTool& tool) {
@@ -65,15 +66,10 @@ StudyTrials::StudyTrials(std::string file, std::filesystem::path scans_from)
   add_trial_options(command_, asked_.trial);
 }
 
-const CLI::Option* StudyTrials::option(const std::string& key) const {
-  if (std::find(std::begin(kNoKeys), std::end(kNoKeys), "--" + key) != std::end(kNoKeys)) return nullptr;
-  return command_.get_option_no_throw(key == "scan" ? key : "--" + key);
-}
-
 std::vector<std::string> StudyTrials::keys() const {
   std::vector<std::string> keys{"scan"};
   for (const std::string& name : option_names(command_))
-    if (option(name.substr(2)) != nullptr) keys.push_back(name.substr(2));
+    if (std::ranges::find(kNoKeys, name) == std::end(kNoKeys)) keys.push_back(name.substr(2));
   return keys;
 }
 
@@ -81,7 +77,8 @@ StudySettings StudyTrials::units() const {
   StudySettings units;
   for (const std::string& key : keys()) {
     // The library appends what an option checks, behind a colon.
-    const std::string type = option(key)->get_type_name(), unit = type.substr(0, type.find(':'));
+    const std::string type = command_.get_option(option_name(key))->get_type_name(),
+                      unit = type.substr(0, type.find(':'));
     const bool is_word = unit.find_first_of("|,") != std::string::npos || unit == "NUMBER" ||
                          unit == "COUNT" || unit == "NAME" || unit == "MODE" || unit == "TEXT" ||
                          unit == "FILE";
@@ -90,27 +87,15 @@ StudySettings StudyTrials::units() const {
   return units;
 }
 
-void StudyTrials::require_known(const std::string& key, const std::string& where) const {
-  std::vector<std::string> known = keys();
-  if (is_of_algorithm(key)) {
-    known = algorithm_names();
-    if (find_algorithm(key.substr(0, key.find('.'))) != nullptr) return;
-  } else if (option(key) != nullptr) {
-    return;
-  }
-  throw InputError(file_,
-                   fmt::format("{}: a trial has no option {}{}", where, key, did_you_mean(key, known)));
-}
-
 void StudyTrials::take(const StudySettings& settings) {
   asked_ = Asked();
   asked_.trial.hand.script.until_leant = true;
   std::vector<std::string> named;
   for (const auto& [key, text] : settings) {
-    if (is_of_algorithm(key)) {
+    if (is_own_setting(key)) {
       named.push_back(key + "=" + text);
     } else if (key != "scan" || text != kBuiltIn) {
-      set_results(*command_.get_option(key == "scan" ? key : "--" + key), {text});
+      set_results(*command_.get_option(option_name(key)), {text});
     }
   }
   for (const auto& [key, text] : settings)
@@ -124,8 +109,7 @@ void StudyTrials::take(const StudySettings& settings) {
 StudyTrials::Bone& StudyTrials::bone_of(const StudySettings& settings) {
   std::string key;
   for (const auto& [name, text] : settings)
-    if (!is_of_algorithm(name) &&
-        command_.get_option(name == "scan" ? name : "--" + name)->get_group() == "Scan")
+    if (!is_own_setting(name) && command_.get_option(option_name(name))->get_group() == "Scan")
       key += fmt::format("{}{}={}", key.empty() ? "" : " ", name, text);
   std::unique_ptr<Bone>& bone = bones_[key];
   if (bone) return *bone;

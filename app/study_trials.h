@@ -29,8 +29,6 @@ class StudyTrials {
   /// Every option that can be set, but for the algorithms' own settings ("point-shell.scale"), and its unit.
   std::vector<std::string> keys() const;
   StudySettings units() const;
-  /// Throws InputError where the option cannot be set at all; `where` is the line.
-  void require_known(const std::string& key, const std::string& where) const;
 
   /// Bones are then to have these fingerprints, by what is set of them.
   void expect(const std::vector<std::pair<std::string, std::uint64_t>>& bones) {
@@ -60,7 +58,6 @@ class StudyTrials {
     std::map<std::string, MillingEntry> entries;
   };
 
-  const CLI::Option* option(const std::string& key) const;
   void take(const StudySettings& settings);
   TrialPlan trial_of(const StudyDesign& design, const StudySettings& settings);
   Bone& bone_of(const StudySettings& settings);

@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <utility>
 
 #include <fmt/core.h>
 
-#include "osteomill/files/input_error.h"
 #include "osteomill/files/input_files.h"
+#include "osteomill/haptics/algorithms.h"
 
 namespace osteomill::app {
 
@@ -37,6 +38,38 @@ toml::table read_toml(const std::string& file) {
   }
 }
 
+std::vector<TomlEntry> entries_of(const toml::table& table) {
+  std::vector<TomlEntry> entries;
+  for (auto&& [key, value] : table) entries.push_back({std::string(key.str()), &value});
+  std::ranges::sort(entries, {}, [](const TomlEntry& entry) {
+    const toml::source_position at = entry.value->source().begin;
+    return std::pair(at.line, at.column);
+  });
+  return entries;
+}
+
+std::vector<TomlEntry> options_of(const toml::table& table) {
+  std::vector<TomlEntry> options;
+  for (const TomlEntry& entry : entries_of(table)) {
+    const toml::table* own = entry.value->as_table();
+    if (own == nullptr || find_algorithm(entry.key) == nullptr) {
+      options.push_back(entry);
+      continue;
+    }
+    for (const TomlEntry& setting : entries_of(*own))
+      options.push_back({entry.key + "." + setting.key, setting.value});
+  }
+  return options;
+}
+
+bool is_own_setting(const std::string& key) {
+  return key.find('.') != std::string::npos;
+}
+
+InputError error_at(const toml::node& place, const std::string& file, const std::string& reason) {
+  return {file, fmt::format("line {}: {}", place.source().begin.line, reason)};
+}
+
 std::vector<std::string> option_values(const toml::node& value, const std::string& file,
                                        const std::string& key) {
   std::vector<std::string> values;
@@ -50,9 +83,7 @@ std::vector<std::string> option_values(const toml::node& value, const std::strin
     } else if (const auto flag = node.value_exact<bool>()) {
       values.push_back(*flag ? "true" : "false");
     } else {
-      throw InputError(file,
-                       fmt::format("line {}: {} takes a text, a number, true or false, or a list of them",
-                                   node.source().begin.line, key));
+      throw error_at(node, file, key + " takes a text, a number, true or false, or a list of them");
     }
   };
   if (const toml::array* list = value.as_array()) {

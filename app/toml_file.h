@@ -5,10 +5,27 @@
 
 #include <toml++/toml.h>
 
+#include "osteomill/files/input_error.h"
+
 namespace osteomill::app {
 
 /// A TOML file as a table. Throws InputError naming the file, and the line where there is one.
 toml::table read_toml(const std::string& file);
+
+/// A key of a table and what stands behind it, as long as the table lives.
+struct TomlEntry {
+  std::string key;
+  const toml::node* value;
+};
+/// In the order of the file: the library sorts them by name.
+std::vector<TomlEntry> entries_of(const toml::table& table);
+/// Of a table of options: a table that is named after an algorithm holds that one's own settings, which
+/// become entries behind its name, "point-shell.scale".
+std::vector<TomlEntry> options_of(const toml::table& table);
+bool is_own_setting(const std::string& key);
+
+/// The error of a place in a file, with its line.
+InputError error_at(const toml::node& place, const std::string& file, const std::string& reason);
 
 /// What the command line would have said in the place of this value: one text a value, of a list several.
 /// Throws InputError, naming file, line and `key`, where it is neither a text, a number, true, false, nor a

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <optional>
 
 #include <fmt/args.h>
@@ -41,6 +40,21 @@ double torque_unrest(const RunMetrics& m) {
 double torque_share(const RunMetrics& m) {
   return share_hp(m.torque_Nmm);
 }
+double shaft_turn(const RunMetrics& m) {
+  return m.turns.max_deg;
+}
+double shaft_turn_at_torque_step(const RunMetrics& m) {
+  return m.turns.at_torque_step_deg;
+}
+double shaft_spread(const RunMetrics& m) {
+  return m.shaft.spread_deg;
+}
+double torque_follows(const RunMetrics& m) {
+  return m.torque_follows_force;
+}
+double contacts(const RunMetrics& m) {
+  return m.contacts_mean;
+}
 
 // What a rule needs of one algorithm in one phase.
 struct Needed {
@@ -53,15 +67,22 @@ std::string value_text(const MeasuredRun& run, double value) {
   return std::isnan(value) ? contact_words(run.metrics.contact) : fmt::format("{:.3g}", value);
 }
 
-// The rule applied to the values, in their order; `words` has a {} for each.
-Finding finding_on(const RunGroup& group, std::string paper_says, std::string rule,
-                   const std::vector<Needed>& needed, std::string_view words,
-                   const std::function<bool(const std::vector<double>&)>& holds) {
-  Finding finding{std::move(paper_says), std::move(rule), "needs other recordings", Verdict::not_recorded};
+// A finding on what algorithms did in phases: its rule is applied to the values that it needs, in their
+// order; `words` has a {} for each.
+struct Rule {
+  std::string paper_says;
+  std::string rule;
+  std::vector<Needed> needed;
+  std::string_view words;
+  bool (*holds)(const std::vector<double>&);
+};
+
+Finding finding_by(const Rule& rule, const RunGroup& group) {
+  Finding finding{rule.paper_says, rule.rule, "needs other recordings", Verdict::not_recorded};
   std::vector<double> values;
   fmt::dynamic_format_arg_store<fmt::format_context> texts;
   std::vector<std::string> not_reached;
-  for (const Needed& one : needed) {
+  for (const Needed& one : rule.needed) {
     const MeasuredRun* run = group.find(kPapersAlgorithms[one.algorithm - 1], one.phase);
     if (run == nullptr) return finding;
     values.push_back(one.value(run->metrics));
@@ -71,13 +92,13 @@ Finding finding_on(const RunGroup& group, std::string paper_says, std::string ru
         std::find(not_reached.begin(), not_reached.end(), missed) == not_reached.end())
       not_reached.push_back(missed);
   }
-  finding.measured = fmt::vformat(words, texts);
+  finding.measured = fmt::vformat(rule.words, texts);
   if (!not_reached.empty())
     finding.measured += fmt::format(" (not all reached: {})", fmt::join(not_reached, "; "));
   const bool known = std::none_of(values.begin(), values.end(), [](double v) { return std::isnan(v); });
-  finding.verdict = !known          ? Verdict::lost_contact
-                    : holds(values) ? Verdict::agrees
-                                    : Verdict::does_not_agree;
+  finding.verdict = !known               ? Verdict::lost_contact
+                    : rule.holds(values) ? Verdict::agrees
+                                         : Verdict::does_not_agree;
   return finding;
 }
 
@@ -94,22 +115,6 @@ Finding rate_finding(const RunGroup& group) {
           fmt::format("lowest {:.1f} Hz ({}, {})", slowest.metrics.rate_hz, name_of(slowest.algorithm),
                       slowest.phase),
           slowest.metrics.rate_hz >= kMinRate_hz ? Verdict::agrees : Verdict::does_not_agree, true};
-}
-
-Finding force_finding(const RunGroup& group) {
-  return finding_on(
-      group, "force: 1 and 3 “more stable than Algorithm #2 independent of case scenario”",
-      fmt::format("in both parts 2's force above {:.0f} Hz (rms) is at least {:g} times that of 1 and of 3",
-                  kBuzzAbove_hz, kCalmerBy),
-      {{1, kMilling, force_hp},
-       {2, kMilling, force_hp},
-       {3, kMilling, force_hp},
-       {1, kHolding, force_hp},
-       {2, kHolding, force_hp},
-       {3, kHolding, force_hp}},
-      "milling 1: {}, 2: {}, 3: {} N; holding 1: {}, 2: {}, 3: {} N", [](const auto& v) {
-        return v[1] >= kCalmerBy * std::max(v[0], v[2]) && v[4] >= kCalmerBy * std::max(v[3], v[5]);
-      });
 }
 
 Finding grip_finding(const GripForces& grips) {
@@ -133,79 +138,69 @@ Finding grip_finding(const GripForces& grips) {
   return finding;
 }
 
-Finding kick_finding(const RunGroup& group) {
-  const auto turn = [](const RunMetrics& m) { return m.turns.max_deg; };
-  return finding_on(
-      group,
-      "1 “kicks away the shaft at a moment”, with “a peak in the torque signal when milling”; the shaft's "
-      "jump “occurs at the same time”",
-      "while milling the greatest step of the torque is 1's, and in the 50 ms about it 1's shaft turns "
-      "further than those of 2 and 3 ever do in such a time",
-      {{1, kMilling, torque_step},
-       {2, kMilling, torque_step},
-       {3, kMilling, torque_step},
-       {1, kMilling, [](const RunMetrics& m) { return m.turns.at_torque_step_deg; }},
-       {2, kMilling, turn},
-       {3, kMilling, turn}},
-      "step 1: {}, 2: {}, 3: {} N mm; turn 1 then: {}, 2 at most: {}, 3 at most: {} degrees",
-      [](const auto& v) { return v[0] > std::max(v[1], v[2]) && v[3] > std::max(v[4], v[5]); });
-}
-
-Finding pattern_finding(const RunGroup& group) {
-  const auto follows = [](const RunMetrics& m) { return m.torque_follows_force; };
-  return finding_on(
-      group,
-      "2's torque seems “to follow the same pattern as for the force feedback, but Algorithm #2 is more "
-      "stable than Algorithm #1”",
-      fmt::format("in both parts the multiple correlation of 2's torque with its force of the 10 ms about "
-                  "it, both above {0:.0f} Hz, is {1:g} or more; and its torque above {0:.0f} Hz (rms) is "
-                  "less than that of 1 while milling",
-                  kBuzzAbove_hz, kFollows),
-      {{2, kMilling, follows}, {2, kHolding, follows}, {1, kMilling, torque_hp}, {2, kMilling, torque_hp}},
-      "correlation milling {}, holding {}; torque milling 1: {}, 2: {} N mm",
-      [](const auto& v) { return std::min(v[0], v[1]) >= kFollows && v[3] < v[2]; });
-}
-
-Finding restless_finding(const RunGroup& group) {
-  return finding_on(
-      group, "3's torque “is a bit more unstable than the force feedback, especially for the milling case”",
-      fmt::format("what its torque has above {:.0f} Hz (rms), against its mean, is more than the same of its "
-                  "force while milling, and in proportion more than while holding",
-                  kBuzzAbove_hz),
-      {{3, kMilling, torque_unrest}, {3, kHolding, torque_unrest}},
-      "torque's share / force's share: milling {}, holding {}",
-      [](const auto& v) { return v[0] > 1 && v[0] > v[1]; });
-}
-
-Finding stable_torque_finding(const RunGroup& group) {
-  return finding_on(
-      group,
-      "torque: “For the non-milling case both Algorithm #2 and Algorithm #3 give stable torque feedback”",
-      fmt::format("while holding, the torque above {:.0f} Hz (rms) of 2 and of 3 is at most {:g} of its mean",
-                  kBuzzAbove_hz, kStableShare),
-      {{2, kHolding, torque_share}, {3, kHolding, torque_share}}, "2: {}, 3: {}",
-      [](const auto& v) { return std::max(v[0], v[1]) <= kStableShare; });
-}
-
-Finding shaft_finding(const RunGroup& group) {
-  const auto spread = [](const RunMetrics& m) { return m.shaft.spread_deg; };
-  return finding_on(
-      group, "shaft: “For the milling case … Algorithm #1 generates a very unstable behavior of the shaft”",
-      "while milling the spread of the shaft's direction (rms angle about the mean) is the "
-      "greatest in 1",
-      {{1, kMilling, spread}, {2, kMilling, spread}, {3, kMilling, spread}}, "1: {}, 2: {}, 3: {} degrees",
-      [](const auto& v) { return v[0] > std::max(v[1], v[2]); });
-}
-
-Finding contacts_finding(const RunGroup& group) {
-  return finding_on(
-      group,
-      "“an average number of approximately [1]5 points … are really colliding in each haptic loop” with 3",
-      fmt::format("while milling {:g} to {:g} points touch, on the average of the ticks in contact",
-                  kMinContacts, kMaxContacts),
-      {{3, kMilling, [](const RunMetrics& m) { return m.contacts_mean; }}}, "{}",
-      [](const auto& v) { return v[0] >= kMinContacts && v[0] <= kMaxContacts; });
-}
+// In the order of the paper's text.
+const Rule kRules[] = {
+    {"force: 1 and 3 “more stable than Algorithm #2 independent of case scenario”",
+     fmt::format("in both parts 2's force above {:.0f} Hz (rms) is at least {:g} times that of 1 and of 3",
+                 kBuzzAbove_hz, kCalmerBy),
+     {{1, kMilling, force_hp},
+      {2, kMilling, force_hp},
+      {3, kMilling, force_hp},
+      {1, kHolding, force_hp},
+      {2, kHolding, force_hp},
+      {3, kHolding, force_hp}},
+     "milling 1: {}, 2: {}, 3: {} N; holding 1: {}, 2: {}, 3: {} N",
+     [](const auto& v) {
+       return v[1] >= kCalmerBy * std::max(v[0], v[2]) && v[4] >= kCalmerBy * std::max(v[3], v[5]);
+     }},
+    {"1 “kicks away the shaft at a moment”, with “a peak in the torque signal when milling”; the shaft's "
+     "jump “occurs at the same time”",
+     "while milling the greatest step of the torque is 1's, and in the 50 ms about it 1's shaft turns "
+     "further than those of 2 and 3 ever do in such a time",
+     {{1, kMilling, torque_step},
+      {2, kMilling, torque_step},
+      {3, kMilling, torque_step},
+      {1, kMilling, shaft_turn_at_torque_step},
+      {2, kMilling, shaft_turn},
+      {3, kMilling, shaft_turn}},
+     "step 1: {}, 2: {}, 3: {} N mm; turn 1 then: {}, 2 at most: {}, 3 at most: {} degrees",
+     [](const auto& v) { return v[0] > std::max(v[1], v[2]) && v[3] > std::max(v[4], v[5]); }},
+    {"2's torque seems “to follow the same pattern as for the force feedback, but Algorithm #2 is more "
+     "stable than Algorithm #1”",
+     fmt::format("in both parts the multiple correlation of 2's torque with its force of the 10 ms about "
+                 "it, both above {0:.0f} Hz, is {1:g} or more; and its torque above {0:.0f} Hz (rms) is "
+                 "less than that of 1 while milling",
+                 kBuzzAbove_hz, kFollows),
+     {{2, kMilling, torque_follows},
+      {2, kHolding, torque_follows},
+      {1, kMilling, torque_hp},
+      {2, kMilling, torque_hp}},
+     "correlation milling {}, holding {}; torque milling 1: {}, 2: {} N mm",
+     [](const auto& v) { return std::min(v[0], v[1]) >= kFollows && v[3] < v[2]; }},
+    {"3's torque “is a bit more unstable than the force feedback, especially for the milling case”",
+     fmt::format("what its torque has above {:.0f} Hz (rms), against its mean, is more than the same of its "
+                 "force while milling, and in proportion more than while holding",
+                 kBuzzAbove_hz),
+     {{3, kMilling, torque_unrest}, {3, kHolding, torque_unrest}},
+     "torque's share / force's share: milling {}, holding {}",
+     [](const auto& v) { return v[0] > 1 && v[0] > v[1]; }},
+    {"torque: “For the non-milling case both Algorithm #2 and Algorithm #3 give stable torque feedback”",
+     fmt::format("while holding, the torque above {:.0f} Hz (rms) of 2 and of 3 is at most {:g} of its mean",
+                 kBuzzAbove_hz, kStableShare),
+     {{2, kHolding, torque_share}, {3, kHolding, torque_share}},
+     "2: {}, 3: {}",
+     [](const auto& v) { return std::max(v[0], v[1]) <= kStableShare; }},
+    {"shaft: “For the milling case … Algorithm #1 generates a very unstable behavior of the shaft”",
+     "while milling the spread of the shaft's direction (rms angle about the mean) is the greatest in 1",
+     {{1, kMilling, shaft_spread}, {2, kMilling, shaft_spread}, {3, kMilling, shaft_spread}},
+     "1: {}, 2: {}, 3: {} degrees",
+     [](const auto& v) { return v[0] > std::max(v[1], v[2]); }},
+    {"“an average number of approximately [1]5 points … are really colliding in each haptic loop” with 3",
+     fmt::format("while milling {:g} to {:g} points touch, on the average of the ticks in contact",
+                 kMinContacts, kMaxContacts),
+     {{3, kMilling, contacts}},
+     "{}",
+     [](const auto& v) { return v[0] >= kMinContacts && v[0] <= kMaxContacts; }}};
 
 }  // namespace
 
@@ -226,9 +221,12 @@ std::string_view name_of(Verdict verdict) {
 }
 
 std::vector<Finding> check_findings(const RunGroup& group, const GripForces& grips) {
-  return {rate_finding(group),          force_finding(group),   grip_finding(grips),
-          kick_finding(group),          pattern_finding(group), restless_finding(group),
-          stable_torque_finding(group), shaft_finding(group),   contacts_finding(group)};
+  std::vector<Finding> findings{rate_finding(group)};
+  for (const Rule& rule : kRules) {
+    findings.push_back(finding_by(rule, group));
+    if (findings.size() == 2) findings.push_back(grip_finding(grips));
+  }
+  return findings;
 }
 
 }  // namespace osteomill

@@ -85,23 +85,26 @@ std::vector<double> holm_corrected(std::span<const double> p) {
   return corrected;
 }
 
+double chance_of_fewer_heads(std::size_t k, std::size_t tosses) {
+  double exactly = std::ldexp(1.0, -static_cast<int>(tosses));
+  double fewer = 0;
+  for (std::size_t m = 0; m < k; ++m) {
+    fewer += exactly;
+    exactly *= static_cast<double>(tosses - m) / static_cast<double>(m + 1);
+  }
+  return fewer;
+}
+
 MedianInterval median_interval(std::span<const double> values, double coverage) {
   if (values.empty()) return {};
   std::vector<double> sorted(values.begin(), values.end());
   std::sort(sorted.begin(), sorted.end());
   const std::size_t n = sorted.size();
-  // P(Binomial(n, 1/2) = k) and P(Binomial(n, 1/2) < k).
-  double exactly = std::ldexp(1.0, -static_cast<int>(n));
-  double below = exactly;
-  const bool is_range = 1 - 2 * below < coverage;
+  const auto coverage_of = [&](std::size_t k) { return 1 - 2 * chance_of_fewer_heads(k, n); };
+  const bool is_range = coverage_of(1) < coverage;
   std::size_t k = 1;
-  while (!is_range && 2 * (k + 1) <= n) {
-    exactly *= static_cast<double>(n - k + 1) / static_cast<double>(k);
-    if (1 - 2 * (below + exactly) < coverage) break;
-    below += exactly;
-    ++k;
-  }
-  return {distribution_of(sorted).median, sorted[k - 1], sorted[n - k], std::max(0.0, 1 - 2 * below),
+  while (!is_range && 2 * (k + 1) <= n && coverage_of(k + 1) >= coverage) ++k;
+  return {distribution_of(sorted).median, sorted[k - 1], sorted[n - k], std::max(0.0, coverage_of(k)),
           is_range};
 }
 

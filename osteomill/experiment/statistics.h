@@ -36,6 +36,9 @@ double min_p(std::size_t differences);
 /// be held against the level of significance as if it were alone.
 std::vector<double> holm_corrected(std::span<const double> p);
 
+/// The chance of fewer than k heads in so many tosses of a coin: P(Binomial(n, 1/2) < k).
+double chance_of_fewer_heads(std::size_t k, std::size_t tosses);
+
 /// The median of a sample, and an interval that covers the median of what the sample was drawn from.
 struct MedianInterval {
   double median = 0;

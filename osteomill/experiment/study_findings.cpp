@@ -10,15 +10,9 @@ namespace osteomill {
 
 namespace {
 
-// P(Binomial(n, 1/2) >= k).
+// By tossing a coin for each of n.
 double chance_of_at_least(std::size_t k, std::size_t n) {
-  double exactly = std::ldexp(1.0, -static_cast<int>(n));
-  double below = 0;
-  for (std::size_t m = 0; m < k; ++m) {
-    below += exactly;
-    exactly *= static_cast<double>(n - m) / static_cast<double>(m + 1);
-  }
-  return std::max(0.0, 1 - below);
+  return std::max(0.0, 1 - chance_of_fewer_heads(k, n));
 }
 
 Verdict verdict_of(const StudyFinding& finding, const Study& study) {

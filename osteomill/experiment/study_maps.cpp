@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -12,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "osteomill/numbers/distribution.h"
+#include "osteomill/numbers/parse_number.h"
 #include "osteomill/report/figure.h"
 
 namespace osteomill {
@@ -45,16 +45,21 @@ std::size_t place_in(std::vector<std::string>& known, const std::string& text) {
 // What stands along an axis, or is coloured: an option, a column of the rows, or the ratio of two of them.
 class Shown {
  public:
-  Shown(const StudyDesign& design, const std::string& shown) : columns_(&columns_of(design.test)) {
-    names_ = names_in(shown);
-    label = label_of(design, names_.front());
-    if (names_.size() > 1) label = ratio_label(label, label_of(design, names_.back()));
+  Shown(const StudyDesign& design, const std::string& shown) {
+    for (const std::string& name : names_in(shown)) {
+      const auto& columns = columns_of(design.test);
+      const auto column = std::ranges::find(columns, name, &StudyColumn::name);
+      const bool is_option = column == columns.end();
+      parts_.push_back({name, is_option, static_cast<std::size_t>(column - columns.begin())});
+      const std::string words_of_it = is_option ? design.label_of(name) : column->label;
+      label = label.empty() ? words_of_it : ratio_label(label, words_of_it);
+    }
   }
 
   // Not a number where it is not set or could not be measured.
   double of(const StudySettings& settings, const TrialRow& row) {
-    const double value = one(names_.front(), settings, row);
-    return names_.size() == 1 ? value : value / one(names_.back(), settings, row);
+    const double value = one(parts_.front(), settings, row);
+    return parts_.size() == 1 ? value : value / one(parts_.back(), settings, row);
   }
 
   std::string label;
@@ -62,25 +67,20 @@ class Shown {
   std::vector<std::string> words;
 
  private:
-  std::string label_of(const StudyDesign& design, const std::string& name) const {
-    const auto column = std::ranges::find(*columns_, name, &StudyColumn::name);
-    if (column != columns_->end()) return column->label;
-    return design.label_of(name);
-  }
-
-  double one(const std::string& name, const StudySettings& settings, const TrialRow& row) {
-    const auto column = std::ranges::find(*columns_, name, &StudyColumn::name);
-    if (column != columns_->end()) return row.values[static_cast<std::size_t>(column - columns_->begin())];
-    const std::string* text = find_value(settings, name);
+  struct Part {
+    std::string name;
+    bool is_option;
+    std::size_t column;
+  };
+  double one(const Part& part, const StudySettings& settings, const TrialRow& row) {
+    if (!part.is_option) return row.values[part.column];
+    const std::string* text = find_value(settings, part.name);
     if (text == nullptr) return kNotMeasured;
-    double number = 0;
-    const auto [end, error] = std::from_chars(text->data(), text->data() + text->size(), number);
-    if (error == std::errc() && end == text->data() + text->size()) return number;
+    if (const auto number = parsed_number<double>(*text)) return *number;
     return static_cast<double>(place_in(words, *text));
   }
 
-  const std::vector<StudyColumn>* columns_;
-  std::vector<std::string> names_;
+  std::vector<Part> parts_;
 };
 
 // The cells of an axis: values, or parts of their range, by their edges.
@@ -217,25 +217,26 @@ struct Gathered {
   std::vector<Point> points = {};
 };
 
-Gathered gather(const StudyDesign& design, const StudyMap& map, const EachRow& each_row) {
+Gathered gather(const StudyDesign& design, const StudyMap& map, const std::vector<TrialRow>& rows) {
   Gathered all{{design, map.x}, {design, map.y}, {design, map.colour}};
   const auto parts = parts_of(design.test);
-  each_row([&](const StudySettings& settings, const TrialRow& row) {
-    if (parts[row.part] != (map.part.empty() ? parts.front() : map.part)) return;
+  for (const TrialRow& row : rows) {
+    if (parts[row.part] != (map.part.empty() ? parts.front() : map.part)) continue;
+    const StudySettings settings = design.trial(row.trial);
     const Point point{place_in(all.panels, panel_name(map, settings)), all.x.of(settings, row),
                       all.y.of(settings, row), all.colour.of(settings, row)};
     if (std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.colour))
       all.points.push_back(point);
-  });
+  }
   return all;
 }
 
 }  // namespace
 
 std::optional<CaptionedFigure> draw_study_map(const StudyDesign& design, const StudyMap& map,
-                                              const EachRow& each_row, const std::string& name,
+                                              const std::vector<TrialRow>& rows, const std::string& name,
                                               const std::filesystem::path& folder) {
-  const auto [shown_x, shown_y, colour, panels, points] = gather(design, map, each_row);
+  const auto [shown_x, shown_y, colour, panels, points] = gather(design, map, rows);
   if (points.empty()) return std::nullopt;
   const Cells x = cells_along(&Point::x, points, shown_x), y = cells_along(&Point::y, points, shown_y);
   std::map<std::array<std::size_t, 3>, std::vector<double>> cells;

@@ -21,25 +21,15 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::string varied_fields(const StudyDesign& design, const StudySettings& settings) {
-  std::string fields;
-  for (const std::string& key : design.varied()) {
-    const std::string* value = find_value(settings, key);
-    fields += "," + (value == nullptr ? "" : csv_field(*value));
-  }
-  return fields;
-}
-
 std::string csv_head(const StudyDesign& design) {
   std::string head = list_head(design) + ",part";
   for (const StudyColumn& column : columns_of(design.test)) head += "," + column.name;
   return head + ",not_reached\n";
 }
 
-std::string csv_row(const StudyDesign& design, const StudySettings& settings, const TrialRow& row) {
-  std::string line =
-      fmt::format("{}{},{}", row.trial, varied_fields(design, settings), parts_of(design.test)[row.part]);
-  for (const double value : row.values) line += std::isnan(value) ? "," : fmt::format(",{}", value);
+std::string csv_row(const StudyDesign& design, const TrialRow& row) {
+  std::string line = list_row(design, row.trial) + "," + std::string(parts_of(design.test)[row.part]);
+  for (const double value : row.values) line += csv_number(value);
   return line + "," + csv_field(row.not_reached) + "\n";
 }
 
@@ -49,13 +39,11 @@ std::string text_of(const StudySettings& settings, std::string_view key, const c
 }
 
 StudyRow row_of_hand(const StudySettings& settings, const TrialRow& row) {
-  StudyRow of_hand = milling_row(row);
-  of_hand.seed = seed_of(settings);
-  of_hand.grip = std::stod(text_of(settings, "grip", "1"));
-  of_hand.run.algorithm =
-      algorithm_named(text_of(settings, "algorithm", default_algorithm().id.name.c_str())).id;
-  of_hand.run.mode = *mode_named(text_of(settings, "mode", "steady"));
-  return of_hand;
+  const std::string algorithm = text_of(settings, "algorithm", default_algorithm().id.name.c_str());
+  const Mode mode = *mode_named(text_of(settings, "mode", "steady"));
+  return milling_row(row, {.seed = seed_of(settings),
+                           .run = {algorithm_named(algorithm).id, mode, {}, {}},
+                           .grip = std::stod(text_of(settings, "grip", "1"))});
 }
 
 // What hands that are compared have in common: the bone, the tool, and all else that varies but the hand
@@ -80,12 +68,13 @@ std::vector<StudyRow> of_whole_hands(std::vector<StudyRow> rows) {
 }
 
 // One for each group of hands.
-std::vector<PageSection> findings_sections(const StudyDesign& design, const EachRow& each_row,
+std::vector<PageSection> findings_sections(const StudyDesign& design, const std::vector<TrialRow>& all,
                                            const fs::path& figures) {
   std::map<std::string, std::vector<StudyRow>> groups;
-  each_row([&](const StudySettings& settings, const TrialRow& row) {
+  for (const TrialRow& row : all) {
+    const StudySettings settings = design.trial(row.trial);
     groups[group_of(design, settings)].push_back(row_of_hand(settings, row));
-  });
+  }
   std::vector<PageSection> sections;
   for (const auto& [group, rows] : groups) {
     const Study study(of_whole_hands(rows));
@@ -103,35 +92,33 @@ std::vector<PageSection> findings_sections(const StudyDesign& design, const Each
   return sections;
 }
 
-constexpr std::size_t kFewValues = 12;
-using TriedValues = std::map<std::string, std::vector<std::string>>;
-
-// Of each option up to one value more than the table shows, so that the table can say that there are others.
-void note_tried(TriedValues& tried, const StudySettings& settings) {
-  for (const auto& [key, value] : settings) {
-    std::vector<std::string>& values = tried[key];
-    if (values.size() <= kFewValues && std::find(values.begin(), values.end(), value) == values.end())
-      values.push_back(value);
+HtmlTable options_table(const StudyDesign& design, const std::vector<TrialRow>& rows) {
+  constexpr std::size_t kFewValues = 12;
+  // Up to one value more than is shown, so that the table can say that there are others.
+  std::map<std::string, std::vector<std::string>> tried;
+  for (const TrialRow& row : rows) {
+    for (const auto& [key, value] : design.trial(row.trial)) {
+      std::vector<std::string>& values = tried[key];
+      if (values.size() <= kFewValues && std::ranges::find(values, value) == values.end())
+        values.push_back(value);
+    }
   }
-}
-
-HtmlTable options_table(const StudyDesign& design, const TriedValues& tried) {
   HtmlTable table{{"Option", "What was tried"}, {}};
-  for (const auto& [key, values] : tried) {
-    std::string words;
-    for (std::size_t n = 0; n < std::min(values.size(), kFewValues); ++n)
-      words += (n == 0 ? "" : ", ") + values[n];
-    table.rows.push_back({html_escaped(design.label_of(key)),
-                          html_escaped(values.size() > kFewValues ? words + " and others" : words)});
+  for (auto& [key, values] : tried) {
+    const bool has_others = values.size() > kFewValues;
+    if (has_others) values.pop_back();
+    const std::string words = fmt::format("{}{}", fmt::join(values, ", "), has_others ? " and others" : "");
+    table.rows.push_back({html_escaped(design.label_of(key)), html_escaped(words)});
   }
   return table;
 }
 
-PageSection maps_section(const StudyDesign& design, const EachRow& each_row, const fs::path& figures) {
+PageSection maps_section(const StudyDesign& design, const std::vector<TrialRow>& rows,
+                         const fs::path& figures) {
   PageSection section{.title = "Maps"};
   for (std::size_t n = 1; n <= design.maps.size(); ++n) {
     const StudyMap& map = design.maps[n - 1];
-    if (const auto drawn = draw_study_map(design, map, each_row, fmt::format("map_{}", n), figures)) {
+    if (const auto drawn = draw_study_map(design, map, rows, fmt::format("map_{}", n), figures)) {
       section.figures.push_back(*drawn);
     } else {
       section.notices.push_back(fmt::format("Map {}, {}: nothing was measured.", n, map.title));
@@ -154,40 +141,33 @@ std::string list_head(const StudyDesign& design) {
 }
 
 std::string list_row(const StudyDesign& design, std::size_t number) {
-  return fmt::format("{}{}", number, varied_fields(design, design.trial(number)));
+  const StudySettings settings = design.trial(number);
+  std::string row = fmt::format("{}", number);
+  for (const std::string& key : design.varied()) row += "," + csv_field(text_of(settings, key, ""));
+  return row;
 }
 
 fs::path write_study_report(const StudyDesign& design, const StudyRecord& record, const fs::path& folder) {
-  const StudyStatus status = study_status(folder, record, design.test);
-  if (status.done.empty()) throw InputError(folder.string(), "has no trial that is done");
-  const EachRow each_row = [&](const auto& see) {
-    for (const std::size_t number : status.done) {
-      const std::optional<Slice> slice = read_slice(folder, record, design.test, number);
-      if (!slice) throw InputError(slice_path(folder, number).string(), "has gone while the report was made");
-      for (const TrialRow& row : slice->rows) see(design.trial(row.trial), row);
-    }
-  };
+  std::vector<TrialRow> rows;
+  const StudyStatus status = study_status(folder, record, design.test, &rows);
+  if (rows.empty()) throw InputError(folder.string(), "has no trial that is done");
   const std::string share = share_text(status.trials_done, record.trials);
   const fs::path out = folder / "report";
   write_folder_atomically(out, [&](const fs::path& beside) {
-    TriedValues tried;
     write_text_atomically(beside / "trials.csv", [&](std::ostream& csv) {
       csv << csv_head(design);
-      each_row([&](const StudySettings& settings, const TrialRow& row) {
-        csv << csv_row(design, settings, row);
-        note_tried(tried, settings);
-      });
+      for (const TrialRow& row : rows) csv << csv_row(design, row);
     });
     const fs::path figures = beside / "figures";
     create_folder(figures);
     std::vector<PageSection> sections{{.paragraphs = {fmt::format("{}, test {}; {:.3g} h of CPU.", share,
                                                                   name_of(design.test), status.cpu_s / 3600)},
-                                       .tables = {options_table(design, tried)}}};
+                                       .tables = {options_table(design, rows)}}};
     if (status.trials_done < record.trials)
       sections.front().notices = {fmt::format("This is a part of the study: {}.", share)};
-    if (!design.maps.empty()) sections.push_back(maps_section(design, each_row, figures));
+    if (!design.maps.empty()) sections.push_back(maps_section(design, rows, figures));
     if (design.findings)
-      std::ranges::move(findings_sections(design, each_row, figures), std::back_inserter(sections));
+      std::ranges::move(findings_sections(design, rows, figures), std::back_inserter(sections));
     write_text_atomically(beside / "report.html", [&](std::ostream& page) {
       page << html_page(design.title.empty() ? "A study" : design.title, sections);
     });

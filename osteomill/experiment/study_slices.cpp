@@ -224,11 +224,13 @@ std::optional<Slice> read_slice(const fs::path& folder, const StudyRecord& recor
   }
 }
 
-StudyStatus study_status(const fs::path& folder, const StudyRecord& record, StudyTest test) {
+StudyStatus study_status(const fs::path& folder, const StudyRecord& record, StudyTest test,
+                         std::vector<TrialRow>* rows) {
   StudyStatus status;
   for (std::size_t number = 0; number < record.slices(); ++number) {
-    const std::optional<Slice> slice = read_slice(folder, record, test, number);
+    std::optional<Slice> slice = read_slice(folder, record, test, number);
     if (slice) {
+      if (rows != nullptr) std::ranges::move(slice->rows, std::back_inserter(*rows));
       status.done.push_back(number);
       status.trials_done += record.size_of(number);
       status.cpu_s += slice->cpu_s;

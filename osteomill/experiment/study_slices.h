@@ -67,7 +67,7 @@ void write_slice(const std::filesystem::path& folder, const StudyRecord& record,
 std::optional<Slice> read_slice(const std::filesystem::path& folder, const StudyRecord& record,
                                 StudyTest test, std::size_t number);
 
-/// How far a study is, by the files of its folder.
+/// How far a study is, by the files of its folder; what these hold is put behind `rows`.
 struct StudyStatus {
   /// By their numbers, all slices.
   std::vector<std::size_t> done;
@@ -77,6 +77,7 @@ struct StudyStatus {
   /// Files that are there and cannot be used.
   std::vector<std::filesystem::path> damaged;
 };
-StudyStatus study_status(const std::filesystem::path& folder, const StudyRecord& record, StudyTest test);
+StudyStatus study_status(const std::filesystem::path& folder, const StudyRecord& record, StudyTest test,
+                         std::vector<TrialRow>* rows = nullptr);
 
 }  // namespace osteomill

@@ -19,6 +19,7 @@ inline StudyRow row(std::uint64_t seed, std::string_view algorithm, Mode mode, s
                     const Values& values) {
   StudyRow row{.seed = seed, .run = {algorithm_named(algorithm).id, mode, std::string(phase), {}}};
   row.stiffness_N_per_m = 100 * static_cast<double>(seed);
+  row.damping_Ns_per_m = 5;
   row.run.metrics.rate_hz = 1000;
   row.run.metrics.contact = {1, 1, 1, 1, 1};
   row.run.metrics.force_N.mean = 2;
