@@ -164,18 +164,17 @@ std::string curve_data(std::span<const PassivityRow> rows, const AlgorithmId& al
 }
 
 std::string panel(std::span<const PassivityRow> rows, std::size_t column, std::size_t row, const Axes& axes,
-                  const TemporaryFolder& work) {
+                  FigureScript& figure) {
   std::string curves, rule;
   for (std::size_t n = 0; n < axes.algorithms.size(); ++n) {
     const AlgorithmId& algorithm = axes.algorithms[n];
     const double aside = std::pow(1.05, static_cast<double>(n) - 1);
-    const std::string file = fmt::format("stability-{}-{}-{}.dat", name_of(algorithm), row, column);
-    write_figure_data(work / file,
-                      curve_data(rows, algorithm, aside, axes.modes[row], axes.delays_s[column]));
+    const std::string file =
+        figure.data(curve_data(rows, algorithm, aside, axes.modes[row], axes.delays_s[column]));
     // The same for every algorithm.
-    rule = fmt::format(", '{}' using 4:5 with lines dt 2 lw 2 lc rgb '#8a8a8a' notitle", file);
+    rule = fmt::format(", {} using 4:5 with lines dt 2 lw 2 lc rgb '#8a8a8a' notitle", file);
     curves += fmt::format(
-        "{2}'{0}' using 1:2 with linespoints pt 7 ps 0.9 lw 1.6 lc rgb '{1}' notitle, '{0}' using 1:3 with "
+        "{2}{0} using 1:2 with linespoints pt 7 ps 0.9 lw 1.6 lc rgb '{1}' notitle, {0} using 1:3 with "
         "points "
         "pt 9 ps 1.9 lc rgb '{1}' notitle",
         file, algorithm.colour, curves.empty() ? "plot " : ", ");
@@ -214,17 +213,14 @@ Figure draw_passivity_figure(std::span<const PassivityRow> rows, const std::file
                  .above_px = 44,
                  .below_px = 58};
   grid.height_px = grid.head_px + 330 * static_cast<double>(grid.rows);
-  FigureScript script{"stability", grid.height_px};
-  script.body = common(axes, grid);
-  for (std::size_t row = 0; row < grid.rows; ++row) {
-    for (std::size_t column = 0; column < grid.columns; ++column) {
-      script.body += panel_margins(grid, panel_cell(grid, column, row)) +
-                     fmt::format("set title '{}, delay {:.3g} ms' offset 0,-0.4\n", name_of(axes.modes[row]),
-                                 1e3 * axes.delays_s[column]) +
-                     panel(rows, column, row, axes, script.work) + "unset label\n";
-    }
-  }
-  return draw_figure(script, folder);
+  return draw_panels(
+      "stability", grid, common(axes, grid),
+      [&](std::size_t column, std::size_t row, FigureScript& figure) {
+        return fmt::format("set title '{}, delay {:.3g} ms' offset 0,-0.4\n", name_of(axes.modes[row]),
+                           1e3 * axes.delays_s[column]) +
+               panel(rows, column, row, axes, figure) + "unset label\n";
+      },
+      folder);
 }
 
 PageSection passivity_section(std::span<const PassivityRow> rows, const Figure& figure) {

@@ -262,22 +262,22 @@ std::optional<CaptionedFigure> draw_study_map(const StudyDesign& design, const S
                  .below_px = 58};
   grid.rows = (panels.size() + grid.columns - 1) / grid.columns;
   grid.height_px = grid.head_px + 340 * static_cast<double>(grid.rows);
-  FigureScript script{name, grid.height_px};
-  script.body = begin_panels("") + axis_script('x', x, shown_x) + axis_script('y', y, shown_y) +
-                colour_script(map, colour.label, min, max, grid);
-  for (std::size_t n = 0; n < panels.size(); ++n) {
-    if (data[n].empty()) continue;
-    const std::string file = fmt::format("map-{}.dat", n);
-    write_figure_data(script.work / file, data[n]);
-    script.body += panel_margins(grid, panel_cell(grid, n % grid.columns, n / grid.columns)) +
-                   fmt::format("set title {} offset 0,-0.4 noenhanced\n", gnuplot_quoted(panels[n])) +
-                   fmt::format(
-                       "plot '{}' using 1:2:3:4:5:6:7 with boxxyerror fs solid noborder lc palette{}\n"
-                       "unset label\nunset colorbox\n",
-                       file, map.line_of_equality ? ", x with lines dt 2 lw 2 lc rgb '#d32f2f'" : "");
-  }
+  const auto panel = [&](std::size_t column, std::size_t row, FigureScript& figure) {
+    const std::size_t n = row * grid.columns + column;
+    if (n >= panels.size() || data[n].empty()) return std::string();
+    return fmt::format("set title {} offset 0,-0.4 noenhanced\n", gnuplot_quoted(panels[n])) +
+           fmt::format(
+               "plot {} using 1:2:3:4:5:6:7 with boxxyerror fs solid noborder lc palette{}\n"
+               "unset label\nunset colorbox\n",
+               figure.data(data[n]), map.line_of_equality ? ", x with lines dt 2 lw 2 lc rgb '#d32f2f'" : "");
+  };
+  const Figure figure =
+      draw_panels(name, grid,
+                  begin_panels("") + axis_script('x', x, shown_x) + axis_script('y', y, shown_y) +
+                      colour_script(map, colour.label, min, max, grid),
+                  panel, folder);
   return CaptionedFigure{
-      draw_figure(script, folder).svg,
+      figure.svg,
       fmt::format(
           "{}: {} of the trials in a cell, by {} and {}. What is white was not tried, or could not be "
           "measured.",

@@ -68,23 +68,21 @@ std::string tics(const Study& study) {
                      list);
 }
 
-std::string panel(const Study& study, std::string_view phase, const Metric& metric, std::size_t number,
-                  const TemporaryFolder& work) {
+std::string panel(const Study& study, std::string_view phase, const Metric& metric, FigureScript& figure) {
   std::string plot;
   for (const Mode mode : study.modes()) {
     const double shift = study.modes().size() < 2 ? 0.0 : mode == Mode::paper ? -kModeShift : kModeShift;
     int place = 0;
     for (const AlgorithmId& algorithm : study.algorithms()) {
-      const std::string file = fmt::format("study-{}-{}-{}.dat", number, name_of(mode), name_of(algorithm));
       const double x = static_cast<double>(place++) + shift;
       const std::vector<double> values = study.values({algorithm, mode}, phase, metric);
       if (values.empty()) continue;
-      write_figure_data(work / file, dots_and_bars(values, x));
       plot += fmt::format(
-          "{0}'{1}' index 1 with lines lw 2.5 lc rgb '{2}' notitle, '{1}' index 0 with points pt {3} ps 0.8 "
+          "{0}{1} index 1 with lines lw 2.5 lc rgb '{2}' notitle, {1} index 0 with points pt {3} ps 0.8 "
           "lw "
           "1.3 lc rgb '{2}' notitle",
-          plot.empty() ? "plot " : ", ", file, algorithm.colour, mode == Mode::paper ? 6 : 7);
+          plot.empty() ? "plot " : ", ", figure.data(dots_and_bars(values, x)), algorithm.colour,
+          mode == Mode::paper ? 6 : 7);
     }
   }
   return range_for(all_values(study, phase, metric)) + plot + "\n";
@@ -273,15 +271,16 @@ Figure draw_study_figure(const Study& study, std::string_view phase, const std::
                  .above_px = 34,
                  .below_px = 36};
   grid.height_px = grid.head_px + 280 * static_cast<double>(grid.rows);
-  FigureScript script{fmt::format("study_{}", phase), grid.height_px};
-  script.body =
-      begin_panels("y") + "set format y '%g'\n" + tics(study) + legend_row(grid, legend(study, phase));
-  for (std::size_t n = 0; n < metrics.size(); ++n) {
-    const PanelCell cell = panel_cell(grid, n % kColumns, n / kColumns);
-    script.body += panel_margins(grid, cell) + title(metrics[n], grid, cell) +
-                   panel(study, phase, metrics[n], n, script.work) + "unset label\n";
-  }
-  return draw_figure(script, folder);
+  return draw_panels(
+      fmt::format("study_{}", phase), grid,
+      begin_panels("y") + "set format y '%g'\n" + tics(study) + legend_row(grid, legend(study, phase)),
+      [&](std::size_t column, std::size_t row, FigureScript& figure) {
+        const std::size_t n = row * kColumns + column;
+        if (n >= metrics.size()) return std::string();
+        return title(metrics[n], grid, panel_cell(grid, column, row)) +
+               panel(study, phase, metrics[n], figure) + "unset label\n";
+      },
+      folder);
 }
 
 PageSection study_section(const Study& study, const std::vector<CaptionedFigure>& figures) {

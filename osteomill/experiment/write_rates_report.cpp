@@ -52,9 +52,8 @@ std::string tics(const std::vector<RateRow>& rows) {
   return fmt::format("set xtics noenhanced rotate by 35 right ({})\n", list);
 }
 
-std::string panel(const std::vector<RateRow>& rows, std::size_t column, const TemporaryFolder& work) {
+std::string panel(const std::vector<RateRow>& rows, std::size_t column, FigureScript& figure) {
   const AlgorithmId& algorithm = rows.front().algorithm;
-  const std::string file = fmt::format("rates-{}.dat", name_of(algorithm));
   std::string data;
   bool in_paper = false;
   for (std::size_t n = 0; n < rows.size(); ++n) {
@@ -63,7 +62,7 @@ std::string panel(const std::vector<RateRow>& rows, std::size_t column, const Te
     data += fmt::format("{} {:.6g} {}\n", n, rows[n].steps_per_s,
                         known ? fmt::format("{:.6g}", rows[n].paper_rate_hz) : "?");
   }
-  write_figure_data(work / file, data);
+  const std::string file = figure.data(data);
   std::string script =
       fmt::format("set title '{}' offset 0,-0.4\nset xrange [-0.5:{}]\n{}{}", algorithm.label,
                   static_cast<double>(rows.size()) - 0.5, tics(rows),
@@ -71,9 +70,9 @@ std::string panel(const std::vector<RateRow>& rows, std::size_t column, const Te
   script += "plot 1000 with lines dt 2 lw 1.5 lc rgb '#555555' notitle, ";
   if (in_paper) {
     script +=
-        fmt::format("'{}' using 1:3 with linespoints pt 6 ps 1.2 lw 1.5 lc rgb '#8a8a8a' notitle, ", file);
+        fmt::format("{} using 1:3 with linespoints pt 6 ps 1.2 lw 1.5 lc rgb '#8a8a8a' notitle, ", file);
   }
-  return script + fmt::format("'{}' using 1:2 with linespoints pt 7 ps 1.1 lw 2 lc rgb '{}' notitle\n", file,
+  return script + fmt::format("{} using 1:2 with linespoints pt 7 ps 1.1 lw 2 lc rgb '{}' notitle\n", file,
                               algorithm.colour);
 }
 
@@ -94,18 +93,19 @@ Figure draw_rates_figure(std::span<const RateRow> rows, const std::filesystem::p
                        .below_px = 110};
   const bool in_paper =
       std::any_of(rows.begin(), rows.end(), [](const RateRow& r) { return r.paper_rate_hz > 0; });
-  FigureScript script{"rates", grid.height_px};
-  script.body = begin_panels("y") + "set datafile missing '?'\nset logscale y\nset format y '%.0s %c'\n" +
-                rate_range(rows) +
-                fmt::format(
-                    "set label 1 '● measured here    {}- - -  1000 Hz, what a haptic loop needs' at screen "
-                    "0.5,screen {:.4f} center\n",
-                    in_paper ? "{/:Normal ○} the paper, on a Pentium 4    " : "", 1 - 26 / grid.height_px);
-  for (std::size_t n = 0; n < panels.size(); ++n) {
-    script.body +=
-        panel_margins(grid, panel_cell(grid, n, 0)) + panel(panels[n], n, script.work) + "unset label 1\n";
-  }
-  return draw_figure(script, folder);
+  const std::string common =
+      begin_panels("y") + "set datafile missing '?'\nset logscale y\nset format y '%.0s %c'\n" +
+      rate_range(rows) +
+      fmt::format(
+          "set label 1 '● measured here    {}- - -  1000 Hz, what a haptic loop needs' at screen "
+          "0.5,screen {:.4f} center\n",
+          in_paper ? "{/:Normal ○} the paper, on a Pentium 4    " : "", 1 - 26 / grid.height_px);
+  return draw_panels(
+      "rates", grid, common,
+      [&](std::size_t column, std::size_t, FigureScript& figure) {
+        return panel(panels[column], column, figure) + "unset label 1\n";
+      },
+      folder);
 }
 
 void require_usable(const std::vector<RateRow>& rows) {

@@ -36,6 +36,10 @@ void copy_to(const fs::path& from, const fs::path& to) {
   if (error) throw InputError(to.string(), "cannot be written: " + error.message());
 }
 
+void write_bytes(const fs::path& path, std::string_view bytes) {
+  write_text_atomically(path, [&](std::ostream& out) { out << bytes; });
+}
+
 // Two indices of each bin, as `pick(first, last)` chooses them.
 template <typename Pick>
 std::vector<std::size_t> two_of_each(std::size_t count, std::size_t bins, Pick pick) {
@@ -57,7 +61,7 @@ std::vector<std::size_t> two_of_each(std::size_t count, std::size_t bins, Pick p
 }  // namespace
 
 void run_gnuplot(const fs::path& folder, const std::string& script, const std::string& program) {
-  write_figure_data(folder / kScript, valid_utf8(script));
+  write_bytes(folder / kScript, valid_utf8(script));
   // gnuplot does not look at what could not be written; a limit to its files ends it. -d: the settings of the
   // user's own must not change the figures.
   const Said said =
@@ -77,6 +81,12 @@ std::string gnuplot_quoted(const std::string& text) {
     if (c == '\'') quoted += c;
   }
   return quoted + "'";
+}
+
+std::string FigureScript::data(std::string_view bytes) {
+  const std::string file = fmt::format("{}.dat", ++files);
+  write_bytes(work / file, bytes);
+  return "'" + file + "'";
 }
 
 PanelCell panel_cell(const PanelGrid& grid, std::size_t column, std::size_t row) {
@@ -135,8 +145,18 @@ Figure draw_figure(const FigureScript& script, const fs::path& folder) {
   return figure;
 }
 
-void write_figure_data(const fs::path& path, std::string_view bytes) {
-  write_text_atomically(path, [&](std::ostream& out) { out << bytes; });
+Figure draw_panels(const std::string& name, const PanelGrid& grid, const std::string& common,
+                   const std::function<std::string(std::size_t, std::size_t, FigureScript&)>& panel,
+                   const fs::path& folder) {
+  FigureScript script{name, grid.height_px};
+  script.body = common;
+  for (std::size_t row = 0; row < grid.rows; ++row) {
+    for (std::size_t column = 0; column < grid.columns; ++column) {
+      const std::string commands = panel(column, row, script);
+      if (!commands.empty()) script.body += panel_margins(grid, panel_cell(grid, column, row)) + commands;
+    }
+  }
+  return draw_figure(script, folder);
 }
 
 std::vector<std::size_t> thin_out_curve(std::span<const double> values, std::size_t bins) {

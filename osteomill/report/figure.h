@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -39,8 +40,13 @@ struct FigureScript {
   double width_px = PanelGrid::kWidth_px;
   /// gnuplot commands, which begin a multiplot.
   std::string body = {};
-  /// Where gnuplot runs: the data files that `body` names lie here.
+  /// Where gnuplot runs.
   TemporaryFolder work = {};
+  int files = 0;
+
+  /// Writes a file that `body` can draw from; returns its name between quotes. Throws InputError where it
+  /// cannot be written to its end: gnuplot would draw what there is of it.
+  std::string data(std::string_view bytes);
 };
 
 /// One panel's room: its upper left corner, from the figure's lower left, and its size.
@@ -64,9 +70,12 @@ std::string legend_row(const PanelGrid& grid, const std::vector<LegendEntry>& en
 /// fails.
 Figure draw_figure(const FigureScript& script, const std::filesystem::path& folder);
 
-/// Writes a file that a figure is drawn from. Throws InputError where it cannot be written to its end:
-/// gnuplot would draw what there is of it.
-void write_figure_data(const std::filesystem::path& path, std::string_view bytes);
+/// Draws a grid's panels as draw_figure does: commands that all have in common, and then those of each, row
+/// by row, from `panel`; empty for one that stays free.
+Figure draw_panels(
+    const std::string& name, const PanelGrid& grid, const std::string& common,
+    const std::function<std::string(std::size_t column, std::size_t row, FigureScript& script)>& panel,
+    const std::filesystem::path& folder);
 
 /// The indices of a curve's samples that a drawing about `bins` pixels wide needs: of each of `bins` equal
 /// parts the least and the greatest sample, in order, so that no spike is lost. All indices where there are

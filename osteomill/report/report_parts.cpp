@@ -87,16 +87,15 @@ std::optional<Figure> draw_picture_figure(const RunGroup& group, const std::file
       "set multiplot\nunset tics\nunset border\nset size ratio -1\nset lmargin 0.5\nset rmargin 0.5\n"
       "set tmargin 2\nset bmargin 0.3\nset autoscale xfix\nset autoscale yfix\n";
   for (std::size_t n = 0; n < panels.size(); ++n) {
-    const std::string file = fmt::format("picture{}.png", n);
     const std::vector<unsigned char>& png = encode_png(pictures[n]);
-    write_figure_data(script.work / file, {reinterpret_cast<const char*>(png.data()), png.size()});
     const int column = static_cast<int>(n) % columns;
     const int row = static_cast<int>(n) / columns;
     script.body += fmt::format(
         "set origin {:.4f},{:.4f}\nset size {:.4f},{:.4f}\nset title {} offset 0,-0.5 noenhanced\n"
-        "plot '{}' binary filetype=png with rgbimage notitle\n",
+        "plot {} binary filetype=png with rgbimage notitle\n",
         static_cast<double>(column) / columns, 1.0 - (row + 1.0) / rows, 1.0 / columns, 1.0 / rows,
-        gnuplot_quoted(panels[n].label), file);
+        gnuplot_quoted(panels[n].label),
+        script.data({reinterpret_cast<const char*>(png.data()), png.size()}));
   }
   return draw_figure(script, folder);
 }
@@ -162,17 +161,17 @@ std::string curve_of(const Recording& recording, LabelMap::Place label, double a
 }
 
 // gnuplot commands for one run's panel; empty where it removed nothing that has a label.
-std::string panel(const MeasuredRun& run, std::size_t number, const TemporaryFolder& work) {
+std::string panel(const MeasuredRun& run, FigureScript& figure) {
   const LabelCount count = count_of(*run.recording);
   double all_mm3 = 0;
   for (const LabelCount::Entry& entry : count.entries()) all_mm3 += entry.removed_mm3;
   std::string plot;
   for (std::size_t n = 0; n < count.labels().size(); ++n) {
     if (!(count.entries()[n].removed_mm3 > 0)) continue;
-    const std::string file = fmt::format("labels-{}-{}.dat", number, n);
-    write_figure_data(work / file, curve_of(*run.recording, static_cast<LabelMap::Place>(n + 1), all_mm3));
-    plot += fmt::format("{}'{}' with steps lw 2 lc rgb '{}' title {}", plot.empty() ? "plot " : ", ", file,
-                        hex_colour(count.labels()[n]), gnuplot_quoted(count.labels()[n].name));
+    const std::string curve = curve_of(*run.recording, static_cast<LabelMap::Place>(n + 1), all_mm3);
+    plot += fmt::format("{}{} with steps lw 2 lc rgb '{}' title {}", plot.empty() ? "plot " : ", ",
+                        figure.data(curve), hex_colour(count.labels()[n]),
+                        gnuplot_quoted(count.labels()[n].name));
   }
   if (plot.empty()) return plot;
   return fmt::format("set title {}\n{}\n", gnuplot_quoted(run_name(run)), plot);
@@ -205,8 +204,8 @@ std::optional<Figure> draw_label_figure(const RunGroup& group, const std::filesy
   FigureScript script{fmt::format("labels_{}", name_of(group.mode)), 0};
   std::string panels;
   int count = 0;
-  for (std::size_t n = 0; n < group.runs.size(); ++n) {
-    const std::string one = panel(group.runs[n], n, script.work);
+  for (const MeasuredRun& run : group.runs) {
+    const std::string one = panel(run, script);
     panels += one;
     count += one.empty() ? 0 : 1;
   }

@@ -15,8 +15,6 @@ namespace {
 
 // What panels show over time.
 struct Shown {
-  // Of its data files.
-  std::string name;
   // Of the y axis, with its unit.
   std::string label;
   std::function<double(const TickRecord&)> value;
@@ -36,22 +34,18 @@ double time_s(const MeasuredRun& run, const TickRecord& record) {
   return record.time_s - run.recording->records.front().time_s - run.metrics.counted_from_s;
 }
 
-std::string data_file(const Shown& shown, const MeasuredRun& run) {
-  return fmt::format("{}-{}-{}.dat", shown.name, run.phase, name_of(run.algorithm));
-}
-
-Curve write_curve(const Shown& shown, const MeasuredRun& run, std::size_t bins, const TemporaryFolder& work) {
+Curve write_curve(const Shown& shown, const MeasuredRun& run, std::size_t bins, FigureScript& figure) {
   const std::vector<TickRecord>& records = run.recording->records;
   std::vector<double> values;
   values.reserve(records.size());
   for (const TickRecord& record : records) values.push_back(shown.value(record));
-  Curve curve{run.algorithm, data_file(shown, run)};
+  Curve curve{run.algorithm};
   for (std::size_t n = 1; n < values.size(); ++n) curve.restlessness += std::abs(values[n] - values[n - 1]);
   std::string data;
   for (const std::size_t n : thin_out_curve(values, bins)) {
     data += fmt::format("{:.4f} {:.5g}\n", time_s(run, records[n]), values[n]);
   }
-  write_figure_data(work / curve.file, data);
+  curve.file = figure.data(data);
   return curve;
 }
 
@@ -117,14 +111,14 @@ std::string dashed_line(double y) {
 
 // The restless curves are drawn first so that they hide no other.
 std::string curve_panel(const std::vector<const MeasuredRun*>& runs, const Shown& shown, std::size_t bins,
-                        const TemporaryFolder& work) {
+                        FigureScript& figure) {
   std::vector<Curve> curves;
-  for (const MeasuredRun* run : runs) curves.push_back(write_curve(shown, *run, bins, work));
+  for (const MeasuredRun* run : runs) curves.push_back(write_curve(shown, *run, bins, figure));
   std::stable_sort(curves.begin(), curves.end(),
                    [](const Curve& a, const Curve& b) { return a.restlessness > b.restlessness; });
   std::string plot;
   for (const Curve& curve : curves) {
-    plot += fmt::format("{}'{}' with lines lw 1.2 lc rgb '{}' notitle", plot.empty() ? "plot " : ", ",
+    plot += fmt::format("{}{} with lines lw 1.2 lc rgb '{}' notitle", plot.empty() ? "plot " : ", ",
                         curve.file, curve.algorithm.colour);
   }
   // Panels drawn later would print the legend again, on top of itself.
@@ -144,19 +138,15 @@ Figure draw_together(const RunGroup& group, const std::string& name, const std::
   const std::vector<std::string> phases = group.phases();
   const PanelGrid grid{
       phases.size() > 1 ? 760.0 : 440.0, columns.size(), phases.size(), 52, 0, 112, 26, 28, 60};
-  FigureScript script{name, grid.height_px};
-  script.body = begin_panels("") + legend(group, grid.height_px);
-  for (std::size_t row = 0; row < phases.size(); ++row) {
+  const auto panel = [&](std::size_t column, std::size_t row, FigureScript& figure) {
     const auto runs = group.runs_of(phases[row]);
-    for (std::size_t c = 0; c < columns.size(); ++c) {
-      script.body += fmt::format("{}{}{}\nset title '{}' offset 0,-0.4\nset ylabel '{}'\n{}\n",
-                                 panel_margins(grid, panel_cell(grid, c, row)), time_range(runs),
-                                 columns[c].setup, capitalised(phases[row]), columns[c].label,
-                                 row + 1 == phases.size() ? "set xlabel 'Time (s)'" : "unset xlabel");
-      script.body += curve_panel(runs, columns[c], kCurveBins / columns.size(), script.work);
-    }
-  }
-  return draw_figure(script, folder);
+    const Shown& shown = columns[column];
+    return fmt::format("{}{}\nset title '{}' offset 0,-0.4\nset ylabel '{}'\n{}\n", time_range(runs),
+                       shown.setup, capitalised(phases[row]), shown.label,
+                       row + 1 == phases.size() ? "set xlabel 'Time (s)'" : "unset xlabel") +
+           curve_panel(runs, shown, kCurveBins / columns.size(), figure);
+  };
+  return draw_panels(name, grid, begin_panels("") + legend(group, grid.height_px), panel, folder);
 }
 
 // A panel for each algorithm, side by side at one scale, a row for each phase: curves that lie on each
@@ -174,31 +164,24 @@ Figure draw_apart(const RunGroup& group, const std::string& name, const Shown& s
                        .right_px = 12,
                        .above_px = 32,
                        .below_px = 72};
-  FigureScript script{name, grid.height_px};
-  script.body = begin_panels("");
+  std::string common = begin_panels("") + "set xlabel 'Time (s)'\n";
   if (!dashed.empty())
-    script.body +=
-        fmt::format("set label 1 '- - -  {}' at screen 0.5,screen {:.4f} center tc rgb '#444444'\n", dashed,
-                    1 - 20 / grid.height_px);
-  for (std::size_t row = 0; row < phases.size(); ++row) {
+    common += fmt::format("set label 1 '- - -  {}' at screen 0.5,screen {:.4f} center tc rgb '#444444'\n",
+                          dashed, 1 - 20 / grid.height_px);
+  const auto panel = [&](std::size_t column, std::size_t row, FigureScript& figure) {
+    const MeasuredRun* run = group.find(algorithms[column].name, phases[row]);
+    if (run == nullptr) return std::string();
     const auto runs = group.runs_of(phases[row]);
-    script.body += fmt::format("{}{}\nset xlabel 'Time (s)'\n", time_range(runs),
-                               shown.setup.empty() ? value_range(runs, shown) : shown.setup);
-    for (std::size_t c = 0; c < algorithms.size(); ++c) {
-      const MeasuredRun* run = group.find(algorithms[c].name, phases[row]);
-      if (run == nullptr) continue;
-      script.body += fmt::format(
-          "{}{}set title '{}' offset 0,-0.4 tc rgb '{}' noenhanced\n{}\n",
-          panel_margins(grid, panel_cell(grid, c, row)), time_range(runs), algorithms[c].label,
-          algorithms[c].colour,
-          c == 0 ? fmt::format("set ylabel '{}{}'\nset format y '%g'",
-                               phases[row].empty() ? "" : capitalised(phases[row]) + ":  ", shown.label)
-                 : "unset ylabel\nset format y ''");
-      script.body += curve_panel({run}, shown, kCurveBins / algorithms.size(), script.work);
-      if (!shown.setup.empty()) script.body += shown.setup + "\n";
-    }
-  }
-  return draw_figure(script, folder);
+    const std::string y_axis =
+        column == 0 ? fmt::format("set ylabel '{}{}'\nset format y '%g'",
+                                  phases[row].empty() ? "" : capitalised(phases[row]) + ":  ", shown.label)
+                    : "unset ylabel\nset format y ''";
+    return fmt::format("{}{}\nset title '{}' offset 0,-0.4 tc rgb '{}' noenhanced\n{}\n", time_range(runs),
+                       shown.setup.empty() ? value_range(runs, shown) : shown.setup, algorithms[column].label,
+                       algorithms[column].colour, y_axis) +
+           curve_panel({run}, shown, kCurveBins / algorithms.size(), figure);
+  };
+  return draw_panels(name, grid, common, panel, folder);
 }
 
 // Points a panel; an SVG takes about 90 bytes for each.
@@ -245,8 +228,8 @@ Across across(const Vec3& mean) {
   return {right, up, "xyz"[least], "xyz"[other]};
 }
 
-// Writes the cloud in degrees from its mean, and returns how far it reaches.
-double write_cloud(const Cloud& cloud, const Across& axes, const std::filesystem::path& path) {
+// In degrees from the cloud's mean, for gnuplot, and how far it reaches.
+std::pair<std::string, double> cloud_data(const Cloud& cloud, const Across& axes) {
   std::string data;
   double reach_deg = 0.001;
   for (const std::size_t n : thin_out_cloud(cloud.directions, cloud.mean, kCloudBins)) {
@@ -258,8 +241,7 @@ double write_cloud(const Cloud& cloud, const Across& axes, const std::filesystem
     data += fmt::format("{:.6f} {:.6f} {:.3f}\n", scale * aside.dot(axes.right), scale * aside.dot(axes.up),
                         cloud.times_s[n]);
   }
-  write_figure_data(path, data);
-  return reach_deg;
+  return {std::move(data), reach_deg};
 }
 
 std::string degrees_text(double degrees) {
@@ -275,18 +257,18 @@ std::string words(const MeasuredRun& run) {
 }
 
 std::string shaft_panel(const MeasuredRun& run, const PanelGrid& grid, const PanelCell& cell,
-                        const TemporaryFolder& work) {
-  const std::string file = fmt::format("shaft-{}-{}.dat", run.phase, name_of(run.algorithm));
+                        FigureScript& figure) {
   const Cloud cloud = cloud_of(run);
   const Across axes = across(cloud.mean);
-  const double half_deg = 1.05 * write_cloud(cloud, axes, work / file);
+  const auto [data, reach_deg] = cloud_data(cloud, axes);
+  const double half_deg = 1.05 * reach_deg;
   return fmt::format(
       "{}set title \"{{/:Bold {}}}, {}\\n{}\" offset 0,-0.3\n"
       "set xrange [{:.6g}:{:.6g}]\nset yrange [{:.6g}:{:.6g}]\nset xtics {:.6g}\nset ytics {:.6g}\n"
       "set xlabel 'Towards {} (°)' offset 0,0.4\nset ylabel 'Towards {} (°)' offset 1,0\n"
-      "plot '{}' using 1:2:3 with points pt 7 ps 0.38 lc palette notitle\nunset colorbox\n",
+      "plot {} using 1:2:3 with points pt 7 ps 0.38 lc palette notitle\nunset colorbox\n",
       panel_margins(grid, cell), run.algorithm.label, run.phase, words(run), -half_deg, half_deg, -half_deg,
-      half_deg, round_down(half_deg), round_down(half_deg), axes.right_name, axes.up_name, file);
+      half_deg, round_down(half_deg), round_down(half_deg), axes.right_name, axes.up_name, figure.data(data));
 }
 
 }  // namespace
@@ -294,7 +276,7 @@ std::string shaft_panel(const MeasuredRun& run, const PanelGrid& grid, const Pan
 Figure draw_rate_figure(const RunGroup& group, const std::filesystem::path& folder) {
   double max = 2000;
   for (const MeasuredRun& run : group.runs) max = std::max(max, run.metrics.tick_us.max);
-  const Shown compute{"compute", "compute time of a tick (µs)",
+  const Shown compute{"compute time of a tick (µs)",
                       [](const TickRecord& r) { return std::max(0.1, r.busy_us()); },
                       fmt::format("set logscale y\nset yrange [1:{:.6g}]\n{}", 1.5 * max, dashed_line(1000))};
   return draw_apart(group, figure_name("fig6_rate", group), compute, "1 ms, a tick at 1000 Hz", folder);
@@ -302,14 +284,12 @@ Figure draw_rate_figure(const RunGroup& group, const std::filesystem::path& fold
 
 Figure draw_force_figure(const RunGroup& group, const std::filesystem::path& folder) {
   const auto magnitude = [](const TickRecord& r) { return r.wrench.force_N.norm(); };
-  return draw_apart(group, figure_name("fig7_force", group), {"force", "force (N)", magnitude, ""}, "",
-                    folder);
+  return draw_apart(group, figure_name("fig7_force", group), {"force (N)", magnitude, ""}, "", folder);
 }
 
 Figure draw_torque_figure(const RunGroup& group, const std::filesystem::path& folder) {
   const auto magnitude = [](const TickRecord& r) { return r.wrench.torque_Nmm.norm(); };
-  return draw_apart(group, figure_name("fig8_torque", group), {"torque", "torque (N mm)", magnitude, ""}, "",
-                    folder);
+  return draw_apart(group, figure_name("fig8_torque", group), {"torque (N mm)", magnitude, ""}, "", folder);
 }
 
 Figure draw_removed_figure(const RunGroup& group, const std::filesystem::path& folder) {
@@ -317,17 +297,17 @@ Figure draw_removed_figure(const RunGroup& group, const std::filesystem::path& f
   RunGroup milled = group;
   std::erase_if(milled.runs, [](const MeasuredRun& run) { return run.metrics.removed_mm3 == 0; });
   if (milled.runs.empty()) milled = group;
-  return draw_together(milled, figure_name("removed", group),
-                       {{"removed", "Bone removed (mm³)", [](const TickRecord& r) { return r.removed_mm3; },
-                         "set yrange [0:*]"}},
-                       folder);
+  return draw_together(
+      milled, figure_name("removed", group),
+      {{"Bone removed (mm³)", [](const TickRecord& r) { return r.removed_mm3; }, "set yrange [0:*]"}},
+      folder);
 }
 
 Figure draw_path_figure(const RunGroup& group, const std::filesystem::path& folder) {
   constexpr const char* kAxes[] = {"x", "y", "z"};
   std::vector<Shown> columns;
   for (int axis = 0; axis < 3; ++axis) {
-    columns.push_back({fmt::format("path_{}", kAxes[axis]), fmt::format("Burr along {} (mm)", kAxes[axis]),
+    columns.push_back({fmt::format("Burr along {} (mm)", kAxes[axis]),
                        [axis](const TickRecord& r) { return r.X_WT.position_mm[axis]; }, "set yrange [*:*]"});
   }
   return draw_together(group, figure_name("path", group), columns, folder);
@@ -366,7 +346,7 @@ Figure draw_shaft_figure(const RunGroup& group, const std::filesystem::path& fol
       PanelCell cell = panel_cell(grid, c, row);
       cell.left_px = static_cast<double>(c) * wide_px;
       cell.wide_px = wide_px;
-      script.body += shaft_panel(*runs[c], grid, cell, script.work);
+      script.body += shaft_panel(*runs[c], grid, cell, script);
     }
   }
   return draw_figure(script, folder);
