@@ -36,7 +36,6 @@ namespace {
 
 // The exact test of 200 pairs takes a hundredth of a second; nobody waits for 200 trials.
 constexpr int kMaxSeeds = 200;
-constexpr int kMaxThreads = 256;
 
 struct CompareOptions {
   ScanOptions scan;
@@ -136,17 +135,11 @@ void run_compare(const CompareOptions& options, const std::string& command_line)
   const EntryPictures pictures(bone.volume, trials.front().densities.reference, trials.front().entry,
                                events_on_terminal(), !options.scan.scan.empty());
   std::vector<Recording> recordings;
-  std::vector<StudyRow> rows;
   for (const TrialPlan& trial : trials) {
-    for (const fs::path& path : record_trial(trial, pictures, options.out, events_on_terminal())) {
+    for (const fs::path& path : record_trial(trial, pictures, options.out, events_on_terminal()))
       recordings.push_back(read_recording(path));
-      rows.push_back(row_of(trial, recordings.back()));
-    }
   }
-  ReportExtras extras;
-  const std::vector<StudyRow> others = try_other_hands(options, trials);
-  rows.insert(rows.end(), others.begin(), others.end());
-  extras.study.emplace(std::move(rows));
+  ReportExtras extras{try_other_hands(options, trials), {}};
   if (!options.no_stability) extras.passivity = press_on_walls(options, trials.front().settings);
   fmt::print("{}\n", write_comparison_report(recordings, options.out, extras).string());
 }
@@ -201,20 +194,14 @@ void add_compare_command(CLI::App& program, const std::string& command_line) {
       ->capture_default_str();
   add_algorithm_option(*command, options->algorithms);
   add_modes_option(*command, options->modes);
-  command
-      ->add_option(
-          "--seeds", options->seeds,
-          "How many hands try it, each with a seed of its own, --seed the first; the report then says "
-          "which differences are significant")
-      ->check(whole_number(1, kMaxSeeds))
-      ->type_name("COUNT")
-      ->capture_default_str();
+  add_count(
+      *command, "--seeds", options->seeds, kMaxSeeds,
+      "How many hands try it, each with a seed of its own, --seed the first; the report then says which "
+      "differences are significant");
   command->add_flag("--no-stability", options->no_stability,
                     "Leave out how stiff each algorithm can be against a flat wall");
-  command->add_option("--threads", options->threads, "How many trials after the first are run side by side")
-      ->check(whole_number(1, kMaxThreads))
-      ->type_name("COUNT")
-      ->capture_default_str();
+  add_count(*command, "--threads", options->threads, kMaxThreads,
+            "How many trials after the first are run side by side");
   add_match_stiffness(*command, *options);
   add_trial_options(*command, options->trial);
   add_quiet_option(*command);

@@ -39,4 +39,15 @@ void add_positive(CLI::App& command, const std::string& name, T& value, const st
   command.add_option(name, value, what)->check(positive_number())->type_name(unit)->capture_default_str();
 }
 
+/// Adds an option that holds a whole number from 1 to `max`, showing its default.
+template <typename T>
+void add_count(CLI::App& command, const std::string& name, T& value, std::uint64_t max,
+               const std::string& what) {
+  command.add_option(name, value, what)
+      ->check(whole_number(1, max))
+      ->type_name("COUNT")
+      ->capture_default_str();
+}
+inline constexpr std::uint64_t kMaxThreads = 256;
+
 }  // namespace osteomill::app

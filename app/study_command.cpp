@@ -28,7 +28,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr int kMaxThreads = 256;
 constexpr std::uint64_t kMaxSlices = 1'000'000;
 // A scheduler takes a second or two for a task; a slice that is lost is run again as a whole.
 constexpr double kSlice_s = 60;
@@ -274,10 +273,7 @@ void add_study_command(CLI::App& program) {
       ->add_option("--slice", options->slice, "Of a folder: run this one alone, as a task of a cluster does")
       ->check(whole_number(0, kMaxSlices))
       ->type_name("NUMBER");
-  command->add_option("--threads", options->threads, "How many trials are run side by side")
-      ->check(whole_number(1, kMaxThreads))
-      ->type_name("COUNT")
-      ->capture_default_str();
+  add_count(*command, "--threads", options->threads, kMaxThreads, "How many trials are run side by side");
   command->option_defaults()->group("Options");
   add_quiet_option(*command);
   command->callback([=] { run_study(*options); });

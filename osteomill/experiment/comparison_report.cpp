@@ -8,6 +8,7 @@
 #include "osteomill/experiment/conclusions.h"
 #include "osteomill/experiment/paper.h"
 #include "osteomill/experiment/passivity_section.h"
+#include "osteomill/experiment/run_trials.h"
 #include "osteomill/experiment/study_section.h"
 #include "osteomill/experiment/trial_plan.h"
 #include "osteomill/files/atomic_file.h"
@@ -59,16 +60,17 @@ PageSection opening(const Study& study, const std::vector<Recording>& recordings
   return section;
 }
 
-// Of what was recorded, as one seed, with what a study.csv beside the recordings has of others.
-Study study_of(const std::vector<RunGroup>& groups) {
+Study study_of(const std::vector<RunGroup>& groups, const ReportExtras& extras) {
   std::vector<StudyRow> rows;
   for (const RunGroup& group : groups) {
-    for (const MeasuredRun& run : group.runs)
-      rows.push_back({.seed = run.recording->description.seed, .run = run});
+    for (const MeasuredRun& run : group.runs) rows.push_back(row_of(run));
   }
-  const fs::path folder = rows.front().run.recording->path.parent_path();
-  std::optional<Study> whole = read_study_csv(folder / kStudyCsv, rows);
-  if (whole) return *std::move(whole);
+  if (extras.others) {
+    rows.insert(rows.end(), extras.others->begin(), extras.others->end());
+    return Study(std::move(rows));
+  }
+  const fs::path folder = groups.front().runs.front().recording->path.parent_path();
+  if (auto whole = read_study_csv(folder / kStudyCsv, rows)) return *std::move(whole);
   // A report is of one bone in one hand, whatever their seeds.
   for (StudyRow& row : rows) row.seed = rows.front().seed;
   return Study(std::move(rows));
@@ -95,7 +97,7 @@ bool are_of_comparison(const std::vector<Recording>& recordings) {
 fs::path write_comparison_report(const std::vector<Recording>& recordings, const fs::path& out_dir,
                                  const ReportExtras& extras) {
   const std::vector<RunGroup> groups = group_runs(recordings, phase_metrics);
-  const Study study = extras.study ? *extras.study : study_of(groups);
+  const Study study = study_of(groups, extras);
   // Measured beside the recordings and kept nowhere else: they stay where no figure can be drawn.
   const bool has_hands = study.seeds().size() > 1;
   const bool has_further_rows = study.rows().size() + study.rows_of_other_grips().size() > recordings.size();

@@ -12,9 +12,9 @@ namespace osteomill {
 
 /// What was measured beside the recordings.
 struct ReportExtras {
-  /// The recordings are then those of its first seed. Of one seed alone it adds its other grips. Where there
-  /// is none, it is read from the study.csv beside the recordings, if that is of them.
-  std::optional<Study> study;
+  /// Of other hands and grips than the recordings'. Nothing where that is not known: then they are those of
+  /// the study.csv beside the recordings, if that is of them.
+  std::optional<std::vector<StudyRow>> others;
   std::vector<PassivityRow> passivity;
 };
 

@@ -118,7 +118,8 @@ TriedTrial try_trial(StudyTest test, const TrialPlan& plan) {
   if (test == StudyTest::milling) {
     MillingTrial trial(plan.bone, plan.densities, plan.entry, plan.settings);
     const MilledTrial milled = mill(plan, trial, {});
-    for (const Recording& phase : milled.phases) tried.rows.push_back(as_row(row_of(plan, phase)));
+    for (const Recording& phase : milled.phases)
+      tried.rows.push_back(as_row(row_of(measured_run(phase, phase_metrics(phase)))));
     tried.faults = milled.faults;
   } else {
     tried.rows = {as_row(plan.settings, press_on_wall(plan.settings, plan.bone))};
@@ -127,11 +128,14 @@ TriedTrial try_trial(StudyTest test, const TrialPlan& plan) {
   return tried;
 }
 
-StudyRow row_of(const TrialPlan& plan, const Recording& recording) {
+StudyRow row_of(const MeasuredRun& run) {
   constexpr double kMmPerM = 1000;
-  const OperatorSettings& person = plan.settings.hand_and_device;
-  StudyRow row{person.seed, kMmPerM * person.hand.stiffness_N_per_mm, kMmPerM * person.hand.damping_Ns_per_mm,
-               measured_run(recording, phase_metrics(recording)), plan.grip};
+  const RunDescription& description = run.recording->description;
+  const auto of_hand = [&](std::string_view key) {
+    const double* value = find_setting<double>(description, key);
+    return value == nullptr ? 0 : kMmPerM * *value;
+  };
+  StudyRow row{description.seed, of_hand(kHandStiffnessKey), of_hand(kHandDampingKey), run};
   row.run.recording = nullptr;
   return row;
 }

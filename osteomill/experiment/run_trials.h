@@ -46,8 +46,8 @@ TrialPlan with_seed(const TrialPlan& plan, std::uint64_t seed);
 /// The plan's trial of algorithm 2 in its hand's other grips, for the paper's finding on them (findings.h).
 std::vector<TrialPlan> trials_in_other_grips(const TrialPlan& plan);
 
-/// The row of a phase that was recorded.
-StudyRow row_of(const TrialPlan& plan, const Recording& recording);
+/// The row of a phase that was recorded, in the hand's usual grip.
+StudyRow row_of(const MeasuredRun& run);
 
 /// Runs the trials, measures both phases, and keeps nothing else. Trials run side by side on `threads`
 /// threads, each in simulated time: but for the step times, the rows are the same however many. Warns where

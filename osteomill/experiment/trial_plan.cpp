@@ -22,8 +22,8 @@ std::string point_text(const Vec3& v) {
 void add_hand(Settings& settings, const HandSettings& hand) {
   settings.push_back({"hand.push", hand.push_N, "N"});
   settings.push_back({"hand.push_lever", hand.push_lever_mm, "mm"});
-  settings.push_back({"hand.stiffness", hand.stiffness_N_per_mm, "N/mm"});
-  settings.push_back({"hand.damping", hand.damping_Ns_per_mm, "N s/mm"});
+  settings.push_back({std::string(kHandStiffnessKey), hand.stiffness_N_per_mm, "N/mm"});
+  settings.push_back({std::string(kHandDampingKey), hand.damping_Ns_per_mm, "N s/mm"});
   settings.push_back({"hand.torsional_stiffness", hand.torsional_stiffness_Nmm_per_rad, "N mm/rad"});
   settings.push_back({"hand.torsional_damping", hand.torsional_damping_Nmms_per_rad, "N mm s/rad"});
   settings.push_back({"hand.tremor", hand.tremor_mm, "mm"});

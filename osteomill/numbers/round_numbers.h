@@ -13,4 +13,9 @@ inline double round_down(double value) {
   return power;
 }
 
+/// The least that is not below it: those numbers are each other's reciprocals.
+inline double round_up(double value) {
+  return 1 / round_down(1 / value);
+}
+
 }  // namespace osteomill
