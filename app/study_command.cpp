@@ -9,7 +9,6 @@
 #include "app/option_checks.h"
 #include "app/progress.h"
 #include "app/slurm.h"
-#include "app/study_file.h"
 #include "app/study_trials.h"
 #include <CLI/Error.hpp>
 #include <CLI/Option.hpp>
@@ -43,20 +42,12 @@ struct StudyOptions {
   bool list = false, estimate = false, status = false, resume = false, report = false;
 };
 
-// A study's file, and what makes the trials that it describes.
-struct OpenStudy {
-  OpenStudy(const std::string& file, const fs::path& scans_from)
-      : trials(file, scans_from), design(read_study_file(file, trials)) {}
-  StudyTrials trials;
-  StudyDesign design;
-};
-
-// A study that was begun.
-struct StudyFolder {
-  explicit StudyFolder(const fs::path& folder)
-      : path(folder), record(record_in(folder)), study((folder / "study.toml").string(), record.scans_from) {
-    study.trials.expect(record.bones);
-    if (hash_of_file(path / "study.toml") != record.study_hash)
+struct BegunStudy {
+  explicit BegunStudy(const fs::path& path)
+      : folder{path, record_in(path)}, trials((path / "study.toml").string(), folder.record.scans_from) {
+    folder.test = trials.design().test;
+    trials.expect(folder.record.bones);
+    if (hash_of_file(path / "study.toml") != folder.record.study_hash)
       throw InputError((path / "study.toml").string(), "has changed since the study was begun");
   }
   static StudyRecord record_in(const fs::path& path) {
@@ -64,9 +55,8 @@ struct StudyFolder {
     throw InputError(path.string(), "is no folder of a study: it has no study.h5");
   }
 
-  fs::path path;
-  StudyRecord record;
-  OpenStudy study;
+  StudyFolder folder;
+  StudyTrials trials;
 };
 
 std::uint64_t program_hash() {
@@ -79,31 +69,31 @@ void require_same_program(const StudyFolder& folder) {
 }
 
 // So that a fault of any trial is told before the first is run.
-void check_every_trial(OpenStudy& study) {
-  for (std::size_t n = 0; n < study.design.trial_count(); ++n) study.trials.make(study.design, n, 1);
+void check_every_trial(StudyTrials& study) {
+  for (std::size_t n = 0; n < study.design().trial_count(); ++n) study.make(n, 1);
 }
 
 // The CPU time of three trials spread over the study, the shortest first.
-std::vector<double> time_three_trials(OpenStudy& study) {
-  const std::size_t count = study.design.trial_count();
+std::vector<double> time_three_trials(StudyTrials& study) {
+  const std::size_t count = study.design().trial_count();
   std::vector<double> taken_s;
   for (const std::size_t sixth : {1, 3, 5}) {
-    const std::vector<TrialPlan> trial = study.trials.make(study.design, count * sixth / 6, 1);
-    taken_s.push_back(try_trial(study.design.test, trial.front()).cpu_s);
+    const std::vector<TrialPlan> trial = study.make(count * sixth / 6, 1);
+    taken_s.push_back(try_trial(study.design().test, trial.front()).cpu_s);
   }
   std::sort(taken_s.begin(), taken_s.end());
   return taken_s;
 }
 
-void estimate(OpenStudy& study, int threads) {
+void estimate(StudyTrials& study, int threads) {
   const std::vector<double> taken_s = time_three_trials(study);
   const auto hours = [&](double trial_s) {
-    return trial_s * static_cast<double>(study.design.trial_count()) / kSecondsPerHour;
+    return trial_s * static_cast<double>(study.design().trial_count()) / kSecondsPerHour;
   };
   fmt::print(
       "{} trials; three of them took {:.3g}, {:.3g} and {:.3g} s of CPU\n"
       "{:.3g} h of CPU in all by the median ({:.3g} to {:.3g} h by the others), {:.3g} h on {} threads\n",
-      study.design.trial_count(), taken_s[0], taken_s[1], taken_s[2], hours(taken_s[1]), hours(taken_s[0]),
+      study.design().trial_count(), taken_s[0], taken_s[1], taken_s[2], hours(taken_s[1]), hours(taken_s[0]),
       hours(taken_s[2]), hours(taken_s[1]) / threads, threads);
 }
 
@@ -114,7 +104,7 @@ void list(const StudyDesign& design) {
 
 void status(const StudyFolder& folder) {
   const StudyRecord& record = folder.record;
-  const StudyStatus now = study_status(folder.path, record, folder.study.design.test);
+  const StudyStatus now = study_status(folder);
   fmt::print("{} of {} trials are done ({:.3g} %), {} of {} slices\n", now.trials_done, record.trials,
              100 * static_cast<double>(now.trials_done) / static_cast<double>(record.trials), now.done.size(),
              record.slices());
@@ -130,45 +120,42 @@ void status(const StudyFolder& folder) {
   fmt::print("\n");
 }
 
-void run_slice(StudyFolder& folder, std::size_t number, int threads, const RunEvents& events) {
-  const StudyRecord& record = folder.record;
-  const StudyTest test = folder.study.design.test;
+void run_slice(BegunStudy& study, std::size_t number, int threads, const RunEvents& events) {
+  const StudyFolder& folder = study.folder;
   const std::vector<TrialPlan> trials =
-      folder.study.trials.make(folder.study.design, record.first_of(number), record.size_of(number));
-  write_slice(folder.path, record, test,
-              osteomill::run_slice(test, number, record.first_of(number), trials,
-                                   static_cast<std::size_t>(threads), events));
+      study.trials.make(folder.record.first_of(number), folder.record.size_of(number));
+  write_slice(folder,
+              osteomill::run_slice(folder, number, trials, static_cast<std::size_t>(threads), events));
 }
 
-void run_here(StudyFolder& folder, const std::vector<std::size_t>& slices, int threads) {
+void run_here(BegunStudy& study, const std::vector<std::size_t>& slices, int threads) {
   RunEvents events = events_on_terminal();
   for (std::size_t n = 0; n < slices.size(); ++n) {
     events.progress = [&](std::string_view what, double fraction) {
       show_progress(what, (static_cast<double>(n) + fraction) / static_cast<double>(slices.size()));
     };
-    run_slice(folder, slices[n], threads, events);
+    run_slice(study, slices[n], threads, events);
   }
   end_progress();
 }
 
-void run_missing(StudyFolder& folder, const StudyOptions& options, std::size_t array_limit) {
-  const std::vector<std::size_t> missing =
-      study_status(folder.path, folder.record, folder.study.design.test).missing;
+void run_missing(BegunStudy& study, const StudyOptions& options, std::size_t array_limit) {
+  const std::vector<std::size_t> missing = study_status(study.folder).missing;
   if (!options.on.empty()) {
-    submit_to_slurm(folder.path, missing, array_limit);
+    submit_to_slurm(study.folder.path, missing, array_limit);
   } else {
-    run_here(folder, missing, options.threads);
+    run_here(study, missing, options.threads);
   }
-  fmt::print("{}\n", folder.path.string());
+  fmt::print("{}\n", study.folder.path.string());
 }
 
 void create_study_folder(const StudyOptions& options) {
   const fs::path file = options.study, out = options.out;
-  OpenStudy study(options.study, fs::absolute(file).parent_path());
+  StudyTrials study(options.study, fs::absolute(file).parent_path());
   StudyRecord record{.study_hash = hash_of_file(file),
                      .program_hash = program_hash(),
                      .scans_from = fs::absolute(file).parent_path().string(),
-                     .trials = study.design.trial_count()};
+                     .trials = study.design().trial_count()};
   if (const auto there = read_study_record(out)) {
     throw InputError(options.out, there->study_hash == record.study_hash
                                       ? "holds this study already; osteomill study " + options.out +
@@ -182,7 +169,7 @@ void create_study_folder(const StudyOptions& options) {
       options.slices > 0 ? (record.trials + options.slices - 1) / options.slices
                          : static_cast<std::size_t>(kSlice_s / std::max(1e-3, time_three_trials(study)[1]));
   record.trials_a_slice = std::clamp<std::size_t>(wanted, 1, record.trials);
-  record.bones.assign(study.trials.fingerprints().begin(), study.trials.fingerprints().end());
+  record.bones.assign(study.fingerprints().begin(), study.fingerprints().end());
   create_folder(out);
   write_file_atomically(out / "study.toml", [&](const fs::path& beside) { fs::copy_file(file, beside); });
   write_study_record(out, record);
@@ -191,14 +178,15 @@ void create_study_folder(const StudyOptions& options) {
 void begin(const StudyOptions& options) {
   const std::size_t array_limit = options.on.empty() ? 0 : slurm_array_limit();
   create_study_folder(options);
-  StudyFolder folder(options.out);
-  run_missing(folder, options, array_limit);
+  BegunStudy study(options.out);
+  run_missing(study, options, array_limit);
 }
 
-void go_on(StudyFolder& folder, const StudyOptions& options) {
+void go_on(BegunStudy& study, const StudyOptions& options) {
+  const StudyFolder& folder = study.folder;
   if (options.status) return status(folder);
   if (options.report) {
-    fmt::print("{}\n", write_study_report(folder.study.design, folder.record, folder.path).string());
+    fmt::print("{}\n", write_study_report(study.trials.design(), folder).string());
     return;
   }
   require_same_program(folder);
@@ -207,13 +195,13 @@ void go_on(StudyFolder& folder, const StudyOptions& options) {
       throw InputError(folder.path.string(), fmt::format("has slices 0 to {}, and no {}",
                                                          folder.record.slices() - 1, *options.slice));
     // Another task may have run it while this one waited in the queue.
-    if (!read_slice(folder.path, folder.record, folder.study.design.test, *options.slice))
-      run_slice(folder, *options.slice, options.threads, events_on_terminal());
+    if (!read_slice(folder, *options.slice))
+      run_slice(study, *options.slice, options.threads, events_on_terminal());
     return;
   }
   const std::size_t array_limit = options.on.empty() ? 0 : slurm_array_limit();
-  check_every_trial(folder.study);
-  run_missing(folder, options, array_limit);
+  check_every_trial(study.trials);
+  run_missing(study, options, array_limit);
 }
 
 void run_study(const StudyOptions& options) {
@@ -224,13 +212,13 @@ void run_study(const StudyOptions& options) {
   if (fs::is_directory(options.study)) {
     if (!options.status && !options.report && !options.resume && !options.slice)
       throw CLI::ValidationError("study", "of a folder takes --status, --resume, --report or --slice");
-    StudyFolder folder(options.study);
-    return go_on(folder, options);
+    BegunStudy study(options.study);
+    return go_on(study, options);
   }
   if (options.list || options.estimate) {
-    OpenStudy study(options.study, fs::absolute(options.study).parent_path());
+    StudyTrials study(options.study, fs::absolute(options.study).parent_path());
     check_every_trial(study);
-    return options.list ? list(study.design) : estimate(study, options.threads);
+    return options.list ? list(study.design()) : estimate(study, options.threads);
   }
   if (options.status || options.report || options.resume || options.slice)
     throw InputError(options.study, "is no folder of a study");

@@ -9,7 +9,7 @@
 #include "app/toml_file.h"
 #include <fmt/format.h>
 
-#include "osteomill/files/input_error.h"
+#include "osteomill/haptics/algorithms.h"
 
 namespace osteomill::app {
 
@@ -19,7 +19,7 @@ using Keys = std::vector<std::string>;
 
 class Reader {
  public:
-  Reader(std::string file, const StudyTrials& trials) : file_(std::move(file)), trials_(trials) {}
+  Reader(std::string file, const Keys& keys) : file_(std::move(file)), keys_(keys) {}
 
   StudyDesign read() const {
     const toml::table file = read_toml(file_);
@@ -61,7 +61,7 @@ class Reader {
   }
 
   void require_known(const TomlEntry& option) const {
-    const Keys known = is_own_setting(option.key) ? algorithm_names() : trials_.keys();
+    const Keys known = is_own_setting(option.key) ? algorithm_names() : keys_;
     if (std::ranges::find(known, option.key.substr(0, option.key.find('.'))) == known.end())
       refuse(*option.value,
              fmt::format("a trial has no option {}{}", option.key, did_you_mean(option.key, known)));
@@ -143,7 +143,6 @@ class Reader {
 
   void describe(const toml::table& file, StudyDesign& design) const {
     design.title = value<std::string>(file, "title", "");
-    design.units = trials_.units();
     design.findings = value(file, "findings", false);
     const Keys tests{std::begin(kStudyTests), std::end(kStudyTests)};
     const auto test = std::find(tests.begin(), tests.end(), choice(file, "test", tests));
@@ -188,7 +187,7 @@ class Reader {
     const std::string shown = value(table, key, otherwise);
     const toml::node& at = table.contains(key) ? *table.get(key) : static_cast<const toml::node&>(table);
     if (shown.empty()) refuse(at, fmt::format("a map needs {}", key));
-    Keys known = trials_.keys();
+    Keys known = keys_;
     for (const StudyColumn& column : columns_of(test)) known.push_back(column.name);
     for (const std::string& name : names_in(shown)) {
       if (name.find('.') == std::string::npos && std::find(known.begin(), known.end(), name) == known.end())
@@ -198,13 +197,14 @@ class Reader {
   }
 
   std::string file_;
-  const StudyTrials& trials_;
+  // Of a trial's options, but for the algorithms' own settings.
+  Keys keys_;
 };
 
 }  // namespace
 
-StudyDesign read_study_file(const std::string& file, const StudyTrials& trials) {
-  return Reader(file, trials).read();
+StudyDesign read_study_file(const std::string& file, const std::vector<std::string>& keys) {
+  return Reader(file, keys).read();
 }
 
 }  // namespace osteomill::app

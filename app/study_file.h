@@ -1,15 +1,15 @@
 #pragma once
 
 #include <string>
-
-#include "app/study_trials.h"
+#include <vector>
 
 #include "osteomill/experiment/study_design.h"
 
 namespace osteomill::app {
 
 /// The design that a study's file describes (docs/studies.md). Throws InputError, naming the file and the
-/// line, where it is no TOML, has a key that neither a study nor a trial has, or an axis without values.
-StudyDesign read_study_file(const std::string& file, const StudyTrials& trials);
+/// line, where it is no TOML, has a key that neither a study nor a trial (`keys`) has, or an axis without
+/// values.
+StudyDesign read_study_file(const std::string& file, const std::vector<std::string>& keys);
 
 }  // namespace osteomill::app

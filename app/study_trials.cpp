@@ -6,6 +6,7 @@
 #include "app/config_file.h"
 #include "app/option_checks.h"
 #include "app/progress.h"
+#include "app/study_file.h"
 #include "app/toml_file.h"
 #include <CLI/Error.hpp>
 #include <fmt/format.h>
@@ -47,8 +48,10 @@ void require_runnable(StudyTest test, const TrialPlan& trial) {
 
 }  // namespace
 
-StudyTrials::StudyTrials(std::string file, std::filesystem::path scans_from)
-    : file_(std::move(file)), scans_from_(std::move(scans_from)), command_("", "a study") {
+StudyTrials::StudyTrials(const std::string& file, std::filesystem::path scans_from)
+    : file_(file), scans_from_(std::move(scans_from)), command_("", "a study"), design_(read_design()) {}
+
+StudyDesign StudyTrials::read_design() {
   add_scan_options(command_, asked_.scan);
   command_.add_option("--voxel", asked_.voxel_mm, "Of the built-in tooth")
       ->check(CLI::Range(0.03, 1.0))
@@ -64,6 +67,9 @@ StudyTrials::StudyTrials(std::string file, std::filesystem::path scans_from)
   add_positive(command_, "--grip", asked_.grip, "", "How many times as firmly the hand grips");
   command_.add_flag("--draw-hand", asked_.draw_hand, "The seed draws the hand");
   add_trial_options(command_, asked_.trial);
+  StudyDesign design = read_study_file(file_, keys());
+  design.units = units();
+  return design;
 }
 
 std::vector<std::string> StudyTrials::keys() const {
@@ -130,12 +136,12 @@ const Volume& StudyTrials::wall_of(const MillingTool& tool) {
   return found != walls_.end() ? found->second : walls_.emplace(key, flat_wall(tool)).first->second;
 }
 
-TrialPlan StudyTrials::trial_of(const StudyDesign& design, const StudySettings& settings) {
+TrialPlan StudyTrials::trial_of(const StudySettings& settings) {
   take(settings);
   TrialSettings set = trial_settings(asked_.trial);
   set.tick_s = 1 / asked_.rate_hz;
   set.device_damping_Ns_per_mm = asked_.device_damping_Ns_per_mm;
-  if (design.test != StudyTest::milling) return {wall_of(set.tool), "a wall", {}, {}, set, ""};
+  if (design_.test != StudyTest::milling) return {wall_of(set.tool), "a wall", {}, {}, set, ""};
   Bone& bone = bone_of(settings);
   const auto numbers = [](const std::vector<double>& values) {
     return fmt::format("{}", fmt::join(values, ","));
@@ -153,7 +159,7 @@ TrialPlan StudyTrials::trial_of(const StudyDesign& design, const StudySettings& 
   return plan;
 }
 
-std::vector<TrialPlan> StudyTrials::make(const StudyDesign& design, std::size_t first, std::size_t count) {
+std::vector<TrialPlan> StudyTrials::make(std::size_t first, std::size_t count) {
   if (bones_.size() > kBonesKept) bones_.clear();
   std::vector<TrialPlan> trials;
   for (std::size_t number = first; number < first + count; ++number) {
@@ -161,8 +167,8 @@ std::vector<TrialPlan> StudyTrials::make(const StudyDesign& design, std::size_t 
       throw InputError(file_, fmt::format("trial {}: {}", number, error.what()));
     };
     try {
-      trials.push_back(trial_of(design, design.trial(number)));
-      require_runnable(design.test, trials.back());
+      trials.push_back(trial_of(design_.trial(number)));
+      require_runnable(design_.test, trials.back());
     } catch (const CLI::Error& error) {
       refuse(error);
     } catch (const std::invalid_argument& error) {

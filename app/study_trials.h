@@ -17,18 +17,16 @@
 
 namespace osteomill::app {
 
-/// Makes the trials of a study of what is set of them: by the options of `compare`, and some that only a
-/// study has. Opens every bone once.
+/// A study as its file describes it, and its trials, each made of what is set of it by the options of
+/// `compare` and some that only a study has. Opens every bone once.
 class StudyTrials {
  public:
-  /// `file` is named where a setting is at fault; scans are sought from the folder `scans_from`.
-  StudyTrials(std::string file, std::filesystem::path scans_from);
+  /// Scans are sought from the folder `scans_from`. Throws as read_study_file does.
+  StudyTrials(const std::string& file, std::filesystem::path scans_from);
   StudyTrials(const StudyTrials&) = delete;
   StudyTrials& operator=(const StudyTrials&) = delete;
 
-  /// Every option that can be set, but for the algorithms' own settings ("point-shell.scale"), and its unit.
-  std::vector<std::string> keys() const;
-  StudySettings units() const;
+  const StudyDesign& design() const { return design_; }
 
   /// Bones are then to have these fingerprints, by what is set of them.
   void expect(const std::vector<std::pair<std::string, std::uint64_t>>& bones) {
@@ -39,7 +37,7 @@ class StudyTrials {
   /// Trials that follow each other. They hold on to this object's bones: until the next call. Throws
   /// InputError, naming the file and the trial, where a setting is out of its range or does not go with the
   /// others, and naming the scan where that is at fault or has changed.
-  std::vector<TrialPlan> make(const StudyDesign& design, std::size_t first, std::size_t count);
+  std::vector<TrialPlan> make(std::size_t first, std::size_t count);
 
  private:
   struct Asked {
@@ -58,8 +56,12 @@ class StudyTrials {
     std::map<std::string, MillingEntry> entries;
   };
 
+  // Adds the options that a trial has, and reads the file, which names them.
+  StudyDesign read_design();
+  std::vector<std::string> keys() const;
+  StudySettings units() const;
   void take(const StudySettings& settings);
-  TrialPlan trial_of(const StudyDesign& design, const StudySettings& settings);
+  TrialPlan trial_of(const StudySettings& settings);
   Bone& bone_of(const StudySettings& settings);
   const Volume& wall_of(const MillingTool& tool);
 
@@ -67,6 +69,7 @@ class StudyTrials {
   std::filesystem::path scans_from_;
   Asked asked_;
   CLI::App command_;
+  StudyDesign design_;
   std::map<std::string, std::unique_ptr<Bone>> bones_;
   std::map<std::string, Volume> walls_;
   std::map<std::string, std::uint64_t> fingerprints_;

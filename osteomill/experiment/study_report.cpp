@@ -147,12 +147,12 @@ std::string list_row(const StudyDesign& design, std::size_t number) {
   return row;
 }
 
-fs::path write_study_report(const StudyDesign& design, const StudyRecord& record, const fs::path& folder) {
+fs::path write_study_report(const StudyDesign& design, const StudyFolder& study) {
   std::vector<TrialRow> rows;
-  const StudyStatus status = study_status(folder, record, design.test, &rows);
-  if (rows.empty()) throw InputError(folder.string(), "has no trial that is done");
-  const std::string share = share_text(status.trials_done, record.trials);
-  const fs::path out = folder / "report";
+  const StudyStatus status = study_status(study, &rows);
+  if (rows.empty()) throw InputError(study.path.string(), "has no trial that is done");
+  const std::string share = share_text(status.trials_done, study.record.trials);
+  const fs::path out = study.path / "report";
   write_folder_atomically(out, [&](const fs::path& beside) {
     write_text_atomically(beside / "trials.csv", [&](std::ostream& csv) {
       csv << csv_head(design);
@@ -163,7 +163,7 @@ fs::path write_study_report(const StudyDesign& design, const StudyRecord& record
     std::vector<PageSection> sections{{.paragraphs = {fmt::format("{}, test {}; {:.3g} h of CPU.", share,
                                                                   name_of(design.test), status.cpu_s / 3600)},
                                        .tables = {options_table(design, rows)}}};
-    if (status.trials_done < record.trials)
+    if (status.trials_done < study.record.trials)
       sections.front().notices = {fmt::format("This is a part of the study: {}.", share)};
     if (!design.maps.empty()) sections.push_back(maps_section(design, rows, figures));
     if (design.findings)

@@ -129,11 +129,12 @@ fs::path slice_path(const fs::path& folder, std::size_t number) {
   return folder / fmt::format("slice-{}.h5", number);
 }
 
-Slice run_slice(StudyTest test, std::size_t number, std::size_t first, const std::vector<TrialPlan>& trials,
+Slice run_slice(const StudyFolder& study, std::size_t number, const std::vector<TrialPlan>& trials,
                 std::size_t threads, const RunEvents& events) {
   Slice slice{number, {}, 0};
+  const std::size_t first = study.record.first_of(number);
   const auto tried = run_trials(trials, "study", threads, events,
-                                [&](const TrialPlan& trial) { return try_trial(test, trial); });
+                                [&](const TrialPlan& trial) { return try_trial(study.test, trial); });
   for (std::size_t n = 0; n < tried.size(); ++n) {
     slice.cpu_s += tried[n].cpu_s;
     if (tried[n].faults) events.warn(fmt::format("trial {}: {}", first + n, *tried[n].faults));
@@ -145,8 +146,8 @@ Slice run_slice(StudyTest test, std::size_t number, std::size_t first, const std
   return slice;
 }
 
-void write_slice(const fs::path& folder, const StudyRecord& record, StudyTest test, const Slice& slice) {
-  const fs::path path = slice_path(folder, slice.number);
+void write_slice(const StudyFolder& study, const Slice& slice) {
+  const fs::path path = slice_path(study.path, slice.number);
   std::vector<std::uint64_t> trials;
   std::vector<double> values;
   std::string not_reached;
@@ -156,18 +157,18 @@ void write_slice(const fs::path& folder, const StudyRecord& record, StudyTest te
     not_reached += row.not_reached + '\n';
   }
   std::string names;
-  for (const StudyColumn& column : columns_of(test)) names += (names.empty() ? "" : ",") + column.name;
+  for (const StudyColumn& column : columns_of(study.test)) names += (names.empty() ? "" : ",") + column.name;
   write_hdf5(path, [&](hid_t file) {
     const Attributes write(path, file);
     write.put(kSliceVersion, kVersion);
-    write.put("made_of", record.hash());
+    write.put("made_of", study.record.hash());
     write.put("slice", std::uint64_t{slice.number});
     write.put("cpu_s", slice.cpu_s);
     write.put("columns", names);
     write.put("not_reached_bytes", std::uint64_t{not_reached.size()});
     write_dataset(path, file, "trial", H5T_STD_U64LE, H5T_NATIVE_UINT64, {trials.size()}, trials.data());
     write_dataset(path, file, "values", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE,
-                  {trials.size(), columns_of(test).size()}, values.data());
+                  {trials.size(), columns_of(study.test).size()}, values.data());
     write_dataset(path, file, "not_reached", H5T_STD_U8LE, H5T_NATIVE_UINT8, {not_reached.size()},
                   not_reached.data());
   });
@@ -176,9 +177,9 @@ void write_slice(const fs::path& folder, const StudyRecord& record, StudyTest te
 namespace {
 
 // Nothing where the file holds something else than these rows.
-std::optional<Slice> rows_in(hid_t file, const fs::path& path, const StudyRecord& record, StudyTest test,
-                             std::size_t number) {
-  const std::size_t parts = parts_of(test).size(), columns = columns_of(test).size();
+std::optional<Slice> rows_in(hid_t file, const fs::path& path, const StudyFolder& study, std::size_t number) {
+  const StudyRecord& record = study.record;
+  const std::size_t parts = parts_of(study.test).size(), columns = columns_of(study.test).size();
   const std::size_t count = record.size_of(number) * parts;
   const Attributes read(path, file);
   if (read.get<std::uint64_t>("made_of") != record.hash() || read.get<std::uint64_t>("slice") != number)
@@ -209,36 +210,34 @@ std::optional<Slice> rows_in(hid_t file, const fs::path& path, const StudyRecord
 
 }  // namespace
 
-std::optional<Slice> read_slice(const fs::path& folder, const StudyRecord& record, StudyTest test,
-                                std::size_t number) {
-  const fs::path path = slice_path(folder, number);
+std::optional<Slice> read_slice(const StudyFolder& study, std::size_t number) {
+  const fs::path path = slice_path(study.path, number);
   std::error_code error;
   if (!fs::exists(path, error)) return std::nullopt;
   const Hdf5Lock lock;
   const Hdf5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   if (!file.valid()) return std::nullopt;
   try {
-    return rows_in(file.get(), path, record, test, number);
+    return rows_in(file.get(), path, study, number);
   } catch (const InputError&) {
     return std::nullopt;
   }
 }
 
-StudyStatus study_status(const fs::path& folder, const StudyRecord& record, StudyTest test,
-                         std::vector<TrialRow>* rows) {
+StudyStatus study_status(const StudyFolder& study, std::vector<TrialRow>* rows) {
   StudyStatus status;
-  for (std::size_t number = 0; number < record.slices(); ++number) {
-    std::optional<Slice> slice = read_slice(folder, record, test, number);
+  for (std::size_t number = 0; number < study.record.slices(); ++number) {
+    std::optional<Slice> slice = read_slice(study, number);
     if (slice) {
       if (rows != nullptr) std::ranges::move(slice->rows, std::back_inserter(*rows));
       status.done.push_back(number);
-      status.trials_done += record.size_of(number);
+      status.trials_done += study.record.size_of(number);
       status.cpu_s += slice->cpu_s;
       continue;
     }
     status.missing.push_back(number);
     std::error_code error;
-    if (const fs::path path = slice_path(folder, number); fs::exists(path, error))
+    if (const fs::path path = slice_path(study.path, number); fs::exists(path, error))
       status.damaged.push_back(path);
   }
   return status;

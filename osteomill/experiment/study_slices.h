@@ -41,6 +41,13 @@ std::uint64_t hash_of_file(const std::filesystem::path& path);
 void write_study_record(const std::filesystem::path& folder, const StudyRecord& record);
 std::optional<StudyRecord> read_study_record(const std::filesystem::path& folder);
 
+/// A study that was begun.
+struct StudyFolder {
+  std::filesystem::path path;
+  StudyRecord record;
+  StudyTest test = StudyTest::milling;
+};
+
 /// Trials that follow each other, and what came of them.
 struct Slice {
   std::size_t number = 0;
@@ -53,19 +60,17 @@ struct Slice {
 /// "slice-12.h5".
 std::filesystem::path slice_path(const std::filesystem::path& folder, std::size_t number);
 
-/// Runs trials that follow each other from `first` on, side by side on `threads` threads; but for times, the
-/// rows are the same however many.
-Slice run_slice(StudyTest test, std::size_t number, std::size_t first, const std::vector<TrialPlan>& trials,
+/// Runs the trials of a slice, side by side on `threads` threads; but for times, the rows are the same
+/// however many.
+Slice run_slice(const StudyFolder& study, std::size_t number, const std::vector<TrialPlan>& trials,
                 std::size_t threads, const RunEvents& events);
 
 /// Written under another name and renamed. Throws InputError where it cannot be written.
-void write_slice(const std::filesystem::path& folder, const StudyRecord& record, StudyTest test,
-                 const Slice& slice);
+void write_slice(const StudyFolder& study, const Slice& slice);
 
 /// Nothing where there is no such file, or it is cut short, damaged, or of another study: it is to be run
 /// (again).
-std::optional<Slice> read_slice(const std::filesystem::path& folder, const StudyRecord& record,
-                                StudyTest test, std::size_t number);
+std::optional<Slice> read_slice(const StudyFolder& study, std::size_t number);
 
 /// How far a study is, by the files of its folder; what these hold is put behind `rows`.
 struct StudyStatus {
@@ -77,7 +82,6 @@ struct StudyStatus {
   /// Files that are there and cannot be used.
   std::vector<std::filesystem::path> damaged;
 };
-StudyStatus study_status(const std::filesystem::path& folder, const StudyRecord& record, StudyTest test,
-                         std::vector<TrialRow>* rows = nullptr);
+StudyStatus study_status(const StudyFolder& study, std::vector<TrialRow>* rows = nullptr);
 
 }  // namespace osteomill

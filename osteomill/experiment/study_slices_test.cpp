@@ -57,10 +57,10 @@ TEST(StudySlices, TheLastHasWhatIsLeft) {
 
 TEST(StudySlices, RowsComeBackAsTheyWere) {
   const TemporaryFolder folder;
-  const StudyRecord record = sample_record();
-  const Slice slice = sample_slice(record, 1);
-  write_slice(folder.path(), record, StudyTest::milling, slice);
-  const auto back = read_slice(folder.path(), record, StudyTest::milling, 1);
+  const StudyFolder study{folder.path(), sample_record()};
+  const Slice slice = sample_slice(study.record, 1);
+  write_slice(study, slice);
+  const auto back = read_slice(study, 1);
   ASSERT_TRUE(back);
   EXPECT_EQ(back->cpu_s, 1.5);
   ASSERT_EQ(back->rows.size(), 4u);
@@ -75,25 +75,24 @@ TEST(StudySlices, RowsComeBackAsTheyWere) {
 
 TEST(StudySlices, WhatIsCutShortDamagedOrOfAnotherStudyIsMissing) {
   const TemporaryFolder folder;
-  const StudyRecord record = sample_record();
-  for (std::size_t n = 0; n < 3; ++n)
-    write_slice(folder.path(), record, StudyTest::milling, sample_slice(record, n));
-  StudyStatus status = study_status(folder.path(), record, StudyTest::milling);
+  const StudyFolder study{folder.path(), sample_record()};
+  for (std::size_t n = 0; n < 3; ++n) write_slice(study, sample_slice(study.record, n));
+  StudyStatus status = study_status(study);
   EXPECT_TRUE(status.missing.empty());
   EXPECT_EQ(status.trials_done, 5u);
   EXPECT_EQ(status.cpu_s, 4.5);
   fs::resize_file(slice_path(folder.path(), 0), fs::file_size(slice_path(folder.path(), 0)) - 100);
   damage(slice_path(folder.path(), 1));
-  status = study_status(folder.path(), record, StudyTest::milling);
+  status = study_status(study);
   EXPECT_EQ(status.missing, (std::vector<std::size_t>{0, 1}));
   EXPECT_EQ(status.damaged.size(), 2u);
   EXPECT_EQ(status.trials_done, 1u);
-  StudyRecord other = record;
-  other.bones.front().second = 4;
-  EXPECT_FALSE(read_slice(folder.path(), other, StudyTest::milling, 2));
+  StudyFolder other = study;
+  other.record.bones.front().second = 4;
+  EXPECT_FALSE(read_slice(other, 2));
   fs::copy_file(slice_path(folder.path(), 2), slice_path(folder.path(), 1),
                 fs::copy_options::overwrite_existing);
-  EXPECT_FALSE(read_slice(folder.path(), record, StudyTest::milling, 1));
+  EXPECT_FALSE(read_slice(study, 1));
 }
 
 TEST(StudySlices, ARecordComesBackAndNoneIsNone) {
