@@ -196,10 +196,8 @@ void run_live(LiveOptions options, const std::string& command_line) {
     holder.describe(run);
     milling.start_recording(options.record, run, [&](std::string_view name) {
       std::optional<std::vector<unsigned char>> png;
-      milling.follower().read([&](const Volume& now) {
-        png = name == kPictureAlong ? pictures->along(now, events_on_terminal())
-                                    : pictures->of(now, events_on_terminal());
-      });
+      milling.follower().read(
+          [&](const Volume& now) { png = pictures->of(name, now, events_on_terminal()); });
       return png;
     });
   }

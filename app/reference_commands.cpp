@@ -75,8 +75,7 @@ void add_settings_command(CLI::App& program) {
         "# Settings of the algorithms\n\n"
         "Written by `osteomill settings`; a test holds this page to it. Set one with `--set "
         "ALGORITHM.SETTING=VALUE` (on and off\nare `true` and `false`, no limit is `inf`), or as a key of "
-        "the "
-        "table `[ALGORITHM]` in a file for `--config`. Numbers in\nbrackets are the paper's equations; "
+        "the table `[ALGORITHM]` in a file for `--config`. Numbers in\nbrackets are the paper's equations; "
         "[algorithms.md](algorithms.md) tells what each is for.\n");
     for (const AlgorithmDescription& algorithm : all_algorithms()) print_settings(algorithm);
   });

@@ -38,10 +38,9 @@ void add_scan_source(CLI::App& command, ScanOptions& options) {
                   "the built-in "
                   "tooth")
       ->check(not_empty());
-  add_text(
-      command, "--series", options.read.series, "SERIES",
-      "Which DICOM series, where there are several: its number in what info lists, or the beginning of its "
-      "UID; else the largest CT");
+  add_text(command, "--series", options.read.series, "SERIES",
+           "Which DICOM series, where there are several: its number in what info lists, or the beginning of "
+           "its UID; else the largest CT");
   command
       .add_option_function<std::string>(
           "--as", [&options](const std::string& kind) { options.as_labels = kind == "labels"; },

@@ -20,7 +20,7 @@ namespace {
 
 constexpr const char* kBuiltIn = "built-in";
 constexpr std::size_t kBonesKept = 8;
-// Options of a command, which a trial does not have.
+// Options that the command has and a trial cannot have.
 constexpr std::string_view kNoKeys[] = {"--help", "--config", "--set", "--max-memory"};
 
 std::string option_name(const std::string& key) {
@@ -31,7 +31,8 @@ std::string tool_text(const MillingTool& tool) {
   return fmt::format("{} {} {}", tool.burr_radius_mm, tool.shaft_radius_mm, tool.shaft_length_mm);
 }
 
-// Where bones and settings do not go together, as the trial itself would find when it begins.
+// Throws std::invalid_argument where the trial itself would when it begins: a setting is out of its range, or
+// does not go with the bone.
 void require_runnable(StudyTest test, const TrialPlan& trial) {
   const TrialSettings& settings = trial.settings;
   setting_values(settings.algorithm, settings.haptics);
@@ -82,7 +83,8 @@ std::vector<std::string> StudyTrials::keys() const {
 StudySettings StudyTrials::units() const {
   StudySettings units;
   for (const std::string& key : keys()) {
-    // The library appends what an option checks, behind a colon.
+    // The option's type is its unit, or a word for what it takes ("FILE"); CLI11 appends what it checks,
+    // behind a colon.
     const std::string type = command_.get_option(option_name(key))->get_type_name(),
                       unit = type.substr(0, type.find(':'));
     const bool is_word = unit.find_first_of("|,") != std::string::npos || unit == "NUMBER" ||

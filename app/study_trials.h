@@ -40,6 +40,7 @@ class StudyTrials {
   std::vector<TrialPlan> make(std::size_t first, std::size_t count);
 
  private:
+  // Where `command_` writes what is set of a trial; the options of `compare` and those that only a study has.
   struct Asked {
     ScanOptions scan;
     TrialOptions trial;
@@ -53,6 +54,7 @@ class StudyTrials {
     Volume volume;
     std::string name;
     BoneDensities densities;
+    // By tool, place and direction.
     std::map<std::string, MillingEntry> entries;
   };
 
@@ -70,6 +72,7 @@ class StudyTrials {
   Asked asked_;
   CLI::App command_;
   StudyDesign design_;
+  // By what is set of the scan; walls by the tool. A bone's fingerprint stays when the bone itself is let go.
   std::map<std::string, std::unique_ptr<Bone>> bones_;
   std::map<std::string, Volume> walls_;
   std::map<std::string, std::uint64_t> fingerprints_;

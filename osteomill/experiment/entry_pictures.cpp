@@ -57,16 +57,13 @@ EntryPictures::EntryPictures(const Volume& before, double reference_density, con
       camera_(camera_above(before, entry.point_W, entry.direction_W, entry.lateral_W)),
       before_(picture(before, reference_density, camera_, of_patient, events)) {}
 
-std::optional<std::vector<unsigned char>> EntryPictures::of(const Volume& milled,
+std::optional<std::vector<unsigned char>> EntryPictures::of(std::string_view name, const Volume& milled,
                                                             const RunEvents& events) const {
-  if (!before_) return std::nullopt;
-  return picture(milled, reference_density_, camera_, of_patient_, events);
-}
-
-std::optional<std::vector<unsigned char>> EntryPictures::along(const Volume& milled,
-                                                               const RunEvents& events) const {
-  if (!before_ || share_seen(bone_, milled, camera_) >= 0.5) return std::nullopt;
-  const Camera camera = camera_along(bone_, entry_.point_W, entry_.direction_W, entry_.lateral_W);
+  if (!before_ || name == kPictureBefore) return before_;
+  const bool along = name == kPictureAlong;
+  if (along && share_seen(bone_, milled, camera_) >= 0.5) return std::nullopt;
+  const Camera camera =
+      along ? camera_along(bone_, entry_.point_W, entry_.direction_W, entry_.lateral_W) : camera_;
   return picture(milled, reference_density_, camera, of_patient_, events);
 }
 

@@ -5,6 +5,7 @@
 
 #include "osteomill/experiment/run_events.h"
 #include "osteomill/operator/milling_entry.h"
+#include "osteomill/recording/recording.h"
 #include "osteomill/view/camera.h"
 #include "osteomill/volume/volume.h"
 
@@ -22,12 +23,12 @@ class EntryPictures {
   EntryPictures(const Volume& before, double reference_density, const MillingEntry& entry,
                 const RunEvents& events, bool of_patient = false);
 
-  const std::optional<std::vector<unsigned char>>& before() const { return before_; }
-  /// Nothing where there was none before either, or OpenGL failed since.
-  std::optional<std::vector<unsigned char>> of(const Volume& milled, const RunEvents& events) const;
-  /// A picture straight along the entry, where fewer than half of what milling left of the surface is seen in
-  /// the other, as behind a ridge.
-  std::optional<std::vector<unsigned char>> along(const Volume& milled, const RunEvents& events) const;
+  bool can_be_had() const { return before_.has_value(); }
+  /// A recording's picture of this name: before, after, or straight along the entry, which there is only
+  /// where fewer than half of what milling left of the surface is seen in the others, as behind a ridge.
+  /// Nothing where OpenGL failed since.
+  std::optional<std::vector<unsigned char>> of(std::string_view name, const Volume& milled,
+                                               const RunEvents& events) const;
 
  private:
   Volume bone_;

@@ -21,40 +21,23 @@ constexpr double kFollows = 0.5;
 constexpr double kStableShare = 0.2;
 constexpr double kMinContacts = 10, kMaxContacts = 20;
 
-double force_hp(const RunMetrics& m) {
-  return m.force_N.hp_rms;
-}
-double torque_hp(const RunMetrics& m) {
-  return m.torque_Nmm.hp_rms;
-}
-double torque_step(const RunMetrics& m) {
-  return m.torque_Nmm.step_max;
-}
 double share_hp(const VectorMetrics& v) {
   return v.hp_rms / v.mean;
 }
+
+// What rules look at.
+using M = RunMetrics;
+constexpr auto force_hp = [](const M& m) { return m.force_N.hp_rms; };
+constexpr auto torque_hp = [](const M& m) { return m.torque_Nmm.hp_rms; };
+constexpr auto torque_step = [](const M& m) { return m.torque_Nmm.step_max; };
+constexpr auto torque_share = [](const M& m) { return share_hp(m.torque_Nmm); };
 // How much less calm the torque is than the force, each against its mean.
-double torque_unrest(const RunMetrics& m) {
-  return share_hp(m.torque_Nmm) / share_hp(m.force_N);
-}
-double torque_share(const RunMetrics& m) {
-  return share_hp(m.torque_Nmm);
-}
-double shaft_turn(const RunMetrics& m) {
-  return m.turns.max_deg;
-}
-double shaft_turn_at_torque_step(const RunMetrics& m) {
-  return m.turns.at_torque_step_deg;
-}
-double shaft_spread(const RunMetrics& m) {
-  return m.shaft.spread_deg;
-}
-double torque_follows(const RunMetrics& m) {
-  return m.torque_follows_force;
-}
-double contacts(const RunMetrics& m) {
-  return m.contacts_mean;
-}
+constexpr auto torque_unrest = [](const M& m) { return share_hp(m.torque_Nmm) / share_hp(m.force_N); };
+constexpr auto torque_follows = [](const M& m) { return m.torque_follows_force; };
+constexpr auto shaft_spread = [](const M& m) { return m.shaft.spread_deg; };
+constexpr auto shaft_turn = [](const M& m) { return m.turns.max_deg; };
+constexpr auto shaft_turn_at_torque_step = [](const M& m) { return m.turns.at_torque_step_deg; };
+constexpr auto contacts = [](const M& m) { return m.contacts_mean; };
 
 // What a rule needs of one algorithm in one phase.
 struct Needed {

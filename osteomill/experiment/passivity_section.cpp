@@ -99,18 +99,14 @@ constexpr const char* kWhatWasDone =
     "a small speed. The greatest --stiffness is sought at which its swings die out: at which the wall, the "
     "device's delay and the tick together do not put more energy into a swing than the device's own damping "
     "takes. An ideal wall of stiffness K, sampled every T = 1 ms and felt with a delay τ, should stay so up "
-    "to "
-    "K = 2 b / (T + 2 τ) on a device with damping b. What is felt of an algorithm's setting is the slope of "
-    "its "
-    "force over the depth at 0.5 N; that is what the rule speaks of. Bisection finds one limit; an algorithm "
-    "that buzzes by itself may have others.";
+    "to K = 2 b / (T + 2 τ) on a device with damping b. What is felt of an algorithm's setting is the slope "
+    "of its force over the depth at 0.5 N; that is what the rule speaks of. Bisection finds one limit; an "
+    "algorithm that buzzes by itself may have others.";
 
 constexpr const char* kCaption =
     "The stiffness felt where the wall is only just passive, against the device's damping. A triangle: "
-    "passive "
-    "up to the stiffest setting tried, 200 N/mm, of which this is felt. A missing point: passive at no "
-    "setting. "
-    "Points stand a little aside of each other.";
+    "passive up to the stiffest setting tried, 200 N/mm, of which this is felt. A missing point: passive at "
+    "no setting. Points stand a little aside of each other.";
 
 double damping_Ns_per_m(const PassivityRow& row) {
   return 1e3 * row.damping_Ns_per_mm;
@@ -175,8 +171,7 @@ std::string panel(std::span<const PassivityRow> rows, std::size_t column, std::s
     rule = fmt::format(", {} using 4:5 with lines dt 2 lw 2 lc rgb '#8a8a8a' notitle", file);
     curves += fmt::format(
         "{2}{0} using 1:2 with linespoints pt 7 ps 0.9 lw 1.6 lc rgb '{1}' notitle, {0} using 1:3 with "
-        "points "
-        "pt 9 ps 1.9 lc rgb '{1}' notitle",
+        "points pt 9 ps 1.9 lc rgb '{1}' notitle",
         file, algorithm.colour, curves.empty() ? "plot " : ", ");
   }
   return curves + rule + "\n";

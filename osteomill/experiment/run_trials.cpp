@@ -35,17 +35,6 @@ std::string recording_name(const TrialPlan& plan, std::string_view phase) {
   return fmt::format("{}{}-{}.h5", plan.settings.algorithm.id.name, mode, phase);
 }
 
-void add_pictures(Recorder& recorder, const EntryPictures& pictures, const Volume& milled,
-                  const RunEvents& events) {
-  if (pictures.before()) recorder.add_picture(std::string(kPictureBefore), *pictures.before());
-  if (auto after = pictures.of(milled, events)) {
-    recorder.add_picture(std::string(kPictureAfter), *std::move(after));
-  }
-  if (auto along = pictures.along(milled, events)) {
-    recorder.add_picture(std::string(kPictureAlong), *std::move(along));
-  }
-}
-
 // A trial run to its end.
 struct MilledTrial {
   // In memory, and called as the trial is.
@@ -94,7 +83,7 @@ std::vector<fs::path> record_trial(const TrialPlan& plan, const EntryPictures& p
   for (const Recording& phase : milled.phases) {
     const bool first = paths.empty();
     RunDescription run = phase.description;
-    if (!pictures.before())
+    if (!pictures.can_be_had())
       run.settings.push_back({std::string(kPicturesKey), "none, as OpenGL could not be had", ""});
     paths.push_back(folder / recording_name(plan, run.phase));
     Recorder recorder(paths.back(), run,
@@ -103,7 +92,11 @@ std::vector<fs::path> record_trial(const TrialPlan& plan, const EntryPictures& p
     // The session goes on from phase to phase.
     if (!first) recorder.begin_session(0, {.goes_on_from = paths.front().filename().string()});
     for (const TickRecord& record : phase.records) recorder.push_waiting(record);
-    if (first) add_pictures(recorder, pictures, trial.volume(), events);
+    if (first) {
+      for (const std::string_view name : {kPictureBefore, kPictureAfter, kPictureAlong})
+        if (auto png = pictures.of(name, trial.volume(), events))
+          recorder.add_picture(std::string(name), *std::move(png));
+    }
     recorder.close();
   }
   const MeasuredRun whole = measured_run(milled.phases.back(), {});

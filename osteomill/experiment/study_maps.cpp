@@ -181,8 +181,7 @@ std::string colour_script(const StudyMap& map, const std::string& label, double 
   return fmt::format(
       "set palette defined (0 '#440154', 1 '#3b528b', 2 '#21918c', 3 '#5ec962', 4 '#fde725')\n"
       "{} logscale cb\nset cbtics {}\nset cbrange [{:.6g}:{:.6g}]\nset format cb '%g'\nset format x "
-      "'%g'\nset format y "
-      "'%g'\n"
+      "'%g'\nset format y '%g'\n"
       "set label 101 {} at screen 0.5,screen {:.4f} center font ',15' noenhanced\n"
       "set label 102 {} at screen 0.5,screen {:.4f} center noenhanced\n"
       "set colorbox horizontal user origin screen 0.3,screen {:.4f} size screen 0.4,screen {:.4f} border\n",
@@ -276,12 +275,9 @@ std::optional<CaptionedFigure> draw_study_map(const StudyDesign& design, const S
                   begin_panels("") + axis_script('x', x, shown_x) + axis_script('y', y, shown_y) +
                       colour_script(map, colour.label, min, max, grid),
                   panel, folder);
-  return CaptionedFigure{
-      figure.svg,
-      fmt::format(
-          "{}: {} of the trials in a cell, by {} and {}. What is white was not tried, or could not be "
-          "measured.",
-          colour.label, map.statistic, shown_x.label, shown_y.label)};
+  return CaptionedFigure{figure.svg, fmt::format("{}: {} of the trials in a cell, by {} and {}. What is "
+                                                 "white was not tried, or could not be measured.",
+                                                 colour.label, map.statistic, shown_x.label, shown_y.label)};
 }
 
 }  // namespace osteomill

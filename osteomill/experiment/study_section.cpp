@@ -78,8 +78,7 @@ std::string panel(const Study& study, std::string_view phase, const Metric& metr
       const std::vector<double> values = study.values({algorithm, mode}, phase, metric);
       if (values.empty()) continue;
       plot += fmt::format(
-          "{0}{1} index 1 with lines lw 2.5 lc rgb '{2}' notitle, {1} index 0 with points pt {3} ps 0.8 "
-          "lw "
+          "{0}{1} index 1 with lines lw 2.5 lc rgb '{2}' notitle, {1} index 0 with points pt {3} ps 0.8 lw "
           "1.3 lc rgb '{2}' notitle",
           plot.empty() ? "plot " : ", ", figure.data(dots_and_bars(values, x)), algorithm.colour,
           mode == Mode::paper ? 6 : 7);
@@ -202,24 +201,20 @@ std::vector<std::string> how_to_read(const Study& study) {
       "The same trial in {} hands: each seed (the first is {}) has a tremor and a hand of its own, drawn "
       "evenly from the published ranges; here {:.0f} to {:.0f} N/m and {:.2g} to {:.2g} N s/m. study.csv has "
       "every trial. Recordings are kept of seed {} alone, which is the one that the figures of force, "
-      "torque, "
-      "shaft and path show; of the others only these figures of merit.",
+      "torque, shaft and path show; of the others only these figures of merit.",
       n, study.seeds().front(), *softest, *stiffest, *min, *max, study.seeds().front())};
   paragraphs.push_back(
       interval.is_range
-          ? fmt::format(
-                "In brackets stands the range of all values: {} hands are too few for a 95 % interval "
-                "of the median, which takes 6 (the range covers it with {:.3g} %).",
-                n, 100 * interval.coverage)
-          : fmt::format(
-                "In brackets stands a confidence interval of the median between two order statistics, "
-                "by the binomial distribution; it covers the median with {:.3g} %.",
-                100 * interval.coverage));
+          ? fmt::format("In brackets stands the range of all values: {} hands are too few for a 95 % "
+                        "interval of the median, which takes 6 (the range covers it with {:.3g} %).",
+                        n, 100 * interval.coverage)
+          : fmt::format("In brackets stands a confidence interval of the median between two order "
+                        "statistics, by the binomial distribution; it covers the median with {:.3g} %.",
+                        100 * interval.coverage));
   paragraphs.push_back(fmt::format(
       "Differences are tested hand by hand with Wilcoxon's signed-rank test, exact and two-sided, corrected "
       "after Holm over what is compared in one row (not over the rows); bold ones are significant (p at most "
-      "{}). The least p "
-      "that {} hands can give is {:.2g}, after the correction {:.2g}{}.",
+      "{}). The least p that {} hands can give is {:.2g}, after the correction {:.2g}{}.",
       kSignificance, n, min_p(n), min_corrected,
       min_corrected > kSignificance ? ", so that no difference can be significant here" : ""));
   paragraphs.emplace_back(
@@ -306,9 +301,8 @@ PageSection findings_section(const Study& study) {
       .title = "The paper's findings",
       .paragraphs = {
           "What section 8.2 of the paper says it found, each held against what was measured by a rule of "
-          "this "
-          "project. Mode paper has the algorithms as the paper has them; steady has this project's named "
-          "improvements, so what the paper found wrong with one of them need not be wrong there."}};
+          "this project. Mode paper has the algorithms as the paper has them; steady has this project's "
+          "named improvements, so what the paper found wrong with one of them need not be wrong there."}};
   if (study.seeds().size() > 1) {
     section.paragraphs.push_back(
         "Several hands agree with the paper, or do not, where all of them do, or so many more than half that "

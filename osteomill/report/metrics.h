@@ -21,14 +21,14 @@ inline constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 
 /// What the tool leant on in a tick, and what the hand felt of it.
 struct Contact {
-  /// It presses with 0.02 N or more.
+  /// The burr presses on bone with 0.02 N or more.
   bool burr = false;
-  /// Without what cutting adds, the torque is 0.2 N mm or more, twice a step of the encoder: what presses on
-  /// the burr's ball has no lever about its centre.
+  /// The hand feels a torque of 0.2 N mm or more, twice a step of the encoder, without what cutting adds. It
+  /// comes from the shaft: what presses on the burr's ball has no lever about its centre.
   bool shaft = false;
-  /// The burr touches, or the hand feels 0.02 N or more.
+  /// The burr presses on bone, or the hand feels a force of 0.02 N or more.
   bool force = false;
-  /// The hand feels 0.2 N mm or more.
+  /// The hand feels a torque of 0.2 N mm or more.
   bool torque = false;
 
   bool any() const { return force || torque; }
@@ -42,10 +42,10 @@ struct ContactShares {
   double shaft = 0;
   double force = 0;
   double torque = 0;
-  /// When the last contact ended, from the first tick on, where the recording goes on for a second or more
-  /// without any, and else not a number; 0 where there was none at all.
+  /// When contact was lost: the time from the first tick to the last one in contact, if the recording then
+  /// goes on for a second or more; 0 if nothing touched at all. Not a number where contact was not lost.
   double lost_after_s = kNotMeasured;
-  /// It was lost with the spindle on, now or, where nothing touched at all, before the recording.
+  /// It was lost while the spindle turned: in this recording or, if nothing touched in it, before it began.
   bool lost_while_milling = false;
 
   bool is_lost() const { return !std::isnan(lost_after_s); }
@@ -56,9 +56,9 @@ inline bool is_enough_contact(double share) {
   return share >= 0.1;
 }
 
-/// Why something that is felt could not be measured: "never touched", "lost while milling",
-/// "lost while milling, after 3.2 s", "lost contact after 3.2 s", "touched
-/// for 4 % of the time", "the shaft touched for 4 % of the time" or "felt a force for 4 % of the time".
+/// Why something that is felt could not be measured: "never touched", "lost while milling", "lost while
+/// milling, after 3.2 s", "lost contact after 3.2 s", "touched for 4 % of the time", "the shaft touched for 4
+/// % of the time" or "felt a force for 4 % of the time".
 std::string contact_words(const ContactShares& contact);
 
 /// How a vector over time behaves: force (N) or torque (N mm).
@@ -96,7 +96,7 @@ struct ShaftTurns {
 /// All figures of one recording (metric_table.h says where each is shown).
 struct RunMetrics {
   double steps = 0;
-  /// From when on, after the recording's first tick, its ticks are counted.
+  /// Only ticks this long after the recording's first one, and later ones, are counted.
   double counted_from_s = 0;
   /// Of the algorithm's step alone, by the clock (`compute_us`).
   Distribution step_us;
@@ -115,12 +115,11 @@ struct RunMetrics {
   /// How much of the torque above 20 Hz follows the force above 20 Hz of the 10 ms about it
   /// (signals.h), while the shaft touches; not a number where that is too short to say.
   double torque_follows_force = 0;
-  /// How many sample points touched, on the average of the ticks in contact; not a number, as the turns,
-  /// where those are too few.
+  /// The mean number of sample points that touch, over the ticks in contact; like the turns not a number
+  /// where these ticks are too few.
   double contacts_mean = 0;
-  /// By milling, after the first tick.
+  /// Bone removed by milling after the first tick, and what was put back of it where a cut was taken back.
   double removed_mm3 = 0;
-  /// Of cuts that were taken back.
   double put_back_mm3 = 0;
   /// How far the burr's centre went, by where it was every 0.02 s: from tick to tick a trembling hand goes
   /// far without getting anywhere.
@@ -137,7 +136,7 @@ struct MeasuredRun {
   Mode mode;
   std::string phase;
   RunMetrics metrics;
-  /// Null where it was not kept.
+  /// Null where no recording was kept.
   const Recording* recording = nullptr;
   /// What of its plan it did not reach (kNotReachedKey); empty for nothing.
   std::string not_reached = {};

@@ -23,7 +23,7 @@ Image shrunk(const Recording& recording, const RunPicture& picture) {
                      fmt::format("the picture '{}' is not a whole PNG of sensible size", picture.name));
   }
   const int factor = (image->width + kPanelWidth_px - 1) / kPanelWidth_px;
-  // A picture flatter than the factor would vanish.
+  // A picture less high than this factor would vanish.
   return averaged_down(*image, std::min(factor, image->height));
 }
 
@@ -40,7 +40,7 @@ const RunPicture* picture_named(const Recording& recording, std::string_view nam
   return nullptr;
 }
 
-// Of several phases the first that has a picture is the one to take.
+// The bone before, then after each algorithm; of an algorithm's phases the first that has a picture is shown.
 std::vector<Panel> panels_of(const RunGroup& group) {
   std::vector<Panel> panels, along_the_entry;
   for (const MeasuredRun& run : group.runs) {
@@ -54,7 +54,8 @@ std::vector<Panel> panels_of(const RunGroup& group) {
       const MeasuredRun* run = group.find(algorithm.name, phase);
       const RunPicture* after = run ? picture_named(*run->recording, kPictureAfter) : nullptr;
       if (after == nullptr) continue;
-      // The last part of several: cuts may have been taken back since the picture before.
+      // Where the picture before belongs to an earlier part of the session, what this part removed is not all
+      // that went between the two.
       const bool whole = picture_named(*run->recording, kPictureBefore) != nullptr;
       panels.push_back(
           {whole ? fmt::format("After {} ({:.1f} mm³ removed)", algorithm.label, run->metrics.removed_mm3)
@@ -131,7 +132,7 @@ std::vector<std::string> cells(const MeasuredRun& run, const Label& label, const
           fmt::format("{:.2f}", entry.force_max_N)};
 }
 
-// Its labels that were cut or touched, as rows: no-go ones first.
+// A row for each label that this run cut or touched, no-go labels first.
 void add_rows(const MeasuredRun& run, HtmlTable& table) {
   const LabelCount count = count_of(*run.recording);
   for (const bool no_go : {true, false}) {
@@ -143,7 +144,8 @@ void add_rows(const MeasuredRun& run, HtmlTable& table) {
   }
 }
 
-// Where it has gone up by a two-hundredth, and its ends.
+// What was removed of a label over time, in points: both ends, and wherever another two-hundredth was
+// removed.
 std::string curve_of(const Recording& recording, LabelMap::Place label, double all_mm3) {
   const double first_s = recording.records.front().time_s;
   std::string data = "0 0\n";
@@ -160,7 +162,7 @@ std::string curve_of(const Recording& recording, LabelMap::Place label, double a
   return data;
 }
 
-// gnuplot commands for one run's panel; empty where it removed nothing that has a label.
+// gnuplot commands for one run's panel; empty where the run removed nothing that has a label.
 std::string panel(const MeasuredRun& run, FigureScript& figure) {
   const LabelCount count = count_of(*run.recording);
   double all_mm3 = 0;
@@ -247,7 +249,7 @@ std::vector<RunSetting> all_settings(const RunDescription& d) {
   return settings;
 }
 
-// Attributes of recordings are ASCII.
+// With a small raised digit: units in recordings are ASCII ("mm^3").
 std::string raised(std::string unit) {
   for (const auto& [power, digit] : {std::pair("^2", "²"), std::pair("^3", "³")}) {
     if (const auto at = unit.find(power); at != std::string::npos) unit.replace(at, 2, digit);
