@@ -25,7 +25,6 @@
 #include "osteomill/experiment/run_trials.h"
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/recording/recording.h"
-#include "osteomill/session/milling_setup.h"
 #include "osteomill/volume/density_grid.h"
 
 namespace osteomill::app {
@@ -54,13 +53,8 @@ struct CompareOptions {
 // With the first seed, mode by mode, every algorithm that has this mode.
 std::vector<TrialPlan> trials_of(const CompareOptions& options, const LoadedBone& bone,
                                  const std::string& command_line) {
-  TrialPlan plan{bone.volume,
-                 bone.name,
-                 estimate_densities(bone.volume),
-                 place_entry(bone.volume, options.trial),
-                 trial_settings(options.trial),
-                 command_line,
-                 options.modes.size() > 1};
+  TrialPlan plan = trial_plan(bone, options.trial, command_line);
+  plan.mode_in_names = options.modes.size() > 1;
   plan.scan_hash = fingerprint_of(bone.volume.grid());
   plan.settings.hand_and_device.script.until_leant = true;
   std::vector<TrialPlan> trials;
@@ -128,7 +122,6 @@ std::vector<PassivityRow> press_on_walls(const CompareOptions& options, const Tr
 
 void run_compare(const CompareOptions& options, const std::string& command_line) {
   const LoadedBone bone = load_bone(options.scan);
-  require_workable(options.trial.milling.setup.tool, bone.volume.geometry());
   std::vector<TrialPlan> trials = trials_of(options, bone, command_line);
   if (options.match_stiffness) match_stiffness(options, trials);
   create_folder(options.out);

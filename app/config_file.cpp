@@ -65,6 +65,7 @@ void apply_config_file(CLI::App& command) {
       throw error_at(*entry.value, file, error.what());
     }
   }
+  if (own.empty()) return;
   // The command line's come last and so win.
   own.insert(own.end(), said_before.begin(), said_before.end());
   set_results(own_settings, own);

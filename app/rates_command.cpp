@@ -14,7 +14,6 @@
 #include "osteomill/experiment/measure_rates.h"
 #include "osteomill/experiment/write_rates_report.h"
 #include "osteomill/files/atomic_file.h"
-#include "osteomill/session/milling_setup.h"
 
 namespace osteomill::app {
 
@@ -29,14 +28,10 @@ struct RatesOptions {
 
 void run_rates(const RatesOptions& options) {
   const LoadedBone bone = load_bone(options.scan);
-  require_workable(options.trial.milling.setup.tool, bone.volume.geometry());
-  const TrialSettings settings = trial_settings(options.trial);
-  const MillingEntry entry = place_entry(bone.volume, options.trial);
+  const TrialPlan plan = trial_plan(bone, options.trial, "");
   create_folder(options.out);
-  MeasuredRates measured{settings.haptics.mode,
-                         measure_rates(bone.volume, estimate_densities(bone.volume), entry,
-                                       options.algorithms, settings, show_progress),
-                         {}};
+  MeasuredRates measured{
+      plan.settings.haptics.mode, measure_rates(plan, options.algorithms, show_progress), {}};
   end_progress();
   const bool has_vertices = std::any_of(options.algorithms.begin(), options.algorithms.end(),
                                         [](const auto& one) { return one.id == "surface-points"; });

@@ -73,4 +73,14 @@ MillingEntry place_entry(const Volume& bone, const TrialOptions& options) {
   return entry;
 }
 
+TrialPlan trial_plan(const LoadedBone& bone, const TrialOptions& options, const std::string& command_line) {
+  require_workable(options.milling.setup.tool, bone.volume.geometry());
+  return {bone.volume,
+          bone.name,
+          estimate_densities(bone.volume),
+          place_entry(bone.volume, options),
+          trial_settings(options),
+          command_line};
+}
+
 }  // namespace osteomill::app

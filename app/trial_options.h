@@ -1,11 +1,13 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "app/milling_options.h"
+#include "app/scan_options.h"
 #include <CLI/App.hpp>
 
-#include "osteomill/experiment/milling_trial.h"
+#include "osteomill/experiment/trial_plan.h"
 #include "osteomill/operator/simulated_operator.h"
 
 namespace osteomill::app {
@@ -29,5 +31,9 @@ MillingEntry entry_into(const Volume& bone, const TrialOptions& options);
 
 /// As entry_into, and warns on standard error where that place is unlikely to be what the user wants.
 MillingEntry place_entry(const Volume& bone, const TrialOptions& options);
+
+/// The trial on a bone, which outlives it. Throws std::invalid_argument where the tool cannot work in that
+/// bone, and as entry_into.
+TrialPlan trial_plan(const LoadedBone& bone, const TrialOptions& options, const std::string& command_line);
 
 }  // namespace osteomill::app

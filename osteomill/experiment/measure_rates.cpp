@@ -79,10 +79,7 @@ double paced_rate_hz(MillingTrial& trial, int ticks_before, double tick_s) {
 
 }  // namespace
 
-std::vector<RateRow> measure_rates(const Volume& bone, const BoneDensities& densities,
-                                   const MillingEntry& entry,
-                                   const std::vector<AlgorithmDescription>& algorithms,
-                                   const TrialSettings& settings,
+std::vector<RateRow> measure_rates(const TrialPlan& plan, const std::vector<AlgorithmDescription>& algorithms,
                                    const std::function<void(std::string_view, double)>& progress) {
   std::vector<RateRow> rows;
   int done = 0;
@@ -91,12 +88,11 @@ std::vector<RateRow> measure_rates(const Volume& bone, const BoneDensities& dens
     const auto algorithm = std::find_if(algorithms.begin(), algorithms.end(),
                                         [&](const auto& one) { return one.id == resolution.algorithm; });
     if (algorithm == algorithms.end()) continue;
-    TrialSettings trial_settings = settings;
-    trial_settings.algorithm = *algorithm;
-    trial_settings.spindle = false;
-    trial_settings.haptics.named.push_back(
-        {algorithm->id.name, algorithm->resolution_setting, resolution.value});
-    MillingTrial trial(bone, densities, entry, trial_settings);
+    TrialSettings settings = plan.settings;
+    settings.algorithm = *algorithm;
+    settings.spindle = false;
+    settings.haptics.named.push_back({algorithm->id.name, algorithm->resolution_setting, resolution.value});
+    MillingTrial trial(plan.bone, plan.densities, plan.entry, settings);
     const Times times = times_of(trial);
     // Known only once points were needed.
     const auto same_points = [&](const RateRow& row) {
@@ -106,7 +102,7 @@ std::vector<RateRow> measure_rates(const Volume& bone, const BoneDensities& dens
       twin->resolution += " and " + text_of(*algorithm, resolution);
       continue;
     }
-    MillingTrial again(bone, densities, entry, trial_settings);
+    MillingTrial again(plan.bone, plan.densities, plan.entry, settings);
     const Distribution step_us = distribution_of(times.step_us);
     rows.push_back({algorithm->id, text_of(*algorithm, resolution), trial.algorithm().sample_point_count(),
                     step_us.median, step_us.p99, times.held.rate_hz(), 1e6 / step_us.median,

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <set>
 #include <vector>
 
@@ -163,11 +164,8 @@ std::string axis_script(char axis, const Cells& cells, const Shown& shown) {
 }
 
 double statistic_of(const std::string& statistic, const std::vector<double>& values) {
-  if (statistic == "max") return *std::max_element(values.begin(), values.end());
-  if (statistic == "median") return percentile(values, 0.5);
-  double sum = 0;
-  for (const double value : values) sum += value;
-  return sum / static_cast<double>(values.size());
+  if (statistic != "mean") return percentile(values, statistic == "max" ? 1 : 0.5);
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
 std::string colour_script(const StudyMap& map, const std::string& label, double min, double max,

@@ -1,9 +1,10 @@
 #include "osteomill/experiment/study_slices.h"
 
 #include <algorithm>
+#include <array>
 #include <fstream>
 #include <iterator>
-#include <numeric>
+#include <sstream>
 
 #include <fmt/format.h>
 
@@ -37,26 +38,34 @@ void write_hdf5(const fs::path& path, const std::function<void(hid_t)>& write) {
   });
 }
 
-// With a checksum, so that what is damaged is not taken for a result.
-void write_dataset(const fs::path& path, hid_t file, const char* name, hid_t file_type, hid_t memory_type,
-                   const std::vector<hsize_t>& dims, const void* data) {
+// In rows of so many values. With a checksum, so that what is damaged is not taken for a result.
+template <typename Value>
+void write_dataset(const fs::path& path, hid_t file, const char* name, const std::vector<Value>& values,
+                   hsize_t width = 1) {
+  const std::array<hsize_t, 2> dims{values.size() / width, width};
+  const int rank = width == 1 ? 1 : 2;
   const Hdf5Handle layout(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-  H5Pset_chunk(layout.get(), static_cast<int>(dims.size()), dims.data());
+  H5Pset_chunk(layout.get(), rank, dims.data());
   H5Pset_fletcher32(layout.get());
-  const Hdf5Handle space(H5Screate_simple(static_cast<int>(dims.size()), dims.data(), nullptr), H5Sclose);
-  const Hdf5Handle dataset(
-      H5Dcreate2(file, name, file_type, space.get(), H5P_DEFAULT, layout.get(), H5P_DEFAULT), H5Dclose);
-  if (!dataset.valid() || H5Dwrite(dataset.get(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0)
+  const Hdf5Handle space(H5Screate_simple(rank, dims.data(), nullptr), H5Sclose);
+  const hid_t type = memory_type<Value>();
+  const Hdf5Handle dataset(H5Dcreate2(file, name, type, space.get(), H5P_DEFAULT, layout.get(), H5P_DEFAULT),
+                           H5Dclose);
+  if (!dataset.valid() || H5Dwrite(dataset.get(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
     throw InputError(path.string(), fmt::format("'{}' cannot be written (is the disk full?)", name));
 }
 
-// False where it is not there in this length, or damaged.
-bool read_dataset(hid_t file, const char* name, hid_t memory_type, std::size_t count, void* data) {
+// Nothing where it is not there in this length, or damaged.
+template <typename Value>
+std::optional<std::vector<Value>> read_dataset(hid_t file, const char* name, std::size_t count) {
   const Hdf5Handle dataset(H5Dopen2(file, name, H5P_DEFAULT), H5Dclose);
-  if (!dataset.valid()) return false;
+  if (!dataset.valid()) return std::nullopt;
   const Hdf5Handle space(H5Dget_space(dataset.get()), H5Sclose);
-  return H5Sget_simple_extent_npoints(space.get()) == static_cast<hssize_t>(count) &&
-         H5Dread(dataset.get(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) >= 0;
+  if (H5Sget_simple_extent_npoints(space.get()) != static_cast<hssize_t>(count)) return std::nullopt;
+  std::vector<Value> values(count);
+  if (H5Dread(dataset.get(), memory_type<Value>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
+    return std::nullopt;
+  return values;
 }
 
 }  // namespace
@@ -150,11 +159,12 @@ void write_slice(const StudyFolder& study, const Slice& slice) {
   const fs::path path = slice_path(study.path, slice.number);
   std::vector<std::uint64_t> trials;
   std::vector<double> values;
-  std::string not_reached;
+  std::vector<unsigned char> not_reached;
   for (const TrialRow& row : slice.rows) {
     trials.push_back(row.trial);
     values.insert(values.end(), row.values.begin(), row.values.end());
-    not_reached += row.not_reached + '\n';
+    not_reached.insert(not_reached.end(), row.not_reached.begin(), row.not_reached.end());
+    not_reached.push_back('\n');
   }
   std::string names;
   for (const StudyColumn& column : columns_of(study.test)) names += (names.empty() ? "" : ",") + column.name;
@@ -166,11 +176,9 @@ void write_slice(const StudyFolder& study, const Slice& slice) {
     write.put("cpu_s", slice.cpu_s);
     write.put("columns", names);
     write.put("not_reached_bytes", std::uint64_t{not_reached.size()});
-    write_dataset(path, file, "trial", H5T_STD_U64LE, H5T_NATIVE_UINT64, {trials.size()}, trials.data());
-    write_dataset(path, file, "values", H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE,
-                  {trials.size(), columns_of(study.test).size()}, values.data());
-    write_dataset(path, file, "not_reached", H5T_STD_U8LE, H5T_NATIVE_UINT8, {not_reached.size()},
-                  not_reached.data());
+    write_dataset(path, file, "trial", trials);
+    write_dataset(path, file, "values", values, columns_of(study.test).size());
+    write_dataset(path, file, "not_reached", not_reached);
   });
 }
 
@@ -184,26 +192,19 @@ std::optional<Slice> rows_in(hid_t file, const fs::path& path, const StudyFolder
   const Attributes read(path, file);
   if (read.get<std::uint64_t>("made_of") != record.hash() || read.get<std::uint64_t>("slice") != number)
     return std::nullopt;
-  const auto bytes = read.get<std::uint64_t>("not_reached_bytes");
-  std::vector<std::uint64_t> trials(count);
-  std::vector<double> values(count * columns);
-  std::string words(std::min<std::uint64_t>(bytes, fs::file_size(path)), '\0');
-  if (!read_dataset(file, "trial", H5T_NATIVE_UINT64, count, trials.data()) ||
-      !read_dataset(file, "values", H5T_NATIVE_DOUBLE, values.size(), values.data()) ||
-      !read_dataset(file, "not_reached", H5T_NATIVE_UINT8, words.size(), words.data()) ||
-      std::count(words.begin(), words.end(), '\n') != static_cast<std::ptrdiff_t>(count))
-    return std::nullopt;
+  const auto trials = read_dataset<std::uint64_t>(file, "trial", count);
+  const auto values = read_dataset<double>(file, "values", count * columns);
+  const auto bytes =
+      read_dataset<unsigned char>(file, "not_reached", read.get<std::uint64_t>("not_reached_bytes"));
+  if (!trials || !values || !bytes) return std::nullopt;
+  std::istringstream lines(std::string(bytes->begin(), bytes->end()));
   Slice slice{number, {}, read.get<double>("cpu_s")};
-  std::size_t from = 0;
   for (std::size_t n = 0; n < count; ++n) {
-    if (trials[n] != record.first_of(number) + n / parts) return std::nullopt;
-    const std::size_t to = words.find('\n', from);
-    const auto begin = values.begin() + static_cast<std::ptrdiff_t>(n * columns);
-    slice.rows.push_back({trials[n],
-                          n % parts,
-                          {begin, begin + static_cast<std::ptrdiff_t>(columns)},
-                          words.substr(from, to - from)});
-    from = to + 1;
+    TrialRow& row = slice.rows.emplace_back(TrialRow{.trial = trials->at(n), .part = n % parts});
+    if (row.trial != record.first_of(number) + n / parts || !std::getline(lines, row.not_reached))
+      return std::nullopt;
+    const auto begin = values->begin() + static_cast<std::ptrdiff_t>(n * columns);
+    row.values.assign(begin, begin + static_cast<std::ptrdiff_t>(columns));
   }
   return slice;
 }
