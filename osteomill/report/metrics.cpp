@@ -71,9 +71,8 @@ bool all_finite(const TickRecord& r) {
          std::isfinite(r.milling_us) && std::isfinite(r.tick_cpu_us);
 }
 
-void require_usable(const Recording& recording) {
+void require_usable(const Recording& recording, std::span<const TickRecord> records) {
   const std::string name = recording.path.string();
-  const std::vector<TickRecord>& records = recording.records;
   if (records.size() < 2) throw InputError(name, "has fewer than two ticks, too few for a report");
   if (!(recording.description.tick_period_s * kBuzzAbove_hz < 0.4)) {
     throw InputError(name, fmt::format("has a tick every {} s, too few to tell what lies above 20 Hz",
@@ -90,7 +89,7 @@ void require_usable(const Recording& recording) {
 }
 
 // Milling takes and only an undo or a reset gives.
-double put_back_mm3(const std::vector<TickRecord>& records) {
+double put_back_mm3(std::span<const TickRecord> records) {
   double sum_mm3 = 0;
   for (std::size_t n = 1; n < records.size(); ++n) {
     sum_mm3 += std::max(0.0, records[n - 1].removed_mm3 - records[n].removed_mm3);
@@ -189,14 +188,15 @@ DirectionMetrics direction_metrics(std::span<const Vec3> directions) {
   return {degrees * std::sqrt(square / static_cast<double>(directions.size())), degrees * max};
 }
 
-RunMetrics run_metrics(const Recording& recording) {
-  require_usable(recording);
+RunMetrics run_metrics(const Recording& recording, std::size_t first) {
+  const auto records = std::span(recording.records).subspan(std::min(first, recording.records.size()));
+  require_usable(recording, records);
   std::vector<Vec3> force_N, torque_Nmm, shaft_W;
   std::vector<bool> touches, shaft_touches;
   std::vector<double> step_us, tick_us;
   double contacts = 0;
   HeldRate held(1e6 * recording.description.tick_period_s);
-  for (const TickRecord& record : recording.records) {
+  for (const TickRecord& record : records) {
     force_N.push_back(record.wrench.force_N);
     torque_Nmm.push_back(record.wrench.torque_Nmm);
     const Contact contact = contact_of(record);
@@ -210,18 +210,19 @@ RunMetrics run_metrics(const Recording& recording) {
   }
   const double rate_hz = 1.0 / recording.description.tick_period_s;
   RunMetrics metrics;
-  metrics.steps = static_cast<double>(recording.records.size());
+  metrics.steps = static_cast<double>(records.size());
+  metrics.counted_from_s = records.front().time_s - recording.records.front().time_s;
   metrics.step_us = distribution_of(step_us);
   metrics.tick_us = distribution_of(tick_us);
   metrics.rate_hz = held.rate_hz();
-  metrics.contact = contact_shares(recording.records);
+  metrics.contact = contact_shares(records);
   metrics.force_N = metrics.torque_Nmm = kNotFelt;
   metrics.shaft = {kNotMeasured, kNotMeasured};
   const ContactShares& contact = metrics.contact;
   if (is_enough_contact(contact.force)) metrics.force_N = vector_metrics(force_N, rate_hz, touches);
   if (is_enough_contact(contact.torque)) metrics.torque_Nmm = vector_metrics(torque_Nmm, rate_hz, touches);
   if (is_enough_contact(contact.shaft)) metrics.shaft = direction_metrics(shaft_W);
-  metrics.turns = shaft_turns(recording.records, touches, rate_hz);
+  metrics.turns = shaft_turns(records, touches, rate_hz);
   metrics.torque_follows_force = torque_following_force(torque_Nmm, force_N, shaft_touches, rate_hz);
   if (is_enough_contact(contact.any)) {
     metrics.contacts_mean = contacts / static_cast<double>(shaft_W.size());
@@ -229,10 +230,9 @@ RunMetrics run_metrics(const Recording& recording) {
     metrics.contacts_mean = kNotMeasured;
     metrics.turns = {kNotMeasured, kNotMeasured};
   }
-  metrics.put_back_mm3 = put_back_mm3(recording.records);
-  metrics.removed_mm3 =
-      recording.records.back().removed_mm3 - recording.records.front().removed_mm3 + metrics.put_back_mm3;
-  metrics.path_mm = path_mm(recording.records);
+  metrics.put_back_mm3 = put_back_mm3(records);
+  metrics.removed_mm3 = records.back().removed_mm3 - records.front().removed_mm3 + metrics.put_back_mm3;
+  metrics.path_mm = path_mm(records);
   return metrics;
 }
 

@@ -126,9 +126,14 @@ struct RunMetrics {
   double path_mm = 0;
 };
 
-/// Throws InputError, naming the recording, where it has fewer than two ticks, its time does not increase, a
-/// number is not finite, or its ticks are too far apart to say anything about 20 Hz.
-RunMetrics run_metrics(const Recording& recording);
+/// Of the ticks from the `first` on. Throws InputError, naming the recording, where these are fewer than two,
+/// their time does not increase, a number is not finite, or they are too far apart to say anything about 20
+/// Hz.
+RunMetrics run_metrics(const Recording& recording, std::size_t first);
+/// Of all ticks.
+inline RunMetrics run_metrics(const Recording& recording) {
+  return run_metrics(recording, 0);
+}
 
 /// What was run, and its figures.
 struct MeasuredRun {
