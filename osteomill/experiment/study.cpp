@@ -200,21 +200,6 @@ std::string Study::not_reached(const Tried& tried, std::string_view phase) const
   return text;
 }
 
-std::pair<std::vector<double>, std::vector<double>> Study::paired_values(const Tried& first,
-                                                                         const Tried& second,
-                                                                         std::string_view phase,
-                                                                         const RunFigure& figure) const {
-  const std::vector<double> all_first = all_values(first, phase, figure);
-  const std::vector<double> all_second = all_values(second, phase, figure);
-  std::pair<std::vector<double>, std::vector<double>> pairs;
-  for (std::size_t n = 0; n < std::min(all_first.size(), all_second.size()); ++n) {
-    if (std::isnan(all_first[n]) || std::isnan(all_second[n])) continue;
-    pairs.first.push_back(all_first[n]);
-    pairs.second.push_back(all_second[n]);
-  }
-  return pairs;
-}
-
 void write_study_csv(const std::filesystem::path& path, const Study& study) {
   write_text_atomically(path, [&](std::ostream& out) {
     out << kHandColumns << summary_columns() << '\n';

@@ -67,8 +67,10 @@ class Study {
     Mode mode;
   };
   bool was_tried(const Tried& tried) const;
-  /// The figure's values, one a seed in the order of `seeds`, but for those without enough contact to measure
-  /// it; none where that was not tried.
+  /// The figure's values, one a seed in the order of `seeds`, not a number where there was not enough contact
+  /// to measure it; none where that was not tried.
+  std::vector<double> all_values(const Tried& tried, std::string_view phase, const RunFigure& figure) const;
+  /// Those that are numbers.
   std::vector<double> values(const Tried& tried, std::string_view phase, const RunFigure& figure) const;
   /// For how much of the phase the tool touched: medians of the seeds. `lost_after_s` is that of those which
   /// lost contact, where they are no fewer than half.
@@ -78,15 +80,8 @@ class Study {
   std::string not_reached(const Tried& tried, std::string_view phase) const;
   /// Whether so many seeds are enough to speak of them all: more than half.
   bool are_most(std::size_t seeds) const { return 2 * seeds > seeds_.size(); }
-  /// The values of two, of the seeds in which both could be measured.
-  std::pair<std::vector<double>, std::vector<double>> paired_values(const Tried& first, const Tried& second,
-                                                                    std::string_view phase,
-                                                                    const RunFigure& figure) const;
 
  private:
-  // One a seed; not a number where it could not be measured.
-  std::vector<double> all_values(const Tried& tried, std::string_view phase, const RunFigure& figure) const;
-
   std::vector<StudyRow> rows_;
   std::vector<StudyRow> other_grips_;
   std::vector<std::uint64_t> seeds_;

@@ -1,5 +1,8 @@
 #include "osteomill/experiment/study_comparison.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace osteomill {
 
 namespace {
@@ -11,13 +14,17 @@ std::vector<PairedComparison> compare(const Study& study, const Pairs& pairs, st
   std::vector<PairedComparison> comparisons;
   std::vector<double> p;
   for (const auto& [first, second] : pairs) {
-    const auto [a, b] = study.paired_values(first, second, phase, figure);
-    if (a.empty()) continue;
-    std::vector<double> differences, ratios;
-    for (std::size_t n = 0; n < a.size(); ++n) {
-      differences.push_back(a[n] - b[n]);
-      if (a[n] != 0) ratios.push_back(b[n] / a[n]);
+    const std::vector<double> of_first = study.all_values(first, phase, figure);
+    const std::vector<double> of_second = study.all_values(second, phase, figure);
+    std::vector<double> a, b, differences, ratios;
+    for (std::size_t n = 0; n < std::min(of_first.size(), of_second.size()); ++n) {
+      if (std::isnan(of_first[n]) || std::isnan(of_second[n])) continue;
+      a.push_back(of_first[n]);
+      b.push_back(of_second[n]);
+      differences.push_back(a.back() - b.back());
+      if (a.back() != 0) ratios.push_back(b.back() / a.back());
     }
+    if (a.empty()) continue;
     const SignedRank test = signed_rank(differences);
     comparisons.push_back({first, second, a.size(), median_interval(a), median_interval(b),
                            median_interval(ratios), ratios.size(), test.negative > test.positive});

@@ -1,12 +1,10 @@
 #include "osteomill/experiment/study_report.h"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <map>
 
 #include <fmt/format.h>
-#include <fmt/ostream.h>
 
 #include "osteomill/experiment/conclusions.h"
 #include "osteomill/experiment/study_maps.h"
