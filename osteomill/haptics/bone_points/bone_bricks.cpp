@@ -25,6 +25,7 @@ constexpr double kKept_mm = 2;
 
 // What looking at a brick costs, in points made: passed over, and for so many densities.
 constexpr int kPassedOverCost = 2;
+constexpr int kLookedAtCost = 4;
 constexpr int kDensitiesLookedAt = 60;
 
 }  // namespace
@@ -52,15 +53,17 @@ Vec3 BoneBricks::middle_G(int level, const VoxelIndex& node) const {
                                          Vec3::Ones());
 }
 
-// Whether it may hold surface; then a node has one in its place, and a brick stays unseen until it is made.
+// Whether it may hold surface; then a node has one in its place, as far as there are nodes, and a brick stays
+// unseen until it is made.
 bool BoneBricks::look(int level, const VoxelIndex& node, std::uint32_t& place) {
   const SurfaceLattice::Found found = lattice_.found_in(level, node);
+  may_make_ -= kLookedAtCost;
   if (found != SurfaceLattice::Found::surface) {
     place = found == SurfaceLattice::Found::no_bone ? kNoBone : kBoneAlone;
     return false;
   }
   if (level == 0) return true;
-  if (free_nodes_.empty()) return false;
+  if (free_nodes_.empty()) return true;
   const std::uint32_t index = free_nodes_.back();
   free_nodes_.pop_back();
   nodes_[index].places.fill(kUnseen);
@@ -158,8 +161,13 @@ void BoneBricks::remake_bearing() {
   }
   const std::uint32_t turns = static_cast<std::uint32_t>(1 + cost / kBearingPerTick);
   ++refreshes_;
+  bearing_owed_ = 0;
   for (const std::uint32_t slot : bearing_) {
-    if (fine_.brick(slot).count != 0 && (refreshes_ + slot) % turns == 0) remake(brick_of_slot_[slot]);
+    if ((refreshes_ + slot) % turns != 0) {
+      ++bearing_owed_;
+    } else if (fine_.brick(slot).count != 0) {
+      remake(brick_of_slot_[slot]);
+    }
   }
 }
 
