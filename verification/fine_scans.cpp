@@ -37,10 +37,7 @@ Volume block(double spacing_mm, const Vec3& size_mm) {
   geometry.origin_mm = Vec3::Constant(0.5 * spacing_mm);
   const Vec3 middle_W = 0.5 * size_mm;
   return testing_support::shape_volume(
-      geometry,
-      [&](const Vec3& p) {
-        return ((p - middle_W).cwiseAbs() - middle_W).maxCoeff() + kMargin_mm;
-      },
+      geometry, [&](const Vec3& p) { return ((p - middle_W).cwiseAbs() - middle_W).maxCoeff() + kMargin_mm; },
       kEdge_mm / spacing_mm);
 }
 // 440 x 440 x 300 of the fine voxels.
@@ -179,13 +176,15 @@ Section time_of_a_tick(const Effort& effort) {
   const Vec3 size_mm(16, 16, 8);
   Section section{
       "What a tick takes, whatever the burr and the voxels",
-      fmt::format("Must hold: 99.9 % of the ticks take at most {:g} us of CPU time, and none over {:g}. A "
-                  "block of {:g} x {:g} x {:g} mm, milled for {:g} s with a push of 1.5 N a millimetre of "
-                  "the burr's radius (at least 1.5 N) and held for half as long, seed 11, one trial at a "
-                  "time; a tick's time is the least of {} runs of the same trial. Owed: bricks of bone points "
-                  "that a tick leaves to later ones.",
-                  kMost_us, kEver_us, size_mm.x(), size_mm.y(), size_mm.z(), phase_s, kRuns),
-      {"burr, voxels, algorithm", "median, us", "99.9 %, us", "longest, us", "owed, median", "owed, most", ""},
+      fmt::format(
+          "Must hold: 99.9 % of the ticks take at most {:g} us of CPU time, and none over {:g}. A "
+          "block of {:g} x {:g} x {:g} mm, milled for {:g} s with a push of 1.5 N a millimetre of "
+          "the burr's radius (at least 1.5 N) and held for half as long, seed 11, one trial at a "
+          "time; a tick's time is the least of {} runs of the same trial. Owed: bricks of bone points "
+          "that a tick leaves to later ones.",
+          kMost_us, kEver_us, size_mm.x(), size_mm.y(), size_mm.z(), phase_s, kRuns),
+      {"burr, voxels, algorithm", "median, us", "99.9 %, us", "longest, us", "owed, median", "owed, most",
+       ""},
       {},
       {}};
   for (const double spacing_mm : {0.5, 0.25, 0.125, 0.0625, kFine_mm}) {

@@ -101,8 +101,8 @@ TEST_P(FeltShape, IsFeltWhereItIsHoweverItLiesAmongTheVoxels) {
 TEST_P(FeltShape, AToolThatBeginsInAFineHoleNeverLeavesIt) {
   constexpr double kHole_mm = 1.6;
   const MillingTool tool;
-  const Volume bone = shape_volume(
-      centred_cube(160, 0.08), [&](const Vec3& p) { return kHole_mm - std::hypot(p.x(), p.y()); });
+  const Volume bone = shape_volume(centred_cube(160, 0.08),
+                                   [&](const Vec3& p) { return kHole_mm - std::hypot(p.x(), p.y()); });
   const double radius_mm = GetParam() == "line-proxy" ? 0 : tool.burr_radius_mm;
   for (const Vec3& aside_W : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0)}) {
     const auto algorithm = make_algorithm(GetParam(), HapticSettings{});

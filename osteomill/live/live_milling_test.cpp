@@ -62,8 +62,8 @@ class LiveMillingTest : public ::testing::Test {
     EXPECT_GE(milling_.state().record.removed_mm3, before_mm3 + more_mm3);
   }
 
-  // Returns when the follower has all that was milled, however far it was behind: preparing anything waits for
-  // that.
+  // Returns when the follower has all that was milled, however far it was behind: preparing anything waits
+  // for that.
   void settle() {
     milling_.change(milling_.setup());
     milling_.finish_preparing();

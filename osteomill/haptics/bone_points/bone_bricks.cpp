@@ -37,7 +37,8 @@ BoneBricks::BoneBricks(const Volume& volume, double spacing_mm, Points points)
       fine_(kSlots, kFineChunks),
       coarse_(kSlots, points == Points::fine ? 0 : kCoarseChunks),
       brick_of_slot_(kSlots),
-      changes_(kSlots) {
+      changes_(kSlots),
+      without_bone_(kSlots) {
   brick_radius_mm_ = 0.5 * lattice_.brick_nodes() * lattice_.step_mm().norm();
   const auto& dims = lattice_.brick_dims();
   while (1 << levels_ < *std::max_element(dims.begin(), dims.end())) ++levels_;
@@ -90,7 +91,9 @@ BoneBricks::Found BoneBricks::find(const VoxelIndex& brick) {
 // Makes a brick, or makes it anew; returns what it cost.
 int BoneBricks::make(const VoxelIndex& brick, std::uint32_t& place) {
   const std::uint32_t changes = lattice_.changes_of(brick);
-  lattice_.find_surface(brick, found_);
+  SurfaceLattice::RowBits without_bone{};
+  if (is_index(place)) without_bone = without_bone_[place];
+  lattice_.find_surface(brick, without_bone, found_);
   if (!is_index(place)) {
     place = kBoneAlone;
     if (found_.fine.count > 0) {
@@ -101,6 +104,7 @@ int BoneBricks::make(const VoxelIndex& brick, std::uint32_t& place) {
   }
   if (is_index(place)) {
     changes_[place] = changes;
+    without_bone_[place] = without_bone;
     const std::uint32_t stored = fine_.replace(place, found_.fine);
     if (kinds_ == Points::fine_and_coarse) {
       SurfaceLattice::merge_flat_cells(found_);

@@ -43,7 +43,8 @@ class BrickSweep {
   std::size_t bricks_left() const {
     if (!is_walking()) return 0;
     const std::array<int, 3> dims = bricks_.dims();
-    const std::size_t row = static_cast<std::size_t>(dims[0]), slice = row * static_cast<std::size_t>(dims[1]);
+    const std::size_t row = static_cast<std::size_t>(dims[0]),
+                      slice = row * static_cast<std::size_t>(dims[1]);
     const VoxelIndex& first = bricks_.first;
     return cell_count(dims) - static_cast<std::size_t>(brick_.i - first.i) -
            row * static_cast<std::size_t>(brick_.j - first.j) -
@@ -208,9 +209,10 @@ class BoneBricks {
   BrickPoints fine_;
   BrickPoints coarse_;
   std::vector<std::uint32_t> free_slots_;
-  // Which brick a slot is of, and of which densities its points are.
+  // Which brick a slot is of, of which densities its points are, and where those had no bone.
   std::vector<VoxelIndex> brick_of_slot_;
   std::vector<std::uint32_t> changes_;
+  std::vector<SurfaceLattice::RowBits> without_bone_;
   std::size_t next_to_forget_ = 0;
   std::size_t next_node_to_forget_ = 0;
   BrickSweep sweep_;
