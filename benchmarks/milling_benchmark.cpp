@@ -75,7 +75,8 @@ const bool kAdded = [] {
                         {"1.5mm/0.0625mm", 1.5, 0.0625},
                         {"1.5mm/0.031mm", 1.5, 0.03125},
                         {"3.0mm/0.125mm", 3, 0.125},
-                        {"3.0mm/0.0625mm", 3, 0.0625}}) {
+                        {"3.0mm/0.0625mm", 3, 0.0625},
+                        {"3.0mm/0.031mm", 3, 0.03125}}) {
     benchmark::RegisterBenchmark(("milling/burr_" + std::string(c.name)).c_str(), mill, c.burr_radius_mm,
                                  c.spacing_mm)
         ->Iterations(1)

@@ -9,6 +9,7 @@
 #include <fmt/core.h>
 
 #include "osteomill/experiment/milling_trial.h"
+#include "osteomill/numbers/distribution.h"
 #include "osteomill/operator/milling_entry.h"
 #include "osteomill/report/metrics.h"
 #include "osteomill/volume/bone_densities.h"
@@ -24,22 +25,23 @@ constexpr double kMaxStep_us = 120, kMaxMilling_us = 100, kMaxTick_us = 1000;
 constexpr int kRuns = 3;
 constexpr double kCoarse_mm = 0.125, kFine_mm = 0.03125;
 
-// 13.75 x 13.75 x 9.375 mm, 440 x 440 x 300 of the fine voxels, with a margin about the bone.
-Volume block(double spacing_mm) {
+// Of the size, with a margin about the bone.
+Volume block(double spacing_mm, const Vec3& size_mm) {
+  constexpr double kMargin_mm = 0.375, kEdge_mm = 0.25;
   GridGeometry geometry;
-  const auto voxels = [&](double mm) { return static_cast<int>(std::lround(mm / spacing_mm)); };
-  geometry.dims = {voxels(13.75), voxels(13.75), voxels(9.375)};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    geometry.dims[axis] =
+        static_cast<int>(std::lround(size_mm[static_cast<Eigen::Index>(axis)] / spacing_mm));
+  }
   geometry.spacing_mm = Vec3::Constant(spacing_mm);
   geometry.origin_mm = Vec3::Constant(0.5 * spacing_mm);
-  constexpr double kEdge_mm = 0.25;
+  const Vec3 middle_W = 0.5 * size_mm;
   return testing_support::shape_volume(
-      geometry,
-      [](const Vec3& p) {
-        return std::max(
-            {std::abs(p.x() - 6.875) - 6.5, std::abs(p.y() - 6.875) - 6.5, p.z() - 9, 0.375 - p.z()});
-      },
+      geometry, [&](const Vec3& p) { return ((p - middle_W).cwiseAbs() - middle_W).maxCoeff() + kMargin_mm; },
       kEdge_mm / spacing_mm);
 }
+// 440 x 440 x 300 of the fine voxels.
+const Vec3 kBlock_mm(13.75, 13.75, 9.375);
 
 struct Figures {
   RunMetrics milling, holding;
@@ -53,11 +55,9 @@ struct Phases {
   double memory_MiB = 0;
 };
 
-Phases run_trial(const Volume& bone, const std::string& algorithm, double phase_s) {
-  TrialSettings settings;
+Phases run_trial(const Volume& bone, const std::string& algorithm, double phase_s, TrialSettings settings) {
   settings.algorithm = algorithm_named(algorithm);
   settings.hand_and_device.seed = 11;
-  settings.hand_and_device.script.until_leant = true;
   settings.hand_and_device.script.milling_s = phase_s;
   settings.hand_and_device.script.holding_s = 0.5 * phase_s;
   const double before_MiB = testing_support::own_memory_MiB();
@@ -80,13 +80,22 @@ void take_less(std::vector<TickRecord>& records, const std::vector<TickRecord>& 
   }
 }
 
-Figures figures_of(const Volume& bone, const std::string& algorithm, double phase_s, int runs) {
-  Phases phases = run_trial(bone, algorithm, phase_s);
+// A tick's times are the least of so many runs.
+Phases run_trials(const Volume& bone, const std::string& algorithm, double phase_s, int runs,
+                  const TrialSettings& settings) {
+  Phases phases = run_trial(bone, algorithm, phase_s, settings);
   for (int run = 1; run < runs; ++run) {
-    const Phases again = run_trial(bone, algorithm, phase_s);
+    const Phases again = run_trial(bone, algorithm, phase_s, settings);
     take_less(phases.milling.records, again.milling.records);
     take_less(phases.holding.records, again.holding.records);
   }
+  return phases;
+}
+
+Figures figures_of(const Volume& bone, const std::string& algorithm, double phase_s, int runs) {
+  TrialSettings settings;
+  settings.hand_and_device.script.until_leant = true;
+  const Phases phases = run_trials(bone, algorithm, phase_s, runs, settings);
   Figures figures;
   figures.memory_MiB = phases.memory_MiB;
   figures.milling = run_metrics(phases.milling);
@@ -155,9 +164,54 @@ Section fine_scans(const Effort& effort) {
        "faults", "step p99, us", "milling p99, us", "longest tick, us CPU", "memory, MiB", ""},
       {},
       {}};
-  add_rows(section, "block", block(kFine_mm), block(kCoarse_mm), phase_s);
+  add_rows(section, "block", block(kFine_mm, kBlock_mm), block(kCoarse_mm, kBlock_mm), phase_s);
   add_rows(section, "tooth", Volume(builtin_tooth(kCoarse_mm / kFine_mm), kBuiltinToothIsovalue),
            Volume(builtin_tooth(), kBuiltinToothIsovalue), phase_s);
+  return section;
+}
+
+Section time_of_a_tick(const Effort& effort) {
+  const double phase_s = 0.2 * effort.phase_s;
+  constexpr double kMost_us = 500, kEver_us = 800;
+  const Vec3 size_mm(16, 16, 8);
+  Section section{
+      "What a tick takes, whatever the burr and the voxels",
+      fmt::format(
+          "Must hold: 99.9 % of the ticks take at most {:g} us of CPU time, and none over {:g}. A "
+          "block of {:g} x {:g} x {:g} mm, milled for {:g} s with a push of 1.5 N a millimetre of "
+          "the burr's radius (at least 1.5 N) and held for half as long, seed 11, one trial at a "
+          "time; a tick's time is the least of {} runs of the same trial. Owed: bricks of bone points "
+          "that a tick leaves to later ones.",
+          kMost_us, kEver_us, size_mm.x(), size_mm.y(), size_mm.z(), phase_s, kRuns),
+      {"burr, voxels, algorithm", "median, us", "99.9 %, us", "longest, us", "owed, median", "owed, most",
+       ""},
+      {},
+      {}};
+  for (const double spacing_mm : {0.5, 0.25, 0.125, 0.0625, kFine_mm}) {
+    const Volume bone = block(spacing_mm, size_mm);
+    // No burr is felt that is over 150 voxels.
+    for (const double burr_radius_mm : {0.5, 1.5, 3.0, std::min(6.0, 144 * spacing_mm)}) {
+      TrialSettings settings;
+      settings.tool = {burr_radius_mm, std::min(1.0, burr_radius_mm), 25};
+      settings.hand_and_device.hand.push_N = 1.5 * std::max(1.0, burr_radius_mm);
+      for (const std::string& algorithm : algorithm_names()) {
+        const Phases phases = run_trials(bone, algorithm, phase_s, kRuns, settings);
+        std::vector<double> busy_us, owed;
+        for (const Recording* phase : {&phases.milling, &phases.holding}) {
+          for (const TickRecord& record : phase->records) {
+            busy_us.push_back(record.busy_us());
+            owed.push_back(record.owed_bricks);
+          }
+        }
+        const double longest_us = std::ranges::max(busy_us);
+        const double most_us = percentile(busy_us, 0.999);
+        section.add({fmt::format("{} mm, {:.3g} mm, {}", burr_radius_mm, spacing_mm, algorithm),
+                     figure(percentile(busy_us, 0.5)), figure(most_us), figure(longest_us),
+                     figure(percentile(owed, 0.5)), figure(std::ranges::max(owed))},
+                    most_us <= kMost_us && longest_us <= kEver_us);
+      }
+    }
+  }
   return section;
 }
 

@@ -78,6 +78,7 @@ const std::vector<Named>& all_sections() {
       {"voxels", [](const Bones&, const Effort& effort) { return voxel_sizes(effort); }},
       {"swept", [](const Bones&, const Effort& effort) { return swept_holes(effort); }},
       {"fine", [](const Bones&, const Effort& effort) { return fine_scans(effort); }},
+      {"ticks", [](const Bones&, const Effort& effort) { return time_of_a_tick(effort); }},
       {"rates", haptic_rates},
       {"tooth", milling_the_tooth},
       {"reaction", milling_with_cutting_reaction},

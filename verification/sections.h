@@ -51,6 +51,7 @@ Section energy_of_barrier_shell(const Bones& bones, const Effort& effort);
 Section the_rig_itself(const Bones& bones, const Effort& effort);
 Section voxel_sizes(const Effort& effort);
 Section fine_scans(const Effort& effort);
+Section time_of_a_tick(const Effort& effort);
 Section swept_holes(const Effort& effort);
 Section haptic_rates(const Bones& bones, const Effort& effort);
 Section random_pushes(const Bones& bones, const Effort& effort);

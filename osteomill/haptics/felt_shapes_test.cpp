@@ -97,5 +97,27 @@ TEST_P(FeltShape, IsFeltWhereItIsHoweverItLiesAmongTheVoxels) {
   }
 }
 
+// More bone about the tool than a tick makes points of, and a hand that does not wait: the tool waits for it.
+TEST_P(FeltShape, AToolThatBeginsInAFineHoleNeverLeavesIt) {
+  constexpr double kHole_mm = 1.6;
+  const MillingTool tool;
+  const Volume bone = shape_volume(centred_cube(160, 0.08),
+                                   [&](const Vec3& p) { return kHole_mm - std::hypot(p.x(), p.y()); });
+  const double radius_mm = GetParam() == "line-proxy" ? 0 : tool.burr_radius_mm;
+  for (const Vec3& aside_W : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0)}) {
+    const auto algorithm = make_algorithm(GetParam(), HapticSettings{});
+    algorithm->prepare({&bone, tool, 1e-3});
+    HapticStep step;
+    double farthest_mm = 0;
+    for (int n = 0; n < 150; ++n) {
+      const Vec3 position_W = std::min(2.5, 0.5 * n) * aside_W - Vec3(0, 0, 6);
+      step = algorithm->step({position_W, Quat::Identity()}, 1e-3);
+      farthest_mm = std::max(farthest_mm, step.X_WT.position_mm.head<2>().norm());
+    }
+    EXPECT_LT(farthest_mm, kHole_mm - radius_mm + 0.15) << aside_W.transpose();
+    EXPECT_LT(step.wrench.force_N.dot(aside_W), -0.5) << aside_W.transpose();
+  }
+}
+
 }  // namespace
 }  // namespace osteomill

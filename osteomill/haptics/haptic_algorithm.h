@@ -36,6 +36,9 @@ struct HapticStep {
   std::optional<Vec3> intersection_W;
   /// How many sample points (vertices, or points of the shell) touch.
   int contacts = 0;
+  /// How many bricks of bone points may have shown more bone than there was, since bringing them up to date
+  /// was left to later ticks.
+  int owed_bricks = 0;
 };
 
 /// One way to turn the device's pose into a wrench. `prepare` comes first and may allocate; `step`,

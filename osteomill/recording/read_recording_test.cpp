@@ -79,8 +79,8 @@ class ChangedRecording : public ::testing::Test {
 };
 
 TEST_F(ChangedRecording, AnotherVersionIsRefused) {
-  change([](hid_t file) { set_number(file, "osteomill_recording_version", 3); });
-  expect_refused(path_, "is a recording of version 3; this program reads version 4");
+  change([](hid_t file) { set_number(file, "osteomill_recording_version", 4); });
+  expect_refused(path_, "is a recording of version 4; this program reads version 5");
 }
 
 TEST_F(ChangedRecording, ASessionThatCannotBeIsRefused) {

@@ -105,6 +105,7 @@ TickRecord MillingSession::tick(Device& device, double time_s, double dt_s, bool
   record.cutting_torque_W_Nmm = cutting_torque_W_Nmm;
   record.energy_given_Nmm = guard_.energy_given_Nmm();
   record.contacts = step.contacts;
+  record.owed_bricks = step.owed_bricks;
   intersection_W_ = step.intersection_W;
   record.burr_force_W_N = step.burr_force_W_N;
   record.removed_mm3 = removed_mm3_;

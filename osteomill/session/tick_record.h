@@ -36,6 +36,8 @@ struct TickRecord {
   /// Given to the hand less what it gave, up to this tick's pose (PassivityObserver), in N mm.
   double energy_given_Nmm = 0;
   int contacts = 0;
+  /// HapticStep's.
+  int owed_bricks = 0;
   /// With which the burr pressed on the bone, in W.
   Vec3 burr_force_W_N = Vec3::Zero();
   /// Since the start, in mm^3 of reference density.

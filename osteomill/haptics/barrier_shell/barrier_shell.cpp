@@ -172,20 +172,20 @@ Cores BarrierShell::cores() const {
   return Cores::within(tool_, settings_.rounding_mm, smaller_mm_);
 }
 
-// With cores so small that no point is in them.
-void BarrierShell::begin_outside(const Pose& X_WT) {
-  X_WT_ = X_WT;
+// With cores so small that no point is in them; again, until all bone about it is known.
+void BarrierShell::begin_outside(const Pose& X_WD) {
   last_move_ = {};
   smaller_mm_ = 0;
   ramp_ = 0;
   ramp_from_ = {};
   has_energy_ = false;
   if (carried_) return;
-  gather(X_WT, {});
-  const NearBone::Energy energy = near_.energy(cores(), barrier_, X_WT);
+  gather(X_WT_, {});
+  has_begun_ = !near_.is_incomplete();
+  const NearBone::Energy energy = near_.energy(cores(), barrier_, X_WT_);
   const double nearest_mm = std::min(energy.ball.nearest_mm, energy.cylinder.nearest_mm);
   smaller_mm_ = std::max(0.0, kStartShare * barrier_.width_mm - nearest_mm);
-  if (energy.ball.touching + energy.cylinder.touching == 0) ramp_ = 1;
+  if (energy.ball.touching + energy.cylinder.touching == 0 && X_WT_ == X_WD) ramp_ = 1;
 }
 
 void BarrierShell::grow_cores(double nearest_mm, double dt_s) {
@@ -267,7 +267,7 @@ BarrierShell::Step BarrierShell::next_step(const State& best, const MoveBound& b
     gather(best.X_WT, kMaxRoom);
     near_.energy(cores(), barrier_, best.X_WT);
   }
-  if (near_.overflowed()) return {Vector6::Zero(), true};
+  if (near_.is_incomplete()) return {Vector6::Zero(), true};
   const double with_room = share_with_room(wanted);
   step.move_T *= with_room;
   const double certified =
@@ -347,8 +347,10 @@ HapticStep BarrierShell::step(const Pose& X_WD, double dt_s) {
   // come from outside, however deep its rim may lie in it.
   if (carried_ || !has_pose_) {
     carried_ = count_in_bone(*volume_, centreline_T_, X_WD) > 0;
-    begin_outside(X_WD);
+    X_WT_ = X_WD;
+    has_begun_ = false;
   }
+  if (!has_begun_) begin_outside(X_WD);
   HapticStep result;
   if (carried_) {
     result.X_WT = X_WT_;
@@ -364,6 +366,7 @@ HapticStep BarrierShell::step(const Pose& X_WD, double dt_s) {
     last_move_ = room_of(move_between(start, X_WT_));
     result = report(state, X_WD, dt_s);
   }
+  result.owed_bricks = static_cast<int>(bricks_.owed());
   has_pose_ = true;
   X_WD_before_ = X_WD;
   return result;

@@ -50,7 +50,7 @@ class BarrierShell final : public HapticAlgorithm {
  private:
   struct State;
   struct Step;
-  void begin_outside(const Pose& X_WT);
+  void begin_outside(const Pose& X_WD);
   void grow_cores(double nearest_mm, double dt_s);
   Cores cores() const;
   State evaluated(const Pose& X_WT, const Pose& X_WD);
@@ -83,6 +83,8 @@ class BarrierShell final : public HapticAlgorithm {
   Room room_left_;
   // Began inside bone and has not yet been outside: with the device, and nothing is felt.
   bool carried_ = false;
+  // Whether all bone about it was known when it began: until then it stands still.
+  bool has_begun_ = false;
   // By how much the cores are yet smaller than they will be, for a tool that began in touch with bone.
   double smaller_mm_ = 0;
   // The wrench goes from what was sent to what is to be felt.

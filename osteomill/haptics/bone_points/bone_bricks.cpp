@@ -25,6 +25,7 @@ constexpr double kKept_mm = 2;
 
 // What looking at a brick costs, in points made: passed over, and for so many densities.
 constexpr int kPassedOverCost = 2;
+constexpr int kLookedAtCost = 4;
 constexpr int kDensitiesLookedAt = 60;
 
 }  // namespace
@@ -36,7 +37,8 @@ BoneBricks::BoneBricks(const Volume& volume, double spacing_mm, Points points)
       fine_(kSlots, kFineChunks),
       coarse_(kSlots, points == Points::fine ? 0 : kCoarseChunks),
       brick_of_slot_(kSlots),
-      changes_(kSlots) {
+      changes_(kSlots),
+      without_bone_(kSlots) {
   brick_radius_mm_ = 0.5 * lattice_.brick_nodes() * lattice_.step_mm().norm();
   const auto& dims = lattice_.brick_dims();
   while (1 << levels_ < *std::max_element(dims.begin(), dims.end())) ++levels_;
@@ -52,15 +54,17 @@ Vec3 BoneBricks::middle_G(int level, const VoxelIndex& node) const {
                                          Vec3::Ones());
 }
 
-// Whether it may hold surface; then a node has one in its place, and a brick stays unseen until it is made.
+// Whether it may hold surface; then a node has one in its place, as far as there are nodes, and a brick stays
+// unseen until it is made.
 bool BoneBricks::look(int level, const VoxelIndex& node, std::uint32_t& place) {
   const SurfaceLattice::Found found = lattice_.found_in(level, node);
+  may_make_ -= kLookedAtCost;
   if (found != SurfaceLattice::Found::surface) {
     place = found == SurfaceLattice::Found::no_bone ? kNoBone : kBoneAlone;
     return false;
   }
   if (level == 0) return true;
-  if (free_nodes_.empty()) return false;
+  if (free_nodes_.empty()) return true;
   const std::uint32_t index = free_nodes_.back();
   free_nodes_.pop_back();
   nodes_[index].places.fill(kUnseen);
@@ -87,7 +91,9 @@ BoneBricks::Found BoneBricks::find(const VoxelIndex& brick) {
 // Makes a brick, or makes it anew; returns what it cost.
 int BoneBricks::make(const VoxelIndex& brick, std::uint32_t& place) {
   const std::uint32_t changes = lattice_.changes_of(brick);
-  lattice_.find_surface(brick, found_);
+  SurfaceLattice::RowBits without_bone{};
+  if (is_index(place)) without_bone = without_bone_[place];
+  lattice_.find_surface(brick, without_bone, found_);
   if (!is_index(place)) {
     place = kBoneAlone;
     if (found_.fine.count > 0) {
@@ -98,6 +104,7 @@ int BoneBricks::make(const VoxelIndex& brick, std::uint32_t& place) {
   }
   if (is_index(place)) {
     changes_[place] = changes;
+    without_bone_[place] = without_bone;
     const std::uint32_t stored = fine_.replace(place, found_.fine);
     if (kinds_ == Points::fine_and_coarse) {
       SurfaceLattice::merge_flat_cells(found_);
@@ -158,8 +165,13 @@ void BoneBricks::remake_bearing() {
   }
   const std::uint32_t turns = static_cast<std::uint32_t>(1 + cost / kBearingPerTick);
   ++refreshes_;
+  bearing_owed_ = 0;
   for (const std::uint32_t slot : bearing_) {
-    if (fine_.brick(slot).count != 0 && (refreshes_ + slot) % turns == 0) remake(brick_of_slot_[slot]);
+    if ((refreshes_ + slot) % turns != 0) {
+      ++bearing_owed_;
+    } else if (fine_.brick(slot).count != 0) {
+      remake(brick_of_slot_[slot]);
+    }
   }
 }
 

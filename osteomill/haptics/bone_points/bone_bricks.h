@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "osteomill/geometry/pose.h"
@@ -29,6 +30,7 @@ class BrickSweep {
     return taken;
   }
   bool is_idle() const { return !is_walking() && waiting_.empty(); }
+  const VoxelBox& waiting() const { return waiting_; }
 
   /// Begins at the first brick of the box.
   void start(const VoxelBox& bricks) {
@@ -37,6 +39,17 @@ class BrickSweep {
   }
   bool is_walking() const { return !bricks_.empty(); }
   const VoxelIndex& brick() const { return brick_; }
+  /// How many bricks the walk has before it.
+  std::size_t bricks_left() const {
+    if (!is_walking()) return 0;
+    const std::array<int, 3> dims = bricks_.dims();
+    const std::size_t row = static_cast<std::size_t>(dims[0]),
+                      slice = row * static_cast<std::size_t>(dims[1]);
+    const VoxelIndex& first = bricks_.first;
+    return cell_count(dims) - static_cast<std::size_t>(brick_.i - first.i) -
+           row * static_cast<std::size_t>(brick_.j - first.j) -
+           slice * static_cast<std::size_t>(brick_.k - first.k);
+  }
 
   /// On to the next brick, or the end.
   void advance() {
@@ -80,14 +93,17 @@ class BoneBricks {
 
   /// Calls `use(brick, slot)` for the bricks with points in the octree's nodes of which `meets(middle_G,
   /// radius_mm)` says yes, where no node above was rejected; the sphere is about the node, in the grid's
-  /// frame. The order is fixed. Makes the bricks that were not, as far as there is room. Their points are
-  /// those of `slot` in `fine` and `coarse`.
+  /// frame. The order is fixed. Makes the bricks that were not, as far as there is room and what a tick may
+  /// make goes; true where none is missing. Their points are those of `slot` in `fine` and `coarse`.
   template <typename Meets, typename Use>
-  void visit(const Meets& meets, const Use& use) {
-    walk(levels_, {}, kRoot, meets, [&](const VoxelIndex& brick, std::uint32_t& place) {
-      if (place == kUnseen && has_room()) make(brick, place);
-      if (is_index(place)) use(brick, place);
+  bool visit(const Meets& meets, const Use& use) {
+    bool all = true;
+    walk(levels_, {}, kRoot, meets, [&](int level, const VoxelIndex& brick, std::uint32_t& place) {
+      if (level == 0 && place == kUnseen && may_make_ > 0 && has_room()) may_make_ -= make(brick, place);
+      if (place == kUnseen) all = false;
+      if (level == 0 && is_index(place)) use(brick, place);
     });
+    return all;
   }
   /// Whether there may be points where `meets` says yes. Makes no bricks.
   template <typename Meets>
@@ -96,7 +112,7 @@ class BoneBricks {
     const auto if_not_yet = [&](const Vec3& middle_G, double radius_mm) {
       return !may && meets(middle_G, radius_mm);
     };
-    walk(levels_, {}, kRoot, if_not_yet, [&](const VoxelIndex&, std::uint32_t&) { may = true; });
+    walk(levels_, {}, kRoot, if_not_yet, [&](int, const VoxelIndex&, std::uint32_t&) { may = true; });
     return may;
   }
 
@@ -105,6 +121,8 @@ class BoneBricks {
   /// doubles the steps of torque: 0.28 N mm for 0.14, tooth, 3 N.)
   static constexpr int kBearingPerTick = 1500;
   static constexpr int kOthersPerTick = 100;
+  /// About how many points are made a tick of bricks that the tool meets for the first time.
+  static constexpr int kMadePerTick = 2500;
   /// Says that densities fell in `voxels`, and brings points up to date. Bricks into which the surface has
   /// newly come are made at once. Those that bear the tool take turns, each in one of as many ticks as it
   /// takes to do about kBearingPerTick points in each. Of all other bricks about `others` points are done;
@@ -114,11 +132,18 @@ class BoneBricks {
   /// these bricks: if they waited with the others, it would stand still and drop once the last had its turn.
   std::vector<std::uint32_t>& bearing() { return bearing_; }
   bool is_up_to_date() const { return sweep_.is_idle(); }
+  /// How many bricks still have to be looked at, those that bear the tool among them.
+  std::size_t owed() const {
+    const VoxelBox waiting = lattice_.bricks_touched_by(sweep_.waiting());
+    return bearing_owed_ + sweep_.bricks_left() + (waiting.empty() ? 0 : cell_count(waiting.dims()));
+  }
   /// Makes room if little is left, by forgetting what is not near the tool.
   void make_room(const MillingTool& tool, const Pose& X_WT);
   /// What a tick begins with: room is made, and bricks that still wait are brought up to date where no
-  /// densities fell since the tick before.
+  /// densities fell since the tick before. From the first tick on a tick makes no more bricks than it has
+  /// time for (kMadePerTick).
   void begin_tick(const MillingTool& tool, const Pose& X_WT) {
+    may_make_ = kMadePerTick;
     if (!refreshed_ && !is_up_to_date()) refresh({});
     refreshed_ = false;
     make_room(tool, X_WT);
@@ -147,9 +172,9 @@ class BoneBricks {
       std::uint32_t& place = nodes_[index].places[static_cast<std::size_t>(n)];
       if (place == kNoBone || place == kBoneAlone || !meets(middle_G(level, below), radius_mm(level)))
         continue;
-      if (place == kUnseen && !look(level, below, place)) continue;
-      if (level == 0) {
-        leaf(below, place);
+      if (place == kUnseen && may_make_ > 0 && !look(level, below, place)) continue;
+      if (level == 0 || place == kUnseen) {
+        leaf(level, below, place);
       } else {
         walk(level, below, place, meets, leaf);
       }
@@ -184,13 +209,17 @@ class BoneBricks {
   BrickPoints fine_;
   BrickPoints coarse_;
   std::vector<std::uint32_t> free_slots_;
-  // Which brick a slot is of, and of which densities its points are.
+  // Which brick a slot is of, of which densities its points are, and where those had no bone.
   std::vector<VoxelIndex> brick_of_slot_;
   std::vector<std::uint32_t> changes_;
+  std::vector<SurfaceLattice::RowBits> without_bone_;
   std::size_t next_to_forget_ = 0;
   std::size_t next_node_to_forget_ = 0;
   BrickSweep sweep_;
   std::vector<std::uint32_t> bearing_;
+  std::size_t bearing_owed_ = 0;
+  // In points, what is left of kMadePerTick.
+  int may_make_ = std::numeric_limits<int>::max();
   std::uint32_t refreshes_ = 0;
   bool refreshed_ = false;
   SurfaceLattice::BrickSurface found_;

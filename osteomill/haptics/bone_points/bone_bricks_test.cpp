@@ -146,6 +146,27 @@ TEST(BoneBricks, ThoseThatBearTheToolAreBroughtUpToDateWithinAFewTicks) {
   }
 }
 
+// And says so as long as some are missing.
+TEST(BoneBricks, ATickMakesNoMoreThanItHasTimeFor) {
+  const Volume volume = testing_support::shape_volume(testing_support::centred_cube(150, 0.13),
+                                                      testing_support::ball(Vec3::Zero(), 8));
+  BoneBricks bricks(volume, 0.13, BoneBricks::Points::fine);
+  const auto everywhere = [](const Vec3&, double) { return true; };
+  std::size_t before = 0;
+  int ticks = 0;
+  for (bool all = false; !all; ++ticks) {
+    bricks.begin_tick({}, {});
+    all = bricks.visit(everywhere, [](const VoxelIndex&, std::uint32_t) {});
+    EXPECT_LE(bricks.fine().total(), before + BoneBricks::kMadePerTick + SurfaceLattice::kMaxPointsOfBrick);
+    before = bricks.fine().total();
+    ASSERT_LT(ticks, 1000);
+  }
+  EXPECT_GT(ticks, 10);
+  BoneBricks at_once(volume, 0.13, BoneBricks::Points::fine);
+  make_all(at_once);
+  EXPECT_EQ(bricks.fine().total(), at_once.fine().total());
+}
+
 // Bone in every brick of a scan, all asked for at once.
 TEST(BoneBricks, ABrickThatFoundNoRoomIsMadeWhenThereIs) {
   const Volume volume =

@@ -62,7 +62,7 @@ void NearBone::gather(BoneBricks& bricks, const Cores& cores, double reach_mm, c
   const auto meets_node = [&](const Vec3& middle_G, double radius_mm) {
     return meets.any(X_TG * middle_G, radius_mm);
   };
-  bricks.visit(meets_node, [&](const VoxelIndex& brick, std::uint32_t slot) {
+  brick_missing_ = !bricks.visit(meets_node, [&](const VoxelIndex& brick, std::uint32_t slot) {
     if (bricks_.size() < bricks_.capacity()) bricks_.push_back({slot, ball_.count, cylinder_.count});
     const Vec3 origin_T = X_TG * bricks.lattice().brick_origin_G(brick);
     const Frame frame = frame_of(X_TG.turn, origin_T);

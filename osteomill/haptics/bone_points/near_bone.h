@@ -30,10 +30,11 @@ class NearBone {
   explicit NearBone(std::size_t capacity = 0, PointsMeet meet = PointsMeet::both_parts);
 
   /// Gathers the points that may come within `reach_mm` of a part at `X_WT` or anywhere within the room.
-  /// Makes bricks.
+  /// Makes bricks, as many as a tick may.
   void gather(BoneBricks& bricks, const Cores& cores, double reach_mm, const Pose& X_WT, const Room& room);
-  /// Whether a point was left out for want of room: the tool must not move.
-  bool overflowed() const { return ball_.overflowed || cylinder_.overflowed; }
+  /// Whether a point may have been left out, for want of room or since its brick is not made yet: the tool
+  /// must not move.
+  bool is_incomplete() const { return brick_missing_ || ball_.overflowed || cylinder_.overflowed; }
   bool is_empty() const { return ball_.count == 0 && cylinder_.count == 0; }
 
   struct Energy {
@@ -59,6 +60,7 @@ class NearBone {
 
   PointsMeet meet_;
   std::vector<Gathered> bricks_;
+  bool brick_missing_ = false;
   Pose X_WT_gathered_;
   NearPoints ball_;
   NearPoints cylinder_;

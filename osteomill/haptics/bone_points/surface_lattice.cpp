@@ -254,33 +254,85 @@ void SurfaceLattice::interpolate_voxels(const VoxelIndex& first, Block& block) c
   }
 }
 
-void SurfaceLattice::find_surface(const VoxelIndex& brick, BrickSurface& surface) const {
+void SurfaceLattice::find_surface(const VoxelIndex& brick, RowBits& without_bone,
+                                  BrickSurface& surface) const {
   surface.fine.count = surface.coarse.count = 0;
   Block block;
   const Nodes nodes = nodes_of(brick, block);
   Rows rows{};
-  const Found found = find_bone(nodes, rows);
+  const Found found = find_bone(nodes, rows_of_bone_alone(brick), without_bone, rows);
   surface.has_bone = found != Found::no_bone;
   if (found == Found::surface) mean_crossings(nodes, rows, surface);
 }
 
-// In the rows that lines lie in.
-SurfaceLattice::Found SurfaceLattice::find_bone(const Nodes& nodes, Rows& rows) const {
-  std::uint32_t any = 0, all = ~0u;
+// Those that ranges of densities tell of, where nodes are voxels.
+SurfaceLattice::RowBits SurfaceLattice::rows_of_bone_alone(const VoxelIndex& brick) const {
+  RowBits rows{};
+  const VoxelBox voxels = voxels_of(0, brick, 0);
+  if (steps_per_voxel_ != std::array{1, 1, 1} ||
+      voxels.intersected(volume_->geometry().all_voxels()) != voxels) {
+    return rows;
+  }
+  constexpr int kSide = BlockRanges::kBrickVoxels;
+  const VoxelBox blocks = voxels.bricks(kSide);
+  const auto rows_of_block = [&](int bj) {
+    const int first = std::max(0, bj * kSide - voxels.first.j);
+    const int end = std::min(brick_nodes_ + 1, (bj + 1) * kSide - voxels.first.j);
+    return (1u << end) - (1u << first);
+  };
   for (int k = 0; k <= brick_nodes_; ++k) {
-    const int step = on_line(k) ? 1 : line_step_;
-    for (int j = 0; j <= brick_nodes_; j += step) {
-      const float* row = nodes.at(0, j, k);
-      std::uint32_t bits = bits_above(row, brick_nodes_, isovalue_);
-      bits |= static_cast<std::uint32_t>(row[brick_nodes_] > isovalue_) << brick_nodes_;
-      rows[row_index(j, k)] = bits;
-      any |= bits;
-      all &= bits;
+    const int bk = (voxels.first.k + k) / kSide;
+    std::uint32_t& of_slice = rows[static_cast<std::size_t>(k)];
+    if (k > 0 && bk == (voxels.first.k + k - 1) / kSide) {
+      of_slice = rows[static_cast<std::size_t>(k) - 1];
+      continue;
+    }
+    for (int bj = blocks.first.j; bj <= blocks.last.j; ++bj) {
+      bool bone = true;
+      for (int bi = blocks.first.i; bi <= blocks.last.i; ++bi) {
+        bone = bone && volume_->ranges().at(bi, bj, bk).min > isovalue_;
+      }
+      if (bone) of_slice |= rows_of_block(bj);
     }
   }
+  return rows;
+}
+
+// In the rows that lines lie in. Memory is what reading them costs, each a cache line or two of its own: all
+// that have to be read are asked for at once.
+SurfaceLattice::Found SurfaceLattice::find_bone(const Nodes& nodes, const RowBits& bone_alone,
+                                                RowBits& without_bone, Rows& rows) const {
   const std::uint32_t whole = (2u << brick_nodes_) - 1;
+  const auto for_each_row = [&](const auto& wanted, const auto& use) {
+    for (int k = 0; k <= brick_nodes_; ++k) {
+      const auto at = static_cast<std::size_t>(k);
+      const std::uint32_t lines = on_line(k) ? whole : whole & on_lines_;
+      for (std::uint32_t left = lines & wanted(at); left != 0; left &= left - 1)
+        use(std::countr_zero(left), k);
+    }
+  };
+  const auto unknown = [&](std::size_t k) { return ~(bone_alone[k] | without_bone[k]); };
+  for_each_row(unknown, [&](int j, int k) {
+    __builtin_prefetch(nodes.at(0, j, k));
+    __builtin_prefetch(nodes.at(brick_nodes_, j, k));
+  });
+  std::uint32_t any = 0, all = whole;
+  const auto found = [&](int j, int k, std::uint32_t bits) {
+    rows[row_index(j, k)] = bits;
+    any |= bits;
+    all &= bits;
+  };
+  for_each_row([&](std::size_t k) { return without_bone[k]; }, [&](int j, int k) { found(j, k, 0); });
+  for_each_row([&](std::size_t k) { return bone_alone[k]; }, [&](int j, int k) { found(j, k, whole); });
+  for_each_row(unknown, [&](int j, int k) {
+    const float* row = nodes.at(0, j, k);
+    std::uint32_t bits = bits_above(row, brick_nodes_, isovalue_);
+    bits |= static_cast<std::uint32_t>(row[brick_nodes_] > isovalue_) << brick_nodes_;
+    if (bits == 0) without_bone[static_cast<std::size_t>(k)] |= 1u << j;
+    found(j, k, bits);
+  });
   if (any == 0) return Found::no_bone;
-  return (all & whole) == whole ? Found::bone_alone : Found::surface;
+  return all == whole ? Found::bone_alone : Found::surface;
 }
 
 // A bit a cell of a row, of bits a node.

@@ -63,8 +63,11 @@ class SurfaceLattice {
     /// Whether anything that lines meet is bone.
     bool has_bone = false;
   };
-  /// Fine points alone.
-  void find_surface(const VoxelIndex& brick, BrickSurface& surface) const;
+  /// Of a brick's rows of nodes along i, a bit each: bit j of element k.
+  using RowBits = std::array<std::uint32_t, kMaxBrickNodes + 1>;
+  /// Fine points alone. `without_bone`: the rows in which no bone was found before, so that they need not be
+  /// looked at again; adds those that it finds.
+  void find_surface(const VoxelIndex& brick, RowBits& without_bone, BrickSurface& surface) const;
   /// Makes the coarse points of the fine ones: one for all in a cell twice as wide where they lie in a plane;
   /// along edges all stay.
   static void merge_flat_cells(BrickSurface& surface);
@@ -91,7 +94,8 @@ class SurfaceLattice {
   void copy_voxels(const VoxelIndex& first, Block& block) const;
   void interpolate_voxels(const VoxelIndex& first, Block& block) const;
   float density(const VoxelIndex& voxel) const;
-  Found find_bone(const Nodes& nodes, Rows& rows) const;
+  RowBits rows_of_bone_alone(const VoxelIndex& brick) const;
+  Found find_bone(const Nodes& nodes, const RowBits& bone_alone, RowBits& without_bone, Rows& rows) const;
   bool on_line(int node) const { return (on_lines_ >> node & 1) != 0; }
   // The edges along lines from a row's nodes that are crossed; false where none is.
   bool find_crossed(const Rows& rows, int j, int k, std::uint32_t (&crossed)[3]) const {

@@ -102,7 +102,10 @@ HapticStep PointShellAlgorithm::step(const Pose& X_WD, double dt_s) {
     result.X_WT = X_WT_ = X_WD;
   } else {
     result = balanced(X_WD, dt_s);
-    if (settings_.surface_shell) near_.find_bearing(0, surface_.bearing());
+    if (settings_.surface_shell) {
+      near_.find_bearing(0, surface_.bearing());
+      result.owed_bricks = static_cast<int>(surface_.owed());
+    }
   }
   X_WD_before_ = X_WD;
   return result;
@@ -120,6 +123,11 @@ HapticStep PointShellAlgorithm::balanced(const Pose& X_WD, double dt_s) {
     const ToolContacts contacts = contacts_at(X_WT_);
     const EnergySum all = contacts.total();
     result.contacts = all.touching;
+    if (near_.is_incomplete()) {
+      X_WT_ = start;
+      held_back_ = true;
+      break;
+    }
     const Pose before = X_WT_;
     Pose target = X_WD;
     if (all.touching > 0) target = moved(X_WT_, balancing_move(coupling_, X_WT_, X_WD, stretch_before_, all));

@@ -179,6 +179,7 @@ HapticStep SurfacePoints::step(const Pose& X_WD, double dt_s) {
   const Stand at = stand(X_WD, dt_s);
   HapticStep result;
   result.X_WT = held_tool_ ? at.held.X_WT : X_WD;
+  result.owed_bricks = at.held.owed_bricks;
   update(sphere_, at);
   result.contacts = sphere_.contacts;
   // (20), (21)
