@@ -35,7 +35,7 @@ seed, so that all but times comes out the same on any machine.
 | Does it stay still, and give back no more than it got? | *Dropped on bone* to *How stiff before it is no longer passive* |
 | Does a tool get through bone? | *Pushes from anywhere* to *Breaking through into a hollow* |
 | Is the hole what the burr swept? | *The hole and the voxels*, *What is cut and what the burr sweeps* |
-| Does it keep 1000 Hz, also in fine scans? | *Voxels of 0.031 mm*, *The haptic rate halved and doubled* |
+| Does it keep 1000 Hz, also in fine scans? | *Voxels of 0.031 mm*, *What a tick takes, whatever the burr and the voxels*, *The haptic rate halved and doubled* |
 | How calm is it while a hand mills? | *Milling the tooth* and the sections after it |
 | Does what the paper found come out? | *What the paper found*, *What the paper leaves open* |
 | What is each improvement of `steady` worth? | *Switch by switch* |
