@@ -10,6 +10,7 @@
 #include <imgui.h>
 
 #include "osteomill/device/workspace.h"
+#include "osteomill/numbers/round_numbers.h"
 
 namespace osteomill::app {
 
@@ -37,22 +38,12 @@ void row(const char* name, const std::string& value,
   ImGui::TextColored(colour, "%s", value.c_str());
 }
 
-// The least of 1, 2 and 5 times a power of ten that is not below.
-double round_above(double value) {
-  double round = std::pow(10.0, std::floor(std::log10(value)));
-  for (const double times : {2.0, 2.5, 2.0}) {
-    if (round >= value) break;
-    round *= times;
-  }
-  return round;
-}
-
 // From 0 to a round number, which stands at the top, over the last 5 s.
 void plot(const char* name, const char* unit, const std::deque<TickRecord>& history,
           double (*magnitude)(const TickRecord&), double min_scale, const ImVec4& colour, float height_px) {
   const std::vector<float> points = thinned(history, magnitude);
   const double max = static_cast<double>(*std::max_element(points.begin(), points.end()));
-  const double scale = round_above(std::max(max, min_scale));
+  const double scale = 1 / round_down(1 / std::max(max, min_scale));
   const double now = history.empty() ? 0 : magnitude(history.back());
   ImGui::Text("%s  %.2f %s, at most %.2f", name, now, unit, max);
   ui::hint("Now, and the greatest of the last 5 s");
