@@ -35,24 +35,6 @@ void main() {
 }
 )";
 
-// A label's colour over its grey value, and never quite dark: a nerve's canal may be as dark as air.
-std::vector<std::array<unsigned char, 3>> pixels_of(const ClipFace& face) {
-  constexpr double kLabel = 0.55, kLeast = 0.35;
-  std::vector<std::array<unsigned char, 3>> pixels;
-  pixels.reserve(face.greys.size());
-  for (std::size_t n = 0; n < face.greys.size(); ++n) {
-    const unsigned char grey = face.greys[n];
-    pixels.push_back({grey, grey, grey});
-    if (face.label_colours.empty() || face.label_colours[n] == std::array<unsigned char, 3>{}) continue;
-    const double light = kLeast + (1 - kLeast) * grey / 255;
-    for (std::size_t c = 0; c < 3; ++c) {
-      const double tinted = (1 - kLabel) * grey + kLabel * light * face.label_colours[n][c];
-      pixels.back()[c] = static_cast<unsigned char>(tinted);
-    }
-  }
-  return pixels;
-}
-
 constexpr std::string_view kBackgroundFragment = R"(#version 330 core
 in vec2 place;
 out vec4 colour;
@@ -117,14 +99,14 @@ ClipFaces::ClipFaces() : program_(gl::make_program(kCutVertex, kCutFragment)) {
 
 void ClipFaces::set(std::size_t cut, const ClipFace& face) {
   Face& kept = faces_.at(cut);
-  if (face.greys.empty()) {
+  if (face.pixels.empty()) {
     kept.pixels = {};
     return;
   }
   kept.pixels = gl::make_texture(GL_RGB8, GL_RGB, GL_UNSIGNED_BYTE, face.width, face.height, GL_LINEAR);
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
   glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, face.width, face.height, GL_RGB, GL_UNSIGNED_BYTE,
-                  pixels_of(face).data());
+                  face.pixels.data());
   // As a fan; the outermost pixels' middles lie half a pixel within the texture.
   const float u = 0.5f / static_cast<float>(face.width);
   const float v = 0.5f / static_cast<float>(face.height);
