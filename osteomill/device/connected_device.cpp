@@ -77,22 +77,22 @@ ConnectedDevice::ConnectedDevice(OpenConnection open, std::function<double()> no
 
 ConnectedDevice::~ConnectedDevice() {
   let_go();
-  ending_.store(true, std::memory_order_release);
+  thread_.request_stop();
   if (thread_.joinable()) thread_.join();
 }
 
 void ConnectedDevice::start() {
-  thread_ = std::thread([this] { run(); });
+  thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
   DeviceReport now = report();
   for (int n = 0; n < kWaitsForPose && !now.gives_poses(); ++n, now = report())
     std::this_thread::sleep_for(1ms);
   if (!now.gives_poses()) throw InputError(capabilities_.name, now.complaint());
 }
 
-void ConnectedDevice::run() {
+void ConnectedDevice::run(const std::stop_token& stop) {
   const SignalsForOthers none_here;
   request_real_time();
-  while (!ending_.load(std::memory_order_acquire)) {
+  while (!stop.stop_requested()) {
     exchange();
     if (!connection_) std::this_thread::sleep_for(1ms);
   }

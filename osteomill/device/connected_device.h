@@ -6,6 +6,7 @@
 #include <limits>
 #include <memory>
 #include <mutex>
+#include <stop_token>
 #include <string>
 #include <thread>
 
@@ -121,7 +122,7 @@ class ConnectedDevice final : public Device {
     std::uint64_t number = 0;
   };
 
-  void run();
+  void run(const std::stop_token& stop);
   void hear(const DeviceInput& input);
   bool may_be_driven(double now_s);
   ConnectionStatus send(double now_s, bool driven);
@@ -141,8 +142,7 @@ class ConnectedDevice final : public Device {
   std::atomic<bool> clutched_{false};
   std::atomic<bool> let_go_{false};
   std::atomic<bool> at_rest_{true};
-  std::atomic<bool> ending_{false};
-  std::thread thread_;
+  std::jthread thread_;
 
   // The device's thread's.
   std::unique_ptr<Connection> connection_;

@@ -63,31 +63,22 @@ BoneFollower::BoneFollower(std::shared_ptr<Volume> bone, std::size_t undo_bytes)
       upkeep_(layout_),
       shown_isovalue_(bone_->isovalue()) {
   mesh();
-  mesher_ = std::thread([this] { keep_up(); });
+  mesher_ = std::jthread([this](const std::stop_token& stop) { keep_up(stop); });
 }
 
-BoneFollower::~BoneFollower() {
-  {
-    const std::lock_guard lock(mutex_);
-    stopping_ = true;
-  }
-  woken_.notify_one();
-  mesher_.join();
-}
-
-void BoneFollower::keep_up() {
-  const WorkProgress meshing([this](double) {
-    if (stopping_) throw WorkStopped();
+void BoneFollower::keep_up(const std::stop_token& stop) {
+  const WorkProgress meshing([&](double) {
+    if (stop.stop_requested()) throw WorkStopped();
   });
   try {
     std::unique_lock lock(mutex_);
-    while (!stopping_) {
+    while (!stop.stop_requested()) {
       const auto isovalue = std::exchange(new_isovalue_, std::nullopt);
       lock.unlock();
       follow(isovalue);
       mesh();
       lock.lock();
-      woken_.wait_for(lock, kLookEvery, [this] { return stopping_ || new_isovalue_; });
+      woken_.wait_for(lock, stop, kLookEvery, [this] { return new_isovalue_.has_value(); });
     }
   } catch (const WorkStopped&) {
     // The whole bone was being meshed.

@@ -11,6 +11,7 @@
 #include <mutex>
 #include <optional>
 #include <shared_mutex>
+#include <stop_token>
 #include <thread>
 #include <vector>
 
@@ -72,9 +73,6 @@ class BoneFollower {
   /// Copies the bone and starts meshing all of it; has the memory made that milling it takes
   /// (Volume::prepare_about) ahead of the burr.
   explicit BoneFollower(std::shared_ptr<Volume> bone, std::size_t undo_bytes = kUndoBytes);
-  ~BoneFollower();
-  BoneFollower(const BoneFollower&) = delete;
-  BoneFollower& operator=(const BoneFollower&) = delete;
 
   /// What was milled of this bone at another time goes into both, as one cut. Before the first tick.
   void begin_with(const std::vector<DensityBlock>& milled);
@@ -133,7 +131,7 @@ class BoneFollower {
   void give_up();
 
  private:
-  void keep_up();
+  void keep_up(const std::stop_token& stop);
   void follow(const std::optional<double>& isovalue);
   void mesh();
   void take_over();
@@ -164,10 +162,10 @@ class BoneFollower {
   std::mutex mutex_;
   // What the drawing thread has not taken yet.
   ChangedBricks published_;
-  std::condition_variable woken_;
+  std::condition_variable_any woken_;
   std::optional<double> new_isovalue_;
-  std::atomic<bool> stopping_ = false;
-  std::thread mesher_;
+  // Last, so that it ends before all that it uses.
+  std::jthread mesher_;
 };
 
 }  // namespace osteomill

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <thread>
 
@@ -81,16 +82,15 @@ class LiveSession {
  private:
   void between_ticks(const std::function<void()>& command);
   void take_command();
-  void run() noexcept;
-  void tick_until_stopped();
+  void run(const std::stop_token& stop) noexcept;
+  void tick_until(const std::stop_token& stop);
   void place_when_at_rest();
   TickRecord tick(double time_s, double dt_s);
 
   Device& device_;
   CrashStop crash_stop_;
-  std::thread thread_;
+  std::jthread thread_;
   std::atomic<bool> running_{false};
-  std::atomic<bool> stopping_{false};
   std::string refused_real_time_;
 
   // Used by the haptic thread alone while it runs.
