@@ -139,10 +139,6 @@ ScanOptions scan_of(const SessionStart& leftover) {
 Autosave::Autosave(ScanOptions scan, std::optional<AutosaveFile> file)
     : scan_(std::move(scan)), file_(std::move(file)), kept_(file_.has_value()) {}
 
-Autosave::~Autosave() {
-  if (work_.valid()) work_.wait();
-}
-
 void Autosave::take_result() {
   try {
     const Clock::duration took = work_.get();

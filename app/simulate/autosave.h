@@ -55,7 +55,6 @@ class Autosave {
  public:
   /// For milling this scan. Writes to `file`, or to a new one where that is not given.
   Autosave(ScanOptions scan, std::optional<AutosaveFile> file);
-  ~Autosave();
 
   /// To be called once a picture. Removes the file where nothing is unsaved.
   void update(LiveMilling& milling);
@@ -81,7 +80,7 @@ class Autosave {
   bool kept_ = false;
   Clock::time_point next_;
   std::string complaint_;
-  // How long it took.
+  // How long it took. Last, so that it is waited for at the end.
   std::future<Clock::duration> work_;
 };
 

@@ -22,10 +22,6 @@ LiveSession::LiveSession(std::unique_ptr<MillingSession> session, Device& device
   session_->guard().protect_a_hand();
 }
 
-LiveSession::~LiveSession() {
-  stop();
-}
-
 void LiveSession::start() {
   if (running()) return;
   stop();

@@ -39,9 +39,6 @@ class LiveSession {
  public:
   /// `device` outlives this object. Does not start yet.
   LiveSession(std::unique_ptr<MillingSession> session, Device& device);
-  ~LiveSession();
-  LiveSession(const LiveSession&) = delete;
-  LiveSession& operator=(const LiveSession&) = delete;
 
   void start();
   /// Returns when the last tick is over and zero has been sent. Can be started again.
@@ -89,7 +86,6 @@ class LiveSession {
 
   Device& device_;
   CrashStop crash_stop_;
-  std::jthread thread_;
   std::atomic<bool> running_{false};
   std::string refused_real_time_;
 
@@ -111,6 +107,8 @@ class LiveSession {
   SpscQueue<TickRecord> records_{4096};
   LatestValue<LiveState> state_;
   LiveTiming timing_;
+  // Last, so that it ends before all that it uses.
+  std::jthread thread_;
 };
 
 }  // namespace osteomill

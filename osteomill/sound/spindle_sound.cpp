@@ -10,6 +10,7 @@
 
 #include <AL/al.h>
 #include <AL/alc.h>
+#include <AL/alext.h>
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -96,10 +97,8 @@ void SpindleSound::render(const SpindleState& state, std::span<float> samples) {
 
 void SoundStream::fill(unsigned buffer, const SpindleState& state) {
   sound_.render(state, samples_);
-  for (std::size_t n = 0; n < kSamples; ++n) {
-    words_[n] = static_cast<std::int16_t>(std::lround(32000 * samples_[n]));
-  }
-  alBufferData(buffer, AL_FORMAT_MONO16, words_.data(), static_cast<ALsizei>(sizeof(words_)), kSampleRate_hz);
+  alBufferData(buffer, AL_FORMAT_MONO_FLOAT32, samples_.data(), static_cast<ALsizei>(sizeof(samples_)),
+               kSampleRate_hz);
   alSourceQueueBuffers(source_, 1, &buffer);
 }
 
