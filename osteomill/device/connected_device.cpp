@@ -69,7 +69,6 @@ ConnectedDevice::ConnectedDevice(OpenConnection open, std::function<double()> no
       now_s_(now_s ? std::move(now_s) : &steady_now_s),
       connection_(open_()),
       sent_s_(now_s_()),
-      counting_since_s_(sent_s_),
       to_say_{.state = State::silent, .since_s = sent_s_},
       said_(to_say_),
       capabilities_(connection_->capabilities()),
@@ -130,15 +129,7 @@ void ConnectedDevice::hear(const DeviceInput& input) {
     posed_s_ = now_s;
   }
   heard_.write(newest_);
-  ++counted_;
-}
-
-void ConnectedDevice::count_input(double now_s) {
-  const double passed_s = now_s - counting_since_s_;
-  if (passed_s < 1) return;
-  to_say_.inputs_per_s = counted_ / passed_s;
-  counting_since_s_ = now_s;
-  counted_ = 0;
+  inputs_.count();
 }
 
 bool ConnectedDevice::may_be_driven(double now_s) {
@@ -210,7 +201,7 @@ void ConnectedDevice::reopen() {
 void ConnectedDevice::judge() {
   const double now_s = now_s_();
   const DeviceInput& input = newest_.input;
-  count_input(now_s);
+  to_say_.inputs_per_s = inputs_.per_s(now_s);
   State state = State::ok;
   const char* says = "";
   if (!connection_) {

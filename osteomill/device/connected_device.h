@@ -14,6 +14,7 @@
 #include "osteomill/device/device.h"
 #include "osteomill/device/latest_value.h"
 #include "osteomill/device/workspace.h"
+#include "osteomill/numbers/recent_rate.h"
 
 namespace osteomill {
 
@@ -130,7 +131,6 @@ class ConnectedDevice final : public Device {
   void lose(const std::string& reason);
   void reopen();
   void judge();
-  void count_input(double now_s);
   void tell(DeviceReport::State state, double now_s);
 
   OpenConnection open_;
@@ -155,8 +155,7 @@ class ConnectedDevice final : public Device {
   double posed_s_ = -std::numeric_limits<double>::infinity();
   double lost_s_ = 0;
   bool wrench_was_late_ = false;
-  double counting_since_s_;
-  int counted_ = 0;
+  RecentRate inputs_;
 
   // What is to be said of it; `since_s` holds the time of the clock here.
   DeviceReport to_say_;
