@@ -101,12 +101,7 @@ class Holder {
   void update(double passed_s) {
     if (hardware_) warn_of(hardware_->report());
     if (!space_mouse_) return;
-    const Mat3 axes = view_from_the_front().toRotationMatrix();
-    const SpaceMouseState state = space_mouse_->read();
-    X_W_target_.position_mm += passed_s * kSpaceMouse_mm_s * (axes * state.push);
-    X_W_target_.orientation =
-        quaternion_from_rotation_vector(passed_s * kSpaceMouse_rad_s * (axes * state.twist)) *
-        X_W_target_.orientation;
+    X_W_target_ = moved(X_W_target_, space_mouse_->read(), view_from_the_front(), passed_s);
     virtual_->pull_to(X_W_target_);
   }
 

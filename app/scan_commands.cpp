@@ -28,18 +28,18 @@ struct InfoOptions {
 };
 
 void run_info(const InfoOptions& options) {
-  Scan scan = open_scan(options.scan);
+  const Scan scan = open_scan(options.scan);
   const SuggestedIsovalue suggested = suggested_isovalue(options.scan, scan);
   const double isovalue = options.scan.isovalue.value_or(suggested.value);
   ScanSummary summary = summarise(scan, suggested, isovalue);
   const auto add = [&](const std::vector<std::string>& warnings) {
-    summary.warnings.insert(summary.warnings.end(), warnings.begin(), warnings.end());
+    summary.scan.warnings.insert(summary.scan.warnings.end(), warnings.begin(), warnings.end());
   };
   add(isovalue_warnings(scan.grid, isovalue));
   if (is_within(scan.grid, isovalue)) {
     LabelsRead labels = labels_of(options.scan, scan);
     add(labels.warnings);
-    Volume bone = bone_of(std::move(scan), isovalue);
+    Volume bone = bone_of(scan, isovalue);
     bone.set_labels(std::move(labels.map));
     summary.labels = summarise_labels(bone);
     add(entry_warnings(bone, MillingTool{}, place_entry(bone, MillingTool{})));

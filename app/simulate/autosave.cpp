@@ -1,6 +1,7 @@
 #include "app/simulate/autosave.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <ctime>
 #include <exception>
 #include <system_error>
@@ -24,8 +25,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr const char* kExtension = ".h5";
-constexpr const char* kLockExtension = ".lock";
 // Of what it takes to open the scan again, beside what every recording says of it.
 constexpr const char* kSeriesKey = "scan.series";
 constexpr const char* kLabelMapKey = "scan.labels";
@@ -40,30 +39,20 @@ fs::path autosave_folder() {
   return state.empty() ? fs::path() : state / "autosave";
 }
 
-fs::path lock_of(const fs::path& path) {
-  return path.string() + kLockExtension;
-}
-
-// Whether the lock's file is still the one that was opened: another program may have removed it meanwhile.
-bool still_there(int lock, const fs::path& path) {
+// Whether the folder is still the one that was opened: another program may have removed it meanwhile.
+bool still_there(int lock, const fs::path& folder) {
   struct stat held {};
   struct stat named {};
-  return ::fstat(lock, &held) == 0 && ::stat(path.c_str(), &named) == 0 && held.st_ino == named.st_ino;
+  return ::fstat(lock, &held) == 0 && ::stat(folder.c_str(), &named) == 0 && held.st_ino == named.st_ino;
 }
 
-std::vector<fs::path> names_in(const fs::path& folder) {
-  std::vector<fs::path> names;
+// The newest first: their names begin with the time.
+std::vector<fs::path> folders_in(const fs::path& folder) {
   std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
-    const fs::path& name = entry.path();
-    const bool hidden = name.filename().string().starts_with('.');
-    if (!hidden && name.extension() == kExtension) names.push_back(name);
-    if (!hidden && name.extension() == kLockExtension) names.push_back(fs::path(name).replace_extension());
-  }
-  // They begin with the time.
-  std::sort(names.rbegin(), names.rend());
-  names.erase(std::unique(names.begin(), names.end()), names.end());
-  return names;
+  std::vector<fs::path> folders;
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) folders.push_back(entry.path());
+  std::sort(folders.rbegin(), folders.rend());
+  return folders;
 }
 
 std::string absolute_path(const fs::path& path) {
@@ -80,40 +69,38 @@ RunDescription describe(const ScanOptions& scan, const LiveMilling& milling) {
 
 }  // namespace
 
-std::optional<AutosaveFile> AutosaveFile::locked(const fs::path& path) {
-  const fs::path lock_path = lock_of(path);
-  const int lock = ::open(lock_path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+std::optional<AutosaveFile> AutosaveFile::locked(const fs::path& folder) {
+  const int lock = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (lock < 0) return std::nullopt;
-  if (::flock(lock, LOCK_EX | LOCK_NB) != 0 || !still_there(lock, lock_path)) {
+  if (::flock(lock, LOCK_EX | LOCK_NB) != 0 || !still_there(lock, folder)) {
     ::close(lock);
     return std::nullopt;
   }
-  return AutosaveFile(path, lock);
+  return AutosaveFile(folder, lock);
 }
 
 std::optional<AutosaveFile> AutosaveFile::make() {
-  const fs::path folder = autosave_folder();
+  const fs::path all = autosave_folder();
   std::error_code error;
-  fs::create_directories(folder, error);
-  if (folder.empty() || error) return std::nullopt;
-  const std::string time = fmt::format("{:%Y%m%d-%H%M%S}-{}", fmt::localtime(std::time(nullptr)), ::getpid());
-  for (int n = 1; n < 100; ++n) {
-    const fs::path path = folder / fmt::format("{}-{}{}", time, n, kExtension);
-    if (fs::exists(path) || fs::exists(lock_of(path))) continue;
-    if (auto file = locked(path)) return file;
+  fs::create_directories(all, error);
+  if (all.empty() || error) return std::nullopt;
+  // Another program that starts just now may take a folder that is still empty for one that is left over.
+  for (int n = 0; n < 100; ++n) {
+    std::string folder = all / fmt::format("{:%Y%m%d-%H%M%S}-XXXXXX", fmt::localtime(std::time(nullptr)));
+    if (::mkdtemp(folder.data()) == nullptr) break;
+    if (auto file = locked(folder)) return file;
   }
   return std::nullopt;
 }
 
 std::optional<LeftoverMilling> last_leftover_milling() {
-  for (const fs::path& path : names_in(autosave_folder())) {
-    auto file = AutosaveFile::locked(path);
-    if (!file) continue;
+  for (const fs::path& folder : folders_in(autosave_folder())) {
+    auto file = AutosaveFile::locked(folder);
     std::error_code ignored;
-    // Its program may have ended with nothing to keep; the lock's file then goes with `file`.
-    if (!fs::exists(path, ignored)) continue;
+    // Its program may have ended with nothing to keep; the folder then goes with `file`.
+    if (!file || !fs::exists(file->path(), ignored)) continue;
     try {
-      SessionStart start = read_start(path);
+      SessionStart start = read_start(file->path());
       return LeftoverMilling{std::move(*file), std::move(start)};
     } catch (const InputError&) {
       // Not ours to remove: another version of the program may read it.
@@ -122,21 +109,15 @@ std::optional<LeftoverMilling> last_leftover_milling() {
   return std::nullopt;
 }
 
-AutosaveFile::AutosaveFile(fs::path path, int lock)
-    : path_(std::move(path)), lock_(nullptr, [path = path_, lock](void*) {
-        std::error_code ignored;
-        if (!fs::exists(path, ignored)) fs::remove(lock_of(path), ignored);
+AutosaveFile::AutosaveFile(fs::path folder, int lock)
+    : folder_(std::move(folder)), lock_(nullptr, [folder = folder_, lock](void*) {
+        ::rmdir(folder.c_str());
         ::close(lock);
       }) {}
 
 void AutosaveFile::clear() const {
   std::error_code ignored;
-  fs::remove(path_, ignored);
-  // What a program left that was killed while it wrote.
-  const std::string half = "." + path_.stem().string() + ".";
-  for (const auto& entry : fs::directory_iterator(path_.parent_path(), ignored)) {
-    if (entry.path().filename().string().starts_with(half)) fs::remove(entry.path(), ignored);
-  }
+  for (const auto& entry : fs::directory_iterator(folder_, ignored)) fs::remove(entry.path(), ignored);
 }
 
 ScanOptions scan_of(const SessionStart& leftover) {
@@ -157,10 +138,6 @@ ScanOptions scan_of(const SessionStart& leftover) {
 
 Autosave::Autosave(ScanOptions scan, std::optional<AutosaveFile> file)
     : scan_(std::move(scan)), file_(std::move(file)), kept_(file_.has_value()) {}
-
-Autosave::~Autosave() {
-  if (work_.valid()) work_.wait();
-}
 
 void Autosave::take_result() {
   try {

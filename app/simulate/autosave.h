@@ -16,25 +16,25 @@
 
 namespace osteomill::app {
 
-/// The name of a file for milled bone in the user's state folder, locked for as long as this object lives, so
-/// that windows which are open at the same time never touch each other's. The system takes the lock away
-/// however the program ends. The file itself stays.
+/// A file for milled bone in a folder of its own in the user's state folder, locked for as long as this
+/// object lives, so that windows which are open at the same time never touch each other's. The system takes
+/// the lock away however the program ends. The file itself stays.
 class AutosaveFile {
  public:
-  /// A new name; nothing where the folder cannot be made or written, or the user has none.
+  /// In a new folder; nothing where it cannot be made, or the user has no state folder.
   static std::optional<AutosaveFile> make();
-  /// The file of this name; nothing where another program has it locked.
-  static std::optional<AutosaveFile> locked(const std::filesystem::path& path);
+  /// In this folder; nothing where another program has it locked.
+  static std::optional<AutosaveFile> locked(const std::filesystem::path& folder);
 
-  const std::filesystem::path& path() const { return path_; }
-  /// Removes the file.
+  std::filesystem::path path() const { return folder_ / "milled.h5"; }
+  /// Removes the file, and what a program left that was killed while it wrote.
   void clear() const;
 
  private:
-  AutosaveFile(std::filesystem::path path, int lock);
+  AutosaveFile(std::filesystem::path folder, int lock);
 
-  std::filesystem::path path_;
-  // Gives it up as it goes.
+  std::filesystem::path folder_;
+  // Gives it up as it goes, and the folder with it where that is empty.
   std::shared_ptr<void> lock_;
 };
 
@@ -55,7 +55,6 @@ class Autosave {
  public:
   /// For milling this scan. Writes to `file`, or to a new one where that is not given.
   Autosave(ScanOptions scan, std::optional<AutosaveFile> file);
-  ~Autosave();
 
   /// To be called once a picture. Removes the file where nothing is unsaved.
   void update(LiveMilling& milling);
@@ -81,7 +80,7 @@ class Autosave {
   bool kept_ = false;
   Clock::time_point next_;
   std::string complaint_;
-  // How long it took.
+  // How long it took. Last, so that it is waited for at the end.
   std::future<Clock::duration> work_;
 };
 

@@ -36,6 +36,7 @@
 #include "osteomill/files/input_error.h"
 #include "osteomill/image/image.h"
 #include "osteomill/live/bone_sender.h"
+#include "osteomill/numbers/recent_rate.h"
 #include "osteomill/numbers/work_progress.h"
 #include "osteomill/sound/spindle_sound.h"
 #include "osteomill/view/annotations.h"
@@ -70,25 +71,6 @@ bool first_time_of_help() {
   }
   return true;
 }
-
-// How many pictures the last second had.
-class PictureRate {
- public:
-  void count() {
-    ++pictures_;
-    const double passed_s = seconds_since(start_);
-    if (passed_s < 1) return;
-    rate_ = pictures_ / passed_s;
-    start_ = Clock::now();
-    pictures_ = 0;
-  }
-  double per_s() const { return rate_; }
-
- private:
-  Clock::time_point start_ = Clock::now();
-  int pictures_ = 0;
-  double rate_ = 0;
-};
 
 // Opens a scan on a thread of its own, and can be stopped: that thread then ends by itself within about a
 // tenth of a second and gives its memory back. Only this object's destructor waits for it.
@@ -441,7 +423,7 @@ class Simulator {
     draw_annotations(view_, size, !options_.scan.scan.empty());
     draw_controls(view_, *simulation_, files_, size);
     const float bottom_px = files_.draw_message(view_, *simulation_, size);
-    float top_px = draw_readings(view_, *simulation_, rate_.per_s(), size);
+    float top_px = draw_readings(view_, *simulation_, pictures_per_s(), size);
     top_px = draw_labels(view_, *simulation_, {top_px, bottom_px});
     draw_help(view_, size, {top_px, bottom_px});
     if (opening_.valid()) draw_opening();
@@ -449,6 +431,8 @@ class Simulator {
     draw_no_go(*simulation_);
     set_sound();
   }
+
+  double pictures_per_s() { return pictures_.per_s(seconds_since({})); }
 
   void set_sound() {
     // The force of a firm hand while cutting.
@@ -466,7 +450,7 @@ class Simulator {
     to_draw_ = std::move(changed);
     // All bricks of a large bone take longer than a picture may. But where pictures take long anyway, as
     // without a graphics card, too few at a time would take minutes.
-    const double most_s = std::max(0.02, 0.5 / std::max(rate_.per_s(), 1.0));
+    const double most_s = std::max(0.02, 0.5 / std::max(pictures_per_s(), 1.0));
     for (const auto start = Clock::now(); !to_draw_.empty() && seconds_since(start) < most_s;
          to_draw_.erase(to_draw_.begin())) {
       renderer_->set_brick(to_draw_.begin()->first, to_draw_.begin()->second);
@@ -498,7 +482,7 @@ class Simulator {
     window_.end_frame();
     if (script_ && (simulation_ || leftover_ || script_->at_once())) tell(script_->after_drawing(window_));
     window_.show();
-    rate_.count();
+    pictures_.count();
     ++pictures_since_said_;
     if (std::exchange(view_.full_screen_asked, false)) window_.toggle_full_screen();
     if (const int steps = std::exchange(view_.text_steps, 0); steps != 0) {
@@ -529,7 +513,7 @@ class Simulator {
     fmt::print(
         "{}: {:.1f} pictures/s ({:.0f} ms of all processors each), {} triangles, {:.1f} Hz, {} late, step "
         "p99 {:.0f} us, force {:.2f} N, removed {:.3f} mm³, {} cuts, scan {}\n",
-        text, rate_.per_s(), 1e3 * cpu_s / std::max(pictures_since_said_, 1), renderer_->triangle_count(),
+        text, pictures_per_s(), 1e3 * cpu_s / std::max(pictures_since_said_, 1), renderer_->triangle_count(),
         timing.ticks_per_s, timing.late_ticks, timing.step.p99_us, record.wrench.force_N.norm(),
         record.removed_mm3, simulation_->milling.follower().cuts(), simulation_->scan.name);
     for (const std::string& complaint : view_.dialogues.complaints()) fmt::print("dialogue: {}\n", complaint);
@@ -564,7 +548,7 @@ class Simulator {
   SoundPlayer sound_;
   SpindleState heard_;
   SpaceMouse space_mouse_;
-  PictureRate rate_;
+  RecentRate pictures_;
   int pictures_since_said_ = 0;
   std::clock_t said_cpu_ = 0;
   Clock::time_point last_picture_ = Clock::now();

@@ -31,12 +31,9 @@ Pose moved_target(const Pose& X_W_target, const Pose& X_WD, const Camera& camera
         scale * (input.moved_px.x() * camera.right_W() - input.moved_px.y() * camera.up_W()) +
         input.passed_s * kKeys_mm_s * (input.keys.x() * camera.right_W() + input.keys.y() * camera.up_W());
   }
-  const Mat3 axes = camera.orientation.toRotationMatrix();
-  move += input.passed_s * kSpaceMouse_mm_s * (axes * input.space_mouse.push);
-  turn += input.passed_s * kSpaceMouse_rad_s * (axes * input.space_mouse.twist);
-  Pose target{X_W_target.position_mm + move,
-              (quaternion_from_rotation_vector(turn) * X_W_target.orientation).normalized()};
-
+  Pose target = moved({X_W_target.position_mm + move,
+                       (quaternion_from_rotation_vector(turn) * X_W_target.orientation).normalized()},
+                      input.space_mouse, camera.orientation, input.passed_s);
   const Vec3 ahead = target.position_mm - X_WD.position_mm;
   const double farthest_mm = input.touching ? kFarthest_mm : kFarthestFree_mm;
   if (ahead.norm() > farthest_mm) target.position_mm = X_WD.position_mm + farthest_mm * ahead.normalized();

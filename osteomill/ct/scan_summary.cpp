@@ -16,7 +16,8 @@ std::array<double, 3> to_array(const Vec3& v) {
   return {v.x(), v.y(), v.z()};
 }
 
-void summarise_values(const DensityGrid& grid, double isovalue, ScanSummary& summary) {
+void summarise_values(double isovalue, ScanSummary& summary) {
+  const DensityGrid& grid = summary.scan.grid;
   double sum = 0;
   float min = grid[{0, 0, 0}];
   float max = min;
@@ -35,16 +36,10 @@ void summarise_values(const DensityGrid& grid, double isovalue, ScanSummary& sum
 
 }  // namespace
 
-ScanSummary summarise(const Scan& scan, SuggestedIsovalue suggested_iso, double isovalue) {
-  ScanSummary summary;
-  summary.name = scan.name;
-  summary.format = scan.format;
-  summary.geometry = scan.grid.geometry();
-  summary.suggested_iso = std::move(suggested_iso);
-  summary.isovalue = isovalue;
-  summary.warnings = scan.warnings;
-  summary.series = scan.series;
-  summarise_values(scan.grid, isovalue, summary);
+ScanSummary summarise(Scan scan, SuggestedIsovalue suggested_iso, double isovalue) {
+  ScanSummary summary{
+      .scan = std::move(scan), .suggested_iso = std::move(suggested_iso), .isovalue = isovalue};
+  summarise_values(isovalue, summary);
   return summary;
 }
 
@@ -67,7 +62,7 @@ std::vector<LabelSummary> summarise_labels(const Volume& bone) {
 }
 
 std::string to_json(const ScanSummary& summary) {
-  const GridGeometry& geometry = summary.geometry;
+  const GridGeometry& geometry = summary.scan.grid.geometry();
   std::array<std::array<double, 3>, 3> direction;
   for (int row = 0; row < 3; ++row)
     direction[static_cast<std::size_t>(row)] = to_array(geometry.direction.row(row).transpose());
@@ -81,11 +76,11 @@ std::string to_json(const ScanSummary& summary) {
                               {"suggested_iso", summary.suggested_iso.value},
                               {"suggested_how", summary.suggested_iso.how},
                               {"voxels_above_iso", summary.voxels_above_iso},
-                              {"warnings", summary.warnings}};
+                              {"warnings", summary.scan.warnings}};
   json["boundaries"] = nlohmann::ordered_json::array();
   for (const Boundary& of : summary.suggested_iso.boundaries)
     json["boundaries"].push_back({{"density", of.density}, {"below", of.below}, {"above", of.above}});
-  if (!summary.series.empty()) json["series"] = summary.series;
+  if (!summary.scan.series.empty()) json["series"] = summary.scan.series;
   for (const LabelSummary& of : summary.labels) {
     json["labels"].push_back({{"value", of.label.value},
                               {"name", of.label.name},
@@ -99,17 +94,18 @@ std::string to_json(const ScanSummary& summary) {
 }
 
 std::string to_text(const ScanSummary& summary) {
-  const auto& [columns, rows, slices] = summary.geometry.dims;
-  const Vec3& spacing = summary.geometry.spacing_mm;
-  const Vec3& origin = summary.geometry.origin_mm;
-  std::string text = fmt::format("{} ({})\n", summary.name, summary.format);
+  const GridGeometry& geometry = summary.scan.grid.geometry();
+  const auto& [columns, rows, slices] = geometry.dims;
+  const Vec3& spacing = geometry.spacing_mm;
+  const Vec3& origin = geometry.origin_mm;
+  std::string text = fmt::format("{} ({})\n", summary.scan.name, summary.scan.format);
   text += fmt::format("voxels      {} x {} x {}\n", columns, rows, slices);
   text += fmt::format("spacing     {:.6g} x {:.6g} x {:.6g} mm\n", spacing[0], spacing[1], spacing[2]);
   text += fmt::format("size        {:.6g} x {:.6g} x {:.6g} mm\n", spacing[0] * columns, spacing[1] * rows,
                       spacing[2] * slices);
   text += fmt::format("origin      {:.6g}, {:.6g}, {:.6g} mm\n", origin[0], origin[1], origin[2]);
   for (int axis = 0; axis < 3; ++axis) {
-    const Vec3 along = summary.geometry.direction.col(axis);
+    const Vec3 along = geometry.direction.col(axis);
     text += fmt::format("{} runs along {:.6g}, {:.6g}, {:.6g}\n", "ijk"[axis], along[0], along[1], along[2]);
   }
   text += fmt::format("values      {:.6g} to {:.6g}, mean {:.6g}\n", summary.value_min, summary.value_max,
@@ -123,7 +119,7 @@ std::string to_text(const ScanSummary& summary) {
     text += fmt::format("boundary    {:.4g}, with {:.4g} below and {:.4g} above\n", of.density, of.below,
                         of.above);
   text += fmt::format("bone        {} voxels above {:.6g}\n", summary.voxels_above_iso, summary.isovalue);
-  for (const std::string& series : summary.series) text += fmt::format("series      {}\n", series);
+  for (const std::string& series : summary.scan.series) text += fmt::format("series      {}\n", series);
   for (const LabelSummary& of : summary.labels) {
     text += fmt::format(
         "label       {} {}, {}: {} voxels, {:.5g} mm³, {:.0f} % bone{}\n", of.label.value, of.label.name,
@@ -131,7 +127,7 @@ std::string to_text(const ScanSummary& summary) {
         of.voxels > 0 ? 100.0 * static_cast<double>(of.bone_voxels) / static_cast<double>(of.voxels) : 0.0,
         of.label.no_go ? ", no-go" : "");
   }
-  for (const std::string& warning : summary.warnings) text += fmt::format("warning: {}\n", warning);
+  for (const std::string& warning : summary.scan.warnings) text += fmt::format("warning: {}\n", warning);
   return text;
 }
 

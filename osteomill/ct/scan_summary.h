@@ -21,9 +21,8 @@ struct LabelSummary {
 
 /// What `osteomill info` tells of a scan. Lengths in mm, in the patient's LPS frame.
 struct ScanSummary {
-  std::string name;
-  std::string format;
-  GridGeometry geometry;
+  /// With all the warnings that are told.
+  Scan scan;
   double value_min = 0;
   double value_max = 0;
   double value_mean = 0;
@@ -32,15 +31,12 @@ struct ScanSummary {
   double isovalue = 0;
   /// Voxels whose density is greater than `isovalue`.
   std::size_t voxels_above_iso = 0;
-  std::vector<std::string> warnings;
-  /// As `Scan::series`.
-  std::vector<std::string> series;
   /// Empty where the scan has no labels.
   std::vector<LabelSummary> labels{};
 };
 
 /// One pass over the voxels. `suggested_iso` is what is reported as suggested (`suggest_isovalue`).
-ScanSummary summarise(const Scan& scan, SuggestedIsovalue suggested_iso, double isovalue);
+ScanSummary summarise(Scan scan, SuggestedIsovalue suggested_iso, double isovalue);
 
 /// Of the bone's labels, if it has any. One pass over their voxels.
 std::vector<LabelSummary> summarise_labels(const Volume& bone);

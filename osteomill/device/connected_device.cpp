@@ -69,7 +69,6 @@ ConnectedDevice::ConnectedDevice(OpenConnection open, std::function<double()> no
       now_s_(now_s ? std::move(now_s) : &steady_now_s),
       connection_(open_()),
       sent_s_(now_s_()),
-      counting_since_s_(sent_s_),
       to_say_{.state = State::silent, .since_s = sent_s_},
       said_(to_say_),
       capabilities_(connection_->capabilities()),
@@ -77,22 +76,22 @@ ConnectedDevice::ConnectedDevice(OpenConnection open, std::function<double()> no
 
 ConnectedDevice::~ConnectedDevice() {
   let_go();
-  ending_.store(true, std::memory_order_release);
+  thread_.request_stop();
   if (thread_.joinable()) thread_.join();
 }
 
 void ConnectedDevice::start() {
-  thread_ = std::thread([this] { run(); });
+  thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
   DeviceReport now = report();
   for (int n = 0; n < kWaitsForPose && !now.gives_poses(); ++n, now = report())
     std::this_thread::sleep_for(1ms);
   if (!now.gives_poses()) throw InputError(capabilities_.name, now.complaint());
 }
 
-void ConnectedDevice::run() {
+void ConnectedDevice::run(const std::stop_token& stop) {
   const SignalsForOthers none_here;
   request_real_time();
-  while (!ending_.load(std::memory_order_acquire)) {
+  while (!stop.stop_requested()) {
     exchange();
     if (!connection_) std::this_thread::sleep_for(1ms);
   }
@@ -130,15 +129,7 @@ void ConnectedDevice::hear(const DeviceInput& input) {
     posed_s_ = now_s;
   }
   heard_.write(newest_);
-  ++counted_;
-}
-
-void ConnectedDevice::count_input(double now_s) {
-  const double passed_s = now_s - counting_since_s_;
-  if (passed_s < 1) return;
-  to_say_.inputs_per_s = counted_ / passed_s;
-  counting_since_s_ = now_s;
-  counted_ = 0;
+  inputs_.count();
 }
 
 bool ConnectedDevice::may_be_driven(double now_s) {
@@ -210,7 +201,7 @@ void ConnectedDevice::reopen() {
 void ConnectedDevice::judge() {
   const double now_s = now_s_();
   const DeviceInput& input = newest_.input;
-  count_input(now_s);
+  to_say_.inputs_per_s = inputs_.per_s(now_s);
   State state = State::ok;
   const char* says = "";
   if (!connection_) {

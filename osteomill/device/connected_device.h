@@ -6,6 +6,7 @@
 #include <limits>
 #include <memory>
 #include <mutex>
+#include <stop_token>
 #include <string>
 #include <thread>
 
@@ -13,6 +14,7 @@
 #include "osteomill/device/device.h"
 #include "osteomill/device/latest_value.h"
 #include "osteomill/device/workspace.h"
+#include "osteomill/numbers/recent_rate.h"
 
 namespace osteomill {
 
@@ -121,7 +123,7 @@ class ConnectedDevice final : public Device {
     std::uint64_t number = 0;
   };
 
-  void run();
+  void run(const std::stop_token& stop);
   void hear(const DeviceInput& input);
   bool may_be_driven(double now_s);
   ConnectionStatus send(double now_s, bool driven);
@@ -129,7 +131,6 @@ class ConnectedDevice final : public Device {
   void lose(const std::string& reason);
   void reopen();
   void judge();
-  void count_input(double now_s);
   void tell(DeviceReport::State state, double now_s);
 
   OpenConnection open_;
@@ -141,8 +142,7 @@ class ConnectedDevice final : public Device {
   std::atomic<bool> clutched_{false};
   std::atomic<bool> let_go_{false};
   std::atomic<bool> at_rest_{true};
-  std::atomic<bool> ending_{false};
-  std::thread thread_;
+  std::jthread thread_;
 
   // The device's thread's.
   std::unique_ptr<Connection> connection_;
@@ -155,8 +155,7 @@ class ConnectedDevice final : public Device {
   double posed_s_ = -std::numeric_limits<double>::infinity();
   double lost_s_ = 0;
   bool wrench_was_late_ = false;
-  double counting_since_s_;
-  int counted_ = 0;
+  RecentRate inputs_;
 
   // What is to be said of it; `since_s` holds the time of the clock here.
   DeviceReport to_say_;

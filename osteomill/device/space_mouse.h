@@ -13,9 +13,9 @@ struct SpaceMouseState {
   int presses = 0;
 };
 
-/// How fast one that is pushed or twisted as far as it goes moves and turns what it moves.
-inline constexpr double kSpaceMouse_mm_s = 20;
-inline constexpr double kSpaceMouse_rad_s = 1.2;
+/// A pose in W that it pushes and twists for so long: pushed as far as it goes by 20 mm, twisted by 1.2 rad a
+/// second, along and about the axes of the viewer, which R_WV turns to those of W.
+Pose moved(const Pose& X_W, const SpaceMouseState& by, const Quat& R_WV, double passed_s);
 
 /// A SpaceMouse behind the daemon spacenavd (or whatever listens at the socket that SPNAV_SOCKET names). One
 /// at a time; for one thread, not the haptic one.

@@ -63,31 +63,22 @@ BoneFollower::BoneFollower(std::shared_ptr<Volume> bone, std::size_t undo_bytes)
       upkeep_(layout_),
       shown_isovalue_(bone_->isovalue()) {
   mesh();
-  mesher_ = std::thread([this] { keep_up(); });
+  mesher_ = std::jthread([this](const std::stop_token& stop) { keep_up(stop); });
 }
 
-BoneFollower::~BoneFollower() {
-  {
-    const std::lock_guard lock(mutex_);
-    stopping_ = true;
-  }
-  woken_.notify_one();
-  mesher_.join();
-}
-
-void BoneFollower::keep_up() {
-  const WorkProgress meshing([this](double) {
-    if (stopping_) throw WorkStopped();
+void BoneFollower::keep_up(const std::stop_token& stop) {
+  const WorkProgress meshing([&](double) {
+    if (stop.stop_requested()) throw WorkStopped();
   });
   try {
     std::unique_lock lock(mutex_);
-    while (!stopping_) {
+    while (!stop.stop_requested()) {
       const auto isovalue = std::exchange(new_isovalue_, std::nullopt);
       lock.unlock();
       follow(isovalue);
       mesh();
       lock.lock();
-      woken_.wait_for(lock, kLookEvery, [this] { return stopping_ || new_isovalue_; });
+      woken_.wait_for(lock, stop, kLookEvery, [this] { return new_isovalue_.has_value(); });
     }
   } catch (const WorkStopped&) {
     // The whole bone was being meshed.
@@ -114,7 +105,7 @@ void BoneFollower::follow(const std::optional<double>& isovalue) {
 void BoneFollower::mesh() {
   const std::shared_lock lock(bone_mutex_);
   ChangedBricks changed = upkeep_.remesh({copy_->grid(), copy_->ranges(), shown_isovalue_});
-  const std::lock_guard publishing(published_mutex_);
+  const std::lock_guard publishing(mutex_);
   // Of a brick that is in both, the newer stays.
   changed.merge(published_);
   published_ = std::move(changed);
@@ -149,13 +140,11 @@ void BoneFollower::put_differing() {
   for (DensityBlock& brick : differing_) put(brick);
 }
 
-BoneFollower::NextBone BoneFollower::without(CutHistory::Taken cuts) {
-  isovalue_before_ = copy_->isovalue();
-  taken_ = std::move(cuts);
-  differing_.clear();
-  for (const auto& [place, brick] : taken_->bricks) differing_.push_back(brick);
+BoneFollower::NextBone BoneFollower::without(const CutHistory::Before& cuts, void (CutHistory::*drop)()) {
+  drop_ = drop;
+  for (const auto& [place, brick] : cuts.bricks) differing_.push_back(brick);
   put_differing();
-  return {copy_, taken_->removed_mm3, {}};
+  return {copy_, cuts.removed_mm3, {}};
 }
 
 void BoneFollower::begin_with(const std::vector<DensityBlock>& milled) {
@@ -173,7 +162,7 @@ void BoneFollower::bone_changed(const Volume& bone, const VolumeChange& change) 
 }
 
 ChangedBricks BoneFollower::take_changed_bricks() {
-  const std::lock_guard lock(published_mutex_);
+  const std::lock_guard lock(mutex_);
   return std::exchange(published_, {});
 }
 
@@ -241,19 +230,18 @@ bool BoneFollower::catch_up() {
 
 BoneFollower::NextBone BoneFollower::without_last_cut() {
   const std::lock_guard lock(bone_mutex_);
-  return without(history_.take_last());
+  return without(history_.before_last(), &CutHistory::drop_last);
 }
 
 BoneFollower::NextBone BoneFollower::as_at_the_beginning() {
   const std::lock_guard lock(bone_mutex_);
-  return without(history_.take_all());
+  return without(history_.before_all(), &CutHistory::drop_all);
 }
 
 BoneFollower::NextBone BoneFollower::with_isovalue(double isovalue, double surroundings, double removed_mm3) {
   Volume& copy = *copy_;
   {
     const std::lock_guard lock(bone_mutex_);
-    isovalue_before_ = copy.isovalue();
     copy.set_isovalue(isovalue);
     show_isovalue(isovalue);
   }
@@ -270,6 +258,7 @@ BoneFollower::NextBone BoneFollower::with_isovalue(double isovalue, double surro
 
 void BoneFollower::swap() {
   const std::lock_guard lock(bone_mutex_);
+  if (drop_ != nullptr) (history_.*std::exchange(drop_, nullptr))();
   std::swap(bone_, copy_);
   const Volume& bone = *bone_;
   for (const DensityBlock& brick : differing_) {
@@ -278,16 +267,15 @@ void BoneFollower::swap() {
   }
   copy_->set_isovalue(bone.isovalue());
   differing_.clear();
-  taken_.reset();
 }
 
 void BoneFollower::give_up() {
   const std::lock_guard lock(bone_mutex_);
   put_differing();
   differing_.clear();
-  if (taken_) history_.put_back(*std::exchange(taken_, std::nullopt));
-  copy_->set_isovalue(isovalue_before_);
-  show_isovalue(isovalue_before_);
+  drop_ = nullptr;
+  copy_->set_isovalue(bone_->isovalue());
+  show_isovalue(bone_->isovalue());
 }
 
 }  // namespace osteomill

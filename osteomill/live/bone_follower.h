@@ -11,6 +11,7 @@
 #include <mutex>
 #include <optional>
 #include <shared_mutex>
+#include <stop_token>
 #include <thread>
 #include <vector>
 
@@ -72,9 +73,6 @@ class BoneFollower {
   /// Copies the bone and starts meshing all of it; has the memory made that milling it takes
   /// (Volume::prepare_about) ahead of the burr.
   explicit BoneFollower(std::shared_ptr<Volume> bone, std::size_t undo_bytes = kUndoBytes);
-  ~BoneFollower();
-  BoneFollower(const BoneFollower&) = delete;
-  BoneFollower& operator=(const BoneFollower&) = delete;
 
   /// What was milled of this bone at another time goes into both, as one cut. Before the first tick.
   void begin_with(const std::vector<DensityBlock>& milled);
@@ -129,23 +127,20 @@ class BoneFollower {
   /// The copy has become the bone. What was the bone, which no tick uses any more, becomes the copy, so that
   /// there are never more than the two.
   void swap();
-  /// The copy becomes again what the bone is, and what was taken back can be taken back again.
+  /// The copy becomes again what the bone is.
   void give_up();
 
  private:
-  void keep_up();
+  void keep_up(const std::stop_token& stop);
   void follow(const std::optional<double>& isovalue);
   void mesh();
   void take_over();
   bool put(DensityBlock& brick);
   void put_differing();
-  NextBone without(CutHistory::Taken cuts);
+  NextBone without(const CutHistory::Before& cuts, void (CutHistory::*drop)());
 
   DensityHandover handover_;
   const SurfaceBricks layout_;
-  // What the drawing thread has not taken yet.
-  std::mutex published_mutex_;
-  ChangedBricks published_;
   std::atomic<std::uint64_t> version_{1};
 
   // Never taken by the haptic thread. Whoever writes holds it alone: into the copy or what goes with it, or
@@ -158,18 +153,19 @@ class BoneFollower {
   CutHistory history_;
   SurfaceUpkeep upkeep_;
   double shown_isovalue_;
-  // While the copy is to become the bone: how the two differ.
+  // While the copy is to become the bone: how the two differ, and what of the history is then over.
   std::vector<DensityBlock> differing_;
-  std::optional<CutHistory::Taken> taken_;
-  double isovalue_before_ = 0;
+  void (CutHistory::*drop_)() = nullptr;
   // The most that a voxel milled empty may have kept.
   float emptied_ = std::numeric_limits<float>::lowest();
 
   std::mutex mutex_;
-  std::condition_variable woken_;
+  // What the drawing thread has not taken yet.
+  ChangedBricks published_;
+  std::condition_variable_any woken_;
   std::optional<double> new_isovalue_;
-  std::atomic<bool> stopping_ = false;
-  std::thread mesher_;
+  // Last, so that it ends before all that it uses.
+  std::jthread mesher_;
 };
 
 }  // namespace osteomill

@@ -103,16 +103,8 @@ BoneSender::BoneSender(const BoneFollower& bone, const std::string& address, dou
   if (voxels > std::numeric_limits<int>::max() / sizeof(float))
     throw InputError(name, "the scan is larger than an OpenIGTLink image may be, 2 GiB");
   auto stream = std::make_unique<Socket>(name, host_and_port("--send-bone", address), Socket::Kind::stream);
-  thread_ = std::thread([this, stream = std::move(stream)] { run(*stream); });
-}
-
-BoneSender::~BoneSender() {
-  {
-    const std::lock_guard lock(mutex_);
-    ends_ = true;
-  }
-  end_.notify_one();
-  thread_.join();
+  thread_ =
+      std::jthread([this, stream = std::move(stream)](const std::stop_token& stop) { run(stop, *stream); });
 }
 
 void BoneSender::show_tool(const TickRecord& now) {
@@ -120,7 +112,7 @@ void BoneSender::show_tool(const TickRecord& now) {
   tool_ = now;
 }
 
-void BoneSender::run(Socket& stream) {
+void BoneSender::run(const std::stop_token& stop, Socket& stream) {
   VoxelBox all;
   bone_.read([&](const Volume& now) { all = now.geometry().all_voxels(); });
   std::uint64_t sent_version = bone_.version();
@@ -131,7 +123,8 @@ void BoneSender::run(Socket& stream) {
     std::optional<TickRecord> tool;
     {
       std::unique_lock lock(mutex_);
-      is_last = end_.wait_for(lock, between_tools_, [&] { return ends_; });
+      end_.wait_for(lock, stop, between_tools_, [] { return false; });
+      is_last = stop.stop_requested();
       tool = std::exchange(tool_, {});
     }
     // What the receiver says is not wanted, but would stop it from saying more.

@@ -5,6 +5,7 @@
 #include <condition_variable>
 #include <mutex>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <thread>
 
@@ -24,12 +25,9 @@ class Socket;
 class BoneSender {
  public:
   /// To HOST:PORT. `bone` outlives this. Throws InputError where the address is none, nothing listens there,
-  /// or the bone does not fit into a message (2 GiB).
+  /// or the bone does not fit into a message (2 GiB). At its end the bone is sent as it is by then, where
+  /// that takes no longer than two seconds.
   BoneSender(const BoneFollower& bone, const std::string& address, double tool_rate_Hz);
-  /// Sends the bone as it is by then, where that takes no longer than two seconds.
-  ~BoneSender();
-  BoneSender(const BoneSender&) = delete;
-  BoneSender& operator=(const BoneSender&) = delete;
 
   /// What is sent of the tool from now on. Any thread.
   void show_tool(const TickRecord& now);
@@ -37,16 +35,16 @@ class BoneSender {
   bool is_connected() const { return is_connected_.load(std::memory_order_relaxed); }
 
  private:
-  void run(Socket& stream);
+  void run(const std::stop_token& stop, Socket& stream);
 
   const BoneFollower& bone_;
   std::chrono::duration<double> between_tools_;
   std::atomic<bool> is_connected_{true};
   std::mutex mutex_;
-  std::condition_variable end_;
-  bool ends_ = false;
+  std::condition_variable_any end_;
   std::optional<TickRecord> tool_;
-  std::thread thread_;
+  // Last, so that it ends before all that it uses.
+  std::jthread thread_;
 };
 
 }  // namespace osteomill

@@ -1,6 +1,6 @@
 #include "osteomill/live/cut_history.h"
 
-#include <utility>
+#include <algorithm>
 
 namespace osteomill {
 
@@ -52,18 +52,24 @@ std::size_t CutHistory::cuts() const {
   return cuts_.size() - (cuts_.back().before.empty() ? 1 : 0);
 }
 
-CutHistory::Taken CutHistory::take_last() {
-  if (cuts_.back().before.empty() && cuts_.size() > 1) cuts_.pop_back();
-  // With the first of all cuts nothing is milled any more.
-  if (cuts_.size() == 1 && !forgotten_) return take_all();
-  bricks_in_cuts_ -= cuts_.back().before.size();
-  return {std::exchange(cuts_.back().before, {}), cuts_.back().removed_before_mm3, {}};
+CutHistory::Before CutHistory::before_last() const {
+  if (last_is_all()) return before_all();
+  const Cut& last = cuts_[std::max<std::size_t>(cuts(), 1) - 1];
+  return {last.before, last.removed_before_mm3};
 }
 
-CutHistory::Taken CutHistory::take_all() {
+void CutHistory::drop_last() {
+  if (last_is_all()) return drop_all();
+  if (cuts_.back().before.empty() && cuts_.size() > 1) cuts_.pop_back();
+  bricks_in_cuts_ -= cuts_.back().before.size();
+  cuts_.back().before.clear();
+}
+
+void CutHistory::drop_all() {
+  first_.clear();
+  cuts_ = std::deque<Cut>(1);
   bricks_in_cuts_ = 0;
-  return {std::exchange(first_, {}), 0, std::exchange(cuts_, std::deque<Cut>(1)),
-          std::exchange(forgotten_, false)};
+  forgotten_ = false;
 }
 
 std::vector<DensityBlock> CutHistory::keep_emptied(const DensityGrid& grid, float emptied, double isovalue,
@@ -79,18 +85,6 @@ std::vector<DensityBlock> CutHistory::keep_emptied(const DensityGrid& grid, floa
     if (lower_emptied(now, first, emptied, isovalue, floor)) differing.push_back(now);
   }
   return differing;
-}
-
-void CutHistory::put_back(Taken taken) {
-  if (taken.cuts.empty()) {
-    cuts_.back().before = std::move(taken.bricks);
-    bricks_in_cuts_ += cuts_.back().before.size();
-    return;
-  }
-  first_ = std::move(taken.bricks);
-  cuts_ = std::move(taken.cuts);
-  forgotten_ = taken.forgotten;
-  for (const Cut& cut : cuts_) bricks_in_cuts_ += cut.before.size();
 }
 
 }  // namespace osteomill

@@ -18,19 +18,10 @@ class CutHistory {
  public:
   /// By the brick's place.
   using Bricks = std::unordered_map<std::uint64_t, DensityBlock>;
-  struct Cut {
-    Bricks before;
-    double removed_before_mm3 = 0;
-  };
-  /// Taken out of the history, for its bricks to be put into the bone.
-  struct Taken {
-    Bricks bricks;
-    /// What had been removed before it.
-    double removed_mm3 = 0;
-    /// All of a history that was taken at once.
-    std::deque<Cut> cuts;
-    /// Whether older cuts had been forgotten.
-    bool forgotten = false;
+  /// Bricks as they were before milling that can be taken back, and what had been removed by then.
+  struct Before {
+    const Bricks& bricks;
+    double removed_mm3;
   };
 
   explicit CutHistory(std::size_t undo_bytes) : max_bricks_(undo_bytes / sizeof(DensityBlock)), cuts_(1) {}
@@ -47,12 +38,13 @@ class CutHistory {
   /// Every brick that was touched, as it was at the beginning.
   const Bricks& first() const { return first_; }
 
-  /// Takes out the last cut; no bricks where there is none. Taking the first of all cuts takes all.
-  Taken take_last();
-  /// Takes out all that was milled since the beginning.
-  Taken take_all();
-  /// Undoes the last call of `take_last` or `take_all`, which returned `taken`; nothing was kept since.
-  void put_back(Taken taken);
+  /// Before the last cut; no bricks where there is none.
+  Before before_last() const;
+  Before before_all() const { return {first_, 0}; }
+  /// The last cut, or all that was milled since the beginning, has been taken back. With the first of all
+  /// cuts nothing is milled any more.
+  void drop_last();
+  void drop_all();
 
   /// Another isovalue, at which voxels that milling had cut down to `emptied` or below would count as bone:
   /// they go down to `floor`, in all that can be taken back and in the bricks returned, which are those of
@@ -61,7 +53,13 @@ class CutHistory {
                                          float floor);
 
  private:
+  struct Cut {
+    Bricks before;
+    double removed_before_mm3 = 0;
+  };
+
   void forget_oldest();
+  bool last_is_all() const { return cuts() <= 1 && !forgotten_; }
 
   std::size_t max_bricks_;
   Bricks first_;

@@ -15,10 +15,18 @@ class CutHistoryTest : public ::testing::Test {
     bone_.lower_density(voxel, bone_.grid()[voxel] - 100);
     history_.keep(before);
   }
-  double undo() { return put(history_.take_last()); }
-  double put(CutHistory::Taken taken) {
-    for (auto& [place, brick] : taken.bricks) swap_densities(bone_, brick);
-    return taken.removed_mm3;
+  double undo() {
+    const double removed_mm3 = put(history_.before_last());
+    history_.drop_last();
+    return removed_mm3;
+  }
+  void reset() {
+    put(history_.before_all());
+    history_.drop_all();
+  }
+  double put(const CutHistory::Before& before) {
+    for (auto [place, brick] : before.bricks) swap_densities(bone_, brick);
+    return before.removed_mm3;
   }
   const CopyOnWriteFloats& now() const { return bone_.grid().densities(); }
 
@@ -64,19 +72,22 @@ TEST_F(CutHistoryTest, ResetsPastEveryCut) {
     mill({n, 4, 5});
   }
   undo();
-  put(history_.take_all());
+  reset();
   EXPECT_EQ(now(), before_);
   EXPECT_EQ(history_.cuts(), 0u);
   EXPECT_FALSE(history_.touched());
 }
 
-TEST_F(CutHistoryTest, WhatIsPutBackCanBeTakenAgain) {
+TEST_F(CutHistoryTest, WhatBeginsBeforeACutIsDroppedIsAnotherCut) {
   mill({3, 4, 5});
   history_.begin_cut(2.5);
   mill({18, 2, 9});
-  history_.put_back(history_.take_last());
-  EXPECT_EQ(history_.cuts(), 2u);
-  history_.put_back(history_.take_all());
+  EXPECT_EQ(put(history_.before_last()), 2.5);
+  history_.begin_cut(4);
+  EXPECT_EQ(history_.before_last().removed_mm3, 2.5);
+  history_.drop_last();
+  EXPECT_EQ(history_.cuts(), 1u);
+  mill({18, 2, 9});
   EXPECT_EQ(history_.cuts(), 2u);
   EXPECT_EQ(undo(), 2.5);
   EXPECT_EQ(undo(), 0);
@@ -93,18 +104,16 @@ TEST_F(CutHistoryTest, ForgetsTheOldestCutsBeyondItsMemory) {
   EXPECT_EQ(undo(), 4);
   EXPECT_EQ(undo(), 3);
   EXPECT_EQ(history_.cuts(), 0u);
-  put(history_.take_all());
+  reset();
   EXPECT_EQ(now(), before_);
 }
 
 TEST_F(CutHistoryTest, NothingIsTouchedOnceTheOnlyCutIsTakenBack) {
   mill({3, 4, 5});
-  auto taken = history_.take_last();
-  EXPECT_FALSE(history_.touched());
-  history_.put_back(std::move(taken));
   EXPECT_TRUE(history_.touched());
   EXPECT_EQ(history_.cuts(), 1u);
   undo();
+  EXPECT_FALSE(history_.touched());
   EXPECT_EQ(now(), before_);
 }
 

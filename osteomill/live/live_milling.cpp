@@ -63,11 +63,6 @@ LiveMilling::LiveMilling(PreparedMilling prepared, Device& device)
   listen();
 }
 
-LiveMilling::~LiveMilling() {
-  if (preparation_.valid()) preparation_.wait();
-  live_.stop();
-}
-
 void LiveMilling::listen() {
   live_.listen([follower = follower_.get(), recorder = recorder_.get(), from = recorded_from_](
                    const TickRecord& record, const Volume& bone, const VolumeChange& change) {

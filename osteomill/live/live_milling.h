@@ -41,9 +41,6 @@ class LiveMilling {
   LiveMilling(PreparedMilling prepared, Device& device);
   LiveMilling(std::shared_ptr<Volume> bone, const MillingSetup& setup, Device& device)
       : LiveMilling(prepare_milling(std::move(bone), setup), device) {}
-  ~LiveMilling();
-  LiveMilling(const LiveMilling&) = delete;
-  LiveMilling& operator=(const LiveMilling&) = delete;
 
   void start() { live_.start(); }
   void stop() { live_.stop(); }
@@ -135,6 +132,7 @@ class LiveMilling {
   // The first session that is recorded.
   std::uint32_t recorded_from_ = 0;
   LiveSession live_;
+  // After `live_`, so that it is waited for while the bone is still milled.
   std::future<Prepared> preparation_;
   bool spindle_ = false;
 };

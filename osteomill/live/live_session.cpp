@@ -22,27 +22,22 @@ LiveSession::LiveSession(std::unique_ptr<MillingSession> session, Device& device
   session_->guard().protect_a_hand();
 }
 
-LiveSession::~LiveSession() {
-  stop();
-}
-
 void LiveSession::start() {
   if (running()) return;
   stop();
-  stopping_.store(false, std::memory_order_relaxed);
   running_.store(true, std::memory_order_release);
   std::atomic<bool> ready{false};
-  thread_ = std::thread([this, &ready] {
+  thread_ = std::jthread([this, &ready](const std::stop_token& stop) {
     CrashStop::give_this_thread_a_stack();
     refused_real_time_ = request_real_time();
     ready.store(true, std::memory_order_release);
-    run();
+    run(stop);
   });
   while (!ready.load(std::memory_order_acquire)) std::this_thread::sleep_for(100us);
 }
 
 void LiveSession::stop() {
-  stopping_.store(true, std::memory_order_release);
+  thread_.request_stop();
   if (thread_.joinable()) thread_.join();
 }
 
@@ -106,9 +101,9 @@ void LiveSession::listen(TickListener listener) {
   between_ticks([&] { std::swap(listener_, listener); });
 }
 
-void LiveSession::run() noexcept {
+void LiveSession::run(const std::stop_token& stop) noexcept {
   try {
-    tick_until_stopped();
+    tick_until(stop);
   } catch (...) {
     // A device that throws breaks its contract; the session is then not running.
   }
@@ -120,11 +115,11 @@ void LiveSession::run() noexcept {
   running_.store(false, std::memory_order_release);
 }
 
-void LiveSession::tick_until_stopped() {
+void LiveSession::tick_until(const std::stop_token& stop) {
   constexpr double kTick_s = 1e-3;
   constexpr Nanoseconds kTick_ns = 1'000'000;
   NextDeadline next{monotonic_now_ns() + kTick_ns, 1};
-  while (!stopping_.load(std::memory_order_acquire) && !crash_stop_.asked()) {
+  while (!stop.stop_requested() && !crash_stop_.asked()) {
     TickTimes times{next.deadline_ns, 0, 0, next.periods};
     times.woke_ns = wait_until(next.deadline_ns);
     take_command();

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <thread>
 
@@ -38,9 +39,6 @@ class LiveSession {
  public:
   /// `device` outlives this object. Does not start yet.
   LiveSession(std::unique_ptr<MillingSession> session, Device& device);
-  ~LiveSession();
-  LiveSession(const LiveSession&) = delete;
-  LiveSession& operator=(const LiveSession&) = delete;
 
   void start();
   /// Returns when the last tick is over and zero has been sent. Can be started again.
@@ -81,16 +79,14 @@ class LiveSession {
  private:
   void between_ticks(const std::function<void()>& command);
   void take_command();
-  void run() noexcept;
-  void tick_until_stopped();
+  void run(const std::stop_token& stop) noexcept;
+  void tick_until(const std::stop_token& stop);
   void place_when_at_rest();
   TickRecord tick(double time_s, double dt_s);
 
   Device& device_;
   CrashStop crash_stop_;
-  std::thread thread_;
   std::atomic<bool> running_{false};
-  std::atomic<bool> stopping_{false};
   std::string refused_real_time_;
 
   // Used by the haptic thread alone while it runs.
@@ -111,6 +107,8 @@ class LiveSession {
   SpscQueue<TickRecord> records_{4096};
   LatestValue<LiveState> state_;
   LiveTiming timing_;
+  // Last, so that it ends before all that it uses.
+  std::jthread thread_;
 };
 
 }  // namespace osteomill

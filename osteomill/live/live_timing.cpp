@@ -104,19 +104,9 @@ void LiveTiming::add(const TickTimes& times, const TickRecord& record) {
   rate_hz_.store(held_.rate_hz(), std::memory_order_relaxed);
   if (lateness_ns > kLate_ns) add_to(late_ticks_, 1);
   if (times.periods > 1) add_to(missed_ticks_, static_cast<std::uint64_t>(times.periods - 1));
-  count_recent(times.woke_ns);
-}
-
-void LiveTiming::count_recent(Nanoseconds woke_ns) {
-  if (second_began_ns_ == 0) second_began_ns_ = woke_ns;
-  const Nanoseconds passed_ns = woke_ns - second_began_ns_;
-  if (passed_ns >= kNsPerS) {
-    const double passed_s = static_cast<double>(passed_ns) / static_cast<double>(kNsPerS);
-    recent_ticks_per_s_.store(ticks_this_second_ / passed_s, std::memory_order_relaxed);
-    second_began_ns_ = woke_ns;
-    ticks_this_second_ = 0;
-  }
-  ++ticks_this_second_;
+  const double woke_s = static_cast<double>(times.woke_ns) / static_cast<double>(kNsPerS);
+  recent_ticks_per_s_.store(recent_.per_s(woke_s), std::memory_order_relaxed);
+  recent_.count();
 }
 
 TimingSummary LiveTiming::summary() const {

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "osteomill/numbers/distribution.h"
+#include "osteomill/numbers/recent_rate.h"
 #include "osteomill/session/tick_record.h"
 
 namespace osteomill {
@@ -97,8 +98,6 @@ class LiveTiming {
   TimingSummary summary() const;
 
  private:
-  void count_recent(Nanoseconds woke_ns);
-
   TimeHistogram lateness_;
   TimeHistogram step_;
   TimeHistogram milling_;
@@ -111,8 +110,7 @@ class LiveTiming {
   std::atomic<double> recent_ticks_per_s_{0};
   // The adding thread's own.
   HeldRate held_;
-  Nanoseconds second_began_ns_ = 0;
-  int ticks_this_second_ = 0;
+  RecentRate recent_;
 };
 
 }  // namespace osteomill

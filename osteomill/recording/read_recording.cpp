@@ -116,16 +116,10 @@ void require_in_range(const OpenRecording& recording, const RecordColumn& column
 }
 
 template <typename Value>
-std::vector<Value> read_values(const OpenRecording& recording, const OpenColumn& column, hsize_t rows) {
-  std::vector<Value> values(rows * column.width);
-  const hid_t dataset = column.dataset.get();
-  const int rank = column.width == 1 ? 1 : 2;
-  const std::array<hsize_t, 2> from{0, 0}, count{rows, column.width};
-  const Hdf5Handle memory(H5Screate_simple(rank, count.data(), nullptr), H5Sclose);
-  const Hdf5Handle space(H5Dget_space(dataset), H5Sclose);
-  if (rows > 0 &&
-      (H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, from.data(), nullptr, count.data(), nullptr) < 0 ||
-       H5Dread(dataset, memory_type<Value>(), memory.get(), space.get(), H5P_DEFAULT, values.data()) < 0)) {
+std::vector<Value> read_values(const OpenRecording& recording, const OpenColumn& column) {
+  std::vector<Value> values(column.rows * column.width);
+  if (!values.empty() &&
+      H5Dread(column.dataset.get(), memory_type<Value>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) {
     refuse(recording, "the column '" + column.place + "' cannot be read");
   }
   return values;
@@ -138,7 +132,7 @@ std::vector<TickRecord> read_records(const OpenRecording& recording, bool comple
   std::vector<TickRecord> records(common_rows(recording, columns, complete));
   for (std::size_t n = 0; n < columns.size(); ++n) {
     const RecordColumn& column = record_columns()[n];
-    const auto values = read_values<double>(recording, columns[n], records.size());
+    const auto values = read_values<double>(recording, columns[n]);
     for (std::size_t row = 0; row < records.size(); ++row) {
       require_in_range(recording, column, values[row]);
       column.set(records[row], values[row]);
@@ -155,7 +149,10 @@ std::array<std::vector<Value>, kCount> read_together(const OpenRecording& record
   for (const char* place : places) columns.push_back(open_column(recording, place));
   const std::size_t rows = common_rows(recording, columns, complete);
   std::array<std::vector<Value>, kCount> values;
-  for (std::size_t n = 0; n < kCount; ++n) values[n] = read_values<Value>(recording, columns[n], rows);
+  for (std::size_t n = 0; n < kCount; ++n) {
+    values[n] = read_values<Value>(recording, columns[n]);
+    values[n].resize(rows);
+  }
   return values;
 }
 
@@ -203,8 +200,8 @@ std::vector<DensityBlock> read_bricks(const OpenRecording& recording, const std:
   constexpr std::size_t kDensities = std::tuple_size_v<decltype(DensityBlock::densities)>;
   const OpenColumn firsts = open_column(recording, session + "/brick_first", 3);
   const OpenColumn bones = open_column(recording, session + "/brick_densities", kDensities);
-  const auto first = read_values<std::int32_t>(recording, firsts, firsts.rows);
-  const auto densities = read_values<float>(recording, bones, bones.rows);
+  const auto first = read_values<std::int32_t>(recording, firsts);
+  const auto densities = read_values<float>(recording, bones);
   std::vector<DensityBlock> bricks(first.size() / 3);
   bool right = densities.size() == bricks.size() * kDensities &&
                std::ranges::all_of(densities, [](float density) { return std::isfinite(density); });
@@ -283,7 +280,7 @@ std::vector<RunPicture> read_pictures(const OpenRecording& recording) {
   std::vector<RunPicture> pictures;
   for (const std::string& name : picture_names(recording, group.get())) {
     const OpenColumn png = open_column(recording, "pictures/" + name);
-    pictures.push_back({name, read_values<unsigned char>(recording, png, png.rows)});
+    pictures.push_back({name, read_values<unsigned char>(recording, png)});
   }
   return pictures;
 }

@@ -8,6 +8,7 @@
 #include <mutex>
 #include <optional>
 #include <stdexcept>
+#include <stop_token>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -56,7 +57,7 @@ struct Recorder::Impl {
     }
     rows.reserve(kRowsAtOnce);
     try {
-      writer = std::thread([this] { write_until_stopped(); });
+      writer = std::jthread([this](const std::stop_token& stop) { write_until(stop); });
     } catch (const std::system_error&) {
       remove();
       throw InputError(path.string(), "cannot be recorded: no thread can be started for it (ulimit -u)");
@@ -73,17 +74,17 @@ struct Recorder::Impl {
   }
 
   void stop() {
-    stopping.store(true, std::memory_order_release);
+    writer.request_stop();
     if (writer.joinable()) writer.join();
   }
 
-  void write_until_stopped() noexcept {
+  void write_until(const std::stop_token& stop) noexcept {
     try {
       auto flushed = Clock::now();
       std::uint64_t flushed_rows = 0;
       for (bool all_written = false; !all_written;) {
         // Read before the queue: what was pushed before the stop is then still written.
-        const bool last = stopping.load(std::memory_order_acquire);
+        const bool last = stop.stop_requested();
         const bool emptied = take_some();
         all_written = last && emptied;
         const auto now = Clock::now();
@@ -149,12 +150,11 @@ struct Recorder::Impl {
   std::vector<RunPicture> pictures;
   std::vector<RunSetting> settings;
   std::atomic<std::uint64_t> dropped{0};
-  std::atomic<bool> stopping{false};
   std::atomic<bool> failed{false};
   // Written before `failed` is set and read after.
   std::exception_ptr failure;
   bool closed = false;
-  std::thread writer;
+  std::jthread writer;
 };
 
 Recorder::Recorder(const fs::path& path, const RunDescription& description, Begins begins,

@@ -5,10 +5,12 @@
 #include <chrono>
 #include <cmath>
 #include <numbers>
+#include <stop_token>
 #include <thread>
 
 #include <AL/al.h>
 #include <AL/alc.h>
+#include <AL/alext.h>
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -95,10 +97,8 @@ void SpindleSound::render(const SpindleState& state, std::span<float> samples) {
 
 void SoundStream::fill(unsigned buffer, const SpindleState& state) {
   sound_.render(state, samples_);
-  for (std::size_t n = 0; n < kSamples; ++n) {
-    words_[n] = static_cast<std::int16_t>(std::lround(32000 * samples_[n]));
-  }
-  alBufferData(buffer, AL_FORMAT_MONO16, words_.data(), static_cast<ALsizei>(sizeof(words_)), kSampleRate_hz);
+  alBufferData(buffer, AL_FORMAT_MONO_FLOAT32, samples_.data(), static_cast<ALsizei>(sizeof(samples_)),
+               kSampleRate_hz);
   alSourceQueueBuffers(source_, 1, &buffer);
 }
 
@@ -132,14 +132,13 @@ void SoundStream::feed(const SpindleState& state) {
 struct SoundPlayer::Impl {
   std::atomic<double> speed_rpm{0};
   std::atomic<double> load{0};
-  std::atomic<bool> stopping{false};
   ALCdevice* device = nullptr;
   ALCcontext* context = nullptr;
-  std::thread thread;
+  std::jthread thread;
 
-  void play() {
+  void play(const std::stop_token& stop) {
     SoundStream stream;
-    while (!stopping.load()) {
+    while (!stop.stop_requested()) {
       stream.feed({speed_rpm.load(std::memory_order_relaxed), load.load(std::memory_order_relaxed)});
       std::this_thread::sleep_for(8ms);
     }
@@ -153,11 +152,11 @@ SoundPlayer::SoundPlayer() : impl_(std::make_unique<Impl>()) {
   const ALCint wanted[] = {ALC_FREQUENCY, SoundStream::kSampleRate_hz, ALC_REFRESH, kRefresh_hz, 0};
   impl_->context = alcCreateContext(impl_->device, wanted);
   if (impl_->context == nullptr || alcMakeContextCurrent(impl_->context) == ALC_FALSE) return;
-  impl_->thread = std::thread([this] { impl_->play(); });
+  impl_->thread = std::jthread([this](const std::stop_token& stop) { impl_->play(stop); });
 }
 
 SoundPlayer::~SoundPlayer() {
-  impl_->stopping = true;
+  impl_->thread.request_stop();
   if (impl_->thread.joinable()) impl_->thread.join();
   alcMakeContextCurrent(nullptr);
   if (impl_->context != nullptr) alcDestroyContext(impl_->context);

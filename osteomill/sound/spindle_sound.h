@@ -64,7 +64,6 @@ class SoundStream {
   unsigned source_ = 0;
   std::array<unsigned, 4> buffers_{};
   std::array<float, kSamples> samples_{};
-  std::array<std::int16_t, kSamples> words_{};
 };
 
 /// Plays a spindle's sound on the system's sound device from a thread of its own. Without a device nothing is

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <bit>
 #include <cctype>
-#include <charconv>
-#include <cstring>
 #include <ostream>
 #include <string>
+
+#include <fmt/format.h>
 
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/files/input_error.h"
@@ -17,39 +17,10 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "numbers are written as they lie in memory");
 
-// Collects what is written into large pieces.
-class Output {
- public:
-  explicit Output(std::ostream& out) : out_(out) { buffer_.reserve(2 * kPiece); }
-  ~Output() { out_.write(buffer_.data(), static_cast<std::streamsize>(buffer_.size())); }
-  Output(const Output&) = delete;
-  Output& operator=(const Output&) = delete;
-
-  template <typename Value>
-  void bytes(const Value& value) {
-    char raw[sizeof value];
-    std::memcpy(raw, &value, sizeof value);
-    text({raw, sizeof value});
-  }
-  void text(std::string_view text) {
-    buffer_ += text;
-    if (buffer_.size() < kPiece) return;
-    out_.write(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
-    buffer_.clear();
-  }
-  // The shortest that reads back to the same number.
-  template <typename Number>
-  void number(Number value) {
-    char digits[32];
-    const auto end = std::to_chars(digits, digits + sizeof digits, value).ptr;
-    text({digits, static_cast<std::size_t>(end - digits)});
-  }
-
- private:
-  static constexpr std::size_t kPiece = 1 << 20;
-  std::ostream& out_;
-  std::string buffer_;
-};
+template <typename Value>
+void write_bytes(std::ostream& out, const Value& value) {
+  out.write(reinterpret_cast<const char*>(&value), sizeof value);
+}
 
 using Point = std::array<float, 3>;
 
@@ -61,17 +32,15 @@ Point facet_normal(const std::array<Point, 3>& corners) {
   return normal;
 }
 
-void write_stl(Output& out, const BrickMesh& mesh) {
-  std::string head = "osteomill isosurface, mm, SPACE=LPS";
-  head.resize(80, ' ');
-  out.text(head);
-  out.bytes(static_cast<std::uint32_t>(mesh.triangle_count()));
+void write_stl(std::ostream& out, const BrickMesh& mesh) {
+  out << fmt::format("{:80}", "osteomill isosurface, mm, SPACE=LPS");
+  write_bytes(out, static_cast<std::uint32_t>(mesh.triangle_count()));
   for (std::size_t n = 0; n < mesh.indices.size(); n += 3) {
     std::array<Point, 3> corners;
     for (std::size_t c = 0; c < 3; ++c) corners[c] = mesh.vertices[mesh.indices[n + c]].position_mm;
-    out.bytes(facet_normal(corners));
-    out.bytes(corners);
-    out.bytes(std::uint16_t{0});
+    write_bytes(out, facet_normal(corners));
+    write_bytes(out, corners);
+    write_bytes(out, std::uint16_t{0});
   }
 }
 
@@ -83,66 +52,44 @@ const Label& label_of(const LabelMap& labels, const MeshVertex& vertex) {
   return place == 0 ? kUnlabelled : labels.label(place);
 }
 
-void write_ply(Output& out, const BrickMesh& mesh, const LabelMap* labels) {
-  out.text(
-      "ply\nformat binary_little_endian 1.0\ncomment osteomill isosurface, mm, SPACE=LPS\nelement vertex ");
-  out.number(mesh.vertices.size());
-  for (const char* property : {"x", "y", "z", "nx", "ny", "nz", "density"}) {
-    out.text("\nproperty float ");
-    out.text(property);
-  }
-  if (labels != nullptr) {
-    out.text("\nproperty uchar red\nproperty uchar green\nproperty uchar blue\nproperty int label");
-  }
-  out.text("\nelement face ");
-  out.number(mesh.triangle_count());
-  out.text("\nproperty list uchar int vertex_indices\nend_header\n");
+void write_ply(std::ostream& out, const BrickMesh& mesh, const LabelMap* labels) {
+  out << fmt::format(
+      "ply\nformat binary_little_endian 1.0\ncomment osteomill isosurface, mm, SPACE=LPS\n"
+      "element vertex {}\n",
+      mesh.vertices.size());
+  for (const char* property : {"x", "y", "z", "nx", "ny", "nz", "density"})
+    out << "property float " << property << '\n';
+  if (labels != nullptr)
+    out << "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty int label\n";
+  out << fmt::format("element face {}\nproperty list uchar int vertex_indices\nend_header\n",
+                     mesh.triangle_count());
   for (const MeshVertex& vertex : mesh.vertices) {
-    out.bytes(vertex);
+    write_bytes(out, vertex);
     if (labels == nullptr) continue;
     const Label& label = label_of(*labels, vertex);
-    out.bytes(label.colour);
-    out.bytes(static_cast<std::int32_t>(label.value));
+    write_bytes(out, label.colour);
+    write_bytes(out, static_cast<std::int32_t>(label.value));
   }
   for (std::size_t n = 0; n < mesh.indices.size(); n += 3) {
-    out.bytes(std::uint8_t{3});
-    for (std::size_t c = 0; c < 3; ++c) out.bytes(mesh.indices[n + c]);
+    write_bytes(out, std::uint8_t{3});
+    for (std::size_t c = 0; c < 3; ++c) write_bytes(out, mesh.indices[n + c]);
   }
 }
 
-void write_numbers(Output& out, const Point& numbers) {
-  for (const float number : numbers) {
-    out.text(" ");
-    out.number(number);
-  }
-}
-
-void write_obj(Output& out, const BrickMesh& mesh, const LabelMap* labels) {
-  out.text("# osteomill isosurface, mm, SPACE=LPS\n");
+void write_obj(std::ostream& out, const BrickMesh& mesh, const LabelMap* labels) {
+  out << "# osteomill isosurface, mm, SPACE=LPS\n";
   for (const MeshVertex& vertex : mesh.vertices) {
-    out.text("v");
-    write_numbers(out, vertex.position_mm);
+    out << fmt::format("v {}", fmt::join(vertex.position_mm, " "));
     if (labels != nullptr) {
       const auto& [red, green, blue] = label_of(*labels, vertex).colour;
-      write_numbers(out, {red / 255.0f, green / 255.0f, blue / 255.0f});
+      out << fmt::format(" {} {} {}", red / 255.0f, green / 255.0f, blue / 255.0f);
     }
-    out.text("\n");
+    out << '\n';
   }
-  for (const MeshVertex& vertex : mesh.vertices) {
-    out.text("vn");
-    write_numbers(out, vertex.normal);
-    out.text("\n");
-  }
+  for (const MeshVertex& vertex : mesh.vertices) out << fmt::format("vn {}\n", fmt::join(vertex.normal, " "));
   for (std::size_t n = 0; n < mesh.indices.size(); n += 3) {
-    out.text("f");
-    for (std::size_t c = 0; c < 3; ++c) {
-      const std::uint32_t one_based = mesh.indices[n + c] + 1;
-      out.text(" ");
-      out.number(one_based);
-      out.text("//");
-      out.number(one_based);
-    }
-    out.text("\n");
+    out << fmt::format("f {0}//{0} {1}//{1} {2}//{2}\n", mesh.indices[n] + 1, mesh.indices[n + 1] + 1,
+                       mesh.indices[n + 2] + 1);
   }
 }
 
@@ -164,8 +111,7 @@ bool holds_colours(MeshFormat format) {
 
 void write_mesh(const std::filesystem::path& path, const BrickMesh& mesh, const LabelMap* labels) {
   const MeshFormat format = mesh_format_of(path);
-  write_text_atomically(path, [&](std::ostream& stream) {
-    Output out(stream);
+  write_text_atomically(path, [&](std::ostream& out) {
     switch (format) {
       case MeshFormat::stl:
         return write_stl(out, mesh);

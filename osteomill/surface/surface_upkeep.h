@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <set>
 #include <vector>
 
 #include "osteomill/surface/brick_levels.h"
@@ -22,7 +23,7 @@ class SurfaceUpkeep {
  public:
   /// Making a brick's levels takes five times as long as its mesh, and where bone is milled they are not
   /// looked at. So they are made once this many calls of `remesh` in a row found the brick unmarked ...
-  static constexpr std::uint8_t kCallsAtRest = 10;
+  static constexpr int kCallsAtRest = 10;
   /// ... and for at most so many bricks in one call.
   static constexpr std::size_t kMostAtRest = 2;
 
@@ -39,11 +40,10 @@ class SurfaceUpkeep {
 
  private:
   SurfaceBricks layout_;
-  std::vector<std::uint8_t> marked_;      // by brick: has to be meshed
-  std::vector<std::size_t> to_mesh_;      // those marked
-  std::vector<std::uint8_t> calls_left_;  // by brick: until it rests; 0 where it does
-  std::vector<std::size_t> changing_;     // those that do not rest
-  std::vector<std::uint8_t> has_mesh_;    // by brick: has triangles
+  std::set<std::size_t> to_mesh_;
+  int calls_ = 0;                        // of remesh
+  std::map<std::size_t, int> changing_;  // bricks that do not rest, with the call before they were marked
+  std::vector<std::uint8_t> has_mesh_;   // by brick: has triangles
 };
 
 }  // namespace osteomill

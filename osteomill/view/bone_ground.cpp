@@ -35,24 +35,6 @@ void main() {
 }
 )";
 
-// A label's colour over its grey value, and never quite dark: a nerve's canal may be as dark as air.
-std::vector<std::array<unsigned char, 3>> pixels_of(const ClipFace& face) {
-  constexpr double kLabel = 0.55, kLeast = 0.35;
-  std::vector<std::array<unsigned char, 3>> pixels;
-  pixels.reserve(face.greys.size());
-  for (std::size_t n = 0; n < face.greys.size(); ++n) {
-    const unsigned char grey = face.greys[n];
-    pixels.push_back({grey, grey, grey});
-    if (face.label_colours.empty() || face.label_colours[n] == std::array<unsigned char, 3>{}) continue;
-    const double light = kLeast + (1 - kLeast) * grey / 255;
-    for (std::size_t c = 0; c < 3; ++c) {
-      const double tinted = (1 - kLabel) * grey + kLabel * light * face.label_colours[n][c];
-      pixels.back()[c] = static_cast<unsigned char>(tinted);
-    }
-  }
-  return pixels;
-}
-
 constexpr std::string_view kBackgroundFragment = R"(#version 330 core
 in vec2 place;
 out vec4 colour;
@@ -117,14 +99,14 @@ ClipFaces::ClipFaces() : program_(gl::make_program(kCutVertex, kCutFragment)) {
 
 void ClipFaces::set(std::size_t cut, const ClipFace& face) {
   Face& kept = faces_.at(cut);
-  if (face.greys.empty()) {
+  if (face.pixels.empty()) {
     kept.pixels = {};
     return;
   }
   kept.pixels = gl::make_texture(GL_RGB8, GL_RGB, GL_UNSIGNED_BYTE, face.width, face.height, GL_LINEAR);
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
   glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, face.width, face.height, GL_RGB, GL_UNSIGNED_BYTE,
-                  pixels_of(face).data());
+                  face.pixels.data());
   // As a fan; the outermost pixels' middles lie half a pixel within the texture.
   const float u = 0.5f / static_cast<float>(face.width);
   const float v = 0.5f / static_cast<float>(face.height);
@@ -195,9 +177,9 @@ void BoneGround::draw(const ViewScene& scene, const PixelSize& size) {
 // The most pixels that there is time for. As with triangles, more only where that leaves some time.
 PixelSize BoneGround::size_in_time(const PixelSize& size) {
   const auto coarse = [&](int n) { return PixelSize{(size.width + n - 1) / n, (size.height + n - 1) / n}; };
-  const auto allowed = static_cast<double>(pace_.pixels());
+  const auto allowed = static_cast<double>(pixels_.allowed());
   int n = 1;
-  for (; n < kWidestPixels && pixels_of(coarse(n + 1)) >= DrawingPace::kFewestPixels; ++n) {
+  for (; n < kWidestPixels && pixels_of(coarse(n + 1)) >= pixels_.fewest(); ++n) {
     const auto count = static_cast<double>(pixels_of(coarse(n)));
     if (count <= (n < coarseness_ ? 0.75 : 1.0) * allowed) break;
   }
@@ -218,8 +200,8 @@ void BoneGround::draw_at_once(const ViewScene& scene, const PixelSize& size) {
   // Else drawing would go on after its time was taken.
   glFinish();
   const double passed_s = seconds_since(start);
-  pace_.drew(bone_.triangle_count(seen), passed_s);
-  pace_.drew_pixels(pixels_of(size), passed_s);
+  triangles_.drew(bone_.triangle_count(seen), passed_s);
+  pixels_.drew(pixels_of(size), passed_s);
   settled_ = refining_ = false;
   changed_.clear();
   to_shade_.clear();
@@ -231,7 +213,7 @@ std::vector<SeenBrick> BoneGround::seen_in_time(const ViewScene& scene, const Pr
   Detail detail = kFullDetail;
   if (scene.X_WT) detail.sharp = Sphere{scene.X_WT->position_mm, 2 * scene.tool.burr_radius_mm};
   std::vector<SeenBrick> seen = bone_.seen(scene, projection, detail);
-  const auto allowed = static_cast<double>(pace_.triangles());
+  const auto allowed = static_cast<double>(triangles_.allowed());
   while (detail.cell_px < kCoarsest_px) {
     const auto count = static_cast<double>(bone_.triangle_count(seen));
     if (count <= (detail.cell_px < cell_px_ ? 0.75 : 1.0) * allowed) break;
@@ -261,7 +243,7 @@ void BoneGround::refine(const ViewScene& scene, const Projection& projection) {
   if (refined_ > 0) before.emplace(*resting_, projection, scene.camera);
   std::vector<SeenBrick> slice;
   std::size_t triangles = 0;
-  for (; refined_ < to_refine_.size() && triangles < pace_.triangles(); ++refined_) {
+  for (; refined_ < to_refine_.size() && triangles < triangles_.allowed(); ++refined_) {
     const SeenBrick& seen = to_refine_[refined_];
     if (before && before->hide(bone_.bounds(seen.brick))) continue;
     slice.push_back(seen);
@@ -277,7 +259,7 @@ void BoneGround::refine(const ViewScene& scene, const Projection& projection) {
     changed_ = std::exchange(changed_since_, {});
   }
   glFinish();
-  pace_.drew(triangles, seconds_since(start));
+  triangles_.drew(triangles, seconds_since(start));
 }
 
 // Draws the part of the picture in which bone changed; once more when nothing changes any longer, since what
@@ -295,7 +277,7 @@ bool BoneGround::draw_changed(const ViewScene& scene, const Projection& projecti
     return !box.intersects(drawn_within(scene, projection, bone_.bounds(brick.brick)));
   });
   const std::size_t triangles = bone_.triangle_count(seen);
-  if (triangles > pace_.triangles()) return false;
+  if (triangles > triangles_.allowed()) return false;
   glEnable(GL_SCISSOR_TEST);
   glScissor(part.min().x(), part.min().y(), part.sizes().x(), part.sizes().y());
   clear_depths(*shown_);
@@ -303,7 +285,7 @@ bool BoneGround::draw_changed(const ViewScene& scene, const Projection& projecti
   draw_around(scene, projection);
   glDisable(GL_SCISSOR_TEST);
   glFinish();
-  pace_.drew(triangles, seconds_since(start));
+  triangles_.drew(triangles, seconds_since(start));
   changed_.clear();
   if (last) to_shade_.clear();
   return true;

@@ -15,36 +15,29 @@
 
 namespace osteomill {
 
-/// How many triangles and pixels there is time for in one picture, learnt from how long earlier pictures
+/// How many triangles, or pixels, there is time for in one picture, learnt from how long earlier pictures
 /// took. Reads no clock itself.
 class DrawingPace {
  public:
   /// For the bone of one picture: in a thirtieth of a second it leaves time for all else.
   static constexpr double kBone_s = 0.018;
-  static constexpr std::size_t kFewest = 20'000;
-  static constexpr std::size_t kFewestPixels = 500'000;
 
-  std::size_t triangles() const { return within(kFewest, s_per_triangle_); }
-  std::size_t pixels() const { return within(kFewestPixels, s_per_pixel_); }
-  /// So many took so long. Fewer than `kFewest` are taken for that many, since they say nothing of many.
-  void drew(std::size_t triangles, double passed_s) { learn(s_per_triangle_, triangles, kFewest, passed_s); }
-  void drew_pixels(std::size_t pixels, double passed_s) {
-    learn(s_per_pixel_, pixels, kFewestPixels, passed_s);
+  /// There is always time for `fewest`, and at first for `expected`.
+  DrawingPace(std::size_t fewest, double expected) : fewest_(fewest), s_each_(kBone_s / expected) {}
+
+  std::size_t fewest() const { return fewest_; }
+  std::size_t allowed() const { return std::max(fewest_, static_cast<std::size_t>(kBone_s / s_each_)); }
+  /// So many took so long. Fewer than `fewest` are taken for that many, since they say nothing of many.
+  void drew(std::size_t count, double passed_s) {
+    constexpr double kWeight = 0.3;
+    const double here = passed_s / static_cast<double>(std::max(count, fewest_));
+    // One that others of the machine held up counts little.
+    s_each_ += kWeight * (std::min(here, 2 * s_each_) - s_each_);
   }
 
  private:
-  static std::size_t within(std::size_t fewest, double s_each) {
-    return std::max(fewest, static_cast<std::size_t>(kBone_s / s_each));
-  }
-  static void learn(double& s_each, std::size_t count, std::size_t fewest, double passed_s) {
-    constexpr double kWeight = 0.3;
-    const double here = passed_s / static_cast<double>(std::max(count, fewest));
-    // One that others of the machine held up counts little.
-    s_each += kWeight * (std::min(here, 2 * s_each) - s_each);
-  }
-
-  double s_per_triangle_ = kBone_s / 150'000;
-  double s_per_pixel_ = kBone_s / 2'000'000;
+  std::size_t fewest_;
+  double s_each_;
 };
 
 /// Draws what cuts lay open: grey values, tinted by labels.
@@ -111,7 +104,8 @@ class BoneGround {
   int coarseness_ = 1;
   std::optional<CavityPass> cavities_;
   std::optional<ViewScene> scene_;
-  DrawingPace pace_;
+  DrawingPace triangles_{20'000, 150'000};
+  DrawingPace pixels_{500'000, 2'000'000};
   double cell_px_ = kFullDetail.cell_px;
   std::vector<SeenBrick> to_refine_;
   std::size_t refined_ = 0;

@@ -126,11 +126,6 @@ LabelColour label_colour_below(const LabelMap& labels, const MeshVertex& vertex)
   return {red, green, blue, 255};
 }
 
-struct Facing {
-  Vec3 axis_W;
-  double spread_rad;
-};
-
 Facing facing_of(const BrickLevels& brick) {
   std::vector<Vec3> normals;
   normals.reserve(brick.levels[0].count / 3);
@@ -142,8 +137,7 @@ Facing facing_of(const BrickLevels& brick) {
     normals.push_back(normal.normalized());
     sum += normals.back();
   }
-  constexpr double kAnyWay_rad = 4;
-  if (!(sum.norm() > 0)) return {Vec3::UnitZ(), kAnyWay_rad};
+  if (!(sum.norm() > 0)) return {};
   const Vec3 axis = sum.normalized();
   double min = 1;
   for (const Vec3& normal : normals) min = std::min(min, axis.dot(normal));
@@ -277,9 +271,7 @@ void BoneLayer::set_brick(std::size_t number, const BrickLevels& levels) {
     brick.vertices = gl::Buffer::make();
     brick.indices = gl::Buffer::make();
   }
-  const Facing facing = facing_of(levels);
-  brick.facing_W = facing.axis_W;
-  brick.facing_spread_rad = facing.spread_rad;
+  brick.facing = facing_of(levels);
   glBindVertexArray(brick.vertex_array.get());
   gl::fill<MeshVertex>(GL_ARRAY_BUFFER, brick.vertices, levels.vertices, GL_DYNAMIC_DRAW);
   // A brick has less than 2^16 grid edges for vertices to lie on.
@@ -306,8 +298,8 @@ bool BoneLayer::Brick::turned_away(const Vec3& eye_W) const {
   const Vec3 sight = bounds.centre_W - eye_W;
   const double way_mm = sight.norm();
   if (way_mm <= bounds.radius_mm) return false;
-  const double angle = std::acos(std::clamp(facing_W.dot(sight) / way_mm, -1.0, 1.0));
-  return angle + facing_spread_rad + std::asin(bounds.radius_mm / way_mm) < 0.5 * std::numbers::pi;
+  const double angle = std::acos(std::clamp(facing.axis_W.dot(sight) / way_mm, -1.0, 1.0));
+  return angle + facing.spread_rad + std::asin(bounds.radius_mm / way_mm) < 0.5 * std::numbers::pi;
 }
 
 template <typename Wanted>

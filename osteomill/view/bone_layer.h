@@ -79,6 +79,12 @@ struct SeenBrick {
   bool sharp;
 };
 
+/// Where triangles face: their normals all lie within this half angle about this axis. At first, anywhere.
+struct Facing {
+  Vec3 axis_W = Vec3::UnitZ();
+  double spread_rad = 4;
+};
+
 /// The bone's surface in graphics memory, brick by brick, so that milling replaces only the bricks that
 /// changed.
 class BoneLayer {
@@ -113,9 +119,7 @@ class BoneLayer {
     gl::Buffer label_colours;
     std::array<BrickLevels::Range, BrickLevels::kCount> levels{};
     Sphere bounds;
-    /// The triangles' normals all lie within this half angle about this axis.
-    Vec3 facing_W = Vec3::UnitZ();
-    double facing_spread_rad = 4;
+    Facing facing;
     bool empty() const { return levels[0].count == 0; }
     bool turned_away(const Vec3& eye_W) const;
   };

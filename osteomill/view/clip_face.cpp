@@ -27,6 +27,16 @@ std::vector<Vec3> crossings(const GridGeometry& geometry, const ClipPlane& plane
   return found;
 }
 
+// A label's colour over the grey value, and never quite dark: a nerve's canal may be as dark as air.
+std::array<unsigned char, 3> tinted(unsigned char grey, const std::array<std::uint8_t, 3>& label) {
+  constexpr double kLabel = 0.55, kLeast = 0.35;
+  const double light = kLeast + (1 - kLeast) * grey / 255;
+  std::array<unsigned char, 3> pixel{};
+  for (std::size_t c = 0; c < 3; ++c)
+    pixel[c] = static_cast<unsigned char>((1 - kLabel) * grey + kLabel * light * label[c]);
+  return pixel;
+}
+
 }  // namespace
 
 WindowLevel window_level_of(const DensityGrid& grid, double surroundings_density) {
@@ -77,15 +87,15 @@ ClipFace clip_face(const DensityGrid& grid, const ClipPlane& plane, const Window
   const auto at = [&](int x, int y) -> Vec3 { return first + pixel_mm * (x * across + y * along); };
   face.corners_W = {at(0, 0), at(face.width - 1, 0), at(face.width - 1, face.height - 1),
                     at(0, face.height - 1)};
-  face.greys.reserve(static_cast<std::size_t>(face.width) * static_cast<std::size_t>(face.height));
+  face.pixels.reserve(static_cast<std::size_t>(face.width) * static_cast<std::size_t>(face.height));
   const double scale = 255 / (window.white - window.black);
   for (int y = 0; y < face.height; ++y) {
     for (int x = 0; x < face.width; ++x) {
-      const double grey = scale * (density_at(grid, at(x, y)) - window.black);
-      face.greys.push_back(static_cast<unsigned char>(std::clamp(grey, 0.0, 255.0)));
-      if (labels == nullptr) continue;
-      const LabelMap::Place label = labels->nearest_to(at(x, y));
-      face.label_colours.push_back(label == 0 ? std::array<unsigned char, 3>{} : labels->label(label).colour);
+      const double bright = scale * (density_at(grid, at(x, y)) - window.black);
+      const auto grey = static_cast<unsigned char>(std::clamp(bright, 0.0, 255.0));
+      face.pixels.push_back({grey, grey, grey});
+      const LabelMap::Place label = labels == nullptr ? 0 : labels->nearest_to(at(x, y));
+      if (label != 0) face.pixels.back() = tinted(grey, labels->label(label).colour);
     }
   }
   return face;

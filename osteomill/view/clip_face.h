@@ -9,15 +9,13 @@
 
 namespace osteomill {
 
-/// What a cut lays open: grey values, bytes, row by row; the corners are the middles of the first pixel, of
+/// What a cut lays open: red, green and blue, row by row; the corners are the middles of the first pixel, of
 /// the end of its row, of the last pixel and of the beginning of the last row.
 struct ClipFace {
   std::array<Vec3, 4> corners_W;
   int width = 0;
   int height = 0;
-  std::vector<unsigned char> greys;
-  /// Where the bone has labels: of each pixel the label's colour, or black for none. Else empty.
-  std::vector<std::array<unsigned char, 3>> label_colours;
+  std::vector<std::array<unsigned char, 3>> pixels;
 };
 
 /// Which densities are black and white.
@@ -29,9 +27,9 @@ struct WindowLevel {
 /// From just below the surroundings to nearly the densest bone (the 0.2 % above are white too).
 WindowLevel window_level_of(const DensityGrid& grid, double surroundings_density);
 
-/// The densities where the plane meets the grid, a pixel a voxel but no more than `max_pixels` along a side;
-/// black outside the grid. With `labels`, those of the voxels nearest to the pixels. Nothing (no pixels)
-/// where the plane misses it. Not for the tick.
+/// The densities where the plane meets the grid, a pixel a voxel but no more than `max_pixels` along a side,
+/// as grey values; black outside the grid. With `labels`, tinted by those of the voxels nearest to the
+/// pixels. Nothing (no pixels) where the plane misses it. Not for the tick.
 ClipFace clip_face(const DensityGrid& grid, const ClipPlane& plane, const WindowLevel& window,
                    const LabelMap* labels = nullptr, int max_pixels = 320);
 

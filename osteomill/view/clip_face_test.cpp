@@ -29,7 +29,7 @@ TEST(ClipFace, ShowsTheDensitiesOfItsPlace) {
     const ClipFace face = clip_face(grid, plane, {-100, 155});
     ASSERT_GT(face.width, 20);
     ASSERT_GT(face.height, 20);
-    ASSERT_EQ(face.greys.size(), static_cast<std::size_t>(face.width * face.height));
+    ASSERT_EQ(face.pixels.size(), static_cast<std::size_t>(face.width * face.height));
     for (const Vec3& corner : face.corners_W) EXPECT_NEAR(plane.normal_W.dot(corner), 0.7, 1e-9);
     for (int y = 0; y < face.height; y += 5) {
       for (int x = 0; x < face.width; x += 5) {
@@ -38,7 +38,7 @@ TEST(ClipFace, ShowsTheDensitiesOfItsPlace) {
         const Vec3 point_W = face.corners_W[0] + u * (face.corners_W[1] - face.corners_W[0]) +
                              v * (face.corners_W[3] - face.corners_W[0]);
         if (point_W.cwiseAbs().maxCoeff() > 4.99) continue;
-        const int grey = face.greys[static_cast<std::size_t>(x + face.width * y)];
+        const int grey = face.pixels[static_cast<std::size_t>(x + face.width * y)][0];
         EXPECT_NEAR(grey, point_W.dot(Vec3(10, 3, 1)) + 100, 1.01);
       }
     }
@@ -47,7 +47,7 @@ TEST(ClipFace, ShowsTheDensitiesOfItsPlace) {
 
 TEST(ClipFace, APlaneBesideTheGridShowsNothing) {
   const DensityGrid grid = ramp(testing_support::centred_cube(21, 0.25));
-  EXPECT_TRUE(clip_face(grid, {Vec3::UnitX(), 30}, {0, 1}).greys.empty());
+  EXPECT_TRUE(clip_face(grid, {Vec3::UnitX(), 30}, {0, 1}).pixels.empty());
 }
 
 TEST(ClipFace, LargeOnesAreSampledMoreCoarsely) {
@@ -73,12 +73,12 @@ TEST(ClipFace, ShowsTheLabelsOfTheNearestVoxels) {
   const LabelMap labels({{1, "a", {10, 20, 30}}, {2, "b", {40, 50, 60}}}, geometry, geometry, places);
   const DensityGrid grid(geometry, std::vector<float>(geometry.voxel_count(), 100.0f));
   const ClipFace face = clip_face(grid, {Vec3::UnitZ(), 0.1}, {0, 200}, &labels);
-  ASSERT_EQ(face.label_colours.size(), face.greys.size());
   std::map<std::array<unsigned char, 3>, int> counts;
-  for (const auto& colour : face.label_colours) ++counts[colour];
-  EXPECT_EQ((counts[{0, 0, 0}]), 32);
-  EXPECT_EQ((counts[{10, 20, 30}]), 16);
-  EXPECT_EQ((counts[{40, 50, 60}]), 16);
+  for (const auto& colour : face.pixels) ++counts[colour];
+  // 0.45 of the grey value and 0.55 x 0.67 of the label's colour.
+  EXPECT_EQ((counts[{127, 127, 127}]), 32);
+  EXPECT_EQ((counts[{60, 64, 68}]), 16);
+  EXPECT_EQ((counts[{71, 75, 79}]), 16);
 }
 
 }  // namespace

@@ -201,29 +201,29 @@ TEST_F(SceneRendererTest, CoarserLevelsAreHardlyTold) {
 }
 
 TEST(DrawingPace, HasFewerTrianglesTheLongerTheyTakeAndMoreAgainLater) {
-  DrawingPace pace;
-  const std::size_t first = pace.triangles();
-  for (int n = 0; n < 20; ++n) pace.drew(pace.triangles(), 2e-6 * static_cast<double>(pace.triangles()));
-  EXPECT_LT(pace.triangles(), first / 2);
-  EXPECT_GE(pace.triangles(), DrawingPace::kFewest);
-  for (int n = 0; n < 60; ++n) pace.drew(pace.triangles(), 1e-8 * static_cast<double>(pace.triangles()));
-  EXPECT_NEAR(static_cast<double>(pace.triangles()), DrawingPace::kBone_s / 1e-8, 2e5);
+  DrawingPace pace(20'000, 150'000);
+  const std::size_t first = pace.allowed();
+  for (int n = 0; n < 20; ++n) pace.drew(pace.allowed(), 2e-6 * static_cast<double>(pace.allowed()));
+  EXPECT_LT(pace.allowed(), first / 2);
+  EXPECT_GE(pace.allowed(), 20'000u);
+  for (int n = 0; n < 60; ++n) pace.drew(pace.allowed(), 1e-8 * static_cast<double>(pace.allowed()));
+  EXPECT_NEAR(static_cast<double>(pace.allowed()), DrawingPace::kBone_s / 1e-8, 2e5);
 }
 
 TEST(DrawingPace, OnePictureThatWasHeldUpCountsLittle) {
-  DrawingPace pace;
-  const std::size_t first = pace.triangles();
-  pace.drew(pace.triangles(), 1.0);
-  EXPECT_GT(pace.triangles(), first / 2);
+  DrawingPace pace(20'000, 150'000);
+  const std::size_t first = pace.allowed();
+  pace.drew(pace.allowed(), 1.0);
+  EXPECT_GT(pace.allowed(), first / 2);
 }
 
 TEST(DrawingPace, HasFewerPixelsWhereTheyTakeLong) {
-  DrawingPace pace;
-  EXPECT_GT(pace.pixels(), 1'500'000u);
-  for (int n = 0; n < 20; ++n) pace.drew_pixels(1'000'000, 0.1);
-  EXPECT_EQ(pace.pixels(), DrawingPace::kFewestPixels);
-  for (int n = 0; n < 20; ++n) pace.drew_pixels(8'000'000, 0.01);
-  EXPECT_GT(pace.pixels(), 8'000'000u);
+  DrawingPace pace(500'000, 2'000'000);
+  EXPECT_GT(pace.allowed(), 1'500'000u);
+  for (int n = 0; n < 20; ++n) pace.drew(1'000'000, 0.1);
+  EXPECT_EQ(pace.allowed(), 500'000u);
+  for (int n = 0; n < 20; ++n) pace.drew(8'000'000, 0.01);
+  EXPECT_GT(pace.allowed(), 8'000'000u);
 }
 
 // The first picture comes at the pace that is supposed before any is known.

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <limits>
+
+namespace osteomill {
+
+/// How many a second there were in the last second that was completed, 0 before. Reads no clock itself. Safe
+/// in the haptic tick.
+class RecentRate {
+ public:
+  void count() { ++count_; }
+  /// To be called more often than once a second. `now_s` never goes back; the first second begins with the
+  /// first call.
+  double per_s(double now_s) {
+    const double passed_s = now_s - began_s_;
+    if (passed_s >= 1) {
+      per_s_ = count_ / passed_s;
+      began_s_ = now_s;
+      count_ = 0;
+    }
+    return per_s_;
+  }
+
+ private:
+  double began_s_ = -std::numeric_limits<double>::infinity();
+  int count_ = 0;
+  double per_s_ = 0;
+};
+
+}  // namespace osteomill
