@@ -96,9 +96,13 @@ std::optional<AutosaveFile> AutosaveFile::make() {
 std::optional<LeftoverMilling> last_leftover_milling() {
   for (const fs::path& folder : folders_in(autosave_folder())) {
     auto file = AutosaveFile::locked(folder);
+    if (!file) continue;
     std::error_code ignored;
-    // Its program may have ended with nothing to keep; the folder then goes with `file`.
-    if (!file || !fs::exists(file->path(), ignored)) continue;
+    if (!fs::exists(file->path(), ignored)) {
+      // Its program was killed before anything was kept; the folder then goes with `file`.
+      file->clear();
+      continue;
+    }
     try {
       SessionStart start = read_start(file->path());
       return LeftoverMilling{std::move(*file), std::move(start)};

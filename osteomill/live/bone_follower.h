@@ -120,7 +120,8 @@ class BoneFollower {
   /// The copy with the last cut taken back, as it was at the beginning, or with another isovalue. With the
   /// last, what milling had emptied (cut down to `surroundings`) stays empty; throws std::invalid_argument
   /// where the isovalue is not finite. To be called while the bone is held and the copy is caught up; from
-  /// then until `swap` or `give_up` nobody writes into either. Cuts and surface show the change at once.
+  /// then until `swap` or `give_up` nobody writes into either. The surface shows the change at once; the cut
+  /// is gone with `swap`.
   NextBone without_last_cut();
   NextBone as_at_the_beginning();
   NextBone with_isovalue(double isovalue, double surroundings, double removed_mm3);
