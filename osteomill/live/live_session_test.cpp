@@ -190,7 +190,7 @@ TEST_F(LiveSessionTest, ListenersHearEveryTickAndWhereTheBoneChanged) {
     heard.changed.include(change.voxels.last);
   });
   live_.start();
-  std::this_thread::sleep_for(100ms);
+  EXPECT_TRUE(comes_true([&] { return live_.timing().ticks > 50; }));
   live_.set_spindle(false);
   live_.listen({});
   const int ticks = heard.ticks;
