@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <charconv>
 #include <string>
 #include <vector>
 
@@ -11,6 +10,7 @@
 #include "osteomill/ct/plausible_scan.h"
 #include "osteomill/ct/slice_stack.h"
 #include "osteomill/files/input_error.h"
+#include "osteomill/numbers/parse_number.h"
 #include "osteomill/numbers/work_progress.h"
 
 namespace osteomill {
@@ -108,13 +108,6 @@ std::string size_and_spacing(const DicomSeries& series) {
   }
 }
 
-std::optional<std::size_t> number_of(const std::string& text) {
-  std::size_t number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return number;
-}
-
 // Of the files that a DICOMDIR names, which lie beside and below it. Throws InputError naming it where it
 // names one that is not there.
 DicomImages images_of_directory(const DicomHeader& dicomdir, std::uint64_t max_bytes) {
@@ -161,7 +154,8 @@ std::size_t pick_series(const std::string& subject, const std::vector<DicomSerie
     });
     return static_cast<std::size_t>(largest - all.begin());
   }
-  if (const auto number = number_of(wanted); number && *number >= 1 && *number <= all.size()) {
+  if (const auto number = parsed_number<std::size_t>(wanted);
+      number && *number >= 1 && *number <= all.size()) {
     return *number - 1;
   }
   std::vector<std::size_t> found;

@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "osteomill/numbers/parse_number.h"
 
 namespace osteomill {
 
@@ -22,10 +23,9 @@ inline std::optional<std::vector<double>> parse_numbers(std::string_view text,
     const std::size_t length = std::min(text.find_first_of(separators), text.size());
     std::string_view piece = text.substr(0, length);
     if (piece.front() == '+') piece.remove_prefix(1);
-    double number = 0;
-    const auto [end, error] = std::from_chars(piece.data(), piece.data() + piece.size(), number);
-    if (error != std::errc() || end != piece.data() + piece.size()) return std::nullopt;
-    numbers.push_back(number);
+    const auto number = parsed_number<double>(piece);
+    if (!number) return std::nullopt;
+    numbers.push_back(*number);
     text.remove_prefix(length);
   }
 }

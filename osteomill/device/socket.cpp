@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <cstring>
 #include <future>
-#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -19,6 +17,7 @@
 #include <unistd.h>
 
 #include "osteomill/files/input_error.h"
+#include "osteomill/numbers/parse_number.h"
 
 namespace osteomill {
 
@@ -62,9 +61,8 @@ HostAndPort host_and_port(std::string_view device, const std::string& address) {
   HostAndPort at;
   if (colon != std::string::npos && colon > 0) {
     at.host = address.substr(0, colon);
-    const char* const end = address.data() + address.size();
-    const auto [stopped, error] = std::from_chars(address.data() + colon + 1, end, at.port);
-    if (error == std::errc() && stopped == end && at.port > 0 && at.port <= 65535) {
+    at.port = parsed_number<decltype(at.port)>(std::string_view(address).substr(colon + 1)).value_or(0);
+    if (at.port > 0 && at.port <= 65535) {
       at.host = resolved(at.host);
       if (!at.host.empty()) return at;
       throw InputError(fmt::format("{}:{}", device, address), "no such host is known");

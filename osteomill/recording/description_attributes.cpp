@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <charconv>
 #include <cstdio>
 #include <optional>
 #include <set>
@@ -9,6 +8,7 @@
 
 #include "osteomill/files/input_error.h"
 #include "osteomill/haptics/algorithms.h"
+#include "osteomill/numbers/parse_number.h"
 #include "osteomill/numbers/positive.h"
 #include "osteomill/recording/recording_file.h"
 
@@ -93,11 +93,12 @@ std::vector<Label> read_labels(const fs::path& path, hid_t file) {
     if (!name.ends_with(".name")) continue;
     const std::string value = name.substr(0, name.find('.'));
     Label label;
-    const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), label.value);
+    const auto number = parsed_number<decltype(label.value)>(value);
+    label.value = number.value_or(0);
     const std::string colour = read.get<std::string>(value + ".colour");
     unsigned rgb = 0;
-    if (error != std::errc() || end != value.data() + value.size() || labels.size() == LabelMap::kMaxLabels ||
-        colour.size() != 7 || std::sscanf(colour.c_str(), "#%6x", &rgb) != 1) {
+    if (!number || labels.size() == LabelMap::kMaxLabels || colour.size() != 7 ||
+        std::sscanf(colour.c_str(), "#%6x", &rgb) != 1) {
       throw InputError(path.string(), "has a label that cannot be used: '" + name + "'");
     }
     read.get(name, label.name);

@@ -1,7 +1,5 @@
 #include <array>
-#include <charconv>
 #include <chrono>
-#include <system_error>
 #include <thread>
 
 #include <fmt/core.h>
@@ -9,6 +7,7 @@
 #include "osteomill/device/hardware.h"
 #include "osteomill/device/vendor_library.h"
 #include "osteomill/files/input_error.h"
+#include "osteomill/numbers/parse_number.h"
 
 namespace osteomill {
 
@@ -103,11 +102,9 @@ Model model_of(int system_type) {
 
 char number_of(const std::string& address) {
   if (address.empty()) return 0;
-  signed char number = -1;
-  const auto [end, error] = std::from_chars(address.data(), address.data() + address.size(), number);
-  if (error != std::errc() || end != address.data() + address.size() || number < 0)
-    fail("'" + address + "' is not the number of a device");
-  return static_cast<char>(number);
+  const auto number = parsed_number<signed char>(address);
+  if (!number || *number < 0) fail("'" + address + "' is not the number of a device");
+  return static_cast<char>(*number);
 }
 
 void require_device(const Dhd& dhd, char number) {
