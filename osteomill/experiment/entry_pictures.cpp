@@ -38,7 +38,7 @@ double share_seen(const Volume& before, const Volume& milled, const Camera& came
     for_each(VoxelBox::of_brick(brick, kBrick).intersected(geometry.all_voxels()), [&](const VoxelIndex& v) {
       if (!before.is_bone(v) || milled.is_bone(v)) return;
       const bool at_surface = std::any_of(kBeside.begin(), kBeside.end(), [&](const VoxelIndex& by) {
-        return milled.is_bone_or_outside({v.i + by.i, v.j + by.j, v.k + by.k});
+        return milled.is_bone_in_grid({v.i + by.i, v.j + by.j, v.k + by.k});
       });
       if (!at_surface) return;
       all += 1;

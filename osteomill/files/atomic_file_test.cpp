@@ -71,6 +71,7 @@ TEST_F(AtomicFileTest, WhatIsNoFileIsWrittenInto) {
   const fs::path pipe = folder_ / "pipe.csv";
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
   const int reader = ::open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
+  write_text_atomically(pipe, [](std::ostream&) {});
   write_text_atomically(pipe, [](std::ostream& out) { out << "1,2\n"; });
   std::array<char, 9> read{};
   EXPECT_EQ(::read(reader, read.data(), read.size()), 4);

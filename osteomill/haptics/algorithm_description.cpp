@@ -5,6 +5,7 @@
 #include <limits>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 namespace osteomill {
 
@@ -24,12 +25,13 @@ std::string range_text(const SettingRange& range) {
   constexpr double kLargest = std::numeric_limits<double>::max();
   std::ostringstream text;
   text << (range.whole ? "a whole number" : "a number");
-  if (range.min == kSmallest) {
-    text << " above 0";
+  const bool above_0 = range.min == kSmallest;
+  if (range.max < kLargest) {
+    text << (above_0 ? " above " : " from ") << (above_0 ? 0 : range.min) << (above_0 ? " up to " : " to ")
+         << range.max;
   } else {
-    text << " of " << range.min << (range.max < kLargest ? "" : " or more");
+    text << (above_0 ? " above " : " of ") << (above_0 ? 0 : range.min) << (above_0 ? "" : " or more");
   }
-  if (range.max < kLargest) text << " and at most " << range.max;
   return text.str();
 }
 
@@ -64,8 +66,11 @@ bool is_usable(const AlgorithmId& algorithm) {
 
 std::vector<AlgorithmId> each_once(std::vector<AlgorithmId> algorithms) {
   std::sort(algorithms.begin(), algorithms.end());
-  algorithms.erase(std::unique(algorithms.begin(), algorithms.end()), algorithms.end());
-  return algorithms;
+  std::vector<AlgorithmId> once;
+  for (AlgorithmId& algorithm : algorithms) {
+    if (std::find(once.begin(), once.end(), algorithm) == once.end()) once.push_back(std::move(algorithm));
+  }
+  return once;
 }
 
 bool runs_in(const AlgorithmDescription& algorithm, Mode mode, const std::vector<Mode>& asked) {

@@ -44,7 +44,8 @@ Settings settings_in(Mode mode, std::span<const SettingField<Settings>> fields) 
   return settings;
 }
 
-/// Completes a description with these settings, and makes `Algorithm` from them.
+/// Completes a description with these settings, and makes `Algorithm` from them. `fields` is not copied: what
+/// it refers to must outlive the description and all its copies (a static array, for example).
 template <typename Algorithm, typename Settings>
 AlgorithmDescription with_settings(AlgorithmDescription description,
                                    std::span<const SettingField<Settings>> fields) {

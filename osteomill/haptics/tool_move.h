@@ -11,7 +11,8 @@ struct ToolMove {
   Vec3 rotation_rad = Vec3::Zero();
 };
 
-/// A part of the move; a tool that slides along the bone while it turns stays on it.
+/// A share of the move. Translation and rotation are shortened alike, so that a tool that slides along the
+/// bone while it turns stays on it.
 inline ToolMove operator*(double share, const ToolMove& move) {
   return {share * move.translation_mm, share * move.rotation_rad};
 }
@@ -32,13 +33,14 @@ struct Release {
 /// How far the simulated tool may go in a tick. The hand feels the stretch between tool and device, and this
 /// bound keeps the stretch from leaping where bone gives way.
 ///
-/// The tool's move has to stay in a ball, and its turn in another, in W's axes. A tool that surfaces without
-/// friction hold on a spring follows the device by some projection of the device's move. All projections of a
-/// vector lie on the sphere of which the vector is a diameter, so that sphere is where the ball begins. It is
-/// wider by the release's speed, and, on the side on which the stretch fades, by the release's share of the
-/// stretch. It is also wider on the side on which the stretch grows, since a turn of the device may move a
-/// tool that is held at a lever and a move may turn it: by half of it, at the length `sqrt(torsional /
-/// translational stiffness)`. Standing still always lies within.
+/// The tool's translation has to end in one ball and its rotation vector in another, both in W's axes. A tool
+/// on a spring, held by frictionless surfaces, moves by some projection of the device's move. All projections
+/// of a vector end on the sphere of which the vector is a diameter; the ball begins as that sphere. It is
+/// widened all round by the release's speed, and on the side on which the stretch fades by the release's
+/// share of the stretch. A turn of the device may also move a tool that is held at a lever, and a move may
+/// turn it. So on the side on which the stretch grows, the ball of translations is widened by half the
+/// device's turn times `spring_length_mm` (sqrt(torsional / translational stiffness)), and the ball of
+/// rotations by half the device's move over that length. Standing still always lies within.
 struct MoveBound {
   ToolMove middle;
   double radius_mm = 0;

@@ -8,8 +8,9 @@
 
 namespace osteomill {
 
-/// In vector instructions chosen at run time, with the same bits from all of them. All distances are from the
-/// ball's centre, in the grid's axes, mm; times `kLanes`, lists are read beyond their ends.
+/// The ball as the kernels below read it. They use vector instructions chosen at run time, with the same bits
+/// from all of them. All distances are from the ball's centre, in the grid's axes, mm. Lists are worked
+/// through in whole groups of up to `kLanes` entries, and so beyond their ends.
 struct CutKernelBall {
   float radius;
   /// Unit vector.
@@ -18,9 +19,10 @@ struct CutKernelBall {
   bool cubic;
 };
 
-/// Appends those voxels of a row's piece that the ball lowers with its leading half `max_ahead` ahead. `x`:
-/// the piece's `kLanes` columns, `y` and `z` its row, from the centre. Returns those that are denser than the
-/// surroundings, a bit each.
+/// A piece of a row: the densities of its `kLanes` voxels; where they lie from the ball's centre, `x` a voxel
+/// each, `y` and `z` the whole row; the first voxel's column; and a bit for each voxel that is to be looked
+/// at. `gather_piece` appends to `lists` those that the ball lowers with its leading half `max_ahead` ahead,
+/// and returns a bit for each one looked at that is denser than the surroundings.
 struct CutPiece {
   const float* densities;
   const float* x;

@@ -22,7 +22,6 @@ inline constexpr double kPressingKept_s = 0.01;
 /// `burr_presses` from tick to tick.
 class PressingBurr {
  public:
-  void reset() { away_s_ = kPressingKept_s; }
   /// Safe in the haptic tick.
   bool presses(const Volume& volume, double burr_radius_mm, const Vec3& burr_W, const Vec3& force_W_N,
                double dt_s) {

@@ -23,8 +23,9 @@ std::uint32_t rank_of(float value) {
   return (bits >> 31) != 0 ? ~bits : bits | 1u << 31;
 }
 
-// Of the values that `for_each` takes to whatever it is given, twice the same ones: by counting how often the
-// upper and then the lower half of the rank is which. There may be a billion, which nobody wants to keep.
+// The median of the values that `for_each` passes to its argument. It is called twice and must pass the same
+// values: the first pass counts by the upper 16 bits of their ranks, the second by the lower 16 bits of those
+// that share the median's upper bits. So a billion values need not be kept.
 template <typename ForEach>
 std::optional<double> median(const ForEach& for_each) {
   std::vector<std::size_t> counts(1 << 16);

@@ -118,7 +118,7 @@ double crown(double x, double y, double z) {
 }
 
 struct Root {
-  double top_x, apex_x;   // of its axis at kTop_z and at the apex
+  double top_x, apex_x;   // of its axis at kRootTop_z and at the apex
   double half_x, half_y;  // at the top
   double apex_z;
   double lean;  // how far the axis bows outwards half-way

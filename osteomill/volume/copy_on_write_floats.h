@@ -35,7 +35,8 @@ class CopyOnWriteFloats {
  public:
   CopyOnWriteFloats() = default;
   /// Row by row from `values`, which holds all rows one behind the other. Gives their memory back while they
-  /// are taken over, so that both never stand whole. Throws std::bad_alloc, and WorkStopped as all long work.
+  /// are taken over, so that both never stand whole. Throws std::bad_alloc; std::system_error where a limit
+  /// on file sizes (ulimit -f) forbids it; and WorkStopped as all long work.
   CopyOnWriteFloats(std::vector<float> values, const RowLayout& layout);
   CopyOnWriteFloats(const CopyOnWriteFloats& other);
   CopyOnWriteFloats(CopyOnWriteFloats&& other) noexcept { swap(other); }

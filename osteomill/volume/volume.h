@@ -35,7 +35,7 @@ class Volume {
   /// `v` must lie in the grid.
   bool is_bone(const VoxelIndex& v) const { return static_cast<double>(grid_[v]) > isovalue_; }
   /// Any `v`; there is no bone beyond the border.
-  bool is_bone_or_outside(const VoxelIndex& v) const { return grid_.contains(v) && is_bone(v); }
+  bool is_bone_in_grid(const VoxelIndex& v) const { return grid_.contains(v) && is_bone(v); }
 
   /// Lowers the densities of `count` voxels of one row, whose columns ascend. Safe in the haptic tick. Where
   /// a cut is taken back densities may also rise, but only outside the tick, while nobody works on this bone,

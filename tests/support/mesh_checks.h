@@ -148,7 +148,7 @@ inline double trilinear_volume_mm3(const Volume& volume) {
       for (int i = -1; i < dims[0]; ++i) {
         int bone = 0;
         for (int c = 0; c < 8; ++c) {
-          bone += volume.is_bone_or_outside({i + (c & 1), j + (c >> 1 & 1), k + (c >> 2)});
+          bone += volume.is_bone_in_grid({i + (c & 1), j + (c >> 1 & 1), k + (c >> 2)});
         }
         if (bone == 8) inside += kPoints * kPoints * kPoints;
         if (bone == 0 || bone == 8) continue;

@@ -36,8 +36,9 @@ constexpr double kRoomPerMove = 3;
 // In free space: farther than the fastest hand goes in a tick.
 constexpr Room kFarthestFlight{5.0, 0.3};
 
-// A tool that began in touch with bone: the distance it is given, and how fast and up to which its cores
-// grow.
+// For a tool that begins in touch with bone: its cores are first made so small that the nearest point lies
+// kStartShare of the skin's width away. They then grow at up to kGrowth_mm_s, as long as the nearest point
+// keeps more than kGrownShare of the skin's width.
 constexpr double kStartShare = 0.2;
 constexpr double kGrownShare = 0.02;
 constexpr double kGrowth_mm_s = 5;
@@ -172,7 +173,8 @@ Cores BarrierShell::cores() const {
   return Cores::within(tool_, settings_.rounding_mm, smaller_mm_);
 }
 
-// With cores so small that no point is in them; again, until all bone about it is known.
+// Begins with cores so small that no point lies in them. Called in every tick until all bone about the tool
+// is known.
 void BarrierShell::begin_outside(const Pose& X_WD) {
   last_move_ = {};
   smaller_mm_ = 0;

@@ -17,7 +17,7 @@ struct Coupling {
 
   /// As it acts on the hand that holds the device at `X_WD`, in W.
   Wrench wrench_on_hand(const Pose& X_WT, const Pose& X_WD) const;
-  /// At which a force stretches both springs alike, to the same energy.
+  /// The lever at which a force stores as much energy in the torsional spring as in the translational one.
   double length_mm() const { return std::sqrt(torsional_Nmm_per_rad / translational_N_per_mm); }
   double energy_Nmm(const Pose& X_WT, const Pose& X_WD) const;
   /// Energy and its derivatives by a move of the tool; `convex` is the whole second derivative.

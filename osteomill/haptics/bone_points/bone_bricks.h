@@ -12,9 +12,9 @@
 
 namespace osteomill {
 
-/// The way of changed voxels into bricks of points: what has changed waits, and a walk goes through all
-/// bricks near it, one brick after the other, so that a tick may do as much of it as it has time for. Safe in
-/// the haptic tick.
+/// Which bricks still have to be looked at after voxels changed. Changed voxels wait in one box; a walk then
+/// visits every brick of a box, one after the other, over as many ticks as that takes. Safe in the haptic
+/// tick.
 class BrickSweep {
  public:
   /// Takes a change in; empty where nothing changed.
@@ -91,10 +91,11 @@ class BoneBricks {
   const BrickPoints& fine() const { return fine_; }
   const BrickPoints& coarse() const { return coarse_; }
 
-  /// Calls `use(brick, slot)` for the bricks with points in the octree's nodes of which `meets(middle_G,
-  /// radius_mm)` says yes, where no node above was rejected; the sphere is about the node, in the grid's
-  /// frame. The order is fixed. Makes the bricks that were not, as far as there is room and what a tick may
-  /// make goes; true where none is missing. Their points are those of `slot` in `fine` and `coarse`.
+  /// Goes down the octree, leaving out every node for whose bounding sphere (in the grid's frame)
+  /// `meets(middle_G, radius_mm)` is false, and calls `use(brick, slot)` for each brick with points that it
+  /// reaches, in a fixed order. The brick's points are those of `slot` in `fine` and `coarse`. Bricks that do
+  /// not exist yet are made, as far as there is room and this tick may make more. Returns whether no brick
+  /// is missing.
   template <typename Meets, typename Use>
   bool visit(const Meets& meets, const Use& use) {
     bool all = true;
@@ -117,16 +118,16 @@ class BoneBricks {
   }
 
   /// About how many points are brought up to date a tick: of bricks that bear the tool, and of all others.
-  /// (Those that bear once their surface has sunk by 2 um, as bone lost over area, takes half the time and
-  /// doubles the steps of torque: 0.28 N mm for 0.14, tooth, 3 N.)
+  /// (Tried: bringing a bearing brick up to date only once its surface has sunk by 2 um, judged by bone lost
+  /// over area. It took half the time but doubled the steps of torque, 0.28 N mm for 0.14; tooth, 3 N.)
   static constexpr int kBearingPerTick = 1500;
   static constexpr int kOthersPerTick = 100;
   /// About how many points are made a tick of bricks that the tool meets for the first time.
   static constexpr int kMadePerTick = 2500;
   /// Says that densities fell in `voxels`, and brings points up to date. Bricks into which the surface has
-  /// newly come are made at once. Those that bear the tool take turns, each in one of as many ticks as it
-  /// takes to do about kBearingPerTick points in each. Of all other bricks about `others` points are done;
-  /// the cost of looking for them counts as points too.
+  /// newly come are made at once, or the next time the tool meets them. Bricks that bear the tool take turns
+  /// over so many ticks that each tick does about kBearingPerTick points. Of all other bricks about `others`
+  /// points are done a tick; new bricks and passing over unchanged ones count as points too.
   void refresh(const VoxelBox& voxels, int others = kOthersPerTick);
   /// The slots of the bricks that bear the tool. Whoever uses the points keeps this list. The tool rests on
   /// these bricks: if they waited with the others, it would stand still and drop once the last had its turn.

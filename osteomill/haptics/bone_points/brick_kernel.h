@@ -8,8 +8,8 @@
 
 namespace osteomill {
 
-/// Of neighbouring nodes along each axis, mm; its inverse; and what a crossing along it that is seen at right
-/// angles stands for, mm^2.
+/// For each axis: the distance of neighbouring nodes (mm), its inverse, and the area (mm^2) that a crossing
+/// of an edge along that axis stands for where the surface is at right angles to the edge.
 struct CrossingSteps {
   float step[3], per_step[3], face[3];
 };

@@ -4,7 +4,8 @@
 
 namespace osteomill {
 
-/// How far within the tool's surface its cores lie: the rounding, but at most half of its least radius.
+/// How far within the tool's surface its cores lie: the rounding, but at most half of the least of its two
+/// radii and the shaft's length.
 double inset_within(const MillingTool& tool, double rounding_mm);
 
 /// The two convex bodies within the tool that bone never reaches, in T: a ball about the burr's centre and a

@@ -6,9 +6,9 @@
 
 namespace osteomill {
 
-/// The energy of bone near a core, per area of its surface: psi(d) = w p0 / 3 x^3 / (1 - x) with x = 1 - d /
-/// w for distances d < w, else zero. Soft at first touch and infinite at the core, twice continuously
-/// differentiable, without a logarithm. Safe in the haptic tick.
+/// The energy of bone near a core, per area of bone surface. With w = `width_mm`, p0 = `pressure_N_per_mm2`
+/// and x = 1 - d / w it is psi(d) = (w p0 / 3) x^3 / (1 - x) for distances d < w, else zero. Soft at first
+/// touch and infinite at the core, twice continuously differentiable, without a logarithm. Safe in the tick.
 struct Barrier {
   double width_mm;
   double pressure_N_per_mm2;
@@ -30,9 +30,9 @@ struct Barrier {
     const double share = std::max(distance_mm / width_mm, kNearestShare);
     if (!(share < 1)) return {};
     const double x = 1 - share, x2 = x * x;
-    const double p0 = pressure_N_per_mm2 / 3;
-    return {width_mm * p0 * x2 * x / share, p0 * x2 * (3 - 2 * x) / (share * share),
-            p0 / width_mm * x * (6 - 6 * x + 2 * x2) / (share * share * share)};
+    const double third = pressure_N_per_mm2 / 3;
+    return {width_mm * third * x2 * x / share, third * x2 * (3 - 2 * x) / (share * share),
+            third / width_mm * x * (6 - 6 * x + 2 * x2) / (share * share * share)};
   }
 };
 

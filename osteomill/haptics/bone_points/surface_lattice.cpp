@@ -10,7 +10,7 @@ namespace osteomill {
 
 namespace {
 
-// Of the mean normal of points that one may stand for.
+// Points are merged into one where their mean normal is longer than this: they nearly lie in a plane.
 constexpr float kFlat = 0.98f;
 
 // Voxels that are looked at one by one, where ranges of them are too wide to tell; and ranges, of a large

@@ -45,8 +45,8 @@ class SurfaceLattice {
   /// What there is in a node of an octree over the bricks: 2^level of them a side, the first at 2^level times
   /// `node`. May say `surface` where there is none.
   Found found_in(int level, const VoxelIndex& node) const;
-  /// Of the densities that a brick's points are made from: differs from what it was before where any fell
-  /// since.
+  /// A number that differs from what it was earlier if any density that the brick's points are made from has
+  /// fallen since.
   std::uint32_t changes_of(const VoxelIndex& brick) const;
   /// The bricks whose points may change with densities in `voxels`.
   VoxelBox bricks_touched_by(const VoxelBox& voxels) const;

@@ -15,8 +15,9 @@ constexpr int kSweeps = 100;
 constexpr double kSettled_mm = 1e-6;
 // Lets contacts that contradict one another (a line jammed between two walls) share the error.
 constexpr double kSoftness = 1e-5;
-// The line is kept so far off the bone, without which the torque may step by four times as much in the tooth,
-// and a move that would still end in it is halved so often at most, without which by twice as much.
+// kSkin_mm: how far the line is kept off the bone; without it the steps of torque in the tooth may be four
+// times as large. kHalvings: how often at most a move that would still end in bone is halved; without it
+// those steps may be twice as large.
 constexpr double kSkin_mm = 2e-5;
 constexpr int kHalvings = 6;
 // How steeply a stride may climb on what it meets: without that the force of a thin tool steps by half as
@@ -25,7 +26,8 @@ constexpr double kMaxSlope = 0.25;
 // What two looks along the line may miss between them: without that a line on a rim sticks for a tick or two,
 // in a turned scan and not in the straight one.
 constexpr double kBetweenLooks_mm = 0.01;
-// How much higher in all than it was a line may climb (HeldLine.InARoughHole...).
+// How far, in voxels, a line may climb in all against its springs before it has to come down again. The
+// tests that begin HeldLine.InARoughHole say why.
 constexpr double kRoughness_voxels = 0.15;
 // As deep as a stride can have taken a point, and as far as its way out may be longer for that.
 constexpr double kReachBeyond_voxels = 2;

@@ -44,7 +44,7 @@ class LineProxy final : public HapticAlgorithm {
   void reset() override;
   int sample_point_count() const override { return static_cast<int>(vertices_T_.size()); }
 
-  /// For drawing and tests: the intersection point in W, where there is one.
+  /// For tests: the intersection point in W, where there is one; each step's result says it too.
   const std::optional<Vec3>& intersection_W() const { return memory_.intersection_W; }
 
  private:

@@ -95,8 +95,10 @@ HapticStep PointShellAlgorithm::step(const Pose& X_WD, double dt_s) {
   if (begins) X_WT_ = X_WD_before_ = X_WD;
   has_pose_ = true;
   if (begins) carried_ = settings_.guarded_move && count_in_bone(*volume_, centreline_T_, X_WD) > 0;
-  if (carried_)
-    carried_ = count_in_bone(*volume_, centreline_T_, X_WD) > 0 || contacts_at(X_WD).total().touching > 0;
+  if (carried_) {
+    carried_ = count_in_bone(*volume_, centreline_T_, X_WD) > 0 || contacts_at(X_WD).total().touching > 0 ||
+               near_.is_incomplete();
+  }
   HapticStep result;
   if (carried_) {
     result.X_WT = X_WT_ = X_WD;

@@ -44,12 +44,12 @@ GridGeometry oblique_geometry() {
 }
 
 bool is_surface(const Volume& volume, const VoxelIndex& v) {
-  if (!volume.is_bone_or_outside(v)) return false;
+  if (!volume.is_bone_in_grid(v)) return false;
   for (int n = 0; n < 6; ++n) {
     const int side = n % 2 == 0 ? -1 : 1;
     const VoxelIndex next{v.i + (n / 2 == 0 ? side : 0), v.j + (n / 2 == 1 ? side : 0),
                           v.k + (n / 2 == 2 ? side : 0)};
-    if (!volume.is_bone_or_outside(next)) return true;
+    if (!volume.is_bone_in_grid(next)) return true;
   }
   return false;
 }

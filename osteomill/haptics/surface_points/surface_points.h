@@ -35,8 +35,8 @@ struct Settings {
 ///
 /// As the paper has it, a sphere or slice whose centre is in bone sends the force of the step before, so the
 /// force has an upper limit beyond which the tool falls through, and nothing is held where the first contact
-/// is already that deep; a contact of the shaft alone sends a torque and no force. `Settings`
-/// says what `steady` does instead.
+/// is already that deep; a contact of the shaft alone sends a torque and no force. What `steady` does instead
+/// is said at each setting in surface_points_description.cpp.
 class SurfacePoints final : public HapticAlgorithm {
  public:
   /// Settings within their ranges.
@@ -57,7 +57,8 @@ class SurfacePoints final : public HapticAlgorithm {
     // From the centre to each vertex, and how far it is pushed back by now where the tool is held.
     std::vector<Vec3> arms_T;
     std::vector<double> depths_mm;
-    // Of this step or, where the centre is in bone, of the last step when it was not: (17), (19).
+    // The force of this step; as printed, where the centre is in bone, of the last step when it was not:
+    // (17), (19). `contacts` is always of this step.
     Vec3 force_W_N = Vec3::Zero();
     int contacts = 0;
   };
