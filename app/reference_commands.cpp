@@ -1,5 +1,4 @@
 #include <cmath>
-#include <limits>
 #include <string>
 #include <string_view>
 
@@ -34,14 +33,6 @@ void list_devices() {
 std::string number_text(double value, bool on_or_off) {
   if (on_or_off) return value != 0 ? "on" : "off";
   return std::isinf(value) ? "no limit" : fmt::format("{:g}", value);
-}
-
-std::string range_text(const SettingRange& range) {
-  if (range == SettingRange::on_or_off()) return "on, off";
-  std::string text = range.whole ? "whole, " : "";
-  text += range.min == std::numeric_limits<double>::min() ? "> 0" : fmt::format("{:g}", range.min);
-  if (range.max < std::numeric_limits<double>::max()) return text + fmt::format(" to {:g}", range.max);
-  return text + (range.min == std::numeric_limits<double>::min() ? "" : " or more");
 }
 
 void print_settings(const AlgorithmDescription& algorithm) {

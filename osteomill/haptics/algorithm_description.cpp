@@ -20,21 +20,6 @@ std::string number(double value) {
   return text.str();
 }
 
-std::string range_text(const SettingRange& range) {
-  constexpr double kSmallest = std::numeric_limits<double>::min();
-  constexpr double kLargest = std::numeric_limits<double>::max();
-  std::ostringstream text;
-  text << (range.whole ? "a whole number" : "a number");
-  const bool above_0 = range.min == kSmallest;
-  if (range.max < kLargest) {
-    text << (above_0 ? " above " : " from ") << (above_0 ? 0 : range.min) << (above_0 ? " up to " : " to ")
-         << range.max;
-  } else {
-    text << (above_0 ? " above " : " of ") << (above_0 ? 0 : range.min) << (above_0 ? "" : " or more");
-  }
-  return text.str();
-}
-
 // NaN is in no range.
 bool lies_within(const SettingRange& range, double value) {
   return value >= range.min && value <= range.max && (!range.whole || std::floor(value) == value);
@@ -84,6 +69,20 @@ const SettingDescription* setting_of_option(const AlgorithmDescription& algorith
     if (setting.option == option) return &setting;
   }
   return nullptr;
+}
+
+std::string range_text(const SettingRange& range) {
+  if (range == SettingRange::on_or_off()) return "on or off";
+  const bool has_end = range.max < std::numeric_limits<double>::max();
+  std::ostringstream text;
+  text << (range.whole ? "a whole number " : "a number ");
+  if (range.min == SettingRange::positive().min) {
+    text << "above 0";
+  } else {
+    text << (has_end ? "from " : "of ") << range.min << (has_end ? "" : " or more");
+  }
+  if (has_end) text << " to " << range.max;
+  return text.str();
 }
 
 void require_in_range(const AlgorithmId& algorithm, const SettingDescription& setting, double value) {

@@ -93,6 +93,9 @@ struct SettingRange {
   }
 };
 
+/// In words: "a number above 0", "a whole number from 1 to 32", "on or off".
+std::string range_text(const SettingRange& range);
+
 /// All there is to say of one setting; nothing of it is said elsewhere.
 struct SettingDescription {
   /// As `--set ALGORITHM.NAME=VALUE`, configuration files and recordings have it.
