@@ -1,10 +1,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <span>
 #include <string>
-#include <string_view>
 #include <tuple>
 #include <vector>
 
@@ -104,15 +102,10 @@ std::size_t common_rows(const OpenRecording& recording, std::span<const OpenColu
   return rows;
 }
 
-void require_in_range(const OpenRecording& recording, const RecordColumn& column, double value) {
-  const double max = column.type == ColumnType::small_integer ? static_cast<double>(WrenchFault::eased)
-                                                              : std::numeric_limits<int>::max();
-  // Only a pose that the device did not give is not finite.
-  const bool is_missing = !std::isfinite(value) && std::string_view(column.name).starts_with("device_");
-  const bool sound = column.type == ColumnType::real
-                         ? is_missing || std::abs(value) <= kMostReal
-                         : value >= 0 && value <= max && value == std::floor(value);
-  if (!sound) refuse(recording, fmt::format("the column '{}' holds {:g}", column.name, value));
+void require_in_range(const OpenRecording& recording, const Field<TickRecord>& column, double value) {
+  const bool is_missing = column.has(kMayBeMissing) && !std::isfinite(value);
+  if (!is_missing && !column.range.contains(value))
+    refuse(recording, fmt::format("the column '{}' holds {:g}", column.name, value));
 }
 
 template <typename Value>
@@ -127,11 +120,11 @@ std::vector<Value> read_values(const OpenRecording& recording, const OpenColumn&
 
 std::vector<TickRecord> read_records(const OpenRecording& recording, bool complete) {
   std::vector<OpenColumn> columns;
-  for (const RecordColumn& column : record_columns())
-    columns.push_back(open_column(recording, std::string("columns/") + column.name));
+  for (const Field<TickRecord>& column : fields_of<TickRecord>())
+    columns.push_back(open_column(recording, "columns/" + column.name));
   std::vector<TickRecord> records(common_rows(recording, columns, complete));
   for (std::size_t n = 0; n < columns.size(); ++n) {
-    const RecordColumn& column = record_columns()[n];
+    const Field<TickRecord>& column = fields_of<TickRecord>()[n];
     const auto values = read_values<double>(recording, columns[n]);
     for (std::size_t row = 0; row < records.size(); ++row) {
       require_in_range(recording, column, values[row]);

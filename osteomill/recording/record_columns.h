@@ -2,29 +2,20 @@
 
 #include <filesystem>
 #include <span>
+#include <vector>
 
+#include "osteomill/numbers/field.h"
 #include "osteomill/session/tick_record.h"
 
 namespace osteomill {
 
-enum class ColumnType : unsigned char { real, integer, small_integer };
+/// Flags of the fields of a TickRecord: the CSV log has it (recordings have all); a clock measured it, so
+/// that it differs from run to run; it is not finite where the device gave no pose.
+inline constexpr unsigned kInLog = 1, kByTheClock = 2, kMayBeMissing = 4;
 
-/// One column of recordings and logs: how it is called and where in a record its number stands.
-struct RecordColumn {
-  const char* name;
-  /// Empty for a pure number.
-  const char* unit;
-  /// In a few words, with the frame.
-  const char* meaning;
-  ColumnType type;
-  /// Whether the CSV log has it (recordings have all).
-  bool in_log;
-  double (*get)(const TickRecord&);
-  void (*set)(TickRecord&, double);
-};
-
-/// All columns, those of the CSV log in its order.
-std::span<const RecordColumn> record_columns();
+/// Returns the columns of recordings and logs, those of the CSV log in its order.
+template <>
+const std::vector<Field<TickRecord>>& fields_of<TickRecord>();
 
 /// Writes the CSV log: a header and a row a tick, `time_s` first and `compute_us` last. Numbers are the
 /// shortest that read back to the same double, with a point whatever the locale. Appears whole or not at all;

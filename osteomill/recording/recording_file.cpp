@@ -3,6 +3,7 @@
 #include <array>
 #include <cerrno>
 #include <fstream>
+#include <limits>
 #include <string_view>
 #include <tuple>
 
@@ -43,16 +44,9 @@ constexpr const char* kFaultCodes =
     "the "
     "device's pose was not finite, 6 the device jumped, 7 the tick was late, 8 eased";
 
-hid_t file_type(ColumnType type) {
-  switch (type) {
-    case ColumnType::real:
-      return H5T_IEEE_F64LE;
-    case ColumnType::integer:
-      return H5T_STD_I32LE;
-    case ColumnType::small_integer:
-      return H5T_STD_U8LE;
-  }
-  return H5I_INVALID_HID;
+hid_t file_type(const NumberRange& range) {
+  if (!range.whole) return H5T_IEEE_F64LE;
+  return range.max <= std::numeric_limits<std::uint8_t>::max() ? H5T_STD_U8LE : H5T_STD_I32LE;
 }
 
 // The library's metadata reach the disk only when the file is flushed. Left to itself it also writes some of
@@ -177,12 +171,12 @@ Hdf5Handle RecordingFile::create_group(hid_t in, const std::string& name) const 
 
 void RecordingFile::create_columns() {
   const Hdf5Handle group = create_group(file_.get(), "columns");
-  for (const RecordColumn& column : record_columns()) {
-    columns_.push_back(
-        create_column(group.get(), column.name, file_type(column.type), column.unit, 1, kChunkRows));
+  for (const Field<TickRecord>& column : fields_of<TickRecord>()) {
+    columns_.push_back(create_column(group.get(), column.name.c_str(), file_type(column.range),
+                                     column.unit.c_str(), 1, kChunkRows));
     const Attributes write(path_, columns_.back().dataset.get());
-    write.put("meaning", column.meaning);
-    if (std::string_view(column.name) == "fault") write.put("codes", kFaultCodes);
+    write.put("meaning", column.doc);
+    if (column.name == "fault") write.put("codes", kFaultCodes);
   }
   const Hdf5Handle hashes = create_group(file_.get(), "bone_hash");
   for (const char* name : {"row", "hash"})
@@ -276,7 +270,7 @@ void RecordingFile::append(std::span<const TickRecord> records) {
   values_.resize(records.size());
   for (std::size_t c = 0; c < columns_.size(); ++c) {
     for (std::size_t row = 0; row < records.size(); ++row) {
-      values_[row] = record_columns()[c].get(records[row]);
+      values_[row] = fields_of<TickRecord>()[c].get(records[row]);
     }
     append_to<double>(columns_[c], values_);
   }

@@ -82,13 +82,9 @@ TickRecord tick_again(MillingSession& session, const TickRecord& recorded) {
                          : session.tick(device, recorded.time_s, recorded.dt_s, recorded.spindle_on);
 }
 
-bool is_measured(const RecordColumn& column) {
-  return std::string_view(column.unit) == "us";
-}
-
 std::optional<std::string> difference_of(const TickRecord& recorded, const TickRecord& now) {
-  for (const RecordColumn& column : record_columns()) {
-    if (is_measured(column)) continue;
+  for (const Field<TickRecord>& column : fields_of<TickRecord>()) {
+    if (column.has(kByTheClock)) continue;
     const double then = column.get(recorded);
     const double again = column.get(now);
     if (std::bit_cast<std::uint64_t>(then) == std::bit_cast<std::uint64_t>(again)) continue;

@@ -54,8 +54,8 @@ TEST(WriteCsv, EveryNumberReadsBackToTheSameBits) {
   ASSERT_EQ(lines.size(), records.size() + 1);
   for (std::size_t row = 0; row < records.size(); ++row) {
     std::istringstream fields(lines[row + 1]);
-    for (const RecordColumn& column : record_columns()) {
-      if (!column.in_log) continue;
+    for (const Field<TickRecord>& column : fields_of<TickRecord>()) {
+      if (!column.has(kInLog)) continue;
       std::string field;
       ASSERT_TRUE(std::getline(fields, field, ','));
       EXPECT_EQ(std::strtod(field.c_str(), nullptr), column.get(records[row])) << column.name;

@@ -63,9 +63,9 @@ inline RunDescription sample_description() {
 inline TickRecord sample_record(int tick) {
   TickRecord record;
   double number = 0.1 + tick;
-  for (const RecordColumn& column : record_columns()) {
+  for (const Field<TickRecord>& column : fields_of<TickRecord>()) {
     number = std::nextafter(number * 1.0000123, 1e300) + 0.7;
-    if (column.type == ColumnType::real) column.set(record, tick % 2 == 0 ? number : -1.0 / number);
+    if (!column.range.whole) column.set(record, tick % 2 == 0 ? number : -1.0 / number);
   }
   record.time_s = tick * 0.001;
   record.contacts = tick % 300000;
@@ -76,7 +76,7 @@ inline TickRecord sample_record(int tick) {
 
 /// Whether all columns agree bit for bit.
 inline bool same_bits(const TickRecord& a, const TickRecord& b) {
-  for (const RecordColumn& column : record_columns()) {
+  for (const Field<TickRecord>& column : fields_of<TickRecord>()) {
     const double left = column.get(a);
     const double right = column.get(b);
     if (std::memcmp(&left, &right, sizeof left) != 0) return false;
