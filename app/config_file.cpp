@@ -15,6 +15,7 @@ namespace osteomill::app {
 namespace {
 
 constexpr const char* kConfigOption = "--config";
+constexpr const char* kSetOption = "--set";
 
 // What may stand in the file: the options without their dashes, and tables named after algorithms.
 std::vector<std::string> keys_of(const CLI::App& command) {
@@ -28,9 +29,14 @@ std::vector<std::string> keys_of(const CLI::App& command) {
 
 }  // namespace
 
-void set_results(CLI::Option& option, const std::vector<std::string>& texts) {
+void set_option(CLI::App& command, const std::string& name, const std::vector<std::string>& texts) {
+  CLI::Option& option = *command.get_option(name);
   option.clear();
-  for (const std::string& text : texts) option.add_result(text);
+  for (const std::string& text : texts) {
+    // Of "--no-something", true means false.
+    const bool turns_off = is_switch(option) && (text == "true" || text == "false");
+    option.add_result(turns_off ? option.get_flag_value(name.substr(2), text) : text);
+  }
   option.run_callback();
 }
 
@@ -42,13 +48,13 @@ void apply_config_file(CLI::App& command) {
   const CLI::Option* config = command.get_option(kConfigOption);
   if (config->count() == 0) return;
   const auto file = config->as<std::string>();
-  CLI::Option& own_settings = *command.get_option("--set");
-  const std::vector<std::string> said_before = own_settings.results();
+  const std::vector<std::string> said_before = command.get_option(kSetOption)->results();
   std::vector<std::string> own;
   const toml::table table = read_toml(file);
   for (const TomlEntry& entry : options_of(table)) {
     const bool is_own = is_own_setting(entry.key);
-    CLI::Option* option = is_own ? &own_settings : command.get_option_no_throw("--" + entry.key);
+    const std::string name = is_own ? kSetOption : "--" + entry.key;
+    const CLI::Option* option = command.get_option_no_throw(name);
     if (option == nullptr || option == config || entry.key == "help")
       throw error_at(*entry.value, file,
                      fmt::format("{} has no option {}{}", command.get_name(), entry.key,
@@ -60,7 +66,7 @@ void apply_config_file(CLI::App& command) {
       texts = own;
     }
     try {
-      set_results(*option, texts);
+      set_option(command, name, texts);
     } catch (const CLI::Error& error) {
       throw error_at(*entry.value, file, error.what());
     }
@@ -68,7 +74,7 @@ void apply_config_file(CLI::App& command) {
   if (own.empty()) return;
   // The command line's come last and so win.
   own.insert(own.end(), said_before.begin(), said_before.end());
-  set_results(own_settings, own);
+  set_option(command, kSetOption, own);
 }
 
 }  // namespace osteomill::app

@@ -137,6 +137,7 @@ int main(int argc, char** argv) {
   osteomill::app::add_settings_command(program);
   osteomill::app::add_report_command(program);
   osteomill::app::add_study_command(program);
+  for (CLI::App* command : program.get_subcommands({})) osteomill::app::check_values(*command);
   const osteomill::WorkProgress watched([](double) { osteomill::app::check_memory_taken(); });
   try {
     osteomill::app::require_known_words(program, argc, argv);

@@ -15,6 +15,8 @@
 #include <CLI/Validators.hpp>
 #include <fmt/format.h>
 
+#include "osteomill/numbers/parse_number.h"
+
 namespace osteomill::app {
 
 namespace {
@@ -74,7 +76,9 @@ HapticSettings::Named named_setting(const std::string& text) {
   const std::string value = text.substr(equals + 1);
   if (value == "true" || value == "false") {
     named.value = value == "true" ? 1 : 0;
-  } else if (!CLI::detail::lexical_cast(value, named.value) || std::isnan(named.value)) {
+  } else if (const auto number = parsed_number<double>(value); number && !std::isnan(*number)) {
+    named.value = *number;
+  } else {
     throw CLI::ValidationError("--set", value + " is not a number, true or false");
   }
   try {

@@ -9,7 +9,6 @@
 #include <fmt/core.h>
 
 #include "osteomill/numbers/parse_number.h"
-#include "osteomill/numbers/positive.h"
 
 namespace osteomill::app {
 
@@ -140,9 +139,8 @@ void require_known_words(const CLI::App& program, int argc, const char* const* a
 CLI::Validator positive_number() {
   return CLI::Validator(
       [](std::string& text) {
-        double value = 0;
-        const bool good = CLI::detail::lexical_cast(text, value) && is_positive(value);
-        return good ? std::string() : text + " is not a positive number";
+        const auto value = parsed_finite(text);
+        return value && *value > 0 ? std::string() : text + " is not a positive number";
       },
       "");
 }
@@ -155,6 +153,44 @@ CLI::Validator whole_number(std::uint64_t min, std::uint64_t max) {
         return good ? std::string() : fmt::format("{} is not a whole number from {} to {}", text, min, max);
       },
       "");
+}
+
+namespace {
+
+// By its type, as add_option or type_name has it; CLI11 appends what it checks behind a colon.
+bool takes_words(const CLI::Option& option) {
+  constexpr std::string_view kWords[] = {
+      "TEXT",   "FILE",      "FOLDER", "FILE|FOLDER", "TRAJECTORY|RECORDING",
+      "SERIES", "LABEL,...", "DEVICE", "HOST",        "SETTING"};
+  const std::string type = option.get_type_name();
+  return std::ranges::find(kWords, type.substr(0, type.find(':'))) != std::end(kWords);
+}
+
+}  // namespace
+
+bool is_switch(const CLI::Option& option) {
+  return option.get_expected_max() == 0;
+}
+
+void check_values(CLI::App& command) {
+  const CLI::Validator finite(
+      [](std::string& text) {
+        const bool good = !parsed_number<double>(text) || parsed_finite(text);
+        return good ? std::string() : text + " is not a finite number";
+      },
+      "");
+  const CLI::Validator on_or_off(
+      [](std::string& text) {
+        return text == "true" || text == "false" ? std::string() : text + " is neither true nor false";
+      },
+      "");
+  for (CLI::Option* option : command.get_options()) {
+    if (is_switch(*option)) {
+      option->check(on_or_off);
+    } else if (!takes_words(*option)) {
+      option->check(finite);
+    }
+  }
 }
 
 CLI::Validator not_empty() {

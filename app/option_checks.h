@@ -29,6 +29,11 @@ void require_known_words(const CLI::App& program, int argc, const char* const* a
 CLI::Validator positive_number();
 /// Refuses what is not a whole number within these bounds.
 CLI::Validator whole_number(std::uint64_t min, std::uint64_t max);
+/// Whether it takes no value, or true or false.
+bool is_switch(const CLI::Option& option);
+/// Lets no option of this command take what none can: a number that is not finite, or, of a switch, what is
+/// neither true nor false. Call it when all options are there.
+void check_values(CLI::App& command);
 /// Refuses an empty text.
 CLI::Validator not_empty();
 

@@ -1,6 +1,7 @@
 #include "app/study_file.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <stdexcept>
 #include <vector>
@@ -88,7 +89,8 @@ class Reader {
     if (table == nullptr || !table->contains("from")) return std::nullopt;
     for (const TomlEntry& key : entries_of(*table)) require_one_of(key, {"from", "to", "steps", "log"});
     const StudyRange range{value(*table, "from", 0.0), value(*table, "to", 0.0), value(*table, "log", false)};
-    if (!(range.to >= range.from) || (range.logarithmic && !(range.from > 0)))
+    if (!std::isfinite(range.from) || !std::isfinite(range.to) || range.to < range.from ||
+        (range.logarithmic && !(range.from > 0)))
       refuse(*entry.value, fmt::format("{} has no range from {} to {}", entry.key, range.from, range.to));
     return range;
   }

@@ -14,9 +14,14 @@ namespace osteomill::app {
 
 namespace {
 
-// The library reads the parts of a dotted name by recursion: too many of them would overflow the stack.
-void require_short_names(const std::string& file) {
+// The library reads the parts of a dotted name by recursion: too many of them would overflow the stack. And
+// it takes many times the memory of the file.
+void require_readable(const std::string& file) {
   constexpr std::ptrdiff_t kMaxDots = 1000;
+  constexpr std::uintmax_t kMaxBytes = 16'000'000;
+  std::error_code error;
+  if (std::filesystem::file_size(file, error) > kMaxBytes)
+    throw InputError(file, fmt::format("is longer than {} MB", kMaxBytes / 1'000'000));
   std::ifstream in(file);
   std::string line;
   for (int number = 1; std::getline(in, line); ++number) {
@@ -30,7 +35,7 @@ void require_short_names(const std::string& file) {
 toml::table read_toml(const std::string& file) {
   if (!std::filesystem::is_regular_file(file)) throw InputError(file, "no such file");
   note_input(file);
-  require_short_names(file);
+  require_readable(file);
   try {
     return toml::parse_file(file);
   } catch (const toml::parse_error& error) {
@@ -87,6 +92,7 @@ std::vector<std::string> option_values(const toml::node& value, const std::strin
     }
   };
   if (const toml::array* list = value.as_array()) {
+    if (list->empty()) throw error_at(value, file, key + " is an empty list");
     for (const toml::node& node : *list) take(node);
   } else {
     take(value);

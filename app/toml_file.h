@@ -29,7 +29,7 @@ InputError error_at(const toml::node& place, const std::string& file, const std:
 
 /// What the command line would have said in the place of this value: one text a value, of a list several.
 /// Throws InputError, naming file, line and `key`, where it is neither a text, a number, true, false, nor a
-/// list of them.
+/// list of at least one of them.
 std::vector<std::string> option_values(const toml::node& value, const std::string& file,
                                        const std::string& key);
 
