@@ -17,6 +17,7 @@
 #include "osteomill/experiment/trial_rows.h"
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/files/csv_field.h"
+#include "osteomill/files/read_line.h"
 #include "osteomill/numbers/parse_number.h"
 
 namespace osteomill {
@@ -31,6 +32,16 @@ using M = RunMetrics;
 // Phase before algorithm, as in summary.csv.
 auto place(const MeasuredRun& run) {
   return std::tuple(run.mode, phase_number(run.phase), run.algorithm);
+}
+
+// A line that is too long ends it: no study has one.
+bool next_line(std::istream& in, std::string& line) {
+  constexpr std::size_t kMaxLine = 16384;
+  try {
+    return read_line(in, line, kMaxLine);
+  } catch (const LineTooLong&) {
+    return false;
+  }
 }
 
 // Nothing where it is not of an algorithm, mode and phase of these rows, whose number of columns it has.
@@ -215,10 +226,10 @@ void write_study_csv(const std::filesystem::path& path, const Study& study) {
 std::optional<Study> read_study_csv(const std::filesystem::path& path, const std::vector<StudyRow>& rows) {
   std::ifstream in(path);
   std::string line;
-  if (!std::getline(in, line) || line != kHandColumns + summary_columns()) return std::nullopt;
+  if (!next_line(in, line) || line != kHandColumns + summary_columns()) return std::nullopt;
   std::vector<StudyRow> all;
   std::size_t found = 0;
-  while (std::getline(in, line)) {
+  while (next_line(in, line)) {
     std::optional<StudyRow> row = read_row(line, rows);
     if (!row) continue;
     found += row->grip == 1 && std::any_of(rows.begin(), rows.end(), [&](const StudyRow& one) {

@@ -1,7 +1,9 @@
 #include "osteomill/files/run_program.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
+#include <sstream>
 
 #include <sys/wait.h>
 
@@ -21,17 +23,24 @@ std::string quoted(const std::string& word) {
   return text + "'";
 }
 
-Said run_program(const std::vector<std::string>& words) {
-  std::string line;
+Said run_program(const std::vector<std::string>& words, std::chrono::duration<double> limit) {
+  constexpr std::size_t kMostKept = 16'000'000;
+  // Whatever it has started ends with it, or else this would wait for that.
+  std::ostringstream seconds;
+  seconds << limit.count();
+  std::string line = "timeout --signal=KILL " + seconds.str() + " ";
+  const auto start = std::chrono::steady_clock::now();
   for (const std::string& word : words) line += quoted(word) + " ";
   std::FILE* output = ::popen((line + "2>&1 </dev/null").c_str(), "r");
   if (output == nullptr) throw InputError(words.front(), "cannot be started");
   Said said;
   std::array<char, 4096> part{};
   while (const std::size_t count = std::fread(part.data(), 1, part.size(), output))
-    said.text.append(part.data(), count);
+    said.text.append(part.data(), std::min(count, kMostKept - said.text.size()));
   const int status = ::pclose(output);
   said.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  if (said.exit_code != 0 && std::chrono::steady_clock::now() - start >= limit)
+    throw InputError(words.front(), "did not end within " + seconds.str() + " s");
   return said;
 }
 

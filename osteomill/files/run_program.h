@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <string>
 #include <vector>
 
@@ -15,8 +16,10 @@ struct Said {
   int exit_code = 0;
   std::string text;
 };
-/// Runs a program, found as a shell finds it, with no input and to its end. Throws InputError where it cannot
-/// be started.
-Said run_program(const std::vector<std::string>& words);
+/// Runs a program, found as a shell finds it, with no input and to its end; of what it prints the first
+/// 16 MB are kept. Throws InputError if it cannot be started, or does not end within `limit`: it is ended
+/// then, with what it has started.
+Said run_program(const std::vector<std::string>& words,
+                 std::chrono::duration<double> limit = std::chrono::minutes(5));
 
 }  // namespace osteomill

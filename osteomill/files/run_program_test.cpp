@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "osteomill/files/input_error.h"
+
 namespace osteomill {
 namespace {
 
@@ -18,6 +20,15 @@ TEST(RunProgram, WordsArriveAsTheyAre) {
 
 TEST(RunProgram, OneThatIsNotThereIsTold) {
   EXPECT_EQ(run_program({"no-such-program-anywhere"}).exit_code, Said::kNoProgram);
+}
+
+TEST(RunProgram, OneThatDoesNotEndIsEndedWithWhatItStarted) {
+  try {
+    run_program({"sh", "-c", "sleep 1000 & sleep 1000"}, std::chrono::milliseconds(200));
+    FAIL() << "it ended";
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "sh: did not end within 0.2 s");
+  }
 }
 
 }  // namespace

@@ -17,7 +17,9 @@ double microseconds_since(Clock::time_point start) {
   return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
 }
 
-const Wrench kNotFinite{Vec3::Constant(std::numeric_limits<double>::quiet_NaN()), Vec3::Zero()};
+const Vec3 kNotANumber = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+const Wrench kNotFinite{kNotANumber, Vec3::Zero()};
+const Pose kNoPose{kNotANumber, Quat::Identity()};
 
 // The bone, where the tool can work in it.
 std::shared_ptr<Volume> workable(const MillingTool& tool, std::shared_ptr<Volume> bone) {
@@ -73,6 +75,8 @@ TickRecord MillingSession::begin_record(Device& device, double time_s, double dt
   record.let_go = std::exchange(let_go_asked_, false);
   if (record.let_go) guard_.let_go();
   record.X_WD = device.read_pose();
+  // No device is there, and where it is not the indices of voxels would overflow.
+  if (!is_reachable(record.X_WD)) record.X_WD = kNoPose;
   record.given_share = device.given_share();
   if (place_asked_ && is_finite(record.X_WD)) {
     place_asked_ = false;

@@ -189,6 +189,16 @@ TEST_F(MillingSessionTest, ADeviceWithoutAPoseGetsNothing) {
   EXPECT_EQ(record.X_WT.position_mm, Vec3(0, 0, 1.0)) << "the tool stays where it was last shown";
 }
 
+TEST_F(MillingSessionTest, NoAlgorithmIsGivenAPoseFartherThanAnyWorkspace) {
+  for (const double far_mm : {1e308, -1e308, 1.01 * kFarthestPose_mm}) {
+    device_.put({{0, far_mm, 0}, Quat::Identity()});
+    const TickRecord record = tick();
+    EXPECT_EQ(record.fault, WrenchFault::pose_not_finite);
+    EXPECT_EQ(device_.sent().force_N, Vec3::Zero());
+    EXPECT_TRUE(is_finite(record.X_WT));
+  }
+}
+
 TEST_F(MillingSessionTest, BoneGoesWhileTheSpindleTurnsAndTheAlgorithmHearsOfIt) {
   algorithm_->next.burr_force_W_N.z() = -2;
   EXPECT_EQ(tick(false).removed_mm3, 0);

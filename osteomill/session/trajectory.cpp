@@ -12,6 +12,7 @@
 #include "osteomill/files/csv_field.h"
 #include "osteomill/files/input_error.h"
 #include "osteomill/files/input_files.h"
+#include "osteomill/files/read_line.h"
 #include "osteomill/numbers/parse_number.h"
 
 namespace osteomill {
@@ -55,10 +56,14 @@ class TrajectoryReader {
   }
 
   bool next_line() {
-    if (!std::getline(file_, line_)) return false;
+    ++row_number_;
+    try {
+      if (!read_line(file_, line_, kMaxLine)) return false;
+    } catch (const LineTooLong&) {
+      fail("too long for a row of a trajectory");
+    }
     // Spreadsheets put a byte order mark before the first line.
-    if (row_number_++ == 0 && line_.starts_with("\xEF\xBB\xBF")) line_.erase(0, 3);
-    if (line_.size() > kMaxLine) fail("too long for a row of a trajectory");
+    if (row_number_ == 1 && line_.starts_with("\xEF\xBB\xBF")) line_.erase(0, 3);
     return true;
   }
 
@@ -79,8 +84,8 @@ class TrajectoryReader {
     Row row;
     for (std::size_t n = 0; n < kColumns.size(); ++n) {
       const std::string_view text = fields[field_of_column_[n]];
-      const auto value = parsed_number<double>(text);
-      if (!value || !std::isfinite(*value)) fail(fmt::format("{} is not a number: '{}'", kColumns[n], text));
+      const auto value = parsed_finite(text);
+      if (!value) fail(fmt::format("{} is not a number: '{}'", kColumns[n], text));
       row[n] = *value;
     }
     return row;
@@ -90,6 +95,8 @@ class TrajectoryReader {
     TrajectoryPoint point;
     point.time_s = row[0];
     point.X_WD.position_mm = {row[1], row[2], row[3]};
+    if (!is_reachable(point.X_WD))
+      fail(fmt::format("x_mm,y_mm,z_mm is farther than {:g} mm from the origin", kFarthestPose_mm));
     const Quat orientation(row[4], row[5], row[6], row[7]);
     if (!(std::abs(orientation.norm() - 1.0) <= kUnitTolerance)) {
       fail(fmt::format("qw,qx,qy,qz is not a unit quaternion (its length is {:.6g})", orientation.norm()));

@@ -15,10 +15,18 @@ struct TrajectoryPoint {
   bool milling = false;
 };
 
+/// How far from the origin of W a pose can be, along each axis: beyond any scanner and any device.
+inline constexpr double kFarthestPose_mm = 3e5;
+/// Returns whether the pose is finite and not farther than that. Safe in the haptic tick.
+inline bool is_reachable(const Pose& pose) {
+  return is_finite(pose) && pose.position_mm.cwiseAbs().maxCoeff() <= kFarthestPose_mm;
+}
+
 /// Reads CSV with the columns time_s,x_mm,y_mm,z_mm,qw,qx,qy,qz,milling (in any order; others are passed
 /// over), one row a tick. Throws InputError naming the file and the row for a missing column, a value that is
-/// not a finite number, a quaternion that is not of unit length within 1e-3, milling other than 0 or 1, a
-/// time that does not go forward, a row with too few values, or no row at all.
+/// not a finite number, a pose that is not reachable, a line of over 4096 bytes, a quaternion that is not of
+/// unit length within 1e-3, milling other than 0 or 1, a time that does not go forward, a row with too few
+/// values, or no row at all.
 std::vector<TrajectoryPoint> read_trajectory(const std::filesystem::path& path);
 
 /// A device that is where it is put, and remembers what it was sent: for replays and tests.

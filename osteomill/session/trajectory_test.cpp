@@ -55,6 +55,19 @@ TEST_F(TrajectoryTest, ColumnsAreFoundByName) {
   EXPECT_EQ(points[0].time_s, 5);
 }
 
+TEST_F(TrajectoryTest, APoseFartherThanAnyWorkspaceIsRefusedAtItsRow) {
+  EXPECT_EQ(read(kHead + std::string("0,300000,-300000,0,1,0,0,0,1\n")).size(), 1u);
+  for (const char* far : {"0.001,1e308,10,20,1,0,0,0,1", "0.001,0,-300001,0,1,0,0,0,1"})
+    EXPECT_EQ(fault_of(fmt::format("{}0,0,0,0,1,0,0,0,1\n{}\n", kHead, far)),
+              "row 3: x_mm,y_mm,z_mm is farther than 300000 mm from the origin");
+}
+
+TEST_F(TrajectoryTest, AFileWithoutLineEndsIsReadNoFurtherThanARowCanBe) {
+  EXPECT_EQ(fault_of(std::string(5000, '\0')), "row 1: too long for a row of a trajectory");
+  // It has no end.
+  EXPECT_THROW(read_trajectory("/dev/zero"), InputError);
+}
+
 TEST_F(TrajectoryTest, AByteOrderMarkIsNoPartOfAName) {
   EXPECT_EQ(read("\xEF\xBB\xBF" + std::string(kHead) + "0,1,2,3,1,0,0,0,0\n").size(), 1u);
 }

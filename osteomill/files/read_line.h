@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstddef>
+#include <istream>
+#include <stdexcept>
+#include <string>
+
+namespace osteomill {
+
+/// A line that is longer than it may be.
+class LineTooLong : public std::length_error {
+ public:
+  LineTooLong() : std::length_error("a line is too long") {}
+};
+
+/// Reads the next line into `line`, without its end, and never more than `max_bytes` of it: a file without
+/// line ends takes no memory. Returns false at the end of the stream. Throws LineTooLong for a longer line.
+inline bool read_line(std::istream& in, std::string& line, std::size_t max_bytes) {
+  constexpr int kEnd = std::char_traits<char>::eof();
+  line.clear();
+  if (in.rdbuf() == nullptr || !in) return false;
+  std::streambuf& bytes = *in.rdbuf();
+  int byte = bytes.sbumpc();
+  if (byte == kEnd) return false;
+  for (; byte != '\n' && byte != kEnd; byte = bytes.sbumpc()) {
+    if (line.size() == max_bytes) throw LineTooLong();
+    line += static_cast<char>(byte);
+  }
+  return true;
+}
+
+}  // namespace osteomill
