@@ -70,7 +70,14 @@ void require_same_program(const StudyFolder& folder) {
 
 // So that a fault of any trial is told before the first is run.
 void check_every_trial(StudyTrials& study) {
-  for (std::size_t n = 0; n < study.design().trial_count(); ++n) study.make(n, 1);
+  constexpr std::size_t kBetweenProgress = 256;
+  const std::size_t count = study.design().trial_count();
+  for (std::size_t n = 0; n < count; ++n) {
+    study.make(n, 1);
+    if (n % kBetweenProgress == 0)
+      show_progress("checking", static_cast<double>(n) / static_cast<double>(count));
+  }
+  end_progress();
 }
 
 // The CPU time of three trials spread over the study, the shortest first.

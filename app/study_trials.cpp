@@ -1,6 +1,7 @@
 #include "app/study_trials.h"
 
 #include <algorithm>
+#include <new>
 #include <stdexcept>
 
 #include "app/config_file.h"
@@ -8,7 +9,6 @@
 #include "app/progress.h"
 #include "app/study_file.h"
 #include "app/toml_file.h"
-#include <CLI/Error.hpp>
 #include <fmt/format.h>
 
 #include "osteomill/experiment/match_stiffness.h"
@@ -68,6 +68,7 @@ StudyDesign StudyTrials::read_design() {
   add_positive(command_, "--grip", asked_.grip, "", "How many times as firmly the hand grips");
   command_.add_flag("--draw-hand", asked_.draw_hand, "The seed draws the hand");
   add_trial_options(command_, asked_.trial);
+  check_values(command_);
   StudyDesign design = read_study_file(file_, keys());
   design.units = units();
   return design;
@@ -103,13 +104,13 @@ void StudyTrials::take(const StudySettings& settings) {
     if (is_own_setting(key)) {
       named.push_back(key + "=" + text);
     } else if (key != "scan" || text != kBuiltIn) {
-      set_results(*command_.get_option(option_name(key)), {text});
+      set_option(command_, option_name(key), {text});
     }
   }
   for (const auto& [key, text] : settings)
     if (asked_.draw_hand && key.starts_with("hand-"))
       throw std::invalid_argument("draw-hand draws what " + key + " sets");
-  if (!named.empty()) set_results(*command_.get_option("--set"), named);
+  if (!named.empty()) set_option(command_, "--set", named);
   if (!asked_.scan.scan.empty()) asked_.scan.scan = (scans_from_ / asked_.scan.scan).string();
   asked_.scan.refinement = Asked().voxel_mm / asked_.voxel_mm;
 }
@@ -165,16 +166,13 @@ std::vector<TrialPlan> StudyTrials::make(std::size_t first, std::size_t count) {
   if (bones_.size() > kBonesKept) bones_.clear();
   std::vector<TrialPlan> trials;
   for (std::size_t number = first; number < first + count; ++number) {
-    const auto refuse = [&](const std::exception& error) {
-      throw InputError(file_, fmt::format("trial {}: {}", number, error.what()));
-    };
     try {
       trials.push_back(trial_of(design_.trial(number)));
       require_runnable(design_.test, trials.back());
-    } catch (const CLI::Error& error) {
-      refuse(error);
-    } catch (const std::invalid_argument& error) {
-      refuse(error);
+    } catch (const std::bad_alloc&) {
+      throw;
+    } catch (const std::exception& error) {
+      throw InputError(file_, fmt::format("trial {}: {}", number, error.what()));
     }
   }
   return trials;

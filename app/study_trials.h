@@ -36,7 +36,7 @@ class StudyTrials {
 
   /// Trials that follow each other. They hold on to this object's bones: until the next call. Throws
   /// InputError, naming the file and the trial, where a setting is out of its range or does not go with the
-  /// others, and naming the scan where that is at fault or has changed.
+  /// others, or where its scan is at fault or has changed.
   std::vector<TrialPlan> make(std::size_t first, std::size_t count);
 
  private:

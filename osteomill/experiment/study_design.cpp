@@ -13,7 +13,7 @@ namespace osteomill {
 
 namespace {
 
-constexpr std::size_t kMaxTrials = 1'000'000'000;
+constexpr std::size_t kMaxTrials = 10'000'000;
 
 std::vector<std::uint32_t> shuffled(std::size_t count, SeededRandom& random) {
   std::vector<std::uint32_t> order(count);

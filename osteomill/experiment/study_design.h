@@ -74,7 +74,7 @@ std::vector<std::string> names_in(std::string_view shown);
 /// type; its trials are made from their numbers as they are needed, so that a million take no memory.
 class StudyDesign {
  public:
-  /// Throws std::invalid_argument, with one line, where an axis is empty or there are more than 1e9 trials.
+  /// Throws std::invalid_argument, with one line, where an axis is empty or there are more than 1e7 trials.
   StudyDesign(StudySettings fixed, std::vector<StudyAxis> grid, LatinHypercube hypercube);
 
   std::size_t trial_count() const { return count_; }

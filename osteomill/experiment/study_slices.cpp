@@ -4,7 +4,9 @@
 #include <array>
 #include <fstream>
 #include <iterator>
+#include <new>
 #include <sstream>
+#include <stdexcept>
 
 #include <fmt/format.h>
 
@@ -142,8 +144,17 @@ Slice run_slice(const StudyFolder& study, std::size_t number, const std::vector<
                 std::size_t threads, const RunEvents& events) {
   Slice slice{number, {}, 0};
   const std::size_t first = study.record.first_of(number);
-  const auto tried = run_trials(trials, "study", threads, events,
-                                [&](const TrialPlan& trial) { return try_trial(study.test, trial); });
+  const auto tried = run_trials(trials, "study", threads, events, [&](const TrialPlan& trial) {
+    try {
+      return try_trial(study.test, trial);
+    } catch (const std::bad_alloc&) {
+      throw;
+    } catch (const std::exception& error) {
+      throw InputError((study.path / "study.toml").string(),
+                       fmt::format("trial {}: {}", first + static_cast<std::size_t>(&trial - trials.data()),
+                                   error.what()));
+    }
+  });
   for (std::size_t n = 0; n < tried.size(); ++n) {
     slice.cpu_s += tried[n].cpu_s;
     if (tried[n].faults) events.warn(fmt::format("trial {}: {}", first + n, *tried[n].faults));

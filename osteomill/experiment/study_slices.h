@@ -61,7 +61,7 @@ struct Slice {
 std::filesystem::path slice_path(const std::filesystem::path& folder, std::size_t number);
 
 /// Runs the trials of a slice, side by side on `threads` threads; but for times, the rows are the same
-/// however many.
+/// however many. Throws InputError, naming the study's file and the trial, if one cannot be run.
 Slice run_slice(const StudyFolder& study, std::size_t number, const std::vector<TrialPlan>& trials,
                 std::size_t threads, const RunEvents& events);
 

@@ -77,6 +77,12 @@ variant 's/ball.nrrd/none.nrrd/'
 refused "none.nrrd: no such file" "$osteomill" study variant.toml --out c
 variant 's/^seconds.*/hand-stiffness = 1\ndraw-hand = true/'
 refused "trial 0: draw-hand draws what hand-stiffness sets$" "$osteomill" study variant.toml --out c
+variant 's/from = 0.5, to = 2/from = 0.5, to = inf/'
+refused "^osteomill: variant.toml: line [0-9]+: push has no range from 0.5 to inf$" "$osteomill" study variant.toml --out c
+variant 's/^seconds.*/entry = "99,99,99"/'
+refused "^osteomill: variant.toml: trial 0: .*entry" "$osteomill" study variant.toml --out c
+variant 's/^trials = .*/trials = 6000000/'
+refused "^osteomill: variant.toml: has more than 10000000 trials$" "$osteomill" study variant.toml --out c
 [ ! -e c ] || fault "what was refused left a folder"
 variant 's/seconds = 1/seconds = 0.2/'
 refused "^osteomill: a: holds another study$" "$osteomill" study variant.toml --out a
