@@ -24,6 +24,7 @@
 #include "osteomill/experiment/parallel.h"
 #include "osteomill/experiment/run_trials.h"
 #include "osteomill/files/atomic_file.h"
+#include "osteomill/numbers/parse_number.h"
 #include "osteomill/recording/recording.h"
 #include "osteomill/volume/density_grid.h"
 
@@ -55,6 +56,7 @@ std::vector<TrialPlan> trials_of(const CompareOptions& options, const LoadedBone
                                  const std::string& command_line) {
   TrialPlan plan = trial_plan(bone, options.trial, command_line);
   plan.mode_in_names = options.modes.size() > 1;
+  plan.comparison = new_comparison();
   plan.scan_hash = fingerprint_of(bone.volume.grid());
   plan.settings.hand_and_device.script.until_leant = true;
   std::vector<TrialPlan> trials;
@@ -124,16 +126,23 @@ void run_compare(const CompareOptions& options, const std::string& command_line)
   const LoadedBone bone = load_bone(options.scan);
   std::vector<TrialPlan> trials = trials_of(options, bone, command_line);
   if (options.match_stiffness) match_stiffness(options, trials);
-  create_folder(options.out);
   const EntryPictures pictures(bone.volume, trials.front().densities.reference, trials.front().entry,
                                events_on_terminal(), !options.scan.scan.empty());
+  std::vector<fs::path> paths;
+  ReportExtras extras;
+  // What an earlier comparison left there goes when this one is done, and not before.
+  write_folder_atomically(
+      options.out,
+      [&](const fs::path& beside) {
+        for (const TrialPlan& trial : trials)
+          for (const fs::path& path : record_trial(trial, pictures, beside, events_on_terminal()))
+            paths.push_back(options.out / path.filename());
+        extras.others = try_other_hands(options, trials);
+        if (!options.no_stability) extras.passivity = press_on_walls(options, trials.front().settings);
+      },
+      is_of_a_comparison);
   std::vector<Recording> recordings;
-  for (const TrialPlan& trial : trials) {
-    for (const fs::path& path : record_trial(trial, pictures, options.out, events_on_terminal()))
-      recordings.push_back(read_recording(path));
-  }
-  ReportExtras extras{try_other_hands(options, trials), {}};
-  if (!options.no_stability) extras.passivity = press_on_walls(options, trials.front().settings);
+  for (const fs::path& path : paths) recordings.push_back(read_recording(path));
   fmt::print("{}\n", write_comparison_report(recordings, options.out, extras).string());
 }
 
@@ -156,8 +165,7 @@ void refuse_a_stiffness(const CLI::App& command) {
 void add_match_stiffness(CLI::App& command, CompareOptions& options) {
   const auto take = [&options](const std::string& text) {
     options.match_stiffness = true;
-    options.matched_N_per_mm = 0;
-    if (!text.empty() && text != "softest") CLI::detail::lexical_cast(text, options.matched_N_per_mm);
+    options.matched_N_per_mm = parsed_finite(text).value_or(0);
   };
   const auto check = [](const std::string& text) {
     const bool usable = text.empty() || text == "softest" || positive_number()(std::string(text)).empty();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <random>
 #include <utility>
 
 #include <fmt/core.h>
@@ -11,6 +12,7 @@
 #include "osteomill/experiment/paper.h"
 #include "osteomill/experiment/parallel.h"
 #include "osteomill/experiment/trial_plan.h"
+#include "osteomill/haptics/algorithms.h"
 #include "osteomill/recording/recorder.h"
 #include "osteomill/recording/recording.h"
 #include "osteomill/report/run_groups.h"
@@ -74,6 +76,24 @@ MilledTrial mill(const TrialPlan& plan, MillingTrial& trial, const RunEvents& ev
 }
 
 }  // namespace
+
+std::string new_comparison() {
+  std::random_device device;
+  return fmt::format("{:08x}{:08x}", device(), device());
+}
+
+bool is_of_a_comparison(const std::string& name) {
+  constexpr std::string_view kReport[] = {"report.html", "summary.csv", "study.csv", "stability.csv",
+                                          "figures"};
+  if (std::ranges::find(kReport, name) != std::end(kReport)) return true;
+  return std::ranges::any_of(kPhases, [&](std::string_view phase) {
+    const std::size_t dash = name.rfind(fmt::format("-{}.", phase));
+    return dash != std::string::npos && name.ends_with(".h5") &&
+           std::ranges::any_of(algorithm_names(), [&](const std::string& algorithm) {
+             return name.starts_with(algorithm) && algorithm.size() <= dash;
+           });
+  });
+}
 
 std::vector<fs::path> record_trial(const TrialPlan& plan, const EntryPictures& pictures,
                                    const fs::path& folder, const RunEvents& events) {

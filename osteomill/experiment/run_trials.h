@@ -55,6 +55,13 @@ StudyRow row_of(const MeasuredRun& run);
 std::vector<StudyRow> run_study_trials(const std::vector<TrialPlan>& trials, std::size_t threads,
                                        const RunEvents& events);
 
+/// Returns a text that no other comparison has (kComparisonKey).
+std::string new_comparison();
+
+/// Returns whether a comparison writes a file or folder of this name: a recording that `record_trial` names,
+/// or a part of the report.
+bool is_of_a_comparison(const std::string& name);
+
 /// Runs the trial through both phases of section 8.2 and then writes one recording a phase into `folder`,
 /// with pictures of the bone before and after in the first, or a setting that says why there are none.
 /// Returns their paths. Throws InputError where a recording cannot be written, and std::invalid_argument

@@ -61,6 +61,7 @@ RunDescription describe_trial(const TrialPlan& plan, int sample_points, std::str
   add_hand(run.settings, person.hand);
   add_device(run.settings, person.handle);
   add_script(run.settings, person.script, plan.entry);
+  if (!plan.comparison.empty()) run.settings.push_back({std::string(kComparisonKey), plan.comparison, ""});
   if (plan.matched_N_per_mm) {
     run.settings.push_back({std::string(kMatchedStiffnessKey), *plan.matched_N_per_mm, "N/mm"});
   }

@@ -28,6 +28,8 @@ struct TrialPlan {
   /// The algorithm's stiffness was chosen so that a flat wall is felt as this (match_stiffness.h); nothing
   /// where it has its own.
   std::optional<double> matched_N_per_mm = std::nullopt;
+  /// What kComparisonKey says in its recordings; empty for nothing.
+  std::string comparison = {};
   /// Of the bone as scanned (fingerprint_of), for its recordings to be verified.
   std::uint64_t scan_hash = 0;
 };

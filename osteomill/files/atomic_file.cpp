@@ -69,6 +69,17 @@ std::vector<fs::path> files_in(const fs::path& folder) {
   return files;
 }
 
+void remove_stale(const fs::path& folder, const std::function<bool(const std::string&)>& stale) {
+  std::vector<fs::path> found;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
+    if (stale(entry.path().filename().string())) found.push_back(entry.path());
+  for (const fs::path& path : found) {
+    std::error_code error;
+    fs::remove_all(path, error);
+    if (error) throw InputError(path.string(), "cannot be removed: " + error.message());
+  }
+}
+
 // What is being handled, of a file beside by the name that it was to have.
 [[noreturn]] void throw_by_its_name(const fs::path& beside, const fs::path& folder) {
   try {
@@ -135,7 +146,8 @@ void write_text_atomically(const fs::path& path, const std::function<void(std::o
   });
 }
 
-void write_folder_atomically(const fs::path& folder, const std::function<void(const fs::path&)>& write) {
+void write_folder_atomically(const fs::path& folder, const std::function<void(const fs::path&)>& write,
+                             const std::function<bool(const std::string&)>& stale) {
   std::error_code ignored;
   const bool was_there = fs::exists(folder, ignored);
   const fs::path beside = name_beside(folder / "files");
@@ -145,6 +157,7 @@ void write_folder_atomically(const fs::path& folder, const std::function<void(co
     write(beside);
     const std::vector<fs::path> files = files_in(beside);
     for (const fs::path& file : files) output_path(folder / file);
+    if (stale) remove_stale(folder, stale);
     for (const fs::path& file : files) {
       create_folder((folder / file).parent_path());
       rename_to(beside / file, output_path(folder / file), folder / file);

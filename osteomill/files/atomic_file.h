@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <functional>
 #include <ostream>
+#include <string>
 
 namespace osteomill {
 
@@ -28,8 +29,11 @@ void write_text_atomically(const std::filesystem::path& path,
 /// As `write_file_atomically`, for files that belong together: calls `write` with an empty folder, then moves
 /// all that is in it into `folder`, over files of the same names. What `write` throws is passed on; then none
 /// of its files is left, nor `folder` itself if it is new. Throws InputError where a file cannot be written.
+/// What is `stale` in `folder`, by the names there, is removed when all is written and before it is moved, so
+/// that nothing of an earlier output ever stands beside this one, also if the program is killed meanwhile.
 void write_folder_atomically(const std::filesystem::path& folder,
-                             const std::function<void(const std::filesystem::path& beside)>& write);
+                             const std::function<void(const std::filesystem::path& beside)>& write,
+                             const std::function<bool(const std::string& name)>& stale = {});
 
 /// Creates `folder` and its parents. Throws InputError naming it where that is impossible.
 void create_folder(const std::filesystem::path& folder);

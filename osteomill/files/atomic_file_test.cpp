@@ -168,5 +168,22 @@ TEST_F(AtomicFileTest, OfFilesThatBelongTogetherNoneIsLeftWhereOneFails) {
   EXPECT_EQ(file_count(), 1);
 }
 
+TEST_F(AtomicFileTest, AFolderKeepsNothingStaleOfAnEarlierOutput) {
+  for (const char* name : {"a.h5", "b.h5", "notes.txt"}) std::ofstream(folder_ / name) << "old";
+  const auto stale = [](const std::string& name) { return name.ends_with(".h5"); };
+  const auto write = [&](const fs::path& beside) {
+    EXPECT_TRUE(fs::exists(folder_ / "b.h5")) << "it stays while the new is written";
+    std::ofstream(beside / "a.h5") << "new";
+  };
+  write_folder_atomically(folder_, write, stale);
+  EXPECT_FALSE(fs::exists(folder_ / "b.h5"));
+  EXPECT_EQ(content(folder_ / "a.h5"), "new");
+  EXPECT_EQ(content(folder_ / "notes.txt"), "old");
+  EXPECT_THROW(write_folder_atomically(
+                   folder_, [](const fs::path&) { throw InputError("x", "y"); }, stale),
+               InputError);
+  EXPECT_EQ(content(folder_ / "a.h5"), "new") << "what fails replaces nothing";
+}
+
 }  // namespace
 }  // namespace osteomill

@@ -31,6 +31,10 @@ inline constexpr std::string_view kCommandLineKey = "command_line";
 /// none.
 inline constexpr std::string_view kNotReachedKey = "not_reached";
 
+/// And of the one that says by which comparison a recording was made: the same text in all of its recordings,
+/// and in no others. Recordings of nothing that is compared have none.
+inline constexpr std::string_view kComparisonKey = "comparison";
+
 /// Where and when a recording was made. Nothing of it is of a patient.
 struct Origin {
   /// "2026-11-22T13:45:00Z".

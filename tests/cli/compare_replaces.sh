@@ -1,0 +1,41 @@
+#!/usr/bin/env bash
+# A comparison takes the place of an earlier one in its folder as a whole, when it is done: killed before, it leaves the earlier
+# one alone. What does not belong together is reported with what differs, and nothing is concluded from it.
+set -euo pipefail
+osteomill=$1
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cd "$folder"
+
+fault() { echo "FAILED: $1"; exit 1; }
+compare() { "$osteomill" compare --no-stability --quiet --out c "$@" >out; }
+recordings() { (cd c && echo *.h5); }
+
+compare --seconds 0.3 --algorithm line-proxy --seeds 2
+echo mine >c/notes.txt
+[ -s c/study.csv ] || fault "no study.csv"
+compare --seconds 30 --algorithm point-shell --seed 2 --burr-radius 2 --seeds 3 &
+killed=$!
+for n in $(seq 300); do
+  if [ -n "$(find c -path '*point-shell-milling.h5')" ]; then break; fi
+  sleep 0.1
+done
+[ -n "$(find c -path '*point-shell-milling.h5')" ] || fault "the second comparison records nothing"
+kill -9 $killed
+wait $killed 2>/dev/null || true
+[ "$(recordings)" = "line-proxy-holding.h5 line-proxy-milling.h5" ] || fault "killed, it left $(recordings)"
+[ -s c/study.csv ] && [ -s c/report.html ] || fault "killed, it took the earlier report away"
+
+compare --seconds 0.3 --algorithm point-shell --seed 2 --burr-radius 2
+[ "$(recordings)" = "point-shell-holding.h5 point-shell-milling.h5" ] || fault "of an earlier comparison stayed $(recordings)"
+[ ! -e c/study.csv ] || fault "the earlier study.csv stayed"
+[ "$(cat c/notes.txt)" = mine ] || fault "what is of no comparison went"
+ids=$(strings -n 16 c/*.h5 | grep -cE '^[0-9a-f]{16}$') || true
+[ "${ids:-0}" -ge 2 ] || fault "the recordings carry no id"
+
+"$osteomill" compare --seconds 0.3 --algorithm line-proxy --no-stability --quiet --push 2 --out d >out
+"$osteomill" report c/*.h5 d/*.h5 --quiet --out e >out
+grep -q "These recordings differ in burr_radius (mm)" e/report.html || fault "the mix is not told"
+grep -q "<th>[^<]*seed" e/report.html && grep -q "<th>[^<]*hand.push (N)" e/report.html || fault "what differs is no column"
+grep -q "the same bone" e/report.html && fault "the mix is said to be of the same bone"
+exit 0
