@@ -12,6 +12,7 @@
 #include "osteomill/experiment/study_section.h"
 #include "osteomill/experiment/trial_plan.h"
 #include "osteomill/files/atomic_file.h"
+#include "osteomill/report/report_parts.h"
 #include "osteomill/report/write_report.h"
 
 namespace osteomill {
@@ -21,6 +22,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kStudyCsv = "study.csv";
+constexpr const char* kTitle = "6-DOF haptic algorithms compared while milling bone";
 
 // The paper's mean haptic rate in Hz, figure 6; empty for an algorithm or a phase that is not in the paper.
 std::string paper_rate(const MeasuredRun& run) {
@@ -60,6 +62,34 @@ PageSection opening(const Study& study, const std::vector<Recording>& recordings
   return section;
 }
 
+// The recordings do not belong together, or some algorithm lacks a phase that another has.
+PageSection opening_of_a_mix(const std::vector<RunGroup>& groups) {
+  std::vector<AlgorithmId> algorithms;
+  for (const RunGroup& group : groups)
+    for (const AlgorithmId& algorithm : group.algorithms()) algorithms.push_back(algorithm);
+  std::vector<std::string> labels;
+  for (const AlgorithmId& algorithm : each_once(std::move(algorithms))) labels.push_back(algorithm.label);
+  return {.paragraphs = {fmt::format(
+              "Recordings of {}, which were not made as one comparison: either they differ in more than the "
+              "algorithm, or an algorithm lacks what another was recorded with. So nothing is concluded from "
+              "them here.",
+              fmt::join(labels, ", "))}};
+}
+
+bool belong_together(const std::vector<Recording>& recordings) {
+  std::vector<const Recording*> all;
+  for (const Recording& recording : recordings) all.push_back(&recording);
+  return differences_table(all).rows.empty();
+}
+
+// Every algorithm that was tried in a mode has every phase that another has.
+bool have_the_same_phases(const std::vector<RunGroup>& groups) {
+  return std::ranges::all_of(groups, [&](const RunGroup& group) {
+    return group.phases() == groups.front().phases() &&
+           group.runs.size() == group.phases().size() * group.algorithms().size();
+  });
+}
+
 Study study_of(const std::vector<RunGroup>& groups, const ReportExtras& extras) {
   std::vector<StudyRow> rows;
   for (const RunGroup& group : groups) {
@@ -97,6 +127,8 @@ bool are_of_comparison(const std::vector<Recording>& recordings) {
 fs::path write_comparison_report(const std::vector<Recording>& recordings, const fs::path& out_dir,
                                  const ReportExtras& extras) {
   const std::vector<RunGroup> groups = group_runs(recordings, phase_metrics);
+  if (!belong_together(recordings) || !have_the_same_phases(groups))
+    return write_report(groups, out_dir, {.title = kTitle, .opening = opening_of_a_mix(groups)});
   const Study study = study_of(groups, extras);
   // Measured beside the recordings and kept nowhere else: they stay where no figure can be drawn.
   const bool has_hands = study.seeds().size() > 1;
@@ -107,7 +139,7 @@ fs::path write_comparison_report(const std::vector<Recording>& recordings, const
   write_folder_atomically(out_dir, [&](const fs::path& beside) {
     create_folder(beside / "figures");
     PageText text;
-    text.title = "6-DOF haptic algorithms compared while milling bone";
+    text.title = kTitle;
     text.opening = opening(study, recordings);
     text.sections = {findings_section(study)};
     if (has_hands) text.sections.push_back(hands_section(study, beside));

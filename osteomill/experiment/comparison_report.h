@@ -23,8 +23,9 @@ bool are_of_comparison(const std::vector<Recording>& recordings);
 
 /// The report of any session (write_report) with what the test of section 8.2 adds: what was compared and the
 /// verdict ahead of all, the paper's findings held against it, and where there are extras, a section on each,
-/// with their numbers in study.csv and stability.csv, which are there also where the report fails. Returns
-/// the page's path. Throws as write_report does.
+/// with their numbers in study.csv and stability.csv, which are there also where the report fails. Nothing is
+/// concluded from recordings that differ in more than the algorithm (differences_table). Returns the page's
+/// path. Throws as write_report does.
 std::filesystem::path write_comparison_report(const std::vector<Recording>& recordings,
                                               const std::filesystem::path& out_dir,
                                               const ReportExtras& extras = {});

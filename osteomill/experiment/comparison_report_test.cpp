@@ -165,9 +165,35 @@ TEST_F(ReportTest, WhatAReaderMustKnowIsSaid) {
   const std::string html = bytes_of(write_comparison_report(runs, out_));
   EXPECT_NE(html.find("line-proxy-holding.h5 is unfinished"), std::string::npos);
   EXPECT_NE(html.find("surface-points-holding.h5 lacks 7 ticks"), std::string::npos);
-  EXPECT_NE(html.find("point-shell-holding.h5 is of another scan"), std::string::npos);
+  EXPECT_NE(html.find("These recordings differ in scan."), std::string::npos);
   EXPECT_NE(html.find("&lt;script&gt;another"), std::string::npos);
   EXPECT_EQ(html.find("<script"), std::string::npos);
+}
+
+// Two comparisons of which each has another burr, push and seed, and what is left of a third.
+TEST_F(ReportTest, NothingIsConcludedFromRecordingsThatDoNotBelongTogether) {
+  std::vector<Recording> runs = sample_runs(Mode::steady, 200);
+  const std::string together = bytes_of(write_comparison_report(runs, out_));
+  EXPECT_NE(together.find("milled the same bone"), std::string::npos);
+  EXPECT_EQ(together.find("These recordings differ"), std::string::npos);
+  RunDescription& other = runs[2].description;
+  other.seed = 7;
+  other.tool.burr_radius_mm = 2.25;
+  for (RunSetting& setting : other.settings)
+    if (setting.key == "push") setting.value = 3.5;
+  const std::string mix = bytes_of(write_comparison_report(runs, out_));
+  EXPECT_NE(mix.find("These recordings differ in burr_radius (mm), seed, push (N)."), std::string::npos);
+  EXPECT_NE(mix.find("<td>2.25</td><td>7</td><td>3.5</td>"), std::string::npos);
+  for (const char* untrue : {"the same bone", "one simulated hand", "agrees</span>", "Tool: a burr of"})
+    EXPECT_EQ(mix.find(untrue), std::string::npos) << untrue;
+}
+
+TEST_F(ReportTest, NothingIsConcludedWhereAnAlgorithmLacksAPhase) {
+  std::vector<Recording> runs = sample_runs(Mode::steady, 200);
+  runs.pop_back();
+  const std::string html = bytes_of(write_comparison_report(runs, out_));
+  EXPECT_NE(html.find("an algorithm lacks what another was recorded with"), std::string::npos);
+  EXPECT_EQ(html.find("the same bone"), std::string::npos);
 }
 
 TEST_F(ReportTest, WherePicturesCouldNotBeMadeItIsSaidInTheirPlace) {

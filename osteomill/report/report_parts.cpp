@@ -234,6 +234,7 @@ std::vector<RunSetting> all_settings(const RunDescription& d) {
   std::vector<RunSetting> settings{
       {"program_version", d.program_version, ""},
       {"scan", d.scan_name, ""},
+      {"scan_fingerprint", fmt::format("{:016x}", d.scan_hash), ""},
       {"voxels", fmt::format("{} × {} × {}", d.dims[0], d.dims[1], d.dims[2]), ""},
       {"spacing", fmt::format("{} × {} × {}", d.spacing_mm.x(), d.spacing_mm.y(), d.spacing_mm.z()), "mm"},
       {"isovalue", d.isovalue, ""},
@@ -313,6 +314,45 @@ HtmlTable settings_table(const std::vector<const Recording*>& recordings) {
   for (const SettingLine& line : collect(recordings)) {
     table.rows.push_back(
         {html_escaped(line.key), html_escaped(value_of(line, recordings)), html_escaped(raised(line.unit))});
+  }
+  return table;
+}
+
+namespace {
+
+// What an algorithm is set to means nothing to another one.
+bool is_of_the_algorithm(const std::string& key) {
+  return key == "mode" || key == kSamplePointsKey || key.starts_with("algorithm.");
+}
+
+bool differs(const SettingLine& line, const std::vector<const Recording*>& recordings) {
+  if (line.key == kComparisonKey || line.key == kPicturesKey) return false;
+  for (std::size_t a = 0; a < recordings.size(); ++a) {
+    for (std::size_t b = 0; b < a; ++b) {
+      const RunDescription &first = recordings[a]->description, &second = recordings[b]->description;
+      const bool comparable = !is_of_the_algorithm(line.key) ||
+                              (first.algorithm == second.algorithm && first.mode == second.mode);
+      if (comparable && line.values[a] != line.values[b]) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+HtmlTable differences_table(const std::vector<const Recording*>& recordings) {
+  HtmlTable table{{"Recording"}, {}};
+  std::vector<SettingLine> lines = collect(recordings);
+  std::erase_if(lines, [&](const SettingLine& line) { return !differs(line, recordings); });
+  for (const SettingLine& line : lines) {
+    const std::string unit = line.unit.empty() ? "" : fmt::format(" ({})", raised(line.unit));
+    table.header.push_back(html_escaped(line.key + unit));
+  }
+  if (lines.empty()) return table;
+  for (std::size_t n = 0; n < recordings.size(); ++n) {
+    table.rows.push_back({html_escaped(recordings[n]->path.string())});
+    for (const SettingLine& line : lines)
+      table.rows.back().push_back(html_escaped(line.values[n].value_or("")));
   }
   return table;
 }

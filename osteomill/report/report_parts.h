@@ -45,4 +45,9 @@ std::optional<Figure> draw_label_figure(const RunGroup& group, const std::filesy
 /// or, where that does not tell them apart, of each recording. The command line is left out.
 HtmlTable settings_table(const std::vector<const Recording*>& recordings);
 
+/// Returns what keeps recordings from being of the same bone, tool, hand and settings: a row for each
+/// recording and a column for each setting that is not the same in all; an algorithm's own settings are only
+/// compared between recordings of that algorithm. No rows where they belong together.
+HtmlTable differences_table(const std::vector<const Recording*>& recordings);
+
 }  // namespace osteomill

@@ -28,9 +28,7 @@ std::vector<const Recording*> all_recordings(const Groups& groups) {
 
 PageSection notices(const std::vector<const Recording*>& recordings) {
   PageSection section;
-  const RunDescription& first = recordings.front()->description;
   for (const Recording* recording : recordings) {
-    const RunDescription& d = recording->description;
     const std::string name = recording->path.filename().string();
     if (!recording->complete) {
       section.notices.push_back(name + " is unfinished: the program ended before it closed the recording.");
@@ -39,12 +37,21 @@ PageSection notices(const std::vector<const Recording*>& recordings) {
       section.notices.push_back(fmt::format("{} lacks {} ticks for which there was no room while recording.",
                                             name, recording->dropped));
     }
-    if (d.scan_name != first.scan_name || d.dims != first.dims || d.isovalue != first.isovalue) {
-      section.notices.push_back(name + " is of another scan or isovalue than " +
-                                recordings.front()->path.filename().string() + "; compare them with care.");
-    }
   }
   return section;
+}
+
+// Of recordings that do not belong together.
+std::vector<PageSection> differences(const std::vector<const Recording*>& recordings) {
+  HtmlTable table = differences_table(recordings);
+  if (table.rows.empty()) return {};
+  const std::vector<std::string> settings(table.header.begin() + 1, table.header.end());
+  return {
+      {.title = "What differs between the recordings",
+       .notices = {fmt::format("These recordings differ in {}. What follows may come from that as well as "
+                               "from the algorithms.",
+                               fmt::join(settings, ", "))},
+       .tables = {std::move(table)}}};
 }
 
 PageSection what_was_run(const std::vector<const Recording*>& recordings) {
@@ -53,6 +60,12 @@ PageSection what_was_run(const std::vector<const Recording*>& recordings) {
   for (const Recording* recording : recordings) {
     seconds = std::max(seconds, recording->records.back().time_s - recording->records.front().time_s);
   }
+  if (!differences_table(recordings).rows.empty())
+    return {
+        .title = "What was run",
+        .paragraphs = {fmt::format("{} recordings of up to {:.4g} s, which differ as the first table shows. "
+                                   "osteomill {}.",
+                                   recordings.size(), seconds, d.program_version)}};
   return {
       .title = "What was run",
       .paragraphs = {fmt::format("Scan: {}, {} × {} × {} voxels of {:.4g} × {:.4g} × {:.4g} mm, bone above "
@@ -276,11 +289,12 @@ PageSection how_to_repeat(const std::vector<const Recording*>& recordings) {
 
 std::string report_page(const Groups& groups, const PageText& text, const fs::path& folder) {
   const std::vector<const Recording*> recordings = all_recordings(groups);
-  std::vector<PageSection> sections{notices(recordings),
-                                    text.opening ? *text.opening : sessions_in_words(groups)};
+  std::vector<PageSection> sections{notices(recordings)};
   const auto add = [&](const std::vector<PageSection>& more) {
     sections.insert(sections.end(), more.begin(), more.end());
   };
+  add(differences(recordings));
+  sections.push_back(text.opening ? *text.opening : sessions_in_words(groups));
   add(pictures_section(groups, folder));
   for (const Topic& topic : kFelt) sections.push_back(topic_section(topic, groups, text, folder));
   sections.push_back(labels_section(groups, folder));

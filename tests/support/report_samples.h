@@ -34,7 +34,7 @@ inline Recording sample_run(std::string_view algorithm, std::string_view phase, 
   d.mode = mode;
   d.phase = phase;
   d.seed = 1;
-  d.settings = {{"stiffness", a == 1 ? 20.0 : 2.0, "N/mm"},
+  d.settings = {{"algorithm.stiffness", a == 1 ? 20.0 : 2.0, "N/mm"},
                 {"push", 1.5, "N"},
                 {"hand_stiffness", 500.0, "N/m"},
                 {"removal_rate", 2.0, "mm^3/(N s)"},
