@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 const std::vector<Target>& targets() {
   static const std::vector<Target> all = [] {
     std::vector<Target> found = volume_targets();
-    for (const auto& part : {dicom_targets(), run_targets()})
+    for (const auto& part : {dicom_targets(), run_targets(), study_file_targets()})
       found.insert(found.end(), part.begin(), part.end());
     return found;
   }();

@@ -2,6 +2,7 @@
 
 #include "app/config_file.h"
 #include "app/milling_options.h"
+#include "app/option_checks.h"
 #include "fuzz/targets.h"
 #include <CLI/CLI.hpp>
 #include <hdf5.h>
@@ -39,6 +40,7 @@ void read_config(Bytes bytes, const fs::path& folder) {
   command->add_option("--seconds", number);
   command->add_option("--out", text);
   app::add_milling_options(*command, milling);
+  app::check_values(*command);
   program.parse(std::vector<std::string>{(folder / "c.toml").string(), "--config", "replay"});
   app::apply_config_file(*command);
 }

@@ -26,6 +26,8 @@ const std::vector<Target>& targets();
 std::vector<Target> volume_targets();
 std::vector<Target> dicom_targets();
 std::vector<Target> run_targets();
+/// Files of studies, and trajectories along which every algorithm is driven.
+std::vector<Target> study_file_targets();
 
 /// Reads a scan, in little memory, and makes of it what `osteomill info` tells.
 void read_as_info_does(const std::filesystem::path& path);
