@@ -41,7 +41,6 @@ struct CompareOptions {
   ScanOptions scan;
   TrialOptions trial;
   std::vector<AlgorithmDescription> algorithms = all_algorithms();
-  std::vector<Mode> modes{Mode::steady};
   int seeds = 1;
   int threads = static_cast<int>(core_count());
   bool no_stability = false;
@@ -51,22 +50,17 @@ struct CompareOptions {
   std::string out = "osteomill-comparison";
 };
 
-// With the first seed, mode by mode, every algorithm that has this mode.
+// With the first seed, every algorithm.
 std::vector<TrialPlan> trials_of(const CompareOptions& options, const LoadedBone& bone,
                                  const std::string& command_line) {
   TrialPlan plan = trial_plan(bone, options.trial, command_line);
-  plan.mode_in_names = options.modes.size() > 1;
   plan.comparison = new_comparison();
   plan.scan_hash = fingerprint_of(bone.volume.grid());
   plan.settings.hand_and_device.script.until_leant = true;
   std::vector<TrialPlan> trials;
-  for (const Mode mode : options.modes) {
-    for (const AlgorithmDescription& algorithm : options.algorithms) {
-      if (!runs_in(algorithm, mode, options.modes)) continue;
-      trials.push_back(options.seeds > 1 ? with_seed(plan, options.trial.milling.seed) : plan);
-      trials.back().settings.algorithm = algorithm;
-      trials.back().settings.haptics.mode = mode;
-    }
+  for (const AlgorithmDescription& algorithm : options.algorithms) {
+    trials.push_back(options.seeds > 1 ? with_seed(plan, options.trial.milling.seed) : plan);
+    trials.back().settings.algorithm = algorithm;
   }
   return trials;
 }
@@ -92,10 +86,9 @@ void match_stiffness(const CompareOptions& options, std::vector<TrialPlan>& tria
   }
 }
 
-// Of the paper's algorithm 2 as published, every hand tries other grips too.
+// Of the paper's algorithm 2 every hand tries other grips too.
 void add_other_grips(std::vector<TrialPlan>& others, const TrialPlan& trial) {
-  if (trial.settings.haptics.mode != Mode::paper || trial.settings.algorithm.id != kPapersAlgorithms[1])
-    return;
+  if (trial.settings.algorithm.id != kPapersAlgorithms[1]) return;
   for (const TrialPlan& grip : trials_in_other_grips(trial)) others.push_back(grip);
 }
 
@@ -115,7 +108,7 @@ std::vector<StudyRow> try_other_hands(const CompareOptions& options, const std::
 std::vector<PassivityRow> press_on_walls(const CompareOptions& options, const TrialSettings& settings) {
   const Volume wall = flat_wall(settings.tool);
   std::vector<PassivityRow> rows =
-      run_trials(passivity_cases(options.algorithms, options.modes, settings), "stability",
+      run_trials(passivity_cases(options.algorithms, settings), "stability",
                  static_cast<std::size_t>(options.threads), events_on_terminal(),
                  [&](const TrialSettings& device) { return measure_passivity(device, wall); });
   end_progress();
@@ -194,7 +187,6 @@ void add_compare_command(CLI::App& program, const std::string& command_line) {
       ->type_name("FOLDER")
       ->capture_default_str();
   add_algorithm_option(*command, options->algorithms);
-  add_modes_option(*command, options->modes);
   add_count(
       *command, "--seeds", options->seeds, kMaxSeeds,
       "How many hands try it, each with a seed of its own, --seed the first; the report then says which "

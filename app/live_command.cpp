@@ -221,7 +221,6 @@ void add_live_command(CLI::App& program, const std::string& command_line) {
   command->group("Compare and measure");
   add_scan_options(*command, options->scan);
   add_algorithm_option(*command, options->trial.milling.setup.algorithm);
-  add_mode_option(*command, options->trial.milling.setup.haptics.mode);
   add_trial_options(*command, options->trial);
   command->remove_option(command->get_option("--seconds"));
   command->option_defaults()->group("The hand and its device");

@@ -33,20 +33,6 @@ void add_choice(CLI::App& command, const std::string& kind, const std::vector<st
 
 }  // namespace
 
-void add_mode_option(CLI::App& command, Mode& mode) {
-  add_choice(command, "mode", {"paper", "steady"}, name_of(mode), "MODE",
-             "paper as published, steady with every improvement",
-             [&mode](const std::string& name) { mode = *mode_named(name); });
-}
-
-void add_modes_option(CLI::App& command, std::vector<Mode>& modes) {
-  add_choice(command, "mode", {"paper", "steady", "both"}, name_of(modes.front()), "MODE",
-             "paper as published, steady with every improvement, or both", [&modes](const std::string& name) {
-               const auto one = mode_named(name);
-               modes = one ? std::vector{*one} : std::vector{Mode::paper, Mode::steady};
-             });
-}
-
 namespace {
 
 std::vector<std::string> setting_names(const AlgorithmDescription& algorithm) {
@@ -55,7 +41,7 @@ std::vector<std::string> setting_names(const AlgorithmDescription& algorithm) {
   return names;
 }
 
-// "point-shell.guarded-move=false"
+// "point-shell.scale=2"
 HapticSettings::Named named_setting(const std::string& text) {
   const std::size_t dot = text.find('.');
   const std::size_t equals = text.find('=');

@@ -38,10 +38,6 @@ std::span<const MillingOption> milling_options();
 /// Copies from `given` into `setup` those milling options that stand on the command line, and no others.
 void take_given_options(const CLI::App& command, MillingSetup given, MillingSetup& setup);
 
-/// Adds --mode for a command that works in one mode, or in one or both.
-void add_mode_option(CLI::App& command, Mode& mode);
-void add_modes_option(CLI::App& command, std::vector<Mode>& modes);
-
 /// Adds the tool, the algorithms' settings, milling, limits, --seed and --config to a command.
 void add_milling_options(CLI::App& command, MillingOptions& options);
 

@@ -12,7 +12,7 @@
 namespace osteomill::app {
 
 /// The end of a message about a word that is not known: "; did you mean point-shell?", or where none of the
-/// known words is near and they are few, "; there are paper and steady", else nothing.
+/// known words is near and they are few, "; there are milling and wall", else nothing.
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& known);
 
 /// Refuses what is none of `names`; `kind` says what they are ("algorithm").

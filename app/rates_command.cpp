@@ -30,8 +30,7 @@ void run_rates(const RatesOptions& options) {
   const LoadedBone bone = load_bone(options.scan);
   const TrialPlan plan = trial_plan(bone, options.trial, "");
   create_folder(options.out);
-  MeasuredRates measured{
-      plan.settings.haptics.mode, measure_rates(plan, options.algorithms, show_progress), {}};
+  MeasuredRates measured{measure_rates(plan, options.algorithms, show_progress), {}};
   end_progress();
   const bool has_vertices = std::any_of(options.algorithms.begin(), options.algorithms.end(),
                                         [](const auto& one) { return one.id == "surface-points"; });
@@ -53,7 +52,6 @@ void add_rates_command(CLI::App& program) {
       ->type_name("FOLDER")
       ->capture_default_str();
   add_algorithm_option(*command, options->algorithms);
-  add_mode_option(*command, options->trial.milling.setup.haptics.mode);
   add_trial_options(*command, options->trial);
   add_quiet_option(*command);
   command->callback([=] {

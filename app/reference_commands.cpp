@@ -37,14 +37,13 @@ std::string number_text(double value, bool on_or_off) {
 
 void print_settings(const AlgorithmDescription& algorithm) {
   fmt::print(
-      "\n## {}\n{}.\n\n| setting | unit | range | paper | steady | meaning |\n|---|---|---|---|---|---|\n",
+      "\n## {}\n{}.\n\n| setting | unit | range | default | meaning |\n|---|---|---|---|---|\n",
       algorithm.id.label, algorithm.summary);
   for (const SettingDescription& setting : algorithm.settings) {
     const bool on_or_off = setting.range == SettingRange::on_or_off();
     const std::string option = setting.option.empty() ? "" : fmt::format(" (also `--{}`)", setting.option);
-    fmt::print("| `{}` | {} | {} | {} | {} | {}{} |\n", setting.name, setting.unit, range_text(setting.range),
-               number_text(setting.paper, on_or_off), number_text(setting.steady, on_or_off), setting.meaning,
-               option);
+    fmt::print("| `{}` | {} | {} | {} | {}{} |\n", setting.name, setting.unit, range_text(setting.range),
+               number_text(setting.value, on_or_off), setting.meaning, option);
   }
 }
 

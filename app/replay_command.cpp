@@ -120,7 +120,7 @@ void verify(const Volume& scan, const Recording& recording) {
 // The settings of the command line, each under this algorithm's own name, so that they come after the
 // recorded ones and win.
 HapticSettings settings_for(const AlgorithmDescription& algorithm, const HapticSettings& said) {
-  HapticSettings own{said.mode};
+  HapticSettings own;
   for (const HapticSettings::Named& named : said.named) {
     if (!named.algorithm.empty()) {
       own.named.push_back(named);
@@ -140,9 +140,8 @@ RunDescription run_as(const ReplayOptions& options, RunDescription run) {
   SessionSettings session = session_settings(run, options.input);
   MillingSetup& setup = session.setup;
   setup.algorithm = *algorithm;
-  const Mode mode = options.given("--mode") ? said.mode : run.mode;
-  // Settings of another algorithm, or of another mode, mean nothing here.
-  if (!(run.algorithm == algorithm->id) || mode != run.mode) setup.haptics = {mode};
+  // Settings of another algorithm mean nothing here.
+  if (!(run.algorithm == algorithm->id)) setup.haptics = {};
   setup.haptics.named.insert(setup.haptics.named.end(), said.named.begin(), said.named.end());
   take_given_options(*options.command, given, setup);
   set_session_settings(run, session, 0);
@@ -229,7 +228,6 @@ void add_replay_command(CLI::App& program, const std::string& command_line) {
   command->add_option("--out", options->out, "The log, CSV, a row a tick")->type_name("FILE");
   command->add_option("--record", options->record, "Of a recording's motion, another recording")
       ->type_name("FILE");
-  add_mode_option(*command, options->milling.setup.haptics.mode);
   add_milling_options(*command, options->milling);
   add_quiet_option(*command);
   command->callback([=] {

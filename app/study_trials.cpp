@@ -59,7 +59,6 @@ StudyDesign StudyTrials::read_design() {
       ->type_name("mm");
   command_.option_defaults()->group("A study");
   add_algorithm_option(command_, asked_.trial.milling.setup.algorithm);
-  add_mode_option(command_, asked_.trial.milling.setup.haptics.mode);
   command_.add_option("--rate", asked_.rate_hz, "Of the haptic loop")
       ->check(CLI::Range(100.0, 20000.0))
       ->type_name("Hz");

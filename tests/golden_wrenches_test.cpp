@@ -19,7 +19,6 @@ namespace {
 
 struct Golden {
   std::string_view algorithm;
-  Mode mode;
   std::uint64_t hash;
 };
 
@@ -44,7 +43,7 @@ TEST_P(GoldenWrenches, AreTheSameBitsAtAnyOptimisation) {
   const MillingTool tool;
   const BoneDensities densities = estimate_densities(volume);
   MillingSession session(std::make_shared<Volume>(std::move(volume)), densities,
-                         {.algorithm = algorithm_named(GetParam().algorithm), .haptics = {GetParam().mode}});
+                         {.algorithm = algorithm_named(GetParam().algorithm)});
   PosedDevice device;
   std::uint64_t hash = 0xcbf29ce484222325;
   for (int n = 0; n < kTicks; ++n) {
@@ -56,17 +55,14 @@ TEST_P(GoldenWrenches, AreTheSameBitsAtAnyOptimisation) {
 }
 
 INSTANTIATE_TEST_SUITE_P(AllAlgorithms, GoldenWrenches,
-                         ::testing::Values(Golden{"line-proxy", Mode::paper, 0x4ae5dc947858fe18},
-                                           Golden{"line-proxy", Mode::steady, 0xfff9264060c33f8e},
-                                           Golden{"surface-points", Mode::paper, 0xe2ea466e2b30f36e},
-                                           Golden{"surface-points", Mode::steady, 0x1044fba5e095c793},
-                                           Golden{"point-shell", Mode::paper, 0x3467afb63e917654},
-                                           Golden{"point-shell", Mode::steady, 0x7637918c076b98ea},
-                                           Golden{"barrier-shell", Mode::steady, 0xafd73b9abae070a9}),
+                         ::testing::Values(Golden{"line-proxy", 0x4ae5dc947858fe18},
+                                           Golden{"surface-points", 0xe2ea466e2b30f36e},
+                                           Golden{"point-shell", 0x3467afb63e917654},
+                                           Golden{"barrier-shell", 0xafd73b9abae070a9}),
                          [](const auto& test) {
                            std::string name(test.param.algorithm);
                            name[name.find('-')] = '_';
-                           return name + "_" + std::string(name_of(test.param.mode));
+                           return name;
                          });
 
 }  // namespace

@@ -32,7 +32,6 @@ TEST(TickAllocation, TheCounterCounts) {
 
 struct Case {
   std::string_view algorithm;
-  Mode mode;
 };
 
 class TickAllocation : public ::testing::TestWithParam<Case> {};
@@ -61,7 +60,7 @@ TEST_P(TickAllocation, NoTickAllocates) {
   const MillingTool tool;
   const BoneDensities densities = estimate_densities(volume);
   MillingSession session(std::make_shared<Volume>(std::move(volume)), densities,
-                         {.algorithm = algorithm_named(GetParam().algorithm), .haptics = {GetParam().mode}});
+                         {.algorithm = algorithm_named(GetParam().algorithm), .haptics = {}});
   PosedDevice device;
   constexpr int kTicks = 3000;
   int touching = 0;
@@ -96,16 +95,12 @@ TEST_P(TickAllocation, NoTickAllocates) {
 }
 
 INSTANTIATE_TEST_SUITE_P(AllAlgorithms, TickAllocation,
-                         ::testing::Values(Case{"line-proxy", Mode::paper}, Case{"line-proxy", Mode::steady},
-                                           Case{"surface-points", Mode::paper},
-                                           Case{"surface-points", Mode::steady},
-                                           Case{"point-shell", Mode::paper},
-                                           Case{"point-shell", Mode::steady},
-                                           Case{"barrier-shell", Mode::steady}),
+                         ::testing::Values(Case{"line-proxy"}, Case{"surface-points"}, Case{"point-shell"},
+                                           Case{"barrier-shell"}),
                          [](const auto& test) {
                            std::string name(test.param.algorithm);
                            name[name.find('-')] = '_';
-                           return name + "_" + std::string(name_of(test.param.mode));
+                           return name;
                          });
 
 // The whole loop of the haptic thread, with the hand-over to the follower, the vibration, and commands coming

@@ -126,7 +126,7 @@ Section energy_given_back() {
   Section section{
       "Energy given back",
       fmt::format(
-          "Must hold: a device that is pressed {} mm into bone and drawn back at {:.0f} mm/s gets at most "
+          "Must hold for 4: a device that is pressed {} mm into bone and drawn back at {:.0f} mm/s gets at most "
           "5 % more of what was put in than a spring that is sampled at 1 kHz gives, {:.3f}, and one that is "
           "pressed and leant {} times in a hole, burr and shaft at once, no more either. Watched at the "
           "device, the wrench of a tick times the movement until the next; {} turns of the scene against the "
@@ -148,7 +148,7 @@ Section energy_given_back() {
       cells.push_back(median_and_worst(of_way));
       holds = holds && percentile(of_way, 1) <= 1.05 * ideal;
     }
-    section.add(cells, holds);
+    section.add_of(algorithm, cells, holds);
   }
   return section;
 }

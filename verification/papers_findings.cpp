@@ -30,7 +30,6 @@ using Change = std::function<void(TrialSettings&)>;
 std::vector<StudyRow> rows_on(const Volume& bone, Hands hands, double phase_s,
                               const std::vector<std::size_t>& algorithms, const Change& change) {
   TrialSettings settings;
-  settings.haptics.mode = Mode::paper;
   ScriptSettings& script = settings.hand_and_device.script;
   script.until_leant = true;
   script.milling_s = script.holding_s = phase_s;
@@ -59,7 +58,7 @@ std::vector<StudyRow> rows_on(const Volume& bone, Hands hands, double phase_s) {
 void add_findings(Section& section, const Volume& bone, const std::string& name, Hands hands,
                   double phase_s) {
   for (const StudyFinding& finding :
-       check_study_findings(Study(rows_on(bone, hands, phase_s)), Mode::paper)) {
+       check_study_findings(Study(rows_on(bone, hands, phase_s)))) {
     section.add(
         {fmt::format("{}, {} to {}: {}", name, hands.first, hands.last, finding.of_medians.paper_says),
          finding.of_medians.measured, fmt::format("{} of {}", finding.agreeing, finding.tested)},
@@ -95,8 +94,6 @@ std::vector<Choice> choices() {
   return {
       setting(1, "stiffness", 2),
       setting(1, "stiffness", 8),
-      setting(1, "friction", 0.05),
-      setting(1, "friction", 0.2),
       setting(2, "stiffness", 10),
       setting(2, "stiffness", 40),
       setting(3, "scale", 1),
@@ -125,7 +122,7 @@ std::vector<Choice> choices() {
 double median_of(const Study& study, std::size_t algorithm, std::string_view phase,
                  double (*value)(const RunMetrics&)) {
   return distribution_of(
-             study.values({algorithm_named(kPapersAlgorithms[algorithm - 1]).id, Mode::paper}, phase, value))
+             study.values(algorithm_named(kPapersAlgorithms[algorithm - 1]).id, phase, value))
       .median;
 }
 
@@ -133,7 +130,7 @@ double median_of(const Study& study, std::size_t algorithm, std::string_view pha
 void add_choice(Section& section, const std::string& name, std::vector<StudyRow> rows) {
   const Study study(std::move(rows));
   std::vector<std::size_t> missing;
-  const std::vector<StudyFinding> findings = check_study_findings(study, Mode::paper);
+  const std::vector<StudyFinding> findings = check_study_findings(study);
   for (std::size_t n = 0; n < findings.size(); ++n) {
     if (findings[n].of_medians.verdict != Verdict::agrees) missing.push_back(n + 1);
   }
@@ -153,7 +150,7 @@ void add_choice(Section& section, const std::string& name, std::vector<StudyRow>
 
 void add_choices(Section& section, const Volume& bone, const std::string& name, double phase_s) {
   const std::vector<StudyRow> as_it_is = rows_on(bone, kChosenWith, phase_s);
-  add_choice(section, fmt::format("{}, `paper` as it is", name), as_it_is);
+  add_choice(section, fmt::format("{}, as it is", name), as_it_is);
   for (const Choice& choice : choices()) {
     std::vector<StudyRow> rows = rows_on(bone, kChosenWith, phase_s, choice.algorithms, choice.change);
     for (const StudyRow& row : as_it_is) {
@@ -171,8 +168,8 @@ Section papers_findings(const Bones& bones, const Effort& effort) {
       "What the paper found",
       fmt::format(
           "Must hold: the nine findings of section 8 of the paper, by the rules of a comparison's report. "
-          "The paper's three algorithms in `paper`, hands drawn by seed ({} to {}, with which `paper`'s "
-          "choices were made on the built-in tooth, and {} to {}), the phases of `compare --seconds {:g}`. "
+          "The paper's three algorithms, hands drawn by seed ({} to {}, with which what it leaves open was "
+          "chosen on the built-in tooth, and {} to {}), the phases of `compare --seconds {:g}`. "
           "Medians of the hands in which the tool kept contact, where those are more than half; a finding "
           "that could not be tested misses.",
           kChosenWith.first, kChosenWith.last, kOthers.first, kOthers.last, effort.phase_s),
@@ -191,7 +188,7 @@ Section papers_choices(const Bones& bones, const Effort& effort) {
   Section section{
       "What the paper leaves open",
       fmt::format(
-          "Reported: the same findings, numbered as above from 1 to 9, with one of `paper`'s choices, "
+          "Reported: the same findings, numbered as above from 1 to 9, with one of the choices, "
           "or the hand, or the device, another way. Hands {} to {}, medians; force above 20 Hz (rms, "
           "N) and torque above 20 Hz (rms, N mm) of 1 / 2 / 3.",
           kChosenWith.first, kChosenWith.last),

@@ -28,11 +28,10 @@ struct Depth {
   }
 };
 
-/// What is felt (of 1 the centreline that it collides, of the others the tool), and what is drawn.
+/// How deep the simulated tool came, as its centreline and with its radii.
 struct PushOutcome {
-  Depth felt;
-  Depth drawn_centreline;
-  Depth drawn_tool;
+  Depth centreline;
+  Depth tool;
 };
 
 inline constexpr int kTicksBetweenLooks = 4;

@@ -6,12 +6,23 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
+#include "osteomill/haptics/algorithms.h"
+
 namespace osteomill::verification {
 
 void Section::add(std::vector<std::string> cells, bool holds) {
   if (!holds) misses.push_back(cells.front());
   cells.emplace_back(holds ? "holds" : "**misses**");
   rows.push_back(std::move(cells));
+}
+
+void Section::add_of(std::string_view algorithm, std::vector<std::string> cells, bool holds) {
+  if (algorithm == default_algorithm().id) {
+    add(std::move(cells), holds);
+  } else {
+    cells.emplace_back("reported");
+    rows.push_back(std::move(cells));
+  }
 }
 
 std::string to_markdown(const Section& section) {

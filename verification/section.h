@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "osteomill/numbers/distribution.h"
@@ -19,6 +20,8 @@ struct Section {
 
   /// Adds a row; a last cell says whether it holds.
   void add(std::vector<std::string> cells, bool holds);
+  /// Adds a row of an algorithm: of ours as `add` does; those of the paper are reported, whatever they do.
+  void add_of(std::string_view algorithm, std::vector<std::string> cells, bool holds);
 };
 
 /// The section as Markdown.

@@ -8,8 +8,8 @@
 
 #include "osteomill/volume/volume.h"
 
-// What docs/verification.md is made of, a function a table. Each measures `steady`, the default, but where it
-// says otherwise, and is the same on any machine but for compute times.
+// What docs/verification.md is made of, a function a table. Each is the same on any machine but for compute
+// times.
 namespace osteomill::verification {
 
 /// The bones that are milled and pushed against.
@@ -43,7 +43,7 @@ Section thin_bone();
 Section spongy_bone(const Bones& bones);
 Section tools_and_pushes(const Bones& bones, const Effort& effort);
 Section breaking_through(const Effort& effort);
-/// Of `paper`, as the paper has its algorithms.
+/// Of the algorithms as published.
 Section papers_findings(const Bones& bones, const Effort& effort);
 /// The same with one thing another way that the paper leaves open.
 Section papers_choices(const Bones& bones, const Effort& effort);
@@ -59,6 +59,5 @@ Section milling_the_tooth(const Bones& bones, const Effort& effort);
 Section milling_with_cutting_reaction(const Bones& bones, const Effort& effort);
 Section milling_the_second_scan(const Bones& bones, const Effort& effort);
 Section soak(const Bones& bones, const Effort& effort);
-Section switch_by_switch(const Bones& bones, const Effort& effort);
 
 }  // namespace osteomill::verification

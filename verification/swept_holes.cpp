@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <span>
 #include <string>
 
 #include "tests/shapes.h"
@@ -76,10 +75,9 @@ struct Milled {
   double paid_share = 0;
 };
 
-Milled mill(std::string_view algorithm, const Hole& hole, double seconds) {
+Milled mill(const Hole& hole, double seconds) {
   const Volume bone = block(hole);
   TrialSettings settings;
-  settings.algorithm = algorithm_named(algorithm);
   settings.tool.burr_radius_mm = hole.burr_radius_mm;
   settings.tool.shaft_radius_mm = std::min(settings.tool.shaft_radius_mm, 0.7 * hole.burr_radius_mm);
   settings.hand_and_device.hand.push_N = hole.push_N;
@@ -101,8 +99,7 @@ Milled mill(std::string_view algorithm, const Hole& hole, double seconds) {
 }
 
 // Of the holes that differ in their voxels alone.
-void add_all_voxels(Section& section, const std::string& algorithm, const std::vector<Hole>& holes,
-                    std::span<const Milled> milled) {
+void add_all_voxels(Section& section, const std::vector<Hole>& holes, const std::vector<Milled>& milled) {
   const Hole usual{};
   std::vector<double> shares;
   for (std::size_t n = 0; n < holes.size(); ++n) {
@@ -111,7 +108,7 @@ void add_all_voxels(Section& section, const std::string& algorithm, const std::v
   }
   const auto [least, greatest] = std::minmax_element(shares.begin(), shares.end());
   section.add(
-      {algorithm + ", all voxels", "", fmt::format("{:.3f} to {:.3f}", *least, *greatest), "", "", "", ""},
+      {"all voxels", "", fmt::format("{:.3f} to {:.3f}", *least, *greatest), "", "", "", ""},
       *greatest / *least - 1 <= kAlikeWithin);
 }
 
@@ -134,30 +131,26 @@ Section swept_holes(const Effort& effort) {
           "alike "
           "within {:g} %.",
           100 * kVolumeWithin, 100 * kPaidWithin, effort.phase_s / 2, 100 * kAlikeWithin),
-      {"algorithm, voxels", "swept, mm3", "cut / swept", "left, mm", "lost, mm", "lost at edges, mm",
+      {"voxels", "swept, mm3", "cut / swept", "left, mm", "lost, mm", "lost at edges, mm",
        "removed / paid for", ""},
       {},
       {}};
   const std::vector<Hole> all = holes();
-  std::vector<Milled> milled(all.size() * algorithm_names().size());
-  in_parallel(milled.size(), [&](std::size_t n) {
-    milled[n] = mill(algorithm_names()[n / all.size()], all[n % all.size()], effort.phase_s / 2);
-  });
+  std::vector<Milled> milled(all.size());
+  in_parallel(milled.size(), [&](std::size_t n) { milled[n] = mill(all[n], effort.phase_s / 2); });
   for (std::size_t n = 0; n < milled.size(); ++n) {
-    const Hole& hole = all[n % all.size()];
+    const Hole& hole = all[n];
     const Carving& c = milled[n].carving;
     const double voxel_mm = hole.spacing_mm.maxCoeff();
     section.add(
-        {fmt::format("{}, {}", algorithm_names()[n / all.size()], hole.name), figure(c.swept_mm3),
+        {hole.name, figure(c.swept_mm3),
          fmt::format("{:.3f}", c.share()), fmt::format("{:.3f}", c.left_mm), fmt::format("{:.3f}", c.lost_mm),
          fmt::format("{:.3f}", c.edge_lost_mm), fmt::format("{:.4f}", milled[n].paid_share)},
         std::abs(c.share() - 1) <= kVolumeWithin && c.left_mm <= 0.5 * voxel_mm &&
             c.lost_mm <= std::min(0.25 * voxel_mm, 0.03) &&
             std::abs(milled[n].paid_share - 1) <= kPaidWithin);
   }
-  for (std::size_t n = 0; n < algorithm_names().size(); ++n) {
-    add_all_voxels(section, algorithm_names()[n], all, std::span(milled).subspan(n * all.size(), all.size()));
-  }
+  add_all_voxels(section, all, milled);
   return section;
 }
 

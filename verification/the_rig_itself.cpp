@@ -20,7 +20,7 @@ Section the_rig_itself(const Bones& bones, const Effort& effort) {
       fmt::format(
           "Must hold for 4: milling adds nothing to the force above 20 Hz that the hand's tremor makes with "
           "the "
-          "spindle off (5 %); the others are reported. The hand of `compare` on {} for {:.0f} s, seed 11, "
+          "spindle off (5 %). The hand of `compare` on {} for {:.0f} s, seed 11, "
           "with "
           "the spindle on, with the spindle off, and with the spindle on but the handle's pose read without "
           "rounding: one step of the encoder, 1e-4 rad, is 0.1 N mm by itself at 1000 N mm/rad.",
@@ -41,8 +41,8 @@ Section the_rig_itself(const Bones& bones, const Effort& effort) {
       for (const TrialFigures& run : f) cells.push_back(figure(run.hp_over_mean()));
       for (const TrialFigures& run : f) cells.push_back(figure(run.metrics.torque_Nmm.step_max));
       for (const TrialFigures& run : f) cells.push_back(figure(run.metrics.force_N.step_max));
-      section.add(std::move(cells),
-                  algorithm != "barrier-shell" || f[0].hp_over_mean() <= kNoExcess * f[1].hp_over_mean());
+      section.add_of(algorithm, std::move(cells),
+                     f[0].hp_over_mean() <= kNoExcess * f[1].hp_over_mean());
     }
   }
   return section;

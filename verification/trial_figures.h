@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "osteomill/experiment/milling_trial.h"
+#include "osteomill/haptics/algorithms.h"
 #include "osteomill/haptics/barrier_shell/barrier_shell_counts.h"
 #include "osteomill/report/metrics.h"
 
@@ -13,7 +14,7 @@ namespace osteomill::verification {
 
 /// How a trial differs from the default one.
 struct TrialVariant {
-  std::string algorithm = "line-proxy";
+  std::string algorithm = default_algorithm().id.name;
   double push_N = 1.5;
   std::uint64_t seed = 1;
   double phase_s = 20;

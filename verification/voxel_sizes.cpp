@@ -28,10 +28,9 @@ Volume block(double spacing_mm) {
 }
 
 // The volume (mm^3 of full density) that the trial took out of the block, counted from what is left.
-double hole_mm3(std::string_view algorithm, double spacing_mm, double seconds) {
+double hole_mm3(double spacing_mm, double seconds) {
   const Volume bone = block(spacing_mm);
   TrialSettings settings;
-  settings.algorithm = algorithm_named(algorithm);
   settings.hand_and_device.script.milling_s = seconds;
   MillingTrial trial(bone, estimate_densities(bone), place_entry(bone, settings.tool), settings);
   while (trial.tick().milling_phase) {
@@ -53,22 +52,18 @@ Section voxel_sizes(const Effort& effort) {
                   "simulated hand for {:.0f} s, push 1.5 N; the volume counted from the densities that "
                   "are left.",
                   kEdge_mm, effort.phase_s / 2),
-      {"algorithm, voxels", "hole, mm3", "against 0.10 mm", "at most", ""},
+      {"voxels", "hole, mm3", "against 0.10 mm", "at most", ""},
       {},
       {}};
   const std::vector<double> spacings{0.10, 0.20, 0.25};
-  std::vector<double> holes(spacings.size() * algorithm_names().size());
-  in_parallel(holes.size(), [&](std::size_t n) {
-    holes[n] =
-        hole_mm3(algorithm_names()[n / spacings.size()], spacings[n % spacings.size()], effort.phase_s / 2);
-  });
+  std::vector<double> holes(spacings.size());
+  in_parallel(holes.size(),
+              [&](std::size_t n) { holes[n] = hole_mm3(spacings[n], effort.phase_s / 2); });
   for (std::size_t n = 0; n < holes.size(); ++n) {
-    const double finest = holes[n - n % spacings.size()];
-    const double off = holes[n] / finest - 1;
-    section.add(
-        {fmt::format("{}, {:.2f} mm", algorithm_names()[n / spacings.size()], spacings[n % spacings.size()]),
-         figure(holes[n]), fmt::format("{:+.2f} %", 100 * off), "2 %"},
-        std::abs(off) < 0.02);
+    const double off = holes[n] / holes.front() - 1;
+    section.add({fmt::format("{:.2f} mm", spacings[n]), figure(holes[n]), fmt::format("{:+.2f} %", 100 * off),
+                 "2 %"},
+                std::abs(off) < 0.02);
   }
   return section;
 }

@@ -59,13 +59,6 @@ void draw_algorithm(MillingSetup& wanted, bool& changed) {
       changed = true;
     }
   }
-  for (const auto& [label, mode] : {std::pair("steady", Mode::steady), {"as in the paper", Mode::paper}}) {
-    if (mode != Mode::steady) ImGui::SameLine();
-    if (ui::radio(label, wanted.haptics.mode == mode)) {
-      wanted.haptics.mode = mode;
-      changed = true;
-    }
-  }
   const auto before = stiffness_of(wanted);
   if (!before) return;
   double stiffness = *before;

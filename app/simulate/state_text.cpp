@@ -48,7 +48,6 @@ void add_controls(Lines& lines) {
 
 void add_setup(Lines& lines, const MillingSetup& setup) {
   lines.add("algorithm", setup.algorithm.id.name);
-  lines.add("mode", setup.haptics.mode == Mode::paper ? "paper" : "steady");
   if (const auto stiffness = stiffness_of(setup)) lines.add("stiffness", fmt::format("{:.2f}", *stiffness));
   lines.add("burr_mm", fmt::format("{:.2f}", setup.tool.burr_radius_mm));
   lines.add("shaft_mm", fmt::format("{:.2f}", setup.tool.shaft_radius_mm));

@@ -63,12 +63,9 @@ PageSection opening(const Study& study, const std::vector<Recording>& recordings
 }
 
 // The recordings do not belong together, or some algorithm lacks a phase that another has.
-PageSection opening_of_a_mix(const std::vector<RunGroup>& groups) {
-  std::vector<AlgorithmId> algorithms;
-  for (const RunGroup& group : groups)
-    for (const AlgorithmId& algorithm : group.algorithms()) algorithms.push_back(algorithm);
+PageSection opening_of_a_mix(const RunGroup& group) {
   std::vector<std::string> labels;
-  for (const AlgorithmId& algorithm : each_once(std::move(algorithms))) labels.push_back(algorithm.label);
+  for (const AlgorithmId& algorithm : group.algorithms()) labels.push_back(algorithm.label);
   return {.paragraphs = {fmt::format(
               "Recordings of {}, which were not made as one comparison: either they differ in more than the "
               "algorithm, or an algorithm lacks what another was recorded with. So nothing is concluded from "
@@ -82,24 +79,19 @@ bool belong_together(const std::vector<Recording>& recordings) {
   return differences_table(all).rows.empty();
 }
 
-// Every algorithm that was tried in a mode has every phase that another has.
-bool have_the_same_phases(const std::vector<RunGroup>& groups) {
-  return std::ranges::all_of(groups, [&](const RunGroup& group) {
-    return group.phases() == groups.front().phases() &&
-           group.runs.size() == group.phases().size() * group.algorithms().size();
-  });
+// Every algorithm has every phase that another has.
+bool have_the_same_phases(const RunGroup& group) {
+  return group.runs.size() == group.phases().size() * group.algorithms().size();
 }
 
-Study study_of(const std::vector<RunGroup>& groups, const ReportExtras& extras) {
+Study study_of(const RunGroup& group, const ReportExtras& extras) {
   std::vector<StudyRow> rows;
-  for (const RunGroup& group : groups) {
-    for (const MeasuredRun& run : group.runs) rows.push_back(row_of(run));
-  }
+  for (const MeasuredRun& run : group.runs) rows.push_back(row_of(run));
   if (extras.others) {
     rows.insert(rows.end(), extras.others->begin(), extras.others->end());
     return Study(std::move(rows));
   }
-  const fs::path folder = groups.front().runs.front().recording->path.parent_path();
+  const fs::path folder = group.runs.front().recording->path.parent_path();
   if (auto whole = read_study_csv(folder / kStudyCsv, rows)) return *std::move(whole);
   // A report is of one bone in one hand, whatever their seeds.
   for (StudyRow& row : rows) row.seed = rows.front().seed;
@@ -111,7 +103,7 @@ PageSection hands_section(const Study& study, const fs::path& out_dir) {
   for (const std::string_view phase : study.phases()) {
     figures.push_back(
         {draw_study_figure(study, phase, out_dir / "figures").svg,
-         "Every hand of the study, by algorithm and mode; logarithmic where values lie far apart."});
+         "Every hand of the study, by algorithm; logarithmic where values lie far apart."});
   }
   return study_section(study, figures);
 }
@@ -126,10 +118,10 @@ bool are_of_comparison(const std::vector<Recording>& recordings) {
 
 fs::path write_comparison_report(const std::vector<Recording>& recordings, const fs::path& out_dir,
                                  const ReportExtras& extras) {
-  const std::vector<RunGroup> groups = group_runs(recordings, phase_metrics);
-  if (!belong_together(recordings) || !have_the_same_phases(groups))
-    return write_report(groups, out_dir, {.title = kTitle, .opening = opening_of_a_mix(groups)});
-  const Study study = study_of(groups, extras);
+  const RunGroup group = group_runs(recordings, phase_metrics);
+  if (!belong_together(recordings) || !have_the_same_phases(group))
+    return write_report(group, out_dir, {.title = kTitle, .opening = opening_of_a_mix(group)});
+  const Study study = study_of(group, extras);
   // Measured beside the recordings and kept nowhere else: they stay where no figure can be drawn.
   const bool has_hands = study.seeds().size() > 1;
   const bool has_further_rows = study.rows().size() + study.rows_of_other_grips().size() > recordings.size();
@@ -152,7 +144,7 @@ fs::path write_comparison_report(const std::vector<Recording>& recordings, const
                           {"force", "The paper's figure 7."},
                           {"torque", "The paper's figure 8."},
                           {"shaft", "The paper's figure 9."}};
-    write_report(groups, beside, text);
+    write_report(group, beside, text);
   });
   return out_dir / "report.html";
 }

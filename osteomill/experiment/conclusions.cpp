@@ -15,8 +15,6 @@ namespace osteomill {
 
 namespace {
 
-constexpr std::size_t kChangesTold = 4;
-
 const Metric& metric_in(std::string_view column) {
   const auto all = all_metrics();
   return *std::find_if(all.begin(), all.end(), [&](const Metric& metric) { return metric.column == column; });
@@ -43,11 +41,11 @@ std::string joined(const std::vector<std::string>& parts) {
 }
 
 // "; least with 3 point-shell, significantly against 1 and 2, not against 4", or that none is.
-std::string least_words(const Study& study, Mode mode, std::string_view phase, const Metric& metric,
+std::string least_words(const Study& study, std::string_view phase, const Metric& metric,
                         const AlgorithmId& least) {
   std::vector<std::string> clear, unclear;
-  for (const PairedComparison& pair : compare_algorithms(study, mode, phase, metric)) {
-    const AlgorithmId &first = pair.first.algorithm, &second = pair.second.algorithm;
+  for (const PairedComparison& pair : compare_algorithms(study, phase, metric)) {
+    const AlgorithmId &first = pair.first, &second = pair.second;
     if (first != least && second != least) continue;
     const bool is_clear = pair.p <= kSignificance && pair.second_is_greater == (first == least);
     (is_clear ? clear : unclear).push_back(short_label(first == least ? second : first));
@@ -59,16 +57,15 @@ std::string least_words(const Study& study, Mode mode, std::string_view phase, c
 
 // "0.02 N (1 line-proxy), lost contact after 3.2 s (2 surface-points) and 0.01 N (3 point-shell, in 7 of 8
 // hands)", and who has least.
-std::string values_words(const Study& study, Mode mode, std::string_view phase, const Metric& metric) {
+std::string values_words(const Study& study, std::string_view phase, const Metric& metric) {
   std::vector<std::string> values;
   std::optional<AlgorithmId> least;
   double min = 0;
   for (const AlgorithmId& algorithm : study.algorithms()) {
-    if (!study.was_tried({algorithm, mode})) continue;
-    const std::vector<double> of_seeds = study.values({algorithm, mode}, phase, metric);
+    const std::vector<double> of_seeds = study.values(algorithm, phase, metric);
     if (of_seeds.empty()) {
       values.push_back(
-          fmt::format("{} ({})", contact_words(study.contact({algorithm, mode}, phase)), algorithm.label));
+          fmt::format("{} ({})", contact_words(study.contact(algorithm, phase)), algorithm.label));
       continue;
     }
     const double median = median_interval(of_seeds).median;
@@ -79,29 +76,23 @@ std::string values_words(const Study& study, Mode mode, std::string_view phase, 
     if (study.are_most(of_seeds.size()) && (!least || median < min)) least = algorithm, min = median;
   }
   const bool claims = metric.less_is_better && least && values.size() > 1 && !too_few(study);
-  return joined(values) + (claims ? least_words(study, mode, phase, metric, *least) : "");
+  return joined(values) + (claims ? least_words(study, phase, metric, *least) : "");
 }
 
-// "Force above 20 Hz, rms, while milling, median of the hands: paper 0.02 N (1 line-proxy) ...; steady ..."
+// "Force above 20 Hz, rms, while milling, median of the hands: 0.02 N (1 line-proxy) ..."
 std::string values_sentence(const Study& study, std::string_view phase, const Metric& metric) {
   std::string text = fmt::format("{}, {}{}: ", metric.name, during(phase),
                                  study.seeds().size() > 1 ? ", median of the hands" : "");
   text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
-  std::vector<std::string> modes;
-  for (const Mode mode : study.modes()) {
-    modes.push_back((study.modes().size() > 1 ? fmt::format("in {} ", name_of(mode)) : "") +
-                    values_words(study, mode, phase, metric));
-  }
-  return fmt::format("{}{}.", text, fmt::join(modes, "; "));
+  return fmt::format("{}{}.", text, values_words(study, phase, metric));
 }
 
 // "…: 4 agree in 10 hands, 2 do not (…), 1 is not settled (… in 5 of 10), 1 could not be tested."
 std::string findings_sentence(const Study& study) {
-  const Mode mode = study.modes().front();
   const bool one = study.seeds().size() == 1;
   std::size_t total = 0, agreeing = 0, untested = 0;
   std::vector<std::string> against, open;
-  for (const StudyFinding& f : check_study_findings(study, mode)) {
+  for (const StudyFinding& f : check_study_findings(study)) {
     if (f.of_medians.of_the_machine) continue;
     ++total;
     agreeing += f.verdict == Verdict::agrees;
@@ -112,8 +103,8 @@ std::string findings_sentence(const Study& study) {
     if (f.verdict == Verdict::not_settled) open.push_back(says);
   }
   std::string text = fmt::format(
-      "Of the paper's {} findings on force, torque and shaft, tried in {} mode: {} {} in {}", total,
-      name_of(mode), agreeing, agreeing == 1 ? "agrees" : "agree", hands(study.seeds().size()));
+      "Of the paper's {} findings on force, torque and shaft, {} {} in {}", total, agreeing,
+      agreeing == 1 ? "agrees" : "agree", hands(study.seeds().size()));
   const auto add = [&](const std::vector<std::string>& which, const char* of_one, const char* of_more) {
     if (which.empty()) return;
     text += fmt::format(", {} {} ({})", which.size(), which.size() == 1 ? of_one : of_more,
@@ -125,58 +116,11 @@ std::string findings_sentence(const Study& study) {
   return text + ".";
 }
 
-struct Change {
-  std::string what;
-  double ratio;
-};
-
-// "force step of 1 while milling (× 0.7), ..., and 3 more", the most changed first.
-std::string changes_words(std::vector<Change> changes, std::size_t most_told) {
-  std::stable_sort(changes.begin(), changes.end(), [](const Change& a, const Change& b) {
-    return std::abs(std::log(a.ratio)) > std::abs(std::log(b.ratio));
-  });
-  std::vector<std::string> told;
-  for (const Change& change : changes) {
-    if (told.size() == most_told) break;
-    told.push_back(fmt::format("{} (× {:.2g})", change.what, change.ratio));
-  }
-  if (changes.size() > told.size()) told.push_back(fmt::format("{} others", changes.size() - told.size()));
-  return told.empty() ? "nothing" : joined(told);
-}
-
-// With too few hands what changed, and not whether that is better; else all that is significantly worse, and
-// some of what is better.
-std::string changes_sentence(const Study& study) {
-  std::vector<Change> worse, better, all;
-  for (const std::string_view phase : study.phases()) {
-    for (const Metric& metric : key_metrics()) {
-      if (!metric.less_is_better) continue;
-      for (const PairedComparison& change : compare_modes(study, phase, metric)) {
-        const double ratio = change.ratio.median;
-        if (!(ratio > 0) || ratio == 1 || (!too_few(study) && change.p > kSignificance)) continue;
-        all.push_back(
-            {fmt::format("{} of {} {}", metric.name, short_label(change.first.algorithm), during(phase)),
-             ratio});
-        (ratio > 1 ? worse : better).push_back(all.back());
-      }
-    }
-  }
-  if (too_few(study)) {
-    return fmt::format("What steady changes most against paper, in {}: {}.", hands(study.seeds().size()),
-                       changes_words(std::move(all), kChangesTold));
-  }
-  return fmt::format("Against paper, steady makes significantly worse: {}; and better: {}.",
-                     changes_words(worse, worse.size()), changes_words(std::move(better), kChangesTold));
-}
-
 // Who did not come to do all of it.
 std::string not_reached(const Study& study) {
   std::vector<std::string> who;
   for (const AlgorithmId& algorithm : study.algorithms()) {
-    for (const Mode mode : study.modes()) {
-      if (!study.not_reached({algorithm, mode}, kHolding).empty())
-        who.push_back(fmt::format("{} in {}", algorithm.label, name_of(mode)));
-    }
+    if (!study.not_reached(algorithm, kHolding).empty()) who.push_back(algorithm.label);
   }
   return who.empty() ? ""
                      : fmt::format(" Not all of that was reached with {}: the tables say what.", joined(who));
@@ -187,16 +131,12 @@ std::string not_leaning(const Study& study) {
   constexpr double kLeans = 0.5;
   std::vector<std::string> who;
   for (const AlgorithmId& algorithm : study.algorithms()) {
-    for (const Mode mode : study.modes()) {
-      const std::vector<double> shares =
-          study.values({algorithm, mode}, kHolding, [](const RunMetrics& m) { return m.contact.shaft; });
-      const auto few =
-          std::count_if(shares.begin(), shares.end(), [](double share) { return share < kLeans; });
-      if (few == 0) continue;
-      who.push_back(
-          fmt::format("{} in {}{}", algorithm.label, name_of(mode),
-                      shares.size() == 1 ? "" : fmt::format(" ({} of {} hands)", few, shares.size())));
-    }
+    const std::vector<double> shares =
+        study.values(algorithm, kHolding, [](const RunMetrics& m) { return m.contact.shaft; });
+    const auto few = std::count_if(shares.begin(), shares.end(), [](double share) { return share < kLeans; });
+    if (few == 0) continue;
+    who.push_back(algorithm.label +
+                  (shares.size() == 1 ? "" : fmt::format(" ({} of {} hands)", few, shares.size())));
   }
   return who.empty()
              ? ""
@@ -207,14 +147,13 @@ std::string not_leaning(const Study& study) {
 }  // namespace
 
 std::string what_was_compared(const Study& study, std::string_view scan_name) {
-  std::vector<std::string> algorithms, modes;
+  std::vector<std::string> algorithms;
   for (const AlgorithmId& algorithm : study.algorithms()) algorithms.push_back(algorithm.label);
-  for (const Mode mode : study.modes()) modes.emplace_back(name_of(mode));
   return fmt::format(
-      "{}, mode {}, milled the same bone ({}) in {}. Each was to move the burr in until it touched, mill a "
+      "{} milled the same bone ({}) in {}. Each was to move the burr in until it touched, mill a "
       "hole and push the shaft against the hole's edge; then, with the spindle off, to stand in that hole "
       "with the shaft against the wall and keep as still as it could.{}",
-      joined(algorithms), joined(modes), scan_name,
+      joined(algorithms), scan_name,
       study.seeds().size() == 1 ? "one simulated hand"
                                 : fmt::format("{} simulated hands", study.seeds().size()),
       not_leaning(study) + not_reached(study));
@@ -239,11 +178,7 @@ std::vector<std::string> conclusions(const Study& study) {
   tell(kMilling, "torque_hp_rms_Nmm");
   tell(kHolding, "shaft_spread_deg");
   sentences.push_back(findings_sentence(study));
-  if (study.modes().size() > 1) {
-    sentences.push_back(changes_sentence(study));
-  } else {
-    tell(kMilling, "removed_mm3");
-  }
+  tell(kMilling, "removed_mm3");
   return sentences;
 }
 

@@ -66,20 +66,16 @@ constexpr double kDelays_s[] = {0.3e-3, 1e-3, 2e-3};
 }  // namespace
 
 std::vector<TrialSettings> passivity_cases(const std::vector<AlgorithmDescription>& algorithms,
-                                           const std::vector<Mode>& modes, const TrialSettings& settings) {
+                                           const TrialSettings& settings) {
   std::vector<TrialSettings> cases;
-  for (const Mode mode : modes) {
-    for (const AlgorithmDescription& algorithm : algorithms) {
-      if (setting_of_option(algorithm, kStiffnessOption) == nullptr) continue;
-      if (!runs_in(algorithm, mode, modes)) continue;
-      for (const double delay_s : kDelays_s) {
-        for (const double damping : kDampings_Ns_per_mm) {
-          TrialSettings& one = cases.emplace_back(settings);
-          one.algorithm = algorithm;
-          one.haptics.mode = mode;
-          one.hand_and_device.handle.force_delay_s = delay_s;
-          one.device_damping_Ns_per_mm = damping;
-        }
+  for (const AlgorithmDescription& algorithm : algorithms) {
+    if (setting_of_option(algorithm, kStiffnessOption) == nullptr) continue;
+    for (const double delay_s : kDelays_s) {
+      for (const double damping : kDampings_Ns_per_mm) {
+        TrialSettings& one = cases.emplace_back(settings);
+        one.algorithm = algorithm;
+        one.hand_and_device.handle.force_delay_s = delay_s;
+        one.device_damping_Ns_per_mm = damping;
       }
     }
   }
@@ -131,7 +127,7 @@ PassivityRow measure_passivity(TrialSettings settings, const Volume& wall) {
   const double damping = settings.device_damping_Ns_per_mm;
   const double delay_s = settings.hand_and_device.handle.force_delay_s;
   const double rule = passive_stiffness_rule_N_per_mm(damping, settings.tick_s, delay_s);
-  return {algorithm, settings.haptics.mode, damping, delay_s, seek_stiffness_limit(press_at, rule), rule};
+  return {algorithm, damping, delay_s, seek_stiffness_limit(press_at, rule), rule};
 }
 
 }  // namespace osteomill

@@ -41,7 +41,6 @@ double passive_stiffness_rule_N_per_mm(double damping_Ns_per_mm, double tick_s, 
 /// How stiff an algorithm can be on a device of this damping and delay.
 struct PassivityRow {
   AlgorithmId algorithm;
-  Mode mode = Mode::steady;
   double damping_Ns_per_mm = 0;
   double delay_s = 0;
   /// By the algorithm's own setting (--stiffness), which need not be what is felt.
@@ -50,10 +49,8 @@ struct PassivityRow {
   double rule_N_per_mm = 0;
 };
 
-/// Every algorithm that has a setting of the option "stiffness", in every mode that it has, on devices with
-/// 1, 2, 5 and 10 N s/m of damping and 0.3, 1 and 2 ms of delay; all else as in `settings`.
+/// Every algorithm that has a setting of the option "stiffness", on devices with 1, 2, 5 and 10 N s/m of damping and 0.3, 1 and 2 ms of delay; all else as in `settings`.
 std::vector<TrialSettings> passivity_cases(const std::vector<AlgorithmDescription>& algorithms,
-                                           const std::vector<Mode>& modes,
                                            const TrialSettings& settings = {});
 
 /// Bone that fills z < 0, wide and deep enough to press this tool on, of voxels a twelfth of the burr's

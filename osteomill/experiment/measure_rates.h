@@ -22,8 +22,7 @@ struct RateRow {
   double rate_hz = 0;
   /// What the median step would allow with nothing else to do and nothing to wait for.
   double steps_per_s = 0;
-  /// What the paper has for this resolution, capped by its 1000 Hz loop, of its algorithms as published (mode
-  /// `paper`); 0 for nothing.
+  /// What the paper has for this resolution, capped by its 1000 Hz loop; 0 for nothing.
   double paper_rate_hz = 0;
   /// Ticks done a second of the wall clock in a loop that was really held to 1000 Hz: the paper's measure.
   double paced_rate_hz = 0;

@@ -35,27 +35,25 @@ std::string cell(const PassivityRow& row) {
                      row.limit.felt_N_per_mm / row.rule_N_per_mm);
 }
 
-std::vector<AlgorithmId> algorithms_of(std::span<const PassivityRow> rows, Mode mode) {
+std::vector<AlgorithmId> algorithms_of(std::span<const PassivityRow> rows) {
   std::vector<AlgorithmId> present;
-  for (const PassivityRow& row : rows) {
-    if (row.mode == mode) present.push_back(row.algorithm);
-  }
+  for (const PassivityRow& row : rows) present.push_back(row.algorithm);
   return each_once(std::move(present));
 }
 
 // A line a device, in the order of the first algorithm's rows.
-HtmlTable mode_table(std::span<const PassivityRow> rows, Mode mode) {
-  const auto algorithms = algorithms_of(rows, mode);
+HtmlTable devices_table(std::span<const PassivityRow> rows) {
+  const auto algorithms = algorithms_of(rows);
   HtmlTable table{{"Device: damping, delay", "2 b / (T + 2 τ)"}, {}, true};
   for (const AlgorithmId& algorithm : algorithms) table.header.emplace_back(algorithm.label);
   for (const PassivityRow& device : rows) {
-    if (device.mode != mode || device.algorithm != algorithms.front()) continue;
+    if (device.algorithm != algorithms.front()) continue;
     table.rows.push_back(
         {fmt::format("{:.3g} N s/m, {:.3g} ms", 1e3 * device.damping_Ns_per_mm, 1e3 * device.delay_s),
          fmt::format("{:.3g}", device.rule_N_per_mm)});
     for (const AlgorithmId& algorithm : algorithms) {
       const auto row = std::find_if(rows.begin(), rows.end(), [&](const PassivityRow& of) {
-        return of.mode == mode && of.algorithm == algorithm && of.delay_s == device.delay_s &&
+        return of.algorithm == algorithm && of.delay_s == device.delay_s &&
                of.damping_Ns_per_mm == device.damping_Ns_per_mm;
       });
       table.rows.back().push_back(row == rows.end() ? "–" : cell(*row));
@@ -65,11 +63,11 @@ HtmlTable mode_table(std::span<const PassivityRow> rows, Mode mode) {
 }
 
 // "1 line-proxy 0.98 to 1.05"
-std::string range_against_rule(std::span<const PassivityRow> rows, const AlgorithmId& algorithm, Mode mode) {
+std::string range_against_rule(std::span<const PassivityRow> rows, const AlgorithmId& algorithm) {
   std::vector<double> ratios;
   std::size_t none = 0;
   for (const PassivityRow& row : rows) {
-    if (row.algorithm != algorithm || row.mode != mode) continue;
+    if (row.algorithm != algorithm) continue;
     if (row.limit.kind == Kind::below_all) {
       ++none;
     } else {
@@ -85,10 +83,10 @@ std::string range_against_rule(std::span<const PassivityRow> rows, const Algorit
                      none + ratios.size());
 }
 
-std::string in_words(std::span<const PassivityRow> rows, Mode mode) {
+std::string in_words(std::span<const PassivityRow> rows) {
   std::string text;
-  for (const AlgorithmId& algorithm : algorithms_of(rows, mode)) {
-    text += (text.empty() ? "" : "; ") + range_against_rule(rows, algorithm, mode);
+  for (const AlgorithmId& algorithm : algorithms_of(rows)) {
+    text += (text.empty() ? "" : "; ") + range_against_rule(rows, algorithm);
   }
   return "The stiffness felt at the limit, as a multiple of the rule: " + text + ".";
 }
@@ -113,7 +111,6 @@ double damping_Ns_per_m(const PassivityRow& row) {
 }
 
 struct Axes {
-  std::vector<Mode> modes;
   std::vector<double> delays_s;
   std::vector<AlgorithmId> algorithms;
   std::vector<double> dampings_Ns_per_m;
@@ -129,7 +126,6 @@ void add_once(std::vector<T>& all, const T& value) {
 Axes axes_of(std::span<const PassivityRow> rows) {
   Axes axes;
   for (const PassivityRow& row : rows) {
-    add_once(axes.modes, row.mode);
     add_once(axes.delays_s, row.delay_s);
     add_once(axes.algorithms, row.algorithm);
     add_once(axes.dampings_Ns_per_m, damping_Ns_per_m(row));
@@ -146,10 +142,10 @@ Axes axes_of(std::span<const PassivityRow> rows) {
 // Damping, felt stiffness or '?' where none was passive, the same where even the stiffest was, damping, rule.
 // Each algorithm a little aside, since several follow the rule.
 std::string curve_data(std::span<const PassivityRow> rows, const AlgorithmId& algorithm, double aside,
-                       Mode mode, double delay_s) {
+                       double delay_s) {
   std::string data;
   for (const PassivityRow& row : rows) {
-    if (row.algorithm != algorithm || row.mode != mode || row.delay_s != delay_s) continue;
+    if (row.algorithm != algorithm || row.delay_s != delay_s) continue;
     const std::string felt = fmt::format("{:.6g}", row.limit.felt_N_per_mm);
     data += fmt::format("{:.6g} {} {} {:.6g} {:.6g}\n", aside * damping_Ns_per_m(row),
                         row.limit.kind == StiffnessLimit::Kind::below_all ? "?" : felt,
@@ -159,14 +155,14 @@ std::string curve_data(std::span<const PassivityRow> rows, const AlgorithmId& al
   return data;
 }
 
-std::string panel(std::span<const PassivityRow> rows, std::size_t column, std::size_t row, const Axes& axes,
+std::string panel(std::span<const PassivityRow> rows, std::size_t column, const Axes& axes,
                   FigureScript& figure) {
   std::string curves, rule;
   for (std::size_t n = 0; n < axes.algorithms.size(); ++n) {
     const AlgorithmId& algorithm = axes.algorithms[n];
     const double aside = std::pow(1.05, static_cast<double>(n) - 1);
     const std::string file =
-        figure.data(curve_data(rows, algorithm, aside, axes.modes[row], axes.delays_s[column]));
+        figure.data(curve_data(rows, algorithm, aside, axes.delays_s[column]));
     // The same for every algorithm.
     rule = fmt::format(", {} using 4:5 with lines dt 2 lw 2 lc rgb '#8a8a8a' notitle", file);
     curves += fmt::format(
@@ -201,7 +197,6 @@ std::string common(const Axes& axes, const PanelGrid& grid) {
 Figure draw_passivity_figure(std::span<const PassivityRow> rows, const std::filesystem::path& folder) {
   const Axes axes = axes_of(rows);
   PanelGrid grid{.columns = axes.delays_s.size(),
-                 .rows = axes.modes.size(),
                  .head_px = 50,
                  .left_px = 84,
                  .right_px = 16,
@@ -210,35 +205,27 @@ Figure draw_passivity_figure(std::span<const PassivityRow> rows, const std::file
   grid.height_px = grid.head_px + 330 * static_cast<double>(grid.rows);
   return draw_panels(
       "stability", grid, common(axes, grid),
-      [&](std::size_t column, std::size_t row, FigureScript& figure) {
-        return fmt::format("set title '{}, delay {:.3g} ms' offset 0,-0.4\n", name_of(axes.modes[row]),
-                           1e3 * axes.delays_s[column]) +
-               panel(rows, column, row, axes, figure) + "unset label\n";
+      [&](std::size_t column, std::size_t, FigureScript& figure) {
+        return fmt::format("set title 'delay {:.3g} ms' offset 0,-0.4\n", 1e3 * axes.delays_s[column]) +
+               panel(rows, column, axes, figure) + "unset label\n";
       },
       folder);
 }
 
 PageSection passivity_section(std::span<const PassivityRow> rows, const Figure& figure) {
-  PageSection section{.title = "Passivity against a flat wall",
-                      .paragraphs = {kWhatWasDone},
-                      .figures = {{figure.svg, kCaption}}};
-  for (const Mode mode : {Mode::paper, Mode::steady}) {
-    if (algorithms_of(rows, mode).empty()) continue;
-    section.parts.push_back(
-        {.title = fmt::format(
-             "Greatest passive stiffness in N/mm, mode {}: setting → felt (against the rule)", name_of(mode)),
-         .paragraphs = {in_words(rows, mode)},
-         .tables = {mode_table(rows, mode)}});
-  }
-  return section;
+  return {.title = "Passivity against a flat wall",
+          .paragraphs = {kWhatWasDone, in_words(rows)},
+          .figures = {{figure.svg, kCaption}},
+          .parts = {{.title = "Greatest passive stiffness in N/mm: setting → felt (against the rule)",
+                     .tables = {devices_table(rows)}}}};
 }
 
 void write_passivity_csv(const std::filesystem::path& path, std::span<const PassivityRow> rows) {
   write_text_atomically(path, [&](std::ostream& out) {
-    out << "algorithm,mode,device_damping_Ns_per_m,device_delay_s,limit,stiffness_N_per_mm,felt_N_per_mm,"
+    out << "algorithm,device_damping_Ns_per_m,device_delay_s,limit,stiffness_N_per_mm,felt_N_per_mm,"
            "rule_N_per_mm\n";
     for (const PassivityRow& row : rows) {
-      out << fmt::format("{},{},{},{},{},{},{},{}\n", name_of(row.algorithm), name_of(row.mode),
+      out << fmt::format("{},{},{},{},{},{},{}\n", name_of(row.algorithm),
                          damping_Ns_per_m(row), row.delay_s, name_of_kind(row.limit.kind),
                          row.limit.stiffness_N_per_mm, row.limit.felt_N_per_mm, row.rule_N_per_mm);
     }

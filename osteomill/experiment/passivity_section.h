@@ -9,7 +9,7 @@
 
 namespace osteomill {
 
-/// The stiffness felt at the limit over the device's damping, a panel for each delay and mode, with the rule
+/// The stiffness felt at the limit over the device's damping, a panel for each delay, with the rule
 /// of the ideal wall.
 Figure draw_passivity_figure(std::span<const PassivityRow> rows, const std::filesystem::path& folder);
 

@@ -26,15 +26,8 @@ namespace {
 
 constexpr int kTicksBetweenProgress = 500;
 
-// "line-proxy, steady"
-std::string plan_name(const TrialPlan& plan) {
-  return fmt::format("{}, {}", plan.settings.algorithm.id.name, name_of(plan.settings.haptics.mode));
-}
-
 std::string recording_name(const TrialPlan& plan, std::string_view phase) {
-  const std::string mode =
-      plan.mode_in_names ? fmt::format("-{}", name_of(plan.settings.haptics.mode)) : std::string();
-  return fmt::format("{}{}-{}.h5", plan.settings.algorithm.id.name, mode, phase);
+  return fmt::format("{}-{}.h5", plan.settings.algorithm.id.name, phase);
 }
 
 // A trial run to its end.
@@ -120,7 +113,7 @@ std::vector<fs::path> record_trial(const TrialPlan& plan, const EntryPictures& p
     recorder.close();
   }
   const MeasuredRun whole = measured_run(milled.phases.back(), {});
-  if (!whole.not_reached.empty()) events.warn(fmt::format("{}: {}", plan_name(plan), whole.not_reached));
+  if (!whole.not_reached.empty()) events.warn(fmt::format("{}: {}", plan.settings.algorithm.id.name, whole.not_reached));
   if (milled.faults) events.warn(fmt::format("{}: {}", plan.settings.algorithm.id.name, *milled.faults));
   return paths;
 }
@@ -187,11 +180,11 @@ std::vector<StudyRow> run_study_trials(const std::vector<TrialPlan>& trials, std
   for (std::size_t n = 0; n < trials.size(); ++n) {
     const TrialSettings& settings = trials[n].settings;
     const StudyRow of{.seed = settings.hand_and_device.seed,
-                      .run = {settings.algorithm.id, settings.haptics.mode, {}, {}},
+                      .run = {settings.algorithm.id, {}, {}},
                       .grip = trials[n].grip};
     for (const TrialRow& row : tried[n].rows) all.push_back(milling_row(row, of));
     const auto warn = [&](const std::string& line) {
-      events.warn(fmt::format("{}, seed {}: {}", plan_name(trials[n]), of.seed, line));
+      events.warn(fmt::format("{}, seed {}: {}", settings.algorithm.id.name, of.seed, line));
     };
     if (tried[n].faults) warn(*tried[n].faults);
     if (const std::string& missed = all.back().run.not_reached; !missed.empty()) warn(missed);

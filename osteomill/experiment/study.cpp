@@ -25,13 +25,13 @@ namespace osteomill {
 namespace {
 
 const std::string kHandColumns = "seed,hand_stiffness_N_per_m,hand_damping_Ns_per_m,hand_grip,";
-constexpr std::size_t kHandFields = 4, kNamedFields = 3;
+constexpr std::size_t kHandFields = 4, kNamedFields = 2;
 
 using M = RunMetrics;
 
 // Phase before algorithm, as in summary.csv.
 auto place(const MeasuredRun& run) {
-  return std::tuple(run.mode, phase_number(run.phase), run.algorithm);
+  return std::tuple(phase_number(run.phase), run.algorithm);
 }
 
 // A line that is too long ends it: no study has one.
@@ -44,13 +44,12 @@ bool next_line(std::istream& in, std::string& line) {
   }
 }
 
-// Nothing where it is not of an algorithm, mode and phase of these rows, whose number of columns it has.
+// Nothing where it is not of an algorithm and phase of these rows, whose number of columns it has.
 std::optional<StudyRow> read_row(std::string_view line, const std::vector<StudyRow>& rows) {
   const std::vector<std::string_view> fields = csv_fields(line);
   if (fields.size() != kHandFields + kNamedFields + summary_metrics().size() + 1) return std::nullopt;
   const auto of = std::ranges::find_if(rows, [&](const StudyRow& row) {
-    return fields[kHandFields] == row.run.algorithm.name &&
-           fields[kHandFields + 1] == name_of(row.run.mode) && fields[kHandFields + 2] == row.run.phase;
+    return fields[kHandFields] == row.run.algorithm.name && fields[kHandFields + 1] == row.run.phase;
   });
   if (of == rows.end()) return std::nullopt;
   const auto number = [&](std::size_t n) { return parsed_number<double>(fields[n]).value_or(kNotMeasured); };
@@ -60,7 +59,7 @@ std::optional<StudyRow> read_row(std::string_view line, const std::vector<StudyR
   for (std::size_t n = kHandFields + kNamedFields; n + 1 < fields.size(); ++n)
     row.values.push_back(number(n));
   return milling_row(row, {.seed = parsed_number<std::uint64_t>(fields[0]).value_or(0),
-                           .run = {of->run.algorithm, of->run.mode, {}, {}},
+                           .run = {of->run.algorithm, {}, {}},
                            .grip = number(3)});
 }
 
@@ -123,14 +122,6 @@ std::vector<AlgorithmId> Study::algorithms() const {
   return each_once(std::move(tried));
 }
 
-std::vector<Mode> Study::modes() const {
-  std::vector<Mode> tried;
-  for (const Mode mode : {Mode::paper, Mode::steady})
-    if (std::ranges::any_of(rows_, [&](const StudyRow& row) { return row.run.mode == mode; }))
-      tried.push_back(mode);
-  return tried;
-}
-
 std::vector<std::string_view> Study::phases() const {
   std::vector<std::string_view> tried;
   for (const std::string_view phase : kPhases)
@@ -158,37 +149,31 @@ std::vector<Metric> Study::metrics_of(std::string_view phase) const {
   return metrics;
 }
 
-bool Study::was_tried(const Tried& tried) const {
-  return std::any_of(rows_.begin(), rows_.end(), [&](const StudyRow& row) {
-    return row.run.mode == tried.mode && row.run.algorithm == tried.algorithm;
-  });
-}
-
-std::vector<double> Study::all_values(const Tried& tried, std::string_view phase,
+std::vector<double> Study::all_values(const AlgorithmId& algorithm, std::string_view phase,
                                       const RunFigure& figure) const {
   std::vector<double> values;
   for (const StudyRow& row : rows_) {
-    if (place(row.run) == std::tuple(tried.mode, phase_number(phase), tried.algorithm))
+    if (place(row.run) == std::tuple(phase_number(phase), algorithm))
       values.push_back(figure(row.run.metrics));
   }
   return values;
 }
 
-std::vector<double> Study::values(const Tried& tried, std::string_view phase, const RunFigure& figure) const {
-  std::vector<double> values = all_values(tried, phase, figure);
+std::vector<double> Study::values(const AlgorithmId& algorithm, std::string_view phase, const RunFigure& figure) const {
+  std::vector<double> values = all_values(algorithm, phase, figure);
   std::erase_if(values, [](double value) { return std::isnan(value); });
   return values;
 }
 
-ContactShares Study::contact(const Tried& tried, std::string_view phase) const {
+ContactShares Study::contact(const AlgorithmId& algorithm, std::string_view phase) const {
   const auto median = [&](const RunFigure& figure) {
-    return distribution_of(values(tried, phase, figure)).median;
+    return distribution_of(values(algorithm, phase, figure)).median;
   };
   ContactShares shares;
   for (double ContactShares::*share : {&ContactShares::any, &ContactShares::burr, &ContactShares::shaft,
                                        &ContactShares::force, &ContactShares::torque})
     shares.*share = median([&](const M& m) { return m.contact.*share; });
-  const std::vector<double> lost = values(tried, phase, [](const M& m) { return m.contact.lost_after_s; });
+  const std::vector<double> lost = values(algorithm, phase, [](const M& m) { return m.contact.lost_after_s; });
   if (!lost.empty() && !are_most(seeds_.size() - lost.size()))
     shares.lost_after_s = distribution_of(lost).median;
   shares.lost_while_milling =
@@ -196,11 +181,11 @@ ContactShares Study::contact(const Tried& tried, std::string_view phase) const {
   return shares;
 }
 
-std::string Study::not_reached(const Tried& tried, std::string_view phase) const {
+std::string Study::not_reached(const AlgorithmId& algorithm, std::string_view phase) const {
   std::map<std::string, std::size_t> hands;
   for (const StudyRow& row : rows_) {
     if (!row.run.not_reached.empty() &&
-        place(row.run) == std::tuple(tried.mode, phase_number(phase), tried.algorithm))
+        place(row.run) == std::tuple(phase_number(phase), algorithm))
       ++hands[row.run.not_reached];
   }
   std::string text;

@@ -35,12 +35,12 @@ using RunFigure = std::function<double(const RunMetrics&)>;
 /// The first word of an algorithm's label, for narrow places: "1" of "1 line-proxy".
 std::string short_label(const AlgorithmId& algorithm);
 
-/// The same trials with many seeds, each in a hand of its own, so that algorithms and modes can be compared
-/// seed by seed.
+/// The same trials with many seeds, each in a hand of its own, so that algorithms can be compared seed
+/// by seed.
 class Study {
  public:
   /// Rows in any order; those of other grips are kept apart. Throws std::invalid_argument where there are
-  /// none, or where a seed lacks an algorithm, mode and phase that another has, or has it twice.
+  /// none, or where a seed lacks an algorithm and phase that another has, or has it twice.
   explicit Study(std::vector<StudyRow> rows);
 
   /// By seed, in the order in which seeds first came; within a seed as in summary.csv.
@@ -52,7 +52,6 @@ class Study {
 
   /// What was tried, in the paper's order.
   std::vector<AlgorithmId> algorithms() const;
-  std::vector<Mode> modes() const;
   std::vector<std::string_view> phases() const;
 
   /// The fewest seeds from which a difference between two of so many algorithms can be significant.
@@ -61,23 +60,17 @@ class Study {
   /// The key metrics but those that are zero throughout a phase (bone removed while holding).
   std::vector<Metric> metrics_of(std::string_view phase) const;
 
-  /// What is compared: an algorithm in a mode.
-  struct Tried {
-    AlgorithmId algorithm;
-    Mode mode;
-  };
-  bool was_tried(const Tried& tried) const;
   /// The figure's values, one a seed in the order of `seeds`, not a number where there was not enough contact
-  /// to measure it; none where that was not tried.
-  std::vector<double> all_values(const Tried& tried, std::string_view phase, const RunFigure& figure) const;
+  /// to measure it; none if that was not tried.
+  std::vector<double> all_values(const AlgorithmId& algorithm, std::string_view phase, const RunFigure& figure) const;
   /// Those that are numbers.
-  std::vector<double> values(const Tried& tried, std::string_view phase, const RunFigure& figure) const;
+  std::vector<double> values(const AlgorithmId& algorithm, std::string_view phase, const RunFigure& figure) const;
   /// For how much of the phase the tool touched: medians of the seeds. `lost_after_s` is that of those which
   /// lost contact, where they are no fewer than half.
-  ContactShares contact(const Tried& tried, std::string_view phase) const;
+  ContactShares contact(const AlgorithmId& algorithm, std::string_view phase) const;
   /// What of its plan was not reached (MeasuredRun::not_reached), and in how many hands where there are
   /// several; empty for nothing.
-  std::string not_reached(const Tried& tried, std::string_view phase) const;
+  std::string not_reached(const AlgorithmId& algorithm, std::string_view phase) const;
   /// Whether so many seeds are enough to speak of them all: more than half.
   bool are_most(std::size_t seeds) const { return 2 * seeds > seeds_.size(); }
 

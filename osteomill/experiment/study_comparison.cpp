@@ -7,7 +7,7 @@ namespace osteomill {
 
 namespace {
 
-using Pairs = std::vector<std::pair<Study::Tried, Study::Tried>>;
+using Pairs = std::vector<std::pair<AlgorithmId, AlgorithmId>>;
 
 std::vector<PairedComparison> compare(const Study& study, const Pairs& pairs, std::string_view phase,
                                       const RunFigure& figure) {
@@ -37,22 +37,13 @@ std::vector<PairedComparison> compare(const Study& study, const Pairs& pairs, st
 
 }  // namespace
 
-std::vector<PairedComparison> compare_algorithms(const Study& study, Mode mode, std::string_view phase,
+std::vector<PairedComparison> compare_algorithms(const Study& study, std::string_view phase,
                                                  const RunFigure& figure) {
   const std::vector<AlgorithmId> algorithms = study.algorithms();
   Pairs pairs;
   for (std::size_t a = 0; a < algorithms.size(); ++a) {
-    for (std::size_t b = a + 1; b < algorithms.size(); ++b)
-      pairs.push_back({{algorithms[a], mode}, {algorithms[b], mode}});
+    for (std::size_t b = a + 1; b < algorithms.size(); ++b) pairs.emplace_back(algorithms[a], algorithms[b]);
   }
-  return compare(study, pairs, phase, figure);
-}
-
-std::vector<PairedComparison> compare_modes(const Study& study, std::string_view phase,
-                                            const RunFigure& figure) {
-  Pairs pairs;
-  for (const AlgorithmId& algorithm : study.algorithms())
-    pairs.push_back({{algorithm, Mode::paper}, {algorithm, Mode::steady}});
   return compare(study, pairs, phase, figure);
 }
 

@@ -9,8 +9,8 @@ namespace osteomill {
 
 /// A figure of two that were tried, paired hand by hand.
 struct PairedComparison {
-  Study::Tried first;
-  Study::Tried second;
+  AlgorithmId first;
+  AlgorithmId second;
   /// In how many hands it could be measured of both; all that follows is of these.
   std::size_t hands = 0;
   MedianInterval first_values;
@@ -25,12 +25,8 @@ struct PairedComparison {
   double p = 1;
 };
 
-/// Every pair of the algorithms that were tried, in one mode.
-std::vector<PairedComparison> compare_algorithms(const Study& study, Mode mode, std::string_view phase,
+/// Compares every pair of the algorithms that were tried.
+std::vector<PairedComparison> compare_algorithms(const Study& study, std::string_view phase,
                                                  const RunFigure& figure);
-
-/// `steady` (second) against `paper` (first), for each algorithm that was tried in both.
-std::vector<PairedComparison> compare_modes(const Study& study, std::string_view phase,
-                                            const RunFigure& figure);
 
 }  // namespace osteomill

@@ -27,24 +27,22 @@ Verdict verdict_of(const StudyFinding& finding, const Study& study) {
 
 // Not a number where no more than half of the seeds could be measured.
 RunMetrics medians_of(const Study& study, const MeasuredRun& run) {
-  const Study::Tried tried{run.algorithm, run.mode};
   RunMetrics medians;
   for (const Metric& metric : all_metrics()) {
-    const std::vector<double> values = study.values(tried, run.phase, metric);
+    const std::vector<double> values = study.values(run.algorithm, run.phase, metric);
     metric.place(medians) = study.are_most(values.size()) ? distribution_of(values).median : kNotMeasured;
   }
-  medians.contact = study.contact(tried, run.phase);
+  medians.contact = study.contact(run.algorithm, run.phase);
   return medians;
 }
 
 // Algorithm 2's force above 20 Hz while it is held, in a grip: of one seed, or of all.
-std::vector<double> grip_forces(const Study& study, Mode mode, double grip,
-                                std::optional<std::uint64_t> seed) {
+std::vector<double> grip_forces(const Study& study, double grip, std::optional<std::uint64_t> seed) {
   std::vector<double> forces;
   for (const auto* rows : {&study.rows(), &study.rows_of_other_grips()}) {
     for (const StudyRow& row : *rows) {
       const MeasuredRun& run = row.run;
-      if (row.grip == grip && run.mode == mode && run.phase == kHolding &&
+      if (row.grip == grip && run.phase == kHolding &&
           run.algorithm == kPapersAlgorithms[1] && (!seed || row.seed == *seed)) {
         forces.push_back(run.metrics.force_N.hp_rms);
       }
@@ -54,10 +52,10 @@ std::vector<double> grip_forces(const Study& study, Mode mode, double grip,
 }
 
 // For each grip the median of those that could be measured; none where a grip was not tried.
-GripForces medians_of_grips(const Study& study, Mode mode, std::optional<std::uint64_t> seed) {
+GripForces medians_of_grips(const Study& study, std::optional<std::uint64_t> seed) {
   GripForces medians;
   for (const double grip : kGrips) {
-    std::vector<double> forces = grip_forces(study, mode, grip, seed);
+    std::vector<double> forces = grip_forces(study, grip, seed);
     if (forces.empty()) return {};
     const std::size_t tried = forces.size();
     std::erase_if(forces, [](double force) { return std::isnan(force); });
@@ -66,29 +64,25 @@ GripForces medians_of_grips(const Study& study, Mode mode, std::optional<std::ui
   return medians;
 }
 
-RunGroup runs_of(std::span<const StudyRow> rows, Mode mode) {
-  RunGroup group{mode, {}};
-  for (const StudyRow& row : rows) {
-    if (row.run.mode == mode) group.runs.push_back(row.run);
-  }
+RunGroup runs_of(std::span<const StudyRow> rows) {
+  RunGroup group;
+  for (const StudyRow& row : rows) group.runs.push_back(row.run);
   return group;
 }
 
 }  // namespace
 
-std::vector<StudyFinding> check_study_findings(const Study& study, Mode mode) {
-  RunGroup medians = runs_of(study.rows_of_seed(0), mode);
-  if (medians.runs.empty()) return {};
+std::vector<StudyFinding> check_study_findings(const Study& study) {
+  RunGroup medians = runs_of(study.rows_of_seed(0));
   for (MeasuredRun& run : medians.runs) {
     run.metrics = medians_of(study, run);
-    run.not_reached = study.not_reached({run.algorithm, run.mode}, run.phase);
+    run.not_reached = study.not_reached(run.algorithm, run.phase);
   }
   std::vector<StudyFinding> findings;
-  for (Finding& finding : check_findings(medians, medians_of_grips(study, mode, {})))
+  for (Finding& finding : check_findings(medians, medians_of_grips(study, {})))
     findings.push_back({std::move(finding)});
   for (std::size_t seed = 0; seed < study.seeds().size(); ++seed) {
-    const std::vector<Finding> once = check_findings(runs_of(study.rows_of_seed(seed), mode),
-                                                     medians_of_grips(study, mode, study.seeds()[seed]));
+    const std::vector<Finding> once = check_findings(runs_of(study.rows_of_seed(seed)), medians_of_grips(study, study.seeds()[seed]));
     for (std::size_t n = 0; n < once.size(); ++n) {
       findings[n].agreeing += once[n].verdict == Verdict::agrees;
       findings[n].tested += is_tested(once[n].verdict);

@@ -24,7 +24,7 @@ struct StudyFinding {
   double p = 1;
 };
 
-/// The paper's findings on one mode's trials.
-std::vector<StudyFinding> check_study_findings(const Study& study, Mode mode);
+/// Holds the paper's findings against a study.
+std::vector<StudyFinding> check_study_findings(const Study& study);
 
 }  // namespace osteomill

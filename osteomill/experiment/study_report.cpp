@@ -38,9 +38,8 @@ std::string text_of(const StudySettings& settings, std::string_view key, const c
 
 StudyRow row_of_hand(const StudySettings& settings, const TrialRow& row) {
   const std::string algorithm = text_of(settings, "algorithm", default_algorithm().id.name.c_str());
-  const Mode mode = *mode_named(text_of(settings, "mode", "steady"));
   return milling_row(row, {.seed = seed_of(settings),
-                           .run = {algorithm_named(algorithm).id, mode, {}, {}},
+                           .run = {algorithm_named(algorithm).id, {}, {}},
                            .grip = std::stod(text_of(settings, "grip", "1"))});
 }
 
@@ -49,7 +48,7 @@ StudyRow row_of_hand(const StudySettings& settings, const TrialRow& row) {
 std::string group_of(const StudyDesign& design, const StudySettings& settings) {
   std::string group;
   for (const std::string& key : design.varied()) {
-    if (key == "seed" || key == "algorithm" || key == "mode" || key == "grip") continue;
+    if (key == "seed" || key == "algorithm" || key == "grip") continue;
     if (const std::string* value = find_value(settings, key))
       group += fmt::format("{}{} {}", group.empty() ? "" : ", ", key, *value);
   }

@@ -17,17 +17,14 @@ namespace {
 constexpr std::size_t kColumns = 4;
 constexpr std::size_t kMaxPanels = 8;
 // In units of the distance between two algorithms.
-constexpr double kModeShift = 0.2;
 constexpr double kScatter = 0.2;
 constexpr double kBarHalf = 0.15;
 
 std::vector<double> all_values(const Study& study, std::string_view phase, const Metric& metric) {
   std::vector<double> all;
-  for (const Mode mode : study.modes()) {
-    for (const AlgorithmId& algorithm : study.algorithms()) {
-      const auto values = study.values({algorithm, mode}, phase, metric);
-      all.insert(all.end(), values.begin(), values.end());
-    }
+  for (const AlgorithmId& algorithm : study.algorithms()) {
+    const auto values = study.values(algorithm, phase, metric);
+    all.insert(all.end(), values.begin(), values.end());
   }
   return all;
 }
@@ -70,19 +67,15 @@ std::string tics(const Study& study) {
 
 std::string panel(const Study& study, std::string_view phase, const Metric& metric, FigureScript& figure) {
   std::string plot;
-  for (const Mode mode : study.modes()) {
-    const double shift = study.modes().size() < 2 ? 0.0 : mode == Mode::paper ? -kModeShift : kModeShift;
-    int place = 0;
-    for (const AlgorithmId& algorithm : study.algorithms()) {
-      const double x = static_cast<double>(place++) + shift;
-      const std::vector<double> values = study.values({algorithm, mode}, phase, metric);
-      if (values.empty()) continue;
-      plot += fmt::format(
-          "{0}{1} index 1 with lines lw 2.5 lc rgb '{2}' notitle, {1} index 0 with points pt {3} ps 0.8 lw "
-          "1.3 lc rgb '{2}' notitle",
-          plot.empty() ? "plot " : ", ", figure.data(dots_and_bars(values, x)), algorithm.colour,
-          mode == Mode::paper ? 6 : 7);
-    }
+  int place = 0;
+  for (const AlgorithmId& algorithm : study.algorithms()) {
+    const double x = place++;
+    const std::vector<double> values = study.values(algorithm, phase, metric);
+    if (values.empty()) continue;
+    plot += fmt::format(
+        "{0}{1} index 1 with lines lw 2.5 lc rgb '{2}' notitle, {1} index 0 with points pt 7 ps 0.8 lw 1.3 "
+        "lc rgb '{2}' notitle",
+        plot.empty() ? "plot " : ", ", figure.data(dots_and_bars(values, x)), algorithm.colour);
   }
   return range_for(all_values(study, phase, metric)) + plot + "\n";
 }
@@ -101,8 +94,6 @@ std::vector<LegendEntry> legend(const Study& study, std::string_view phase) {
   std::vector<LegendEntry> entries{{phase == kMilling ? "Milling:" : "Holding still:", kInk, 105}};
   for (const AlgorithmId& algorithm : study.algorithms())
     entries.push_back({algorithm.label, algorithm.colour, 135});
-  for (const Mode mode : study.modes())
-    entries.push_back({fmt::format("{} {}", mode == Mode::paper ? "○" : "●", name_of(mode)), kInk, 85});
   entries.push_back({"a dot for each hand, a bar at the median", kInk, 310});
   return entries;
 }
@@ -113,7 +104,7 @@ std::string interval_text(const MedianInterval& interval) {
 
 // "2 > 1, p = 0.012" in bold where significant, else "1, 2: p = 0.3" in grey.
 std::string pair_text(const PairedComparison& pair) {
-  const std::string first = short_label(pair.first.algorithm), second = short_label(pair.second.algorithm);
+  const std::string first = short_label(pair.first), second = short_label(pair.second);
   if (pair.p <= kSignificance) {
     return fmt::format("<b>{} &gt; {}</b>, {}", pair.second_is_greater ? second : first,
                        pair.second_is_greater ? first : second, html_escaped(p_text(pair.p)));
@@ -122,25 +113,24 @@ std::string pair_text(const PairedComparison& pair) {
 }
 
 // "0.02 [0.01, 0.03]", with the hands where it could not be measured in all; else why not in any.
-std::string values_text(const Study& study, const Study::Tried& tried, std::string_view phase,
+std::string values_text(const Study& study, const AlgorithmId& algorithm, std::string_view phase,
                         const Metric& metric) {
-  if (!study.was_tried(tried)) return "–";
-  const std::vector<double> values = study.values(tried, phase, metric);
-  if (values.empty()) return contact_words(study.contact(tried, phase));
+  const std::vector<double> values = study.values(algorithm, phase, metric);
+  if (values.empty()) return contact_words(study.contact(algorithm, phase));
   const std::string text = interval_text(median_interval(values));
   return values.size() == study.seeds().size()
              ? text
              : fmt::format("{} in {} of {} hands", text, values.size(), study.seeds().size());
 }
 
-HtmlTable algorithms_table(const Study& study, Mode mode, std::string_view phase) {
+HtmlTable algorithms_table(const Study& study, std::string_view phase) {
   HtmlTable table{{"Median over the hands [interval]"}, {}, true};
   for (const AlgorithmId& algorithm : study.algorithms()) table.header.emplace_back(algorithm.label);
   if (study.algorithms().size() > 1) table.header.emplace_back("Differences");
   std::vector<std::string> not_reached{"not reached"};
   bool any = false;
   for (const AlgorithmId& algorithm : study.algorithms()) {
-    const std::string words = study.not_reached({algorithm, mode}, phase);
+    const std::string words = study.not_reached(algorithm, phase);
     any = any || !words.empty();
     not_reached.push_back("<span class=\"words\">" + html_escaped(words) + "</span>");
   }
@@ -148,38 +138,13 @@ HtmlTable algorithms_table(const Study& study, Mode mode, std::string_view phase
   for (const Metric& metric : study.metrics_of(phase)) {
     table.rows.push_back({html_escaped(with_unit(metric.name, metric))});
     for (const AlgorithmId& algorithm : study.algorithms()) {
-      table.rows.back().push_back(values_text(study, {algorithm, mode}, phase, metric));
+      table.rows.back().push_back(values_text(study, algorithm, phase, metric));
     }
     std::string pairs;
-    for (const PairedComparison& pair : compare_algorithms(study, mode, phase, metric)) {
+    for (const PairedComparison& pair : compare_algorithms(study, phase, metric)) {
       pairs += (pairs.empty() ? "" : "<br>") + pair_text(pair);
     }
     if (study.algorithms().size() > 1) table.rows.back().push_back(pairs);
-  }
-  return table;
-}
-
-std::string change_text(const PairedComparison& change, std::size_t all_hands) {
-  const std::string p = html_escaped(p_text(change.p));
-  return fmt::format(
-      "{:.3g} → {:.3g}{}<br>× {}<br>{}", change.first_values.median, change.second_values.median,
-      change.hands < all_hands ? fmt::format(" in {} of {} hands", change.hands, all_hands) : "",
-      change.ratios > 0 ? interval_text(change.ratio) : "–",
-      change.p <= kSignificance ? "<b>" + p + "</b>" : "<span class=\"none\">" + p + "</span>");
-}
-
-HtmlTable changes_table(const Study& study, std::string_view phase) {
-  HtmlTable table{{"steady / paper, median over the hands [interval]"}, {}, true};
-  for (const AlgorithmId& algorithm : study.algorithms()) table.header.emplace_back(algorithm.label);
-  for (const Metric& metric : study.metrics_of(phase)) {
-    table.rows.push_back({html_escaped(with_unit(metric.name, metric))});
-    const std::vector<PairedComparison> changes = compare_modes(study, phase, metric);
-    for (const AlgorithmId& algorithm : study.algorithms()) {
-      const auto change = std::find_if(changes.begin(), changes.end(), [&](const PairedComparison& of) {
-        return of.first.algorithm == algorithm;
-      });
-      table.rows.back().push_back(change == changes.end() ? "–" : change_text(*change, study.seeds().size()));
-    }
   }
   return table;
 }
@@ -228,13 +193,13 @@ const char* css_of(Verdict verdict) {
   return verdict == Verdict::agrees ? "agrees" : verdict == Verdict::does_not_agree ? "differs" : "none";
 }
 
-HtmlTable findings_table(const Study& study, Mode mode) {
+HtmlTable findings_table(const Study& study) {
   const bool one = study.seeds().size() == 1;
   HtmlTable table{{"The paper found", one ? "Measured here" : "Medians over the hands",
                    one ? "In this hand" : "Verdict", "Rule"},
                   {}};
   if (!one) table.header.insert(table.header.end() - 1, {"In how many hands", "Sign test"});
-  for (const StudyFinding& f : check_study_findings(study, mode)) {
+  for (const StudyFinding& f : check_study_findings(study)) {
     const Verdict verdict = f.verdict;
     std::vector<std::string> row{
         html_escaped(f.of_medians.paper_says), html_escaped(f.of_medians.measured),
@@ -282,17 +247,8 @@ PageSection study_section(const Study& study, const std::vector<CaptionedFigure>
   PageSection section{.title = fmt::format("Study over {} hands", study.seeds().size()),
                       .paragraphs = how_to_read(study),
                       .figures = figures};
-  for (const Mode mode : study.modes()) {
-    for (const std::string_view phase : study.phases()) {
-      section.parts.push_back({.title = fmt::format("{}, mode {}", phase_title(phase), name_of(mode)),
-                               .tables = {algorithms_table(study, mode, phase)}});
-    }
-  }
-  if (study.modes().size() < 2) return section;
-  for (const std::string_view phase : study.phases()) {
-    section.parts.push_back({.title = fmt::format("What steady changes: {}", phase_title(phase)),
-                             .tables = {changes_table(study, phase)}});
-  }
+  for (const std::string_view phase : study.phases())
+    section.parts.push_back({.title = phase_title(phase), .tables = {algorithms_table(study, phase)}});
   return section;
 }
 
@@ -301,18 +257,14 @@ PageSection findings_section(const Study& study) {
       .title = "The paper's findings",
       .paragraphs = {
           "What section 8.2 of the paper says it found, each held against what was measured by a rule of "
-          "this project. Mode paper has the algorithms as the paper has them; steady has this project's "
-          "named improvements, so what the paper found wrong with one of them need not be wrong there."}};
+          "this project."}};
   if (study.seeds().size() > 1) {
     section.paragraphs.push_back(
         "Several hands agree with the paper, or do not, where all of them do, or so many more than half that "
         "tossing a coin would give as many in one of twenty tries at most; else it is not settled. p is the "
         "chance that as many or more would agree by the toss.");
   }
-  for (const Mode mode : study.modes()) {
-    section.parts.push_back(
-        {.title = fmt::format("Mode {}", name_of(mode)), .tables = {findings_table(study, mode)}});
-  }
+  section.tables = {findings_table(study)};
   return section;
 }
 

@@ -10,15 +10,15 @@
 
 namespace osteomill {
 
-/// A dot for every seed, by algorithm and mode, with a bar at their median: a panel for each key metric that
+/// A dot for every seed, by algorithm, with a bar at their median: a panel for each key metric that
 /// is not zero throughout, at most eight.
 Figure draw_study_figure(const Study& study, std::string_view phase, const std::filesystem::path& folder);
 
-/// The report's section on a study: medians with their intervals, which differences between algorithms are
-/// significant, and what `steady` changes.
+/// The report's section on a study: medians with their intervals, and which differences between algorithms
+/// are significant.
 PageSection study_section(const Study& study, const std::vector<CaptionedFigure>& figures);
 
-/// The report's section on what the paper says it found, each held against the study, mode by mode.
+/// The report's section on what the paper says it found, each held against the study.
 PageSection findings_section(const Study& study);
 
 }  // namespace osteomill

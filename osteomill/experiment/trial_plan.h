@@ -21,8 +21,6 @@ struct TrialPlan {
   TrialSettings settings;
   /// How the comparison was called, for whoever wants to repeat it.
   std::string command_line;
-  /// Recordings carry the mode in their names, as a comparison of both modes needs.
-  bool mode_in_names = false;
   /// How many times as firmly the hand grips as it is said to otherwise; its settings are those of the grip.
   double grip = 1;
   /// The algorithm's stiffness was chosen so that a flat wall is felt as this (match_stiffness.h); nothing

@@ -43,7 +43,7 @@ struct TrialRow {
 TrialRow as_row(const StudyRow& row);
 TrialRow as_row(const TrialSettings& settings, const WallPressResult& result);
 
-/// A row of `milling` as it was before `as_row`, with the seed, algorithm, mode and grip of `of`.
+/// A row of `milling` as it was before `as_row`, with the seed, algorithm and grip of `of`.
 StudyRow milling_row(const TrialRow& row, StudyRow of = {});
 
 }  // namespace osteomill

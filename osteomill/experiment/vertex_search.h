@@ -27,7 +27,7 @@ struct VertexSearchRow {
   static constexpr double kMaxUnseen = 0.2;
 };
 
-/// Presses surface-points itself, as the paper has it, with 6 to 96 vertices on the sphere, 1000 sides each,
+/// Presses surface-points itself with 6 to 96 vertices on the sphere, 1000 sides each,
 /// and 3 to 32 on the circle. The wall's density falls linearly through its surface, where (15) is exact, so
 /// that nothing but the number of vertices counts. In the order of part and number. Takes seconds.
 std::vector<VertexSearchRow> search_vertices();

@@ -121,12 +121,11 @@ void require_usable(const std::vector<RateRow>& rows) {
 void write_rates_csv(const fs::path& path, const MeasuredRates& measured) {
   write_text_atomically(path, [&](std::ostream& out) {
     out << "algorithm,resolution,points,step_us_median,step_us_p99,rate_hz,steps_per_s,paper_rate_hz,"
-           "paced_rate_hz,mode\n";
+           "paced_rate_hz\n";
     for (const RateRow& r : measured.rows) {
-      out << fmt::format("{},{},{},{},{},{},{},{},{},{}\n", name_of(r.algorithm), csv_field(r.resolution),
+      out << fmt::format("{},{},{},{},{},{},{},{},{}\n", name_of(r.algorithm), csv_field(r.resolution),
                          r.points, r.step_us_median, r.step_us_p99, r.rate_hz, r.steps_per_s,
-                         r.paper_rate_hz > 0 ? fmt::format("{}", r.paper_rate_hz) : "", r.paced_rate_hz,
-                         name_of(measured.mode));
+                         r.paper_rate_hz > 0 ? fmt::format("{}", r.paper_rate_hz) : "", r.paced_rate_hz);
     }
   });
 }
@@ -209,12 +208,6 @@ HtmlTable rates_table(const std::vector<RateRow>& rows) {
   return table;
 }
 
-std::string mode_words(Mode mode) {
-  if (mode == Mode::paper) return "Measured in the mode paper: the paper's algorithms as published. ";
-  return "Measured in the mode steady, in which the paper's algorithms do more than as published and have "
-         "other numbers of points: the paper's own rates stand beside --mode paper alone. ";
-}
-
 std::string least_words(const std::vector<VertexSearchRow>& rows, const std::string& part, int papers) {
   const int least = least_vertices(rows, part);
   return fmt::format("{} on the {} ({} in the paper)",
@@ -238,7 +231,7 @@ PageSection vertices_section(const std::vector<VertexSearchRow>& rows) {
           .paragraphs = {fmt::format(
               "By this search: {}, {}. The paper says that its tests found its numbers to be needed for "
               "correct collision detection and force, not by what measure; the measure here is our own. The "
-              "algorithm itself, in the mode paper, presses its sphere, or one circle of its shaft, on a "
+              "algorithm itself presses its sphere, or one circle of its shaft, on a "
               "flat wall by half the radius with a thousand sides of it in turn, in bone whose density is "
               "linear, so that nothing but the number of vertices counts. A number suffices where, with "
               "every side, the force is at most {:g}° off the wall's normal, its size at most {:g} % off "
@@ -264,11 +257,9 @@ fs::path write_rates_report(const MeasuredRates& measured, const fs::path& out_d
     create_folder(beside / "figures");
     const Figure figure = draw_rates_figure(rows, beside / "figures");
     std::vector<PageSection> sections{
-        {.paragraphs = {mode_words(measured.mode) + plain_words(rows), std::string(kWhatRatesMean)},
+        {.paragraphs = {plain_words(rows), std::string(kWhatRatesMean)},
          .figures = {{figure.svg,
-                      fmt::format("Steps a second in {} against resolution, on a logarithmic scale. The "
-                                  "paper's section 8.1.",
-                                  name_of(measured.mode))}},
+                      "Steps a second against resolution, on a logarithmic scale. The paper's section 8.1."}},
          .tables = {rates_table(rows)}}};
     if (!measured.vertices.empty()) sections.push_back(vertices_section(measured.vertices));
     write_text_atomically(beside / "rates.html", [&](std::ostream& out) {

@@ -27,17 +27,6 @@ bool lies_within(const SettingRange& range, double value) {
 
 }  // namespace
 
-std::string_view name_of(Mode mode) {
-  return mode == Mode::paper ? "paper" : "steady";
-}
-
-std::optional<Mode> mode_named(std::string_view name) {
-  for (const Mode mode : {Mode::paper, Mode::steady}) {
-    if (name == name_of(mode)) return mode;
-  }
-  return std::nullopt;
-}
-
 bool is_plain_name(std::string_view name) {
   return name.find_first_not_of(kPlain) == std::string_view::npos;
 }
@@ -56,12 +45,6 @@ std::vector<AlgorithmId> each_once(std::vector<AlgorithmId> algorithms) {
     if (std::find(once.begin(), once.end(), algorithm) == once.end()) once.push_back(std::move(algorithm));
   }
   return once;
-}
-
-bool runs_in(const AlgorithmDescription& algorithm, Mode mode, const std::vector<Mode>& asked) {
-  return mode == asked.back() ||
-         std::any_of(algorithm.settings.begin(), algorithm.settings.end(),
-                     [](const SettingDescription& setting) { return setting.paper != setting.steady; });
 }
 
 const SettingDescription* setting_of_option(const AlgorithmDescription& algorithm, std::string_view option) {
@@ -95,7 +78,7 @@ std::vector<SettingValue> setting_values(const AlgorithmDescription& algorithm,
                                          const HapticSettings& settings) {
   std::vector<SettingValue> values;
   for (const SettingDescription& setting : algorithm.settings) {
-    values.push_back({setting.name, setting.value_in(settings.mode), setting.unit});
+    values.push_back({setting.name, setting.value, setting.unit});
   }
   const auto set = [&](const HapticSettings::Named& named, std::string SettingDescription::*name) {
     bool known = false;

@@ -3,7 +3,6 @@
 #include <functional>
 #include <limits>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -13,15 +12,7 @@
 
 namespace osteomill {
 
-/// `paper` is what the paper says; `steady` the same algorithm with named improvements.
-enum class Mode : unsigned char { paper, steady };
-
-/// As written on the command line and in files: "paper", "steady".
-std::string_view name_of(Mode mode);
-std::optional<Mode> mode_named(std::string_view name);
-
-/// What the user says of the algorithms' settings. What is left open takes each algorithm's own value for the
-/// mode.
+/// What the user says of the algorithms' settings. What is left open takes each algorithm's default.
 struct HapticSettings {
   struct Named {
     /// Of this algorithm, by the setting's own name. Empty: of every algorithm that has a setting with an
@@ -31,7 +22,6 @@ struct HapticSettings {
     double value;
   };
 
-  Mode mode = Mode::steady;
   /// Options are applied first, then what is said of one algorithm, each in this order.
   std::vector<Named> named = {};
 
@@ -103,16 +93,13 @@ struct SettingDescription {
   /// Empty for a pure number.
   std::string unit;
   SettingRange range;
-  /// Its value in either mode where the user says nothing.
-  double paper = 0;
-  double steady = 0;
+  /// Its default.
+  double value = 0;
   /// One line.
   std::string meaning;
   /// An option of the command line (without the dashes) that sets it too, and every setting of another
   /// algorithm that names the same option; empty for none.
   std::string option = {};
-
-  double value_in(Mode mode) const { return mode == Mode::paper ? paper : steady; }
 };
 
 /// A setting with the value that is in force.
@@ -137,10 +124,6 @@ struct AlgorithmDescription {
   /// where values do not go together.
   std::function<std::unique_ptr<HapticAlgorithm>(std::span<const double> values)> make = {};
 };
-
-/// Whether the algorithm is to be run in `mode`, one of those `asked` for: in each, or, where no setting
-/// tells them apart, in the last alone.
-bool runs_in(const AlgorithmDescription& algorithm, Mode mode, const std::vector<Mode>& asked);
 
 /// The setting that an option of the command line sets; null where it has none.
 const SettingDescription* setting_of_option(const AlgorithmDescription& algorithm, std::string_view option);

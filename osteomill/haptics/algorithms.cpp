@@ -3,9 +3,9 @@
 #include <stdexcept>
 
 #include "osteomill/haptics/barrier_shell/barrier_shell.h"
-#include "osteomill/haptics/line_proxy/line_proxy.h"
-#include "osteomill/haptics/point_shell/point_shell_description.h"
-#include "osteomill/haptics/surface_points/surface_points.h"
+#include "osteomill/haptics/published/line_proxy/line_proxy.h"
+#include "osteomill/haptics/published/point_shell/point_shell.h"
+#include "osteomill/haptics/published/surface_points/surface_points.h"
 
 namespace osteomill {
 

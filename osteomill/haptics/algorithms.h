@@ -9,8 +9,8 @@
 
 namespace osteomill {
 
-/// The project's algorithms, in the order of their labels: the paper's three, and our own. One that is added
-/// is a folder and a line in algorithms.cpp.
+/// The project's algorithms, in the order of their labels: the paper's three as published, and our own. One
+/// that is added is a folder and a line in algorithms.cpp.
 const std::vector<AlgorithmDescription>& all_algorithms();
 
 /// The names of all.

@@ -28,24 +28,22 @@ TEST(Algorithms, OneNameStandsOnceWhateverItsLabels) {
 }
 
 TEST(MakeAlgorithm, DefaultsAreThePapers) {
-  const HapticSettings paper{.mode = Mode::paper};
+  const HapticSettings paper;
   EXPECT_EQ(setting("line-proxy", paper, "vertices"), 51);
   EXPECT_EQ(setting("line-proxy", paper, "stiffness"), 5);
   EXPECT_EQ(setting("surface-points", paper, "slices"), 20);
   EXPECT_EQ(setting("surface-points", paper, "stiffness"), 20);
   EXPECT_EQ(setting("point-shell", paper, "scale"), 3);
   EXPECT_EQ(setting("point-shell", paper, "translational-stiffness"), 5);
-  EXPECT_EQ(setting("point-shell", paper, "surface-shell"), 0);
-  EXPECT_EQ(setting("point-shell", {.mode = Mode::steady}, "surface-shell"), 1);
+  EXPECT_EQ(setting("point-shell", paper, "torsional-stiffness"), 2500);
 }
 
 TEST(MakeAlgorithm, WhatTheUserSaysWins) {
-  HapticSettings settings{.mode = Mode::steady};
+  HapticSettings settings;
   settings.set_option("stiffness", 3);
   settings.set_option("shell-scale", 2);
-  settings.named.push_back({"point-shell", "surface-shell", 0});
-  EXPECT_EQ(setting("point-shell", settings, "surface-shell"), 0);
-  EXPECT_EQ(setting("point-shell", settings, "guarded-move"), 1);
+  settings.named.push_back({"point-shell", "damping-time", 0});
+  EXPECT_EQ(setting("point-shell", settings, "damping-time"), 0);
   EXPECT_EQ(setting("point-shell", settings, "scale"), 2);
   for (const auto& [algorithm, name] :
        {std::pair{"line-proxy", "stiffness"}, std::pair{"surface-points", "stiffness"},
@@ -54,24 +52,8 @@ TEST(MakeAlgorithm, WhatTheUserSaysWins) {
   }
 }
 
-TEST(Algorithms, WhatHasOneModeRunsOnce) {
-  const std::vector<Mode> both{Mode::paper, Mode::steady};
-  EXPECT_TRUE(runs_in(algorithm_named("point-shell"), Mode::paper, both));
-  EXPECT_TRUE(runs_in(algorithm_named("point-shell"), Mode::steady, both));
-  EXPECT_FALSE(runs_in(algorithm_named("barrier-shell"), Mode::paper, both));
-  EXPECT_TRUE(runs_in(algorithm_named("barrier-shell"), Mode::steady, both));
-  EXPECT_TRUE(runs_in(algorithm_named("barrier-shell"), Mode::paper, {Mode::paper}));
-}
-
 // The shaft's end first against a sheet two voxels thick, with a device that goes 5 mm past it.
-class ThinSheet : public ::testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(Algorithms, ThinSheet, ::testing::ValuesIn(algorithm_names()), [](const auto& of) {
-  std::string name = of.param;
-  std::erase(name, '-');
-  return name;
-});
-
-TEST_P(ThinSheet, HoldsTheShaftsEndAtAnySpeed) {
+TEST(BarrierShell, HoldsTheShaftsEndAtAnySpeed) {
   constexpr double kTick_s = 1e-3;
   constexpr double kSheetTop_mm = 0.25;
   const Volume bone = testing_support::shape_volume(
@@ -79,7 +61,7 @@ TEST_P(ThinSheet, HoldsTheShaftsEndAtAnySpeed) {
   const MillingTool tool;
   const Vec3 end_T(0, 0, tool.shaft_length_mm);
   for (const double speed_mm_s : {20.0, 50.0, 100.0, 150.0, 200.0, 300.0}) {
-    const auto algorithm = make_algorithm(GetParam(), HapticSettings{});
+    const auto algorithm = make_algorithm(default_algorithm(), HapticSettings{});
     algorithm->prepare({&bone, tool, kTick_s});
     Pose X_WD{Vec3::Zero(), smallest_rotation(Vec3::UnitZ(), -Vec3::UnitZ())};
     HapticStep step;
@@ -87,7 +69,7 @@ TEST_P(ThinSheet, HoldsTheShaftsEndAtAnySpeed) {
     for (double end_z = 2; end_z > -5; end_z -= speed_mm_s * kTick_s) {
       X_WD.position_mm = {0.1, 0.05, end_z + tool.shaft_length_mm};
       step = algorithm->step(X_WD, kTick_s);
-      lowest_mm = std::min(lowest_mm, (step.X_WF.value_or(step.X_WT) * end_T).z());
+      lowest_mm = std::min(lowest_mm, (step.X_WT * end_T).z());
     }
     EXPECT_GT(lowest_mm, kSheetTop_mm - 0.15) << speed_mm_s;
     EXPECT_GT(step.wrench.force_N.z(), 8) << speed_mm_s;
@@ -107,7 +89,7 @@ TEST(MakeAlgorithm, WhatCannotBeIsRefused) {
     refused(algorithm, settings);
   };
   refused_value("surface-points", "no-such-thing", 1);
-  refused_value("surface-points", "hold-tool", 0.5);
+  refused_value("point-shell", "scale", 0);
   refused_value("surface-points", "slices", 2.5);
   refused_value("line-proxy", "stiffness", -1);
   refused_value("point-shell", "torsional-stiffness", std::nan(""));
@@ -123,7 +105,7 @@ TEST(MakeAlgorithm, EachCountsItsSamplePoints) {
   const Volume bone = testing_support::shape_volume(testing_support::centred_cube(24, 0.25),
                                                     testing_support::ball(Vec3::Zero(), 2.0));
   const auto count = [&](std::string_view algorithm) {
-    const auto made = make_algorithm(algorithm, {Mode::paper, {{"", "shell-scale", 1}}});
+    const auto made = make_algorithm(algorithm, {.named = {{"", "shell-scale", 1}}});
     made->prepare({&bone, MillingTool{}});
     return made->sample_point_count();
   };

@@ -38,7 +38,6 @@ const Shape kShapes[] = {
        return (p - (offset_mm - 4) * normal).norm() - 4;
      },
      {{{2, 0.03}, {1, 0.2}, {1e-9, 0.5}}}},
-    // A line's tip slides off it.
     {"ridge",
      [](const Vec3& p, const Vec3& normal, double offset_mm) {
        const Vec3 side = normal.unitOrthogonal();
@@ -46,39 +45,30 @@ const Shape kShapes[] = {
      },
      {{{2, 0.65}, {1, 0.65}, {1e-9, 0.65}}}}};
 
-class FeltShape : public ::testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(Algorithms, FeltShape, ::testing::ValuesIn(algorithm_names()), [](const auto& of) {
-  std::string name = of.param;
-  std::erase(name, '-');
-  return name;
-});
-
 // By kDeep_mm along its normal, with a coupling of 1 N/mm.
-HapticStep pressed(std::string_view name, const Volume& bone, const Vec3& normal, double offset_mm) {
+HapticStep pressed(const Volume& bone, const Vec3& normal, double offset_mm) {
   constexpr double kTick_s = 1e-3;
   HapticSettings settings;
   settings.set_option("stiffness", 1);
-  const auto algorithm = make_algorithm(name, settings);
+  const auto algorithm = make_algorithm(default_algorithm(), settings);
   const MillingTool tool;
   algorithm->prepare({&bone, tool, kTick_s});
-  // The line of line-proxy has no radius.
-  const double radius_mm = name == "line-proxy" ? 0 : tool.burr_radius_mm;
   HapticStep step;
   for (int n = 0; n < 160; ++n) {
     const double deep_mm = std::min(kDeep_mm, -2 + 0.02 * n);
-    const Vec3 position_W = (offset_mm + radius_mm - deep_mm) * normal;
+    const Vec3 position_W = (offset_mm + tool.burr_radius_mm - deep_mm) * normal;
     step = algorithm->step({position_W, smallest_rotation(Vec3::UnitZ(), normal)}, kTick_s);
   }
   return step;
 }
 
 // Densities that go from air to bone within two voxels, within one and, as those of a label map, at once.
-TEST_P(FeltShape, IsFeltWhereItIsHoweverItLiesAmongTheVoxels) {
+TEST(FeltShape, IsFeltWhereItIsHoweverItLiesAmongTheVoxels) {
   const auto force_N = [&](const Shape& shape, const Vec3& normal, double offset_mm, double edge_voxels) {
     const Volume bone = shape_volume(
         centred_cube(37, kVoxel_mm), [&](const Vec3& p) { return shape.distance_mm(p, normal, offset_mm); },
         edge_voxels);
-    return pressed(GetParam(), bone, normal, offset_mm).wrench.force_N.dot(normal);
+    return pressed(bone, normal, offset_mm).wrench.force_N.dot(normal);
   };
   const double plane_N_per_mm = force_N(kShapes[0], Vec3::UnitZ(), 0, 2) / kDeep_mm;
   for (const Shape& shape : kShapes) {
@@ -98,14 +88,13 @@ TEST_P(FeltShape, IsFeltWhereItIsHoweverItLiesAmongTheVoxels) {
 }
 
 // More bone about the tool than a tick makes points of, and a hand that does not wait: the tool waits for it.
-TEST_P(FeltShape, AToolThatBeginsInAFineHoleNeverLeavesIt) {
+TEST(FeltShape, AToolThatBeginsInAFineHoleNeverLeavesIt) {
   constexpr double kHole_mm = 1.6;
   const MillingTool tool;
   const Volume bone = shape_volume(centred_cube(160, 0.08),
                                    [&](const Vec3& p) { return kHole_mm - std::hypot(p.x(), p.y()); });
-  const double radius_mm = GetParam() == "line-proxy" ? 0 : tool.burr_radius_mm;
   for (const Vec3& aside_W : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0)}) {
-    const auto algorithm = make_algorithm(GetParam(), HapticSettings{});
+    const auto algorithm = make_algorithm(default_algorithm(), HapticSettings{});
     algorithm->prepare({&bone, tool, 1e-3});
     HapticStep step;
     double farthest_mm = 0;
@@ -114,7 +103,7 @@ TEST_P(FeltShape, AToolThatBeginsInAFineHoleNeverLeavesIt) {
       step = algorithm->step({position_W, Quat::Identity()}, 1e-3);
       farthest_mm = std::max(farthest_mm, step.X_WT.position_mm.head<2>().norm());
     }
-    EXPECT_LT(farthest_mm, kHole_mm - radius_mm + 0.15) << aside_W.transpose();
+    EXPECT_LT(farthest_mm, kHole_mm - tool.burr_radius_mm + 0.15) << aside_W.transpose();
     EXPECT_LT(step.wrench.force_N.dot(aside_W), -0.5) << aside_W.transpose();
   }
 }

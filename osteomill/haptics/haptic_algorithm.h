@@ -25,9 +25,6 @@ struct HapticStep {
   Wrench wrench;
   /// The simulated tool: where the tool is drawn and where it cuts.
   Pose X_WT;
-  /// The felt tool: where the springs that give the wrench hold the tool, against the device. Nothing where
-  /// that is `X_WT`.
-  std::optional<Pose> X_WF;
   /// The force with which the burr (not the shaft) presses on the bone, in W; zero where something else holds
   /// the tool. Milling is paid with it and cuts where it points.
   Vec3 burr_force_W_N = Vec3::Zero();

@@ -34,13 +34,11 @@ auto setting_field(SettingDescription description) {
                                               }};
 }
 
-/// Every setting at its value of the mode.
+/// Returns every setting at its default.
 template <typename Settings>
-Settings settings_in(Mode mode, std::span<const SettingField<Settings>> fields) {
+Settings default_settings(std::span<const SettingField<Settings>> fields) {
   Settings settings;
-  for (const SettingField<Settings>& field : fields) {
-    field.set(settings, field.description.value_in(mode));
-  }
+  for (const SettingField<Settings>& field : fields) field.set(settings, field.description.value);
   return settings;
 }
 

@@ -137,7 +137,6 @@ void visit_attributes(Run& run, const Visit& visit) {
   visit("algorithm", run.algorithm.name);
   visit("algorithm_label", run.algorithm.label);
   visit("algorithm_colour", run.algorithm.colour);
-  visit("mode", run.mode);
   visit("phase", run.phase);
   visit("seed", run.seed);
   visit("tick_period_s", run.tick_period_s);
@@ -160,12 +159,6 @@ void require_sound(const fs::path& path, const RunDescription& run) {
   }
 }
 
-Mode require_mode(const fs::path& path, const std::string& name) {
-  const std::optional<Mode> mode = mode_named(name);
-  if (!mode) throw InputError(path.string(), "'mode " + name + "' is not known here");
-  return *mode;
-}
-
 }  // namespace
 
 void write_description(const fs::path& path, hid_t file, const RunDescription& description) {
@@ -175,13 +168,7 @@ void write_description(const fs::path& path, hid_t file, const RunDescription& d
                                 "': an algorithm or a phase that cannot be recorded by that name");
   }
   const Attributes write(path, file);
-  visit_attributes(description, [&](const char* name, const auto& value) {
-    if constexpr (std::is_same_v<std::decay_t<decltype(value)>, Mode>) {
-      write.put(name, std::string(name_of(value)));
-    } else {
-      write.put(name, value);
-    }
-  });
+  visit_attributes(description, [&](const char* name, const auto& value) { write.put(name, value); });
   write_settings(path, file, description.settings);
   write_labels(path, file, description.labels);
 }
@@ -195,13 +182,7 @@ void add_setting(const fs::path& path, hid_t file, const RunSetting& setting) {
 RunDescription read_description(const fs::path& path, hid_t file) {
   const Attributes read(path, file);
   RunDescription run;
-  visit_attributes(run, [&](const char* name, auto&& value) {
-    if constexpr (std::is_same_v<std::decay_t<decltype(value)>, Mode>) {
-      value = require_mode(path, read.get<std::string>(name));
-    } else {
-      read.get(name, value);
-    }
-  });
+  visit_attributes(run, [&](const char* name, auto&& value) { read.get(name, value); });
   if (!is_usable(run.algorithm))
     throw InputError(path.string(), "its algorithm has a name, label or colour that cannot be used");
   if (!is_plain_name(run.phase)) throw InputError(path.string(), "the attribute 'phase' is not a plain name");

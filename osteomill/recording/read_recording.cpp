@@ -48,9 +48,9 @@ OpenRecording open_recording(const fs::path& path) {
 void require_our_version(const OpenRecording& recording, const Attributes& root) {
   if (!root.has("osteomill_recording_version")) refuse(recording, "is HDF5, but no recording of osteomill");
   const auto version = root.get<std::uint64_t>("osteomill_recording_version");
-  if (version != kRecordingVersion) {
-    refuse(recording, fmt::format("is a recording of version {}; this program reads version {}", version,
-                                  kRecordingVersion));
+  if (version != kRecordingVersion && version != kRecordingVersionBefore) {
+    refuse(recording, fmt::format("is a recording of version {}; this program reads versions {} and {}",
+                                  version, kRecordingVersionBefore, kRecordingVersion));
   }
 }
 
@@ -419,7 +419,7 @@ bool is_run_alike(const RunDescription& a, const RunDescription& b) {
     });
     return those;
   };
-  return a.algorithm == b.algorithm && a.mode == b.mode && a.isovalue == b.isovalue && a.tool == b.tool &&
+  return a.algorithm == b.algorithm && a.isovalue == b.isovalue && a.tool == b.tool &&
          settings(a) == settings(b);
 }
 

@@ -63,7 +63,7 @@ constexpr std::array kEntries{
 #undef OSTEOMILL_SETTING
 
 HapticSettings haptic_settings(const RunDescription& run) {
-  HapticSettings haptics{run.mode};
+  HapticSettings haptics;
   for (const RunSetting& setting : run.settings) {
     const double* number = std::get_if<double>(&setting.value);
     if (number != nullptr && setting.key.starts_with(kAlgorithmPrefix))
@@ -74,7 +74,6 @@ HapticSettings haptic_settings(const RunDescription& run) {
 
 void set_algorithm(RunDescription& run, const MillingSetup& setup, int sample_points) {
   run.algorithm = setup.algorithm.id;
-  run.mode = setup.haptics.mode;
   const auto is_of_algorithm = [](const RunSetting& setting) {
     return setting.key == kSamplePointsKey || setting.key.starts_with(kAlgorithmPrefix);
   };

@@ -67,7 +67,6 @@ struct RunDescription {
   double isovalue = 0;
   MillingTool tool;
   AlgorithmId algorithm;
-  Mode mode = Mode::steady;
   /// Which part of a longer run this is, in the words of whoever recorded it; empty where it is the whole.
   std::string phase;
   std::uint64_t seed = 0;

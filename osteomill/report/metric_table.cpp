@@ -81,13 +81,13 @@ std::string with_unit(const char* text, const Metric& metric) {
 }
 
 std::string summary_columns() {
-  std::string columns = "algorithm,mode,phase";
+  std::string columns = "algorithm,phase";
   for (const Metric& metric : summary_metrics()) columns += fmt::format(",{}", metric.column);
   return columns + ",not_reached";
 }
 
 std::string summary_fields(const MeasuredRun& run) {
-  std::string fields = fmt::format("{},{},{}", name_of(run.algorithm), name_of(run.mode), run.phase);
+  std::string fields = fmt::format("{},{}", name_of(run.algorithm), run.phase);
   for (const Metric& metric : summary_metrics()) fields += csv_number(metric(run.metrics));
   return fields + "," + run.not_reached;
 }

@@ -138,7 +138,6 @@ inline RunMetrics run_metrics(const Recording& recording) {
 /// What was run, and its figures.
 struct MeasuredRun {
   AlgorithmId algorithm;
-  Mode mode;
   std::string phase;
   RunMetrics metrics;
   /// Null where no recording was kept.

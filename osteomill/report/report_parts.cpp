@@ -82,7 +82,7 @@ std::optional<Figure> draw_picture_figure(const RunGroup& group, const std::file
   for (const Panel& panel : panels) pictures.push_back(shrunk(*panel.recording, *panel.picture));
   const int wide = columns == 1 ? 800 : kPanelWidth_px;
   const int high = std::clamp(wide * pictures[0].height / pictures[0].width, 200, 1000) + 40;
-  FigureScript script{fmt::format("bone_{}", name_of(group.mode)), static_cast<double>(rows) * high,
+  FigureScript script{"bone", static_cast<double>(rows) * high,
                       static_cast<double>(columns) * wide};
   script.body =
       "set multiplot\nunset tics\nunset border\nset size ratio -1\nset lmargin 0.5\nset rmargin 0.5\n"
@@ -203,7 +203,7 @@ std::optional<PageSection> label_section(const RunGroup& group) {
 
 std::optional<Figure> draw_label_figure(const RunGroup& group, const std::filesystem::path& folder) {
   constexpr int kPanel_px = 360;
-  FigureScript script{fmt::format("labels_{}", name_of(group.mode)), 0};
+  FigureScript script{"labels", 0};
   std::string panels;
   int count = 0;
   for (const MeasuredRun& run : group.runs) {
@@ -241,7 +241,6 @@ std::vector<RunSetting> all_settings(const RunDescription& d) {
       {"burr_radius", d.tool.burr_radius_mm, "mm"},
       {"shaft_radius", d.tool.shaft_radius_mm, "mm"},
       {"shaft_length", d.tool.shaft_length_mm, "mm"},
-      {"mode", std::string(name_of(d.mode)), ""},
       {"seed", fmt::format("{}", d.seed), ""},
       {"tick_period", d.tick_period_s, "s"}};
   for (const RunSetting& setting : d.settings) {
@@ -295,8 +294,8 @@ std::string value_of(const SettingLine& line, const std::vector<const Recording*
     const auto [entry, is_new] = by_algorithm.emplace(d.algorithm, line.values[n]);
     if (!is_new && entry->second != line.values[n]) algorithm_decides = false;
     if (line.values[n]) {
-      each += fmt::format("{}{}, {}, {}: {}", each.empty() ? "" : "; ", name_of(d.algorithm), name_of(d.mode),
-                          d.phase, *line.values[n]);
+      each += fmt::format("{}{}, {}: {}", each.empty() ? "" : "; ", name_of(d.algorithm), d.phase,
+                          *line.values[n]);
     }
   }
   if (!algorithm_decides) return each;

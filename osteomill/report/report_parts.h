@@ -8,8 +8,7 @@
 #include "osteomill/report/html.h"
 #include "osteomill/report/run_groups.h"
 
-/// What a report's page is put together from. Each figure is of one mode's runs and throws InputError as
-/// `draw_figure` does.
+/// What a report's page is put together from. Each figure throws InputError as `draw_figure` does.
 namespace osteomill {
 
 /// The bone before, and after each algorithm, side by side, from the recordings' pictures; those of the

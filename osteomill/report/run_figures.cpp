@@ -125,10 +125,6 @@ std::string curve_panel(const std::vector<const MeasuredRun*>& runs, const Shown
   return plot + "\nunset label\nunset arrow\nunset object\n";
 }
 
-std::string figure_name(const char* stem, const RunGroup& group) {
-  return fmt::format("{}_{}", stem, name_of(group.mode));
-}
-
 // Curves are thinned out to the least and greatest of each pixel's worth.
 constexpr std::size_t kCurveBins = 1000;
 
@@ -279,17 +275,17 @@ Figure draw_rate_figure(const RunGroup& group, const std::filesystem::path& fold
   const Shown compute{"compute time of a tick (µs)",
                       [](const TickRecord& r) { return std::max(0.1, r.busy_us()); },
                       fmt::format("set logscale y\nset yrange [1:{:.6g}]\n{}", 1.5 * max, dashed_line(1000))};
-  return draw_apart(group, figure_name("fig6_rate", group), compute, "1 ms, a tick at 1000 Hz", folder);
+  return draw_apart(group, "fig6_rate", compute, "1 ms, a tick at 1000 Hz", folder);
 }
 
 Figure draw_force_figure(const RunGroup& group, const std::filesystem::path& folder) {
   const auto magnitude = [](const TickRecord& r) { return r.wrench.force_N.norm(); };
-  return draw_apart(group, figure_name("fig7_force", group), {"force (N)", magnitude, ""}, "", folder);
+  return draw_apart(group, "fig7_force", {"force (N)", magnitude, ""}, "", folder);
 }
 
 Figure draw_torque_figure(const RunGroup& group, const std::filesystem::path& folder) {
   const auto magnitude = [](const TickRecord& r) { return r.wrench.torque_Nmm.norm(); };
-  return draw_apart(group, figure_name("fig8_torque", group), {"torque (N mm)", magnitude, ""}, "", folder);
+  return draw_apart(group, "fig8_torque", {"torque (N mm)", magnitude, ""}, "", folder);
 }
 
 Figure draw_removed_figure(const RunGroup& group, const std::filesystem::path& folder) {
@@ -298,7 +294,7 @@ Figure draw_removed_figure(const RunGroup& group, const std::filesystem::path& f
   std::erase_if(milled.runs, [](const MeasuredRun& run) { return run.metrics.removed_mm3 == 0; });
   if (milled.runs.empty()) milled = group;
   return draw_together(
-      milled, figure_name("removed", group),
+      milled, "removed",
       {{"Bone removed (mm³)", [](const TickRecord& r) { return r.removed_mm3; }, "set yrange [0:*]"}},
       folder);
 }
@@ -310,7 +306,7 @@ Figure draw_path_figure(const RunGroup& group, const std::filesystem::path& fold
     columns.push_back({fmt::format("Burr along {} (mm)", kAxes[axis]),
                        [axis](const TickRecord& r) { return r.X_WT.position_mm[axis]; }, "set yrange [*:*]"});
   }
-  return draw_together(group, figure_name("path", group), columns, folder);
+  return draw_together(group, "path", columns, folder);
 }
 
 Figure draw_shaft_figure(const RunGroup& group, const std::filesystem::path& folder) {
@@ -332,7 +328,7 @@ Figure draw_shaft_figure(const RunGroup& group, const std::filesystem::path& fol
                        .right_px = kRight_px,
                        .above_px = kAbove_px,
                        .below_px = kBelow_px};
-  FigureScript script{figure_name("fig9_shaft", group), grid.height_px};
+  FigureScript script{"fig9_shaft", grid.height_px};
   script.body =
       begin_panels("") +
       fmt::format(

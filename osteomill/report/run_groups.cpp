@@ -14,7 +14,7 @@ namespace osteomill {
 MeasuredRun measured_run(const Recording& recording, const RunMetrics& metrics) {
   const RunDescription& d = recording.description;
   const std::string* not_reached = find_setting<std::string>(d, kNotReachedKey);
-  return {d.algorithm, d.mode, d.phase, metrics, &recording, not_reached == nullptr ? "" : *not_reached};
+  return {d.algorithm, d.phase, metrics, &recording, not_reached == nullptr ? "" : *not_reached};
 }
 
 const MeasuredRun* RunGroup::find(std::string_view algorithm, std::string_view phase) const {
@@ -63,32 +63,25 @@ std::map<std::string, double> beginnings(const std::vector<Recording>& recording
 
 }  // namespace
 
-std::vector<RunGroup> group_runs(const std::vector<Recording>& recordings,
-                                 RunMetrics (*measure)(const Recording&)) {
+RunGroup group_runs(const std::vector<Recording>& recordings, RunMetrics (*measure)(const Recording&)) {
   if (recordings.empty()) throw InputError("report", "there are no recordings to report on");
   const std::map<std::string, double> began_s = beginnings(recordings);
-  std::vector<RunGroup> groups;
-  for (const Mode mode : {Mode::paper, Mode::steady}) {
-    RunGroup group{mode, {}};
-    for (const Recording& recording : recordings) {
-      const RunDescription& d = recording.description;
-      if (d.mode != mode) continue;
-      if (const MeasuredRun* twin = group.find(d.algorithm.name, d.phase)) {
-        throw InputError(
-            recording.path.string(),
-            fmt::format("is {}, {}, {} as {} is; a report has room for one of them", name_of(d.algorithm),
-                        name_of(d.mode), d.phase, twin->recording->path.string()));
-      }
-      group.runs.push_back(measured_run(recording, measure(recording)));
+  RunGroup group;
+  for (const Recording& recording : recordings) {
+    const RunDescription& d = recording.description;
+    if (const MeasuredRun* twin = group.find(d.algorithm.name, d.phase)) {
+      throw InputError(recording.path.string(),
+                       fmt::format("is {}, {} as {} is; a report has room for one of them",
+                                   name_of(d.algorithm), d.phase, twin->recording->path.string()));
     }
-    const auto order = [&](const MeasuredRun& run) {
-      return std::tuple(began_s.at(run.phase), run.phase, run.algorithm);
-    };
-    std::sort(group.runs.begin(), group.runs.end(),
-              [&](const MeasuredRun& a, const MeasuredRun& b) { return order(a) < order(b); });
-    if (!group.runs.empty()) groups.push_back(std::move(group));
+    group.runs.push_back(measured_run(recording, measure(recording)));
   }
-  return groups;
+  const auto order = [&](const MeasuredRun& run) {
+    return std::tuple(began_s.at(run.phase), run.phase, run.algorithm);
+  };
+  std::sort(group.runs.begin(), group.runs.end(),
+            [&](const MeasuredRun& a, const MeasuredRun& b) { return order(a) < order(b); });
+  return group;
 }
 
 }  // namespace osteomill

@@ -11,10 +11,8 @@ namespace osteomill {
 /// What a recording says of its run, with these figures of it; it points to the recording.
 MeasuredRun measured_run(const Recording& recording, const RunMetrics& metrics);
 
-/// The runs of one mode, which belong into the same figures; by phase, then by
-/// algorithm.
+/// The runs of a report, by phase, then by algorithm.
 struct RunGroup {
-  Mode mode;
   std::vector<MeasuredRun> runs;
 
   /// Null where there is no such run.
@@ -26,10 +24,9 @@ struct RunGroup {
   std::vector<AlgorithmId> algorithms() const;
 };
 
-/// Measures and groups recordings; the groups point into `recordings`. Throws InputError where there are
-/// none, where two are of the same algorithm, mode and phase, or where one cannot be measured
-/// (run_metrics).
-std::vector<RunGroup> group_runs(const std::vector<Recording>& recordings,
-                                 RunMetrics (*measure)(const Recording&) = run_metrics);
+/// Measures recordings; the runs point into `recordings`. Throws InputError if there are none, if two are of
+/// the same algorithm and phase, or if one cannot be measured (run_metrics).
+RunGroup group_runs(const std::vector<Recording>& recordings,
+                    RunMetrics (*measure)(const Recording&) = run_metrics);
 
 }  // namespace osteomill

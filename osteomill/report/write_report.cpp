@@ -16,13 +16,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-using Groups = std::vector<RunGroup>;
-
-std::vector<const Recording*> all_recordings(const Groups& groups) {
+std::vector<const Recording*> all_recordings(const RunGroup& group) {
   std::vector<const Recording*> recordings;
-  for (const RunGroup& group : groups) {
-    for (const MeasuredRun& run : group.runs) recordings.push_back(run.recording);
-  }
+  for (const MeasuredRun& run : group.runs) recordings.push_back(run.recording);
   return recordings;
 }
 
@@ -81,7 +77,6 @@ PageSection what_was_run(const std::vector<const Recording*>& recordings) {
                      "What is reported is what was sent to the hand at every tick."}};
 }
 
-// A figure of one mode's runs.
 struct RunFigure {
   const char* name;
   Figure (*draw)(const RunGroup&, const fs::path& folder);
@@ -164,22 +159,13 @@ HtmlTable metrics_table(const RunGroup& group, const std::vector<MetricLine>& li
   return table;
 }
 
-// A part for a mode, whose title says which where there are several.
-PageSection mode_part(const RunGroup& group, const Groups& groups) {
-  return {.title = groups.size() > 1 ? fmt::format("Mode {}", name_of(group.mode)) : ""};
-}
-
-PageSection topic_section(const Topic& topic, const Groups& groups, const PageText& text,
+PageSection topic_section(const Topic& topic, const RunGroup& group, const PageText& text,
                           const fs::path& folder, const std::vector<MetricLine>& further = {}) {
   std::vector<MetricLine> lines = lines_of(topic);
   lines.insert(lines.end(), further.begin(), further.end());
   PageSection section{.title = topic.title};
-  for (const RunGroup& group : groups) {
-    PageSection part = mode_part(group, groups);
-    for (const RunFigure& figure : topic.figures) part.figures.push_back(drawn(figure, group, text, folder));
-    part.tables = {metrics_table(group, lines)};
-    section.parts.push_back(std::move(part));
-  }
+  for (const RunFigure& figure : topic.figures) section.figures.push_back(drawn(figure, group, text, folder));
+  section.tables = {metrics_table(group, lines)};
   return section;
 }
 
@@ -189,39 +175,29 @@ bool has_setting(const RunGroup& group, std::string_view key) {
   });
 }
 
-std::vector<PageSection> pictures_section(const Groups& groups, const fs::path& folder) {
+std::vector<PageSection> pictures_section(const RunGroup& group, const fs::path& folder) {
   PageSection section{.title = "The bone before and after"};
-  for (const RunGroup& group : groups) {
-    PageSection part = mode_part(group, groups);
-    if (const auto bone = draw_picture_figure(group, folder)) {
-      // Smaller as PNG; curves and clouds stay sharp as SVG.
-      part.figures = {{bone->png, "The bone before, and after each algorithm's run."}};
-    } else if (has_setting(group, kPicturesKey)) {
-      part.notices = {"No pictures of the bone: OpenGL could not be had when this was recorded."};
-    } else {
-      continue;
-    }
-    section.parts.push_back(std::move(part));
+  if (const auto bone = draw_picture_figure(group, folder)) {
+    // Smaller as PNG; curves and clouds stay sharp as SVG.
+    section.figures = {{bone->png, "The bone before, and after each algorithm's run."}};
+  } else if (has_setting(group, kPicturesKey)) {
+    section.notices = {"No pictures of the bone: OpenGL could not be had when this was recorded."};
+  } else {
+    return {};
   }
-  if (section.parts.empty()) return {};
   return {section};
 }
 
 // Of a scan with labels.
-PageSection labels_section(const Groups& groups, const fs::path& folder) {
-  PageSection section;
-  for (const RunGroup& group : groups) {
-    std::optional<PageSection> labels = label_section(group);
-    if (!labels) continue;
-    // Below the table.
-    if (const auto figure = draw_label_figure(group, folder)) {
-      labels->parts = {
-          {.figures = {{figure->svg, "What was removed of each label over time, in the labels' colours."}}}};
-    }
-    section.parts.push_back(mode_part(group, groups));
-    section.parts.push_back(std::move(*labels));
+PageSection labels_section(const RunGroup& group, const fs::path& folder) {
+  std::optional<PageSection> labels = label_section(group);
+  if (!labels) return {};
+  // Below the table.
+  if (const auto figure = draw_label_figure(group, folder)) {
+    labels->parts = {
+        {.figures = {{figure->svg, "What was removed of each label over time, in the labels' colours."}}}};
   }
-  return section;
+  return *labels;
 }
 
 double spindle_s(const Recording& recording) {
@@ -263,11 +239,9 @@ std::string session_in_words(const MeasuredRun& run) {
              fmt::join(greatest, " and "));
 }
 
-PageSection sessions_in_words(const Groups& groups) {
+PageSection sessions_in_words(const RunGroup& group) {
   PageSection section;
-  for (const RunGroup& group : groups) {
-    for (const MeasuredRun& run : group.runs) section.paragraphs.push_back(session_in_words(run));
-  }
+  for (const MeasuredRun& run : group.runs) section.paragraphs.push_back(session_in_words(run));
   return section;
 }
 
@@ -287,41 +261,39 @@ PageSection how_to_repeat(const std::vector<const Recording*>& recordings) {
       .commands = commands};
 }
 
-std::string report_page(const Groups& groups, const PageText& text, const fs::path& folder) {
-  const std::vector<const Recording*> recordings = all_recordings(groups);
+std::string report_page(const RunGroup& group, const PageText& text, const fs::path& folder) {
+  const std::vector<const Recording*> recordings = all_recordings(group);
   std::vector<PageSection> sections{notices(recordings)};
   const auto add = [&](const std::vector<PageSection>& more) {
     sections.insert(sections.end(), more.begin(), more.end());
   };
   add(differences(recordings));
-  sections.push_back(text.opening ? *text.opening : sessions_in_words(groups));
-  add(pictures_section(groups, folder));
-  for (const Topic& topic : kFelt) sections.push_back(topic_section(topic, groups, text, folder));
-  sections.push_back(labels_section(groups, folder));
+  sections.push_back(text.opening ? *text.opening : sessions_in_words(group));
+  add(pictures_section(group, folder));
+  for (const Topic& topic : kFelt) sections.push_back(topic_section(topic, group, text, folder));
+  sections.push_back(labels_section(group, folder));
   add(text.sections);
-  sections.push_back(topic_section(kTimes, groups, text, folder, text.further_times));
+  sections.push_back(topic_section(kTimes, group, text, folder, text.further_times));
   add({what_was_run(recordings),
        {.title = "Settings", .tables = {settings_table(recordings)}},
        how_to_repeat(recordings)});
   return html_page(text.title, sections);
 }
 
-void write_summary_csv(const fs::path& path, const Groups& groups) {
+void write_summary_csv(const fs::path& path, const RunGroup& group) {
   write_text_atomically(path, [&](std::ostream& out) {
     out << summary_columns() << '\n';
-    for (const RunGroup& group : groups) {
-      for (const MeasuredRun& run : group.runs) out << summary_fields(run) << '\n';
-    }
+    for (const MeasuredRun& run : group.runs) out << summary_fields(run) << '\n';
   });
 }
 
 }  // namespace
 
-fs::path write_report(const Groups& groups, const fs::path& out_dir, const PageText& text) {
+fs::path write_report(const RunGroup& group, const fs::path& out_dir, const PageText& text) {
   write_folder_atomically(out_dir, [&](const fs::path& beside) {
     create_folder(beside / "figures");
-    write_summary_csv(beside / "summary.csv", groups);
-    const std::string page = report_page(groups, text, beside / "figures");
+    write_summary_csv(beside / "summary.csv", group);
+    const std::string page = report_page(group, text, beside / "figures");
     write_text_atomically(beside / "report.html", [&](std::ostream& out) { out << page; });
   });
   return out_dir / "report.html";

@@ -28,7 +28,7 @@ struct PageText {
   std::vector<PageSection> sections;
   /// Below the times that any session has.
   std::vector<MetricLine> further_times;
-  /// More to say below a figure, by the figure's name without the mode ("force").
+  /// More to say below a figure, by the figure's name ("force").
   std::map<std::string, std::string> caption_notes;
 };
 
@@ -37,11 +37,11 @@ struct PageText {
 /// the bone before and after, force, torque, shaft and path, each with its figures and metrics, then what
 /// `text` adds, times, settings, and how to repeat it, with the figures in itself. All appear together or
 /// none. Throws InputError where gnuplot is missing or fails, or a file cannot be written.
-std::filesystem::path write_report(const std::vector<RunGroup>& groups, const std::filesystem::path& out_dir,
+std::filesystem::path write_report(const RunGroup& runs, const std::filesystem::path& out_dir,
                                    const PageText& text = {});
 
-/// A report of any number of recordings, one for each algorithm, mode and phase that there is. Throws
-/// InputError also where there are no recordings, two are of the same algorithm, mode and phase, or one
+/// A report of any number of recordings, one for each algorithm and phase that there is. Throws
+/// InputError also where there are no recordings, two are of the same algorithm and phase, or one
 /// cannot be measured.
 std::filesystem::path write_report(const std::vector<Recording>& recordings,
                                    const std::filesystem::path& out_dir);

@@ -45,7 +45,6 @@ inline RunDescription sample_description() {
   d.isovalue = 1234.5;
   d.tool = {1.25, 0.75, 24};
   d.algorithm = algorithm_named("point-shell").id;
-  d.mode = Mode::paper;
   d.phase = "holding";
   d.seed = 0xfedcba9876543210u;
   d.tick_period_s = 0.001;

@@ -153,7 +153,7 @@ void BarrierShell::prepare(const Scene& scene) {
   tool_ = scene.tool;
   barrier_ = skin_of(scene.tool, settings_);
   centreline_T_ = centreline_vertices(scene.tool, kCentrelinePoints);
-  bricks_ = BoneBricks(*scene.volume, settings_.point_spacing_mm, BoneBricks::Points::fine_and_coarse);
+  bricks_ = BoneBricks(*scene.volume, settings_.point_spacing_mm);
   near_ = NearBone(kNearPoints);
   reset();
 }

@@ -97,7 +97,7 @@ class BarrierShell final : public HapticAlgorithm {
   Counts counts_;
 };
 
-/// Algorithm 4, not the paper's; it has one mode.
+/// Describes algorithm 4, not the paper's.
 AlgorithmDescription description();
 
 }  // namespace osteomill::barrier_shell

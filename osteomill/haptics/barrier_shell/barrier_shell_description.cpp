@@ -10,10 +10,9 @@ namespace {
 
 using Field = SettingField<Settings>;
 
-// The same in both modes: it has one.
 template <auto kPlace>
 Field number(const char* name, const char* unit, double value, const char* meaning, const char* option = "") {
-  return setting_field<kPlace>({name, unit, SettingRange::positive(), value, value, meaning, option});
+  return setting_field<kPlace>({name, unit, SettingRange::positive(), value, meaning, option});
 }
 
 const std::vector<Field>& fields() {
@@ -51,7 +50,7 @@ const std::vector<Field>& fields() {
 }  // namespace
 
 Settings Settings::defaults() {
-  return settings_in<Settings>(Mode::steady, fields());
+  return default_settings<Settings>(fields());
 }
 
 AlgorithmDescription description() {

@@ -30,12 +30,11 @@ constexpr int kDensitiesLookedAt = 60;
 
 }  // namespace
 
-BoneBricks::BoneBricks(const Volume& volume, double spacing_mm, Points points)
+BoneBricks::BoneBricks(const Volume& volume, double spacing_mm)
     : lattice_(volume, spacing_mm),
-      kinds_(points),
       nodes_(kNodes),
       fine_(kSlots, kFineChunks),
-      coarse_(kSlots, points == Points::fine ? 0 : kCoarseChunks),
+      coarse_(kSlots, kCoarseChunks),
       brick_of_slot_(kSlots),
       changes_(kSlots),
       without_bone_(kSlots) {
@@ -106,10 +105,8 @@ int BoneBricks::make(const VoxelIndex& brick, std::uint32_t& place) {
     changes_[place] = changes;
     without_bone_[place] = without_bone;
     const std::uint32_t stored = fine_.replace(place, found_.fine);
-    if (kinds_ == Points::fine_and_coarse) {
-      SurfaceLattice::merge_flat_cells(found_);
-      coarse_.replace(place, found_.coarse);
-    }
+    SurfaceLattice::merge_flat_cells(found_);
+    coarse_.replace(place, found_.coarse);
     if (stored == 0) {
       free_slots_.push_back(place);
       place = kBoneAlone;
@@ -179,7 +176,7 @@ void BoneBricks::remake_bearing() {
 bool BoneBricks::has_room() const {
   constexpr std::size_t kMostChunks = SurfaceLattice::kMaxPointsOfBrick / PointChunk::kSlots + 1;
   return !free_slots_.empty() && fine_.free_chunks() >= kMostChunks &&
-         (kinds_ == Points::fine || coarse_.free_chunks() >= kMostChunks);
+         coarse_.free_chunks() >= kMostChunks;
 }
 
 void BoneBricks::make_room(const MillingTool& tool, const Pose& X_WT) {
@@ -197,7 +194,7 @@ void BoneBricks::make_room(const MillingTool& tool, const Pose& X_WT) {
 
 bool BoneBricks::is_short_of_room() const {
   return free_slots_.size() < kSpareSlots || fine_.free_chunks() < kSpareChunks ||
-         (kinds_ == Points::fine_and_coarse && coarse_.free_chunks() < kSpareChunks);
+         coarse_.free_chunks() < kSpareChunks;
 }
 
 bool BoneBricks::is_near(const MillingTool& tool, const Pose& X_TW, const VoxelIndex& b) const {
@@ -208,7 +205,7 @@ bool BoneBricks::is_near(const MillingTool& tool, const Pose& X_TW, const VoxelI
 void BoneBricks::forget(std::uint32_t slot) {
   *find(brick_of_slot_[slot]).place = kUnseen;
   fine_.replace(slot, PointRows{});
-  if (kinds_ == Points::fine_and_coarse) coarse_.replace(slot, PointRows{});
+  coarse_.replace(slot, PointRows{});
   free_slots_.push_back(slot);
 }
 

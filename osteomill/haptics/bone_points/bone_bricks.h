@@ -73,19 +73,13 @@ class BrickSweep {
 /// there is. Building allocates; all else is safe in the haptic tick.
 class BoneBricks {
  public:
-  enum class Points {
-    /// All at the lattice's spacing.
-    fine,
-    /// Others as well, twice as far apart where the bone is flat.
-    fine_and_coarse
-  };
-
   /// For a burr of a millimetre, points nearer to one another say nothing more.
   static constexpr double kSpacing_mm = 0.13;
 
   BoneBricks() = default;
-  /// `volume` outlives it. Points at most `spacing_mm` apart.
-  BoneBricks(const Volume& volume, double spacing_mm, Points points);
+  /// `volume` outlives it. Fine points are at most `spacing_mm` apart, coarse ones twice that where the bone
+  /// is flat.
+  BoneBricks(const Volume& volume, double spacing_mm);
 
   const SurfaceLattice& lattice() const { return lattice_; }
   const BrickPoints& fine() const { return fine_; }
@@ -201,7 +195,6 @@ class BoneBricks {
   void forget_node(Node& node);
 
   SurfaceLattice lattice_;
-  Points kinds_ = Points::fine;
   double brick_radius_mm_ = 0;
   // Of the octree, bricks not counted.
   int levels_ = 1;

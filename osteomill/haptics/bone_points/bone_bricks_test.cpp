@@ -26,7 +26,7 @@ TEST(BoneBricks, MillingBringsThemUpToDateWithinABudget) {
     Volume volume =
         testing_support::shape_volume(testing_support::centred_cube(static_cast<int>(6 / voxel_mm), voxel_mm),
                                       testing_support::ball(Vec3::Zero(), 2));
-    BoneBricks kept(volume, 0.13, BoneBricks::Points::fine_and_coarse);
+    BoneBricks kept(volume, 0.13);
     make_all(kept);
     VoxelBox changed;
     const auto& dims = volume.geometry().dims;
@@ -46,7 +46,7 @@ TEST(BoneBricks, MillingBringsThemUpToDateWithinABudget) {
     int ticks = 1;
     for (; !kept.is_up_to_date(); ++ticks) kept.refresh({}, 200);
     EXPECT_GT(ticks, 3);
-    BoneBricks anew(volume, 0.13, BoneBricks::Points::fine_and_coarse);
+    BoneBricks anew(volume, 0.13);
     std::vector<Vec3> kept_points, new_points;
     for_each_point(kept, [&](const Vec3& p, double) { kept_points.push_back(p); });
     for_each_point(anew, [&](const Vec3& p, double) { new_points.push_back(p); });
@@ -81,7 +81,7 @@ TEST(BoneBricks, MilledAtRandomTheyAreInTheEndAsMadeAnew) {
   for (const double spacing_mm : {0.13, 0.4}) {
     for (const int budget : {1, 50, 1000}) {
       Volume volume = testing_support::shape_volume(geometry, testing_support::ball({0, 0, -0.3}, 3.4));
-      BoneBricks kept(volume, spacing_mm, BoneBricks::Points::fine);
+      BoneBricks kept(volume, spacing_mm);
       make_all(kept);
       std::mt19937 bits(11);
       for (int n = 0; n < 40; ++n) {
@@ -92,7 +92,7 @@ TEST(BoneBricks, MilledAtRandomTheyAreInTheEndAsMadeAnew) {
         });
       }
       while (!kept.is_up_to_date()) kept.refresh({}, budget);
-      BoneBricks anew(volume, spacing_mm, BoneBricks::Points::fine);
+      BoneBricks anew(volume, spacing_mm);
       std::vector<Vec3> kept_points, new_points;
       for_each_point(kept, [&](const Vec3& p, double) { kept_points.push_back(p); });
       for_each_point(anew, [&](const Vec3& p, double) { new_points.push_back(p); });
@@ -106,7 +106,7 @@ TEST(BoneBricks, MilledAtRandomTheyAreInTheEndAsMadeAnew) {
 TEST(BoneBricks, ThoseThatBearTheToolAreBroughtUpToDateWithinAFewTicks) {
   Volume volume = testing_support::shape_volume(testing_support::centred_cube(90, 0.13),
                                                 testing_support::plane(Vec3::Zero(), Vec3::UnitZ()));
-  BoneBricks kept(volume, 0.13, BoneBricks::Points::fine);
+  BoneBricks kept(volume, 0.13);
   const auto at_the_middle = [](BoneBricks& bricks, const auto& use) {
     const Vec3 middle_G = Vec3::Constant(0.5 * 89 * 0.13);
     bricks.visit(
@@ -132,7 +132,7 @@ TEST(BoneBricks, ThoseThatBearTheToolAreBroughtUpToDateWithinAFewTicks) {
       if (density > 0 && density < 1000) volume.lower_density(v, std::max(0.0f, density - 2));
     });
     kept.refresh(all, 1);
-    BoneBricks anew(volume, 0.13, BoneBricks::Points::fine);
+    BoneBricks anew(volume, 0.13);
     as_made_anew.push_back(heights(anew));
   }
   // Of one of the last ticks, brick by brick.
@@ -150,7 +150,7 @@ TEST(BoneBricks, ThoseThatBearTheToolAreBroughtUpToDateWithinAFewTicks) {
 TEST(BoneBricks, ATickMakesNoMoreThanItHasTimeFor) {
   const Volume volume = testing_support::shape_volume(testing_support::centred_cube(150, 0.13),
                                                       testing_support::ball(Vec3::Zero(), 8));
-  BoneBricks bricks(volume, 0.13, BoneBricks::Points::fine);
+  BoneBricks bricks(volume, 0.13);
   const auto everywhere = [](const Vec3&, double) { return true; };
   std::size_t before = 0;
   int ticks = 0;
@@ -162,7 +162,7 @@ TEST(BoneBricks, ATickMakesNoMoreThanItHasTimeFor) {
     ASSERT_LT(ticks, 1000);
   }
   EXPECT_GT(ticks, 10);
-  BoneBricks at_once(volume, 0.13, BoneBricks::Points::fine);
+  BoneBricks at_once(volume, 0.13);
   make_all(at_once);
   EXPECT_EQ(bricks.fine().total(), at_once.fine().total());
 }
@@ -173,7 +173,7 @@ TEST(BoneBricks, ABrickThatFoundNoRoomIsMadeWhenThereIs) {
       testing_support::shape_volume(testing_support::centred_cube(224, 0.13), [](const Vec3& p) {
         return 0.4 - std::abs(std::remainder(p.x(), 0.9)) - std::abs(std::remainder(p.y(), 0.9));
       });
-  BoneBricks bricks(volume, 0.13, BoneBricks::Points::fine);
+  BoneBricks bricks(volume, 0.13);
   const auto made_about = [&](const Vec3& middle_G, double within_mm) {
     std::size_t made = 0;
     bricks.visit([&](const Vec3& node_G,
@@ -193,7 +193,7 @@ TEST(BoneBricks, ABrickThatFoundNoRoomIsMadeWhenThereIs) {
 TEST(BoneBricks, NeitherTimeNorRoomGrowsWithTheScan) {
   const Volume volume = testing_support::shape_volume(testing_support::centred_cube(11, 100.0),
                                                       testing_support::plane({0, 0, 10}, {0, 0, 1}));
-  BoneBricks bricks(volume, 0.13, BoneBricks::Points::fine);
+  BoneBricks bricks(volume, 0.13);
   std::mt19937 bits(3);
   for (int n = 0; n < 6000; ++n) {
     const Vec3 at_G(uniform(bits, 1, 999), uniform(bits, 1, 999), 510);

@@ -9,8 +9,6 @@ namespace osteomill {
 
 namespace {
 
-constexpr ShellPoint kNoPoint{PointChunk::kFarAway_mm, PointChunk::kFarAway_mm, PointChunk::kFarAway_mm, 0};
-
 // The points from `first` on, of `count`, and nothing where there are no more.
 void fill(PointChunk& chunk, const PointRows& points, std::size_t first, std::size_t count) {
   const auto copy = [&](const std::vector<float>& from, std::array<float, PointChunk::kSlots>& to) {
@@ -20,10 +18,7 @@ void fill(PointChunk& chunk, const PointRows& points, std::size_t first, std::si
   copy(points.y_mm, chunk.y_mm);
   copy(points.z_mm, chunk.z_mm);
   copy(points.area_mm2, chunk.area_mm2);
-  copy(points.normal_x, chunk.normal_x);
-  copy(points.normal_y, chunk.normal_y);
-  copy(points.normal_z, chunk.normal_z);
-  for (std::size_t slot = count - first; slot < PointChunk::kSlots; ++slot) chunk.set(slot, kNoPoint);
+  for (std::size_t slot = count - first; slot < PointChunk::kSlots; ++slot) chunk.clear(slot);
 }
 
 }  // namespace

@@ -30,23 +30,6 @@ struct ShellPoint {
   friend bool operator==(const ShellPoint&, const ShellPoint&) = default;
 };
 
-/// Of what has a row for each of a point's numbers: its n-th point, and putting one there.
-template <typename Rows>
-ShellPoint point_in(const Rows& rows, std::size_t n) {
-  return {rows.x_mm[n],     rows.y_mm[n],     rows.z_mm[n],    rows.area_mm2[n],
-          rows.normal_x[n], rows.normal_y[n], rows.normal_z[n]};
-}
-template <typename Rows>
-void put_in(Rows& rows, std::size_t n, const ShellPoint& point) {
-  rows.x_mm[n] = point.x_mm;
-  rows.y_mm[n] = point.y_mm;
-  rows.z_mm[n] = point.z_mm;
-  rows.area_mm2[n] = point.area_mm2;
-  rows.normal_x[n] = point.normal_x;
-  rows.normal_y[n] = point.normal_y;
-  rows.normal_z[n] = point.normal_z;
-}
-
 /// Points of one brick, up to 32 at a time, each coordinate in a row of its own. Slots without a point lie
 /// far away and have no area, so that all 32 may be computed alike.
 struct PointChunk {
@@ -56,12 +39,15 @@ struct PointChunk {
   alignas(64) std::array<float, kSlots> y_mm;
   alignas(64) std::array<float, kSlots> z_mm;
   alignas(64) std::array<float, kSlots> area_mm2;
-  alignas(64) std::array<float, kSlots> normal_x;
-  alignas(64) std::array<float, kSlots> normal_y;
-  alignas(64) std::array<float, kSlots> normal_z;
 
-  ShellPoint point(std::size_t slot) const { return point_in(*this, slot); }
-  void set(std::size_t slot, const ShellPoint& point) { put_in(*this, slot, point); }
+  /// Without its normal, which is not kept.
+  ShellPoint point(std::size_t slot) const {
+    return {x_mm[slot], y_mm[slot], z_mm[slot], area_mm2[slot]};
+  }
+  void clear(std::size_t slot) {
+    x_mm[slot] = y_mm[slot] = z_mm[slot] = kFarAway_mm;
+    area_mm2[slot] = 0;
+  }
 };
 
 /// Points of a brick before they are stored, each coordinate in a row of its own, with room for `most` and
@@ -74,8 +60,19 @@ struct PointRows {
   std::size_t count = 0;
   std::vector<float> x_mm, y_mm, z_mm, area_mm2, normal_x, normal_y, normal_z;
 
-  void add(const ShellPoint& point) { put_in(*this, count++, point); }
-  ShellPoint point(std::size_t n) const { return point_in(*this, n); }
+  void add(const ShellPoint& point) {
+    const std::size_t n = count++;
+    x_mm[n] = point.x_mm;
+    y_mm[n] = point.y_mm;
+    z_mm[n] = point.z_mm;
+    area_mm2[n] = point.area_mm2;
+    normal_x[n] = point.normal_x;
+    normal_y[n] = point.normal_y;
+    normal_z[n] = point.normal_z;
+  }
+  ShellPoint point(std::size_t n) const {
+    return {x_mm[n], y_mm[n], z_mm[n], area_mm2[n], normal_x[n], normal_y[n], normal_z[n]};
+  }
 };
 
 /// The points of every brick, in chunks out of one pool that is allocated once. Reading and changing are safe

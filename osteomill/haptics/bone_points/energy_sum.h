@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 
 #include "osteomill/haptics/bone_points/cores.h"
-#include "osteomill/haptics/bone_points/push_law.h"
+#include "osteomill/haptics/bone_points/barrier.h"
 
 namespace osteomill {
 

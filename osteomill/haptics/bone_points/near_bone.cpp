@@ -41,10 +41,7 @@ struct Meeting {
 
 }  // namespace
 
-NearBone::NearBone(std::size_t capacity, PointsMeet meet)
-    : meet_(meet),
-      ball_(capacity, meet == PointsMeet::the_nearest_part),
-      cylinder_(capacity, meet == PointsMeet::the_nearest_part) {
+NearBone::NearBone(std::size_t capacity) : ball_(capacity), cylinder_(capacity) {
   if (capacity > 0) bricks_.reserve(kBricks);
 }
 
@@ -54,11 +51,10 @@ void NearBone::gather(BoneBricks& bricks, const Cores& cores, double reach_mm, c
   ball_.count = cylinder_.count = 0;
   bricks_.clear();
   ball_.overflowed = cylinder_.overflowed = false;
-  const bool nearest_alone = meet_ == PointsMeet::the_nearest_part;
-  const BrickPoints& at_cylinder = nearest_alone ? bricks.fine() : bricks.coarse();
+  const BrickPoints& at_cylinder = bricks.coarse();
   const ToolFromGrid X_TG(bricks.lattice(), X_WT);
   const Meeting meets{cores, reach_mm + room.move_mm, room.turn_rad};
-  const Reach reach{meets.reach_mm, room.turn_rad, nearest_alone};
+  const Reach reach{meets.reach_mm, room.turn_rad};
   const auto meets_node = [&](const Vec3& middle_G, double radius_mm) {
     return meets.any(X_TG * middle_G, radius_mm);
   };
@@ -83,11 +79,11 @@ void NearBone::gather(BoneBricks& bricks, const Cores& cores, double reach_mm, c
   close_gathering(cylinder_);
 }
 
-NearBone::Energy NearBone::energy(const Cores& cores, const PushLaw& law, const Pose& X_WT) {
+NearBone::Energy NearBone::energy(const Cores& cores, const Barrier& barrier, const Pose& X_WT) {
   const Mat3 R_TW = X_WT.orientation.conjugate().toRotationMatrix();
   const Frame moved = frame_of(R_TW * X_WT_gathered_.orientation.toRotationMatrix(),
                                R_TW * (X_WT_gathered_.position_mm - X_WT.position_mm));
-  return {ball_energy(ball_, moved, cores, law), cylinder_energy(cylinder_, moved, cores, law)};
+  return {ball_energy(ball_, moved, cores, barrier), cylinder_energy(cylinder_, moved, cores, barrier)};
 }
 
 void NearBone::find_bearing(double within_mm, std::vector<std::uint32_t>& slots) const {

@@ -19,15 +19,8 @@ struct Room {
 /// Safe in the haptic tick.
 class NearBone {
  public:
-  enum class PointsMeet {
-    /// Either part; the cylinder meets the bricks' coarse points.
-    both_parts,
-    /// The part that they are nearest to, with their normals.
-    the_nearest_part
-  };
-
-  /// Room for `capacity` points at each part.
-  explicit NearBone(std::size_t capacity = 0, PointsMeet meet = PointsMeet::both_parts);
+  /// Room for `capacity` points at each part; the cylinder meets the bricks' coarse points.
+  explicit NearBone(std::size_t capacity = 0);
 
   /// Gathers the points that may come within `reach_mm` of a part at `X_WT` or anywhere within the room.
   /// Makes bricks, as many as a tick may.
@@ -42,7 +35,7 @@ class NearBone {
     EnergySum cylinder;
   };
   /// At a pose within the room of the last gathering.
-  Energy energy(const Cores& cores, const PushLaw& law, const Pose& X_WT);
+  Energy energy(const Cores& cores, const Barrier& barrier, const Pose& X_WT);
   /// The slots of the bricks that have points nearer than `within_mm` to a part at the pose of the last
   /// `energy`, as many as there is room for in `slots`.
   void find_bearing(double within_mm, std::vector<std::uint32_t>& slots) const;
@@ -58,7 +51,6 @@ class NearBone {
     std::size_t at_cylinder;
   };
 
-  PointsMeet meet_;
   std::vector<Gathered> bricks_;
   bool brick_missing_ = false;
   Pose X_WT_gathered_;

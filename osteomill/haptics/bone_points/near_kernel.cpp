@@ -53,13 +53,6 @@ HWY_INLINE V coordinate(const Frame& frame, int row, const Vector& p) {
                          hn::Mul(constant(frame.turn[row][1]), p.y)),
                  hn::Mul(constant(frame.turn[row][2]), p.z));
 }
-HWY_INLINE V turned_row(const float (&row)[3], const Vector& v) {
-  return hn::Add(hn::Add(hn::Mul(constant(row[0]), v.x), hn::Mul(constant(row[1]), v.y)),
-                 hn::Mul(constant(row[2]), v.z));
-}
-HWY_INLINE Vector turned(const Frame& frame, const Vector& v) {
-  return {turned_row(frame.turn[0], v), turned_row(frame.turn[1], v), turned_row(frame.turn[2], v)};
-}
 HWY_INLINE Vector transformed(const Frame& frame, const Vector& p) {
   return {coordinate(frame, 0, p), coordinate(frame, 1, p), coordinate(frame, 2, p)};
 }
@@ -90,14 +83,6 @@ HWY_INLINE void gather(const BrickPoints& points, std::uint32_t first_chunk, con
       hn::StoreU(to_front(at.y), d, &near.gathered_y[n]);
       hn::StoreU(to_front(at.z), d, &near.gathered_z[n]);
       hn::StoreU(to_front(hn::Load(d, &chunk.area_mm2[slot])), d, &near.area[n]);
-      if (near.has_normals()) {
-        const Vector normal =
-            turned(frame, {hn::Load(d, &chunk.normal_x[slot]), hn::Load(d, &chunk.normal_y[slot]),
-                           hn::Load(d, &chunk.normal_z[slot])});
-        hn::StoreU(to_front(normal.x), d, &near.normal_x[n]);
-        hn::StoreU(to_front(normal.y), d, &near.normal_y[n]);
-        hn::StoreU(to_front(normal.z), d, &near.normal_z[n]);
-      }
       near.count += hn::CountTrue(d, found);
     }
   }
@@ -108,29 +93,16 @@ HWY_INLINE V beyond_end(const KernelShape& shape, V z) {
   return hn::Max(hn::Neg(z), hn::Sub(z, constant(shape.cylinder_length)));
 }
 
-// Where the ball is the nearer part.
-HWY_INLINE M is_at_ball(const KernelShape& shape, const Vector& at) {
-  const V rho2 = hn::Add(squared(at.x), squared(at.y));
-  const V beyond_ball = hn::Sub(hn::Sqrt(hn::Add(rho2, squared(at.z))), constant(shape.ball_radius));
-  const V beyond_side = hn::Sub(hn::Sqrt(rho2), constant(shape.cylinder_radius));
-  return hn::Lt(beyond_ball, hn::Max(beyond_side, beyond_end(shape, at.z)));
-}
-
 void GatherNearBall(const BrickPoints& points, std::uint32_t first_chunk, const Frame& frame,
-                    const KernelShape& shape, float reach, bool nearest_alone, NearPoints& near) {
+                    const KernelShape& shape, float reach, NearPoints& near) {
   const V radius2 = squared(constant(shape.ball_radius + reach));
   gather(
       points, first_chunk, frame,
-      [&](const Vector& at) HWY_ATTR {
-        const M within = hn::Lt(dot(at, at), radius2);
-        return nearest_alone && !hn::AllFalse(d, within) ? hn::And(within, is_at_ball(shape, at)) : within;
-      },
-      near);
+      [&](const Vector& at) HWY_ATTR { return hn::Lt(dot(at, at), radius2); }, near);
 }
 
 void GatherNearCylinder(const BrickPoints& points, std::uint32_t first_chunk, const Frame& frame,
-                        const KernelShape& shape, float reach, float per_lever, bool nearest_alone,
-                        NearPoints& near) {
+                        const KernelShape& shape, float reach, float per_lever, NearPoints& near) {
   gather(
       points, first_chunk, frame,
       [&](const Vector& at) HWY_ATTR {
@@ -138,10 +110,8 @@ void GatherNearCylinder(const BrickPoints& points, std::uint32_t first_chunk, co
         const V lever = hn::Sqrt(hn::Add(rho2, squared(at.z)));
         const V within = hn::Add(constant(reach), hn::Mul(constant(per_lever), lever));
         const M beside = hn::Lt(rho2, squared(hn::Add(constant(shape.cylinder_radius), within)));
-        const M found =
-            hn::And(beside, hn::And(hn::Gt(at.z, hn::Neg(within)),
-                                    hn::Lt(at.z, hn::Add(constant(shape.cylinder_length), within))));
-        return nearest_alone && !hn::AllFalse(d, found) ? hn::AndNot(is_at_ball(shape, at), found) : found;
+        return hn::And(beside, hn::And(hn::Gt(at.z, hn::Neg(within)),
+                                       hn::Lt(at.z, hn::Add(constant(shape.cylinder_length), within))));
       },
       near);
 }
@@ -157,17 +127,19 @@ struct Push {
 
 // Barrier::at, times the area.
 struct BarrierLaw {
-  static constexpr bool kHasEnergy = true;
   float width, pressure;
 
+  explicit BarrierLaw(const Barrier& barrier)
+      : width(static_cast<float>(barrier.width_mm)),
+        pressure(static_cast<float>(barrier.pressure_N_per_mm2)) {}
   HWY_INLINE V reach() const { return constant(width); }
-  HWY_INLINE Push push(const NearPoints& near, std::size_t n, const Frame&, const Vector&, V distance) const {
+  HWY_INLINE Push push(V area, V distance) const {
     const V one = constant(1), inverse_width = constant(1 / width);
     const V share =
         hn::Max(hn::Mul(distance, inverse_width), constant(static_cast<float>(Barrier::kNearestShare)));
     const V x = hn::Max(hn::Sub(one, share), hn::Zero(d));
     const V inverse = hn::Div(one, share);
-    const V a = hn::Mul(hn::LoadU(d, &near.area[n]), constant(pressure / 3)), x2 = squared(x);
+    const V a = hn::Mul(area, constant(pressure / 3)), x2 = squared(x);
     const V ax = product(a, x, inverse), inverse2 = squared(inverse);
     return {product(ax, x2, constant(width)), product(a, x2, inverse2, hn::Sub(constant(3), hn::Add(x, x))),
             product(product(ax, inverse2, inverse_width),
@@ -175,40 +147,14 @@ struct BarrierLaw {
   }
 };
 
-// Penalty::push, against a part whose principal curvatures add up to `curvature`.
-struct PenaltyLaw {
-  static constexpr bool kHasEnergy = false;
-  float stiffness, max_patch, reach_mm, curvature;
-
-  HWY_INLINE V reach() const { return constant(reach_mm); }
-  HWY_INLINE Push push(const NearPoints& near, std::size_t n, const Frame& moved, const Vector& out,
-                       V distance) const {
-    const V area = hn::LoadU(d, &near.area[n]);
-    const V cosine = dot(out, turned(moved, rows_at(near.normal_x, near.normal_y, near.normal_z, n)));
-    const V k = hn::Mul(constant(stiffness), area), patch = hn::Min(area, constant(max_patch));
-    const V sine2 = hn::Max(hn::Zero(d), hn::Sub(constant(1), squared(cosine)));
-    const V spread = hn::Sqrt(product(constant(0.25f), patch, sine2));
-    const V mean = hn::Sub(hn::Neg(distance), hn::Mul(patch, constant(curvature / 24)));
-    const V part = hn::Div(hn::Max(hn::Zero(d), hn::Add(mean, spread)),
-                           hn::Max(hn::Add(spread, spread), constant(kTiny_mm)));
-    const M whole = hn::Ge(mean, spread);
-    const V force = hn::IfThenElse(whole, hn::Mul(k, mean), product(k, part, part, spread));
-    return {hn::Zero(d), force,
-            hn::IfThenElseZero(hn::Gt(force, hn::Zero(d)), hn::IfThenElse(whole, k, hn::Mul(k, part)))};
-  }
-};
-
-// Those of all sums that a law needs.
-template <int kUsed>
+template <int kSums>
 struct Sums {
-  V at[static_cast<std::size_t>(kUsed)];
-  template <int kSums>
+  V at[static_cast<std::size_t>(kSums)];
   HWY_INLINE void load(const float (&from)[kSums][kGroup], std::size_t lane) {
-    for (std::size_t n = 0; n < kUsed; ++n) at[n] = hn::Load(d, &from[n][lane]);
+    for (std::size_t n = 0; n < kSums; ++n) at[n] = hn::Load(d, &from[n][lane]);
   }
-  template <int kSums>
   HWY_INLINE void store(float (&to)[kSums][kGroup], std::size_t lane) const {
-    for (std::size_t n = 0; n < kUsed; ++n) hn::Store(at[n], d, &to[n][lane]);
+    for (std::size_t n = 0; n < kSums; ++n) hn::Store(at[n], d, &to[n][lane]);
   }
 };
 
@@ -219,12 +165,12 @@ HWY_INLINE void store_rows(const Vector& v, std::vector<float>& x, std::vector<f
   hn::StoreU(v.z, d, &z[n]);
 }
 
-template <typename Law>
-HWY_INLINE void sum_ball_by(const Law& law, NearPoints& near, const Frame& moved, const KernelShape& shape,
-                            BallLanes& lanes) {
+void SumBall(NearPoints& near, const Frame& moved, const KernelShape& shape, const Barrier& barrier,
+             BallLanes& lanes) {
+  const BarrierLaw law(barrier);
   std::size_t touching = 0;
   for (std::size_t lane = 0; lane < kGroup; lane += kWidth) {
-    Sums<Law::kHasEnergy ? BallLanes::kSums : BallLanes::kOfForce> s;
+    Sums<BallLanes::kSums> s;
     s.load(lanes.sums, lane);
     V nearest = hn::Load(d, &lanes.nearest[lane]);
     for (std::size_t n = lane; n < near.count; n += kGroup) {
@@ -234,20 +180,14 @@ HWY_INLINE void sum_ball_by(const Law& law, NearPoints& near, const Frame& moved
       const Vector out{hn::Mul(at.x, inverse), hn::Mul(at.y, inverse), hn::Mul(at.z, inverse)};
       const V distance = hn::Sub(r, constant(shape.ball_radius));
       hn::StoreU(distance, d, &near.distance[n]);
-      if constexpr (Law::kHasEnergy) {
-        store_rows(out, near.out_x, near.out_y, near.out_z, n);
-        nearest = hn::Min(nearest, distance);
-      }
+      store_rows(out, near.out_x, near.out_y, near.out_z, n);
+      nearest = hn::Min(nearest, distance);
       if (hn::AllFalse(d, hn::Lt(distance, law.reach()))) continue;  // adds nothing, to the last bit
-      const Push p = law.push(near, n, moved, out, distance);
+      const Push p = law.push(hn::LoadU(d, &near.area[n]), distance);
       touching += hn::CountTrue(d, hn::Gt(p.pressure, hn::Zero(d)));
-      V m = p.stiffness;
-      if constexpr (Law::kHasEnergy) {
-        const V q = hn::Mul(p.pressure, inverse);
-        m = hn::Add(m, q);
-        add(s.at[9], p.energy);
-        add(s.at[10], q);
-      }
+      const V q = hn::Mul(p.pressure, inverse), m = hn::Add(p.stiffness, q);
+      add(s.at[9], p.energy);
+      add(s.at[10], q);
       add(s.at[0], hn::Mul(p.pressure, out.x));
       add(s.at[1], hn::Mul(p.pressure, out.y));
       add(s.at[2], hn::Mul(p.pressure, out.z));
@@ -271,13 +211,13 @@ HWY_INLINE void list_at_end(NearPoints& near, M at_end, std::size_t n) {
   }
 }
 
-template <typename Law>
-HWY_INLINE void sum_side_by(const Law& law, NearPoints& near, const Frame& moved, const KernelShape& shape,
-                            SideLanes& lanes) {
+void SumSide(NearPoints& near, const Frame& moved, const KernelShape& shape, const Barrier& barrier,
+             SideLanes& lanes) {
+  const BarrierLaw law(barrier);
   std::size_t touching = 0;
   near.at_end.clear();
   for (std::size_t lane = 0; lane < kGroup; lane += kWidth) {
-    Sums<Law::kHasEnergy ? SideLanes::kSums : SideLanes::kOfForce> s;
+    Sums<SideLanes::kSums> s;
     s.load(lanes.sums, lane);
     V nearest = hn::Load(d, &lanes.nearest[lane]);
     for (std::size_t n = lane; n < near.count; n += kGroup) {
@@ -290,27 +230,21 @@ HWY_INLINE void sum_side_by(const Law& law, NearPoints& near, const Frame& moved
       const V distance = hn::IfThenElse(at_end, constant(PointChunk::kFarAway_mm), beyond_side);
       store_rows(at, near.x, near.y, near.z, n);
       hn::StoreU(distance, d, &near.distance[n]);
-      if constexpr (Law::kHasEnergy) {
-        store_rows(out, near.out_x, near.out_y, near.out_z, n);
-        nearest = hn::Min(nearest, distance);
-      }
+      store_rows(out, near.out_x, near.out_y, near.out_z, n);
+      nearest = hn::Min(nearest, distance);
       if (!hn::AllFalse(d, at_end)) list_at_end(near, at_end, n);
       if (hn::AllFalse(d, hn::Lt(distance, law.reach()))) continue;  // adds nothing, to the last bit
-      const Push p = law.push(near, n, moved, out, distance);
+      const Push p = law.push(hn::LoadU(d, &near.area[n]), distance);
       touching += hn::CountTrue(d, hn::Gt(p.pressure, hn::Zero(d)));
       const V pu = hn::Mul(p.pressure, out.x), pv = hn::Mul(p.pressure, out.y);
-      V m = p.stiffness;
-      if constexpr (Law::kHasEnergy) {
-        const V q = hn::Mul(p.pressure, inverse), qz = hn::Mul(q, at.z);
-        m = hn::Add(m, q);
-        add(s.at[13], p.energy);
-        add(s.at[14], q);
-        add(s.at[15], qz);
-        add(s.at[16], hn::Mul(qz, at.z));
-        add(s.at[17], product(pu, out.x, rho));
-        add(s.at[18], product(pu, out.y, rho));
-        add(s.at[19], product(pv, out.y, rho));
-      }
+      const V q = hn::Mul(p.pressure, inverse), qz = hn::Mul(q, at.z), m = hn::Add(p.stiffness, q);
+      add(s.at[13], p.energy);
+      add(s.at[14], q);
+      add(s.at[15], qz);
+      add(s.at[16], hn::Mul(qz, at.z));
+      add(s.at[17], product(pu, out.x, rho));
+      add(s.at[18], product(pu, out.y, rho));
+      add(s.at[19], product(pv, out.y, rho));
       add(s.at[0], pu);
       add(s.at[1], pv);
       add(s.at[2], hn::Mul(pu, at.z));
@@ -332,30 +266,6 @@ HWY_INLINE void sum_side_by(const Law& law, NearPoints& near, const Frame& moved
     hn::Store(nearest, d, &lanes.nearest[lane]);
   }
   lanes.touching += static_cast<int>(touching);
-}
-
-// Calls `sum` with the law as the kernels read it; `curvature` is the sum of the part's principal curvatures.
-template <typename Sum>
-HWY_INLINE void with_law(const PushLaw& law, float curvature, const Sum& sum) {
-  if (const auto* barrier = std::get_if<Barrier>(&law)) {
-    sum(BarrierLaw{static_cast<float>(barrier->width_mm), static_cast<float>(barrier->pressure_N_per_mm2)});
-  } else if (const auto* penalty = std::get_if<Penalty>(&law)) {
-    sum(PenaltyLaw{static_cast<float>(penalty->stiffness_N_per_mm3),
-                   static_cast<float>(penalty->max_patch_mm2), static_cast<float>(penalty->reach_mm()),
-                   curvature});
-  }
-}
-
-void SumBall(NearPoints& near, const Frame& moved, const KernelShape& shape, const PushLaw& law,
-             BallLanes& lanes) {
-  with_law(law, 2 / shape.ball_radius,
-           [&](const auto& by) HWY_ATTR { sum_ball_by(by, near, moved, shape, lanes); });
-}
-
-void SumSide(NearPoints& near, const Frame& moved, const KernelShape& shape, const PushLaw& law,
-             SideLanes& lanes) {
-  with_law(law, 1 / shape.cylinder_radius,
-           [&](const auto& by) HWY_ATTR { sum_side_by(by, near, moved, shape, lanes); });
 }
 
 // `use` of every group of points.
@@ -415,25 +325,24 @@ KernelShape kernel_shape(const Cores& cores) {
 void gather_near_ball(const BrickPoints& points, std::uint32_t first_chunk, const Frame& frame,
                       const Cores& cores, const Reach& reach, NearPoints& near) {
   HWY_DYNAMIC_DISPATCH(GatherNearBall)
-  (points, first_chunk, frame, kernel_shape(cores), static_cast<float>(reach.near_mm), reach.nearest_alone,
-   near);
+  (points, first_chunk, frame, kernel_shape(cores), static_cast<float>(reach.near_mm), near);
 }
 
 void gather_near_cylinder(const BrickPoints& points, std::uint32_t first_chunk, const Frame& frame,
                           const Cores& cores, const Reach& reach, NearPoints& near) {
   HWY_DYNAMIC_DISPATCH(GatherNearCylinder)
   (points, first_chunk, frame, kernel_shape(cores), static_cast<float>(reach.near_mm),
-   static_cast<float>(reach.per_lever), reach.nearest_alone, near);
+   static_cast<float>(reach.per_lever), near);
 }
 
-void sum_ball(NearPoints& near, const Frame& moved, const Cores& cores, const PushLaw& law,
+void sum_ball(NearPoints& near, const Frame& moved, const Cores& cores, const Barrier& barrier,
               BallLanes& lanes) {
-  HWY_DYNAMIC_DISPATCH(SumBall)(near, moved, kernel_shape(cores), law, lanes);
+  HWY_DYNAMIC_DISPATCH(SumBall)(near, moved, kernel_shape(cores), barrier, lanes);
 }
 
-void sum_side(NearPoints& near, const Frame& moved, const Cores& cores, const PushLaw& law,
+void sum_side(NearPoints& near, const Frame& moved, const Cores& cores, const Barrier& barrier,
               SideLanes& lanes) {
-  HWY_DYNAMIC_DISPATCH(SumSide)(near, moved, kernel_shape(cores), law, lanes);
+  HWY_DYNAMIC_DISPATCH(SumSide)(near, moved, kernel_shape(cores), barrier, lanes);
 }
 
 double max_use_by_ball(const NearPoints& near, const MoveT& move, double min_distance_mm) {

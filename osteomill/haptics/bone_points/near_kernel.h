@@ -11,11 +11,10 @@ struct KernelShape {
 };
 
 /// How far from a part points are gathered: `near_mm` + `per_lever` times their distance from the burr's
-/// centre; and whether each point counts for the part alone that it is nearest to.
+/// centre.
 struct Reach {
   double near_mm = 0;
   double per_lever = 0;
-  bool nearest_alone = false;
 };
 
 /// Appends the points of a brick that are within reach of the part; `frame` is the brick's, seen from the
@@ -27,19 +26,16 @@ void gather_near_cylinder(const BrickPoints& points, std::uint32_t first_chunk, 
                           const Cores& cores, const Reach& reach, NearPoints& near);
 
 /// Sums over points in `NearPoints::kLanes` lanes each. Points on the ball: p n (3) and m n n^T (xx, xy, xz,
-/// yy, yz, zz) with p the push and m its stiffness; of a barrier E and q too, with q = p / r and m = psi'' +
-/// q.
+/// yy, yz, zz), E and q, with p the push, q = p / r and m = psi'' + q.
 struct BallLanes {
-  static constexpr int kOfForce = 9;
   static constexpr int kSums = 11;
   alignas(64) float sums[kSums][NearPoints::kLanes] = {};
   alignas(64) float nearest[NearPoints::kLanes] = {};
   int touching = 0;
 };
-/// Points on the cylinder's side, n = (u, v, 0): p (u, v) and z p (u, v); m (uu, uv, vv) times 1, z, z^2; of
-/// a barrier E; q = p / rho times 1, z, z^2; p rho (uu, uv, vv), with m = psi'' + q.
+/// Points on the cylinder's side, n = (u, v, 0): p (u, v) and z p (u, v); m (uu, uv, vv) times 1, z, z^2; E;
+/// q = p / rho times 1, z, z^2; p rho (uu, uv, vv), with m = psi'' + q.
 struct SideLanes {
-  static constexpr int kOfForce = 13;
   static constexpr int kSums = 20;
   alignas(64) float sums[kSums][NearPoints::kLanes] = {};
   alignas(64) float nearest[NearPoints::kLanes] = {};
@@ -47,12 +43,11 @@ struct SideLanes {
 };
 
 /// Of points gathered by a tool whose frame then is `moved` seen from now.
-void sum_ball(NearPoints& near, const Frame& moved, const Cores& cores, const PushLaw& law, BallLanes& lanes);
+void sum_ball(NearPoints& near, const Frame& moved, const Cores& cores, const Barrier& barrier, BallLanes& lanes);
 /// Points at the ends are listed in `near.at_end` and left out.
-void sum_side(NearPoints& near, const Frame& moved, const Cores& cores, const PushLaw& law, SideLanes& lanes);
+void sum_side(NearPoints& near, const Frame& moved, const Cores& cores, const Barrier& barrier, SideLanes& lanes);
 
-/// The greatest `distance_used / distance` of a move, at the distances of the last sum by a barrier, of which
-/// none counts as less than `min_distance_mm`; at least 0.
+/// The greatest `distance_used / distance` of a move, at the distances of the last sum, of which none counts as less than `min_distance_mm`; at least 0.
 double max_use_by_ball(const NearPoints& near, const MoveT& move, double min_distance_mm);
 double max_use_by_cylinder(const NearPoints& near, const MoveT& move, double min_distance_mm);
 

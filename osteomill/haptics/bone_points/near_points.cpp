@@ -89,32 +89,12 @@ EnergySum ball_sum(const BallLanes& lanes) {
   return sum;
 }
 
-// What a point at an end of the cylinder pushes with.
-Barrier::Value push_at_end(const PushLaw& law, const NearPoints& near, std::size_t n, const Frame& moved,
-                           const Cores& cores, const CoreDistance& distance) {
-  const double area_mm2 = static_cast<double>(near.area[n]);
-  if (const auto* barrier = std::get_if<Barrier>(&law)) return area_mm2 * barrier->at(distance.distance_mm);
-  const Vec3 normal = place(near.normal_x, near.normal_y, near.normal_z, n);
-  double cosine = 0;
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) {
-      cosine += distance.outward_T[row] * static_cast<double>(moved.turn[row][column]) * normal[column];
-    }
-  }
-  const Penalty::Push push =
-      std::get_if<Penalty>(&law)->push(-distance.distance_mm, area_mm2, cosine, 1 / cores.cylinder_radius_mm);
-  return {0, push.force_N, push.stiffness_N_per_mm};
-}
-
 }  // namespace
 
-NearPoints::NearPoints(std::size_t capacity, bool with_normals) {
+NearPoints::NearPoints(std::size_t capacity) {
   for (std::vector<float>* row :
        {&gathered_x, &gathered_y, &gathered_z, &area, &x, &y, &z, &distance, &out_x, &out_y, &out_z}) {
     row->resize(capacity);
-  }
-  if (with_normals) {
-    for (std::vector<float>* row : {&normal_x, &normal_y, &normal_z}) row->resize(capacity);
   }
   at_end.reserve(capacity);
 }
@@ -138,24 +118,24 @@ void close_gathering(NearPoints& near) {
   }
 }
 
-EnergySum ball_energy(NearPoints& near, const Frame& moved, const Cores& cores, const PushLaw& law) {
+EnergySum ball_energy(NearPoints& near, const Frame& moved, const Cores& cores, const Barrier& barrier) {
   BallLanes lanes;
   std::fill(std::begin(lanes.nearest), std::end(lanes.nearest), PointChunk::kFarAway_mm);
-  sum_ball(near, moved, cores, law, lanes);
+  sum_ball(near, moved, cores, barrier, lanes);
   return ball_sum(lanes);
 }
 
-EnergySum cylinder_energy(NearPoints& near, const Frame& moved, const Cores& cores, const PushLaw& law) {
+EnergySum cylinder_energy(NearPoints& near, const Frame& moved, const Cores& cores, const Barrier& barrier) {
   SideLanes lanes;
   std::fill(std::begin(lanes.nearest), std::end(lanes.nearest), PointChunk::kFarAway_mm);
-  sum_side(near, moved, cores, law, lanes);
+  sum_side(near, moved, cores, barrier, lanes);
   EnergySum sum = side_sum(lanes);
   // Their order must not depend on the width of the registers.
   std::sort(near.at_end.begin(), near.at_end.end());
   for (const std::uint32_t n : near.at_end) {
     const Vec3 point_T = place(near.x, near.y, near.z, n);
     const CoreDistance distance = distance_to_cylinder(cores, point_T);
-    sum.add_point(push_at_end(law, near, n, moved, cores, distance), point_T, distance);
+    sum.add_point(static_cast<double>(near.area[n]) * barrier.at(distance.distance_mm), point_T, distance);
     near.distance[n] = static_cast<float>(distance.distance_mm);
     near.out_x[n] = static_cast<float>(distance.outward_T.x());
     near.out_y[n] = static_cast<float>(distance.outward_T.y());

@@ -10,21 +10,19 @@
 namespace osteomill {
 
 /// The points near one part of the tool, each coordinate in a row of its own: places in T when they were
-/// gathered, the surface each stands for and, where the law asks for it, its normal, also in T then; and, as
-/// of the last sum, the distance to the part and, by a barrier, place and direction out of it.
+/// gathered, the surface each stands for; and, as of the last sum, the distance to the part, place and
+/// direction out of it.
 struct NearPoints {
   /// Sums run in so many lanes whatever the width of the machine's registers, and so have the same bits.
   static constexpr std::size_t kLanes = 16;
 
-  explicit NearPoints(std::size_t capacity = 0, bool with_normals = false);
+  explicit NearPoints(std::size_t capacity = 0);
   std::size_t capacity() const { return area.size(); }
-  bool has_normals() const { return !normal_x.empty(); }
 
   std::size_t count = 0;
   /// Whether points found no room.
   bool overflowed = false;
   std::vector<float> gathered_x, gathered_y, gathered_z, area;
-  std::vector<float> normal_x, normal_y, normal_z;
   std::vector<float> x, y, z, distance, out_x, out_y, out_z;
   /// Of the points near the cylinder those that are nearest to its ends.
   std::vector<std::uint32_t> at_end;
@@ -43,7 +41,7 @@ void close_gathering(NearPoints& near);
 /// What the points push with and its derivatives by a move of a tool that has moved since the gathering, so
 /// that its frame then is `moved` seen from now. The same bits whatever the width of the machine's registers.
 /// Safe in the haptic tick.
-EnergySum ball_energy(NearPoints& near, const Frame& moved, const Cores& cores, const PushLaw& law);
-EnergySum cylinder_energy(NearPoints& near, const Frame& moved, const Cores& cores, const PushLaw& law);
+EnergySum ball_energy(NearPoints& near, const Frame& moved, const Cores& cores, const Barrier& barrier);
+EnergySum cylinder_energy(NearPoints& near, const Frame& moved, const Cores& cores, const Barrier& barrier);
 
 }  // namespace osteomill

@@ -41,7 +41,7 @@ TEST(SurfaceLattice, PointsCoverABallAtAnyVoxelSize) {
     const Volume volume =
         testing_support::shape_volume(testing_support::centred_cube(static_cast<int>(8 / voxel_mm), voxel_mm),
                                       testing_support::ball({0.01, 0.02, 0.03}, kRadius_mm), 4);
-    BoneBricks bricks(volume, 0.13, BoneBricks::Points::fine_and_coarse);
+    BoneBricks bricks(volume, 0.13);
     const BallFigures fine = figures(bricks.fine(), bricks, kRadius_mm);
     const BallFigures coarse = figures(bricks.coarse(), bricks, kRadius_mm);
     EXPECT_NEAR(fine.area_mm2, area_mm2, 0.02 * area_mm2) << voxel_mm;
@@ -68,7 +68,7 @@ TEST(SurfaceLattice, AFineScanHasNoMorePointsThanACoarseOne) {
     const Volume volume =
         testing_support::shape_volume(testing_support::centred_cube(static_cast<int>(4 / voxel_mm), voxel_mm),
                                       testing_support::ball({0.01, 0.02, 0.03}, kRadius_mm));
-    BoneBricks bricks(volume, 0.13, BoneBricks::Points::fine);
+    BoneBricks bricks(volume, 0.13);
     EXPECT_NEAR(area_of(bricks), 4 * std::numbers::pi * kRadius_mm * kRadius_mm, 0.3) << voxel_mm;
     const std::size_t points = bricks.fine().total();
     if (coarse_points == 0) coarse_points = points;
@@ -84,7 +84,7 @@ TEST(SurfaceLattice, TheAreaOfAPlaneDoesNotDependOnItsSlopeOrOnUnevenSpacing) {
     const Volume volume =
         testing_support::shape_volume(geometry, testing_support::plane(through, normal), 3.0);
     for (const double spacing_mm : {0.05, 0.13, 0.5}) {
-      BoneBricks bricks(volume, spacing_mm, BoneBricks::Points::fine);
+      BoneBricks bricks(volume, spacing_mm);
       double area = 0, worst = 0;
       for_each_point(bricks, [&](const Vec3& position, double share) {
         if ((position - through).norm() > 2) return;  // a disc of radius 2
@@ -108,7 +108,7 @@ TEST(SurfaceLattice, AThinRodIsNotMissedInAFineScan) {
         const auto rod = [&](const Vec3& p) { return (p - through).cross(axis).norm() - 0.06; };
         const Volume volume = testing_support::shape_volume(
             testing_support::centred_cube(static_cast<int>(1.5 / voxel_mm), voxel_mm), rod);
-        BoneBricks bricks(volume, 0.13, BoneBricks::Points::fine);
+        BoneBricks bricks(volume, 0.13);
         // In the middle, over a length that any cell's mean must lie in.
         std::array<int, 4> seen{};
         for_each_point(bricks, [&](const Vec3& position, double) {
@@ -132,7 +132,7 @@ TEST(SurfaceLattice, APointNearTheBorderIsFoundAsAnyOther) {
     const Volume large = testing_support::shape_volume(geometry, slope);
     const double inside_mm = 26 * voxel_mm;
     const auto points_inside = [&](const Volume& volume) {
-      BoneBricks bricks(volume, 0.13, BoneBricks::Points::fine);
+      BoneBricks bricks(volume, 0.13);
       std::vector<Vec3> points;
       for_each_point(bricks, [&](const Vec3& p, double) {
         if (p.cwiseAbs().maxCoeff() < inside_mm) points.push_back(p);
@@ -159,7 +159,7 @@ TEST(SurfaceLattice, APointNearTheBorderIsFoundAsAnyOther) {
 TEST(SurfaceLattice, TheGridsBorderIsASurface) {
   const Volume volume = testing_support::shape_volume(testing_support::centred_cube(21, 0.1),
                                                       testing_support::plane({0, 0, 0.45}, {0, 0, 1}));
-  BoneBricks bricks(volume, 0.13, BoneBricks::Points::fine);
+  BoneBricks bricks(volume, 0.13);
   // Two faces of 2.05 mm and four of 2.05 by 1.5, each edge rounded over a voxel.
   EXPECT_NEAR(area_of(bricks), 2 * 2.05 * 2.05 + 4 * 2.05 * 1.5, 1.2);
 }

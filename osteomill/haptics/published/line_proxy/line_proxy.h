@@ -1,0 +1,73 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "osteomill/haptics/algorithm_description.h"
+#include "osteomill/haptics/haptic_algorithm.h"
+
+namespace osteomill::line_proxy {
+
+/// Holds the settings of algorithm 1; line_proxy_description.cpp gives each its meaning, range and default.
+struct Settings {
+  int vertices = 0;
+  double stiffness_N_per_mm = 0;
+
+  static Settings defaults();
+};
+
+/// Renders algorithm 1 of Eriksson 2012 (section 4): the tool is its centreline, a row of vertices. If the
+/// tip's vertex is in bone, a point proxy stays on the surface and a spring pulls the hand to it. If the
+/// shaft, laid at that proxy, is in bone, an intersection point (IP) stays on the surface and turns the hand
+/// about the tip. Threads and real time: as HapticAlgorithm.
+///
+/// Chosen where the paper is silent:
+/// - normals are the sum of eight smoothed gradients (point_proxy.h);
+/// - tip and shaft remember their contacts separately, and the tip's vertex takes no part in the shaft's;
+/// - the walk starts from the previous pose laid at the proxy;
+/// - there is no friction.
+class LineProxy final : public HapticAlgorithm {
+ public:
+  /// Takes settings within their ranges.
+  explicit LineProxy(const Settings& settings) : settings_(settings) {}
+
+  void prepare(const Scene& scene) override;
+  HapticStep step(const Pose& X_WD, double dt_s) override;
+  /// Does nothing: every step reads the volume itself.
+  void volume_changed(const VolumeChange&) override {}
+  void reset() override { memory_ = Memory{}; }
+  int sample_point_count() const override { return static_cast<int>(vertices_T_.size()); }
+
+ private:
+  // What one tick leaves to the next.
+  struct Memory {
+    std::optional<Vec3> device_tip_W;
+    std::optional<Vec3> tip_proxy_W;
+    // The centreline, laid at the tip's proxy if there is one.
+    std::optional<Pose> X_WL;
+    std::optional<Vec3> intersection_W;
+    Vec3 arm_W = Vec3::Zero();
+    Vec3 reaction_N = Vec3::Zero();
+  };
+
+  std::span<const Vec3> shaft_vertices() const { return std::span(vertices_T_).subspan(1); }
+  void follow_with_tip_proxy(const Vec3& tip_W);
+  std::optional<Vec3> first_tip_proxy(const Vec3& tip_W) const;
+  void follow_with_intersection(const Pose& X_WL);
+  std::optional<Vec3> first_intersection(const Pose& X_WL) const;
+  std::optional<Vec3> next_intersection(const Pose& X_WL) const;
+  void turn_reaction(const Pose& X_WL);
+  void forget_what_is_not_finite();
+  Pose drawn_tool(const Pose& X_WL) const;
+
+  Settings settings_;
+  Scene scene_;
+  std::vector<Vec3> vertices_T_;
+  Memory memory_;
+};
+
+/// Describes algorithm 1 of the paper (section 4).
+AlgorithmDescription description();
+
+}  // namespace osteomill::line_proxy
