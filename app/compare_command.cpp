@@ -107,10 +107,9 @@ std::vector<StudyRow> try_other_hands(const CompareOptions& options, const std::
 
 std::vector<PassivityRow> press_on_walls(const CompareOptions& options, const TrialSettings& settings) {
   const Volume wall = flat_wall(settings.tool);
-  std::vector<PassivityRow> rows =
-      run_trials(passivity_cases(options.algorithms, settings), "stability",
-                 static_cast<std::size_t>(options.threads), events_on_terminal(),
-                 [&](const TrialSettings& device) { return measure_passivity(device, wall); });
+  std::vector<PassivityRow> rows = run_trials(
+      passivity_cases(options.algorithms, settings), "stability", static_cast<std::size_t>(options.threads),
+      events_on_terminal(), [&](const TrialSettings& device) { return measure_passivity(device, wall); });
   end_progress();
   return rows;
 }

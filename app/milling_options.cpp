@@ -60,13 +60,9 @@ HapticSettings::Named named_setting(const std::string& text) {
                                                     did_you_mean(named.setting, known)));
   }
   const std::string value = text.substr(equals + 1);
-  if (value == "true" || value == "false") {
-    named.value = value == "true" ? 1 : 0;
-  } else if (const auto number = parsed_number<double>(value); number && !std::isnan(*number)) {
-    named.value = *number;
-  } else {
-    throw CLI::ValidationError("--set", value + " is not a number, true or false");
-  }
+  const auto number = parsed_number<double>(value);
+  if (!number || std::isnan(*number)) throw CLI::ValidationError("--set", value + " is not a number");
+  named.value = *number;
   try {
     make_algorithm(*algorithm, {.named = {named}});
   } catch (const std::invalid_argument& error) {

@@ -17,7 +17,7 @@ std::vector<std::string> words_for(const CLI::Option& option) {
   if (option.get_expected_max() == 0) return {name};
   if (name == "--direction") return {name, "0.1,0,-1"};
   if (option.get_type_name() == "X,Y,Z") return {name, "0.5,0,20"};
-  if (option.get_type_name() == "SETTING") return {name, "line-proxy.friction=0.05"};
+  if (option.get_type_name() == "SETTING") return {name, "point-shell.damping-time=0.002"};
   return {name, name == "--push" ? "2.5" : "3"};
 }
 

@@ -30,20 +30,13 @@ void list_devices() {
   print_device(kSimulated, "a simulated operator who mills by itself", {true, "always"});
 }
 
-std::string number_text(double value, bool on_or_off) {
-  if (on_or_off) return value != 0 ? "on" : "off";
-  return std::isinf(value) ? "no limit" : fmt::format("{:g}", value);
-}
-
 void print_settings(const AlgorithmDescription& algorithm) {
-  fmt::print(
-      "\n## {}\n{}.\n\n| setting | unit | range | default | meaning |\n|---|---|---|---|---|\n",
-      algorithm.id.label, algorithm.summary);
+  fmt::print("\n## {}\n{}.\n\n| setting | unit | range | default | meaning |\n|---|---|---|---|---|\n",
+             algorithm.id.label, algorithm.summary);
   for (const SettingDescription& setting : algorithm.settings) {
-    const bool on_or_off = setting.range == SettingRange::on_or_off();
     const std::string option = setting.option.empty() ? "" : fmt::format(" (also `--{}`)", setting.option);
-    fmt::print("| `{}` | {} | {} | {} | {}{} |\n", setting.name, setting.unit, range_text(setting.range),
-               number_text(setting.value, on_or_off), setting.meaning, option);
+    fmt::print("| `{}` | {} | {} | {:g} | {}{} |\n", setting.name, setting.unit, range_text(setting.range),
+               setting.value, setting.meaning, option);
   }
 }
 
@@ -64,8 +57,8 @@ void add_settings_command(CLI::App& program) {
     fmt::print(
         "# Settings of the algorithms\n\n"
         "Written by `osteomill settings`; a test holds this page to it. Set one with `--set "
-        "ALGORITHM.SETTING=VALUE` (on and off\nare `true` and `false`, no limit is `inf`), or as a key of "
-        "the table `[ALGORITHM]` in a file for `--config`. Numbers in\nbrackets are the paper's equations; "
+        "ALGORITHM.SETTING=VALUE`, or as\na key of the table `[ALGORITHM]` in a file for `--config`. Numbers "
+        "in brackets are the paper's equations; "
         "[algorithms.md](algorithms.md) tells what each is for.\n");
     for (const AlgorithmDescription& algorithm : all_algorithms()) print_settings(algorithm);
   });

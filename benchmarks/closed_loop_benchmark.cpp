@@ -16,7 +16,6 @@ namespace {
 
 struct Trial {
   std::string_view algorithm;
-  Mode mode;
   Bone bone;
   bool milling;
   /// The algorithm's own resolution (vertices, slices, shell scale); 0: its default.
@@ -27,7 +26,6 @@ TrialSettings settings_of(const Trial& trial) {
   TrialSettings settings;
   settings.algorithm = algorithm_named(trial.algorithm);
   settings.spindle = trial.milling;
-  settings.haptics.mode = trial.mode;
   settings.hand_and_device.script.milling_s = 5;
   settings.hand_and_device.script.holding_s = 1;
   settings.hand_and_device.script.settle_s = 0.5;
@@ -65,8 +63,8 @@ void closed_loop(benchmark::State& state, const Trial& trial) {
 }
 
 std::string name(const Trial& trial) {
-  std::string text = "closed_loop/" + std::string(trial.algorithm) + "/" + std::string(name_of(trial.mode)) +
-                     "/" + name_of(trial.bone) + (trial.milling ? "/milling" : "/spindle_off");
+  std::string text = "closed_loop/" + std::string(trial.algorithm) + "/" + name_of(trial.bone) +
+                     (trial.milling ? "/milling" : "/spindle_off");
   if (trial.resolution > 0) text += "/resolution:" + std::to_string(trial.resolution);
   return text;
 }
@@ -82,14 +80,13 @@ const bool kAdded = [] {
   for (const std::string& algorithm : algorithm_names()) {
     for (const Bone bone :
          {Bone::builtin, Bone::builtin_refined, Bone::real_tooth, Bone::real_tooth_refined}) {
-      for (const bool milling : {true, false}) add({algorithm, Mode::steady, bone, milling});
+      for (const bool milling : {true, false}) add({algorithm, bone, milling});
     }
-    add({algorithm, Mode::paper, Bone::builtin, true});
-    add({algorithm, Mode::steady, Bone::builtin_finest, true});
+    add({algorithm, Bone::builtin_finest, true});
   }
-  for (const int vertices : {101, 1001}) add({"line-proxy", Mode::steady, Bone::builtin, true, vertices});
-  for (const int slices : {10, 100}) add({"surface-points", Mode::steady, Bone::builtin, true, slices});
-  for (const int scale : {2, 3}) add({"point-shell", Mode::steady, Bone::builtin, true, scale});
+  for (const int vertices : {101, 1001}) add({"line-proxy", Bone::builtin, true, vertices});
+  for (const int slices : {10, 100}) add({"surface-points", Bone::builtin, true, slices});
+  for (const int scale : {2, 3}) add({"point-shell", Bone::builtin, true, scale});
   return true;
 }();
 

@@ -7,7 +7,7 @@
 #include "tests/shapes.h"
 #include <benchmark/benchmark.h>
 
-#include "osteomill/haptics/point_shell/point_shell_algorithm.h"
+#include "osteomill/haptics/barrier_shell/barrier_shell.h"
 #include "osteomill/milling/burr_mill.h"
 
 namespace osteomill::benchmarks {
@@ -28,7 +28,7 @@ void mill(benchmark::State& state, double burr_radius_mm, double spacing_mm) {
   const Volume bone = flat_bone(spacing_mm, burr_radius_mm);
   for ([[maybe_unused]] auto _ : state) {
     Volume volume = bone;
-    point_shell::PointShellAlgorithm algorithm(point_shell::Settings::defaults(Mode::steady));
+    barrier_shell::BarrierShell algorithm(barrier_shell::Settings::defaults());
     algorithm.prepare({&volume, tool});
     BurrMill burr(volume.geometry(), burr_radius_mm, {0, 1000}, {});
     TickTimes both, cutting, refreshing, steps;

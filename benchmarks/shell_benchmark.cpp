@@ -23,7 +23,7 @@ void build_shell(benchmark::State& state, Bone bone) {
   const Volume& volume = bone_volume(bone);
   for ([[maybe_unused]] auto _ : state) {
     const double before = allocated_bytes();
-    const BoneBricks bricks(volume, BoneBricks::kSpacing_mm, BoneBricks::Points::fine);
+    const BoneBricks bricks(volume, BoneBricks::kSpacing_mm);
     const double bytes = allocated_bytes() - before;
     state.counters["bytes_per_voxel"] = bytes / static_cast<double>(volume.geometry().voxel_count());
   }

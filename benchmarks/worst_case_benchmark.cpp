@@ -8,8 +8,6 @@
 #include <benchmark/benchmark.h>
 
 #include "osteomill/haptics/algorithms.h"
-#include "osteomill/haptics/point_shell/contacts.h"
-#include "osteomill/haptics/point_shell/point_shell_description.h"
 
 namespace osteomill::benchmarks {
 
@@ -44,30 +42,6 @@ void sleeved(benchmark::State& state, std::string_view algorithm, double spacing
   }
 }
 
-// One look for contacts, without the rest of the step.
-void sleeved_contacts(benchmark::State& state, double spacing_mm) {
-  const MillingTool tool;
-  const Volume block = sleeve_block(spacing_mm, tool, kOverlap_mm);
-  const Pose pose = pose_in_sleeve(block, tool);
-  BoneBricks bricks(block, BoneBricks::kSpacing_mm, BoneBricks::Points::fine);
-  const point_shell::Settings settings = point_shell::Settings::defaults(Mode::steady);
-  NearBone near(65536, NearBone::PointsMeet::the_nearest_part);
-  const Penalty penalty{contact_stiffness_N_per_mm3(settings, tool), 2 * bricks.lattice().cell_area_mm2()};
-  int touching = 0;
-  for ([[maybe_unused]] auto _ : state) {
-    TickTimes looks;
-    for (int n = 0; n < kTicks; ++n) {
-      looks.time([&] {
-        touching =
-            point_shell::contacts_by_bricks(bricks, near, tool, stirred(pose, n), penalty).total().touching;
-      });
-    }
-    looks.report(state);
-  }
-  state.counters["contacts"] = touching;
-  state.counters["sample_points"] = static_cast<double>(bricks.fine().total());
-}
-
 const bool kAdded = [] {
   for (const double spacing_mm : {0.125, 0.0625}) {
     const std::string voxels = spacing_mm > 0.1 ? "/0.125mm" : "/0.0625mm";
@@ -76,10 +50,6 @@ const bool kAdded = [] {
           ->Iterations(1)
           ->Unit(benchmark::kMillisecond);
     }
-    benchmark::RegisterBenchmark(("sleeved_contacts/point-shell" + voxels).c_str(), sleeved_contacts,
-                                 spacing_mm)
-        ->Iterations(1)
-        ->Unit(benchmark::kMillisecond);
   }
   return true;
 }();

@@ -33,7 +33,7 @@ osteomill::Volume ball_of_bone() {
 int main() {
   const osteomill::Volume bone = ball_of_bone();
   for (const std::string& id : osteomill::algorithm_names()) {
-    const auto algorithm = osteomill::make_algorithm(id, {.mode = osteomill::Mode::paper});
+    const auto algorithm = osteomill::make_algorithm(id, {});
     algorithm->prepare({&bone, osteomill::MillingTool{}});
     osteomill::HapticStep step;
     for (double height_mm = 10.5; height_mm > 7.9; height_mm -= 0.01) {

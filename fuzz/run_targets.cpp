@@ -47,7 +47,7 @@ void read_config(Bytes bytes, const fs::path& folder) {
 
 std::vector<std::string> config_seeds(const fs::path&) {
   return {
-      "quiet = true\nseconds = 1.5\nout = \"x\"\nburr-radius = 2\n[point-shell]\nguarded-move = true\nscale "
+      "quiet = true\nseconds = 1.5\nout = \"x\"\nburr-radius = 2\n[point-shell]\ndamping-time = 0\nscale "
       "= 2\n",
       "seconds = 2.5 # s\nout = '''a\nb'''\nset = ['point-shell.scale=2']\n"};
 }

@@ -16,12 +16,12 @@ namespace osteomill {
 namespace {
 
 // Bone below z = 0, whose edge lies along y; the shaft comes down on it, with the tip beyond.
-ViewScene shaft_on_a_plane(Mode mode) {
+ViewScene shaft_on_a_plane() {
   Volume bone = testing_support::shape_volume(testing_support::centred_cube(64, 0.25),
                                               [](const Vec3& p) { return std::max(p.z(), p.x()); });
   const BoneDensities densities = estimate_densities(bone);
   MillingSession session(std::make_shared<Volume>(std::move(bone)), densities,
-                         {.algorithm = algorithm_named("line-proxy"), .haptics = {mode}});
+                         {.algorithm = algorithm_named("line-proxy")});
   PosedDevice device;
   ViewScene scene;
   for (int n = 0; n < 600; ++n) {
@@ -37,26 +37,24 @@ ViewScene shaft_on_a_plane(Mode mode) {
 TEST(DrawnIntersection, ThePictureIsRedWhereTheShaftMeetsThePlane) {
   const OffscreenContext context;
   constexpr PixelSize kSize{640, 480};
-  for (const Mode mode : {Mode::paper, Mode::steady}) {
-    ViewScene scene = shaft_on_a_plane(mode);
-    ASSERT_TRUE(scene.intersection_W);
-    const Vec3 point_W = *scene.intersection_W;
-    EXPECT_NEAR(point_W.z(), 0, 0.1);
-    const GridGeometry geometry = testing_support::centred_cube(8, 1);
-    SceneRenderer renderer(SurfaceBricks(geometry.dims), geometry);
-    scene.bounds = {Vec3::Zero(), 20};
-    scene.camera = camera_on(scene.bounds, {0.1, -1, 0.2}, Vec3::UnitZ());
-    const auto is_red = [&] {
-      renderer.draw(scene, kSize);
-      const Eigen::Vector2d place = pixel_of(scene.camera, kSize, point_W);
-      const Image picture = renderer.picture();
-      const unsigned char* rgb = picture.pixel(static_cast<int>(place.x()), static_cast<int>(place.y()));
-      return rgb[0] > 100 && rgb[1] < 60 && rgb[2] < 60;
-    };
-    EXPECT_TRUE(is_red());
-    scene.intersection_W.reset();
-    EXPECT_FALSE(is_red());
-  }
+  ViewScene scene = shaft_on_a_plane();
+  ASSERT_TRUE(scene.intersection_W);
+  const Vec3 point_W = *scene.intersection_W;
+  EXPECT_NEAR(point_W.z(), 0, 0.1);
+  const GridGeometry geometry = testing_support::centred_cube(8, 1);
+  SceneRenderer renderer(SurfaceBricks(geometry.dims), geometry);
+  scene.bounds = {Vec3::Zero(), 20};
+  scene.camera = camera_on(scene.bounds, {0.1, -1, 0.2}, Vec3::UnitZ());
+  const auto is_red = [&] {
+    renderer.draw(scene, kSize);
+    const Eigen::Vector2d place = pixel_of(scene.camera, kSize, point_W);
+    const Image picture = renderer.picture();
+    const unsigned char* rgb = picture.pixel(static_cast<int>(place.x()), static_cast<int>(place.y()));
+    return rgb[0] > 100 && rgb[1] < 60 && rgb[2] < 60;
+  };
+  EXPECT_TRUE(is_red());
+  scene.intersection_W.reset();
+  EXPECT_FALSE(is_red());
 }
 
 }  // namespace

@@ -54,11 +54,12 @@ double rebound(std::string_view algorithm, double stiffness, double height_mm, S
 Section drops() {
   Section section{
       "Dropped on bone",
-      fmt::format("Must hold for 4: the handle rebounds with less energy than it came with. The handle of 0.3 "
-                  "kg falls by its weight from 1, 5 and 20 mm onto {} planes of random slope, with 5.5 "
-                  "N s/m of damping and stiffnesses up to 5 N/mm (2: up to 20); share of the kinetic "
-                  "energy, median (worst).",
-                  kSlopes),
+      fmt::format(
+          "Must hold for 4: the handle rebounds with less energy than it came with. The handle of 0.3 "
+          "kg falls by its weight from 1, 5 and 20 mm onto {} planes of random slope, with 5.5 "
+          "N s/m of damping and stiffnesses up to 5 N/mm (2: up to 20); share of the kinetic "
+          "energy, median (worst).",
+          kSlopes),
       {"algorithm, stiffness", "energy left", ""},
       {},
       {}};
@@ -72,8 +73,9 @@ Section drops() {
           shares.push_back(rebound(algorithm, stiffness, height_mm, random));
         }
       }
-      section.add_of(algorithm, {fmt::format("{}, {:.0f} N/mm", algorithm, stiffness), median_and_worst(shares)},
-                  percentile(shares, 1) < 1);
+      section.add_of(algorithm,
+                     {fmt::format("{}, {:.0f} N/mm", algorithm, stiffness), median_and_worst(shares)},
+                     percentile(shares, 1) < 1);
     }
   }
   return section;

@@ -117,8 +117,7 @@ void add_row(Section& section, const std::string& bone, const Figures& fine, con
     return std::abs(a.mean / b.mean - 1) <= kForceWithin;
   };
   const double tick_us = std::max(fine.milling.tick_us.max, fine.holding.tick_us.max);
-  section.add({bone,
-               of_both(fine.milling.force_N.mean, coarse.milling.force_N.mean),
+  section.add({bone, of_both(fine.milling.force_N.mean, coarse.milling.force_N.mean),
                of_both(fine.holding.force_N.mean, coarse.holding.force_N.mean),
                figure(fine.milling.force_N.step_max), figure(fine.milling.torque_Nmm.step_max),
                fmt::format("{}", fine.faults), figure(fine.milling.step_us.p99), figure(fine.milling_us.p99),
@@ -147,10 +146,9 @@ Section fine_scans(const Effort& effort) {
           "the same trial. In brackets against {} mm. Memory: what the "
           "trial "
           "takes beside the scan, the pages of it that were made for milling among it.",
-          kCoarse_mm, 100 * kForceWithin, kMaxTick_us, phase_s, kRuns,
-          kCoarse_mm),
-      {"bone", "force milling, N", "force holding, N", "force step, N", "torque step, N mm",
-       "faults", "step p99, us", "milling p99, us", "longest tick, us CPU", "memory, MiB", ""},
+          kCoarse_mm, 100 * kForceWithin, kMaxTick_us, phase_s, kRuns, kCoarse_mm),
+      {"bone", "force milling, N", "force holding, N", "force step, N", "torque step, N mm", "faults",
+       "step p99, us", "milling p99, us", "longest tick, us CPU", "memory, MiB", ""},
       {},
       {}};
   add_rows(section, "block", block(kFine_mm, kBlock_mm), block(kCoarse_mm, kBlock_mm), phase_s);
@@ -172,8 +170,7 @@ Section time_of_a_tick(const Effort& effort) {
           "time; a tick's time is the least of {} runs of the same trial. Owed: bricks of bone points "
           "that a tick leaves to later ones.",
           kMost_us, kEver_us, size_mm.x(), size_mm.y(), size_mm.z(), phase_s, kRuns),
-      {"burr, voxels", "median, us", "99.9 %, us", "longest, us", "owed, median", "owed, most",
-       ""},
+      {"burr, voxels", "median, us", "99.9 %, us", "longest, us", "owed, median", "owed, most", ""},
       {},
       {}};
   for (const double spacing_mm : {0.5, 0.25, 0.125, 0.0625, kFine_mm}) {

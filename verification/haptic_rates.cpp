@@ -9,10 +9,10 @@ namespace osteomill::verification {
 Section haptic_rates(const Bones& bones, const Effort& effort) {
   Section section{
       "The haptic rate halved and doubled",
-      fmt::format("Must hold: milling is as calm (force above 20 Hz over its mean at most 0.06) and removes as much as at 1 kHz within 5 %. On {}, push 1.5 N, seed 11.",
+      fmt::format("Must hold: milling is as calm (force above 20 Hz over its mean at most 0.06) and removes "
+                  "as much as at 1 kHz within 5 %. On {}, push 1.5 N, seed 11.",
                   bones.tooth_name),
-      {"rate", "force above 20 Hz / mean", "torque step, N mm", "force step, N", "removed, mm3",
-       ""},
+      {"rate", "force above 20 Hz / mean", "torque step, N mm", "force step, N", "removed, mm3", ""},
       {},
       {}};
   const std::vector<double> rates_hz{1000, 500, 2000};
@@ -23,10 +23,10 @@ Section haptic_rates(const Bones& bones, const Effort& effort) {
   const double usual_mm3 = figures.front().metrics.removed_mm3;
   for (std::size_t n = 0; n < rates_hz.size(); ++n) {
     const RunMetrics& metrics = figures[n].metrics;
-    section.add({fmt::format("{:.0f} Hz", rates_hz[n]), figure(figures[n].hp_over_mean()),
-                 figure(metrics.torque_Nmm.step_max), figure(metrics.force_N.step_max),
-                 figure(metrics.removed_mm3)},
-                figures[n].hp_over_mean() <= 0.06 && std::abs(metrics.removed_mm3 / usual_mm3 - 1) <= 0.05);
+    section.add(
+        {fmt::format("{:.0f} Hz", rates_hz[n]), figure(figures[n].hp_over_mean()),
+         figure(metrics.torque_Nmm.step_max), figure(metrics.force_N.step_max), figure(metrics.removed_mm3)},
+        figures[n].hp_over_mean() <= 0.06 && std::abs(metrics.removed_mm3 / usual_mm3 - 1) <= 0.05);
   }
   return section;
 }

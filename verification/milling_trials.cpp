@@ -76,14 +76,13 @@ void add_rows(Section& section, const Volume& bone, const Effort& effort, const 
                             .cutting_reaction = rows.cutting_reaction});
       }
       const OverSeeds all = over_seeds(milling_figures(bone, variants));
-      section.add_of(algorithm,
-                     {fmt::format("{}, {} N{}", algorithm, push_N, rows.random_hands ? ", drawn hands" : ""),
-                      median_and_worst(all.hp), median_and_worst(all.torque_step),
-                      median_and_worst(all.force_step), lowest_and_median(all.force),
-                      lowest_and_median(all.torque), lowest_and_median(all.removed),
-                      lowest_and_median(all.paid), median_and_worst(all.step_us),
-                      median_and_worst(all.milling_us)},
-                     holds(all, rows.loaded));
+      section.add_of(
+          algorithm,
+          {fmt::format("{}, {} N{}", algorithm, push_N, rows.random_hands ? ", drawn hands" : ""),
+           median_and_worst(all.hp), median_and_worst(all.torque_step), median_and_worst(all.force_step),
+           lowest_and_median(all.force), lowest_and_median(all.torque), lowest_and_median(all.removed),
+           lowest_and_median(all.paid), median_and_worst(all.step_us), median_and_worst(all.milling_us)},
+          holds(all, rows.loaded));
     }
   }
 }
@@ -105,15 +104,16 @@ const std::vector<std::string> kHeader{"algorithm, push",
 Section milling_the_tooth(const Bones& bones, const Effort& effort) {
   Section section{
       "Milling the tooth",
-      fmt::format("Must hold for 4: force above 20 Hz over its mean, torque step and force step are at most "
-                  "{}, {} N mm and {} N; in the usual hand the mean force is at least {} N, at least {} mm3 go "
-                  "in 20 s, the mean torque is at least {} N mm; what is removed is what the burr's force paid "
-                  "for within 1 %. On {}, the "
-                  "simulated hand of `compare` for {:.0f} s, seeds {} to {} (settings were chosen on "
-                  "others); median (worst) over the seeds. Times were taken with another trial beside.",
-                  kMostHpOverMean, kMostTorqueStep_Nmm, kMostForceStep_N, kMinForce_N, kMinRemoved_mm3,
-                  kMinTorque_Nmm, bones.tooth_name, effort.phase_s,
-                  kFirstSeed, kFirstSeed + static_cast<std::uint64_t>(effort.seeds) - 1),
+      fmt::format(
+          "Must hold for 4: force above 20 Hz over its mean, torque step and force step are at most "
+          "{}, {} N mm and {} N; in the usual hand the mean force is at least {} N, at least {} mm3 go "
+          "in 20 s, the mean torque is at least {} N mm; what is removed is what the burr's force paid "
+          "for within 1 %. On {}, the "
+          "simulated hand of `compare` for {:.0f} s, seeds {} to {} (settings were chosen on "
+          "others); median (worst) over the seeds. Times were taken with another trial beside.",
+          kMostHpOverMean, kMostTorqueStep_Nmm, kMostForceStep_N, kMinForce_N, kMinRemoved_mm3,
+          kMinTorque_Nmm, bones.tooth_name, effort.phase_s, kFirstSeed,
+          kFirstSeed + static_cast<std::uint64_t>(effort.seeds) - 1),
       kHeader,
       {},
       {}};
@@ -133,7 +133,8 @@ Section milling_with_cutting_reaction(const Bones& bones, const Effort& effort) 
       kHeader,
       {},
       {}};
-  add_rows(section, bones.tooth, effort, {.algorithms = {default_algorithm().id.name}, .cutting_reaction = true});
+  add_rows(section, bones.tooth, effort,
+           {.algorithms = {default_algorithm().id.name}, .cutting_reaction = true});
   return section;
 }
 

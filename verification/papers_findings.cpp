@@ -57,8 +57,7 @@ std::vector<StudyRow> rows_on(const Volume& bone, Hands hands, double phase_s) {
 
 void add_findings(Section& section, const Volume& bone, const std::string& name, Hands hands,
                   double phase_s) {
-  for (const StudyFinding& finding :
-       check_study_findings(Study(rows_on(bone, hands, phase_s)))) {
+  for (const StudyFinding& finding : check_study_findings(Study(rows_on(bone, hands, phase_s)))) {
     section.add(
         {fmt::format("{}, {} to {}: {}", name, hands.first, hands.last, finding.of_medians.paper_says),
          finding.of_medians.measured, fmt::format("{} of {}", finding.agreeing, finding.tested)},
@@ -121,8 +120,7 @@ std::vector<Choice> choices() {
 
 double median_of(const Study& study, std::size_t algorithm, std::string_view phase,
                  double (*value)(const RunMetrics&)) {
-  return distribution_of(
-             study.values(algorithm_named(kPapersAlgorithms[algorithm - 1]).id, phase, value))
+  return distribution_of(study.values(algorithm_named(kPapersAlgorithms[algorithm - 1]).id, phase, value))
       .median;
 }
 
@@ -187,11 +185,10 @@ Section papers_findings(const Bones& bones, const Effort& effort) {
 Section papers_choices(const Bones& bones, const Effort& effort) {
   Section section{
       "What the paper leaves open",
-      fmt::format(
-          "Reported: the same findings, numbered as above from 1 to 9, with one of the choices, "
-          "or the hand, or the device, another way. Hands {} to {}, medians; force above 20 Hz (rms, "
-          "N) and torque above 20 Hz (rms, N mm) of 1 / 2 / 3.",
-          kChosenWith.first, kChosenWith.last),
+      fmt::format("Reported: the same findings, numbered as above from 1 to 9, with one of the choices, "
+                  "or the hand, or the device, another way. Hands {} to {}, medians; force above 20 Hz (rms, "
+                  "N) and torque above 20 Hz (rms, N mm) of 1 / 2 / 3.",
+                  kChosenWith.first, kChosenWith.last),
       {"bone, with", "findings that hold", "force milling", "force holding", "torque milling",
        "torque holding"},
       {},

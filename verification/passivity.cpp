@@ -37,9 +37,10 @@ Section passivity() {
       }
     }
     const double least = percentile(shares, 0), greatest = percentile(shares, 1);
-    section.add_of(algorithm.id.name, {algorithm.id.name, figure(least), figure(percentile(shares, 0.5)), figure(greatest),
-                 std::to_string(none), std::to_string(all)},
-                none + all == 0 && least >= 0.95 && greatest <= 1.05);
+    section.add_of(algorithm.id.name,
+                   {algorithm.id.name, figure(least), figure(percentile(shares, 0.5)), figure(greatest),
+                    std::to_string(none), std::to_string(all)},
+                   none + all == 0 && least >= 0.95 && greatest <= 1.05);
   }
   return section;
 }

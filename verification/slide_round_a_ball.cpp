@@ -54,7 +54,8 @@ Section slide_round_a_ball() {
       "Sliding round a ball",
       "Must hold for 4: the force's direction errs by at most 0.1 degree (median) and 0.5 (99 %), and "
       "steps by at most 0.002 N from tick to tick; in 1 mm voxels and with an edge of one voxel it errs "
-      "by at most 0.5 and 1.5. A burr 0.5 mm deep in a ball at 16 mm/s, 1 N/mm, over the top in three planes.",
+      "by at most 0.5 and 1.5. A burr 0.5 mm deep in a ball at 16 mm/s, 1 N/mm, over the top in three "
+      "planes.",
       {"algorithm, voxels, edge, ball", "direction, degrees: median", "99 %", "largest step, N", ""},
       {},
       {}};
@@ -72,10 +73,11 @@ Section slide_round_a_ball() {
       const double step_N = felt.largest_step_N;
       const bool holds =
           is_coarse ? median <= 0.5 && p99 <= 1.5 : median <= 0.1 && p99 <= 0.5 && step_N <= 0.002;
-      section.add_of(algorithm, {fmt::format("{}, {:.2f} mm, {:.0f}, {:.0f} mm", algorithm, one.voxel_mm, one.edge_voxels,
-                               one.ball_mm),
-                   figure(median), figure(p99), figure(step_N)},
-                  holds);
+      section.add_of(algorithm,
+                     {fmt::format("{}, {:.2f} mm, {:.0f}, {:.0f} mm", algorithm, one.voxel_mm,
+                                  one.edge_voxels, one.ball_mm),
+                      figure(median), figure(p99), figure(step_N)},
+                     holds);
     }
   }
   return section;

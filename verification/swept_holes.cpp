@@ -107,9 +107,8 @@ void add_all_voxels(Section& section, const std::vector<Hole>& holes, const std:
       shares.push_back(milled[n].carving.share());
   }
   const auto [least, greatest] = std::minmax_element(shares.begin(), shares.end());
-  section.add(
-      {"all voxels", "", fmt::format("{:.3f} to {:.3f}", *least, *greatest), "", "", "", ""},
-      *greatest / *least - 1 <= kAlikeWithin);
+  section.add({"all voxels", "", fmt::format("{:.3f} to {:.3f}", *least, *greatest), "", "", "", ""},
+              *greatest / *least - 1 <= kAlikeWithin);
 }
 
 }  // namespace
@@ -142,13 +141,12 @@ Section swept_holes(const Effort& effort) {
     const Hole& hole = all[n];
     const Carving& c = milled[n].carving;
     const double voxel_mm = hole.spacing_mm.maxCoeff();
-    section.add(
-        {hole.name, figure(c.swept_mm3),
-         fmt::format("{:.3f}", c.share()), fmt::format("{:.3f}", c.left_mm), fmt::format("{:.3f}", c.lost_mm),
-         fmt::format("{:.3f}", c.edge_lost_mm), fmt::format("{:.4f}", milled[n].paid_share)},
-        std::abs(c.share() - 1) <= kVolumeWithin && c.left_mm <= 0.5 * voxel_mm &&
-            c.lost_mm <= std::min(0.25 * voxel_mm, 0.03) &&
-            std::abs(milled[n].paid_share - 1) <= kPaidWithin);
+    section.add({hole.name, figure(c.swept_mm3), fmt::format("{:.3f}", c.share()),
+                 fmt::format("{:.3f}", c.left_mm), fmt::format("{:.3f}", c.lost_mm),
+                 fmt::format("{:.3f}", c.edge_lost_mm), fmt::format("{:.4f}", milled[n].paid_share)},
+                std::abs(c.share() - 1) <= kVolumeWithin && c.left_mm <= 0.5 * voxel_mm &&
+                    c.lost_mm <= std::min(0.25 * voxel_mm, 0.03) &&
+                    std::abs(milled[n].paid_share - 1) <= kPaidWithin);
   }
   add_all_voxels(section, all, milled);
   return section;

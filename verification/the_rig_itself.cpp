@@ -41,8 +41,7 @@ Section the_rig_itself(const Bones& bones, const Effort& effort) {
       for (const TrialFigures& run : f) cells.push_back(figure(run.hp_over_mean()));
       for (const TrialFigures& run : f) cells.push_back(figure(run.metrics.torque_Nmm.step_max));
       for (const TrialFigures& run : f) cells.push_back(figure(run.metrics.force_N.step_max));
-      section.add_of(algorithm, std::move(cells),
-                     f[0].hp_over_mean() <= kNoExcess * f[1].hp_over_mean());
+      section.add_of(algorithm, std::move(cells), f[0].hp_over_mean() <= kNoExcess * f[1].hp_over_mean());
     }
   }
   return section;

@@ -88,9 +88,10 @@ Section thin_bone() {
           through[n] += goes_through(*algorithm, tool, kWays[n], thick_mm, random) ? 1 : 0;
         }
       });
-      section.add_of(id, {fmt::format("{}, {} mm", id, thick_mm), std::to_string(through[0]),
-                   std::to_string(through[1]), std::to_string(through[2])},
-                  std::all_of(through.begin(), through.end(), [](int n) { return n == 0; }));
+      section.add_of(id,
+                     {fmt::format("{}, {} mm", id, thick_mm), std::to_string(through[0]),
+                      std::to_string(through[1]), std::to_string(through[2])},
+                     std::all_of(through.begin(), through.end(), [](int n) { return n == 0; }));
     }
   }
   return section;
@@ -100,10 +101,10 @@ Section spongy_bone(const Bones& bones) {
   constexpr int kPushes = 300;
   Section section{
       "Pushes into spongy bone",
-      fmt::format(
-          "Must hold for 4: the tool is never more than {} mm past the surface. {} pushes of 2 to 10 N against {}, 0.0195 mm voxels, a burr of 0.5 mm radius on a shaft "
-          "of 0.35 mm.",
-          kDeepest_mm, kPushes, bones.spongy_name),
+      fmt::format("Must hold for 4: the tool is never more than {} mm past the surface. {} pushes of 2 to 10 "
+                  "N against {}, 0.0195 mm voxels, a burr of 0.5 mm radius on a shaft "
+                  "of 0.35 mm.",
+                  kDeepest_mm, kPushes, bones.spongy_name),
       {"algorithm", "end deeper", "ever deeper", "deepest, mm", ""},
       {},
       {}};
@@ -115,9 +116,10 @@ Section spongy_bone(const Bones& bones) {
     const std::size_t ever = count_deeper(all, &PushOutcome::tool, &Depth::ever_mm, kDeepest_mm);
     double deepest = -1;
     for (const PushOutcome& one : all) deepest = std::max(deepest, one.tool.ever_mm);
-    section.add_of(id, {id, std::to_string(count_deeper(all, &PushOutcome::tool, &Depth::at_end_mm, kDeepest_mm)),
-                 std::to_string(ever), figure(deepest)},
-                ever == 0);
+    section.add_of(id,
+                   {id, std::to_string(count_deeper(all, &PushOutcome::tool, &Depth::at_end_mm, kDeepest_mm)),
+                    std::to_string(ever), figure(deepest)},
+                   ever == 0);
   }
   return section;
 }

@@ -69,27 +69,29 @@ Section tools_and_pushes(const Bones& bones, const Effort& effort) {
                            ever);
       }
       const RunMetrics& m = milled[n].metrics;
-      section.add_of(id, {fmt::format("{}, {} / {} mm, {} N", id, kind.tool.burr_radius_mm,
-                               kind.tool.shaft_radius_mm, cases[n].push_N),
-                   felt, figure(milled[n].hp_over_mean()), figure(m.torque_Nmm.step_max),
-                   figure(m.force_N.step_max), figure(m.force_N.mean), figure(m.torque_Nmm.mean),
-                   figure(m.removed_mm3), figure(milled[n].paid_share)},
-                  std::abs(milled[n].paid_share - 1) <= kPaidWithin && ever == 0);
+      section.add_of(id,
+                     {fmt::format("{}, {} / {} mm, {} N", id, kind.tool.burr_radius_mm,
+                                  kind.tool.shaft_radius_mm, cases[n].push_N),
+                      felt, figure(milled[n].hp_over_mean()), figure(m.torque_Nmm.step_max),
+                      figure(m.force_N.step_max), figure(m.force_N.mean), figure(m.torque_Nmm.mean),
+                      figure(m.removed_mm3), figure(milled[n].paid_share)},
+                     std::abs(milled[n].paid_share - 1) <= kPaidWithin && ever == 0);
     }
   }
   return section;
 }
 
 Section breaking_through(const Effort& effort) {
-  Section section{"Breaking through into a hollow",
-                  fmt::format("Must hold for 4: its force steps by at most {} N, and its torque by {} N mm when "
-                              "pushed by {} N, {} by {} N. A plate of 2.5 mm over a hollow, 0.125 mm "
-                              "voxels, milled by the hand of `compare` for {:.0f} s, seed 11.",
-                              kMostForceStep_N, kMostTorqueSteps[0].step_Nmm, kMostTorqueSteps[0].push_N,
-                              kMostTorqueSteps[1].step_Nmm, kMostTorqueSteps[1].push_N, effort.phase_s),
-                  {"algorithm, push", "force step, N", "torque step, N mm", "force mean, N", ""},
-                  {},
-                  {}};
+  Section section{
+      "Breaking through into a hollow",
+      fmt::format("Must hold for 4: its force steps by at most {} N, and its torque by {} N mm when "
+                  "pushed by {} N, {} by {} N. A plate of 2.5 mm over a hollow, 0.125 mm "
+                  "voxels, milled by the hand of `compare` for {:.0f} s, seed 11.",
+                  kMostForceStep_N, kMostTorqueSteps[0].step_Nmm, kMostTorqueSteps[0].push_N,
+                  kMostTorqueSteps[1].step_Nmm, kMostTorqueSteps[1].push_N, effort.phase_s),
+      {"algorithm, push", "force step, N", "torque step, N mm", "force mean, N", ""},
+      {},
+      {}};
   GridGeometry geometry = testing_support::centred_cube(112, 0.125);
   geometry.dims[2] = 72;
   const Volume bone = testing_support::shape_volume(geometry, [](const Vec3& p) {

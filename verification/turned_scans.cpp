@@ -95,9 +95,10 @@ Section turned_scans() {
         torque.push_back(off.torque_share);
       }
       const double max = grid_turns_too ? 0.002 : 0.1;
-      section.add_of(algorithm, {fmt::format("{}, {}", algorithm, grid_turns_too ? "grid" : "bone"),
-                   median_and_worst(force), median_and_worst(torque), figure(max)},
-                  percentile(force, 1) <= max && percentile(torque, 1) <= max);
+      section.add_of(algorithm,
+                     {fmt::format("{}, {}", algorithm, grid_turns_too ? "grid" : "bone"),
+                      median_and_worst(force), median_and_worst(torque), figure(max)},
+                     percentile(force, 1) <= max && percentile(torque, 1) <= max);
     }
   }
   return section;

@@ -57,13 +57,12 @@ Section voxel_sizes(const Effort& effort) {
       {}};
   const std::vector<double> spacings{0.10, 0.20, 0.25};
   std::vector<double> holes(spacings.size());
-  in_parallel(holes.size(),
-              [&](std::size_t n) { holes[n] = hole_mm3(spacings[n], effort.phase_s / 2); });
+  in_parallel(holes.size(), [&](std::size_t n) { holes[n] = hole_mm3(spacings[n], effort.phase_s / 2); });
   for (std::size_t n = 0; n < holes.size(); ++n) {
     const double off = holes[n] / holes.front() - 1;
-    section.add({fmt::format("{:.2f} mm", spacings[n]), figure(holes[n]), fmt::format("{:+.2f} %", 100 * off),
-                 "2 %"},
-                std::abs(off) < 0.02);
+    section.add(
+        {fmt::format("{:.2f} mm", spacings[n]), figure(holes[n]), fmt::format("{:+.2f} %", 100 * off), "2 %"},
+        std::abs(off) < 0.02);
   }
   return section;
 }

@@ -101,9 +101,8 @@ Study study_of(const RunGroup& group, const ReportExtras& extras) {
 PageSection hands_section(const Study& study, const fs::path& out_dir) {
   std::vector<CaptionedFigure> figures;
   for (const std::string_view phase : study.phases()) {
-    figures.push_back(
-        {draw_study_figure(study, phase, out_dir / "figures").svg,
-         "Every hand of the study, by algorithm; logarithmic where values lie far apart."});
+    figures.push_back({draw_study_figure(study, phase, out_dir / "figures").svg,
+                       "Every hand of the study, by algorithm; logarithmic where values lie far apart."});
   }
   return study_section(study, figures);
 }

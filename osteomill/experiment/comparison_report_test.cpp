@@ -80,8 +80,8 @@ TEST_F(ReportTest, AFullComparisonIsOnePageThatLoadsNothing) {
   std::vector<std::string> expected;
   for (const char* name :
        {"bone", "fig6_rate", "fig7_force", "fig8_torque", "fig9_shaft", "path", "removed"}) {
-    expected.push_back(std::string(name) + "_steady.png");
-    expected.push_back(std::string(name) + "_steady.svg");
+    expected.push_back(std::string(name) + ".png");
+    expected.push_back(std::string(name) + ".svg");
     EXPECT_LT(fs::file_size(out_ / "figures" / expected.back()), 1500000u) << name;
     EXPECT_TRUE(bytes_of(out_ / "figures" / expected.back()).ends_with("</svg>\n\n")) << name;
   }
@@ -95,7 +95,7 @@ TEST_F(ReportTest, AFullComparisonIsOnePageThatLoadsNothing) {
   EXPECT_NE(html.find("agrees</span>"), std::string::npos);
   const std::string summary = bytes_of(out_ / "summary.csv");
   EXPECT_EQ(std::count(summary.begin(), summary.end(), '\n'), 7);
-  EXPECT_NE(summary.find("\npoint-shell,steady,holding,20000,"), std::string::npos);
+  EXPECT_NE(summary.find("\npoint-shell,holding,20000,"), std::string::npos);
 }
 
 // Of a person at the window it tells what that one did, and nothing of a trial that was none.
@@ -126,20 +126,11 @@ TEST_F(ReportTest, ACutThatWasTakenBackIsNoBoneRemovedBelowNothing) {
 }
 
 TEST_F(ReportTest, OneRecordingIsEnough) {
-  Recording run = sample_run("surface-points", kHolding, Mode::paper, 500);
+  Recording run = sample_run("surface-points", kHolding, 500);
   const std::string html = bytes_of(write_comparison_report({run}, out_));
   EXPECT_NE(html.find("not recorded"), std::string::npos);
-  EXPECT_TRUE(fs::exists(out_ / "figures/fig9_shaft_paper.svg"));
-  EXPECT_FALSE(fs::exists(out_ / "figures/bone_paper.svg"));
-}
-
-TEST_F(ReportTest, BothModesHaveTheirOwnFiguresAndFindings) {
-  const std::vector<Recording> runs{sample_run("line-proxy", kHolding, Mode::steady, 200),
-                                    sample_run("line-proxy", kHolding, Mode::paper, 200)};
-  const std::string html = bytes_of(write_comparison_report(runs, out_));
-  EXPECT_NE(html.find("<h3>Mode paper"), std::string::npos);
-  EXPECT_NE(html.find("<h3>Mode steady"), std::string::npos);
-  EXPECT_EQ(names_in(out_ / "figures").size(), 24u);
+  EXPECT_TRUE(fs::exists(out_ / "figures/fig9_shaft.svg"));
+  EXPECT_FALSE(fs::exists(out_ / "figures/bone.svg"));
 }
 
 TEST_F(ReportTest, AToolThatNeverMovesAndNeverTouchesIsDrawnToo) {
@@ -157,7 +148,7 @@ TEST_F(ReportTest, AToolThatNeverMovesAndNeverTouchesIsDrawnToo) {
 TEST_F(ReportTest, WhatAReaderMustKnowIsSaid) {
   std::vector<Recording> runs;
   for (const std::string& algorithm : algorithm_names()) {
-    runs.push_back(sample_run(algorithm, kHolding, Mode::steady, 200));
+    runs.push_back(sample_run(algorithm, kHolding, 200));
   }
   runs[0].complete = false;
   runs[1].dropped = 7;
@@ -197,7 +188,7 @@ TEST_F(ReportTest, NothingIsConcludedWhereAnAlgorithmLacksAPhase) {
 }
 
 TEST_F(ReportTest, WherePicturesCouldNotBeMadeItIsSaidInTheirPlace) {
-  std::vector<Recording> runs{sample_run("line-proxy", kMilling, Mode::steady, 100)};
+  std::vector<Recording> runs{sample_run("line-proxy", kMilling, 100)};
   const std::string_view told = "No pictures of the bone: OpenGL could not be had";
   EXPECT_EQ(bytes_of(write_comparison_report(runs, out_)).find(told), std::string::npos);
   runs[0].pictures.clear();
@@ -208,7 +199,7 @@ TEST_F(ReportTest, WherePicturesCouldNotBeMadeItIsSaidInTheirPlace) {
 }
 
 TEST_F(ReportTest, DamagedPicturesAreNamed) {
-  std::vector<Recording> runs{sample_run("line-proxy", kMilling, Mode::steady, 100)};
+  std::vector<Recording> runs{sample_run("line-proxy", kMilling, 100)};
   runs[0].pictures[0].png = {1, 2, 3};
   expect_refused(runs, "line-proxy-milling.h5: the picture 'after' is not a whole PNG");
   runs[0].pictures[0].png = sample_png(true);
@@ -218,11 +209,11 @@ TEST_F(ReportTest, DamagedPicturesAreNamed) {
 
 TEST_F(ReportTest, AFolderThatCannotBeMadeIsNamed) {
   std::ofstream(out_) << "a file";
-  expect_refused(sample_runs(Mode::steady, 100), out_.string());
+  expect_refused(sample_runs(100), out_.string());
 }
 
 TEST_F(ReportTest, RatesStandBesideThePapers) {
-  MeasuredRates measured{Mode::paper, sample_rates(), {}};
+  MeasuredRates measured{sample_rates(), {}};
   measured.rows.front().paced_rate_hz = 940;
   const fs::path page = write_rates_report(measured, out_);
   EXPECT_EQ(page, out_ / "rates.html");
@@ -231,11 +222,9 @@ TEST_F(ReportTest, RatesStandBesideThePapers) {
   const std::string csv = bytes_of(out_ / "rates.csv");
   EXPECT_TRUE(csv.starts_with(
       "algorithm,resolution,points,step_us_median,step_us_p99,rate_hz,steps_per_s,paper_rate_hz,"
-      "paced_rate_hz,mode\nline-proxy,50 vertices,51,2.1,"));
-  EXPECT_NE(csv.find("\npoint-shell,scale 4,4700,3.2,5.44,1000,312500,,999,paper\n"), std::string::npos)
-      << csv;
+      "paced_rate_hz\nline-proxy,50 vertices,51,2.1,"));
+  EXPECT_NE(csv.find("\npoint-shell,scale 4,4700,3.2,5.44,1000,312500,,999\n"), std::string::npos) << csv;
   const std::string html = bytes_of(page);
-  EXPECT_NE(html.find("Measured in the mode paper"), std::string::npos);
   EXPECT_EQ(html.find("least number of vertices"), std::string::npos);
   EXPECT_NE(html.find("14 of the 14 resolutions hold 950 Hz or more in a loop of 1000 Hz here by their CPU "
                       "time, and 13 "),
@@ -247,11 +236,9 @@ TEST_F(ReportTest, RatesStandBesideThePapers) {
 
 TEST_F(ReportTest, RatesOfAnyNameAndWithoutThePapersAreDrawn) {
   MeasuredRates measured{
-      Mode::steady,
-      {{algorithm_named("point-shell").id, "it's \"coarse\", `x`", 10, 5, 6, 1000, 2e5, 0, 999}},
-      {}};
+      {{algorithm_named("point-shell").id, "it's \"coarse\", `x`", 10, 5, 6, 1000, 2e5, 0, 999}}, {}};
   const fs::path page = write_rates_report(measured, out_);
-  EXPECT_NE(bytes_of(page).find("Measured in the mode steady"), std::string::npos);
+  EXPECT_NE(bytes_of(page).find("Steps a second against resolution"), std::string::npos);
   EXPECT_NE(bytes_of(out_ / "rates.csv").find("\"it's \"\"coarse\"\", `x`\",10"), std::string::npos);
   EXPECT_THROW(write_rates_report({}, out_), InputError);
   measured.rows[0].paced_rate_hz = 0;
@@ -259,7 +246,7 @@ TEST_F(ReportTest, RatesOfAnyNameAndWithoutThePapersAreDrawn) {
 }
 
 TEST_F(ReportTest, TheLeastVerticesStandBesideThePapers) {
-  MeasuredRates measured{Mode::paper, sample_rates(), {}};
+  MeasuredRates measured{sample_rates(), {}};
   for (const int count : {12, 24, 32})
     measured.vertices.push_back({"sphere", count, 2, 5, 0.1, 0.15, count > 12});
   measured.vertices.push_back({"circle", 8, 2, 50, 0.1, 0.15, false});

@@ -102,9 +102,8 @@ std::string findings_sentence(const Study& study) {
     if (f.verdict == Verdict::does_not_agree) against.push_back(says);
     if (f.verdict == Verdict::not_settled) open.push_back(says);
   }
-  std::string text = fmt::format(
-      "Of the paper's {} findings on force, torque and shaft, {} {} in {}", total, agreeing,
-      agreeing == 1 ? "agrees" : "agree", hands(study.seeds().size()));
+  std::string text = fmt::format("Of the paper's {} findings on force, torque and shaft, {} {} in {}", total,
+                                 agreeing, agreeing == 1 ? "agrees" : "agree", hands(study.seeds().size()));
   const auto add = [&](const std::vector<std::string>& which, const char* of_one, const char* of_more) {
     if (which.empty()) return;
     text += fmt::format(", {} {} ({})", which.size(), which.size() == 1 ? of_one : of_more,

@@ -34,26 +34,11 @@ TEST(Conclusions, IsFiveSentencesWithTheirNumbers) {
   const std::string text = conclusions_of(sample_rows(8));
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 5);
   expect_says(text,
-              "Force above 20 Hz, rms, while milling, median of the hands: in paper 0.104 N (1 line-proxy), "
+              "Force above 20 Hz, rms, while milling, median of the hands: 0.104 N (1 line-proxy), "
               "1.04 N (2 surface-points) and 0.104 N (3 point-shell); least with");
   expect_says(text, "least with 3 point-shell, significantly against 1 and 2");
-  expect_says(text, "tried in paper mode: 4 agree in 8 hands, 3 do not (");
-  expect_says(
-      text,
-      "Against paper, steady makes significantly worse: nothing; and better: force above 20 Hz, rms of 2 "
-      "while milling (× 0.1)");
+  expect_says(text, "findings on force, torque and shaft, 4 agree in 8 hands, 3 do not (");
   EXPECT_TRUE(too_few_hands(Study(sample_rows(8))).empty());
-}
-
-TEST(Conclusions, WhatSteadyMakesWorseIsSaid) {
-  std::vector<StudyRow> rows = sample_rows(8);
-  for (StudyRow& r : rows) {
-    if (r.run.algorithm == "point-shell" && r.run.mode == Mode::steady && r.run.phase == kMilling)
-      r.run.metrics.torque_Nmm.hp_rms *= 1.6;
-  }
-  expect_says(
-      conclusions_of(rows),
-      "steady makes significantly worse: torque above 20 Hz, rms of 3 while milling (× 1.6); and better: ");
 }
 
 TEST(Conclusions, WithTooFewHandsNothingIsClaimed) {
@@ -64,7 +49,6 @@ TEST(Conclusions, WithTooFewHandsNothingIsClaimed) {
   for (const char* claim : {"least", "significant"}) {
     EXPECT_EQ(text.find(claim), std::string::npos) << claim << " in " << text;
   }
-  expect_says(text, "What steady changes most against paper, in 6 hands: force above 20 Hz");
   for (const char* claim : {"better", "worse"}) EXPECT_EQ(text.find(claim), std::string::npos) << text;
 }
 
@@ -93,11 +77,10 @@ TEST(Conclusions, WhereNothingIsSignificantNobodyIsLeast) {
 TEST(Conclusions, WhoseShaftDidNotLeanIsNamed) {
   std::vector<StudyRow> rows = sample_rows(8);
   for (StudyRow& r : rows) {
-    r.run.metrics.contact.shaft =
-        r.run.algorithm == "line-proxy" && r.run.mode == Mode::paper && r.seed < 4 ? 0.2 : 1;
+    r.run.metrics.contact.shaft = r.run.algorithm == "line-proxy" && r.seed < 4 ? 0.2 : 1;
   }
   const std::string text = what_was_compared(Study(rows), "ball");
-  expect_says(text, "less than half of that time with 1 line-proxy in paper (3 of 8 hands).");
+  expect_says(text, "less than half of that time with 1 line-proxy (3 of 8 hands).");
   for (StudyRow& r : rows) r.run.metrics.contact.shaft = 1;
   EXPECT_EQ(what_was_compared(Study(rows), "ball").find("less than half"), std::string::npos);
 }
@@ -105,15 +88,14 @@ TEST(Conclusions, WhoseShaftDidNotLeanIsNamed) {
 TEST(Conclusions, WhatWasNotReachedIsSaidWithTheHandsInWhichItWasNot) {
   std::vector<StudyRow> rows = sample_rows(8);
   for (StudyRow& r : rows) {
-    if (r.run.algorithm == "surface-points" && r.run.mode == Mode::paper && r.run.phase == kHolding &&
-        r.seed < 4)
+    if (r.run.algorithm == "surface-points" && r.run.phase == kHolding && r.seed < 4)
       r.run.not_reached = "the tool was lost";
   }
   const Study study(rows);
   expect_says(what_was_compared(study, "ball"),
-              "Not all of that was reached with 2 surface-points in paper: the tables say what.");
+              "Not all of that was reached with 2 surface-points: the tables say what.");
   expect_says(html(study_section(study, {})), "the tool was lost (3 of 8 hands)</span></td>");
-  expect_says(check_study_findings(study, Mode::paper)[1].of_medians.measured,
+  expect_says(check_study_findings(study)[1].of_medians.measured,
               "(not all reached: 2 surface-points, holding)");
 }
 
@@ -129,13 +111,11 @@ TEST(Conclusions, WhoLostContactIsNamedAndNeverTheLeast) {
   EXPECT_EQ(text.find("nan"), std::string::npos) << text;
 }
 
-TEST(Conclusions, OneModeAndOneAlgorithmHaveNothingToBeComparedWith) {
+TEST(Conclusions, OneAlgorithmHasNothingToBeComparedWith) {
   std::vector<StudyRow> rows = sample_rows(8);
-  std::erase_if(
-      rows, [](const StudyRow& r) { return r.run.mode == Mode::steady || r.run.algorithm != "line-proxy"; });
+  std::erase_if(rows, [](const StudyRow& r) { return r.run.algorithm != "line-proxy"; });
   const std::string text = conclusions_of(rows);
   EXPECT_EQ(text.find("least"), std::string::npos) << text;
-  EXPECT_EQ(text.find("steady"), std::string::npos) << text;
   expect_says(text, "Bone removed, while milling, median of the hands: 0 mm³ (1 line-proxy).");
 }
 

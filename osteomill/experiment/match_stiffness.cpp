@@ -81,8 +81,7 @@ HapticSettings::Named setting_felt_as(double felt_N_per_mm, MillingSetup setup, 
         is_within && n % 4 != 3 ? proportional : std::sqrt(low.stiffness_N_per_mm * high.stiffness_N_per_mm);
   }
   throw std::invalid_argument(fmt::format("{} cannot be felt as {:.4g} N/mm on a flat wall; {}",
-                                          algorithm.id.name, felt_N_per_mm,
-                                          reason(low, high)));
+                                          algorithm.id.name, felt_N_per_mm, reason(low, high)));
 }
 
 }  // namespace osteomill

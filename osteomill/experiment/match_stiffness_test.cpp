@@ -3,7 +3,6 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <tuple>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -22,8 +21,8 @@ const Volume& wall() {
   return volume;
 }
 
-MillingSetup setup_of(const AlgorithmDescription& algorithm, Mode mode = Mode::steady) {
-  return {.tool = kTool, .algorithm = algorithm, .haptics = {.mode = mode}, .tick_s = kTick_s};
+MillingSetup setup_of(const AlgorithmDescription& algorithm) {
+  return {.tool = kTool, .algorithm = algorithm, .tick_s = kTick_s};
 }
 
 // The force at rest at this depth, come from outside.
@@ -54,32 +53,25 @@ double slope_at_rest_N_per_mm(HapticAlgorithm& algorithm) {
   return 0;
 }
 
-using Case = std::tuple<std::string, Mode>;
-
 // But for the one whose force rises in steps.
-std::vector<Case> cases() {
-  std::vector<Case> all;
-  for (const std::string& name : algorithm_names()) {
-    for (const Mode mode : {Mode::paper, Mode::steady}) {
-      if (name != "surface-points" || mode != Mode::paper) all.emplace_back(name, mode);
-    }
-  }
+std::vector<std::string> cases() {
+  std::vector<std::string> all = algorithm_names();
+  std::erase(all, "surface-points");
   return all;
 }
 
-class MatchStiffness : public ::testing::TestWithParam<Case> {};
+class MatchStiffness : public ::testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Algorithms, MatchStiffness, ::testing::ValuesIn(cases()), [](const auto& of) {
-  std::string name = std::get<0>(of.param);
+  std::string name = of.param;
   std::erase(name, '-');
-  return name + "_" + std::string(name_of(std::get<1>(of.param)));
+  return name;
 });
 
 TEST_P(MatchStiffness, IsFeltAsAskedFor) {
-  const auto& [name, mode] = GetParam();
-  const AlgorithmDescription& algorithm = algorithm_named(name);
-  HapticSettings haptics{.mode = mode};
+  const AlgorithmDescription& algorithm = algorithm_named(GetParam());
+  HapticSettings haptics;
   const double felt_N_per_mm = 0.8;
-  haptics.named.push_back(setting_felt_as(felt_N_per_mm, setup_of(algorithm, mode), wall()));
+  haptics.named.push_back(setting_felt_as(felt_N_per_mm, setup_of(algorithm), wall()));
   const auto made = make_algorithm(algorithm, haptics);
   made->prepare({&wall(), kTool, kTick_s});
   EXPECT_NEAR(slope_at_rest_N_per_mm(*made), felt_N_per_mm, 0.1 * felt_N_per_mm)
@@ -103,11 +95,10 @@ TEST(MatchStiffness, WhatNoSettingGivesIsRefused) {
 // The paper's second pushes with one ring of vertices after another, each capped as it is all in bone.
 TEST(MatchStiffness, ASlopeThatIsLeaptOverIsRefused) {
   try {
-    setting_felt_as(1.5, setup_of(algorithm_named("surface-points"), Mode::paper), wall());
+    setting_felt_as(1.5, setup_of(algorithm_named("surface-points")), wall());
     ADD_FAILURE();
   } catch (const std::invalid_argument& error) {
-    EXPECT_NE(std::string(error.what()).find("surface-points in paper cannot be felt as 1.5 N/mm"),
-              std::string::npos)
+    EXPECT_NE(std::string(error.what()).find("surface-points cannot be felt as 1.5 N/mm"), std::string::npos)
         << error.what();
   }
 }

@@ -49,7 +49,8 @@ struct PassivityRow {
   double rule_N_per_mm = 0;
 };
 
-/// Every algorithm that has a setting of the option "stiffness", on devices with 1, 2, 5 and 10 N s/m of damping and 0.3, 1 and 2 ms of delay; all else as in `settings`.
+/// Every algorithm that has a setting of the option "stiffness", on devices with 1, 2, 5 and 10 N s/m of
+/// damping and 0.3, 1 and 2 ms of delay; all else as in `settings`.
 std::vector<TrialSettings> passivity_cases(const std::vector<AlgorithmDescription>& algorithms,
                                            const TrialSettings& settings = {});
 

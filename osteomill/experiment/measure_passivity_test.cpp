@@ -66,7 +66,7 @@ double exact_limit_N_per_mm(const WallPress& press) {
 }
 
 TEST(Passivity, AnIdealSpringKeepsToTheRule) {
-  for (const TrialSettings& setup : passivity_cases({algorithm_named("line-proxy")}, {Mode::steady})) {
+  for (const TrialSettings& setup : passivity_cases({algorithm_named("line-proxy")})) {
     const double damping = setup.device_damping_Ns_per_mm;
     const double delay_s = setup.hand_and_device.handle.force_delay_s;
     const WallPress press = device(damping, delay_s);
@@ -176,16 +176,13 @@ TEST(Passivity, TheSearchSaysWhereItEnds) {
 TEST(Passivity, TheWallIsWhereTheHandleIsPressed) {
   const MillingTool tool;
   const Volume wall = flat_wall(tool);
-  for (const Mode mode : {Mode::paper, Mode::steady}) {
-    HapticSettings settings;
-    settings.mode = mode;
-    settings.set_option("stiffness", 1);
-    const auto algorithm = make_algorithm("line-proxy", settings);
-    algorithm->prepare({&wall, tool});
-    const WallPressResult result = press_on_wall(*algorithm, tool.burr_radius_mm, device(0.02, 0));
-    EXPECT_EQ(result.motion, WallMotion::dies_out);
-    EXPECT_NEAR(result.felt_N_per_mm, 1, 0.02) << name_of(mode);
-  }
+  HapticSettings settings;
+  settings.set_option("stiffness", 1);
+  const auto algorithm = make_algorithm("line-proxy", settings);
+  algorithm->prepare({&wall, tool});
+  const WallPressResult result = press_on_wall(*algorithm, tool.burr_radius_mm, device(0.02, 0));
+  EXPECT_EQ(result.motion, WallMotion::dies_out);
+  EXPECT_NEAR(result.felt_N_per_mm, 1, 0.02);
 }
 
 }  // namespace

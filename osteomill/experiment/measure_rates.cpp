@@ -106,8 +106,7 @@ std::vector<RateRow> measure_rates(const TrialPlan& plan, const std::vector<Algo
     const Distribution step_us = distribution_of(times.step_us);
     rows.push_back({algorithm->id, text_of(*algorithm, resolution), trial.algorithm().sample_point_count(),
                     step_us.median, step_us.p99, times.held.rate_hz(), 1e6 / step_us.median,
-                    resolution.paper_rate_hz,
-                    paced_rate_hz(again, times.ticks_before, settings.tick_s)});
+                    resolution.paper_rate_hz, paced_rate_hz(again, times.ticks_before, settings.tick_s)});
   }
   return rows;
 }

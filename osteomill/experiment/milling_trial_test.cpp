@@ -17,7 +17,6 @@ class MillingTrialTest : public ::testing::TestWithParam<std::string> {
       : bone_(builtin_tooth(0.5), kBuiltinToothIsovalue),
         densities_(estimate_densities(bone_)),
         entry_(place_entry(bone_, settings_.tool)) {
-    settings_.haptics.mode = Mode::steady;
     settings_.removal_rate_mm3_per_Ns = 10;
     settings_.hand_and_device.script.milling_s = 6;
     settings_.hand_and_device.script.holding_s = 1;

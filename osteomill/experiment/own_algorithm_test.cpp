@@ -47,8 +47,7 @@ AlgorithmDescription cushion(double height_mm) {
   description.settings = {{.name = "spring",
                            .unit = "N/mm",
                            .range = SettingRange::positive(),
-                           .paper = 1,
-                           .steady = 2,
+                           .value = 2,
                            .meaning = "How stiff it is",
                            .option = "stiffness"}};
   description.make = [height_mm](std::span<const double> values) {
@@ -88,7 +87,7 @@ TEST(OwnAlgorithm, IsRunRecordedAndReportedBesideThePapers) {
   const std::string html{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
   EXPECT_NE(html.find("9 cushion"), std::string::npos);
   // The page holds its figures as bytes; #8e24aa as gnuplot writes it.
-  std::ifstream figure(folder / "report/figures/fig7_force_steady.svg");
+  std::ifstream figure(folder / "report/figures/fig7_force.svg");
   const std::string svg{std::istreambuf_iterator<char>(figure), std::istreambuf_iterator<char>()};
   EXPECT_NE(svg.find("rgb(142,  36, 170)"), std::string::npos);
   // The paper's findings need the paper's three.

@@ -161,8 +161,7 @@ std::string panel(std::span<const PassivityRow> rows, std::size_t column, const 
   for (std::size_t n = 0; n < axes.algorithms.size(); ++n) {
     const AlgorithmId& algorithm = axes.algorithms[n];
     const double aside = std::pow(1.05, static_cast<double>(n) - 1);
-    const std::string file =
-        figure.data(curve_data(rows, algorithm, aside, axes.delays_s[column]));
+    const std::string file = figure.data(curve_data(rows, algorithm, aside, axes.delays_s[column]));
     // The same for every algorithm.
     rule = fmt::format(", {} using 4:5 with lines dt 2 lw 2 lc rgb '#8a8a8a' notitle", file);
     curves += fmt::format(
@@ -225,9 +224,9 @@ void write_passivity_csv(const std::filesystem::path& path, std::span<const Pass
     out << "algorithm,device_damping_Ns_per_m,device_delay_s,limit,stiffness_N_per_mm,felt_N_per_mm,"
            "rule_N_per_mm\n";
     for (const PassivityRow& row : rows) {
-      out << fmt::format("{},{},{},{},{},{},{}\n", name_of(row.algorithm),
-                         damping_Ns_per_m(row), row.delay_s, name_of_kind(row.limit.kind),
-                         row.limit.stiffness_N_per_mm, row.limit.felt_N_per_mm, row.rule_N_per_mm);
+      out << fmt::format("{},{},{},{},{},{},{}\n", name_of(row.algorithm), damping_Ns_per_m(row), row.delay_s,
+                         name_of_kind(row.limit.kind), row.limit.stiffness_N_per_mm, row.limit.felt_N_per_mm,
+                         row.rule_N_per_mm);
     }
   });
 }

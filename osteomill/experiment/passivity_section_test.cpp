@@ -23,16 +23,15 @@ std::string bytes_of(const fs::path& path) {
 }
 
 // 1 follows the rule, 2 feels half of it and has none on the last device, 3 never ends. No measurement.
-std::vector<PassivityRow> sample_rows(const std::vector<Mode>& modes) {
+std::vector<PassivityRow> sample_rows() {
   std::vector<PassivityRow> rows;
   std::vector<AlgorithmDescription> algorithms;
   for (const std::string_view name : kPapersAlgorithms) algorithms.push_back(algorithm_named(name));
-  for (const TrialSettings& setup : passivity_cases(algorithms, modes)) {
+  for (const TrialSettings& setup : passivity_cases(algorithms)) {
     const double damping = setup.device_damping_Ns_per_mm;
     const double delay_s = setup.hand_and_device.handle.force_delay_s;
     const double rule = passive_stiffness_rule_N_per_mm(damping, 1e-3, delay_s);
-    PassivityRow row{
-        setup.algorithm.id, setup.haptics.mode, damping, delay_s, {Kind::found, rule, rule}, rule};
+    PassivityRow row{setup.algorithm.id, damping, delay_s, {Kind::found, rule, rule}, rule};
     if (row.algorithm == "surface-points") row.limit = {Kind::found, 4 * rule, 0.5 * rule};
     if (row.algorithm == "surface-points" && damping == 0.01) row.limit = {};
     if (row.algorithm == "point-shell") row.limit = {Kind::above_all, 200, 9};
@@ -57,7 +56,7 @@ class PassivitySectionTest : public ::testing::Test {
 };
 
 TEST_F(PassivitySectionTest, AColumnIsOfItsAlgorithmInWhateverOrderTheyWereMeasured) {
-  auto rows = sample_rows({Mode::steady});
+  auto rows = sample_rows();
   const Figure figure = draw_passivity_figure(rows, out_);
   const std::string page = html(passivity_section(rows, figure));
   std::stable_sort(rows.begin(), rows.end(), [](const PassivityRow& a, const PassivityRow& b) {
@@ -72,21 +71,21 @@ TEST_F(PassivitySectionTest, AColumnIsOfItsAlgorithmInWhateverOrderTheyWereMeasu
 }
 
 TEST_F(PassivitySectionTest, TheTableHasEveryDeviceOnce) {
-  const auto rows = sample_rows({Mode::paper, Mode::steady});
+  const auto rows = sample_rows();
   write_passivity_csv(out_ / "stability.csv", rows);
   const std::string csv = bytes_of(out_ / "stability.csv");
   EXPECT_TRUE(
-      csv.starts_with("algorithm,mode,device_damping_Ns_per_m,device_delay_s,limit,stiffness_N_per_mm,felt_N_"
+      csv.starts_with("algorithm,device_damping_Ns_per_m,device_delay_s,limit,stiffness_N_per_mm,felt_N_"
                       "per_mm,rule_N_per_mm\n"
-                      "line-proxy,paper,1,0.0003,found,1.25"))
+                      "line-proxy,1,0.0003,found,1.25"))
       << csv;
-  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 73);
-  EXPECT_NE(csv.find("surface-points,steady,10,0.002,none,0,0,4\n"), std::string::npos) << csv;
-  EXPECT_NE(csv.find("point-shell,steady,10,0.002,above,200,9,4\n"), std::string::npos) << csv;
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 37);
+  EXPECT_NE(csv.find("surface-points,10,0.002,none,0,0,4\n"), std::string::npos) << csv;
+  EXPECT_NE(csv.find("point-shell,10,0.002,above,200,9,4\n"), std::string::npos) << csv;
 }
 
 TEST_F(PassivitySectionTest, TheWordsGiveTheRangeAgainstTheRule) {
-  const auto rows = sample_rows({Mode::steady});
+  const auto rows = sample_rows();
   const std::string page = html(passivity_section(rows, draw_passivity_figure(rows, out_)));
   EXPECT_NE(
       page.find("1 line-proxy 1.00 to 1.00; 2 surface-points 0.50 to 0.50, and passive at no stiffness on 3 "
@@ -94,12 +93,11 @@ TEST_F(PassivitySectionTest, TheWordsGiveTheRangeAgainstTheRule) {
       std::string::npos);
   EXPECT_NE(page.find("none passive"), std::string::npos);
   EXPECT_NE(page.find("over 200 → 9"), std::string::npos);
-  EXPECT_EQ(page.find("mode paper"), std::string::npos);
   EXPECT_TRUE(bytes_of(out_ / "stability.svg").ends_with("</svg>\n\n"));
 }
 
 TEST_F(PassivitySectionTest, OneAlgorithmThatIsNeverPassiveIsDrawnToo) {
-  std::vector<PassivityRow> rows = sample_rows({Mode::paper});
+  std::vector<PassivityRow> rows = sample_rows();
   std::erase_if(rows, [](const PassivityRow& row) { return row.algorithm != "line-proxy"; });
   for (PassivityRow& row : rows) row.limit = {};
   const std::string page = html(passivity_section(rows, draw_passivity_figure(rows, out_)));
@@ -107,14 +105,14 @@ TEST_F(PassivitySectionTest, OneAlgorithmThatIsNeverPassiveIsDrawnToo) {
 }
 
 TEST_F(PassivitySectionTest, TheReportOfAStudyHasItsFilesFiguresAndWords) {
-  ReportExtras extras{std::vector<StudyRow>(), sample_rows({Mode::steady})};
-  const auto runs = testing_support::sample_runs(Mode::steady, 500);
+  ReportExtras extras{std::vector<StudyRow>(), sample_rows()};
+  const auto runs = testing_support::sample_runs(500);
   // Beside the recorded hand.
   const std::uint64_t first = runs.front().description.seed;
   for (std::uint64_t seed = first + 1; seed < first + 8; ++seed) {
     for (const Recording& run : runs) {
       const RunDescription& d = run.description;
-      MeasuredRun row{d.algorithm, d.mode, d.phase, run_metrics(run)};
+      MeasuredRun row{d.algorithm, d.phase, run_metrics(run)};
       for (double* unrest : {&row.metrics.force_N.hp_rms, &row.metrics.force_N.hp_share})
         *unrest *= 1 + 0.01 * static_cast<double>(seed);
       extras.others->push_back(

@@ -113,7 +113,8 @@ std::vector<fs::path> record_trial(const TrialPlan& plan, const EntryPictures& p
     recorder.close();
   }
   const MeasuredRun whole = measured_run(milled.phases.back(), {});
-  if (!whole.not_reached.empty()) events.warn(fmt::format("{}: {}", plan.settings.algorithm.id.name, whole.not_reached));
+  if (!whole.not_reached.empty())
+    events.warn(fmt::format("{}: {}", plan.settings.algorithm.id.name, whole.not_reached));
   if (milled.faults) events.warn(fmt::format("{}: {}", plan.settings.algorithm.id.name, *milled.faults));
   return paths;
 }

@@ -159,7 +159,8 @@ std::vector<double> Study::all_values(const AlgorithmId& algorithm, std::string_
   return values;
 }
 
-std::vector<double> Study::values(const AlgorithmId& algorithm, std::string_view phase, const RunFigure& figure) const {
+std::vector<double> Study::values(const AlgorithmId& algorithm, std::string_view phase,
+                                  const RunFigure& figure) const {
   std::vector<double> values = all_values(algorithm, phase, figure);
   std::erase_if(values, [](double value) { return std::isnan(value); });
   return values;
@@ -173,7 +174,8 @@ ContactShares Study::contact(const AlgorithmId& algorithm, std::string_view phas
   for (double ContactShares::*share : {&ContactShares::any, &ContactShares::burr, &ContactShares::shaft,
                                        &ContactShares::force, &ContactShares::torque})
     shares.*share = median([&](const M& m) { return m.contact.*share; });
-  const std::vector<double> lost = values(algorithm, phase, [](const M& m) { return m.contact.lost_after_s; });
+  const std::vector<double> lost =
+      values(algorithm, phase, [](const M& m) { return m.contact.lost_after_s; });
   if (!lost.empty() && !are_most(seeds_.size() - lost.size()))
     shares.lost_after_s = distribution_of(lost).median;
   shares.lost_while_milling =
@@ -184,8 +186,7 @@ ContactShares Study::contact(const AlgorithmId& algorithm, std::string_view phas
 std::string Study::not_reached(const AlgorithmId& algorithm, std::string_view phase) const {
   std::map<std::string, std::size_t> hands;
   for (const StudyRow& row : rows_) {
-    if (!row.run.not_reached.empty() &&
-        place(row.run) == std::tuple(phase_number(phase), algorithm))
+    if (!row.run.not_reached.empty() && place(row.run) == std::tuple(phase_number(phase), algorithm))
       ++hands[row.run.not_reached];
   }
   std::string text;

@@ -62,9 +62,11 @@ class Study {
 
   /// The figure's values, one a seed in the order of `seeds`, not a number where there was not enough contact
   /// to measure it; none if that was not tried.
-  std::vector<double> all_values(const AlgorithmId& algorithm, std::string_view phase, const RunFigure& figure) const;
+  std::vector<double> all_values(const AlgorithmId& algorithm, std::string_view phase,
+                                 const RunFigure& figure) const;
   /// Those that are numbers.
-  std::vector<double> values(const AlgorithmId& algorithm, std::string_view phase, const RunFigure& figure) const;
+  std::vector<double> values(const AlgorithmId& algorithm, std::string_view phase,
+                             const RunFigure& figure) const;
   /// For how much of the phase the tool touched: medians of the seeds. `lost_after_s` is that of those which
   /// lost contact, where they are no fewer than half.
   ContactShares contact(const AlgorithmId& algorithm, std::string_view phase) const;

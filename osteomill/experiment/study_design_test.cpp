@@ -16,12 +16,14 @@ StudyAxis axis(const std::string& key, const std::vector<std::string>& values) {
 }
 
 TEST(StudyDesign, AGridTriesEveryCombinationAndItsFirstAxisIsTheSlowest) {
-  const StudyDesign design({{"seconds", "2"}},
-                           {axis("mode", {"paper", "steady"}), axis("push", {"1", "2", "4"})}, {});
+  const StudyDesign design(
+      {{"seconds", "2"}}, {axis("algorithm", {"line-proxy", "barrier-shell"}), axis("push", {"1", "2", "4"})},
+      {});
   ASSERT_EQ(design.trial_count(), 6u);
-  EXPECT_EQ(design.varied(), (std::vector<std::string>{"mode", "push"}));
-  EXPECT_EQ(design.trial(0), (StudySettings{{"seconds", "2"}, {"mode", "paper"}, {"push", "1"}}));
-  EXPECT_EQ(design.trial(4), (StudySettings{{"seconds", "2"}, {"mode", "steady"}, {"push", "2"}}));
+  EXPECT_EQ(design.varied(), (std::vector<std::string>{"algorithm", "push"}));
+  EXPECT_EQ(design.trial(0), (StudySettings{{"seconds", "2"}, {"algorithm", "line-proxy"}, {"push", "1"}}));
+  EXPECT_EQ(design.trial(4),
+            (StudySettings{{"seconds", "2"}, {"algorithm", "barrier-shell"}, {"push", "2"}}));
   std::set<StudySettings> all;
   for (std::size_t n = 0; n < 6; ++n) all.insert(design.trial(n));
   EXPECT_EQ(all.size(), 6u);
@@ -43,22 +45,22 @@ TEST(StudyDesign, ALatinHypercubeTriesEachPartOfEachRangeOnce) {
                                  7,
                                  {{"push", {0, 5, false}, {}},
                                   {"stiffness", {0.1, 10, true}, {}},
-                                  {"mode", {}, axis("mode", {"paper", "steady"})}}};
+                                  {"algorithm", {}, axis("algorithm", {"line-proxy", "barrier-shell"})}}};
   const StudyDesign design({}, {axis("algorithm", {"a", "b"})}, hypercube);
   ASSERT_EQ(design.trial_count(), 2 * kTrials);
   std::set<int> pushes, stiffnesses;
-  std::size_t steady = 0;
+  std::size_t ours = 0;
   for (std::size_t n = kTrials; n-- > 0;) {
     const StudySettings settings = design.trial(2 * n);
     pushes.insert(static_cast<int>(std::stod(*find_value(settings, "push")) / 5 * kTrials));
     const double decades = std::log10(std::stod(*find_value(settings, "stiffness")) / 0.1);
     stiffnesses.insert(static_cast<int>(decades / 2 * kTrials));
-    steady += *find_value(settings, "mode") == "steady" ? 1 : 0;
+    ours += *find_value(settings, "algorithm") == "barrier-shell" ? 1 : 0;
     EXPECT_EQ(*find_value(settings, "push"), *find_value(design.trial(2 * n + 1), "push"));
   }
   EXPECT_EQ(pushes.size(), kTrials);
   EXPECT_EQ(stiffnesses.size(), kTrials);
-  EXPECT_EQ(steady, kTrials / 2);
+  EXPECT_EQ(ours, kTrials / 2);
   LatinHypercube other = hypercube;
   other.seed = 8;
   EXPECT_NE(*find_value(StudyDesign({}, {}, other).trial(0), "push"), *find_value(design.trial(0), "push"));

@@ -42,8 +42,8 @@ std::vector<double> grip_forces(const Study& study, double grip, std::optional<s
   for (const auto* rows : {&study.rows(), &study.rows_of_other_grips()}) {
     for (const StudyRow& row : *rows) {
       const MeasuredRun& run = row.run;
-      if (row.grip == grip && run.phase == kHolding &&
-          run.algorithm == kPapersAlgorithms[1] && (!seed || row.seed == *seed)) {
+      if (row.grip == grip && run.phase == kHolding && run.algorithm == kPapersAlgorithms[1] &&
+          (!seed || row.seed == *seed)) {
         forces.push_back(run.metrics.force_N.hp_rms);
       }
     }
@@ -82,7 +82,8 @@ std::vector<StudyFinding> check_study_findings(const Study& study) {
   for (Finding& finding : check_findings(medians, medians_of_grips(study, {})))
     findings.push_back({std::move(finding)});
   for (std::size_t seed = 0; seed < study.seeds().size(); ++seed) {
-    const std::vector<Finding> once = check_findings(runs_of(study.rows_of_seed(seed)), medians_of_grips(study, study.seeds()[seed]));
+    const std::vector<Finding> once =
+        check_findings(runs_of(study.rows_of_seed(seed)), medians_of_grips(study, study.seeds()[seed]));
     for (std::size_t n = 0; n < once.size(); ++n) {
       findings[n].agreeing += once[n].verdict == Verdict::agrees;
       findings[n].tested += is_tested(once[n].verdict);

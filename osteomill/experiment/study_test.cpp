@@ -31,21 +31,19 @@ TEST(Study, RowsAreOrderedBySeedAndThenAsInTheSummary) {
   for (StudyRow& r : rows) r.seed = r.seed == 1 ? 7 : 3;
   const Study study(rows);
   EXPECT_EQ(study.seeds(), (std::vector<std::uint64_t>{7, 3}));
-  EXPECT_EQ(study.rows().size(), 24u);
+  EXPECT_EQ(study.rows().size(), 12u);
   EXPECT_EQ(study.rows()[0].seed, 7u);
-  EXPECT_EQ(study.rows()[0].run.mode, Mode::paper);
   EXPECT_EQ(study.rows()[0].run.phase, kMilling);
   EXPECT_EQ(study.rows()[1].run.algorithm, "surface-points");
   EXPECT_EQ(study.rows_of_seed(1).front().seed, 3u);
-  EXPECT_EQ(study.values({algorithm_named("surface-points").id, Mode::paper}, kHolding, force_hp()),
+  EXPECT_EQ(study.values(algorithm_named("surface-points").id, kHolding, force_hp()),
             (std::vector<double>{1.01, 1.02}));
   EXPECT_EQ(study.algorithms().size(), 3u);
-  EXPECT_EQ(study.modes(), (std::vector<Mode>{Mode::paper, Mode::steady}));
 }
 
 TEST(Study, SeedsThatWereNotTriedAlikeAreRefused) {
   EXPECT_THROW(Study({}), std::invalid_argument);
-  for (const std::size_t missing : {0u, 5u, 11u, 12u, 35u}) {
+  for (const std::size_t missing : {0u, 5u, 6u, 11u, 17u}) {
     std::vector<StudyRow> rows = sample_rows(3);
     rows.erase(rows.begin() + static_cast<std::ptrdiff_t>(missing));
     EXPECT_THROW(Study{rows}, std::invalid_argument) << missing;
@@ -62,33 +60,17 @@ TEST(Study, SeedsThatWereNotTriedAlikeAreRefused) {
 TEST(Study, WhatDiffersInEveryHandIsSignificantFromSevenHandsOn) {
   for (const std::uint64_t seeds : {6u, 7u}) {
     const Study study(sample_rows(seeds));
-    const auto pairs = compare_algorithms(study, Mode::paper, kMilling, force_hp());
+    const auto pairs = compare_algorithms(study, kMilling, force_hp());
     ASSERT_EQ(pairs.size(), 3u);
     EXPECT_TRUE(pairs[0].second_is_greater);
-    EXPECT_EQ(pairs[0].second.algorithm, "surface-points");
+    EXPECT_EQ(pairs[0].second, "surface-points");
     EXPECT_FALSE(pairs[2].second_is_greater);
-    EXPECT_EQ(pairs[2].first.algorithm, "surface-points");
+    EXPECT_EQ(pairs[2].first, "surface-points");
     // Two of three pairs lie at the least p, 2^(1 - n); Holm takes three times the first.
     EXPECT_DOUBLE_EQ(pairs[0].p, 3 * std::pow(0.5, static_cast<double>(seeds) - 1));
     EXPECT_EQ(pairs[0].p <= kSignificance, seeds == 7);
     EXPECT_GT(pairs[1].p, 0.5);
   }
-}
-
-TEST(Study, WhatSteadyChangesIsARatioOfPairs) {
-  const Study study(sample_rows(8));
-  const auto changes = compare_modes(study, kHolding, force_hp());
-  ASSERT_EQ(changes.size(), 3u);
-  EXPECT_NEAR(changes[1].ratio.median, 0.1, 1e-12);
-  EXPECT_EQ(changes[1].ratios, 8u);
-  EXPECT_FALSE(changes[1].second_is_greater);
-  EXPECT_DOUBLE_EQ(changes[1].p, 3 * std::pow(0.5, 7));
-  EXPECT_EQ(changes[0].p, 1);
-  EXPECT_EQ(changes[0].ratio.median, 1);
-  // Nothing to divide by.
-  const auto removed = compare_modes(study, kHolding, key_metrics()[7]);
-  EXPECT_EQ(removed[0].ratios, 0u);
-  EXPECT_EQ(removed[0].p, 1);
 }
 
 TEST(Study, FindingsAreCountedHandByHand) {
@@ -98,7 +80,7 @@ TEST(Study, FindingsAreCountedHandByHand) {
     if (r.seed == 4 && r.run.algorithm == "surface-points") r.run.metrics.force_N.hp_rms = 0.01;
     if (r.run.algorithm == "line-proxy") r.run.metrics.shaft.spread_deg = r.seed < 3 ? 1 : -1;
   }
-  const auto findings = check_study_findings(Study(rows), Mode::paper);
+  const auto findings = check_study_findings(Study(rows));
   ASSERT_EQ(findings.size(), 9u);
   EXPECT_TRUE(findings[1].of_medians.paper_says.starts_with("force: 1 and 3"));
   EXPECT_EQ(findings[1].of_medians.verdict, Verdict::agrees);
@@ -107,7 +89,7 @@ TEST(Study, FindingsAreCountedHandByHand) {
   // (5 + 1) / 32.
   EXPECT_DOUBLE_EQ(findings[1].p, 0.1875);
   EXPECT_EQ(findings[0].agreeing, 5u);
-  EXPECT_TRUE(check_study_findings(Study(sample_rows(1)), Mode::steady)[1].of_medians.verdict ==
+  EXPECT_TRUE(check_study_findings(Study(sample_rows(1, 0.1)))[1].of_medians.verdict ==
               Verdict::does_not_agree);
   // What a coin gives as easily is no verdict.
   EXPECT_EQ(findings[0].verdict, Verdict::agrees);
@@ -115,25 +97,25 @@ TEST(Study, FindingsAreCountedHandByHand) {
   EXPECT_EQ(findings[7].of_medians.verdict, Verdict::does_not_agree);
   EXPECT_EQ(findings[7].verdict, Verdict::not_settled);
   EXPECT_EQ(findings[8].verdict, Verdict::agrees);
-  EXPECT_EQ(check_study_findings(Study(sample_rows(5)), Mode::steady)[1].verdict, Verdict::does_not_agree);
+  EXPECT_EQ(check_study_findings(Study(sample_rows(5, 0.1)))[1].verdict, Verdict::does_not_agree);
 }
 
 // 2's hands in other grips are no rows of the study, and decide one finding.
 TEST(Study, OtherGripsAreKeptApartForTheFindingOnThem) {
   std::vector<StudyRow> rows = sample_rows(3);
   const std::size_t all = rows.size();
-  EXPECT_EQ(check_study_findings(Study(rows), Mode::paper)[2].of_medians.verdict, Verdict::not_recorded);
+  EXPECT_EQ(check_study_findings(Study(rows))[2].of_medians.verdict, Verdict::not_recorded);
   for (const double grip : {2.0, 0.5}) {
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
       // In the third hand a firm grip changes nothing.
-      rows.push_back(testing_support::row(seed, "surface-points", Mode::paper, kHolding,
+      rows.push_back(testing_support::row(seed, "surface-points", kHolding,
                                           {seed == 3 && grip == 2 ? 1.03 : 1.2 / grip, 2}));
       rows.back().grip = grip;
     }
   }
   const Study study(rows);
   EXPECT_EQ(study.rows().size(), all);
-  const StudyFinding finding = check_study_findings(study, Mode::paper)[2];
+  const StudyFinding finding = check_study_findings(study)[2];
   EXPECT_EQ(finding.of_medians.measured, "2.4, 1.02, 0.6 N");
   EXPECT_EQ(finding.of_medians.verdict, Verdict::agrees);
   EXPECT_EQ(finding.agreeing, 3u) << "in the third it falls by then";
@@ -150,24 +132,8 @@ TEST(Study, TheSectionSaysWhatSoFewHandsCanShow) {
   const std::string ten = html(study_section(Study(sample_rows(10)), {}));
   EXPECT_NE(ten.find("covers the median with 97.9 %"), std::string::npos);
   EXPECT_NE(ten.find("<b>2 &gt; 1</b>"), std::string::npos);
-  EXPECT_NE(ten.find("What steady changes"), std::string::npos);
   // Zero throughout.
   EXPECT_EQ(ten.find("bone removed"), std::string::npos);
-}
-
-// 4 has no `paper`: its column stands empty, and the others stay under their names.
-TEST(Study, AColumnIsOfItsAlgorithm) {
-  std::vector<StudyRow> rows = sample_rows(7);
-  std::erase_if(
-      rows, [](const StudyRow& r) { return r.run.algorithm == "line-proxy" && r.run.mode == Mode::paper; });
-  const std::string page = html(study_section(Study(rows), {}));
-  EXPECT_EQ(page.find("lost contact"), std::string::npos);
-  const std::size_t table = page.find("What steady changes: Milling");
-  ASSERT_NE(table, std::string::npos);
-  const std::size_t row = page.find("force above 20 Hz, rms", table);
-  const std::size_t none = page.find("–", row), change = page.find("× 0.1 ", row);
-  ASSERT_NE(change, std::string::npos) << page.substr(table, 2000);
-  EXPECT_LT(none, change) << "1, without a pair, stands before 2";
 }
 
 TEST(Study, AsManySeedsAreNeededAsCanShowADifference) {
@@ -187,10 +153,10 @@ TEST(Study, TheTableHasARowForEachPhaseOfEachTrial) {
   write_study_csv(path, Study(sample_rows(2)));
   std::ifstream in(path);
   const std::string csv{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  EXPECT_TRUE(csv.starts_with(
-      "seed,hand_stiffness_N_per_m,hand_damping_Ns_per_m,hand_grip,algorithm,mode,phase,steps,"));
-  EXPECT_NE(csv.find("\n2,200,5,1,point-shell,steady,holding,0,"), std::string::npos) << csv;
-  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 25);
+  EXPECT_TRUE(
+      csv.starts_with("seed,hand_stiffness_N_per_m,hand_damping_Ns_per_m,hand_grip,algorithm,phase,steps,"));
+  EXPECT_NE(csv.find("\n2,200,5,1,point-shell,holding,0,"), std::string::npos) << csv;
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 13);
   std::filesystem::remove(path);
 }
 
@@ -200,7 +166,7 @@ TEST(Study, TheTableGivesTheStudyBackToTheRowsThatItIsOf) {
   const std::filesystem::path path = folder / "study.csv";
   std::vector<StudyRow> rows = sample_rows(2);
   for (const double grip : {2.0, 0.5}) {
-    rows.push_back(testing_support::row(1, "surface-points", Mode::paper, kHolding, {1.2 / grip, 2}));
+    rows.push_back(testing_support::row(1, "surface-points", kHolding, {1.2 / grip, 2}));
     rows.back().grip = grip;
     rows.back().run.not_reached = "the tool was lost";
     rows.back().run.metrics.shaft.spread_deg = std::numeric_limits<double>::quiet_NaN();
@@ -216,8 +182,8 @@ TEST(Study, TheTableGivesTheStudyBackToTheRowsThatItIsOf) {
     return std::string{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
   };
   EXPECT_EQ(text(again), text(path));
-  EXPECT_EQ(check_study_findings(*read, Mode::paper)[2].of_medians.measured,
-            check_study_findings(Study(rows), Mode::paper)[2].of_medians.measured);
+  EXPECT_EQ(check_study_findings(*read)[2].of_medians.measured,
+            check_study_findings(Study(rows))[2].of_medians.measured);
   std::erase_if(recorded, [](const StudyRow& r) { return r.run.algorithm == "line-proxy"; });
   EXPECT_EQ(read_study_csv(path, recorded)->algorithms().size(), 2u) << "a part of what was recorded";
   recorded[0].run.metrics.force_N.hp_rms *= 1.001;

@@ -55,7 +55,6 @@ const SettingDescription* setting_of_option(const AlgorithmDescription& algorith
 }
 
 std::string range_text(const SettingRange& range) {
-  if (range == SettingRange::on_or_off()) return "on or off";
   const bool has_end = range.max < std::numeric_limits<double>::max();
   std::ostringstream text;
   text << (range.whole ? "a whole number " : "a number ");

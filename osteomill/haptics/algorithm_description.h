@@ -62,28 +62,21 @@ bool is_plain_name(std::string_view name);
 /// Each once, in the order of their labels.
 std::vector<AlgorithmId> each_once(std::vector<AlgorithmId> algorithms);
 
-/// A number's range; both ends belong to it. An infinite end means that the value may be infinite.
+/// A number's range; both ends belong to it.
 struct SettingRange {
   double min = 0;
   double max = std::numeric_limits<double>::max();
-  /// A switch (0 or 1), a count or a choice.
+  /// A count or a choice.
   bool whole = false;
-
-  friend bool operator==(const SettingRange&, const SettingRange&) = default;
 
   static constexpr SettingRange positive() { return {.min = std::numeric_limits<double>::min()}; }
   static constexpr SettingRange not_negative() { return {}; }
-  /// Above zero; infinite for no limit.
-  static constexpr SettingRange limit() {
-    return {.min = std::numeric_limits<double>::min(), .max = std::numeric_limits<double>::infinity()};
-  }
-  static constexpr SettingRange on_or_off() { return {.max = 1, .whole = true}; }
   static constexpr SettingRange count(int min, int max) {
     return {.min = static_cast<double>(min), .max = static_cast<double>(max), .whole = true};
   }
 };
 
-/// In words: "a number above 0", "a whole number from 1 to 32", "on or off".
+/// In words: "a number above 0", "a whole number from 1 to 32".
 std::string range_text(const SettingRange& range);
 
 /// All there is to say of one setting; nothing of it is said elsewhere.

@@ -24,7 +24,7 @@ struct PlaceOf<Value Settings::*> {
   using Type = Value;
 };
 
-/// The field for a switch, number or choice: `setting_field<&Settings::push_N>({...})`.
+/// The field for a number or a choice: `setting_field<&Settings::push_N>({...})`.
 template <auto kPlace>
 auto setting_field(SettingDescription description) {
   using Place = PlaceOf<decltype(kPlace)>;

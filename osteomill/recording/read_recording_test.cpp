@@ -80,7 +80,7 @@ class ChangedRecording : public ::testing::Test {
 
 TEST_F(ChangedRecording, AnotherVersionIsRefused) {
   change([](hid_t file) { set_number(file, "osteomill_recording_version", 4); });
-  expect_refused(path_, "is a recording of version 4; this program reads version 5");
+  expect_refused(path_, "is a recording of version 4; this program reads versions 5 and 6");
 }
 
 TEST_F(ChangedRecording, ASessionThatCannotBeIsRefused) {

@@ -60,7 +60,6 @@ void expect_same(const RunDescription& a, const RunDescription& b) {
   EXPECT_EQ(a.tool.shaft_radius_mm, b.tool.shaft_radius_mm);
   EXPECT_EQ(a.tool.shaft_length_mm, b.tool.shaft_length_mm);
   EXPECT_EQ(a.algorithm, b.algorithm);
-  EXPECT_EQ(a.mode, b.mode);
   EXPECT_EQ(a.phase, b.phase);
   EXPECT_EQ(a.seed, b.seed);
   EXPECT_EQ(a.tick_period_s, b.tick_period_s);

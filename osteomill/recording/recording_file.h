@@ -12,8 +12,8 @@
 
 namespace osteomill {
 
-/// The version of the layout, in the root's attribute `osteomill_recording_version`, and the one before, which
-/// is read too: it also has the attribute `mode`, of which nothing is left.
+/// The version of the layout, in the root's attribute `osteomill_recording_version`, and the one before,
+/// which is read too: it also has the attribute `mode`, of which nothing is left.
 inline constexpr std::uint64_t kRecordingVersion = 6;
 inline constexpr std::uint64_t kRecordingVersionBefore = 5;
 

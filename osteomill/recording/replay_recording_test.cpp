@@ -29,9 +29,8 @@ Volume fresh_bone(double radius_mm = 5) {
 }
 
 // Of all settings that a session has, none at its default.
-SessionSettings settings_of_all(const AlgorithmDescription& algorithm, Mode mode) {
+SessionSettings settings_of_all(const AlgorithmDescription& algorithm) {
   return {{.algorithm = algorithm,
-           .haptics = {mode},
            .cutting = {.spindle_speed_rpm = 30000, .tangential_share = 0.2},
            .removal_rate_mm3_per_Ns = 3.0,
            .cutting_reaction = true,
@@ -40,16 +39,15 @@ SessionSettings settings_of_all(const AlgorithmDescription& algorithm, Mode mode
           {0, 1000}};
 }
 
-RunDescription description_of(const Volume& scan, const AlgorithmDescription& algorithm, Mode mode) {
-  RunDescription run = describe_run(scan, settings_of_all(algorithm, mode), 0);
+RunDescription description_of(const Volume& scan, const AlgorithmDescription& algorithm) {
+  RunDescription run = describe_run(scan, settings_of_all(algorithm), 0);
   run.scan_name = "ball";
   run.scan_hash = fingerprint_of(scan.grid());
   return run;
 }
 
-std::unique_ptr<MillingSession> make(std::shared_ptr<Volume> bone, const AlgorithmDescription& algorithm,
-                                     Mode mode) {
-  const auto [setup, densities] = settings_of_all(algorithm, mode);
+std::unique_ptr<MillingSession> make(std::shared_ptr<Volume> bone, const AlgorithmDescription& algorithm) {
+  const auto [setup, densities] = settings_of_all(algorithm);
   return std::make_unique<MillingSession>(std::move(bone), densities, setup);
 }
 
@@ -95,29 +93,27 @@ std::string refusal(const Volume& scan, const Recording& recording) {
 TEST(ReplayRecording, EveryAlgorithmComesOutTheSameWhateverTheHandDoes) {
   const TestFolder folder;
   for (const AlgorithmDescription& algorithm : all_algorithms()) {
-    for (const Mode mode : {Mode::paper, Mode::steady}) {
-      const Volume scan = fresh_bone();
-      const auto bone = std::make_shared<Volume>(scan);
-      const auto session = make(bone, algorithm, mode);
-      Recorder recorder(folder / "run.h5", description_of(scan, algorithm, mode));
-      Hand hand;
-      std::set<WrenchFault> faults;
-      for (int n = 0; n < 620; ++n) {
-        const TickRecord record = hand.tick(*session);
-        faults.insert(record.fault);
-        recorder.push_waiting(record);
-      }
-      recorder.close();
-      EXPECT_GE(faults.size(), 4u) << "the hand is to meet everything that a guard does";
-      const Recording recording = read_recording(folder / "run.h5");
-      ASSERT_GT(recording.records.back().removed_mm3, 0.05) << algorithm.id.name;
-      const Verification verified = verify_recording(scan, recording);
-      EXPECT_FALSE(verified.difference)
-          << algorithm.id.name << " at " << verified.difference->record << ": " << verified.difference->what;
-      EXPECT_EQ(verified.ticks, 620u);
-      EXPECT_EQ(verified.bones, 7u) << "every hundredth, and the last";
-      EXPECT_EQ(recording.bone_hashes.back(), (BoneHash{619, bone->change_hash()}));
+    const Volume scan = fresh_bone();
+    const auto bone = std::make_shared<Volume>(scan);
+    const auto session = make(bone, algorithm);
+    Recorder recorder(folder / "run.h5", description_of(scan, algorithm));
+    Hand hand;
+    std::set<WrenchFault> faults;
+    for (int n = 0; n < 620; ++n) {
+      const TickRecord record = hand.tick(*session);
+      faults.insert(record.fault);
+      recorder.push_waiting(record);
     }
+    recorder.close();
+    EXPECT_GE(faults.size(), 4u) << "the hand is to meet everything that a guard does";
+    const Recording recording = read_recording(folder / "run.h5");
+    ASSERT_GT(recording.records.back().removed_mm3, 0.05) << algorithm.id.name;
+    const Verification verified = verify_recording(scan, recording);
+    EXPECT_FALSE(verified.difference)
+        << algorithm.id.name << " at " << verified.difference->record << ": " << verified.difference->what;
+    EXPECT_EQ(verified.ticks, 620u);
+    EXPECT_EQ(verified.bones, 7u) << "every hundredth, and the last";
+    EXPECT_EQ(recording.bone_hashes.back(), (BoneHash{619, bone->change_hash()}));
   }
 }
 
@@ -127,7 +123,7 @@ TEST(ReplayRecording, SeveralSessionsOnABoneThatWasMilledBefore) {
   const Volume scan = fresh_bone();
   const auto bone = std::make_shared<Volume>(scan);
   const AlgorithmDescription& first = algorithm_named("surface-points");
-  auto session = make(bone, first, Mode::steady);
+  auto session = make(bone, first);
   Hand hand;
   for (int n = 0; n < 200; ++n) hand.tick(*session);
   ASSERT_GT(session->removed_mm3(), 0.1);
@@ -137,7 +133,7 @@ TEST(ReplayRecording, SeveralSessionsOnABoneThatWasMilledBefore) {
     double isovalue;
     bool reset;
   };
-  Recorder recorder(folder / "run.h5", description_of(scan, algorithm_named("point-shell"), Mode::steady),
+  Recorder recorder(folder / "run.h5", description_of(scan, algorithm_named("point-shell")),
                     Recorder::Begins::when_told);
   std::uint32_t number = 3;
   std::shared_ptr<Volume> now = bone;
@@ -147,11 +143,11 @@ TEST(ReplayRecording, SeveralSessionsOnABoneThatWasMilledBefore) {
     const double removed_mm3 = step.reset ? 0 : session->removed_mm3();
     now = std::make_shared<Volume>(step.reset ? scan : *now);
     now->set_isovalue(step.isovalue);
-    auto next = make(now, algorithm, Mode::steady);
+    auto next = make(now, algorithm);
     next->count_removed_from(removed_mm3);
     const TakenOver before = session->left();
     next->take_over(before);
-    RunDescription run = description_of(scan, algorithm, Mode::steady);
+    RunDescription run = description_of(scan, algorithm);
     run.isovalue = step.isovalue;
     recorder.begin_session(
         number, {std::move(run), before, removed_mm3, differing_blocks(now->grid(), scan.grid()), ""});
@@ -180,10 +176,9 @@ TEST(ReplayRecording, SeveralSessionsOnABoneThatWasMilledBefore) {
 class OneRecording : public ::testing::Test {
  protected:
   OneRecording() {
-    const auto session = make(std::make_shared<Volume>(scan_), algorithm_, Mode::steady);
-    Recorder recorder(folder_ / "a.h5", description_of(scan_, algorithm_, Mode::steady));
-    Recorder rest(folder_ / "b.h5", description_of(scan_, algorithm_, Mode::steady),
-                  Recorder::Begins::when_told);
+    const auto session = make(std::make_shared<Volume>(scan_), algorithm_);
+    Recorder recorder(folder_ / "a.h5", description_of(scan_, algorithm_));
+    Recorder rest(folder_ / "b.h5", description_of(scan_, algorithm_), Recorder::Begins::when_told);
     rest.begin_session(0, {.goes_on_from = "a.h5"});
     Hand hand;
     for (int n = 0; n < 250; ++n) recorder.push_waiting(hand.tick(*session));
@@ -254,7 +249,7 @@ TEST_F(OneRecording, TheSameMotionGoesThroughAnotherAlgorithm) {
   const Recording recording = read_recording(folder_ / "a.h5");
   Replay replay;
   replay.as = [](RunDescription run) {
-    set_session_settings(run, settings_of_all(algorithm_named("line-proxy"), Mode::steady), 0);
+    set_session_settings(run, settings_of_all(algorithm_named("line-proxy")), 0);
     return run;
   };
   bool begun = false;

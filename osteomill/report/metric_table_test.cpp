@@ -26,16 +26,15 @@ TEST(SummaryCsv, HasItsColumnsInOrder) {
   m.tick_us = {22, 23, 24};
   EXPECT_EQ(
       summary_columns(),
-      "algorithm,mode,phase,steps,step_us_median,step_us_p99,step_us_max,rate_hz,force_mean_N,force_max_N,"
+      "algorithm,phase,steps,step_us_median,step_us_p99,step_us_max,rate_hz,force_mean_N,force_max_N,"
       "force_hp_rms_N,force_step_max_N,torque_mean_Nmm,torque_max_Nmm,torque_hp_rms_Nmm,torque_step_max_Nmm,"
       "shaft_spread_deg,shaft_excursion_deg,removed_mm3,contact_share,burr_contact_share,shaft_contact_share,"
       "tick_us_median,tick_us_p99,tick_us_max,"
       "turn_50ms_max_deg,turn_at_torque_step_deg,torque_follows_force,contacts_mean,lost_after_s,not_"
       "reached");
-  EXPECT_EQ(
-      summary_fields({algorithm_named("point-shell").id, Mode::paper, "holding", m, nullptr, "this; that"}),
-      "point-shell,paper,holding,1,2,3,4,5,6,7,8,9,10,11,12,13,14,15.5,16,0.75,0.5,0.25,22,23,24,17,18,0.19,"
-      "20,21,this; that");
+  EXPECT_EQ(summary_fields({algorithm_named("point-shell").id, "holding", m, nullptr, "this; that"}),
+            "point-shell,holding,1,2,3,4,5,6,7,8,9,10,11,12,13,14,15.5,16,0.75,0.5,0.25,22,23,24,17,18,0.19,"
+            "20,21,this; that");
 }
 
 }  // namespace

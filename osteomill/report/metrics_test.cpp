@@ -162,7 +162,7 @@ TEST(RunMetrics, WithoutContactThereIsNothingToMeasure) {
   EXPECT_EQ(contact_words(m.contact), "never touched");
   EXPECT_TRUE(std::isnan(m.force_N.hp_rms) && std::isnan(m.torque_Nmm.mean) &&
               std::isnan(m.shaft.spread_deg));
-  EXPECT_NE(summary_fields({{}, Mode::paper, "holding", m}).find(",,,,,,,,,,"), std::string::npos);
+  EXPECT_NE(summary_fields({{}, "holding", m}).find(",,,,,,,,,,"), std::string::npos);
 }
 
 void expect_refused(const Recording& recording, const std::string& reason) {

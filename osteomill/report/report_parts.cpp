@@ -82,8 +82,7 @@ std::optional<Figure> draw_picture_figure(const RunGroup& group, const std::file
   for (const Panel& panel : panels) pictures.push_back(shrunk(*panel.recording, *panel.picture));
   const int wide = columns == 1 ? 800 : kPanelWidth_px;
   const int high = std::clamp(wide * pictures[0].height / pictures[0].width, 200, 1000) + 40;
-  FigureScript script{"bone", static_cast<double>(rows) * high,
-                      static_cast<double>(columns) * wide};
+  FigureScript script{"bone", static_cast<double>(rows) * high, static_cast<double>(columns) * wide};
   script.body =
       "set multiplot\nunset tics\nunset border\nset size ratio -1\nset lmargin 0.5\nset rmargin 0.5\n"
       "set tmargin 2\nset bmargin 0.3\nset autoscale xfix\nset autoscale yfix\n";

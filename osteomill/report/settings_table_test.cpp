@@ -16,14 +16,14 @@ std::string value_of(const HtmlTable& table, const std::string& key) {
 }
 
 TEST(SettingsTable, SaysOnceWhatIsTheSameAndForEachWhatIsNot) {
-  std::vector<Recording> runs = sample_runs(Mode::steady, 10);
+  std::vector<Recording> runs = sample_runs(10);
   runs[3].description.settings.push_back({"only_here", std::string("<x>"), ""});
   std::vector<const Recording*> recordings;
   for (const Recording& run : runs) recordings.push_back(&run);
   const HtmlTable table = settings_table(recordings);
   EXPECT_EQ(value_of(table, "push"), "1.5");
   EXPECT_EQ(value_of(table, "algorithm.stiffness"), "line-proxy: 2; surface-points: 20; point-shell: 2");
-  EXPECT_EQ(value_of(table, "only_here"), "surface-points, steady, holding: &lt;x&gt;");
+  EXPECT_EQ(value_of(table, "only_here"), "surface-points, holding: &lt;x&gt;");
   EXPECT_EQ(value_of(table, "command_line"), "(none)");
 }
 

@@ -18,7 +18,7 @@ sed -e '1,/^$/d' ball.nrrd >ball.txt
 { sed -e '/^encoding/,$d' ball.nrrd; printf 'encoding: text\ndata file: labels.txt\n'; } >labels.nhdr
 sed -e 's/[0-9]*/1/' ball.txt >labels.txt
 echo '1 bone 255 0 0 255' >table.txt
-echo 'mode = "steady"' >c.toml
+echo 'cutting-reaction = true' >c.toml
 printf 'time_s,x_mm,y_mm,z_mm,qw,qx,qy,qz,milling\n0,0,0,30,1,0,0,0,0\n' >poses.csv
 bash "$2" 4 >other.nrrd
 labels="--labels labels.nhdr --label-table table.txt"

@@ -18,7 +18,7 @@ for recording in c/*.h5; do same "$recording"; done
 [ "$(ls c/*.h5 | wc -l)" -eq 8 ] || fault "there should be eight recordings"
 
 # The same hand through another algorithm, and what comes of it replays too; a report has room for both.
-"$osteomill" replay c/line-proxy-milling.h5 --algorithm point-shell --mode paper --stiffness 2 --quiet --out other.csv --record other.h5 >/dev/null
+"$osteomill" replay c/line-proxy-milling.h5 --algorithm point-shell --stiffness 2 --quiet --out other.csv --record other.h5 >/dev/null
 same other.h5
 "$osteomill" report c/line-proxy-milling.h5 other.h5 --quiet --out both >/dev/null
 "$osteomill" report c/line-proxy-milling.h5 --csv --quiet --out b >/dev/null

@@ -16,8 +16,7 @@ std::vector<unsigned char> sample_png(bool milled, int width = 320, int height =
 
 /// A recording as a run might leave it, with the paper's findings in it: 1 kicks in torque, 2 buzzes, 3 is
 /// calm. No measurement of anything.
-inline Recording sample_run(std::string_view algorithm, std::string_view phase, Mode mode = Mode::steady,
-                            int ticks = 20000) {
+inline Recording sample_run(std::string_view algorithm, std::string_view phase, int ticks = 20000) {
   using std::sin;
   constexpr double kTwoPi = 2 * std::numbers::pi;
   const int a = algorithm == "line-proxy" ? 0 : algorithm == "surface-points" ? 1 : 2;
@@ -31,7 +30,6 @@ inline Recording sample_run(std::string_view algorithm, std::string_view phase, 
   d.spacing_mm = {0.1, 0.1, 0.1};
   d.isovalue = 1200;
   d.algorithm = algorithm_named(algorithm).id;
-  d.mode = mode;
   d.phase = phase;
   d.seed = 1;
   d.settings = {{"algorithm.stiffness", a == 1 ? 20.0 : 2.0, "N/mm"},
@@ -81,11 +79,10 @@ inline Recording sample_run(std::string_view algorithm, std::string_view phase, 
 }
 
 /// Three algorithms, two phases.
-inline std::vector<Recording> sample_runs(Mode mode = Mode::steady, int ticks = 20000) {
+inline std::vector<Recording> sample_runs(int ticks = 20000) {
   std::vector<Recording> runs;
   for (const char* algorithm : {"line-proxy", "surface-points", "point-shell"}) {
-    for (const char* phase : {"milling", "holding"})
-      runs.push_back(sample_run(algorithm, phase, mode, ticks));
+    for (const char* phase : {"milling", "holding"}) runs.push_back(sample_run(algorithm, phase, ticks));
   }
   return runs;
 }

@@ -15,9 +15,9 @@ struct Values {
   double torque_hp = 0;
 };
 
-inline StudyRow row(std::uint64_t seed, std::string_view algorithm, Mode mode, std::string_view phase,
+inline StudyRow row(std::uint64_t seed, std::string_view algorithm, std::string_view phase,
                     const Values& values) {
-  StudyRow row{.seed = seed, .run = {algorithm_named(algorithm).id, mode, std::string(phase), {}}};
+  StudyRow row{.seed = seed, .run = {algorithm_named(algorithm).id, std::string(phase), {}}};
   row.stiffness_N_per_m = 100 * static_cast<double>(seed);
   row.damping_Ns_per_m = 5;
   row.run.metrics.rate_hz = 1000;
@@ -33,19 +33,17 @@ inline StudyRow row(std::uint64_t seed, std::string_view algorithm, Mode mode, s
   return row;
 }
 
-// Seeds from 1: in `paper` 2 buzzes ten times as much as 1 and 3, which change places from seed to seed; in
-// `steady` 2 has a tenth of its buzz.
-inline std::vector<StudyRow> sample_rows(std::uint64_t seeds) {
+// Seeds from 1: 2 buzzes ten times as much as 1 and 3, which change places from seed to seed; or so many
+// times that much.
+inline std::vector<StudyRow> sample_rows(std::uint64_t seeds, double buzz = 1) {
   std::vector<StudyRow> rows;
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
     const double hand = 1 + 0.01 * static_cast<double>(seed);
     const double turn = seed % 2 == 0 ? 0.01 : -0.01;
-    for (const Mode mode : {Mode::steady, Mode::paper}) {
-      for (const std::string_view phase : {kHolding, kMilling}) {
-        rows.push_back(row(seed, "point-shell", mode, phase, {0.1 * hand - turn * hand, 1}));
-        rows.push_back(row(seed, "line-proxy", mode, phase, {0.1 * hand + turn * hand, 3}));
-        rows.push_back(row(seed, "surface-points", mode, phase, {hand * (mode == Mode::paper ? 1 : 0.1), 2}));
-      }
+    for (const std::string_view phase : {kHolding, kMilling}) {
+      rows.push_back(row(seed, "point-shell", phase, {0.1 * hand - turn * hand, 1}));
+      rows.push_back(row(seed, "line-proxy", phase, {0.1 * hand + turn * hand, 3}));
+      rows.push_back(row(seed, "surface-points", phase, {buzz * hand, 2}));
     }
   }
   return rows;

@@ -95,7 +95,7 @@ END
 [ "$(value first tool_seen)" != "0.000 0.000 0.000" ] && same first before tool_seen || fault "the tool does not begin above the bone"
 is first help true; is start help false; is f1 help true; is f1-again help false; is f1-enter help false; is f1-escape help false; is help help true
 shows start "spindle on"; hides no-milling "spindle on"; shows no-milling stiffness
-hides no-algorithm steady; shows no-algorithm "burr radius"
+hides no-algorithm stiffness; shows no-algorithm "burr radius"
 hides no-tool "burr radius"; shows no-tool ghost
 hides no-view ghost; shows no-view Record
 hides no-save Record; shows no-save ghost
@@ -162,10 +162,8 @@ drag stiffness 30 ;; settle ;; state line-proxy-stiffness
 click 4 barrier-shell ;; settle ;; state barrier-shell
 click 2 surface-points ;; settle ;; state surface-points
 drag stiffness 30 ;; settle ;; state surface-points-stiffness
-click as in the paper ;; settle ;; state paper
 click 3 point-shell ;; settle ;; state point-shell
 drag stiffness -20 ;; settle ;; state point-shell-stiffness
-click steady ;; settle ;; state steady
 drag burr radius -10 ;; settle ;; state burr
 drag shaft radius -10 ;; settle ;; state shaft
 drag spindle 30 ;; settle ;; state rpm
@@ -194,8 +192,7 @@ for algorithm in line-proxy surface-points point-shell; do
   # The first drag after an algorithm was chosen counts.
   changed $algorithm $algorithm-stiffness stiffness
 done
-is line-proxy mode steady; is paper mode paper; is point-shell mode paper; is steady mode steady
-changed steady burr burr_mm; changed burr shaft shaft_mm; changed shaft rpm rpm
+changed point-shell-stiffness burr burr_mm; changed burr shaft shaft_mm; changed shaft rpm rpm
 is rpm vibration true; is no-vibration vibration false
 is no-vibration cutting_reaction true; is no-pull cutting_reaction false
 more no-vibration isovalue isovalue; is typed isovalue 500

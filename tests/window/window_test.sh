@@ -44,5 +44,5 @@ echo "bone voxels before $before, in the saved scan $after"
 
 # The recording is whole, and holds the milling.
 "$osteomill" report out/*-recording.h5 --out report >/dev/null || fail "the recording cannot be read"
-grep -q "^barrier-shell,steady,part 1," report/summary.csv && grep -q "^surface-points,steady,part 2," report/summary.csv ||
+grep -q "^barrier-shell,part 1," report/summary.csv && grep -q "^surface-points,part 2," report/summary.csv ||
   fail "the report does not know the run"

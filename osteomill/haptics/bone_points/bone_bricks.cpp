@@ -175,8 +175,7 @@ void BoneBricks::remake_bearing() {
 // For one more brick, however many points it has.
 bool BoneBricks::has_room() const {
   constexpr std::size_t kMostChunks = SurfaceLattice::kMaxPointsOfBrick / PointChunk::kSlots + 1;
-  return !free_slots_.empty() && fine_.free_chunks() >= kMostChunks &&
-         coarse_.free_chunks() >= kMostChunks;
+  return !free_slots_.empty() && fine_.free_chunks() >= kMostChunks && coarse_.free_chunks() >= kMostChunks;
 }
 
 void BoneBricks::make_room(const MillingTool& tool, const Pose& X_WT) {

@@ -4,8 +4,8 @@
 
 #include <Eigen/Core>
 
-#include "osteomill/haptics/bone_points/cores.h"
 #include "osteomill/haptics/bone_points/barrier.h"
+#include "osteomill/haptics/bone_points/cores.h"
 
 namespace osteomill {
 

@@ -97,8 +97,8 @@ void GatherNearBall(const BrickPoints& points, std::uint32_t first_chunk, const 
                     const KernelShape& shape, float reach, NearPoints& near) {
   const V radius2 = squared(constant(shape.ball_radius + reach));
   gather(
-      points, first_chunk, frame,
-      [&](const Vector& at) HWY_ATTR { return hn::Lt(dot(at, at), radius2); }, near);
+      points, first_chunk, frame, [&](const Vector& at) HWY_ATTR { return hn::Lt(dot(at, at), radius2); },
+      near);
 }
 
 void GatherNearCylinder(const BrickPoints& points, std::uint32_t first_chunk, const Frame& frame,

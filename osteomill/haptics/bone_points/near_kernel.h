@@ -43,11 +43,14 @@ struct SideLanes {
 };
 
 /// Of points gathered by a tool whose frame then is `moved` seen from now.
-void sum_ball(NearPoints& near, const Frame& moved, const Cores& cores, const Barrier& barrier, BallLanes& lanes);
+void sum_ball(NearPoints& near, const Frame& moved, const Cores& cores, const Barrier& barrier,
+              BallLanes& lanes);
 /// Points at the ends are listed in `near.at_end` and left out.
-void sum_side(NearPoints& near, const Frame& moved, const Cores& cores, const Barrier& barrier, SideLanes& lanes);
+void sum_side(NearPoints& near, const Frame& moved, const Cores& cores, const Barrier& barrier,
+              SideLanes& lanes);
 
-/// The greatest `distance_used / distance` of a move, at the distances of the last sum, of which none counts as less than `min_distance_mm`; at least 0.
+/// The greatest `distance_used / distance` of a move, at the distances of the last sum, of which none counts
+/// as less than `min_distance_mm`; at least 0.
 double max_use_by_ball(const NearPoints& near, const MoveT& move, double min_distance_mm);
 double max_use_by_cylinder(const NearPoints& near, const MoveT& move, double min_distance_mm);
 

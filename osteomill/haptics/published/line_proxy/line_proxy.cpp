@@ -120,8 +120,7 @@ Pose LineProxy::drawn_tool(const Pose& X_WL) const {
   const Vec3 offset_W = *memory_.intersection_W + *u * scene_.tool.shaft_radius_mm;  // eq. 12
   const Vec3 shaft_W = offset_W - X_WT.position_mm;                                  // eq. 13
   if (!(shaft_W.norm() > 1e-6)) return X_WT;
-  X_WT.orientation =
-      (smallest_rotation(shaft_direction(X_WL), shaft_W) * X_WL.orientation).normalized();
+  X_WT.orientation = (smallest_rotation(shaft_direction(X_WL), shaft_W) * X_WL.orientation).normalized();
   return X_WT;
 }
 

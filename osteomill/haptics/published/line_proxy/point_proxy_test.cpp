@@ -1,3 +1,5 @@
+#include "osteomill/haptics/published/line_proxy/point_proxy.h"
+
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -5,7 +7,6 @@
 #include "tests/shapes.h"
 #include <gtest/gtest.h>
 
-#include "osteomill/haptics/published/line_proxy/point_proxy.h"
 #include "osteomill/volume/sampling.h"
 
 namespace osteomill::line_proxy {

@@ -21,8 +21,8 @@ struct Settings {
   static Settings defaults();
 };
 
-/// Returns kA in N/mm^3, newton a mm of depth and a mm^2 of surface: the smallest at which 20 N, the most that
-/// a device is sent by default, do not pull the burr through a plane.
+/// Returns kA in N/mm^3, newton a mm of depth and a mm^2 of surface: the smallest at which 20 N, the most
+/// that a device is sent by default, do not pull the burr through a plane.
 double contact_stiffness_N_per_mm3(const MillingTool& tool);
 
 /// Renders algorithm 3 of Eriksson 2012 (section 6), modified Barbic and James 2008: the bone is a shell of
