@@ -19,7 +19,7 @@ inline constexpr double kDegrees = 180 / std::numbers::pi;
 Vec3 random_direction(SeededRandom& random);
 Quat random_orientation(SeededRandom& random);
 
-/// The algorithm with its defaults but for `named`, ready to feel the volume, which must outlive it.
+/// The algorithm with its defaults except `named`, ready to feel the volume, which must outlive it.
 std::unique_ptr<HapticAlgorithm> prepared(std::string_view algorithm, const Volume& volume,
                                           const MillingTool& tool, double stiffness_N_per_mm,
                                           std::vector<HapticSettings::Named> named = {});
