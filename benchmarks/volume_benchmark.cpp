@@ -35,12 +35,12 @@ void density(benchmark::State& state, Bone bone) {
   }
 }
 
-void gradient(benchmark::State& state, Bone bone, GradientKernel kernel) {
+void gradient(benchmark::State& state, Bone bone) {
   const Volume& volume = bone_volume(bone);
   const std::vector<Vec3> places = sample_places(volume);
   std::size_t n = 0;
   for ([[maybe_unused]] auto _ : state) {
-    benchmark::DoNotOptimize(density_gradient(volume.grid(), places[n++ % places.size()], kernel));
+    benchmark::DoNotOptimize(density_gradient(volume.grid(), places[n++ % places.size()]));
   }
 }
 
@@ -62,10 +62,7 @@ const bool kAdded = [] {
   for (const Bone bone : {Bone::builtin, Bone::builtin_refined}) {
     const std::string where = "/" + name_of(bone);
     benchmark::RegisterBenchmark(("density_at" + where).c_str(), density, bone);
-    benchmark::RegisterBenchmark(("density_gradient/central" + where).c_str(), gradient, bone,
-                                 GradientKernel::central);
-    benchmark::RegisterBenchmark(("density_gradient/smoothed" + where).c_str(), gradient, bone,
-                                 GradientKernel::smoothed);
+    benchmark::RegisterBenchmark(("density_gradient" + where).c_str(), gradient, bone);
     benchmark::RegisterBenchmark(("estimate_densities" + where).c_str(), find_densities, bone)
         ->Unit(benchmark::kMillisecond);
     benchmark::RegisterBenchmark(("brick_ranges" + where).c_str(), make_ranges, bone)

@@ -171,7 +171,7 @@ std::optional<MillingEntry> find_entry(const Volume& volume, const MillingTool& 
   std::sort(places.begin(), places.end());
   for (const auto& [depth_mm, place] : places) {
     const Vec3& point_W = *lattice.at(place.first, place.second);
-    const auto outward_W = outward_normal(volume, point_W, GradientKernel::smoothed);
+    const auto outward_W = outward_normal(volume, point_W);
     if (!outward_W || outward_W->dot(-direction_W) < kLooksAtIt) continue;
     if (is_pit(lattice, place.first, place.second, direction_W)) continue;
     const MillingEntry entry{point_W, direction_W};

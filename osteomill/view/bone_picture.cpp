@@ -73,11 +73,11 @@ ViewScene scene_with(const Volume& bone, double reference_density, const Camera&
 void look_closer(const Volume& bone, MeshVertex& vertex) {
   const Vec3 point_W = vec3_of(vertex.position_mm);
   const GridGeometry& geometry = bone.geometry();
-  Vec3 slope = density_gradient(bone.grid(), point_W, GradientKernel::smoothed);
+  Vec3 slope = density_gradient(bone.grid(), point_W);
   for (int axis = 0; axis < 3; ++axis) {
     const Vec3 voxel = geometry.spacing_mm[axis] * geometry.direction.col(axis);
-    slope += density_gradient(bone.grid(), point_W + voxel, GradientKernel::smoothed) +
-             density_gradient(bone.grid(), point_W - voxel, GradientKernel::smoothed);
+    slope += density_gradient(bone.grid(), point_W + voxel) +
+             density_gradient(bone.grid(), point_W - voxel);
   }
   if (!(slope.norm() > 1e-9)) return;
   const Vec3 normal_W = -slope.normalized();

@@ -34,10 +34,10 @@ TEST_F(BallTest, AStartInsideIsItsOwnAnswer) {
 
 TEST_F(BallTest, TheNormalPointsOut) {
   const Vec3 point = 4.0 * Vec3(1, -2, 2).normalized();
-  const auto normal = outward_normal(ball_, point, GradientKernel::smoothed);
+  const auto normal = outward_normal(ball_, point);
   ASSERT_TRUE(normal);
   EXPECT_GT(normal->dot(point.normalized()), 0.9998);
-  EXPECT_FALSE(outward_normal(ball_, Vec3::Zero(), GradientKernel::smoothed));
+  EXPECT_FALSE(outward_normal(ball_, Vec3::Zero()));
 }
 
 }  // namespace

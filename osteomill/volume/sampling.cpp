@@ -60,9 +60,6 @@ using Weights = std::array<double, 4>;
 Weights difference_weights(double f) {
   return {-0.5 * (1 - f), -0.5 * f, 0.5 * (1 - f), 0.5 * f};
 }
-Weights value_weights(double f) {
-  return {0, 1 - f, f, 0};
-}
 Weights smoothing_weights(double f) {
   return {(1 - f) * 3 / 16, ((1 - f) * 10 + f * 3) / 16, ((1 - f) * 3 + f * 10) / 16, f * 3 / 16};
 }
@@ -139,7 +136,7 @@ double density_at(const DensityGrid& grid, const Vec3& point_W) {
   return density_at_voxel(grid, grid.geometry().voxel_from_world(point_W));
 }
 
-Vec3 density_gradient(const DensityGrid& grid, const Vec3& point_W, GradientKernel kernel) {
+Vec3 density_gradient(const DensityGrid& grid, const Vec3& point_W) {
   const GridGeometry& geometry = grid.geometry();
   const Cell cell = cell_around(grid, geometry.voxel_from_world(point_W));
   if (cell.far_outside) return Vec3::Zero();
@@ -150,7 +147,7 @@ Vec3 density_gradient(const DensityGrid& grid, const Vec3& point_W, GradientKern
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double f = cell.fraction[static_cast<Eigen::Index>(axis)];
     difference[axis] = difference_weights(f);
-    across[axis] = kernel == GradientKernel::smoothed ? smoothing_weights(f) : value_weights(f);
+    across[axis] = smoothing_weights(f);
   }
   Vec3 gradient_voxel = Vec3::Zero();
   std::size_t n = 0;
@@ -178,8 +175,8 @@ int count_in_bone(const Volume& volume, std::span<const Vec3> points_T, const Po
   }));
 }
 
-std::optional<Vec3> outward_normal(const Volume& volume, const Vec3& point_W, GradientKernel kernel) {
-  const Vec3 gradient = density_gradient(volume.grid(), point_W, kernel);
+std::optional<Vec3> outward_normal(const Volume& volume, const Vec3& point_W) {
+  const Vec3 gradient = density_gradient(volume.grid(), point_W);
   const double steepness = gradient.norm();
   if (!(steepness > kFlatGradient)) return std::nullopt;
   return -gradient / steepness;

@@ -15,17 +15,10 @@ double density_at(const DensityGrid& grid, const Vec3& point_W);
 /// Trilinear density at continuous voxel coordinates.
 double density_at_voxel(const DensityGrid& grid, const Vec3& voxel);
 
-/// How the differences of a gradient are taken.
-enum class GradientKernel : unsigned char {
-  /// Central differences of neighbouring voxels, interpolated trilinearly.
-  central,
-  /// Each difference averaged over its 3 x 3 neighbours with weights 3, 10, 3 (Scharr), which turns less with
-  /// the grid: about a tenth of the error in direction on an edge two voxels wide.
-  smoothed,
-};
-
-/// Gradient of the density in W (density per mm). Safe in the haptic tick.
-Vec3 density_gradient(const DensityGrid& grid, const Vec3& point_W, GradientKernel kernel);
+/// Returns the gradient of the density in W (density per mm). Each difference is averaged over its 3 x 3
+/// neighbours with weights 3, 10, 3 (Scharr), which turns less with the grid than plain central differences:
+/// about a tenth of the error in direction on an edge two voxels wide. Safe in the haptic tick.
+Vec3 density_gradient(const DensityGrid& grid, const Vec3& point_W);
 
 /// Whether there is bone at a point: density > isovalue. Safe in the haptic tick.
 inline bool is_bone_at(const Volume& volume, const Vec3& point_W) {
@@ -37,7 +30,7 @@ int count_in_bone(const Volume& volume, std::span<const Vec3> points_T, const Po
 
 /// The unit vector out of the bone at a point (against the gradient), or nothing where the density is flat.
 /// Safe in the haptic tick.
-std::optional<Vec3> outward_normal(const Volume& volume, const Vec3& point_W, GradientKernel kernel);
+std::optional<Vec3> outward_normal(const Volume& volume, const Vec3& point_W);
 
 /// Halves the segment from a point outside the bone to one inside it down to `tolerance_mm`; the answer is
 /// the end that is not in bone. Which crossing, where there are several, is not said. Safe in the haptic

@@ -48,27 +48,7 @@ TEST(Sampling, ALinearDensityIsExactOnATurnedAnisotropicGrid) {
     const Vec3 voxel(1 + 6 * unit(random), 1 + 8 * unit(random), 1 + 10 * unit(random));
     const Vec3 point = grid.geometry().world_from_voxel(voxel);
     EXPECT_NEAR(density_at(grid, point), slope.dot(point), 1e-4);
-    for (const auto kernel : {GradientKernel::central, GradientKernel::smoothed}) {
-      EXPECT_LT((density_gradient(grid, point, kernel) - slope).norm(), 1e-4);
-    }
-  }
-}
-
-TEST(Sampling, CentralGradientIsTheDifferenceOfSamplesOneVoxelAway) {
-  GridGeometry geometry = centred_cube(12, 0.5);
-  std::mt19937_64 random(2);
-  std::uniform_real_distribution<float> density(0, 1000);
-  std::vector<float> densities(geometry.voxel_count());
-  for (float& value : densities) value = density(random);
-  const DensityGrid grid(geometry, densities);
-  for (int n = 0; n < 50; ++n) {
-    const Vec3 point = Vec3::Random() * 2.0;
-    Vec3 expected;
-    for (int axis = 0; axis < 3; ++axis) {
-      const Vec3 step = 0.5 * Vec3::Unit(axis);
-      expected[axis] = density_at(grid, point + step) - density_at(grid, point - step);
-    }
-    EXPECT_LT((density_gradient(grid, point, GradientKernel::central) - expected).norm(), 1e-6);
+    EXPECT_LT((density_gradient(grid, point) - slope).norm(), 1e-4);
   }
 }
 
@@ -80,7 +60,7 @@ TEST(Sampling, BeyondTheBorderThereIsTheOutsideDensity) {
   }
   const double border = static_cast<double>(grid[{0, 5, 5}]);
   EXPECT_NEAR(density_at_voxel(grid, {-0.5, 5, 5}), 0.5 * (border + outside), 1e-3);
-  EXPECT_EQ(density_gradient(grid, {1e300, 0, 0}, GradientKernel::central), Vec3::Zero());
+  EXPECT_EQ(density_gradient(grid, {1e300, 0, 0}), Vec3::Zero());
 }
 
 struct AngleError {
@@ -89,7 +69,7 @@ struct AngleError {
 };
 
 // On an edge two voxels wide, over planes off the axes.
-AngleError normal_error(GradientKernel kernel) {
+AngleError normal_error() {
   AngleError error;
   int count = 0;
   for (const Vec3& normal : {Vec3(1, 2, 3), Vec3(1, 1, 0), Vec3(-2, 1, 5), Vec3(0.2, 0.1, 1)}) {
@@ -98,7 +78,7 @@ AngleError normal_error(GradientKernel kernel) {
     for (int n = 0; n < 200; ++n, ++count) {
       Vec3 point = Vec3::Random() * 2.0;
       point -= unit.dot(point) * unit;
-      const Vec3 gradient = -density_gradient(volume.grid(), point, kernel);
+      const Vec3 gradient = -density_gradient(volume.grid(), point);
       const double angle_deg =
           std::acos(std::min(1.0, gradient.normalized().dot(unit))) * 180 / std::numbers::pi;
       error.worst_deg = std::max(error.worst_deg, angle_deg);
@@ -109,12 +89,10 @@ AngleError normal_error(GradientKernel kernel) {
   return error;
 }
 
-TEST(Sampling, SmoothingBringsTheNormalOfAPlaneWithinHalfADegreeOnAverage) {
-  const AngleError central = normal_error(GradientKernel::central);
-  const AngleError smoothed = normal_error(GradientKernel::smoothed);
-  EXPECT_LT(smoothed.mean_deg, 0.5);
-  EXPECT_LT(smoothed.worst_deg, 1.6);
-  EXPECT_LT(smoothed.mean_deg, central.mean_deg / 3);
+TEST(Sampling, TheNormalOfAPlaneIsWithinHalfADegreeOnAverage) {
+  const AngleError error = normal_error();
+  EXPECT_LT(error.mean_deg, 0.5);
+  EXPECT_LT(error.worst_deg, 1.6);
 }
 
 }  // namespace

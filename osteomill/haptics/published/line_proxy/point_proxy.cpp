@@ -88,7 +88,7 @@ std::optional<Vec3> surface_normal(const Volume& volume, const Vec3& point_W) {
     const Vec3 sides(corner & 1 ? 1.0 : -1.0, corner & 2 ? 1.0 : -1.0, corner & 4 ? 1.0 : -1.0);
     // Laid out along the grid's axes, so that a turned scan gives the turned normal.
     const Vec3 aside = geometry.direction * geometry.spacing_mm.cwiseProduct(reach * sides);
-    gradient += density_gradient(volume.grid(), point_W + aside, GradientKernel::smoothed);
+    gradient += density_gradient(volume.grid(), point_W + aside);
   }
   constexpr double kFlatGradient = 1e-9;  // density per mm
   const double steepness = gradient.norm();
