@@ -41,7 +41,7 @@ struct Found {
 
 Found found(const BrickPoints& points, const Cores& cores, const Barrier& barrier, const MoveT& move) {
   const Frame still = frame_of(Mat3::Identity(), Vec3::Zero());
-  const Reach reach{barrier.width_mm + 0.05, 0.01, false};
+  const Reach reach{barrier.width_mm + 0.05, 0.01};
   NearPoints ball(2048), cylinder(2048);
   gather_near_ball(points, points.brick(0).first_chunk, still, cores, reach, ball);
   gather_near_cylinder(points, points.brick(0).first_chunk, still, cores, reach, cylinder);
