@@ -55,7 +55,7 @@ TEST_P(GoldenWrenches, AreTheSameBitsAtAnyOptimisation) {
 }
 
 INSTANTIATE_TEST_SUITE_P(AllAlgorithms, GoldenWrenches,
-                         ::testing::Values(Golden{"line-proxy", 0x4ae5dc947858fe18},
+                         ::testing::Values(Golden{"line-proxy", 0x77daa7530d79b3b2},
                                            Golden{"surface-points", 0xe2ea466e2b30f36e},
                                            Golden{"point-shell", 0x3467afb63e917654},
                                            Golden{"barrier-shell", 0xafd73b9abae070a9}),

@@ -46,7 +46,7 @@ TEST(StudyDesign, ALatinHypercubeTriesEachPartOfEachRangeOnce) {
                                  {{"push", {0, 5, false}, {}},
                                   {"stiffness", {0.1, 10, true}, {}},
                                   {"algorithm", {}, axis("algorithm", {"line-proxy", "barrier-shell"})}}};
-  const StudyDesign design({}, {axis("algorithm", {"a", "b"})}, hypercube);
+  const StudyDesign design({}, {axis("scan", {"a", "b"})}, hypercube);
   ASSERT_EQ(design.trial_count(), 2 * kTrials);
   std::set<int> pushes, stiffnesses;
   std::size_t ours = 0;

@@ -14,7 +14,7 @@ std::optional<Vec3> nearest_exit(const Volume& volume, const Vec3& point_W, doub
 /// Returns the unit vector out of the bone at a point, or nothing if the density is flat there. The paper
 /// does not say how it takes gradients. Here the normal is against the sum of eight smoothed gradients about
 /// the point: central differences turn with the grid by several degrees on an oblique plane, this sum by less
-/// than a quarter of one.
+/// than half of one.
 std::optional<Vec3> surface_normal(const Volume& volume, const Vec3& point_W);
 
 /// Moves the 3-DOF point proxy on the isosurface: a point that follows a probe but never enters the bone. The
