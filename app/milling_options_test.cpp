@@ -18,7 +18,7 @@ std::vector<std::string> words_for(const CLI::Option& option) {
   if (name == "--direction") return {name, "0.1,0,-1"};
   if (option.get_type_name() == "X,Y,Z") return {name, "0.5,0,20"};
   if (option.get_type_name() == "SETTING") return {name, "point-shell.damping-time=0.002"};
-  return {name, name == "--push" ? "2.5" : "3"};
+  return {name, name == "--push" ? "2.5" : "4"};
 }
 
 void parse(CLI::App& command, std::vector<std::string> words) {
