@@ -76,8 +76,7 @@ void look_closer(const Volume& bone, MeshVertex& vertex) {
   Vec3 slope = density_gradient(bone.grid(), point_W);
   for (int axis = 0; axis < 3; ++axis) {
     const Vec3 voxel = geometry.spacing_mm[axis] * geometry.direction.col(axis);
-    slope += density_gradient(bone.grid(), point_W + voxel) +
-             density_gradient(bone.grid(), point_W - voxel);
+    slope += density_gradient(bone.grid(), point_W + voxel) + density_gradient(bone.grid(), point_W - voxel);
   }
   if (!(slope.norm() > 1e-9)) return;
   const Vec3 normal_W = -slope.normalized();
