@@ -163,7 +163,7 @@ TEST_F(ReportTest, WhatAReaderMustKnowIsSaid) {
 
 // Two comparisons of which each has another burr, push and seed, and what is left of a third.
 TEST_F(ReportTest, NothingIsConcludedFromRecordingsThatDoNotBelongTogether) {
-  std::vector<Recording> runs = sample_runs(Mode::steady, 200);
+  std::vector<Recording> runs = sample_runs(200);
   const std::string together = bytes_of(write_comparison_report(runs, out_));
   EXPECT_NE(together.find("milled the same bone"), std::string::npos);
   EXPECT_EQ(together.find("These recordings differ"), std::string::npos);
@@ -180,7 +180,7 @@ TEST_F(ReportTest, NothingIsConcludedFromRecordingsThatDoNotBelongTogether) {
 }
 
 TEST_F(ReportTest, NothingIsConcludedWhereAnAlgorithmLacksAPhase) {
-  std::vector<Recording> runs = sample_runs(Mode::steady, 200);
+  std::vector<Recording> runs = sample_runs(200);
   runs.pop_back();
   const std::string html = bytes_of(write_comparison_report(runs, out_));
   EXPECT_NE(html.find("an algorithm lacks what another was recorded with"), std::string::npos);

@@ -320,7 +320,7 @@ namespace {
 
 // What an algorithm is set to means nothing to another one.
 bool is_of_the_algorithm(const std::string& key) {
-  return key == "mode" || key == kSamplePointsKey || key.starts_with("algorithm.");
+  return key == kSamplePointsKey || key.starts_with("algorithm.");
 }
 
 bool differs(const SettingLine& line, const std::vector<const Recording*>& recordings) {
@@ -328,8 +328,7 @@ bool differs(const SettingLine& line, const std::vector<const Recording*>& recor
   for (std::size_t a = 0; a < recordings.size(); ++a) {
     for (std::size_t b = 0; b < a; ++b) {
       const RunDescription &first = recordings[a]->description, &second = recordings[b]->description;
-      const bool comparable = !is_of_the_algorithm(line.key) ||
-                              (first.algorithm == second.algorithm && first.mode == second.mode);
+      const bool comparable = !is_of_the_algorithm(line.key) || first.algorithm == second.algorithm;
       if (comparable && line.values[a] != line.values[b]) return true;
     }
   }

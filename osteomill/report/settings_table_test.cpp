@@ -36,7 +36,7 @@ std::vector<std::string> differing(std::vector<Recording>& runs) {
 }
 
 TEST(DifferencesTable, HasAColumnForWhateverIsNotTheSameInAll) {
-  std::vector<Recording> runs = sample_runs(Mode::steady, 10);
+  std::vector<Recording> runs = sample_runs(10);
   EXPECT_EQ(differing(runs), std::vector<std::string>());
   runs[0].description.settings.push_back({std::string(kComparisonKey), std::string("a"), ""});
   EXPECT_EQ(differing(runs), std::vector<std::string>()) << "another comparison of the same";
@@ -54,7 +54,7 @@ TEST(DifferencesTable, HasAColumnForWhateverIsNotTheSameInAll) {
 }
 
 TEST(DifferencesTable, AnAlgorithmsSettingsAreComparedWithItsOwn) {
-  std::vector<Recording> runs = sample_runs(Mode::steady, 10);
+  std::vector<Recording> runs = sample_runs(10);
   runs[1].description.settings.front().value = 3.0;
   EXPECT_EQ(differing(runs), std::vector<std::string>({"algorithm.stiffness (N/mm)"}));
 }
