@@ -92,7 +92,8 @@ void add_other_grips(std::vector<TrialPlan>& others, const TrialPlan& trial) {
   for (const TrialPlan& grip : trials_in_other_grips(trial)) others.push_back(grip);
 }
 
-std::vector<StudyRow> try_other_hands(const CompareOptions& options, const std::vector<TrialPlan>& trials) {
+std::vector<MeasuredRun> try_other_hands(const CompareOptions& options,
+                                         const std::vector<TrialPlan>& trials) {
   std::vector<TrialPlan> others;
   for (const TrialPlan& trial : trials) add_other_grips(others, trial);
   for (int n = 1; n < options.seeds; ++n) {

@@ -190,7 +190,7 @@ class Reader {
     const toml::node& at = table.contains(key) ? *table.get(key) : static_cast<const toml::node&>(table);
     if (shown.empty()) refuse(at, fmt::format("a map needs {}", key));
     Keys known = keys_;
-    for (const StudyColumn& column : columns_of(test)) known.push_back(column.name);
+    for (const Field<TrialRow>& column : columns_of(test)) known.push_back(column.name);
     for (const std::string& name : names_in(shown)) {
       if (name.find('.') == std::string::npos && std::find(known.begin(), known.end(), name) == known.end())
         refuse(at, fmt::format("there is no option and no column {}{}", name, did_you_mean(name, known)));

@@ -27,8 +27,8 @@ using Change = std::function<void(TrialSettings&)>;
 
 // Runs these of the paper's algorithms (numbered from 1) on the bone in every hand, algorithm 2 in every
 // grip.
-std::vector<StudyRow> rows_on(const Volume& bone, Hands hands, double phase_s,
-                              const std::vector<std::size_t>& algorithms, const Change& change) {
+std::vector<MeasuredRun> rows_on(const Volume& bone, Hands hands, double phase_s,
+                                 const std::vector<std::size_t>& algorithms, const Change& change) {
   TrialSettings settings;
   ScriptSettings& script = settings.hand_and_device.script;
   script.until_leant = true;
@@ -51,7 +51,7 @@ std::vector<StudyRow> rows_on(const Volume& bone, Hands hands, double phase_s,
 const std::vector<std::size_t> kAll{1, 2, 3};
 const Change kNothing = [](TrialSettings&) {};
 
-std::vector<StudyRow> rows_on(const Volume& bone, Hands hands, double phase_s) {
+std::vector<MeasuredRun> rows_on(const Volume& bone, Hands hands, double phase_s) {
   return rows_on(bone, hands, phase_s, kAll, kNothing);
 }
 
@@ -125,7 +125,7 @@ double median_of(const Study& study, std::size_t algorithm, std::string_view pha
 }
 
 // How many findings hold, the numbers of those that do not, and what the choices move.
-void add_choice(Section& section, const std::string& name, std::vector<StudyRow> rows) {
+void add_choice(Section& section, const std::string& name, std::vector<MeasuredRun> rows) {
   const Study study(std::move(rows));
   std::vector<std::size_t> missing;
   const std::vector<StudyFinding> findings = check_study_findings(study);
@@ -147,12 +147,12 @@ void add_choice(Section& section, const std::string& name, std::vector<StudyRow>
 }
 
 void add_choices(Section& section, const Volume& bone, const std::string& name, double phase_s) {
-  const std::vector<StudyRow> as_it_is = rows_on(bone, kChosenWith, phase_s);
+  const std::vector<MeasuredRun> as_it_is = rows_on(bone, kChosenWith, phase_s);
   add_choice(section, fmt::format("{}, as it is", name), as_it_is);
   for (const Choice& choice : choices()) {
-    std::vector<StudyRow> rows = rows_on(bone, kChosenWith, phase_s, choice.algorithms, choice.change);
-    for (const StudyRow& row : as_it_is) {
-      const auto is_it = [&](std::size_t n) { return row.run.algorithm == kPapersAlgorithms[n - 1]; };
+    std::vector<MeasuredRun> rows = rows_on(bone, kChosenWith, phase_s, choice.algorithms, choice.change);
+    for (const MeasuredRun& row : as_it_is) {
+      const auto is_it = [&](std::size_t n) { return row.algorithm == kPapersAlgorithms[n - 1]; };
       if (std::none_of(choice.algorithms.begin(), choice.algorithms.end(), is_it)) rows.push_back(row);
     }
     add_choice(section, fmt::format("{}, {}", name, choice.what), std::move(rows));

@@ -85,8 +85,7 @@ bool have_the_same_phases(const RunGroup& group) {
 }
 
 Study study_of(const RunGroup& group, const ReportExtras& extras) {
-  std::vector<StudyRow> rows;
-  for (const MeasuredRun& run : group.runs) rows.push_back(row_of(run));
+  std::vector<MeasuredRun> rows = group.runs;
   if (extras.others) {
     rows.insert(rows.end(), extras.others->begin(), extras.others->end());
     return Study(std::move(rows));
@@ -94,7 +93,7 @@ Study study_of(const RunGroup& group, const ReportExtras& extras) {
   const fs::path folder = group.runs.front().recording->path.parent_path();
   if (auto whole = read_study_csv(folder / kStudyCsv, rows)) return *std::move(whole);
   // A report is of one bone in one hand, whatever their seeds.
-  for (StudyRow& row : rows) row.seed = rows.front().seed;
+  for (MeasuredRun& row : rows) row.seed = rows.front().seed;
   return Study(std::move(rows));
 }
 

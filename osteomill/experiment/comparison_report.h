@@ -14,7 +14,7 @@ namespace osteomill {
 struct ReportExtras {
   /// Of other hands and grips than the recordings'. Nothing where that is not known: then they are those of
   /// the study.csv beside the recordings, if that is of them.
-  std::optional<std::vector<StudyRow>> others;
+  std::optional<std::vector<MeasuredRun>> others;
   std::vector<PassivityRow> passivity;
 };
 

@@ -15,11 +15,6 @@ namespace osteomill {
 
 namespace {
 
-const Metric& metric_in(std::string_view column) {
-  const auto all = all_metrics();
-  return *std::find_if(all.begin(), all.end(), [&](const Metric& metric) { return metric.column == column; });
-}
-
 bool too_few(const Study& study) {
   return study.seeds().size() < study.seeds_needed();
 }
@@ -41,10 +36,10 @@ std::string joined(const std::vector<std::string>& parts) {
 }
 
 // "; least with 3 point-shell, significantly against 1 and 2, not against 4", or that none is.
-std::string least_words(const Study& study, std::string_view phase, const Metric& metric,
+std::string least_words(const Study& study, std::string_view phase, const Field<RunMetrics>& metric,
                         const AlgorithmId& least) {
   std::vector<std::string> clear, unclear;
-  for (const PairedComparison& pair : compare_algorithms(study, phase, metric)) {
+  for (const PairedComparison& pair : compare_algorithms(study, phase, metric.get)) {
     const AlgorithmId &first = pair.first, &second = pair.second;
     if (first != least && second != least) continue;
     const bool is_clear = pair.p <= kSignificance && pair.second_is_greater == (first == least);
@@ -57,12 +52,12 @@ std::string least_words(const Study& study, std::string_view phase, const Metric
 
 // "0.02 N (1 line-proxy), lost contact after 3.2 s (2 surface-points) and 0.01 N (3 point-shell, in 7 of 8
 // hands)", and who has least.
-std::string values_words(const Study& study, std::string_view phase, const Metric& metric) {
+std::string values_words(const Study& study, std::string_view phase, const Field<RunMetrics>& metric) {
   std::vector<std::string> values;
   std::optional<AlgorithmId> least;
   double min = 0;
   for (const AlgorithmId& algorithm : study.algorithms()) {
-    const std::vector<double> of_seeds = study.values(algorithm, phase, metric);
+    const std::vector<double> of_seeds = study.values(algorithm, phase, metric.get);
     if (of_seeds.empty()) {
       values.push_back(
           fmt::format("{} ({})", contact_words(study.contact(algorithm, phase)), algorithm.label));
@@ -75,13 +70,13 @@ std::string values_words(const Study& study, std::string_view phase, const Metri
                     of_seeds.size() < all ? fmt::format(", in {} of {} hands", of_seeds.size(), all) : ""));
     if (study.are_most(of_seeds.size()) && (!least || median < min)) least = algorithm, min = median;
   }
-  const bool claims = metric.less_is_better && least && values.size() > 1 && !too_few(study);
+  const bool claims = metric.has(kLessIsBetter) && least && values.size() > 1 && !too_few(study);
   return joined(values) + (claims ? least_words(study, phase, metric, *least) : "");
 }
 
 // "Force above 20 Hz, rms, while milling, median of the hands: 0.02 N (1 line-proxy) ..."
-std::string values_sentence(const Study& study, std::string_view phase, const Metric& metric) {
-  std::string text = fmt::format("{}, {}{}: ", metric.name, during(phase),
+std::string values_sentence(const Study& study, std::string_view phase, const Field<RunMetrics>& metric) {
+  std::string text = fmt::format("{}, {}{}: ", metric.doc, during(phase),
                                  study.seeds().size() > 1 ? ", median of the hands" : "");
   text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
   return fmt::format("{}{}.", text, values_words(study, phase, metric));
@@ -171,7 +166,7 @@ std::vector<std::string> conclusions(const Study& study) {
   const auto tell = [&](std::string_view phase, const char* column) {
     const auto phases = study.phases();
     if (std::find(phases.begin(), phases.end(), phase) != phases.end())
-      sentences.push_back(values_sentence(study, phase, metric_in(column)));
+      sentences.push_back(values_sentence(study, phase, metric(column)));
   };
   tell(kMilling, "force_hp_rms_N");
   tell(kMilling, "torque_hp_rms_Nmm");

@@ -14,7 +14,7 @@ namespace {
 
 using testing_support::sample_rows;
 
-std::string conclusions_of(const std::vector<StudyRow>& rows) {
+std::string conclusions_of(const std::vector<MeasuredRun>& rows) {
   std::string text;
   for (const std::string& sentence : conclusions(Study(rows))) text += sentence + "\n";
   return text;
@@ -24,8 +24,8 @@ void expect_says(const std::string& text, const std::string& what) {
   EXPECT_NE(text.find(what), std::string::npos) << what << "\n in:\n" << text;
 }
 
-void lose(StudyRow& row) {
-  RunMetrics& m = row.run.metrics;
+void lose(MeasuredRun& row) {
+  RunMetrics& m = row.metrics;
   m.force_N.hp_rms = m.torque_Nmm.hp_rms = std::numeric_limits<double>::quiet_NaN();
   m.contact.lost_after_s = 3.2;
 }
@@ -54,9 +54,9 @@ TEST(Conclusions, WithTooFewHandsNothingIsClaimed) {
 
 TEST(Conclusions, WhereSomeHandsLostContactTheMedianSaysOfHowMany) {
   for (const std::uint64_t lost : {3u, 4u}) {
-    std::vector<StudyRow> rows = sample_rows(8);
-    for (StudyRow& r : rows) {
-      if (r.run.algorithm == "line-proxy" && r.seed <= lost) lose(r);
+    std::vector<MeasuredRun> rows = sample_rows(8);
+    for (MeasuredRun& r : rows) {
+      if (r.algorithm == "line-proxy" && r.seed <= lost) lose(r);
     }
     const std::string text = conclusions_of(rows);
     expect_says(text, fmt::format("(1 line-proxy, in {} of 8 hands)", 8 - lost));
@@ -66,30 +66,30 @@ TEST(Conclusions, WhereSomeHandsLostContactTheMedianSaysOfHowMany) {
 }
 
 TEST(Conclusions, WhereNothingIsSignificantNobodyIsLeast) {
-  std::vector<StudyRow> rows = sample_rows(8);
-  std::erase_if(rows, [](const StudyRow& r) { return r.run.algorithm == "surface-points"; });
-  for (StudyRow& r : rows) {
-    r.run.metrics.force_N.hp_rms = r.seed % 2 == (r.run.algorithm == "line-proxy" ? 0u : 1u) ? 0.1 : 0.2;
+  std::vector<MeasuredRun> rows = sample_rows(8);
+  std::erase_if(rows, [](const MeasuredRun& r) { return r.algorithm == "surface-points"; });
+  for (MeasuredRun& r : rows) {
+    r.metrics.force_N.hp_rms = r.seed % 2 == (r.algorithm == "line-proxy" ? 0u : 1u) ? 0.1 : 0.2;
   }
   expect_says(conclusions_of(rows), "; no difference between the least and another is significant");
 }
 
 TEST(Conclusions, WhoseShaftDidNotLeanIsNamed) {
-  std::vector<StudyRow> rows = sample_rows(8);
-  for (StudyRow& r : rows) {
-    r.run.metrics.contact.shaft = r.run.algorithm == "line-proxy" && r.seed < 4 ? 0.2 : 1;
+  std::vector<MeasuredRun> rows = sample_rows(8);
+  for (MeasuredRun& r : rows) {
+    r.metrics.contact.shaft = r.algorithm == "line-proxy" && r.seed < 4 ? 0.2 : 1;
   }
   const std::string text = what_was_compared(Study(rows), "ball");
   expect_says(text, "less than half of that time with 1 line-proxy (3 of 8 hands).");
-  for (StudyRow& r : rows) r.run.metrics.contact.shaft = 1;
+  for (MeasuredRun& r : rows) r.metrics.contact.shaft = 1;
   EXPECT_EQ(what_was_compared(Study(rows), "ball").find("less than half"), std::string::npos);
 }
 
 TEST(Conclusions, WhatWasNotReachedIsSaidWithTheHandsInWhichItWasNot) {
-  std::vector<StudyRow> rows = sample_rows(8);
-  for (StudyRow& r : rows) {
-    if (r.run.algorithm == "surface-points" && r.run.phase == kHolding && r.seed < 4)
-      r.run.not_reached = "the tool was lost";
+  std::vector<MeasuredRun> rows = sample_rows(8);
+  for (MeasuredRun& r : rows) {
+    if (r.algorithm == "surface-points" && r.phase == kHolding && r.seed < 4)
+      r.not_reached = "the tool was lost";
   }
   const Study study(rows);
   expect_says(what_was_compared(study, "ball"),
@@ -100,9 +100,9 @@ TEST(Conclusions, WhatWasNotReachedIsSaidWithTheHandsInWhichItWasNot) {
 }
 
 TEST(Conclusions, WhoLostContactIsNamedAndNeverTheLeast) {
-  std::vector<StudyRow> rows = sample_rows(8);
-  for (StudyRow& r : rows) {
-    if (r.run.algorithm == "point-shell") lose(r);
+  std::vector<MeasuredRun> rows = sample_rows(8);
+  for (MeasuredRun& r : rows) {
+    if (r.algorithm == "point-shell") lose(r);
   }
   const std::string text = conclusions_of(rows);
   expect_says(text,
@@ -112,8 +112,8 @@ TEST(Conclusions, WhoLostContactIsNamedAndNeverTheLeast) {
 }
 
 TEST(Conclusions, OneAlgorithmHasNothingToBeComparedWith) {
-  std::vector<StudyRow> rows = sample_rows(8);
-  std::erase_if(rows, [](const StudyRow& r) { return r.run.algorithm != "line-proxy"; });
+  std::vector<MeasuredRun> rows = sample_rows(8);
+  std::erase_if(rows, [](const MeasuredRun& r) { return r.algorithm != "line-proxy"; });
   const std::string text = conclusions_of(rows);
   EXPECT_EQ(text.find("least"), std::string::npos) << text;
   expect_says(text, "Bone removed, while milling, median of the hands: 0 mm³ (1 line-proxy).");

@@ -105,18 +105,18 @@ TEST_F(PassivitySectionTest, OneAlgorithmThatIsNeverPassiveIsDrawnToo) {
 }
 
 TEST_F(PassivitySectionTest, TheReportOfAStudyHasItsFilesFiguresAndWords) {
-  ReportExtras extras{std::vector<StudyRow>(), sample_rows()};
+  ReportExtras extras{std::vector<MeasuredRun>(), sample_rows()};
   const auto runs = testing_support::sample_runs(500);
   // Beside the recorded hand.
   const std::uint64_t first = runs.front().description.seed;
   for (std::uint64_t seed = first + 1; seed < first + 8; ++seed) {
     for (const Recording& run : runs) {
       const RunDescription& d = run.description;
-      MeasuredRun row{d.algorithm, d.phase, run_metrics(run)};
+      MeasuredRun row{.algorithm = d.algorithm, .phase = d.phase, .metrics = run_metrics(run), .seed = seed};
+      row.hand_stiffness_N_per_m = 1000 * random_hand(seed).stiffness_N_per_mm;
       for (double* unrest : {&row.metrics.force_N.hp_rms, &row.metrics.force_N.hp_share})
         *unrest *= 1 + 0.01 * static_cast<double>(seed);
-      extras.others->push_back(
-          {.seed = seed, .stiffness_N_per_m = 1000 * random_hand(seed).stiffness_N_per_mm, .run = row});
+      extras.others->push_back(row);
     }
   }
   const std::string html = bytes_of(write_comparison_report(runs, out_, extras));

@@ -125,26 +125,19 @@ TriedTrial try_trial(StudyTest test, const TrialPlan& plan) {
   if (test == StudyTest::milling) {
     MillingTrial trial(plan.bone, plan.densities, plan.entry, plan.settings);
     const MilledTrial milled = mill(plan, trial, {});
-    for (const Recording& phase : milled.phases)
-      tried.rows.push_back(as_row(row_of(measured_run(phase, phase_metrics(phase)))));
+    for (std::size_t part = 0; part < milled.phases.size(); ++part) {
+      const Recording& phase = milled.phases[part];
+      TrialRow& row =
+          tried.rows.emplace_back(TrialRow{.part = part, .run = measured_run(phase, phase_metrics(phase))});
+      row.run.recording = nullptr;
+      row.run.grip = plan.grip;
+    }
     tried.faults = milled.faults;
   } else {
-    tried.rows = {as_row(plan.settings, press_on_wall(plan.settings, plan.bone))};
+    tried.rows = {{.wall = wall_figures(plan.settings, press_on_wall(plan.settings, plan.bone))}};
   }
   tried.cpu_s = thread_cpu_s() - before_s;
   return tried;
-}
-
-StudyRow row_of(const MeasuredRun& run) {
-  constexpr double kMmPerM = 1000;
-  const RunDescription& description = run.recording->description;
-  const auto of_hand = [&](std::string_view key) {
-    const double* value = find_setting<double>(description, key);
-    return value == nullptr ? 0 : kMmPerM * *value;
-  };
-  StudyRow row{description.seed, of_hand(kHandStiffnessKey), of_hand(kHandDampingKey), run};
-  row.run.recording = nullptr;
-  return row;
 }
 
 std::vector<TrialPlan> trials_in_other_grips(const TrialPlan& plan) {
@@ -173,22 +166,19 @@ TrialPlan with_seed(const TrialPlan& plan, std::uint64_t seed) {
   return other;
 }
 
-std::vector<StudyRow> run_study_trials(const std::vector<TrialPlan>& trials, std::size_t threads,
-                                       const RunEvents& events) {
+std::vector<MeasuredRun> run_study_trials(const std::vector<TrialPlan>& trials, std::size_t threads,
+                                          const RunEvents& events) {
   const auto tried = run_trials(trials, "study", threads, events,
                                 [](const TrialPlan& plan) { return try_trial(StudyTest::milling, plan); });
-  std::vector<StudyRow> all;
-  for (std::size_t n = 0; n < trials.size(); ++n) {
-    const TrialSettings& settings = trials[n].settings;
-    const StudyRow of{.seed = settings.hand_and_device.seed,
-                      .run = {settings.algorithm.id, {}, {}},
-                      .grip = trials[n].grip};
-    for (const TrialRow& row : tried[n].rows) all.push_back(milling_row(row, of));
+  std::vector<MeasuredRun> all;
+  for (const TriedTrial& trial : tried) {
+    for (const TrialRow& row : trial.rows) all.push_back(row.run);
+    const MeasuredRun& last = all.back();
     const auto warn = [&](const std::string& line) {
-      events.warn(fmt::format("{}, seed {}: {}", settings.algorithm.id.name, of.seed, line));
+      events.warn(fmt::format("{}, seed {}: {}", last.algorithm.name, last.seed, line));
     };
-    if (tried[n].faults) warn(*tried[n].faults);
-    if (const std::string& missed = all.back().run.not_reached; !missed.empty()) warn(missed);
+    if (trial.faults) warn(*trial.faults);
+    if (!last.not_reached.empty()) warn(last.not_reached);
   }
   return all;
 }

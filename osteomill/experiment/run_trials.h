@@ -46,14 +46,11 @@ TrialPlan with_seed(const TrialPlan& plan, std::uint64_t seed);
 /// The plan's trial of algorithm 2 in its hand's other grips, for the paper's finding on them (findings.h).
 std::vector<TrialPlan> trials_in_other_grips(const TrialPlan& plan);
 
-/// The row of a phase that was recorded, in the hand's usual grip.
-StudyRow row_of(const MeasuredRun& run);
-
 /// Runs the trials, measures both phases, and keeps nothing else. Trials run side by side on `threads`
 /// threads, each in simulated time: but for the step times, the rows are the same however many. Warns where
 /// wrenches were clamped.
-std::vector<StudyRow> run_study_trials(const std::vector<TrialPlan>& trials, std::size_t threads,
-                                       const RunEvents& events);
+std::vector<MeasuredRun> run_study_trials(const std::vector<TrialPlan>& trials, std::size_t threads,
+                                          const RunEvents& events);
 
 /// Returns a text that no other comparison has (kComparisonKey).
 std::string new_comparison();

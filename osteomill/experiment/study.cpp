@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <iterator>
 #include <map>
 #include <ostream>
 #include <stdexcept>
@@ -14,7 +13,6 @@
 
 #include "osteomill/experiment/paper.h"
 #include "osteomill/experiment/statistics.h"
-#include "osteomill/experiment/trial_rows.h"
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/files/csv_field.h"
 #include "osteomill/files/read_line.h"
@@ -44,42 +42,45 @@ bool next_line(std::istream& in, std::string& line) {
   }
 }
 
-// Nothing where it is not of an algorithm and phase of these rows, whose number of columns it has.
-std::optional<StudyRow> read_row(std::string_view line, const std::vector<StudyRow>& rows) {
+// Nothing if it is not of an algorithm and phase of these rows, whose number of columns it has.
+std::optional<MeasuredRun> read_row(std::string_view line, const std::vector<MeasuredRun>& rows) {
   const std::vector<std::string_view> fields = csv_fields(line);
-  if (fields.size() != kHandFields + kNamedFields + summary_metrics().size() + 1) return std::nullopt;
-  const auto of = std::ranges::find_if(rows, [&](const StudyRow& row) {
-    return fields[kHandFields] == row.run.algorithm.name && fields[kHandFields + 1] == row.run.phase;
+  const std::vector<Field<M>>& figures = fields_of<M>();
+  if (fields.size() != kHandFields + kNamedFields + figures.size() + 1) return std::nullopt;
+  const auto of = std::ranges::find_if(rows, [&](const MeasuredRun& row) {
+    return fields[kHandFields] == row.algorithm.name && fields[kHandFields + 1] == row.phase;
   });
   if (of == rows.end()) return std::nullopt;
   const auto number = [&](std::size_t n) { return parsed_number<double>(fields[n]).value_or(kNotMeasured); };
-  TrialRow row{.part = phase_number(of->run.phase),
-               .values = {number(1), number(2)},
-               .not_reached = std::string(fields.back())};
-  for (std::size_t n = kHandFields + kNamedFields; n + 1 < fields.size(); ++n)
-    row.values.push_back(number(n));
-  return milling_row(row, {.seed = parsed_number<std::uint64_t>(fields[0]).value_or(0),
-                           .run = {of->run.algorithm, {}, {}},
-                           .grip = number(3)});
+  MeasuredRun row{.algorithm = of->algorithm,
+                  .phase = of->phase,
+                  .metrics = {},
+                  .not_reached = std::string(fields.back()),
+                  .seed = parsed_number<std::uint64_t>(fields[0]).value_or(0),
+                  .hand_stiffness_N_per_m = number(1),
+                  .hand_damping_Ns_per_m = number(2),
+                  .grip = number(3)};
+  for (std::size_t n = 0; n < figures.size(); ++n)
+    figures[n].set(row.metrics, number(kHandFields + kNamedFields + n));
+  return row;
 }
 
 // Times are not compared: they are the machine's.
 bool same_figures(const MeasuredRun& a, const MeasuredRun& b) {
-  return std::ranges::all_of(summary_metrics(), [&](const Metric& metric) {
-    const double first = metric(a.metrics), second = metric(b.metrics);
-    return metric.table == MetricTable::none || metric.table == MetricTable::times ||
-           metric.table == MetricTable::rate || first == second || (std::isnan(first) && std::isnan(second));
+  return std::ranges::all_of(fields_of<M>(), [&](const Field<M>& figure) {
+    const double first = figure.get(a.metrics), second = figure.get(b.metrics);
+    return figure.has(kOfTheMachine) || first == second || (std::isnan(first) && std::isnan(second));
   });
 }
 
 }  // namespace
 
-std::vector<Metric> key_metrics() {
-  std::vector<Metric> compared;
-  std::copy_if(all_metrics().begin(), all_metrics().end(), std::back_inserter(compared),
-               [](const Metric& metric) { return metric.compared > 0; });
-  std::sort(compared.begin(), compared.end(),
-            [](const Metric& a, const Metric& b) { return a.compared < b.compared; });
+std::vector<Field<RunMetrics>> key_metrics() {
+  std::vector<Field<RunMetrics>> compared;
+  for (const char* column :
+       {"force_hp_rms_N", "force_hp_share", "force_step_max_N", "torque_hp_rms_Nmm", "torque_step_max_Nmm",
+        "torque_mean_Nmm", "shaft_spread_deg", "removed_mm3", "tick_us_median", "tick_us_p99"})
+    compared.push_back(metric(column));
   return compared;
 }
 
@@ -87,45 +88,45 @@ std::string short_label(const AlgorithmId& algorithm) {
   return algorithm.label.substr(0, algorithm.label.find(' '));
 }
 
-Study::Study(std::vector<StudyRow> rows) : rows_(std::move(rows)) {
+Study::Study(std::vector<MeasuredRun> rows) : rows_(std::move(rows)) {
   const auto others =
-      std::stable_partition(rows_.begin(), rows_.end(), [](const StudyRow& row) { return row.grip == 1; });
+      std::stable_partition(rows_.begin(), rows_.end(), [](const MeasuredRun& row) { return row.grip == 1; });
   other_grips_.assign(others, rows_.end());
   rows_.erase(others, rows_.end());
   if (rows_.empty()) throw std::invalid_argument("study: there are no trials");
   std::map<std::uint64_t, std::size_t> order;
-  for (const StudyRow& row : rows_) {
+  for (const MeasuredRun& row : rows_) {
     if (order.emplace(row.seed, seeds_.size()).second) seeds_.push_back(row.seed);
   }
-  std::stable_sort(rows_.begin(), rows_.end(), [&](const StudyRow& a, const StudyRow& b) {
-    return std::tuple(order.at(a.seed), place(a.run)) < std::tuple(order.at(b.seed), place(b.run));
+  std::stable_sort(rows_.begin(), rows_.end(), [&](const MeasuredRun& a, const MeasuredRun& b) {
+    return std::tuple(order.at(a.seed), place(a)) < std::tuple(order.at(b.seed), place(b));
   });
   const std::size_t each = rows_.size() / seeds_.size();
   for (std::size_t n = 0; n < rows_.size(); ++n) {
-    const StudyRow& row = rows_[n];
-    const bool again = n % each != 0 && place(row.run) == place(rows_[n - 1].run);
+    const MeasuredRun& row = rows_[n];
+    const bool again = n % each != 0 && place(row) == place(rows_[n - 1]);
     if (again || row.seed != seeds_[std::min(n / each, seeds_.size() - 1)] ||
-        place(row.run) != place(rows_[n % each].run)) {
+        place(row) != place(rows_[n % each])) {
       throw std::invalid_argument(fmt::format("study: seed {} was not tried as the others were", row.seed));
     }
   }
 }
 
-std::span<const StudyRow> Study::rows_of_seed(std::size_t n) const {
+std::span<const MeasuredRun> Study::rows_of_seed(std::size_t n) const {
   const std::size_t each = rows_.size() / seeds_.size();
   return std::span(rows_).subspan(n * each, each);
 }
 
 std::vector<AlgorithmId> Study::algorithms() const {
   std::vector<AlgorithmId> tried;
-  for (const StudyRow& row : rows_) tried.push_back(row.run.algorithm);
+  for (const MeasuredRun& row : rows_) tried.push_back(row.algorithm);
   return each_once(std::move(tried));
 }
 
 std::vector<std::string_view> Study::phases() const {
   std::vector<std::string_view> tried;
   for (const std::string_view phase : kPhases)
-    if (std::ranges::any_of(rows_, [&](const StudyRow& row) { return row.run.phase == phase; }))
+    if (std::ranges::any_of(rows_, [&](const MeasuredRun& row) { return row.phase == phase; }))
       tried.push_back(phase);
   return tried;
 }
@@ -138,12 +139,12 @@ std::size_t Study::seeds_needed() const {
   return seeds;
 }
 
-std::vector<Metric> Study::metrics_of(std::string_view phase) const {
-  std::vector<Metric> metrics = key_metrics();
-  std::erase_if(metrics, [&](const Metric& metric) {
-    return std::none_of(rows_.begin(), rows_.end(), [&](const StudyRow& row) {
-      const double value = metric(row.run.metrics);
-      return row.run.phase == phase && value != 0 && !std::isnan(value);
+std::vector<Field<RunMetrics>> Study::metrics_of(std::string_view phase) const {
+  std::vector<Field<RunMetrics>> metrics = key_metrics();
+  std::erase_if(metrics, [&](const Field<RunMetrics>& metric) {
+    return std::none_of(rows_.begin(), rows_.end(), [&](const MeasuredRun& row) {
+      const double value = metric.get(row.metrics);
+      return row.phase == phase && value != 0 && !std::isnan(value);
     });
   });
   return metrics;
@@ -152,9 +153,8 @@ std::vector<Metric> Study::metrics_of(std::string_view phase) const {
 std::vector<double> Study::all_values(const AlgorithmId& algorithm, std::string_view phase,
                                       const RunFigure& figure) const {
   std::vector<double> values;
-  for (const StudyRow& row : rows_) {
-    if (place(row.run) == std::tuple(phase_number(phase), algorithm))
-      values.push_back(figure(row.run.metrics));
+  for (const MeasuredRun& row : rows_) {
+    if (place(row) == std::tuple(phase_number(phase), algorithm)) values.push_back(figure(row.metrics));
   }
   return values;
 }
@@ -185,9 +185,9 @@ ContactShares Study::contact(const AlgorithmId& algorithm, std::string_view phas
 
 std::string Study::not_reached(const AlgorithmId& algorithm, std::string_view phase) const {
   std::map<std::string, std::size_t> hands;
-  for (const StudyRow& row : rows_) {
-    if (!row.run.not_reached.empty() && place(row.run) == std::tuple(phase_number(phase), algorithm))
-      ++hands[row.run.not_reached];
+  for (const MeasuredRun& row : rows_) {
+    if (!row.not_reached.empty() && place(row) == std::tuple(phase_number(phase), algorithm))
+      ++hands[row.not_reached];
   }
   std::string text;
   for (const auto& [words, count] : hands) {
@@ -201,26 +201,25 @@ void write_study_csv(const std::filesystem::path& path, const Study& study) {
   write_text_atomically(path, [&](std::ostream& out) {
     out << kHandColumns << summary_columns() << '\n';
     for (const auto* rows : {&study.rows(), &study.rows_of_other_grips()}) {
-      for (const StudyRow& row : *rows) {
-        out << fmt::format("{},{},{},{},{}\n", row.seed, row.stiffness_N_per_m, row.damping_Ns_per_m,
-                           row.grip, summary_fields(row.run));
+      for (const MeasuredRun& row : *rows) {
+        out << fmt::format("{},{},{},{},{}\n", row.seed, row.hand_stiffness_N_per_m,
+                           row.hand_damping_Ns_per_m, row.grip, summary_fields(row));
       }
     }
   });
 }
 
-std::optional<Study> read_study_csv(const std::filesystem::path& path, const std::vector<StudyRow>& rows) {
+std::optional<Study> read_study_csv(const std::filesystem::path& path, const std::vector<MeasuredRun>& rows) {
   std::ifstream in(path);
   std::string line;
   if (!next_line(in, line) || line != kHandColumns + summary_columns()) return std::nullopt;
-  std::vector<StudyRow> all;
+  std::vector<MeasuredRun> all;
   std::size_t found = 0;
   while (next_line(in, line)) {
-    std::optional<StudyRow> row = read_row(line, rows);
+    std::optional<MeasuredRun> row = read_row(line, rows);
     if (!row) continue;
-    found += row->grip == 1 && std::any_of(rows.begin(), rows.end(), [&](const StudyRow& one) {
-               return one.seed == row->seed && place(one.run) == place(row->run) &&
-                      same_figures(one.run, row->run);
+    found += row->grip == 1 && std::any_of(rows.begin(), rows.end(), [&](const MeasuredRun& one) {
+               return one.seed == row->seed && place(one) == place(*row) && same_figures(one, *row);
              });
     all.push_back(*std::move(row));
   }

@@ -13,23 +13,11 @@
 
 namespace osteomill {
 
-/// One phase of one trial of a study.
-struct StudyRow {
-  std::uint64_t seed = 0;
-  /// Of the hand.
-  double stiffness_N_per_m = 0;
-  double damping_Ns_per_m = 0;
-  /// `recording` is null: no recording is kept.
-  MeasuredRun run;
-  /// How firmly the hand grips (TrialPlan::grip): 1 in the study itself, else a trial beside it.
-  double grip = 1;
-};
+/// Returns what is compared: force, torque, shaft, bone removed and compute time, in the order in which
+/// people should read them.
+std::vector<Field<RunMetrics>> key_metrics();
 
-/// Force, torque, shaft, bone removed and compute time, in the order in which people should read them
-/// (Metric::compared).
-std::vector<Metric> key_metrics();
-
-/// What a row is compared by: a Metric, or anything else that follows from a run's figures.
+/// What runs are compared by: a figure, or anything else that follows from a run's figures.
 using RunFigure = std::function<double(const RunMetrics&)>;
 
 /// The first word of an algorithm's label, for narrow places: "1" of "1 line-proxy".
@@ -41,14 +29,14 @@ class Study {
  public:
   /// Rows in any order; those of other grips are kept apart. Throws std::invalid_argument where there are
   /// none, or where a seed lacks an algorithm and phase that another has, or has it twice.
-  explicit Study(std::vector<StudyRow> rows);
+  explicit Study(std::vector<MeasuredRun> rows);
 
   /// By seed, in the order in which seeds first came; within a seed as in summary.csv.
-  const std::vector<StudyRow>& rows() const { return rows_; }
-  const std::vector<StudyRow>& rows_of_other_grips() const { return other_grips_; }
+  const std::vector<MeasuredRun>& rows() const { return rows_; }
+  const std::vector<MeasuredRun>& rows_of_other_grips() const { return other_grips_; }
   const std::vector<std::uint64_t>& seeds() const { return seeds_; }
   /// The rows of the n-th seed.
-  std::span<const StudyRow> rows_of_seed(std::size_t n) const;
+  std::span<const MeasuredRun> rows_of_seed(std::size_t n) const;
 
   /// What was tried, in the paper's order.
   std::vector<AlgorithmId> algorithms() const;
@@ -58,7 +46,7 @@ class Study {
   std::size_t seeds_needed() const;
 
   /// The key metrics but those that are zero throughout a phase (bone removed while holding).
-  std::vector<Metric> metrics_of(std::string_view phase) const;
+  std::vector<Field<RunMetrics>> metrics_of(std::string_view phase) const;
 
   /// The figure's values, one a seed in the order of `seeds`, not a number where there was not enough contact
   /// to measure it; none if that was not tried.
@@ -77,8 +65,8 @@ class Study {
   bool are_most(std::size_t seeds) const { return 2 * seeds > seeds_.size(); }
 
  private:
-  std::vector<StudyRow> rows_;
-  std::vector<StudyRow> other_grips_;
+  std::vector<MeasuredRun> rows_;
+  std::vector<MeasuredRun> other_grips_;
   std::vector<std::uint64_t> seeds_;
 };
 
@@ -88,6 +76,6 @@ void write_study_csv(const std::filesystem::path& path, const Study& study);
 
 /// The study of these rows, of one seed, with the other hands and grips that `path` has of it: nothing where
 /// there is no such file, or where it is not of these rows' figures.
-std::optional<Study> read_study_csv(const std::filesystem::path& path, const std::vector<StudyRow>& rows);
+std::optional<Study> read_study_csv(const std::filesystem::path& path, const std::vector<MeasuredRun>& rows);
 
 }  // namespace osteomill

@@ -28,9 +28,9 @@ Verdict verdict_of(const StudyFinding& finding, const Study& study) {
 // Not a number where no more than half of the seeds could be measured.
 RunMetrics medians_of(const Study& study, const MeasuredRun& run) {
   RunMetrics medians;
-  for (const Metric& metric : all_metrics()) {
-    const std::vector<double> values = study.values(run.algorithm, run.phase, metric);
-    metric.place(medians) = study.are_most(values.size()) ? distribution_of(values).median : kNotMeasured;
+  for (const Field<RunMetrics>& figure : fields_of<RunMetrics>()) {
+    const std::vector<double> values = study.values(run.algorithm, run.phase, figure.get);
+    figure.set(medians, study.are_most(values.size()) ? distribution_of(values).median : kNotMeasured);
   }
   medians.contact = study.contact(run.algorithm, run.phase);
   return medians;
@@ -40,10 +40,9 @@ RunMetrics medians_of(const Study& study, const MeasuredRun& run) {
 std::vector<double> grip_forces(const Study& study, double grip, std::optional<std::uint64_t> seed) {
   std::vector<double> forces;
   for (const auto* rows : {&study.rows(), &study.rows_of_other_grips()}) {
-    for (const StudyRow& row : *rows) {
-      const MeasuredRun& run = row.run;
-      if (row.grip == grip && run.phase == kHolding && run.algorithm == kPapersAlgorithms[1] &&
-          (!seed || row.seed == *seed)) {
+    for (const MeasuredRun& run : *rows) {
+      if (run.grip == grip && run.phase == kHolding && run.algorithm == kPapersAlgorithms[1] &&
+          (!seed || run.seed == *seed)) {
         forces.push_back(run.metrics.force_N.hp_rms);
       }
     }
@@ -64,10 +63,8 @@ GripForces medians_of_grips(const Study& study, std::optional<std::uint64_t> see
   return medians;
 }
 
-RunGroup runs_of(std::span<const StudyRow> rows) {
-  RunGroup group;
-  for (const StudyRow& row : rows) group.runs.push_back(row.run);
-  return group;
+RunGroup runs_of(std::span<const MeasuredRun> rows) {
+  return {{rows.begin(), rows.end()}};
 }
 
 }  // namespace

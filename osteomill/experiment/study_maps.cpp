@@ -49,10 +49,10 @@ class Shown {
   Shown(const StudyDesign& design, const std::string& shown) {
     for (const std::string& name : names_in(shown)) {
       const auto& columns = columns_of(design.test);
-      const auto column = std::ranges::find(columns, name, &StudyColumn::name);
-      const bool is_option = column == columns.end();
-      parts_.push_back({name, is_option, static_cast<std::size_t>(column - columns.begin())});
-      const std::string words_of_it = is_option ? design.label_of(name) : column->label;
+      const Field<TrialRow>* column = find_field(columns, name);
+      parts_.push_back({name, column});
+      const std::string words_of_it =
+          column == nullptr ? design.label_of(name) : osteomill::label_of(*column);
       label = label.empty() ? words_of_it : ratio_label(label, words_of_it);
     }
   }
@@ -70,11 +70,11 @@ class Shown {
  private:
   struct Part {
     std::string name;
-    bool is_option;
-    std::size_t column;
+    // Null if it is an option.
+    const Field<TrialRow>* column;
   };
   double one(const Part& part, const StudySettings& settings, const TrialRow& row) {
-    if (!part.is_option) return row.values[part.column];
+    if (part.column != nullptr) return part.column->get(row);
     const std::string* text = find_value(settings, part.name);
     if (text == nullptr) return kNotMeasured;
     if (const auto number = parsed_number<double>(*text)) return *number;

@@ -21,14 +21,14 @@ namespace {
 
 std::string csv_head(const StudyDesign& design) {
   std::string head = list_head(design) + ",part";
-  for (const StudyColumn& column : columns_of(design.test)) head += "," + column.name;
+  for (const Field<TrialRow>& column : columns_of(design.test)) head += "," + column.name;
   return head + ",not_reached\n";
 }
 
 std::string csv_row(const StudyDesign& design, const TrialRow& row) {
   std::string line = list_row(design, row.trial) + "," + std::string(parts_of(design.test)[row.part]);
-  for (const double value : row.values) line += csv_number(value);
-  return line + "," + csv_field(row.not_reached) + "\n";
+  for (const Field<TrialRow>& column : columns_of(design.test)) line += csv_number(column.get(row));
+  return line + "," + csv_field(row.run.not_reached) + "\n";
 }
 
 std::string text_of(const StudySettings& settings, std::string_view key, const char* otherwise) {
@@ -36,11 +36,12 @@ std::string text_of(const StudySettings& settings, std::string_view key, const c
   return value == nullptr ? otherwise : *value;
 }
 
-StudyRow row_of_hand(const StudySettings& settings, const TrialRow& row) {
-  const std::string algorithm = text_of(settings, "algorithm", default_algorithm().id.name.c_str());
-  return milling_row(row, {.seed = seed_of(settings),
-                           .run = {algorithm_named(algorithm).id, {}, {}},
-                           .grip = std::stod(text_of(settings, "grip", "1"))});
+MeasuredRun run_of_hand(const StudySettings& settings, const TrialRow& row) {
+  MeasuredRun run = row.run;
+  run.algorithm = algorithm_named(text_of(settings, "algorithm", default_algorithm().id.name.c_str())).id;
+  run.seed = seed_of(settings);
+  run.grip = std::stod(text_of(settings, "grip", "1"));
+  return run;
 }
 
 // What hands that are compared have in common: the bone, the tool, and all else that varies but the hand
@@ -56,21 +57,21 @@ std::string group_of(const StudyDesign& design, const StudySettings& settings) {
 }
 
 // While a study is not done some hands have not yet tried all.
-std::vector<StudyRow> of_whole_hands(std::vector<StudyRow> rows) {
+std::vector<MeasuredRun> of_whole_hands(std::vector<MeasuredRun> rows) {
   std::map<std::uint64_t, std::size_t> tried;
   std::size_t most = 0;
-  for (const StudyRow& row : rows) most = std::max(most, ++tried[row.seed]);
-  std::erase_if(rows, [&](const StudyRow& row) { return tried[row.seed] < most; });
+  for (const MeasuredRun& row : rows) most = std::max(most, ++tried[row.seed]);
+  std::erase_if(rows, [&](const MeasuredRun& row) { return tried[row.seed] < most; });
   return rows;
 }
 
 // One for each group of hands.
 std::vector<PageSection> findings_sections(const StudyDesign& design, const std::vector<TrialRow>& all,
                                            const fs::path& figures) {
-  std::map<std::string, std::vector<StudyRow>> groups;
+  std::map<std::string, std::vector<MeasuredRun>> groups;
   for (const TrialRow& row : all) {
     const StudySettings settings = design.trial(row.trial);
-    groups[group_of(design, settings)].push_back(row_of_hand(settings, row));
+    groups[group_of(design, settings)].push_back(run_of_hand(settings, row));
   }
   std::vector<PageSection> sections;
   for (const auto& [group, rows] : groups) {

@@ -20,10 +20,10 @@ constexpr std::size_t kMaxPanels = 8;
 constexpr double kScatter = 0.2;
 constexpr double kBarHalf = 0.15;
 
-std::vector<double> all_values(const Study& study, std::string_view phase, const Metric& metric) {
+std::vector<double> all_values(const Study& study, std::string_view phase, const Field<RunMetrics>& metric) {
   std::vector<double> all;
   for (const AlgorithmId& algorithm : study.algorithms()) {
-    const auto values = study.values(algorithm, phase, metric);
+    const auto values = study.values(algorithm, phase, metric.get);
     all.insert(all.end(), values.begin(), values.end());
   }
   return all;
@@ -65,12 +65,13 @@ std::string tics(const Study& study) {
                      list);
 }
 
-std::string panel(const Study& study, std::string_view phase, const Metric& metric, FigureScript& figure) {
+std::string panel(const Study& study, std::string_view phase, const Field<RunMetrics>& metric,
+                  FigureScript& figure) {
   std::string plot;
   int place = 0;
   for (const AlgorithmId& algorithm : study.algorithms()) {
     const double x = place++;
-    const std::vector<double> values = study.values(algorithm, phase, metric);
+    const std::vector<double> values = study.values(algorithm, phase, metric.get);
     if (values.empty()) continue;
     plot += fmt::format(
         "{0}{1} index 1 with lines lw 2.5 lc rgb '{2}' notitle, {1} index 0 with points pt 7 ps 0.8 lw 1.3 "
@@ -81,10 +82,9 @@ std::string panel(const Study& study, std::string_view phase, const Metric& metr
 }
 
 // The title stands over the whole panel: some are wider than its axes.
-std::string title(const Metric& metric, const PanelGrid& grid, const PanelCell& cell) {
+std::string title(const Field<RunMetrics>& metric, const PanelGrid& grid, const PanelCell& cell) {
   constexpr double kTitle_px = 16;
-  return fmt::format("set label 2 '{}' at screen {:.4f},screen {:.4f} center\n",
-                     with_unit(metric.name, metric),
+  return fmt::format("set label 2 '{}' at screen {:.4f},screen {:.4f} center\n", label_of(metric),
                      (cell.left_px + 0.55 * cell.wide_px) / PanelGrid::kWidth_px,
                      (cell.top_px - kTitle_px) / grid.height_px);
 }
@@ -114,8 +114,8 @@ std::string pair_text(const PairedComparison& pair) {
 
 // "0.02 [0.01, 0.03]", with the hands where it could not be measured in all; else why not in any.
 std::string values_text(const Study& study, const AlgorithmId& algorithm, std::string_view phase,
-                        const Metric& metric) {
-  const std::vector<double> values = study.values(algorithm, phase, metric);
+                        const Field<RunMetrics>& metric) {
+  const std::vector<double> values = study.values(algorithm, phase, metric.get);
   if (values.empty()) return contact_words(study.contact(algorithm, phase));
   const std::string text = interval_text(median_interval(values));
   return values.size() == study.seeds().size()
@@ -135,13 +135,13 @@ HtmlTable algorithms_table(const Study& study, std::string_view phase) {
     not_reached.push_back("<span class=\"words\">" + html_escaped(words) + "</span>");
   }
   if (any) table.rows.push_back(std::move(not_reached));
-  for (const Metric& metric : study.metrics_of(phase)) {
-    table.rows.push_back({html_escaped(with_unit(metric.name, metric))});
+  for (const Field<RunMetrics>& metric : study.metrics_of(phase)) {
+    table.rows.push_back({html_escaped(label_of(metric))});
     for (const AlgorithmId& algorithm : study.algorithms()) {
       table.rows.back().push_back(values_text(study, algorithm, phase, metric));
     }
     std::string pairs;
-    for (const PairedComparison& pair : compare_algorithms(study, phase, metric)) {
+    for (const PairedComparison& pair : compare_algorithms(study, phase, metric.get)) {
       pairs += (pairs.empty() ? "" : "<br>") + pair_text(pair);
     }
     if (study.algorithms().size() > 1) table.rows.back().push_back(pairs);
@@ -153,9 +153,9 @@ HtmlTable algorithms_table(const Study& study, std::string_view phase) {
 std::vector<std::string> how_to_read(const Study& study) {
   const std::size_t n = study.seeds().size();
   std::vector<double> stiffness, damping;
-  for (const StudyRow& row : study.rows()) {
-    stiffness.push_back(row.stiffness_N_per_m);
-    damping.push_back(row.damping_Ns_per_m);
+  for (const MeasuredRun& row : study.rows()) {
+    stiffness.push_back(row.hand_stiffness_N_per_m);
+    damping.push_back(row.hand_damping_Ns_per_m);
   }
   const auto [softest, stiffest] = std::minmax_element(stiffness.begin(), stiffness.end());
   const auto [min, max] = std::minmax_element(damping.begin(), damping.end());
@@ -221,7 +221,7 @@ std::string phase_title(std::string_view phase) {
 }  // namespace
 
 Figure draw_study_figure(const Study& study, std::string_view phase, const std::filesystem::path& folder) {
-  std::vector<Metric> metrics = study.metrics_of(phase);
+  std::vector<Field<RunMetrics>> metrics = study.metrics_of(phase);
   if (metrics.size() > kMaxPanels) metrics.resize(kMaxPanels);
   PanelGrid grid{.columns = kColumns,
                  .rows = std::max<std::size_t>((metrics.size() + kColumns - 1) / kColumns, 1),

@@ -22,7 +22,7 @@ namespace {
 
 constexpr const char* kRecordVersion = "osteomill_study_version";
 constexpr const char* kSliceVersion = "osteomill_slice_version";
-constexpr std::uint64_t kVersion = 1;
+constexpr std::uint64_t kVersion = 2;
 
 void add_text(WordHash& hash, std::string_view text) {
   for (const char c : text) hash.add(static_cast<unsigned char>(c));
@@ -173,12 +173,13 @@ void write_slice(const StudyFolder& study, const Slice& slice) {
   std::vector<unsigned char> not_reached;
   for (const TrialRow& row : slice.rows) {
     trials.push_back(row.trial);
-    values.insert(values.end(), row.values.begin(), row.values.end());
-    not_reached.insert(not_reached.end(), row.not_reached.begin(), row.not_reached.end());
+    for (const Field<TrialRow>& column : columns_of(study.test)) values.push_back(column.get(row));
+    not_reached.insert(not_reached.end(), row.run.not_reached.begin(), row.run.not_reached.end());
     not_reached.push_back('\n');
   }
   std::string names;
-  for (const StudyColumn& column : columns_of(study.test)) names += (names.empty() ? "" : ",") + column.name;
+  for (const Field<TrialRow>& column : columns_of(study.test))
+    names += (names.empty() ? "" : ",") + column.name;
   write_hdf5(path, [&](hid_t file) {
     const Attributes write(path, file);
     write.put(kSliceVersion, kVersion);
@@ -198,24 +199,25 @@ namespace {
 // Nothing where the file holds something else than these rows.
 std::optional<Slice> rows_in(hid_t file, const fs::path& path, const StudyFolder& study, std::size_t number) {
   const StudyRecord& record = study.record;
-  const std::size_t parts = parts_of(study.test).size(), columns = columns_of(study.test).size();
-  const std::size_t count = record.size_of(number) * parts;
+  const std::vector<Field<TrialRow>>& columns = columns_of(study.test);
+  const auto parts = parts_of(study.test);
+  const std::size_t count = record.size_of(number) * parts.size();
   const Attributes read(path, file);
   if (read.get<std::uint64_t>("made_of") != record.hash() || read.get<std::uint64_t>("slice") != number)
     return std::nullopt;
   const auto trials = read_dataset<std::uint64_t>(file, "trial", count);
-  const auto values = read_dataset<double>(file, "values", count * columns);
+  const auto values = read_dataset<double>(file, "values", count * columns.size());
   const auto bytes =
       read_dataset<unsigned char>(file, "not_reached", read.get<std::uint64_t>("not_reached_bytes"));
   if (!trials || !values || !bytes) return std::nullopt;
   std::istringstream lines(std::string(bytes->begin(), bytes->end()));
   Slice slice{number, {}, read.get<double>("cpu_s")};
   for (std::size_t n = 0; n < count; ++n) {
-    TrialRow& row = slice.rows.emplace_back(TrialRow{.trial = trials->at(n), .part = n % parts});
-    if (row.trial != record.first_of(number) + n / parts || !std::getline(lines, row.not_reached))
+    TrialRow& row = slice.rows.emplace_back(TrialRow{.trial = trials->at(n), .part = n % parts.size()});
+    if (row.trial != record.first_of(number) + n / parts.size() || !std::getline(lines, row.run.not_reached))
       return std::nullopt;
-    const auto begin = values->begin() + static_cast<std::ptrdiff_t>(n * columns);
-    row.values.assign(begin, begin + static_cast<std::ptrdiff_t>(columns));
+    row.run.phase = parts[row.part];
+    for (std::size_t c = 0; c < columns.size(); ++c) columns[c].set(row, (*values)[n * columns.size() + c]);
   }
   return slice;
 }

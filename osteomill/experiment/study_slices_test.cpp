@@ -5,10 +5,15 @@
 #include <iterator>
 #include <string>
 
+#include "tests/shapes.h"
 #include <gtest/gtest.h>
 
+#include "osteomill/experiment/paper.h"
+#include "osteomill/experiment/run_trials.h"
 #include "osteomill/files/input_error.h"
 #include "osteomill/files/temporary_folder.h"
+#include "osteomill/recording/recording.h"
+#include "osteomill/report/run_groups.h"
 
 namespace osteomill {
 namespace {
@@ -26,12 +31,14 @@ StudyRecord sample_record() {
 
 Slice sample_slice(const StudyRecord& record, std::size_t number) {
   Slice slice{number, {}, 1.5};
-  const std::size_t columns = columns_of(StudyTest::milling).size();
   for (std::size_t n = 0; n < record.size_of(number); ++n) {
     for (std::size_t part = 0; part < 2; ++part) {
-      std::vector<double> values(columns, 0.1 * static_cast<double>(n + part));
-      values.back() = kNotMeasured;
-      slice.rows.push_back({record.first_of(number) + n, part, values, part == 0 ? "" : "too shallow, lost"});
+      TrialRow row{.trial = record.first_of(number) + n, .part = part};
+      for (const Field<TrialRow>& column : columns_of(StudyTest::milling))
+        column.set(row, 0.1 * static_cast<double>(n + part));
+      row.run.metrics.contacts_mean = kNotMeasured;
+      row.run.not_reached = part == 0 ? "" : "too shallow, lost";
+      slice.rows.push_back(row);
     }
   }
   return slice;
@@ -67,9 +74,13 @@ TEST(StudySlices, RowsComeBackAsTheyWere) {
   for (std::size_t n = 0; n < 4; ++n) {
     EXPECT_EQ(back->rows[n].trial, slice.rows[n].trial);
     EXPECT_EQ(back->rows[n].part, slice.rows[n].part);
-    EXPECT_EQ(back->rows[n].not_reached, slice.rows[n].not_reached);
-    EXPECT_EQ(back->rows[n].values.front(), slice.rows[n].values.front());
-    EXPECT_TRUE(std::isnan(back->rows[n].values.back()));
+    EXPECT_EQ(back->rows[n].run.not_reached, slice.rows[n].run.not_reached);
+    EXPECT_EQ(back->rows[n].run.phase, n % 2 == 0 ? kMilling : kHolding);
+    for (const Field<TrialRow>& column : columns_of(StudyTest::milling)) {
+      if (column.name == "contacts_mean") continue;
+      EXPECT_EQ(column.get(back->rows[n]), column.get(slice.rows[n])) << column.name;
+    }
+    EXPECT_TRUE(std::isnan(back->rows[n].run.metrics.contacts_mean));
   }
 }
 
@@ -107,21 +118,45 @@ TEST(StudySlices, ARecordComesBackAndNoneIsNone) {
   EXPECT_THROW(read_study_record(folder.path()), InputError);
 }
 
-// Columns, and what follows from others, survive a slice.
-TEST(StudySlices, AMillingRowIsTheSameAfterASlice) {
-  StudyRow row;
-  row.stiffness_N_per_m = 700;
-  row.run.phase = "holding";
-  row.run.metrics.force_N = {2, 3, 0.5, 0.1, 0.25};
-  row.run.metrics.removed_mm3 = 4;
-  row.run.not_reached = "lost";
-  const StudyRow back = milling_row(as_row(row));
-  EXPECT_EQ(back.stiffness_N_per_m, 700);
-  EXPECT_EQ(back.run.phase, "holding");
-  EXPECT_EQ(back.run.metrics.force_N.max, 3);
-  EXPECT_EQ(back.run.metrics.force_N.hp_share, 0.25);
-  EXPECT_EQ(back.run.metrics.removed_mm3, 4);
-  EXPECT_EQ(back.run.not_reached, "lost");
+bool same_number(double a, double b) {
+  return a == b || (std::isnan(a) && std::isnan(b));
+}
+
+// A trial of a study and the same trial in recordings: each figure, from the slice's file and from the
+// recordings'.
+TEST(StudySlices, ARowEqualsTheRowMeasuredFromItsRecording) {
+  const Volume bone = testing_support::shape_volume(testing_support::centred_cube(60, 0.25),
+                                                    testing_support::ball(Vec3::Zero(), 5));
+  TrialSettings settings;
+  settings.hand_and_device.script.milling_s = settings.hand_and_device.script.holding_s = 1.5;
+  settings.hand_and_device.seed = 3;
+  const TrialPlan plan =
+      with_seed({bone, "a ball", {0, 1000}, place_entry(bone, settings.tool, {}, {}), settings, ""}, 3);
+  const TemporaryFolder folder;
+  const StudyFolder study{folder.path(), {.trials = 1, .trials_a_slice = 1}};
+  write_slice(study, run_slice(study, 0, {plan}, 1, {}));
+  const auto slice = read_slice(study, 0);
+  ASSERT_TRUE(slice);
+  const EntryPictures pictures(bone, 1000, plan.entry, {}, false);
+  const std::vector<fs::path> recorded = record_trial(plan, pictures, folder / "recordings", {});
+  ASSERT_EQ(recorded.size(), slice->rows.size());
+  for (std::size_t part = 0; part < recorded.size(); ++part) {
+    const Recording recording = read_recording(recorded[part]);
+    const TrialRow measured{.part = part, .run = measured_run(recording, phase_metrics(recording))};
+    const TrialRow& row = slice->rows[part];
+    EXPECT_EQ(row.run.phase, measured.run.phase);
+    EXPECT_EQ(row.run.not_reached, measured.run.not_reached);
+    std::size_t compared = 0;
+    for (const Field<TrialRow>& column : columns_of(StudyTest::milling)) {
+      if (column.has(kOfTheMachine)) continue;
+      EXPECT_TRUE(same_number(column.get(row), column.get(measured)))
+          << column.name << ": " << column.get(row) << " in the study, " << column.get(measured);
+      ++compared;
+    }
+    EXPECT_GT(compared, 25u);
+    EXPECT_GT(row.run.metrics.contact.any, 0.1) << "enough to be measured";
+    EXPECT_NE(row.run.metrics.contact.torque, row.run.metrics.contact.any) << "each is measured for itself";
+  }
 }
 
 }  // namespace

@@ -22,19 +22,19 @@ namespace {
 
 using testing_support::sample_rows;
 
-Metric force_hp() {
-  return key_metrics()[0];
+RunFigure force_hp() {
+  return metric("force_hp_rms_N").get;
 }
 
 TEST(Study, RowsAreOrderedBySeedAndThenAsInTheSummary) {
-  std::vector<StudyRow> rows = sample_rows(2);
-  for (StudyRow& r : rows) r.seed = r.seed == 1 ? 7 : 3;
+  std::vector<MeasuredRun> rows = sample_rows(2);
+  for (MeasuredRun& r : rows) r.seed = r.seed == 1 ? 7 : 3;
   const Study study(rows);
   EXPECT_EQ(study.seeds(), (std::vector<std::uint64_t>{7, 3}));
   EXPECT_EQ(study.rows().size(), 12u);
   EXPECT_EQ(study.rows()[0].seed, 7u);
-  EXPECT_EQ(study.rows()[0].run.phase, kMilling);
-  EXPECT_EQ(study.rows()[1].run.algorithm, "surface-points");
+  EXPECT_EQ(study.rows()[0].phase, kMilling);
+  EXPECT_EQ(study.rows()[1].algorithm, "surface-points");
   EXPECT_EQ(study.rows_of_seed(1).front().seed, 3u);
   EXPECT_EQ(study.values(algorithm_named("surface-points").id, kHolding, force_hp()),
             (std::vector<double>{1.01, 1.02}));
@@ -44,15 +44,15 @@ TEST(Study, RowsAreOrderedBySeedAndThenAsInTheSummary) {
 TEST(Study, SeedsThatWereNotTriedAlikeAreRefused) {
   EXPECT_THROW(Study({}), std::invalid_argument);
   for (const std::size_t missing : {0u, 5u, 6u, 11u, 17u}) {
-    std::vector<StudyRow> rows = sample_rows(3);
+    std::vector<MeasuredRun> rows = sample_rows(3);
     rows.erase(rows.begin() + static_cast<std::ptrdiff_t>(missing));
     EXPECT_THROW(Study{rows}, std::invalid_argument) << missing;
   }
-  std::vector<StudyRow> twice = sample_rows(2);
+  std::vector<MeasuredRun> twice = sample_rows(2);
   twice[3] = twice[4];
   EXPECT_THROW(Study{twice}, std::invalid_argument);
-  std::vector<StudyRow> all_twice = sample_rows(1);
-  const std::vector<StudyRow> again = all_twice;
+  std::vector<MeasuredRun> all_twice = sample_rows(1);
+  const std::vector<MeasuredRun> again = all_twice;
   all_twice.insert(all_twice.end(), again.begin(), again.end());
   EXPECT_THROW(Study{all_twice}, std::invalid_argument);
 }
@@ -74,11 +74,11 @@ TEST(Study, WhatDiffersInEveryHandIsSignificantFromSevenHandsOn) {
 }
 
 TEST(Study, FindingsAreCountedHandByHand) {
-  std::vector<StudyRow> rows = sample_rows(5);
-  for (StudyRow& r : rows) {
+  std::vector<MeasuredRun> rows = sample_rows(5);
+  for (MeasuredRun& r : rows) {
     // Seed 4 alone does not buzz, and 1 turns least in three of the five.
-    if (r.seed == 4 && r.run.algorithm == "surface-points") r.run.metrics.force_N.hp_rms = 0.01;
-    if (r.run.algorithm == "line-proxy") r.run.metrics.shaft.spread_deg = r.seed < 3 ? 1 : -1;
+    if (r.seed == 4 && r.algorithm == "surface-points") r.metrics.force_N.hp_rms = 0.01;
+    if (r.algorithm == "line-proxy") r.metrics.shaft.spread_deg = r.seed < 3 ? 1 : -1;
   }
   const auto findings = check_study_findings(Study(rows));
   ASSERT_EQ(findings.size(), 9u);
@@ -102,7 +102,7 @@ TEST(Study, FindingsAreCountedHandByHand) {
 
 // 2's hands in other grips are no rows of the study, and decide one finding.
 TEST(Study, OtherGripsAreKeptApartForTheFindingOnThem) {
-  std::vector<StudyRow> rows = sample_rows(3);
+  std::vector<MeasuredRun> rows = sample_rows(3);
   const std::size_t all = rows.size();
   EXPECT_EQ(check_study_findings(Study(rows))[2].of_medians.verdict, Verdict::not_recorded);
   for (const double grip : {2.0, 0.5}) {
@@ -137,12 +137,12 @@ TEST(Study, TheSectionSaysWhatSoFewHandsCanShow) {
 }
 
 TEST(Study, AsManySeedsAreNeededAsCanShowADifference) {
-  std::vector<StudyRow> rows = sample_rows(1);
+  std::vector<MeasuredRun> rows = sample_rows(1);
   EXPECT_EQ(Study(rows).seeds_needed(), 7u) << "three pairs, 3 * 2^-6 <= 0.05";
-  for (const StudyRow& r : sample_rows(1)) {
-    if (r.run.algorithm == "line-proxy") {
+  for (const MeasuredRun& r : sample_rows(1)) {
+    if (r.algorithm == "line-proxy") {
       rows.push_back(r);
-      rows.back().run.algorithm = algorithm_named("barrier-shell").id;
+      rows.back().algorithm = algorithm_named("barrier-shell").id;
     }
   }
   EXPECT_EQ(Study(rows).seeds_needed(), 8u) << "six pairs";
@@ -164,15 +164,15 @@ TEST(Study, TheTableHasARowForEachPhaseOfEachTrial) {
 TEST(Study, TheTableGivesTheStudyBackToTheRowsThatItIsOf) {
   const TemporaryFolder folder;
   const std::filesystem::path path = folder / "study.csv";
-  std::vector<StudyRow> rows = sample_rows(2);
+  std::vector<MeasuredRun> rows = sample_rows(2);
   for (const double grip : {2.0, 0.5}) {
     rows.push_back(testing_support::row(1, "surface-points", kHolding, {1.2 / grip, 2}));
     rows.back().grip = grip;
-    rows.back().run.not_reached = "the tool was lost";
-    rows.back().run.metrics.shaft.spread_deg = std::numeric_limits<double>::quiet_NaN();
+    rows.back().not_reached = "the tool was lost";
+    rows.back().metrics.shaft.spread_deg = std::numeric_limits<double>::quiet_NaN();
   }
   write_study_csv(path, Study(rows));
-  std::vector<StudyRow> recorded = sample_rows(1);
+  std::vector<MeasuredRun> recorded = sample_rows(1);
   const std::optional<Study> read = read_study_csv(path, recorded);
   ASSERT_TRUE(read);
   const std::filesystem::path again = folder / "again.csv";
@@ -184,9 +184,9 @@ TEST(Study, TheTableGivesTheStudyBackToTheRowsThatItIsOf) {
   EXPECT_EQ(text(again), text(path));
   EXPECT_EQ(check_study_findings(*read)[2].of_medians.measured,
             check_study_findings(Study(rows))[2].of_medians.measured);
-  std::erase_if(recorded, [](const StudyRow& r) { return r.run.algorithm == "line-proxy"; });
+  std::erase_if(recorded, [](const MeasuredRun& r) { return r.algorithm == "line-proxy"; });
   EXPECT_EQ(read_study_csv(path, recorded)->algorithms().size(), 2u) << "a part of what was recorded";
-  recorded[0].run.metrics.force_N.hp_rms *= 1.001;
+  recorded[0].metrics.force_N.hp_rms *= 1.001;
   EXPECT_FALSE(read_study_csv(path, recorded)) << "of another comparison in the same folder";
   EXPECT_FALSE(read_study_csv(folder / "none.csv", sample_rows(1)));
 }

@@ -38,10 +38,6 @@ inline constexpr std::string_view kScriptEntryKey = "script.entry";
 /// The key of the setting in which it says for how long the tool was to be held still, in s.
 inline constexpr std::string_view kScriptHoldingKey = "script.holding";
 
-/// The keys of those in which it says how stiff the hand is, in N/mm, and how damped, in N s/mm.
-inline constexpr std::string_view kHandStiffnessKey = "hand.stiffness";
-inline constexpr std::string_view kHandDampingKey = "hand.damping";
-
 /// The key of the setting in which a recording says TrialPlan::matched_N_per_mm.
 inline constexpr std::string_view kMatchedStiffnessKey = "matched.felt_stiffness";
 

@@ -22,28 +22,25 @@ inline std::string_view name_of(StudyTest test) {
 /// The parts of a test, one row each.
 std::span<const std::string_view> parts_of(StudyTest test);
 
-/// A column of the rows of a test.
-struct StudyColumn {
-  std::string name;
-  /// In words, with the unit.
-  std::string label;
+/// What came of a press on a wall.
+struct WallFigures {
+  /// 1 if the handle came to rest; not a number if the wall gave way.
+  double passive = kNotMeasured;
+  double carries = 0;
+  double felt_N_per_mm = kNotMeasured;
+  double rule_N_per_mm = 0;
 };
-const std::vector<StudyColumn>& columns_of(StudyTest test);
+WallFigures wall_figures(const TrialSettings& settings, const WallPressResult& result);
 
-/// A part of a trial as a slice's file has it: a value for each column, not a number where it could not be
-/// measured, and what was not reached.
+/// A part of a trial: of `milling` a run, of `wall` a press.
 struct TrialRow {
   std::size_t trial = 0;
   std::size_t part = 0;
-  std::vector<double> values;
-  std::string not_reached;
+  MeasuredRun run = {};
+  WallFigures wall = {};
 };
 
-/// Of trial 0.
-TrialRow as_row(const StudyRow& row);
-TrialRow as_row(const TrialSettings& settings, const WallPressResult& result);
-
-/// A row of `milling` as it was before `as_row`, with the seed, algorithm and grip of `of`.
-StudyRow milling_row(const TrialRow& row, StudyRow of = {});
+/// Returns the numbers of a test's rows: of `milling` the hand and every figure of its run.
+const std::vector<Field<TrialRow>>& columns_of(StudyTest test);
 
 }  // namespace osteomill

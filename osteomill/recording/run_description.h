@@ -35,6 +35,10 @@ inline constexpr std::string_view kNotReachedKey = "not_reached";
 /// and in no others. Recordings of nothing that is compared have none.
 inline constexpr std::string_view kComparisonKey = "comparison";
 
+/// The keys of those that say how stiff a simulated hand is, in N/mm, and how damped, in N s/mm.
+inline constexpr std::string_view kHandStiffnessKey = "hand.stiffness";
+inline constexpr std::string_view kHandDampingKey = "hand.damping";
+
 /// Where and when a recording was made. Nothing of it is of a patient.
 struct Origin {
   /// "2026-11-22T13:45:00Z".

@@ -1,12 +1,15 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "osteomill/numbers/distribution.h"
+#include "osteomill/numbers/field.h"
 #include "osteomill/recording/recording.h"
 
 namespace osteomill {
@@ -135,15 +138,33 @@ inline RunMetrics run_metrics(const Recording& recording) {
   return run_metrics(recording, 0);
 }
 
-/// What was run, and its figures.
+/// Flags of the fields of RunMetrics: a smaller one is better (unrest in the hand, and time); the machine's
+/// clock decides, so that it differs from run to run.
+inline constexpr unsigned kLessIsBetter = 1, kOfTheMachine = 2;
+
+/// Returns every figure of a run, the columns of summary.csv in their order. A value is not a number if it
+/// could not be measured.
+template <>
+const std::vector<Field<RunMetrics>>& fields_of<RunMetrics>();
+
+/// Returns the figure of this column. Throws std::invalid_argument if there is none.
+const Field<RunMetrics>& metric(std::string_view column);
+
+/// What was run, in which hand, and its figures.
 struct MeasuredRun {
   AlgorithmId algorithm;
   std::string phase;
   RunMetrics metrics;
-  /// Null where no recording was kept.
+  /// Null if no recording was kept.
   const Recording* recording = nullptr;
   /// What of its plan it did not reach (kNotReachedKey); empty for nothing.
   std::string not_reached = {};
+  std::uint64_t seed = 0;
+  /// Of the simulated hand; 0 if a person held the tool.
+  double hand_stiffness_N_per_m = 0;
+  double hand_damping_Ns_per_m = 0;
+  /// How firmly that hand gripped: 1 for as it is, else for a trial beside it (TrialPlan::grip).
+  double grip = 1;
 };
 
 }  // namespace osteomill

@@ -14,7 +14,19 @@ namespace osteomill {
 MeasuredRun measured_run(const Recording& recording, const RunMetrics& metrics) {
   const RunDescription& d = recording.description;
   const std::string* not_reached = find_setting<std::string>(d, kNotReachedKey);
-  return {d.algorithm, d.phase, metrics, &recording, not_reached == nullptr ? "" : *not_reached};
+  constexpr double kMmPerM = 1000;
+  const auto of_hand = [&](std::string_view key) {
+    const double* value = find_setting<double>(d, key);
+    return value == nullptr ? 0 : kMmPerM * *value;
+  };
+  return {.algorithm = d.algorithm,
+          .phase = d.phase,
+          .metrics = metrics,
+          .recording = &recording,
+          .not_reached = not_reached == nullptr ? "" : *not_reached,
+          .seed = d.seed,
+          .hand_stiffness_N_per_m = of_hand(kHandStiffnessKey),
+          .hand_damping_Ns_per_m = of_hand(kHandDampingKey)};
 }
 
 const MeasuredRun* RunGroup::find(std::string_view algorithm, std::string_view phase) const {

@@ -83,11 +83,18 @@ struct RunFigure {
   const char* caption;
 };
 
+// Of a table of metrics.
+struct Row {
+  const char* column;
+  const char* label;
+  const char* format = "{:.4g}";
+};
+
 // What a reader wants to know at once: figures and the metrics beside them.
 struct Topic {
   const char* title;
   std::vector<RunFigure> figures;
-  std::vector<MetricTable> tables;
+  std::vector<Row> rows;
 };
 
 const Topic kFelt[] = {
@@ -95,26 +102,40 @@ const Topic kFelt[] = {
      {{"force", draw_force_figure,
        "Magnitude of the force sent to the hand. The panels of a row have one scale. Each pixel's least and "
        "greatest are drawn, so no spike is lost. What is shaded, before 0 s, is not counted in the tables."}},
-     {MetricTable::force}},
+     {{"force_mean_N", "Force while in contact, mean"},
+      {"force_max_N", "… greatest"},
+      {"force_hp_rms_N", "… above 20 Hz, rms"},
+      {"force_step_max_N", "… greatest change in a tick"}}},
     {"Torque",
      {{"torque", draw_torque_figure, "Magnitude of the torque sent to the hand, about the burr's centre."}},
-     {MetricTable::torque}},
+     {{"torque_mean_Nmm", "Torque while in contact, mean"},
+      {"torque_max_Nmm", "… greatest"},
+      {"torque_hp_rms_Nmm", "… above 20 Hz, rms"},
+      {"torque_step_max_Nmm", "… greatest change in a tick"}}},
     {"Shaft",
      {{"shaft", draw_shaft_figure,
        "Where the simulated tool's shaft points while it touches, in degrees from its mean direction and "
        "coloured by time. Each panel has a scale of its own."}},
-     {MetricTable::shaft}},
+     {{"shaft_spread_deg", "Shaft direction, spread"}, {"shaft_excursion_deg", "… greatest excursion"}}},
     {"Path and bone removed",
      {{"removed", draw_removed_figure,
        "Bone removed since the milling began, in mm³ of bone of the reference density."},
       {"path", draw_path_figure, "Where the burr's centre was, along the scan's axes."}},
-     {MetricTable::path}}};
+     {{"removed_mm3", "Bone removed"},
+      {"path_mm", "Path of the burr's centre"},
+      {"contact_share", "In contact, share of the time"},
+      {"burr_contact_share", "… with the burr"},
+      {"shaft_contact_share", "… with the shaft"}}}};
 const Topic kTimes{
     "How long the ticks took",
     {{"rate", draw_rate_figure,
       "Compute time of each tick, the algorithm's and the milling's: CPU time where the trial ran in "
       "simulated time, else by the clock. A loop at 1000 Hz is late where it goes above the dashed line."}},
-    {MetricTable::times, MetricTable::rate}};
+    {{"steps", "Ticks", "{:.0f}"},
+     {"tick_us_median", "Compute time of a tick, median"},
+     {"tick_us_p99", "… 99th percentile"},
+     {"tick_us_max", "… greatest"},
+     {"rate_hz", "Haptic rate that a 1 kHz loop would hold", "{:.1f}"}}};
 
 CaptionedFigure drawn(const RunFigure& figure, const RunGroup& group, const PageText& text,
                       const fs::path& folder) {
@@ -124,20 +145,17 @@ CaptionedFigure drawn(const RunFigure& figure, const RunGroup& group, const Page
   return {figure.draw(group, folder).svg, std::move(caption)};
 }
 
-std::string cell(const Metric& metric, const MeasuredRun& run) {
-  const double value = metric(run.metrics);
+std::string cell(const Row& row, const MeasuredRun& run) {
+  const double value = metric(row.column).get(run.metrics);
   return std::isnan(value) ? contact_words(run.metrics.contact)
-                           : fmt::format(fmt::runtime(metric.format), value);
+                           : fmt::format(fmt::runtime(row.format), value);
 }
 
 std::vector<MetricLine> lines_of(const Topic& topic) {
   std::vector<MetricLine> lines;
-  for (const MetricTable table : topic.tables) {
-    for (const Metric& metric : all_metrics()) {
-      if (metric.table != table) continue;
-      lines.push_back(
-          {with_unit(metric.label, metric), [&metric](const MeasuredRun& run) { return cell(metric, run); }});
-    }
+  for (const Row& row : topic.rows) {
+    lines.push_back({with_unit(row.label, metric(row.column).unit),
+                     [row](const MeasuredRun& run) { return cell(row, run); }});
   }
   return lines;
 }

@@ -15,28 +15,29 @@ struct Values {
   double torque_hp = 0;
 };
 
-inline StudyRow row(std::uint64_t seed, std::string_view algorithm, std::string_view phase,
-                    const Values& values) {
-  StudyRow row{.seed = seed, .run = {algorithm_named(algorithm).id, std::string(phase), {}}};
-  row.stiffness_N_per_m = 100 * static_cast<double>(seed);
-  row.damping_Ns_per_m = 5;
-  row.run.metrics.rate_hz = 1000;
-  row.run.metrics.contact = {1, 1, 1, 1, 1};
-  row.run.metrics.force_N.mean = 2;
-  row.run.metrics.force_N.hp_rms = values.force_hp;
-  row.run.metrics.force_N.hp_share = values.force_hp / 2;
-  row.run.metrics.torque_Nmm.mean = 10;
-  row.run.metrics.turns = {0.5, 0.1};
-  row.run.metrics.torque_follows_force = 0.7;
-  row.run.metrics.contacts_mean = 15;
-  row.run.metrics.torque_Nmm.hp_rms = values.torque_hp;
+inline MeasuredRun row(std::uint64_t seed, std::string_view algorithm, std::string_view phase,
+                       const Values& values) {
+  MeasuredRun row{
+      .algorithm = algorithm_named(algorithm).id, .phase = std::string(phase), .metrics = {}, .seed = seed};
+  row.hand_stiffness_N_per_m = 100 * static_cast<double>(seed);
+  row.hand_damping_Ns_per_m = 5;
+  row.metrics.rate_hz = 1000;
+  row.metrics.contact = {1, 1, 1, 1, 1};
+  row.metrics.force_N.mean = 2;
+  row.metrics.force_N.hp_rms = values.force_hp;
+  row.metrics.force_N.hp_share = values.force_hp / 2;
+  row.metrics.torque_Nmm.mean = 10;
+  row.metrics.turns = {0.5, 0.1};
+  row.metrics.torque_follows_force = 0.7;
+  row.metrics.contacts_mean = 15;
+  row.metrics.torque_Nmm.hp_rms = values.torque_hp;
   return row;
 }
 
 // Seeds from 1: 2 buzzes ten times as much as 1 and 3, which change places from seed to seed; or so many
 // times that much.
-inline std::vector<StudyRow> sample_rows(std::uint64_t seeds, double buzz = 1) {
-  std::vector<StudyRow> rows;
+inline std::vector<MeasuredRun> sample_rows(std::uint64_t seeds, double buzz = 1) {
+  std::vector<MeasuredRun> rows;
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
     const double hand = 1 + 0.01 * static_cast<double>(seed);
     const double turn = seed % 2 == 0 ? 0.01 : -0.01;
