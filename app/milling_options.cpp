@@ -91,7 +91,7 @@ std::string meaning_of_option(const std::string& option) {
   for (const AlgorithmDescription& algorithm : all_algorithms()) {
     const SettingDescription* setting = setting_of_option(algorithm, option);
     if (setting == nullptr) continue;
-    text += (text.empty() ? "" : "; ") + algorithm.id.name + ": " + setting->meaning;
+    text += (text.empty() ? "" : "; ") + algorithm.id.name + ": " + setting->doc;
     if (!setting->unit.empty()) text += " (" + setting->unit + ")";
   }
   return text;

@@ -36,7 +36,7 @@ void print_settings(const AlgorithmDescription& algorithm) {
   for (const SettingDescription& setting : algorithm.settings) {
     const std::string option = setting.option.empty() ? "" : fmt::format(" (also `--{}`)", setting.option);
     fmt::print("| `{}` | {} | {} | {:g} | {}{} |\n", setting.name, setting.unit, range_text(setting.range),
-               setting.value, setting.meaning, option);
+               setting.value, setting.doc, option);
   }
 }
 

@@ -28,7 +28,7 @@ void mill(benchmark::State& state, double burr_radius_mm, double spacing_mm) {
   const Volume bone = flat_bone(spacing_mm, burr_radius_mm);
   for ([[maybe_unused]] auto _ : state) {
     Volume volume = bone;
-    barrier_shell::BarrierShell algorithm(barrier_shell::Settings::defaults());
+    barrier_shell::BarrierShell algorithm(barrier_shell::Settings{});
     algorithm.prepare({&volume, tool});
     BurrMill burr(volume.geometry(), burr_radius_mm, {0, 1000}, {});
     TickTimes both, cutting, refreshing, steps;

@@ -44,12 +44,8 @@ class Cushion final : public HapticAlgorithm {
 AlgorithmDescription cushion(double height_mm) {
   AlgorithmDescription description;
   description.id = {"cushion", "9 cushion", "#8e24aa"};
-  description.settings = {{.name = "spring",
-                           .unit = "N/mm",
-                           .range = SettingRange::positive(),
-                           .value = 2,
-                           .meaning = "How stiff it is",
-                           .option = "stiffness"}};
+  description.settings = {
+      {{"spring", "N/mm", NumberRange::positive(), "How stiff it is", 0, "stiffness"}, 2}};
   description.make = [height_mm](std::span<const double> values) {
     return std::make_unique<Cushion>(values[0], height_mm);
   };

@@ -13,15 +13,19 @@ constexpr std::string_view kOnce[] = {"press"};
 
 using Columns = std::vector<Field<TrialRow>>;
 
+template <typename Place>
+Field<TrialRow> column(const char* name, const char* unit, Place place, const char* doc) {
+  return field<TrialRow>({name, unit, NumberRange::not_negative(), doc}, place);
+}
+
 Columns milling_columns() {
-  const NumberRange range = NumberRange::not_negative();
   Columns columns{
-      field<TrialRow>(
+      column(
           "hand_stiffness_N_per_m", "N/m", [](auto& row) -> auto& { return row.run.hand_stiffness_N_per_m; },
-          range, "stiffness of the hand"),
-      field<TrialRow>(
+          "stiffness of the hand"),
+      column(
           "hand_damping_Ns_per_m", "N s/m", [](auto& row) -> auto& { return row.run.hand_damping_Ns_per_m; },
-          range, "damping of the hand")};
+          "damping of the hand")};
   std::ranges::move(fields_within<TrialRow>(
                         [](auto& row) -> auto& { return row.run.metrics; }, fields_of<RunMetrics>()),
                     std::back_inserter(columns));
@@ -29,15 +33,16 @@ Columns milling_columns() {
 }
 
 Columns wall_columns() {
-  const auto column = [](const char* name, const char* unit, double WallFigures::*place, const char* doc) {
-    return field<TrialRow>(
-        name, unit, [place](auto& row) -> auto& { return row.wall.*place; }, NumberRange::not_negative(),
-        doc);
-  };
-  return {column("passive", "", &WallFigures::passive, "share that stays passive"),
-          column("carries", "", &WallFigures::carries, "share that carries 0.5 N"),
-          column("felt_N_per_mm", "N/mm", &WallFigures::felt_N_per_mm, "felt stiffness"),
-          column("rule_N_per_mm", "N/mm", &WallFigures::rule_N_per_mm, "2 b / (T + 2 τ)")};
+  return {column(
+              "passive", "", [](auto& row) -> auto& { return row.wall.passive; }, "share that stays passive"),
+          column(
+              "carries", "", [](auto& row) -> auto& { return row.wall.carries; }, "share that carries 0.5 N"),
+          column(
+              "felt_N_per_mm", "N/mm", [](auto& row) -> auto& { return row.wall.felt_N_per_mm; },
+              "felt stiffness"),
+          column(
+              "rule_N_per_mm", "N/mm", [](auto& row) -> auto& { return row.wall.rule_N_per_mm; },
+              "2 b / (T + 2 τ)")};
 }
 
 }  // namespace

@@ -1,8 +1,6 @@
 #include "osteomill/haptics/algorithm_description.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
@@ -18,11 +16,6 @@ std::string number(double value) {
   std::ostringstream text;
   text << value;
   return text.str();
-}
-
-// NaN is in no range.
-bool lies_within(const SettingRange& range, double value) {
-  return value >= range.min && value <= range.max && (!range.whole || std::floor(value) == value);
 }
 
 }  // namespace
@@ -54,21 +47,8 @@ const SettingDescription* setting_of_option(const AlgorithmDescription& algorith
   return nullptr;
 }
 
-std::string range_text(const SettingRange& range) {
-  const bool has_end = range.max < std::numeric_limits<double>::max();
-  std::ostringstream text;
-  text << (range.whole ? "a whole number " : "a number ");
-  if (range.min == SettingRange::positive().min) {
-    text << "above 0";
-  } else {
-    text << (has_end ? "from " : "of ") << range.min << (has_end ? "" : " or more");
-  }
-  if (has_end) text << " to " << range.max;
-  return text.str();
-}
-
 void require_in_range(const AlgorithmId& algorithm, const SettingDescription& setting, double value) {
-  if (lies_within(setting.range, value)) return;
+  if (setting.range.contains(value)) return;
   throw std::invalid_argument(algorithm.name + ": " + setting.name + " must be " + range_text(setting.range) +
                               ", not " + number(value));
 }
@@ -79,7 +59,7 @@ std::vector<SettingValue> setting_values(const AlgorithmDescription& algorithm,
   for (const SettingDescription& setting : algorithm.settings) {
     values.push_back({setting.name, setting.value, setting.unit});
   }
-  const auto set = [&](const HapticSettings::Named& named, std::string SettingDescription::*name) {
+  const auto set = [&](const HapticSettings::Named& named, std::string FieldDescription::*name) {
     bool known = false;
     for (std::size_t n = 0; n < values.size(); ++n) {
       const SettingDescription& setting = algorithm.settings[n];
@@ -91,10 +71,10 @@ std::vector<SettingValue> setting_values(const AlgorithmDescription& algorithm,
     return known;
   };
   for (const HapticSettings::Named& named : settings.named) {
-    if (named.algorithm.empty()) set(named, &SettingDescription::option);
+    if (named.algorithm.empty()) set(named, &FieldDescription::option);
   }
   for (const HapticSettings::Named& named : settings.named) {
-    if (named.algorithm == algorithm.id.name && !set(named, &SettingDescription::name)) {
+    if (named.algorithm == algorithm.id.name && !set(named, &FieldDescription::name)) {
       throw std::invalid_argument(algorithm.id.name + ": there is no setting " + named.setting);
     }
   }

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <functional>
-#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -9,6 +8,7 @@
 #include <vector>
 
 #include "osteomill/haptics/haptic_algorithm.h"
+#include "osteomill/numbers/field.h"
 
 namespace osteomill {
 
@@ -62,37 +62,11 @@ bool is_plain_name(std::string_view name);
 /// Each once, in the order of their labels.
 std::vector<AlgorithmId> each_once(std::vector<AlgorithmId> algorithms);
 
-/// A number's range; both ends belong to it.
-struct SettingRange {
-  double min = 0;
-  double max = std::numeric_limits<double>::max();
-  /// A count or a choice.
-  bool whole = false;
-
-  static constexpr SettingRange positive() { return {.min = std::numeric_limits<double>::min()}; }
-  static constexpr SettingRange not_negative() { return {}; }
-  static constexpr SettingRange count(int min, int max) {
-    return {.min = static_cast<double>(min), .max = static_cast<double>(max), .whole = true};
-  }
-};
-
-/// In words: "a number above 0", "a whole number from 1 to 32".
-std::string range_text(const SettingRange& range);
-
-/// All there is to say of one setting; nothing of it is said elsewhere.
-struct SettingDescription {
-  /// As `--set ALGORITHM.NAME=VALUE`, configuration files and recordings have it.
-  std::string name;
-  /// Empty for a pure number.
-  std::string unit;
-  SettingRange range;
+/// A setting of an algorithm. Its name is that in `--set ALGORITHM.NAME=VALUE`, configuration files and
+/// recordings; every algorithm's setting of the same option is set by that option.
+struct SettingDescription : FieldDescription {
   /// Its default.
   double value = 0;
-  /// One line.
-  std::string meaning;
-  /// An option of the command line (without the dashes) that sets it too, and every setting of another
-  /// algorithm that names the same option; empty for none.
-  std::string option = {};
 };
 
 /// A setting with the value that is in force.

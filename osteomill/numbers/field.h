@@ -31,28 +31,44 @@ struct NumberRange {
   static constexpr NumberRange finite() { return {}; }
   static constexpr NumberRange positive() { return {.min = std::numeric_limits<double>::min()}; }
   static constexpr NumberRange not_negative() { return {.min = 0}; }
+  /// Not negative; infinite for no limit.
+  static constexpr NumberRange limit() { return {.min = 0, .max = std::numeric_limits<double>::infinity()}; }
   static constexpr NumberRange on_or_off() { return {.min = 0, .max = 1, .whole = true}; }
   static constexpr NumberRange count(int min, int max = std::numeric_limits<int>::max()) {
     return {.min = static_cast<double>(min), .max = static_cast<double>(max), .whole = true};
   }
 };
 
-/// Describes one number of a struct once, for everything that names, reads, checks, sets or shows it: the
-/// command line, files, tables. Switches are 0 or 1.
-template <typename Struct>
-struct Field {
+/// Returns the range in words: "a number above 0", "a whole number from 1 to 32", "on or off".
+std::string range_text(const NumberRange& range);
+
+/// All there is to say of one value, for everything that names, checks, shows, reads or writes it: the
+/// command line, files, tables.
+struct FieldDescription {
+  /// In files; empty if they do not have it.
   std::string name;
-  /// Of ASCII ("mm^3"); empty for a pure number.
+  /// Of ASCII in files of settings ("mm^3"); empty for a pure number.
   std::string unit;
+  /// Of a number; a switch is 0 or 1.
   NumberRange range;
   /// One line.
   std::string doc;
-  std::function<double(const Struct&)> get;
-  std::function<void(Struct&, double)> set;
   /// What else holds of it, as the struct's header defines.
   unsigned flags = 0;
+  /// On the command line, as a key of files for --config and of studies; empty if there is none.
+  std::string option = {};
 
   bool has(unsigned flag) const { return (flags & flag) != 0; }
+};
+
+/// A flag of any struct's fields: a file may lack it, and it then keeps its default.
+inline constexpr unsigned kMayBeAbsent = 1u << 31;
+
+/// One value of a struct: a number, or a text.
+template <typename Struct, typename Value = double>
+struct Field : FieldDescription {
+  std::function<Value(const Struct&)> get;
+  std::function<void(Struct&, const Value&)> set;
 };
 
 /// Returns every field of a struct, in the order in which people should read them; specialised beside each
@@ -63,13 +79,9 @@ const std::vector<Field<Struct>>& fields_of();
 /// Makes the field of a number, a switch or an enumeration. `place` gives a reference to it: a pointer to the
 /// member, or a function that takes the struct, constant or not.
 template <typename Struct, typename Place>
-Field<Struct> field(std::string name, std::string unit, Place place, NumberRange range, std::string doc,
-                    unsigned flags = 0) {
+Field<Struct> field(FieldDescription description, Place place) {
   using Value = std::remove_cvref_t<std::invoke_result_t<Place, Struct&>>;
-  return {std::move(name),
-          std::move(unit),
-          range,
-          std::move(doc),
+  return {std::move(description),
           [place](const Struct& s) { return static_cast<double>(std::invoke(place, s)); },
           [place](Struct& s, double value) {
             if constexpr (std::is_same_v<Value, bool>) {
@@ -77,8 +89,7 @@ Field<Struct> field(std::string name, std::string unit, Place place, NumberRange
             } else {
               std::invoke(place, s) = static_cast<Value>(value);
             }
-          },
-          flags};
+          }};
 }
 
 /// Returns the fields of a part of `Outer` as fields of the whole. `place` gives a reference to the part.
@@ -88,19 +99,24 @@ std::vector<Field<Outer>> fields_within(Place place, const std::vector<Field<Inn
   std::vector<Field<Outer>> fields;
   for (const Field<Inner>& one : inner) {
     fields.push_back(
-        {one.name, one.unit, one.range, one.doc,
-         [place, get = one.get](const Outer& outer) { return get(std::invoke(place, outer)); },
-         [place, set = one.set](Outer& outer, double value) { set(std::invoke(place, outer), value); },
-         one.flags});
+        {one, [place, get = one.get](const Outer& outer) { return get(std::invoke(place, outer)); },
+         [place, set = one.set](Outer& outer, double value) { set(std::invoke(place, outer), value); }});
   }
   return fields;
 }
 
-/// Returns the field of this name; null where there is none.
-template <typename Struct>
-const Field<Struct>* find_field(const std::vector<Field<Struct>>& fields, std::string_view name) {
-  const auto found = std::ranges::find(fields, name, &Field<Struct>::name);
+/// Returns the field of this name, or of this option; null if there is none.
+template <typename Struct, typename Value>
+const Field<Struct, Value>* find_field(const std::vector<Field<Struct, Value>>& fields,
+                                       std::string_view name) {
+  const auto found = std::ranges::find(fields, name, &FieldDescription::name);
   return found == fields.end() ? nullptr : &*found;
+}
+template <typename Struct, typename Value>
+const Field<Struct, Value>* field_of_option(const std::vector<Field<Struct, Value>>& fields,
+                                            std::string_view option) {
+  const auto found = std::ranges::find(fields, option, &FieldDescription::option);
+  return found == fields.end() || option.empty() ? nullptr : &*found;
 }
 
 }  // namespace osteomill

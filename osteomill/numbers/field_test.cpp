@@ -24,8 +24,9 @@ struct Whole {
 constexpr unsigned kShown = 1;
 
 std::vector<Field<Part>> part_fields() {
-  return {field<Part>("length", "mm", &Part::length_mm, NumberRange::positive(), "How long", kShown),
-          field<Part>("on", "", &Part::on, NumberRange::on_or_off(), "Whether it is on")};
+  return {field<Part>({"length", "mm", NumberRange::positive(), "How long", kShown, "part-length"},
+                      &Part::length_mm),
+          field<Part>({"on", "", NumberRange::on_or_off(), "Whether it is on"}, &Part::on)};
 }
 
 TEST(Field, NotANumberIsAllowedByNoRange) {
@@ -51,10 +52,10 @@ TEST(Field, ARangeHasBothItsEndsAndNothingBeside) {
 
 TEST(Field, ItReadsAndWritesNumbersSwitchesAndEnumerations) {
   Whole whole;
-  const auto count = field<Whole>("count", "", &Whole::count, NumberRange::count(0), "");
-  const auto kind = field<Whole>("kind", "", &Whole::kind, NumberRange::count(0, 2), "");
+  const auto count = field<Whole>({"count", "", NumberRange::count(0), ""}, &Whole::count);
+  const auto kind = field<Whole>({"kind", "", NumberRange::count(0, 2), ""}, &Whole::kind);
   const auto end = field<Whole>(
-      "end", "mm", [](auto& w) -> auto& { return w.ends[1]; }, NumberRange::finite(), "");
+      {"end", "mm", NumberRange::finite(), ""}, [](auto& w) -> auto& { return w.ends[1]; });
   EXPECT_EQ(count.get(whole), 3);
   EXPECT_EQ(end.get(whole), 5);
   count.set(whole, 7);
@@ -78,6 +79,17 @@ TEST(Field, ThoseOfAPartAreFieldsOfTheWhole) {
   EXPECT_FALSE(fields[1].has(kShown));
   EXPECT_EQ(fields[0].unit, "mm");
   EXPECT_EQ(find_field(fields, "width"), nullptr);
+  EXPECT_EQ(field_of_option(fields, "part-length"), &fields[0]);
+  EXPECT_EQ(field_of_option(fields, ""), nullptr) << "though a field has no option";
+}
+
+TEST(Field, ARangeIsSaidInWords) {
+  EXPECT_EQ(range_text(NumberRange::positive()), "a number above 0");
+  EXPECT_EQ(range_text(NumberRange::not_negative()), "a number of 0 or more");
+  EXPECT_EQ(range_text(NumberRange::finite()), "a number");
+  EXPECT_EQ(range_text(NumberRange::count(1, 32)), "a whole number from 1 to 32");
+  EXPECT_EQ(range_text(NumberRange::on_or_off()), "on or off");
+  EXPECT_EQ(range_text({0.03, 1}), "a number from 0.03 to 1");
 }
 
 }  // namespace

@@ -20,12 +20,12 @@ constexpr NumberRange kReal{-kMostReal, kMostReal, false};
 template <typename Place>
 void add_real(Fields& fields, const char* name, const char* unit, Place place, const char* doc,
               unsigned flags = 0) {
-  fields.push_back(field<TickRecord>(name, unit, place, kReal, doc, flags));
+  fields.push_back(field<TickRecord>({name, unit, kReal, doc, flags}, place));
 }
 
 template <typename Place>
 void add_switch(Fields& fields, const char* name, Place place, const char* doc) {
-  fields.push_back(field<TickRecord>(name, "", place, NumberRange::on_or_off(), doc));
+  fields.push_back(field<TickRecord>({name, "", NumberRange::on_or_off(), doc}, place));
 }
 
 template <typename Place>
@@ -34,8 +34,8 @@ void add_vector(Fields& fields, const std::string& name, const std::string& unit
   for (const int axis : {0, 1, 2}) {
     const std::string unit_in_name = unit == "N mm" ? "Nmm" : unit;
     fields.push_back(field<TickRecord>(
-        fmt::format("{}_{}_{}", name, "xyz"[axis], unit_in_name), unit,
-        [ place, axis ](auto& record) -> auto& { return place(record)[axis]; }, kReal, doc, flags));
+        {fmt::format("{}_{}_{}", name, "xyz"[axis], unit_in_name), unit, kReal, doc, flags},
+        [ place, axis ](auto& record) -> auto& { return place(record)[axis]; }));
   }
 }
 
@@ -48,9 +48,8 @@ void add_pose(Fields& fields, const std::string& name, Place place, const char* 
   constexpr int kW = 3;
   for (const int part : {kW, 0, 1, 2}) {
     fields.push_back(field<TickRecord>(
-        fmt::format("{}_q{}", name, "xyzw"[part]), "",
-        [ place, part ](auto& r) -> auto& { return (r.*place).orientation.coeffs()[part]; }, kReal, turn_doc,
-        flags));
+        {fmt::format("{}_q{}", name, "xyzw"[part]), "", kReal, turn_doc, flags},
+        [ place, part ](auto& r) -> auto& { return (r.*place).orientation.coeffs()[part]; }));
   }
 }
 
@@ -70,7 +69,7 @@ Fields record_fields() {
       all, "torque", "N mm", [](auto& r) -> auto& { return r.wrench.torque_Nmm; },
       "torque sent to the hand, frame W, about the burr's centre", kInLog);
   all.push_back(
-      field<R>("contacts", "", &R::contacts, NumberRange::count(0), "sample points that touch", kInLog));
+      field<R>({"contacts", "", NumberRange::count(0), "sample points that touch", kInLog}, &R::contacts));
   add_real(all, "removed_mm3", "mm^3", &R::removed_mm3,
            "bone removed since the beginning, as bone of the reference density", kInLog);
   add_real(all, "compute_us", "us", &R::compute_us, "time of the algorithm's step, by the clock",
@@ -83,8 +82,9 @@ Fields record_fields() {
       "force of the burr on the bone, frame W");
   add_real(all, "dt_s", "s", &R::dt_s, "how long the tick was taken to be");
   add_switch(all, "spindle", &R::spindle_on, "1 where the burr could cut");
-  all.push_back(field<R>("fault", "", &R::fault, NumberRange::count(0, static_cast<int>(WrenchFault::eased)),
-                         "what was done to the wrench (codes)"));
+  all.push_back(field<R>({"fault", "", NumberRange::count(0, static_cast<int>(WrenchFault::eased)),
+                          "what was done to the wrench (codes)"},
+                         &R::fault));
   add_real(all, "energy_given_Nmm", "N mm", &R::energy_given_Nmm,
            "energy given to the hand less what it gave, since the session began", kInLog);
   add_switch(all, "paused", &R::paused, "1 in a pause: zero is sent and nothing computed");
@@ -92,8 +92,9 @@ Fields record_fields() {
   add_switch(all, "placed", &R::placed,
              "1 where the tool was placed at the device before the tick, contacts forgotten");
   all.push_back(
-      field<R>("owed_bricks", "", &R::owed_bricks, NumberRange::count(0),
-               "bricks of bone points that may have shown more bone than there was, left to later ticks"));
+      field<R>({"owed_bricks", "", NumberRange::count(0),
+                "bricks of bone points that may have shown more bone than there was, left to later ticks"},
+               &R::owed_bricks));
   add_real(all, "given_share", "", &R::given_share,
            "how much of the force that was asked for the device had sent by then");
   add_vector(

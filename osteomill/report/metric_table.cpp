@@ -13,7 +13,7 @@ using M = RunMetrics;
 
 template <typename Place>
 Field<M> figure(const char* column, const char* unit, Place place, const char* doc, unsigned flags = 0) {
-  return field<M>(column, unit, place, NumberRange::finite(), doc, flags);
+  return field<M>({column, unit, NumberRange::finite(), doc, flags}, place);
 }
 
 std::vector<Field<M>> all_figures() {

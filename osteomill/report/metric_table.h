@@ -8,8 +8,7 @@ namespace osteomill {
 
 /// Returns what a field is, with its unit: "force above 20 Hz, rms (N)".
 std::string with_unit(const std::string& text, const std::string& unit);
-template <typename Struct>
-std::string label_of(const Field<Struct>& field) {
+inline std::string label_of(const FieldDescription& field) {
   return with_unit(field.doc, field.unit);
 }
 

@@ -14,17 +14,15 @@ namespace osteomill::barrier_shell {
 
 /// Settings of the barrier-shell algorithm, as its description says them. There are no switches.
 struct Settings {
-  double translational_stiffness_N_per_mm = 0;
-  double torsional_stiffness_Nmm_per_rad = 0;
-  double skin_width_mm = 0;
-  double rounding_mm = 0;
-  double pressure_N_per_mm2 = 0;
-  double point_spacing_mm = 0;
-  double release_time_s = 0;
-  double release_mm_s = 0;
-  double release_rad_s = 0;
-
-  static Settings defaults();
+  double translational_stiffness_N_per_mm = 2;
+  double torsional_stiffness_Nmm_per_rad = 1000;
+  double skin_width_mm = 0.25;
+  double rounding_mm = 0.212;
+  double pressure_N_per_mm2 = 3;
+  double point_spacing_mm = BoneBricks::kSpacing_mm;
+  double release_time_s = Release{}.time_s;
+  double release_mm_s = Release{}.mm_s;
+  double release_rad_s = Release{}.rad_s;
 };
 
 /// Algorithm 4: the tool rests on a soft skin of bone that nothing can push through. Two convex cores within

@@ -8,50 +8,47 @@ namespace osteomill::barrier_shell {
 
 namespace {
 
-using Field = SettingField<Settings>;
+using Fields = std::vector<Field<Settings>>;
 
-template <auto kPlace>
-Field number(const char* name, const char* unit, double value, const char* meaning, const char* option = "") {
-  return setting_field<kPlace>({name, unit, SettingRange::positive(), value, meaning, option});
-}
-
-const std::vector<Field>& fields() {
-  static const std::vector<Field> all{
-      number<&Settings::translational_stiffness_N_per_mm>(
-          "translational-stiffness", "N/mm", 2, "Virtual coupling between device and simulated tool",
-          "stiffness"),
-      number<&Settings::torsional_stiffness_Nmm_per_rad>(
-          "torsional-stiffness", "N mm/rad", 1000, "Of the coupling, about rotation", "torsional-stiffness"),
-      number<&Settings::skin_width_mm>(
-          "skin-width", "mm", 0.25,
-          "How far from the tool's cores bone is felt; less where the rounding is less"),
-      number<&Settings::rounding_mm>(
-          "rounding", "mm", 0.212, "How far the cores lie within the tool, at most half of its least radius"),
-      number<&Settings::pressure_N_per_mm2>(
-          "pressure", "N/mm2", 3,
-          "p0 of the skin's pressure p0 / 3 x^2 (3 - 2 x) / (1 - x)^2, for the default burr; of another it "
-          "goes against its section"),
-      number<&Settings::point_spacing_mm>(
-          "point-spacing", "mm", BoneBricks::kSpacing_mm,
-          "How far apart the points of bone lie at most, whatever the scan's voxels; twice as far at the "
-          "shaft where the bone is flat"),
-      number<&Settings::release_time_s>(
-          "release-time", "s", Release{}.time_s,
-          "In which a stretch of the coupling that nothing holds any more falls to a third, if not sooner by "
-          "the next two"),
-      number<&Settings::release_mm_s>(
-          "release", "mm/s", Release{}.mm_s,
-          "How fast the tool may move beside what the device's own move leads it to"),
-      number<&Settings::release_rad_s>("release-turn", "rad/s", Release{}.rad_s, "The same of its turning"),
+const Fields& fields() {
+  static const Fields all{
+      field<Settings>({"translational-stiffness", "N/mm", NumberRange::positive(),
+                       "Virtual coupling between device and simulated tool", 0, "stiffness"},
+                      &Settings::translational_stiffness_N_per_mm),
+      field<Settings>({"torsional-stiffness", "N mm/rad", NumberRange::positive(),
+                       "Of the coupling, about rotation", 0, "torsional-stiffness"},
+                      &Settings::torsional_stiffness_Nmm_per_rad),
+      field<Settings>({"skin-width", "mm", NumberRange::positive(),
+                       "How far from the tool's cores bone is felt; less where the rounding is less"},
+                      &Settings::skin_width_mm),
+      field<Settings>({"rounding", "mm", NumberRange::positive(),
+                       "How far the cores lie within the tool, at most half of its least radius"},
+                      &Settings::rounding_mm),
+      field<Settings>(
+          {"pressure", "N/mm2", NumberRange::positive(),
+           "p0 of the skin's pressure p0 / 3 x^2 (3 - 2 x) / (1 - x)^2, for the default burr; of another it "
+           "goes against its section"},
+          &Settings::pressure_N_per_mm2),
+      field<Settings>(
+          {"point-spacing", "mm", NumberRange::positive(),
+           "How far apart the points of bone lie at most, whatever the scan's voxels; twice as far at the "
+           "shaft where the bone is flat"},
+          &Settings::point_spacing_mm),
+      field<Settings>({"release-time", "s", NumberRange::positive(),
+                       "In which a stretch of the coupling that nothing holds any more falls to a third, if "
+                       "not sooner by "
+                       "the next two"},
+                      &Settings::release_time_s),
+      field<Settings>({"release", "mm/s", NumberRange::positive(),
+                       "How fast the tool may move beside what the device's own move leads it to"},
+                      &Settings::release_mm_s),
+      field<Settings>({"release-turn", "rad/s", NumberRange::positive(), "The same of its turning"},
+                      &Settings::release_rad_s),
   };
   return all;
 }
 
 }  // namespace
-
-Settings Settings::defaults() {
-  return default_settings<Settings>(fields());
-}
 
 AlgorithmDescription description() {
   return with_settings<BarrierShell, Settings>(

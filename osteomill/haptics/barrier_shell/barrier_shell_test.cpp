@@ -34,7 +34,7 @@ HapticStep approach(BarrierShell& algorithm, const Vec3& from, const Vec3& to, c
 TEST(BarrierShell, InFreeSpaceTheWrenchIsExactlyZero) {
   const Volume volume = testing_support::shape_volume(testing_support::centred_cube(40, 0.25),
                                                       testing_support::ball(Vec3::Zero(), 3));
-  BarrierShell algorithm{Settings::defaults()};
+  BarrierShell algorithm{Settings{}};
   algorithm.prepare({&volume, {}});
   for (int n = 0; n < 2000; ++n) {
     const double angle = 0.01 * n;
@@ -52,7 +52,7 @@ TEST(BarrierShell, OnAPlaneTheForceIsAlongTheNormal) {
   const Volume volume = testing_support::shape_volume(testing_support::centred_cube(60, 0.2),
                                                       testing_support::plane(Vec3::Zero(), normal));
   const MillingTool tool;
-  BarrierShell algorithm{Settings::defaults()};
+  BarrierShell algorithm{Settings{}};
   algorithm.prepare({&volume, tool});
   constexpr double kDepth_mm = 0.8;
   const HapticStep step = approach(algorithm, 3 * normal, (tool.burr_radius_mm - kDepth_mm) * normal,
@@ -88,7 +88,7 @@ TEST(BarrierShell, ABurrOfAnySizeRestsInItsOwnHoleWhereItIsDrawn) {
     const Volume volume = testing_support::shape_volume(
         testing_support::centred_cube(96, radius_mm / 30),
         [&](const Vec3& point_W) { return std::max(plate(point_W), -ball(point_W)); });
-    const Settings settings = Settings::defaults();
+    const Settings settings;
     BarrierShell algorithm{settings};
     algorithm.prepare({&volume, tool});
     const HapticStep step = approach(algorithm, {0, 0, 2 * radius_mm}, {0, 0, -1.5 / 2}, Quat::Identity());
@@ -112,7 +112,7 @@ TEST(BarrierShell, SlidingRoundABallTurnsTheForceWithTheNormal) {
   const Volume volume = testing_support::shape_volume(testing_support::centred_cube(56, 0.25),
                                                       testing_support::ball(Vec3::Zero(), kBall_mm));
   const MillingTool tool;
-  Settings soft = Settings::defaults();
+  Settings soft;
   soft.translational_stiffness_N_per_mm = 1;
   BarrierShell algorithm{soft};
   algorithm.prepare({&volume, tool});
@@ -141,7 +141,7 @@ TEST(BarrierShell, TheShaftOnAnEdgeTurnsByForceTimesLever) {
       testing_support::shape_volume(testing_support::centred_cube(64, 0.2),
                                     [&](const Vec3& p) { return std::max(left.dot(p), right.dot(p)); });
   for (const double lever_mm : {4.0, 12.0, 20.0}) {
-    BarrierShell algorithm{Settings::defaults()};
+    BarrierShell algorithm{Settings{}};
     algorithm.prepare({&volume, {}});
     const Quat lying = turn * quaternion_from_rotation_vector({0, std::numbers::pi / 2, 0});
     const HapticStep step =
@@ -207,7 +207,7 @@ TEST(BarrierShell, NothingPushesThroughAThinSheet) {
       testing_support::centred_cube(48, 0.25), [&](const Vec3& p) { return std::abs(normal.dot(p)) - 0.25; });
   const std::vector<Vec3> surface = surface_points(volume);
   const MillingTool tool{1.5, 1.0, 8};
-  BarrierShell algorithm{Settings::defaults()};
+  BarrierShell algorithm{Settings{}};
   algorithm.prepare({&volume, tool});
   const Quat upright = smallest_rotation(Vec3::UnitZ(), normal);
   const Quat on_its_side = upright * quaternion_from_rotation_vector({std::numbers::pi / 2, 0, 0});
@@ -239,7 +239,7 @@ TEST(BarrierShell, RandomPushesIntoSpongyBoneStayOutside) {
   const std::vector<Vec3> surface = surface_points(volume);
   std::mt19937 bits(5);
   const MillingTool tool;
-  BarrierShell algorithm{Settings::defaults()};
+  BarrierShell algorithm{Settings{}};
   algorithm.prepare({&volume, tool});
   for (int n = 0; n < 300; ++n) {
     const Vec3 direction = random_vector(bits).normalized();
@@ -257,7 +257,7 @@ TEST(BarrierShell, RandomPushesIntoSpongyBoneStayOutside) {
 TEST(BarrierShell, AToolThatBeginsInsideBoneIsCarriedOutAndThenHeld) {
   const Volume volume = testing_support::shape_volume(testing_support::centred_cube(60, 0.2),
                                                       testing_support::plane(Vec3::Zero(), Vec3::UnitZ()));
-  BarrierShell algorithm{Settings::defaults()};
+  BarrierShell algorithm{Settings{}};
   algorithm.prepare({&volume, {}});
   double largest_step_N = 0;
   Vec3 before = Vec3::Zero();
@@ -282,7 +282,7 @@ TEST(BarrierShell, AHandOverInsideAWallIsHeldAndTheWrenchRamps) {
   const Volume volume = testing_support::shape_volume(testing_support::centred_cube(60, 0.2),
                                                       testing_support::plane(Vec3::Zero(), Vec3::UnitZ()));
   for (const double overlap_mm : {0.0, 0.3, 1.0}) {
-    BarrierShell algorithm{Settings::defaults()};
+    BarrierShell algorithm{Settings{}};
     algorithm.prepare({&volume, {}});
     algorithm.step({{0, 0, 1.5 - overlap_mm}, Quat::Identity()}, 0);
     Vec3 before = Vec3::Zero();
@@ -303,7 +303,7 @@ TEST(BarrierShell, AHandOverInsideAWallIsHeldAndTheWrenchRamps) {
 TEST(BarrierShell, ATickOfNoLengthReleasesNothing) {
   const Volume volume = testing_support::shape_volume(testing_support::centred_cube(60, 0.2),
                                                       testing_support::plane(Vec3::Zero(), Vec3::UnitZ()));
-  BarrierShell algorithm{Settings::defaults()};
+  BarrierShell algorithm{Settings{}};
   algorithm.prepare({&volume, {}});
   const Pose X_WD{{0, 0, 0.5}, quaternion_from_rotation_vector({0.3, 0, 0})};
   const Vec3 held_N = approach(algorithm, {0, 0, 5}, X_WD.position_mm, X_WD.orientation).wrench.force_N;
@@ -324,7 +324,7 @@ TEST(BarrierShell, ATickOfNoLengthReleasesNothing) {
 TEST(BarrierShell, ADeviceThatJumpsAcrossBoneIsHeldAndTheWrenchRamps) {
   const Volume volume = testing_support::shape_volume(testing_support::centred_cube(60, 0.2),
                                                       testing_support::ball(Vec3::Zero(), 4));
-  BarrierShell algorithm{Settings::defaults()};
+  BarrierShell algorithm{Settings{}};
   algorithm.prepare({&volume, {}});
   Vec3 before = approach(algorithm, {0, 0, 8}, {0, 0, 5}, Quat::Identity()).wrench.force_N;
   EXPECT_GT(before.z(), 0.5);
@@ -357,7 +357,7 @@ TEST(BarrierShell, TheSameInputGivesTheSameBitsAlsoAfterAReset) {
     }
     return felt;
   };
-  BarrierShell one{Settings::defaults()}, other{Settings::defaults()};
+  BarrierShell one{Settings{}}, other{Settings{}};
   one.prepare({&volume, {}});
   other.prepare({&volume, {}});
   const std::vector<double> first = run(one);
@@ -371,7 +371,7 @@ TEST(BarrierShell, ABurrPressedOnBoneThatIsMilledIsNeverLetGo) {
   Volume volume = testing_support::shape_volume(testing_support::centred_cube(60, 0.1),
                                                 testing_support::plane(Vec3::Zero(), Vec3::UnitZ()));
   const MillingTool tool;
-  BarrierShell algorithm{Settings::defaults()};
+  BarrierShell algorithm{Settings{}};
   algorithm.prepare({&volume, tool});
   std::mt19937 bits(9);
   Vec3 before = approach(algorithm, {0, 0, 3}, {0, 0, 0.5}, Quat::Identity()).wrench.force_N;

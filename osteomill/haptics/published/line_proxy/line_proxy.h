@@ -11,10 +11,8 @@ namespace osteomill::line_proxy {
 
 /// Holds the settings of algorithm 1; line_proxy_description.cpp gives each its meaning, range and default.
 struct Settings {
-  int vertices = 0;
-  double stiffness_N_per_mm = 0;
-
-  static Settings defaults();
+  int vertices = 51;
+  double stiffness_N_per_mm = 5;
 };
 
 /// Renders algorithm 1 of Eriksson 2012 (section 4): the tool is its centreline, a row of vertices. If the

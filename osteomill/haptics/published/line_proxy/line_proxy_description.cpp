@@ -7,24 +7,20 @@ namespace osteomill::line_proxy {
 
 namespace {
 
-using Field = SettingField<Settings>;
+using Fields = std::vector<Field<Settings>>;
 
-const std::vector<Field>& fields() {
-  static const std::vector<Field> all{
-      setting_field<&Settings::vertices>({"vertices", "", SettingRange::count(2, 100000), 51,
-                                          "Vertices on the tool's centreline, the burr's centre included",
-                                          "vertices"}),
-      setting_field<&Settings::stiffness_N_per_mm>(
-          {"stiffness", "N/mm", SettingRange::positive(), 5, "k of (6) and (10)", "stiffness"}),
+const Fields& fields() {
+  static const Fields all{
+      field<Settings>({"vertices", "", NumberRange::count(2, 100000),
+                       "Vertices on the tool's centreline, the burr's centre included", 0, "vertices"},
+                      &Settings::vertices),
+      field<Settings>({"stiffness", "N/mm", NumberRange::positive(), "k of (6) and (10)", 0, "stiffness"},
+                      &Settings::stiffness_N_per_mm),
   };
   return all;
 }
 
 }  // namespace
-
-Settings Settings::defaults() {
-  return default_settings<Settings>(fields());
-}
 
 AlgorithmDescription description() {
   return with_settings<LineProxy, Settings>({.id = {"line-proxy", "1 line-proxy", "#c8102e"},

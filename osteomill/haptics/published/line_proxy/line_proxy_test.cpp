@@ -28,7 +28,7 @@ LineProxy prepared(const Settings& settings, const Volume& volume) {
 
 // With one stiffness, for which the numbers here are.
 Settings soft() {
-  Settings settings = Settings::defaults();
+  Settings settings;
   settings.stiffness_N_per_mm = 2;
   return settings;
 }

@@ -13,12 +13,10 @@ namespace osteomill::point_shell {
 /// Holds the settings of algorithm 3; point_shell_description.cpp gives each its meaning, range and default.
 struct Settings {
   /// Of the voxels whose centres are points.
-  int scale = 1;
-  double translational_stiffness_N_per_mm = 0;
-  double torsional_stiffness_Nmm_per_rad = 0;
-  double damping_time_s = 0;
-
-  static Settings defaults();
+  int scale = 3;
+  double translational_stiffness_N_per_mm = 5;
+  double torsional_stiffness_Nmm_per_rad = 2500;
+  double damping_time_s = 0.001;
 };
 
 /// Returns kA in N/mm^3, newton a mm of depth and a mm^2 of surface: the smallest at which 20 N, the most

@@ -7,31 +7,29 @@ namespace osteomill::point_shell {
 
 namespace {
 
-using Field = SettingField<Settings>;
+using Fields = std::vector<Field<Settings>>;
 
-const std::vector<Field>& fields() {
-  static const std::vector<Field> all{
-      setting_field<&Settings::scale>(
-          {"scale", "", SettingRange::count(1, VoxelShell::kMaxScale), 3,
+const Fields& fields() {
+  static const Fields all{
+      field<Settings>(
+          {"scale", "", NumberRange::count(1, VoxelShell::kMaxScale),
            "Coarseness: the voxels whose centres are points are this many of the scan's wide along each axis",
-           "shell-scale"}),
-      setting_field<&Settings::translational_stiffness_N_per_mm>(
-          {"translational-stiffness", "N/mm", SettingRange::positive(), 5,
-           "Virtual coupling between device and simulated tool", "stiffness"}),
-      setting_field<&Settings::torsional_stiffness_Nmm_per_rad>(
-          {"torsional-stiffness", "N mm/rad", SettingRange::positive(), 2500,
-           "Of the coupling, about rotation", "torsional-stiffness"}),
-      setting_field<&Settings::damping_time_s>({"damping-time", "s", SettingRange::not_negative(), 0.001,
-                                                "The coupling's dampers are its springs times this"}),
+           0, "shell-scale"},
+          &Settings::scale),
+      field<Settings>({"translational-stiffness", "N/mm", NumberRange::positive(),
+                       "Virtual coupling between device and simulated tool", 0, "stiffness"},
+                      &Settings::translational_stiffness_N_per_mm),
+      field<Settings>({"torsional-stiffness", "N mm/rad", NumberRange::positive(),
+                       "Of the coupling, about rotation", 0, "torsional-stiffness"},
+                      &Settings::torsional_stiffness_Nmm_per_rad),
+      field<Settings>({"damping-time", "s", NumberRange::not_negative(),
+                       "The coupling's dampers are its springs times this"},
+                      &Settings::damping_time_s),
   };
   return all;
 }
 
 }  // namespace
-
-Settings Settings::defaults() {
-  return default_settings<Settings>(fields());
-}
 
 AlgorithmDescription description() {
   return with_settings<PointShell, Settings>(

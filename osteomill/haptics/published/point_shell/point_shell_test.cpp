@@ -26,7 +26,7 @@ constexpr double kTick_s = 1e-3;
 
 // Coupled as the numbers here are for.
 Settings full_resolution() {
-  Settings settings = Settings::defaults();
+  Settings settings;
   settings.scale = 1;
   settings.translational_stiffness_N_per_mm = 2;
   settings.torsional_stiffness_Nmm_per_rad = 1000;

@@ -4,18 +4,17 @@
 
 #include "osteomill/haptics/algorithm_description.h"
 #include "osteomill/haptics/haptic_algorithm.h"
+#include "osteomill/tool/sample_points.h"
 
 namespace osteomill::surface_points {
 
 /// Holds the settings of algorithm 2; surface_points_description.cpp gives each its meaning, range and
 /// default.
 struct Settings {
-  double stiffness_N_per_mm = 0;
-  int slices = 0;
-  int sphere_vertices = 0;
-  int circle_vertices = 0;
-
-  static Settings defaults();
+  double stiffness_N_per_mm = 20;
+  int slices = 20;
+  int sphere_vertices = kSphereVertices;
+  int circle_vertices = kSliceVertices;
 };
 
 /// Returns a_i of (15): from `vertex_W`, in bone, towards the centre `centre_W`, outside it, as far as the

@@ -8,29 +8,29 @@ namespace osteomill::surface_points {
 
 namespace {
 
-using Field = SettingField<Settings>;
+using Fields = std::vector<Field<Settings>>;
 
-const std::vector<Field>& fields() {
-  static const std::vector<Field> all{
-      setting_field<&Settings::stiffness_N_per_mm>(
-          {"stiffness", "N/mm", SettingRange::positive(), 20,
-           "k of (14): the spring of a sphere, or of a slice, all of whose vertices collide", "stiffness"}),
-      setting_field<&Settings::slices>(
-          {"slices", "", SettingRange::count(1, 1000), 20, "Circles along the free shaft", "slices"}),
-      setting_field<&Settings::sphere_vertices>(
-          {"sphere-vertices", "", SettingRange::count(4, 500), kSphereVertices,
-           "Vertices on the burr's sphere: 24 as a snub cube, another number as equal charges spread"}),
-      setting_field<&Settings::circle_vertices>({"circle-vertices", "", SettingRange::count(3, 100),
-                                                 kSliceVertices, "Vertices on each circle of the shaft"}),
+const Fields& fields() {
+  static const Fields all{
+      field<Settings>(
+          {"stiffness", "N/mm", NumberRange::positive(),
+           "k of (14): the spring of a sphere, or of a slice, all of whose vertices collide", 0, "stiffness"},
+          &Settings::stiffness_N_per_mm),
+      field<Settings>(
+          {"slices", "", NumberRange::count(1, 1000), "Circles along the free shaft", 0, "slices"},
+          &Settings::slices),
+      field<Settings>(
+          {"sphere-vertices", "", NumberRange::count(4, 500),
+           "Vertices on the burr's sphere: 24 as a snub cube, another number as equal charges spread"},
+          &Settings::sphere_vertices),
+      field<Settings>(
+          {"circle-vertices", "", NumberRange::count(3, 100), "Vertices on each circle of the shaft"},
+          &Settings::circle_vertices),
   };
   return all;
 }
 
 }  // namespace
-
-Settings Settings::defaults() {
-  return default_settings<Settings>(fields());
-}
 
 AlgorithmDescription description() {
   return with_settings<SurfacePoints, Settings>(

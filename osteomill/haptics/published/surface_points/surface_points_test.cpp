@@ -42,7 +42,7 @@ Volume linear_plane() {
 // A burr may be as large as all of the shaft is long.
 TEST(SurfacePoints, AToolWhoseShaftItsBurrSwallowsIsABurr) {
   const Volume volume = shape_volume(centred_cube(64, 0.25), plane(Vec3::Zero(), Vec3::UnitZ()));
-  SurfacePoints algorithm(Settings::defaults());
+  SurfacePoints algorithm(Settings{});
   algorithm.prepare({&volume, MillingTool{3, 1, 2}});
   algorithm.step({{0, 0, 3.5}, Quat::Identity()}, kDt);
   const HapticStep pressed = algorithm.step({{0, 0, 2.5}, Quat::Identity()}, kDt);
@@ -62,7 +62,7 @@ TEST(SurfacePoints, Equation15ReachesFromTheVertexToTheSurface) {
 TEST(SurfacePoints, Equations14And16SumTheSphersVertices) {
   const Volume volume = linear_plane();
   for (const int vertices : {24, 17, 96}) {
-    Settings settings = Settings::defaults();
+    Settings settings;
     settings.sphere_vertices = vertices;
     auto algorithm = prepared(volume, settings);
     const double height = 0.7;
@@ -93,7 +93,7 @@ Pose lying(double height) {
 TEST(SurfacePoints, Equations18To21MakeTheSlicesTorque) {
   const Volume volume = linear_plane();
   for (const int vertices : {8, 13}) {
-    Settings settings = Settings::defaults();
+    Settings settings;
     settings.circle_vertices = vertices;
     auto algorithm = prepared(volume, settings);
     const Pose X = lying(0.8);
@@ -116,7 +116,7 @@ TEST(SurfacePoints, Equations18To21MakeTheSlicesTorque) {
 
 TEST(SurfacePoints, HasTheVerticesThatItIsSetTo) {
   const Volume volume = linear_plane();
-  Settings settings = Settings::defaults();
+  Settings settings;
   const int before = prepared(volume, settings).sample_point_count();
   settings.sphere_vertices = 30;
   EXPECT_EQ(prepared(volume, settings).sample_point_count(), before + 6);
@@ -128,7 +128,7 @@ TEST(SurfacePoints, TheShaftAloneSendsATorqueAndNoForce) {
   const Volume volume = shape_volume(centred_cube(48, 0.25), plane(Vec3::Zero(), Vec3::UnitZ()));
   // The burr hangs out beyond the bone.
   const Pose X{{-9, 0, 0.7}, quaternion_from_rotation_vector({0, std::acos(-1.0) / 2, 0})};
-  const HapticStep step = prepared(volume, Settings::defaults()).step(X, kDt);
+  const HapticStep step = prepared(volume, Settings{}).step(X, kDt);
   EXPECT_EQ(step.wrench.force_N, Vec3::Zero());
   EXPECT_EQ(step.burr_force_W_N, Vec3::Zero());
   EXPECT_GT(step.contacts, 0);
@@ -137,7 +137,7 @@ TEST(SurfacePoints, TheShaftAloneSendsATorqueAndNoForce) {
 
 TEST(SurfacePoints, ACentreInBoneHoldsTheForceOfTheStepBefore) {
   const Volume volume = shape_volume(centred_cube(48, 0.25), plane(Vec3::Zero(), Vec3::UnitZ()));
-  auto algorithm = prepared(volume, Settings::defaults());
+  auto algorithm = prepared(volume, Settings{});
   const HapticStep before = algorithm.step({{0, 0, 0.3}, Quat::Identity()}, kDt);
   EXPECT_GT(before.wrench.force_N.z(), 3.0);
   for (const double height : {-0.2, -1.0, -3.0}) {
@@ -152,7 +152,7 @@ TEST(SurfacePoints, ACentreInBoneHoldsTheForceOfTheStepBefore) {
 
 TEST(SurfacePoints, NothingIsHeldWhereTheFirstContactIsAlreadyInside) {
   const Volume volume = shape_volume(centred_cube(48, 0.25), plane(Vec3::Zero(), Vec3::UnitZ()));
-  auto algorithm = prepared(volume, Settings::defaults());
+  auto algorithm = prepared(volume, Settings{});
   const HapticStep first = algorithm.step({{0, 0, -1}, Quat::Identity()}, kDt);
   EXPECT_EQ(first.wrench.force_N, Vec3::Zero());
   EXPECT_GT(first.contacts, 12);
@@ -164,7 +164,7 @@ TEST(SurfacePoints, NothingIsHeldWhereTheFirstContactIsAlreadyInside) {
 TEST(SurfacePoints, TheToolIsWhereTheDeviceIs) {
   const Volume volume = shape_volume(centred_cube(48, 0.25), plane(Vec3::Zero(), Vec3::UnitZ()));
   const Pose X{{0.1, 0.2, 0.4}, quaternion_from_rotation_vector({0.1, 0, 0.2})};
-  const HapticStep step = prepared(volume, Settings::defaults()).step(X, kDt);
+  const HapticStep step = prepared(volume, Settings{}).step(X, kDt);
   EXPECT_EQ(step.X_WT.position_mm, X.position_mm);
   EXPECT_EQ(step.X_WT.orientation.coeffs(), X.orientation.coeffs());
 }
