@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "app/config_file.h"
 #include "app/option_checks.h"
@@ -41,14 +42,11 @@ std::vector<std::string> setting_names(const AlgorithmDescription& algorithm) {
   return names;
 }
 
-// "point-shell.scale=2"
-HapticSettings::Named named_setting(const std::string& text) {
-  const std::size_t dot = text.find('.');
-  const std::size_t equals = text.find('=');
-  if (dot == std::string::npos || equals == std::string::npos || equals < dot) {
-    throw CLI::ValidationError("--set", text + " is not of the form ALGORITHM.SETTING=VALUE");
-  }
-  HapticSettings::Named named{text.substr(0, dot), text.substr(dot + 1, equals - dot - 1), 0};
+}  // namespace
+
+void set_own(HapticSettings& haptics, const std::string& name, const std::string& text) {
+  const std::size_t dot = name.find('.');
+  HapticSettings::Named named{name.substr(0, dot), name.substr(dot + 1), 0};
   const AlgorithmDescription* algorithm = find_algorithm(named.algorithm);
   if (algorithm == nullptr) {
     throw CLI::ValidationError("--set", "there is no algorithm " + named.algorithm +
@@ -59,21 +57,18 @@ HapticSettings::Named named_setting(const std::string& text) {
     throw CLI::ValidationError("--set", fmt::format("{} has no setting {}{}", named.algorithm, named.setting,
                                                     did_you_mean(named.setting, known)));
   }
-  const std::string value = text.substr(equals + 1);
-  const auto number = parsed_number<double>(value);
-  if (!number || std::isnan(*number)) throw CLI::ValidationError("--set", value + " is not a number");
+  const auto number = parsed_number<double>(text);
+  if (!number || std::isnan(*number)) throw CLI::ValidationError("--set", text + " is not a number");
   named.value = *number;
   try {
     make_algorithm(*algorithm, {.named = {named}});
   } catch (const std::invalid_argument& error) {
     throw CLI::ValidationError("--set", error.what());
   }
-  return named;
+  haptics.named.push_back(std::move(named));
 }
 
-// Checked by every algorithm that has it, so that none is refused later.
 void set_shared(HapticSettings& haptics, const std::string& option, double value) {
-  haptics.set_option(option, value);
   try {
     for (const AlgorithmDescription& algorithm : all_algorithms()) {
       if (const SettingDescription* setting = setting_of_option(algorithm, option)) {
@@ -83,7 +78,21 @@ void set_shared(HapticSettings& haptics, const std::string& option, double value
   } catch (const std::invalid_argument& error) {
     throw CLI::ValidationError("--" + option, error.what());
   }
+  haptics.set_option(option, value);
 }
+
+std::vector<std::string> shared_options() {
+  std::vector<std::string> options;
+  for (const AlgorithmDescription& algorithm : all_algorithms()) {
+    for (const SettingDescription& setting : algorithm.settings) {
+      if (!setting.option.empty() && std::ranges::find(options, setting.option) == options.end())
+        options.push_back(setting.option);
+    }
+  }
+  return options;
+}
+
+namespace {
 
 // "1 line-proxy: k of (6) and (10) (N/mm); 3 point-shell: ..."
 std::string meaning_of_option(const std::string& option) {
@@ -97,13 +106,21 @@ std::string meaning_of_option(const std::string& option) {
   return text;
 }
 
+// "point-shell.scale=2"
+void set_named(HapticSettings& haptics, const std::string& text) {
+  const std::size_t dot = text.find('.'), equals = text.find('=');
+  if (dot == std::string::npos || equals == std::string::npos || equals < dot)
+    throw CLI::ValidationError("--set", text + " is not of the form ALGORITHM.SETTING=VALUE");
+  set_own(haptics, text.substr(0, equals), text.substr(equals + 1));
+}
+
 void add_named_settings(CLI::App& command, HapticSettings& haptics) {
   command
       .add_option_function<std::vector<std::string>>(
           "--set",
           [&haptics](const std::vector<std::string>& texts) {
             std::erase_if(haptics.named, [](const auto& named) { return !named.algorithm.empty(); });
-            for (const std::string& text : texts) haptics.named.push_back(named_setting(text));
+            for (const std::string& text : texts) set_named(haptics, text);
           },
           "ALGORITHM.SETTING=VALUE, any setting of docs/settings.md; may repeat")
       ->type_name("SETTING");
@@ -111,64 +128,16 @@ void add_named_settings(CLI::App& command, HapticSettings& haptics) {
 
 // One option for all settings that name it, so that it stands in the algorithms' descriptions alone.
 void add_shared_settings(CLI::App& command, HapticSettings& haptics) {
-  std::vector<std::string> added;
-  for (const AlgorithmDescription& algorithm : all_algorithms()) {
-    for (const SettingDescription& setting : algorithm.settings) {
-      const std::string& option = setting.option;
-      if (option.empty() || std::find(added.begin(), added.end(), option) != added.end()) continue;
-      added.push_back(option);
-      command
-          .add_option_function<double>(
-              "--" + option, [&haptics, option](double value) { set_shared(haptics, option, value); },
-              meaning_of_option(option))
-          ->type_name(setting.range.whole ? "COUNT" : "NUMBER");
-    }
-  }
-}
-
-#define OSTEOMILL_PLACE(type, field) [](MillingSetup& setup) -> type& { return setup.field; }
-
-const MillingOption kOptions[] = {
-    {"--burr-radius", "Tool", "mm", "Of the burr's sphere", OSTEOMILL_PLACE(double, tool.burr_radius_mm),
-     true},
-    {"--shaft-radius", "Tool", "mm", "Of the shaft", OSTEOMILL_PLACE(double, tool.shaft_radius_mm), true},
-    {"--shaft-length", "Tool", "mm", "From the burr's centre", OSTEOMILL_PLACE(double, tool.shaft_length_mm),
-     true},
-    {"--spindle-speed", "Cutting", "rpm", "Of the burr", OSTEOMILL_PLACE(double, cutting.spindle_speed_rpm),
-     true},
-    {"--cutting-energy", "Cutting", "N.mm/mm³", "The work that removes bone of the reference density",
-     OSTEOMILL_PLACE(double, cutting.specific_energy_Nmm_per_mm3), true},
-    {"--removal-rate", "Cutting", "mm³/(N.s)",
-     "kappa; else it follows from burr, spindle speed and cutting energy",
-     OSTEOMILL_PLACE(std::optional<double>, removal_rate_mm3_per_Ns), true},
-    {"--cutting-reaction", "Cutting", "", "The hand feels the burr pull along its rim, whose pole cuts less",
-     OSTEOMILL_PLACE(bool, cutting_reaction), false},
-    {"--force-limit", "Limits of the device", "N", "The most it is asked for",
-     OSTEOMILL_PLACE(double, guard.limits.force_N), false},
-    {"--torque-limit", "Limits of the device", "N.mm", "The most it is asked for",
-     OSTEOMILL_PLACE(double, guard.limits.torque_Nmm), false},
-    {"--passivity-controller", "Limits of the device", "",
-     "Dampens a contact that has given the hand more energy than it took",
-     OSTEOMILL_PLACE(bool, guard.passivity_controller), false},
-};
-
-#undef OSTEOMILL_PLACE
-
-template <typename Number>
-void add_option(CLI::App& command, const MillingOption& option, Number& value) {
-  add_positive(command, option.name, value, option.unit, option.meaning);
-}
-void add_option(CLI::App& command, const MillingOption& option, bool& on) {
-  const std::string name = option.name;
-  command.add_flag(name + ",!--no-" + name.substr(2), on,
-                   option.meaning + std::string(on ? " (on unless turned off)" : ""));
-}
-
-void add_options(CLI::App& command, MillingSetup& setup, std::string_view group) {
-  command.option_defaults()->group(std::string(group));
-  for (const MillingOption& option : kOptions) {
-    if (option.group != group) continue;
-    std::visit([&](auto place) { add_option(command, option, place(setup)); }, option.place);
+  for (const std::string& option : shared_options()) {
+    const auto has_it = [&](const AlgorithmDescription& one) {
+      return setting_of_option(one, option) != nullptr;
+    };
+    const AlgorithmDescription& first = *std::ranges::find_if(all_algorithms(), has_it);
+    command
+        .add_option_function<double>(
+            "--" + option, [&haptics, option](double value) { set_shared(haptics, option, value); },
+            meaning_of_option(option))
+        ->type_name(setting_of_option(first, option)->range.whole ? "COUNT" : "NUMBER");
   }
 }
 
@@ -176,12 +145,15 @@ void add_options(CLI::App& command, MillingSetup& setup, std::string_view group)
 
 void add_milling_options(CLI::App& command, MillingOptions& options) {
   MillingSetup& setup = options.setup;
-  add_options(command, setup, "Tool");
+  command.option_defaults()->group("Tool");
+  add_fields(command, setup, kOfTheTool);
   command.option_defaults()->group("Settings of the algorithms");
   add_shared_settings(command, setup.haptics);
   add_named_settings(command, setup.haptics);
-  add_options(command, setup, "Cutting");
-  add_options(command, setup, "Limits of the device");
+  command.option_defaults()->group("Cutting");
+  add_fields(command, setup, kOfTheCutting, kFollows);
+  command.option_defaults()->group("Limits of the device");
+  add_fields(command, setup, kOfTheLimits);
   command.option_defaults()->group("Options");
   command.add_option("--seed", options.seed, "Of the hand's tremor, and of the hands that --seeds draws")
       ->check(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
@@ -190,14 +162,9 @@ void add_milling_options(CLI::App& command, MillingOptions& options) {
   add_config_option(command);
 }
 
-std::span<const MillingOption> milling_options() {
-  return kOptions;
-}
-
-void take_given_options(const CLI::App& command, MillingSetup given, MillingSetup& setup) {
-  for (const MillingOption& option : kOptions) {
-    if (command.count(option.name) > 0)
-      std::visit([&](auto place) { place(setup) = place(given); }, option.place);
+void take_given_options(const CLI::App& command, const MillingSetup& given, MillingSetup& setup) {
+  for (const Field<MillingSetup>& field : fields_of<MillingSetup>()) {
+    if (!field.option.empty() && command.count("--" + field.option) > 0) field.set(setup, field.get(given));
   }
 }
 

@@ -1,9 +1,7 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
-#include <span>
-#include <variant>
+#include <string>
 #include <vector>
 
 #include <CLI/App.hpp>
@@ -19,24 +17,18 @@ struct MillingOptions {
   std::uint64_t seed = 1;
 };
 
-/// An option of a MillingSetup: all that the command line, files for --config and replays know of it.
-struct MillingOption {
-  /// With its dashes; a switch is also turned off by --no-NAME.
-  const char* name;
-  const char* group;
-  /// Empty for a switch; all others take positive numbers.
-  const char* unit;
-  const char* meaning;
-  std::variant<double& (*)(MillingSetup&), std::optional<double>& (*)(MillingSetup&),
-               bool& (*)(MillingSetup&)>
-      place;
-  /// A recording is of one scan, milled with one tool: this is its own, and a replay of it takes no other.
-  bool of_the_recording;
-};
-std::span<const MillingOption> milling_options();
+/// Copies from `given` into `setup` those of its fields whose options stand on the command line, and no
+/// others.
+void take_given_options(const CLI::App& command, const MillingSetup& given, MillingSetup& setup);
 
-/// Copies from `given` into `setup` those milling options that stand on the command line, and no others.
-void take_given_options(const CLI::App& command, MillingSetup given, MillingSetup& setup);
+/// Sets the algorithms' setting "ALGORITHM.SETTING" to what stands in `text`. Throws CLI::ValidationError,
+/// and sets nothing, if there is no such setting or it has another range.
+void set_own(HapticSettings& haptics, const std::string& name, const std::string& text);
+/// Sets an option that algorithms share, "stiffness". Throws CLI::ValidationError if the number is in no
+/// range of one of them.
+void set_shared(HapticSettings& haptics, const std::string& option, double value);
+/// Returns these options, without dashes.
+std::vector<std::string> shared_options();
 
 /// Adds the tool, the algorithms' settings, milling, limits, --seed and --config to a command.
 void add_milling_options(CLI::App& command, MillingOptions& options);

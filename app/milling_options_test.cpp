@@ -80,9 +80,9 @@ TEST(MillingOptions, WhatIsSaidToAReplayIsTakenOverAndNothingElse) {
   CLI::App command;
   MillingOptions options;
   add_milling_options(command, options);
-  for (const MillingOption& option : milling_options()) {
-    if (option.of_the_recording) continue;
-    EXPECT_NE(settings_after(words_for(*command.get_option(option.name))), usual) << option.name;
+  for (const Field<MillingSetup>& field : fields_of<MillingSetup>()) {
+    if (field.option.empty() || field.has(kOfTheRecording)) continue;
+    EXPECT_NE(settings_after(words_for(*command.get_option("--" + field.option))), usual) << field.option;
   }
 }
 

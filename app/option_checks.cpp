@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cctype>
+#include <limits>
 #include <numeric>
 #include <optional>
+#include <utility>
 
 #include <CLI/Error.hpp>
 #include <fmt/core.h>
@@ -136,13 +138,56 @@ void require_known_words(const CLI::App& program, int argc, const char* const* a
   }
 }
 
-CLI::Validator positive_number() {
+std::string number_text(double value) {
+  return fmt::format("{:g}", value);
+}
+
+std::string number_fault(const std::string& text, const NumberRange& range, double& value) {
+  if (range == NumberRange::on_or_off() && (text == "true" || text == "false")) {
+    value = text == "true" ? 1 : 0;
+    return "";
+  }
+  value = parsed_number<double>(text).value_or(std::numeric_limits<double>::quiet_NaN());
+  if (range.contains(value)) return "";
+  const bool is_positive = range == NumberRange::positive();
+  return fmt::format("{} is not {}", text, is_positive ? "a positive number" : range_text(range));
+}
+
+CLI::Validator number_of(const NumberRange& range) {
   return CLI::Validator(
-      [](std::string& text) {
-        const auto value = parsed_finite(text);
-        return value && *value > 0 ? std::string() : text + " is not a positive number";
+      [range](std::string& text) {
+        double value = 0;
+        return number_fault(text, range, value);
       },
       "");
+}
+
+namespace {
+
+// One word of a help text: "mm³/(N.s)".
+std::string help_unit(std::string unit) {
+  std::replace(unit.begin(), unit.end(), ' ', '.');
+  for (const auto& [power, digit] : {std::pair("^2", "²"), std::pair("^3", "³")}) {
+    for (auto at = unit.find(power); at != std::string::npos; at = unit.find(power))
+      unit.replace(at, 2, digit);
+  }
+  return unit;
+}
+
+}  // namespace
+
+void add_number(CLI::App& command, const FieldDescription& field, const std::string& shown_default,
+                const std::function<void(double)>& take) {
+  const std::string name = "--" + field.option;
+  if (field.range == NumberRange::on_or_off()) {
+    command.add_flag_function(
+        name + ",!--no-" + field.option, [take](std::int64_t times) { take(times > 0 ? 1 : 0); }, field.doc);
+    return;
+  }
+  CLI::Option* option = command.add_option_function<double>(name, take, field.doc)
+                            ->check(number_of(field.range))
+                            ->type_name(field.range.whole ? "COUNT" : help_unit(field.unit));
+  if (!shown_default.empty()) option->default_str(shown_default);
 }
 
 CLI::Validator whole_number(std::uint64_t min, std::uint64_t max) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -8,6 +9,8 @@
 #include <CLI/App.hpp>
 #include <CLI/Option.hpp>
 #include <CLI/Validators.hpp>
+
+#include "osteomill/numbers/field.h"
 
 namespace osteomill::app {
 
@@ -18,6 +21,9 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string>& 
 /// Refuses what is none of `names`; `kind` says what they are ("algorithm").
 CLI::Validator one_of(const std::string& kind, const std::vector<std::string>& names);
 
+/// As an option shows its default: "0.3".
+std::string number_text(double value);
+
 /// The names of a command's options, with their dashes.
 std::vector<std::string> option_names(const CLI::App& command);
 
@@ -25,8 +31,28 @@ std::vector<std::string> option_names(const CLI::App& command);
 /// that is. Before parsing, which would name what is missing first.
 void require_known_words(const CLI::App& program, int argc, const char* const* argv);
 
-/// Refuses what is not a finite number above zero.
-CLI::Validator positive_number();
+/// Returns what is wrong with a text as a number of this range, "-1 is not a positive number"; empty for
+/// nothing, and `value` is then the number.
+std::string number_fault(const std::string& text, const NumberRange& range, double& value);
+/// Refuses what is not a number of this range.
+CLI::Validator number_of(const NumberRange& range);
+inline CLI::Validator positive_number() {
+  return number_of(NumberRange::positive());
+}
+
+/// Adds an option for a number, or a switch that --no-NAME turns off.
+void add_number(CLI::App& command, const FieldDescription& field, const std::string& shown_default,
+                const std::function<void(double)>& take);
+/// Adds every field of `s` that has an option, or those with one of `flags` (0: any), and shows each value as
+/// its default.
+template <typename Struct>
+void add_fields(CLI::App& command, Struct& s, unsigned flags = 0, unsigned without_default = 0) {
+  for (const Field<Struct>& field : fields_of<Struct>()) {
+    if (field.option.empty() || (flags != 0 && !field.has(flags))) continue;
+    add_number(command, field, field.has(without_default) ? "" : number_text(field.get(s)),
+               [&s, &field](double value) { field.set(s, value); });
+  }
+}
 /// Refuses what is not a whole number within these bounds.
 CLI::Validator whole_number(std::uint64_t min, std::uint64_t max);
 /// Whether it takes no value, or true or false.

@@ -39,7 +39,7 @@ struct ReplayOptions {
   // The command whose options these are.
   const CLI::App* command = nullptr;
 
-  bool given(const char* option) const { return command->count(option) > 0; }
+  bool given(const std::string& option) const { return command->count(option) > 0; }
 };
 
 // Keeps the replay's ticks for the log, warns of no-go contacts, and counts what is told at the end.
@@ -197,13 +197,13 @@ void run_replay(const ReplayOptions& options, const std::string& command_line) {
 
 // A recording can be replayed with another algorithm and its settings, but not with another tool or bone.
 void refuse_what_is_recorded(const ReplayOptions& options) {
-  const auto refuse = [&](const char* option) {
+  const auto refuse = [&](const std::string& option) {
     if (options.given(option))
       throw CLI::ValidationError(option, "is the recording's own, and cannot be given");
   };
   refuse("--iso");
-  for (const MillingOption& option : milling_options()) {
-    if (option.of_the_recording) refuse(option.name);
+  for (const Field<MillingSetup>& field : fields_of<MillingSetup>()) {
+    if (field.has(kOfTheRecording)) refuse("--" + field.option);
   }
   refuse("--seed");
 }

@@ -1,10 +1,11 @@
 #include "app/study_trials.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <new>
 #include <stdexcept>
 
-#include "app/config_file.h"
 #include "app/option_checks.h"
 #include "app/progress.h"
 #include "app/study_file.h"
@@ -12,7 +13,9 @@
 #include <fmt/format.h>
 
 #include "osteomill/experiment/match_stiffness.h"
+#include "osteomill/files/csv_field.h"
 #include "osteomill/files/input_error.h"
+#include "osteomill/numbers/parse_number.h"
 
 namespace osteomill::app {
 
@@ -20,12 +23,8 @@ namespace {
 
 constexpr const char* kBuiltIn = "built-in";
 constexpr std::size_t kBonesKept = 8;
-// Options that the command has and a trial cannot have.
-constexpr std::string_view kNoKeys[] = {"--help", "--config", "--set", "--max-memory"};
 
-std::string option_name(const std::string& key) {
-  return key == "scan" ? key : "--" + key;
-}
+using Text = Field<AskedTrial, std::string>;
 
 std::string tool_text(const MillingTool& tool) {
   return fmt::format("{} {} {}", tool.burr_radius_mm, tool.shaft_radius_mm, tool.shaft_length_mm);
@@ -47,84 +46,176 @@ void require_runnable(StudyTest test, const TrialPlan& trial) {
   SimulatedOperator(settings.hand_and_device, settings.tool, trial.entry);
 }
 
-}  // namespace
+// As the command line would have it: "0,0,-1".
+std::vector<double> three_numbers(const std::string& text) {
+  std::vector<double> numbers;
+  for (const std::string_view part : csv_fields(text)) {
+    const auto number = parsed_number<double>(part);
+    if (!number || !std::isfinite(*number)) break;
+    numbers.push_back(*number);
+  }
+  if (numbers.size() != 3) throw std::invalid_argument(text + " is not three numbers, X,Y,Z");
+  return numbers;
+}
 
-StudyTrials::StudyTrials(const std::string& file, std::filesystem::path scans_from)
-    : file_(file), scans_from_(std::move(scans_from)), command_("", "a study"), design_(read_design()) {}
+std::string joined(const auto& values) {
+  return fmt::format("{}", fmt::join(values, ","));
+}
 
-StudyDesign StudyTrials::read_design() {
-  add_scan_options(command_, asked_.scan);
-  command_.add_option("--voxel", asked_.voxel_mm, "Of the built-in tooth")
-      ->check(CLI::Range(0.03, 1.0))
-      ->type_name("mm");
-  command_.option_defaults()->group("A study");
-  add_algorithm_option(command_, asked_.trial.milling.setup.algorithm);
-  command_.add_option("--rate", asked_.rate_hz, "Of the haptic loop")
-      ->check(CLI::Range(100.0, 20000.0))
-      ->type_name("Hz");
-  add_positive(command_, "--device-damping", asked_.device_damping_Ns_per_mm, "N.s/mm",
-               "Of the device, on a wall");
-  add_positive(command_, "--grip", asked_.grip, "", "How many times as firmly the hand grips");
-  command_.add_flag("--draw-hand", asked_.draw_hand, "The seed draws the hand");
-  add_trial_options(command_, asked_.trial);
-  check_values(command_);
-  StudyDesign design = read_study_file(file_, keys());
-  design.units = units();
+std::vector<Text> trial_texts() {
+  using A = AskedTrial;
+  const auto text = [](const char* option, std::string A::*place, unsigned flags = 0) -> Text {
+    return {{"", "", {}, "", flags, option},
+            [place](const A& a) { return a.*place; },
+            [place](A& a, const std::string& said) { a.*place = said; }};
+  };
+  return {text("scan", &A::scan_name, kOfTheBone),
+          text("series", &A::series, kOfTheBone),
+          text("as", &A::as, kOfTheBone),
+          text("labels", &A::labels, kOfTheBone),
+          text("label-table", &A::label_table, kOfTheBone),
+          text("no-go", &A::no_go, kOfTheBone),
+          text("algorithm", &A::algorithm),
+          text("entry", &A::entry),
+          text("direction", &A::direction)};
+}
+
+void require_one_of(const std::string& kind, const std::string& name, const std::vector<std::string>& names) {
+  if (std::ranges::find(names, name) == names.end())
+    throw std::invalid_argument(fmt::format("there is no {} {}{}", kind, name, did_you_mean(name, names)));
+}
+
+void take_texts(AskedTrial& asked) {
+  if (asked.scan_name != kBuiltIn) asked.scan.scan = asked.scan_name;
+  asked.scan.read.series = asked.series;
+  asked.scan.labels = {asked.labels, asked.label_table, {}};
+  if (!asked.no_go.empty())
+    for (const std::string_view label : csv_fields(asked.no_go)) asked.scan.labels.no_go.emplace_back(label);
+  if (!asked.as.empty()) {
+    require_one_of("kind", asked.as, {"scan", "labels"});
+    asked.scan.as_labels = asked.as == "labels";
+  }
+  require_one_of("algorithm", asked.algorithm, algorithm_names());
+  asked.trial.milling.setup.algorithm = algorithm_named(asked.algorithm);
+  if (!asked.entry.empty()) asked.trial.entry_mm = three_numbers(asked.entry);
+  if (!asked.direction.empty()) asked.trial.direction = three_numbers(asked.direction);
+}
+
+std::vector<Field<AskedTrial>> trial_numbers() {
+  // Whole numbers beyond this are not numbers of their own in a double.
+  constexpr double kMaxSeed = 1ull << 53;
+  using A = AskedTrial;
+  std::vector<Field<A>> all{
+      {{"", "", NumberRange::finite(), "", kOfTheBone, "iso"},
+       [](const A& a) { return a.scan.isovalue.value_or(std::numeric_limits<double>::quiet_NaN()); },
+       [](A& a, double value) { a.scan.isovalue = value; }},
+      field<A>({"", "mm", {0.03, 1}, "Of the built-in tooth", kOfTheBone, "voxel"}, &A::voxel_mm),
+      field<A>({"", "Hz", {100, 20000}, "Of the haptic loop", 0, "rate"}, &A::rate_hz),
+      field<A>({"", "N s/mm", NumberRange::positive(), "Of the device, on a wall", 0, "device-damping"},
+               &A::device_damping_Ns_per_mm),
+      field<A>({"", "", NumberRange::positive(), "How many times as firmly the hand grips", 0, "grip"},
+               &A::grip),
+      field<A>({"", "", NumberRange::on_or_off(), "The seed draws the hand", 0, "draw-hand"}, &A::draw_hand),
+      field<A>(
+          {"", "", {0, kMaxSeed, true}, "Of the hand's tremor", 0, "seed"},
+          [](auto& a) -> auto& { return a.trial.milling.seed; })};
+  const auto add = [&](std::vector<Field<A>> fields) {
+    for (Field<A>& one : fields)
+      if (!one.option.empty()) all.push_back(std::move(one));
+  };
+  add(fields_within<A>(
+      [](auto& a) -> auto& { return a.trial.milling.setup; }, fields_of<MillingSetup>()));
+  add(fields_within<A>(
+      [](auto& a) -> auto& { return a.trial.hand; }, fields_of<OperatorSettings>()));
+  return all;
+}
+
+double checked_number(const std::string& key, const std::string& text, const NumberRange& range) {
+  double value = 0;
+  if (const std::string fault = number_fault(text, range, value); !fault.empty())
+    throw std::invalid_argument(key + ": " + fault);
+  return value;
+}
+
+void set_one(AskedTrial& asked, const std::string& key, const std::string& text) {
+  HapticSettings& haptics = asked.trial.milling.setup.haptics;
+  if (text.empty()) throw std::invalid_argument(key + " is empty");
+  if (is_own_setting(key)) {
+    set_own(haptics, key, text);
+  } else if (const Field<AskedTrial>* number = field_of_option(numbers_of_a_trial(), key)) {
+    number->set(asked, checked_number(key, text, number->range));
+  } else if (const Text* known = field_of_option(texts_of_a_trial(), key)) {
+    known->set(asked, text);
+  } else {
+    set_shared(haptics, key, checked_number(key, text, NumberRange::finite()));
+  }
+}
+
+// What may be set of a trial, and in which unit.
+StudySettings options_and_units() {
+  StudySettings options;
+  for (const Text& text : texts_of_a_trial()) options.emplace_back(text.option, "");
+  for (const Field<AskedTrial>& field : numbers_of_a_trial()) options.emplace_back(field.option, field.unit);
+  for (const std::string& option : shared_options()) options.emplace_back(option, "");
+  return options;
+}
+
+StudyDesign read_design(const std::string& file) {
+  const StudySettings options = options_and_units();
+  std::vector<std::string> keys;
+  for (const auto& [option, unit] : options) keys.push_back(option);
+  StudyDesign design = read_study_file(file, keys);
+  design.units = options;
   return design;
 }
 
-std::vector<std::string> StudyTrials::keys() const {
-  std::vector<std::string> keys{"scan"};
-  for (const std::string& name : option_names(command_))
-    if (std::ranges::find(kNoKeys, name) == std::end(kNoKeys)) keys.push_back(name.substr(2));
-  return keys;
+}  // namespace
+
+const std::vector<Field<AskedTrial>>& numbers_of_a_trial() {
+  static const std::vector<Field<AskedTrial>> all = trial_numbers();
+  return all;
 }
 
-StudySettings StudyTrials::units() const {
-  StudySettings units;
-  for (const std::string& key : keys()) {
-    // The option's type is its unit, or a word for what it takes ("FILE"); CLI11 appends what it checks,
-    // behind a colon.
-    const std::string type = command_.get_option(option_name(key))->get_type_name(),
-                      unit = type.substr(0, type.find(':'));
-    const bool is_word = unit.find_first_of("|,") != std::string::npos || unit == "NUMBER" ||
-                         unit == "COUNT" || unit == "NAME" || unit == "MODE" || unit == "TEXT" ||
-                         unit == "FILE";
-    if (key != "scan" && !is_word) units.emplace_back(key, unit);
-  }
-  return units;
+const std::vector<Text>& texts_of_a_trial() {
+  static const std::vector<Text> all = trial_texts();
+  return all;
 }
 
-void StudyTrials::take(const StudySettings& settings) {
-  asked_ = Asked();
-  asked_.trial.hand.script.until_leant = true;
-  std::vector<std::string> named;
-  for (const auto& [key, text] : settings) {
-    if (is_own_setting(key)) {
-      named.push_back(key + "=" + text);
-    } else if (key != "scan" || text != kBuiltIn) {
-      set_option(command_, option_name(key), {text});
-    }
-  }
+AskedTrial asked_trial(const StudySettings& settings) {
+  AskedTrial asked;
+  asked.trial.hand.script.until_leant = true;
+  for (const auto& [key, text] : settings) set_one(asked, key, text);
+  take_texts(asked);
   for (const auto& [key, text] : settings)
-    if (asked_.draw_hand && key.starts_with("hand-"))
+    if (asked.draw_hand && key.starts_with("hand-"))
       throw std::invalid_argument("draw-hand draws what " + key + " sets");
-  if (!named.empty()) set_option(command_, "--set", named);
-  if (!asked_.scan.scan.empty()) asked_.scan.scan = (scans_from_ / asked_.scan.scan).string();
-  asked_.scan.refinement = Asked().voxel_mm / asked_.voxel_mm;
+  asked.scan.refinement = AskedTrial().voxel_mm / asked.voxel_mm;
+  return asked;
 }
 
-StudyTrials::Bone& StudyTrials::bone_of(const StudySettings& settings) {
-  std::string key;
-  for (const auto& [name, text] : settings)
-    if (!is_own_setting(name) && command_.get_option(option_name(name))->get_group() == "Scan")
-      key += fmt::format("{}{}={}", key.empty() ? "" : " ", name, text);
-  std::unique_ptr<Bone>& bone = bones_[key];
+std::string bone_text(const AskedTrial& asked) {
+  std::string words;
+  const auto add = [&](const FieldDescription& field, const std::string& value) {
+    if (field.has(kOfTheBone)) words += fmt::format("{}{}={}", words.empty() ? "" : " ", field.option, value);
+  };
+  for (const Text& text : texts_of_a_trial()) add(text, text.get(asked));
+  for (const Field<AskedTrial>& field : numbers_of_a_trial()) add(field, fmt::format("{}", field.get(asked)));
+  return words;
+}
+
+StudyTrials::StudyTrials(const std::string& file, std::filesystem::path scans_from)
+    : file_(file), scans_from_(std::move(scans_from)), design_(read_design(file)) {}
+
+StudyTrials::Bone& StudyTrials::bone_of(const AskedTrial& asked) {
+  const std::string words = bone_text(asked);
+  std::unique_ptr<Bone>& bone = bones_[words];
   if (bone) return *bone;
-  LoadedBone loaded = read_bone(asked_.scan);
+  ScanOptions scan = asked.scan;
+  if (!scan.scan.empty()) scan.scan = (scans_from_ / scan.scan).string();
+  LoadedBone loaded = read_bone(scan);
   const BoneDensities densities = estimate_densities(loaded.volume);
   const std::uint64_t fingerprint = fingerprint_of(loaded.volume.grid());
-  const auto [expected, is_new] = fingerprints_.emplace(key, fingerprint);
+  const auto [expected, is_new] = fingerprints_.emplace(words, fingerprint);
   if (expected->second != fingerprint) throw InputError(loaded.name, "has changed since the study was begun");
   if (is_new)
     for (const std::string& warning : loaded.warnings) warn(warning);
@@ -139,25 +230,22 @@ const Volume& StudyTrials::wall_of(const MillingTool& tool) {
 }
 
 TrialPlan StudyTrials::trial_of(const StudySettings& settings) {
-  take(settings);
-  TrialSettings set = trial_settings(asked_.trial);
-  set.tick_s = 1 / asked_.rate_hz;
-  set.device_damping_Ns_per_mm = asked_.device_damping_Ns_per_mm;
+  const AskedTrial asked = asked_trial(settings);
+  TrialSettings set = trial_settings(asked.trial);
+  set.tick_s = 1 / asked.rate_hz;
+  set.device_damping_Ns_per_mm = asked.device_damping_Ns_per_mm;
   if (design_.test != StudyTest::milling) return {wall_of(set.tool), "a wall", {}, {}, set, ""};
-  Bone& bone = bone_of(settings);
-  const auto numbers = [](const std::vector<double>& values) {
-    return fmt::format("{}", fmt::join(values, ","));
-  };
+  Bone& bone = bone_of(asked);
   const std::string place =
-      tool_text(set.tool) + " " + numbers(asked_.trial.entry_mm) + " " + numbers(asked_.trial.direction);
+      tool_text(set.tool) + " " + joined(asked.trial.entry_mm) + " " + joined(asked.trial.direction);
   auto entry = bone.entries.find(place);
   if (entry == bone.entries.end())
-    entry = bone.entries.emplace(place, entry_into(bone.volume, asked_.trial)).first;
+    entry = bone.entries.emplace(place, entry_into(bone.volume, asked.trial)).first;
   const TrialPlan as_set{bone.volume, bone.name, bone.densities, entry->second, set, "", true};
-  TrialPlan plan = asked_.draw_hand ? with_seed(as_set, asked_.trial.milling.seed) : as_set;
-  plan.grip = asked_.grip;
+  TrialPlan plan = asked.draw_hand ? with_seed(as_set, asked.trial.milling.seed) : as_set;
+  plan.grip = asked.grip;
   HandSettings& hand = plan.settings.hand_and_device.hand;
-  hand = gripping(hand, asked_.grip);
+  hand = gripping(hand, asked.grip);
   return plan;
 }
 

@@ -10,15 +10,44 @@
 
 #include "app/scan_options.h"
 #include "app/trial_options.h"
-#include <CLI/App.hpp>
 
 #include "osteomill/experiment/run_trials.h"
 #include "osteomill/experiment/study_design.h"
 
 namespace osteomill::app {
 
-/// A study as its file describes it, and its trials, each made of what is set of it by the options of
-/// `compare` and some that only a study has. Opens every bone once.
+/// What is set of a trial: the options of `compare`, and those that only a study has.
+struct AskedTrial {
+  ScanOptions scan;
+  TrialOptions trial;
+  /// Of the built-in tooth.
+  double voxel_mm = 0.125;
+  double rate_hz = 1000;
+  double device_damping_Ns_per_mm = 0.005;
+  double grip = 1;
+  bool draw_hand = false;
+  /// As a study's file says them, from which `scan` and `trial` are made; empty for nothing.
+  std::string scan_name = "built-in", series, as, labels, label_table, no_go, entry, direction;
+  std::string algorithm = default_algorithm().id.name;
+};
+
+/// A flag of the fields of an AskedTrial: another value makes another bone.
+inline constexpr unsigned kOfTheBone = 1u << 8;
+
+/// Returns the numbers and the texts of a trial, each under its option.
+const std::vector<Field<AskedTrial>>& numbers_of_a_trial();
+const std::vector<Field<AskedTrial, std::string>>& texts_of_a_trial();
+
+/// Sets what a study says of a trial. Throws std::invalid_argument, or a CLI::Error, if a value is out of its
+/// range.
+AskedTrial asked_trial(const StudySettings& settings);
+
+/// Says which bone a trial has: its fields that have kOfTheBone, in words. Trials whose words are the same
+/// share a bone.
+std::string bone_text(const AskedTrial& asked);
+
+/// A study as its file describes it, and its trials, each made of what is set of it. Opens every
+/// bone once.
 class StudyTrials {
  public:
   /// Scans are sought from the folder `scans_from`. Throws as read_study_file does.
@@ -28,7 +57,7 @@ class StudyTrials {
 
   const StudyDesign& design() const { return design_; }
 
-  /// Bones are then to have these fingerprints, by what is set of them.
+  /// Bones are then to have these fingerprints, by their words (bone_text).
   void expect(const std::vector<std::pair<std::string, std::uint64_t>>& bones) {
     fingerprints_ = {bones.begin(), bones.end()};
   }
@@ -40,16 +69,6 @@ class StudyTrials {
   std::vector<TrialPlan> make(std::size_t first, std::size_t count);
 
  private:
-  // Where `command_` writes what is set of a trial; the options of `compare` and those that only a study has.
-  struct Asked {
-    ScanOptions scan;
-    TrialOptions trial;
-    double voxel_mm = 0.125;
-    double rate_hz = 1000;
-    double device_damping_Ns_per_mm = 0.005;
-    double grip = 1;
-    bool draw_hand = false;
-  };
   struct Bone {
     Volume volume;
     std::string name;
@@ -58,21 +77,15 @@ class StudyTrials {
     std::map<std::string, MillingEntry> entries;
   };
 
-  // Adds the options that a trial has, and reads the file, which names them.
-  StudyDesign read_design();
-  std::vector<std::string> keys() const;
-  StudySettings units() const;
-  void take(const StudySettings& settings);
   TrialPlan trial_of(const StudySettings& settings);
-  Bone& bone_of(const StudySettings& settings);
+  Bone& bone_of(const AskedTrial& asked);
   const Volume& wall_of(const MillingTool& tool);
 
   std::string file_;
   std::filesystem::path scans_from_;
-  Asked asked_;
-  CLI::App command_;
   StudyDesign design_;
-  // By what is set of the scan; walls by the tool. A bone's fingerprint stays when the bone itself is let go.
+  // By the fields that make a bone (bone_text); walls by the tool. A bone's fingerprint stays when the bone
+  // itself is let go.
   std::map<std::string, std::unique_ptr<Bone>> bones_;
   std::map<std::string, Volume> walls_;
   std::map<std::string, std::uint64_t> fingerprints_;

@@ -21,37 +21,14 @@ std::optional<Vec3> as_vector(const std::vector<double>& numbers) {
   return Vec3(numbers[0], numbers[1], numbers[2]);
 }
 
-void add_hand_options(CLI::App& command, OperatorSettings& settings) {
-  HandSettings& hand = settings.hand;
-  HandleSettings& handle = settings.handle;
-  add_positive(command, "--push", hand.push_N, "N", "The most that the hand pushes");
-  add_positive(command, "--hand-stiffness", hand.stiffness_N_per_mm, "N/mm", "Of the hand");
-  add_positive(command, "--hand-damping", hand.damping_Ns_per_mm, "N.s/mm", "Of the hand");
-  add_positive(command, "--hand-torsional-stiffness", hand.torsional_stiffness_Nmm_per_rad, "N.mm/rad",
-               "Of the hand, about its turning");
-  add_positive(command, "--hand-torsional-damping", hand.torsional_damping_Nmms_per_rad, "N.mm.s/rad",
-               "Of the hand, about its turning");
-  add_positive(command, "--device-mass", handle.mass_kg, "kg", "Of the handle");
-  add_positive(command, "--device-inertia", handle.inertia_kg_m2, "kg.m^2", "Of the handle");
-  add_positive(command, "--device-delay", handle.force_delay_s, "s", "From a wrench sent to its effect");
-}
-
 }  // namespace
 
 void add_trial_options(CLI::App& command, TrialOptions& options) {
-  ScriptSettings& script = options.hand.script;
   command.option_defaults()->group("The hand and its device");
-  command
-      .add_option_function<double>(
-          "--seconds", [&script](double seconds) { script.milling_s = script.holding_s = seconds; },
-          "How long each phase lasts (compare: about; docs/algorithms.md)")
-      ->check(positive_number())
-      ->type_name("s")
-      ->default_str(std::to_string(static_cast<int>(script.milling_s)));
   add_vector(command, "--entry", options.entry_mm,
              "From where the tool enters, in mm; else the top of the bone");
   add_vector(command, "--direction", options.direction, "Which way it enters; else 0,0,-1");
-  add_hand_options(command, options.hand);
+  add_fields(command, options.hand);
   add_milling_options(command, options.milling);
 }
 

@@ -87,7 +87,7 @@ void add_scene(Lines& lines, const ViewState& view, const ViewScene& scene, cons
 std::optional<double> stiffness_of(const MillingSetup& setup) {
   const SettingDescription* stiffness = setting_of_option(setup.algorithm, kStiffnessOption);
   if (stiffness == nullptr) return std::nullopt;
-  const std::vector<SettingValue> values = setting_values(setup.algorithm, setup.haptics);
+  const std::vector<SettingDescription> values = setting_values(setup.algorithm, setup.haptics);
   return std::find_if(values.begin(), values.end(),
                       [&](const auto& one) { return one.name == stiffness->name; })
       ->value;

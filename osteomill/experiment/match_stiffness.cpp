@@ -64,7 +64,7 @@ HapticSettings::Named setting_felt_as(double felt_N_per_mm, MillingSetup setup, 
   const double softest = std::max(kSoftest_N_per_mm, setting->range.min);
   const double stiffest = std::min(kStiffest_N_per_mm, setting->range.max);
   std::vector<HapticSettings::Named>& named = setup.haptics.named;
-  for (const SettingValue& value : setting_values(algorithm, setup.haptics)) {
+  for (const SettingDescription& value : setting_values(algorithm, setup.haptics)) {
     if (value.name != setting->name) continue;
     named.push_back({algorithm.id.name, setting->name, std::clamp(value.value, softest, stiffest)});
   }

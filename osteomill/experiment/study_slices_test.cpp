@@ -138,7 +138,7 @@ TEST(StudySlices, ARowEqualsTheRowMeasuredFromItsRecording) {
   const auto slice = read_slice(study, 0);
   ASSERT_TRUE(slice);
   const EntryPictures pictures(bone, 1000, plan.entry, {}, false);
-  const std::vector<fs::path> recorded = record_trial(plan, pictures, folder / "recordings", {});
+  const std::vector<fs::path> recorded = record_trial(plan, pictures, folder.path(), {});
   ASSERT_EQ(recorded.size(), slice->rows.size());
   for (std::size_t part = 0; part < recorded.size(); ++part) {
     const Recording recording = read_recording(recorded[part]);

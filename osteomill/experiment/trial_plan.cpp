@@ -7,46 +7,36 @@
 #include <fmt/format.h>
 
 #include "osteomill/experiment/paper.h"
+#include "osteomill/files/csv_field.h"
+#include "osteomill/files/input_error.h"
+#include "osteomill/numbers/parse_number.h"
 #include "osteomill/recording/run_description.h"
 
 namespace osteomill {
 
 namespace {
 
-using Settings = std::vector<RunSetting>;
-
 std::string point_text(const Vec3& v) {
   return fmt::format("{},{},{}", v.x(), v.y(), v.z());
 }
 
-void add_hand(Settings& settings, const HandSettings& hand) {
-  settings.push_back({"hand.push", hand.push_N, "N"});
-  settings.push_back({"hand.push_lever", hand.push_lever_mm, "mm"});
-  settings.push_back({std::string(kHandStiffnessKey), hand.stiffness_N_per_mm, "N/mm"});
-  settings.push_back({std::string(kHandDampingKey), hand.damping_Ns_per_mm, "N s/mm"});
-  settings.push_back({"hand.torsional_stiffness", hand.torsional_stiffness_Nmm_per_rad, "N mm/rad"});
-  settings.push_back({"hand.torsional_damping", hand.torsional_damping_Nmms_per_rad, "N mm s/rad"});
-  settings.push_back({"hand.tremor", hand.tremor_mm, "mm"});
-  settings.push_back({"hand.tremor_turn", hand.tremor_rad, "rad"});
+// Three numbers as point_text writes them.
+Vec3 point_of(const RunDescription& run, std::string_view key, const std::filesystem::path& path) {
+  const std::string* text = find_setting<std::string>(run, key);
+  const std::vector<std::string_view> parts =
+      text == nullptr ? std::vector<std::string_view>() : csv_fields(*text);
+  Vec3 point;
+  for (std::size_t n = 0; n < 3; ++n) {
+    const auto number = n < parts.size() ? parsed_number<double>(parts[n]) : std::nullopt;
+    if (!number || parts.size() != 3)
+      throw InputError(path.string(), fmt::format("has no setting '{}' of three numbers", key));
+    point[static_cast<Eigen::Index>(n)] = *number;
+  }
+  return point;
 }
 
-void add_device(Settings& settings, const HandleSettings& device) {
-  settings.push_back({"device.mass", device.mass_kg, "kg"});
-  settings.push_back({"device.inertia", device.inertia_kg_m2, "kg m^2"});
-  settings.push_back({"device.position_step", device.position_step_mm, "mm"});
-  settings.push_back({"device.rotation_step", device.rotation_step_rad, "rad"});
-  settings.push_back({"device.force_delay", device.force_delay_s, "s"});
-  settings.push_back({"device.substep", device.substep_s, "s"});
-}
-
-void add_script(Settings& settings, const ScriptSettings& script, const MillingEntry& entry) {
-  settings.push_back({std::string(kScriptEntryKey), point_text(entry.point_W), "mm"});
-  settings.push_back({"script.direction", point_text(entry.direction_W), ""});
-  settings.push_back({"script.milling", script.milling_s, "s"});
-  settings.push_back({"script.until-leant", script.until_leant ? 1.0 : 0.0, ""});
-  settings.push_back({std::string(kScriptHoldingKey), script.holding_s, "s"});
-  settings.push_back({"script.depth", script.depth_mm, "mm"});
-}
+constexpr const char* kScriptDirectionKey = "script.direction";
+constexpr const char* kScriptLateralKey = "script.lateral";
 
 }  // namespace
 
@@ -58,14 +48,35 @@ RunDescription describe_trial(const TrialPlan& plan, int sample_points, std::str
   run.scan_hash = plan.scan_hash;
   run.seed = person.seed;
   run.phase = phase;
-  add_hand(run.settings, person.hand);
-  add_device(run.settings, person.handle);
-  add_script(run.settings, person.script, plan.entry);
+  run.settings.push_back({std::string(kScriptEntryKey), point_text(plan.entry.point_W), "mm"});
+  run.settings.push_back({kScriptDirectionKey, point_text(plan.entry.direction_W), ""});
+  run.settings.push_back({kScriptLateralKey, point_text(plan.entry.lateral_W), ""});
+  run.settings.push_back({"script.depth", ScriptSettings::depth_mm, "mm"});
+  put_fields(run, person);
   if (!plan.comparison.empty()) run.settings.push_back({std::string(kComparisonKey), plan.comparison, ""});
   if (plan.matched_N_per_mm) {
     run.settings.push_back({std::string(kMatchedStiffnessKey), *plan.matched_N_per_mm, "N/mm"});
   }
   return run;
+}
+
+RecordedTrial recorded_trial(const RunDescription& run, const std::filesystem::path& path) {
+  const AlgorithmDescription* algorithm = find_algorithm(run.algorithm.name);
+  if (algorithm == nullptr)
+    throw InputError(path.string(), "its algorithm " + run.algorithm.name + " is not known here");
+  SessionSettings session = session_settings(run, path);
+  RecordedTrial trial;
+  static_cast<MillingSetup&>(trial.settings) = std::move(session.setup);
+  trial.densities = session.densities;
+  trial.entry.point_W = point_of(run, kScriptEntryKey, path);
+  trial.entry.direction_W = point_of(run, kScriptDirectionKey, path);
+  trial.entry.lateral_W = point_of(run, kScriptLateralKey, path);
+  trial.settings.algorithm = *algorithm;
+  OperatorSettings& person = trial.settings.hand_and_device;
+  person.handle.limits = trial.settings.guard.limits;
+  take_fields(run, path, person);
+  person.seed = run.seed;
+  return trial;
 }
 
 std::string shortfall_words(const ScriptShortfall& shortfall, const ScriptSettings& script,

@@ -53,19 +53,15 @@ void require_in_range(const AlgorithmId& algorithm, const SettingDescription& se
                               ", not " + number(value));
 }
 
-std::vector<SettingValue> setting_values(const AlgorithmDescription& algorithm,
-                                         const HapticSettings& settings) {
-  std::vector<SettingValue> values;
-  for (const SettingDescription& setting : algorithm.settings) {
-    values.push_back({setting.name, setting.value, setting.unit});
-  }
+std::vector<SettingDescription> setting_values(const AlgorithmDescription& algorithm,
+                                               const HapticSettings& settings) {
+  std::vector<SettingDescription> values = algorithm.settings;
   const auto set = [&](const HapticSettings::Named& named, std::string FieldDescription::*name) {
     bool known = false;
-    for (std::size_t n = 0; n < values.size(); ++n) {
-      const SettingDescription& setting = algorithm.settings[n];
+    for (SettingDescription& setting : values) {
       if (setting.*name != named.setting) continue;
       require_in_range(algorithm.id, setting, named.value);
-      values[n].value = named.value;
+      setting.value = named.value;
       known = true;
     }
     return known;
@@ -84,7 +80,8 @@ std::vector<SettingValue> setting_values(const AlgorithmDescription& algorithm,
 std::unique_ptr<HapticAlgorithm> make_algorithm(const AlgorithmDescription& algorithm,
                                                 const HapticSettings& settings) {
   std::vector<double> values;
-  for (const SettingValue& setting : setting_values(algorithm, settings)) values.push_back(setting.value);
+  for (const SettingDescription& setting : setting_values(algorithm, settings))
+    values.push_back(setting.value);
   return algorithm.make(values);
 }
 

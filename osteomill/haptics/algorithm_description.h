@@ -65,15 +65,8 @@ std::vector<AlgorithmId> each_once(std::vector<AlgorithmId> algorithms);
 /// A setting of an algorithm. Its name is that in `--set ALGORITHM.NAME=VALUE`, configuration files and
 /// recordings; every algorithm's setting of the same option is set by that option.
 struct SettingDescription : FieldDescription {
-  /// Its default.
+  /// Its default; of `setting_values`, what is in force.
   double value = 0;
-};
-
-/// A setting with the value that is in force.
-struct SettingValue {
-  std::string name;
-  double value = 0;
-  std::string unit;
 };
 
 /// An algorithm as programs choose, set and show it. Each of the project's stands in its own folder
@@ -100,8 +93,8 @@ void require_in_range(const AlgorithmId& algorithm, const SettingDescription& se
 
 /// Every setting with the value that `make_algorithm` would use, in the order of the description. Throws
 /// std::invalid_argument, naming algorithm and setting, where one is out of range or unknown.
-std::vector<SettingValue> setting_values(const AlgorithmDescription& algorithm,
-                                         const HapticSettings& settings);
+std::vector<SettingDescription> setting_values(const AlgorithmDescription& algorithm,
+                                               const HapticSettings& settings);
 
 /// The algorithm with these settings, still to be prepared. Throws as `setting_values` does.
 std::unique_ptr<HapticAlgorithm> make_algorithm(const AlgorithmDescription& algorithm,

@@ -12,7 +12,7 @@ namespace osteomill {
 namespace {
 
 double setting(std::string_view algorithm, const HapticSettings& settings, const std::string& name) {
-  for (const SettingValue& value : setting_values(algorithm_named(algorithm), settings)) {
+  for (const SettingDescription& value : setting_values(algorithm_named(algorithm), settings)) {
     if (value.name == name) return value.value;
   }
   ADD_FAILURE() << "no setting " << name;

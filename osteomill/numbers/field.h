@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <string>
 #include <string_view>
@@ -103,6 +104,14 @@ std::vector<Field<Outer>> fields_within(Place place, const std::vector<Field<Inn
          [place, set = one.set](Outer& outer, double value) { set(std::invoke(place, outer), value); }});
   }
   return fields;
+}
+
+/// Returns the fields of several lists as one.
+template <typename Struct>
+std::vector<Field<Struct>> joined(std::vector<std::vector<Field<Struct>>> lists) {
+  std::vector<Field<Struct>> all;
+  for (std::vector<Field<Struct>>& list : lists) std::ranges::move(list, std::back_inserter(all));
+  return all;
 }
 
 /// Returns the field of this name, or of this option; null if there is none.

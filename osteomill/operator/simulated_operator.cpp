@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 namespace osteomill {
 
@@ -69,6 +70,76 @@ void SimulatedOperator::tick_done(const Pose& X_WT, double dt_s) {
     handle_.advance(hand_wrench_);
   }
   X_W_target_ = to;
+}
+
+namespace {
+
+constexpr NumberRange kPositive = NumberRange::positive(), kNotNegative = NumberRange::not_negative();
+
+std::vector<Field<HandSettings>> hand_fields() {
+  using H = HandSettings;
+  return {
+      field<H>({"hand.push", "N", kPositive, "The most that the hand pushes", 0, "push"}, &H::push_N),
+      field<H>({"hand.push_lever", "mm", kNotNegative, "Its push turns at this lever"}, &H::push_lever_mm),
+      field<H>({"hand.stiffness", "N/mm", kPositive, "Of the hand", 0, "hand-stiffness"},
+               &H::stiffness_N_per_mm),
+      field<H>({"hand.damping", "N s/mm", kPositive, "Of the hand", 0, "hand-damping"},
+               &H::damping_Ns_per_mm),
+      field<H>({"hand.torsional_stiffness", "N mm/rad", kPositive, "Of the hand, about its turning", 0,
+                "hand-torsional-stiffness"},
+               &H::torsional_stiffness_Nmm_per_rad),
+      field<H>({"hand.torsional_damping", "N mm s/rad", kPositive, "Of the hand, about its turning", 0,
+                "hand-torsional-damping"},
+               &H::torsional_damping_Nmms_per_rad),
+      field<H>({"hand.tremor", "mm", kNotNegative, "Along each axis, rms"}, &H::tremor_mm),
+      field<H>({"hand.tremor_turn", "rad", kNotNegative, "About each axis, rms"}, &H::tremor_rad),
+  };
+}
+
+std::vector<Field<HandleSettings>> handle_fields() {
+  using H = HandleSettings;
+  return {
+      field<H>({"device.mass", "kg", kPositive, "Of the handle", 0, "device-mass"}, &H::mass_kg),
+      field<H>({"device.inertia", "kg m^2", kPositive, "Of the handle", 0, "device-inertia"},
+               &H::inertia_kg_m2),
+      field<H>({"device.position_step", "mm", kNotNegative, "Of the encoder"}, &H::position_step_mm),
+      field<H>({"device.rotation_step", "rad", kNotNegative, "Of the encoder"}, &H::rotation_step_rad),
+      field<H>({"device.force_delay", "s", kPositive, "From a wrench sent to its effect", 0, "device-delay"},
+               &H::force_delay_s),
+      field<H>(
+          {"device.force_limit", "N", kNotNegative, "Of the motors", kMayBeAbsent},
+          [](auto& h) -> auto& { return h.limits.force_N; }),
+      field<H>(
+          {"device.torque_limit", "N mm", kNotNegative, "Of the motors", kMayBeAbsent},
+          [](auto& h) -> auto& { return h.limits.torque_Nmm; }),
+      field<H>({"device.substep", "s", kPositive, "Of the simulated time"}, &H::substep_s),
+  };
+}
+
+std::vector<Field<ScriptSettings>> script_fields() {
+  using S = ScriptSettings;
+  return {
+      {{"", "s", kPositive, "How long each phase lasts (compare: about; docs/algorithms.md)", 0, "seconds"},
+       [](const S& s) { return s.milling_s; },
+       [](S& s, double value) { s.milling_s = s.holding_s = value; }},
+      field<S>({"script.milling", "s", kNotNegative, "How long the milling lasts"}, &S::milling_s),
+      field<S>({"script.until-leant", "", NumberRange::on_or_off(), "It lasts until the shaft has leant"},
+               &S::until_leant),
+      field<S>({"script.holding", "s", kNotNegative, "How long the tool is held"}, &S::holding_s),
+      field<S>({"script.settle", "s", kNotNegative, "How long the hand takes to that", kMayBeAbsent},
+               &S::settle_s),
+  };
+}
+
+}  // namespace
+
+template <>
+const std::vector<Field<OperatorSettings>>& fields_of<OperatorSettings>() {
+  using O = OperatorSettings;
+  static const std::vector<Field<O>> all =
+      joined<O>({fields_within<O>(&O::script, script_fields()), fields_within<O>(&O::hand, hand_fields()),
+                 fields_within<O>(&O::handle, handle_fields())});
+  return all;
 }
 
 }  // namespace osteomill

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "osteomill/device/device.h"
+#include "osteomill/numbers/field.h"
 #include "osteomill/operator/hand.h"
 #include "osteomill/operator/milling_script.h"
 #include "osteomill/operator/simulated_handle.h"
@@ -16,6 +18,10 @@ struct OperatorSettings {
   /// Of the tremor.
   std::uint64_t seed = 1;
 };
+
+/// Returns every number of hand, device and script.
+template <>
+const std::vector<Field<OperatorSettings>>& fields_of<OperatorSettings>();
 
 /// A device and the hand that holds it, in simulated time: the same settings give the same run on any
 /// machine, however long a tick takes to compute. A tick is

@@ -1,7 +1,6 @@
 #include "osteomill/recording/run_description.h"
 
 #include <algorithm>
-#include <array>
 #include <ctime>
 #include <fstream>
 #include <string_view>
@@ -16,51 +15,6 @@ namespace osteomill {
 namespace {
 
 constexpr std::string_view kAlgorithmPrefix = "algorithm.";
-
-struct Entry {
-  const char* key;
-  const char* unit;
-  double (*get)(const SessionSettings&);
-  void (*set)(SessionSettings&, double);
-};
-
-#define OSTEOMILL_SETTING(field)                              \
-  [](const SessionSettings& s) -> double { return s.field; }, \
-      [](SessionSettings& s, double value) { s.field = value; }
-
-#define OSTEOMILL_SWITCH(field)                                       \
-  [](const SessionSettings& s) -> double { return s.field ? 1 : 0; }, \
-      [](SessionSettings& s, double value) { s.field = value != 0; }
-
-constexpr std::array kEntries{
-    Entry{"milling.removal_rate", "mm^3/(N s)",
-          [](const SessionSettings& s) { return milling_settings(s.setup).removal_rate_mm3_per_Ns; },
-          [](SessionSettings& s, double value) { s.setup.removal_rate_mm3_per_Ns = value; }},
-    Entry{"milling.reaction_share", "",
-          [](const SessionSettings& s) { return milling_settings(s.setup).reaction_share; },
-          [](SessionSettings& s, double value) {
-            s.setup.cutting_reaction = value != 0;
-            if (value != 0) s.setup.cutting.tangential_share = value;
-          }},
-    Entry{"milling.surroundings_density", "", OSTEOMILL_SETTING(densities.surroundings)},
-    Entry{"milling.reference_density", "", OSTEOMILL_SETTING(densities.reference)},
-    Entry{"limit.force", "N", OSTEOMILL_SETTING(setup.guard.limits.force_N)},
-    Entry{"limit.torque", "N mm", OSTEOMILL_SETTING(setup.guard.limits.torque_Nmm)},
-    Entry{"vibration", "", OSTEOMILL_SWITCH(setup.vibration.on)},
-    Entry{"vibration.spindle_speed", "rpm", OSTEOMILL_SETTING(setup.cutting.spindle_speed_rpm)},
-    Entry{"vibration.force_share", "", OSTEOMILL_SETTING(setup.vibration.force_share)},
-    Entry{"vibration.max_force", "N", OSTEOMILL_SETTING(setup.vibration.max_N)},
-    Entry{"guard.max_force_rate", "N/s", OSTEOMILL_SETTING(setup.guard.rates.force_N_s)},
-    Entry{"guard.max_torque_rate", "N mm/s", OSTEOMILL_SETTING(setup.guard.rates.torque_Nmm_s)},
-    Entry{"guard.blend", "s", OSTEOMILL_SETTING(setup.guard.blend_s)},
-    Entry{"guard.max_move", "mm", OSTEOMILL_SETTING(setup.guard.max_move_mm)},
-    Entry{"guard.max_turn", "rad", OSTEOMILL_SETTING(setup.guard.max_turn_rad)},
-    Entry{"guard.max_tick", "s", OSTEOMILL_SETTING(setup.guard.max_tick_s)},
-    Entry{"passivity_controller", "", OSTEOMILL_SWITCH(setup.guard.passivity_controller)},
-};
-
-#undef OSTEOMILL_SWITCH
-#undef OSTEOMILL_SETTING
 
 HapticSettings haptic_settings(const RunDescription& run) {
   HapticSettings haptics;
@@ -81,7 +35,7 @@ void set_algorithm(RunDescription& run, const MillingSetup& setup, int sample_po
   const auto place = std::ranges::find_if(run.settings, is_of_algorithm) - run.settings.begin();
   std::erase_if(run.settings, is_of_algorithm);
   std::vector<RunSetting> settings{{std::string(kSamplePointsKey), static_cast<double>(sample_points), ""}};
-  for (const SettingValue& value : setting_values(setup.algorithm, setup.haptics))
+  for (const SettingDescription& value : setting_values(setup.algorithm, setup.haptics))
     settings.push_back({std::string(kAlgorithmPrefix) + value.name, value.value, value.unit});
   run.settings.insert(run.settings.begin() + place, settings.begin(), settings.end());
 }
@@ -119,18 +73,42 @@ Origin made_here_and_now() {
 
 }  // namespace
 
+template <>
+const std::vector<Field<SessionSettings>>& fields_of<SessionSettings>() {
+  static const std::vector<Field<SessionSettings>> all = [] {
+    auto fields = fields_within<SessionSettings>(&SessionSettings::setup, fields_of<MillingSetup>());
+    fields.push_back(field<SessionSettings>(
+        {"milling.surroundings_density", "", NumberRange::finite(), "Of no bone"},
+        [](auto& s) -> auto& { return s.densities.surroundings; }));
+    fields.push_back(field<SessionSettings>(
+        {"milling.reference_density", "", NumberRange::finite(), "Of whole bone"},
+        [](auto& s) -> auto& { return s.densities.reference; }));
+    return fields;
+  }();
+  return all;
+}
+
+void put_setting(RunDescription& run, const FieldDescription& field, double value) {
+  const auto there = std::ranges::find(run.settings, field.name, &RunSetting::key);
+  if (there == run.settings.end()) {
+    run.settings.push_back({field.name, value, field.unit});
+  } else {
+    there->value = value;
+  }
+}
+
+std::optional<double> taken_setting(const RunDescription& run, const FieldDescription& field,
+                                    const std::filesystem::path& path) {
+  if (const double* number = find_setting<double>(run, field.name)) return *number;
+  if (field.has(kMayBeAbsent)) return std::nullopt;
+  throw InputError(path.string(), "has no setting '" + field.name + "', so its milling cannot be repeated");
+}
+
 void set_session_settings(RunDescription& run, const SessionSettings& session, int sample_points) {
   run.tool = session.setup.tool;
   run.tick_period_s = session.setup.tick_s;
   set_algorithm(run, session.setup, sample_points);
-  for (const Entry& entry : kEntries) {
-    const auto there = std::ranges::find(run.settings, entry.key, &RunSetting::key);
-    if (there == run.settings.end()) {
-      run.settings.push_back({entry.key, entry.get(session), entry.unit});
-    } else {
-      there->value = entry.get(session);
-    }
-  }
+  put_fields(run, session);
 }
 
 SessionSettings session_settings(const RunDescription& run, const std::filesystem::path& path) {
@@ -138,14 +116,7 @@ SessionSettings session_settings(const RunDescription& run, const std::filesyste
   session.setup.tool = run.tool;
   session.setup.haptics = haptic_settings(run);
   session.setup.tick_s = run.tick_period_s;
-  for (const Entry& entry : kEntries) {
-    const double* number = find_setting<double>(run, entry.key);
-    if (number == nullptr) {
-      throw InputError(path.string(),
-                       std::string("has no setting '") + entry.key + "', so its milling cannot be repeated");
-    }
-    entry.set(session, *number);
-  }
+  take_fields(run, path, session);
   return session;
 }
 

@@ -3,12 +3,14 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
 
 #include "osteomill/geometry/pose.h"
+#include "osteomill/numbers/field.h"
 #include "osteomill/session/milling_setup.h"
 #include "osteomill/volume/bone_densities.h"
 #include "osteomill/volume/label_map.h"
@@ -93,11 +95,35 @@ const Value* find_setting(const RunDescription& run, std::string_view key) {
 /// The key of the setting that says with how many sample points the algorithm works.
 inline constexpr std::string_view kSamplePointsKey = "sample_points";
 
+/// Puts a number among a run's settings, in the place of one of this name.
+void put_setting(RunDescription& run, const FieldDescription& field, double value);
+/// Returns a number of a run's settings; nothing if it has none and `field` may be absent. Throws InputError,
+/// naming the recording's `path`, if it should have one.
+std::optional<double> taken_setting(const RunDescription& run, const FieldDescription& field,
+                                    const std::filesystem::path& path);
+
+/// Puts every field that files have (FieldDescription::name) among a run's settings, and takes them back from
+/// there. Throws as `taken_setting`.
+template <typename Struct>
+void put_fields(RunDescription& run, const Struct& s) {
+  for (const Field<Struct>& field : fields_of<Struct>())
+    if (!field.name.empty()) put_setting(run, field, field.get(s));
+}
+template <typename Struct>
+void take_fields(const RunDescription& run, const std::filesystem::path& path, Struct& s) {
+  for (const Field<Struct>& field : fields_of<Struct>()) {
+    if (field.name.empty()) continue;
+    if (const auto value = taken_setting(run, field, path)) field.set(s, *value);
+  }
+}
+
 /// What a session goes by.
 struct SessionSettings {
   MillingSetup setup;
   BoneDensities densities;
 };
+template <>
+const std::vector<Field<SessionSettings>>& fields_of<SessionSettings>();
 
 /// All of them in a run's description, in the place of those that it has. `sample_points` is how many the
 /// algorithm works with.

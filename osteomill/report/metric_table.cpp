@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -12,100 +13,88 @@ namespace {
 using M = RunMetrics;
 
 template <typename Place>
-Field<M> figure(const char* column, const char* unit, Place place, const char* doc, unsigned flags = 0) {
-  return field<M>({column, unit, NumberRange::finite(), doc, flags}, place);
+Field<M> figure(std::string column, const char* unit, Place place, std::string doc, unsigned flags = 0) {
+  return field<M>({std::move(column), unit, NumberRange::finite(), std::move(doc), flags}, place);
+}
+
+constexpr unsigned kTime = kLessIsBetter | kOfTheMachine;
+
+void add_times(std::vector<Field<M>>& all, const std::string& of, Distribution M::*times) {
+  const auto add = [&](const char* name, double Distribution::*place, const char* doc, unsigned flags) {
+    all.push_back(figure(
+        of + "_us_" + name, "µs", [=](auto& m) -> auto& { return m.*times.*place; },
+        "compute time of a " + of + ", " + doc, flags));
+  };
+  add("median", &Distribution::median, "median", kTime);
+  add("p99", &Distribution::p99, "99th percentile", kOfTheMachine);
+  add("max", &Distribution::max, "greatest", kTime);
+}
+
+void add_felt(std::vector<Field<M>>& all, const std::string& what, const char* unit,
+              const std::string& ending, VectorMetrics M::*felt) {
+  const auto add = [&](const std::string& name, double VectorMetrics::*place, const std::string& doc,
+                       unsigned flags = 0) {
+    all.push_back(figure(
+        what + name + ending, unit, [=](auto& m) -> auto& { return m.*felt.*place; }, doc, flags));
+  };
+  add("_mean_", &VectorMetrics::mean, "mean " + what);
+  add("_max_", &VectorMetrics::max, "greatest " + what);
+  add("_hp_rms_", &VectorMetrics::hp_rms, what + " above 20 Hz, rms", kLessIsBetter);
+  add("_step_max_", &VectorMetrics::step_max, "greatest " + what + " step", kLessIsBetter);
+}
+
+void add_contact(std::vector<Field<M>>& all, const char* column, double ContactShares::*place,
+                 const char* doc) {
+  all.push_back(figure(
+      column, "", [=](auto& m) -> auto& { return m.contact.*place; }, doc));
 }
 
 std::vector<Field<M>> all_figures() {
-  constexpr unsigned kTime = kLessIsBetter | kOfTheMachine;
-  return {
-      figure("steps", "", &M::steps, "ticks"),
-      figure(
-          "step_us_median", "µs", [](auto& m) -> auto& { return m.step_us.median; },
-          "compute time of a step, median", kTime),
-      figure(
-          "step_us_p99", "µs", [](auto& m) -> auto& { return m.step_us.p99; },
-          "compute time of a step, 99th percentile", kTime),
-      figure(
-          "step_us_max", "µs", [](auto& m) -> auto& { return m.step_us.max; },
-          "compute time of a step, greatest", kTime),
-      figure("rate_hz", "Hz", &M::rate_hz, "haptic rate that a 1 kHz loop would hold", kOfTheMachine),
-      figure(
-          "force_mean_N", "N", [](auto& m) -> auto& { return m.force_N.mean; }, "mean force"),
-      figure(
-          "force_max_N", "N", [](auto& m) -> auto& { return m.force_N.max; }, "greatest force"),
-      figure(
-          "force_hp_rms_N", "N", [](auto& m) -> auto& { return m.force_N.hp_rms; }, "force above 20 Hz, rms",
-          kLessIsBetter),
-      figure(
-          "force_step_max_N", "N", [](auto& m) -> auto& { return m.force_N.step_max; }, "greatest force step",
-          kLessIsBetter),
-      figure(
-          "torque_mean_Nmm", "N mm", [](auto& m) -> auto& { return m.torque_Nmm.mean; }, "mean torque"),
-      figure(
-          "torque_max_Nmm", "N mm", [](auto& m) -> auto& { return m.torque_Nmm.max; }, "greatest torque"),
-      figure(
-          "torque_hp_rms_Nmm", "N mm", [](auto& m) -> auto& { return m.torque_Nmm.hp_rms; },
-          "torque above 20 Hz, rms", kLessIsBetter),
-      figure(
-          "torque_step_max_Nmm", "N mm", [](auto& m) -> auto& { return m.torque_Nmm.step_max; },
-          "greatest torque step", kLessIsBetter),
-      figure(
-          "shaft_spread_deg", "degrees", [](auto& m) -> auto& { return m.shaft.spread_deg; },
-          "spread of the shaft", kLessIsBetter),
-      figure(
-          "shaft_excursion_deg", "degrees", [](auto& m) -> auto& { return m.shaft.excursion_deg; },
-          "greatest excursion of the shaft"),
-      figure("removed_mm3", "mm³", &M::removed_mm3, "bone removed"),
-      figure(
-          "contact_share", "", [](auto& m) -> auto& { return m.contact.any; },
-          "in contact, share of the time"),
-      figure(
-          "burr_contact_share", "", [](auto& m) -> auto& { return m.contact.burr; },
-          "in contact with the burr, share of the time"),
-      figure(
-          "shaft_contact_share", "", [](auto& m) -> auto& { return m.contact.shaft; },
-          "in contact with the shaft, share of the time"),
-      figure(
-          "tick_us_median", "µs", [](auto& m) -> auto& { return m.tick_us.median; },
-          "compute time of a tick, median", kTime),
-      figure(
-          "tick_us_p99", "µs", [](auto& m) -> auto& { return m.tick_us.p99; },
-          "compute time of a tick, 99th percentile", kOfTheMachine),
-      figure(
-          "tick_us_max", "µs", [](auto& m) -> auto& { return m.tick_us.max; },
-          "compute time of a tick, greatest", kTime),
-      figure(
-          "turn_50ms_max_deg", "degrees", [](auto& m) -> auto& { return m.turns.max_deg; },
-          "greatest turn of the shaft within 50 ms"),
-      figure(
-          "turn_at_torque_step_deg", "degrees", [](auto& m) -> auto& { return m.turns.at_torque_step_deg; },
-          "turn of the shaft within 50 ms about the greatest torque step"),
-      figure("torque_follows_force", "", &M::torque_follows_force,
-             "share of the torque above 20 Hz that follows the force"),
-      figure("contacts_mean", "", &M::contacts_mean, "sample points that touch, mean"),
-      figure(
-          "lost_after_s", "s", [](auto& m) -> auto& { return m.contact.lost_after_s; },
-          "when contact was lost"),
-      figure(
-          "lost_while_milling", "", [](auto& m) -> auto& { return m.contact.lost_while_milling; },
-          "whether contact was lost while the spindle turned"),
-      figure(
-          "force_contact_share", "", [](auto& m) -> auto& { return m.contact.force; },
-          "a force felt, share of the time"),
-      figure(
-          "torque_contact_share", "", [](auto& m) -> auto& { return m.contact.torque; },
-          "a torque felt, share of the time"),
-      figure(
-          "force_hp_share", "", [](auto& m) -> auto& { return m.force_N.hp_share; },
-          "force above 20 Hz / mean force"),
-      figure(
-          "torque_hp_share", "", [](auto& m) -> auto& { return m.torque_Nmm.hp_share; },
-          "torque above 20 Hz / mean torque"),
-      figure("path_mm", "mm", &M::path_mm, "path of the burr's centre"),
-      figure("put_back_mm3", "mm³", &M::put_back_mm3, "bone put back"),
-      figure("counted_from_s", "s", &M::counted_from_s, "from when on it is counted"),
-  };
+  std::vector<Field<M>> all{figure("steps", "", &M::steps, "ticks")};
+  const auto add = [&](const char* column, const char* unit, auto place, const char* doc,
+                       unsigned flags = 0) { all.push_back(figure(column, unit, place, doc, flags)); };
+  using C = ContactShares;
+  add_times(all, "step", &M::step_us);
+  add("rate_hz", "Hz", &M::rate_hz, "haptic rate that a 1 kHz loop would hold", kOfTheMachine);
+  add_felt(all, "force", "N", "N", &M::force_N);
+  add_felt(all, "torque", "N mm", "Nmm", &M::torque_Nmm);
+  add(
+      "shaft_spread_deg", "degrees", [](auto& m) -> auto& { return m.shaft.spread_deg; },
+      "spread of the shaft", kLessIsBetter);
+  add(
+      "shaft_excursion_deg", "degrees", [](auto& m) -> auto& { return m.shaft.excursion_deg; },
+      "greatest excursion of the shaft");
+  add("removed_mm3", "mm³", &M::removed_mm3, "bone removed");
+  add_contact(all, "contact_share", &C::any, "in contact, share of the time");
+  add_contact(all, "burr_contact_share", &C::burr, "in contact with the burr, share of the time");
+  add_contact(all, "shaft_contact_share", &C::shaft, "in contact with the shaft, share of the time");
+  add_times(all, "tick", &M::tick_us);
+  add(
+      "turn_50ms_max_deg", "degrees", [](auto& m) -> auto& { return m.turns.max_deg; },
+      "greatest turn of the shaft within 50 ms");
+  add(
+      "turn_at_torque_step_deg", "degrees", [](auto& m) -> auto& { return m.turns.at_torque_step_deg; },
+      "turn of the shaft within 50 ms about the greatest torque step");
+  add("torque_follows_force", "", &M::torque_follows_force,
+      "share of the torque above 20 Hz that follows the force");
+  add("contacts_mean", "", &M::contacts_mean, "sample points that touch, mean");
+  add(
+      "lost_after_s", "s", [](auto& m) -> auto& { return m.contact.lost_after_s; }, "when contact was lost");
+  add(
+      "lost_while_milling", "", [](auto& m) -> auto& { return m.contact.lost_while_milling; },
+      "whether contact was lost while the spindle turned");
+  add_contact(all, "force_contact_share", &C::force, "a force felt, share of the time");
+  add_contact(all, "torque_contact_share", &C::torque, "a torque felt, share of the time");
+  add(
+      "force_hp_share", "", [](auto& m) -> auto& { return m.force_N.hp_share; },
+      "force above 20 Hz / mean force");
+  add(
+      "torque_hp_share", "", [](auto& m) -> auto& { return m.torque_Nmm.hp_share; },
+      "torque above 20 Hz / mean torque");
+  add("path_mm", "mm", &M::path_mm, "path of the burr's centre");
+  add("put_back_mm3", "mm³", &M::put_back_mm3, "bone put back");
+  add("counted_from_s", "s", &M::counted_from_s, "from when on it is counted");
+  return all;
 }
 
 }  // namespace

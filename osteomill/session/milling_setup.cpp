@@ -43,4 +43,99 @@ MillingSettings milling_settings(const MillingSetup& setup) {
   return milling;
 }
 
+namespace {
+
+using S = MillingSetup;
+
+constexpr NumberRange kPositive = NumberRange::positive(), kNotNegative = NumberRange::not_negative(),
+                      kSwitch = NumberRange::on_or_off(), kLimit = NumberRange::limit();
+
+// They stand in a recording's own attributes.
+std::vector<Field<MillingTool>> tool_fields() {
+  using T = MillingTool;
+  constexpr unsigned kOwn = kOfTheTool | kOfTheRecording;
+  return {
+      field<T>({"", "mm", kPositive, "Of the burr's sphere", kOwn, "burr-radius"}, &T::burr_radius_mm),
+      field<T>({"", "mm", kPositive, "Of the shaft", kOwn, "shaft-radius"}, &T::shaft_radius_mm),
+      field<T>({"", "mm", kPositive, "From the burr's centre", kOwn, "shaft-length"}, &T::shaft_length_mm),
+  };
+}
+
+std::vector<Field<CuttingSettings>> cutting_fields() {
+  using C = CuttingSettings;
+  constexpr unsigned kOwn = kOfTheCutting | kOfTheRecording;
+  return {
+      field<C>({"vibration.spindle_speed", "rpm", kPositive, "Of the burr", kOwn, "spindle-speed"},
+               &C::spindle_speed_rpm),
+      field<C>({"milling.cutting_energy", "N mm/mm^3", kPositive,
+                "The work that removes bone of the reference density", kOwn | kMayBeAbsent, "cutting-energy"},
+               &C::specific_energy_Nmm_per_mm3),
+  };
+}
+
+std::vector<Field<S>> removal_fields() {
+  return {
+      {{"milling.removal_rate", "mm^3/(N s)", kPositive,
+        "kappa; else it follows from burr, spindle speed and cutting energy",
+        kOfTheCutting | kOfTheRecording | kFollows, "removal-rate"},
+       [](const S& s) { return milling_settings(s).removal_rate_mm3_per_Ns; },
+       [](S& s, double value) { s.removal_rate_mm3_per_Ns = value; }},
+      field<S>({"", "", kSwitch, "The hand feels the burr pull along its rim, whose pole cuts less",
+                kOfTheCutting, "cutting-reaction"},
+               &S::cutting_reaction),
+      {{"milling.reaction_share", "", kNotNegative, "Of the burr's force, what it pulls with; 0: not felt"},
+       [](const S& s) { return milling_settings(s).reaction_share; },
+       [](S& s, double value) {
+         s.cutting_reaction = value != 0;
+         if (value != 0) s.cutting.tangential_share = value;
+       }},
+  };
+}
+
+std::vector<Field<GuardSettings>> guard_fields() {
+  using G = GuardSettings;
+  return {
+      field<G>(
+          {"limit.force", "N", kPositive, "The most it is asked for", kOfTheLimits, "force-limit"},
+          [](auto& g) -> auto& { return g.limits.force_N; }),
+      field<G>(
+          {"limit.torque", "N mm", kPositive, "The most it is asked for", kOfTheLimits, "torque-limit"},
+          [](auto& g) -> auto& { return g.limits.torque_Nmm; }),
+      field<G>({"passivity_controller", "", kSwitch,
+                "Dampens a contact that has given the hand more energy than it took", kOfTheLimits,
+                "passivity-controller"},
+               &G::passivity_controller),
+      field<G>(
+          {"guard.max_force_rate", "N/s", kLimit, "Of the force sent"},
+          [](auto& g) -> auto& { return g.rates.force_N_s; }),
+      field<G>(
+          {"guard.max_torque_rate", "N mm/s", kLimit, "Of the torque sent"},
+          [](auto& g) -> auto& { return g.rates.torque_Nmm_s; }),
+      field<G>({"guard.blend", "s", kNotNegative, "In which what is asked for comes up"}, &G::blend_s),
+      field<G>({"guard.max_move", "mm", kLimit, "Of the device in a tick"}, &G::max_move_mm),
+      field<G>({"guard.max_turn", "rad", kLimit, "Of the device in a tick"}, &G::max_turn_rad),
+      field<G>({"guard.max_tick", "s", kLimit, "The longest tick"}, &G::max_tick_s),
+  };
+}
+
+std::vector<Field<VibrationSettings>> vibration_fields() {
+  using V = VibrationSettings;
+  return {
+      field<V>({"vibration", "", kSwitch, "The hand feels the burr cut"}, &V::on),
+      field<V>({"vibration.force_share", "", kNotNegative, "Of the burr's force"}, &V::force_share),
+      field<V>({"vibration.max_force", "N", kNotNegative, "The most of it"}, &V::max_N),
+  };
+}
+
+}  // namespace
+
+template <>
+const std::vector<Field<MillingSetup>>& fields_of<MillingSetup>() {
+  static const std::vector<Field<S>> all =
+      joined<S>({fields_within<S>(&S::tool, tool_fields()), fields_within<S>(&S::cutting, cutting_fields()),
+                 removal_fields(), fields_within<S>(&S::guard, guard_fields()),
+                 fields_within<S>(&S::vibration, vibration_fields())});
+  return all;
+}
+
 }  // namespace osteomill

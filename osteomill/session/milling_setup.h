@@ -1,9 +1,11 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "osteomill/haptics/algorithms.h"
 #include "osteomill/milling/burr_mill.h"
+#include "osteomill/numbers/field.h"
 #include "osteomill/session/wrench_guard.h"
 #include "osteomill/tool/milling_tool.h"
 
@@ -34,6 +36,15 @@ struct MillingSetup {
   /// How long a tick nominally is.
   double tick_s = 1e-3;
 };
+
+/// Flags of the fields of a MillingSetup. Of which part it is; a replay keeps the recording's, as a recording
+/// is of one scan, milled with one tool; without being set it follows from the others.
+inline constexpr unsigned kOfTheTool = 1, kOfTheCutting = 2, kOfTheLimits = 4, kOfTheRecording = 8,
+                          kFollows = 16;
+
+/// Returns every number of a setup but the algorithm's own, which its description has, and the tick.
+template <>
+const std::vector<Field<MillingSetup>>& fields_of<MillingSetup>();
 
 /// Throws std::invalid_argument, with one line that says why, where a tool cannot work in a scan with this
 /// grid: its burr or shaft is wider than the whole scan, its shaft longer than a metre, or its burr so many

@@ -66,7 +66,7 @@ refused "^osteomill: variant.toml: line 7: a trial has no option secnods; did yo
 variant 's/^\[grid\]/[grids]/'
 refused "line 8: a study has no grids; did you mean grid\?" "$osteomill" study variant.toml --out c
 variant 's/from = 0.5/from = -1/'
-refused "variant.toml: trial [0-9]+: --push: -0.* is not a positive number" "$osteomill" study variant.toml --out c
+refused "variant.toml: trial [0-9]+: push: -0.* is not a positive number" "$osteomill" study variant.toml --out c
 variant 's/^algorithm.*/algorithm = []/'
 refused "line 9: algorithm has no values" "$osteomill" study variant.toml --out c
 variant 's/point-shell/pointshell/'

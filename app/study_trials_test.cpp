@@ -1,0 +1,98 @@
+#include "app/study_trials.h"
+
+#include <fstream>
+#include <limits>
+#include <set>
+#include <stdexcept>
+
+#include "tests/shapes.h"
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "osteomill/ct/write_nrrd.h"
+#include "osteomill/files/temporary_folder.h"
+#include "osteomill/volume/density_grid.h"
+
+namespace osteomill::app {
+namespace {
+
+TEST(StudyTrials, AnAxisSetsEveryField) {
+  std::set<std::string> options;
+  for (const Field<AskedTrial>& field : numbers_of_a_trial()) {
+    EXPECT_TRUE(options.insert(field.option).second) << field.option << " is there twice";
+    const bool is_switch = field.range == NumberRange::on_or_off();
+    const double value = is_switch                ? 1
+                         : field.option == "rate" ? 2000
+                                                  : 0.75 + (field.range.whole ? 2.25 : 0);
+    const std::string text = is_switch ? "true" : fmt::format("{}", value);
+    EXPECT_EQ(field.get(asked_trial({{field.option, text}})), value) << field.option;
+    EXPECT_NE(field.get(AskedTrial()), value) << field.option;
+  }
+  EXPECT_GT(options.size(), 20u);
+}
+
+TEST(StudyTrials, NoNumberCanBeNotANumberOrAWord) {
+  for (const Field<AskedTrial>& field : numbers_of_a_trial()) {
+    for (const char* text : {"nan", "-nan", "inf", "push", ""})
+      EXPECT_THROW(asked_trial({{field.option, text}}), std::invalid_argument) << field.option << " " << text;
+  }
+  EXPECT_ANY_THROW(asked_trial({{"stiffness", "nan"}}));
+  EXPECT_ANY_THROW(asked_trial({{"line-proxy.stiffness", "nan"}}));
+  EXPECT_THROW(asked_trial({{"algorithm", "nan"}}), std::invalid_argument);
+  EXPECT_THROW(asked_trial({{"entry", "1,2,nan"}}), std::invalid_argument);
+}
+
+class StudyOfScans : public ::testing::Test {
+ protected:
+  StudyOfScans() {
+    for (const double radius_mm : {4.0, 5.0}) {
+      const Volume bone = testing_support::shape_volume(testing_support::centred_cube(50, 0.25),
+                                                        testing_support::ball(Vec3::Zero(), radius_mm));
+      const std::string name = fmt::format("ball-{:g}.nrrd", radius_mm);
+      write_nrrd(folder_ / name, bone.grid());
+    }
+  }
+
+  // The bones of all trials of such a study, by fingerprint.
+  std::vector<std::uint64_t> bones_of(const std::string& axes) {
+    std::ofstream(folder_ / "study.toml") << "[fixed]\nseconds = 1\n" << axes;
+    StudyTrials study((folder_ / "study.toml").string(), folder_.path());
+    std::vector<std::uint64_t> bones;
+    for (std::size_t n = 0; n < study.design().trial_count(); ++n)
+      bones.push_back(fingerprint_of(study.make(n, 1).front().bone.grid()));
+    return bones;
+  }
+
+  TemporaryFolder folder_;
+};
+
+// Whatever else is set of them, and in whichever order they are made.
+TEST_F(StudyOfScans, EachTrialHasTheBoneThatItsAxesName) {
+  const std::vector<std::uint64_t> bones = bones_of(
+      "[grid]\niso = [500, 600]\npush = [1, 2]\nscan = [\"ball-4.nrrd\", \"ball-5.nrrd\", \"built-in\"]\n");
+  ASSERT_EQ(bones.size(), 12u);
+  for (std::size_t n = 0; n < bones.size(); ++n) EXPECT_EQ(bones[n], bones[n % 3]) << n;
+  EXPECT_EQ(std::set(bones.begin(), bones.end()).size(), 3u);
+  const std::vector<std::uint64_t> teeth = bones_of("[grid]\nvoxel = [0.25, 0.5]\npush = [1, 2]\n");
+  EXPECT_EQ(teeth[0], teeth[1]);
+  EXPECT_NE(teeth[0], teeth[2]);
+  EXPECT_EQ(teeth[2], teeth[3]);
+}
+
+TEST_F(StudyOfScans, EveryFieldOfTheBoneTellsBonesApart) {
+  std::size_t told = 0;
+  for (const auto& field : texts_of_a_trial()) {
+    const bool of_the_bone = field.has(kOfTheBone);
+    const std::string value = field.option == "as"          ? "labels"
+                              : "algorithm" == field.option ? "line-proxy"
+                                                            : "1,2,3";
+    EXPECT_EQ(bone_text(asked_trial({{field.option, value}})) != bone_text({}), of_the_bone) << field.option;
+    told += of_the_bone ? 1 : 0;
+  }
+  EXPECT_EQ(told, 6u);
+  EXPECT_NE(bone_text(asked_trial({{"iso", "300"}})), bone_text(asked_trial({{"iso", "400"}})));
+  EXPECT_EQ(bone_text(asked_trial({{"push", "2"}, {"burr-radius", "2"}})), bone_text({}));
+}
+
+}  // namespace
+}  // namespace osteomill::app
