@@ -24,6 +24,7 @@
 #include "osteomill/experiment/parallel.h"
 #include "osteomill/experiment/run_trials.h"
 #include "osteomill/files/atomic_file.h"
+#include "osteomill/files/file_lock.h"
 #include "osteomill/numbers/parse_number.h"
 #include "osteomill/recording/recording.h"
 #include "osteomill/volume/density_grid.h"
@@ -116,6 +117,7 @@ std::vector<PassivityRow> press_on_walls(const CompareOptions& options, const Tr
 }
 
 void run_compare(const CompareOptions& options, const std::string& command_line) {
+  const OutputFolder folder(options.out);
   const LoadedBone bone = load_bone(options.scan);
   std::vector<TrialPlan> trials = trials_of(options, bone, command_line);
   if (options.match_stiffness) match_stiffness(options, trials);

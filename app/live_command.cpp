@@ -189,12 +189,14 @@ void run_live(LiveOptions options, const std::string& command_line) {
     pictures.emplace(*bone, densities.reference, entry, events_on_terminal(), !options.scan.scan.empty());
     RunDescription run = milling.describe(loaded.name, command_line);
     holder.describe(run);
-    milling.start_recording(options.record, run, [&](std::string_view name) {
+    const auto picture = [&](std::string_view name) {
       std::optional<std::vector<unsigned char>> png;
       milling.follower().read(
           [&](const Volume& now) { png = pictures->of(name, now, events_on_terminal()); });
       return png;
-    });
+    };
+    if (const std::string kept = milling.start_recording(options.record, run, picture); !kept.empty())
+      warn_though_quiet(kept);
   }
   milling.start();
   if (!milling.refused_real_time().empty()) warn(milling.refused_real_time());

@@ -13,7 +13,7 @@
 
 #include "osteomill/experiment/measure_rates.h"
 #include "osteomill/experiment/write_rates_report.h"
-#include "osteomill/files/atomic_file.h"
+#include "osteomill/files/file_lock.h"
 
 namespace osteomill::app {
 
@@ -27,9 +27,9 @@ struct RatesOptions {
 };
 
 void run_rates(const RatesOptions& options) {
+  const OutputFolder folder(options.out);
   const LoadedBone bone = load_bone(options.scan);
   const TrialPlan plan = trial_plan(bone, options.trial, "");
-  create_folder(options.out);
   MeasuredRates measured{measure_rates(plan, options.algorithms, show_progress), {}};
   end_progress();
   const bool has_vertices = std::any_of(options.algorithms.begin(), options.algorithms.end(),

@@ -162,8 +162,10 @@ void replay_another_way(const ReplayOptions& options, const std::string& command
       if (setting.key == kSamplePointsKey)
         setting.value = static_cast<double>(session.algorithm().sample_point_count());
     }
-    if (!recorder)
+    if (!recorder) {
       recorder.emplace(options.record, start.run, Recorder::Begins::when_told, Recorder::Unfinished::removed);
+      if (const std::string kept = recorder->kept(); !kept.empty()) warn_though_quiet(kept);
+    }
     recorder->begin_session(session_number++, std::move(start));
   };
   replay.tick = [&](const TickRecord&, const TickRecord& now) {

@@ -10,6 +10,7 @@
 
 #include "osteomill/experiment/comparison_report.h"
 #include "osteomill/files/atomic_file.h"
+#include "osteomill/files/file_lock.h"
 #include "osteomill/recording/record_columns.h"
 #include "osteomill/recording/recording.h"
 #include "osteomill/report/write_report.h"
@@ -46,6 +47,7 @@ void write_into(const std::filesystem::path& folder, const ReportOptions& option
 
 void run_report(const ReportOptions& options) {
   const std::filesystem::path folder = options.out;
+  const OutputFolder held(folder);
   write_folder_atomically(folder, [&](const std::filesystem::path& beside) { write_into(beside, options); });
   fmt::print("{}\n", (folder / "report.html").string());
 }

@@ -19,6 +19,7 @@
 #include "osteomill/experiment/study_report.h"
 #include "osteomill/experiment/study_slices.h"
 #include "osteomill/files/atomic_file.h"
+#include "osteomill/files/file_lock.h"
 #include "osteomill/files/input_error.h"
 
 namespace osteomill::app {
@@ -46,6 +47,8 @@ struct BegunStudy {
   explicit BegunStudy(const fs::path& path)
       : folder{path, record_in(path)}, trials((path / "study.toml").string(), folder.record.scans_from) {
     folder.test = trials.design().test;
+    if (folder.record.trials != trials.design().trial_count())
+      throw InputError((path / "study.h5").string(), "is of a study with another number of trials");
     trials.expect(folder.record.bones);
     if (hash_of_file(path / "study.toml") != folder.record.study_hash)
       throw InputError((path / "study.toml").string(), "has changed since the study was begun");
@@ -177,13 +180,18 @@ void create_study_folder(const StudyOptions& options) {
                          : static_cast<std::size_t>(kSlice_s / std::max(1e-3, time_three_trials(study)[1]));
   record.trials_a_slice = std::clamp<std::size_t>(wanted, 1, record.trials);
   record.bones.assign(study.fingerprints().begin(), study.fingerprints().end());
-  create_folder(out);
-  write_file_atomically(out / "study.toml", [&](const fs::path& beside) { fs::copy_file(file, beside); });
+  write_file_atomically(out / "study.toml", [&](const fs::path& beside) {
+    std::error_code error;
+    fs::copy_file(file, beside, fs::copy_options::overwrite_existing, error);
+    if (error) throw InputError((out / "study.toml").string(), "cannot be written: " + error.message());
+  });
   write_study_record(out, record);
 }
 
 void begin(const StudyOptions& options) {
+  if (!options.on.empty()) require_submittable(options.out);
   const std::size_t array_limit = options.on.empty() ? 0 : slurm_array_limit();
+  const OutputFolder folder(options.out);
   create_study_folder(options);
   BegunStudy study(options.out);
   run_missing(study, options, array_limit);
@@ -193,6 +201,7 @@ void go_on(BegunStudy& study, const StudyOptions& options) {
   const StudyFolder& folder = study.folder;
   if (options.status) return status(folder);
   if (options.report) {
+    const OutputFolder held(folder.path / "report");
     fmt::print("{}\n", write_study_report(study.trials.design(), folder).string());
     return;
   }
@@ -206,6 +215,7 @@ void go_on(BegunStudy& study, const StudyOptions& options) {
       run_slice(study, *options.slice, options.threads, events_on_terminal());
     return;
   }
+  const OutputFolder held(folder.path);
   const std::size_t array_limit = options.on.empty() ? 0 : slurm_array_limit();
   check_every_trial(study.trials);
   run_missing(study, options, array_limit);

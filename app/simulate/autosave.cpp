@@ -6,11 +6,8 @@
 #include <exception>
 #include <system_error>
 
-#include <fcntl.h>
 #include <fmt/chrono.h>
 #include <fmt/core.h>
-#include <sys/file.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "osteomill/files/atomic_file.h"
@@ -39,13 +36,6 @@ fs::path autosave_folder() {
   return state.empty() ? fs::path() : state / "autosave";
 }
 
-// Whether the folder is still the one that was opened: another program may have removed it meanwhile.
-bool still_there(int lock, const fs::path& folder) {
-  struct stat held {};
-  struct stat named {};
-  return ::fstat(lock, &held) == 0 && ::stat(folder.c_str(), &named) == 0 && held.st_ino == named.st_ino;
-}
-
 // The newest first: their names begin with the time.
 std::vector<fs::path> folders_in(const fs::path& folder) {
   std::error_code ignored;
@@ -70,13 +60,9 @@ RunDescription describe(const ScanOptions& scan, const LiveMilling& milling) {
 }  // namespace
 
 std::optional<AutosaveFile> AutosaveFile::locked(const fs::path& folder) {
-  const int lock = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (lock < 0) return std::nullopt;
-  if (::flock(lock, LOCK_EX | LOCK_NB) != 0 || !still_there(lock, folder)) {
-    ::close(lock);
-    return std::nullopt;
-  }
-  return AutosaveFile(folder, lock);
+  auto lock = FileLock::of(folder);
+  if (!lock) return std::nullopt;
+  return AutosaveFile(folder, *std::move(lock));
 }
 
 std::optional<AutosaveFile> AutosaveFile::make() {
@@ -113,10 +99,10 @@ std::optional<LeftoverMilling> last_leftover_milling() {
   return std::nullopt;
 }
 
-AutosaveFile::AutosaveFile(fs::path folder, int lock)
-    : folder_(std::move(folder)), lock_(nullptr, [folder = folder_, lock](void*) {
+AutosaveFile::AutosaveFile(fs::path folder, FileLock lock)
+    : folder_(std::move(folder)), lock_(new FileLock(std::move(lock)), [folder = folder_](FileLock* held) {
         ::rmdir(folder.c_str());
-        ::close(lock);
+        delete held;
       }) {}
 
 void AutosaveFile::clear() const {

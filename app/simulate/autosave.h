@@ -11,6 +11,7 @@
 
 #include "app/scan_options.h"
 
+#include "osteomill/files/file_lock.h"
 #include "osteomill/live/live_milling.h"
 #include "osteomill/recording/recording.h"
 
@@ -31,11 +32,11 @@ class AutosaveFile {
   void clear() const;
 
  private:
-  AutosaveFile(std::filesystem::path folder, int lock);
+  AutosaveFile(std::filesystem::path folder, FileLock lock);
 
   std::filesystem::path folder_;
   // Gives it up as it goes, and the folder with it where that is empty.
-  std::shared_ptr<void> lock_;
+  std::shared_ptr<FileLock> lock_;
 };
 
 /// Milled bone that an earlier run of the program kept and nobody saved.

@@ -58,14 +58,13 @@ void FilesPanel::record(ViewState& view, Simulation& simulation) {
       view.message = "Recorded " + last_recording_.string();
       view.result = last_recording_;
     } else {
-      simulation.milling.start_recording(
+      view.message = simulation.milling.start_recording(
           name("recording.h5"), simulation.describe(),
           [this, camera = view.camera](std::string_view name) -> std::optional<std::vector<unsigned char>> {
             if (name == kPictureAlong) return std::nullopt;
             return encode_png(take_picture_(camera));
           });
       recording_since_ = std::chrono::steady_clock::now();
-      view.message.clear();
     }
   });
 }

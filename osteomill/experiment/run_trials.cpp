@@ -102,6 +102,7 @@ std::vector<fs::path> record_trial(const TrialPlan& plan, const EntryPictures& p
     Recorder recorder(paths.back(), run,
                       first ? Recorder::Begins::with_the_recording : Recorder::Begins::when_told,
                       Recorder::Unfinished::removed);
+    if (const std::string kept = recorder.kept(); !kept.empty()) events.warn(kept);
     // The session goes on from phase to phase.
     if (!first) recorder.begin_session(0, {.goes_on_from = paths.front().filename().string()});
     for (const TickRecord& record : phase.records) recorder.push_waiting(record);

@@ -2,16 +2,19 @@
 
 #include <cerrno>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <string>
 #include <system_error>
 #include <vector>
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "osteomill/files/input_error.h"
 #include "osteomill/files/input_files.h"
+#include "osteomill/files/leftovers.h"
 #include "osteomill/files/temporary_folder.h"
 
 namespace osteomill {
@@ -20,14 +23,26 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Keeps the extension last, since libraries choose a format by it. Machines that share a folder may give two
-// processes the same number.
-fs::path name_beside(const fs::path& path) {
-  char host[64] = "";
-  ::gethostname(host, sizeof(host) - 1);
-  const std::string name = "." + path.stem().string() + ".writing-" + host + "-" +
-                           std::to_string(::getpid()) + path.extension().string();
-  return path.parent_path() / name;
+// A name beside `path` that `create` makes a file or folder of, which it does not where there is one. Keeps
+// the extension last, since libraries choose a format by it.
+template <typename Create>
+fs::path create_beside(const fs::path& path, const Create& create) {
+  for (int number = 1;; ++number) {
+    fs::path beside = path.parent_path() / ("." + path.stem().string() + ".writing-" +
+                                            std::to_string(number) + path.extension().string());
+    if (create(beside.c_str())) return beside;
+    if (errno != EEXIST)
+      throw InputError(path.string(), std::string("cannot be created: ") + std::strerror(errno));
+  }
+}
+
+bool create_file(const char* path) {
+  const int file = ::open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  return file >= 0 && ::close(file) == 0;
+}
+
+bool create_empty_folder(const char* path) {
+  return ::mkdir(path, 0777) == 0;
 }
 
 bool is_device_or_pipe(const fs::path& path) {
@@ -125,7 +140,8 @@ fs::path output_path(const fs::path& path) {
 void write_file_atomically(const fs::path& path, const std::function<void(const fs::path&)>& write) {
   const fs::path target = output_path(path);
   if (is_device_or_pipe(target)) return write_into(path, write);
-  const fs::path beside = name_beside(target);
+  const fs::path beside = create_beside(target, create_file);
+  const Leftover while_written(beside);
   try {
     write(beside);
   } catch (...) {
@@ -150,10 +166,10 @@ void write_folder_atomically(const fs::path& folder, const std::function<void(co
                              const std::function<bool(const std::string&)>& stale) {
   std::error_code ignored;
   const bool was_there = fs::exists(folder, ignored);
-  const fs::path beside = name_beside(folder / "files");
   create_folder(folder);
+  const fs::path beside = create_beside(folder / "files", create_empty_folder);
+  const Leftover while_written(beside);
   try {
-    create_folder(beside);
     write(beside);
     const std::vector<fs::path> files = files_in(beside);
     for (const fs::path& file : files) output_path(folder / file);

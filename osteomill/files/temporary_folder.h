@@ -1,10 +1,14 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
+
+#include "osteomill/files/leftovers.h"
 
 namespace osteomill {
 
-/// A new folder, which is removed with all that is in it when this object is destroyed.
+/// A new folder, which is removed with all that is in it when this object is destroyed, or its program is
+/// asked to end (leftovers.h).
 class TemporaryFolder {
  public:
   /// Throws InputError where none can be made.
@@ -18,6 +22,7 @@ class TemporaryFolder {
 
  private:
   std::filesystem::path path_;
+  std::optional<Leftover> leftover_;
 };
 
 }  // namespace osteomill

@@ -166,8 +166,8 @@ RunDescription LiveMilling::describe(const std::string& scan_name, const std::st
   return run;
 }
 
-void LiveMilling::start_recording(const std::filesystem::path& path, RunDescription description,
-                                  TakePicture picture) {
+std::string LiveMilling::start_recording(const std::filesystem::path& path, RunDescription description,
+                                         TakePicture picture) {
   finish_preparing();
   set_as_now(description);
   auto recorder = std::make_unique<Recorder>(path, description, Recorder::Begins::when_told);
@@ -181,6 +181,7 @@ void LiveMilling::start_recording(const std::filesystem::path& path, RunDescript
   if (untouched) tell_recorder({});
   listen();
   if (!untouched) change(setup());
+  return recorder_->kept();
 }
 
 void LiveMilling::set_as_now(RunDescription& run) const {

@@ -79,9 +79,10 @@ class LiveMilling {
   /// The recording goes on whatever is changed or taken back. Waits for what is being prepared. Where ticks
   /// have run already, another session is prepared, so that the recording holds all that it takes to replay
   /// it, and its ticks begin with that session. Pictures, where `picture` is given, are taken now and at the
-  /// end. Throws InputError where the file cannot be written; then nothing is recorded.
-  void start_recording(const std::filesystem::path& path, RunDescription description,
-                       TakePicture picture = {});
+  /// end. Returns a line on an unfinished recording that was there and is kept (Recorder::kept). Throws
+  /// InputError where the file cannot be written; then nothing is recorded.
+  std::string start_recording(const std::filesystem::path& path, RunDescription description,
+                              TakePicture picture = {});
   /// Returns the recording's name. Throws as Recorder::close does.
   std::filesystem::path stop_recording();
   bool recording() const { return recorder_ != nullptr; }

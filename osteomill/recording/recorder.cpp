@@ -14,7 +14,9 @@
 #include <utility>
 
 #include "osteomill/files/atomic_file.h"
+#include "osteomill/files/file_lock.h"
 #include "osteomill/files/input_error.h"
+#include "osteomill/files/leftovers.h"
 #include "osteomill/numbers/spsc_queue.h"
 #include "osteomill/recording/recording_file.h"
 
@@ -50,7 +52,11 @@ struct Recorder::Impl {
   Impl(const fs::path& path_, const RunDescription& description, Begins begins, Unfinished unfinished_)
       : unfinished(unfinished_),
         path(file_behind(path_)),
-        file(file_behind(unfinished_recording_path(path)), description) {
+        part(file_behind(unfinished_recording_path(path))),
+        kept(set_aside(part)),
+        held(FileLock::of_new_file(part)),
+        file(part, description) {
+    if (unfinished == Unfinished::removed) leftover.emplace(part);
     if (begins == Begins::with_the_recording) {
       file.begin_session({}, 0);
       session = 0;
@@ -70,7 +76,7 @@ struct Recorder::Impl {
 
   void remove() const noexcept {
     std::error_code ignored;
-    fs::remove(unfinished_recording_path(path), ignored);
+    if (held && held->is_at(part)) fs::remove(part, ignored);
   }
 
   void stop() {
@@ -139,7 +145,12 @@ struct Recorder::Impl {
 
   Unfinished unfinished;
   fs::path path;
+  fs::path part;
+  std::optional<fs::path> kept;
+  // Until it has its name.
+  std::optional<FileLock> held;
   RecordingFile file;
+  std::optional<Leftover> leftover;
   SpscQueue<TickRecord> queue{kCapacity};
   // The writing thread's: taken from the queue and not yet written, and of which session the last one is.
   std::vector<TickRecord> rows;
@@ -181,6 +192,11 @@ void Recorder::begin_session(std::uint32_t number, SessionStart start) {
   impl_->starts.emplace_back(number, std::move(start));
 }
 
+std::string Recorder::kept() const {
+  if (!impl_->kept) return {};
+  return impl_->part.string() + ": a recording that was not finished; it is kept as " + impl_->kept->string();
+}
+
 std::uint64_t Recorder::dropped() const noexcept {
   return impl_->dropped.load(std::memory_order_relaxed);
 }
@@ -210,9 +226,12 @@ void Recorder::close() {
   for (const RunPicture& picture : impl_->pictures) impl_->file.add_picture(picture.name, picture.png);
   for (const RunSetting& setting : impl_->settings) impl_->file.add_setting(setting);
   impl_->file.finish(dropped());
+  if (!impl_->held->is_at(impl_->part))
+    throw InputError(impl_->part.string(), "was renamed or removed while it was written");
   std::error_code error;
-  fs::rename(unfinished_recording_path(impl_->path), impl_->path, error);
+  fs::rename(impl_->part, impl_->path, error);
   if (error) throw InputError(impl_->path.string(), "cannot be written: " + error.message());
+  impl_->held.reset();
 }
 
 void write_start(const fs::path& path, const SessionStart& start) {

@@ -18,8 +18,9 @@ namespace osteomill {
 /// file of the final name is always whole. Twice a second what was recorded so far is made safe: a program
 /// that is killed leaves a NAME.part.h5 that read_recording opens, less the last second at the most, and that
 /// other HDF5 programs open too (hence the extension stays last). A recorder destroyed without `close`, as
-/// when an exception passes, leaves the same, with nothing missing. NAME.part.h5 is written over by the next
-/// recording of that name.
+/// when an exception passes, leaves the same, with nothing missing. The next recording of that name renames
+/// it to NAME.part-1.h5, or the first number that is free (`kept`); one that is still being written by
+/// another program is left alone, and the recorder cannot be made.
 ///
 /// Where several sessions follow each other on a bone (LiveSession::replace), `begin_session` is told of
 /// each; the records say by their number of which they are.
@@ -38,8 +39,8 @@ class Recorder {
   /// where nothing was recorded yet; `removed` is for runs that can simply be run again.
   enum class Unfinished : unsigned char { left, removed };
 
-  /// Throws InputError, naming the file, where it cannot be created, and std::invalid_argument where the
-  /// description cannot be stored (write_description).
+  /// Throws InputError, naming the file, where it cannot be created or another program writes it, and
+  /// std::invalid_argument where the description cannot be stored (write_description).
   Recorder(const std::filesystem::path& path, const RunDescription& description,
            Begins begins = Begins::with_the_recording, Unfinished unfinished = Unfinished::left);
   ~Recorder();
@@ -57,6 +58,9 @@ class Recorder {
   /// may have been pushed before. To be called in the order of the numbers. The first session's description
   /// is the recording's own.
   void begin_session(std::uint32_t number, SessionStart start);
+
+  /// Returns a line on the unfinished recording that was there and where it is kept; empty if there was none.
+  std::string kept() const;
 
   /// How many records were lost. From any thread.
   std::uint64_t dropped() const noexcept;

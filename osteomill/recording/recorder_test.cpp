@@ -269,6 +269,33 @@ TEST(Recorder, OfARunThatCanBeRunAgainNothingIsLeftWithoutClose) {
   EXPECT_TRUE(fs::is_empty(folder.path()));
 }
 
+TEST(Recorder, OneAtATimeWritesAFileOfAName) {
+  const TestFolder folder;
+  const fs::path path = folder / "run.h5";
+  Recorder first(path, sample_description());
+  first.push_waiting(sample_record(0));
+  EXPECT_THROW(Recorder(path, sample_description()), InputError);
+  EXPECT_THROW(read_recording(unfinished_recording_path(path)), InputError);
+  first.push_waiting(sample_record(1));
+  first.close();
+  EXPECT_EQ(read_recording(path).records.size(), 2u);
+  EXPECT_FALSE(fs::exists(unfinished_recording_path(path)));
+}
+
+TEST(Recorder, AnUnfinishedRecordingIsKeptUnderAnotherName) {
+  const TestFolder folder;
+  const fs::path path = folder / "run.h5";
+  for (int ticks = 1; ticks <= 3; ++ticks) {
+    Recorder recorder(path, sample_description());
+    for (int tick = 0; tick < ticks; ++tick) recorder.push_waiting(sample_record(tick));
+    EXPECT_EQ(recorder.kept().empty(), ticks == 1);
+    if (ticks == 3) recorder.close();
+  }
+  EXPECT_EQ(read_recording(folder / "run.part-1.h5").records.size(), 1u);
+  EXPECT_EQ(read_recording(folder / "run.part-2.h5").records.size(), 2u);
+  EXPECT_EQ(read_recording(path).records.size(), 3u);
+}
+
 TEST(Recorder, AFolderThatIsMissingIsNamed) {
   const TestFolder folder;
   try {

@@ -4,6 +4,8 @@
 #include <cerrno>
 #include <fstream>
 #include <limits>
+#include <mutex>
+#include <set>
 #include <string_view>
 #include <tuple>
 
@@ -75,6 +77,10 @@ unsigned long crc32_of_rest(std::istream& in) {
   return crc;
 }
 
+// Of the recordings that this process has finished.
+std::mutex own_mutex;
+std::set<unsigned long> own_checksums;
+
 std::string seal_line(unsigned long crc) {
   return fmt::format("{}{:08x}\n", kStart, crc);
 }
@@ -89,9 +95,11 @@ RecordingFile::RecordingFile(const fs::path& path, const RunDescription& descrip
   H5Pset_file_space_strategy(layout.get(), H5F_FSPACE_STRATEGY_NONE, false, 1);
   const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_evict_on_close(access.get(), true);
+  // A recorder holds its file by a lock of its own (FileLock).
+  H5Pset_file_locking(access.get(), false, true);
   file_ = Hdf5Handle(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, layout.get(), access.get()), H5Fclose);
-  require(file_.valid(), "cannot be created");
   try {
+    require(file_.valid(), "cannot be created");
     lay_out(description);
   } catch (...) {
     // Here, since the members go when the lock has gone.
@@ -383,12 +391,14 @@ void RecordingFile::finish(std::uint64_t dropped) {
 void write_checksum(const fs::path& path) {
   std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
   file.seekg(kUserBlockBytes);
-  const std::string line = seal_line(crc32_of_rest(file));
+  const unsigned long crc = crc32_of_rest(file);
   file.clear();
   file.seekp(0);
-  file << line;
+  file << seal_line(crc);
   file.close();
   if (!file) throw InputError(path.string(), "cannot be written to its end (is the disk full?)");
+  const std::lock_guard lock(own_mutex);
+  own_checksums.insert(crc);
 }
 
 Checksum check_checksum(const fs::path& path) {
@@ -396,8 +406,10 @@ Checksum check_checksum(const fs::path& path) {
   if (!in) throw InputError(path.string(), "cannot be read");
   std::string block(kUserBlockBytes, '\0');
   if (!in.read(block.data(), kUserBlockBytes) || !block.starts_with(kStart)) return Checksum::none;
-  const std::string line = seal_line(crc32_of_rest(in));
-  return block.starts_with(line) ? Checksum::intact : Checksum::broken;
+  const unsigned long crc = crc32_of_rest(in);
+  if (!block.starts_with(seal_line(crc))) return Checksum::broken;
+  const std::lock_guard lock(own_mutex);
+  return own_checksums.contains(crc) ? Checksum::our_own : Checksum::intact;
 }
 
 }  // namespace osteomill

@@ -97,8 +97,9 @@ inline constexpr std::size_t kUserBlockBytes = 512;
 /// Writes the line into a recording that is finished and closed. Throws InputError where that fails.
 void write_checksum(const std::filesystem::path& path);
 
-/// `none`: an unfinished recording, or one that another program has rewritten.
-enum class Checksum : unsigned char { none, intact, broken };
+/// `none`: an unfinished recording, or one that another program has rewritten. `our_own`: it is intact, and
+/// what this process has written.
+enum class Checksum : unsigned char { none, intact, broken, our_own };
 
 /// Throws InputError where the file cannot be read.
 Checksum check_checksum(const std::filesystem::path& path);
