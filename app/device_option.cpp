@@ -57,8 +57,7 @@ WorkspaceSettings workspace_of(const DeviceOption& option, const std::string& de
   if (option.turn_deg.size() == 3)
     settings.turn_V_deg = {option.turn_deg[0], option.turn_deg[1], option.turn_deg[2]};
   require_valid(settings);
-  if (settings != kept.value_or(WorkspaceSettings{}) && !path.empty())
-    keep_workspace(path, device_name, settings);
+  if (settings != kept.value_or(WorkspaceSettings{}) && !path.empty()) keep_workspace(path, settings);
   return settings;
 }
 
@@ -122,8 +121,8 @@ std::unique_ptr<ConnectedDevice> open_device(const DeviceOption& option) {
   auto device = std::make_unique<ConnectedDevice>(open);
   device->set_workspace(workspace_of(option, device->capabilities().name));
   device->start();
-  fmt::print(stderr, "osteomill: {}: {}\n", device->capabilities().name,
-             degrees_of_freedom(device->capabilities()));
+  say(fmt::format("osteomill: {}: {}\n", in_one_line(device->capabilities().name),
+                  degrees_of_freedom(device->capabilities())));
   return device;
 }
 

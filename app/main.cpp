@@ -2,6 +2,7 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <memory>
 #include <sstream>
 #include <stdexcept>
@@ -15,11 +16,14 @@
 #include "app/option_checks.h"
 #include "app/progress.h"
 #include <CLI/CLI.hpp>
+#include <fcntl.h>
 #include <fmt/core.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include "osteomill/files/input_error.h"
 #include "osteomill/files/input_files.h"
+#include "osteomill/files/leftovers.h"
 #include "osteomill/files/run_program.h"
 #include "osteomill/numbers/work_progress.h"
 
@@ -30,8 +34,21 @@ constexpr int kInputAtFault = 1;
 constexpr int kWrongUsage = 2;
 
 int complain(const char* reason, int code) {
-  fmt::print(stderr, "osteomill: {}\n", osteomill::in_one_line(reason));
+  osteomill::app::say(fmt::format("osteomill: {}\n", osteomill::in_one_line(reason)));
   return code;
+}
+
+// A stream that is closed would lend its number to the next file that is opened, and messages would go there.
+void open_closed_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (::fcntl(stream, F_GETFD) < 0) ::open("/dev/null", O_RDWR);
+}
+
+// What was asked for may still wait to be written, or have failed to be.
+int end_output(int code) {
+  if (code != kDone || (std::fflush(stdout) == 0 && std::ferror(stdout) == 0)) return code;
+  return complain("standard output: cannot be written (is the disk full, or has its reader gone?)",
+                  kInputAtFault);
 }
 
 // How the program was called, as it would be typed into a shell, the program as "osteomill".
@@ -108,13 +125,8 @@ class HelpText : public CLI::Formatter {
   }
 };
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
   constexpr rlim_t kLeastStackBytes = 256 * 1024;
-  const osteomill::KeepInputs keep_inputs;
-  // A file as long as a limit allows is then one that cannot be written, as on a full disk.
-  std::signal(SIGXFSZ, SIG_IGN);
   rlimit stack{};
   if (::getrlimit(RLIMIT_STACK, &stack) == 0 && stack.rlim_cur < kLeastStackBytes) {
     return complain("the stack is limited to less than 256 KB (ulimit -s), which is not enough",
@@ -158,10 +170,29 @@ int main(int argc, char** argv) {
     return complain(error.what(), kWrongUsage);
   } catch (const std::bad_alloc&) {
     return complain(osteomill::app::out_of_memory_text().c_str(), kInputAtFault);
+  } catch (const std::length_error&) {
+    return complain(osteomill::app::out_of_memory_text().c_str(), kInputAtFault);
+  } catch (const std::filesystem::filesystem_error& error) {
+    return complain((error.path1().string() + ": " + error.code().message()).c_str(), kInputAtFault);
   } catch (const std::system_error& error) {
+    // That is told at the end.
+    if (std::ferror(stdout) != 0) return kDone;
     const bool no_thread = error.code() == std::errc::resource_unavailable_try_again;
     return complain(no_thread ? "no more threads can be started (ulimit -u)" : error.what(), kInputAtFault);
   } catch (const std::exception& error) {
     return complain(error.what(), kInputAtFault);
   }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  open_closed_streams();
+  // A file as long as a limit allows, or a pipe whose reader has gone, is one that cannot be written, as on a
+  // full disk.
+  std::signal(SIGXFSZ, SIG_IGN);
+  std::signal(SIGPIPE, SIG_IGN);
+  osteomill::remove_leftovers_when_ended();
+  const osteomill::KeepInputs keep_inputs;
+  return end_output(run(argc, argv));
 }

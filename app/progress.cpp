@@ -58,19 +58,21 @@ void show_progress(std::string_view what, double fraction_done) {
   const std::string line = fmt::format("{} {:3.0f} %, {} left", what, 100 * fraction_done,
                                        time_text(passed_s * (1 - fraction_done) / fraction_done));
   if (on_terminal()) {
-    fmt::print(stderr, "\r\033[K{}", line);
-    std::fflush(stderr);
+    say("\r\033[K" + line);
   } else if (const int tenths = static_cast<int>(10 * fraction_done + 1e-9); tenths > work.tenths_said) {
     work.tenths_said = tenths;
-    fmt::print(stderr, "{}\n", line);
+    say(line + "\n");
   }
 }
 
 void end_progress() {
   work = {};
   if (quiet || !on_terminal()) return;
-  fmt::print(stderr, "\r\033[K");
-  std::fflush(stderr);
+  say("\r\033[K");
+}
+
+void say(std::string_view text) {
+  std::fwrite(text.data(), 1, text.size(), stderr);
 }
 
 void warn(std::string_view line) {
@@ -78,8 +80,8 @@ void warn(std::string_view line) {
 }
 
 void warn_though_quiet(std::string_view line) {
-  if (on_terminal()) fmt::print(stderr, "\r\033[K");
-  fmt::print(stderr, "osteomill: warning: {}\n", in_one_line(line));
+  if (on_terminal()) say("\r\033[K");
+  say(fmt::format("osteomill: warning: {}\n", in_one_line(line)));
 }
 
 RunEvents events_on_terminal() {

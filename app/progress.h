@@ -18,6 +18,9 @@ void show_progress(std::string_view what, double fraction_done);
 /// The work is done: clears the line on a terminal.
 void end_progress();
 
+/// Writes to standard error. What cannot be written is dropped: it is no reason to end.
+void say(std::string_view text);
+
 /// A warning: one line on standard error, which --quiet silences.
 void warn(std::string_view line);
 

@@ -20,6 +20,7 @@
 #include "app/device_option.h"
 #include "app/memory_limit.h"
 #include "app/milling_options.h"
+#include "app/progress.h"
 #include "app/scan_options.h"
 #include "app/simulate/files_panel.h"
 #include "app/simulate/panels.h"
@@ -182,7 +183,7 @@ class Simulator {
       simulation_->autosave.discard();
     }
     for (const std::string& complaint : view_.dialogues.complaints())
-      fmt::print(stderr, "osteomill: {}\n", complaint);
+      app::say(fmt::format("osteomill: {}\n", complaint));
     if (reported_) {
       fmt::print("{}\n{}\n", files_.last_recording().string(), view_.message);
     } else if (!files_.last_recording().empty()) {
