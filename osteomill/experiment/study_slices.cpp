@@ -13,6 +13,7 @@
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/files/input_error.h"
 #include "osteomill/recording/hdf5.h"
+#include "osteomill/recording/read_hdf5.h"
 
 namespace osteomill {
 
@@ -57,17 +58,33 @@ void write_dataset(const fs::path& path, hid_t file, const char* name, const std
     throw InputError(path.string(), fmt::format("'{}' cannot be written (is the disk full?)", name));
 }
 
-// Nothing where it is not there in this length, or damaged.
+// Throws where there are not so many rows.
 template <typename Value>
-std::optional<std::vector<Value>> read_dataset(hid_t file, const char* name, std::size_t count) {
-  const Hdf5Handle dataset(H5Dopen2(file, name, H5P_DEFAULT), H5Dclose);
-  if (!dataset.valid()) return std::nullopt;
-  const Hdf5Handle space(H5Dget_space(dataset.get()), H5Sclose);
-  if (H5Sget_simple_extent_npoints(space.get()) != static_cast<hssize_t>(count)) return std::nullopt;
-  std::vector<Value> values(count);
-  if (H5Dread(dataset.get(), memory_type<Value>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
-    return std::nullopt;
-  return values;
+std::vector<Value> read_rows(const Hdf5File& file, const char* name, std::size_t rows, hsize_t width = 1) {
+  const Hdf5Column column = open_column(file, name, width);
+  if (column.rows != rows) file.refuse(fmt::format("'{}' is of another length", name));
+  return read_values<Value>(file, column);
+}
+
+void require_version(const Hdf5File& file, const char* name) {
+  const Attributes read(file.path, file.id());
+  if (!read.has(name) || read.get<std::uint64_t>(name) != kVersion)
+    file.refuse("is not what a study of this program writes");
+}
+
+StudyRecord record_in(const Hdf5File& file) {
+  require_version(file, kRecordVersion);
+  const Attributes read(file.path, file.id());
+  StudyRecord record{read.get<std::uint64_t>("study_hash"),     read.get<std::uint64_t>("program_hash"),
+                     read.get<std::string>("scans_from"),       read.get<std::uint64_t>("trials"),
+                     read.get<std::uint64_t>("trials_a_slice"), {}};
+  if (record.trials == 0 || record.trials_a_slice == 0 || record.trials_a_slice > record.trials)
+    file.refuse("has no trials");
+  const auto bones = read.get<std::uint64_t>("bones");
+  for (std::uint64_t n = 0; n < bones; ++n)
+    record.bones.emplace_back(read.get<std::string>(fmt::format("bone_{}", n)),
+                              read.get<std::uint64_t>(fmt::format("bone_{}_fingerprint", n)));
+  return record;
 }
 
 }  // namespace
@@ -117,23 +134,8 @@ void write_study_record(const fs::path& folder, const StudyRecord& record) {
 
 std::optional<StudyRecord> read_study_record(const fs::path& folder) {
   const fs::path path = folder / "study.h5";
-  if (!fs::exists(path)) return std::nullopt;
-  const Hdf5Lock lock;
-  const Hdf5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-  if (!file.valid()) throw InputError(path.string(), "is no HDF5 file, cut short or damaged");
-  const Attributes read(path, file.get());
-  if (!read.has(kRecordVersion) || read.get<std::uint64_t>(kRecordVersion) != kVersion)
-    throw InputError(path.string(), "is not what a study of this program writes");
-  StudyRecord record{read.get<std::uint64_t>("study_hash"),     read.get<std::uint64_t>("program_hash"),
-                     read.get<std::string>("scans_from"),       read.get<std::uint64_t>("trials"),
-                     read.get<std::uint64_t>("trials_a_slice"), {}};
-  if (record.trials == 0 || record.trials_a_slice == 0 || record.trials_a_slice > record.trials)
-    throw InputError(path.string(), "has no trials");
-  const auto bones = read.get<std::uint64_t>("bones");
-  for (std::uint64_t n = 0; n < bones; ++n)
-    record.bones.emplace_back(read.get<std::string>(fmt::format("bone_{}", n)),
-                              read.get<std::uint64_t>(fmt::format("bone_{}_fingerprint", n)));
-  return record;
+  if (std::error_code error; !fs::exists(path, error)) return std::nullopt;
+  return read_hdf5(path, record_in);
 }
 
 fs::path slice_path(const fs::path& folder, std::size_t number) {
@@ -196,28 +198,28 @@ void write_slice(const StudyFolder& study, const Slice& slice) {
 
 namespace {
 
-// Nothing where the file holds something else than these rows.
-std::optional<Slice> rows_in(hid_t file, const fs::path& path, const StudyFolder& study, std::size_t number) {
+// Throws where the file holds something else than these rows.
+Slice slice_in(const Hdf5File& file, const StudyFolder& study, std::size_t number) {
   const StudyRecord& record = study.record;
   const std::vector<Field<TrialRow>>& columns = columns_of(study.test);
   const auto parts = parts_of(study.test);
   const std::size_t count = record.size_of(number) * parts.size();
-  const Attributes read(path, file);
+  require_version(file, kSliceVersion);
+  const Attributes read(file.path, file.id());
   if (read.get<std::uint64_t>("made_of") != record.hash() || read.get<std::uint64_t>("slice") != number)
-    return std::nullopt;
-  const auto trials = read_dataset<std::uint64_t>(file, "trial", count);
-  const auto values = read_dataset<double>(file, "values", count * columns.size());
+    file.refuse("is of another study");
+  const auto trials = read_rows<std::uint64_t>(file, "trial", count);
+  const auto values = read_rows<double>(file, "values", count, columns.size());
   const auto bytes =
-      read_dataset<unsigned char>(file, "not_reached", read.get<std::uint64_t>("not_reached_bytes"));
-  if (!trials || !values || !bytes) return std::nullopt;
-  std::istringstream lines(std::string(bytes->begin(), bytes->end()));
+      read_rows<unsigned char>(file, "not_reached", read.get<std::uint64_t>("not_reached_bytes"));
+  std::istringstream lines(std::string(bytes.begin(), bytes.end()));
   Slice slice{number, {}, read.get<double>("cpu_s")};
   for (std::size_t n = 0; n < count; ++n) {
-    TrialRow& row = slice.rows.emplace_back(TrialRow{.trial = trials->at(n), .part = n % parts.size()});
+    TrialRow& row = slice.rows.emplace_back(TrialRow{.trial = trials[n], .part = n % parts.size()});
     if (row.trial != record.first_of(number) + n / parts.size() || !std::getline(lines, row.run.not_reached))
-      return std::nullopt;
+      file.refuse("has other trials than its own");
     row.run.phase = parts[row.part];
-    for (std::size_t c = 0; c < columns.size(); ++c) columns[c].set(row, (*values)[n * columns.size() + c]);
+    for (std::size_t c = 0; c < columns.size(); ++c) columns[c].set(row, values[n * columns.size() + c]);
   }
   return slice;
 }
@@ -225,14 +227,9 @@ std::optional<Slice> rows_in(hid_t file, const fs::path& path, const StudyFolder
 }  // namespace
 
 std::optional<Slice> read_slice(const StudyFolder& study, std::size_t number) {
-  const fs::path path = slice_path(study.path, number);
-  std::error_code error;
-  if (!fs::exists(path, error)) return std::nullopt;
-  const Hdf5Lock lock;
-  const Hdf5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
-  if (!file.valid()) return std::nullopt;
   try {
-    return rows_in(file.get(), path, study, number);
+    return read_hdf5(slice_path(study.path, number),
+                     [&](const Hdf5File& file) { return slice_in(file, study, number); });
   } catch (const InputError&) {
     return std::nullopt;
   }

@@ -7,12 +7,11 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include "osteomill/files/input_error.h"
 #include "osteomill/files/input_files.h"
 #include "osteomill/recording/hdf5.h"
+#include "osteomill/recording/read_hdf5.h"
 #include "osteomill/recording/record_columns.h"
 #include "osteomill/recording/recording.h"
 #include "osteomill/recording/recording_file.h"
@@ -23,103 +22,37 @@ namespace fs = std::filesystem;
 
 namespace {
 
-struct OpenRecording {
-  fs::path path;
-  std::uintmax_t bytes;
-  Hdf5Handle file;
-};
-
-[[noreturn]] void refuse(const OpenRecording& recording, const std::string& reason) {
-  throw InputError(recording.path.string(), reason);
-}
-
-OpenRecording open_recording(const fs::path& path) {
-  std::error_code error;
-  const std::uintmax_t bytes = fs::file_size(path, error);
-  if (H5Fis_hdf5(path.c_str()) <= 0) throw InputError(path.string(), "is not an HDF5 file, so no recording");
-  OpenRecording recording{path, bytes,
-                          Hdf5Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose)};
-  if (!recording.file.valid()) {
-    refuse(recording, "cannot be opened: it is cut short, damaged, or still being written");
-  }
-  return recording;
-}
-
-void require_our_version(const OpenRecording& recording, const Attributes& root) {
-  if (!root.has("osteomill_recording_version")) refuse(recording, "is HDF5, but no recording of osteomill");
+void require_our_version(const Hdf5File& recording, const Attributes& root) {
+  if (!root.has("osteomill_recording_version")) recording.refuse("is HDF5, but no recording of osteomill");
   const auto version = root.get<std::uint64_t>("osteomill_recording_version");
   if (version != kRecordingVersion && version != kRecordingVersionBefore) {
-    refuse(recording, fmt::format("is a recording of version {}; this program reads versions {} and {}",
-                                  version, kRecordingVersionBefore, kRecordingVersion));
+    recording.refuse(fmt::format("is a recording of version {}; this program reads versions {} and {}",
+                                 version, kRecordingVersionBefore, kRecordingVersion));
   }
-}
-
-struct OpenColumn {
-  std::string place;
-  Hdf5Handle dataset;
-  hsize_t width;
-  std::size_t rows = 0;
-};
-
-// A dataset of `width` numbers a row. One that claims more than the file could hold is refused: a byte of
-// file for each row lets through what other programs have compressed; of wide ones, whatever deflate may
-// save.
-OpenColumn open_column(const OpenRecording& recording, const std::string& place, hsize_t width = 1) {
-  constexpr hsize_t kMostThatDeflateSaves = 1100;
-  OpenColumn open{place, Hdf5Handle(H5Dopen2(recording.file.get(), place.c_str(), H5P_DEFAULT), H5Dclose),
-                  width};
-  if (!open.dataset.valid()) refuse(recording, "has no column '" + place + "'");
-  const Hdf5Handle type(H5Dget_type(open.dataset.get()), H5Tclose);
-  const H5T_class_t type_class = H5Tget_class(type.get());
-  const Hdf5Handle space(H5Dget_space(open.dataset.get()), H5Sclose);
-  const int rank = width == 1 ? 1 : 2;
-  std::array<hsize_t, 2> size{0, 1};
-  if ((type_class != H5T_FLOAT && type_class != H5T_INTEGER) ||
-      H5Sget_simple_extent_ndims(space.get()) != rank ||
-      H5Sget_simple_extent_dims(space.get(), size.data(), nullptr) != rank || size[1] != width) {
-    refuse(recording, "'" + place + "' is not a column of numbers");
-  }
-  const hsize_t most =
-      rank == 1 ? recording.bytes : kMostThatDeflateSaves * recording.bytes / (width * sizeof(float));
-  if (size[0] > most) {
-    refuse(recording, fmt::format("'{}' claims {} rows, more than the file can hold", place, size[0]));
-  }
-  open.rows = size[0];
-  return open;
 }
 
 // Of columns that belong together; of unequal lengths only where the recording is unfinished.
-std::size_t common_rows(const OpenRecording& recording, std::span<const OpenColumn> columns, bool complete) {
-  const OpenColumn& first = columns.front();
+std::size_t common_rows(const Hdf5File& recording, std::span<const Hdf5Column> columns, bool complete) {
+  const Hdf5Column& first = columns.front();
   std::size_t rows = first.rows;
-  for (const OpenColumn& column : columns) {
+  for (const Hdf5Column& column : columns) {
     if (column.rows != first.rows && complete) {
-      refuse(recording, fmt::format("the column '{}' has {} rows, '{}' has {}", column.place, column.rows,
-                                    first.place, first.rows));
+      recording.refuse(fmt::format("the column '{}' has {} rows, '{}' has {}", column.place, column.rows,
+                                   first.place, first.rows));
     }
     rows = std::min(rows, column.rows);
   }
   return rows;
 }
 
-void require_in_range(const OpenRecording& recording, const Field<TickRecord>& column, double value) {
+void require_in_range(const Hdf5File& recording, const Field<TickRecord>& column, double value) {
   const bool is_missing = column.has(kMayBeMissing) && !std::isfinite(value);
   if (!is_missing && !column.range.contains(value))
-    refuse(recording, fmt::format("the column '{}' holds {:g}", column.name, value));
+    recording.refuse(fmt::format("the column '{}' holds {:g}", column.name, value));
 }
 
-template <typename Value>
-std::vector<Value> read_values(const OpenRecording& recording, const OpenColumn& column) {
-  std::vector<Value> values(column.rows * column.width);
-  if (!values.empty() &&
-      H5Dread(column.dataset.get(), memory_type<Value>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) {
-    refuse(recording, "the column '" + column.place + "' cannot be read");
-  }
-  return values;
-}
-
-std::vector<TickRecord> read_records(const OpenRecording& recording, bool complete) {
-  std::vector<OpenColumn> columns;
+std::vector<TickRecord> read_records(const Hdf5File& recording, bool complete) {
+  std::vector<Hdf5Column> columns;
   for (const Field<TickRecord>& column : fields_of<TickRecord>())
     columns.push_back(open_column(recording, "columns/" + column.name));
   std::vector<TickRecord> records(common_rows(recording, columns, complete));
@@ -136,9 +69,9 @@ std::vector<TickRecord> read_records(const OpenRecording& recording, bool comple
 
 // Of one length.
 template <typename Value, std::size_t kCount>
-std::array<std::vector<Value>, kCount> read_together(const OpenRecording& recording, bool complete,
+std::array<std::vector<Value>, kCount> read_together(const Hdf5File& recording, bool complete,
                                                      const std::array<const char*, kCount>& places) {
-  std::vector<OpenColumn> columns;
+  std::vector<Hdf5Column> columns;
   for (const char* place : places) columns.push_back(open_column(recording, place));
   const std::size_t rows = common_rows(recording, columns, complete);
   std::array<std::vector<Value>, kCount> values;
@@ -149,19 +82,19 @@ std::array<std::vector<Value>, kCount> read_together(const OpenRecording& record
   return values;
 }
 
-void put_cut(const OpenRecording& recording, const std::vector<Label>& labels, double value,
-             double removed_mm3, TickRecord& record) {
+void put_cut(const Hdf5File& recording, const std::vector<Label>& labels, double value, double removed_mm3,
+             TickRecord& record) {
   const auto label =
       std::ranges::find(labels, value, [](const Label& l) { return static_cast<double>(l.value); });
   const auto free = std::ranges::find(record.label_cuts, 0, &LabelCut::label);
   if (label == labels.end() || free == record.label_cuts.end()) {
-    refuse(recording, "has a cut of a label that cannot be");
+    recording.refuse("has a cut of a label that cannot be");
   }
   *free = {static_cast<LabelMap::Place>(label - labels.begin() + 1), removed_mm3};
 }
 
 // What ticks cut of labels goes into their records.
-void read_cuts(const OpenRecording& recording, const std::vector<Label>& labels, bool complete,
+void read_cuts(const Hdf5File& recording, const std::vector<Label>& labels, bool complete,
                std::vector<TickRecord>& records) {
   if (labels.empty()) return;
   const auto [rows, values, removed_mm3] =
@@ -170,29 +103,29 @@ void read_cuts(const OpenRecording& recording, const std::vector<Label>& labels,
     if (rows[n] >= 0 && rows[n] < static_cast<double>(records.size())) {
       put_cut(recording, labels, values[n], removed_mm3[n], records[static_cast<std::size_t>(rows[n])]);
     } else if (complete) {
-      refuse(recording, "has a cut of a label in a row that is not there");
+      recording.refuse("has a cut of a label in a row that is not there");
     }
   }
 }
 
-std::vector<BoneHash> read_hashes(const OpenRecording& recording, bool complete, std::size_t records) {
+std::vector<BoneHash> read_hashes(const Hdf5File& recording, bool complete, std::size_t records) {
   const auto [rows, values] =
       read_together<std::uint64_t, 2>(recording, complete, {"bone_hash/row", "bone_hash/hash"});
   std::vector<BoneHash> hashes;
   for (std::size_t n = 0; n < rows.size(); ++n) {
     const bool there = rows[n] < records && (n == 0 || rows[n] > rows[n - 1]);
-    if (!there && complete) refuse(recording, "has a hash of the bone in a row that is not there");
+    if (!there && complete) recording.refuse("has a hash of the bone in a row that is not there");
     if (there) hashes.push_back({rows[n], values[n]});
   }
   return hashes;
 }
 
-std::vector<DensityBlock> read_bricks(const OpenRecording& recording, const std::string& session,
+std::vector<DensityBlock> read_bricks(const Hdf5File& recording, const std::string& session,
                                       const std::array<int, 3>& dims) {
-  if (H5Lexists(recording.file.get(), (session + "/brick_first").c_str(), H5P_DEFAULT) <= 0) return {};
+  if (H5Lexists(recording.id(), (session + "/brick_first").c_str(), H5P_DEFAULT) <= 0) return {};
   constexpr std::size_t kDensities = std::tuple_size_v<decltype(DensityBlock::densities)>;
-  const OpenColumn firsts = open_column(recording, session + "/brick_first", 3);
-  const OpenColumn bones = open_column(recording, session + "/brick_densities", kDensities);
+  const Hdf5Column firsts = open_column(recording, session + "/brick_first", 3);
+  const Hdf5Column bones = open_column(recording, session + "/brick_densities", kDensities);
   const auto first = read_values<std::int32_t>(recording, firsts);
   const auto densities = read_values<float>(recording, bones);
   std::vector<DensityBlock> bricks(first.size() / 3);
@@ -206,11 +139,11 @@ std::vector<DensityBlock> read_bricks(const OpenRecording& recording, const std:
     bricks[n].first = {first[3 * n], first[3 * n + 1], first[3 * n + 2]};
     std::copy_n(densities.data() + n * kDensities, kDensities, bricks[n].densities.begin());
   }
-  if (!right) refuse(recording, "has bricks of a bone that cannot be");
+  if (!right) recording.refuse("has bricks of a bone that cannot be");
   return bricks;
 }
 
-SessionStart read_session_start(const OpenRecording& recording, hid_t group, const std::string& place,
+SessionStart read_session_start(const Hdf5File& recording, hid_t group, const std::string& place,
                                 const RunDescription* run) {
   const Attributes read(recording.path, group);
   SessionStart start;
@@ -228,22 +161,22 @@ SessionStart read_session_start(const OpenRecording& recording, hid_t group, con
 }
 
 // Of an unfinished recording only those of which records are there.
-std::vector<RecordedSession> read_sessions(const OpenRecording& open, const Recording& recording) {
+std::vector<RecordedSession> read_sessions(const Hdf5File& open, const Recording& recording) {
   std::vector<RecordedSession> sessions;
   for (;;) {
     const std::string place = "sessions/" + std::to_string(sessions.size());
-    if (H5Lexists(open.file.get(), place.c_str(), H5P_DEFAULT) <= 0) break;
-    const Hdf5Handle group(H5Gopen2(open.file.get(), place.c_str(), H5P_DEFAULT), H5Gclose);
-    if (!group.valid()) refuse(open, "'" + place + "' cannot be opened");
+    if (H5Lexists(open.id(), place.c_str(), H5P_DEFAULT) <= 0) break;
+    const Hdf5Handle group(H5Gopen2(open.id(), place.c_str(), H5P_DEFAULT), H5Gclose);
+    if (!group.valid()) open.refuse("'" + place + "' cannot be opened");
     const auto row = Attributes(open.path, group.get()).get<std::uint64_t>("row");
     const bool right = sessions.empty() ? row == 0 : row >= sessions.back().first;
     if (!recording.complete && row >= recording.records.size() && !sessions.empty()) break;
-    if (!right || row > recording.records.size()) refuse(open, "'" + place + "' begins where it cannot");
+    if (!right || row > recording.records.size()) open.refuse("'" + place + "' begins where it cannot");
     const RunDescription* first = sessions.empty() ? &recording.description : nullptr;
     sessions.push_back({row, read_session_start(open, group.get(), place, first)});
     sessions.back().start.run.labels = recording.description.labels;
   }
-  if (sessions.empty() && !recording.records.empty()) refuse(open, "has ticks of no session");
+  if (sessions.empty() && !recording.records.empty()) open.refuse("has ticks of no session");
   return sessions;
 }
 
@@ -255,69 +188,38 @@ void number_records(Recording& recording) {
   }
 }
 
-std::vector<std::string> picture_names(const OpenRecording& recording, hid_t group) {
+std::vector<std::string> picture_names(const Hdf5File& recording, hid_t group) {
   std::vector<std::string> names;
   const auto collect = [](hid_t, const char* name, const H5L_info_t*, void* list) -> herr_t {
     static_cast<std::vector<std::string>*>(list)->emplace_back(name);
     return 0;
   };
   if (H5Literate(group, H5_INDEX_NAME, H5_ITER_INC, nullptr, collect, &names) < 0) {
-    refuse(recording, "its pictures cannot be listed");
+    recording.refuse("its pictures cannot be listed");
   }
   return names;
 }
 
-std::vector<RunPicture> read_pictures(const OpenRecording& recording) {
-  const Hdf5Handle group(H5Gopen2(recording.file.get(), "pictures", H5P_DEFAULT), H5Gclose);
-  if (!group.valid()) refuse(recording, "has no group of pictures");
+std::vector<RunPicture> read_pictures(const Hdf5File& recording) {
+  const Hdf5Handle group(H5Gopen2(recording.id(), "pictures", H5P_DEFAULT), H5Gclose);
+  if (!group.valid()) recording.refuse("has no group of pictures");
   std::vector<RunPicture> pictures;
   for (const std::string& name : picture_names(recording, group.get())) {
-    const OpenColumn png = open_column(recording, "pictures/" + name);
+    const Hdf5Column png = open_column(recording, "pictures/" + name);
     pictures.push_back({name, read_values<unsigned char>(recording, png)});
   }
   return pictures;
 }
 
-// HDF5 would follow links into other files, look for values there, and load plug-ins that a file asks for.
-bool holds_its_own_values(hid_t dataset) {
-  const Hdf5Handle layout(H5Dget_create_plist(dataset), H5Pclose);
-  bool own = H5Pget_external_count(layout.get()) == 0 && H5Pget_layout(layout.get()) != H5D_VIRTUAL;
-  for (int n = 0; own && n < H5Pget_nfilters(layout.get()); ++n) {
-    unsigned flags = 0, config = 0;
-    std::size_t values = 0;
-    const H5Z_filter_t filter =
-        H5Pget_filter2(layout.get(), static_cast<unsigned>(n), &flags, &values, nullptr, 0, nullptr, &config);
-    own = filter >= 0 && filter < H5Z_FILTER_RESERVED;
-  }
-  return own;
-}
-
-void require_nothing_elsewhere(const OpenRecording& recording) {
-  std::string refused;
-  const auto look = [](hid_t group, const char* name, const H5L_info_t* link, void* found) -> herr_t {
-    bool within = link->type == H5L_TYPE_HARD;
-    if (within) {
-      const Hdf5Handle object(H5Oopen(group, name, H5P_DEFAULT), H5Oclose);
-      const H5I_type_t type = H5Iget_type(object.get());
-      within = type == H5I_GROUP || (type == H5I_DATASET && holds_its_own_values(object.get()));
-    }
-    if (!within) *static_cast<std::string*>(found) = name;
-    return within ? 0 : 1;
-  };
-  if (H5Lvisit(recording.file.get(), H5_INDEX_NAME, H5_ITER_NATIVE, look, &refused) != 0)
-    refuse(recording, "'" + refused + "' leads elsewhere, or needs a filter that is not HDF5's own");
-}
-
-Recording read_open_file(const fs::path& path) {
-  const OpenRecording open = open_recording(path);
-  require_nothing_elsewhere(open);
-  const Attributes root(path, open.file.get());
+Recording read_open_file(const Hdf5File& open) {
+  const fs::path& path = open.path;
+  const Attributes root(path, open.id());
   require_our_version(open, root);
   Recording recording;
   recording.path = path;
   recording.complete = root.get<std::uint64_t>("complete") != 0;
   root.get("dropped_records", recording.dropped);
-  recording.description = read_description(path, open.file.get());
+  recording.description = read_description(path, open.id());
   recording.records = read_records(open, recording.complete);
   read_cuts(open, recording.description.labels, recording.complete, recording.records);
   recording.bone_hashes = read_hashes(open, recording.complete, recording.records.size());
@@ -327,36 +229,14 @@ Recording read_open_file(const fs::path& path) {
   return recording;
 }
 
-// HDF5 ends the program on some damaged files, or never comes back. Where no checksum tells them, another
-// process tries first.
-void try_in_child(const fs::path& path) {
-  constexpr unsigned kMax_s = 60;
-  const ::pid_t child = ::fork();
-  if (child == 0) {
-    ::alarm(kMax_s);
-    try {
-      read_open_file(path);
-    } catch (...) {
-      // It will be said by who reads it next.
-    }
-    ::_exit(0);
-  }
-  int status = 0;
-  if (child > 0 && ::waitpid(child, &status, 0) == child && status != 0)
-    throw InputError(path.string(), "is damaged: it ends the program that reads it");
-}
-
 Recording read_checked(const fs::path& path) {
-  const Hdf5Lock lock;
-  std::error_code error;
-  if (!fs::exists(path, error)) throw InputError(path.string(), "no such file");
-  if (!fs::is_regular_file(path, error)) throw InputError(path.string(), "is not a file");
+  require_readable(path);
   const Checksum checksum = check_checksum(path);
-  if (checksum == Checksum::broken) {
+  if (checksum == Checksum::broken)
     throw InputError(path.string(), "is damaged or cut short: its checksum is not that of its content");
-  }
-  if (checksum == Checksum::none) try_in_child(path);
-  return read_open_file(path);
+  if (checksum != Checksum::our_own) return read_hdf5(path, read_open_file);
+  const Hdf5Lock lock;
+  return read_open_file(open_hdf5(path));
 }
 
 }  // namespace

@@ -6,6 +6,8 @@
 #include "tests/support/recording_samples.h"
 #include <gtest/gtest.h>
 #include <hdf5.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "osteomill/files/input_error.h"
 #include "osteomill/recording/hdf5.h"
@@ -62,6 +64,15 @@ class ChangedRecording : public ::testing::Test {
   void remove_seal() {
     std::fstream file(path_, std::ios::in | std::ios::out | std::ios::binary);
     file << std::string(kUserBlockBytes, '\0');
+  }
+  // What another process has sealed.
+  void seal_elsewhere() {
+    const ::pid_t child = ::fork();
+    if (child == 0) {
+      write_checksum(path_);
+      ::_exit(0);
+    }
+    ::waitpid(child, nullptr, 0);
   }
   static void set_number(hid_t file, const char* attribute, std::uint64_t value) {
     const hid_t a = H5Aopen(file, attribute, H5P_DEFAULT);
@@ -277,7 +288,12 @@ TEST_F(ChangedRecording, AnyDamagedByteIsNoticed) {
   }
 }
 
-TEST_F(ChangedRecording, WithoutItsChecksumADamagedByteEndsNoProgram) {
+// Without its checksum, or behind one that somebody made who wanted it to be read.
+class DamagedRecording : public ChangedRecording, public ::testing::WithParamInterface<bool> {};
+INSTANTIATE_TEST_SUITE_P(, DamagedRecording, ::testing::Bool(),
+                         [](const auto& sealed) { return sealed.param ? "Sealed" : "Unsealed"; });
+
+TEST_P(DamagedRecording, EndsNoProgram) {
 #ifdef __SANITIZE_ADDRESS__
   GTEST_SKIP() << "HDF5 reads beyond its memory in the child, and loses some where it refuses";
 #endif
@@ -291,6 +307,7 @@ TEST_F(ChangedRecording, WithoutItsChecksumADamagedByteEndsNoProgram) {
       damaged[kUserBlockBytes + (state >> 20) % (20000 - kUserBlockBytes)] = static_cast<char>(state >> 50);
     }
     write_bytes(path_, damaged);
+    if (GetParam()) seal_elsewhere();
     try {
       read_recording(path_);
     } catch (const InputError& fault) {
