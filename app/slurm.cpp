@@ -56,6 +56,13 @@ void write_submit_script(const fs::path& folder) {
 
 }  // namespace
 
+// A line of #SBATCH ends with the line, and its quotation mark with the next one.
+void require_submittable(const fs::path& folder) {
+  const std::string name = fs::absolute(folder).lexically_normal().string();
+  if (name.find('"') != std::string::npos || in_one_line(name) != name)
+    throw InputError(name, "has a quotation mark or a line's end in its name, which sbatch cannot be told");
+}
+
 std::string ranges_text(const std::vector<std::size_t>& numbers) {
   std::string text;
   for (std::size_t n = 0; n < numbers.size();) {
@@ -86,6 +93,7 @@ std::size_t slurm_array_limit() {
 void submit_to_slurm(const fs::path& folder, const std::vector<std::size_t>& slices,
                      std::size_t array_limit) {
   const fs::path study = fs::absolute(folder).lexically_normal();
+  require_submittable(study);
   create_folder(study / "logs");
   write_submit_script(study);
   for (auto from = slices.begin(); from != slices.end();) {

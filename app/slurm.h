@@ -11,6 +11,9 @@ namespace osteomill::app {
 /// own words, where there is no Slurm, it does not answer, or it takes no arrays.
 std::size_t slurm_array_limit();
 
+/// Throws InputError where submit.sh could not name the folder.
+void require_submittable(const std::filesystem::path& folder);
+
 /// "1,4-6".
 std::string ranges_text(const std::vector<std::size_t>& numbers);
 

@@ -148,14 +148,14 @@ std::optional<WorkspaceSettings> read_workspace(const fs::path& path) {
   }
 }
 
-void keep_workspace(const fs::path& path, const std::string& device_name, const WorkspaceSettings& settings) {
+void keep_workspace(const fs::path& path, const WorkspaceSettings& settings) {
   create_folder(path.parent_path());
   write_text_atomically(path, [&](std::ostream& text) {
     const Vec3& turn = settings.turn_V_deg;
     text << fmt::format(
-        "# How {} moves the tool in osteomill (docs/devices.md).\n"
+        "# How the device of this name moves the tool in osteomill (docs/devices.md).\n"
         "scale = {}\npower = {}\nturn_deg = [{}, {}, {}]\nshaft_lever_mm = {}\n",
-        device_name, settings.scale, settings.power, turn.x(), turn.y(), turn.z(), settings.shaft_lever_mm);
+        settings.scale, settings.power, turn.x(), turn.y(), turn.z(), settings.shaft_lever_mm);
   });
 }
 

@@ -76,7 +76,6 @@ std::filesystem::path workspace_path(const std::string& device_name);
 /// As it was kept; nothing where none was. Throws InputError naming the file where it is at fault.
 std::optional<WorkspaceSettings> read_workspace(const std::filesystem::path& path);
 /// Throws InputError where it cannot be written.
-void keep_workspace(const std::filesystem::path& path, const std::string& device_name,
-                    const WorkspaceSettings& settings);
+void keep_workspace(const std::filesystem::path& path, const WorkspaceSettings& settings);
 
 }  // namespace osteomill

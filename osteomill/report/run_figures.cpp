@@ -72,9 +72,12 @@ std::string value_range(const std::vector<const MeasuredRun*>& runs, const Shown
       max = std::max(max, shown.value(record));
     }
   }
+  // Of six digits, at which a range of nothing is refused.
+  constexpr double kLeastShare = 1e-4;
+  if (min > max) return "set yrange [0:1]";
   const double above = 0.06 * (max - (min < max / 2 ? 0 : min));
   return fmt::format("set yrange [{:.6g}:{:.6g}]", min < max / 2 ? 0 : min - above,
-                     max > 0 ? max + std::max(above, 1e-6 * max) : 1.0);
+                     max > 0 ? max + std::max(above, kLeastShare * max) : 1.0);
 }
 
 std::string capitalised(std::string phase) {
