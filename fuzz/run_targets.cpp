@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <hdf5.h>
 
+#include "osteomill/experiment/study_slices.h"
 #include "osteomill/haptics/algorithms.h"
 #include "osteomill/recording/recording.h"
 #include "osteomill/recording/recording_file.h"
@@ -80,6 +81,39 @@ void read_recording_of(Bytes bytes, const fs::path& folder) {
 
 std::vector<std::string> recording_seeds(const fs::path& folder) {
   return {unfinished_recording(folder / "a.h5")};
+}
+
+StudyFolder study_in(const fs::path& folder) {
+  return {.path = folder,
+          .record = {.study_hash = 1,
+                     .program_hash = 2,
+                     .scans_from = "/here",
+                     .trials = 3,
+                     .trials_a_slice = 2,
+                     .bones = {{"scan=a", 3}}}};
+}
+
+void read_study_of(Bytes bytes, const fs::path& folder) {
+  write_bytes(folder / "study.h5", bytes);
+  read_study_record(folder);
+}
+
+std::vector<std::string> study_seeds(const fs::path& folder) {
+  write_study_record(folder, study_in(folder).record);
+  return {read_bytes(folder / "study.h5")};
+}
+
+void read_slice_of(Bytes bytes, const fs::path& folder) {
+  write_bytes(slice_path(folder, 0), bytes);
+  study_status(study_in(folder));
+}
+
+std::vector<std::string> slice_seeds(const fs::path& folder) {
+  const StudyFolder study = study_in(folder);
+  Slice slice;
+  for (std::size_t n = 0; n < 4; ++n) slice.rows.push_back({.trial = n / 2, .part = n % 2});
+  write_slice(study, slice);
+  return {read_bytes(slice_path(folder, 0))};
 }
 
 // What the bytes tell to do, one after the other.
@@ -187,6 +221,8 @@ std::vector<Target> run_targets() {
   return {{"trajectory", read_trajectory_of, trajectory_seeds},
           {"config", read_config, config_seeds},
           {"recording", read_recording_of, recording_seeds},
+          {"study", read_study_of, study_seeds},
+          {"slice", read_slice_of, slice_seeds},
           {"recording-values", read_changed_recording, recording_orders}};
 }
 

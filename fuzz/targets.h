@@ -22,7 +22,7 @@ struct Target {
 const std::vector<Target>& targets();
 
 /// Parts of `targets`: files of volumes, archives and labels; DICOM, by its elements and by each decoder;
-/// trajectories, configurations and recordings.
+/// trajectories, configurations, recordings and the files of studies.
 std::vector<Target> volume_targets();
 std::vector<Target> dicom_targets();
 std::vector<Target> run_targets();
