@@ -81,7 +81,9 @@ void replay_trajectory(ReplayOptions options) {
   LoadedBone bone = load_bone(options.scan);
   require_workable(options.milling.setup.tool, bone.volume.geometry());
   const BoneDensities densities = estimate_densities(bone.volume);
-  MillingSession session(std::make_shared<Volume>(std::move(bone.volume)), densities, options.milling.setup);
+  MillingSetup& setup = options.milling.setup;
+  setup.guard = GuardSettings::for_simulation(setup.guard.limits, setup.guard.passivity_controller);
+  MillingSession session(std::make_shared<Volume>(std::move(bone.volume)), densities, setup);
   Log log(options, trajectory.size(), session.volume());
   replay(session, trajectory, [&](const TickRecord& record) { log.add(record); });
   log.write();

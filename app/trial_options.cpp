@@ -33,7 +33,7 @@ void add_trial_options(CLI::App& command, TrialOptions& options) {
 }
 
 TrialSettings trial_settings(const TrialOptions& options) {
-  TrialSettings trial{options.milling.setup, options.hand};
+  TrialSettings trial(options.milling.setup, options.hand);
   trial.hand_and_device.handle.limits = trial.guard.limits;
   trial.hand_and_device.seed = options.milling.seed;
   return trial;

@@ -42,8 +42,9 @@ TEST_P(GoldenWrenches, AreTheSameBitsAtAnyOptimisation) {
                                                 testing_support::ball(Vec3::Zero(), kBallRadius_mm));
   const MillingTool tool;
   const BoneDensities densities = estimate_densities(volume);
-  MillingSession session(std::make_shared<Volume>(std::move(volume)), densities,
-                         {.algorithm = algorithm_named(GetParam().algorithm)});
+  MillingSession session(
+      std::make_shared<Volume>(std::move(volume)), densities,
+      {.algorithm = algorithm_named(GetParam().algorithm), .guard = GuardSettings::for_simulation()});
   PosedDevice device;
   std::uint64_t hash = 0xcbf29ce484222325;
   for (int n = 0; n < kTicks; ++n) {

@@ -66,7 +66,6 @@ class Soak {
         entry_(place_entry(scan, settings_.setup.tool)),
         bone_(std::make_shared<Volume>(scan)) {
     settings_.setup.tick_s = kTick_s;
-    settings_.setup.guard = settings_.setup.guard.for_a_hand();
     begin("line-proxy", {}, 0);
     recorder_ = std::make_unique<Recorder>(path, description());
   }

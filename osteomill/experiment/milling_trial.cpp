@@ -10,6 +10,11 @@ double thread_cpu_s() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
+TrialSettings::TrialSettings(const MillingSetup& setup, const OperatorSettings& hand)
+    : MillingSetup(setup), hand_and_device(hand) {
+  guard = GuardSettings::for_simulation(setup.guard.limits, setup.guard.passivity_controller);
+}
+
 MillingTrial::MillingTrial(const Volume& bone, const BoneDensities& densities, const MillingEntry& entry,
                            const TrialSettings& settings)
     : session_(std::make_shared<Volume>(bone), densities, settings),

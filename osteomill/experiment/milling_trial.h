@@ -7,8 +7,12 @@
 
 namespace osteomill {
 
-/// All that a trial depends on but the bone and the entry.
+/// All that a trial depends on but the bone and the entry. No person feels it, so that nothing but the limits
+/// stands between the algorithm and the simulated hand (GuardSettings::for_simulation).
 struct TrialSettings : MillingSetup {
+  TrialSettings() : TrialSettings(MillingSetup{}) {}
+  explicit TrialSettings(const MillingSetup& setup, const OperatorSettings& hand = {});
+
   OperatorSettings hand_and_device;
   /// Of the device itself, where it is pressed on a wall without a hand.
   double device_damping_Ns_per_mm = 0.005;

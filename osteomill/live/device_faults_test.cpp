@@ -93,7 +93,7 @@ class DeviceFaults : public ::testing::TestWithParam<std::string> {
       std::make_shared<Volume>(testing_support::shape_volume(
           testing_support::centred_cube(60, 0.25), testing_support::plane(Vec3::Zero(), Vec3::UnitZ()))),
       {0, 1000},
-      {.algorithm = algorithm_named(GetParam()), .guard = GuardSettings{}.for_a_hand()}};
+      {.algorithm = algorithm_named(GetParam())}};
   TickRecord record_;
   bool hangs_ = false;
   bool spindle_on_ = false;

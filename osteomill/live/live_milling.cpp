@@ -21,11 +21,8 @@ void add_picture(Recorder& recorder, std::string_view name, const LiveMilling::T
   if (auto png = take(name)) recorder.add_picture(std::string(name), *std::move(png));
 }
 
-// As LiveSession has them.
 SessionSettings settings_of(const MillingSession& session) {
-  SessionSettings settings{session.setup(), session.densities()};
-  settings.setup.guard = settings.setup.guard.for_a_hand();
-  return settings;
+  return {session.setup(), session.densities()};
 }
 
 }  // namespace

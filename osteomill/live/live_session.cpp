@@ -18,9 +18,7 @@ constexpr double kMaxTick_s = 0.02;
 }  // namespace
 
 LiveSession::LiveSession(std::unique_ptr<MillingSession> session, Device& device)
-    : device_(device), crash_stop_(device), session_(std::move(session)) {
-  session_->guard().protect_a_hand();
-}
+    : device_(device), crash_stop_(device), session_(std::move(session)) {}
 
 void LiveSession::start() {
   if (running()) return;
@@ -79,7 +77,6 @@ TakenOver LiveSession::replace(std::unique_ptr<MillingSession> session) {
   between_ticks([&] {
     std::swap(session_, session);
     left = session->left();
-    session_->guard().protect_a_hand();
     session_->take_over(left);
     if (letting_go_) session_->let_go();
     ++session_number_;

@@ -19,8 +19,10 @@ namespace {
 using testing_support::TestFolder;
 
 constexpr BoneDensities kDensities{0, 1000};
-const MillingSetup kSetup{
-    .algorithm = algorithm_named("point-shell"), .removal_rate_mm3_per_Ns = 3.0, .cutting_reaction = true};
+const MillingSetup kSetup{.algorithm = algorithm_named("point-shell"),
+                          .removal_rate_mm3_per_Ns = 3.0,
+                          .cutting_reaction = true,
+                          .guard = GuardSettings::for_simulation()};
 
 Volume fresh_bone(double radius_mm = 5) {
   return testing_support::shape_volume(testing_support::centred_cube(60, 0.25),

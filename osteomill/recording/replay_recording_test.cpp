@@ -35,7 +35,7 @@ SessionSettings settings_of_all(const AlgorithmDescription& algorithm) {
            .removal_rate_mm3_per_Ns = 3.0,
            .cutting_reaction = true,
            .vibration = {true, 0.1, 0.4},
-           .guard = GuardSettings{.limits = {8, 300}, .passivity_controller = true}.for_a_hand()},
+           .guard = {.limits = {8, 300}, .passivity_controller = true}},
           {0, 1000}};
 }
 

@@ -61,7 +61,7 @@ class MillingSessionTest : public ::testing::Test {
     start(std::move(bone));
     device_.put({{0, 0, 1.0}, Quat::Identity()});
   }
-  void start(Volume bone, MillingSetup setup = {}) {
+  void start(Volume bone, MillingSetup setup = {.guard = GuardSettings::for_simulation()}) {
     setup.algorithm = {.id = {"scripted", "scripted", "#000000"}, .make = [this](auto) {
                          auto algorithm = std::make_unique<ScriptedAlgorithm>();
                          algorithm_ = algorithm.get();
@@ -97,7 +97,7 @@ TEST_F(MillingSessionTest, TooMuchIsClampedAndSaid) {
 
 // The burr lies on its side, the hand to the right, and presses down: it is held back along the bone.
 TEST_F(MillingSessionTest, CuttingPullsAtTheHandWithinTheDevicesLimits) {
-  start(session_->volume(), {.cutting_reaction = true, .guard = {{0.25, 500}}});
+  start(session_->volume(), {.cutting_reaction = true, .guard = GuardSettings::for_simulation({0.25, 500})});
   const Pose lying{{0, 0, 1.45}, Quat::FromTwoVectors(Vec3::UnitZ(), Vec3::UnitX())};
   device_.put(lying);
   algorithm_->next.X_WT = lying;

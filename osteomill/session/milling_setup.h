@@ -32,6 +32,7 @@ struct MillingSetup {
   bool cutting_reaction = false;
   /// The hand feels the burr cut.
   VibrationSettings vibration;
+  /// Protects a hand unless told otherwise (GuardSettings::for_simulation).
   GuardSettings guard;
   /// How long a tick nominally is.
   double tick_s = 1e-3;

@@ -19,7 +19,7 @@ struct Wall {
   double stiffness_N_per_mm = 20;
   double press_N = 0;
 
-  WrenchGuard guard{};
+  WrenchGuard guard{GuardSettings::for_simulation()};
   SimulatedHandle handle{exact(), {{0, 0, 1}, Quat::Identity()}};
   double kinetic_mJ = 0;
   double most_given_Nmm = 0;
@@ -70,7 +70,7 @@ TEST(PassivityObserver, AStiffWallIsActiveWithoutTheControllerAndPassiveWithIt) 
   Wall active;
   active.press_N = 2;
   active.run(4000);
-  Wall controlled{.guard = WrenchGuard({.passivity_controller = true})};
+  Wall controlled{.guard = WrenchGuard(GuardSettings::for_simulation({}, true))};
   controlled.press_N = 2;
   controlled.run(4000);
   EXPECT_GT(active.most_given_Nmm, 100);
@@ -81,7 +81,7 @@ TEST(PassivityObserver, AStiffWallIsActiveWithoutTheControllerAndPassiveWithIt) 
 }
 
 TEST(PassivityObserver, InFreeSpaceNothingIsFelt) {
-  WrenchGuard guard({.passivity_controller = true});
+  WrenchGuard guard(GuardSettings::for_simulation({}, true));
   Pose X_WD;
   // Pushed 1 mm along the force: 3 N mm too many.
   guard.pass({{3, 0, 0}, Vec3::Zero()}, X_WD, kTick_s);

@@ -18,8 +18,9 @@ std::vector<TrajectoryPoint> down_onto_the_plane(bool milling) {
 std::vector<TickRecord> replayed(bool milling) {
   Volume bone = testing_support::shape_volume(testing_support::centred_cube(40, 0.25),
                                               testing_support::plane(Vec3::Zero(), Vec3::UnitZ()));
-  MillingSession session(std::make_shared<Volume>(std::move(bone)), {0, 1000},
-                         {.algorithm = algorithm_named("point-shell")});
+  MillingSession session(
+      std::make_shared<Volume>(std::move(bone)), {0, 1000},
+      {.algorithm = algorithm_named("point-shell"), .guard = GuardSettings::for_simulation()});
   std::vector<TickRecord> log;
   replay(session, down_onto_the_plane(milling), [&](const TickRecord& record) { log.push_back(record); });
   return log;

@@ -41,8 +41,8 @@ Wrench PassivityObserver::damping(double dt_s) const {
   return {-stiffness_N_per_mm * moved_mm_, -stiffness_N_per_mm * kLever2_mm2 * turned_rad_};
 }
 
-GuardSettings GuardSettings::for_a_hand() const {
-  return {limits, kRatesForAHand, 0.1, 5, 0.2, 0.005, passivity_controller};
+GuardSettings GuardSettings::for_simulation(const WrenchLimits& limits, bool passivity_controller) {
+  return {limits, WrenchRates{}, 0, kAny, kAny, kAny, passivity_controller};
 }
 
 void WrenchGuard::begin_anew() {

@@ -6,24 +6,26 @@
 
 namespace osteomill {
 
-/// What a wrench may be, and how fast it may change, on its way to a hand.
+/// Bounds what a wrench may be, and how fast it may change, on its way to a hand. As it is, it protects a
+/// person's hand; what runs without one uses `for_simulation`.
 struct GuardSettings {
   static constexpr double kAny = WrenchRates::kAny;
 
   WrenchLimits limits;
-  WrenchRates rates;
+  WrenchRates rates = kRatesForAHand;
   /// How long it takes from what was sent before to what is asked for, where they need not agree.
-  double blend_s = 0;
+  double blend_s = 0.1;
   /// The furthest that a device moves and turns in a tick, and the longest tick; beyond them zero is sent.
-  double max_move_mm = kAny;
-  double max_turn_rad = kAny;
-  double max_tick_s = kAny;
+  double max_move_mm = 5;
+  double max_turn_rad = 0.2;
+  double max_tick_s = 0.005;
   /// A damper is felt on contact while the hand has been given more energy than it gave (PassivityObserver).
   bool passivity_controller = false;
 
-  /// These settings, made safe for a person's hand: kRatesForAHand, a blend of 0.1 s, moves of up to 5 mm and
-  /// 0.2 rad and ticks of up to 5 ms. The default, for simulated hands, only shortens to the limits.
-  GuardSettings for_a_hand() const;
+  /// Returns settings for a wrench that no person feels: it is shortened to `limits`, and nothing else keeps
+  /// it from what the algorithm asks for, but for the controller where it is on. Not for a device that drives
+  /// a hand: a single tick may bring all of 20 N.
+  static GuardSettings for_simulation(const WrenchLimits& limits = {}, bool passivity_controller = false);
 };
 
 /// How much energy a session has given to the hand, and a damper that takes it back where it is more than the
@@ -74,8 +76,6 @@ class WrenchGuard {
   WrenchGuard() : WrenchGuard(GuardSettings{}) {}
   explicit WrenchGuard(const GuardSettings& settings) : settings_(settings) {}
 
-  /// From now on for a person's hand (GuardSettings::for_a_hand).
-  void protect_a_hand() { settings_ = settings_.for_a_hand(); }
   /// Given to the hand less what it gave, in N mm, up to the last pose.
   double energy_given_Nmm() const { return observer_.energy_given_Nmm(); }
   /// From now what is asked for comes up slowly, from what was last sent.

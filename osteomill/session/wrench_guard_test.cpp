@@ -16,7 +16,7 @@ namespace osteomill {
 namespace {
 
 constexpr double kTick_s = 1e-3;
-// What for_a_hand allows in a tick: 20 N and 500 N mm are gone in five.
+// What the default allows in a tick: 20 N and 500 N mm are gone in five.
 constexpr double kMaxStep_N = 4 + 1e-9;
 constexpr double kMaxStep_Nmm = 100 + 1e-9;
 const Pose kHere{{1, 2, 3}, Quat::Identity()};
@@ -25,20 +25,16 @@ Wrench down(double force_N) {
   return {{0, 0, -force_N}, {0, 10 * force_N, 0}};
 }
 
-WrenchGuard for_a_hand() {
-  return WrenchGuard(GuardSettings{}.for_a_hand());
-}
-
 // A hand that has felt nothing, and then this for long enough.
 WrenchGuard holding(double force_N) {
-  WrenchGuard guard = for_a_hand();
+  WrenchGuard guard;
   guard.pass({}, kHere, kTick_s);
   for (int n = 0; n < 10; ++n) guard.pass(down(force_N), kHere, kTick_s);
   return guard;
 }
 
 TEST(WrenchGuard, FromFreeSpaceAContactIsFeltAtOnce) {
-  WrenchGuard guard = for_a_hand();
+  WrenchGuard guard;
   guard.pass({}, kHere, kTick_s);
   const SafeWrench safe = guard.pass(down(3), kHere, kTick_s);
   EXPECT_EQ(safe.wrench.force_N, down(3).force_N);
@@ -46,7 +42,7 @@ TEST(WrenchGuard, FromFreeSpaceAContactIsFeltAtOnce) {
 }
 
 TEST(WrenchGuard, ATickOfNoLengthGivesNumbers) {
-  WrenchGuard simulated;
+  WrenchGuard simulated(GuardSettings::for_simulation());
   WrenchGuard guarded = holding(3);
   for (const double force_N : {3.0, 3.0, 5.0}) {
     EXPECT_EQ(simulated.pass(down(force_N), kHere, 0).wrench.force_N, down(force_N).force_N);
@@ -55,7 +51,7 @@ TEST(WrenchGuard, ATickOfNoLengthGivesNumbers) {
 }
 
 TEST(WrenchGuard, AStartInBoneComesUpSlowly) {
-  WrenchGuard guard = for_a_hand();
+  WrenchGuard guard;
   for (int n = 1; n <= 99; ++n) {
     const SafeWrench safe = guard.pass(down(6), kHere, kTick_s);
     ASSERT_NEAR(safe.wrench.force_N.norm(), 6 * 0.01 * n, 1e-9) << n;
@@ -66,7 +62,7 @@ TEST(WrenchGuard, AStartInBoneComesUpSlowly) {
 }
 
 TEST(WrenchGuard, LateTicksComeUpInNoLargerSteps) {
-  WrenchGuard guard = for_a_hand();
+  WrenchGuard guard;
   double before_N = 0;
   for (int n = 0; n < 50; ++n) {
     const double sent_N = guard.pass(down(6), kHere, n % 2 ? kTick_s : 4 * kTick_s).wrench.force_N.norm();
@@ -132,7 +128,7 @@ TEST(WrenchGuard, AfterAPauseItComesUpSlowly) {
 }
 
 TEST(WrenchGuard, AnotherAlgorithmGoesOnFromWhatWasSent) {
-  WrenchGuard after(GuardSettings{{10, 500}}.for_a_hand());
+  WrenchGuard after(GuardSettings{{10, 500}});
   after.begin_from(holding(2).sent());
   double before_N = 2;
   for (int n = 0; n < 200; ++n) {
@@ -161,12 +157,11 @@ class GuardedSession : public ::testing::TestWithParam<std::string> {
  protected:
   GuardedSession() : session_(make(GetParam())) { put(3); }
 
-  std::unique_ptr<MillingSession> make(const std::string& algorithm) {
+  std::unique_ptr<MillingSession> make(const std::string& algorithm, Mode mode = Mode::steady) {
     return std::make_unique<MillingSession>(
         std::make_shared<Volume>(testing_support::shape_volume(
             testing_support::centred_cube(60, 0.25), testing_support::plane(Vec3::Zero(), Vec3::UnitZ()))),
-        BoneDensities{0, 1000},
-        MillingSetup{.algorithm = algorithm_named(algorithm), .guard = GuardSettings{}.for_a_hand()});
+        BoneDensities{0, 1000}, MillingSetup{.algorithm = algorithm_named(algorithm), .haptics = {mode}});
   }
   void put(double height_mm) { device_.put({{0, 0, height_mm}, Quat::Identity()}); }
   void tick(int count) {
@@ -201,6 +196,24 @@ INSTANTIATE_TEST_SUITE_P(EveryAlgorithm, GuardedSession, ::testing::ValuesIn(alg
                            std::replace(name.begin(), name.end(), '-', '_');
                            return name;
                          });
+
+// From free space, faster than a hand moves and as fast as the guard takes for a jump, in both modes.
+TEST_P(GuardedSession, AsItIsNoTickBringsMoreThanAHandMayFeel) {
+  double felt_N = 0;
+  for (const double mm_a_tick : {0.9, 4.9, 5.1}) {
+    for (const Mode mode : {Mode::paper, Mode::steady}) {
+      session_ = make(GetParam(), mode);
+      sent_ = {};
+      for (double here_mm = 20; here_mm > -3; here_mm -= mm_a_tick) {
+        put(here_mm);
+        tick(1);
+      }
+      tick(200);
+      felt_N = std::max(felt_N, sent_.force_N.norm());
+    }
+  }
+  EXPECT_GT(felt_N, 4);
+}
 
 TEST_P(GuardedSession, AfterAPauseInWhichTheHandSankNothingSteps) {
   press(0.8);
