@@ -1,5 +1,6 @@
 #include <chrono>
 #include <cstdlib>
+#include <exception>
 #include <memory>
 #include <optional>
 #include <string>
@@ -19,6 +20,7 @@
 #include "osteomill/experiment/entry_pictures.h"
 #include "osteomill/files/input_error.h"
 #include "osteomill/live/bone_sender.h"
+#include "osteomill/live/crash_stop.h"
 #include "osteomill/live/live_milling.h"
 #include "osteomill/operator/virtual_hand.h"
 #include "osteomill/session/milling_setup.h"
@@ -169,6 +171,7 @@ Seen run_for(LiveMilling& milling, double seconds, const std::shared_ptr<const L
 }
 
 void run_live(LiveOptions options, const std::string& command_line) {
+  const CrashStop crash_stop;
   ScriptSettings& script = options.trial.hand.script;
   script.milling_s = script.holding_s = 0.5 * options.seconds;
   Holder holder(options.device);
@@ -210,6 +213,8 @@ void run_live(LiveOptions options, const std::string& command_line) {
              seen.bricks);
   holder.print();
   for (const std::string& line : label_lines(seen.labels)) fmt::print("label        {}\n", line);
+  if (const std::exception_ptr failure = milling.failure())
+    throw InputError("--device " + options.device.device, "has failed: " + reason_of(failure));
   if (seen.recording_failed) throw CLI::RuntimeError(EXIT_FAILURE);
 }
 

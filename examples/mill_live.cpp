@@ -39,7 +39,7 @@ int main() {
   hand.pull_to(pose_above(entry, setup.tool, -2.0));
   for (const char* name : {"point-shell", "surface-points"}) {
     setup.algorithm = osteomill::algorithm_named(name);
-    milling.change(setup);
+    if (!milling.change(setup)) return 1;
     milling.finish_preparing();
     milling.set_spindle(true);
     std::this_thread::sleep_for(std::chrono::seconds(1));
@@ -48,7 +48,7 @@ int main() {
                 count_triangles(milling, by_brick));
   }
   const double removed_mm3 = milling.state().record.removed_mm3;
-  milling.undo();
+  if (!milling.undo()) return 1;
   milling.finish_preparing();
   std::printf("one cut undone %.2f mm^3 removed, %zu triangles\n", milling.state().record.removed_mm3,
               count_triangles(milling, by_brick));

@@ -96,7 +96,7 @@ void draw_session(ViewState& view, LiveMilling& milling, bool by_pointer) {
     }
   }
   const bool free = !milling.preparing();
-  if (ui::button("Undo cut", free && milling.follower().cuts() > 0)) milling.undo();
+  if (ui::button("Undo cut", free && milling.follower().cuts() > 0)) view.undo_asked = true;
   ui::hint(
       "Puts back what was milled since the spindle was last switched on (up to 256 MB of cuts are kept)");
   ImGui::SameLine();
@@ -108,7 +108,7 @@ void draw_session(ViewState& view, LiveMilling& milling, bool by_pointer) {
 
 // Buttons for the densities that may bound bone, where there are several: only the user knows which does.
 // They stand beside the histogram, and below it where there is no room.
-void draw_boundaries(Simulation& simulation) {
+void draw_boundaries(ViewState& view, Simulation& simulation) {
   if (simulation.scan.boundaries.size() < 2) return;
   const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
   const ImGuiStyle& style = ImGui::GetStyle();
@@ -116,8 +116,7 @@ void draw_boundaries(Simulation& simulation) {
     const std::string label = fmt::format("{:.4g}", boundary.density);
     const float width = ImGui::CalcTextSize(label.c_str()).x + 2 * style.FramePadding.x;
     if (ImGui::GetItemRectMax().x + style.ItemSpacing.x + width <= right) ImGui::SameLine();
-    if (ui::button(label.c_str(), !simulation.milling.preparing()))
-      simulation.milling.change_isovalue(boundary.density);
+    if (ui::button(label.c_str(), !simulation.milling.preparing())) view.isovalue_asked = boundary.density;
     ui::hint(
         fmt::format("A boundary of the scan: {:.4g} below, {:.4g} above", boundary.below, boundary.above));
   }
@@ -135,7 +134,7 @@ void draw_isovalue(ViewState& view, Simulation& simulation) {
   const float share = (isovalue - histogram.min) / (histogram.max - histogram.min);
   const float x = place.x + std::clamp(share, 0.0f, 1.0f) * size.x;
   ImGui::GetWindowDrawList()->AddLine({x, place.y}, {x, place.y + size.y}, IM_COL32(255, 180, 60, 255), 2);
-  draw_boundaries(simulation);
+  draw_boundaries(view, simulation);
   ImGui::BeginDisabled(milling.preparing());
   const std::string format = "%.4g" + simulation.scan.unit;
   if (ui::slider("isovalue", &isovalue, histogram.min, histogram.max, format.c_str(),
@@ -145,10 +144,10 @@ void draw_isovalue(ViewState& view, Simulation& simulation) {
   }
   const bool moved = ImGui::IsItemActive();
   if (ImGui::IsItemDeactivatedAfterEdit() && view.isovalue)
-    milling.change_isovalue(static_cast<double>(*view.isovalue));
+    view.isovalue_asked = static_cast<double>(*view.isovalue);
   ui::hint("What is denser than this is bone. Drag, or hold Ctrl and click to type a number");
   ImGui::EndDisabled();
-  if (!moved && !milling.preparing()) view.isovalue.reset();
+  if (!moved && !milling.preparing() && !view.isovalue_asked) view.isovalue.reset();
   ImGui::TextWrapped("%s", isovalue_text(simulation).c_str());
   for (const std::string& warning : simulation.warnings) ui::warning(warning);
 }
@@ -232,7 +231,7 @@ void draw_controls(ViewState& view, Simulation& simulation, FilesPanel& files, c
       view.dialogues.complain(fault);
       view.wanted = simulation.milling.setup();
     } else {
-      simulation.milling.change(view.wanted);
+      view.dialogues.attempt([&] { view.wanted_is_new = !simulation.milling.change(view.wanted); });
     }
   }
   ImGui::PopItemWidth();

@@ -138,7 +138,7 @@ void take_keys(ViewState& view, LiveMilling& milling, bool by_pointer) {
   if (pressed(GLFW_KEY_P)) milling.set_paused(!milling.state().record.paused);
   if (pressed(GLFW_KEY_F1)) view.help = !view.help;
   if (pressed(GLFW_KEY_F11)) view.full_screen_asked = true;
-  if (io.KeyCtrl && pressed(GLFW_KEY_Z) && milling.follower().cuts() > 0) milling.undo();
+  if (io.KeyCtrl && pressed(GLFW_KEY_Z) && milling.follower().cuts() > 0) view.undo_asked = true;
 }
 
 // Before the bone that is seen at the pixel, if there is any, or else in the middle.

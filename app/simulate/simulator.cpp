@@ -37,6 +37,7 @@
 #include "osteomill/files/input_error.h"
 #include "osteomill/image/image.h"
 #include "osteomill/live/bone_sender.h"
+#include "osteomill/live/crash_stop.h"
 #include "osteomill/numbers/recent_rate.h"
 #include "osteomill/numbers/work_progress.h"
 #include "osteomill/sound/spindle_sound.h"
@@ -160,6 +161,7 @@ class Simulator {
   }
 
   void run() {
+    const CrashStop crash_stop;
     // Unsaved milling of an earlier run comes before the scan that was named.
     leftover_ = last_leftover_milling();
     if (leftover_) {
@@ -248,6 +250,7 @@ class Simulator {
     window_.begin_frame();
     const bool settled = simulation_ && to_draw_.empty() && !simulation_->milling.preparing() &&
                          !simulation_->milling.placing() && !view_.X_W_brought && !view_.wanted_is_new &&
+                         !view_.undo_asked && !view_.reset_confirmed && !view_.isovalue_asked &&
                          !files_.busy() && (!opening() || view_.dialogues.shown() != nullptr);
     if (script_ && (simulation_ || leftover_ || script_->at_once())) {
       script_->feed(seconds_since(last_picture_), settled, window_);
@@ -370,6 +373,7 @@ class Simulator {
     LiveMilling& milling = simulation_->milling;
     view_.X_W_target = milling.state().record.X_WD;
     view_.isovalue.reset();
+    forget_what_is_asked();
     view_.X_W_brought.reset();
     view_.holding_tool = view_.dragging_tool = view_.dragging_view = view_.pedal_down = false;
     view_.dragged_cut = -1;
@@ -400,13 +404,39 @@ class Simulator {
     take_scan();
   }
 
+  // Each waits until nothing else is being prepared.
+  void begin_what_is_asked() {
+    LiveMilling& milling = simulation_->milling;
+    const bool begun = view_.dialogues.attempt([&] {
+      if (view_.undo_asked) view_.undo_asked = !milling.undo();
+      if (view_.reset_confirmed) view_.reset_confirmed = !milling.reset();
+      if (view_.isovalue_asked && milling.change_isovalue(*view_.isovalue_asked))
+        view_.isovalue_asked.reset();
+    });
+    if (!begun) forget_what_is_asked();
+  }
+
+  void forget_what_is_asked() {
+    view_.undo_asked = view_.reset_confirmed = false;
+    view_.isovalue_asked.reset();
+  }
+
+  // A device that throws ends the milling, not the window.
+  void complain_of_device() {
+    const std::exception_ptr failure = simulation_->milling.failure();
+    if (failure == nullptr || failure == device_failure_) return;
+    device_failure_ = failure;
+    view_.dialogues.complain("The device has failed: " + reason_of(failure));
+  }
+
   void work() {
     const PixelSize size = window_.size();
     if (size.width < 1 || size.height < 1) return;
     open_another();
     if (std::exchange(view_.reset_asked, false)) {
-      ask_before("Resetting the bone", [this] { simulation_->milling.reset(); });
+      ask_before("Resetting the bone", [this] { view_.reset_confirmed = true; });
     }
+    begin_what_is_asked();
     const bool updated = view_.dialogues.attempt([&] {
       const bool prepared = simulation_->milling.preparing();
       simulation_->update();
@@ -414,6 +444,7 @@ class Simulator {
       if (prepared && !simulation_->milling.preparing()) free_tool(view_, *simulation_, size);
     });
     if (!updated) view_.wanted = simulation_->milling.setup();
+    complain_of_device();
     if (view_.message.empty()) view_.message = simulation_->autosave.take_complaint();
     take_input(view_, *simulation_, space_mouse_, size);
     take_surface();
@@ -529,6 +560,8 @@ class Simulator {
   std::unique_ptr<ConnectedDevice> hardware_;
   Window window_;
   std::optional<UiScript> script_;
+  // The failure that the user was told of.
+  std::exception_ptr device_failure_;
   Opening opening_;
   // Milled bone of an earlier run that is offered to the user.
   std::optional<LeftoverMilling> leftover_;

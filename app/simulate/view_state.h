@@ -55,6 +55,10 @@ struct ViewState {
   /// By how many steps text is to become larger; negative: smaller.
   int text_steps = 0;
   bool reset_asked = false;
+  /// What waits until nothing else is being prepared.
+  bool undo_asked = false;
+  bool reset_confirmed = false;
+  std::optional<double> isovalue_asked;
   bool full_screen_asked = false;
   bool picture_asked = false;
   DialogueQueue dialogues;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <exception>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -26,5 +27,16 @@ class InputError : public std::runtime_error {
   InputError(std::string_view subject, std::string_view reason)
       : std::runtime_error(in_one_line(std::string(subject) + ": " + std::string(reason))) {}
 };
+
+/// Returns what an exception says, in one line. `failure` is not null.
+inline std::string reason_of(const std::exception_ptr& failure) {
+  try {
+    std::rethrow_exception(failure);
+  } catch (const std::exception& error) {
+    return in_one_line(error.what());
+  } catch (...) {
+    return "an exception without words";
+  }
+}
 
 }  // namespace osteomill

@@ -1,17 +1,23 @@
+#include "osteomill/live/crash_stop.h"
+
 #include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <functional>
+#include <memory>
 #include <new>
 #include <span>
+#include <string>
 #include <thread>
 #include <vector>
 
 #include "tests/shapes.h"
 #include <gtest/gtest.h>
 #include <sys/mman.h>
+#include <sys/time.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -61,7 +67,20 @@ struct End {
   int signal;
   void (*main_thread)() = nullptr;
   void (*haptic_thread)() = nullptr;
+  bool replaces_its_session = false;
 };
+
+std::unique_ptr<LiveSession> live_on(const Volume& bone, Device& device) {
+  return std::make_unique<LiveSession>(
+      std::make_unique<MillingSession>(std::make_shared<Volume>(bone), BoneDensities{0, 1000},
+                                       MillingSetup{.algorithm = algorithm_named("point-shell")}),
+      device);
+}
+
+Volume flat_bone() {
+  return testing_support::shape_volume(testing_support::centred_cube(40, 0.25),
+                                       testing_support::plane(Vec3::Zero(), Vec3::UnitZ()));
+}
 
 void overflow_the_stack() {
   volatile char much[1 << 20];
@@ -71,14 +90,16 @@ void overflow_the_stack() {
 }
 
 [[noreturn]] void run_live(Sent* sent, const End& end) {
-  const Volume bone = testing_support::shape_volume(testing_support::centred_cube(40, 0.25),
-                                                    testing_support::plane(Vec3::Zero(), Vec3::UnitZ()));
+  const Volume bone = flat_bone();
+  const CrashStop crash_stop;
   SharedDevice device(sent, end.haptic_thread);
-  LiveSession live(
-      std::make_unique<MillingSession>(std::make_shared<Volume>(bone), BoneDensities{0, 1000},
-                                       MillingSetup{.algorithm = algorithm_named("point-shell")}),
-      device);
-  live.start();
+  std::unique_ptr<LiveSession> live = live_on(bone, device);
+  // As a program does that opens another bone: the new session is made while the old one is there.
+  if (end.replaces_its_session) {
+    live->start();
+    live = live_on(bone, device);
+  }
+  live->start();
   for (int n = 0; n < 2000 && sent->max_N < kPressed_N; ++n) std::this_thread::sleep_for(5ms);
   if (end.main_thread != nullptr) end.main_thread();
   // Longer than its turn to be ended may take on a busy machine.
@@ -167,6 +188,117 @@ TEST_F(CrashStopTest, WhileItIsStoppedTheWrenchIsZeroAndThenComesUpSlowly) {
     kill(child, SIGKILL);
     waitpid(child, &status, 0);
   }
+}
+
+TEST_F(CrashStopTest, ASessionThatTookThePlaceOfAnotherIsEndedAsAnyOther) {
+  const std::vector<End> ends{
+      {.signal = SIGTERM, .replaces_its_session = true},
+      {.signal = SIGSEGV, .main_thread = [] { raise(SIGSEGV); }, .replaces_its_session = true}};
+  expect_zero_after(ends);
+}
+
+struct sigaction action_of(int signal) {
+  struct sigaction action {};
+  sigaction(signal, nullptr, &action);
+  return action;
+}
+
+std::atomic<int> host_calls{0};
+void count_call(int) {
+  host_calls.fetch_add(1);
+}
+
+// A host's own handler, put back at the end.
+class HostHandler {
+ public:
+  explicit HostHandler(int signal) : signal_(signal), before_(action_of(signal)) {
+    struct sigaction action {};
+    action.sa_handler = &count_call;
+    action.sa_flags = SA_RESTART;
+    sigaction(signal, &action, nullptr);
+    host_calls = 0;
+  }
+  ~HostHandler() { sigaction(signal_, &before_, nullptr); }
+  HostHandler(const HostHandler&) = delete;
+  HostHandler& operator=(const HostHandler&) = delete;
+  bool is_in_force() const { return action_of(signal_).sa_handler == &count_call; }
+
+ private:
+  int signal_;
+  struct sigaction before_;
+};
+
+class HostTest : public ::testing::Test {
+ protected:
+  // Some ticks of a live session while `signals` come.
+  void run(const std::function<void()>& signals) {
+    const std::unique_ptr<LiveSession> live = live_on(bone_, device_);
+    live->start();
+    signals();
+    const auto ticks = live->timing().ticks;
+    for (int n = 0; n < 2000 && live->timing().ticks < ticks + 20; ++n) std::this_thread::sleep_for(5ms);
+    EXPECT_GE(live->timing().ticks, ticks + 20);
+    EXPECT_TRUE(live->running());
+  }
+  Volume bone_ = flat_bone();
+  Sent sent_{};
+  SharedDevice device_{&sent_, nullptr};
+};
+
+TEST_F(HostTest, ASessionAloneTakesNoSignal) {
+  run([] {
+    for (const int signal : {SIGTERM, SIGINT, SIGSEGV, SIGUSR1, SIGPROF, SIGTSTP, SIGPIPE}) {
+      const struct sigaction now = action_of(signal);
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+      EXPECT_TRUE(now.sa_handler == SIG_DFL || now.sa_handler == SIG_IGN) << strsignal(signal);
+#else
+      EXPECT_TRUE(signal == SIGSEGV || now.sa_handler == SIG_DFL || now.sa_handler == SIG_IGN);
+#endif
+    }
+  });
+}
+
+TEST_F(HostTest, ASignalThatTheHostHandlesIsTheHosts) {
+  for (const int signal : {SIGUSR1, SIGTSTP, SIGPIPE, SIGIO, SIGHUP, SIGTERM}) {
+    const HostHandler host(signal);
+    const CrashStop crash_stop;
+    run([signal] { raise(signal); });
+    EXPECT_EQ(host_calls, 1) << strsignal(signal);
+  }
+}
+
+TEST_F(HostTest, AProfilersTimerLeavesTheLoopRunning) {
+  const HostHandler host(SIGPROF);
+  const CrashStop crash_stop;
+  run([] {
+    const itimerval every_ms{{0, 1000}, {0, 1000}};
+    setitimer(ITIMER_PROF, &every_ms, nullptr);
+    // The timer counts time on a processor.
+    const auto start = std::chrono::steady_clock::now();
+    while (host_calls < 10 && std::chrono::steady_clock::now() - start < 20s) {
+    }
+    const itimerval never{};
+    setitimer(ITIMER_PROF, &never, nullptr);
+  });
+  EXPECT_GE(host_calls, 10);
+}
+
+TEST_F(HostTest, HandlersThatWereThereComeBackWithTheLastObject) {
+  const struct sigaction before = action_of(SIGTERM);
+  auto first = std::make_unique<CrashStop>();
+  auto second = std::make_unique<CrashStop>();
+  EXPECT_NE(action_of(SIGTERM).sa_sigaction, before.sa_sigaction);
+  first.reset();
+  EXPECT_NE(action_of(SIGTERM).sa_sigaction, before.sa_sigaction);
+  second.reset();
+  EXPECT_EQ(action_of(SIGTERM).sa_sigaction, before.sa_sigaction);
+}
+
+TEST_F(HostTest, AHandlerThatTheHostSetsLaterIsKept) {
+  auto crash_stop = std::make_unique<CrashStop>();
+  const HostHandler host(SIGUSR2);
+  crash_stop.reset();
+  EXPECT_TRUE(host.is_in_force());
 }
 
 }  // namespace

@@ -68,6 +68,11 @@ void LiveMilling::listen() {
   });
 }
 
+void LiveMilling::start() {
+  const std::lock_guard lock(no_tick_mutex_);
+  live_.start();
+}
+
 void LiveMilling::update() {
   if (preparing() && preparation_.wait_for(0s) == std::future_status::ready) take_over();
 }
@@ -82,31 +87,30 @@ void LiveMilling::set_spindle(bool on) {
   live_.set_spindle(on);
 }
 
-void LiveMilling::change(const MillingSetup& setup) {
-  prepare(setup, [this] {
+bool LiveMilling::change(const MillingSetup& setup) {
+  return prepare(setup, [this] {
     return BoneFollower::NextBone{live_.session().shared_volume(), live_.session().removed_mm3(), {}};
   });
 }
 
-void LiveMilling::change_isovalue(double isovalue) {
-  prepare(setup(), [this, isovalue, surroundings = densities().surroundings] {
+bool LiveMilling::change_isovalue(double isovalue) {
+  return prepare(setup(), [this, isovalue, surroundings = densities().surroundings] {
     return follower_->with_isovalue(isovalue, surroundings, live_.session().removed_mm3());
   });
 }
 
-void LiveMilling::undo() {
-  prepare(setup(), [this] { return follower_->without_last_cut(); });
+bool LiveMilling::undo() {
+  return prepare(setup(), [this] { return follower_->without_last_cut(); });
 }
 
-void LiveMilling::reset() {
-  prepare(setup(), [this] { return follower_->as_at_the_beginning(); });
+bool LiveMilling::reset() {
+  return prepare(setup(), [this] { return follower_->as_at_the_beginning(); });
 }
 
 // Another bone is the follower's copy, since that can be written while the bone is felt.
-void LiveMilling::prepare(const MillingSetup& setup, MakeBone make_bone) {
-  if (preparing()) return;
-  live_.hold_bone(true);
-  preparation_ = std::async(std::launch::async, [this, make_bone = std::move(make_bone), setup] {
+bool LiveMilling::prepare(const MillingSetup& setup, MakeBone make_bone) {
+  if (preparing()) return false;
+  const auto work = [this, make_bone = std::move(make_bone), setup] {
     catch_up();
     const BoneFollower::NextBone next = make_bone();
     const bool other_bone = next.bone != live_.session().shared_volume();
@@ -118,17 +122,25 @@ void LiveMilling::prepare(const MillingSetup& setup, MakeBone make_bone) {
       if (other_bone) follower_->give_up();
       throw;
     }
-  });
+  };
+  live_.hold_bone(true);
+  try {
+    preparation_ = std::async(std::launch::async, work);
+  } catch (...) {
+    live_.hold_bone(false);
+    throw;
+  }
+  return true;
 }
 
 void LiveMilling::catch_up() {
   while (!follower_->catch_up()) {
-    if (live_.running()) {
-      std::this_thread::sleep_for(1ms);
-    } else {
-      // No tick hands anything over any more.
-      follower_->bone_changed(live_.session().volume(), {});
+    {
+      const std::lock_guard lock(no_tick_mutex_);
+      // No tick hands anything over.
+      if (!live_.running()) follower_->bone_changed(live_.session().volume(), {});
     }
+    std::this_thread::sleep_for(1ms);
   }
 }
 
@@ -177,7 +189,7 @@ std::string LiveMilling::start_recording(const std::filesystem::path& path, RunD
   recorded_from_ = untouched ? live_.session_number() : live_.session_number() + 1;
   if (untouched) tell_recorder({});
   listen();
-  if (!untouched) change(setup());
+  [[maybe_unused]] const bool begun = untouched || change(setup());
   return recorder_->kept();
 }
 

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <exception>
 #include <filesystem>
 #include <functional>
 #include <future>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -32,9 +34,10 @@ PreparedMilling prepare_milling(std::shared_ptr<Volume> bone, const MillingSetup
                                 const SessionStart& before = {});
 
 /// A bone that is milled in real time with a device, and all that can be done to it meanwhile. It runs the
-/// haptic thread; all of its functions are for one other thread. One at a time. Whatever takes long (another
-/// algorithm or tool, undoing a cut) is prepared on a thread of its own: the tool goes on being felt, but
-/// nothing is milled until `update` has put the result in place.
+/// haptic thread; all of its functions are for one other thread. Whatever takes long (another algorithm or
+/// tool, undoing a cut) is prepared on a thread of its own: the tool goes on being felt, but nothing is
+/// milled until `update` has put the result in place. Wherever a thread is needed and the system gives none,
+/// std::system_error is thrown and all is as before the call.
 class LiveMilling {
  public:
   /// `device` outlives this object; its handle is where the tool may begin. Does not start yet.
@@ -42,9 +45,12 @@ class LiveMilling {
   LiveMilling(std::shared_ptr<Volume> bone, const MillingSetup& setup, Device& device)
       : LiveMilling(prepare_milling(std::move(bone), setup), device) {}
 
-  void start() { live_.start(); }
+  /// As LiveSession::start, failures included.
+  void start();
   void stop() { live_.stop(); }
   bool running() const { return live_.running(); }
+  /// What the device ended the milling with (LiveSession::failure).
+  std::exception_ptr failure() const { return live_.failure(); }
 
   /// To be called often, as once a picture: puts in place what has been prepared. Throws what a preparation
   /// failed with; milling goes on as it was.
@@ -60,12 +66,13 @@ class LiveMilling {
   /// The tool and its device to a pose free of bone (LiveSession::place).
   void place(const Pose& X_WD) { live_.place(X_WD); }
   bool placing() const { return live_.placing(); }
-  /// Another algorithm, tool or setting. This and the following do nothing while something is being prepared.
-  void change(const MillingSetup& setup);
-  void change_isovalue(double isovalue);
+  /// Begins to prepare another algorithm, tool or setting. False, here and in the following, where something
+  /// is being prepared already: then nothing is done, and whoever wants it asks again once that is in place.
+  [[nodiscard]] bool change(const MillingSetup& setup);
+  [[nodiscard]] bool change_isovalue(double isovalue);
   /// Takes the last cut back; or all of them.
-  void undo();
-  void reset();
+  [[nodiscard]] bool undo();
+  [[nodiscard]] bool reset();
 
   /// How much of each label's bone is gone, mm^3 of reference density, by the labels' places from 1; what was
   /// taken back does not count. Empty for a bone without labels.
@@ -115,7 +122,7 @@ class LiveMilling {
   using MakeBone = std::function<BoneFollower::NextBone()>;
 
   void listen();
-  void prepare(const MillingSetup& setup, MakeBone make_bone);
+  bool prepare(const MillingSetup& setup, MakeBone make_bone);
   void catch_up();
   void take_over();
   void set_as_now(RunDescription& run) const;
@@ -133,6 +140,9 @@ class LiveMilling {
   // The first session that is recorded.
   std::uint32_t recorded_from_ = 0;
   LiveSession live_;
+  // Of starting, and of handing over changes where no haptic thread does: they come from one thread at a
+  // time.
+  std::mutex no_tick_mutex_;
   // After `live_`, so that it is waited for while the bone is still milled.
   std::future<Prepared> preparation_;
   bool spindle_ = false;

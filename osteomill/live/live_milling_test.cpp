@@ -5,10 +5,12 @@
 #include <limits>
 #include <memory>
 #include <stdexcept>
+#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
 
+#include "tests/no_more_threads.h"
 #include "tests/shapes.h"
 #include "tests/support/mesh_checks.h"
 #include "tests/support/recording_samples.h"
@@ -65,7 +67,7 @@ class LiveMillingTest : public ::testing::Test {
   // Returns when the follower has all that was milled, however far it was behind: preparing anything waits
   // for that.
   void settle() {
-    milling_.change(milling_.setup());
+    EXPECT_TRUE(milling_.change(milling_.setup()));
     milling_.finish_preparing();
   }
 
@@ -98,6 +100,32 @@ class LiveMillingTest : public ::testing::Test {
   std::vector<BrickMesh> surface_ = std::vector<BrickMesh>(milling_.follower().layout().count());
 };
 
+// Catching up hands changes over while no tick does; a start in that moment must not make that two threads.
+TEST_F(LiveMillingTest, StartedWhileACutIsTakenBackChangesComeFromOneThread) {
+  mill(0.3);
+  for (int n = 0; n < 5; ++n) {
+    milling_.stop();
+    EXPECT_TRUE(milling_.undo());
+    milling_.start();
+    milling_.finish_preparing();
+    mill(0.02);
+  }
+  EXPECT_TRUE(surface_is_the_bones());
+}
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+TEST_F(LiveMillingTest, AnUndoThatGetsNoThreadChangesNothing) {
+  mill(0.3);
+  {
+    const testing_support::NoMoreThreads none;
+    EXPECT_THROW((void)milling_.undo(), std::system_error);
+  }
+  EXPECT_FALSE(milling_.preparing());
+  EXPECT_EQ(milling_.follower().cuts(), 1u);
+  mill(0.1);
+}
+#endif
+
 TEST_F(LiveMillingTest, TakesCutsBackOneByOneAndMillsOn) {
   mill(0.3);
   const CopyOnWriteFloats after_first = bone();
@@ -105,7 +133,7 @@ TEST_F(LiveMillingTest, TakesCutsBackOneByOneAndMillsOn) {
   mill(0.3);
   EXPECT_EQ(milling_.follower().cuts(), 2u);
   EXPECT_NE(bone(), after_first);
-  milling_.undo();
+  EXPECT_TRUE(milling_.undo());
   milling_.finish_preparing();
   EXPECT_EQ(bone(), after_first);
   EXPECT_EQ(milling_.state().record.removed_mm3, removed_mm3);
@@ -119,7 +147,7 @@ TEST_F(LiveMillingTest, TakesCutsBackOneByOneAndMillsOn) {
   mill(0.3);
   EXPECT_EQ(milling_.follower().cuts(), 2u);
   EXPECT_TRUE(surface_is_the_bones());
-  milling_.reset();
+  EXPECT_TRUE(milling_.reset());
   milling_.finish_preparing();
   EXPECT_EQ(bone(), untouched_);
   EXPECT_EQ(milling_.state().record.removed_mm3, 0);
@@ -132,7 +160,7 @@ TEST_F(LiveMillingTest, TakesCutsBackOneByOneAndMillsOn) {
 TEST_F(LiveMillingTest, TheBoneThatIsFeltIsTheBoneThatIsSeen) {
   for (int n = 0; n < 3; ++n) {
     mill(0.2);
-    milling_.undo();
+    EXPECT_TRUE(milling_.undo());
     milling_.finish_preparing();
     mill(0.2);
   }
@@ -165,9 +193,9 @@ TEST_F(LiveMillingTest, AnotherAlgorithmAndToolTakeOver) {
   MillingSetup other = setup_;
   other.algorithm = algorithm_named("surface-points");
   other.tool.burr_radius_mm = 1.2;
-  milling_.change(other);
+  EXPECT_TRUE(milling_.change(other));
   EXPECT_TRUE(milling_.preparing());
-  milling_.undo();  // nothing while that is prepared
+  EXPECT_FALSE(milling_.undo());  // nothing while that is prepared
   milling_.finish_preparing();
   EXPECT_FALSE(milling_.preparing());
   EXPECT_EQ(milling_.setup().algorithm.id, "surface-points");
@@ -182,10 +210,10 @@ TEST_F(LiveMillingTest, WhatCannotBePreparedLeavesAllAsItWas) {
   const CopyOnWriteFloats milled = bone();
   MillingSetup wrong = setup_;
   wrong.tool.burr_radius_mm = -1;
-  milling_.change(wrong);
+  EXPECT_TRUE(milling_.change(wrong));
   EXPECT_THROW(milling_.finish_preparing(), std::invalid_argument);
   EXPECT_EQ(milling_.setup().tool.burr_radius_mm, setup_.tool.burr_radius_mm);
-  milling_.change_isovalue(std::numeric_limits<double>::quiet_NaN());
+  EXPECT_TRUE(milling_.change_isovalue(std::numeric_limits<double>::quiet_NaN()));
   EXPECT_THROW(milling_.finish_preparing(), std::invalid_argument);
   EXPECT_EQ(milling_.isovalue(), kIsovalue);
   EXPECT_EQ(bone(), milled);
@@ -197,15 +225,15 @@ TEST_F(LiveMillingTest, WhatWasMilledIsTheSameToTheBitAfterOtherIsovalues) {
   mill(0.3);
   const CopyOnWriteFloats milled = bone();
   for (const double isovalue : {990.0, 300.0, kIsovalue}) {
-    milling_.change_isovalue(isovalue);
+    EXPECT_TRUE(milling_.change_isovalue(isovalue));
     milling_.finish_preparing();
     EXPECT_EQ(milling_.isovalue(), isovalue);
     EXPECT_EQ(bone(), milled);
     EXPECT_TRUE(surface_is_the_bones());
   }
-  milling_.change_isovalue(300);
+  EXPECT_TRUE(milling_.change_isovalue(300));
   milling_.finish_preparing();
-  milling_.undo();
+  EXPECT_TRUE(milling_.undo());
   milling_.finish_preparing();
   EXPECT_EQ(bone(), untouched_);
   EXPECT_FALSE(milling_.follower().touched());
@@ -239,7 +267,7 @@ TEST_F(LiveMillingTest, GoesOnWithWhatWasMilledBefore) {
   for (int n = 0; n < 2000 && again.timing().ticks == 0; ++n) std::this_thread::sleep_for(5ms);
   EXPECT_EQ(again.state().record.removed_mm3, removed_mm3);
   EXPECT_EQ(again.follower().cuts(), 1u);
-  again.undo();
+  EXPECT_TRUE(again.undo());
   again.finish_preparing();
   EXPECT_EQ(bone_again(), untouched_);
 }
@@ -250,7 +278,7 @@ TEST_F(LiveMillingTest, TheToolIsPlacedWithoutAStepInTheWrench) {
   const Pose X_W_free = pose_above(entry_, setup_.tool, 5.0);
   for (const AlgorithmDescription& algorithm : all_algorithms()) {
     setup_.algorithm = algorithm;
-    milling_.change(setup_);
+    EXPECT_TRUE(milling_.change(setup_));
     milling_.finish_preparing();
     for (const double above_mm : {-1.0, -4.0, 500.0}) {
       hand_.pull_to(pose_above(entry_, setup_.tool, above_mm));
@@ -301,21 +329,21 @@ TEST_F(LiveMillingTest, ARecordingGoesOnOverWhateverIsDone) {
   setup_.vibration.on = setup_.cutting_reaction = true;
   setup_.guard.passivity_controller = true;
   setup_.guard.limits.force_N = 2;
-  milling_.change(setup_);
+  EXPECT_TRUE(milling_.change(setup_));
   milling_.finish_preparing();
   mill(0.1);
-  milling_.undo();
+  EXPECT_TRUE(milling_.undo());
   milling_.finish_preparing();
   milling_.set_paused(true);
   std::this_thread::sleep_for(20ms);
   milling_.set_paused(false);
   milling_.place(pose_above(entry_, setup_.tool, 5.0));
   while (milling_.placing()) std::this_thread::sleep_for(1ms);
-  milling_.change_isovalue(300);
+  EXPECT_TRUE(milling_.change_isovalue(300));
   milling_.finish_preparing();
   hand_.pull_to(pose_above(entry_, setup_.tool, -1.0));
   mill(0.1);
-  milling_.reset();
+  EXPECT_TRUE(milling_.reset());
   milling_.finish_preparing();
   mill(0.1);
   ASSERT_TRUE(milling_.recording());
@@ -346,7 +374,7 @@ TEST_F(LiveMillingTest, ARecordingGoesOnOverWhateverIsDone) {
 TEST_F(LiveMillingTest, ARecordingBegunWhileAnotherAlgorithmIsPreparedIsOfThatOne) {
   const testing_support::TestFolder folder;
   setup_.algorithm = algorithm_named("surface-points");
-  milling_.change(setup_);
+  EXPECT_TRUE(milling_.change(setup_));
   milling_.start_recording(folder / "live.h5", milling_.describe("ball", ""));
   milling_.finish_preparing();
   mill(0.1);
@@ -374,7 +402,7 @@ TEST_F(LiveMillingTest, ARecordingFromTheFirstTickOnNeedsNoneBefore) {
 TEST_F(LiveMillingTest, WorksOnAfterItWasStopped) {
   mill(0.2);
   milling_.stop();
-  milling_.undo();
+  EXPECT_TRUE(milling_.undo());
   milling_.finish_preparing();
   EXPECT_EQ(bone(), untouched_);
   milling_.start();

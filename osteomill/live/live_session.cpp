@@ -18,19 +18,25 @@ constexpr double kMaxTick_s = 0.02;
 }  // namespace
 
 LiveSession::LiveSession(std::unique_ptr<MillingSession> session, Device& device)
-    : device_(device), crash_stop_(device), session_(std::move(session)) {}
+    : device_(device), driven_(device), session_(std::move(session)) {}
 
 void LiveSession::start() {
   if (running()) return;
   stop();
-  running_.store(true, std::memory_order_release);
+  failure_ = nullptr;
   std::atomic<bool> ready{false};
-  thread_ = std::jthread([this, &ready](const std::stop_token& stop) {
-    CrashStop::give_this_thread_a_stack();
-    refused_real_time_ = request_real_time();
-    ready.store(true, std::memory_order_release);
-    run(stop);
-  });
+  running_.store(true, std::memory_order_release);
+  try {
+    thread_ = std::jthread([this, &ready](const std::stop_token& stop) {
+      CrashStop::give_this_thread_a_stack();
+      refused_real_time_ = request_real_time();
+      ready.store(true, std::memory_order_release);
+      run(stop);
+    });
+  } catch (...) {
+    running_.store(false, std::memory_order_release);
+    throw;
+  }
   while (!ready.load(std::memory_order_acquire)) std::this_thread::sleep_for(100us);
 }
 
@@ -99,15 +105,17 @@ void LiveSession::listen(TickListener listener) {
 }
 
 void LiveSession::run(const std::stop_token& stop) noexcept {
+  driven_.started();
   try {
     tick_until(stop);
   } catch (...) {
-    // A device that throws breaks its contract; the session is then not running.
+    failure_ = std::current_exception();
   }
   try {
     device_.write_wrench(Wrench{});
-    crash_stop_.stopped();
+    driven_.stopped();
   } catch (...) {
+    if (!failure_) failure_ = std::current_exception();
   }
   running_.store(false, std::memory_order_release);
 }
@@ -116,7 +124,7 @@ void LiveSession::tick_until(const std::stop_token& stop) {
   constexpr double kTick_s = 1e-3;
   constexpr Nanoseconds kTick_ns = 1'000'000;
   NextDeadline next{monotonic_now_ns() + kTick_ns, 1};
-  while (!stop.stop_requested() && !crash_stop_.asked()) {
+  while (!stop.stop_requested() && !driven_.end_asked()) {
     TickTimes times{next.deadline_ns, 0, 0, next.periods};
     times.woke_ns = wait_until(next.deadline_ns);
     take_command();

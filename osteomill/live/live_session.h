@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <exception>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -34,12 +35,15 @@ struct LiveState {
 ///
 /// One other thread commands and reads the state (the window's). Commands take effect between two ticks and
 /// return when they have, a tick or two later. On stopping, however it comes about, the device is sent a
-/// wrench of zero; so it is when the program crashes (crash_stop.h), hence one live session at a time.
+/// wrench of zero; so it is when the process ends by a signal, if the program has asked for that
+/// (CrashStop).
 class LiveSession {
  public:
   /// `device` outlives this object. Does not start yet.
   LiveSession(std::unique_ptr<MillingSession> session, Device& device);
 
+  /// Returns when the haptic thread runs; nothing happens where it does already. Throws std::system_error
+  /// where the system gives no thread: the session is then not running, and can be started again.
   void start();
   /// Returns when the last tick is over and zero has been sent. Can be started again.
   void stop();
@@ -70,6 +74,9 @@ class LiveSession {
   /// In one line, what real-time scheduling the system refused; empty where nothing. Valid once started.
   const std::string& refused_real_time() const { return refused_real_time_; }
   bool running() const { return running_.load(std::memory_order_acquire); }
+  /// What ended the session by itself, as the device threw it; null while it runs, and where `stop` or a
+  /// signal ended it. For the commanding thread.
+  std::exception_ptr failure() const { return running() ? nullptr : failure_; }
 
   /// The session now in use, and how many were replaced before it. Its volume's densities only while held, or
   /// while not running.
@@ -85,9 +92,10 @@ class LiveSession {
   TickRecord tick(double time_s, double dt_s);
 
   Device& device_;
-  CrashStop crash_stop_;
+  DrivenDevice driven_;
   std::atomic<bool> running_{false};
   std::string refused_real_time_;
+  std::exception_ptr failure_;
 
   // Used by the haptic thread alone while it runs.
   std::unique_ptr<MillingSession> session_;

@@ -4,12 +4,15 @@
 #include <chrono>
 #include <limits>
 #include <stdexcept>
+#include <system_error>
 #include <thread>
 
+#include "tests/no_more_threads.h"
 #include "tests/own_memory.h"
 #include "tests/shapes.h"
 #include <gtest/gtest.h>
 
+#include "osteomill/files/input_error.h"
 #include "osteomill/haptics/algorithms.h"
 
 namespace osteomill {
@@ -219,7 +222,22 @@ TEST_F(LiveSessionTest, ADeviceThatThrowsEndsItAtZeroAndCommandsGoOn) {
   live_.set_spindle(true);
   EXPECT_EQ(device_.sent.force_N, Vec3::Zero());
   EXPECT_GT(device_.max_force_N, 0);
+  ASSERT_NE(live_.failure(), nullptr);
+  EXPECT_EQ(reason_of(live_.failure()), "the cable came off");
 }
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+TEST_F(LiveSessionTest, AStartThatFailsLeavesASessionThatCanBeStarted) {
+  {
+    const testing_support::NoMoreThreads none;
+    EXPECT_THROW(live_.start(), std::system_error);
+  }
+  EXPECT_FALSE(live_.running());
+  live_.set_spindle(true);
+  live_.start();
+  EXPECT_TRUE(comes_true([&] { return live_.timing().ticks > 10; }));
+}
+#endif
 
 }  // namespace
 }  // namespace osteomill

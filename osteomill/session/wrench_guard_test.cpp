@@ -157,11 +157,11 @@ class GuardedSession : public ::testing::TestWithParam<std::string> {
  protected:
   GuardedSession() : session_(make(GetParam())) { put(3); }
 
-  std::unique_ptr<MillingSession> make(const std::string& algorithm, Mode mode = Mode::steady) {
+  std::unique_ptr<MillingSession> make(const std::string& algorithm) {
     return std::make_unique<MillingSession>(
         std::make_shared<Volume>(testing_support::shape_volume(
             testing_support::centred_cube(60, 0.25), testing_support::plane(Vec3::Zero(), Vec3::UnitZ()))),
-        BoneDensities{0, 1000}, MillingSetup{.algorithm = algorithm_named(algorithm), .haptics = {mode}});
+        BoneDensities{0, 1000}, MillingSetup{.algorithm = algorithm_named(algorithm)});
   }
   void put(double height_mm) { device_.put({{0, 0, height_mm}, Quat::Identity()}); }
   void tick(int count) {
@@ -197,20 +197,18 @@ INSTANTIATE_TEST_SUITE_P(EveryAlgorithm, GuardedSession, ::testing::ValuesIn(alg
                            return name;
                          });
 
-// From free space, faster than a hand moves and as fast as the guard takes for a jump, in both modes.
+// From free space, faster than a hand moves and as fast as the guard takes for a jump.
 TEST_P(GuardedSession, AsItIsNoTickBringsMoreThanAHandMayFeel) {
   double felt_N = 0;
   for (const double mm_a_tick : {0.9, 4.9, 5.1}) {
-    for (const Mode mode : {Mode::paper, Mode::steady}) {
-      session_ = make(GetParam(), mode);
-      sent_ = {};
-      for (double here_mm = 20; here_mm > -3; here_mm -= mm_a_tick) {
-        put(here_mm);
-        tick(1);
-      }
-      tick(200);
-      felt_N = std::max(felt_N, sent_.force_N.norm());
+    session_ = make(GetParam());
+    sent_ = {};
+    for (double here_mm = 20; here_mm > -3; here_mm -= mm_a_tick) {
+      put(here_mm);
+      tick(1);
     }
+    tick(200);
+    felt_N = std::max(felt_N, sent_.force_N.norm());
   }
   EXPECT_GT(felt_N, 4);
 }
