@@ -84,10 +84,17 @@ std::vector<fs::path> files_in(const fs::path& folder) {
   return files;
 }
 
+void require_not_input(const fs::path& path) {
+  if (is_input(path)) throw InputError(path.string(), "is what is read; name another file to write");
+}
+
 void remove_stale(const fs::path& folder, const std::function<bool(const std::string&)>& stale) {
   std::vector<fs::path> found;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
-    if (stale(entry.path().filename().string())) found.push_back(entry.path());
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    if (!stale(entry.path().filename().string())) continue;
+    require_not_input(entry.path());
+    found.push_back(entry.path());
+  }
   for (const fs::path& path : found) {
     std::error_code error;
     fs::remove_all(path, error);
@@ -125,7 +132,7 @@ fs::path own_folder(const char* variable, const char* in_home) {
 fs::path output_path(const fs::path& path) {
   constexpr int kMostLinks = 40;
   std::error_code error;
-  if (is_input(path)) throw InputError(path.string(), "is what is read; name another file to write");
+  require_not_input(path);
   if (fs::is_directory(path, error)) throw InputError(path.string(), "cannot be written: it is a folder");
   // What the system itself calls a link to a pipe (/dev/stdout) has no other name.
   if (is_device_or_pipe(path)) return path;
