@@ -21,10 +21,10 @@
 #include "osteomill/experiment/match_stiffness.h"
 #include "osteomill/experiment/measure_passivity.h"
 #include "osteomill/experiment/paper.h"
-#include "osteomill/experiment/parallel.h"
 #include "osteomill/experiment/run_trials.h"
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/files/file_lock.h"
+#include "osteomill/files/machine.h"
 #include "osteomill/numbers/parse_number.h"
 #include "osteomill/recording/recording.h"
 #include "osteomill/volume/density_grid.h"
@@ -43,7 +43,7 @@ struct CompareOptions {
   TrialOptions trial;
   std::vector<AlgorithmDescription> algorithms = all_algorithms();
   int seeds = 1;
-  int threads = static_cast<int>(core_count());
+  int threads = static_cast<int>(allowed_threads());
   bool no_stability = false;
   bool match_stiffness = false;
   /// What every algorithm is to be felt as on a flat wall; 0 for what the softest is felt as.
@@ -196,7 +196,9 @@ void add_compare_command(CLI::App& program, const std::string& command_line) {
   command->add_flag("--no-stability", options->no_stability,
                     "Leave out how stiff each algorithm can be against a flat wall");
   add_count(*command, "--threads", options->threads, kMaxThreads,
-            "How many trials after the first are run side by side");
+            "How many trials after the first are run side by side; else one for each processor that the "
+            "program may "
+            "use (taskset, cgroup v2)");
   add_match_stiffness(*command, *options);
   add_trial_options(*command, options->trial);
   add_quiet_option(*command);

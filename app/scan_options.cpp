@@ -54,7 +54,8 @@ void add_scan_source(CLI::App& command, ScanOptions& options) {
           [&bytes = options.read.max_memory_bytes](double gigabytes) {
             bytes = static_cast<std::uint64_t>(gigabytes * 1e9);
           },
-          "Refuse a scan that takes more, with all that is made of it or unpacked; else what the machine has")
+          "Refuse a scan that takes more, with all that is made of it or unpacked; else what the machine "
+          "has or the program may take of it (cgroup v2)")
       ->check(CLI::Range(1e-3, 1e6))
       ->type_name("GB");
 }

@@ -15,12 +15,12 @@
 #include <fmt/format.h>
 #include <malloc.h>
 
-#include "osteomill/experiment/parallel.h"
 #include "osteomill/experiment/study_report.h"
 #include "osteomill/experiment/study_slices.h"
 #include "osteomill/files/atomic_file.h"
 #include "osteomill/files/file_lock.h"
 #include "osteomill/files/input_error.h"
+#include "osteomill/files/machine.h"
 
 namespace osteomill::app {
 
@@ -39,7 +39,7 @@ struct StudyOptions {
   std::string on;
   std::size_t slices = 0;
   std::optional<std::size_t> slice;
-  int threads = static_cast<int>(core_count());
+  int threads = static_cast<int>(allowed_threads());
   bool list = false, estimate = false, status = false, resume = false, report = false;
 };
 
@@ -87,7 +87,7 @@ void check_every_trial(StudyTrials& study) {
 std::vector<double> time_three_trials(StudyTrials& study) {
   const std::size_t count = study.design().trial_count();
   std::vector<double> taken_s;
-  for (const std::size_t sixth : {1, 3, 5}) {
+  for (const std::size_t sixth : {1u, 3u, 5u}) {
     const std::vector<TrialPlan> trial = study.make(count * sixth / 6, 1);
     taken_s.push_back(try_trial(study.design().test, trial.front()).cpu_s);
   }
@@ -278,7 +278,10 @@ void add_study_command(CLI::App& program) {
       ->add_option("--slice", options->slice, "Of a folder: run this one alone, as a task of a cluster does")
       ->check(whole_number(0, kMaxSlices))
       ->type_name("NUMBER");
-  add_count(*command, "--threads", options->threads, kMaxThreads, "How many trials are run side by side");
+  add_count(
+      *command, "--threads", options->threads, kMaxThreads,
+      "How many trials are run side by side; else one for each processor that the program may use (taskset, "
+      "cgroup v2)");
   command->option_defaults()->group("Options");
   add_quiet_option(*command);
   command->callback([=] { run_study(*options); });

@@ -4,12 +4,13 @@
 #include <functional>
 
 #include "osteomill/experiment/parallel.h"
+#include "osteomill/files/machine.h"
 
 namespace osteomill::verification {
 
 /// Calls `job(0)` to `job(count - 1)`, as many at a time as there are cores. Throws what the first job threw.
 inline void in_parallel(std::size_t count, const std::function<void(std::size_t)>& job) {
-  run_in_parallel(count, core_count(), job, [](std::size_t) {});
+  run_in_parallel(count, allowed_threads(), job, [](std::size_t) {});
 }
 
 }  // namespace osteomill::verification

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <functional>
-#include <thread>
 
 #include "verification/sections.h"
 #include <fmt/core.h>
@@ -9,6 +8,7 @@
 #include "osteomill/experiment/paper.h"
 #include "osteomill/experiment/run_trials.h"
 #include "osteomill/experiment/study_findings.h"
+#include "osteomill/files/machine.h"
 #include "osteomill/operator/milling_entry.h"
 #include "osteomill/volume/builtin_tooth.h"
 
@@ -45,7 +45,7 @@ std::vector<MeasuredRun> rows_on(const Volume& bone, Hands hands, double phase_s
       for (const TrialPlan& grip : trials_in_other_grips(in_hand)) trials.push_back(grip);
     }
   }
-  return run_study_trials(trials, std::thread::hardware_concurrency(), {});
+  return run_study_trials(trials, allowed_threads(), {});
 }
 
 const std::vector<std::size_t> kAll{1, 2, 3};

@@ -38,6 +38,6 @@ struct LabelsRead {
 /// million, more than LabelMap::kMaxLabels), it labels nothing, or nothing of the scan; and where a no-go
 /// label is not in it, or where its voxels take more memory than allowed.
 LabelsRead read_labels(const LabelFiles& files, const GridGeometry& scan,
-                       std::uint64_t max_memory_bytes = memory_of_machine());
+                       std::uint64_t max_memory_bytes = allowed_memory_bytes());
 
 }  // namespace osteomill

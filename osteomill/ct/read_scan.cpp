@@ -9,7 +9,6 @@
 
 #include <fmt/format.h>
 #include <minizip/unzip.h>
-#include <unistd.h>
 
 #include "osteomill/ct/dicom_file.h"
 #include "osteomill/ct/volume_file.h"
@@ -176,11 +175,6 @@ Scan read_any(const fs::path& path, const ReadOptions& options) {
 }
 
 }  // namespace
-
-std::uint64_t memory_of_machine() {
-  return static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) *
-         static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
-}
 
 Scan read_scan(const fs::path& path, const ReadOptions& options) {
   try {

@@ -5,12 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "osteomill/files/machine.h"
 #include "osteomill/volume/density_grid.h"
 
 namespace osteomill {
-
-/// All the memory that there is.
-std::uint64_t memory_of_machine();
 
 /// A scan as read.
 struct Scan {
@@ -35,8 +33,9 @@ struct ReadOptions {
   /// Which DICOM series where there are several: its number (from 1), its UID or the beginning of that.
   /// Empty: the largest CT, with a warning.
   std::string series;
-  /// What the densities may take, and what is unpacked of an archive. As it is, the machine's memory.
-  std::uint64_t max_memory_bytes = memory_of_machine();
+  /// What the densities may take, and what is unpacked of an archive. As it is, what the program
+  /// may take.
+  std::uint64_t max_memory_bytes = allowed_memory_bytes();
 };
 
 /// Reads a DICOM series (a folder and the folders in it, files in any order; a DICOMDIR; one of its files,

@@ -11,10 +11,6 @@
 
 namespace osteomill {
 
-std::size_t core_count() {
-  return std::max(1u, std::thread::hardware_concurrency());
-}
-
 void run_in_parallel(std::size_t count, std::size_t threads, const std::function<void(std::size_t)>& task,
                      const std::function<void(std::size_t)>& done) {
   std::mutex mutex;

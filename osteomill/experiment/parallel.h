@@ -5,9 +5,6 @@
 
 namespace osteomill {
 
-/// How many threads make sense on this machine: one a core.
-std::size_t core_count();
-
 /// Calls `task(n)` for each n below `count` on up to `threads` threads at once, in any order, and `done` with
 /// how many are finished, one call at a time. Tasks must not share anything that they change. Throws what the
 /// first task threw that failed, after all that had begun are over; no others are begun then.
