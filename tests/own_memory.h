@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <cstdio>
 #include <fstream>
 #include <string>
 
@@ -14,6 +16,21 @@ inline double own_memory_MiB() {
     if (word == "RssAnon:" && in >> kiB) return kiB / 1024;
   }
   return 0;
+}
+
+/// How much of the mapping that holds this address the process has pages of its own for, in MiB: of a private
+/// mapping of a file what was written since; -1 where the system does not say.
+inline double copied_MiB(const void* address) {
+  std::ifstream in("/proc/self/smaps");
+  const auto place = reinterpret_cast<std::uintptr_t>(address);
+  bool here = false;
+  for (std::string line; std::getline(in, line);) {
+    std::uintptr_t first = 0, end = 0;
+    double kiB = 0;
+    if (std::sscanf(line.c_str(), "%zx-%zx ", &first, &end) == 2) here = first <= place && place < end;
+    if (here && std::sscanf(line.c_str(), "Anonymous: %lf kB", &kiB) == 1) return kiB / 1024;
+  }
+  return -1;
 }
 
 }  // namespace osteomill::testing_support

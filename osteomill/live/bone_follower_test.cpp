@@ -294,8 +294,13 @@ TEST(BoneFollower, FollowsTheIsovalueWhileMilling) {
 TEST(BoneFollower, StopsInTheMiddleOfItsWork) {
   const auto bone = std::make_shared<Volume>(ball_of_bone());
   for (int n = 0; n < 5; ++n) {
-    BoneFollower live(bone);
-    live.bone_changed(*bone, {bone->geometry().all_voxels()});
+    {
+      BoneFollower live(bone);
+      live.bone_changed(*bone, {bone->geometry().all_voxels()});
+      EXPECT_FALSE(live.catch_up()) << "there was nothing left to do";
+    }
+    EXPECT_EQ(bone.use_count(), 1) << "something goes on with the bone";
+    EXPECT_EQ(bone->change_hash(), 0u);
   }
 }
 

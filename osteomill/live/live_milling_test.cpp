@@ -14,6 +14,7 @@
 #include "tests/shapes.h"
 #include "tests/support/mesh_checks.h"
 #include "tests/support/recording_samples.h"
+#include "tests/wait.h"
 #include <gtest/gtest.h>
 
 #include "osteomill/files/input_error.h"
@@ -27,6 +28,7 @@ namespace osteomill {
 namespace {
 
 using namespace std::chrono_literals;
+using testing_support::comes_true;
 using testing_support::mesh_of;
 using testing_support::mesh_surface;
 
@@ -292,7 +294,7 @@ TEST_F(LiveMillingTest, TheToolIsPlacedWithoutAStepInTheWrench) {
       // Asked for before, the burr may mill until this thread has asked for its place.
       milling_.place(X_W_free);
       milling_.set_spindle(true);
-      while (milling_.placing()) std::this_thread::sleep_for(1ms);
+      ASSERT_TRUE(comes_true([&] { return !milling_.placing(); })) << "the tool was not placed";
       milling_.set_spindle(false);
       EXPECT_LT((milling_.state().record.X_WD.position_mm - X_W_free.position_mm).norm(), 0.1);
       std::this_thread::sleep_for(20ms);
@@ -338,7 +340,7 @@ TEST_F(LiveMillingTest, ARecordingGoesOnOverWhateverIsDone) {
   std::this_thread::sleep_for(20ms);
   milling_.set_paused(false);
   milling_.place(pose_above(entry_, setup_.tool, 5.0));
-  while (milling_.placing()) std::this_thread::sleep_for(1ms);
+  ASSERT_TRUE(comes_true([&] { return !milling_.placing(); })) << "the tool was not placed";
   EXPECT_TRUE(milling_.change_isovalue(300));
   milling_.finish_preparing();
   hand_.pull_to(pose_above(entry_, setup_.tool, -1.0));

@@ -10,6 +10,7 @@
 #include "tests/no_more_threads.h"
 #include "tests/own_memory.h"
 #include "tests/shapes.h"
+#include "tests/wait.h"
 #include <gtest/gtest.h>
 
 #include "osteomill/files/input_error.h"
@@ -19,6 +20,7 @@ namespace osteomill {
 namespace {
 
 using namespace std::chrono_literals;
+using testing_support::comes_true;
 
 // Holds the burr 0.3 mm deep in the bone below z = 0 and remembers what it was sent. Its members are the
 // haptic thread's while the session runs.
@@ -41,8 +43,8 @@ class PressedDevice : public Device {
     sent = wrench;
     max_force_N = std::max(max_force_N, wrench.force_N.norm());
   }
-  void tick_done(const Pose&, double dt_s) override { time_passed_s += dt_s; }
-  void put_at(const Pose& X_WD_put) override { X_WD = X_WD_put; }
+  void tick_done(const Pose&, double dt_s) noexcept override { time_passed_s += dt_s; }
+  void put_at(const Pose& X_WD_put) noexcept override { X_WD = X_WD_put; }
 };
 
 Volume half_space() {
@@ -57,12 +59,6 @@ std::unique_ptr<MillingSession> session_on(std::shared_ptr<Volume> bone, std::st
 
 class LiveSessionTest : public ::testing::Test {
  protected:
-  // A busy machine ticks as it can.
-  template <typename Condition>
-  bool comes_true(Condition condition) {
-    for (int n = 0; n < 4000 && !condition(); ++n) std::this_thread::sleep_for(5ms);
-    return condition();
-  }
   bool pushes() {
     return comes_true([&] { return live_.state().record.wrench.force_N.z() > 0; });
   }
@@ -84,9 +80,11 @@ TEST_F(LiveSessionTest, TicksInRealTimeAndStopsAtAWrenchOfZero) {
   EXPECT_EQ(device_.sent.force_N, Vec3::Zero());
   EXPECT_EQ(device_.sent.torque_Nmm, Vec3::Zero());
   const TimingSummary timing = live_.timing();
-  // A loaded machine misses ticks, and says so; together they are the time that passed.
-  EXPECT_NEAR(device_.time_passed_s, 1e-3 * static_cast<double>(timing.ticks + timing.missed_ticks), 0.05);
-  EXPECT_LE(timing.ticks_per_s, 1010);
+  // A loaded machine misses ticks, and says so; for the device no more time passed than they take together,
+  // and less only where more than 20 were missed at once.
+  const double ticked_s = 1e-3 * static_cast<double>(timing.ticks);
+  EXPECT_GE(device_.time_passed_s, ticked_s - 1e-9);
+  EXPECT_LE(device_.time_passed_s, ticked_s + 1e-3 * static_cast<double>(timing.missed_ticks) + 1e-9);
 }
 
 TEST_F(LiveSessionTest, CopiesOfABoneShareItsPagesInRealTimeToo) {
@@ -94,10 +92,13 @@ TEST_F(LiveSessionTest, CopiesOfABoneShareItsPagesInRealTimeToo) {
   geometry.dims = {256, 256, 256};
   const Volume scan(DensityGrid(geometry, std::vector<float>(256 * 256 * 256, 1000.0f)), 500);
   const Volume copy = scan;
-  const double before_MiB = testing_support::own_memory_MiB();
   live_.start();
   live_.stop();
-  EXPECT_LT(testing_support::own_memory_MiB(), before_MiB + 32) << "one copy is 64 MiB";
+  for (const Volume* bone : {&scan, &copy}) {
+    const double own_MiB = testing_support::copied_MiB(bone->grid().densities().data());
+    EXPECT_GE(own_MiB, 0);
+    EXPECT_LT(own_MiB, 1) << "the whole is 64 MiB";
+  }
 }
 
 TEST_F(LiveSessionTest, RecordsComeInOrder) {

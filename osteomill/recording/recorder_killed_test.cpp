@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "tests/support/recording_samples.h"
+#include "tests/wait.h"
 #include <gtest/gtest.h>
 #include <sys/mman.h>
 #include <sys/wait.h>
@@ -52,13 +53,14 @@ TEST(KilledRecorder, LeavesARecordingThatReadsUpToShortlyBeforeItsEnd) {
     SharedCount pushed;
     const pid_t child = ::fork();
     if (child == 0) record_forever(folder / "run.h5", *pushed);
-    while ((*pushed).load() < 200) std::this_thread::sleep_for(1ms);
+    const bool records = comes_true([&] { return (*pushed).load() >= 200; });
     const int well_before = (*pushed).load();
     // All but the last second is there; rounds end at different moments between two flushes.
     std::this_thread::sleep_for(1000ms + round * 37ms);
     ::kill(child, SIGKILL);
     int status = 0;
     ASSERT_EQ(::waitpid(child, &status, 0), child);
+    ASSERT_TRUE(records) << "only " << well_before << " records were pushed";
     ASSERT_TRUE(WIFSIGNALED(status));
 
     EXPECT_FALSE(std::filesystem::exists(folder / "run.h5"));

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <chrono>
+#include <thread>
+
+namespace osteomill::testing_support {
+
+/// Whether the condition comes true, looked at every few milliseconds; false when it has not after a time
+/// that is long also on a busy machine.
+template <typename Condition>
+bool comes_true(const Condition& condition) {
+  using namespace std::chrono_literals;
+  const auto last = std::chrono::steady_clock::now() + 20s;
+  while (!condition()) {
+    if (std::chrono::steady_clock::now() > last) return condition();
+    std::this_thread::sleep_for(2ms);
+  }
+  return true;
+}
+
+}  // namespace osteomill::testing_support
