@@ -66,11 +66,18 @@ inline constexpr double kMostReal = 1e12;
 /// HDF5's name for what stands in memory.
 template <typename Value>
 hid_t memory_type() {
-  if constexpr (std::is_same_v<Value, double>) return H5T_NATIVE_DOUBLE;
-  if constexpr (std::is_same_v<Value, unsigned char>) return H5T_NATIVE_UCHAR;
-  if constexpr (std::is_same_v<Value, float>) return H5T_NATIVE_FLOAT;
-  if constexpr (std::is_same_v<Value, std::int32_t>) return H5T_NATIVE_INT32;
-  if constexpr (std::is_same_v<Value, std::uint64_t>) return H5T_NATIVE_UINT64;
+  if constexpr (std::is_same_v<Value, double>)
+    return H5T_NATIVE_DOUBLE;
+  else if constexpr (std::is_same_v<Value, unsigned char>)
+    return H5T_NATIVE_UCHAR;
+  else if constexpr (std::is_same_v<Value, float>)
+    return H5T_NATIVE_FLOAT;
+  else if constexpr (std::is_same_v<Value, std::int32_t>)
+    return H5T_NATIVE_INT32;
+  else {
+    static_assert(std::is_same_v<Value, std::uint64_t>, "HDF5 has no name for this type here");
+    return H5T_NATIVE_UINT64;
+  }
 }
 
 /// The attributes of one object. Every failure, also of one that is missing, of another type or length, is an

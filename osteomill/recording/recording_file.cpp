@@ -349,7 +349,9 @@ void RecordingFile::forget_flushed_metadata() {
   for (std::vector<Column>* columns : {&columns_, &cut_columns_, &hash_columns_}) {
     for (Column& column : *columns) {
       const Hdf5Handle access(H5Dget_access_plist(column.dataset.get()), H5Pclose);
-      std::string name(static_cast<std::size_t>(H5Iget_name(column.dataset.get(), nullptr, 0)), '\0');
+      const ssize_t length = H5Iget_name(column.dataset.get(), nullptr, 0);
+      require(length > 0, "a column has lost its name");
+      std::string name(static_cast<std::size_t>(length), '\0');
       H5Iget_name(column.dataset.get(), name.data(), name.size() + 1);
       column.dataset.close();
       column.dataset = Hdf5Handle(H5Dopen2(file_.get(), name.c_str(), access.get()), H5Dclose);
