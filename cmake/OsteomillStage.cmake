@@ -33,6 +33,8 @@ function(osteomill_add_stage name)
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
   target_sources(${target} PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${STAGE_HEADERS})
   target_compile_features(${target} PUBLIC cxx_std_20)
+  target_compile_options(${target} INTERFACE ${OSTEOMILL_SAME_BITS_OPTIONS})
+  target_compile_definitions(${target} INTERFACE ${OSTEOMILL_SAME_BITS_DEFINITIONS})
   list(TRANSFORM STAGE_USES PREPEND osteomill_ OUTPUT_VARIABLE uses)
   target_link_libraries(${target} PUBLIC ${uses} ${STAGE_LINK}
     PRIVATE $<BUILD_INTERFACE:osteomill_compile_options> ${STAGE_LINK_PRIVATE})

@@ -57,9 +57,9 @@ struct ScriptedDevice {
  private:
   class Way final : public Connection {
    public:
-    explicit Way(ScriptedDevice& device) : device_(device) {
-      if (device.gone || device.deaf) throw InputError(device.can.name, "cannot be had");
-      ++device.opened;
+    explicit Way(ScriptedDevice& scripted) : device_(scripted) {
+      if (device_.gone || device_.deaf) throw InputError(device_.can.name, "cannot be had");
+      ++device_.opened;
     }
     ~Way() override { ++device_.closed; }
     const DeviceCapabilities& capabilities() const override { return device_.can; }

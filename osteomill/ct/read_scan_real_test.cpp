@@ -209,7 +209,7 @@ TEST(ReadRealScan, InEightBitsBonesBoundaryIsFoundStill) {
         Window{"head_quarter/headsq_quarter.mhd", 1150, 0, 2500}}) {
     OSTEOMILL_NEEDS_SHARED(path);
     const Scan scan = read_scan(shared_data() / path);
-    const auto shade = [&](double density) {
+    const auto shade = [&, black = black, white = white](double density) {
       return std::clamp((density - black) / (white - black), 0.0, 1.0) * 255;
     };
     std::vector<float> shades;

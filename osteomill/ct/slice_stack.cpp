@@ -269,18 +269,19 @@ void correct_gantry_tilt(const std::string& subject, SliceStack& stack, std::vec
   const float outside = *std::min_element(densities.begin(), densities.end());
   std::vector<float> moved;
   moved.reserve(cell_count(dims));
-  for_each({{0, 0, 0}, {dims[0] - 1, dims[1] - 1, count - 1}}, [&](const VoxelIndex& v) {
-    const auto at = [&, columns = columns, rows = rows](int i, int j) {
-      const bool inside = i >= 0 && j >= 0 && i < columns && j < rows;
-      return static_cast<double>(inside ? densities[row_major(geometry.dims, i, j, v.k)] : outside);
-    };
-    const Shift shift_i = shift_of(step[0] * v.k), shift_j = shift_of(step[1] * v.k);
-    const double a = shift_i.fraction, b = shift_j.fraction;
-    const int i = v.i + first[0] - shift_i.whole, j = v.j + first[1] - shift_j.whole;
-    const double here = (1 - a) * at(i, j) + a * at(i - 1, j);
-    const double above = (1 - a) * at(i, j - 1) + a * at(i - 1, j - 1);
-    moved.push_back(static_cast<float>((1 - b) * here + b * above));
-  });
+  for_each({{0, 0, 0}, {dims[0] - 1, dims[1] - 1, count - 1}},
+           [&, columns = columns, rows = rows](const VoxelIndex& v) {
+             const auto at = [&](int i, int j) {
+               const bool inside = i >= 0 && j >= 0 && i < columns && j < rows;
+               return static_cast<double>(inside ? densities[row_major(geometry.dims, i, j, v.k)] : outside);
+             };
+             const Shift shift_i = shift_of(step[0] * v.k), shift_j = shift_of(step[1] * v.k);
+             const double a = shift_i.fraction, b = shift_j.fraction;
+             const int i = v.i + first[0] - shift_i.whole, j = v.j + first[1] - shift_j.whole;
+             const double here = (1 - a) * at(i, j) + a * at(i - 1, j);
+             const double above = (1 - a) * at(i, j - 1) + a * at(i - 1, j - 1);
+             moved.push_back(static_cast<float>((1 - b) * here + b * above));
+           });
   geometry.origin_mm = geometry.world_from_voxel(Vec3(first[0], first[1], 0));
   geometry.dims = dims;
   stack.drift_i_mm = stack.drift_j_mm = 0;

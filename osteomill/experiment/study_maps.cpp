@@ -259,7 +259,7 @@ std::optional<CaptionedFigure> draw_study_map(const StudyDesign& design, const S
                  .below_px = 58};
   grid.rows = (panels.size() + grid.columns - 1) / grid.columns;
   grid.height_px = grid.head_px + 340 * static_cast<double>(grid.rows);
-  const auto panel = [&](std::size_t column, std::size_t row, FigureScript& figure) {
+  const auto panel = [&, &panels = panels](std::size_t column, std::size_t row, FigureScript& figure) {
     const std::size_t n = row * grid.columns + column;
     if (n >= panels.size() || data[n].empty()) return std::string();
     return fmt::format("set title {} offset 0,-0.4 noenhanced\n", gnuplot_quoted(panels[n])) +

@@ -8,6 +8,8 @@ namespace osteomill {
 using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
 using Quat = Eigen::Quaterniond;
+static_assert(alignof(Quat) == 16,
+              "osteomill is built with EIGEN_MAX_ALIGN_BYTES=16; so must be what links it");
 
 /// A rigid placement `X_AB` of frame B in frame A: a point `p_B` of B lies at `X_AB * p_B` in A.
 /// Position in mm; `orientation` is a unit quaternion. Safe in the haptic tick.
@@ -19,7 +21,7 @@ struct Pose {
   Pose operator*(const Pose& inner) const {
     return {*this * inner.position_mm, (orientation * inner.orientation).normalized()};
   }
-  Pose inverse() const {
+  Pose inverse() const noexcept {
     const Quat back = orientation.conjugate();
     return {-(back * position_mm), back};
   }
@@ -30,21 +32,21 @@ struct Pose {
 };
 
 /// The rotation vector (axis times angle, rad, angle at most pi) of a unit quaternion.
-Vec3 rotation_vector(const Quat& rotation);
+Vec3 rotation_vector(const Quat& rotation) noexcept;
 
 /// The unit quaternion that turns by `rotation_vector` (axis times angle, rad); the inverse of the above.
-Quat quaternion_from_rotation_vector(const Vec3& rotation_vector);
+Quat quaternion_from_rotation_vector(const Vec3& rotation_vector) noexcept;
 
 /// The smallest rotation that turns the direction of `from` into that of `to` (neither of them zero).
-Quat smallest_rotation(const Vec3& from, const Vec3& to);
+Quat smallest_rotation(const Vec3& from, const Vec3& to) noexcept;
 
 /// The tool's or device's shaft direction in the outer frame: where the pose's +z axis points.
-inline Vec3 shaft_direction(const Pose& X_WT) {
+inline Vec3 shaft_direction(const Pose& X_WT) noexcept {
   return X_WT.orientation * Vec3::UnitZ();
 }
 
 /// True where every number of the pose is finite.
-bool is_finite(const Pose& pose);
+bool is_finite(const Pose& pose) noexcept;
 
 /// The velocity of a frame: of its origin in mm/s, and its angular velocity in rad/s, both in the outer
 /// frame.

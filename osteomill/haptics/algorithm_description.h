@@ -48,7 +48,7 @@ struct AlgorithmId {
   std::string colour;
 
   friend bool operator==(const AlgorithmId& a, const AlgorithmId& b) { return a.name == b.name; }
-  friend bool operator==(const AlgorithmId& a, std::string_view name) { return a.name == name; }
+  friend bool operator==(const AlgorithmId& a, std::string_view named) { return a.name == named; }
   friend bool operator<(const AlgorithmId& a, const AlgorithmId& b) { return a.label < b.label; }
 };
 inline const std::string& name_of(const AlgorithmId& algorithm) {

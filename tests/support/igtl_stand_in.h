@@ -14,6 +14,8 @@
 #include <igtlStringMessage.h>
 #include <igtlTransformMessage.h>
 
+#include "osteomill/numbers/row_major.h"
+
 namespace osteomill::testing_support {
 
 /// Stands in for 3D Slicer: an OpenIGTLink server made of the library's own sockets, which keeps the image
@@ -127,14 +129,14 @@ class IgtlStandIn {
     message->GetMatrix(image_.matrix);
     int dims[3], first[3];
     message->GetSubVolume(dims, first);
-    image_.values.resize(static_cast<std::size_t>(image_.dims[0]) * image_.dims[1] * image_.dims[2], NAN);
-    image_.last_values = static_cast<std::size_t>(dims[0]) * dims[1] * dims[2];
+    image_.values.resize(osteomill::cell_count(image_.dims), NAN);
+    image_.last_values = osteomill::cell_count({dims[0], dims[1], dims[2]});
     ++image_.messages;
     const auto* value = static_cast<const float*>(message->GetScalarPointer());
     for (int k = first[2]; k < first[2] + dims[2]; ++k) {
       for (int j = first[1]; j < first[1] + dims[1]; ++j) {
         for (int i = first[0]; i < first[0] + dims[0]; ++i)
-          image_.values[(static_cast<std::size_t>(k) * image_.dims[1] + j) * image_.dims[0] + i] = *value++;
+          image_.values[osteomill::row_major(image_.dims, i, j, k)] = *value++;
       }
     }
     return true;
