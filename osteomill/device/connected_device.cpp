@@ -252,7 +252,7 @@ DeviceReport ConnectedDevice::report() const {
   return report;
 }
 
-Pose ConnectedDevice::read_pose() {
+Pose ConnectedDevice::read_pose() noexcept {
   const Heard& heard = heard_.read();
   const DeviceInput& input = heard.input;
   const bool there = heard.is_pose && now_s_() - heard.at_s <= kMaxAge_s;
@@ -272,20 +272,20 @@ Pose ConnectedDevice::read_pose() {
   return X_WD_;
 }
 
-void ConnectedDevice::write_wrench(const Wrench& wrench) {
+void ConnectedDevice::write_wrench(const Wrench& wrench) noexcept {
   asked_.write({workspace_.wrench_D(wrench, shaft_direction(X_WD_)), now_s_()});
 }
 
-void ConnectedDevice::tick_done(const Pose& X_WT, double /*dt_s*/) {
+void ConnectedDevice::tick_done(const Pose& X_WT, double /*dt_s*/) noexcept {
   if (has_pose_ && is_finite(X_WT)) X_WT_ = X_WT;
 }
 
-void ConnectedDevice::put_at(const Pose& X_WD) {
+void ConnectedDevice::put_at(const Pose& X_WD) noexcept {
   X_WT_ = X_WD;
   anchor_anew_ = true;
 }
 
-bool ConnectedDevice::let_go() {
+bool ConnectedDevice::let_go() noexcept {
   // What is being sent right now may still be something.
   if (!let_go_.exchange(true, std::memory_order_acq_rel)) at_rest_.store(false, std::memory_order_release);
   return at_rest_.load(std::memory_order_acquire);

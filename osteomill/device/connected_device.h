@@ -96,14 +96,14 @@ class ConnectedDevice final : public Device {
   void set_clutched(bool clutched) { clutched_.store(clutched, std::memory_order_relaxed); }
   DeviceReport report() const;
 
-  Pose read_pose() override;
-  void write_wrench(const Wrench& wrench) override;
-  double given_share() const override { return given_share_.load(std::memory_order_relaxed); }
-  bool spindle_asked() const override { return (buttons_ & kSpindleButton) != 0; }
-  void tick_done(const Pose& X_WT, double dt_s) override;
-  void put_at(const Pose& X_WD) override;
-  bool let_go() override;
-  void take_hold() override { let_go_.store(false, std::memory_order_release); }
+  Pose read_pose() noexcept override;
+  void write_wrench(const Wrench& wrench) noexcept override;
+  double given_share() const noexcept override { return given_share_.load(std::memory_order_relaxed); }
+  bool spindle_asked() const noexcept override { return (buttons_ & kSpindleButton) != 0; }
+  void tick_done(const Pose& X_WT, double dt_s) noexcept override;
+  void put_at(const Pose& X_WD) noexcept override;
+  bool let_go() noexcept override;
+  void take_hold() noexcept override { let_go_.store(false, std::memory_order_release); }
 
  private:
   struct Heard {

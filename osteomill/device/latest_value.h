@@ -2,6 +2,7 @@
 
 #include <array>
 #include <atomic>
+#include <type_traits>
 
 namespace osteomill {
 
@@ -11,12 +12,12 @@ namespace osteomill {
 template <typename T>
 class LatestValue {
  public:
-  void write(const T& value) {
+  void write(const T& value) noexcept(std::is_nothrow_copy_assignable_v<T>) {
     buffers_[writing_] = value;
     writing_ = shared_.exchange(writing_ | kNew, std::memory_order_acq_rel) & kPlace;
   }
   /// The newest value written, or a default one before the first. Valid until the next call.
-  const T& read() {
+  const T& read() noexcept {
     if ((shared_.load(std::memory_order_relaxed) & kNew) != 0) {
       reading_ = shared_.exchange(reading_, std::memory_order_acq_rel) & kPlace;
     }

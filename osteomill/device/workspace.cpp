@@ -56,12 +56,12 @@ void Workspace::set(const WorkspaceSettings& settings, const Quat& R_WV) {
   R_WD_ = (R_WV * quaternion_from_rotation_vector(turn_rad) * R_VD_as_made_).normalized();
 }
 
-void Workspace::anchor(const Pose& X_WT, const Pose& X_DH) {
+void Workspace::anchor(const Pose& X_WT, const Pose& X_DH) noexcept {
   anchor_X_WT_ = X_WT;
   anchor_X_DH_ = X_DH;
 }
 
-Pose Workspace::tool_pose(const Pose& X_DH) const {
+Pose Workspace::tool_pose(const Pose& X_DH) const noexcept {
   const Vec3 moved_D_mm = X_DH.position_mm - anchor_X_DH_.position_mm;
   const Quat turned_D = X_DH.orientation * anchor_X_DH_.orientation.conjugate();
   const Quat turned_W = R_WD_ * turned_D * R_WD_.conjugate();
@@ -69,7 +69,7 @@ Pose Workspace::tool_pose(const Pose& X_DH) const {
           (turned_W * anchor_X_WT_.orientation).normalized()};
 }
 
-Wrench Workspace::wrench_D(const Wrench& wrench_W, const Vec3& shaft_W) const {
+Wrench Workspace::wrench_D(const Wrench& wrench_W, const Vec3& shaft_W) const noexcept {
   const Quat R_DW = R_WD_.conjugate();
   Vec3 force_W_N = wrench_W.force_N;
   // The force at the burr whose moment about the hand is the torque's.

@@ -45,15 +45,15 @@ class Workspace {
   /// Valid settings, and from where the operator looks. The way of moving changes, so anchor anew.
   void set(const WorkspaceSettings& settings, const Quat& R_WV);
   /// From now the handle at `X_DH` has the tool at `X_WT`.
-  void anchor(const Pose& X_WT, const Pose& X_DH);
-  Pose tool_pose(const Pose& X_DH) const;
+  void anchor(const Pose& X_WT, const Pose& X_DH) noexcept;
+  Pose tool_pose(const Pose& X_DH) const noexcept;
 
   /// What the device is to send for a wrench on the tool. By virtual work: whatever small motion the hand
   /// makes, the work done on it is `power` times that done on the tool. With scale s the tool moves s times
   /// as far and turns as much, so the force is power s times the tool's, and the torque power times.
   /// `shaft_W` is the tool's shaft direction. A device that drives force alone gets the torque as its
   /// settings say.
-  Wrench wrench_D(const Wrench& wrench_W, const Vec3& shaft_W) const;
+  Wrench wrench_D(const Wrench& wrench_W, const Vec3& shaft_W) const noexcept;
 
   /// The most that may be asked for of the tool, in W, so that the device can give it; no more than `limits`.
   /// A torque that the device does not drive is limited by `limits` alone.

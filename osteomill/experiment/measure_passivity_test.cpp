@@ -18,7 +18,7 @@ class IdealWall final : public HapticAlgorithm {
       : stiffness_(stiffness_N_per_mm), damping_(damping_Ns_per_mm) {}
 
   void prepare(const Scene& /*scene*/) override {}
-  HapticStep step(const Pose& X_WD, double dt_s) override {
+  HapticStep step(const Pose& X_WD, double dt_s) noexcept override {
     HapticStep step;
     const double depth_mm = kRadius_mm - X_WD.position_mm.z();
     const double speed_mm_s = (depth_mm - last_depth_mm_) / dt_s;
@@ -26,8 +26,8 @@ class IdealWall final : public HapticAlgorithm {
     if (depth_mm > 0) step.wrench.force_N.z() = stiffness_ * depth_mm + damping_ * speed_mm_s;
     return step;
   }
-  void volume_changed(const VolumeChange& /*change*/) override {}
-  void reset() override {}
+  void volume_changed(const VolumeChange& /*change*/) noexcept override {}
+  void reset() noexcept override {}
   int sample_point_count() const override { return 1; }
 
  private:
@@ -108,14 +108,14 @@ TEST(Passivity, AnOverdampedDeviceThatCreepsToRestIsPassive) {
 class Relay final : public HapticAlgorithm {
  public:
   void prepare(const Scene& /*scene*/) override {}
-  HapticStep step(const Pose& X_WD, double /*dt_s*/) override {
+  HapticStep step(const Pose& X_WD, double /*dt_s*/) noexcept override {
     HapticStep step;
     const double depth_mm = kRadius_mm - X_WD.position_mm.z();
     step.wrench.force_N.z() = depth_mm > 0.5 ? 2 : depth_mm > 0 ? 0.5 * depth_mm : 0;
     return step;
   }
-  void volume_changed(const VolumeChange& /*change*/) override {}
-  void reset() override {}
+  void volume_changed(const VolumeChange& /*change*/) noexcept override {}
+  void reset() noexcept override {}
   int sample_point_count() const override { return 1; }
 };
 
@@ -128,7 +128,7 @@ TEST(Passivity, AForceThatIsNotFiniteIsNotCalledPassive) {
   class Broken final : public HapticAlgorithm {
    public:
     void prepare(const Scene& /*scene*/) override {}
-    HapticStep step(const Pose& X_WD, double /*dt_s*/) override {
+    HapticStep step(const Pose& X_WD, double /*dt_s*/) noexcept override {
       HapticStep step;
       const double depth_mm = kRadius_mm - X_WD.position_mm.z();
       step.wrench.force_N.z() = std::max(0.0, depth_mm);
@@ -136,8 +136,8 @@ TEST(Passivity, AForceThatIsNotFiniteIsNotCalledPassive) {
       if (++steps_ > 300) step.wrench.force_N.z() = std::numeric_limits<double>::quiet_NaN();
       return step;
     }
-    void volume_changed(const VolumeChange& /*change*/) override {}
-    void reset() override {}
+    void volume_changed(const VolumeChange& /*change*/) noexcept override {}
+    void reset() noexcept override {}
     int sample_point_count() const override { return 1; }
 
    private:

@@ -24,7 +24,7 @@ class Cushion final : public HapticAlgorithm {
   Cushion(double stiffness_N_per_mm, double height_mm)
       : stiffness_N_per_mm_(stiffness_N_per_mm), height_mm_(height_mm) {}
   void prepare(const Scene&) override {}
-  HapticStep step(const Pose& X_WD, double) override {
+  HapticStep step(const Pose& X_WD, double) noexcept override {
     HapticStep step;
     step.X_WT = X_WD;
     const double depth_mm = height_mm_ - X_WD.position_mm.z();
@@ -32,8 +32,8 @@ class Cushion final : public HapticAlgorithm {
     step.contacts = depth_mm > 0 ? 1 : 0;
     return step;
   }
-  void volume_changed(const VolumeChange&) override {}
-  void reset() override {}
+  void volume_changed(const VolumeChange&) noexcept override {}
+  void reset() noexcept override {}
   int sample_point_count() const override { return 1; }
 
  private:

@@ -4,7 +4,7 @@
 
 namespace osteomill {
 
-Vec3 rotation_vector(const Quat& rotation) {
+Vec3 rotation_vector(const Quat& rotation) noexcept {
   // q and -q are the same rotation; the one with w >= 0 has the smaller angle.
   const double sign = rotation.w() < 0 ? -1.0 : 1.0;
   const Vec3 half_sine = sign * rotation.vec();
@@ -13,7 +13,7 @@ Vec3 rotation_vector(const Quat& rotation) {
   return 2.0 * std::atan2(sine, sign * rotation.w()) / sine * half_sine;
 }
 
-Quat quaternion_from_rotation_vector(const Vec3& rotation_vector) {
+Quat quaternion_from_rotation_vector(const Vec3& rotation_vector) noexcept {
   const double angle = rotation_vector.norm();
   // sin(a/2)/a tends to 1/2.
   const double scale = angle < 1e-12 ? 0.5 : std::sin(0.5 * angle) / angle;
@@ -23,11 +23,11 @@ Quat quaternion_from_rotation_vector(const Vec3& rotation_vector) {
   return rotation.normalized();
 }
 
-Quat smallest_rotation(const Vec3& from, const Vec3& to) {
+Quat smallest_rotation(const Vec3& from, const Vec3& to) noexcept {
   return Quat::FromTwoVectors(from, to);
 }
 
-bool is_finite(const Pose& pose) {
+bool is_finite(const Pose& pose) noexcept {
   return pose.position_mm.allFinite() && pose.orientation.coeffs().allFinite();
 }
 

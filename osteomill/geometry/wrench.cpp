@@ -22,7 +22,7 @@ Vec3 towards(const Vec3& from, const Vec3& to, double rate, double dt_s) {
 
 }  // namespace
 
-SafeWrench make_safe(const Wrench& wrench, const WrenchLimits& limits) {
+SafeWrench make_safe(const Wrench& wrench, const WrenchLimits& limits) noexcept {
   // A norm that overflows is caught here too: components near the largest double cannot be scaled.
   if (!std::isfinite(wrench.force_N.norm()) || !std::isfinite(wrench.torque_Nmm.norm())) {
     return {Wrench{}, WrenchFault::not_finite};
@@ -34,12 +34,12 @@ SafeWrench make_safe(const Wrench& wrench, const WrenchLimits& limits) {
   return safe;
 }
 
-Wrench approach(const Wrench& from, const Wrench& to, const WrenchRates& rates, double dt_s) {
+Wrench approach(const Wrench& from, const Wrench& to, const WrenchRates& rates, double dt_s) noexcept {
   return {towards(from.force_N, to.force_N, rates.force_N_s, dt_s),
           towards(from.torque_Nmm, to.torque_Nmm, rates.torque_Nmm_s, dt_s)};
 }
 
-bool is_zero(const Wrench& wrench) {
+bool is_zero(const Wrench& wrench) noexcept {
   return wrench.force_N.isZero(0) && wrench.torque_Nmm.isZero(0);
 }
 

@@ -51,7 +51,7 @@ struct SafeWrench {
 
 /// The wrench that may be sent: force and torque shortened to the limits without turning them, or zero where
 /// any component is not finite. Safe in the haptic tick.
-SafeWrench make_safe(const Wrench& wrench, const WrenchLimits& limits);
+SafeWrench make_safe(const Wrench& wrench, const WrenchLimits& limits) noexcept;
 
 /// How fast the vectors of force and torque may change; without limit where not set.
 struct WrenchRates {
@@ -64,9 +64,9 @@ struct WrenchRates {
 inline constexpr WrenchRates kRatesForAHand{4000, 1e5};
 
 /// `to`, or as far from `from` towards it as the rates allow in `dt_s`. Safe in the haptic tick.
-Wrench approach(const Wrench& from, const Wrench& to, const WrenchRates& rates, double dt_s);
+Wrench approach(const Wrench& from, const Wrench& to, const WrenchRates& rates, double dt_s) noexcept;
 
 /// True where force and torque are exactly zero.
-bool is_zero(const Wrench& wrench);
+bool is_zero(const Wrench& wrench) noexcept;
 
 }  // namespace osteomill

@@ -4,6 +4,7 @@
 
 #include "osteomill/geometry/pose.h"
 #include "osteomill/geometry/wrench.h"
+#include "osteomill/numbers/nonblocking.h"
 #include "osteomill/tool/milling_tool.h"
 #include "osteomill/volume/volume.h"
 
@@ -48,14 +49,20 @@ class HapticAlgorithm {
   /// Throws std::invalid_argument where a setting or the tool is out of range.
   virtual void prepare(const Scene& scene) = 0;
   /// `X_WD` is the device's pose as a tool pose in W (finite); `dt_s` the time since the last step.
-  virtual HapticStep step(const Pose& X_WD, double dt_s) = 0;
+  virtual HapticStep step(const Pose& X_WD, double dt_s) noexcept OSTEOMILL_NONBLOCKING = 0;
   /// The volume's densities fell in `change`.
-  virtual void volume_changed(const VolumeChange& change) = 0;
+  virtual void volume_changed(const VolumeChange& change) noexcept OSTEOMILL_NONBLOCKING = 0;
   /// Forgets all contacts, as before the first step; the volume stays as it is.
-  virtual void reset() = 0;
+  virtual void reset() noexcept OSTEOMILL_NONBLOCKING = 0;
 
   /// How many sample points it works with: vertices, or points of the shell as it stands. Not for the tick.
   virtual int sample_point_count() const = 0;
+
+ protected:
+  HapticAlgorithm() = default;
+  // Not through the interface, which would copy a part.
+  HapticAlgorithm(const HapticAlgorithm&) = default;
+  HapticAlgorithm& operator=(const HapticAlgorithm&) = default;
 };
 
 }  // namespace osteomill

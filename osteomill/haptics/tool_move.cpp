@@ -12,18 +12,18 @@ constexpr double kMaxTick_s = 5e-3;
 
 }  // namespace
 
-ToolMove move_between(const Pose& from, const Pose& to) {
+ToolMove move_between(const Pose& from, const Pose& to) noexcept {
   return {to.position_mm - from.position_mm,
           rotation_vector((to.orientation * from.orientation.conjugate()).normalized())};
 }
 
-Pose moved(const Pose& X_WT, const ToolMove& move) {
+Pose moved(const Pose& X_WT, const ToolMove& move) noexcept {
   const Quat turn = quaternion_from_rotation_vector(move.rotation_rad);
   return {X_WT.position_mm + move.translation_mm, (turn * X_WT.orientation).normalized()};
 }
 
 MoveBound move_bound(const Pose& X_WT, const Pose& X_WD_before, const Pose& X_WD, double spring_length_mm,
-                     const Release& release, double dt_s) {
+                     const Release& release, double dt_s) noexcept {
   const double tick_s = std::clamp(dt_s, 0.0, kMaxTick_s);
   const double fading = std::min(1.0, tick_s / release.time_s);
   const ToolMove device = move_between(X_WD_before, X_WD), stretch = move_between(X_WD_before, X_WT);
@@ -38,7 +38,7 @@ MoveBound move_bound(const Pose& X_WT, const Pose& X_WD_before, const Pose& X_WD
           0.5 * (turned_rad + grow_rad + fade_rad) + release.rad_s * tick_s};
 }
 
-double share_within(const Vec3& middle, double radius, const Vec3& from, const Vec3& change) {
+double share_within(const Vec3& middle, double radius, const Vec3& from, const Vec3& change) noexcept {
   const Vec3 offset = from - middle;
   const double spare = radius * radius - offset.squaredNorm();
   if (spare < 0) return 0;
@@ -47,13 +47,13 @@ double share_within(const Vec3& middle, double radius, const Vec3& from, const V
   return std::min(1.0, (std::sqrt(along * along + length2 * spare) - along) / length2);
 }
 
-double share_within(const MoveBound& bound, const ToolMove& move) {
+double share_within(const MoveBound& bound, const ToolMove& move) noexcept {
   return std::min(
       share_within(bound.middle.translation_mm, bound.radius_mm, Vec3::Zero(), move.translation_mm),
       share_within(bound.middle.rotation_rad, bound.radius_rad, Vec3::Zero(), move.rotation_rad));
 }
 
-Pose moved_within(const MoveBound& bound, const Pose& start, const Pose& target) {
+Pose moved_within(const MoveBound& bound, const Pose& start, const Pose& target) noexcept {
   const ToolMove whole = move_between(start, target);
   const double share = share_within(bound, whole);
   return share >= 1 ? target : moved(start, share * whole);

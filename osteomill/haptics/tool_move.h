@@ -18,9 +18,9 @@ inline ToolMove operator*(double share, const ToolMove& move) {
 }
 
 /// The move that takes the tool from `from` to `to`.
-ToolMove move_between(const Pose& from, const Pose& to);
+ToolMove move_between(const Pose& from, const Pose& to) noexcept;
 /// The pose after the move.
-Pose moved(const Pose& X_WT, const ToolMove& move);
+Pose moved(const Pose& X_WT, const ToolMove& move) noexcept;
 
 /// What a tick may add to the device's own move: a share `tick / time_s` of the stretch between device and
 /// tool, and a speed.
@@ -47,15 +47,15 @@ struct MoveBound {
   double radius_rad = 0;
 };
 MoveBound move_bound(const Pose& X_WT, const Pose& X_WD_before, const Pose& X_WD, double spring_length_mm,
-                     const Release& release, double dt_s);
+                     const Release& release, double dt_s) noexcept;
 
 /// The share (0..1) of a change that keeps `from` + share `change` in the ball about `middle`; 0 where `from`
 /// is not in it.
-double share_within(const Vec3& middle, double radius, const Vec3& from, const Vec3& change);
+double share_within(const Vec3& middle, double radius, const Vec3& from, const Vec3& change) noexcept;
 /// The share of a move from the tick's start that stays within both balls.
-double share_within(const MoveBound& bound, const ToolMove& move);
+double share_within(const MoveBound& bound, const ToolMove& move) noexcept;
 /// On the way from the tick's start to the target as far as that; the target itself, to the last bit, where
 /// it lies within both balls.
-Pose moved_within(const MoveBound& bound, const Pose& start, const Pose& target);
+Pose moved_within(const MoveBound& bound, const Pose& start, const Pose& target) noexcept;
 
 }  // namespace osteomill

@@ -22,13 +22,13 @@ void add_to(std::atomic<T>& counter, std::type_identity_t<T> count) {
 
 }  // namespace
 
-Nanoseconds monotonic_now_ns() {
+Nanoseconds monotonic_now_ns() noexcept {
   timespec now{};
   clock_gettime(CLOCK_MONOTONIC, &now);
   return kNsPerS * now.tv_sec + now.tv_nsec;
 }
 
-NextDeadline next_deadline(Nanoseconds deadline_ns, Nanoseconds now_ns, Nanoseconds period_ns) {
+NextDeadline next_deadline(Nanoseconds deadline_ns, Nanoseconds now_ns, Nanoseconds period_ns) noexcept {
   const Nanoseconds passed = (now_ns - deadline_ns) / period_ns;
   const int periods = passed < 2 ? 1 : static_cast<int>(passed);
   return {deadline_ns + periods * period_ns, periods};
@@ -47,7 +47,7 @@ Nanoseconds wait_until(Nanoseconds deadline_ns) {
   return now_ns;
 }
 
-void TimeHistogram::add(double time_us) {
+void TimeHistogram::add(double time_us) noexcept {
   add_to(bins_[bin_of(time_us)], 1);
   add_to(count_, 1);
   if (time_us > max_us_.load(std::memory_order_relaxed)) {
@@ -91,7 +91,7 @@ TimePercentiles TimeHistogram::percentiles() const {
   return found;
 }
 
-void LiveTiming::add(const TickTimes& times, const TickRecord& record) {
+void LiveTiming::add(const TickTimes& times, const TickRecord& record) noexcept {
   const Nanoseconds lateness_ns = times.woke_ns - times.deadline_ns;
   if (lateness_.count() == 0) first_ns_.store(times.woke_ns, std::memory_order_relaxed);
   last_ns_.store(times.woke_ns, std::memory_order_relaxed);

@@ -14,7 +14,7 @@ namespace osteomill {
 /// Nanoseconds of the system's monotonic clock.
 using Nanoseconds = std::int64_t;
 
-Nanoseconds monotonic_now_ns();
+Nanoseconds monotonic_now_ns() noexcept;
 
 /// The deadline after one that was met, or not: `periods` after it.
 struct NextDeadline {
@@ -25,7 +25,7 @@ struct NextDeadline {
 /// The next deadline of a loop of `period_ns`, at `now_ns` when the tick of `deadline_ns` is done: one period
 /// on, or, where that lies a whole period or more in the past, the last one that has passed. Ticks that were
 /// missed are not made up for: they would come in a burst, faster than any device takes them.
-NextDeadline next_deadline(Nanoseconds deadline_ns, Nanoseconds now_ns, Nanoseconds period_ns);
+NextDeadline next_deadline(Nanoseconds deadline_ns, Nanoseconds now_ns, Nanoseconds period_ns) noexcept;
 
 /// Sleeps until 100 us before the deadline (clock_nanosleep to an absolute time), then looks at the clock
 /// until it has come: waking from sleep is what is late. Returns the time at which it returns.
@@ -46,7 +46,7 @@ struct TimePercentiles {
 class TimeHistogram {
  public:
   /// Times below zero count as zero.
-  void add(double time_us);
+  void add(double time_us) noexcept;
   TimePercentiles percentiles() const;
   std::uint64_t count() const { return count_.load(std::memory_order_relaxed); }
 
@@ -94,7 +94,7 @@ struct TimingSummary {
 /// Counts ticks' times. One thread adds, safely in the haptic tick; any thread reads meanwhile.
 class LiveTiming {
  public:
-  void add(const TickTimes& times, const TickRecord& record);
+  void add(const TickTimes& times, const TickRecord& record) noexcept;
   TimingSummary summary() const;
 
  private:

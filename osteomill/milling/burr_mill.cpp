@@ -91,7 +91,7 @@ BurrMill::BurrMill(const GridGeometry& geometry, double burr_radius_mm, const Bo
       voxels_(geometry, reach_.max_voxels(), reach_.max_pieces()) {}
 
 MillingStep BurrMill::step(Volume& volume, const Vec3& burr_centre_W, const Vec3& burr_force_W_N,
-                           double dt_s) {
+                           double dt_s) noexcept {
   const double rate_mm3_s = removal_rate_mm3_per_Ns_ * burr_force_W_N.norm();
   const double pressed_mm3 = rate_mm3_s * dt_s;
   if (!(pressed_mm3 > 0) || !std::isfinite(pressed_mm3) || !burr_centre_W.allFinite()) {

@@ -4,6 +4,7 @@
 #include "osteomill/milling/burr_reach.h"
 #include "osteomill/milling/cut_voxels.h"
 #include "osteomill/milling/label_tally.h"
+#include "osteomill/numbers/nonblocking.h"
 #include "osteomill/tool/milling_tool.h"
 #include "osteomill/volume/bone_densities.h"
 #include "osteomill/volume/volume.h"
@@ -67,7 +68,8 @@ class BurrMill {
   /// nothing where the force or the centre is not finite. Safe in the haptic tick; time grows with the voxels
   /// overlapped. From step to step only voxels new in reach are searched for bone, so nobody may raise
   /// densities of the same volume as long as this lives.
-  MillingStep step(Volume& volume, const Vec3& burr_centre_W, const Vec3& burr_force_W_N, double dt_s);
+  MillingStep step(Volume& volume, const Vec3& burr_centre_W, const Vec3& burr_force_W_N,
+                   double dt_s) noexcept OSTEOMILL_NONBLOCKING;
   /// Where the volume has labels: what the steps took of each and nobody has taken from here.
   LabelTally& by_label() { return by_label_; }
   /// What was pressed for and not yet cut, mm^3 of reference density.

@@ -58,7 +58,8 @@ BurrReach::BurrReach(const GridGeometry& geometry, double max_radius_mm, float f
   pieces_.reserve(max_pieces_);
 }
 
-void BurrReach::find(const Volume& volume, const Vec3& centre_mm, double radius_mm, const Share& share) {
+void BurrReach::find(const Volume& volume, const Vec3& centre_mm, double radius_mm,
+                     const Share& share) noexcept {
   if (known_volume_ != &volume) {
     std::fill(known_.begin(), known_.end(), false);
     std::fill(held_.begin(), held_.end(), ~std::uint64_t{0});
@@ -185,7 +186,7 @@ void BurrReach::find_pieces(const DensityGrid& grid, std::size_t word, std::uint
   }
 }
 
-void BurrReach::forget_voxels(const Piece& piece, unsigned gone) {
+void BurrReach::forget_voxels(const Piece& piece, unsigned gone) noexcept {
   const VoxelIndex& first = piece.first;
   const int bi = first.i / kSide, bj = first.j / kSide, bk = first.k / kSide;
   Bits& bits = bits_[brick_index(bi, bj, bk)];

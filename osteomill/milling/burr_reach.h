@@ -38,10 +38,11 @@ class BurrReach {
   };
   /// Finds what the ball overlaps, or a share of it. `centre_mm` (finite) is in the grid's axes, from the
   /// first voxel's centre; `radius_mm` at most the greatest. Safe in the haptic tick.
-  void find(const Volume& volume, const Vec3& centre_mm, double radius_mm, const Share& share = {1, 0});
+  void find(const Volume& volume, const Vec3& centre_mm, double radius_mm,
+            const Share& share = {1, 0}) noexcept;
   const std::vector<Piece>& pieces() const { return pieces_; }
   /// Those of a piece that hold nothing any more are not found again.
-  void forget_voxels(const Piece& piece, unsigned gone);
+  void forget_voxels(const Piece& piece, unsigned gone) noexcept;
   /// Has the next `find` look at every voxel.
   void look_again() { known_volume_ = nullptr; }
   float floor_density() const { return floor_density_; }

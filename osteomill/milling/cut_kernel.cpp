@@ -153,18 +153,22 @@ HWY_EXPORT(SumDrops);
 HWY_EXPORT(LowerDensities);
 
 unsigned gather_piece(const CutPiece& piece, const CutKernelBall& ball, const CutProfile& profile,
-                      float max_ahead, CutLists& lists) {
+                      float max_ahead, CutLists& lists) noexcept {
   return HWY_DYNAMIC_DISPATCH(GatherPiece)(piece, ball, profile, max_ahead, lists);
 }
 
 void sum_drops(const CutLists& lists, std::size_t begin, std::size_t end, float radius,
-               const CutProfile& profile, float ahead, CutSums& sums) {
+               const CutProfile& profile, float ahead, CutSums& sums) noexcept {
   HWY_DYNAMIC_DISPATCH(SumDrops)(lists, begin, end, radius, profile, ahead, sums);
 }
 
 void lower_densities(CutLists& lists, float radius, const CutProfile& profile, float ahead,
-                     float leading_share, float trailing_share) {
+                     float leading_share, float trailing_share) noexcept {
   HWY_DYNAMIC_DISPATCH(LowerDensities)(lists, radius, profile, ahead, leading_share, trailing_share);
+}
+
+void choose_cut_instructions() {
+  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
 }
 
 std::int64_t cut_kernel_targets() {

@@ -31,7 +31,7 @@ struct CutPiece {
   unsigned bits;
 };
 unsigned gather_piece(const CutPiece& piece, const CutKernelBall& ball, const CutProfile& profile,
-                      float max_ahead, CutLists& lists);
+                      float max_ahead, CutLists& lists) noexcept;
 
 /// Leading drops, their derivative by `ahead`, and trailing drops, over [begin, end), both multiples of
 /// `kLanes`, in `kLanes` lanes each.
@@ -41,11 +41,14 @@ struct CutSums {
   alignas(64) float trailing[CutLists::kLanes] = {};
 };
 void sum_drops(const CutLists& lists, std::size_t begin, std::size_t end, float radius,
-               const CutProfile& profile, float ahead, CutSums& sums);
+               const CutProfile& profile, float ahead, CutSums& sums) noexcept;
 
 /// Fills `lists.after`.
 void lower_densities(CutLists& lists, float radius, const CutProfile& profile, float ahead,
-                     float leading_share, float trailing_share);
+                     float leading_share, float trailing_share) noexcept;
+
+/// Chooses the instructions. The first call of a kernel does that too, but asks the system for it.
+void choose_cut_instructions();
 
 /// For tests: the sets of vector instructions that this was compiled for, as Highway numbers them.
 std::int64_t cut_kernel_targets();

@@ -105,6 +105,12 @@ TEST(CutKernel, EverySetOfInstructionsGivesTheSameBits) {
   }
 }
 
+TEST(CutKernel, InstructionsAreChosenBeforeTheTick) {
+  hwy::GetChosenTarget().DeInit();
+  const CutVoxels voxels(random_bone({1, 1, 1}).geometry(), 1, 1);
+  EXPECT_TRUE(hwy::GetChosenTarget().IsInitialized());
+}
+
 TEST(BurrAdvance, SpendsTheBudgetAndNoMore) {
   const Volume bone = random_bone(Vec3(0.12, 0.15, 0.2));
   Gathered g = gathered(bone, 0.2);

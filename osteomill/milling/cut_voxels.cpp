@@ -63,6 +63,7 @@ double next_ahead(double ahead, double over, double slope, double low, double hi
 
 CutVoxels::CutVoxels(const GridGeometry& geometry, std::size_t voxels, std::size_t rows)
     : geometry_(geometry) {
+  choose_cut_instructions();
   const std::size_t room = voxels + 2 * kLanes;
   for (std::vector<float>* list :
        {&lists_.distance2_mm2, &lists_.ahead_mm, &lists_.voxels_per_mm, &lists_.before, &lists_.after}) {
@@ -92,7 +93,7 @@ void CutVoxels::measure(const CuttingBall& ball, double reach_mm) {
 }
 
 void CutVoxels::gather(BurrReach& reach, const CuttingBall& ball, const CutProfile& profile,
-                       double max_ahead_mm) {
+                       double max_ahead_mm) noexcept {
   radius_mm_ = static_cast<float>(ball.radius_mm);
   profile_ = profile;
   rows_.clear();
@@ -112,7 +113,7 @@ void CutVoxels::gather(BurrReach& reach, const CuttingBall& ball, const CutProfi
   for (std::size_t n = 0; n < kLanes; ++n) put_nothing(lists_, lists_.size + n, profile.surroundings);
 }
 
-CutVoxels::Cost CutVoxels::cost(double ahead_mm) const {
+CutVoxels::Cost CutVoxels::cost(double ahead_mm) const noexcept {
   Cost cost;
   const std::size_t end = (lists_.size + kLanes - 1) / kLanes * kLanes;
   for (std::size_t begin = 0; begin < end; begin += kBlock) {
@@ -126,7 +127,7 @@ CutVoxels::Cost CutVoxels::cost(double ahead_mm) const {
   return cost;
 }
 
-double CutVoxels::find_lowered(double ahead_mm, const Shares& shares) {
+double CutVoxels::find_lowered(double ahead_mm, const Shares& shares) noexcept {
   lower_densities(lists_, radius_mm_, profile_, static_cast<float>(ahead_mm),
                   static_cast<float>(shares.leading), static_cast<float>(shares.trailing));
   double dropped = 0;
@@ -137,7 +138,7 @@ double CutVoxels::find_lowered(double ahead_mm, const Shares& shares) {
 }
 
 BurrAdvance advance_within(double budget, const CutVoxels& voxels, double start_ahead_mm, double min_ahead_mm,
-                           double max_ahead_mm) {
+                           double max_ahead_mm) noexcept {
   BurrAdvance advance{std::clamp(start_ahead_mm, min_ahead_mm, max_ahead_mm), {}};
   CutVoxels::Cost cost = voxels.cost(advance.ahead_mm);
   const double trailing = cost.trailing * part(kMaxTrailing * budget, cost.trailing);

@@ -62,7 +62,8 @@ class CutVoxels {
 
   /// From the rows found about the ball: what it lowers with the leading half up to `max_ahead_mm` ahead. Has
   /// `reach` forget what holds nothing.
-  void gather(BurrReach& reach, const CuttingBall& ball, const CutProfile& profile, double max_ahead_mm);
+  void gather(BurrReach& reach, const CuttingBall& ball, const CutProfile& profile,
+              double max_ahead_mm) noexcept;
 
   /// What cutting to the ball's surface takes, as sums of densities.
   struct Cost {
@@ -71,7 +72,7 @@ class CutVoxels {
     double slope_per_mm = 0;
     double trailing = 0;
   };
-  Cost cost(double ahead_mm) const;
+  Cost cost(double ahead_mm) const noexcept;
 
   /// The part of each drop that is made.
   struct Shares {
@@ -79,7 +80,7 @@ class CutVoxels {
     double trailing = 1;
   };
   /// Fills `after()`; returns the sum of the drops, exact for the floats that they are.
-  double find_lowered(double ahead_mm, const Shares& shares);
+  double find_lowered(double ahead_mm, const Shares& shares) noexcept;
 
   /// A row's voxels are [begin, end) of the lists below.
   struct Row {
@@ -116,6 +117,6 @@ struct BurrAdvance {
 /// overlaps is paid first, with at most half the budget. Where even the least place takes more, part of each
 /// drop is made; never is more spent than the budget, but for how floats round. Safe in the haptic tick.
 BurrAdvance advance_within(double budget, const CutVoxels& voxels, double start_ahead_mm, double min_ahead_mm,
-                           double max_ahead_mm);
+                           double max_ahead_mm) noexcept;
 
 }  // namespace osteomill

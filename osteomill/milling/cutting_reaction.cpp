@@ -26,20 +26,21 @@ Wrench reaction(const Vec3& ahead_W, const Vec3& shaft_W, double burr_radius_mm,
 
 }  // namespace
 
-double rim_share(const Vec3& ahead_W, const Vec3& shaft_W) {
+double rim_share(const Vec3& ahead_W, const Vec3& shaft_W) noexcept {
   const double along = shaft_W.dot(ahead_W);
   return 1 - kAround - kAlong * along * along;
 }
 
 Vec3 paying_force_W_N(const MillingSettings& settings, const Pose& X_WT, const Vec3& burr_force_W_N,
-                      bool spindle_on) {
+                      bool spindle_on) noexcept {
   if (!spindle_on) return Vec3::Zero();
   const double force_N = burr_force_W_N.norm();
   if (!(settings.reaction_share > 0) || !(force_N > 0)) return burr_force_W_N;
   return rim_share(burr_force_W_N / force_N, shaft_direction(X_WT)) * burr_force_W_N;
 }
 
-void CuttingReaction::follow(const Pose& X_WT, const Vec3& burr_force_W_N, double removed_mm3, double dt_s) {
+void CuttingReaction::follow(const Pose& X_WT, const Vec3& burr_force_W_N, double removed_mm3,
+                             double dt_s) noexcept {
   if (!(settings_.reaction_share > 0) || !(dt_s > 0)) return;
   Wrench now;
   const double force_N = burr_force_W_N.norm();

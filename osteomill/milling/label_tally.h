@@ -23,7 +23,7 @@ using LabelCuts = std::array<LabelCut, 4>;
 class LabelTally {
  public:
   /// Of no label: nothing.
-  void add(LabelMap::Place label, double removed_mm3) {
+  void add(LabelMap::Place label, double removed_mm3) noexcept {
     if (label == 0) return;
     if (!waits_[label]) {
       waits_[label] = true;
@@ -33,7 +33,7 @@ class LabelTally {
   }
 
   /// Those that have waited longest.
-  LabelCuts take() {
+  LabelCuts take() noexcept {
     LabelCuts cuts;
     const std::size_t taken = std::min(cuts.size(), count_);
     for (std::size_t n = 0; n < taken; ++n) {

@@ -8,10 +8,10 @@ namespace osteomill {
 /// in the haptic tick.
 class RecentRate {
  public:
-  void count() { ++count_; }
+  void count() noexcept { ++count_; }
   /// To be called more often than once a second. `now_s` never goes back; the first second begins with the
   /// first call.
-  double per_s(double now_s) {
+  double per_s(double now_s) noexcept {
     const double passed_s = now_s - began_s_;
     if (passed_s >= 1) {
       per_s_ = count_ / passed_s;

@@ -51,7 +51,7 @@ void require_valid(const HandSettings& settings) {
 }
 
 Wrench hand_wrench(const HandSettings& hand, const Pose& X_W_target, const Twist& target_velocity,
-                   const Pose& X_WD, const Twist& velocity) {
+                   const Pose& X_WD, const Twist& velocity) noexcept {
   const Vec3 stretch_mm = X_W_target.position_mm - X_WD.position_mm;
   const Vec3 twist_rad = rotation_vector(X_W_target.orientation * X_WD.orientation.conjugate());
   const Vec3 slip_mm_s = target_velocity.linear_mm_s - velocity.linear_mm_s;
@@ -99,7 +99,7 @@ Tremor::Tremor(std::uint64_t seed, double rms) {
   }
 }
 
-Vec3 Tremor::at(double time_s) const {
+Vec3 Tremor::at(double time_s) const noexcept {
   Vec3 displacement = Vec3::Zero();
   for (std::size_t axis = 0; axis < 3; ++axis) {
     double sum = 0;

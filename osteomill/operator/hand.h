@@ -39,14 +39,14 @@ struct HandSettings {
 void require_valid(const HandSettings& settings);
 
 /// The most that the torsional spring gives.
-inline double torque_limit_Nmm(const HandSettings& settings) {
+inline double torque_limit_Nmm(const HandSettings& settings) noexcept {
   return settings.push_N * settings.push_lever_mm;
 }
 
 /// What the hand does to the handle, in W about the burr's centre: springs towards the target, each no
 /// stronger than its limit, and dampers against the motion relative to the target. Safe in the haptic tick.
 Wrench hand_wrench(const HandSettings& hand, const Pose& X_W_target, const Twist& target_velocity,
-                   const Pose& X_WD, const Twist& velocity);
+                   const Pose& X_WD, const Twist& velocity) noexcept;
 
 /// A hand drawn from the range of real ones, for studies over many: stiffness uniform from 135 to 1000 N/m,
 /// damping from 5 to 10 N s/m, rotation by the same lever as above. The softest is an arm that holds a haptic
@@ -71,7 +71,7 @@ class Tremor {
   Tremor(std::uint64_t seed, double rms);
 
   /// Safe in the haptic tick.
-  Vec3 at(double time_s) const;
+  Vec3 at(double time_s) const noexcept;
 
  private:
   static constexpr int kSinesPerBand = 16;

@@ -216,7 +216,7 @@ void MillingScript::move(double dt_s, const Pose& X_WD) {
 }
 
 const ScriptIntent& MillingScript::step(double time_s, double dt_s, const Pose& X_WD, const Pose& X_WT,
-                                        const Wrench& felt) {
+                                        const Wrench& felt) noexcept {
   feel(dt_s, X_WD, felt);
   advance_stage(time_s + kRounding_s, dt_s, X_WD, X_WT);
   // A hand whose tool is lost stays where it is.

@@ -63,13 +63,13 @@ class MillingScript {
                 const MillingEntry& entry);
 
   /// What the script wants at time 0, and where the device is then.
-  const ScriptIntent& intent() const { return intent_; }
+  const ScriptIntent& intent() const noexcept { return intent_; }
   /// Up to now. Without `until_leant` leaning and settling are not waited for, and not judged.
   const ScriptShortfall& shortfall() const { return shortfall_; }
   /// The intent at `time_s`, `dt_s` after the last one. `X_WD` is where the device is, `X_WT` where the
   /// simulated tool is shown, `felt` the last wrench on the hand. Safe in the haptic tick.
   const ScriptIntent& step(double time_s, double dt_s, const Pose& X_WD, const Pose& X_WT,
-                           const Wrench& felt);
+                           const Wrench& felt) noexcept;
 
  private:
   bool has_leant() const { return leant_s_ >= settings_.leant_share * settings_.milling_s; }

@@ -50,7 +50,7 @@ SimulatedHandle::SimulatedHandle(const HandleSettings& settings, const Pose& X_W
   reset(X_WD);
 }
 
-void SimulatedHandle::reset(const Pose& X_WD) {
+void SimulatedHandle::reset(const Pose& X_WD) noexcept {
   X_WD_ = X_WD;
   home_orientation_ = X_WD.orientation;
   velocity_ = {};
@@ -60,18 +60,18 @@ void SimulatedHandle::reset(const Pose& X_WD) {
   std::fill(delay_line_.begin(), delay_line_.end(), Wrench{});
 }
 
-Pose SimulatedHandle::read() const {
+Pose SimulatedHandle::read() const noexcept {
   const Vec3 turned = rotation_vector(home_orientation_.conjugate() * X_WD_.orientation);
   const Vec3 turned_as_read = rounded_to(turned, settings_.rotation_step_rad);
   return {rounded_to(X_WD_.position_mm, settings_.position_step_mm),
           (home_orientation_ * quaternion_from_rotation_vector(turned_as_read)).normalized()};
 }
 
-void SimulatedHandle::command(const Wrench& wrench) {
+void SimulatedHandle::command(const Wrench& wrench) noexcept {
   commanded_ = make_safe(wrench, settings_.limits).wrench;
 }
 
-void SimulatedHandle::advance(const Wrench& other) {
+void SimulatedHandle::advance(const Wrench& other) noexcept {
   // The newest command takes the place of the one that the last substep used up; what is the oldest now was
   // given `force_delay_s` ago.
   const std::size_t newest = oldest_;

@@ -43,16 +43,16 @@ class SimulatedHandle {
   SimulatedHandle(const HandleSettings& settings, const Pose& X_WD);
 
   /// At rest at `X_WD`, with nothing commanded.
-  void reset(const Pose& X_WD);
+  void reset(const Pose& X_WD) noexcept;
 
   /// What the encoder says of the pose now: position to whole steps in W, orientation to whole steps of the
   /// rotation vector from where the handle was at the start.
-  Pose read() const;
+  Pose read() const noexcept;
   /// Commands a wrench (on the handle, in W, about the burr's centre). The motors give it, within their
   /// limits, from `force_delay_s` later on, until the next command takes effect.
-  void command(const Wrench& wrench);
+  void command(const Wrench& wrench) noexcept;
   /// Moves the handle on by one substep. `other` is what acts on it beside the motors: the hand.
-  void advance(const Wrench& other);
+  void advance(const Wrench& other) noexcept;
 
   const HandleSettings& settings() const { return settings_; }
   /// The true pose and velocity.

@@ -44,7 +44,7 @@ Pose SimulatedOperator::trembling(const Pose& X_W_intended) const {
   return {X_W_intended.position_mm + tremor_mm_.at(time_s()), (turn * X_W_intended.orientation).normalized()};
 }
 
-void SimulatedOperator::tick_done(const Pose& X_WT, double dt_s) {
+void SimulatedOperator::tick_done(const Pose& X_WT, double dt_s) noexcept {
   if (!(dt_s > 0 && dt_s <= kLongestTick_s)) return;
   const double substep_s = handle_.settings().substep_s;
   const double owed_s = time_left_over_s_ + dt_s;

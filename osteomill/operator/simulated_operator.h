@@ -34,16 +34,16 @@ class SimulatedOperator final : public Device {
   SimulatedOperator(const OperatorSettings& settings, const MillingTool& tool, const MillingEntry& entry);
 
   /// As the encoder says.
-  Pose read_pose() override { return handle_.read(); }
-  void write_wrench(const Wrench& wrench) override {
+  Pose read_pose() noexcept override { return handle_.read(); }
+  void write_wrench(const Wrench& wrench) noexcept override {
     felt_ = wrench;
     handle_.command(wrench);
   }
   /// Whether the tick that begins now belongs to the milling phase, in which the spindle turns.
-  bool spindle_asked() const override { return script_.intent().milling; }
+  bool spindle_asked() const noexcept override { return script_.intent().milling; }
   /// By the simulated tool the operator judges how deep the hole is. `dt_s` passes in whole substeps of the
   /// handle; what is left over is kept for the next call. Nothing passes where it does not lie in (0, 1 s].
-  void tick_done(const Pose& X_WT, double dt_s) override;
+  void tick_done(const Pose& X_WT, double dt_s) noexcept override;
 
   double time_s() const { return static_cast<double>(substeps_) * handle_.settings().substep_s; }
   ScriptStage stage() const { return script_.intent().stage; }

@@ -28,18 +28,18 @@ VirtualHand::VirtualHand(const HandleSettings& handle, const HandSettings& hand,
   require_valid(hand);
 }
 
-void VirtualHand::pull_to(const Pose& X_W_target) {
+void VirtualHand::pull_to(const Pose& X_W_target) noexcept {
   if (is_finite(X_W_target)) asked_.write({X_W_target, ++pulls_});
 }
 
-void VirtualHand::put_at(const Pose& X_WD) {
+void VirtualHand::put_at(const Pose& X_WD) noexcept {
   if (!is_finite(X_WD)) return;
   handle_.reset(X_WD);
   X_W_target_ = X_WD;
   over_ = asked_.read().number;
 }
 
-void VirtualHand::tick_done(const Pose& /*X_WT*/, double dt_s) {
+void VirtualHand::tick_done(const Pose& /*X_WT*/, double dt_s) noexcept {
   const double passed_s = std::clamp(dt_s, 0.0, kMaxTick_s);
   const Asked& asked = asked_.read();
   const Pose& X_W_asked = asked.number > over_ ? asked.X_W : X_W_target_;

@@ -20,14 +20,14 @@ class VirtualHand final : public Device {
   VirtualHand(const HandleSettings& handle, const HandSettings& hand, const Pose& X_WD);
 
   /// Poses that are not finite are not taken.
-  void pull_to(const Pose& X_W_target);
+  void pull_to(const Pose& X_W_target) noexcept;
   /// For the haptic thread, between two ticks: puts hand and handle there, at rest, where they stay until the
   /// next `pull_to`. Safe in the tick.
-  void put_at(const Pose& X_WD) override;
+  void put_at(const Pose& X_WD) noexcept override;
 
-  Pose read_pose() override { return handle_.read(); }
-  void write_wrench(const Wrench& wrench) override { handle_.command(wrench); }
-  void tick_done(const Pose& X_WT, double dt_s) override;
+  Pose read_pose() noexcept override { return handle_.read(); }
+  void write_wrench(const Wrench& wrench) noexcept override { handle_.command(wrench); }
+  void tick_done(const Pose& X_WT, double dt_s) noexcept override;
 
  private:
   HandSettings hand_;

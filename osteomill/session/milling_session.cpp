@@ -44,7 +44,7 @@ double vibration_hz(double spindle_speed_rpm) {
   return turns_per_s / std::max(1.0, std::ceil(turns_per_s / kMax_hz));
 }
 
-Vec3 Vibration::force_N(const Pose& X_WT, double burr_force_N, double dt_s) {
+Vec3 Vibration::force_N(const Pose& X_WT, double burr_force_N, double dt_s) noexcept {
   if (!settings_.on || !(burr_force_N > 0) || !std::isfinite(burr_force_N)) return Vec3::Zero();
   turns_ += hz_ * dt_s;
   turns_ -= std::floor(turns_);
@@ -117,18 +117,18 @@ TickRecord MillingSession::tick(Device& device, double time_s, double dt_s, bool
   return record;
 }
 
-void MillingSession::take_over(const TakenOver& before) {
+void MillingSession::take_over(const TakenOver& before) noexcept {
   guard_.begin_from(before.sent);
   if (before.X_WT && is_finite(*before.X_WT)) begin_at(*before.X_WT);
 }
 
-void MillingSession::begin_at(const Pose& X_WT) {
+void MillingSession::begin_at(const Pose& X_WT) noexcept {
   guard_.begin_anew();
   last_X_WT_ = X_WT;
   forget_contacts(X_WT);
 }
 
-void MillingSession::forget_contacts(const std::optional<Pose>& X_WT) {
+void MillingSession::forget_contacts(const std::optional<Pose>& X_WT) noexcept {
   constexpr double kUsualTick_s = 1e-3;
   algorithm_->reset();
   reaction_.reset();
@@ -150,7 +150,8 @@ TickRecord MillingSession::idle_tick(Device& device, double time_s, double dt_s)
   return record;
 }
 
-MillingSession::SafeStep MillingSession::step_safely(const Pose& X_WD, double dt_s, bool spindle_on) {
+MillingSession::SafeStep MillingSession::step_safely(const Pose& X_WD, double dt_s,
+                                                     bool spindle_on) noexcept {
   HapticStep nothing;
   nothing.X_WT = last_X_WT_.value_or(Pose{});
   if (!is_finite(X_WD)) {
@@ -173,7 +174,7 @@ MillingSession::SafeStep MillingSession::step_safely(const Pose& X_WD, double dt
           share_sent(step.wrench.torque_Nmm, safe.wrench.torque_Nmm) * reaction_.wrench().torque_Nmm};
 }
 
-void MillingSession::mill(const HapticStep& step, bool spindle_on, double dt_s) {
+void MillingSession::mill(const HapticStep& step, bool spindle_on, double dt_s) noexcept {
   const MillingStep cut =
       mill_.step(*volume_, step.X_WT.position_mm,
                  paying_force_W_N(milling_, step.X_WT, step.burr_force_W_N, spindle_on), dt_s);

@@ -27,7 +27,7 @@ class Vibration {
       : settings_(settings), hz_(vibration_hz(spindle_speed_rpm)) {}
 
   /// In W, `dt_s` after the last one.
-  Vec3 force_N(const Pose& X_WT, double burr_force_N, double dt_s);
+  Vec3 force_N(const Pose& X_WT, double burr_force_N, double dt_s) noexcept;
 
  private:
   VibrationSettings settings_;
@@ -54,31 +54,32 @@ class MillingSession {
 
   /// One haptic tick of `dt_s`, begun at `time_s`; bone is removed where `spindle_on`, as much as the force
   /// that is sent pays for. A wrench that is not finite, or a device pose that is not, sends zero and is
-  /// recorded as the record's fault. Real-time safe: no allocation, lock, log, exception or system call.
-  TickRecord tick(Device& device, double time_s, double dt_s, bool spindle_on);
+  /// recorded as the record's fault. Real-time safe: no allocation, lock, log or system call, and no
+  /// exception but the device's.
+  TickRecord tick(Device& device, double time_s, double dt_s, bool spindle_on) OSTEOMILL_NONBLOCKING;
 
   /// To be called between ticks by one who may wait for memory: has ready what the next ones may change
   /// (Volume::prepare_about). Where nobody calls it, ticks that mill new bone take microseconds longer.
   void prepare_next_ticks() { volume_->prepare_about(last_change_.voxels); }
 
   /// A tick of a pause: zero is sent, nothing is computed, and contacts are kept. As safe as `tick`.
-  TickRecord idle_tick(Device& device, double time_s, double dt_s);
+  TickRecord idle_tick(Device& device, double time_s, double dt_s) OSTEOMILL_NONBLOCKING;
 
   /// What stands between the algorithm and the hand. As safe as `tick`.
   WrenchGuard& guard() { return guard_; }
 
   /// Before the first tick: begins where another session is left, whose wrench the hand feels. As safe as
   /// `tick`.
-  void take_over(const TakenOver& before);
+  void take_over(const TakenOver& before) noexcept;
   /// To be taken over by another, after the last tick.
   TakenOver left() const { return {last_X_WT_, guard_.sent()}; }
 
   /// From the next tick on the wrench comes down to zero slowly and stays there until the tool is placed. As
   /// safe as `tick`.
-  void let_go() { let_go_asked_ = true; }
+  void let_go() noexcept { let_go_asked_ = true; }
   /// In the next tick the algorithm begins anew where the device then is, whatever was touched before; the
   /// device is free of bone. As safe as `tick`.
-  void place() { place_asked_ = true; }
+  void place() noexcept { place_asked_ = true; }
 
   /// What the last tick changed of the volume.
   const VolumeChange& last_change() const { return last_change_; }
@@ -97,16 +98,16 @@ class MillingSession {
 
  private:
   TickRecord begin_record(Device& device, double time_s, double dt_s);
-  void begin_at(const Pose& X_WT);
-  void forget_contacts(const std::optional<Pose>& X_WT);
+  void begin_at(const Pose& X_WT) noexcept;
+  void forget_contacts(const std::optional<Pose>& X_WT) noexcept;
   struct SafeStep {
     HapticStep step;
     SafeWrench sent;
     // Of the torque sent.
     Vec3 cutting_torque_W_Nmm = Vec3::Zero();
   };
-  SafeStep step_safely(const Pose& X_WD, double dt_s, bool spindle_on);
-  void mill(const HapticStep& step, bool spindle_on, double dt_s);
+  SafeStep step_safely(const Pose& X_WD, double dt_s, bool spindle_on) noexcept;
+  void mill(const HapticStep& step, bool spindle_on, double dt_s) noexcept;
 
   // Behind a pointer since the algorithm keeps its address.
   std::shared_ptr<Volume> volume_;

@@ -43,13 +43,13 @@ class ScriptedAlgorithm : public HapticAlgorithm {
 
   void prepare(const Scene&) override {}
   std::vector<Pose> steps;
-  HapticStep step(const Pose& X_WD, double) override {
+  HapticStep step(const Pose& X_WD, double) noexcept override {
     steps.push_back(X_WD);
     next.X_WT = X_WD;
     return next;
   }
-  void volume_changed(const VolumeChange& change) override { changes.push_back(change); }
-  void reset() override { ++resets; }
+  void volume_changed(const VolumeChange& change) noexcept override { changes.push_back(change); }
+  void reset() noexcept override { ++resets; }
   int sample_point_count() const override { return 1; }
 };
 

@@ -6,7 +6,7 @@
 
 namespace osteomill {
 
-void FaultCount::add(const TickRecord& record) {
+void FaultCount::add(const TickRecord& record) noexcept {
   ++ticks_[static_cast<std::size_t>(record.fault)];
 }
 

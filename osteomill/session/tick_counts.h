@@ -15,7 +15,7 @@ namespace osteomill {
 /// Counts the ticks whose wrench could not be sent as it was. `add` is safe in the haptic tick.
 class FaultCount {
  public:
-  void add(const TickRecord& record);
+  void add(const TickRecord& record) noexcept;
   /// Wrenches that were shortened to the device's limits.
   int limited() const;
   /// Ticks that sent zero: the wrench was no number; the device gave no pose; the pose jumped or the tick

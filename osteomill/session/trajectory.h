@@ -32,15 +32,15 @@ std::vector<TrajectoryPoint> read_trajectory(const std::filesystem::path& path);
 /// A device that is where it is put, and remembers what it was sent: for replays and tests.
 class PosedDevice : public Device {
  public:
-  void put(const Pose& X_WD, double given_share = 1) {
+  void put(const Pose& X_WD, double given_share = 1) noexcept {
     pose_ = X_WD;
     given_share_ = given_share;
   }
-  const Wrench& sent() const { return sent_; }
+  const Wrench& sent() const noexcept { return sent_; }
 
-  Pose read_pose() override { return pose_; }
-  void write_wrench(const Wrench& wrench) override { sent_ = wrench; }
-  double given_share() const override { return given_share_; }
+  Pose read_pose() noexcept override { return pose_; }
+  void write_wrench(const Wrench& wrench) noexcept override { sent_ = wrench; }
+  double given_share() const noexcept override { return given_share_; }
 
  private:
   Pose pose_;

@@ -19,7 +19,7 @@ constexpr double kLever_mm = 30;
 
 }  // namespace
 
-void PassivityObserver::move_to(const Pose& X_WD) {
+void PassivityObserver::move_to(const Pose& X_WD) noexcept {
   moved_mm_ = turned_rad_ = Vec3::Zero();
   if (!is_finite(X_WD)) {
     X_WD_.reset();
@@ -33,7 +33,7 @@ void PassivityObserver::move_to(const Pose& X_WD) {
   X_WD_ = X_WD;
 }
 
-Wrench PassivityObserver::damping(double dt_s) const {
+Wrench PassivityObserver::damping(double dt_s) const noexcept {
   constexpr double kLever2_mm2 = kLever_mm * kLever_mm;
   const double way2_mm2 = moved_mm_.squaredNorm() + kLever2_mm2 * turned_rad_.squaredNorm();
   if (energy_given_Nmm_ <= 0 || way2_mm2 == 0 || dt_s <= 0) return {};
@@ -45,37 +45,37 @@ GuardSettings GuardSettings::for_simulation(const WrenchLimits& limits, bool pas
   return {limits, WrenchRates{}, 0, kAny, kAny, kAny, passivity_controller};
 }
 
-void WrenchGuard::begin_anew() {
+void WrenchGuard::begin_anew() noexcept {
   from_ = sent_;
   blended_ = 0;
   let_go_ = false;
   X_WD_.reset();
 }
 
-void WrenchGuard::begin_from(const Wrench& sent) {
+void WrenchGuard::begin_from(const Wrench& sent) noexcept {
   sent_ = sent;
   observer_.begin_anew(sent);
   begin_anew();
 }
 
-void WrenchGuard::let_go() {
+void WrenchGuard::let_go() noexcept {
   begin_anew();
   let_go_ = true;
 }
 
-SafeWrench WrenchGuard::approach(const Wrench& target, WrenchFault fault, double dt_s) {
+SafeWrench WrenchGuard::approach(const Wrench& target, WrenchFault fault, double dt_s) noexcept {
   sent_ = osteomill::approach(sent_, target, settings_.rates, usual_tick_s(dt_s));
   const bool short_of_it = sent_.force_N != target.force_N || sent_.torque_Nmm != target.torque_Nmm;
   observer_.send(sent_);
   return {sent_, short_of_it && fault == WrenchFault::none ? WrenchFault::eased : fault};
 }
 
-SafeWrench WrenchGuard::pass_zero(const Pose& X_WD, double dt_s) {
+SafeWrench WrenchGuard::pass_zero(const Pose& X_WD, double dt_s) noexcept {
   observer_.move_to(X_WD);
   return send_zero(dt_s);
 }
 
-SafeWrench WrenchGuard::send_zero(double dt_s) {
+SafeWrench WrenchGuard::send_zero(double dt_s) noexcept {
   const SafeWrench safe = approach({}, WrenchFault::none, dt_s);
   from_ = {};
   blended_ = 0;
@@ -83,7 +83,7 @@ SafeWrench WrenchGuard::send_zero(double dt_s) {
   return safe;
 }
 
-SafeWrench WrenchGuard::pass(const Wrench& asked, const Pose& X_WD, double dt_s) {
+SafeWrench WrenchGuard::pass(const Wrench& asked, const Pose& X_WD, double dt_s) noexcept {
   observer_.move_to(X_WD);
   const Wrench damping =
       settings_.passivity_controller && !is_zero(asked) ? observer_.damping(dt_s) : Wrench{};

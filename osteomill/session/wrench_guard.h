@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "osteomill/geometry/wrench.h"
+#include "osteomill/numbers/nonblocking.h"
 
 namespace osteomill {
 
@@ -36,7 +37,7 @@ struct GuardSettings {
 class PassivityObserver {
  public:
   /// Counts from zero, for a device that may be anywhere and is sent `sent`.
-  void begin_anew(const Wrench& sent) {
+  void begin_anew(const Wrench& sent) noexcept {
     energy_given_Nmm_ = 0;
     sent_ = sent;
     X_WD_.reset();
@@ -45,9 +46,9 @@ class PassivityObserver {
   }
   /// The device was read at `X_WD`: counts the work of what was sent since the last reading. One that is not
   /// finite breaks the count off until the next that is.
-  void move_to(const Pose& X_WD);
+  void move_to(const Pose& X_WD) noexcept;
   /// What is sent from now on.
-  void send(const Wrench& wrench) { sent_ = wrench; }
+  void send(const Wrench& wrench) noexcept { sent_ = wrench; }
 
   /// Given to the hand less what it gave, in N mm (mJ). A passive session never exceeds 0; one that is
   /// damped, no more than what the last tick of a contact gave.
@@ -56,7 +57,7 @@ class PassivityObserver {
   /// A damping wrench that takes back what was given too much within a tick of `dt_s`, if the device goes on
   /// as in the last one; less where that were more damping than a device can show. Zero where nothing is
   /// owed.
-  Wrench damping(double dt_s) const;
+  Wrench damping(double dt_s) const noexcept;
 
  private:
   double energy_given_Nmm_ = 0;
@@ -79,24 +80,24 @@ class WrenchGuard {
   /// Given to the hand less what it gave, in N mm, up to the last pose.
   double energy_given_Nmm() const { return observer_.energy_given_Nmm(); }
   /// From now what is asked for comes up slowly, from what was last sent.
-  void begin_anew();
+  void begin_anew() noexcept;
   /// As begin_anew, in the place of another guard whose hand feels `sent`; energy is counted from now on.
-  void begin_from(const Wrench& sent);
+  void begin_from(const Wrench& sent) noexcept;
   /// From now on the wrench comes down to zero slowly and stays there until `begin_anew`.
-  void let_go();
+  void let_go() noexcept;
   const Wrench& sent() const { return sent_; }
   /// Zero was sent last.
   bool is_at_rest() const { return is_zero(sent_); }
 
   /// What to send for a wrench in a tick of `dt_s`, with the reason where that is not what was asked for. One
   /// that is not finite is zero, and what follows begins anew.
-  SafeWrench pass(const Wrench& asked, const Pose& X_WD, double dt_s);
+  SafeWrench pass(const Wrench& asked, const Pose& X_WD, double dt_s) noexcept OSTEOMILL_NONBLOCKING;
   /// What to send in a tick in which nothing may be felt, as there is no finite pose or a pause.
-  SafeWrench pass_zero(const Pose& X_WD, double dt_s);
+  SafeWrench pass_zero(const Pose& X_WD, double dt_s) noexcept OSTEOMILL_NONBLOCKING;
 
  private:
-  SafeWrench send_zero(double dt_s);
-  SafeWrench approach(const Wrench& target, WrenchFault fault, double dt_s);
+  SafeWrench send_zero(double dt_s) noexcept;
+  SafeWrench approach(const Wrench& target, WrenchFault fault, double dt_s) noexcept;
 
   GuardSettings settings_;
   Wrench sent_;

@@ -23,7 +23,8 @@ double pressing_reach_mm(const GridGeometry& geometry) {
   return std::max(0.5 * geometry.spacing_mm.maxCoeff(), kKeptOff_mm);
 }
 
-bool burr_presses(const Volume& volume, double burr_radius_mm, const Vec3& burr_W, const Vec3& force_W_N) {
+bool burr_presses(const Volume& volume, double burr_radius_mm, const Vec3& burr_W,
+                  const Vec3& force_W_N) noexcept {
   if (!(force_W_N.squaredNorm() > 0)) return false;
   const Vec3 ahead = force_W_N.normalized();
   const Vec3 moved_W = burr_W + pressing_reach_mm(volume.geometry()) * ahead;

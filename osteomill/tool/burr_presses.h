@@ -12,7 +12,8 @@ double pressing_reach_mm(const GridGeometry& geometry);
 
 /// Whether bone lies ahead of a burr that presses with this force, no farther off than `pressing_reach_mm`.
 /// A wall beside the burr may hold it, but the burr does not press on it. Safe in the haptic tick.
-bool burr_presses(const Volume& volume, double burr_radius_mm, const Vec3& burr_W, const Vec3& force_W_N);
+bool burr_presses(const Volume& volume, double burr_radius_mm, const Vec3& burr_W,
+                  const Vec3& force_W_N) noexcept;
 
 /// A burr may swing on the bone that it presses on and lose it for some ticks. It still counts as pressing
 /// for as long as bone was ahead of it before, but for no longer than this; and milling keeps what it could
@@ -24,7 +25,7 @@ class PressingBurr {
  public:
   /// Safe in the haptic tick.
   bool presses(const Volume& volume, double burr_radius_mm, const Vec3& burr_W, const Vec3& force_W_N,
-               double dt_s) {
+               double dt_s) noexcept {
     const bool ahead = burr_presses(volume, burr_radius_mm, burr_W, force_W_N);
     const bool kept = away_s_ < kPressingKept_s;
     away_s_ = std::clamp(ahead ? away_s_ - dt_s : away_s_ + dt_s, 0.0, kPressingKept_s);

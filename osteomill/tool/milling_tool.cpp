@@ -44,7 +44,7 @@ ToolDistance cylinder_distance(double radius_mm, double length_mm, const Vec3& p
 
 }  // namespace
 
-ToolDistance tool_distance(const MillingTool& tool, const Vec3& point_T) {
+ToolDistance tool_distance(const MillingTool& tool, const Vec3& point_T) noexcept {
   const ToolDistance burr = sphere_distance(tool.burr_radius_mm, point_T);
   const ToolDistance shaft = cylinder_distance(tool.shaft_radius_mm, tool.shaft_length_mm, point_T);
   return burr.distance_mm < shaft.distance_mm ? burr : shaft;

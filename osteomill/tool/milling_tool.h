@@ -32,6 +32,6 @@ struct ToolDistance {
 
 /// In closed form: the smaller of the distances to the burr's sphere and the shaft's cylinder, which outside
 /// the tool is exact and inside it is exact away from where the two meet. Safe in the haptic tick.
-ToolDistance tool_distance(const MillingTool& tool, const Vec3& point_T);
+ToolDistance tool_distance(const MillingTool& tool, const Vec3& point_T) noexcept;
 
 }  // namespace osteomill

@@ -60,7 +60,7 @@ void SampledDistanceField::fill(const MillingTool& tool) {
   }
 }
 
-std::optional<ToolDistance> SampledDistanceField::at(const Vec3& point_T) const {
+std::optional<ToolDistance> SampledDistanceField::at(const Vec3& point_T) const noexcept {
   const Vec3 coordinate = (point_T - box_.min_mm) / spacing_mm_;
   int cell[3];
   double weight[3][2];

@@ -29,7 +29,7 @@ class SampledDistanceField {
   /// Distance and unit outward direction at a point of T; nothing outside `box()`, which lies outside the
   /// tool. The error of the distance is at most spacing^2 / (4 * radius) away from the tool's creases. Safe
   /// in the haptic tick.
-  std::optional<ToolDistance> at(const Vec3& point_T) const;
+  std::optional<ToolDistance> at(const Vec3& point_T) const noexcept;
 
  private:
   // Distance, then gradient.

@@ -52,13 +52,14 @@ BlockRanges::Range BlockRanges::range_of(const DensityGrid& grid, const VoxelInd
   return range;
 }
 
-std::uint32_t BlockRanges::changes_in(const VoxelBox& voxels) const {
+std::uint32_t BlockRanges::changes_in(const VoxelBox& voxels) const noexcept {
   std::uint32_t changes = 0;
   for_each(voxels.bricks(kBrickVoxels), [&](const VoxelIndex& brick) { changes += at(brick).changes; });
   return changes;
 }
 
-void BlockRanges::lower_row(int j, int k, const int* columns, const float* densities, std::size_t count) {
+void BlockRanges::lower_row(int j, int k, const int* columns, const float* densities,
+                            std::size_t count) noexcept {
   const auto [first, last] = bricks_counting({{0, j, k}, {0, j, k}});
   const auto lower_column = [first = first, last = last, this](int bi, float density) {
     for (int bk = first.k; bk <= last.k; ++bk) {

@@ -29,16 +29,16 @@ class BlockRanges {
   /// The voxels that a brick counts, as far as they lie in the grid.
   static VoxelBox counted(const VoxelIndex& brick, const GridGeometry& geometry);
   /// Brick coordinates from 0.
-  const Range& at(int bi, int bj, int bk) const { return ranges_[row_major(dims_, bi, bj, bk)]; }
-  const Range& at(const VoxelIndex& brick) const { return at(brick.i, brick.j, brick.k); }
+  const Range& at(int bi, int bj, int bk) const noexcept { return ranges_[row_major(dims_, bi, bj, bk)]; }
+  const Range& at(const VoxelIndex& brick) const noexcept { return at(brick.i, brick.j, brick.k); }
 
   /// Differs from what it was before where any of these voxels, all in the grid, was taken in anew since.
   /// Safe in the haptic tick.
-  std::uint32_t changes_in(const VoxelBox& voxels) const;
+  std::uint32_t changes_in(const VoxelBox& voxels) const noexcept;
 
   /// Takes new, lower densities of `count` voxels of one row in, whose columns ascend. Safe in the haptic
   /// tick.
-  void lower_row(int j, int k, const int* columns, const float* densities, std::size_t count);
+  void lower_row(int j, int k, const int* columns, const float* densities, std::size_t count) noexcept;
   /// Makes the ranges of all bricks that touch `box` exact again.
   void refresh(const DensityGrid& grid, const VoxelBox& box);
 

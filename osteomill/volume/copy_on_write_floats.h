@@ -54,7 +54,7 @@ class CopyOnWriteFloats {
   bool operator==(const CopyOnWriteFloats& other) const;
 
   /// Safe in the haptic tick, and where `prepare` was called swift too.
-  void set(std::size_t n, float value) {
+  void set(std::size_t n, float value) noexcept {
     values_[n] = value;
     std::atomic_ref(written_[n / kPageFloats]).store(1, std::memory_order_relaxed);
   }

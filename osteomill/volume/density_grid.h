@@ -26,27 +26,33 @@ class DensityGrid {
   /// As they lie in memory, to be kept and compared.
   const CopyOnWriteFloats& densities() const { return densities_; }
   /// The densities of row (j, k), from i = 0.
-  std::span<const float> row(int j, int k) const {
+  std::span<const float> row(int j, int k) const noexcept {
     return {densities_.data() + place(0, j, k), layout_.row_length};
   }
   /// Where the density of `v` lies, which must be in the grid. Those that follow along i lie behind it; along
   /// j and k the next are row_stride() and slice_stride() floats on. 64 bytes behind any may be read.
-  const float* address_of(const VoxelIndex& v) const { return densities_.data() + place(v.i, v.j, v.k); }
+  const float* address_of(const VoxelIndex& v) const noexcept {
+    return densities_.data() + place(v.i, v.j, v.k);
+  }
   std::ptrdiff_t row_stride() const { return static_cast<std::ptrdiff_t>(layout_.row_stride); }
   std::ptrdiff_t slice_stride() const { return static_cast<std::ptrdiff_t>(layout_.slice_stride); }
   /// The least density of the grid as it was made.
   float outside_density() const { return outside_density_; }
 
   /// The voxel's number, i running fastest: not where it lies in memory.
-  std::size_t linear_index(const VoxelIndex& v) const { return row_major(geometry_.dims, v.i, v.j, v.k); }
-  bool contains(const VoxelIndex& v) const {
+  std::size_t linear_index(const VoxelIndex& v) const noexcept {
+    return row_major(geometry_.dims, v.i, v.j, v.k);
+  }
+  bool contains(const VoxelIndex& v) const noexcept {
     return v.i >= 0 && v.j >= 0 && v.k >= 0 && v.i < geometry_.dims[0] && v.j < geometry_.dims[1] &&
            v.k < geometry_.dims[2];
   }
   /// `v` must lie in the grid.
   float operator[](const VoxelIndex& v) const { return *address_of(v); }
   /// Any `v`; the outside density beyond the border.
-  float at_or_outside(const VoxelIndex& v) const { return contains(v) ? *address_of(v) : outside_density_; }
+  float at_or_outside(const VoxelIndex& v) const noexcept {
+    return contains(v) ? *address_of(v) : outside_density_;
+  }
   /// Asks for the voxel's cache line ahead of reading it. `v` must lie in the grid.
   void prefetch(const VoxelIndex& v) const {
 #ifdef __GNUC__
@@ -55,7 +61,7 @@ class DensityGrid {
     (void)v;
 #endif
   }
-  void set(const VoxelIndex& v, float density) {
+  void set(const VoxelIndex& v, float density) noexcept {
     densities_.set(place(v.i, v.j, v.k), density);
   }
   /// Has the memory for changes about `changed` made before they come (CopyOnWriteFloats::prepare): as far as
@@ -88,7 +94,7 @@ std::vector<float> every_nth_density(const DensityGrid& grid, std::size_t every)
 
 /// One voxel's part in a hash that is the sum of all parts (modulo 2^64), so that it follows a change at the
 /// cost of what changes, in any order. Safe in the haptic tick.
-inline std::uint64_t density_hash(std::size_t voxel, float density) {
+inline std::uint64_t density_hash(std::size_t voxel, float density) noexcept {
   std::uint64_t x = (static_cast<std::uint64_t>(voxel) << 32) ^ std::bit_cast<std::uint32_t>(density);
   x *= 0x9e3779b97f4a7c15;
   x ^= x >> 29;

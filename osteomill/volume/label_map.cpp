@@ -89,11 +89,11 @@ std::vector<std::size_t> LabelMap::voxel_counts() const {
   return counts;
 }
 
-LabelMap::Place LabelMap::nearest_to(const Vec3& point_W) const {
+LabelMap::Place LabelMap::nearest_to(const Vec3& point_W) const noexcept {
   return at(nearest_voxel(scan_, point_W));
 }
 
-LabelMap::Place LabelMap::under_surface(const Vec3& point_W, const Vec3& normal_W) const {
+LabelMap::Place LabelMap::under_surface(const Vec3& point_W, const Vec3& normal_W) const noexcept {
   const double voxel_mm = scan_.spacing_mm.maxCoeff();
   for (const double voxels : {0.5, 0.0, 1.0, 1.5}) {
     const Place place = nearest_to(point_W - voxels * voxel_mm * normal_W);

@@ -43,15 +43,15 @@ class LabelMap {
   /// `place` is not 0.
   const Label& label(Place place) const { return labels_[place - 1u]; }
   /// Any voxel of the scan.
-  Place at(const VoxelIndex& v) const {
+  Place at(const VoxelIndex& v) const noexcept {
     if (!box_.contains(v)) return 0;
     return places_[row_major(dims_, v.i - box_.first.i, v.j - box_.first.j, v.k - box_.first.k)];
   }
   /// At the voxel nearest to any finite point of W.
-  Place nearest_to(const Vec3& point_W) const;
+  Place nearest_to(const Vec3& point_W) const noexcept;
   /// The label of the bone just under a place of its surface with this normal. Looks up to 1.5 voxels deep,
   /// since label maps often leave out the bone's outermost voxels.
-  Place under_surface(const Vec3& point_W, const Vec3& normal_W) const;
+  Place under_surface(const Vec3& point_W, const Vec3& normal_W) const noexcept;
 
   /// How many voxels of the scan have each label, by the label's place; voxels without a label are not
   /// counted. Goes through all voxels; not for the tick.

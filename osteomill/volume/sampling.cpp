@@ -114,7 +114,7 @@ Span span_in_grid(const GridGeometry& geometry, const Vec3& from, const Vec3& wa
 
 }  // namespace
 
-double density_at_voxel(const DensityGrid& grid, const Vec3& voxel) {
+double density_at_voxel(const DensityGrid& grid, const Vec3& voxel) noexcept {
   const auto& dims = grid.geometry().dims;
   const double x = voxel.x(), y = voxel.y(), z = voxel.z();
   if (x >= 0 && y >= 0 && z >= 0 && x < dims[0] - 1 && y < dims[1] - 1 && z < dims[2] - 1) {
@@ -132,11 +132,11 @@ double density_at_voxel(const DensityGrid& grid, const Vec3& voxel) {
   return interpolate_cell(&corner[0], &corner[2], &corner[4], &corner[6], f.x(), f.y(), f.z());
 }
 
-double density_at(const DensityGrid& grid, const Vec3& point_W) {
+double density_at(const DensityGrid& grid, const Vec3& point_W) noexcept {
   return density_at_voxel(grid, grid.geometry().voxel_from_world(point_W));
 }
 
-Vec3 density_gradient(const DensityGrid& grid, const Vec3& point_W) {
+Vec3 density_gradient(const DensityGrid& grid, const Vec3& point_W) noexcept {
   const GridGeometry& geometry = grid.geometry();
   const Cell cell = cell_around(grid, geometry.voxel_from_world(point_W));
   if (cell.far_outside) return Vec3::Zero();
@@ -169,20 +169,20 @@ Vec3 density_gradient(const DensityGrid& grid, const Vec3& point_W) {
   return geometry.direction * gradient_voxel.cwiseQuotient(geometry.spacing_mm);
 }
 
-int count_in_bone(const Volume& volume, std::span<const Vec3> points_T, const Pose& X_WT) {
+int count_in_bone(const Volume& volume, std::span<const Vec3> points_T, const Pose& X_WT) noexcept {
   return static_cast<int>(std::count_if(points_T.begin(), points_T.end(), [&](const Vec3& point_T) {
     return is_bone_at(volume, X_WT * point_T);
   }));
 }
 
-std::optional<Vec3> outward_normal(const Volume& volume, const Vec3& point_W) {
+std::optional<Vec3> outward_normal(const Volume& volume, const Vec3& point_W) noexcept {
   const Vec3 gradient = density_gradient(volume.grid(), point_W);
   const double steepness = gradient.norm();
   if (!(steepness > kFlatGradient)) return std::nullopt;
   return -gradient / steepness;
 }
 
-Vec3 bisect_crossing(const Volume& volume, Vec3 outside_W, Vec3 inside_W, double tolerance_mm) {
+Vec3 bisect_crossing(const Volume& volume, Vec3 outside_W, Vec3 inside_W, double tolerance_mm) noexcept {
   for (int n = 0; n < 60 && (inside_W - outside_W).norm() > tolerance_mm; ++n) {
     const Vec3 middle = 0.5 * (outside_W + inside_W);
     (is_bone_at(volume, middle) ? inside_W : outside_W) = middle;
@@ -190,7 +190,7 @@ Vec3 bisect_crossing(const Volume& volume, Vec3 outside_W, Vec3 inside_W, double
   return outside_W;
 }
 
-std::optional<Vec3> first_crossing(const Volume& volume, const Vec3& from_W, const Vec3& to_W) {
+std::optional<Vec3> first_crossing(const Volume& volume, const Vec3& from_W, const Vec3& to_W) noexcept {
   if (is_bone_at(volume, from_W)) return from_W;
   const GridGeometry& geometry = volume.geometry();
   const Vec3 way = (geometry.direction.transpose() * (to_W - from_W)).cwiseQuotient(geometry.spacing_mm);

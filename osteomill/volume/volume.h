@@ -33,14 +33,14 @@ class Volume {
   void set_labels(std::shared_ptr<const LabelMap> labels) { labels_ = std::move(labels); }
 
   /// `v` must lie in the grid.
-  bool is_bone(const VoxelIndex& v) const { return static_cast<double>(grid_[v]) > isovalue_; }
+  bool is_bone(const VoxelIndex& v) const noexcept { return static_cast<double>(grid_[v]) > isovalue_; }
   /// Any `v`; there is no bone beyond the border.
-  bool is_bone_in_grid(const VoxelIndex& v) const { return grid_.contains(v) && is_bone(v); }
+  bool is_bone_in_grid(const VoxelIndex& v) const noexcept { return grid_.contains(v) && is_bone(v); }
 
   /// Lowers the densities of `count` voxels of one row, whose columns ascend. Safe in the haptic tick. Where
   /// a cut is taken back densities may also rise, but only outside the tick, while nobody works on this bone,
   /// and with `refresh_ranges` after it.
-  void lower_row(int j, int k, const int* columns, const float* densities, std::size_t count) {
+  void lower_row(int j, int k, const int* columns, const float* densities, std::size_t count) noexcept {
     for (std::size_t n = 0; n < count; ++n) {
       const VoxelIndex v{columns[n], j, k};
       const std::size_t voxel = grid_.linear_index(v);
@@ -50,12 +50,12 @@ class Volume {
     ranges_.lower_row(j, k, columns, densities, count);
   }
   /// The same for one voxel.
-  void lower_density(const VoxelIndex& v, float density) { lower_row(v.j, v.k, &v.i, &density, 1); }
+  void lower_density(const VoxelIndex& v, float density) noexcept { lower_row(v.j, v.k, &v.i, &density, 1); }
   /// See DensityGrid; by another thread than the one that lowers where that one must not wait.
   void prepare_about(const VoxelBox& changed) { grid_.prepare_about(changed); }
   /// A hash of what differs from the densities it was made with: 0 where nothing does, and the same for any
   /// two bones of one scan that are the same, in whatever order they were milled. Safe in the haptic tick.
-  std::uint64_t change_hash() const { return change_hash_; }
+  std::uint64_t change_hash() const noexcept { return change_hash_; }
   /// Bone is where the density is greater from now on. Throws std::invalid_argument where it is not finite.
   /// Not for the tick, nor while anyone works on this bone.
   void set_isovalue(double isovalue) {

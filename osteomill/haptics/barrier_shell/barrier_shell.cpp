@@ -158,14 +158,14 @@ void BarrierShell::prepare(const Scene& scene) {
   reset();
 }
 
-void BarrierShell::reset() {
+void BarrierShell::reset() noexcept {
   has_pose_ = false;
   carried_ = false;
   has_energy_ = false;
   sent_ = {};
 }
 
-void BarrierShell::volume_changed(const VolumeChange& change) {
+void BarrierShell::volume_changed(const VolumeChange& change) noexcept {
   bricks_.refresh(change.voxels);
 }
 
@@ -341,7 +341,7 @@ HapticStep BarrierShell::report(const State& state, const Pose& X_WD, double dt_
   return result;
 }
 
-HapticStep BarrierShell::step(const Pose& X_WD, double dt_s) {
+HapticStep BarrierShell::step(const Pose& X_WD, double dt_s) noexcept {
   bricks_.begin_tick(tool_, X_WT_);
   ++counts_.ticks;
   if (!has_pose_) X_WD_before_ = X_WD;

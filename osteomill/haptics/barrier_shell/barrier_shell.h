@@ -38,9 +38,9 @@ class BarrierShell final : public HapticAlgorithm {
   explicit BarrierShell(const Settings& settings);
 
   void prepare(const Scene& scene) override;
-  HapticStep step(const Pose& X_WD, double dt_s) override;
-  void volume_changed(const VolumeChange& change) override;
-  void reset() override;
+  HapticStep step(const Pose& X_WD, double dt_s) noexcept override;
+  void volume_changed(const VolumeChange& change) noexcept override;
+  void reset() noexcept override;
   int sample_point_count() const override { return static_cast<int>(bricks_.fine().total()); }
 
   const Counts& counts() const { return counts_; }

@@ -31,7 +31,7 @@ Mat3 hessian(const Spring& spring, const Vec3& s, double across) {
 
 }  // namespace
 
-Wrench Coupling::wrench_on_hand(const Pose& X_WT, const Pose& X_WD) const {
+Wrench Coupling::wrench_on_hand(const Pose& X_WT, const Pose& X_WD) const noexcept {
   const ToolMove stretch = move_between(X_WD, X_WT);
   return {spring(translational_N_per_mm, max_force_N, stretch.translation_mm.norm()).per_stretch *
               stretch.translation_mm,
@@ -39,13 +39,13 @@ Wrench Coupling::wrench_on_hand(const Pose& X_WT, const Pose& X_WD) const {
               stretch.rotation_rad};
 }
 
-double Coupling::energy_Nmm(const Pose& X_WT, const Pose& X_WD) const {
+double Coupling::energy_Nmm(const Pose& X_WT, const Pose& X_WD) const noexcept {
   const ToolMove stretch = move_between(X_WD, X_WT);
   return spring(translational_N_per_mm, max_force_N, stretch.translation_mm.norm()).energy +
          spring(torsional_Nmm_per_rad, max_torque_Nmm, stretch.rotation_rad.norm()).energy;
 }
 
-EnergySum Coupling::sum(const Pose& X_WT, const Pose& X_WD) const {
+EnergySum Coupling::sum(const Pose& X_WT, const Pose& X_WD) const noexcept {
   const Quat to_T = X_WT.orientation.conjugate();
   const ToolMove stretch = move_between(X_WD, X_WT);
   const Vec3 s = to_T * stretch.translation_mm, theta = to_T * stretch.rotation_rad;

@@ -16,12 +16,12 @@ struct Coupling {
   double max_torque_Nmm = WrenchLimits{}.torque_Nmm;
 
   /// As it acts on the hand that holds the device at `X_WD`, in W.
-  Wrench wrench_on_hand(const Pose& X_WT, const Pose& X_WD) const;
+  Wrench wrench_on_hand(const Pose& X_WT, const Pose& X_WD) const noexcept;
   /// The lever at which a force stores as much energy in the torsional spring as in the translational one.
-  double length_mm() const { return std::sqrt(torsional_Nmm_per_rad / translational_N_per_mm); }
-  double energy_Nmm(const Pose& X_WT, const Pose& X_WD) const;
+  double length_mm() const noexcept { return std::sqrt(torsional_Nmm_per_rad / translational_N_per_mm); }
+  double energy_Nmm(const Pose& X_WT, const Pose& X_WD) const noexcept;
   /// Energy and its derivatives by a move of the tool; `convex` is the whole second derivative.
-  EnergySum sum(const Pose& X_WT, const Pose& X_WD) const;
+  EnergySum sum(const Pose& X_WT, const Pose& X_WD) const noexcept;
 };
 
 }  // namespace osteomill::barrier_shell

@@ -38,6 +38,7 @@ BoneBricks::BoneBricks(const Volume& volume, double spacing_mm)
       brick_of_slot_(kSlots),
       changes_(kSlots),
       without_bone_(kSlots) {
+  choose_point_instructions();
   brick_radius_mm_ = 0.5 * lattice_.brick_nodes() * lattice_.step_mm().norm();
   const auto& dims = lattice_.brick_dims();
   while (1 << levels_ < *std::max_element(dims.begin(), dims.end())) ++levels_;
@@ -118,7 +119,7 @@ int BoneBricks::make(const VoxelIndex& brick, std::uint32_t& place) {
 
 // What is new comes first: where the surface has moved on into another brick it is found there before it is
 // taken from where it was.
-void BoneBricks::refresh(const VoxelBox& voxels, int others) {
+void BoneBricks::refresh(const VoxelBox& voxels, int others) noexcept {
   refreshed_ = true;
   for_each(lattice_.bricks_touched_by(voxels), [&](const VoxelIndex& brick) { others -= make_new(brick); });
   remake_bearing();
@@ -178,7 +179,7 @@ bool BoneBricks::has_room() const {
   return !free_slots_.empty() && fine_.free_chunks() >= kMostChunks && coarse_.free_chunks() >= kMostChunks;
 }
 
-void BoneBricks::make_room(const MillingTool& tool, const Pose& X_WT) {
+void BoneBricks::make_room(const MillingTool& tool, const Pose& X_WT) noexcept {
   const Pose X_TW = X_WT.inverse();
   for (std::size_t n = 0; n < brick_of_slot_.size() && is_short_of_room(); ++n) {
     const std::uint32_t slot = static_cast<std::uint32_t>(next_to_forget_);

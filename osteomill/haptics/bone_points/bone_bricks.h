@@ -122,22 +122,22 @@ class BoneBricks {
   /// newly come are made at once, or the next time the tool meets them. Bricks that bear the tool take turns
   /// over so many ticks that each tick does about kBearingPerTick points. Of all other bricks about `others`
   /// points are done a tick; new bricks and passing over unchanged ones count as points too.
-  void refresh(const VoxelBox& voxels, int others = kOthersPerTick);
+  void refresh(const VoxelBox& voxels, int others = kOthersPerTick) noexcept;
   /// The slots of the bricks that bear the tool. Whoever uses the points keeps this list. The tool rests on
   /// these bricks: if they waited with the others, it would stand still and drop once the last had its turn.
   std::vector<std::uint32_t>& bearing() { return bearing_; }
   bool is_up_to_date() const { return sweep_.is_idle(); }
   /// How many bricks still have to be looked at, those that bear the tool among them.
-  std::size_t owed() const {
+  std::size_t owed() const noexcept {
     const VoxelBox waiting = lattice_.bricks_touched_by(sweep_.waiting());
     return bearing_owed_ + sweep_.bricks_left() + (waiting.empty() ? 0 : cell_count(waiting.dims()));
   }
   /// Makes room if little is left, by forgetting what is not near the tool.
-  void make_room(const MillingTool& tool, const Pose& X_WT);
+  void make_room(const MillingTool& tool, const Pose& X_WT) noexcept;
   /// What a tick begins with: room is made, and bricks that still wait are brought up to date where no
   /// densities fell since the tick before. From the first tick on a tick makes no more bricks than it has
   /// time for (kMadePerTick).
-  void begin_tick(const MillingTool& tool, const Pose& X_WT) {
+  void begin_tick(const MillingTool& tool, const Pose& X_WT) noexcept {
     may_make_ = kMadePerTick;
     if (!refreshed_ && !is_up_to_date()) refresh({});
     refreshed_ = false;

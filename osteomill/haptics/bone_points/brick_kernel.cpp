@@ -237,6 +237,10 @@ BrickPoints::Bound bound_of(const PointRows& points, std::size_t count) {
   return HWY_DYNAMIC_DISPATCH(BoundOf)(points, count);
 }
 
+void choose_point_instructions() {
+  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+}
+
 std::int64_t brick_kernel_targets() {
   return HWY_TARGETS;
 }

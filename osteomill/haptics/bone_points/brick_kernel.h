@@ -45,6 +45,10 @@ void add_means(const CrossingLattice& lattice, std::span<const CrossingRow> rows
 /// for the rounding of all who use it. The same bits from all instructions. Safe in the haptic tick.
 BrickPoints::Bound bound_of(const PointRows& points, std::size_t count);
 
+/// Chooses the instructions, also those of near_kernel.h. The first call of a kernel does that too, but asks
+/// the system for it.
+void choose_point_instructions();
+
 /// For tests: the sets of vector instructions that this was compiled for, as Highway numbers them.
 std::int64_t brick_kernel_targets();
 

@@ -8,7 +8,10 @@
 
 #include "tests/instruction_sets.h"
 #include "tests/random.h"
+#include "tests/shapes.h"
 #include <gtest/gtest.h>
+
+#include "osteomill/haptics/bone_points/bone_bricks.h"
 
 namespace osteomill {
 namespace {
@@ -168,6 +171,14 @@ TEST(BrickKernel, TheBoundHoldsEveryPointAndIsNoWiderThanTheyAskFor) {
       EXPECT_LE(static_cast<double>(bound.radius_mm), 1.001 * farthest_mm);
     }
   }
+}
+
+TEST(BrickKernel, InstructionsAreChosenBeforeTheTick) {
+  const Volume volume = testing_support::shape_volume(testing_support::centred_cube(8, 0.5),
+                                                      testing_support::ball(Vec3::Zero(), 1));
+  hwy::GetChosenTarget().DeInit();
+  const BoneBricks bricks(volume, 0.13);
+  EXPECT_TRUE(hwy::GetChosenTarget().IsInitialized());
 }
 
 }  // namespace

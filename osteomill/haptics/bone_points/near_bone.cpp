@@ -46,7 +46,7 @@ NearBone::NearBone(std::size_t capacity) : ball_(capacity), cylinder_(capacity) 
 }
 
 void NearBone::gather(BoneBricks& bricks, const Cores& cores, double reach_mm, const Pose& X_WT,
-                      const Room& room) {
+                      const Room& room) noexcept {
   X_WT_gathered_ = X_WT;
   ball_.count = cylinder_.count = 0;
   bricks_.clear();
@@ -79,14 +79,14 @@ void NearBone::gather(BoneBricks& bricks, const Cores& cores, double reach_mm, c
   close_gathering(cylinder_);
 }
 
-NearBone::Energy NearBone::energy(const Cores& cores, const Barrier& barrier, const Pose& X_WT) {
+NearBone::Energy NearBone::energy(const Cores& cores, const Barrier& barrier, const Pose& X_WT) noexcept {
   const Mat3 R_TW = X_WT.orientation.conjugate().toRotationMatrix();
   const Frame moved = frame_of(R_TW * X_WT_gathered_.orientation.toRotationMatrix(),
                                R_TW * (X_WT_gathered_.position_mm - X_WT.position_mm));
   return {ball_energy(ball_, moved, cores, barrier), cylinder_energy(cylinder_, moved, cores, barrier)};
 }
 
-void NearBone::find_bearing(double within_mm, std::vector<std::uint32_t>& slots) const {
+void NearBone::find_bearing(double within_mm, std::vector<std::uint32_t>& slots) const noexcept {
   const auto within = static_cast<float>(within_mm);
   const auto bears = [&](const NearPoints& near, std::size_t first, std::size_t end) {
     const auto at = [&](std::size_t n) { return near.distance.begin() + static_cast<std::ptrdiff_t>(n); };
@@ -102,12 +102,13 @@ void NearBone::find_bearing(double within_mm, std::vector<std::uint32_t>& slots)
   }
 }
 
-double NearBone::max_use(const MoveT& move, const Barrier& barrier) const {
+double NearBone::max_use(const MoveT& move, const Barrier& barrier) const noexcept {
   const double min_mm = Barrier::kNearestShare * barrier.width_mm;
   return std::max(max_use_by_ball(ball_, move, min_mm), max_use_by_cylinder(cylinder_, move, min_mm));
 }
 
-bool is_clear(BoneBricks& bricks, const Cores& cores, double reach_mm, const Pose& X_WT, const Room& room) {
+bool is_clear(BoneBricks& bricks, const Cores& cores, double reach_mm, const Pose& X_WT,
+              const Room& room) noexcept {
   const ToolFromGrid X_TG(bricks.lattice(), X_WT);
   const Meeting meets{cores, reach_mm + room.move_mm, room.turn_rad};
   return !bricks.may_hold_points(

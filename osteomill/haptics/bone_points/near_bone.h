@@ -24,24 +24,25 @@ class NearBone {
 
   /// Gathers the points that may come within `reach_mm` of a part at `X_WT` or anywhere within the room.
   /// Makes bricks, as many as a tick may.
-  void gather(BoneBricks& bricks, const Cores& cores, double reach_mm, const Pose& X_WT, const Room& room);
+  void gather(BoneBricks& bricks, const Cores& cores, double reach_mm, const Pose& X_WT,
+              const Room& room) noexcept;
   /// Whether a point may have been left out, for want of room or since its brick is not made yet: the tool
   /// must not move.
-  bool is_incomplete() const { return brick_missing_ || ball_.overflowed || cylinder_.overflowed; }
-  bool is_empty() const { return ball_.count == 0 && cylinder_.count == 0; }
+  bool is_incomplete() const noexcept { return brick_missing_ || ball_.overflowed || cylinder_.overflowed; }
+  bool is_empty() const noexcept { return ball_.count == 0 && cylinder_.count == 0; }
 
   struct Energy {
     EnergySum ball;
     EnergySum cylinder;
   };
   /// At a pose within the room of the last gathering.
-  Energy energy(const Cores& cores, const Barrier& barrier, const Pose& X_WT);
+  Energy energy(const Cores& cores, const Barrier& barrier, const Pose& X_WT) noexcept;
   /// The slots of the bricks that have points nearer than `within_mm` to a part at the pose of the last
   /// `energy`, as many as there is room for in `slots`.
-  void find_bearing(double within_mm, std::vector<std::uint32_t>& slots) const;
+  void find_bearing(double within_mm, std::vector<std::uint32_t>& slots) const noexcept;
   /// The greatest share of any point's distance that a move from the pose of the last `energy` by a barrier
   /// may use up.
-  double max_use(const MoveT& move, const Barrier& barrier) const;
+  double max_use(const MoveT& move, const Barrier& barrier) const noexcept;
 
  private:
   // A brick's slot, and where its points begin.
@@ -60,6 +61,7 @@ class NearBone {
 
 /// Whether no bone can be within `reach_mm` of the tool at `X_WT` or anywhere within the room; makes no
 /// bricks, and may say no where it is so.
-bool is_clear(BoneBricks& bricks, const Cores& cores, double reach_mm, const Pose& X_WT, const Room& room);
+bool is_clear(BoneBricks& bricks, const Cores& cores, double reach_mm, const Pose& X_WT,
+              const Room& room) noexcept;
 
 }  // namespace osteomill

@@ -323,35 +323,35 @@ KernelShape kernel_shape(const Cores& cores) {
 }  // namespace
 
 void gather_near_ball(const BrickPoints& points, std::uint32_t first_chunk, const Frame& frame,
-                      const Cores& cores, const Reach& reach, NearPoints& near) {
+                      const Cores& cores, const Reach& reach, NearPoints& near) noexcept {
   HWY_DYNAMIC_DISPATCH(GatherNearBall)
   (points, first_chunk, frame, kernel_shape(cores), static_cast<float>(reach.near_mm), near);
 }
 
 void gather_near_cylinder(const BrickPoints& points, std::uint32_t first_chunk, const Frame& frame,
-                          const Cores& cores, const Reach& reach, NearPoints& near) {
+                          const Cores& cores, const Reach& reach, NearPoints& near) noexcept {
   HWY_DYNAMIC_DISPATCH(GatherNearCylinder)
   (points, first_chunk, frame, kernel_shape(cores), static_cast<float>(reach.near_mm),
    static_cast<float>(reach.per_lever), near);
 }
 
 void sum_ball(NearPoints& near, const Frame& moved, const Cores& cores, const Barrier& barrier,
-              BallLanes& lanes) {
+              BallLanes& lanes) noexcept {
   HWY_DYNAMIC_DISPATCH(SumBall)(near, moved, kernel_shape(cores), barrier, lanes);
 }
 
 void sum_side(NearPoints& near, const Frame& moved, const Cores& cores, const Barrier& barrier,
-              SideLanes& lanes) {
+              SideLanes& lanes) noexcept {
   HWY_DYNAMIC_DISPATCH(SumSide)(near, moved, kernel_shape(cores), barrier, lanes);
 }
 
-double max_use_by_ball(const NearPoints& near, const MoveT& move, double min_distance_mm) {
+double max_use_by_ball(const NearPoints& near, const MoveT& move, double min_distance_mm) noexcept {
   const Eigen::Vector3f delta = move.delta_mm.cast<float>();
   return static_cast<double>(HWY_DYNAMIC_DISPATCH(GreatestUseByBall)(near, {delta.x(), delta.y(), delta.z()},
                                                                      static_cast<float>(min_distance_mm)));
 }
 
-double max_use_by_cylinder(const NearPoints& near, const MoveT& move, double min_distance_mm) {
+double max_use_by_cylinder(const NearPoints& near, const MoveT& move, double min_distance_mm) noexcept {
   const Eigen::Vector3f delta = move.delta_mm.cast<float>(), omega = move.omega_rad.cast<float>();
   const double turn = move.omega_rad.norm();
   return static_cast<double>(HWY_DYNAMIC_DISPATCH(GreatestUseByCylinder)(

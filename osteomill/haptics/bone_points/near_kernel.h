@@ -21,9 +21,9 @@ struct Reach {
 /// tool. The widest vector instructions that the processor has are chosen when first called; they give the
 /// same bits as the narrowest, as do those of all that follows. Safe in the haptic tick.
 void gather_near_ball(const BrickPoints& points, std::uint32_t first_chunk, const Frame& frame,
-                      const Cores& cores, const Reach& reach, NearPoints& near);
+                      const Cores& cores, const Reach& reach, NearPoints& near) noexcept;
 void gather_near_cylinder(const BrickPoints& points, std::uint32_t first_chunk, const Frame& frame,
-                          const Cores& cores, const Reach& reach, NearPoints& near);
+                          const Cores& cores, const Reach& reach, NearPoints& near) noexcept;
 
 /// Sums over points in `NearPoints::kLanes` lanes each. Points on the ball: p n (3) and m n n^T (xx, xy, xz,
 /// yy, yz, zz), E and q, with p the push, q = p / r and m = psi'' + q.
@@ -44,15 +44,15 @@ struct SideLanes {
 
 /// Of points gathered by a tool whose frame then is `moved` seen from now.
 void sum_ball(NearPoints& near, const Frame& moved, const Cores& cores, const Barrier& barrier,
-              BallLanes& lanes);
+              BallLanes& lanes) noexcept;
 /// Points at the ends are listed in `near.at_end` and left out.
 void sum_side(NearPoints& near, const Frame& moved, const Cores& cores, const Barrier& barrier,
-              SideLanes& lanes);
+              SideLanes& lanes) noexcept;
 
 /// The greatest `distance_used / distance` of a move, at the distances of the last sum, of which none counts
 /// as less than `min_distance_mm`; at least 0.
-double max_use_by_ball(const NearPoints& near, const MoveT& move, double min_distance_mm);
-double max_use_by_cylinder(const NearPoints& near, const MoveT& move, double min_distance_mm);
+double max_use_by_ball(const NearPoints& near, const MoveT& move, double min_distance_mm) noexcept;
+double max_use_by_cylinder(const NearPoints& near, const MoveT& move, double min_distance_mm) noexcept;
 
 /// The sets of vector instructions that this was compiled for, as bits of hwy/targets.h.
 std::int64_t near_kernel_targets();

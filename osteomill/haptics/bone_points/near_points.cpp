@@ -99,7 +99,7 @@ NearPoints::NearPoints(std::size_t capacity) {
   at_end.reserve(capacity);
 }
 
-Frame frame_of(const Mat3& turn, const Vec3& origin_mm) {
+Frame frame_of(const Mat3& turn, const Vec3& origin_mm) noexcept {
   Frame frame;
   for (int row = 0; row < 3; ++row) {
     frame.origin[row] = static_cast<float>(origin_mm[row]);
@@ -110,7 +110,7 @@ Frame frame_of(const Mat3& turn, const Vec3& origin_mm) {
   return frame;
 }
 
-void close_gathering(NearPoints& near) {
+void close_gathering(NearPoints& near) noexcept {
   while (near.count % NearPoints::kLanes != 0) {
     near.gathered_x[near.count] = PointChunk::kFarAway_mm;
     near.gathered_y[near.count] = near.gathered_z[near.count] = near.area[near.count] = 0;
@@ -118,14 +118,16 @@ void close_gathering(NearPoints& near) {
   }
 }
 
-EnergySum ball_energy(NearPoints& near, const Frame& moved, const Cores& cores, const Barrier& barrier) {
+EnergySum ball_energy(NearPoints& near, const Frame& moved, const Cores& cores,
+                      const Barrier& barrier) noexcept {
   BallLanes lanes;
   std::fill(std::begin(lanes.nearest), std::end(lanes.nearest), PointChunk::kFarAway_mm);
   sum_ball(near, moved, cores, barrier, lanes);
   return ball_sum(lanes);
 }
 
-EnergySum cylinder_energy(NearPoints& near, const Frame& moved, const Cores& cores, const Barrier& barrier) {
+EnergySum cylinder_energy(NearPoints& near, const Frame& moved, const Cores& cores,
+                          const Barrier& barrier) noexcept {
   SideLanes lanes;
   std::fill(std::begin(lanes.nearest), std::end(lanes.nearest), PointChunk::kFarAway_mm);
   sum_side(near, moved, cores, barrier, lanes);

@@ -33,15 +33,17 @@ struct Frame {
   float turn[3][3];
   float origin[3];
 };
-Frame frame_of(const Mat3& turn, const Vec3& origin_mm);
+Frame frame_of(const Mat3& turn, const Vec3& origin_mm) noexcept;
 
 /// After the last brick.
-void close_gathering(NearPoints& near);
+void close_gathering(NearPoints& near) noexcept;
 
 /// What the points push with and its derivatives by a move of a tool that has moved since the gathering, so
 /// that its frame then is `moved` seen from now. The same bits whatever the width of the machine's registers.
 /// Safe in the haptic tick.
-EnergySum ball_energy(NearPoints& near, const Frame& moved, const Cores& cores, const Barrier& barrier);
-EnergySum cylinder_energy(NearPoints& near, const Frame& moved, const Cores& cores, const Barrier& barrier);
+EnergySum ball_energy(NearPoints& near, const Frame& moved, const Cores& cores,
+                      const Barrier& barrier) noexcept;
+EnergySum cylinder_energy(NearPoints& near, const Frame& moved, const Cores& cores,
+                          const Barrier& barrier) noexcept;
 
 }  // namespace osteomill

@@ -30,7 +30,7 @@ void LineProxy::prepare(const Scene& scene) {
   reset();
 }
 
-HapticStep LineProxy::step(const Pose& X_WD, double) {
+HapticStep LineProxy::step(const Pose& X_WD, double) noexcept {
   const Vec3& tip_W = X_WD.position_mm;
   follow_with_tip_proxy(tip_W);
   const Pose X_WL{memory_.tip_proxy_W.value_or(tip_W), X_WD.orientation};

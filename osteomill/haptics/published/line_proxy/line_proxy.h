@@ -31,10 +31,10 @@ class LineProxy final : public HapticAlgorithm {
   explicit LineProxy(const Settings& settings) : settings_(settings) {}
 
   void prepare(const Scene& scene) override;
-  HapticStep step(const Pose& X_WD, double dt_s) override;
+  HapticStep step(const Pose& X_WD, double dt_s) noexcept override;
   /// Does nothing: every step reads the volume itself.
-  void volume_changed(const VolumeChange&) override {}
-  void reset() override { memory_ = Memory{}; }
+  void volume_changed(const VolumeChange&) noexcept override {}
+  void reset() noexcept override { memory_ = Memory{}; }
   int sample_point_count() const override { return static_cast<int>(vertices_T_.size()); }
 
  private:

@@ -38,12 +38,12 @@ void PointShell::prepare(const Scene& scene) {
   reset();
 }
 
-void PointShell::reset() {
+void PointShell::reset() noexcept {
   X_WT_.reset();
   stretch_before_ = {};
 }
 
-HapticStep PointShell::step(const Pose& X_WD, double) {
+HapticStep PointShell::step(const Pose& X_WD, double) noexcept {
   const Pose before = X_WT_.value_or(X_WD);
   const ToolContacts contacts =
       contacts_by_octree(shell_, milling_tool_, *tool_, before, stiffness_N_per_mm3_);

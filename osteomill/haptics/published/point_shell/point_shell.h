@@ -41,9 +41,9 @@ class PointShell final : public HapticAlgorithm {
   explicit PointShell(const Settings& settings) : settings_(settings) {}
 
   void prepare(const Scene& scene) override;
-  HapticStep step(const Pose& X_WD, double dt_s) override;
-  void volume_changed(const VolumeChange& change) override { shell_.refresh(change.voxels); }
-  void reset() override;
+  HapticStep step(const Pose& X_WD, double dt_s) noexcept override;
+  void volume_changed(const VolumeChange& change) noexcept override { shell_.refresh(change.voxels); }
+  void reset() noexcept override;
   int sample_point_count() const override { return static_cast<int>(shell_.points().total()); }
 
  private:

@@ -5,7 +5,7 @@
 namespace osteomill::point_shell {
 
 Wrench wrench_on_hand(const VirtualCoupling& coupling, const Pose& X_WT, const Pose& X_WD,
-                      const ToolMove& stretch_before) {
+                      const ToolMove& stretch_before) noexcept {
   const ToolMove stretch = move_between(X_WD, X_WT);
   const auto damped = [&](const Vec3& now, const Vec3& before) -> Vec3 {
     return now + coupling.damping_ticks * (now - before);
@@ -15,7 +15,7 @@ Wrench wrench_on_hand(const VirtualCoupling& coupling, const Pose& X_WT, const P
 }
 
 ToolMove balancing_move(const VirtualCoupling& coupling, const Pose& X_WT, const Pose& X_WD,
-                        const ToolMove& stretch_before, const EnergySum& contacts) {
+                        const ToolMove& stretch_before, const EnergySum& contacts) noexcept {
   // F_net and T_net at X_WT.
   const Wrench pull = wrench_on_hand(coupling, X_WT, X_WD, stretch_before);
   Vector6 net;

@@ -28,7 +28,7 @@ void SurfacePoints::prepare(const Scene& scene) {
   reset();
 }
 
-void SurfacePoints::reset() {
+void SurfacePoints::reset() noexcept {
   sphere_.force_W_N.setZero();
   for (Fan& slice : slices_) slice.force_W_N.setZero();
 }
@@ -54,7 +54,7 @@ void SurfacePoints::update(Fan& fan, const Pose& X_WD) const {
   fan.force_W_N = settings_.stiffness_N_per_mm / static_cast<double>(fan.arms_T.size()) * reach_mm;
 }
 
-HapticStep SurfacePoints::step(const Pose& X_WD, double) {
+HapticStep SurfacePoints::step(const Pose& X_WD, double) noexcept {
   HapticStep result;
   result.X_WT = X_WD;
   update(sphere_, X_WD);

@@ -40,10 +40,10 @@ class SurfacePoints final : public HapticAlgorithm {
   explicit SurfacePoints(const Settings& settings) : settings_(settings) {}
 
   void prepare(const Scene& scene) override;
-  HapticStep step(const Pose& X_WD, double dt_s) override;
+  HapticStep step(const Pose& X_WD, double dt_s) noexcept override;
   /// Does nothing: every step reads the volume itself.
-  void volume_changed(const VolumeChange&) override {}
-  void reset() override;
+  void volume_changed(const VolumeChange&) noexcept override {}
+  void reset() noexcept override;
   int sample_point_count() const override;
 
  private:

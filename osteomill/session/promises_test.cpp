@@ -1,0 +1,43 @@
+#include <type_traits>
+#include <utility>
+
+#include <gtest/gtest.h>
+
+#include "osteomill/session/milling_session.h"
+
+namespace osteomill {
+namespace {
+
+// What the tick calls promises in the language that it does not throw; but a device that has failed may.
+template <typename T>
+T& a() noexcept;
+
+static_assert(noexcept(a<HapticAlgorithm>().step(a<const Pose>(), 1e-3)));
+static_assert(noexcept(a<HapticAlgorithm>().volume_changed(a<const VolumeChange>())));
+static_assert(noexcept(a<HapticAlgorithm>().reset()));
+static_assert(noexcept(a<Device>().given_share()) && noexcept(a<Device>().spindle_asked()));
+static_assert(noexcept(a<Device>().tick_done(a<const Pose>(),
+                                             1e-3)) && noexcept(a<Device>().put_at(a<const Pose>())));
+static_assert(noexcept(a<Device>().let_go()) && noexcept(a<Device>().take_hold()));
+static_assert(!noexcept(a<Device>().read_pose()) &&
+              !noexcept(a<MillingSession>().tick(a<Device>(), 0, 1e-3, true)));
+static_assert(noexcept(a<BurrMill>().step(a<Volume>(), a<const Vec3>(), a<const Vec3>(), 1e-3)));
+static_assert(noexcept(a<WrenchGuard>().pass(a<const Wrench>(), a<const Pose>(), 1e-3)));
+static_assert(noexcept(a<MillingSession>().take_over(a<const TakenOver>())));
+
+// A copy of what is used through its interface would be a part of it.
+static_assert(!std::is_copy_assignable_v<Device> && !std::is_copy_assignable_v<HapticAlgorithm>);
+static_assert(std::is_nothrow_swappable_v<Volume>);
+
+class FailedDevice final : public Device {
+ public:
+  Pose read_pose() override { return {}; }
+  void write_wrench(const Wrench&) override { throw 1; }
+};
+
+TEST(Device, LettingGoOfOneThatThrowsHasSentNothing) {
+  EXPECT_FALSE(FailedDevice().let_go());
+}
+
+}  // namespace
+}  // namespace osteomill
