@@ -38,8 +38,11 @@ function(osteomill_add_stage name)
   list(TRANSFORM STAGE_USES PREPEND osteomill_ OUTPUT_VARIABLE uses)
   target_link_libraries(${target} PUBLIC ${uses} ${STAGE_LINK}
     PRIVATE $<BUILD_INTERFACE:osteomill_compile_options> ${STAGE_LINK_PRIVATE})
+  add_dependencies(libraries ${target})
   if(OSTEOMILL_PRECOMPILED_HEADERS)
     target_precompile_headers(${target} REUSE_FROM osteomill_library_headers)
+  else()
+    osteomill_compile_alone(${target} ${STAGE_HEADERS})
   endif()
   # What the installed package tells of the stage (OsteomillInstall.cmake).
   set_property(GLOBAL APPEND PROPERTY OSTEOMILL_STAGES ${name})
@@ -50,6 +53,23 @@ function(osteomill_add_stage name)
     osteomill_test(${target}_test SOURCES ${STAGE_TESTS} LINK ${target} ${STAGE_TEST_LINK}
       IN ${STAGE_TEST_IN} THREADS ${STAGE_TEST_THREADS})
   endif()
+endfunction()
+
+# Every header is the first that a source includes, so that one which lives by another before it is found out; a source is
+# made for those that none of the stage's own includes first.
+function(osteomill_compile_alone target)
+  foreach(header IN LISTS ARGN)
+    file(RELATIVE_PATH included ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR}/${header})
+    string(REGEX REPLACE "\\.h$" ".cpp" source ${header})
+    set(first "")
+    if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${source})
+      file(STRINGS ${CMAKE_CURRENT_SOURCE_DIR}/${source} first REGEX "^#include" LIMIT_COUNT 1)
+    endif()
+    if(NOT first STREQUAL "#include \"${included}\"")
+      file(CONFIGURE OUTPUT alone/${source} CONTENT "#include \"${included}\"\n")
+      target_sources(${target} PRIVATE ${CMAKE_CURRENT_BINARY_DIR}/alone/${source})
+    endif()
+  endforeach()
 endfunction()
 
 # osteomill_test(NAME SOURCES ... LINK ... [IN release] [THREADS filter]): a GoogleTest program. ctest runs it in two

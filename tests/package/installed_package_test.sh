@@ -17,20 +17,13 @@ for file in LICENSE README.md docs/architecture.md examples/press_on_a_ball.cpp;
   [ -s "prefix/share/doc/osteomill/$file" ] || fail "not installed: $file"
 done
 
-# Every header compiles from here: all together, and those of each component by themselves (in the tree a header's own
-# source includes it first; scripts/check-includes sees to what is compiled beforehand there).
+# All headers compile from here, together; each alone: the dev preset.
 export PKG_CONFIG_PATH=$folder/prefix/lib/pkgconfig
 flags="-w $(pkg-config --cflags osteomill)"
 (cd prefix/include && find osteomill -name '*.h') | sort >headers
 [ "$(wc -l <headers)" -gt 100 ] || fail "only $(wc -l <headers) headers are installed"
 sed 's/.*/#include "&"/' headers >all.cpp
 g++ $flags -fsyntax-only all.cpp || fail "the headers do not compile together"
-# In reverse, so that a header that lives by another before it is found out.
-for component in "${components[@]}"; do
-  grep "^osteomill/$component/" headers | sort -r | sed 's/.*/#include "&"/' >"$component.cpp"
-done
-printf '%s.cpp\n' "${components[@]}" | xargs -P "$(nproc)" -n 1 g++ $flags -fsyntax-only ||
-  fail "a component's headers do not compile"
 
 user() {  # NAME CMAKE_ARGUMENTS...
   cmake -S "$source/tests/package" -B "$1" -G Ninja -DCMAKE_PREFIX_PATH="$folder/prefix" \
@@ -56,3 +49,18 @@ g++ user.o -o whole -Wl,--whole-archive prefix/lib/libosteomill_*.a -Wl,--no-who
 ./whole | cmp - felt
 g++ user.o -o by_pkg_config $(pkg-config --static --libs osteomill-haptics)
 ./by_pkg_config | cmp - felt
+
+# The same bits in a program of any flags, whose objects bring inline functions of their own into the link.
+for flags in "-O1" "-O3 -march=native -ffp-contract=fast"; do
+  user bits -DCOMPONENTS=session -DSOURCE="$source/tests/package/same_bits.cpp" -DCMAKE_CXX_FLAGS="$flags" &&
+    cmake --build bits >/dev/null && bits/user >"bits with $flags" || { cat bits.log; fail "same_bits fails with $flags"; }
+done
+g++ -O3 -march=native -ffp-contract=fast $(pkg-config --cflags osteomill-session) "$source/tests/package/same_bits.cpp" \
+  -o bits_by_pkg_config $(pkg-config --static --libs osteomill-session)
+./bits_by_pkg_config >"bits by pkg-config"
+for told in "bits with -O3 -march=native -ffp-contract=fast" "bits by pkg-config"; do
+  diff "bits with -O1" "$told" || fail "other bits: $told"
+done
+# Without what the package asks for, a program that could not be right is not made.
+! echo '#include <osteomill/geometry/pose.h>' | g++ -std=c++20 -march=x86-64-v3 -fsyntax-only -x c++ \
+  -isystem /usr/include/eigen3 -I prefix/include - 2>/dev/null || fail "a Quat that lies otherwise is taken"
