@@ -1,0 +1,52 @@
+#!/usr/bin/env bash
+# What readers copy from README.md and docs/: C++ compiles, studies and configurations are read, and every option of a
+# command in an indented line is one of that command's.
+#   code_blocks_test.sh SOURCE_DIR PROGRAM
+set -euo pipefail
+source=$1 osteomill=$2
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+faults=0
+fault() { echo "FAILED: $*"; faults=$((faults + 1)); }
+pages=("$source"/README.md "$source"/docs/*.md)
+
+# Blocks as files: PAGE.LINE.LANGUAGE
+for page in "${pages[@]}"; do
+  awk -v to="$folder/$(basename "$page" .md)" '
+    /^```[a-z]+$/ { file = to "." NR "." substr($0, 4); next }
+    /^```$/ { file = "" }
+    file { print > file }' "$page"
+done
+
+flags=(-std=c++20 -fsyntax-only -w -DEIGEN_MAX_ALIGN_BYTES=16 -I "$source" -isystem /usr/include/eigen3)
+shopt -s nullglob
+for block in "$folder"/*.cpp; do
+  # A part of a program has the bone, and stands in a function.
+  if ! grep -q 'int main' "$block"; then
+    { sed 's/.*/#include "&"/' <<'HEADERS'
+osteomill/device/connected_device.h
+osteomill/device/hardware.h
+osteomill/live/live_milling.h
+osteomill/operator/milling_entry.h
+HEADERS
+      echo 'void part(const std::shared_ptr<osteomill::Volume>& bone) {'; cat "$block"; echo '}'; } >"$block.whole"
+    mv "$block.whole" "$block"
+  fi
+  g++ "${flags[@]}" "$block" || fault "${block##*/} does not compile"
+done
+for block in "$folder"/*.toml; do
+  "$osteomill" study "$block" --list >/dev/null || fault "${block##*/} is no study"
+done
+[ -n "$(echo "$folder"/*.cpp)" ] && [ -n "$(echo "$folder"/*.toml)" ] || fault "no blocks are found"
+
+lines=0
+while read -r program command rest; do
+  [[ $command =~ ^[a-z]+$ ]] || continue
+  help=$("$osteomill" "$command" --help 2>/dev/null) || { fault "no command: $program $command"; continue; }
+  lines=$((lines + 1))
+  for option in $(grep -oE -- '(^| )--[a-z-]+' <<<"${rest%%#*}" || true); do
+    grep -qE -- "(^|[ ,])$option([ ,]|$)" <<<"$help" || fault "$command has no $option: $rest"
+  done
+done < <(sed -e ':join' -e '/\\$/{N;s/\\\n *//;b join' -e '}' "${pages[@]}" | grep -hE '^    (\$ )?(\./scripts/run|osteomill) ' | sed 's/^    \(\$ \)\?//; s/ [|;&].*//')
+[ "$lines" -gt 5 ] || fault "only $lines commands are found"
+[ "$faults" -eq 0 ]
