@@ -6,6 +6,11 @@
 
 namespace osteomill::app {
 
+class WindowDriver;
+
+/// Runs the program and returns its exit code. `driver`, if there is one, works the window of `simulate`.
+int run_program(int argc, char** argv, WindowDriver* driver = nullptr);
+
 /// Each adds a command to the program, which runs when the command line has been parsed. `command_line` is
 /// how the program was called, for recordings to say.
 void add_compare_command(CLI::App& program, const std::string& command_line);
@@ -18,7 +23,7 @@ void add_replay_command(CLI::App& program, const std::string& command_line);
 void add_report_command(CLI::App& program);
 void add_save_command(CLI::App& program);
 void add_settings_command(CLI::App& program);
-void add_simulate_command(CLI::App& program, const std::string& command_line);
+void add_simulate_command(CLI::App& program, const std::string& command_line, WindowDriver* driver);
 void add_study_command(CLI::App& program);
 
 }  // namespace osteomill::app

@@ -20,7 +20,6 @@
 #include "osteomill/experiment/entry_pictures.h"
 #include "osteomill/files/input_error.h"
 #include "osteomill/live/bone_sender.h"
-#include "osteomill/live/crash_stop.h"
 #include "osteomill/live/live_milling.h"
 #include "osteomill/operator/virtual_hand.h"
 #include "osteomill/session/milling_setup.h"
@@ -171,7 +170,6 @@ Seen run_for(LiveMilling& milling, double seconds, const std::shared_ptr<const L
 }
 
 void run_live(LiveOptions options, const std::string& command_line) {
-  const CrashStop crash_stop;
   ScriptSettings& script = options.trial.hand.script;
   script.milling_s = script.holding_s = 0.5 * options.seconds;
   Holder holder(options.device);

@@ -25,6 +25,7 @@
 #include "osteomill/files/input_files.h"
 #include "osteomill/files/leftovers.h"
 #include "osteomill/files/run_program.h"
+#include "osteomill/live/crash_stop.h"
 #include "osteomill/numbers/work_progress.h"
 
 namespace {
@@ -125,7 +126,7 @@ class HelpText : public CLI::Formatter {
   }
 };
 
-int run(int argc, char** argv) {
+int run(int argc, char** argv, osteomill::app::WindowDriver* driver) {
   constexpr rlim_t kLeastStackBytes = 256 * 1024;
   rlimit stack{};
   if (::getrlimit(RLIMIT_STACK, &stack) == 0 && stack.rlim_cur < kLeastStackBytes) {
@@ -137,7 +138,7 @@ int run(int argc, char** argv) {
   program.formatter(std::make_shared<HelpText>());
   program.get_formatter()->label("SUBCOMMAND", "COMMAND");
   const std::string command_line = command_line_of(argc, argv);
-  osteomill::app::add_simulate_command(program, command_line);
+  osteomill::app::add_simulate_command(program, command_line, driver);
   osteomill::app::add_compare_command(program, command_line);
   osteomill::app::add_live_command(program, command_line);
   osteomill::app::add_rates_command(program);
@@ -186,13 +187,15 @@ int run(int argc, char** argv) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int osteomill::app::run_program(int argc, char** argv, WindowDriver* driver) {
   open_closed_streams();
   // A file as long as a limit allows, or a pipe whose reader has gone, is one that cannot be written, as on a
   // full disk.
   std::signal(SIGXFSZ, SIG_IGN);
   std::signal(SIGPIPE, SIG_IGN);
-  osteomill::remove_leftovers_when_ended();
-  const osteomill::KeepInputs keep_inputs;
-  return end_output(run(argc, argv));
+  // Before leftovers are, so that a signal that removes them goes on to the devices.
+  const CrashStop crash_stop;
+  remove_leftovers_when_ended();
+  const KeepInputs keep_inputs;
+  return end_output(run(argc, argv, driver));
 }

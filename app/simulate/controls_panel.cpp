@@ -207,6 +207,21 @@ void draw_reading_aids(ViewState& view) {
 
 }  // namespace
 
+std::optional<double> stiffness_of(const MillingSetup& setup) {
+  const SettingDescription* stiffness = setting_of_option(setup.algorithm, kStiffnessOption);
+  if (stiffness == nullptr) return std::nullopt;
+  const std::vector<SettingDescription> values = setting_values(setup.algorithm, setup.haptics);
+  return std::find_if(values.begin(), values.end(),
+                      [&](const auto& one) { return one.name == stiffness->name; })
+      ->value;
+}
+
+std::string isovalue_text(const Simulation& simulation) {
+  if (simulation.milling.isovalue() == simulation.scan.isovalue) return simulation.scan.isovalue_from;
+  return fmt::format("set here; first {:.4g}{}, {}", simulation.scan.isovalue, simulation.scan.unit,
+                     simulation.scan.isovalue_from);
+}
+
 void draw_controls(ViewState& view, Simulation& simulation, FilesPanel& files, const PixelSize& size) {
   ImGui::SetNextWindowPos({ui::px(8), ui::px(8)});
   const float width = ui::px(kWidth_px);

@@ -61,11 +61,6 @@ void take_input(ViewState& view, Simulation& simulation, SpaceMouse& space_mouse
 /// out, before the bone where it is seen. Does nothing to a tool that only presses on bone.
 void free_tool(ViewState& view, Simulation& simulation, const PixelSize& size);
 
-/// What the window's controls bring about, a line "NAME.KEY=VALUE" each: not how a control stands but what is
-/// in force, is drawn and is heard. For scripts (ui_script.h).
-std::string state_text(const std::string& name, const ViewState& view, Simulation& simulation,
-                       const FilesPanel& files, const SpindleState& heard, const PixelSize& size);
-
 /// What the slider of stiffness sets, in force: nothing where the algorithm has none.
 inline constexpr const char* kStiffnessOption = "stiffness";
 std::optional<double> stiffness_of(const MillingSetup& setup);

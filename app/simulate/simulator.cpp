@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <ctime>
 #include <exception>
 #include <filesystem>
 #include <functional>
@@ -27,8 +26,8 @@
 #include "app/simulate/scene_of.h"
 #include "app/simulate/screen_scale.h"
 #include "app/simulate/simulation.h"
-#include "app/simulate/ui_script.h"
 #include "app/simulate/window.h"
+#include "app/simulate/window_driver.h"
 #include <fmt/core.h>
 #include <imgui.h>
 #include <malloc.h>
@@ -37,7 +36,6 @@
 #include "osteomill/files/input_error.h"
 #include "osteomill/image/image.h"
 #include "osteomill/live/bone_sender.h"
-#include "osteomill/live/crash_stop.h"
 #include "osteomill/numbers/recent_rate.h"
 #include "osteomill/numbers/work_progress.h"
 #include "osteomill/sound/spindle_sound.h"
@@ -134,8 +132,8 @@ struct SimulatorOptions {
   SendOption send;
   // How much larger than usual text is drawn; not given: as the screen needs it.
   std::optional<double> ui_scale;
-  // Works the window in place of a person (ui_script.h); empty: nobody does.
-  std::string script;
+  // Null: a person works the window.
+  WindowDriver* driver = nullptr;
   bool no_help = false;
   // Where recordings and what is saved go.
   std::string folder = ".";
@@ -156,12 +154,10 @@ class Simulator {
         files_(options.folder, [this](const Camera& camera) { return picture(camera); }) {
     setup_.vibration.on = true;
     if (hardware_) setup_.guard.limits = hardware_->limits_W(setup_.guard.limits);
-    if (!options.script.empty()) script_.emplace(options.script);
     view_.help = !options.no_help;
   }
 
   void run() {
-    const CrashStop crash_stop;
     // Unsaved milling of an earlier run comes before the scan that was named.
     leftover_ = last_leftover_milling();
     if (leftover_) {
@@ -179,7 +175,7 @@ class Simulator {
       draw_dialogue(view_.dialogues);
       finish();
     }
-    if (script_) script_->end();
+    if (options_.driver != nullptr) options_.driver->finish();
     if (simulation_) {
       files_.close(view_, *simulation_);
       simulation_->autosave.discard();
@@ -194,6 +190,10 @@ class Simulator {
   }
 
  private:
+  bool is_driven() const {
+    return options_.driver != nullptr && (simulation_ || leftover_ || options_.driver->starts_before_scan());
+  }
+
   bool unsaved() const { return simulation_ && simulation_->autosave.unsaved(simulation_->milling); }
 
   // Does `go_on` at once where nothing unsaved would be lost by it; else asks first.
@@ -243,7 +243,7 @@ class Simulator {
     // Also while the window is too small to be drawn.
     if (simulation_) files_.take_result(view_, *simulation_);
     view_.dialogues.proceed();
-    return closing_ || (script_ && script_->closed());
+    return closing_ || (options_.driver != nullptr && options_.driver->wants_to_close());
   }
 
   void begin() {
@@ -252,9 +252,7 @@ class Simulator {
                          !simulation_->milling.placing() && !view_.X_W_brought && !view_.wanted_is_new &&
                          !view_.undo_asked && !view_.reset_confirmed && !view_.isovalue_asked &&
                          !files_.busy() && (!opening() || view_.dialogues.shown() != nullptr);
-    if (script_ && (simulation_ || leftover_ || script_->at_once())) {
-      script_->feed(seconds_since(last_picture_), settled, window_);
-    }
+    if (is_driven()) options_.driver->give_input(seconds_since(last_picture_), settled, window_);
     last_picture_ = Clock::now();
     ImGui::NewFrame();
   }
@@ -512,10 +510,12 @@ class Simulator {
 
   void finish() {
     window_.end_frame();
-    if (script_ && (simulation_ || leftover_ || script_->at_once())) tell(script_->after_drawing(window_));
+    if (is_driven()) {
+      options_.driver->read({window_, view_, simulation_.get(), files_, heard_, pictures_per_s(),
+                             renderer_ ? renderer_->triangle_count() : 0});
+    }
     window_.show();
     pictures_.count();
-    ++pictures_since_said_;
     if (std::exchange(view_.full_screen_asked, false)) window_.toggle_full_screen();
     if (const int steps = std::exchange(view_.text_steps, 0); steps != 0) {
       constexpr double kStep = 0.25;
@@ -526,40 +526,11 @@ class Simulator {
     std::this_thread::sleep_until(last_picture_ + kMin);
   }
 
-  void tell(const UiScript::Saying& saying) {
-    if (saying.text.empty()) return;
-    if (!simulation_) {
-      if (leftover_) fmt::print("{}\n", saying.text);
-    } else if (saying.state) {
-      fmt::print("{}", state_text(saying.text, view_, *simulation_, files_, heard_, window_.size()));
-    } else {
-      say(saying.text);
-    }
-    std::fflush(stdout);
-  }
-
-  void say(const std::string& text) {
-    const TimingSummary timing = simulation_->milling.timing();
-    const TickRecord& record = simulation_->milling.state().record;
-    const double cpu_s = static_cast<double>(std::clock() - said_cpu_) / CLOCKS_PER_SEC;
-    fmt::print(
-        "{}: {:.1f} pictures/s ({:.0f} ms of all processors each), {} triangles, {:.1f} Hz, {} late, step "
-        "p99 {:.0f} us, force {:.2f} N, removed {:.3f} mm³, {} cuts, scan {}\n",
-        text, pictures_per_s(), 1e3 * cpu_s / std::max(pictures_since_said_, 1), renderer_->triangle_count(),
-        timing.ticks_per_s, timing.late_ticks, timing.step.p99_us, record.wrench.force_N.norm(),
-        record.removed_mm3, simulation_->milling.follower().cuts(), simulation_->scan.name);
-    for (const std::string& complaint : view_.dialogues.complaints()) fmt::print("dialogue: {}\n", complaint);
-    std::fflush(stdout);
-    said_cpu_ = std::clock();
-    pictures_since_said_ = 0;
-  }
-
   SimulatorOptions options_;
   // The first scan is opened with it.
   MillingSetup setup_;
   std::unique_ptr<ConnectedDevice> hardware_;
   Window window_;
-  std::optional<UiScript> script_;
   // The failure that the user was told of.
   std::exception_ptr device_failure_;
   Opening opening_;
@@ -583,8 +554,6 @@ class Simulator {
   SpindleState heard_;
   SpaceMouse space_mouse_;
   RecentRate pictures_;
-  int pictures_since_said_ = 0;
-  std::clock_t said_cpu_ = 0;
   Clock::time_point last_picture_ = Clock::now();
   // Destroyed before all that stands above, which its ticks refer to.
   std::unique_ptr<Simulation> simulation_;
@@ -593,8 +562,9 @@ class Simulator {
 
 }  // namespace
 
-void add_simulate_command(CLI::App& program, const std::string& command_line) {
+void add_simulate_command(CLI::App& program, const std::string& command_line, WindowDriver* driver) {
   auto options = std::make_shared<SimulatorOptions>();
+  options->driver = driver;
   options->command_line = command_line;
   options->milling.setup.cutting_reaction = true;
   CLI::App* command =
@@ -616,9 +586,6 @@ void add_simulate_command(CLI::App& program, const std::string& command_line) {
       ->check(CLI::Range(kMinScale, kMaxScale));
   command->add_flag("--no-help", options->no_help,
                     "Begin without the page that explains the controls (else shown the first time)");
-  command
-      ->add_option("--script", options->script, "Work the window from this file (app/simulate/ui_script.h)")
-      ->type_name("FILE");
   command->callback([=] {
     apply_config_file(*command);
     Simulator(*options).run();

@@ -10,8 +10,8 @@
 
 namespace osteomill::app::ui {
 
-/// The functions below draw ImGui's widgets and note where, so that a script (ui_script.h) finds a widget by
-/// its label (what stands before "##").
+/// The functions below draw ImGui's widgets and note their places, so that a WindowDriver finds a widget by
+/// its label (the text before "##").
 struct Place {
   ImVec2 middle;
   /// In which of ImGui's frames it was drawn last.

@@ -14,7 +14,8 @@ recordings() { (cd c && echo *.h5); }
 compare --seconds 0.3 --algorithm line-proxy --seeds 2
 echo mine >c/notes.txt
 [ -s c/study.csv ] || fault "no study.csv"
-compare --seconds 30 --algorithm point-shell --seed 2 --burr-radius 2 --seeds 3 &
+"$osteomill" compare --no-stability --quiet --out c --seconds 30 --algorithm point-shell --seed 2 --burr-radius 2 \
+  --seeds 3 >out &
 killed=$!
 for n in $(seq 300); do
   if [ -n "$(find c -path '*point-shell-milling.h5')" ]; then break; fi

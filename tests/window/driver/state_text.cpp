@@ -1,6 +1,6 @@
-#include <algorithm>
+#include "tests/window/driver/state_text.h"
+
 #include <string_view>
-#include <vector>
 
 #include "app/simulate/panels.h"
 #include "app/simulate/scene_of.h"
@@ -84,23 +84,11 @@ void add_scene(Lines& lines, const ViewState& view, const ViewScene& scene, cons
 
 }  // namespace
 
-std::optional<double> stiffness_of(const MillingSetup& setup) {
-  const SettingDescription* stiffness = setting_of_option(setup.algorithm, kStiffnessOption);
-  if (stiffness == nullptr) return std::nullopt;
-  const std::vector<SettingDescription> values = setting_values(setup.algorithm, setup.haptics);
-  return std::find_if(values.begin(), values.end(),
-                      [&](const auto& one) { return one.name == stiffness->name; })
-      ->value;
-}
-
-std::string isovalue_text(const Simulation& simulation) {
-  if (simulation.milling.isovalue() == simulation.scan.isovalue) return simulation.scan.isovalue_from;
-  return fmt::format("set here; first {:.4g}{}, {}", simulation.scan.isovalue, simulation.scan.unit,
-                     simulation.scan.isovalue_from);
-}
-
-std::string state_text(const std::string& name, const ViewState& view, Simulation& simulation,
-                       const FilesPanel& files, const SpindleState& heard, const PixelSize& size) {
+std::string state_text(const std::string& name, const WindowContents& window) {
+  const ViewState& view = window.view;
+  Simulation& simulation = *window.simulation;
+  const FilesPanel& files = window.files;
+  const PixelSize size = window.window.size();
   Lines lines(name);
   LiveMilling& milling = simulation.milling;
   const LiveState& state = milling.state();
@@ -113,7 +101,7 @@ std::string state_text(const std::string& name, const ViewState& view, Simulatio
   lines.add("in_hand", view.holding_tool);
   lines.add("spindle", state.spindle_on);
   lines.add("paused", state.record.paused);
-  lines.add("heard_rpm", fmt::format("{:.0f}", heard.speed_rpm));
+  lines.add("heard_rpm", fmt::format("{:.0f}", window.sound.speed_rpm));
   lines.add("isovalue", fmt::format("{:.6g}", milling.isovalue()));
   lines.add("isovalue_from", isovalue_text(simulation));
   lines.add("warnings", simulation.warnings.empty() ? "" : simulation.warnings.front());

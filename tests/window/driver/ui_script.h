@@ -1,17 +1,17 @@
 #pragma once
 
 #include <cstddef>
+#include <ctime>
 #include <filesystem>
 #include <set>
 #include <string>
 #include <vector>
 
-#include "app/simulate/window.h"
+#include "app/simulate/window_driver.h"
 
 namespace osteomill::app {
 
-/// Works the window as a person would, by pointer and keys, from a text file with a line for each action, so
-/// that the whole window can be tested:
+/// Works the window as a person would, by pointer and keys, from a text file with a line for each action:
 ///     at-once                         as the first line: begins while the first scan is still being opened
 ///     wait SECONDS
 ///     settle                          until nothing is being prepared, written or brought to its place
@@ -26,7 +26,7 @@ namespace osteomill::app {
 ///     open PATH                       drops that file or folder onto the window
 ///     screenshot FILE                 a PNG of the window
 ///     say TEXT                        on standard output, with the readings
-///     state NAME                      on standard output, all that the controls bring about (panels.h)
+///     state NAME                      on standard output, all that the controls bring about (state_text.h)
 ///     controls FILE                   once the window has closed, adds to it the labels of all controls that
 ///                                     were drawn ("drawn LABEL") and of those that acted ("worked LABEL")
 ///     await FILE                      until it is there; meanwhile pointer and keys are the display's own
@@ -34,27 +34,19 @@ namespace osteomill::app {
 ///     quit                            asks to close, as the window's own button does
 ///     close                           closes without a question
 /// Empty lines and lines that begin with # mean nothing.
-class UiScript {
+class UiScript : public WindowDriver {
  public:
   /// Throws InputError naming the file and the line for what is not an action.
   explicit UiScript(const std::filesystem::path& path);
 
-  /// To be called before ImGui's frame begins: hands it the events of this picture, `passed_s` after the last
-  /// one. Throws InputError where a label is not in the window.
-  void feed(double passed_s, bool settled, Window& window);
-  /// To be called after the window was drawn: takes screenshots. Returns what is to be printed, if anything,
-  /// and whether that is all of the state under this name.
-  struct Saying {
-    std::string text;
-    bool state = false;
-  };
-  Saying after_drawing(const Window& window);
-  /// To be called after the last picture: writes the file of controls.
-  void end() const;
-  /// Whether it begins before there is a scan.
-  bool at_once() const { return !actions_.empty() && actions_.front().name == "at-once"; }
-  /// Whether the window is to close without a question.
-  bool closed() const { return closed_; }
+  bool starts_before_scan() const override { return !actions_.empty() && actions_.front().name == "at-once"; }
+  /// Throws InputError if a label is not in the window.
+  void give_input(double passed_s, bool is_settled, Window& window) override;
+  /// Takes screenshots, and prints what the script asks for on standard output.
+  void read(const WindowContents& contents) override;
+  bool wants_to_close() const override { return closed_; }
+  /// Writes the file of controls.
+  void finish() override;
 
  private:
   struct Action {
@@ -67,6 +59,7 @@ class UiScript {
   void next();
   int key_of(const Action& action) const;
   void press(const Action& action, bool down);
+  void say(const std::string& text, const WindowContents& contents);
   double number(const Action& action, std::size_t word) const;
 
   std::filesystem::path path_;
@@ -87,6 +80,8 @@ class UiScript {
   std::vector<int> keys_;
   // Pressed by `press` and not yet released.
   std::set<int> held_keys_;
+  int pictures_since_said_ = 0;
+  std::clock_t said_cpu_ = 0;
 };
 
 }  // namespace osteomill::app

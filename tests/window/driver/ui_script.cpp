@@ -1,13 +1,15 @@
-#include "app/simulate/ui_script.h"
+#include "tests/window/driver/ui_script.h"
 
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <cstdio>
 #include <fstream>
 #include <map>
 #include <sstream>
 
 #include "app/simulate/widgets.h"
+#include "tests/window/driver/state_text.h"
 #include <GLFW/glfw3.h>
 #include <fmt/core.h>
 #include <imgui.h>
@@ -150,7 +152,7 @@ void UiScript::next() {
   keys_.clear();
 }
 
-void UiScript::feed(double passed_s, bool settled, Window& window) {
+void UiScript::give_input(double passed_s, bool is_settled, Window& window) {
   ImGuiIO& io = ImGui::GetIO();
   double wheel = 0;
   bool pressed = false;
@@ -179,7 +181,7 @@ void UiScript::feed(double passed_s, bool settled, Window& window) {
     for (const int key : held_keys_) io.KeysDown[key] = true;
     io.KeyShift = io.KeysDown[GLFW_KEY_LEFT_SHIFT];
     io.KeyCtrl = io.KeysDown[GLFW_KEY_LEFT_CONTROL];
-    const bool waits = action.name == "settle" && !settled;
+    const bool waits = action.name == "settle" && !is_settled;
     const bool drawn_first = kDrawnFirst.count(action.name) != 0;
     const bool over = time_left_s_ <= 0 && !waits && !drawn_first;
     if (over && keys_.empty()) next();
@@ -192,7 +194,7 @@ void UiScript::feed(double passed_s, bool settled, Window& window) {
   io.MouseWheel = static_cast<float>(wheel);
 }
 
-void UiScript::end() const {
+void UiScript::finish() {
   if (controls_path_.empty()) return;
   std::ofstream file(controls_path_, std::ios::app);
   for (const auto& [label, place] : ui::places()) file << "drawn " << label << '\n';
@@ -200,14 +202,40 @@ void UiScript::end() const {
     if (place.worked) file << "worked " << label << '\n';
 }
 
-UiScript::Saying UiScript::after_drawing(const Window& window) {
-  if (now_ >= actions_.size() || !begun_) return {};
+void UiScript::read(const WindowContents& contents) {
+  ++pictures_since_said_;
+  if (now_ >= actions_.size() || !begun_) return;
   const Action action = actions_[now_];
-  if (kDrawnFirst.count(action.name) == 0) return {};
-  if (action.name == "screenshot") write_png(action.text, window.picture());
+  if (kDrawnFirst.count(action.name) == 0) return;
   next();
-  if (action.name == "screenshot") return {};
-  return {action.text, action.name == "state"};
+  if (action.name == "screenshot") {
+    write_png(action.text, contents.window.picture());
+  } else if (contents.simulation == nullptr) {
+    fmt::print("{}\n", action.text);
+  } else if (action.name == "state") {
+    fmt::print("{}", state_text(action.text, contents));
+  } else {
+    say(action.text, contents);
+  }
+  std::fflush(stdout);
+}
+
+void UiScript::say(const std::string& text, const WindowContents& contents) {
+  const LiveMilling& milling = contents.simulation->milling;
+  const TimingSummary timing = milling.timing();
+  const TickRecord& record = contents.simulation->milling.state().record;
+  const double cpu_s = static_cast<double>(std::clock() - said_cpu_) / CLOCKS_PER_SEC;
+  fmt::print(
+      "{}: {:.1f} pictures/s ({:.0f} ms of all processors each), {} triangles, {:.1f} Hz, {} late, step "
+      "p99 {:.0f} us, force {:.2f} N, removed {:.3f} mm³, {} cuts, scan {}\n",
+      text, contents.pictures_per_s, 1e3 * cpu_s / std::max(pictures_since_said_, 1), contents.triangles,
+      timing.ticks_per_s, timing.late_ticks, timing.step.p99_us, record.wrench.force_N.norm(),
+      record.removed_mm3, milling.follower().cuts(), contents.simulation->scan.name);
+  for (const std::string& complaint : contents.view.dialogues.complaints()) {
+    fmt::print("dialogue: {}\n", complaint);
+  }
+  said_cpu_ = std::clock();
+  pictures_since_said_ = 0;
 }
 
 }  // namespace osteomill::app
