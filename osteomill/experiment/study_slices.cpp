@@ -7,6 +7,7 @@
 #include <new>
 #include <sstream>
 #include <stdexcept>
+#include <tuple>
 
 #include <fmt/format.h>
 
@@ -18,6 +19,23 @@
 namespace osteomill {
 
 namespace fs = std::filesystem;
+
+// A slice's file as it is.
+struct SliceContent {
+  std::vector<std::uint64_t> trials;
+  std::vector<double> values;
+  std::string not_reached;
+  double cpu_s = 0;
+};
+
+// What the process that reads passes on.
+static auto members_of(StudyRecord& record) {
+  return std::tie(record.study_hash, record.program_hash, record.scans_from, record.trials,
+                  record.trials_a_slice, record.bones);
+}
+static auto members_of(SliceContent& content) {
+  return std::tie(content.trials, content.values, content.not_reached, content.cpu_s);
+}
 
 namespace {
 
@@ -198,28 +216,35 @@ void write_slice(const StudyFolder& study, const Slice& slice) {
 
 namespace {
 
-// Throws where the file holds something else than these rows.
-Slice slice_in(const Hdf5File& file, const StudyFolder& study, std::size_t number) {
-  const StudyRecord& record = study.record;
-  const std::vector<Field<TrialRow>>& columns = columns_of(study.test);
-  const auto parts = parts_of(study.test);
-  const std::size_t count = record.size_of(number) * parts.size();
+// Throws where the file is not of this slice.
+SliceContent content_of(const Hdf5File& file, const StudyFolder& study, std::size_t number) {
+  const std::size_t count = study.record.size_of(number) * parts_of(study.test).size();
   require_version(file, kSliceVersion);
   const Attributes read(file.path, file.id());
-  if (read.get<std::uint64_t>("made_of") != record.hash() || read.get<std::uint64_t>("slice") != number)
+  if (read.get<std::uint64_t>("made_of") != study.record.hash() || read.get<std::uint64_t>("slice") != number)
     file.refuse("is of another study");
-  const auto trials = read_rows<std::uint64_t>(file, "trial", count);
-  const auto values = read_rows<double>(file, "values", count, columns.size());
   const auto bytes =
       read_rows<unsigned char>(file, "not_reached", read.get<std::uint64_t>("not_reached_bytes"));
-  std::istringstream lines(std::string(bytes.begin(), bytes.end()));
-  Slice slice{number, {}, read.get<double>("cpu_s")};
-  for (std::size_t n = 0; n < count; ++n) {
-    TrialRow& row = slice.rows.emplace_back(TrialRow{.trial = trials[n], .part = n % parts.size()});
-    if (row.trial != record.first_of(number) + n / parts.size() || !std::getline(lines, row.run.not_reached))
-      file.refuse("has other trials than its own");
+  return {read_rows<std::uint64_t>(file, "trial", count),
+          read_rows<double>(file, "values", count, columns_of(study.test).size()),
+          {bytes.begin(), bytes.end()},
+          read.get<double>("cpu_s")};
+}
+
+// Nothing where these are other trials than the slice's.
+std::optional<Slice> slice_of(const SliceContent& content, const StudyFolder& study, std::size_t number) {
+  const std::vector<Field<TrialRow>>& columns = columns_of(study.test);
+  const auto parts = parts_of(study.test);
+  std::istringstream lines(content.not_reached);
+  Slice slice{number, {}, content.cpu_s};
+  for (std::size_t n = 0; n < content.trials.size(); ++n) {
+    TrialRow& row = slice.rows.emplace_back(TrialRow{.trial = content.trials[n], .part = n % parts.size()});
+    if (row.trial != study.record.first_of(number) + n / parts.size() ||
+        !std::getline(lines, row.run.not_reached))
+      return std::nullopt;
     row.run.phase = parts[row.part];
-    for (std::size_t c = 0; c < columns.size(); ++c) columns[c].set(row, values[n * columns.size() + c]);
+    for (std::size_t c = 0; c < columns.size(); ++c)
+      columns[c].set(row, content.values[n * columns.size() + c]);
   }
   return slice;
 }
@@ -228,8 +253,9 @@ Slice slice_in(const Hdf5File& file, const StudyFolder& study, std::size_t numbe
 
 std::optional<Slice> read_slice(const StudyFolder& study, std::size_t number) {
   try {
-    return read_hdf5(slice_path(study.path, number),
-                     [&](const Hdf5File& file) { return slice_in(file, study, number); });
+    const auto content = read_hdf5(slice_path(study.path, number),
+                                   [&](const Hdf5File& file) { return content_of(file, study, number); });
+    return slice_of(content, study, number);
   } catch (const InputError&) {
     return std::nullopt;
   }

@@ -1,7 +1,10 @@
 #include "osteomill/recording/read_hdf5.h"
 
 #include <array>
+#include <cerrno>
 #include <csignal>
+#include <optional>
+#include <stdexcept>
 #include <system_error>
 
 #include <fcntl.h>
@@ -48,18 +51,58 @@ void require_nothing_elsewhere(const Hdf5File& file) {
     file.refuse("'" + refused + "' leads elsewhere, or needs a filter that is not HDF5's own");
 }
 
-// What the program does at a signal is not for the child to do.
+// What the program does at a signal is not for the child to do. The library of C tells of a heap that is
+// damaged.
 void end_by_any_fault(std::uintmax_t bytes) {
-  constexpr rlim_t kLeast_s = 2;
+  constexpr unsigned kLeast_s = 2, kWaitingShare = 20;
   constexpr std::uintmax_t kBytesPerSecond = 5'000'000;
   for (int signal = 1; signal < NSIG; ++signal) std::signal(signal, SIG_DFL);
-  const rlim_t most_s = kLeast_s + bytes / kBytesPerSecond;
+  const unsigned most_s = kLeast_s + static_cast<unsigned>(bytes / kBytesPerSecond);
   const rlimit processor{most_s, most_s};
   ::setrlimit(RLIMIT_CPU, &processor);
+  ::alarm(kWaitingShare * most_s);
   const rlimit no_dump{0, 0};
   ::setrlimit(RLIMIT_CORE, &no_dump);
-  // The library of C tells of a heap that is damaged.
   ::dup2(::open("/dev/null", O_WRONLY), STDERR_FILENO);
+}
+
+// Nothing where the child put in all that it had to. Else the reason for which it refused the file, which is
+// empty where it broke off.
+std::optional<std::string> taken(PipeEnd& pipe, const std::function<void(PipeEnd&)>& take) {
+  try {
+    bool is_read = false;
+    pass(pipe, is_read);
+    if (is_read) {
+      take(pipe);
+      return std::nullopt;
+    }
+    std::string reason;
+    pass(pipe, reason);
+    return reason;
+  } catch (const std::runtime_error&) {
+    return "";
+  }
+}
+
+[[noreturn]] void be_the_child(const fs::path& path, PipeEnd& pipe,
+                               const std::function<void(PipeEnd&)>& put) {
+  int code = 0;
+  try {
+    try {
+      put(pipe);
+    } catch (const InputError& error) {
+      bool is_read = false;
+      std::string reason = error.what();
+      const std::string subject = in_one_line(path.string()) + ": ";
+      if (reason.starts_with(subject)) reason.erase(0, subject.size());
+      pass(pipe, is_read);
+      pass(pipe, reason);
+    }
+    pipe.flush();
+  } catch (...) {
+    code = 1;
+  }
+  ::_exit(code);
 }
 
 }  // namespace
@@ -88,22 +131,35 @@ Hdf5File open_hdf5(const fs::path& path) {
   return file;
 }
 
-void try_in_child(const fs::path& path, const std::function<void()>& read) {
+void pass_from_child(const fs::path& path, const std::function<void(PipeEnd&)>& put,
+                     const std::function<void(PipeEnd&)>& take) {
+  // Of what is read, for each byte of the file; and of a reason.
+  constexpr std::uintmax_t kMostBytes = 10'000, kMostOfReason = 1'000'000;
   std::error_code error;
-  const std::uintmax_t bytes = fs::file_size(path, error);
+  const std::uintmax_t bytes = fs::file_size(path, error), most = kMostBytes * bytes + kMostOfReason;
+  std::array<int, 2> ends{};
+  if (::pipe2(ends.data(), O_CLOEXEC) != 0)
+    throw InputError(path.string(), "cannot be read: too many open files");
   const ::pid_t child = ::fork();
   if (child == 0) {
     end_by_any_fault(bytes);
-    try {
-      read();
-    } catch (...) {
-      // It is told by the process that reads it next.
-    }
-    ::_exit(0);
+    ::close(ends[0]);
+    PipeEnd pipe(ends[1], PipeEnd::Does::put, most);
+    be_the_child(path, pipe, put);
   }
+  ::close(ends[1]);
+  std::optional<std::string> fault;
+  {
+    PipeEnd pipe(ends[0], PipeEnd::Does::take, most);
+    fault = taken(pipe, take);
+  }
+  if (child < 0)
+    throw InputError(path.string(), "cannot be read: no process can be started for it (ulimit -u)");
   int status = 0;
-  if (child > 0 && ::waitpid(child, &status, 0) == child && status != 0)
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
+  if (status != 0 || (fault && fault->empty()))
     throw InputError(path.string(), "is damaged: it ends the program that reads it");
+  if (fault) throw InputError(path.string(), *fault);
 }
 
 Hdf5Column open_column(const Hdf5File& file, const std::string& place, hsize_t width) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "osteomill/recording/hdf5.h"
+#include "osteomill/recording/pipe_end.h"
 
 namespace osteomill {
 
@@ -27,18 +28,30 @@ void require_readable(const std::filesystem::path& path);
 /// Opens the file, without a lock of HDF5's. Throws InputError where it is not HDF5, or holds what leads out
 /// of it: links, values in other files, filters that are not HDF5's own. Under Hdf5Lock.
 Hdf5File open_hdf5(const std::filesystem::path& path);
-/// Lets another process read first, since HDF5 ends the program on some files, or never comes back. Throws
-/// InputError where it did. Under Hdf5Lock.
-void try_in_child(const std::filesystem::path& path, const std::function<void()>& read);
+/// Lets a child process `put` something into a pipe, and this one `take` it. Throws InputError, naming the
+/// file, with the reason for which the child refused it, or where the child ended otherwise, did not end, or
+/// cannot be started.
+void pass_from_child(const std::filesystem::path& path, const std::function<void(PipeEnd&)>& put,
+                     const std::function<void(PipeEnd&)>& take);
 
-/// Returns what `read` makes of the file, an Hdf5File. This is how every file of HDF5 is read whose content
-/// somebody else may have made.
+/// Returns what `read` makes of the file, an Hdf5File. HDF5 ends the program on some files, never comes back,
+/// or writes beyond its memory without a sign, so it is a child process that reads, and what it read is
+/// passed on (pipe_end.h). This is how every file of HDF5 is read whose content somebody else may have made.
 template <typename Read>
 auto read_hdf5(const std::filesystem::path& path, const Read& read) {
   const Hdf5Lock lock;
   require_readable(path);
-  try_in_child(path, [&] { read(open_hdf5(path)); });
-  return read(open_hdf5(path));
+  decltype(read(open_hdf5(path))) content;
+  pass_from_child(
+      path,
+      [&](PipeEnd& pipe) {
+        content = read(open_hdf5(path));
+        bool is_read = true;
+        pass(pipe, is_read);
+        pass(pipe, content);
+      },
+      [&](PipeEnd& pipe) { pass(pipe, content); });
+  return content;
 }
 
 /// A dataset of `width` numbers a row.

@@ -20,6 +20,39 @@ namespace osteomill {
 
 namespace fs = std::filesystem;
 
+// What the process that reads passes on.
+static auto members_of(RunSetting& setting) {
+  return std::tie(setting.key, setting.value, setting.unit);
+}
+static auto members_of(Label& label) {
+  return std::tie(label.value, label.name, label.colour, label.no_go);
+}
+static auto members_of(Origin& made) {
+  return std::tie(made.date_utc, made.host, made.system, made.processor, made.compiler, made.build);
+}
+static auto members_of(AlgorithmId& id) {
+  return std::tie(id.name, id.label, id.colour);
+}
+static auto members_of(RunDescription& run) {
+  return std::tie(run.program_version, run.made, run.scan_name, run.dims, run.spacing_mm, run.origin_mm,
+                  run.direction, run.scan_hash, run.label_map_hash, run.isovalue, run.tool, run.algorithm,
+                  run.phase, run.seed, run.tick_period_s, run.settings, run.labels);
+}
+static auto members_of(SessionStart& start) {
+  return std::tie(start.run, start.taken_over.X_WT, start.taken_over.sent, start.removed_mm3, start.bricks,
+                  start.goes_on_from);
+}
+static auto members_of(RecordedSession& session) {
+  return std::tie(session.first, session.start);
+}
+static auto members_of(RunPicture& picture) {
+  return std::tie(picture.name, picture.png);
+}
+static auto members_of(Recording& recording) {
+  return std::tie(recording.description, recording.sessions, recording.bone_hashes, recording.records,
+                  recording.pictures, recording.complete, recording.dropped);
+}
+
 namespace {
 
 void require_our_version(const Hdf5File& recording, const Attributes& root) {
@@ -234,9 +267,13 @@ Recording read_checked(const fs::path& path) {
   const Checksum checksum = check_checksum(path);
   if (checksum == Checksum::broken)
     throw InputError(path.string(), "is damaged or cut short: its checksum is not that of its content");
-  if (checksum != Checksum::our_own) return read_hdf5(path, read_open_file);
-  const Hdf5Lock lock;
-  return read_open_file(open_hdf5(path));
+  if (checksum == Checksum::our_own) {
+    const Hdf5Lock lock;
+    return read_open_file(open_hdf5(path));
+  }
+  Recording recording = read_hdf5(path, read_open_file);
+  recording.path = path;
+  return recording;
 }
 
 }  // namespace

@@ -1,0 +1,41 @@
+#include "osteomill/recording/pipe_end.h"
+
+#include <stdexcept>
+
+#include <unistd.h>
+
+namespace osteomill {
+
+namespace {
+
+void require_whole(bool whole) {
+  if (!whole) throw std::runtime_error("the pipe to the child is broken");
+}
+
+}  // namespace
+
+PipeEnd::PipeEnd(int descriptor, Does does, std::uintmax_t most_bytes)
+    : file_(::fdopen(descriptor, does == Does::take ? "r" : "w")), does_(does), most_bytes_(most_bytes) {
+  if (file_ == nullptr) ::close(descriptor);
+  require_whole(file_ != nullptr);
+}
+
+PipeEnd::~PipeEnd() {
+  std::fclose(file_);
+}
+
+void PipeEnd::pass_bytes(void* data, std::size_t count) {
+  require_whole((takes() ? std::fread(data, 1, count, file_) : std::fwrite(data, 1, count, file_)) == count);
+}
+
+std::size_t PipeEnd::pass_count(std::size_t count, std::size_t size) {
+  pass_bytes(&count, sizeof(count));
+  require_whole(count <= most_bytes_ / size);
+  return count;
+}
+
+void PipeEnd::flush() {
+  require_whole(std::fflush(file_) == 0);
+}
+
+}  // namespace osteomill
