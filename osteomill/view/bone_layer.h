@@ -66,7 +66,7 @@ struct Detail {
   std::optional<Sphere> sharp;
 };
 /// So fine that a finer level would look the same.
-inline constexpr Detail kFullDetail{0.5, std::nullopt};
+inline const Detail kFullDetail{0.5, std::nullopt};
 
 /// A brick that the camera may see.
 struct SeenBrick {
