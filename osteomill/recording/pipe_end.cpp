@@ -25,6 +25,8 @@ PipeEnd::~PipeEnd() {
 }
 
 void PipeEnd::pass_bytes(void* data, std::size_t count) {
+  // An empty container may have no memory.
+  if (count == 0) return;
   require_whole((takes() ? std::fread(data, 1, count, file_) : std::fwrite(data, 1, count, file_)) == count);
 }
 

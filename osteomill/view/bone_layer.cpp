@@ -314,8 +314,9 @@ std::vector<std::size_t> BoneLayer::in_view(const ViewScene& scene, const Projec
       found.emplace_back((bounds.centre_W - eye_W).squaredNorm(), n);
   }
   std::ranges::sort(found);
-  const auto numbers = found | std::views::values;
-  return {numbers.begin(), numbers.end()};
+  std::vector<std::size_t> numbers;
+  for (const auto& [distance_mm2, number] : found) numbers.push_back(number);
+  return numbers;
 }
 
 std::vector<std::size_t> BoneLayer::in_view(const ViewScene& scene, const Projection& projection) const {
