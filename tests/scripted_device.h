@@ -63,11 +63,11 @@ struct ScriptedDevice {
     }
     ~Way() override { ++device_.closed; }
     const DeviceCapabilities& capabilities() const override { return device_.can; }
-    ConnectionStatus read(DeviceInput& input) override {
+    ConnectionStatus read(DeviceInput& heard) override {
       if (device_.throws) throw std::runtime_error("the cable came off");
       if (device_.gone || device_.deaf) return ConnectionStatus::lost;
       if (device_.silent) return ConnectionStatus::silent;
-      input = device_.input;
+      heard = device_.input;
       return ConnectionStatus::fresh;
     }
     ConnectionStatus write(const Wrench& wrench_D) override {
