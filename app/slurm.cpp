@@ -36,21 +36,24 @@ void write_submit_script(const fs::path& folder) {
   if (fs::exists(script, error)) return;
   const std::string program = fs::read_symlink("/proc/self/exe").string();
   write_text_atomically(script, [&](std::ostream& out) {
-    fmt::print(out,
-               "#!/bin/sh\n"
-               "# A slice of a study for each task of an array; osteomill study hands it to sbatch, with the "
-               "number\n"
-               "# of the array's first slice. Yours to change: it is not written again.\n"
-               "#SBATCH --job-name=osteomill\n"
-               "#SBATCH --cpus-per-task=1\n"
-               "#SBATCH --output=\"{0}/logs/%A_%a.txt\"\n"
-               "##SBATCH --account=...\n"
-               "##SBATCH --partition=...\n"
-               "##SBATCH --time=0:30:00\n"
-               "##SBATCH --mem-per-cpu=1G\n"
-               "slice=$(($1 + SLURM_ARRAY_TASK_ID))\n"
-               "exec {1} study {2} --slice \"$slice\" --threads \"${{SLURM_CPUS_PER_TASK:-1}}\" --quiet\n",
-               folder.string(), quoted(program), quoted(folder.string()));
+    fmt::print(
+        out,
+        "#!/bin/sh\n"
+        "# A slice of a study for each task of an array; osteomill study hands it to sbatch, with the "
+        "number\n"
+        "# of the array's first slice and --chdir, so that all of it is relative to this folder, which may "
+        "be moved.\n"
+        "# Yours to change: it is not written again.\n"
+        "#SBATCH --job-name=osteomill\n"
+        "#SBATCH --cpus-per-task=1\n"
+        "#SBATCH --output=logs/%A_%a.txt\n"
+        "##SBATCH --account=...\n"
+        "##SBATCH --partition=...\n"
+        "##SBATCH --time=0:30:00\n"
+        "##SBATCH --mem-per-cpu=1G\n"
+        "slice=$(($1 + SLURM_ARRAY_TASK_ID))\n"
+        "exec {} study . --slice \"$slice\" --threads \"${{SLURM_CPUS_PER_TASK:-1}}\" --quiet\n",
+        quoted(program));
   });
 }
 
@@ -102,9 +105,9 @@ void submit_to_slurm(const fs::path& folder, const std::vector<std::size_t>& sli
     std::vector<std::size_t> tasks;
     for (; from != to; ++from) tasks.push_back(*from - first);
     const std::string array = "--array=" + ranges_text(tasks);
-    fmt::print(
-        "submitted as job {}\n",
-        output_of({"sbatch", "--parsable", array, (study / "submit.sh").string(), fmt::format("{}", first)}));
+    fmt::print("submitted as job {}\n",
+               output_of({"sbatch", "--parsable", "--chdir=" + study.string(), array,
+                          (study / "submit.sh").string(), fmt::format("{}", first)}));
   }
 }
 

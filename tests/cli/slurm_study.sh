@@ -104,7 +104,7 @@ rows out3 | cmp - expected || fault "the cluster gives other rows than one threa
 
 # Whatever can happen to a slice. submit.sh is its user's to change.
 mkdir out4
-sed "s|out3|out4|g" out3/submit.sh >whole.sh
+cp out3/submit.sh whole.sh
 sed '/^exec/i\
 case $slice in\
   1) "'"$osteomill"'" study '"$folder"'/out4 --slice 1 --quiet & sleep 0.05; kill -9 $!; kill -9 $$ ;;\
@@ -113,7 +113,7 @@ case $slice in\
 esac' whole.sh >out4/submit.sh
 "$osteomill" study study.toml --out out4 --slices 6 --on slurm >submitted
 job=$(sed -n '1s/.* //p' submitted)
-sbatch --parsable --array=0 out4/submit.sh 4 >/dev/null
+sbatch --parsable --chdir="$folder/out4" --array=0 out4/submit.sh 4 >/dev/null
 "$osteomill" study out4 --slice 4 --threads 1 --quiet
 until_true 30 started started3 || fault "slice 3 did not start"
 scancel "${job}_3"
@@ -134,6 +134,15 @@ until_true 60 nothing_queued || fault "what was resumed does not end"
 stat -c %Y.%i out4/slice-[45].h5 | cmp - before || fault "slices that were done ran again"
 rows out4 | cmp - expected || fault "after all that the rows are others"
 [ "$("$osteomill" study out4 --resume --on slurm)" = out4 ] || fault "there was nothing to submit"
+
+# A folder that was moved.
+mkdir elsewhere
+mv out4 elsewhere/moved
+rm elsewhere/moved/slice-2.h5
+"$osteomill" study elsewhere/moved --resume --on slurm >submitted
+until_true 60 nothing_queued || fault "what was moved does not end"
+rows elsewhere/moved | cmp - expected || fault "a study that was moved is not gone on with"
+mv elsewhere/moved out4
 
 # A cluster that refuses says why, and no sbatch is one line.
 rm out4/slice-2.h5
