@@ -30,7 +30,7 @@ enum { QUESTION = 1, ANSWER = 2, STATE = 3, WRENCH = 4 };
 struct head {
   char magic[4];
   uint16_t version, kind;
-  uint32_t sequence, reserved;
+  uint32_t sequence, is_taken;
 };
 struct answer {
   struct head head;
@@ -118,6 +118,10 @@ static int is_finite(const struct wrench *wrench) {
   return 1;
 }
 
+static int is_same(const struct sockaddr_in *a, const struct sockaddr_in *b) {
+  return a->sin_port == b->sin_port && a->sin_addr.s_addr == b->sin_addr.s_addr;
+}
+
 int main(int count, char **words) {
   const int port = count > 1 ? atoi(words[1]) : 47117;
   FILE *log = count > 2 ? fopen(words[2], "w") : NULL;
@@ -166,14 +170,14 @@ int main(int count, char **words) {
       if (memcmp(head.magic, "OMIL", 4) != 0 || head.version != 1) continue;
       if (head.kind == QUESTION) {
         answer.head = head_of(ANSWER, head.sequence);
+        answer.head.is_taken = next_s - heard_s < CONVERSATION_S && !is_same(&from, &partner);
         sendto(to_all, &answer, sizeof answer, 0, (struct sockaddr *)&from, from_length);
       } else if (head.kind == WRENCH && length == sizeof asked) {
         struct wrench wrench;
         memcpy(&wrench, bytes, sizeof wrench);
         const int talking = next_s - heard_s < CONVERSATION_S;
-        const int same = from.sin_port == partner.sin_port && from.sin_addr.s_addr == partner.sin_addr.s_addr;
         /* One hand at a time, and nothing that was overtaken on its way. */
-        if (talking && (!same || (int32_t)(head.sequence - asked.head.sequence) <= 0)) continue;
+        if (talking && (!is_same(&from, &partner) || (int32_t)(head.sequence - asked.head.sequence) <= 0)) continue;
         if (!is_finite(&wrench)) continue;
         if (!talking) started_s = next_s;
         partner = from;

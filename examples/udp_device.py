@@ -36,8 +36,8 @@ class ExampleDevice:
         """As they act on the hand, about the handle's origin, along the same axes."""
 
 
-def head(kind, sequence):
-    return HEAD.pack(b"OMIL", 1, kind, sequence & 0xFFFFFFFF, 0)
+def head(kind, sequence, is_taken=0):
+    return HEAD.pack(b"OMIL", 1, kind, sequence & 0xFFFFFFFF, is_taken)
 
 
 def approach(sent, wanted, most):
@@ -74,7 +74,8 @@ def converse(device, port):
             if magic != b"OMIL" or version != 1:
                 continue
             if kind == QUESTION_KIND:
-                to_all.sendto(head(ANSWER_KIND, sequence) + answer, sender)
+                is_taken = next_s - heard_s < CONVERSATION_S and sender != partner
+                to_all.sendto(head(ANSWER_KIND, sequence, is_taken) + answer, sender)
             elif kind == WRENCH_KIND and len(datagram) == HEAD.size + WRENCH.size:
                 talking = next_s - heard_s < CONVERSATION_S
                 overtaken = (sequence - newest) & 0xFFFFFFFF in range(0x80000000, 0x100000000) or sequence == newest

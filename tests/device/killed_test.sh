@@ -54,8 +54,10 @@ judge() {
           if (lapse && (old < 6 || force != 0)) { print "the last wrench never lapsed"; exit 1 } }' hand || fail "$2"
 }
 
-# osteomill is killed while the hand presses: the device's own lapse lets go of it.
+# osteomill is killed while the hand presses: the device's own lapse lets go of it. Until then no other program has it.
 press 60
+! "$osteomill" live --device "udp:127.0.0.1:$port" --seconds 1 >/dev/null 2>second || fail "two programs have one device"
+grep -q "udp:127.0.0.1:$port: another program has the device in use" second || fail "why: $(cat second)"
 kill -9 $program
 sleep 0.3
 kill $device

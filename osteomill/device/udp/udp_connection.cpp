@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstring>
 #include <optional>
+#include <thread>
 
 #include <fmt/core.h>
 
@@ -93,19 +94,27 @@ struct Partner {
       socket.wait_to_receive(kWaitForAnswer);
       if (const auto answer = receive<Answer>(socket)) {
         capabilities = capabilities_of(*answer, "udp:" + address);
-        return;
+        is_taken = answer->head.is_taken != 0;
+        if (!is_taken) return;
+        // A program that was killed has it for a moment longer.
+        std::this_thread::sleep_for(kWaitForAnswer);
       }
     }
+    if (is_taken) return;
     throw InputError("udp:" + address, socket.is_open() ? "nothing answers there" : "nothing listens there");
   }
 
   Socket socket;
   DeviceCapabilities capabilities;
+  // By another program.
+  bool is_taken = false;
 };
 
 class UdpConnection final : public Connection {
  public:
-  explicit UdpConnection(const std::string& address) : partner_(address) {}
+  explicit UdpConnection(const std::string& address) : partner_(address) {
+    if (partner_.is_taken) throw InputError("udp:" + address, "another program has the device in use");
+  }
   ~UdpConnection() override {
     // One of them arrives.
     for (int n = 0; n < 3; ++n) write({});
@@ -170,7 +179,9 @@ std::unique_ptr<Connection> open_udp(const std::string& address) {
 
 std::string look_for_udp(const std::string& address) {
   const std::string at = or_default(address);
-  return fmt::format("{} at {}", Partner(at).capabilities.name, at);
+  const Partner partner(at);
+  return fmt::format("{} at {}{}", partner.capabilities.name, at,
+                     partner.is_taken ? ", in use by another program" : "");
 }
 
 }  // namespace osteomill
