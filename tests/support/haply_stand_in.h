@@ -60,6 +60,7 @@ class HaplyStandIn {
   /// What is said of the device and its grip with every state.
   std::atomic<bool> is_calibrated{true};
   std::atomic<bool> is_awake{true};
+  std::atomic<bool> is_in_use{false};
   /// By what the service's filters change a force.
   std::atomic<double> force_scale{1};
 
@@ -109,7 +110,7 @@ class HaplyStandIn {
                                        {"current_cursor_force", {{"x", s * x}, {"y", s * y}, {"z", s * z}}}}},
                                      {"status",
                                       {{"calibrated", is_calibrated.load()},
-                                       {"in_use", false},
+                                       {"in_use", is_in_use.load()},
                                        {"power_supply", true},
                                        {"ready", true},
                                        {"started", true}}}});

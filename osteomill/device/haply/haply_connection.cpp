@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <optional>
 #include <thread>
@@ -27,7 +28,11 @@ constexpr std::size_t kMostBytes = 1 << 18;
 constexpr auto kInventoryWithin = 100ms;
 constexpr auto kWait = 1500us;
 constexpr auto kBetweenReadings = 500us;
-constexpr auto kAskAgainAfter = 20ms;
+// One that has not answered for so long is opened again.
+constexpr auto kAnswersWithin = 1s;
+// By the mean of some twenty answers. A pose that is older than that is none (ConnectedDevice).
+constexpr double kFeltWithin_ms = 5;
+constexpr double kLatencies = 20;
 // The mean of so many answers tells whether the forces are those that were sent.
 constexpr double kAnswers = 200;
 constexpr double kOtherForce_N = 0.3;
@@ -130,6 +135,7 @@ struct OpenedService {
   }
 
   static std::string name_of(const HostAndPort& at) { return fmt::format("haply:{}:{}", at.host, at.port); }
+  bool is_in_use() const { return is_true(member(member(inverse3, "status"), "in_use")); }
   std::string id() const { return member(inverse3, "device_id")->get<std::string>(); }
   std::string name() const { return "Haply Inverse3 " + id(); }
 
@@ -146,6 +152,8 @@ class HaplyConnection final : public Connection {
         id_(service_.id()),
         force_key_(service_.inventory.contains("session_id") ? "vector" : "values"),
         has_grip_(grip_of(service_.inventory) != nullptr) {
+    if (service_.is_in_use())
+      throw InputError(OpenedService::name_of(at), "another program has the Inverse3 " + id_ + " in use");
     capabilities_.name = service_.name();
     capabilities_.sensed = has_grip_ ? 6 : 3;
     capabilities_.driven = 3;
@@ -161,7 +169,11 @@ class HaplyConnection final : public Connection {
 
   ConnectionStatus read(DeviceInput& input) override {
     const auto text = service_.socket.receive(kWait);
-    if (!text) return or_lost(ConnectionStatus::silent);
+    if (!text) {
+      if (is_asked_ && Clock::now() - asked_ > kAnswersWithin) return ConnectionStatus::lost;
+      return or_lost(ConnectionStatus::silent);
+    }
+    if (is_asked_) look_at_latency();
     is_asked_ = false;
     // One that answers at once is not asked as often as it could answer.
     std::this_thread::sleep_until(next_);
@@ -171,7 +183,7 @@ class HaplyConnection final : public Connection {
 
   ConnectionStatus write(const Wrench& wrench_D) override {
     // One text at a time is on its way: a slow service would else work off wrenches of long ago.
-    if (is_asked_ && Clock::now() - asked_ <= kAskAgainAfter) return or_lost(ConnectionStatus::silent);
+    if (is_asked_) return or_lost(ConnectionStatus::silent);
     return or_lost(ask(wrench_D.force_N) ? ConnectionStatus::fresh : ConnectionStatus::silent);
   }
 
@@ -189,6 +201,20 @@ class HaplyConnection final : public Connection {
     is_asked_ = true;
     asked_ = Clock::now();
     return service_.socket.send(message.dump());
+  }
+
+  // What is said stays the same for as long as it is slow.
+  void look_at_latency() {
+    const double latency_ms = std::chrono::duration<double, std::milli>(Clock::now() - asked_).count();
+    mean_latency_ms_ += (latency_ms - mean_latency_ms_) / kLatencies;
+    if (mean_latency_ms_ <= kFeltWithin_ms) {
+      is_slow_[0] = '\0';
+    } else if (is_slow_[0] == '\0') {
+      *fmt::format_to_n(is_slow_.data(), is_slow_.size() - 1,
+                        "answers after {:.0f} ms, and from {:g} ms on next to nothing can be felt",
+                        latency_ms, kFeltWithin_ms)
+           .out = '\0';
+    }
   }
 
   // Filters of the service, and its scale, change forces on their way.
@@ -215,6 +241,7 @@ class HaplyConnection final : public Connection {
     if (const Json* const status = member(device, "status")) not_driven_ = why_not_driven(status);
     now.not_driven = not_driven_ != nullptr ? not_driven_ : why_grip_is_not_used(grip);
     if (gives_other_forces(state)) now.remark = kOtherForces;
+    if (is_slow_[0] != '\0') now.remark = is_slow_.data();
     input = now;
     return true;
   }
@@ -229,6 +256,8 @@ class HaplyConnection final : public Connection {
   Vec3 force_N_ = Vec3::Zero();
   double mean_asked_N_ = 0;
   double mean_other_N_ = 0;
+  double mean_latency_ms_ = 0;
+  std::array<char, 120> is_slow_{};
   bool is_asked_ = false;
   Clock::time_point asked_;
   Clock::time_point next_ = Clock::now();
@@ -245,7 +274,8 @@ std::unique_ptr<Connection> open_haply(const std::string& address) {
 }
 
 std::string look_for_haply(const std::string& address) {
-  return OpenedService(place_of(address)).name();
+  const OpenedService service(place_of(address));
+  return service.name() + (service.is_in_use() ? ", in use by another program" : "");
 }
 
 }  // namespace osteomill
