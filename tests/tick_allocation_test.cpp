@@ -7,6 +7,7 @@
 #include <thread>
 #include <vector>
 
+#include "tests/coming_down.h"
 #include "tests/count_allocations.h"
 #include "tests/poses.h"
 #include "tests/shapes.h"
@@ -113,8 +114,8 @@ TEST(TickAllocation, NoTickOfALiveSessionAllocates) {
   auto session = std::make_unique<MillingSession>(
       bone, estimate_densities(*bone),
       MillingSetup{.algorithm = algorithm_named("point-shell"), .vibration = {.on = true}});
-  PosedDevice device;
-  device.put({{0, 0, kBallRadius_mm + tool.burr_radius_mm - 0.3}, Quat::Identity()});
+  testing_support::ComingDown device(kBallRadius_mm + tool.burr_radius_mm - 0.3);
+  device.X_WD.position_mm.z() = kBallRadius_mm + tool.burr_radius_mm + 1;
   BoneFollower follower(bone);
   LiveSession live(std::move(session), device);
   std::atomic<int> ticks{0};

@@ -78,15 +78,19 @@ void draw_faults(const std::deque<TickRecord>& history) {
   const int limited = faults.limited();
   // Not those without a pose: a clutch is held, or the device's own line tells of it.
   const int zero = faults.not_finite() + faults.unsafe();
-  const std::string text = zero > 0      ? fmt::format("no force, {} ticks", zero)
+  const bool held_back = !history.empty() && history.back().fault == WrenchFault::held_back;
+  const std::string text = held_back     ? "nothing: lift the tool out"
+                           : zero > 0    ? fmt::format("no force, {} ticks", zero)
                            : limited > 0 ? fmt::format("limited, {} ticks", limited)
                                          : "as computed";
-  row("hand gets", text, zero + limited > 0 ? ui::kWarning : ImGui::GetStyleColorVec4(ImGuiCol_Text));
+  row("hand gets", text,
+      held_back || zero + limited > 0 ? ui::kWarning : ImGui::GetStyleColorVec4(ImGuiCol_Text));
   ui::hint(fmt::format(
       "Of the last {} ticks, {} would have been stronger than the limits of force and torque. {} had "
       "none: in {} the hand was moved too fast, or the tick came too late, to be safe, and in {} "
-      "there was no number to send.",
-      history.size(), limited, zero, faults.unsafe(), faults.not_finite()));
+      "there was no number to send. {} had none since the tool was in bone when the device began to be "
+      "driven, and has to leave it first.",
+      history.size(), limited, zero, faults.unsafe(), faults.not_finite(), faults.held_back()));
 }
 
 using Step = ViewState::Calibration::Step;

@@ -28,6 +28,10 @@ class Device {
   /// Which share of the force that was written has reached the hand (share_sent). Milling removes bone for
   /// that share alone.
   virtual double given_share() const noexcept OSTEOMILL_NONBLOCKING { return 1; }
+  /// Whether what is written from now on reaches a hand; asked after `read_pose`. A device that was not
+  /// driven since the last tick, however shortly, returns false once: its hand may have sunk into bone, and
+  /// feels nothing until it is out (WrenchGuard::hold_back).
+  virtual bool is_driven() const noexcept OSTEOMILL_NONBLOCKING { return true; }
 
   /// Whether the operator asks for the spindle by a button or pedal of the device.
   virtual bool spindle_asked() const noexcept OSTEOMILL_NONBLOCKING { return false; }

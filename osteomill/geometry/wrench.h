@@ -42,6 +42,9 @@ enum class WrenchFault : unsigned char {
   /// Something else than what was asked for was sent: the wrench is being faded in, was changing too fast, or
   /// is damped.
   eased = 8,
+  /// Zero was sent, since nothing that is sent reaches the hand (Device::is_driven), or since the tool was in
+  /// bone when it began to and has not left it yet.
+  held_back = 9,
 };
 
 struct SafeWrench {

@@ -14,6 +14,7 @@
 #include <thread>
 #include <vector>
 
+#include "tests/coming_down.h"
 #include "tests/shapes.h"
 #include <gtest/gtest.h>
 #include <sys/mman.h>
@@ -38,12 +39,12 @@ struct Sent {
 // What is felt before it crashes.
 constexpr double kPressed_N = 0.2;
 
-class SharedDevice : public Device {
+class SharedDevice : public testing_support::ComingDown {
  public:
-  SharedDevice(Sent* sent, void (*crash)()) : sent_(sent), crash_(crash) {}
+  SharedDevice(Sent* sent, void (*crash)()) : ComingDown(1.2), sent_(sent), crash_(crash) {}
   Pose read_pose() override {
     if (crash_ != nullptr && sent_->max_N >= kPressed_N) crash_();
-    return {{0, 0, 1.2}, Quat::Identity()};
+    return ComingDown::read_pose();
   }
   void write_wrench(const Wrench& wrench) override {
     sent_->force_N = is_let_go_ ? 0 : wrench.force_N.norm();
@@ -98,6 +99,7 @@ void overflow_the_stack() {
   if (end.replaces_its_session) {
     live->start();
     live = live_on(bone, device);
+    device.lift();
   }
   live->start();
   for (int n = 0; n < 2000 && sent->max_N < kPressed_N; ++n) std::this_thread::sleep_for(5ms);

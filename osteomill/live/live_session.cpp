@@ -106,6 +106,7 @@ void LiveSession::listen(TickListener listener) {
 
 void LiveSession::run(const std::stop_token& stop) noexcept {
   driven_.started();
+  session_->hold_back();
   try {
     tick_until(stop);
   } catch (...) {

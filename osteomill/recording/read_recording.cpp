@@ -39,8 +39,8 @@ static auto members_of(RunDescription& run) {
                   run.phase, run.seed, run.tick_period_s, run.settings, run.labels);
 }
 static auto members_of(SessionStart& start) {
-  return std::tie(start.run, start.taken_over.X_WT, start.taken_over.sent, start.removed_mm3, start.bricks,
-                  start.goes_on_from);
+  return std::tie(start.run, start.taken_over.X_WT, start.taken_over.sent, start.taken_over.held_back,
+                  start.removed_mm3, start.bricks, start.goes_on_from);
 }
 static auto members_of(RecordedSession& session) {
   return std::tie(session.first, session.start);
@@ -86,11 +86,16 @@ void require_in_range(const Hdf5File& recording, const Field<TickRecord>& column
 
 std::vector<TickRecord> read_records(const Hdf5File& recording, bool complete) {
   std::vector<Hdf5Column> columns;
-  for (const Field<TickRecord>& column : fields_of<TickRecord>())
-    columns.push_back(open_column(recording, "columns/" + column.name));
+  std::vector<const Field<TickRecord>*> fields;
+  for (const Field<TickRecord>& column : fields_of<TickRecord>()) {
+    const std::string place = "columns/" + column.name;
+    if (column.has(kMayBeAbsent) && H5Lexists(recording.id(), place.c_str(), H5P_DEFAULT) <= 0) continue;
+    columns.push_back(open_column(recording, place));
+    fields.push_back(&column);
+  }
   std::vector<TickRecord> records(common_rows(recording, columns, complete));
   for (std::size_t n = 0; n < columns.size(); ++n) {
-    const Field<TickRecord>& column = fields_of<TickRecord>()[n];
+    const Field<TickRecord>& column = *fields[n];
     const auto values = read_values<double>(recording, columns[n]);
     for (std::size_t row = 0; row < records.size(); ++row) {
       require_in_range(recording, column, values[row]);
@@ -184,6 +189,7 @@ SessionStart read_session_start(const Hdf5File& recording, hid_t group, const st
   read.get("goes_on_from", start.goes_on_from);
   read.get("removed_mm3", start.removed_mm3);
   start.taken_over.sent = {read.get<Vec3>("force_N"), read.get<Vec3>("torque_Nmm")};
+  start.taken_over.held_back = read.has("held_back") && read.get<std::uint64_t>("held_back") != 0;
   if (read.has("tool_mm")) {
     std::array<double, 4> q{};
     read.get_reals("tool_wxyz", q);

@@ -110,6 +110,18 @@ TEST_F(ChangedRecording, AMissingColumnIsNamed) {
   expect_refused(path_, "no column 'columns/torque_y_Nmm'");
 }
 
+// In those of programs that held no hand back every hand was driven.
+TEST_F(ChangedRecording, OneFromBeforeHandsWereHeldBackIsRead) {
+  change([](hid_t file) {
+    H5Ldelete(file, "columns/driven", H5P_DEFAULT);
+    H5Adelete_by_name(file, "sessions/0", "held_back", H5P_DEFAULT);
+  });
+  const Recording read = read_recording(path_);
+  ASSERT_EQ(read.records.size(), 1500u);
+  for (const TickRecord& record : read.records) ASSERT_TRUE(record.driven);
+  EXPECT_FALSE(read.sessions.front().start.taken_over.held_back);
+}
+
 TEST_F(ChangedRecording, UnequalLengthsAreRefused) {
   change([](hid_t file) { set_rows(file, "columns/force_x_N", 1499); });
   expect_refused(path_, "'columns/force_x_N' has 1499 rows");
@@ -246,11 +258,11 @@ TEST_F(ChangedRecording, AColourThatIsNoneIsRefused) {
 TEST_F(ChangedRecording, AFaultThatDoesNotExistIsRefused) {
   change([](hid_t file) {
     const hid_t dataset = H5Dopen2(file, "columns/fault", H5P_DEFAULT);
-    const std::vector<int> values(1500, 9);
+    const std::vector<int> values(1500, 10);
     H5Dwrite(dataset, H5T_NATIVE_INT, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
     H5Dclose(dataset);
   });
-  expect_refused(path_, "'fault' holds 9");
+  expect_refused(path_, "'fault' holds 10");
 }
 
 TEST_F(ChangedRecording, AnotherHdf5FileIsNoRecording) {

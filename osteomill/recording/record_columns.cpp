@@ -24,8 +24,8 @@ void add_real(Fields& fields, const char* name, const char* unit, Place place, c
 }
 
 template <typename Place>
-void add_switch(Fields& fields, const char* name, Place place, const char* doc) {
-  fields.push_back(field<TickRecord>({name, "", NumberRange::on_or_off(), doc}, place));
+void add_switch(Fields& fields, const char* name, Place place, const char* doc, unsigned flags = 0) {
+  fields.push_back(field<TickRecord>({name, "", NumberRange::on_or_off(), doc, flags}, place));
 }
 
 template <typename Place>
@@ -82,7 +82,7 @@ Fields record_fields() {
       "force of the burr on the bone, frame W");
   add_real(all, "dt_s", "s", &R::dt_s, "how long the tick was taken to be");
   add_switch(all, "spindle", &R::spindle_on, "1 where the burr could cut");
-  all.push_back(field<R>({"fault", "", NumberRange::count(0, static_cast<int>(WrenchFault::eased)),
+  all.push_back(field<R>({"fault", "", NumberRange::count(0, static_cast<int>(WrenchFault::held_back)),
                           "what was done to the wrench (codes)"},
                          &R::fault));
   add_real(all, "energy_given_Nmm", "N mm", &R::energy_given_Nmm,
@@ -100,6 +100,7 @@ Fields record_fields() {
   add_vector(
       all, "cutting_torque", "N mm", [](auto& r) -> auto& { return r.cutting_torque_W_Nmm; },
       "of the torque sent, what the cutting adds (--cutting-reaction), frame W");
+  add_switch(all, "driven", &R::driven, "1 where what was sent reached a hand", kMayBeAbsent);
   return all;
 }
 

@@ -44,7 +44,7 @@ constexpr const char* kConventions =
 constexpr const char* kFaultCodes =
     "0 none, 1 force clamped, 2 torque clamped, 3 both clamped, 4 the algorithm's wrench was not finite, 5 "
     "the "
-    "device's pose was not finite, 6 the device jumped, 7 the tick was late, 8 eased";
+    "device's pose was not finite, 6 the device jumped, 7 the tick was late, 8 eased, 9 held back";
 
 hid_t file_type(const NumberRange& range) {
   if (!range.whole) return H5T_IEEE_F64LE;
@@ -235,6 +235,7 @@ void RecordingFile::begin_session(const SessionStart& start, std::uint64_t row) 
   write.put("removed_mm3", start.removed_mm3);
   write.put("force_N", start.taken_over.sent.force_N);
   write.put("torque_Nmm", start.taken_over.sent.torque_Nmm);
+  write.put("held_back", std::uint64_t{start.taken_over.held_back});
   if (const auto& X_WT = start.taken_over.X_WT) {
     const Quat& q = X_WT->orientation;
     write.put("tool_mm", X_WT->position_mm);

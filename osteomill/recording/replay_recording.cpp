@@ -75,7 +75,7 @@ std::unique_ptr<MillingSession> session_at(const Volume& scan, const SessionStar
 
 TickRecord tick_again(MillingSession& session, const TickRecord& recorded) {
   PosedDevice device;
-  device.put(recorded.X_WD, recorded.given_share);
+  device.put(recorded.X_WD, recorded.given_share, recorded.driven);
   if (recorded.let_go) session.let_go();
   if (recorded.placed) session.place();
   return recorded.paused ? session.idle_tick(device, recorded.time_s, recorded.dt_s)

@@ -64,7 +64,7 @@ class Hand {
     if (n == 300) pose.position_mm.x() += 20;
     if (n == 320) pose.position_mm.y() = std::numeric_limits<double>::quiet_NaN();
     // Now and then it gives the hand less.
-    device_.put(pose, n % 50 < 40 ? 1 : 0.4);
+    device_.put(pose, n % 50 < 40 ? 1 : 0.4, n < 560 || n > 565);
     if (n == 450) session.let_go();
     if (n == 500) {
       placed_ = true;

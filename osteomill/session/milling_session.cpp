@@ -7,6 +7,10 @@
 #include <numbers>
 #include <utility>
 
+#include "osteomill/tool/burr_presses.h"
+#include "osteomill/tool/sample_points.h"
+#include "osteomill/volume/sampling.h"
+
 namespace osteomill {
 
 namespace {
@@ -25,6 +29,22 @@ const Pose kNoPose{kNotANumber, Quat::Identity()};
 std::shared_ptr<Volume> workable(const MillingTool& tool, std::shared_ptr<Volume> bone) {
   require_workable(tool, bone->geometry());
   return bone;
+}
+
+// Of the tool, so far inside it.
+std::vector<Vec3> points_inside(const MillingTool& tool, double by_mm) {
+  constexpr int kOnBurr = 64;
+  constexpr double kSlice_mm = 0.5;
+  std::vector<Vec3> points_T;
+  for (const Vec3& direction : spiral_directions(kOnBurr))
+    points_T.push_back(std::max(0.0, tool.burr_radius_mm - by_mm) * direction);
+  const double share = std::max(0.0, 1 - by_mm / tool.shaft_radius_mm);
+  const int slices = std::max(1, static_cast<int>(std::ceil(tool.shaft_length_mm / kSlice_mm)));
+  for (const ShaftSlice& slice : slice_vertices(tool, slices)) {
+    for (const Vec3& vertex : slice.vertices_T)
+      points_T.push_back(slice.centre_T + share * (vertex - slice.centre_T));
+  }
+  return points_T;
 }
 
 constexpr double kLoneTick_s = 1e-3;
@@ -64,7 +84,8 @@ MillingSession::MillingSession(std::shared_ptr<Volume> bone, const BoneDensities
       reaction_(milling_, setup.tool.burr_radius_mm),
       no_go_(volume_->labels(), setup.tool.burr_radius_mm),
       vibration_(setup.vibration, setup.cutting.spindle_speed_rpm),
-      guard_(setup.guard) {
+      guard_(setup.guard),
+      points_inside_T_(points_inside(setup.tool, pressing_reach_mm(volume_->geometry()))) {
   algorithm_->prepare({volume_.get(), setup.tool, setup.tick_s});
 }
 
@@ -78,6 +99,8 @@ TickRecord MillingSession::begin_record(Device& device, double time_s, double dt
   // No device is there, and where it is not the indices of voxels would overflow.
   if (!is_reachable(record.X_WD)) record.X_WD = kNoPose;
   record.given_share = device.given_share();
+  record.driven = device.is_driven() && !std::exchange(hold_back_asked_, false);
+  if (!record.driven) guard_.hold_back();
   if (place_asked_ && is_finite(record.X_WD)) {
     place_asked_ = false;
     record.placed = true;
@@ -91,7 +114,7 @@ TickRecord MillingSession::tick(Device& device, double time_s, double dt_s, bool
   record.spindle_on = spindle_on;
 
   const Clock::time_point start = Clock::now();
-  auto [step, safe, cutting_torque_W_Nmm] = step_safely(record.X_WD, dt_s, spindle_on);
+  auto [step, safe, cutting_torque_W_Nmm] = step_safely(record.X_WD, dt_s, spindle_on, record.driven);
   // The bone that goes is paid with what the hand gives.
   step.burr_force_W_N *= record.given_share;
   record.compute_us = microseconds_since(start);
@@ -118,7 +141,7 @@ TickRecord MillingSession::tick(Device& device, double time_s, double dt_s, bool
 }
 
 void MillingSession::take_over(const TakenOver& before) noexcept {
-  guard_.begin_from(before.sent);
+  guard_.begin_from(before.sent, before.held_back);
   if (before.X_WT && is_finite(*before.X_WT)) begin_at(*before.X_WT);
 }
 
@@ -150,8 +173,17 @@ TickRecord MillingSession::idle_tick(Device& device, double time_s, double dt_s)
   return record;
 }
 
-MillingSession::SafeStep MillingSession::step_safely(const Pose& X_WD, double dt_s,
-                                                     bool spindle_on) noexcept {
+// Whether no bone reaches into the tool. Algorithms do not tell: in their first ticks, and deep in bone, some
+// find nothing to push against.
+bool MillingSession::is_free(const Pose& X_WD) const noexcept {
+  const Vec3 end_W = X_WD.position_mm + setup_.tool.shaft_length_mm * shaft_direction(X_WD);
+  return !first_crossing(*volume_, X_WD.position_mm, end_W) &&
+         std::ranges::none_of(points_inside_T_,
+                              [&](const Vec3& point_T) { return is_bone_at(*volume_, X_WD * point_T); });
+}
+
+MillingSession::SafeStep MillingSession::step_safely(const Pose& X_WD, double dt_s, bool spindle_on,
+                                                     bool is_driven) noexcept {
   HapticStep nothing;
   nothing.X_WT = last_X_WT_.value_or(Pose{});
   if (!is_finite(X_WD)) {
@@ -161,7 +193,8 @@ MillingSession::SafeStep MillingSession::step_safely(const Pose& X_WD, double dt
   if (spindle_on) step.wrench.force_N += vibration_.force_N(step.X_WT, step.burr_force_W_N.norm(), dt_s);
   if (milling_.reaction_share > 0) step.wrench = step.wrench + reaction_.wrench();
   const bool is_usable = is_finite(step.X_WT) && step.burr_force_W_N.allFinite();
-  const SafeWrench safe = guard_.pass(is_usable ? step.wrench : kNotFinite, X_WD, dt_s);
+  const bool may_be_let = is_driven && (!guard_.is_held_back() || is_free(X_WD));
+  const SafeWrench safe = guard_.pass(is_usable ? step.wrench : kNotFinite, X_WD, dt_s, may_be_let);
   if (safe.fault == WrenchFault::not_finite) {
     // Whatever led there is still in the algorithm's memory of contacts. The tool itself is still outside the
     // bone, where the device may have sunk into it.

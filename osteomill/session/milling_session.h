@@ -36,11 +36,12 @@ class Vibration {
 };
 
 /// What a session leaves to the one that goes on from it: where its simulated tool is, which is outside the
-/// bone, and what the hand feels. There is no tool's pose where the next session is to begin at the device,
-/// which may have sunk into the bone.
+/// bone, what the hand feels, and whether it was held back (WrenchGuard). There is no tool's pose where the
+/// next session is to begin at the device, which may have sunk into the bone.
 struct TakenOver {
   std::optional<Pose> X_WT;
   Wrench sent;
+  bool held_back = true;
 };
 
 /// One tool, one bone and one algorithm, tick by tick: read the pose, compute, send the wrench, remove bone.
@@ -72,7 +73,10 @@ class MillingSession {
   /// `tick`.
   void take_over(const TakenOver& before) noexcept;
   /// To be taken over by another, after the last tick.
-  TakenOver left() const { return {last_X_WT_, guard_.sent()}; }
+  TakenOver left() const { return {last_X_WT_, guard_.sent(), guard_.is_held_back()}; }
+  /// The next tick counts as one that reaches no hand (Device::is_driven), as after a time without ticks. As
+  /// safe as `tick`.
+  void hold_back() noexcept { hold_back_asked_ = true; }
 
   /// From the next tick on the wrench comes down to zero slowly and stays there until the tool is placed. As
   /// safe as `tick`.
@@ -106,7 +110,8 @@ class MillingSession {
     // Of the torque sent.
     Vec3 cutting_torque_W_Nmm = Vec3::Zero();
   };
-  SafeStep step_safely(const Pose& X_WD, double dt_s, bool spindle_on) noexcept;
+  SafeStep step_safely(const Pose& X_WD, double dt_s, bool spindle_on, bool is_driven) noexcept;
+  bool is_free(const Pose& X_WD) const noexcept;
   void mill(const HapticStep& step, bool spindle_on, double dt_s) noexcept;
 
   // Behind a pointer since the algorithm keeps its address.
@@ -120,6 +125,7 @@ class MillingSession {
   NoGoWatch no_go_;
   Vibration vibration_;
   WrenchGuard guard_;
+  std::vector<Vec3> points_inside_T_;
   double removed_mm3_ = 0;
   VolumeChange last_change_;
   std::optional<Vec3> intersection_W_;
@@ -127,6 +133,7 @@ class MillingSession {
   std::optional<Pose> last_X_WT_;
   bool let_go_asked_ = false;
   bool place_asked_ = false;
+  bool hold_back_asked_ = false;
 };
 
 /// Runs the session along the trajectory, a tick a row, each as long as the time since the row before (the

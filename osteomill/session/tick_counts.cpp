@@ -33,13 +33,17 @@ int FaultCount::unsafe() const {
   return count({WrenchFault::pose_jumped, WrenchFault::tick_late});
 }
 
+int FaultCount::held_back() const {
+  return count({WrenchFault::held_back});
+}
+
 std::optional<std::string> FaultCount::sentence() const {
-  if (limited() + not_finite() + without_pose() + unsafe() == 0) return std::nullopt;
+  if (limited() + not_finite() + without_pose() + unsafe() + held_back() == 0) return std::nullopt;
   return fmt::format(
       "{} wrenches were clamped to the device's limits, {} were not finite and sent as zero, {} were sent as "
       "zero since the device gave no pose (a clutch that was held among them), {} since it jumped or the "
-      "tick came late",
-      limited(), not_finite(), without_pose(), unsafe());
+      "tick came late, {} since the tool had not left the bone after the device began to be driven",
+      limited(), not_finite(), without_pose(), unsafe(), held_back());
 }
 
 std::optional<std::string> LabelCount::add(const TickRecord& record) {

@@ -23,6 +23,8 @@ class FaultCount {
   int not_finite() const;
   int without_pose() const;
   int unsafe() const;
+  /// Ticks that sent zero since the hand was held back (WrenchGuard).
+  int held_back() const;
   /// What to tell people, in one sentence; nothing where there were none. Not for the tick.
   std::optional<std::string> sentence() const;
 
@@ -30,7 +32,7 @@ class FaultCount {
   int count(std::initializer_list<WrenchFault> faults) const;
 
   // Of each kind.
-  std::array<int, static_cast<std::size_t>(WrenchFault::eased) + 1> ticks_{};
+  std::array<int, static_cast<std::size_t>(WrenchFault::held_back) + 1> ticks_{};
 };
 
 /// How much of each label was removed, when and with what force, from every tick in turn. Not for the tick.

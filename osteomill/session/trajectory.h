@@ -32,19 +32,22 @@ std::vector<TrajectoryPoint> read_trajectory(const std::filesystem::path& path);
 /// A device that is where it is put, and remembers what it was sent: for replays and tests.
 class PosedDevice : public Device {
  public:
-  void put(const Pose& X_WD, double given_share = 1) noexcept {
+  void put(const Pose& X_WD, double given_share = 1, bool is_driven = true) noexcept {
     pose_ = X_WD;
     given_share_ = given_share;
+    is_driven_ = is_driven;
   }
   const Wrench& sent() const noexcept { return sent_; }
 
   Pose read_pose() noexcept override { return pose_; }
   void write_wrench(const Wrench& wrench) noexcept override { sent_ = wrench; }
   double given_share() const noexcept override { return given_share_; }
+  bool is_driven() const noexcept override { return is_driven_; }
 
  private:
   Pose pose_;
   double given_share_ = 1;
+  bool is_driven_ = true;
   Wrench sent_;
 };
 

@@ -52,10 +52,19 @@ void WrenchGuard::begin_anew() noexcept {
   X_WD_.reset();
 }
 
-void WrenchGuard::begin_from(const Wrench& sent) noexcept {
+void WrenchGuard::begin_from(const Wrench& sent, bool held_back) noexcept {
+  held_back_ = false;
+  if (held_back) hold_back();
   sent_ = sent;
   observer_.begin_anew(sent);
   begin_anew();
+}
+
+void WrenchGuard::hold_back() noexcept {
+  if (!(settings_.blend_s > 0)) return;
+  held_back_ = true;
+  sent_ = {};
+  observer_.send(sent_);
 }
 
 void WrenchGuard::let_go() noexcept {
@@ -83,7 +92,7 @@ SafeWrench WrenchGuard::send_zero(double dt_s) noexcept {
   return safe;
 }
 
-SafeWrench WrenchGuard::pass(const Wrench& asked, const Pose& X_WD, double dt_s) noexcept {
+SafeWrench WrenchGuard::pass(const Wrench& asked, const Pose& X_WD, double dt_s, bool is_free) noexcept {
   observer_.move_to(X_WD);
   const Wrench damping =
       settings_.passivity_controller && !is_zero(asked) ? observer_.damping(dt_s) : Wrench{};
@@ -104,6 +113,15 @@ SafeWrench WrenchGuard::pass(const Wrench& asked, const Pose& X_WD, double dt_s)
     return {sent, fault};
   }
   X_WD_ = X_WD;
+  if (held_back_ && is_free && within.wrench.force_N.norm() <= kFreeForce_N &&
+      within.wrench.torque_Nmm.norm() <= kFreeTorque_Nmm) {
+    held_back_ = false;
+  }
+  if (held_back_) {
+    from_ = {};
+    blended_ = 0;
+    return approach({}, is_zero(within.wrench) ? fault : WrenchFault::held_back, dt_s);
+  }
   const Wrench wanted = let_go_ ? Wrench{} : within.wrench;
   blended_ = settings_.blend_s > 0 ? std::min(1.0, blended_ + usual_tick_s(dt_s) / settings_.blend_s) : 1;
   // In free space there is nothing to come up slowly.

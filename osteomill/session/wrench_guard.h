@@ -69,20 +69,30 @@ class PassivityObserver {
 };
 
 /// Stands between an algorithm and a hand: what is sent is within the limits, changes no faster than it may,
-/// and comes up slowly where the hand may have sunk into bone unfelt (at the start, after a pause, with
-/// another algorithm or bone, after a fault). It counts the energy that the hand is given, and can keep it
-/// from being more than the hand gave. One thread's; all of it is safe in the haptic tick.
+/// and comes up slowly where the hand may have sunk into bone unfelt (after a pause, with another algorithm
+/// or bone, after a fault). A hand that begins to be driven, as at the start, is held back: it feels nothing
+/// until the tool is out of bone, and then what it touches after that. It counts the energy that the hand is
+/// given, and can keep it from being more than the hand gave. One thread's; all of it is safe in the haptic
+/// tick.
 class WrenchGuard {
  public:
   WrenchGuard() : WrenchGuard(GuardSettings{}) {}
-  explicit WrenchGuard(const GuardSettings& settings) : settings_(settings) {}
+  explicit WrenchGuard(const GuardSettings& settings) : settings_(settings) { hold_back(); }
 
   /// Given to the hand less what it gave, in N mm, up to the last pose.
   double energy_given_Nmm() const { return observer_.energy_given_Nmm(); }
   /// From now what is asked for comes up slowly, from what was last sent.
   void begin_anew() noexcept;
-  /// As begin_anew, in the place of another guard whose hand feels `sent`; energy is counted from now on.
-  void begin_from(const Wrench& sent) noexcept;
+  /// As begin_anew, in the place of another guard whose hand feels `sent` or was held back; energy is counted
+  /// from now on.
+  void begin_from(const Wrench& sent, bool held_back) noexcept;
+  /// Nothing that is sent reaches the hand. From now on it is zero, until the algorithm asks for next to
+  /// nothing (kFreeForce_N, kFreeTorque_Nmm) in a tick in which the tool may be out of bone. Nothing happens
+  /// where no hand is protected (`blend_s` is 0).
+  void hold_back() noexcept;
+  bool is_held_back() const { return held_back_; }
+  static constexpr double kFreeForce_N = 0.5;
+  static constexpr double kFreeTorque_Nmm = 12.5;
   /// From now on the wrench comes down to zero slowly and stays there until `begin_anew`.
   void let_go() noexcept;
   const Wrench& sent() const { return sent_; }
@@ -90,8 +100,10 @@ class WrenchGuard {
   bool is_at_rest() const { return is_zero(sent_); }
 
   /// What to send for a wrench in a tick of `dt_s`, with the reason where that is not what was asked for. One
-  /// that is not finite is zero, and what follows begins anew.
-  SafeWrench pass(const Wrench& asked, const Pose& X_WD, double dt_s) noexcept OSTEOMILL_NONBLOCKING;
+  /// that is not finite is zero, and what follows begins anew. A tool that is in bone (`is_free` false) stays
+  /// held back.
+  SafeWrench pass(const Wrench& asked, const Pose& X_WD, double dt_s,
+                  bool is_free = true) noexcept OSTEOMILL_NONBLOCKING;
   /// What to send in a tick in which nothing may be felt, as there is no finite pose or a pause.
   SafeWrench pass_zero(const Pose& X_WD, double dt_s) noexcept OSTEOMILL_NONBLOCKING;
 
@@ -105,6 +117,7 @@ class WrenchGuard {
   Wrench from_;
   double blended_ = 0;
   bool let_go_ = false;
+  bool held_back_ = false;
   std::optional<Pose> X_WD_;
   PassivityObserver observer_;
 };

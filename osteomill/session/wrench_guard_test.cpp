@@ -50,8 +50,9 @@ TEST(WrenchGuard, ATickOfNoLengthGivesNumbers) {
   }
 }
 
-TEST(WrenchGuard, AStartInBoneComesUpSlowly) {
-  WrenchGuard guard;
+TEST(WrenchGuard, WhereTheHandMayHaveSunkItComesUpSlowly) {
+  WrenchGuard guard = holding(0);
+  guard.begin_anew();
   for (int n = 1; n <= 99; ++n) {
     const SafeWrench safe = guard.pass(down(6), kHere, kTick_s);
     ASSERT_NEAR(safe.wrench.force_N.norm(), 6 * 0.01 * n, 1e-9) << n;
@@ -61,8 +62,37 @@ TEST(WrenchGuard, AStartInBoneComesUpSlowly) {
   EXPECT_EQ(guard.pass(down(6), kHere, kTick_s).fault, WrenchFault::none);
 }
 
+TEST(WrenchGuard, AHandThatBeginsToBeDrivenFeelsNothingUntilItIsOutOfBone) {
+  const auto held = [](WrenchGuard& guard, const Wrench& asked, bool is_free) {
+    const SafeWrench safe = guard.pass(asked, kHere, kTick_s, is_free);
+    return is_zero(safe.wrench) && safe.fault == WrenchFault::held_back;
+  };
+  WrenchGuard begun;
+  WrenchGuard driven_again = holding(6);
+  driven_again.hold_back();
+  WrenchGuard in_its_place = holding(6);
+  in_its_place.begin_from({}, true);
+  for (WrenchGuard* guard : {&begun, &driven_again, &in_its_place}) {
+    for (int n = 0; n < 200; ++n) {
+      ASSERT_TRUE(held(*guard, down(6), true));
+      ASSERT_TRUE(held(*guard, {{0, 0, 0.4}, {0, 13, 0}}, true));
+      ASSERT_TRUE(held(*guard, down(0.4), false)) << "in bone some algorithms find nothing to push against";
+    }
+    EXPECT_EQ(guard->energy_given_Nmm(), 0);
+    EXPECT_NEAR(guard->pass(down(0.4), kHere, kTick_s).wrench.force_N.norm(), 0.004, 1e-9);
+    EXPECT_LT(guard->pass(down(6), kHere, kTick_s).wrench.force_N.norm(), 0.13);
+  }
+}
+
+TEST(WrenchGuard, WhatNoHandFeelsIsNotHeldBack) {
+  WrenchGuard guard(GuardSettings::for_simulation());
+  guard.hold_back();
+  EXPECT_EQ(guard.pass(down(6), kHere, kTick_s, false).wrench.force_N, down(6).force_N);
+}
+
 TEST(WrenchGuard, LateTicksComeUpInNoLargerSteps) {
-  WrenchGuard guard;
+  WrenchGuard guard = holding(0);
+  guard.begin_anew();
   double before_N = 0;
   for (int n = 0; n < 50; ++n) {
     const double sent_N = guard.pass(down(6), kHere, n % 2 ? kTick_s : 4 * kTick_s).wrench.force_N.norm();
@@ -129,7 +159,7 @@ TEST(WrenchGuard, AfterAPauseItComesUpSlowly) {
 
 TEST(WrenchGuard, AnotherAlgorithmGoesOnFromWhatWasSent) {
   WrenchGuard after(GuardSettings{{10, 500}});
-  after.begin_from(holding(2).sent());
+  after.begin_from(holding(2).sent(), false);
   double before_N = 2;
   for (int n = 0; n < 200; ++n) {
     const double sent_N = after.pass(down(14), kHere, kTick_s).wrench.force_N.norm();
@@ -225,10 +255,25 @@ TEST_P(GuardedSession, AfterAPauseInWhichTheHandSankNothingSteps) {
   EXPECT_LT(step_N_, 0.3);
 }
 
-TEST_P(GuardedSession, AStartInBoneDoesNotStep) {
-  put(-2);
-  tick(200);
-  EXPECT_LT(step_N_, 0.3);
+// Also where the algorithm finds nothing to push against, and on the way out.
+TEST_P(GuardedSession, AStartInBoneIsNotFeltUntilTheToolIsOut) {
+  for (const double height_mm : {0.5, -2.0, -6.0}) {
+    session_ = make(GetParam());
+    put(height_mm);
+    tick(200);
+    EXPECT_EQ(step_N_, 0) << height_mm;
+    for (double here_mm = height_mm; here_mm < 3; here_mm += 0.02) {
+      put(here_mm);
+      tick(1);
+      EXPECT_LE(sent_.force_N.norm(), WrenchGuard::kFreeForce_N);
+    }
+    press(-0.7);
+    EXPECT_GT(sent_.force_N.norm(), 0.5);
+    put(3);
+    tick(100);
+    sent_ = {};
+    step_N_ = 0;
+  }
 }
 
 TEST_P(GuardedSession, ADeviceThatVanishesGetsZeroWithin5ms) {
@@ -258,7 +303,7 @@ TEST_P(GuardedSession, EveryOtherAlgorithmTakesOverWithoutAStep) {
     press(0.3);
     auto next = make(other);
     std::swap(session_, next);
-    session_->take_over({Pose{{0, 0, 1.2}, Quat::Identity()}, next->left().sent});
+    session_->take_over({Pose{{0, 0, 1.2}, Quat::Identity()}, next->left().sent, false});
     tick(200);
     // One of the paper's may step from tick to tick by itself, as far as the guard lets it.
     if (other == default_algorithm().id.name) {

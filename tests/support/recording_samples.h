@@ -68,8 +68,9 @@ inline TickRecord sample_record(int tick) {
   }
   record.time_s = tick * 0.001;
   record.contacts = tick % 300000;
-  record.fault = static_cast<WrenchFault>(tick % 9);
+  record.fault = static_cast<WrenchFault>(tick % 10);
   record.spindle_on = tick % 3 == 0;
+  record.driven = tick % 4 != 0;
   return record;
 }
 
