@@ -106,6 +106,13 @@ class Holder {
     virtual_->pull_to(X_W_target_);
   }
 
+  // Warns where its maker's software does not end.
+  void close() {
+    if (!hardware_) return;
+    if (const std::string said = hardware_->close(); !said.empty())
+      warn_though_quiet(hardware_->capabilities().name + ": " + said);
+  }
+
   void print() const {
     if (!hardware_) return;
     const DeviceReport report = hardware_->report();
@@ -210,6 +217,7 @@ void run_live(LiveOptions options, const std::string& command_line) {
   fmt::print("removed      {:.2f} mm³, {} bricks of the surface meshed\n", milling.state().record.removed_mm3,
              seen.bricks);
   holder.print();
+  holder.close();
   for (const std::string& line : label_lines(seen.labels)) fmt::print("label        {}\n", line);
   if (const std::exception_ptr failure = milling.failure())
     throw InputError("--device " + options.device.device, "has failed: " + reason_of(failure));

@@ -4,11 +4,13 @@
 #include <chrono>
 #include <cmath>
 #include <exception>
+#include <mutex>
 #include <utility>
 
 #include <fmt/core.h>
 
 #include "osteomill/device/real_time.h"
+#include "osteomill/device/vendor_library.h"
 #include "osteomill/files/input_error.h"
 #include "osteomill/geometry/wrench.h"
 
@@ -33,6 +35,9 @@ constexpr double kUnitTolerance = 1e-3;
 constexpr int kWaitsForPose = 500;
 // What it takes to come down from anything, and then some.
 constexpr int kMostRoundsAtTheEnd = 50;
+// How long a maker's function may take before that is said, and how long closing waits for it.
+constexpr double kHangs_s = 0.1;
+constexpr int kWaitsForTheEnd = 800;
 
 double steady_now_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -60,56 +65,154 @@ std::string DeviceReport::complaint() const {
       return fmt::format("has given invalid poses for {:.1f} s", since_s);
     case State::lost:
       return fmt::format("has been gone for {:.1f} s ({})", since_s, reason);
+    case State::hangs:
+      return fmt::format("has not answered for {:.1f} s: {} does not return", since_s, reason);
   }
   return {};
 }
 
+// What the device's thread does and works on, and keeps where it is left to itself.
+class ConnectedDevice::Exchange {
+ public:
+  Exchange(OpenConnection open, std::function<double()> now_s)
+      : open_(std::move(open)),
+        now_s_(now_s ? std::move(now_s) : &steady_now_s),
+        connection_(open_()),
+        opened_(connection_->capabilities()),
+        sent_s_(now_s_()),
+        to_say_{.state = State::silent, .since_s = sent_s_},
+        said_(to_say_) {}
+
+  // The thread's, until `ends`; and one round of it.
+  void run();
+  void round();
+
+  const DeviceCapabilities& opened() const { return opened_; }
+  double now_s() const { return now_s_(); }
+  DeviceReport report();
+
+  struct Heard {
+    DeviceInput input;
+    double at_s = -std::numeric_limits<double>::infinity();
+    bool is_pose = false;
+    // How often it was gone before.
+    std::uint64_t returns = 0;
+  };
+  struct Asked {
+    Wrench wrench_D;
+    double at_s = -std::numeric_limits<double>::infinity();
+  };
+  LatestValue<Heard> heard;
+  LatestValue<Asked> asked;
+  std::atomic<double> given_share{0};
+  // How often it began or ceased to be a device that may be driven: odd while it is.
+  std::atomic<std::uint64_t> gate{0};
+  std::atomic<bool> is_let_go{false};
+  // How often it was let go of.
+  std::atomic<std::uint64_t> stops{0};
+  std::atomic<bool> at_rest{true};
+  std::atomic<bool> ends{false};
+  std::atomic<bool> has_ended{false};
+
+ private:
+  void hear(const DeviceInput& input);
+  void set_gate(bool is_open);
+  bool may_be_driven(double now_s);
+  ConnectionStatus send(double now_s, bool driven);
+  void come_down();
+  void lose(const std::string& reason);
+  void reopen();
+  void judge();
+  void tell(State state, double now_s);
+
+  OpenConnection open_;
+  std::function<double()> now_s_;
+  std::unique_ptr<Connection> connection_;
+  // As it was opened first.
+  DeviceCapabilities opened_;
+  Heard newest_;
+  // The last that went out, and when.
+  Wrench sent_D_;
+  double sent_s_;
+  // How far it has come up, 0 to 1.
+  double blended_ = 0;
+  double posed_s_ = -std::numeric_limits<double>::infinity();
+  double lost_s_ = 0;
+  bool wrench_was_late_ = false;
+  RecentRate inputs_;
+
+  // When the thread's last round was over, and in which of the maker's functions it is.
+  std::atomic<double> round_s_{std::numeric_limits<double>::infinity()};
+  std::atomic<const char*> call_{nullptr};
+  // What is to be said of it; `since_s` holds the time of the clock here.
+  DeviceReport to_say_;
+  // And what others may read of that, under the lock, for which the device's thread does not wait.
+  std::mutex said_mutex_;
+  DeviceReport said_;
+};
+
 ConnectedDevice::ConnectedDevice(OpenConnection open, std::function<double()> now_s)
-    : open_(std::move(open)),
-      now_s_(now_s ? std::move(now_s) : &steady_now_s),
-      connection_(open_()),
-      sent_s_(now_s_()),
-      to_say_{.state = State::silent, .since_s = sent_s_},
-      said_(to_say_),
-      capabilities_(connection_->capabilities()),
+    : exchange_(std::make_shared<Exchange>(std::move(open), std::move(now_s))),
+      capabilities_(exchange_->opened()),
       workspace_(capabilities_, {}) {}
 
 ConnectedDevice::~ConnectedDevice() {
+  close();
+}
+
+std::string ConnectedDevice::close() {
   let_go();
-  thread_.request_stop();
-  if (thread_.joinable()) thread_.join();
+  exchange_->ends.store(true, std::memory_order_release);
+  if (!thread_.joinable()) return {};
+  for (int n = 0; n < kWaitsForTheEnd && !exchange_->has_ended.load(std::memory_order_acquire); ++n)
+    std::this_thread::sleep_for(1ms);
+  if (exchange_->has_ended.load(std::memory_order_acquire)) {
+    thread_.join();
+    return {};
+  }
+  thread_.detach();
+  return report().complaint();
 }
 
 void ConnectedDevice::start() {
-  thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+  thread_ = std::thread([exchange = exchange_] { exchange->run(); });
   DeviceReport now = report();
   for (int n = 0; n < kWaitsForPose && !now.gives_poses(); ++n, now = report())
     std::this_thread::sleep_for(1ms);
   if (!now.gives_poses()) throw InputError(capabilities_.name, now.complaint());
 }
 
-void ConnectedDevice::run(const std::stop_token& stop) {
-  const SignalsForOthers none_here;
-  request_real_time();
-  while (!stop.stop_requested()) {
-    exchange();
-    if (!connection_) std::this_thread::sleep_for(1ms);
-  }
-  if (connection_) come_down();
-  at_rest_.store(true, std::memory_order_release);
+void ConnectedDevice::exchange() {
+  exchange_->round();
 }
 
-void ConnectedDevice::exchange() {
+void ConnectedDevice::Exchange::run() {
+  const SignalsForOthers none_here;
+  const VendorCallsNamed named(call_);
+  request_real_time();
+  while (!ends.load(std::memory_order_acquire)) {
+    round_s_.store(now_s_(), std::memory_order_relaxed);
+    round();
+    if (!connection_) std::this_thread::sleep_for(1ms);
+  }
+  round_s_.store(now_s_(), std::memory_order_relaxed);
+  if (connection_) come_down();
+  connection_.reset();
+  at_rest.store(true, std::memory_order_release);
+  has_ended.store(true, std::memory_order_release);
+}
+
+void ConnectedDevice::Exchange::round() {
   try {
     if (!connection_) {
-      at_rest_.store(true, std::memory_order_release);
+      at_rest.store(true, std::memory_order_release);
       reopen();
     } else {
       DeviceInput input;
-      const ConnectionStatus heard = connection_->read(input);
-      if (heard == ConnectionStatus::fresh) hear(input);
+      const ConnectionStatus status = connection_->read(input);
+      if (status == ConnectionStatus::fresh) hear(input);
       const double now_s = now_s_();
-      if (heard == ConnectionStatus::lost || send(now_s, may_be_driven(now_s)) == ConnectionStatus::lost)
+      if (status == ConnectionStatus::lost || send(now_s, may_be_driven(now_s)) == ConnectionStatus::lost)
         lose("the connection was closed");
     }
   } catch (const std::exception& error) {
@@ -119,7 +222,7 @@ void ConnectedDevice::exchange() {
   judge();
 }
 
-void ConnectedDevice::hear(const DeviceInput& input) {
+void ConnectedDevice::Exchange::hear(const DeviceInput& input) {
   const double now_s = now_s_();
   newest_.input = input;
   newest_.at_s = now_s;
@@ -128,26 +231,37 @@ void ConnectedDevice::hear(const DeviceInput& input) {
     if (now_s - posed_s_ > kGone_s) ++newest_.returns;
     posed_s_ = now_s;
   }
-  heard_.write(newest_);
+  // Before the pose, so that none from behind a closed gate is taken for one that is driven.
+  set_gate(input.not_driven == nullptr && !is_let_go.load(std::memory_order_acquire));
+  heard.write(newest_);
   inputs_.count();
 }
 
-bool ConnectedDevice::may_be_driven(double now_s) {
-  const Asked& asked = asked_.read();
-  const bool late = now_s - asked.at_s > kMaxAge_s;
-  if (late && !wrench_was_late_ && !is_zero(asked.wrench_D)) ++to_say_.late_wrenches;
+void ConnectedDevice::Exchange::set_gate(bool is_open) {
+  const std::uint64_t number = gate.load(std::memory_order_relaxed);
+  if (is_open != (number % 2 == 1)) gate.store(number + 1, std::memory_order_release);
+}
+
+bool ConnectedDevice::Exchange::may_be_driven(double now_s) {
+  const Asked& newest_asked = asked.read();
+  const bool late = now_s - newest_asked.at_s > kMaxAge_s;
+  if (late && !wrench_was_late_ && !is_zero(newest_asked.wrench_D)) ++to_say_.late_wrenches;
   wrench_was_late_ = late;
-  return !late && newest_.input.not_driven == nullptr && !let_go_.load(std::memory_order_acquire);
+  if (is_let_go.load(std::memory_order_acquire)) set_gate(false);
+  return !late && gate.load(std::memory_order_relaxed) % 2 == 1;
 }
 
 // The only way by which a wrench goes out.
-ConnectionStatus ConnectedDevice::send(double now_s, bool driven) {
+ConnectionStatus ConnectedDevice::Exchange::send(double now_s, bool driven) {
   const double lapse_s = connection_->capabilities().lets_go_after_s;
-  if (lapse_s > 0 && now_s - sent_s_ > lapse_s) sent_D_ = {};
+  if (lapse_s > 0 && now_s - sent_s_ > lapse_s) {
+    sent_D_ = {};
+    blended_ = 0;
+  }
   const double passed_s = std::clamp(now_s - sent_s_, 0.0, kMaxAge_s);
   const double share = driven ? std::min(1.0, blended_ + passed_s / kBlend_s) : 0;
-  const Wrench asked = make_safe(asked_.read().wrench_D, capabilities_.limits).wrench;
-  const Wrench target{share * asked.force_N, share * asked.torque_Nmm};
+  const Wrench wanted = make_safe(asked.read().wrench_D, opened_.limits).wrench;
+  const Wrench target = share * wanted;
   const Wrench next = approach(sent_D_, target, kRatesForAHand, std::min(passed_s, kRound_s));
   const ConnectionStatus status = connection_->write(next);
   if (status == ConnectionStatus::fresh) {
@@ -155,13 +269,13 @@ ConnectionStatus ConnectedDevice::send(double now_s, bool driven) {
     sent_s_ = now_s;
   }
   if (status == ConnectionStatus::fresh || share == 0) blended_ = share;
-  given_share_.store(driven ? share_sent(asked.force_N, sent_D_.force_N) : 0, std::memory_order_relaxed);
-  at_rest_.store(is_zero(sent_D_), std::memory_order_release);
+  given_share.store(driven ? share_sent(wanted.force_N, sent_D_.force_N) : 0, std::memory_order_relaxed);
+  at_rest.store(is_zero(sent_D_), std::memory_order_release);
   return status;
 }
 
 // A round a millisecond, until zero has gone out; what cannot be sent any more is left to the device itself.
-void ConnectedDevice::come_down() {
+void ConnectedDevice::Exchange::come_down() {
   double now_s = sent_s_;
   try {
     for (int n = 0; n < kMostRoundsAtTheEnd && !is_zero(sent_D_); ++n) {
@@ -175,22 +289,24 @@ void ConnectedDevice::come_down() {
   }
 }
 
-void ConnectedDevice::lose(const std::string& reason) {
+void ConnectedDevice::Exchange::lose(const std::string& reason) {
   if (connection_) come_down();
   connection_.reset();
+  set_gate(false);
+  // What it said of itself goes with it.
+  newest_.input.not_driven = newest_.input.remark = nullptr;
   sent_D_ = {};
   blended_ = 0;
-  given_share_.store(0, std::memory_order_relaxed);
+  given_share.store(0, std::memory_order_relaxed);
   lost_s_ = now_s_();
   to_say_.reason = reason;
 }
 
-void ConnectedDevice::reopen() {
+void ConnectedDevice::Exchange::reopen() {
   if (now_s_() - lost_s_ < kReopen_s) return;
   connection_ = open_();
   const DeviceCapabilities& now = connection_->capabilities();
-  if (now.name != capabilities_.name || now.driven != capabilities_.driven ||
-      now.sensed != capabilities_.sensed) {
+  if (now.name != opened_.name || now.driven != opened_.driven || now.sensed != opened_.sensed) {
     lose("another device is there: " + now.name);
     return;
   }
@@ -198,15 +314,18 @@ void ConnectedDevice::reopen() {
   ++to_say_.reopened;
 }
 
-void ConnectedDevice::judge() {
+void ConnectedDevice::Exchange::judge() {
   const double now_s = now_s_();
   const DeviceInput& input = newest_.input;
   to_say_.inputs_per_s = inputs_.per_s(now_s);
   State state = State::ok;
   const char* says = "";
+  const double age_s = now_s - newest_.at_s;
+  // What it says of itself tells more than that it is a little slow.
+  const double silent_after_s = input.not_driven != nullptr || input.remark != nullptr ? kGone_s : kMaxAge_s;
   if (!connection_) {
     state = State::lost;
-  } else if (now_s - newest_.at_s > kMaxAge_s) {
+  } else if (age_s > silent_after_s) {
     state = State::silent;
   } else if (!newest_.is_pose) {
     state = State::not_finite;
@@ -221,7 +340,7 @@ void ConnectedDevice::judge() {
   tell(state, now_s);
 }
 
-void ConnectedDevice::tell(State state, double now_s) {
+void ConnectedDevice::Exchange::tell(State state, double now_s) {
   if (state != to_say_.state) {
     if (to_say_.state == State::ok) ++to_say_.faults;
     to_say_.state = state;
@@ -246,16 +365,35 @@ void ConnectedDevice::set_view(const Quat& R_WV) {
 }
 
 DeviceReport ConnectedDevice::report() const {
+  return exchange_->report();
+}
+
+DeviceReport ConnectedDevice::Exchange::report() {
   const std::lock_guard lock(said_mutex_);
   DeviceReport report = said_;
-  report.since_s = now_s_() - report.since_s;
+  const double now_s = now_s_();
+  const double round_s = round_s_.load(std::memory_order_relaxed);
+  const char* const call = call_.load(std::memory_order_acquire);
+  if (call != nullptr && now_s - round_s > kHangs_s) {
+    report.state = State::hangs;
+    report.reason = call;
+    report.since_s = round_s;
+  }
+  report.since_s = now_s - report.since_s;
   return report;
 }
 
 Pose ConnectedDevice::read_pose() noexcept {
-  const Heard& heard = heard_.read();
+  const Exchange::Heard& heard = exchange_->heard.read();
+  const std::uint64_t gate = exchange_->gate.load(std::memory_order_acquire);
+  const std::uint64_t stops = exchange_->stops.load(std::memory_order_acquire);
+  // False for a tick also where it was not driven between this one and the last.
+  is_driven_ = gate % 2 == 1 && gate == gate_ && stops == stops_ &&
+               !exchange_->is_let_go.load(std::memory_order_acquire);
+  gate_ = gate;
+  stops_ = stops;
   const DeviceInput& input = heard.input;
-  const bool there = heard.is_pose && now_s_() - heard.at_s <= kMaxAge_s;
+  const bool there = heard.is_pose && exchange_->now_s() - heard.at_s <= kMaxAge_s;
   const bool clutched =
       clutched_.load(std::memory_order_relaxed) || (there && (input.buttons & kClutchButton) != 0);
   has_pose_ = there && !clutched;
@@ -273,7 +411,7 @@ Pose ConnectedDevice::read_pose() noexcept {
 }
 
 void ConnectedDevice::write_wrench(const Wrench& wrench) noexcept {
-  asked_.write({workspace_.wrench_D(wrench, shaft_direction(X_WD_)), now_s_()});
+  exchange_->asked.write({workspace_.wrench_D(wrench, shaft_direction(X_WD_)), exchange_->now_s()});
 }
 
 void ConnectedDevice::tick_done(const Pose& X_WT, double /*dt_s*/) noexcept {
@@ -285,10 +423,21 @@ void ConnectedDevice::put_at(const Pose& X_WD) noexcept {
   anchor_anew_ = true;
 }
 
+double ConnectedDevice::given_share() const noexcept {
+  return exchange_->given_share.load(std::memory_order_relaxed);
+}
+
 bool ConnectedDevice::let_go() noexcept {
   // What is being sent right now may still be something.
-  if (!let_go_.exchange(true, std::memory_order_acq_rel)) at_rest_.store(false, std::memory_order_release);
-  return at_rest_.load(std::memory_order_acquire);
+  if (!exchange_->is_let_go.exchange(true, std::memory_order_acq_rel)) {
+    exchange_->stops.fetch_add(1, std::memory_order_release);
+    exchange_->at_rest.store(false, std::memory_order_release);
+  }
+  return exchange_->at_rest.load(std::memory_order_acquire);
+}
+
+void ConnectedDevice::take_hold() noexcept {
+  exchange_->is_let_go.store(false, std::memory_order_release);
 }
 
 }  // namespace osteomill

@@ -5,8 +5,6 @@
 #include <functional>
 #include <limits>
 #include <memory>
-#include <mutex>
-#include <stop_token>
 #include <string>
 #include <thread>
 
@@ -34,6 +32,8 @@ struct DeviceReport {
     not_finite,
     /// Gone; it is being opened again.
     lost,
+    /// A function of its maker's software (`reason`) does not return.
+    hangs,
   };
   State state = State::ok;
   /// How long it has been so.
@@ -60,6 +60,9 @@ struct DeviceReport {
 /// device may not be driven, is lost or let go of, and at the end, and up again over 0.1 s. A device that is
 /// lost is opened again until it is there.
 ///
+/// It is driven (`is_driven`) while the newest input says that it may be, it is not lost, and nobody has let
+/// go of it. A clutch leaves it driven, since the tool stays where it is.
+///
 /// The first button asks for the spindle. While the second is held (or `set_clutched`) the handle moves
 /// without the tool: the device gives no pose and the hand feels nothing. Then it goes on from where the tool
 /// is.
@@ -70,7 +73,7 @@ class ConnectedDevice final : public Device {
 
   /// Opens the device. Throws as `open` does. Tests have a clock of their own, which never goes back either.
   explicit ConnectedDevice(OpenConnection open, std::function<double()> now_s = {});
-  /// Returns when zero has been sent and the device is closed.
+  /// Closes the device.
   ~ConnectedDevice() override;
   ConnectedDevice(const ConnectedDevice&) = delete;
   ConnectedDevice& operator=(const ConnectedDevice&) = delete;
@@ -78,6 +81,10 @@ class ConnectedDevice final : public Device {
   /// Starts the thread; returns when the device has given a pose. Throws InputError where it gives none
   /// within half a second.
   void start();
+  /// Returns when zero has been sent and the device is closed, with nothing to say. Where its maker's
+  /// software does not return within 0.8 s its thread is left to itself, and what there is to say of that is
+  /// returned. The device then gives no pose and takes no wrench.
+  std::string close();
   /// What the thread does, once: for a test that keeps time itself, in place of `start`.
   void exchange();
 
@@ -98,71 +105,28 @@ class ConnectedDevice final : public Device {
 
   Pose read_pose() noexcept override;
   void write_wrench(const Wrench& wrench) noexcept override;
-  double given_share() const noexcept override { return given_share_.load(std::memory_order_relaxed); }
+  double given_share() const noexcept override;
+  bool is_driven() const noexcept override { return is_driven_; }
   bool spindle_asked() const noexcept override { return (buttons_ & kSpindleButton) != 0; }
   void tick_done(const Pose& X_WT, double dt_s) noexcept override;
   void put_at(const Pose& X_WD) noexcept override;
   bool let_go() noexcept override;
-  void take_hold() noexcept override { let_go_.store(false, std::memory_order_release); }
+  void take_hold() noexcept override;
 
  private:
-  struct Heard {
-    DeviceInput input;
-    double at_s = -std::numeric_limits<double>::infinity();
-    bool is_pose = false;
-    // How often it was gone before.
-    std::uint64_t returns = 0;
-  };
-  struct Asked {
-    Wrench wrench_D;
-    double at_s = -std::numeric_limits<double>::infinity();
-  };
+  // What the device's thread works on, and keeps where it is left to itself.
+  class Exchange;
   struct Way {
     WorkspaceSettings settings;
     Quat R_WV = view_from_the_front();
     std::uint64_t number = 0;
   };
 
-  void run(const std::stop_token& stop);
-  void hear(const DeviceInput& input);
-  bool may_be_driven(double now_s);
-  ConnectionStatus send(double now_s, bool driven);
-  void come_down();
-  void lose(const std::string& reason);
-  void reopen();
-  void judge();
-  void tell(DeviceReport::State state, double now_s);
-
-  OpenConnection open_;
-  std::function<double()> now_s_;
-  LatestValue<Heard> heard_;
-  LatestValue<Asked> asked_;
+  std::shared_ptr<Exchange> exchange_;
+  std::thread thread_;
   Way way_set_;
   LatestValue<Way> way_;
   std::atomic<bool> clutched_{false};
-  std::atomic<bool> let_go_{false};
-  std::atomic<bool> at_rest_{true};
-  std::jthread thread_;
-
-  // The device's thread's.
-  std::unique_ptr<Connection> connection_;
-  Heard newest_;
-  // The last that went out, and when.
-  Wrench sent_D_;
-  double sent_s_;
-  // How far it has come up, 0 to 1.
-  double blended_ = 0;
-  double posed_s_ = -std::numeric_limits<double>::infinity();
-  double lost_s_ = 0;
-  bool wrench_was_late_ = false;
-  RecentRate inputs_;
-
-  // What is to be said of it; `since_s` holds the time of the clock here.
-  DeviceReport to_say_;
-  // And what others may read of that, under the lock, for which the device's thread does not wait.
-  mutable std::mutex said_mutex_;
-  DeviceReport said_;
-  std::atomic<double> given_share_{0};
 
   // The haptic thread's.
   DeviceCapabilities capabilities_;
@@ -172,6 +136,9 @@ class ConnectedDevice final : public Device {
   bool has_pose_ = false;
   bool anchor_anew_ = true;
   std::uint64_t returns_ = 0;
+  std::uint64_t gate_ = 0;
+  std::uint64_t stops_ = 0;
+  bool is_driven_ = false;
   std::uint64_t way_taken_ = 0;
   unsigned buttons_ = 0;
 };

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "tests/scripted_device.h"
+#include "tests/wait.h"
 #include <gtest/gtest.h>
 
 #include "osteomill/files/input_error.h"
@@ -154,6 +155,66 @@ TEST_F(ConnectedDeviceTest, WhatMayNotBeDrivenGivesPosesAndGetsZeroUntilItMay) {
   EXPECT_NEAR(felt_N(), 10, 1e-9);
   EXPECT_EQ(device_.report().state, State::ok);
   expect_no_step();
+}
+
+// However shortly it was not: the haptic thread hears of it in the next tick.
+TEST_F(ConnectedDeviceTest, WhetherItIsDrivenIsToldEveryTick) {
+  EXPECT_TRUE(device_.is_driven());
+  const auto ticks_not_driven = [&](int ticks) {
+    int count = 0;
+    for (int n = 0; n < ticks; ++n) {
+      tick();
+      count += device_.is_driven() ? 0 : 1;
+    }
+    return count;
+  };
+  hardware_.input.not_driven = "has braked";
+  EXPECT_EQ(ticks_not_driven(20), 19);  // the tick before had heard nothing of it
+  hardware_.input.not_driven = nullptr;
+  EXPECT_EQ(ticks_not_driven(20), 2);
+  hardware_.input.not_driven = "has braked";
+  device_.exchange();
+  hardware_.input.not_driven = nullptr;
+  device_.exchange();
+  EXPECT_EQ(ticks_not_driven(20), 1);
+  device_.let_go();
+  device_.take_hold();
+  EXPECT_EQ(ticks_not_driven(20), 1);
+  // A clutch leaves the tool where it is.
+  device_.set_clutched(true);
+  EXPECT_EQ(ticks_not_driven(20), 0);
+  hardware_.gone = true;
+  EXPECT_EQ(ticks_not_driven(20), 19);
+}
+
+TEST_F(ConnectedDeviceTest, WhatItSaysOfItselfIsSaidThoughItIsALittleSlow) {
+  hardware_.input.remark = "answers after 9 ms";
+  for (int n = 0; n < 200; ++n) {
+    hardware_.silent = n % 9 != 0;
+    tick();
+    if (n > 9) {
+      ASSERT_EQ(device_.report().complaint(), "answers after 9 ms");
+    }
+  }
+  run(200);
+  EXPECT_EQ(device_.report().state, State::silent);
+}
+
+// As a device does that lets go by itself.
+TEST_F(ConnectedDeviceTest, AfterALapseOfItsOwnTheForceComesUpSlowly) {
+  hardware_.can.lets_go_after_s = 5e-3;
+  asked_.force_N = {0, 0, 10};
+  run(200);
+  EXPECT_NEAR(felt_N(), 10, 1e-9);
+  hardware_.busy = true;
+  run(10);
+  hardware_.busy = false;
+  for (int n = 1; n <= 10; ++n) {
+    tick();
+    EXPECT_LT(felt_N(), 0.1 * n + 0.6);
+  }
+  run(kBlend);
+  EXPECT_NEAR(felt_N(), 10, 1e-9);
 }
 
 TEST_F(ConnectedDeviceTest, SoItIsForOneThatIsOpenedAgainUncalibrated) {
@@ -334,10 +395,10 @@ TEST_F(RunningDevice, ComesDownToZeroBeforeItIsClosed) {
   {
     ConnectedDevice device(way(), {});
     device.start();
-    while (felt_N_ < 8) {
+    ASSERT_TRUE(testing_support::comes_true([&] {
       device.write_wrench({{8, 0, 0}, Vec3::Zero()});
-      std::this_thread::sleep_for(std::chrono::microseconds(200));
-    }
+      return felt_N_ >= 8;
+    }));
   }
   EXPECT_EQ(felt_N_, 0);
   EXPECT_EQ(most_N_, 8);

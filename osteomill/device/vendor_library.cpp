@@ -46,7 +46,7 @@ VendorLibrary::VendorLibrary(std::string device, const char* variable,
 VendorLibrary::Function VendorLibrary::operator[](const char* name) const {
   void* const found = dlsym(library_.get(), name);
   if (found == nullptr) throw InputError(device_, fmt::format("{} has no {}", file_, name));
-  return {found};
+  return {name, found};
 }
 
 }  // namespace osteomill

@@ -1,10 +1,31 @@
 #pragma once
 
+#include <atomic>
 #include <initializer_list>
 #include <memory>
 #include <string>
+#include <utility>
 
 namespace osteomill {
+
+/// While it lives, the calling thread's calls of makers' functions leave their names in a place that other
+/// threads may read: null while there is none under way. So whoever waits for the thread knows for what.
+class VendorCallsNamed {
+ public:
+  explicit VendorCallsNamed(std::atomic<const char*>& place) : before_(std::exchange(place_, &place)) {}
+  ~VendorCallsNamed() { place_ = before_; }
+  VendorCallsNamed(const VendorCallsNamed&) = delete;
+  VendorCallsNamed& operator=(const VendorCallsNamed&) = delete;
+
+ private:
+  template <typename Signature>
+  friend class VendorFunction;
+  static void name(const char* function) noexcept {
+    if (place_ != nullptr) place_->store(function, std::memory_order_release);
+  }
+  static inline thread_local std::atomic<const char*>* place_ = nullptr;
+  std::atomic<const char*>* before_;
+};
 
 /// A maker's library that is opened when it is wanted, so that nothing of it is needed to build or to run
 /// without the device. Its functions' addresses are good for as long as this lives.
@@ -14,21 +35,41 @@ class VendorLibrary {
   /// Throws InputError about `device` where there is none.
   VendorLibrary(std::string device, const char* variable, std::initializer_list<const char*> names);
 
-  /// A function, of whatever type it is put into a pointer of.
+  /// A function, of whatever type it is put into a VendorFunction of.
   struct Function {
+    const char* name;
     void* address;
-    template <typename Type>
-    operator Type*() const {
-      return reinterpret_cast<Type*>(address);
-    }
   };
-  /// Throws InputError where the library has none of that name.
+  /// Throws InputError where the library has none of that name, which lives as long as the program.
   Function operator[](const char* name) const;
 
  private:
   std::string device_;
   std::string file_;
   std::shared_ptr<void> library_;
+};
+
+/// A function of a maker's library.
+template <typename Signature>
+class VendorFunction;
+template <typename Result, typename... Arguments>
+class VendorFunction<Result(Arguments...)> {
+ public:
+  VendorFunction(const VendorLibrary::Function& found)
+      : name_(found.name), function_(reinterpret_cast<Result (*)(Arguments...)>(found.address)) {}
+
+  Result operator()(Arguments... arguments) const {
+    struct Named {
+      explicit Named(const char* name) { VendorCallsNamed::name(name); }
+      ~Named() { VendorCallsNamed::name(nullptr); }
+    };
+    const Named named(name_);
+    return function_(arguments...);
+  }
+
+ private:
+  const char* name_;
+  Result (*function_)(Arguments...);
 };
 
 }  // namespace osteomill

@@ -1,6 +1,7 @@
 #include "osteomill/geometry/pose.h"
 
 #include <cmath>
+#include <limits>
 
 namespace osteomill {
 
@@ -25,6 +26,14 @@ Quat quaternion_from_rotation_vector(const Vec3& rotation_vector) noexcept {
 
 Quat smallest_rotation(const Vec3& from, const Vec3& to) noexcept {
   return Quat::FromTwoVectors(from, to);
+}
+
+Quat rotation_of(const Mat3& matrix) noexcept {
+  constexpr double kTolerance = 0.01;
+  const bool is_rotation =
+      (matrix.transpose() * matrix - Mat3::Identity()).norm() <= kTolerance && matrix.determinant() > 0;
+  if (is_rotation) return Quat(matrix).normalized();
+  return Quat(Eigen::Vector4d::Constant(std::numeric_limits<double>::quiet_NaN()));
 }
 
 bool is_finite(const Pose& pose) noexcept {

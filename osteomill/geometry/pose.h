@@ -40,6 +40,9 @@ Quat quaternion_from_rotation_vector(const Vec3& rotation_vector) noexcept;
 /// The smallest rotation that turns the direction of `from` into that of `to` (neither of them zero).
 Quat smallest_rotation(const Vec3& from, const Vec3& to) noexcept;
 
+/// Returns the rotation that a matrix is within 0.01, else a quaternion that is not finite.
+Quat rotation_of(const Mat3& matrix) noexcept;
+
 /// The tool's or device's shaft direction in the outer frame: where the pose's +z axis points.
 inline Vec3 shaft_direction(const Pose& X_WT) noexcept {
   return X_WT.orientation * Vec3::UnitZ();

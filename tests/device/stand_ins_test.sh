@@ -60,3 +60,8 @@ for _ in $(seq 50); do ! grep -q "^State:.*T" "/proc/$program/status" || break; 
 kill -9 $program
 wait $program 2>/dev/null || true
 judge "haply stopped"
+
+# A function of the maker's that never returns: `live` ends all the same, and names it.
+OSTEOMILL_STAND_IN_HANGS_IN=dhdGetPositionAndOrientationFrame timeout 60 "$osteomill" live ball.nrrd --device dhd --seconds 3 \
+  --quiet >said 2>errors || fail "live of a device that hangs ended with $?"
+grep -q "dhdGetPositionAndOrientationFrame does not return" errors || fail "what hangs is not named"

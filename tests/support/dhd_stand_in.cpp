@@ -3,8 +3,11 @@
 #include "tests/support/dhd_stand_in.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <string_view>
+#include <thread>
 
 #include "tests/support/stand_in.h"
 
@@ -13,7 +16,20 @@ namespace {
 DhdStandIn g_state;
 double g_most_N = 0;
 
+DhdHang g_hang;
+
+// The environment's after a second, as a cable that breaks.
+bool hangs_in(std::string_view function) {
+  using Clock = std::chrono::steady_clock;
+  static const Clock::time_point start = Clock::now();
+  static const char* const named = std::getenv("OSTEOMILL_STAND_IN_HANGS_IN");
+  const char* const in = g_hang.in;
+  return (in != nullptr && function == in) ||
+         (named != nullptr && function == named && Clock::now() - start > std::chrono::seconds(1));
+}
+
 int result_of(std::string_view function) {
+  while (hangs_in(function)) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   return g_state.fails_in == function ? -1 : 0;
 }
 
@@ -23,6 +39,10 @@ extern "C" {
 
 DhdStandIn* dhd_stand_in() {
   return &g_state;
+}
+
+DhdHang* dhd_hang() {
+  return &g_hang;
 }
 
 int dhdGetDeviceCount() {
@@ -38,6 +58,7 @@ int dhdClose(char) {
   g_state.opened = -1;
   osteomill::testing_support::log_of_stand_in("closed, sent", g_state.times_sent, "most", g_most_N, "last",
                                               g_state.sent[0], g_state.sent[1], g_state.sent[2]);
+  ++g_hang.closed;
   return 0;
 }
 int dhdStop(char) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <string>
 
 /// What the stand-in for libdhd says (names and numbers of dhdc.h, SDK 3.17.5), and what it was told. A test
@@ -35,4 +36,11 @@ struct DhdStandIn {
   /// Force (N), torque (N m), force of the gripper (N).
   std::array<double, 7> sent{};
   int times_sent = 0;
+};
+
+/// The function that does not return, for as long as it is named here, and how often a device was closed. A
+/// test has it by dlsym("dhd_hang"); any thread.
+struct DhdHang {
+  std::atomic<const char*> in{nullptr};
+  std::atomic<int> closed{0};
 };

@@ -46,31 +46,32 @@ constexpr std::array kForceIsOff{"has its force off: switch it on by the device'
 struct Dhd {
   VendorLibrary file{
       "dhd", "OSTEOMILL_DHD_LIBRARY", {"libdhd.so.3", "libdhd.so", "libdrd.so.3", "libdrd.so"}};
-  int (*device_count)() = file["dhdGetDeviceCount"];
-  int (*open)(char) = file["dhdOpenID"];
-  int (*close)(char) = file["dhdClose"];
-  int (*stop)(char) = file["dhdStop"];
-  const char* (*last_error)() = file["dhdErrorGetLastStr"];
-  const char* (*system_name)(char) = file["dhdGetSystemName"];
-  int (*system_type)(char) = file["dhdGetSystemType"];
-  int (*serial_number)(unsigned short*, char) = file["dhdGetSerialNumber"];
-  bool (*has_wrist)(char) = file["dhdHasWrist"];
-  bool (*has_active_wrist)(char) = file["dhdHasActiveWrist"];
-  bool (*has_gripper)(char) = file["dhdHasGripper"];
-  int (*emulate_button)(unsigned char, char) = file["dhdEmulateButton"];
-  int (*enable_expert_mode)() = file["dhdEnableExpertMode"];
-  int (*disable_expert_mode)() = file["dhdDisableExpertMode"];
-  int (*set_watchdog)(unsigned char, char) = file["dhdSetWatchdog"];
-  int (*get_watchdog)(unsigned char*, char) = file["dhdGetWatchdog"];
-  int (*status)(int*, char) = file["dhdGetStatus"];
-  int (*set_brakes)(int, char) = file["dhdSetBrakes"];
-  int (*enable_force)(unsigned char, char) = file["dhdEnableForce"];
-  int (*set_max_force)(double, char) = file["dhdSetMaxForce"];
-  int (*set_max_torque)(double, char) = file["dhdSetMaxTorque"];
-  int (*pose)(double*, double*, double*, double (*)[3], char) = file["dhdGetPositionAndOrientationFrame"];
-  unsigned (*button_mask)(char) = file["dhdGetButtonMask"];
-  int (*set_wrench)(double, double, double, double, double, double, double,
-                    char) = file["dhdSetForceAndTorqueAndGripperForce"];
+  VendorFunction<int()> device_count = file["dhdGetDeviceCount"];
+  VendorFunction<int(char)> open = file["dhdOpenID"];
+  VendorFunction<int(char)> close = file["dhdClose"];
+  VendorFunction<int(char)> stop = file["dhdStop"];
+  VendorFunction<const char*()> last_error = file["dhdErrorGetLastStr"];
+  VendorFunction<const char*(char)> system_name = file["dhdGetSystemName"];
+  VendorFunction<int(char)> system_type = file["dhdGetSystemType"];
+  VendorFunction<int(unsigned short*, char)> serial_number = file["dhdGetSerialNumber"];
+  VendorFunction<bool(char)> has_wrist = file["dhdHasWrist"];
+  VendorFunction<bool(char)> has_active_wrist = file["dhdHasActiveWrist"];
+  VendorFunction<bool(char)> has_gripper = file["dhdHasGripper"];
+  VendorFunction<int(unsigned char, char)> emulate_button = file["dhdEmulateButton"];
+  VendorFunction<int()> enable_expert_mode = file["dhdEnableExpertMode"];
+  VendorFunction<int()> disable_expert_mode = file["dhdDisableExpertMode"];
+  VendorFunction<int(unsigned char, char)> set_watchdog = file["dhdSetWatchdog"];
+  VendorFunction<int(unsigned char*, char)> get_watchdog = file["dhdGetWatchdog"];
+  VendorFunction<int(int*, char)> status = file["dhdGetStatus"];
+  VendorFunction<int(int, char)> set_brakes = file["dhdSetBrakes"];
+  VendorFunction<int(unsigned char, char)> enable_force = file["dhdEnableForce"];
+  VendorFunction<int(double, char)> set_max_force = file["dhdSetMaxForce"];
+  VendorFunction<int(double, char)> set_max_torque = file["dhdSetMaxTorque"];
+  VendorFunction<int(double*, double*, double*, double (*)[3], char)> pose =
+      file["dhdGetPositionAndOrientationFrame"];
+  VendorFunction<unsigned(char)> button_mask = file["dhdGetButtonMask"];
+  VendorFunction<int(double, double, double, double, double, double, double, char)> set_wrench =
+      file["dhdSetForceAndTorqueAndGripperForce"];
 };
 
 // What the library does not say, from the makers' data sheets.
@@ -166,7 +167,7 @@ class ForceDimensionConnection final : public Connection {
     input.X_DH = {kMmPerM * position_m, Quat::Identity()};
     if (capabilities_.sensed == 6) {
       const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> R_DH(&frame[0][0]);
-      input.X_DH.orientation = Quat(Mat3(R_DH)).normalized();
+      input.X_DH.orientation = rotation_of(R_DH);
     }
     input.buttons = dhd_.button_mask(id_);
     if (Clock::now() >= next_status_) {
@@ -180,6 +181,7 @@ class ForceDimensionConnection final : public Connection {
   ConnectionStatus write(const Wrench& wrench_D) override {
     const Vec3& force_N = wrench_D.force_N;
     const Vec3 torque_Nm = capabilities_.driven == 6 ? Vec3(wrench_D.torque_Nmm / kMmPerM) : Vec3::Zero();
+    sends_zero_ = is_zero(wrench_D);
     const int result = dhd_.set_wrench(force_N.x(), force_N.y(), force_N.z(), torque_Nm.x(), torque_Nm.y(),
                                        torque_Nm.z(), 0, id_);
     return result < 0 ? ConnectionStatus::lost : ConnectionStatus::fresh;
@@ -199,7 +201,8 @@ class ForceDimensionConnection final : public Connection {
   static bool is_off(const StatusOfDevice& status) { return status[kHasForce] == 0 || status[kBrakes] != 0; }
 
   // Force is switched on once the device is calibrated, and again where its watchdog alone had switched it
-  // off.
+  // off: then not before it has been said to be off and the wrench has come down, since the device goes on
+  // with the last that it was sent.
   const char* why_not_driven() {
     StatusOfDevice status{};
     if (dhd_.status(status.data(), id_) < 0) return "does not say whether it is calibrated";
@@ -207,14 +210,17 @@ class ForceDimensionConnection final : public Connection {
       switches_on_ = true;
       return "is not calibrated: calibrate it by the maker's tool (HapticInit), a Falcon by hand";
     }
-    if (is_off(status) && (switches_on_ || status[kForceOffCause] == kByWatchdog)) {
+    const auto cause = static_cast<std::size_t>(status[kForceOffCause]);
+    const char* const off = is_off(status) ? kForceIsOff[cause < kForceIsOff.size() ? cause : 0] : nullptr;
+    const bool by_watchdog = cause == kByWatchdog && not_driven_ == off && sends_zero_;
+    if (off != nullptr && (switches_on_ || by_watchdog)) {
       switches_on_ = false;
       dhd_.set_brakes(0, id_);
       dhd_.enable_force(1, id_);
       if (dhd_.status(status.data(), id_) < 0) return "does not say whether its force is on";
+      return is_off(status) ? off : nullptr;
     }
-    const auto cause = static_cast<std::size_t>(status[kForceOffCause]);
-    return is_off(status) ? kForceIsOff[cause < kForceIsOff.size() ? cause : 0] : nullptr;
+    return off;
   }
 
   char id_ = 0;
@@ -223,6 +229,7 @@ class ForceDimensionConnection final : public Connection {
   Clock::time_point next_status_ = Clock::now();
   const char* not_driven_ = nullptr;
   bool switches_on_ = true;
+  bool sends_zero_ = true;
 };
 
 }  // namespace

@@ -7,9 +7,11 @@
 #include <utility>
 
 #include "tests/support/dhd_stand_in.h"
+#include "tests/wait.h"
 #include <dlfcn.h>
 #include <gtest/gtest.h>
 
+#include "osteomill/device/connected_device.h"
 #include "osteomill/device/hardware.h"
 #include "osteomill/files/input_error.h"
 
@@ -42,8 +44,6 @@ class ForceDimension : public ::testing::Test {
   }
 
   DhdStandIn* device_ = nullptr;
-
- private:
   void* library_ = nullptr;
 };
 
@@ -109,10 +109,46 @@ TEST_F(ForceDimension, IsDrivenWhereItIsCalibratedAndHasItsForceOn) {
     device_->status[kBrake] = 0;
     EXPECT_EQ(why_not(), "");
   }
+  // The watchdog's is said once, and switched on again once zero was sent.
+  connection->write({{0, 0, 5}, Vec3::Zero()});
   device_->status[kForce] = 0;
   device_->status[kCause] = 3;
+  for (int n = 0; n < 2; ++n) {
+    EXPECT_EQ(why_not(), "has its force off, as it waited too long for a wrench");
+    EXPECT_EQ(device_->status[kForce], 0);
+  }
+  connection->write({});
   EXPECT_EQ(why_not(), "");
   EXPECT_EQ(device_->status[kForce], 1);
+}
+
+TEST_F(ForceDimension, AFrameThatTurnsByNoRotationIsNoPose) {
+  ConnectedDevice device([] { return open_force_dimension(""); });
+  for (const double all : {0.0, 1.0}) {
+    std::fill_n(&device_->frame[0][0], 9, all);
+    for (int n = 0; n < 3; ++n) device.exchange();
+    EXPECT_EQ(device.report().state, DeviceReport::State::not_finite) << all;
+    EXPECT_FALSE(is_finite(device.read_pose()));
+  }
+}
+
+TEST_F(ForceDimension, AFunctionThatDoesNotReturnIsNamedAndLeftBehind) {
+  DhdHang& hang = *reinterpret_cast<DhdHang* (*)()>(dlsym(library_, "dhd_hang"))();
+  constexpr const char* kFunction = "dhdSetForceAndTorqueAndGripperForce";
+  const int closed = hang.closed;
+  {
+    ConnectedDevice device([] { return open_force_dimension(""); });
+    device.start();
+    hang.in = kFunction;
+    EXPECT_TRUE(
+        testing_support::comes_true([&] { return device.report().state == DeviceReport::State::hangs; }));
+    EXPECT_EQ(device.report().reason, kFunction);
+    EXPECT_NE(device.close().find(std::string(kFunction) + " does not return"), std::string::npos);
+    EXPECT_EQ(device.close(), "");
+  }
+  // Its thread ends if it returns after all.
+  hang.in = nullptr;
+  EXPECT_TRUE(testing_support::comes_true([&] { return hang.closed > closed; }));
 }
 
 TEST_F(ForceDimension, OpenedAgainItLeavesOffWhatItsOperatorSwitchedOff) {

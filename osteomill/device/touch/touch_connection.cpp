@@ -60,23 +60,24 @@ struct HdError {
 
 struct Hd {
   VendorLibrary file{"hd", "OSTEOMILL_HD_LIBRARY", {"libHD.so", "libHD.so.3.4", "libHD.so.3"}};
-  unsigned (*init_device)(const char*) = file["hdInitDevice"];
-  void (*disable_device)(unsigned) = file["hdDisableDevice"];
-  void (*begin_frame)(unsigned) = file["hdBeginFrame"];
-  void (*end_frame)(unsigned) = file["hdEndFrame"];
-  void (*get_doubles)(unsigned, double*) = file["hdGetDoublev"];
-  void (*set_doubles)(unsigned, const double*) = file["hdSetDoublev"];
-  void (*get_integers)(unsigned, int*) = file["hdGetIntegerv"];
-  const char* (*get_string)(unsigned) = file["hdGetString"];
-  void (*enable)(unsigned) = file["hdEnable"];
-  unsigned (*check_calibration)() = file["hdCheckCalibration"];
-  void (*update_calibration)(unsigned) = file["hdUpdateCalibration"];
-  HdError (*get_error)() = file["hdGetError"];
-  const char* (*error_string)(unsigned) = file["hdGetErrorString"];
-  unsigned long (*schedule)(unsigned (*)(void*), void*, unsigned short) = file["hdScheduleAsynchronous"];
-  void (*unschedule)(unsigned long) = file["hdUnschedule"];
-  void (*start_scheduler)() = file["hdStartScheduler"];
-  void (*stop_scheduler)() = file["hdStopScheduler"];
+  VendorFunction<unsigned(const char*)> init_device = file["hdInitDevice"];
+  VendorFunction<void(unsigned)> disable_device = file["hdDisableDevice"];
+  VendorFunction<void(unsigned)> begin_frame = file["hdBeginFrame"];
+  VendorFunction<void(unsigned)> end_frame = file["hdEndFrame"];
+  VendorFunction<void(unsigned, double*)> get_doubles = file["hdGetDoublev"];
+  VendorFunction<void(unsigned, const double*)> set_doubles = file["hdSetDoublev"];
+  VendorFunction<void(unsigned, int*)> get_integers = file["hdGetIntegerv"];
+  VendorFunction<const char*(unsigned)> get_string = file["hdGetString"];
+  VendorFunction<void(unsigned)> enable = file["hdEnable"];
+  VendorFunction<unsigned()> check_calibration = file["hdCheckCalibration"];
+  VendorFunction<void(unsigned)> update_calibration = file["hdUpdateCalibration"];
+  VendorFunction<HdError()> get_error = file["hdGetError"];
+  VendorFunction<const char*(unsigned)> error_string = file["hdGetErrorString"];
+  VendorFunction<unsigned long(unsigned (*)(void*), void*, unsigned short)> schedule =
+      file["hdScheduleAsynchronous"];
+  VendorFunction<void(unsigned long)> unschedule = file["hdUnschedule"];
+  VendorFunction<void()> start_scheduler = file["hdStartScheduler"];
+  VendorFunction<void()> stop_scheduler = file["hdStopScheduler"];
 };
 
 // A device that is opened, and none of whose motors has power.
@@ -194,8 +195,7 @@ class TouchConnection final : public Connection {
     hd_.get_doubles(kCurrentTransform, transform.data());
     const Eigen::Map<const Eigen::Matrix4d> X_DH(transform.data());
     input.X_DH.position_mm = X_DH.topRightCorner<3, 1>();
-    if (capabilities_.sensed == 6)
-      input.X_DH.orientation = Quat(Mat3(X_DH.topLeftCorner<3, 3>())).normalized();
+    if (capabilities_.sensed == 6) input.X_DH.orientation = rotation_of(X_DH.topLeftCorner<3, 3>());
     int buttons = 0;
     hd_.get_integers(kCurrentButtons, &buttons);
     input.buttons = static_cast<unsigned>(buttons);

@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "tests/support/hd_stand_in.h"
+#include "tests/wait.h"
 #include <dlfcn.h>
 #include <gtest/gtest.h>
 
@@ -43,7 +44,7 @@ class Touch : public ::testing::Test {
   // Until a frame has begun since now and one more is done.
   void await_frame() {
     const int before = device_->frames;
-    while (device_->frames < before + 2) std::this_thread::sleep_for(200us);
+    EXPECT_TRUE(testing_support::comes_true([&] { return device_->frames >= before + 2; }));
   }
   Vec3 force() const { return {device_->force[0], device_->force[1], device_->force[2]}; }
   Vec3 torque() const { return {device_->torque[0], device_->torque[1], device_->torque[2]}; }
@@ -84,6 +85,15 @@ TEST_F(Touch, ListingItGivesItsMotorsNoPower) {
   EXPECT_FALSE(device_->has_force);
   EXPECT_EQ(device_->frames, 0);
   EXPECT_FALSE(device_->is_open);
+}
+
+TEST_F(Touch, ATransformThatTurnsByNoRotationIsNoPose) {
+  device_->transform.fill(0);
+  open();
+  DeviceInput input;
+  read_until_it_is(ConnectionStatus::fresh, input);
+  EXPECT_FALSE(is_finite(input.X_DH));
+  EXPECT_TRUE(input.X_DH.position_mm.allFinite());
 }
 
 TEST_F(Touch, IsDrivenOnceItIsCalibrated) {
