@@ -1,5 +1,6 @@
 """Stands in for an arm behind a SAW driver: crtk_arm.py LOG SECONDS. Its handle goes slowly down, as /arm/measured_cp; it is
-homed after so long; LOG gets a line for every wrench: whether it was homed, and the force."""
+homed after so long, comes up out of the bone within a second, and goes down again; LOG gets a line for every wrench: whether
+it was homed, and the force."""
 import math
 import struct
 import sys
@@ -23,6 +24,15 @@ class OperatingState(genpy.Message):
         buffer.write(struct.pack("<??", self.is_homed, False))
 
 
+def height_mm(time_s, homed_s):
+    if time_s < homed_s:
+        return -25 * time_s
+    out_mm = -20
+    if time_s < homed_s + 1:
+        return -25 * homed_s + (25 * homed_s + out_mm) * (time_s - homed_s)
+    return out_mm - 50 * (time_s - homed_s - 1)
+
+
 rospy.init_node("arm", anonymous=True)
 begun_s = time.monotonic()
 with open(sys.argv[1], "w", buffering=1) as log:
@@ -40,7 +50,7 @@ with open(sys.argv[1], "w", buffering=1) as log:
             said = is_homed
             state.publish(OperatingState(state="ENABLED" if is_homed else "DISABLED", is_homed=is_homed))
         message = PoseStamped()
-        message.pose.position.y = -1e-3 * (25 * time_s + 3 * math.sin(2 * math.pi * time_s))
+        message.pose.position.y = 1e-3 * (height_mm(time_s, float(sys.argv[2])) - 3 * math.sin(2 * math.pi * time_s))
         message.pose.orientation.w = 1
         pose.publish(message)
         next_s = max(next_s + 1e-3, time.monotonic())
