@@ -2,9 +2,9 @@
 // out, and then what it touches after that: each back end against what stands in for its device.
 
 #include <algorithm>
-#include <atomic>
+#include <chrono>
+#include <cstdlib>
 #include <cstring>
-#include <functional>
 #include <future>
 #include <memory>
 #include <string>
