@@ -30,7 +30,7 @@ int main(int argc, char** argv) {
   osteomill::PosedDevice device;
   for (int n = 0; n < 2000; ++n) {
     device.put(pose_above(entry, setup.tool, 0.5 - 0.001 * n));
-    recorder.push_waiting(session.tick(device, 1e-3 * n, 1e-3, n > 500));
+    recorder.push_waiting(session.tick(device, {.time_s = 1e-3 * n, .spindle_on = n > 500}));
   }
   recorder.close();
 

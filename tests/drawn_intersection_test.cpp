@@ -26,10 +26,10 @@ ViewScene shaft_on_a_plane() {
   ViewScene scene;
   for (int n = 0; n < 600; ++n) {
     device.put({{10, 0.1, std::max(-0.3, 1 - 0.005 * n)}, smallest_rotation(Vec3::UnitZ(), -Vec3::UnitX())});
-    scene.X_WT = session.tick(device, n * 1e-3, 1e-3, false).X_WT;
+    scene.X_WT = session.tick(device, {.time_s = n * 1e-3}).X_WT;
   }
   scene.intersection_W = session.intersection_W();
-  EXPECT_TRUE(session.idle_tick(device, 1, 1e-3).paused);
+  EXPECT_TRUE(session.tick(device, {.time_s = 1, .paused = true}).paused);
   EXPECT_FALSE(session.intersection_W());
   return scene;
 }

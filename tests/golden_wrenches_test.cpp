@@ -50,7 +50,7 @@ TEST_P(GoldenWrenches, AreTheSameBitsAtAnyOptimisation) {
   for (int n = 0; n < kTicks; ++n) {
     device.put(testing_support::down_and_lean(kBallRadius_mm, tool.burr_radius_mm, 2.0,
                                               static_cast<double>(n) / kTicks));
-    hash = hashed(hash, session.tick(device, n * 1e-3, 1e-3, true).wrench);
+    hash = hashed(hash, session.tick(device, {.time_s = n * 1e-3, .spindle_on = true}).wrench);
   }
   EXPECT_EQ(hash, GetParam().hash) << std::hex << "0x" << hash;
 }

@@ -75,7 +75,7 @@ TEST_P(TickAllocation, NoTickAllocates) {
     if (n == 2600) pose.position_mm = {0, 0, -20};
     device.put(pose);
     // The last ticks only tell of labels for which there was no room before.
-    const TickRecord record = session.tick(device, n * 1e-3, 1e-3, n < kTicks - 3);
+    const TickRecord record = session.tick(device, {.time_s = n * 1e-3, .spindle_on = n < kTicks - 3});
     touching += record.contacts > 0 ? 1 : 0;
     removed_mm3 = record.removed_mm3;
     for (const LabelCut& cut : record.label_cuts) {

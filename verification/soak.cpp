@@ -83,10 +83,8 @@ class Soak {
     const double removed_before_mm3 = session_->removed_mm3();
     session_->place();
     while (!hand.finished()) {
-      TickRecord record = session_->tick(hand, time_s_, kTick_s, hand.spindle_asked());
+      TickRecord record = session_->tick(hand, {.time_s = time_s_, .dt_s = kTick_s});
       record.session = number_;
-      session_->prepare_next_ticks();
-      hand.tick_done(record.X_WT, kTick_s);
       time_s_ += kTick_s;
       stretch.add(record);
       recorder_->push_waiting(record);

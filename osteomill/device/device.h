@@ -35,8 +35,9 @@ class Device {
 
   /// Whether the operator asks for the spindle by a button or pedal of the device.
   virtual bool spindle_asked() const noexcept OSTEOMILL_NONBLOCKING { return false; }
-  /// The tick is over: where the simulated tool is shown, and how long it is until the next pose is read. A
-  /// simulated device moves on; hardware has nothing to do.
+  /// The tick is over: where the simulated tool is shown, and how long it is until the next pose is read;
+  /// called once more before that where the next one comes late. A simulated device moves on; hardware has
+  /// nothing to do.
   virtual void tick_done(const Pose& /*X_WT*/, double /*dt_s*/) noexcept OSTEOMILL_NONBLOCKING {}
   /// Called between two ticks: from now on the tool is at `X_WD` wherever the hand is, and moves from there
   /// as the hand moves. A device that gives poses of its own (a trajectory) does nothing.

@@ -24,12 +24,11 @@ MillingTrial::MillingTrial(const Volume& bone, const BoneDensities& densities, c
 
 MillingTrial::Tick MillingTrial::tick() {
   const bool milling_phase = operator_.spindle_asked();
-  // Before the pose is read and after the bone is milled.
   const double before_s = thread_cpu_s();
-  TickRecord record = session_.tick(operator_, operator_.time_s(), tick_s_, milling_phase && spindle_);
-  record.tick_cpu_us = 1e6 * (thread_cpu_s() - before_s);
-  session_.prepare_next_ticks();
-  operator_.tick_done(record.X_WT, tick_s_);
+  TickRecord record = session_.tick(
+      operator_, {.time_s = operator_.time_s(), .dt_s = tick_s_, .spindle_on = milling_phase && spindle_});
+  record.tick_cpu_us = 1e6 * (operator_.done_at_cpu_s - before_s);
+  session_.shared_volume()->prepare_about(session_.last_change().voxels);
   return {record, milling_phase};
 }
 

@@ -49,8 +49,19 @@ class MillingTrial {
   const HapticAlgorithm& algorithm() const { return session_.algorithm(); }
 
  private:
+  // The time that it takes to move on is not the tick's.
+  class TimedOperator final : public SimulatedOperator {
+   public:
+    using SimulatedOperator::SimulatedOperator;
+    void tick_done(const Pose& X_WT, double dt_s) noexcept override {
+      done_at_cpu_s = thread_cpu_s();
+      SimulatedOperator::tick_done(X_WT, dt_s);
+    }
+    double done_at_cpu_s = 0;
+  };
+
   MillingSession session_;
-  SimulatedOperator operator_;
+  TimedOperator operator_;
   double tick_s_;
   bool spindle_;
 };

@@ -54,8 +54,7 @@ class DeviceFaults : public ::testing::TestWithParam<std::string> {
     hardware_.now_s += dt_s;
     hardware_.input.X_DH.position_mm.x() = 1e-3 * std::sin(300 * hardware_.now_s);
     if (!hangs_) {
-      record_ = session_.tick(device_, hardware_.now_s, dt_s, spindle_on_);
-      device_.tick_done(record_.X_WT, dt_s);
+      record_ = session_.tick(device_, {.time_s = hardware_.now_s, .dt_s = dt_s, .spindle_on = spindle_on_});
     }
     device_.exchange();
   }
@@ -226,8 +225,7 @@ TEST_P(DeviceFaults, TicksComeLateBy5ms) {
       device_.exchange();
     }
     hardware_.now_s += kTick_s;
-    record_ = session_.tick(device_, hardware_.now_s, 6e-3, false);
-    device_.tick_done(record_.X_WT, 6e-3);
+    record_ = session_.tick(device_, {.time_s = hardware_.now_s, .late_s = 5e-3});
     device_.exchange();
     EXPECT_EQ(record_.fault, WrenchFault::tick_late);
     if (late >= 5) {

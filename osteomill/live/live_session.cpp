@@ -12,8 +12,9 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// However late a tick comes, no more time than this is simulated in it.
-constexpr double kMaxTick_s = 0.02;
+constexpr double kTick_s = 1e-3;
+// However late a tick comes, no more time than 20 ms is simulated in it.
+constexpr double kMaxLate_s = 0.02 - kTick_s;
 
 }  // namespace
 
@@ -122,20 +123,17 @@ void LiveSession::run(const std::stop_token& stop) noexcept {
 }
 
 void LiveSession::tick_until(const std::stop_token& stop) {
-  constexpr double kTick_s = 1e-3;
   constexpr Nanoseconds kTick_ns = 1'000'000;
   NextDeadline next{monotonic_now_ns() + kTick_ns, 1};
   while (!stop.stop_requested() && !driven_.end_asked()) {
     TickTimes times{next.deadline_ns, 0, 0, next.periods};
     times.woke_ns = wait_until(next.deadline_ns);
     take_command();
-    const double passed_s = next.periods * kTick_s;
-    const TickRecord record = tick(time_s_, std::min(passed_s, kMaxTick_s));
+    const TickRecord record = tick(std::min((next.periods - 1) * kTick_s, kMaxLate_s));
     times.done_ns = monotonic_now_ns();
     timing_.add(times, record);
     next = next_deadline(next.deadline_ns, times.done_ns, kTick_ns);
     time_s_ += next.periods * kTick_s;
-    device_.tick_done(record.X_WT, next.periods * kTick_s);
   }
 }
 
@@ -153,11 +151,14 @@ void LiveSession::place_when_at_rest() {
   session_->place();
 }
 
-TickRecord LiveSession::tick(double time_s, double dt_s) {
+TickRecord LiveSession::tick(double late_s) {
   place_when_at_rest();
   const bool spindle_on = !paused_ && !letting_go_ && (spindle_ || device_.spindle_asked());
-  TickRecord record = paused_ ? session_->idle_tick(device_, time_s, dt_s)
-                              : session_->tick(device_, time_s, dt_s, spindle_on && !bone_held_);
+  TickRecord record = session_->tick(device_, {.time_s = time_s_,
+                                               .dt_s = kTick_s,
+                                               .late_s = late_s,
+                                               .spindle_on = spindle_on && !bone_held_,
+                                               .paused = paused_});
   record.session = session_number_;
   if (record.placed) letting_go_ = false;
   if (listener_) listener_(record, session_->volume(), session_->last_change());

@@ -89,7 +89,7 @@ class LiveSession {
   void run(const std::stop_token& stop) noexcept;
   void tick_until(const std::stop_token& stop);
   void place_when_at_rest();
-  TickRecord tick(double time_s, double dt_s);
+  TickRecord tick(double late_s);
 
   Device& device_;
   DrivenDevice driven_;

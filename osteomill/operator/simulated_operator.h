@@ -24,10 +24,9 @@ template <>
 const std::vector<Field<OperatorSettings>>& fields_of<OperatorSettings>();
 
 /// A device and the hand that holds it, in simulated time: the same settings give the same run on any
-/// machine, however long a tick takes to compute. A tick is
-///     read_pose, (the algorithm), write_wrench, (milling while `spindle_asked()`), tick_done.
+/// machine, however long a tick takes to compute. It moves on when a tick is done.
 /// Made outside the tick; nothing else allocates, locks, logs or throws.
-class SimulatedOperator final : public Device {
+class SimulatedOperator : public Device {
  public:
   /// Throws std::invalid_argument, naming it, where a setting is out of range, or where hand and handle
   /// together are too stiff for the substep.

@@ -55,7 +55,8 @@ Milled mill_and_record(const TestFolder& folder) {
     pose.position_mm = {0.001 * n, 0, 7.0 - std::min(0.004 * n, 2.0)};
     device.put(pose);
     const double dt_s = n % 2 == 0 ? 1e-3 : 0.7e-3;
-    recorder.push_waiting(session.tick(device, time_s, dt_s, n % 300 < 250));
+    recorder.push_waiting(
+        session.tick(device, {.time_s = time_s, .dt_s = dt_s, .spindle_on = n % 300 < 250}));
     time_s += dt_s;
   }
   recorder.close();

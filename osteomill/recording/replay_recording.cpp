@@ -78,8 +78,10 @@ TickRecord tick_again(MillingSession& session, const TickRecord& recorded) {
   device.put(recorded.X_WD, recorded.given_share, recorded.driven);
   if (recorded.let_go) session.let_go();
   if (recorded.placed) session.place();
-  return recorded.paused ? session.idle_tick(device, recorded.time_s, recorded.dt_s)
-                         : session.tick(device, recorded.time_s, recorded.dt_s, recorded.spindle_on);
+  return session.tick(device, {.time_s = recorded.time_s,
+                               .dt_s = recorded.dt_s,
+                               .spindle_on = recorded.spindle_on,
+                               .paused = recorded.paused});
 }
 
 std::optional<std::string> difference_of(const TickRecord& recorded, const TickRecord& now) {
@@ -153,7 +155,6 @@ void replay_recording(const Volume& scan, const Recording& recording, const Repl
       const TickRecord& recorded = recording.records[row];
       TickRecord now = tick_again(*session, recorded);
       now.session = recorded.session;
-      session->prepare_next_ticks();
       if (!replay.tick(recorded, now)) return;
     }
   }

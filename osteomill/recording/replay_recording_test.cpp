@@ -71,8 +71,8 @@ class Hand {
       device_.put({{6.5, 0, 0}, Quat::Identity()});
       session.place();
     }
-    if (n >= 350 && n < 380) return session.idle_tick(device_, time_s, dt_s);
-    return session.tick(device_, time_s, dt_s, n % 90 < 80);
+    return session.tick(
+        device_, {.time_s = time_s, .dt_s = dt_s, .spindle_on = n % 90 < 80, .paused = n >= 350 && n < 380});
   }
 
  private:

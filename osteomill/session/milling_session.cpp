@@ -89,10 +89,12 @@ MillingSession::MillingSession(std::shared_ptr<Volume> bone, const BoneDensities
   algorithm_->prepare({volume_.get(), setup.tool, setup.tick_s});
 }
 
-TickRecord MillingSession::begin_record(Device& device, double time_s, double dt_s) {
+TickRecord MillingSession::begin_record(Device& device, const TickInput& input) {
+  if (input.late_s > 0 && last_X_WT_) device.tick_done(*last_X_WT_, input.late_s);
   TickRecord record;
-  record.time_s = time_s;
-  record.dt_s = dt_s;
+  record.time_s = input.time_s;
+  record.dt_s = input.dt_s + input.late_s;
+  record.paused = input.paused;
   record.let_go = std::exchange(let_go_asked_, false);
   if (record.let_go) guard_.let_go();
   record.X_WD = device.read_pose();
@@ -101,6 +103,7 @@ TickRecord MillingSession::begin_record(Device& device, double time_s, double dt
   record.given_share = device.given_share();
   record.driven = device.is_driven() && !std::exchange(hold_back_asked_, false);
   if (!record.driven) guard_.hold_back();
+  record.spindle_on = !input.paused && input.spindle_on.value_or(device.spindle_asked());
   if (place_asked_ && is_finite(record.X_WD)) {
     place_asked_ = false;
     record.placed = true;
@@ -109,20 +112,32 @@ TickRecord MillingSession::begin_record(Device& device, double time_s, double dt
   return record;
 }
 
-TickRecord MillingSession::tick(Device& device, double time_s, double dt_s, bool spindle_on) {
-  TickRecord record = begin_record(device, time_s, dt_s);
-  record.spindle_on = spindle_on;
+TickRecord MillingSession::tick(Device& device, const TickInput& input) {
+  TickRecord record = begin_record(device, input);
+  last_change_ = {};
+  if (input.paused) {
+    pause(device, record);
+  } else {
+    work(device, record);
+  }
+  record.energy_given_Nmm = guard_.energy_given_Nmm();
+  record.removed_mm3 = removed_mm3_;
+  record.bone_hash = volume_->change_hash();
+  device.tick_done(last_X_WT_.value_or(record.X_WD), input.dt_s);
+  return record;
+}
 
+void MillingSession::work(Device& device, TickRecord& record) {
   const Clock::time_point start = Clock::now();
-  auto [step, safe, cutting_torque_W_Nmm] = step_safely(record.X_WD, dt_s, spindle_on, record.driven);
+  auto [step, safe, cutting_torque_W_Nmm] =
+      step_safely(record.X_WD, record.dt_s, record.spindle_on, record.driven);
   // The bone that goes is paid with what the hand gives.
   step.burr_force_W_N *= record.given_share;
   record.compute_us = microseconds_since(start);
   device.write_wrench(safe.wrench);
 
   const Clock::time_point milling_start = Clock::now();
-  last_change_ = {};
-  mill(step, spindle_on, dt_s);
+  mill(step, record.spindle_on, record.dt_s);
   record.label_cuts = mill_.by_label().take();
   record.milling_us = microseconds_since(milling_start);
 
@@ -130,14 +145,18 @@ TickRecord MillingSession::tick(Device& device, double time_s, double dt_s, bool
   record.wrench = safe.wrench;
   record.fault = safe.fault;
   record.cutting_torque_W_Nmm = cutting_torque_W_Nmm;
-  record.energy_given_Nmm = guard_.energy_given_Nmm();
   record.contacts = step.contacts;
   record.owed_bricks = step.owed_bricks;
   intersection_W_ = step.intersection_W;
   record.burr_force_W_N = step.burr_force_W_N;
-  record.removed_mm3 = removed_mm3_;
-  record.bone_hash = volume_->change_hash();
-  return record;
+}
+
+void MillingSession::pause(Device& device, TickRecord& record) {
+  record.X_WT = last_X_WT_.value_or(Pose{});
+  record.wrench = guard_.pass_zero(record.X_WD, record.dt_s).wrench;
+  device.write_wrench(record.wrench);
+  reaction_.reset();
+  intersection_W_.reset();
 }
 
 void MillingSession::take_over(const TakenOver& before) noexcept {
@@ -156,21 +175,6 @@ void MillingSession::forget_contacts(const std::optional<Pose>& X_WT) noexcept {
   algorithm_->reset();
   reaction_.reset();
   if (X_WT) algorithm_->step(*X_WT, kUsualTick_s);
-}
-
-TickRecord MillingSession::idle_tick(Device& device, double time_s, double dt_s) {
-  TickRecord record = begin_record(device, time_s, dt_s);
-  record.paused = true;
-  record.X_WT = last_X_WT_.value_or(Pose{});
-  record.removed_mm3 = removed_mm3_;
-  record.bone_hash = volume_->change_hash();
-  record.wrench = guard_.pass_zero(record.X_WD, dt_s).wrench;
-  record.energy_given_Nmm = guard_.energy_given_Nmm();
-  device.write_wrench(record.wrench);
-  reaction_.reset();
-  last_change_ = {};
-  intersection_W_.reset();
-  return record;
 }
 
 // Whether no bone reaches into the tool. Algorithms do not tell: in their first ticks, and deep in bone, some
@@ -225,7 +229,8 @@ void replay(MillingSession& session, const std::vector<TrajectoryPoint>& traject
   for (std::size_t n = 0; n < trajectory.size(); ++n) {
     const TrajectoryPoint& point = trajectory[n];
     device.put(point.X_WD);
-    record(session.tick(device, point.time_s, tick_length_s(trajectory, n), point.milling));
+    record(session.tick(
+        device, {.time_s = point.time_s, .dt_s = tick_length_s(trajectory, n), .spindle_on = point.milling}));
   }
 }
 

@@ -44,6 +44,19 @@ struct TakenOver {
   bool held_back = true;
 };
 
+/// When a tick is, and what is asked of it.
+struct TickInput {
+  /// When it begins, and how long it is: the time since the one before, and until the next.
+  double time_s = 0;
+  double dt_s = 1e-3;
+  /// How much longer ago the one before is, because ticks were missed.
+  double late_s = 0;
+  /// Whether the spindle turns; if not given, the device says so (Device::spindle_asked).
+  std::optional<bool> spindle_on = {};
+  /// Sends zero and computes nothing; contacts are kept.
+  bool paused = false;
+};
+
 /// One tool, one bone and one algorithm, tick by tick: read the pose, compute, send the wrench, remove bone.
 /// The wrench goes out before bone is removed, so that milling cannot delay the hand.
 class MillingSession {
@@ -53,18 +66,11 @@ class MillingSession {
   /// or the tool cannot work (`require_workable`).
   MillingSession(std::shared_ptr<Volume> bone, const BoneDensities& densities, const MillingSetup& setup);
 
-  /// One haptic tick of `dt_s`, begun at `time_s`; bone is removed where `spindle_on`, as much as the force
-  /// that is sent pays for. A wrench that is not finite, or a device pose that is not, sends zero and is
-  /// recorded as the record's fault. Real-time safe: no allocation, lock, log or system call, and no
-  /// exception but the device's.
-  TickRecord tick(Device& device, double time_s, double dt_s, bool spindle_on) OSTEOMILL_NONBLOCKING;
-
-  /// To be called between ticks by one who may wait for memory: has ready what the next ones may change
-  /// (Volume::prepare_about). Where nobody calls it, ticks that mill new bone take microseconds longer.
-  void prepare_next_ticks() { volume_->prepare_about(last_change_.voxels); }
-
-  /// A tick of a pause: zero is sent, nothing is computed, and contacts are kept. As safe as `tick`.
-  TickRecord idle_tick(Device& device, double time_s, double dt_s) OSTEOMILL_NONBLOCKING;
+  /// One haptic tick, all of it: reads the device's pose, computes and sends the wrench, removes as much bone
+  /// as the force that was sent pays for, and tells the device that the tick is done. A wrench that is not
+  /// finite, or a device pose that is not, sends zero and is recorded as the record's fault. Real-time safe:
+  /// no allocation, lock, log or system call, and no exception but the device's.
+  TickRecord tick(Device& device, const TickInput& input) OSTEOMILL_NONBLOCKING;
 
   /// What stands between the algorithm and the hand. As safe as `tick`.
   WrenchGuard& guard() { return guard_; }
@@ -101,7 +107,9 @@ class MillingSession {
   const BoneDensities& densities() const { return densities_; }
 
  private:
-  TickRecord begin_record(Device& device, double time_s, double dt_s);
+  TickRecord begin_record(Device& device, const TickInput& input);
+  void work(Device& device, TickRecord& record);
+  void pause(Device& device, TickRecord& record);
   void begin_at(const Pose& X_WT) noexcept;
   void forget_contacts(const std::optional<Pose>& X_WT) noexcept;
   struct SafeStep {

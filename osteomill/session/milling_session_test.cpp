@@ -1,6 +1,7 @@
 #include "osteomill/session/milling_session.h"
 
 #include <limits>
+#include <string>
 #include <utility>
 
 #include "tests/shapes.h"
@@ -71,7 +72,7 @@ class MillingSessionTest : public ::testing::Test {
                                                 BoneDensities{0, 1000}, setup);
   }
   TickRecord tick(bool spindle_on = true) {
-    return session_->tick(device_, time_s_ += 1e-3, 1e-3, spindle_on);
+    return session_->tick(device_, {.time_s = time_s_ += 1e-3, .spindle_on = spindle_on});
   }
 
   ScriptedAlgorithm* algorithm_ = nullptr;
@@ -141,10 +142,51 @@ TEST_F(MillingSessionTest, TheToolOfAnotherSessionIsWhereTheAlgorithmBegins) {
   EXPECT_EQ(algorithm_->steps[1].position_mm, Vec3(0, 0, 1.0));
 }
 
-TEST_F(MillingSessionTest, AnIdleTickSendsZeroAndStepsNothing) {
+// Writes down what it is asked, in order, and how much time has passed for it.
+class AskedDevice final : public Device {
+ public:
+  std::string asked;
+  double passed_s = 0;
+  bool wants_spindle = false;
+  Vec3 shown_mm = Vec3::Zero();
+
+  Pose read_pose() override {
+    asked += "pose ";
+    return {{0, 0, 1.0}, Quat::Identity()};
+  }
+  void write_wrench(const Wrench&) override { asked += "wrench "; }
+  bool spindle_asked() const noexcept override { return wants_spindle; }
+  void tick_done(const Pose& X_WT, double dt_s) noexcept override {
+    asked += "done ";
+    shown_mm = X_WT.position_mm;
+    passed_s += dt_s;
+  }
+};
+
+TEST_F(MillingSessionTest, OneCallIsTheWholeTickOfADevice) {
+  AskedDevice device;
+  algorithm_->next.burr_force_W_N = {0, 0, -5};
+  EXPECT_FALSE(session_->tick(device, {}).spindle_on);
+  EXPECT_EQ(device.asked, "pose wrench done ");
+  EXPECT_EQ(device.shown_mm, Vec3(0, 0, 1.0));
+  EXPECT_EQ(device.passed_s, 1e-3);
+  device.wants_spindle = true;
+  for (int n = 0; n < 20; ++n) EXPECT_TRUE(session_->tick(device, {}).spindle_on);
+  EXPECT_GT(session_->removed_mm3(), 0);
+  EXPECT_FALSE(session_->tick(device, {.spindle_on = false}).spindle_on);
+  EXPECT_FALSE(session_->tick(device, {.paused = true}).spindle_on);
+
+  device.asked.clear();
+  device.passed_s = 0;
+  EXPECT_EQ(session_->tick(device, {.dt_s = 0.5e-3, .late_s = 2e-3}).dt_s, 2.5e-3);
+  EXPECT_EQ(device.asked, "done pose wrench done ") << "time passes before the pose is read, too";
+  EXPECT_EQ(device.passed_s, 2.5e-3);
+}
+
+TEST_F(MillingSessionTest, APausedTickSendsZeroAndStepsNothing) {
   algorithm_->next.wrench = {{0, 0, 3}, {0, 40, 0}};
   tick(true);
-  const TickRecord idle = session_->idle_tick(device_, 1, 1e-3);
+  const TickRecord idle = session_->tick(device_, {.time_s = 1, .spindle_on = true, .paused = true});
   EXPECT_EQ(device_.sent().force_N, Vec3::Zero());
   EXPECT_EQ(idle.wrench.torque_Nmm, Vec3::Zero());
   EXPECT_EQ(idle.X_WT.position_mm, device_.read_pose().position_mm);

@@ -196,7 +196,7 @@ class GuardedSession : public ::testing::TestWithParam<std::string> {
   void put(double height_mm) { device_.put({{0, 0, height_mm}, Quat::Identity()}); }
   void tick(int count) {
     for (int n = 0; n < count; ++n) {
-      sent(session_->tick(device_, 0, kTick_s, false).wrench);
+      sent(session_->tick(device_, {.dt_s = kTick_s}).wrench);
     }
   }
   void sent(const Wrench& wrench) {
@@ -247,7 +247,7 @@ TEST_P(GuardedSession, AfterAPauseInWhichTheHandSankNothingSteps) {
   press(0.8);
   for (int n = 0; n < 50; ++n) {
     put(0.8 - 0.1 * n);
-    sent(session_->idle_tick(device_, 0, kTick_s).wrench);
+    sent(session_->tick(device_, {.dt_s = kTick_s, .paused = true}).wrench);
   }
   EXPECT_EQ(sent_.force_N, Vec3::Zero());
   step_N_ = 0;
@@ -288,7 +288,7 @@ TEST_P(GuardedSession, AfterADeviceJumped50mmTheWrenchComesUpSlowly) {
   press(0.3);
   for (const double height_mm : {-50.0, -0.5}) {
     put(height_mm);
-    EXPECT_EQ(session_->tick(device_, 0, kTick_s, false).fault, WrenchFault::pose_jumped);
+    EXPECT_EQ(session_->tick(device_, {.dt_s = kTick_s}).fault, WrenchFault::pose_jumped);
     sent_ = device_.sent();
     // A tenth of the way to what it asks for, 20 N at the most.
     tick(10);

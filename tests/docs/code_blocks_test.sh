@@ -26,8 +26,11 @@ for block in "$folder"/*.cpp; do
     { sed 's/.*/#include "&"/' <<'HEADERS'
 osteomill/device/connected_device.h
 osteomill/device/hardware.h
+osteomill/device/real_time.h
 osteomill/live/live_milling.h
 osteomill/operator/milling_entry.h
+osteomill/session/trajectory.h
+osteomill/volume/bone_densities.h
 HEADERS
       echo 'void part(const std::shared_ptr<osteomill::Volume>& bone) {'; cat "$block"; echo '}'; } >"$block.whole"
     mv "$block.whole" "$block"

@@ -50,6 +50,33 @@ g++ user.o -o whole -Wl,--whole-archive prefix/lib/libosteomill_*.a -Wl,--no-who
 g++ user.o -o by_pkg_config $(pkg-config --static --libs osteomill-haptics)
 ./by_pkg_config | cmp - felt
 
+# The examples, from where they are installed.
+cmake -S prefix/share/doc/osteomill/examples -B examples -G Ninja -DCMAKE_PREFIX_PATH="$folder/prefix" >examples.log 2>&1 &&
+  cmake --build examples >>examples.log || { cat examples.log; fail "the examples cannot be built"; }
+mapfile -t examples < <(sed -nE 's/^add_executable\((\w+) .*/\1/p' "$source/examples/CMakeLists.txt")
+[ ${#examples[@]} -gt 3 ] || fail "only ${#examples[@]} examples are found"
+for example in "${examples[@]}"; do
+  "examples/$example" >"$example.log" || { cat "$example.log"; fail "the example $example fails"; }
+done
+
+# What readers copy of CMake: each find_package with the target_link_libraries that follows.
+mkdir copied
+awk '/^    find_package\(osteomill/ { found = $0; next }
+  found && match($0, /^    target_link_libraries\([a-z_]+/) {
+    name = substr($0, 27, RLENGTH - 26)
+    file = "copied/" ++count ".cmake"
+    print found "\nadd_executable(" name " ${SOURCE})\n" $0 >file
+  }
+  { found = "" }' "$source"/README.md "$source"/docs/*.md
+[ "$(ls copied | wc -l)" -gt 1 ] || fail "the documents have no CMake"
+for copied in copied/*.cmake; do
+  mkdir "${copied%.cmake}"
+  { echo 'cmake_minimum_required(VERSION 3.25)
+project(copied LANGUAGES CXX)'; cat "$copied"; } >"${copied%.cmake}/CMakeLists.txt"
+  cmake -S "${copied%.cmake}" -B "${copied%.cmake}/build" -G Ninja -DCMAKE_PREFIX_PATH="$folder/prefix" \
+    -DSOURCE="$source/examples/press_on_a_ball.cpp" >copied.log 2>&1 || { cat "$copied" copied.log; fail "is not configured"; }
+done
+
 # The same bits in a program of any flags, whose objects bring inline functions of their own into the link.
 for flags in "-O1" "-O3 -march=native -ffp-contract=fast"; do
   user bits -DCOMPONENTS=session -DSOURCE="$source/tests/package/same_bits.cpp" -DCMAKE_CXX_FLAGS="$flags" &&

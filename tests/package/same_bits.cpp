@@ -35,7 +35,7 @@ int main() {
       const Pose lean{Vec3(0, 0, -1.37), quaternion_from_rotation_vector({3e-4 * n, 1e-4 * n, 0})};
       device.put(Pose{top_W + Vec3(0.001 * n, 0, 3.1 - 0.004 * n), Quat::Identity()} * lean.inverse() * lean *
                  lean);
-      const TickRecord record = session.tick(device, 1e-3 * n, 1e-3, n > 100);
+      const TickRecord record = session.tick(device, {.time_s = 1e-3 * n, .spindle_on = n > 100});
       add(hash, record.X_WD.position_mm);
       add(hash, record.X_WT * Vec3(0.1, 0.2, 0.3));
       add(hash, record.wrench.force_N);
