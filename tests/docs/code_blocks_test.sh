@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# What readers copy from README.md and docs/: C++ compiles, studies and configurations are read, and every option of a
-# command in an indented line is one of that command's.
+# What readers copy from README.md and docs/: C++ compiles, studies are read, Python runs on a comparison, MATLAB reads what
+# is there, and every option of a command in an indented line is one of that command's. (CMake: the package test.)
 #   code_blocks_test.sh SOURCE_DIR PROGRAM
 set -euo pipefail
 source=$1 osteomill=$2
@@ -40,7 +40,32 @@ done
 for block in "$folder"/*.toml; do
   "$osteomill" study "$block" --list >/dev/null || fault "${block##*/} is no study"
 done
-[ -n "$(echo "$folder"/*.cpp)" ] && [ -n "$(echo "$folder"/*.toml)" ] || fault "no blocks are found"
+
+# In the folder with the comparison that they read.
+cd "$folder"
+"$osteomill" compare --algorithm point-shell --seconds 0.3 --out osteomill-comparison >compare.log 2>&1 ||
+  { cat compare.log; fault "there is nothing to read"; }
+for block in *.python; do
+  /usr/bin/python3 "$block" >"$block.out" && [ -s "$block.out" ] || fault "$block does not run"
+done
+for block in *.matlab; do
+  /usr/bin/python3 - "$block" <<'CHECK' || fault "$block reads what is not there"
+import re, sys
+import h5py
+text = open(sys.argv[1]).read()
+with h5py.File(re.search(r"^file = '(.+)';$", text, re.M)[1]) as f:
+    read = [f[path][:] for path in re.findall(r"h5read\(file, '([^']+)'\)", text)]
+    read += [f[path].attrs[name] for path, name in re.findall(r"h5readatt\(file, '([^']+)', '([^']+)'\)", text)]
+assert len(read) == text.count("h5read"), "a reading is not understood"
+CHECK
+done
+cd "$OLDPWD"
+for block in "$folder"/*.[0-9]*.*; do
+  [[ $block =~ \.(cpp|toml|python|matlab|out)$ ]] || fault "${block##*/} is of a language that is not looked at"
+done
+for language in cpp toml python matlab; do
+  compgen -G "$folder/*.$language" >/dev/null || fault "no $language is found"
+done
 
 lines=0
 while read -r program command rest; do
