@@ -203,8 +203,7 @@ class Gate : public ::testing::TestWithParam<Case> {
     now_s_ += kTick_s;
     rig_->pass(now_s_);
     device_.exchange();
-    record_ = session_.tick(device_, now_s_, kTick_s, spindle_on_);
-    device_.tick_done(record_.X_WT, kTick_s);
+    record_ = session_.tick(device_, {.time_s = now_s_, .dt_s = kTick_s, .spindle_on = spindle_on_});
     most_N_ = std::max(most_N_, rig_->felt_N().norm());
   }
   // Some of the devices have threads of their own, and may be slow.
