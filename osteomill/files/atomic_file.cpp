@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -75,6 +76,34 @@ void rename_to(const fs::path& from, const fs::path& target, const fs::path& pat
   const std::string reason = "cannot be written: " + error.message();
   fs::remove(from, error);
   throw InputError(path.string(), reason);
+}
+
+// An open folder, and the lock that shows that its owner lives.
+class HeldFolder {
+ public:
+  explicit HeldFolder(const fs::path& path)
+      : descriptor_(::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC)) {}
+  ~HeldFolder() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+  }
+  HeldFolder(const HeldFolder&) = delete;
+  HeldFolder& operator=(const HeldFolder&) = delete;
+  // Also false if the file system has no such locks (folders on NFS): there nobody knows.
+  bool take() const { return descriptor_ >= 0 && ::flock(descriptor_, LOCK_EX | LOCK_NB) == 0; }
+
+ private:
+  int descriptor_;
+};
+
+constexpr const char* kBeside = "files";
+
+// What a program that was killed wrote beside, and nobody moves or removes any more.
+void remove_what_the_dead_left(const fs::path& folder) {
+  std::error_code ignored;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored))
+    if (entry.path().filename().string().starts_with("." + std::string(kBeside) + ".writing-") &&
+        HeldFolder(entry.path()).take())
+      fs::remove_all(entry.path(), ignored);
 }
 
 std::vector<fs::path> files_in(const fs::path& folder) {
@@ -174,7 +203,10 @@ void write_folder_atomically(const fs::path& folder, const std::function<void(co
   std::error_code ignored;
   const bool was_there = fs::exists(folder, ignored);
   create_folder(folder);
-  const fs::path beside = create_beside(folder / "files", create_empty_folder);
+  remove_what_the_dead_left(folder);
+  const fs::path beside = create_beside(folder / kBeside, create_empty_folder);
+  const HeldFolder held(beside);
+  held.take();
   const Leftover while_written(beside);
   try {
     write(beside);

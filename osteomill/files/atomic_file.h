@@ -30,7 +30,8 @@ void write_text_atomically(const std::filesystem::path& path,
 /// all that is in it into `folder`, over files of the same names. What `write` throws is passed on; then none
 /// of its files is left, nor `folder` itself if it is new. Throws InputError where a file cannot be written.
 /// What is `stale` in `folder`, by the names there, is removed when all is written and before it is moved, so
-/// that nothing of an earlier output ever stands beside this one, also if the program is killed meanwhile.
+/// that nothing of an earlier output ever stands beside this one, also if the program is killed meanwhile;
+/// the next call removes the folder that a killed one leaves.
 void write_folder_atomically(const std::filesystem::path& folder,
                              const std::function<void(const std::filesystem::path& beside)>& write,
                              const std::function<bool(const std::string& name)>& stale = {});

@@ -7,6 +7,7 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "osteomill/files/input_error.h"
@@ -183,6 +184,30 @@ TEST_F(AtomicFileTest, AFolderKeepsNothingStaleOfAnEarlierOutput) {
                    folder_, [](const fs::path&) { throw InputError("x", "y"); }, stale),
                InputError);
   EXPECT_EQ(content(folder_ / "a.h5"), "new") << "what fails replaces nothing";
+}
+
+// The child ends within `write` as one that is killed does.
+TEST_F(AtomicFileTest, WhatAKilledProgramLeavesIsRemovedAndWhatALivingOneWritesIsNot) {
+  const ::pid_t child = ::fork();
+  if (child == 0) {
+    write_folder_atomically(folder_, [](const fs::path& beside) {
+      std::ofstream(beside / "a.h5") << "half";
+      ::_exit(0);
+    });
+  }
+  ASSERT_EQ(::waitpid(child, nullptr, 0), child);
+  EXPECT_TRUE(fs::exists(folder_ / ".files.writing-1"));
+  write_folder_atomically(folder_, [&](const fs::path& outer) {
+    EXPECT_EQ(outer, folder_ / ".files.writing-1") << "the place is free again";
+    write_folder_atomically(folder_, [&](const fs::path& inner) {
+      EXPECT_NE(inner, outer);
+      std::ofstream(inner / "b.h5") << "b";
+    });
+    std::ofstream(outer / "a.h5") << "whole";
+  });
+  EXPECT_EQ(content(folder_ / "a.h5"), "whole");
+  EXPECT_EQ(content(folder_ / "b.h5"), "b");
+  EXPECT_EQ(file_count(), 2);
 }
 
 }  // namespace
