@@ -112,9 +112,10 @@ bool LiveMilling::prepare(const MillingSetup& setup, MakeBone make_bone) {
   if (preparing()) return false;
   const auto work = [this, make_bone = std::move(make_bone), setup] {
     catch_up();
-    const BoneFollower::NextBone next = make_bone();
-    const bool other_bone = next.bone != live_.session().shared_volume();
+    bool other_bone = true;
     try {
+      const BoneFollower::NextBone next = make_bone();
+      other_bone = next.bone != live_.session().shared_volume();
       auto session = std::make_unique<MillingSession>(next.bone, next.densities.value_or(densities()), setup);
       session->count_removed_from(next.removed_mm3);
       return Prepared{std::move(session), other_bone};
@@ -156,7 +157,17 @@ void LiveMilling::take_over() {
     failure = std::current_exception();
   }
   live_.hold_bone(false);
-  if (failure) std::rethrow_exception(failure);
+  if (!failure) return;
+  forget_recorder_without_session();
+  std::rethrow_exception(failure);
+}
+
+// A recording whose first session could not be prepared would be of nothing.
+void LiveMilling::forget_recorder_without_session() {
+  if (!recorder_ || live_.session_number() >= recorded_from_) return;
+  const std::unique_ptr<Recorder> unused = std::move(recorder_);
+  take_picture_ = {};
+  listen();
 }
 
 std::vector<double> LiveMilling::removed_by_label() const {
@@ -189,8 +200,14 @@ std::string LiveMilling::start_recording(const std::filesystem::path& path, RunD
   recorded_from_ = untouched ? live_.session_number() : live_.session_number() + 1;
   if (untouched) tell_recorder({});
   listen();
-  [[maybe_unused]] const bool begun = untouched || change(setup());
-  return recorder_->kept();
+  std::string kept = recorder_->kept();
+  try {
+    [[maybe_unused]] const bool begun = untouched || change(setup());
+  } catch (...) {
+    forget_recorder_without_session();
+    throw;
+  }
+  return kept;
 }
 
 void LiveMilling::set_as_now(RunDescription& run) const {

@@ -87,7 +87,8 @@ class LiveMilling {
   /// have run already, another session is prepared, so that the recording holds all that it takes to replay
   /// it, and its ticks begin with that session. Pictures, where `picture` is given, are taken now and at the
   /// end. Returns a line on an unfinished recording that was there and is kept (Recorder::kept). Throws
-  /// InputError where the file cannot be written; then nothing is recorded.
+  /// InputError where the file cannot be written; then nothing is recorded, nor where `update` or
+  /// `finish_preparing` throws since that session cannot be prepared.
   std::string start_recording(const std::filesystem::path& path, RunDescription description,
                               TakePicture picture = {});
   /// Returns the recording's name. Throws as Recorder::close does.
@@ -125,6 +126,7 @@ class LiveMilling {
   bool prepare(const MillingSetup& setup, MakeBone make_bone);
   void catch_up();
   void take_over();
+  void forget_recorder_without_session();
   void set_as_now(RunDescription& run) const;
   void tell_recorder(const TakenOver& taken_over);
 

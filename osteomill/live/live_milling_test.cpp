@@ -398,6 +398,24 @@ TEST_F(LiveMillingTest, ARecordingBegunWhileAnotherAlgorithmIsPreparedIsOfThatOn
   EXPECT_FALSE(verify_recording(*ball_of_bone(), recording).difference);
 }
 
+TEST_F(LiveMillingTest, ARecordingWhoseSessionCannotBePreparedIsNone) {
+  const testing_support::TestFolder folder;
+  bool fails = false;
+  setup_.algorithm.make = [&fails, make = setup_.algorithm.make](std::span<const double> values) {
+    if (fails) throw std::invalid_argument("no more of it");
+    return make(values);
+  };
+  EXPECT_TRUE(milling_.change(setup_));
+  milling_.finish_preparing();
+  fails = true;
+  milling_.start_recording(folder / "live.h5", milling_.describe("ball", ""));
+  EXPECT_THROW(milling_.finish_preparing(), std::invalid_argument);
+  EXPECT_FALSE(milling_.recording());
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+  fails = false;
+  mill(0.1);
+}
+
 TEST_F(LiveMillingTest, ARecordingFromTheFirstTickOnNeedsNoneBefore) {
   const testing_support::TestFolder folder;
   VirtualHand hand({}, pointing_hand(), pose_above(entry_, setup_.tool, 0.2));
