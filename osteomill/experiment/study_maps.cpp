@@ -22,6 +22,13 @@ namespace {
 constexpr std::size_t kMaxCells = 40, kParts = 24, kMaxTics = 8;
 // Values that span this factor stand on a logarithmic axis.
 constexpr double kWide = 10;
+// As a share of their size, by which values lie apart that have places of their own on an axis.
+constexpr double kApart = 1e-5;
+
+// Values that a scale cannot tell apart are one.
+bool is_alike(double a, double b) {
+  return std::abs(b - a) <= kApart * std::max(std::abs(a), std::abs(b));
+}
 
 // A unit that both have is none of their ratio.
 std::string ratio_label(std::string above, std::string below) {
@@ -171,7 +178,7 @@ double statistic_of(const std::string& statistic, const std::vector<double>& val
 std::string colour_script(const StudyMap& map, const std::string& label, double min, double max,
                           const PanelGrid& grid) {
   const bool logarithmic = map.logarithmic_colour && min > 0;
-  if (!(max > min)) max = min + (min == 0 ? 1 : 0.1 * std::abs(min));
+  if (is_alike(min, max)) max = min + (min == 0 ? 1 : 0.1 * std::abs(min));
   const auto up = [&](double px) { return 1 - px / grid.height_px; };
   std::string tics;
   for (const double value : steps_of({min, max, true}, logarithmic ? 5 : 1))
@@ -202,8 +209,10 @@ std::string panel_name(const StudyMap& map, const StudySettings& settings) {
 }
 
 Cells cells_along(double Point::*axis, const std::vector<Point>& points, const Shown& shown) {
-  std::set<double> values;
-  for (const Point& point : points) values.insert(point.*axis);
+  std::set<double> all, values;
+  for (const Point& point : points) all.insert(point.*axis);
+  for (const double value : all)
+    if (values.empty() || !is_alike(*values.rbegin(), value)) values.insert(value);
   return cells_of(values, !shown.words.empty());
 }
 
