@@ -33,7 +33,9 @@ void require_readable(const std::string& file) {
 }  // namespace
 
 toml::table read_toml(const std::string& file) {
-  if (!std::filesystem::is_regular_file(file)) throw InputError(file, "no such file");
+  const std::filesystem::file_status status = std::filesystem::status(file);
+  if (!std::filesystem::exists(status)) throw InputError(file, "no such file");
+  if (!std::filesystem::is_regular_file(status)) throw InputError(file, "is no regular file");
   note_input(file);
   require_readable(file);
   try {

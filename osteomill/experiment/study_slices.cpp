@@ -124,6 +124,9 @@ std::uint64_t StudyRecord::hash() const {
 }
 
 std::uint64_t hash_of_file(const fs::path& path) {
+  // A pipe would be waited for.
+  if (std::error_code error; fs::exists(path, error) && !fs::is_regular_file(path, error))
+    throw InputError(path.string(), "is no regular file");
   std::ifstream in(path, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(in), {}};
   if (!in) throw InputError(path.string(), "cannot be read");
@@ -160,6 +163,18 @@ fs::path slice_path(const fs::path& folder, std::size_t number) {
   return folder / fmt::format("slice-{}.h5", number);
 }
 
+void throw_of_trial(const fs::path& file, std::size_t trial) {
+  std::string reason = "not enough memory";
+  try {
+    throw;
+  } catch (const std::bad_alloc&) {
+  } catch (const std::length_error&) {
+  } catch (const std::exception& error) {
+    reason = error.what();
+  }
+  throw InputError(file.string(), fmt::format("trial {}: {}", trial, reason));
+}
+
 Slice run_slice(const StudyFolder& study, std::size_t number, const std::vector<TrialPlan>& trials,
                 std::size_t threads, const RunEvents& events) {
   Slice slice{number, {}, 0};
@@ -167,12 +182,8 @@ Slice run_slice(const StudyFolder& study, std::size_t number, const std::vector<
   const auto tried = run_trials(trials, "study", threads, events, [&](const TrialPlan& trial) {
     try {
       return try_trial(study.test, trial);
-    } catch (const std::bad_alloc&) {
-      throw;
-    } catch (const std::exception& error) {
-      throw InputError((study.path / "study.toml").string(),
-                       fmt::format("trial {}: {}", first + static_cast<std::size_t>(&trial - trials.data()),
-                                   error.what()));
+    } catch (...) {
+      throw_of_trial(study.path / "study.toml", first + static_cast<std::size_t>(&trial - trials.data()));
     }
   });
   for (std::size_t n = 0; n < tried.size(); ++n) {

@@ -57,6 +57,10 @@ struct Slice {
   double cpu_s = 0;
 };
 
+/// Throws what is being handled, in a catch clause, as an InputError that names the study's file and the
+/// trial; nothing that was said of them is lost.
+[[noreturn]] void throw_of_trial(const std::filesystem::path& file, std::size_t trial);
+
 /// "slice-12.h5".
 std::filesystem::path slice_path(const std::filesystem::path& folder, std::size_t number);
 
