@@ -69,15 +69,19 @@ void set_own(HapticSettings& haptics, const std::string& name, const std::string
 }
 
 void set_shared(HapticSettings& haptics, const std::string& option, double value) {
-  try {
-    for (const AlgorithmDescription& algorithm : all_algorithms()) {
-      if (const SettingDescription* setting = setting_of_option(algorithm, option)) {
-        require_in_range(algorithm.id, *setting, value);
-      }
+  std::string fault;
+  bool is_taken = false;
+  for (const AlgorithmDescription& algorithm : all_algorithms()) {
+    const SettingDescription* setting = setting_of_option(algorithm, option);
+    if (setting == nullptr) continue;
+    try {
+      require_in_range(algorithm.id, *setting, value);
+      is_taken = true;
+    } catch (const std::invalid_argument& error) {
+      fault = error.what();
     }
-  } catch (const std::invalid_argument& error) {
-    throw CLI::ValidationError("--" + option, error.what());
   }
+  if (!is_taken) throw CLI::ValidationError("--" + option, fault);
   haptics.set_option(option, value);
 }
 

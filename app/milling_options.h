@@ -24,8 +24,8 @@ void take_given_options(const CLI::App& command, const MillingSetup& given, Mill
 /// Sets the algorithms' setting "ALGORITHM.SETTING" to what stands in `text`. Throws CLI::ValidationError,
 /// and sets nothing, if there is no such setting or it has another range.
 void set_own(HapticSettings& haptics, const std::string& name, const std::string& text);
-/// Sets an option that algorithms share, "stiffness". Throws CLI::ValidationError if the number is in no
-/// range of one of them.
+/// Sets an option that algorithms share, "stiffness". Throws CLI::ValidationError if no algorithm takes that
+/// number; one that does not says so when it is made.
 void set_shared(HapticSettings& haptics, const std::string& option, double value);
 /// Returns these options, without dashes.
 std::vector<std::string> shared_options();

@@ -29,7 +29,11 @@ struct RatesOptions {
 void run_rates(const RatesOptions& options) {
   const OutputFolder folder(options.out);
   const LoadedBone bone = load_bone(options.scan);
-  const TrialPlan plan = trial_plan(bone, options.trial, "");
+  TrialPlan plan = trial_plan(bone, options.trial, "");
+  for (const AlgorithmDescription& algorithm : options.algorithms) {
+    plan.settings.algorithm = algorithm;
+    warn_of_doubts(plan.settings, bone.volume.geometry());
+  }
   MeasuredRates measured{measure_rates(plan, options.algorithms, show_progress), {}};
   end_progress();
   const bool has_vertices = std::any_of(options.algorithms.begin(), options.algorithms.end(),

@@ -8,6 +8,7 @@
 #include "app/milling_options.h"
 #include "app/progress.h"
 #include "app/scan_options.h"
+#include "app/trial_options.h"
 #include <CLI/Error.hpp>
 #include <fmt/core.h>
 
@@ -79,7 +80,7 @@ class Log {
 void replay_trajectory(ReplayOptions options) {
   const std::vector<TrajectoryPoint> trajectory = read_trajectory(options.input);
   LoadedBone bone = load_bone(options.scan);
-  require_workable(options.milling.setup.tool, bone.volume.geometry());
+  warn_of_doubts(options.milling.setup, bone.volume.geometry());
   const BoneDensities densities = estimate_densities(bone.volume);
   MillingSetup& setup = options.milling.setup;
   setup.guard = GuardSettings::for_simulation(setup.guard.limits, setup.guard.passivity_controller);
@@ -133,7 +134,7 @@ HapticSettings settings_for(const AlgorithmDescription& algorithm, const HapticS
   return own;
 }
 
-RunDescription run_as(const ReplayOptions& options, RunDescription run) {
+RunDescription run_as(const ReplayOptions& options, RunDescription run, const GridGeometry& scan) {
   const MillingSetup& given = options.milling.setup;
   const AlgorithmDescription* algorithm =
       options.given("--algorithm") ? &given.algorithm : find_algorithm(run.algorithm.name);
@@ -146,6 +147,7 @@ RunDescription run_as(const ReplayOptions& options, RunDescription run) {
   if (!(run.algorithm == algorithm->id)) setup.haptics = {};
   setup.haptics.named.insert(setup.haptics.named.end(), said.named.begin(), said.named.end());
   take_given_options(*options.command, given, setup);
+  warn_of_doubts(setup, scan);
   set_session_settings(run, session, 0);
   return run;
 }
@@ -156,7 +158,7 @@ void replay_another_way(const ReplayOptions& options, const std::string& command
   std::optional<Recorder> recorder;
   std::uint32_t session_number = 0;
   Replay replay;
-  replay.as = [&](const RunDescription& run) { return run_as(options, run); };
+  replay.as = [&](const RunDescription& run) { return run_as(options, run, scan.geometry()); };
   replay.begun = [&](SessionStart start, const MillingSession& session) {
     if (options.record.empty()) return;
     for (RunSetting& setting : start.run.settings) {

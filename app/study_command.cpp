@@ -81,6 +81,7 @@ void check_every_trial(StudyTrials& study) {
       show_progress("checking", static_cast<double>(n) / static_cast<double>(count));
   }
   end_progress();
+  if (const std::string doubt = study.doubt(); !doubt.empty()) warn(doubt);
 }
 
 // The CPU time of three trials spread over the study, the shortest first.
@@ -88,8 +89,13 @@ std::vector<double> time_three_trials(StudyTrials& study) {
   const std::size_t count = study.design().trial_count();
   std::vector<double> taken_s;
   for (const std::size_t sixth : {1u, 3u, 5u}) {
-    const std::vector<TrialPlan> trial = study.make(count * sixth / 6, 1);
-    taken_s.push_back(try_trial(study.design().test, trial.front()).cpu_s);
+    const std::size_t number = count * sixth / 6;
+    const std::vector<TrialPlan> trial = study.make(number, 1);
+    try {
+      taken_s.push_back(try_trial(study.design().test, trial.front()).cpu_s);
+    } catch (...) {
+      throw_of_trial(study.file(), number);
+    }
   }
   std::sort(taken_s.begin(), taken_s.end());
   return taken_s;

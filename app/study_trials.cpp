@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <new>
 #include <stdexcept>
 
 #include "app/option_checks.h"
@@ -13,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "osteomill/experiment/match_stiffness.h"
+#include "osteomill/experiment/study_slices.h"
 #include "osteomill/files/csv_field.h"
 #include "osteomill/files/input_error.h"
 #include "osteomill/numbers/parse_number.h"
@@ -30,20 +30,21 @@ std::string tool_text(const MillingTool& tool) {
   return fmt::format("{} {} {}", tool.burr_radius_mm, tool.shaft_radius_mm, tool.shaft_length_mm);
 }
 
-// Throws std::invalid_argument where the trial itself would when it begins: a setting is out of its range, or
-// does not go with the bone.
-void require_runnable(StudyTest test, const TrialPlan& trial) {
+// Returns what is poor of its settings. Throws std::invalid_argument where the trial itself would when it
+// begins: a setting is out of its range, or does not go with the bone.
+std::vector<std::string> doubts_of(StudyTest test, const TrialPlan& trial) {
   const TrialSettings& settings = trial.settings;
-  setting_values(settings.algorithm, settings.haptics);
   if (test != StudyTest::milling) {
     require_valid(settings.hand_and_device.handle);
     if (setting_of_option(settings.algorithm, kStiffnessOption) == nullptr)
       throw std::invalid_argument(settings.algorithm.id.name + " has no stiffness");
-    return;
+    // Beyond the wall nothing is felt, so the shaft may be wider.
+    return make_algorithm(settings.algorithm, settings.haptics)
+        ->doubts_about(settings.tool, trial.bone.geometry());
   }
-  require_workable(settings.tool, trial.bone.geometry());
   milling_settings(settings);
   SimulatedOperator(settings.hand_and_device, settings.tool, trial.entry);
+  return doubts_about(settings, trial.bone.geometry());
 }
 
 // As the command line would have it: "0,0,-1".
@@ -249,17 +250,22 @@ TrialPlan StudyTrials::trial_of(const StudySettings& settings) {
   return plan;
 }
 
+std::string StudyTrials::doubt() const {
+  if (doubted_.size() < 2) return first_doubt_;
+  return fmt::format("{}; {} of the trials are in doubt", first_doubt_, doubted_.size());
+}
+
 std::vector<TrialPlan> StudyTrials::make(std::size_t first, std::size_t count) {
   if (bones_.size() > kBonesKept) bones_.clear();
   std::vector<TrialPlan> trials;
   for (std::size_t number = first; number < first + count; ++number) {
     try {
       trials.push_back(trial_of(design_.trial(number)));
-      require_runnable(design_.test, trials.back());
-    } catch (const std::bad_alloc&) {
-      throw;
-    } catch (const std::exception& error) {
-      throw InputError(file_, fmt::format("trial {}: {}", number, error.what()));
+      const std::vector<std::string> doubts = doubts_of(design_.test, trials.back());
+      if (!doubts.empty() && doubted_.insert(number).second && doubted_.size() == 1)
+        first_doubt_ = fmt::format("{}: trial {}: {}", file_, number, doubts.front());
+    } catch (...) {
+      throw_of_trial(file_, number);
     }
   }
   return trials;

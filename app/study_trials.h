@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -55,6 +56,7 @@ class StudyTrials {
   StudyTrials(const StudyTrials&) = delete;
   StudyTrials& operator=(const StudyTrials&) = delete;
 
+  const std::string& file() const { return file_; }
   const StudyDesign& design() const { return design_; }
 
   /// Bones are then to have these fingerprints, by their words (bone_text).
@@ -67,6 +69,9 @@ class StudyTrials {
   /// InputError, naming the file and the trial, where a setting is out of its range or does not go with the
   /// others, or where its scan is at fault or has changed.
   std::vector<TrialPlan> make(std::size_t first, std::size_t count);
+  /// Returns a line on what is poor of the settings of trials that were made (doubts_about); empty for
+  /// nothing.
+  std::string doubt() const;
 
  private:
   struct Bone {
@@ -89,6 +94,8 @@ class StudyTrials {
   std::map<std::string, std::unique_ptr<Bone>> bones_;
   std::map<std::string, Volume> walls_;
   std::map<std::string, std::uint64_t> fingerprints_;
+  std::set<std::size_t> doubted_;
+  std::string first_doubt_;
 };
 
 }  // namespace osteomill::app

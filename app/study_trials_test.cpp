@@ -1,5 +1,6 @@
 #include "app/study_trials.h"
 
+#include <algorithm>
 #include <fstream>
 #include <limits>
 #include <set>
@@ -21,9 +22,8 @@ TEST(StudyTrials, AnAxisSetsEveryField) {
   for (const Field<AskedTrial>& field : numbers_of_a_trial()) {
     EXPECT_TRUE(options.insert(field.option).second) << field.option << " is there twice";
     const bool is_switch = field.range == NumberRange::on_or_off();
-    const double value = is_switch                ? 1
-                         : field.option == "rate" ? 2000
-                                                  : 0.75 + (field.range.whole ? 2.25 : 0);
+    const double usual = std::max(0.75, 1.5 * field.range.min) + (field.range.whole ? 2.25 : 0);
+    const double value = is_switch ? 1 : usual;
     const std::string text = is_switch ? "true" : fmt::format("{}", value);
     EXPECT_EQ(field.get(asked_trial({{field.option, text}})), value) << field.option;
     EXPECT_NE(field.get(AskedTrial()), value) << field.option;

@@ -50,6 +50,10 @@ MillingEntry place_entry(const Volume& bone, const TrialOptions& options) {
   return entry;
 }
 
+void warn_of_doubts(const MillingSetup& setup, const GridGeometry& scan) {
+  for (const std::string& doubt : doubts_about(setup, scan)) warn(doubt);
+}
+
 TrialPlan trial_plan(const LoadedBone& bone, const TrialOptions& options, const std::string& command_line) {
   require_workable(options.milling.setup.tool, bone.volume.geometry());
   return {bone.volume,

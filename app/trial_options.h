@@ -32,6 +32,9 @@ MillingEntry entry_into(const Volume& bone, const TrialOptions& options);
 /// As entry_into, and warns on standard error where that place is unlikely to be what the user wants.
 MillingEntry place_entry(const Volume& bone, const TrialOptions& options);
 
+/// Warns of what is poor of these settings in a scan of this grid (doubts_about), and throws as that does.
+void warn_of_doubts(const MillingSetup& setup, const GridGeometry& scan);
+
 /// The trial on a bone, which outlives it. Throws std::invalid_argument where the tool cannot work in that
 /// bone, and as entry_into.
 TrialPlan trial_plan(const LoadedBone& bone, const TrialOptions& options, const std::string& command_line);

@@ -101,15 +101,16 @@ void Simulation::update() {
 void Simulation::look_for_warnings() {
   if (warnings_to_come_.valid()) {
     if (warnings_to_come_.wait_for(0s) == std::future_status::ready) warnings = warnings_to_come_.get();
-  } else if (const std::pair now(milling.isovalue(), milling.setup().tool.burr_radius_mm);
+  } else if (std::tuple now(milling.isovalue(), milling.setup().tool.burr_radius_mm,
+                            doubts_about(milling.setup(), milling.geometry()));
              now != looked_at_) {
     looked_at_ = now;
     warnings_to_come_ = std::async(std::launch::async, [this, now, tool = milling.setup().tool] {
-      std::vector<std::string> found;
+      std::vector<std::string> found = std::get<2>(now);
       milling.follower().read([&](const Volume& bone) {
-        found = coarseness_warnings(bone.geometry(), tool);
-        for (std::string& warning : isovalue_warnings(bone.grid(), now.first))
-          found.push_back(std::move(warning));
+        for (const auto& more :
+             {coarseness_warnings(bone.geometry(), tool), isovalue_warnings(bone.grid(), std::get<0>(now))})
+          found.insert(found.end(), more.begin(), more.end());
       });
       return found;
     });

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -74,7 +75,8 @@ struct Simulation {
 
   OpenScan scan;
   std::string command_line;
-  /// What to warn the user of for this isovalue and burr (isovalue_warnings, coarseness_warnings).
+  /// What to warn the user of for this isovalue, tool and settings (isovalue_warnings,
+  /// coarseness_warnings, doubts_about).
   std::vector<std::string> warnings;
   Holder holder;
   /// Holds the tool where mouse, keyboard or SpaceMouse move it.
@@ -97,8 +99,8 @@ struct Simulation {
   void count_labels();
   void look_for_warnings();
 
-  // The isovalue and the burr's radius (mm) that the warnings are for.
-  std::optional<std::pair<double, double>> looked_at_;
+  // The isovalue, the burr's radius (mm) and the doubts (doubts_about) that the warnings are for.
+  std::optional<std::tuple<double, double, std::vector<std::string>>> looked_at_;
   std::future<std::vector<std::string>> warnings_to_come_;
   std::uint64_t counted_version_ = 0;
   std::chrono::steady_clock::time_point counted_;

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "osteomill/geometry/pose.h"
 #include "osteomill/geometry/wrench.h"
@@ -46,6 +48,10 @@ class HapticAlgorithm {
  public:
   virtual ~HapticAlgorithm() = default;
 
+  /// Returns a line for each setting with which this tool holds badly, or takes too long, in a scan of this
+  /// grid. Throws std::invalid_argument, naming setting and range, if bone could not hold it at all; then
+  /// `prepare` throws the same.
+  virtual std::vector<std::string> doubts_about(const MillingTool&, const GridGeometry&) const { return {}; }
   /// Throws std::invalid_argument where a setting or the tool is out of range.
   virtual void prepare(const Scene& scene) = 0;
   /// `X_WD` is the device's pose as a tool pose in W (finite); `dt_s` the time since the last step.

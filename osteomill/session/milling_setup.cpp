@@ -6,9 +6,29 @@
 
 namespace osteomill {
 
+namespace {
+
+// They stand in a recording's own attributes.
+std::vector<Field<MillingTool>> tool_fields() {
+  using T = MillingTool;
+  constexpr unsigned kOwn = kOfTheTool | kOfTheRecording;
+  constexpr NumberRange kRadius{0.01, 100}, kLength{0.01, 1000};
+  return {
+      field<T>({"", "mm", kRadius, "Of the burr's sphere", kOwn, "burr-radius"}, &T::burr_radius_mm),
+      field<T>({"", "mm", kRadius, "Of the shaft", kOwn, "shaft-radius"}, &T::shaft_radius_mm),
+      field<T>({"", "mm", kLength, "From the burr's centre", kOwn, "shaft-length"}, &T::shaft_length_mm),
+  };
+}
+
+}  // namespace
+
 void require_workable(const MillingTool& tool, const GridGeometry& scan) {
-  constexpr double kMaxLength_mm = 1000, kMaxVoxels = 150, kMinVoxels = 0.25;
-  require_valid(tool);
+  constexpr double kMaxVoxels = 150, kMinVoxels = 0.25;
+  for (const Field<MillingTool>& size : tool_fields()) {
+    if (size.range.contains(size.get(tool))) continue;
+    throw std::invalid_argument(
+        fmt::format("{} must be {} mm, not {:g}", size.option, range_text(size.range), size.get(tool)));
+  }
   const Vec3 size_mm(scan.dims[0] * scan.spacing_mm.x(), scan.dims[1] * scan.spacing_mm.y(),
                      scan.dims[2] * scan.spacing_mm.z());
   const double widest_mm = size_mm.maxCoeff();
@@ -21,10 +41,6 @@ void require_workable(const MillingTool& tool, const GridGeometry& scan) {
   };
   require_narrower("burr", tool.burr_radius_mm);
   require_narrower("shaft", tool.shaft_radius_mm);
-  if (tool.shaft_length_mm > kMaxLength_mm) {
-    throw std::invalid_argument(
-        fmt::format("the shaft's length, {:g} mm, is over {:g} mm", tool.shaft_length_mm, kMaxLength_mm));
-  }
   const double radius_voxels = tool.burr_radius_mm / voxel_mm;
   if (radius_voxels > kMaxVoxels || radius_voxels < kMinVoxels) {
     throw std::invalid_argument(
@@ -32,6 +48,11 @@ void require_workable(const MillingTool& tool, const GridGeometry& scan) {
                     "can be felt",
                     tool.burr_radius_mm, radius_voxels, voxel_mm, kMinVoxels, kMaxVoxels));
   }
+}
+
+std::vector<std::string> doubts_about(const MillingSetup& setup, const GridGeometry& scan) {
+  require_workable(setup.tool, scan);
+  return make_algorithm(setup.algorithm, setup.haptics)->doubts_about(setup.tool, scan);
 }
 
 MillingSettings milling_settings(const MillingSetup& setup) {
@@ -47,27 +68,19 @@ namespace {
 
 using S = MillingSetup;
 
-constexpr NumberRange kPositive = NumberRange::positive(), kNotNegative = NumberRange::not_negative(),
-                      kSwitch = NumberRange::on_or_off(), kLimit = NumberRange::limit();
-
-// They stand in a recording's own attributes.
-std::vector<Field<MillingTool>> tool_fields() {
-  using T = MillingTool;
-  constexpr unsigned kOwn = kOfTheTool | kOfTheRecording;
-  return {
-      field<T>({"", "mm", kPositive, "Of the burr's sphere", kOwn, "burr-radius"}, &T::burr_radius_mm),
-      field<T>({"", "mm", kPositive, "Of the shaft", kOwn, "shaft-radius"}, &T::shaft_radius_mm),
-      field<T>({"", "mm", kPositive, "From the burr's centre", kOwn, "shaft-length"}, &T::shaft_length_mm),
-  };
-}
+constexpr NumberRange kNotNegative = NumberRange::not_negative(), kSwitch = NumberRange::on_or_off(),
+                      kLimit = NumberRange::limit();
+// Within these a hand is held, and what is cut is a number.
+constexpr NumberRange kSpeed{1, 1e6}, kEnergy{0.001, 1e6}, kRate{1e-12, 1e12}, kForce{0.1, 1000},
+    kTorque{1, 1e5};
 
 std::vector<Field<CuttingSettings>> cutting_fields() {
   using C = CuttingSettings;
   constexpr unsigned kOwn = kOfTheCutting | kOfTheRecording;
   return {
-      field<C>({"vibration.spindle_speed", "rpm", kPositive, "Of the burr", kOwn, "spindle-speed"},
+      field<C>({"vibration.spindle_speed", "rpm", kSpeed, "Of the burr", kOwn, "spindle-speed"},
                &C::spindle_speed_rpm),
-      field<C>({"milling.cutting_energy", "N mm/mm^3", kPositive,
+      field<C>({"milling.cutting_energy", "N mm/mm^3", kEnergy,
                 "The work that removes bone of the reference density", kOwn | kMayBeAbsent, "cutting-energy"},
                &C::specific_energy_Nmm_per_mm3),
   };
@@ -75,7 +88,7 @@ std::vector<Field<CuttingSettings>> cutting_fields() {
 
 std::vector<Field<S>> removal_fields() {
   return {
-      {{"milling.removal_rate", "mm^3/(N s)", kPositive,
+      {{"milling.removal_rate", "mm^3/(N s)", kRate,
         "kappa; else it follows from burr, spindle speed and cutting energy",
         kOfTheCutting | kOfTheRecording | kFollows, "removal-rate"},
        [](const S& s) { return milling_settings(s).removal_rate_mm3_per_Ns; },
@@ -96,10 +109,10 @@ std::vector<Field<GuardSettings>> guard_fields() {
   using G = GuardSettings;
   return {
       field<G>(
-          {"limit.force", "N", kPositive, "The most it is asked for", kOfTheLimits, "force-limit"},
+          {"limit.force", "N", kForce, "The most it is asked for", kOfTheLimits, "force-limit"},
           [](auto& g) -> auto& { return g.limits.force_N; }),
       field<G>(
-          {"limit.torque", "N mm", kPositive, "The most it is asked for", kOfTheLimits, "torque-limit"},
+          {"limit.torque", "N mm", kTorque, "The most it is asked for", kOfTheLimits, "torque-limit"},
           [](auto& g) -> auto& { return g.limits.torque_Nmm; }),
       field<G>({"passivity_controller", "", kSwitch,
                 "Dampens a contact that has given the hand more energy than it took", kOfTheLimits,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "osteomill/haptics/algorithms.h"
@@ -48,10 +49,15 @@ template <>
 const std::vector<Field<MillingSetup>>& fields_of<MillingSetup>();
 
 /// Throws std::invalid_argument, with one line that says why, where a tool cannot work in a scan with this
-/// grid: its burr or shaft is wider than the whole scan, its shaft longer than a metre, or its burr so many
+/// grid: a size is out of its range, its burr or shaft is wider than the whole scan, or its burr so many
 /// voxels wide that no algorithm follows it at the haptic rate, or so few that the scan has nothing for it to
 /// feel. At once, before anything is prepared.
 void require_workable(const MillingTool& tool, const GridGeometry& scan);
+
+/// Returns a line for each setting of the algorithm that is poor for this tool in such a scan
+/// (HapticAlgorithm::doubts_about). Throws std::invalid_argument, with one line, as `require_workable` does
+/// and if a setting is out of range or bone could not hold the tool with it: what a session would throw.
+std::vector<std::string> doubts_about(const MillingSetup& setup, const GridGeometry& scan);
 
 /// What a burr mills by under this setup. Throws std::invalid_argument where a setting is out of range.
 MillingSettings milling_settings(const MillingSetup& setup);

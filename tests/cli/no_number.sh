@@ -55,5 +55,5 @@ while read -r option type; do
   refused 1 "^osteomill: s.toml: .*(${option#--}: .*nan|nan)" study s.toml --list
 done < <({ options compare; printf -- '--rate Hz\n--voxel mm\n--device-damping N\n--grip NUMBER\n--draw-hand\n'; } | sort -u)
 refused 2 "nan is not a number" compare --set point-shell.scale=nan
-refused 2 "stiffness must be a number above 0" compare --set surface-points.stiffness=inf
+refused 2 "stiffness must be a number from" compare --set surface-points.stiffness=inf
 [ $faults -eq 0 ]

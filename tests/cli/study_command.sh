@@ -81,6 +81,12 @@ variant 's/from = 0.5, to = 2/from = 0.5, to = inf/'
 refused "^osteomill: variant.toml: line [0-9]+: push has no range from 0.5 to inf$" "$osteomill" study variant.toml --out c
 variant 's/^seconds.*/entry = "99,99,99"/'
 refused "^osteomill: variant.toml: trial 0: .*entry" "$osteomill" study variant.toml --out c
+variant 's/^burr-radius.*/burr-radius = 3e5/; 1s/^/test = "wall"\n/; s/force_mean_N/felt_N_per_mm/'
+refused "^osteomill: variant.toml: trial 0: burr-radius: 300000 is not a number from 0.01 to 100$" "$osteomill" study variant.toml --out c
+variant 's/point-shell/barrier-shell/; s/^seconds.*/stiffness = 1e300/'
+refused "^osteomill: variant.toml: trial 0: .*stiffness must be a number from .*, not 1e\+300$" "$osteomill" study variant.toml --out c
+mkfifo pipe.toml
+refused "^osteomill: pipe.toml: is no regular file$" timeout 20 "$osteomill" study pipe.toml --out c
 variant 's/^trials = .*/trials = 6000000/'
 refused "^osteomill: variant.toml: has more than 10000000 trials$" "$osteomill" study variant.toml --out c
 [ ! -e c ] || fault "what was refused left a folder"
@@ -97,6 +103,27 @@ echo >>b/study.toml
 refused "study.toml: has changed since the study was begun$" "$osteomill" study b --resume
 refused "ball.nrrd: is no folder of a study|ball.nrrd: .*line" "$osteomill" study ball.nrrd --status
 refused "is no folder of a study: it has no study.h5" "$osteomill" study . --status
+
+# What is poor of settings is told once. Values that an axis cannot tell apart leave it a range.
+cat >poor.toml <<TOML
+test = "wall"
+[fixed]
+algorithm = "line-proxy"
+[[list]]
+stiffness = 0.01
+device-mass = 0.2
+[[list]]
+stiffness = 0.010000000001
+device-mass = 0.3
+[[map]]
+x = "stiffness"
+y = "device-mass"
+colour = "rule_N_per_mm"
+TOML
+"$osteomill" study poor.toml --out d >/dev/null 2>err || fault "$(cat err)"
+[ "$(grep -c "warning" err)" -eq 1 ] && grep -q "poor.toml: trial 0: line-proxy: a stiffness of 0.01 N/mm is so soft .*; 2 of the trials are in doubt$" err || fault "$(cat err)"
+"$osteomill" study d --report --quiet >/dev/null || fault "a map whose values nearly agree"
+[ -s d/report/figures/map_1.svg ] || fault "no map"
 
 # What is shipped can be read, and says how many trials it has.
 for study in "$studies"/*.toml; do

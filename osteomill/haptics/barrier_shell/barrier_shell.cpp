@@ -76,6 +76,13 @@ Barrier skin_of(const MillingTool& tool, const Settings& settings) {
   return {thinner * settings.skin_width_mm, smaller * smaller * settings.pressure_N_per_mm2};
 }
 
+// The widest spacing whose points a core of this radius does not pass between: half the diagonal of four
+// points, with an eighth to spare.
+double widest_spacing_mm(double core_radius_mm) {
+  constexpr double kShareOfCore = 1.2;
+  return kShareOfCore * core_radius_mm;
+}
+
 struct NewtonStep {
   Vector6 move_T;
   bool is_damped = false;
@@ -153,8 +160,13 @@ void BarrierShell::prepare(const Scene& scene) {
   tool_ = scene.tool;
   barrier_ = skin_of(scene.tool, settings_);
   centreline_T_ = centreline_vertices(scene.tool, kCentrelinePoints);
-  bricks_ = BoneBricks(*scene.volume, settings_.point_spacing_mm);
-  near_ = NearBone(kNearPoints);
+  smaller_mm_ = 0;
+  const Cores whole = cores();
+  const double at_shaft_mm = widest_spacing_mm(whole.cylinder_radius_mm);
+  const double spacing_mm =
+      std::min({settings_.point_spacing_mm, widest_spacing_mm(whole.ball_radius_mm), at_shaft_mm});
+  bricks_ = BoneBricks(*scene.volume, spacing_mm);
+  near_ = NearBone(kNearPoints, 2 * spacing_mm > at_shaft_mm);
   reset();
 }
 
@@ -211,6 +223,7 @@ BarrierShell::State BarrierShell::evaluated(const Pose& X_WT, const Pose& X_WD) 
   state.sum += energy.ball;
   state.sum += energy.cylinder;
   ++counts_.passes;
+  counts_.most_points = std::max<std::uint64_t>(counts_.most_points, near_.point_count());
   return state;
 }
 

@@ -11,6 +11,8 @@ struct Counts {
   std::uint64_t ticks = 0;
   /// Sums over the points.
   std::uint64_t passes = 0;
+  /// The most points that a sum went through.
+  std::uint64_t most_points = 0;
   /// Ticks that ended before the solver was done, at the best certified pose.
   std::uint64_t unfinished = 0;
   /// Ticks at whose start the stored energy was above that at the end of the tick before, with the device

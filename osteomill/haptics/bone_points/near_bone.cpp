@@ -41,7 +41,8 @@ struct Meeting {
 
 }  // namespace
 
-NearBone::NearBone(std::size_t capacity) : ball_(capacity), cylinder_(capacity) {
+NearBone::NearBone(std::size_t capacity, bool fine_at_cylinder)
+    : fine_at_cylinder_(fine_at_cylinder), ball_(capacity), cylinder_(capacity) {
   if (capacity > 0) bricks_.reserve(kBricks);
 }
 
@@ -51,7 +52,7 @@ void NearBone::gather(BoneBricks& bricks, const Cores& cores, double reach_mm, c
   ball_.count = cylinder_.count = 0;
   bricks_.clear();
   ball_.overflowed = cylinder_.overflowed = false;
-  const BrickPoints& at_cylinder = bricks.coarse();
+  const BrickPoints& at_cylinder = fine_at_cylinder_ ? bricks.fine() : bricks.coarse();
   const ToolFromGrid X_TG(bricks.lattice(), X_WT);
   const Meeting meets{cores, reach_mm + room.move_mm, room.turn_rad};
   const Reach reach{meets.reach_mm, room.turn_rad};

@@ -19,8 +19,9 @@ struct Room {
 /// Safe in the haptic tick.
 class NearBone {
  public:
-  /// Room for `capacity` points at each part; the cylinder meets the bricks' coarse points.
-  explicit NearBone(std::size_t capacity = 0);
+  /// Room for `capacity` points at each part; the cylinder meets the bricks' coarse points, or as the ball
+  /// the fine ones.
+  explicit NearBone(std::size_t capacity = 0, bool fine_at_cylinder = false);
 
   /// Gathers the points that may come within `reach_mm` of a part at `X_WT` or anywhere within the room.
   /// Makes bricks, as many as a tick may.
@@ -29,7 +30,9 @@ class NearBone {
   /// Whether a point may have been left out, for want of room or since its brick is not made yet: the tool
   /// must not move.
   bool is_incomplete() const noexcept { return brick_missing_ || ball_.overflowed || cylinder_.overflowed; }
-  bool is_empty() const noexcept { return ball_.count == 0 && cylinder_.count == 0; }
+  bool is_empty() const noexcept { return point_count() == 0; }
+  /// How many points a sum goes through.
+  std::size_t point_count() const noexcept { return ball_.count + cylinder_.count; }
 
   struct Energy {
     EnergySum ball;
@@ -52,6 +55,7 @@ class NearBone {
     std::size_t at_cylinder;
   };
 
+  bool fine_at_cylinder_;
   std::vector<Gathered> bricks_;
   bool brick_missing_ = false;
   Pose X_WT_gathered_;

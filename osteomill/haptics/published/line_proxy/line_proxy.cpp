@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "osteomill/haptics/doubts.h"
 #include "osteomill/haptics/published/line_proxy/intersection.h"
 #include "osteomill/haptics/published/line_proxy/point_proxy.h"
 #include "osteomill/tool/sample_points.h"
@@ -21,6 +22,15 @@ constexpr double kFarthest = 1e12;
 constexpr WalkSteps kWalk{10, 10};
 
 }  // namespace
+
+std::vector<std::string> LineProxy::doubts_about(const MillingTool&, const GridGeometry&) const {
+  std::vector<std::string> doubts;
+  doubt_stiffness(doubts, "line-proxy: a stiffness", settings_.stiffness_N_per_mm);
+  // A tick in which the shaft first touches looks at all vertices in each step of the walk.
+  doubt_reads(doubts, "line-proxy: so many vertices",
+              (kWalk.translation + kWalk.rotation) * settings_.vertices);
+  return doubts;
+}
 
 void LineProxy::prepare(const Scene& scene) {
   if (scene.volume == nullptr) throw std::invalid_argument("line-proxy: no volume");

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "osteomill/haptics/algorithm_description.h"
@@ -30,6 +31,7 @@ class LineProxy final : public HapticAlgorithm {
   /// Takes settings within their ranges.
   explicit LineProxy(const Settings& settings) : settings_(settings) {}
 
+  std::vector<std::string> doubts_about(const MillingTool& tool, const GridGeometry& scan) const override;
   void prepare(const Scene& scene) override;
   HapticStep step(const Pose& X_WD, double dt_s) noexcept override;
   /// Does nothing: every step reads the volume itself.

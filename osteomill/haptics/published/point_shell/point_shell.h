@@ -1,6 +1,8 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "osteomill/haptics/algorithm_description.h"
 #include "osteomill/haptics/haptic_algorithm.h"
@@ -40,6 +42,7 @@ class PointShell final : public HapticAlgorithm {
   /// Takes settings within their ranges.
   explicit PointShell(const Settings& settings) : settings_(settings) {}
 
+  std::vector<std::string> doubts_about(const MillingTool& tool, const GridGeometry& scan) const override;
   void prepare(const Scene& scene) override;
   HapticStep step(const Pose& X_WD, double dt_s) noexcept override;
   void volume_changed(const VolumeChange& change) noexcept override { shell_.refresh(change.voxels); }

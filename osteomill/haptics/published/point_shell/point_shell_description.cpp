@@ -9,6 +9,9 @@ namespace {
 
 using Fields = std::vector<Field<Settings>>;
 
+// In which all numbers stay finite; what is poor within it is doubted.
+constexpr NumberRange kStiffness{0.001, 1e4}, kTorsion{1, 1e7}, kDampingTime{0, 0.1};
+
 const Fields& fields() {
   static const Fields all{
       field<Settings>(
@@ -16,15 +19,15 @@ const Fields& fields() {
            "Coarseness: the voxels whose centres are points are this many of the scan's wide along each axis",
            0, "shell-scale"},
           &Settings::scale),
-      field<Settings>({"translational-stiffness", "N/mm", NumberRange::positive(),
+      field<Settings>({"translational-stiffness", "N/mm", kStiffness,
                        "Virtual coupling between device and simulated tool", 0, "stiffness"},
                       &Settings::translational_stiffness_N_per_mm),
-      field<Settings>({"torsional-stiffness", "N mm/rad", NumberRange::positive(),
-                       "Of the coupling, about rotation", 0, "torsional-stiffness"},
+      field<Settings>({"torsional-stiffness", "N mm/rad", kTorsion, "Of the coupling, about rotation", 0,
+                       "torsional-stiffness"},
                       &Settings::torsional_stiffness_Nmm_per_rad),
-      field<Settings>({"damping-time", "s", NumberRange::not_negative(),
-                       "The coupling's dampers are its springs times this"},
-                      &Settings::damping_time_s),
+      field<Settings>(
+          {"damping-time", "s", kDampingTime, "The coupling's dampers are its springs times this"},
+          &Settings::damping_time_s),
   };
   return all;
 }

@@ -1,7 +1,9 @@
 #include "osteomill/haptics/published/surface_points/surface_points.h"
 
+#include <sstream>
 #include <stdexcept>
 
+#include "osteomill/haptics/doubts.h"
 #include "osteomill/tool/sample_points.h"
 #include "osteomill/volume/sampling.h"
 
@@ -13,6 +15,23 @@ Vec3 spring_to_surface(const Volume& volume, const Vec3& vertex_W, const Vec3& c
   const double centre_density = density_at(volume.grid(), centre_W);
   const double t = (vertex_density - volume.isovalue()) / (vertex_density - centre_density);
   return t * (centre_W - vertex_W);
+}
+
+std::vector<std::string> SurfacePoints::doubts_about(const MillingTool& tool, const GridGeometry&) const {
+  constexpr double kLeast_N = 1;
+  std::vector<std::string> doubts;
+  doubt_stiffness(doubts, "surface-points: a stiffness", settings_.stiffness_N_per_mm);
+  // Of half a ball's vertices, each half as far from the surface as from the centre.
+  const double most_N = settings_.stiffness_N_per_mm * tool.burr_radius_mm / 8;
+  if (most_N < kLeast_N) {
+    std::ostringstream line;
+    line << "surface-points: a stiffness of " << settings_.stiffness_N_per_mm << " N/mm carries about "
+         << most_N << " N on a burr of " << tool.burr_radius_mm << " mm, beyond which it falls through";
+    doubts.push_back(line.str());
+  }
+  doubt_reads(doubts, "surface-points: so many slices and vertices",
+              2 * (settings_.sphere_vertices + settings_.slices * settings_.circle_vertices));
+  return doubts;
 }
 
 void SurfacePoints::prepare(const Scene& scene) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "osteomill/haptics/algorithm_description.h"
@@ -39,6 +40,7 @@ class SurfacePoints final : public HapticAlgorithm {
   /// Takes settings within their ranges.
   explicit SurfacePoints(const Settings& settings) : settings_(settings) {}
 
+  std::vector<std::string> doubts_about(const MillingTool& tool, const GridGeometry& scan) const override;
   void prepare(const Scene& scene) override;
   HapticStep step(const Pose& X_WD, double dt_s) noexcept override;
   /// Does nothing: every step reads the volume itself.

@@ -10,10 +10,13 @@ namespace {
 
 using Fields = std::vector<Field<Settings>>;
 
+// In which all numbers stay finite; what is poor within it is doubted.
+constexpr NumberRange kStiffness{0.001, 1e4};
+
 const Fields& fields() {
   static const Fields all{
       field<Settings>(
-          {"stiffness", "N/mm", NumberRange::positive(),
+          {"stiffness", "N/mm", kStiffness,
            "k of (14): the spring of a sphere, or of a slice, all of whose vertices collide", 0, "stiffness"},
           &Settings::stiffness_N_per_mm),
       field<Settings>(
