@@ -71,7 +71,7 @@ std::string DeviceReport::complaint() const {
   return {};
 }
 
-// What the device's thread does and works on, and keeps where it is left to itself.
+// Holds what the device's thread works on; the thread keeps it if it is left to itself.
 class ConnectedDevice::Exchange {
  public:
   Exchange(OpenConnection open, std::function<double()> now_s)
@@ -128,7 +128,7 @@ class ConnectedDevice::Exchange {
   OpenConnection open_;
   std::function<double()> now_s_;
   std::unique_ptr<Connection> connection_;
-  // As it was opened first.
+  // The capabilities at the first opening.
   DeviceCapabilities opened_;
   Heard newest_;
   // The last that went out, and when.
@@ -144,7 +144,7 @@ class ConnectedDevice::Exchange {
   // When the thread's last round was over, and in which of the maker's functions it is.
   std::atomic<double> round_s_{std::numeric_limits<double>::infinity()};
   std::atomic<const char*> call_{nullptr};
-  // What is to be said of it; `since_s` holds the time of the clock here.
+  // The report in the making; `since_s` holds the time of the clock here.
   DeviceReport to_say_;
   // And what others may read of that, under the lock, for which the device's thread does not wait.
   std::mutex said_mutex_;
@@ -293,7 +293,7 @@ void ConnectedDevice::Exchange::lose(const std::string& reason) {
   if (connection_) come_down();
   connection_.reset();
   set_gate(false);
-  // What it said of itself goes with it.
+  // Its own remarks go with it.
   newest_.input.not_driven = newest_.input.remark = nullptr;
   sent_D_ = {};
   blended_ = 0;
@@ -321,7 +321,7 @@ void ConnectedDevice::Exchange::judge() {
   State state = State::ok;
   const char* says = "";
   const double age_s = now_s - newest_.at_s;
-  // What it says of itself tells more than that it is a little slow.
+  // Its own remark is worth more than the line that it is a little slow.
   const double silent_after_s = input.not_driven != nullptr || input.remark != nullptr ? kGone_s : kMaxAge_s;
   if (!connection_) {
     state = State::lost;

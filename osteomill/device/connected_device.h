@@ -114,7 +114,7 @@ class ConnectedDevice final : public Device {
   void take_hold() noexcept override;
 
  private:
-  // What the device's thread works on, and keeps where it is left to itself.
+  // Belongs to the device's thread, which keeps it if it is left to itself.
   class Exchange;
   struct Way {
     WorkspaceSettings settings;

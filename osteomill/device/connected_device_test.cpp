@@ -200,7 +200,7 @@ TEST_F(ConnectedDeviceTest, WhatItSaysOfItselfIsSaidThoughItIsALittleSlow) {
   EXPECT_EQ(device_.report().state, State::silent);
 }
 
-// As a device does that lets go by itself.
+// Such a device lets go by itself.
 TEST_F(ConnectedDeviceTest, AfterALapseOfItsOwnTheForceComesUpSlowly) {
   hardware_.can.lets_go_after_s = 5e-3;
   asked_.force_N = {0, 0, 10};

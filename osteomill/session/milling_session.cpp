@@ -31,7 +31,7 @@ std::shared_ptr<Volume> workable(const MillingTool& tool, std::shared_ptr<Volume
   return bone;
 }
 
-// Of the tool, so far inside it.
+// Returns points that lie `by_mm` inside the tool's surface.
 std::vector<Vec3> points_inside(const MillingTool& tool, double by_mm) {
   constexpr int kOnBurr = 64;
   constexpr double kSlice_mm = 0.5;

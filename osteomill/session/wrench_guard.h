@@ -83,8 +83,8 @@ class WrenchGuard {
   double energy_given_Nmm() const { return observer_.energy_given_Nmm(); }
   /// From now what is asked for comes up slowly, from what was last sent.
   void begin_anew() noexcept;
-  /// As begin_anew, in the place of another guard whose hand feels `sent` or was held back; energy is counted
-  /// from now on.
+  /// Begins as begin_anew does, in the place of another guard whose hand feels `sent` or was held back;
+  /// energy is counted from now on.
   void begin_from(const Wrench& sent, bool held_back) noexcept;
   /// Nothing that is sent reaches the hand. From now on it is zero, until the algorithm asks for next to
   /// nothing (kFreeForce_N, kFreeTorque_Nmm) in a tick in which the tool may be out of bone. Nothing happens

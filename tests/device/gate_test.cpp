@@ -86,7 +86,7 @@ class DhdRig : public LibraryRig<DhdStandIn> {
   }
 };
 
-// Nobody but the device's own watchdog closes it, and the connection opens it again by itself.
+// Only the device's own watchdog closes it, and the connection opens it again by itself.
 class DhdWatchdogRig final : public DhdRig {
  public:
   void set_gate(bool is_open) override {
@@ -263,7 +263,7 @@ INSTANTIATE_TEST_SUITE_P(EveryBackEnd, Gate,
                            return name;
                          });
 
-// As when a Falcon is calibrated by hand.
+// A Falcon does this when it is calibrated by hand.
 TEST_P(Gate, OpensWhileTheToolIsDeepInBone) {
   if (std::get<0>(GetParam()) == "dhd_watchdog") GTEST_SKIP() << "it opens by itself before the hand sinks";
   rig_->set_gate(false);
@@ -283,14 +283,14 @@ TEST_P(Gate, OpensWhileTheToolIsDeepInBone) {
   }
 }
 
-// As when the button for its force is pressed, and again, or only its watchdog had cut it.
+// The button for the force, pressed twice, does this, and so does the watchdog.
 TEST_P(Gate, ClosesWhileItPressesAndTheHandSinks) {
   rig_->set_gate(true);
   ASSERT_TRUE(comes_true([&] { return is_finite(record_.X_WD) && record_.driven; }));
   press_until_it_is_felt();
   rig_->set_gate(false);
   ASSERT_TRUE(comes_true([&] { return !record_.driven; }));
-  // What was felt comes down in five rounds of the device.
+  // The wrench comes down in five rounds of the device.
   ASSERT_TRUE(comes_true([&] { return rig_->felt_N().isZero(0); }));
   most_N_ = 0;
   removed_mm3_ = record_.removed_mm3;

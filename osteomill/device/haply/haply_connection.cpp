@@ -203,7 +203,7 @@ class HaplyConnection final : public Connection {
     return service_.socket.send(message.dump());
   }
 
-  // What is said stays the same for as long as it is slow.
+  // Keeps one text for as long as the service is slow.
   void look_at_latency() {
     const double latency_ms = std::chrono::duration<double, std::milli>(Clock::now() - asked_).count();
     mean_latency_ms_ += (latency_ms - mean_latency_ms_) / kLatencies;

@@ -20,7 +20,7 @@ struct Head {
   std::uint16_t version = kVersion;
   Kind kind{};
   std::uint32_t sequence = 0;
-  /// Of an answer 1 where the device takes wrenches from another partner than the one that asks; else 0.
+  /// 1 in an answer if the device takes wrenches from another partner than the one that asks, else 0.
   std::uint32_t is_taken = 0;
 };
 static_assert(sizeof(Head) == 16);
