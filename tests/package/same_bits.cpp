@@ -33,7 +33,7 @@ int main() {
     std::uint64_t hash = 0;
     for (int n = 0; n < 600; ++n) {
       const Pose lean{Vec3(0, 0, -1.37), quaternion_from_rotation_vector({3e-4 * n, 1e-4 * n, 0})};
-      device.put(Pose{top_W + Vec3(0.001 * n, 0, 3.1 - 0.004 * n), Quat::Identity()} * lean.inverse() * lean *
+      device.put(Pose{top_W + Vec3(0.001 * n, 0, 5.1 - 0.008 * n), Quat::Identity()} * lean.inverse() * lean *
                  lean);
       const TickRecord record = session.tick(device, {.time_s = 1e-3 * n, .spindle_on = n > 100});
       add(hash, record.X_WD.position_mm);
