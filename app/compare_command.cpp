@@ -7,27 +7,28 @@
 #include <string>
 #include <vector>
 
+#include <CLI/Error.hpp>
+#include <CLI/Option.hpp>
+#include <fmt/core.h>
+
+#include "osteomill/base/atomic_file.h"
+#include "osteomill/base/file_lock.h"
+#include "osteomill/base/machine.h"
+#include "osteomill/base/parse_number.h"
+#include "osteomill/recording/recording.h"
+#include "osteomill/study/comparison_report.h"
+#include "osteomill/study/match_stiffness.h"
+#include "osteomill/study/measure_passivity.h"
+#include "osteomill/study/paper.h"
+#include "osteomill/study/run_trials.h"
+#include "osteomill/volume/density_grid.h"
+
 #include "app/commands.h"
 #include "app/config_file.h"
 #include "app/option_checks.h"
 #include "app/progress.h"
 #include "app/scan_options.h"
 #include "app/trial_options.h"
-#include <CLI/Error.hpp>
-#include <CLI/Option.hpp>
-#include <fmt/core.h>
-
-#include "osteomill/experiment/comparison_report.h"
-#include "osteomill/experiment/match_stiffness.h"
-#include "osteomill/experiment/measure_passivity.h"
-#include "osteomill/experiment/paper.h"
-#include "osteomill/experiment/run_trials.h"
-#include "osteomill/files/atomic_file.h"
-#include "osteomill/files/file_lock.h"
-#include "osteomill/files/machine.h"
-#include "osteomill/numbers/parse_number.h"
-#include "osteomill/recording/recording.h"
-#include "osteomill/volume/density_grid.h"
 
 namespace osteomill::app {
 

@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <vector>
 
-#include "app/option_checks.h"
-#include "app/toml_file.h"
 #include <CLI/Error.hpp>
 #include <fmt/core.h>
 
 #include "osteomill/haptics/algorithms.h"
+
+#include "app/option_checks.h"
+#include "app/toml_file.h"
 
 namespace osteomill::app {
 

@@ -1,15 +1,16 @@
 #include "app/device_option.h"
 
-#include "app/option_checks.h"
-#include "app/progress.h"
 #include <CLI/Option.hpp>
 #include <CLI/Validators.hpp>
 #include <fmt/core.h>
 
-#include "osteomill/device/hardware.h"
-#include "osteomill/device/space_mouse.h"
-#include "osteomill/device/workspace.h"
-#include "osteomill/files/input_error.h"
+#include "osteomill/base/input_error.h"
+#include "osteomill/session/hardware.h"
+#include "osteomill/session/space_mouse.h"
+#include "osteomill/session/workspace.h"
+
+#include "app/option_checks.h"
+#include "app/progress.h"
 
 namespace osteomill::app {
 

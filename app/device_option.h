@@ -7,9 +7,9 @@
 
 #include <CLI/App.hpp>
 
-#include "osteomill/device/connected_device.h"
-#include "osteomill/live/bone_sender.h"
+#include "osteomill/openigtlink/bone_sender.h"
 #include "osteomill/recording/run_description.h"
+#include "osteomill/session/connected_device.h"
 
 namespace osteomill::app {
 

@@ -6,6 +6,18 @@
 #include <string>
 #include <thread>
 
+#include <CLI/Error.hpp>
+#include <fmt/core.h>
+
+#include "osteomill/base/input_error.h"
+#include "osteomill/live/live_milling.h"
+#include "osteomill/openigtlink/bone_sender.h"
+#include "osteomill/session/milling_setup.h"
+#include "osteomill/session/space_mouse.h"
+#include "osteomill/session/tick_counts.h"
+#include "osteomill/session/virtual_hand.h"
+#include "osteomill/study/entry_pictures.h"
+
 #include "app/commands.h"
 #include "app/config_file.h"
 #include "app/device_option.h"
@@ -13,17 +25,6 @@
 #include "app/progress.h"
 #include "app/scan_options.h"
 #include "app/trial_options.h"
-#include <CLI/Error.hpp>
-#include <fmt/core.h>
-
-#include "osteomill/device/space_mouse.h"
-#include "osteomill/experiment/entry_pictures.h"
-#include "osteomill/files/input_error.h"
-#include "osteomill/live/bone_sender.h"
-#include "osteomill/live/live_milling.h"
-#include "osteomill/operator/virtual_hand.h"
-#include "osteomill/session/milling_setup.h"
-#include "osteomill/session/tick_counts.h"
 
 namespace osteomill::app {
 

@@ -11,22 +11,23 @@
 #include <utility>
 #include <vector>
 
-#include "app/commands.h"
-#include "app/memory_limit.h"
-#include "app/option_checks.h"
-#include "app/progress.h"
 #include <CLI/CLI.hpp>
 #include <fcntl.h>
 #include <fmt/core.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include "osteomill/files/input_error.h"
-#include "osteomill/files/input_files.h"
-#include "osteomill/files/leftovers.h"
-#include "osteomill/files/run_program.h"
+#include "osteomill/base/input_error.h"
+#include "osteomill/base/input_files.h"
+#include "osteomill/base/leftovers.h"
+#include "osteomill/base/run_program.h"
+#include "osteomill/base/work_progress.h"
 #include "osteomill/live/crash_stop.h"
-#include "osteomill/numbers/work_progress.h"
+
+#include "app/commands.h"
+#include "app/memory_limit.h"
+#include "app/option_checks.h"
+#include "app/progress.h"
 
 namespace {
 

@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include "osteomill/files/input_error.h"
+#include "osteomill/base/input_error.h"
 
 namespace osteomill::app {
 

@@ -9,14 +9,15 @@
 #include <string_view>
 #include <utility>
 
-#include "app/config_file.h"
-#include "app/option_checks.h"
 #include <CLI/Error.hpp>
 #include <CLI/Option.hpp>
 #include <CLI/Validators.hpp>
 #include <fmt/format.h>
 
-#include "osteomill/numbers/parse_number.h"
+#include "osteomill/base/parse_number.h"
+
+#include "app/config_file.h"
+#include "app/option_checks.h"
 
 namespace osteomill::app {
 

@@ -1,12 +1,13 @@
 #include "app/milling_options.h"
 
-#include "app/trial_options.h"
-#include "tests/shapes.h"
 #include <CLI/CLI.hpp>
 #include <gtest/gtest.h>
 
-#include "osteomill/experiment/trial_plan.h"
 #include "osteomill/recording/run_description.h"
+#include "osteomill/study/trial_plan.h"
+
+#include "app/trial_options.h"
+#include "tests/shapes.h"
 
 namespace osteomill::app {
 namespace {

@@ -10,7 +10,7 @@
 #include <CLI/Error.hpp>
 #include <fmt/core.h>
 
-#include "osteomill/numbers/parse_number.h"
+#include "osteomill/base/parse_number.h"
 
 namespace osteomill::app {
 

@@ -10,7 +10,7 @@
 #include <CLI/Option.hpp>
 #include <CLI/Validators.hpp>
 
-#include "osteomill/numbers/field.h"
+#include "osteomill/base/field.h"
 
 namespace osteomill::app {
 

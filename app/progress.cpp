@@ -7,7 +7,7 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
-#include "osteomill/files/input_error.h"
+#include "osteomill/base/input_error.h"
 
 namespace osteomill::app {
 

@@ -4,7 +4,7 @@
 
 #include <CLI/App.hpp>
 
-#include "osteomill/experiment/run_events.h"
+#include "osteomill/study/run_events.h"
 
 namespace osteomill::app {
 

@@ -3,17 +3,18 @@
 #include <string>
 #include <vector>
 
+#include <fmt/core.h>
+
+#include "osteomill/base/file_lock.h"
+#include "osteomill/study/measure_rates.h"
+#include "osteomill/study/write_rates_report.h"
+
 #include "app/commands.h"
 #include "app/config_file.h"
 #include "app/milling_options.h"
 #include "app/progress.h"
 #include "app/scan_options.h"
 #include "app/trial_options.h"
-#include <fmt/core.h>
-
-#include "osteomill/experiment/measure_rates.h"
-#include "osteomill/experiment/write_rates_report.h"
-#include "osteomill/files/file_lock.h"
 
 namespace osteomill::app {
 

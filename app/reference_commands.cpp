@@ -2,13 +2,14 @@
 #include <string>
 #include <string_view>
 
-#include "app/commands.h"
-#include "app/device_option.h"
 #include <fmt/core.h>
 
-#include "osteomill/device/hardware.h"
-#include "osteomill/device/space_mouse.h"
 #include "osteomill/haptics/algorithms.h"
+#include "osteomill/session/hardware.h"
+#include "osteomill/session/space_mouse.h"
+
+#include "app/commands.h"
+#include "app/device_option.h"
 
 namespace osteomill::app {
 

@@ -3,17 +3,11 @@
 #include <string>
 #include <vector>
 
-#include "app/commands.h"
-#include "app/config_file.h"
-#include "app/milling_options.h"
-#include "app/progress.h"
-#include "app/scan_options.h"
-#include "app/trial_options.h"
 #include <CLI/Error.hpp>
 #include <fmt/core.h>
 
-#include "osteomill/files/atomic_file.h"
-#include "osteomill/files/input_error.h"
+#include "osteomill/base/atomic_file.h"
+#include "osteomill/base/input_error.h"
 #include "osteomill/haptics/algorithms.h"
 #include "osteomill/recording/record_columns.h"
 #include "osteomill/recording/recorder.h"
@@ -25,6 +19,13 @@
 #include "osteomill/session/tick_counts.h"
 #include "osteomill/session/trajectory.h"
 #include "osteomill/volume/bone_densities.h"
+
+#include "app/commands.h"
+#include "app/config_file.h"
+#include "app/milling_options.h"
+#include "app/progress.h"
+#include "app/scan_options.h"
+#include "app/trial_options.h"
 
 namespace osteomill::app {
 

@@ -4,16 +4,17 @@
 #include <utility>
 #include <vector>
 
-#include "app/commands.h"
-#include "app/progress.h"
 #include <fmt/core.h>
 
-#include "osteomill/experiment/comparison_report.h"
-#include "osteomill/files/atomic_file.h"
-#include "osteomill/files/file_lock.h"
+#include "osteomill/base/atomic_file.h"
+#include "osteomill/base/file_lock.h"
 #include "osteomill/recording/record_columns.h"
 #include "osteomill/recording/recording.h"
-#include "osteomill/report/write_report.h"
+#include "osteomill/study/comparison_report.h"
+#include "osteomill/study/write_report.h"
+
+#include "app/commands.h"
+#include "app/progress.h"
 
 namespace osteomill::app {
 

@@ -4,19 +4,20 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/core.h>
+
+#include "osteomill/base/input_error.h"
+#include "osteomill/ct/scan_summary.h"
+#include "osteomill/ct/write_nrrd.h"
+#include "osteomill/recording/recording.h"
+#include "osteomill/recording/replay_recording.h"
+#include "osteomill/session/milling_entry.h"
+#include "osteomill/visual/mesh_file.h"
+#include "osteomill/visual/surface_mesh.h"
+
 #include "app/commands.h"
 #include "app/progress.h"
 #include "app/scan_options.h"
-#include <fmt/core.h>
-
-#include "osteomill/ct/scan_summary.h"
-#include "osteomill/ct/write_nrrd.h"
-#include "osteomill/files/input_error.h"
-#include "osteomill/operator/milling_entry.h"
-#include "osteomill/recording/recording.h"
-#include "osteomill/recording/replay_recording.h"
-#include "osteomill/surface/mesh_file.h"
-#include "osteomill/surface/surface_mesh.h"
 
 namespace osteomill::app {
 

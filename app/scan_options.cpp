@@ -2,15 +2,16 @@
 
 #include <utility>
 
+#include <fmt/core.h>
+
+#include "osteomill/base/input_error.h"
+#include "osteomill/base/work_progress.h"
+#include "osteomill/volume/builtin_tooth.h"
+#include "osteomill/volume/label_scan.h"
+
 #include "app/memory_limit.h"
 #include "app/option_checks.h"
 #include "app/progress.h"
-#include <fmt/core.h>
-
-#include "osteomill/files/input_error.h"
-#include "osteomill/numbers/work_progress.h"
-#include "osteomill/volume/builtin_tooth.h"
-#include "osteomill/volume/label_scan.h"
 
 namespace osteomill::app {
 

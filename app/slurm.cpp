@@ -6,9 +6,9 @@
 #include <fmt/format.h>
 #include <fmt/ostream.h>
 
-#include "osteomill/files/atomic_file.h"
-#include "osteomill/files/input_error.h"
-#include "osteomill/files/run_program.h"
+#include "osteomill/base/atomic_file.h"
+#include "osteomill/base/input_error.h"
+#include "osteomill/base/run_program.h"
 
 namespace osteomill::app {
 

@@ -5,22 +5,23 @@
 #include <string>
 #include <vector>
 
-#include "app/commands.h"
-#include "app/option_checks.h"
-#include "app/progress.h"
-#include "app/slurm.h"
-#include "app/study_trials.h"
 #include <CLI/Error.hpp>
 #include <CLI/Option.hpp>
 #include <fmt/format.h>
 #include <malloc.h>
 
-#include "osteomill/experiment/study_report.h"
-#include "osteomill/experiment/study_slices.h"
-#include "osteomill/files/atomic_file.h"
-#include "osteomill/files/file_lock.h"
-#include "osteomill/files/input_error.h"
-#include "osteomill/files/machine.h"
+#include "osteomill/base/atomic_file.h"
+#include "osteomill/base/file_lock.h"
+#include "osteomill/base/input_error.h"
+#include "osteomill/base/machine.h"
+#include "osteomill/study/study_report.h"
+#include "osteomill/study/study_slices.h"
+
+#include "app/commands.h"
+#include "app/option_checks.h"
+#include "app/progress.h"
+#include "app/slurm.h"
+#include "app/study_trials.h"
 
 namespace osteomill::app {
 

@@ -6,11 +6,12 @@
 #include <stdexcept>
 #include <vector>
 
-#include "app/option_checks.h"
-#include "app/toml_file.h"
 #include <fmt/format.h>
 
 #include "osteomill/haptics/algorithms.h"
+
+#include "app/option_checks.h"
+#include "app/toml_file.h"
 
 namespace osteomill::app {
 

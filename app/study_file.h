@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "osteomill/experiment/study_design.h"
+#include "osteomill/study/study_design.h"
 
 namespace osteomill::app {
 

@@ -5,17 +5,18 @@
 #include <limits>
 #include <stdexcept>
 
+#include <fmt/format.h>
+
+#include "osteomill/base/csv_field.h"
+#include "osteomill/base/input_error.h"
+#include "osteomill/base/parse_number.h"
+#include "osteomill/study/match_stiffness.h"
+#include "osteomill/study/study_slices.h"
+
 #include "app/option_checks.h"
 #include "app/progress.h"
 #include "app/study_file.h"
 #include "app/toml_file.h"
-#include <fmt/format.h>
-
-#include "osteomill/experiment/match_stiffness.h"
-#include "osteomill/experiment/study_slices.h"
-#include "osteomill/files/csv_field.h"
-#include "osteomill/files/input_error.h"
-#include "osteomill/numbers/parse_number.h"
 
 namespace osteomill::app {
 

@@ -9,11 +9,11 @@
 #include <utility>
 #include <vector>
 
+#include "osteomill/study/run_trials.h"
+#include "osteomill/study/study_design.h"
+
 #include "app/scan_options.h"
 #include "app/trial_options.h"
-
-#include "osteomill/experiment/run_trials.h"
-#include "osteomill/experiment/study_design.h"
 
 namespace osteomill::app {
 

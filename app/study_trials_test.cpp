@@ -6,13 +6,14 @@
 #include <set>
 #include <stdexcept>
 
-#include "tests/shapes.h"
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "osteomill/base/temporary_folder.h"
 #include "osteomill/ct/write_nrrd.h"
-#include "osteomill/files/temporary_folder.h"
 #include "osteomill/volume/density_grid.h"
+
+#include "tests/shapes.h"
 
 namespace osteomill::app {
 namespace {

@@ -7,7 +7,7 @@
 
 #include <fmt/core.h>
 
-#include "osteomill/files/input_files.h"
+#include "osteomill/base/input_files.h"
 #include "osteomill/haptics/algorithms.h"
 
 namespace osteomill::app {

@@ -5,7 +5,7 @@
 
 #include <toml++/toml.h>
 
-#include "osteomill/files/input_error.h"
+#include "osteomill/base/input_error.h"
 
 namespace osteomill::app {
 

@@ -3,9 +3,10 @@
 #include <optional>
 #include <string>
 
+#include <CLI/Option.hpp>
+
 #include "app/option_checks.h"
 #include "app/progress.h"
-#include <CLI/Option.hpp>
 
 namespace osteomill::app {
 

@@ -3,12 +3,13 @@
 #include <string>
 #include <vector>
 
-#include "app/milling_options.h"
-#include "app/scan_options.h"
 #include <CLI/App.hpp>
 
-#include "osteomill/experiment/trial_plan.h"
-#include "osteomill/operator/simulated_operator.h"
+#include "osteomill/session/simulated_operator.h"
+#include "osteomill/study/trial_plan.h"
+
+#include "app/milling_options.h"
+#include "app/scan_options.h"
 
 namespace osteomill::app {
 

@@ -3,8 +3,8 @@
 #include <functional>
 #include <string>
 
-#include "osteomill/geometry/pose.h"
-#include "osteomill/tool/milling_tool.h"
+#include "osteomill/base/pose.h"
+#include "osteomill/haptics/milling_tool.h"
 #include "osteomill/volume/volume.h"
 
 namespace osteomill::benchmarks {

@@ -3,12 +3,13 @@
 
 #include <string>
 
-#include "benchmarks/bones.h"
-#include "benchmarks/percentiles.h"
 #include <benchmark/benchmark.h>
 
-#include "osteomill/experiment/milling_trial.h"
+#include "osteomill/study/milling_trial.h"
 #include "osteomill/volume/bone_densities.h"
+
+#include "benchmarks/bones.h"
+#include "benchmarks/percentiles.h"
 
 namespace osteomill::benchmarks {
 

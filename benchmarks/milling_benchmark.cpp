@@ -3,12 +3,13 @@
 
 #include <string>
 
-#include "benchmarks/percentiles.h"
-#include "tests/shapes.h"
 #include <benchmark/benchmark.h>
 
-#include "osteomill/haptics/barrier_shell/barrier_shell.h"
 #include "osteomill/milling/burr_mill.h"
+
+#include "barrier_shell/barrier_shell.h"
+#include "benchmarks/percentiles.h"
+#include "tests/shapes.h"
 
 namespace osteomill::benchmarks {
 

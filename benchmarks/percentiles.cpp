@@ -2,7 +2,7 @@
 
 #include <thread>
 
-#include "osteomill/numbers/distribution.h"
+#include "osteomill/base/distribution.h"
 
 namespace osteomill::benchmarks {
 

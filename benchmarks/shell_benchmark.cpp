@@ -1,14 +1,15 @@
 // Building the shell, keeping it up, and what it takes: bytes a voxel and a point, as the allocator counts
 // them.
 
-#include "benchmarks/bones.h"
-#include "benchmarks/percentiles.h"
 #include <benchmark/benchmark.h>
 #include <malloc.h>
 
-#include "osteomill/haptics/bone_points/bone_bricks.h"
 #include "osteomill/milling/burr_mill.h"
 #include "osteomill/volume/bone_densities.h"
+
+#include "benchmarks/bones.h"
+#include "benchmarks/percentiles.h"
+#include "bone_points/bone_bricks.h"
 
 namespace osteomill::benchmarks {
 

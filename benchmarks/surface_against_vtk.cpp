@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "tests/support/mesh_checks.h"
 #include <vtkFloatArray.h>
 #include <vtkFlyingEdges3D.h>
 #include <vtkImageData.h>
@@ -18,15 +17,17 @@
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
 
+#include "osteomill/base/distribution.h"
 #include "osteomill/ct/read_scan.h"
 #include "osteomill/live/bone_follower.h"
 #include "osteomill/milling/burr_mill.h"
-#include "osteomill/numbers/distribution.h"
-#include "osteomill/surface/surface_mesh.h"
-#include "osteomill/surface/surface_upkeep.h"
+#include "osteomill/visual/surface_mesh.h"
+#include "osteomill/visual/surface_upkeep.h"
 #include "osteomill/volume/bone_densities.h"
 #include "osteomill/volume/builtin_tooth.h"
 #include "osteomill/volume/sampling.h"
+
+#include "tests/support/mesh_checks.h"
 
 namespace {
 

@@ -2,12 +2,13 @@
 
 #include <array>
 
-#include "benchmarks/bones.h"
 #include <benchmark/benchmark.h>
 
 #include "osteomill/volume/bone_densities.h"
 #include "osteomill/volume/builtin_tooth.h"
 #include "osteomill/volume/sampling.h"
+
+#include "benchmarks/bones.h"
 
 namespace osteomill::benchmarks {
 

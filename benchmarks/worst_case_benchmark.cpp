@@ -3,11 +3,12 @@
 
 #include <string>
 
-#include "benchmarks/bones.h"
-#include "benchmarks/percentiles.h"
 #include <benchmark/benchmark.h>
 
 #include "osteomill/haptics/algorithms.h"
+
+#include "benchmarks/bones.h"
+#include "benchmarks/percentiles.h"
 
 namespace osteomill::benchmarks {
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include <osteomill/live/live_milling.h>
-#include <osteomill/operator/milling_entry.h>
-#include <osteomill/operator/virtual_hand.h>
+#include <osteomill/session/milling_entry.h>
+#include <osteomill/session/virtual_hand.h>
 #include <osteomill/volume/builtin_tooth.h>
 
 namespace {

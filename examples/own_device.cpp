@@ -4,9 +4,9 @@
 #include <cstdio>
 #include <memory>
 
-#include <osteomill/device/real_time.h>
+#include <osteomill/base/real_time.h>
 #include <osteomill/live/live_timing.h>
-#include <osteomill/operator/milling_entry.h>
+#include <osteomill/session/milling_entry.h>
 #include <osteomill/session/milling_session.h>
 #include <osteomill/volume/builtin_tooth.h>
 

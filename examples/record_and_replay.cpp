@@ -4,11 +4,11 @@
 #include <cstdio>
 #include <memory>
 
-#include <osteomill/operator/milling_entry.h>
 #include <osteomill/recording/recorder.h>
 #include <osteomill/recording/recording.h>
 #include <osteomill/recording/replay_recording.h>
 #include <osteomill/recording/run_description.h>
+#include <osteomill/session/milling_entry.h>
 #include <osteomill/session/trajectory.h>
 #include <osteomill/volume/builtin_tooth.h>
 #include <osteomill/volume/density_grid.h>

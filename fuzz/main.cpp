@@ -6,12 +6,12 @@
 #include <fstream>
 #include <iterator>
 
-#include "fuzz/targets.h"
-
+#include "osteomill/base/input_error.h"
+#include "osteomill/base/temporary_folder.h"
 #include "osteomill/ct/scan_summary.h"
-#include "osteomill/files/input_error.h"
-#include "osteomill/files/temporary_folder.h"
 #include "osteomill/volume/isovalue.h"
+
+#include "fuzz/targets.h"
 
 namespace osteomill::fuzzing {
 

@@ -1,17 +1,18 @@
 #include <algorithm>
 
+#include <CLI/CLI.hpp>
+#include <hdf5.h>
+
+#include "osteomill/haptics/algorithms.h"
+#include "osteomill/recording/recording.h"
+#include "osteomill/session/trajectory.h"
+#include "osteomill/study/study_slices.h"
+
 #include "app/config_file.h"
 #include "app/milling_options.h"
 #include "app/option_checks.h"
 #include "fuzz/targets.h"
-#include <CLI/CLI.hpp>
-#include <hdf5.h>
-
-#include "osteomill/experiment/study_slices.h"
-#include "osteomill/haptics/algorithms.h"
-#include "osteomill/recording/recording.h"
-#include "osteomill/recording/recording_file.h"
-#include "osteomill/session/trajectory.h"
+#include "recording_file.h"
 
 namespace osteomill::fuzzing {
 

@@ -1,12 +1,12 @@
 #include <cstdlib>
 
+#include "osteomill/haptics/algorithms.h"
+#include "osteomill/session/milling_session.h"
+#include "osteomill/study/study_report.h"
+
 #include "app/option_checks.h"
 #include "app/study_file.h"
 #include "fuzz/targets.h"
-
-#include "osteomill/experiment/study_report.h"
-#include "osteomill/haptics/algorithms.h"
-#include "osteomill/session/milling_session.h"
 
 namespace osteomill::fuzzing {
 

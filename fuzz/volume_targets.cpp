@@ -1,11 +1,12 @@
 #include <fstream>
 
-#include "fuzz/targets.h"
 #include <minizip/zip.h>
 #include <zlib.h>
 
 #include "osteomill/ct/read_labels.h"
 #include "osteomill/ct/write_nrrd.h"
+
+#include "fuzz/targets.h"
 
 namespace osteomill::fuzzing {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "osteomill/geometry/wrench.h"
-#include "osteomill/operator/milling_entry.h"
+#include "osteomill/base/wrench.h"
+#include "osteomill/session/milling_entry.h"
 
 namespace osteomill::testing_support {
 

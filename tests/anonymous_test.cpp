@@ -8,7 +8,7 @@
 #include <dcmtk/dcmdata/dctk.h>
 #include <gtest/gtest.h>
 
-#include "osteomill/files/temporary_folder.h"
+#include "osteomill/base/temporary_folder.h"
 
 namespace osteomill {
 namespace {

@@ -2,13 +2,14 @@
 // wrench is calm under it.
 #include <vector>
 
-#include "tests/shared_data.h"
 #include <gtest/gtest.h>
 
 #include "osteomill/ct/read_scan.h"
-#include "osteomill/experiment/milling_trial.h"
 #include "osteomill/milling/burr_mill.h"
-#include "osteomill/report/metrics.h"
+#include "osteomill/study/metrics.h"
+#include "osteomill/study/milling_trial.h"
+
+#include "tests/shared_data.h"
 
 namespace osteomill {
 namespace {

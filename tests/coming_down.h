@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "osteomill/device/device.h"
+#include "osteomill/session/device.h"
 
 namespace osteomill::testing_support {
 

@@ -1,10 +1,11 @@
 #include <cmath>
 
-#include "tests/count_allocations.h"
-#include "tests/scripted_device.h"
 #include <gtest/gtest.h>
 
-#include "osteomill/device/connected_device.h"
+#include "osteomill/session/connected_device.h"
+
+#include "tests/count_allocations.h"
+#include "tests/scripted_device.h"
 
 namespace osteomill {
 namespace {

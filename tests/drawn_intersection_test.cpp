@@ -2,15 +2,16 @@
 #include <memory>
 #include <utility>
 
-#include "tests/shapes.h"
 #include <gtest/gtest.h>
 
 #include "osteomill/haptics/algorithms.h"
 #include "osteomill/session/milling_session.h"
 #include "osteomill/session/trajectory.h"
-#include "osteomill/view/offscreen_context.h"
-#include "osteomill/view/scene_renderer.h"
+#include "osteomill/visual/offscreen_context.h"
+#include "osteomill/visual/scene_renderer.h"
 #include "osteomill/volume/bone_densities.h"
+
+#include "tests/shapes.h"
 
 namespace osteomill {
 namespace {

@@ -2,14 +2,15 @@
 #include <cstdint>
 #include <string>
 
-#include "tests/poses.h"
-#include "tests/shapes.h"
 #include <gtest/gtest.h>
 
 #include "osteomill/haptics/algorithms.h"
 #include "osteomill/session/milling_session.h"
 #include "osteomill/session/trajectory.h"
 #include "osteomill/volume/bone_densities.h"
+
+#include "tests/poses.h"
+#include "tests/shapes.h"
 
 // The same input must give the same wrenches to the last bit, whatever the optimisation: every preset (-O0,
 // -O1, -O2, with sanitizers and without) runs this test against the same numbers. Where an algorithm was

@@ -1,11 +1,12 @@
 #include <memory>
 
-#include "tests/count_allocations.h"
-#include "tests/shapes.h"
 #include <gtest/gtest.h>
 
 #include "osteomill/live/bone_follower.h"
 #include "osteomill/milling/burr_mill.h"
+
+#include "tests/count_allocations.h"
+#include "tests/shapes.h"
 
 namespace osteomill {
 namespace {

@@ -9,10 +9,10 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "osteomill/base/work_progress.h"
 #include "osteomill/ct/read_scan.h"
 #include "osteomill/haptics/algorithms.h"
 #include "osteomill/live/live_milling.h"
-#include "osteomill/numbers/work_progress.h"
 
 namespace osteomill {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "osteomill/geometry/pose.h"
+#include "osteomill/base/pose.h"
 
 namespace osteomill::testing_support {
 

@@ -2,7 +2,7 @@
 
 #include <random>
 
-#include "osteomill/geometry/pose.h"
+#include "osteomill/base/pose.h"
 
 namespace osteomill::testing_support {
 

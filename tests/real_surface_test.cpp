@@ -1,9 +1,10 @@
 // Surfaces of scans from files.
-#include "tests/shared_data.h"
-#include "tests/support/mesh_checks.h"
 #include <gtest/gtest.h>
 
 #include "osteomill/ct/read_scan.h"
+
+#include "tests/shared_data.h"
+#include "tests/support/mesh_checks.h"
 
 namespace osteomill {
 namespace {

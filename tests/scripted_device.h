@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "osteomill/device/connected_device.h"
-#include "osteomill/files/input_error.h"
+#include "osteomill/base/input_error.h"
+#include "osteomill/session/connected_device.h"
 
 namespace osteomill::testing_support {
 

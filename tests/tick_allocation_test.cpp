@@ -7,10 +7,6 @@
 #include <thread>
 #include <vector>
 
-#include "tests/coming_down.h"
-#include "tests/count_allocations.h"
-#include "tests/poses.h"
-#include "tests/shapes.h"
 #include <gtest/gtest.h>
 
 #include "osteomill/haptics/algorithms.h"
@@ -19,6 +15,11 @@
 #include "osteomill/session/milling_session.h"
 #include "osteomill/session/trajectory.h"
 #include "osteomill/volume/bone_densities.h"
+
+#include "tests/coming_down.h"
+#include "tests/count_allocations.h"
+#include "tests/poses.h"
+#include "tests/shapes.h"
 
 namespace osteomill {
 namespace {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <map>
 
-#include "osteomill/tool/milling_tool.h"
-#include "osteomill/tool/sample_points.h"
+#include "osteomill/haptics/milling_tool.h"
+#include "osteomill/haptics/sample_points.h"
 #include "osteomill/volume/sampling.h"
 
 namespace osteomill::verification {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "osteomill/tool/milling_tool.h"
+#include "osteomill/haptics/milling_tool.h"
 #include "osteomill/volume/volume.h"
 
 namespace osteomill::verification {

@@ -1,10 +1,11 @@
 #include <algorithm>
 
-#include "verification/probing.h"
-#include "verification/sections.h"
 #include <fmt/core.h>
 
-#include "osteomill/operator/simulated_handle.h"
+#include "osteomill/session/simulated_handle.h"
+
+#include "verification/probing.h"
+#include "verification/sections.h"
 
 namespace osteomill::verification {
 

@@ -1,6 +1,7 @@
+#include <fmt/core.h>
+
 #include "verification/sections.h"
 #include "verification/trial_figures.h"
-#include <fmt/core.h>
 
 namespace osteomill::verification {
 

@@ -3,17 +3,18 @@
 #include <string>
 #include <vector>
 
+#include <fmt/core.h>
+
+#include "osteomill/base/distribution.h"
+#include "osteomill/session/milling_entry.h"
+#include "osteomill/study/metrics.h"
+#include "osteomill/study/milling_trial.h"
+#include "osteomill/volume/bone_densities.h"
+#include "osteomill/volume/builtin_tooth.h"
+
 #include "tests/own_memory.h"
 #include "tests/shapes.h"
 #include "verification/sections.h"
-#include <fmt/core.h>
-
-#include "osteomill/experiment/milling_trial.h"
-#include "osteomill/numbers/distribution.h"
-#include "osteomill/operator/milling_entry.h"
-#include "osteomill/report/metrics.h"
-#include "osteomill/volume/bone_densities.h"
-#include "osteomill/volume/builtin_tooth.h"
 
 namespace osteomill::verification {
 

@@ -1,8 +1,9 @@
 #include <cmath>
 
+#include <fmt/core.h>
+
 #include "verification/probing.h"
 #include "verification/sections.h"
-#include <fmt/core.h>
 
 namespace osteomill::verification {
 

@@ -1,8 +1,9 @@
 #include <cmath>
 
+#include <fmt/core.h>
+
 #include "verification/sections.h"
 #include "verification/trial_figures.h"
-#include <fmt/core.h>
 
 namespace osteomill::verification {
 

@@ -3,8 +3,8 @@
 #include <cstddef>
 #include <functional>
 
-#include "osteomill/experiment/parallel.h"
-#include "osteomill/files/machine.h"
+#include "osteomill/base/machine.h"
+#include "osteomill/study/parallel.h"
 
 namespace osteomill::verification {
 

@@ -8,14 +8,15 @@
 #include <string>
 #include <vector>
 
-#include "verification/sections.h"
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
+#include "osteomill/base/atomic_file.h"
+#include "osteomill/base/input_error.h"
 #include "osteomill/ct/read_scan.h"
-#include "osteomill/files/atomic_file.h"
-#include "osteomill/files/input_error.h"
 #include "osteomill/volume/builtin_tooth.h"
+
+#include "verification/sections.h"
 
 namespace osteomill::verification {
 namespace {

@@ -1,16 +1,17 @@
 #include <algorithm>
 #include <functional>
 
-#include "verification/sections.h"
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
-#include "osteomill/experiment/paper.h"
-#include "osteomill/experiment/run_trials.h"
-#include "osteomill/experiment/study_findings.h"
-#include "osteomill/files/machine.h"
-#include "osteomill/operator/milling_entry.h"
+#include "osteomill/base/machine.h"
+#include "osteomill/session/milling_entry.h"
+#include "osteomill/study/paper.h"
+#include "osteomill/study/run_trials.h"
+#include "osteomill/study/study_findings.h"
 #include "osteomill/volume/builtin_tooth.h"
+
+#include "verification/sections.h"
 
 namespace osteomill::verification {
 

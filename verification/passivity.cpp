@@ -1,12 +1,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "verification/in_parallel.h"
-#include "verification/sections.h"
 #include <fmt/core.h>
 
-#include "osteomill/experiment/measure_passivity.h"
 #include "osteomill/haptics/algorithms.h"
+#include "osteomill/study/measure_passivity.h"
+
+#include "verification/in_parallel.h"
+#include "verification/sections.h"
 
 namespace osteomill::verification {
 

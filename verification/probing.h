@@ -5,10 +5,10 @@
 #include <numbers>
 #include <vector>
 
-#include "tests/shapes.h"
-
 #include "osteomill/haptics/algorithms.h"
-#include "osteomill/operator/hand.h"
+#include "osteomill/session/hand.h"
+
+#include "tests/shapes.h"
 
 namespace osteomill::verification {
 

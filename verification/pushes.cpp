@@ -2,11 +2,11 @@
 
 #include <cmath>
 
+#include "osteomill/session/hand.h"
+#include "osteomill/session/simulated_handle.h"
+
 #include "verification/in_parallel.h"
 #include "verification/probing.h"
-
-#include "osteomill/operator/hand.h"
-#include "osteomill/operator/simulated_handle.h"
 
 namespace osteomill::verification {
 

@@ -1,10 +1,11 @@
 #include <algorithm>
 
-#include "verification/pushes.h"
-#include "verification/sections.h"
 #include <fmt/core.h>
 
 #include "osteomill/haptics/algorithms.h"
+
+#include "verification/pushes.h"
+#include "verification/sections.h"
 
 namespace osteomill::verification {
 

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "osteomill/numbers/distribution.h"
+#include "osteomill/base/distribution.h"
 
 namespace osteomill::verification {
 

@@ -4,9 +4,9 @@
 #include <optional>
 #include <string>
 
-#include "verification/section.h"
-
 #include "osteomill/volume/volume.h"
+
+#include "verification/section.h"
 
 // What docs/verification.md is made of, a function a table. Each is the same on any machine but for compute
 // times.

@@ -1,9 +1,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/core.h>
+
 #include "verification/probing.h"
 #include "verification/sections.h"
-#include <fmt/core.h>
 
 namespace osteomill::verification {
 

@@ -6,20 +6,21 @@
 #include <random>
 #include <vector>
 
-#include "tests/support/differing_blocks.h"
-#include "verification/sections.h"
 #include <fmt/core.h>
 #include <malloc.h>
 #include <unistd.h>
 
 #include "osteomill/haptics/algorithms.h"
-#include "osteomill/operator/milling_entry.h"
-#include "osteomill/operator/simulated_operator.h"
 #include "osteomill/recording/recorder.h"
 #include "osteomill/recording/recording.h"
 #include "osteomill/recording/replay_recording.h"
 #include "osteomill/recording/run_description.h"
+#include "osteomill/session/milling_entry.h"
+#include "osteomill/session/simulated_operator.h"
 #include "osteomill/volume/density_grid.h"
+
+#include "tests/support/differing_blocks.h"
+#include "verification/sections.h"
 
 namespace osteomill::verification {
 

@@ -2,15 +2,16 @@
 #include <cmath>
 #include <string>
 
+#include <fmt/core.h>
+
+#include "osteomill/session/milling_entry.h"
+#include "osteomill/volume/bone_densities.h"
+
 #include "tests/shapes.h"
 #include "tests/swept_path.h"
 #include "verification/in_parallel.h"
 #include "verification/sections.h"
 #include "verification/trial_figures.h"
-#include <fmt/core.h>
-
-#include "osteomill/operator/milling_entry.h"
-#include "osteomill/volume/bone_densities.h"
 
 namespace osteomill::verification {
 

@@ -1,8 +1,9 @@
-#include "verification/sections.h"
-#include "verification/trial_figures.h"
 #include <fmt/core.h>
 
 #include "osteomill/haptics/algorithms.h"
+
+#include "verification/sections.h"
+#include "verification/trial_figures.h"
 
 namespace osteomill::verification {
 

@@ -1,13 +1,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/core.h>
+
+#include "osteomill/haptics/sample_points.h"
+
 #include "verification/in_parallel.h"
 #include "verification/probing.h"
 #include "verification/pushes.h"
 #include "verification/sections.h"
-#include <fmt/core.h>
-
-#include "osteomill/tool/sample_points.h"
 
 namespace osteomill::verification {
 

@@ -1,10 +1,11 @@
 #include <algorithm>
 
+#include <fmt/core.h>
+
 #include "tests/shapes.h"
 #include "verification/pushes.h"
 #include "verification/sections.h"
 #include "verification/trial_figures.h"
-#include <fmt/core.h>
 
 namespace osteomill::verification {
 

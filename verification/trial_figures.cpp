@@ -1,10 +1,10 @@
 #include "verification/trial_figures.h"
 
-#include "verification/in_parallel.h"
-
 #include "osteomill/milling/cutting_reaction.h"
-#include "osteomill/operator/milling_entry.h"
+#include "osteomill/session/milling_entry.h"
 #include "osteomill/volume/bone_densities.h"
+
+#include "verification/in_parallel.h"
 
 namespace osteomill::verification {
 

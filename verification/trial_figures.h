@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "osteomill/experiment/milling_trial.h"
 #include "osteomill/haptics/algorithms.h"
-#include "osteomill/haptics/barrier_shell/barrier_shell_counts.h"
-#include "osteomill/report/metrics.h"
+#include "osteomill/haptics/barrier_shell_counts.h"
+#include "osteomill/study/metrics.h"
+#include "osteomill/study/milling_trial.h"
 
 namespace osteomill::verification {
 

@@ -1,14 +1,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/core.h>
+
+#include "osteomill/session/milling_entry.h"
+#include "osteomill/volume/bone_densities.h"
+
 #include "tests/shapes.h"
 #include "verification/in_parallel.h"
 #include "verification/sections.h"
 #include "verification/trial_figures.h"
-#include <fmt/core.h>
-
-#include "osteomill/operator/milling_entry.h"
-#include "osteomill/volume/bone_densities.h"
 
 namespace osteomill::verification {
 

@@ -10,8 +10,8 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
-#include "osteomill/files/atomic_file.h"
-#include "osteomill/files/input_error.h"
+#include "osteomill/base/atomic_file.h"
+#include "osteomill/base/input_error.h"
 #include "osteomill/recording/recorder.h"
 
 namespace osteomill::app {

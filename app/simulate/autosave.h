@@ -9,11 +9,11 @@
 #include <string>
 #include <utility>
 
-#include "app/scan_options.h"
-
-#include "osteomill/files/file_lock.h"
+#include "osteomill/base/file_lock.h"
 #include "osteomill/live/live_milling.h"
 #include "osteomill/recording/recording.h"
+
+#include "app/scan_options.h"
 
 namespace osteomill::app {
 

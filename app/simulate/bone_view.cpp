@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/simulate/widgets.h"
 #include <fmt/core.h>
 
-#include "osteomill/operator/milling_entry.h"
-#include "osteomill/view/clip_face.h"
+#include "osteomill/session/milling_entry.h"
+#include "osteomill/visual/clip_face.h"
 #include "osteomill/volume/sampling.h"
+
+#include "app/simulate/widgets.h"
 
 namespace osteomill::app {
 

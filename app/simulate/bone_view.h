@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "osteomill/tool/milling_tool.h"
-#include "osteomill/view/camera.h"
+#include "osteomill/haptics/milling_tool.h"
+#include "osteomill/visual/camera.h"
 #include "osteomill/volume/volume.h"
 
 namespace osteomill::app {

@@ -4,11 +4,12 @@
 #include <string>
 #include <utility>
 
+#include <fmt/core.h>
+#include <imgui.h>
+
 #include "app/simulate/panels.h"
 #include "app/simulate/scene_of.h"
 #include "app/simulate/widgets.h"
-#include <fmt/core.h>
-#include <imgui.h>
 
 namespace osteomill::app {
 

@@ -3,7 +3,6 @@
 #include <ctime>
 #include <thread>
 
-#include "app/simulate/widgets.h"
 #include <fmt/chrono.h>
 #include <fmt/core.h>
 #include <imgui.h>
@@ -11,13 +10,15 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "osteomill/base/atomic_file.h"
+#include "osteomill/base/input_error.h"
 #include "osteomill/ct/write_nrrd.h"
-#include "osteomill/files/atomic_file.h"
-#include "osteomill/files/input_error.h"
 #include "osteomill/recording/recording.h"
-#include "osteomill/report/write_report.h"
-#include "osteomill/surface/mesh_file.h"
-#include "osteomill/surface/surface_mesh.h"
+#include "osteomill/study/write_report.h"
+#include "osteomill/visual/mesh_file.h"
+#include "osteomill/visual/surface_mesh.h"
+
+#include "app/simulate/widgets.h"
 
 namespace osteomill::app {
 

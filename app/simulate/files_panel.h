@@ -7,11 +7,11 @@
 #include <optional>
 #include <string>
 
+#include "osteomill/visual/camera.h"
+#include "osteomill/visual/image.h"
+
 #include "app/simulate/simulation.h"
 #include "app/simulate/view_state.h"
-
-#include "osteomill/image/image.h"
-#include "osteomill/view/camera.h"
 
 namespace osteomill::app {
 

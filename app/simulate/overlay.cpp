@@ -1,12 +1,13 @@
 #include <algorithm>
 
-#include "app/simulate/panels.h"
-#include "app/simulate/widgets.h"
 #include <GLFW/glfw3.h>
 #include <fmt/core.h>
 #include <imgui.h>
 
-#include "osteomill/view/annotations.h"
+#include "osteomill/visual/annotations.h"
+
+#include "app/simulate/panels.h"
+#include "app/simulate/widgets.h"
 
 namespace osteomill::app {
 

@@ -3,13 +3,13 @@
 #include <optional>
 #include <string>
 
+#include "osteomill/session/space_mouse.h"
+#include "osteomill/visual/spindle_sound.h"
+
 #include "app/simulate/dialogues.h"
 #include "app/simulate/files_panel.h"
 #include "app/simulate/simulation.h"
 #include "app/simulate/view_state.h"
-
-#include "osteomill/device/space_mouse.h"
-#include "osteomill/sound/spindle_sound.h"
 
 namespace osteomill::app {
 

@@ -3,14 +3,15 @@
 #include <optional>
 #include <utility>
 
-#include "app/simulate/panels.h"
-#include "app/simulate/tool_control.h"
-#include "app/simulate/widgets.h"
 #include <GLFW/glfw3.h>
 #include <imgui.h>
 
-#include "osteomill/operator/milling_entry.h"
-#include "osteomill/tool/milling_tool.h"
+#include "osteomill/haptics/milling_tool.h"
+#include "osteomill/session/milling_entry.h"
+
+#include "app/simulate/panels.h"
+#include "app/simulate/tool_control.h"
+#include "app/simulate/widgets.h"
 
 namespace osteomill::app {
 

@@ -4,13 +4,14 @@
 #include <string>
 #include <vector>
 
-#include "app/simulate/panels.h"
-#include "app/simulate/widgets.h"
 #include <fmt/core.h>
 #include <imgui.h>
 
-#include "osteomill/device/workspace.h"
-#include "osteomill/numbers/round_numbers.h"
+#include "osteomill/base/round_numbers.h"
+#include "osteomill/session/workspace.h"
+
+#include "app/simulate/panels.h"
+#include "app/simulate/widgets.h"
 
 namespace osteomill::app {
 

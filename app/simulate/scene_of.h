@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <optional>
 
+#include "osteomill/visual/scene_renderer.h"
+
 #include "app/simulate/simulation.h"
 #include "app/simulate/view_state.h"
-
-#include "osteomill/view/scene_renderer.h"
 
 namespace osteomill::app {
 

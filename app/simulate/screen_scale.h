@@ -1,6 +1,6 @@
 #pragma once
 
-#include "osteomill/view/camera.h"
+#include "osteomill/visual/camera.h"
 
 namespace osteomill::app {
 

@@ -3,11 +3,11 @@
 #include <thread>
 #include <utility>
 
-#include "app/progress.h"
+#include "osteomill/base/input_error.h"
+#include "osteomill/base/work_progress.h"
+#include "osteomill/session/milling_entry.h"
 
-#include "osteomill/files/input_error.h"
-#include "osteomill/numbers/work_progress.h"
-#include "osteomill/operator/milling_entry.h"
+#include "app/progress.h"
 
 namespace osteomill::app {
 

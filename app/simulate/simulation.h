@@ -10,17 +10,17 @@
 #include <utility>
 #include <vector>
 
+#include "osteomill/live/live_milling.h"
+#include "osteomill/session/simulated_operator.h"
+#include "osteomill/session/tick_counts.h"
+#include "osteomill/session/virtual_hand.h"
+#include "osteomill/visual/clip_face.h"
+#include "osteomill/volume/isovalue.h"
+
 #include "app/device_option.h"
 #include "app/scan_options.h"
 #include "app/simulate/autosave.h"
 #include "app/simulate/bone_view.h"
-
-#include "osteomill/live/live_milling.h"
-#include "osteomill/operator/simulated_operator.h"
-#include "osteomill/operator/virtual_hand.h"
-#include "osteomill/session/tick_counts.h"
-#include "osteomill/view/clip_face.h"
-#include "osteomill/volume/isovalue.h"
 
 namespace osteomill::app {
 

@@ -14,6 +14,20 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/core.h>
+#include <imgui.h>
+#include <malloc.h>
+
+#include "osteomill/base/atomic_file.h"
+#include "osteomill/base/input_error.h"
+#include "osteomill/base/recent_rate.h"
+#include "osteomill/base/work_progress.h"
+#include "osteomill/openigtlink/bone_sender.h"
+#include "osteomill/visual/annotations.h"
+#include "osteomill/visual/image.h"
+#include "osteomill/visual/scene_renderer.h"
+#include "osteomill/visual/spindle_sound.h"
+
 #include "app/commands.h"
 #include "app/config_file.h"
 #include "app/device_option.h"
@@ -28,19 +42,6 @@
 #include "app/simulate/simulation.h"
 #include "app/simulate/window.h"
 #include "app/simulate/window_driver.h"
-#include <fmt/core.h>
-#include <imgui.h>
-#include <malloc.h>
-
-#include "osteomill/files/atomic_file.h"
-#include "osteomill/files/input_error.h"
-#include "osteomill/image/image.h"
-#include "osteomill/live/bone_sender.h"
-#include "osteomill/numbers/recent_rate.h"
-#include "osteomill/numbers/work_progress.h"
-#include "osteomill/sound/spindle_sound.h"
-#include "osteomill/view/annotations.h"
-#include "osteomill/view/scene_renderer.h"
 
 namespace osteomill::app {
 

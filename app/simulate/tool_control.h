@@ -1,8 +1,8 @@
 #pragma once
 
-#include "osteomill/device/space_mouse.h"
-#include "osteomill/geometry/pose.h"
-#include "osteomill/view/camera.h"
+#include "osteomill/base/pose.h"
+#include "osteomill/session/space_mouse.h"
+#include "osteomill/visual/camera.h"
 
 namespace osteomill::app {
 

@@ -5,11 +5,11 @@
 #include <optional>
 #include <string>
 
+#include "osteomill/session/milling_setup.h"
+#include "osteomill/visual/scene.h"
+
 #include "app/simulate/bone_view.h"
 #include "app/simulate/dialogues.h"
-
-#include "osteomill/session/milling_setup.h"
-#include "osteomill/view/scene.h"
 
 namespace osteomill::app {
 

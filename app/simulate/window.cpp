@@ -4,16 +4,17 @@
 #include <cmath>
 #include <filesystem>
 
-#include "app/simulate/screen_scale.h"
-#include "app/simulate/widgets.h"
 #include <GLFW/glfw3.h>
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
 #include <imgui.h>
 
-#include "osteomill/files/input_error.h"
-#include "osteomill/view/annotations.h"
-#include "osteomill/view/scene_renderer.h"
+#include "osteomill/base/input_error.h"
+#include "osteomill/visual/annotations.h"
+#include "osteomill/visual/scene_renderer.h"
+
+#include "app/simulate/screen_scale.h"
+#include "app/simulate/widgets.h"
 
 namespace osteomill::app {
 

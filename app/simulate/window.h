@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "osteomill/image/image.h"
-#include "osteomill/view/camera.h"
+#include "osteomill/visual/camera.h"
+#include "osteomill/visual/image.h"
 
 struct GLFWwindow;
 

@@ -2,13 +2,13 @@
 
 #include <cstddef>
 
+#include "osteomill/visual/spindle_sound.h"
+
 #include "app/simulate/dialogues.h"
 #include "app/simulate/files_panel.h"
 #include "app/simulate/simulation.h"
 #include "app/simulate/view_state.h"
 #include "app/simulate/window.h"
-
-#include "osteomill/sound/spindle_sound.h"
 
 namespace osteomill::app {
 

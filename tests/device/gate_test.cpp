@@ -9,21 +9,22 @@
 #include <memory>
 #include <string>
 
-#include "tests/scripted_device.h"
-#include "tests/shapes.h"
-#include "tests/support/dhd_stand_in.h"
-#include "tests/support/haply_stand_in.h"
-#include "tests/support/hd_stand_in.h"
 #include <dlfcn.h>
 #include <gtest/gtest.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include "osteomill/device/hardware.h"
-#include "osteomill/device/udp/udp_datagrams.h"
 #include "osteomill/haptics/algorithms.h"
+#include "osteomill/session/hardware.h"
 #include "osteomill/session/milling_session.h"
+
+#include "device/udp/udp_datagrams.h"
+#include "tests/scripted_device.h"
+#include "tests/shapes.h"
+#include "tests/support/dhd_stand_in.h"
+#include "tests/support/haply_stand_in.h"
+#include "tests/support/hd_stand_in.h"
 
 namespace osteomill {
 namespace {

@@ -18,17 +18,18 @@ for page in "${pages[@]}"; do
     file { print > file }' "$page"
 done
 
-flags=(-std=c++20 -fsyntax-only -w -DEIGEN_MAX_ALIGN_BYTES=16 -I "$source" -isystem /usr/include/eigen3)
+flags=(-std=c++20 -fsyntax-only -w -DEIGEN_MAX_ALIGN_BYTES=16 -isystem /usr/include/eigen3)
+for room in "$source"/osteomill/*/; do flags+=(-I "${room}include"); done
 shopt -s nullglob
 for block in "$folder"/*.cpp; do
   # A part of a program has the bone, and stands in a function.
   if ! grep -q 'int main' "$block"; then
     { sed 's/.*/#include "&"/' <<'HEADERS'
-osteomill/device/connected_device.h
-osteomill/device/hardware.h
-osteomill/device/real_time.h
+osteomill/session/connected_device.h
+osteomill/session/hardware.h
+osteomill/base/real_time.h
 osteomill/live/live_milling.h
-osteomill/operator/milling_entry.h
+osteomill/session/milling_entry.h
 osteomill/session/trajectory.h
 osteomill/volume/bone_densities.h
 HEADERS

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "osteomill/haptics/bone_points/bone_bricks.h"
-#include "osteomill/haptics/published/point_shell/voxel_shell.h"
+#include "bone_points/bone_bricks.h"
+#include "published/point_shell/voxel_shell.h"
 
 namespace osteomill {
 

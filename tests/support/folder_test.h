@@ -6,9 +6,9 @@
 
 #include <gtest/gtest.h>
 
+#include "osteomill/base/input_error.h"
+#include "osteomill/base/temporary_folder.h"
 #include "osteomill/ct/read_scan.h"
-#include "osteomill/files/input_error.h"
-#include "osteomill/files/temporary_folder.h"
 
 namespace osteomill::testing_support {
 

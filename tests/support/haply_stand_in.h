@@ -13,9 +13,10 @@
 #include <utility>
 #include <vector>
 
-#include "tests/support/stand_in.h"
 #include <libwebsockets.h>
 #include <nlohmann/json.hpp>
+
+#include "tests/support/stand_in.h"
 
 namespace osteomill::testing_support {
 

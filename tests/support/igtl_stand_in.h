@@ -14,7 +14,7 @@
 #include <igtlStringMessage.h>
 #include <igtlTransformMessage.h>
 
-#include "osteomill/numbers/row_major.h"
+#include "osteomill/base/row_major.h"
 
 namespace osteomill::testing_support {
 

@@ -9,11 +9,12 @@
 #include <utility>
 #include <vector>
 
-#include "osteomill/geometry/pose.h"
-#include "osteomill/surface/brick_levels.h"
-#include "osteomill/surface/brick_mesher.h"
-#include "osteomill/surface/surface_mesh.h"
+#include "osteomill/base/pose.h"
+#include "osteomill/visual/brick_levels.h"
+#include "osteomill/visual/surface_mesh.h"
 #include "osteomill/volume/sampling.h"
+
+#include "surface/brick_mesher.h"
 
 namespace osteomill::testing_support {
 

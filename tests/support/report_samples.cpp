@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "osteomill/image/image.h"
+#include "osteomill/visual/image.h"
 
 namespace osteomill::testing_support {
 

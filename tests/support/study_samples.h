@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "osteomill/experiment/paper.h"
-#include "osteomill/experiment/study.h"
 #include "osteomill/haptics/algorithms.h"
+#include "osteomill/study/paper.h"
+#include "osteomill/study/study.h"
 
 namespace osteomill::testing_support {
 

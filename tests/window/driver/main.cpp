@@ -6,11 +6,12 @@
 #include <string_view>
 #include <vector>
 
-#include "app/commands.h"
-#include "tests/window/driver/ui_script.h"
 #include <fmt/core.h>
 
-#include "osteomill/files/input_error.h"
+#include "osteomill/base/input_error.h"
+
+#include "app/commands.h"
+#include "tests/window/driver/ui_script.h"
 
 int main(int argc, char** argv) {
   std::vector<char*> arguments(argv, argv + argc);

@@ -2,10 +2,11 @@
 
 #include <string_view>
 
+#include <fmt/core.h>
+
 #include "app/simulate/panels.h"
 #include "app/simulate/scene_of.h"
 #include "app/simulate/widgets.h"
-#include <fmt/core.h>
 
 namespace osteomill::app {
 

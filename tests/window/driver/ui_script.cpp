@@ -8,14 +8,15 @@
 #include <map>
 #include <sstream>
 
-#include "app/simulate/widgets.h"
-#include "tests/window/driver/state_text.h"
 #include <GLFW/glfw3.h>
 #include <fmt/core.h>
 #include <imgui.h>
 
-#include "osteomill/files/input_error.h"
-#include "osteomill/image/image.h"
+#include "osteomill/base/input_error.h"
+#include "osteomill/visual/image.h"
+
+#include "app/simulate/widgets.h"
+#include "tests/window/driver/state_text.h"
 
 namespace osteomill::app {
 

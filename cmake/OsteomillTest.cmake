@@ -1,0 +1,37 @@
+add_custom_target(tests)  # All test programs of OSTEOMILL_TESTS.
+
+# osteomill_test(NAME SOURCES ... LINK ... [INSIDES rooms...] [IN release] [THREADS filter]): a GoogleTest program, which may
+# include the insides of those rooms. ctest runs it in two shards, so that a program reads its scans once or twice and not
+# once a test. Each belongs to one preset (OSTEOMILL_TESTS): to that with the address and undefined-behaviour sanitizers, or
+# to release if it is said so, for what those do not build or what is held to the last bit. Tests that match the filter have
+# threads and run under the thread sanitizer too.
+function(osteomill_test name)
+  cmake_parse_arguments(TEST "" "" "SOURCES;LINK;INSIDES;IN;THREADS" ${ARGN})
+  add_executable(${name} ${TEST_SOURCES})
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
+  foreach(room IN LISTS TEST_INSIDES)
+    target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/osteomill/${room}/src)
+  endforeach()
+  target_link_libraries(${name} PRIVATE ${TEST_LINK} GTest::gtest GTest::gtest_main)
+  target_compile_definitions(${name} PRIVATE
+    OSTEOMILL_SHARED_DATA="${PROJECT_SOURCE_DIR}/../shared/data")
+  # What is tested is optimised as users run it; optimising the tests themselves only costs minutes of building.
+  target_compile_options(${name} PRIVATE -O1)
+  if(OSTEOMILL_PRECOMPILED_HEADERS)
+    target_precompile_headers(${name} REUSE_FROM osteomill_test_headers)
+  endif()
+  if(OSTEOMILL_TESTS STREQUAL "threads" AND NOT TEST_THREADS OR OSTEOMILL_TESTS STREQUAL "memory" AND TEST_IN
+     OR OSTEOMILL_TESTS STREQUAL "release" AND NOT TEST_IN STREQUAL "release")
+    set_target_properties(${name} PROPERTIES EXCLUDE_FROM_ALL ON)
+    return()
+  endif()
+  add_dependencies(tests ${name})
+  if(NOT OSTEOMILL_TESTS STREQUAL "threads")
+    set(TEST_THREADS "*")
+  endif()
+  foreach(shard 0 1)
+    add_test(NAME ${name}.${shard} COMMAND ${name} --gtest_brief=1 "--gtest_filter=${TEST_THREADS}")
+    set_tests_properties(${name}.${shard} PROPERTIES TIMEOUT 600
+      ENVIRONMENT "GTEST_TOTAL_SHARDS=2;GTEST_SHARD_INDEX=${shard}")
+  endforeach()
+endfunction()

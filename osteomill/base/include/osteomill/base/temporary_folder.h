@@ -1,0 +1,28 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "osteomill/base/leftovers.h"
+
+namespace osteomill {
+
+/// A new folder, which is removed with all that is in it when this object is destroyed, or its program is
+/// asked to end (leftovers.h).
+class TemporaryFolder {
+ public:
+  /// Throws InputError where none can be made.
+  TemporaryFolder();
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+  std::filesystem::path operator/(const std::filesystem::path& name) const { return path_ / name; }
+
+ private:
+  std::filesystem::path path_;
+  std::optional<Leftover> leftover_;
+};
+
+}  // namespace osteomill

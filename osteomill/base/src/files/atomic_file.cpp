@@ -1,0 +1,242 @@
+#include "osteomill/base/atomic_file.h"
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "osteomill/base/input_error.h"
+#include "osteomill/base/input_files.h"
+#include "osteomill/base/leftovers.h"
+#include "osteomill/base/temporary_folder.h"
+
+namespace osteomill {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// A name beside `path` that `create` makes a file or folder of, which it does not where there is one. Keeps
+// the extension last, since libraries choose a format by it.
+template <typename Create>
+fs::path create_beside(const fs::path& path, const Create& create) {
+  for (int number = 1;; ++number) {
+    fs::path beside = path.parent_path() / ("." + path.stem().string() + ".writing-" +
+                                            std::to_string(number) + path.extension().string());
+    if (create(beside.c_str())) return beside;
+    if (errno != EEXIST)
+      throw InputError(path.string(), std::string("cannot be created: ") + std::strerror(errno));
+  }
+}
+
+bool create_file(const char* path) {
+  const int file = ::open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  return file >= 0 && ::close(file) == 0;
+}
+
+bool create_empty_folder(const char* path) {
+  return ::mkdir(path, 0777) == 0;
+}
+
+bool is_device_or_pipe(const fs::path& path) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
+}
+
+void write_into(const fs::path& path, const std::function<void(const fs::path&)>& write) {
+  // Whoever opens a FIFO otherwise waits until somebody reads.
+  const int reader_is_there = ::open(path.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
+  if (reader_is_there < 0)
+    throw InputError(path.string(),
+                     errno == ENXIO ? "is a pipe that nobody reads" : "cannot be opened for writing");
+  std::ofstream out(path, std::ios::binary);
+  ::close(reader_is_there);
+  const TemporaryFolder folder;
+  const fs::path whole = folder / ("whole" + path.extension().string());
+  write(whole);
+  // To copy nothing counts as a failure.
+  if (!fs::is_empty(whole)) out << std::ifstream(whole, std::ios::binary).rdbuf();
+  out.close();
+  if (!out) throw InputError(path.string(), "cannot be written to its end");
+}
+
+void rename_to(const fs::path& from, const fs::path& target, const fs::path& path) {
+  std::error_code error;
+  fs::rename(from, target, error);
+  if (!error) return;
+  const std::string reason = "cannot be written: " + error.message();
+  fs::remove(from, error);
+  throw InputError(path.string(), reason);
+}
+
+// An open folder, and the lock that shows that its owner lives.
+class HeldFolder {
+ public:
+  explicit HeldFolder(const fs::path& path)
+      : descriptor_(::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC)) {}
+  ~HeldFolder() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+  }
+  HeldFolder(const HeldFolder&) = delete;
+  HeldFolder& operator=(const HeldFolder&) = delete;
+  // Also false if the file system has no such locks (folders on NFS): there nobody knows.
+  bool take() const { return descriptor_ >= 0 && ::flock(descriptor_, LOCK_EX | LOCK_NB) == 0; }
+
+ private:
+  int descriptor_;
+};
+
+constexpr const char* kBeside = "files";
+
+// What a program that was killed wrote beside, and nobody moves or removes any more.
+void remove_what_the_dead_left(const fs::path& folder) {
+  std::error_code ignored;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored))
+    if (entry.path().filename().string().starts_with("." + std::string(kBeside) + ".writing-") &&
+        HeldFolder(entry.path()).take())
+      fs::remove_all(entry.path(), ignored);
+}
+
+std::vector<fs::path> files_in(const fs::path& folder) {
+  std::vector<fs::path> files;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))
+    if (!entry.is_directory()) files.push_back(entry.path().lexically_relative(folder));
+  return files;
+}
+
+void require_not_input(const fs::path& path) {
+  if (is_input(path)) throw InputError(path.string(), "is what is read; name another file to write");
+}
+
+void remove_stale(const fs::path& folder, const std::function<bool(const std::string&)>& stale) {
+  std::vector<fs::path> found;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    if (!stale(entry.path().filename().string())) continue;
+    require_not_input(entry.path());
+    found.push_back(entry.path());
+  }
+  for (const fs::path& path : found) {
+    std::error_code error;
+    fs::remove_all(path, error);
+    if (error) throw InputError(path.string(), "cannot be removed: " + error.message());
+  }
+}
+
+// What is being handled, of a file beside by the name that it was to have.
+[[noreturn]] void throw_by_its_name(const fs::path& beside, const fs::path& folder) {
+  try {
+    throw;
+  } catch (const InputError& error) {
+    const std::string said = error.what(), name = in_one_line(beside.string());
+    if (!said.starts_with(name)) throw;
+    const std::size_t end = said.find(": ", name.size());
+    throw InputError(folder.string() + said.substr(name.size(), end - name.size()), said.substr(end + 2));
+  }
+}
+
+// A path that is not absolute does not count.
+fs::path folder_named_by(const char* variable) {
+  const char* value = std::getenv(variable);
+  const fs::path folder = value != nullptr ? value : "";
+  return folder.is_absolute() ? folder : fs::path();
+}
+
+fs::path own_folder(const char* variable, const char* in_home) {
+  if (const fs::path named = folder_named_by(variable); !named.empty()) return named / "osteomill";
+  if (const fs::path home = folder_named_by("HOME"); !home.empty()) return home / in_home / "osteomill";
+  return {};
+}
+
+}  // namespace
+
+fs::path output_path(const fs::path& path) {
+  constexpr int kMostLinks = 40;
+  std::error_code error;
+  require_not_input(path);
+  if (fs::is_directory(path, error)) throw InputError(path.string(), "cannot be written: it is a folder");
+  // What the system itself calls a link to a pipe (/dev/stdout) has no other name.
+  if (is_device_or_pipe(path)) return path;
+  fs::path target = path;
+  for (int n = 0; fs::is_symlink(fs::symlink_status(target, error)); ++n) {
+    if (n == kMostLinks) throw InputError(path.string(), "is a link that leads to itself");
+    target = target.parent_path() / fs::read_symlink(target, error);
+  }
+  return target;
+}
+
+void write_file_atomically(const fs::path& path, const std::function<void(const fs::path&)>& write) {
+  const fs::path target = output_path(path);
+  if (is_device_or_pipe(target)) return write_into(path, write);
+  const fs::path beside = create_beside(target, create_file);
+  const Leftover while_written(beside);
+  try {
+    write(beside);
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove(beside, ignored);
+    throw;
+  }
+  rename_to(beside, target, path);
+}
+
+void write_text_atomically(const fs::path& path, const std::function<void(std::ostream&)>& write) {
+  write_file_atomically(path, [&](const fs::path& beside) {
+    std::ofstream out(beside, std::ios::binary);
+    if (!out) throw InputError(path.string(), "cannot be created");
+    write(out);
+    out.close();
+    if (!out) throw InputError(path.string(), "cannot be written to its end (is the disk full?)");
+  });
+}
+
+void write_folder_atomically(const fs::path& folder, const std::function<void(const fs::path&)>& write,
+                             const std::function<bool(const std::string&)>& stale) {
+  std::error_code ignored;
+  const bool was_there = fs::exists(folder, ignored);
+  create_folder(folder);
+  remove_what_the_dead_left(folder);
+  const fs::path beside = create_beside(folder / kBeside, create_empty_folder);
+  const HeldFolder held(beside);
+  held.take();
+  const Leftover while_written(beside);
+  try {
+    write(beside);
+    const std::vector<fs::path> files = files_in(beside);
+    for (const fs::path& file : files) output_path(folder / file);
+    if (stale) remove_stale(folder, stale);
+    for (const fs::path& file : files) {
+      create_folder((folder / file).parent_path());
+      rename_to(beside / file, output_path(folder / file), folder / file);
+    }
+    fs::remove_all(beside, ignored);
+  } catch (...) {
+    fs::remove_all(beside, ignored);
+    if (!was_there) fs::remove(folder, ignored);
+    throw_by_its_name(beside, folder);
+  }
+}
+
+void create_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw InputError(folder.string(), "cannot be created: " + error.message());
+}
+
+fs::path state_folder() {
+  return own_folder("XDG_STATE_HOME", ".local/state");
+}
+
+fs::path config_folder() {
+  return own_folder("XDG_CONFIG_HOME", ".config");
+}
+
+}  // namespace osteomill

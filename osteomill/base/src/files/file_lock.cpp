@@ -1,0 +1,106 @@
+#include "osteomill/base/file_lock.h"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <system_error>
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "osteomill/base/atomic_file.h"
+#include "osteomill/base/input_error.h"
+
+namespace osteomill {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* kHeld = "another program is writing to it";
+
+// A pipe is not waited for.
+int open_to_look(const fs::path& path) {
+  return ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+}
+
+// False, with errno EEXIST, where the new name is taken. NFS only has the way by a link.
+bool rename_to_free_name(const fs::path& from, const fs::path& to) {
+  if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return true;
+  if (errno != EINVAL) return false;
+  return ::link(from.c_str(), to.c_str()) == 0 && ::unlink(from.c_str()) == 0;
+}
+
+[[noreturn]] void refuse(const fs::path& path, const char* what) {
+  throw InputError(path.string(), std::string(what) + std::strerror(errno));
+}
+
+}  // namespace
+
+bool FileLock::take() const {
+  return ::flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
+}
+
+bool FileLock::is_at(const fs::path& path) const {
+  struct stat held {};
+  struct stat named {};
+  return ::fstat(descriptor_, &held) == 0 && ::stat(path.c_str(), &named) == 0 &&
+         held.st_ino == named.st_ino && held.st_dev == named.st_dev;
+}
+
+// Whoever held it may have renamed or removed it meanwhile.
+std::optional<FileLock> FileLock::of(const fs::path& path) {
+  FileLock lock(open_to_look(path));
+  if (lock.descriptor_ < 0 || !lock.take() || !lock.is_at(path)) return std::nullopt;
+  return lock;
+}
+
+// Between the two calls another program may take the file for a leftover.
+FileLock FileLock::of_new_file(const fs::path& path) {
+  FileLock lock(::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+  if (lock.descriptor_ < 0) refuse(path, "cannot be created: ");
+  if (!lock.take() || !lock.is_at(path)) throw InputError(path.string(), kHeld);
+  return lock;
+}
+
+FileLock::~FileLock() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+bool is_locked(const fs::path& path) {
+  const int descriptor = open_to_look(path);
+  if (descriptor < 0) return false;
+  const bool locked = ::flock(descriptor, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  ::close(descriptor);
+  return locked;
+}
+
+std::optional<fs::path> set_aside(const fs::path& path) {
+  std::error_code error;
+  if (!fs::exists(fs::symlink_status(path, error))) return std::nullopt;
+  const auto lock = FileLock::of(path);
+  if (!lock) throw InputError(path.string(), kHeld);
+  for (int number = 1;; ++number) {
+    const fs::path name = path.parent_path() /
+                          (path.stem().string() + "-" + std::to_string(number) + path.extension().string());
+    if (rename_to_free_name(path, name)) return name;
+    if (errno != EEXIST) refuse(path, "is there, and cannot be kept under another name: ");
+  }
+}
+
+OutputFolder::OutputFolder(fs::path folder) : folder_(std::move(folder)) {
+  std::error_code error;
+  for (fs::path path = folder_; !path.empty() && !fs::exists(path, error); path = path.parent_path())
+    made_.push_back(path);
+  create_folder(folder_);
+  lock_ = FileLock::of(folder_);
+  if (!lock_) throw InputError(folder_.string(), kHeld);
+}
+
+OutputFolder::~OutputFolder() {
+  for (const fs::path& path : made_) ::rmdir(path.c_str());
+}
+
+}  // namespace osteomill

@@ -1,0 +1,14 @@
+#include "osteomill/base/input_error.h"
+
+#include <gtest/gtest.h>
+
+namespace osteomill {
+namespace {
+
+TEST(InputError, IsOneLineWhateverTheFileHolds) {
+  EXPECT_STREQ(InputError("c.toml", "line 1: expected 'true', saw 'tr\n'").what(),
+               "c.toml: line 1: expected 'true', saw 'tr?'");
+}
+
+}  // namespace
+}  // namespace osteomill

@@ -1,0 +1,84 @@
+#include "osteomill/base/leftovers.h"
+
+#include <array>
+#include <atomic>
+#include <csignal>
+#include <cstring>
+#include <string_view>
+#include <system_error>
+
+#include <dirent.h>
+#include <fcntl.h>
+#include <unistd.h>
+
+namespace osteomill {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::array kSignals{SIGTERM, SIGINT, SIGHUP};
+std::array<struct sigaction, kSignals.size()> actions_before;
+
+// What is taken from a place belongs to whoever took it. More than there are places for are left.
+std::array<std::atomic<char*>, 64> places{};
+
+// From here on only what is safe in a signal's handler. Other threads may still put files into a folder.
+void remove_all_of(int in, const char* name) {
+  constexpr int kTries = 100;
+  if (::unlinkat(in, name, 0) == 0) return;
+  const int folder = ::openat(in, name, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+  if (folder < 0) return;
+  for (int n = 0; n < kTries && ::unlinkat(in, name, AT_REMOVEDIR) != 0; ++n) {
+    ::lseek(folder, 0, SEEK_SET);
+    alignas(dirent64) char entries[2048];
+    for (ssize_t end = 0; (end = ::getdents64(folder, entries, sizeof(entries))) > 0;) {
+      for (ssize_t at = 0; at < end;) {
+        const auto* entry = reinterpret_cast<const dirent64*>(entries + at);
+        at += entry->d_reclen;
+        if (std::strcmp(entry->d_name, ".") != 0 && std::strcmp(entry->d_name, "..") != 0)
+          remove_all_of(folder, entry->d_name);
+      }
+    }
+  }
+  ::close(folder);
+}
+
+void end_program(int signal) {
+  for (std::atomic<char*>& place : places)
+    if (const char* path = place.exchange(nullptr)) remove_all_of(AT_FDCWD, path);
+  for (std::size_t n = 0; n < kSignals.size(); ++n)
+    if (kSignals[n] == signal) sigaction(signal, &actions_before[n], nullptr);
+  raise(signal);
+}
+
+}  // namespace
+
+Leftover::Leftover(const fs::path& path) : place_(-1) {
+  std::error_code error;
+  char* const text = ::strdup(fs::absolute(path, error).c_str());
+  for (std::size_t n = 0; n < places.size(); ++n) {
+    char* none = nullptr;
+    if (!places[n].compare_exchange_strong(none, text)) continue;
+    place_ = static_cast<int>(n);
+    return;
+  }
+  ::free(text);
+}
+
+Leftover::~Leftover() {
+  if (place_ >= 0) ::free(places[static_cast<std::size_t>(place_)].exchange(nullptr));
+}
+
+void remove_leftovers_when_ended() {
+  struct sigaction action {};
+  action.sa_handler = end_program;
+  sigfillset(&action.sa_mask);
+  action.sa_flags = SA_RESTART;
+  for (std::size_t n = 0; n < kSignals.size(); ++n) {
+    sigaction(kSignals[n], nullptr, &actions_before[n]);
+    if (actions_before[n].sa_handler != SIG_IGN) sigaction(kSignals[n], &action, nullptr);
+  }
+}
+
+}  // namespace osteomill

@@ -1,0 +1,29 @@
+#include "osteomill/base/read_line.h"
+
+#include <sstream>
+
+#include <gtest/gtest.h>
+
+namespace osteomill {
+namespace {
+
+TEST(ReadLine, GivesLinesWithoutTheirEnds) {
+  std::istringstream in("one\n\nthree\r\nlast");
+  std::string line;
+  for (const char* expected : {"one", "", "three\r", "last"}) {
+    ASSERT_TRUE(read_line(in, line, 8));
+    EXPECT_EQ(line, expected);
+  }
+  EXPECT_FALSE(read_line(in, line, 8));
+}
+
+TEST(ReadLine, RefusesWhatIsLongerThanItMayBe) {
+  std::istringstream in(std::string(8, 'a') + "\n" + std::string(100, 'b'));
+  std::string line;
+  EXPECT_TRUE(read_line(in, line, 8));
+  EXPECT_THROW(read_line(in, line, 8), LineTooLong);
+  EXPECT_EQ(line.size(), 8u) << "and reads no more of it";
+}
+
+}  // namespace
+}  // namespace osteomill

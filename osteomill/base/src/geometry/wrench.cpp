@@ -1,0 +1,46 @@
+#include "osteomill/base/wrench.h"
+
+#include <cmath>
+
+namespace osteomill {
+
+namespace {
+
+bool clamp_length(Vec3& vector, double limit) {
+  const double length = vector.norm();
+  if (length <= limit) return false;
+  vector *= limit / length;
+  return true;
+}
+
+// No limit stays none in a time of no length.
+Vec3 towards(const Vec3& from, const Vec3& to, double rate, double dt_s) {
+  const double most = rate < WrenchRates::kAny ? rate * dt_s : rate;
+  const double way = (to - from).norm();
+  return way <= most ? to : Vec3(from + most / way * (to - from));
+}
+
+}  // namespace
+
+SafeWrench make_safe(const Wrench& wrench, const WrenchLimits& limits) noexcept {
+  // A norm that overflows is caught here too: components near the largest double cannot be scaled.
+  if (!std::isfinite(wrench.force_N.norm()) || !std::isfinite(wrench.torque_Nmm.norm())) {
+    return {Wrench{}, WrenchFault::not_finite};
+  }
+  SafeWrench safe{wrench, WrenchFault::none};
+  const bool force = clamp_length(safe.wrench.force_N, limits.force_N);
+  const bool torque = clamp_length(safe.wrench.torque_Nmm, limits.torque_Nmm);
+  safe.fault = static_cast<WrenchFault>((force ? 1 : 0) + (torque ? 2 : 0));
+  return safe;
+}
+
+Wrench approach(const Wrench& from, const Wrench& to, const WrenchRates& rates, double dt_s) noexcept {
+  return {towards(from.force_N, to.force_N, rates.force_N_s, dt_s),
+          towards(from.torque_Nmm, to.torque_Nmm, rates.torque_Nmm_s, dt_s)};
+}
+
+bool is_zero(const Wrench& wrench) noexcept {
+  return wrench.force_N.isZero(0) && wrench.torque_Nmm.isZero(0);
+}
+
+}  // namespace osteomill

@@ -1,0 +1,47 @@
+#include "osteomill/base/real_time.h"
+
+#include <cerrno>
+#include <cstring>
+
+#include <pthread.h>
+#include <sched.h>
+#include <sys/mman.h>
+
+namespace osteomill {
+
+namespace {
+
+// Above ordinary work, below the kernel's own threads that serve the devices.
+constexpr int kPriority = 40;
+
+}  // namespace
+
+std::string request_real_time() {
+  std::string refused;
+  sched_param priority{};
+  priority.sched_priority = kPriority;
+  if (const int error = pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority); error != 0) {
+    refused = std::string("no real-time scheduling (") + std::strerror(error) +
+              "): ticks will be late under load; rtprio in /etc/security/limits.conf allows it";
+  }
+  // Not what is allocated later: under a limit, locking that would make allocations fail. And pages as they
+  // are: made present for writing, all that copies of a bone share would be copied.
+  if (mlockall(MCL_CURRENT | MCL_ONFAULT) != 0) {
+    refused += std::string(refused.empty() ? "" : "; ") + "memory not locked (" + std::strerror(errno) + ")";
+  }
+  return refused;
+}
+
+SignalsForOthers::SignalsForOthers() {
+  sigset_t of_others;
+  sigfillset(&of_others);
+  for (const int own : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTRAP, SIGSYS})
+    sigdelset(&of_others, own);
+  pthread_sigmask(SIG_BLOCK, &of_others, &before_);
+}
+
+SignalsForOthers::~SignalsForOthers() {
+  pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+}
+
+}  // namespace osteomill

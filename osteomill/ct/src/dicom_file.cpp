@@ -1,0 +1,288 @@
+#include "dicom_file.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <dcmtk/config/osconfig.h>
+#include <dcmtk/dcmdata/dcpixseq.h>
+#include <dcmtk/dcmdata/dcpxitem.h>
+#include <dcmtk/dcmdata/dctk.h>
+#include <fmt/format.h>
+
+#include "dicom_data.h"
+#include "header_text.h"
+
+namespace osteomill {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// Compressed pixels may claim this much, and this many times their own length; a blank slice comes down a
+// lot.
+constexpr std::uint64_t kAlwaysAllowed_bytes = 1 << 26;
+constexpr std::uint64_t kMaxCompression = 2000;
+
+std::string text_of(DcmItem& data, const DcmTagKey& tag) {
+  OFString text;
+  if (data.findAndGetOFStringArray(tag, text).bad()) return {};
+  return trimmed(text.c_str());
+}
+
+std::optional<int> short_of(DcmItem& data, const DcmTagKey& tag) {
+  Uint16 number = 0;
+  if (data.findAndGetUint16(tag, number).bad()) return std::nullopt;
+  return number;
+}
+
+// The items of a sequence; none where there is no such sequence.
+std::vector<DcmItem*> items_of(DcmItem& data, const DcmTagKey& tag) {
+  std::vector<DcmItem*> items;
+  DcmSequenceOfItems* sequence = nullptr;
+  if (data.findAndGetSequence(tag, sequence).bad()) return items;
+  for (DcmObject* item = nullptr; (item = sequence->nextInContainer(item)) != nullptr;) {
+    items.push_back(static_cast<DcmItem*>(item));
+  }
+  return items;
+}
+
+// One file on its way to a header.
+class FileReader {
+ public:
+  FileReader(DcmDataset& data, DicomHeader& header)
+      : data_(data),
+        header_(header),
+        shared_(items_of(data, DCM_SharedFunctionalGroupsSequence)),
+        own_(items_of(data, DCM_PerFrameFunctionalGroupsSequence)) {}
+
+  void read_frames();
+
+ private:
+  InputError fault(const std::string& reason) const { return {header_.file.string(), reason}; }
+
+  std::optional<std::vector<double>> numbers(DcmItem& data, const DcmTagKey& tag, std::size_t count,
+                                             const char* name) const;
+  // Where a value of the frame is looked for: its own functional group, the one that all share, the data set.
+  std::vector<DcmItem*> groups_of(std::size_t frame, const DcmTagKey& group) const;
+  std::optional<std::vector<double>> frame_numbers(std::size_t frame, const DcmTagKey& group,
+                                                   const DcmTagKey& tag, std::size_t count,
+                                                   const char* name) const;
+  StoredPixels stored_pixels() const;
+  SlicePlane plane_of(std::size_t frame) const;
+  DicomSlice slice_of(std::size_t frame) const;
+  void check_byte_count() const;
+
+  DcmDataset& data_;
+  DicomHeader& header_;
+  std::vector<DcmItem*> shared_;
+  std::vector<DcmItem*> own_;
+};
+
+std::optional<std::vector<double>> FileReader::numbers(DcmItem& data, const DcmTagKey& tag, std::size_t count,
+                                                       const char* name) const {
+  const std::string text = text_of(data, tag);
+  if (text.empty()) return std::nullopt;
+  std::optional<std::vector<double>> values = parse_numbers(text, " \\");
+  if (!values || values->size() != count) {
+    throw fault(fmt::format("has a {} that is not {} number{}", name, count, count == 1 ? "" : "s"));
+  }
+  for (const double value : *values) {
+    if (!std::isfinite(value)) throw fault(fmt::format("has a {} that is not finite", name));
+  }
+  return values;
+}
+
+std::vector<DcmItem*> FileReader::groups_of(std::size_t frame, const DcmTagKey& group) const {
+  std::vector<DcmItem*> found;
+  for (DcmItem* outer :
+       {frame < own_.size() ? own_[frame] : nullptr, shared_.empty() ? nullptr : shared_[0]}) {
+    DcmItem* inner = nullptr;
+    if (outer != nullptr && outer->findAndGetSequenceItem(group, inner).good()) found.push_back(inner);
+  }
+  found.push_back(&data_);
+  return found;
+}
+
+std::optional<std::vector<double>> FileReader::frame_numbers(std::size_t frame, const DcmTagKey& group,
+                                                             const DcmTagKey& tag, std::size_t count,
+                                                             const char* name) const {
+  for (DcmItem* place : groups_of(frame, group)) {
+    if (auto found = numbers(*place, tag, count, name)) return found;
+  }
+  return std::nullopt;
+}
+
+StoredPixels FileReader::stored_pixels() const {
+  StoredPixels pixels;
+  pixels.bits_allocated = short_of(data_, DCM_BitsAllocated).value_or(0);
+  pixels.bits_stored = short_of(data_, DCM_BitsStored).value_or(pixels.bits_allocated);
+  pixels.is_signed = short_of(data_, DCM_PixelRepresentation).value_or(0) == 1;
+  const int high_bit = short_of(data_, DCM_HighBit).value_or(pixels.bits_stored - 1);
+  const bool whole_bytes =
+      pixels.bits_allocated == 8 || pixels.bits_allocated == 16 || pixels.bits_allocated == 32;
+  if (!whole_bytes || pixels.bits_stored < 1 || pixels.bits_stored > pixels.bits_allocated ||
+      high_bit != pixels.bits_stored - 1) {
+    throw fault(fmt::format("has pixels of {} bits in {}, the highest being bit {}, which is not supported",
+                            pixels.bits_stored, pixels.bits_allocated, high_bit));
+  }
+  return pixels;
+}
+
+SlicePlane FileReader::plane_of(std::size_t frame) const {
+  const auto spacing = frame_numbers(frame, DCM_PixelMeasuresSequence, DCM_PixelSpacing, 2, "PixelSpacing");
+  if (!spacing) throw fault("has no PixelSpacing, so its size is not known");
+  const auto position =
+      frame_numbers(frame, DCM_PlanePositionSequence, DCM_ImagePositionPatient, 3, "ImagePositionPatient");
+  if (!position) throw fault("has no ImagePositionPatient, so its place is not known");
+  const auto orientation = frame_numbers(frame, DCM_PlaneOrientationSequence, DCM_ImageOrientationPatient, 6,
+                                         "ImageOrientationPatient");
+  if (!orientation) throw fault("has no ImageOrientationPatient, so its place is not known");
+
+  SlicePlane plane;
+  plane.columns = header_.columns;
+  plane.rows = header_.rows;
+  // PixelSpacing: first from row to row, then from column to column (Part 3, 10.7.1.3).
+  plane.row_distance_mm = (*spacing)[0];
+  plane.column_distance_mm = (*spacing)[1];
+  plane.i_direction = Vec3(orientation->data());
+  plane.j_direction = Vec3(orientation->data() + 3);
+  plane.position_mm = Vec3(position->data());
+  return plane;
+}
+
+DicomSlice FileReader::slice_of(std::size_t frame) const {
+  DicomSlice slice;
+  slice.plane = plane_of(frame);
+  const std::string instance_uid = text_of(data_, DCM_SOPInstanceUID);
+  const std::string file_name = header_.file.filename().string();
+  slice.plane.name = header_.frames == 1 ? file_name : fmt::format("{} frame {}", file_name, frame + 1);
+  slice.plane.instance = instance_uid.empty() ? "" : fmt::format("{}#{}", instance_uid, frame);
+  slice.pixels = stored_pixels();
+  const auto rescale = [&](const DcmTagKey& tag, const char* name) {
+    return frame_numbers(frame, DCM_PixelValueTransformationSequence, tag, 1, name);
+  };
+  if (const auto slope = rescale(DCM_RescaleSlope, "RescaleSlope")) slice.pixels.slope = slope->front();
+  if (const auto intercept = rescale(DCM_RescaleIntercept, "RescaleIntercept"))
+    slice.pixels.intercept = intercept->front();
+  if (slice.pixels.slope == 0) throw fault("has a RescaleSlope of 0, which leaves nothing of its values");
+  return slice;
+}
+
+void FileReader::check_byte_count() const {
+  const std::uint64_t needed = static_cast<std::uint64_t>(header_.columns) *
+                               static_cast<std::uint64_t>(header_.rows) * header_.frames *
+                               static_cast<std::uint64_t>(stored_pixels().bits_allocated / 8);
+  const std::uint64_t stored = header_.pixel_bytes;
+  const std::uint64_t possible =
+      header_.is_compressed ? stored * kMaxCompression + kAlwaysAllowed_bytes : stored;
+  if (needed > possible) {
+    throw fault(fmt::format(
+        "is cut short: {} x {} pixels{} need {} bytes, it holds {}", header_.columns, header_.rows,
+        header_.frames > 1 ? fmt::format(" x {} frames", header_.frames) : "", needed, stored));
+  }
+}
+
+void FileReader::read_frames() {
+  if (const auto frames = numbers(data_, DCM_NumberOfFrames, 1, "NumberOfFrames")) {
+    if (frames->front() < 1 || frames->front() > 1 << 16) throw fault("has no sensible NumberOfFrames");
+    header_.frames = static_cast<std::size_t>(frames->front());
+  }
+  if (header_.pixel_bytes == 0) throw fault("has no pixels");
+  if (header_.columns < 1 || header_.rows < 1) {
+    throw fault(fmt::format("has no size: {} columns x {} rows", header_.columns, header_.rows));
+  }
+  if (short_of(data_, DCM_SamplesPerPixel).value_or(1) != 1 ||
+      !header_.photometric.starts_with("MONOCHROME")) {
+    throw fault(fmt::format("is a colour image ({}), not a scan", header_.photometric));
+  }
+  if (data_.tagExists(DCM_ModalityLUTSequence))
+    throw fault("needs a modality lookup table, which is not supported");
+  if (header_.frames > 1 && own_.empty())
+    throw fault("has several frames and does not say where each of them lies");
+  check_byte_count();
+  std::string unit;
+  for (DcmItem* place : groups_of(0, DCM_PixelValueTransformationSequence)) {
+    if (unit.empty()) unit = text_of(*place, DCM_RescaleType);
+  }
+  header_.in_hounsfield_units = header_.modality == "CT" && (unit.empty() || unit == "HU");
+  for (std::size_t frame = 0; frame < header_.frames; ++frame) {
+    header_.slices.push_back(slice_of(frame));
+  }
+}
+
+std::uint64_t bytes_of_pixels(DcmDataset& data, bool is_compressed) {
+  DcmElement* pixels = nullptr;
+  if (data.findAndGetElement(DCM_PixelData, pixels).bad()) return 0;
+  if (!is_compressed) return pixels->getLength();
+  std::uint64_t bytes = 0;
+  const std::vector<DcmPixelItem*> items = pixel_items_of(data);
+  for (std::size_t n = 1; n < items.size(); ++n) bytes += items[n]->getLength();
+  return bytes;
+}
+
+// The images that a DICOMDIR names. A part of a name is of capitals, digits and underscores (Part 10, 8.2),
+// so that none leads out of the folder.
+std::vector<fs::path> listed_files(DcmDataset& data) {
+  std::vector<fs::path> files;
+  for (DcmItem* record : items_of(data, DCM_DirectoryRecordSequence)) {
+    if (text_of(*record, DCM_DirectoryRecordType) != "IMAGE") continue;
+    std::string name = text_of(*record, DCM_ReferencedFileID);
+    std::replace(name.begin(), name.end(), '\\', '/');
+    if (name.empty() || name.front() == '/' || name.find("..") != std::string::npos) continue;
+    files.emplace_back(name);
+  }
+  return files;
+}
+
+void describe(DcmDataset& data, DicomHeader& header) {
+  header.is_compressed = DcmXfer(data.getOriginalXfer()).isEncapsulated();
+  header.pixel_bytes = bytes_of_pixels(data, header.is_compressed);
+  header.series_uid = text_of(data, DCM_SeriesInstanceUID);
+  header.series_description = text_of(data, DCM_SeriesDescription);
+  header.modality = text_of(data, DCM_Modality);
+  header.photometric = text_of(data, DCM_PhotometricInterpretation);
+  header.columns = short_of(data, DCM_Columns).value_or(0);
+  header.rows = short_of(data, DCM_Rows).value_or(0);
+  header.listed_files = listed_files(data);
+  header.is_localizer = text_of(data, DCM_ImageType).find("LOCALIZER") != std::string::npos;
+}
+
+}  // namespace
+
+std::vector<DcmPixelItem*> pixel_items_of(DcmDataset& data) {
+  std::vector<DcmPixelItem*> items;
+  DcmElement* element = nullptr;
+  DcmPixelSequence* sequence = nullptr;
+  if (data.findAndGetElement(DCM_PixelData, element).bad()) return items;
+  auto* pixels = dynamic_cast<DcmPixelData*>(element);
+  if (pixels == nullptr ||
+      pixels->getEncapsulatedRepresentation(data.getOriginalXfer(), nullptr, sequence).bad() ||
+      sequence == nullptr)
+    return items;
+  for (DcmObject* item = nullptr; (item = sequence->nextInContainer(item)) != nullptr;) {
+    items.push_back(static_cast<DcmPixelItem*>(item));
+  }
+  return items;
+}
+
+std::optional<DicomHeader> read_dicom_header(const fs::path& path, std::uint64_t max_bytes) {
+  DicomHeader header;
+  header.file = path;
+  header.lost = true;
+  try {
+    std::optional<DicomData> loaded = load_dicom(path, max_bytes);
+    if (!loaded) return std::nullopt;
+    header.data = std::move(loaded->file);
+    DcmDataset& data = *header.data->getDataset();
+    describe(data, header);
+    header.lost = loaded->damaged && header.pixel_bytes == 0;
+    if (loaded->damaged) throw InputError(path.string(), "is cut short or damaged");
+    if (!header.is_directory()) FileReader(data, header).read_frames();
+  } catch (const InputError& fault) {
+    header.fault = fault;
+    header.slices.clear();
+  }
+  return header;
+}
+
+}  // namespace osteomill

@@ -1,0 +1,93 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "osteomill/base/input_error.h"
+#include "osteomill/ct/read_scan.h"
+
+#include "slice_stack.h"
+
+class DcmDataset;
+class DcmFileFormat;
+class DcmPixelItem;
+
+namespace osteomill {
+
+/// How the pixels of a slice are stored, and what their numbers mean.
+struct StoredPixels {
+  int bits_allocated = 0;
+  int bits_stored = 0;
+  bool is_signed = false;
+  /// Density = slope * stored value + intercept.
+  double slope = 1;
+  double intercept = 0;
+};
+
+/// One slice: a file, or a frame of it.
+struct DicomSlice {
+  SlicePlane plane;
+  StoredPixels pixels;
+};
+
+/// What one DICOM file says of itself.
+struct DicomHeader {
+  std::filesystem::path file;
+  std::string series_uid;
+  std::string series_description;
+  std::string modality;
+  /// CT, rescaled to what is not said to be another unit.
+  bool in_hounsfield_units = false;
+  std::string photometric;
+  int columns = 0;
+  int rows = 0;
+  std::size_t frames = 1;
+  /// A scout view to plan a scan by, not a part of it.
+  bool is_localizer = false;
+  bool is_compressed = false;
+  /// As they are stored; 0 where it has no pixels.
+  std::uint64_t pixel_bytes = 0;
+  /// Of a DICOMDIR: the images that it names, relative to its folder.
+  std::vector<std::filesystem::path> listed_files;
+  /// So damaged that even its series is not known.
+  bool lost = false;
+  /// Why no slice can be made of it.
+  std::optional<InputError> fault;
+  /// A slice for each frame; empty where there is a fault.
+  std::vector<DicomSlice> slices;
+
+  /// What was read, pixels still in the file; goes away within `with_dicom_stack`.
+  std::shared_ptr<DcmFileFormat> data;
+
+  /// It lists the files of a disc.
+  bool is_directory() const { return !listed_files.empty(); }
+  /// Reports, plans, directories: not meant to be a picture.
+  bool is_image() const { return pixel_bytes > 0 || columns > 0 || rows > 0; }
+};
+
+/// Reads what comes before the pixels; nothing where the file is not DICOM. A file that cannot be read or is
+/// damaged comes with a fault. Only within `with_dicom_stack`.
+std::optional<DicomHeader> read_dicom_header(const std::filesystem::path& path, std::uint64_t max_bytes);
+
+/// The items of compressed pixels: the table of offsets, and the fragments in order. None where they are not
+/// compressed.
+std::vector<DcmPixelItem*> pixel_items_of(DcmDataset& data);
+
+/// Decodes the pixels of the file of `header`, which has no fault, and writes the densities of frame f, row
+/// by row, to `frame_densities(f)`, which must have room for columns * rows (a null pointer: the frame is not
+/// wanted). Throws InputError naming the file where they cannot be decoded. Only within `with_dicom_stack`.
+void read_dicom_densities(const DicomHeader& header,
+                          const std::function<float*(std::size_t frame)>& frame_densities);
+
+/// Of a folder: reads one of the series that lie in it and the folders in it; nothing where there are no
+/// pictures. Of a file: the series to which it belongs, from the folder in which it lies; the frames of a
+/// file that has several; or one of the series that a DICOMDIR names. Nothing where the file is not DICOM.
+/// Throws InputError naming the path.
+std::optional<Scan> read_dicom(const std::filesystem::path& path, const ReadOptions& options);
+
+}  // namespace osteomill

@@ -1,0 +1,198 @@
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <span>
+
+#include <dcmtk/config/osconfig.h>
+#include <dcmtk/dcmdata/dcfcache.h>
+#include <dcmtk/dcmdata/dcpixseq.h>
+#include <dcmtk/dcmdata/dcpxitem.h>
+#include <dcmtk/dcmdata/dctk.h>
+#include <fmt/format.h>
+
+#include "osteomill/base/input_error.h"
+
+#include "dicom_data.h"
+#include "dicom_file.h"
+#include "frame_decoders.h"
+
+namespace osteomill {
+
+namespace {
+
+template <typename Stored>
+void rescale(std::span<const char> values, const StoredPixels& pixels, float* densities) {
+  // Bits above the stored ones may hold anything; the sign is in the highest stored one.
+  const int unused = 32 - pixels.bits_stored;
+  const char* bytes = values.data();
+  for (std::size_t n = 0; n < values.size() / sizeof(Stored); ++n, bytes += sizeof(Stored)) {
+    Stored raw = 0;
+    std::memcpy(&raw, bytes, sizeof(raw));
+    const std::uint32_t highest = std::uint32_t{raw} << unused;
+    const auto value = pixels.is_signed ? static_cast<double>(static_cast<std::int32_t>(highest) >> unused)
+                                        : static_cast<double>(highest >> unused);
+    densities[n] = static_cast<float>(pixels.slope * value + pixels.intercept);
+  }
+}
+
+void rescale_frame(std::span<const char> values, const StoredPixels& pixels, float* densities) {
+  switch (pixels.bits_allocated) {
+    case 8:
+      return rescale<std::uint8_t>(values, pixels, densities);
+    case 16:
+      return rescale<std::uint16_t>(values, pixels, densities);
+    default:
+      return rescale<std::uint32_t>(values, pixels, densities);
+  }
+}
+
+// The frames of one file, decoded one after the other.
+class FrameReader {
+ public:
+  explicit FrameReader(const DicomHeader& header);
+
+  // Stays until the next one is read.
+  std::span<const char> read(std::size_t frame);
+
+ private:
+  InputError fault(const std::string& reason) const { return {header_.file.string(), reason}; }
+  InputError damaged() const {
+    return fault(fmt::format("cannot be decoded ({}): its pixels are cut short or damaged",
+                             DcmXfer(syntax_).getXferName()));
+  }
+  std::span<const unsigned char> bytes_of(DcmPixelItem* item) const;
+  std::size_t first_fragment(std::size_t frame) const;
+  std::vector<unsigned char> stream_of(std::size_t frame) const;
+  void decode_jpeg(std::span<const unsigned char> stream);
+  void read_uncompressed(std::size_t frame);
+  void read_by_dcmtk(DcmDataset& data, std::size_t frame, DcmFileCache* cache);
+
+  const DicomHeader& header_;
+  DcmDataset& data_;
+  E_TransferSyntax syntax_;
+  FrameSize size_;
+  std::vector<DcmPixelItem*> items_;
+  DcmFileCache cache_;
+  // DCMTK wants an even number of bytes.
+  std::vector<char> values_;
+};
+
+FrameReader::FrameReader(const DicomHeader& header)
+    : header_(header),
+      data_(*header.data->getDataset()),
+      syntax_(data_.getOriginalXfer()),
+      size_{header.columns, header.rows, header.slices.front().pixels.bits_allocated / 8},
+      items_(pixel_items_of(data_)),
+      values_(size_.bytes() + size_.bytes() % 2) {}
+
+std::span<const unsigned char> FrameReader::bytes_of(DcmPixelItem* item) const {
+  Uint8* bytes = nullptr;
+  if (item->getUint8Array(bytes).bad() || bytes == nullptr) throw fault("is cut short");
+  return {bytes, item->getLength()};
+}
+
+// The item with which a frame begins: there is one frame, there are as many fragments as frames, or the table
+// says how many bytes lie before it, 8 of them before each fragment (Part 5, A.4).
+std::size_t FrameReader::first_fragment(std::size_t frame) const {
+  if (frame == 0 || items_.size() == header_.frames + 1) return frame + 1;
+  if (frame == header_.frames) return items_.size();
+  const std::size_t offsets = items_.front()->getLength() / sizeof(std::uint32_t);
+  if (offsets == header_.frames) {
+    std::uint32_t offset = 0;
+    std::memcpy(&offset, bytes_of(items_.front()).data() + frame * sizeof(offset), sizeof(offset));
+    std::uint64_t before = 0;
+    for (std::size_t n = 1; n < items_.size(); before += 8 + items_[n++]->getLength()) {
+      if (before == offset) return n;
+    }
+  }
+  throw fault("does not say in which of its fragments each frame lies");
+}
+
+std::vector<unsigned char> FrameReader::stream_of(std::size_t frame) const {
+  std::vector<unsigned char> stream;
+  const std::size_t end = first_fragment(frame + 1);
+  for (std::size_t n = first_fragment(frame); n < end; ++n) {
+    const std::span<const unsigned char> bytes = bytes_of(items_[n]);
+    stream.insert(stream.end(), bytes.begin(), bytes.end());
+  }
+  return stream;
+}
+
+void FrameReader::read_by_dcmtk(DcmDataset& data, std::size_t frame, DcmFileCache* cache) {
+  OFString colours;
+  DcmElement* element = nullptr;
+  data.findAndGetElement(DCM_PixelData, element);
+  auto* pixels = dynamic_cast<DcmPixelData*>(element);
+  if (pixels == nullptr) throw fault("has pixels of a kind that is not supported");
+  Uint32 fragment = 0;
+  const OFCondition read =
+      pixels->getUncompressedFrame(&data, static_cast<Uint32>(frame), fragment, values_.data(),
+                                   static_cast<Uint32>(values_.size()), colours, cache);
+  const bool is_damaged = take_jpeg_complaint();
+  if (read.bad() || is_damaged) throw damaged();
+}
+
+// In a data set of its own that holds nothing else, so that no table of offsets leads elsewhere.
+void FrameReader::decode_jpeg(std::span<const unsigned char> stream) {
+  const bool is_jpeg_ls = syntax_ == EXS_JPEGLSLossless || syntax_ == EXS_JPEGLSLossy;
+  if (!jpeg_fits(stream, is_jpeg_ls ? JpegKind::jpeg_ls : JpegKind::jpeg, size_))
+    throw fault("is damaged: its compressed pixels are not what its header says");
+  DcmDataset alone;
+  for (const DcmTagKey& tag : {DCM_SamplesPerPixel, DCM_PhotometricInterpretation, DCM_Rows, DCM_Columns,
+                               DCM_BitsAllocated, DCM_BitsStored, DCM_HighBit, DCM_PixelRepresentation}) {
+    DcmElement* copy = nullptr;
+    if (data_.findAndGetElement(tag, copy, OFFalse, OFTrue).good()) alone.insert(copy);
+  }
+  auto* sequence = new DcmPixelSequence(DCM_PixelSequenceTag);
+  sequence->insert(new DcmPixelItem(DCM_PixelItemTag));
+  auto* fragment = new DcmPixelItem(DCM_PixelItemTag);
+  fragment->putUint8Array(stream.data(), stream.size());
+  sequence->insert(fragment);
+  auto* pixels = new DcmPixelData(DCM_PixelData);
+  pixels->putOriginalRepresentation(syntax_, nullptr, sequence);
+  alone.insert(pixels);
+  read_by_dcmtk(alone, 0, nullptr);
+}
+
+void FrameReader::read_uncompressed(std::size_t frame) {
+  read_by_dcmtk(data_, frame, &cache_);
+  // To DCMTK pixels are words of 16 bits, of which the higher comes first here.
+  if (syntax_ == EXS_BigEndianExplicit && size_.bytes_a_value == 4) {
+    for (std::size_t n = 0; n < size_.bytes(); n += 4)
+      std::swap_ranges(&values_[n], &values_[n] + 2, &values_[n] + 2);
+  }
+}
+
+std::span<const char> FrameReader::read(std::size_t frame) {
+  const std::span<char> values(values_.data(), size_.bytes());
+  if (items_.empty()) {
+    read_uncompressed(frame);
+    return values;
+  }
+  const std::vector<unsigned char> stream = stream_of(frame);
+  switch (syntax_) {
+    case EXS_RLELossless:
+      if (!decode_rle(stream, size_, values)) throw damaged();
+      break;
+    case EXS_JPEG2000LosslessOnly:
+    case EXS_JPEG2000:
+      if (!decode_jpeg2000(stream, size_, values)) throw damaged();
+      break;
+    default:
+      decode_jpeg(stream);
+  }
+  return values;
+}
+
+}  // namespace
+
+void read_dicom_densities(const DicomHeader& header,
+                          const std::function<float*(std::size_t frame)>& frame_densities) {
+  FrameReader reader(header);
+  for (std::size_t frame = 0; frame < header.slices.size(); ++frame) {
+    float* densities = frame_densities(frame);
+    if (densities != nullptr) rescale_frame(reader.read(frame), header.slices[frame].pixels, densities);
+  }
+}
+
+}  // namespace osteomill

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "osteomill/base/input_error.h"
+#include "osteomill/base/work_progress.h"
+#include "osteomill/volume/grid_geometry.h"
+
+namespace osteomill {
+
+/// Throws InputError naming `subject` where a grid is not one that a scanner makes of a bone: voxels under
+/// 1 um or over 100 mm apart, or a first voxel over 100 m from the scanner's own origin. With such numbers
+/// later work would overflow or never end.
+inline void check_plausible(const std::string& subject, const GridGeometry& geometry) {
+  constexpr double kMinSpacing_mm = 1e-3, kMaxSpacing_mm = 100, kMaxOrigin_mm = 1e5;
+  for (const double spacing_mm : geometry.spacing_mm) {
+    if (!(spacing_mm >= kMinSpacing_mm && spacing_mm <= kMaxSpacing_mm)) {
+      throw InputError(subject, fmt::format("has voxels {:.6g} mm apart; a bone's are between {} and {} mm",
+                                            spacing_mm, kMinSpacing_mm, kMaxSpacing_mm));
+    }
+  }
+  for (const double origin_mm : geometry.origin_mm) {
+    if (!(std::abs(origin_mm) <= kMaxOrigin_mm)) {
+      throw InputError(subject, fmt::format("begins {:.6g} mm from its origin; no scanner is that large",
+                                            std::abs(origin_mm)));
+    }
+  }
+}
+
+/// Throws InputError naming `subject` where so many densities would take more memory than they may.
+inline void check_memory(const std::string& subject, std::uint64_t voxels, std::uint64_t max_bytes) {
+  const std::uint64_t needed = voxels * sizeof(float);
+  if (needed > max_bytes) {
+    throw InputError(subject,
+                     fmt::format("needs {:.3g} GB for its voxels, over the {:.3g} GB that it may take",
+                                 static_cast<double>(needed) * 1e-9, static_cast<double>(max_bytes) * 1e-9));
+  }
+}
+
+/// Throws InputError naming `subject` where a density is no finite number or beyond what any scanner writes:
+/// nothing sensible can be milled there, and gradients would overflow.
+inline void check_densities(const std::string& subject, const std::vector<float>& densities) {
+  constexpr std::size_t kAtOnce = 1 << 22;
+  constexpr float kMost = 1e10f;
+  std::ptrdiff_t count = 0;
+  for (std::size_t first = 0; first < densities.size(); first += kAtOnce) {
+    const std::size_t last = std::min(first + kAtOnce, densities.size());
+    count += std::count_if(densities.begin() + static_cast<std::ptrdiff_t>(first),
+                           densities.begin() + static_cast<std::ptrdiff_t>(last),
+                           [](float v) { return !(std::abs(v) <= kMost); });
+    WorkProgress::done(last, densities.size());
+  }
+  if (count > 0) {
+    throw InputError(subject, fmt::format("{} voxels hold no density: NaN, infinity or beyond {:g}", count,
+                                          static_cast<double>(kMost)));
+  }
+}
+
+}  // namespace osteomill

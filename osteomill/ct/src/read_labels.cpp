@@ -1,0 +1,315 @@
+#include "osteomill/ct/read_labels.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <new>
+#include <optional>
+#include <sstream>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "osteomill/base/input_error.h"
+#include "osteomill/base/work_progress.h"
+
+#include "byte_source.h"
+#include "header_text.h"
+#include "volume_file.h"
+
+namespace osteomill {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using Colour = std::array<std::uint8_t, 3>;
+
+// How a label is called and shown, as far as a file says so.
+struct LabelStyle {
+  std::string name;
+  std::optional<Colour> colour;
+};
+// By the label's value.
+using LabelTable = std::map<int, LabelStyle>;
+
+// By value, in its order: how many voxels have it and its place among the labels.
+struct FoundLabel {
+  std::size_t voxels = 0;
+  LabelMap::Place place = 0;
+};
+using FoundLabels = std::map<int, FoundLabel>;
+
+void check_is_label(const std::string& subject, float value) {
+  constexpr float kMax = 1e6f;
+  if (std::isfinite(value) && std::floor(value) == value && std::abs(value) <= kMax) return;
+  throw InputError(subject, fmt::format("is not a label map: it holds {:g}, and labels are whole numbers "
+                                        "up to a million",
+                                        value));
+}
+
+FoundLabels find_labels(const std::string& subject, const std::vector<float>& values) {
+  FoundLabels found;
+  for (auto run = values.begin(); run != values.end();) {
+    const auto end = std::find_if(run, values.end(), [&](float value) { return !(value == *run); });
+    check_is_label(subject, *run);
+    found[static_cast<int>(*run)].voxels += static_cast<std::size_t>(end - run);
+    if (found.size() > LabelMap::kMaxLabels + 1) {
+      throw InputError(subject, fmt::format("has more than {} labels", LabelMap::kMaxLabels));
+    }
+    run = end;
+    WorkProgress::done(0);
+  }
+  found.erase(0);
+  if (found.empty()) throw InputError(subject, "labels nothing: all its voxels are 0");
+  LabelMap::Place place = 0;
+  for (auto& [value, label] : found) label.place = ++place;
+  return found;
+}
+
+std::vector<LabelMap::Place> places_of(const std::vector<float>& values, const FoundLabels& found) {
+  std::vector<LabelMap::Place> places;
+  places.reserve(values.size());
+  float last = 0;
+  LabelMap::Place place = 0;
+  for (const float value : values) {
+    if (value != last) {
+      last = value;
+      const auto label = found.find(static_cast<int>(value));
+      place = label == found.end() ? LabelMap::Place{0} : label->second.place;
+    }
+    places.push_back(place);
+  }
+  return places;
+}
+
+// Hues by the golden angle, so that labels which follow each other differ.
+Colour colour_of_place(LabelMap::Place place) {
+  const double hue = std::fmod(0.09 + 0.381966 * place, 1.0);
+  Colour colour{};
+  for (std::size_t n = 0; n < 3; ++n) {
+    const double away = std::abs(std::fmod(hue + static_cast<double>(n) / 3, 1.0) * 2 - 1);
+    colour[n] =
+        static_cast<std::uint8_t>(std::lround(255 * (0.25 + 0.65 * std::clamp(3 * away - 1, 0.0, 1.0))));
+  }
+  return colour;
+}
+
+bool is_called(const Label& label, const std::string& said) {
+  return said == std::to_string(label.value) || lower(said) == lower(label.name);
+}
+
+// Throws where it calls none of the labels.
+void mark_no_go(const std::string& subject, const std::string& said, std::vector<Label>& labels) {
+  bool found = false;
+  for (Label& label : labels) {
+    if (!is_called(label, said)) continue;
+    found = label.no_go = true;
+  }
+  if (found) return;
+  constexpr std::size_t kMostNames = 12;
+  std::vector<std::string> names;
+  for (const Label& label : labels) names.push_back(fmt::format("{} {}", label.value, label.name));
+  if (names.size() > kMostNames) {
+    names.resize(kMostNames);
+    names.emplace_back("...");
+  }
+  throw InputError(subject,
+                   fmt::format("has no label \"{}\" to be no-go; it has {}", said, fmt::join(names, ", ")));
+}
+
+std::vector<Label> make_labels(const FoundLabels& found, const LabelTable& table, const LabelFiles& files) {
+  std::vector<Label> labels;
+  for (const auto& [value, entry] : found) {
+    Label label{value, fmt::format("label {}", value), colour_of_place(entry.place)};
+    if (const auto style = table.find(value); style != table.end()) {
+      if (!style->second.name.empty()) label.name = style->second.name;
+      label.colour = style->second.colour.value_or(label.colour);
+    }
+    labels.push_back(std::move(label));
+  }
+  for (const std::string& said : files.no_go) mark_no_go(files.map.string(), said, labels);
+  return labels;
+}
+
+std::optional<std::string> not_in_table(const LabelTable& table, const std::vector<Label>& labels,
+                                        const LabelFiles& files) {
+  std::vector<int> missing;
+  for (const Label& label : labels) {
+    if (!table.contains(label.value)) missing.push_back(label.value);
+  }
+  if (missing.empty()) return std::nullopt;
+  return fmt::format("{}: has no entry for label{} {} of the map", files.table.string(),
+                     missing.size() > 1 ? "s" : "", fmt::join(missing, ", "));
+}
+
+std::string extent_text(const GridGeometry& geometry) {
+  Vec3 least = Vec3::Constant(1e300), most = -least;
+  for (int n = 0; n < 8; ++n) {
+    const Vec3 corner_W = geometry.world_from_voxel(VoxelIndex{(n & 1) != 0 ? geometry.dims[0] - 1 : 0,
+                                                               (n & 2) != 0 ? geometry.dims[1] - 1 : 0,
+                                                               (n & 4) != 0 ? geometry.dims[2] - 1 : 0});
+    least = least.cwiseMin(corner_W);
+    most = most.cwiseMax(corner_W);
+  }
+  return fmt::format("{:.4g} to {:.4g}, {:.4g} to {:.4g}, {:.4g} to {:.4g} mm", least.x(), most.x(),
+                     least.y(), most.y(), least.z(), most.z());
+}
+
+// How much of what is labelled lies in the scan, by volume.
+std::optional<std::string> cover_warning(const FoundLabels& found, const GridGeometry& own,
+                                         const LabelMap& map, const std::string& subject) {
+  std::size_t own_voxels = 0, scan_voxels = 0;
+  for (const auto& [value, label] : found) own_voxels += label.voxels;
+  for (const std::size_t count : map.voxel_counts()) scan_voxels += count;
+  const double share = static_cast<double>(scan_voxels) * map.scan_geometry().voxel_volume_mm3() /
+                       (static_cast<double>(own_voxels) * own.voxel_volume_mm3());
+  if (share > 0.98) return std::nullopt;
+  return fmt::format("{}: {:.0f} % of what it labels lies outside the scan", subject, 100 * (1 - share));
+}
+
+// Longer names than this are no names; and control characters are none.
+constexpr std::size_t kMaxName = 100;
+std::string usable_name(std::string name) {
+  std::replace_if(
+      name.begin(), name.end(), [](unsigned char c) { return c < ' ' || c == 127; }, ' ');
+  return trimmed(name.substr(0, kMaxName));
+}
+
+std::optional<Colour> colour_of(const std::vector<double>& channels, double white) {
+  Colour colour{};
+  if (channels.size() < colour.size()) return std::nullopt;
+  for (std::size_t n = 0; n < colour.size(); ++n) {
+    const double level = std::round(255 * channels[n] / white);
+    if (!(level >= 0 && level <= 255)) return std::nullopt;
+    colour[n] = static_cast<std::uint8_t>(level);
+  }
+  return colour;
+}
+
+std::optional<int> whole_number(const std::string& text) {
+  constexpr double kMax = 1e9;
+  const auto numbers = parse_numbers(text);
+  if (!numbers || numbers->size() != 1 || !(std::abs(numbers->front()) <= kMax) ||
+      numbers->front() != std::floor(numbers->front())) {
+    return std::nullopt;
+  }
+  return static_cast<int>(numbers->front());
+}
+
+// "value name red green blue alpha", of which the name may be several words.
+bool add_line(const std::string& line, LabelTable& table) {
+  constexpr std::size_t kChannels = 4;
+  std::istringstream in(line);
+  std::vector<std::string> words;
+  for (std::string word; in >> word;) words.push_back(word);
+  if (words.size() < kChannels + 2) return false;
+  std::string name, channels;
+  for (std::size_t n = 1; n < words.size(); ++n) {
+    std::string& text = n + kChannels < words.size() ? name : channels;
+    text += (text.empty() ? "" : " ") + words[n];
+  }
+  const auto value = whole_number(words.front());
+  const auto numbers = parse_numbers(channels);
+  const auto colour = numbers ? colour_of(*numbers, 255) : std::nullopt;
+  if (!value || !colour) return false;
+  // Slicer writes names as one word.
+  std::replace(name.begin(), name.end(), '_', ' ');
+  table[*value] = {usable_name(name), colour};
+  return true;
+}
+
+// Throws InputError, naming the file and the line.
+LabelTable read_label_table(const fs::path& path) {
+  constexpr std::uintmax_t kMaxBytes = 1 << 20;
+  const std::string subject = path.string();
+  std::ifstream in = open_regular_file(subject, path);
+  LabelTable table;
+  if (fs::file_size(path) > kMaxBytes) throw InputError(subject, "is too long for a table of labels");
+  std::string line;
+  for (int number = 1; std::getline(in, line); ++number) {
+    line = trimmed(line);
+    if (line.empty() || line.starts_with('#')) continue;
+    if (!add_line(line, table)) {
+      throw InputError(
+          subject,
+          fmt::format("line {} is not \"value name red green blue alpha\", colours from 0 to 255", number));
+    }
+  }
+  if (table.empty()) throw InputError(subject, "has no labels");
+  return table;
+}
+
+// What the key/value pairs of a segmentation of 3D Slicer's (.seg.nrrd) say: Segment0_Name, _Color (three
+// numbers from 0 to 1) and _LabelValue, and so on from 0. Throws InputError naming `subject`.
+LabelTable label_table_of(const std::string& subject, const std::map<std::string, std::string>& key_values) {
+  LabelTable table;
+  for (int n = 0;; ++n) {
+    const auto find = [&](const char* what) { return key_values.find(fmt::format("Segment{}_{}", n, what)); };
+    const auto name = find("Name"), value = find("LabelValue"), colour = find("Color");
+    const auto end = key_values.end();
+    if (name == end && value == end) return table;
+    // Segmentations from before there were label values have them in order, from 1.
+    const auto label = value == end ? n + 1 : whole_number(value->second);
+    if (!label) {
+      throw InputError(subject, fmt::format("has a Segment{}_LabelValue that is not a whole number", n));
+    }
+    LabelStyle style;
+    if (name != end) style.name = usable_name(name->second);
+    if (colour != end) {
+      if (const auto channels = parse_numbers(colour->second)) style.colour = colour_of(*channels, 1);
+    }
+    table[*label] = style;
+  }
+}
+
+}  // namespace
+
+bool is_label_file(const fs::path& path) {
+  return volume_format_of(path) != nullptr;
+}
+
+LabelsRead read_labels(const LabelFiles& files, const GridGeometry& scan, std::uint64_t max_memory_bytes) {
+  const std::string subject = files.map.string();
+  std::error_code error;
+  if (!fs::exists(files.map, error)) throw InputError(subject, "no such file");
+  const VolumeFormat* const format = volume_format_of(files.map);
+  if (format == nullptr)
+    throw InputError(subject, "is not a label map: neither NRRD, NIfTI nor MetaImage by its name");
+  try {
+    VolumeHeader header = format->read_header(files.map);
+    LabelTable table = label_table_of(subject, header.key_values);
+    if (!files.table.empty()) {
+      LabelTable given = read_label_table(files.table);
+      given.merge(table);
+      table = std::move(given);
+    }
+    LabelsRead read;
+    const std::vector<float> values =
+        read_voxels(subject, header.voxels, header.geometry.voxel_count(), max_memory_bytes, header.warnings);
+    for (const std::string& warning : header.warnings) read.warnings.push_back(subject + ": " + warning);
+    const FoundLabels found = find_labels(subject, values);
+    std::vector<Label> labels = make_labels(found, table, files);
+    if (!files.table.empty()) {
+      if (auto warning = not_in_table(table, labels, files)) read.warnings.push_back(*std::move(warning));
+    }
+    const auto map =
+        std::make_shared<const LabelMap>(std::move(labels), scan, header.geometry, places_of(values, found));
+    if (map->box().empty()) {
+      throw InputError(subject, fmt::format("labels nothing of the scan: it lies at {}, the scan at {}",
+                                            extent_text(header.geometry), extent_text(scan)));
+    }
+    if (auto warning = cover_warning(found, header.geometry, *map, subject)) {
+      read.warnings.push_back(*std::move(warning));
+    }
+    read.map = map;
+    return read;
+  } catch (const std::bad_alloc&) {
+    throw InputError(subject, "does not fit into memory");
+  }
+}
+
+}  // namespace osteomill

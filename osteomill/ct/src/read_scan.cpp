@@ -1,0 +1,192 @@
+#include "osteomill/ct/read_scan.h"
+
+#include <algorithm>
+#include <fstream>
+#include <memory>
+#include <new>
+#include <type_traits>
+#include <vector>
+
+#include <fmt/format.h>
+#include <minizip/unzip.h>
+
+#include "osteomill/base/input_error.h"
+#include "osteomill/base/input_files.h"
+#include "osteomill/base/temporary_folder.h"
+#include "osteomill/base/work_progress.h"
+
+#include "dicom_file.h"
+#include "volume_file.h"
+
+namespace osteomill {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::uint64_t kMaxFiles = 1 << 16;
+
+struct Close {
+  void operator()(void* archive) const { unzClose(archive); }
+};
+
+class ZipReader {
+ public:
+  ZipReader(const fs::path& path, std::uint64_t max_bytes)
+      : path_(path), left_bytes_(max_bytes), max_bytes_(max_bytes), archive_(unzOpen64(path.c_str())) {
+    if (archive_ == nullptr) throw damaged();
+  }
+
+  void unpack_into(const fs::path& folder);
+
+ private:
+  InputError fault(const std::string& reason) const { return {path_.string(), reason}; }
+  InputError damaged() const {
+    return fault("is a zip archive that is damaged, or packed in a way that is not known");
+  }
+  fs::path name_here(unz_file_info64& info) const;
+  void unpack_here(const fs::path& file);
+
+  fs::path path_;
+  std::uint64_t left_bytes_;
+  std::uint64_t max_bytes_;
+  std::unique_ptr<std::remove_pointer_t<unzFile>, Close> archive_;
+  std::vector<char> block_ = std::vector<char>(1 << 18);
+};
+
+// Some archives part folders by backslashes.
+fs::path ZipReader::name_here(unz_file_info64& info) const {
+  std::string name(4096, '\0');
+  if (unzGetCurrentFileInfo64(archive_.get(), &info, name.data(), name.size() - 1, nullptr, 0, nullptr, 0) !=
+      UNZ_OK)
+    throw damaged();
+  name.resize(std::min<std::size_t>(name.find('\0'), info.size_filename));
+  std::replace(name.begin(), name.end(), '\\', '/');
+  const fs::path relative(name);
+  if (relative.is_absolute() || std::find(relative.begin(), relative.end(), "..") != relative.end())
+    throw fault("holds a file whose name leads out of it");
+  return relative;
+}
+
+void ZipReader::unpack_here(const fs::path& file) {
+  fs::create_directories(file.parent_path());
+  std::ofstream out(file, std::ios::binary);
+  if (unzOpenCurrentFile(archive_.get()) != UNZ_OK) throw damaged();
+  int count = 0;
+  while ((count = unzReadCurrentFile(archive_.get(), block_.data(), static_cast<unsigned>(block_.size()))) >
+         0) {
+    if (static_cast<std::uint64_t>(count) > left_bytes_) {
+      throw fault(fmt::format("unpacks to over the {:.3g} GB that it may take",
+                              static_cast<double>(max_bytes_) * 1e-9));
+    }
+    left_bytes_ -= static_cast<std::uint64_t>(count);
+    out.write(block_.data(), count);
+    WorkProgress::done(0);
+  }
+  // The checksum is looked at when a file is closed.
+  if (count < 0 || unzCloseCurrentFile(archive_.get()) != UNZ_OK) throw damaged();
+  out.close();
+  if (!out)
+    throw fault(fmt::format("cannot be unpacked to {} (is the disk full?)", file.parent_path().string()));
+}
+
+void ZipReader::unpack_into(const fs::path& folder) {
+  std::uint64_t files = 0;
+  for (int state = unzGoToFirstFile(archive_.get()); state != UNZ_END_OF_LIST_OF_FILE;
+       state = unzGoToNextFile(archive_.get())) {
+    if (state != UNZ_OK) throw damaged();
+    if (++files > kMaxFiles) throw fault(fmt::format("holds over {} files", kMaxFiles));
+    unz_file_info64 info{};
+    const fs::path name = name_here(info);
+    if ((info.flag & 1) != 0) throw fault("is encrypted");
+    if (name.has_filename()) unpack_here(folder / name);
+  }
+}
+
+// Whether a file begins as zip archives do.
+bool is_zip(const fs::path& file) {
+  std::string head(4, '\0');
+  std::ifstream(file, std::ios::binary).read(head.data(), 4);
+  return head == "PK\3\4";
+}
+
+// Unpacks the files of a zip archive into `folder`, where they have the names that they have in it. Throws
+// InputError naming the archive where it is damaged or encrypted, where a name leads out of the folder, or
+// where it unpacks to more than `max_bytes`, whatever its own directory says of that.
+void unpack_zip(const fs::path& archive, const fs::path& folder, std::uint64_t max_bytes) {
+  note_input(archive);
+  try {
+    ZipReader(archive, max_bytes).unpack_into(folder);
+  } catch (const fs::filesystem_error& error) {
+    throw InputError(archive.string(), "cannot be unpacked: " + error.code().message());
+  }
+}
+
+// Of a folder without DICOM: its only volume file.
+Scan read_folder(const fs::path& folder, const ReadOptions& options) {
+  if (std::optional<Scan> scan = read_dicom(folder, options)) return std::move(*scan);
+  std::vector<fs::path> volumes;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
+    const bool hidden = entry.path().filename().string().starts_with('.');
+    if (entry.is_regular_file() && !hidden && volume_format_of(entry.path()) != nullptr)
+      volumes.push_back(entry.path());
+  }
+  if (volumes.empty()) throw InputError(folder.string(), "holds no DICOM slices");
+  if (volumes.size() > 1) {
+    throw InputError(folder.string(), fmt::format("holds {} scans; name one of them", volumes.size()));
+  }
+  return read_volume_file(volumes.front(), *volume_format_of(volumes.front()), options);
+}
+
+std::string with_name(std::string text, const std::string& unpacked, const std::string& archive) {
+  for (std::size_t at = 0; (at = text.find(unpacked, at)) != std::string::npos; at += archive.size())
+    text.replace(at, unpacked.size(), archive);
+  return text;
+}
+
+// What is told of it names the archive, not where it was unpacked.
+Scan read_zip(const fs::path& archive, const ReadOptions& options) {
+  const TemporaryFolder unpacked;
+  try {
+    unpack_zip(archive, unpacked.path(), options.max_memory_bytes);
+    Scan scan = read_folder(unpacked.path(), options);
+    for (std::string& warning : scan.warnings)
+      warning = with_name(std::move(warning), unpacked.path().string(), archive.string());
+    return scan;
+  } catch (const InputError& fault) {
+    const std::string line = with_name(fault.what(), unpacked.path().string(), archive.string());
+    const std::size_t colon = line.find(": ");
+    throw InputError(line.substr(0, colon), line.substr(colon + 2));
+  }
+}
+
+Scan read_any(const fs::path& path, const ReadOptions& options) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (!fs::exists(status)) throw InputError(path.string(), "no such file or folder");
+  if (fs::is_directory(status)) return read_folder(path, options);
+  if (!fs::is_regular_file(status)) throw InputError(path.string(), "is neither a file nor a folder");
+  if (fs::file_size(path, error) == 0) throw InputError(path.string(), "is empty");
+  if (const VolumeFormat* format = volume_format_of(path)) return read_volume_file(path, *format, options);
+  if (is_zip(path)) return read_zip(path, options);
+  if (std::optional<Scan> scan = read_dicom(path, options)) return std::move(*scan);
+  throw InputError(
+      path.string(),
+      "is not a scan: neither DICOM nor a zip archive, nor NRRD, MetaImage or NIfTI by its name");
+}
+
+}  // namespace
+
+Scan read_scan(const fs::path& path, const ReadOptions& options) {
+  try {
+    Scan scan = read_any(path, options);
+    scan.name = path.string();
+    return scan;
+  } catch (const std::bad_alloc&) {
+    throw InputError(path.string(), "does not fit into memory");
+  } catch (const fs::filesystem_error& error) {
+    throw InputError(path.string(), "cannot be read: " + error.code().message());
+  }
+}
+
+}  // namespace osteomill

@@ -1,0 +1,172 @@
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "osteomill/base/input_error.h"
+#include "osteomill/base/work_progress.h"
+
+#include "header_text.h"
+#include "plausible_scan.h"
+#include "volume_file.h"
+
+namespace osteomill {
+
+namespace {
+
+constexpr std::size_t kBlock = 1 << 18;
+// A number and what parts it from the next take fewer letters than this; text behind that is not wanted.
+constexpr std::uint64_t kMaxLetters = 64;
+// So much beyond the voxels is read on to come to the checksum.
+constexpr std::uint64_t kMaxRest = 1 << 20;
+
+// Calls `use` with a value of the type in which a voxel is stored.
+template <typename Use>
+auto with_type(VoxelType type, const Use& use) {
+  switch (type) {
+    case VoxelType::int8:
+      return use(std::int8_t{});
+    case VoxelType::uint8:
+      return use(std::uint8_t{});
+    case VoxelType::int16:
+      return use(std::int16_t{});
+    case VoxelType::uint16:
+      return use(std::uint16_t{});
+    case VoxelType::int32:
+      return use(std::int32_t{});
+    case VoxelType::uint32:
+      return use(std::uint32_t{});
+    case VoxelType::int64:
+      return use(std::int64_t{});
+    case VoxelType::uint64:
+      return use(std::uint64_t{});
+    case VoxelType::float32:
+      return use(float{});
+    default:
+      return use(double{});
+  }
+}
+
+// Whether a voxel of this type can hold the number.
+bool fits(double number, VoxelType type) {
+  return with_type(type, [&](auto value) {
+    using Limits = std::numeric_limits<decltype(value)>;
+    return !Limits::is_integer ||
+           (std::floor(number) == number && number >= static_cast<double>(Limits::lowest()) &&
+            number <= static_cast<double>(Limits::max()));
+  });
+}
+
+InputError cut_short(const std::string& subject, std::uint64_t needed, std::uint64_t found) {
+  return {subject, fmt::format("is cut short: its voxels need {} bytes, there are {}", needed, found)};
+}
+
+// `bytes` hold whole values, whose order of bytes is changed in place where it is not the machine's.
+void append(std::span<char> bytes, const StoredVoxels& stored, std::vector<float>& densities) {
+  with_type(stored.type, [&](auto value) {
+    const bool swap = stored.big_endian != (std::endian::native == std::endian::big);
+    for (std::size_t at = 0; at < bytes.size(); at += sizeof(value)) {
+      char* const first = bytes.data() + at;
+      if (swap) std::reverse(first, first + sizeof(value));
+      std::memcpy(&value, first, sizeof(value));
+      densities.push_back(static_cast<float>(stored.slope * static_cast<double>(value) + stored.intercept));
+    }
+  });
+}
+
+// What lies behind the voxels: nothing, as a rule.
+void check_rest(const std::string& subject, StoredVoxels& stored, std::uint64_t needed,
+                std::vector<std::string>& warnings) {
+  ByteSource& source = stored.source;
+  std::vector<char> block(kBlock);
+  std::uint64_t rest = 0;
+  std::size_t count = block.size();
+  while (count == block.size() && rest < needed + kMaxRest) rest += count = source.read(block);
+  if (source.is_packed()) {
+    if (!source.ended_well()) throw InputError(subject, "its compressed data are cut short or damaged");
+    const std::uint64_t said = stored.compressed_bytes;
+    if (said != 0 && (said < source.bytes_used() || said > source.bytes_in_file())) {
+      throw InputError(subject, fmt::format("says that its compressed data take {} bytes, they take {}", said,
+                                            source.bytes_used()));
+    }
+  }
+  if (rest > 0) warnings.push_back("holds more data than its sizes need; the rest was left out");
+}
+
+std::vector<float> read_binary(const std::string& subject, StoredVoxels& stored, std::uint64_t count,
+                               std::uint64_t max_bytes, std::vector<std::string>& warnings) {
+  ByteSource& source = stored.source;
+  const std::uint64_t needed = count * bytes_of(stored.type);
+  const std::uint64_t possible = source.max_bytes();
+  if (possible < stored.skip + needed) {
+    throw cut_short(subject, needed, possible - std::min(possible, stored.skip));
+  }
+  check_memory(subject, count, max_bytes);
+  if (!source.skip(stored.skip)) throw InputError(subject, "its compressed data cannot be decompressed");
+  std::vector<float> densities;
+  densities.reserve(count);
+  std::vector<char> block(kBlock);
+  for (std::uint64_t found = 0; found < needed;) {
+    const std::span<char> wanted(block.data(), std::min<std::uint64_t>(kBlock, needed - found));
+    const std::size_t here = source.read(wanted);
+    found += here;
+    if (found == 0) throw InputError(subject, "its compressed data cannot be decompressed");
+    if (here < wanted.size()) throw cut_short(subject, needed, found);
+    append(wanted, stored, densities);
+    WorkProgress::done(found, needed);
+  }
+  check_rest(subject, stored, needed, warnings);
+  return densities;
+}
+
+std::vector<float> read_text(const std::string& subject, StoredVoxels& stored, std::uint64_t count,
+                             std::uint64_t max_bytes, std::vector<std::string>& warnings) {
+  stored.source.skip(stored.skip);
+  // One digit and one space each, at the least.
+  const std::uint64_t needed = 2 * count - 1;
+  const std::uint64_t possible = stored.source.max_bytes();
+  if (possible < needed) throw cut_short(subject, needed, possible);
+  check_memory(subject, count, max_bytes);
+  std::string text;
+  std::vector<char> block(kBlock);
+  for (std::size_t here = kBlock; here == kBlock && text.size() < kMaxLetters * count + kBlock;) {
+    here = stored.source.read(block);
+    text.append(block.data(), here);
+  }
+  const std::optional<std::vector<double>> numbers = parse_numbers(text);
+  if (!numbers) throw InputError(subject, "holds something between its voxels that is not a number");
+  if (numbers->size() < count) {
+    throw InputError(
+        subject, fmt::format("is cut short: it has {} voxels, there are {} numbers", count, numbers->size()));
+  }
+  if (numbers->size() > count) {
+    warnings.push_back("holds more data than its sizes need; the rest was left out");
+  }
+  for (const double number : *numbers) {
+    if (!fits(number, stored.type))
+      throw InputError(subject, fmt::format("holds {}, which is no value of its type", number));
+  }
+  return {numbers->begin(), numbers->begin() + static_cast<std::ptrdiff_t>(count)};
+}
+
+}  // namespace
+
+std::uint64_t bytes_of(VoxelType type) {
+  return with_type(type, [](auto value) { return std::uint64_t{sizeof(value)}; });
+}
+
+void skip_to_last(StoredVoxels& stored, std::uint64_t count) {
+  const std::uint64_t there = stored.source.bytes_to_come();
+  stored.skip = there - std::min(there, count * bytes_of(stored.type));
+}
+
+std::vector<float> read_voxels(const std::string& subject, StoredVoxels& stored, std::uint64_t count,
+                               std::uint64_t max_bytes, std::vector<std::string>& warnings) {
+  return stored.is_text ? read_text(subject, stored, count, max_bytes, warnings)
+                        : read_binary(subject, stored, count, max_bytes, warnings);
+}
+
+}  // namespace osteomill

@@ -1,0 +1,147 @@
+#include "volume_file.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "osteomill/base/input_error.h"
+#include "osteomill/base/work_progress.h"
+
+#include "header_text.h"
+#include "plausible_scan.h"
+
+namespace osteomill {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::array<int, 3> checked_dims(const std::string& subject, const std::vector<double>& sizes) {
+  if (sizes.size() != 3)
+    throw InputError(subject, fmt::format("is not a volume: {} sizes, not 3", sizes.size()));
+  std::array<int, 3> dims{};
+  double product = 1;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (!(sizes[axis] >= 1 && sizes[axis] < std::numeric_limits<int>::max() &&
+          sizes[axis] == std::floor(sizes[axis]))) {
+      throw InputError(subject, fmt::format("has an impossible size: {} voxels along an axis", sizes[axis]));
+    }
+    dims[axis] = static_cast<int>(sizes[axis]);
+    product *= sizes[axis];
+  }
+  if (product > 1e12) throw InputError(subject, fmt::format("says that it has {:.3g} voxels", product));
+  return dims;
+}
+
+void check_axes(const std::string& subject, const Mat3& axes) {
+  constexpr double kTolerance = 1e-3;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!(axes.col(axis).norm() > 0)) throw InputError(subject, "has an axis of no length");
+    const Vec3 one = axes.col(axis).normalized();
+    const Vec3 next = axes.col((axis + 1) % 3).normalized();
+    if (!(std::abs(one.dot(next)) <= kTolerance)) {
+      throw InputError(
+          subject, "has axes that are not at right angles (a sheared or flat grid), which is not supported");
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<double> HeaderFields::numbers(const std::string& name) const {
+  const auto found = parse_numbers((*this)[name]);
+  if (!found || found->empty())
+    throw InputError(subject, fmt::format("has a field \"{}\" without numbers", name));
+  return *found;
+}
+
+double HeaderFields::count(const std::string& name, double min) const {
+  if (!has(name)) return 0;
+  const std::vector<double> found = numbers(name);
+  if (found.size() != 1 || !(found[0] >= min && found[0] < 1e12))
+    throw InputError(subject, fmt::format("has a {} that is not supported: {}", name, (*this)[name]));
+  return found[0];
+}
+
+std::ifstream open_data(const std::string& subject, const fs::path& path, const std::string& name,
+                        std::ifstream attached) {
+  if (name.starts_with("LIST") || name.find('%') != std::string::npos)
+    throw InputError(subject, "keeps its data in several files, which is not supported");
+  return name.empty() ? std::move(attached) : open_regular_file(subject, path.parent_path() / name);
+}
+
+GridGeometry checked_geometry(const std::string& subject, const std::vector<double>& sizes,
+                              const std::vector<double>& spacing, const Mat3& axes, const Vec3& origin,
+                              double unit_mm, const Vec3& lps_from_axes) {
+  GridGeometry geometry;
+  geometry.dims = checked_dims(subject, sizes);
+  if (spacing.size() != 3)
+    throw InputError(subject, fmt::format("has {} spacings, a volume has 3", spacing.size()));
+  check_axes(subject, axes);
+  geometry.spacing_mm = Vec3(spacing.data()) * unit_mm;
+  // Adding 0 makes -0, which only puzzles, 0.
+  geometry.origin_mm = (lps_from_axes.cwiseProduct(origin) * unit_mm).array() + 0.0;
+  geometry.direction = (lps_from_axes.asDiagonal() * axes.colwise().normalized()).array() + 0.0;
+  check_plausible(subject, geometry);
+  return geometry;
+}
+
+Vec3 checked_point(const std::string& subject, const std::string& name, const std::vector<double>& numbers) {
+  const bool is_point = numbers.size() == 3 && std::all_of(numbers.begin(), numbers.end(), [](double number) {
+                          return std::isfinite(number);
+                        });
+  if (!is_point) throw InputError(subject, fmt::format("has a {} that is not three numbers", name));
+  return Vec3(numbers.data());
+}
+
+double millimetres_in(const std::string& subject, std::string_view unit) {
+  static const std::map<std::string, double, std::less<>> kUnits{
+      {"", 1},           {"mm", 1},         {"millimeter", 1}, {"millimetre", 1},
+      {"um", 1e-3},      {"µm", 1e-3},      {"micron", 1e-3},  {"micrometer", 1e-3},
+      {"microns", 1e-3}, {"nm", 1e-6},      {"cm", 10},        {"m", 1000},
+      {"?", 1},          {"millimeters", 1}};
+  const auto found = kUnits.find(unit);
+  if (found == kUnits.end())
+    throw InputError(subject, fmt::format("has lengths in \"{}\", which is not known", unit));
+  return found->second;
+}
+
+const VolumeFormat* volume_format_of(const fs::path& path) {
+  static constexpr std::array<VolumeFormat, 3> kFormats{
+      {{"NRRD", {".nrrd", ".nhdr"}, read_nrrd_header},
+       {"MetaImage", {".mha", ".mhd"}, read_metaimage_header},
+       {"NIfTI", {".nii", ".nii.gz"}, read_nifti_header}}};
+  const std::string name = lower(path.filename().string());
+  for (const VolumeFormat& format : kFormats) {
+    for (const std::string_view ending : format.endings) {
+      if (name.ends_with(ending)) return &format;
+    }
+  }
+  return nullptr;
+}
+
+Scan read_volume_file(const fs::path& path, const VolumeFormat& format, const ReadOptions& options) {
+  const std::string subject = path.string();
+  VolumeHeader header = format.read_header(path);
+  if (!options.series.empty()) {
+    throw InputError(subject, fmt::format("is {}, which has no series to choose from", format.name));
+  }
+  std::vector<float> densities;
+  {
+    const WorkProgress::Part reading(0.85);
+    densities = read_voxels(subject, header.voxels, header.geometry.voxel_count(), options.max_memory_bytes,
+                            header.warnings);
+  }
+  const WorkProgress::Part checking(1);
+  check_densities(subject, densities);
+  Scan scan{DensityGrid(header.geometry, std::move(densities)), subject, format.name,
+            std::move(header.warnings)};
+  scan.is_labels = header.is_labels || subject.find(".seg.") != std::string::npos;
+  return scan;
+}
+
+}  // namespace osteomill

@@ -1,0 +1,118 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "osteomill/ct/read_scan.h"
+#include "osteomill/volume/grid_geometry.h"
+
+#include "byte_source.h"
+
+namespace osteomill {
+
+enum class VoxelType { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64 };
+
+/// How many bytes one voxel takes.
+std::uint64_t bytes_of(VoxelType type);
+
+/// The voxels of a file, and what its header says of how they are stored.
+struct StoredVoxels {
+  ByteSource source;
+  VoxelType type = VoxelType::int16;
+  bool big_endian = false;
+  /// One number after the other in decimal digits.
+  bool is_text = false;
+  /// Bytes of `source` before the voxels.
+  std::uint64_t skip = 0;
+  /// How long the header says that the compressed data are; 0 where it does not say.
+  std::uint64_t compressed_bytes = 0;
+  /// Density = slope * stored value + intercept.
+  double slope = 1;
+  double intercept = 0;
+};
+
+/// Sets `skip` so that the voxels are the last `count` that the source holds.
+void skip_to_last(StoredVoxels& stored, std::uint64_t count);
+
+/// Reads `count` densities. Nothing is allocated that the file cannot hold. Throws InputError naming
+/// `subject` where the voxels are not all there or damaged, or the densities would take over `max_bytes`;
+/// adds a warning where there is more.
+std::vector<float> read_voxels(const std::string& subject, StoredVoxels& stored, std::uint64_t count,
+                               std::uint64_t max_bytes, std::vector<std::string>& warnings);
+
+/// What the header of a volume file says, and the voxels behind it, ready to be read.
+struct VolumeHeader {
+  GridGeometry geometry;
+  StoredVoxels voxels;
+  std::vector<std::string> warnings;
+  /// What NRRD calls key/value pairs, in which programs keep what the format has no field for.
+  std::map<std::string, std::string> key_values{};
+  /// Where the header says so; it need not.
+  bool is_labels = false;
+};
+
+/// Each reads the header of a file of its format, and checks that it is of one grey volume, with sizes and
+/// spacings above zero and axes at right angles. Throws InputError naming the file.
+VolumeHeader read_nrrd_header(const std::filesystem::path& path);
+VolumeHeader read_metaimage_header(const std::filesystem::path& path);
+VolumeHeader read_nifti_header(const std::filesystem::path& path);
+
+/// One of the formats whose volume lies in one file (or in a header and a file of voxels).
+struct VolumeFormat {
+  const char* name;
+  /// Of its files, in small letters.
+  std::array<std::string_view, 2> endings;
+  VolumeHeader (*read_header)(const std::filesystem::path& path);
+};
+/// By how the file's name ends; null where it is none of them.
+const VolumeFormat* volume_format_of(const std::filesystem::path& path);
+
+/// Throws InputError naming the file.
+Scan read_volume_file(const std::filesystem::path& path, const VolumeFormat& format,
+                      const ReadOptions& options);
+
+/// The fields of a header that is text, by their names. Errors are InputErrors that name `subject`.
+struct HeaderFields {
+  std::string subject;
+  std::map<std::string, std::string> values{};
+
+  bool has(const std::string& name) const { return values.contains(name); }
+  /// Empty where there is none.
+  std::string operator[](const std::string& name) const {
+    return has(name) ? values.at(name) : std::string();
+  }
+  /// Throws where there are none.
+  std::vector<double> numbers(const std::string& name) const;
+  /// A number of bytes or lines, not less than `min`; 0 where the field is not there. Throws where it is
+  /// anything else.
+  double count(const std::string& name, double min) const;
+};
+
+/// Opens the data file `name` that the header in the file `path` names, in the same folder. Where `name` is
+/// empty the data follow the header, and `attached`, its stream, is returned. Throws InputError naming
+/// `subject` where the file cannot be read, or the data are in several files.
+std::ifstream open_data(const std::string& subject, const std::filesystem::path& path,
+                        const std::string& name, std::ifstream attached);
+
+/// A grid by what headers say of it, checked: sizes are three whole numbers above zero whose product can be a
+/// volume; the columns of `axes`, of which only the direction counts, are neither zero nor skew; spacings are
+/// finite, above zero and, like the origin, those of a bone (`check_plausible`). `unit_mm`: the millimetres
+/// in the unit of spacing and origin. `lps_from_axes`: the signs that turn the file's frame into LPS.
+GridGeometry checked_geometry(const std::string& subject, const std::vector<double>& sizes,
+                              const std::vector<double>& spacing, const Mat3& axes, const Vec3& origin,
+                              double unit_mm, const Vec3& lps_from_axes = Vec3::Ones());
+
+/// Three finite numbers; throws InputError, calling them `name`, where they are not.
+Vec3 checked_point(const std::string& subject, const std::string& name, const std::vector<double>& numbers);
+
+/// Millimetres in a unit of length as headers name it ("mm", "um", ...); throws InputError where it is not
+/// known.
+double millimetres_in(const std::string& subject, std::string_view unit);
+
+}  // namespace osteomill

@@ -1,0 +1,416 @@
+#include <algorithm>
+#include <cstring>
+#include <limits>
+
+#include <sys/stat.h>
+#include <zlib.h>
+
+#include "tests/support/folder_test.h"
+
+namespace osteomill {
+namespace {
+
+using testing_support::contains;
+
+class VolumeFile : public testing_support::FolderTest {
+ protected:
+  std::filesystem::path write_gzip(const std::string& name, const std::string& bytes) const {
+    gzFile packed = gzopen((folder_ / name).c_str(), "wb");
+    gzwrite(packed, bytes.data(), static_cast<unsigned>(bytes.size()));
+    gzclose(packed);
+    return folder_ / name;
+  }
+};
+
+constexpr std::array<int, 3> kDims{4, 3, 2};
+
+// The voxel (i, j, k) holds i + 10 j + 100 k - 50.
+template <typename Stored>
+std::string voxels() {
+  std::string bytes;
+  for (int k = 0; k < kDims[2]; ++k) {
+    for (int j = 0; j < kDims[1]; ++j) {
+      for (int i = 0; i < kDims[0]; ++i) {
+        const auto value = static_cast<Stored>(i + 10 * j + 100 * k - 50);
+        bytes.append(reinterpret_cast<const char*>(&value), sizeof(value));
+      }
+    }
+  }
+  return bytes;
+}
+
+void expect_voxels(const DensityGrid& grid) {
+  ASSERT_EQ(grid.geometry().dims, kDims);
+  for (int k = 0; k < kDims[2]; ++k) {
+    for (int j = 0; j < kDims[1]; ++j) {
+      for (int i = 0; i < kDims[0]; ++i) {
+        const VoxelIndex v{i, j, k};
+        EXPECT_EQ(grid[v], static_cast<float>(i + 10 * j + 100 * k - 50));
+      }
+    }
+  }
+}
+
+std::string nrrd(const std::string& fields, const std::string& data) {
+  return "NRRD0004\ntype: short\ndimension: 3\nsizes: 4 3 2\nendian: little\n" + fields + "\n" + data;
+}
+
+const std::string kPlaced =
+    "space: LPS\nspace directions: (0,0.5,0) (0,0,0.25) (2,0,0)\nspace origin: (1,-2,3)\n";
+
+std::string mha(const std::string& fields, const std::string& data) {
+  return "ObjectType = Image\nNDims = 3\nDimSize = 4 3 2\n" + fields +
+         "ElementType = MET_SHORT\nElementDataFile = LOCAL\n" + data;
+}
+
+std::string zipped(const std::string& bytes) {
+  uLongf size = compressBound(static_cast<uLong>(bytes.size()));
+  std::string packed(size, '\0');
+  compress(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(bytes.data()),
+           static_cast<uLong>(bytes.size()));
+  packed.resize(size);
+  return packed;
+}
+
+std::string swapped(std::string bytes, std::size_t size) {
+  for (std::size_t at = 0; at + size <= bytes.size(); at += size) {
+    std::reverse(bytes.begin() + static_cast<std::ptrdiff_t>(at),
+                 bytes.begin() + static_cast<std::ptrdiff_t>(at + size));
+  }
+  return bytes;
+}
+
+// Of a NIfTI-1 header the numbers that `Nifti` sets.
+std::string swapped_header(std::string header) {
+  const auto swap = [&](std::size_t at, std::size_t end, std::size_t size) {
+    header.replace(at, end - at, swapped(header.substr(at, end - at), size));
+  };
+  swap(0, 4, 4);
+  swap(40, 56, 2);
+  swap(70, 74, 2);
+  swap(76, 120, 4);
+  swap(252, 256, 2);
+  swap(256, 328, 4);
+  return header;
+}
+
+// A NIfTI-1 header, field by field as nifti1.h lays it out.
+class Nifti {
+ public:
+  Nifti() : bytes_(352, '\0') {
+    set<std::int32_t>(0, 348);
+    for (const auto& [offset, value] : {std::pair{40, 3}, {42, 4}, {44, 3}, {46, 2}, {70, 4}, {72, 16}}) {
+      set<std::int16_t>(offset, static_cast<std::int16_t>(value));
+    }
+    for (const auto& [offset, value] :
+         {std::pair{76, 1.0F}, {80, 0.5F}, {84, 0.25F}, {88, 2.0F}, {108, 352.0F}}) {
+      set<float>(offset, value);
+    }
+    bytes_[123] = 2;
+    std::memcpy(bytes_.data() + 344, "n+1", 3);
+    set<std::int16_t>(254, 1);
+    const std::array<float, 12> rows{0, 0, 2, 1, 0.5F, 0, 0, -2, 0, 0.25F, 0, 3};
+    for (int n = 0; n < 12; ++n) set<float>(280 + 4 * n, rows[static_cast<std::size_t>(n)]);
+  }
+  template <typename Number>
+  Nifti& set(int offset, Number value) {
+    std::memcpy(bytes_.data() + offset, &value, sizeof(value));
+    return *this;
+  }
+  std::string with(const std::string& data) const { return bytes_ + data; }
+
+ private:
+  std::string bytes_;
+};
+
+TEST_F(VolumeFile, NrrdIsPlacedByItsSpaceDirections) {
+  const Scan scan = read_scan(write("a.nrrd", nrrd("encoding: raw\n" + kPlaced, voxels<std::int16_t>())));
+  expect_voxels(scan.grid);
+  EXPECT_EQ(scan.format, "NRRD");
+  EXPECT_TRUE(scan.warnings.empty());
+  EXPECT_TRUE(scan.grid.geometry().world_from_voxel(Vec3(1, 2, 3)).isApprox(Vec3(1 + 6, -2 + 0.5, 3 + 0.5)));
+}
+
+TEST_F(VolumeFile, RasIsTurnedToLps) {
+  std::string fields = "encoding: raw\n" + kPlaced;
+  fields.replace(fields.find("LPS"), 3, "RAS");
+  const Scan scan = read_scan(write("a.nrrd", nrrd(fields, voxels<std::int16_t>())));
+  EXPECT_TRUE(scan.grid.geometry().world_from_voxel(Vec3(1, 2, 3)).isApprox(Vec3(-7, 1.5, 3.5)));
+}
+
+TEST_F(VolumeFile, DetachedAndCompressedNrrdGiveTheSame) {
+  write("a.raw", "skip" + voxels<std::int16_t>());
+  expect_voxels(
+      read_scan(write("a.nhdr", nrrd("encoding: raw\nbyte skip: 4\ndata file: a.raw\n" + kPlaced, ""))).grid);
+  expect_voxels(
+      read_scan(write("b.nhdr", nrrd("encoding: raw\nbyte skip: -1\ndata file: a.raw\n" + kPlaced, "")))
+          .grid);
+  write_gzip("a.gz", voxels<std::int16_t>());
+  expect_voxels(read_scan(write("c.nhdr", nrrd("encoding: gzip\ndata file: a.gz\n" + kPlaced, ""))).grid);
+}
+
+TEST_F(VolumeFile, LasIsTurnedToLps) {
+  std::string fields = "encoding: raw\n" + kPlaced;
+  fields.replace(fields.find("LPS"), 3, "LAS");
+  const Scan scan = read_scan(write("a.nrrd", nrrd(fields, voxels<std::int16_t>())));
+  EXPECT_TRUE(scan.grid.geometry().world_from_voxel(Vec3(1, 2, 3)).isApprox(Vec3(7, 1.5, 3.5)));
+}
+
+TEST_F(VolumeFile, EveryTypeAndOrderOfBytesGivesTheSame) {
+  for (const auto& [type, bytes, met, code] : {std::tuple{"short", voxels<std::int16_t>(), "MET_SHORT", 4},
+                                               {"int", voxels<std::int32_t>(), "MET_INT", 8},
+                                               {"int64", voxels<std::int64_t>(), "MET_LONG_LONG", 1024},
+                                               {"float", voxels<float>(), "MET_FLOAT", 16},
+                                               {"double", voxels<double>(), "MET_DOUBLE", 64}}) {
+    const std::size_t size = bytes.size() / 24;
+    for (const bool big : {false, true}) {
+      SCOPED_TRACE(std::string(type) + (big ? " big endian" : " little endian"));
+      const std::string data = big ? swapped(bytes, size) : bytes;
+      std::string header = nrrd("encoding: raw\n" + kPlaced, data);
+      header.replace(header.find("short"), 5, type);
+      if (big) header.replace(header.find("little"), 6, "big");
+      expect_voxels(read_scan(write("a.nrrd", header)).grid);
+
+      header = mha(big ? "BinaryDataByteOrderMSB = True\n" : "", data);
+      header.replace(header.find("MET_SHORT"), 9, met);
+      expect_voxels(read_scan(write("a.mha", header)).grid);
+
+      header = Nifti().set<std::int16_t>(70, static_cast<std::int16_t>(code)).with("");
+      expect_voxels(read_scan(write("a.nii", (big ? swapped_header(header) : header) + data)).grid);
+    }
+  }
+}
+
+TEST_F(VolumeFile, TextIsReadAndChecked) {
+  const std::string fields = "encoding: ascii\n" + kPlaced;
+  std::string text;
+  for (int k = 0; k < kDims[2]; ++k) {
+    for (int j = 0; j < kDims[1]; ++j) {
+      for (int i = 0; i < kDims[0]; ++i)
+        text += std::to_string(i + 10 * j + 100 * k - 50) + (i == 3 ? "\n" : " ");
+    }
+  }
+  expect_voxels(read_scan(write("a.nrrd", nrrd(fields, text))).grid);
+  const std::string shorter = text.substr(0, text.rfind(' '));
+  EXPECT_TRUE(contains(refusal(write("b.nrrd", nrrd(fields, shorter))), "24 voxels, there are 23 numbers"));
+  for (const char* odd : {"1x", "1.5", "40000", "nan", "(1)"}) {
+    const std::string other = shorter + " " + odd + "\n";
+    EXPECT_TRUE(contains(refusal(write("c.nrrd", nrrd(fields, other))), "c.nrrd: holds ")) << odd;
+  }
+  const std::string long_line = std::string(100'000, 'x');
+  EXPECT_LT(refusal(write("d.nrrd", nrrd(fields, text.substr(0, 60) + long_line))).size(), 200U);
+}
+
+TEST_F(VolumeFile, CompressedDataMayHaveBytesBeforeTheVoxels) {
+  const std::string bytes = "skip" + voxels<std::int16_t>();
+  write_gzip("a.gz", bytes);
+  for (const char* skip : {"4", "-1"}) {
+    const std::string fields =
+        std::string("encoding: gzip\nbyte skip: ") + skip + "\ndata file: a.gz\n" + kPlaced;
+    expect_voxels(read_scan(write("a.nhdr", nrrd(fields, ""))).grid);
+  }
+}
+
+TEST_F(VolumeFile, AFieldOrSpaceWithASlipIsRefused) {
+  const std::string data = voxels<std::int16_t>();
+  EXPECT_TRUE(contains(refusal(write("a.nrrd", nrrd("encoding: raw\nspace drections: 1\n", data))),
+                       "\"spacedrections\" that is not known"));
+  EXPECT_TRUE(contains(refusal(write("b.nrrd", nrrd("encoding: raw\nspace: left-posterior\n", data))),
+                       "space that is not known"));
+  EXPECT_TRUE(contains(refusal(write("c.nrrd", nrrd("encoding: raw\nkinds: vector domain domain\n", data))),
+                       "axis of kind"));
+  const std::string long_key(70'000, 'x');
+  EXPECT_LT(refusal(write("d.nrrd", nrrd("encoding: raw\n" + long_key + ": 1\n", data))).size(), 200U);
+}
+
+// It would be waited for.
+TEST_F(VolumeFile, APipeIsNoDataFile) {
+  ASSERT_EQ(::mkfifo((folder_ / "pipe").c_str(), 0600), 0);
+  EXPECT_TRUE(contains(refusal(write("a.nhdr", nrrd("encoding: raw\nline skip: 1\ndata file: pipe\n", ""))),
+                       "pipe is no regular file"));
+}
+
+TEST_F(VolumeFile, UnitsOfLengthAreTurnedToMillimetres) {
+  const std::string fields = "encoding: raw\nspacings: 20 20 40\nunits: \"um\" \"um\" \"um\"\n";
+  const Scan scan = read_scan(write("a.nrrd", nrrd(fields, voxels<std::int16_t>())));
+  EXPECT_TRUE(scan.grid.geometry().spacing_mm.isApprox(Vec3(0.02, 0.02, 0.04)));
+}
+
+TEST_F(VolumeFile, MetaImageIsPlacedByItsMatrix) {
+  const std::string fields =
+      "TransformMatrix = 0 1 0 0 0 1 1 0 0\nOffset = 1 -2 3\nElementSpacing = 0.5 0.25 2\n";
+  const Scan scan = read_scan(write("a.mha", mha(fields, voxels<std::int16_t>())));
+  expect_voxels(scan.grid);
+  EXPECT_EQ(scan.format, "MetaImage");
+  EXPECT_TRUE(scan.grid.geometry().world_from_voxel(Vec3(1, 2, 3)).isApprox(Vec3(7, -1.5, 3.5)));
+  const std::string packed = zipped(voxels<std::int16_t>());
+  const std::string size = "CompressedDataSize = " + std::to_string(packed.size()) + "\n";
+  expect_voxels(read_scan(write("b.mha", mha(fields + "CompressedData = True\n" + size, packed))).grid);
+}
+
+TEST_F(VolumeFile, CompressedDataSizeOfMetaImageIsCheckedWhereItIsThere) {
+  const std::string packed = zipped(voxels<std::int16_t>());
+  const std::string fields = "CompressedData = True\n";
+  expect_voxels(read_scan(write("a.mha", mha(fields, packed))).grid);
+  EXPECT_TRUE(
+      contains(refusal(write("b.mha", mha(fields + "CompressedDataSize = 9\n", packed))), "take 9 bytes"));
+  EXPECT_TRUE(contains(refusal(write("c.mha", mha(fields + "CompressedDataSize = 999\n", packed))),
+                       "take 999 bytes"));
+  EXPECT_TRUE(
+      contains(refusal(write("d.mha", mha(fields, voxels<std::int16_t>()))), "cannot be decompressed"));
+}
+
+TEST_F(VolumeFile, NiftiIsTurnedFromRasToLps) {
+  const Scan scan = read_scan(write("a.nii", Nifti().with(voxels<std::int16_t>())));
+  expect_voxels(scan.grid);
+  EXPECT_EQ(scan.format, "NIfTI");
+  EXPECT_TRUE(scan.warnings.empty());
+  EXPECT_TRUE(scan.grid.geometry().world_from_voxel(Vec3(1, 2, 3)).isApprox(Vec3(-7, 1.5, 3.5)));
+}
+
+TEST_F(VolumeFile, DetachedMetaImageGivesTheSame) {
+  const std::string packed = zipped(voxels<std::int16_t>());
+  write("a.raw", voxels<std::int16_t>());
+  write("b.raw", "skip" + voxels<std::int16_t>());
+  write("a.zraw", packed);
+  for (const char* rest :
+       {"ElementDataFile = a.raw\n", "HeaderSize = 4\nElementDataFile = b.raw\n",
+        "HeaderSize = -1\nElementDataFile = b.raw\n", "CompressedData = True\nElementDataFile = a.zraw\n"}) {
+    SCOPED_TRACE(rest);
+    std::string header = mha("", "");
+    header.replace(header.find("ElementDataFile"), std::string::npos, rest);
+    expect_voxels(read_scan(write("a.mhd", header)).grid);
+  }
+}
+
+TEST_F(VolumeFile, CompressedNiftiGivesTheSameAndIsCheckedToItsEnd) {
+  const std::string bytes = Nifti().with(voxels<std::int16_t>());
+  const std::filesystem::path path = write_gzip("a.nii.gz", bytes);
+  expect_voxels(read_scan(path).grid);
+  const auto size = std::filesystem::file_size(path);
+  for (auto length = size - 1; length > 0; --length) {
+    std::filesystem::resize_file(path, length);
+    EXPECT_NE(refusal(path), "") << length << " of " << size;
+  }
+}
+
+TEST_F(VolumeFile, NiftiSlopeZeroMeansValuesAsStored) {
+  expect_voxels(read_scan(write("a.nii", Nifti().set<float>(116, 5.0F).with(voxels<std::int16_t>()))).grid);
+  const Scan scan = read_scan(
+      write("b.nii", Nifti().set<float>(112, 2.0F).set<float>(116, 5.0F).with(voxels<std::int16_t>())));
+  const VoxelIndex second{1, 0, 0};
+  EXPECT_EQ(scan.grid[second], 2 * -49 + 5);
+}
+
+TEST_F(VolumeFile, CutShortByOneByteIsRefused) {
+  const std::string data = voxels<std::int16_t>();
+  const std::string shorter = data.substr(0, data.size() - 1);
+  const std::string packed = zipped(data);
+  EXPECT_TRUE(contains(refusal(write("a.nrrd", nrrd("encoding: raw\n" + kPlaced, shorter))),
+                       "48 bytes, there are 47"));
+  EXPECT_TRUE(contains(refusal(write("a.mha", mha("", shorter))), "48 bytes, there are 47"));
+  EXPECT_TRUE(
+      contains(refusal(write("b.mha", mha("CompressedData = True\n", packed.substr(0, packed.size() - 1)))),
+               "cut short"));
+  EXPECT_TRUE(contains(refusal(write("a.nii", Nifti().with(shorter))), "48 bytes, there are 47"));
+}
+
+TEST_F(VolumeFile, HugeSizesAreRefusedBeforeAnythingIsAllocated) {
+  std::string bytes = nrrd("encoding: raw\n" + kPlaced, voxels<std::int16_t>());
+  bytes.replace(bytes.find("4 3 2"), 5, "9000 9000 9000");
+  EXPECT_TRUE(contains(refusal(write("a.nrrd", bytes)), "cut short"));
+  bytes = mha("", voxels<std::int16_t>());
+  bytes.replace(bytes.find("4 3 2"), 5, "4294967296 4294967296 1");
+  EXPECT_TRUE(contains(refusal(write("a.mha", bytes)), "impossible size"));
+}
+
+TEST_F(VolumeFile, AxesThatAreNotOrthogonalAreRefused) {
+  const std::string sheared = "encoding: raw\nspace: LPS\nspace directions: (1,0,0) (0.2,1,0) (0,0,1)\n";
+  EXPECT_TRUE(contains(refusal(write("a.nrrd", nrrd(sheared, voxels<std::int16_t>()))), "right angles"));
+  EXPECT_TRUE(contains(
+      refusal(write("a.mha", mha("TransformMatrix = 1 0 0 0.6 0.8 0 0 0 1\n", voxels<std::int16_t>()))),
+      "right angles"));
+  EXPECT_TRUE(contains(refusal(write("a.nii", Nifti().set<float>(280, 1.0F).with(voxels<std::int16_t>()))),
+                       "right angles"));
+}
+
+TEST_F(VolumeFile, DirectionsThatAreNoUnitVectorsAreRefused) {
+  for (const char* length : {"0", "1e-200", "0.5", "2", "1e200", "1e308", "nan"}) {
+    const std::string field = std::string("TransformMatrix = ") + length + " 0 0 0 1 0 0 0 1\n";
+    EXPECT_TRUE(contains(refusal(write("a.mha", mha(field, voxels<std::int16_t>()))), "not of length 1"))
+        << length;
+  }
+  const auto by_qform = Nifti().set<std::int16_t>(252, 1).set<std::int16_t>(254, 0).set<float>(256, 1e30F);
+  EXPECT_TRUE(contains(refusal(write("a.nii", by_qform.with(voxels<std::int16_t>()))), "no rotation"));
+}
+
+TEST_F(VolumeFile, SpacingsThatAreNoDistanceAreRefused) {
+  for (const char* spacing : {"0 1 1", "-1 1 1", "nan 1 1", "inf 1 1"}) {
+    const std::string fields = std::string("spacings: ") + spacing + "\nencoding: raw\n";
+    EXPECT_TRUE(contains(refusal(write("a.nrrd", nrrd(fields, voxels<std::int16_t>()))), "mm apart"))
+        << spacing;
+    const std::string field = std::string("ElementSpacing = ") + spacing + "\n";
+    EXPECT_TRUE(contains(refusal(write("a.mha", mha(field, voxels<std::int16_t>()))), "mm apart")) << spacing;
+  }
+  EXPECT_TRUE(contains(refusal(write("a.nii", Nifti().set<float>(84, 0.0F).with(voxels<std::int16_t>()))),
+                       "mm apart"));
+  EXPECT_TRUE(contains(refusal(write("b.nii", Nifti().set<float>(84, 0.3F).with(voxels<std::int16_t>()))),
+                       "different voxel sizes"));
+}
+
+TEST_F(VolumeFile, PlacesThatNoBoneCanHaveAreRefused) {
+  const auto of = [&](const std::string& spacings, const std::string& origin) {
+    const std::string fields = "space: LPS\nspace directions: (" + spacings + ",0,0) (0,1,0) (0,0,1)\n" +
+                               "space origin: (0," + origin + ",0)\nencoding: raw\n";
+    return write("a.nrrd", nrrd(fields, voxels<std::int16_t>()));
+  };
+  for (const char* spacing : {"0.0009", "100.1", "1e-6", "1e100"})
+    EXPECT_TRUE(contains(refusal(of(spacing, "0")), "mm apart")) << spacing;
+  for (const char* spacing : {"1e-200", "1e300"}) EXPECT_NE(refusal(of(spacing, "0")), "") << spacing;
+  for (const char* origin : {"100001", "-1e300"})
+    EXPECT_TRUE(contains(refusal(of("1", origin)), "from its origin")) << origin;
+  EXPECT_EQ(read_scan(of("0.001", "-1e5")).grid.geometry().spacing_mm.x(), 0.001);
+  EXPECT_EQ(read_scan(of("100", "1e5")).grid.geometry().spacing_mm.x(), 100);
+  EXPECT_TRUE(contains(refusal(write("a.mha", mha("ElementSpacing = 1e308 1 1\n", voxels<std::int16_t>()))),
+                       "1e+308 mm apart"));
+  EXPECT_TRUE(contains(refusal(write("a.nii", Nifti().set<float>(88, 1e-6F).with(voxels<std::int16_t>()))),
+                       "mm apart"));
+}
+
+TEST_F(VolumeFile, VoxelsThatHoldNoDensityAreRefused) {
+  for (const float bad :
+       {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), -1e30f}) {
+    std::string data = voxels<float>();
+    std::memcpy(data.data() + 4 * 7, &bad, 4);
+    std::string bytes = nrrd("encoding: raw\n" + kPlaced, data);
+    bytes.replace(bytes.find("short"), 5, "float");
+    EXPECT_TRUE(contains(refusal(write("a.nrrd", bytes)), "1 voxels hold no density"));
+  }
+}
+
+TEST_F(VolumeFile, WhatIsNoGreyVolumeIsRefused) {
+  std::string bytes = nrrd("encoding: raw\n" + kPlaced, voxels<std::int16_t>());
+  bytes.replace(bytes.find("dimension: 3\nsizes: 4 3 2"), 25, "dimension: 2\nsizes: 4 6");
+  EXPECT_TRUE(contains(refusal(write("a.nrrd", bytes)), "2 dimensions"));
+  EXPECT_TRUE(contains(refusal(write("a.mha", mha("ElementNumberOfChannels = 3\n", std::string(144, ' ')))),
+                       "several values"));
+  EXPECT_TRUE(contains(refusal(write("a.nii", Nifti().set<std::int16_t>(40, 4).set<std::int16_t>(48, 2).with(
+                                                  std::string(96, ' ')))),
+                       "2 volumes"));
+  EXPECT_TRUE(contains(refusal(write("b.nii", Nifti().set<std::int16_t>(70, 128).with(std::string(72, ' ')))),
+                       "type 128"));
+}
+
+TEST_F(VolumeFile, WhatIsNoScanIsRefusedByName) {
+  EXPECT_TRUE(contains(refusal(folder_ / "none.nrrd"), "none.nrrd: no such file"));
+  EXPECT_TRUE(contains(refusal(write("empty.nrrd", "")), "empty.nrrd: is empty"));
+  EXPECT_TRUE(contains(refusal(write("text.nrrd", "hello\n")), "is not NRRD"));
+  EXPECT_TRUE(contains(refusal(write("text.mha", "hello\n")), "is not MetaImage"));
+  EXPECT_TRUE(contains(refusal(write("text.nii", "hello\n")), "header"));
+  EXPECT_TRUE(contains(refusal(write("text.txt", "hello\n")), "is not a scan"));
+  EXPECT_TRUE(contains(refusal(write("c.nhdr", nrrd("encoding: raw\ndata file: gone.raw\n" + kPlaced, ""))),
+                       "gone.raw is not there"));
+}
+
+}  // namespace
+}  // namespace osteomill

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "osteomill/base/pose.h"
+
+namespace osteomill {
+
+/// A spherical burr on a cylindrical shaft. In the tool frame T the burr's centre is the origin and the shaft
+/// runs along +z, from the burr's centre to z = `shaft_length_mm`, with a flat end.
+struct MillingTool {
+  double burr_radius_mm = 1.5;
+  double shaft_radius_mm = 1.0;
+  double shaft_length_mm = 25.0;
+  friend bool operator==(const MillingTool&, const MillingTool&) = default;
+};
+
+/// Throws std::invalid_argument, saying which, where a size is not positive and finite.
+void require_valid(const MillingTool& tool);
+
+/// An axis-aligned box in T.
+struct ToolBox {
+  Vec3 min_mm;
+  Vec3 max_mm;
+};
+ToolBox bounding_box(const MillingTool& tool);
+
+/// The distance of a point to the tool's surface, negative inside, and the unit direction in which it grows
+/// fastest (out of the tool), both in T. On the axis, where there is no such direction, some unit vector.
+struct ToolDistance {
+  double distance_mm;
+  Vec3 outward_T;
+};
+
+/// In closed form: the smaller of the distances to the burr's sphere and the shaft's cylinder, which outside
+/// the tool is exact and inside it is exact away from where the two meet. Safe in the haptic tick.
+ToolDistance tool_distance(const MillingTool& tool, const Vec3& point_T) noexcept;
+
+}  // namespace osteomill

@@ -1,0 +1,391 @@
+#include "barrier_shell/barrier_shell.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include <Eigen/Cholesky>
+
+#include "osteomill/haptics/sample_points.h"
+#include "osteomill/volume/sampling.h"
+
+#include "barrier_shell/certificate.h"
+
+namespace osteomill::barrier_shell {
+
+namespace {
+
+constexpr std::size_t kNearPoints = 65536;
+constexpr int kCentrelinePoints = 51;
+
+// Sums over the points a tick, at most.
+constexpr int kPasses = 4;
+// A step that is to be taken shorter for the energy to fall, and how often.
+constexpr double kShorter = 0.4;
+// Where the solver is done.
+constexpr double kDone_mm = 2e-4;
+constexpr double kDone_rad = 2e-5;
+// Of the energy, which is summed in single precision.
+constexpr double kEnergyRounding = 1e-6;
+// Less is no rise: the last, least step and another order of summing.
+constexpr double kNoRise = 1e-5;
+
+// The most that the tool moves between two gatherings, and what a gathering reaches for.
+constexpr Room kMaxRoom{0.4, 0.03};
+constexpr Room kMinRoom{0.05, 0.004};
+constexpr Room kRoomToSpare{0.03, 0.002};
+constexpr double kRoomPerMove = 3;
+// In free space: farther than the fastest hand goes in a tick.
+constexpr Room kFarthestFlight{5.0, 0.3};
+
+// For a tool that begins in touch with bone: its cores are first made so small that the nearest point lies
+// kStartShare of the skin's width away. They then grow at up to kGrowth_mm_s, as long as the nearest point
+// keeps more than kGrownShare of the skin's width.
+constexpr double kStartShare = 0.2;
+constexpr double kGrownShare = 0.02;
+constexpr double kGrowth_mm_s = 5;
+// A device that moved so far in a tick was put there, not moved by a hand; the wrench then changes over so
+// long.
+constexpr double kJump_mm = 1;
+constexpr double kJump_rad = 0.1;
+constexpr double kFastestHand_mm_s = 1000;
+constexpr double kFastestHand_rad_s = 100;
+constexpr double kRamp_s = 0.2;
+
+Room room_of(const ToolMove& move) {
+  return {move.translation_mm.norm(), move.rotation_rad.norm()};
+}
+
+Room room_of(const Vector6& move_T) {
+  return {move_T.head<3>().norm(), move_T.tail<3>().norm()};
+}
+
+ToolMove in_world(const Pose& X_WT, const Vector6& move_T) {
+  return {X_WT.orientation * Vec3(move_T.head<3>()), X_WT.orientation * Vec3(move_T.tail<3>())};
+}
+
+// How often the damping is corrected, and by how much a step may then leave the balls before it is cut short.
+constexpr int kDampings = 6;
+constexpr double kBoundKept = 1.01;
+// Of a radius that is divided by: in a tick of no length nothing is released.
+constexpr double kMinRadius = 1e-9;
+
+// A small tool's skin is thinner with its rounding, so that what is drawn is felt at once. And a burr meets
+// about its section of bone: with pressures against that, any burr is held alike where it is drawn.
+Barrier skin_of(const MillingTool& tool, const Settings& settings) {
+  const double thinner = inset_within(tool, settings.rounding_mm) / settings.rounding_mm;
+  const double smaller = MillingTool{}.burr_radius_mm / tool.burr_radius_mm;
+  return {thinner * settings.skin_width_mm, smaller * smaller * settings.pressure_N_per_mm2};
+}
+
+// The widest spacing whose points a core of this radius does not pass between: half the diagonal of four
+// points, with an eighth to spare.
+double widest_spacing_mm(double core_radius_mm) {
+  constexpr double kShareOfCore = 1.2;
+  return kShareOfCore * core_radius_mm;
+}
+
+struct NewtonStep {
+  Vector6 move_T;
+  bool is_damped = false;
+};
+
+// Newton's step; where the energy is not convex, that of a convex one above it. Where it would leave one of
+// the balls in which the tool's move may end, damping in proportion to the coupling's stiffness C keeps it in
+// both, so that force and torque fade together: u = so_far_T + step, with so_far_T the move since the tick's
+// start less the balls' middles, solves (H + mu C) u = H so_far_T - g, and mu is brought to where u lies on
+// the sphere, as in a trust region (More and Sorensen 1983).
+NewtonStep newton_step(const EnergySum& sum, const Coupling& coupling, const Vector6& so_far_T,
+                       const MoveBound& bound) {
+  Matrix6 H = sum.convex + sum.rest;
+  Eigen::LLT<Matrix6> factor(H);
+  if (factor.info() != Eigen::Success) factor.compute(H = sum.convex);
+  NewtonStep step{-factor.solve(sum.gradient)};
+  Vector6 stiffness;
+  stiffness << Vec3::Constant(coupling.translational_N_per_mm),
+      Vec3::Constant(coupling.torsional_Nmm_per_rad);
+  const Vector6 pull = H * so_far_T - sum.gradient;
+  const double radii[2] = {std::max(bound.radius_mm, kMinRadius), std::max(bound.radius_rad, kMinRadius)};
+  double damping = 0;
+  for (int n = 0; n < kDampings; ++n) {
+    const Vector6 u = so_far_T + step.move_T;
+    const double over[2] = {u.head<3>().norm() / radii[0], u.tail<3>().norm() / radii[1]};
+    const int worse = over[1] > over[0] ? 1 : 0;
+    if (over[worse] <= kBoundKept) break;
+    const Vector6 falling = factor.solve(stiffness.cwiseProduct(u));
+    const auto part = u.segment<3>(3 * worse);
+    damping +=
+        (over[worse] - 1) * part.squaredNorm() / std::max(part.dot(falling.segment<3>(3 * worse)), 1e-12);
+    step.is_damped = true;
+    Matrix6 damped = H;
+    damped.diagonal() += damping * stiffness;
+    factor.compute(damped);
+    step.move_T = factor.solve(pull) - so_far_T;
+  }
+  for (int part = 0; part < 2; ++part) {
+    step.move_T *= share_within(Vec3::Zero(), kBoundKept * radii[part], so_far_T.segment<3>(3 * part),
+                                step.move_T.segment<3>(3 * part));
+  }
+  return step;
+}
+
+}  // namespace
+
+// A pose and what was summed there.
+struct BarrierShell::State {
+  Pose X_WT;
+  EnergySum sum;
+  double barrier_Nmm = 0;
+  Vec3 burr_force_T = Vec3::Zero();
+};
+
+struct BarrierShell::Step {
+  Vector6 move_T;
+  // So small that what is summed after it would be the same.
+  bool is_last = false;
+  bool reaches_device = false;
+};
+
+const Counts* counts_of(const HapticAlgorithm& algorithm) {
+  const auto* shell = dynamic_cast<const BarrierShell*>(&algorithm);
+  return shell == nullptr ? nullptr : &shell->counts();
+}
+
+BarrierShell::BarrierShell(const Settings& settings)
+    : settings_(settings),
+      coupling_{settings.translational_stiffness_N_per_mm, settings.torsional_stiffness_Nmm_per_rad} {}
+
+void BarrierShell::prepare(const Scene& scene) {
+  if (scene.volume == nullptr) throw std::invalid_argument("barrier-shell: the scene has no volume");
+  require_valid(scene.tool);
+  volume_ = scene.volume;
+  tool_ = scene.tool;
+  barrier_ = skin_of(scene.tool, settings_);
+  centreline_T_ = centreline_vertices(scene.tool, kCentrelinePoints);
+  smaller_mm_ = 0;
+  const Cores whole = cores();
+  const double at_shaft_mm = widest_spacing_mm(whole.cylinder_radius_mm);
+  const double spacing_mm =
+      std::min({settings_.point_spacing_mm, widest_spacing_mm(whole.ball_radius_mm), at_shaft_mm});
+  bricks_ = BoneBricks(*scene.volume, spacing_mm);
+  near_ = NearBone(kNearPoints, 2 * spacing_mm > at_shaft_mm);
+  reset();
+}
+
+void BarrierShell::reset() noexcept {
+  has_pose_ = false;
+  carried_ = false;
+  has_energy_ = false;
+  sent_ = {};
+}
+
+void BarrierShell::volume_changed(const VolumeChange& change) noexcept {
+  bricks_.refresh(change.voxels);
+}
+
+Cores BarrierShell::cores() const {
+  return Cores::within(tool_, settings_.rounding_mm, smaller_mm_);
+}
+
+// Begins with cores so small that no point lies in them. Called in every tick until all bone about the tool
+// is known.
+void BarrierShell::begin_outside(const Pose& X_WD) {
+  last_move_ = {};
+  smaller_mm_ = 0;
+  ramp_ = 0;
+  ramp_from_ = {};
+  has_energy_ = false;
+  if (carried_) return;
+  gather(X_WT_, {});
+  has_begun_ = !near_.is_incomplete();
+  const NearBone::Energy energy = near_.energy(cores(), barrier_, X_WT_);
+  const double nearest_mm = std::min(energy.ball.nearest_mm, energy.cylinder.nearest_mm);
+  smaller_mm_ = std::max(0.0, kStartShare * barrier_.width_mm - nearest_mm);
+  if (energy.ball.touching + energy.cylinder.touching == 0 && X_WT_ == X_WD) ramp_ = 1;
+}
+
+void BarrierShell::grow_cores(double nearest_mm, double dt_s) {
+  if (smaller_mm_ == 0) return;
+  // No more than there is room for: in a hole too narrow for the tool they stay as small as it.
+  const double room_mm = 0.2 * (nearest_mm - kGrownShare * barrier_.width_mm);
+  const double growth = std::clamp(room_mm, 0.0, kGrowth_mm_s * std::max(0.0, dt_s));
+  smaller_mm_ = std::max(0.0, smaller_mm_ - growth);
+  has_energy_ = false;
+}
+
+void BarrierShell::gather(const Pose& X_WT, const Room& room) {
+  room_ = room_left_ = room;
+  near_.gather(bricks_, cores(), barrier_.width_mm, X_WT, room);
+}
+
+BarrierShell::State BarrierShell::evaluated(const Pose& X_WT, const Pose& X_WD) {
+  const NearBone::Energy energy = near_.energy(cores(), barrier_, X_WT);
+  State state{X_WT, coupling_.sum(X_WT, X_WD), energy.ball.energy_Nmm + energy.cylinder.energy_Nmm,
+              energy.ball.gradient.head<3>()};
+  state.sum += energy.ball;
+  state.sum += energy.cylinder;
+  ++counts_.passes;
+  counts_.most_points = std::max<std::uint64_t>(counts_.most_points, near_.point_count());
+  return state;
+}
+
+// What was stored must not have grown where nobody moved the device.
+void BarrierShell::watch_energy(const State& state) {
+  if (!has_energy_) return;
+  const double now_Nmm = state.barrier_Nmm + coupling_.energy_Nmm(state.X_WT, X_WD_before_);
+  const double rise_Nmm = now_Nmm - energy_before_Nmm_;
+  if (rise_Nmm <= kNoRise * (1 + energy_before_Nmm_)) return;
+  ++counts_.energy_rises;
+  counts_.energy_risen_Nmm += rise_Nmm;
+  counts_.worst_rise_Nmm = std::max(counts_.worst_rise_Nmm, rise_Nmm);
+}
+
+// Nothing near, nothing held back, and free space all the way.
+bool BarrierShell::may_fly(const Pose& X_WD, const MoveBound& bound) {
+  const ToolMove move = move_between(X_WT_, X_WD);
+  const Room way = room_of(move);
+  return near_.is_empty() && share_within(bound, move) >= 1 && way.move_mm <= kFarthestFlight.move_mm &&
+         way.turn_rad <= kFarthestFlight.turn_rad &&
+         is_clear(bricks_, cores(), barrier_.width_mm, X_WT_, way);
+}
+
+void BarrierShell::gather_for_next_move() {
+  const auto reach = [](double last, double spare, double min, double max) {
+    return std::clamp(kRoomPerMove * last + spare, min, max);
+  };
+  gather(X_WT_, {reach(last_move_.move_mm, kRoomToSpare.move_mm, kMinRoom.move_mm, kMaxRoom.move_mm),
+                 reach(last_move_.turn_rad, kRoomToSpare.turn_rad, kMinRoom.turn_rad, kMaxRoom.turn_rad)});
+}
+
+// The share of a step for which there is room since the gathering.
+double BarrierShell::share_with_room(const Room& step) const {
+  const double move = step.move_mm > room_left_.move_mm ? room_left_.move_mm / step.move_mm : 1;
+  const double turn = step.turn_rad > room_left_.turn_rad ? room_left_.turn_rad / step.turn_rad : 1;
+  return std::max(0.0, std::min(move, turn));
+}
+
+// Newton's, as much of it as is certified and may be released.
+BarrierShell::Step BarrierShell::next_step(const State& best, const MoveBound& bound) {
+  const ToolMove so_far = move_between(X_WT_, best.X_WT);
+  const Vec3 moved = so_far.translation_mm - bound.middle.translation_mm;
+  const Vec3 turned = so_far.rotation_rad - bound.middle.rotation_rad;
+  const Quat to_T = best.X_WT.orientation.conjugate();
+  Vector6 so_far_T;
+  so_far_T << to_T * moved, to_T * turned;
+  const NewtonStep newton = newton_step(best.sum, coupling_, so_far_T, bound);
+  Step step{newton.move_T};
+  const Room wanted = room_of(step.move_T);
+  step.is_last = wanted.move_mm <= kDone_mm && wanted.turn_rad <= kDone_rad;
+  // Nothing is summed after it: back from the rim of a ball, where the damping is a little too much, it
+  // stays.
+  const Vector6 slope = best.sum.gradient + 0.5 * (best.sum.convex + best.sum.rest) * step.move_T;
+  if (step.is_last && slope.dot(step.move_T) > 0) step.move_T.setZero();
+  if (!step.is_last && share_with_room(wanted) < 1 && room_.move_mm < kMaxRoom.move_mm) {
+    gather(best.X_WT, kMaxRoom);
+    near_.energy(cores(), barrier_, best.X_WT);
+  }
+  if (near_.is_incomplete()) return {Vector6::Zero(), true};
+  const double with_room = share_with_room(wanted);
+  step.move_T *= with_room;
+  const double certified =
+      certified_share(near_.max_use({step.move_T.head<3>(), step.move_T.tail<3>()}, barrier_));
+  step.move_T *= certified;
+  step.reaches_device = best.sum.touching == 0 && !newton.is_damped && with_room >= 1 && certified >= 1;
+  return step;
+}
+
+Pose BarrierShell::after(const State& best, const Step& step, const Pose& X_WD) {
+  return step.reaches_device ? X_WD : moved(best.X_WT, in_world(best.X_WT, step.move_T));
+}
+
+BarrierShell::State BarrierShell::solve(const Pose& X_WD, double dt_s) {
+  const Pose start = X_WT_;
+  const MoveBound bound =
+      move_bound(start, X_WD_before_, X_WD, coupling_.length_mm(),
+                 {settings_.release_time_s, settings_.release_mm_s, settings_.release_rad_s}, dt_s);
+  gather_for_next_move();
+  if (may_fly(X_WD, bound)) return {X_WD};
+  State best = evaluated(start, X_WD);
+  watch_energy(best);
+  counts_.nearest_share = std::min(counts_.nearest_share, best.sum.nearest_mm / barrier_.width_mm);
+  for (int passes = 1;;) {
+    Step step = next_step(best, bound);
+    if (step.is_last) {
+      best.X_WT = after(best, step, X_WD);
+      return best;
+    }
+    bool taken = false;
+    while (!taken && passes < kPasses) {
+      const State trial = evaluated(after(best, step, X_WD), X_WD);
+      ++passes;
+      taken = trial.sum.energy_Nmm <= best.sum.energy_Nmm * (1 + kEnergyRounding);
+      if (taken) {
+        room_left_.move_mm -= step.move_T.head<3>().norm();
+        room_left_.turn_rad -= step.move_T.tail<3>().norm();
+        best = trial;
+      } else {
+        step.move_T *= kShorter;
+        step.reaches_device = false;
+      }
+    }
+    if (!taken) break;
+  }
+  ++counts_.unfinished;
+  return best;
+}
+
+HapticStep BarrierShell::report(const State& state, const Pose& X_WD, double dt_s) {
+  const Room device = room_of(move_between(X_WD_before_, X_WD));
+  if (device.move_mm > std::max(kJump_mm, kFastestHand_mm_s * dt_s) ||
+      device.turn_rad > std::max(kJump_rad, kFastestHand_rad_s * dt_s)) {
+    ramp_ = 0;
+    ramp_from_ = sent_;
+  }
+  HapticStep result;
+  result.X_WT = X_WT_;
+  result.contacts = state.sum.touching;
+  result.burr_force_W_N = X_WT_.orientation * state.burr_force_T;
+  result.wrench = coupling_.wrench_on_hand(X_WT_, X_WD);
+  if (ramp_ < 1) {
+    ramp_ = std::min(1.0, ramp_ + std::max(0.0, dt_s) / kRamp_s);
+    result.wrench = ramp_ * result.wrench + (1 - ramp_) * ramp_from_;
+    // Bone is paid for with what the hand gives.
+    result.burr_force_W_N *= ramp_;
+  }
+  sent_ = result.wrench;
+  return result;
+}
+
+HapticStep BarrierShell::step(const Pose& X_WD, double dt_s) noexcept {
+  bricks_.begin_tick(tool_, X_WT_);
+  ++counts_.ticks;
+  if (!has_pose_) X_WD_before_ = X_WD;
+  // Nothing is known of where a tool came from that begins: in bone it is carried out, beside bone it has
+  // come from outside, however deep its rim may lie in it.
+  if (carried_ || !has_pose_) {
+    carried_ = count_in_bone(*volume_, centreline_T_, X_WD) > 0;
+    X_WT_ = X_WD;
+    has_begun_ = false;
+  }
+  if (!has_begun_) begin_outside(X_WD);
+  HapticStep result;
+  if (carried_) {
+    result.X_WT = X_WT_;
+    sent_ = {};
+  } else {
+    const Pose start = X_WT_;
+    const State state = solve(X_WD, dt_s);
+    X_WT_ = state.X_WT;
+    energy_before_Nmm_ = state.sum.energy_Nmm;
+    has_energy_ = true;
+    near_.find_bearing(barrier_.width_mm, bricks_.bearing());
+    grow_cores(state.sum.nearest_mm, dt_s);
+    last_move_ = room_of(move_between(start, X_WT_));
+    result = report(state, X_WD, dt_s);
+  }
+  result.owed_bricks = static_cast<int>(bricks_.owed());
+  has_pose_ = true;
+  X_WD_before_ = X_WD;
+  return result;
+}
+
+}  // namespace osteomill::barrier_shell

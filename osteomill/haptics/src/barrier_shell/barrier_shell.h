@@ -1,0 +1,102 @@
+#pragma once
+
+#include <vector>
+
+#include "osteomill/haptics/algorithm_description.h"
+#include "osteomill/haptics/barrier_shell_counts.h"
+#include "osteomill/haptics/haptic_algorithm.h"
+
+#include "barrier_shell/coupling.h"
+#include "bone_points/bone_bricks.h"
+#include "bone_points/near_bone.h"
+#include "tool_move.h"
+
+namespace osteomill::barrier_shell {
+
+/// Settings of the barrier-shell algorithm, as its description says them. There are no switches.
+struct Settings {
+  double translational_stiffness_N_per_mm = 2;
+  double torsional_stiffness_Nmm_per_rad = 1000;
+  double skin_width_mm = 0.25;
+  double rounding_mm = 0.212;
+  double pressure_N_per_mm2 = 3;
+  double point_spacing_mm = BoneBricks::kSpacing_mm;
+  double release_time_s = Release{}.time_s;
+  double release_mm_s = Release{}.mm_s;
+  double release_rad_s = Release{}.rad_s;
+};
+
+/// Algorithm 4: the tool rests on a soft skin of bone that nothing can push through. Two convex cores within
+/// the tool keep away from the isosurface's points by a barrier that grows without bound; each tick a few
+/// Newton steps lower the sum of barrier and virtual coupling, and each step is certified free of penetration
+/// before it is taken. Incremental potential contact (Li et al. 2020) for a tool on a volume that changes.
+///
+/// `X_WT` of a step is the simulated tool, the wrench the coupling's; `contacts` counts the points that a
+/// core meets, `burr_force_W_N` is what the ball presses with.
+class BarrierShell final : public HapticAlgorithm {
+ public:
+  /// Settings within their ranges.
+  explicit BarrierShell(const Settings& settings);
+
+  void prepare(const Scene& scene) override;
+  HapticStep step(const Pose& X_WD, double dt_s) noexcept override;
+  void volume_changed(const VolumeChange& change) noexcept override;
+  void reset() noexcept override;
+  int sample_point_count() const override { return static_cast<int>(bricks_.fine().total()); }
+
+  const Counts& counts() const { return counts_; }
+
+ private:
+  struct State;
+  struct Step;
+  void begin_outside(const Pose& X_WD);
+  void grow_cores(double nearest_mm, double dt_s);
+  Cores cores() const;
+  State evaluated(const Pose& X_WT, const Pose& X_WD);
+  void gather(const Pose& X_WT, const Room& room);
+  void gather_for_next_move();
+  bool may_fly(const Pose& X_WD, const MoveBound& bound);
+  double share_with_room(const Room& step) const;
+  Step next_step(const State& best, const MoveBound& bound);
+  static Pose after(const State& best, const Step& step, const Pose& X_WD);
+  State solve(const Pose& X_WD, double dt_s);
+  void watch_energy(const State& state);
+  HapticStep report(const State& state, const Pose& X_WD, double dt_s);
+
+  Settings settings_;
+  Coupling coupling_;
+  Barrier barrier_{};
+  MillingTool tool_;
+  const Volume* volume_ = nullptr;
+  std::vector<Vec3> centreline_T_;
+  BoneBricks bricks_;
+  NearBone near_;
+
+  bool has_pose_ = false;
+  Pose X_WT_;
+  Pose X_WD_before_;
+  // How far the tool went in the last tick: what the next gathering reaches for.
+  Room last_move_;
+  // Of the last gathering, and what is left of it.
+  Room room_;
+  Room room_left_;
+  // Began inside bone and has not yet been outside: with the device, and nothing is felt.
+  bool carried_ = false;
+  // Whether all bone about it was known when it began: until then it stands still.
+  bool has_begun_ = false;
+  // By how much the cores are yet smaller than they will be, for a tool that began in touch with bone.
+  double smaller_mm_ = 0;
+  // The wrench goes from what was sent to what is to be felt.
+  double ramp_ = 1;
+  Wrench ramp_from_;
+  Wrench sent_;
+  // At the end of the last tick; none where nothing is to be compared.
+  double energy_before_Nmm_ = 0;
+  bool has_energy_ = false;
+  Counts counts_;
+};
+
+/// Describes algorithm 4, not the paper's.
+AlgorithmDescription description();
+
+}  // namespace osteomill::barrier_shell

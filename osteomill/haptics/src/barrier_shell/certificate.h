@@ -1,0 +1,31 @@
+#pragma once
+
+#include "bone_points/energy_sum.h"
+
+namespace osteomill::barrier_shell {
+
+/// How much of a core's distance to a point the whole move may use up, at most; the share t of it no more
+/// than t of that. The distance to a convex body is convex along a straight line, so it falls no faster than
+/// at first; a turn bends the point's path, seen from the tool, by at most t^2 (|omega| |delta| + 1/2
+/// |omega|^2 |r|). May be negative, where the move leads away. Safe in the haptic tick.
+inline double distance_used(const Vec3& point_T, const Vec3& outward_T, const MoveT& move) noexcept {
+  const double omega = move.omega_rad.norm();
+  return outward_T.dot(move.delta_mm + move.omega_rad.cross(point_T)) +
+         omega * (move.delta_mm.norm() + 0.5 * omega * point_T.norm());
+}
+
+/// The same for the ball, which a turn about its centre leaves as it is: exact in translation.
+inline double distance_used_by_ball(const Vec3& outward_T, const MoveT& move) noexcept {
+  return outward_T.dot(move.delta_mm);
+}
+
+/// A step leaves every point at least this share of its distance.
+inline constexpr double kDistanceKept = 0.1;
+
+/// The greatest share of a move that leaves every point `kDistanceKept` of its distance, given the greatest
+/// `distance_used / distance` of all points.
+inline double certified_share(double max_use) noexcept {
+  return max_use > 1 - kDistanceKept ? (1 - kDistanceKept) / max_use : 1.0;
+}
+
+}  // namespace osteomill::barrier_shell

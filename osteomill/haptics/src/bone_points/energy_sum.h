@@ -1,0 +1,39 @@
+#pragma once
+
+#include <limits>
+
+#include <Eigen/Core>
+
+#include "bone_points/barrier.h"
+#include "bone_points/cores.h"
+
+namespace osteomill {
+
+/// A move of the tool (mm, rad) and what is dual to it (N, N mm), both in T's axes about the burr's centre.
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+
+/// A move of the tool in T's axes: x(t) = x + R t delta, R(t) = R exp(t omega), t from 0 to 1.
+struct MoveT {
+  Vec3 delta_mm;
+  Vec3 omega_rad;
+};
+
+/// The energy of some points and its derivatives by a move of the tool, at t = 0. Of points that push without
+/// an energy only the gradient, which is what they push with, and `convex`. Safe in the haptic tick.
+struct EnergySum {
+  double energy_Nmm = 0;
+  Vector6 gradient = Vector6::Zero();
+  /// The second derivative is `convex` + `rest`; `convex` alone is positive semi-definite.
+  Matrix6 convex = Matrix6::Zero();
+  Matrix6 rest = Matrix6::Zero();
+  int touching = 0;
+  double nearest_mm = std::numeric_limits<double>::infinity();
+
+  EnergySum& operator+=(const EnergySum& other);
+  /// What a point adds that pushes with `push` (energy, pressure and stiffness of all its area) at `point_T`,
+  /// `distance` from a part of the tool: the plain way, for every part.
+  void add_point(const Barrier::Value& push, const Vec3& point_T, const CoreDistance& distance);
+};
+
+}  // namespace osteomill

@@ -1,0 +1,119 @@
+#include "bone_points/near_bone.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bone_points/near_kernel.h"
+#include "bone_points/tool_from_grid.h"
+
+namespace osteomill {
+
+namespace {
+
+// More than the rounding of a place near the tool.
+constexpr double kClear_mm = 1e-4;
+
+constexpr std::size_t kBricks = 4096;
+
+// Which core a sphere of points may touch within the room.
+struct Meeting {
+  const Cores& cores;
+  double reach_mm;
+  double turn_rad;
+
+  bool ball(const Vec3& centre_T, double radius_mm) const {
+    const double within = cores.ball_radius_mm + reach_mm + radius_mm + kClear_mm;
+    return centre_T.squaredNorm() < within * within;
+  }
+  bool cylinder(const Vec3& centre_T, double radius_mm) const {
+    const double z = centre_T.z();
+    const double rho2 = centre_T.x() * centre_T.x() + centre_T.y() * centre_T.y();
+    const double lever = std::sqrt(rho2 + z * z) + radius_mm;
+    const double within = reach_mm + turn_rad * lever + radius_mm + kClear_mm;
+    const double beside = cores.cylinder_radius_mm + within;
+    if (rho2 >= beside * beside) return false;
+    return z > -within && z < cores.cylinder_length_mm + within;
+  }
+  bool any(const Vec3& centre_T, double radius_mm) const {
+    return ball(centre_T, radius_mm) || cylinder(centre_T, radius_mm);
+  }
+};
+
+}  // namespace
+
+NearBone::NearBone(std::size_t capacity, bool fine_at_cylinder)
+    : fine_at_cylinder_(fine_at_cylinder), ball_(capacity), cylinder_(capacity) {
+  if (capacity > 0) bricks_.reserve(kBricks);
+}
+
+void NearBone::gather(BoneBricks& bricks, const Cores& cores, double reach_mm, const Pose& X_WT,
+                      const Room& room) noexcept {
+  X_WT_gathered_ = X_WT;
+  ball_.count = cylinder_.count = 0;
+  bricks_.clear();
+  ball_.overflowed = cylinder_.overflowed = false;
+  const BrickPoints& at_cylinder = fine_at_cylinder_ ? bricks.fine() : bricks.coarse();
+  const ToolFromGrid X_TG(bricks.lattice(), X_WT);
+  const Meeting meets{cores, reach_mm + room.move_mm, room.turn_rad};
+  const Reach reach{meets.reach_mm, room.turn_rad};
+  const auto meets_node = [&](const Vec3& middle_G, double radius_mm) {
+    return meets.any(X_TG * middle_G, radius_mm);
+  };
+  brick_missing_ = !bricks.visit(meets_node, [&](const VoxelIndex& brick, std::uint32_t slot) {
+    if (bricks_.size() < bricks_.capacity()) bricks_.push_back({slot, ball_.count, cylinder_.count});
+    const Vec3 origin_T = X_TG * bricks.lattice().brick_origin_G(brick);
+    const Frame frame = frame_of(X_TG.turn, origin_T);
+    const auto middle_T = [&](const BrickPoints& points) -> Vec3 {
+      return origin_T + X_TG.turn * points.brick(slot).bound.centre();
+    };
+    const auto radius_mm = [&](const BrickPoints& points) {
+      return static_cast<double>(points.brick(slot).bound.radius_mm);
+    };
+    if (meets.ball(middle_T(bricks.fine()), radius_mm(bricks.fine()))) {
+      gather_near_ball(bricks.fine(), bricks.fine().brick(slot).first_chunk, frame, cores, reach, ball_);
+    }
+    if (meets.cylinder(middle_T(at_cylinder), radius_mm(at_cylinder))) {
+      gather_near_cylinder(at_cylinder, at_cylinder.brick(slot).first_chunk, frame, cores, reach, cylinder_);
+    }
+  });
+  close_gathering(ball_);
+  close_gathering(cylinder_);
+}
+
+NearBone::Energy NearBone::energy(const Cores& cores, const Barrier& barrier, const Pose& X_WT) noexcept {
+  const Mat3 R_TW = X_WT.orientation.conjugate().toRotationMatrix();
+  const Frame moved = frame_of(R_TW * X_WT_gathered_.orientation.toRotationMatrix(),
+                               R_TW * (X_WT_gathered_.position_mm - X_WT.position_mm));
+  return {ball_energy(ball_, moved, cores, barrier), cylinder_energy(cylinder_, moved, cores, barrier)};
+}
+
+void NearBone::find_bearing(double within_mm, std::vector<std::uint32_t>& slots) const noexcept {
+  const auto within = static_cast<float>(within_mm);
+  const auto bears = [&](const NearPoints& near, std::size_t first, std::size_t end) {
+    const auto at = [&](std::size_t n) { return near.distance.begin() + static_cast<std::ptrdiff_t>(n); };
+    return std::any_of(at(first), at(end), [&](float distance) { return distance < within; });
+  };
+  slots.clear();
+  for (std::size_t n = 0; n < bricks_.size() && slots.size() < slots.capacity(); ++n) {
+    const bool last = n + 1 == bricks_.size();
+    if (bears(ball_, bricks_[n].at_ball, last ? ball_.count : bricks_[n + 1].at_ball) ||
+        bears(cylinder_, bricks_[n].at_cylinder, last ? cylinder_.count : bricks_[n + 1].at_cylinder)) {
+      slots.push_back(bricks_[n].slot);
+    }
+  }
+}
+
+double NearBone::max_use(const MoveT& move, const Barrier& barrier) const noexcept {
+  const double min_mm = Barrier::kNearestShare * barrier.width_mm;
+  return std::max(max_use_by_ball(ball_, move, min_mm), max_use_by_cylinder(cylinder_, move, min_mm));
+}
+
+bool is_clear(BoneBricks& bricks, const Cores& cores, double reach_mm, const Pose& X_WT,
+              const Room& room) noexcept {
+  const ToolFromGrid X_TG(bricks.lattice(), X_WT);
+  const Meeting meets{cores, reach_mm + room.move_mm, room.turn_rad};
+  return !bricks.may_hold_points(
+      [&](const Vec3& middle_G, double radius_mm) { return meets.any(X_TG * middle_G, radius_mm); });
+}
+
+}  // namespace osteomill

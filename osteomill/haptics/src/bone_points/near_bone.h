@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "bone_points/bone_bricks.h"
+#include "bone_points/near_points.h"
+
+namespace osteomill {
+
+/// How far the tool may move before points have to be gathered again.
+struct Room {
+  double move_mm = 0;
+  double turn_rad = 0;
+};
+
+/// The bone near a tool's ball and cylinder: gathered once and then good for every pose that the room allows.
+/// Safe in the haptic tick.
+class NearBone {
+ public:
+  /// Room for `capacity` points at each part; the cylinder meets the bricks' coarse points, or as the ball
+  /// the fine ones.
+  explicit NearBone(std::size_t capacity = 0, bool fine_at_cylinder = false);
+
+  /// Gathers the points that may come within `reach_mm` of a part at `X_WT` or anywhere within the room.
+  /// Makes bricks, as many as a tick may.
+  void gather(BoneBricks& bricks, const Cores& cores, double reach_mm, const Pose& X_WT,
+              const Room& room) noexcept;
+  /// Whether a point may have been left out, for want of room or since its brick is not made yet: the tool
+  /// must not move.
+  bool is_incomplete() const noexcept { return brick_missing_ || ball_.overflowed || cylinder_.overflowed; }
+  bool is_empty() const noexcept { return point_count() == 0; }
+  /// How many points a sum goes through.
+  std::size_t point_count() const noexcept { return ball_.count + cylinder_.count; }
+
+  struct Energy {
+    EnergySum ball;
+    EnergySum cylinder;
+  };
+  /// At a pose within the room of the last gathering.
+  Energy energy(const Cores& cores, const Barrier& barrier, const Pose& X_WT) noexcept;
+  /// The slots of the bricks that have points nearer than `within_mm` to a part at the pose of the last
+  /// `energy`, as many as there is room for in `slots`.
+  void find_bearing(double within_mm, std::vector<std::uint32_t>& slots) const noexcept;
+  /// The greatest share of any point's distance that a move from the pose of the last `energy` by a barrier
+  /// may use up.
+  double max_use(const MoveT& move, const Barrier& barrier) const noexcept;
+
+ private:
+  // A brick's slot, and where its points begin.
+  struct Gathered {
+    std::uint32_t slot;
+    std::size_t at_ball;
+    std::size_t at_cylinder;
+  };
+
+  bool fine_at_cylinder_;
+  std::vector<Gathered> bricks_;
+  bool brick_missing_ = false;
+  Pose X_WT_gathered_;
+  NearPoints ball_;
+  NearPoints cylinder_;
+};
+
+/// Whether no bone can be within `reach_mm` of the tool at `X_WT` or anywhere within the room; makes no
+/// bricks, and may say no where it is so.
+bool is_clear(BoneBricks& bricks, const Cores& cores, double reach_mm, const Pose& X_WT,
+              const Room& room) noexcept;
+
+}  // namespace osteomill

@@ -1,0 +1,131 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "osteomill/volume/volume.h"
+
+#include "bone_points/brick_kernel.h"
+#include "bone_points/brick_points.h"
+
+namespace osteomill {
+
+/// Where the isosurface crosses the edges of a lattice, as area-weighted points, brick by brick. Lattice
+/// nodes are the voxels' centres or, along an axis on which those lie farther apart than wanted, a whole
+/// number of steps between two of them. Every crossing stands for A_a |n_a| of surface (A_a the face of
+/// a cell across edges along a, n the surface's unit normal): three regular lattices, whose sum is a
+/// quadrature of the surface whatever its slope. A point is the weighted mean of the crossings in a cell: of
+/// one node, or, in a fine scan, of 2^n nodes a side, of whose lines those are looked at that lie half the
+/// spacing apart. The volume outlives it. Safe in the haptic tick.
+class SurfaceLattice {
+ public:
+  static constexpr int kMaxBrickNodes = static_cast<int>(CrossingRow::kMostNodes);
+  static constexpr int kMaxBlockNodes = kMaxBrickNodes + 3;
+  static constexpr std::size_t kMaxPointsOfBrick = 8 * 8 * 8;
+
+  SurfaceLattice() = default;
+  SurfaceLattice(const Volume& volume, double spacing_mm);
+
+  const std::array<int, 3>& brick_dims() const { return brick_dims_; }
+  /// Brick b begins at the edges whose lower node is `brick_nodes() * b - 1`: crossings between the scan's
+  /// border and the nothing beyond it count.
+  int brick_nodes() const { return brick_nodes_; }
+  /// The densities that a brick's points are made from.
+  int densities_of_brick() const { return (brick_nodes_ + 3) * (brick_nodes_ + 3) * (brick_nodes_ + 3); }
+  /// Of neighbouring nodes.
+  const Vec3& step_mm() const { return step_mm_; }
+  /// Origin of a brick's frame (the grid's axes) in the grid's frame (origin at voxel 0, 0, 0).
+  Vec3 brick_origin_G(const VoxelIndex& brick) const {
+    return brick_nodes_ * step_mm_.cwiseProduct(Vec3(brick.i, brick.j, brick.k));
+  }
+  const Vec3& origin_W() const { return volume_->geometry().origin_mm; }
+  const Mat3& direction() const { return volume_->geometry().direction; }
+
+  /// Where there is no bone there never will be; bone alone becomes surface as densities fall.
+  enum class Found { no_bone, bone_alone, surface };
+  /// What there is in a node of an octree over the bricks: 2^level of them a side, the first at 2^level times
+  /// `node`. May say `surface` where there is none.
+  Found found_in(int level, const VoxelIndex& node) const;
+  /// A number that differs from what it was earlier if any density that the brick's points are made from has
+  /// fallen since.
+  std::uint32_t changes_of(const VoxelIndex& brick) const;
+  /// The bricks whose points may change with densities in `voxels`.
+  VoxelBox bricks_touched_by(const VoxelBox& voxels) const;
+
+  /// h^2 of a cell of size h (the cube root of its volume): about what a point stands for.
+  double cell_area_mm2() const;
+
+  /// Points in the brick's frame, at the lattice's spacing and, as `merge_flat_cells` makes them, at twice
+  /// that in flat places.
+  struct BrickSurface {
+    PointRows fine{kMaxPointsOfBrick};
+    PointRows coarse{kMaxPointsOfBrick};
+    std::array<std::uint8_t, kMaxPointsOfBrick> coarse_cell;
+    /// Whether anything that lines meet is bone.
+    bool has_bone = false;
+  };
+  /// Of a brick's rows of nodes along i, a bit each: bit j of element k.
+  using RowBits = std::array<std::uint32_t, kMaxBrickNodes + 1>;
+  /// Fine points alone. `without_bone`: the rows in which no bone was found before, so that they need not be
+  /// looked at again; adds those that it finds.
+  void find_surface(const VoxelIndex& brick, RowBits& without_bone, BrickSurface& surface) const;
+  /// Makes the coarse points of the fine ones: one for all in a cell twice as wide where they lie in a plane;
+  /// along edges all stay.
+  static void merge_flat_cells(BrickSurface& surface);
+
+ private:
+  static constexpr std::size_t kRow = kMaxBlockNodes;
+  static constexpr std::size_t kSlice = kRow * kRow;
+  // Densities at the nodes of a brick and one more all round (two at the upper sides), and room for the
+  // kernel to read beyond a row's end.
+  using Block = std::array<float, kSlice * kRow + CrossingRow::kNodes>;
+  // Bit n of a row: whether its node n is bone.
+  using Rows = std::array<std::uint32_t, (kMaxBrickNodes + 1) * (kMaxBrickNodes + 1)>;
+  static std::size_t row_index(int j, int k) {
+    return static_cast<std::size_t>(j + k * (kMaxBrickNodes + 1));
+  }
+  VoxelBox voxels_of(int level, const VoxelIndex& node, int more_nodes) const;
+  // Densities at the nodes of a brick and about them, wherever they stand.
+  struct Nodes {
+    const float* first;
+    std::array<std::ptrdiff_t, 3> next;
+    const float* at(int i, int j, int k) const { return first + i * next[0] + j * next[1] + k * next[2]; }
+  };
+  Nodes nodes_of(const VoxelIndex& brick, Block& block) const;
+  void copy_voxels(const VoxelIndex& first, Block& block) const;
+  void interpolate_voxels(const VoxelIndex& first, Block& block) const;
+  float density(const VoxelIndex& voxel) const;
+  RowBits rows_of_bone_alone(const VoxelIndex& brick) const;
+  Found find_bone(const Nodes& nodes, const RowBits& bone_alone, RowBits& without_bone, Rows& rows) const;
+  bool on_line(int node) const { return (on_lines_ >> node & 1) != 0; }
+  // The edges along lines from a row's nodes that are crossed; false where none is.
+  bool find_crossed(const Rows& rows, int j, int k, std::uint32_t (&crossed)[3]) const {
+    const std::uint32_t lower = (1u << brick_nodes_) - 1;
+    const std::uint32_t on_j = on_line(j) ? lower : 0, on_k = on_line(k) ? lower : 0;
+    const std::uint32_t here = rows[row_index(j, k)];
+    crossed[0] = (here ^ (here >> 1)) & on_j & on_k;
+    crossed[1] = (here ^ rows[row_index(j + 1, k)]) & on_lines_ & on_k;
+    crossed[2] = (here ^ rows[row_index(j, k + 1)]) & on_lines_ & on_j;
+    return (crossed[0] | crossed[1] | crossed[2]) != 0;
+  }
+  std::uint32_t cells_of(std::uint32_t nodes) const;
+  void mean_crossings(const Nodes& nodes, const Rows& rows, BrickSurface& surface) const;
+
+  const Volume* volume_ = nullptr;
+  std::array<int, 3> steps_per_voxel_{1, 1, 1};
+  // Nodes of a cell, and from one line that is looked at to the next, along each axis.
+  static constexpr int kMaxGroup = 8;
+  int group_ = 1;
+  int line_step_ = 1;
+  // Bit i: whether lines across i go through node i.
+  std::uint32_t on_lines_ = ~0u;
+  int brick_nodes_ = 8;
+  std::array<int, 3> brick_dims_{1, 1, 1};
+  Vec3 step_mm_ = Vec3::Ones();
+  CrossingSteps crossing_steps_{};
+  float isovalue_ = 0;
+  // Nothing beyond the border, also where the least density is bone's.
+  float outside_ = 0;
+};
+
+}  // namespace osteomill

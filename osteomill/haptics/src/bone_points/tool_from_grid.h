@@ -1,0 +1,23 @@
+#pragma once
+
+#include "osteomill/base/pose.h"
+
+namespace osteomill {
+
+/// The grid's frame G of points of bone, seen from the tool: a point of G lies at `offset_mm + turn * p_G` in
+/// T. The turn mirrors where the grid is left-handed.
+struct ToolFromGrid {
+  Mat3 turn;
+  Vec3 offset_mm;
+
+  /// Of whatever says where G lies in W: points `origin_W() + direction() * p_G`.
+  template <typename Points>
+  ToolFromGrid(const Points& points, const Pose& X_WT) {
+    const Mat3 R_TW = X_WT.orientation.conjugate().toRotationMatrix();
+    turn = R_TW * points.direction();
+    offset_mm = R_TW * (points.origin_W() - X_WT.position_mm);
+  }
+  Vec3 operator*(const Vec3& point_G) const { return offset_mm + turn * point_G; }
+};
+
+}  // namespace osteomill

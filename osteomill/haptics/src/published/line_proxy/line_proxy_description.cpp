@@ -1,0 +1,38 @@
+#include <vector>
+
+#include "osteomill/haptics/setting_fields.h"
+
+#include "published/line_proxy/line_proxy.h"
+
+namespace osteomill::line_proxy {
+
+namespace {
+
+using Fields = std::vector<Field<Settings>>;
+
+// In which all numbers stay finite; what is poor within it is doubted.
+constexpr NumberRange kStiffness{0.001, 1e4};
+
+const Fields& fields() {
+  static const Fields all{
+      field<Settings>({"vertices", "", NumberRange::count(2, 100000),
+                       "Vertices on the tool's centreline, the burr's centre included", 0, "vertices"},
+                      &Settings::vertices),
+      field<Settings>({"stiffness", "N/mm", kStiffness, "k of (6) and (10)", 0, "stiffness"},
+                      &Settings::stiffness_N_per_mm),
+  };
+  return all;
+}
+
+}  // namespace
+
+AlgorithmDescription description() {
+  return with_settings<LineProxy, Settings>({.id = {"line-proxy", "1 line-proxy", "#c8102e"},
+                                             .summary = "The tool as a line of vertices; a proxy of tip and "
+                                                        "shaft stays on the surface, springs pull to it",
+                                             .resolution_setting = "vertices",
+                                             .resolution_name = "vertices"},
+                                            fields());
+}
+
+}  // namespace osteomill::line_proxy

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "osteomill/haptics/algorithm_description.h"
+#include "osteomill/haptics/haptic_algorithm.h"
+
+#include "published/point_shell/contacts.h"
+#include "published/point_shell/virtual_coupling.h"
+#include "published/point_shell/voxel_shell.h"
+
+namespace osteomill::point_shell {
+
+/// Holds the settings of algorithm 3; point_shell_description.cpp gives each its meaning, range and default.
+struct Settings {
+  /// Of the voxels whose centres are points.
+  int scale = 3;
+  double translational_stiffness_N_per_mm = 5;
+  double torsional_stiffness_Nmm_per_rad = 2500;
+  double damping_time_s = 0.001;
+};
+
+/// Returns kA in N/mm^3, newton a mm of depth and a mm^2 of surface: the smallest at which 20 N, the most
+/// that a device is sent by default, do not pull the burr through a plane.
+double contact_stiffness_N_per_mm3(const MillingTool& tool);
+
+/// Renders algorithm 3 of Eriksson 2012 (section 6), modified Barbic and James 2008: the bone is a shell of
+/// points, the tool a signed distance field. Points inside the tool push it out, a virtual coupling pulls it
+/// to the device, and each step solves for the pose at which the two balance; the coupling's wrench is what
+/// the hand feels. Without contact the tool is at the device to the last bit and the wrench exactly zero.
+///
+/// `X_WT` of a step is the simulated tool; `burr_force_W_N` the contact force of the points below the height
+/// at which the shaft comes out of the burr's sphere; `contacts` counts the points that touch.
+///
+/// Chosen where the paper is silent:
+/// - a point pushes along the outward normal of the tool's field;
+/// - kA follows from the rule of `contact_stiffness_N_per_mm3`;
+/// - each damper of the coupling is its spring times one time.
+class PointShell final : public HapticAlgorithm {
+ public:
+  /// Takes settings within their ranges.
+  explicit PointShell(const Settings& settings) : settings_(settings) {}
+
+  std::vector<std::string> doubts_about(const MillingTool& tool, const GridGeometry& scan) const override;
+  void prepare(const Scene& scene) override;
+  HapticStep step(const Pose& X_WD, double dt_s) noexcept override;
+  void volume_changed(const VolumeChange& change) noexcept override { shell_.refresh(change.voxels); }
+  void reset() noexcept override;
+  int sample_point_count() const override { return static_cast<int>(shell_.points().total()); }
+
+ private:
+  Settings settings_;
+  VirtualCoupling coupling_{};
+  MillingTool milling_tool_;
+  std::optional<SampledDistanceField> tool_;
+  VoxelShell shell_;
+  double stiffness_N_per_mm3_ = 0;
+  // Nothing before the first step.
+  std::optional<Pose> X_WT_;
+  ToolMove stretch_before_;
+};
+
+/// Describes algorithm 3 of the paper (section 6).
+AlgorithmDescription description();
+
+}  // namespace osteomill::point_shell

@@ -1,0 +1,48 @@
+#include <vector>
+
+#include "osteomill/haptics/setting_fields.h"
+
+#include "published/point_shell/point_shell.h"
+
+namespace osteomill::point_shell {
+
+namespace {
+
+using Fields = std::vector<Field<Settings>>;
+
+// In which all numbers stay finite; what is poor within it is doubted.
+constexpr NumberRange kStiffness{0.001, 1e4}, kTorsion{1, 1e7}, kDampingTime{0, 0.1};
+
+const Fields& fields() {
+  static const Fields all{
+      field<Settings>(
+          {"scale", "", NumberRange::count(1, VoxelShell::kMaxScale),
+           "Coarseness: the voxels whose centres are points are this many of the scan's wide along each axis",
+           0, "shell-scale"},
+          &Settings::scale),
+      field<Settings>({"translational-stiffness", "N/mm", kStiffness,
+                       "Virtual coupling between device and simulated tool", 0, "stiffness"},
+                      &Settings::translational_stiffness_N_per_mm),
+      field<Settings>({"torsional-stiffness", "N mm/rad", kTorsion, "Of the coupling, about rotation", 0,
+                       "torsional-stiffness"},
+                      &Settings::torsional_stiffness_Nmm_per_rad),
+      field<Settings>(
+          {"damping-time", "s", kDampingTime, "The coupling's dampers are its springs times this"},
+          &Settings::damping_time_s),
+  };
+  return all;
+}
+
+}  // namespace
+
+AlgorithmDescription description() {
+  return with_settings<PointShell, Settings>(
+      {.id = {"point-shell", "3 point-shell", "#111111"},
+       .summary =
+           "The bone as a shell of points, the tool as a signed distance field, a virtual coupling between",
+       .resolution_setting = "scale",
+       .resolution_name = "scale"},
+      fields());
+}
+
+}  // namespace osteomill::point_shell

@@ -1,0 +1,49 @@
+#include <vector>
+
+#include "osteomill/haptics/sample_points.h"
+#include "osteomill/haptics/setting_fields.h"
+
+#include "published/surface_points/surface_points.h"
+
+namespace osteomill::surface_points {
+
+namespace {
+
+using Fields = std::vector<Field<Settings>>;
+
+// In which all numbers stay finite; what is poor within it is doubted.
+constexpr NumberRange kStiffness{0.001, 1e4};
+
+const Fields& fields() {
+  static const Fields all{
+      field<Settings>(
+          {"stiffness", "N/mm", kStiffness,
+           "k of (14): the spring of a sphere, or of a slice, all of whose vertices collide", 0, "stiffness"},
+          &Settings::stiffness_N_per_mm),
+      field<Settings>(
+          {"slices", "", NumberRange::count(1, 1000), "Circles along the free shaft", 0, "slices"},
+          &Settings::slices),
+      field<Settings>(
+          {"sphere-vertices", "", NumberRange::count(4, 500),
+           "Vertices on the burr's sphere: 24 as a snub cube, another number as equal charges spread"},
+          &Settings::sphere_vertices),
+      field<Settings>(
+          {"circle-vertices", "", NumberRange::count(3, 100), "Vertices on each circle of the shaft"},
+          &Settings::circle_vertices),
+  };
+  return all;
+}
+
+}  // namespace
+
+AlgorithmDescription description() {
+  return with_settings<SurfacePoints, Settings>(
+      {.id = {"surface-points", "2 surface-points", "#3fae49"},
+       .summary =
+           "Vertices on the tool's surface, each a spring towards its centre, sent straight to the hand",
+       .resolution_setting = "slices",
+       .resolution_name = "slices"},
+      fields());
+}
+
+}  // namespace osteomill::surface_points

@@ -1,0 +1,46 @@
+#include "osteomill/haptics/burr_presses.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "osteomill/volume/sampling.h"
+
+namespace osteomill {
+
+namespace {
+
+// How far apart the burr is looked at, and how often at most; it is asked in every tick.
+constexpr double kApart_mm = 0.25;
+constexpr int kMaxLooks = 256;
+// The cosine with the force's direction beyond which the ball, moved on, hardly goes where it was not.
+constexpr double kRim = 0.25;
+
+}  // namespace
+
+double pressing_reach_mm(const GridGeometry& geometry) {
+  constexpr double kKeptOff_mm = 0.12;
+  return std::max(0.5 * geometry.spacing_mm.maxCoeff(), kKeptOff_mm);
+}
+
+bool burr_presses(const Volume& volume, double burr_radius_mm, const Vec3& burr_W,
+                  const Vec3& force_W_N) noexcept {
+  if (!(force_W_N.squaredNorm() > 0)) return false;
+  const Vec3 ahead = force_W_N.normalized();
+  const Vec3 moved_W = burr_W + pressing_reach_mm(volume.geometry()) * ahead;
+  // A sunflower's seeds, from the middle to the rim, each turned on from the last by the golden angle.
+  constexpr double kCosine = -0.73736887807831990, kSine = 0.67549029426152364;
+  const double cap_mm2 = 2 * std::numbers::pi * (1 - kRim) * burr_radius_mm * burr_radius_mm;
+  const int looks =
+      static_cast<int>(std::clamp(cap_mm2 / (kApart_mm * kApart_mm), 1.0, static_cast<double>(kMaxLooks)));
+  Vec3 turned = ahead.unitOrthogonal();
+  for (int n = 0; n < looks; ++n) {
+    const double cosine = 1 - (1 - kRim) * (n + 0.5) / looks;
+    const Vec3 direction = cosine * ahead + std::sqrt(1 - cosine * cosine) * turned;
+    if (is_bone_at(volume, moved_W + burr_radius_mm * direction)) return true;
+    turned = kCosine * turned + kSine * ahead.cross(turned);
+  }
+  return false;
+}
+
+}  // namespace osteomill

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <atomic>
+
+#include "osteomill/session/device.h"
+
+namespace osteomill {
+
+/// Has every device that a live session drives sent zero however the program ends or is stopped, in any
+/// thread, but by SIGKILL and SIGSTOP (then it is for the device to let go). A program asks for that by
+/// making one object of this class, best at the beginning of main(); a library in somebody else's program
+/// takes no signal without one.
+///
+/// Only signals that nobody handles are taken, those whose default action would end or stop the process: when
+/// it crashes (with SIGABRT that is an exception that nobody catches), is asked to end, or is stopped from
+/// its terminal, after which SIGCONT goes on with the device. The default action then follows. What the
+/// program ignores or handles itself is left to it, whether it was handled before or is later. Only a fault
+/// (SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGSYS) that had a handler before is passed to that one with
+/// the devices at zero, and where it returns, the sessions go on; a program that handles a fault in any other
+/// way calls `let_go` and `take_hold` in its own handler.
+///
+/// When the process ends, the haptic threads are asked to stop and given 50 ms to send zero themselves (one
+/// of them may have crashed); then the devices are let go of from the signal's handler, and given 50 ms to
+/// tell that zero has gone out.
+///
+/// There may be any number of objects, made and destroyed in any order and by any thread, also while sessions
+/// run; with the last one every signal goes back to what it did before the first, unless the program has set
+/// a handler of its own in the meantime, which stays.
+class CrashStop {
+ public:
+  CrashStop();
+  ~CrashStop();
+  CrashStop(const CrashStop&) = delete;
+  CrashStop& operator=(const CrashStop&) = delete;
+
+  /// Gives the calling thread a stack for signal handlers, in case its own overflows, unless it has one; the
+  /// thread that makes this object and every haptic thread get one. When the stack of a thread without one
+  /// overflows, no zero is sent.
+  static void give_this_thread_a_stack();
+
+  /// Has all live devices sent zero until `take_hold`, and waits up to 50 ms until it has gone out. For a
+  /// signal handler of the program's own; any thread, with or without an object of this class.
+  static void let_go() noexcept;
+  /// After `let_go`: what the sessions ask for is sent again, coming up slowly. As safe.
+  static void take_hold() noexcept;
+};
+
+/// A device that a haptic thread drives, known to CrashStop as long as this object lives.
+class DrivenDevice {
+ public:
+  /// `device` outlives this object. No thread drives it yet.
+  explicit DrivenDevice(Device& device);
+  /// Returns once no signal handler uses the device any more.
+  ~DrivenDevice();
+  DrivenDevice(const DrivenDevice&) = delete;
+  DrivenDevice& operator=(const DrivenDevice&) = delete;
+
+  /// Returns true when the haptic thread is to send zero and call `stopped`. Asked at every tick; real-time
+  /// safe.
+  bool end_asked() const { return end_asked_.load(std::memory_order_acquire); }
+  /// The haptic thread begins to drive the device, or has sent zero for the last time.
+  void started() { is_stopped_.store(false, std::memory_order_release); }
+  void stopped() { is_stopped_.store(true, std::memory_order_release); }
+
+ private:
+  friend struct DrivenDevices;
+  Device& device_;
+  std::atomic<bool> end_asked_{false};
+  std::atomic<bool> is_stopped_{true};
+  // Handlers only read it, so that it stays where it is.
+  struct Place* place_;
+};
+
+}  // namespace osteomill

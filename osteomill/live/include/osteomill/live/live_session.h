@@ -1,0 +1,122 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <thread>
+
+#include "osteomill/base/latest_value.h"
+#include "osteomill/base/spsc_queue.h"
+#include "osteomill/live/crash_stop.h"
+#include "osteomill/live/live_timing.h"
+#include "osteomill/session/milling_session.h"
+
+namespace osteomill {
+
+/// Hears of every tick in the haptic thread, after the wrench has gone out: what was recorded, the bone, and
+/// where it changed. Must keep to the rules of the tick: no allocation, lock, log, exception or system call.
+using TickListener = std::function<void(const TickRecord&, const Volume&, const VolumeChange&)>;
+
+/// What the haptic thread is doing.
+struct LiveState {
+  TickRecord record;
+  bool spindle_on = false;
+  /// MillingSession::intersection_W.
+  std::optional<Vec3> intersection_W = {};
+};
+
+/// A milling session in real time: a thread of its own ticks it at 1 kHz, with real-time scheduling where the
+/// system allows it. Nothing that other threads do makes a tick wait.
+///
+/// One other thread commands and reads the state (the window's). Commands take effect between two ticks and
+/// return when they have, a tick or two later. On stopping, however it comes about, the device is sent a
+/// wrench of zero; so it is when the process ends by a signal, if the program has asked for that
+/// (CrashStop).
+class LiveSession {
+ public:
+  /// `device` outlives this object. Does not start yet.
+  LiveSession(std::unique_ptr<MillingSession> session, Device& device);
+
+  /// Returns when the haptic thread runs; nothing happens where it does already. Throws std::system_error
+  /// where the system gives no thread: the session is then not running, and can be started again.
+  void start();
+  /// Returns when the last tick is over and zero has been sent. Can be started again.
+  void stop();
+
+  /// The device's own button or pedal turns the spindle on as well.
+  void set_spindle(bool on);
+  /// A pause sends zero and neither steps nor mills.
+  void set_paused(bool paused);
+  /// While held nothing is milled, though everything is felt: the volume may then be read from other threads.
+  void hold_bone(bool held);
+  /// Goes on with another algorithm, tool, setting or bone, prepared beforehand. Returns the state in which
+  /// that began.
+  TakenOver replace(std::unique_ptr<MillingSession> session);
+  /// The tool to a pose free of bone, however far away. The wrench fades in a hundred ticks, in which nothing
+  /// is milled, so that the hand feels no step; then the device is put there (Device::put_at), and the
+  /// algorithm begins anew. One at a time: nothing while `placing`.
+  void place(const Pose& X_WD);
+  bool placing() const { return placing_.load(std::memory_order_acquire); }
+  /// Replaces the listener; an empty one for none.
+  void listen(TickListener listener);
+
+  /// Of the last tick.
+  const LiveState& state() { return state_.read(); }
+  /// Every tick's record in turn. The queue holds 4 s; records that find it full are lost.
+  std::optional<TickRecord> next_record();
+  /// From any thread.
+  TimingSummary timing() const { return timing_.summary(); }
+  /// In one line, what real-time scheduling the system refused; empty where nothing. Valid once started.
+  const std::string& refused_real_time() const { return refused_real_time_; }
+  bool running() const { return running_.load(std::memory_order_acquire); }
+  /// What ended the session by itself, as the device threw it; null while it runs, and where `stop` or a
+  /// signal ended it. For the commanding thread.
+  std::exception_ptr failure() const { return running() ? nullptr : failure_; }
+
+  /// The session now in use, and how many were replaced before it. Its volume's densities only while held, or
+  /// while not running.
+  const MillingSession& session() const { return *session_; }
+  std::uint32_t session_number() const { return session_number_; }
+
+ private:
+  void between_ticks(const std::function<void()>& command);
+  void take_command();
+  void run(const std::stop_token& stop) noexcept;
+  void tick_until(const std::stop_token& stop);
+  void place_when_at_rest();
+  TickRecord tick(double late_s);
+
+  Device& device_;
+  DrivenDevice driven_;
+  std::atomic<bool> running_{false};
+  std::string refused_real_time_;
+  std::exception_ptr failure_;
+
+  // Used by the haptic thread alone while it runs.
+  std::unique_ptr<MillingSession> session_;
+  TickListener listener_;
+  bool spindle_ = false;
+  bool paused_ = false;
+  bool bone_held_ = false;
+  double time_s_ = 0;
+  std::uint32_t session_number_ = 0;
+  Pose X_WD_place_;
+  bool letting_go_ = false;
+  std::atomic<bool> placing_{false};
+
+  // Set by the commanding thread, which waits until the haptic one has done it and made it null.
+  std::atomic<const std::function<void()>*> command_{nullptr};
+
+  SpscQueue<TickRecord> records_{4096};
+  LatestValue<LiveState> state_;
+  LiveTiming timing_;
+  // Last, so that it ends before all that it uses.
+  std::jthread thread_;
+};
+
+}  // namespace osteomill

@@ -1,0 +1,308 @@
+#include "osteomill/live/crash_stop.h"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <functional>
+#include <memory>
+#include <new>
+#include <span>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <sys/mman.h>
+#include <sys/time.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "osteomill/haptics/algorithms.h"
+#include "osteomill/live/live_session.h"
+
+#include "tests/coming_down.h"
+#include "tests/shapes.h"
+
+namespace osteomill {
+namespace {
+
+using namespace std::chrono_literals;
+
+// What another process can see of a device.
+struct Sent {
+  std::atomic<double> force_N;
+  std::atomic<double> max_N;
+};
+
+// What is felt before it crashes.
+constexpr double kPressed_N = 0.2;
+
+class SharedDevice : public testing_support::ComingDown {
+ public:
+  SharedDevice(Sent* sent, void (*crash)()) : ComingDown(1.2), sent_(sent), crash_(crash) {}
+  Pose read_pose() override {
+    if (crash_ != nullptr && sent_->max_N >= kPressed_N) crash_();
+    return ComingDown::read_pose();
+  }
+  void write_wrench(const Wrench& wrench) override {
+    sent_->force_N = is_let_go_ ? 0 : wrench.force_N.norm();
+    sent_->max_N = std::max<double>(sent_->max_N, sent_->force_N);
+  }
+  bool let_go() noexcept override {
+    is_let_go_ = true;
+    sent_->force_N = 0;
+    return true;
+  }
+  void take_hold() noexcept override { is_let_go_ = false; }
+
+ private:
+  Sent* sent_;
+  void (*crash_)();
+  std::atomic<bool> is_let_go_{false};
+};
+
+// What makes a process end: a signal from elsewhere, or what the main or the haptic thread does.
+struct End {
+  int signal;
+  void (*main_thread)() = nullptr;
+  void (*haptic_thread)() = nullptr;
+  bool replaces_its_session = false;
+};
+
+std::unique_ptr<LiveSession> live_on(const Volume& bone, Device& device) {
+  return std::make_unique<LiveSession>(
+      std::make_unique<MillingSession>(std::make_shared<Volume>(bone), BoneDensities{0, 1000},
+                                       MillingSetup{.algorithm = algorithm_named("point-shell")}),
+      device);
+}
+
+Volume flat_bone() {
+  return testing_support::shape_volume(testing_support::centred_cube(40, 0.25),
+                                       testing_support::plane(Vec3::Zero(), Vec3::UnitZ()));
+}
+
+void overflow_the_stack() {
+  volatile char much[1 << 20];
+  much[0] = 1;
+  if (much[0] == 1) overflow_the_stack();
+  much[1] = 1;
+}
+
+[[noreturn]] void run_live(Sent* sent, const End& end) {
+  const Volume bone = flat_bone();
+  const CrashStop crash_stop;
+  SharedDevice device(sent, end.haptic_thread);
+  std::unique_ptr<LiveSession> live = live_on(bone, device);
+  // As a program does that opens another bone: the new session is made while the old one is there.
+  if (end.replaces_its_session) {
+    live->start();
+    live = live_on(bone, device);
+    device.lift();
+  }
+  live->start();
+  for (int n = 0; n < 2000 && sent->max_N < kPressed_N; ++n) std::this_thread::sleep_for(5ms);
+  if (end.main_thread != nullptr) end.main_thread();
+  // Longer than its turn to be ended may take on a busy machine.
+  std::this_thread::sleep_for(120s);
+  _exit(0);
+}
+
+class CrashStopTest : public ::testing::Test {
+ protected:
+  static constexpr std::size_t kMost = 32;
+  void SetUp() override {
+    void* shared =
+        mmap(nullptr, kMost * sizeof(Sent), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    ASSERT_NE(shared, MAP_FAILED);
+    sent_ = new (shared) Sent[kMost];
+  }
+  void TearDown() override { munmap(sent_, kMost * sizeof(Sent)); }
+
+  pid_t begin(std::size_t n, const End& end) {
+    const pid_t child = fork();
+    if (child == 0) run_live(&sent_[n], end);
+    return child;
+  }
+  // A minute: under a sanitizer all of them begin at once on a core or two.
+  void await_pressing(std::size_t n) const {
+    for (int k = 0; k < 12000 && sent_[n].max_N < kPressed_N; ++k) std::this_thread::sleep_for(5ms);
+  }
+  // The processes run side by side.
+  void expect_zero_after(std::span<const End> ends) {
+    std::vector<pid_t> children;
+    for (std::size_t n = 0; n < ends.size(); ++n) children.push_back(begin(n, ends[n]));
+    for (std::size_t n = 0; n < ends.size(); ++n) {
+      if (ends[n].main_thread == nullptr && ends[n].haptic_thread == nullptr) {
+        await_pressing(n);
+        kill(children[n], ends[n].signal);
+      }
+      int status = 0;
+      waitpid(children[n], &status, 0);
+      EXPECT_GE(sent_[n].max_N, kPressed_N) << n;
+      EXPECT_EQ(sent_[n].force_N, 0) << strsignal(ends[n].signal);
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+      // Sanitizers end a crashed program in their own way.
+      EXPECT_NE(status, 0);
+#else
+      EXPECT_EQ(WIFSIGNALED(status) ? WTERMSIG(status) : 0, ends[n].signal);
+#endif
+    }
+  }
+
+  Sent* sent_ = nullptr;
+};
+
+TEST_F(CrashStopTest, WhateverSignalEndsItTheWrenchIsLeftAtZero) {
+  const std::vector<End> ends{{SIGSEGV}, {SIGBUS},  {SIGFPE},  {SIGILL},   {SIGABRT},   {SIGSYS},
+                              {SIGTRAP}, {SIGQUIT}, {SIGTERM}, {SIGHUP},   {SIGINT},    {SIGXCPU},
+                              {SIGXFSZ}, {SIGPIPE}, {SIGALRM}, {SIGPROF},  {SIGVTALRM}, {SIGUSR1},
+                              {SIGUSR2}, {SIGPOLL}, {SIGPWR},  {SIGSTKFLT}};
+  expect_zero_after(ends);
+}
+
+TEST_F(CrashStopTest, SoItIsAfterACrashInAnyThread) {
+  const std::vector<End> ends {
+    {SIGSEGV, [] { raise(SIGSEGV); }}, {SIGABRT, [] { std::abort(); }},
+        {SIGSEGV, nullptr, [] { raise(SIGSEGV); }},
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+        {SIGSEGV, [] { overflow_the_stack(); }}, {SIGSEGV, nullptr, [] { overflow_the_stack(); }},
+#endif
+  };
+  expect_zero_after(ends);
+}
+
+// Ctrl-Z, and what reads from or writes to its terminal in the background.
+TEST_F(CrashStopTest, WhileItIsStoppedTheWrenchIsZeroAndThenComesUpSlowly) {
+  const int stops[] = {SIGTSTP, SIGTTIN, SIGTTOU};
+  for (std::size_t n = 0; n < 3; ++n) {
+    const pid_t child = begin(n, {});
+    await_pressing(n);
+    kill(child, stops[n]);
+    int status = 0;
+    waitpid(child, &status, WUNTRACED);
+    EXPECT_TRUE(WIFSTOPPED(status)) << strsignal(stops[n]);
+    EXPECT_EQ(sent_[n].force_N, 0) << strsignal(stops[n]);
+    kill(child, SIGCONT);
+    for (int k = 0; k < 2000 && sent_[n].force_N < kPressed_N; ++k) std::this_thread::sleep_for(1ms);
+    EXPECT_GE(sent_[n].force_N, kPressed_N);
+    kill(child, SIGKILL);
+    waitpid(child, &status, 0);
+  }
+}
+
+TEST_F(CrashStopTest, ASessionThatTookThePlaceOfAnotherIsEndedAsAnyOther) {
+  const std::vector<End> ends{
+      {.signal = SIGTERM, .replaces_its_session = true},
+      {.signal = SIGSEGV, .main_thread = [] { raise(SIGSEGV); }, .replaces_its_session = true}};
+  expect_zero_after(ends);
+}
+
+struct sigaction action_of(int signal) {
+  struct sigaction action {};
+  sigaction(signal, nullptr, &action);
+  return action;
+}
+
+std::atomic<int> host_calls{0};
+void count_call(int) {
+  host_calls.fetch_add(1);
+}
+
+// A host's own handler, put back at the end.
+class HostHandler {
+ public:
+  explicit HostHandler(int signal) : signal_(signal), before_(action_of(signal)) {
+    struct sigaction action {};
+    action.sa_handler = &count_call;
+    action.sa_flags = SA_RESTART;
+    sigaction(signal, &action, nullptr);
+    host_calls = 0;
+  }
+  ~HostHandler() { sigaction(signal_, &before_, nullptr); }
+  HostHandler(const HostHandler&) = delete;
+  HostHandler& operator=(const HostHandler&) = delete;
+  bool is_in_force() const { return action_of(signal_).sa_handler == &count_call; }
+
+ private:
+  int signal_;
+  struct sigaction before_;
+};
+
+class HostTest : public ::testing::Test {
+ protected:
+  // Some ticks of a live session while `signals` come.
+  void run(const std::function<void()>& signals) {
+    const std::unique_ptr<LiveSession> live = live_on(bone_, device_);
+    live->start();
+    signals();
+    const auto ticks = live->timing().ticks;
+    for (int n = 0; n < 2000 && live->timing().ticks < ticks + 20; ++n) std::this_thread::sleep_for(5ms);
+    EXPECT_GE(live->timing().ticks, ticks + 20);
+    EXPECT_TRUE(live->running());
+  }
+  Volume bone_ = flat_bone();
+  Sent sent_{};
+  SharedDevice device_{&sent_, nullptr};
+};
+
+TEST_F(HostTest, ASessionAloneTakesNoSignal) {
+  run([] {
+    for (const int signal : {SIGTERM, SIGINT, SIGSEGV, SIGUSR1, SIGPROF, SIGTSTP, SIGPIPE}) {
+      const struct sigaction now = action_of(signal);
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+      EXPECT_TRUE(now.sa_handler == SIG_DFL || now.sa_handler == SIG_IGN) << strsignal(signal);
+#else
+      EXPECT_TRUE(signal == SIGSEGV || now.sa_handler == SIG_DFL || now.sa_handler == SIG_IGN);
+#endif
+    }
+  });
+}
+
+TEST_F(HostTest, ASignalThatTheHostHandlesIsTheHosts) {
+  for (const int signal : {SIGUSR1, SIGTSTP, SIGPIPE, SIGIO, SIGHUP, SIGTERM}) {
+    const HostHandler host(signal);
+    const CrashStop crash_stop;
+    run([signal] { raise(signal); });
+    EXPECT_EQ(host_calls, 1) << strsignal(signal);
+  }
+}
+
+TEST_F(HostTest, AProfilersTimerLeavesTheLoopRunning) {
+  const HostHandler host(SIGPROF);
+  const CrashStop crash_stop;
+  run([] {
+    const itimerval every_ms{{0, 1000}, {0, 1000}};
+    setitimer(ITIMER_PROF, &every_ms, nullptr);
+    // The timer counts time on a processor.
+    const auto start = std::chrono::steady_clock::now();
+    while (host_calls < 10 && std::chrono::steady_clock::now() - start < 20s) {
+    }
+    const itimerval never{};
+    setitimer(ITIMER_PROF, &never, nullptr);
+  });
+  EXPECT_GE(host_calls, 10);
+}
+
+TEST_F(HostTest, HandlersThatWereThereComeBackWithTheLastObject) {
+  const struct sigaction before = action_of(SIGTERM);
+  auto first = std::make_unique<CrashStop>();
+  auto second = std::make_unique<CrashStop>();
+  EXPECT_NE(action_of(SIGTERM).sa_sigaction, before.sa_sigaction);
+  first.reset();
+  EXPECT_NE(action_of(SIGTERM).sa_sigaction, before.sa_sigaction);
+  second.reset();
+  EXPECT_EQ(action_of(SIGTERM).sa_sigaction, before.sa_sigaction);
+}
+
+TEST_F(HostTest, AHandlerThatTheHostSetsLaterIsKept) {
+  auto crash_stop = std::make_unique<CrashStop>();
+  const HostHandler host(SIGUSR2);
+  crash_stop.reset();
+  EXPECT_TRUE(host.is_in_force());
+}
+
+}  // namespace
+}  // namespace osteomill

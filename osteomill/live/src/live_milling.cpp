@@ -1,0 +1,237 @@
+#include "osteomill/live/live_milling.h"
+
+#include <chrono>
+#include <thread>
+#include <utility>
+
+#include "osteomill/base/input_error.h"
+#include "osteomill/base/work_progress.h"
+#include "osteomill/recording/recording.h"
+#include "osteomill/recording/run_description.h"
+#include "osteomill/volume/density_grid.h"
+
+namespace osteomill {
+
+namespace {
+
+using namespace std::chrono_literals;
+
+void add_picture(Recorder& recorder, std::string_view name, const LiveMilling::TakePicture& take) {
+  if (!take) return;
+  if (auto png = take(name)) recorder.add_picture(std::string(name), *std::move(png));
+}
+
+SessionSettings settings_of(const MillingSession& session) {
+  return {session.setup(), session.densities()};
+}
+
+}  // namespace
+
+PreparedMilling prepare_milling(std::shared_ptr<Volume> bone, const MillingSetup& setup,
+                                const SessionStart& before) {
+  BoneDensities densities;
+  std::unique_ptr<BoneFollower> follower;
+  const std::uint64_t scan_hash = fingerprint_of(bone->grid());
+  if (!before.bricks.empty() &&
+      (before.run.dims != bone->geometry().dims || before.run.scan_hash != scan_hash)) {
+    throw InputError(before.run.scan_name,
+                     "has changed since it was milled, so what was milled cannot be put into it");
+  }
+  {
+    const WorkProgress::Part looking(0.2);
+    densities = estimate_densities(*bone);
+  }
+  {
+    const WorkProgress::Part meshing(0.8);
+    follower = std::make_unique<BoneFollower>(bone);
+  }
+  follower->begin_with(before.bricks);
+  const WorkProgress::Part preparing(1);
+  auto session = std::make_unique<MillingSession>(std::move(bone), densities, setup);
+  session->count_removed_from(before.removed_mm3);
+  return {scan_hash, std::move(follower), std::move(session)};
+}
+
+LiveMilling::LiveMilling(PreparedMilling prepared, Device& device)
+    : sample_points_(prepared.session->algorithm().sample_point_count()),
+      scan_hash_(prepared.scan_hash),
+      follower_(std::move(prepared.follower)),
+      live_(std::move(prepared.session), device) {
+  listen();
+}
+
+void LiveMilling::listen() {
+  live_.listen([follower = follower_.get(), recorder = recorder_.get(), from = recorded_from_](
+                   const TickRecord& record, const Volume& bone, const VolumeChange& change) {
+    follower->bone_changed(bone, change);
+    if (recorder != nullptr && record.session >= from) recorder->push(record);
+  });
+}
+
+void LiveMilling::start() {
+  const std::lock_guard lock(no_tick_mutex_);
+  live_.start();
+}
+
+void LiveMilling::update() {
+  if (preparing() && preparation_.wait_for(0s) == std::future_status::ready) take_over();
+}
+
+void LiveMilling::finish_preparing() {
+  if (preparing()) take_over();
+}
+
+void LiveMilling::set_spindle(bool on) {
+  if (on && !spindle_) follower_->begin_cut(live_.state().record.removed_mm3);
+  spindle_ = on;
+  live_.set_spindle(on);
+}
+
+bool LiveMilling::change(const MillingSetup& setup) {
+  return prepare(setup, [this] {
+    return BoneFollower::NextBone{live_.session().shared_volume(), live_.session().removed_mm3(), {}};
+  });
+}
+
+bool LiveMilling::change_isovalue(double isovalue) {
+  return prepare(setup(), [this, isovalue, surroundings = densities().surroundings] {
+    return follower_->with_isovalue(isovalue, surroundings, live_.session().removed_mm3());
+  });
+}
+
+bool LiveMilling::undo() {
+  return prepare(setup(), [this] { return follower_->without_last_cut(); });
+}
+
+bool LiveMilling::reset() {
+  return prepare(setup(), [this] { return follower_->as_at_the_beginning(); });
+}
+
+// Another bone is the follower's copy, since that can be written while the bone is felt.
+bool LiveMilling::prepare(const MillingSetup& setup, MakeBone make_bone) {
+  if (preparing()) return false;
+  const auto work = [this, make_bone = std::move(make_bone), setup] {
+    catch_up();
+    bool other_bone = true;
+    try {
+      const BoneFollower::NextBone next = make_bone();
+      other_bone = next.bone != live_.session().shared_volume();
+      auto session = std::make_unique<MillingSession>(next.bone, next.densities.value_or(densities()), setup);
+      session->count_removed_from(next.removed_mm3);
+      return Prepared{std::move(session), other_bone};
+    } catch (...) {
+      if (other_bone) follower_->give_up();
+      throw;
+    }
+  };
+  live_.hold_bone(true);
+  try {
+    preparation_ = std::async(std::launch::async, work);
+  } catch (...) {
+    live_.hold_bone(false);
+    throw;
+  }
+  return true;
+}
+
+void LiveMilling::catch_up() {
+  while (!follower_->catch_up()) {
+    {
+      const std::lock_guard lock(no_tick_mutex_);
+      // No tick hands anything over.
+      if (!live_.running()) follower_->bone_changed(live_.session().volume(), {});
+    }
+    std::this_thread::sleep_for(1ms);
+  }
+}
+
+void LiveMilling::take_over() {
+  std::exception_ptr failure;
+  try {
+    Prepared prepared = preparation_.get();
+    sample_points_ = prepared.session->algorithm().sample_point_count();
+    const TakenOver left = live_.replace(std::move(prepared.session));
+    if (prepared.other_bone) follower_->swap();
+    if (recorder_) tell_recorder(left);
+  } catch (...) {
+    failure = std::current_exception();
+  }
+  live_.hold_bone(false);
+  if (!failure) return;
+  forget_recorder_without_session();
+  std::rethrow_exception(failure);
+}
+
+// A recording whose first session could not be prepared would be of nothing.
+void LiveMilling::forget_recorder_without_session() {
+  if (!recorder_ || live_.session_number() >= recorded_from_) return;
+  const std::unique_ptr<Recorder> unused = std::move(recorder_);
+  take_picture_ = {};
+  listen();
+}
+
+std::vector<double> LiveMilling::removed_by_label() const {
+  std::vector<double> removed_mm3 = follower_->drops_by_label();
+  for (double& drop : removed_mm3) {
+    drop *= geometry().voxel_volume_mm3() / (densities().reference - densities().surroundings);
+  }
+  return removed_mm3;
+}
+
+RunDescription LiveMilling::describe(const std::string& scan_name, const std::string& command_line) const {
+  const MillingSession& session = live_.session();
+  RunDescription run = describe_run(session.volume(), settings_of(session), sample_points_, command_line);
+  run.scan_name = scan_name;
+  run.scan_hash = scan_hash_;
+  return run;
+}
+
+std::string LiveMilling::start_recording(const std::filesystem::path& path, RunDescription description,
+                                         TakePicture picture) {
+  finish_preparing();
+  set_as_now(description);
+  auto recorder = std::make_unique<Recorder>(path, description, Recorder::Begins::when_told);
+  add_picture(*recorder, kPictureBefore, picture);
+  recorder_ = std::move(recorder);
+  recorder_path_ = path;
+  take_picture_ = std::move(picture);
+  recorded_ = std::move(description);
+  const bool untouched = !live_.running() && live_.timing().ticks == 0;
+  recorded_from_ = untouched ? live_.session_number() : live_.session_number() + 1;
+  if (untouched) tell_recorder({});
+  listen();
+  std::string kept = recorder_->kept();
+  try {
+    [[maybe_unused]] const bool begun = untouched || change(setup());
+  } catch (...) {
+    forget_recorder_without_session();
+    throw;
+  }
+  return kept;
+}
+
+void LiveMilling::set_as_now(RunDescription& run) const {
+  run.isovalue = isovalue();
+  set_session_settings(run, settings_of(live_.session()), sample_points_);
+}
+
+// While nothing is milled.
+void LiveMilling::tell_recorder(const TakenOver& taken_over) {
+  RunDescription run = recorded_;
+  set_as_now(run);
+  recorder_->begin_session(live_.session_number(), {std::move(run), taken_over, live_.session().removed_mm3(),
+                                                    follower_->touched_bricks(), ""});
+}
+
+std::filesystem::path LiveMilling::stop_recording() {
+  // One that was stopped before it could begin still begins.
+  if (live_.session_number() < recorded_from_) finish_preparing();
+  const std::unique_ptr<Recorder> recorder = std::move(recorder_);
+  listen();
+  for (const auto name : {kPictureAfter, kPictureAlong}) add_picture(*recorder, name, take_picture_);
+  take_picture_ = {};
+  recorder->close();
+  return recorder_path_;
+}
+
+}  // namespace osteomill

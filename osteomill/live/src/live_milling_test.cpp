@@ -1,0 +1,446 @@
+#include "osteomill/live/live_milling.h"
+
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <stdexcept>
+#include <system_error>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "osteomill/base/input_error.h"
+#include "osteomill/recording/recording.h"
+#include "osteomill/recording/replay_recording.h"
+#include "osteomill/session/milling_entry.h"
+#include "osteomill/session/virtual_hand.h"
+#include "osteomill/visual/surface_mesh.h"
+
+#include "tests/no_more_threads.h"
+#include "tests/shapes.h"
+#include "tests/support/mesh_checks.h"
+#include "tests/support/recording_samples.h"
+#include "tests/wait.h"
+
+namespace osteomill {
+namespace {
+
+using namespace std::chrono_literals;
+using testing_support::comes_true;
+using testing_support::mesh_of;
+using testing_support::mesh_surface;
+
+constexpr double kIsovalue = 500;
+
+std::shared_ptr<Volume> ball_of_bone() {
+  auto bone = std::make_shared<Volume>(testing_support::shape_volume(
+      testing_support::centred_cube(51, 0.25), testing_support::ball(Vec3::Zero(), 5.0)));
+  // Its left half, and its right.
+  std::vector<LabelMap::Place> places;
+  for (std::size_t n = 0; n < bone->geometry().voxel_count(); ++n) places.push_back(n % 51 < 25 ? 1 : 2);
+  const GridGeometry& grid = bone->geometry();
+  bone->set_labels(
+      std::make_shared<const LabelMap>(std::vector<Label>{{1, "left"}, {2, "right"}}, grid, grid, places));
+  return bone;
+}
+
+// A hand presses the burr into the top of a ball of bone.
+class LiveMillingTest : public ::testing::Test {
+ protected:
+  LiveMillingTest() {
+    milling_.start();
+    hand_.pull_to(pose_above(entry_, setup_.tool, -1.0));
+  }
+
+  // Mills for as long as it takes to remove that much more.
+  void mill(double more_mm3) {
+    const double before_mm3 = milling_.state().record.removed_mm3;
+    milling_.set_spindle(true);
+    for (int n = 0; n < 12000 && milling_.state().record.removed_mm3 < before_mm3 + more_mm3; ++n) {
+      milling_.update();
+      std::this_thread::sleep_for(5ms);
+    }
+    milling_.set_spindle(false);
+    EXPECT_GE(milling_.state().record.removed_mm3, before_mm3 + more_mm3);
+  }
+
+  // A hand that begins to be driven feels nothing until the tool is out of bone.
+  void start_again() {
+    const Pose X_W_out = pose_above(entry_, setup_.tool, 2.0);
+    milling_.start();
+    hand_.pull_to(X_W_out);
+    EXPECT_TRUE(comes_true([&] {
+      const TickRecord& record = milling_.state().record;
+      return is_zero(record.wrench) && (record.X_WD.position_mm - X_W_out.position_mm).norm() < 0.5;
+    }));
+    hand_.pull_to(pose_above(entry_, setup_.tool, -1.0));
+  }
+
+  // Returns when the follower has all that was milled, however far it was behind: preparing anything waits
+  // for that.
+  void settle() {
+    EXPECT_TRUE(milling_.change(milling_.setup()));
+    milling_.finish_preparing();
+  }
+
+  CopyOnWriteFloats bone() {
+    settle();
+    CopyOnWriteFloats densities;
+    milling_.follower().read([&](const Volume& bone) { densities = bone.grid().densities(); });
+    return densities;
+  }
+
+  // Whether the surface taken brick by brick becomes that of the bone.
+  bool surface_is_the_bones() {
+    for (int n = 0; n < 200; ++n) {
+      for (const auto& [number, brick] : milling_.take_changed_bricks()) surface_[number] = mesh_of(brick);
+      bool same = false;
+      milling_.follower().read(
+          [&](const Volume& bone) { same = surface_ == mesh_surface(DensityView(bone)).bricks; });
+      if (same) return true;
+      std::this_thread::sleep_for(20ms);
+    }
+    return false;
+  }
+
+  std::shared_ptr<Volume> bone_ = ball_of_bone();
+  MillingSetup setup_;
+  MillingEntry entry_ = place_entry(*bone_, setup_.tool);
+  VirtualHand hand_{{}, pointing_hand(), pose_above(entry_, setup_.tool, 0.2)};
+  LiveMilling milling_{bone_, setup_, hand_};
+  const CopyOnWriteFloats untouched_ = ball_of_bone()->grid().densities();
+  std::vector<BrickMesh> surface_ = std::vector<BrickMesh>(milling_.follower().layout().count());
+};
+
+// Catching up hands changes over while no tick does; a start in that moment must not make that two threads.
+TEST_F(LiveMillingTest, StartedWhileACutIsTakenBackChangesComeFromOneThread) {
+  mill(0.3);
+  for (int n = 0; n < 5; ++n) {
+    milling_.stop();
+    EXPECT_TRUE(milling_.undo());
+    start_again();
+    milling_.finish_preparing();
+    mill(0.02);
+  }
+  EXPECT_TRUE(surface_is_the_bones());
+}
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+TEST_F(LiveMillingTest, AnUndoThatGetsNoThreadChangesNothing) {
+  mill(0.3);
+  {
+    const testing_support::NoMoreThreads none;
+    EXPECT_THROW((void)milling_.undo(), std::system_error);
+  }
+  EXPECT_FALSE(milling_.preparing());
+  EXPECT_EQ(milling_.follower().cuts(), 1u);
+  mill(0.1);
+}
+#endif
+
+TEST_F(LiveMillingTest, TakesCutsBackOneByOneAndMillsOn) {
+  mill(0.3);
+  const CopyOnWriteFloats after_first = bone();
+  const double removed_mm3 = milling_.state().record.removed_mm3;
+  mill(0.3);
+  EXPECT_EQ(milling_.follower().cuts(), 2u);
+  EXPECT_NE(bone(), after_first);
+  EXPECT_TRUE(milling_.undo());
+  milling_.finish_preparing();
+  EXPECT_EQ(bone(), after_first);
+  EXPECT_EQ(milling_.state().record.removed_mm3, removed_mm3);
+  const std::vector<double> of_label_mm3 = milling_.removed_by_label();
+  ASSERT_EQ(of_label_mm3.size(), 3u);
+  EXPECT_NEAR(of_label_mm3[1] + of_label_mm3[2], removed_mm3, 1e-6);
+  EXPECT_GT(of_label_mm3[1], 0.2 * removed_mm3);
+  EXPECT_GT(of_label_mm3[2], 0.2 * removed_mm3);
+  EXPECT_EQ(milling_.follower().cuts(), 1u);
+  EXPECT_TRUE(surface_is_the_bones());
+  mill(0.3);
+  EXPECT_EQ(milling_.follower().cuts(), 2u);
+  EXPECT_TRUE(surface_is_the_bones());
+  EXPECT_TRUE(milling_.reset());
+  milling_.finish_preparing();
+  EXPECT_EQ(bone(), untouched_);
+  EXPECT_EQ(milling_.state().record.removed_mm3, 0);
+  EXPECT_EQ(milling_.removed_by_label(), (std::vector<double>{0, 0, 0}));
+  EXPECT_FALSE(milling_.follower().touched());
+  EXPECT_TRUE(surface_is_the_bones());
+}
+
+// What the haptic thread mills is what its follower shows, also after several exchanges of the two.
+TEST_F(LiveMillingTest, TheBoneThatIsFeltIsTheBoneThatIsSeen) {
+  for (int n = 0; n < 3; ++n) {
+    mill(0.2);
+    EXPECT_TRUE(milling_.undo());
+    milling_.finish_preparing();
+    mill(0.2);
+  }
+  settle();
+  const std::uint64_t version = milling_.follower().version();
+  hand_.pull_to(pose_above(entry_, setup_.tool, -4.0));
+  for (int n = 0; n < 400 && milling_.state().record.wrench.force_N.norm() < 1.0; ++n) {
+    std::this_thread::sleep_for(5ms);
+  }
+  // The burr rests on what is left: its lowest point is on the surface of the copy.
+  const Pose X_WT = milling_.state().record.X_WT;
+  const Vec3 lowest_W = X_WT.position_mm + setup_.tool.burr_radius_mm * entry_.direction_W;
+  milling_.follower().read([&](const Volume& bone) {
+    const GridGeometry& geometry = bone.geometry();
+    const auto density_at = [&](const Vec3& point_W) {
+      const Vec3 voxel = geometry.voxel_from_world(point_W);
+      return bone.grid()[{static_cast<int>(std::lround(voxel.x())), static_cast<int>(std::lround(voxel.y())),
+                          static_cast<int>(std::lround(voxel.z()))}];
+    };
+    EXPECT_GT(density_at(lowest_W + 0.5 * entry_.direction_W), kIsovalue);
+    EXPECT_LT(density_at(X_WT.position_mm), kIsovalue);
+  });
+  EXPECT_EQ(milling_.follower().version(), version);
+}
+
+TEST_F(LiveMillingTest, AnotherAlgorithmAndToolTakeOver) {
+  mill(0.2);
+  const double removed_mm3 = milling_.state().record.removed_mm3;
+  const CopyOnWriteFloats milled = bone();
+  MillingSetup other = setup_;
+  other.algorithm = algorithm_named("surface-points");
+  other.tool.burr_radius_mm = 1.2;
+  EXPECT_TRUE(milling_.change(other));
+  EXPECT_TRUE(milling_.preparing());
+  EXPECT_FALSE(milling_.undo());  // nothing while that is prepared
+  milling_.finish_preparing();
+  EXPECT_FALSE(milling_.preparing());
+  EXPECT_EQ(milling_.setup().algorithm.id, "surface-points");
+  EXPECT_EQ(bone(), milled);
+  EXPECT_EQ(milling_.state().record.removed_mm3, removed_mm3);
+  mill(0.2);
+  EXPECT_TRUE(milling_.running());
+}
+
+TEST_F(LiveMillingTest, WhatCannotBePreparedLeavesAllAsItWas) {
+  mill(0.2);
+  const CopyOnWriteFloats milled = bone();
+  MillingSetup wrong = setup_;
+  wrong.tool.burr_radius_mm = -1;
+  EXPECT_TRUE(milling_.change(wrong));
+  EXPECT_THROW(milling_.finish_preparing(), std::invalid_argument);
+  EXPECT_EQ(milling_.setup().tool.burr_radius_mm, setup_.tool.burr_radius_mm);
+  EXPECT_TRUE(milling_.change_isovalue(std::numeric_limits<double>::quiet_NaN()));
+  EXPECT_THROW(milling_.finish_preparing(), std::invalid_argument);
+  EXPECT_EQ(milling_.isovalue(), kIsovalue);
+  EXPECT_EQ(bone(), milled);
+  mill(0.1);
+}
+
+// Of a hole whose sides are cut in part, dragged up and back as far as bone goes.
+TEST_F(LiveMillingTest, WhatWasMilledIsTheSameToTheBitAfterOtherIsovalues) {
+  mill(0.3);
+  const CopyOnWriteFloats milled = bone();
+  for (const double isovalue : {990.0, 300.0, kIsovalue}) {
+    EXPECT_TRUE(milling_.change_isovalue(isovalue));
+    milling_.finish_preparing();
+    EXPECT_EQ(milling_.isovalue(), isovalue);
+    EXPECT_EQ(bone(), milled);
+    EXPECT_TRUE(surface_is_the_bones());
+  }
+  EXPECT_TRUE(milling_.change_isovalue(300));
+  milling_.finish_preparing();
+  EXPECT_TRUE(milling_.undo());
+  milling_.finish_preparing();
+  EXPECT_EQ(bone(), untouched_);
+  EXPECT_FALSE(milling_.follower().touched());
+  milling_.follower().read([](const Volume& bone) { EXPECT_EQ(bone.isovalue(), 300); });
+  EXPECT_TRUE(surface_is_the_bones());
+}
+
+// What a window that ended had milled goes on in another.
+TEST_F(LiveMillingTest, GoesOnWithWhatWasMilledBefore) {
+  mill(0.3);
+  const double removed_mm3 = milling_.state().record.removed_mm3;
+  const CopyOnWriteFloats milled = bone();
+  milling_.stop();
+
+  VirtualHand hand({}, pointing_hand(), pose_above(entry_, setup_.tool, 0.2));
+  const SessionStart before{.run = milling_.describe("ball", ""),
+                            .removed_mm3 = removed_mm3,
+                            .bricks = milling_.follower().touched_bricks()};
+  const auto another = ball_of_bone();
+  another->lower_density({25, 25, 25}, 1);
+  EXPECT_THROW(prepare_milling(another, setup_, before), InputError);
+  LiveMilling again(prepare_milling(ball_of_bone(), setup_, before), hand);
+  const auto bone_again = [&] {
+    CopyOnWriteFloats densities;
+    again.follower().read([&](const Volume& bone) { densities = bone.grid().densities(); });
+    return densities;
+  };
+  EXPECT_EQ(bone_again(), milled);
+  EXPECT_TRUE(again.follower().touched());
+  again.start();
+  for (int n = 0; n < 2000 && again.timing().ticks == 0; ++n) std::this_thread::sleep_for(5ms);
+  EXPECT_EQ(again.state().record.removed_mm3, removed_mm3);
+  EXPECT_EQ(again.follower().cuts(), 1u);
+  EXPECT_TRUE(again.undo());
+  again.finish_preparing();
+  EXPECT_EQ(bone_again(), untouched_);
+}
+
+// Pressed into the bone, deep in it, and far away: each algorithm lets go without a step and feels nothing
+// where the tool comes to stand.
+TEST_F(LiveMillingTest, TheToolIsPlacedWithoutAStepInTheWrench) {
+  const Pose X_W_free = pose_above(entry_, setup_.tool, 5.0);
+  for (const AlgorithmDescription& algorithm : all_algorithms()) {
+    setup_.algorithm = algorithm;
+    EXPECT_TRUE(milling_.change(setup_));
+    milling_.finish_preparing();
+    for (const double above_mm : {-1.0, -4.0, 500.0}) {
+      hand_.pull_to(pose_above(entry_, setup_.tool, above_mm));
+      std::this_thread::sleep_for(300ms);
+      // On a busy machine a tick may come so late that zero is sent as fast as a hand may feel it.
+      double allowed_step_N = 0.4;
+      const auto allow_for_late = [&](const TickRecord& record) {
+        if (record.fault == WrenchFault::tick_late) allowed_step_N = 1e-3 * kRatesForAHand.force_N_s + 1e-9;
+      };
+      while (const auto record = milling_.next_record()) allow_for_late(*record);
+      // Asked for before, the burr may mill until this thread has asked for its place.
+      milling_.place(X_W_free);
+      milling_.set_spindle(true);
+      ASSERT_TRUE(comes_true([&] { return !milling_.placing(); })) << "the tool was not placed";
+      milling_.set_spindle(false);
+      EXPECT_LT((milling_.state().record.X_WD.position_mm - X_W_free.position_mm).norm(), 0.1);
+      std::this_thread::sleep_for(20ms);
+      double force_N = -1;
+      double greatest_step_N = 0;
+      double removed_mm3 = -1;
+      while (const auto record = milling_.next_record()) {
+        const double now_N = record->wrench.force_N.norm();
+        allow_for_late(*record);
+        if (force_N >= 0) greatest_step_N = std::max(greatest_step_N, std::abs(now_N - force_N));
+        force_N = now_N;
+        if (removed_mm3 < 0) removed_mm3 = record->removed_mm3;
+        EXPECT_LE(record->removed_mm3, removed_mm3 + 1e-3);
+      }
+      EXPECT_EQ(force_N, 0) << algorithm.id.name << " from " << above_mm;
+      EXPECT_LT(greatest_step_N, allowed_step_N) << algorithm.id.name << " from " << above_mm;
+      EXPECT_LT((milling_.state().record.X_WT.position_mm - X_W_free.position_mm).norm(), 0.1);
+    }
+  }
+}
+
+// Begun in the middle of milling, over another algorithm, a cut taken back, a pause, another place, another
+// isovalue and a reset: it comes out again to the bit from the scan.
+TEST_F(LiveMillingTest, ARecordingGoesOnOverWhateverIsDone) {
+  const testing_support::TestFolder folder;
+  const auto path = folder / "live.h5";
+  mill(0.1);
+  unsigned char pictures = 0;
+  milling_.start_recording(path, milling_.describe("ball", ""),
+                           [&](std::string_view) { return std::vector<unsigned char>{++pictures}; });
+  milling_.finish_preparing();
+  mill(0.1);
+  setup_.algorithm = algorithm_named("surface-points");
+  setup_.vibration.on = setup_.cutting_reaction = true;
+  setup_.guard.passivity_controller = true;
+  setup_.guard.limits.force_N = 2;
+  EXPECT_TRUE(milling_.change(setup_));
+  milling_.finish_preparing();
+  mill(0.1);
+  EXPECT_TRUE(milling_.undo());
+  milling_.finish_preparing();
+  milling_.set_paused(true);
+  std::this_thread::sleep_for(20ms);
+  milling_.set_paused(false);
+  milling_.place(pose_above(entry_, setup_.tool, 5.0));
+  ASSERT_TRUE(comes_true([&] { return !milling_.placing(); })) << "the tool was not placed";
+  EXPECT_TRUE(milling_.change_isovalue(300));
+  milling_.finish_preparing();
+  hand_.pull_to(pose_above(entry_, setup_.tool, -1.0));
+  mill(0.1);
+  EXPECT_TRUE(milling_.reset());
+  milling_.finish_preparing();
+  mill(0.1);
+  ASSERT_TRUE(milling_.recording());
+  EXPECT_FALSE(milling_.recording_failed());
+  EXPECT_EQ(milling_.stop_recording(), path);
+
+  const Recording recording = read_recording(path);
+  ASSERT_EQ(recording.pictures.size(), 3u);
+  EXPECT_EQ(recording.pictures[0].name, kPictureAfter);
+  EXPECT_EQ(recording.pictures[0].png, std::vector<unsigned char>{2});
+  EXPECT_EQ(recording.pictures[1].name, kPictureAlong);
+  EXPECT_EQ(recording.pictures[1].png, std::vector<unsigned char>{3});
+  EXPECT_EQ(recording.pictures[2].png, std::vector<unsigned char>{1});
+  ASSERT_EQ(recording.sessions.size(), 5u);
+  EXPECT_FALSE(recording.sessions[0].start.bricks.empty()) << "of what was milled before";
+  EXPECT_TRUE(recording.sessions[4].start.bricks.empty()) << "as scanned";
+  EXPECT_EQ(recording.sessions[1].start.run.algorithm, "surface-points");
+  EXPECT_EQ(recording.sessions[3].start.run.isovalue, 300);
+  const Volume scan = *ball_of_bone();
+  const Verification verified = verify_recording(scan, recording);
+  EXPECT_FALSE(verified.difference) << verified.difference->record << ": " << verified.difference->what;
+  EXPECT_EQ(verified.ticks, recording.records.size());
+  Volume milled = scan;
+  repeat_milling(milled, recording);
+  EXPECT_EQ(milled.grid().densities(), bone());
+}
+
+TEST_F(LiveMillingTest, ARecordingBegunWhileAnotherAlgorithmIsPreparedIsOfThatOne) {
+  const testing_support::TestFolder folder;
+  setup_.algorithm = algorithm_named("surface-points");
+  EXPECT_TRUE(milling_.change(setup_));
+  milling_.start_recording(folder / "live.h5", milling_.describe("ball", ""));
+  milling_.finish_preparing();
+  mill(0.1);
+  milling_.stop_recording();
+  const Recording recording = read_recording(folder / "live.h5");
+  EXPECT_EQ(recording.description.algorithm, "surface-points");
+  EXPECT_FALSE(verify_recording(*ball_of_bone(), recording).difference);
+}
+
+TEST_F(LiveMillingTest, ARecordingWhoseSessionCannotBePreparedIsNone) {
+  const testing_support::TestFolder folder;
+  bool fails = false;
+  setup_.algorithm.make = [&fails, make = setup_.algorithm.make](std::span<const double> values) {
+    if (fails) throw std::invalid_argument("no more of it");
+    return make(values);
+  };
+  EXPECT_TRUE(milling_.change(setup_));
+  milling_.finish_preparing();
+  fails = true;
+  milling_.start_recording(folder / "live.h5", milling_.describe("ball", ""));
+  EXPECT_THROW(milling_.finish_preparing(), std::invalid_argument);
+  EXPECT_FALSE(milling_.recording());
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+  fails = false;
+  mill(0.1);
+}
+
+TEST_F(LiveMillingTest, ARecordingFromTheFirstTickOnNeedsNoneBefore) {
+  const testing_support::TestFolder folder;
+  VirtualHand hand({}, pointing_hand(), pose_above(entry_, setup_.tool, 0.2));
+  LiveMilling milling(ball_of_bone(), setup_, hand);
+  milling.start_recording(folder / "live.h5", milling.describe("ball", ""));
+  EXPECT_FALSE(milling.preparing());
+  milling.start();
+  for (int n = 0; n < 2000 && milling.timing().ticks < 50; ++n) std::this_thread::sleep_for(5ms);
+  milling.stop();
+  milling.stop_recording();
+  const Recording recording = read_recording(folder / "live.h5");
+  EXPECT_GT(recording.records.size(), 10u);
+  EXPECT_FALSE(verify_recording(*ball_of_bone(), recording).difference);
+}
+
+TEST_F(LiveMillingTest, WorksOnAfterItWasStopped) {
+  mill(0.2);
+  milling_.stop();
+  EXPECT_TRUE(milling_.undo());
+  milling_.finish_preparing();
+  EXPECT_EQ(bone(), untouched_);
+  start_again();
+  mill(0.1);
+}
+
+}  // namespace
+}  // namespace osteomill

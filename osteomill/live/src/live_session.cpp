@@ -1,0 +1,171 @@
+#include "osteomill/live/live_session.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "osteomill/base/real_time.h"
+
+namespace osteomill {
+
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr double kTick_s = 1e-3;
+// However late a tick comes, no more time than 20 ms is simulated in it.
+constexpr double kMaxLate_s = 0.02 - kTick_s;
+
+}  // namespace
+
+LiveSession::LiveSession(std::unique_ptr<MillingSession> session, Device& device)
+    : device_(device), driven_(device), session_(std::move(session)) {}
+
+void LiveSession::start() {
+  if (running()) return;
+  stop();
+  failure_ = nullptr;
+  std::atomic<bool> ready{false};
+  running_.store(true, std::memory_order_release);
+  try {
+    thread_ = std::jthread([this, &ready](const std::stop_token& stop) {
+      CrashStop::give_this_thread_a_stack();
+      refused_real_time_ = request_real_time();
+      ready.store(true, std::memory_order_release);
+      run(stop);
+    });
+  } catch (...) {
+    running_.store(false, std::memory_order_release);
+    throw;
+  }
+  while (!ready.load(std::memory_order_acquire)) std::this_thread::sleep_for(100us);
+}
+
+void LiveSession::stop() {
+  thread_.request_stop();
+  if (thread_.joinable()) thread_.join();
+}
+
+// Commands swap what they replace into the commanding thread's hands, so that it is destroyed there.
+void LiveSession::between_ticks(const std::function<void()>& command) {
+  command_.store(&command, std::memory_order_release);
+  while (command_.load(std::memory_order_acquire) != nullptr) {
+    if (!running()) {
+      // It may only just be ending.
+      if (thread_.joinable()) thread_.join();
+      take_command();
+    } else {
+      std::this_thread::sleep_for(200us);
+    }
+  }
+}
+
+void LiveSession::take_command() {
+  const auto* const command = command_.load(std::memory_order_acquire);
+  if (command == nullptr) return;
+  (*command)();
+  command_.store(nullptr, std::memory_order_release);
+}
+
+void LiveSession::set_spindle(bool on) {
+  between_ticks([&] { spindle_ = on; });
+}
+
+void LiveSession::set_paused(bool paused) {
+  between_ticks([&] { paused_ = paused; });
+}
+
+void LiveSession::hold_bone(bool held) {
+  between_ticks([&] { bone_held_ = held; });
+}
+
+TakenOver LiveSession::replace(std::unique_ptr<MillingSession> session) {
+  TakenOver left;
+  between_ticks([&] {
+    std::swap(session_, session);
+    left = session->left();
+    session_->take_over(left);
+    if (letting_go_) session_->let_go();
+    ++session_number_;
+  });
+  return left;
+}
+
+void LiveSession::place(const Pose& X_WD) {
+  if (placing()) return;
+  placing_.store(true, std::memory_order_release);
+  between_ticks([&] {
+    X_WD_place_ = X_WD;
+    letting_go_ = true;
+    session_->let_go();
+  });
+}
+
+void LiveSession::listen(TickListener listener) {
+  between_ticks([&] { std::swap(listener_, listener); });
+}
+
+void LiveSession::run(const std::stop_token& stop) noexcept {
+  driven_.started();
+  session_->hold_back();
+  try {
+    tick_until(stop);
+  } catch (...) {
+    failure_ = std::current_exception();
+  }
+  try {
+    device_.write_wrench(Wrench{});
+    driven_.stopped();
+  } catch (...) {
+    if (!failure_) failure_ = std::current_exception();
+  }
+  running_.store(false, std::memory_order_release);
+}
+
+void LiveSession::tick_until(const std::stop_token& stop) {
+  constexpr Nanoseconds kTick_ns = 1'000'000;
+  NextDeadline next{monotonic_now_ns() + kTick_ns, 1};
+  while (!stop.stop_requested() && !driven_.end_asked()) {
+    TickTimes times{next.deadline_ns, 0, 0, next.periods};
+    times.woke_ns = wait_until(next.deadline_ns);
+    take_command();
+    const TickRecord record = tick(std::min((next.periods - 1) * kTick_s, kMaxLate_s));
+    times.done_ns = monotonic_now_ns();
+    timing_.add(times, record);
+    next = next_deadline(next.deadline_ns, times.done_ns, kTick_ns);
+    time_s_ += next.periods * kTick_s;
+  }
+}
+
+std::optional<TickRecord> LiveSession::next_record() {
+  TickRecord record;
+  if (!records_.try_pop(record)) return std::nullopt;
+  return record;
+}
+
+// Again at every tick until one has placed the tool, since the session may be replaced meanwhile and the
+// device may give no pose for a while.
+void LiveSession::place_when_at_rest() {
+  if (!letting_go_ || !session_->guard().is_at_rest()) return;
+  device_.put_at(X_WD_place_);
+  session_->place();
+}
+
+TickRecord LiveSession::tick(double late_s) {
+  place_when_at_rest();
+  const bool spindle_on = !paused_ && !letting_go_ && (spindle_ || device_.spindle_asked());
+  TickRecord record = session_->tick(device_, {.time_s = time_s_,
+                                               .dt_s = kTick_s,
+                                               .late_s = late_s,
+                                               .spindle_on = spindle_on && !bone_held_,
+                                               .paused = paused_});
+  record.session = session_number_;
+  if (record.placed) letting_go_ = false;
+  if (listener_) listener_(record, session_->volume(), session_->last_change());
+  state_.write({record, spindle_on, session_->intersection_W()});
+  if (record.placed) placing_.store(false, std::memory_order_release);
+  records_.try_push(record);
+  return record;
+}
+
+}  // namespace osteomill

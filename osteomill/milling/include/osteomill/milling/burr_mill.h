@@ -1,0 +1,103 @@
+#pragma once
+
+#include "osteomill/base/nonblocking.h"
+#include "osteomill/base/pose.h"
+#include "osteomill/haptics/milling_tool.h"
+#include "osteomill/milling/burr_reach.h"
+#include "osteomill/milling/cut_voxels.h"
+#include "osteomill/milling/label_tally.h"
+#include "osteomill/volume/bone_densities.h"
+#include "osteomill/volume/volume.h"
+
+namespace osteomill {
+
+/// What the removal rate kappa follows from. The defaults make a burr of 1.5 mm radius remove
+/// 3.4 mm^3/(N s); they are plausible for bone, and no source is claimed for them.
+struct CuttingSettings {
+  double spindle_speed_rpm = 40000;
+  /// The cutting (tangential) force at the burr's rim, as a share of the force with which it is pressed on.
+  double tangential_share = 0.3;
+  /// The work that removes a volume of bone of the reference density; N mm / mm^3 is MPa.
+  double specific_energy_Nmm_per_mm3 = 550;
+};
+
+/// kappa in mm^3/(N s): the power of the cutting force at the rim's speed, per newton pressed, over the
+/// specific energy. Throws std::invalid_argument where a setting or the radius is not a positive number.
+double removal_rate_mm3_per_Ns(const CuttingSettings& cutting, double burr_radius_mm);
+
+struct MillingSettings {
+  /// kappa: mm^3 of reference density removed a newton of burr force and second.
+  double removal_rate_mm3_per_Ns =
+      osteomill::removal_rate_mm3_per_Ns(CuttingSettings{}, MillingTool{}.burr_radius_mm);
+  /// The cutting force along the burr's speed as a share of its force, where the hand is to feel that
+  /// (CuttingReaction); 0 where not, and all of the burr then cuts as its rim does.
+  double reaction_share = 0;
+};
+
+/// What one step of milling did.
+struct MillingStep {
+  VolumeChange change;
+  /// In mm^3 of reference density: what was taken, each voxel charged by its density above the surroundings.
+  /// Summed from the densities as they were written, so that it is exact for the volume as it now stands.
+  double removed_mm3 = 0;
+};
+
+/// Removes the bone that the burr sweeps, by energy: each step may take kappa * force * dt. The burr's ball
+/// goes ahead of where it is shown, along its force on the bone, until what it would carve costs just that;
+/// behind its centre it carves where it is shown. So bone goes where the burr presses, most in the middle of
+/// the contact, and a wall that it only slides past stays. What is carved is a surface (cut_voxels.h): the
+/// same hole in any voxels, and nothing more where the burr has been before.
+///
+/// What could not be spent is carried over, but for no more than 10 ms of pressing, and forgotten after 50 ms
+/// without force.
+///
+/// Where the burr meets more bone than a step has time for, it looks at every second line of the grid, or at
+/// every fourth, ... sixty-fourth, in turn, and spends all of its budget there: so a step's time is bounded
+/// whatever the burr and the voxels.
+///
+/// Not in the paper, whose milling rule is in earlier work; docs/algorithms.md.
+class BurrMill {
+ public:
+  /// Allocates all that `step` needs for this grid and burr. Throws std::invalid_argument where the radius or
+  /// the rate is out of range or the reference is not denser than the surroundings.
+  BurrMill(const GridGeometry& geometry, double burr_radius_mm, const BoneDensities& densities,
+           const MillingSettings& settings);
+
+  /// `burr_centre_W` is the simulated burr's centre, `burr_force_W_N` its force on the bone. Lowers densities
+  /// of `volume`, whose geometry is the one given at construction, never below the surroundings. Takes
+  /// nothing where the force or the centre is not finite. Safe in the haptic tick; time grows with the voxels
+  /// overlapped. From step to step only voxels new in reach are searched for bone, so nobody may raise
+  /// densities of the same volume as long as this lives.
+  MillingStep step(Volume& volume, const Vec3& burr_centre_W, const Vec3& burr_force_W_N,
+                   double dt_s) noexcept OSTEOMILL_NONBLOCKING;
+  /// Where the volume has labels: what the steps took of each and nobody has taken from here.
+  LabelTally& by_label() { return by_label_; }
+  /// What was pressed for and not yet cut, mm^3 of reference density.
+  double carry_mm3() const { return carry_mm3_; }
+
+ private:
+  void lift(double dt_s);
+  void share_after(std::size_t found, double advance_voxels);
+  CuttingBall ball_in_grid(const Vec3& centre_W, const Vec3& force_W_N) const;
+  void find(const Volume& volume, const CuttingBall& ball, double max_ahead_mm, double pressed_mm3);
+  MillingStep lower_found(Volume& volume, double dropped);
+  void count_labels(const LabelMap& labels, const CutVoxels::Row& row);
+
+  GridGeometry geometry_;
+  double radius_mm_;
+  BoneDensities densities_;
+  double mm3_per_density_;
+  double removal_rate_mm3_per_Ns_;
+  double min_ahead_mm_;
+  double max_ahead_mm_;
+  BurrReach reach_;
+  CutVoxels voxels_;
+  LabelTally by_label_;
+  BurrReach::Share share_;
+  std::size_t found_of_round_ = 0;  // since all lines had their turn
+  double ahead_mm_ = 0;
+  double carry_mm3_ = 0;
+  double force_free_s_ = 0;
+};
+
+}  // namespace osteomill

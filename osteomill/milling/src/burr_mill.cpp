@@ -1,0 +1,181 @@
+#include "osteomill/milling/burr_mill.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+
+#include "osteomill/base/positive.h"
+#include "osteomill/haptics/burr_presses.h"
+#include "osteomill/milling/cut_voxels.h"
+
+namespace osteomill {
+
+double removal_rate_mm3_per_Ns(const CuttingSettings& cutting, double burr_radius_mm) {
+  require_positive(cutting.spindle_speed_rpm, "milling: the spindle's speed");
+  require_positive(cutting.tangential_share, "milling: the tangential share");
+  require_positive(cutting.specific_energy_Nmm_per_mm3, "milling: the specific cutting energy");
+  require_positive(burr_radius_mm, "milling: the burr's radius");
+  const double rim_speed_mm_s = 2 * std::numbers::pi * burr_radius_mm * cutting.spindle_speed_rpm / 60;
+  return rim_speed_mm_s * cutting.tangential_share / cutting.specific_energy_Nmm_per_mm3;
+}
+
+namespace {
+
+constexpr double kForgetAfter_s = 0.05;
+constexpr double kMaxAhead_mm_s = 20;
+// So many pieces of rows a tick are looked at; up to the second number rather than have some lines cut so
+// much deeper than the others.
+constexpr std::size_t kPiecesOfTick = 1024;
+constexpr std::size_t kMaxPiecesOfTick = 4096;
+constexpr double kMaxUneven_voxels = 0.6;
+// And never more, even in the first ticks, before it is known how many there are.
+constexpr std::size_t kRoomForPieces = 2 * kMaxPiecesOfTick;
+constexpr unsigned kMaxShares = 64;
+
+// The least float that is not below `density`.
+float float_not_below(double density) {
+  const float nearest = static_cast<float>(density);
+  return static_cast<double>(nearest) < density
+             ? std::nextafter(nearest, std::numeric_limits<float>::infinity())
+             : nearest;
+}
+
+void require(bool right, const char* what) {
+  if (!right) throw std::invalid_argument(what);
+}
+
+// Farther than where bone counts as ahead of the burr, by what an interpolated surface may lie beside where
+// it was cut: what counts must be there to be cut.
+double max_ahead(const GridGeometry& geometry) {
+  constexpr double kFarther_voxels = 0.5;
+  return pressing_reach_mm(geometry) + kFarther_voxels * geometry.spacing_mm.maxCoeff();
+}
+
+// Where the ball's leading half cuts nothing, however deep in bone the burr is.
+double min_ahead(const GridGeometry& geometry, double radius_mm) {
+  return -radius_mm - CutProfile::kReach_voxels * geometry.spacing_mm.maxCoeff();
+}
+
+// Of a ball about the burr and the same ball ahead of it.
+double reach_mm(const GridGeometry& geometry, double radius_mm, double ahead_mm) {
+  return radius_mm + 0.5 * ahead_mm + CutProfile::kReach_voxels * geometry.spacing_mm.maxCoeff();
+}
+
+BurrReach make_reach(const GridGeometry& geometry, double burr_radius_mm, const BoneDensities& densities,
+                     const MillingSettings& settings) {
+  require(geometry.voxel_count() > 0 && geometry.spacing_mm.minCoeff() > 0 && geometry.spacing_mm.allFinite(),
+          "BurrMill: an empty grid");
+  require_positive(burr_radius_mm, "BurrMill: the burr's radius");
+  require_not_negative(settings.removal_rate_mm3_per_Ns, "BurrMill: the removal rate");
+  require(std::isfinite(densities.surroundings) && std::isfinite(densities.reference) &&
+              densities.reference > densities.surroundings,
+          "BurrMill: the reference density must be above that of the surroundings");
+  return BurrReach(geometry, reach_mm(geometry, burr_radius_mm, max_ahead(geometry)),
+                   float_not_below(densities.surroundings), kRoomForPieces);
+}
+
+}  // namespace
+
+BurrMill::BurrMill(const GridGeometry& geometry, double burr_radius_mm, const BoneDensities& densities,
+                   const MillingSettings& settings)
+    : geometry_(geometry),
+      radius_mm_(burr_radius_mm),
+      densities_(densities),
+      mm3_per_density_(geometry.voxel_volume_mm3() / (densities.reference - densities.surroundings)),
+      removal_rate_mm3_per_Ns_(settings.removal_rate_mm3_per_Ns),
+      min_ahead_mm_(min_ahead(geometry, burr_radius_mm)),
+      max_ahead_mm_(max_ahead(geometry)),
+      reach_(make_reach(geometry, burr_radius_mm, densities, settings)),
+      voxels_(geometry, reach_.max_voxels(), reach_.max_pieces()) {}
+
+MillingStep BurrMill::step(Volume& volume, const Vec3& burr_centre_W, const Vec3& burr_force_W_N,
+                           double dt_s) noexcept {
+  const double rate_mm3_s = removal_rate_mm3_per_Ns_ * burr_force_W_N.norm();
+  const double pressed_mm3 = rate_mm3_s * dt_s;
+  if (!(pressed_mm3 > 0) || !std::isfinite(pressed_mm3) || !burr_centre_W.allFinite()) {
+    lift(dt_s);
+    return {};
+  }
+  force_free_s_ = 0;
+  const double budget_mm3 = carry_mm3_ + pressed_mm3;
+  const CuttingBall ball = ball_in_grid(burr_centre_W, burr_force_W_N);
+  const double max_ahead_mm = std::min(std::max(ahead_mm_, 0.0) + kMaxAhead_mm_s * dt_s, max_ahead_mm_);
+  find(volume, ball, max_ahead_mm, pressed_mm3);
+  const BurrAdvance advance =
+      advance_within(budget_mm3 / mm3_per_density_, voxels_, ahead_mm_, min_ahead_mm_, max_ahead_mm);
+  ahead_mm_ = advance.ahead_mm;
+  const MillingStep done = lower_found(volume, voxels_.find_lowered(ahead_mm_, advance.shares));
+  // Below zero by a rounding error where floats were rounded in the burr's favour; the next step pays for it.
+  carry_mm3_ = std::min(budget_mm3 - done.removed_mm3, kPressingKept_s * rate_mm3_s);
+  return done;
+}
+
+void BurrMill::lift(double dt_s) {
+  if (dt_s > 0) force_free_s_ += dt_s;
+  if (force_free_s_ < kForgetAfter_s) return;
+  carry_mm3_ = 0;
+  ahead_mm_ = 0;
+}
+
+CuttingBall BurrMill::ball_in_grid(const Vec3& centre_W, const Vec3& force_W_N) const {
+  const auto to_grid = geometry_.direction.transpose();
+  return {to_grid * (centre_W - geometry_.origin_mm), to_grid * force_W_N.normalized(), radius_mm_};
+}
+
+void BurrMill::find(const Volume& volume, const CuttingBall& ball, double max_ahead_mm, double pressed_mm3) {
+  reach_.find(volume, ball.centre_mm + 0.5 * max_ahead_mm * ball.ahead,
+              reach_mm(geometry_, radius_mm_, max_ahead_mm), share_);
+  const double contact_mm2 = std::numbers::pi * radius_mm_ * radius_mm_;
+  share_after(reach_.pieces().size(), pressed_mm3 / contact_mm2 / geometry_.spacing_mm.minCoeff());
+  const CutProfile profile = CutProfile::between(static_cast<double>(reach_.floor_density()),
+                                                 volume.isovalue(), densities_.reference);
+  voxels_.gather(reach_, ball, profile, max_ahead_mm);
+}
+
+// A burr deep in its hole has tens of thousands of voxels before it, and takes a thousandth of each in a
+// tick. Every second line then takes twice as much every second tick, and so on: lines, since they sample all
+// of the burr alike.
+void BurrMill::share_after(std::size_t found, double advance_voxels) {
+  found_of_round_ += found;
+  ++share_.turn;
+  const auto may_double = [&](std::size_t all) {
+    const bool even = 2 * share_.count * advance_voxels <= kMaxUneven_voxels;
+    return share_.count < kMaxShares && all > (even ? kPiecesOfTick : kMaxPiecesOfTick) * share_.count;
+  };
+  const bool too_many = found > 2 * kPiecesOfTick && may_double(found * share_.count);
+  if (!too_many && share_.turn < share_.count) return;
+  const std::size_t all = too_many ? found * share_.count : found_of_round_;
+  share_ = {};
+  while (may_double(all)) share_.count *= 2;
+  found_of_round_ = 0;
+}
+
+void BurrMill::count_labels(const LabelMap& labels, const CutVoxels::Row& row) {
+  for (std::size_t n = row.begin; n < row.end; ++n) {
+    const double drop = static_cast<double>(voxels_.before()[n]) - static_cast<double>(voxels_.after()[n]);
+    if (drop > 0) by_label_.add(labels.at({voxels_.columns()[n], row.j, row.k}), drop * mm3_per_density_);
+  }
+}
+
+MillingStep BurrMill::lower_found(Volume& volume, double dropped) {
+  MillingStep done;
+  done.removed_mm3 = dropped * mm3_per_density_;
+  const int* columns = voxels_.columns();
+  const float* before = voxels_.before();
+  const float* after = voxels_.after();
+  for (const CutVoxels::Row& row : voxels_.rows()) {
+    std::size_t begin = row.begin, end = row.end;
+    while (begin < end && !(after[begin] < before[begin])) ++begin;
+    if (begin == end) continue;
+    while (!(after[end - 1] < before[end - 1])) --end;
+    volume.lower_row(row.j, row.k, columns + begin, after + begin, end - begin);
+    if (volume.labels()) count_labels(*volume.labels(), {row.j, row.k, begin, end});
+    done.change.voxels.include({columns[begin], row.j, row.k});
+    done.change.voxels.include({columns[end - 1], row.j, row.k});
+  }
+  return done;
+}
+
+}  // namespace osteomill

@@ -1,0 +1,106 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "osteomill/base/pose.h"
+#include "osteomill/base/wrench.h"
+#include "osteomill/session/tick_record.h"
+
+namespace osteomill {
+
+/// One end of a pipe between this process and a child of its own. What the child puts in the parent takes out
+/// by the same calls of `pass` in the same order.
+class PipeEnd {
+ public:
+  enum class Does : unsigned char { put, take };
+
+  /// Owns the descriptor. No text or list of more bytes is taken.
+  PipeEnd(int descriptor, Does does, std::uintmax_t most_bytes);
+  ~PipeEnd();
+  PipeEnd(const PipeEnd&) = delete;
+  PipeEnd& operator=(const PipeEnd&) = delete;
+
+  bool takes() const { return does_ == Does::take; }
+  /// Throws std::runtime_error where the other end has gone.
+  void pass_bytes(void* data, std::size_t count);
+  /// Passes how many there are of things of this size. Throws std::runtime_error for too many.
+  std::size_t pass_count(std::size_t count, std::size_t size);
+  /// Throws std::runtime_error where not all that was put in could be written.
+  void flush();
+
+ private:
+  std::FILE* file_;
+  Does does_;
+  std::uintmax_t most_bytes_;
+};
+
+/// What is passed as the bytes that it has in memory.
+template <typename T>
+inline constexpr bool kFlat = std::is_trivially_copyable_v<T>;
+template <>
+inline constexpr bool kFlat<Vec3> = true;
+template <>
+inline constexpr bool kFlat<Mat3> = true;
+template <>
+inline constexpr bool kFlat<Pose> = true;
+template <>
+inline constexpr bool kFlat<Wrench> = true;
+template <>
+inline constexpr bool kFlat<TickRecord> = true;
+
+/// Passes a value. Any other type is a struct whose `members_of` ties what is passed of it.
+template <typename T>
+void pass(PipeEnd& pipe, T& value) {
+  if constexpr (kFlat<T>) {
+    pipe.pass_bytes(&value, sizeof(value));
+  } else {
+    std::apply([&](auto&... member) { (pass(pipe, member), ...); }, members_of(value));
+  }
+}
+
+inline void pass(PipeEnd& pipe, std::string& text) {
+  text.resize(pipe.pass_count(text.size(), 1));
+  pipe.pass_bytes(text.data(), text.size());
+}
+
+template <typename T>
+void pass(PipeEnd& pipe, std::vector<T>& list) {
+  list.resize(pipe.pass_count(list.size(), sizeof(T)));
+  if constexpr (kFlat<T>) {
+    pipe.pass_bytes(list.data(), list.size() * sizeof(T));
+  } else {
+    for (T& value : list) pass(pipe, value);
+  }
+}
+
+template <typename A, typename B>
+void pass(PipeEnd& pipe, std::pair<A, B>& both) {
+  pass(pipe, both.first);
+  pass(pipe, both.second);
+}
+
+template <typename T>
+void pass(PipeEnd& pipe, std::optional<T>& value) {
+  bool there = value.has_value();
+  pass(pipe, there);
+  if (there && !value) value.emplace();
+  if (there) pass(pipe, *value);
+}
+
+inline void pass(PipeEnd& pipe, std::variant<double, std::string>& value) {
+  bool is_text = value.index() == 1;
+  pass(pipe, is_text);
+  if (pipe.takes() && is_text) value = std::string();
+  std::visit([&](auto& held) { pass(pipe, held); }, value);
+}
+
+}  // namespace osteomill

@@ -1,0 +1,142 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "osteomill/base/field.h"
+#include "osteomill/base/pose.h"
+#include "osteomill/session/milling_setup.h"
+#include "osteomill/volume/bone_densities.h"
+#include "osteomill/volume/label_map.h"
+#include "osteomill/volume/volume.h"
+
+namespace osteomill {
+
+/// One further setting of a run. `unit` is empty for a pure number, a choice or a name.
+struct RunSetting {
+  std::string key;
+  std::variant<double, std::string> value;
+  std::string unit;
+  friend bool operator==(const RunSetting&, const RunSetting&) = default;
+};
+
+/// The key of the further setting that holds the command by which the run can be repeated (reports show it).
+inline constexpr std::string_view kCommandLineKey = "command_line";
+
+/// And of the one that says what of its plan a run did not reach, in words; a recording that reached all has
+/// none.
+inline constexpr std::string_view kNotReachedKey = "not_reached";
+
+/// And of the one that says by which comparison a recording was made: the same text in all of its recordings,
+/// and in no others. Recordings of nothing that is compared have none.
+inline constexpr std::string_view kComparisonKey = "comparison";
+
+/// The keys of those that say how stiff a simulated hand is, in N/mm, and how damped, in N s/mm.
+inline constexpr std::string_view kHandStiffnessKey = "hand.stiffness";
+inline constexpr std::string_view kHandDampingKey = "hand.damping";
+
+/// Where and when a recording was made. Nothing of it is of a patient.
+struct Origin {
+  /// "2026-11-22T13:45:00Z".
+  std::string date_utc;
+  std::string host;
+  std::string system;
+  std::string processor;
+  std::string compiler;
+  /// "optimised" or "not optimised".
+  std::string build;
+  friend bool operator==(const Origin&, const Origin&) = default;
+};
+
+/// What a recording says of itself: enough to know what was run and to run it again.
+struct RunDescription {
+  std::string program_version;
+  Origin made;
+  /// The scan as the user named it, or what the built-in tooth is called.
+  std::string scan_name;
+  std::array<int, 3> dims{0, 0, 0};
+  Vec3 spacing_mm = Vec3::Ones();
+  /// Where the grid lies (GridGeometry).
+  Vec3 origin_mm = Vec3::Zero();
+  Mat3 direction = Mat3::Identity();
+  /// Of the densities as they were read (fingerprint_of): a recording can be verified only against these. And
+  /// of the label map. 0 where nobody said, or there is none.
+  std::uint64_t scan_hash = 0;
+  std::uint64_t label_map_hash = 0;
+  /// In the scan's own unit of density.
+  double isovalue = 0;
+  MillingTool tool;
+  AlgorithmId algorithm;
+  /// Which part of a longer run this is, in the words of whoever recorded it; empty where it is the whole.
+  std::string phase;
+  std::uint64_t seed = 0;
+  double tick_period_s = 0.001;
+  /// Everything else that was set, in the order in which people should read it; every key once.
+  std::vector<RunSetting> settings;
+  /// Of the bone's label map, by their places in it; empty where it has none. Every value once.
+  std::vector<Label> labels;
+};
+
+/// The value of a further setting; null where there is none of this key, or of another type.
+template <typename Value>
+const Value* find_setting(const RunDescription& run, std::string_view key) {
+  for (const RunSetting& setting : run.settings) {
+    if (setting.key == key) return std::get_if<Value>(&setting.value);
+  }
+  return nullptr;
+}
+
+/// The key of the setting that says with how many sample points the algorithm works.
+inline constexpr std::string_view kSamplePointsKey = "sample_points";
+
+/// Puts a number among a run's settings, in the place of one of this name.
+void put_setting(RunDescription& run, const FieldDescription& field, double value);
+/// Returns a number of a run's settings; nothing if it has none and `field` may be absent. Throws InputError,
+/// naming the recording's `path`, if it should have one.
+std::optional<double> taken_setting(const RunDescription& run, const FieldDescription& field,
+                                    const std::filesystem::path& path);
+
+/// Puts every field that files have (FieldDescription::name) among a run's settings, and takes them back from
+/// there. Throws as `taken_setting`.
+template <typename Struct>
+void put_fields(RunDescription& run, const Struct& s) {
+  for (const Field<Struct>& field : fields_of<Struct>())
+    if (!field.name.empty()) put_setting(run, field, field.get(s));
+}
+template <typename Struct>
+void take_fields(const RunDescription& run, const std::filesystem::path& path, Struct& s) {
+  for (const Field<Struct>& field : fields_of<Struct>()) {
+    if (field.name.empty()) continue;
+    if (const auto value = taken_setting(run, field, path)) field.set(s, *value);
+  }
+}
+
+/// What a session goes by.
+struct SessionSettings {
+  MillingSetup setup;
+  BoneDensities densities;
+};
+template <>
+const std::vector<Field<SessionSettings>>& fields_of<SessionSettings>();
+
+/// All of them in a run's description, in the place of those that it has. `sample_points` is how many the
+/// algorithm works with.
+void set_session_settings(RunDescription& run, const SessionSettings& session, int sample_points);
+
+/// Read back, but for the algorithm: the run has its name, and whoever runs it knows which is meant. Throws
+/// InputError, naming the recording's `path`, where a setting is missing.
+SessionSettings session_settings(const RunDescription& run, const std::filesystem::path& path);
+
+/// All that a recording says of a session on this bone, but for what the caller alone knows: scan_name,
+/// scan_hash, seed, and settings of its own (a script, a hand), which it adds. `sample_points` is how many
+/// the algorithm works with as it stands; `command_line`, how the program was called, may be empty.
+RunDescription describe_run(const Volume& bone, const SessionSettings& session, int sample_points,
+                            const std::string& command_line = {});
+
+}  // namespace osteomill

@@ -1,0 +1,147 @@
+#include "osteomill/recording/hdf5.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "osteomill/base/input_error.h"
+
+namespace osteomill {
+
+namespace {
+
+std::mutex& hdf5_mutex() {
+  static std::mutex mutex;
+  return mutex;
+}
+
+constexpr std::size_t kMaxText = 60000;
+
+}  // namespace
+
+Hdf5Lock::Hdf5Lock() : lock_(hdf5_mutex()) {
+  // All that is open is closed by its handle. What the library would do at exit crashes on a file that a full
+  // disk left half-written. Before any other call, or it has no effect.
+  [[maybe_unused]] static const herr_t asked = H5dont_atexit();
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
+
+void Attributes::write(const std::string& name, hid_t file_type, hid_t memory_type, hsize_t count,
+                       const void* data) const {
+  const Hdf5Handle space(count == 1 ? H5Screate(H5S_SCALAR) : H5Screate_simple(1, &count, nullptr), H5Sclose);
+  const Hdf5Handle attribute(
+      H5Acreate2(object_, name.c_str(), file_type, space.get(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  if (!attribute.valid() || H5Awrite(attribute.get(), memory_type, data) < 0) {
+    throw InputError(file_.string(), "the attribute '" + name + "' cannot be written");
+  }
+}
+
+void Attributes::put(const std::string& name, const std::string& text) const {
+  if (text.size() > kMaxText) {
+    throw std::invalid_argument("the text of '" + name + "' is too long for a recording");
+  }
+  const Hdf5Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+  H5Tset_size(type.get(), text.size() + 1);
+  H5Tset_cset(type.get(), H5T_CSET_UTF8);
+  write(name, type.get(), type.get(), 1, text.c_str());
+}
+
+void Attributes::put(const std::string& name, std::uint64_t value) const {
+  write(name, H5T_STD_U64LE, H5T_NATIVE_UINT64, 1, &value);
+}
+
+void Attributes::put_reals(const std::string& name, std::span<const double> values) const {
+  write(name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, values.size(), values.data());
+}
+
+void Attributes::put(const std::string& name, const std::array<int, 3>& values) const {
+  write(name, H5T_STD_I32LE, H5T_NATIVE_INT, values.size(), values.data());
+}
+
+void Attributes::replace(const std::string& name, std::uint64_t value) const {
+  const Hdf5Handle attribute(H5Aopen(object_, name.c_str(), H5P_DEFAULT), H5Aclose);
+  if (!attribute.valid() || H5Awrite(attribute.get(), H5T_NATIVE_UINT64, &value) < 0) {
+    throw InputError(file_.string(), "the attribute '" + name + "' cannot be written");
+  }
+}
+
+Hdf5Handle Attributes::open(const std::string& name) const {
+  Hdf5Handle attribute(H5Aopen(object_, name.c_str(), H5P_DEFAULT), H5Aclose);
+  if (!attribute.valid()) throw InputError(file_.string(), "has no attribute '" + name + "'");
+  return attribute;
+}
+
+void Attributes::read(const std::string& name, H5T_class_t type_class, hid_t memory_type, hssize_t count,
+                      void* data) const {
+  const Hdf5Handle attribute = open(name);
+  const Hdf5Handle type(H5Aget_type(attribute.get()), H5Tclose);
+  const Hdf5Handle space(H5Aget_space(attribute.get()), H5Sclose);
+  if (H5Tget_class(type.get()) != type_class || H5Sget_simple_extent_npoints(space.get()) != count) {
+    throw InputError(file_.string(), "the attribute '" + name + "' is of another type or length");
+  }
+  if (H5Aread(attribute.get(), memory_type, data) < 0) {
+    throw InputError(file_.string(), "the attribute '" + name + "' cannot be read");
+  }
+}
+
+void Attributes::get(const std::string& name, std::string& text) const {
+  const Hdf5Handle attribute = open(name);
+  const Hdf5Handle type(H5Aget_type(attribute.get()), H5Tclose);
+  const Hdf5Handle space(H5Aget_space(attribute.get()), H5Sclose);
+  const std::size_t size = H5Tget_size(type.get());
+  if (H5Tget_class(type.get()) != H5T_STRING || H5Tis_variable_str(type.get()) != 0 || size < 1 ||
+      size > kMaxText + 1 || H5Sget_simple_extent_npoints(space.get()) != 1) {
+    throw InputError(file_.string(), "the attribute '" + name + "' is not a short text");
+  }
+  text.assign(size, '\0');
+  if (H5Aread(attribute.get(), type.get(), text.data()) < 0) {
+    throw InputError(file_.string(), "the attribute '" + name + "' cannot be read");
+  }
+  text.resize(std::min(size, text.find('\0')));
+}
+
+double Attributes::real_or_infinite(const std::string& name) const {
+  double value = 0;
+  read(name, H5T_FLOAT, H5T_NATIVE_DOUBLE, 1, &value);
+  if (std::isnan(value)) throw InputError(file_.string(), "the attribute '" + name + "' is not a number");
+  return value;
+}
+
+void Attributes::get(const std::string& name, std::uint64_t& value) const {
+  read(name, H5T_INTEGER, H5T_NATIVE_UINT64, 1, &value);
+}
+
+void Attributes::get_reals(const std::string& name, std::span<double> values) const {
+  read(name, H5T_FLOAT, H5T_NATIVE_DOUBLE, std::ssize(values), values.data());
+  if (!std::ranges::all_of(values, [](double value) { return std::abs(value) <= kMostReal; }))
+    throw InputError(file_.string(), "the attribute '" + name + "' is not finite, or beyond 1e12");
+}
+
+void Attributes::get(const std::string& name, std::array<int, 3>& values) const {
+  read(name, H5T_INTEGER, H5T_NATIVE_INT, 3, values.data());
+}
+
+bool Attributes::has(const std::string& name) const {
+  return H5Aexists(object_, name.c_str()) > 0;
+}
+
+bool Attributes::is_text(const std::string& name) const {
+  const Hdf5Handle attribute = open(name);
+  const Hdf5Handle type(H5Aget_type(attribute.get()), H5Tclose);
+  return H5Tget_class(type.get()) == H5T_STRING;
+}
+
+std::vector<std::string> Attributes::names() const {
+  std::vector<std::string> names;
+  const auto collect = [](hid_t, const char* name, const H5A_info_t*, void* list) -> herr_t {
+    static_cast<std::vector<std::string>*>(list)->emplace_back(name);
+    return 0;
+  };
+  hsize_t from = 0;
+  if (H5Aiterate2(object_, H5_INDEX_CRT_ORDER, H5_ITER_INC, &from, collect, &names) < 0) {
+    throw InputError(file_.string(), "the attributes of its settings cannot be listed");
+  }
+  return names;
+}
+
+}  // namespace osteomill

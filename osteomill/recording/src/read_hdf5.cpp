@@ -1,0 +1,187 @@
+#include "osteomill/recording/read_hdf5.h"
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <optional>
+#include <stdexcept>
+#include <system_error>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "osteomill/base/file_lock.h"
+#include "osteomill/base/input_error.h"
+
+namespace osteomill {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+bool holds_its_own_values(hid_t dataset) {
+  const Hdf5Handle layout(H5Dget_create_plist(dataset), H5Pclose);
+  bool own = H5Pget_external_count(layout.get()) == 0 && H5Pget_layout(layout.get()) != H5D_VIRTUAL;
+  for (int n = 0; own && n < H5Pget_nfilters(layout.get()); ++n) {
+    unsigned flags = 0, config = 0;
+    std::size_t values = 0;
+    const H5Z_filter_t filter =
+        H5Pget_filter2(layout.get(), static_cast<unsigned>(n), &flags, &values, nullptr, 0, nullptr, &config);
+    own = filter >= 0 && filter < H5Z_FILTER_RESERVED;
+  }
+  return own;
+}
+
+void require_nothing_elsewhere(const Hdf5File& file) {
+  std::string refused;
+  const auto look = [](hid_t group, const char* name, const H5L_info_t* link, void* found) -> herr_t {
+    bool within = link->type == H5L_TYPE_HARD;
+    if (within) {
+      const Hdf5Handle object(H5Oopen(group, name, H5P_DEFAULT), H5Oclose);
+      const H5I_type_t type = H5Iget_type(object.get());
+      within = type == H5I_GROUP || (type == H5I_DATASET && holds_its_own_values(object.get()));
+    }
+    if (!within) *static_cast<std::string*>(found) = name;
+    return within ? 0 : 1;
+  };
+  if (H5Lvisit(file.id(), H5_INDEX_NAME, H5_ITER_NATIVE, look, &refused) != 0)
+    file.refuse("'" + refused + "' leads elsewhere, or needs a filter that is not HDF5's own");
+}
+
+// What the program does at a signal is not for the child to do. The library of C tells of a heap that is
+// damaged.
+void end_by_any_fault(std::uintmax_t bytes) {
+  constexpr unsigned kLeast_s = 2, kWaitingShare = 20;
+  constexpr std::uintmax_t kBytesPerSecond = 5'000'000;
+  for (int signal = 1; signal < NSIG; ++signal) std::signal(signal, SIG_DFL);
+  const unsigned most_s = kLeast_s + static_cast<unsigned>(bytes / kBytesPerSecond);
+  const rlimit processor{most_s, most_s};
+  ::setrlimit(RLIMIT_CPU, &processor);
+  ::alarm(kWaitingShare * most_s);
+  const rlimit no_dump{0, 0};
+  ::setrlimit(RLIMIT_CORE, &no_dump);
+  ::dup2(::open("/dev/null", O_WRONLY), STDERR_FILENO);
+}
+
+// Nothing where the child put in all that it had to. Else the reason for which it refused the file, which is
+// empty where it broke off.
+std::optional<std::string> taken(PipeEnd& pipe, const std::function<void(PipeEnd&)>& take) {
+  try {
+    bool is_read = false;
+    pass(pipe, is_read);
+    if (is_read) {
+      take(pipe);
+      return std::nullopt;
+    }
+    std::string reason;
+    pass(pipe, reason);
+    return reason;
+  } catch (const std::runtime_error&) {
+    return "";
+  }
+}
+
+[[noreturn]] void be_the_child(const fs::path& path, PipeEnd& pipe,
+                               const std::function<void(PipeEnd&)>& put) {
+  int code = 0;
+  try {
+    try {
+      put(pipe);
+    } catch (const InputError& error) {
+      bool is_read = false;
+      std::string reason = error.what();
+      const std::string subject = in_one_line(path.string()) + ": ";
+      if (reason.starts_with(subject)) reason.erase(0, subject.size());
+      pass(pipe, is_read);
+      pass(pipe, reason);
+    }
+    pipe.flush();
+  } catch (...) {
+    code = 1;
+  }
+  ::_exit(code);
+}
+
+}  // namespace
+
+void Hdf5File::refuse(const std::string& reason) const {
+  throw InputError(path.string(), reason);
+}
+
+void require_readable(const fs::path& path) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (!fs::exists(status)) throw InputError(path.string(), "no such file");
+  if (!fs::is_regular_file(status)) throw InputError(path.string(), "is not a file");
+  if (is_locked(path)) throw InputError(path.string(), "is still being written");
+}
+
+Hdf5File open_hdf5(const fs::path& path) {
+  std::error_code error;
+  Hdf5File file{path, fs::file_size(path, error), {}};
+  if (H5Fis_hdf5(path.c_str()) <= 0) file.refuse("is not an HDF5 file");
+  const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  H5Pset_file_locking(access.get(), false, true);
+  file.handle = Hdf5Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()), H5Fclose);
+  if (!file.handle.valid()) file.refuse("cannot be opened: it is cut short or damaged");
+  require_nothing_elsewhere(file);
+  return file;
+}
+
+void pass_from_child(const fs::path& path, const std::function<void(PipeEnd&)>& put,
+                     const std::function<void(PipeEnd&)>& take) {
+  // Of what is read, for each byte of the file; and of a reason.
+  constexpr std::uintmax_t kMostBytes = 10'000, kMostOfReason = 1'000'000;
+  std::error_code error;
+  const std::uintmax_t bytes = fs::file_size(path, error), most = kMostBytes * bytes + kMostOfReason;
+  std::array<int, 2> ends{};
+  if (::pipe2(ends.data(), O_CLOEXEC) != 0)
+    throw InputError(path.string(), "cannot be read: too many open files");
+  const ::pid_t child = ::fork();
+  if (child == 0) {
+    end_by_any_fault(bytes);
+    ::close(ends[0]);
+    PipeEnd pipe(ends[1], PipeEnd::Does::put, most);
+    be_the_child(path, pipe, put);
+  }
+  ::close(ends[1]);
+  std::optional<std::string> fault;
+  {
+    PipeEnd pipe(ends[0], PipeEnd::Does::take, most);
+    fault = taken(pipe, take);
+  }
+  if (child < 0)
+    throw InputError(path.string(), "cannot be read: no process can be started for it (ulimit -u)");
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
+  if (status != 0 || (fault && fault->empty()))
+    throw InputError(path.string(), "is damaged: it ends the program that reads it");
+  if (fault) throw InputError(path.string(), *fault);
+}
+
+Hdf5Column open_column(const Hdf5File& file, const std::string& place, hsize_t width) {
+  // A byte of the file for each row lets through what other programs have compressed; of wide rows, whatever
+  // deflate may save.
+  constexpr hsize_t kMostThatDeflateSaves = 1100;
+  Hdf5Column column{place, Hdf5Handle(H5Dopen2(file.id(), place.c_str(), H5P_DEFAULT), H5Dclose), width};
+  if (!column.dataset.valid()) file.refuse("has no column '" + place + "'");
+  const Hdf5Handle type(H5Dget_type(column.dataset.get()), H5Tclose);
+  const H5T_class_t type_class = H5Tget_class(type.get());
+  const Hdf5Handle space(H5Dget_space(column.dataset.get()), H5Sclose);
+  const int rank = width == 1 ? 1 : 2;
+  std::array<hsize_t, 2> size{0, 1};
+  if ((type_class != H5T_FLOAT && type_class != H5T_INTEGER) ||
+      H5Sget_simple_extent_ndims(space.get()) != rank ||
+      H5Sget_simple_extent_dims(space.get(), size.data(), nullptr) != rank || (rank == 2 && size[1] != width))
+    file.refuse("'" + place + "' is not a column of numbers");
+  const hsize_t most = rank == 1 ? file.bytes : kMostThatDeflateSaves * file.bytes / (width * sizeof(float));
+  if (size[0] > most)
+    file.refuse(fmt::format("'{}' claims {} rows, more than the file can hold", place, size[0]));
+  column.rows = size[0];
+  return column;
+}
+
+}  // namespace osteomill

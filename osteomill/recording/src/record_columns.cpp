@@ -1,0 +1,140 @@
+#include "osteomill/recording/record_columns.h"
+
+#include <iterator>
+#include <ostream>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "osteomill/base/atomic_file.h"
+#include "osteomill/recording/hdf5.h"
+
+namespace osteomill {
+
+namespace {
+
+using Fields = std::vector<Field<TickRecord>>;
+
+constexpr NumberRange kReal{-kMostReal, kMostReal, false};
+
+template <typename Place>
+void add_real(Fields& fields, const char* name, const char* unit, Place place, const char* doc,
+              unsigned flags = 0) {
+  fields.push_back(field<TickRecord>({name, unit, kReal, doc, flags}, place));
+}
+
+template <typename Place>
+void add_switch(Fields& fields, const char* name, Place place, const char* doc, unsigned flags = 0) {
+  fields.push_back(field<TickRecord>({name, "", NumberRange::on_or_off(), doc, flags}, place));
+}
+
+template <typename Place>
+void add_vector(Fields& fields, const std::string& name, const std::string& unit, Place place,
+                const char* doc, unsigned flags = 0) {
+  for (const int axis : {0, 1, 2}) {
+    const std::string unit_in_name = unit == "N mm" ? "Nmm" : unit;
+    fields.push_back(field<TickRecord>(
+        {fmt::format("{}_{}_{}", name, "xyz"[axis], unit_in_name), unit, kReal, doc, flags},
+        [ place, axis ](auto& record) -> auto& { return place(record)[axis]; }));
+  }
+}
+
+template <typename Place>
+void add_pose(Fields& fields, const std::string& name, Place place, const char* position_doc,
+              const char* turn_doc, unsigned flags) {
+  add_vector(
+      fields, name, "mm", [place](auto& r) -> auto& { return (r.*place).position_mm; }, position_doc, flags);
+  // In the order in which Eigen keeps them.
+  constexpr int kW = 3;
+  for (const int part : {kW, 0, 1, 2}) {
+    fields.push_back(field<TickRecord>(
+        {fmt::format("{}_q{}", name, "xyzw"[part]), "", kReal, turn_doc, flags},
+        [ place, part ](auto& r) -> auto& { return (r.*place).orientation.coeffs()[part]; }));
+  }
+}
+
+Fields record_fields() {
+  using R = TickRecord;
+  Fields all;
+  add_real(all, "time_s", "s", &R::time_s, "when the tick began", kInLog);
+  add_pose(all, "device", &R::X_WD,
+           "device as read (X_WD), as the burr's centre, frame W; not finite without a pose",
+           "device's orientation in W, unit quaternion", kInLog | kMayBeMissing);
+  add_pose(all, "tool", &R::X_WT, "simulated tool (X_WT), the burr's centre, frame W",
+           "simulated tool's orientation in W, unit quaternion; the shaft points along its +z", kInLog);
+  add_vector(
+      all, "force", "N", [](auto& r) -> auto& { return r.wrench.force_N; }, "force sent to the hand, frame W",
+      kInLog);
+  add_vector(
+      all, "torque", "N mm", [](auto& r) -> auto& { return r.wrench.torque_Nmm; },
+      "torque sent to the hand, frame W, about the burr's centre", kInLog);
+  all.push_back(
+      field<R>({"contacts", "", NumberRange::count(0), "sample points that touch", kInLog}, &R::contacts));
+  add_real(all, "removed_mm3", "mm^3", &R::removed_mm3,
+           "bone removed since the beginning, as bone of the reference density", kInLog);
+  add_real(all, "compute_us", "us", &R::compute_us, "time of the algorithm's step, by the clock",
+           kInLog | kByTheClock);
+  add_real(all, "milling_us", "us", &R::milling_us, "time of milling, by the clock", kByTheClock);
+  add_real(all, "tick_cpu_us", "us", &R::tick_cpu_us,
+           "CPU time of the whole tick; 0 where it was not measured", kByTheClock);
+  add_vector(
+      all, "burr_force", "N", [](auto& r) -> auto& { return r.burr_force_W_N; },
+      "force of the burr on the bone, frame W");
+  add_real(all, "dt_s", "s", &R::dt_s, "how long the tick was taken to be");
+  add_switch(all, "spindle", &R::spindle_on, "1 where the burr could cut");
+  all.push_back(field<R>({"fault", "", NumberRange::count(0, static_cast<int>(WrenchFault::held_back)),
+                          "what was done to the wrench (codes)"},
+                         &R::fault));
+  add_real(all, "energy_given_Nmm", "N mm", &R::energy_given_Nmm,
+           "energy given to the hand less what it gave, since the session began", kInLog);
+  add_switch(all, "paused", &R::paused, "1 in a pause: zero is sent and nothing computed");
+  add_switch(all, "let_go", &R::let_go, "1 where from this tick on nothing is felt until the tool is placed");
+  add_switch(all, "placed", &R::placed,
+             "1 where the tool was placed at the device before the tick, contacts forgotten");
+  all.push_back(
+      field<R>({"owed_bricks", "", NumberRange::count(0),
+                "bricks of bone points that may have shown more bone than there was, left to later ticks"},
+               &R::owed_bricks));
+  add_real(all, "given_share", "", &R::given_share,
+           "how much of the force that was asked for the device had sent by then");
+  add_vector(
+      all, "cutting_torque", "N mm", [](auto& r) -> auto& { return r.cutting_torque_W_Nmm; },
+      "of the torque sent, what the cutting adds (--cutting-reaction), frame W");
+  add_switch(all, "driven", &R::driven, "1 where what was sent reached a hand", kMayBeAbsent);
+  return all;
+}
+
+// A line of the log: of each column what `write` appends.
+template <typename Write>
+void append_line(fmt::memory_buffer& text, const Write& write) {
+  const char* separator = "";
+  for (const Field<TickRecord>& column : fields_of<TickRecord>()) {
+    if (!column.has(kInLog)) continue;
+    fmt::format_to(std::back_inserter(text), "{}{}", separator, write(column));
+    separator = ",";
+  }
+  text.push_back('\n');
+}
+
+}  // namespace
+
+template <>
+const Fields& fields_of<TickRecord>() {
+  static const Fields all = record_fields();
+  return all;
+}
+
+void write_csv(const std::filesystem::path& path, std::span<const TickRecord> records) {
+  write_text_atomically(path, [&](std::ostream& out) {
+    fmt::memory_buffer text;
+    append_line(text, [](const auto& column) { return column.name; });
+    for (const TickRecord& record : records) {
+      append_line(text, [&](const auto& column) { return column.get(record); });
+      out.write(text.data(), static_cast<std::streamsize>(text.size()));
+      text.clear();
+    }
+    out.write(text.data(), static_cast<std::streamsize>(text.size()));
+  });
+}
+
+}  // namespace osteomill

@@ -1,0 +1,250 @@
+#include "osteomill/recording/recorder.h"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <deque>
+#include <exception>
+#include <mutex>
+#include <optional>
+#include <stdexcept>
+#include <stop_token>
+#include <system_error>
+#include <thread>
+#include <utility>
+
+#include "osteomill/base/atomic_file.h"
+#include "osteomill/base/file_lock.h"
+#include "osteomill/base/input_error.h"
+#include "osteomill/base/leftovers.h"
+#include "osteomill/base/spsc_queue.h"
+
+#include "recording_file.h"
+
+namespace osteomill {
+
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+
+namespace {
+
+constexpr auto kFlushEvery = 400ms;
+// Pieces of the file are written whole, unless records come so slowly that they would wait for longer.
+constexpr auto kWaitAtMost = 800ms;
+// The pushing thread wakes nobody (that would be a system call), so the writing thread looks by itself.
+constexpr auto kLookEvery = 2ms;
+constexpr std::size_t kRowsAtOnce = 2 * RecordingFile::kChunkRows;
+
+// HDF5 writes here and there in a file, which then takes the place of what was there.
+fs::path file_behind(const fs::path& path) {
+  const fs::path file = output_path(path);
+  std::error_code error;
+  const fs::file_status status = fs::status(file, error);
+  if (fs::exists(status) && !fs::is_regular_file(status))
+    throw InputError(path.string(), "is no regular file, which a recording has to be");
+  return file;
+}
+
+}  // namespace
+
+struct Recorder::Impl {
+  using Clock = std::chrono::steady_clock;
+
+  Impl(const fs::path& path_, const RunDescription& description, Begins begins, Unfinished unfinished_)
+      : unfinished(unfinished_),
+        path(file_behind(path_)),
+        part(file_behind(unfinished_recording_path(path))),
+        kept(set_aside(part)),
+        held(FileLock::of_new_file(part)),
+        file(part, description) {
+    if (unfinished == Unfinished::removed) leftover.emplace(part);
+    if (begins == Begins::with_the_recording) {
+      file.begin_session({}, 0);
+      session = 0;
+    }
+    rows.reserve(kRowsAtOnce);
+    try {
+      writer = std::jthread([this](const std::stop_token& stop) { write_until(stop); });
+    } catch (const std::system_error&) {
+      remove();
+      throw InputError(path.string(), "cannot be recorded: no thread can be started for it (ulimit -u)");
+    }
+  }
+  ~Impl() {
+    stop();
+    if (unfinished == Unfinished::removed || file.rows() == 0) remove();
+  }
+
+  void remove() const noexcept {
+    std::error_code ignored;
+    if (held && held->is_at(part)) fs::remove(part, ignored);
+  }
+
+  void stop() {
+    writer.request_stop();
+    if (writer.joinable()) writer.join();
+  }
+
+  void write_until(const std::stop_token& stop) noexcept {
+    try {
+      auto flushed = Clock::now();
+      std::uint64_t flushed_rows = 0;
+      for (bool all_written = false; !all_written;) {
+        // Read before the queue: what was pushed before the stop is then still written.
+        const bool last = stop.stop_requested();
+        const bool emptied = take_some();
+        all_written = last && emptied;
+        const auto now = Clock::now();
+        if (rows.empty()) waiting_since = now;
+        write_rows(all_written || now - waiting_since >= kWaitAtMost);
+        if (all_written || (file.rows() > flushed_rows && now - flushed >= kFlushEvery)) {
+          file.flush(dropped.load(std::memory_order_relaxed));
+          flushed = now;
+          flushed_rows = file.rows();
+        }
+        if (emptied && !last) std::this_thread::sleep_for(kLookEvery);
+      }
+    } catch (...) {
+      failure = std::current_exception();
+      failed.store(true, std::memory_order_release);
+    }
+  }
+
+  // A bounded part of the queue, so that records which come as fast as they are written cannot put off the
+  // flush. False where there is more.
+  bool take_some() {
+    while (rows.size() < kRowsAtOnce) {
+      const TickRecord* record = queue.front();
+      if (record == nullptr) return true;
+      if (session != record->session && !begin_session_of(*record)) return true;
+      rows.push_back(*record);
+      queue.pop();
+    }
+    return false;
+  }
+
+  // False where nobody has said yet what it began from.
+  bool begin_session_of(const TickRecord& record) {
+    const std::lock_guard lock(starts_mutex);
+    for (; !starts.empty() && starts.front().first <= record.session; starts.pop_front()) {
+      file.begin_session(starts.front().second, file.rows() + rows.size());
+      session = starts.front().first;
+    }
+    return session == record.session;
+  }
+
+  // Up to the end of a piece of the file, or all.
+  void write_rows(bool all) {
+    const std::size_t room = RecordingFile::kChunkRows - file.rows() % RecordingFile::kChunkRows;
+    std::size_t count = rows.size();
+    if (!all) count = count < room ? 0 : count - (count - room) % RecordingFile::kChunkRows;
+    if (count == 0) return;
+    file.append({rows.data(), count});
+    rows.erase(rows.begin(), rows.begin() + static_cast<std::ptrdiff_t>(count));
+    waiting_since = Clock::now();
+  }
+
+  Unfinished unfinished;
+  fs::path path;
+  fs::path part;
+  std::optional<fs::path> kept;
+  // Until it has its name.
+  std::optional<FileLock> held;
+  RecordingFile file;
+  std::optional<Leftover> leftover;
+  SpscQueue<TickRecord> queue{kCapacity};
+  // The writing thread's: taken from the queue and not yet written, and of which session the last one is.
+  std::vector<TickRecord> rows;
+  Clock::time_point waiting_since;
+  std::optional<std::uint32_t> session;
+  std::mutex starts_mutex;
+  std::deque<std::pair<std::uint32_t, SessionStart>> starts;
+  std::vector<RunPicture> pictures;
+  std::vector<RunSetting> settings;
+  std::atomic<std::uint64_t> dropped{0};
+  std::atomic<bool> failed{false};
+  // Written before `failed` is set and read after.
+  std::exception_ptr failure;
+  bool closed = false;
+  std::jthread writer;
+};
+
+Recorder::Recorder(const fs::path& path, const RunDescription& description, Begins begins,
+                   Unfinished unfinished)
+    : impl_(std::make_unique<Impl>(path, description, begins, unfinished)) {}
+
+Recorder::~Recorder() = default;
+
+bool Recorder::push(const TickRecord& record) noexcept {
+  if (impl_->queue.try_push(record)) return true;
+  impl_->dropped.fetch_add(1, std::memory_order_relaxed);
+  return false;
+}
+
+void Recorder::push_waiting(const TickRecord& record) {
+  while (!impl_->queue.try_push(record)) {
+    if (failed()) std::rethrow_exception(impl_->failure);
+    std::this_thread::sleep_for(200us);
+  }
+}
+
+void Recorder::begin_session(std::uint32_t number, SessionStart start) {
+  const std::lock_guard lock(impl_->starts_mutex);
+  impl_->starts.emplace_back(number, std::move(start));
+}
+
+std::string Recorder::kept() const {
+  if (!impl_->kept) return {};
+  return impl_->part.string() + ": a recording that was not finished; it is kept as " + impl_->kept->string();
+}
+
+std::uint64_t Recorder::dropped() const noexcept {
+  return impl_->dropped.load(std::memory_order_relaxed);
+}
+
+bool Recorder::failed() const noexcept {
+  return impl_->failed.load(std::memory_order_acquire);
+}
+
+void Recorder::add_picture(const std::string& name, std::vector<unsigned char> png) {
+  const auto same = [&](const RunPicture& picture) { return picture.name == name; };
+  if (name.empty() || !is_plain_name(name) ||
+      std::any_of(impl_->pictures.begin(), impl_->pictures.end(), same)) {
+    throw std::invalid_argument("'" + name + "' cannot be the name of a picture, or is one already");
+  }
+  impl_->pictures.push_back({name, std::move(png)});
+}
+
+void Recorder::add_setting(RunSetting setting) {
+  impl_->settings.push_back(std::move(setting));
+}
+
+void Recorder::close() {
+  if (impl_->closed) throw std::logic_error("a recorder is closed once");
+  impl_->closed = true;
+  impl_->stop();
+  if (failed()) std::rethrow_exception(impl_->failure);
+  for (const RunPicture& picture : impl_->pictures) impl_->file.add_picture(picture.name, picture.png);
+  for (const RunSetting& setting : impl_->settings) impl_->file.add_setting(setting);
+  impl_->file.finish(dropped());
+  if (!impl_->held->is_at(impl_->part))
+    throw InputError(impl_->part.string(), "was renamed or removed while it was written");
+  std::error_code error;
+  fs::rename(impl_->part, impl_->path, error);
+  if (error) throw InputError(impl_->path.string(), "cannot be written: " + error.message());
+  impl_->held.reset();
+}
+
+void write_start(const fs::path& path, const SessionStart& start) {
+  write_file_atomically(path, [&](const fs::path& beside) {
+    RecordingFile file(beside, start.run);
+    file.begin_session(start, 0);
+    file.finish(0);
+  });
+}
+
+fs::path unfinished_recording_path(const fs::path& path) {
+  return path.parent_path() / (path.stem().string() + ".part" + path.extension().string());
+}
+
+}  // namespace osteomill

@@ -1,0 +1,146 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "osteomill/base/latest_value.h"
+#include "osteomill/base/recent_rate.h"
+#include "osteomill/session/connection.h"
+#include "osteomill/session/device.h"
+#include "osteomill/session/workspace.h"
+
+namespace osteomill {
+
+using OpenConnection = std::function<std::unique_ptr<Connection>()>;
+
+/// What there is to be said of a device. Any thread.
+struct DeviceReport {
+  enum class State : unsigned char {
+    ok,
+    /// It is driven, but there is something to know (`reason`).
+    remark,
+    /// It gives poses, but may not be driven: not calibrated, its force switched off (`reason`).
+    not_driven,
+    /// No input for longer than 5 ms.
+    silent,
+    /// It gives poses that are not finite, or turned by no rotation.
+    not_finite,
+    /// Gone; it is being opened again.
+    lost,
+    /// A function of its maker's software (`reason`) does not return.
+    hangs,
+  };
+  State state = State::ok;
+  /// How long it has been so.
+  double since_s = 0;
+  /// Where it is lost, why it cannot be had; else what the device says of itself.
+  std::string reason;
+  double inputs_per_s = 0;
+  /// Where its handle was a moment ago.
+  Vec3 handle_D_mm = Vec3::Zero();
+  /// How often it left `ok`, how often the haptic thread's wrench was too old, and how often it was opened
+  /// again.
+  std::uint64_t faults = 0;
+  std::uint64_t late_wrenches = 0;
+  std::uint64_t reopened = 0;
+  /// Where something is wrong with it, what, in a sentence without a full stop; else empty.
+  std::string complaint() const;
+  bool gives_poses() const { return state <= State::not_driven; }
+};
+
+/// Haptic hardware as a session's device, whichever its back end is. A thread of its own reads the connection
+/// and writes to it, so that nothing the hardware does makes a tick wait, and watches over both sides. What
+/// is sent is within the device's limits, and from one wrench that has gone out to the next changes by no
+/// more than kRatesForAHand in a millisecond; it comes down to zero where the wrench is over 5 ms old, the
+/// device may not be driven, is lost or let go of, and at the end, and up again over 0.1 s. A device that is
+/// lost is opened again until it is there.
+///
+/// It is driven (`is_driven`) while the newest input says that it may be, it is not lost, and nobody has let
+/// go of it. A clutch leaves it driven, since the tool stays where it is.
+///
+/// The first button asks for the spindle. While the second is held (or `set_clutched`) the handle moves
+/// without the tool: the device gives no pose and the hand feels nothing. Then it goes on from where the tool
+/// is.
+class ConnectedDevice final : public Device {
+ public:
+  static constexpr unsigned kSpindleButton = 1;
+  static constexpr unsigned kClutchButton = 2;
+
+  /// Opens the device. Throws as `open` does. Tests have a clock of their own, which never goes back either.
+  explicit ConnectedDevice(OpenConnection open, std::function<double()> now_s = {});
+  /// Closes the device.
+  ~ConnectedDevice() override;
+  ConnectedDevice(const ConnectedDevice&) = delete;
+  ConnectedDevice& operator=(const ConnectedDevice&) = delete;
+
+  /// Starts the thread; returns when the device has given a pose. Throws InputError where it gives none
+  /// within half a second.
+  void start();
+  /// Returns when zero has been sent and the device is closed, with nothing to say. Where its maker's
+  /// software does not return within 0.8 s its thread is left to itself, and what there is to say of that is
+  /// returned. The device then gives no pose and takes no wrench.
+  std::string close();
+  /// What the thread does, once: for a test that keeps time itself, in place of `start`.
+  void exchange();
+
+  const DeviceCapabilities& capabilities() const { return capabilities_; }
+
+  /// For one other thread (the window's): how the handle moves the tool, and from where the operator looks,
+  /// at the front where that is not set. The tool stays where it is. Throws std::invalid_argument as
+  /// Workspace.
+  void set_workspace(const WorkspaceSettings& settings);
+  void set_view(const Quat& R_WV);
+  const WorkspaceSettings& workspace() const { return way_set_.settings; }
+  /// The most that the device gives and `limits` allow, in W (Workspace::limits_W).
+  WrenchLimits limits_W(const WrenchLimits& limits) const {
+    return Workspace(capabilities_, workspace()).limits_W(limits);
+  }
+  void set_clutched(bool clutched) { clutched_.store(clutched, std::memory_order_relaxed); }
+  DeviceReport report() const;
+
+  Pose read_pose() noexcept override;
+  void write_wrench(const Wrench& wrench) noexcept override;
+  double given_share() const noexcept override;
+  bool is_driven() const noexcept override { return is_driven_; }
+  bool spindle_asked() const noexcept override { return (buttons_ & kSpindleButton) != 0; }
+  void tick_done(const Pose& X_WT, double dt_s) noexcept override;
+  void put_at(const Pose& X_WD) noexcept override;
+  bool let_go() noexcept override;
+  void take_hold() noexcept override;
+
+ private:
+  // Belongs to the device's thread, which keeps it if it is left to itself.
+  class Exchange;
+  struct Way {
+    WorkspaceSettings settings;
+    Quat R_WV = view_from_the_front();
+    std::uint64_t number = 0;
+  };
+
+  std::shared_ptr<Exchange> exchange_;
+  std::thread thread_;
+  Way way_set_;
+  LatestValue<Way> way_;
+  std::atomic<bool> clutched_{false};
+
+  // The haptic thread's.
+  DeviceCapabilities capabilities_;
+  Workspace workspace_;
+  Pose X_WD_;
+  Pose X_WT_;
+  bool has_pose_ = false;
+  bool anchor_anew_ = true;
+  std::uint64_t returns_ = 0;
+  std::uint64_t gate_ = 0;
+  std::uint64_t stops_ = 0;
+  bool is_driven_ = false;
+  std::uint64_t way_taken_ = 0;
+  unsigned buttons_ = 0;
+};
+
+}  // namespace osteomill

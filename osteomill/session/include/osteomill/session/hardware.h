@@ -1,0 +1,67 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "osteomill/session/connection.h"
+
+namespace osteomill {
+
+/// What looking for a device came to.
+struct FoundDevice {
+  bool there = false;
+  /// What is there, or why nothing is, in half a sentence.
+  std::string text;
+};
+
+/// A kind of haptic hardware, and all that is to be known of its back end. `address` is what a user wrote
+/// after the name and a colon, empty where nothing was.
+struct HardwareKind {
+  std::string_view name;
+  /// What an address looks like; empty where there is none.
+  std::string_view address;
+  std::string_view meaning;
+  /// What is there, after a second at most. Commands nothing: motors stay as they are, whoever
+  /// drives them. Throws InputError as `open` does.
+  std::string (*look_for)(const std::string& address);
+  /// Throws InputError naming the device and why it cannot be had.
+  std::unique_ptr<Connection> (*open)(const std::string& address);
+
+  FoundDevice find(const std::string& at) const;
+};
+
+/// A device of Force Dimension (delta, omega, sigma, lambda) or a Novint Falcon, by the maker's libdhd or
+/// libdrd, opened at run time (docs/devices.md). `address` is its number among those connected, 0 where
+/// empty. It is driven once it is calibrated, by the maker's tool. Its base D: x towards the operator, y to
+/// the right, z up. Throws InputError where the library or the device cannot be had.
+std::unique_ptr<Connection> open_force_dimension(const std::string& address);
+std::string look_for_force_dimension(const std::string& address);
+
+/// A Haply Inverse3 by the maker's Inverse service, at HOST:PORT (127.0.0.1:10001 where empty): versions 3.1
+/// to 3.5 of its simulation channel (docs/devices.md). The first Inverse3 it names, and the first Verse Grip,
+/// wireless before wired, without which position alone is sensed. Its base D: x to the right, y away from the
+/// operator, z up. Throws InputError where no service or no Inverse3 is there.
+std::unique_ptr<Connection> open_haply(const std::string& address);
+std::string look_for_haply(const std::string& address);
+
+/// A device of 3D Systems (Touch, Touch X, Phantom) by the maker's libHD, opened at run time
+/// (docs/devices.md). `address` is the name that it has in the maker's setup, the default device where empty.
+/// It is driven once it is calibrated. Its base D: x to the right, y up, z towards the operator. Throws
+/// InputError where the library or the device cannot be had. One at a time.
+std::unique_ptr<Connection> open_touch(const std::string& address);
+std::string look_for_touch(const std::string& address);
+
+/// A device that speaks the datagrams of docs/udp-device.md, at HOST:PORT (127.0.0.1:47117 where empty).
+/// Throws InputError naming the address where that is none, nothing answers within half a second, or what
+/// answers does not keep to the protocol.
+std::unique_ptr<Connection> open_udp(const std::string& address);
+std::string look_for_udp(const std::string& address);
+
+/// Every kind that there is a back end for.
+std::span<const HardwareKind> hardware_kinds();
+/// Null where there is none of that name.
+const HardwareKind* hardware_named(std::string_view name);
+
+}  // namespace osteomill

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "osteomill/base/field.h"
+#include "osteomill/haptics/algorithms.h"
+#include "osteomill/haptics/milling_tool.h"
+#include "osteomill/milling/burr_mill.h"
+#include "osteomill/session/wrench_guard.h"
+
+namespace osteomill {
+
+/// The vibration that a cutting burr gives the hand (in the paper; its force is in earlier work, so this one
+/// is this project's own).
+struct VibrationSettings {
+  bool on = false;
+  /// Its amplitude as a share of the force with which the burr presses, and the most it may be.
+  double force_share = 0.08;
+  double max_N = 0.3;
+};
+
+/// Everything that can be chosen for milling a bone, beside the bone.
+struct MillingSetup {
+  MillingTool tool;
+  AlgorithmDescription algorithm = default_algorithm();
+  HapticSettings haptics;
+  CuttingSettings cutting;
+  /// Not given: follows from `cutting` and the burr.
+  std::optional<double> removal_rate_mm3_per_Ns;
+  /// The hand feels how cutting holds the burr back along its speed (CuttingReaction).
+  bool cutting_reaction = false;
+  /// The hand feels the burr cut.
+  VibrationSettings vibration;
+  /// Protects a hand unless told otherwise (GuardSettings::for_simulation).
+  GuardSettings guard;
+  /// How long a tick nominally is.
+  double tick_s = 1e-3;
+};
+
+/// Flags of the fields of a MillingSetup. Of which part it is; a replay keeps the recording's, as a recording
+/// is of one scan, milled with one tool; without being set it follows from the others.
+inline constexpr unsigned kOfTheTool = 1, kOfTheCutting = 2, kOfTheLimits = 4, kOfTheRecording = 8,
+                          kFollows = 16;
+
+/// Returns every number of a setup but the algorithm's own, which its description has, and the tick.
+template <>
+const std::vector<Field<MillingSetup>>& fields_of<MillingSetup>();
+
+/// Throws std::invalid_argument, with one line that says why, where a tool cannot work in a scan with this
+/// grid: a size is out of its range, its burr or shaft is wider than the whole scan, or its burr so many
+/// voxels wide that no algorithm follows it at the haptic rate, or so few that the scan has nothing for it to
+/// feel. At once, before anything is prepared.
+void require_workable(const MillingTool& tool, const GridGeometry& scan);
+
+/// Returns a line for each setting of the algorithm that is poor for this tool in such a scan
+/// (HapticAlgorithm::doubts_about). Throws std::invalid_argument, with one line, as `require_workable` does
+/// and if a setting is out of range or bone could not hold the tool with it: what a session would throw.
+std::vector<std::string> doubts_about(const MillingSetup& setup, const GridGeometry& scan);
+
+/// What a burr mills by under this setup. Throws std::invalid_argument where a setting is out of range.
+MillingSettings milling_settings(const MillingSetup& setup);
+
+}  // namespace osteomill

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "osteomill/base/field.h"
+#include "osteomill/session/device.h"
+#include "osteomill/session/hand.h"
+#include "osteomill/session/milling_script.h"
+#include "osteomill/session/simulated_handle.h"
+
+namespace osteomill {
+
+struct OperatorSettings {
+  HandleSettings handle;
+  HandSettings hand;
+  ScriptSettings script;
+  /// Of the tremor.
+  std::uint64_t seed = 1;
+};
+
+/// Returns every number of hand, device and script.
+template <>
+const std::vector<Field<OperatorSettings>>& fields_of<OperatorSettings>();
+
+/// A device and the hand that holds it, in simulated time: the same settings give the same run on any
+/// machine, however long a tick takes to compute. It moves on when a tick is done.
+/// Made outside the tick; nothing else allocates, locks, logs or throws.
+class SimulatedOperator : public Device {
+ public:
+  /// Throws std::invalid_argument, naming it, where a setting is out of range, or where hand and handle
+  /// together are too stiff for the substep.
+  SimulatedOperator(const OperatorSettings& settings, const MillingTool& tool, const MillingEntry& entry);
+
+  /// As the encoder says.
+  Pose read_pose() noexcept override { return handle_.read(); }
+  void write_wrench(const Wrench& wrench) noexcept override {
+    felt_ = wrench;
+    handle_.command(wrench);
+  }
+  /// Whether the tick that begins now belongs to the milling phase, in which the spindle turns.
+  bool spindle_asked() const noexcept override { return script_.intent().milling; }
+  /// By the simulated tool the operator judges how deep the hole is. `dt_s` passes in whole substeps of the
+  /// handle; what is left over is kept for the next call. Nothing passes where it does not lie in (0, 1 s].
+  void tick_done(const Pose& X_WT, double dt_s) noexcept override;
+
+  double time_s() const { return static_cast<double>(substeps_) * handle_.settings().substep_s; }
+  ScriptStage stage() const { return script_.intent().stage; }
+  const ScriptShortfall& shortfall() const { return script_.shortfall(); }
+  /// Both phases are over.
+  bool finished() const { return stage() == ScriptStage::done; }
+
+  /// Where the hand pulls to, with its tremor.
+  const Pose& target() const { return X_W_target_; }
+  /// What the hand did to the handle in the last substep.
+  const Wrench& hand_wrench() const { return hand_wrench_; }
+  /// The handle as it truly is, without the encoder's steps.
+  const SimulatedHandle& handle() const { return handle_; }
+
+ private:
+  Pose trembling(const Pose& X_W_intended) const;
+
+  HandSettings hand_;
+  Tremor tremor_mm_;
+  Tremor tremor_rad_;
+  MillingScript script_;
+  SimulatedHandle handle_;
+  Wrench felt_;
+  Pose X_W_target_;
+  Wrench hand_wrench_;
+  std::int64_t substeps_ = 0;
+  double time_left_over_s_ = 0;
+};
+
+}  // namespace osteomill

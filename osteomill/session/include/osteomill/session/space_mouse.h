@@ -1,0 +1,39 @@
+#pragma once
+
+#include "osteomill/base/pose.h"
+
+namespace osteomill {
+
+/// How far a SpaceMouse is pushed and twisted, -1 to 1 along and about each axis of the viewer: right, up,
+/// towards the viewer.
+struct SpaceMouseState {
+  Vec3 push = Vec3::Zero();
+  Vec3 twist = Vec3::Zero();
+  /// How often any of its buttons went down since the last reading.
+  int presses = 0;
+};
+
+/// A pose in W that it pushes and twists for so long: pushed as far as it goes by 20 mm, twisted by 1.2 rad a
+/// second, along and about the axes of the viewer, which R_WV turns to those of W.
+Pose moved(const Pose& X_W, const SpaceMouseState& by, const Quat& R_WV, double passed_s);
+
+/// A SpaceMouse behind the daemon spacenavd (or whatever listens at the socket that SPNAV_SOCKET names). One
+/// at a time; for one thread, not the haptic one.
+class SpaceMouse {
+ public:
+  /// Looks for the daemon; without one there is no SpaceMouse, which is no error.
+  SpaceMouse();
+  ~SpaceMouse();
+  SpaceMouse(const SpaceMouse&) = delete;
+  SpaceMouse& operator=(const SpaceMouse&) = delete;
+
+  bool present() const { return present_; }
+  /// As it is now. Never waits.
+  SpaceMouseState read();
+
+ private:
+  bool present_ = false;
+  SpaceMouseState state_;
+};
+
+}  // namespace osteomill

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "osteomill/session/connection.h"
+
+namespace osteomill {
+
+/// How a device's handle moves the tool, and what of the tool's wrench the hand gets.
+struct WorkspaceSettings {
+  /// By how much the tool moves further than the handle.
+  double scale = 1;
+  /// How much of the power at the tool is power at the hand (Workspace::wrench_D).
+  double power = 1;
+  /// How the device stands other than its maker means it, about the axes of the operator's view V.
+  Vec3 turn_V_deg = Vec3::Zero();
+  /// For a device that drives force alone: so far from the burr the hand is, about which the shaft turns;
+  /// what turns it becomes a force at the burr. 0: it is not felt.
+  double shaft_lever_mm = 0;
+  friend bool operator==(const WorkspaceSettings&, const WorkspaceSettings&) = default;
+};
+
+/// Throws std::invalid_argument naming the setting that is not finite or not positive (the lever: not below
+/// 0).
+void require_valid(const WorkspaceSettings& settings);
+
+/// How a device stands, from two moves of its handle in D that the operator says went to the right and up.
+/// Nothing where either is shorter than 10 mm, or they are not across each other within 30 degrees.
+std::optional<Vec3> turn_by_moves_deg(const DeviceCapabilities& device, const Vec3& right_D_mm,
+                                      const Vec3& up_D_mm);
+
+/// From where the operator looks without a window: at the patient's front, with their head up.
+Quat view_from_the_front();
+
+/// From a device's base frame D onto the scan's W, and wrenches back. The handle's motion since the anchor is
+/// turned and scaled, and moves the tool from where it was then; so the handle may be moved on without the
+/// tool (a clutch) by anchoring anew. All but making it is safe in the haptic tick.
+class Workspace {
+ public:
+  /// Throws std::invalid_argument as `require_valid`.
+  Workspace(const DeviceCapabilities& device, const WorkspaceSettings& settings);
+
+  /// Valid settings, and from where the operator looks. The way of moving changes, so anchor anew.
+  void set(const WorkspaceSettings& settings, const Quat& R_WV);
+  /// From now the handle at `X_DH` has the tool at `X_WT`.
+  void anchor(const Pose& X_WT, const Pose& X_DH) noexcept;
+  Pose tool_pose(const Pose& X_DH) const noexcept;
+
+  /// What the device is to send for a wrench on the tool. By virtual work: whatever small motion the hand
+  /// makes, the work done on it is `power` times that done on the tool. With scale s the tool moves s times
+  /// as far and turns as much, so the force is power s times the tool's, and the torque power times.
+  /// `shaft_W` is the tool's shaft direction. A device that drives force alone gets the torque as its
+  /// settings say.
+  Wrench wrench_D(const Wrench& wrench_W, const Vec3& shaft_W) const noexcept;
+
+  /// The most that may be asked for of the tool, in W, so that the device can give it; no more than `limits`.
+  /// A torque that the device does not drive is limited by `limits` alone.
+  WrenchLimits limits_W(const WrenchLimits& limits) const;
+
+ private:
+  WorkspaceSettings settings_;
+  bool drives_torque_;
+  WrenchLimits device_limits_;
+  Quat R_VD_as_made_;
+  Quat R_WD_;
+  Pose anchor_X_WT_;
+  Pose anchor_X_DH_;
+};
+
+/// Where a device's workspace is kept, by the device's name: in `config_folder()`, under devices/; empty
+/// where there is no such folder.
+std::filesystem::path workspace_path(const std::string& device_name);
+
+/// As it was kept; nothing where none was. Throws InputError naming the file where it is at fault.
+std::optional<WorkspaceSettings> read_workspace(const std::filesystem::path& path);
+/// Throws InputError where it cannot be written.
+void keep_workspace(const std::filesystem::path& path, const WorkspaceSettings& settings);
+
+}  // namespace osteomill

@@ -1,0 +1,444 @@
+#include "osteomill/session/connected_device.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <exception>
+#include <mutex>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "osteomill/base/input_error.h"
+#include "osteomill/base/real_time.h"
+#include "osteomill/base/wrench.h"
+
+#include "device/vendor_library.h"
+
+namespace osteomill {
+
+namespace {
+
+using namespace std::chrono_literals;
+using State = DeviceReport::State;
+
+// What is older is no longer true: an input (the haptic thread then has no pose, and sends zero) and a wrench
+// (the device is then sent zero, whatever the haptic thread is doing).
+constexpr double kMaxAge_s = 5e-3;
+// How long it takes to come up where the device may be driven (again).
+constexpr double kBlend_s = 0.1;
+// After this long without a pose the tool goes on from where it is, not from where the hand is by then.
+constexpr double kGone_s = 0.1;
+constexpr double kReopen_s = 0.5;
+// However long ago the last wrench went out, the next makes no larger a step than in this time.
+constexpr double kRound_s = 1e-3;
+constexpr double kUnitTolerance = 1e-3;
+constexpr int kWaitsForPose = 500;
+// What it takes to come down from anything, and then some.
+constexpr int kMostRoundsAtTheEnd = 50;
+// How long a maker's function may take before that is said, and how long closing waits for it.
+constexpr double kHangs_s = 0.1;
+constexpr int kWaitsForTheEnd = 800;
+
+double steady_now_s() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+const Pose kNoPose{Vec3::Constant(std::numeric_limits<double>::quiet_NaN()), Quat::Identity()};
+
+bool is_pose(const Pose& pose) {
+  return is_finite(pose) && std::abs(pose.orientation.norm() - 1) < kUnitTolerance;
+}
+
+}  // namespace
+
+std::string DeviceReport::complaint() const {
+  switch (state) {
+    case State::ok:
+      return {};
+    case State::remark:
+      return reason;
+    case State::not_driven:
+      return fmt::format("is not driven: it {}", reason);
+    case State::silent:
+      return fmt::format("has given no pose for {:.1f} s", since_s);
+    case State::not_finite:
+      return fmt::format("has given invalid poses for {:.1f} s", since_s);
+    case State::lost:
+      return fmt::format("has been gone for {:.1f} s ({})", since_s, reason);
+    case State::hangs:
+      return fmt::format("has not answered for {:.1f} s: {} does not return", since_s, reason);
+  }
+  return {};
+}
+
+// Holds what the device's thread works on; the thread keeps it if it is left to itself.
+class ConnectedDevice::Exchange {
+ public:
+  Exchange(OpenConnection open, std::function<double()> now_s)
+      : open_(std::move(open)),
+        now_s_(now_s ? std::move(now_s) : &steady_now_s),
+        connection_(open_()),
+        opened_(connection_->capabilities()),
+        sent_s_(now_s_()),
+        to_say_{.state = State::silent, .since_s = sent_s_},
+        said_(to_say_) {}
+
+  // The thread's, until `ends`; and one round of it.
+  void run();
+  void round();
+
+  const DeviceCapabilities& opened() const { return opened_; }
+  double now_s() const { return now_s_(); }
+  DeviceReport report();
+
+  struct Heard {
+    DeviceInput input;
+    double at_s = -std::numeric_limits<double>::infinity();
+    bool is_pose = false;
+    // How often it was gone before.
+    std::uint64_t returns = 0;
+  };
+  struct Asked {
+    Wrench wrench_D;
+    double at_s = -std::numeric_limits<double>::infinity();
+  };
+  LatestValue<Heard> heard;
+  LatestValue<Asked> asked;
+  std::atomic<double> given_share{0};
+  // How often it began or ceased to be a device that may be driven: odd while it is.
+  std::atomic<std::uint64_t> gate{0};
+  std::atomic<bool> is_let_go{false};
+  // How often it was let go of.
+  std::atomic<std::uint64_t> stops{0};
+  std::atomic<bool> at_rest{true};
+  std::atomic<bool> ends{false};
+  std::atomic<bool> has_ended{false};
+
+ private:
+  void hear(const DeviceInput& input);
+  void set_gate(bool is_open);
+  bool may_be_driven(double now_s);
+  ConnectionStatus send(double now_s, bool driven);
+  void come_down();
+  void lose(const std::string& reason);
+  void reopen();
+  void judge();
+  void tell(State state, double now_s);
+
+  OpenConnection open_;
+  std::function<double()> now_s_;
+  std::unique_ptr<Connection> connection_;
+  // The capabilities at the first opening.
+  DeviceCapabilities opened_;
+  Heard newest_;
+  // The last that went out, and when.
+  Wrench sent_D_;
+  double sent_s_;
+  // How far it has come up, 0 to 1.
+  double blended_ = 0;
+  double posed_s_ = -std::numeric_limits<double>::infinity();
+  double lost_s_ = 0;
+  bool wrench_was_late_ = false;
+  RecentRate inputs_;
+
+  // When the thread's last round was over, and in which of the maker's functions it is.
+  std::atomic<double> round_s_{std::numeric_limits<double>::infinity()};
+  std::atomic<const char*> call_{nullptr};
+  // The report in the making; `since_s` holds the time of the clock here.
+  DeviceReport to_say_;
+  // And what others may read of that, under the lock, for which the device's thread does not wait.
+  std::mutex said_mutex_;
+  DeviceReport said_;
+};
+
+ConnectedDevice::ConnectedDevice(OpenConnection open, std::function<double()> now_s)
+    : exchange_(std::make_shared<Exchange>(std::move(open), std::move(now_s))),
+      capabilities_(exchange_->opened()),
+      workspace_(capabilities_, {}) {}
+
+ConnectedDevice::~ConnectedDevice() {
+  close();
+}
+
+std::string ConnectedDevice::close() {
+  let_go();
+  exchange_->ends.store(true, std::memory_order_release);
+  if (!thread_.joinable()) return {};
+  for (int n = 0; n < kWaitsForTheEnd && !exchange_->has_ended.load(std::memory_order_acquire); ++n)
+    std::this_thread::sleep_for(1ms);
+  if (exchange_->has_ended.load(std::memory_order_acquire)) {
+    thread_.join();
+    return {};
+  }
+  thread_.detach();
+  return report().complaint();
+}
+
+void ConnectedDevice::start() {
+  thread_ = std::thread([exchange = exchange_] { exchange->run(); });
+  DeviceReport now = report();
+  for (int n = 0; n < kWaitsForPose && !now.gives_poses(); ++n, now = report())
+    std::this_thread::sleep_for(1ms);
+  if (!now.gives_poses()) throw InputError(capabilities_.name, now.complaint());
+}
+
+void ConnectedDevice::exchange() {
+  exchange_->round();
+}
+
+void ConnectedDevice::Exchange::run() {
+  const SignalsForOthers none_here;
+  const VendorCallsNamed named(call_);
+  request_real_time();
+  while (!ends.load(std::memory_order_acquire)) {
+    round_s_.store(now_s_(), std::memory_order_relaxed);
+    round();
+    if (!connection_) std::this_thread::sleep_for(1ms);
+  }
+  round_s_.store(now_s_(), std::memory_order_relaxed);
+  if (connection_) come_down();
+  connection_.reset();
+  at_rest.store(true, std::memory_order_release);
+  has_ended.store(true, std::memory_order_release);
+}
+
+void ConnectedDevice::Exchange::round() {
+  try {
+    if (!connection_) {
+      at_rest.store(true, std::memory_order_release);
+      reopen();
+    } else {
+      DeviceInput input;
+      const ConnectionStatus status = connection_->read(input);
+      if (status == ConnectionStatus::fresh) hear(input);
+      const double now_s = now_s_();
+      if (status == ConnectionStatus::lost || send(now_s, may_be_driven(now_s)) == ConnectionStatus::lost)
+        lose("the connection was closed");
+    }
+  } catch (const std::exception& error) {
+    // A back end that throws breaks its contract.
+    lose(error.what());
+  }
+  judge();
+}
+
+void ConnectedDevice::Exchange::hear(const DeviceInput& input) {
+  const double now_s = now_s_();
+  newest_.input = input;
+  newest_.at_s = now_s;
+  newest_.is_pose = is_pose(input.X_DH);
+  if (newest_.is_pose) {
+    if (now_s - posed_s_ > kGone_s) ++newest_.returns;
+    posed_s_ = now_s;
+  }
+  // Before the pose, so that none from behind a closed gate is taken for one that is driven.
+  set_gate(input.not_driven == nullptr && !is_let_go.load(std::memory_order_acquire));
+  heard.write(newest_);
+  inputs_.count();
+}
+
+void ConnectedDevice::Exchange::set_gate(bool is_open) {
+  const std::uint64_t number = gate.load(std::memory_order_relaxed);
+  if (is_open != (number % 2 == 1)) gate.store(number + 1, std::memory_order_release);
+}
+
+bool ConnectedDevice::Exchange::may_be_driven(double now_s) {
+  const Asked& newest_asked = asked.read();
+  const bool late = now_s - newest_asked.at_s > kMaxAge_s;
+  if (late && !wrench_was_late_ && !is_zero(newest_asked.wrench_D)) ++to_say_.late_wrenches;
+  wrench_was_late_ = late;
+  if (is_let_go.load(std::memory_order_acquire)) set_gate(false);
+  return !late && gate.load(std::memory_order_relaxed) % 2 == 1;
+}
+
+// The only way by which a wrench goes out.
+ConnectionStatus ConnectedDevice::Exchange::send(double now_s, bool driven) {
+  const double lapse_s = connection_->capabilities().lets_go_after_s;
+  if (lapse_s > 0 && now_s - sent_s_ > lapse_s) {
+    sent_D_ = {};
+    blended_ = 0;
+  }
+  const double passed_s = std::clamp(now_s - sent_s_, 0.0, kMaxAge_s);
+  const double share = driven ? std::min(1.0, blended_ + passed_s / kBlend_s) : 0;
+  const Wrench wanted = make_safe(asked.read().wrench_D, opened_.limits).wrench;
+  const Wrench target = share * wanted;
+  const Wrench next = approach(sent_D_, target, kRatesForAHand, std::min(passed_s, kRound_s));
+  const ConnectionStatus status = connection_->write(next);
+  if (status == ConnectionStatus::fresh) {
+    sent_D_ = next;
+    sent_s_ = now_s;
+  }
+  if (status == ConnectionStatus::fresh || share == 0) blended_ = share;
+  given_share.store(driven ? share_sent(wanted.force_N, sent_D_.force_N) : 0, std::memory_order_relaxed);
+  at_rest.store(is_zero(sent_D_), std::memory_order_release);
+  return status;
+}
+
+// A round a millisecond, until zero has gone out; what cannot be sent any more is left to the device itself.
+void ConnectedDevice::Exchange::come_down() {
+  double now_s = sent_s_;
+  try {
+    for (int n = 0; n < kMostRoundsAtTheEnd && !is_zero(sent_D_); ++n) {
+      const ConnectionStatus status = send(now_s += kRound_s, false);
+      if (status == ConnectionStatus::lost) return;
+      std::this_thread::sleep_for(1ms);
+      DeviceInput unread;
+      if (status == ConnectionStatus::silent) connection_->read(unread);
+    }
+  } catch (const std::exception&) {
+  }
+}
+
+void ConnectedDevice::Exchange::lose(const std::string& reason) {
+  if (connection_) come_down();
+  connection_.reset();
+  set_gate(false);
+  // Its own remarks go with it.
+  newest_.input.not_driven = newest_.input.remark = nullptr;
+  sent_D_ = {};
+  blended_ = 0;
+  given_share.store(0, std::memory_order_relaxed);
+  lost_s_ = now_s_();
+  to_say_.reason = reason;
+}
+
+void ConnectedDevice::Exchange::reopen() {
+  if (now_s_() - lost_s_ < kReopen_s) return;
+  connection_ = open_();
+  const DeviceCapabilities& now = connection_->capabilities();
+  if (now.name != opened_.name || now.driven != opened_.driven || now.sensed != opened_.sensed) {
+    lose("another device is there: " + now.name);
+    return;
+  }
+  sent_s_ = now_s_();
+  ++to_say_.reopened;
+}
+
+void ConnectedDevice::Exchange::judge() {
+  const double now_s = now_s_();
+  const DeviceInput& input = newest_.input;
+  to_say_.inputs_per_s = inputs_.per_s(now_s);
+  State state = State::ok;
+  const char* says = "";
+  const double age_s = now_s - newest_.at_s;
+  // Its own remark is worth more than the line that it is a little slow.
+  const double silent_after_s = input.not_driven != nullptr || input.remark != nullptr ? kGone_s : kMaxAge_s;
+  if (!connection_) {
+    state = State::lost;
+  } else if (age_s > silent_after_s) {
+    state = State::silent;
+  } else if (!newest_.is_pose) {
+    state = State::not_finite;
+  } else if (input.not_driven != nullptr) {
+    state = State::not_driven;
+    says = input.not_driven;
+  } else if (input.remark != nullptr) {
+    state = State::remark;
+    says = input.remark;
+  }
+  if (connection_) to_say_.reason = says;
+  tell(state, now_s);
+}
+
+void ConnectedDevice::Exchange::tell(State state, double now_s) {
+  if (state != to_say_.state) {
+    if (to_say_.state == State::ok) ++to_say_.faults;
+    to_say_.state = state;
+    to_say_.since_s = now_s;
+  }
+  to_say_.handle_D_mm = newest_.input.X_DH.position_mm;
+  if (const std::unique_lock lock(said_mutex_, std::try_to_lock); lock) said_ = to_say_;
+}
+
+void ConnectedDevice::set_workspace(const WorkspaceSettings& settings) {
+  require_valid(settings);
+  way_set_.settings = settings;
+  ++way_set_.number;
+  way_.write(way_set_);
+}
+
+void ConnectedDevice::set_view(const Quat& R_WV) {
+  if (way_set_.R_WV.coeffs() == R_WV.coeffs()) return;
+  way_set_.R_WV = R_WV;
+  ++way_set_.number;
+  way_.write(way_set_);
+}
+
+DeviceReport ConnectedDevice::report() const {
+  return exchange_->report();
+}
+
+DeviceReport ConnectedDevice::Exchange::report() {
+  const std::lock_guard lock(said_mutex_);
+  DeviceReport report = said_;
+  const double now_s = now_s_();
+  const double round_s = round_s_.load(std::memory_order_relaxed);
+  const char* const call = call_.load(std::memory_order_acquire);
+  if (call != nullptr && now_s - round_s > kHangs_s) {
+    report.state = State::hangs;
+    report.reason = call;
+    report.since_s = round_s;
+  }
+  report.since_s = now_s - report.since_s;
+  return report;
+}
+
+Pose ConnectedDevice::read_pose() noexcept {
+  const Exchange::Heard& heard = exchange_->heard.read();
+  const std::uint64_t gate = exchange_->gate.load(std::memory_order_acquire);
+  const std::uint64_t stops = exchange_->stops.load(std::memory_order_acquire);
+  // False for a tick also where it was not driven between this one and the last.
+  is_driven_ = gate % 2 == 1 && gate == gate_ && stops == stops_ &&
+               !exchange_->is_let_go.load(std::memory_order_acquire);
+  gate_ = gate;
+  stops_ = stops;
+  const DeviceInput& input = heard.input;
+  const bool there = heard.is_pose && exchange_->now_s() - heard.at_s <= kMaxAge_s;
+  const bool clutched =
+      clutched_.load(std::memory_order_relaxed) || (there && (input.buttons & kClutchButton) != 0);
+  has_pose_ = there && !clutched;
+  buttons_ = has_pose_ ? input.buttons : 0;
+  if (clutched) anchor_anew_ = true;
+  if (!has_pose_) return kNoPose;
+  if (std::exchange(returns_, heard.returns) != heard.returns) anchor_anew_ = true;
+  if (const Way& way = way_.read(); std::exchange(way_taken_, way.number) != way.number) {
+    workspace_.set(way.settings, way.R_WV);
+    workspace_.anchor(X_WD_, input.X_DH);
+  }
+  if (std::exchange(anchor_anew_, false)) workspace_.anchor(X_WT_, input.X_DH);
+  X_WD_ = workspace_.tool_pose(input.X_DH);
+  return X_WD_;
+}
+
+void ConnectedDevice::write_wrench(const Wrench& wrench) noexcept {
+  exchange_->asked.write({workspace_.wrench_D(wrench, shaft_direction(X_WD_)), exchange_->now_s()});
+}
+
+void ConnectedDevice::tick_done(const Pose& X_WT, double /*dt_s*/) noexcept {
+  if (has_pose_ && is_finite(X_WT)) X_WT_ = X_WT;
+}
+
+void ConnectedDevice::put_at(const Pose& X_WD) noexcept {
+  X_WT_ = X_WD;
+  anchor_anew_ = true;
+}
+
+double ConnectedDevice::given_share() const noexcept {
+  return exchange_->given_share.load(std::memory_order_relaxed);
+}
+
+bool ConnectedDevice::let_go() noexcept {
+  // What is being sent right now may still be something.
+  if (!exchange_->is_let_go.exchange(true, std::memory_order_acq_rel)) {
+    exchange_->stops.fetch_add(1, std::memory_order_release);
+    exchange_->at_rest.store(false, std::memory_order_release);
+  }
+  return exchange_->at_rest.load(std::memory_order_acquire);
+}
+
+void ConnectedDevice::take_hold() noexcept {
+  exchange_->is_let_go.store(false, std::memory_order_release);
+}
+
+}  // namespace osteomill

@@ -1,0 +1,271 @@
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <thread>
+
+#include <fmt/core.h>
+
+#include "osteomill/base/input_error.h"
+#include "osteomill/base/latest_value.h"
+#include "osteomill/base/real_time.h"
+#include "osteomill/session/hardware.h"
+
+#include "device/vendor_library.h"
+
+namespace osteomill {
+
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+// Of libHD 3, as its reference gives them: what is asked for and set, and what a frame's function returns.
+enum Parameter : unsigned {
+  kCurrentButtons = 0x2000,
+  kCurrentTransform = 0x2052,
+  kDeviceModelType = 0x2501,
+  kDeviceSerialNumber = 0x2504,
+  kInputDof = 0x2553,
+  kOutputDof = 0x2554,
+  kCalibrationStyle = 0x2555,
+  kNominalMaxForce = 0x2603,
+  kNominalMaxTorque = 0x2622,
+  kCurrentForce = 0x2700,
+  kCurrentTorque = 0x2701,
+  kForceOutput = 0x4000,
+};
+constexpr unsigned kInvalidHandle = 0xffffffff;
+constexpr unsigned kContinue = 1;
+constexpr unsigned kCalibrated = 0x5000;
+constexpr unsigned kCalibratesItself = 0x5001;
+// Styles of calibration that need no operator but for the inkwell; setting the encoders back does.
+constexpr unsigned kByItself = 1 << 1;
+constexpr unsigned kByInkwell = 1 << 2;
+constexpr unsigned short kDefaultPriority = 0xffff / 2;
+// Errors of 0x02.. are of forces (motors too warm, a force or velocity too large): the device goes on.
+constexpr bool is_of_force(unsigned code) {
+  return code >> 8 == 2;
+}
+
+// A wrench that nobody has renewed for so long is zero. No watchdog of the device's: the library's thread,
+// which sees to it, ends with the program.
+constexpr auto kLapse = 20ms;
+constexpr auto kBetweenLooks = 200us;
+constexpr double kFrame_s = 1e-3;
+
+struct HdError {
+  unsigned code;
+  int internal_code;
+  unsigned device;
+};
+
+struct Hd {
+  VendorLibrary file{"hd", "OSTEOMILL_HD_LIBRARY", {"libHD.so", "libHD.so.3.4", "libHD.so.3"}};
+  VendorFunction<unsigned(const char*)> init_device = file["hdInitDevice"];
+  VendorFunction<void(unsigned)> disable_device = file["hdDisableDevice"];
+  VendorFunction<void(unsigned)> begin_frame = file["hdBeginFrame"];
+  VendorFunction<void(unsigned)> end_frame = file["hdEndFrame"];
+  VendorFunction<void(unsigned, double*)> get_doubles = file["hdGetDoublev"];
+  VendorFunction<void(unsigned, const double*)> set_doubles = file["hdSetDoublev"];
+  VendorFunction<void(unsigned, int*)> get_integers = file["hdGetIntegerv"];
+  VendorFunction<const char*(unsigned)> get_string = file["hdGetString"];
+  VendorFunction<void(unsigned)> enable = file["hdEnable"];
+  VendorFunction<unsigned()> check_calibration = file["hdCheckCalibration"];
+  VendorFunction<void(unsigned)> update_calibration = file["hdUpdateCalibration"];
+  VendorFunction<HdError()> get_error = file["hdGetError"];
+  VendorFunction<const char*(unsigned)> error_string = file["hdGetErrorString"];
+  VendorFunction<unsigned long(unsigned (*)(void*), void*, unsigned short)> schedule =
+      file["hdScheduleAsynchronous"];
+  VendorFunction<void(unsigned long)> unschedule = file["hdUnschedule"];
+  VendorFunction<void()> start_scheduler = file["hdStartScheduler"];
+  VendorFunction<void()> stop_scheduler = file["hdStopScheduler"];
+};
+
+// A device that is opened, and none of whose motors has power.
+struct OpenedDevice {
+  explicit OpenedDevice(const std::string& address)
+      : handle(hd.init_device(address.empty() ? nullptr : address.c_str())) {
+    if (const unsigned code = hd.get_error().code; code != 0 || handle == kInvalidHandle) {
+      const char* const why = hd.error_string(code);
+      throw InputError("hd", code != 0 && why != nullptr ? why : "the device cannot be opened");
+    }
+  }
+  ~OpenedDevice() { hd.disable_device(handle); }
+  OpenedDevice(const OpenedDevice&) = delete;
+  OpenedDevice& operator=(const OpenedDevice&) = delete;
+
+  int integer(unsigned parameter) const {
+    int value = 0;
+    hd.get_integers(parameter, &value);
+    return value;
+  }
+  std::string name() const {
+    const auto string_of = [&](unsigned parameter) {
+      const char* const text = hd.get_string(parameter);
+      return std::string(text == nullptr ? "" : text);
+    };
+    return fmt::format("3D Systems {} {}", string_of(kDeviceModelType), string_of(kDeviceSerialNumber));
+  }
+
+  Hd hd;
+  unsigned handle;
+};
+
+struct SentWrench {
+  Wrench wrench;
+  Clock::time_point time{};
+  // Of the wrenches; of zeros in a row there is one.
+  unsigned number = 0;
+};
+
+class TouchConnection final : public Connection {
+ public:
+  explicit TouchConnection(const std::string& address) : device_(address) {
+    ask();
+    frames_ = hd_.schedule([](void* self) { return static_cast<TouchConnection*>(self)->frame(); }, this,
+                           kDefaultPriority);
+    {
+      // The library's thread is to go on while another handles a signal.
+      const SignalsForOthers start_with_none;
+      hd_.start_scheduler();
+    }
+    if (const unsigned code = hd_.get_error().code; code != 0) {
+      const std::string why = hd_.error_string(code);
+      close();
+      throw InputError("hd", why);
+    }
+  }
+  ~TouchConnection() override {
+    // No frame sends it where the library hangs.
+    for (const auto end = Clock::now() + 20ms; !send({}) && Clock::now() < end;)
+      std::this_thread::sleep_for(kBetweenLooks);
+    close();
+  }
+
+  const DeviceCapabilities& capabilities() const override { return capabilities_; }
+
+  ConnectionStatus read(DeviceInput& input) override {
+    const auto end = Clock::now() + 2ms;
+    while (frames_done_.load(std::memory_order_acquire) == frames_seen_) {
+      if (is_lost_.load(std::memory_order_relaxed)) return ConnectionStatus::lost;
+      if (Clock::now() + kBetweenLooks > end) return ConnectionStatus::silent;
+      std::this_thread::sleep_for(kBetweenLooks);
+    }
+    frames_seen_ = frames_done_.load(std::memory_order_acquire);
+    input = input_.read();
+    return ConnectionStatus::fresh;
+  }
+
+  ConnectionStatus write(const Wrench& wrench_D) override {
+    if (is_lost_.load(std::memory_order_relaxed)) return ConnectionStatus::lost;
+    // One a frame: in a frame that has begun the one before may still be to be sent.
+    const unsigned frames = frames_done_.load(std::memory_order_acquire);
+    if (frames == frames_at_writing_) return ConnectionStatus::silent;
+    frames_at_writing_ = frames;
+    return send(wrench_D) ? ConnectionStatus::fresh : ConnectionStatus::silent;
+  }
+
+ private:
+  // Of zero, whether the motors have it.
+  bool send(const Wrench& wrench_D) {
+    const bool zero = is_zero(wrench_D);
+    if (!zero || !sends_zero_) ++number_;
+    sends_zero_ = zero;
+    sent_.write({wrench_D, Clock::now(), number_});
+    return !zero || zero_of_.load(std::memory_order_acquire) == number_;
+  }
+
+  void ask() {
+    capabilities_.name = device_.name();
+    capabilities_.sensed = device_.integer(kInputDof) >= 6 ? 6 : 3;
+    capabilities_.driven = device_.integer(kOutputDof) >= 6 ? 6 : 3;
+    const auto styles = static_cast<unsigned>(device_.integer(kCalibrationStyle));
+    calibration_style_ = (styles & kByItself) != 0 ? kByItself : styles & kByInkwell;
+    double force_N = 0, torque_Nmm = 0;
+    hd_.get_doubles(kNominalMaxForce, &force_N);
+    if (capabilities_.driven == 6) hd_.get_doubles(kNominalMaxTorque, &torque_Nmm);
+    capabilities_.limits = {force_N, torque_Nmm};
+  }
+
+  // One servo tick of the library's own thread, at 1 kHz.
+  unsigned frame() {
+    hd_.begin_frame(device_.handle);
+    DeviceInput input;
+    // Columns, as OpenGL has them; mm.
+    std::array<double, 16> transform{};
+    hd_.get_doubles(kCurrentTransform, transform.data());
+    const Eigen::Map<const Eigen::Matrix4d> X_DH(transform.data());
+    input.X_DH.position_mm = X_DH.topRightCorner<3, 1>();
+    if (capabilities_.sensed == 6) input.X_DH.orientation = rotation_of(X_DH.topLeftCorner<3, 3>());
+    int buttons = 0;
+    hd_.get_integers(kCurrentButtons, &buttons);
+    input.buttons = static_cast<unsigned>(buttons);
+    input.not_driven = why_not_driven();
+
+    const SentWrench& sent = sent_.read();
+    const bool is_driven = input.not_driven == nullptr && Clock::now() - sent.time < kLapse;
+    driven_ = approach(driven_, is_driven ? sent.wrench : Wrench{}, kRatesForAHand, kFrame_s);
+    hd_.set_doubles(kCurrentForce, driven_.force_N.data());
+    if (capabilities_.driven == 6) hd_.set_doubles(kCurrentTorque, driven_.torque_Nmm.data());
+    hd_.end_frame(device_.handle);
+    if (is_zero(driven_)) zero_of_.store(sent.number, std::memory_order_release);
+    if (const unsigned code = hd_.get_error().code; code != 0 && !is_of_force(code)) {
+      is_lost_.store(true, std::memory_order_relaxed);
+      return kContinue;
+    }
+    input_.write(input);
+    frames_done_.fetch_add(1, std::memory_order_release);
+    return kContinue;
+  }
+
+  // In a frame. The motors get power once it is calibrated.
+  const char* why_not_driven() {
+    const unsigned calibration = hd_.check_calibration();
+    if (calibration == kCalibratesItself && calibration_style_ != 0) {
+      hd_.update_calibration(calibration_style_);
+      // That it could not be is no error of the device: it is asked again in the next frame.
+      hd_.get_error();
+    }
+    if (calibration != kCalibrated)
+      return "is not calibrated: put its stylus into the inkwell, or calibrate it by the maker's tool";
+    if (!has_power_) hd_.enable(kForceOutput);
+    has_power_ = true;
+    return nullptr;
+  }
+
+  void close() {
+    hd_.stop_scheduler();
+    hd_.unschedule(frames_);
+  }
+
+  OpenedDevice device_;
+  const Hd& hd_ = device_.hd;
+  unsigned calibration_style_ = 0;
+  unsigned long frames_ = 0;
+  // The servo thread's.
+  bool has_power_ = false;
+  Wrench driven_;
+  DeviceCapabilities capabilities_;
+  LatestValue<DeviceInput> input_;
+  LatestValue<SentWrench> sent_;
+  std::atomic<unsigned> frames_done_{0};
+  unsigned frames_seen_ = 0;
+  unsigned frames_at_writing_ = ~0U;
+  unsigned number_ = 0;
+  bool sends_zero_ = true;
+  // The number of the wrench for which a frame sent zero last.
+  std::atomic<unsigned> zero_of_{0};
+  std::atomic<bool> is_lost_{false};
+};
+
+}  // namespace
+
+std::unique_ptr<Connection> open_touch(const std::string& address) {
+  return std::make_unique<TouchConnection>(address);
+}
+
+std::string look_for_touch(const std::string& address) {
+  return OpenedDevice(address).name();
+}
+
+}  // namespace osteomill

@@ -1,0 +1,188 @@
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstring>
+#include <optional>
+#include <thread>
+
+#include <fmt/core.h>
+
+#include "osteomill/base/input_error.h"
+#include "osteomill/base/positive.h"
+#include "osteomill/base/socket.h"
+#include "osteomill/session/hardware.h"
+
+#include "device/udp/udp_datagrams.h"
+
+namespace osteomill {
+
+namespace {
+
+using namespace udp;
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+constexpr const char* kUsualAddress = "127.0.0.1:47117";
+constexpr auto kWait = 2ms;
+constexpr int kQuestions = 10;
+constexpr auto kWaitForAnswer = 50ms;
+// After a silence this long the device may have begun anew, and counts from anywhere.
+constexpr auto kSilence = 100ms;
+constexpr std::array<const char*, 3> kWhyNotDriven{nullptr,
+                                                   "is not calibrated: calibrate it as its maker says",
+                                                   "has its force off: switch it on as its maker says"};
+// Whoever floods us does not hold us up.
+constexpr int kMostAtOnce = 64;
+
+struct Question {
+  static constexpr Kind kKind = Kind::question;
+  Head head;
+};
+
+// Whether it went out.
+template <typename Datagram>
+bool send(Socket& socket, Datagram datagram, std::uint32_t sequence) {
+  datagram.head.kind = Datagram::kKind;
+  datagram.head.sequence = sequence;
+  return socket.send({reinterpret_cast<const unsigned char*>(&datagram), sizeof(datagram)}) > 0;
+}
+
+// One that has come and is of this kind.
+template <typename Datagram>
+std::optional<Datagram> receive(Socket& socket) {
+  for (int n = 0; n < kMostAtOnce; ++n) {
+    // A longer one is cut off, and then told by its length.
+    std::array<unsigned char, 256> bytes;
+    const std::optional<std::size_t> length = socket.receive(bytes);
+    if (!length) return std::nullopt;
+    Datagram datagram;
+    if (*length != sizeof(datagram)) continue;
+    std::memcpy(&datagram, bytes.data(), sizeof(datagram));
+    const Head& head = datagram.head;
+    if (head.magic == kMagic && head.version == kVersion && head.kind == Datagram::kKind) return datagram;
+  }
+  return std::nullopt;
+}
+
+DeviceCapabilities capabilities_of(const Answer& answer, const std::string& device) {
+  DeviceCapabilities can;
+  const auto end = std::find(answer.name.begin(), answer.name.end(), '\0');
+  can.name.assign(answer.name.begin(), end);
+  const auto printable = [](unsigned char letter) { return letter >= 0x20 && letter != 0x7f; };
+  if (can.name.empty() || !std::all_of(can.name.begin(), can.name.end(), printable))
+    throw InputError(device, "the device does not say its name");
+  const auto is_dof = [](std::uint32_t dof) { return dof == 3 || dof == 6; };
+  if (!is_dof(answer.sensed) || !is_dof(answer.driven))
+    throw InputError(
+        device,
+        fmt::format("the device says {} degrees of freedom sensed and {} driven, where each is 3 or 6",
+                    answer.sensed, answer.driven));
+  can.sensed = static_cast<int>(answer.sensed);
+  can.driven = static_cast<int>(answer.driven);
+  can.limits = {answer.max_force_N, answer.max_torque_Nmm};
+  can.lets_go_after_s = kLapse_s;
+  if (!is_not_negative(can.limits.force_N) || !is_not_negative(can.limits.torque_Nmm))
+    throw InputError(device, "the device says limits that are not numbers from 0");
+  return can;
+}
+
+// A device at HOST:PORT that has answered.
+struct Partner {
+  explicit Partner(const std::string& address)
+      : socket("udp:" + address, host_and_port("udp", address), Socket::Kind::datagrams) {
+    for (std::uint32_t n = 0; n < kQuestions && socket.is_open(); ++n) {
+      send(socket, Question{}, n);
+      socket.wait_to_receive(kWaitForAnswer);
+      if (const auto answer = receive<Answer>(socket)) {
+        capabilities = capabilities_of(*answer, "udp:" + address);
+        is_taken = answer->head.is_taken != 0;
+        if (!is_taken) return;
+        // A program that was killed has it for a moment longer.
+        std::this_thread::sleep_for(kWaitForAnswer);
+      }
+    }
+    if (is_taken) return;
+    throw InputError("udp:" + address, socket.is_open() ? "nothing answers there" : "nothing listens there");
+  }
+
+  Socket socket;
+  DeviceCapabilities capabilities;
+  // By another program.
+  bool is_taken = false;
+};
+
+class UdpConnection final : public Connection {
+ public:
+  explicit UdpConnection(const std::string& address) : partner_(address) {
+    if (partner_.is_taken) throw InputError("udp:" + address, "another program has the device in use");
+  }
+  ~UdpConnection() override {
+    // One of them arrives.
+    for (int n = 0; n < 3; ++n) write({});
+  }
+
+  const DeviceCapabilities& capabilities() const override { return partner_.capabilities; }
+
+  ConnectionStatus read(DeviceInput& input) override {
+    partner_.socket.wait_to_receive(kWait);
+    bool fresh = false;
+    for (int n = 0; n < kMostAtOnce; ++n) {
+      const auto state = receive<State>(partner_.socket);
+      if (!state) break;
+      if (!is_newer(state->head.sequence)) continue;
+      take(*state, input);
+      fresh = true;
+    }
+    if (fresh) return ConnectionStatus::fresh;
+    return partner_.socket.is_open() ? ConnectionStatus::silent : ConnectionStatus::lost;
+  }
+
+  ConnectionStatus write(const Wrench& wrench_D) override {
+    SentWrench sent;
+    Vec3::Map(sent.force_N.data()) = wrench_D.force_N;
+    if (partner_.capabilities.driven == 6) Vec3::Map(sent.torque_Nmm.data()) = wrench_D.torque_Nmm;
+    const bool is_sent = send(partner_.socket, sent, ++wrenches_);
+    if (!partner_.socket.is_open()) return ConnectionStatus::lost;
+    return is_sent ? ConnectionStatus::fresh : ConnectionStatus::silent;
+  }
+
+ private:
+  // Numbers go round.
+  bool is_newer(std::uint32_t sequence) const {
+    return !heard_ || Clock::now() - *heard_ > kSilence || static_cast<std::int32_t>(sequence - newest_) > 0;
+  }
+
+  void take(const State& state, DeviceInput& input) {
+    newest_ = state.head.sequence;
+    heard_ = Clock::now();
+    input.X_DH.position_mm = Vec3::Map(state.position_mm.data());
+    const auto& [w, x, y, z] = state.orientation_wxyz;
+    input.X_DH.orientation = partner_.capabilities.sensed == 6 ? Quat(w, x, y, z) : Quat::Identity();
+    input.buttons = state.buttons;
+    input.not_driven = kWhyNotDriven[std::min<std::size_t>(state.not_driven, kWhyNotDriven.size() - 1)];
+  }
+
+  Partner partner_;
+  std::uint32_t wrenches_ = 0;
+  std::uint32_t newest_ = 0;
+  std::optional<Clock::time_point> heard_;
+};
+
+std::string or_default(const std::string& address) {
+  return address.empty() ? kUsualAddress : address;
+}
+
+}  // namespace
+
+std::unique_ptr<Connection> open_udp(const std::string& address) {
+  return std::make_unique<UdpConnection>(or_default(address));
+}
+
+std::string look_for_udp(const std::string& address) {
+  const std::string at = or_default(address);
+  const Partner partner(at);
+  return fmt::format("{} at {}{}", partner.capabilities.name, at,
+                     partner.is_taken ? ", in use by another program" : "");
+}
+
+}  // namespace osteomill

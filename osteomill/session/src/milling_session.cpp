@@ -1,0 +1,237 @@
+#include "osteomill/session/milling_session.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include "osteomill/haptics/burr_presses.h"
+#include "osteomill/haptics/sample_points.h"
+#include "osteomill/volume/sampling.h"
+
+namespace osteomill {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double microseconds_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+}
+
+const Vec3 kNotANumber = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+const Wrench kNotFinite{kNotANumber, Vec3::Zero()};
+const Pose kNoPose{kNotANumber, Quat::Identity()};
+
+// The bone, where the tool can work in it.
+std::shared_ptr<Volume> workable(const MillingTool& tool, std::shared_ptr<Volume> bone) {
+  require_workable(tool, bone->geometry());
+  return bone;
+}
+
+// Returns points that lie `by_mm` inside the tool's surface.
+std::vector<Vec3> points_inside(const MillingTool& tool, double by_mm) {
+  constexpr int kOnBurr = 64;
+  constexpr double kSlice_mm = 0.5;
+  std::vector<Vec3> points_T;
+  for (const Vec3& direction : spiral_directions(kOnBurr))
+    points_T.push_back(std::max(0.0, tool.burr_radius_mm - by_mm) * direction);
+  const double share = std::max(0.0, 1 - by_mm / tool.shaft_radius_mm);
+  const int slices = std::max(1, static_cast<int>(std::ceil(tool.shaft_length_mm / kSlice_mm)));
+  for (const ShaftSlice& slice : slice_vertices(tool, slices)) {
+    for (const Vec3& vertex : slice.vertices_T)
+      points_T.push_back(slice.centre_T + share * (vertex - slice.centre_T));
+  }
+  return points_T;
+}
+
+constexpr double kLoneTick_s = 1e-3;
+
+double tick_length_s(const std::vector<TrajectoryPoint>& trajectory, std::size_t n) {
+  if (trajectory.size() < 2) return kLoneTick_s;
+  const std::size_t end = n == 0 ? 1 : n;
+  return trajectory[end].time_s - trajectory[end - 1].time_s;
+}
+
+constexpr double kMax_hz = 250;
+
+}  // namespace
+
+double vibration_hz(double spindle_speed_rpm) {
+  const double turns_per_s = spindle_speed_rpm / 60;
+  return turns_per_s / std::max(1.0, std::ceil(turns_per_s / kMax_hz));
+}
+
+Vec3 Vibration::force_N(const Pose& X_WT, double burr_force_N, double dt_s) noexcept {
+  if (!settings_.on || !(burr_force_N > 0) || !std::isfinite(burr_force_N)) return Vec3::Zero();
+  turns_ += hz_ * dt_s;
+  turns_ -= std::floor(turns_);
+  const double amplitude_N = std::min(settings_.force_share * burr_force_N, settings_.max_N);
+  const double angle = 2 * std::numbers::pi * turns_;
+  return X_WT.orientation * Vec3(amplitude_N * std::cos(angle), amplitude_N * std::sin(angle), 0);
+}
+
+MillingSession::MillingSession(std::shared_ptr<Volume> bone, const BoneDensities& densities,
+                               const MillingSetup& setup)
+    : volume_(workable(setup.tool, std::move(bone))),
+      setup_(setup),
+      densities_(densities),
+      algorithm_(make_algorithm(setup.algorithm, setup.haptics)),
+      milling_(milling_settings(setup)),
+      mill_(volume_->geometry(), setup.tool.burr_radius_mm, densities, milling_),
+      reaction_(milling_, setup.tool.burr_radius_mm),
+      no_go_(volume_->labels(), setup.tool.burr_radius_mm),
+      vibration_(setup.vibration, setup.cutting.spindle_speed_rpm),
+      guard_(setup.guard),
+      points_inside_T_(points_inside(setup.tool, pressing_reach_mm(volume_->geometry()))) {
+  algorithm_->prepare({volume_.get(), setup.tool, setup.tick_s});
+}
+
+TickRecord MillingSession::begin_record(Device& device, const TickInput& input) {
+  if (input.late_s > 0 && last_X_WT_) device.tick_done(*last_X_WT_, input.late_s);
+  TickRecord record;
+  record.time_s = input.time_s;
+  record.dt_s = input.dt_s + input.late_s;
+  record.paused = input.paused;
+  record.let_go = std::exchange(let_go_asked_, false);
+  if (record.let_go) guard_.let_go();
+  record.X_WD = device.read_pose();
+  // No device is there, and where it is not the indices of voxels would overflow.
+  if (!is_reachable(record.X_WD)) record.X_WD = kNoPose;
+  record.given_share = device.given_share();
+  record.driven = device.is_driven() && !std::exchange(hold_back_asked_, false);
+  if (!record.driven) guard_.hold_back();
+  record.spindle_on = !input.paused && input.spindle_on.value_or(device.spindle_asked());
+  if (place_asked_ && is_finite(record.X_WD)) {
+    place_asked_ = false;
+    record.placed = true;
+    begin_at(record.X_WD);
+  }
+  return record;
+}
+
+TickRecord MillingSession::tick(Device& device, const TickInput& input) {
+  TickRecord record = begin_record(device, input);
+  last_change_ = {};
+  if (input.paused) {
+    pause(device, record);
+  } else {
+    work(device, record);
+  }
+  record.energy_given_Nmm = guard_.energy_given_Nmm();
+  record.removed_mm3 = removed_mm3_;
+  record.bone_hash = volume_->change_hash();
+  device.tick_done(last_X_WT_.value_or(record.X_WD), input.dt_s);
+  return record;
+}
+
+void MillingSession::work(Device& device, TickRecord& record) {
+  const Clock::time_point start = Clock::now();
+  auto [step, safe, cutting_torque_W_Nmm] =
+      step_safely(record.X_WD, record.dt_s, record.spindle_on, record.driven);
+  // The bone that goes is paid with what the hand gives.
+  step.burr_force_W_N *= record.given_share;
+  record.compute_us = microseconds_since(start);
+  device.write_wrench(safe.wrench);
+
+  const Clock::time_point milling_start = Clock::now();
+  mill(step, record.spindle_on, record.dt_s);
+  record.label_cuts = mill_.by_label().take();
+  record.milling_us = microseconds_since(milling_start);
+
+  record.X_WT = step.X_WT;
+  record.wrench = safe.wrench;
+  record.fault = safe.fault;
+  record.cutting_torque_W_Nmm = cutting_torque_W_Nmm;
+  record.contacts = step.contacts;
+  record.owed_bricks = step.owed_bricks;
+  intersection_W_ = step.intersection_W;
+  record.burr_force_W_N = step.burr_force_W_N;
+}
+
+void MillingSession::pause(Device& device, TickRecord& record) {
+  record.X_WT = last_X_WT_.value_or(Pose{});
+  record.wrench = guard_.pass_zero(record.X_WD, record.dt_s).wrench;
+  device.write_wrench(record.wrench);
+  reaction_.reset();
+  intersection_W_.reset();
+}
+
+void MillingSession::take_over(const TakenOver& before) noexcept {
+  guard_.begin_from(before.sent, before.held_back);
+  if (before.X_WT && is_finite(*before.X_WT)) begin_at(*before.X_WT);
+}
+
+void MillingSession::begin_at(const Pose& X_WT) noexcept {
+  guard_.begin_anew();
+  last_X_WT_ = X_WT;
+  forget_contacts(X_WT);
+}
+
+void MillingSession::forget_contacts(const std::optional<Pose>& X_WT) noexcept {
+  constexpr double kUsualTick_s = 1e-3;
+  algorithm_->reset();
+  reaction_.reset();
+  if (X_WT) algorithm_->step(*X_WT, kUsualTick_s);
+}
+
+// Whether no bone reaches into the tool. Algorithms do not tell: in their first ticks, and deep in bone, some
+// find nothing to push against.
+bool MillingSession::is_free(const Pose& X_WD) const noexcept {
+  const Vec3 end_W = X_WD.position_mm + setup_.tool.shaft_length_mm * shaft_direction(X_WD);
+  return !first_crossing(*volume_, X_WD.position_mm, end_W) &&
+         std::ranges::none_of(points_inside_T_,
+                              [&](const Vec3& point_T) { return is_bone_at(*volume_, X_WD * point_T); });
+}
+
+MillingSession::SafeStep MillingSession::step_safely(const Pose& X_WD, double dt_s, bool spindle_on,
+                                                     bool is_driven) noexcept {
+  HapticStep nothing;
+  nothing.X_WT = last_X_WT_.value_or(Pose{});
+  if (!is_finite(X_WD)) {
+    return {nothing, {guard_.pass_zero(X_WD, dt_s).wrench, WrenchFault::pose_not_finite}};
+  }
+  HapticStep step = algorithm_->step(X_WD, dt_s);
+  if (spindle_on) step.wrench.force_N += vibration_.force_N(step.X_WT, step.burr_force_W_N.norm(), dt_s);
+  if (milling_.reaction_share > 0) step.wrench = step.wrench + reaction_.wrench();
+  const bool is_usable = is_finite(step.X_WT) && step.burr_force_W_N.allFinite();
+  const bool may_be_let = is_driven && (!guard_.is_held_back() || is_free(X_WD));
+  const SafeWrench safe = guard_.pass(is_usable ? step.wrench : kNotFinite, X_WD, dt_s, may_be_let);
+  if (safe.fault == WrenchFault::not_finite) {
+    // Whatever led there is still in the algorithm's memory of contacts. The tool itself is still outside the
+    // bone, where the device may have sunk into it.
+    forget_contacts(last_X_WT_);
+    return {nothing, safe};
+  }
+  step.burr_force_W_N *= share_sent(step.wrench.force_N, safe.wrench.force_N);
+  last_X_WT_ = step.X_WT;
+  return {step, safe,
+          share_sent(step.wrench.torque_Nmm, safe.wrench.torque_Nmm) * reaction_.wrench().torque_Nmm};
+}
+
+void MillingSession::mill(const HapticStep& step, bool spindle_on, double dt_s) noexcept {
+  const MillingStep cut =
+      mill_.step(*volume_, step.X_WT.position_mm,
+                 paying_force_W_N(milling_, step.X_WT, step.burr_force_W_N, spindle_on), dt_s);
+  if (spindle_on) no_go_.look(step.X_WT.position_mm, mill_.by_label());
+  reaction_.follow(step.X_WT, step.burr_force_W_N, cut.removed_mm3, dt_s);
+  last_change_ = cut.change;
+  // Nothing is written where nothing is milled: then another thread may read it (LiveSession::hold_bone).
+  if (cut.removed_mm3 > 0) removed_mm3_ += cut.removed_mm3;
+  if (!cut.change.voxels.empty()) algorithm_->volume_changed(cut.change);
+}
+
+void replay(MillingSession& session, const std::vector<TrajectoryPoint>& trajectory,
+            const std::function<void(const TickRecord&)>& record) {
+  PosedDevice device;
+  for (std::size_t n = 0; n < trajectory.size(); ++n) {
+    const TrajectoryPoint& point = trajectory[n];
+    device.put(point.X_WD);
+    record(session.tick(
+        device, {.time_s = point.time_s, .dt_s = tick_length_s(trajectory, n), .spindle_on = point.milling}));
+  }
+}
+
+}  // namespace osteomill

@@ -1,0 +1,110 @@
+#include <algorithm>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "osteomill/session/simulated_handle.h"
+#include "osteomill/session/wrench_guard.h"
+
+namespace osteomill {
+namespace {
+
+constexpr double kTick_s = 1e-3;
+// So many that the integrator's own gain does not count.
+constexpr int kSubsteps = 200;
+
+// A handle at a wall at z = 0 that is far too stiff for it, pressed on it by a hand without a
+// damper: whatever the wall gives too much stays in the handle's motion.
+struct Wall {
+  double stiffness_N_per_mm = 20;
+  double press_N = 0;
+
+  WrenchGuard guard{GuardSettings::for_simulation()};
+  SimulatedHandle handle{exact(), {{0, 0, 1}, Quat::Identity()}};
+  double kinetic_mJ = 0;
+  double most_given_Nmm = 0;
+  double deepest_mm = 0;
+
+  static HandleSettings exact() {
+    HandleSettings settings;
+    settings.position_step_mm = settings.rotation_step_rad = settings.force_delay_s = 0;
+    settings.substep_s = kTick_s / kSubsteps;
+    return settings;
+  }
+
+  void run(int ticks) {
+    for (int n = 0; n < ticks; ++n) {
+      const double depth_mm = std::max(0.0, -handle.read().position_mm.z());
+      handle.command(
+          guard.pass({{0, 0, stiffness_N_per_mm * depth_mm}, Vec3::Zero()}, handle.read(), kTick_s).wrench);
+      for (int substep = 0; substep < kSubsteps; ++substep) handle.advance({{0, 0, -press_N}, Vec3::Zero()});
+      most_given_Nmm = std::max(most_given_Nmm, guard.energy_given_Nmm());
+      if (n > ticks / 2) deepest_mm = std::max(deepest_mm, depth_mm);
+    }
+    kinetic_mJ = handle.kinetic_energy_Nmm();
+  }
+};
+
+TEST(PassivityObserver, CountsTheWorkThatAHandleGains) {
+  Wall wall;
+  wall.press_N = 2;
+  wall.run(400);
+  // All energy that the handle has, but for what the hand's own force did on the way from 1 mm above.
+  const double by_the_hand_Nmm = wall.press_N * (1 - wall.handle.pose().position_mm.z());
+  wall.guard.pass({}, wall.handle.read(), kTick_s);
+  EXPECT_NEAR(wall.guard.energy_given_Nmm(), wall.kinetic_mJ - by_the_hand_Nmm,
+              0.01 * wall.guard.energy_given_Nmm());
+}
+
+TEST(PassivityObserver, CountsTheWorkOfTurning) {
+  PassivityObserver observer;
+  observer.move_to({});
+  observer.send({Vec3::Zero(), {0, 0, 40}});
+  observer.move_to({Vec3::Zero(), quaternion_from_rotation_vector({0, 0, 0.1})});
+  EXPECT_NEAR(observer.energy_given_Nmm(), 4, 1e-9);
+  observer.move_to({Vec3::Zero(), quaternion_from_rotation_vector({0, 0, -0.1})});
+  EXPECT_NEAR(observer.energy_given_Nmm(), -4, 1e-9);
+}
+
+TEST(PassivityObserver, AStiffWallIsActiveWithoutTheControllerAndPassiveWithIt) {
+  Wall active;
+  active.press_N = 2;
+  active.run(4000);
+  Wall controlled{.guard = WrenchGuard(GuardSettings::for_simulation({}, true))};
+  controlled.press_N = 2;
+  controlled.run(4000);
+  EXPECT_GT(active.most_given_Nmm, 100);
+  EXPECT_GT(active.deepest_mm, 10);
+  // What the last tick of a contact gives is taken back at the next: it never adds up.
+  EXPECT_LT(controlled.most_given_Nmm, 1);
+  EXPECT_LT(controlled.deepest_mm, 1);
+}
+
+TEST(PassivityObserver, InFreeSpaceNothingIsFelt) {
+  WrenchGuard guard(GuardSettings::for_simulation({}, true));
+  Pose X_WD;
+  // Pushed 1 mm along the force: 3 N mm too many.
+  guard.pass({{3, 0, 0}, Vec3::Zero()}, X_WD, kTick_s);
+  X_WD.position_mm.x() += 1;
+  EXPECT_EQ(guard.pass({}, X_WD, kTick_s).wrench.force_N, Vec3::Zero());
+  EXPECT_NEAR(guard.energy_given_Nmm(), 3, 1e-12);
+  // At the next contact it is taken back, as an easing of what was asked for.
+  X_WD.position_mm.x() += 1;
+  const SafeWrench safe = guard.pass({{3, 0, 0}, Vec3::Zero()}, X_WD, kTick_s);
+  EXPECT_LT(safe.wrench.force_N.x(), 3);
+  EXPECT_EQ(safe.fault, WrenchFault::eased);
+}
+
+TEST(PassivityObserver, APoseThatIsNotFiniteBreaksOff) {
+  PassivityObserver observer;
+  observer.move_to({});
+  observer.send({{1, 0, 0}, Vec3::Zero()});
+  observer.move_to({Vec3::Constant(std::numeric_limits<double>::quiet_NaN()), Quat::Identity()});
+  observer.move_to({{50, 0, 0}, Quat::Identity()});
+  EXPECT_EQ(observer.energy_given_Nmm(), 0);
+  observer.move_to({{51, 0, 0}, Quat::Identity()});
+  EXPECT_EQ(observer.energy_given_Nmm(), 1);
+}
+
+}  // namespace
+}  // namespace osteomill

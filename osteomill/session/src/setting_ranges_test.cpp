@@ -1,0 +1,175 @@
+#include <algorithm>
+#include <memory>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "osteomill/haptics/barrier_shell_counts.h"
+#include "osteomill/session/milling_session.h"
+#include "osteomill/session/milling_setup.h"
+
+#include "tests/shapes.h"
+
+namespace osteomill {
+namespace {
+
+constexpr const char* kOurs = "barrier-shell";
+
+// Bone below z = 0 in a cube of 16 mm.
+const Volume& small_bone() {
+  static const Volume bone = testing_support::shape_volume(
+      testing_support::centred_cube(64, 0.25), testing_support::plane(Vec3::Zero(), Vec3::UnitZ()));
+  return bone;
+}
+
+// What of the tool is put on the bone, and how high its middle then is.
+struct Put {
+  const char* name;
+  Quat orientation;
+  double (*height_mm)(const MillingTool&);
+};
+const Put kPuts[] = {
+    {"burr", Quat::Identity(), [](const MillingTool& tool) { return tool.burr_radius_mm; }},
+    {"end", Quat::FromTwoVectors(Vec3::UnitZ(), -Vec3::UnitZ()),
+     [](const MillingTool& tool) { return std::max(tool.shaft_length_mm, tool.burr_radius_mm); }},
+    {"side", Quat::FromTwoVectors(Vec3::UnitZ(), Vec3::UnitX()),
+     [](const MillingTool& tool) { return std::max(tool.burr_radius_mm, tool.shaft_radius_mm); }},
+};
+
+struct Pressed {
+  double wanted_N;
+  double force_N = 0;
+  // How far the drawn tool came below the surface.
+  double sunk_mm = 0;
+  bool finite = true;
+  // In the tick that read or summed the most.
+  std::uint64_t most_points = 0;
+};
+
+// The hand goes down, half a percent deeper each tick, until it feels what it wants or its arm ends.
+Pressed press(const MillingSetup& setup, const Put& put, bool spindle_on) {
+  constexpr double kWanted_N = 3, kArm_mm = 100, kAbove_mm = 0.5, kTick_s = 1e-3;
+  constexpr int kHeldTicks = 200;
+  MillingSession session(std::make_shared<Volume>(small_bone()), {0, 1000}, setup);
+  PosedDevice device;
+  Pressed pressed{.wanted_N = std::min(kWanted_N, 0.9 * setup.guard.limits.force_N)};
+  const double touching_mm = put.height_mm(setup.tool);
+  double time_s = 0;
+  const auto tick_at = [&](double depth_mm) {
+    device.put({{0.06, 0.03, touching_mm - depth_mm}, put.orientation});
+    const TickRecord tick = session.tick(device, time_s += kTick_s, kTick_s, spindle_on);
+    pressed.finite = pressed.finite && is_finite(tick.X_WT) && tick.fault != WrenchFault::not_finite;
+    pressed.force_N = tick.wrench.force_N.z();
+    pressed.sunk_mm = std::max(pressed.sunk_mm, touching_mm - tick.X_WT.position_mm.z());
+  };
+  for (double above_mm = kAbove_mm; above_mm > 0; above_mm -= 0.01) tick_at(-above_mm);
+  double depth_mm = 0.001;
+  while (pressed.force_N < pressed.wanted_N && depth_mm < kArm_mm) tick_at(depth_mm *= 1.005);
+  for (int n = 0; n < kHeldTicks; ++n) tick_at(depth_mm);
+  const auto* counts = barrier_shell::counts_of(session.algorithm());
+  pressed.most_points = counts != nullptr
+                            ? counts->most_points
+                            : static_cast<std::uint64_t>(session.algorithm().sample_point_count());
+  return pressed;
+}
+
+bool says(const std::string& line, const std::string& word) {
+  return line.find(word) != std::string::npos && line.find_first_of("0123456789") != std::string::npos;
+}
+
+// Whether a setup holds a tool that is pressed by a few newtons; if not, it has to be refused or doubted in
+// words that name `setting`. No algorithm of ours is let off by a doubt.
+void expect_held_or_told(const MillingSetup& setup, const std::string& setting) {
+  // Some hundred microseconds of work.
+  constexpr std::uint64_t kMostPoints = 20000;
+  constexpr double kMostSunk_mm = 0.3;
+  const bool is_ours = setup.algorithm.id == kOurs;
+  std::vector<std::string> doubts;
+  try {
+    doubts = doubts_about(setup, small_bone().geometry());
+  } catch (const std::invalid_argument& error) {
+    EXPECT_TRUE(says(error.what(), setting)) << error.what();
+    EXPECT_THROW(press(setup, kPuts[0], false), std::invalid_argument) << "the session has to refuse it too";
+    return;
+  }
+  for (const std::string& doubt : doubts) EXPECT_TRUE(says(doubt, setting)) << doubt;
+  // Of the paper's, the shaft alone is felt as a torque.
+  for (const Put& put : is_ours ? std::span(kPuts) : std::span(kPuts).first(1)) {
+    const Pressed pressed = press(setup, put, false);
+    EXPECT_TRUE(pressed.finite) << put.name;
+    if (!doubts.empty() && !is_ours) continue;
+    EXPECT_GT(pressed.force_N, 0.9 * pressed.wanted_N) << put.name;
+    EXPECT_LE(pressed.most_points, kMostPoints) << put.name;
+    EXPECT_LT(pressed.sunk_mm, is_ours ? kMostSunk_mm : setup.tool.burr_radius_mm) << put.name;
+  }
+}
+
+MillingSetup setup_of(const AlgorithmDescription& algorithm) {
+  return {.algorithm = algorithm, .guard = GuardSettings::for_simulation()};
+}
+
+TEST(SettingRanges, EveryDefaultHoldsWithoutADoubt) {
+  for (const AlgorithmDescription& algorithm : all_algorithms()) {
+    SCOPED_TRACE(algorithm.id.name);
+    EXPECT_TRUE(doubts_about(setup_of(algorithm), small_bone().geometry()).empty());
+    expect_held_or_told(setup_of(algorithm), "none");
+  }
+}
+
+TEST(SettingRanges, EitherEndOfAnAlgorithmsSettingHoldsOrIsToldOf) {
+  for (const AlgorithmDescription& algorithm : all_algorithms()) {
+    for (const SettingDescription& setting : algorithm.settings) {
+      for (const double value : {setting.range.min, setting.range.max}) {
+        SCOPED_TRACE(algorithm.id.name + "." + setting.name + " = " + std::to_string(value));
+        MillingSetup setup = setup_of(algorithm);
+        setup.haptics.named = {{algorithm.id.name, setting.name, value}};
+        expect_held_or_told(setup, setting.name);
+      }
+    }
+  }
+}
+
+TEST(SettingRanges, EitherEndOfToolCuttingAndLimitsHoldsOrIsToldOf) {
+  for (const Field<MillingSetup>& field : fields_of<MillingSetup>()) {
+    if (field.option.empty()) continue;
+    for (const AlgorithmDescription& algorithm : all_algorithms()) {
+      for (const double value : {field.range.min, field.range.max}) {
+        SCOPED_TRACE(algorithm.id.name + ", " + field.option + " = " + std::to_string(value));
+        MillingSetup setup = setup_of(algorithm);
+        field.set(setup, value);
+        expect_held_or_told(setup, field.option.substr(0, field.option.find('-')));
+      }
+    }
+  }
+}
+
+// Bone goes from under the burr, so that only what is sent is looked at.
+TEST(SettingRanges, EitherEndOfTheCuttingsSettingsCutsByFiniteNumbers) {
+  for (const Field<MillingSetup>& field : fields_of<MillingSetup>()) {
+    if (!field.has(kOfTheCutting) || field.option.empty()) continue;
+    for (const double value : {field.range.min, field.range.max}) {
+      SCOPED_TRACE(field.option + " = " + std::to_string(value));
+      MillingSetup setup = setup_of(default_algorithm());
+      setup.cutting_reaction = setup.vibration.on = true;
+      field.set(setup, value);
+      EXPECT_TRUE(press(setup, kPuts[0], true).finite);
+    }
+  }
+}
+
+TEST(SettingRanges, PointsLieAsCloseAsAThinToolNeeds) {
+  for (const MillingTool& tool :
+       {MillingTool{0.2, 0.1, 25}, MillingTool{0.1, 1, 25}, MillingTool{1.5, 0.1, 25},
+        MillingTool{1.5, 1, 0.3}, MillingTool{5, 3, 25}}) {
+    SCOPED_TRACE(std::to_string(tool.burr_radius_mm) + " " + std::to_string(tool.shaft_radius_mm));
+    MillingSetup setup = setup_of(default_algorithm());
+    setup.tool = tool;
+    expect_held_or_told(setup, "none");
+  }
+}
+
+}  // namespace
+}  // namespace osteomill

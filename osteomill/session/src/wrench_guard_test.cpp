@@ -1,0 +1,319 @@
+#include "osteomill/session/wrench_guard.h"
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "osteomill/haptics/algorithms.h"
+#include "osteomill/session/milling_session.h"
+#include "osteomill/session/trajectory.h"
+
+#include "tests/shapes.h"
+
+namespace osteomill {
+namespace {
+
+constexpr double kTick_s = 1e-3;
+// What the default allows in a tick: 20 N and 500 N mm are gone in five.
+constexpr double kMaxStep_N = 4 + 1e-9;
+constexpr double kMaxStep_Nmm = 100 + 1e-9;
+const Pose kHere{{1, 2, 3}, Quat::Identity()};
+
+Wrench down(double force_N) {
+  return {{0, 0, -force_N}, {0, 10 * force_N, 0}};
+}
+
+// A hand that has felt nothing, and then this for long enough.
+WrenchGuard holding(double force_N) {
+  WrenchGuard guard;
+  guard.pass({}, kHere, kTick_s);
+  for (int n = 0; n < 10; ++n) guard.pass(down(force_N), kHere, kTick_s);
+  return guard;
+}
+
+TEST(WrenchGuard, FromFreeSpaceAContactIsFeltAtOnce) {
+  WrenchGuard guard;
+  guard.pass({}, kHere, kTick_s);
+  const SafeWrench safe = guard.pass(down(3), kHere, kTick_s);
+  EXPECT_EQ(safe.wrench.force_N, down(3).force_N);
+  EXPECT_EQ(safe.fault, WrenchFault::none);
+}
+
+TEST(WrenchGuard, ATickOfNoLengthGivesNumbers) {
+  WrenchGuard simulated(GuardSettings::for_simulation());
+  WrenchGuard guarded = holding(3);
+  for (const double force_N : {3.0, 3.0, 5.0}) {
+    EXPECT_EQ(simulated.pass(down(force_N), kHere, 0).wrench.force_N, down(force_N).force_N);
+    EXPECT_EQ(guarded.pass(down(force_N), kHere, 0).wrench.force_N, down(3).force_N);
+  }
+}
+
+TEST(WrenchGuard, WhereTheHandMayHaveSunkItComesUpSlowly) {
+  WrenchGuard guard = holding(0);
+  guard.begin_anew();
+  for (int n = 1; n <= 99; ++n) {
+    const SafeWrench safe = guard.pass(down(6), kHere, kTick_s);
+    ASSERT_NEAR(safe.wrench.force_N.norm(), 6 * 0.01 * n, 1e-9) << n;
+    ASSERT_EQ(safe.fault, WrenchFault::eased);
+  }
+  guard.pass(down(6), kHere, kTick_s);
+  EXPECT_EQ(guard.pass(down(6), kHere, kTick_s).fault, WrenchFault::none);
+}
+
+TEST(WrenchGuard, AHandThatBeginsToBeDrivenFeelsNothingUntilItIsOutOfBone) {
+  const auto held = [](WrenchGuard& guard, const Wrench& asked, bool is_free) {
+    const SafeWrench safe = guard.pass(asked, kHere, kTick_s, is_free);
+    return is_zero(safe.wrench) && safe.fault == WrenchFault::held_back;
+  };
+  WrenchGuard begun;
+  WrenchGuard driven_again = holding(6);
+  driven_again.hold_back();
+  WrenchGuard in_its_place = holding(6);
+  in_its_place.begin_from({}, true);
+  for (WrenchGuard* guard : {&begun, &driven_again, &in_its_place}) {
+    for (int n = 0; n < 200; ++n) {
+      ASSERT_TRUE(held(*guard, down(6), true));
+      ASSERT_TRUE(held(*guard, {{0, 0, 0.4}, {0, 13, 0}}, true));
+      ASSERT_TRUE(held(*guard, down(0.4), false)) << "in bone some algorithms find nothing to push against";
+    }
+    EXPECT_EQ(guard->energy_given_Nmm(), 0);
+    EXPECT_NEAR(guard->pass(down(0.4), kHere, kTick_s).wrench.force_N.norm(), 0.004, 1e-9);
+    EXPECT_LT(guard->pass(down(6), kHere, kTick_s).wrench.force_N.norm(), 0.13);
+  }
+}
+
+TEST(WrenchGuard, WhatNoHandFeelsIsNotHeldBack) {
+  WrenchGuard guard(GuardSettings::for_simulation());
+  guard.hold_back();
+  EXPECT_EQ(guard.pass(down(6), kHere, kTick_s, false).wrench.force_N, down(6).force_N);
+}
+
+TEST(WrenchGuard, LateTicksComeUpInNoLargerSteps) {
+  WrenchGuard guard = holding(0);
+  guard.begin_anew();
+  double before_N = 0;
+  for (int n = 0; n < 50; ++n) {
+    const double sent_N = guard.pass(down(6), kHere, n % 2 ? kTick_s : 4 * kTick_s).wrench.force_N.norm();
+    ASSERT_NEAR(sent_N - before_N, 0.06, 1e-9) << n;
+    before_N = sent_N;
+  }
+}
+
+TEST(WrenchGuard, NoStepIsLargerThanAHandMayFeel) {
+  WrenchGuard guard = holding(0);
+  Vec3 before_N = Vec3::Zero();
+  for (const double force_N : {15.0, -15.0, 3.0, 20.0, -20.0, 0.0}) {
+    for (int n = 0; n < 3; ++n) {
+      const Vec3 sent_N = guard.pass(down(force_N), kHere, kTick_s).wrench.force_N;
+      ASSERT_LE((sent_N - before_N).norm(), kMaxStep_N);
+      before_N = sent_N;
+    }
+  }
+}
+
+// In each what was wrong is said, 20 N are zero within 5 ms, and afterwards it comes up slowly.
+TEST(WrenchGuard, AFaultEndsInZeroWithin5ms) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  struct Fault {
+    Wrench asked;
+    Pose X_WD;
+    double dt_s;
+    WrenchFault name;
+  };
+  const Fault faults[] = {{{{nan, 0, 0}, Vec3::Zero()}, kHere, kTick_s, WrenchFault::not_finite},
+                          {down(20), {{1, 2, 53}, Quat::Identity()}, kTick_s, WrenchFault::pose_jumped},
+                          // A grip that is centred anew.
+                          {down(20),
+                           {kHere.position_mm, quaternion_from_rotation_vector({0, 0.3, 0})},
+                           kTick_s,
+                           WrenchFault::pose_jumped},
+                          {down(20), kHere, 0.02, WrenchFault::tick_late}};
+  for (const Fault& fault : faults) {
+    WrenchGuard guard = holding(20);
+    double sent_N = 20;
+    Pose X_WD = fault.X_WD;
+    for (int n = 0; n < 5; ++n) {
+      // A device that jumps to and fro.
+      if (n % 2 == 1 && fault.name == WrenchFault::pose_jumped)
+        X_WD = kHere;
+      else
+        X_WD = fault.X_WD;
+      const SafeWrench safe = guard.pass(fault.asked, X_WD, fault.dt_s);
+      ASSERT_EQ(safe.fault, fault.name);
+      ASSERT_LE(std::abs(sent_N - safe.wrench.force_N.norm()), kMaxStep_N);
+      sent_N = safe.wrench.force_N.norm();
+    }
+    EXPECT_NEAR(sent_N, 0, 1e-9);
+    EXPECT_LT(guard.pass(down(20), X_WD, kTick_s).wrench.force_N.norm(), 0.3);
+  }
+}
+
+TEST(WrenchGuard, AfterAPauseItComesUpSlowly) {
+  WrenchGuard guard = holding(6);
+  for (int n = 0; n < 5; ++n) guard.pass_zero(kHere, kTick_s);
+  EXPECT_TRUE(guard.is_at_rest());
+  EXPECT_LT(guard.pass(down(10), kHere, kTick_s).wrench.force_N.norm(), 0.2);
+}
+
+TEST(WrenchGuard, AnotherAlgorithmGoesOnFromWhatWasSent) {
+  WrenchGuard after(GuardSettings{{10, 500}});
+  after.begin_from(holding(2).sent(), false);
+  double before_N = 2;
+  for (int n = 0; n < 200; ++n) {
+    const double sent_N = after.pass(down(14), kHere, kTick_s).wrench.force_N.norm();
+    ASSERT_GE(sent_N, before_N - 1e-9);
+    ASSERT_LE(sent_N, before_N + 0.1);
+    before_N = sent_N;
+  }
+  EXPECT_NEAR(before_N, 10, 1e-9);
+}
+
+TEST(WrenchGuard, LetGoItComesDownToRest) {
+  WrenchGuard guard = holding(6);
+  guard.let_go();
+  double before_N = 6;
+  for (int n = 0; n < 101; ++n) {
+    const double sent_N = guard.pass(down(6), kHere, kTick_s).wrench.force_N.norm();
+    ASSERT_LE(std::abs(sent_N - before_N), 0.1);
+    before_N = sent_N;
+  }
+  EXPECT_TRUE(guard.is_at_rest());
+}
+
+// A hand on a flat bone with every algorithm: what happens between two ticks, and the largest steps then.
+class GuardedSession : public ::testing::TestWithParam<std::string> {
+ protected:
+  GuardedSession() : session_(make(GetParam())) { put(3); }
+
+  std::unique_ptr<MillingSession> make(const std::string& algorithm) {
+    return std::make_unique<MillingSession>(
+        std::make_shared<Volume>(testing_support::shape_volume(
+            testing_support::centred_cube(60, 0.25), testing_support::plane(Vec3::Zero(), Vec3::UnitZ()))),
+        BoneDensities{0, 1000}, MillingSetup{.algorithm = algorithm_named(algorithm)});
+  }
+  void put(double height_mm) { device_.put({{0, 0, height_mm}, Quat::Identity()}); }
+  void tick(int count) {
+    for (int n = 0; n < count; ++n) {
+      sent(session_->tick(device_, {.dt_s = kTick_s}).wrench);
+    }
+  }
+  void sent(const Wrench& wrench) {
+    EXPECT_LE((wrench.force_N - sent_.force_N).norm(), kMaxStep_N);
+    EXPECT_LE((wrench.torque_Nmm - sent_.torque_Nmm).norm(), kMaxStep_Nmm);
+    step_N_ = std::max(step_N_, (wrench.force_N - sent_.force_N).norm());
+    sent_ = wrench;
+  }
+  // From free space down to so far above the surface.
+  void press(double height_mm) {
+    for (double here_mm = 3; here_mm > height_mm; here_mm -= 0.02) {
+      put(here_mm);
+      tick(1);
+    }
+    tick(20);
+    step_N_ = 0;
+  }
+
+  std::unique_ptr<MillingSession> session_;
+  PosedDevice device_;
+  Wrench sent_;
+  double step_N_ = 0;
+};
+INSTANTIATE_TEST_SUITE_P(EveryAlgorithm, GuardedSession, ::testing::ValuesIn(algorithm_names()),
+                         [](const auto& of) {
+                           std::string name = of.param;
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
+
+// From free space, faster than a hand moves and as fast as the guard takes for a jump.
+TEST_P(GuardedSession, AsItIsNoTickBringsMoreThanAHandMayFeel) {
+  double felt_N = 0;
+  for (const double mm_a_tick : {0.9, 4.9, 5.1}) {
+    session_ = make(GetParam());
+    sent_ = {};
+    for (double here_mm = 20; here_mm > -3; here_mm -= mm_a_tick) {
+      put(here_mm);
+      tick(1);
+    }
+    tick(200);
+    felt_N = std::max(felt_N, sent_.force_N.norm());
+  }
+  EXPECT_GT(felt_N, 4);
+}
+
+TEST_P(GuardedSession, AfterAPauseInWhichTheHandSankNothingSteps) {
+  press(0.8);
+  for (int n = 0; n < 50; ++n) {
+    put(0.8 - 0.1 * n);
+    sent(session_->tick(device_, {.dt_s = kTick_s, .paused = true}).wrench);
+  }
+  EXPECT_EQ(sent_.force_N, Vec3::Zero());
+  step_N_ = 0;
+  tick(200);
+  EXPECT_LT(step_N_, 0.3);
+}
+
+// Also where the algorithm finds nothing to push against, and on the way out.
+TEST_P(GuardedSession, AStartInBoneIsNotFeltUntilTheToolIsOut) {
+  for (const double height_mm : {0.5, -2.0, -6.0}) {
+    session_ = make(GetParam());
+    put(height_mm);
+    tick(200);
+    EXPECT_EQ(step_N_, 0) << height_mm;
+    for (double here_mm = height_mm; here_mm < 3; here_mm += 0.02) {
+      put(here_mm);
+      tick(1);
+      EXPECT_LE(sent_.force_N.norm(), WrenchGuard::kFreeForce_N);
+    }
+    press(-0.7);
+    EXPECT_GT(sent_.force_N.norm(), 0.5);
+    put(3);
+    tick(100);
+    sent_ = {};
+    step_N_ = 0;
+  }
+}
+
+TEST_P(GuardedSession, ADeviceThatVanishesGetsZeroWithin5ms) {
+  press(0.3);
+  device_.put({Vec3::Constant(std::numeric_limits<double>::quiet_NaN()), Quat::Identity()});
+  tick(5);
+  EXPECT_EQ(sent_.force_N, Vec3::Zero());
+  EXPECT_EQ(sent_.torque_Nmm, Vec3::Zero());
+}
+
+TEST_P(GuardedSession, AfterADeviceJumped50mmTheWrenchComesUpSlowly) {
+  press(0.3);
+  for (const double height_mm : {-50.0, -0.5}) {
+    put(height_mm);
+    EXPECT_EQ(session_->tick(device_, {.dt_s = kTick_s}).fault, WrenchFault::pose_jumped);
+    sent_ = device_.sent();
+    // A tenth of the way to what it asks for, 20 N at the most.
+    tick(10);
+    EXPECT_LE(sent_.force_N.norm(), 2 + 1e-9) << height_mm;
+  }
+}
+
+TEST_P(GuardedSession, EveryOtherAlgorithmTakesOverWithoutAStep) {
+  for (const std::string& other : algorithm_names()) {
+    put(3);
+    tick(10);
+    press(0.3);
+    auto next = make(other);
+    std::swap(session_, next);
+    session_->take_over({Pose{{0, 0, 1.2}, Quat::Identity()}, next->left().sent, false});
+    tick(200);
+    // One of the paper's may step from tick to tick by itself, as far as the guard lets it.
+    if (other == default_algorithm().id.name) {
+      EXPECT_LT(step_N_, 0.3);
+    }
+    session_ = make(GetParam());
+    sent_ = {};
+  }
+}
+
+}  // namespace
+}  // namespace osteomill

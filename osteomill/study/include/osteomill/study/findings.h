@@ -1,0 +1,43 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "osteomill/study/run_groups.h"
+
+namespace osteomill {
+
+enum class Verdict : unsigned char { agrees, does_not_agree, not_settled, not_recorded, lost_contact };
+
+/// "agrees", "does not agree", "not settled", "not recorded", "lost contact".
+std::string_view name_of(Verdict verdict);
+inline bool is_tested(Verdict verdict) {
+  return verdict <= Verdict::not_settled;
+}
+
+/// One thing that the paper says it found, held against the recordings by a rule that is stated.
+struct Finding {
+  /// In its own words, restored where its text has gaps.
+  std::string paper_says;
+  std::string rule;
+  /// The numbers that the rule was applied to, and which of their runs did not reach all of their plan.
+  std::string measured;
+  Verdict verdict = Verdict::not_recorded;
+  /// It rests on compute times, which are the machine's and not the algorithms' alone.
+  bool of_the_machine = false;
+};
+
+/// How firmly the same hand grips for one of the findings, the loosest first: what its stiffness and damping
+/// are multiplied by (gripping, hand.h).
+inline constexpr std::array<double, 3> kGrips{0.5, 1, 2};
+
+/// What algorithm 2's force has above 20 Hz (rms, N) while it is held, for each of `kGrips`; empty where only
+/// one was tried, not a number where contact was lost.
+using GripForces = std::vector<double>;
+
+/// The nine findings of the paper's section 8, as its text has them. One that needs runs which are not there
+/// is `not_recorded`, one that needs a run that had not enough contact `lost_contact`.
+std::vector<Finding> check_findings(const RunGroup& group, const GripForces& grips);
+
+}  // namespace osteomill

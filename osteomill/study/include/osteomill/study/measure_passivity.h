@@ -1,0 +1,69 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "osteomill/haptics/algorithms.h"
+#include "osteomill/study/milling_trial.h"
+#include "osteomill/study/wall_press.h"
+#include "osteomill/volume/volume.h"
+
+namespace osteomill {
+
+/// The greatest stiffness at which a wall stays passive.
+struct StiffnessLimit {
+  enum class Kind : unsigned char {
+    /// To within 3 %.
+    found,
+    /// Every stiffness tried was passive, up to 200 N/mm.
+    above_all,
+    /// None was, from 0.05 N/mm or from the softest that carries the force.
+    below_all,
+  };
+  Kind kind = Kind::below_all;
+  /// The greatest passive one that was tried; 0 for `below_all`.
+  double stiffness_N_per_mm = 0;
+  /// How stiff that one is felt.
+  double felt_N_per_mm = 0;
+};
+
+/// Seeks the limit from `start_N_per_mm` by doubling or halving until it is enclosed, then by bisection of
+/// the logarithm. Where the wall is passive, not passive and passive again as it gets stiffer, it finds one
+/// of the limits.
+StiffnessLimit seek_stiffness_limit(const std::function<WallPressResult(double stiffness_N_per_mm)>& press,
+                                    double start_N_per_mm);
+
+/// The greatest stiffness of an ideal wall, sampled every `tick_s` and felt `delay_s` later, that a device of
+/// this damping keeps passive where it swings slowly against the tick: 2 b / (T + 2 tau), after Colgate and
+/// Schenkel (1997) and Diolaiti et al. (2006).
+double passive_stiffness_rule_N_per_mm(double damping_Ns_per_mm, double tick_s, double delay_s);
+
+/// How stiff an algorithm can be on a device of this damping and delay.
+struct PassivityRow {
+  AlgorithmId algorithm;
+  double damping_Ns_per_mm = 0;
+  double delay_s = 0;
+  /// By the algorithm's own setting (--stiffness), which need not be what is felt.
+  StiffnessLimit limit;
+  /// How stiff an ideal wall could be there (passive_stiffness_rule_N_per_mm).
+  double rule_N_per_mm = 0;
+};
+
+/// Every algorithm that has a setting of the option "stiffness", on devices with 1, 2, 5 and 10 N s/m of
+/// damping and 0.3, 1 and 2 ms of delay; all else as in `settings`.
+std::vector<TrialSettings> passivity_cases(const std::vector<AlgorithmDescription>& algorithms,
+                                           const TrialSettings& settings = {});
+
+/// Bone that fills z < 0, wide and deep enough to press this tool on, of voxels a twelfth of the burr's
+/// radius (0.05 to 0.5 mm).
+Volume flat_wall(const MillingTool& tool);
+
+/// Presses on the wall (wall_press.h) with the algorithm, tool, tick and device of `settings`. Throws
+/// std::invalid_argument where one is out of range.
+WallPressResult press_on_wall(const TrialSettings& settings, const Volume& wall);
+
+/// Seeks the greatest `--stiffness` at which the wall stays passive, pressed as `press_on_wall` does. Throws
+/// as that does.
+PassivityRow measure_passivity(TrialSettings settings, const Volume& wall);
+
+}  // namespace osteomill

@@ -1,0 +1,170 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "osteomill/base/distribution.h"
+#include "osteomill/base/field.h"
+#include "osteomill/recording/recording.h"
+
+namespace osteomill {
+
+/// The most that a milling loop should lose of 1000 Hz (paper, section 8.1).
+inline constexpr double kMinRate_hz = 950.0;
+/// Where a hand stops following and starts to feel a buzz: "above 20 Hz" in all that is reported.
+inline constexpr double kBuzzAbove_hz = 20.0;
+
+/// In the place of a figure that could not be measured: not a number.
+inline constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
+
+/// What the tool leant on in a tick, and what the hand felt of it.
+struct Contact {
+  /// The burr presses on bone with 0.02 N or more.
+  bool burr = false;
+  /// The hand feels a torque of 0.2 N mm or more, twice a step of the encoder, without what cutting adds. It
+  /// comes from the shaft: what presses on the burr's ball has no lever about its centre.
+  bool shaft = false;
+  /// The burr presses on bone, or the hand feels a force of 0.02 N or more.
+  bool force = false;
+  /// The hand feels a torque of 0.2 N mm or more.
+  bool torque = false;
+
+  bool any() const { return force || torque; }
+};
+Contact contact_of(const TickRecord& record);
+
+/// For how much of a recording the tool touched, each as a share of its ticks.
+struct ContactShares {
+  double any = 0;
+  double burr = 0;
+  double shaft = 0;
+  double force = 0;
+  double torque = 0;
+  /// When contact was lost: the time from the first tick to the last one in contact, if the recording then
+  /// goes on for a second or more; 0 if nothing touched at all. Not a number where contact was not lost.
+  double lost_after_s = kNotMeasured;
+  /// It was lost while the spindle turned: in this recording or, if nothing touched in it, before it began.
+  bool lost_while_milling = false;
+
+  bool is_lost() const { return !std::isnan(lost_after_s); }
+};
+
+/// Whether a share of contact is enough to measure what is felt in it: a tenth of the ticks.
+inline bool is_enough_contact(double share) {
+  return share >= 0.1;
+}
+
+/// Why something that is felt could not be measured: "never touched", "lost while milling", "lost while
+/// milling, after 3.2 s", "lost contact after 3.2 s", "touched for 4 % of the time", "the shaft touched for 4
+/// % of the time" or "felt a force for 4 % of the time".
+std::string contact_words(const ContactShares& contact);
+
+/// How a vector over time behaves: force (N) or torque (N mm).
+struct VectorMetrics {
+  /// Mean and greatest magnitude over all ticks.
+  double mean = 0;
+  double max = 0;
+  /// Root of the mean square magnitude of what lies above 20 Hz (signals.h).
+  double hp_rms = 0;
+  /// The greatest magnitude of the difference between two ticks that follow each other.
+  double step_max = 0;
+  /// `hp_rms` against the mean; 0 where that is zero.
+  double hp_share = 0;
+};
+inline constexpr VectorMetrics kNotFelt{kNotMeasured, kNotMeasured, kNotMeasured, kNotMeasured, kNotMeasured};
+/// Over the ticks that are `counted` (empty: all); a step counts where one of its two ticks does. Zeros for
+/// none.
+VectorMetrics vector_metrics(std::span<const Vec3> samples, double rate_hz,
+                             const std::vector<bool>& counted = {});
+
+/// How far unit directions stray from their mean (the direction of their sum), in degrees: the root of the
+/// mean square angle, and the greatest angle. Zeros for no directions.
+struct DirectionMetrics {
+  double spread_deg = 0;
+  double excursion_deg = 0;
+};
+DirectionMetrics direction_metrics(std::span<const Vec3> directions);
+
+/// How far the shaft turned within 50 ms, in degrees: at most, and about the greatest step of the torque.
+struct ShaftTurns {
+  double max_deg = 0;
+  double at_torque_step_deg = 0;
+};
+
+/// All figures of one recording (metric_table.h says where each is shown).
+struct RunMetrics {
+  double steps = 0;
+  /// Only ticks this long after the recording's first one, and later ones, are counted.
+  double counted_from_s = 0;
+  /// Of the algorithm's step alone, by the clock (`compute_us`).
+  Distribution step_us;
+  /// Of the tick's whole work (TickRecord::busy_us).
+  Distribution tick_us;
+  /// HeldRate over the ticks' whole work (TickRecord::busy_us), for the recording's tick.
+  double rate_hz = 0;
+  ContactShares contact;
+  /// While in contact; not a number where the hand did not feel a force, or a torque, for long enough.
+  VectorMetrics force_N;
+  VectorMetrics torque_Nmm;
+  /// Of the simulated tool's shaft while in contact; not a number where the shaft did not touch for long
+  /// enough.
+  DirectionMetrics shaft;
+  ShaftTurns turns;
+  /// How much of the torque above 20 Hz follows the force above 20 Hz of the 10 ms about it
+  /// (signals.h), while the shaft touches; not a number where that is too short to say.
+  double torque_follows_force = 0;
+  /// The mean number of sample points that touch, over the ticks in contact; like the turns not a number
+  /// where these ticks are too few.
+  double contacts_mean = 0;
+  /// Bone removed by milling after the first tick, and what was put back of it where a cut was taken back.
+  double removed_mm3 = 0;
+  double put_back_mm3 = 0;
+  /// How far the burr's centre went, by where it was every 0.02 s: from tick to tick a trembling hand goes
+  /// far without getting anywhere.
+  double path_mm = 0;
+};
+
+/// Of the ticks from the `first` on. Throws InputError, naming the recording, where these are fewer than two,
+/// their time does not increase, a number is not finite, or they are too far apart to say anything about 20
+/// Hz.
+RunMetrics run_metrics(const Recording& recording, std::size_t first);
+/// Of all ticks.
+inline RunMetrics run_metrics(const Recording& recording) {
+  return run_metrics(recording, 0);
+}
+
+/// Flags of the fields of RunMetrics: a smaller one is better (unrest in the hand, and time); the machine's
+/// clock decides, so that it differs from run to run.
+inline constexpr unsigned kLessIsBetter = 1, kOfTheMachine = 2;
+
+/// Returns every figure of a run, the columns of summary.csv in their order. A value is not a number if it
+/// could not be measured.
+template <>
+const std::vector<Field<RunMetrics>>& fields_of<RunMetrics>();
+
+/// Returns the figure of this column. Throws std::invalid_argument if there is none.
+const Field<RunMetrics>& metric(std::string_view column);
+
+/// What was run, in which hand, and its figures.
+struct MeasuredRun {
+  AlgorithmId algorithm;
+  std::string phase;
+  RunMetrics metrics;
+  /// Null if no recording was kept.
+  const Recording* recording = nullptr;
+  /// What of its plan it did not reach (kNotReachedKey); empty for nothing.
+  std::string not_reached = {};
+  std::uint64_t seed = 0;
+  /// Of the simulated hand; 0 if a person held the tool.
+  double hand_stiffness_N_per_m = 0;
+  double hand_damping_Ns_per_m = 0;
+  /// How firmly that hand gripped: 1 for as it is, else for a trial beside it (TrialPlan::grip).
+  double grip = 1;
+};
+
+}  // namespace osteomill

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "osteomill/study/metrics.h"
+
+namespace osteomill {
+
+/// What a recording says of its run, with these figures of it; it points to the recording.
+MeasuredRun measured_run(const Recording& recording, const RunMetrics& metrics);
+
+/// The runs of a report, by phase, then by algorithm.
+struct RunGroup {
+  std::vector<MeasuredRun> runs;
+
+  /// Null where there is no such run.
+  const MeasuredRun* find(std::string_view algorithm, std::string_view phase) const;
+
+  std::vector<const MeasuredRun*> runs_of(std::string_view phase) const;
+  /// Those that have a run: phases in the order in which they began, algorithms in that of their labels.
+  std::vector<std::string> phases() const;
+  std::vector<AlgorithmId> algorithms() const;
+};
+
+/// Measures recordings; the runs point into `recordings`. Throws InputError if there are none, if two are of
+/// the same algorithm and phase, or if one cannot be measured (run_metrics).
+RunGroup group_runs(const std::vector<Recording>& recordings,
+                    RunMetrics (*measure)(const Recording&) = run_metrics);
+
+}  // namespace osteomill

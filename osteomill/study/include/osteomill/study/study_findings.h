@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "osteomill/study/findings.h"
+#include "osteomill/study/study.h"
+
+namespace osteomill {
+
+/// One of the paper's findings, over all seeds of a study.
+struct StudyFinding {
+  /// The rule applied to the medians over the seeds.
+  Finding of_medians;
+  /// What the hands show: agreement, or its absence, where it is the same in all of them or in so many more
+  /// than half that the sign test is significant; else it is not settled. As of the medians where it could be
+  /// tested in no more than half.
+  Verdict verdict = Verdict::not_recorded;
+  /// In how many seeds the rule holds, and to how many it can be applied.
+  std::size_t agreeing = 0;
+  std::size_t tested = 0;
+  /// The chance of so many, or more, by tossing a coin: the sign test that the rule holds in more than half
+  /// of all hands. 1 where it was not tested.
+  double p = 1;
+};
+
+/// Holds the paper's findings against a study.
+std::vector<StudyFinding> check_study_findings(const Study& study);
+
+}  // namespace osteomill

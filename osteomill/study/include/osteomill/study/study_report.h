@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+
+#include "osteomill/study/study_design.h"
+#include "osteomill/study/study_slices.h"
+
+namespace osteomill {
+
+/// Writes into the folder's report/ what the study's slices hold so far: trials.csv, a row for each part of
+/// each trial (docs/studies.md), and report.html with the design's maps and, where it asks for them, the
+/// paper's findings; both say what share of the study they are of. Whole or not at all. Returns the page's
+/// path. Throws InputError where no trial is done, a map has nothing to show, or writing fails.
+std::filesystem::path write_study_report(const StudyDesign& design, const StudyFolder& study);
+
+/// "number,ALGORITHM,...": a head and a row for each trial, what varies.
+std::string list_head(const StudyDesign& design);
+std::string list_row(const StudyDesign& design, std::size_t number);
+
+}  // namespace osteomill

@@ -1,0 +1,91 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "osteomill/study/run_trials.h"
+#include "osteomill/study/study_design.h"
+
+namespace osteomill {
+
+/// Which study a folder is of: the content of its file study.h5. The study's trials are run in slices, trials
+/// that follow each other, and a slice is done when its file lies in the folder.
+struct StudyRecord {
+  /// Of the study's file and of the program, as bytes.
+  std::uint64_t study_hash = 0;
+  std::uint64_t program_hash = 0;
+  /// From where the study names its scans.
+  std::string scans_from;
+  std::size_t trials = 0;
+  std::size_t trials_a_slice = 1;
+  /// fingerprint_of each bone that is tried, by what is set of it.
+  std::vector<std::pair<std::string, std::uint64_t>> bones;
+
+  std::size_t slices() const { return (trials + trials_a_slice - 1) / trials_a_slice; }
+  std::size_t first_of(std::size_t slice) const { return slice * trials_a_slice; }
+  /// Of trials, in this slice.
+  std::size_t size_of(std::size_t slice) const;
+  /// Of everything above.
+  std::uint64_t hash() const;
+};
+
+/// Of a file's bytes. Throws InputError where it cannot be read.
+std::uint64_t hash_of_file(const std::filesystem::path& path);
+
+/// study.h5 in `folder`, whole or not at all; reading gives nothing where there is none. Throws InputError
+/// where it cannot be written, or is no such file.
+void write_study_record(const std::filesystem::path& folder, const StudyRecord& record);
+std::optional<StudyRecord> read_study_record(const std::filesystem::path& folder);
+
+/// A study that was begun.
+struct StudyFolder {
+  std::filesystem::path path;
+  StudyRecord record;
+  StudyTest test = StudyTest::milling;
+};
+
+/// Trials that follow each other, and what came of them.
+struct Slice {
+  std::size_t number = 0;
+  /// By trial, then by part of the test.
+  std::vector<TrialRow> rows;
+  /// On all threads.
+  double cpu_s = 0;
+};
+
+/// Throws what is being handled, in a catch clause, as an InputError that names the study's file and the
+/// trial; nothing that was said of them is lost.
+[[noreturn]] void throw_of_trial(const std::filesystem::path& file, std::size_t trial);
+
+/// "slice-12.h5".
+std::filesystem::path slice_path(const std::filesystem::path& folder, std::size_t number);
+
+/// Runs the trials of a slice, side by side on `threads` threads; but for times, the rows are the same
+/// however many. Throws InputError, naming the study's file and the trial, if one cannot be run.
+Slice run_slice(const StudyFolder& study, std::size_t number, const std::vector<TrialPlan>& trials,
+                std::size_t threads, const RunEvents& events);
+
+/// Written under another name and renamed. Throws InputError where it cannot be written.
+void write_slice(const StudyFolder& study, const Slice& slice);
+
+/// Nothing where there is no such file, or it is cut short, damaged, or of another study: it is to be run
+/// (again).
+std::optional<Slice> read_slice(const StudyFolder& study, std::size_t number);
+
+/// How far a study is, by the files of its folder; what these hold is put behind `rows`.
+struct StudyStatus {
+  /// By their numbers, all slices.
+  std::vector<std::size_t> done;
+  std::vector<std::size_t> missing;
+  std::size_t trials_done = 0;
+  double cpu_s = 0;
+  /// Files that are there and cannot be used.
+  std::vector<std::filesystem::path> damaged;
+};
+StudyStatus study_status(const StudyFolder& study, std::vector<TrialRow>* rows = nullptr);
+
+}  // namespace osteomill

@@ -1,0 +1,161 @@
+#include "osteomill/study/html.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <fstream>
+#include <iterator>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "osteomill/base/input_error.h"
+
+namespace osteomill {
+
+namespace {
+
+// Of the character that the text begins with; 0 where it begins with none.
+std::size_t length_of_first(std::string_view text) {
+  const auto byte = [&](std::size_t n) -> std::uint32_t { return static_cast<unsigned char>(text[n]); };
+  const std::uint32_t first = byte(0);
+  if (first < 0x80) return 1;
+  const std::size_t length = first >= 0xF0 ? 4 : first >= 0xE0 ? 3 : 2;
+  if (first < 0xC2 || first > 0xF4 || text.size() < length) return 0;
+  std::uint32_t code = first & (0x7Fu >> length);
+  for (std::size_t n = 1; n < length; ++n) {
+    if ((byte(n) & 0xC0) != 0x80) return 0;
+    code = code << 6 | (byte(n) & 0x3F);
+  }
+  const bool longer_than_needed = (length == 3 && code < 0x800) || (length == 4 && code < 0x10000);
+  const bool no_character = code > 0x10FFFF || (code >= 0xD800 && code < 0xE000);
+  return longer_than_needed || no_character ? 0 : length;
+}
+
+}  // namespace
+
+std::string valid_utf8(std::string_view text) {
+  std::string valid;
+  valid.reserve(text.size());
+  while (!text.empty()) {
+    const std::size_t length = length_of_first(text);
+    valid += length == 0 ? "\xEF\xBF\xBD" : text.substr(0, length);
+    text.remove_prefix(length == 0 ? 1 : length);
+  }
+  return valid;
+}
+
+namespace {
+
+constexpr const char* kStyle = R"(
+body { font: 16px/1.5 system-ui, "DejaVu Sans", sans-serif; color: #1b1b1b; background: #fff;
+       max-width: 1200px; margin: 2em auto; padding: 0 1.2em; }
+h1 { font-size: 1.7em; line-height: 1.2; } h2 { font-size: 1.3em; margin-top: 2em; border-bottom: 1px solid #ccc; }
+h3 { font-size: 1.08em; margin-top: 1.6em; }
+.wide { overflow-x: auto; }
+table { border-collapse: collapse; margin: 0.8em 0; font-size: 14px; }
+th, td { padding: 0.3em 0.7em; border-bottom: 1px solid #ddd; text-align: left; vertical-align: top; }
+thead th { border-bottom: 2px solid #888; } tbody th { font-weight: normal; }
+.numbers td, .numbers thead th + th { text-align: right; font-variant-numeric: tabular-nums; }
+.numbers td { white-space: nowrap; }
+.words { white-space: normal; display: inline-block; min-width: 8em; text-align: left; }
+.agrees { color: #146c2e; font-weight: 600; white-space: nowrap; }
+.differs { color: #a4101f; font-weight: 600; white-space: nowrap; }
+.none { color: #666; white-space: nowrap; }
+.notice { background: #fff4d6; border-left: 4px solid #d9a400; padding: 0.5em 1em; }
+figure { margin: 1.2em 0 2em; } figure img { max-width: 100%; height: auto; border: 1px solid #e3e3e3; }
+figcaption { font-size: 14px; color: #444; margin-top: 0.3em; max-width: 60em; }
+pre { background: #f4f4f4; padding: 0.8em 1em; overflow-x: auto; }
+)";
+
+std::string bytes_of(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw InputError(file.string(), "cannot be read");
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+std::string table_row(const std::vector<std::string>& cells, bool header) {
+  std::string row = "<tr>";
+  for (std::size_t n = 0; n < cells.size(); ++n) {
+    const char* tag = header || n == 0 ? "th" : "td";
+    row += fmt::format("<{0}>{1}</{0}>", tag, cells[n]);
+  }
+  return row + "</tr>\n";
+}
+
+// As an image and not as elements of the page: the figures' SVGs use the same identifiers.
+std::string html_figure(const CaptionedFigure& figure) {
+  const char* type = figure.file.extension() == ".svg" ? "svg+xml" : "png";
+  return fmt::format(
+      "<figure><img alt=\"{0}\" src=\"data:image/{1};base64,{2}\"><figcaption>{0}</figcaption></figure>\n",
+      html_escaped(figure.caption), type, base64(bytes_of(figure.file)));
+}
+
+std::string html_table(const HtmlTable& table) {
+  std::string html = table.numbers ? "<div class=\"wide numbers\">" : "<div class=\"wide\">";
+  html += "<table>\n<thead>" + table_row(table.header, true) + "</thead>\n<tbody>\n";
+  for (const auto& row : table.rows) html += table_row(row, false);
+  return html + "</tbody></table></div>\n";
+}
+
+std::string in_tag(std::string_view tag, const std::string& text) {
+  return fmt::format("<{}>{}</{}>\n", tag, html_escaped(text), tag.substr(0, tag.find(' ')));
+}
+
+}  // namespace
+
+std::string html_escaped(std::string_view text) {
+  constexpr std::pair<char, const char*> kEntities[] = {
+      {'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}};
+  std::string escaped;
+  for (const char c : text) {
+    const auto* const entity = std::ranges::find(kEntities, c, &std::pair<char, const char*>::first);
+    escaped += entity != std::end(kEntities) ? entity->second : std::string(1, c);
+  }
+  return escaped;
+}
+
+std::string base64(std::string_view bytes) {
+  constexpr const char* kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t n = 0; n < bytes.size(); n += 3) {
+    const auto byte = [&](std::size_t at) -> unsigned {
+      return at < bytes.size() ? static_cast<unsigned char>(bytes[at]) : 0u;
+    };
+    const unsigned bits = (byte(n) << 16) | (byte(n + 1) << 8) | byte(n + 2);
+    text += kDigits[bits >> 18];
+    text += kDigits[(bits >> 12) & 63];
+    text += n + 1 < bytes.size() ? kDigits[(bits >> 6) & 63] : '=';
+    text += n + 2 < bytes.size() ? kDigits[bits & 63] : '=';
+  }
+  return text;
+}
+
+std::string html(const PageSection& section, int level) {
+  std::string html;
+  if (!section.title.empty()) html += fmt::format("<h{0}>{1}</h{0}>\n", level, html_escaped(section.title));
+  for (const std::string& text : section.notices) html += in_tag("p class=\"notice\"", text);
+  for (const std::string& text : section.paragraphs) html += text.empty() ? "" : in_tag("p", text);
+  if (!section.points.empty()) html += "<ul>\n";
+  for (const std::string& text : section.points) html += in_tag("li", text);
+  if (!section.points.empty()) html += "</ul>\n";
+  for (const CaptionedFigure& figure : section.figures) html += html_figure(figure);
+  for (const HtmlTable& table : section.tables) html += html_table(table);
+  if (!section.commands.empty()) html += "<pre>";
+  for (const std::string& command : section.commands) html += html_escaped(command) + "\n";
+  if (!section.commands.empty()) html += "</pre>\n";
+  for (const PageSection& part : section.parts) html += osteomill::html(part, level + 1);
+  return html;
+}
+
+std::string html_page(const std::string& title, const std::vector<PageSection>& sections) {
+  std::string body;
+  for (const PageSection& section : sections) body += html(section);
+  return valid_utf8(fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{0}</title>\n"
+      "<style>{1}</style></head>\n<body>\n<h1>{0}</h1>\n{2}</body></html>\n",
+      html_escaped(title), kStyle, body));
+}
+
+}  // namespace osteomill

@@ -1,0 +1,58 @@
+#include "osteomill/study/html.h"
+
+#include <gtest/gtest.h>
+
+#include "osteomill/base/input_error.h"
+
+namespace osteomill {
+
+namespace {
+
+TEST(Html, Base64OfTheStandardsExamples) {  // RFC 4648, section 10
+  EXPECT_EQ(base64(""), "");
+  EXPECT_EQ(base64("f"), "Zg==");
+  EXPECT_EQ(base64("fo"), "Zm8=");
+  EXPECT_EQ(base64("foo"), "Zm9v");
+  EXPECT_EQ(base64("foob"), "Zm9vYg==");
+  EXPECT_EQ(base64("fooba"), "Zm9vYmE=");
+  EXPECT_EQ(base64("foobar"), "Zm9vYmFy");
+  EXPECT_EQ(base64(std::string("\xff\x00\xfe", 3)), "/wD+");
+}
+
+TEST(Html, TextIsEscaped) {
+  EXPECT_EQ(html_escaped("<b a=\"1\">&amp;</b>"), "&lt;b a=&quot;1&quot;&gt;&amp;amp;&lt;/b&gt;");
+}
+
+TEST(Html, AFigureThatIsMissingIsNamed) {
+  EXPECT_THROW(html({.figures = {{"/no/such/figure.svg", "x"}}}), InputError);
+}
+
+}  // namespace
+
+namespace {
+
+TEST(ValidUtf8, WhatIsSoundStays) {
+  for (const char* text : {"", "Zahn", "\xC3\xBC \xE2\x82\xAC \xF0\x9F\xA6\xB7", "\xED\x9F\xBF\xEE\x80\x80"})
+    EXPECT_EQ(valid_utf8(text), text);
+}
+
+TEST(ValidUtf8, EachByteThatIsNotIsReplaced) {
+  const std::string one = "\xEF\xBF\xBD";
+  EXPECT_EQ(valid_utf8("Z\xFC"
+                       "g"),
+            "Z" + one + "g");                    // Latin-1
+  EXPECT_EQ(valid_utf8("\xC3"), one);            // cut short
+  EXPECT_EQ(valid_utf8("\xC0\xAF"), one + one);  // longer than needed
+  EXPECT_EQ(valid_utf8("\xE0\x80\x80"), one + one + one);
+  EXPECT_EQ(valid_utf8("\xED\xA0\x80"), one + one + one);  // half of a pair
+  EXPECT_EQ(valid_utf8("\xF4\x90\x80\x80"), one + one + one + one);
+}
+
+TEST(ValidUtf8, APageIs) {
+  const std::string page = html_page("Z\xFC", {});
+  EXPECT_EQ(page, valid_utf8(page));
+}
+
+}  // namespace
+
+}  // namespace osteomill

@@ -1,0 +1,357 @@
+#include "report/report_parts.h"
+
+#include <algorithm>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "osteomill/base/input_error.h"
+#include "osteomill/session/tick_counts.h"
+#include "osteomill/visual/image.h"
+
+namespace osteomill {
+
+namespace {
+
+// As wide as a panel of two columns, so that the SVG, which holds the pictures, stays small.
+constexpr int kPanelWidth_px = 560;
+
+Image shrunk(const Recording& recording, const RunPicture& picture) {
+  const std::optional<Image> image = decode_png(picture.png);
+  if (!image) {
+    throw InputError(recording.path.string(),
+                     fmt::format("the picture '{}' is not a whole PNG of sensible size", picture.name));
+  }
+  const int factor = (image->width + kPanelWidth_px - 1) / kPanelWidth_px;
+  // A picture less high than this factor would vanish.
+  return averaged_down(*image, std::min(factor, image->height));
+}
+
+struct Panel {
+  std::string label;
+  const Recording* recording;
+  const RunPicture* picture;
+};
+
+const RunPicture* picture_named(const Recording& recording, std::string_view name) {
+  for (const RunPicture& picture : recording.pictures) {
+    if (picture.name == name) return &picture;
+  }
+  return nullptr;
+}
+
+// The bone before, then after each algorithm; of an algorithm's phases the first that has a picture is shown.
+std::vector<Panel> panels_of(const RunGroup& group) {
+  std::vector<Panel> panels, along_the_entry;
+  for (const MeasuredRun& run : group.runs) {
+    if (const RunPicture* before = picture_named(*run.recording, kPictureBefore)) {
+      panels.push_back({"Before", run.recording, before});
+      break;
+    }
+  }
+  for (const AlgorithmId& algorithm : group.algorithms()) {
+    for (const std::string& phase : group.phases()) {
+      const MeasuredRun* run = group.find(algorithm.name, phase);
+      const RunPicture* after = run ? picture_named(*run->recording, kPictureAfter) : nullptr;
+      if (after == nullptr) continue;
+      // Where the picture before belongs to an earlier part of the session, what this part removed is not all
+      // that went between the two.
+      const bool whole = picture_named(*run->recording, kPictureBefore) != nullptr;
+      panels.push_back(
+          {whole ? fmt::format("After {} ({:.1f} mm³ removed)", algorithm.label, run->metrics.removed_mm3)
+                 : std::string("At the end"),
+           run->recording, after});
+      if (const RunPicture* along = picture_named(*run->recording, kPictureAlong))
+        along_the_entry.push_back(
+            {fmt::format("{}, seen along the entry", algorithm.label), run->recording, along});
+      break;
+    }
+  }
+  panels.insert(panels.end(), along_the_entry.begin(), along_the_entry.end());
+  return panels;
+}
+
+}  // namespace
+
+std::optional<Figure> draw_picture_figure(const RunGroup& group, const std::filesystem::path& folder) {
+  const std::vector<Panel> panels = panels_of(group);
+  if (panels.empty()) return std::nullopt;
+  const int columns = panels.size() == 1 ? 1 : 2;
+  const int rows = (static_cast<int>(panels.size()) + columns - 1) / columns;
+  std::vector<Image> pictures;
+  for (const Panel& panel : panels) pictures.push_back(shrunk(*panel.recording, *panel.picture));
+  const int wide = columns == 1 ? 800 : kPanelWidth_px;
+  const int high = std::clamp(wide * pictures[0].height / pictures[0].width, 200, 1000) + 40;
+  FigureScript script{"bone", static_cast<double>(rows) * high, static_cast<double>(columns) * wide};
+  script.body =
+      "set multiplot\nunset tics\nunset border\nset size ratio -1\nset lmargin 0.5\nset rmargin 0.5\n"
+      "set tmargin 2\nset bmargin 0.3\nset autoscale xfix\nset autoscale yfix\n";
+  for (std::size_t n = 0; n < panels.size(); ++n) {
+    const std::vector<unsigned char>& png = encode_png(pictures[n]);
+    const int column = static_cast<int>(n) % columns;
+    const int row = static_cast<int>(n) / columns;
+    script.body += fmt::format(
+        "set origin {:.4f},{:.4f}\nset size {:.4f},{:.4f}\nset title {} offset 0,-0.5 noenhanced\n"
+        "plot {} binary filetype=png with rgbimage notitle\n",
+        static_cast<double>(column) / columns, 1.0 - (row + 1.0) / rows, 1.0 / columns, 1.0 / rows,
+        gnuplot_quoted(panels[n].label),
+        script.data({reinterpret_cast<const char*>(png.data()), png.size()}));
+  }
+  return draw_figure(script, folder);
+}
+
+namespace {
+
+LabelCount count_of(const Recording& recording) {
+  LabelCount count(recording.description.labels);
+  for (const TickRecord& record : recording.records) count.add(record);
+  return count;
+}
+
+std::string run_name(const MeasuredRun& run) {
+  return run.phase.empty() ? run.algorithm.label : run.algorithm.label + ", " + run.phase;
+}
+
+std::string name_with_colour(const Label& label) {
+  const std::string text =
+      fmt::format("<span style=\"color:{}\">&#9632;</span> {}", hex_colour(label), html_escaped(label.name));
+  return label.no_go ? text + " <span class=\"differs\">no-go</span>" : text;
+}
+
+std::vector<std::string> cells(const MeasuredRun& run, const Label& label, const LabelCount::Entry& entry) {
+  const double all_mm3 = run.metrics.removed_mm3;
+  return {html_escaped(run_name(run)),
+          name_with_colour(label),
+          fmt::format("{:.3f}", entry.removed_mm3),
+          all_mm3 > 0 ? fmt::format("{:.1f}", 100 * entry.removed_mm3 / all_mm3) : "",
+          fmt::format("{:.2f}", entry.first_s),
+          fmt::format("{:.2f}", entry.last_s),
+          fmt::format("{:.2f}", entry.time_s),
+          fmt::format("{:.2f}", entry.force_mean_N),
+          fmt::format("{:.2f}", entry.force_max_N)};
+}
+
+// A row for each label that this run cut or touched, no-go labels first.
+void add_rows(const MeasuredRun& run, HtmlTable& table) {
+  const LabelCount count = count_of(*run.recording);
+  for (const bool no_go : {true, false}) {
+    for (std::size_t n = 0; n < count.labels().size(); ++n) {
+      const LabelCount::Entry& entry = count.entries()[n];
+      if (count.labels()[n].no_go == no_go && entry.contacts > 0)
+        table.rows.push_back(cells(run, count.labels()[n], entry));
+    }
+  }
+}
+
+// What was removed of a label over time, in points: both ends, and wherever another two-hundredth was
+// removed.
+std::string curve_of(const Recording& recording, LabelMap::Place label, double all_mm3) {
+  const double first_s = recording.records.front().time_s;
+  std::string data = "0 0\n";
+  double removed_mm3 = 0, written_mm3 = 0;
+  for (const TickRecord& record : recording.records) {
+    for (const LabelCut& cut : record.label_cuts) {
+      if (cut.label == label) removed_mm3 += cut.removed_mm3;
+    }
+    const bool last = &record == &recording.records.back();
+    if (!last && removed_mm3 - written_mm3 < all_mm3 / 200) continue;
+    data += fmt::format("{:.3f} {:.6g}\n", record.time_s - first_s, removed_mm3);
+    written_mm3 = removed_mm3;
+  }
+  return data;
+}
+
+// gnuplot commands for one run's panel; empty where the run removed nothing that has a label.
+std::string panel(const MeasuredRun& run, FigureScript& figure) {
+  const LabelCount count = count_of(*run.recording);
+  double all_mm3 = 0;
+  for (const LabelCount::Entry& entry : count.entries()) all_mm3 += entry.removed_mm3;
+  std::string plot;
+  for (std::size_t n = 0; n < count.labels().size(); ++n) {
+    if (!(count.entries()[n].removed_mm3 > 0)) continue;
+    const std::string curve = curve_of(*run.recording, static_cast<LabelMap::Place>(n + 1), all_mm3);
+    plot += fmt::format("{}{} with steps lw 2 lc rgb '{}' title {}", plot.empty() ? "plot " : ", ",
+                        figure.data(curve), hex_colour(count.labels()[n]),
+                        gnuplot_quoted(count.labels()[n].name));
+  }
+  if (plot.empty()) return plot;
+  return fmt::format("set title {}\n{}\n", gnuplot_quoted(run_name(run)), plot);
+}
+
+}  // namespace
+
+std::optional<PageSection> label_section(const RunGroup& group) {
+  HtmlTable table{{"Run", "Label", "Removed (mm³)", "of the run's bone (%)", "First at (s)", "Last at (s)",
+                   "In it for (s)", "Force of the burr, mean (N)", "… greatest (N)"},
+                  {},
+                  true};
+  bool any = false;
+  for (const MeasuredRun& run : group.runs) {
+    any = any || !run.recording->description.labels.empty();
+    add_rows(run, table);
+  }
+  if (!any) return std::nullopt;
+  if (table.rows.empty())
+    return PageSection{.title = "Labels", .paragraphs = {"The burr cut nothing that has a label."}};
+  return PageSection{
+      .title = "Labels",
+      .paragraphs = {"What was cut of each structure of the label map; a no-go label counts as "
+                     "soon as the turning burr touches it."},
+      .tables = {table}};
+}
+
+std::optional<Figure> draw_label_figure(const RunGroup& group, const std::filesystem::path& folder) {
+  constexpr int kPanel_px = 360;
+  FigureScript script{"labels", 0};
+  std::string panels;
+  int count = 0;
+  for (const MeasuredRun& run : group.runs) {
+    const std::string one = panel(run, script);
+    panels += one;
+    count += one.empty() ? 0 : 1;
+  }
+  if (count == 0) return std::nullopt;
+  const int columns = std::min(count, 2), rows = (count + columns - 1) / columns;
+  script.height_px = static_cast<double>(kPanel_px) * rows;
+  script.body = fmt::format(
+      "set multiplot layout {},{}\nset border 3 lc rgb '#444444'\nset tics nomirror out scale 0.6\n"
+      "set grid lc rgb '#dddddd' lt 1 lw 0.7\nset key left top noenhanced\nset xlabel 'Time (s)'\n"
+      "set ylabel 'Removed (mm³)'\nset yrange [0:*]\n{}",
+      rows, columns, panels);
+  return draw_figure(script, folder);
+}
+
+namespace {
+
+std::string text_of(const RunSetting& setting) {
+  if (const double* number = std::get_if<double>(&setting.value)) return fmt::format("{}", *number);
+  return std::get<std::string>(setting.value);
+}
+
+// The description's own fields and the further settings, alike.
+std::vector<RunSetting> all_settings(const RunDescription& d) {
+  std::vector<RunSetting> settings{
+      {"program_version", d.program_version, ""},
+      {"scan", d.scan_name, ""},
+      {"scan_fingerprint", fmt::format("{:016x}", d.scan_hash), ""},
+      {"voxels", fmt::format("{} × {} × {}", d.dims[0], d.dims[1], d.dims[2]), ""},
+      {"spacing", fmt::format("{} × {} × {}", d.spacing_mm.x(), d.spacing_mm.y(), d.spacing_mm.z()), "mm"},
+      {"isovalue", d.isovalue, ""},
+      {"burr_radius", d.tool.burr_radius_mm, "mm"},
+      {"shaft_radius", d.tool.shaft_radius_mm, "mm"},
+      {"shaft_length", d.tool.shaft_length_mm, "mm"},
+      {"seed", fmt::format("{}", d.seed), ""},
+      {"tick_period", d.tick_period_s, "s"}};
+  for (const RunSetting& setting : d.settings) {
+    if (setting.key != kCommandLineKey && setting.key != kNotReachedKey) settings.push_back(setting);
+  }
+  return settings;
+}
+
+// With a small raised digit: units in recordings are ASCII ("mm^3").
+std::string raised(std::string unit) {
+  for (const auto& [power, digit] : {std::pair("^2", "²"), std::pair("^3", "³")}) {
+    if (const auto at = unit.find(power); at != std::string::npos) unit.replace(at, 2, digit);
+  }
+  return unit;
+}
+
+struct SettingLine {
+  std::string key;
+  std::string unit;
+  // One for each recording; nothing where it does not have the setting.
+  std::vector<std::optional<std::string>> values;
+};
+
+std::vector<SettingLine> collect(const std::vector<const Recording*>& recordings) {
+  std::vector<SettingLine> lines;
+  for (std::size_t n = 0; n < recordings.size(); ++n) {
+    for (const RunSetting& setting : all_settings(recordings[n]->description)) {
+      const auto same = [&](const SettingLine& l) { return l.key == setting.key && l.unit == setting.unit; };
+      auto line = std::find_if(lines.begin(), lines.end(), same);
+      if (line == lines.end()) {
+        lines.push_back({setting.key, setting.unit, {}});
+        lines.back().values.resize(recordings.size());
+        line = lines.end() - 1;
+      }
+      line->values[n] = text_of(setting);
+    }
+  }
+  return lines;
+}
+
+std::string value_of(const SettingLine& line, const std::vector<const Recording*>& recordings) {
+  if (std::all_of(line.values.begin(), line.values.end(),
+                  [&](const auto& v) { return v == line.values[0]; })) {
+    return line.values[0].value_or("");
+  }
+  std::map<AlgorithmId, std::optional<std::string>> by_algorithm;
+  bool algorithm_decides = true;
+  std::string each;
+  for (std::size_t n = 0; n < recordings.size(); ++n) {
+    const RunDescription& d = recordings[n]->description;
+    const auto [entry, is_new] = by_algorithm.emplace(d.algorithm, line.values[n]);
+    if (!is_new && entry->second != line.values[n]) algorithm_decides = false;
+    if (line.values[n]) {
+      each += fmt::format("{}{}, {}: {}", each.empty() ? "" : "; ", name_of(d.algorithm), d.phase,
+                          *line.values[n]);
+    }
+  }
+  if (!algorithm_decides) return each;
+  std::string text;
+  for (const auto& [algorithm, value] : by_algorithm) {
+    if (value) text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", name_of(algorithm), *value);
+  }
+  return text;
+}
+
+}  // namespace
+
+HtmlTable settings_table(const std::vector<const Recording*>& recordings) {
+  HtmlTable table{{"Setting", "Value", "Unit"}, {}};
+  for (const SettingLine& line : collect(recordings)) {
+    table.rows.push_back(
+        {html_escaped(line.key), html_escaped(value_of(line, recordings)), html_escaped(raised(line.unit))});
+  }
+  return table;
+}
+
+namespace {
+
+// What an algorithm is set to means nothing to another one.
+bool is_of_the_algorithm(const std::string& key) {
+  return key == kSamplePointsKey || key.starts_with("algorithm.");
+}
+
+bool differs(const SettingLine& line, const std::vector<const Recording*>& recordings) {
+  if (line.key == kComparisonKey || line.key == kPicturesKey) return false;
+  for (std::size_t a = 0; a < recordings.size(); ++a) {
+    for (std::size_t b = 0; b < a; ++b) {
+      const RunDescription &first = recordings[a]->description, &second = recordings[b]->description;
+      const bool comparable = !is_of_the_algorithm(line.key) || first.algorithm == second.algorithm;
+      if (comparable && line.values[a] != line.values[b]) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+HtmlTable differences_table(const std::vector<const Recording*>& recordings) {
+  HtmlTable table{{"Recording"}, {}};
+  std::vector<SettingLine> lines = collect(recordings);
+  std::erase_if(lines, [&](const SettingLine& line) { return !differs(line, recordings); });
+  for (const SettingLine& line : lines) {
+    const std::string unit = line.unit.empty() ? "" : fmt::format(" ({})", raised(line.unit));
+    table.header.push_back(html_escaped(line.key + unit));
+  }
+  if (lines.empty()) return table;
+  for (std::size_t n = 0; n < recordings.size(); ++n) {
+    table.rows.push_back({html_escaped(recordings[n]->path.string())});
+    for (const SettingLine& line : lines)
+      table.rows.back().push_back(html_escaped(line.values[n].value_or("")));
+  }
+  return table;
+}
+
+}  // namespace osteomill

@@ -1,0 +1,63 @@
+#include <gtest/gtest.h>
+
+#include "report/report_parts.h"
+#include "tests/support/report_samples.h"
+
+namespace osteomill {
+namespace {
+
+using namespace testing_support;
+
+std::string value_of(const HtmlTable& table, const std::string& key) {
+  for (const auto& row : table.rows) {
+    if (row[0] == key) return row[1];
+  }
+  return "(none)";
+}
+
+TEST(SettingsTable, SaysOnceWhatIsTheSameAndForEachWhatIsNot) {
+  std::vector<Recording> runs = sample_runs(10);
+  runs[3].description.settings.push_back({"only_here", std::string("<x>"), ""});
+  std::vector<const Recording*> recordings;
+  for (const Recording& run : runs) recordings.push_back(&run);
+  const HtmlTable table = settings_table(recordings);
+  EXPECT_EQ(value_of(table, "push"), "1.5");
+  EXPECT_EQ(value_of(table, "algorithm.stiffness"), "line-proxy: 2; surface-points: 20; point-shell: 2");
+  EXPECT_EQ(value_of(table, "only_here"), "surface-points, holding: &lt;x&gt;");
+  EXPECT_EQ(value_of(table, "command_line"), "(none)");
+}
+
+std::vector<std::string> differing(std::vector<Recording>& runs) {
+  std::vector<const Recording*> recordings;
+  for (const Recording& run : runs) recordings.push_back(&run);
+  const HtmlTable table = differences_table(recordings);
+  EXPECT_EQ(table.rows.size(), table.header.size() == 1 ? 0 : runs.size());
+  return {table.header.begin() + 1, table.header.end()};
+}
+
+TEST(DifferencesTable, HasAColumnForWhateverIsNotTheSameInAll) {
+  std::vector<Recording> runs = sample_runs(10);
+  EXPECT_EQ(differing(runs), std::vector<std::string>());
+  runs[0].description.settings.push_back({std::string(kComparisonKey), std::string("a"), ""});
+  EXPECT_EQ(differing(runs), std::vector<std::string>()) << "another comparison of the same";
+  RunDescription& last = runs.back().description;
+  last.seed = 2;
+  last.tool.burr_radius_mm += 0.5;
+  last.scan_hash = 1;
+  last.tick_period_s = 0.002;
+  for (RunSetting& setting : last.settings)
+    if (setting.key == "push" || setting.key == "hand_stiffness") setting.value = 7.0;
+  last.settings.push_back({"script.entry", std::string("1,2,3"), "mm"});
+  EXPECT_EQ(differing(runs),
+            std::vector<std::string>({"scan_fingerprint", "burr_radius (mm)", "seed", "tick_period (s)",
+                                      "push (N)", "hand_stiffness (N/m)", "script.entry (mm)"}));
+}
+
+TEST(DifferencesTable, AnAlgorithmsSettingsAreComparedWithItsOwn) {
+  std::vector<Recording> runs = sample_runs(10);
+  runs[1].description.settings.front().value = 3.0;
+  EXPECT_EQ(differing(runs), std::vector<std::string>({"algorithm.stiffness (N/mm)"}));
+}
+
+}  // namespace
+}  // namespace osteomill

@@ -1,0 +1,325 @@
+#include "osteomill/study/write_report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <ostream>
+
+#include <fmt/format.h>
+
+#include "osteomill/base/atomic_file.h"
+#include "osteomill/study/metric_table.h"
+
+#include "report/report_parts.h"
+
+namespace osteomill {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::vector<const Recording*> all_recordings(const RunGroup& group) {
+  std::vector<const Recording*> recordings;
+  for (const MeasuredRun& run : group.runs) recordings.push_back(run.recording);
+  return recordings;
+}
+
+PageSection notices(const std::vector<const Recording*>& recordings) {
+  PageSection section;
+  for (const Recording* recording : recordings) {
+    const std::string name = recording->path.filename().string();
+    if (!recording->complete) {
+      section.notices.push_back(name + " is unfinished: the program ended before it closed the recording.");
+    }
+    if (recording->dropped > 0) {
+      section.notices.push_back(fmt::format("{} lacks {} ticks for which there was no room while recording.",
+                                            name, recording->dropped));
+    }
+  }
+  return section;
+}
+
+// Of recordings that do not belong together.
+std::vector<PageSection> differences(const std::vector<const Recording*>& recordings) {
+  HtmlTable table = differences_table(recordings);
+  if (table.rows.empty()) return {};
+  const std::vector<std::string> settings(table.header.begin() + 1, table.header.end());
+  return {
+      {.title = "What differs between the recordings",
+       .notices = {fmt::format("These recordings differ in {}. What follows may come from that as well as "
+                               "from the algorithms.",
+                               fmt::join(settings, ", "))},
+       .tables = {std::move(table)}}};
+}
+
+PageSection what_was_run(const std::vector<const Recording*>& recordings) {
+  const RunDescription& d = recordings.front()->description;
+  double seconds = 0;
+  for (const Recording* recording : recordings) {
+    seconds = std::max(seconds, recording->records.back().time_s - recording->records.front().time_s);
+  }
+  if (!differences_table(recordings).rows.empty())
+    return {
+        .title = "What was run",
+        .paragraphs = {fmt::format("{} recordings of up to {:.4g} s, which differ as the first table shows. "
+                                   "osteomill {}.",
+                                   recordings.size(), seconds, d.program_version)}};
+  return {
+      .title = "What was run",
+      .paragraphs = {fmt::format("Scan: {}, {} × {} × {} voxels of {:.4g} × {:.4g} × {:.4g} mm, bone above "
+                                 "{:.6g}. Tool: a burr of {:.4g} mm "
+                                 "radius on a shaft of {:.4g} mm radius and {:.4g} mm length. {} {} of up to "
+                                 "{:.4g} s at {:.6g} ticks a "
+                                 "second, seed {}. osteomill {}.",
+                                 d.scan_name, d.dims[0], d.dims[1], d.dims[2], d.spacing_mm.x(),
+                                 d.spacing_mm.y(), d.spacing_mm.z(), d.isovalue, d.tool.burr_radius_mm,
+                                 d.tool.shaft_radius_mm, d.tool.shaft_length_mm, recordings.size(),
+                                 recordings.size() == 1 ? "recording" : "recordings", seconds,
+                                 1 / d.tick_period_s, d.seed, d.program_version),
+                     "What is reported is what was sent to the hand at every tick."}};
+}
+
+struct RunFigure {
+  const char* name;
+  Figure (*draw)(const RunGroup&, const fs::path& folder);
+  const char* caption;
+};
+
+// Of a table of metrics.
+struct Row {
+  const char* column;
+  const char* label;
+  const char* format = "{:.4g}";
+};
+
+// What a reader wants to know at once: figures and the metrics beside them.
+struct Topic {
+  const char* title;
+  std::vector<RunFigure> figures;
+  std::vector<Row> rows;
+};
+
+const Topic kFelt[] = {
+    {"Force",
+     {{"force", draw_force_figure,
+       "Magnitude of the force sent to the hand. The panels of a row have one scale. Each pixel's least and "
+       "greatest are drawn, so no spike is lost. What is shaded, before 0 s, is not counted in the tables."}},
+     {{"force_mean_N", "Force while in contact, mean"},
+      {"force_max_N", "… greatest"},
+      {"force_hp_rms_N", "… above 20 Hz, rms"},
+      {"force_step_max_N", "… greatest change in a tick"}}},
+    {"Torque",
+     {{"torque", draw_torque_figure, "Magnitude of the torque sent to the hand, about the burr's centre."}},
+     {{"torque_mean_Nmm", "Torque while in contact, mean"},
+      {"torque_max_Nmm", "… greatest"},
+      {"torque_hp_rms_Nmm", "… above 20 Hz, rms"},
+      {"torque_step_max_Nmm", "… greatest change in a tick"}}},
+    {"Shaft",
+     {{"shaft", draw_shaft_figure,
+       "Where the simulated tool's shaft points while it touches, in degrees from its mean direction and "
+       "coloured by time. Each panel has a scale of its own."}},
+     {{"shaft_spread_deg", "Shaft direction, spread"}, {"shaft_excursion_deg", "… greatest excursion"}}},
+    {"Path and bone removed",
+     {{"removed", draw_removed_figure,
+       "Bone removed since the milling began, in mm³ of bone of the reference density."},
+      {"path", draw_path_figure, "Where the burr's centre was, along the scan's axes."}},
+     {{"removed_mm3", "Bone removed"},
+      {"path_mm", "Path of the burr's centre"},
+      {"contact_share", "In contact, share of the time"},
+      {"burr_contact_share", "… with the burr"},
+      {"shaft_contact_share", "… with the shaft"}}}};
+const Topic kTimes{
+    "How long the ticks took",
+    {{"rate", draw_rate_figure,
+      "Compute time of each tick, the algorithm's and the milling's: CPU time where the trial ran in "
+      "simulated time, else by the clock. A loop at 1000 Hz is late where it goes above the dashed line."}},
+    {{"steps", "Ticks", "{:.0f}"},
+     {"tick_us_median", "Compute time of a tick, median"},
+     {"tick_us_p99", "… 99th percentile"},
+     {"tick_us_max", "… greatest"},
+     {"rate_hz", "Haptic rate that a 1 kHz loop would hold", "{:.1f}"}}};
+
+CaptionedFigure drawn(const RunFigure& figure, const RunGroup& group, const PageText& text,
+                      const fs::path& folder) {
+  std::string caption = figure.caption;
+  if (const auto note = text.caption_notes.find(figure.name); note != text.caption_notes.end())
+    caption += " " + note->second;
+  return {figure.draw(group, folder).svg, std::move(caption)};
+}
+
+std::string cell(const Row& row, const MeasuredRun& run) {
+  const double value = metric(row.column).get(run.metrics);
+  return std::isnan(value) ? contact_words(run.metrics.contact)
+                           : fmt::format(fmt::runtime(row.format), value);
+}
+
+std::vector<MetricLine> lines_of(const Topic& topic) {
+  std::vector<MetricLine> lines;
+  for (const Row& row : topic.rows) {
+    lines.push_back({with_unit(row.label, metric(row.column).unit),
+                     [row](const MeasuredRun& run) { return cell(row, run); }});
+  }
+  return lines;
+}
+
+HtmlTable metrics_table(const RunGroup& group, const std::vector<MetricLine>& lines) {
+  HtmlTable table{{""}, {{"Not reached"}}, true};
+  for (const MeasuredRun& run : group.runs) {
+    const std::string phase = run.phase.empty() ? "" : html_escaped(run.phase) + "<br>";
+    table.header.push_back(phase + html_escaped(run.algorithm.label));
+    table.rows.front().push_back("<span class=\"words\">" + html_escaped(run.not_reached) + "</span>");
+  }
+  // What was not reached stands before all that is compared.
+  const auto reached = [](const MeasuredRun& run) { return run.not_reached.empty(); };
+  if (std::all_of(group.runs.begin(), group.runs.end(), reached)) table.rows.clear();
+  for (const MetricLine& line : lines) {
+    table.rows.push_back({line.label});
+    for (const MeasuredRun& run : group.runs) table.rows.back().push_back(line.cell(run));
+  }
+  return table;
+}
+
+PageSection topic_section(const Topic& topic, const RunGroup& group, const PageText& text,
+                          const fs::path& folder, const std::vector<MetricLine>& further = {}) {
+  std::vector<MetricLine> lines = lines_of(topic);
+  lines.insert(lines.end(), further.begin(), further.end());
+  PageSection section{.title = topic.title};
+  for (const RunFigure& figure : topic.figures) section.figures.push_back(drawn(figure, group, text, folder));
+  section.tables = {metrics_table(group, lines)};
+  return section;
+}
+
+bool has_setting(const RunGroup& group, std::string_view key) {
+  return std::any_of(group.runs.begin(), group.runs.end(), [&](const MeasuredRun& run) {
+    return find_setting<std::string>(run.recording->description, key) != nullptr;
+  });
+}
+
+std::vector<PageSection> pictures_section(const RunGroup& group, const fs::path& folder) {
+  PageSection section{.title = "The bone before and after"};
+  if (const auto bone = draw_picture_figure(group, folder)) {
+    // Smaller as PNG; curves and clouds stay sharp as SVG.
+    section.figures = {{bone->png, "The bone before, and after each algorithm's run."}};
+  } else if (has_setting(group, kPicturesKey)) {
+    section.notices = {"No pictures of the bone: OpenGL could not be had when this was recorded."};
+  } else {
+    return {};
+  }
+  return {section};
+}
+
+// Of a scan with labels.
+PageSection labels_section(const RunGroup& group, const fs::path& folder) {
+  std::optional<PageSection> labels = label_section(group);
+  if (!labels) return {};
+  // Below the table.
+  if (const auto figure = draw_label_figure(group, folder)) {
+    labels->parts = {
+        {.figures = {{figure->svg, "What was removed of each label over time, in the labels' colours."}}}};
+  }
+  return *labels;
+}
+
+double spindle_s(const Recording& recording) {
+  double on_s = 0;
+  for (const TickRecord& record : recording.records) on_s += record.spindle_on ? record.dt_s : 0;
+  return on_s;
+}
+
+// What a session was, to whoever held the tool.
+std::string session_in_words(const MeasuredRun& run) {
+  const RunMetrics& m = run.metrics;
+  const auto& records = run.recording->records;
+  const std::string put_back =
+      m.put_back_mm3 > 0 ? fmt::format("; {:.1f} mm³ were put back", m.put_back_mm3) : "";
+  const std::string text = fmt::format(
+      "{}{}: {:.1f} s, of which the spindle ran for {:.1f} s. The burr went {:.0f} mm, and {:.1f} mm³ of "
+      "bone were removed{}. ",
+      run.algorithm.label, run.phase.empty() ? "" : ", " + run.phase,
+      records.back().time_s - records.front().time_s, spindle_s(*run.recording), m.path_mm, m.removed_mm3,
+      put_back);
+  if (!is_enough_contact(m.contact.any)) {
+    return text + fmt::format("The tool {}, too little to say what was felt.", contact_words(m.contact));
+  }
+  std::vector<std::string> means, greatest;
+  for (const auto& [felt, unit] : {std::pair(&m.force_N, "N"), std::pair(&m.torque_Nmm, "N mm")}) {
+    if (std::isnan(felt->mean)) continue;
+    means.push_back(fmt::format("{:.2g} {}", felt->mean, unit));
+    greatest.push_back(fmt::format("{:.2g} {}", felt->max, unit));
+  }
+  if (means.empty()) {
+    return text + fmt::format("The tool touched for {:.0f} % of the time, too little to say what was felt.",
+                              100 * m.contact.any);
+  }
+  return text +
+         fmt::format(
+             "The tool touched for {:.0f} % of the time, the shaft for {:.0f} %; while it did, the hand "
+             "felt {} on average, at most {}.",
+             100 * m.contact.any, 100 * m.contact.shaft, fmt::join(means, " and "),
+             fmt::join(greatest, " and "));
+}
+
+PageSection sessions_in_words(const RunGroup& group) {
+  PageSection section;
+  for (const MeasuredRun& run : group.runs) section.paragraphs.push_back(session_in_words(run));
+  return section;
+}
+
+PageSection how_to_repeat(const std::vector<const Recording*>& recordings) {
+  std::vector<std::string> commands;
+  for (const Recording* recording : recordings) {
+    const std::string* command = find_setting<std::string>(recording->description, kCommandLineKey);
+    if (command == nullptr || command->empty()) continue;
+    if (std::find(commands.begin(), commands.end(), *command) == commands.end()) commands.push_back(*command);
+  }
+  return {
+      .title = "How to repeat this",
+      .paragraphs = {commands.empty()
+                         ? "With the settings above; the recordings name no command."
+                         : "With the same seed, forces, poses and removed bone come out the same; compute "
+                           "times are those of the machine."},
+      .commands = commands};
+}
+
+std::string report_page(const RunGroup& group, const PageText& text, const fs::path& folder) {
+  const std::vector<const Recording*> recordings = all_recordings(group);
+  std::vector<PageSection> sections{notices(recordings)};
+  const auto add = [&](const std::vector<PageSection>& more) {
+    sections.insert(sections.end(), more.begin(), more.end());
+  };
+  add(differences(recordings));
+  sections.push_back(text.opening ? *text.opening : sessions_in_words(group));
+  add(pictures_section(group, folder));
+  for (const Topic& topic : kFelt) sections.push_back(topic_section(topic, group, text, folder));
+  sections.push_back(labels_section(group, folder));
+  add(text.sections);
+  sections.push_back(topic_section(kTimes, group, text, folder, text.further_times));
+  add({what_was_run(recordings),
+       {.title = "Settings", .tables = {settings_table(recordings)}},
+       how_to_repeat(recordings)});
+  return html_page(text.title, sections);
+}
+
+void write_summary_csv(const fs::path& path, const RunGroup& group) {
+  write_text_atomically(path, [&](std::ostream& out) {
+    out << summary_columns() << '\n';
+    for (const MeasuredRun& run : group.runs) out << summary_fields(run) << '\n';
+  });
+}
+
+}  // namespace
+
+fs::path write_report(const RunGroup& group, const fs::path& out_dir, const PageText& text) {
+  write_folder_atomically(out_dir, [&](const fs::path& beside) {
+    create_folder(beside / "figures");
+    write_summary_csv(beside / "summary.csv", group);
+    const std::string page = report_page(group, text, beside / "figures");
+    write_text_atomically(beside / "report.html", [&](std::ostream& out) { out << page; });
+  });
+  return out_dir / "report.html";
+}
+
+fs::path write_report(const std::vector<Recording>& recordings, const fs::path& out_dir) {
+  return write_report(group_runs(recordings), out_dir);
+}
+
+}  // namespace osteomill

@@ -1,0 +1,151 @@
+#include "osteomill/study/comparison_report.h"
+
+#include <algorithm>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "osteomill/base/atomic_file.h"
+#include "osteomill/study/paper.h"
+#include "osteomill/study/run_trials.h"
+#include "osteomill/study/trial_plan.h"
+#include "osteomill/study/write_report.h"
+
+#include "report/report_parts.h"
+#include "trials/conclusions.h"
+#include "trials/passivity_section.h"
+#include "trials/study_section.h"
+
+namespace osteomill {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* kStudyCsv = "study.csv";
+constexpr const char* kTitle = "6-DOF haptic algorithms compared while milling bone";
+
+// The paper's mean haptic rate in Hz, figure 6; empty for an algorithm or a phase that is not in the paper.
+std::string paper_rate(const MeasuredRun& run) {
+  constexpr int kRates_hz[kPapersAlgorithms.size()][kPhases.size()] = {{976, 988}, {955, 963}, {973, 989}};
+  const auto* const algorithm = std::ranges::find(kPapersAlgorithms, run.algorithm.name);
+  const std::size_t phase = phase_number(run.phase);
+  if (algorithm == kPapersAlgorithms.end() || phase == kPhases.size()) return "";
+  return fmt::format("{}", kRates_hz[algorithm - kPapersAlgorithms.begin()][phase]);
+}
+
+std::string about_stiffness(const std::vector<Recording>& recordings) {
+  const auto matched = [](const Recording& recording) {
+    return find_setting<double>(recording.description, kMatchedStiffnessKey);
+  };
+  const double* felt_N_per_mm = matched(recordings.front());
+  const bool is_matched = felt_N_per_mm != nullptr &&
+                          std::all_of(recordings.begin(), recordings.end(), [&](const Recording& one) {
+                            return matched(one) != nullptr && *matched(one) == *felt_N_per_mm;
+                          });
+  if (is_matched) {
+    return fmt::format(
+        "Stiffness is matched: each algorithm's was chosen so that a flat wall is felt as {:.3g} N/mm (the "
+        "slope of the force over the depth about 0.5 N, pressed with the burr). How it resists turning, and "
+        "what is felt of an edge or with the shaft, is not matched.",
+        *felt_N_per_mm);
+  }
+  return "Stiffness is not matched: each algorithm has that of its own equations, and the hand feels another "
+         "from each. What differs in force between them is partly this (compare --match-stiffness).";
+}
+
+// What was compared, whether that can show anything, and what it shows.
+PageSection opening(const Study& study, const std::vector<Recording>& recordings) {
+  PageSection section{.paragraphs = {what_was_compared(study, recordings.front().description.scan_name) +
+                                     " " + about_stiffness(recordings)},
+                      .points = conclusions(study)};
+  if (std::string few = too_few_hands(study); !few.empty()) section.notices = {std::move(few)};
+  return section;
+}
+
+// The recordings do not belong together, or some algorithm lacks a phase that another has.
+PageSection opening_of_a_mix(const RunGroup& group) {
+  std::vector<std::string> labels;
+  for (const AlgorithmId& algorithm : group.algorithms()) labels.push_back(algorithm.label);
+  return {.paragraphs = {fmt::format(
+              "Recordings of {}, which were not made as one comparison: either they differ in more than the "
+              "algorithm, or an algorithm lacks what another was recorded with. So nothing is concluded from "
+              "them here.",
+              fmt::join(labels, ", "))}};
+}
+
+bool belong_together(const std::vector<Recording>& recordings) {
+  std::vector<const Recording*> all;
+  for (const Recording& recording : recordings) all.push_back(&recording);
+  return differences_table(all).rows.empty();
+}
+
+// Every algorithm has every phase that another has.
+bool have_the_same_phases(const RunGroup& group) {
+  return group.runs.size() == group.phases().size() * group.algorithms().size();
+}
+
+Study study_of(const RunGroup& group, const ReportExtras& extras) {
+  std::vector<MeasuredRun> rows = group.runs;
+  if (extras.others) {
+    rows.insert(rows.end(), extras.others->begin(), extras.others->end());
+    return Study(std::move(rows));
+  }
+  const fs::path folder = group.runs.front().recording->path.parent_path();
+  if (auto whole = read_study_csv(folder / kStudyCsv, rows)) return *std::move(whole);
+  // A report is of one bone in one hand, whatever their seeds.
+  for (MeasuredRun& row : rows) row.seed = rows.front().seed;
+  return Study(std::move(rows));
+}
+
+PageSection hands_section(const Study& study, const fs::path& out_dir) {
+  std::vector<CaptionedFigure> figures;
+  for (const std::string_view phase : study.phases()) {
+    figures.push_back({draw_study_figure(study, phase, out_dir / "figures").svg,
+                       "Every hand of the study, by algorithm; logarithmic where values lie far apart."});
+  }
+  return study_section(study, figures);
+}
+
+}  // namespace
+
+bool are_of_comparison(const std::vector<Recording>& recordings) {
+  return std::all_of(recordings.begin(), recordings.end(), [](const Recording& recording) {
+    return find_setting<std::string>(recording.description, kScriptEntryKey) != nullptr;
+  });
+}
+
+fs::path write_comparison_report(const std::vector<Recording>& recordings, const fs::path& out_dir,
+                                 const ReportExtras& extras) {
+  const RunGroup group = group_runs(recordings, phase_metrics);
+  if (!belong_together(recordings) || !have_the_same_phases(group))
+    return write_report(group, out_dir, {.title = kTitle, .opening = opening_of_a_mix(group)});
+  const Study study = study_of(group, extras);
+  // Measured beside the recordings and kept nowhere else: they stay where no figure can be drawn.
+  const bool has_hands = study.seeds().size() > 1;
+  const bool has_further_rows = study.rows().size() + study.rows_of_other_grips().size() > recordings.size();
+  if (has_further_rows || !extras.passivity.empty()) create_folder(out_dir);
+  if (has_further_rows) write_study_csv(out_dir / kStudyCsv, study);
+  if (!extras.passivity.empty()) write_passivity_csv(out_dir / "stability.csv", extras.passivity);
+  write_folder_atomically(out_dir, [&](const fs::path& beside) {
+    create_folder(beside / "figures");
+    PageText text;
+    text.title = kTitle;
+    text.opening = opening(study, recordings);
+    text.sections = {findings_section(study)};
+    if (has_hands) text.sections.push_back(hands_section(study, beside));
+    if (!extras.passivity.empty()) {
+      text.sections.push_back(
+          passivity_section(extras.passivity, draw_passivity_figure(extras.passivity, beside / "figures")));
+    }
+    text.further_times = {{"Haptic rate in the paper, mean, on a Pentium 4 (Hz)", paper_rate}};
+    text.caption_notes = {{"rate", "The paper's figure 6 shows the rate that follows from it."},
+                          {"force", "The paper's figure 7."},
+                          {"torque", "The paper's figure 8."},
+                          {"shaft", "The paper's figure 9."}};
+    write_report(group, beside, text);
+  });
+  return out_dir / "report.html";
+}
+
+}  // namespace osteomill

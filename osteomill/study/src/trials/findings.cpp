@@ -1,0 +1,215 @@
+#include "osteomill/study/findings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <fmt/args.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "osteomill/study/paper.h"
+
+namespace osteomill {
+
+namespace {
+
+// The thresholds of the rules, which say themselves what each is for.
+constexpr double kCalmerBy = 2;
+constexpr double kGripRatio = 1.25;
+constexpr double kFollows = 0.5;
+constexpr double kStableShare = 0.2;
+constexpr double kMinContacts = 10, kMaxContacts = 20;
+
+double share_hp(const VectorMetrics& v) {
+  return v.hp_rms / v.mean;
+}
+
+// What rules look at.
+using M = RunMetrics;
+constexpr auto force_hp = [](const M& m) { return m.force_N.hp_rms; };
+constexpr auto torque_hp = [](const M& m) { return m.torque_Nmm.hp_rms; };
+constexpr auto torque_step = [](const M& m) { return m.torque_Nmm.step_max; };
+constexpr auto torque_share = [](const M& m) { return share_hp(m.torque_Nmm); };
+// How much less calm the torque is than the force, each against its mean.
+constexpr auto torque_unrest = [](const M& m) { return share_hp(m.torque_Nmm) / share_hp(m.force_N); };
+constexpr auto torque_follows = [](const M& m) { return m.torque_follows_force; };
+constexpr auto shaft_spread = [](const M& m) { return m.shaft.spread_deg; };
+constexpr auto shaft_turn = [](const M& m) { return m.turns.max_deg; };
+constexpr auto shaft_turn_at_torque_step = [](const M& m) { return m.turns.at_torque_step_deg; };
+constexpr auto contacts = [](const M& m) { return m.contacts_mean; };
+
+// What a rule needs of one algorithm in one phase.
+struct Needed {
+  std::size_t algorithm;
+  std::string_view phase;
+  double (*value)(const RunMetrics&);
+};
+
+std::string value_text(const MeasuredRun& run, double value) {
+  return std::isnan(value) ? contact_words(run.metrics.contact) : fmt::format("{:.3g}", value);
+}
+
+// A finding on what algorithms did in phases: its rule is applied to the values that it needs, in their
+// order; `words` has a {} for each.
+struct Rule {
+  std::string paper_says;
+  std::string rule;
+  std::vector<Needed> needed;
+  std::string_view words;
+  bool (*holds)(const std::vector<double>&);
+};
+
+Finding finding_by(const Rule& rule, const RunGroup& group) {
+  Finding finding{rule.paper_says, rule.rule, "needs other recordings", Verdict::not_recorded};
+  std::vector<double> values;
+  fmt::dynamic_format_arg_store<fmt::format_context> texts;
+  std::vector<std::string> not_reached;
+  for (const Needed& one : rule.needed) {
+    const MeasuredRun* run = group.find(kPapersAlgorithms[one.algorithm - 1], one.phase);
+    if (run == nullptr) return finding;
+    values.push_back(one.value(run->metrics));
+    texts.push_back(value_text(*run, values.back()));
+    const std::string missed = fmt::format("{}, {}", run->algorithm.label, run->phase);
+    if (!run->not_reached.empty() &&
+        std::find(not_reached.begin(), not_reached.end(), missed) == not_reached.end())
+      not_reached.push_back(missed);
+  }
+  finding.measured = fmt::vformat(rule.words, texts);
+  if (!not_reached.empty())
+    finding.measured += fmt::format(" (not all reached: {})", fmt::join(not_reached, "; "));
+  const bool known = std::none_of(values.begin(), values.end(), [](double v) { return std::isnan(v); });
+  finding.verdict = !known               ? Verdict::lost_contact
+                    : rule.holds(values) ? Verdict::agrees
+                                         : Verdict::does_not_agree;
+  return finding;
+}
+
+Finding rate_finding(const RunGroup& group) {
+  const auto slower = [](const MeasuredRun& a, const MeasuredRun& b) {
+    return a.metrics.rate_hz < b.metrics.rate_hz;
+  };
+  const MeasuredRun& slowest = *std::min_element(group.runs.begin(), group.runs.end(), slower);
+  return {"“all the algorithms fulfill the real-time requirements”",
+          fmt::format(
+              "the rate that a 1 kHz loop would hold with the CPU time of its ticks is {:.0f} Hz or more in "
+              "every recording",
+              kMinRate_hz),
+          fmt::format("lowest {:.1f} Hz ({}, {})", slowest.metrics.rate_hz, name_of(slowest.algorithm),
+                      slowest.phase),
+          slowest.metrics.rate_hz >= kMinRate_hz ? Verdict::agrees : Verdict::does_not_agree, true};
+}
+
+Finding grip_finding(const GripForces& grips) {
+  Finding finding{
+      "2's vibration: “the magnitude is based on how hard the user is holding and gripping the device”",
+      fmt::format("from grip to grip of the same hand ({:g} times its stiffness and damping) 2's force above "
+                  "{:.0f} Hz (rms), while holding, grows throughout or falls throughout, by a factor of "
+                  "{:g} or more in all",
+                  fmt::join(kGrips, ", "), kBuzzAbove_hz, kGripRatio),
+      "needs three grips", Verdict::not_recorded};
+  if (grips.empty()) return finding;
+  finding.measured = fmt::format("{:.3g} N", fmt::join(grips, ", "));
+  if (std::any_of(grips.begin(), grips.end(), [](double v) { return std::isnan(v); })) {
+    finding.verdict = Verdict::lost_contact;
+    return finding;
+  }
+  const bool one_way =
+      std::is_sorted(grips.begin(), grips.end()) || std::is_sorted(grips.rbegin(), grips.rend());
+  const auto [min, max] = std::minmax_element(grips.begin(), grips.end());
+  finding.verdict = one_way && *max >= kGripRatio * *min ? Verdict::agrees : Verdict::does_not_agree;
+  return finding;
+}
+
+// In the order of the paper's text.
+const Rule kRules[] = {
+    {"force: 1 and 3 “more stable than Algorithm #2 independent of case scenario”",
+     fmt::format("in both parts 2's force above {:.0f} Hz (rms) is at least {:g} times that of 1 and of 3",
+                 kBuzzAbove_hz, kCalmerBy),
+     {{1, kMilling, force_hp},
+      {2, kMilling, force_hp},
+      {3, kMilling, force_hp},
+      {1, kHolding, force_hp},
+      {2, kHolding, force_hp},
+      {3, kHolding, force_hp}},
+     "milling 1: {}, 2: {}, 3: {} N; holding 1: {}, 2: {}, 3: {} N",
+     [](const auto& v) {
+       return v[1] >= kCalmerBy * std::max(v[0], v[2]) && v[4] >= kCalmerBy * std::max(v[3], v[5]);
+     }},
+    {"1 “kicks away the shaft at a moment”, with “a peak in the torque signal when milling”; the shaft's "
+     "jump “occurs at the same time”",
+     "while milling the greatest step of the torque is 1's, and in the 50 ms about it 1's shaft turns "
+     "further than those of 2 and 3 ever do in such a time",
+     {{1, kMilling, torque_step},
+      {2, kMilling, torque_step},
+      {3, kMilling, torque_step},
+      {1, kMilling, shaft_turn_at_torque_step},
+      {2, kMilling, shaft_turn},
+      {3, kMilling, shaft_turn}},
+     "step 1: {}, 2: {}, 3: {} N mm; turn 1 then: {}, 2 at most: {}, 3 at most: {} degrees",
+     [](const auto& v) { return v[0] > std::max(v[1], v[2]) && v[3] > std::max(v[4], v[5]); }},
+    {"2's torque seems “to follow the same pattern as for the force feedback, but Algorithm #2 is more "
+     "stable than Algorithm #1”",
+     fmt::format("in both parts the multiple correlation of 2's torque with its force of the 10 ms about "
+                 "it, both above {0:.0f} Hz, is {1:g} or more; and its torque above {0:.0f} Hz (rms) is "
+                 "less than that of 1 while milling",
+                 kBuzzAbove_hz, kFollows),
+     {{2, kMilling, torque_follows},
+      {2, kHolding, torque_follows},
+      {1, kMilling, torque_hp},
+      {2, kMilling, torque_hp}},
+     "correlation milling {}, holding {}; torque milling 1: {}, 2: {} N mm",
+     [](const auto& v) { return std::min(v[0], v[1]) >= kFollows && v[3] < v[2]; }},
+    {"3's torque “is a bit more unstable than the force feedback, especially for the milling case”",
+     fmt::format("what its torque has above {:.0f} Hz (rms), against its mean, is more than the same of its "
+                 "force while milling, and in proportion more than while holding",
+                 kBuzzAbove_hz),
+     {{3, kMilling, torque_unrest}, {3, kHolding, torque_unrest}},
+     "torque's share / force's share: milling {}, holding {}",
+     [](const auto& v) { return v[0] > 1 && v[0] > v[1]; }},
+    {"torque: “For the non-milling case both Algorithm #2 and Algorithm #3 give stable torque feedback”",
+     fmt::format("while holding, the torque above {:.0f} Hz (rms) of 2 and of 3 is at most {:g} of its mean",
+                 kBuzzAbove_hz, kStableShare),
+     {{2, kHolding, torque_share}, {3, kHolding, torque_share}},
+     "2: {}, 3: {}",
+     [](const auto& v) { return std::max(v[0], v[1]) <= kStableShare; }},
+    {"shaft: “For the milling case … Algorithm #1 generates a very unstable behavior of the shaft”",
+     "while milling the spread of the shaft's direction (rms angle about the mean) is the greatest in 1",
+     {{1, kMilling, shaft_spread}, {2, kMilling, shaft_spread}, {3, kMilling, shaft_spread}},
+     "1: {}, 2: {}, 3: {} degrees",
+     [](const auto& v) { return v[0] > std::max(v[1], v[2]); }},
+    {"“an average number of approximately [1]5 points … are really colliding in each haptic loop” with 3",
+     fmt::format("while milling {:g} to {:g} points touch, on the average of the ticks in contact",
+                 kMinContacts, kMaxContacts),
+     {{3, kMilling, contacts}},
+     "{}",
+     [](const auto& v) { return v[0] >= kMinContacts && v[0] <= kMaxContacts; }}};
+
+}  // namespace
+
+std::string_view name_of(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::agrees:
+      return "agrees";
+    case Verdict::does_not_agree:
+      return "does not agree";
+    case Verdict::not_settled:
+      return "not settled";
+    case Verdict::not_recorded:
+      return "not recorded";
+    case Verdict::lost_contact:
+      return "lost contact";
+  }
+  return "";
+}
+
+std::vector<Finding> check_findings(const RunGroup& group, const GripForces& grips) {
+  std::vector<Finding> findings{rate_finding(group)};
+  for (const Rule& rule : kRules) {
+    findings.push_back(finding_by(rule, group));
+    if (findings.size() == 2) findings.push_back(grip_finding(grips));
+  }
+  return findings;
+}
+
+}  // namespace osteomill

@@ -1,0 +1,133 @@
+#include "osteomill/study/measure_passivity.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "osteomill/study/match_stiffness.h"
+
+namespace osteomill {
+
+namespace {
+
+constexpr double kSoftest_N_per_mm = 0.05;
+constexpr double kStiffest_N_per_mm = 200;
+constexpr double kWithin = 1.03;
+
+}  // namespace
+
+StiffnessLimit seek_stiffness_limit(const std::function<WallPressResult(double)>& press,
+                                    double start_N_per_mm) {
+  StiffnessLimit limit;
+  // True where the limit lies above: what gives way is too soft.
+  const auto is_below_limit = [&](double stiffness) {
+    const WallPressResult result = press(stiffness);
+    if (result.motion == WallMotion::dies_out && stiffness > limit.stiffness_N_per_mm) {
+      limit.stiffness_N_per_mm = stiffness;
+      limit.felt_N_per_mm = result.felt_N_per_mm;
+    }
+    return result.motion != WallMotion::goes_on;
+  };
+  double low = std::clamp(start_N_per_mm, kSoftest_N_per_mm, kStiffest_N_per_mm);
+  double high = low;
+  if (is_below_limit(low)) {
+    do {
+      if (high >= kStiffest_N_per_mm) {
+        if (limit.stiffness_N_per_mm > 0) limit.kind = StiffnessLimit::Kind::above_all;
+        return limit;
+      }
+      low = high;
+      high = std::min(2 * high, kStiffest_N_per_mm);
+    } while (is_below_limit(high));
+  } else {
+    do {
+      if (low <= kSoftest_N_per_mm) return limit;
+      high = low;
+      low = std::max(0.5 * low, kSoftest_N_per_mm);
+    } while (!is_below_limit(low));
+  }
+  while (high > kWithin * low) {
+    const double middle = std::sqrt(low * high);
+    (is_below_limit(middle) ? low : high) = middle;
+  }
+  if (limit.stiffness_N_per_mm > 0) limit.kind = StiffnessLimit::Kind::found;
+  return limit;
+}
+
+double passive_stiffness_rule_N_per_mm(double damping_Ns_per_mm, double tick_s, double delay_s) {
+  return 2 * damping_Ns_per_mm / (tick_s + 2 * delay_s);
+}
+
+namespace {
+
+constexpr double kDampings_Ns_per_mm[] = {0.001, 0.002, 0.005, 0.010};
+constexpr double kDelays_s[] = {0.3e-3, 1e-3, 2e-3};
+
+}  // namespace
+
+std::vector<TrialSettings> passivity_cases(const std::vector<AlgorithmDescription>& algorithms,
+                                           const TrialSettings& settings) {
+  std::vector<TrialSettings> cases;
+  for (const AlgorithmDescription& algorithm : algorithms) {
+    if (setting_of_option(algorithm, kStiffnessOption) == nullptr) continue;
+    for (const double delay_s : kDelays_s) {
+      for (const double damping : kDampings_Ns_per_mm) {
+        TrialSettings& one = cases.emplace_back(settings);
+        one.algorithm = algorithm;
+        one.hand_and_device.handle.force_delay_s = delay_s;
+        one.device_damping_Ns_per_mm = damping;
+      }
+    }
+  }
+  return cases;
+}
+
+Volume flat_wall(const MillingTool& tool) {
+  constexpr double kMargin_mm = 0.5, kAbove_mm = 1, kEdge_voxels = 2;
+  constexpr double kVoxelsToTheRadius = 12, kMinVoxel_mm = 0.05, kMaxVoxel_mm = 0.5;
+  constexpr float kIsovalue = 500;
+  const double spacing_mm = std::clamp(tool.burr_radius_mm / kVoxelsToTheRadius, kMinVoxel_mm, kMaxVoxel_mm);
+  // Deeper than the handle is ever pressed, be it the burr's centre that is felt.
+  const double thick_mm = tool.burr_radius_mm + 4;
+  const double half_mm = tool.burr_radius_mm + kMargin_mm;
+  GridGeometry geometry;
+  geometry.dims[0] = geometry.dims[1] = 1 + 2 * static_cast<int>(std::ceil(half_mm / spacing_mm));
+  geometry.dims[2] = 1 + static_cast<int>(std::ceil((thick_mm + kAbove_mm) / spacing_mm));
+  geometry.spacing_mm = Vec3::Constant(spacing_mm);
+  // The surface lies between two layers, nearer to one of them: no voxel is on it.
+  geometry.origin_mm = {-0.5 * (geometry.dims[0] - 1) * spacing_mm,
+                        -0.5 * (geometry.dims[1] - 1) * spacing_mm,
+                        -(std::floor(thick_mm / spacing_mm) + 0.3) * spacing_mm};
+  std::vector<float> densities;
+  densities.reserve(geometry.voxel_count());
+  const auto layer = static_cast<std::size_t>(geometry.dims[0]) * static_cast<std::size_t>(geometry.dims[1]);
+  for (int k = 0; k < geometry.dims[2]; ++k) {
+    const double height_mm = geometry.world_from_voxel(VoxelIndex{0, 0, k}).z();
+    const double share = std::clamp(0.5 - height_mm / (kEdge_voxels * spacing_mm), 0.0, 1.0);
+    densities.insert(densities.end(), layer, static_cast<float>(2 * kIsovalue * share));
+  }
+  return Volume(DensityGrid(geometry, std::move(densities)), kIsovalue);
+}
+
+WallPressResult press_on_wall(const TrialSettings& settings, const Volume& wall) {
+  const auto algorithm = make_algorithm(settings.algorithm, settings.haptics);
+  algorithm->prepare({&wall, settings.tool, settings.tick_s});
+  return press_on_wall(*algorithm, settings.tool.burr_radius_mm,
+                       {settings.hand_and_device.handle, settings.device_damping_Ns_per_mm, settings.tick_s});
+}
+
+PassivityRow measure_passivity(TrialSettings settings, const Volume& wall) {
+  const AlgorithmId& algorithm = settings.algorithm.id;
+  settings.haptics.named.push_back(
+      {algorithm.name, setting_of_option(settings.algorithm, kStiffnessOption)->name, 0});
+  const auto press_at = [&](double stiffness_N_per_mm) {
+    settings.haptics.named.back().value = stiffness_N_per_mm;
+    return press_on_wall(settings, wall);
+  };
+  const double damping = settings.device_damping_Ns_per_mm;
+  const double delay_s = settings.hand_and_device.handle.force_delay_s;
+  const double rule = passive_stiffness_rule_N_per_mm(damping, settings.tick_s, delay_s);
+  return {algorithm, damping, delay_s, seek_stiffness_limit(press_at, rule), rule};
+}
+
+}  // namespace osteomill

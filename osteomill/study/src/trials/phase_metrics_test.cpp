@@ -1,0 +1,52 @@
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "osteomill/study/paper.h"
+#include "osteomill/study/trial_plan.h"
+
+namespace osteomill {
+namespace {
+
+// 3 s of holding, meant to be 2 s: in the first the hand still leans in, with twice the force.
+Recording late_holding() {
+  Recording recording;
+  recording.path = "some/holding.h5";
+  recording.description.tick_period_s = 1e-3;
+  recording.description.phase = kHolding;
+  recording.description.settings.push_back({std::string(kScriptHoldingKey), 2.0, "s"});
+  for (int n = 0; n < 3000; ++n) {
+    TickRecord record;
+    record.time_s = 1e-3 * n;
+    record.wrench.force_N = {n < 1000 ? 2.0 : 1.0, 0, 0};
+    record.wrench.torque_Nmm = {0, 5, 0};
+    recording.records.push_back(record);
+  }
+  return recording;
+}
+
+TEST(PhaseMetrics, AHoldingIsMeasuredForAsLongAsItWasToLast) {
+  const Recording holding = late_holding();
+  EXPECT_EQ(phase_metrics(holding).steps, 2000u);
+  EXPECT_DOUBLE_EQ(phase_metrics(holding).force_N.max, 1);
+  EXPECT_DOUBLE_EQ(phase_metrics(holding).counted_from_s, 1);
+  Recording milling = holding;
+  milling.description.phase = kMilling;
+  EXPECT_EQ(phase_metrics(milling).steps, 3000u);
+  EXPECT_EQ(phase_metrics(milling).counted_from_s, 0);
+  Recording unknown = holding;
+  unknown.description.settings.clear();
+  EXPECT_EQ(phase_metrics(unknown).steps, 3000u);
+}
+
+TEST(PhaseMetrics, WhoLostContactIsNotMeasured) {
+  Recording lost = late_holding();
+  for (std::size_t n = 1900; n < lost.records.size(); ++n) lost.records[n].wrench = {};
+  const RunMetrics m = phase_metrics(lost);
+  EXPECT_EQ(contact_words(m.contact), "lost contact after 0.9 s");
+  EXPECT_TRUE(std::isnan(m.force_N.mean) && std::isnan(m.torque_Nmm.hp_rms) &&
+              std::isnan(m.shaft.spread_deg));
+}
+
+}  // namespace
+}  // namespace osteomill

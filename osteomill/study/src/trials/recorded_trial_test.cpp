@@ -1,0 +1,109 @@
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "osteomill/base/input_error.h"
+#include "osteomill/base/temporary_folder.h"
+#include "osteomill/recording/record_columns.h"
+#include "osteomill/recording/recording.h"
+#include "osteomill/study/paper.h"
+#include "osteomill/study/run_trials.h"
+
+#include "tests/shapes.h"
+
+namespace osteomill {
+namespace {
+
+class RecordedTrialTest : public ::testing::Test {
+ protected:
+  RecordedTrialTest()
+      : bone_(testing_support::shape_volume(testing_support::centred_cube(60, 0.25),
+                                            testing_support::ball(Vec3::Zero(), 5))) {}
+
+  TrialPlan plan_of(const TrialSettings& settings) const {
+    return {bone_, "a ball", {0.5, 1000}, place_entry(bone_, settings.tool, {}, {}), settings, ""};
+  }
+
+  Volume bone_;
+};
+
+// Anything but what it is where nothing is said, and within its range.
+template <typename Struct>
+void change(Struct& s) {
+  double n = 1;
+  for (const Field<Struct>& field : fields_of<Struct>()) {
+    const double usual = field.get(s);
+    const double other = std::isfinite(usual) ? 1.0625 * usual + 0.001 * n : 3 + n;
+    field.set(s, field.range == NumberRange::on_or_off() ? 1 - usual : other);
+    EXPECT_TRUE(field.range.contains(field.get(s))) << field.name << field.option;
+    ++n;
+  }
+}
+
+template <typename Struct>
+void expect_same(const Struct& restored, const Struct& made_with) {
+  for (const Field<Struct>& field : fields_of<Struct>())
+    EXPECT_EQ(field.get(restored), field.get(made_with)) << field.name << field.option;
+}
+
+TEST_F(RecordedTrialTest, EveryFieldOfHandDeviceScriptAndSessionIsRestored) {
+  TrialSettings settings;
+  change<MillingSetup>(settings);
+  change(settings.hand_and_device);
+  settings.hand_and_device.seed = 77;
+  settings.tick_s = 0.002;
+  settings.algorithm = algorithm_named("line-proxy");
+  settings.haptics.named = {{"line-proxy", "vertices", 60}};
+  const TrialPlan plan = plan_of(settings);
+  const RunDescription run = describe_trial(plan, 60, kMilling);
+  const RecordedTrial restored = recorded_trial(run, "a.h5");
+  expect_same<MillingSetup>(restored.settings, settings);
+  expect_same(restored.settings.hand_and_device, settings.hand_and_device);
+  EXPECT_EQ(restored.settings.hand_and_device.seed, 77u);
+  EXPECT_EQ(restored.settings.tick_s, 0.002);
+  EXPECT_EQ(setting_values(restored.settings.algorithm, restored.settings.haptics)[0].value, 60);
+  EXPECT_EQ(restored.densities.surroundings, 0.5);
+  EXPECT_EQ(restored.entry.point_W, plan.entry.point_W);
+  EXPECT_EQ(restored.entry.direction_W, plan.entry.direction_W);
+  EXPECT_EQ(restored.entry.lateral_W, plan.entry.lateral_W);
+}
+
+TEST_F(RecordedTrialTest, OneWithoutASettingIsRefusedByItsName) {
+  const RunDescription run = describe_trial(plan_of({}), 51, kMilling);
+  for (const char* key : {"hand.stiffness", "device.mass", "limit.force", "script.entry"}) {
+    RunDescription without = run;
+    std::erase_if(without.settings, [&](const RunSetting& setting) { return setting.key == key; });
+    try {
+      recorded_trial(without, "a.h5");
+      FAIL() << key;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(key), std::string::npos) << error.what();
+    }
+  }
+}
+
+// The hand is in the loop: another one anywhere would feel, and mill, something else.
+TEST_F(RecordedTrialTest, MillsAgainWhatWasRecorded) {
+  TrialSettings settings;
+  settings.hand_and_device.script.milling_s = settings.hand_and_device.script.holding_s = 1.5;
+  settings.hand_and_device.hand.push_N = 2;
+  settings.cutting_reaction = true;
+  const TrialPlan plan = with_seed(plan_of(settings), 5);
+  const TemporaryFolder folder;
+  const EntryPictures pictures(bone_, 1000, plan.entry, {}, false);
+  const Recording recording = read_recording(record_trial(plan, pictures, folder.path(), {}).front());
+  const RecordedTrial restored = recorded_trial(recording.description, recording.path);
+  MillingTrial trial(bone_, restored.densities, restored.entry, restored.settings);
+  ASSERT_GT(recording.records.size(), 1000u);
+  EXPECT_GT(recording.records.back().removed_mm3, 0.1);
+  for (const TickRecord& recorded : recording.records) {
+    const TickRecord now = trial.tick().record;
+    for (const Field<TickRecord>& column : fields_of<TickRecord>()) {
+      if (column.has(kByTheClock)) continue;
+      ASSERT_EQ(column.get(now), column.get(recorded)) << column.name << " at " << recorded.time_s << " s";
+    }
+  }
+}
+
+}  // namespace
+}  // namespace osteomill

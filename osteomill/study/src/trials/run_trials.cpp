@@ -1,0 +1,187 @@
+#include "osteomill/study/run_trials.h"
+
+#include <algorithm>
+#include <array>
+#include <random>
+#include <utility>
+
+#include <fmt/core.h>
+
+#include "osteomill/haptics/algorithms.h"
+#include "osteomill/recording/recorder.h"
+#include "osteomill/recording/recording.h"
+#include "osteomill/session/tick_counts.h"
+#include "osteomill/study/entry_pictures.h"
+#include "osteomill/study/findings.h"
+#include "osteomill/study/paper.h"
+#include "osteomill/study/parallel.h"
+#include "osteomill/study/run_groups.h"
+#include "osteomill/study/trial_plan.h"
+
+namespace osteomill {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr int kTicksBetweenProgress = 500;
+
+std::string recording_name(const TrialPlan& plan, std::string_view phase) {
+  return fmt::format("{}-{}.h5", plan.settings.algorithm.id.name, phase);
+}
+
+// A trial run to its end.
+struct MilledTrial {
+  // In memory, and called as the trial is.
+  std::array<Recording, kPhases.size()> phases;
+  std::optional<std::string> faults;
+};
+
+MilledTrial mill(const TrialPlan& plan, MillingTrial& trial, const RunEvents& events) {
+  const std::string& name = plan.settings.algorithm.id.name;
+  const ScriptSettings& script = plan.settings.hand_and_device.script;
+  MilledTrial milled;
+  for (std::size_t n = 0; n < kPhases.size(); ++n) {
+    milled.phases[n].path = fmt::format("{}, seed {}", name, plan.settings.hand_and_device.seed);
+    milled.phases[n].description = describe_trial(plan, trial.algorithm().sample_point_count(), kPhases[n]);
+  }
+  FaultCount faults;
+  LabelCount labels(plan.bone.labels());
+  for (int n = 0; !trial.finished(); ++n) {
+    const MillingTrial::Tick tick = trial.tick();
+    milled.phases[tick.milling_phase ? 0 : 1].records.push_back(tick.record);
+    faults.add(tick.record);
+    if (const auto touched = labels.add(tick.record)) events.no_go(fmt::format("{}: {}", name, *touched));
+    if (n % kTicksBetweenProgress == 0) {
+      // A trial that takes longer than asked for, since the hand does not yet feel what it should, stays at
+      // its end.
+      const double asked_s = script.milling_s + script.holding_s;
+      events.progress(name, std::min(1.0, tick.record.time_s / asked_s));
+    }
+  }
+  for (Recording& phase : milled.phases) {
+    std::string missed = shortfall_words(trial.shortfall(), script, phase.description.phase);
+    if (!missed.empty())
+      phase.description.settings.push_back({std::string(kNotReachedKey), std::move(missed), ""});
+  }
+  milled.faults = faults.sentence();
+  return milled;
+}
+
+}  // namespace
+
+std::string new_comparison() {
+  std::random_device device;
+  return fmt::format("{:08x}{:08x}", device(), device());
+}
+
+bool is_of_a_comparison(const std::string& name) {
+  constexpr std::string_view kReport[] = {"report.html", "summary.csv", "study.csv", "stability.csv",
+                                          "figures"};
+  if (std::ranges::find(kReport, name) != std::end(kReport)) return true;
+  return std::ranges::any_of(kPhases, [&](std::string_view phase) {
+    const std::size_t dash = name.rfind(fmt::format("-{}.", phase));
+    return dash != std::string::npos && name.ends_with(".h5") &&
+           std::ranges::any_of(algorithm_names(), [&](const std::string& algorithm) {
+             return name.starts_with(algorithm) && algorithm.size() <= dash;
+           });
+  });
+}
+
+std::vector<fs::path> record_trial(const TrialPlan& plan, const EntryPictures& pictures,
+                                   const fs::path& folder, const RunEvents& events) {
+  MillingTrial trial(plan.bone, plan.densities, plan.entry, plan.settings);
+  const MilledTrial milled = mill(plan, trial, events);
+  std::vector<fs::path> paths;
+  for (const Recording& phase : milled.phases) {
+    const bool first = paths.empty();
+    RunDescription run = phase.description;
+    if (!pictures.can_be_had())
+      run.settings.push_back({std::string(kPicturesKey), "none, as OpenGL could not be had", ""});
+    paths.push_back(folder / recording_name(plan, run.phase));
+    Recorder recorder(paths.back(), run,
+                      first ? Recorder::Begins::with_the_recording : Recorder::Begins::when_told,
+                      Recorder::Unfinished::removed);
+    if (const std::string kept = recorder.kept(); !kept.empty()) events.warn(kept);
+    // The session goes on from phase to phase.
+    if (!first) recorder.begin_session(0, {.goes_on_from = paths.front().filename().string()});
+    for (const TickRecord& record : phase.records) recorder.push_waiting(record);
+    if (first) {
+      for (const std::string_view name : {kPictureBefore, kPictureAfter, kPictureAlong})
+        if (auto png = pictures.of(name, trial.volume(), events))
+          recorder.add_picture(std::string(name), *std::move(png));
+    }
+    recorder.close();
+  }
+  const MeasuredRun whole = measured_run(milled.phases.back(), {});
+  if (!whole.not_reached.empty())
+    events.warn(fmt::format("{}: {}", plan.settings.algorithm.id.name, whole.not_reached));
+  if (milled.faults) events.warn(fmt::format("{}: {}", plan.settings.algorithm.id.name, *milled.faults));
+  return paths;
+}
+
+TriedTrial try_trial(StudyTest test, const TrialPlan& plan) {
+  const double before_s = thread_cpu_s();
+  TriedTrial tried;
+  if (test == StudyTest::milling) {
+    MillingTrial trial(plan.bone, plan.densities, plan.entry, plan.settings);
+    const MilledTrial milled = mill(plan, trial, {});
+    for (std::size_t part = 0; part < milled.phases.size(); ++part) {
+      const Recording& phase = milled.phases[part];
+      TrialRow& row =
+          tried.rows.emplace_back(TrialRow{.part = part, .run = measured_run(phase, phase_metrics(phase))});
+      row.run.recording = nullptr;
+      row.run.grip = plan.grip;
+    }
+    tried.faults = milled.faults;
+  } else {
+    tried.rows = {{.wall = wall_figures(plan.settings, press_on_wall(plan.settings, plan.bone))}};
+  }
+  tried.cpu_s = thread_cpu_s() - before_s;
+  return tried;
+}
+
+std::vector<TrialPlan> trials_in_other_grips(const TrialPlan& plan) {
+  std::vector<TrialPlan> trials;
+  for (const double grip : kGrips) {
+    if (grip == 1) continue;
+    TrialPlan& other = trials.emplace_back(plan);
+    other.settings.algorithm = algorithm_named(kPapersAlgorithms[1]);
+    HandSettings& hand = other.settings.hand_and_device.hand;
+    hand = gripping(hand, grip);
+    other.grip = grip;
+  }
+  return trials;
+}
+
+TrialPlan with_seed(const TrialPlan& plan, std::uint64_t seed) {
+  TrialPlan other = plan;
+  OperatorSettings& person = other.settings.hand_and_device;
+  const HandSettings asked_for = person.hand;
+  person.seed = seed;
+  person.hand = random_hand(seed);
+  person.hand.push_N = asked_for.push_N;
+  person.hand.push_lever_mm = asked_for.push_lever_mm;
+  person.hand.tremor_mm = asked_for.tremor_mm;
+  person.hand.tremor_rad = asked_for.tremor_rad;
+  return other;
+}
+
+std::vector<MeasuredRun> run_study_trials(const std::vector<TrialPlan>& trials, std::size_t threads,
+                                          const RunEvents& events) {
+  const auto tried = run_trials(trials, "study", threads, events,
+                                [](const TrialPlan& plan) { return try_trial(StudyTest::milling, plan); });
+  std::vector<MeasuredRun> all;
+  for (const TriedTrial& trial : tried) {
+    for (const TrialRow& row : trial.rows) all.push_back(row.run);
+    const MeasuredRun& last = all.back();
+    const auto warn = [&](const std::string& line) {
+      events.warn(fmt::format("{}, seed {}: {}", last.algorithm.name, last.seed, line));
+    };
+    if (trial.faults) warn(*trial.faults);
+    if (!last.not_reached.empty()) warn(last.not_reached);
+  }
+  return all;
+}
+
+}  // namespace osteomill

@@ -1,0 +1,231 @@
+#include "osteomill/study/study.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <ostream>
+#include <stdexcept>
+#include <tuple>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "osteomill/base/atomic_file.h"
+#include "osteomill/base/csv_field.h"
+#include "osteomill/base/parse_number.h"
+#include "osteomill/base/read_line.h"
+#include "osteomill/study/paper.h"
+
+#include "trials/statistics.h"
+
+namespace osteomill {
+
+namespace {
+
+const std::string kHandColumns = "seed,hand_stiffness_N_per_m,hand_damping_Ns_per_m,hand_grip,";
+constexpr std::size_t kHandFields = 4, kNamedFields = 2;
+
+using M = RunMetrics;
+
+// Phase before algorithm, as in summary.csv.
+auto place(const MeasuredRun& run) {
+  return std::tuple(phase_number(run.phase), run.algorithm);
+}
+
+// A line that is too long ends it: no study has one.
+bool next_line(std::istream& in, std::string& line) {
+  constexpr std::size_t kMaxLine = 16384;
+  try {
+    return read_line(in, line, kMaxLine);
+  } catch (const LineTooLong&) {
+    return false;
+  }
+}
+
+// Nothing if it is not of an algorithm and phase of these rows, whose number of columns it has.
+std::optional<MeasuredRun> read_row(std::string_view line, const std::vector<MeasuredRun>& rows) {
+  const std::vector<std::string_view> fields = csv_fields(line);
+  const std::vector<Field<M>>& figures = fields_of<M>();
+  if (fields.size() != kHandFields + kNamedFields + figures.size() + 1) return std::nullopt;
+  const auto of = std::ranges::find_if(rows, [&](const MeasuredRun& row) {
+    return fields[kHandFields] == row.algorithm.name && fields[kHandFields + 1] == row.phase;
+  });
+  if (of == rows.end()) return std::nullopt;
+  const auto number = [&](std::size_t n) { return parsed_number<double>(fields[n]).value_or(kNotMeasured); };
+  MeasuredRun row{.algorithm = of->algorithm,
+                  .phase = of->phase,
+                  .metrics = {},
+                  .not_reached = std::string(fields.back()),
+                  .seed = parsed_number<std::uint64_t>(fields[0]).value_or(0),
+                  .hand_stiffness_N_per_m = number(1),
+                  .hand_damping_Ns_per_m = number(2),
+                  .grip = number(3)};
+  for (std::size_t n = 0; n < figures.size(); ++n)
+    figures[n].set(row.metrics, number(kHandFields + kNamedFields + n));
+  return row;
+}
+
+// Times are not compared: they are the machine's.
+bool same_figures(const MeasuredRun& a, const MeasuredRun& b) {
+  return std::ranges::all_of(fields_of<M>(), [&](const Field<M>& figure) {
+    const double first = figure.get(a.metrics), second = figure.get(b.metrics);
+    return figure.has(kOfTheMachine) || first == second || (std::isnan(first) && std::isnan(second));
+  });
+}
+
+}  // namespace
+
+std::vector<Field<RunMetrics>> key_metrics() {
+  std::vector<Field<RunMetrics>> compared;
+  for (const char* column :
+       {"force_hp_rms_N", "force_hp_share", "force_step_max_N", "torque_hp_rms_Nmm", "torque_step_max_Nmm",
+        "torque_mean_Nmm", "shaft_spread_deg", "removed_mm3", "tick_us_median", "tick_us_p99"})
+    compared.push_back(metric(column));
+  return compared;
+}
+
+std::string short_label(const AlgorithmId& algorithm) {
+  return algorithm.label.substr(0, algorithm.label.find(' '));
+}
+
+Study::Study(std::vector<MeasuredRun> rows) : rows_(std::move(rows)) {
+  const auto others =
+      std::stable_partition(rows_.begin(), rows_.end(), [](const MeasuredRun& row) { return row.grip == 1; });
+  other_grips_.assign(others, rows_.end());
+  rows_.erase(others, rows_.end());
+  if (rows_.empty()) throw std::invalid_argument("study: there are no trials");
+  std::map<std::uint64_t, std::size_t> order;
+  for (const MeasuredRun& row : rows_) {
+    if (order.emplace(row.seed, seeds_.size()).second) seeds_.push_back(row.seed);
+  }
+  std::stable_sort(rows_.begin(), rows_.end(), [&](const MeasuredRun& a, const MeasuredRun& b) {
+    return std::tuple(order.at(a.seed), place(a)) < std::tuple(order.at(b.seed), place(b));
+  });
+  const std::size_t each = rows_.size() / seeds_.size();
+  for (std::size_t n = 0; n < rows_.size(); ++n) {
+    const MeasuredRun& row = rows_[n];
+    const bool again = n % each != 0 && place(row) == place(rows_[n - 1]);
+    if (again || row.seed != seeds_[std::min(n / each, seeds_.size() - 1)] ||
+        place(row) != place(rows_[n % each])) {
+      throw std::invalid_argument(fmt::format("study: seed {} was not tried as the others were", row.seed));
+    }
+  }
+}
+
+std::span<const MeasuredRun> Study::rows_of_seed(std::size_t n) const {
+  const std::size_t each = rows_.size() / seeds_.size();
+  return std::span(rows_).subspan(n * each, each);
+}
+
+std::vector<AlgorithmId> Study::algorithms() const {
+  std::vector<AlgorithmId> tried;
+  for (const MeasuredRun& row : rows_) tried.push_back(row.algorithm);
+  return each_once(std::move(tried));
+}
+
+std::vector<std::string_view> Study::phases() const {
+  std::vector<std::string_view> tried;
+  for (const std::string_view phase : kPhases)
+    if (std::ranges::any_of(rows_, [&](const MeasuredRun& row) { return row.phase == phase; }))
+      tried.push_back(phase);
+  return tried;
+}
+
+std::size_t Study::seeds_needed() const {
+  const std::size_t algorithms = this->algorithms().size();
+  const std::size_t pairs = std::max<std::size_t>(algorithms * (algorithms - 1) / 2, 1);
+  std::size_t seeds = 1;
+  while (static_cast<double>(pairs) * min_p(seeds) > kSignificance) ++seeds;
+  return seeds;
+}
+
+std::vector<Field<RunMetrics>> Study::metrics_of(std::string_view phase) const {
+  std::vector<Field<RunMetrics>> metrics = key_metrics();
+  std::erase_if(metrics, [&](const Field<RunMetrics>& metric) {
+    return std::none_of(rows_.begin(), rows_.end(), [&](const MeasuredRun& row) {
+      const double value = metric.get(row.metrics);
+      return row.phase == phase && value != 0 && !std::isnan(value);
+    });
+  });
+  return metrics;
+}
+
+std::vector<double> Study::all_values(const AlgorithmId& algorithm, std::string_view phase,
+                                      const RunFigure& figure) const {
+  std::vector<double> values;
+  for (const MeasuredRun& row : rows_) {
+    if (place(row) == std::tuple(phase_number(phase), algorithm)) values.push_back(figure(row.metrics));
+  }
+  return values;
+}
+
+std::vector<double> Study::values(const AlgorithmId& algorithm, std::string_view phase,
+                                  const RunFigure& figure) const {
+  std::vector<double> values = all_values(algorithm, phase, figure);
+  std::erase_if(values, [](double value) { return std::isnan(value); });
+  return values;
+}
+
+ContactShares Study::contact(const AlgorithmId& algorithm, std::string_view phase) const {
+  const auto median = [&](const RunFigure& figure) {
+    return distribution_of(values(algorithm, phase, figure)).median;
+  };
+  ContactShares shares;
+  for (double ContactShares::*share : {&ContactShares::any, &ContactShares::burr, &ContactShares::shaft,
+                                       &ContactShares::force, &ContactShares::torque})
+    shares.*share = median([&](const M& m) { return m.contact.*share; });
+  const std::vector<double> lost =
+      values(algorithm, phase, [](const M& m) { return m.contact.lost_after_s; });
+  if (!lost.empty() && !are_most(seeds_.size() - lost.size()))
+    shares.lost_after_s = distribution_of(lost).median;
+  shares.lost_while_milling =
+      median([](const M& m) { return m.contact.lost_while_milling ? 1.0 : 0.0; }) > 0.5;
+  return shares;
+}
+
+std::string Study::not_reached(const AlgorithmId& algorithm, std::string_view phase) const {
+  std::map<std::string, std::size_t> hands;
+  for (const MeasuredRun& row : rows_) {
+    if (!row.not_reached.empty() && place(row) == std::tuple(phase_number(phase), algorithm))
+      ++hands[row.not_reached];
+  }
+  std::string text;
+  for (const auto& [words, count] : hands) {
+    if (!text.empty()) text += "; ";
+    text += seeds_.size() == 1 ? words : fmt::format("{} ({} of {} hands)", words, count, seeds_.size());
+  }
+  return text;
+}
+
+void write_study_csv(const std::filesystem::path& path, const Study& study) {
+  write_text_atomically(path, [&](std::ostream& out) {
+    out << kHandColumns << summary_columns() << '\n';
+    for (const auto* rows : {&study.rows(), &study.rows_of_other_grips()}) {
+      for (const MeasuredRun& row : *rows) {
+        out << fmt::format("{},{},{},{},{}\n", row.seed, row.hand_stiffness_N_per_m,
+                           row.hand_damping_Ns_per_m, row.grip, summary_fields(row));
+      }
+    }
+  });
+}
+
+std::optional<Study> read_study_csv(const std::filesystem::path& path, const std::vector<MeasuredRun>& rows) {
+  std::ifstream in(path);
+  std::string line;
+  if (!next_line(in, line) || line != kHandColumns + summary_columns()) return std::nullopt;
+  std::vector<MeasuredRun> all;
+  std::size_t found = 0;
+  while (next_line(in, line)) {
+    std::optional<MeasuredRun> row = read_row(line, rows);
+    if (!row) continue;
+    found += row->grip == 1 && std::any_of(rows.begin(), rows.end(), [&](const MeasuredRun& one) {
+               return one.seed == row->seed && place(one) == place(*row) && same_figures(one, *row);
+             });
+    all.push_back(*std::move(row));
+  }
+  if (found != rows.size()) return std::nullopt;
+  return Study(std::move(all));
+}
+
+}  // namespace osteomill

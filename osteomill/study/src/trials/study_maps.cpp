@@ -1,0 +1,290 @@
+#include "trials/study_maps.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <set>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "osteomill/base/distribution.h"
+#include "osteomill/base/parse_number.h"
+#include "osteomill/study/figure.h"
+
+namespace osteomill {
+
+namespace {
+
+constexpr std::size_t kMaxCells = 40, kParts = 24, kMaxTics = 8;
+// Values that span this factor stand on a logarithmic axis.
+constexpr double kWide = 10;
+// As a share of their size, by which values lie apart that have places of their own on an axis.
+constexpr double kApart = 1e-5;
+
+// Values that a scale cannot tell apart are one.
+bool is_alike(double a, double b) {
+  return std::abs(b - a) <= kApart * std::max(std::abs(a), std::abs(b));
+}
+
+// A unit that both have is none of their ratio.
+std::string ratio_label(std::string above, std::string below) {
+  const auto unit_of = [](const std::string& label) {
+    return label.ends_with(')') ? label.substr(label.rfind(" (")) : std::string();
+  };
+  if (const std::string unit = unit_of(above); !unit.empty() && unit == unit_of(below)) {
+    above.resize(above.size() - unit.size());
+    below.resize(below.size() - unit.size());
+  }
+  return above + " / " + (below.find('/') == std::string::npos ? below : "(" + below + ")");
+}
+
+// Where it stands among those that are known; if it is new, it is put behind them.
+std::size_t place_in(std::vector<std::string>& known, const std::string& text) {
+  const auto at = std::ranges::find(known, text);
+  const auto place = static_cast<std::size_t>(at - known.begin());
+  if (at == known.end()) known.push_back(text);
+  return place;
+}
+
+// What stands along an axis, or is coloured: an option, a column of the rows, or the ratio of two of them.
+class Shown {
+ public:
+  Shown(const StudyDesign& design, const std::string& shown) {
+    for (const std::string& name : names_in(shown)) {
+      const auto& columns = columns_of(design.test);
+      const Field<TrialRow>* column = find_field(columns, name);
+      parts_.push_back({name, column});
+      const std::string words_of_it =
+          column == nullptr ? design.label_of(name) : osteomill::label_of(*column);
+      label = label.empty() ? words_of_it : ratio_label(label, words_of_it);
+    }
+  }
+
+  // Not a number where it is not set or could not be measured.
+  double of(const StudySettings& settings, const TrialRow& row) {
+    const double value = one(parts_.front(), settings, row);
+    return parts_.size() == 1 ? value : value / one(parts_.back(), settings, row);
+  }
+
+  std::string label;
+  // The values of an option that has words for values, each shown as its place among them.
+  std::vector<std::string> words;
+
+ private:
+  struct Part {
+    std::string name;
+    // Null if it is an option.
+    const Field<TrialRow>* column;
+  };
+  double one(const Part& part, const StudySettings& settings, const TrialRow& row) {
+    if (part.column != nullptr) return part.column->get(row);
+    const std::string* text = find_value(settings, part.name);
+    if (text == nullptr) return kNotMeasured;
+    if (const auto number = parsed_number<double>(*text)) return *number;
+    return static_cast<double>(place_in(words, *text));
+  }
+
+  std::vector<Part> parts_;
+};
+
+// The cells of an axis: values, or parts of their range, by their edges.
+struct Cells {
+  std::vector<double> edges;
+  std::vector<double> tics;
+  bool logarithmic = false;
+
+  std::size_t count() const { return edges.size() - 1; }
+  // Of the axis's length.
+  double share_at(double value) const {
+    const double from = edges.front(), to = edges.back();
+    return logarithmic ? std::log(value / from) / std::log(to / from) : (value - from) / (to - from);
+  }
+  std::size_t of(double value) const {
+    const auto above = std::upper_bound(edges.begin(), edges.end(), value);
+    const auto n = static_cast<std::size_t>(std::max<std::ptrdiff_t>(1, above - edges.begin()));
+    return std::min(n, count()) - 1;
+  }
+};
+
+double between(double a, double b, bool logarithmic) {
+  return logarithmic ? std::sqrt(a * b) : 0.5 * (a + b);
+}
+
+// Beyond the last by as much as the edge before lies ahead of it.
+double mirrored(double value, double edge, bool logarithmic) {
+  return logarithmic ? value * value / edge : 2 * value - edge;
+}
+
+Cells cells_of(const std::set<double>& values, bool words) {
+  Cells cells;
+  const double min = *values.begin(), max = *values.rbegin();
+  cells.logarithmic = !words && min > 0 && max / min >= kWide;
+  if (values.size() > kMaxCells) {
+    const StudyRange range{min, max, cells.logarithmic};
+    cells.edges = steps_of(range, kParts + 1);
+    return cells;
+  }
+  if (values.size() == 1) {
+    const double half = words || min == 0 ? 0.5 : 0.1 * std::abs(min);
+    cells.edges = {min - half, min + half};
+  } else {
+    for (auto next = std::next(values.begin()); next != values.end(); ++next)
+      cells.edges.push_back(between(*std::prev(next), *next, cells.logarithmic));
+    cells.edges.insert(cells.edges.begin(), mirrored(min, cells.edges.front(), cells.logarithmic));
+    cells.edges.push_back(mirrored(max, cells.edges.back(), cells.logarithmic));
+  }
+  if (words || values.size() <= kMaxTics) cells.tics.assign(values.begin(), values.end());
+  return cells;
+}
+
+// What the tics and the label of the upright axis take.
+double room_left_px(const Shown& shown) {
+  constexpr double kNumbers_px = 84, kLetter_px = 9, kLabel_px = 64;
+  std::size_t longest = 0;
+  for (const std::string& word : shown.words) longest = std::max(longest, word.size());
+  return std::max(kNumbers_px, kLabel_px + kLetter_px * static_cast<double>(longest));
+}
+
+std::string axis_script(char axis, const Cells& cells, const Shown& shown) {
+  std::string script =
+      fmt::format("{0} logscale {1}\nset {1}range [{2:.9g}:{3:.9g}]\nset {1}label {4} noenhanced\n",
+                  cells.logarithmic ? "set" : "unset", axis, cells.edges.front(), cells.edges.back(),
+                  gnuplot_quoted(shown.label));
+  if (cells.tics.empty()) return script + fmt::format("set {}tics autofreq\n", axis);
+  std::string tics;
+  double last = -1;
+  for (std::size_t n = 0; n < cells.tics.size(); ++n) {
+    const bool is_word = !shown.words.empty();
+    const double share = cells.share_at(cells.tics[n]);
+    // Numbers beside each other need room.
+    if (axis == 'x' && !is_word && n > 0 && share - last < 0.15) continue;
+    last = share;
+    tics += fmt::format("{}{} {:.9g}", n == 0 ? "" : ", ",
+                        gnuplot_quoted(is_word ? shown.words[n] : fmt::format("{:.4g}", cells.tics[n])),
+                        cells.tics[n]);
+  }
+  return script + fmt::format("set {}tics ({})\n", axis, tics);
+}
+
+double statistic_of(const std::string& statistic, const std::vector<double>& values) {
+  if (statistic != "mean") return percentile(values, statistic == "max" ? 1 : 0.5);
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+std::string colour_script(const StudyMap& map, const std::string& label, double min, double max,
+                          const PanelGrid& grid) {
+  const bool logarithmic = map.logarithmic_colour && min > 0;
+  if (is_alike(min, max)) max = min + (min == 0 ? 1 : 0.1 * std::abs(min));
+  const auto up = [&](double px) { return 1 - px / grid.height_px; };
+  std::string tics;
+  for (const double value : steps_of({min, max, true}, logarithmic ? 5 : 1))
+    tics += fmt::format("{}'{:.3g}' {:.6g}", tics.empty() ? "" : ", ", value, value);
+  return fmt::format(
+      "set palette defined (0 '#440154', 1 '#3b528b', 2 '#21918c', 3 '#5ec962', 4 '#fde725')\n"
+      "{} logscale cb\nset cbtics {}\nset cbrange [{:.6g}:{:.6g}]\nset format cb '%g'\nset format x "
+      "'%g'\nset format y '%g'\n"
+      "set label 101 {} at screen 0.5,screen {:.4f} center font ',15' noenhanced\n"
+      "set label 102 {} at screen 0.5,screen {:.4f} center noenhanced\n"
+      "set colorbox horizontal user origin screen 0.3,screen {:.4f} size screen 0.4,screen {:.4f} border\n",
+      logarithmic ? "set" : "unset", logarithmic ? "(" + tics + ")" : "autofreq", min, max,
+      gnuplot_quoted(map.title), up(22),
+      gnuplot_quoted(fmt::format("{}: {} of a cell", label, map.statistic)), up(50), up(78),
+      14 / grid.height_px);
+}
+
+struct Point {
+  std::size_t panel;
+  double x, y, colour;
+};
+
+std::string panel_name(const StudyMap& map, const StudySettings& settings) {
+  std::string name;
+  for (const std::string& key : names_in(map.panels))
+    if (const std::string* value = find_value(settings, key)) name += (name.empty() ? "" : ", ") + *value;
+  return name;
+}
+
+Cells cells_along(double Point::*axis, const std::vector<Point>& points, const Shown& shown) {
+  std::set<double> all, values;
+  for (const Point& point : points) all.insert(point.*axis);
+  for (const double value : all)
+    if (values.empty() || !is_alike(*values.rbegin(), value)) values.insert(value);
+  return cells_of(values, !shown.words.empty());
+}
+
+// What stands in the map's panels.
+struct Gathered {
+  Shown x, y, colour;
+  std::vector<std::string> panels = {};
+  std::vector<Point> points = {};
+};
+
+Gathered gather(const StudyDesign& design, const StudyMap& map, const std::vector<TrialRow>& rows) {
+  Gathered all{{design, map.x}, {design, map.y}, {design, map.colour}};
+  const auto parts = parts_of(design.test);
+  for (const TrialRow& row : rows) {
+    if (parts[row.part] != (map.part.empty() ? parts.front() : map.part)) continue;
+    const StudySettings settings = design.trial(row.trial);
+    const Point point{place_in(all.panels, panel_name(map, settings)), all.x.of(settings, row),
+                      all.y.of(settings, row), all.colour.of(settings, row)};
+    if (std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.colour))
+      all.points.push_back(point);
+  }
+  return all;
+}
+
+}  // namespace
+
+std::optional<CaptionedFigure> draw_study_map(const StudyDesign& design, const StudyMap& map,
+                                              const std::vector<TrialRow>& rows, const std::string& name,
+                                              const std::filesystem::path& folder) {
+  const auto [shown_x, shown_y, colour, panels, points] = gather(design, map, rows);
+  if (points.empty()) return std::nullopt;
+  const Cells x = cells_along(&Point::x, points, shown_x), y = cells_along(&Point::y, points, shown_y);
+  std::map<std::array<std::size_t, 3>, std::vector<double>> cells;
+  for (const Point& point : points)
+    cells[{point.panel, x.of(point.x), y.of(point.y)}].push_back(point.colour);
+  std::vector<std::string> data(panels.size());
+  double min = std::numeric_limits<double>::infinity(), max = -min;
+  for (const auto& [place, values] : cells) {
+    const auto [panel, column, row] = place;
+    const double value = statistic_of(map.statistic, values);
+    min = std::min(min, value);
+    max = std::max(max, value);
+    data[panel] += fmt::format("{:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g}\n",
+                               between(x.edges[column], x.edges[column + 1], false),
+                               between(y.edges[row], y.edges[row + 1], false), x.edges[column],
+                               x.edges[column + 1], y.edges[row], y.edges[row + 1], value);
+  }
+  PanelGrid grid{.columns = std::min<std::size_t>(panels.size(), 4),
+                 .head_px = 118,
+                 .left_px = room_left_px(shown_y),
+                 .right_px = 34,
+                 .above_px = 34,
+                 .below_px = 58};
+  grid.rows = (panels.size() + grid.columns - 1) / grid.columns;
+  grid.height_px = grid.head_px + 340 * static_cast<double>(grid.rows);
+  const auto panel = [&, &panels = panels](std::size_t column, std::size_t row, FigureScript& figure) {
+    const std::size_t n = row * grid.columns + column;
+    if (n >= panels.size() || data[n].empty()) return std::string();
+    return fmt::format("set title {} offset 0,-0.4 noenhanced\n", gnuplot_quoted(panels[n])) +
+           fmt::format(
+               "plot {} using 1:2:3:4:5:6:7 with boxxyerror fs solid noborder lc palette{}\n"
+               "unset label\nunset colorbox\n",
+               figure.data(data[n]), map.line_of_equality ? ", x with lines dt 2 lw 2 lc rgb '#d32f2f'" : "");
+  };
+  const Figure figure =
+      draw_panels(name, grid,
+                  begin_panels("") + axis_script('x', x, shown_x) + axis_script('y', y, shown_y) +
+                      colour_script(map, colour.label, min, max, grid),
+                  panel, folder);
+  return CaptionedFigure{figure.svg, fmt::format("{}: {} of the trials in a cell, by {} and {}. What is "
+                                                 "white was not tried, or could not be measured.",
+                                                 colour.label, map.statistic, shown_x.label, shown_y.label)};
+}
+
+}  // namespace osteomill

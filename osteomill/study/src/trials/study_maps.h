@@ -1,0 +1,21 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "osteomill/study/html.h"
+#include "osteomill/study/study_design.h"
+#include "osteomill/study/trial_rows.h"
+
+namespace osteomill {
+
+/// Draws a map of a study's rows into `folder` as NAME.svg and NAME.png: a cell for each pair of values, or,
+/// of more than 40, for each of 24 equal parts of their range. Nothing where no row has what it shows. Throws
+/// as draw_figure does.
+std::optional<CaptionedFigure> draw_study_map(const StudyDesign& design, const StudyMap& map,
+                                              const std::vector<TrialRow>& rows, const std::string& name,
+                                              const std::filesystem::path& folder);
+
+}  // namespace osteomill

@@ -1,0 +1,177 @@
+#include "osteomill/study/study_report.h"
+
+#include <algorithm>
+#include <iterator>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "osteomill/base/atomic_file.h"
+#include "osteomill/base/csv_field.h"
+#include "osteomill/base/input_error.h"
+
+#include "trials/conclusions.h"
+#include "trials/study_maps.h"
+#include "trials/study_section.h"
+
+namespace osteomill {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string csv_head(const StudyDesign& design) {
+  std::string head = list_head(design) + ",part";
+  for (const Field<TrialRow>& column : columns_of(design.test)) head += "," + column.name;
+  return head + ",not_reached\n";
+}
+
+std::string csv_row(const StudyDesign& design, const TrialRow& row) {
+  std::string line = list_row(design, row.trial) + "," + std::string(parts_of(design.test)[row.part]);
+  for (const Field<TrialRow>& column : columns_of(design.test)) line += csv_number(column.get(row));
+  return line + "," + csv_field(row.run.not_reached) + "\n";
+}
+
+std::string text_of(const StudySettings& settings, std::string_view key, const char* otherwise) {
+  const std::string* value = find_value(settings, key);
+  return value == nullptr ? otherwise : *value;
+}
+
+MeasuredRun run_of_hand(const StudySettings& settings, const TrialRow& row) {
+  MeasuredRun run = row.run;
+  run.algorithm = algorithm_named(text_of(settings, "algorithm", default_algorithm().id.name.c_str())).id;
+  run.seed = seed_of(settings);
+  run.grip = std::stod(text_of(settings, "grip", "1"));
+  return run;
+}
+
+// What hands that are compared have in common: the bone, the tool, and all else that varies but the hand
+// itself and what is compared.
+std::string group_of(const StudyDesign& design, const StudySettings& settings) {
+  std::string group;
+  for (const std::string& key : design.varied()) {
+    if (key == "seed" || key == "algorithm" || key == "grip") continue;
+    if (const std::string* value = find_value(settings, key))
+      group += fmt::format("{}{} {}", group.empty() ? "" : ", ", key, *value);
+  }
+  return group;
+}
+
+// While a study is not done some hands have not yet tried all.
+std::vector<MeasuredRun> of_whole_hands(std::vector<MeasuredRun> rows) {
+  std::map<std::uint64_t, std::size_t> tried;
+  std::size_t most = 0;
+  for (const MeasuredRun& row : rows) most = std::max(most, ++tried[row.seed]);
+  std::erase_if(rows, [&](const MeasuredRun& row) { return tried[row.seed] < most; });
+  return rows;
+}
+
+// One for each group of hands.
+std::vector<PageSection> findings_sections(const StudyDesign& design, const std::vector<TrialRow>& all,
+                                           const fs::path& figures) {
+  std::map<std::string, std::vector<MeasuredRun>> groups;
+  for (const TrialRow& row : all) {
+    const StudySettings settings = design.trial(row.trial);
+    groups[group_of(design, settings)].push_back(run_of_hand(settings, row));
+  }
+  std::vector<PageSection> sections;
+  for (const auto& [group, rows] : groups) {
+    const Study study(of_whole_hands(rows));
+    PageSection section{.title = group.empty() ? "Over the hands" : "Over the hands: " + group,
+                        .paragraphs = {what_was_compared(study, group.empty() ? "the same bone" : group)},
+                        .points = conclusions(study),
+                        .parts = {findings_section(study)}};
+    const fs::path folder = figures / fmt::format("{}", sections.size());
+    for (const std::string_view phase : study.phases()) {
+      create_folder(folder);
+      section.figures.push_back({draw_study_figure(study, phase, folder).svg, "Every hand."});
+    }
+    sections.push_back(std::move(section));
+  }
+  return sections;
+}
+
+HtmlTable options_table(const StudyDesign& design, const std::vector<TrialRow>& rows) {
+  constexpr std::size_t kFewValues = 12;
+  // Up to one value more than is shown, so that the table can say that there are others.
+  std::map<std::string, std::vector<std::string>> tried;
+  for (const TrialRow& row : rows) {
+    for (const auto& [key, value] : design.trial(row.trial)) {
+      std::vector<std::string>& values = tried[key];
+      if (values.size() <= kFewValues && std::ranges::find(values, value) == values.end())
+        values.push_back(value);
+    }
+  }
+  HtmlTable table{{"Option", "What was tried"}, {}};
+  for (auto& [key, values] : tried) {
+    const bool has_others = values.size() > kFewValues;
+    if (has_others) values.pop_back();
+    const std::string words = fmt::format("{}{}", fmt::join(values, ", "), has_others ? " and others" : "");
+    table.rows.push_back({html_escaped(design.label_of(key)), html_escaped(words)});
+  }
+  return table;
+}
+
+PageSection maps_section(const StudyDesign& design, const std::vector<TrialRow>& rows,
+                         const fs::path& figures) {
+  PageSection section{.title = "Maps"};
+  for (std::size_t n = 1; n <= design.maps.size(); ++n) {
+    const StudyMap& map = design.maps[n - 1];
+    if (const auto drawn = draw_study_map(design, map, rows, fmt::format("map_{}", n), figures)) {
+      section.figures.push_back(*drawn);
+    } else {
+      section.notices.push_back(fmt::format("Map {}, {}: nothing was measured.", n, map.title));
+    }
+  }
+  return section;
+}
+
+std::string share_text(std::size_t done, std::size_t all) {
+  return fmt::format("{} of {} trials ({:.3g} %)", done, all,
+                     100 * static_cast<double>(done) / static_cast<double>(all));
+}
+
+}  // namespace
+
+std::string list_head(const StudyDesign& design) {
+  std::string head = "trial";
+  for (const std::string& key : design.varied()) head += "," + key;
+  return head;
+}
+
+std::string list_row(const StudyDesign& design, std::size_t number) {
+  const StudySettings settings = design.trial(number);
+  std::string row = fmt::format("{}", number);
+  for (const std::string& key : design.varied()) row += "," + csv_field(text_of(settings, key, ""));
+  return row;
+}
+
+fs::path write_study_report(const StudyDesign& design, const StudyFolder& study) {
+  std::vector<TrialRow> rows;
+  const StudyStatus status = study_status(study, &rows);
+  if (rows.empty()) throw InputError(study.path.string(), "has no trial that is done");
+  const std::string share = share_text(status.trials_done, study.record.trials);
+  const fs::path out = study.path / "report";
+  write_folder_atomically(out, [&](const fs::path& beside) {
+    write_text_atomically(beside / "trials.csv", [&](std::ostream& csv) {
+      csv << csv_head(design);
+      for (const TrialRow& row : rows) csv << csv_row(design, row);
+    });
+    const fs::path figures = beside / "figures";
+    create_folder(figures);
+    std::vector<PageSection> sections{{.paragraphs = {fmt::format("{}, test {}; {:.3g} h of CPU.", share,
+                                                                  name_of(design.test), status.cpu_s / 3600)},
+                                       .tables = {options_table(design, rows)}}};
+    if (status.trials_done < study.record.trials)
+      sections.front().notices = {fmt::format("This is a part of the study: {}.", share)};
+    if (!design.maps.empty()) sections.push_back(maps_section(design, rows, figures));
+    if (design.findings)
+      std::ranges::move(findings_sections(design, rows, figures), std::back_inserter(sections));
+    write_text_atomically(beside / "report.html", [&](std::ostream& page) {
+      page << html_page(design.title.empty() ? "A study" : design.title, sections);
+    });
+  });
+  return out / "report.html";
+}
+
+}  // namespace osteomill

@@ -1,0 +1,272 @@
+#include "trials/study_section.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "osteomill/study/paper.h"
+#include "osteomill/study/study_findings.h"
+
+#include "trials/statistics.h"
+#include "trials/study_comparison.h"
+
+namespace osteomill {
+
+namespace {
+
+constexpr std::size_t kColumns = 4;
+constexpr std::size_t kMaxPanels = 8;
+// In units of the distance between two algorithms.
+constexpr double kScatter = 0.2;
+constexpr double kBarHalf = 0.15;
+
+std::vector<double> all_values(const Study& study, std::string_view phase, const Field<RunMetrics>& metric) {
+  std::vector<double> all;
+  for (const AlgorithmId& algorithm : study.algorithms()) {
+    const auto values = study.values(algorithm, phase, metric.get);
+    all.insert(all.end(), values.begin(), values.end());
+  }
+  return all;
+}
+
+// Whole decades where the values spread, so that at least two tics have a number.
+std::string range_for(const std::vector<double>& values) {
+  if (values.empty()) return "unset logscale y\nset yrange [0:1]\n";
+  const auto [min, max] = std::minmax_element(values.begin(), values.end());
+  if (*min > 0 && *max > 4 * *min) {
+    return fmt::format("set logscale y\nset yrange [{:.6g}:{:.6g}]\n",
+                       std::pow(10.0, std::floor(std::log10(*min) + 1e-9)),
+                       std::pow(10.0, std::ceil(std::log10(*max) - 1e-9)));
+  }
+  return fmt::format("unset logscale y\nset yrange [0:{:.6g}]\n", *max > 0 ? 1.15 * *max : 1.0);
+}
+
+// Two blocks: the dots, and the bars at the medians.
+std::string dots_and_bars(const std::vector<double>& values, double x) {
+  std::string dots, bars;
+  const double last = std::max<double>(1, static_cast<double>(values.size()) - 1);
+  for (std::size_t n = 0; n < values.size(); ++n) {
+    const double across = kScatter * (static_cast<double>(n) / last - 0.5);
+    dots += fmt::format("{:.4f} {:.6g}\n", values.size() > 1 ? x + across : x, values[n]);
+  }
+  const double median = distribution_of(values).median;
+  bars = fmt::format("{:.4f} {:.6g}\n{:.4f} {:.6g}\n", x - kBarHalf, median, x + kBarHalf, median);
+  return dots + "\n\n" + bars;
+}
+
+std::string tics(const Study& study) {
+  std::string list;
+  int place = 0;
+  for (const AlgorithmId& algorithm : study.algorithms()) {
+    list += fmt::format("{}'{}' {}", place == 0 ? "" : ", ", short_label(algorithm), place);
+    ++place;
+  }
+  return fmt::format("set xrange [-0.5:{}]\nset xtics scale 0 ({})\n", static_cast<double>(place) - 0.5,
+                     list);
+}
+
+std::string panel(const Study& study, std::string_view phase, const Field<RunMetrics>& metric,
+                  FigureScript& figure) {
+  std::string plot;
+  int place = 0;
+  for (const AlgorithmId& algorithm : study.algorithms()) {
+    const double x = place++;
+    const std::vector<double> values = study.values(algorithm, phase, metric.get);
+    if (values.empty()) continue;
+    plot += fmt::format(
+        "{0}{1} index 1 with lines lw 2.5 lc rgb '{2}' notitle, {1} index 0 with points pt 7 ps 0.8 lw 1.3 "
+        "lc rgb '{2}' notitle",
+        plot.empty() ? "plot " : ", ", figure.data(dots_and_bars(values, x)), algorithm.colour);
+  }
+  return range_for(all_values(study, phase, metric)) + plot + "\n";
+}
+
+// The title stands over the whole panel: some are wider than its axes.
+std::string title(const Field<RunMetrics>& metric, const PanelGrid& grid, const PanelCell& cell) {
+  constexpr double kTitle_px = 16;
+  return fmt::format("set label 2 '{}' at screen {:.4f},screen {:.4f} center\n", label_of(metric),
+                     (cell.left_px + 0.55 * cell.wide_px) / PanelGrid::kWidth_px,
+                     (cell.top_px - kTitle_px) / grid.height_px);
+}
+
+std::vector<LegendEntry> legend(const Study& study, std::string_view phase) {
+  constexpr std::string_view kInk = "#111111";
+  std::vector<LegendEntry> entries{{phase == kMilling ? "Milling:" : "Holding still:", kInk, 105}};
+  for (const AlgorithmId& algorithm : study.algorithms())
+    entries.push_back({algorithm.label, algorithm.colour, 135});
+  entries.push_back({"a dot for each hand, a bar at the median", kInk, 310});
+  return entries;
+}
+
+std::string interval_text(const MedianInterval& interval) {
+  return fmt::format("{:.3g} [{:.3g}, {:.3g}]", interval.median, interval.low, interval.high);
+}
+
+// "2 > 1, p = 0.012" in bold where significant, else "1, 2: p = 0.3" in grey.
+std::string pair_text(const PairedComparison& pair) {
+  const std::string first = short_label(pair.first), second = short_label(pair.second);
+  if (pair.p <= kSignificance) {
+    return fmt::format("<b>{} &gt; {}</b>, {}", pair.second_is_greater ? second : first,
+                       pair.second_is_greater ? first : second, html_escaped(p_text(pair.p)));
+  }
+  return fmt::format("<span class=\"none\">{}, {}: {}</span>", first, second, p_text(pair.p));
+}
+
+// "0.02 [0.01, 0.03]", with the hands where it could not be measured in all; else why not in any.
+std::string values_text(const Study& study, const AlgorithmId& algorithm, std::string_view phase,
+                        const Field<RunMetrics>& metric) {
+  const std::vector<double> values = study.values(algorithm, phase, metric.get);
+  if (values.empty()) return contact_words(study.contact(algorithm, phase));
+  const std::string text = interval_text(median_interval(values));
+  return values.size() == study.seeds().size()
+             ? text
+             : fmt::format("{} in {} of {} hands", text, values.size(), study.seeds().size());
+}
+
+HtmlTable algorithms_table(const Study& study, std::string_view phase) {
+  HtmlTable table{{"Median over the hands [interval]"}, {}, true};
+  for (const AlgorithmId& algorithm : study.algorithms()) table.header.emplace_back(algorithm.label);
+  if (study.algorithms().size() > 1) table.header.emplace_back("Differences");
+  std::vector<std::string> not_reached{"not reached"};
+  bool any = false;
+  for (const AlgorithmId& algorithm : study.algorithms()) {
+    const std::string words = study.not_reached(algorithm, phase);
+    any = any || !words.empty();
+    not_reached.push_back("<span class=\"words\">" + html_escaped(words) + "</span>");
+  }
+  if (any) table.rows.push_back(std::move(not_reached));
+  for (const Field<RunMetrics>& metric : study.metrics_of(phase)) {
+    table.rows.push_back({html_escaped(label_of(metric))});
+    for (const AlgorithmId& algorithm : study.algorithms()) {
+      table.rows.back().push_back(values_text(study, algorithm, phase, metric));
+    }
+    std::string pairs;
+    for (const PairedComparison& pair : compare_algorithms(study, phase, metric.get)) {
+      pairs += (pairs.empty() ? "" : "<br>") + pair_text(pair);
+    }
+    if (study.algorithms().size() > 1) table.rows.back().push_back(pairs);
+  }
+  return table;
+}
+
+// What the numbers are, and how far they can be trusted.
+std::vector<std::string> how_to_read(const Study& study) {
+  const std::size_t n = study.seeds().size();
+  std::vector<double> stiffness, damping;
+  for (const MeasuredRun& row : study.rows()) {
+    stiffness.push_back(row.hand_stiffness_N_per_m);
+    damping.push_back(row.hand_damping_Ns_per_m);
+  }
+  const auto [softest, stiffest] = std::minmax_element(stiffness.begin(), stiffness.end());
+  const auto [min, max] = std::minmax_element(damping.begin(), damping.end());
+  const MedianInterval interval = median_interval(std::vector<double>(n, 0.0));
+  const std::size_t pairs = study.algorithms().size() * (study.algorithms().size() - 1) / 2;
+  const double min_corrected = std::min(1.0, static_cast<double>(std::max<std::size_t>(pairs, 1)) * min_p(n));
+  std::vector<std::string> paragraphs{fmt::format(
+      "The same trial in {} hands: each seed (the first is {}) has a tremor and a hand of its own, drawn "
+      "evenly from the published ranges; here {:.0f} to {:.0f} N/m and {:.2g} to {:.2g} N s/m. study.csv has "
+      "every trial. Recordings are kept of seed {} alone, which is the one that the figures of force, "
+      "torque, shaft and path show; of the others only these figures of merit.",
+      n, study.seeds().front(), *softest, *stiffest, *min, *max, study.seeds().front())};
+  paragraphs.push_back(
+      interval.is_range
+          ? fmt::format("In brackets stands the range of all values: {} hands are too few for a 95 % "
+                        "interval of the median, which takes 6 (the range covers it with {:.3g} %).",
+                        n, 100 * interval.coverage)
+          : fmt::format("In brackets stands a confidence interval of the median between two order "
+                        "statistics, by the binomial distribution; it covers the median with {:.3g} %.",
+                        100 * interval.coverage));
+  paragraphs.push_back(fmt::format(
+      "Differences are tested hand by hand with Wilcoxon's signed-rank test, exact and two-sided, corrected "
+      "after Holm over what is compared in one row (not over the rows); bold ones are significant (p at most "
+      "{}). The least p that {} hands can give is {:.2g}, after the correction {:.2g}{}.",
+      kSignificance, n, min_p(n), min_corrected,
+      min_corrected > kSignificance ? ", so that no difference can be significant here" : ""));
+  paragraphs.emplace_back(
+      "Compute times are the machine's: those of the first seed were taken with nothing else of this program "
+      "running, the others with a trial beside on each further core. Everything else comes out the same on "
+      "any machine.");
+  return paragraphs;
+}
+
+const char* css_of(Verdict verdict) {
+  return verdict == Verdict::agrees ? "agrees" : verdict == Verdict::does_not_agree ? "differs" : "none";
+}
+
+HtmlTable findings_table(const Study& study) {
+  const bool one = study.seeds().size() == 1;
+  HtmlTable table{{"The paper found", one ? "Measured here" : "Medians over the hands",
+                   one ? "In this hand" : "Verdict", "Rule"},
+                  {}};
+  if (!one) table.header.insert(table.header.end() - 1, {"In how many hands", "Sign test"});
+  for (const StudyFinding& f : check_study_findings(study)) {
+    const Verdict verdict = f.verdict;
+    std::vector<std::string> row{
+        html_escaped(f.of_medians.paper_says), html_escaped(f.of_medians.measured),
+        fmt::format("<span class=\"{}\">{}</span>", css_of(verdict), name_of(verdict))};
+    if (!one) {
+      row.push_back(fmt::format("{} of {}", f.agreeing, f.tested));
+      row.push_back(html_escaped(p_text(f.p)));
+    }
+    row.push_back("agrees where " + html_escaped(f.of_medians.rule));
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+std::string phase_title(std::string_view phase) {
+  return phase == kMilling ? "Milling" : "Holding still, not milling";
+}
+
+}  // namespace
+
+Figure draw_study_figure(const Study& study, std::string_view phase, const std::filesystem::path& folder) {
+  std::vector<Field<RunMetrics>> metrics = study.metrics_of(phase);
+  if (metrics.size() > kMaxPanels) metrics.resize(kMaxPanels);
+  PanelGrid grid{.columns = kColumns,
+                 .rows = std::max<std::size_t>((metrics.size() + kColumns - 1) / kColumns, 1),
+                 .head_px = 52,
+                 .left_px = 76,
+                 .right_px = 10,
+                 .above_px = 34,
+                 .below_px = 36};
+  grid.height_px = grid.head_px + 280 * static_cast<double>(grid.rows);
+  return draw_panels(
+      fmt::format("study_{}", phase), grid,
+      begin_panels("y") + "set format y '%g'\n" + tics(study) + legend_row(grid, legend(study, phase)),
+      [&](std::size_t column, std::size_t row, FigureScript& figure) {
+        const std::size_t n = row * kColumns + column;
+        if (n >= metrics.size()) return std::string();
+        return title(metrics[n], grid, panel_cell(grid, column, row)) +
+               panel(study, phase, metrics[n], figure) + "unset label\n";
+      },
+      folder);
+}
+
+PageSection study_section(const Study& study, const std::vector<CaptionedFigure>& figures) {
+  PageSection section{.title = fmt::format("Study over {} hands", study.seeds().size()),
+                      .paragraphs = how_to_read(study),
+                      .figures = figures};
+  for (const std::string_view phase : study.phases())
+    section.parts.push_back({.title = phase_title(phase), .tables = {algorithms_table(study, phase)}});
+  return section;
+}
+
+PageSection findings_section(const Study& study) {
+  PageSection section{
+      .title = "The paper's findings",
+      .paragraphs = {
+          "What section 8.2 of the paper says it found, each held against what was measured by a rule of "
+          "this project."}};
+  if (study.seeds().size() > 1) {
+    section.paragraphs.push_back(
+        "Several hands agree with the paper, or do not, where all of them do, or so many more than half that "
+        "tossing a coin would give as many in one of twenty tries at most; else it is not settled. p is the "
+        "chance that as many or more would agree by the toss.");
+  }
+  section.tables = {findings_table(study)};
+  return section;
+}
+
+}  // namespace osteomill

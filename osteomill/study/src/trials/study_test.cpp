@@ -1,0 +1,196 @@
+#include "osteomill/study/study.h"
+
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+
+#include <gtest/gtest.h>
+
+#include "osteomill/base/temporary_folder.h"
+#include "osteomill/haptics/algorithms.h"
+#include "osteomill/study/paper.h"
+#include "osteomill/study/study_findings.h"
+
+#include "tests/support/study_samples.h"
+#include "trials/statistics.h"
+#include "trials/study_comparison.h"
+#include "trials/study_section.h"
+
+namespace osteomill {
+namespace {
+
+using testing_support::sample_rows;
+
+RunFigure force_hp() {
+  return metric("force_hp_rms_N").get;
+}
+
+TEST(Study, RowsAreOrderedBySeedAndThenAsInTheSummary) {
+  std::vector<MeasuredRun> rows = sample_rows(2);
+  for (MeasuredRun& r : rows) r.seed = r.seed == 1 ? 7 : 3;
+  const Study study(rows);
+  EXPECT_EQ(study.seeds(), (std::vector<std::uint64_t>{7, 3}));
+  EXPECT_EQ(study.rows().size(), 12u);
+  EXPECT_EQ(study.rows()[0].seed, 7u);
+  EXPECT_EQ(study.rows()[0].phase, kMilling);
+  EXPECT_EQ(study.rows()[1].algorithm, "surface-points");
+  EXPECT_EQ(study.rows_of_seed(1).front().seed, 3u);
+  EXPECT_EQ(study.values(algorithm_named("surface-points").id, kHolding, force_hp()),
+            (std::vector<double>{1.01, 1.02}));
+  EXPECT_EQ(study.algorithms().size(), 3u);
+}
+
+TEST(Study, SeedsThatWereNotTriedAlikeAreRefused) {
+  EXPECT_THROW(Study({}), std::invalid_argument);
+  for (const std::size_t missing : {0u, 5u, 6u, 11u, 17u}) {
+    std::vector<MeasuredRun> rows = sample_rows(3);
+    rows.erase(rows.begin() + static_cast<std::ptrdiff_t>(missing));
+    EXPECT_THROW(Study{rows}, std::invalid_argument) << missing;
+  }
+  std::vector<MeasuredRun> twice = sample_rows(2);
+  twice[3] = twice[4];
+  EXPECT_THROW(Study{twice}, std::invalid_argument);
+  std::vector<MeasuredRun> all_twice = sample_rows(1);
+  const std::vector<MeasuredRun> again = all_twice;
+  all_twice.insert(all_twice.end(), again.begin(), again.end());
+  EXPECT_THROW(Study{all_twice}, std::invalid_argument);
+}
+
+TEST(Study, WhatDiffersInEveryHandIsSignificantFromSevenHandsOn) {
+  for (const std::uint64_t seeds : {6u, 7u}) {
+    const Study study(sample_rows(seeds));
+    const auto pairs = compare_algorithms(study, kMilling, force_hp());
+    ASSERT_EQ(pairs.size(), 3u);
+    EXPECT_TRUE(pairs[0].second_is_greater);
+    EXPECT_EQ(pairs[0].second, "surface-points");
+    EXPECT_FALSE(pairs[2].second_is_greater);
+    EXPECT_EQ(pairs[2].first, "surface-points");
+    // Two of three pairs lie at the least p, 2^(1 - n); Holm takes three times the first.
+    EXPECT_DOUBLE_EQ(pairs[0].p, 3 * std::pow(0.5, static_cast<double>(seeds) - 1));
+    EXPECT_EQ(pairs[0].p <= kSignificance, seeds == 7);
+    EXPECT_GT(pairs[1].p, 0.5);
+  }
+}
+
+TEST(Study, FindingsAreCountedHandByHand) {
+  std::vector<MeasuredRun> rows = sample_rows(5);
+  for (MeasuredRun& r : rows) {
+    // Seed 4 alone does not buzz, and 1 turns least in three of the five.
+    if (r.seed == 4 && r.algorithm == "surface-points") r.metrics.force_N.hp_rms = 0.01;
+    if (r.algorithm == "line-proxy") r.metrics.shaft.spread_deg = r.seed < 3 ? 1 : -1;
+  }
+  const auto findings = check_study_findings(Study(rows));
+  ASSERT_EQ(findings.size(), 9u);
+  EXPECT_TRUE(findings[1].of_medians.paper_says.starts_with("force: 1 and 3"));
+  EXPECT_EQ(findings[1].of_medians.verdict, Verdict::agrees);
+  EXPECT_EQ(findings[1].agreeing, 4u);
+  EXPECT_EQ(findings[1].tested, 5u);
+  // (5 + 1) / 32.
+  EXPECT_DOUBLE_EQ(findings[1].p, 0.1875);
+  EXPECT_EQ(findings[0].agreeing, 5u);
+  EXPECT_TRUE(check_study_findings(Study(sample_rows(1, 0.1)))[1].of_medians.verdict ==
+              Verdict::does_not_agree);
+  // What a coin gives as easily is no verdict.
+  EXPECT_EQ(findings[0].verdict, Verdict::agrees);
+  EXPECT_EQ(findings[1].verdict, Verdict::not_settled);
+  EXPECT_EQ(findings[7].of_medians.verdict, Verdict::does_not_agree);
+  EXPECT_EQ(findings[7].verdict, Verdict::not_settled);
+  EXPECT_EQ(findings[8].verdict, Verdict::agrees);
+  EXPECT_EQ(check_study_findings(Study(sample_rows(5, 0.1)))[1].verdict, Verdict::does_not_agree);
+}
+
+// 2's hands in other grips are no rows of the study, and decide one finding.
+TEST(Study, OtherGripsAreKeptApartForTheFindingOnThem) {
+  std::vector<MeasuredRun> rows = sample_rows(3);
+  const std::size_t all = rows.size();
+  EXPECT_EQ(check_study_findings(Study(rows))[2].of_medians.verdict, Verdict::not_recorded);
+  for (const double grip : {2.0, 0.5}) {
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+      // In the third hand a firm grip changes nothing.
+      rows.push_back(testing_support::row(seed, "surface-points", kHolding,
+                                          {seed == 3 && grip == 2 ? 1.03 : 1.2 / grip, 2}));
+      rows.back().grip = grip;
+    }
+  }
+  const Study study(rows);
+  EXPECT_EQ(study.rows().size(), all);
+  const StudyFinding finding = check_study_findings(study)[2];
+  EXPECT_EQ(finding.of_medians.measured, "2.4, 1.02, 0.6 N");
+  EXPECT_EQ(finding.of_medians.verdict, Verdict::agrees);
+  EXPECT_EQ(finding.agreeing, 3u) << "in the third it falls by then";
+  EXPECT_EQ(finding.tested, 3u);
+}
+
+TEST(Study, TheSectionSaysWhatSoFewHandsCanShow) {
+  const std::string three = html(study_section(Study(sample_rows(3)), {}));
+  EXPECT_NE(three.find("3 hands can give is 0.25, after the correction 0.75, so that no difference"),
+            std::string::npos);
+  EXPECT_NE(three.find("the range of all values: 3 hands are too few"), std::string::npos);
+  EXPECT_NE(three.find("100 to 300 N/m"), std::string::npos);
+  EXPECT_EQ(three.find("<b>2 &gt; 1</b>"), std::string::npos);
+  const std::string ten = html(study_section(Study(sample_rows(10)), {}));
+  EXPECT_NE(ten.find("covers the median with 97.9 %"), std::string::npos);
+  EXPECT_NE(ten.find("<b>2 &gt; 1</b>"), std::string::npos);
+  // Zero throughout.
+  EXPECT_EQ(ten.find("bone removed"), std::string::npos);
+}
+
+TEST(Study, AsManySeedsAreNeededAsCanShowADifference) {
+  std::vector<MeasuredRun> rows = sample_rows(1);
+  EXPECT_EQ(Study(rows).seeds_needed(), 7u) << "three pairs, 3 * 2^-6 <= 0.05";
+  for (const MeasuredRun& r : sample_rows(1)) {
+    if (r.algorithm == "line-proxy") {
+      rows.push_back(r);
+      rows.back().algorithm = algorithm_named("barrier-shell").id;
+    }
+  }
+  EXPECT_EQ(Study(rows).seeds_needed(), 8u) << "six pairs";
+}
+
+TEST(Study, TheTableHasARowForEachPhaseOfEachTrial) {
+  const std::filesystem::path path = std::filesystem::path(::testing::TempDir()) / "osteomill_study.csv";
+  write_study_csv(path, Study(sample_rows(2)));
+  std::ifstream in(path);
+  const std::string csv{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  EXPECT_TRUE(
+      csv.starts_with("seed,hand_stiffness_N_per_m,hand_damping_Ns_per_m,hand_grip,algorithm,phase,steps,"));
+  EXPECT_NE(csv.find("\n2,200,5,1,point-shell,holding,0,"), std::string::npos) << csv;
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 13);
+  std::filesystem::remove(path);
+}
+
+// A report of the first seed's recordings finds the other hands and grips in the table again.
+TEST(Study, TheTableGivesTheStudyBackToTheRowsThatItIsOf) {
+  const TemporaryFolder folder;
+  const std::filesystem::path path = folder / "study.csv";
+  std::vector<MeasuredRun> rows = sample_rows(2);
+  for (const double grip : {2.0, 0.5}) {
+    rows.push_back(testing_support::row(1, "surface-points", kHolding, {1.2 / grip, 2}));
+    rows.back().grip = grip;
+    rows.back().not_reached = "the tool was lost";
+    rows.back().metrics.shaft.spread_deg = std::numeric_limits<double>::quiet_NaN();
+  }
+  write_study_csv(path, Study(rows));
+  std::vector<MeasuredRun> recorded = sample_rows(1);
+  const std::optional<Study> read = read_study_csv(path, recorded);
+  ASSERT_TRUE(read);
+  const std::filesystem::path again = folder / "again.csv";
+  write_study_csv(again, *read);
+  const auto text = [](const std::filesystem::path& file) {
+    std::ifstream in(file);
+    return std::string{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  };
+  EXPECT_EQ(text(again), text(path));
+  EXPECT_EQ(check_study_findings(*read)[2].of_medians.measured,
+            check_study_findings(Study(rows))[2].of_medians.measured);
+  std::erase_if(recorded, [](const MeasuredRun& r) { return r.algorithm == "line-proxy"; });
+  EXPECT_EQ(read_study_csv(path, recorded)->algorithms().size(), 2u) << "a part of what was recorded";
+  recorded[0].metrics.force_N.hp_rms *= 1.001;
+  EXPECT_FALSE(read_study_csv(path, recorded)) << "of another comparison in the same folder";
+  EXPECT_FALSE(read_study_csv(folder / "none.csv", sample_rows(1)));
+}
+
+}  // namespace
+}  // namespace osteomill

@@ -1,0 +1,272 @@
+#include "osteomill/study/write_rates_report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <ostream>
+#include <span>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "osteomill/base/atomic_file.h"
+#include "osteomill/base/csv_field.h"
+#include "osteomill/base/input_error.h"
+#include "osteomill/base/positive.h"
+#include "osteomill/haptics/sample_points.h"
+#include "osteomill/study/figure.h"
+#include "osteomill/study/html.h"
+#include "osteomill/study/metrics.h"
+
+namespace osteomill {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::vector<RateRow> rows_of(std::span<const RateRow> rows, const AlgorithmId& algorithm) {
+  std::vector<RateRow> of;
+  for (const RateRow& row : rows) {
+    if (row.algorithm == algorithm) of.push_back(row);
+  }
+  return of;
+}
+
+// Whole decades about all rates, so that all panels share one scale.
+std::string rate_range(std::span<const RateRow> rows) {
+  double min = 1000, max = 1000;
+  for (const RateRow& row : rows) {
+    min = std::min(min, row.steps_per_s);
+    max = std::max(max, row.steps_per_s);
+    if (row.paper_rate_hz > 0) min = std::min(min, row.paper_rate_hz);
+  }
+  min = std::max(min, 1e-3);
+  return fmt::format("set yrange [{:.4g}:{:.4g}]\n", std::pow(10.0, std::floor(std::log10(min) - 0.05)),
+                     std::pow(10.0, std::ceil(std::log10(max) + 0.05)));
+}
+
+std::string tics(const std::vector<RateRow>& rows) {
+  std::string list;
+  for (std::size_t n = 0; n < rows.size(); ++n) {
+    list += fmt::format("{}{} {}", n == 0 ? "" : ", ", gnuplot_quoted(rows[n].resolution), n);
+  }
+  return fmt::format("set xtics noenhanced rotate by 35 right ({})\n", list);
+}
+
+std::string panel(const std::vector<RateRow>& rows, std::size_t column, FigureScript& figure) {
+  const AlgorithmId& algorithm = rows.front().algorithm;
+  std::string data;
+  bool in_paper = false;
+  for (std::size_t n = 0; n < rows.size(); ++n) {
+    const bool known = rows[n].paper_rate_hz > 0;
+    in_paper = in_paper || known;
+    data += fmt::format("{} {:.6g} {}\n", n, rows[n].steps_per_s,
+                        known ? fmt::format("{:.6g}", rows[n].paper_rate_hz) : "?");
+  }
+  const std::string file = figure.data(data);
+  std::string script =
+      fmt::format("set title '{}' offset 0,-0.4\nset xrange [-0.5:{}]\n{}{}", algorithm.label,
+                  static_cast<double>(rows.size()) - 0.5, tics(rows),
+                  column == 0 ? "set ylabel 'Steps a second (Hz)'\n" : "unset ylabel\nset format y ''\n");
+  script += "plot 1000 with lines dt 2 lw 1.5 lc rgb '#555555' notitle, ";
+  if (in_paper) {
+    script +=
+        fmt::format("{} using 1:3 with linespoints pt 6 ps 1.2 lw 1.5 lc rgb '#8a8a8a' notitle, ", file);
+  }
+  return script + fmt::format("{} using 1:2 with linespoints pt 7 ps 1.1 lw 2 lc rgb '{}' notitle\n", file,
+                              algorithm.colour);
+}
+
+// Rate against resolution, a panel for each algorithm, measured and from the paper, with the 1000 Hz that a
+// haptic loop needs.
+Figure draw_rates_figure(std::span<const RateRow> rows, const std::filesystem::path& folder) {
+  std::vector<std::vector<RateRow>> panels;
+  std::vector<AlgorithmId> algorithms;
+  for (const RateRow& row : rows) algorithms.push_back(row.algorithm);
+  for (const AlgorithmId& algorithm : each_once(std::move(algorithms))) {
+    panels.push_back(rows_of(rows, algorithm));
+  }
+  const PanelGrid grid{.height_px = 520,
+                       .columns = panels.size(),
+                       .indent_px = 116,
+                       .right_px = 30,
+                       .above_px = 84,
+                       .below_px = 110};
+  const bool in_paper =
+      std::any_of(rows.begin(), rows.end(), [](const RateRow& r) { return r.paper_rate_hz > 0; });
+  const std::string common =
+      begin_panels("y") + "set datafile missing '?'\nset logscale y\nset format y '%.0s %c'\n" +
+      rate_range(rows) +
+      fmt::format(
+          "set label 1 '● measured here    {}- - -  1000 Hz, what a haptic loop needs' at screen "
+          "0.5,screen {:.4f} center\n",
+          in_paper ? "{/:Normal ○} the paper, on a Pentium 4    " : "", 1 - 26 / grid.height_px);
+  return draw_panels(
+      "rates", grid, common,
+      [&](std::size_t column, std::size_t, FigureScript& figure) {
+        return panel(panels[column], column, figure) + "unset label 1\n";
+      },
+      folder);
+}
+
+void require_usable(const std::vector<RateRow>& rows) {
+  if (rows.empty()) throw InputError("rates", "there are no rates to report on");
+  for (const RateRow& row : rows) {
+    if (!is_positive(row.rate_hz) || !is_positive(row.steps_per_s) || !is_positive(row.paced_rate_hz)) {
+      throw InputError("rates", fmt::format("the rate of {} at {} is not a positive number",
+                                            name_of(row.algorithm), row.resolution));
+    }
+  }
+}
+
+void write_rates_csv(const fs::path& path, const MeasuredRates& measured) {
+  write_text_atomically(path, [&](std::ostream& out) {
+    out << "algorithm,resolution,points,step_us_median,step_us_p99,rate_hz,steps_per_s,paper_rate_hz,"
+           "paced_rate_hz\n";
+    for (const RateRow& r : measured.rows) {
+      out << fmt::format("{},{},{},{},{},{},{},{},{}\n", name_of(r.algorithm), csv_field(r.resolution),
+                         r.points, r.step_us_median, r.step_us_p99, r.rate_hz, r.steps_per_s,
+                         r.paper_rate_hz > 0 ? fmt::format("{}", r.paper_rate_hz) : "", r.paced_rate_hz);
+    }
+  });
+}
+
+void write_vertices_csv(const fs::path& path, const std::vector<VertexSearchRow>& rows) {
+  write_text_atomically(path, [&](std::ostream& out) {
+    out << "part,vertices,direction_deg_median,direction_deg_worst,size_off_worst,unseen_worst,suffices\n";
+    for (const VertexSearchRow& r : rows) {
+      out << fmt::format("{},{},{},{},{},{},{:d}\n", r.part, r.vertices, r.direction_deg_median,
+                         r.direction_deg_worst, r.size_off_worst, r.unseen_worst, r.suffices);
+    }
+  });
+}
+
+std::string ratio_text(double ratio) {
+  return fmt::format("{:.{}f}", ratio, ratio < 9.95 ? 1 : 0);
+}
+
+// The machines are told apart by the steps a second; the paper's are of a loop that waits for its
+// millisecond.
+std::string plain_words(const std::vector<RateRow>& rows) {
+  std::vector<double> ratios;
+  std::size_t fast_enough = 0, achieved = 0;
+  for (const RateRow& row : rows) {
+    if (row.paper_rate_hz > 0) ratios.push_back(row.steps_per_s / row.paper_rate_hz);
+    if (row.rate_hz >= kMinRate_hz) ++fast_enough;
+    if (row.paced_rate_hz >= kMinRate_hz) ++achieved;
+  }
+  std::string text = fmt::format(
+      "{} of the {} resolutions hold {:.0f} Hz or more in a loop of 1000 Hz here by their CPU time, and {} "
+      "achieved that by the wall clock. ",
+      fast_enough, rows.size(), kMinRate_hz, achieved);
+  if (ratios.empty()) return text;
+  double log_sum = 0;
+  for (const double ratio : ratios) log_sum += std::log(ratio);
+  const auto [min, max] = std::minmax_element(ratios.begin(), ratios.end());
+  return text +
+         fmt::format(
+             "Where the paper has a rate, this machine makes {} to {} times as many steps a second as the "
+             "paper's Pentium 4 of 3.3 GHz, {} times in the geometric mean. The paper's rates are those of "
+             "a loop that waits for its next millisecond and does more than the step, so they end at 1000 "
+             "Hz; those compared with them here are of the step alone and have no such end. The ratio "
+             "therefore tells how far apart the machines are only where the paper's rate lies well below "
+             "1000 Hz, and is too large elsewhere.",
+             ratio_text(*min), ratio_text(*max),
+             ratio_text(std::exp(log_sum / static_cast<double>(ratios.size()))));
+}
+
+constexpr std::string_view kWhatRatesMean =
+    "Three rates stand in the table. The rate achieved is what section 8.1 of the paper measures: ticks "
+    "done over the time they took by the wall clock, in a loop that was really held to 1000 Hz for up to 2 "
+    "s from the first contact on, without real-time scheduling. It depends on this machine and on what else "
+    "that did meanwhile; the simulated hand is part of the loop. The rate by CPU time is the one that such "
+    "a loop would hold by the ticks' CPU time, which nothing else on the machine lengthens: a tick that is "
+    "done early waits for its millisecond, one that is late puts the next off, and all of the tick's work "
+    "counts, not the step alone. So neither is above 1000 Hz, and 1000 Hz means that no tick was late. "
+    "Steps a second are 1,000,000 over the median step in microseconds: what the algorithm's step alone "
+    "would allow, with nothing else to do and nothing to wait for. The figure draws these, since the others "
+    "hardly tell fast algorithms apart. These and the rate by CPU time count steps in contact alone. "
+    "barrier-shell is not the paper's, so nothing of the paper stands beside it.";
+
+HtmlTable rates_table(const std::vector<RateRow>& rows) {
+  const bool in_paper =
+      std::any_of(rows.begin(), rows.end(), [](const RateRow& r) { return r.paper_rate_hz > 0; });
+  HtmlTable table{{"Algorithm", "Resolution", "Points", "Step, median (µs)", "99th percentile (µs)",
+                   "Rate achieved (Hz)", "Rate by CPU time (Hz)", "Steps a second"},
+                  {},
+                  true};
+  if (in_paper) table.header.insert(table.header.begin() + 6, "In the paper (Hz)");
+  for (const RateRow& r : rows) {
+    table.rows.push_back({std::string(name_of(r.algorithm)), html_escaped(r.resolution),
+                          fmt::format("{}", r.points), fmt::format("{:.4g}", r.step_us_median),
+                          fmt::format("{:.4g}", r.step_us_p99), fmt::format("{:.0f}", r.paced_rate_hz),
+                          fmt::format("{:.0f}", r.rate_hz), fmt::format("{:.0f}", r.steps_per_s)});
+    if (in_paper) {
+      table.rows.back().insert(table.rows.back().begin() + 6,
+                               r.paper_rate_hz > 0 ? fmt::format("{:.0f}", r.paper_rate_hz) : "–");
+    }
+  }
+  return table;
+}
+
+std::string least_words(const std::vector<VertexSearchRow>& rows, const std::string& part, int papers) {
+  const int least = least_vertices(rows, part);
+  return fmt::format("{} on the {} ({} in the paper)",
+                     least > 0 ? fmt::format("{}", least) : "none of those tried", part, papers);
+}
+
+PageSection vertices_section(const std::vector<VertexSearchRow>& rows) {
+  HtmlTable table{{"Part", "Vertices", "Force off the normal, median (°)", "Worst (°)",
+                   "Size off its mean, worst (%)", "Deepest unseen (% of the radius)", "Suffices"},
+                  {},
+                  true};
+  for (const VertexSearchRow& r : rows) {
+    const bool least = r.vertices == least_vertices(rows, r.part);
+    table.rows.push_back(
+        {r.part, fmt::format("{}", r.vertices), fmt::format("{:.1f}", r.direction_deg_median),
+         fmt::format("{:.1f}", r.direction_deg_worst), fmt::format("{:.1f}", 100 * r.size_off_worst),
+         fmt::format("{:.1f}", 100 * r.unseen_worst),
+         least ? "<b>yes, the least</b>" : (r.suffices ? "yes" : "no")});
+  }
+  return {.title = "The least number of vertices that suffices for surface-points",
+          .paragraphs = {fmt::format(
+              "By this search: {}, {}. The paper says that its tests found its numbers to be needed for "
+              "correct collision detection and force, not by what measure; the measure here is our own. The "
+              "algorithm itself presses its sphere, or one circle of its shaft, on a "
+              "flat wall by half the radius with a thousand sides of it in turn, in bone whose density is "
+              "linear, so that nothing but the number of vertices counts. A number suffices where, with "
+              "every side, the force is at most {:g}° off the wall's normal, its size at most {:g} % off "
+              "the mean, and a vertex meets the bone before the part is {:g} % of its radius deep; the "
+              "least is the one from which on all that were tried suffice. These tolerances are round "
+              "numbers; others give other answers, which the table lets you see.",
+              least_words(rows, "sphere", kSphereVertices), least_words(rows, "circle", kSliceVertices),
+              VertexSearchRow::kMaxDirection_deg, 100 * VertexSearchRow::kMaxSizeOff,
+              100 * VertexSearchRow::kMaxUnseen)},
+          .tables = {table}};
+}
+
+}  // namespace
+
+fs::path write_rates_report(const MeasuredRates& measured, const fs::path& out_dir) {
+  const std::vector<RateRow>& rows = measured.rows;
+  require_usable(rows);
+  create_folder(out_dir);
+  // The measurements, which stay where no figure can be drawn.
+  write_rates_csv(out_dir / "rates.csv", measured);
+  if (!measured.vertices.empty()) write_vertices_csv(out_dir / "vertices.csv", measured.vertices);
+  write_folder_atomically(out_dir, [&](const fs::path& beside) {
+    create_folder(beside / "figures");
+    const Figure figure = draw_rates_figure(rows, beside / "figures");
+    std::vector<PageSection> sections{
+        {.paragraphs = {plain_words(rows), std::string(kWhatRatesMean)},
+         .figures = {{figure.svg,
+                      "Steps a second against resolution, on a logarithmic scale. The paper's section 8.1."}},
+         .tables = {rates_table(rows)}}};
+    if (!measured.vertices.empty()) sections.push_back(vertices_section(measured.vertices));
+    write_text_atomically(beside / "rates.html", [&](std::ostream& out) {
+      out << html_page("Haptic rate against resolution", sections);
+    });
+  });
+  return out_dir / "rates.html";
+}
+
+}  // namespace osteomill

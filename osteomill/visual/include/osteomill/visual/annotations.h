@@ -1,0 +1,50 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "osteomill/visual/camera.h"
+#include "osteomill/visual/image.h"
+
+namespace osteomill {
+
+/// A line or a word drawn over the picture, pixels from the top left.
+struct Annotation {
+  struct Line {
+    Eigen::Vector2d from;
+    Eigen::Vector2d to;
+  };
+  std::vector<Line> lines;
+  /// Of the text's middle.
+  Eigen::Vector2d place = Eigen::Vector2d::Zero();
+  std::string text;
+};
+
+/// A bar of a round length in mm, at most a quarter of the picture long, in its lower left corner. It holds
+/// at the camera's focus, which its text says where what is nearer is drawn noticeably larger.
+Annotation scale_bar_annotation(const Camera& camera, const PixelSize& size);
+
+/// The patient's directions (L R A P S I, of W's LPS axes) about a point in the lower right corner, each
+/// where its direction points; those that point almost at the viewer, or away, are left out.
+std::vector<Annotation> orientation_letters(const Camera& camera, const PixelSize& size);
+
+/// The font of all that is written; where this file is missing, the one that comes with Dear ImGui is used.
+inline constexpr const char* kFontFile = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
+inline constexpr float kFontSize_px = 14;
+
+/// Grey levels of what is drawn and of the edge around it, which keeps it readable before anything.
+struct Ink {
+  unsigned char level;
+  unsigned char edge;
+};
+inline constexpr Ink kInkOnLight{40, 255};
+inline constexpr Ink kInkOnDark{236, 0};
+
+/// Draws an annotation into an image, all its lengths times `scale`. Any thread.
+void draw_annotation(Image& image, const Annotation& annotation, const Ink& ink, double scale = 1);
+
+/// Draws the scale bar, and with `of_patient` the letters of the patient's directions, laid out as in an
+/// image `scale` times smaller.
+void annotate(Image& image, const Camera& camera, bool of_patient, const Ink& ink, double scale);
+
+}  // namespace osteomill

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <type_traits>
+#include <vector>
+
+#include "osteomill/base/pose.h"
+
+namespace osteomill {
+
+/// One corner of the isosurface's triangles, laid out so that it can be handed to a graphics card as it is.
+struct MeshVertex {
+  /// In W.
+  std::array<float, 3> position_mm;
+  /// In W, of unit length, out of the bone.
+  std::array<float, 3> normal;
+  /// Of the bone just under the surface, to colour it by: the greater of those half a voxel and a voxel below
+  /// it, where fewer of a scan's voxels are half air.
+  float density;
+  friend bool operator==(const MeshVertex&, const MeshVertex&) = default;
+};
+static_assert(sizeof(MeshVertex) == 28 && std::is_trivially_copyable_v<MeshVertex>);
+
+/// What is in three floats of a vertex, and what puts it there.
+inline Vec3 vec3_of(const std::array<float, 3>& numbers) {
+  return Eigen::Map<const Eigen::Vector3f>(numbers.data()).cast<double>();
+}
+inline void put(const Vec3& vector, std::array<float, 3>& numbers) {
+  Eigen::Map<Eigen::Vector3f>(numbers.data()) = vector.cast<float>();
+}
+
+/// A piece of the isosurface as indexed triangles: three indices each, anticlockwise seen from outside the
+/// bone. Vertices are shared within a piece; where pieces meet, both have the same vertices, bit for bit.
+struct BrickMesh {
+  std::vector<MeshVertex> vertices;
+  std::vector<std::uint32_t> indices;
+
+  bool empty() const { return indices.empty(); }
+  std::size_t triangle_count() const { return indices.size() / 3; }
+  friend bool operator==(const BrickMesh&, const BrickMesh&) = default;
+};
+
+}  // namespace osteomill

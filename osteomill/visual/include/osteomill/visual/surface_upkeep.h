@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <set>
+#include <vector>
+
+#include "osteomill/visual/brick_levels.h"
+#include "osteomill/visual/brick_mesh.h"
+#include "osteomill/visual/surface_bricks.h"
+#include "osteomill/visual/surface_mesh.h"
+
+namespace osteomill {
+
+/// Bricks of `SurfaceBricks`, by their numbers, whose triangles are no longer what they were, as they are
+/// now; they may have none. While a brick is being milled all its levels are its mesh (`full_detail`).
+using ChangedBricks = std::map<std::size_t, BrickLevels>;
+
+/// Keeps a surface up with changing densities: notes which bricks are to be meshed anew, and meshes them.
+/// Holds no densities. For one thread.
+class SurfaceUpkeep {
+ public:
+  /// Making a brick's levels takes five times as long as its mesh, and where bone is milled they are not
+  /// looked at. So they are made once this many calls of `remesh` in a row found the brick unmarked ...
+  static constexpr int kCallsAtRest = 10;
+  /// ... and for at most so many bricks in one call.
+  static constexpr std::size_t kMostAtRest = 2;
+
+  /// At first every brick has to be meshed.
+  explicit SurfaceUpkeep(const SurfaceBricks& layout);
+
+  /// Densities of these voxels (in the grid) changed, up or down.
+  void mark(const VoxelBox& voxels);
+  /// As after another isovalue.
+  void mark_all();
+  /// Meshes the bricks marked, and returns those that have triangles or had some before; bricks that rest,
+  /// once more with their levels.
+  ChangedBricks remesh(const DensityView& view);
+
+ private:
+  SurfaceBricks layout_;
+  std::set<std::size_t> to_mesh_;
+  int calls_ = 0;                        // of remesh
+  std::map<std::size_t, int> changing_;  // bricks that do not rest, with the call before they were marked
+  std::vector<std::uint8_t> has_mesh_;   // by brick: has triangles
+};
+
+}  // namespace osteomill

@@ -1,0 +1,123 @@
+#define AL_ALEXT_PROTOTYPES
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include <AL/al.h>
+#include <AL/alc.h>
+#include <AL/alext.h>
+#include <gtest/gtest.h>
+
+#include "osteomill/visual/spindle_sound.h"
+
+namespace osteomill {
+namespace {
+
+constexpr int kRate_hz = SoundStream::kSampleRate_hz;
+
+// The strength of one frequency in the last quarter of a second, by a plain Fourier sum.
+double strength(const std::vector<float>& sound, double frequency_hz) {
+  double cosine = 0;
+  double sine = 0;
+  for (std::size_t n = sound.size() - kRate_hz / 4; n < sound.size(); ++n) {
+    const double angle = 2 * std::numbers::pi * frequency_hz * static_cast<double>(n) / kRate_hz;
+    cosine += static_cast<double>(sound[n]) * std::cos(angle);
+    sine += static_cast<double>(sound[n]) * std::sin(angle);
+  }
+  return std::hypot(cosine, sine);
+}
+
+double strongest_hz(const std::vector<float>& sound) {
+  double found_hz = 0;
+  double max = 0;
+  for (double frequency_hz = 100; frequency_hz < 1300; frequency_hz += 3) {
+    const double here = strength(sound, frequency_hz);
+    if (here <= max) continue;
+    max = here;
+    found_hz = frequency_hz;
+  }
+  return found_hz;
+}
+
+double rms(const std::vector<float>& sound) {
+  double sum = 0;
+  for (std::size_t n = sound.size() - kRate_hz / 2; n < sound.size(); ++n) {
+    sum += static_cast<double>(sound[n]) * static_cast<double>(sound[n]);
+  }
+  return std::sqrt(sum / (kRate_hz / 2));
+}
+
+std::vector<float> computed(const SpindleState& state, std::size_t piece = 500) {
+  SpindleSound sound(kRate_hz);
+  std::vector<float> samples(3 * kRate_hz / 2);
+  for (std::size_t n = 0; n < samples.size(); n += piece) {
+    sound.render(state, std::span(samples).subspan(n, std::min(piece, samples.size() - n)));
+  }
+  return samples;
+}
+
+TEST(SpindleSound, ItsPitchIsTheSpindlesSpeed) {
+  for (const double speed_rpm : {15000.0, 40000.0, 60000.0}) {
+    EXPECT_NEAR(strongest_hz(computed({speed_rpm, 0})), speed_rpm / 60, 4);
+  }
+}
+
+TEST(SpindleSound, UnderLoadItIsLowerAndLouder) {
+  const auto idle = computed({40000, 0});
+  const auto loaded = computed({40000, 1});
+  EXPECT_LT(strongest_hz(loaded), strongest_hz(idle) - 30);
+  EXPECT_GT(rms(loaded), 2 * rms(idle));
+}
+
+TEST(SpindleSound, OffIsSilentAndNothingClips) {
+  EXPECT_LT(rms(computed({0, 1})), 1e-6);
+  for (const float sample : computed({120000, 1})) ASSERT_LT(std::abs(sample), 1.0f);
+}
+
+TEST(SpindleSound, DoesNotDependOnHowItIsCutIntoPieces) {
+  EXPECT_EQ(computed({30000, 0.4}, 500), computed({30000, 0.4}, 77));
+}
+
+// What OpenAL would send to a sound device.
+std::vector<float> through_openal(const SpindleState& state) {
+  ALCdevice* device = alcLoopbackOpenDeviceSOFT(nullptr);
+  const ALCint format[] = {ALC_FORMAT_CHANNELS_SOFT,
+                           ALC_MONO_SOFT,
+                           ALC_FORMAT_TYPE_SOFT,
+                           ALC_FLOAT_SOFT,
+                           ALC_FREQUENCY,
+                           kRate_hz,
+                           0};
+  ALCcontext* context = alcCreateContext(device, format);
+  alcMakeContextCurrent(context);
+  std::vector<float> heard(3 * kRate_hz / 2);
+  {
+    SoundStream stream;
+    constexpr int kPiece = 350;
+    for (std::size_t n = 0; n + kPiece <= heard.size(); n += kPiece) {
+      stream.feed(state);
+      alcRenderSamplesSOFT(device, heard.data() + n, kPiece);
+    }
+  }
+  alcMakeContextCurrent(nullptr);
+  alcDestroyContext(context);
+  alcCloseDevice(device);
+  return heard;
+}
+
+TEST(SoundStream, PitchFollowsSpeedAllTheWayThroughOpenAl) {
+  for (const double speed_rpm : {20000.0, 50000.0}) {
+    const auto heard = through_openal({speed_rpm, 0.1});
+    EXPECT_NEAR(strongest_hz(heard), SpindleSound::pitch_hz({speed_rpm, 0.1}), 5);
+    EXPECT_GT(rms(heard), 0.01);
+  }
+  EXPECT_LT(rms(through_openal({0, 0})), 1e-5);
+}
+
+TEST(SoundPlayer, WithoutADeviceNothingIsWrong) {
+  SoundPlayer player;
+  EXPECT_NO_THROW(player.set({40000, 0.5}));
+}
+
+}  // namespace
+}  // namespace osteomill

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "osteomill/visual/brick_mesh.h"
+#include "osteomill/visual/surface_bricks.h"
+#include "osteomill/visual/surface_mesh.h"
+
+namespace osteomill {
+
+/// Meshes one brick after the other in the same memory. Brick by brick the densities are first copied
+/// together with what lies around them, so that what follows stays in the cache and knows no border.
+class BrickMesher {
+ public:
+  explicit BrickMesher(const DensityView& view);
+
+  /// The brick's surface, until the next call.
+  const BrickMesh& mesh(std::size_t brick);
+
+  /// The grid edge on which each vertex lies: one number for every edge of the grid, the same in all bricks.
+  std::uint64_t edge_of(std::size_t vertex) const;
+  /// Whether other bricks may have this vertex too.
+  bool on_brick_border(std::size_t vertex) const;
+
+ private:
+  using Vec3f = Eigen::Vector3f;
+
+  // Voxels along each edge of the block: those of the cells, and what is needed around for gradients.
+  static constexpr int kLow = 2;  // the block's index of the brick's first voxel
+  static constexpr int kBlock = SurfaceBricks::kBrickCells + 4;
+  static constexpr std::array<int, 3> kStride{1, kBlock, kBlock* kBlock};
+  static constexpr int kBlockVoxels = kBlock * kBlock * kBlock;
+  static_assert(kBlock <= 32, "a row of the block is a word of bits");
+
+  bool may_hold_surface(std::size_t brick) const;
+  void load(std::size_t brick);
+  void load_row(const VoxelIndex& first, float* row) const;
+  void find_bone();
+  void add_vertices();
+  template <int axis>
+  void add_row_vertices(int j, int k, std::uint32_t crossed);
+  template <int axis>
+  void add_vertex(int i, int j, int k);
+  float density_below(const Vec3f& point, const Vec3f& slope, float flat) const;
+  static Vec3f slope_between(const float* from, const float* to, float share);
+  Vec3f position_at(const Vec3& voxel) const;
+  Vec3f normal_against(const Vec3f& slope, int axis, bool bone_first) const;
+  void add_triangles();
+  void add_row_triangles(int j, int k);
+
+  DensityView view_;
+  SurfaceBricks layout_;
+  float threshold_;  // the greatest float that is not bone
+  float outside_;
+  bool mirrored_;  // the grid's axes are left-handed
+  Vec3 origin_mm_;
+  Mat3 step_mm_;                     // to the next voxel along each axis, a column each
+  Eigen::Matrix3f normal_of_;        // outward, of a density falling along each axis
+  std::array<int, 12> edge_offset_;  // of a cube's edges in edge_vertex_
+
+  VoxelIndex corner_;  // the voxel at the block's first index
+  VoxelBox cells_;     // in the block's indices
+  std::array<float, kBlockVoxels> block_;
+  std::array<std::uint32_t, kBlock * kBlock> bone_;  // a bit a voxel, a word a row
+  std::array<std::uint16_t, 3 * kBlockVoxels> edge_vertex_;
+  BrickMesh mesh_;
+  std::vector<std::uint32_t> vertex_edge_;  // by vertex
+};
+
+}  // namespace osteomill

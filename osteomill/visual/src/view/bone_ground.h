@@ -1,0 +1,123 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <set>
+#include <vector>
+
+#include "osteomill/visual/clip_face.h"
+#include "osteomill/volume/label_map.h"
+
+#include "view/bone_layer.h"
+#include "view/cavity_pass.h"
+
+namespace osteomill {
+
+/// How many triangles, or pixels, there is time for in one picture, learnt from how long earlier pictures
+/// took. Reads no clock itself.
+class DrawingPace {
+ public:
+  /// For the bone of one picture: in a thirtieth of a second it leaves time for all else.
+  static constexpr double kBone_s = 0.018;
+
+  /// There is always time for `fewest`, and at first for `expected`.
+  DrawingPace(std::size_t fewest, double expected) : fewest_(fewest), s_each_(kBone_s / expected) {}
+
+  std::size_t fewest() const { return fewest_; }
+  std::size_t allowed() const { return std::max(fewest_, static_cast<std::size_t>(kBone_s / s_each_)); }
+  /// So many took so long. Fewer than `fewest` are taken for that many, since they say nothing of many.
+  void drew(std::size_t count, double passed_s) {
+    constexpr double kWeight = 0.3;
+    const double here = passed_s / static_cast<double>(std::max(count, fewest_));
+    // One that others of the machine held up counts little.
+    s_each_ += kWeight * (std::min(here, 2 * s_each_) - s_each_);
+  }
+
+ private:
+  std::size_t fewest_;
+  double s_each_;
+};
+
+/// Draws what cuts lay open: grey values, tinted by labels.
+class ClipFaces {
+ public:
+  ClipFaces();
+  void set(std::size_t cut, const ClipFace& face);
+  /// Each face as far as the other cuts leave it.
+  void draw(const ViewScene& scene, const Projection& projection) const;
+
+ private:
+  struct Face {
+    gl::VertexArray vertex_array;
+    gl::Buffer corners;
+    gl::Texture pixels;
+  };
+  gl::Program program_;
+  std::array<Face, kMaxClipPlanes> faces_;
+};
+
+/// The ground on which the scene is drawn: background, bone and cuts in a picture of their own, which is kept
+/// from one frame to the next. While the view moves it has as many triangles and pixels as there is time for.
+/// Where the view rests, full detail is drawn brick by brick into a second picture, which takes the first
+/// one's place when it is done. Where bone is milled only the part of the picture in which it changed is
+/// drawn anew.
+class BoneGround {
+ public:
+  BoneGround(const SurfaceBricks& layout, const GridGeometry& geometry,
+             std::shared_ptr<const LabelMap> labels);
+
+  void set_brick(std::size_t brick, const BrickLevels& levels);
+  void set_clip_face(std::size_t cut, const ClipFace& face);
+  std::size_t triangle_count() const { return bone_.triangle_count(); }
+
+  /// One picture's work; `size` is that of the picture where the view rests.
+  void draw(const ViewScene& scene, const PixelSize& size);
+  const FrameTarget& picture() const { return *shown_; }
+  /// Nothing is left to be drawn while neither view nor bone changes.
+  bool settled() const { return settled_ && changed_.empty() && to_shade_.empty(); }
+
+ private:
+  void fit(const PixelSize& size);
+  PixelSize size_in_time(const PixelSize& size);
+  void draw_at_once(const ViewScene& scene, const PixelSize& size);
+  void begin_refining(const ViewScene& scene, const Projection& projection);
+  void refine(const ViewScene& scene, const Projection& projection);
+  bool draw_changed(const ViewScene& scene, const Projection& projection);
+  /// Pixels from the lower left.
+  Eigen::AlignedBox2i changed_part(const std::set<std::size_t>& bricks, const ViewScene& scene,
+                                   const Projection& projection) const;
+  std::vector<SeenBrick> seen_in_time(const ViewScene& scene, const Projection& projection);
+  void draw_around(const ViewScene& scene, const Projection& projection);
+  void look_for_cavities(const Projection& projection);
+
+  BoneLayer bone_;
+  ClipFaces cut_faces_;
+  gl::ScreenProgram background_;
+  std::optional<FrameTarget> moving_;
+  // Takes full detail.
+  std::optional<FrameTarget> resting_;
+  // The one of the two that is shown.
+  const FrameTarget* shown_ = nullptr;
+  // While the view moves, so many pixels of the window are one of the picture, along each side.
+  int coarseness_ = 1;
+  std::optional<CavityPass> cavities_;
+  std::optional<ViewScene> scene_;
+  DrawingPace triangles_{20'000, 150'000};
+  DrawingPace pixels_{500'000, 2'000'000};
+  double cell_px_ = kFullDetail.cell_px;
+  std::vector<SeenBrick> to_refine_;
+  std::size_t refined_ = 0;
+  bool refining_ = false;
+  bool settled_ = false;
+  // Bricks that changed since they were drawn: in the picture shown, and in the one that is being refined.
+  std::set<std::size_t> changed_;
+  std::set<std::size_t> changed_since_;
+  // Bricks that were drawn anew since, but with the darkening of an earlier picture.
+  std::set<std::size_t> to_shade_;
+  unsigned drawn_ = 0;
+};
+
+}  // namespace osteomill

@@ -1,0 +1,194 @@
+#include "osteomill/visual/bone_picture.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "osteomill/visual/annotations.h"
+#include "osteomill/visual/clip_face.h"
+#include "osteomill/visual/offscreen_context.h"
+#include "osteomill/visual/surface_mesh.h"
+#include "osteomill/volume/sampling.h"
+
+#include "view/bone_layer.h"
+#include "view/cavity_pass.h"
+
+namespace osteomill {
+
+namespace {
+
+constexpr double kFieldOfView_rad = 0.04;
+constexpr double kMaxWhole_mm = 45.0;
+constexpr double kAroundEntry_mm = 24.0;
+// At least so many voxels around the entry: fewer would show no shape that anyone recognises.
+constexpr double kAroundEntry_voxels = 32;
+constexpr double kMargin = 1.0 / 20;
+// Pixels drawn for one of the picture, along each side.
+constexpr int kFiner = 2;
+// The darkening of cavities reaches this share of the picture's height: about a burr's radius.
+constexpr double kCavityReach = 1.0 / 16;
+// Of annotations, which are made for a window: the picture's height over this.
+constexpr double kAnnotatedHeight_px = 480;
+// White paper.
+constexpr std::array<float, 3> kLightFromBelow{0.47f, 0.45f, 0.42f};
+// Surface that is in memory at once.
+constexpr std::size_t kTrianglesAtOnce = 400'000;
+
+// The middle of the bone, and its height or width as the camera sees it, whichever is more.
+struct Extent {
+  Vec3 centre_W;
+  double size_mm;
+};
+
+Extent extent_of_bone(const Volume& bone, const Camera& camera) {
+  const Mat3 axes = camera.orientation.toRotationMatrix();
+  const GridGeometry& geometry = bone.geometry();
+  Eigen::AlignedBox3d box;
+  const auto take_in = [&](const VoxelBox& voxels) {
+    for (const Vec3& corner_W : corners_W(geometry, voxels)) box.extend(axes.transpose() * corner_W);
+  };
+  for_each(geometry.all_voxels().bricks(BlockRanges::kBrickVoxels), [&](const VoxelIndex& brick) {
+    if (static_cast<double>(bone.ranges().at(brick).max) > bone.isovalue())
+      take_in(BlockRanges::counted(brick, geometry));
+  });
+  if (box.isEmpty()) take_in(geometry.all_voxels());
+  return {axes * box.center(), std::max(box.sizes().head<2>().maxCoeff(), 1e-3)};
+}
+
+ViewScene scene_with(const Volume& bone, double reference_density, const Camera& camera) {
+  ViewScene scene;
+  scene.camera = camera;
+  scene.bounds = bounding_sphere(bone.geometry(), bone.geometry().all_voxels());
+  scene.isovalue = bone.isovalue();
+  scene.reference_density = reference_density;
+  scene.light_from_below = kLightFromBelow;
+  return scene;
+}
+
+// A still picture has time for normals that are averaged over a voxel to all sides, so that voxels do not
+// show as terraces in glancing light, and for colours from deeper below the surface, where the scanner's blur
+// has ended.
+void look_closer(const Volume& bone, MeshVertex& vertex) {
+  const Vec3 point_W = vec3_of(vertex.position_mm);
+  const GridGeometry& geometry = bone.geometry();
+  Vec3 slope = density_gradient(bone.grid(), point_W);
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vec3 voxel = geometry.spacing_mm[axis] * geometry.direction.col(axis);
+    slope += density_gradient(bone.grid(), point_W + voxel) + density_gradient(bone.grid(), point_W - voxel);
+  }
+  if (!(slope.norm() > 1e-9)) return;
+  const Vec3 normal_W = -slope.normalized();
+  put(normal_W, vertex.normal);
+  for (const double voxels : {1.25, 2.5}) {
+    const Vec3 below_W = point_W - voxels * geometry.spacing_mm.minCoeff() * normal_W;
+    vertex.density = std::max(vertex.density, static_cast<float>(density_at(bone.grid(), below_W)));
+  }
+}
+
+// Draws the bone, which is never in memory as a whole.
+class BonePainter {
+ public:
+  BonePainter(const Volume& bone, const ViewScene& scene, const PixelSize& size)
+      : bone_(bone),
+        scene_(scene),
+        projection_(projection_of(scene, size)),
+        layer_(SurfaceBricks(bone.geometry().dims), bone.geometry(), bone.labels()),
+        target_(size),
+        cavities_(size, std::max(1, static_cast<int>(kCavityReach * size.height))) {}
+
+  Image paint() {
+    target_.bind();
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_LEQUAL);
+    glClearColor(1, 1, 1, 1);
+    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    // Once for the depths, which tell what is hidden and what is sunk, and once more to be seen.
+    const std::vector<std::size_t> seen = draw(layer_.in_view(scene_, projection_), For::depths);
+    cavities_.blur(target_.depths(), projection_.near_mm, projection_.far_mm);
+    target_.bind();
+    draw(seen, For::eyes);
+    Image image = target_.read();
+    if (glGetError() != GL_NO_ERROR) throw std::runtime_error("OpenGL cannot draw the bone");
+    return image;
+  }
+
+ private:
+  enum class For : unsigned char { depths, eyes };
+
+  // Draws these bricks in their order, leaving out those that are hidden by then; returns those that it drew.
+  std::vector<std::size_t> draw(const std::vector<std::size_t>& bricks, For whom) {
+    const DensityView view(bone_);
+    std::vector<std::size_t> drawn;
+    std::size_t done = 0;
+    DepthTiles depths(target_, projection_, scene_.camera);
+    const auto flush = [&] {
+      layer_.draw(scene_, projection_, cavities_, layer_.seen(scene_, projection_, kFullDetail));
+      for (; done < drawn.size(); ++done) layer_.set_brick(drawn[done], {});
+      depths = DepthTiles(target_, projection_, scene_.camera);
+    };
+    std::size_t triangles = 0;
+    for (const std::size_t brick : bricks) {
+      if (depths.hide(layer_.bounds(brick))) continue;
+      BrickMesh mesh = mesh_brick(view, brick);
+      if (mesh.empty()) continue;
+      if (whom == For::eyes) {
+        for (MeshVertex& vertex : mesh.vertices) look_closer(bone_, vertex);
+      }
+      drawn.push_back(brick);
+      triangles += mesh.triangle_count();
+      layer_.set_brick(brick, full_detail(std::move(mesh)));
+      if (triangles < kTrianglesAtOnce) continue;
+      flush();
+      triangles = 0;
+    }
+    flush();
+    return drawn;
+  }
+
+  const Volume& bone_;
+  const ViewScene& scene_;
+  Projection projection_;
+  BoneLayer layer_;
+  FrameTarget target_;
+  CavityPass cavities_;
+};
+
+Camera camera_at(const Volume& bone, const Vec3& entry_W, const Vec3& direction_W, const Vec3& up_W) {
+  Camera camera = camera_on({entry_W, 1}, direction_W, up_W);
+  double height_mm = std::max(kAroundEntry_mm, kAroundEntry_voxels * bone.geometry().spacing_mm.maxCoeff());
+  const Extent extent = extent_of_bone(bone, camera);
+  if (extent.size_mm < kMaxWhole_mm) {
+    camera.focus_W = extent.centre_W;
+    height_mm = (1 + 2 * kMargin) * extent.size_mm;
+  }
+  camera.field_of_view_rad = kFieldOfView_rad;
+  camera.distance_mm = 0.5 * height_mm / std::tan(0.5 * kFieldOfView_rad);
+  return camera;
+}
+
+}  // namespace
+
+Camera camera_above(const Volume& bone, const Vec3& entry_W, const Vec3& into_W, const Vec3& lateral_W) {
+  // Steep enough to look into a hole of its own width.
+  return camera_at(bone, entry_W, 0.8 * into_W + 0.5 * into_W.cross(lateral_W) + 0.25 * lateral_W, -into_W);
+}
+
+Camera camera_along(const Volume& bone, const Vec3& entry_W, const Vec3& into_W, const Vec3& lateral_W) {
+  return camera_at(bone, entry_W, into_W, lateral_W);
+}
+
+Image bone_picture(const Volume& bone, double reference_density, const Camera& camera, const PixelSize& size,
+                   bool of_patient) {
+  const OffscreenContext context;
+  const ViewScene scene = scene_with(bone, reference_density, camera);
+  BonePainter painter(bone, scene, {kFiner * size.width, kFiner * size.height});
+  Image image = averaged_down(painter.paint(), kFiner);
+  const double scale = std::max(1.0, size.height / kAnnotatedHeight_px);
+  annotate(image, camera, of_patient, kInkOnLight, scale);
+  return image;
+}
+
+}  // namespace osteomill

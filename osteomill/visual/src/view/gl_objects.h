@@ -1,0 +1,109 @@
+#pragma once
+
+#include <span>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <epoxy/gl.h>
+
+#include "osteomill/visual/camera.h"
+#include "osteomill/visual/image.h"
+
+namespace osteomill::gl {
+
+/// Owns an OpenGL object of the context that is current when it is made and when it is destroyed.
+template <auto& Create, auto& Delete>
+class Handle {
+ public:
+  /// No object: its name is 0.
+  Handle() = default;
+  static Handle make() {
+    Handle made;
+    Create(1, &made.name_);
+    return made;
+  }
+  ~Handle() {
+    if (name_ != 0) Delete(1, &name_);
+  }
+  Handle(Handle&& other) noexcept : name_(std::exchange(other.name_, 0)) {}
+  Handle& operator=(Handle&& other) noexcept {
+    std::swap(name_, other.name_);
+    return *this;
+  }
+  GLuint get() const { return name_; }
+
+ private:
+  GLuint name_ = 0;
+};
+
+inline void create_program(GLsizei, GLuint* name) {
+  *name = glCreateProgram();
+}
+inline void delete_program(GLsizei, const GLuint* name) {
+  glDeleteProgram(*name);
+}
+
+using Buffer = Handle<glGenBuffers, glDeleteBuffers>;
+using VertexArray = Handle<glGenVertexArrays, glDeleteVertexArrays>;
+using Texture = Handle<glGenTextures, glDeleteTextures>;
+using Framebuffer = Handle<glGenFramebuffers, glDeleteFramebuffers>;
+using Program = Handle<create_program, delete_program>;
+
+/// A texture without mipmaps; outside it the pixels of its edge go on.
+Texture make_texture(GLint internal_format, GLenum format, GLenum type, int width, int height, GLint filter);
+
+/// Throws std::runtime_error with the driver's complaint.
+Program make_program(std::string_view vertex_source, std::string_view fragment_source);
+
+/// Draws over the whole picture, behind everything: one triangle that covers it. The fragment shader takes
+/// `in vec2 place`, 0 to 1 across the picture.
+class ScreenProgram {
+ public:
+  explicit ScreenProgram(std::string_view fragment_source);
+  GLuint get() const { return program_.get(); }
+  /// With the texture that is bound and the uniforms as they are.
+  void draw() const;
+
+ private:
+  Program program_;
+  // OpenGL draws nothing without one, though this triangle has no buffers.
+  VertexArray no_buffers_ = VertexArray::make();
+};
+
+/// Binds the buffer to `target` and fills it.
+template <typename Value>
+void fill(GLenum target, const Buffer& buffer, std::span<const Value> values, GLenum usage) {
+  glBindBuffer(target, buffer.get());
+  glBufferData(target, static_cast<GLsizeiptr>(values.size_bytes()), values.data(), usage);
+}
+
+/// An attribute of `count` floats, so many bytes into each vertex, in the buffer and array that are bound.
+void set_attribute(GLuint place, GLint count, std::size_t vertex_bytes, std::size_t offset_bytes);
+
+}  // namespace osteomill::gl
+
+namespace osteomill {
+
+/// What is drawn into: colours and depths of one size, as textures.
+class FrameTarget {
+ public:
+  explicit FrameTarget(const PixelSize& size);
+
+  const PixelSize& size() const { return size_; }
+  void bind() const;
+  GLuint framebuffer() const { return framebuffer_.get(); }
+  GLuint colours() const { return colours_.get(); }
+  GLuint depths() const { return depths_.get(); }
+  Image read() const;
+  /// 0 to 1, row by row from the bottom.
+  std::vector<float> read_depths() const;
+
+ private:
+  PixelSize size_;
+  gl::Texture colours_;
+  gl::Texture depths_;
+  gl::Framebuffer framebuffer_;
+};
+
+}  // namespace osteomill

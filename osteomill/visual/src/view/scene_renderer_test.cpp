@@ -1,0 +1,293 @@
+#include "osteomill/visual/scene_renderer.h"
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include <gtest/gtest.h>
+
+#include "osteomill/visual/image.h"
+#include "osteomill/visual/offscreen_context.h"
+#include "osteomill/visual/surface_mesh.h"
+
+#include "tests/shapes.h"
+#include "tests/support/mesh_checks.h"
+#include "view/bone_ground.h"
+
+namespace osteomill {
+namespace {
+
+using testing_support::mesh_surface;
+using testing_support::SurfaceMesh;
+
+// A ball of bone with a denser shell on its left half, and a hole from above.
+Volume drilled_ball() {
+  Volume volume = testing_support::shape_volume(testing_support::centred_cube(56, 0.25), [](const Vec3& p) {
+    const double ball = p.norm() - 6;
+    const double hole = Vec3(p.x(), p.y(), std::max(p.z() - 7, std::min(p.z() - 1.0, 0.0))).norm() - 1.8;
+    return std::max(ball, -hole);
+  });
+  return volume;
+}
+
+// Another driver, or another version of the same, rounds differently along edges: most pixels are the same
+// but for a few shades, and no more than one in a hundred differs by more than this.
+constexpr int kShades = 12;
+constexpr double kOthers = 0.01;
+constexpr double kMeanShades = 1.0;
+
+class SceneRendererTest : public ::testing::Test {
+ protected:
+  SceneRendererTest() {
+    const SurfaceMesh mesh = mesh_surface(DensityView(bone_));
+    renderer_ = std::make_unique<SceneRenderer>(mesh.layout, bone_.geometry());
+    for (std::size_t n = 0; n < mesh.bricks.size(); ++n) set_brick(n, mesh.bricks[n]);
+    scene_.bounds = {Vec3::Zero(), 7};
+    scene_.camera = camera_on(scene_.bounds, {0.3, 1, -0.9}, Vec3::UnitZ());
+    scene_.isovalue = bone_.isovalue();
+    scene_.reference_density = 900;
+  }
+
+  void set_brick(std::size_t n, const BrickMesh& mesh) { renderer_->set_brick(n, full_detail(mesh)); }
+
+  // Holds the picture against the one kept under this test's name. With OSTEOMILL_KEEP_PICTURES it is kept
+  // anew.
+  void expect_as_kept() {
+    renderer_->draw(scene_, kSize);
+    renderer_->draw(scene_, kSize);
+    const Image drawn = renderer_->picture();
+    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+    const std::filesystem::path kept =
+        std::filesystem::path(OSTEOMILL_KEPT_PICTURES) / (std::string(test->name()) + ".png");
+    if (std::getenv("OSTEOMILL_KEEP_PICTURES") != nullptr) write_png(kept, drawn);
+    std::ifstream file(kept, std::ios::binary);
+    const std::vector<unsigned char> bytes{std::istreambuf_iterator<char>(file), {}};
+    const Image expected = decode_png(bytes).value_or(Image{});
+    ASSERT_EQ(expected.rgb.size(), drawn.rgb.size());
+    double sum = 0;
+    std::size_t others = 0;
+    for (std::size_t n = 0; n < drawn.rgb.size(); ++n) {
+      const int difference = std::abs(int(drawn.rgb[n]) - int(expected.rgb[n]));
+      sum += difference;
+      others += difference > kShades ? 1 : 0;
+    }
+    const auto count = static_cast<double>(drawn.rgb.size());
+    EXPECT_LE(static_cast<double>(others) / count, kOthers);
+    EXPECT_LE(sum / count, kMeanShades);
+    // A tolerance that takes anything would take the background alone.
+    EXPECT_GT(covered(drawn), 0.1);
+  }
+
+  // The share of the picture that is not as dark as the background.
+  static double covered(const Image& image) {
+    std::size_t bright = 0;
+    for (std::size_t n = 0; n < image.rgb.size(); n += 3) bright += image.rgb[n] > 75 ? 1 : 0;
+    return 3 * static_cast<double>(bright) / static_cast<double>(image.rgb.size());
+  }
+
+  Image picture() {
+    renderer_->draw(scene_, kSize);
+    renderer_->draw(scene_, kSize);
+    return renderer_->picture();
+  }
+
+  static constexpr PixelSize kSize{320, 240};
+  OffscreenContext context_;
+  Volume bone_ = drilled_ball();
+  std::unique_ptr<SceneRenderer> renderer_;
+  ViewScene scene_;
+};
+
+TEST_F(SceneRendererTest, Bone) {
+  expect_as_kept();
+}
+
+TEST_F(SceneRendererTest, ToolGhostAndArrows) {
+  scene_.camera = camera_on({Vec3(0, 0, 4), 12}, {0.3, 1, -0.5}, Vec3::UnitZ());
+  scene_.X_WT = Pose{{0.5, -3.5, 6.2}, quaternion_from_rotation_vector({0.4, 0.3, 0})};
+  scene_.X_WD = Pose{{0.5, -2.8, 4.9}, quaternion_from_rotation_vector({0.4, 0.3, 0})};
+  scene_.wrench = {{0.2, -0.9, 1.5}, {12, 9, 0}};
+  expect_as_kept();
+}
+
+TEST_F(SceneRendererTest, CutWithItsGreys) {
+  scene_.cuts[0] = ClipPlane{{0, 1, 0}, 0};
+  renderer_->set_clip_face(0, clip_face(bone_.grid(), *scene_.cuts[0], {-100, 1300}));
+  expect_as_kept();
+}
+
+// What is seen through a pixel is what geometry says is there.
+TEST_F(SceneRendererTest, APointOfTheToolIsDrawnWhereTheCameraSeesIt) {
+  const Image without = picture();
+  scene_.X_WT = Pose{{2, -7, 6}, Quat::Identity()};
+  const Image with = picture();
+  const Eigen::Vector2d burr = pixel_of(scene_.camera, kSize, scene_.X_WT->position_mm);
+  const int x = static_cast<int>(burr.x());
+  const int y = static_cast<int>(burr.y());
+  EXPECT_NE(std::vector<int>(with.pixel(x, y), with.pixel(x, y) + 3),
+            std::vector<int>(without.pixel(x, y), without.pixel(x, y) + 3));
+  const double radius_px =
+      scene_.tool.burr_radius_mm /
+      mm_per_pixel(scene_.camera, kSize, depth_of(scene_.camera, scene_.X_WT->position_mm));
+  const int beside = static_cast<int>(burr.x() + 1.3 * radius_px);
+  EXPECT_EQ(std::vector<int>(with.pixel(beside, y), with.pixel(beside, y) + 3),
+            std::vector<int>(without.pixel(beside, y), without.pixel(beside, y) + 3));
+}
+
+// The bone is not drawn anew in every picture, but what was milled is seen two pictures later at the latest.
+TEST_F(SceneRendererTest, MilledBricksAreSeenWhileTheViewStandsStill) {
+  for (int n = 0; n < 10; ++n) renderer_->draw(scene_, kSize);
+  const double all = covered(renderer_->picture());
+  const std::size_t bricks = SurfaceBricks(bone_.geometry().dims).count();
+  for (std::size_t n = 0; n < bricks; ++n) set_brick(n, {});
+  EXPECT_LT(covered(picture()), 0.1 * all);
+}
+
+// Where bone is milled while the view stands still, only that part of the picture is drawn anew.
+TEST_F(SceneRendererTest, APictureDrawnPieceByPieceIsTheOneDrawnAtOnce) {
+  scene_.camera = camera_on({Vec3(0, 0, 4), 9}, {0.3, 1, -0.5}, Vec3::UnitZ());
+  while (!renderer_->settled()) renderer_->draw(scene_, kSize);
+  const Image before = renderer_->picture();
+  Volume milled = bone_;
+  const GridGeometry& geometry = milled.geometry();
+  for (int k = 0; k < geometry.dims[2]; ++k)
+    for (int j = 0; j < geometry.dims[1]; ++j)
+      for (int i = 0; i < geometry.dims[0]; ++i)
+        if ((geometry.world_from_voxel(VoxelIndex{i, j, k}) - Vec3(2, -4, 4)).norm() < 1.5)
+          milled.lower_density({i, j, k}, 0);
+  milled.refresh_ranges(geometry.all_voxels());
+  const SurfaceMesh mesh = mesh_surface(DensityView(milled));
+  const SurfaceMesh old = mesh_surface(DensityView(bone_));
+  for (std::size_t n = 0; n < mesh.bricks.size(); ++n) {
+    if (mesh.bricks[n] != old.bricks[n]) set_brick(n, mesh.bricks[n]);
+  }
+  EXPECT_FALSE(renderer_->settled());
+  for (int n = 0; n < 10; ++n) renderer_->draw(scene_, kSize);
+  const Image pieces = renderer_->picture();
+  // Another view in between, and all is drawn anew.
+  const Camera camera = scene_.camera;
+  turn(scene_.camera, kSize, 20, 5);
+  renderer_->draw(scene_, kSize);
+  scene_.camera = camera;
+  renderer_->draw(scene_, kSize);
+  while (!renderer_->settled()) renderer_->draw(scene_, kSize);
+  const Image whole = renderer_->picture();
+  std::size_t milled_away = 0;
+  std::size_t others = 0;
+  for (std::size_t n = 0; n < whole.rgb.size(); ++n) {
+    milled_away += std::abs(int(whole.rgb[n]) - int(before.rgb[n])) > kShades ? 1 : 0;
+    others += std::abs(int(whole.rgb[n]) - int(pieces.rgb[n])) > kShades ? 1 : 0;
+  }
+  EXPECT_GT(milled_away, 1000u);
+  EXPECT_LT(others, milled_away / 20);
+}
+
+// Pictures of a moving view with fewer triangles look much like the ones with all.
+TEST_F(SceneRendererTest, CoarserLevelsAreHardlyTold) {
+  scene_.camera.distance_mm *= 9;
+  while (!renderer_->settled()) renderer_->draw(scene_, kSize);
+  const Image all = renderer_->picture();
+  const SurfaceMesh mesh = mesh_surface(DensityView(bone_));
+  for (std::size_t n = 0; n < mesh.bricks.size(); ++n) {
+    BrickLevels levels = levels_of(mesh.bricks[n], bone_.geometry(), mesh.layout.cells(n));
+    levels.levels[0] = levels.levels[1 + n % 3];
+    renderer_->set_brick(n, levels);
+  }
+  const Image fewer = picture();
+  double sum = 0;
+  for (std::size_t n = 0; n < all.rgb.size(); ++n) sum += std::abs(int(all.rgb[n]) - int(fewer.rgb[n]));
+  EXPECT_GT(sum, 0);
+  EXPECT_LT(sum / static_cast<double>(all.rgb.size()), 1.5);
+}
+
+TEST(DrawingPace, HasFewerTrianglesTheLongerTheyTakeAndMoreAgainLater) {
+  DrawingPace pace(20'000, 150'000);
+  const std::size_t first = pace.allowed();
+  for (int n = 0; n < 20; ++n) pace.drew(pace.allowed(), 2e-6 * static_cast<double>(pace.allowed()));
+  EXPECT_LT(pace.allowed(), first / 2);
+  EXPECT_GE(pace.allowed(), 20'000u);
+  for (int n = 0; n < 60; ++n) pace.drew(pace.allowed(), 1e-8 * static_cast<double>(pace.allowed()));
+  EXPECT_NEAR(static_cast<double>(pace.allowed()), DrawingPace::kBone_s / 1e-8, 2e5);
+}
+
+TEST(DrawingPace, OnePictureThatWasHeldUpCountsLittle) {
+  DrawingPace pace(20'000, 150'000);
+  const std::size_t first = pace.allowed();
+  pace.drew(pace.allowed(), 1.0);
+  EXPECT_GT(pace.allowed(), first / 2);
+}
+
+TEST(DrawingPace, HasFewerPixelsWhereTheyTakeLong) {
+  DrawingPace pace(500'000, 2'000'000);
+  EXPECT_GT(pace.allowed(), 1'500'000u);
+  for (int n = 0; n < 20; ++n) pace.drew(1'000'000, 0.1);
+  EXPECT_EQ(pace.allowed(), 500'000u);
+  for (int n = 0; n < 20; ++n) pace.drew(8'000'000, 0.01);
+  EXPECT_GT(pace.allowed(), 8'000'000u);
+}
+
+// The first picture comes at the pace that is supposed before any is known.
+TEST_F(SceneRendererTest, ALargePictureThatMovesHasFewerPixelsThanOnceItRests) {
+  constexpr PixelSize kLarge{1920, 1080};
+  renderer_->draw(scene_, kLarge);
+  const Image moving = renderer_->picture();
+  EXPECT_EQ(moving.width, 960);
+  EXPECT_EQ(moving.height, 540);
+  do {
+    renderer_->draw(scene_, kLarge);
+  } while (!renderer_->settled());
+  const Image rested = renderer_->picture();
+  EXPECT_EQ(rested.width, 1920);
+  EXPECT_EQ(rested.height, 1080);
+  EXPECT_NEAR(covered(moving), covered(rested), 0.005);
+}
+
+TEST_F(SceneRendererTest, AMovingViewIsShadedAfterThePictureBeforeAndNoneLongGone) {
+  const double last_mm = scene_.camera.distance_mm;
+  for (const double times : {0.5, 0.5, 0.998, 1.0}) {
+    scene_.camera.distance_mm = times * last_mm;
+    renderer_->draw(scene_, kSize);
+  }
+  const Image moving = renderer_->picture();
+  do {
+    renderer_->draw(scene_, kSize);
+  } while (!renderer_->settled());
+  const Image rested = renderer_->picture();
+  double sum = 0;
+  for (std::size_t n = 0; n < moving.rgb.size(); ++n)
+    sum += std::abs(int(moving.rgb[n]) - int(rested.rgb[n]));
+  EXPECT_LT(sum / static_cast<double>(moving.rgb.size()), 2 * kMeanShades);
+}
+
+TEST_F(SceneRendererTest, ABrickTakenAwayIsGone) {
+  const double all = covered(picture());
+  EXPECT_GT(renderer_->triangle_count(), 1000u);
+  for (std::size_t n = 0; n < SurfaceBricks(bone_.geometry().dims).count(); ++n) set_brick(n, {});
+  EXPECT_EQ(renderer_->triangle_count(), 0u);
+  EXPECT_LT(covered(picture()), 0.1 * all);
+}
+
+// How much more of the first channel than of the third a picture has, by its pixels' sum.
+double redness(const Image& image) {
+  double sum = 0;
+  for (std::size_t n = 0; n < image.rgb.size(); n += 3) sum += int(image.rgb[n]) - int(image.rgb[n + 2]);
+  return sum / static_cast<double>(image.rgb.size() / 3);
+}
+
+TEST_F(SceneRendererTest, BoneHasTheColoursOfItsLabels) {
+  const double without = redness(picture());
+  const GridGeometry& geometry = bone_.geometry();
+  const auto labels =
+      std::make_shared<const LabelMap>(std::vector<Label>{{1, "blue", {0, 0, 255}}}, geometry, geometry,
+                                       std::vector<LabelMap::Place>(geometry.voxel_count(), 1));
+  const SurfaceMesh mesh = mesh_surface(DensityView(bone_));
+  renderer_ = std::make_unique<SceneRenderer>(mesh.layout, geometry, labels);
+  for (std::size_t n = 0; n < mesh.bricks.size(); ++n) set_brick(n, mesh.bricks[n]);
+  EXPECT_LT(redness(picture()), without - 20);
+  scene_.show_labels = false;
+  EXPECT_NEAR(redness(picture()), without, 0.01);
+}
+
+}  // namespace
+}  // namespace osteomill

@@ -1,0 +1,118 @@
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "osteomill/base/row_major.h"
+#include "osteomill/volume/copy_on_write_floats.h"
+#include "osteomill/volume/grid_geometry.h"
+
+namespace osteomill {
+
+/// The densities of a scan, one float a voxel (Hounsfield units where the scan has them), in rows along i.
+/// Outside the grid there is nothing: every voxel there counts as `outside_density()`. Copies share
+/// the memory of what was changed in none of them. Reading is safe in the haptic tick; one thread writes.
+class DensityGrid {
+ public:
+  DensityGrid() = default;
+  /// `densities` has `geometry.voxel_count()` values, i running fastest, all finite (the readers see to
+  /// that). Throws std::invalid_argument where it has another count, or none.
+  DensityGrid(const GridGeometry& geometry, std::vector<float> densities);
+
+  const GridGeometry& geometry() const { return geometry_; }
+  /// As they lie in memory, to be kept and compared.
+  const CopyOnWriteFloats& densities() const { return densities_; }
+  /// The densities of row (j, k), from i = 0.
+  std::span<const float> row(int j, int k) const noexcept {
+    return {densities_.data() + place(0, j, k), layout_.row_length};
+  }
+  /// Where the density of `v` lies, which must be in the grid. Those that follow along i lie behind it; along
+  /// j and k the next are row_stride() and slice_stride() floats on. 64 bytes behind any may be read.
+  const float* address_of(const VoxelIndex& v) const noexcept {
+    return densities_.data() + place(v.i, v.j, v.k);
+  }
+  std::ptrdiff_t row_stride() const { return static_cast<std::ptrdiff_t>(layout_.row_stride); }
+  std::ptrdiff_t slice_stride() const { return static_cast<std::ptrdiff_t>(layout_.slice_stride); }
+  /// The least density of the grid as it was made.
+  float outside_density() const { return outside_density_; }
+
+  /// The voxel's number, i running fastest: not where it lies in memory.
+  std::size_t linear_index(const VoxelIndex& v) const noexcept {
+    return row_major(geometry_.dims, v.i, v.j, v.k);
+  }
+  bool contains(const VoxelIndex& v) const noexcept {
+    return v.i >= 0 && v.j >= 0 && v.k >= 0 && v.i < geometry_.dims[0] && v.j < geometry_.dims[1] &&
+           v.k < geometry_.dims[2];
+  }
+  /// `v` must lie in the grid.
+  float operator[](const VoxelIndex& v) const { return *address_of(v); }
+  /// Any `v`; the outside density beyond the border.
+  float at_or_outside(const VoxelIndex& v) const noexcept {
+    return contains(v) ? *address_of(v) : outside_density_;
+  }
+  /// Asks for the voxel's cache line ahead of reading it. `v` must lie in the grid.
+  void prefetch(const VoxelIndex& v) const {
+#ifdef __GNUC__
+    __builtin_prefetch(address_of(v));
+#else
+    (void)v;
+#endif
+  }
+  void set(const VoxelIndex& v, float density) noexcept {
+    densities_.set(place(v.i, v.j, v.k), density);
+  }
+  /// Has the memory for changes about `changed` made before they come (CopyOnWriteFloats::prepare): as far as
+  /// a burr may go on from there in some tens of milliseconds.
+  void prepare_about(const VoxelBox& changed);
+
+ private:
+  std::size_t place(int i, int j, int k) const {
+    return static_cast<std::size_t>(i) + layout_.row_stride * static_cast<std::size_t>(j) +
+           layout_.slice_stride * static_cast<std::size_t>(k);
+  }
+
+  GridGeometry geometry_;
+  RowLayout layout_;
+  CopyOnWriteFloats densities_;
+  VoxelBox prepared_;
+  float outside_density_ = 0;
+};
+
+/// Takes every row, a std::span<const float>, to `use`, j running fastest. Long work (WorkProgress).
+template <typename Use>
+void for_each_row(const DensityGrid& grid, const Use& use) {
+  VoxelBox rows = grid.geometry().all_voxels();
+  rows.last.i = 0;
+  for_each_with_progress(rows, [&](const VoxelIndex& v) { use(grid.row(v.j, v.k)); });
+}
+
+/// The densities of every `every`th voxel in the order of their numbers.
+std::vector<float> every_nth_density(const DensityGrid& grid, std::size_t every);
+
+/// One voxel's part in a hash that is the sum of all parts (modulo 2^64), so that it follows a change at the
+/// cost of what changes, in any order. Safe in the haptic tick.
+inline std::uint64_t density_hash(std::size_t voxel, float density) noexcept {
+  std::uint64_t x = (static_cast<std::uint64_t>(voxel) << 32) ^ std::bit_cast<std::uint32_t>(density);
+  x *= 0x9e3779b97f4a7c15;
+  x ^= x >> 29;
+  x *= 0xbf58476d1ce4e5b9;
+  return x ^ (x >> 32);
+}
+
+/// FNV-1a, a word at a time.
+class WordHash {
+ public:
+  void add(std::uint64_t word) { hash_ = (hash_ ^ word) * 0x100000001b3; }
+  std::uint64_t value() const { return hash_; }
+
+ private:
+  std::uint64_t hash_ = 0xcbf29ce484222325;
+};
+
+/// A number that two scans hardly share. Goes through every voxel; not for the tick.
+std::uint64_t fingerprint_of(const DensityGrid& grid);
+
+}  // namespace osteomill

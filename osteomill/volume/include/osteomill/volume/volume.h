@@ -1,0 +1,97 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <stdexcept>
+#include <utility>
+
+#include "osteomill/volume/block_ranges.h"
+#include "osteomill/volume/density_grid.h"
+#include "osteomill/volume/label_map.h"
+
+namespace osteomill {
+
+/// The bone as every room sees it: densities, the isovalue that bounds the bone (bone where density >
+/// isovalue), and the range of densities brick by brick. The haptic thread alone lowers densities; everyone
+/// else reads copies, which cost what is changed in them.
+class Volume {
+ public:
+  /// Throws std::invalid_argument where the isovalue is not finite.
+  Volume(DensityGrid grid, double isovalue) : grid_(std::move(grid)), ranges_(grid_) {
+    set_isovalue(isovalue);
+  }
+
+  const DensityGrid& grid() const { return grid_; }
+  const GridGeometry& geometry() const { return grid_.geometry(); }
+  const BlockRanges& ranges() const { return ranges_; }
+  double isovalue() const { return isovalue_; }
+  /// Which structures the bone is made of; null where nobody said. Copies of the bone share it.
+  const std::shared_ptr<const LabelMap>& labels() const { return labels_; }
+  /// Not for the tick. The map is of this grid.
+  void set_labels(std::shared_ptr<const LabelMap> labels) { labels_ = std::move(labels); }
+
+  /// `v` must lie in the grid.
+  bool is_bone(const VoxelIndex& v) const noexcept { return static_cast<double>(grid_[v]) > isovalue_; }
+  /// Any `v`; there is no bone beyond the border.
+  bool is_bone_in_grid(const VoxelIndex& v) const noexcept { return grid_.contains(v) && is_bone(v); }
+
+  /// Lowers the densities of `count` voxels of one row, whose columns ascend. Safe in the haptic tick. Where
+  /// a cut is taken back densities may also rise, but only outside the tick, while nobody works on this bone,
+  /// and with `refresh_ranges` after it.
+  void lower_row(int j, int k, const int* columns, const float* densities, std::size_t count) noexcept {
+    for (std::size_t n = 0; n < count; ++n) {
+      const VoxelIndex v{columns[n], j, k};
+      const std::size_t voxel = grid_.linear_index(v);
+      change_hash_ += density_hash(voxel, densities[n]) - density_hash(voxel, grid_[v]);
+      grid_.set(v, densities[n]);
+    }
+    ranges_.lower_row(j, k, columns, densities, count);
+  }
+  /// The same for one voxel.
+  void lower_density(const VoxelIndex& v, float density) noexcept { lower_row(v.j, v.k, &v.i, &density, 1); }
+  /// See DensityGrid; by another thread than the one that lowers where that one must not wait.
+  void prepare_about(const VoxelBox& changed) { grid_.prepare_about(changed); }
+  /// A hash of what differs from the densities it was made with: 0 where nothing does, and the same for any
+  /// two bones of one scan that are the same, in whatever order they were milled. Safe in the haptic tick.
+  std::uint64_t change_hash() const noexcept { return change_hash_; }
+  /// Bone is where the density is greater from now on. Throws std::invalid_argument where it is not finite.
+  /// Not for the tick, nor while anyone works on this bone.
+  void set_isovalue(double isovalue) {
+    if (!std::isfinite(isovalue)) throw std::invalid_argument("Volume: the isovalue is not finite");
+    isovalue_ = isovalue;
+  }
+  /// Makes the brick ranges around a changed box exact again; not for the tick.
+  void refresh_ranges(const VoxelBox& box) { ranges_.refresh(grid_, box); }
+
+ private:
+  DensityGrid grid_;
+  BlockRanges ranges_;
+  double isovalue_ = 0;
+  std::uint64_t change_hash_ = 0;
+  std::shared_ptr<const LabelMap> labels_;
+};
+
+/// Takes every bone voxel to `visit`, along i fastest; passes over bricks without bone. Long work.
+template <typename Visit>
+void for_each_bone_voxel(const Volume& volume, const Visit& visit) {
+  constexpr int kSide = BlockRanges::kBrickVoxels;
+  VoxelBox rows = volume.geometry().all_voxels();
+  const int last = std::exchange(rows.last.i, rows.last.i / kSide);
+  // Here i counts bricks.
+  for_each_with_progress(rows, [&](const VoxelIndex& row) {
+    const BlockRanges::Range& range = volume.ranges().at(row.i, row.j / kSide, row.k / kSide);
+    if (static_cast<double>(range.max) <= volume.isovalue()) return;
+    for (VoxelIndex v{kSide * row.i, row.j, row.k}; v.i <= std::min(last, kSide * row.i + kSide - 1); ++v.i) {
+      if (volume.is_bone(v)) visit(v);
+    }
+  });
+}
+
+/// What milling changed in one step: every voxel whose density fell lies in `voxels` (empty where none did).
+struct VolumeChange {
+  VoxelBox voxels;
+};
+
+}  // namespace osteomill

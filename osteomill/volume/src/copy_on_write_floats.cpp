@@ -1,0 +1,181 @@
+#include "osteomill/volume/copy_on_write_floats.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <new>
+#include <system_error>
+#include <utility>
+
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include "osteomill/base/work_progress.h"
+
+namespace osteomill {
+
+namespace {
+
+constexpr std::size_t kPageBytes = 4096;
+constexpr std::size_t kReadBehind = 64;
+
+std::size_t mapped_bytes(std::size_t floats) {
+  return (floats * sizeof(float) + kReadBehind + kPageBytes - 1) / kPageBytes * kPageBytes;
+}
+
+[[noreturn]] void say_why_not() {
+  if (errno != EFBIG) throw std::bad_alloc();
+  throw std::system_error(errno, std::generic_category(),
+                          "densities lie in a file in memory, which a limit forbids (ulimit -f)");
+}
+
+void write_all(int file, const char* bytes, std::size_t count, std::size_t at) {
+  while (count > 0) {
+    const ssize_t written = pwrite(file, bytes, count, static_cast<off_t>(at));
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) say_why_not();
+    bytes += written;
+    at += static_cast<std::size_t>(written);
+    count -= static_cast<std::size_t>(written);
+  }
+}
+
+// What is in the pages that lie wholly in [from, to) is lost, and their memory free for others.
+void give_back(float* from, float* to) {
+  const auto up = (reinterpret_cast<std::uintptr_t>(from) + kPageBytes - 1) / kPageBytes * kPageBytes;
+  const auto down = reinterpret_cast<std::uintptr_t>(to) / kPageBytes * kPageBytes;
+  if (up < down) madvise(reinterpret_cast<void*>(up), down - up, MADV_DONTNEED);
+}
+
+}  // namespace
+
+// A file that lies in memory alone and has no name, never written once it is filled.
+class CopyOnWriteFloats::Original {
+ public:
+  Original(std::vector<float> values, const RowLayout& layout)
+      : file_(memfd_create("osteomill", MFD_CLOEXEC)) {
+    if (file_ < 0) throw std::bad_alloc();
+    try {
+      fill(values, layout);
+    } catch (...) {
+      close(file_);
+      throw;
+    }
+  }
+  ~Original() { close(file_); }
+  Original(const Original&) = delete;
+  Original& operator=(const Original&) = delete;
+
+  int file() const { return file_; }
+
+ private:
+  void fill(std::vector<float>& values, const RowLayout& layout) const {
+    if (ftruncate(file_, static_cast<off_t>(mapped_bytes(layout.size()))) != 0) say_why_not();
+    constexpr std::size_t kAtOnce = 1 << 22;
+    const std::size_t rows = layout.slice_rows * layout.slices;
+    std::vector<float> piece;
+    std::size_t written = 0;
+    float *begin = values.data(), *from = begin;
+    for (std::size_t row = 0; row < rows; ++row, from += layout.row_length) {
+      const std::size_t at =
+          row / layout.slice_rows * layout.slice_stride + row % layout.slice_rows * layout.row_stride;
+      piece.resize(at - written);
+      piece.insert(piece.end(), from, from + layout.row_length);
+      if (piece.size() < kAtOnce && row + 1 < rows) continue;
+      write_all(file_, reinterpret_cast<const char*>(piece.data()), piece.size() * sizeof(float),
+                written * sizeof(float));
+      give_back(begin, from + layout.row_length);
+      begin = from + layout.row_length;
+      written += piece.size();
+      piece.clear();
+      WorkProgress::done(row + 1, rows);
+    }
+  }
+
+  int file_;
+};
+
+RowLayout RowLayout::apart(std::size_t row_length, std::size_t slice_rows, std::size_t slices) {
+  constexpr std::size_t kLineFloats = 16;
+  // Of a first-level cache of 32 KiB; an odd count of lines goes through all of them.
+  constexpr std::size_t kSets = 64;
+  // So many rows of a slice have sets to themselves before the next slice's begin.
+  constexpr std::size_t kRowsTogether = 12;
+  constexpr std::size_t kThin = 64;
+  if (row_length < kThin || slice_rows < kThin)
+    return {row_length, row_length, slice_rows, row_length * slice_rows, slices};
+  const std::size_t row_lines = (row_length + kLineFloats - 1) / kLineFloats | 1;
+  const std::size_t least = slice_rows * row_lines, wanted = kRowsTogether * row_lines;
+  const std::size_t slice_lines = least + (wanted - least) % kSets;
+  return {row_length, row_lines * kLineFloats, slice_rows, slice_lines * kLineFloats, slices};
+}
+
+CopyOnWriteFloats::CopyOnWriteFloats(std::vector<float> values, const RowLayout& layout)
+    : size_(layout.size()) {
+  if (values.empty()) return;
+  original_ = std::make_shared<const Original>(std::move(values), layout);
+  written_.assign(mapped_bytes(size_) / kPageBytes, 0);
+  map();
+}
+
+CopyOnWriteFloats::CopyOnWriteFloats(const CopyOnWriteFloats& other)
+    : original_(other.original_), size_(other.size_), written_(other.written_.size()) {
+  if (empty()) return;
+  map();
+  // Another thread may be preparing pages, which changes nothing in them.
+  for (std::size_t page = 0; page < written_.size(); ++page) {
+    auto& made = const_cast<std::uint8_t&>(other.written_[page]);
+    written_[page] = std::atomic_ref(made).load(std::memory_order_relaxed);
+  }
+  // What both may read counts once in the process's memory until it is read here and there.
+  if (std::ranges::count(written_, 0) == std::ssize(written_)) {
+    madvise(other.values_, mapped_bytes(size_), MADV_DONTNEED);
+  }
+  for (std::size_t page = 0; page < written_.size(); ++page) {
+    if (written_[page] == 0) continue;
+    std::memcpy(values_ + page * kPageFloats, other.values_ + page * kPageFloats, kPageBytes);
+  }
+}
+
+CopyOnWriteFloats::~CopyOnWriteFloats() {
+  if (values_ != nullptr) munmap(values_, mapped_bytes(size_));
+}
+
+void CopyOnWriteFloats::map() {
+  void* mapped = mmap(nullptr, mapped_bytes(size_), PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_NORESERVE,
+                      original_->file(), 0);
+  if (mapped == MAP_FAILED) throw std::bad_alloc();
+  values_ = static_cast<float*>(mapped);
+}
+
+void CopyOnWriteFloats::swap(CopyOnWriteFloats& other) noexcept {
+  std::swap(original_, other.original_);
+  std::swap(values_, other.values_);
+  std::swap(size_, other.size_);
+  std::swap(written_, other.written_);
+}
+
+bool CopyOnWriteFloats::operator==(const CopyOnWriteFloats& other) const {
+  return std::equal(values_, values_ + size_, other.values_, other.values_ + other.size_);
+}
+
+void CopyOnWriteFloats::prepare(std::size_t first, std::size_t last) {
+  const std::size_t end = last / kPageFloats + 1;
+  const auto made = [&](std::size_t page) {
+    return std::atomic_ref(written_[page]).load(std::memory_order_relaxed) != 0;
+  };
+  for (std::size_t page = first / kPageFloats; page < end;) {
+    if (made(page)) {
+      ++page;
+      continue;
+    }
+    const std::size_t begin = page;
+    while (page < end && !made(page)) std::atomic_ref(written_[page++]).store(1, std::memory_order_relaxed);
+#ifdef MADV_POPULATE_WRITE
+    // Where the system cannot, they are made as they are written.
+    madvise(values_ + begin * kPageFloats, (page - begin) * kPageBytes, MADV_POPULATE_WRITE);
+#endif
+  }
+}
+
+}  // namespace osteomill
