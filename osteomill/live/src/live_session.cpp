@@ -18,8 +18,8 @@ constexpr double kMaxLate_s = 0.02 - kTick_s;
 
 }  // namespace
 
-LiveSession::LiveSession(std::unique_ptr<MillingSession> session, Device& device)
-    : device_(device), driven_(device), session_(std::move(session)) {}
+LiveSession::LiveSession(std::unique_ptr<MillingSession> session, Device& device, TickClock clock)
+    : clock_(std::move(clock)), device_(device), driven_(device), session_(std::move(session)) {}
 
 void LiveSession::start() {
   if (running()) return;
@@ -124,13 +124,13 @@ void LiveSession::run(const std::stop_token& stop) noexcept {
 
 void LiveSession::tick_until(const std::stop_token& stop) {
   constexpr Nanoseconds kTick_ns = 1'000'000;
-  NextDeadline next{monotonic_now_ns() + kTick_ns, 1};
+  NextDeadline next{clock_.now_ns() + kTick_ns, 1};
   while (!stop.stop_requested() && !driven_.end_asked()) {
     TickTimes times{next.deadline_ns, 0, 0, next.periods};
-    times.woke_ns = wait_until(next.deadline_ns);
+    times.woke_ns = clock_.wait_until(next.deadline_ns);
     take_command();
     const TickRecord record = tick(std::min((next.periods - 1) * kTick_s, kMaxLate_s));
-    times.done_ns = monotonic_now_ns();
+    times.done_ns = clock_.now_ns();
     timing_.add(times, record);
     next = next_deadline(next.deadline_ns, times.done_ns, kTick_ns);
     time_s_ += next.periods * kTick_s;

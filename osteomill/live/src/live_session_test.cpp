@@ -89,6 +89,33 @@ TEST_F(LiveSessionTest, TicksInRealTimeAndStopsAtAWrenchOfZero) {
   EXPECT_LE(device_.time_passed_s, ticked_s + 1e-3 * static_cast<double>(timing.missed_ticks) + 1e-9);
 }
 
+// On a clock that is set, so that it takes no time and holds to the nanosecond.
+TEST(LiveSessionOnASetClock, SkipsWhatASlowTickMissesAndCountsIt) {
+  std::atomic<Nanoseconds> now_ns{0};
+  const TickClock clock{[&] { return now_ns.load(); },
+                        [&](Nanoseconds deadline_ns) {
+                          if (now_ns < deadline_ns) now_ns = deadline_ns;
+                          return now_ns.load();
+                        }};
+  class SlowDevice final : public PressedDevice {
+   public:
+    explicit SlowDevice(std::atomic<Nanoseconds>& now) : now_ns(now) {}
+    Pose read_pose() override {
+      if (ticks == 10) now_ns += 3'400'000;
+      return PressedDevice::read_pose();
+    }
+    std::atomic<Nanoseconds>& now_ns;
+  } device(now_ns);
+  device.throw_at_tick = 30;
+  LiveSession live(session_on(std::make_shared<Volume>(half_space()), "line-proxy"), device, clock);
+  live.start();
+  ASSERT_TRUE(comes_true([&] { return !live.running(); }));
+  live.stop();
+  EXPECT_EQ(live.timing().ticks, 30u);
+  EXPECT_EQ(live.timing().missed_ticks, 2u);
+  EXPECT_NEAR(device.time_passed_s, 0.032, 1e-9);
+}
+
 TEST_F(LiveSessionTest, CopiesOfABoneShareItsPagesInRealTimeToo) {
   GridGeometry geometry;
   geometry.dims = {256, 256, 256};

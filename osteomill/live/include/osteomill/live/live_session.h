@@ -40,7 +40,7 @@ struct LiveState {
 class LiveSession {
  public:
   /// `device` outlives this object. Does not start yet.
-  LiveSession(std::unique_ptr<MillingSession> session, Device& device);
+  LiveSession(std::unique_ptr<MillingSession> session, Device& device, TickClock clock = {});
 
   /// Returns when the haptic thread runs; nothing happens where it does already. Throws std::system_error
   /// where the system gives no thread: the session is then not running, and can be started again.
@@ -91,6 +91,7 @@ class LiveSession {
   void place_when_at_rest();
   TickRecord tick(double late_s);
 
+  TickClock clock_;
   Device& device_;
   DrivenDevice driven_;
   std::atomic<bool> running_{false};

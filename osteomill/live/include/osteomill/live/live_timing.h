@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 
 #include "osteomill/base/distribution.h"
 #include "osteomill/base/recent_rate.h"
@@ -31,7 +32,13 @@ NextDeadline next_deadline(Nanoseconds deadline_ns, Nanoseconds now_ns, Nanoseco
 /// until it has come: waking from sleep is what is late. Returns the time at which it returns.
 Nanoseconds wait_until(Nanoseconds deadline_ns);
 
-/// Percentiles (numbers/distribution.h) of a histogram of times, microseconds. A time counts as the upper end
+/// The time that a live session keeps: the system's, or one that a test sets.
+struct TickClock {
+  std::function<Nanoseconds()> now_ns = monotonic_now_ns;
+  std::function<Nanoseconds(Nanoseconds deadline_ns)> wait_until = osteomill::wait_until;
+};
+
+/// Percentiles (distribution.h) of a histogram of times, microseconds. A time counts as the upper end
 /// of the bin it falls into (1 us wide up to 1 ms, 10 us up to 10 ms), or as the greatest time, where that is
 /// less. All zero where none was counted.
 struct TimePercentiles {
