@@ -20,7 +20,7 @@ std::vector<Vec3> centreline_vertices(const MillingTool& tool, int count) {
 
 std::array<Vec3, kSphereVertices> sphere_vertices(const MillingTool& tool) {
   // The tribonacci constant, the real root of t^3 = t^2 + t + 1.
-  const double t = (1 + std::cbrt(19 + 3 * std::sqrt(33.0)) + std::cbrt(19 - 3 * std::sqrt(33.0))) / 3;
+  constexpr double t = 1.8392867552141612;
   const Vec3 size(1, 1 / t, t);
   const double scale = tool.burr_radius_mm / size.norm();
   std::array<Vec3, kSphereVertices> vertices;
