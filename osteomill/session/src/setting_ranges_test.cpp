@@ -60,7 +60,8 @@ Pressed press(const MillingSetup& setup, const Put& put, bool spindle_on) {
   double time_s = 0;
   const auto tick_at = [&](double depth_mm) {
     device.put({{0.06, 0.03, touching_mm - depth_mm}, put.orientation});
-    const TickRecord tick = session.tick(device, time_s += kTick_s, kTick_s, spindle_on);
+    const TickRecord tick =
+        session.tick(device, {.time_s = time_s += kTick_s, .dt_s = kTick_s, .spindle_on = spindle_on});
     pressed.finite = pressed.finite && is_finite(tick.X_WT) && tick.fault != WrenchFault::not_finite;
     pressed.force_N = tick.wrench.force_N.z();
     pressed.sunk_mm = std::max(pressed.sunk_mm, touching_mm - tick.X_WT.position_mm.z());
