@@ -7,7 +7,7 @@
 namespace osteomill::testing_support {
 
 /// A hand that comes down along z from free space at 8 mm/s and then holds the burr where the test wants it,
-/// as whoever begins to be driven has to. Put elsewhere it stays there.
+/// as every device that begins to be driven has to. Put elsewhere it stays there.
 class ComingDown : public Device {
  public:
   static constexpr double kFrom_mm = 3;

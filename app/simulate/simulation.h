@@ -75,7 +75,7 @@ struct Simulation {
 
   OpenScan scan;
   std::string command_line;
-  /// What to warn the user of for this isovalue, tool and settings (isovalue_warnings,
+  /// Warnings about this isovalue, tool and settings (isovalue_warnings,
   /// coarseness_warnings, doubts_about).
   std::vector<std::string> warnings;
   Holder holder;

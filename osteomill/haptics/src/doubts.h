@@ -5,8 +5,8 @@
 
 namespace osteomill {
 
-/// What can be poor of the paper's algorithms: a line for each is put behind `doubts`. Their settings keep
-/// ranges in which all numbers are finite, since poor ones may be wanted for a comparison.
+/// These functions append a line to `doubts` for each poor setting of the paper's algorithms. The settings
+/// keep ranges in which all numbers are finite, because poor ones may be wanted for a comparison.
 
 /// A spring so soft that a hand reaches no force, or so stiff that it cannot be held.
 void doubt_stiffness(std::vector<std::string>& doubts, const std::string& setting, double N_per_mm);

@@ -97,7 +97,7 @@ class HeldFolder {
 
 constexpr const char* kBeside = "files";
 
-// What a program that was killed wrote beside, and nobody moves or removes any more.
+// Removes folders that a killed program left half-written.
 void remove_what_the_dead_left(const fs::path& folder) {
   std::error_code ignored;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored))

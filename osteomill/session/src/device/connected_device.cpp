@@ -22,8 +22,8 @@ namespace {
 using namespace std::chrono_literals;
 using State = DeviceReport::State;
 
-// What is older is no longer true: an input (the haptic thread then has no pose, and sends zero) and a wrench
-// (the device is then sent zero, whatever the haptic thread is doing).
+// Age at which an input or a wrench expires: the haptic thread then has no pose and sends zero, or the device
+// is sent zero, whatever the haptic thread is doing.
 constexpr double kMaxAge_s = 5e-3;
 // How long it takes to come up where the device may be driven (again).
 constexpr double kBlend_s = 0.1;
@@ -34,7 +34,7 @@ constexpr double kReopen_s = 0.5;
 constexpr double kRound_s = 1e-3;
 constexpr double kUnitTolerance = 1e-3;
 constexpr int kWaitsForPose = 500;
-// What it takes to come down from anything, and then some.
+// More rounds than it takes to come down from any wrench.
 constexpr int kMostRoundsAtTheEnd = 50;
 // How long a maker's function may take before that is said, and how long closing waits for it.
 constexpr double kHangs_s = 0.1;
@@ -429,7 +429,7 @@ double ConnectedDevice::given_share() const noexcept {
 }
 
 bool ConnectedDevice::let_go() noexcept {
-  // What is being sent right now may still be something.
+  // The wrench that is being sent right now may not be zero yet.
   if (!exchange_->is_let_go.exchange(true, std::memory_order_acq_rel)) {
     exchange_->stops.fetch_add(1, std::memory_order_release);
     exchange_->at_rest.store(false, std::memory_order_release);

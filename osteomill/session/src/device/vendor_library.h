@@ -9,7 +9,8 @@
 namespace osteomill {
 
 /// While it lives, the calling thread's calls of makers' functions leave their names in a place that other
-/// threads may read: null while there is none under way. So whoever waits for the thread knows for what.
+/// threads may read: null while there is none under way. A caller that waits for the thread then knows for
+/// which call.
 class VendorCallsNamed {
  public:
   explicit VendorCallsNamed(std::atomic<const char*>& place) : before_(std::exchange(place_, &place)) {}

@@ -22,7 +22,7 @@ std::vector<std::string> SurfacePoints::doubts_about(const MillingTool& tool, co
   constexpr double kLeast_N = 1;
   std::vector<std::string> doubts;
   doubt_stiffness(doubts, "surface-points: a stiffness", settings_.stiffness_N_per_mm);
-  // Of half a ball's vertices, each half as far from the surface as from the centre.
+  // The sum over half a ball's vertices, each half as far from the surface as from the centre.
   const double most_N = settings_.stiffness_N_per_mm * tool.burr_radius_mm / 8;
   if (most_N < kLeast_N) {
     std::ostringstream line;

@@ -100,8 +100,8 @@ class WrenchGuard {
   bool is_at_rest() const { return is_zero(sent_); }
 
   /// What to send for a wrench in a tick of `dt_s`, with the reason where that is not what was asked for. One
-  /// that is not finite is zero, and what follows begins anew. A tool that is in bone (`is_free` false) stays
-  /// held back.
+  /// that is not finite is zero, and the next ones come up slowly again. A tool that is in bone (`is_free`
+  /// false) stays held back.
   SafeWrench pass(const Wrench& asked, const Pose& X_WD, double dt_s,
                   bool is_free = true) noexcept OSTEOMILL_NONBLOCKING;
   /// What to send in a tick in which nothing may be felt, as there is no finite pose or a pause.
