@@ -37,7 +37,7 @@ constexpr std::size_t kRowsAtOnce = 2 * RecordingFile::kChunkRows;
 
 // HDF5 writes here and there in a file, which then takes the place of what was there.
 fs::path file_behind(const fs::path& path) {
-  const fs::path file = output_path(path);
+  fs::path file = output_path(path);
   std::error_code error;
   const fs::file_status status = fs::status(file, error);
   if (fs::exists(status) && !fs::is_regular_file(status))

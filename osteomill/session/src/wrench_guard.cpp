@@ -85,7 +85,7 @@ SafeWrench WrenchGuard::pass_zero(const Pose& X_WD, double dt_s) noexcept {
 }
 
 SafeWrench WrenchGuard::send_zero(double dt_s) noexcept {
-  const SafeWrench safe = approach({}, WrenchFault::none, dt_s);
+  SafeWrench safe = approach({}, WrenchFault::none, dt_s);
   from_ = {};
   blended_ = 0;
   X_WD_.reset();
