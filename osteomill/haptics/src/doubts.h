@@ -8,9 +8,9 @@ namespace osteomill {
 /// These functions append a line to `doubts` for each poor setting of the paper's algorithms. The settings
 /// keep ranges in which all numbers are finite, because poor ones may be wanted for a comparison.
 
-/// A spring so soft that a hand reaches no force, or so stiff that it cannot be held.
+/// Appends a line if the spring is so soft that a hand reaches no force, or so stiff that it cannot be held.
 void doubt_stiffness(std::vector<std::string>& doubts, const std::string& setting, double N_per_mm);
-/// So many densities read in a tick, at most, that it can take over a millisecond.
+/// Appends a line if a tick reads so many densities, at most, that it can take over a millisecond.
 void doubt_reads(std::vector<std::string>& doubts, const std::string& settings, int reads);
 
 }  // namespace osteomill
