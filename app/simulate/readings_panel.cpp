@@ -20,6 +20,8 @@ namespace {
 constexpr std::size_t kPlotPoints = 200;
 // Where the values stand beside their names.
 constexpr float kValues_px = 96;
+// Wide enough for "10000 poses/s": the button beside the rate must not move with the number of digits.
+constexpr float kCalibrate_px = 112;
 
 // The greatest of each stretch of ticks: peaks must not fall between two points.
 std::vector<float> thinned(const std::deque<TickRecord>& history, double (*magnitude)(const TickRecord&)) {
@@ -118,7 +120,7 @@ void keep_turn(ViewState& view, ConnectedDevice& device, const Vec3& up_D_mm) {
 void draw_calibration(ViewState& view, ConnectedDevice& device, const Vec3& handle_D_mm) {
   ViewState::Calibration& calibration = view.calibration;
   if (calibration.step == Step::none) {
-    ImGui::SameLine();
+    ImGui::SameLine(ui::px(kCalibrate_px));
     if (ui::button("Calibrate")) calibration = {Step::right, handle_D_mm, Vec3::Zero()};
     ui::hint("Two moves of your hand tell how the device stands before you; the tool stays meanwhile");
     return;
