@@ -25,6 +25,7 @@
 #include "osteomill/visual/surface_upkeep.h"
 #include "osteomill/volume/bone_densities.h"
 #include "osteomill/volume/builtin_tooth.h"
+#include "osteomill/volume/editable_volume.h"
 #include "osteomill/volume/sampling.h"
 
 #include "tests/support/mesh_checks.h"
@@ -150,7 +151,7 @@ FrameTimes mill_and_mesh(const Volume& bone, double radius_mm, vtkFlyingEdges3D*
     }
     times.meshing.add(milliseconds([&] {
       while (DensityBlock* brick = handover.front()) {
-        upkeep.mark(swap_densities(copy, *brick));
+        upkeep.mark(EditableVolume(copy).swap(*brick));
         handover.pop();
       }
       times.bricks.add(static_cast<double>(upkeep.remesh(DensityView(copy)).size()));

@@ -1,4 +1,4 @@
-#include "osteomill/live/cut_history.h"
+#include "cut_history.h"
 
 #include <algorithm>
 

@@ -1,6 +1,8 @@
-#include "osteomill/live/cut_history.h"
+#include "cut_history.h"
 
 #include <gtest/gtest.h>
+
+#include "osteomill/volume/editable_volume.h"
 
 #include "tests/shapes.h"
 
@@ -26,7 +28,7 @@ class CutHistoryTest : public ::testing::Test {
     history_.drop_all();
   }
   double put(const CutHistory::Before& before) {
-    for (auto [place, brick] : before.bricks) swap_densities(bone_, brick);
+    for (auto [place, brick] : before.bricks) EditableVolume(bone_).swap(brick);
     return before.removed_mm3;
   }
   const CopyOnWriteFloats& now() const { return bone_.grid().densities(); }
@@ -135,7 +137,7 @@ TEST_F(CutHistoryTest, WhatWasEmptiedStaysEmptyAtALowerIsovalueAndWhatWasCutInPa
   EXPECT_TRUE(history_.keep_emptied(bone_.grid(), 300, 350, 300).empty());
   std::vector<DensityBlock> differing = history_.keep_emptied(bone_.grid(), 300, 50, -30);
   ASSERT_EQ(differing.size(), 1u);
-  swap_densities(bone_, differing.front());
+  EditableVolume(bone_).swap(differing.front());
   milled.set({3, 4, 2}, -30);
   EXPECT_EQ(now(), milled.densities());
   // The first cut's hole is still one when the second is taken back.

@@ -13,6 +13,7 @@
 #include "osteomill/recording/run_description.h"
 #include "osteomill/session/trajectory.h"
 #include "osteomill/volume/density_grid.h"
+#include "osteomill/volume/editable_volume.h"
 
 namespace osteomill {
 
@@ -42,8 +43,9 @@ std::size_t end_of(const Recording& recording, std::size_t session) {
 
 // From the scan.
 void begin_at(const SessionStart& start, Volume& bone) {
-  bone.set_isovalue(start.run.isovalue);
-  for (DensityBlock brick : start.bricks) swap_densities(bone, brick);
+  EditableVolume edited(bone);
+  edited.set_isovalue(start.run.isovalue);
+  for (DensityBlock brick : start.bricks) edited.swap(brick);
 }
 
 // Of settings that may be out of range.
@@ -193,7 +195,7 @@ void repeat_milling(Volume& volume, const Recording& recording) {
     if (n > 0) volume = scan;
     repeat_session(volume, recording, n);
   }
-  volume.set_isovalue(scan.isovalue());
+  EditableVolume(volume).set_isovalue(scan.isovalue());
 }
 
 }  // namespace osteomill

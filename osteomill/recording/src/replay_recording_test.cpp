@@ -12,6 +12,7 @@
 #include "osteomill/recording/run_description.h"
 #include "osteomill/session/trajectory.h"
 #include "osteomill/volume/density_grid.h"
+#include "osteomill/volume/editable_volume.h"
 
 #include "tests/shapes.h"
 #include "tests/support/differing_blocks.h"
@@ -143,7 +144,7 @@ TEST(ReplayRecording, SeveralSessionsOnABoneThatWasMilledBefore) {
     const AlgorithmDescription& algorithm = algorithm_named(step.algorithm);
     const double removed_mm3 = step.reset ? 0 : session->removed_mm3();
     now = std::make_shared<Volume>(step.reset ? scan : *now);
-    now->set_isovalue(step.isovalue);
+    EditableVolume(*now).set_isovalue(step.isovalue);
     auto next = make(now, algorithm);
     next->count_removed_from(removed_mm3);
     const TakenOver before = session->left();

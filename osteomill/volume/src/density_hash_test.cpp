@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "osteomill/volume/density_block.h"
 #include "osteomill/volume/density_grid.h"
+#include "osteomill/volume/editable_volume.h"
 #include "osteomill/volume/label_map.h"
 #include "osteomill/volume/volume.h"
 
@@ -48,9 +48,9 @@ TEST(DensityHash, FollowsEveryWayOfWritingAndForgetsTheWay) {
   // The last brick reaches beyond the grid.
   for (const VoxelIndex& first : {VoxelIndex{8, 8, 8}, VoxelIndex{16, 16, 16}}) {
     DensityBlock untouched(scan.grid(), first);
-    swap_densities(bone, untouched);
+    EditableVolume(bone).swap(untouched);
     EXPECT_EQ(bone.change_hash(), difference_of_all(bone, scan));
-    swap_densities(bone, untouched);
+    EditableVolume(bone).swap(untouched);
   }
   EXPECT_EQ(bone.change_hash(), milled);
   const Volume copy = bone;

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "osteomill/volume/editable_volume.h"
+
 #include "tests/shapes.h"
 #include "tests/support/mesh_checks.h"
 
@@ -21,6 +23,14 @@ DensityView at_isovalue(const Volume& volume, double isovalue) {
   return {volume.grid(), volume.ranges(), isovalue};
 }
 
+// Up or down.
+VoxelBox set_density(Volume& volume, const VoxelIndex& v, float density) {
+  constexpr int kSide = DensityBlock::kVoxels;
+  DensityBlock block(volume.grid(), {v.i / kSide * kSide, v.j / kSide * kSide, v.k / kSide * kSide});
+  block.densities[block.place_of(v)] = density;
+  return EditableVolume(volume).swap(block);
+}
+
 TEST(SurfaceUpkeep, KeptUpIsTheSurfaceMadeFromScratch) {
   Volume volume = shape_volume(centred_cube(51, 0.25), ball(Vec3::Zero(), 5.0));
   const SurfaceBricks layout(volume.geometry().dims);
@@ -36,10 +46,7 @@ TEST(SurfaceUpkeep, KeptUpIsTheSurfaceMadeFromScratch) {
   // A hole that is made and filled again, across bricks.
   for (const float density : {0.0f, 1000.0f}) {
     for (int k = 40; k < 46; ++k) {
-      const VoxelBox row{{12, 25, k}, {20, 25, k}};
-      for (int i = row.first.i; i <= row.last.i; ++i) volume.lower_density({i, 25, k}, density);
-      volume.refresh_ranges(row);
-      upkeep.mark(row);
+      for (int i = 12; i <= 20; ++i) upkeep.mark(set_density(volume, {i, 25, k}, density));
     }
     const std::size_t meshed = take();
     EXPECT_GT(meshed, 0u);
@@ -58,7 +65,6 @@ TEST(SurfaceUpkeep, ABrickThatIsMilledHasItsMeshAloneAndItsLevelsOnceItRests) {
   EXPECT_TRUE(std::all_of(first.begin(), first.end(), has_levels));
   const VoxelBox row{{12, 25, 45}, {40, 25, 45}};
   for (int i = row.first.i; i <= row.last.i; ++i) volume.lower_density({i, 25, 45}, 0);
-  volume.refresh_ranges(row);
   std::size_t milled = 0;  // more than come to rest at once
   for (int n = 0; n < 2 * SurfaceUpkeep::kCallsAtRest; ++n) {
     upkeep.mark(row);

@@ -156,7 +156,6 @@ TEST_F(SceneRendererTest, APictureDrawnPieceByPieceIsTheOneDrawnAtOnce) {
       for (int i = 0; i < geometry.dims[0]; ++i)
         if ((geometry.world_from_voxel(VoxelIndex{i, j, k}) - Vec3(2, -4, 4)).norm() < 1.5)
           milled.lower_density({i, j, k}, 0);
-  milled.refresh_ranges(geometry.all_voxels());
   const SurfaceMesh mesh = mesh_surface(DensityView(milled));
   const SurfaceMesh old = mesh_surface(DensityView(bone_));
   for (std::size_t n = 0; n < mesh.bricks.size(); ++n) {

@@ -3,7 +3,8 @@
 #include <array>
 #include <cstddef>
 
-#include "osteomill/volume/volume.h"
+#include "osteomill/base/row_major.h"
+#include "osteomill/volume/density_grid.h"
 
 namespace osteomill {
 
@@ -17,14 +18,18 @@ struct DensityBlock {
   /// Along i fastest.
   std::array<float, static_cast<std::size_t>(kVoxels* kVoxels* kVoxels)> densities;
 
+  /// Returns its voxels that lie in the grid.
+  VoxelBox voxels_in(const GridGeometry& geometry) const {
+    return VoxelBox{first, last()}.intersected(geometry.all_voxels());
+  }
+  /// Returns where among `densities` that of voxel `v` is.
+  std::size_t place_of(const VoxelIndex& v) const {
+    return row_major({kVoxels, kVoxels, kVoxels}, v.i - first.i, v.j - first.j, v.k - first.k);
+  }
+
   DensityBlock() = default;
   /// As the grid is now. Safe in the haptic tick.
   DensityBlock(const DensityGrid& grid, const VoxelIndex& first) noexcept;
 };
-
-/// Puts the brick's densities into the bone, and the bone's into the brick: a second call undoes the first.
-/// Returns which voxels changed. Keeps the bone's brick ranges, exact again where a density rose. Not for the
-/// tick.
-VoxelBox swap_densities(Volume& bone, DensityBlock& brick);
 
 }  // namespace osteomill

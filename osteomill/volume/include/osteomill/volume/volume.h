@@ -14,11 +14,13 @@
 namespace osteomill {
 
 /// The bone as every room sees it: densities, the isovalue that bounds the bone (bone where density >
-/// isovalue), and the range of densities brick by brick. The haptic thread alone lowers densities; everyone
-/// else reads copies, which cost what is changed in them.
+/// isovalue), and the range of densities brick by brick. Densities fall and never rise, and the isovalue
+/// stays: whatever follows a bone from tick to tick rests on that. `EditableVolume` changes a bone that
+/// nothing follows. The haptic thread alone lowers densities; all others read copies, which cost what is
+/// changed in them.
 class Volume {
  public:
-  /// Throws std::invalid_argument where the isovalue is not finite.
+  /// Throws std::invalid_argument if the isovalue is not finite.
   Volume(DensityGrid grid, double isovalue) : grid_(std::move(grid)), ranges_(grid_) {
     set_isovalue(isovalue);
   }
@@ -27,45 +29,49 @@ class Volume {
   const GridGeometry& geometry() const { return grid_.geometry(); }
   const BlockRanges& ranges() const { return ranges_; }
   double isovalue() const { return isovalue_; }
-  /// Which structures the bone is made of; null where nobody said. Copies of the bone share it.
+  /// Returns the map of the structures that the bone is made of; null if there is none. Copies of the bone
+  /// share it.
   const std::shared_ptr<const LabelMap>& labels() const { return labels_; }
-  /// Not for the tick. The map is of this grid.
+  /// Sets the map, which is of this grid. Not for the tick.
   void set_labels(std::shared_ptr<const LabelMap> labels) { labels_ = std::move(labels); }
 
-  /// `v` must lie in the grid.
+  /// Returns whether voxel `v`, which lies in the grid, is bone.
   bool is_bone(const VoxelIndex& v) const noexcept { return static_cast<double>(grid_[v]) > isovalue_; }
-  /// Any `v`; there is no bone beyond the border.
+  /// Returns whether any voxel `v` is bone; there is none beyond the border.
   bool is_bone_in_grid(const VoxelIndex& v) const noexcept { return grid_.contains(v) && is_bone(v); }
 
-  /// Lowers the densities of `count` voxels of one row, whose columns ascend. Safe in the haptic tick. Where
-  /// a cut is taken back densities may also rise, but only outside the tick, while nobody works on this bone,
-  /// and with `refresh_ranges` after it.
+  /// Lowers the densities of `count` voxels of one row, whose columns ascend. A density that is not below the
+  /// voxel's own changes nothing. Safe in the haptic tick.
   void lower_row(int j, int k, const int* columns, const float* densities, std::size_t count) noexcept {
     for (std::size_t n = 0; n < count; ++n) {
       const VoxelIndex v{columns[n], j, k};
-      const std::size_t voxel = grid_.linear_index(v);
-      change_hash_ += density_hash(voxel, densities[n]) - density_hash(voxel, grid_[v]);
-      grid_.set(v, densities[n]);
+      if (densities[n] < grid_[v]) set(v, densities[n]);
     }
     ranges_.lower_row(j, k, columns, densities, count);
   }
-  /// The same for one voxel.
+  /// Lowers the density of one voxel. Safe in the haptic tick.
   void lower_density(const VoxelIndex& v, float density) noexcept { lower_row(v.j, v.k, &v.i, &density, 1); }
-  /// See DensityGrid; by another thread than the one that lowers where that one must not wait.
+  /// Has the memory for changes made ahead of them (DensityGrid::prepare_about). For another thread than the
+  /// one that lowers, if that one must not wait.
   void prepare_about(const VoxelBox& changed) { grid_.prepare_about(changed); }
-  /// A hash of what differs from the densities it was made with: 0 where nothing does, and the same for any
-  /// two bones of one scan that are the same, in whatever order they were milled. Safe in the haptic tick.
+  /// Returns a hash of what differs from the densities the bone was made with: 0 if nothing does, and the
+  /// same for any two bones of one scan that are the same, in whatever order they were milled. Safe in the
+  /// haptic tick.
   std::uint64_t change_hash() const noexcept { return change_hash_; }
-  /// Bone is where the density is greater from now on. Throws std::invalid_argument where it is not finite.
-  /// Not for the tick, nor while anyone works on this bone.
+
+ private:
+  friend class EditableVolume;
+
   void set_isovalue(double isovalue) {
     if (!std::isfinite(isovalue)) throw std::invalid_argument("Volume: the isovalue is not finite");
     isovalue_ = isovalue;
   }
-  /// Makes the brick ranges around a changed box exact again; not for the tick.
-  void refresh_ranges(const VoxelBox& box) { ranges_.refresh(grid_, box); }
+  void set(const VoxelIndex& v, float density) noexcept {
+    const std::size_t voxel = grid_.linear_index(v);
+    change_hash_ += density_hash(voxel, density) - density_hash(voxel, grid_[v]);
+    grid_.set(v, density);
+  }
 
- private:
   DensityGrid grid_;
   BlockRanges ranges_;
   double isovalue_ = 0;
