@@ -2,6 +2,7 @@
 #include <cctype>
 #include <cfloat>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include <fmt/core.h>
@@ -24,6 +25,20 @@ bool settle(const char* label, double& value, float min, float max, const char* 
     value = static_cast<double>(shown);
   }
   return ImGui::IsItemDeactivatedAfterEdit();
+}
+
+// A slider for a field of what is wanted: its values from `min` to `max`, which are those of usual tools. The
+// command line takes the field's whole range.
+bool settle_field(std::string_view option, MillingSetup& wanted, float min, float max, int decimals) {
+  const Field<MillingSetup>& field = *field_of_option(fields_of<MillingSetup>(), option);
+  std::string label = field.option;
+  std::ranges::replace(label, '-', ' ');
+  double value = field.get(wanted);
+  const bool settled =
+      settle(label.c_str(), value, min, max, fmt::format("%.{}f {}", decimals, field.unit).c_str());
+  ui::hint(field.doc);
+  field.set(wanted, value);
+  return settled;
 }
 
 // The end of a name, which tells one scan from another, where there is no room for all of it.
@@ -70,9 +85,9 @@ void draw_algorithm(MillingSetup& wanted, bool& changed) {
 
 void draw_tool(MillingSetup& wanted, bool& sound, bool& changed) {
   if (!ui::header("Tool", true)) return;
-  changed = settle("burr radius", wanted.tool.burr_radius_mm, 0.5f, 4.0f, "%.1f mm") || changed;
-  changed = settle("shaft radius", wanted.tool.shaft_radius_mm, 0.3f, 3.0f, "%.1f mm") || changed;
-  changed = settle("spindle", wanted.cutting.spindle_speed_rpm, 5000, 120000, "%.0f rpm") || changed;
+  changed = settle_field("burr-radius", wanted, 0.5f, 4.0f, 1) || changed;
+  changed = settle_field("shaft-radius", wanted, 0.3f, 3.0f, 1) || changed;
+  changed = settle_field("spindle-speed", wanted, 5000, 120000, 0) || changed;
   changed = ui::checkbox("vibration", &wanted.vibration.on) || changed;
   ui::hint("You feel the burr's teeth in the hand");
   ImGui::SameLine();

@@ -166,7 +166,7 @@ click 3 point-shell ;; settle ;; state point-shell
 drag stiffness -20 ;; settle ;; state point-shell-stiffness
 drag burr radius -10 ;; settle ;; state burr
 drag shaft radius -10 ;; settle ;; state shaft
-drag spindle 30 ;; settle ;; state rpm
+drag spindle speed 30 ;; settle ;; state rpm
 click vibration ;; settle ;; state no-vibration
 click burr pulls ;; settle ;; state no-pull
 click Milling ;; click Algorithm ;; click Tool
@@ -202,7 +202,7 @@ value typed isovalue_from | grep -q "^set here; first" || fault "nobody is told 
 # --- A tool in bone that comes back, or grows ----------------------------------------------------------------------
 window ball.nrrd --no-help <<'END'
 wait 0.2 ;; click S ;; glide 640 750 0 ;; key b ;; wait 0.2 ;; key t ;; wheel 26 0.6 ;; wait 0.3 ;; key t
-click 3 point-shell ;; settle ;; drag spindle 60 ;; settle ;; drag stiffness 30 ;; settle ;; wait 0.3 ;; state pressing
+click 3 point-shell ;; settle ;; drag spindle speed 60 ;; settle ;; drag stiffness 30 ;; settle ;; wait 0.3 ;; state pressing
 glide 640 750 0 ;; key t ;; key space ;; wheel 20 1 ;; wait 2 ;; key space ;; key t ;; wait 0.3 ;; state in-hole
 click Undo cut ;; settle ;; wait 0.5 ;; state out
 drag burr radius 60 ;; settle ;; wait 0.2 ;; state wide
