@@ -14,9 +14,10 @@ std::vector<Field<MillingTool>> tool_fields() {
   constexpr unsigned kOwn = kOfTheTool | kOfTheRecording;
   constexpr NumberRange kRadius{0.01, 100}, kLength{0.01, 1000};
   return {
-      field<T>({"", "mm", kRadius, "Of the burr's sphere", kOwn, "burr-radius"}, &T::burr_radius_mm),
-      field<T>({"", "mm", kRadius, "Of the shaft", kOwn, "shaft-radius"}, &T::shaft_radius_mm),
-      field<T>({"", "mm", kLength, "From the burr's centre", kOwn, "shaft-length"}, &T::shaft_length_mm),
+      field<T>({"", "mm", kRadius, "Radius of the burr's sphere", kOwn, "burr-radius"}, &T::burr_radius_mm),
+      field<T>({"", "mm", kRadius, "Radius of the shaft", kOwn, "shaft-radius"}, &T::shaft_radius_mm),
+      field<T>({"", "mm", kLength, "Length of the shaft from the burr's centre", kOwn, "shaft-length"},
+               &T::shaft_length_mm),
   };
 }
 
@@ -78,10 +79,10 @@ std::vector<Field<CuttingSettings>> cutting_fields() {
   using C = CuttingSettings;
   constexpr unsigned kOwn = kOfTheCutting | kOfTheRecording;
   return {
-      field<C>({"vibration.spindle_speed", "rpm", kSpeed, "Of the burr", kOwn, "spindle-speed"},
+      field<C>({"vibration.spindle_speed", "rpm", kSpeed, "Speed of the burr", kOwn, "spindle-speed"},
                &C::spindle_speed_rpm),
       field<C>({"milling.cutting_energy", "N mm/mm^3", kEnergy,
-                "The work that removes bone of the reference density", kOwn | kMayBeAbsent, "cutting-energy"},
+                "Work that removes bone of the reference density", kOwn | kMayBeAbsent, "cutting-energy"},
                &C::specific_energy_Nmm_per_mm3),
   };
 }
@@ -89,14 +90,15 @@ std::vector<Field<CuttingSettings>> cutting_fields() {
 std::vector<Field<S>> removal_fields() {
   return {
       {{"milling.removal_rate", "mm^3/(N s)", kRate,
-        "kappa; else it follows from burr, spindle speed and cutting energy",
+        "Bone removed per time and force; by default it follows from burr, spindle speed and cutting energy",
         kOfTheCutting | kOfTheRecording | kFollows, "removal-rate"},
        [](const S& s) { return milling_settings(s).removal_rate_mm3_per_Ns; },
        [](S& s, double value) { s.removal_rate_mm3_per_Ns = value; }},
-      field<S>({"", "", kSwitch, "The hand feels the burr pull along its rim, whose pole cuts less",
+      field<S>({"", "", kSwitch, "The hand feels the burr pull along its rim; the burr's pole cuts less",
                 kOfTheCutting, "cutting-reaction"},
                &S::cutting_reaction),
-      {{"milling.reaction_share", "", kNotNegative, "Of the burr's force, what it pulls with; 0: not felt"},
+      {{"milling.reaction_share", "", kNotNegative,
+        "Share of the burr's force with which it pulls; 0: not felt"},
        [](const S& s) { return milling_settings(s).reaction_share; },
        [](S& s, double value) {
          s.cutting_reaction = value != 0;
@@ -109,25 +111,27 @@ std::vector<Field<GuardSettings>> guard_fields() {
   using G = GuardSettings;
   return {
       field<G>(
-          {"limit.force", "N", kForce, "The most it is asked for", kOfTheLimits, "force-limit"},
+          {"limit.force", "N", kForce, "Largest force that the device is asked for", kOfTheLimits,
+           "force-limit"},
           [](auto& g) -> auto& { return g.limits.force_N; }),
       field<G>(
-          {"limit.torque", "N mm", kTorque, "The most it is asked for", kOfTheLimits, "torque-limit"},
+          {"limit.torque", "N mm", kTorque, "Largest torque that the device is asked for", kOfTheLimits,
+           "torque-limit"},
           [](auto& g) -> auto& { return g.limits.torque_Nmm; }),
       field<G>({"passivity_controller", "", kSwitch,
-                "Dampens a contact that has given the hand more energy than it took", kOfTheLimits,
+                "Damps a contact that has given the hand more energy than it took", kOfTheLimits,
                 "passivity-controller"},
                &G::passivity_controller),
       field<G>(
-          {"guard.max_force_rate", "N/s", kLimit, "Of the force sent"},
+          {"guard.max_force_rate", "N/s", kLimit, "Fastest change of the force sent"},
           [](auto& g) -> auto& { return g.rates.force_N_s; }),
       field<G>(
-          {"guard.max_torque_rate", "N mm/s", kLimit, "Of the torque sent"},
+          {"guard.max_torque_rate", "N mm/s", kLimit, "Fastest change of the torque sent"},
           [](auto& g) -> auto& { return g.rates.torque_Nmm_s; }),
-      field<G>({"guard.blend", "s", kNotNegative, "In which what is asked for comes up"}, &G::blend_s),
-      field<G>({"guard.max_move", "mm", kLimit, "Of the device in a tick"}, &G::max_move_mm),
-      field<G>({"guard.max_turn", "rad", kLimit, "Of the device in a tick"}, &G::max_turn_rad),
-      field<G>({"guard.max_tick", "s", kLimit, "The longest tick"}, &G::max_tick_s),
+      field<G>({"guard.blend", "s", kNotNegative, "Time in which a wrench comes up from zero"}, &G::blend_s),
+      field<G>({"guard.max_move", "mm", kLimit, "Farthest move of the device in a tick"}, &G::max_move_mm),
+      field<G>({"guard.max_turn", "rad", kLimit, "Widest turn of the device in a tick"}, &G::max_turn_rad),
+      field<G>({"guard.max_tick", "s", kLimit, "Longest tick"}, &G::max_tick_s),
   };
 }
 
@@ -135,8 +139,9 @@ std::vector<Field<VibrationSettings>> vibration_fields() {
   using V = VibrationSettings;
   return {
       field<V>({"vibration", "", kSwitch, "The hand feels the burr cut"}, &V::on),
-      field<V>({"vibration.force_share", "", kNotNegative, "Of the burr's force"}, &V::force_share),
-      field<V>({"vibration.max_force", "N", kNotNegative, "The most of it"}, &V::max_N),
+      field<V>({"vibration.force_share", "", kNotNegative, "Share of the burr's force that vibrates"},
+               &V::force_share),
+      field<V>({"vibration.max_force", "N", kNotNegative, "Largest force of the vibration"}, &V::max_N),
   };
 }
 
