@@ -245,7 +245,7 @@ bool BarrierShell::may_fly(const Pose& X_WD, const MoveBound& bound) {
   const Room way = room_of(move);
   return near_.is_empty() && share_within(bound, move) >= 1 && way.move_mm <= kFarthestFlight.move_mm &&
          way.turn_rad <= kFarthestFlight.turn_rad &&
-         is_clear(bricks_, cores(), barrier_.width_mm, X_WT_, way);
+         look_if_clear(bricks_, cores(), barrier_.width_mm, X_WT_, way);
 }
 
 void BarrierShell::gather_for_next_move() {
@@ -377,7 +377,7 @@ HapticStep BarrierShell::step(const Pose& X_WD, double dt_s) noexcept {
     X_WT_ = state.X_WT;
     energy_before_Nmm_ = state.sum.energy_Nmm;
     has_energy_ = true;
-    near_.find_bearing(barrier_.width_mm, bricks_.bearing());
+    near_.find_bearing(barrier_.width_mm, bricks_);
     grow_cores(state.sum.nearest_mm, dt_s);
     last_move_ = room_of(move_between(start, X_WT_));
     result = report(state, X_WD, dt_s);

@@ -1,72 +1,17 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
-#include <vector>
 
 #include "osteomill/base/pose.h"
 #include "osteomill/haptics/milling_tool.h"
 
+#include "bone_points/brick_store.h"
+#include "bone_points/brick_tree.h"
 #include "bone_points/surface_lattice.h"
+#include "bone_points/update_queue.h"
 
 namespace osteomill {
-
-/// Which bricks still have to be looked at after voxels changed. Changed voxels wait in one box; a walk then
-/// visits every brick of a box, one after the other, over as many ticks as that takes. Safe in the haptic
-/// tick.
-class BrickSweep {
- public:
-  /// Takes a change in; empty where nothing changed.
-  void wait_for(const VoxelBox& voxels) {
-    if (voxels.empty()) return;
-    waiting_.include(voxels.first);
-    waiting_.include(voxels.last);
-  }
-  /// What has waited since the last call, and now no longer does.
-  VoxelBox take_waiting() {
-    const VoxelBox taken = waiting_;
-    waiting_ = {};
-    return taken;
-  }
-  bool is_idle() const { return !is_walking() && waiting_.empty(); }
-  const VoxelBox& waiting() const { return waiting_; }
-
-  /// Begins at the first brick of the box.
-  void start(const VoxelBox& bricks) {
-    bricks_ = bricks;
-    brick_ = bricks.first;
-  }
-  bool is_walking() const { return !bricks_.empty(); }
-  const VoxelIndex& brick() const { return brick_; }
-  /// How many bricks the walk has before it.
-  std::size_t bricks_left() const {
-    if (!is_walking()) return 0;
-    const std::array<int, 3> dims = bricks_.dims();
-    const std::size_t row = static_cast<std::size_t>(dims[0]),
-                      slice = row * static_cast<std::size_t>(dims[1]);
-    const VoxelIndex& first = bricks_.first;
-    return cell_count(dims) - static_cast<std::size_t>(brick_.i - first.i) -
-           row * static_cast<std::size_t>(brick_.j - first.j) -
-           slice * static_cast<std::size_t>(brick_.k - first.k);
-  }
-
-  /// On to the next brick, or the end.
-  void advance() {
-    if (++brick_.i <= bricks_.last.i) return;
-    brick_.i = bricks_.first.i;
-    if (++brick_.j <= bricks_.last.j) return;
-    brick_.j = bricks_.first.j;
-    if (++brick_.k <= bricks_.last.k) return;
-    bricks_ = {};
-  }
-
- private:
-  VoxelBox waiting_;
-  VoxelBox bricks_;
-  VoxelIndex brick_;
-};
 
 /// The bone's surface as points in bricks under an octree. Bricks are made when the tool comes near and
 /// forgotten when room runs out, and so are the octree's nodes: neither time nor memory grows with the scan.
@@ -83,141 +28,91 @@ class BoneBricks {
   BoneBricks(const Volume& volume, double spacing_mm);
 
   const SurfaceLattice& lattice() const { return lattice_; }
-  const BrickPoints& fine() const { return fine_; }
-  const BrickPoints& coarse() const { return coarse_; }
+  const BrickPoints& fine() const { return store_.fine(); }
+  const BrickPoints& coarse() const { return store_.coarse(); }
 
   /// Goes down the octree, leaving out every node for whose bounding sphere (in the grid's frame)
   /// `meets(middle_G, radius_mm)` is false, and calls `use(brick, slot)` for each brick with points that it
-  /// reaches, in a fixed order. The brick's points are those of `slot` in `fine` and `coarse`. Bricks that do
-  /// not exist yet are made, as far as there is room and this tick may make more. Returns whether no brick
-  /// is missing.
+  /// reaches, in a fixed order. The brick's points are those of `slot` in `fine` and `coarse`. Returns
+  /// whether no brick is missing.
   template <typename Meets, typename Use>
-  bool visit(const Meets& meets, const Use& use) {
+  bool visit(const Meets& meets, const Use& use) const {
     bool all = true;
-    walk(levels_, {}, kRoot, meets, [&](int level, const VoxelIndex& brick, std::uint32_t& place) {
-      if (level == 0 && place == kUnseen && may_make_ > 0 && has_room()) may_make_ -= make(brick, place);
-      if (place == kUnseen) all = false;
-      if (level == 0 && is_index(place)) use(brick, place);
+    tree_.visit(by_sphere(meets), [&](int, const VoxelIndex& brick, BrickTree::Place place) {
+      if (tree_.held(place) == BrickTree::kUnseen) {
+        all = false;
+      } else {
+        use(brick, tree_.held(place));
+      }
     });
     return all;
   }
-  /// Whether there may be points where `meets` says yes. Makes no bricks.
+  /// Makes the missing bricks that `visit` would reach, as far as there is room and this tick may make more.
   template <typename Meets>
-  bool may_hold_points(const Meets& meets) {
-    bool may = false;
+  void make(const Meets& meets) {
+    tree_.visit(by_sphere(meets), [&](int level, const VoxelIndex& node, BrickTree::Place place) {
+      look(level, node, place);
+      if (level == 0 && tree_.held(place) == BrickTree::kUnseen && queue_.may_make() && store_.has_room())
+        queue_.count_made(make_brick(node, place));
+    });
+  }
+  /// Looks at unseen nodes that `visit` would reach, as far as this tick may, until it has found where there
+  /// may be points. Returns whether it has.
+  template <typename Meets>
+  bool look_for_points(const Meets& meets) {
+    bool found = false;
     const auto if_not_yet = [&](const Vec3& middle_G, double radius_mm) {
-      return !may && meets(middle_G, radius_mm);
+      return !found && meets(middle_G, radius_mm);
     };
-    walk(levels_, {}, kRoot, if_not_yet, [&](int, const VoxelIndex&, std::uint32_t&) { may = true; });
-    return may;
+    tree_.visit(by_sphere(if_not_yet), [&](int level, const VoxelIndex& node, BrickTree::Place place) {
+      look(level, node, place);
+      const std::uint32_t held = tree_.held(place);
+      found = held == BrickTree::kUnseen || (level == 0 && BrickTree::is_index(held));
+    });
+    return found;
   }
 
-  /// About how many points are brought up to date a tick: of bricks that bear the tool, and of all others.
-  /// (Tried: bringing a bearing brick up to date only once its surface has sunk by 2 um, judged by bone lost
-  /// over area. It took half the time but doubled the steps of torque, 0.28 N mm for 0.14; tooth, 3 N.)
-  static constexpr int kBearingPerTick = 1500;
+  /// About how many points of bricks that do not bear the tool are brought up to date a tick.
   static constexpr int kOthersPerTick = 100;
-  /// About how many points are made a tick of bricks that the tool meets for the first time.
-  static constexpr int kMadePerTick = 2500;
   /// Says that densities fell in `voxels`, and brings points up to date. Bricks into which the surface has
   /// newly come are made at once, or the next time the tool meets them. Bricks that bear the tool take turns
-  /// over so many ticks that each tick does about kBearingPerTick points. Of all other bricks about `others`
-  /// points are done a tick; new bricks and passing over unchanged ones count as points too.
+  /// (UpdateQueue). Of all other bricks about `others` points are done a tick; new bricks and passing over
+  /// unchanged ones count as points too.
   void refresh(const VoxelBox& voxels, int others = kOthersPerTick) noexcept;
-  /// The slots of the bricks that bear the tool. Whoever uses the points keeps this list. The tool rests on
-  /// these bricks: if they waited with the others, it would stand still and drop once the last had its turn.
-  std::vector<std::uint32_t>& bearing() { return bearing_; }
-  bool is_up_to_date() const { return sweep_.is_idle(); }
+  /// Lists the bricks that bear the tool, by their slots; whoever uses the points keeps the list.
+  void clear_bearing() { queue_.clear_bearing(); }
+  void add_bearing(std::uint32_t slot) { queue_.add_bearing(slot); }
+  bool is_up_to_date() const { return queue_.is_empty(); }
   /// How many bricks still have to be looked at, those that bear the tool among them.
-  std::size_t owed() const noexcept {
-    const VoxelBox waiting = lattice_.bricks_touched_by(sweep_.waiting());
-    return bearing_owed_ + sweep_.bricks_left() + (waiting.empty() ? 0 : cell_count(waiting.dims()));
-  }
+  std::size_t owed() const noexcept { return queue_.size(); }
   /// Makes room if little is left, by forgetting what is not near the tool.
   void make_room(const MillingTool& tool, const Pose& X_WT) noexcept;
-  /// What a tick begins with: room is made, and bricks that still wait are brought up to date where no
-  /// densities fell since the tick before. From the first tick on a tick makes no more bricks than it has
-  /// time for (kMadePerTick).
+  /// Begins a tick: makes room, and brings bricks that still wait up to date if no densities fell since the
+  /// tick before. From the first tick on a tick makes no more bricks than it has time for.
   void begin_tick(const MillingTool& tool, const Pose& X_WT) noexcept {
-    may_make_ = kMadePerTick;
-    if (!refreshed_ && !is_up_to_date()) refresh({});
-    refreshed_ = false;
+    if (queue_.begin_tick()) refresh({});
     make_room(tool, X_WT);
   }
   /// Points that found no room as bricks that had some grew.
-  std::uint64_t dropped() const { return fine_.dropped() + coarse_.dropped(); }
+  std::uint64_t dropped() const { return fine().dropped() + coarse().dropped(); }
 
  private:
-  // What a place of the octree holds: the index of a node or, of a brick, of its slot; or what else is known.
-  static constexpr std::uint32_t kUnseen = 0xffffffffu;
-  static constexpr std::uint32_t kNoBone = 0xfffffffeu;
-  static constexpr std::uint32_t kBoneAlone = 0xfffffffdu;
-  static bool is_index(std::uint32_t place) { return place < kBoneAlone; }
-  static constexpr std::uint32_t kRoot = 0;
-  struct Node {
-    std::array<std::uint32_t, 8> places;
-    // Null of the root, and where the node is free.
-    std::uint32_t* place = nullptr;
-  };
-
-  template <typename Meets, typename Leaf>
-  void walk(int level, const VoxelIndex& node, std::uint32_t index, const Meets& meets, const Leaf& leaf) {
-    --level;
-    for (int n = 0; n < 8; ++n) {
-      const VoxelIndex below{2 * node.i + n % 2, 2 * node.j + n / 2 % 2, 2 * node.k + n / 4};
-      std::uint32_t& place = nodes_[index].places[static_cast<std::size_t>(n)];
-      if (place == kNoBone || place == kBoneAlone || !meets(middle_G(level, below), radius_mm(level)))
-        continue;
-      if (place == kUnseen && may_make_ > 0 && !look(level, below, place)) continue;
-      if (level == 0 || place == kUnseen) {
-        leaf(level, below, place);
-      } else {
-        walk(level, below, place, meets, leaf);
-      }
-    }
+  template <typename Meets>
+  auto by_sphere(const Meets& meets) const {
+    return [this, &meets](int level, const VoxelIndex& node) {
+      return meets(lattice_.middle_G(level, node), lattice_.radius_mm(level));
+    };
   }
-  Vec3 middle_G(int level, const VoxelIndex& node) const;
-  double radius_mm(int level) const { return brick_radius_mm_ * static_cast<double>(1 << level); }
-  bool look(int level, const VoxelIndex& node, std::uint32_t& place);
-  struct Found {
-    int level;
-    std::uint32_t* place;
-  };
-  Found find(const VoxelIndex& brick);
-  int make(const VoxelIndex& brick, std::uint32_t& place);
+  void look(int level, const VoxelIndex& node, BrickTree::Place place);
+  int cost_of(std::uint32_t slot) const;
+  int make_brick(const VoxelIndex& brick, BrickTree::Place place);
   int make_new(const VoxelIndex& brick);
   int remake(const VoxelIndex& brick);
-  void remake_bearing();
-  bool start_sweep();
-  bool is_short_of_room() const;
-  bool has_room() const;
-  bool is_near(const MillingTool& tool, const Pose& X_TW, const VoxelIndex& brick) const;
-  void forget(std::uint32_t slot);
-  void forget_node(Node& node);
 
   SurfaceLattice lattice_;
-  double brick_radius_mm_ = 0;
-  // Of the octree, bricks not counted.
-  int levels_ = 1;
-  std::vector<Node> nodes_;
-  std::vector<std::uint32_t> free_nodes_;
-  BrickPoints fine_;
-  BrickPoints coarse_;
-  std::vector<std::uint32_t> free_slots_;
-  // Which brick a slot is of, of which densities its points are, and where those had no bone.
-  std::vector<VoxelIndex> brick_of_slot_;
-  std::vector<std::uint32_t> changes_;
-  std::vector<SurfaceLattice::RowBits> without_bone_;
-  std::size_t next_to_forget_ = 0;
-  std::size_t next_node_to_forget_ = 0;
-  BrickSweep sweep_;
-  std::vector<std::uint32_t> bearing_;
-  std::size_t bearing_owed_ = 0;
-  // In points, what is left of kMadePerTick.
-  int may_make_ = std::numeric_limits<int>::max();
-  std::uint32_t refreshes_ = 0;
-  bool refreshed_ = false;
-  SurfaceLattice::BrickSurface found_;
+  BrickTree tree_;
+  BrickStore store_;
+  UpdateQueue queue_;
 };
 
 }  // namespace osteomill

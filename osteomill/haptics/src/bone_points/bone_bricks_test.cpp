@@ -110,9 +110,11 @@ TEST(BoneBricks, ThoseThatBearTheToolAreBroughtUpToDateWithinAFewTicks) {
   BoneBricks kept(volume, 0.13);
   const auto at_the_middle = [](BoneBricks& bricks, const auto& use) {
     const Vec3 middle_G = Vec3::Constant(0.5 * 89 * 0.13);
-    bricks.visit(
-        [&](const Vec3& node_G, double radius_mm) { return (node_G - middle_G).norm() < radius_mm + 0.6; },
-        [&](const VoxelIndex&, std::uint32_t slot) { use(slot); });
+    const auto meets = [&](const Vec3& node_G, double radius_mm) {
+      return (node_G - middle_G).norm() < radius_mm + 0.6;
+    };
+    bricks.make(meets);
+    bricks.visit(meets, [&](const VoxelIndex&, std::uint32_t slot) { use(slot); });
   };
   make_all(kept);
   const auto heights = [&](BoneBricks& bricks) {
@@ -122,8 +124,12 @@ TEST(BoneBricks, ThoseThatBearTheToolAreBroughtUpToDateWithinAFewTicks) {
     });
     return z_mm;
   };
-  at_the_middle(kept, [&](std::uint32_t slot) { kept.bearing().push_back(slot); });
-  ASSERT_GT(kept.bearing().size(), 4u);
+  int bearing = 0;
+  at_the_middle(kept, [&](std::uint32_t slot) {
+    kept.add_bearing(slot);
+    ++bearing;
+  });
+  ASSERT_GT(bearing, 4);
   const VoxelBox all = volume.geometry().all_voxels();
   constexpr int kTicks = 30, kTurns = 4;
   std::vector<std::vector<float>> as_made_anew;
@@ -157,8 +163,9 @@ TEST(BoneBricks, ATickMakesNoMoreThanItHasTimeFor) {
   int ticks = 0;
   for (bool all = false; !all; ++ticks) {
     bricks.begin_tick({}, {});
+    bricks.make(everywhere);
     all = bricks.visit(everywhere, [](const VoxelIndex&, std::uint32_t) {});
-    EXPECT_LE(bricks.fine().total(), before + BoneBricks::kMadePerTick + SurfaceLattice::kMaxPointsOfBrick);
+    EXPECT_LE(bricks.fine().total(), before + UpdateQueue::kMadePerTick + SurfaceLattice::kMaxPointsOfBrick);
     before = bricks.fine().total();
     ASSERT_LT(ticks, 1000);
   }
@@ -166,6 +173,20 @@ TEST(BoneBricks, ATickMakesNoMoreThanItHasTimeFor) {
   BoneBricks at_once(volume, 0.13);
   make_all(at_once);
   EXPECT_EQ(bricks.fine().total(), at_once.fine().total());
+}
+
+TEST(BoneBricks, ACopyGoesOnByItself) {
+  Volume volume = testing_support::shape_volume(testing_support::centred_cube(60, 0.2),
+                                                testing_support::ball(Vec3::Zero(), 4));
+  BoneBricks kept(volume, 0.13);
+  make_all(kept);
+  const std::size_t points = kept.fine().total();
+  BoneBricks copy = kept;
+  std::mt19937 bits(5);
+  for (int n = 0; n < 200; ++n) copy.refresh(mill_at_random(volume, bits), 1000);
+  copy.make_room({}, {{1000, 0, 0}, Quat::Identity()});
+  EXPECT_NE(copy.fine().total(), points);
+  EXPECT_EQ(kept.fine().total(), points);
 }
 
 // Bone in every brick of a scan, all asked for at once.
@@ -176,9 +197,12 @@ TEST(BoneBricks, ABrickThatFoundNoRoomIsMadeWhenThereIs) {
       });
   BoneBricks bricks(volume, 0.13);
   const auto made_about = [&](const Vec3& middle_G, double within_mm) {
+    const auto meets = [&](const Vec3& node_G, double radius_mm) {
+      return (node_G - middle_G).norm() < within_mm + radius_mm;
+    };
     std::size_t made = 0;
-    bricks.visit([&](const Vec3& node_G,
-                     double radius_mm) { return (node_G - middle_G).norm() < within_mm + radius_mm; },
+    bricks.make(meets);
+    bricks.visit(meets,
                  [&](const VoxelIndex&, std::uint32_t slot) { made += bricks.fine().brick(slot).count > 0; });
     return made;
   };
@@ -198,12 +222,14 @@ TEST(BoneBricks, NeitherTimeNorRoomGrowsWithTheScan) {
   std::mt19937 bits(3);
   for (int n = 0; n < 6000; ++n) {
     const Vec3 at_G(uniform(bits, 1, 999), uniform(bits, 1, 999), 510);
+    const auto meets = [&](const Vec3& middle_G, double radius_mm) {
+      return (middle_G - at_G).norm() < radius_mm + 0.1;
+    };
     int found = 0;
-    bricks.visit(
-        [&](const Vec3& middle_G, double radius_mm) { return (middle_G - at_G).norm() < radius_mm + 0.1; },
-        [&](const VoxelIndex&, std::uint32_t slot) {
-          found += static_cast<int>(bricks.fine().brick(slot).count);
-        });
+    bricks.make(meets);
+    bricks.visit(meets, [&](const VoxelIndex&, std::uint32_t slot) {
+      found += static_cast<int>(bricks.fine().brick(slot).count);
+    });
     ASSERT_GT(found, 10) << n;
     bricks.make_room({}, {{0, 0, 1000}, Quat::Identity()});
   }

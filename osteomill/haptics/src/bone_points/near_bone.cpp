@@ -42,16 +42,14 @@ struct Meeting {
 }  // namespace
 
 NearBone::NearBone(std::size_t capacity, bool fine_at_cylinder)
-    : fine_at_cylinder_(fine_at_cylinder), ball_(capacity), cylinder_(capacity) {
-  if (capacity > 0) bricks_.reserve(kBricks);
-}
+    : fine_at_cylinder_(fine_at_cylinder),
+      bricks_(capacity > 0 ? kBricks : 0),
+      ball_(capacity),
+      cylinder_(capacity) {}
 
 void NearBone::gather(BoneBricks& bricks, const Cores& cores, double reach_mm, const Pose& X_WT,
                       const Room& room) noexcept {
   X_WT_gathered_ = X_WT;
-  ball_.count = cylinder_.count = 0;
-  bricks_.clear();
-  ball_.overflowed = cylinder_.overflowed = false;
   const BrickPoints& at_cylinder = fine_at_cylinder_ ? bricks.fine() : bricks.coarse();
   const ToolFromGrid X_TG(bricks.lattice(), X_WT);
   const Meeting meets{cores, reach_mm + room.move_mm, room.turn_rad};
@@ -59,8 +57,8 @@ void NearBone::gather(BoneBricks& bricks, const Cores& cores, double reach_mm, c
   const auto meets_node = [&](const Vec3& middle_G, double radius_mm) {
     return meets.any(X_TG * middle_G, radius_mm);
   };
-  brick_missing_ = !bricks.visit(meets_node, [&](const VoxelIndex& brick, std::uint32_t slot) {
-    if (bricks_.size() < bricks_.capacity()) bricks_.push_back({slot, ball_.count, cylinder_.count});
+  const auto gather_brick = [&](const VoxelIndex& brick, std::uint32_t slot) {
+    if (brick_count_ < bricks_.size()) bricks_[brick_count_++] = {slot, ball_.count, cylinder_.count};
     const Vec3 origin_T = X_TG * bricks.lattice().brick_origin_G(brick);
     const Frame frame = frame_of(X_TG.turn, origin_T);
     const auto middle_T = [&](const BrickPoints& points) -> Vec3 {
@@ -75,7 +73,17 @@ void NearBone::gather(BoneBricks& bricks, const Cores& cores, double reach_mm, c
     if (meets.cylinder(middle_T(at_cylinder), radius_mm(at_cylinder))) {
       gather_near_cylinder(at_cylinder, at_cylinder.brick(slot).first_chunk, frame, cores, reach, cylinder_);
     }
-  });
+  };
+  const auto gather_all = [&] {
+    ball_.count = cylinder_.count = brick_count_ = 0;
+    ball_.overflowed = cylinder_.overflowed = false;
+    brick_missing_ = !bricks.visit(meets_node, gather_brick);
+  };
+  gather_all();
+  if (brick_missing_) {
+    bricks.make(meets_node);
+    gather_all();
+  }
   close_gathering(ball_);
   close_gathering(cylinder_);
 }
@@ -87,18 +95,18 @@ NearBone::Energy NearBone::energy(const Cores& cores, const Barrier& barrier, co
   return {ball_energy(ball_, moved, cores, barrier), cylinder_energy(cylinder_, moved, cores, barrier)};
 }
 
-void NearBone::find_bearing(double within_mm, std::vector<std::uint32_t>& slots) const noexcept {
+void NearBone::find_bearing(double within_mm, BoneBricks& bricks) const noexcept {
   const auto within = static_cast<float>(within_mm);
   const auto bears = [&](const NearPoints& near, std::size_t first, std::size_t end) {
     const auto at = [&](std::size_t n) { return near.distance.begin() + static_cast<std::ptrdiff_t>(n); };
     return std::any_of(at(first), at(end), [&](float distance) { return distance < within; });
   };
-  slots.clear();
-  for (std::size_t n = 0; n < bricks_.size() && slots.size() < slots.capacity(); ++n) {
-    const bool last = n + 1 == bricks_.size();
+  bricks.clear_bearing();
+  for (std::size_t n = 0; n < brick_count_; ++n) {
+    const bool last = n + 1 == brick_count_;
     if (bears(ball_, bricks_[n].at_ball, last ? ball_.count : bricks_[n + 1].at_ball) ||
         bears(cylinder_, bricks_[n].at_cylinder, last ? cylinder_.count : bricks_[n + 1].at_cylinder)) {
-      slots.push_back(bricks_[n].slot);
+      bricks.add_bearing(bricks_[n].slot);
     }
   }
 }
@@ -108,11 +116,11 @@ double NearBone::max_use(const MoveT& move, const Barrier& barrier) const noexce
   return std::max(max_use_by_ball(ball_, move, min_mm), max_use_by_cylinder(cylinder_, move, min_mm));
 }
 
-bool is_clear(BoneBricks& bricks, const Cores& cores, double reach_mm, const Pose& X_WT,
-              const Room& room) noexcept {
+bool look_if_clear(BoneBricks& bricks, const Cores& cores, double reach_mm, const Pose& X_WT,
+                   const Room& room) noexcept {
   const ToolFromGrid X_TG(bricks.lattice(), X_WT);
   const Meeting meets{cores, reach_mm + room.move_mm, room.turn_rad};
-  return !bricks.may_hold_points(
+  return !bricks.look_for_points(
       [&](const Vec3& middle_G, double radius_mm) { return meets.any(X_TG * middle_G, radius_mm); });
 }
 

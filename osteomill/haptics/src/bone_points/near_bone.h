@@ -40,9 +40,9 @@ class NearBone {
   };
   /// At a pose within the room of the last gathering.
   Energy energy(const Cores& cores, const Barrier& barrier, const Pose& X_WT) noexcept;
-  /// The slots of the bricks that have points nearer than `within_mm` to a part at the pose of the last
-  /// `energy`, as many as there is room for in `slots`.
-  void find_bearing(double within_mm, std::vector<std::uint32_t>& slots) const noexcept;
+  /// Lists in `bricks` those that bear the tool: with points nearer than `within_mm` to a part at the pose of
+  /// the last `energy`.
+  void find_bearing(double within_mm, BoneBricks& bricks) const noexcept;
   /// The greatest share of any point's distance that a move from the pose of the last `energy` by a barrier
   /// may use up.
   double max_use(const MoveT& move, const Barrier& barrier) const noexcept;
@@ -56,16 +56,18 @@ class NearBone {
   };
 
   bool fine_at_cylinder_;
+  // The first brick_count_ of them.
   std::vector<Gathered> bricks_;
+  std::size_t brick_count_ = 0;
   bool brick_missing_ = false;
   Pose X_WT_gathered_;
   NearPoints ball_;
   NearPoints cylinder_;
 };
 
-/// Whether no bone can be within `reach_mm` of the tool at `X_WT` or anywhere within the room; makes no
-/// bricks, and may say no where it is so.
-bool is_clear(BoneBricks& bricks, const Cores& cores, double reach_mm, const Pose& X_WT,
-              const Room& room) noexcept;
+/// Looks for bone within `reach_mm` of the tool at `X_WT` or anywhere within the room, and returns whether
+/// there is surely none. Makes no bricks.
+bool look_if_clear(BoneBricks& bricks, const Cores& cores, double reach_mm, const Pose& X_WT,
+                   const Room& room) noexcept;
 
 }  // namespace osteomill

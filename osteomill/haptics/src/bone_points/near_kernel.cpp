@@ -68,7 +68,7 @@ HWY_INLINE void gather(const BrickPoints& points, std::uint32_t first_chunk, con
                        const IsNear& is_near, NearPoints& near) {
   for (std::uint32_t c = first_chunk; c != BrickPoints::kNoChunk; c = points.next_chunk(c)) {
     const PointChunk& chunk = points.chunk(c);
-    if (near.count + PointChunk::kSlots + kGroup > near.capacity()) {
+    if (near.count + PointChunk::kSlots + kGroup > near.room()) {
       near.overflowed = true;
       return;
     }
@@ -207,7 +207,8 @@ void SumBall(NearPoints& near, const Frame& moved, const KernelShape& shape, con
 
 HWY_INLINE void list_at_end(NearPoints& near, M at_end, std::size_t n) {
   for (unsigned bits = lane_moves::bits_of(d, at_end) & ((1u << kWidth) - 1u); bits != 0; bits &= bits - 1) {
-    near.at_end.push_back(static_cast<std::uint32_t>(n) + static_cast<std::uint32_t>(std::countr_zero(bits)));
+    near.at_end[near.at_end_count++] =
+        static_cast<std::uint32_t>(n) + static_cast<std::uint32_t>(std::countr_zero(bits));
   }
 }
 
@@ -215,7 +216,7 @@ void SumSide(NearPoints& near, const Frame& moved, const KernelShape& shape, con
              SideLanes& lanes) {
   const BarrierLaw law(barrier);
   std::size_t touching = 0;
-  near.at_end.clear();
+  near.at_end_count = 0;
   for (std::size_t lane = 0; lane < kGroup; lane += kWidth) {
     Sums<SideLanes::kSums> s;
     s.load(lanes.sums, lane);

@@ -1,6 +1,7 @@
 #include "bone_points/near_points.h"
 
 #include <algorithm>
+#include <span>
 
 #include "bone_points/brick_points.h"
 #include "bone_points/near_kernel.h"
@@ -96,7 +97,7 @@ NearPoints::NearPoints(std::size_t capacity) {
        {&gathered_x, &gathered_y, &gathered_z, &area, &x, &y, &z, &distance, &out_x, &out_y, &out_z}) {
     row->resize(capacity);
   }
-  at_end.reserve(capacity);
+  at_end.resize(capacity);
 }
 
 Frame frame_of(const Mat3& turn, const Vec3& origin_mm) noexcept {
@@ -133,8 +134,9 @@ EnergySum cylinder_energy(NearPoints& near, const Frame& moved, const Cores& cor
   sum_side(near, moved, cores, barrier, lanes);
   EnergySum sum = side_sum(lanes);
   // Their order must not depend on the width of the registers.
-  std::sort(near.at_end.begin(), near.at_end.end());
-  for (const std::uint32_t n : near.at_end) {
+  const std::span at_end(near.at_end.data(), near.at_end_count);
+  std::sort(at_end.begin(), at_end.end());
+  for (const std::uint32_t n : at_end) {
     const Vec3 point_T = place(near.x, near.y, near.z, n);
     const CoreDistance distance = distance_to_cylinder(cores, point_T);
     sum.add_point(static_cast<double>(near.area[n]) * barrier.at(distance.distance_mm), point_T, distance);

@@ -17,7 +17,7 @@ struct NearPoints {
   static constexpr std::size_t kLanes = 16;
 
   explicit NearPoints(std::size_t capacity = 0);
-  std::size_t capacity() const { return area.size(); }
+  std::size_t room() const { return area.size(); }
 
   std::size_t count = 0;
   /// Whether points found no room.
@@ -26,6 +26,7 @@ struct NearPoints {
   std::vector<float> x, y, z, distance, out_x, out_y, out_z;
   /// Of the points near the cylinder those that are nearest to its ends.
   std::vector<std::uint32_t> at_end;
+  std::size_t at_end_count = 0;
 };
 
 /// A frame seen from another: `origin + turn p`.

@@ -87,6 +87,7 @@ SurfaceLattice::SurfaceLattice(const Volume& volume, double spacing_mm) : volume
     const int nodes = (geometry.dims[axis] - 1) * steps + 1;
     brick_dims_[axis] = (nodes + brick_nodes_) / brick_nodes_;
   }
+  brick_radius_mm_ = 0.5 * brick_nodes_ * step_mm_.norm();
   isovalue_ = largest_float_up_to(volume.isovalue());
   outside_ = std::min(volume.grid().outside_density(), isovalue_ - 1);
   for (int axis = 0; axis < 3; ++axis) {
@@ -97,8 +98,9 @@ SurfaceLattice::SurfaceLattice(const Volume& volume, double spacing_mm) : volume
   }
 }
 
-double SurfaceLattice::cell_area_mm2() const {
-  return std::pow(step_mm_.prod(), 2.0 / 3.0) * group_ * group_;
+Vec3 SurfaceLattice::middle_G(int level, const VoxelIndex& node) const {
+  const double half = 0.5 * brick_nodes_ * static_cast<double>(1 << level);
+  return step_mm_.cwiseProduct(half * Vec3(2 * node.i + 1, 2 * node.j + 1, 2 * node.k + 1) - Vec3::Ones());
 }
 
 float SurfaceLattice::density(const VoxelIndex& voxel) const {
@@ -254,15 +256,15 @@ void SurfaceLattice::interpolate_voxels(const VoxelIndex& first, Block& block) c
   }
 }
 
-void SurfaceLattice::find_surface(const VoxelIndex& brick, RowBits& without_bone,
-                                  BrickSurface& surface) const {
+SurfaceLattice::Found SurfaceLattice::find_surface(const VoxelIndex& brick, RowBits& without_bone,
+                                                   BrickSurface& surface) const {
   surface.fine.count = surface.coarse.count = 0;
   Block block;
   const Nodes nodes = nodes_of(brick, block);
   Rows rows{};
   const Found found = find_bone(nodes, rows_of_bone_alone(brick), without_bone, rows);
-  surface.has_bone = found != Found::no_bone;
   if (found == Found::surface) mean_crossings(nodes, rows, surface);
+  return found;
 }
 
 // Those that ranges of densities tell of, where nodes are voxels.

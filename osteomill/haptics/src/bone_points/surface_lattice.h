@@ -41,10 +41,14 @@ class SurfaceLattice {
   const Vec3& origin_W() const { return volume_->geometry().origin_mm; }
   const Mat3& direction() const { return volume_->geometry().direction; }
 
+  /// Middle, in the grid's frame, and radius of a sphere about a node of an octree over the bricks: 2^level
+  /// of them a side, the first at 2^level times `node`.
+  Vec3 middle_G(int level, const VoxelIndex& node) const;
+  double radius_mm(int level) const { return brick_radius_mm_ * static_cast<double>(1 << level); }
+
   /// Where there is no bone there never will be; bone alone becomes surface as densities fall.
   enum class Found { no_bone, bone_alone, surface };
-  /// What there is in a node of an octree over the bricks: 2^level of them a side, the first at 2^level times
-  /// `node`. May say `surface` where there is none.
+  /// Returns what there is in such a node; may return `surface` where there is none.
   Found found_in(int level, const VoxelIndex& node) const;
   /// A number that differs from what it was earlier if any density that the brick's points are made from has
   /// fallen since.
@@ -52,23 +56,18 @@ class SurfaceLattice {
   /// The bricks whose points may change with densities in `voxels`.
   VoxelBox bricks_touched_by(const VoxelBox& voxels) const;
 
-  /// h^2 of a cell of size h (the cube root of its volume): about what a point stands for.
-  double cell_area_mm2() const;
-
   /// Points in the brick's frame, at the lattice's spacing and, as `merge_flat_cells` makes them, at twice
   /// that in flat places.
   struct BrickSurface {
     PointRows fine{kMaxPointsOfBrick};
     PointRows coarse{kMaxPointsOfBrick};
     std::array<std::uint8_t, kMaxPointsOfBrick> coarse_cell;
-    /// Whether anything that lines meet is bone.
-    bool has_bone = false;
   };
   /// Of a brick's rows of nodes along i, a bit each: bit j of element k.
   using RowBits = std::array<std::uint32_t, kMaxBrickNodes + 1>;
-  /// Fine points alone. `without_bone`: the rows in which no bone was found before, so that they need not be
-  /// looked at again; adds those that it finds.
-  void find_surface(const VoxelIndex& brick, RowBits& without_bone, BrickSurface& surface) const;
+  /// Finds fine points alone, and returns what lines meet. `without_bone`: the rows in which no bone was
+  /// found before, so that they need not be looked at again; adds those that it finds.
+  Found find_surface(const VoxelIndex& brick, RowBits& without_bone, BrickSurface& surface) const;
   /// Makes the coarse points of the fine ones: one for all in a cell twice as wide where they lie in a plane;
   /// along edges all stay.
   static void merge_flat_cells(BrickSurface& surface);
@@ -122,6 +121,7 @@ class SurfaceLattice {
   int brick_nodes_ = 8;
   std::array<int, 3> brick_dims_{1, 1, 1};
   Vec3 step_mm_ = Vec3::Ones();
+  double brick_radius_mm_ = 0;
   CrossingSteps crossing_steps_{};
   float isovalue_ = 0;
   // Nothing beyond the border, also where the least density is bone's.

@@ -1,0 +1,61 @@
+#include "bone_points/update_queue.h"
+
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace osteomill {
+namespace {
+
+TEST(UpdateQueue, EveryBrickOfABoxHasItsTurnAndWhatIsAddedMeanwhileComesAfter) {
+  UpdateQueue queue;
+  EXPECT_FALSE(queue.next());
+  queue.add({{1, 1, 1}, {2, 2, 1}});
+  EXPECT_EQ(queue.size(), 4u);
+  EXPECT_EQ(queue.next(), (VoxelIndex{1, 1, 1}));
+  queue.add({{5, 5, 5}, {5, 5, 5}});
+  queue.add({});
+  EXPECT_EQ(queue.size(), 4u);
+  std::vector<VoxelIndex> taken;
+  while (const auto brick = queue.next()) taken.push_back(*brick);
+  EXPECT_EQ(taken, std::vector<VoxelIndex>({{2, 1, 1}, {1, 2, 1}, {2, 2, 1}, {5, 5, 5}}));
+  EXPECT_TRUE(queue.is_empty());
+  EXPECT_EQ(queue.size(), 0u);
+}
+
+TEST(UpdateQueue, BearingBricksTakeTurnsOnceTheyCostMoreThanATickDoes) {
+  UpdateQueue queue;
+  for (std::uint32_t slot = 0; slot < 8; ++slot) queue.add_bearing(slot);
+  std::vector<int> turns(8);
+  const auto take = [&](int cost) {
+    queue.take_bearing_turns([&](std::uint32_t) { return cost; }, [&](std::uint32_t slot) { ++turns[slot]; });
+  };
+  take(UpdateQueue::kBearingPerTick / 16);
+  EXPECT_EQ(turns, std::vector<int>(8, 1));
+  EXPECT_EQ(queue.size(), 0u);
+  for (int tick = 0; tick < 3; ++tick) {
+    take(2 * UpdateQueue::kBearingPerTick / 8);
+    EXPECT_GE(queue.size(), 5u);
+  }
+  EXPECT_EQ(turns, std::vector<int>(8, 2));
+  for (std::size_t n = 0; n < 2 * UpdateQueue::kMostBearing; ++n) queue.add_bearing(0);
+  queue.clear_bearing();
+  take(1);
+  EXPECT_EQ(queue.size(), 0u);
+}
+
+TEST(UpdateQueue, ATickMakesNoMoreThanItsShareAndGoesOnWithWhatWaits) {
+  UpdateQueue queue;
+  queue.count_made(1000000);
+  EXPECT_TRUE(queue.may_make());
+  EXPECT_FALSE(queue.begin_tick());
+  queue.count_made(UpdateQueue::kMadePerTick);
+  EXPECT_FALSE(queue.may_make());
+  queue.add({{0, 0, 0}, {1, 0, 0}});
+  EXPECT_FALSE(queue.begin_tick());
+  EXPECT_TRUE(queue.may_make());
+  EXPECT_TRUE(queue.begin_tick());
+}
+
+}  // namespace
+}  // namespace osteomill
