@@ -31,7 +31,7 @@ void mill(benchmark::State& state, double burr_radius_mm, double spacing_mm) {
     Volume volume = bone;
     barrier_shell::BarrierShell algorithm(barrier_shell::Settings{});
     algorithm.prepare({&volume, tool});
-    BurrMill burr(volume.geometry(), burr_radius_mm, {0, 1000}, {});
+    BurrMill burr(volume, burr_radius_mm, {0, 1000}, {});
     TickTimes both, cutting, refreshing, steps;
     double removed_mm3 = 0, pressed_mm3 = 0;
     // The hand's target sinks while its spring holds less than the force.
@@ -45,8 +45,8 @@ void mill(benchmark::State& state, double burr_radius_mm, double spacing_mm) {
       X_WD.position_mm.x() = 0.02 * std::sin(0.05 * ticks);
       if (step.contacts == 0) continue;
       MillingStep done;
-      const double cut_us = cutting.time(
-          [&] { done = burr.step(volume, step.X_WT.position_mm, step.burr_force_W_N, kTick_s); });
+      const double cut_us =
+          cutting.time([&] { done = burr.step(step.X_WT.position_mm, step.burr_force_W_N, kTick_s); });
       const double refresh_us = refreshing.time([&] {
         if (!done.change.voxels.empty()) algorithm.volume_changed(done.change);
       });

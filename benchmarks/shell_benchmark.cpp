@@ -42,10 +42,10 @@ void copy_volume(benchmark::State& state, Bone bone) {
 }
 
 void make_mill(benchmark::State& state, Bone bone) {
-  const Volume& volume = bone_volume(bone);
+  Volume volume = bone_volume(bone);
   for ([[maybe_unused]] auto _ : state) {
     const double before = allocated_bytes();
-    const BurrMill mill(volume.geometry(), 3.0, estimate_densities(volume), {});
+    const BurrMill mill(volume, 3.0, estimate_densities(volume), {});
     state.counters["bytes_per_voxel"] =
         (allocated_bytes() - before) / static_cast<double>(volume.geometry().voxel_count());
   }

@@ -102,8 +102,7 @@ std::size_t triangles_in(const SurfaceMesh& mesh) {
 // A burr pressed with 4 N on the top of the bone over its middle, and let down by 1 mm/s.
 class Milling {
  public:
-  Milling(Volume& volume, double radius_mm)
-      : volume_(volume), mill_(volume.geometry(), radius_mm, estimate_densities(volume), {}) {
+  Milling(Volume& volume, double radius_mm) : mill_(volume, radius_mm, estimate_densities(volume), {}) {
     const GridGeometry& geometry = volume.geometry();
     const Vec3 foot = geometry.world_from_voxel(Vec3(geometry.dims[0] / 2.0, geometry.dims[1] / 2.0, 0));
     const Vec3 top = foot + geometry.direction.col(2) * geometry.spacing_mm.z() * geometry.dims[2];
@@ -114,11 +113,10 @@ class Milling {
   }
   VolumeChange tick() {
     centre_ += into_ * 0.001;
-    return mill_.step(volume_, centre_, {0, 0, -4.0}, 1e-3).change;
+    return mill_.step(centre_, {0, 0, -4.0}, 1e-3).change;
   }
 
  private:
-  Volume& volume_;
   BurrMill mill_;
   Vec3 into_;
   Vec3 centre_;

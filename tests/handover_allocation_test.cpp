@@ -17,11 +17,10 @@ TEST(TickAllocation, HandingChangesOverToTheFollowerAllocatesNothing) {
       testing_support::centred_cube(96, 0.25), testing_support::ball(Vec3::Zero(), 10)));
   BoneFollower follower(bone);
   Volume& volume = *bone;
-  BurrMill mill(volume.geometry(), 1.5, {0, 1000}, {});
+  BurrMill mill(volume, 1.5, {0, 1000}, {});
   const long before = testing_support::allocations_of_this_thread();
   for (int n = 0; n < 1000; ++n) {
-    follower.bone_changed(volume,
-                          mill.step(volume, {0.01 * n, 0, 11 - 0.002 * n}, {0, 0, -4.0}, 1e-3).change);
+    follower.bone_changed(volume, mill.step({0.01 * n, 0, 11 - 0.002 * n}, {0, 0, -4.0}, 1e-3).change);
   }
   follower.bone_changed(volume, {volume.geometry().all_voxels()});
   for (int n = 0; n < 1000; ++n) follower.bone_changed(volume, {});

@@ -35,15 +35,14 @@ Volume ball_of_bone() {
 // A burr going round on the ball, pressed in.
 class Miller {
  public:
-  explicit Miller(Volume& volume) : volume_(volume), mill_(volume.geometry(), 1.5, {0.0, 1000.0}, {}) {}
+  explicit Miller(Volume& volume) : mill_(volume, 1.5, {0.0, 1000.0}, {}) {}
   VolumeChange tick() {
     angle_ += 0.002;
     const Vec3 centre = (6.3 - 0.2 * angle_) * Vec3(std::cos(angle_), std::sin(angle_), 0.2).normalized();
-    return mill_.step(volume_, centre, {0, 0, -4.0}, 1e-3).change;
+    return mill_.step(centre, {0, 0, -4.0}, 1e-3).change;
   }
 
  private:
-  Volume& volume_;
   BurrMill mill_;
   double angle_ = 0;
 };

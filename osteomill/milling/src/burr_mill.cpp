@@ -63,8 +63,9 @@ double reach_mm(const GridGeometry& geometry, double radius_mm, double ahead_mm)
   return radius_mm + 0.5 * ahead_mm + CutProfile::kReach_voxels * geometry.spacing_mm.maxCoeff();
 }
 
-BurrReach make_reach(const GridGeometry& geometry, double burr_radius_mm, const BoneDensities& densities,
+BurrReach make_reach(const Volume& volume, double burr_radius_mm, const BoneDensities& densities,
                      const MillingSettings& settings) {
+  const GridGeometry& geometry = volume.geometry();
   require(geometry.voxel_count() > 0 && geometry.spacing_mm.minCoeff() > 0 && geometry.spacing_mm.allFinite(),
           "BurrMill: an empty grid");
   require_positive(burr_radius_mm, "BurrMill: the burr's radius");
@@ -72,26 +73,25 @@ BurrReach make_reach(const GridGeometry& geometry, double burr_radius_mm, const 
   require(std::isfinite(densities.surroundings) && std::isfinite(densities.reference) &&
               densities.reference > densities.surroundings,
           "BurrMill: the reference density must be above that of the surroundings");
-  return BurrReach(geometry, reach_mm(geometry, burr_radius_mm, max_ahead(geometry)),
+  return BurrReach(volume, reach_mm(geometry, burr_radius_mm, max_ahead(geometry)),
                    float_not_below(densities.surroundings), kRoomForPieces);
 }
 
 }  // namespace
 
-BurrMill::BurrMill(const GridGeometry& geometry, double burr_radius_mm, const BoneDensities& densities,
+BurrMill::BurrMill(Volume& volume, double burr_radius_mm, const BoneDensities& densities,
                    const MillingSettings& settings)
-    : geometry_(geometry),
+    : volume_(&volume),
       radius_mm_(burr_radius_mm),
       densities_(densities),
-      mm3_per_density_(geometry.voxel_volume_mm3() / (densities.reference - densities.surroundings)),
+      mm3_per_density_(volume.geometry().voxel_volume_mm3() / (densities.reference - densities.surroundings)),
       removal_rate_mm3_per_Ns_(settings.removal_rate_mm3_per_Ns),
-      min_ahead_mm_(min_ahead(geometry, burr_radius_mm)),
-      max_ahead_mm_(max_ahead(geometry)),
-      reach_(make_reach(geometry, burr_radius_mm, densities, settings)),
-      voxels_(geometry, reach_.max_voxels(), reach_.max_pieces()) {}
+      min_ahead_mm_(min_ahead(volume.geometry(), burr_radius_mm)),
+      max_ahead_mm_(max_ahead(volume.geometry())),
+      reach_(make_reach(volume, burr_radius_mm, densities, settings)),
+      voxels_(volume.geometry(), reach_.max_voxels(), reach_.max_pieces()) {}
 
-MillingStep BurrMill::step(Volume& volume, const Vec3& burr_centre_W, const Vec3& burr_force_W_N,
-                           double dt_s) noexcept {
+MillingStep BurrMill::step(const Vec3& burr_centre_W, const Vec3& burr_force_W_N, double dt_s) noexcept {
   const double rate_mm3_s = removal_rate_mm3_per_Ns_ * burr_force_W_N.norm();
   const double pressed_mm3 = rate_mm3_s * dt_s;
   if (!(pressed_mm3 > 0) || !std::isfinite(pressed_mm3) || !burr_centre_W.allFinite()) {
@@ -102,11 +102,11 @@ MillingStep BurrMill::step(Volume& volume, const Vec3& burr_centre_W, const Vec3
   const double budget_mm3 = carry_mm3_ + pressed_mm3;
   const CuttingBall ball = ball_in_grid(burr_centre_W, burr_force_W_N);
   const double max_ahead_mm = std::min(std::max(ahead_mm_, 0.0) + kMaxAhead_mm_s * dt_s, max_ahead_mm_);
-  find(volume, ball, max_ahead_mm, pressed_mm3);
+  find(ball, max_ahead_mm, pressed_mm3);
   const BurrAdvance advance =
       advance_within(budget_mm3 / mm3_per_density_, voxels_, ahead_mm_, min_ahead_mm_, max_ahead_mm);
   ahead_mm_ = advance.ahead_mm;
-  const MillingStep done = lower_found(volume, voxels_.find_lowered(ahead_mm_, advance.shares));
+  const MillingStep done = lower_found(voxels_.find_lowered(ahead_mm_, advance.shares));
   // Below zero by a rounding error where floats were rounded in the burr's favour; the next step pays for it.
   carry_mm3_ = std::min(budget_mm3 - done.removed_mm3, kPressingKept_s * rate_mm3_s);
   return done;
@@ -120,17 +120,17 @@ void BurrMill::lift(double dt_s) {
 }
 
 CuttingBall BurrMill::ball_in_grid(const Vec3& centre_W, const Vec3& force_W_N) const {
-  const auto to_grid = geometry_.direction.transpose();
-  return {to_grid * (centre_W - geometry_.origin_mm), to_grid * force_W_N.normalized(), radius_mm_};
+  const auto to_grid = geometry().direction.transpose();
+  return {to_grid * (centre_W - geometry().origin_mm), to_grid * force_W_N.normalized(), radius_mm_};
 }
 
-void BurrMill::find(const Volume& volume, const CuttingBall& ball, double max_ahead_mm, double pressed_mm3) {
-  reach_.find(volume, ball.centre_mm + 0.5 * max_ahead_mm * ball.ahead,
-              reach_mm(geometry_, radius_mm_, max_ahead_mm), share_);
+void BurrMill::find(const CuttingBall& ball, double max_ahead_mm, double pressed_mm3) {
+  reach_.find(ball.centre_mm + 0.5 * max_ahead_mm * ball.ahead,
+              reach_mm(geometry(), radius_mm_, max_ahead_mm), share_);
   const double contact_mm2 = std::numbers::pi * radius_mm_ * radius_mm_;
-  share_after(reach_.pieces().size(), pressed_mm3 / contact_mm2 / geometry_.spacing_mm.minCoeff());
+  share_after(reach_.pieces().size(), pressed_mm3 / contact_mm2 / geometry().spacing_mm.minCoeff());
   const CutProfile profile = CutProfile::between(static_cast<double>(reach_.floor_density()),
-                                                 volume.isovalue(), densities_.reference);
+                                                 volume_->isovalue(), densities_.reference);
   voxels_.gather(reach_, ball, profile, max_ahead_mm);
 }
 
@@ -159,7 +159,7 @@ void BurrMill::count_labels(const LabelMap& labels, const CutVoxels::Row& row) {
   }
 }
 
-MillingStep BurrMill::lower_found(Volume& volume, double dropped) {
+MillingStep BurrMill::lower_found(double dropped) {
   MillingStep done;
   done.removed_mm3 = dropped * mm3_per_density_;
   const int* columns = voxels_.columns();
@@ -170,8 +170,8 @@ MillingStep BurrMill::lower_found(Volume& volume, double dropped) {
     while (begin < end && !(after[begin] < before[begin])) ++begin;
     if (begin == end) continue;
     while (!(after[end - 1] < before[end - 1])) --end;
-    volume.lower_row(row.j, row.k, columns + begin, after + begin, end - begin);
-    if (volume.labels()) count_labels(*volume.labels(), {row.j, row.k, begin, end});
+    volume_->lower_row(row.j, row.k, columns + begin, after + begin, end - begin);
+    if (volume_->labels()) count_labels(*volume_->labels(), {row.j, row.k, begin, end});
     done.change.voxels.include({columns[begin], row.j, row.k});
     done.change.voxels.include({columns[end - 1], row.j, row.k});
   }

@@ -63,7 +63,7 @@ Hole mill_hole(Volume& volume, BurrMill& mill, double force_N, double seconds, d
   const double dt_s = 1 / rate_hz;
   for (int n = 0; n < static_cast<int>(std::lround(seconds * rate_hz)); ++n) {
     const double centre_depth_mm = hole_depth_mm(volume, down) - kRadius_mm + force_N / 20;
-    hole.removed_mm3 += mill.step(volume, centre_depth_mm * down, force_N * down, dt_s).removed_mm3;
+    hole.removed_mm3 += mill.step(centre_depth_mm * down, force_N * down, dt_s).removed_mm3;
     hole.pressed_mm3 += kMilling.removal_rate_mm3_per_Ns * force_N * dt_s;
   }
   hole.depth_mm = hole_depth_mm(volume, down);
@@ -72,7 +72,7 @@ Hole mill_hole(Volume& volume, BurrMill& mill, double force_N, double seconds, d
 
 Hole mill_hole_in(const GridGeometry& geometry, double rate_hz, const Vec3& normal = Vec3::UnitZ()) {
   Volume volume = half_space(geometry, normal);
-  BurrMill mill(geometry, kRadius_mm, kBone, kMilling);
+  BurrMill mill(volume, kRadius_mm, kBone, kMilling);
   return mill_hole(volume, mill, 1.5, 2.5, rate_hz, -normal);
 }
 
@@ -82,7 +82,7 @@ TEST(BurrMill, ABurrThatIsHeldWhereItIsPressesAsLongAsItCuts) {
       for (const Vec3& normal : {Vec3(0, 0, 1), Vec3(0.3, -0.4, 0.8), Vec3(0.6, 0.1, 0.5)}) {
         const Vec3 down = -normal.normalized();
         Volume volume = half_space(cube_of(5, spacing_mm), normal.normalized());
-        BurrMill mill(volume.geometry(), radius_mm, kBone, kMilling);
+        BurrMill mill(volume, radius_mm, kBone, kMilling);
         PressingBurr burr;
         const Vec3 centre_W = -(radius_mm - 0.05) * down;
         double pressed_mm3 = 0, removed_mm3 = 0, last_pressed_s = 0;
@@ -90,7 +90,7 @@ TEST(BurrMill, ABurrThatIsHeldWhereItIsPressesAsLongAsItCuts) {
           if (!burr.presses(volume, radius_mm, centre_W, 1.5 * down, 1e-3)) continue;
           last_pressed_s = 1e-3 * n;
           pressed_mm3 += kMilling.removal_rate_mm3_per_Ns * 1.5 * 1e-3;
-          removed_mm3 += mill.step(volume, centre_W, 1.5 * down, 1e-3).removed_mm3;
+          removed_mm3 += mill.step(centre_W, 1.5 * down, 1e-3).removed_mm3;
         }
         EXPECT_LT(last_pressed_s, 0.9) << spacing_mm << ' ' << radius_mm << ' ' << normal.transpose();
         // But for what is kept for a burr that swings.
@@ -105,7 +105,7 @@ TEST(BurrMill, RemovesWhatTheForcePaysFor) {
   for (const double force_N : {0.1, 1.5, 6.0}) {
     const GridGeometry geometry = cube_of(7, 0.125);
     Volume volume = half_space(geometry);
-    BurrMill mill(geometry, kRadius_mm, kBone, kMilling);
+    BurrMill mill(volume, kRadius_mm, kBone, kMilling);
     const double before_mm3 = charge_mm3(volume.grid(), kBone);
     const Hole hole = mill_hole(volume, mill, force_N, 3 / force_N, 1000);
     EXPECT_NEAR(hole.removed_mm3 / hole.pressed_mm3, 1, 0.01) << force_N;
@@ -120,8 +120,8 @@ TEST(BurrMill, CutsEnamelSlowerInProportionToItsDensity) {
   std::vector<float> denser = every_nth_density(dentine.grid(), 1);
   for (float& density : denser) density *= 1.9f;
   Volume enamel(DensityGrid(geometry, denser), 1.9 * 500);
-  BurrMill dentine_mill(geometry, kRadius_mm, kBone, kMilling);
-  BurrMill enamel_mill(geometry, kRadius_mm, kBone, kMilling);
+  BurrMill dentine_mill(dentine, kRadius_mm, kBone, kMilling);
+  BurrMill enamel_mill(enamel, kRadius_mm, kBone, kMilling);
   const Hole in_dentine = mill_hole(dentine, dentine_mill, 1.5, 1.0, 1000);
   const Hole in_enamel = mill_hole(enamel, enamel_mill, 1.5, 1.9, 1000);
   EXPECT_NEAR(in_enamel.removed_mm3, 1.9 * in_dentine.removed_mm3, 0.02 * in_enamel.removed_mm3);
@@ -148,12 +148,12 @@ TEST(BurrMill, NeverStallsOnDenseBoneThatItOnlyTouches) {
       std::vector<float> densities = every_nth_density(bone.grid(), 1);
       for (float& density : densities) density *= 3;
       Volume volume(DensityGrid(bone.geometry(), densities), 500);
-      BurrMill mill(volume.geometry(), kRadius_mm, kBone, kMilling);
+      BurrMill mill(volume, kRadius_mm, kBone, kMilling);
       double removed_mm3 = 0;
       double height_mm = 1.8;
       for (int n = 0; n < 1000; ++n) {
         while (!touches_surface(volume, height_mm * normal)) height_mm -= 0.005;
-        removed_mm3 += mill.step(volume, height_mm * normal, -1.5 * normal, 0.001).removed_mm3;
+        removed_mm3 += mill.step(height_mm * normal, -1.5 * normal, 0.001).removed_mm3;
       }
       EXPECT_NEAR(removed_mm3, 3, 0.02 * 3) << spacing_mm;
     }
@@ -164,20 +164,20 @@ TEST(BurrMill, TakesNothingWithoutForceOrWithoutASensibleInput) {
   const GridGeometry geometry = cube_of(5, 0.25);
   Volume volume = half_space(geometry);
   const CopyOnWriteFloats before = volume.grid().densities();
-  BurrMill mill(geometry, kRadius_mm, kBone, kMilling);
+  BurrMill mill(volume, kRadius_mm, kBone, kMilling);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double infinity = std::numeric_limits<double>::infinity();
   const Vec3 inside(0, 0, -0.5);
   for (const double force_N : {0.0, nan, infinity}) {
-    const MillingStep step = mill.step(volume, inside, {0, 0, -force_N}, 0.001);
+    const MillingStep step = mill.step(inside, {0, 0, -force_N}, 0.001);
     EXPECT_EQ(step.removed_mm3, 0);
     EXPECT_TRUE(step.change.voxels.empty());
   }
-  EXPECT_EQ(mill.step(volume, Vec3(nan, 0, 0), down(1), 0.001).removed_mm3, 0);
-  EXPECT_EQ(mill.step(volume, Vec3(0, infinity, 0), down(1), 0.001).removed_mm3, 0);
-  EXPECT_EQ(mill.step(volume, inside, down(1), 0).removed_mm3, 0);
-  EXPECT_EQ(mill.step(volume, Vec3(0, 0, 3), down(1), 0.001).removed_mm3, 0) << "in the air";
-  EXPECT_EQ(mill.step(volume, Vec3(1e300, 0, 0), down(1), 0.001).removed_mm3, 0) << "far away";
+  EXPECT_EQ(mill.step(Vec3(nan, 0, 0), down(1), 0.001).removed_mm3, 0);
+  EXPECT_EQ(mill.step(Vec3(0, infinity, 0), down(1), 0.001).removed_mm3, 0);
+  EXPECT_EQ(mill.step(inside, down(1), 0).removed_mm3, 0);
+  EXPECT_EQ(mill.step(Vec3(0, 0, 3), down(1), 0.001).removed_mm3, 0) << "in the air";
+  EXPECT_EQ(mill.step(Vec3(1e300, 0, 0), down(1), 0.001).removed_mm3, 0) << "far away";
   EXPECT_EQ(volume.grid().densities(), before);
 }
 
@@ -187,11 +187,11 @@ TEST(BurrMill, StopsWhereItsReachEndsAndCarriesTheRestWithinBounds) {
   Volume volume = half_space(geometry);
   const Volume original = volume;
   const BoneDensities bone{391.7, 900};
-  BurrMill mill(geometry, kRadius_mm, bone, kMilling);
+  BurrMill mill(volume, kRadius_mm, bone, kMilling);
   const double held_mm3 = charge_mm3(volume.grid(), bone);
   const Vec3 centre(0, 0, -0.6);
   double removed_mm3 = 0;
-  for (int n = 0; n < 3000; ++n) removed_mm3 += mill.step(volume, centre, down(kForce_N), 0.001).removed_mm3;
+  for (int n = 0; n < 3000; ++n) removed_mm3 += mill.step(centre, down(kForce_N), 0.001).removed_mm3;
   EXPECT_NEAR(held_mm3 - charge_mm3(volume.grid(), bone), removed_mm3, 1e-6);
   // A voxel ahead, and as far outside as cutting to a surface lowers the voxels beyond it.
   const double outside_mm = kRadius_mm + (1 + 1.55) * kSpacing_mm, inside_mm = kRadius_mm - kSpacing_mm;
@@ -216,13 +216,13 @@ TEST(BurrMill, StopsWhereItsReachEndsAndCarriesTheRestWithinBounds) {
 TEST(BurrMill, ForgetsTheCarryOnlyAfterALift) {
   const GridGeometry geometry = cube_of(5, 0.25);
   Volume volume = half_space(geometry);
-  BurrMill mill(geometry, kRadius_mm, kBone, kMilling);
+  BurrMill mill(volume, kRadius_mm, kBone, kMilling);
   const Vec3 air(0, 0, 3);
-  mill.step(volume, air, down(10), 0.001);
-  for (int n = 0; n < 40; ++n) mill.step(volume, air, down(0), 0.001);
+  mill.step(air, down(10), 0.001);
+  for (int n = 0; n < 40; ++n) mill.step(air, down(0), 0.001);
   EXPECT_NEAR(mill.carry_mm3(), 0.02, 1e-12) << "40 ms without force are no lift";
-  mill.step(volume, air, down(1e-9), 0.001);
-  for (int n = 0; n < 51; ++n) mill.step(volume, air, down(0), 0.001);
+  mill.step(air, down(1e-9), 0.001);
+  for (int n = 0; n < 51; ++n) mill.step(air, down(0), 0.001);
   EXPECT_EQ(mill.carry_mm3(), 0);
 }
 
@@ -231,9 +231,9 @@ TEST(BurrMill, CutsWhereItPresses) {
   const GridGeometry geometry = cube_of(6, 0.125);
   Volume volume = shape_volume(geometry, [](const Vec3& p) { return kRadius_mm - p.norm(); });
   const Volume before = volume;
-  BurrMill mill(geometry, kRadius_mm, kBone, kMilling);
+  BurrMill mill(volume, kRadius_mm, kBone, kMilling);
   const Vec3 press = Vec3(0.5, 0.3, -0.8).normalized();
-  for (int n = 0; n < 200; ++n) mill.step(volume, Vec3::Zero(), 1.5 * press, 0.001);
+  for (int n = 0; n < 200; ++n) mill.step(Vec3::Zero(), 1.5 * press, 0.001);
   double lost_there = 0, deepest_drop = 0;
   Vec3 deepest = Vec3::Zero();
   for (int k = 0; k < geometry.dims[2]; ++k)
@@ -280,7 +280,7 @@ TEST(BurrMill, MakesTheSameHoleWithAnyVoxels) {
 TEST(BurrMill, CuttingAShareOfItsLinesAStepMakesTheSameHole) {
   const auto hole_in = [](double spacing_mm) {
     Volume volume = half_space(cube_of(5, spacing_mm));
-    BurrMill mill(volume.geometry(), kRadius_mm, kBone, kMilling);
+    BurrMill mill(volume, kRadius_mm, kBone, kMilling);
     const Hole hole = mill_hole(volume, mill, 2, 0.8, 1000);
     // The surface left is that of a ball: no ridges from line to line. Its depth at places around the axis.
     double min = 1, max = 0;
@@ -323,14 +323,13 @@ TEST(BurrMill, CutsATurnedGridAsItCutsAStraightOne) {
   Volume straight_volume = half_space(straight);
   Volume turned_volume(straight_volume.grid(), 500);
   turned_volume = Volume(DensityGrid(turned, every_nth_density(straight_volume.grid(), 1)), 500);
-  BurrMill straight_mill(straight, kRadius_mm, kBone, kMilling);
-  BurrMill turned_mill(turned, kRadius_mm, kBone, kMilling);
+  BurrMill straight_mill(straight_volume, kRadius_mm, kBone, kMilling);
+  BurrMill turned_mill(turned_volume, kRadius_mm, kBone, kMilling);
   double straight_mm3 = 0, turned_mm3 = 0;
   for (int n = 0; n < 300; ++n) {
     const Vec3 centre(0.002 * n, 0.1, 1.4 - 0.002 * n);
-    const MillingStep a = straight_mill.step(straight_volume, centre, down(2), 0.001);
-    const MillingStep b =
-        turned_mill.step(turned_volume, turned.direction * centre, turned.direction * down(2), 0.001);
+    const MillingStep a = straight_mill.step(centre, down(2), 0.001);
+    const MillingStep b = turned_mill.step(turned.direction * centre, turned.direction * down(2), 0.001);
     straight_mm3 += a.removed_mm3;
     turned_mm3 += b.removed_mm3;
   }
@@ -342,11 +341,10 @@ TEST(BurrMill, CutsATurnedGridAsItCutsAStraightOne) {
 TEST(BurrMill, NamesExactlyTheBoxThatChanged) {
   const GridGeometry geometry = cube_of(6, 0.2);
   Volume volume = half_space(geometry);
-  BurrMill mill(geometry, kRadius_mm, kBone, kMilling);
+  BurrMill mill(volume, kRadius_mm, kBone, kMilling);
   for (int n = 0; n < 200; ++n) {
     const DensityGrid before = volume.grid();
-    const VoxelBox said =
-        mill.step(volume, Vec3(0.01 * n, 0.3, 1.4 - 0.005 * n), down(1), 0.001).change.voxels;
+    const VoxelBox said = mill.step(Vec3(0.01 * n, 0.3, 1.4 - 0.005 * n), down(1), 0.001).change.voxels;
     VoxelBox changed;
     for_each(geometry.all_voxels(), [&](const VoxelIndex& v) {
       if (before[v] != volume.grid()[v]) changed.include(v);
@@ -361,11 +359,11 @@ TEST(BurrMill, NamesExactlyTheBoxThatChanged) {
 TEST(BurrMill, CutsAtTheEdgeOfTheGridWhatIsInside) {
   const GridGeometry geometry = cube_of(4, 0.2);
   Volume volume = half_space(geometry);
-  BurrMill mill(geometry, kRadius_mm, kBone, kMilling);
+  BurrMill mill(volume, kRadius_mm, kBone, kMilling);
   const double before_mm3 = charge_mm3(volume.grid(), kBone);
   double removed_mm3 = 0;
   for (int n = 0; n < 500; ++n) {
-    removed_mm3 += mill.step(volume, Vec3(2.2, -2.4, -2.0), Vec3(-1, 1, 1).normalized(), 0.001).removed_mm3;
+    removed_mm3 += mill.step(Vec3(2.2, -2.4, -2.0), Vec3(-1, 1, 1).normalized(), 0.001).removed_mm3;
   }
   EXPECT_NEAR(removed_mm3, 1.0, 0.02);
   EXPECT_NEAR(before_mm3 - charge_mm3(volume.grid(), kBone), removed_mm3, 1e-9);
@@ -374,11 +372,11 @@ TEST(BurrMill, CutsAtTheEdgeOfTheGridWhatIsInside) {
 TEST(BurrMill, CountsExactlyWhatItTakesEvenNearTheResolutionOfAFloat) {
   const GridGeometry geometry = cube_of(5, 0.25);
   Volume volume = half_space(geometry);
-  BurrMill mill(geometry, kRadius_mm, kBone, {1e-2});
+  BurrMill mill(volume, kRadius_mm, kBone, {1e-2});
   const double before_mm3 = charge_mm3(volume.grid(), kBone);
   double removed_mm3 = 0;
   for (int n = 0; n < 20000; ++n) {
-    removed_mm3 += mill.step(volume, Vec3(0, 0, 1.4), down(1e-2), 0.001).removed_mm3;
+    removed_mm3 += mill.step(Vec3(0, 0, 1.4), down(1e-2), 0.001).removed_mm3;
   }
   EXPECT_NEAR(before_mm3 - charge_mm3(volume.grid(), kBone), removed_mm3, 1e-11);
   EXPECT_GT(removed_mm3, 0);
@@ -386,11 +384,10 @@ TEST(BurrMill, CountsExactlyWhatItTakesEvenNearTheResolutionOfAFloat) {
 }
 
 TEST(BurrMill, RefusesSettingsOutOfRange) {
-  const GridGeometry geometry = cube_of(2, 0.25);
-  EXPECT_THROW(BurrMill(geometry, 0, kBone, kMilling), std::invalid_argument);
-  EXPECT_THROW(BurrMill(geometry, 1, {5, 5}, {}), std::invalid_argument);
-  EXPECT_THROW(BurrMill(geometry, 1, kBone, {-1}), std::invalid_argument);
-  EXPECT_THROW(BurrMill(GridGeometry{}, 1, kBone, kMilling), std::invalid_argument);
+  Volume volume = half_space(cube_of(2, 0.25));
+  EXPECT_THROW(BurrMill(volume, 0, kBone, kMilling), std::invalid_argument);
+  EXPECT_THROW(BurrMill(volume, 1, {5, 5}, {}), std::invalid_argument);
+  EXPECT_THROW(BurrMill(volume, 1, kBone, {-1}), std::invalid_argument);
 }
 
 }  // namespace

@@ -39,14 +39,13 @@ std::size_t row_in_brick(int j, int k) {
 
 }  // namespace
 
-BurrReach::BurrReach(const GridGeometry& geometry, double max_radius_mm, float floor_density,
-                     std::size_t max_pieces)
-    : geometry_(geometry),
-      max_pieces_(std::min(max_pieces, max_pieces_in_ball(geometry, max_radius_mm))),
+BurrReach::BurrReach(const Volume& volume, double max_radius_mm, float floor_density, std::size_t max_pieces)
+    : volume_(&volume),
+      max_pieces_(std::min(max_pieces, max_pieces_in_ball(volume.geometry(), max_radius_mm))),
       floor_density_(floor_density),
-      brick_dims_(geometry.all_voxels().bricks(kSide).dims()) {
+      brick_dims_(volume.geometry().all_voxels().bricks(kSide).dims()) {
   max_voxels_ =
-      std::min(max_voxels_in_ball(geometry, max_radius_mm), static_cast<std::size_t>(kSide) * max_pieces_);
+      std::min(max_voxels_in_ball(geometry(), max_radius_mm), static_cast<std::size_t>(kSide) * max_pieces_);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     squares_[axis].of_voxel_mm2.resize(static_cast<std::size_t>(kSide * brick_dims_[axis]));
     squares_[axis].of_brick_mm2.resize(static_cast<std::size_t>(brick_dims_[axis]));
@@ -54,17 +53,11 @@ BurrReach::BurrReach(const GridGeometry& geometry, double max_radius_mm, float f
   known_.resize(cell_count(brick_dims_));
   bits_.resize(cell_count(brick_dims_));
   words_of_line_ = (static_cast<std::size_t>(brick_dims_[0]) + kWordBits - 1) / kWordBits;
-  held_.resize(words_of_line_ * brick_line(0, brick_dims_[2]));
+  held_.resize(words_of_line_ * brick_line(0, brick_dims_[2]), ~std::uint64_t{0});
   pieces_.reserve(max_pieces_);
 }
 
-void BurrReach::find(const Volume& volume, const Vec3& centre_mm, double radius_mm,
-                     const Share& share) noexcept {
-  if (known_volume_ != &volume) {
-    std::fill(known_.begin(), known_.end(), false);
-    std::fill(held_.begin(), held_.end(), ~std::uint64_t{0});
-  }
-  known_volume_ = &volume;
+void BurrReach::find(const Vec3& centre_mm, double radius_mm, const Share& share) noexcept {
   radius_mm_ = radius_mm;
   pieces_.clear();
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -80,8 +73,8 @@ void BurrReach::find(const Volume& volume, const Vec3& centre_mm, double radius_
                            y.of_brick_mm2[static_cast<std::size_t>(bj)];
       if (left2 <= 0) continue;
       for (std::size_t word = first_word; word <= last_word; ++word) {
-        const std::uint64_t held = held_in_ball(volume, bj, bk, word, left2);
-        if (held != 0) find_pieces(volume.grid(), word, held, bj, bk, share);
+        const std::uint64_t held = held_in_ball(bj, bk, word, left2);
+        if (held != 0) find_pieces(word, held, bj, bk, share);
       }
     }
   }
@@ -89,8 +82,7 @@ void BurrReach::find(const Volume& volume, const Vec3& centre_mm, double radius_
 
 // The bricks of a word, a bit each, that lie less than the root of `left2_mm2` away along the line and may
 // hold something.
-std::uint64_t BurrReach::held_in_ball(const Volume& volume, int bj, int bk, std::size_t word,
-                                      double left2_mm2) {
+std::uint64_t BurrReach::held_in_ball(int bj, int bk, std::size_t word, double left2_mm2) {
   const Squares& x = squares_[0];
   std::uint64_t& held = held_[words_of_line_ * brick_line(bj, bk) + word];
   const int base = static_cast<int>(kWordBits * word);
@@ -104,7 +96,7 @@ std::uint64_t BurrReach::held_in_ball(const Volume& volume, int bj, int bk, std:
     const std::size_t brick = brick_index(bi, bj, bk);
     if (!known_[brick]) {
       known_[brick] = true;
-      if (!look_at(volume, bi, bj, bk)) held &= ~bit;
+      if (!look_at(bi, bj, bk)) held &= ~bit;
     }
     within |= held & bit;
   }
@@ -112,8 +104,8 @@ std::uint64_t BurrReach::held_in_ball(const Volume& volume, int bj, int bk, std:
 }
 
 void BurrReach::measure(Squares& squares, double centre_mm, std::size_t axis) const {
-  const double spacing = geometry_.spacing_mm[static_cast<Eigen::Index>(axis)];
-  const double count = geometry_.dims[axis];
+  const double spacing = geometry().spacing_mm[static_cast<Eigen::Index>(axis)];
+  const double count = geometry().dims[axis];
   // Clamped to the grid before the conversion to int: the centre may be anywhere.
   const double first = std::clamp((centre_mm - radius_mm_) / spacing, 0.0, count);
   const double last = std::clamp((centre_mm + radius_mm_) / spacing, -1.0, count - 1);
@@ -122,7 +114,7 @@ void BurrReach::measure(Squares& squares, double centre_mm, std::size_t axis) co
   if (squares.voxels.last < squares.voxels.first) return;
   squares.bricks = {squares.voxels.first / kSide, squares.voxels.last / kSide};
   for (int b = squares.bricks.first; b <= squares.bricks.last; ++b) {
-    const int begin = kSide * b, end = std::min(begin + kSide, geometry_.dims[axis]);
+    const int begin = kSide * b, end = std::min(begin + kSide, geometry().dims[axis]);
     double min = radius_mm_ * radius_mm_;
     for (int n = begin; n < begin + kSide; ++n) {
       const double away = n * spacing - centre_mm;
@@ -134,17 +126,17 @@ void BurrReach::measure(Squares& squares, double centre_mm, std::size_t axis) co
 }
 
 // Whether the brick holds anything.
-bool BurrReach::look_at(const Volume& volume, int bi, int bj, int bk) {
-  if (!(volume.ranges().at(bi, bj, bk).max > floor_density_)) return false;
+bool BurrReach::look_at(int bi, int bj, int bk) {
+  if (!(volume_->ranges().at(bi, bj, bk).max > floor_density_)) return false;
   Bits& bits = bits_[brick_index(bi, bj, bk)];
   bits.fill(0);
-  const auto& dims = geometry_.dims;
+  const auto& dims = geometry().dims;
   const int i = kSide * bi, columns = std::min(kSide, dims[0] - i);
   const int end_j = std::min(kSide, dims[1] - kSide * bj), end_k = std::min(kSide, dims[2] - kSide * bk);
   bool holds = false;
   for (int k = 0; k < end_k; ++k) {
     for (int j = 0; j < end_j; ++j) {
-      const float* row = volume.grid().address_of({i, kSide * bj + j, kSide * bk + k});
+      const float* row = volume_->grid().address_of({i, kSide * bj + j, kSide * bk + k});
       unsigned byte = 0;
       for (int n = 0; n < columns; ++n) byte |= static_cast<unsigned>(row[n] > floor_density_) << n;
       bits[static_cast<std::size_t>(j + kSide * k)] = static_cast<std::uint8_t>(byte);
@@ -154,9 +146,9 @@ bool BurrReach::look_at(const Volume& volume, int bi, int bj, int bk) {
   return holds;
 }
 
-void BurrReach::find_pieces(const DensityGrid& grid, std::size_t word, std::uint64_t held, int bj, int bk,
-                            const Share& share) {
-  const auto& dims = geometry_.dims;
+void BurrReach::find_pieces(std::size_t word, std::uint64_t held, int bj, int bk, const Share& share) {
+  const auto& dims = geometry().dims;
+  const DensityGrid& grid = volume_->grid();
   const auto& [x, y, z] = squares_;
   const int end_j = std::min(kSide * bj + kSide, dims[1]), end_k = std::min(kSide * bk + kSide, dims[2]);
   const int base = static_cast<int>(kWordBits * word);

@@ -92,7 +92,7 @@ Cut drive_through(Volume& volume, BurrMill& mill, const Drive& drive, double rad
     const double gap_mm = surface ? (*surface - centre).norm() - radius_mm : 0.5;
     centre += std::clamp(gap_mm, 0.0, 0.02) * drive.ahead;
     path.push_back(centre);
-    const double removed_mm3 = mill.step(volume, centre, force_N * drive.ahead, dt_s).removed_mm3;
+    const double removed_mm3 = mill.step(centre, force_N * drive.ahead, dt_s).removed_mm3;
     cut.removed_mm3 += removed_mm3;
     cut.paid_mm3 += kMilling.removal_rate_mm3_per_Ns * force_N * dt_s;
     EXPECT_LE(cut.removed_mm3, cut.paid_mm3 * (1 + 1e-5)) << drive.name << ": never more than paid for";
@@ -106,7 +106,7 @@ Cut cut_in(const Drive& drive, double radius_mm, const Vec3& spacing_mm, double 
            const Quat& turn = Quat::Identity()) {
   const GridGeometry grid = grid_about(drive, radius_mm, spacing_mm, turn);
   Volume volume = testing_support::shape_volume(grid, drive.bone, kEdge_mm / spacing_mm.minCoeff());
-  BurrMill mill(grid, radius_mm, kBone, kMilling);
+  BurrMill mill(volume, radius_mm, kBone, kMilling);
   return drive_through(volume, mill, drive, radius_mm, force_N);
 }
 
@@ -174,7 +174,7 @@ TEST(BurrSweep, SlidingPastAWallLeavesEveryVoxelOfItAsItWas) {
   const GridGeometry grid = grid_about(drive, kRadius_mm + kGap_mm, spacing, Quat::Identity());
   Volume volume = testing_support::shape_volume(grid, drive.bone, kEdge_mm / spacing.x());
   const Volume before = volume;
-  BurrMill mill(grid, kRadius_mm, kBone, kMilling);
+  BurrMill mill(volume, kRadius_mm, kBone, kMilling);
   drive_through(volume, mill, drive, kRadius_mm, 3);
   for (int k = 0; k < grid.dims[2]; ++k)
     for (int j = 0; j < grid.dims[1]; ++j)
@@ -191,13 +191,13 @@ TEST(BurrSweep, SlidingPastAWallLeavesEveryVoxelOfItAsItWas) {
 TEST(BurrSweep, CuttingAgainChangesNothing) {
   const GridGeometry grid = grid_about(plunge(1.5, 2), 1.5, Vec3::Constant(0.2), Quat::Identity());
   Volume volume = testing_support::shape_volume(grid, floor_at_0, kEdge_mm / 0.2);
-  BurrReach reach(grid, 2.5, 0);
+  BurrReach reach(volume, 2.5, 0);
   CutVoxels voxels(grid, reach.max_voxels(), reach.max_pieces());
   const CuttingBall ball{grid.direction.transpose() * (Vec3(0.1, 0.05, 0.7) - grid.origin_mm),
                          Vec3(0.3, -0.2, -0.9).normalized(), 1.5};
   const CutProfile profile = CutProfile::between(0, 500, 1000);
   const auto cut = [&] {
-    reach.find(volume, ball.centre_mm, 2.2);
+    reach.find(ball.centre_mm, 2.2);
     voxels.gather(reach, ball, profile, 0.1);
     const double dropped = voxels.find_lowered(0.1, {});
     for (const CutVoxels::Row& row : voxels.rows()) {
@@ -214,12 +214,12 @@ TEST(BurrSweep, CuttingAgainChangesNothing) {
 TEST(BurrSweep, ABurrInSolidBoneIsPaidForToo) {
   const GridGeometry grid = grid_about(plunge(1, 1), 1, Vec3::Constant(0.125), Quat::Identity());
   Volume volume(DensityGrid(grid, std::vector<float>(grid.voxel_count(), 1000.0f)), 500);
-  BurrMill mill(grid, 1, kBone, kMilling);
+  BurrMill mill(volume, 1, kBone, kMilling);
   double removed_mm3 = 0;
   const Vec3 middle = grid.world_from_voxel(Vec3(0.5 * grid.dims[0], 0.5 * grid.dims[1], 0.5 * grid.dims[2]));
   for (int n = 0; n < 500; ++n) {
     const Vec3 force(std::sin(0.1 * n), std::cos(0.1 * n), std::sin(0.03 * n));
-    removed_mm3 += mill.step(volume, middle, force.normalized(), 1e-3).removed_mm3;
+    removed_mm3 += mill.step(middle, force.normalized(), 1e-3).removed_mm3;
     ASSERT_LE(removed_mm3, 1.5e-3 * (n + 1) * (1 + 1e-5));
   }
   EXPECT_NEAR(removed_mm3, 0.75, 0.01);

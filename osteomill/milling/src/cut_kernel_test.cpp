@@ -40,10 +40,10 @@ struct Gathered {
 Gathered gathered(const Volume& bone, double max_ahead_mm) {
   const GridGeometry& geometry = bone.geometry();
   const Vec3 middle = 0.5 * geometry.spacing_mm.cwiseProduct(Vec3(30.3, 26.1, 21.7));
-  Gathered g{BurrReach(geometry, 2.5, -100),
+  Gathered g{BurrReach(bone, 2.5, -100),
              CutVoxels(geometry, geometry.voxel_count(), 3 * 27 * 22 * 4),
              {middle, Vec3(0.5, -0.3, 0.8).normalized(), kRadius_mm}};
-  g.reach.find(bone, middle, 2.3);
+  g.reach.find(middle, 2.3);
   g.voxels.gather(g.reach, g.ball, kProfile, max_ahead_mm);
   return g;
 }

@@ -117,14 +117,14 @@ TEST(CuttingReaction, TheSpindlePaysForTheBone) {
   for (const double tilt_rad : {0.0, 0.6, 1.4}) {
     const Vec3 into(std::sin(tilt_rad), 0, -std::cos(tilt_rad));
     Volume volume = shape_volume(centred_cube(60, 0.2), plane(Vec3::Zero(), -into), 1.25);
-    BurrMill mill(volume.geometry(), kRadius_mm, {0, 1000}, settings());
+    BurrMill mill(volume, kRadius_mm, {0, 1000}, settings());
     CuttingReaction reaction(settings(), kRadius_mm);
     double removed_mm3 = 0, spindle_Nmm = 0;
     for (int n = 0; n < 2000; ++n) {
       const Pose X_WT = upright((-1.4 + 0.001 * n) * into);
       const Vec3 force_N = 1.5 * into;
       const MillingStep cut =
-          mill.step(volume, X_WT.position_mm, paying_force_W_N(settings(), X_WT, force_N, true), kTick_s);
+          mill.step(X_WT.position_mm, paying_force_W_N(settings(), X_WT, force_N, true), kTick_s);
       reaction.follow(X_WT, force_N, cut.removed_mm3, kTick_s);
       removed_mm3 += cut.removed_mm3;
       const double speed_rad_s = 2 * std::numbers::pi * cutting.spindle_speed_rpm / 60;

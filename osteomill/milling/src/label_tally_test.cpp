@@ -58,11 +58,11 @@ TEST(BurrMill, SharesOutACarvedBallAmongLabelsAsGeometryDoes) {
   Volume bone(DensityGrid(grid, std::vector<float>(grid.voxel_count(), 1000.0f)), 500);
   bone.set_labels(std::make_shared<const LabelMap>(std::vector<Label>{{1, "below", {}}, {2, "above", {}}},
                                                    grid, grid, places));
-  BurrMill mill(grid, kRadius_mm, {0, 1000}, {.removal_rate_mm3_per_Ns = 2.0});
+  BurrMill mill(bone, kRadius_mm, {0, 1000}, {.removal_rate_mm3_per_Ns = 2.0});
   double removed_mm3 = 0;
   std::array<double, 3> of_label_mm3{};
   for (int n = 0; n < 500; ++n) {
-    removed_mm3 += mill.step(bone, Vec3::Zero(), {50, 0, 0}, 1e-3).removed_mm3;
+    removed_mm3 += mill.step(Vec3::Zero(), {50, 0, 0}, 1e-3).removed_mm3;
     for (const LabelCut& cut : mill.by_label().take()) of_label_mm3[cut.label] += cut.removed_mm3;
   }
   const double ball_mm3 = 4 * std::numbers::pi * std::pow(kRadius_mm, 3) / 3;

@@ -50,10 +50,10 @@ class SendBone : public ::testing::Test {
             turned_grid(), testing_support::ball(turned_grid().world_from_voxel(Vec3(15, 15, 15)), 4)))),
         follower_(bone_) {}
   void mill() {
-    BurrMill mill(bone_->geometry(), 1.0, {0.0, 1000.0}, {});
+    BurrMill mill(*bone_, 1.0, {0.0, 1000.0}, {});
     const Vec3 centre_W = bone_->geometry().world_from_voxel(Vec3(15, 15, 28));
     for (int n = 0; n < 200; ++n)
-      follower_.bone_changed(*bone_, mill.step(*bone_, centre_W, {0, 0, -4}, 1e-3).change);
+      follower_.bone_changed(*bone_, mill.step(centre_W, {0, 0, -4}, 1e-3).change);
     while (!follower_.catch_up()) follower_.bone_changed(*bone_, {});
   }
 

@@ -115,7 +115,7 @@ void repeat_session(Volume& volume, const Recording& recording, std::size_t numb
   const SessionSettings settings = session_settings(start.run, recording.path);
   const MillingSettings milling = milling_settings(settings.setup);
   BurrMill mill = made(recording, [&] {
-    return BurrMill(volume.geometry(), settings.setup.tool.burr_radius_mm, settings.densities, milling);
+    return BurrMill(volume, settings.setup.tool.burr_radius_mm, settings.densities, milling);
   });
   begin_at(start, volume);
   double removed_mm3 = start.removed_mm3;
@@ -124,7 +124,7 @@ void repeat_session(Volume& volume, const Recording& recording, std::size_t numb
     if (!record.paused) {
       const Vec3 paying_W_N =
           paying_force_W_N(milling, record.X_WT, record.burr_force_W_N, record.spindle_on);
-      removed_mm3 += mill.step(volume, record.X_WT.position_mm, paying_W_N, record.dt_s).removed_mm3;
+      removed_mm3 += mill.step(record.X_WT.position_mm, paying_W_N, record.dt_s).removed_mm3;
     }
     require_same_removal(recording, tick, removed_mm3);
   }

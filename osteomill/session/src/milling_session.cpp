@@ -80,7 +80,7 @@ MillingSession::MillingSession(std::shared_ptr<Volume> bone, const BoneDensities
       densities_(densities),
       algorithm_(make_algorithm(setup.algorithm, setup.haptics)),
       milling_(milling_settings(setup)),
-      mill_(volume_->geometry(), setup.tool.burr_radius_mm, densities, milling_),
+      mill_(*volume_, setup.tool.burr_radius_mm, densities, milling_),
       reaction_(milling_, setup.tool.burr_radius_mm),
       no_go_(volume_->labels(), setup.tool.burr_radius_mm),
       vibration_(setup.vibration, setup.cutting.spindle_speed_rpm),
@@ -212,9 +212,8 @@ MillingSession::SafeStep MillingSession::step_safely(const Pose& X_WD, double dt
 }
 
 void MillingSession::mill(const HapticStep& step, bool spindle_on, double dt_s) noexcept {
-  const MillingStep cut =
-      mill_.step(*volume_, step.X_WT.position_mm,
-                 paying_force_W_N(milling_, step.X_WT, step.burr_force_W_N, spindle_on), dt_s);
+  const MillingStep cut = mill_.step(
+      step.X_WT.position_mm, paying_force_W_N(milling_, step.X_WT, step.burr_force_W_N, spindle_on), dt_s);
   if (spindle_on) no_go_.look(step.X_WT.position_mm, mill_.by_label());
   reaction_.follow(step.X_WT, step.burr_force_W_N, cut.removed_mm3, dt_s);
   last_change_ = cut.change;

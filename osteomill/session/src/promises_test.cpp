@@ -21,7 +21,7 @@ static_assert(noexcept(a<Device>().tick_done(a<const Pose>(),
                                              1e-3)) && noexcept(a<Device>().put_at(a<const Pose>())));
 static_assert(noexcept(a<Device>().let_go()) && noexcept(a<Device>().take_hold()));
 static_assert(!noexcept(a<Device>().read_pose()) && !noexcept(a<MillingSession>().tick(a<Device>(), {})));
-static_assert(noexcept(a<BurrMill>().step(a<Volume>(), a<const Vec3>(), a<const Vec3>(), 1e-3)));
+static_assert(noexcept(a<BurrMill>().step(a<const Vec3>(), a<const Vec3>(), 1e-3)));
 static_assert(noexcept(a<WrenchGuard>().pass(a<const Wrench>(), a<const Pose>(), 1e-3)));
 static_assert(noexcept(a<MillingSession>().take_over(a<const TakenOver>())));
 

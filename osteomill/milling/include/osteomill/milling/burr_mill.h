@@ -58,17 +58,17 @@ struct MillingStep {
 /// Not in the paper, whose milling rule is in earlier work; docs/algorithms.md.
 class BurrMill {
  public:
-  /// Allocates all that `step` needs for this grid and burr. Throws std::invalid_argument where the radius or
-  /// the rate is out of range or the reference is not denser than the surroundings.
-  BurrMill(const GridGeometry& geometry, double burr_radius_mm, const BoneDensities& densities,
+  /// Allocates all that `step` needs for this bone and burr. `volume` outlives it; from the first step on
+  /// nobody raises densities, since from step to step only voxels new in reach are searched for bone. Throws
+  /// std::invalid_argument if the radius or the rate is out of range or the reference is not denser than the
+  /// surroundings.
+  BurrMill(Volume& volume, double burr_radius_mm, const BoneDensities& densities,
            const MillingSettings& settings);
 
-  /// `burr_centre_W` is the simulated burr's centre, `burr_force_W_N` its force on the bone. Lowers densities
-  /// of `volume`, whose geometry is the one given at construction, never below the surroundings. Takes
-  /// nothing where the force or the centre is not finite. Safe in the haptic tick; time grows with the voxels
-  /// overlapped. From step to step only voxels new in reach are searched for bone, so nobody may raise
-  /// densities of the same volume as long as this lives.
-  MillingStep step(Volume& volume, const Vec3& burr_centre_W, const Vec3& burr_force_W_N,
+  /// Lowers the volume's densities, never below the surroundings. `burr_centre_W` is the simulated burr's
+  /// centre, `burr_force_W_N` its force on the bone; takes nothing if one of them is not finite. Safe in the
+  /// haptic tick; time grows with the voxels overlapped.
+  MillingStep step(const Vec3& burr_centre_W, const Vec3& burr_force_W_N,
                    double dt_s) noexcept OSTEOMILL_NONBLOCKING;
   /// Where the volume has labels: what the steps took of each and nobody has taken from here.
   LabelTally& by_label() { return by_label_; }
@@ -79,11 +79,13 @@ class BurrMill {
   void lift(double dt_s);
   void share_after(std::size_t found, double advance_voxels);
   CuttingBall ball_in_grid(const Vec3& centre_W, const Vec3& force_W_N) const;
-  void find(const Volume& volume, const CuttingBall& ball, double max_ahead_mm, double pressed_mm3);
-  MillingStep lower_found(Volume& volume, double dropped);
+  void find(const CuttingBall& ball, double max_ahead_mm, double pressed_mm3);
+  MillingStep lower_found(double dropped);
   void count_labels(const LabelMap& labels, const CutVoxels::Row& row);
 
-  GridGeometry geometry_;
+  const GridGeometry& geometry() const { return volume_->geometry(); }
+
+  Volume* volume_;
   double radius_mm_;
   BoneDensities densities_;
   double mm3_per_density_;

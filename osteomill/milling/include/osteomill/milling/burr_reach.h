@@ -12,15 +12,16 @@
 
 namespace osteomill {
 
-/// Where a ball overlaps voxels that are denser than a floor. It remembers, in bricks of 8 x 8 x 8 voxels and
-/// a bit a voxel, which ones held nothing when last looked at, so that a step costs little more than what it
-/// finds: in its hole a burr is all about emptied bricks. What is found are pieces of rows (i runs along a
-/// row), brick by brick.
+/// Finds where a ball overlaps voxels of one volume that are denser than a floor. It remembers, in bricks of
+/// 8 x 8 x 8 voxels and a bit a voxel, which ones held nothing when last looked at, so that a step costs
+/// little more than what it finds: in its hole a burr is all about emptied bricks. It finds pieces of rows (i
+/// runs along a row), brick by brick.
 class BurrReach {
  public:
-  /// Allocates all that `find` needs. `max_radius_mm` is above 0, the grid not empty. No more than
-  /// `max_pieces` are found at once.
-  BurrReach(const GridGeometry& geometry, double max_radius_mm, float floor_density,
+  /// Allocates all that `find` needs. `volume` outlives it; from the first `find` on
+  /// its densities do not rise. `max_radius_mm` is
+  /// above 0, the grid not empty. No more than `max_pieces` are found at once.
+  BurrReach(const Volume& volume, double max_radius_mm, float floor_density,
             std::size_t max_pieces = std::numeric_limits<std::size_t>::max());
 
   /// The rows that a step looks at, where a ball has more voxels than a step has time for: those of every
@@ -38,13 +39,10 @@ class BurrReach {
   };
   /// Finds what the ball overlaps, or a share of it. `centre_mm` (finite) is in the grid's axes, from the
   /// first voxel's centre; `radius_mm` at most the greatest. Safe in the haptic tick.
-  void find(const Volume& volume, const Vec3& centre_mm, double radius_mm,
-            const Share& share = {1, 0}) noexcept;
+  void find(const Vec3& centre_mm, double radius_mm, const Share& share = {1, 0}) noexcept;
   const std::vector<Piece>& pieces() const { return pieces_; }
-  /// Those of a piece that hold nothing any more are not found again.
+  /// Forgets voxels of a piece that hold nothing any more, so that they are not found again.
   void forget_voxels(const Piece& piece, unsigned gone) noexcept;
-  /// Has the next `find` look at every voxel.
-  void look_again() { known_volume_ = nullptr; }
   float floor_density() const { return floor_density_; }
   /// The most that can be found at once.
   std::size_t max_voxels() const { return max_voxels_; }
@@ -68,24 +66,24 @@ class BurrReach {
   };
 
   void measure(Squares& squares, double centre_mm, std::size_t axis) const;
-  std::uint64_t held_in_ball(const Volume& volume, int bj, int bk, std::size_t word, double left2_mm2);
-  bool look_at(const Volume& volume, int bi, int bj, int bk);
-  void find_pieces(const DensityGrid& grid, std::size_t word, std::uint64_t held, int bj, int bk,
-                   const Share& share);
+  std::uint64_t held_in_ball(int bj, int bk, std::size_t word, double left2_mm2);
+  bool look_at(int bi, int bj, int bk);
+  void find_pieces(std::size_t word, std::uint64_t held, int bj, int bk, const Share& share);
   std::size_t brick_line(int bj, int bk) const {
     return static_cast<std::size_t>(bj) +
            static_cast<std::size_t>(brick_dims_[1]) * static_cast<std::size_t>(bk);
   }
   std::size_t brick_index(int bi, int bj, int bk) const { return row_major(brick_dims_, bi, bj, bk); }
 
-  GridGeometry geometry_;
+  const GridGeometry& geometry() const { return volume_->geometry(); }
+
+  const Volume* volume_;
   double radius_mm_ = 0;
   std::size_t max_voxels_ = 0;
   std::size_t max_pieces_;
   float floor_density_;
   std::array<int, 3> brick_dims_;
 
-  const Volume* known_volume_ = nullptr;
   std::vector<bool> known_;
   // A bit a brick, 64 along a line of bricks to a word: whether it may hold anything.
   std::size_t words_of_line_;
