@@ -168,6 +168,7 @@ void BarrierShell::prepare(const Scene& scene) {
       std::min({settings_.point_spacing_mm, widest_spacing_mm(whole.ball_radius_mm), at_shaft_mm});
   bricks_ = BoneBricks(*scene.volume, spacing_mm);
   near_ = NearBone(kNearPoints, 2 * spacing_mm > at_shaft_mm);
+  measured_ = MeasuredBone(kNearPoints);
   reset();
 }
 
@@ -197,10 +198,11 @@ void BarrierShell::begin_outside(const Pose& X_WD) {
   if (carried_) return;
   gather(X_WT_, {});
   has_begun_ = !near_.is_incomplete();
-  const NearBone::Energy energy = near_.energy(cores(), barrier_, X_WT_);
-  const double nearest_mm = std::min(energy.ball.nearest_mm, energy.cylinder.nearest_mm);
+  near_.measure(cores(), barrier_, X_WT_, measured_);
+  const EnergySum &ball = measured_.ball.sum, &cylinder = measured_.cylinder.sum;
+  const double nearest_mm = std::min(ball.nearest_mm, cylinder.nearest_mm);
   smaller_mm_ = std::max(0.0, kStartShare * barrier_.width_mm - nearest_mm);
-  if (energy.ball.touching + energy.cylinder.touching == 0 && X_WT_ == X_WD) ramp_ = 1;
+  if (ball.touching + cylinder.touching == 0 && X_WT_ == X_WD) ramp_ = 1;
 }
 
 void BarrierShell::grow_cores(double nearest_mm, double dt_s) {
@@ -218,11 +220,12 @@ void BarrierShell::gather(const Pose& X_WT, const Room& room) {
 }
 
 BarrierShell::State BarrierShell::evaluated(const Pose& X_WT, const Pose& X_WD) {
-  const NearBone::Energy energy = near_.energy(cores(), barrier_, X_WT);
-  State state{X_WT, coupling_.sum(X_WT, X_WD), energy.ball.energy_Nmm + energy.cylinder.energy_Nmm,
-              energy.ball.gradient.head<3>()};
-  state.sum += energy.ball;
-  state.sum += energy.cylinder;
+  near_.measure(cores(), barrier_, X_WT, measured_);
+  const EnergySum &ball = measured_.ball.sum, &cylinder = measured_.cylinder.sum;
+  State state{X_WT, coupling_.sum(X_WT, X_WD), ball.energy_Nmm + cylinder.energy_Nmm,
+              ball.gradient.head<3>()};
+  state.sum += ball;
+  state.sum += cylinder;
   ++counts_.passes;
   counts_.most_points = std::max<std::uint64_t>(counts_.most_points, near_.point_count());
   return state;
@@ -281,13 +284,12 @@ BarrierShell::Step BarrierShell::next_step(const State& best, const MoveBound& b
   if (step.is_last && slope.dot(step.move_T) > 0) step.move_T.setZero();
   if (!step.is_last && share_with_room(wanted) < 1 && room_.move_mm < kMaxRoom.move_mm) {
     gather(best.X_WT, kMaxRoom);
-    near_.energy(cores(), barrier_, best.X_WT);
+    near_.measure(cores(), barrier_, best.X_WT, measured_);
   }
   if (near_.is_incomplete()) return {Vector6::Zero(), true};
   const double with_room = share_with_room(wanted);
   step.move_T *= with_room;
-  const double certified =
-      certified_share(near_.max_use({step.move_T.head<3>(), step.move_T.tail<3>()}, barrier_));
+  const double certified = certified_share(measured_.max_use(step.move_T, barrier_));
   step.move_T *= certified;
   step.reaches_device = best.sum.touching == 0 && !newton.is_damped && with_room >= 1 && certified >= 1;
   return step;
@@ -377,7 +379,7 @@ HapticStep BarrierShell::step(const Pose& X_WD, double dt_s) noexcept {
     X_WT_ = state.X_WT;
     energy_before_Nmm_ = state.sum.energy_Nmm;
     has_energy_ = true;
-    near_.find_bearing(barrier_.width_mm, bricks_);
+    near_.find_bearing(measured_, barrier_.width_mm, bricks_);
     grow_cores(state.sum.nearest_mm, dt_s);
     last_move_ = room_of(move_between(start, X_WT_));
     result = report(state, X_WD, dt_s);

@@ -71,6 +71,7 @@ class BarrierShell final : public HapticAlgorithm {
   std::vector<Vec3> centreline_T_;
   BoneBricks bricks_;
   NearBone near_;
+  MeasuredBone measured_;
 
   bool has_pose_ = false;
   Pose X_WT_;

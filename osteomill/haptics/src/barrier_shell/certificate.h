@@ -8,15 +8,16 @@ namespace osteomill::barrier_shell {
 /// than t of that. The distance to a convex body is convex along a straight line, so it falls no faster than
 /// at first; a turn bends the point's path, seen from the tool, by at most t^2 (|omega| |delta| + 1/2
 /// |omega|^2 |r|). May be negative, where the move leads away. Safe in the haptic tick.
-inline double distance_used(const Vec3& point_T, const Vec3& outward_T, const MoveT& move) noexcept {
-  const double omega = move.omega_rad.norm();
-  return outward_T.dot(move.delta_mm + move.omega_rad.cross(point_T)) +
-         omega * (move.delta_mm.norm() + 0.5 * omega * point_T.norm());
+inline double distance_used(const Vec3& point_T, const Vec3& outward_T, const Vector6& move_T) noexcept {
+  const Vec3 delta_mm = move_T.head<3>(), omega_rad = move_T.tail<3>();
+  const double omega = omega_rad.norm();
+  return outward_T.dot(delta_mm + omega_rad.cross(point_T)) +
+         omega * (delta_mm.norm() + 0.5 * omega * point_T.norm());
 }
 
 /// The same for the ball, which a turn about its centre leaves as it is: exact in translation.
-inline double distance_used_by_ball(const Vec3& outward_T, const MoveT& move) noexcept {
-  return outward_T.dot(move.delta_mm);
+inline double distance_used_by_ball(const Vec3& outward_T, const Vector6& move_T) noexcept {
+  return outward_T.dot(move_T.head<3>());
 }
 
 /// A step leaves every point at least this share of its distance.

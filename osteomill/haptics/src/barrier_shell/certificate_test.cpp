@@ -15,8 +15,15 @@ namespace {
 using testing_support::random_vector;
 using testing_support::uniform;
 
-Pose after(const Pose& X_WT, const MoveT& move, double t) {
-  return moved(X_WT, {X_WT.orientation * (t * move.delta_mm), X_WT.orientation * (t * move.omega_rad)});
+Vector6 move_of(const Vec3& delta_mm, const Vec3& omega_rad) {
+  Vector6 move;
+  move << delta_mm, omega_rad;
+  return move;
+}
+
+Pose after(const Pose& X_WT, const Vector6& move, double t) {
+  return moved(X_WT,
+               {X_WT.orientation * Vec3(t * move.head<3>()), X_WT.orientation * Vec3(t * move.tail<3>())});
 }
 
 // A million random cores, points and moves, small and large: all along the way the point is at least as far
@@ -30,7 +37,8 @@ TEST(Certificate, IsNeverAboveTheDistanceAlongTheWay) {
                       0.5 + std::abs(uniform(bits, -1, 1)) * 25};
     const Vec3 point_T(3 * uniform(bits, -1, 1), 3 * uniform(bits, -1, 1), 13 + 16 * uniform(bits, -1, 1));
     const double size = std::pow(10, 2 * uniform(bits, -1, 1) - 1);
-    const MoveT move{size * random_vector(bits), 0.1 * size * random_vector(bits)};
+    const Vec3 delta_mm = size * random_vector(bits);
+    const Vector6 move = move_of(delta_mm, 0.1 * size * random_vector(bits));
     const Vec3 point_W = X_WT * point_T;
     const bool is_ball = n % 2 == 0;
     const auto distance_to = is_ball ? distance_to_ball : distance_to_cylinder;
@@ -56,16 +64,18 @@ TEST(Certificate, IsTightForSliding) {
   const Cores cores{1.3, 0.8, 24.8};
   const Vec3 beside_ball(0, 0, -1.3001), beside_shaft(0.8001, 0, 12);
   const CoreDistance ball = distance_to_ball(cores, beside_ball);
-  EXPECT_EQ(certified_share(distance_used_by_ball(ball.outward_T, {{0.4, 0, 0}, {0.1, 0.2, 0.3}}) /
+  EXPECT_EQ(certified_share(distance_used_by_ball(ball.outward_T, move_of({0.4, 0, 0}, {0.1, 0.2, 0.3})) /
                             ball.distance_mm),
             1);
   const CoreDistance side = distance_to_cylinder(cores, beside_shaft);
-  EXPECT_EQ(certified_share(distance_used(beside_shaft, side.outward_T, {{0, 0.3, 0.3}, Vec3::Zero()}) /
-                            side.distance_mm),
-            1);
-  EXPECT_NEAR(certified_share(distance_used(beside_shaft, side.outward_T, {{0.01, 0, 0}, Vec3::Zero()}) /
-                              side.distance_mm),
-              0.9 * side.distance_mm / 0.01, 1e-12);
+  EXPECT_EQ(
+      certified_share(distance_used(beside_shaft, side.outward_T, move_of({0, 0.3, 0.3}, Vec3::Zero())) /
+                      side.distance_mm),
+      1);
+  EXPECT_NEAR(
+      certified_share(distance_used(beside_shaft, side.outward_T, move_of({0.01, 0, 0}, Vec3::Zero())) /
+                      side.distance_mm),
+      0.9 * side.distance_mm / 0.01, 1e-12);
 }
 
 }  // namespace

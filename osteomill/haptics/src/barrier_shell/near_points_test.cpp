@@ -35,23 +35,23 @@ std::vector<ShellPoint> random_points(const Cores& cores, std::mt19937& bits) {
 }
 
 struct Found {
-  EnergySum ball, cylinder;
+  MeasuredPoints ball{2048}, cylinder{2048};
   double ball_use, cylinder_use;
 };
 
-Found found(const BrickPoints& points, const Cores& cores, const Barrier& barrier, const MoveT& move) {
+Found found(const BrickPoints& points, const Cores& cores, const Barrier& barrier, const Vector6& move) {
   const Frame still = frame_of(Mat3::Identity(), Vec3::Zero());
-  const Reach reach{barrier.width_mm + 0.05, 0.01};
+  const Reach reach{cores, barrier.width_mm + 0.05, 0.01};
   NearPoints ball(2048), cylinder(2048);
-  gather_near_ball(points, points.brick(0).first_chunk, still, cores, reach, ball);
-  gather_near_cylinder(points, points.brick(0).first_chunk, still, cores, reach, cylinder);
+  gather_near_ball(points, points.brick(0).first_chunk, still, reach, ball);
+  gather_near_cylinder(points, points.brick(0).first_chunk, still, reach, cylinder);
   close_gathering(ball);
   close_gathering(cylinder);
   Found f;
-  f.ball = ball_energy(ball, still, cores, barrier);
-  f.cylinder = cylinder_energy(cylinder, still, cores, barrier);
-  f.ball_use = max_use_by_ball(ball, move, 1e-6);
-  f.cylinder_use = max_use_by_cylinder(cylinder, move, 1e-6);
+  measure_ball(ball, still, cores, barrier, f.ball);
+  measure_cylinder(cylinder, still, cores, barrier, f.cylinder);
+  f.ball_use = max_use_by_ball(f.ball, move, 1e-6);
+  f.cylinder_use = max_use_by_cylinder(f.cylinder, move, 1e-6);
   return f;
 }
 
@@ -85,8 +85,9 @@ TEST(NearPoints, EveryInstructionSetGivesTheSameBitsAndThePlainSums) {
       for (const ShellPoint& point : all) rows.add(point);
       BrickPoints points(1, 64);
       ASSERT_EQ(points.replace(0, rows), all.size());
-      const MoveT move{0.1 * Vec3(uniform(bits, -1, 1), uniform(bits, -1, 1), uniform(bits, -1, 1)),
-                       0.01 * Vec3(uniform(bits, -1, 1), uniform(bits, -1, 1), uniform(bits, -1, 1))};
+      Vector6 move;
+      move << 0.1 * Vec3(uniform(bits, -1, 1), uniform(bits, -1, 1), uniform(bits, -1, 1)),
+          0.01 * Vec3(uniform(bits, -1, 1), uniform(bits, -1, 1), uniform(bits, -1, 1));
       EnergySum ball, cylinder;
       double ball_use = 0, cylinder_use = 0;
       for (const ShellPoint& p : all) {
@@ -107,13 +108,14 @@ TEST(NearPoints, EveryInstructionSetGivesTheSameBitsAndThePlainSums) {
       for (const std::int64_t target : instruction_sets_here(near_kernel_targets())) {
         const ForcedInstructionSet forced(target);
         fast.push_back(found(points, cores, barrier, move));
-        EXPECT_TRUE(same_bits(fast.back().ball, fast.front().ball)) << hwy::TargetName(target);
-        EXPECT_TRUE(same_bits(fast.back().cylinder, fast.front().cylinder)) << hwy::TargetName(target);
+        EXPECT_TRUE(same_bits(fast.back().ball.sum, fast.front().ball.sum)) << hwy::TargetName(target);
+        EXPECT_TRUE(same_bits(fast.back().cylinder.sum, fast.front().cylinder.sum))
+            << hwy::TargetName(target);
         EXPECT_EQ(fast.back().ball_use, fast.front().ball_use) << hwy::TargetName(target);
         EXPECT_EQ(fast.back().cylinder_use, fast.front().cylinder_use) << hwy::TargetName(target);
       }
-      expect_near(fast.front().ball, ball);
-      expect_near(fast.front().cylinder, cylinder);
+      expect_near(fast.front().ball.sum, ball);
+      expect_near(fast.front().cylinder.sum, cylinder);
       EXPECT_GE(fast.front().ball_use, ball_use * (1 - 1e-3));
       EXPECT_GE(fast.front().cylinder_use, cylinder_use * (1 - 1e-3));
     }

@@ -9,15 +9,10 @@
 
 namespace osteomill {
 
-/// A move of the tool (mm, rad) and what is dual to it (N, N mm), both in T's axes about the burr's centre.
+/// A move of the tool (delta in mm, then omega in rad) and what is dual to it (N, N mm), both in T's axes
+/// about the burr's centre: x(t) = x + R t delta, R(t) = R exp(t omega), t from 0 to 1.
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
-
-/// A move of the tool in T's axes: x(t) = x + R t delta, R(t) = R exp(t omega), t from 0 to 1.
-struct MoveT {
-  Vec3 delta_mm;
-  Vec3 omega_rad;
-};
 
 /// The energy of some points and its derivatives by a move of the tool, at t = 0. Of points that push without
 /// an energy only the gradient, which is what they push with, and `convex`. Safe in the haptic tick.

@@ -15,13 +15,25 @@ struct Room {
   double turn_rad = 0;
 };
 
+/// The bone near the tool's parts as measured from one pose.
+struct MeasuredBone {
+  /// Room for as many points at each part as NearBone has.
+  explicit MeasuredBone(std::size_t room = 0) : ball(room), cylinder(room) {}
+
+  MeasuredPoints ball;
+  MeasuredPoints cylinder;
+
+  /// The greatest share of any point's distance that a move from that pose by a barrier may use up.
+  double max_use(const Vector6& move_T, const Barrier& barrier) const noexcept;
+};
+
 /// The bone near a tool's ball and cylinder: gathered once and then good for every pose that the room allows.
 /// Safe in the haptic tick.
 class NearBone {
  public:
-  /// Room for `capacity` points at each part; the cylinder meets the bricks' coarse points, or as the ball
+  /// Has room for `room` points at each part; the cylinder meets the bricks' coarse points, or as the ball
   /// the fine ones.
-  explicit NearBone(std::size_t capacity = 0, bool fine_at_cylinder = false);
+  explicit NearBone(std::size_t room = 0, bool fine_at_cylinder = false);
 
   /// Gathers the points that may come within `reach_mm` of a part at `X_WT` or anywhere within the room.
   /// Makes bricks, as many as a tick may.
@@ -34,18 +46,12 @@ class NearBone {
   /// How many points a sum goes through.
   std::size_t point_count() const noexcept { return ball_.count + cylinder_.count; }
 
-  struct Energy {
-    EnergySum ball;
-    EnergySum cylinder;
-  };
-  /// At a pose within the room of the last gathering.
-  Energy energy(const Cores& cores, const Barrier& barrier, const Pose& X_WT) noexcept;
-  /// Lists in `bricks` those that bear the tool: with points nearer than `within_mm` to a part at the pose of
-  /// the last `energy`.
-  void find_bearing(double within_mm, BoneBricks& bricks) const noexcept;
-  /// The greatest share of any point's distance that a move from the pose of the last `energy` by a barrier
-  /// may use up.
-  double max_use(const MoveT& move, const Barrier& barrier) const noexcept;
+  /// Measures the points from a pose within the room of the last gathering.
+  void measure(const Cores& cores, const Barrier& barrier, const Pose& X_WT,
+               MeasuredBone& measured) const noexcept;
+  /// Lists in `bricks` those that bear the tool: with points that were measured nearer than `within_mm` to a
+  /// part since the last gathering.
+  void find_bearing(const MeasuredBone& measured, double within_mm, BoneBricks& bricks) const noexcept;
 
  private:
   // A brick's slot, and where its points begin.

@@ -30,8 +30,9 @@ constexpr std::size_t kGroup = NearPoints::kLanes;
 // Of a length that is divided by.
 constexpr float kTiny_mm = 1e-6f;
 
-HWY_INLINE V constant(float value) {
-  return hn::Set(d, value);
+template <typename Number>
+HWY_INLINE V constant(Number value) {
+  return hn::Set(d, static_cast<float>(value));
 }
 HWY_INLINE V product(V a, V b) {
   return hn::Mul(a, b);
@@ -79,9 +80,9 @@ HWY_INLINE void gather(const BrickPoints& points, std::uint32_t first_chunk, con
       if (hn::AllFalse(d, found)) continue;
       const std::size_t n = near.count;
       const lane_moves::CompressLanes<D> to_front(d, found);
-      hn::StoreU(to_front(at.x), d, &near.gathered_x[n]);
-      hn::StoreU(to_front(at.y), d, &near.gathered_y[n]);
-      hn::StoreU(to_front(at.z), d, &near.gathered_z[n]);
+      hn::StoreU(to_front(at.x), d, &near.x[n]);
+      hn::StoreU(to_front(at.y), d, &near.y[n]);
+      hn::StoreU(to_front(at.z), d, &near.z[n]);
       hn::StoreU(to_front(hn::Load(d, &chunk.area_mm2[slot])), d, &near.area[n]);
       near.count += hn::CountTrue(d, found);
     }
@@ -89,29 +90,30 @@ HWY_INLINE void gather(const BrickPoints& points, std::uint32_t first_chunk, con
 }
 
 // How far beyond the cylinder's nearer end, negative within.
-HWY_INLINE V beyond_end(const KernelShape& shape, V z) {
-  return hn::Max(hn::Neg(z), hn::Sub(z, constant(shape.cylinder_length)));
+HWY_INLINE V beyond_end(const Cores& cores, V z) {
+  return hn::Max(hn::Neg(z), hn::Sub(z, constant(cores.cylinder_length_mm)));
 }
 
 void GatherNearBall(const BrickPoints& points, std::uint32_t first_chunk, const Frame& frame,
-                    const KernelShape& shape, float reach, NearPoints& near) {
-  const V radius2 = squared(constant(shape.ball_radius + reach));
+                    const Reach& reach, NearPoints& near) {
+  const V radius2 = squared(hn::Add(constant(reach.cores.ball_radius_mm), constant(reach.near_mm)));
   gather(
       points, first_chunk, frame, [&](const Vector& at) HWY_ATTR { return hn::Lt(dot(at, at), radius2); },
       near);
 }
 
 void GatherNearCylinder(const BrickPoints& points, std::uint32_t first_chunk, const Frame& frame,
-                        const KernelShape& shape, float reach, float per_lever, NearPoints& near) {
+                        const Reach& reach, NearPoints& near) {
   gather(
       points, first_chunk, frame,
       [&](const Vector& at) HWY_ATTR {
         const V rho2 = hn::Add(squared(at.x), squared(at.y));
         const V lever = hn::Sqrt(hn::Add(rho2, squared(at.z)));
-        const V within = hn::Add(constant(reach), hn::Mul(constant(per_lever), lever));
-        const M beside = hn::Lt(rho2, squared(hn::Add(constant(shape.cylinder_radius), within)));
-        return hn::And(beside, hn::And(hn::Gt(at.z, hn::Neg(within)),
-                                       hn::Lt(at.z, hn::Add(constant(shape.cylinder_length), within))));
+        const V within = hn::Add(constant(reach.near_mm), hn::Mul(constant(reach.per_lever), lever));
+        const M beside = hn::Lt(rho2, squared(hn::Add(constant(reach.cores.cylinder_radius_mm), within)));
+        return hn::And(beside,
+                       hn::And(hn::Gt(at.z, hn::Neg(within)),
+                               hn::Lt(at.z, hn::Add(constant(reach.cores.cylinder_length_mm), within))));
       },
       near);
 }
@@ -147,14 +149,16 @@ struct BarrierLaw {
   }
 };
 
-template <int kSums>
+template <typename Name>
 struct Sums {
-  V at[static_cast<std::size_t>(kSums)];
-  HWY_INLINE void load(const float (&from)[kSums][kGroup], std::size_t lane) {
-    for (std::size_t n = 0; n < kSums; ++n) at[n] = hn::Load(d, &from[n][lane]);
+  V at[Lanes<Name>::kSums];
+
+  HWY_INLINE V& operator[](Name name) { return at[static_cast<std::size_t>(name)]; }
+  HWY_INLINE void load(const Lanes<Name>& from, std::size_t lane) {
+    for (std::size_t n = 0; n < Lanes<Name>::kSums; ++n) at[n] = hn::Load(d, &from.sums[n][lane]);
   }
-  HWY_INLINE void store(float (&to)[kSums][kGroup], std::size_t lane) const {
-    for (std::size_t n = 0; n < kSums; ++n) hn::Store(at[n], d, &to[n][lane]);
+  HWY_INLINE void store(Lanes<Name>& to, std::size_t lane) const {
+    for (std::size_t n = 0; n < Lanes<Name>::kSums; ++n) hn::Store(at[n], d, &to.sums[n][lane]);
   }
 };
 
@@ -165,132 +169,138 @@ HWY_INLINE void store_rows(const Vector& v, std::vector<float>& x, std::vector<f
   hn::StoreU(v.z, d, &z[n]);
 }
 
-void SumBall(NearPoints& near, const Frame& moved, const KernelShape& shape, const Barrier& barrier,
-             BallLanes& lanes) {
+void SumBall(const NearPoints& near, const Frame& moved, const Cores& cores, const Barrier& barrier,
+             Lanes<BallSum>& lanes, MeasuredPoints& measured) {
+  using S = BallSum;
   const BarrierLaw law(barrier);
   std::size_t touching = 0;
+  measured.count = near.count;
   for (std::size_t lane = 0; lane < kGroup; lane += kWidth) {
-    Sums<BallLanes::kSums> s;
-    s.load(lanes.sums, lane);
+    Sums<BallSum> s;
+    s.load(lanes, lane);
     V nearest = hn::Load(d, &lanes.nearest[lane]);
     for (std::size_t n = lane; n < near.count; n += kGroup) {
-      const Vector at = transformed(moved, rows_at(near.gathered_x, near.gathered_y, near.gathered_z, n));
+      const Vector at = transformed(moved, rows_at(near.x, near.y, near.z, n));
       const V r = hn::Sqrt(dot(at, at));
       const V inverse = hn::Div(constant(1), hn::Max(r, constant(kTiny_mm)));
       const Vector out{hn::Mul(at.x, inverse), hn::Mul(at.y, inverse), hn::Mul(at.z, inverse)};
-      const V distance = hn::Sub(r, constant(shape.ball_radius));
-      hn::StoreU(distance, d, &near.distance[n]);
-      store_rows(out, near.out_x, near.out_y, near.out_z, n);
+      const V distance = hn::Sub(r, constant(cores.ball_radius_mm));
+      hn::StoreU(distance, d, &measured.distance[n]);
+      store_rows(out, measured.out_x, measured.out_y, measured.out_z, n);
       nearest = hn::Min(nearest, distance);
       if (hn::AllFalse(d, hn::Lt(distance, law.reach()))) continue;  // adds nothing, to the last bit
       const Push p = law.push(hn::LoadU(d, &near.area[n]), distance);
       touching += hn::CountTrue(d, hn::Gt(p.pressure, hn::Zero(d)));
       const V q = hn::Mul(p.pressure, inverse), m = hn::Add(p.stiffness, q);
-      add(s.at[9], p.energy);
-      add(s.at[10], q);
-      add(s.at[0], hn::Mul(p.pressure, out.x));
-      add(s.at[1], hn::Mul(p.pressure, out.y));
-      add(s.at[2], hn::Mul(p.pressure, out.z));
+      add(s[S::energy], p.energy);
+      add(s[S::q], q);
+      add(s[S::px], hn::Mul(p.pressure, out.x));
+      add(s[S::py], hn::Mul(p.pressure, out.y));
+      add(s[S::pz], hn::Mul(p.pressure, out.z));
       const V mx = hn::Mul(m, out.x), my = hn::Mul(m, out.y);
-      add(s.at[3], hn::Mul(mx, out.x));
-      add(s.at[4], hn::Mul(mx, out.y));
-      add(s.at[5], hn::Mul(mx, out.z));
-      add(s.at[6], hn::Mul(my, out.y));
-      add(s.at[7], hn::Mul(my, out.z));
-      add(s.at[8], product(m, out.z, out.z));
+      add(s[S::mxx], hn::Mul(mx, out.x));
+      add(s[S::mxy], hn::Mul(mx, out.y));
+      add(s[S::mxz], hn::Mul(mx, out.z));
+      add(s[S::myy], hn::Mul(my, out.y));
+      add(s[S::myz], hn::Mul(my, out.z));
+      add(s[S::mzz], product(m, out.z, out.z));
     }
-    s.store(lanes.sums, lane);
+    s.store(lanes, lane);
     hn::Store(nearest, d, &lanes.nearest[lane]);
   }
   lanes.touching += static_cast<int>(touching);
 }
 
-HWY_INLINE void list_at_end(NearPoints& near, M at_end, std::size_t n) {
+HWY_INLINE void list_at_end(MeasuredPoints& measured, M at_end, std::size_t n) {
   for (unsigned bits = lane_moves::bits_of(d, at_end) & ((1u << kWidth) - 1u); bits != 0; bits &= bits - 1) {
-    near.at_end[near.at_end_count++] =
+    measured.at_end[measured.at_end_count++] =
         static_cast<std::uint32_t>(n) + static_cast<std::uint32_t>(std::countr_zero(bits));
   }
 }
 
-void SumSide(NearPoints& near, const Frame& moved, const KernelShape& shape, const Barrier& barrier,
-             SideLanes& lanes) {
+void SumSide(const NearPoints& near, const Frame& moved, const Cores& cores, const Barrier& barrier,
+             Lanes<SideSum>& lanes, MeasuredPoints& measured) {
+  using S = SideSum;
   const BarrierLaw law(barrier);
   std::size_t touching = 0;
-  near.at_end_count = 0;
+  measured.count = near.count;
+  measured.at_end_count = 0;
   for (std::size_t lane = 0; lane < kGroup; lane += kWidth) {
-    Sums<SideLanes::kSums> s;
-    s.load(lanes.sums, lane);
+    Sums<SideSum> s;
+    s.load(lanes, lane);
     V nearest = hn::Load(d, &lanes.nearest[lane]);
     for (std::size_t n = lane; n < near.count; n += kGroup) {
-      const Vector at = transformed(moved, rows_at(near.gathered_x, near.gathered_y, near.gathered_z, n));
+      const Vector at = transformed(moved, rows_at(near.x, near.y, near.z, n));
       const V rho = hn::Sqrt(hn::Add(squared(at.x), squared(at.y)));
       const V inverse = hn::Div(constant(1), hn::Max(rho, constant(kTiny_mm)));
       const Vector out{hn::Mul(at.x, inverse), hn::Mul(at.y, inverse), hn::Zero(d)};
-      const V beyond_side = hn::Sub(rho, constant(shape.cylinder_radius));
-      const M at_end = hn::Gt(beyond_end(shape, at.z), hn::Min(hn::Zero(d), beyond_side));
+      const V beyond_side = hn::Sub(rho, constant(cores.cylinder_radius_mm));
+      const M at_end = hn::Gt(beyond_end(cores, at.z), hn::Min(hn::Zero(d), beyond_side));
       const V distance = hn::IfThenElse(at_end, constant(PointChunk::kFarAway_mm), beyond_side);
-      store_rows(at, near.x, near.y, near.z, n);
-      hn::StoreU(distance, d, &near.distance[n]);
-      store_rows(out, near.out_x, near.out_y, near.out_z, n);
+      store_rows(at, measured.x, measured.y, measured.z, n);
+      hn::StoreU(distance, d, &measured.distance[n]);
+      store_rows(out, measured.out_x, measured.out_y, measured.out_z, n);
       nearest = hn::Min(nearest, distance);
-      if (!hn::AllFalse(d, at_end)) list_at_end(near, at_end, n);
+      if (!hn::AllFalse(d, at_end)) list_at_end(measured, at_end, n);
       if (hn::AllFalse(d, hn::Lt(distance, law.reach()))) continue;  // adds nothing, to the last bit
       const Push p = law.push(hn::LoadU(d, &near.area[n]), distance);
       touching += hn::CountTrue(d, hn::Gt(p.pressure, hn::Zero(d)));
       const V pu = hn::Mul(p.pressure, out.x), pv = hn::Mul(p.pressure, out.y);
       const V q = hn::Mul(p.pressure, inverse), qz = hn::Mul(q, at.z), m = hn::Add(p.stiffness, q);
-      add(s.at[13], p.energy);
-      add(s.at[14], q);
-      add(s.at[15], qz);
-      add(s.at[16], hn::Mul(qz, at.z));
-      add(s.at[17], product(pu, out.x, rho));
-      add(s.at[18], product(pu, out.y, rho));
-      add(s.at[19], product(pv, out.y, rho));
-      add(s.at[0], pu);
-      add(s.at[1], pv);
-      add(s.at[2], hn::Mul(pu, at.z));
-      add(s.at[3], hn::Mul(pv, at.z));
+      add(s[S::energy], p.energy);
+      add(s[S::q], q);
+      add(s[S::qz], qz);
+      add(s[S::qzz], hn::Mul(qz, at.z));
+      add(s[S::p_rho_uu], product(pu, out.x, rho));
+      add(s[S::p_rho_uv], product(pu, out.y, rho));
+      add(s[S::p_rho_vv], product(pv, out.y, rho));
+      add(s[S::pu], pu);
+      add(s[S::pv], pv);
+      add(s[S::pzu], hn::Mul(pu, at.z));
+      add(s[S::pzv], hn::Mul(pv, at.z));
       const V mu = hn::Mul(m, out.x), mv = hn::Mul(m, out.y);
       const V uu = hn::Mul(mu, out.x), uv = hn::Mul(mu, out.y), vv = hn::Mul(mv, out.y);
-      add(s.at[4], uu);
-      add(s.at[5], uv);
-      add(s.at[6], vv);
+      add(s[S::muu], uu);
+      add(s[S::muv], uv);
+      add(s[S::mvv], vv);
       const V uuz = hn::Mul(uu, at.z), uvz = hn::Mul(uv, at.z), vvz = hn::Mul(vv, at.z);
-      add(s.at[7], uuz);
-      add(s.at[8], uvz);
-      add(s.at[9], vvz);
-      add(s.at[10], hn::Mul(uuz, at.z));
-      add(s.at[11], hn::Mul(uvz, at.z));
-      add(s.at[12], hn::Mul(vvz, at.z));
+      add(s[S::mzuu], uuz);
+      add(s[S::mzuv], uvz);
+      add(s[S::mzvv], vvz);
+      add(s[S::mzzuu], hn::Mul(uuz, at.z));
+      add(s[S::mzzuv], hn::Mul(uvz, at.z));
+      add(s[S::mzzvv], hn::Mul(vvz, at.z));
     }
-    s.store(lanes.sums, lane);
+    s.store(lanes, lane);
     hn::Store(nearest, d, &lanes.nearest[lane]);
   }
   lanes.touching += static_cast<int>(touching);
 }
 
-// `use` of every group of points.
+// The greatest `use(n, outward)` over distance, of the points from n on.
 template <typename Use>
-HWY_INLINE float max_use(const NearPoints& near, float min_distance, const Use& use) {
+HWY_INLINE float max_use(const MeasuredPoints& measured, float min_distance, const Use& use) {
   V max = hn::Zero(d);
-  for (std::size_t n = 0; n < near.count; n += kWidth) {
-    const V distance = hn::Max(hn::LoadU(d, &near.distance[n]), constant(min_distance));
-    const Vector out{hn::LoadU(d, &near.out_x[n]), hn::LoadU(d, &near.out_y[n]),
-                     hn::LoadU(d, &near.out_z[n])};
+  for (std::size_t n = 0; n < measured.count; n += kWidth) {
+    const V distance = hn::Max(hn::LoadU(d, &measured.distance[n]), constant(min_distance));
+    const Vector out{hn::LoadU(d, &measured.out_x[n]), hn::LoadU(d, &measured.out_y[n]),
+                     hn::LoadU(d, &measured.out_z[n])};
     max = hn::Max(max, hn::Div(use(n, out), distance));
   }
   return hn::GetLane(hn::MaxOfLanes(d, max));
 }
 
-float GreatestUseByBall(const NearPoints& near, const float (&delta)[3], float min_distance) {
+float GreatestUseByBall(const MeasuredPoints& measured, const float (&delta)[3], float min_distance) {
   const Vector move{constant(delta[0]), constant(delta[1]), constant(delta[2])};
-  return max_use(near, min_distance, [&](std::size_t, const Vector& out) HWY_ATTR { return dot(out, move); });
+  return max_use(measured, min_distance,
+                 [&](std::size_t, const Vector& out) HWY_ATTR { return dot(out, move); });
 }
 
 // The move as delta (3) and omega (3), then |omega| |delta| and |omega|^2 / 2.
-float GreatestUseByCylinder(const NearPoints& near, const float (&move)[8], float min_distance) {
-  return max_use(near, min_distance, [&](std::size_t n, const Vector& out) HWY_ATTR {
-    const V x = hn::LoadU(d, &near.x[n]), y = hn::LoadU(d, &near.y[n]), z = hn::LoadU(d, &near.z[n]);
+float GreatestUseByCylinder(const MeasuredPoints& measured, const float (&move)[8], float min_distance) {
+  return max_use(measured, min_distance, [&](std::size_t n, const Vector& out) HWY_ATTR {
+    const V x = hn::LoadU(d, &measured.x[n]), y = hn::LoadU(d, &measured.y[n]),
+            z = hn::LoadU(d, &measured.z[n]);
     const V wx = constant(move[3]), wy = constant(move[4]), wz = constant(move[5]);
     const Vector by{hn::Add(constant(move[0]), hn::Sub(hn::Mul(wy, z), hn::Mul(wz, y))),
                     hn::Add(constant(move[1]), hn::Sub(hn::Mul(wz, x), hn::Mul(wx, z))),
@@ -314,51 +324,42 @@ HWY_EXPORT(SumSide);
 HWY_EXPORT(GreatestUseByBall);
 HWY_EXPORT(GreatestUseByCylinder);
 
-namespace {
-
-KernelShape kernel_shape(const Cores& cores) {
-  return {static_cast<float>(cores.ball_radius_mm), static_cast<float>(cores.cylinder_radius_mm),
-          static_cast<float>(cores.cylinder_length_mm)};
-}
-
-}  // namespace
-
 void gather_near_ball(const BrickPoints& points, std::uint32_t first_chunk, const Frame& frame,
-                      const Cores& cores, const Reach& reach, NearPoints& near) noexcept {
-  HWY_DYNAMIC_DISPATCH(GatherNearBall)
-  (points, first_chunk, frame, kernel_shape(cores), static_cast<float>(reach.near_mm), near);
+                      const Reach& reach, NearPoints& near) noexcept {
+  HWY_DYNAMIC_DISPATCH(GatherNearBall)(points, first_chunk, frame, reach, near);
 }
 
 void gather_near_cylinder(const BrickPoints& points, std::uint32_t first_chunk, const Frame& frame,
-                          const Cores& cores, const Reach& reach, NearPoints& near) noexcept {
-  HWY_DYNAMIC_DISPATCH(GatherNearCylinder)
-  (points, first_chunk, frame, kernel_shape(cores), static_cast<float>(reach.near_mm),
-   static_cast<float>(reach.per_lever), near);
+                          const Reach& reach, NearPoints& near) noexcept {
+  HWY_DYNAMIC_DISPATCH(GatherNearCylinder)(points, first_chunk, frame, reach, near);
 }
 
-void sum_ball(NearPoints& near, const Frame& moved, const Cores& cores, const Barrier& barrier,
-              BallLanes& lanes) noexcept {
-  HWY_DYNAMIC_DISPATCH(SumBall)(near, moved, kernel_shape(cores), barrier, lanes);
+void sum_ball(const NearPoints& near, const Frame& moved, const Cores& cores, const Barrier& barrier,
+              Lanes<BallSum>& lanes, MeasuredPoints& measured) noexcept {
+  HWY_DYNAMIC_DISPATCH(SumBall)(near, moved, cores, barrier, lanes, measured);
 }
 
-void sum_side(NearPoints& near, const Frame& moved, const Cores& cores, const Barrier& barrier,
-              SideLanes& lanes) noexcept {
-  HWY_DYNAMIC_DISPATCH(SumSide)(near, moved, kernel_shape(cores), barrier, lanes);
+void sum_side(const NearPoints& near, const Frame& moved, const Cores& cores, const Barrier& barrier,
+              Lanes<SideSum>& lanes, MeasuredPoints& measured) noexcept {
+  HWY_DYNAMIC_DISPATCH(SumSide)(near, moved, cores, barrier, lanes, measured);
 }
 
-double max_use_by_ball(const NearPoints& near, const MoveT& move, double min_distance_mm) noexcept {
-  const Eigen::Vector3f delta = move.delta_mm.cast<float>();
-  return static_cast<double>(HWY_DYNAMIC_DISPATCH(GreatestUseByBall)(near, {delta.x(), delta.y(), delta.z()},
-                                                                     static_cast<float>(min_distance_mm)));
+double max_use_by_ball(const MeasuredPoints& measured, const Vector6& move_T,
+                       double min_distance_mm) noexcept {
+  const Eigen::Vector3f delta = move_T.head<3>().cast<float>();
+  return static_cast<double>(HWY_DYNAMIC_DISPATCH(GreatestUseByBall)(
+      measured, {delta.x(), delta.y(), delta.z()}, static_cast<float>(min_distance_mm)));
 }
 
-double max_use_by_cylinder(const NearPoints& near, const MoveT& move, double min_distance_mm) noexcept {
-  const Eigen::Vector3f delta = move.delta_mm.cast<float>(), omega = move.omega_rad.cast<float>();
-  const double turn = move.omega_rad.norm();
+double max_use_by_cylinder(const MeasuredPoints& measured, const Vector6& move_T,
+                           double min_distance_mm) noexcept {
+  const Vec3 delta_mm = move_T.head<3>(), omega_rad = move_T.tail<3>();
+  const Eigen::Vector3f delta = delta_mm.cast<float>(), omega = omega_rad.cast<float>();
+  const double turn = omega_rad.norm();
   return static_cast<double>(HWY_DYNAMIC_DISPATCH(GreatestUseByCylinder)(
-      near,
+      measured,
       {delta.x(), delta.y(), delta.z(), omega.x(), omega.y(), omega.z(),
-       static_cast<float>(turn * move.delta_mm.norm()), static_cast<float>(0.5 * turn * turn)},
+       static_cast<float>(turn * delta_mm.norm()), static_cast<float>(0.5 * turn * turn)},
       static_cast<float>(min_distance_mm)));
 }
 

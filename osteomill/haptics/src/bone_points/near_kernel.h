@@ -1,18 +1,19 @@
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
+
 #include "bone_points/brick_points.h"
 #include "bone_points/near_points.h"
 
 namespace osteomill {
 
-/// The tool's parts as the kernels read them.
-struct KernelShape {
-  float ball_radius, cylinder_radius, cylinder_length;
-};
-
-/// How far from a part points are gathered: `near_mm` + `per_lever` times their distance from the burr's
-/// centre.
+/// Which points are gathered: those within `near_mm` of a core or, of the cylinder, within `near_mm` +
+/// `per_lever` times their distance from the burr's centre.
 struct Reach {
+  Cores cores;
   double near_mm = 0;
   double per_lever = 0;
 };
@@ -21,40 +22,73 @@ struct Reach {
 /// tool. The widest vector instructions that the processor has are chosen when first called; they give the
 /// same bits as the narrowest, as do those of all that follows. Safe in the haptic tick.
 void gather_near_ball(const BrickPoints& points, std::uint32_t first_chunk, const Frame& frame,
-                      const Cores& cores, const Reach& reach, NearPoints& near) noexcept;
+                      const Reach& reach, NearPoints& near) noexcept;
 void gather_near_cylinder(const BrickPoints& points, std::uint32_t first_chunk, const Frame& frame,
-                          const Cores& cores, const Reach& reach, NearPoints& near) noexcept;
+                          const Reach& reach, NearPoints& near) noexcept;
 
-/// Sums over points in `NearPoints::kLanes` lanes each. Points on the ball: p n (3) and m n n^T (xx, xy, xz,
-/// yy, yz, zz), E and q, with p the push, q = p / r and m = psi'' + q.
-struct BallLanes {
-  static constexpr int kSums = 11;
-  alignas(64) float sums[kSums][NearPoints::kLanes] = {};
-  alignas(64) float nearest[NearPoints::kLanes] = {};
-  int touching = 0;
+/// Names the sums over points on the ball. With n the direction out of it, p the push, q = p / r and
+/// m = psi'' + q: energy, q, p n and m n n^T.
+enum class BallSum { energy, q, px, py, pz, mxx, mxy, mxz, myy, myz, mzz, count };
+/// Names the sums over points on the cylinder's side. With n = (u, v, 0), p the push, q = p / rho and
+/// m = psi'' + q: energy, and q, p n, m n n^T and p rho n n^T times powers of z as named.
+enum class SideSum {
+  energy,
+  q,
+  qz,
+  qzz,
+  pu,
+  pv,
+  pzu,
+  pzv,
+  muu,
+  muv,
+  mvv,
+  mzuu,
+  mzuv,
+  mzvv,
+  mzzuu,
+  mzzuv,
+  mzzvv,
+  p_rho_uu,
+  p_rho_uv,
+  p_rho_vv,
+  count
 };
-/// Points on the cylinder's side, n = (u, v, 0): p (u, v) and z p (u, v); m (uu, uv, vv) times 1, z, z^2; E;
-/// q = p / rho times 1, z, z^2; p rho (uu, uv, vv), with m = psi'' + q.
-struct SideLanes {
-  static constexpr int kSums = 20;
+
+/// Sums over points in `NearPoints::kLanes` lanes each, named by BallSum or SideSum.
+template <typename Name>
+struct Lanes {
+  static constexpr std::size_t kSums = static_cast<std::size_t>(Name::count);
   alignas(64) float sums[kSums][NearPoints::kLanes] = {};
-  alignas(64) float nearest[NearPoints::kLanes] = {};
+  alignas(64) float nearest[NearPoints::kLanes];
   int touching = 0;
+
+  Lanes() { std::fill(std::begin(nearest), std::end(nearest), PointChunk::kFarAway_mm); }
+  double total(Name name) const {
+    double sum = 0;
+    for (const float lane : sums[static_cast<std::size_t>(name)]) sum += static_cast<double>(lane);
+    return sum;
+  }
+  double nearest_mm() const {
+    return static_cast<double>(*std::min_element(std::begin(nearest), std::end(nearest)));
+  }
 };
 
-/// Of points gathered by a tool whose frame then is `moved` seen from now.
-void sum_ball(NearPoints& near, const Frame& moved, const Cores& cores, const Barrier& barrier,
-              BallLanes& lanes) noexcept;
-/// Points at the ends are listed in `near.at_end` and left out.
-void sum_side(NearPoints& near, const Frame& moved, const Cores& cores, const Barrier& barrier,
-              SideLanes& lanes) noexcept;
+/// Sums over points and measures each, as measure_ball and measure_cylinder do. Points at the cylinder's ends
+/// are listed in `measured.at_end` and left out of the sums.
+void sum_ball(const NearPoints& near, const Frame& moved, const Cores& cores, const Barrier& barrier,
+              Lanes<BallSum>& lanes, MeasuredPoints& measured) noexcept;
+void sum_side(const NearPoints& near, const Frame& moved, const Cores& cores, const Barrier& barrier,
+              Lanes<SideSum>& lanes, MeasuredPoints& measured) noexcept;
 
-/// The greatest `distance_used / distance` of a move, at the distances of the last sum, of which none counts
-/// as less than `min_distance_mm`; at least 0.
-double max_use_by_ball(const NearPoints& near, const MoveT& move, double min_distance_mm) noexcept;
-double max_use_by_cylinder(const NearPoints& near, const MoveT& move, double min_distance_mm) noexcept;
+/// Returns the greatest `distance_used / distance` of a move, of whose distances none counts as less than
+/// `min_distance_mm`; at least 0.
+double max_use_by_ball(const MeasuredPoints& measured, const Vector6& move_T,
+                       double min_distance_mm) noexcept;
+double max_use_by_cylinder(const MeasuredPoints& measured, const Vector6& move_T,
+                           double min_distance_mm) noexcept;
 
-/// The sets of vector instructions that this was compiled for, as bits of hwy/targets.h.
+/// Returns the sets of vector instructions that this was compiled for, as bits of hwy/targets.h.
 std::int64_t near_kernel_targets();
 
 }  // namespace osteomill

@@ -9,22 +9,31 @@
 
 namespace osteomill {
 
-/// The points near one part of the tool, each coordinate in a row of its own: places in T when they were
-/// gathered, the surface each stands for; and, as of the last sum, the distance to the part, place and
-/// direction out of it.
+/// The points near one part of the tool as they were gathered, each coordinate in a row of its own: places in
+/// T at that time, and the surface that each stands for.
 struct NearPoints {
   /// Sums run in so many lanes whatever the width of the machine's registers, and so have the same bits.
   static constexpr std::size_t kLanes = 16;
 
-  explicit NearPoints(std::size_t capacity = 0);
+  explicit NearPoints(std::size_t room);
   std::size_t room() const { return area.size(); }
 
   std::size_t count = 0;
   /// Whether points found no room.
   bool overflowed = false;
-  std::vector<float> gathered_x, gathered_y, gathered_z, area;
-  std::vector<float> x, y, z, distance, out_x, out_y, out_z;
-  /// Of the points near the cylinder those that are nearest to its ends.
+  std::vector<float> x, y, z, area;
+};
+
+/// The same points as measured from one pose: of all of them what they push with and its derivatives by a
+/// move of the tool, and of each its distance to the part and the direction out of it. Places are kept of
+/// points near the cylinder alone.
+struct MeasuredPoints {
+  explicit MeasuredPoints(std::size_t room);
+
+  EnergySum sum;
+  std::size_t count = 0;
+  std::vector<float> distance, out_x, out_y, out_z, x, y, z;
+  /// Which points are nearest to the cylinder's ends: the first `at_end_count`.
   std::vector<std::uint32_t> at_end;
   std::size_t at_end_count = 0;
 };
@@ -36,15 +45,14 @@ struct Frame {
 };
 Frame frame_of(const Mat3& turn, const Vec3& origin_mm) noexcept;
 
-/// After the last brick.
+/// Fills the last group of lanes with points far away, after the last brick.
 void close_gathering(NearPoints& near) noexcept;
 
-/// What the points push with and its derivatives by a move of a tool that has moved since the gathering, so
-/// that its frame then is `moved` seen from now. The same bits whatever the width of the machine's registers.
-/// Safe in the haptic tick.
-EnergySum ball_energy(NearPoints& near, const Frame& moved, const Cores& cores,
-                      const Barrier& barrier) noexcept;
-EnergySum cylinder_energy(NearPoints& near, const Frame& moved, const Cores& cores,
-                          const Barrier& barrier) noexcept;
+/// Measures points from a tool that has moved since the gathering, so that its frame then is `moved` seen
+/// from now. The same bits whatever the width of the machine's registers. Safe in the haptic tick.
+void measure_ball(const NearPoints& near, const Frame& moved, const Cores& cores, const Barrier& barrier,
+                  MeasuredPoints& measured) noexcept;
+void measure_cylinder(const NearPoints& near, const Frame& moved, const Cores& cores, const Barrier& barrier,
+                      MeasuredPoints& measured) noexcept;
 
 }  // namespace osteomill
