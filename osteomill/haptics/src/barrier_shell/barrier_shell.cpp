@@ -12,6 +12,14 @@
 
 namespace osteomill::barrier_shell {
 
+struct NewtonStep {
+  Vector6 move_T;
+  bool is_damped = false;
+  // So small that what is summed after it would be the same.
+  bool is_last = false;
+  bool reaches_device = false;
+};
+
 namespace {
 
 constexpr std::size_t kNearPoints = 65536;
@@ -84,11 +92,6 @@ double widest_spacing_mm(double core_radius_mm) {
   return kShareOfCore * core_radius_mm;
 }
 
-struct NewtonStep {
-  Vector6 move_T;
-  bool is_damped = false;
-};
-
 // Newton's step; where the energy is not convex, that of a convex one above it. Where it would leave one of
 // the balls in which the tool's move may end, damping in proportion to the coupling's stiffness C keeps it in
 // both, so that force and torque fade together: u = so_far_T + step, with so_far_T the move since the tick's
@@ -136,13 +139,6 @@ struct BarrierShell::State {
   EnergySum sum;
   double barrier_Nmm = 0;
   Vec3 burr_force_T = Vec3::Zero();
-};
-
-struct BarrierShell::Step {
-  Vector6 move_T;
-  // So small that what is summed after it would be the same.
-  bool is_last = false;
-  bool reaches_device = false;
 };
 
 const Counts* counts_of(const HapticAlgorithm& algorithm) {
@@ -267,15 +263,14 @@ double BarrierShell::share_with_room(const Room& step) const {
 }
 
 // Newton's, as much of it as is certified and may be released.
-BarrierShell::Step BarrierShell::next_step(const State& best, const MoveBound& bound) {
+NewtonStep BarrierShell::next_step(const State& best, const MoveBound& bound) {
   const ToolMove so_far = move_between(X_WT_, best.X_WT);
   const Vec3 moved = so_far.translation_mm - bound.middle.translation_mm;
   const Vec3 turned = so_far.rotation_rad - bound.middle.rotation_rad;
   const Quat to_T = best.X_WT.orientation.conjugate();
   Vector6 so_far_T;
   so_far_T << to_T * moved, to_T * turned;
-  const NewtonStep newton = newton_step(best.sum, coupling_, so_far_T, bound);
-  Step step{newton.move_T};
+  NewtonStep step = newton_step(best.sum, coupling_, so_far_T, bound);
   const Room wanted = room_of(step.move_T);
   step.is_last = wanted.move_mm <= kDone_mm && wanted.turn_rad <= kDone_rad;
   // Nothing is summed after it: back from the rim of a ball, where the damping is a little too much, it
@@ -286,16 +281,16 @@ BarrierShell::Step BarrierShell::next_step(const State& best, const MoveBound& b
     gather(best.X_WT, kMaxRoom);
     near_.measure(cores(), barrier_, best.X_WT, measured_);
   }
-  if (near_.is_incomplete()) return {Vector6::Zero(), true};
+  if (near_.is_incomplete()) return {.move_T = Vector6::Zero(), .is_last = true};
   const double with_room = share_with_room(wanted);
   step.move_T *= with_room;
   const double certified = certified_share(measured_.max_use(step.move_T, barrier_));
   step.move_T *= certified;
-  step.reaches_device = best.sum.touching == 0 && !newton.is_damped && with_room >= 1 && certified >= 1;
+  step.reaches_device = best.sum.touching == 0 && !step.is_damped && with_room >= 1 && certified >= 1;
   return step;
 }
 
-Pose BarrierShell::after(const State& best, const Step& step, const Pose& X_WD) {
+Pose BarrierShell::after(const State& best, const NewtonStep& step, const Pose& X_WD) {
   return step.reaches_device ? X_WD : moved(best.X_WT, in_world(best.X_WT, step.move_T));
 }
 
@@ -310,7 +305,7 @@ BarrierShell::State BarrierShell::solve(const Pose& X_WD, double dt_s) {
   watch_energy(best);
   counts_.nearest_share = std::min(counts_.nearest_share, best.sum.nearest_mm / barrier_.width_mm);
   for (int passes = 1;;) {
-    Step step = next_step(best, bound);
+    NewtonStep step = next_step(best, bound);
     if (step.is_last) {
       best.X_WT = after(best, step, X_WD);
       return best;

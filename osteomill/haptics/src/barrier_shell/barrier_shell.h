@@ -7,8 +7,8 @@
 #include "osteomill/haptics/haptic_algorithm.h"
 
 #include "barrier_shell/coupling.h"
+#include "barrier_shell/near_bone.h"
 #include "bone_points/bone_bricks.h"
-#include "bone_points/near_bone.h"
 #include "tool_move.h"
 
 namespace osteomill::barrier_shell {
@@ -25,6 +25,8 @@ struct Settings {
   double release_mm_s = Release{}.mm_s;
   double release_rad_s = Release{}.rad_s;
 };
+
+struct NewtonStep;
 
 /// Algorithm 4: the tool rests on a soft skin of bone that nothing can push through. Two convex cores within
 /// the tool keep away from the isosurface's points by a barrier that grows without bound; each tick a few
@@ -48,7 +50,6 @@ class BarrierShell final : public HapticAlgorithm {
 
  private:
   struct State;
-  struct Step;
   void begin_outside(const Pose& X_WD);
   void grow_cores(double nearest_mm, double dt_s);
   Cores cores() const;
@@ -57,8 +58,8 @@ class BarrierShell final : public HapticAlgorithm {
   void gather_for_next_move();
   bool may_fly(const Pose& X_WD, const MoveBound& bound);
   double share_with_room(const Room& step) const;
-  Step next_step(const State& best, const MoveBound& bound);
-  static Pose after(const State& best, const Step& step, const Pose& X_WD);
+  NewtonStep next_step(const State& best, const MoveBound& bound);
+  static Pose after(const State& best, const NewtonStep& step, const Pose& X_WD);
   State solve(const Pose& X_WD, double dt_s);
   void watch_energy(const State& state);
   HapticStep report(const State& state, const Pose& X_WD, double dt_s);

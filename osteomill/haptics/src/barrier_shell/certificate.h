@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bone_points/energy_sum.h"
+#include "energy_sum.h"
 
 namespace osteomill::barrier_shell {
 

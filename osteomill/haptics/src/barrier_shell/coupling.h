@@ -4,7 +4,7 @@
 
 #include "osteomill/base/wrench.h"
 
-#include "bone_points/energy_sum.h"
+#include "energy_sum.h"
 
 namespace osteomill::barrier_shell {
 

@@ -1,11 +1,10 @@
-#include "bone_points/energy_sum.h"
-
 #include <cmath>
 #include <random>
 
 #include <gtest/gtest.h>
 
 #include "barrier_shell/coupling.h"
+#include "barrier_shell/near_points.h"
 #include "tests/random.h"
 #include "tool_move.h"
 
@@ -74,7 +73,7 @@ TEST(EnergySum, DerivativesOfEveryPartOfBothCoresAreThoseOfTheEnergy) {
       (is_ball ? ball : !beyond ? side : beside ? rim : end) += 1;
       EnergySum sum;
       const CoreDistance distance = distance_to(cores, point_T);
-      sum.add_point(0.02 * kBarrier.at(distance.distance_mm), point_T, distance);
+      add_point(sum, 0.02 * kBarrier.at(distance.distance_mm), point_T, distance);
       expect_derivatives(
           X_WT, sum,
           [&](const Pose& X) {

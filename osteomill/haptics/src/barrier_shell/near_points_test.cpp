@@ -1,4 +1,4 @@
-#include "bone_points/near_points.h"
+#include "barrier_shell/near_points.h"
 
 #include <random>
 
@@ -6,16 +6,13 @@
 #include <gtest/gtest.h>
 
 #include "barrier_shell/certificate.h"
+#include "barrier_shell/near_kernel.h"
 #include "bone_points/brick_points.h"
-#include "bone_points/near_kernel.h"
 #include "tests/instruction_sets.h"
 #include "tests/random.h"
 
-namespace osteomill {
+namespace osteomill::barrier_shell {
 namespace {
-
-using barrier_shell::distance_used;
-using barrier_shell::distance_used_by_ball;
 
 using testing_support::ForcedInstructionSet;
 using testing_support::instruction_sets_here;
@@ -93,8 +90,8 @@ TEST(NearPoints, EveryInstructionSetGivesTheSameBitsAndThePlainSums) {
       for (const ShellPoint& p : all) {
         const Vec3 at(static_cast<double>(p.x_mm), static_cast<double>(p.y_mm), static_cast<double>(p.z_mm));
         const CoreDistance b = distance_to_ball(cores, at), c = distance_to_cylinder(cores, at);
-        ball.add_point(static_cast<double>(p.area_mm2) * barrier.at(b.distance_mm), at, b);
-        cylinder.add_point(static_cast<double>(p.area_mm2) * barrier.at(c.distance_mm), at, c);
+        add_point(ball, static_cast<double>(p.area_mm2) * barrier.at(b.distance_mm), at, b);
+        add_point(cylinder, static_cast<double>(p.area_mm2) * barrier.at(c.distance_mm), at, c);
         if (b.distance_mm < barrier.width_mm) {
           ball_use = std::max(ball_use, distance_used_by_ball(b.outward_T, move) / b.distance_mm);
         }
@@ -125,4 +122,4 @@ TEST(NearPoints, EveryInstructionSetGivesTheSameBitsAndThePlainSums) {
 }
 
 }  // namespace
-}  // namespace osteomill
+}  // namespace osteomill::barrier_shell

@@ -78,15 +78,15 @@ HWY_INLINE void add_crossings(const CrossingLattice& lattice, const CrossingRow&
   const unsigned bits = (row.crossed[kAxis] >> node) & ((1u << kWidth) - 1);
   if (bits == 0) return;
   const hn::Mask<D> crossed = lanes_of(bits);
-  const auto& [step, per_step, face] = lattice.steps;
+  const auto& [next, isovalue, step, per_step, face] = lattice;
   const float* here = row.densities + node;
-  const float* there = here + lattice.next[kAxis];
+  const float* there = here + next[kAxis];
   const V density = hn::LoadU(d, here);
   const V fraction = hn::IfThenElseZero(
-      crossed, hn::Div(hn::Sub(constant(lattice.isovalue), density), hn::Sub(hn::LoadU(d, there), density)));
-  V3 gradient{difference(here, there, lattice.next[0], per_step[0], fraction),
-              difference(here, there, lattice.next[1], per_step[1], fraction),
-              difference(here, there, lattice.next[2], per_step[2], fraction)};
+      crossed, hn::Div(hn::Sub(constant(isovalue), density), hn::Sub(hn::LoadU(d, there), density)));
+  V3 gradient{difference(here, there, next[0], per_step[0], fraction),
+              difference(here, there, next[1], per_step[1], fraction),
+              difference(here, there, next[2], per_step[2], fraction)};
   const V steepness = length(gradient);
   const auto has_normal = hn::Gt(steepness, hn::Zero(d));
   V3 normal = scaled(gradient, hn::IfThenElseZero(has_normal, hn::Div(constant(-1.0f), steepness)));

@@ -8,17 +8,13 @@
 
 namespace osteomill {
 
-/// For each axis: the distance of neighbouring nodes (mm), its inverse, and the area (mm^2) that a crossing
-/// of an edge along that axis stands for where the surface is at right angles to the edge.
-struct CrossingSteps {
-  float step[3], per_step[3], face[3];
-};
-
-/// A lattice as the kernel reads it: nodes that lie `next` floats apart along each axis.
+/// A lattice as the kernel reads it. For each axis: how many floats apart neighbouring nodes lie in memory,
+/// their distance (mm), its inverse, and the area (mm^2) that a crossing of an edge along that axis stands
+/// for if the surface is at right angles to the edge.
 struct CrossingLattice {
   std::ptrdiff_t next[3];
   float isovalue;
-  CrossingSteps steps;
+  float step[3], per_step[3], face[3];
 };
 
 /// A row of nodes and the edges that begin at them.

@@ -27,7 +27,7 @@ constexpr int kSide = 24;
 struct Scene {
   int group;
   std::vector<float> block;
-  CrossingLattice lattice{{1, kSide, kSide* kSide}, kIsovalue, {}};
+  CrossingLattice lattice{{1, kSide, kSide* kSide}, kIsovalue, {}, {}, {}};
   std::vector<CrossingRow> rows;
   std::uint32_t cells = 0;
 
@@ -36,9 +36,9 @@ struct Scene {
       block.push_back(static_cast<float>(uniform(bits, 0, 1)));
     }
     for (int axis = 0; axis < 3; ++axis) {
-      lattice.steps.step[axis] = 0.1f + 0.02f * static_cast<float>(axis);
-      lattice.steps.per_step[axis] = 1 / lattice.steps.step[axis];
-      lattice.steps.face[axis] = 0.01f;
+      lattice.step[axis] = 0.1f + 0.02f * static_cast<float>(axis);
+      lattice.per_step[axis] = 1 / lattice.step[axis];
+      lattice.face[axis] = 0.01f;
     }
     for (int k = 0; k < group; ++k) {
       for (int j = 0; j < group; ++j) add_row(j, k);
@@ -69,7 +69,7 @@ using Sums = std::array<double, 7>;
 
 // In double precision, a crossing after the other.
 void add_plain(const CrossingLattice& lattice, const CrossingRow& row, std::size_t node, Sums& sums) {
-  const auto& [next, isovalue, steps] = lattice;
+  const auto& [next, isovalue, step, per_step, face] = lattice;
   for (int axis = 0; axis < 3; ++axis) {
     if ((row.crossed[axis] >> node & 1) == 0) continue;
     const float* here = row.densities + node;
@@ -79,16 +79,16 @@ void add_plain(const CrossingLattice& lattice, const CrossingRow& row, std::size
     for (int a = 0; a < 3; ++a) {
       const double from = double{here[next[a]]} - double{here[-next[a]]};
       const double to = double{there[next[a]]} - double{there[-next[a]]};
-      gradient[a] = (from + fraction * (to - from)) / double{steps.step[a]};
+      gradient[a] = (from + fraction * (to - from)) / double{step[a]};
       length2 += gradient[a] * gradient[a];
     }
     const double outward = -1 / std::sqrt(length2);
-    const double area = double{steps.face[axis]} * std::max(0.02, std::abs(outward * gradient[axis]));
+    const double area = double{face[axis]} * std::max(0.02, std::abs(outward * gradient[axis]));
     double at[3] = {static_cast<double>(row.i) + static_cast<double>(node), static_cast<double>(row.j),
                     static_cast<double>(row.k)};
     at[axis] += fraction;
     for (std::size_t a = 0; a < 3; ++a) {
-      sums[a] += area * at[a] * double{steps.step[a]};
+      sums[a] += area * at[a] * double{step[a]};
       sums[4 + a] += area * outward * gradient[a];
     }
     sums[3] += area;
@@ -138,7 +138,7 @@ TEST(BrickKernel, WithoutANormalACrossingStillHasAnArea) {
   std::vector<float> block(kSide * kSide * 5);
   for (std::size_t n = 0; n < block.size(); ++n) block[n] = static_cast<float>(n % 2);
   const CrossingRow row{&block[2 * kSide * kSide + 2 * kSide + 2], 0, 0, 0, {1, 0, 0}};
-  const CrossingLattice lattice{{1, kSide, kSide * kSide}, kIsovalue, {{1, 1, 1}, {1, 1, 1}, {1, 1, 1}}};
+  const CrossingLattice lattice{{1, kSide, kSide * kSide}, kIsovalue, {1, 1, 1}, {1, 1, 1}, {1, 1, 1}};
   PointRows points(8);
   add_means(lattice, {&row, 1}, 1, 1, points);
   ASSERT_EQ(points.count, 1u);

@@ -88,13 +88,12 @@ SurfaceLattice::SurfaceLattice(const Volume& volume, double spacing_mm) : volume
     brick_dims_[axis] = (nodes + brick_nodes_) / brick_nodes_;
   }
   brick_radius_mm_ = 0.5 * brick_nodes_ * step_mm_.norm();
-  isovalue_ = largest_float_up_to(volume.isovalue());
-  outside_ = std::min(volume.grid().outside_density(), isovalue_ - 1);
+  crossings_.isovalue = largest_float_up_to(volume.isovalue());
+  outside_ = std::min(volume.grid().outside_density(), crossings_.isovalue - 1);
   for (int axis = 0; axis < 3; ++axis) {
-    crossing_steps_.step[axis] = static_cast<float>(step_mm_[axis]);
-    crossing_steps_.per_step[axis] = static_cast<float>(1 / step_mm_[axis]);
-    crossing_steps_.face[axis] =
-        static_cast<float>(line_step_ * line_step_ * step_mm_.prod() / step_mm_[axis]);
+    crossings_.step[axis] = static_cast<float>(step_mm_[axis]);
+    crossings_.per_step[axis] = static_cast<float>(1 / step_mm_[axis]);
+    crossings_.face[axis] = static_cast<float>(line_step_ * line_step_ * step_mm_.prod() / step_mm_[axis]);
   }
 }
 
@@ -135,12 +134,12 @@ SurfaceLattice::Found SurfaceLattice::found_in(int level, const VoxelIndex& node
   Seen seen = none;
   for_each(ranges, [&](const VoxelIndex& at) {
     const BlockRanges::Range& range = volume_->ranges().at(at);
-    seen.add(range.max > isovalue_, range.min > isovalue_);
+    seen.add(range.max > crossings_.isovalue, range.min > crossings_.isovalue);
   });
   if (seen.found() != Found::surface || cell_count(inside.dims()) > kMostVoxels) return seen.found();
   seen = none;
   for_each(inside, [&](const VoxelIndex& at) {
-    const bool bone = volume_->grid()[at] > isovalue_;
+    const bool bone = volume_->grid()[at] > crossings_.isovalue;
     seen.add(bone, bone);
   });
   return seen.found();
@@ -292,7 +291,7 @@ SurfaceLattice::RowBits SurfaceLattice::rows_of_bone_alone(const VoxelIndex& bri
     for (int bj = blocks.first.j; bj <= blocks.last.j; ++bj) {
       bool bone = true;
       for (int bi = blocks.first.i; bi <= blocks.last.i; ++bi) {
-        bone = bone && volume_->ranges().at(bi, bj, bk).min > isovalue_;
+        bone = bone && volume_->ranges().at(bi, bj, bk).min > crossings_.isovalue;
       }
       if (bone) of_slice |= rows_of_block(bj);
     }
@@ -328,8 +327,8 @@ SurfaceLattice::Found SurfaceLattice::find_bone(const Nodes& nodes, const RowBit
   for_each_row([&](std::size_t k) { return bone_alone[k]; }, [&](int j, int k) { found(j, k, whole); });
   for_each_row(unknown, [&](int j, int k) {
     const float* row = nodes.at(0, j, k);
-    std::uint32_t bits = bits_above(row, brick_nodes_, isovalue_);
-    bits |= static_cast<std::uint32_t>(row[brick_nodes_] > isovalue_) << brick_nodes_;
+    std::uint32_t bits = bits_above(row, brick_nodes_, crossings_.isovalue);
+    bits |= static_cast<std::uint32_t>(row[brick_nodes_] > crossings_.isovalue) << brick_nodes_;
     if (bits == 0) without_bone[static_cast<std::size_t>(k)] |= 1u << j;
     found(j, k, bits);
   });
@@ -348,7 +347,8 @@ std::uint32_t SurfaceLattice::cells_of(std::uint32_t nodes) const {
 // One point for each cell, a row of cells after the other.
 void SurfaceLattice::mean_crossings(const Nodes& nodes, const Rows& rows, BrickSurface& surface) const {
   const int side = brick_nodes_ / group_;
-  const CrossingLattice lattice{{nodes.next[0], nodes.next[1], nodes.next[2]}, isovalue_, crossing_steps_};
+  CrossingLattice lattice = crossings_;
+  std::copy(nodes.next.begin(), nodes.next.end(), lattice.next);
   std::array<CrossingRow, kMaxGroup * kMaxGroup> crossed_rows;
   for (int cell_k = 0; cell_k < side; ++cell_k) {
     for (int cell_j = 0; cell_j < side; ++cell_j) {

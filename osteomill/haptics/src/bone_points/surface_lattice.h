@@ -122,8 +122,8 @@ class SurfaceLattice {
   std::array<int, 3> brick_dims_{1, 1, 1};
   Vec3 step_mm_ = Vec3::Ones();
   double brick_radius_mm_ = 0;
-  CrossingSteps crossing_steps_{};
-  float isovalue_ = 0;
+  // With the isovalue; how nodes lie in memory differs from brick to brick.
+  CrossingLattice crossings_{};
   // Nothing beyond the border, also where the least density is bone's.
   float outside_ = 0;
 };

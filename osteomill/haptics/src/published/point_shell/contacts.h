@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bone_points/energy_sum.h"
+#include "energy_sum.h"
 #include "published/point_shell/voxel_shell.h"
 #include "tool/sampled_distance_field.h"
 

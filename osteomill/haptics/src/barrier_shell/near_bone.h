@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "barrier_shell/near_points.h"
 #include "bone_points/bone_bricks.h"
-#include "bone_points/near_points.h"
 
-namespace osteomill {
+namespace osteomill::barrier_shell {
 
 /// How far the tool may move before points have to be gathered again.
 struct Room {
@@ -76,4 +76,4 @@ class NearBone {
 bool look_if_clear(BoneBricks& bricks, const Cores& cores, double reach_mm, const Pose& X_WT,
                    const Room& room) noexcept;
 
-}  // namespace osteomill
+}  // namespace osteomill::barrier_shell

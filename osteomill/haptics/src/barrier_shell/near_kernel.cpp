@@ -1,4 +1,4 @@
-#include "bone_points/near_kernel.h"
+#include "barrier_shell/near_kernel.h"
 
 #include <bit>
 
@@ -7,14 +7,14 @@
   (HWY_AVX3_DL | HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 // This file is compiled once for each target.
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "bone_points/near_kernel.cpp"
+#define HWY_TARGET_INCLUDE "barrier_shell/near_kernel.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
 #include "osteomill/base/compress_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
-namespace osteomill {
+namespace osteomill::barrier_shell {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -311,11 +311,11 @@ float GreatestUseByCylinder(const MeasuredPoints& measured, const float (&move)[
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace osteomill
+}  // namespace osteomill::barrier_shell
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace osteomill {
+namespace osteomill::barrier_shell {
 
 HWY_EXPORT(GatherNearBall);
 HWY_EXPORT(GatherNearCylinder);
@@ -367,5 +367,5 @@ std::int64_t near_kernel_targets() {
   return HWY_TARGETS;
 }
 
-}  // namespace osteomill
+}  // namespace osteomill::barrier_shell
 #endif

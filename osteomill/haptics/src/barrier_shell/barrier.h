@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace osteomill {
+namespace osteomill::barrier_shell {
 
 /// The energy of bone near a core, per area of bone surface. With w = `width_mm`, p0 = `pressure_N_per_mm2`
 /// and x = 1 - d / w it is psi(d) = (w p0 / 3) x^3 / (1 - x) for distances d < w, else zero. Soft at first
@@ -34,4 +34,4 @@ struct Barrier {
   }
 };
 
-}  // namespace osteomill
+}  // namespace osteomill::barrier_shell

@@ -1,21 +1,29 @@
-#include "bone_points/near_points.h"
+#include "barrier_shell/near_points.h"
 
 #include <algorithm>
 #include <span>
 
-#include "bone_points/brick_points.h"
-#include "bone_points/near_kernel.h"
+#include <Eigen/Geometry>
 
-namespace osteomill {
+#include "barrier_shell/near_kernel.h"
+#include "bone_points/brick_points.h"
+
+namespace osteomill::barrier_shell {
 
 namespace {
+
+Mat3 cross(const Vec3& v) {
+  Mat3 m;
+  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+  return m;
+}
 
 Vec3 place(const std::vector<float>& x, const std::vector<float>& y, const std::vector<float>& z,
            std::size_t n) {
   return {static_cast<double>(x[n]), static_cast<double>(y[n]), static_cast<double>(z[n])};
 }
 
-// n = (u, v, 0) and r = rho n + z e_z, so that r x n = z (-v, u, 0): see EnergySum::add_point for the terms.
+// n = (u, v, 0) and r = rho n + z e_z, so that r x n = z (-v, u, 0): see add_point for the terms.
 EnergySum side_sum(const Lanes<SideSum>& lanes) {
   using S = SideSum;
   const auto total = [&](SideSum sum) { return lanes.total(sum); };
@@ -86,6 +94,30 @@ EnergySum ball_sum(const Lanes<BallSum>& lanes) {
 
 }  // namespace
 
+// Seen from the tool the point moves as exp(-t omega) (r - t delta): by v = -(delta + omega x r) at first,
+// and with the acceleration omega x (omega x r) + 2 omega x delta. So d' = n.v and d'' = v.C v + n.a, with n
+// and C the distance's derivatives; and E' = -p d', E'' = psi'' d'^2 - p d''.
+void add_point(EnergySum& sum, const Barrier::Value& push, const Vec3& point_T,
+               const CoreDistance& distance) {
+  sum.nearest_mm = std::min(sum.nearest_mm, distance.distance_mm);
+  const double p = push.pressure;
+  if (!(p > 0)) return;
+  ++sum.touching;
+  const Vec3& n = distance.outward_T;
+  Vector6 along;
+  along << n, point_T.cross(n);
+  Eigen::Matrix<double, 3, 6> motion;  // minus v, of delta and omega
+  motion << Mat3::Identity(), -cross(point_T);
+  sum.energy_Nmm += push.energy;
+  sum.gradient += p * along;
+  sum.convex += push.stiffness * along * along.transpose();
+  sum.rest -= p * motion.transpose() * distance.curvature_per_mm * motion;
+  const Mat3 symmetric = 0.5 * (n * point_T.transpose() + point_T * n.transpose());
+  sum.rest.bottomRightCorner<3, 3>() -= p * (symmetric - n.dot(point_T) * Mat3::Identity());
+  sum.rest.topRightCorner<3, 3>() -= p * cross(n);
+  sum.rest.bottomLeftCorner<3, 3>() += p * cross(n);
+}
+
 NearPoints::NearPoints(std::size_t room) {
   for (std::vector<float>* row : {&x, &y, &z, &area}) row->resize(room);
 }
@@ -132,8 +164,8 @@ void measure_cylinder(const NearPoints& near, const Frame& moved, const Cores& c
   for (const std::uint32_t n : at_end) {
     const Vec3 point_T = place(measured.x, measured.y, measured.z, n);
     const CoreDistance distance = distance_to_cylinder(cores, point_T);
-    measured.sum.add_point(static_cast<double>(near.area[n]) * barrier.at(distance.distance_mm), point_T,
-                           distance);
+    add_point(measured.sum, static_cast<double>(near.area[n]) * barrier.at(distance.distance_mm), point_T,
+              distance);
     measured.distance[n] = static_cast<float>(distance.distance_mm);
     measured.out_x[n] = static_cast<float>(distance.outward_T.x());
     measured.out_y[n] = static_cast<float>(distance.outward_T.y());
@@ -141,4 +173,4 @@ void measure_cylinder(const NearPoints& near, const Frame& moved, const Cores& c
   }
 }
 
-}  // namespace osteomill
+}  // namespace osteomill::barrier_shell

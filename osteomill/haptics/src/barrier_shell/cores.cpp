@@ -1,9 +1,9 @@
-#include "bone_points/cores.h"
+#include "barrier_shell/cores.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace osteomill {
+namespace osteomill::barrier_shell {
 
 namespace {
 
@@ -54,4 +54,4 @@ CoreDistance distance_to_cylinder(const Cores& cores, const Vec3& point_T) {
   return {distance, cosine * radial + sine * end, cosine * side_curvature + outer(across) / distance};
 }
 
-}  // namespace osteomill
+}  // namespace osteomill::barrier_shell

@@ -4,10 +4,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "bone_points/cores.h"
-#include "bone_points/energy_sum.h"
+#include "barrier_shell/barrier.h"
+#include "barrier_shell/cores.h"
+#include "energy_sum.h"
 
-namespace osteomill {
+namespace osteomill::barrier_shell {
 
 /// The points near one part of the tool as they were gathered, each coordinate in a row of its own: places in
 /// T at that time, and the surface that each stands for.
@@ -48,6 +49,10 @@ Frame frame_of(const Mat3& turn, const Vec3& origin_mm) noexcept;
 /// Fills the last group of lanes with points far away, after the last brick.
 void close_gathering(NearPoints& near) noexcept;
 
+/// Adds a point that pushes with `push` (energy, pressure and stiffness of all its area) at `point_T`,
+/// `distance` from a core: the plain way, for every part.
+void add_point(EnergySum& sum, const Barrier::Value& push, const Vec3& point_T, const CoreDistance& distance);
+
 /// Measures points from a tool that has moved since the gathering, so that its frame then is `moved` seen
 /// from now. The same bits whatever the width of the machine's registers. Safe in the haptic tick.
 void measure_ball(const NearPoints& near, const Frame& moved, const Cores& cores, const Barrier& barrier,
@@ -55,4 +60,4 @@ void measure_ball(const NearPoints& near, const Frame& moved, const Cores& cores
 void measure_cylinder(const NearPoints& near, const Frame& moved, const Cores& cores, const Barrier& barrier,
                       MeasuredPoints& measured) noexcept;
 
-}  // namespace osteomill
+}  // namespace osteomill::barrier_shell

@@ -1,12 +1,12 @@
-#include "bone_points/near_bone.h"
+#include "barrier_shell/near_bone.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "bone_points/near_kernel.h"
+#include "barrier_shell/near_kernel.h"
 #include "bone_points/tool_from_grid.h"
 
-namespace osteomill {
+namespace osteomill::barrier_shell {
 
 namespace {
 
@@ -120,4 +120,4 @@ bool look_if_clear(BoneBricks& bricks, const Cores& cores, double reach_mm, cons
       [&](const Vec3& middle_G, double radius_mm) { return may_reach(reach, X_TG * middle_G, radius_mm); });
 }
 
-}  // namespace osteomill
+}  // namespace osteomill::barrier_shell

@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <iterator>
 
+#include "barrier_shell/near_points.h"
 #include "bone_points/brick_points.h"
-#include "bone_points/near_points.h"
 
-namespace osteomill {
+namespace osteomill::barrier_shell {
 
 /// Which points are gathered: those within `near_mm` of a core or, of the cylinder, within `near_mm` +
 /// `per_lever` times their distance from the burr's centre.
@@ -91,4 +91,4 @@ double max_use_by_cylinder(const MeasuredPoints& measured, const Vector6& move_T
 /// Returns the sets of vector instructions that this was compiled for, as bits of hwy/targets.h.
 std::int64_t near_kernel_targets();
 
-}  // namespace osteomill
+}  // namespace osteomill::barrier_shell

@@ -4,8 +4,7 @@
 
 #include <Eigen/Core>
 
-#include "bone_points/barrier.h"
-#include "bone_points/cores.h"
+#include "osteomill/base/pose.h"
 
 namespace osteomill {
 
@@ -26,9 +25,6 @@ struct EnergySum {
   double nearest_mm = std::numeric_limits<double>::infinity();
 
   EnergySum& operator+=(const EnergySum& other);
-  /// What a point adds that pushes with `push` (energy, pressure and stiffness of all its area) at `point_T`,
-  /// `distance` from a part of the tool: the plain way, for every part.
-  void add_point(const Barrier::Value& push, const Vec3& point_T, const CoreDistance& distance);
 };
 
 }  // namespace osteomill

@@ -2,7 +2,7 @@
 
 #include "osteomill/haptics/milling_tool.h"
 
-namespace osteomill {
+namespace osteomill::barrier_shell {
 
 /// How far within the tool's surface its cores lie: the rounding, but at most half of the least of its two
 /// radii and the shaft's length.
@@ -33,4 +33,4 @@ struct CoreDistance {
 CoreDistance distance_to_ball(const Cores& cores, const Vec3& point_T);
 CoreDistance distance_to_cylinder(const Cores& cores, const Vec3& point_T);
 
-}  // namespace osteomill
+}  // namespace osteomill::barrier_shell
