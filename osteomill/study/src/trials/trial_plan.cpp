@@ -6,9 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "osteomill/base/csv_field.h"
-#include "osteomill/base/input_error.h"
-#include "osteomill/base/parse_number.h"
 #include "osteomill/recording/run_description.h"
 #include "osteomill/study/paper.h"
 
@@ -19,24 +16,6 @@ namespace {
 std::string point_text(const Vec3& v) {
   return fmt::format("{},{},{}", v.x(), v.y(), v.z());
 }
-
-// Three numbers as point_text writes them.
-Vec3 point_of(const RunDescription& run, std::string_view key, const std::filesystem::path& path) {
-  const std::string* text = find_setting<std::string>(run, key);
-  const std::vector<std::string_view> parts =
-      text == nullptr ? std::vector<std::string_view>() : csv_fields(*text);
-  Vec3 point;
-  for (std::size_t n = 0; n < 3; ++n) {
-    const auto number = n < parts.size() ? parsed_number<double>(parts[n]) : std::nullopt;
-    if (!number || parts.size() != 3)
-      throw InputError(path.string(), fmt::format("has no setting '{}' of three numbers", key));
-    point[static_cast<Eigen::Index>(n)] = *number;
-  }
-  return point;
-}
-
-constexpr const char* kScriptDirectionKey = "script.direction";
-constexpr const char* kScriptLateralKey = "script.lateral";
 
 }  // namespace
 
@@ -49,8 +28,8 @@ RunDescription describe_trial(const TrialPlan& plan, int sample_points, std::str
   run.seed = person.seed;
   run.phase = phase;
   run.settings.push_back({std::string(kScriptEntryKey), point_text(plan.entry.point_W), "mm"});
-  run.settings.push_back({kScriptDirectionKey, point_text(plan.entry.direction_W), ""});
-  run.settings.push_back({kScriptLateralKey, point_text(plan.entry.lateral_W), ""});
+  run.settings.push_back({"script.direction", point_text(plan.entry.direction_W), ""});
+  run.settings.push_back({"script.lateral", point_text(plan.entry.lateral_W), ""});
   run.settings.push_back({"script.depth", ScriptSettings::depth_mm, "mm"});
   put_fields(run, person);
   if (!plan.comparison.empty()) run.settings.push_back({std::string(kComparisonKey), plan.comparison, ""});
@@ -58,25 +37,6 @@ RunDescription describe_trial(const TrialPlan& plan, int sample_points, std::str
     run.settings.push_back({std::string(kMatchedStiffnessKey), *plan.matched_N_per_mm, "N/mm"});
   }
   return run;
-}
-
-RecordedTrial recorded_trial(const RunDescription& run, const std::filesystem::path& path) {
-  const AlgorithmDescription* algorithm = find_algorithm(run.algorithm.name);
-  if (algorithm == nullptr)
-    throw InputError(path.string(), "its algorithm " + run.algorithm.name + " is not known here");
-  SessionSettings session = session_settings(run, path);
-  RecordedTrial trial;
-  static_cast<MillingSetup&>(trial.settings) = std::move(session.setup);
-  trial.densities = session.densities;
-  trial.entry.point_W = point_of(run, kScriptEntryKey, path);
-  trial.entry.direction_W = point_of(run, kScriptDirectionKey, path);
-  trial.entry.lateral_W = point_of(run, kScriptLateralKey, path);
-  trial.settings.algorithm = *algorithm;
-  OperatorSettings& person = trial.settings.hand_and_device;
-  person.handle.limits = trial.settings.guard.limits;
-  take_fields(run, path, person);
-  person.seed = run.seed;
-  return trial;
 }
 
 std::string shortfall_words(const ScriptShortfall& shortfall, const ScriptSettings& script,

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -44,16 +43,6 @@ inline constexpr std::string_view kMatchedStiffnessKey = "matched.felt_stiffness
 
 /// All that a recording says of a phase of section 8.2: what any session's says, and hand, device and script.
 RunDescription describe_trial(const TrialPlan& plan, int sample_points, std::string_view phase);
-
-/// Hand, device, script, session and bone that a recording of such a phase was made with.
-struct RecordedTrial {
-  TrialSettings settings;
-  BoneDensities densities;
-  MillingEntry entry;
-};
-/// Restores them from what the recording says. Throws InputError, naming its `path`, if a setting is missing
-/// or the algorithm is not known here.
-RecordedTrial recorded_trial(const RunDescription& run, const std::filesystem::path& path);
 
 /// "the hole stayed shallower than 3 mm; the shaft leant on the bone for less than 3 s": what of the plan was
 /// not reached up to the end of this phase. Empty for nothing.
