@@ -140,7 +140,10 @@ void run_compare(const CompareOptions& options, const std::string& command_line)
       is_of_a_comparison);
   std::vector<Recording> recordings;
   for (const fs::path& path : paths) recordings.push_back(read_recording(path));
-  fmt::print("{}\n", write_comparison_report(recordings, options.out, extras).string());
+  std::vector<Table> came_out;
+  const fs::path page = write_comparison_report(recordings, options.out, extras, &came_out);
+  say_tables(came_out);
+  fmt::print("{}\n", page.string());
 }
 
 // A study draws its hands, so one hand cannot be asked for as well.

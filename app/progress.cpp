@@ -79,6 +79,11 @@ void warn(std::string_view line) {
   if (!quiet) warn_though_quiet(line);
 }
 
+void say_tables(const std::vector<Table>& tables) {
+  if (quiet) return;
+  for (const Table& table : tables) say(plain_text(table) + "\n");
+}
+
 void warn_though_quiet(std::string_view line) {
   if (on_terminal()) say("\r\033[K");
   say(fmt::format("osteomill: warning: {}\n", in_one_line(line)));

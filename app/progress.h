@@ -1,9 +1,11 @@
 #pragma once
 
 #include <string_view>
+#include <vector>
 
 #include <CLI/App.hpp>
 
+#include "osteomill/study/page.h"
 #include "osteomill/study/run_events.h"
 
 namespace osteomill::app {
@@ -23,6 +25,9 @@ void say(std::string_view text);
 
 /// A warning: one line on standard error, which --quiet silences.
 void warn(std::string_view line);
+
+/// Writes tables to standard error, unless --quiet.
+void say_tables(const std::vector<Table>& tables);
 
 /// A warning that --quiet does not silence: a burr that has come into a no-go structure, a recording that
 /// cannot go on.

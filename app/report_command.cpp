@@ -40,7 +40,9 @@ void write_into(const std::filesystem::path& folder, const ReportOptions& option
   }
   end_progress();
   if (are_of_comparison(recordings)) {
-    write_comparison_report(recordings, folder);
+    std::vector<Table> came_out;
+    write_comparison_report(recordings, folder, {}, &came_out);
+    say_tables(came_out);
   } else {
     write_report(recordings, folder);
   }

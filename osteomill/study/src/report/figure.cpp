@@ -10,7 +10,7 @@
 #include "osteomill/base/atomic_file.h"
 #include "osteomill/base/input_error.h"
 #include "osteomill/base/run_program.h"
-#include "osteomill/study/html.h"
+#include "osteomill/study/page.h"
 
 namespace osteomill {
 

@@ -1,6 +1,5 @@
 #include "osteomill/study/metric_table.h"
 
-#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -105,13 +104,20 @@ const std::vector<Field<RunMetrics>>& fields_of<RunMetrics>() {
   return all;
 }
 
+template <>
+const std::vector<Field<MeasuredRun>>& fields_of<MeasuredRun>() {
+  using R = MeasuredRun;
+  constexpr NumberRange kAny = NumberRange::not_negative();
+  static const std::vector<Field<R>> all{
+      field<R>({"hand_stiffness_N_per_m", "N/m", kAny, "stiffness of the hand"}, &R::hand_stiffness_N_per_m),
+      field<R>({"hand_damping_Ns_per_m", "N s/m", kAny, "damping of the hand"}, &R::hand_damping_Ns_per_m),
+      field<R>({"hand_grip", "", kAny, "how firmly the hand gripped"}, &R::grip)};
+  return all;
+}
+
 const Field<RunMetrics>& metric(std::string_view column) {
   if (const Field<RunMetrics>* found = find_field(fields_of<RunMetrics>(), column)) return *found;
   throw std::invalid_argument(fmt::format("a run has no figure {}", column));
-}
-
-std::string csv_number(double value) {
-  return std::isnan(value) ? "," : fmt::format(",{}", value);
 }
 
 std::string with_unit(const std::string& text, const std::string& unit) {
@@ -119,16 +125,12 @@ std::string with_unit(const std::string& text, const std::string& unit) {
 }
 
 std::string summary_columns() {
-  std::string columns = "algorithm,phase";
-  for (const Field<RunMetrics>& figure : fields_of<RunMetrics>()) columns += "," + figure.name;
-  return columns + ",not_reached";
+  return "algorithm,phase" + csv_names(fields_of<RunMetrics>()) + ",not_reached";
 }
 
 std::string summary_fields(const MeasuredRun& run) {
-  std::string fields = fmt::format("{},{}", name_of(run.algorithm), run.phase);
-  for (const Field<RunMetrics>& figure : fields_of<RunMetrics>())
-    fields += csv_number(figure.get(run.metrics));
-  return fields + "," + run.not_reached;
+  return fmt::format("{},{}{},{}", name_of(run.algorithm), run.phase,
+                     csv_values(fields_of<RunMetrics>(), run.metrics), run.not_reached);
 }
 
 }  // namespace osteomill

@@ -112,15 +112,15 @@ std::string run_name(const MeasuredRun& run) {
   return run.phase.empty() ? run.algorithm.label : run.algorithm.label + ", " + run.phase;
 }
 
-std::string name_with_colour(const Label& label) {
-  const std::string text =
-      fmt::format("<span style=\"color:{}\">&#9632;</span> {}", hex_colour(label), html_escaped(label.name));
-  return label.no_go ? text + " <span class=\"differs\">no-go</span>" : text;
+Cell name_with_colour(const Label& label) {
+  std::vector<Cell::Piece> pieces{{"■", Look::plain, hex_colour(label)}, {" " + label.name}};
+  if (label.no_go) pieces.insert(pieces.end(), {{" "}, {"no-go", Look::differs}});
+  return pieces;
 }
 
-std::vector<std::string> cells(const MeasuredRun& run, const Label& label, const LabelCount::Entry& entry) {
+std::vector<Cell> cells(const MeasuredRun& run, const Label& label, const LabelCount::Entry& entry) {
   const double all_mm3 = run.metrics.removed_mm3;
-  return {html_escaped(run_name(run)),
+  return {run_name(run),
           name_with_colour(label),
           fmt::format("{:.3f}", entry.removed_mm3),
           all_mm3 > 0 ? fmt::format("{:.1f}", 100 * entry.removed_mm3 / all_mm3) : "",
@@ -132,7 +132,7 @@ std::vector<std::string> cells(const MeasuredRun& run, const Label& label, const
 }
 
 // A row for each label that this run cut or touched, no-go labels first.
-void add_rows(const MeasuredRun& run, HtmlTable& table) {
+void add_rows(const MeasuredRun& run, Table& table) {
   const LabelCount count = count_of(*run.recording);
   for (const bool no_go : {true, false}) {
     for (std::size_t n = 0; n < count.labels().size(); ++n) {
@@ -180,11 +180,11 @@ std::string panel(const MeasuredRun& run, FigureScript& figure) {
 
 }  // namespace
 
-std::optional<PageSection> label_section(const RunGroup& group) {
-  HtmlTable table{{"Run", "Label", "Removed (mm³)", "of the run's bone (%)", "First at (s)", "Last at (s)",
-                   "In it for (s)", "Force of the burr, mean (N)", "… greatest (N)"},
-                  {},
-                  true};
+std::optional<Section> label_section(const RunGroup& group) {
+  Table table{{"Run", "Label", "Removed (mm³)", "of the run's bone (%)", "First at (s)", "Last at (s)",
+               "In it for (s)", "Force of the burr, mean (N)", "… greatest (N)"},
+              {},
+              true};
   bool any = false;
   for (const MeasuredRun& run : group.runs) {
     any = any || !run.recording->description.labels.empty();
@@ -192,12 +192,11 @@ std::optional<PageSection> label_section(const RunGroup& group) {
   }
   if (!any) return std::nullopt;
   if (table.rows.empty())
-    return PageSection{.title = "Labels", .paragraphs = {"The burr cut nothing that has a label."}};
-  return PageSection{
-      .title = "Labels",
-      .paragraphs = {"What was cut of each structure of the label map; a no-go label counts as "
-                     "soon as the turning burr touches it."},
-      .tables = {table}};
+    return Section{.title = "Labels", .paragraphs = {"The burr cut nothing that has a label."}};
+  return Section{.title = "Labels",
+                 .paragraphs = {"What was cut of each structure of the label map; a no-go label counts as "
+                                "soon as the turning burr touches it."},
+                 .tables = {table}};
 }
 
 std::optional<Figure> draw_label_figure(const RunGroup& group, const std::filesystem::path& folder) {
@@ -307,11 +306,10 @@ std::string value_of(const SettingLine& line, const std::vector<const Recording*
 
 }  // namespace
 
-HtmlTable settings_table(const std::vector<const Recording*>& recordings) {
-  HtmlTable table{{"Setting", "Value", "Unit"}, {}};
+Table settings_table(const std::vector<const Recording*>& recordings) {
+  Table table{{"Setting", "Value", "Unit"}, {}};
   for (const SettingLine& line : collect(recordings)) {
-    table.rows.push_back(
-        {html_escaped(line.key), html_escaped(value_of(line, recordings)), html_escaped(raised(line.unit))});
+    table.rows.push_back({line.key, value_of(line, recordings), raised(line.unit)});
   }
   return table;
 }
@@ -337,19 +335,18 @@ bool differs(const SettingLine& line, const std::vector<const Recording*>& recor
 
 }  // namespace
 
-HtmlTable differences_table(const std::vector<const Recording*>& recordings) {
-  HtmlTable table{{"Recording"}, {}};
+Table differences_table(const std::vector<const Recording*>& recordings) {
+  Table table{{"Recording"}, {}};
   std::vector<SettingLine> lines = collect(recordings);
   std::erase_if(lines, [&](const SettingLine& line) { return !differs(line, recordings); });
   for (const SettingLine& line : lines) {
     const std::string unit = line.unit.empty() ? "" : fmt::format(" ({})", raised(line.unit));
-    table.header.push_back(html_escaped(line.key + unit));
+    table.header.push_back(line.key + unit);
   }
   if (lines.empty()) return table;
   for (std::size_t n = 0; n < recordings.size(); ++n) {
-    table.rows.push_back({html_escaped(recordings[n]->path.string())});
-    for (const SettingLine& line : lines)
-      table.rows.back().push_back(html_escaped(line.values[n].value_or("")));
+    table.rows.push_back({recordings[n]->path.string()});
+    for (const SettingLine& line : lines) table.rows.back().push_back(line.values[n].value_or(""));
   }
   return table;
 }

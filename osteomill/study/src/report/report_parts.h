@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "osteomill/study/figure.h"
-#include "osteomill/study/html.h"
+#include "osteomill/study/page.h"
 #include "osteomill/study/run_groups.h"
 
 /// What a report's page is put together from. Each figure throws InputError as `draw_figure` does.
@@ -34,7 +34,7 @@ Figure draw_shaft_figure(const RunGroup& group, const std::filesystem::path& fol
 
 /// What each run removed of each label, when and with what force, no-go labels first; nothing where no
 /// recording has labels.
-std::optional<PageSection> label_section(const RunGroup& group);
+std::optional<Section> label_section(const RunGroup& group);
 
 /// How much was removed of each label over time, a panel for each run that removed any, in the labels'
 /// colours; nothing where none did.
@@ -42,11 +42,11 @@ std::optional<Figure> draw_label_figure(const RunGroup& group, const std::filesy
 
 /// Every setting of the recordings, once where it is the same in all, else with the value of each algorithm
 /// or, where that does not tell them apart, of each recording. The command line is left out.
-HtmlTable settings_table(const std::vector<const Recording*>& recordings);
+Table settings_table(const std::vector<const Recording*>& recordings);
 
 /// Returns what keeps recordings from being of the same bone, tool, hand and settings: a row for each
 /// recording and a column for each setting that is not the same in all; an algorithm's own settings are only
 /// compared between recordings of that algorithm. No rows where they belong together.
-HtmlTable differences_table(const std::vector<const Recording*>& recordings);
+Table differences_table(const std::vector<const Recording*>& recordings);
 
 }  // namespace osteomill

@@ -8,9 +8,9 @@ namespace {
 
 using namespace testing_support;
 
-std::string value_of(const HtmlTable& table, const std::string& key) {
+std::string value_of(const Table& table, const std::string& key) {
   for (const auto& row : table.rows) {
-    if (row[0] == key) return row[1];
+    if (row[0].text() == key) return row[1].text();
   }
   return "(none)";
 }
@@ -20,17 +20,17 @@ TEST(SettingsTable, SaysOnceWhatIsTheSameAndForEachWhatIsNot) {
   runs[3].description.settings.push_back({"only_here", std::string("<x>"), ""});
   std::vector<const Recording*> recordings;
   for (const Recording& run : runs) recordings.push_back(&run);
-  const HtmlTable table = settings_table(recordings);
+  const Table table = settings_table(recordings);
   EXPECT_EQ(value_of(table, "push"), "1.5");
   EXPECT_EQ(value_of(table, "algorithm.stiffness"), "line-proxy: 2; surface-points: 20; point-shell: 2");
-  EXPECT_EQ(value_of(table, "only_here"), "surface-points, holding: &lt;x&gt;");
+  EXPECT_EQ(value_of(table, "only_here"), "surface-points, holding: <x>");
   EXPECT_EQ(value_of(table, "command_line"), "(none)");
 }
 
 std::vector<std::string> differing(std::vector<Recording>& runs) {
   std::vector<const Recording*> recordings;
   for (const Recording& run : runs) recordings.push_back(&run);
-  const HtmlTable table = differences_table(recordings);
+  const Table table = differences_table(recordings);
   EXPECT_EQ(table.rows.size(), table.header.size() == 1 ? 0 : runs.size());
   return {table.header.begin() + 1, table.header.end()};
 }

@@ -23,8 +23,8 @@ std::vector<const Recording*> all_recordings(const RunGroup& group) {
   return recordings;
 }
 
-PageSection notices(const std::vector<const Recording*>& recordings) {
-  PageSection section;
+Section notices(const std::vector<const Recording*>& recordings) {
+  Section section;
   for (const Recording* recording : recordings) {
     const std::string name = recording->path.filename().string();
     if (!recording->complete) {
@@ -39,19 +39,18 @@ PageSection notices(const std::vector<const Recording*>& recordings) {
 }
 
 // Of recordings that do not belong together.
-std::vector<PageSection> differences(const std::vector<const Recording*>& recordings) {
-  HtmlTable table = differences_table(recordings);
+std::vector<Section> differences(const std::vector<const Recording*>& recordings) {
+  Table table = differences_table(recordings);
   if (table.rows.empty()) return {};
-  const std::vector<std::string> settings(table.header.begin() + 1, table.header.end());
   return {
       {.title = "What differs between the recordings",
        .notices = {fmt::format("These recordings differ in {}. What follows may come from that as well as "
                                "from the algorithms.",
-                               fmt::join(settings, ", "))},
+                               fmt::join(table.header.begin() + 1, table.header.end(), ", "))},
        .tables = {std::move(table)}}};
 }
 
-PageSection what_was_run(const std::vector<const Recording*>& recordings) {
+Section what_was_run(const std::vector<const Recording*>& recordings) {
   const RunDescription& d = recordings.front()->description;
   double seconds = 0;
   for (const Recording* recording : recordings) {
@@ -84,59 +83,39 @@ struct RunFigure {
   const char* caption;
 };
 
-// Of a table of metrics.
-struct Row {
-  const char* column;
-  const char* label;
-  const char* format = "{:.4g}";
-};
-
-// What a reader wants to know at once: figures and the metrics beside them.
+// What a reader wants to know at once: figures and the metrics beside them, by their columns.
 struct Topic {
   const char* title;
   std::vector<RunFigure> figures;
-  std::vector<Row> rows;
+  std::vector<const char*> columns;
 };
 
 const Topic kFelt[] = {
     {"Force",
      {{"force", draw_force_figure,
        "Magnitude of the force sent to the hand. The panels of a row have one scale. Each pixel's least and "
-       "greatest are drawn, so no spike is lost. What is shaded, before 0 s, is not counted in the tables."}},
-     {{"force_mean_N", "Force while in contact, mean"},
-      {"force_max_N", "… greatest"},
-      {"force_hp_rms_N", "… above 20 Hz, rms"},
-      {"force_step_max_N", "… greatest change in a tick"}}},
+       "greatest are drawn, so no spike is lost. What is shaded, before 0 s, is not counted in the tables, "
+       "nor is what is felt without contact."}},
+     {"force_mean_N", "force_max_N", "force_hp_rms_N", "force_step_max_N"}},
     {"Torque",
      {{"torque", draw_torque_figure, "Magnitude of the torque sent to the hand, about the burr's centre."}},
-     {{"torque_mean_Nmm", "Torque while in contact, mean"},
-      {"torque_max_Nmm", "… greatest"},
-      {"torque_hp_rms_Nmm", "… above 20 Hz, rms"},
-      {"torque_step_max_Nmm", "… greatest change in a tick"}}},
+     {"torque_mean_Nmm", "torque_max_Nmm", "torque_hp_rms_Nmm", "torque_step_max_Nmm"}},
     {"Shaft",
      {{"shaft", draw_shaft_figure,
        "Where the simulated tool's shaft points while it touches, in degrees from its mean direction and "
        "coloured by time. Each panel has a scale of its own."}},
-     {{"shaft_spread_deg", "Shaft direction, spread"}, {"shaft_excursion_deg", "… greatest excursion"}}},
+     {"shaft_spread_deg", "shaft_excursion_deg"}},
     {"Path and bone removed",
      {{"removed", draw_removed_figure,
        "Bone removed since the milling began, in mm³ of bone of the reference density."},
       {"path", draw_path_figure, "Where the burr's centre was, along the scan's axes."}},
-     {{"removed_mm3", "Bone removed"},
-      {"path_mm", "Path of the burr's centre"},
-      {"contact_share", "In contact, share of the time"},
-      {"burr_contact_share", "… with the burr"},
-      {"shaft_contact_share", "… with the shaft"}}}};
+     {"removed_mm3", "path_mm", "contact_share", "burr_contact_share", "shaft_contact_share"}}};
 const Topic kTimes{
     "How long the ticks took",
     {{"rate", draw_rate_figure,
       "Compute time of each tick, the algorithm's and the milling's: CPU time where the trial ran in "
       "simulated time, else by the clock. A loop at 1000 Hz is late where it goes above the dashed line."}},
-    {{"steps", "Ticks", "{:.0f}"},
-     {"tick_us_median", "Compute time of a tick, median"},
-     {"tick_us_p99", "… 99th percentile"},
-     {"tick_us_max", "… greatest"},
-     {"rate_hz", "Haptic rate that a 1 kHz loop would hold", "{:.1f}"}}};
+    {"steps", "tick_us_median", "tick_us_p99", "tick_us_max", "rate_hz"}};
 
 CaptionedFigure drawn(const RunFigure& figure, const RunGroup& group, const PageText& text,
                       const fs::path& folder) {
@@ -146,43 +125,38 @@ CaptionedFigure drawn(const RunFigure& figure, const RunGroup& group, const Page
   return {figure.draw(group, folder).svg, std::move(caption)};
 }
 
-std::string cell(const Row& row, const MeasuredRun& run) {
-  const double value = metric(row.column).get(run.metrics);
-  return std::isnan(value) ? contact_words(run.metrics.contact)
-                           : fmt::format(fmt::runtime(row.format), value);
-}
-
 std::vector<MetricLine> lines_of(const Topic& topic) {
   std::vector<MetricLine> lines;
-  for (const Row& row : topic.rows) {
-    lines.push_back({with_unit(row.label, metric(row.column).unit),
-                     [row](const MeasuredRun& run) { return cell(row, run); }});
+  for (const char* column : topic.columns) {
+    const Field<RunMetrics>& figure = metric(column);
+    lines.push_back({label_of(figure), [&figure](const MeasuredRun& run) {
+                       const double value = figure.get(run.metrics);
+                       return std::isnan(value) ? contact_words(run.metrics.contact) : shown(value);
+                     }});
   }
   return lines;
 }
 
-HtmlTable metrics_table(const RunGroup& group, const std::vector<MetricLine>& lines) {
-  HtmlTable table{{""}, {{"Not reached"}}, true};
+Table metrics_table(const RunGroup& group, const std::vector<MetricLine>& lines) {
+  Table table{{""}, {{"not reached"}}, true};
   for (const MeasuredRun& run : group.runs) {
-    const std::string phase = run.phase.empty() ? "" : html_escaped(run.phase) + "<br>";
-    table.header.push_back(phase + html_escaped(run.algorithm.label));
-    table.rows.front().push_back("<span class=\"words\">" + html_escaped(run.not_reached) + "</span>");
+    table.header.push_back(run.phase.empty() ? run.algorithm.label : run.phase + "\n" + run.algorithm.label);
+    table.rows.front().emplace_back(run.not_reached, Look::words);
   }
   // What was not reached stands before all that is compared.
-  const auto reached = [](const MeasuredRun& run) { return run.not_reached.empty(); };
-  if (std::all_of(group.runs.begin(), group.runs.end(), reached)) table.rows.clear();
+  if (std::ranges::all_of(group.runs, &std::string::empty, &MeasuredRun::not_reached)) table.rows.clear();
   for (const MetricLine& line : lines) {
     table.rows.push_back({line.label});
-    for (const MeasuredRun& run : group.runs) table.rows.back().push_back(line.cell(run));
+    for (const MeasuredRun& run : group.runs) table.rows.back().emplace_back(line.cell(run));
   }
   return table;
 }
 
-PageSection topic_section(const Topic& topic, const RunGroup& group, const PageText& text,
-                          const fs::path& folder, const std::vector<MetricLine>& further = {}) {
+Section topic_section(const Topic& topic, const RunGroup& group, const PageText& text, const fs::path& folder,
+                      const std::vector<MetricLine>& further = {}) {
   std::vector<MetricLine> lines = lines_of(topic);
   lines.insert(lines.end(), further.begin(), further.end());
-  PageSection section{.title = topic.title};
+  Section section{.title = topic.title};
   for (const RunFigure& figure : topic.figures) section.figures.push_back(drawn(figure, group, text, folder));
   section.tables = {metrics_table(group, lines)};
   return section;
@@ -194,8 +168,8 @@ bool has_setting(const RunGroup& group, std::string_view key) {
   });
 }
 
-std::vector<PageSection> pictures_section(const RunGroup& group, const fs::path& folder) {
-  PageSection section{.title = "The bone before and after"};
+std::vector<Section> pictures_section(const RunGroup& group, const fs::path& folder) {
+  Section section{.title = "The bone before and after"};
   if (const auto bone = draw_picture_figure(group, folder)) {
     // Smaller as PNG; curves and clouds stay sharp as SVG.
     section.figures = {{bone->png, "The bone before, and after each algorithm's run."}};
@@ -208,8 +182,8 @@ std::vector<PageSection> pictures_section(const RunGroup& group, const fs::path&
 }
 
 // Of a scan with labels.
-PageSection labels_section(const RunGroup& group, const fs::path& folder) {
-  std::optional<PageSection> labels = label_section(group);
+Section labels_section(const RunGroup& group, const fs::path& folder) {
+  std::optional<Section> labels = label_section(group);
   if (!labels) return {};
   // Below the table.
   if (const auto figure = draw_label_figure(group, folder)) {
@@ -258,13 +232,13 @@ std::string session_in_words(const MeasuredRun& run) {
              fmt::join(greatest, " and "));
 }
 
-PageSection sessions_in_words(const RunGroup& group) {
-  PageSection section;
+Section sessions_in_words(const RunGroup& group) {
+  Section section;
   for (const MeasuredRun& run : group.runs) section.paragraphs.push_back(session_in_words(run));
   return section;
 }
 
-PageSection how_to_repeat(const std::vector<const Recording*>& recordings) {
+Section how_to_repeat(const std::vector<const Recording*>& recordings) {
   std::vector<std::string> commands;
   for (const Recording* recording : recordings) {
     const std::string* command = find_setting<std::string>(recording->description, kCommandLineKey);
@@ -280,10 +254,10 @@ PageSection how_to_repeat(const std::vector<const Recording*>& recordings) {
       .commands = commands};
 }
 
-std::string report_page(const RunGroup& group, const PageText& text, const fs::path& folder) {
+Page report_page(const RunGroup& group, const PageText& text, const fs::path& folder) {
   const std::vector<const Recording*> recordings = all_recordings(group);
-  std::vector<PageSection> sections{notices(recordings)};
-  const auto add = [&](const std::vector<PageSection>& more) {
+  std::vector<Section> sections{notices(recordings)};
+  const auto add = [&](const std::vector<Section>& more) {
     sections.insert(sections.end(), more.begin(), more.end());
   };
   add(differences(recordings));
@@ -296,7 +270,7 @@ std::string report_page(const RunGroup& group, const PageText& text, const fs::p
   add({what_was_run(recordings),
        {.title = "Settings", .tables = {settings_table(recordings)}},
        how_to_repeat(recordings)});
-  return html_page(text.title, sections);
+  return {text.title, sections};
 }
 
 void write_summary_csv(const fs::path& path, const RunGroup& group) {
@@ -308,14 +282,12 @@ void write_summary_csv(const fs::path& path, const RunGroup& group) {
 
 }  // namespace
 
-fs::path write_report(const RunGroup& group, const fs::path& out_dir, const PageText& text) {
-  write_folder_atomically(out_dir, [&](const fs::path& beside) {
-    create_folder(beside / "figures");
+fs::path write_report(const RunGroup& group, const fs::path& out_dir,
+                      const std::function<PageText(const fs::path&)>& text) {
+  return write_page(out_dir, "report.html", [&](const fs::path& beside) {
     write_summary_csv(beside / "summary.csv", group);
-    const std::string page = report_page(group, text, beside / "figures");
-    write_text_atomically(beside / "report.html", [&](std::ostream& out) { out << page; });
+    return report_page(group, text(beside / "figures"), beside / "figures");
   });
-  return out_dir / "report.html";
 }
 
 fs::path write_report(const std::vector<Recording>& recordings, const fs::path& out_dir) {

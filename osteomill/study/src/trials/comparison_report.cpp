@@ -12,7 +12,6 @@
 #include "osteomill/study/write_report.h"
 
 #include "report/report_parts.h"
-#include "trials/conclusions.h"
 #include "trials/passivity_section.h"
 #include "trials/study_section.h"
 
@@ -55,16 +54,16 @@ std::string about_stiffness(const std::vector<Recording>& recordings) {
 }
 
 // What was compared, whether that can show anything, and what it shows.
-PageSection opening(const Study& study, const std::vector<Recording>& recordings) {
-  PageSection section{.paragraphs = {what_was_compared(study, recordings.front().description.scan_name) +
-                                     " " + about_stiffness(recordings)},
-                      .points = conclusions(study)};
+Section opening(const Study& study, const std::vector<Recording>& recordings) {
+  Section section{.paragraphs = {what_was_compared(study, recordings.front().description.scan_name) + " " +
+                                 about_stiffness(recordings)},
+                  .tables = conclusions(study)};
   if (std::string few = too_few_hands(study); !few.empty()) section.notices = {std::move(few)};
   return section;
 }
 
 // The recordings do not belong together, or some algorithm lacks a phase that another has.
-PageSection opening_of_a_mix(const RunGroup& group) {
+Section opening_of_a_mix(const RunGroup& group) {
   std::vector<std::string> labels;
   for (const AlgorithmId& algorithm : group.algorithms()) labels.push_back(algorithm.label);
   return {.paragraphs = {fmt::format(
@@ -98,13 +97,12 @@ Study study_of(const RunGroup& group, const ReportExtras& extras) {
   return Study(std::move(rows));
 }
 
-PageSection hands_section(const Study& study, const fs::path& out_dir) {
-  std::vector<CaptionedFigure> figures;
-  for (const std::string_view phase : study.phases()) {
-    figures.push_back({draw_study_figure(study, phase, out_dir / "figures").svg,
-                       "Every hand of the study, by algorithm; logarithmic where values lie far apart."});
-  }
-  return study_section(study, figures);
+Section hands_section(const Study& study, const fs::path& figures) {
+  std::vector<CaptionedFigure> drawn;
+  for (const std::string_view phase : study.phases())
+    drawn.push_back({draw_study_figure(study, phase, figures).svg,
+                     "Every hand of the study, by algorithm; logarithmic where values lie far apart."});
+  return study_section(study, drawn);
 }
 
 }  // namespace
@@ -116,36 +114,35 @@ bool are_of_comparison(const std::vector<Recording>& recordings) {
 }
 
 fs::path write_comparison_report(const std::vector<Recording>& recordings, const fs::path& out_dir,
-                                 const ReportExtras& extras) {
+                                 const ReportExtras& extras, std::vector<Table>* came_out) {
   const RunGroup group = group_runs(recordings, phase_metrics);
-  if (!belong_together(recordings) || !have_the_same_phases(group))
-    return write_report(group, out_dir, {.title = kTitle, .opening = opening_of_a_mix(group)});
+  if (!belong_together(recordings) || !have_the_same_phases(group)) {
+    return write_report(group, out_dir, [&](const fs::path&) {
+      return PageText{.title = kTitle, .opening = opening_of_a_mix(group)};
+    });
+  }
   const Study study = study_of(group, extras);
   // Measured beside the recordings and kept nowhere else: they stay where no figure can be drawn.
-  const bool has_hands = study.seeds().size() > 1;
   const bool has_further_rows = study.rows().size() + study.rows_of_other_grips().size() > recordings.size();
   if (has_further_rows || !extras.passivity.empty()) create_folder(out_dir);
   if (has_further_rows) write_study_csv(out_dir / kStudyCsv, study);
   if (!extras.passivity.empty()) write_passivity_csv(out_dir / "stability.csv", extras.passivity);
-  write_folder_atomically(out_dir, [&](const fs::path& beside) {
-    create_folder(beside / "figures");
-    PageText text;
-    text.title = kTitle;
-    text.opening = opening(study, recordings);
-    text.sections = {findings_section(study)};
-    if (has_hands) text.sections.push_back(hands_section(study, beside));
+  const Section came = opening(study, recordings);
+  if (came_out != nullptr) *came_out = came.tables;
+  return write_report(group, out_dir, [&](const fs::path& figures) {
+    PageText text{.title = kTitle, .opening = came, .sections = {findings_section(study)}};
+    if (study.seeds().size() > 1) text.sections.push_back(hands_section(study, figures));
     if (!extras.passivity.empty()) {
       text.sections.push_back(
-          passivity_section(extras.passivity, draw_passivity_figure(extras.passivity, beside / "figures")));
+          passivity_section(extras.passivity, draw_passivity_figure(extras.passivity, figures)));
     }
     text.further_times = {{"Haptic rate in the paper, mean, on a Pentium 4 (Hz)", paper_rate}};
     text.caption_notes = {{"rate", "The paper's figure 6 shows the rate that follows from it."},
                           {"force", "The paper's figure 7."},
                           {"torque", "The paper's figure 8."},
                           {"shaft", "The paper's figure 9."}};
-    write_report(group, beside, text);
+    return text;
   });
-  return out_dir / "report.html";
 }
 
 }  // namespace osteomill

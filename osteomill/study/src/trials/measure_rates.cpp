@@ -79,6 +79,23 @@ double paced_rate_hz(MillingTrial& trial, int ticks_before, double tick_s) {
 
 }  // namespace
 
+template <>
+const std::vector<Field<RateRow>>& fields_of<RateRow>() {
+  using R = RateRow;
+  constexpr NumberRange kAny = NumberRange::not_negative();
+  static const std::vector<Field<R>> all{
+      field<R>({"points", "", kAny, "points"}, &R::points),
+      field<R>({"step_us_median", "µs", kAny, "step, median"}, &R::step_us_median),
+      field<R>({"step_us_p99", "µs", kAny, "step, 99th percentile"}, &R::step_us_p99),
+      field<R>({"rate_hz", "Hz", kAny, "rate by CPU time"}, &R::rate_hz),
+      field<R>({"steps_per_s", "", kAny, "steps a second"}, &R::steps_per_s),
+      {{"paper_rate_hz", "Hz", kAny, "in the paper"},
+       [](const R& row) { return row.paper_rate_hz > 0 ? row.paper_rate_hz : kNotMeasured; },
+       [](R& row, double value) { row.paper_rate_hz = value; }},
+      field<R>({"paced_rate_hz", "Hz", kAny, "rate achieved"}, &R::paced_rate_hz)};
+  return all;
+}
+
 std::vector<RateRow> measure_rates(const TrialPlan& plan, const std::vector<AlgorithmDescription>& algorithms,
                                    const std::function<void(std::string_view, double)>& progress) {
   std::vector<RateRow> rows;

@@ -42,9 +42,9 @@ std::vector<AlgorithmId> algorithms_of(std::span<const PassivityRow> rows) {
 }
 
 // A line a device, in the order of the first algorithm's rows.
-HtmlTable devices_table(std::span<const PassivityRow> rows) {
+Table devices_table(std::span<const PassivityRow> rows) {
   const auto algorithms = algorithms_of(rows);
-  HtmlTable table{{"Device: damping, delay", "2 b / (T + 2 τ)"}, {}, true};
+  Table table{{"Device: damping, delay", "2 b / (T + 2 τ)"}, {}, true};
   for (const AlgorithmId& algorithm : algorithms) table.header.emplace_back(algorithm.label);
   for (const PassivityRow& device : rows) {
     if (device.algorithm != algorithms.front()) continue;
@@ -211,7 +211,7 @@ Figure draw_passivity_figure(std::span<const PassivityRow> rows, const std::file
       folder);
 }
 
-PageSection passivity_section(std::span<const PassivityRow> rows, const Figure& figure) {
+Section passivity_section(std::span<const PassivityRow> rows, const Figure& figure) {
   return {.title = "Passivity against a flat wall",
           .paragraphs = {kWhatWasDone, in_words(rows)},
           .figures = {{figure.svg, kCaption}},

@@ -4,8 +4,8 @@
 #include <span>
 
 #include "osteomill/study/figure.h"
-#include "osteomill/study/html.h"
 #include "osteomill/study/measure_passivity.h"
+#include "osteomill/study/page.h"
 
 namespace osteomill {
 
@@ -15,7 +15,7 @@ Figure draw_passivity_figure(std::span<const PassivityRow> rows, const std::file
 
 /// The report's section on passivity against a flat wall: what was measured and how, in words, with the
 /// figure and a table.
-PageSection passivity_section(std::span<const PassivityRow> rows, const Figure& figure);
+Section passivity_section(std::span<const PassivityRow> rows, const Figure& figure);
 
 /// Writes stability.csv, whole or not at all. Throws InputError where it cannot be written.
 void write_passivity_csv(const std::filesystem::path& path, std::span<const PassivityRow> rows);

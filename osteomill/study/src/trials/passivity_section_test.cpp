@@ -127,8 +127,8 @@ TEST_F(PassivitySectionTest, TheReportOfAStudyHasItsFilesFiguresAndWords) {
   }
   std::size_t place = 0;
   for (const char* next :
-       {"8 simulated hands", "<li>Force above 20 Hz", "The bone before and after", ">Force<", ">Torque<",
-        ">Shaft<", "The paper's findings", "Study over 8 hands", "Passivity against a flat wall",
+       {"8 simulated hands", "force above 20 Hz, rms, milling (N)", "The bone before and after", ">Force<",
+        ">Torque<", ">Shaft<", "The paper's findings", "Study over 8 hands", "Passivity against a flat wall",
         "How long the ticks took", "What was run", ">Settings<"}) {
     const std::size_t found = html.find(next, place);
     ASSERT_NE(found, std::string::npos) << next;

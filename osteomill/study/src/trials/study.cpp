@@ -15,6 +15,7 @@
 #include "osteomill/base/csv_field.h"
 #include "osteomill/base/parse_number.h"
 #include "osteomill/base/read_line.h"
+#include "osteomill/study/metric_table.h"
 #include "osteomill/study/paper.h"
 
 #include "trials/statistics.h"
@@ -23,8 +24,9 @@ namespace osteomill {
 
 namespace {
 
-const std::string kHandColumns = "seed,hand_stiffness_N_per_m,hand_damping_Ns_per_m,hand_grip,";
-constexpr std::size_t kHandFields = 4, kNamedFields = 2;
+std::string columns() {
+  return "seed" + csv_names(fields_of<MeasuredRun>()) + "," + summary_columns();
+}
 
 using M = RunMetrics;
 
@@ -45,24 +47,23 @@ bool next_line(std::istream& in, std::string& line) {
 
 // Nothing if it is not of an algorithm and phase of these rows, whose number of columns it has.
 std::optional<MeasuredRun> read_row(std::string_view line, const std::vector<MeasuredRun>& rows) {
-  const std::vector<std::string_view> fields = csv_fields(line);
-  const std::vector<Field<M>>& figures = fields_of<M>();
-  if (fields.size() != kHandFields + kNamedFields + figures.size() + 1) return std::nullopt;
+  const std::vector<std::string_view> cells = csv_fields(line);
+  const auto& of_hand = fields_of<MeasuredRun>();
+  const auto& figures = fields_of<M>();
+  const std::size_t algorithm = 1 + of_hand.size(), first = algorithm + 2;
+  if (cells.size() != first + figures.size() + 1) return std::nullopt;
   const auto of = std::ranges::find_if(rows, [&](const MeasuredRun& row) {
-    return fields[kHandFields] == row.algorithm.name && fields[kHandFields + 1] == row.phase;
+    return cells[algorithm] == row.algorithm.name && cells[algorithm + 1] == row.phase;
   });
   if (of == rows.end()) return std::nullopt;
-  const auto number = [&](std::size_t n) { return parsed_number<double>(fields[n]).value_or(kNotMeasured); };
+  const auto number = [&](std::size_t n) { return parsed_number<double>(cells[n]).value_or(kNotMeasured); };
   MeasuredRun row{.algorithm = of->algorithm,
                   .phase = of->phase,
                   .metrics = {},
-                  .not_reached = std::string(fields.back()),
-                  .seed = parsed_number<std::uint64_t>(fields[0]).value_or(0),
-                  .hand_stiffness_N_per_m = number(1),
-                  .hand_damping_Ns_per_m = number(2),
-                  .grip = number(3)};
-  for (std::size_t n = 0; n < figures.size(); ++n)
-    figures[n].set(row.metrics, number(kHandFields + kNamedFields + n));
+                  .not_reached = std::string(cells.back()),
+                  .seed = parsed_number<std::uint64_t>(cells[0]).value_or(0)};
+  for (std::size_t n = 0; n < of_hand.size(); ++n) of_hand[n].set(row, number(1 + n));
+  for (std::size_t n = 0; n < figures.size(); ++n) figures[n].set(row.metrics, number(first + n));
   return row;
 }
 
@@ -200,12 +201,10 @@ std::string Study::not_reached(const AlgorithmId& algorithm, std::string_view ph
 
 void write_study_csv(const std::filesystem::path& path, const Study& study) {
   write_text_atomically(path, [&](std::ostream& out) {
-    out << kHandColumns << summary_columns() << '\n';
+    out << columns() << '\n';
     for (const auto* rows : {&study.rows(), &study.rows_of_other_grips()}) {
-      for (const MeasuredRun& row : *rows) {
-        out << fmt::format("{},{},{},{},{}\n", row.seed, row.hand_stiffness_N_per_m,
-                           row.hand_damping_Ns_per_m, row.grip, summary_fields(row));
-      }
+      for (const MeasuredRun& row : *rows)
+        out << row.seed << csv_values(fields_of<MeasuredRun>(), row) << ',' << summary_fields(row) << '\n';
     }
   });
 }
@@ -213,7 +212,7 @@ void write_study_csv(const std::filesystem::path& path, const Study& study) {
 std::optional<Study> read_study_csv(const std::filesystem::path& path, const std::vector<MeasuredRun>& rows) {
   std::ifstream in(path);
   std::string line;
-  if (!next_line(in, line) || line != kHandColumns + summary_columns()) return std::nullopt;
+  if (!next_line(in, line) || line != columns()) return std::nullopt;
   std::vector<MeasuredRun> all;
   std::size_t found = 0;
   while (next_line(in, line)) {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "osteomill/study/html.h"
+#include "osteomill/study/page.h"
 #include "osteomill/study/study_design.h"
 #include "osteomill/study/trial_rows.h"
 

@@ -9,8 +9,8 @@
 #include "osteomill/base/atomic_file.h"
 #include "osteomill/base/csv_field.h"
 #include "osteomill/base/input_error.h"
+#include "osteomill/study/metric_table.h"
 
-#include "trials/conclusions.h"
 #include "trials/study_maps.h"
 #include "trials/study_section.h"
 
@@ -21,15 +21,12 @@ namespace fs = std::filesystem;
 namespace {
 
 std::string csv_head(const StudyDesign& design) {
-  std::string head = list_head(design) + ",part";
-  for (const Field<TrialRow>& column : columns_of(design.test)) head += "," + column.name;
-  return head + ",not_reached\n";
+  return fmt::format("{},part{},not_reached\n", list_head(design), csv_names(columns_of(design.test)));
 }
 
 std::string csv_row(const StudyDesign& design, const TrialRow& row) {
-  std::string line = list_row(design, row.trial) + "," + std::string(parts_of(design.test)[row.part]);
-  for (const Field<TrialRow>& column : columns_of(design.test)) line += csv_number(column.get(row));
-  return line + "," + csv_field(row.run.not_reached) + "\n";
+  return fmt::format("{},{}{},{}\n", list_row(design, row.trial), parts_of(design.test)[row.part],
+                     csv_values(columns_of(design.test), row), csv_field(row.run.not_reached));
 }
 
 std::string text_of(const StudySettings& settings, std::string_view key, const char* otherwise) {
@@ -67,20 +64,20 @@ std::vector<MeasuredRun> of_whole_hands(std::vector<MeasuredRun> rows) {
 }
 
 // One for each group of hands.
-std::vector<PageSection> findings_sections(const StudyDesign& design, const std::vector<TrialRow>& all,
-                                           const fs::path& figures) {
+std::vector<Section> findings_sections(const StudyDesign& design, const std::vector<TrialRow>& all,
+                                       const fs::path& figures) {
   std::map<std::string, std::vector<MeasuredRun>> groups;
   for (const TrialRow& row : all) {
     const StudySettings settings = design.trial(row.trial);
     groups[group_of(design, settings)].push_back(run_of_hand(settings, row));
   }
-  std::vector<PageSection> sections;
+  std::vector<Section> sections;
   for (const auto& [group, rows] : groups) {
     const Study study(of_whole_hands(rows));
-    PageSection section{.title = group.empty() ? "Over the hands" : "Over the hands: " + group,
-                        .paragraphs = {what_was_compared(study, group.empty() ? "the same bone" : group)},
-                        .points = conclusions(study),
-                        .parts = {findings_section(study)}};
+    Section section{.title = group.empty() ? "Over the hands" : "Over the hands: " + group,
+                    .paragraphs = {what_was_compared(study, group.empty() ? "the same bone" : group)},
+                    .tables = conclusions(study),
+                    .parts = {findings_section(study)}};
     const fs::path folder = figures / fmt::format("{}", sections.size());
     for (const std::string_view phase : study.phases()) {
       create_folder(folder);
@@ -91,7 +88,7 @@ std::vector<PageSection> findings_sections(const StudyDesign& design, const std:
   return sections;
 }
 
-HtmlTable options_table(const StudyDesign& design, const std::vector<TrialRow>& rows) {
+Table options_table(const StudyDesign& design, const std::vector<TrialRow>& rows) {
   constexpr std::size_t kFewValues = 12;
   // Up to one value more than is shown, so that the table can say that there are others.
   std::map<std::string, std::vector<std::string>> tried;
@@ -102,19 +99,18 @@ HtmlTable options_table(const StudyDesign& design, const std::vector<TrialRow>& 
         values.push_back(value);
     }
   }
-  HtmlTable table{{"Option", "What was tried"}, {}};
+  Table table{{"Option", "What was tried"}, {}};
   for (auto& [key, values] : tried) {
     const bool has_others = values.size() > kFewValues;
     if (has_others) values.pop_back();
     const std::string words = fmt::format("{}{}", fmt::join(values, ", "), has_others ? " and others" : "");
-    table.rows.push_back({html_escaped(design.label_of(key)), html_escaped(words)});
+    table.rows.push_back({design.label_of(key), words});
   }
   return table;
 }
 
-PageSection maps_section(const StudyDesign& design, const std::vector<TrialRow>& rows,
-                         const fs::path& figures) {
-  PageSection section{.title = "Maps"};
+Section maps_section(const StudyDesign& design, const std::vector<TrialRow>& rows, const fs::path& figures) {
+  Section section{.title = "Maps"};
   for (std::size_t n = 1; n <= design.maps.size(); ++n) {
     const StudyMap& map = design.maps[n - 1];
     if (const auto drawn = draw_study_map(design, map, rows, fmt::format("map_{}", n), figures)) {
@@ -151,27 +147,23 @@ fs::path write_study_report(const StudyDesign& design, const StudyFolder& study)
   const StudyStatus status = study_status(study, &rows);
   if (rows.empty()) throw InputError(study.path.string(), "has no trial that is done");
   const std::string share = share_text(status.trials_done, study.record.trials);
-  const fs::path out = study.path / "report";
-  write_folder_atomically(out, [&](const fs::path& beside) {
+  return write_page(study.path / "report", "report.html", [&](const fs::path& beside) {
     write_text_atomically(beside / "trials.csv", [&](std::ostream& csv) {
       csv << csv_head(design);
       for (const TrialRow& row : rows) csv << csv_row(design, row);
     });
     const fs::path figures = beside / "figures";
-    create_folder(figures);
-    std::vector<PageSection> sections{{.paragraphs = {fmt::format("{}, test {}; {:.3g} h of CPU.", share,
-                                                                  name_of(design.test), status.cpu_s / 3600)},
-                                       .tables = {options_table(design, rows)}}};
+    Page page{design.title.empty() ? "A study" : design.title,
+              {{.paragraphs = {fmt::format("{}, test {}; {:.3g} h of CPU.", share, name_of(design.test),
+                                           status.cpu_s / 3600)},
+                .tables = {options_table(design, rows)}}}};
     if (status.trials_done < study.record.trials)
-      sections.front().notices = {fmt::format("This is a part of the study: {}.", share)};
-    if (!design.maps.empty()) sections.push_back(maps_section(design, rows, figures));
+      page.sections.front().notices = {fmt::format("This is a part of the study: {}.", share)};
+    if (!design.maps.empty()) page.sections.push_back(maps_section(design, rows, figures));
     if (design.findings)
-      std::ranges::move(findings_sections(design, rows, figures), std::back_inserter(sections));
-    write_text_atomically(beside / "report.html", [&](std::ostream& page) {
-      page << html_page(design.title.empty() ? "A study" : design.title, sections);
-    });
+      std::ranges::move(findings_sections(design, rows, figures), std::back_inserter(page.sections));
+    return page;
   });
-  return out / "report.html";
 }
 
 }  // namespace osteomill

@@ -2,14 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include <fmt/format.h>
 
+#include "osteomill/study/metric_table.h"
 #include "osteomill/study/paper.h"
 #include "osteomill/study/study_findings.h"
 
 #include "trials/statistics.h"
-#include "trials/study_comparison.h"
 
 namespace osteomill {
 
@@ -103,50 +104,78 @@ std::string interval_text(const MedianInterval& interval) {
   return fmt::format("{:.3g} [{:.3g}, {:.3g}]", interval.median, interval.low, interval.high);
 }
 
-// "2 > 1, p = 0.012" in bold where significant, else "1, 2: p = 0.3" in grey.
-std::string pair_text(const PairedComparison& pair) {
-  const std::string first = short_label(pair.first), second = short_label(pair.second);
-  if (pair.p <= kSignificance) {
-    return fmt::format("<b>{} &gt; {}</b>, {}", pair.second_is_greater ? second : first,
-                       pair.second_is_greater ? first : second, html_escaped(p_text(pair.p)));
+// "2 > 1, p = 0.012" with the order strong where it is significant, else "1, 2: p = 0.3", faint; a line each.
+Cell differences(const Study& study, std::string_view phase, const Field<RunMetrics>& metric) {
+  std::vector<Cell::Piece> pieces;
+  for (const PairedComparison& pair : compare_algorithms(study, phase, metric.get)) {
+    const std::string first = short_label(pair.first), second = short_label(pair.second);
+    if (!pieces.empty()) pieces.push_back({"\n"});
+    if (pair.p <= kSignificance) {
+      pieces.push_back(
+          {pair.second_is_greater ? second + " > " + first : first + " > " + second, Look::strong});
+      pieces.push_back({", " + p_text(pair.p)});
+    } else {
+      pieces.push_back({fmt::format("{}, {}: {}", first, second, p_text(pair.p)), Look::faint});
+    }
   }
-  return fmt::format("<span class=\"none\">{}, {}: {}</span>", first, second, p_text(pair.p));
+  return pieces;
 }
 
-// "0.02 [0.01, 0.03]", with the hands where it could not be measured in all; else why not in any.
+// "0.02 [0.01, 0.03]", of one hand without the interval, and with the hands where it could not be measured in
+// all; else why not in any.
 std::string values_text(const Study& study, const AlgorithmId& algorithm, std::string_view phase,
                         const Field<RunMetrics>& metric) {
   const std::vector<double> values = study.values(algorithm, phase, metric.get);
+  const std::size_t hands = study.seeds().size();
   if (values.empty()) return contact_words(study.contact(algorithm, phase));
-  const std::string text = interval_text(median_interval(values));
-  return values.size() == study.seeds().size()
-             ? text
-             : fmt::format("{} in {} of {} hands", text, values.size(), study.seeds().size());
+  const std::string text =
+      hands == 1 ? fmt::format("{:.3g}", values.front()) : interval_text(median_interval(values));
+  return values.size() == hands ? text : fmt::format("{} in {} of {} hands", text, values.size(), hands);
 }
 
-HtmlTable algorithms_table(const Study& study, std::string_view phase) {
-  HtmlTable table{{"Median over the hands [interval]"}, {}, true};
-  for (const AlgorithmId& algorithm : study.algorithms()) table.header.emplace_back(algorithm.label);
-  if (study.algorithms().size() > 1) table.header.emplace_back("Differences");
-  std::vector<std::string> not_reached{"not reached"};
+bool are_compared(const Study& study) {
+  return study.algorithms().size() > 1 && study.seeds().size() > 1;
+}
+
+// Without rows yet: a column for each algorithm and, of several hands, one for the differences.
+Table comparison_table(const Study& study) {
+  Table table{{study.seeds().size() > 1 ? "Median over the hands [interval]" : "In this hand"}, {}, true};
+  for (const AlgorithmId& algorithm : study.algorithms()) table.header.push_back(algorithm.label);
+  if (are_compared(study)) table.header.emplace_back("Differences");
+  return table;
+}
+
+void add_figure(Table& table, const Study& study, std::string_view phase, const Field<RunMetrics>& metric,
+                const std::string& label) {
+  std::vector<Cell>& row = table.rows.emplace_back(1, label);
+  for (const AlgorithmId& algorithm : study.algorithms())
+    row.emplace_back(values_text(study, algorithm, phase, metric));
+  if (are_compared(study)) row.push_back(differences(study, phase, metric));
+}
+
+// No row where `words` has nothing of any algorithm.
+template <typename Words>
+void add_words(Table& table, const Study& study, const char* label, const Words& words) {
+  std::vector<Cell> row{label};
   bool any = false;
   for (const AlgorithmId& algorithm : study.algorithms()) {
-    const std::string words = study.not_reached(algorithm, phase);
-    any = any || !words.empty();
-    not_reached.push_back("<span class=\"words\">" + html_escaped(words) + "</span>");
+    const std::string said = words(algorithm);
+    any = any || !said.empty();
+    row.emplace_back(said, Look::words);
   }
-  if (any) table.rows.push_back(std::move(not_reached));
-  for (const Field<RunMetrics>& metric : study.metrics_of(phase)) {
-    table.rows.push_back({html_escaped(label_of(metric))});
-    for (const AlgorithmId& algorithm : study.algorithms()) {
-      table.rows.back().push_back(values_text(study, algorithm, phase, metric));
-    }
-    std::string pairs;
-    for (const PairedComparison& pair : compare_algorithms(study, phase, metric.get)) {
-      pairs += (pairs.empty() ? "" : "<br>") + pair_text(pair);
-    }
-    if (study.algorithms().size() > 1) table.rows.back().push_back(pairs);
-  }
+  if (any) table.rows.push_back(std::move(row));
+}
+
+void add_not_reached(Table& table, const Study& study, std::string_view phase) {
+  add_words(table, study, "not reached",
+            [&](const AlgorithmId& algorithm) { return study.not_reached(algorithm, phase); });
+}
+
+Table algorithms_table(const Study& study, std::string_view phase) {
+  Table table = comparison_table(study);
+  add_not_reached(table, study, phase);
+  for (const Field<RunMetrics>& metric : study.metrics_of(phase))
+    add_figure(table, study, phase, metric, label_of(metric));
   return table;
 }
 
@@ -190,29 +219,52 @@ std::vector<std::string> how_to_read(const Study& study) {
   return paragraphs;
 }
 
-const char* css_of(Verdict verdict) {
-  return verdict == Verdict::agrees ? "agrees" : verdict == Verdict::does_not_agree ? "differs" : "none";
+Cell verdict_cell(Verdict verdict) {
+  return {std::string(name_of(verdict)), verdict == Verdict::agrees           ? Look::agrees
+                                         : verdict == Verdict::does_not_agree ? Look::differs
+                                                                              : Look::faint};
 }
 
-HtmlTable findings_table(const Study& study) {
+Table findings_table(const Study& study) {
   const bool one = study.seeds().size() == 1;
-  HtmlTable table{{"The paper found", one ? "Measured here" : "Medians over the hands",
-                   one ? "In this hand" : "Verdict", "Rule"},
-                  {}};
+  Table table{{"The paper found", one ? "Measured here" : "Medians over the hands",
+               one ? "In this hand" : "Verdict", "Rule"},
+              {}};
   if (!one) table.header.insert(table.header.end() - 1, {"In how many hands", "Sign test"});
   for (const StudyFinding& f : check_study_findings(study)) {
-    const Verdict verdict = f.verdict;
-    std::vector<std::string> row{
-        html_escaped(f.of_medians.paper_says), html_escaped(f.of_medians.measured),
-        fmt::format("<span class=\"{}\">{}</span>", css_of(verdict), name_of(verdict))};
-    if (!one) {
-      row.push_back(fmt::format("{} of {}", f.agreeing, f.tested));
-      row.push_back(html_escaped(p_text(f.p)));
-    }
-    row.push_back("agrees where " + html_escaped(f.of_medians.rule));
+    std::vector<Cell> row{f.of_medians.paper_says, f.of_medians.measured, verdict_cell(f.verdict)};
+    if (!one) row.insert(row.end(), {fmt::format("{} of {}", f.agreeing, f.tested), p_text(f.p)});
+    row.emplace_back("agrees where " + f.of_medians.rule);
     table.rows.push_back(std::move(row));
   }
   return table;
+}
+
+// How many have which verdict, and which those are that do not agree.
+Table verdicts_table(const Study& study) {
+  std::map<Verdict, std::vector<std::string>> findings;
+  std::size_t all = 0;
+  for (const StudyFinding& f : check_study_findings(study)) {
+    if (f.of_medians.of_the_machine) continue;
+    ++all;
+    findings[f.verdict].push_back(f.of_medians.paper_says);
+    if (study.seeds().size() > 1 && is_tested(f.verdict))
+      findings[f.verdict].back() += fmt::format(", in {} of {}", f.agreeing, f.tested);
+  }
+  Table table{{fmt::format("The paper's {} findings on force, torque and shaft", all), "How many", "Which"},
+              {}};
+  for (const auto& [verdict, which] : findings)
+    table.rows.push_back({verdict_cell(verdict), fmt::format("{}", which.size()),
+                          verdict == Verdict::agrees ? "" : fmt::format("{}", fmt::join(which, "\n"))});
+  return table;
+}
+
+// "3 of 8 hands", in which the shaft was against the wall for less than half of the holding; empty for none.
+std::string hands_not_leaning(const Study& study, const AlgorithmId& algorithm) {
+  constexpr double kLeans = 0.5;
+  const std::vector<double> shares = study.values(algorithm, kHolding, metric("shaft_contact_share").get);
+  const auto few = std::ranges::count_if(shares, [](double share) { return share < kLeans; });
+  return few == 0 ? "" : fmt::format("{} of {} hands", few, shares.size());
 }
 
 std::string phase_title(std::string_view phase) {
@@ -244,17 +296,78 @@ Figure draw_study_figure(const Study& study, std::string_view phase, const std::
       folder);
 }
 
-PageSection study_section(const Study& study, const std::vector<CaptionedFigure>& figures) {
-  PageSection section{.title = fmt::format("Study over {} hands", study.seeds().size()),
-                      .paragraphs = how_to_read(study),
-                      .figures = figures};
+std::vector<PairedComparison> compare_algorithms(const Study& study, std::string_view phase,
+                                                 const RunFigure& figure) {
+  const std::vector<AlgorithmId> algorithms = study.algorithms();
+  std::vector<PairedComparison> comparisons;
+  std::vector<double> p;
+  for (std::size_t a = 0; a < algorithms.size(); ++a) {
+    for (std::size_t b = a + 1; b < algorithms.size(); ++b) {
+      const std::vector<double> of_first = study.all_values(algorithms[a], phase, figure);
+      const std::vector<double> of_second = study.all_values(algorithms[b], phase, figure);
+      std::vector<double> differences;
+      for (std::size_t n = 0; n < std::min(of_first.size(), of_second.size()); ++n)
+        differences.push_back(of_first[n] - of_second[n]);
+      std::erase_if(differences, [](double difference) { return std::isnan(difference); });
+      if (differences.empty()) continue;
+      const SignedRank test = signed_rank(differences);
+      comparisons.push_back({algorithms[a], algorithms[b], test.negative > test.positive});
+      p.push_back(test.p);
+    }
+  }
+  const std::vector<double> corrected = holm_corrected(p);
+  for (std::size_t n = 0; n < comparisons.size(); ++n) comparisons[n].p = corrected[n];
+  return comparisons;
+}
+
+std::string what_was_compared(const Study& study, std::string_view scan_name) {
+  std::vector<std::string> algorithms;
+  for (const AlgorithmId& algorithm : study.algorithms()) algorithms.push_back(algorithm.label);
+  const std::size_t hands = study.seeds().size();
+  return fmt::format(
+      "{} milled the same bone ({}) in {} simulated hand{}. Each was to move the burr in until it touched, "
+      "mill a hole and push the shaft against the hole's edge; then, with the spindle off, to stand in that "
+      "hole with the shaft against the wall and keep as still as it could.",
+      fmt::join(algorithms, ", "), scan_name, hands, hands == 1 ? "" : "s");
+}
+
+std::string too_few_hands(const Study& study) {
+  const std::size_t hands = study.seeds().size(), needed = study.seeds_needed();
+  if (hands >= needed) return "";
+  return fmt::format(
+      "Only {} hand{} tried this, too few to say which algorithm is the better: a difference shows in {} or "
+      "more (--seeds {}). The numbers are those of this trial.",
+      hands, hands == 1 ? "" : "s", needed, needed);
+}
+
+std::vector<Table> conclusions(const Study& study) {
+  Table table = comparison_table(study);
+  add_not_reached(table, study, kHolding);
+  add_words(table, study, "shaft against the wall for less than half of the holding",
+            [&](const AlgorithmId& algorithm) { return hands_not_leaning(study, algorithm); });
+  const std::vector<std::string_view> phases = study.phases();
+  for (const auto& [phase, column] :
+       {std::pair(kMilling, "force_hp_rms_N"), std::pair(kMilling, "torque_hp_rms_Nmm"),
+        std::pair(kHolding, "shaft_spread_deg"), std::pair(kMilling, "removed_mm3")}) {
+    const Field<RunMetrics>& figure = metric(column);
+    if (std::ranges::find(phases, phase) != phases.end())
+      add_figure(table, study, phase, figure,
+                 with_unit(fmt::format("{}, {}", figure.doc, phase), figure.unit));
+  }
+  return {std::move(table), verdicts_table(study)};
+}
+
+Section study_section(const Study& study, const std::vector<CaptionedFigure>& figures) {
+  Section section{.title = fmt::format("Study over {} hands", study.seeds().size()),
+                  .paragraphs = how_to_read(study),
+                  .figures = figures};
   for (const std::string_view phase : study.phases())
     section.parts.push_back({.title = phase_title(phase), .tables = {algorithms_table(study, phase)}});
   return section;
 }
 
-PageSection findings_section(const Study& study) {
-  PageSection section{
+Section findings_section(const Study& study) {
+  Section section{
       .title = "The paper's findings",
       .paragraphs = {
           "What section 8.2 of the paper says it found, each held against what was measured by a rule of "

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "osteomill/study/figure.h"
-#include "osteomill/study/html.h"
+#include "osteomill/study/page.h"
 #include "osteomill/study/study.h"
 
 namespace osteomill {
@@ -14,11 +14,37 @@ namespace osteomill {
 /// is not zero throughout, at most eight.
 Figure draw_study_figure(const Study& study, std::string_view phase, const std::filesystem::path& folder);
 
+/// A figure of two that were tried, paired hand by hand.
+struct PairedComparison {
+  AlgorithmId first;
+  AlgorithmId second;
+  /// By the sums of signed ranks; false where neither is.
+  bool second_is_greater = false;
+  /// Wilcoxon's signed-rank test, exact, two-sided, after Holm's correction over all that is compared with
+  /// it.
+  double p = 1;
+};
+
+/// Compares every pair of the algorithms that were tried, by the hands in which both could be measured.
+std::vector<PairedComparison> compare_algorithms(const Study& study, std::string_view phase,
+                                                 const RunFigure& figure);
+
+/// Which algorithms did what, on which bone, in how many hands.
+std::string what_was_compared(const Study& study, std::string_view scan_name);
+
+/// Says ahead of all else that a study has too few hands to show anything; empty where it has enough.
+std::string too_few_hands(const Study& study);
+
+/// What a comparison shows, for readers of nothing else: a table of force and torque while milling, the shaft
+/// while holding and the bone removed, by algorithm and with their differences, and one of how many of the
+/// paper's findings hold.
+std::vector<Table> conclusions(const Study& study);
+
 /// The report's section on a study: medians with their intervals, and which differences between algorithms
 /// are significant.
-PageSection study_section(const Study& study, const std::vector<CaptionedFigure>& figures);
+Section study_section(const Study& study, const std::vector<CaptionedFigure>& figures);
 
 /// The report's section on what the paper says it found, each held against the study.
-PageSection findings_section(const Study& study);
+Section findings_section(const Study& study);
 
 }  // namespace osteomill

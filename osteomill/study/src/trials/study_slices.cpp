@@ -15,6 +15,7 @@
 #include "osteomill/base/input_error.h"
 #include "osteomill/recording/hdf5.h"
 #include "osteomill/recording/read_hdf5.h"
+#include "osteomill/study/metric_table.h"
 
 namespace osteomill {
 
@@ -208,16 +209,13 @@ void write_slice(const StudyFolder& study, const Slice& slice) {
     not_reached.insert(not_reached.end(), row.run.not_reached.begin(), row.run.not_reached.end());
     not_reached.push_back('\n');
   }
-  std::string names;
-  for (const Field<TrialRow>& column : columns_of(study.test))
-    names += (names.empty() ? "" : ",") + column.name;
   write_hdf5(path, [&](hid_t file) {
     const Attributes write(path, file);
     write.put(kSliceVersion, kVersion);
     write.put("made_of", study.record.hash());
     write.put("slice", std::uint64_t{slice.number});
     write.put("cpu_s", slice.cpu_s);
-    write.put("columns", names);
+    write.put("columns", csv_names(columns_of(study.test)).substr(1));
     write.put("not_reached_bytes", std::uint64_t{not_reached.size()});
     write_dataset(path, file, "trial", trials);
     write_dataset(path, file, "values", values, columns_of(study.test).size());

@@ -1,8 +1,5 @@
 #include "osteomill/study/trial_rows.h"
 
-#include <algorithm>
-#include <iterator>
-
 #include "osteomill/study/paper.h"
 
 namespace osteomill {
@@ -19,16 +16,15 @@ Field<TrialRow> column(const char* name, const char* unit, Place place, const ch
 }
 
 Columns milling_columns() {
-  Columns columns{
-      column(
-          "hand_stiffness_N_per_m", "N/m", [](auto& row) -> auto& { return row.run.hand_stiffness_N_per_m; },
-          "stiffness of the hand"),
-      column(
-          "hand_damping_Ns_per_m", "N s/m", [](auto& row) -> auto& { return row.run.hand_damping_Ns_per_m; },
-          "damping of the hand")};
-  std::ranges::move(fields_within<TrialRow>(
-                        [](auto& row) -> auto& { return row.run.metrics; }, fields_of<RunMetrics>()),
-                    std::back_inserter(columns));
+  const auto run = [](auto& row) -> auto& {
+    return row.run;
+  };
+  Columns columns =
+      joined<TrialRow>({fields_within<TrialRow>(run, fields_of<MeasuredRun>()),
+                        fields_within<TrialRow>(
+                            [](auto& row) -> auto& { return row.run.metrics; }, fields_of<RunMetrics>())});
+  // An option of the trial.
+  std::erase_if(columns, [](const Field<TrialRow>& column) { return column.name == "hand_grip"; });
   return columns;
 }
 

@@ -84,6 +84,20 @@ VertexSearchRow press(bool circle, int vertices, const Volume& wall) {
 
 }  // namespace
 
+template <>
+const std::vector<Field<VertexSearchRow>>& fields_of<VertexSearchRow>() {
+  using V = VertexSearchRow;
+  constexpr NumberRange kAny = NumberRange::not_negative();
+  static const std::vector<Field<V>> all{
+      field<V>({"vertices", "", kAny, "vertices"}, &V::vertices),
+      field<V>({"direction_deg_median", "°", kAny, "force off the normal, median"}, &V::direction_deg_median),
+      field<V>({"direction_deg_worst", "°", kAny, "force off the normal, worst"}, &V::direction_deg_worst),
+      field<V>({"size_off_worst", "", kAny, "size off its mean, share of it, worst"}, &V::size_off_worst),
+      field<V>({"unseen_worst", "", kAny, "deepest unseen, share of the radius"}, &V::unseen_worst),
+      field<V>({"suffices", "", NumberRange::on_or_off(), "suffices"}, &V::suffices)};
+  return all;
+}
+
 std::vector<VertexSearchRow> search_vertices() {
   const Volume wall = linear_wall();
   std::vector<VertexSearchRow> rows;

@@ -14,8 +14,7 @@
 #include "osteomill/base/positive.h"
 #include "osteomill/haptics/sample_points.h"
 #include "osteomill/study/figure.h"
-#include "osteomill/study/html.h"
-#include "osteomill/study/metrics.h"
+#include "osteomill/study/metric_table.h"
 
 namespace osteomill {
 
@@ -118,25 +117,12 @@ void require_usable(const std::vector<RateRow>& rows) {
   }
 }
 
-void write_rates_csv(const fs::path& path, const MeasuredRates& measured) {
+// `named` gives what stands before the numbers of a row.
+template <typename Row, typename Named>
+void write_rows(const fs::path& path, const char* head, const std::vector<Row>& rows, const Named& named) {
   write_text_atomically(path, [&](std::ostream& out) {
-    out << "algorithm,resolution,points,step_us_median,step_us_p99,rate_hz,steps_per_s,paper_rate_hz,"
-           "paced_rate_hz\n";
-    for (const RateRow& r : measured.rows) {
-      out << fmt::format("{},{},{},{},{},{},{},{},{}\n", name_of(r.algorithm), csv_field(r.resolution),
-                         r.points, r.step_us_median, r.step_us_p99, r.rate_hz, r.steps_per_s,
-                         r.paper_rate_hz > 0 ? fmt::format("{}", r.paper_rate_hz) : "", r.paced_rate_hz);
-    }
-  });
-}
-
-void write_vertices_csv(const fs::path& path, const std::vector<VertexSearchRow>& rows) {
-  write_text_atomically(path, [&](std::ostream& out) {
-    out << "part,vertices,direction_deg_median,direction_deg_worst,size_off_worst,unseen_worst,suffices\n";
-    for (const VertexSearchRow& r : rows) {
-      out << fmt::format("{},{},{},{},{},{},{:d}\n", r.part, r.vertices, r.direction_deg_median,
-                         r.direction_deg_worst, r.size_off_worst, r.unseen_worst, r.suffices);
-    }
+    out << head << csv_names(fields_of<Row>()) << '\n';
+    for (const Row& row : rows) out << named(row) << csv_values(fields_of<Row>(), row) << '\n';
   });
 }
 
@@ -187,61 +173,36 @@ constexpr std::string_view kWhatRatesMean =
     "hardly tell fast algorithms apart. These and the rate by CPU time count steps in contact alone. "
     "barrier-shell is not the paper's, so nothing of the paper stands beside it.";
 
-HtmlTable rates_table(const std::vector<RateRow>& rows) {
-  const bool in_paper =
-      std::any_of(rows.begin(), rows.end(), [](const RateRow& r) { return r.paper_rate_hz > 0; });
-  HtmlTable table{{"Algorithm", "Resolution", "Points", "Step, median (µs)", "99th percentile (µs)",
-                   "Rate achieved (Hz)", "Rate by CPU time (Hz)", "Steps a second"},
-                  {},
-                  true};
-  if (in_paper) table.header.insert(table.header.begin() + 6, "In the paper (Hz)");
-  for (const RateRow& r : rows) {
-    table.rows.push_back({std::string(name_of(r.algorithm)), html_escaped(r.resolution),
-                          fmt::format("{}", r.points), fmt::format("{:.4g}", r.step_us_median),
-                          fmt::format("{:.4g}", r.step_us_p99), fmt::format("{:.0f}", r.paced_rate_hz),
-                          fmt::format("{:.0f}", r.rate_hz), fmt::format("{:.0f}", r.steps_per_s)});
-    if (in_paper) {
-      table.rows.back().insert(table.rows.back().begin() + 6,
-                               r.paper_rate_hz > 0 ? fmt::format("{:.0f}", r.paper_rate_hz) : "–");
-    }
-  }
-  return table;
-}
-
 std::string least_words(const std::vector<VertexSearchRow>& rows, const std::string& part, int papers) {
   const int least = least_vertices(rows, part);
   return fmt::format("{} on the {} ({} in the paper)",
                      least > 0 ? fmt::format("{}", least) : "none of those tried", part, papers);
 }
 
-PageSection vertices_section(const std::vector<VertexSearchRow>& rows) {
-  HtmlTable table{{"Part", "Vertices", "Force off the normal, median (°)", "Worst (°)",
-                   "Size off its mean, worst (%)", "Deepest unseen (% of the radius)", "Suffices"},
-                  {},
-                  true};
-  for (const VertexSearchRow& r : rows) {
-    const bool least = r.vertices == least_vertices(rows, r.part);
-    table.rows.push_back(
-        {r.part, fmt::format("{}", r.vertices), fmt::format("{:.1f}", r.direction_deg_median),
-         fmt::format("{:.1f}", r.direction_deg_worst), fmt::format("{:.1f}", 100 * r.size_off_worst),
-         fmt::format("{:.1f}", 100 * r.unseen_worst),
-         least ? "<b>yes, the least</b>" : (r.suffices ? "yes" : "no")});
+Section vertices_section(const std::vector<VertexSearchRow>& rows) {
+  Table table =
+      table_of(rows, {"part"}, [](const VertexSearchRow& row) { return std::vector<Cell>{row.part}; });
+  for (std::size_t n = 0; n < rows.size(); ++n) {
+    const bool least = rows[n].vertices == least_vertices(rows, rows[n].part);
+    table.rows[n].back() = least              ? Cell("yes, the least", Look::strong)
+                           : rows[n].suffices ? Cell("yes")
+                                              : Cell("no");
   }
-  return {.title = "The least number of vertices that suffices for surface-points",
-          .paragraphs = {fmt::format(
-              "By this search: {}, {}. The paper says that its tests found its numbers to be needed for "
-              "correct collision detection and force, not by what measure; the measure here is our own. The "
-              "algorithm itself presses its sphere, or one circle of its shaft, on a "
-              "flat wall by half the radius with a thousand sides of it in turn, in bone whose density is "
-              "linear, so that nothing but the number of vertices counts. A number suffices where, with "
-              "every side, the force is at most {:g}° off the wall's normal, its size at most {:g} % off "
-              "the mean, and a vertex meets the bone before the part is {:g} % of its radius deep; the "
-              "least is the one from which on all that were tried suffice. These tolerances are round "
-              "numbers; others give other answers, which the table lets you see.",
-              least_words(rows, "sphere", kSphereVertices), least_words(rows, "circle", kSliceVertices),
-              VertexSearchRow::kMaxDirection_deg, 100 * VertexSearchRow::kMaxSizeOff,
-              100 * VertexSearchRow::kMaxUnseen)},
-          .tables = {table}};
+  return {
+      .title = "The least number of vertices that suffices for surface-points",
+      .paragraphs = {fmt::format(
+          "By this search: {}, {}. The paper says that its tests found its numbers to be needed for "
+          "correct collision detection and force, not by what measure; the measure here is our own. The "
+          "algorithm itself presses its sphere, or one circle of its shaft, on a "
+          "flat wall by half the radius with a thousand sides of it in turn, in bone whose density is "
+          "linear, so that nothing but the number of vertices counts. A number suffices where, with "
+          "every side, the force is at most {:g}° off the wall's normal, its size off the mean by at most "
+          "{:g} of it, and a vertex meets the bone before the part is {:g} of its radius deep; the "
+          "least is the one from which on all that were tried suffice. These tolerances are round "
+          "numbers; others give other answers, which the table lets you see.",
+          least_words(rows, "sphere", kSphereVertices), least_words(rows, "circle", kSliceVertices),
+          VertexSearchRow::kMaxDirection_deg, VertexSearchRow::kMaxSizeOff, VertexSearchRow::kMaxUnseen)},
+      .tables = {table}};
 }
 
 }  // namespace
@@ -251,22 +212,23 @@ fs::path write_rates_report(const MeasuredRates& measured, const fs::path& out_d
   require_usable(rows);
   create_folder(out_dir);
   // The measurements, which stay where no figure can be drawn.
-  write_rates_csv(out_dir / "rates.csv", measured);
-  if (!measured.vertices.empty()) write_vertices_csv(out_dir / "vertices.csv", measured.vertices);
-  write_folder_atomically(out_dir, [&](const fs::path& beside) {
-    create_folder(beside / "figures");
-    const Figure figure = draw_rates_figure(rows, beside / "figures");
-    std::vector<PageSection> sections{
-        {.paragraphs = {plain_words(rows), std::string(kWhatRatesMean)},
-         .figures = {{figure.svg,
-                      "Steps a second against resolution, on a logarithmic scale. The paper's section 8.1."}},
-         .tables = {rates_table(rows)}}};
-    if (!measured.vertices.empty()) sections.push_back(vertices_section(measured.vertices));
-    write_text_atomically(beside / "rates.html", [&](std::ostream& out) {
-      out << html_page("Haptic rate against resolution", sections);
-    });
+  write_rows(out_dir / "rates.csv", "algorithm,resolution", rows,
+             [](const RateRow& row) { return name_of(row.algorithm) + "," + csv_field(row.resolution); });
+  if (!measured.vertices.empty())
+    write_rows(out_dir / "vertices.csv", "part", measured.vertices,
+               [](const VertexSearchRow& row) { return row.part; });
+  return write_page(out_dir, "rates.html", [&](const fs::path& beside) {
+    Page page{"Haptic rate against resolution",
+              {{.paragraphs = {plain_words(rows), std::string(kWhatRatesMean)},
+                .figures = {{draw_rates_figure(rows, beside / "figures").svg,
+                             "Steps a second against resolution, on a logarithmic scale. The paper's section "
+                             "8.1."}},
+                .tables = {table_of(rows, {"algorithm", "resolution"}, [](const RateRow& row) {
+                  return std::vector<Cell>{name_of(row.algorithm), row.resolution};
+                })}}}};
+    if (!measured.vertices.empty()) page.sections.push_back(vertices_section(measured.vertices));
+    return page;
   });
-  return out_dir / "rates.html";
 }
 
 }  // namespace osteomill

@@ -6,6 +6,7 @@
 
 #include "osteomill/recording/recording.h"
 #include "osteomill/study/measure_passivity.h"
+#include "osteomill/study/page.h"
 #include "osteomill/study/study.h"
 
 namespace osteomill {
@@ -25,9 +26,10 @@ bool are_of_comparison(const std::vector<Recording>& recordings);
 /// verdict ahead of all, the paper's findings held against it, and where there are extras, a section on each,
 /// with their numbers in study.csv and stability.csv, which are there also where the report fails. Nothing is
 /// concluded from recordings that differ in more than the algorithm (differences_table). Returns the page's
-/// path. Throws as write_report does.
+/// path, and puts what came out, the tables at its top, into `came_out`. Throws as write_report does.
 std::filesystem::path write_comparison_report(const std::vector<Recording>& recordings,
                                               const std::filesystem::path& out_dir,
-                                              const ReportExtras& extras = {});
+                                              const ReportExtras& extras = {},
+                                              std::vector<Table>* came_out = nullptr);
 
 }  // namespace osteomill

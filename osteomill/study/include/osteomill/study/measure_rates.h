@@ -28,6 +28,11 @@ struct RateRow {
   double paced_rate_hz = 0;
 };
 
+/// Returns the numbers of a line, the columns of rates.csv in their order; not a number for what the paper
+/// does not have.
+template <>
+const std::vector<Field<RateRow>>& fields_of<RateRow>();
+
 /// Section 8.1: step time against resolution, for the resolutions of the paper (50 to 1000 vertices, 10 to
 /// 100 slices, shells at scale 1, 2 and 3), and for barrier-shell, which is not the paper's, for points 0.26,
 /// 0.13 and 0.10 mm apart. For each, the simulated hand presses and leans on the bone without removing any

@@ -1,8 +1,13 @@
 #pragma once
 
+#include <cmath>
 #include <string>
+#include <vector>
+
+#include <fmt/format.h>
 
 #include "osteomill/study/metrics.h"
+#include "osteomill/study/page.h"
 
 namespace osteomill {
 
@@ -12,11 +17,41 @@ inline std::string label_of(const FieldDescription& field) {
   return with_unit(field.doc, field.unit);
 }
 
-/// The head of summary.csv, and a row of it, without line ends.
+/// Returns the head of summary.csv, and a row of it, without line ends.
 std::string summary_columns();
 std::string summary_fields(const MeasuredRun& run);
 
-/// Returns a field of CSV behind a comma; empty if it is not a number.
-std::string csv_number(double value);
+/// Returns the names of fields as the head of a CSV file, and the values of `s` as a row of it, each behind a
+/// comma; what is not a number is empty.
+template <typename Struct>
+std::string csv_names(const std::vector<Field<Struct>>& fields) {
+  std::string names;
+  for (const Field<Struct>& field : fields) names += "," + field.name;
+  return names;
+}
+template <typename Struct>
+std::string csv_values(const std::vector<Field<Struct>>& fields, const Struct& s) {
+  std::string values;
+  for (const Field<Struct>& field : fields) {
+    const double value = field.get(s);
+    values += std::isnan(value) ? "," : fmt::format(",{}", value);
+  }
+  return values;
+}
+
+/// Returns a table of rows: the columns of `header`, whose cells `named` gives, and then one for each field
+/// that is a number in any row.
+template <typename Row, typename Named>
+Table table_of(const std::vector<Row>& rows, const std::vector<std::string>& header, const Named& named) {
+  Table table{header, {}, true};
+  for (const Row& row : rows) table.rows.push_back(named(row));
+  for (const Field<Row>& field : fields_of<Row>()) {
+    const auto lacks = [&](const Row& row) { return std::isnan(field.get(row)); };
+    if (std::ranges::all_of(rows, lacks)) continue;
+    table.header.push_back(label_of(field));
+    for (std::size_t n = 0; n < rows.size(); ++n) table.rows[n].emplace_back(shown(field.get(rows[n])));
+  }
+  return table;
+}
 
 }  // namespace osteomill

@@ -167,4 +167,8 @@ struct MeasuredRun {
   double grip = 1;
 };
 
+/// Returns what a run says of its hand in numbers, the columns of study.csv behind the seed.
+template <>
+const std::vector<Field<MeasuredRun>>& fields_of<MeasuredRun>();
+
 }  // namespace osteomill

@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "osteomill/base/field.h"
+
 namespace osteomill {
 
 /// How well so many vertices on surface-points' sphere, or on one circle of its shaft, stand for it. Pressed
@@ -26,6 +28,10 @@ struct VertexSearchRow {
   static constexpr double kMaxSizeOff = 0.2;
   static constexpr double kMaxUnseen = 0.2;
 };
+
+/// Returns the numbers of a row, the columns of vertices.csv behind the part.
+template <>
+const std::vector<Field<VertexSearchRow>>& fields_of<VertexSearchRow>();
 
 /// Presses surface-points itself with 6 to 96 vertices on the sphere, 1000 sides each,
 /// and 3 to 32 on the circle. The wall's density falls linearly through its surface, where (15) is exact, so

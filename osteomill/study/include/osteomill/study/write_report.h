@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "osteomill/study/html.h"
+#include "osteomill/study/page.h"
 #include "osteomill/study/run_groups.h"
 
 namespace osteomill {
@@ -23,9 +23,9 @@ struct PageText {
   std::string title = "What was milled, and what the hand felt";
   /// At the page's top, what a reader came for. Without it the page says there of each run how long it took,
   /// how far the burr went, what was removed and what was felt.
-  std::optional<PageSection> opening;
+  std::optional<Section> opening;
   /// Between what was felt and what was set.
-  std::vector<PageSection> sections;
+  std::vector<Section> sections;
   /// Below the times that any session has.
   std::vector<MetricLine> further_times;
   /// More to say below a figure, by the figure's name ("force").
@@ -33,12 +33,16 @@ struct PageText {
 };
 
 /// Writes `out_dir`/report.html, summary.csv and figures/ (each figure as SVG and PNG) of runs that were
-/// measured (group_runs); returns the path of report.html. The page has what matters most first: the opening,
-/// the bone before and after, force, torque, shaft and path, each with its figures and metrics, then what
-/// `text` adds, times, settings, and how to repeat it, with the figures in itself. All appear together or
-/// none. Throws InputError where gnuplot is missing or fails, or a file cannot be written.
-std::filesystem::path write_report(const RunGroup& runs, const std::filesystem::path& out_dir,
-                                   const PageText& text = {});
+/// measured (group_runs); returns the path of report.html. `text` gets the folder for its figures. The page
+/// has what matters most first: the opening, the bone before and after, force, torque, shaft and path, each
+/// with its figures and metrics, then what `text` adds, times, settings, and how to repeat it, with the
+/// figures in itself. All appear together or none. Throws InputError where gnuplot is missing or fails, or a
+/// file cannot be written.
+std::filesystem::path write_report(
+    const RunGroup& runs, const std::filesystem::path& out_dir,
+    const std::function<PageText(const std::filesystem::path& figures)>& text = [](const auto&) {
+      return PageText{};
+    });
 
 /// A report of any number of recordings, one for each algorithm and phase that there is. Throws
 /// InputError also where there are no recordings, two are of the same algorithm and phase, or one

@@ -1,6 +1,7 @@
-#include "osteomill/study/html.h"
+#include "osteomill/study/page.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <fstream>
 #include <iterator>
@@ -8,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "osteomill/base/atomic_file.h"
 #include "osteomill/base/input_error.h"
 
 namespace osteomill {
@@ -58,9 +60,10 @@ thead th { border-bottom: 2px solid #888; } tbody th { font-weight: normal; }
 .numbers td, .numbers thead th + th { text-align: right; font-variant-numeric: tabular-nums; }
 .numbers td { white-space: nowrap; }
 .words { white-space: normal; display: inline-block; min-width: 8em; text-align: left; }
+.strong { font-weight: 600; }
 .agrees { color: #146c2e; font-weight: 600; white-space: nowrap; }
 .differs { color: #a4101f; font-weight: 600; white-space: nowrap; }
-.none { color: #666; white-space: nowrap; }
+.faint { color: #666; white-space: nowrap; }
 .notice { background: #fff4d6; border-left: 4px solid #d9a400; padding: 0.5em 1em; }
 figure { margin: 1.2em 0 2em; } figure img { max-width: 100%; height: auto; border: 1px solid #e3e3e3; }
 figcaption { font-size: 14px; color: #444; margin-top: 0.3em; max-width: 60em; }
@@ -73,11 +76,26 @@ std::string bytes_of(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
 }
 
-std::string table_row(const std::vector<std::string>& cells, bool header) {
+std::string html(const Cell& cell) {
+  constexpr const char* kClasses[] = {"", "strong", "agrees", "differs", "faint", "words"};
+  std::string html;
+  for (const Cell::Piece& piece : cell.pieces) {
+    std::string text = html_escaped(piece.text);
+    for (auto at = text.find('\n'); at != std::string::npos; at = text.find('\n', at))
+      text.replace(at, 1, "<br>");
+    if (!piece.colour.empty()) text = fmt::format("<span style=\"color:{}\">{}</span>", piece.colour, text);
+    if (piece.look != Look::plain)
+      text = fmt::format("<span class=\"{}\">{}</span>", kClasses[static_cast<int>(piece.look)], text);
+    html += text;
+  }
+  return html;
+}
+
+std::string table_row(const std::vector<Cell>& cells, bool header) {
   std::string row = "<tr>";
   for (std::size_t n = 0; n < cells.size(); ++n) {
     const char* tag = header || n == 0 ? "th" : "td";
-    row += fmt::format("<{0}>{1}</{0}>", tag, cells[n]);
+    row += fmt::format("<{0}>{1}</{0}>", tag, html(cells[n]));
   }
   return row + "</tr>\n";
 }
@@ -90,9 +108,10 @@ std::string html_figure(const CaptionedFigure& figure) {
       html_escaped(figure.caption), type, base64(bytes_of(figure.file)));
 }
 
-std::string html_table(const HtmlTable& table) {
+std::string html(const Table& table) {
   std::string html = table.numbers ? "<div class=\"wide numbers\">" : "<div class=\"wide\">";
-  html += "<table>\n<thead>" + table_row(table.header, true) + "</thead>\n<tbody>\n";
+  html += "<table>\n<thead>" + table_row({table.header.begin(), table.header.end()}, true) +
+          "</thead>\n<tbody>\n";
   for (const auto& row : table.rows) html += table_row(row, false);
   return html + "</tbody></table></div>\n";
 }
@@ -131,31 +150,89 @@ std::string base64(std::string_view bytes) {
   return text;
 }
 
-std::string html(const PageSection& section, int level) {
-  std::string html;
-  if (!section.title.empty()) html += fmt::format("<h{0}>{1}</h{0}>\n", level, html_escaped(section.title));
-  for (const std::string& text : section.notices) html += in_tag("p class=\"notice\"", text);
-  for (const std::string& text : section.paragraphs) html += text.empty() ? "" : in_tag("p", text);
-  if (!section.points.empty()) html += "<ul>\n";
-  for (const std::string& text : section.points) html += in_tag("li", text);
-  if (!section.points.empty()) html += "</ul>\n";
-  for (const CaptionedFigure& figure : section.figures) html += html_figure(figure);
-  for (const HtmlTable& table : section.tables) html += html_table(table);
-  if (!section.commands.empty()) html += "<pre>";
-  for (const std::string& command : section.commands) html += html_escaped(command) + "\n";
-  if (!section.commands.empty()) html += "</pre>\n";
-  for (const PageSection& part : section.parts) html += osteomill::html(part, level + 1);
-  return html;
+std::string html(const Section& section, int level) {
+  std::string text;
+  if (!section.title.empty()) text += fmt::format("<h{0}>{1}</h{0}>\n", level, html_escaped(section.title));
+  for (const std::string& notice : section.notices) text += in_tag("p class=\"notice\"", notice);
+  for (const std::string& paragraph : section.paragraphs) text += in_tag("p", paragraph);
+  for (const CaptionedFigure& figure : section.figures) text += html_figure(figure);
+  for (const Table& table : section.tables) text += html(table);
+  if (!section.commands.empty())
+    text +=
+        fmt::format("<pre>{}\n</pre>\n", html_escaped(fmt::format("{}", fmt::join(section.commands, "\n"))));
+  for (const Section& part : section.parts) text += html(part, level + 1);
+  return text;
 }
 
-std::string html_page(const std::string& title, const std::vector<PageSection>& sections) {
+std::string html(const Page& page) {
   std::string body;
-  for (const PageSection& section : sections) body += html(section);
+  for (const Section& section : page.sections) body += html(section);
   return valid_utf8(fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{0}</title>\n"
       "<style>{1}</style></head>\n<body>\n<h1>{0}</h1>\n{2}</body></html>\n",
-      html_escaped(title), kStyle, body));
+      html_escaped(page.title), kStyle, body));
+}
+
+std::filesystem::path write_page(const std::filesystem::path& out_dir, const std::string& name,
+                                 const std::function<Page(const std::filesystem::path&)>& make) {
+  write_folder_atomically(out_dir, [&](const std::filesystem::path& beside) {
+    create_folder(beside / "figures");
+    const std::string page = html(make(beside));
+    write_text_atomically(beside / name, [&](std::ostream& out) { out << page; });
+  });
+  return out_dir / name;
+}
+
+std::string Cell::text() const {
+  std::string all;
+  for (const Piece& piece : pieces) all += piece.text;
+  return all;
+}
+
+namespace {
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines{""};
+  for (const char c : text) c == '\n' ? (void)lines.emplace_back() : lines.back().push_back(c);
+  return lines;
+}
+
+// Bytes that do not begin a character take no room.
+std::size_t width_of(const std::string& text) {
+  return static_cast<std::size_t>(std::ranges::count_if(text, [](char c) { return (c & 0xC0) != 0x80; }));
+}
+
+}  // namespace
+
+std::string plain_text(const Table& table) {
+  std::vector<std::vector<Cell>> rows{{table.header.begin(), table.header.end()}};
+  rows.insert(rows.end(), table.rows.begin(), table.rows.end());
+  std::vector<std::size_t> widths(table.header.size());
+  for (const auto& row : rows)
+    for (std::size_t n = 0; n < row.size(); ++n)
+      for (const std::string& line : lines_of(row[n].text())) widths[n] = std::max(widths[n], width_of(line));
+  std::string text;
+  for (const auto& row : rows) {
+    bool more = true;
+    for (std::size_t at = 0; more; ++at) {
+      more = false;
+      std::string line;
+      for (std::size_t n = 0; n < row.size(); ++n) {
+        const std::vector<std::string> lines = lines_of(row[n].text());
+        more = more || lines.size() > at + 1;
+        const std::string part = lines.size() > at ? lines[at] : "";
+        line += part + std::string(widths[n] - width_of(part) + 2, ' ');
+      }
+      text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
+    }
+  }
+  return text;
+}
+
+std::string shown(double value) {
+  if (std::isnan(value)) return "–";
+  return std::abs(value) < 1000 ? fmt::format("{:.4g}", value) : fmt::format("{:.0f}", value);
 }
 
 }  // namespace osteomill

@@ -1,4 +1,6 @@
-#include "osteomill/study/html.h"
+#include "osteomill/study/page.h"
+
+#include <limits>
 
 #include <gtest/gtest.h>
 
@@ -23,8 +25,30 @@ TEST(Html, TextIsEscaped) {
   EXPECT_EQ(html_escaped("<b a=\"1\">&amp;</b>"), "&lt;b a=&quot;1&quot;&gt;&amp;amp;&lt;/b&gt;");
 }
 
+TEST(Html, ACellIsTextInPieces) {
+  const Section section{
+      .tables = {{{"<a>"}, {{"x & y", Cell({{"1 > 2", Look::strong}, {"\nno", Look::faint}})}}}}};
+  const std::string page = html(section);
+  EXPECT_NE(page.find("<th>&lt;a&gt;</th>"), std::string::npos) << page;
+  EXPECT_NE(page.find("<th>x &amp; y</th><td><span class=\"strong\">1 &gt; 2</span><span "
+                      "class=\"faint\"><br>no</span></td>"),
+            std::string::npos)
+      << page;
+}
+
+TEST(PlainText, HasItsColumnsBelowEachOther) {
+  const Table table{{"a", "bb"}, {{"µm", "x\ny"}, {"long", Cell({{"1"}, {"2"}})}}};
+  EXPECT_EQ(plain_text(table), "a     bb\nµm    x\n      y\nlong  12\n");
+}
+
+TEST(Shown, NumbersHaveFourDigitsAndNoExponent) {
+  EXPECT_EQ(shown(0.12345), "0.1235");
+  EXPECT_EQ(shown(312500.4), "312500");
+  EXPECT_EQ(shown(std::numeric_limits<double>::quiet_NaN()), "–");
+}
+
 TEST(Html, AFigureThatIsMissingIsNamed) {
-  EXPECT_THROW(html({.figures = {{"/no/such/figure.svg", "x"}}}), InputError);
+  EXPECT_THROW(html(Section{.figures = {{"/no/such/figure.svg", "x"}}}), InputError);
 }
 
 }  // namespace
@@ -49,7 +73,7 @@ TEST(ValidUtf8, EachByteThatIsNotIsReplaced) {
 }
 
 TEST(ValidUtf8, APageIs) {
-  const std::string page = html_page("Z\xFC", {});
+  const std::string page = html(Page{"Z\xFC", {}});
   EXPECT_EQ(page, valid_utf8(page));
 }
 

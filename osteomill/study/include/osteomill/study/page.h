@@ -1,0 +1,88 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace osteomill {
+
+/// How a piece of a cell is shown; `words` may be broken into lines, as nothing else in a table of numbers.
+enum class Look : unsigned char { plain, strong, agrees, differs, faint, words };
+
+/// A cell of a table: plain text, whose line breaks stay, in pieces of which each is shown in its own way.
+struct Cell {
+  struct Piece {
+    std::string text;
+    Look look = Look::plain;
+    /// "#rrggbb"; empty for the page's own.
+    std::string colour = {};
+  };
+  std::vector<Piece> pieces;
+
+  Cell(std::vector<Piece> all) : pieces(std::move(all)) {}
+  Cell(std::string text = {}, Look look = Look::plain) : pieces{{std::move(text), look}} {}
+  Cell(const char* text) : Cell(std::string(text)) {}
+  std::string text() const;
+};
+
+/// A table. The first column's cells are headings.
+struct Table {
+  std::vector<std::string> header;
+  std::vector<std::vector<Cell>> rows;
+  /// Cells are numbers, to be aligned on the right.
+  bool numbers = false;
+};
+
+/// Returns the table for a terminal: its columns below each other.
+std::string plain_text(const Table& table);
+
+/// An SVG or PNG, which stands in the page itself, not as a link.
+struct CaptionedFigure {
+  std::filesystem::path file;
+  std::string caption;
+};
+
+/// A part of a page, shown in the order of its fields; what is empty is not shown. All text is plain.
+struct Section {
+  std::string title;
+  /// What a reader must know before believing the rest.
+  std::vector<std::string> notices;
+  std::vector<std::string> paragraphs;
+  std::vector<CaptionedFigure> figures;
+  std::vector<Table> tables;
+  std::vector<std::string> commands;
+  /// With titles a level lower.
+  std::vector<Section> parts;
+};
+
+struct Page {
+  std::string title;
+  std::vector<Section> sections;
+};
+
+/// Returns a section whose title is of this level (<h2>). Throws InputError where a figure cannot be read.
+std::string html(const Section& section, int level = 2);
+
+/// Returns a whole page with its own style sheet, which loads nothing from anywhere. Throws as `html` of a
+/// section does.
+std::string html(const Page& page);
+
+/// Writes a page into `out_dir` under this name, with the files and figures that `make` puts beside it: it
+/// gets a folder that has a folder `figures`. All appear together or none. Returns the page's path. Throws
+/// InputError where a file cannot be written, and what `make` throws.
+std::filesystem::path write_page(const std::filesystem::path& out_dir, const std::string& name,
+                                 const std::function<Page(const std::filesystem::path& beside)>& make);
+
+std::string html_escaped(std::string_view text);
+std::string base64(std::string_view bytes);
+
+/// Returns the text with U+FFFD for every byte that is no part of a character in UTF-8 (RFC 3629): names in
+/// scans, and of files, may be of other encodings.
+std::string valid_utf8(std::string_view text);
+
+/// Returns a number of four significant digits, or all of its digits before the point; "–" for none.
+std::string shown(double value);
+
+}  // namespace osteomill
