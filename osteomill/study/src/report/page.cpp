@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 #include <utility>
 
 #include <fmt/format.h>
@@ -58,7 +59,7 @@ table { border-collapse: collapse; margin: 0.8em 0; font-size: 14px; }
 th, td { padding: 0.3em 0.7em; border-bottom: 1px solid #ddd; text-align: left; vertical-align: top; }
 thead th { border-bottom: 2px solid #888; } tbody th { font-weight: normal; }
 .numbers td, .numbers thead th + th { text-align: right; font-variant-numeric: tabular-nums; }
-.numbers td { white-space: nowrap; }
+.numbers td { white-space: nowrap; } .numbers tbody th { min-width: 9em; }
 .words { white-space: normal; display: inline-block; min-width: 8em; text-align: left; }
 .strong { font-weight: 600; }
 .agrees { color: #146c2e; font-weight: 600; white-space: nowrap; }
@@ -192,36 +193,49 @@ std::string Cell::text() const {
 
 namespace {
 
-std::vector<std::string> lines_of(const std::string& text) {
-  std::vector<std::string> lines{""};
-  for (const char c : text) c == '\n' ? (void)lines.emplace_back() : lines.back().push_back(c);
-  return lines;
-}
-
 // Bytes that do not begin a character take no room.
 std::size_t width_of(const std::string& text) {
   return static_cast<std::size_t>(std::ranges::count_if(text, [](char c) { return (c & 0xC0) != 0x80; }));
 }
 
+// The text's lines, broken where they are wider than this.
+std::vector<std::string> lines_of(const std::string& text, std::size_t most) {
+  std::vector<std::string> lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) {
+    lines.emplace_back();
+    std::istringstream words(line);
+    for (std::string word; words >> word;) {
+      const bool fits = width_of(lines.back()) + width_of(word) < most;
+      if (!fits && !lines.back().empty()) lines.emplace_back();
+      lines.back() += (lines.back().empty() ? "" : " ") + word;
+    }
+  }
+  return lines;
+}
+
 }  // namespace
 
 std::string plain_text(const Table& table) {
+  constexpr std::size_t kWide = 150;
   std::vector<std::vector<Cell>> rows{{table.header.begin(), table.header.end()}};
   rows.insert(rows.end(), table.rows.begin(), table.rows.end());
+  std::vector<std::vector<std::vector<std::string>>> lines;
   std::vector<std::size_t> widths(table.header.size());
-  for (const auto& row : rows)
-    for (std::size_t n = 0; n < row.size(); ++n)
-      for (const std::string& line : lines_of(row[n].text())) widths[n] = std::max(widths[n], width_of(line));
-  std::string text;
   for (const auto& row : rows) {
-    bool more = true;
-    for (std::size_t at = 0; more; ++at) {
-      more = false;
+    lines.emplace_back();
+    for (std::size_t n = 0; n < row.size(); ++n) {
+      lines.back().push_back(lines_of(row[n].text(), kWide / widths.size()));
+      for (const std::string& line : lines.back().back()) widths[n] = std::max(widths[n], width_of(line));
+    }
+  }
+  std::string text;
+  for (const auto& row : lines) {
+    const auto most = std::ranges::max(row, {}, &std::vector<std::string>::size).size();
+    for (std::size_t at = 0; at < most; ++at) {
       std::string line;
       for (std::size_t n = 0; n < row.size(); ++n) {
-        const std::vector<std::string> lines = lines_of(row[n].text());
-        more = more || lines.size() > at + 1;
-        const std::string part = lines.size() > at ? lines[at] : "";
+        const std::string part = at < row[n].size() ? row[n][at] : "";
         line += part + std::string(widths[n] - width_of(part) + 2, ' ');
       }
       text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";

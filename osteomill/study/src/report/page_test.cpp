@@ -41,6 +41,12 @@ TEST(PlainText, HasItsColumnsBelowEachOther) {
   EXPECT_EQ(plain_text(table), "a     bb\nµm    x\n      y\nlong  12\n");
 }
 
+TEST(PlainText, BreaksWhatIsTooWide) {
+  const std::string text = plain_text({{"", ""}, {{"a", std::string(70, 'b') + " " + std::string(70, 'c')}}});
+  EXPECT_NE(text.find("a  bbb"), std::string::npos) << text;
+  EXPECT_NE(text.find("b\n   ccc"), std::string::npos) << text;
+}
+
 TEST(Shown, NumbersHaveFourDigitsAndNoExponent) {
   EXPECT_EQ(shown(0.12345), "0.1235");
   EXPECT_EQ(shown(312500.4), "312500");

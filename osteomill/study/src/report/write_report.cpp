@@ -129,9 +129,10 @@ std::vector<MetricLine> lines_of(const Topic& topic) {
   std::vector<MetricLine> lines;
   for (const char* column : topic.columns) {
     const Field<RunMetrics>& figure = metric(column);
-    lines.push_back({label_of(figure), [&figure](const MeasuredRun& run) {
+    lines.push_back({label_of(figure), [&figure](const MeasuredRun& run) -> Cell {
                        const double value = figure.get(run.metrics);
-                       return std::isnan(value) ? contact_words(run.metrics.contact) : shown(value);
+                       if (std::isnan(value)) return {contact_words(run.metrics.contact), Look::words};
+                       return shown(value);
                      }});
   }
   return lines;
@@ -147,7 +148,7 @@ Table metrics_table(const RunGroup& group, const std::vector<MetricLine>& lines)
   if (std::ranges::all_of(group.runs, &std::string::empty, &MeasuredRun::not_reached)) table.rows.clear();
   for (const MetricLine& line : lines) {
     table.rows.push_back({line.label});
-    for (const MeasuredRun& run : group.runs) table.rows.back().emplace_back(line.cell(run));
+    for (const MeasuredRun& run : group.runs) table.rows.back().push_back(line.cell(run));
   }
   return table;
 }

@@ -123,18 +123,19 @@ Cell differences(const Study& study, std::string_view phase, const Field<RunMetr
 
 // "0.02 [0.01, 0.03]", of one hand without the interval, and with the hands where it could not be measured in
 // all; else why not in any.
-std::string values_text(const Study& study, const AlgorithmId& algorithm, std::string_view phase,
-                        const Field<RunMetrics>& metric) {
+Cell values_cell(const Study& study, const AlgorithmId& algorithm, std::string_view phase,
+                 const Field<RunMetrics>& metric) {
   const std::vector<double> values = study.values(algorithm, phase, metric.get);
   const std::size_t hands = study.seeds().size();
-  if (values.empty()) return contact_words(study.contact(algorithm, phase));
+  if (values.empty()) return {contact_words(study.contact(algorithm, phase)), Look::words};
   const std::string text =
       hands == 1 ? fmt::format("{:.3g}", values.front()) : interval_text(median_interval(values));
   return values.size() == hands ? text : fmt::format("{} in {} of {} hands", text, values.size(), hands);
 }
 
+// Fewer hands cannot show a difference.
 bool are_compared(const Study& study) {
-  return study.algorithms().size() > 1 && study.seeds().size() > 1;
+  return study.algorithms().size() > 1 && study.seeds().size() >= study.seeds_needed();
 }
 
 // Without rows yet: a column for each algorithm and, of several hands, one for the differences.
@@ -149,7 +150,7 @@ void add_figure(Table& table, const Study& study, std::string_view phase, const 
                 const std::string& label) {
   std::vector<Cell>& row = table.rows.emplace_back(1, label);
   for (const AlgorithmId& algorithm : study.algorithms())
-    row.emplace_back(values_text(study, algorithm, phase, metric));
+    row.push_back(values_cell(study, algorithm, phase, metric));
   if (are_compared(study)) row.push_back(differences(study, phase, metric));
 }
 
@@ -211,7 +212,8 @@ std::vector<std::string> how_to_read(const Study& study) {
       "after Holm over what is compared in one row (not over the rows); bold ones are significant (p at most "
       "{}). The least p that {} hands can give is {:.2g}, after the correction {:.2g}{}.",
       kSignificance, n, min_p(n), min_corrected,
-      min_corrected > kSignificance ? ", so that no difference can be significant here" : ""));
+      min_corrected > kSignificance ? ", so that no difference can be significant here and none is shown"
+                                    : ""));
   paragraphs.emplace_back(
       "Compute times are the machine's: those of the first seed were taken with nothing else of this program "
       "running, the others with a trial beside on each further core. Everything else comes out the same on "
@@ -255,7 +257,7 @@ Table verdicts_table(const Study& study) {
               {}};
   for (const auto& [verdict, which] : findings)
     table.rows.push_back({verdict_cell(verdict), fmt::format("{}", which.size()),
-                          verdict == Verdict::agrees ? "" : fmt::format("{}", fmt::join(which, "\n"))});
+                          verdict == Verdict::agrees ? "" : fmt::format("{}", fmt::join(which, ";\n"))});
   return table;
 }
 

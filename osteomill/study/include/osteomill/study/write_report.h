@@ -15,7 +15,7 @@ namespace osteomill {
 /// A row of the table of metrics.
 struct MetricLine {
   std::string label;
-  std::function<std::string(const MeasuredRun&)> cell;
+  std::function<Cell(const MeasuredRun&)> cell;
 };
 
 /// What whoever made the recordings has to say of them; all of it may be empty. A plain session has nothing.
